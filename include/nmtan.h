@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * nmtan.h - tangent frames for normal-mapped meshes: arrays in, arrays out, no files.
+ *
+ * Three calls do the work. nmtan_tangents() computes one tangent per face corner, nmtan_split() says
+ * which vertices must be duplicated so that every vertex has one tangent, and nmtan_orientation()
+ * tells how a triangle's texture coordinates are wound, exactly.
+ *
+ * The frame: T is a unit vector along which the texture's u grows, N the corner's normal, and the
+ * bitangent is B = cross(N, T) * w with w = +1 or -1. Where the normal agrees with the winding, B
+ * runs along growing v. V POINTS UP here, as it does in bakers, OBJ and PLY. Texture coordinates of
+ * glTF have v pointing down: pass (u, -v), which is exact, and store the w you get.
+ *
+ * Results: the default method is byte-identical to MikkTSpace (M. Mikkelsen, "Simulation of Wrinkled
+ * Surfaces Revisited", 2008, and the reference implementation, with its edge sort completed) wherever
+ * MikkTSpace's answer is usable; where it is not, it is repaired (see nmtan_repair). The same input
+ * gives the same bytes on every machine, thread count and instruction set. Not promised: the bits of
+ * a NaN, with repair off.
+ *
+ * Memory: nothing is kept after a call except in a workspace. Outputs belong to the caller. Scratch
+ * comes from options->allocator, or malloc; it is released before the call returns unless a workspace
+ * keeps it warm.
+ *
+ * Threads: every function may be called from several threads at once, as long as they do not share
+ * outputs or a workspace. There is no global state.
+ *
+ * Errors: a status, never an exit, never a message on a stream. After an error the contents of the
+ * outputs are unspecified.
+ */
+#ifndef NMTAN_H
+#define NMTAN_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define NMTAN_VERSION_MAJOR 0
+#define NMTAN_VERSION_MINOR 1
+#define NMTAN_VERSION_PATCH 0
+#define NMTAN_VERSION_STRING "0.1.0"
+
+/* Symbols that the shared library exports. */
+#if defined(__GNUC__)
+#define NMTAN_API __attribute__((visibility("default")))
+#else
+#define NMTAN_API
+#endif
+
+/* What a call reports. The functions of this header return the first six only. */
+typedef enum nmtan_status {
+	NMTAN_OK = 0,
+	NMTAN_ERROR_ARGUMENT,    /* a required pointer is NULL, a stride or an enum is out of range */
+	NMTAN_ERROR_INDEX,       /* an index is not below vertex_count */
+	NMTAN_ERROR_FACE_SIZE,   /* a face has neither 3 nor 4 corners */
+	NMTAN_ERROR_TOO_LARGE,   /* more than NMTAN_MAX_FACES faces, or a size overflows size_t */
+	NMTAN_ERROR_MEMORY,      /* the allocator returned NULL */
+	NMTAN_ERROR_USAGE,       /* command line: wrong or contradictory words */
+	NMTAN_ERROR_IO,          /* a file cannot be read or written */
+	NMTAN_ERROR_INPUT,       /* a file breaks the rules of its format */
+	NMTAN_ERROR_UNSUPPORTED, /* a file is sound but uses something that nmtan does not do */
+	NMTAN_ERROR_INTERNAL     /* our mistake */
+} nmtan_status;
+
+/* Static English text for a status, "unknown status" for any other number. Never NULL. */
+NMTAN_API const char *nmtan_status_text(nmtan_status status);
+
+/* Version of the library that runs, as "0.1.0". */
+NMTAN_API const char *nmtan_version(void);
+
+/* Faces of one mesh: 2^29 - 1, the limit of MikkTSpace's corner numbers (face * 4 + corner). */
+#define NMTAN_MAX_FACES ((size_t)536870911)
+
+/*
+ * A mesh: faces of 3 or 4 corners over vertices. Corner c of the mesh is corner c - first(f) of its
+ * face f, where first(f) is the sum of the sizes of the faces before f; without face_sizes corner
+ * 3 * f + k is corner k of triangle f.
+ *
+ * Attribute arrays hold vertex_count rows; stride_bytes is the distance between rows, a multiple of
+ * 4 and at least the row's size; 0 means tightly packed. Any float value is accepted, NaN and
+ * infinities too. Normals are used as given and should have unit length.
+ */
+typedef struct nmtan_mesh {
+	size_t face_count;         /* 0 is allowed */
+	size_t vertex_count;       /* at most 2^32 - 1 */
+	const uint8_t *face_sizes; /* [face_count], each 3 or 4; NULL: all faces are triangles */
+	const uint32_t *indices;   /* [corner count] vertex of each corner; NULL: corner c is vertex c */
+
+	const float *positions; /* [vertex_count][3], required */
+	size_t position_stride_bytes;
+	const float *normals; /* [vertex_count][3], required */
+	size_t normal_stride_bytes;
+	const float *texcoords; /* [vertex_count][2], v up, required */
+	size_t texcoord_stride_bytes;
+
+	/* The texture coordinates as they will be stored, v up, where storing rounds them (OBJ's v
+	 * becomes 1 - v in glTF: pass (u, -(1 - v))). Repair judges the sign of w by these, nothing else
+	 * uses them. NULL: texcoords are stored as they are. */
+	const float *stored_texcoords; /* [vertex_count][2] */
+	size_t stored_texcoord_stride_bytes;
+} nmtan_mesh;
+
+/* How the triangles around a vertex are averaged. */
+typedef enum nmtan_method {
+	NMTAN_METHOD_MIKKTSPACE = 0, /* the standard: angle weights, groups by orientation */
+	NMTAN_METHOD_AREA,           /* groups as MikkTSpace, weights corner angle times the two edge
+	                                lengths: thin bevels do not tilt the large faces beside them */
+	NMTAN_METHOD_LENGYEL         /* E. Lengyel, "Computing Tangent Space Basis Vectors for an
+	                                Arbitrary Mesh", 2001: sums of dP/du over the given vertices */
+} nmtan_method;
+
+/* What happens to results that a renderer cannot use. */
+typedef enum nmtan_repair {
+	NMTAN_REPAIR_ON = 0, /* zero, non-unit, non-finite tangents, tangents parallel to the normal and
+	                        w that differs within a triangle or from the exact orientation are
+	                        replaced by the nearest usable answer, and counted */
+	NMTAN_REPAIR_OFF     /* the method's raw result */
+} nmtan_repair;
+
+/* Which implementation runs. All give the same bytes; the choice exists for tests and timing. */
+typedef enum nmtan_path { NMTAN_PATH_AUTO = 0, NMTAN_PATH_SCALAR, NMTAN_PATH_FAST } nmtan_path;
+
+/* Which instruction set the fast path uses. One that the processor lacks is an argument error. */
+typedef enum nmtan_isa {
+	NMTAN_ISA_AUTO = 0,
+	NMTAN_ISA_BASELINE, /* what the compiler assumes: SSE2 on x86-64, NEON on aarch64 */
+	NMTAN_ISA_AVX2,
+	NMTAN_ISA_AVX512
+} nmtan_isa;
+
+/* The caller's allocator. Blocks are aligned for any C type, as malloc's are. */
+typedef struct nmtan_allocator {
+	void *(*allocate)(void *user, size_t size_bytes);           /* NULL result: out of memory */
+	void (*release)(void *user, void *block, size_t size_bytes); /* block is never NULL */
+	void *user;
+} nmtan_allocator;
+
+/* Scratch memory that stays warm between calls. One call at a time may use a workspace. */
+typedef struct nmtan_workspace nmtan_workspace;
+
+/* A new, empty workspace that grows on use. allocator may be NULL (malloc) and is copied.
+ * Returns NULL when memory is exhausted. */
+NMTAN_API nmtan_workspace *nmtan_workspace_create(const nmtan_allocator *allocator);
+
+/* Frees a workspace; NULL is allowed. */
+NMTAN_API void nmtan_workspace_destroy(nmtan_workspace *workspace);
+
+/* Options. All zero means the defaults; a NULL pointer to options means the same. */
+typedef struct nmtan_options {
+	nmtan_method method;
+	nmtan_repair repair;
+	float angular_threshold_degrees;  /* MikkTSpace's, in (0, 180]; 0: 180, its default. The other
+	                                     methods ignore it */
+	unsigned threads;                 /* 0: one per processor. Small meshes use one thread anyway */
+	nmtan_path path;                  /* for tests */
+	nmtan_isa isa;                    /* for tests */
+	const nmtan_allocator *allocator; /* NULL: malloc and free. Ignored when a workspace is given */
+	nmtan_workspace *workspace;       /* NULL: scratch is allocated and released by the call */
+} nmtan_options;
+
+/* What a solve met and what repair did, in corners unless it says faces. */
+typedef struct nmtan_counts {
+	size_t degenerate_positions; /* faces with two corners at one position in each half */
+	size_t degenerate_texcoords; /* triangles whose exact UV determinant is zero */
+	size_t mirrored;             /* triangles whose exact UV determinant is negative (v up) */
+	size_t folded_quads;         /* quads whose two halves are wound differently in UV space */
+	size_t repaired_zero;        /* tangents that were zero or not of unit length */
+	size_t repaired_not_finite;
+	size_t repaired_parallel;    /* tangents that were parallel to their normal */
+	size_t repaired_sign;        /* w changed to the exact orientation or to agree in its triangle */
+} nmtan_counts;
+
+/* Where results go. Each array has one row per corner, tightly packed. */
+typedef struct nmtan_output {
+	float *tangents;   /* [corner count][4], required: T and w */
+	float *bitangents; /* [corner count][3], may be NULL: MikkTSpace's own bitangent (unit dP/dv,
+	                      not cross(N, T) * w); cross(N, T) * w with the other methods and at repaired
+	                      corners */
+	float *magnitudes; /* [corner count][2], may be NULL: lengths of dP/du and dP/dv as MikkTSpace
+	                      reports them; 1 with the other methods and at repaired corners */
+	nmtan_counts counts; /* written by the call */
+} nmtan_output;
+
+/*
+ * Computes a tangent for every corner of the mesh.
+ *
+ *   mesh     required
+ *   options  NULL for defaults
+ *   output   required; tangents must have room for 4 floats per corner
+ *
+ * Time is linear in the number of corners, whatever the mesh looks like.
+ *
+ * Returns NMTAN_OK, NMTAN_ERROR_ARGUMENT, NMTAN_ERROR_INDEX, NMTAN_ERROR_FACE_SIZE,
+ * NMTAN_ERROR_TOO_LARGE or NMTAN_ERROR_MEMORY.
+ */
+NMTAN_API nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
+	nmtan_output *output);
+
+/* Where a split goes. */
+typedef struct nmtan_split_output {
+	uint32_t *indices;    /* [corner count], required: the vertex of each corner after the split. May
+	                         be the array that mesh->indices points to */
+	uint32_t *sources;    /* [source_capacity]: sources[i] is the vertex of which vertex
+	                         vertex_count + i is a copy. Never more than the corner count */
+	size_t source_capacity;
+	size_t source_count;  /* written by the call: how many vertices were appended */
+	float *vertex_tangents; /* [(vertex_count + source_capacity)][4], may be NULL: the tangent of each
+	                           vertex after the split. A vertex without corners gets a unit vector
+	                           perpendicular to its normal and w = 1 */
+} nmtan_split_output;
+
+/*
+ * Finds the vertices whose corners have different tangents and gives each further tangent a copy of
+ * the vertex. The tangent of a vertex's first corner keeps its index; copies are appended in corner
+ * order. Two tangents are the same when their four floats are equal (0 equals -0) or have equal bits.
+ *
+ *   mesh      required; texcoords may be NULL, normals too where vertex_tangents is NULL
+ *   tangents  [corner count][4], required
+ *   options   NULL for defaults; allocator and workspace are used
+ *   output    required
+ *
+ * Returns the statuses of nmtan_tangents(), and NMTAN_ERROR_TOO_LARGE when the copies exceed
+ * source_capacity or 2^32 - 1 vertices.
+ */
+NMTAN_API nmtan_status nmtan_split(const nmtan_mesh *mesh, const float *tangents,
+	const nmtan_options *options, nmtan_split_output *output);
+
+/*
+ * The exact sign of the determinant (b - a) x (c - a) of three texture coordinates: +1 where they are
+ * wound counterclockwise (v up), -1 where clockwise (mirrored), 0 where they are collinear or one of
+ * them is not finite. No rounding is involved.
+ */
+NMTAN_API int nmtan_orientation(const float a[2], const float b[2], const float c[2]);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Growing bytes: see buffer.h.
+ */
+#include "base/buffer.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "base/memory.h"
+
+void *nt_buffer_extend(nt_buffer *buffer, size_t size)
+{
+	size_t needed;
+	if (buffer->failed || !nt_size_add(buffer->size, size, &needed) ||
+		!nt_size_add(needed, 1, &needed) ||
+		!nt_grow((void **)&buffer->data, &buffer->capacity, needed, 1)) {
+		buffer->failed = true;
+		return NULL;
+	}
+	char *begin = buffer->data + buffer->size;
+	buffer->size += size;
+	buffer->data[buffer->size] = '\0';
+	return begin;
+}
+
+void nt_buffer_append(nt_buffer *buffer, const void *bytes, size_t size)
+{
+	void *begin = nt_buffer_extend(buffer, size);
+	if (begin && size)
+		memcpy(begin, bytes, size);
+}
+
+void nt_buffer_text(nt_buffer *buffer, const char *text)
+{
+	nt_buffer_append(buffer, text, strlen(text));
+}
+
+void nt_buffer_format(nt_buffer *buffer, const char *format, ...)
+{
+	va_list arguments, again;
+	va_start(arguments, format);
+	va_copy(again, arguments);
+	const int length = vsnprintf(NULL, 0, format, arguments);
+	va_end(arguments);
+	char *begin = length < 0 ? NULL : nt_buffer_extend(buffer, (size_t)length);
+	if (begin)
+		vsnprintf(begin, (size_t)length + 1, format, again);
+	va_end(again);
+}
+
+void nt_buffer_free(nt_buffer *buffer)
+{
+	free(buffer->data);
+	*buffer = (nt_buffer){0};
+}

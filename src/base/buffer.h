@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Growing bytes: text that is built piece by piece, and small binary blocks. A failed allocation is
+ * remembered, so that a long run of appends needs one check at its end.
+ */
+#ifndef NT_BASE_BUFFER_H
+#define NT_BASE_BUFFER_H
+
+#include "base/error.h"
+
+typedef struct nt_buffer {
+	char *data; /* NULL while empty; a NUL follows the last byte otherwise */
+	size_t size;
+	size_t capacity;
+	bool failed; /* an append ran out of memory; data holds what came before */
+} nt_buffer;
+
+void nt_buffer_append(nt_buffer *buffer, const void *bytes, size_t size);
+void nt_buffer_text(nt_buffer *buffer, const char *text);
+void nt_buffer_format(nt_buffer *buffer, const char *format, ...) NT_PRINTF(2, 3);
+
+/* Appends `size` bytes and returns where they begin, not cleared; NULL when out of memory. The pointer is
+ * valid until the next append. */
+void *nt_buffer_extend(nt_buffer *buffer, size_t size);
+
+void nt_buffer_free(nt_buffer *buffer);
+
+#endif

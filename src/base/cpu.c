@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Instruction sets: see cpu.h. AVX2 here means x86-64-v3 without its FMA, which would change bytes;
+ * AVX-512 means F, BW, DQ and VL, which every AVX-512 processor since 2017 has together.
+ */
+#include "base/cpu.h"
+
+bool nt_cpu_has(nmtan_isa isa)
+{
+	switch (isa) {
+	case NMTAN_ISA_AUTO:
+	case NMTAN_ISA_BASELINE:
+		return true;
+#if defined(__x86_64__)
+	case NMTAN_ISA_AVX2:
+		return __builtin_cpu_supports("avx2");
+	case NMTAN_ISA_AVX512:
+		return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+		       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+#else
+	case NMTAN_ISA_AVX2:
+	case NMTAN_ISA_AVX512:
+		return false;
+#endif
+	}
+	return false;
+}
+
+nmtan_isa nt_cpu_best(void)
+{
+	if (nt_cpu_has(NMTAN_ISA_AVX512))
+		return NMTAN_ISA_AVX512;
+	return nt_cpu_has(NMTAN_ISA_AVX2) ? NMTAN_ISA_AVX2 : NMTAN_ISA_BASELINE;
+}

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Errors with a place: see error.h. Messages are cut at the size of their field; nothing here
+ * allocates, so that "out of memory" can always be said.
+ */
+#include "base/error.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+void nt_place_clear(nt_place *place)
+{
+	memset(place, 0, sizeof *place);
+	place->offset = NT_NO_OFFSET;
+}
+
+void nt_error_clear(nt_error *error)
+{
+	error->status = NMTAN_OK;
+	error->message[0] = '\0';
+	nt_place_clear(&error->place);
+}
+
+static void fill(nt_error *error, nmtan_status status, const char *format, va_list arguments)
+{
+	nt_error_clear(error);
+	error->status = status;
+	vsnprintf(error->message, sizeof error->message, format, arguments);
+}
+
+nmtan_status nt_fail(nt_error *error, nmtan_status status, const char *format, ...)
+{
+	if (error) {
+		va_list arguments;
+		va_start(arguments, format);
+		fill(error, status, format, arguments);
+		va_end(arguments);
+	}
+	return status;
+}
+
+nmtan_status nt_fail_line(nt_error *error, nmtan_status status, size_t line, const char *format, ...)
+{
+	if (error) {
+		va_list arguments;
+		va_start(arguments, format);
+		fill(error, status, format, arguments);
+		va_end(arguments);
+		error->place.line = line;
+	}
+	return status;
+}
+
+nmtan_status nt_fail_offset(nt_error *error, nmtan_status status, uint64_t offset, const char *format,
+	...)
+{
+	if (error) {
+		va_list arguments;
+		va_start(arguments, format);
+		fill(error, status, format, arguments);
+		va_end(arguments);
+		error->place.offset = offset;
+	}
+	return status;
+}
+
+nmtan_status nt_fail_pointer(nt_error *error, nmtan_status status, const char *pointer,
+	const char *format, ...)
+{
+	if (error) {
+		va_list arguments;
+		va_start(arguments, format);
+		fill(error, status, format, arguments);
+		va_end(arguments);
+		snprintf(error->place.pointer, sizeof error->place.pointer, "%s", pointer);
+	}
+	return status;
+}
+
+nmtan_status nt_fail_memory(nt_error *error)
+{
+	return nt_fail(error, NMTAN_ERROR_MEMORY, "out of memory");
+}
+
+nmtan_status nt_error_in_file(nt_error *error, const char *file)
+{
+	if (!error->place.file[0])
+		snprintf(error->place.file, sizeof error->place.file, "%s", file);
+	return error->status;
+}

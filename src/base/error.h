@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * One error with its place. The function that finds a fault fills the error, everyone above passes it
+ * on untouched, the command line prints it.
+ */
+#ifndef NT_BASE_ERROR_H
+#define NT_BASE_ERROR_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include "nmtan.h"
+
+/* Where something is in an input. Parts that are unknown are zero, NT_NO_OFFSET or empty. */
+typedef struct nt_place {
+	char file[512];     /* name as the user gave it, or as the input refers to it */
+	size_t line;        /* 1-based, text formats */
+	uint64_t offset;    /* byte offset in the file, binary formats; NT_NO_OFFSET when unknown */
+	char pointer[256];  /* JSON pointer (RFC 6901), glTF */
+	char object[256];   /* mesh, primitive and material in words, as in `mesh "head", primitive 2` */
+} nt_place;
+
+#define NT_NO_OFFSET UINT64_MAX
+
+typedef struct nt_error {
+	nmtan_status status;
+	char message[768]; /* one sentence without a full stop: what was found, what was expected */
+	nt_place place;
+} nt_error;
+
+#if defined(__GNUC__)
+#define NT_PRINTF(format_index, first) __attribute__((format(printf, format_index, first)))
+#else
+#define NT_PRINTF(format_index, first)
+#endif
+
+/* Empties an error or a place. */
+void nt_error_clear(nt_error *error);
+void nt_place_clear(nt_place *place);
+
+/* Fills an error: status and message. The place is cleared. Returns status, so that a caller can write
+ * `return nt_fail(error, ...)`. error may be NULL. */
+nmtan_status nt_fail(nt_error *error, nmtan_status status, const char *format, ...) NT_PRINTF(3, 4);
+
+/* The same with a line, a byte offset or a JSON pointer. The name of the file is set by whoever knows
+ * it (nt_error_in_file). */
+nmtan_status nt_fail_line(nt_error *error, nmtan_status status, size_t line, const char *format, ...)
+	NT_PRINTF(4, 5);
+nmtan_status nt_fail_offset(nt_error *error, nmtan_status status, uint64_t offset, const char *format,
+	...) NT_PRINTF(4, 5);
+nmtan_status nt_fail_pointer(nt_error *error, nmtan_status status, const char *pointer,
+	const char *format, ...) NT_PRINTF(4, 5);
+
+/* Status NMTAN_ERROR_MEMORY with the usual sentence. */
+nmtan_status nt_fail_memory(nt_error *error);
+
+/* Names the file of an error, unless a deeper place already did. Returns error->status. */
+nmtan_status nt_error_in_file(nt_error *error, const char *file);
+
+#endif

@@ -1,0 +1,129 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Checked allocation and the arena. The arena bumps small requests through 64 KiB blocks and gives
+ * each large one a block of its own, so that big arrays return to the system one by one.
+ */
+#include "base/memory.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SMALL_BLOCK_BYTES = 64 * 1024, SMALL_REQUEST_BYTES = 8 * 1024, ALIGNMENT = 16 };
+
+struct nt_arena_block {
+	struct nt_arena_block *next;
+	void *adopted; /* freed with the block */
+	size_t used;
+	size_t capacity;
+};
+
+void *nt_alloc(size_t count, size_t size)
+{
+	size_t bytes;
+	if (!nt_size_mul(count, size, &bytes))
+		return NULL;
+	return malloc(bytes ? bytes : 1);
+}
+
+void *nt_calloc(size_t count, size_t size)
+{
+	size_t bytes;
+	if (!nt_size_mul(count, size, &bytes))
+		return NULL;
+	return calloc(bytes ? bytes : 1, 1);
+}
+
+bool nt_grow(void **block, size_t *capacity, size_t needed, size_t size)
+{
+	if (needed <= *capacity)
+		return true;
+	size_t wanted = *capacity < SIZE_MAX / 2 ? *capacity * 2 : SIZE_MAX;
+	if (wanted < needed)
+		wanted = needed;
+	if (wanted < 16)
+		wanted = 16;
+	size_t bytes;
+	if (!nt_size_mul(wanted, size, &bytes))
+		return false;
+	void *grown = realloc(*block, bytes);
+	if (!grown)
+		return false;
+	*block = grown;
+	*capacity = wanted;
+	return true;
+}
+
+static struct nt_arena_block *push_block(nt_arena *arena, size_t capacity)
+{
+	size_t bytes;
+	if (!nt_size_add(capacity, sizeof(struct nt_arena_block) + ALIGNMENT, &bytes))
+		return NULL;
+	struct nt_arena_block *block = malloc(bytes);
+	if (!block)
+		return NULL;
+	*block = (struct nt_arena_block){.next = arena->blocks, .capacity = capacity};
+	arena->blocks = block;
+	return block;
+}
+
+static char *block_data(struct nt_arena_block *block)
+{
+	const size_t header = (sizeof *block + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+	return (char *)block + header;
+}
+
+void *nt_arena_alloc(nt_arena *arena, size_t count, size_t size)
+{
+	size_t bytes;
+	if (!nt_size_mul(count, size, &bytes) || bytes > SIZE_MAX - ALIGNMENT)
+		return NULL;
+	bytes = (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+	struct nt_arena_block *block = arena->blocks;
+	if (!block || block->capacity - block->used < bytes) {
+		const bool small = bytes <= SMALL_REQUEST_BYTES;
+		block = push_block(arena, small ? SMALL_BLOCK_BYTES : bytes);
+		if (!block)
+			return NULL;
+	}
+	void *result = block_data(block) + block->used;
+	block->used += bytes;
+	return result;
+}
+
+char *nt_arena_text(nt_arena *arena, const char *text, size_t length)
+{
+	if (length == SIZE_MAX)
+		return NULL;
+	char *copy = nt_arena_alloc(arena, length + 1, 1);
+	if (!copy)
+		return NULL;
+	memcpy(copy, text, length);
+	copy[length] = '\0';
+	return copy;
+}
+
+bool nt_arena_adopt(nt_arena *arena, void *block)
+{
+	if (!block)
+		return true;
+	struct nt_arena_block *holder = push_block(arena, 0);
+	if (!holder) {
+		free(block);
+		return false;
+	}
+	holder->adopted = block;
+	return true;
+}
+
+void nt_arena_free(nt_arena *arena)
+{
+	struct nt_arena_block *block = arena->blocks;
+	while (block) {
+		struct nt_arena_block *next = block->next;
+		free(block->adopted);
+		free(block);
+		block = next;
+	}
+	arena->blocks = NULL;
+}

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Memory with checked sizes: sizes that come from files are multiplied here and nowhere else.
+ */
+#ifndef NT_BASE_MEMORY_H
+#define NT_BASE_MEMORY_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* product = a * b, sum = a + b; false where that overflows (the result is then SIZE_MAX). */
+static inline bool nt_size_mul(size_t a, size_t b, size_t *product)
+{
+	if (__builtin_mul_overflow(a, b, product)) {
+		*product = (size_t)-1;
+		return false;
+	}
+	return true;
+}
+
+static inline bool nt_size_add(size_t a, size_t b, size_t *sum)
+{
+	if (__builtin_add_overflow(a, b, sum)) {
+		*sum = (size_t)-1;
+		return false;
+	}
+	return true;
+}
+
+/* malloc(count * size) and calloc; NULL on overflow or exhaustion. A count of 0 gives a block that can
+ * be freed. */
+void *nt_alloc(size_t count, size_t size);
+void *nt_calloc(size_t count, size_t size);
+
+/* Grows *block, of *capacity elements, to at least `needed` elements (at least doubling). False, and
+ * everything as it was, on overflow or exhaustion. */
+bool nt_grow(void **block, size_t *capacity, size_t needed, size_t size);
+
+/* An arena owns blocks that live equally long. A zeroed arena is empty. */
+typedef struct nt_arena {
+	struct nt_arena_block *blocks; /* newest first */
+} nt_arena;
+
+/* count * size bytes, aligned for any type, not cleared. NULL on overflow or exhaustion. */
+void *nt_arena_alloc(nt_arena *arena, size_t count, size_t size);
+
+/* A copy of `length` bytes of text with a final NUL. NULL on exhaustion. */
+char *nt_arena_text(nt_arena *arena, const char *text, size_t length);
+
+/* Hands a malloc'ed block over to the arena, which will free it. On failure (false) the block is freed
+ * at once. NULL is allowed. */
+bool nt_arena_adopt(nt_arena *arena, void *block);
+
+/* Frees everything; the arena is empty afterwards. */
+void nt_arena_free(nt_arena *arena);
+
+#endif

@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The words for a status, and the version: the part of nmtan.h that computes nothing.
+ */
+#include "nmtan.h"
+
+const char *nmtan_status_text(nmtan_status status)
+{
+	switch (status) {
+	case NMTAN_OK:
+		return "ok";
+	case NMTAN_ERROR_ARGUMENT:
+		return "invalid argument";
+	case NMTAN_ERROR_INDEX:
+		return "index out of range";
+	case NMTAN_ERROR_FACE_SIZE:
+		return "face with neither 3 nor 4 corners";
+	case NMTAN_ERROR_TOO_LARGE:
+		return "mesh too large";
+	case NMTAN_ERROR_MEMORY:
+		return "out of memory";
+	case NMTAN_ERROR_USAGE:
+		return "wrong usage";
+	case NMTAN_ERROR_IO:
+		return "cannot read or write";
+	case NMTAN_ERROR_INPUT:
+		return "invalid input";
+	case NMTAN_ERROR_UNSUPPORTED:
+		return "unsupported input";
+	case NMTAN_ERROR_INTERNAL:
+		return "internal error";
+	}
+	return "unknown status";
+}
+
+const char *nmtan_version(void)
+{
+	return NMTAN_VERSION_STRING;
+}

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Vectors of three floats in MikkTSpace's arithmetic: every operation rounds to float, sums go left to
+ * right, nothing is contracted. Bytes depend on it; do not reorder.
+ */
+#ifndef NT_BASE_VEC_H
+#define NT_BASE_VEC_H
+
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+
+typedef struct nt_vec3 {
+	float x, y, z;
+} nt_vec3;
+
+static inline nt_vec3 nt_vec3_sub(nt_vec3 a, nt_vec3 b)
+{
+	return (nt_vec3){a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+static inline nt_vec3 nt_vec3_add(nt_vec3 a, nt_vec3 b)
+{
+	return (nt_vec3){a.x + b.x, a.y + b.y, a.z + b.z};
+}
+
+static inline nt_vec3 nt_vec3_scale(float s, nt_vec3 v)
+{
+	return (nt_vec3){s * v.x, s * v.y, s * v.z};
+}
+
+static inline float nt_vec3_dot(nt_vec3 a, nt_vec3 b)
+{
+	return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+static inline nt_vec3 nt_vec3_cross(nt_vec3 a, nt_vec3 b)
+{
+	return (nt_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+static inline float nt_vec3_length(nt_vec3 v)
+{
+	return sqrtf(nt_vec3_dot(v, v));
+}
+
+/* MikkTSpace's NotZero: larger than the smallest normal float; false for NaN. */
+static inline bool nt_not_zero(float x)
+{
+	return fabsf(x) > FLT_MIN;
+}
+
+static inline bool nt_vec3_not_zero(nt_vec3 v)
+{
+	return nt_not_zero(v.x) || nt_not_zero(v.y) || nt_not_zero(v.z);
+}
+
+/* One division, then three multiplications, as the reference does. */
+static inline nt_vec3 nt_vec3_normalise(nt_vec3 v)
+{
+	return nt_vec3_scale(1.0f / nt_vec3_length(v), v);
+}
+
+static inline nt_vec3 nt_vec3_normalise_safe(nt_vec3 v)
+{
+	return nt_vec3_not_zero(v) ? nt_vec3_normalise(v) : v;
+}
+
+/* v without its part along the unit normal n, normalised where it is not zero. */
+static inline nt_vec3 nt_vec3_project(nt_vec3 n, nt_vec3 v)
+{
+	return nt_vec3_normalise_safe(nt_vec3_sub(v, nt_vec3_scale(nt_vec3_dot(n, v), n)));
+}
+
+#endif

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+//
+// fast_float behind two C functions. It takes no leading '+', which OBJ and PLY files contain.
+#include "ext/number.h"
+
+#include <fast_float/fast_float.h>
+#include <system_error>
+
+template <typename Number>
+static const char *read_number(const char *begin, const char *end, Number *value)
+{
+	if (begin != end && *begin == '+') {
+		++begin;
+		if (begin != end && *begin == '-')
+			return nullptr;
+	}
+	const auto result = fast_float::from_chars(begin, end, *value);
+	return result.ec == std::errc::invalid_argument ? nullptr : result.ptr;
+}
+
+const char *nt_read_float(const char *begin, const char *end, float *value)
+{
+	return read_number(begin, end, value);
+}
+
+const char *nt_read_double(const char *begin, const char *end, double *value)
+{
+	return read_number(begin, end, value);
+}

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Files: inputs are mapped, outputs appear whole or not at all.
+ *
+ * An output set is one main file and its companions (the .bin of a .gltf, copied images). All are
+ * written to temporary files beside their targets; commit gives them their names, companions first and
+ * the main file last; abort, or a signal, removes them. Outputs that are pipes or devices, and "-", are
+ * written through.
+ */
+#ifndef NT_IO_FILE_H
+#define NT_IO_FILE_H
+
+#include "base/error.h"
+
+/* An input's bytes. */
+typedef struct nt_file {
+	const unsigned char *data; /* never NULL after success */
+	size_t size;
+	bool mapped; /* else malloc'ed */
+	uint64_t device, inode; /* which file it is; 0, 0 for standard input */
+} nt_file;
+
+/* Maps a file, or reads standard input when path is "-" or the file is a pipe. The error carries the
+ * name. Returns NMTAN_OK, NMTAN_ERROR_IO or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_file_open(nt_file *file, const char *path, nt_error *error);
+void nt_file_close(nt_file *file);
+
+/* Whether path names the file that was opened. */
+bool nt_file_is(const nt_file *file, const char *path);
+
+typedef struct nt_output nt_output;
+typedef struct nt_sink nt_sink;
+
+typedef struct nt_output_options {
+	bool no_clobber; /* refuse to replace an existing file */
+	bool sync;       /* fsync before the renames */
+} nt_output_options;
+
+/* Starts an output set. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_output_create(nt_output **output, const nt_output_options *options, nt_error *error);
+
+/* Names a file that must not be written: the input and every file the input refers to. */
+nmtan_status nt_output_protect(nt_output *output, const char *path, nt_error *error);
+
+/* Adds a file to the set. The first file added with main = true gets its name last. */
+nmtan_status nt_output_add(nt_output *output, const char *path, bool main, nt_sink **sink,
+	nt_error *error);
+
+/* Appends bytes. Small writes are buffered, large ones go straight to the file. */
+nmtan_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error *error);
+
+/* Appends a range of an input: by copy_file_range where the kernel can, else like nt_sink_write. */
+nmtan_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
+	nt_error *error);
+
+/* Bytes written to a sink so far. */
+uint64_t nt_sink_size(const nt_sink *sink);
+
+/* Writes a whole file image of the main output's temporary (for reading back): its path; NULL when the
+ * output is written through. */
+const char *nt_sink_temporary(const nt_sink *sink);
+
+/* Gives every file its name, in order; on failure everything is removed as by nt_output_abort. The set is freed
+ * either way. */
+nmtan_status nt_output_commit(nt_output *output, nt_error *error);
+
+/* Removes the temporary files and frees the set; NULL is allowed. */
+void nt_output_abort(nt_output *output);
+
+/* Makes SIGINT, SIGTERM and SIGHUP remove the temporary files before they end the process. Called once by the
+ * front end. */
+void nt_output_catch_signals(void);
+
+#endif

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The table of formats: who reads and who writes what. A format is found by content first, then by the
+ * name's extension.
+ */
+#ifndef NT_IO_FORMAT_H
+#define NT_IO_FORMAT_H
+
+#include "io/file.h"
+#include "scene/scene.h"
+
+typedef struct nt_read_options {
+	int texcoord_set;   /* -1: the set that the material's slot asks for; else TEXCOORD_n */
+	bool allow_outside; /* URIs may leave the folder of the input */
+	unsigned threads;
+} nt_read_options;
+
+typedef enum nt_images { NT_IMAGES_DEFAULT, NT_IMAGES_LINK, NT_IMAGES_EMBED, NT_IMAGES_COPY,
+	NT_IMAGES_NONE } nt_images;
+
+typedef struct nt_write_options {
+	nt_format format;   /* of the output */
+	const char *path;   /* of the output, "-" for standard output */
+	bool embed;         /* .gltf: buffers as data URIs */
+	bool bitangents;
+	nt_images images;
+	bool allow_outside;
+} nt_write_options;
+
+/* One row of the table. Functions that a format does not have are NULL. */
+typedef struct nt_format_entry {
+	nt_format format;
+	const char *name;       /* as --output-format spells it */
+	const char *extensions; /* ".gltf"; several separated by spaces */
+	/* Whether these bytes are this format; called with the whole input. */
+	bool (*recognise)(const unsigned char *bytes, size_t size);
+	/* Describes the meshes of scene->bytes (and loads them, where that is one step). */
+	nmtan_status (*open)(nt_scene *scene, const nt_read_options *options, nt_error *error);
+	/* Brings the geometry of one mesh; NULL: open did. */
+	nmtan_status (*load)(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
+		nt_error *error);
+	/* Stores the annotated scene. Any scene may come; a scene of the same format carries its
+	 * source document. */
+	nmtan_status (*write)(nt_scene *scene, const nt_write_options *options, nt_output *output,
+		nt_error *error);
+} nt_format_entry;
+
+/* The entry of a format; NULL for NT_FORMAT_UNKNOWN. */
+const nt_format_entry *nt_format_find(nt_format format);
+
+/* The entry for an input: by content, then by name. NULL when nothing fits. */
+const nt_format_entry *nt_format_of_input(const unsigned char *bytes, size_t size, const char *path);
+
+/* The entry whose extension the path ends in (any case), or whose name equals `name`; NULL: none. */
+const nt_format_entry *nt_format_of_path(const char *path);
+const nt_format_entry *nt_format_of_name(const char *name);
+
+/* The formats' own functions, for the table. */
+bool nt_obj_recognise(const unsigned char *bytes, size_t size);
+nmtan_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
+
+bool nt_ply_recognise(const unsigned char *bytes, size_t size);
+nmtan_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
+nmtan_status nt_ply_write(nt_scene *scene, const nt_write_options *options, nt_output *output,
+	nt_error *error);
+
+bool nt_gltf_recognise(const unsigned char *bytes, size_t size);
+bool nt_glb_recognise(const unsigned char *bytes, size_t size);
+nmtan_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
+nmtan_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
+	nt_error *error);
+/* glTF from glTF: a patch of the document. */
+nmtan_status nt_gltf_patch(nt_scene *scene, const nt_write_options *options, nt_output *output,
+	nt_error *error);
+/* glTF from anything else: a new document. */
+nmtan_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_output *output,
+	nt_error *error);
+
+#endif

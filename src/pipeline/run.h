@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * One input from file to file: read, select, load, make normals, solve, split, write. What any front
+ * end calls; nothing here prints or exits.
+ */
+#ifndef NT_PIPELINE_RUN_H
+#define NT_PIPELINE_RUN_H
+
+#include "io/format.h"
+#include "scene/select.h"
+
+typedef enum nt_normals { NT_NORMALS_AUTO, NT_NORMALS_FLAT, NT_NORMALS_SMOOTH } nt_normals;
+
+/* Everything a run can be told. Zero-initialised means the defaults of the command line, but for
+ * texcoord_set, whose default is -1. */
+typedef struct nt_settings {
+	nmtan_method method;
+	nmtan_repair repair;
+	nt_only only;
+	nt_existing existing;
+	nt_normals normals;
+	nt_images images;
+	nt_format output_format; /* NT_FORMAT_UNKNOWN: by name */
+	int texcoord_set;        /* -1: auto */
+	unsigned threads;        /* 0: all */
+	bool bitangents;
+	bool embed;
+	bool verify;   /* read the output back with tinygltf before it takes its name */
+	bool dry_run;  /* do everything but write */
+	bool check;    /* judge only: no output */
+	bool sync;
+	bool no_clobber;
+	bool in_place;
+	bool allow_outside;
+} nt_settings;
+
+/* Stages as --timing prints them. */
+typedef enum nt_stage {
+	NT_STAGE_MAP,
+	NT_STAGE_PARSE,
+	NT_STAGE_DECODE,
+	NT_STAGE_NORMALS,
+	NT_STAGE_TANGENTS,
+	NT_STAGE_SPLIT,
+	NT_STAGE_WRITE,
+	NT_STAGE_VERIFY,
+	NT_STAGE_COUNT
+} nt_stage;
+
+/* What a run did. */
+typedef struct nt_summary {
+	size_t mesh_count;       /* meshes (glTF: primitives) in the input */
+	size_t solved_count;     /* of them, those that got tangents */
+	size_t skipped[NT_DECISION_COUNT]; /* of them, by reason */
+	size_t triangle_count;   /* of the solved ones, after triangulation */
+	size_t vertex_count;     /* of the solved ones, before */
+	size_t appended_normals; /* vertices added because normals were made */
+	size_t appended_tangents;/* vertices added because tangents differ */
+	nmtan_counts counts;     /* of all solves */
+	nt_finding_list findings;
+	uint64_t bytes_read, bytes_written;
+	double seconds[NT_STAGE_COUNT];
+	double total_seconds;
+	bool copied; /* nothing was to be done and the output is a copy of the input */
+} nt_summary;
+
+/*
+ * Runs one input.
+ *
+ *   input     path, or "-" for standard input
+ *   output    path, or "-" for standard output; NULL with settings->check
+ *   settings  required
+ *   summary   required; freed by nt_summary_free, after failure too
+ *   error     required
+ *
+ * Returns any status.
+ */
+nmtan_status nt_run(const char *input, const char *output, const nt_settings *settings,
+	nt_summary *summary, nt_error *error);
+
+void nt_summary_free(nt_summary *summary);
+
+#endif

@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Polygons of five and more corners become triangles by ear clipping in the polygon's own plane.
+ */
+#ifndef NT_SCENE_POLYGON_H
+#define NT_SCENE_POLYGON_H
+
+#include "base/error.h"
+
+/*
+ * Triangulates one polygon.
+ *
+ *   points     [count][3] positions of its corners, in order
+ *   count      at least 3
+ *   triangles  [3 * (count - 2)] receives corner numbers of the polygon, each triangle wound as it is
+ *   sound      receives false when no proper triangulation was found (self-intersecting, collinear,
+ *              not finite): it is then finished somehow, still with count - 2 triangles
+ *
+ * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ */
+nmtan_status nt_polygon_triangulate(const float (*points)[3], size_t count, uint32_t *triangles,
+	bool *sound);
+
+#endif

@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The scene: what readers fill, stages annotate and writers store.
+ *
+ * A mesh is the unit that is solved: faces of 3 or 4 corners over one set of vertices. An OBJ gives one
+ * mesh per object, with a primitive per material; a PLY gives one mesh with one primitive; in glTF
+ * every primitive is a mesh of its own, because glTF defines tangents per primitive.
+ *
+ * Reading goes in two steps, so that nothing is decoded in vain: a reader's open() describes the meshes
+ * (names, materials, which attributes exist), select.c decides which need tangents, load() brings their
+ * geometry. Text formats do all of it in open().
+ */
+#ifndef NT_SCENE_SCENE_H
+#define NT_SCENE_SCENE_H
+
+#include "base/error.h"
+#include "base/memory.h"
+#include "scene/finding.h"
+
+#define NT_NONE UINT32_MAX
+
+typedef enum nt_format {
+	NT_FORMAT_UNKNOWN,
+	NT_FORMAT_OBJ,
+	NT_FORMAT_PLY,
+	NT_FORMAT_GLTF,
+	NT_FORMAT_GLB,
+	NT_FORMAT_DRC
+} nt_format;
+
+/* What a material or its glTF extensions ask of tangents: docs in scene/select.c. */
+enum nt_slot {
+	NT_SLOT_NORMAL = 1,           /* normalTexture */
+	NT_SLOT_CLEARCOAT_NORMAL = 2, /* KHR_materials_clearcoat.clearcoatNormalTexture */
+	NT_SLOT_ANISOTROPY = 4        /* KHR_materials_anisotropy, with or without a texture */
+};
+
+/* Whether a mesh gets tangents, and why. */
+typedef enum nt_decision {
+	NT_DECISION_OPEN,            /* not decided yet */
+	NT_DECISION_SOLVE,           /* tangents are computed */
+	NT_DECISION_REPAIR,          /* authored tangents are kept where they are valid */
+	NT_SKIP_NO_SLOT,             /* no material of it uses tangents */
+	NT_SKIP_UNLIT,
+	NT_SKIP_NOT_TRIANGLES,       /* points or lines */
+	NT_SKIP_EMPTY,               /* no faces */
+	NT_SKIP_UNREACHABLE,         /* in no scene */
+	NT_SKIP_NO_TEXCOORDS,
+	NT_SKIP_NO_NORMALS,
+	NT_SKIP_HAS_TANGENTS,        /* and --existing=keep */
+	NT_DECISION_COUNT
+} nt_decision;
+
+/* A material as OBJ has it; the writer of new documents turns it into glTF's. File names are as the
+ * source spells them, relative to the folder of the file in `library`. */
+typedef struct nt_material {
+	const char *name;
+	const char *library;         /* path of the MTL file; NULL: none */
+	size_t line;                 /* of its newmtl */
+	float base_color[4];         /* Kd and d; linear factors */
+	float emissive[3];           /* Ke */
+	float metallic, roughness;   /* Pm, Pr; glTF's default for OBJ is 0 and 1 */
+	float normal_scale;          /* -bm */
+	const char *base_color_map;  /* map_Kd */
+	const char *emissive_map;    /* map_Ke */
+	const char *normal_map;      /* norm, map_Kn, map_Bump, bump */
+} nt_material;
+
+/* The part of a mesh that one draw call shows. */
+typedef struct nt_primitive {
+	uint32_t material; /* index into scene->materials or NT_NONE */
+	size_t face_count; /* faces of the mesh that belong to it */
+} nt_primitive;
+
+/* What splitting found: copies to append behind the mesh's vertices. */
+typedef struct nt_split {
+	uint32_t *indices;      /* [mesh corner_count] */
+	uint32_t *sources;      /* [source_count] vertex each appended one is a copy of */
+	size_t source_count;
+	float *vertex_tangents; /* [vertex_count + source_count][4] */
+} nt_split;
+
+typedef struct nt_mesh {
+	/* what it is called and where it stands */
+	const char *name;     /* object or mesh name; "" where there is none */
+	nt_place place;       /* of the mesh in the source; object is set for messages */
+	uint32_t gltf_mesh;      /* indices in the source document, NT_NONE elsewhere */
+	uint32_t gltf_primitive;
+
+	/* what decides: filled by open() */
+	unsigned slots;          /* enum nt_slot, union over materials and variants */
+	bool triangles;          /* false: points or lines */
+	bool reachable;          /* false: no scene shows it */
+	bool unlit;              /* every material of it is unlit */
+	bool has_positions, has_normals, has_texcoords, has_tangents; /* texcoords: the set that is used */
+	uint32_t texcoord_set;   /* number of that set */
+	nt_decision decision;
+
+	/* geometry: filled by load(). Arrays belong to the scene's arena or point into the input. */
+	size_t vertex_count;
+	float *positions;        /* [vertex_count][3] */
+	float *normals;          /* [vertex_count][3]; NULL: none */
+	float *texcoords;        /* [vertex_count][2], v up; NULL: none */
+	float *colors;           /* [vertex_count][4] linear RGBA; NULL: none */
+	float *tangents;         /* [vertex_count][4] authored, w for v up; NULL: none */
+	uint8_t *vertex_lacks;   /* [vertex_count] enum nt_lack bits; NULL: nothing lacks */
+	size_t face_count, corner_count;
+	uint8_t *face_sizes;     /* [face_count] 3 or 4; NULL: all triangles */
+	uint32_t *indices;       /* [corner_count]; NULL: corner c is vertex c */
+	uint32_t *face_polygon;  /* [face_count] number of the source's polygon; NULL: the face's own */
+	uint32_t *face_smoothing;/* [face_count] smoothing group, 0 flat; NULL: all smooth */
+	uint32_t *face_primitive;/* [face_count] index into primitives; NULL: all 0 */
+	nt_primitive *primitives;
+	size_t primitive_count;
+
+	/* vertices that making normals appended: vertex source_vertex_count + i is a copy of
+	 * vertex_sources[i], with another normal */
+	size_t source_vertex_count;
+	uint32_t *vertex_sources; /* [vertex_count - source_vertex_count] */
+	bool normals_made;
+
+	/* results */
+	float *corner_tangents;   /* [corner_count][4]; NULL until solved or after split */
+	float *corner_bitangents; /* [corner_count][3]; NULL unless asked for */
+	nmtan_counts counts;
+	nt_split split;
+} nt_mesh;
+
+/* What a vertex of an OBJ does not have although others do. */
+enum nt_lack { NT_LACKS_NORMAL = 1, NT_LACKS_TEXCOORD = 2 };
+
+/* A mesh placed in the world; OBJ and PLY place each mesh once, with the identity. */
+typedef struct nt_instance {
+	uint32_t mesh;
+	double matrix[16]; /* column-major, as in glTF */
+} nt_instance;
+
+typedef struct nt_scene {
+	nt_arena arena;
+	nt_format format;
+	const char *path; /* for messages and to find companions; "-" is standard input */
+	nt_mesh *meshes;
+	size_t mesh_count;
+	nt_material *materials;
+	size_t material_count;
+	nt_instance *instances;
+	size_t instance_count;
+	nt_finding_list findings;
+
+	/* What a reader keeps for the writer of the same format, and the input's bytes. */
+	void *source;
+	void (*free_source)(void *source);
+	void (*unmap)(struct nt_scene *scene); /* releases the mapped input; NULL: none */
+	const unsigned char *bytes;
+	size_t byte_count;
+} nt_scene;
+
+/* An empty scene. */
+void nt_scene_init(nt_scene *scene, const char *path);
+
+/* Frees everything; the scene is empty afterwards. */
+void nt_scene_free(nt_scene *scene);
+
+/* The public view of a loaded mesh, for nmtan_tangents() and nmtan_split(). */
+nmtan_mesh nt_mesh_view(const nt_mesh *mesh);
+
+#endif

@@ -1,0 +1,63 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include "base/memory.h"
+
+static void size_mul_overflow_is_told(void **state)
+{
+	(void)state;
+	size_t product;
+	assert_true(nt_size_mul(SIZE_MAX / 8, 8, &product));
+	assert_int_equal(product, SIZE_MAX - 7);
+	assert_false(nt_size_mul(SIZE_MAX / 8 + 1, 8, &product));
+	assert_null(nt_alloc(SIZE_MAX / 8 + 1, 8));
+	assert_null(nt_calloc(SIZE_MAX / 8 + 1, 8));
+}
+
+static void grow_keeps_content_and_refuses_overflow(void **state)
+{
+	(void)state;
+	uint32_t *block = NULL;
+	size_t capacity = 0;
+	for (uint32_t i = 0; i < 1000; i++) {
+		assert_true(nt_grow((void **)&block, &capacity, i + 1, sizeof *block));
+		block[i] = i;
+	}
+	for (uint32_t i = 0; i < 1000; i++)
+		assert_int_equal(block[i], i);
+	const size_t before = capacity;
+	assert_false(nt_grow((void **)&block, &capacity, SIZE_MAX / 2, sizeof *block));
+	assert_int_equal(capacity, before);
+	free(block);
+}
+
+static void arena_blocks_are_apart_and_aligned(void **state)
+{
+	(void)state;
+	nt_arena arena = {0};
+	unsigned char *blocks[300];
+	for (size_t i = 0; i < 300; i++) {
+		blocks[i] = nt_arena_alloc(&arena, i * 7, 1);
+		assert_non_null(blocks[i]);
+		assert_int_equal((uintptr_t)blocks[i] % 16, 0);
+		memset(blocks[i], (int)(i & 255), i * 7);
+	}
+	for (size_t i = 0; i < 300; i++)
+		for (size_t k = 0; k < i * 7; k++)
+			assert_int_equal(blocks[i][k], i & 255);
+	assert_true(nt_arena_adopt(&arena, malloc(100)));
+	assert_true(nt_arena_adopt(&arena, NULL));
+	assert_string_equal(nt_arena_text(&arena, "seamless", 4), "seam");
+	assert_null(nt_arena_alloc(&arena, SIZE_MAX, 2));
+	nt_arena_free(&arena);
+	assert_null(arena.blocks);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(size_mul_overflow_is_told),
+		cmocka_unit_test(grow_keeps_content_and_refuses_overflow),
+		cmocka_unit_test(arena_blocks_are_apart_and_aligned),
+	};
+	return cmocka_run_group_tests_name("base/memory", tests, NULL, NULL);
+}
