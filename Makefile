@@ -41,7 +41,7 @@ NT_LDFLAGS := $(flags_$(config)) -fopenmp $(LDFLAGS)
 TOOL_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lm
 
 # The compute library: no files, no C++.
-core_src := src/base/status.c src/base/memory.c src/base/parallel.c src/base/cpu.c \
+core_src := src/base/status.c src/base/memory.c src/base/parallel.c src/base/cpu.c src/base/scratch.c \
 	$(wildcard src/topology/*.c src/tangent/*.c)
 tool_src := $(filter-out $(core_src) src/cli/main.c,$(wildcard src/*/*.c)) $(wildcard src/ext/*.cpp)
 objects = $(patsubst src/%,$(B)/%.o,$(1))

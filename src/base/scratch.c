@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Scratch memory: see scratch.h. Blocks form a list in the order they were made; going back to a mark
+ * makes the blocks behind it empty again, and later requests reuse the first of them that is large
+ * enough. A request that fits nowhere gets a block of at least its size.
+ */
+#include "base/scratch.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include "base/memory.h"
+
+enum { ALIGNMENT = 64, LEAST_BLOCK_BYTES = 64 * 1024 };
+
+struct nt_scratch_block {
+	struct nt_scratch_block *next;
+	size_t size_bytes; /* of the whole allocation */
+	size_t used;       /* offset of the first free byte from the start of the allocation */
+};
+
+static void *default_allocate(void *user, size_t size_bytes)
+{
+	(void)user;
+	return malloc(size_bytes);
+}
+
+static void default_release(void *user, void *block, size_t size_bytes)
+{
+	(void)user;
+	(void)size_bytes;
+	free(block);
+}
+
+void nt_scratch_init(nt_scratch *scratch, const nmtan_allocator *allocator)
+{
+	*scratch = (nt_scratch){.allocator = {default_allocate, default_release, NULL}};
+	if (allocator)
+		scratch->allocator = *allocator;
+}
+
+/* Offset of the next aligned byte of a block. */
+static size_t aligned_offset(const struct nt_scratch_block *block)
+{
+	const uintptr_t at = (uintptr_t)block + block->used;
+	return block->used + (ALIGNMENT - at % ALIGNMENT) % ALIGNMENT;
+}
+
+static void *take(struct nt_scratch_block *block, size_t bytes)
+{
+	const size_t offset = aligned_offset(block);
+	if (offset > block->size_bytes || block->size_bytes - offset < bytes)
+		return NULL;
+	block->used = offset + bytes;
+	return (char *)block + offset;
+}
+
+static struct nt_scratch_block *insert_block(nt_scratch *scratch, size_t bytes)
+{
+	size_t size_bytes;
+	if (!nt_size_add(bytes, sizeof(struct nt_scratch_block) + ALIGNMENT, &size_bytes))
+		return NULL;
+	if (size_bytes < LEAST_BLOCK_BYTES)
+		size_bytes = LEAST_BLOCK_BYTES;
+	struct nt_scratch_block *block =
+		scratch->allocator.allocate(scratch->allocator.user, size_bytes);
+	if (!block)
+		return NULL;
+	*block = (struct nt_scratch_block){.size_bytes = size_bytes, .used = sizeof *block};
+	if (scratch->current) {
+		block->next = scratch->current->next;
+		scratch->current->next = block;
+	} else {
+		block->next = scratch->first;
+		scratch->first = block;
+	}
+	return block;
+}
+
+void *nt_scratch_alloc(nt_scratch *scratch, size_t count, size_t size)
+{
+	size_t bytes;
+	if (!nt_size_mul(count, size, &bytes))
+		return NULL;
+	void *result = scratch->current ? take(scratch->current, bytes) : NULL;
+	if (result)
+		return result;
+	struct nt_scratch_block *block = scratch->current ? scratch->current->next : scratch->first;
+	for (; block; block = block->next) {
+		result = take(block, bytes);
+		if (result) {
+			scratch->current = block;
+			return result;
+		}
+	}
+	block = insert_block(scratch, bytes);
+	if (!block)
+		return NULL;
+	scratch->current = block;
+	return take(block, bytes);
+}
+
+nt_scratch_mark nt_scratch_here(const nt_scratch *scratch)
+{
+	const struct nt_scratch_block *block = scratch->current;
+	return (nt_scratch_mark){scratch->current, block ? block->used : 0};
+}
+
+void nt_scratch_back(nt_scratch *scratch, nt_scratch_mark mark)
+{
+	struct nt_scratch_block *block = mark.block ? mark.block->next : scratch->first;
+	for (; block; block = block->next)
+		block->used = sizeof *block;
+	if (mark.block)
+		mark.block->used = mark.used;
+	scratch->current = mark.block;
+}
+
+size_t nt_scratch_bytes(const nt_scratch *scratch)
+{
+	size_t bytes = 0;
+	for (const struct nt_scratch_block *block = scratch->first; block; block = block->next)
+		bytes += block->size_bytes;
+	return bytes;
+}
+
+void nt_scratch_free(nt_scratch *scratch)
+{
+	struct nt_scratch_block *block = scratch->first;
+	while (block) {
+		struct nt_scratch_block *next = block->next;
+		scratch->allocator.release(scratch->allocator.user, block, block->size_bytes);
+		block = next;
+	}
+	scratch->first = scratch->current = NULL;
+}
+
+nmtan_workspace *nmtan_workspace_create(const nmtan_allocator *allocator)
+{
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, allocator);
+	nmtan_workspace *workspace =
+		scratch.allocator.allocate(scratch.allocator.user, sizeof *workspace);
+	if (workspace)
+		workspace->scratch = scratch;
+	return workspace;
+}
+
+void nmtan_workspace_destroy(nmtan_workspace *workspace)
+{
+	if (!workspace)
+		return;
+	const nmtan_allocator allocator = workspace->scratch.allocator;
+	nt_scratch_free(&workspace->scratch);
+	allocator.release(allocator.user, workspace, sizeof *workspace);
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What every method gets and gives. The entry point (tangents.c) has checked the mesh: pointers, sizes
+ * and indices are sound, strides are filled in, face_count is not 0, limits are kept.
+ */
+#ifndef NT_TANGENT_SOLVE_H
+#define NT_TANGENT_SOLVE_H
+
+#include "base/scratch.h"
+#include "nmtan.h"
+
+typedef struct nt_solve {
+	const nmtan_mesh *mesh;  /* strides are never 0 */
+	size_t corner_count;
+	float threshold_cos;     /* (float)cos of the angular threshold; -1 for 180 degrees */
+	unsigned threads;        /* at least 1 */
+	nmtan_isa isa;           /* never AUTO */
+	nt_scratch *scratch;
+	float *tangents;         /* [corner_count][4] */
+	float *bitangents;       /* [corner_count][3] or NULL */
+	float *magnitudes;       /* [corner_count][2] or NULL */
+} nt_solve;
+
+/* The definition: one step after the other, as the specification has them, for any mesh. */
+nmtan_status nt_mikktspace_scalar(const nt_solve *solve);
+
+/* The same bytes, much faster. */
+nmtan_status nt_mikktspace_fast(const nt_solve *solve);
+
+nmtan_status nt_lengyel(const nt_solve *solve);
+nmtan_status nt_area(const nt_solve *solve);
+
+#endif
