@@ -1,25 +1,47 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The one definition of "mirrored" and "degenerate" in UV space, and of how a quad is cut.
+ *
+ * The sign is exact. A difference of two floats is exact in double unless their exponents lie more
+ * than 2^29 apart; rounding a product is monotone, so two rounded products that differ compare as the
+ * exact ones do; and where they are equal the residuals, which fma gives exactly, decide. What is left
+ * (inexact differences) is summed as an expansion (J. Shewchuk, "Adaptive Precision Floating-Point
+ * Arithmetic and Fast Robust Geometric Predicates", 1997).
  */
 #ifndef NT_TOPOLOGY_ORIENTATION_H
 #define NT_TOPOLOGY_ORIENTATION_H
 
 #include "nmtan.h"
 
-/* Exact sign of the UV determinant of a triangle: see nmtan_orientation(), which calls this. */
-int nt_orientation(const float a[2], const float b[2], const float c[2]);
+/* The same as nt_orientation for any input, by expansions alone. */
+int nt_orientation_slow(const float a[2], const float b[2], const float c[2]);
 
-/* Exact comparison of the determinants' magnitudes: -1, 0, +1 as |det(a,b,c)| is less than, equal to or greater than
- * |det(d,e,f)|; values that are not finite count as 0. */
+/* Exact sign of the UV determinant of a triangle: see nmtan_orientation(), which calls this. */
+static inline int nt_orientation(const float a[2], const float b[2], const float c[2])
+{
+	const double bu = (double)b[0] - a[0], bv = (double)b[1] - a[1];
+	const double cu = (double)c[0] - a[0], cv = (double)c[1] - a[1];
+	/* an exact difference gives both operands back */
+	const int exact = bu + a[0] == b[0] && b[0] - bu == a[0] && bv + a[1] == b[1] &&
+			  b[1] - bv == a[1] && cu + a[0] == c[0] && c[0] - cu == a[0] &&
+			  cv + a[1] == c[1] && c[1] - cv == a[1];
+	const double p = bu * cv, r = bv * cu;
+	if (exact && p != r)
+		return p > r ? 1 : -1;
+	return nt_orientation_slow(a, b, c);
+}
+
+/* Exact comparison of the determinants' magnitudes: -1, 0, +1 as |det(a, b, c)| is less than, equal to
+ * or greater than |det(d, e, f)|. A triangle with a value that is not finite counts as 0. */
 int nt_compare_area(const float a[2], const float b[2], const float c[2], const float d[2],
 	const float e[2], const float f[2]);
 
-/* The triangles of a quad: corner numbers 0..3. Row 0 for the diagonal 0-2, row 1 for 1-3, each with
+/* The triangles of a quad as corner numbers 0..3: row 0 for the diagonal 0-2, row 1 for 1-3, each with
  * MikkTSpace's order and first corners. */
 extern const unsigned char nt_quad_triangles[2][2][3];
 
-/* The diagonal MikkTSpace cuts (spec page, 1): row of nt_quad_triangles. Arrays in corner order. */
+/* The diagonal along which MikkTSpace cuts a quad, as a row of nt_quad_triangles: the shorter one in UV
+ * space; where those are equal or not comparable, the shorter one in space, 0-2 when in doubt. */
 int nt_quad_diagonal(const float *const texcoords[4], const float *const positions[4]);
 
 #endif
