@@ -11,30 +11,58 @@
 
 typedef enum nt_severity { NT_SEVERITY_INFO, NT_SEVERITY_WARNING, NT_SEVERITY_ERROR } nt_severity;
 
-/* Codes in the order of the table in report/codes.c, which has one row for each. */
+/* Codes in the order of the table in report/codes.c, which has one row for each and says what they mean.
+ * A code's public name is its name here without NT_CODE_. */
 typedef enum nt_code {
 	/* what readers report */
-	NT_CODE_MTL_MISSING,           /* a material library cannot be read */
-	NT_CODE_MATERIAL_UNKNOWN,      /* usemtl names a material that no library defines */
-	NT_CODE_IMAGE_MISSING,         /* an image that the output refers to cannot be read */
-	NT_CODE_IMAGE_TYPE,            /* an image type that glTF does not carry */
-	NT_CODE_BUMP_AS_NORMAL,        /* map_Bump was taken as a normal map */
-	NT_CODE_STATEMENT_IGNORED,     /* statement, element or property that nmtan does not use */
-	NT_CODE_POLYGON_DEGENERATE,    /* n-gon that could not be triangulated properly */
-	NT_CODE_NORMALS_MADE,          /* normals were missing and have been made */
-	NT_CODE_REFERENCE_LOST,        /* something the input refers to did not make it to the output */
-	/* texture coordinates and geometry */
+	NT_CODE_MTL_MISSING,
+	NT_CODE_MATERIAL_UNKNOWN,
+	NT_CODE_IMAGE_MISSING,
+	NT_CODE_IMAGE_TYPE,
+	NT_CODE_BUMP_AS_NORMAL,
+	NT_CODE_STATEMENT_IGNORED,
+	NT_CODE_POLYGON_DEGENERATE,
+	NT_CODE_NORMALS_MADE,
+	NT_CODE_REFERENCE_LOST,
+	/* texture coordinates */
+	NT_CODE_UV_MIRROR_SEAM,
+	NT_CODE_UV_MIRROR_OVERLAP,
+	NT_CODE_UV_MIRROR_LONE,
+	NT_CODE_UV_MIXED_WINDING_ISLAND,
 	NT_CODE_UV_DEGENERATE_TRIANGLE,
+	NT_CODE_UV_NEAR_DEGENERATE,
+	NT_CODE_UV_FOLDED_QUAD,
+	NT_CODE_UV_ROUNDED_AWAY,
+	NT_CODE_UV_NOT_FINITE,
+	/* positions, normals, connectivity */
 	NT_CODE_POS_DEGENERATE_TRIANGLE,
-	NT_CODE_UV_FOLDED_QUAD,        /* the halves of a quad are wound differently in UV space */
-	NT_CODE_UV_ROUNDED_AWAY,       /* orientation of triangles changed when v became 1 - v */
+	NT_CODE_POS_NOT_FINITE,
+	NT_CODE_MESH_NON_MANIFOLD_EDGE,
+	NT_CODE_MESH_INCONSISTENT_WINDING,
+	NT_CODE_MESH_NORMAL_NON_UNIT,
+	NT_CODE_MESH_NORMAL_ZERO,
+	NT_CODE_MESH_NORMAL_AGAINST_FACE,
 	/* tangents */
-	NT_CODE_TAN_REPAIRED,          /* tangents the method left unusable were replaced */
-	NT_CODE_TAN_NO_NORMAL,         /* tangents are needed but there are no normals */
-	NT_CODE_TAN_NO_UV,             /* tangents are needed but there are no texture coordinates */
-	NT_CODE_TAN_UVSET_CONFLICT,    /* two slots want different texture coordinates */
+	NT_CODE_TAN_MIRROR_SHARED_VERTEX,
+	NT_CODE_TAN_MIXED_W_TRIANGLE,
+	NT_CODE_TAN_SIGN_MISMATCH,
+	NT_CODE_TAN_DIRECTION_MISMATCH,
+	NT_CODE_TAN_NOT_ORTHOGONAL,
+	NT_CODE_TAN_PARALLEL_NORMAL,
+	NT_CODE_TAN_ZERO,
+	NT_CODE_TAN_NOT_FINITE,
+	NT_CODE_TAN_NON_UNIT,
+	NT_CODE_TAN_BAD_W,
+	NT_CODE_TAN_MISSING_REQUIRED,
+	NT_CODE_TAN_UNUSED,
+	NT_CODE_TAN_NO_NORMAL,
+	NT_CODE_TAN_NO_UV,
+	NT_CODE_TAN_UVSET_CONFLICT,
 	NT_CODE_TAN_UV_TRANSFORM_ANIMATED,
-	NT_CODE_TAN_EXISTING_BAD,      /* authored tangents that were kept are invalid */
+	NT_CODE_TAN_MORPH_MISSING,
+	NT_CODE_TAN_VERTEX_GROWTH,
+	NT_CODE_TAN_REPAIRED,
+	NT_CODE_TAN_EXISTING_BAD,
 	NT_CODE_COUNT
 } nt_code;
 

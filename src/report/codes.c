@@ -1,0 +1,338 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The table of findings and the few functions that read it: see codes.h.
+ *
+ * Severities: an error is data that breaks glTF's rules or certainly renders wrong; a warning is worth
+ * a look in the DCC tool; an info says what is there (mirroring itself is legitimate).
+ */
+#include "report/codes.h"
+
+#include <assert.h>
+#include <string.h>
+
+#define ROW(name, severity, message, meaning, remedy, example) \
+	[NT_CODE_##name] = {#name, NT_SEVERITY_##severity, message, meaning, remedy, example}
+
+static const nt_code_row code_table[NT_CODE_COUNT] = {
+	ROW(MTL_MISSING, WARNING, "material library cannot be read",
+		"The OBJ names an MTL file that is not there. The meshes are converted, their materials get "
+		"default values.",
+		"Put the MTL file beside the OBJ, or take the mtllib line out.",
+		"an OBJ with \"mtllib nowhere.mtl\""),
+	ROW(MATERIAL_UNKNOWN, WARNING, "material is defined by no material library",
+		"usemtl names a material that no MTL file defines. It becomes a default material of that name.",
+		"Export the material library again, or correct the name.",
+		"an OBJ with \"usemtl ghost\" and no mtllib"),
+	ROW(IMAGE_MISSING, WARNING, "image cannot be read",
+		"A material refers to an image file that is not there. The output keeps the reference where "
+		"it can.",
+		"Put the image where the material looks for it, or use --images=none.",
+		"an MTL with \"map_Kd missing.png\""),
+	ROW(IMAGE_TYPE, WARNING, "image has a type that glTF does not carry",
+		"glTF carries PNG and JPEG (others by extension). TGA, BMP and the like are left out.",
+		"Convert the image to PNG and name that in the material.",
+		"an MTL with \"map_Kd wood.tga\""),
+	ROW(BUMP_AS_NORMAL, WARNING, "bump map was taken as a normal map",
+		"map_Bump and bump are height maps by definition, but most files put a normal map there. nmtan "
+		"takes it as one.",
+		"If it is a normal map, write norm instead; if it is a height map, bake it to a normal map.",
+		"an MTL with \"map_Bump n.png\""),
+	ROW(STATEMENT_IGNORED, INFO, "{count} {statement was|statements were} not used",
+		"The input has a statement, element or property that nmtan does not know or does not need.",
+		"Nothing, unless you expected it to matter.",
+		"an OBJ with a \"curv\" line"),
+	ROW(POLYGON_DEGENERATE, WARNING, "{count} {polygon|polygons} could not be triangulated properly",
+		"A face of five or more corners crosses itself, is collinear or not finite. It was cut into "
+		"triangles, but they may overlap.",
+		"Cut the polygon in the modelling tool.",
+		"an OBJ face of five corners in the order of a star"),
+	ROW(NORMALS_MADE, INFO, "normals were missing and have been made",
+		"Tangents need normals. OBJ gets them by its smoothing groups, PLY smooth ones, glTF only when "
+		"--normals asks for them.",
+		"Export normals if the made ones are not what you want.",
+		"a PLY triangle with s and t but no nx, ny, nz"),
+	ROW(REFERENCE_LOST, WARNING, "{count} {reference is|references are} not in the output",
+		"Something the input refers to has no place in the output's format.",
+		"Choose another output format, or add it again by hand.",
+		"a glTF with animations that is written as PLY"),
+
+	ROW(UV_MIRROR_SEAM, INFO,
+		"texture coordinates are mirrored across a seam of {count} {edge|edges}",
+		"The two triangles at each of these edges are wound in opposite directions in UV space, so w "
+		"changes its sign here and vertices cannot be shared. Legitimate and frequent, but the place "
+		"where normal maps show seams first. There is one finding for each loop or chain.",
+		"Nothing if the mirroring is meant. Keep the seam off prominent edges, and bake with mirrored "
+		"islands moved by a whole tile.",
+		"two triangles that share an edge and have the same UV at their third corners"),
+	ROW(UV_MIRROR_OVERLAP, INFO,
+		"mirrored island of {count} {triangle|triangles} lies on an unmirrored one",
+		"A mirrored island that shares its texture with its twin: the usual way to texture a symmetric "
+		"model at half the cost.",
+		"Nothing. When baking, move the mirrored island by a whole tile so that only one is baked.",
+		"two separate quads with the same four UVs, the second one wound the other way"),
+	ROW(UV_MIRROR_LONE, WARNING,
+		"mirrored island of {count} {triangle|triangles} lies on no other",
+		"A mirrored island that shares its texture with nothing: mirroring gains nothing here, and "
+		"text or asymmetric detail in the texture shows reversed. Often an accident.",
+		"Flip the island in the UV editor unless the texture was painted for it.",
+		"one triangle whose UVs are clockwise"),
+	ROW(UV_MIXED_WINDING_ISLAND, WARNING,
+		"island of {count} {triangle|triangles} is folded: both windings are connected",
+		"Inside one connected island some triangles are wound the other way, and they do not lie on a "
+		"twin point by point: a fold. Texture is mirrored there and tangents flip within the island.",
+		"Unfold the island (relax or unwrap it again), or cut it along the fold.",
+		"three quads in a row with u = 0, 1, 0.4, 1.4"),
+	ROW(UV_DEGENERATE_TRIANGLE, INFO,
+		"{count} {triangle has|triangles have} no area in UV space",
+		"The three texture coordinates are collinear: there is no direction in which u grows, so the "
+		"tangent comes from a neighbour or from the normal. A warning when such triangles are more "
+		"than 1 % of the mesh's area, where it can be seen.",
+		"Unwrap these triangles if they are visible and normal mapped.",
+		"one triangle with UVs (0,0), (1,0), (2,0)"),
+	ROW(UV_NEAR_DEGENERATE, INFO,
+		"{count} {triangle has|triangles have} nearly collinear texture coordinates",
+		"Rounding of the texture coordinates to float alone may turn the tangent of these triangles by "
+		"more than one degree: the finding gives the smallest relative determinant |det| / (|e1| |e2|) "
+		"and the largest bound of the angle. A warning when they are more than 1 % of the mesh's area.",
+		"Give the triangles more room in the UV layout, or keep islands near the origin.",
+		"a triangle with UVs (1000,0), (1001,0), (1000,0.0001)"),
+	ROW(UV_FOLDED_QUAD, WARNING,
+		"{count} {quad has|quads have} halves that are wound differently in UV space",
+		"A quad whose outline crosses itself or is folded in UV space. Both halves take the sign of "
+		"the larger one, so the smaller one is lit from the wrong side.",
+		"Straighten the quad in the UV editor, or triangulate it.",
+		"a quad with UVs (0,0), (1,1), (1,0), (0,1): a bowtie"),
+	ROW(UV_ROUNDED_AWAY, INFO,
+		"{count} {triangle changes|triangles change} orientation when v becomes 1 - v",
+		"glTF stores 1 - v, which rounds: tiny triangles lose their area or turn over. w is right for "
+		"the coordinates as stored.",
+		"Give the triangles more room, or keep v near 1.",
+		"an OBJ triangle with UVs (0,0), (1,0), (0,1e-9)"),
+	ROW(UV_NOT_FINITE, ERROR,
+		"{count} {vertex has texture coordinates|vertices have texture coordinates} that are not finite",
+		"NaN or infinity. Nothing can be textured there.",
+		"Export the mesh again.",
+		"an OBJ with \"vt nan 0\""),
+
+	ROW(POS_DEGENERATE_TRIANGLE, INFO, "{count} {triangle has|triangles have} no area",
+		"Corners coincide or are collinear. The triangle cannot be seen, and MikkTSpace gives its "
+		"corners the tangents of a neighbour.",
+		"Remove it, or merge its vertices.",
+		"a triangle with two corners at one position"),
+	ROW(POS_NOT_FINITE, ERROR, "{count} {vertex has a position|vertices have positions} that are not finite",
+		"NaN or infinity. The triangles there cannot be drawn.",
+		"Export the mesh again.",
+		"an OBJ with \"v inf 0 0\""),
+	ROW(MESH_NON_MANIFOLD_EDGE, WARNING,
+		"{count} {edge belongs|edges belong} to more than two triangles",
+		"After vertices at one position are welded, three or more triangles meet at an edge. Which of "
+		"them are neighbours is then a matter of order, and programs differ in their tangents.",
+		"Separate the surfaces, or delete doubled and inner faces.",
+		"three triangles that share one edge"),
+	ROW(MESH_INCONSISTENT_WINDING, WARNING,
+		"{count} {edge has|edges have} two triangles that run along it in the same direction",
+		"The two triangles at these edges face opposite sides. A flipped face, or a surface that has "
+		"one side only (a Moebius strip), which cannot be wound consistently.",
+		"Recalculate the normals outside, or flip the faces that are wrong.",
+		"triangles 0 1 2 and 0 1 3"),
+	ROW(MESH_NORMAL_NON_UNIT, WARNING, "{count} {normal is|normals are} not of unit length",
+		"The length differs from 1 by more than 0.00674, the tolerance of the Khronos validator. "
+		"Tangents are made perpendicular to the normal as it is given, so they are tilted too.",
+		"Normalise the normals on export.",
+		"a vertex with the normal (0,0,2)"),
+	ROW(MESH_NORMAL_ZERO, ERROR, "{count} {normal is|normals are} zero or not finite",
+		"A normal without a direction cannot be lit and has no tangent plane.",
+		"Recalculate the normals, and remove triangles without area.",
+		"a vertex with the normal (0,0,0)"),
+	ROW(MESH_NORMAL_AGAINST_FACE, WARNING,
+		"{count} {triangle has|triangles have} normals that point against {its|their} winding",
+		"The corner normals lie on the back side of the triangle: it is lit as if seen from behind, "
+		"and the bitangent runs against v there.",
+		"Flip the winding or recalculate the normals.",
+		"a counterclockwise triangle in the xy plane with the normal (0,0,-1)"),
+
+	ROW(TAN_MIRROR_SHARED_VERTEX, WARNING,
+		"{count} {vertex is|vertices are} shared by mirrored and unmirrored triangles",
+		"One vertex holds one tangent and one w, but the triangles on its two sides need opposite "
+		"signs. On conversion such vertices are split (info); on --check it is a warning, because "
+		"tangents stored in this file cannot be right on both sides.",
+		"Let nmtan split them: convert the file.",
+		"two triangles that share two vertices and mirror their UVs across them"),
+	ROW(TAN_MIXED_W_TRIANGLE, WARNING,
+		"{count} {triangle has|triangles have} corners with different w",
+		"The three corners must agree: where w changes its sign inside a triangle the interpolated "
+		"bitangent passes through zero and the shading breaks.",
+		"Compute the tangents again: nmtan --existing=replace.",
+		"a triangle with w = 1, 1, -1"),
+	ROW(TAN_SIGN_MISMATCH, ERROR,
+		"{count} {triangle has|triangles have} the wrong sign of w",
+		"In glTF the bitangent cross(N, T) * w runs along -dP/dv, that is, w is +1 where the stored "
+		"UVs have a negative determinant. Here it is the opposite and the normal map's green channel is "
+		"inverted. The finding gives the share: 100 % means that the exporter's convention is inverted, "
+		"which is what happens when V is not flipped. A warning where no material uses the tangents.",
+		"Compute the tangents again: nmtan --existing=replace.",
+		"a glTF quad, upright and not mirrored, with w = -1"),
+	ROW(TAN_DIRECTION_MISMATCH, WARNING,
+		"{count} {corner has a tangent|corners have tangents} more than 30 degrees off",
+		"Compared with a fresh MikkTSpace solve of the same mesh. The histogram of angles says what "
+		"kind of difference it is: all near 90 degrees means u and v exchanged or a rotated UV "
+		"transform, a broad one means tangents of other texture coordinates. An info below 1 % of the "
+		"corners.",
+		"Compute the tangents again, or select the UV set they were made for with --uv.",
+		"a quad in the xy plane with tangents along y"),
+	ROW(TAN_NOT_ORTHOGONAL, WARNING,
+		"{count} {tangent is|tangents are} more than one degree off perpendicular to {its|their} normal",
+		"The frame is sheared. Renderers differ in whether they straighten it, so the model looks "
+		"different in each.",
+		"Compute the tangents again: nmtan --existing=replace.",
+		"a vertex with N = (0,0,1) and T = (0.8,0,0.6)"),
+	ROW(TAN_PARALLEL_NORMAL, ERROR, "{count} {tangent is|tangents are} parallel to {its|their} normal",
+		"Within one degree of the normal or its opposite: the bitangent is zero or noise, and the "
+		"normal map has no direction there.",
+		"Compute the tangents again: nmtan --existing=replace.",
+		"a vertex with N = T = (0,0,1)"),
+	ROW(TAN_ZERO, ERROR, "{count} {tangent has|tangents have} no length",
+		"What many tools write for sliver triangles. Normalising it gives NaN in the shader: black or "
+		"flashing pixels.",
+		"Compute the tangents again: nmtan --existing=replace.",
+		"a vertex with T = (0,0,0,1)"),
+	ROW(TAN_NOT_FINITE, ERROR, "{count} {tangent is|tangents are} not finite",
+		"NaN or infinity in one of the four numbers.",
+		"Compute the tangents again: nmtan --existing=replace.",
+		"a vertex with T = (NaN,0,0,1)"),
+	ROW(TAN_NON_UNIT, ERROR, "{count} {tangent is|tangents are} not of unit length",
+		"The length differs from 1 by more than 0.00674, the tolerance of the Khronos validator, which "
+		"calls it an error.",
+		"Compute the tangents again: nmtan --existing=replace.",
+		"a vertex with T = (2,0,0,1)"),
+	ROW(TAN_BAD_W, ERROR, "{count} {tangent has a w that is|tangents have a w that is} neither 1 nor -1",
+		"w is a sign. Any other value scales or removes the bitangent.",
+		"Compute the tangents again: nmtan --existing=replace.",
+		"a vertex with T = (1,0,0,0)"),
+	ROW(TAN_MISSING_REQUIRED, ERROR, "the material needs tangents and there are none",
+		"Clearcoat normal maps and anisotropy demand a tangent space: TANGENT, or a normalTexture from "
+		"which a client can make it. Here there is neither. Where a normalTexture lets the client make "
+		"tangents this is an info: clients differ in how well they do it.",
+		"Convert the file with nmtan.",
+		"a material with KHR_materials_anisotropy on a primitive with NORMAL only"),
+	ROW(TAN_UNUSED, INFO, "the mesh has tangents that no material uses",
+		"Without a normal texture, clearcoat normal texture or anisotropy nothing reads them: 16 bytes "
+		"per vertex for nothing.",
+		"Drop the attribute, or check whether a normal map got lost.",
+		"a glTF primitive with TANGENT and the default material"),
+	ROW(TAN_NO_NORMAL, WARNING, "tangents are needed but there are no normals",
+		"A client must use flat normals then and ignore TANGENT, so none are written.",
+		"Export normals, or let nmtan make them: --normals=smooth or --normals=flat.",
+		"a glTF primitive with POSITION, TEXCOORD_0 and a normal-mapped material"),
+	ROW(TAN_NO_UV, ERROR, "tangents are needed but there are no texture coordinates",
+		"A normal map is asked for, but the mesh lacks the texture coordinates that the map is to be "
+		"looked up with.",
+		"Unwrap the mesh, or choose a set that exists with --uv.",
+		"a normal-mapped glTF primitive without TEXCOORD_0"),
+	ROW(TAN_UVSET_CONFLICT, WARNING, "two textures want tangents of different texture coordinates",
+		"One TANGENT attribute serves one set of texture coordinates. The normal texture's set wins; "
+		"the other texture is lit in a wrong frame.",
+		"Use one UV set for the normal, clearcoat normal and anisotropy textures.",
+		"normalTexture with texCoord 0 and clearcoatNormalTexture with texCoord 1"),
+	ROW(TAN_UV_TRANSFORM_ANIMATED, WARNING, "the texture transform of a normal map is animated",
+		"Tangents follow the transform at rest. When an animation rotates it they no longer fit.",
+		"Do not animate the rotation of a normal texture's transform.",
+		"KHR_animation_pointer on a normalTexture's KHR_texture_transform"),
+	ROW(TAN_MORPH_MISSING, WARNING, "{count} morph {target has|targets have} no tangents",
+		"The base mesh has TANGENT, so clients no longer compute tangents for its morph targets; "
+		"without deltas of their own the targets are lit with the base's tangents.",
+		"Convert the file with nmtan, which writes the deltas.",
+		"a primitive with TANGENT and a target with POSITION only"),
+	ROW(TAN_VERTEX_GROWTH, INFO, "{count} {vertex was|vertices were} added",
+		"A vertex is copied where its corners need different tangents or normals. The finding counts "
+		"by cause: mirrored texture coordinates, different tangent directions, normals that were made.",
+		"Nothing. Fewer mirror seams and hard edges cost fewer vertices.",
+		"converting two triangles that share two vertices and mirror their UVs"),
+	ROW(TAN_REPAIRED, INFO, "{count} {corner|corners} got a tangent that MikkTSpace could not give",
+		"MikkTSpace leaves zero vectors, defaults or mixed signs at degenerate triangles. nmtan "
+		"replaced them by the nearest usable frame.",
+		"Nothing; --repair=off gives the raw result. Degenerate triangles are the cause.",
+		"converting one triangle with UVs (0,0), (1,0), (2,0)"),
+	ROW(TAN_EXISTING_BAD, WARNING, "{count} {tangent|tangents} that were kept are invalid",
+		"--existing=keep leaves authored tangents as they are, and some of them are not usable.",
+		"Use --existing=repair or --existing=replace.",
+		"converting a normal-mapped glTF with a tangent (0,0,0,1)"),
+};
+
+const nt_code_row *nt_code_info(nt_code code)
+{
+	assert((unsigned)code < NT_CODE_COUNT);
+	return &code_table[code];
+}
+
+bool nt_code_find(const char *name, nt_code *code)
+{
+	for (unsigned i = 0; i < NT_CODE_COUNT; i++) {
+		if (strcmp(code_table[i].name, name) == 0) {
+			*code = (nt_code)i;
+			return true;
+		}
+	}
+	return false;
+}
+
+static const char *const severity_names[] = {"info", "warning", "error"};
+
+const char *nt_severity_name(nt_severity severity)
+{
+	return severity_names[severity];
+}
+
+bool nt_severity_find(const char *name, nt_severity *severity)
+{
+	for (unsigned i = 0; i < 3; i++) {
+		if (strcmp(severity_names[i], name) == 0) {
+			*severity = (nt_severity)i;
+			return true;
+		}
+	}
+	return false;
+}
+
+/* Appends what stands for the braces [open, close): {count}, {detail} or {one|many}. */
+static void expand_braces(const char *open, const char *close, size_t count, const char *detail,
+	nt_buffer *out)
+{
+	const size_t length = (size_t)(close - open);
+	const char *bar = memchr(open, '|', length);
+	if (length == 5 && memcmp(open, "count", 5) == 0)
+		nt_buffer_format(out, "%zu", count);
+	else if (length == 6 && memcmp(open, "detail", 6) == 0)
+		nt_buffer_text(out, detail);
+	else if (bar && count == 1)
+		nt_buffer_append(out, open, (size_t)(bar - open));
+	else if (bar)
+		nt_buffer_append(out, bar + 1, (size_t)(close - bar - 1));
+}
+
+void nt_code_sentence(nt_code code, size_t count, const char *detail, nt_buffer *out)
+{
+	const char *text = nt_code_info(code)->message;
+	const bool detail_follows = detail && *detail && !strstr(text, "{detail}");
+	for (const char *open; (open = strchr(text, '{')) != NULL;) {
+		const char *close = strchr(open, '}');
+		assert(close);
+		nt_buffer_append(out, text, (size_t)(open - text));
+		expand_braces(open + 1, close, count, detail ? detail : "", out);
+		text = close + 1;
+	}
+	nt_buffer_text(out, text);
+	if (detail_follows) {
+		nt_buffer_text(out, ": ");
+		nt_buffer_text(out, detail);
+	}
+}
+
+void nt_codes_list(nt_buffer *out)
+{
+	for (unsigned i = 0; i < NT_CODE_COUNT; i++) {
+		const nt_code_row *row = &code_table[i];
+		nt_buffer_format(out, "%-26s %-8s %s\n", row->name, nt_severity_name(row->severity),
+			row->meaning);
+	}
+}

@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The table of findings: one row for each nt_code. It is what --list-codes prints, what
+ * man/nmtan-report.5 and data/nmtan-report.schema.json are checked against, and where every writer of
+ * reports takes its sentences from.
+ */
+#ifndef NT_REPORT_CODES_H
+#define NT_REPORT_CODES_H
+
+#include "base/buffer.h"
+#include "scene/finding.h"
+
+typedef struct nt_code_row {
+	const char *name;     /* UV_MIRROR_SEAM: what users write */
+	nt_severity severity; /* unless --severity, or the finding's own numbers, say otherwise */
+	/* One sentence without a full stop. {count} is the number of occurrences, {one|many} chooses by
+	 * it, {detail} is the finding's detail; without {detail} a detail that is not empty follows behind
+	 * a colon. */
+	const char *message;
+	const char *meaning; /* what it is and why it matters */
+	const char *remedy;  /* what to do about it */
+	const char *example; /* the smallest input that shows it */
+} nt_code_row;
+
+/* The row of a code; a code that is out of range is our mistake. */
+const nt_code_row *nt_code_info(nt_code code);
+
+/* The code with this public name; false when there is none. */
+bool nt_code_find(const char *name, nt_code *code);
+
+/* "info", "warning" or "error". */
+const char *nt_severity_name(nt_severity severity);
+bool nt_severity_find(const char *name, nt_severity *severity);
+
+/* Appends the sentence of a finding. detail may be NULL. */
+void nt_code_sentence(nt_code code, size_t count, const char *detail, nt_buffer *out);
+
+/* Appends what --list-codes prints: one row per code, its severity and its meaning. */
+void nt_codes_list(nt_buffer *out);
+
+#endif
