@@ -50,7 +50,7 @@ tool_obj := $(call objects,$(tool_src))
 main_obj := $(B)/cli/main.c.o
 
 .PHONY: all
-all: $(B)/nmtan $(B)/libnmtan.a $(B)/libnmtan.so
+all: $(B)/nmtan $(B)/libnmtan.a $(B)/libnmtan.so $(B)/nmtan.pc $(B)/completion.bash $(B)/completion.zsh
 
 $(B)/nmtan: $(main_obj) $(tool_obj) $(B)/libnmtan.a
 	$(CXX) $(NT_LDFLAGS) -o $@ $^ $(TOOL_LIBS)
@@ -79,6 +79,78 @@ $(B)/ext/openmesh.cpp.o: FILE_FLAGS := -Wno-maybe-uninitialized -Wno-class-memac
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
 include tests/tests.mk
+
+# Completions come from the tool's own table of options.
+$(B)/completion.%: $(B)/nmtan
+	$< --completion=$* > $@.new && mv $@.new $@
+
+$(B)/nmtan.pc: include/nmtan.h Makefile
+	@mkdir -p $(@D)
+	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$${prefix}/lib' 'includedir=$${prefix}/include' '' \
+		'Name: nmtan' 'Description: MikkTSpace-exact tangent frames for meshes' \
+		'Version: $(VERSION)' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lnmtan' \
+		'Libs.private: -fopenmp -lm' > $@
+
+# As many jobs as processors, unless the caller has said how many.
+JOBS = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(shell nproc))
+
+# The two commands on a fresh machine. The first step installs what is missing and is silent otherwise.
+.PHONY: demo check soak need-build need-check
+need-build:
+	@sh tests/support/need.sh build
+need-check:
+	@sh tests/support/need.sh check
+
+DEMO := data/mirrored_cube.obj
+demo: need-build
+	@echo "Building build/release/nmtan"
+	@$(MAKE) --no-print-directory -s $(JOBS) config=release all
+	@mkdir -p build/demo
+	@echo "nmtan --timing $(DEMO) build/demo/mirrored_cube.glb"
+	@build/release/nmtan --timing $(DEMO) build/demo/mirrored_cube.glb
+	@echo "nmtan --check build/demo/mirrored_cube.glb"
+	@build/release/nmtan --check build/demo/mirrored_cube.glb
+	@ls -l build/demo/mirrored_cube.glb
+
+check: need-check
+	@$(MAKE) --no-print-directory -s check-built
+
+soak: need-check
+	@$(MAKE) --no-print-directory -s soak-built
+
+# Paths as they are installed; nmtan.pc is written anew because PREFIX may differ from the build's.
+bin := $(DESTDIR)$(PREFIX)/bin
+lib := $(DESTDIR)$(PREFIX)/lib
+share := $(DESTDIR)$(PREFIX)/share
+so := libnmtan.so
+.PHONY: install uninstall
+install: all
+	install -d $(bin) $(lib)/pkgconfig $(DESTDIR)$(PREFIX)/include $(share)/man/man1 \
+		$(share)/bash-completion/completions $(share)/zsh/site-functions
+	install -m 755 $(B)/nmtan $(bin)/nmtan
+	install -m 644 $(B)/libnmtan.a $(lib)/libnmtan.a
+	install -m 755 $(B)/$(so) $(lib)/$(so).$(VERSION)
+	ln -sf $(so).$(VERSION) $(lib)/$(so).0
+	ln -sf $(so).0 $(lib)/$(so)
+	install -m 644 include/nmtan.h $(DESTDIR)$(PREFIX)/include/nmtan.h
+	sed 's|^prefix=.*|prefix=$(PREFIX)|' $(B)/nmtan.pc > $(lib)/pkgconfig/nmtan.pc
+	chmod 644 $(lib)/pkgconfig/nmtan.pc
+	for page in man/*.1; do install -m 644 $$page $(share)/man/man1/; done
+	for page in man/*.5; do [ ! -f $$page ] || { install -d $(share)/man/man5 && \
+		install -m 644 $$page $(share)/man/man5/; }; done
+	install -m 644 $(B)/completion.bash $(share)/bash-completion/completions/nmtan
+	install -m 644 $(B)/completion.zsh $(share)/zsh/site-functions/_nmtan
+
+uninstall:
+	rm -f $(bin)/nmtan $(lib)/libnmtan.a $(lib)/$(so) $(lib)/$(so).0 $(lib)/$(so).$(VERSION) \
+		$(DESTDIR)$(PREFIX)/include/nmtan.h $(lib)/pkgconfig/nmtan.pc \
+		$(patsubst man/%,$(share)/man/man1/%,$(wildcard man/*.1)) \
+		$(patsubst man/%,$(share)/man/man5/%,$(wildcard man/*.5)) \
+		$(share)/bash-completion/completions/nmtan $(share)/zsh/site-functions/_nmtan
+
+.PHONY: lint
+lint: $(B)/libnmtan.a $(B)/libnmtan.so
+	@bash tests/lint/rooms.sh $(B)
 
 .PHONY: clean format
 clean:

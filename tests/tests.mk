@@ -27,3 +27,27 @@ tests: $(unit_bin) $(api_bin)
 .PHONY: unit
 unit: tests
 	@for t in $(unit_bin) $(api_bin); do $$t || exit 1; done
+
+# The Khronos validator, outside the source tree. Nothing is fetched when it is there.
+build/node/node_modules/gltf-validator/package.json: tests/support/package.json tests/support/package-lock.json
+	@mkdir -p build/node
+	@cp tests/support/package.json tests/support/package-lock.json build/node/
+	@echo "Installing gltf-validator (npm) into build/node"
+	@npm ci --prefix build/node --no-audit --no-fund --loglevel=error >/dev/null || \
+		echo "npm cannot install gltf-validator: the tests that need it will be skipped"
+	@[ ! -f $@ ] || touch $@
+
+# Everything in release and under ASan and UBSan; make's own jobs carry over to the builds.
+.PHONY: check-built soak-built
+check-built: build/node/node_modules/gltf-validator/package.json
+	@echo "Building config=release"
+	@$(MAKE) -s $(JOBS) config=release all tests
+	@echo "Building config=sanitize"
+	@$(MAKE) -s $(JOBS) config=sanitize all tests
+	@$(MAKE) -s config=release lint
+	@bash tests/run $(if $(filter true,$(CI)),--strict) build/release build/sanitize
+
+# Heavy runs: tests/soak/*.sh in turn, each with its own closing line.
+soak-built: check-built
+	@for script in tests/soak/*.sh; do [ ! -f $$script ] || \
+		{ echo "$$script" && bash $$script build/release build/sanitize || exit 1; }; done

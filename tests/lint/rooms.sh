@@ -1,0 +1,76 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+#
+# make lint: who may include whom, SPDX lines, nothing that prints or exits outside src/cli, C++ in
+# src/ext alone, no addresses of package registries or paths of one machine. Prints one line per fault.
+set -u
+cd "$(dirname "$0")/../.." || exit 1
+faults=0
+fault() {
+	echo "lint: $*"
+	faults=$((faults + 1))
+}
+
+declare -A may=(
+	[base]="base"
+	[ext]="ext base"
+	[topology]="topology base"
+	[tangent]="tangent topology base"
+	[scene]="scene base"
+	[io]="io scene ext base"
+	[report]="report scene topology ext base"
+	[pipeline]="pipeline io report tangent topology scene ext base"
+	[cli]="cli pipeline report base"
+)
+
+for file in src/*/*.[ch] src/*/*.cpp; do
+	[ -f "$file" ] || continue
+	room=${file#src/} room=${room%%/*}
+	if [ -z "${may[$room]-}" ]; then
+		fault "$file: no such room in design.md"
+		continue
+	fi
+	while IFS= read -r target; do
+		case " ${may[$room]} " in
+		*" $target "*) ;;
+		*) fault "$file: $room may not include $target" ;;
+		esac
+	done < <(sed -nE 's/^[[:space:]]*#[[:space:]]*include "([a-z]+)\/.*/\1/p' "$file" | sort -u)
+	case $room/$file in
+	ext/*.cpp | */*.[ch]) ;;
+	*) fault "$file: C++ outside src/ext" ;;
+	esac
+	if [ "$room" != cli ]; then
+		# Comments may speak of printf; code may not call it.
+		sed -E 's,/\*.*\*/,,; s,^[[:space:]]*\*.*,,; s,//.*,,' "$file" |
+			grep -nE '(^|[^a-zA-Z0-9_.>])(abort|exit|_exit|_Exit|quick_exit|printf|puts|putchar|perror|vprintf)[[:space:]]*\(|fprintf[[:space:]]*\([[:space:]]*std|std::(cout|cerr)' |
+			while IFS= read -r line; do echo "lint: $file:${line%%:*}: prints or exits: ${line#*:}"; done |
+			grep . && faults=$((faults + 1))
+	fi
+done
+
+while IFS= read -r file; do
+	case $file in
+	LICENSE | .gitignore | .clang-format | README.md | man/* | data/*) continue ;;
+	*.json | *.tsv | *.png | *.bin | *.glb | *.gltf) continue ;;
+	esac
+	head -3 "$file" | grep -q 'SPDX-License-Identifier: MIT' || fault "$file: no SPDX line at its top"
+done < <(git ls-files 2>/dev/null)
+
+while IFS= read -r hit; do
+	fault "$hit"
+done < <(git grep -nIE 'registry\.[a-z]+\.|"resolved"|(^|[^a-z.])/work/|/root/|/home/[a-z]' -- . ':!tests/lint' 2>/dev/null)
+
+# What the shared library shows to the world, and what the static one asks of it.
+build=${1-}
+if [ -n "$build" ]; then
+	while IFS= read -r symbol; do
+		fault "libnmtan.so exports $symbol"
+	done < <(nm -D --defined-only "$build/libnmtan.so" | awk '$3 !~ /^nmtan_/ { print $3 }')
+	while IFS= read -r symbol; do
+		fault "libnmtan.a needs C++: $symbol"
+	done < <(nm -u "$build/libnmtan.a" 2>/dev/null | awk '$2 ~ /^(_Z|__cxa|__gxx)/ { print $2 }' | sort -u)
+fi
+
+[ $faults = 0 ] && echo "lint: nothing found"
+[ $faults = 0 ]

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: MIT
+#
+# What every tests/cli/test_*.sh sources: small words for running $NMTAN as its users do and saying in
+# TAP what came of it. Each case works in a fresh folder, so that what lies there afterwards is its doing.
+#
+#   scene "a sentence"         begins a case
+#   run ARGUMENTS...           runs nmtan; $status, out.txt and err.txt (in ..) hold what came back
+#   exits N / says TEXT / silent / prints TEXT / exists FILE... / only FILE...
+#   done_testing               at the end
+set -u
+data=$ROOT/data
+cases=0 bad=0
+case_name= case_ok=true
+
+finish_case() {
+	[ -n "$case_name" ] || return 0
+	cases=$((cases + 1))
+	if $case_ok; then
+		echo "ok - $case_name"
+	else
+		bad=$((bad + 1))
+		echo "not ok - $case_name"
+	fi
+	case_name=
+}
+
+scene() {
+	finish_case
+	case_name=$1 case_ok=true status=
+	cd "$WORK" && chmod -R u+rwX . && rm -rf here out.txt err.txt && mkdir here && cd here || exit 1
+}
+
+# Ends the case at once as skipped, with the reason.
+skip_case() {
+	cases=$((cases + 1))
+	echo "ok - $case_name # SKIP $1"
+	case_name=
+}
+
+wrong() {
+	case_ok=false
+	echo "# $*"
+	[ ! -s "$WORK/err.txt" ] || sed 's/^/#   stderr: /' "$WORK/err.txt" | head -20
+}
+
+run() {
+	"$NMTAN" "$@" >"$WORK/out.txt" 2>"$WORK/err.txt" </dev/null
+	status=$?
+}
+
+exits() {
+	[ "$status" = "$1" ] || wrong "exit code $status, expected $1"
+}
+
+says() {
+	grep -qF -- "$1" "$WORK/err.txt" || wrong "standard error does not say: $1"
+}
+
+says_not() {
+	! grep -qF -- "$1" "$WORK/err.txt" || wrong "standard error says: $1"
+}
+
+prints() {
+	grep -qF -- "$1" "$WORK/out.txt" || wrong "standard output does not say: $1"
+}
+
+silent() {
+	[ ! -s "$WORK/err.txt" ] || wrong "standard error is not empty"
+	[ ! -s "$WORK/out.txt" ] || wrong "standard output is not empty"
+}
+
+exists() {
+	local file
+	for file; do
+		[ -s "$file" ] || wrong "$file is missing or empty"
+	done
+}
+
+# The folder holds these names and nothing else.
+only() {
+	local expected found
+	expected=$(printf '%s\n' "$@" | sort | tr '\n' ' ')
+	found=$(ls -A | sort | tr '\n' ' ')
+	[ "$#" != 0 ] || expected=
+	[ "$expected" = "$found" ] || wrong "the folder holds: $found, expected: $expected"
+}
+
+same() {
+	cmp -s "$1" "$2" || wrong "$1 and $2 differ"
+}
+
+is() {
+	[ "$1" = "$2" ] || wrong "got '$1', expected '$2'"
+}
+
+done_testing() {
+	finish_case
+	echo "1..$cases"
+	[ $bad = 0 ]
+}

@@ -1,0 +1,56 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# Installs what is missing, and only that: "need.sh build" for make demo, "need.sh check" for the
+# tests as well. Touches nothing, and needs no network, when everything is there. Debian packages by
+# apt, with sudo when not root; on other systems it names what to install by hand.
+set -eu
+
+build="pkg-config libopenmesh-dev libtinygltf-dev nlohmann-json3-dev libdraco-dev
+	libmeshoptimizer-dev libfast-float-dev"
+check="libcmocka-dev"
+
+# Programs are looked for by name, since they often come from elsewhere than Debian.
+missing=
+for pair in gcc:build-essential g++:build-essential make:make; do
+	command -v "${pair%%:*}" >/dev/null 2>&1 || missing="$missing ${pair#*:}"
+done
+if [ "${1:-build}" = check ]; then
+	build="$build $check"
+	for pair in node:nodejs npm:npm python3:python3; do
+		command -v "${pair%%:*}" >/dev/null 2>&1 || missing="$missing ${pair#*:}"
+	done
+fi
+
+if ! command -v dpkg-query >/dev/null 2>&1; then
+	echo "need.sh: this is not Debian; please install by hand:" $build $missing
+	exit 0
+fi
+for package in $build; do
+	case $(dpkg-query -W -f='${Status}' "$package" 2>/dev/null || true) in
+	"install ok installed") ;;
+	*) missing="$missing $package" ;;
+	esac
+done
+[ -n "$missing" ] || exit 0
+
+missing=$(printf '%s\n' $missing | sort -u | tr '\n' ' ')
+sudo=
+if [ "$(id -u)" != 0 ]; then
+	command -v sudo >/dev/null 2>&1 || {
+		echo "need.sh: not root and no sudo; please install: $missing" >&2
+		exit 1
+	}
+	sudo=sudo
+fi
+echo "Installing from Debian: $missing"
+log=$(mktemp)
+trap 'rm -f "$log"' EXIT
+# A list of packages that is new enough is not fetched again.
+$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing \
+	>"$log" 2>&1 || {
+	echo "Fetching the list of packages first"
+	$sudo apt-get update >"$log" 2>&1 || { cat "$log" >&2; exit 1; }
+	$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing \
+		>"$log" 2>&1 || { cat "$log" >&2; exit 1; }
+}

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+//
+// node validate.mjs OUTPUT [INPUT]   one pair
+// node validate.mjs --pairs FILE     a list: one "OUTPUT<tab>INPUT" or "OUTPUT" per line
+//
+// Runs the Khronos validator (npm gltf-validator, installed by `make check` into build/node) and fails
+// when an output has an error its input did not have. Errors are told apart by code and number: an
+// input with three errors of one code may give an output with three. Prints the new errors only.
+import { createRequire } from 'node:module';
+import { readFileSync } from 'node:fs';
+import { dirname, join, resolve } from 'node:path';
+import { fileURLToPath } from 'node:url';
+
+const root = join(dirname(fileURLToPath(import.meta.url)), '..', '..');
+const require = createRequire(join(root, 'build', 'node', 'package.json'));
+const validator = require('gltf-validator');
+
+async function errorsOf(path) {
+	const report = await validator.validateBytes(new Uint8Array(readFileSync(path)), {
+		uri: path,
+		maxIssues: 100000,
+		externalResourceFunction: async (uri) =>
+			new Uint8Array(readFileSync(resolve(dirname(path), decodeURIComponent(uri)))),
+	});
+	return report.issues.messages.filter((message) => message.severity === 0);
+}
+
+function countCodes(messages) {
+	const counts = new Map();
+	for (const { code } of messages)
+		counts.set(code, (counts.get(code) ?? 0) + 1);
+	return counts;
+}
+
+async function judge(output, input) {
+	const allowed = input && /\.(gltf|glb)$/i.test(input) ? countCodes(await errorsOf(input)) : new Map();
+	const fresh = [];
+	for (const message of await errorsOf(output)) {
+		const left = allowed.get(message.code) ?? 0;
+		if (left > 0)
+			allowed.set(message.code, left - 1);
+		else
+			fresh.push(message);
+	}
+	for (const { code, pointer, message } of fresh.slice(0, 5))
+		console.log(`# ${output}: ${code} ${pointer ?? ''}: ${message}`);
+	if (fresh.length > 5)
+		console.log(`# ${output}: ${fresh.length - 5} more`);
+	return fresh.length === 0;
+}
+
+const words = process.argv.slice(2);
+const pairs = words[0] === '--pairs'
+	? readFileSync(words[1], 'utf8').split('\n').filter(Boolean).map((line) => line.split('\t'))
+	: [words];
+let bad = 0;
+for (const [output, input] of pairs) {
+	try {
+		if (!(await judge(output, input)))
+			bad++;
+	} catch (error) {
+		console.log(`# ${output}: the validator could not read it: ${error}`);
+		bad++;
+	}
+}
+process.exit(bad ? 1 : 0);
