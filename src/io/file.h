@@ -17,6 +17,7 @@ typedef struct nt_file {
 	const unsigned char *data; /* never NULL after success */
 	size_t size;
 	bool mapped; /* else malloc'ed */
+	int fd;      /* of a mapped file, -1 otherwise */
 	uint64_t device, inode; /* which file it is; 0, 0 for standard input */
 } nt_file;
 
@@ -39,10 +40,13 @@ typedef struct nt_output_options {
 /* Starts an output set. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
 nmtan_status nt_output_create(nt_output **output, const nt_output_options *options, nt_error *error);
 
-/* Names a file that must not be written: the input and every file the input refers to. */
+/* Names a file that must not be written: the input ("-" too) and every file the input refers to. Files that do
+ * not exist are ignored. To write in place, do not name the input. */
 nmtan_status nt_output_protect(nt_output *output, const char *path, nt_error *error);
 
-/* Adds a file to the set. The first file added with main = true gets its name last. */
+/* Adds a file to the set; "-" is standard output. The first file added with main = true gets its name last. A
+ * directory, a missing folder, a protected file, the same name twice and, with no_clobber, an existing file are
+ * errors. The sink belongs to the set. */
 nmtan_status nt_output_add(nt_output *output, const char *path, bool main, nt_sink **sink,
 	nt_error *error);
 
@@ -56,9 +60,10 @@ nmtan_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, siz
 /* Bytes written to a sink so far. */
 uint64_t nt_sink_size(const nt_sink *sink);
 
-/* Writes a whole file image of the main output's temporary (for reading back): its path; NULL when the
- * output is written through. */
+/* For reading back what was written before it gets its name: where it is for the time being; NULL when the
+ * output is written through. Flush first. */
 const char *nt_sink_temporary(const nt_sink *sink);
+nmtan_status nt_sink_flush(nt_sink *sink, nt_error *error);
 
 /* Gives every file its name, in order; on failure everything is removed as by nt_output_abort. The set is freed
  * either way. */
@@ -67,8 +72,8 @@ nmtan_status nt_output_commit(nt_output *output, nt_error *error);
 /* Removes the temporary files and frees the set; NULL is allowed. */
 void nt_output_abort(nt_output *output);
 
-/* Makes SIGINT, SIGTERM and SIGHUP remove the temporary files before they end the process. Called once by the
- * front end. */
+/* Makes SIGINT, SIGTERM and SIGHUP remove the temporary files before they end the process, and turns SIGPIPE
+ * into a write error. Called once by the front end. */
 void nt_output_catch_signals(void);
 
 #endif

@@ -1,0 +1,497 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Inputs and output sets, in a folder of our own that is removed afterwards.
+ */
+#include "test.h"
+#include "io/file.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static char folder[64];
+
+static const char *at(const char *name)
+{
+	static char paths[4][512];
+	static unsigned turn;
+	char *path = paths[turn++ % 4];
+	snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+	return path;
+}
+
+static void put(const char *name, const char *text)
+{
+	FILE *stream = fopen(at(name), "wb");
+	assert_non_null(stream);
+	fputs(text, stream);
+	assert_int_equal(fclose(stream), 0);
+}
+
+static void assert_content(const char *name, const char *text)
+{
+	nt_error error;
+	nt_file file;
+	assert_int_equal(nt_file_open(&file, at(name), &error), NMTAN_OK);
+	assert_int_equal(file.size, strlen(text));
+	assert_memory_equal(file.data, text, file.size);
+	nt_file_close(&file);
+}
+
+/* Entries of the folder, "." and ".." not counted. */
+static unsigned entry_count(void)
+{
+	DIR *stream = opendir(folder);
+	assert_non_null(stream);
+	unsigned count = 0;
+	for (const struct dirent *entry; (entry = readdir(stream));)
+		count += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
+	closedir(stream);
+	return count;
+}
+
+static int make_folder(void **state)
+{
+	(void)state;
+	strcpy(folder, "/tmp/nmtan-test-XXXXXX");
+	return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_folder(void **state)
+{
+	(void)state;
+	DIR *stream = opendir(folder);
+	if (!stream)
+		return -1;
+	for (const struct dirent *entry; (entry = readdir(stream));)
+		if (unlink(at(entry->d_name)) != 0)
+			rmdir(at(entry->d_name));
+	closedir(stream);
+	return rmdir(folder);
+}
+
+static nt_output *start(const nt_output_options *options)
+{
+	nt_output *output = NULL;
+	nt_error error;
+	assert_int_equal(nt_output_create(&output, options, &error), NMTAN_OK);
+	return output;
+}
+
+static nt_sink *add(nt_output *output, const char *path, bool main)
+{
+	nt_error error;
+	nt_sink *sink = NULL;
+	assert_int_equal(nt_output_add(output, path, main, &sink, &error), NMTAN_OK);
+	return sink;
+}
+
+static void assert_refused(nt_output *output, const char *path, const char *message)
+{
+	nt_error error;
+	nt_sink *sink = NULL;
+	assert_int_equal(nt_output_add(output, path, true, &sink, &error), NMTAN_ERROR_IO);
+	assert_string_equal(error.message, message);
+	assert_string_equal(error.place.file, path);
+}
+
+static void input_is_mapped_and_knows_which_file_it_is(void **state)
+{
+	(void)state;
+	put("a", "some bytes");
+	assert_int_equal(link(at("a"), at("b")), 0);
+	put("c", "some bytes");
+	nt_error error;
+	nt_file file;
+	assert_int_equal(nt_file_open(&file, at("a"), &error), NMTAN_OK);
+	assert_true(file.mapped);
+	assert_int_equal(file.size, 10);
+	assert_memory_equal(file.data, "some bytes", 10);
+	assert_true(nt_file_is(&file, at("a")));
+	assert_true(nt_file_is(&file, at("b")));
+	assert_false(nt_file_is(&file, at("c")));
+	assert_false(nt_file_is(&file, at("missing")));
+	assert_false(nt_file_is(&file, "-"));
+	nt_file_close(&file);
+}
+
+static void input_empty_is_no_error(void **state)
+{
+	(void)state;
+	put("a", "");
+	nt_error error;
+	nt_file file;
+	assert_int_equal(nt_file_open(&file, at("a"), &error), NMTAN_OK);
+	assert_int_equal(file.size, 0);
+	assert_non_null(file.data);
+	nt_file_close(&file);
+	assert_int_equal(nt_file_open(&file, "/dev/null", &error), NMTAN_OK);
+	assert_int_equal(file.size, 0);
+	nt_file_close(&file);
+}
+
+static void input_missing_or_a_folder_is_named(void **state)
+{
+	(void)state;
+	nt_error error;
+	nt_file file;
+	assert_int_equal(nt_file_open(&file, at("missing"), &error), NMTAN_ERROR_IO);
+	assert_string_equal(error.message, "no such file");
+	assert_string_equal(error.place.file, at("missing"));
+	nt_file_close(&file);
+	assert_int_equal(nt_file_open(&file, folder, &error), NMTAN_ERROR_IO);
+	assert_string_equal(error.message, "cannot read: Is a directory");
+	nt_file_close(&file);
+}
+
+static void input_without_permission_is_named(void **state)
+{
+	(void)state;
+	put("a", "secret");
+	assert_int_equal(chmod(at("a"), 0), 0);
+	nt_error error;
+	nt_file file;
+	const nmtan_status status = nt_file_open(&file, at("a"), &error);
+	if (geteuid() == 0) { /* root reads everything */
+		assert_int_equal(status, NMTAN_OK);
+	} else {
+		assert_int_equal(status, NMTAN_ERROR_IO);
+		assert_string_equal(error.message, "cannot read: Permission denied");
+	}
+	nt_file_close(&file);
+}
+
+static void input_pipe_is_read_to_its_end(void **state)
+{
+	(void)state;
+	assert_int_equal(mkfifo(at("pipe"), 0600), 0);
+	const pid_t child = fork();
+	if (child == 0) {
+		const int fd = open(at("pipe"), O_WRONLY);
+		for (int i = 0; i < 50000; i++)
+			if (write(fd, "0123456789", 10) != 10)
+				_exit(1);
+		_exit(0);
+	}
+	nt_error error;
+	nt_file file;
+	assert_int_equal(nt_file_open(&file, at("pipe"), &error), NMTAN_OK);
+	assert_false(file.mapped);
+	assert_int_equal(file.size, 500000);
+	for (size_t i = 0; i < file.size; i++)
+		assert_int_equal(file.data[i], '0' + i % 10);
+	nt_file_close(&file);
+	assert_int_equal(waitpid(child, NULL, 0), child);
+}
+
+static void output_appears_at_commit_only(void **state)
+{
+	(void)state;
+	put("out.gltf", "old");
+	nt_error error;
+	nt_output *output = start(NULL);
+	nt_sink *main = add(output, at("out.gltf"), true);
+	nt_sink *companion = add(output, at("out.bin"), false);
+	assert_int_equal(nt_sink_write(main, "new document", 12, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_write(companion, "bytes", 5, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_size(main), 12);
+	assert_content("out.gltf", "old");
+	assert_int_equal(access(at("out.bin"), F_OK), -1);
+	assert_int_equal(entry_count(), 3);
+	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_content("out.gltf", "new document");
+	assert_content("out.bin", "bytes");
+	assert_int_equal(entry_count(), 2);
+}
+
+static void output_abort_leaves_nothing(void **state)
+{
+	(void)state;
+	put("out", "old");
+	nt_error error;
+	nt_output *output = start(NULL);
+	nt_sink *sink = add(output, at("out"), true);
+	assert_int_equal(nt_sink_write(sink, "new", 3, &error), NMTAN_OK);
+	nt_output_abort(output);
+	assert_content("out", "old");
+	assert_int_equal(entry_count(), 1);
+	nt_output_abort(NULL);
+}
+
+static void output_bytes_are_the_same_for_small_and_large_writes(void **state)
+{
+	(void)state;
+	enum { SIZE = 3000000 };
+	unsigned char *bytes = malloc(SIZE);
+	assert_non_null(bytes);
+	for (size_t i = 0; i < SIZE; i++)
+		bytes[i] = (unsigned char)(i * 2654435761u >> 13);
+	nt_error error;
+	nt_output *output = start(NULL);
+	nt_sink *sink = add(output, at("out"), true);
+	size_t done = 0;
+	for (size_t step = 0; done < SIZE; step = step * 2 + 1) { /* 0, 1, 3 ... 2^21 - 1 */
+		const size_t size = step < SIZE - done ? step : SIZE - done;
+		assert_int_equal(nt_sink_write(sink, bytes + done, size, &error), NMTAN_OK);
+		done += size;
+	}
+	assert_int_equal(nt_sink_size(sink), SIZE);
+	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	nt_file file;
+	assert_int_equal(nt_file_open(&file, at("out"), &error), NMTAN_OK);
+	assert_int_equal(file.size, SIZE);
+	assert_memory_equal(file.data, bytes, SIZE);
+
+	/* and a copy of it, in ranges that the kernel copies and ranges that it does not */
+	output = start(NULL);
+	sink = add(output, at("copy"), true);
+	assert_int_equal(nt_sink_write(sink, "head", 4, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_copy(sink, &file, 1, 2000000, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_copy(sink, &file, 2000001, 100, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_copy(sink, &file, 0, 0, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_copy(sink, &file, SIZE - 1, 2, &error), NMTAN_ERROR_INTERNAL);
+	assert_int_equal(nt_sink_size(sink), 2000104);
+	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	nt_file copy;
+	assert_int_equal(nt_file_open(&copy, at("copy"), &error), NMTAN_OK);
+	assert_int_equal(copy.size, 2000104);
+	assert_memory_equal(copy.data, "head", 4);
+	assert_memory_equal(copy.data + 4, bytes + 1, 2000100);
+	nt_file_close(&copy);
+	nt_file_close(&file);
+	free(bytes);
+}
+
+static void output_can_be_read_back_before_it_has_its_name(void **state)
+{
+	(void)state;
+	nt_error error;
+	nt_output *output = start(&(nt_output_options){.sync = true});
+	nt_sink *sink = add(output, at("out"), true);
+	assert_int_equal(nt_sink_write(sink, "text", 4, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_flush(sink, &error), NMTAN_OK);
+	nt_file file;
+	assert_int_equal(nt_file_open(&file, nt_sink_temporary(sink), &error), NMTAN_OK);
+	assert_int_equal(file.size, 4);
+	nt_file_close(&file);
+	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_content("out", "text");
+}
+
+static void output_that_is_an_input_is_refused_by_name(void **state)
+{
+	(void)state;
+	put("in.ply", "input");
+	assert_int_equal(link(at("in.ply"), at("hard")), 0);
+	assert_int_equal(symlink("in.ply", at("soft")), 0);
+	nt_error error;
+	nt_output *output = start(NULL);
+	assert_int_equal(nt_output_protect(output, at("in.ply"), &error), NMTAN_OK);
+	assert_int_equal(nt_output_protect(output, at("missing.png"), &error), NMTAN_OK);
+	char message[256];
+	snprintf(message, sizeof message, "refusing to write: it is the same file as the input %s",
+		at("in.ply"));
+	assert_refused(output, at("in.ply"), message);
+	assert_refused(output, at("hard"), message);
+	assert_refused(output, at("soft"), message);
+	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_content("in.ply", "input");
+	assert_int_equal(entry_count(), 3);
+}
+
+static void output_in_place_replaces_what_is_mapped(void **state)
+{
+	(void)state;
+	put("a.ply", "0123456789");
+	nt_error error;
+	nt_file file;
+	assert_int_equal(nt_file_open(&file, at("a.ply"), &error), NMTAN_OK);
+	nt_output *output = start(NULL);
+	nt_sink *sink = add(output, at("a.ply"), true);
+	assert_int_equal(nt_sink_copy(sink, &file, 5, 5, &error), NMTAN_OK);
+	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_memory_equal(file.data, "0123456789", 10);
+	nt_file_close(&file);
+	assert_content("a.ply", "56789");
+}
+
+static void output_through_a_link_keeps_the_link(void **state)
+{
+	(void)state;
+	put("file", "old");
+	assert_int_equal(symlink("file", at("soft")), 0);
+	nt_error error;
+	nt_output *output = start(NULL);
+	assert_int_equal(nt_sink_write(add(output, at("soft"), true), "new", 3, &error), NMTAN_OK);
+	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_content("file", "new");
+	struct stat status;
+	assert_int_equal(lstat(at("soft"), &status), 0);
+	assert_true(S_ISLNK(status.st_mode));
+}
+
+static void output_places_that_cannot_be_are_refused(void **state)
+{
+	(void)state;
+	put("file", "x");
+	nt_output *output = start(NULL);
+	assert_refused(output, folder, "cannot write: it is a directory");
+	char path[128], message[256];
+	snprintf(path, sizeof path, "%s/none/out", folder);
+	snprintf(message, sizeof message, "cannot write: there is no folder \"%s/none\"", folder);
+	assert_refused(output, path, message);
+	snprintf(path, sizeof path, "%s/file/out", folder);
+	snprintf(message, sizeof message, "cannot write: there is no folder \"%s/file\"", folder);
+	assert_refused(output, path, message);
+	add(output, at("twice"), true);
+	assert_refused(output, at("twice"),
+		"refusing to write: another file of this output has the same name");
+	nt_output_abort(output);
+}
+
+static void output_no_clobber_keeps_what_exists(void **state)
+{
+	(void)state;
+	put("out", "old");
+	nt_error error;
+	nt_output *output = start(&(nt_output_options){.no_clobber = true});
+	assert_refused(output, at("out"), "refusing to write: the file exists already");
+	/* and what came to exist meanwhile; the companion that was placed before is taken back */
+	add(output, at("late"), true);
+	add(output, at("companion"), false);
+	put("late", "somebody else's");
+	assert_int_equal(nt_output_commit(output, &error), NMTAN_ERROR_IO);
+	assert_string_equal(error.message, "refusing to write: the file exists already");
+	assert_string_equal(error.place.file, at("late"));
+	assert_content("late", "somebody else's");
+	assert_content("out", "old");
+	assert_int_equal(entry_count(), 2);
+}
+
+static void output_mode_follows_the_umask(void **state)
+{
+	(void)state;
+	nt_error error;
+	const mode_t before = umask(027);
+	nt_output *output = start(NULL);
+	add(output, at("out"), true);
+	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	umask(before);
+	struct stat status;
+	assert_int_equal(stat(at("out"), &status), 0);
+	assert_int_equal(status.st_mode & 0777, 0640);
+}
+
+static void output_pipe_is_written_through(void **state)
+{
+	(void)state;
+	assert_int_equal(mkfifo(at("pipe"), 0600), 0);
+	const pid_t child = fork();
+	if (child == 0) {
+		char text[16] = {0};
+		const int fd = open(at("pipe"), O_RDONLY);
+		size_t size = 0;
+		for (ssize_t count; (count = read(fd, text + size, 15 - size)) > 0;)
+			size += (size_t)count;
+		_exit(strcmp(text, "through") == 0 ? 0 : 1);
+	}
+	nt_error error;
+	nt_output *output = start(&(nt_output_options){.no_clobber = true, .sync = true});
+	nt_sink *sink = add(output, at("pipe"), true);
+	assert_null(nt_sink_temporary(sink));
+	assert_int_equal(nt_sink_write(sink, "through", 7, &error), NMTAN_OK);
+	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	int code;
+	assert_int_equal(waitpid(child, &code, 0), child);
+	assert_int_equal(code, 0);
+	struct stat status;
+	assert_int_equal(stat(at("pipe"), &status), 0);
+	assert_true(S_ISFIFO(status.st_mode));
+}
+
+static void output_full_disk_is_an_error(void **state)
+{
+	(void)state;
+	if (access("/dev/full", W_OK) != 0)
+		skip();
+	nt_error error;
+	nt_output *output = start(NULL);
+	nt_sink *sink = add(output, "/dev/full", true);
+	assert_int_equal(nt_sink_write(sink, "x", 1, &error), NMTAN_OK);
+	assert_int_equal(nt_output_commit(output, &error), NMTAN_ERROR_IO);
+	assert_string_equal(error.message, "cannot write: No space left on device");
+	assert_string_equal(error.place.file, "/dev/full");
+}
+
+/* In a child: adds two files, tells the parent, waits for the signal. */
+static void wait_for_signal(int ready)
+{
+	nt_error error;
+	nt_output_catch_signals();
+	nt_output *output;
+	nt_sink *sink;
+	if (nt_output_create(&output, NULL, &error) ||
+		nt_output_add(output, at("a"), true, &sink, &error) ||
+		nt_output_add(output, at("b"), false, &sink, &error) || write(ready, "!", 1) != 1)
+		_exit(1);
+	for (;;)
+		pause();
+}
+
+static void signals_remove_temporaries_and_end_the_process(void **state)
+{
+	(void)state;
+	const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+	for (int i = 0; i < 3; i++) {
+		int ready[2];
+		assert_int_equal(pipe(ready), 0);
+		const pid_t child = fork();
+		if (child == 0) {
+			signal(numbers[i], SIG_DFL);
+			wait_for_signal(ready[1]);
+		}
+		char byte;
+		assert_int_equal(read(ready[0], &byte, 1), 1);
+		assert_int_equal(entry_count(), 2);
+		assert_int_equal(kill(child, numbers[i]), 0);
+		int code;
+		assert_int_equal(waitpid(child, &code, 0), child);
+		assert_true(WIFSIGNALED(code));
+		assert_int_equal(WTERMSIG(code), numbers[i]);
+		assert_int_equal(entry_count(), 0);
+		close(ready[0]);
+		close(ready[1]);
+	}
+}
+
+#define CASE(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		CASE(input_is_mapped_and_knows_which_file_it_is),
+		CASE(input_empty_is_no_error),
+		CASE(input_missing_or_a_folder_is_named),
+		CASE(input_without_permission_is_named),
+		CASE(input_pipe_is_read_to_its_end),
+		CASE(output_appears_at_commit_only),
+		CASE(output_abort_leaves_nothing),
+		CASE(output_bytes_are_the_same_for_small_and_large_writes),
+		CASE(output_can_be_read_back_before_it_has_its_name),
+		CASE(output_that_is_an_input_is_refused_by_name),
+		CASE(output_in_place_replaces_what_is_mapped),
+		CASE(output_through_a_link_keeps_the_link),
+		CASE(output_places_that_cannot_be_are_refused),
+		CASE(output_no_clobber_keeps_what_exists),
+		CASE(output_mode_follows_the_umask),
+		CASE(output_pipe_is_written_through),
+		CASE(output_full_disk_is_an_error),
+		CASE(signals_remove_temporaries_and_end_the_process),
+	};
+	return cmocka_run_group_tests_name("io/file", tests, NULL, NULL);
+}
