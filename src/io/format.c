@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The table of formats and its lookups: see format.h. Content decides before the name does: formats
+ * with a magic number come first, OBJ, which has none, last.
+ */
+#include "io/format.h"
+
+#include <string.h>
+#include <strings.h>
+
+static bool recognise_drc(const unsigned char *bytes, size_t size)
+{
+	return size >= 5 && memcmp(bytes, "DRACO", 5) == 0;
+}
+
+static nmtan_status open_drc(nt_scene *scene, const nt_read_options *options, nt_error *error)
+{
+	(void)options;
+	nt_fail(error, NMTAN_ERROR_UNSUPPORTED, "Draco files (.drc) cannot be read");
+	return nt_error_in_file(error, scene->path);
+}
+
+static const nt_format_entry table[] = {
+	{.format = NT_FORMAT_GLB, .name = "glb", .extensions = ".glb"},
+	{.format = NT_FORMAT_DRC,
+		.name = "drc",
+		.extensions = ".drc",
+		.recognise = recognise_drc,
+		.open = open_drc},
+	{.format = NT_FORMAT_PLY, .name = "ply", .extensions = ".ply"},
+	{.format = NT_FORMAT_GLTF, .name = "gltf", .extensions = ".gltf"},
+	{.format = NT_FORMAT_OBJ, .name = "obj", .extensions = ".obj"},
+};
+enum { FORMAT_COUNT = sizeof table / sizeof table[0] };
+
+const nt_format_entry *nt_format_find(nt_format format)
+{
+	for (size_t i = 0; i < FORMAT_COUNT; i++)
+		if (table[i].format == format)
+			return &table[i];
+	return NULL;
+}
+
+const nt_format_entry *nt_format_of_input(const unsigned char *bytes, size_t size, const char *path)
+{
+	for (size_t i = 0; i < FORMAT_COUNT; i++)
+		if (table[i].recognise && table[i].recognise(bytes, size))
+			return &table[i];
+	return nt_format_of_path(path);
+}
+
+/* Whether a list of words separated by spaces has this word, in any case. */
+static bool has_word(const char *list, const char *word)
+{
+	const size_t length = strlen(word);
+	while (length && *list) {
+		const size_t end = strcspn(list, " ");
+		if (end == length && strncasecmp(list, word, length) == 0)
+			return true;
+		list += end + (list[end] == ' ');
+	}
+	return false;
+}
+
+const nt_format_entry *nt_format_of_path(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	const char *dot = strrchr(slash ? slash + 1 : path, '.');
+	for (size_t i = 0; dot && i < FORMAT_COUNT; i++)
+		if (has_word(table[i].extensions, dot))
+			return &table[i];
+	return NULL;
+}
+
+const nt_format_entry *nt_format_of_name(const char *name)
+{
+	for (size_t i = 0; i < FORMAT_COUNT; i++)
+		if (strcmp(table[i].name, name) == 0)
+			return &table[i];
+	return NULL;
+}

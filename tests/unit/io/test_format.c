@@ -1,0 +1,77 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include "io/format.h"
+
+static nt_format of_input(const char *text, size_t size, const char *path)
+{
+	const nt_format_entry *entry = nt_format_of_input((const unsigned char *)text, size, path);
+	return entry ? entry->format : NT_FORMAT_UNKNOWN;
+}
+
+static nt_format of_path(const char *path)
+{
+	const nt_format_entry *entry = nt_format_of_path(path);
+	return entry ? entry->format : NT_FORMAT_UNKNOWN;
+}
+
+static void format_of_a_name_is_its_extension_in_any_case(void **state)
+{
+	(void)state;
+	assert_int_equal(of_path("a.obj"), NT_FORMAT_OBJ);
+	assert_int_equal(of_path("dir.gltf/a.PLY"), NT_FORMAT_PLY);
+	assert_int_equal(of_path("a.obj.gltf"), NT_FORMAT_GLTF);
+	assert_int_equal(of_path(".glb"), NT_FORMAT_GLB);
+	assert_int_equal(of_path("a.drc"), NT_FORMAT_DRC);
+	assert_int_equal(of_path("dir.gltf/a"), NT_FORMAT_UNKNOWN);
+	assert_int_equal(of_path("a.gltf2"), NT_FORMAT_UNKNOWN);
+	assert_int_equal(of_path("a."), NT_FORMAT_UNKNOWN);
+	assert_int_equal(of_path("-"), NT_FORMAT_UNKNOWN);
+	assert_int_equal(of_path(""), NT_FORMAT_UNKNOWN);
+}
+
+static void format_of_an_input_is_its_content_before_its_name(void **state)
+{
+	(void)state;
+	assert_int_equal(of_input("DRACO\2\2", 7, "a.obj"), NT_FORMAT_DRC);
+	assert_int_equal(of_input("", 0, "a.obj"), NT_FORMAT_OBJ);
+	assert_int_equal(of_input("", 0, "a.txt"), NT_FORMAT_UNKNOWN);
+	assert_int_equal(of_input("\0\1\2\3", 4, "-"), NT_FORMAT_UNKNOWN);
+}
+
+static void format_names_are_those_of_the_option(void **state)
+{
+	(void)state;
+	const char *const names[] = {"obj", "ply", "gltf", "glb", "drc"};
+	for (size_t i = 0; i < 5; i++) {
+		const nt_format_entry *entry = nt_format_of_name(names[i]);
+		assert_non_null(entry);
+		assert_ptr_equal(nt_format_find(entry->format), entry);
+	}
+	assert_null(nt_format_of_name("stl"));
+	assert_null(nt_format_of_name(""));
+	assert_null(nt_format_find(NT_FORMAT_UNKNOWN));
+}
+
+static void format_that_cannot_be_read_says_so(void **state)
+{
+	(void)state;
+	nt_scene scene;
+	nt_error error;
+	nt_scene_init(&scene, "a.drc");
+	const nt_format_entry *entry = nt_format_of_path(scene.path);
+	assert_int_equal(entry->open(&scene, NULL, &error), NMTAN_ERROR_UNSUPPORTED);
+	assert_string_equal(error.message, "Draco files (.drc) cannot be read");
+	assert_string_equal(error.place.file, "a.drc");
+	nt_scene_free(&scene);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(format_of_a_name_is_its_extension_in_any_case),
+		cmocka_unit_test(format_of_an_input_is_its_content_before_its_name),
+		cmocka_unit_test(format_names_are_those_of_the_option),
+		cmocka_unit_test(format_that_cannot_be_read_says_so),
+	};
+	return cmocka_run_group_tests_name("io/format", tests, NULL, NULL);
+}
