@@ -1,0 +1,313 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Triangulations are judged by what they must be, not by a saved answer: n - 2 triangles, each wound
+ * like the polygon, whose areas add up to the polygon's and which use every edge of the outline once.
+ * Triangles of one orientation whose areas sum to that of a simple polygon cannot overlap or leave it.
+ */
+#include "test.h"
+#include <math.h>
+#include <time.h>
+#include "scene/polygon.h"
+
+static double cross2(const double a[2], const double b[2], const double c[2])
+{
+	return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+}
+
+/* Checks a sound triangulation of a polygon that is given counter-clockwise in the plane and was put
+ * into space by `points`. */
+static void assert_proper(const double (*plane)[2], const float (*points)[3], size_t count)
+{
+	uint32_t *triangles = malloc(3 * (count - 2) * sizeof *triangles);
+	unsigned char *edge_used = calloc(count, 1);
+	bool sound = false;
+	assert_int_equal(nt_polygon_triangulate(points, count, triangles, &sound), NMTAN_OK);
+	assert_true(sound);
+	double area = 0, sum = 0;
+	for (size_t i = 1; i + 1 < count; i++)
+		area += cross2(plane[0], plane[i], plane[i + 1]);
+	for (size_t t = 0; t < count - 2; t++) {
+		const uint32_t *c = &triangles[3 * t];
+		assert_true(c[0] < count && c[1] < count && c[2] < count);
+		const double part = cross2(plane[c[0]], plane[c[1]], plane[c[2]]);
+		assert_true(part > 0);
+		sum += part;
+		for (int k = 0; k < 3; k++)
+			if (c[(k + 1) % 3] == (c[k] + 1) % count)
+				edge_used[c[k]]++;
+	}
+	assert_true(fabs(sum - area) <= 1e-6 * area);
+	for (size_t i = 0; i < count; i++)
+		assert_int_equal(edge_used[i], 1);
+	free(edge_used);
+	free(triangles);
+}
+
+/* In the plane z = 0, then seen from behind (reversed order), then tilted. */
+static void assert_proper_everywhere(const double (*plane)[2], size_t count)
+{
+	float(*points)[3] = malloc(count * sizeof *points);
+	for (size_t i = 0; i < count; i++) {
+		points[i][0] = (float)plane[i][0];
+		points[i][1] = (float)plane[i][1];
+		points[i][2] = 0;
+	}
+	assert_proper(plane, (const float(*)[3])points, count);
+	/* x goes to z, y stays, z goes to -x: the normal becomes -x */
+	for (size_t i = 0; i < count; i++) {
+		points[i][0] = 7;
+		points[i][1] = (float)plane[i][1];
+		points[i][2] = (float)plane[i][0];
+	}
+	assert_proper(plane, (const float(*)[3])points, count);
+	/* a tilted plane spanned by (2,1,0)/.. and (0,1,2)/..: not orthogonal, orientation is kept */
+	for (size_t i = 0; i < count; i++) {
+		points[i][0] = (float)(2 * plane[i][0]);
+		points[i][1] = (float)(plane[i][0] + plane[i][1]);
+		points[i][2] = (float)(2 * plane[i][1]);
+	}
+	assert_proper(plane, (const float(*)[3])points, count);
+	free(points);
+}
+
+static void convex_polygon_becomes_a_fan_in_order(void **state)
+{
+	(void)state;
+	const float points[6][3] = {{2, 0, 0}, {1, 2, 0}, {-1, 2, 0}, {-2, 0, 0}, {-1, -2, 0}, {1, -2, 0}};
+	const uint32_t expected[12] = {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5};
+	uint32_t triangles[12];
+	bool sound = false;
+	assert_int_equal(nt_polygon_triangulate(points, 6, triangles, &sound), NMTAN_OK);
+	assert_true(sound);
+	assert_memory_equal(triangles, expected, sizeof expected);
+}
+
+/* An arrow head whose notch is corner 3: the fan from 0 would leave it between (0,2,3) and (0,3,4).
+ *
+ *      4
+ *      |\
+ *      | 3---2      0 = (0,0), 1 = (4,0), 2 = (4,1), 3 = (1,1), 4 = (0,4)
+ *      0-----1
+ *
+ * Corner 1: triangle (0,1,2) holds no corner but its own (3 is above its edge 0-2: 1 > 1/4), an ear.
+ * Corner 2 then turns right from 0 over 2 to 3? (4,1)x(1,1) = 4*1 - 1*1 = 3 > 0: left, (0,2,3) an ear.
+ * (0,3,4) is left. */
+static void concave_corner_stays_inside(void **state)
+{
+	(void)state;
+	const double plane[5][2] = {{0, 0}, {4, 0}, {4, 1}, {1, 1}, {0, 4}};
+	assert_proper_everywhere(plane, 5);
+	/* the same begun at corner 1: a fan from there leaves the polygon */
+	const double turned[5][2] = {{4, 0}, {4, 1}, {1, 1}, {0, 4}, {0, 0}};
+	assert_proper_everywhere(turned, 5);
+}
+
+static void corners_on_straight_edges_get_their_triangles(void **state)
+{
+	(void)state;
+	const double square[8][2] = {{0, 0}, {1, 0}, {2, 0}, {2, 1}, {2, 2}, {1, 2}, {0, 2}, {0, 1}};
+	assert_proper_everywhere(square, 8);
+	const double triangle[6][2] = {{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {2, 3}};
+	assert_proper_everywhere(triangle, 6);
+}
+
+/* A square with a square hole, joined by a bridge from (0,0) to (1,1): both ends appear twice. */
+static void hole_with_a_bridge_is_sound(void **state)
+{
+	(void)state;
+	const double plane[10][2] = {{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3},
+		{3, 1}, {1, 1}};
+	assert_proper_everywhere(plane, 10);
+}
+
+/* A comb, a spiral and a gear of 10 000 corners: one, whose ears come one at a time, made a version
+ * without the queue cubic. The limit is generous; a quadratic walk over everything takes longer. */
+enum { MANY = 10000 };
+static double many[MANY][2];
+
+static void assert_fast(void)
+{
+	const clock_t begin = clock();
+	float(*points)[3] = malloc(MANY * sizeof *points);
+	for (size_t i = 0; i < MANY; i++) {
+		points[i][0] = (float)many[i][0];
+		points[i][1] = (float)many[i][1];
+		points[i][2] = 0;
+		many[i][0] = points[i][0];
+		many[i][1] = points[i][1];
+	}
+	assert_proper((const double(*)[2])many, (const float(*)[3])points, MANY);
+	assert_true(clock() - begin < CLOCKS_PER_SEC);
+	free(points);
+}
+
+static void comb_of_ten_thousand_corners(void **state)
+{
+	(void)state;
+	/* teeth point up, seen counter-clockwise the upper rim runs from right to left */
+	for (size_t i = 0; i < MANY - 2; i++) {
+		many[i][0] = (double)(MANY - i);
+		many[i][1] = i % 2 ? 1 : 50;
+	}
+	many[MANY - 2][0] = 0, many[MANY - 2][1] = 0;
+	many[MANY - 1][0] = MANY + 1, many[MANY - 1][1] = 0;
+	assert_fast();
+}
+
+static void spiral_of_ten_thousand_corners(void **state)
+{
+	(void)state;
+	/* out along one wall, back along the other, 40 turns */
+	for (size_t i = 0; i < MANY / 2; i++) {
+		const double angle = 80 * 3.14159265358979 * (double)i / (MANY / 2);
+		const size_t back = MANY - 1 - i;
+		many[i][0] = (2 + angle) * cos(angle), many[i][1] = (2 + angle) * sin(angle);
+		many[back][0] = (1 + angle) * cos(angle), many[back][1] = (1 + angle) * sin(angle);
+	}
+	assert_fast();
+}
+
+static void gear_of_ten_thousand_corners(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < MANY; i++) {
+		const double angle = 2 * 3.14159265358979 * (double)i / MANY;
+		const double radius = i % 2 ? 1000 : 990;
+		many[i][0] = radius * cos(angle), many[i][1] = radius * sin(angle);
+	}
+	assert_fast();
+}
+
+/* What must hold of every result: the right number of triangles, corners in range. */
+static bool finish(const float (*points)[3], size_t count)
+{
+	uint32_t triangles[3 * 64];
+	memset(triangles, 255, sizeof triangles);
+	bool sound = true;
+	assert_int_equal(nt_polygon_triangulate(points, count, triangles, &sound), NMTAN_OK);
+	for (size_t c = 0; c < 3 * (count - 2); c++)
+		assert_true(triangles[c] < count);
+	assert_int_equal(triangles[3 * (count - 2)], UINT32_MAX);
+	return sound;
+}
+
+static void degenerate_polygons_are_finished_and_not_sound(void **state)
+{
+	(void)state;
+	const float star[5][3] = {{0, 10, 0}, {-6, -8, 0}, {10, 3, 0}, {-10, 3, 0}, {6, -8, 0}};
+	const float eight[6][3] = {{0, 0, 0}, {2, 2, 0}, {4, 0, 0}, {4, 2, 0}, {2, 0, 0}, {0, 2, 0}};
+	const float line[5][3] = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}, {4, 4, 4}};
+	const float point[5][3] = {{1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}, {1, 1, 1}};
+	const float repeated[5][3] = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+	const float spike[6][3] = {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {2, 5, 0}, {2, 2, 0}, {0, 2, 0}};
+	const float nan_corner[5][3] = {{0, 0, 0}, {1, 0, 0}, {NAN, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+	const float inf_corner[5][3] = {{0, 0, 0}, {1, 0, 0}, {INFINITY, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+	assert_false(finish(star, 5));
+	assert_false(finish(eight, 6));
+	assert_false(finish(line, 5));
+	assert_false(finish(point, 5));
+	assert_false(finish(repeated, 5));
+	assert_false(finish(spike, 6));
+	assert_false(finish(nan_corner, 5));
+	assert_false(finish(inf_corner, 5));
+}
+
+/* The repeated corner costs its own empty triangle and nothing else. */
+static void repeated_point_leaves_the_rest_proper(void **state)
+{
+	(void)state;
+	const float points[5][3] = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+	uint32_t triangles[9];
+	bool sound = true;
+	assert_int_equal(nt_polygon_triangulate(points, 5, triangles, &sound), NMTAN_OK);
+	double area = 0;
+	for (int t = 0; t < 3; t++) {
+		double p[3][2];
+		for (int k = 0; k < 3; k++) {
+			p[k][0] = points[triangles[3 * t + k]][0];
+			p[k][1] = points[triangles[3 * t + k]][1];
+		}
+		assert_true(cross2(p[0], p[1], p[2]) >= 0);
+		area += cross2(p[0], p[1], p[2]);
+	}
+	assert_true(area == 2.0);
+}
+
+/* Far from the origin and tiny, or huge: the plane is found relative to the first corner. */
+static void size_and_distance_do_not_matter(void **state)
+{
+	(void)state;
+	const float shape[5][2] = {{0, 0}, {4, 0}, {4, 1}, {1, 1}, {0, 4}};
+	const float scales[3] = {1e-30f, 1e30f, 0.0625f}, offsets[3] = {0, 0, 100000};
+	for (int k = 0; k < 3; k++) {
+		float points[5][3];
+		for (int i = 0; i < 5; i++) {
+			points[i][0] = offsets[k] + scales[k] * shape[i][0];
+			points[i][1] = offsets[k] + scales[k] * shape[i][1];
+			points[i][2] = offsets[k];
+		}
+		assert_true(finish((const float(*)[3])points, 5));
+	}
+}
+
+/* 20 000 random polygons, few of them simple, on a coarse grid of points so that touching, repeated
+ * and collinear corners abound: always finished, and what is called sound has no triangle that is
+ * empty or turned. */
+static void sound_results_have_no_turned_triangle(void **state)
+{
+	(void)state;
+	uint32_t seed = 1;
+	size_t sound_count = 0;
+	for (int round = 0; round < 20000; round++) {
+		float points[12][3];
+		const size_t count = 3 + (size_t)round % 10;
+		double area = 0;
+		for (size_t i = 0; i < count; i++)
+			for (int k = 0; k < 3; k++) {
+				seed = seed * 1664525u + 1013904223u;
+				points[i][k] = k < 2 ? (float)(seed >> 29) : 0;
+			}
+		for (size_t i = 0; i < count; i++) {
+			const float *p = points[i], *q = points[(i + 1) % count];
+			area += (double)p[0] * q[1] - (double)p[1] * q[0];
+		}
+		uint32_t triangles[3 * 10];
+		bool sound = false;
+		assert_int_equal(nt_polygon_triangulate((const float(*)[3])points, count, triangles, &sound),
+			NMTAN_OK);
+		if (!sound)
+			continue;
+		sound_count++;
+		double sum = 0;
+		for (size_t t = 0; t < count - 2; t++) {
+			double p[3][2];
+			for (int k = 0; k < 3; k++) {
+				p[k][0] = points[triangles[3 * t + k]][0];
+				p[k][1] = points[triangles[3 * t + k]][1];
+			}
+			const double part = cross2(p[0], p[1], p[2]) * (area < 0 ? -1 : 1);
+			assert_true(part > 0);
+			sum += part;
+		}
+		assert_true(sum == fabs(area));
+	}
+	assert_true(sound_count > 1000);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(convex_polygon_becomes_a_fan_in_order),
+		cmocka_unit_test(concave_corner_stays_inside),
+		cmocka_unit_test(corners_on_straight_edges_get_their_triangles),
+		cmocka_unit_test(hole_with_a_bridge_is_sound),
+		cmocka_unit_test(comb_of_ten_thousand_corners),
+		cmocka_unit_test(spiral_of_ten_thousand_corners),
+		cmocka_unit_test(gear_of_ten_thousand_corners),
+		cmocka_unit_test(degenerate_polygons_are_finished_and_not_sound),
+		cmocka_unit_test(repeated_point_leaves_the_rest_proper),
+		cmocka_unit_test(size_and_distance_do_not_matter),
+		cmocka_unit_test(sound_results_have_no_turned_triangle),
+	};
+	return cmocka_run_group_tests_name("scene/polygon", tests, NULL, NULL);
+}
