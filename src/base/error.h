@@ -11,6 +11,10 @@
 #include <stdint.h>
 #include "nmtan.h"
 
+#ifdef __cplusplus
+extern "C" { /* for src/ext */
+#endif
+
 /* Where something is in an input. Parts that are unknown are zero, NT_NO_OFFSET or empty. */
 typedef struct nt_place {
 	char file[512];     /* name as the user gave it, or as the input refers to it */
@@ -57,4 +61,7 @@ nmtan_status nt_fail_memory(nt_error *error);
 /* Names the file of an error, unless a deeper place already did. Returns error->status. */
 nmtan_status nt_error_in_file(nt_error *error, const char *file);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -1,0 +1,298 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include <time.h>
+#include "ext/openmesh.h"
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+static nt_halfedges *built(size_t vertex_count, const uint32_t (*triangles)[3], size_t count)
+{
+	nt_halfedges *mesh;
+	nt_error error;
+	assert_int_equal(nt_halfedges_build(&mesh, vertex_count, &triangles[0][0], count, &error),
+		NMTAN_OK);
+	return mesh;
+}
+
+/* Walks are connected, end where they say, and each step's sides name its two vertices. */
+static void assert_sound(const nt_walks *walks, const uint32_t (*triangles)[3])
+{
+	const uint32_t *corners = &triangles[0][0];
+	for (size_t w = 0; w < walks->count; w++) {
+		assert_true(walks->first[w] < walks->first[w + 1]);
+		for (size_t s = walks->first[w]; s < walks->first[w + 1]; s++) {
+			const uint32_t l = walks->left[s], r = walks->right[s];
+			assert_true(l != NT_OPEN || r != NT_OPEN);
+			if (l != NT_OPEN) {
+				assert_int_equal(corners[l], walks->from[s]);
+				assert_int_equal(corners[l / 3 * 3 + (l + 1) % 3], walks->to[s]);
+			}
+			if (r != NT_OPEN) {
+				assert_int_equal(corners[r], walks->to[s]);
+				assert_int_equal(corners[r / 3 * 3 + (r + 1) % 3], walks->from[s]);
+			}
+			if (s > walks->first[w])
+				assert_int_equal(walks->from[s], walks->to[s - 1]);
+		}
+		const size_t begin = walks->first[w], end = walks->first[w + 1] - 1;
+		if (walks->closed[w])
+			assert_int_equal(walks->from[begin], walks->to[end]);
+	}
+}
+
+/* 3-4-5
+ * |/|/|  sides of triangle t: 3t, 3t+1, 3t+2
+ * 0-1-2 */
+static const uint32_t strip[][3] = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}};
+
+static void strip_has_one_boundary_loop_in_order(void **state)
+{
+	(void)state;
+	nt_halfedges *mesh = built(6, strip, COUNT(strip));
+	const uint32_t *left_out;
+	assert_int_equal(nt_halfedges_left_out(mesh, &left_out), 0);
+	assert_int_equal(nt_halfedges_opposite(mesh, 2), 3);  /* 4-0 of triangle 0, 0-4 of 1 */
+	assert_int_equal(nt_halfedges_opposite(mesh, 1), 11); /* 1-4, 4-1 of triangle 3 */
+	assert_int_equal(nt_halfedges_opposite(mesh, 0), NT_OPEN);
+
+	nt_walks loops;
+	assert_int_equal(nt_halfedges_outlines(mesh, NULL, &loops, NULL), NMTAN_OK);
+	assert_sound(&loops, strip);
+	assert_int_equal(loops.count, 1);
+	assert_true(loops.closed[0]);
+	static const uint32_t expected[] = {0, 1, 2, 5, 4, 3};
+	assert_int_equal(loops.first[1], 6);
+	assert_memory_equal(loops.from, expected, sizeof expected);
+	nt_walks_free(&loops);
+	nt_halfedges_free(mesh);
+}
+
+static void cut_makes_two_islands_with_an_outline_each(void **state)
+{
+	(void)state;
+	nt_halfedges *mesh = built(6, strip, COUNT(strip));
+	uint8_t cut[12] = {0};
+	uint32_t islands[4];
+	size_t count;
+	assert_int_equal(nt_halfedges_islands(mesh, cut, islands, &count, NULL), NMTAN_OK);
+	assert_int_equal(count, 1);
+	cut[11] = 1; /* from one side is enough */
+	assert_int_equal(nt_halfedges_islands(mesh, cut, islands, &count, NULL), NMTAN_OK);
+	assert_int_equal(count, 2);
+	assert_int_equal(islands[0], 0);
+	assert_int_equal(islands[1], 0);
+	assert_int_equal(islands[2], 1);
+	assert_int_equal(islands[3], 1);
+
+	nt_walks outlines;
+	assert_int_equal(nt_halfedges_outlines(mesh, cut, &outlines, NULL), NMTAN_OK);
+	assert_sound(&outlines, strip);
+	assert_int_equal(outlines.count, 2);
+	static const uint32_t expected[] = {0, 1, 4, 3, 1, 2, 5, 4};
+	assert_int_equal(outlines.first[2], 8);
+	assert_memory_equal(outlines.from, expected, sizeof expected);
+	nt_walks_free(&outlines);
+	nt_halfedges_free(mesh);
+}
+
+/* A closed box: corner b has x = bit 0, y = bit 1, z = bit 2. */
+static const uint32_t cube[][3] = {
+	{0, 2, 3}, {0, 3, 1}, /* z = 0 */
+	{4, 5, 7}, {4, 7, 6}, /* z = 1 */
+	{0, 1, 5}, {0, 5, 4}, /* y = 0 */
+	{2, 6, 7}, {2, 7, 3}, /* y = 1 */
+	{0, 4, 6}, {0, 6, 2}, /* x = 0 */
+	{1, 3, 7}, {1, 7, 5}, /* x = 1 */
+};
+
+static uint32_t side_between(const uint32_t (*triangles)[3], size_t count, uint32_t a, uint32_t b)
+{
+	for (uint32_t s = 0; s < 3 * count; s++)
+		if (triangles[s / 3][s % 3] == a && triangles[s / 3][(s + 1) % 3] == b)
+			return s;
+	fail_msg("no side %u-%u", a, b);
+	return NT_OPEN;
+}
+
+static void closed_mesh_has_no_boundary_and_a_closed_seam(void **state)
+{
+	(void)state;
+	nt_halfedges *mesh = built(8, cube, COUNT(cube));
+	nt_walks walks;
+	assert_int_equal(nt_halfedges_outlines(mesh, NULL, &walks, NULL), NMTAN_OK);
+	assert_int_equal(walks.count, 0);
+	nt_walks_free(&walks);
+
+	/* the rim of z = 1: 4-5-7-6, marked in no particular order and from either side */
+	uint8_t marked[36] = {0};
+	marked[side_between(cube, 12, 7, 6)] = 1;
+	marked[side_between(cube, 12, 5, 4)] = 1;
+	marked[side_between(cube, 12, 5, 7)] = 1;
+	marked[side_between(cube, 12, 4, 6)] = 1;
+	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NMTAN_OK);
+	assert_sound(&walks, cube);
+	assert_int_equal(walks.count, 1);
+	assert_true(walks.closed[0]);
+	static const uint32_t rim[] = {4, 5, 7, 6}; /* lowest side: 6, which is 4-5 of triangle 2 */
+	assert_int_equal(walks.first[1], 4);
+	assert_int_equal(walks.left[0], 6);
+	assert_memory_equal(walks.from, rim, sizeof rim);
+	nt_walks_free(&walks);
+
+	/* the rim and one upright edge: vertex 4 is a junction, so the rim begins there */
+	marked[side_between(cube, 12, 0, 4)] = 1;
+	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NMTAN_OK);
+	assert_sound(&walks, cube);
+	assert_int_equal(walks.count, 2);
+	assert_true(walks.closed[0]);
+	assert_int_equal(walks.from[0], 4);
+	assert_false(walks.closed[1]);
+	assert_int_equal(walks.first[2] - walks.first[1], 1);
+	nt_walks_free(&walks);
+	nt_halfedges_free(mesh);
+}
+
+static void open_chain_is_ordered_from_end_to_end(void **state)
+{
+	(void)state;
+	nt_halfedges *mesh = built(8, cube, COUNT(cube));
+	uint8_t marked[36] = {0};
+	marked[side_between(cube, 12, 7, 6)] = 1;
+	marked[side_between(cube, 12, 1, 5)] = 1;
+	marked[side_between(cube, 12, 5, 7)] = 1;
+	nt_walks walks;
+	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NMTAN_OK);
+	assert_sound(&walks, cube);
+	assert_int_equal(walks.count, 1);
+	assert_false(walks.closed[0]);
+	/* lowest side: 7, 5-7 of triangle 2, so the chain runs 1-5-7-6 */
+	static const uint32_t expected[] = {1, 5, 7};
+	assert_int_equal(walks.first[1], 3);
+	assert_memory_equal(walks.from, expected, sizeof expected);
+	assert_int_equal(walks.to[2], 6);
+	nt_walks_free(&walks);
+	nt_halfedges_free(mesh);
+}
+
+static void moebius_strip_loses_nothing_and_has_one_loop(void **state)
+{
+	(void)state;
+	/* Five triangles (i, i+1, i+2) mod 5, every other one turned: the strip closes with a twist, and
+	 * since 5 is odd the last and the first use an edge in the same direction. */
+	static const uint32_t band[][3] = {{0, 1, 2}, {1, 3, 2}, {2, 3, 4}, {3, 0, 4}, {4, 0, 1}};
+	nt_halfedges *mesh = built(5, band, COUNT(band));
+	const uint32_t *left_out;
+	assert_int_equal(nt_halfedges_left_out(mesh, &left_out), 1);
+	assert_int_equal(left_out[0], 4); /* uses 0-1 again, as triangle 0 does */
+	assert_int_equal(nt_halfedges_opposite(mesh, 12), NT_OPEN);
+
+	uint32_t islands[5];
+	size_t count;
+	assert_int_equal(nt_halfedges_islands(mesh, NULL, islands, &count, NULL), NMTAN_OK);
+	assert_int_equal(count, 2);
+	assert_int_equal(islands[3], 0);
+	assert_int_equal(islands[4], 1);
+
+	uint8_t marked[15] = {0};
+	marked[14] = 1; /* a side of the triangle left out is not lost */
+	nt_walks walks;
+	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NMTAN_OK);
+	assert_sound(&walks, band);
+	assert_int_equal(walks.count, 1);
+	assert_int_equal(walks.left[0], 14);
+	nt_walks_free(&walks);
+	nt_halfedges_free(mesh);
+}
+
+static void degenerate_and_third_triangles_are_left_out(void **state)
+{
+	(void)state;
+	static const uint32_t soup[][3] = {{0, 1, 2}, {1, 0, 3}, {0, 1, 4}, {2, 2, 3}, {1, 0, 5}};
+	nt_halfedges *mesh = built(6, soup, COUNT(soup));
+	const uint32_t *left_out;
+	assert_int_equal(nt_halfedges_left_out(mesh, &left_out), 3);
+	assert_int_equal(left_out[0], 2);
+	assert_int_equal(left_out[1], 3);
+	assert_int_equal(left_out[2], 4);
+	nt_halfedges_free(mesh);
+}
+
+static void fans_that_touch_in_a_vertex_have_loops_of_their_own(void **state)
+{
+	(void)state;
+	static const uint32_t bowtie[][3] = {{0, 1, 2}, {0, 3, 4}};
+	nt_halfedges *mesh = built(5, bowtie, COUNT(bowtie));
+	nt_walks loops;
+	assert_int_equal(nt_halfedges_outlines(mesh, NULL, &loops, NULL), NMTAN_OK);
+	assert_sound(&loops, bowtie);
+	assert_int_equal(loops.count, 2);
+	assert_int_equal(loops.first[1], 3);
+	assert_int_equal(loops.first[2], 6);
+	nt_walks_free(&loops);
+	nt_halfedges_free(mesh);
+}
+
+static void empty_mesh_and_bad_index_are_handled(void **state)
+{
+	(void)state;
+	nt_halfedges *mesh = built(0, strip, 0);
+	size_t count;
+	nt_walks walks;
+	uint32_t none;
+	assert_int_equal(nt_halfedges_islands(mesh, NULL, &none, &count, NULL), NMTAN_OK);
+	assert_int_equal(count, 0);
+	assert_int_equal(nt_halfedges_outlines(mesh, NULL, &walks, NULL), NMTAN_OK);
+	assert_int_equal(walks.count, 0);
+	nt_walks_free(&walks);
+	nt_halfedges_free(mesh);
+
+	nt_error error;
+	assert_int_equal(nt_halfedges_build(&mesh, 5, &strip[0][0], 4, &error), NMTAN_ERROR_INDEX);
+	assert_null(mesh);
+	assert_non_null(strstr(error.message, "vertex 5 of 5"));
+	assert_int_equal(nt_halfedges_build(&mesh, 5, &strip[0][0], SIZE_MAX / 3, &error),
+		NMTAN_ERROR_TOO_LARGE);
+}
+
+/* One vertex with 60 000 triangles, given in an order that hops around: without care each of them costs
+ * a walk around the vertex, and the whole took 16 s. */
+static void hub_is_not_quadratic(void **state)
+{
+	(void)state;
+	enum { SPOKES = 60000 };
+	uint32_t(*triangles)[3] = malloc(sizeof *triangles * SPOKES);
+	for (uint32_t i = 0; i < SPOKES; i++) {
+		const uint32_t at = (uint32_t)((uint64_t)i * 30011 % SPOKES); /* 30011 is prime */
+		triangles[i][0] = 1 + at;
+		triangles[i][1] = 1 + (at + 1) % SPOKES;
+		triangles[i][2] = 0;
+	}
+	const clock_t begin = clock();
+	nt_halfedges *mesh = built(SPOKES + 1, (const uint32_t(*)[3])triangles, SPOKES);
+	nt_walks loops;
+	assert_int_equal(nt_halfedges_outlines(mesh, NULL, &loops, NULL), NMTAN_OK);
+	const double seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
+	assert_int_equal(loops.count, 1);
+	assert_int_equal(loops.first[1], SPOKES);
+	assert_sound(&loops, (const uint32_t(*)[3])triangles);
+	assert_true(seconds < 2); /* 0.02 s; the bound leaves room for sanitizers */
+	nt_walks_free(&loops);
+	nt_halfedges_free(mesh);
+	free(triangles);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(strip_has_one_boundary_loop_in_order),
+		cmocka_unit_test(cut_makes_two_islands_with_an_outline_each),
+		cmocka_unit_test(closed_mesh_has_no_boundary_and_a_closed_seam),
+		cmocka_unit_test(open_chain_is_ordered_from_end_to_end),
+		cmocka_unit_test(moebius_strip_loses_nothing_and_has_one_loop),
+		cmocka_unit_test(degenerate_and_third_triangles_are_left_out),
+		cmocka_unit_test(fans_that_touch_in_a_vertex_have_loops_of_their_own),
+		cmocka_unit_test(empty_mesh_and_bad_index_are_handled),
+		cmocka_unit_test(hub_is_not_quadratic),
+	};
+	return cmocka_run_group_tests_name("ext/openmesh", tests, NULL, NULL);
+}
