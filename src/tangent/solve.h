@@ -24,7 +24,7 @@ typedef struct nt_solve {
 /* The definition: one step after the other, as the specification has them, for any mesh. */
 nmtan_status nt_mikktspace_scalar(const nt_solve *solve);
 
-/* The same bytes, much faster. */
+/* The same bytes, faster. */
 nmtan_status nt_mikktspace_fast(const nt_solve *solve);
 
 nmtan_status nt_lengyel(const nt_solve *solve);

@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Frames in double, summed per welded vertex and exact orientation: the methods besides MikkTSpace, and
+ * the answers that repair falls back to.
+ *
+ * A triangle's directions come from the 2x2 system of its UV edges. With exact float differences the
+ * products are good to 2^-53 of their size, so that a direction is lost only where the condition of the
+ * system exceeds what float input can carry.
+ */
+#ifndef NT_TANGENT_FRAMES_H
+#define NT_TANGENT_FRAMES_H
+
+#include "base/dvec.h"
+#include "tangent/solve.h"
+
+/* How a triangle weighs in the sum at one of its corners. */
+typedef enum nt_weight {
+	NT_WEIGHT_ANGLE, /* unit direction times the corner's angle seen along the normal */
+	NT_WEIGHT_AREA,  /* unit direction times angle and both edge lengths */
+	NT_WEIGHT_NONE   /* dP/du as it is: Lengyel's sum */
+} nt_weight;
+
+/* The sum at a welded vertex over the triangles of one orientation. */
+typedef struct nt_frame_sum {
+	nt_dvec3 u;     /* weighted directions of growing u, each perpendicular to the normal */
+	double weights; /* sum of the lengths that went in */
+} nt_frame_sum;
+
+#define NT_NO_ID UINT32_MAX
+
+/* Unit normal of a vertex; zero where it has none. */
+nt_dvec3 nt_unit_normal(const nmtan_mesh *mesh, size_t vertex);
+
+/*
+ * The exact orientation of a face, v up: +1, -1, or 0 where it has none. A quad takes the sign of its
+ * larger half. `folded` (may be NULL) tells whether the halves differ; `stored`: judged by the stored
+ * texture coordinates first.
+ */
+int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool stored, bool *folded);
+
+/*
+ * Adds every triangle's frame to sums[id][0] (orientation -1) or sums[id][1] (+1) of its corners' ids,
+ * in face order.
+ *
+ *   ids   [corner_count] index into sums; NT_NO_ID: the corner is left out
+ *   sums  [id count][2], zeroed by the caller
+ */
+void nt_sum_frames(const nmtan_mesh *mesh, nt_weight weight, const uint32_t *ids,
+	nt_frame_sum (*sums)[2]);
+
+/* The unit tangent of a sum, perpendicular to the unit (or zero) normal n; false where the sum has no
+ * direction. */
+bool nt_sum_tangent(const nt_frame_sum *sum, nt_dvec3 n, nt_dvec3 *tangent);
+
+#endif

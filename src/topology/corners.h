@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Corners that are one vertex to MikkTSpace: equal position, normal and texture coordinates, compared as
+ * floats (0 equals -0, NaN equals nothing), no epsilon. Spec page, step 2.
+ */
+#ifndef NT_TOPOLOGY_CORNERS_H
+#define NT_TOPOLOGY_CORNERS_H
+
+#include "base/scratch.h"
+#include "nmtan.h"
+#include "topology/orientation.h"
+
+/* A row of an attribute. */
+static inline const float *nt_row(const float *data, size_t stride_bytes, size_t row)
+{
+	return (const float *)((const char *)data + stride_bytes * row);
+}
+
+/* The vertex of a corner. */
+static inline size_t nt_vertex_of(const nmtan_mesh *mesh, size_t corner)
+{
+	return mesh->indices ? mesh->indices[corner] : corner;
+}
+
+static inline const float *nt_position(const nmtan_mesh *mesh, size_t vertex)
+{
+	return nt_row(mesh->positions, mesh->position_stride_bytes, vertex);
+}
+
+static inline const float *nt_normal(const nmtan_mesh *mesh, size_t vertex)
+{
+	return nt_row(mesh->normals, mesh->normal_stride_bytes, vertex);
+}
+
+static inline const float *nt_texcoord(const nmtan_mesh *mesh, size_t vertex)
+{
+	return nt_row(mesh->texcoords, mesh->texcoord_stride_bytes, vertex);
+}
+
+/* Corners of a face: 3 or 4. */
+static inline unsigned nt_face_size(const nmtan_mesh *mesh, size_t face)
+{
+	return mesh->face_sizes ? mesh->face_sizes[face] : 3;
+}
+
+/* The first corner of a face, by counting the quads before it. */
+static inline size_t nt_first_corner(const nmtan_mesh *mesh, size_t face)
+{
+	size_t quads = 0;
+	for (size_t i = 0; mesh->face_sizes && i < face; i++)
+		quads += mesh->face_sizes[i] == 4;
+	return 3 * face + quads;
+}
+
+/* Texture coordinates as they will be stored. */
+static inline const float *nt_stored_texcoord(const nmtan_mesh *mesh, size_t vertex)
+{
+	return mesh->stored_texcoords
+		? nt_row(mesh->stored_texcoords, mesh->stored_texcoord_stride_bytes, vertex)
+		: nt_texcoord(mesh, vertex);
+}
+
+/* The one or two triangles of the face whose first corner is `first`, as corners of the mesh; quads are
+ * cut as MikkTSpace cuts them. Returns how many. */
+static inline unsigned nt_face_triangles(const nmtan_mesh *mesh, size_t face, size_t first,
+	uint32_t corners[2][3])
+{
+	if (nt_face_size(mesh, face) == 3) {
+		for (uint32_t k = 0; k < 3; k++)
+			corners[0][k] = (uint32_t)first + k;
+		return 1;
+	}
+	const float *uv[4], *p[4];
+	for (size_t k = 0; k < 4; k++) {
+		uv[k] = nt_texcoord(mesh, nt_vertex_of(mesh, first + k));
+		p[k] = nt_position(mesh, nt_vertex_of(mesh, first + k));
+	}
+	const int cut = nt_quad_diagonal(uv, p);
+	for (int half = 0; half < 2; half++)
+		for (int k = 0; k < 3; k++)
+			corners[half][k] = (uint32_t)first + nt_quad_triangles[cut][half][k];
+	return 2;
+}
+
+/* Checks that face sizes are 3 or 4 and indices below vertex_count, and counts the corners. Returns
+ * NMTAN_OK, NMTAN_ERROR_TOO_LARGE, NMTAN_ERROR_FACE_SIZE or NMTAN_ERROR_INDEX. */
+nmtan_status nt_check_faces(const nmtan_mesh *mesh, size_t *corner_count);
+
+/*
+ * Welds corners. Strides must be filled in and indices checked.
+ *
+ *   ids      [corner_count] receives the number of each corner's welded vertex; numbers go from 0 in
+ *            order of first use
+ *   count    receives how many there are
+ *
+ * Expected linear time. Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ */
+nmtan_status nt_weld_corners(const nmtan_mesh *mesh, size_t corner_count, nt_scratch *scratch,
+	uint32_t *ids, size_t *count);
+
+#endif
