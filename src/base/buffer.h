@@ -8,6 +8,10 @@
 
 #include "base/error.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 typedef struct nt_buffer {
 	char *data; /* NULL while empty; a NUL follows the last byte otherwise */
 	size_t size;
@@ -24,5 +28,9 @@ void nt_buffer_format(nt_buffer *buffer, const char *format, ...) NT_PRINTF(2, 3
 void *nt_buffer_extend(nt_buffer *buffer, size_t size);
 
 void nt_buffer_free(nt_buffer *buffer);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif
