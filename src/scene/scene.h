@@ -94,6 +94,8 @@ typedef struct nt_mesh {
 	bool unlit;              /* every material of it is unlit */
 	bool has_positions, has_normals, has_texcoords, has_tangents; /* texcoords: the set that is used */
 	uint32_t texcoord_set;   /* number of that set */
+	bool texcoord_conflict;  /* another slot of it asks for another set: texcoord_other_set */
+	uint32_t texcoord_other_set;
 	nt_decision decision;
 
 	/* geometry: filled by load(). Arrays belong to the scene's arena or point into the input. */

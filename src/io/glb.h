@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The GLB container: a 12-byte header, a JSON chunk, at most one BIN chunk, and whatever other chunks
+ * extensions put behind them.
+ */
+#ifndef NT_IO_GLB_H
+#define NT_IO_GLB_H
+
+#include "base/memory.h"
+#include "io/file.h"
+
+/* Where a chunk's data lies in the file. */
+typedef struct nt_glb_chunk {
+	uint32_t type;
+	size_t offset;
+	size_t size;
+} nt_glb_chunk;
+
+typedef struct nt_glb {
+	nt_glb_chunk json;
+	nt_glb_chunk bin; /* size 0 and offset 0: there is none */
+	bool has_bin;
+	nt_glb_chunk *others; /* chunks of other types, in order; in the arena */
+	size_t other_count;
+} nt_glb;
+
+bool nt_glb_has_magic(const unsigned char *bytes, size_t size);
+
+/*
+ * Finds the chunks of a GLB. Data behind the declared length is ignored, as viewers do; everything else
+ * that is wrong is an error with its byte offset.
+ *
+ * Returns NMTAN_OK, NMTAN_ERROR_INPUT, NMTAN_ERROR_UNSUPPORTED (another version of the container) or
+ * NMTAN_ERROR_MEMORY.
+ */
+nmtan_status nt_glb_parse(nt_glb *glb, nt_arena *arena, const unsigned char *bytes, size_t size,
+	nt_error *error);
+
+/*
+ * Writes everything before the BIN chunk's data: header, JSON chunk, and the head of the BIN chunk. The
+ * caller then writes exactly bin_size bytes, nt_glb_end_bin(), and chunks with nt_glb_write_chunk().
+ *
+ *   json, json_size  text of the document; padded with spaces
+ *   has_bin          whether there is a BIN chunk
+ *   bin_size         size of its data; padding is added
+ *   other_bytes      sum of nt_glb_chunk_bytes() over the chunks that follow
+ *
+ * Returns NMTAN_OK, NMTAN_ERROR_IO, or NMTAN_ERROR_UNSUPPORTED where the file would reach 4 GiB, which
+ * the container cannot say.
+ */
+nmtan_status nt_glb_begin(nt_sink *sink, const char *json, size_t json_size, bool has_bin,
+	uint64_t bin_size, uint64_t other_bytes, nt_error *error);
+
+/* Pads the BIN chunk. */
+nmtan_status nt_glb_end_bin(nt_sink *sink, uint64_t bin_size, nt_error *error);
+
+/* Bytes that a chunk with `size` bytes of data takes in the file. */
+uint64_t nt_glb_chunk_bytes(uint64_t size);
+
+/* Writes a whole chunk, padded with zeros. */
+nmtan_status nt_glb_write_chunk(nt_sink *sink, uint32_t type, const void *data, size_t size,
+	nt_error *error);
+
+#endif

@@ -1,0 +1,96 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Which meshes get tangents, and why the others do not.
+ *
+ * glTF: a primitive needs tangents when it is made of triangles, is shown by a scene and one of its
+ * materials (variants included) has a normalTexture, a clearcoatNormalTexture or the anisotropy
+ * extension; an unlit material needs nothing. Readers translate materials into slots, this file only
+ * judges. OBJ and PLY say little about how a mesh is shaded, so everything with texture coordinates
+ * gets tangents unless the user asks for less.
+ *
+ * A mesh that needs tangents and lacks normals or texture coordinates is skipped with a finding: glTF
+ * clients shade it flat and ignore tangents in the first case, and have no direction in the second.
+ */
+#include "scene/select.h"
+
+static bool needs_tangents(const nt_mesh *mesh)
+{
+	return mesh->slots != 0;
+}
+
+/* Whether the user's wish covers the mesh; if not, why. */
+static nt_decision judge_wish(const nt_mesh *mesh, nt_only only, bool knows_materials)
+{
+	if (only == NT_ONLY_ALL || (only == NT_ONLY_AUTO && !knows_materials))
+		return NT_DECISION_OPEN;
+	if (!mesh->reachable)
+		return NT_SKIP_UNREACHABLE;
+	if (!needs_tangents(mesh))
+		return mesh->unlit ? NT_SKIP_UNLIT : NT_SKIP_NO_SLOT;
+	return NT_DECISION_OPEN;
+}
+
+/* Whether the mesh has what a solve takes; if not, what is missing first. */
+static nt_decision judge_attributes(nt_scene *scene, const nt_mesh *mesh, bool make_normals)
+{
+	const bool lacks_normals = !mesh->has_normals && !make_normals;
+	if (needs_tangents(mesh)) {
+		if (!mesh->has_texcoords)
+			nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, &mesh->place, 1,
+				"texture coordinate set %u", mesh->texcoord_set);
+		if (lacks_normals)
+			nt_finding_add(&scene->findings, NT_CODE_TAN_NO_NORMAL, &mesh->place, 1, NULL);
+	}
+	if (!mesh->has_texcoords)
+		return NT_SKIP_NO_TEXCOORDS;
+	return lacks_normals ? NT_SKIP_NO_NORMALS : NT_DECISION_OPEN;
+}
+
+static nt_decision judge(nt_scene *scene, const nt_mesh *mesh, nt_only only, nt_existing existing,
+	bool make_normals)
+{
+	const bool knows_materials = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
+	if (!mesh->triangles)
+		return NT_SKIP_NOT_TRIANGLES;
+	if (mesh->face_count == 0)
+		return NT_SKIP_EMPTY;
+	nt_decision decision = judge_wish(mesh, only, knows_materials);
+	if (decision != NT_DECISION_OPEN)
+		return decision;
+	if (mesh->texcoord_conflict)
+		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, &mesh->place, 1,
+			"sets %u and %u", mesh->texcoord_set, mesh->texcoord_other_set);
+	if (mesh->has_tangents && existing == NT_EXISTING_KEEP)
+		return NT_SKIP_HAS_TANGENTS;
+	decision = judge_attributes(scene, mesh, make_normals);
+	if (decision != NT_DECISION_OPEN)
+		return decision;
+	return mesh->has_tangents && existing == NT_EXISTING_REPAIR ? NT_DECISION_REPAIR
+								    : NT_DECISION_SOLVE;
+}
+
+void nt_select(nt_scene *scene, nt_only only, nt_existing existing, bool make_normals)
+{
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		nt_mesh *mesh = &scene->meshes[i];
+		mesh->decision = judge(scene, mesh, only, existing, make_normals);
+	}
+}
+
+const char *nt_decision_text(nt_decision decision)
+{
+	static const char *const texts[NT_DECISION_COUNT] = {
+		[NT_DECISION_OPEN] = "not decided",
+		[NT_DECISION_SOLVE] = "tangents are computed",
+		[NT_DECISION_REPAIR] = "invalid tangents are replaced",
+		[NT_SKIP_NO_SLOT] = "no material of it uses tangents",
+		[NT_SKIP_UNLIT] = "its material is unlit",
+		[NT_SKIP_NOT_TRIANGLES] = "points or lines",
+		[NT_SKIP_EMPTY] = "no faces",
+		[NT_SKIP_UNREACHABLE] = "in no scene",
+		[NT_SKIP_NO_TEXCOORDS] = "no texture coordinates",
+		[NT_SKIP_NO_NORMALS] = "no normals",
+		[NT_SKIP_HAS_TANGENTS] = "has tangents",
+	};
+	return (unsigned)decision < NT_DECISION_COUNT ? texts[decision] : "unknown";
+}
