@@ -11,6 +11,19 @@
 
 typedef enum nt_normals { NT_NORMALS_AUTO, NT_NORMALS_FLAT, NT_NORMALS_SMOOTH } nt_normals;
 
+/* Stages as --timing prints them. */
+typedef enum nt_stage {
+	NT_STAGE_MAP,
+	NT_STAGE_PARSE,
+	NT_STAGE_DECODE,
+	NT_STAGE_NORMALS,
+	NT_STAGE_TANGENTS,
+	NT_STAGE_SPLIT,
+	NT_STAGE_WRITE,
+	NT_STAGE_VERIFY,
+	NT_STAGE_COUNT
+} nt_stage;
+
 /* Everything a run can be told. Zero-initialised means the defaults of the command line, but for
  * texcoord_set, whose default is -1. */
 typedef struct nt_settings {
@@ -32,20 +45,11 @@ typedef struct nt_settings {
 	bool no_clobber;
 	bool in_place;
 	bool allow_outside;
-} nt_settings;
 
-/* Stages as --timing prints them. */
-typedef enum nt_stage {
-	NT_STAGE_MAP,
-	NT_STAGE_PARSE,
-	NT_STAGE_DECODE,
-	NT_STAGE_NORMALS,
-	NT_STAGE_TANGENTS,
-	NT_STAGE_SPLIT,
-	NT_STAGE_WRITE,
-	NT_STAGE_VERIFY,
-	NT_STAGE_COUNT
-} nt_stage;
+	/* Called when a stage begins, from the thread that called nt_run; NULL: nobody looks. */
+	void (*on_stage)(void *user, nt_stage stage);
+	void *on_stage_user;
+} nt_settings;
 
 /* What a run did. */
 typedef struct nt_summary {

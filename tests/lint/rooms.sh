@@ -44,6 +44,8 @@ for file in src/*/*.[ch] src/*/*.cpp; do
 		# Comments may speak of printf; code may not call it.
 		sed -E 's,/\*.*\*/,,; s,^[[:space:]]*\*.*,,; s,//.*,,' "$file" |
 			grep -nE '(^|[^a-zA-Z0-9_.>])(abort|exit|_exit|_Exit|quick_exit|printf|puts|putchar|perror|vprintf)[[:space:]]*\(|fprintf[[:space:]]*\([[:space:]]*std|std::(cout|cerr)' |
+			# The handler of a deadly signal may end what the signal would have ended.
+			{ [ "$file" = src/io/temporary.c ] && grep -v '_exit(128 + ' || cat; } |
 			while IFS= read -r line; do echo "lint: $file:${line%%:*}: prints or exits: ${line#*:}"; done |
 			grep . && faults=$((faults + 1))
 	fi

@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Messages: see messages.h.
+ */
+#include "cli/messages.h"
+
+#include <inttypes.h>
+#include <string.h>
+
+#include "report/codes.h"
+
+/* Of one code so many places are shown without -v; the rest is counted. */
+enum { PLACES_SHOWN = 5 };
+
+static const char *colour(nt_style style, const char *code)
+{
+	return style.colour ? code : "";
+}
+
+void nt_message_clean(nt_buffer *out, const char *text)
+{
+	for (; *text; text++) {
+		const unsigned char c = (unsigned char)*text;
+		if (c < 0x20 || c == 0x7f)
+			nt_buffer_format(out, "\\x%02x", c);
+		else
+			nt_buffer_append(out, text, 1);
+	}
+}
+
+/* "file:line: ", "file: at byte N: ", "file: /pointer: ", then "mesh "head": ". */
+static void append_place(nt_buffer *out, const nt_place *place, const char *file)
+{
+	const char *name = place->file[0] ? place->file : file;
+	if (name && *name) {
+		nt_message_clean(out, strcmp(name, "-") == 0 ? "standard input" : name);
+		if (place->line)
+			nt_buffer_format(out, ":%zu", place->line);
+		nt_buffer_text(out, ": ");
+	}
+	if (place->offset != NT_NO_OFFSET)
+		nt_buffer_format(out, "at byte %" PRIu64 ": ", place->offset);
+	if (place->pointer[0]) {
+		nt_message_clean(out, place->pointer);
+		nt_buffer_text(out, ": ");
+	}
+	if (place->object[0]) {
+		nt_message_clean(out, place->object);
+		nt_buffer_text(out, ": ");
+	}
+}
+
+void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style)
+{
+	nt_buffer_format(out, "%snmtan:%s ", colour(style, "\033[1;31m"), colour(style, "\033[0m"));
+	append_place(out, &error->place, NULL);
+	nt_message_clean(out, error->message[0] ? error->message : nmtan_status_text(error->status));
+	nt_buffer_text(out, "\n");
+}
+
+static void append_finding(nt_buffer *out, const nt_finding *finding, const char *file, nt_style style)
+{
+	static const char *const colours[] = {
+		[NT_SEVERITY_INFO] = "\033[36m", [NT_SEVERITY_WARNING] = "\033[1;33m",
+		[NT_SEVERITY_ERROR] = "\033[1;31m"};
+	const nt_code_row *row = nt_code_info(finding->code);
+	nt_buffer sentence = {0};
+	nt_code_sentence(finding->code, finding->count, finding->detail, &sentence);
+	nt_buffer_text(out, "nmtan: ");
+	append_place(out, &finding->place, file);
+	nt_buffer_format(out, "%s%s:%s ", colour(style, colours[row->severity]),
+		nt_severity_name(row->severity), colour(style, "\033[0m"));
+	nt_message_clean(out, sentence.data ? sentence.data : "");
+	nt_buffer_format(out, " [%s]\n", row->name);
+	nt_buffer_free(&sentence);
+}
+
+/* All findings of one code, those beyond PLACES_SHOWN as a number. */
+static void append_code(nt_buffer *out, const nt_finding_list *findings, nt_code code, const char *file,
+	nt_style style)
+{
+	size_t shown = 0, left_out = 0;
+	for (size_t i = 0; i < findings->count; i++) {
+		if (findings->items[i].code != code)
+			continue;
+		if (shown < PLACES_SHOWN || style.verbosity > 0) {
+			append_finding(out, &findings->items[i], file, style);
+			shown++;
+		} else {
+			left_out++;
+		}
+	}
+	if (left_out)
+		nt_buffer_format(out, "nmtan: %s: and %zu more [%s]; -v shows all\n",
+			nt_severity_name(nt_code_info(code)->severity), left_out, nt_code_info(code)->name);
+}
+
+void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, bool infos,
+	nt_style style)
+{
+	for (int severity = NT_SEVERITY_ERROR; severity >= (infos ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING);
+		severity--)
+		for (int code = 0; code < NT_CODE_COUNT; code++)
+			if ((int)nt_code_info((nt_code)code)->severity == severity)
+				append_code(out, findings, (nt_code)code, file, style);
+}
+
+/* "1 primitive", "2 primitives". */
+static void append_count(nt_buffer *out, size_t count, const char *noun)
+{
+	nt_buffer_format(out, "%zu %s%s", count, noun, count == 1 ? "" : "s");
+}
+
+static void append_vertices(nt_buffer *out, const nt_summary *s)
+{
+	const size_t added = s->appended_normals + s->appended_tangents;
+	nt_buffer_format(out, ", %zu", s->vertex_count);
+	if (added)
+		nt_buffer_format(out, " -> %zu", s->vertex_count + added);
+	nt_buffer_text(out, " vertices");
+	if (!added)
+		return;
+	nt_buffer_text(out, " (");
+	if (s->appended_tangents)
+		nt_buffer_format(out, "+%zu where tangents differ", s->appended_tangents);
+	if (s->appended_normals)
+		nt_buffer_format(out, "%s+%zu where made normals differ", s->appended_tangents ? ", " : "",
+			s->appended_normals);
+	nt_buffer_text(out, ")");
+}
+
+static void append_skipped(nt_buffer *out, const nt_summary *s)
+{
+	bool first = true;
+	for (int reason = 0; reason < NT_DECISION_COUNT; reason++) {
+		if (!s->skipped[reason])
+			continue;
+		nt_buffer_format(out, "%s%zu (%s)", first ? ", skipped " : ", ", s->skipped[reason],
+			nt_decision_text((nt_decision)reason));
+		first = false;
+	}
+}
+
+static void append_findings_count(nt_buffer *out, const nt_finding_list *findings)
+{
+	size_t counts[3] = {0};
+	for (size_t i = 0; i < findings->count; i++)
+		counts[nt_code_info(findings->items[i].code)->severity]++;
+	if (!findings->count) {
+		nt_buffer_text(out, ", no findings");
+		return;
+	}
+	for (int severity = NT_SEVERITY_ERROR; severity >= NT_SEVERITY_INFO; severity--)
+		if (counts[severity]) {
+			nt_buffer_text(out, ", ");
+			append_count(out, counts[severity], nt_severity_name((nt_severity)severity));
+		}
+}
+
+void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *settings)
+{
+	const nt_summary *s = &job->summary;
+	const nmtan_counts *c = &s->counts;
+	nt_buffer_text(out, "nmtan: ");
+	nt_message_clean(out, job->input);
+	if (job->output) {
+		nt_buffer_text(out, " -> ");
+		nt_message_clean(out, job->output);
+	}
+	nt_buffer_format(out, ": %s", settings->check ? "checked, "
+				      : settings->dry_run ? "dry run, nothing written, "
+							  : "");
+	if (s->copied)
+		nt_buffer_text(out, "copied as it is, ");
+	if (s->solved_count == s->mesh_count)
+		append_count(out, s->mesh_count, "primitive");
+	else
+		nt_buffer_format(out, "%zu of %zu primitives", s->solved_count, s->mesh_count);
+	if (s->solved_count) {
+		nt_buffer_text(out, ", ");
+		append_count(out, s->triangle_count, "triangle");
+		append_vertices(out, s);
+	}
+	const size_t repaired = c->repaired_zero + c->repaired_not_finite + c->repaired_parallel +
+				c->repaired_sign;
+	if (repaired)
+		nt_buffer_format(out, ", repaired %zu of the tangents", repaired);
+	append_skipped(out, s);
+	if (settings->check)
+		append_findings_count(out, &s->findings);
+	nt_buffer_format(out, ", %.3g s\n", s->total_seconds);
+}
+
+const char *nt_stage_name(nt_stage stage)
+{
+	static const char *const names[NT_STAGE_COUNT] = {
+		[NT_STAGE_MAP] = "map",
+		[NT_STAGE_PARSE] = "parse",
+		[NT_STAGE_DECODE] = "decode",
+		[NT_STAGE_NORMALS] = "normals",
+		[NT_STAGE_TANGENTS] = "tangents",
+		[NT_STAGE_SPLIT] = "split",
+		[NT_STAGE_WRITE] = "write",
+		[NT_STAGE_VERIFY] = "verify",
+	};
+	return names[stage];
+}
+
+void nt_message_timing(nt_buffer *out, const nt_summary *summary)
+{
+	double known = 0;
+	nt_buffer_text(out, "stage           ms\n");
+	for (int stage = 0; stage < NT_STAGE_COUNT; stage++) {
+		known += summary->seconds[stage];
+		nt_buffer_format(out, "%-9s %8.3f\n", nt_stage_name((nt_stage)stage),
+			summary->seconds[stage] * 1e3);
+	}
+	const double rest = summary->total_seconds - known;
+	nt_buffer_format(out, "%-9s %8.3f\n%-9s %8.3f\n", "other", (rest > 0 ? rest : 0) * 1e3, "total",
+		summary->total_seconds * 1e3);
+	nt_buffer_format(out, "%" PRIu64 " bytes read, %" PRIu64 " bytes written\n", summary->bytes_read,
+		summary->bytes_written);
+}

@@ -1,0 +1,42 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the tool says to people, as text in a buffer: errors with their place, findings, the line on
+ * success, the table of --timing. Whoever prints does so in one piece, so that the messages of files
+ * that run at the same time do not mix.
+ *
+ * Names and texts from files may hold anything; control characters are shown as \x1b, never sent to a
+ * terminal.
+ */
+#ifndef NT_CLI_MESSAGES_H
+#define NT_CLI_MESSAGES_H
+
+#include "base/buffer.h"
+#include "cli/options.h"
+#include "pipeline/batch.h"
+
+typedef struct nt_style {
+	bool colour;
+	int verbosity; /* as in nt_command */
+} nt_style;
+
+/* "nmtan: file:line: message", "nmtan: file: at byte N: message" or "nmtan: file: /pointer: message". */
+void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style);
+
+/* Findings, the worst first, a few of each code: "nmtan: file:line: warning: sentence [CODE]". Infos only
+ * when `infos` is set. */
+void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, bool infos,
+	nt_style style);
+
+/* One line: what happened. */
+void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *settings);
+
+/* A table of the stages' seconds. */
+void nt_message_timing(nt_buffer *out, const nt_summary *summary);
+
+/* How a stage is called: "tangents". */
+const char *nt_stage_name(nt_stage stage);
+
+/* Appends text that may come from a file. */
+void nt_message_clean(nt_buffer *out, const char *text);
+
+#endif

@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The shape of the option table, for the two files that read it.
+ */
+#ifndef NT_CLI_OPTION_TABLE_H
+#define NT_CLI_OPTION_TABLE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef enum nt_option_kind {
+	NT_OPTION_HEADING,     /* no option: a line of --help */
+	NT_OPTION_FLAG,        /* bool becomes true */
+	NT_OPTION_SET,         /* int becomes `first` */
+	NT_OPTION_CHOICE,      /* int becomes `first` + the number of the word in `values` */
+	NT_OPTION_NUMBER,      /* int becomes 0..most */
+	NT_OPTION_AUTO_NUMBER, /* the same; -1 for the word auto */
+	NT_OPTION_TEXT         /* const char * becomes the word */
+} nt_option_kind;
+
+typedef struct nt_option_row {
+	const char *name;   /* without the dashes */
+	char letter;        /* the short form; 0: none */
+	nt_option_kind kind;
+	const char *values; /* "one|two|three" or a word for the value; NULL: takes no value */
+	int first, most;
+	const char *standard; /* the default, in words; NULL: none or off */
+	const char *help;     /* NULL: a hidden option */
+	size_t offset;        /* of the field in nt_command */
+	bool writes;          /* about writing, so that --check refuses it */
+} nt_option_row;
+
+extern const nt_option_row nt_option_rows[];
+extern const size_t nt_option_row_count;
+
+#endif

@@ -1,0 +1,195 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What is printed from the option table: --help and the completions of bash and zsh.
+ */
+#include "cli/options.h"
+#include "cli/option_table.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { HELP_COLUMN = 30, HELP_WIDTH = 80 };
+
+static bool shown(const nt_option_row *row)
+{
+	return row->kind != NT_OPTION_HEADING && row->help;
+}
+
+/* Appends `text` in lines that start at `column` and end before `width`; the cursor is at `at`. */
+static void wrap(nt_buffer *out, const char *text, size_t at)
+{
+	while (*text) {
+		const size_t length = strcspn(text, " ");
+		if (at > HELP_COLUMN && at + 1 + length > HELP_WIDTH) {
+			nt_buffer_format(out, "\n%*s", HELP_COLUMN, "");
+			at = HELP_COLUMN;
+		} else if (at > HELP_COLUMN) {
+			nt_buffer_text(out, " ");
+			at++;
+		}
+		nt_buffer_append(out, text, length);
+		at += length;
+		text += length + (text[length] == ' ');
+	}
+}
+
+static void help_row(nt_buffer *out, const nt_option_row *row)
+{
+	char left[96], text[512];
+	if (row->letter)
+		snprintf(left, sizeof left, "  -%c, --%s", row->letter, row->name);
+	else
+		snprintf(left, sizeof left, "      --%s", row->name);
+	if (row->values) {
+		const size_t used = strlen(left);
+		snprintf(left + used, sizeof left - used, "=%s", row->values);
+	}
+	nt_buffer_text(out, left);
+	if (strlen(left) + 2 > HELP_COLUMN)
+		nt_buffer_format(out, "\n%*s", HELP_COLUMN, "");
+	else
+		nt_buffer_format(out, "%*s", HELP_COLUMN - (int)strlen(left), "");
+	snprintf(text, sizeof text, "%s%s%s%s", row->help, row->standard ? " (default: " : "",
+		row->standard ? row->standard : "", row->standard ? ")" : "");
+	wrap(out, text, HELP_COLUMN);
+	nt_buffer_text(out, "\n");
+}
+
+void nt_options_help(nt_buffer *out)
+{
+	nt_buffer_text(out,
+		"nmtan puts tangents on meshes: OBJ, PLY, glTF and GLB in, glTF, GLB and PLY out.\n\n"
+		"  nmtan [options] INPUT OUTPUT\n"
+		"  nmtan [options] -d DIR INPUT...    many files, several at once\n"
+		"  nmtan [options] --in-place INPUT\n"
+		"  nmtan --check [options] INPUT...   reads and judges, writes no mesh\n\n"
+		"- is standard input or output (GLB or PLY). -- ends the options.\n");
+	for (size_t i = 0; i < nt_option_row_count; i++) {
+		const nt_option_row *row = &nt_option_rows[i];
+		if (row->kind == NT_OPTION_HEADING)
+			nt_buffer_format(out, "\n%s:\n", row->name);
+		else if (row->help)
+			help_row(out, row);
+	}
+	nt_buffer_text(out,
+		"\nExit code: 0 done, 1 usage, 2 cannot read or write, 3 invalid input, 4 out of memory or\n"
+		"internal, 5 unsupported, 6 findings at or above --fail-on.\n");
+}
+
+void nt_options_usage(nt_buffer *out)
+{
+	nt_buffer_text(out, "usage: nmtan [options] INPUT OUTPUT\n"
+		"       nmtan --help lists the options\n");
+}
+
+/* What may be completed as a value: the words of a choice; nothing for numbers; files elsewhere. */
+static bool has_words(const nt_option_row *row)
+{
+	return row->kind == NT_OPTION_CHOICE || row->kind == NT_OPTION_AUTO_NUMBER;
+}
+
+/* The words of a row with blanks between them; N, which stands for a number, is left out. */
+static void append_words(nt_buffer *out, const nt_option_row *row)
+{
+	for (const char *v = row->values; *v;) {
+		const size_t length = strcspn(v, "|");
+		if (!(length == 1 && *v == 'N')) {
+			nt_buffer_text(out, v == row->values ? "" : " ");
+			nt_buffer_append(out, v, length);
+		}
+		v += length + (v[length] == '|');
+	}
+}
+
+void nt_options_bash(nt_buffer *out)
+{
+	nt_buffer_text(out,
+		"# bash completion for nmtan, printed by nmtan --completion=bash\n"
+		"_nmtan()\n{\n"
+		"\tlocal word=${COMP_WORDS[COMP_CWORD]} option=${COMP_WORDS[COMP_CWORD-1]}\n"
+		"\tCOMPREPLY=()\n"
+		"\t# bash takes = for a word of its own\n"
+		"\tif [[ $word == = ]]; then\n\t\tword=\n"
+		"\telif [[ $option == = ]]; then\n\t\toption=${COMP_WORDS[COMP_CWORD-2]}\n\tfi\n"
+		"\tcase $option in\n");
+	for (size_t i = 0; i < nt_option_row_count; i++) {
+		const nt_option_row *row = &nt_option_rows[i];
+		if (!shown(row) || !row->values)
+			continue;
+		nt_buffer_format(out, "\t--%s", row->name);
+		if (row->letter)
+			nt_buffer_format(out, " | -%c", row->letter);
+		nt_buffer_text(out, ")\n");
+		if (has_words(row)) {
+			nt_buffer_text(out, "\t\tCOMPREPLY=($(compgen -W '");
+			append_words(out, row);
+			nt_buffer_text(out, "' -- \"$word\"))\n");
+		} else if (row->kind == NT_OPTION_TEXT) {
+			nt_buffer_format(out, "\t\tCOMPREPLY=($(compgen -%c -- \"$word\"))\n",
+				strcmp(row->values, "DIR") == 0 ? 'd' : 'f');
+		}
+		nt_buffer_text(out, "\t\treturn ;;\n");
+	}
+	nt_buffer_text(out, "\tesac\n\tif [[ $word == -* ]]; then\n\t\tCOMPREPLY=($(compgen -W '");
+	bool first = true;
+	for (size_t i = 0; i < nt_option_row_count; i++) {
+		const nt_option_row *row = &nt_option_rows[i];
+		if (!shown(row))
+			continue;
+		nt_buffer_format(out, "%s--%s%s", first ? "" : " ", row->name, row->values ? "=" : "");
+		first = false;
+	}
+	nt_buffer_text(out,
+		"' -- \"$word\"))\n"
+		"\t\t[[ ${COMPREPLY[0]-} == *= ]] && compopt -o nospace\n"
+		"\telse\n\t\tCOMPREPLY=($(compgen -f -- \"$word\"))\n\tfi\n}\n"
+		"complete -o filenames -F _nmtan nmtan\n");
+}
+
+/* Inside '...[help]': brackets, colons and apostrophes mean something to zsh. */
+static void append_zsh(nt_buffer *out, const char *text)
+{
+	for (; *text; text++) {
+		if (*text == '\'')
+			nt_buffer_text(out, "'\\''");
+		else if (strchr("[]:\\", *text))
+			nt_buffer_format(out, "\\%c", *text);
+		else
+			nt_buffer_append(out, text, 1);
+	}
+}
+
+static void zsh_spec(nt_buffer *out, const nt_option_row *row, bool letter)
+{
+	if (letter)
+		nt_buffer_format(out, "\t'-%c%s[", row->letter, row->values ? "+" : "");
+	else
+		nt_buffer_format(out, "\t'--%s%s[", row->name, row->values ? "=" : "");
+	append_zsh(out, row->help);
+	nt_buffer_text(out, "]");
+	if (has_words(row)) {
+		nt_buffer_format(out, ":%s:(", row->name);
+		append_words(out, row);
+		nt_buffer_text(out, ")");
+	} else if (row->values) {
+		nt_buffer_format(out, ":%s:%s", row->values,
+			row->kind != NT_OPTION_TEXT               ? " "
+			: strcmp(row->values, "DIR") == 0 ? "_files -/"
+							  : "_files");
+	}
+	nt_buffer_text(out, "' \\\n");
+}
+
+void nt_options_zsh(nt_buffer *out)
+{
+	nt_buffer_text(out, "#compdef nmtan\n# printed by nmtan --completion=zsh\n_arguments -s -S \\\n");
+	for (size_t i = 0; i < nt_option_row_count; i++) {
+		const nt_option_row *row = &nt_option_rows[i];
+		if (!shown(row))
+			continue;
+		if (row->letter)
+			zsh_spec(out, row, true);
+		zsh_spec(out, row, false);
+	}
+	nt_buffer_text(out, "\t'*:mesh:_files'\n");
+}

@@ -1,0 +1,364 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Options: see options.h. The table comes first, then what reads it: the parser here, --help and the
+ * completions in option_texts.c.
+ *
+ * No option takes an optional value, names are not abbreviated, and a number is a whole word of digits:
+ * what is not understood is refused with the word that was wrong, because a tool that guesses turns a
+ * slip of the finger into a wrong file.
+ */
+#include "cli/options.h"
+#include "cli/option_table.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define FIELD(name)   offsetof(nt_command, name)
+#define SETTING(name) offsetof(nt_command, settings.name)
+
+/* Enumerations are stored through int; the words of a choice are in the order of its constants. */
+_Static_assert(sizeof(nt_only) == sizeof(int) && sizeof(nmtan_method) == sizeof(int), "enum is int");
+
+const nt_option_row nt_option_rows[] = {
+	{.kind = NT_OPTION_HEADING, .name = "Which primitives, and how"},
+	{"only", 0, NT_OPTION_CHOICE, "auto|needed|all", NT_ONLY_AUTO, 0, "auto",
+		"auto: glTF where a material needs tangents, OBJ and PLY wherever there are texture "
+		"coordinates; needed: by the materials alone; all: wherever possible",
+		SETTING(only), false},
+	{"existing", 0, NT_OPTION_CHOICE, "keep|repair|replace", NT_EXISTING_KEEP, 0, "keep",
+		"what happens to tangents that the input has", SETTING(existing), false},
+	{"method", 0, NT_OPTION_CHOICE, "mikktspace|area|lengyel", NMTAN_METHOD_MIKKTSPACE, 0,
+		"mikktspace", "how triangles are averaged", SETTING(method), false},
+	{"repair", 0, NT_OPTION_CHOICE, "on|off", NMTAN_REPAIR_ON, 0, "on",
+		"replace results that no renderer can use", SETTING(repair), false},
+	{"normals", 0, NT_OPTION_CHOICE, "auto|flat|smooth", NT_NORMALS_AUTO, 0, "auto",
+		"how normals are made where they are missing; auto: OBJ by its smoothing groups, PLY "
+		"smooth, glTF not at all",
+		SETTING(normals), false},
+	{"uv", 0, NT_OPTION_AUTO_NUMBER, "auto|N", 0, 999, "auto",
+		"which set of texture coordinates; auto: the one the material asks for",
+		SETTING(texcoord_set), false},
+	{"allow-outside", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
+		"let the input refer to files outside its folder", SETTING(allow_outside), false},
+
+	{.kind = NT_OPTION_HEADING, .name = "Output"},
+	{"output-format", 0, NT_OPTION_CHOICE, "ply|gltf|glb", NT_FORMAT_PLY, 0, "by name",
+		"format of the output", SETTING(output_format), true},
+	{"directory", 'd', NT_OPTION_TEXT, "DIR", 0, 0, NULL,
+		"many inputs: write each into DIR under its own name", FIELD(directory), true},
+	{"in-place", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "the output may replace the input",
+		SETTING(in_place), true},
+	{"embed", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, ".gltf: buffers inside, as data URIs",
+		SETTING(embed), true},
+	{"images", 0, NT_OPTION_CHOICE, "link|embed|copy|none", NT_IMAGES_LINK, 0,
+		"link for .gltf, embed for .glb", "how the output comes by its images", SETTING(images),
+		true},
+	{"bitangents", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
+		"write bitangents too: bx by bz in PLY, _BITANGENT in glTF", SETTING(bitangents), true},
+	{"no-clobber", 'n', NT_OPTION_FLAG, NULL, 0, 0, NULL, "never replace a file",
+		SETTING(no_clobber), true},
+	{"sync", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "fsync before an output takes its name",
+		SETTING(sync), true},
+	{"verify", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
+		"read a glTF output back with tinygltf before it takes its name", SETTING(verify), true},
+	{"dry-run", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "do everything but write", SETTING(dry_run),
+		true},
+
+	{.kind = NT_OPTION_HEADING, .name = "Judging"},
+	{"check", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "read and judge, write no mesh", SETTING(check),
+		false},
+	{"fail-on", 0, NT_OPTION_CHOICE, "error|warning|info|never", NT_FAIL_ON_ERROR, 0,
+		"error with --check, else never", "exit with 6 on findings of this severity or above",
+		FIELD(fail_on), false},
+
+	{.kind = NT_OPTION_HEADING, .name = "The run"},
+	{"threads", 'j', NT_OPTION_NUMBER, "N", 0, 1024, "0", "how many threads; 0: all processors",
+		SETTING(threads), false},
+	{"quiet", 'q', NT_OPTION_SET, NULL, -1, 0, NULL, "say nothing but errors", FIELD(verbosity),
+		false},
+	{"verbose", 'v', NT_OPTION_SET, NULL, 1, 0, NULL,
+		"say what every primitive got and show every finding", FIELD(verbosity), false},
+	{"progress", 0, NT_OPTION_CHOICE, "auto|on|off", NT_PROGRESS_AUTO, 0, "auto",
+		"show what is being done; auto: on a terminal, after one second", FIELD(progress), false},
+	{"timing", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "say how long each stage took", FIELD(timing),
+		false},
+	{"version", 0, NT_OPTION_SET, NULL, NT_ACTION_VERSION, 0, NULL, "print the version and end",
+		FIELD(action), false},
+	{"help", 'h', NT_OPTION_SET, NULL, NT_ACTION_HELP, 0, NULL, "print this text and end",
+		FIELD(action), false},
+	/* Hidden: for the Makefile. */
+	{"completion", 0, NT_OPTION_CHOICE, "bash|zsh", NT_ACTION_COMPLETION_BASH, 0, NULL, NULL,
+		FIELD(action), false},
+};
+const size_t nt_option_row_count = sizeof nt_option_rows / sizeof *nt_option_rows;
+
+/* What the parser remembers: which rows were given, as bits. */
+typedef struct parser {
+	nt_command *command;
+	nt_error *error;
+	uint64_t given;
+} parser;
+_Static_assert(sizeof nt_option_rows / sizeof *nt_option_rows <= 64, "given has a bit per row");
+
+static bool takes_value(const nt_option_row *row)
+{
+	return row->values != NULL;
+}
+
+static const nt_option_row *find_long(const char *name, size_t length)
+{
+	for (size_t i = 0; i < nt_option_row_count; i++) {
+		const nt_option_row *row = &nt_option_rows[i];
+		if (row->kind != NT_OPTION_HEADING && strlen(row->name) == length &&
+			memcmp(row->name, name, length) == 0)
+			return row;
+	}
+	return NULL;
+}
+
+static const nt_option_row *find_letter(char letter)
+{
+	for (size_t i = 0; i < nt_option_row_count; i++)
+		if (nt_option_rows[i].letter && nt_option_rows[i].letter == letter)
+			return &nt_option_rows[i];
+	return NULL;
+}
+
+/* The number of a word in "one|two|three", -1 when it is none of them. */
+static int choice_of(const char *values, const char *word)
+{
+	const size_t length = strlen(word);
+	int number = 0;
+	for (const char *v = values;; number++) {
+		const size_t here = strcspn(v, "|");
+		if (here == length && memcmp(v, word, length) == 0)
+			return number;
+		if (!v[here])
+			return -1;
+		v += here + 1;
+	}
+}
+
+/* A whole word of digits, at most `most`; -1 for anything else. */
+static int number_of(const char *word, int most)
+{
+	int number = 0;
+	if (!*word)
+		return -1;
+	for (; *word; word++) {
+		if (*word < '0' || *word > '9')
+			return -1;
+		number = number * 10 + (*word - '0');
+		if (number > most)
+			return -1;
+	}
+	return number;
+}
+
+static nmtan_status refuse_value(parser *p, const nt_option_row *row, const char *word)
+{
+	if (row->kind == NT_OPTION_CHOICE) {
+		char list[128];
+		snprintf(list, sizeof list, "%s", row->values);
+		for (char *c = list; *c; c++)
+			*c = *c == '|' ? ' ' : *c;
+		return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s: '%s' is none of: %s", row->name, word,
+			list);
+	}
+	return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s: '%s' is not %sa number from 0 to %d",
+		row->name, word, row->kind == NT_OPTION_AUTO_NUMBER ? "auto or " : "", row->most);
+}
+
+/* Stores what one option says; word is NULL where it takes none. */
+static nmtan_status apply(parser *p, const nt_option_row *row, const char *word)
+{
+	char *field = (char *)p->command + row->offset;
+	int value = row->first;
+	p->given |= (uint64_t)1 << (row - nt_option_rows);
+	switch (row->kind) {
+	case NT_OPTION_HEADING:
+		break;
+	case NT_OPTION_FLAG:
+		*(bool *)field = true;
+		break;
+	case NT_OPTION_SET:
+		memcpy(field, &value, sizeof value);
+		break;
+	case NT_OPTION_CHOICE:
+		value = choice_of(row->values, word);
+		if (value < 0)
+			return refuse_value(p, row, word);
+		value += row->first;
+		memcpy(field, &value, sizeof value);
+		break;
+	case NT_OPTION_AUTO_NUMBER:
+	case NT_OPTION_NUMBER:
+		value = number_of(word, row->most);
+		if (value < 0 && !(row->kind == NT_OPTION_AUTO_NUMBER && strcmp(word, "auto") == 0))
+			return refuse_value(p, row, word);
+		memcpy(field, &value, sizeof value);
+		break;
+	case NT_OPTION_TEXT:
+		if (!*word)
+			return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s: '' is no %s", row->name,
+				row->values);
+		*(const char **)(void *)field = word;
+		break;
+	}
+	return NMTAN_OK;
+}
+
+/* --name, --name=value, --name value. *used becomes 2 where the next word belongs to it. */
+static nmtan_status parse_long(parser *p, const char *word, const char *next, int *used)
+{
+	const char *name = word + 2;
+	const size_t length = strcspn(name, "=");
+	const nt_option_row *row = find_long(name, length);
+	if (!row)
+		return nt_fail(p->error, NMTAN_ERROR_USAGE, "unknown option '%.*s'", (int)length + 2, word);
+	const char *value = name[length] ? name + length + 1 : NULL;
+	if (!takes_value(row)) {
+		if (value)
+			return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s takes no value, here it has '%s'",
+				row->name, value);
+		return apply(p, row, NULL);
+	}
+	if (!value) {
+		if (!next)
+			return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s needs a value: %s", row->name,
+				row->values);
+		value = next;
+		*used = 2;
+	}
+	return apply(p, row, value);
+}
+
+/* -q, -qv, -j8, -j 8. */
+static nmtan_status parse_short(parser *p, const char *word, const char *next, int *used)
+{
+	for (const char *letter = word + 1; *letter; letter++) {
+		const nt_option_row *row = find_letter(*letter);
+		if (!row) {
+			/* A whole character, should it be one of several bytes. */
+			int bytes = 1;
+			while (((unsigned char)letter[bytes] & 0xc0) == 0x80)
+				bytes++;
+			return nt_fail(p->error, NMTAN_ERROR_USAGE, "unknown option '-%.*s'%s%s%s", bytes, letter,
+				word[2] ? " in '" : "", word[2] ? word : "", word[2] ? "'" : "");
+		}
+		if (!takes_value(row)) {
+			if (apply(p, row, NULL))
+				return p->error->status;
+			continue;
+		}
+		if (letter[1])
+			return apply(p, row, letter + 1);
+		if (!next)
+			return nt_fail(p->error, NMTAN_ERROR_USAGE, "-%c needs a value: %s", *letter,
+				row->values);
+		*used = 2;
+		return apply(p, row, next);
+	}
+	return NMTAN_OK;
+}
+
+static bool given(const parser *p, const char *name)
+{
+	const nt_option_row *row = find_long(name, strlen(name));
+	return p->given >> (row - nt_option_rows) & 1;
+}
+
+/* Options that contradict each other. */
+static nmtan_status check_clashes(parser *p)
+{
+	static const char *const pairs[][3] = {
+		{"quiet", "verbose", "say opposite things"},
+		{"in-place", "no-clobber", "contradict each other"},
+	};
+	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
+		if (given(p, pairs[i][0]) && given(p, pairs[i][1]))
+			return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s and --%s %s", pairs[i][0], pairs[i][1],
+				pairs[i][2]);
+	for (size_t i = 0; i < nt_option_row_count; i++)
+		if (p->command->settings.check && nt_option_rows[i].writes && p->given >> i & 1)
+			return nt_fail(p->error, NMTAN_ERROR_USAGE,
+				"--check writes no mesh, so --%s has no meaning", nt_option_rows[i].name);
+	const nt_settings *s = &p->command->settings;
+	if (s->embed && s->output_format != NT_FORMAT_UNKNOWN && s->output_format != NT_FORMAT_GLTF)
+		return nt_fail(p->error, NMTAN_ERROR_USAGE,
+			"--embed is about .gltf, --output-format says '%s'",
+			s->output_format == NT_FORMAT_GLB ? "glb" : "ply");
+	return NMTAN_OK;
+}
+
+/* Too few or too many names, and "-" where a name is needed. */
+static nmtan_status check_operands(parser *p)
+{
+	const nt_command *c = p->command;
+	const size_t count = c->operand_count;
+	const bool many = c->settings.check || c->directory;
+	const bool alone = c->settings.in_place && !many && count == 1;
+	if (count == 0)
+		return nt_fail(p->error, NMTAN_ERROR_USAGE, "no input is named");
+	if (!many && !alone && count == 1)
+		return nt_fail(p->error, NMTAN_ERROR_USAGE, "no output is named after '%s'", c->operands[0]);
+	if (!many && count > 2)
+		return nt_fail(p->error, NMTAN_ERROR_USAGE,
+			"'%s' is one name too many; for many inputs use -d DIR", c->operands[2]);
+	size_t dashes = 0;
+	const size_t inputs = many ? count : 1;
+	for (size_t i = 0; i < inputs; i++)
+		dashes += strcmp(c->operands[i], "-") == 0;
+	if (dashes && (c->directory || c->settings.in_place))
+		return nt_fail(p->error, NMTAN_ERROR_USAGE, "'-' has no name to write under: not with --%s",
+			c->directory ? "directory" : "in-place");
+	if (dashes > 1)
+		return nt_fail(p->error, NMTAN_ERROR_USAGE, "'-' can be read once only");
+	if (!many && count == 2 && strcmp(c->operands[1], "-") == 0) {
+		if (c->settings.output_format == NT_FORMAT_GLTF && !c->settings.embed)
+			return nt_fail(p->error, NMTAN_ERROR_USAGE,
+				"'-' has no place for the .bin of --output-format=gltf: add --embed");
+		if (c->settings.verify)
+			return nt_fail(p->error, NMTAN_ERROR_USAGE,
+				"--verify reads the output back, which '-' does not allow");
+	}
+	return NMTAN_OK;
+}
+
+nmtan_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error *error)
+{
+	parser p = {command, error, 0};
+	memset(command, 0, sizeof *command);
+	command->settings.texcoord_set = -1;
+	command->fail_on = NT_FAIL_ON_NEVER;
+
+	/* Operands move to the front, behind the program's name, in their order. */
+	int kept = argc > 0 ? 1 : 0;
+	bool options = true;
+	for (int i = kept; i < argc;) {
+		char *word = argv[i];
+		const char *next = i + 1 < argc ? argv[i + 1] : NULL;
+		int used = 1;
+		nmtan_status status = NMTAN_OK;
+		if (!options || word[0] != '-' || !word[1])
+			argv[kept++] = word;
+		else if (strcmp(word, "--") == 0)
+			options = false;
+		else if (word[1] == '-')
+			status = parse_long(&p, word, next, &used);
+		else
+			status = parse_short(&p, word, next, &used);
+		if (status)
+			return status;
+		i += used;
+	}
+	const int first = argc > 0 ? 1 : 0;
+	command->operands = (const char **)(void *)(argv + first);
+	command->operand_count = (size_t)(kept - first);
+	if (command->settings.check && !given(&p, "fail-on"))
+		command->fail_on = NT_FAIL_ON_ERROR;
+	if (command->action != NT_ACTION_RUN)
+		return NMTAN_OK;
+	const nmtan_status status = check_clashes(&p);
+	return status ? status : check_operands(&p);
+}

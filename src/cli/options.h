@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The options of the command line: one table, from which the parser, --help and the completions come.
+ * A new option is a new row of `rows` in options.c and, where it is not one of the pipeline's settings,
+ * a field of nt_command.
+ */
+#ifndef NT_CLI_OPTIONS_H
+#define NT_CLI_OPTIONS_H
+
+#include "base/buffer.h"
+#include "pipeline/run.h"
+
+/* What the words ask for. */
+enum nt_action {
+	NT_ACTION_RUN,
+	NT_ACTION_HELP,
+	NT_ACTION_VERSION,
+	NT_ACTION_COMPLETION_BASH,
+	NT_ACTION_COMPLETION_ZSH
+};
+
+/* From which severity on findings make the exit code 6, as the option names them. */
+enum nt_fail_on { NT_FAIL_ON_ERROR, NT_FAIL_ON_WARNING, NT_FAIL_ON_INFO, NT_FAIL_ON_NEVER };
+
+enum nt_progress_mode { NT_PROGRESS_AUTO, NT_PROGRESS_ON, NT_PROGRESS_OFF };
+
+/* What the words mean. */
+typedef struct nt_command {
+	nt_settings settings;
+	int action;            /* enum nt_action */
+	int verbosity;         /* -1 quiet, 0, 1 verbose */
+	int fail_on;           /* enum nt_fail_on; without --check only an explicit one counts */
+	int progress;          /* enum nt_progress_mode */
+	bool timing;
+	const char *directory; /* -d; NULL: none */
+	const char **operands; /* in argv, which is reordered for it */
+	size_t operand_count;
+} nt_command;
+
+/*
+ * Reads the words of a command line.
+ *
+ *   argc, argv  as main gets them; argv's pointers are reordered
+ *   command     required
+ *   error       names the word that is wrong
+ *
+ * Returns NMTAN_OK or NMTAN_ERROR_USAGE.
+ */
+nmtan_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error *error);
+
+/* What --help prints, and the two lines that follow a mistake. */
+void nt_options_help(nt_buffer *out);
+void nt_options_usage(nt_buffer *out);
+
+/* Completion scripts for the two shells. */
+void nt_options_bash(nt_buffer *out);
+void nt_options_zsh(nt_buffer *out);
+
+#endif

@@ -1,0 +1,159 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Progress: see progress.h. On a terminal the line replaces itself, beginning after a second, since a
+ * line that flashes by only disturbs. --progress=on without a terminal prints a line per change, for logs.
+ */
+#include "cli/progress.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "cli/messages.h"
+
+/* A quarter of a second: quick enough for the eye, nothing to the processor. */
+enum { TICK_NANOSECONDS = 250000000, TICKS_BEFORE_FIRST = 4, TICKS_PER_SECOND = 4 };
+
+struct nt_progress {
+	pthread_t thread;
+	pthread_mutex_t mutex;
+	pthread_cond_t wake;
+	const char *label;
+	size_t files, ended;
+	nt_stage stage;
+	unsigned ticks;
+	bool terminal;
+	bool drawn; /* the line stands on the terminal */
+	bool stop;
+	char last[256]; /* without a terminal: what was printed last */
+};
+
+/* All below are called with the mutex held. */
+
+static void erase(nt_progress *p)
+{
+	if (p->drawn)
+		fputs("\r\033[K", stderr);
+	p->drawn = false;
+}
+
+static void draw(nt_progress *p)
+{
+	nt_buffer line = {0};
+	if (p->files > 1) {
+		nt_buffer_format(&line, "%zu of %zu files", p->ended, p->files);
+	} else {
+		nt_message_clean(&line, p->label);
+		nt_buffer_format(&line, ": %s", nt_stage_name(p->stage));
+	}
+	if (line.failed || !line.data) {
+		nt_buffer_free(&line);
+		return;
+	}
+	if (p->terminal) {
+		erase(p);
+		/* One row, however long the name is: a wrapped line could not be erased. */
+		fprintf(stderr, "%.60s, %u s", line.data, p->ticks / TICKS_PER_SECOND);
+		p->drawn = true;
+	} else if (strcmp(p->last, line.data) != 0) {
+		fprintf(stderr, "nmtan: %s\n", line.data);
+		snprintf(p->last, sizeof p->last, "%s", line.data);
+	}
+	nt_buffer_free(&line);
+}
+
+static void *watch(void *user)
+{
+	nt_progress *p = user;
+	pthread_mutex_lock(&p->mutex);
+	while (!p->stop) {
+		struct timespec until;
+		clock_gettime(CLOCK_REALTIME, &until);
+		until.tv_nsec += TICK_NANOSECONDS;
+		until.tv_sec += until.tv_nsec / 1000000000;
+		until.tv_nsec %= 1000000000;
+		pthread_cond_timedwait(&p->wake, &p->mutex, &until);
+		p->ticks++;
+		if (!p->stop && p->terminal && p->ticks >= TICKS_BEFORE_FIRST)
+			draw(p);
+	}
+	erase(p);
+	pthread_mutex_unlock(&p->mutex);
+	return NULL;
+}
+
+nt_progress *nt_progress_start(int mode, const char *label, size_t files)
+{
+	const bool terminal = isatty(STDERR_FILENO);
+	if (mode == NT_PROGRESS_OFF || (mode == NT_PROGRESS_AUTO && !terminal))
+		return NULL;
+	nt_progress *p = calloc(1, sizeof *p);
+	if (!p)
+		return NULL;
+	p->label = label;
+	p->files = files;
+	p->terminal = terminal;
+	pthread_mutex_init(&p->mutex, NULL);
+	pthread_cond_init(&p->wake, NULL);
+	if (pthread_create(&p->thread, NULL, watch, p) != 0) {
+		pthread_cond_destroy(&p->wake);
+		pthread_mutex_destroy(&p->mutex);
+		free(p);
+		return NULL;
+	}
+	return p;
+}
+
+void nt_progress_stage(void *progress, nt_stage stage)
+{
+	nt_progress *p = progress;
+	if (!p)
+		return;
+	pthread_mutex_lock(&p->mutex);
+	p->stage = stage;
+	if (!p->terminal)
+		draw(p);
+	pthread_mutex_unlock(&p->mutex);
+}
+
+void nt_progress_file(nt_progress *p)
+{
+	if (!p)
+		return;
+	pthread_mutex_lock(&p->mutex);
+	p->ended++;
+	if (!p->terminal && p->files > 1)
+		draw(p);
+	pthread_mutex_unlock(&p->mutex);
+}
+
+void nt_progress_hide(nt_progress *p)
+{
+	if (!p)
+		return;
+	pthread_mutex_lock(&p->mutex);
+	erase(p);
+}
+
+void nt_progress_show(nt_progress *p)
+{
+	if (p)
+		pthread_mutex_unlock(&p->mutex);
+}
+
+void nt_progress_stop(nt_progress *p)
+{
+	if (!p)
+		return;
+	pthread_mutex_lock(&p->mutex);
+	p->stop = true;
+	pthread_cond_signal(&p->wake);
+	pthread_mutex_unlock(&p->mutex);
+	pthread_join(p->thread, NULL);
+	pthread_cond_destroy(&p->wake);
+	pthread_mutex_destroy(&p->mutex);
+	free(p);
+}

@@ -1,0 +1,239 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Many inputs: see batch.h. Jobs are handed out one by one, since files differ in size; each that ends
+ * opens the way for those after it to be told about.
+ */
+#include "pipeline/batch.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/buffer.h"
+#include "base/parallel.h"
+
+static nmtan_status make_jobs(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
+{
+	*batch = (nt_batch){.jobs = nt_calloc(count, sizeof *batch->jobs)};
+	if (!batch->jobs)
+		return nt_fail_memory(error);
+	batch->count = count;
+	for (size_t i = 0; i < count; i++)
+		batch->jobs[i].input = inputs[i];
+	return NMTAN_OK;
+}
+
+nmtan_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
+{
+	return make_jobs(batch, inputs, count, error);
+}
+
+nmtan_status nt_batch_pair(nt_batch *batch, const char *input, const char *output, nt_error *error)
+{
+	const nmtan_status status = make_jobs(batch, &input, 1, error);
+	if (status)
+		return status;
+	batch->jobs[0].output = strdup(output);
+	return batch->jobs[0].output ? NMTAN_OK : nt_fail_memory(error);
+}
+
+/* By the name, which needs no look into the file; by content where the name says nothing. */
+static nt_format input_format(const char *path)
+{
+	const nt_format_entry *entry = nt_format_of_path(path);
+	nt_file file;
+	nt_error ignored; /* the run will meet it again, and say it */
+	struct stat info;
+	/* A pipe could be read once only. */
+	if (!entry && stat(path, &info) == 0 && S_ISREG(info.st_mode) &&
+		nt_file_open(&file, path, &ignored) == NMTAN_OK) {
+		entry = nt_format_of_input(file.data, file.size, path);
+		nt_file_close(&file);
+	}
+	return entry ? entry->format : NT_FORMAT_UNKNOWN;
+}
+
+static const char *output_ending(const char *input, nt_format wanted)
+{
+	switch (wanted == NT_FORMAT_UNKNOWN ? input_format(input) : wanted) {
+	case NT_FORMAT_PLY:
+		return ".ply";
+	case NT_FORMAT_GLTF:
+		return ".gltf";
+	default:
+		return ".glb";
+	}
+}
+
+/* DIR/name.ending: the input's ending goes if it is one of a format ("head.v2" keeps its own). */
+static char *output_name(const char *input, const char *directory, nt_format wanted)
+{
+	const char *slash = strrchr(input, '/');
+	const char *base = slash ? slash + 1 : input;
+	const char *dot = strrchr(base, '.');
+	const size_t stem = dot && dot != base && nt_format_of_path(base) ? (size_t)(dot - base)
+									   : strlen(base);
+	const size_t length = strlen(directory);
+	nt_buffer name = {0};
+	nt_buffer_text(&name, directory);
+	if (length && directory[length - 1] != '/')
+		nt_buffer_text(&name, "/");
+	nt_buffer_append(&name, base, stem);
+	nt_buffer_text(&name, output_ending(input, wanted));
+	if (name.failed)
+		nt_buffer_free(&name);
+	return name.data;
+}
+
+static int compare_outputs(const void *a, const void *b)
+{
+	const nt_job *x = *(const nt_job *const *)a, *y = *(const nt_job *const *)b;
+	const int order = strcmp(x->output, y->output);
+	return order ? order : (x > y) - (x < y);
+}
+
+static nmtan_status refuse_equal_outputs(const nt_batch *batch, nt_error *error)
+{
+	const nt_job **sorted = nt_alloc(batch->count, sizeof(const nt_job *));
+	if (!sorted)
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < batch->count; i++)
+		sorted[i] = &batch->jobs[i];
+	qsort(sorted, batch->count, sizeof(const nt_job *), compare_outputs);
+	nmtan_status status = NMTAN_OK;
+	for (size_t i = 1; i < batch->count && !status; i++)
+		if (strcmp(sorted[i - 1]->output, sorted[i]->output) == 0)
+			status = nt_fail(error, NMTAN_ERROR_USAGE, "'%s' and '%s' would both be written to '%s'",
+				sorted[i - 1]->input, sorted[i]->input, sorted[i]->output);
+	free(sorted);
+	return status;
+}
+
+typedef struct identity {
+	dev_t device;
+	ino_t inode;
+	size_t job;
+} identity;
+
+static int compare_identities(const void *a, const void *b)
+{
+	const identity *x = a, *y = b;
+	if (x->device != y->device)
+		return x->device < y->device ? -1 : 1;
+	return (x->inode > y->inode) - (x->inode < y->inode);
+}
+
+/* An output that is a file already must not be the input of another job: who reads it when? Its own
+ * input is nt_run's affair. */
+static nmtan_status refuse_foreign_inputs(const nt_batch *batch, nt_error *error)
+{
+	identity *inputs = nt_alloc(batch->count, sizeof *inputs);
+	if (!inputs)
+		return nt_fail_memory(error);
+	size_t count = 0;
+	struct stat info;
+	for (size_t i = 0; i < batch->count; i++)
+		if (stat(batch->jobs[i].input, &info) == 0)
+			inputs[count++] = (identity){info.st_dev, info.st_ino, i};
+	qsort(inputs, count, sizeof *inputs, compare_identities);
+	nmtan_status status = NMTAN_OK;
+	for (size_t i = 0; i < batch->count && !status; i++) {
+		if (stat(batch->jobs[i].output, &info) != 0)
+			continue;
+		const identity key = {info.st_dev, info.st_ino, i};
+		const identity *found = bsearch(&key, inputs, count, sizeof *inputs, compare_identities);
+		if (found && found->job != i && strcmp(batch->jobs[found->job].input, batch->jobs[i].input))
+			status = nt_fail(error, NMTAN_ERROR_USAGE,
+				"'%s' would be written to '%s', which is the input '%s'", batch->jobs[i].input,
+				batch->jobs[i].output, batch->jobs[found->job].input);
+	}
+	free(inputs);
+	return status;
+}
+
+static nmtan_status make_folder(const char *directory, bool dry_run, nt_error *error)
+{
+	struct stat info;
+	if (stat(directory, &info) == 0) {
+		if (S_ISDIR(info.st_mode))
+			return NMTAN_OK;
+		nt_fail(error, NMTAN_ERROR_IO, "is not a folder");
+		return nt_error_in_file(error, directory);
+	}
+	if (dry_run || mkdir(directory, 0777) == 0)
+		return NMTAN_OK;
+	nt_fail(error, NMTAN_ERROR_IO, "cannot make the folder: %s", strerror(errno));
+	return nt_error_in_file(error, directory);
+}
+
+nmtan_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count,
+	const char *directory, const nt_settings *settings, nt_error *error)
+{
+	nmtan_status status = make_jobs(batch, inputs, count, error);
+	if (status)
+		return status;
+	for (size_t i = 0; i < count; i++) {
+		batch->jobs[i].output = output_name(inputs[i], directory, settings->output_format);
+		if (!batch->jobs[i].output)
+			return nt_fail_memory(error);
+	}
+	status = refuse_equal_outputs(batch, error);
+	if (!status)
+		status = refuse_foreign_inputs(batch, error);
+	return status ? status : make_folder(directory, settings->dry_run, error);
+}
+
+/* Shared by the threads of one batch. */
+typedef struct progress {
+	nt_batch *batch;
+	size_t told; /* jobs before this one have been told about */
+	void (*done)(void *user, const nt_job *job);
+	void *user;
+} progress;
+
+static void run_job(nt_job *job, const nt_settings *settings, nt_runner run)
+{
+	nt_error_clear(&job->error);
+	job->status = run(job->input, job->output, settings, &job->summary, &job->error);
+}
+
+/* Called by one thread at a time. */
+static void tell(progress *p, nt_job *ended)
+{
+	ended->finished = true;
+	for (; p->told < p->batch->count && p->batch->jobs[p->told].finished; p->told++) {
+		nt_job *job = &p->batch->jobs[p->told];
+		p->done(p->user, job);
+		nt_summary_free(&job->summary);
+	}
+}
+
+void nt_batch_run(nt_batch *batch, const nt_settings *settings, nt_runner run,
+	void (*done)(void *user, const nt_job *job), void *user)
+{
+	progress p = {batch, 0, done, user};
+	if (batch->count == 1) {
+		run_job(&batch->jobs[0], settings, run);
+		tell(&p, &batch->jobs[0]);
+		return;
+	}
+	nt_settings each = *settings;
+	each.threads = 1;
+	const unsigned threads = nt_thread_count(settings->threads);
+	const int slots = (int)(threads < batch->count ? threads : batch->count);
+#pragma omp parallel for num_threads(slots) schedule(dynamic, 1)
+	for (size_t i = 0; i < batch->count; i++) {
+		run_job(&batch->jobs[i], &each, run);
+#pragma omp critical(nt_batch_tell)
+		tell(&p, &batch->jobs[i]);
+	}
+}
+
+void nt_batch_free(nt_batch *batch)
+{
+	for (size_t i = 0; i < batch->count; i++)
+		free(batch->jobs[i].output);
+	free(batch->jobs);
+	*batch = (nt_batch){0};
+}

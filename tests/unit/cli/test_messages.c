@@ -1,0 +1,157 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include "cli/exit_code.h"
+#include "cli/messages.h"
+
+static const nt_style plain = {false, 0}, verbose = {false, 1}, coloured = {true, 0};
+
+static void says(nt_buffer *out, const char *expected)
+{
+	assert_false(out->failed);
+	assert_string_equal(out->data, expected);
+	nt_buffer_free(out);
+}
+
+static void an_error_stands_behind_its_line_offset_or_pointer(void **state)
+{
+	(void)state;
+	nt_buffer out = {0};
+	nt_error error;
+	nt_fail_line(&error, NMTAN_ERROR_INPUT, 12, "vertex 9 of 8");
+	nt_error_in_file(&error, "a.obj");
+	nt_message_error(&out, &error, plain);
+	says(&out, "nmtan: a.obj:12: vertex 9 of 8\n");
+
+	nt_fail_offset(&error, NMTAN_ERROR_INPUT, 0, "no magic");
+	nt_error_in_file(&error, "a.glb");
+	nt_message_error(&out, &error, plain);
+	says(&out, "nmtan: a.glb: at byte 0: no magic\n");
+
+	nt_fail_pointer(&error, NMTAN_ERROR_INPUT, "/accessors/3/count", "is -1");
+	nt_error_in_file(&error, "-");
+	nt_message_error(&out, &error, plain);
+	says(&out, "nmtan: standard input: /accessors/3/count: is -1\n");
+
+	nt_fail_memory(&error);
+	nt_message_error(&out, &error, plain);
+	says(&out, "nmtan: out of memory\n");
+
+	nt_fail(&error, NMTAN_ERROR_USAGE, "bad");
+	nt_message_error(&out, &error, coloured);
+	says(&out, "\033[1;31mnmtan:\033[0m bad\n");
+}
+
+static void text_from_files_cannot_steer_the_terminal(void **state)
+{
+	(void)state;
+	nt_buffer out = {0};
+	nt_error error;
+	nt_fail(&error, NMTAN_ERROR_INPUT, "found '%s'", "\033[2J\r\n\x7f\xc3\xa9");
+	nt_error_in_file(&error, "a\tb");
+	nt_message_error(&out, &error, plain);
+	says(&out, "nmtan: a\\x09b: found '\\x1b[2J\\x0d\\x0a\\x7f\xc3\xa9'\n");
+}
+
+static void findings_come_worst_first_and_grouped(void **state)
+{
+	(void)state;
+	nt_finding_list findings = {0};
+	nt_place place;
+	nt_place_clear(&place);
+	for (unsigned i = 0; i < 8; i++) {
+		place.line = i + 1;
+		nt_finding_add(&findings, NT_CODE_MATERIAL_UNKNOWN, &place, 1, "m%u", i);
+		nt_finding_add(&findings, NT_CODE_NORMALS_MADE, &place, 1, "o%u", i);
+	}
+	nt_buffer out = {0};
+	nt_message_findings(&out, &findings, "a.obj", false, plain);
+	assert_non_null(strstr(out.data, "nmtan: a.obj:1: warning: "));
+	assert_non_null(strstr(out.data, "nmtan: a.obj:5: warning: "));
+	assert_null(strstr(out.data, "a.obj:6:"));
+	assert_non_null(strstr(out.data, "nmtan: warning: and 3 more [MATERIAL_UNKNOWN]"));
+	assert_null(strstr(out.data, "NORMALS_MADE"));
+	nt_buffer_free(&out);
+
+	nt_message_findings(&out, &findings, "a.obj", true, verbose);
+	const char *warning = strstr(out.data, "a.obj:8: warning: ");
+	const char *info = strstr(out.data, "a.obj:1: info: ");
+	assert_true(warning && info && warning < info);
+	assert_null(strstr(out.data, "more"));
+	nt_buffer_free(&out);
+	nt_finding_list_free(&findings);
+}
+
+static void success_is_one_line_that_accounts_for_everything(void **state)
+{
+	(void)state;
+	nt_buffer out = {0};
+	nt_settings settings = {0};
+	char output[] = "b.glb";
+	nt_job job = {.input = "a.obj", .output = output};
+	job.summary = (nt_summary){.mesh_count = 3, .solved_count = 2, .triangle_count = 12,
+		.vertex_count = 20, .appended_tangents = 4, .appended_normals = 1, .total_seconds = 0.25};
+	job.summary.skipped[NT_SKIP_NO_TEXCOORDS] = 1;
+	nt_message_success(&out, &job, &settings);
+	char expected[256];
+	snprintf(expected, sizeof expected,
+		"nmtan: a.obj -> b.glb: 2 of 3 primitives, 12 triangles, 20 -> 25 vertices "
+		"(+4 where tangents differ, +1 where made normals differ), skipped 1 (%s), 0.25 s\n",
+		nt_decision_text(NT_SKIP_NO_TEXCOORDS));
+	says(&out, expected);
+
+	job.summary = (nt_summary){.mesh_count = 1, .solved_count = 1, .triangle_count = 1,
+		.vertex_count = 3, .counts = {.repaired_zero = 2, .repaired_sign = 1}};
+	settings.check = true;
+	job.output = NULL;
+	nt_message_success(&out, &job, &settings);
+	says(&out, "nmtan: a.obj: checked, 1 primitive, 1 triangle, 3 vertices, repaired 3 of the "
+		   "tangents, no findings, 0 s\n");
+}
+
+static void timing_names_every_stage(void **state)
+{
+	(void)state;
+	nt_buffer out = {0};
+	nt_summary summary = {.total_seconds = 2, .bytes_read = 5000000000u};
+	summary.seconds[NT_STAGE_PARSE] = 1.5;
+	nt_message_timing(&out, &summary);
+	for (int stage = 0; stage < NT_STAGE_COUNT; stage++)
+		assert_non_null(strstr(out.data, nt_stage_name((nt_stage)stage)));
+	assert_non_null(strstr(out.data, "parse     1500.000\n"));
+	assert_non_null(strstr(out.data, "other      500.000\n"));
+	assert_non_null(strstr(out.data, "5000000000 bytes read"));
+	nt_buffer_free(&out);
+}
+
+static void of_many_exit_codes_the_worst_counts(void **state)
+{
+	(void)state;
+	/* The order of the issue. */
+	static const int order[] = {4, 2, 3, 5, 6, 0};
+	for (unsigned i = 0; i < 6; i++)
+		for (unsigned k = i; k < 6; k++) {
+			assert_int_equal(nt_exit_worse(order[i], order[k]), order[i]);
+			assert_int_equal(nt_exit_worse(order[k], order[i]), order[i]);
+		}
+	assert_int_equal(nt_exit_worse(1, 0), 1);
+	assert_int_equal(nt_exit_code(NMTAN_OK), 0);
+	assert_int_equal(nt_exit_code(NMTAN_ERROR_USAGE), 1);
+	assert_int_equal(nt_exit_code(NMTAN_ERROR_IO), 2);
+	assert_int_equal(nt_exit_code(NMTAN_ERROR_INPUT), 3);
+	assert_int_equal(nt_exit_code(NMTAN_ERROR_MEMORY), 4);
+	assert_int_equal(nt_exit_code(NMTAN_ERROR_INTERNAL), 4);
+	assert_int_equal(nt_exit_code(NMTAN_ERROR_UNSUPPORTED), 5);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(an_error_stands_behind_its_line_offset_or_pointer),
+		cmocka_unit_test(text_from_files_cannot_steer_the_terminal),
+		cmocka_unit_test(findings_come_worst_first_and_grouped),
+		cmocka_unit_test(success_is_one_line_that_accounts_for_everything),
+		cmocka_unit_test(timing_names_every_stage),
+		cmocka_unit_test(of_many_exit_codes_the_worst_counts),
+	};
+	return cmocka_run_group_tests_name("cli/messages", tests, NULL, NULL);
+}

@@ -1,0 +1,292 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include "cli/option_table.h"
+#include "cli/options.h"
+
+enum { MOST_WORDS = 24 };
+
+/* Parses "nmtan" and these words, which end with NULL. */
+static nmtan_status parse(nt_command *command, nt_error *error, const char *const *words)
+{
+	static char *argv[MOST_WORDS + 1];
+	static char name[] = "nmtan";
+	int argc = 0;
+	argv[argc++] = name;
+	for (; *words && argc < MOST_WORDS; words++)
+		argv[argc++] = (char *)(uintptr_t)*words;
+	argv[argc] = NULL;
+	nt_error_clear(error);
+	return nt_options_parse(argc, argv, command, error);
+}
+
+#define WORDS(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+static void accepts(nt_command *command, const char *const *words)
+{
+	nt_error error;
+	if (parse(command, &error, words))
+		fail_msg("refused: %s", error.message);
+}
+
+/* Refused as usage, with this text in the message. */
+static void refuses(const char *text, const char *const *words)
+{
+	nt_command command;
+	nt_error error;
+	assert_int_equal(parse(&command, &error, words), NMTAN_ERROR_USAGE);
+	if (!strstr(error.message, text))
+		fail_msg("'%s' does not say '%s'", error.message, text);
+}
+
+static void no_options_mean_the_defaults(void **state)
+{
+	(void)state;
+	nt_command c;
+	accepts(&c, WORDS("in.obj", "out.glb"));
+	const nt_settings defaults = {.texcoord_set = -1};
+	assert_memory_equal(&c.settings, &defaults, sizeof defaults);
+	assert_int_equal(c.action, NT_ACTION_RUN);
+	assert_int_equal(c.verbosity, 0);
+	assert_int_equal(c.fail_on, NT_FAIL_ON_NEVER);
+	assert_int_equal(c.operand_count, 2);
+	assert_string_equal(c.operands[0], "in.obj");
+	assert_string_equal(c.operands[1], "out.glb");
+}
+
+static void every_option_sets_its_field(void **state)
+{
+	(void)state;
+	nt_command c;
+	accepts(&c, WORDS("--only=needed", "--existing=replace", "--method=lengyel", "--repair=off",
+			    "--normals=smooth", "--uv=3", "--allow-outside", "--bitangents", "--embed",
+			    "--images=none", "--threads=5", "--sync", "--verify", "--dry-run",
+			    "--output-format=gltf", "--timing", "--progress=off", "a", "b"));
+	assert_int_equal(c.settings.only, NT_ONLY_NEEDED);
+	assert_int_equal(c.settings.existing, NT_EXISTING_REPLACE);
+	assert_int_equal(c.settings.method, NMTAN_METHOD_LENGYEL);
+	assert_int_equal(c.settings.repair, NMTAN_REPAIR_OFF);
+	assert_int_equal(c.settings.normals, NT_NORMALS_SMOOTH);
+	assert_int_equal(c.settings.texcoord_set, 3);
+	assert_int_equal(c.settings.images, NT_IMAGES_NONE);
+	assert_int_equal(c.settings.threads, 5);
+	assert_int_equal(c.settings.output_format, NT_FORMAT_GLTF);
+	assert_int_equal(c.progress, NT_PROGRESS_OFF);
+	assert_true(c.settings.allow_outside && c.settings.bitangents && c.settings.embed);
+	assert_true(c.settings.sync && c.settings.verify && c.settings.dry_run && c.timing);
+	accepts(&c, WORDS("-n", "-v", "a", "b"));
+	assert_true(c.settings.no_clobber);
+	assert_int_equal(c.verbosity, 1);
+	accepts(&c, WORDS("--in-place", "-q", "a"));
+	assert_true(c.settings.in_place);
+	assert_int_equal(c.verbosity, -1);
+	accepts(&c, WORDS("--check", "--fail-on=info", "a", "b", "c"));
+	assert_int_equal(c.fail_on, NT_FAIL_ON_INFO);
+	assert_true(c.settings.check);
+}
+
+static void every_word_of_a_choice_is_its_constant(void **state)
+{
+	(void)state;
+	nt_command c;
+	accepts(&c, WORDS("--images=link", "a", "b"));
+	assert_int_equal(c.settings.images, NT_IMAGES_LINK);
+	accepts(&c, WORDS("--images=copy", "a", "b"));
+	assert_int_equal(c.settings.images, NT_IMAGES_COPY);
+	accepts(&c, WORDS("--output-format=ply", "a", "b"));
+	assert_int_equal(c.settings.output_format, NT_FORMAT_PLY);
+	accepts(&c, WORDS("--output-format=glb", "a", "b"));
+	assert_int_equal(c.settings.output_format, NT_FORMAT_GLB);
+	accepts(&c, WORDS("--method=area", "a", "b"));
+	assert_int_equal(c.settings.method, NMTAN_METHOD_AREA);
+	accepts(&c, WORDS("--existing=repair", "a", "b"));
+	assert_int_equal(c.settings.existing, NT_EXISTING_REPAIR);
+	accepts(&c, WORDS("--normals=flat", "a", "b"));
+	assert_int_equal(c.settings.normals, NT_NORMALS_FLAT);
+	accepts(&c, WORDS("--fail-on=never", "a", "b"));
+	assert_int_equal(c.fail_on, NT_FAIL_ON_NEVER);
+	accepts(&c, WORDS("--completion=zsh"));
+	assert_int_equal(c.action, NT_ACTION_COMPLETION_ZSH);
+}
+
+static void values_stand_behind_equals_or_in_the_next_word(void **state)
+{
+	(void)state;
+	nt_command c;
+	accepts(&c, WORDS("--threads", "7", "a", "b"));
+	assert_int_equal(c.settings.threads, 7);
+	accepts(&c, WORDS("-j", "7", "a", "b"));
+	assert_int_equal(c.settings.threads, 7);
+	accepts(&c, WORDS("-nvj7", "a", "b"));
+	assert_int_equal(c.settings.threads, 7);
+	assert_true(c.settings.no_clobber);
+	accepts(&c, WORDS("-d", "there", "a", "b", "c"));
+	assert_string_equal(c.directory, "there");
+	assert_int_equal(c.operand_count, 3);
+	accepts(&c, WORDS("--directory=there", "a"));
+	assert_string_equal(c.directory, "there");
+	accepts(&c, WORDS("--uv", "auto", "a", "b"));
+	assert_int_equal(c.settings.texcoord_set, -1);
+}
+
+static void options_and_names_may_mix_and_two_dashes_end_options(void **state)
+{
+	(void)state;
+	nt_command c;
+	accepts(&c, WORDS("a", "-v", "b", "--timing"));
+	assert_int_equal(c.operand_count, 2);
+	assert_string_equal(c.operands[1], "b");
+	accepts(&c, WORDS("-v", "--", "-a", "--b"));
+	assert_string_equal(c.operands[0], "-a");
+	assert_string_equal(c.operands[1], "--b");
+	accepts(&c, WORDS("-", "-"));
+	assert_string_equal(c.operands[0], "-");
+}
+
+static void the_last_of_repeated_options_counts(void **state)
+{
+	(void)state;
+	nt_command c;
+	accepts(&c, WORDS("--threads=2", "-j3", "a", "b"));
+	assert_int_equal(c.settings.threads, 3);
+}
+
+static void unknown_options_are_refused_by_name(void **state)
+{
+	(void)state;
+	refuses("'--frobnicate'", WORDS("--frobnicate", "a", "b"));
+	refuses("'--frobnicate'", WORDS("--frobnicate=3", "a", "b"));
+	refuses("'--thread'", WORDS("--thread=3", "a", "b"));
+	refuses("'-x'", WORDS("-vxq", "a", "b"));
+	refuses("'-\xc3\xa9'", WORDS("-\xc3\xa9", "a", "b"));
+	refuses("'--Threads'", WORDS("--Threads=3", "a", "b"));
+}
+
+static void bad_values_are_refused_whole(void **state)
+{
+	(void)state;
+	refuses("'8x'", WORDS("--threads=8x", "a", "b"));
+	refuses("'-1'", WORDS("--threads=-1", "a", "b"));
+	refuses("'-1'", WORDS("--threads", "-1", "a", "b"));
+	refuses("'1025'", WORDS("-j1025", "a", "b"));
+	refuses("'99999999999999999999'", WORDS("-j99999999999999999999", "a", "b"));
+	refuses("'=8'", WORDS("-j=8", "a", "b"));
+	refuses("' 8'", WORDS("-j 8", "a", "b"));
+	refuses("'1.5'", WORDS("--uv=1.5", "a", "b"));
+	refuses("''", WORDS("--uv=", "a", "b"));
+	refuses("'aut'", WORDS("--uv=aut", "a", "b"));
+	refuses("'Auto'", WORDS("--only=Auto", "a", "b"));
+	refuses("'auto|needed'", WORDS("--only=auto|needed", "a", "b"));
+	refuses("''", WORDS("--only=", "a", "b"));
+	refuses("auto needed all", WORDS("--only=some", "a", "b"));
+	refuses("''", WORDS("--directory=", "a", "b"));
+}
+
+static void missing_and_superfluous_values_are_refused(void **state)
+{
+	(void)state;
+	refuses("--threads needs a value", WORDS("a", "b", "--threads"));
+	refuses("-d needs a value", WORDS("a", "b", "-d"));
+	refuses("'yes'", WORDS("--verify=yes", "a", "b"));
+	refuses("''", WORDS("--verify=", "a", "b"));
+}
+
+static void options_that_contradict_each_other_are_refused(void **state)
+{
+	(void)state;
+	refuses("--quiet and --verbose", WORDS("-q", "-v", "a", "b"));
+	refuses("--in-place and --no-clobber", WORDS("-n", "--in-place", "a"));
+	refuses("--directory", WORDS("--check", "-d", "x", "a"));
+	refuses("--in-place", WORDS("--check", "--in-place", "a"));
+	refuses("--dry-run", WORDS("--dry-run", "--check", "a"));
+	refuses("--output-format", WORDS("--output-format=ply", "--check", "a"));
+	refuses("'glb'", WORDS("--embed", "--output-format=glb", "a", "b"));
+	refuses("--embed", WORDS("--output-format=gltf", "a", "-"));
+	refuses("--verify", WORDS("--verify", "a", "-"));
+}
+
+static void names_must_be_as_many_as_the_form_takes(void **state)
+{
+	(void)state;
+	nt_command c;
+	nt_error error;
+	assert_int_equal(parse(&c, &error, (const char *const[]){NULL}), NMTAN_ERROR_USAGE);
+	refuses("'a'", WORDS("a"));
+	refuses("'c'", WORDS("a", "b", "c"));
+	refuses("no input", WORDS("--check"));
+	refuses("no input", WORDS("-d", "x"));
+	refuses("'-'", WORDS("-d", "x", "-"));
+	refuses("'-'", WORDS("--in-place", "-"));
+	refuses("'-'", WORDS("--check", "-", "-"));
+	accepts(&c, WORDS("--check", "-"));
+}
+
+static void help_and_version_ask_for_no_names(void **state)
+{
+	(void)state;
+	nt_command c;
+	accepts(&c, WORDS("--help"));
+	assert_int_equal(c.action, NT_ACTION_HELP);
+	accepts(&c, WORDS("-h"));
+	assert_int_equal(c.action, NT_ACTION_HELP);
+	accepts(&c, WORDS("--version", "a"));
+	assert_int_equal(c.action, NT_ACTION_VERSION);
+	refuses("'--nope'", WORDS("--help", "--nope"));
+}
+
+static void texts_name_every_option_that_is_not_hidden(void **state)
+{
+	(void)state;
+	void (*const texts[])(nt_buffer *) = {nt_options_help, nt_options_bash, nt_options_zsh};
+	for (size_t t = 0; t < 3; t++) {
+		nt_buffer out = {0};
+		texts[t](&out);
+		assert_false(out.failed);
+		for (size_t i = 0; i < nt_option_row_count; i++) {
+			const nt_option_row *row = &nt_option_rows[i];
+			char word[64];
+			if (row->kind == NT_OPTION_HEADING)
+				continue;
+			snprintf(word, sizeof word, "--%s%s", row->name, t && row->values ? "=" : "");
+			if (row->help)
+				assert_non_null(strstr(out.data, word));
+			else
+				assert_null(strstr(out.data, t ? "--completion=)" : word));
+		}
+		nt_buffer_free(&out);
+	}
+}
+
+static void help_lines_fit_a_terminal(void **state)
+{
+	(void)state;
+	nt_buffer out = {0};
+	nt_options_help(&out);
+	size_t width = 0;
+	for (size_t i = 0; i < out.size; i++) {
+		width = out.data[i] == '\n' ? 0 : width + 1;
+		assert_true(width <= 100);
+	}
+	assert_int_equal(out.data[out.size - 1], '\n');
+	nt_buffer_free(&out);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(no_options_mean_the_defaults),
+		cmocka_unit_test(every_option_sets_its_field),
+		cmocka_unit_test(every_word_of_a_choice_is_its_constant),
+		cmocka_unit_test(values_stand_behind_equals_or_in_the_next_word),
+		cmocka_unit_test(options_and_names_may_mix_and_two_dashes_end_options),
+		cmocka_unit_test(the_last_of_repeated_options_counts),
+		cmocka_unit_test(unknown_options_are_refused_by_name),
+		cmocka_unit_test(bad_values_are_refused_whole),
+		cmocka_unit_test(missing_and_superfluous_values_are_refused),
+		cmocka_unit_test(options_that_contradict_each_other_are_refused),
+		cmocka_unit_test(names_must_be_as_many_as_the_form_takes),
+		cmocka_unit_test(help_and_version_ask_for_no_names),
+		cmocka_unit_test(texts_name_every_option_that_is_not_hidden),
+		cmocka_unit_test(help_lines_fit_a_terminal),
+	};
+	return cmocka_run_group_tests_name("cli/options", tests, NULL, NULL);
+}

@@ -1,0 +1,202 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include "pipeline/batch.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+
+/* A fresh folder to work in; its name is in `folder`. */
+static char folder[64];
+
+static int enter(void **state)
+{
+	(void)state;
+	snprintf(folder, sizeof folder, "/tmp/nmtan-batch-XXXXXX");
+	return mkdtemp(folder) && chdir(folder) == 0 ? 0 : -1;
+}
+
+static int leave(void **state)
+{
+	(void)state;
+	char command[96];
+	snprintf(command, sizeof command, "rm -rf '%s'", folder);
+	return chdir("/") || system(command);
+}
+
+static void put(const char *path, const char *text)
+{
+	FILE *file = fopen(path, "w");
+	assert_non_null(file);
+	fputs(text, file);
+	fclose(file);
+}
+
+#define INPUTS(...) ((const char *const[]){__VA_ARGS__}), \
+	sizeof((const char *const[]){__VA_ARGS__}) / sizeof(const char *)
+
+static void outputs_have_the_name_of_the_input_and_the_ending_of_the_format(void **state)
+{
+	(void)state;
+	nt_settings settings = {0};
+	nt_batch batch;
+	nt_error error;
+	put("noname", "ply\nformat ascii 1.0\nend_header\n");
+	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "b.PLY", "c.d/e.gltf", "f.glb", "head.v2",
+					       ".glb", "h.drc"),
+				 "out", &settings, &error),
+		NMTAN_OK);
+	assert_string_equal(batch.jobs[0].output, "out/a.glb");
+	assert_string_equal(batch.jobs[1].output, "out/b.ply");
+	assert_string_equal(batch.jobs[2].output, "out/e.gltf");
+	assert_string_equal(batch.jobs[3].output, "out/f.glb");
+	assert_string_equal(batch.jobs[4].output, "out/head.v2.glb");
+	assert_string_equal(batch.jobs[5].output, "out/.glb.glb");
+	assert_string_equal(batch.jobs[6].output, "out/h.glb");
+	nt_batch_free(&batch);
+	struct stat info;
+	assert_int_equal(stat("out", &info), 0);
+	assert_true(S_ISDIR(info.st_mode));
+
+	settings.output_format = NT_FORMAT_PLY;
+	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "b.glb"), "out/", &settings, &error),
+		NMTAN_OK);
+	assert_string_equal(batch.jobs[0].output, "out/a.ply");
+	assert_string_equal(batch.jobs[1].output, "out/b.ply");
+	nt_batch_free(&batch);
+}
+
+static void two_inputs_of_one_output_are_refused_before_anything_is_made(void **state)
+{
+	(void)state;
+	const nt_settings settings = {0};
+	nt_batch batch;
+	nt_error error;
+	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "b.obj", "y/a.glb"), "out2", &settings,
+				 &error),
+		NMTAN_ERROR_USAGE);
+	assert_non_null(strstr(error.message, "x/a.obj"));
+	assert_non_null(strstr(error.message, "y/a.glb"));
+	nt_batch_free(&batch);
+	assert_int_equal(access("out2", F_OK), -1);
+}
+
+static void an_output_that_is_another_input_is_refused(void **state)
+{
+	(void)state;
+	const nt_settings settings = {0};
+	nt_batch batch;
+	nt_error error;
+	put("a.glb", "glTF");
+	assert_int_equal(link("a.glb", "other.ply"), 0);
+	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj", "other.ply"), ".", &settings, &error),
+		NMTAN_ERROR_USAGE);
+	assert_non_null(strstr(error.message, "other.ply"));
+	nt_batch_free(&batch);
+}
+
+static void a_dry_run_makes_no_folder_and_a_file_is_none(void **state)
+{
+	(void)state;
+	nt_settings settings = {.dry_run = true};
+	nt_batch batch;
+	nt_error error;
+	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj"), "out3", &settings, &error), NMTAN_OK);
+	nt_batch_free(&batch);
+	assert_int_equal(access("out3", F_OK), -1);
+	settings.dry_run = false;
+	put("file", "");
+	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj"), "file", &settings, &error),
+		NMTAN_ERROR_IO);
+	assert_string_equal(error.place.file, "file");
+	nt_batch_free(&batch);
+	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj"), "no/where", &settings, &error),
+		NMTAN_ERROR_IO);
+	nt_batch_free(&batch);
+}
+
+/* Stands for the one of run.c, so that this test stands without it. */
+void nt_summary_free(nt_summary *summary)
+{
+	nt_finding_list_free(&summary->findings);
+}
+
+/* Stands for nt_run: the input's first letter says how long it takes, "x" in it that it fails. */
+static unsigned threads_seen;
+
+static nmtan_status fake_run(const char *input, const char *output, const nt_settings *settings,
+	nt_summary *summary, nt_error *error)
+{
+	(void)output;
+#pragma omp atomic write
+	threads_seen = settings->threads;
+	usleep((useconds_t)(input[0] - 'a') * 2000);
+	summary->mesh_count = (size_t)(input[0] - 'a');
+	if (strchr(input, 'x'))
+		return nt_fail(error, NMTAN_ERROR_INPUT, "%s is bad", input);
+	return NMTAN_OK;
+}
+
+typedef struct log {
+	char names[64];
+	size_t meshes, failures;
+} log;
+
+static void note(void *user, const nt_job *job)
+{
+	log *l = user;
+	strcat(l->names, job->input);
+	l->meshes += job->summary.mesh_count;
+	if (job->status) {
+		l->failures++;
+		assert_non_null(strstr(job->error.message, job->input));
+	}
+}
+
+static void every_input_runs_and_is_told_about_in_order(void **state)
+{
+	(void)state;
+	nt_batch batch;
+	nt_error error;
+	for (unsigned threads = 1; threads <= 8; threads += 3) {
+		const nt_settings settings = {.threads = threads, .check = true};
+		log l = {0};
+		assert_int_equal(nt_batch_check(&batch, INPUTS("h1 ", "ax ", "c ", "gx ", "b ", "d ", "a "),
+					 &error),
+			NMTAN_OK);
+		nt_batch_run(&batch, &settings, fake_run, note, &l);
+		assert_string_equal(l.names, "h1 ax c gx b d a ");
+		assert_int_equal(l.meshes, 7 + 0 + 2 + 6 + 1 + 3 + 0);
+		assert_int_equal(l.failures, 2);
+		assert_int_equal(threads_seen, 1);
+		assert_int_equal(batch.jobs[1].status, NMTAN_ERROR_INPUT);
+		nt_batch_free(&batch);
+	}
+}
+
+static void one_input_has_all_threads(void **state)
+{
+	(void)state;
+	nt_batch batch;
+	nt_error error;
+	log l = {0};
+	const nt_settings settings = {.threads = 5};
+	assert_int_equal(nt_batch_pair(&batch, "a", "b", &error), NMTAN_OK);
+	assert_string_equal(batch.jobs[0].output, "b");
+	nt_batch_run(&batch, &settings, fake_run, note, &l);
+	assert_int_equal(threads_seen, 5);
+	nt_batch_free(&batch);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(outputs_have_the_name_of_the_input_and_the_ending_of_the_format),
+		cmocka_unit_test(two_inputs_of_one_output_are_refused_before_anything_is_made),
+		cmocka_unit_test(an_output_that_is_another_input_is_refused),
+		cmocka_unit_test(a_dry_run_makes_no_folder_and_a_file_is_none),
+		cmocka_unit_test(every_input_runs_and_is_told_about_in_order),
+		cmocka_unit_test(one_input_has_all_threads),
+	};
+	return cmocka_run_group_tests_name("pipeline/batch", tests, enter, leave);
+}
