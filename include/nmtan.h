@@ -165,6 +165,8 @@ typedef struct nmtan_counts {
 	size_t degenerate_positions; /* faces with two corners at one position in each half */
 	size_t degenerate_texcoords; /* triangles whose exact UV determinant is zero */
 	size_t mirrored;             /* triangles whose exact UV determinant is negative (v up) */
+	size_t stored_differently;   /* triangles whose orientation differs between texcoords and
+	                                stored_texcoords */
 	size_t folded_quads;         /* quads whose two halves are wound differently in UV space */
 	size_t repaired_zero;        /* tangents that were zero or not of unit length */
 	size_t repaired_not_finite;

@@ -24,7 +24,7 @@ nt_dvec3 nt_unit_normal(const nmtan_mesh *mesh, size_t vertex)
 	return nt_dvec3_normalise(&n) ? n : (nt_dvec3){0, 0, 0};
 }
 
-static int triangle_orientation(const nmtan_mesh *mesh, const uint32_t corners[3], bool stored)
+int nt_triangle_orientation(const nmtan_mesh *mesh, const uint32_t corners[3], bool stored)
 {
 	const float *t[3];
 	for (int k = 0; k < 3; k++) {
@@ -49,11 +49,11 @@ int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool 
 {
 	uint32_t corners[2][3];
 	const unsigned count = nt_face_triangles(mesh, face, first, corners);
-	int signs[2] = {triangle_orientation(mesh, corners[0], stored), 0};
+	int signs[2] = {nt_triangle_orientation(mesh, corners[0], stored), 0};
 	int sign = signs[0];
 	bool differ = false;
 	if (count == 2) {
-		signs[1] = triangle_orientation(mesh, corners[1], stored);
+		signs[1] = nt_triangle_orientation(mesh, corners[1], stored);
 		differ = signs[0] * signs[1] < 0;
 		sign = differ ? larger_half(mesh, corners, stored, signs) : signs[0] ? signs[0] : signs[1];
 	}

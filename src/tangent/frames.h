@@ -31,6 +31,9 @@ typedef struct nt_frame_sum {
 /* Unit normal of a vertex; zero where it has none. */
 nt_dvec3 nt_unit_normal(const nmtan_mesh *mesh, size_t vertex);
 
+/* The exact orientation of one triangle, v up; `stored`: of its stored texture coordinates. */
+int nt_triangle_orientation(const nmtan_mesh *mesh, const uint32_t corners[3], bool stored);
+
 /*
  * The exact orientation of a face, v up: +1, -1, or 0 where it has none. A quad takes the sign of its
  * larger half. `folded` (may be NULL) tells whether the halves differ; `stored`: judged by the stored

@@ -103,11 +103,11 @@ static void count_face(const nmtan_mesh *mesh, size_t face, size_t first, nmtan_
 		degenerate = degenerate && (equal_positions(mesh, c[0], c[1]) ||
 						   equal_positions(mesh, c[1], c[2]) ||
 						   equal_positions(mesh, c[2], c[0]));
-		const int sign = nt_orientation(nt_texcoord(mesh, nt_vertex_of(mesh, c[0])),
-			nt_texcoord(mesh, nt_vertex_of(mesh, c[1])),
-			nt_texcoord(mesh, nt_vertex_of(mesh, c[2])));
+		const int sign = nt_triangle_orientation(mesh, c, false);
 		counts->degenerate_texcoords += sign == 0;
 		counts->mirrored += sign < 0;
+		counts->stored_differently += mesh->stored_texcoords &&
+					      sign != nt_triangle_orientation(mesh, c, true);
 	}
 	counts->degenerate_positions += degenerate;
 }
@@ -156,6 +156,7 @@ static void add_counts(nmtan_counts *sum, const nmtan_counts *part)
 	sum->degenerate_positions += part->degenerate_positions;
 	sum->degenerate_texcoords += part->degenerate_texcoords;
 	sum->mirrored += part->mirrored;
+	sum->stored_differently += part->stored_differently;
 	sum->folded_quads += part->folded_quads;
 	sum->repaired_zero += part->repaired_zero;
 	sum->repaired_not_finite += part->repaired_not_finite;

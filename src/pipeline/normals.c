@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The stage that makes normals: corner normals come from tangent/normals.c; here they become vertices. A
+ * vertex splits where its corners' normals differ: the same splitting as for tangents, with the normal in
+ * the place of the tangent.
+ */
+#include "pipeline/stages.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "tangent/normals.h"
+
+/* What one run of the stage holds; everything is malloc'ed and handed to the arena at the end. */
+typedef struct normal_job {
+	float (*corners)[3];  /* [corner_count] */
+	float (*rows)[4];     /* [corner_count] normals as rows that nmtan_split compares */
+	uint32_t *indices;    /* [corner_count] */
+	uint32_t *sources;    /* [corner_count] */
+	float *normals;       /* [new vertex count][3] */
+} normal_job;
+
+static void free_job(normal_job *job)
+{
+	free(job->corners);
+	free(job->rows);
+	free(job->indices);
+	free(job->sources);
+	free(job->normals);
+}
+
+/* Whether the normal of a corner has to be made. */
+static bool lacks_normal(const nt_mesh *mesh, size_t vertex, nt_normals mode)
+{
+	return mode != NT_NORMALS_AUTO || !mesh->normals ||
+	       (mesh->vertex_lacks && mesh->vertex_lacks[vertex] & NT_LACKS_NORMAL);
+}
+
+static bool any_lacks(const nt_mesh *mesh, nt_normals mode)
+{
+	if (mode != NT_NORMALS_AUTO || !mesh->normals)
+		return true;
+	for (size_t v = 0; mesh->vertex_lacks && v < mesh->vertex_count; v++)
+		if (mesh->vertex_lacks[v] & NT_LACKS_NORMAL)
+			return true;
+	return false;
+}
+
+/* A grown copy of a vertex array in the arena, copies appended; NULL when memory is exhausted. */
+static float *grow_rows(nt_arena *arena, const float *rows, size_t floats, size_t count,
+	const uint32_t *sources, size_t source_count)
+{
+	float *grown = nt_arena_alloc(arena, count + source_count, floats * sizeof *grown);
+	if (!grown)
+		return NULL;
+	memcpy(grown, rows, count * floats * sizeof *grown);
+	for (size_t i = 0; i < source_count; i++)
+		memcpy(grown + (count + i) * floats, rows + (size_t)sources[i] * floats,
+			floats * sizeof *grown);
+	return grown;
+}
+
+static bool grow_mesh(nt_arena *arena, nt_mesh *mesh, const uint32_t *sources, size_t source_count)
+{
+	float **const arrays[] = {&mesh->positions, &mesh->texcoords, &mesh->colors};
+	static const size_t floats[] = {3, 2, 4};
+	for (int i = 0; i < 3 && source_count > 0; i++) {
+		if (!*arrays[i])
+			continue;
+		*arrays[i] = grow_rows(arena, *arrays[i], floats[i], mesh->vertex_count, sources,
+			source_count);
+		if (!*arrays[i])
+			return false;
+	}
+	return true;
+}
+
+static nmtan_status make_corner_normals(const nt_mesh *mesh, nt_normals mode, normal_job *job)
+{
+	nmtan_mesh view = nt_mesh_view(mesh);
+	view.position_stride_bytes = 3 * sizeof(float);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	uint32_t *flat = NULL;
+	if (mode == NT_NORMALS_FLAT && !(flat = nt_calloc(mesh->face_count, sizeof *flat)))
+		return NMTAN_ERROR_MEMORY;
+	const uint32_t *smoothing = mode == NT_NORMALS_FLAT ? flat
+		: mode == NT_NORMALS_SMOOTH ? NULL : mesh->face_smoothing;
+	const nmtan_status status =
+		nt_corner_normals(&view, mesh->corner_count, smoothing, &scratch, job->corners);
+	nt_scratch_free(&scratch);
+	free(flat);
+	return status;
+}
+
+/* Corners keep the normal their vertex has, where it has one. Returns how many were made. */
+static size_t choose_normals(const nt_mesh *mesh, nt_normals mode, normal_job *job)
+{
+	size_t made = 0;
+	for (size_t c = 0; c < mesh->corner_count; c++) {
+		const size_t vertex = mesh->indices ? mesh->indices[c] : c;
+		const bool make = lacks_normal(mesh, vertex, mode);
+		const float *n = make ? job->corners[c] : mesh->normals + 3 * vertex;
+		memcpy(job->rows[c], n, 3 * sizeof(float));
+		job->rows[c][3] = 0.0f;
+		made += make;
+	}
+	return made;
+}
+
+static nmtan_status split_by_normal(nt_scene *scene, nt_mesh *mesh, normal_job *job)
+{
+	const nmtan_mesh view = nt_mesh_view(mesh);
+	nmtan_split_output split = {.indices = job->indices, .sources = job->sources,
+		.source_capacity = mesh->corner_count};
+	const nmtan_status status = nmtan_split(&view, &job->rows[0][0], NULL, &split);
+	if (status)
+		return status;
+	const size_t vertex_count = mesh->vertex_count + split.source_count;
+	job->normals = nt_calloc(vertex_count, 3 * sizeof(float));
+	if (!job->normals || !grow_mesh(&scene->arena, mesh, job->sources, split.source_count))
+		return NMTAN_ERROR_MEMORY;
+	for (size_t v = 0; v < vertex_count; v++)
+		job->normals[3 * v + 2] = 1.0f; /* for vertices that no face uses */
+	for (size_t c = 0; c < mesh->corner_count; c++)
+		memcpy(job->normals + 3 * (size_t)job->indices[c], job->rows[c], 3 * sizeof(float));
+	mesh->vertex_count = vertex_count;
+	return NMTAN_OK;
+}
+
+/* The new arrays become the mesh's. */
+static nmtan_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job, size_t made)
+{
+	mesh->indices = job->indices;
+	mesh->vertex_sources = job->sources;
+	mesh->normals = job->normals;
+	mesh->vertex_lacks = NULL;
+	mesh->tangents = NULL; /* authored for other normals */
+	mesh->normals_made = true;
+	mesh->has_normals = true;
+	uint32_t *indices = job->indices, *sources = job->sources;
+	float *normals = job->normals;
+	job->indices = job->sources = NULL;
+	job->normals = NULL;
+	nt_finding_add(&scene->findings, NT_CODE_NORMALS_MADE, &mesh->place, made, NULL);
+	const bool kept = nt_arena_adopt(&scene->arena, indices) &
+			  nt_arena_adopt(&scene->arena, sources) &
+			  nt_arena_adopt(&scene->arena, normals);
+	return kept ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+}
+
+nmtan_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_error *error)
+{
+	if (!any_lacks(mesh, mode) || mesh->corner_count == 0)
+		return NMTAN_OK;
+	normal_job job = {
+		.corners = nt_alloc(mesh->corner_count, sizeof *job.corners),
+		.rows = nt_alloc(mesh->corner_count, sizeof *job.rows),
+		.indices = nt_alloc(mesh->corner_count, sizeof *job.indices),
+		.sources = nt_alloc(mesh->corner_count, sizeof *job.sources),
+	};
+	nmtan_status status = NMTAN_ERROR_MEMORY;
+	if (job.corners && job.rows && job.indices && job.sources)
+		status = make_corner_normals(mesh, mode, &job);
+	if (!status) {
+		const size_t made = choose_normals(mesh, mode, &job);
+		status = split_by_normal(scene, mesh, &job);
+		if (!status)
+			status = adopt(scene, mesh, &job, made);
+	}
+	free_job(&job);
+	return status ? nt_fail(error, status, "cannot make normals: %s", nmtan_status_text(status))
+		      : NMTAN_OK;
+}

@@ -1,0 +1,227 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * One input from file to file: see run.h. The order of the stages, and nothing else.
+ */
+#include "pipeline/run.h"
+
+#include <string.h>
+#include <time.h>
+#include "pipeline/stages.h"
+
+/* What the stages of one run share. */
+typedef struct run {
+	const char *input_path, *output_path;
+	const nt_settings *settings;
+	nt_summary *summary;
+	nt_error *error;
+	nt_file input;
+	nt_scene scene;
+	const nt_format_entry *reader, *writer; /* writer: NULL with --check */
+	nt_read_options read_options;
+	double stage_begin;
+	nt_stage stage;
+} run;
+
+static double now(void)
+{
+	struct timespec time;
+	clock_gettime(CLOCK_MONOTONIC, &time);
+	return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
+}
+
+/* Books the time since the last call on the stage that ends. */
+static void end_stage(run *r)
+{
+	const double time = now();
+	r->summary->seconds[r->stage] += time - r->stage_begin;
+	r->stage_begin = time;
+}
+
+static void begin_stage(run *r, nt_stage stage)
+{
+	end_stage(r);
+	r->stage = stage;
+	if (r->settings->on_stage)
+		r->settings->on_stage(r->settings->on_stage_user, stage);
+}
+
+static nmtan_status choose_writer(run *r)
+{
+	if (r->settings->check)
+		return NMTAN_OK;
+	if (r->settings->output_format != NT_FORMAT_UNKNOWN)
+		r->writer = nt_format_find(r->settings->output_format);
+	else
+		r->writer = nt_format_of_path(r->output_path);
+	if (!r->writer)
+		return nt_fail(r->error, NMTAN_ERROR_USAGE,
+			"cannot tell the output format from the name \"%s\": expected .gltf, .glb or .ply, "
+			"or --output-format", r->output_path);
+	if (!r->writer->write)
+		return nt_fail(r->error, NMTAN_ERROR_USAGE, "\"%s\": %s cannot be written, only read",
+			r->output_path, r->writer->name);
+	return NMTAN_OK;
+}
+
+static nmtan_status open_scene(run *r)
+{
+	begin_stage(r, NT_STAGE_MAP);
+	nmtan_status status = nt_file_open(&r->input, r->input_path, r->error);
+	if (status)
+		return status;
+	r->summary->bytes_read = r->input.size;
+	r->scene.bytes = r->input.data;
+	r->scene.byte_count = r->input.size;
+
+	begin_stage(r, NT_STAGE_PARSE);
+	r->reader = nt_format_of_input(r->input.data, r->input.size, r->input_path);
+	if (!r->reader)
+		return nt_fail(r->error, NMTAN_ERROR_INPUT,
+			"not recognised: expected OBJ, PLY, glTF or GLB");
+	r->scene.format = r->reader->format;
+	return r->reader->open(&r->scene, &r->read_options, r->error);
+}
+
+static bool is_wanted(const nt_mesh *mesh)
+{
+	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR;
+}
+
+/* Writers of other formats than the input's need every mesh, solved or not. */
+static bool needs_all(const run *r)
+{
+	if (!r->writer)
+		return false;
+	const bool gltf_in = r->reader->format == NT_FORMAT_GLTF || r->reader->format == NT_FORMAT_GLB;
+	const bool gltf_out = r->writer->format == NT_FORMAT_GLTF || r->writer->format == NT_FORMAT_GLB;
+	return !(gltf_in && gltf_out) && r->reader->format != r->writer->format;
+}
+
+static nmtan_status load_meshes(run *r)
+{
+	begin_stage(r, NT_STAGE_DECODE);
+	const bool all = needs_all(r);
+	for (size_t i = 0; r->reader->load && i < r->scene.mesh_count; i++) {
+		nt_mesh *mesh = &r->scene.meshes[i];
+		if (!is_wanted(mesh) && !(all && mesh->triangles && mesh->has_positions))
+			continue;
+		const nmtan_status status = r->reader->load(&r->scene, mesh, &r->read_options, r->error);
+		if (status)
+			return status;
+	}
+	return NMTAN_OK;
+}
+
+static nmtan_status make_normals(run *r)
+{
+	begin_stage(r, NT_STAGE_NORMALS);
+	for (size_t i = 0; i < r->scene.mesh_count; i++) {
+		nt_mesh *mesh = &r->scene.meshes[i];
+		if (!is_wanted(mesh))
+			continue;
+		const nmtan_status status =
+			nt_stage_normals(&r->scene, mesh, r->settings->normals, r->error);
+		if (status)
+			return status;
+	}
+	return NMTAN_OK;
+}
+
+static void count_decisions(run *r)
+{
+	r->summary->mesh_count = r->scene.mesh_count;
+	for (size_t i = 0; i < r->scene.mesh_count; i++)
+		if (!is_wanted(&r->scene.meshes[i]))
+			r->summary->skipped[r->scene.meshes[i].decision]++;
+}
+
+static nmtan_status read_scene(run *r)
+{
+	nmtan_status status = open_scene(r);
+	if (status)
+		return nt_error_in_file(r->error, r->input_path);
+
+	/* glTF without normals is left alone unless normals are asked for; the other formats get them */
+	const bool gltf = r->reader->format == NT_FORMAT_GLTF || r->reader->format == NT_FORMAT_GLB;
+	nt_select(&r->scene, r->settings->only, r->settings->existing,
+		!gltf || r->settings->normals != NT_NORMALS_AUTO);
+	count_decisions(r);
+	status = load_meshes(r);
+	return status ? nt_error_in_file(r->error, r->input_path) : NMTAN_OK;
+}
+
+static nmtan_status write_scene(run *r)
+{
+	begin_stage(r, NT_STAGE_WRITE);
+	const nt_settings *s = r->settings;
+	const nt_output_options output_options = {.no_clobber = s->no_clobber, .sync = s->sync};
+	const nt_write_options options = {
+		.format = r->writer->format,
+		.path = r->output_path,
+		.embed = s->embed,
+		.bitangents = s->bitangents,
+		.images = s->images,
+		.allow_outside = s->allow_outside,
+	};
+	nt_output *output = NULL;
+	nmtan_status status = nt_output_create(&output, &output_options, r->error);
+	if (!status && !s->in_place)
+		status = nt_output_protect(output, r->input_path, r->error);
+	if (!status)
+		status = r->writer->write(&r->scene, &options, output, r->error);
+	if (status || s->dry_run) {
+		nt_output_abort(output);
+		return status;
+	}
+	return nt_output_commit(output, r->error);
+}
+
+static nmtan_status run_stages(run *r)
+{
+	nmtan_status status = choose_writer(r);
+	if (!status)
+		status = read_scene(r);
+	if (!status)
+		status = make_normals(r);
+	if (!status) {
+		begin_stage(r, NT_STAGE_TANGENTS);
+		status = nt_stage_tangents(&r->scene, r->settings,
+			r->writer ? r->writer->format : NT_FORMAT_UNKNOWN, r->summary, r->error);
+		nt_error_in_file(r->error, r->input_path);
+	}
+	if (!status && r->writer)
+		status = write_scene(r);
+	return status;
+}
+
+nmtan_status nt_run(const char *input, const char *output, const nt_settings *settings,
+	nt_summary *summary, nt_error *error)
+{
+	memset(summary, 0, sizeof *summary);
+	nt_error_clear(error);
+	run r = {.input_path = input, .output_path = output, .settings = settings, .summary = summary,
+		.error = error};
+	r.read_options = (nt_read_options){.texcoord_set = settings->texcoord_set,
+		.allow_outside = settings->allow_outside, .threads = settings->threads};
+	const double begin = now();
+	r.stage_begin = begin;
+	nt_scene_init(&r.scene, input);
+
+	nmtan_status status = run_stages(&r);
+
+	/* what was found belongs to the caller, also after a failure */
+	end_stage(&r);
+	summary->findings = r.scene.findings;
+	r.scene.findings = (nt_finding_list){0};
+	nt_scene_free(&r.scene);
+	nt_file_close(&r.input);
+	summary->total_seconds = now() - begin;
+	if (!status && summary->findings.failed)
+		status = nt_fail_memory(error);
+	return status;
+}
+
+void nt_summary_free(nt_summary *summary)
+{
+	nt_finding_list_free(&summary->findings);
+}

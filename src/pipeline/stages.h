@@ -1,0 +1,19 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The stages between reading and writing, each on one mesh of a scene.
+ */
+#ifndef NT_PIPELINE_STAGES_H
+#define NT_PIPELINE_STAGES_H
+
+#include "pipeline/run.h"
+
+/* Makes the normals a mesh lacks (all of them when `mode` is not AUTO); vertices whose corners get
+ * different normals are split, copies appended. Sets mesh->normals_made where something was made. */
+nmtan_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_error *error);
+
+/* Solves and splits every mesh whose decision says so; counts and findings go to the summary. Large
+ * meshes take all threads one after the other, small ones run side by side. */
+nmtan_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
+	nt_summary *summary, nt_error *error);
+
+#endif

@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The stage that computes: tangents per corner, then the vertices they split.
+ *
+ * A mesh large enough to occupy all threads is solved alone; smaller ones are solved side by side, each by
+ * one thread with a workspace of its own. Each mesh's result depends on that mesh only, so the order does
+ * not show.
+ */
+#include "pipeline/stages.h"
+
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+#include "base/parallel.h"
+
+/* Corners from which one mesh is worth all threads. */
+enum { LARGE_CORNERS = 3 * 128 * 1024 };
+
+typedef struct tangent_job {
+	nt_scene *scene;
+	const nt_settings *settings;
+	bool round_trip;    /* the output stores 1 - v */
+	nt_mesh **meshes;   /* the ones to solve */
+	nmtan_status *statuses;
+	size_t count;
+} tangent_job;
+
+static bool is_gltf(nt_format format)
+{
+	return format == NT_FORMAT_GLTF || format == NT_FORMAT_GLB;
+}
+
+/* The texture coordinates as the output will hold them, v up: v = 1 - v' is rounded there. NULL and
+ * *status OK where they are stored as they are. */
+static float *stored_texcoords(const tangent_job *job, const nt_mesh *mesh, nmtan_status *status)
+{
+	if (!job->round_trip)
+		return NULL;
+	float *stored = nt_alloc(mesh->vertex_count, 2 * sizeof *stored);
+	if (!stored) {
+		*status = NMTAN_ERROR_MEMORY;
+		return NULL;
+	}
+	/* OBJ and PLY to glTF: -(1 - v); glTF, read as -v, to PLY: 1 + (-v) */
+	const bool from_gltf = is_gltf(job->scene->format);
+	for (size_t v = 0; v < mesh->vertex_count; v++) {
+		stored[2 * v] = mesh->texcoords[2 * v];
+		const float t = mesh->texcoords[2 * v + 1];
+		stored[2 * v + 1] = from_gltf ? 1.0f + t : -(1.0f - t);
+	}
+	return stored;
+}
+
+/* Whether the authored tangents of a face are valid: finite, unit, w the same and of the right sign. */
+static bool face_is_valid(const nt_mesh *mesh, const uint32_t *vertices, size_t size)
+{
+	const float w = mesh->tangents[4 * (size_t)vertices[0] + 3];
+	for (size_t k = 0; k < size; k++) {
+		const float *t = mesh->tangents + 4 * (size_t)vertices[k];
+		const double squared = (double)t[0] * t[0] + (double)t[1] * t[1] + (double)t[2] * t[2];
+		if (!(fabs(sqrt(squared) - 1.0) <= 0.00674) || t[3] != w || (w != 1.0f && w != -1.0f))
+			return false;
+	}
+	const float *uv = mesh->texcoords;
+	const int sign = nmtan_orientation(uv + 2 * (size_t)vertices[0], uv + 2 * (size_t)vertices[1],
+		uv + 2 * (size_t)vertices[2]);
+	return sign == 0 || w == (float)sign;
+}
+
+/* --existing=repair: corners of valid faces take back their authored tangent. glTF has triangles only. */
+static void restore_valid(const nt_mesh *mesh, float *corner_tangents)
+{
+	for (size_t face = 0; face < mesh->face_count; face++) {
+		uint32_t vertices[3];
+		for (size_t k = 0; k < 3; k++)
+			vertices[k] = mesh->indices ? mesh->indices[3 * face + k] : (uint32_t)(3 * face + k);
+		if (!face_is_valid(mesh, vertices, 3))
+			continue;
+		for (size_t k = 0; k < 3; k++)
+			memcpy(corner_tangents + 4 * (3 * face + k),
+				mesh->tangents + 4 * (size_t)vertices[k], 4 * sizeof(float));
+	}
+}
+
+static nmtan_status split_mesh(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options)
+{
+	/* worst case sizes; pages that are not needed are never touched */
+	const size_t capacity = mesh->corner_count;
+	nt_split split = {
+		.indices = nt_alloc(capacity, sizeof *split.indices),
+		.sources = nt_alloc(capacity, sizeof *split.sources),
+		.vertex_tangents = nt_alloc(mesh->vertex_count + capacity, 4 * sizeof(float)),
+	};
+	nmtan_status status = NMTAN_ERROR_MEMORY;
+	nmtan_split_output output = {.indices = split.indices, .sources = split.sources,
+		.source_capacity = capacity, .vertex_tangents = split.vertex_tangents};
+	if (split.indices && split.sources && split.vertex_tangents)
+		status = nmtan_split(view, mesh->corner_tangents, options, &output);
+	if (status) {
+		free(split.indices);
+		free(split.sources);
+		free(split.vertex_tangents);
+		return status;
+	}
+	split.source_count = output.source_count;
+	mesh->split = split;
+	return NMTAN_OK;
+}
+
+static nmtan_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned threads,
+	nmtan_workspace *workspace)
+{
+	const nmtan_options options = {.method = job->settings->method,
+		.repair = job->settings->repair, .threads = threads, .workspace = workspace};
+	nmtan_status status = NMTAN_OK;
+	float *stored = stored_texcoords(job, mesh, &status);
+	if (status)
+		return status;
+	nmtan_mesh view = nt_mesh_view(mesh);
+	view.stored_texcoords = stored;
+	nmtan_output output = {.tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float))};
+	status = output.tangents ? nmtan_tangents(&view, &options, &output) : NMTAN_ERROR_MEMORY;
+	free(stored);
+	if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
+		restore_valid(mesh, output.tangents);
+	mesh->corner_tangents = output.tangents;
+	mesh->counts = output.counts;
+	if (!status && !job->settings->check)
+		status = split_mesh(mesh, &view, &options);
+	if (!job->settings->check) {
+		free(mesh->corner_tangents);
+		mesh->corner_tangents = NULL;
+	}
+	return status;
+}
+
+static void solve_large(tangent_job *job)
+{
+	for (size_t i = 0; i < job->count; i++)
+		if (job->meshes[i]->corner_count >= LARGE_CORNERS)
+			job->statuses[i] = solve_mesh(job, job->meshes[i], job->settings->threads, NULL);
+}
+
+static void solve_small(tangent_job *job)
+{
+	const unsigned threads = nt_thread_count(job->settings->threads);
+#pragma omp parallel num_threads(threads) if (threads > 1 && job->count > 1)
+	{
+		nmtan_workspace *workspace = nmtan_workspace_create(NULL);
+#pragma omp for schedule(dynamic)
+		for (size_t i = 0; i < job->count; i++)
+			if (job->meshes[i]->corner_count < LARGE_CORNERS)
+				job->statuses[i] = solve_mesh(job, job->meshes[i], 1, workspace);
+		nmtan_workspace_destroy(workspace);
+	}
+}
+
+/* Results live as long as the scene. */
+static bool keep_results(nt_scene *scene, nt_mesh *mesh)
+{
+	return nt_arena_adopt(&scene->arena, mesh->corner_tangents) &
+	       nt_arena_adopt(&scene->arena, mesh->split.indices) &
+	       nt_arena_adopt(&scene->arena, mesh->split.sources) &
+	       nt_arena_adopt(&scene->arena, mesh->split.vertex_tangents);
+}
+
+static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
+{
+	const nmtan_counts *c = &mesh->counts;
+	const struct {
+		nt_code code;
+		size_t count;
+	} rows[] = {
+		{NT_CODE_UV_DEGENERATE_TRIANGLE, c->degenerate_texcoords},
+		{NT_CODE_POS_DEGENERATE_TRIANGLE, c->degenerate_positions},
+		{NT_CODE_UV_FOLDED_QUAD, c->folded_quads},
+		{NT_CODE_UV_ROUNDED_AWAY, c->stored_differently},
+		{NT_CODE_TAN_REPAIRED, c->repaired_zero + c->repaired_not_finite +
+						c->repaired_parallel + c->repaired_sign},
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+		if (rows[i].count)
+			nt_finding_add(list, rows[i].code, &mesh->place, rows[i].count, NULL);
+}
+
+static void add_counts(nt_summary *summary, const nt_mesh *mesh)
+{
+	const nmtan_counts *c = &mesh->counts;
+	nmtan_counts *sum = &summary->counts;
+	size_t quads = mesh->corner_count - 3 * mesh->face_count;
+	summary->solved_count++;
+	summary->triangle_count += mesh->face_count + quads;
+	summary->vertex_count += mesh->source_vertex_count;
+	summary->appended_normals += mesh->vertex_count - mesh->source_vertex_count;
+	summary->appended_tangents += mesh->split.source_count;
+	sum->degenerate_positions += c->degenerate_positions;
+	sum->degenerate_texcoords += c->degenerate_texcoords;
+	sum->mirrored += c->mirrored;
+	sum->stored_differently += c->stored_differently;
+	sum->folded_quads += c->folded_quads;
+	sum->repaired_zero += c->repaired_zero;
+	sum->repaired_not_finite += c->repaired_not_finite;
+	sum->repaired_parallel += c->repaired_parallel;
+	sum->repaired_sign += c->repaired_sign;
+}
+
+static nmtan_status finish(const tangent_job *job, nt_summary *summary, nt_error *error)
+{
+	bool kept = true;
+	for (size_t i = 0; i < job->count; i++)
+		kept = keep_results(job->scene, job->meshes[i]) && kept;
+	if (!kept)
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < job->count; i++) {
+		const nt_mesh *mesh = job->meshes[i];
+		if (job->statuses[i]) {
+			nt_fail(error, job->statuses[i], "cannot compute tangents: %s",
+				nmtan_status_text(job->statuses[i]));
+			error->place = mesh->place;
+			return job->statuses[i];
+		}
+		add_findings(&job->scene->findings, mesh);
+		add_counts(summary, mesh);
+	}
+	return NMTAN_OK;
+}
+
+nmtan_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
+	nt_summary *summary, nt_error *error)
+{
+	tangent_job job = {.scene = scene, .settings = settings,
+		.round_trip = output != NT_FORMAT_UNKNOWN && is_gltf(scene->format) != is_gltf(output),
+		.meshes = nt_alloc(scene->mesh_count, sizeof *job.meshes),
+		.statuses = nt_calloc(scene->mesh_count, sizeof *job.statuses)};
+	nmtan_status status = NMTAN_OK;
+	if (!job.meshes || !job.statuses) {
+		status = nt_fail_memory(error);
+	} else {
+		for (size_t i = 0; i < scene->mesh_count; i++)
+			if (scene->meshes[i].decision == NT_DECISION_SOLVE ||
+				scene->meshes[i].decision == NT_DECISION_REPAIR)
+				job.meshes[job.count++] = &scene->meshes[i];
+		solve_large(&job);
+		solve_small(&job);
+		status = finish(&job, summary, error);
+	}
+	free(job.meshes);
+	free(job.statuses);
+	return status;
+}
