@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Every misuse of the API has its status.
+ */
+#include "test.h"
+#include <math.h>
+#include "nmtan.h"
+
+static const float rows[4][8] = {{0, 0, 0, 0, 0, 1, 0, 0}, {1, 0, 0, 0, 0, 1, 1, 0},
+	{1, 1, 0, 0, 0, 1, 1, 1}, {0, 1, 0, 0, 0, 1, 0, 1}};
+static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
+
+/* The same square as interleaved rows of position, normal and texture coordinates. */
+static nmtan_mesh square(void)
+{
+	return (nmtan_mesh){.face_count = 2, .vertex_count = 4, .indices = indices,
+		.positions = rows[0], .position_stride_bytes = 32, .normals = rows[0] + 3,
+		.normal_stride_bytes = 32, .texcoords = rows[0] + 6, .texcoord_stride_bytes = 32};
+}
+
+static nmtan_status solve(const nmtan_mesh *mesh, const nmtan_options *options)
+{
+	float tangents[8][4];
+	nmtan_output output = {.tangents = &tangents[0][0]};
+	return nmtan_tangents(mesh, options, &output);
+}
+
+static void missing_arrays_are_argument_errors(void **state)
+{
+	(void)state;
+	float tangents[8][4];
+	nmtan_output output = {0};
+	nmtan_mesh mesh = square();
+	assert_int_equal(nmtan_tangents(&mesh, NULL, &output), NMTAN_ERROR_ARGUMENT);
+	output.tangents = &tangents[0][0];
+	assert_int_equal(nmtan_tangents(NULL, NULL, &output), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(nmtan_tangents(&mesh, NULL, NULL), NMTAN_ERROR_ARGUMENT);
+	mesh.positions = NULL;
+	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
+	mesh = square();
+	mesh.normals = NULL;
+	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
+	mesh = square();
+	mesh.texcoords = NULL;
+	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
+}
+
+static void strides_must_hold_a_row_and_keep_alignment(void **state)
+{
+	(void)state;
+	nmtan_mesh mesh = square();
+	assert_int_equal(solve(&mesh, NULL), NMTAN_OK);
+	mesh.position_stride_bytes = 8;
+	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
+	mesh = square();
+	mesh.texcoord_stride_bytes = 30;
+	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
+}
+
+static void options_out_of_range_are_argument_errors(void **state)
+{
+	(void)state;
+	const nmtan_mesh mesh = square();
+	const nmtan_options wrong[] = {
+		{.method = (nmtan_method)99},
+		{.repair = (nmtan_repair)2},
+		{.path = (nmtan_path)3},
+		{.isa = (nmtan_isa)9},
+		{.angular_threshold_degrees = -1},
+		{.angular_threshold_degrees = 181},
+		{.angular_threshold_degrees = NAN},
+	};
+	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+		assert_int_equal(solve(&mesh, &wrong[i]), NMTAN_ERROR_ARGUMENT);
+}
+
+static void faces_and_indices_are_checked(void **state)
+{
+	(void)state;
+	nmtan_mesh mesh = square();
+	const uint32_t beyond[6] = {0, 1, 2, 0, 2, 4};
+	mesh.indices = beyond;
+	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_INDEX);
+	mesh.indices = NULL;
+	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_INDEX); /* 6 corners, 4 vertices */
+	const uint8_t five[1] = {5}, quad[1] = {4};
+	mesh.face_count = 1;
+	mesh.face_sizes = five;
+	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_FACE_SIZE);
+	mesh.face_sizes = quad;
+	assert_int_equal(solve(&mesh, NULL), NMTAN_OK);
+	mesh.face_count = NMTAN_MAX_FACES + 1;
+	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_TOO_LARGE);
+	mesh = square();
+	mesh.face_count = 0;
+	assert_int_equal(solve(&mesh, NULL), NMTAN_OK);
+}
+
+static void split_checks_its_arguments_too(void **state)
+{
+	(void)state;
+	const nmtan_mesh mesh = square();
+	float tangents[6][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {-1, 0, 0, 1}, {1, 0, 0, 1},
+		{1, 0, 0, 1}};
+	uint32_t out[6], sources[1];
+	nmtan_split_output split = {.indices = out};
+	assert_int_equal(nmtan_split(&mesh, NULL, NULL, &split), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], NULL, &split), NMTAN_ERROR_TOO_LARGE);
+	split.source_capacity = 1;
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], NULL, &split), NMTAN_ERROR_ARGUMENT);
+	split.sources = sources;
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], NULL, &split), NMTAN_OK);
+	assert_int_equal(split.source_count, 1);
+	assert_int_equal(sources[0], 0);
+	assert_int_equal(out[3], 4);
+}
+
+/* An allocator that gives out `left` blocks and then none; it knows how much is out. */
+typedef struct limited {
+	size_t left, bytes_out;
+} limited;
+
+static void *limited_allocate(void *user, size_t size)
+{
+	limited *l = user;
+	if (l->left == 0)
+		return NULL;
+	l->left--;
+	l->bytes_out += size;
+	return malloc(size);
+}
+
+static void limited_release(void *user, void *block, size_t size)
+{
+	((limited *)user)->bytes_out -= size;
+	free(block);
+}
+
+static void exhausted_memory_is_told_and_nothing_leaks(void **state)
+{
+	(void)state;
+	const nmtan_mesh mesh = square();
+	for (int method = NMTAN_METHOD_MIKKTSPACE; method <= NMTAN_METHOD_LENGYEL; method++) {
+		nmtan_status status = NMTAN_ERROR_MEMORY;
+		for (size_t blocks = 0; status != NMTAN_OK; blocks++) {
+			limited l = {.left = blocks};
+			const nmtan_allocator allocator = {limited_allocate, limited_release, &l};
+			const nmtan_options options = {.method = (nmtan_method)method,
+				.allocator = &allocator};
+			status = solve(&mesh, &options);
+			assert_int_equal(l.bytes_out, 0);
+			assert_true(status == NMTAN_OK || status == NMTAN_ERROR_MEMORY);
+			assert_true(blocks > 0 || status == NMTAN_ERROR_MEMORY);
+		}
+	}
+}
+
+/* A workspace keeps its memory from call to call and gives it back at its end. */
+static void workspace_is_reused_and_returned(void **state)
+{
+	(void)state;
+	const nmtan_mesh mesh = square();
+	limited l = {.left = 100};
+	const nmtan_allocator allocator = {limited_allocate, limited_release, &l};
+	nmtan_workspace *workspace = nmtan_workspace_create(&allocator);
+	assert_non_null(workspace);
+	const nmtan_options options = {.workspace = workspace};
+	assert_int_equal(solve(&mesh, &options), NMTAN_OK);
+	const size_t left = l.left;
+	for (int i = 0; i < 5; i++)
+		assert_int_equal(solve(&mesh, &options), NMTAN_OK);
+	assert_int_equal(l.left, left);
+	nmtan_workspace_destroy(workspace);
+	nmtan_workspace_destroy(NULL);
+	assert_int_equal(l.bytes_out, 0);
+}
+
+static void statuses_have_texts(void **state)
+{
+	(void)state;
+	for (int status = NMTAN_OK; status <= NMTAN_ERROR_INTERNAL; status++)
+		assert_string_not_equal(nmtan_status_text((nmtan_status)status), "unknown status");
+	assert_string_equal(nmtan_status_text((nmtan_status)1000), "unknown status");
+	assert_string_equal(nmtan_version(), NMTAN_VERSION_STRING);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(missing_arrays_are_argument_errors),
+		cmocka_unit_test(strides_must_hold_a_row_and_keep_alignment),
+		cmocka_unit_test(options_out_of_range_are_argument_errors),
+		cmocka_unit_test(faces_and_indices_are_checked),
+		cmocka_unit_test(split_checks_its_arguments_too),
+		cmocka_unit_test(exhausted_memory_is_told_and_nothing_leaks),
+		cmocka_unit_test(workspace_is_reused_and_returned),
+		cmocka_unit_test(statuses_have_texts),
+	};
+	return cmocka_run_group_tests_name("api/arguments", tests, NULL, NULL);
+}

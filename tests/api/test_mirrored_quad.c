@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the library is for, on the smallest mesh that shows it: two unit quads side by side in the plane
+ * z = 0. The texture runs to the right on the left quad and is mirrored on the right one, as an artist
+ * does with the two halves of a face. The vertices on the seam have one position, one normal and one UV,
+ * but two tangents.
+ *
+ *     3 ---- 2 ---- 5        u:  0      1      0
+ *     |      |      |
+ *     0 ---- 1 ---- 4
+ */
+#include "test.h"
+#include "nmtan.h"
+
+static const float positions[6][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}};
+static const float normals[6][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+static const float texcoords[6][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}, {0, 1}};
+static const uint32_t triangles[12] = {0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2};
+
+static const nmtan_mesh mesh = {
+	.face_count = 4,
+	.vertex_count = 6,
+	.indices = triangles,
+	.positions = &positions[0][0],
+	.normals = &normals[0][0],
+	.texcoords = &texcoords[0][0],
+};
+
+/* On the left u grows along +x, and B = cross(N, T) w must run along +y: w = +1. On the right u grows
+ * along -x while v still grows along +y: cross((0,0,1), (-1,0,0)) = (0,-1,0), so w = -1. */
+static void tangents_follow_u_and_w_tells_the_mirrored_side(void **state)
+{
+	const nmtan_options *options = *state;
+	float tangents[12][4];
+	nmtan_output output = {.tangents = &tangents[0][0]};
+	assert_int_equal(nmtan_tangents(&mesh, options, &output), NMTAN_OK);
+	for (int c = 0; c < 12; c++) {
+		const float left[4] = {1, 0, 0, 1}, right[4] = {-1, 0, 0, -1};
+		const float *expected = c < 6 ? left : right;
+		for (int i = 0; i < 4; i++)
+			assert_true(tangents[c][i] == expected[i]);
+	}
+	assert_int_equal(output.counts.mirrored, 2);
+	assert_int_equal(output.counts.degenerate_texcoords, 0);
+}
+
+/* The two vertices of the seam, 1 and 2, get a copy each, in the order in which the right side meets
+ * them; nothing else changes. */
+static void seam_vertices_are_split_and_the_rest_stays(void **state)
+{
+	const nmtan_options *options = *state;
+	float tangents[12][4], vertex_tangents[18][4];
+	uint32_t indices[12], sources[12];
+	nmtan_output output = {.tangents = &tangents[0][0]};
+	assert_int_equal(nmtan_tangents(&mesh, options, &output), NMTAN_OK);
+	nmtan_split_output split = {.indices = indices, .sources = sources, .source_capacity = 12,
+		.vertex_tangents = &vertex_tangents[0][0]};
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], options, &split), NMTAN_OK);
+	const uint32_t expected[12] = {0, 1, 2, 0, 2, 3, 6, 4, 5, 6, 5, 7};
+	assert_int_equal(split.source_count, 2);
+	assert_int_equal(sources[0], 1);
+	assert_int_equal(sources[1], 2);
+	assert_memory_equal(indices, expected, sizeof expected);
+	for (int c = 0; c < 12; c++)
+		assert_memory_equal(vertex_tangents[indices[c]], tangents[c], sizeof tangents[c]);
+}
+
+int main(void)
+{
+	static nmtan_options mikktspace = {0};
+	static nmtan_options raw = {.repair = NMTAN_REPAIR_OFF};
+	static nmtan_options area = {.method = NMTAN_METHOD_AREA};
+	static nmtan_options lengyel = {.method = NMTAN_METHOD_LENGYEL};
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_prestate(tangents_follow_u_and_w_tells_the_mirrored_side, &mikktspace),
+		cmocka_unit_test_prestate(tangents_follow_u_and_w_tells_the_mirrored_side, &raw),
+		cmocka_unit_test_prestate(tangents_follow_u_and_w_tells_the_mirrored_side, &area),
+		cmocka_unit_test_prestate(tangents_follow_u_and_w_tells_the_mirrored_side, &lengyel),
+		cmocka_unit_test_prestate(seam_vertices_are_split_and_the_rest_stays, &mikktspace),
+		cmocka_unit_test_prestate(seam_vertices_are_split_and_the_rest_stays, &area),
+	};
+	return cmocka_run_group_tests_name("api/mirrored_quad", tests, NULL, NULL);
+}
