@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Repair: what must hold on any mesh, and what is left alone. The meshes are the goldens (slivers,
+ * collapsed triangles, soups) and hand-made ones whose MikkTSpace answer is known to be unusable.
+ */
+#include "test.h"
+#include <math.h>
+#include <stdio.h>
+#include "golden.h"
+#include "tangent/frames.h"
+#include "topology/corners.h"
+
+/* |T| within 32 units in the last place of 1, finite. */
+static bool is_unit(const float *t)
+{
+	const double squared = (double)t[0] * t[0] + (double)t[1] * t[1] + (double)t[2] * t[2];
+	return isfinite(squared) && fabs(squared - 1.0) <= 33 * 1.1920929e-7;
+}
+
+static bool is_parallel(const float *t, const float *n)
+{
+	const double x = (double)n[1] * t[2] - (double)n[2] * t[1];
+	const double y = (double)n[2] * t[0] - (double)n[0] * t[2];
+	const double z = (double)n[0] * t[1] - (double)n[1] * t[0];
+	const double squared = (double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2];
+	return squared > 0 && isfinite(squared) && x * x + y * y + z * z < 1e-6 * squared;
+}
+
+typedef struct tally {
+	size_t corners, repaired;
+} tally;
+
+/* Solves a mesh with and without repair and checks every promise of nmtan.h on every face. */
+static void check_promises(const nmtan_mesh *given, size_t corner_count, nmtan_method method, tally *sum)
+{
+	nmtan_mesh mesh = *given;
+	mesh.position_stride_bytes = mesh.normal_stride_bytes = 12;
+	mesh.texcoord_stride_bytes = 8;
+	nmtan_output raw = {.tangents = malloc(16 * corner_count)};
+	nmtan_output mended = {.tangents = malloc(16 * corner_count)};
+	const nmtan_options off = {.method = method, .repair = NMTAN_REPAIR_OFF};
+	const nmtan_options on = {.method = method};
+	assert_int_equal(nmtan_tangents(&mesh, &off, &raw), NMTAN_OK);
+	assert_int_equal(nmtan_tangents(&mesh, &on, &mended), NMTAN_OK);
+	size_t first = 0, changed = 0;
+	for (size_t face = 0; face < mesh.face_count; face++) {
+		const size_t size = nt_face_size(&mesh, face);
+		const int sign = nt_face_orientation(&mesh, face, first, false, NULL);
+		bool agree = true;
+		for (size_t c = first; c < first + size; c++)
+			agree = agree && raw.tangents[4 * c + 3] == raw.tangents[4 * first + 3] &&
+				(sign == 0 || raw.tangents[4 * c + 3] == (float)sign);
+		for (size_t c = first; c < first + size; c++) {
+			const float *before = raw.tangents + 4 * c, *after = mended.tangents + 4 * c;
+			const float *n = nt_normal(&mesh, nt_vertex_of(&mesh, c));
+			assert_true(is_unit(after));
+			assert_false(is_parallel(after, n));
+			assert_true(after[3] == mended.tangents[4 * first + 3]);
+			assert_true(fabsf(after[3]) == 1.0f && (sign == 0 || after[3] == (float)sign));
+			if (agree && is_unit(before) && !is_parallel(before, n))
+				assert_memory_equal(before, after, 16);
+			changed += memcmp(before, after, 16) != 0;
+		}
+		first += size;
+	}
+	const nmtan_counts *c = &mended.counts;
+	const size_t counted = c->repaired_zero + c->repaired_not_finite + c->repaired_parallel +
+			       c->repaired_sign;
+	assert_true(changed <= counted);
+	sum->corners += corner_count;
+	sum->repaired += counted;
+	free(raw.tangents);
+	free(mended.tangents);
+}
+
+static void check_golden(const char *path, const nt_golden *golden, void *context)
+{
+	(void)path;
+	const nmtan_mesh mesh = nt_golden_mesh(golden);
+	for (int method = NMTAN_METHOD_MIKKTSPACE; method <= NMTAN_METHOD_LENGYEL; method++)
+		check_promises(&mesh, golden->corner_count, (nmtan_method)method, context);
+}
+
+static void promises_hold_on_every_golden_mesh(void **state)
+{
+	(void)state;
+	tally sum = {0};
+	assert_int_equal(nt_golden_each(NT_DATA_DIR "/golden", check_golden, &sum), 46);
+	assert_true(sum.repaired > 0);
+}
+
+/* A 2x2 grid in the plane z = 0 with u along +x and v along +y, texture coordinates and positions
+ * scaled: the frame is (1,0,0) with w = 1 whatever the scale. */
+static void check_scaled_grid(float uv_scale, float scale)
+{
+	float positions[9][3], normals[9][3], texcoords[9][2];
+	uint32_t indices[24];
+	for (int v = 0; v < 9; v++) {
+		const float x = (float)(v % 3), y = (float)(v / 3);
+		memcpy(positions[v], (float[3]){x * scale, y * scale, 0}, 12);
+		memcpy(normals[v], (float[3]){0, 0, 1}, 12);
+		memcpy(texcoords[v], (float[2]){x * uv_scale, y * uv_scale}, 8);
+	}
+	size_t n = 0;
+	for (uint32_t y = 0; y < 2; y++) {
+		for (uint32_t x = 0; x < 2; x++) {
+			const uint32_t a = 3 * y + x;
+			const uint32_t corners[6] = {a, a + 1, a + 4, a, a + 4, a + 3};
+			memcpy(indices + n, corners, sizeof corners);
+			n += 6;
+		}
+	}
+	const nmtan_mesh mesh = {.face_count = 8, .vertex_count = 9, .indices = indices,
+		.positions = &positions[0][0], .normals = &normals[0][0], .texcoords = &texcoords[0][0]};
+	float tangents[24][4];
+	nmtan_output output = {.tangents = &tangents[0][0]};
+	assert_int_equal(nmtan_tangents(&mesh, NULL, &output), NMTAN_OK);
+	for (int c = 0; c < 24; c++) {
+		assert_true(fabsf(tangents[c][0] - 1.0f) < 1e-6f);
+		assert_true(fabsf(tangents[c][1]) < 1e-6f && fabsf(tangents[c][2]) < 1e-6f);
+		assert_true(tangents[c][3] == 1.0f);
+	}
+}
+
+static void frames_survive_extreme_scales(void **state)
+{
+	(void)state;
+	for (int exponent = -30; exponent <= 30; exponent += 5) {
+		check_scaled_grid(powf(10.0f, (float)exponent), 1.0f);
+		check_scaled_grid(1.0f, powf(10.0f, (float)exponent));
+		check_scaled_grid(powf(10.0f, (float)exponent), powf(10.0f, (float)-exponent));
+	}
+}
+
+/* All texture coordinates equal: no direction is right, but the answer is a unit vector perpendicular to
+ * the normal, for every normal. */
+static void missing_texture_space_gives_a_perpendicular(void **state)
+{
+	(void)state;
+	for (int i = 0; i < 200; i++) {
+		const float a = (float)i * 0.7f, z = (float)(i % 21 - 10) / 10.0f;
+		const float r = sqrtf(1.0f - z * z);
+		float positions[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, normals[3][3];
+		float texcoords[3][2] = {{0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f}};
+		for (int v = 0; v < 3; v++)
+			memcpy(normals[v], (float[3]){r * cosf(a), r * sinf(a), z}, 12);
+		const nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3,
+			.positions = &positions[0][0], .normals = &normals[0][0],
+			.texcoords = &texcoords[0][0]};
+		tally sum = {0};
+		check_promises(&mesh, 3, NMTAN_METHOD_MIKKTSPACE, &sum);
+		float tangents[3][4];
+		nmtan_output output = {.tangents = &tangents[0][0]};
+		assert_int_equal(nmtan_tangents(&mesh, NULL, &output), NMTAN_OK);
+		/* MikkTSpace's default (1,0,0) is kept unless it is parallel to the normal */
+		if (r * fabsf(cosf(a)) < 0.9f)
+			assert_true(tangents[0][0] == 1.0f);
+		else if (is_parallel((float[3]){1, 0, 0}, normals[0]))
+			assert_true(fabsf(tangents[0][0]) < 1e-6f);
+	}
+}
+
+/* The stored coordinates decide the sign: v is flipped in them. */
+static void stored_texture_coordinates_decide_the_sign(void **state)
+{
+	(void)state;
+	const float positions[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+	const float texcoords[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+	const float flipped[3][2] = {{0, 0}, {1, 0}, {0, -1}};
+	nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3, .positions = &positions[0][0],
+		.normals = &normals[0][0], .texcoords = &texcoords[0][0],
+		.stored_texcoords = &flipped[0][0]};
+	float tangents[3][4];
+	nmtan_output output = {.tangents = &tangents[0][0]};
+	assert_int_equal(nmtan_tangents(&mesh, NULL, &output), NMTAN_OK);
+	for (int c = 0; c < 3; c++)
+		assert_true(tangents[c][3] == -1.0f);
+	assert_int_equal(output.counts.stored_differently, 1);
+	mesh.stored_texcoords = NULL;
+	assert_int_equal(nmtan_tangents(&mesh, NULL, &output), NMTAN_OK);
+	assert_true(tangents[0][3] == 1.0f);
+	assert_int_equal(output.counts.stored_differently, 0);
+}
+
+/* Two halves wound differently: (0,0) (1,0) (1,1) is positive with twice the area 1, and with the fourth
+ * corner at (0.75, 0.5), the shorter diagonal is 1-3, (0,0) (1,0) (.75,.5) has 0.5 and (1,0) (1,1)
+ * (.75,.5) has 0.25: not folded. With the fourth corner at (1.25, 0.5) the second half is negative. */
+static void folded_quad_takes_the_sign_of_its_larger_half(void **state)
+{
+	(void)state;
+	const float positions[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+	const float normals[4][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+	float texcoords[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0.75f, 0.5f}};
+	const uint8_t four = 4;
+	const nmtan_mesh mesh = {.face_count = 1, .vertex_count = 4, .face_sizes = &four,
+		.positions = &positions[0][0], .normals = &normals[0][0],
+		.texcoords = &texcoords[0][0]};
+	float tangents[4][4];
+	nmtan_output output = {.tangents = &tangents[0][0]};
+	assert_int_equal(nmtan_tangents(&mesh, NULL, &output), NMTAN_OK);
+	assert_int_equal(output.counts.folded_quads, 0);
+	texcoords[3][0] = 1.25f;
+	assert_int_equal(nmtan_tangents(&mesh, NULL, &output), NMTAN_OK);
+	assert_int_equal(output.counts.folded_quads, 1);
+	for (int c = 0; c < 4; c++)
+		assert_true(tangents[c][3] == 1.0f);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(promises_hold_on_every_golden_mesh),
+		cmocka_unit_test(frames_survive_extreme_scales),
+		cmocka_unit_test(missing_texture_space_gives_a_perpendicular),
+		cmocka_unit_test(stored_texture_coordinates_decide_the_sign),
+		cmocka_unit_test(folded_quad_takes_the_sign_of_its_larger_half),
+	};
+	return cmocka_run_group_tests_name("tangent/repair", tests, NULL, NULL);
+}
