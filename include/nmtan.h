@@ -105,10 +105,11 @@ typedef struct nmtan_mesh {
 /* How the triangles around a vertex are averaged. */
 typedef enum nmtan_method {
 	NMTAN_METHOD_MIKKTSPACE = 0, /* the standard: angle weights, groups by orientation */
-	NMTAN_METHOD_AREA,           /* groups as MikkTSpace, weights corner angle times the two edge
-	                                lengths: thin bevels do not tilt the large faces beside them */
-	NMTAN_METHOD_LENGYEL         /* E. Lengyel, "Computing Tangent Space Basis Vectors for an
-	                                Arbitrary Mesh", 2001: sums of dP/du over the given vertices */
+	NMTAN_METHOD_AREA,           /* all triangles of one orientation at a vertex, weighted by corner
+	                                angle times the two edge lengths: thin bevels do not tilt the
+	                                large faces beside them */
+	NMTAN_METHOD_LENGYEL         /* the same triangles, dP/du added as it is: E. Lengyel, "Computing
+	                                Tangent Space Basis Vectors for an Arbitrary Mesh", 2001 */
 } nmtan_method;
 
 /* What happens to results that a renderer cannot use. */

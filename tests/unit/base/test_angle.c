@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include <math.h>
+#include "base/angle.h"
+
+/* atan2 of the C library, which glibc computes to less than one unit in the last place, is the judge. */
+static void angle_is_atan2_to_three_ulps(void **state)
+{
+	(void)state;
+	for (int i = 0; i <= 200000; i++) {
+		const double a = 3.14159265358979323846 * i / 200000.0;
+		const double s = sin(a) * (1 + i % 7), c = cos(a) * (1 + i % 7);
+		const double expected = atan2(s < 0 ? 0 : s, c);
+		assert_true(fabs(nt_angle(s < 0 ? 0 : s, c) - expected) <= 3 * 2.3e-16 * expected);
+	}
+}
+
+static void tiny_angles_keep_their_relative_precision(void **state)
+{
+	(void)state;
+	for (int e = -300; e < 0; e += 7) {
+		const double t = ldexp(1.25, e);
+		assert_true(fabs(nt_angle(t, 1) / atan(t) - 1) < 4e-16);
+	}
+}
+
+static void axes_and_nonsense_have_their_values(void **state)
+{
+	(void)state;
+	assert_true(nt_angle(0, 1) == 0.0);
+	assert_true(nt_angle(1, 0) == 1.57079632679489661923);
+	assert_true(nt_angle(0, -1) == 3.14159265358979323846);
+	assert_true(nt_angle(0, 0) == 0.0);
+	assert_true(nt_angle(NAN, 1) == 0.0);
+	assert_true(nt_angle(1, NAN) == 0.0);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(angle_is_atan2_to_three_ulps),
+		cmocka_unit_test(tiny_angles_keep_their_relative_precision),
+		cmocka_unit_test(axes_and_nonsense_have_their_values),
+	};
+	return cmocka_run_group_tests_name("base/angle", tests, NULL, NULL);
+}

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include <math.h>
+#include "nmtan.h"
+
+/* A fan of n triangles around vertex 0; the hub's corner in triangle t has the tangent given by it. */
+static void split_hub(size_t n, const float (*hub_tangents)[4], uint32_t *hub_indices,
+	size_t *source_count)
+{
+	uint32_t *indices = malloc(12 * n), *out = malloc(12 * n), *sources = malloc(12 * n);
+	float (*tangents)[4] = calloc(3 * n, sizeof *tangents);
+	for (uint32_t t = 0; t < n; t++) {
+		const uint32_t corners[3] = {0, t + 1, t + 2};
+		memcpy(indices + 3 * t, corners, sizeof corners);
+		memcpy(tangents[3 * t], hub_tangents[t], 16);
+	}
+	const nmtan_mesh mesh = {.face_count = n, .vertex_count = n + 2, .indices = indices};
+	nmtan_split_output split = {.indices = out, .sources = sources, .source_capacity = 3 * n};
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], NULL, &split), NMTAN_OK);
+	for (size_t t = 0; t < n; t++)
+		hub_indices[t] = out[3 * t];
+	for (size_t i = 0; i < split.source_count; i++)
+		assert_int_equal(sources[i], 0);
+	*source_count = split.source_count;
+	free(indices);
+	free(out);
+	free(sources);
+	free(tangents);
+}
+
+static void first_tangent_keeps_the_vertex_and_copies_follow_in_order(void **state)
+{
+	(void)state;
+	const float a[4] = {1, 0, 0, 1}, b[4] = {1, 0, 0, -1}, c[4] = {0, 1, 0, 1};
+	float tangents[6][4];
+	const float *order[6] = {b, a, b, c, a, c};
+	for (int i = 0; i < 6; i++)
+		memcpy(tangents[i], order[i], 16);
+	uint32_t hub[6];
+	size_t copies;
+	split_hub(6, tangents, hub, &copies);
+	const uint32_t expected[6] = {0, 8, 0, 9, 8, 9}; /* 8 vertices: copies are 8 and 9 */
+	assert_memory_equal(hub, expected, sizeof hub);
+	assert_int_equal(copies, 2);
+}
+
+static void zero_signs_do_not_split_and_equal_nans_neither(void **state)
+{
+	(void)state;
+	const float tangents[4][4] = {{0.0f, 1, 0, 1}, {-0.0f, 1, 0, 1}, {NAN, 1, 0, 1}, {NAN, 1, 0, 1}};
+	uint32_t hub[4];
+	size_t copies;
+	split_hub(4, tangents, hub, &copies);
+	const uint32_t expected[4] = {0, 0, 6, 6};
+	assert_memory_equal(hub, expected, sizeof hub);
+	assert_int_equal(copies, 1);
+}
+
+/* 200 000 different tangents at one vertex: quadratic search would take minutes. */
+static void hub_of_many_tangents_is_linear(void **state)
+{
+	(void)state;
+	enum { COUNT = 200000 };
+	float (*tangents)[4] = malloc(COUNT * sizeof *tangents);
+	uint32_t *hub = malloc(COUNT * sizeof *hub);
+	for (uint32_t i = 0; i < COUNT; i++)
+		memcpy(tangents[i], (float[4]){(float)i, 0, 0, 1}, 16);
+	size_t copies;
+	split_hub(COUNT, (const float (*)[4])tangents, hub, &copies);
+	assert_int_equal(copies, COUNT - 1);
+	for (uint32_t i = 1; i < COUNT; i++)
+		assert_int_equal(hub[i], COUNT + 2 + i - 1);
+	free(tangents);
+	free(hub);
+}
+
+static void unused_vertices_get_a_unit_tangent(void **state)
+{
+	(void)state;
+	const uint32_t indices[3] = {0, 1, 2};
+	const float normals[5][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {1, 0, 0}, {0, 0, 0}};
+	const float tangents[3][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}};
+	float vertex_tangents[8][4];
+	uint32_t out[3], sources[3];
+	const nmtan_mesh mesh = {.face_count = 1, .vertex_count = 5, .indices = indices,
+		.normals = &normals[0][0]};
+	nmtan_split_output split = {.indices = out, .sources = sources, .source_capacity = 3,
+		.vertex_tangents = &vertex_tangents[0][0]};
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], NULL, &split), NMTAN_OK);
+	const float *t = vertex_tangents[3];
+	assert_true(t[0] == 0.0f && fabsf(t[1] * t[1] + t[2] * t[2] - 1.0f) < 1e-6f && t[3] == 1.0f);
+	assert_true(vertex_tangents[4][0] == 1.0f && vertex_tangents[4][3] == 1.0f);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(first_tangent_keeps_the_vertex_and_copies_follow_in_order),
+		cmocka_unit_test(zero_signs_do_not_split_and_equal_nans_neither),
+		cmocka_unit_test(hub_of_many_tangents_is_linear),
+		cmocka_unit_test(unused_vertices_get_a_unit_tangent),
+	};
+	return cmocka_run_group_tests_name("topology/split", tests, NULL, NULL);
+}
