@@ -35,6 +35,7 @@ typedef struct nt_sink nt_sink;
 typedef struct nt_output_options {
 	bool no_clobber; /* refuse to replace an existing file */
 	bool sync;       /* fsync before the renames */
+	bool dry_run;    /* refuse what would be refused, count what would be written, write nothing */
 } nt_output_options;
 
 /* Starts an output set. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */

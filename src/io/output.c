@@ -30,6 +30,7 @@ struct nt_sink {
 	bool main, placed;
 	bool shared_fd;           /* standard output: not ours to close */
 	bool no_kernel_copy;      /* it was tried in vain */
+	bool dry;                 /* counts bytes and drops them */
 	uint64_t size;
 	size_t used;              /* bytes in buffer */
 	unsigned char *buffer;
@@ -151,6 +152,7 @@ static nmtan_status open_temporary(nt_sink *sink, nt_error *error)
 
 static nmtan_status open_sink(const nt_output *output, nt_sink *sink, nt_error *error)
 {
+	sink->dry = output->options.dry_run;
 	if (strcmp(sink->path, "-") == 0) {
 		sink->fd = STDOUT_FILENO;
 		sink->shared_fd = true;
@@ -162,6 +164,8 @@ static nmtan_status open_sink(const nt_output *output, nt_sink *sink, nt_error *
 		const nmtan_status checked = check_existing(output, sink->path, &status, error);
 		if (checked)
 			return checked;
+		if (sink->dry && !S_ISREG(status.st_mode))
+			return NMTAN_OK;
 		if (!S_ISREG(status.st_mode)) {
 			sink->fd = open(sink->path, O_WRONLY | O_CLOEXEC);
 			return sink->fd < 0 ? fail_write(error, sink->path, errno) : NMTAN_OK;
@@ -171,7 +175,7 @@ static nmtan_status open_sink(const nt_output *output, nt_sink *sink, nt_error *
 	if (!sink->target)
 		return fail_write(error, sink->path, errno);
 	const nmtan_status checked = check_twins(output, sink, error);
-	return checked ? checked : open_temporary(sink, error);
+	return checked || sink->dry ? checked : open_temporary(sink, error);
 }
 
 static void free_sink(nt_sink *sink)
@@ -252,6 +256,8 @@ static nmtan_status flush_with(nt_sink *sink, const void *bytes, size_t size, nt
 nmtan_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error *error)
 {
 	sink->size += size;
+	if (sink->dry)
+		return NMTAN_OK;
 	if (size > SINK_BUFFER_BYTES - sink->used) {
 		if (size >= SINK_BUFFER_BYTES / 2)
 			return flush_with(sink, bytes, size, error);
@@ -323,7 +329,7 @@ static nmtan_status finish_sink(const nt_output *output, nt_sink *sink, nt_error
 		return status;
 	if (output->options.sync && sink->temporary && fsync(sink->fd) != 0)
 		return fail_write(error, sink->path, errno);
-	if (sink->shared_fd)
+	if (sink->shared_fd || sink->fd < 0)
 		return NMTAN_OK;
 	const int fd = sink->fd;
 	sink->fd = -1;

@@ -5,6 +5,7 @@
 #include "pipeline/run.h"
 
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include "pipeline/stages.h"
 
@@ -45,10 +46,26 @@ static void begin_stage(run *r, nt_stage stage)
 		r->settings->on_stage(r->settings->on_stage_user, stage);
 }
 
+/* Whether the output is standard output, a pipe or a device, whose name need not say a format. */
+static bool is_stream(const char *path)
+{
+	struct stat info;
+	return strcmp(path, "-") == 0 ||
+	       (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode));
+}
+
+/* Before anything is read, by the name; a stream without one gets PLY for PLY, else GLB. */
 static nmtan_status choose_writer(run *r)
 {
-	if (r->settings->check)
+	const bool unnamed = !r->settings->check && r->settings->output_format == NT_FORMAT_UNKNOWN &&
+			     is_stream(r->output_path) && !nt_format_of_path(r->output_path);
+	if (r->settings->check || (unnamed && !r->reader))
 		return NMTAN_OK;
+	if (unnamed) {
+		const bool ply = r->reader->format == NT_FORMAT_PLY;
+		r->writer = nt_format_find(ply ? NT_FORMAT_PLY : NT_FORMAT_GLB);
+		return NMTAN_OK;
+	}
 	if (r->settings->output_format != NT_FORMAT_UNKNOWN)
 		r->writer = nt_format_find(r->settings->output_format);
 	else
@@ -140,6 +157,9 @@ static nmtan_status read_scene(run *r)
 	nmtan_status status = open_scene(r);
 	if (status)
 		return nt_error_in_file(r->error, r->input_path);
+	status = choose_writer(r);
+	if (status)
+		return status;
 
 	/* glTF without normals is left alone unless normals are asked for; the other formats get them */
 	const bool gltf = r->reader->format == NT_FORMAT_GLTF || r->reader->format == NT_FORMAT_GLB;
@@ -154,7 +174,8 @@ static nmtan_status write_scene(run *r)
 {
 	begin_stage(r, NT_STAGE_WRITE);
 	const nt_settings *s = r->settings;
-	const nt_output_options output_options = {.no_clobber = s->no_clobber, .sync = s->sync};
+	const nt_output_options output_options = {.no_clobber = s->no_clobber, .sync = s->sync,
+		.dry_run = s->dry_run};
 	const nt_write_options options = {
 		.format = r->writer->format,
 		.path = r->output_path,

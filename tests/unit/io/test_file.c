@@ -387,6 +387,30 @@ static void output_mode_follows_the_umask(void **state)
 	assert_int_equal(status.st_mode & 0777, 0640);
 }
 
+static void output_dry_run_counts_and_refuses_but_writes_nothing(void **state)
+{
+	(void)state;
+	const nt_output_options options = {.dry_run = true};
+	nt_error error;
+	nt_output *output;
+	nt_sink *sink, *stream;
+	put("dry", "old");
+	const unsigned before = entry_count();
+	assert_int_equal(nt_output_create(&output, &options, &error), NMTAN_OK);
+	assert_int_equal(nt_output_add(output, at("dry"), true, &sink, &error), NMTAN_OK);
+	assert_int_equal(nt_output_add(output, "-", false, &stream, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_write(sink, "new!", 4, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_write(stream, "noise", 5, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_size(sink), 4);
+	assert_null(nt_sink_temporary(sink));
+	assert_int_equal(entry_count(), before);
+	nt_sink *refused;
+	assert_int_equal(nt_output_add(output, folder, false, &refused, &error), NMTAN_ERROR_IO);
+	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_int_equal(entry_count(), before);
+	assert_content("dry", "old");
+}
+
 static void output_pipe_is_written_through(void **state)
 {
 	(void)state;
@@ -489,6 +513,7 @@ int main(void)
 		CASE(output_places_that_cannot_be_are_refused),
 		CASE(output_no_clobber_keeps_what_exists),
 		CASE(output_mode_follows_the_umask),
+		CASE(output_dry_run_counts_and_refuses_but_writes_nothing),
 		CASE(output_pipe_is_written_through),
 		CASE(output_full_disk_is_an_error),
 		CASE(signals_remove_temporaries_and_end_the_process),

@@ -1,0 +1,211 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * nmtan, the command: words to settings, settings to a run, results to messages and an exit code.
+ * Everything else is the pipeline's.
+ */
+#include <errno.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "cli/exit_code.h"
+#include "cli/messages.h"
+#include "cli/options.h"
+#include "cli/progress.h"
+#include "report/codes.h"
+
+/* What the jobs' ends add up to. */
+typedef struct session {
+	const nt_command *command;
+	nt_style style;
+	nt_progress *progress;
+	nt_summary total; /* of the times and sizes alone */
+	nt_buffer failures;
+	size_t failed;
+	int exit_code;
+} session;
+
+static void print_error(const nt_error *error, nt_style style, bool usage)
+{
+	nt_buffer text = {0};
+	nt_message_error(&text, error, style);
+	if (usage)
+		nt_options_usage(&text);
+	if (text.data)
+		fwrite(text.data, 1, text.size, stderr);
+	nt_buffer_free(&text);
+}
+
+/* Prints what was asked for; that it arrived is part of the success. */
+static int print_text(void (*make)(nt_buffer *out), nt_style style)
+{
+	nt_buffer text = {0};
+	nt_error error;
+	make(&text);
+	const bool written = text.data && !text.failed &&
+			     fwrite(text.data, 1, text.size, stdout) == text.size && fflush(stdout) == 0;
+	nt_buffer_free(&text);
+	if (written)
+		return NT_EXIT_DONE;
+	nt_fail(&error, NMTAN_ERROR_IO, "cannot write to standard output: %s", strerror(errno));
+	print_error(&error, style, false);
+	return NT_EXIT_IO;
+}
+
+static void version_text(nt_buffer *out)
+{
+	nt_buffer_format(out, "nmtan %s\n", nmtan_version());
+}
+
+/* Whether findings reach the severity at which the run fails. */
+static bool findings_fail(const nt_finding_list *findings, int fail_on)
+{
+	static const nt_severity least[] = {[NT_FAIL_ON_ERROR] = NT_SEVERITY_ERROR,
+		[NT_FAIL_ON_WARNING] = NT_SEVERITY_WARNING, [NT_FAIL_ON_INFO] = NT_SEVERITY_INFO};
+	for (size_t i = 0; fail_on != NT_FAIL_ON_NEVER && i < findings->count; i++)
+		if (nt_code_info(findings->items[i].code)->severity >= least[fail_on])
+			return true;
+	return false;
+}
+
+static void add_times(nt_summary *total, const nt_summary *one)
+{
+	for (int stage = 0; stage < NT_STAGE_COUNT; stage++)
+		total->seconds[stage] += one->seconds[stage];
+	total->total_seconds += one->total_seconds;
+	total->bytes_read += one->bytes_read;
+	total->bytes_written += one->bytes_written;
+}
+
+/* Called once per job, in order: says what became of it. */
+static void tell_job(void *user, const nt_job *job)
+{
+	session *s = user;
+	const nt_command *c = s->command;
+	nt_buffer text = {0};
+	int code = nt_exit_code(job->status);
+	if (s->style.verbosity >= 0)
+		nt_message_findings(&text, &job->summary.findings, job->input,
+			c->settings.check || s->style.verbosity > 0, s->style);
+	if (job->status) {
+		nt_message_error(&text, &job->error, s->style);
+		nt_buffer_format(&s->failures, "%s", s->failed++ ? ", " : "");
+		nt_message_clean(&s->failures, job->input);
+		nt_buffer_format(&s->failures, " (%s)", nmtan_status_text(job->status));
+	} else {
+		if (s->style.verbosity >= 0)
+			nt_message_success(&text, job, &c->settings);
+		if (findings_fail(&job->summary.findings, c->fail_on))
+			code = NT_EXIT_FINDINGS;
+	}
+	s->exit_code = nt_exit_worse(s->exit_code, code);
+	add_times(&s->total, &job->summary);
+	nt_progress_file(s->progress);
+	nt_progress_hide(s->progress);
+	if (text.data)
+		fwrite(text.data, 1, text.size, stderr);
+	nt_progress_show(s->progress);
+	nt_buffer_free(&text);
+}
+
+/* After the last of many: how many failed, by name; and the times. */
+static void tell_end(session *s, size_t count)
+{
+	nt_buffer text = {0};
+	if (count > 1 && (s->failed || s->style.verbosity >= 0)) {
+		nt_buffer_format(&text, "nmtan: %zu of %zu done", count - s->failed, count);
+		if (s->failed)
+			nt_buffer_format(&text, ", %zu failed: %s", s->failed,
+				s->failures.data ? s->failures.data : "");
+		nt_buffer_text(&text, "\n");
+	}
+	if (s->command->timing)
+		nt_message_timing(&text, &s->total);
+	if (text.data)
+		fwrite(text.data, 1, text.size, stderr);
+	nt_buffer_free(&text);
+	nt_buffer_free(&s->failures);
+}
+
+/* --in-place takes one file, or the same one twice. */
+static bool same_file(const char *a, const char *b)
+{
+	struct stat first, second;
+	return strcmp(a, b) == 0 || (stat(a, &first) == 0 && stat(b, &second) == 0 &&
+					    first.st_dev == second.st_dev && first.st_ino == second.st_ino);
+}
+
+static nmtan_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
+{
+	if (c->settings.check)
+		return nt_batch_check(batch, c->operands, c->operand_count, error);
+	if (c->directory)
+		return nt_batch_into(batch, c->operands, c->operand_count, c->directory, &c->settings,
+			error);
+	const char *input = c->operands[0];
+	const char *output = c->operand_count > 1 ? c->operands[1] : input;
+	if (c->settings.in_place && !same_file(input, output))
+		return nt_fail(error, NMTAN_ERROR_USAGE, "--in-place replaces '%s'; '%s' is another file",
+			input, output);
+	if (strcmp(output, "-") == 0 && !c->settings.dry_run && isatty(STDOUT_FILENO))
+		return nt_fail(error, NMTAN_ERROR_USAGE,
+			"'-' is a terminal here: send the output to a file or a pipe");
+	return nt_batch_pair(batch, input, output, error);
+}
+
+static int run(const nt_command *command, nt_style style)
+{
+	nt_batch batch = {0};
+	nt_error error;
+	const nmtan_status status = prepare(&batch, command, &error);
+	if (status) {
+		print_error(&error, style, status == NMTAN_ERROR_USAGE);
+		nt_batch_free(&batch);
+		return nt_exit_code(status);
+	}
+	session s = {.command = command, .style = style};
+	nt_settings settings = command->settings;
+	s.progress = nt_progress_start(style.verbosity < 0 ? NT_PROGRESS_OFF : command->progress,
+		batch.jobs[0].input, batch.count);
+	if (s.progress && batch.count == 1) {
+		settings.on_stage = nt_progress_stage;
+		settings.on_stage_user = s.progress;
+	}
+	nt_batch_run(&batch, &settings, nt_run, tell_job, &s);
+	nt_progress_stop(s.progress);
+	tell_end(&s, batch.count);
+	nt_batch_free(&batch);
+	return s.exit_code;
+}
+
+int main(int argc, char **argv)
+{
+	/* A reader that goes away is an error of writing, after which temporary files are removed. */
+	signal(SIGPIPE, SIG_IGN);
+	nt_output_catch_signals();
+
+	nt_command command;
+	nt_error error;
+	const char *no_color = getenv("NO_COLOR");
+	nt_style style = {.colour = isatty(STDERR_FILENO) && !(no_color && *no_color)};
+	if (nt_options_parse(argc, argv, &command, &error)) {
+		print_error(&error, style, true);
+		return NT_EXIT_USAGE;
+	}
+	style.verbosity = command.verbosity;
+	switch (command.action) {
+	case NT_ACTION_HELP:
+		return print_text(nt_options_help, style);
+	case NT_ACTION_VERSION:
+		return print_text(version_text, style);
+	case NT_ACTION_COMPLETION_BASH:
+		return print_text(nt_options_bash, style);
+	case NT_ACTION_COMPLETION_ZSH:
+		return print_text(nt_options_zsh, style);
+	default:
+		return run(&command, style);
+	}
+}
