@@ -186,6 +186,8 @@ static nmtan_status write_scene(run *r)
 	};
 	nt_output *output = NULL;
 	nmtan_status status = nt_output_create(&output, &output_options, r->error);
+	if (!status && r->writer->format != NT_FORMAT_PLY)
+		status = nt_stage_quads(&r->scene, r->error);
 	if (!status && !s->in_place)
 		status = nt_output_protect(output, r->input_path, r->error);
 	if (!status)
