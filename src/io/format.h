@@ -12,6 +12,7 @@
 typedef struct nt_read_options {
 	int texcoord_set;   /* -1: the set that the material's slot asks for; else TEXCOORD_n */
 	bool allow_outside; /* URIs may leave the folder of the input */
+	bool world;         /* the output is one mesh in the world: instances and colours are wanted too */
 	unsigned threads;
 } nt_read_options;
 

@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Documents, buffers and bufferViews. Buffers are opened when the first byte of them is wanted: an
+ * external file is mapped, a data URI decoded, the BIN chunk pointed at.
+ */
+#include "io/gltf_document.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "io/uri.h"
+
+bool nt_gltf_recognise(const unsigned char *bytes, size_t size)
+{
+	size_t at = size >= 3 && memcmp(bytes, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+	while (at < size && at < 4096 &&
+		(bytes[at] == ' ' || bytes[at] == '\t' || bytes[at] == '\n' || bytes[at] == '\r'))
+		at++;
+	return at < size && bytes[at] == '{';
+}
+
+bool nt_glb_recognise(const unsigned char *bytes, size_t size)
+{
+	return nt_glb_has_magic(bytes, size);
+}
+
+/* ---- members ---- */
+
+nt_json_value *nt_gltf_root_member(const nt_gltf *document, const char *name)
+{
+	return nt_json_find(nt_json_root(document->json), name);
+}
+
+nmtan_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t index,
+	const char *from, const nt_json_value **element, nt_error *error)
+{
+	const nt_json_value *elements = nt_gltf_root_member(document, array);
+	if (elements && nt_json_type_of(elements) != NT_JSON_ARRAY) {
+		char pointer[NT_GLTF_POINTER];
+		snprintf(pointer, sizeof pointer, "/%s", array);
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "%s, expected an array",
+			nt_json_type_text(elements));
+	}
+	if (index >= nt_json_count(elements))
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, from,
+			"refers to %s[%llu], there are %zu", array, (unsigned long long)index,
+			nt_json_count(elements));
+	*element = nt_json_at(elements, (size_t)index);
+	if (nt_json_type_of(*element) != NT_JSON_OBJECT) {
+		char pointer[NT_GLTF_POINTER];
+		snprintf(pointer, sizeof pointer, "/%s/%llu", array, (unsigned long long)index);
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "%s, expected an object",
+			nt_json_type_text(*element));
+	}
+	return NMTAN_OK;
+}
+
+nmtan_status nt_gltf_uint(const nt_json_value *object, const char *pointer, const char *key,
+	uint64_t limit, uint64_t otherwise, uint64_t *value, nt_error *error)
+{
+	char place[NT_GLTF_POINTER * 2];
+	const nt_json_value *member = nt_json_find(object, key);
+	if (!member && otherwise != NT_GLTF_REQUIRED) {
+		*value = otherwise;
+		return NMTAN_OK;
+	}
+	if (!member)
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "\"%s\" is missing", key);
+	snprintf(place, sizeof place, "%s/%s", pointer, key);
+	if (!nt_json_get_uint64(member, value))
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, place,
+			"%s, expected a whole number of at least 0", nt_json_type_text(member));
+	if (*value > limit)
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, place, "%llu, expected at most %llu",
+			(unsigned long long)*value, (unsigned long long)limit);
+	return NMTAN_OK;
+}
+
+/* ---- documents ---- */
+
+/* "2.1" is version 2 of glTF; a minVersion beyond 2.0 asks for what we do not know. */
+static nmtan_status check_version(const nt_gltf *document, nt_error *error)
+{
+	const nt_json_value *root = nt_json_root(document->json);
+	if (nt_json_type_of(root) != NT_JSON_OBJECT)
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, "", "%s, expected an object",
+			nt_json_type_text(root));
+	const nt_json_value *asset = nt_json_find(root, "asset");
+	const char *version = nt_json_get_string(nt_json_find(asset, "version"), NULL);
+	if (!version)
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, "/asset/version",
+			"%s, expected the version of glTF as a string",
+			nt_json_type_text(nt_json_find(asset, "version")));
+	if (strncmp(version, "2.", 2) != 0)
+		return nt_fail_pointer(error, NMTAN_ERROR_UNSUPPORTED, "/asset/version",
+			"glTF version \"%.20s\", expected 2.0", version);
+	const char *minimum = nt_json_get_string(nt_json_find(asset, "minVersion"), NULL);
+	if (minimum && strcmp(minimum, "2.0") != 0)
+		return nt_fail_pointer(error, NMTAN_ERROR_UNSUPPORTED, "/asset/minVersion",
+			"needs glTF %.20s, expected 2.0", minimum);
+	return NMTAN_OK;
+}
+
+static nmtan_status parse_json(nt_gltf *document, nt_error *error)
+{
+	const char *text = (const char *)document->bytes;
+	size_t size = document->byte_count, begin = 0;
+	if (document->is_glb) {
+		begin = document->glb.json.offset;
+		size = document->glb.json.size;
+	}
+	const nmtan_status status = nt_json_parse(&document->json, text + begin, size, error);
+	if (status && error && error->place.offset != NT_NO_OFFSET)
+		error->place.offset += begin;
+	return status;
+}
+
+nmtan_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_outside,
+	nt_error *error)
+{
+	*result = NULL;
+	nt_gltf *document = nt_calloc(1, sizeof *document);
+	if (!document)
+		return nt_fail_memory(error);
+	document->path = scene->path;
+	document->bytes = scene->bytes;
+	document->byte_count = scene->byte_count;
+	document->allow_outside = allow_outside;
+	document->is_glb = nt_glb_has_magic(scene->bytes, scene->byte_count) ||
+		scene->format == NT_FORMAT_GLB;
+	nmtan_status status = NMTAN_OK;
+	if (document->is_glb)
+		status = nt_glb_parse(&document->glb, &document->arena, document->bytes,
+			document->byte_count, error);
+	if (!status)
+		status = parse_json(document, error);
+	if (!status)
+		status = check_version(document, error);
+	if (!status) {
+		document->buffer_count = nt_json_count(nt_gltf_root_member(document, "buffers"));
+		document->buffers = nt_calloc(document->buffer_count, sizeof *document->buffers);
+		if (!document->buffers)
+			status = nt_fail_memory(error);
+	}
+	if (status) {
+		nt_gltf_free(document);
+		return status;
+	}
+	*result = document;
+	return NMTAN_OK;
+}
+
+void nt_gltf_free(void *source)
+{
+	nt_gltf *document = source;
+	if (!document)
+		return;
+	for (size_t i = 0; document->buffers && i < document->buffer_count; i++) {
+		nt_gltf_buffer *buffer = &document->buffers[i];
+		free(buffer->decoded);
+		if (buffer->opened && buffer->home == NT_GLTF_HOME_FILE)
+			nt_file_close(&buffer->file);
+	}
+	free(document->buffers);
+	nt_json_free(document->json);
+	nt_arena_free(&document->arena);
+	free(document);
+}
+
+/* ---- buffers ---- */
+
+nmtan_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char *from,
+	nt_gltf_buffer **result, nt_error *error)
+{
+	const nt_json_value *json;
+	nmtan_status status = nt_gltf_element(document, "buffers", index, from, &json, error);
+	if (status)
+		return status;
+	nt_gltf_buffer *buffer = &document->buffers[index];
+	*result = buffer;
+	if (buffer->described)
+		return NMTAN_OK;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/buffers/%llu", (unsigned long long)index);
+	status = nt_gltf_uint(json, pointer, "byteLength", (uint64_t)1 << 53, NT_GLTF_REQUIRED,
+		&buffer->length, error);
+	if (status)
+		return status;
+	const nt_json_value *uri = nt_json_find(json, "uri");
+	size_t length = 0;
+	const char *text = nt_json_get_string(uri, &length);
+	if (uri && !text) {
+		strcat(pointer, "/uri");
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "%s, expected a string",
+			nt_json_type_text(uri));
+	}
+	if (text)
+		buffer->home = nt_uri_is_data(text, length) ? NT_GLTF_HOME_DATA : NT_GLTF_HOME_FILE;
+	else if (index == 0 && document->is_glb && document->glb.has_bin)
+		buffer->home = NT_GLTF_HOME_BIN;
+	else
+		buffer->home = NT_GLTF_HOME_NOWHERE;
+	buffer->described = true;
+	return NMTAN_OK;
+}
+
+/* Names the buffer in an error of a lower room that knows no document. */
+static nmtan_status place_error(nt_error *error, nmtan_status status, const char *pointer)
+{
+	if (error && status != NMTAN_ERROR_MEMORY)
+		snprintf(error->place.pointer, sizeof error->place.pointer, "%s", pointer);
+	return status;
+}
+
+static nmtan_status open_file(nt_gltf *document, nt_gltf_buffer *buffer, const char *uri, size_t length,
+	nt_error *error)
+{
+	const char *path;
+	nmtan_status status = nt_uri_resolve(&document->arena, document->path, uri, length,
+		document->allow_outside, &path, error);
+	if (!status)
+		status = nt_file_open(&buffer->file, path, error);
+	if (status)
+		return status;
+	buffer->path = path;
+	buffer->bytes = buffer->file.data;
+	buffer->size = buffer->file.size;
+	return NMTAN_OK;
+}
+
+static nmtan_status open_bytes(nt_gltf *document, nt_gltf_buffer *buffer, const nt_json_value *json,
+	nt_error *error)
+{
+	size_t length = 0;
+	const char *uri = nt_json_get_string(nt_json_find(json, "uri"), &length);
+	nmtan_status status = NMTAN_OK;
+	switch (buffer->home) {
+	case NT_GLTF_HOME_BIN:
+		buffer->bytes = document->bytes + document->glb.bin.offset;
+		buffer->size = document->glb.bin.size;
+		break;
+	case NT_GLTF_HOME_DATA:
+		status = nt_uri_decode_data(uri, length, &buffer->decoded, &buffer->size, error);
+		buffer->bytes = buffer->decoded;
+		break;
+	case NT_GLTF_HOME_FILE:
+		status = open_file(document, buffer, uri, length, error);
+		break;
+	case NT_GLTF_HOME_NOWHERE:
+		return nt_fail(error, NMTAN_ERROR_INPUT, document->is_glb ?
+			"the buffer has no uri and there is no BIN chunk for it" :
+			"the buffer has no uri");
+	}
+	if (!status && buffer->home != NT_GLTF_HOME_BIN)
+		document->bytes_opened += buffer->size;
+	return status;
+}
+
+nmtan_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *from,
+	nt_gltf_buffer **result, nt_error *error)
+{
+	nt_gltf_buffer *buffer;
+	nmtan_status status = nt_gltf_describe_buffer(document, index, from, &buffer, error);
+	if (status)
+		return status;
+	*result = buffer;
+	if (buffer->opened)
+		return NMTAN_OK;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/buffers/%llu", (unsigned long long)index);
+	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "buffers"), (size_t)index);
+	status = open_bytes(document, buffer, json, error);
+	if (status)
+		return place_error(error, status, pointer);
+	if (buffer->size > buffer->length)
+		buffer->size = (size_t)buffer->length;
+	buffer->opened = true;
+	return NMTAN_OK;
+}
+
+/* ---- views ---- */
+
+/* The extension that compresses a view. */
+static const char *find_compression(const nt_json_value *view)
+{
+	static const char *const names[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
+	const nt_json_value *extensions = nt_json_find(view, "extensions");
+	for (size_t i = 0; i < 2; i++)
+		if (nt_json_find(extensions, names[i]))
+			return names[i];
+	return NULL;
+}
+
+nmtan_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
+	nt_error *error)
+{
+	const nt_json_value *json;
+	nmtan_status status = nt_gltf_element(document, "bufferViews", index, from, &json, error);
+	if (status)
+		return status;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/bufferViews/%llu", (unsigned long long)index);
+	const uint64_t limit = (uint64_t)1 << 53;
+	uint64_t buffer_index = 0, stride = 0;
+	status = nt_gltf_uint(json, pointer, "buffer", UINT32_MAX - 1, NT_GLTF_REQUIRED, &buffer_index,
+		error);
+	if (!status)
+		status = nt_gltf_uint(json, pointer, "byteOffset", limit, 0, &view->offset, error);
+	if (!status)
+		status = nt_gltf_uint(json, pointer, "byteLength", limit, NT_GLTF_REQUIRED,
+			&view->length, error);
+	if (!status)
+		status = nt_gltf_uint(json, pointer, "byteStride", 65535, 0, &stride, error);
+	nt_gltf_buffer *buffer = NULL;
+	if (!status)
+		status = nt_gltf_describe_buffer(document, buffer_index, pointer, &buffer, error);
+	if (status)
+		return status;
+	if (view->offset > buffer->length || view->length > buffer->length - view->offset)
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+			"bytes %llu to %llu, but buffer %llu has %llu", (unsigned long long)view->offset,
+			(unsigned long long)(view->offset + view->length),
+			(unsigned long long)buffer_index, (unsigned long long)buffer->length);
+	view->index = (uint32_t)index;
+	view->buffer = (uint32_t)buffer_index;
+	view->stride = (uint32_t)stride;
+	view->compression = find_compression(json);
+	return NMTAN_OK;
+}
+
+nmtan_status nt_gltf_view_bytes(nt_gltf *document, uint32_t index, uint64_t offset, uint64_t length,
+	const char *what, const unsigned char **bytes, nt_error *error)
+{
+	nt_gltf_view view;
+	nmtan_status status = nt_gltf_get_view(document, index, what, &view, error);
+	if (status)
+		return status;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/bufferViews/%u", index);
+	if (view.compression)
+		return nt_fail_pointer(error, NMTAN_ERROR_UNSUPPORTED, pointer,
+			"the view is compressed by %s, which nmtan does not read yet", view.compression);
+	if (offset > view.length || length > view.length - offset)
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, what,
+			"takes bytes %llu to %llu of bufferView %u, which has %llu",
+			(unsigned long long)offset, (unsigned long long)(offset + length), index,
+			(unsigned long long)view.length);
+	nt_gltf_buffer *buffer;
+	status = nt_gltf_open_buffer(document, view.buffer, pointer, &buffer, error);
+	if (status)
+		return status;
+	if (view.offset + offset > buffer->size || length > buffer->size - (view.offset + offset)) {
+		snprintf(pointer, sizeof pointer, "/buffers/%u", view.buffer);
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+			"byteLength is %llu, but only %zu bytes are there",
+			(unsigned long long)buffer->length, buffer->size);
+	}
+	*bytes = buffer->bytes + view.offset + offset;
+	return NMTAN_OK;
+}

@@ -1,0 +1,181 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A glTF document as nmtan sees it: the JSON as parsed, and views of it that are checked when they are
+ * asked for and not before. What nobody asks for is never judged, opened or decoded.
+ *
+ * Every function that reads from the document reports faults with the JSON pointer of what is wrong.
+ */
+#ifndef NT_IO_GLTF_DOCUMENT_H
+#define NT_IO_GLTF_DOCUMENT_H
+
+#include "ext/json.h"
+#include "io/format.h"
+#include "io/glb.h"
+
+/* Values of componentType. */
+enum nt_gltf_component {
+	NT_GLTF_BYTE = 5120,
+	NT_GLTF_UBYTE = 5121,
+	NT_GLTF_SHORT = 5122,
+	NT_GLTF_USHORT = 5123,
+	NT_GLTF_UINT = 5125,
+	NT_GLTF_FLOAT = 5126
+};
+
+/* Room for the JSON pointers we make ourselves. */
+enum { NT_GLTF_POINTER = 160 };
+
+/* Where a buffer's bytes come from. */
+typedef enum nt_gltf_home {
+	NT_GLTF_HOME_NOWHERE, /* no uri and no BIN chunk: extensions may give it a meaning */
+	NT_GLTF_HOME_BIN,     /* the BIN chunk of the GLB */
+	NT_GLTF_HOME_DATA,    /* a data URI */
+	NT_GLTF_HOME_FILE     /* an external file */
+} nt_gltf_home;
+
+typedef struct nt_gltf_buffer {
+	nt_gltf_home home;
+	uint64_t length;            /* byteLength */
+	bool described, opened;     /* the fields above and below are valid */
+	const unsigned char *bytes; /* NULL until opened */
+	size_t size;                /* bytes that are there: byteLength or less */
+	unsigned char *decoded;     /* of a data URI: owned */
+	nt_file file;               /* of an external file: owned */
+	const char *path;           /* of an external file */
+} nt_gltf_buffer;
+
+typedef struct nt_gltf_view {
+	uint32_t index;
+	uint32_t buffer;
+	uint64_t offset, length;
+	uint32_t stride; /* 0: none given */
+	const char *compression; /* the extension that compresses it; NULL: none */
+} nt_gltf_view;
+
+typedef struct nt_gltf_accessor {
+	uint32_t index;
+	uint32_t component_type; /* enum nt_gltf_component */
+	uint32_t component_bytes;
+	uint32_t components;     /* of an element: 1 to 4, matrices 4, 9, 16 */
+	uint32_t element_bytes;  /* with the padding of matrix columns */
+	bool normalized;
+	uint64_t count;
+	uint32_t view;           /* NT_NONE: all zeros */
+	uint64_t offset;         /* in the view */
+	uint32_t stride;         /* as it applies, never 0 */
+	uint64_t sparse_count;   /* 0: not sparse */
+	uint32_t sparse_index_type, sparse_index_view, sparse_value_view;
+	uint64_t sparse_index_offset, sparse_value_offset;
+} nt_gltf_accessor;
+
+typedef struct nt_gltf {
+	nt_arena arena;
+	nt_json *json;
+	const char *path;        /* of the document; "-" for standard input */
+	const unsigned char *bytes;
+	size_t byte_count;
+	bool is_glb;
+	nt_glb glb;
+	bool allow_outside;
+	nt_gltf_buffer *buffers; /* [buffer_count] */
+	size_t buffer_count;
+	uint64_t bytes_opened;   /* of external files and data URIs */
+} nt_gltf;
+
+/* Parses a document over the scene's bytes. Returns NMTAN_OK, NMTAN_ERROR_INPUT,
+ * NMTAN_ERROR_UNSUPPORTED (another version of glTF) or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_gltf_create(nt_gltf **document, const nt_scene *scene, bool allow_outside,
+	nt_error *error);
+
+/* For nt_scene.free_source. */
+void nt_gltf_free(void *document);
+
+/* A member of the root: NULL where there is none. */
+nt_json_value *nt_gltf_root_member(const nt_gltf *document, const char *name);
+
+/* Element of a root array, which must be an object. `from` is the JSON pointer of the reference. */
+nmtan_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t index,
+	const char *from, const nt_json_value **element, nt_error *error);
+
+/* An unsigned member of an object: value at most `limit`. Where the member is missing *value gets
+ * `otherwise`; NT_GLTF_REQUIRED there makes that an error. */
+#define NT_GLTF_REQUIRED UINT64_MAX
+nmtan_status nt_gltf_uint(const nt_json_value *object, const char *pointer, const char *key,
+	uint64_t limit, uint64_t otherwise, uint64_t *value, nt_error *error);
+
+/* Length and home of a buffer; nothing is opened. */
+nmtan_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char *from,
+	nt_gltf_buffer **buffer, nt_error *error);
+
+/* The same with its bytes. */
+nmtan_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *from,
+	nt_gltf_buffer **buffer, nt_error *error);
+
+/* A bufferView, checked against its buffer's byteLength. */
+nmtan_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
+	nt_error *error);
+
+/* Bytes of a view, `length` of them from `offset` on; compressed views are refused. `what` is the JSON
+ * pointer of who wants them. */
+nmtan_status nt_gltf_view_bytes(nt_gltf *document, uint32_t view, uint64_t offset, uint64_t length,
+	const char *what, const unsigned char **bytes, nt_error *error);
+
+/* An accessor, checked against its views. */
+nmtan_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
+	nt_gltf_accessor *accessor, nt_error *error);
+
+/* The bytes of an accessor's rows, `stride` apart; NULL where it has no view. */
+nmtan_status nt_gltf_accessor_rows(nt_gltf *document, const nt_gltf_accessor *accessor,
+	const unsigned char **rows, nt_error *error);
+
+/* The rows a sparse accessor replaces: their numbers, and their elements, tightly packed. Numbers are
+ * checked: increasing and below the count. The array is in the arena. */
+nmtan_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt_arena *arena,
+	const uint32_t **rows, const unsigned char **values, nt_error *error);
+
+/*
+ * An accessor as floats, `width` per element: normalized integers as the specification maps them, other
+ * integers by value. Components beyond those of the accessor get `fill`. Points into the input where it
+ * already is that.
+ */
+nmtan_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width,
+	float fill, nt_arena *arena, float **floats, nt_error *error);
+
+/* An accessor of unsigned scalars as 32-bit indices, each below `vertex_count` and not the value that
+ * is reserved for restarts. Points into the input where it already is that. */
+nmtan_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, size_t vertex_count,
+	nt_arena *arena, uint32_t **indices, nt_error *error);
+
+/* Size of a component; 0 for an unknown type. */
+uint32_t nt_gltf_component_bytes(uint64_t component_type);
+
+/* ---- gltf_material.c ---- */
+
+/* What a primitive's materials ask for. */
+typedef struct nt_gltf_shading {
+	unsigned slots; /* enum nt_slot */
+	bool unlit;     /* all of its materials are */
+	bool has_set;
+	uint32_t set;   /* texture coordinates of the first slot in the order of enum nt_slot */
+	unsigned set_slot;
+	bool conflict;  /* another slot wants other_set */
+	uint32_t other_set;
+	uint32_t material; /* the primitive's own; NT_NONE: none */
+} nt_gltf_shading;
+
+/* Judges the materials of a primitive, variants included. */
+nmtan_status nt_gltf_judge_materials(nt_gltf *document, const nt_json_value *primitive,
+	const char *pointer, nt_gltf_shading *shading, nt_error *error);
+
+/* ---- gltf_nodes.c ---- */
+
+/* Marks the meshes that a scene shows: reached[mesh]. Faulty nodes are passed over. */
+nmtan_status nt_gltf_reach(const nt_gltf *document, bool *reached, size_t mesh_count, nt_error *error);
+
+/* Calls place(context, mesh, matrix) for every mesh in the world of the default scene (of all roots,
+ * where there is no scene). */
+nmtan_status nt_gltf_walk_world(const nt_gltf *document,
+	nmtan_status (*place)(void *context, uint64_t mesh, const double matrix[16]), void *context,
+	nt_error *error);
+
+#endif

@@ -1,0 +1,480 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * glTF and GLB as a scene: every primitive is a mesh of its own, since glTF defines tangents per
+ * primitive. Opening describes the meshes from the JSON alone; loading brings the geometry of one, and
+ * with it the buffers that this one needs.
+ *
+ * Only what must be read is judged. Opening looks at meshes, their materials and who shows them; a
+ * primitive's accessors are checked when it is loaded; cameras, skins, animations and images are not
+ * looked at.
+ *
+ * Texture coordinates are handed on as (u, -v): v up, exactly.
+ */
+#include "io/gltf_document.h"
+
+#include <stdio.h>
+#include <string.h>
+
+enum { MODE_TRIANGLES = 4, MODE_STRIP = 5, MODE_FAN = 6 };
+/* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
+enum { UNBACKED_ELEMENTS = 65536 };
+
+/* ---- opening ---- */
+
+static const char *copy_name(nt_arena *arena, const nt_json_value *object)
+{
+	size_t length = 0;
+	const char *name = nt_json_get_string(nt_json_find(object, "name"), &length);
+	return nt_arena_text(arena, name ? name : "", name ? length : 0);
+}
+
+/* `mesh "head", primitive 2, material "skin"`. */
+static void name_place(nt_gltf *document, nt_mesh *mesh, uint32_t material)
+{
+	char *words = mesh->place.object;
+	const size_t room = sizeof mesh->place.object;
+	int used = mesh->name[0] ? snprintf(words, room, "mesh \"%.80s\"", mesh->name) :
+				   snprintf(words, room, "mesh %u", mesh->gltf_mesh);
+	used += snprintf(words + used, room - (size_t)used, ", primitive %u", mesh->gltf_primitive);
+	if (material == NT_NONE)
+		return;
+	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "materials"), material);
+	const char *name = nt_json_get_string(nt_json_find(json, "name"), NULL);
+	if (name)
+		snprintf(words + used, room - (size_t)used, ", material \"%.80s\"", name);
+	else
+		snprintf(words + used, room - (size_t)used, ", material %u", material);
+}
+
+/* How many elements an accessor claims; 0 where that cannot be said. */
+static uint64_t claimed_count(const nt_gltf *document, const nt_json_value *reference)
+{
+	uint64_t index, count = 0;
+	if (nt_json_get_uint64(reference, &index) && index < UINT32_MAX)
+		nt_json_get_uint64(nt_json_find(
+			nt_json_at(nt_gltf_root_member(document, "accessors"), (size_t)index), "count"),
+			&count);
+	return count;
+}
+
+/* Triangles a primitive claims to have, to tell empty ones; loading counts again. */
+static size_t claimed_faces(const nt_gltf *document, const nt_json_value *primitive,
+	const nt_json_value *attributes, uint64_t mode)
+{
+	const nt_json_value *indices = nt_json_find(primitive, "indices");
+	const nt_json_value *positions = nt_json_find(attributes, "POSITION");
+	if (!positions)
+		return 0;
+	const uint64_t corners = claimed_count(document, indices ? indices : positions);
+	if (corners < 3)
+		return 0;
+	return (size_t)(mode == MODE_TRIANGLES ? corners / 3 : corners - 2);
+}
+
+static bool has_texcoords(const nt_json_value *attributes, uint32_t set)
+{
+	char name[32];
+	snprintf(name, sizeof name, "TEXCOORD_%u", set);
+	return nt_json_find(attributes, name) != NULL;
+}
+
+static nmtan_status describe_primitive(nt_scene *scene, nt_gltf *document,
+	const nt_json_value *primitive, nt_mesh *mesh, const nt_read_options *options, nt_error *error)
+{
+	const char *pointer = mesh->place.pointer;
+	if (nt_json_type_of(primitive) != NT_JSON_OBJECT)
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "%s, expected an object",
+			nt_json_type_text(primitive));
+	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
+	if (attributes && nt_json_type_of(attributes) != NT_JSON_OBJECT)
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+			"\"attributes\" is %s, expected an object", nt_json_type_text(attributes));
+	uint64_t mode;
+	nmtan_status status = nt_gltf_uint(primitive, pointer, "mode", 6, MODE_TRIANGLES, &mode, error);
+	nt_gltf_shading shading;
+	if (!status)
+		status = nt_gltf_judge_materials(document, primitive, pointer, &shading, error);
+	if (status)
+		return status;
+	name_place(document, mesh, shading.material);
+	mesh->triangles = mode >= MODE_TRIANGLES;
+	mesh->slots = shading.slots;
+	mesh->unlit = shading.unlit;
+	mesh->texcoord_set = options->texcoord_set >= 0 ? (uint32_t)options->texcoord_set : shading.set;
+	mesh->texcoord_conflict = shading.conflict && options->texcoord_set < 0;
+	mesh->texcoord_other_set = shading.other_set;
+	mesh->has_positions = nt_json_find(attributes, "POSITION") != NULL;
+	mesh->has_normals = nt_json_find(attributes, "NORMAL") != NULL;
+	mesh->has_tangents = nt_json_find(attributes, "TANGENT") != NULL;
+	mesh->has_texcoords = has_texcoords(attributes, mesh->texcoord_set);
+	mesh->face_count = claimed_faces(document, primitive, attributes, mode);
+	mesh->primitive_count = 1;
+	mesh->primitives = nt_arena_alloc(&scene->arena, 1, sizeof *mesh->primitives);
+	if (!mesh->primitives)
+		return nt_fail_memory(error);
+	mesh->primitives[0] = (nt_primitive){NT_NONE, mesh->face_count};
+	return NMTAN_OK;
+}
+
+/* All primitives of all meshes. */
+static nmtan_status count_primitives(const nt_gltf *document, size_t *count, nt_error *error)
+{
+	const nt_json_value *meshes = nt_gltf_root_member(document, "meshes");
+	if (meshes && nt_json_type_of(meshes) != NT_JSON_ARRAY)
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, "/meshes", "%s, expected an array",
+			nt_json_type_text(meshes));
+	*count = 0;
+	for (size_t i = 0; i < nt_json_count(meshes); i++) {
+		const nt_json_value *primitives = nt_json_find(nt_json_at(meshes, i), "primitives");
+		if (nt_json_type_of(primitives) != NT_JSON_ARRAY) {
+			char pointer[NT_GLTF_POINTER];
+			snprintf(pointer, sizeof pointer, "/meshes/%zu", i);
+			return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+				"\"primitives\" is %s, expected an array", nt_json_type_text(primitives));
+		}
+		*count += nt_json_count(primitives);
+	}
+	return NMTAN_OK;
+}
+
+static nmtan_status describe_meshes(nt_scene *scene, nt_gltf *document, const nt_read_options *options,
+	const bool *reached, nt_error *error)
+{
+	const nt_json_value *meshes = nt_gltf_root_member(document, "meshes");
+	nt_mesh *mesh = scene->meshes;
+	for (size_t i = 0; i < nt_json_count(meshes); i++) {
+		const nt_json_value *json = nt_json_at(meshes, i);
+		const nt_json_value *primitives = nt_json_find(json, "primitives");
+		const char *name = copy_name(&scene->arena, json);
+		if (!name)
+			return nt_fail_memory(error);
+		for (size_t k = 0; k < nt_json_count(primitives); k++, mesh++) {
+			memset(mesh, 0, sizeof *mesh);
+			nt_place_clear(&mesh->place);
+			snprintf(mesh->place.pointer, sizeof mesh->place.pointer,
+				"/meshes/%zu/primitives/%zu", i, k);
+			mesh->name = name;
+			mesh->gltf_mesh = (uint32_t)i;
+			mesh->gltf_primitive = (uint32_t)k;
+			mesh->reachable = reached[i];
+			const nmtan_status status = describe_primitive(scene, document,
+				nt_json_at(primitives, k), mesh, options, error);
+			if (status)
+				return status;
+		}
+	}
+	return NMTAN_OK;
+}
+
+/* Where the primitives of a mesh begin in scene->meshes. */
+typedef struct placing {
+	nt_scene *scene;
+	const uint32_t *first; /* [mesh count + 1] */
+	size_t mesh_count, capacity;
+	nt_error *error;
+} placing;
+
+static nmtan_status place_mesh(void *context, uint64_t mesh, const double matrix[16])
+{
+	placing *world = context;
+	if (mesh >= world->mesh_count)
+		return NMTAN_OK;
+	nt_scene *scene = world->scene;
+	for (uint32_t i = world->first[mesh]; i < world->first[mesh + 1]; i++) {
+		if (scene->instance_count == world->capacity) {
+			const size_t wanted = world->capacity ? world->capacity * 2 : 16;
+			nt_instance *grown = nt_arena_alloc(&scene->arena, wanted, sizeof *grown);
+			if (!grown)
+				return nt_fail_memory(world->error);
+			if (scene->instance_count)
+				memcpy(grown, scene->instances, scene->instance_count * sizeof *grown);
+			scene->instances = grown;
+			world->capacity = wanted;
+		}
+		nt_instance *instance = &scene->instances[scene->instance_count++];
+		instance->mesh = i;
+		memcpy(instance->matrix, matrix, sizeof instance->matrix);
+	}
+	return NMTAN_OK;
+}
+
+static nmtan_status place_meshes(nt_scene *scene, const nt_gltf *document, nt_error *error)
+{
+	const size_t mesh_count = nt_json_count(nt_gltf_root_member(document, "meshes"));
+	uint32_t *first = nt_arena_alloc(&scene->arena, mesh_count + 1, sizeof *first);
+	if (!first)
+		return nt_fail_memory(error);
+	memset(first, 0, (mesh_count + 1) * sizeof *first);
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		first[scene->meshes[i].gltf_mesh + 1]++;
+	for (size_t i = 0; i < mesh_count; i++)
+		first[i + 1] += first[i];
+	placing world = {scene, first, mesh_count, 0, error};
+	return nt_gltf_walk_world(document, place_mesh, &world, error);
+}
+
+nmtan_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
+{
+	nt_gltf *document;
+	nmtan_status status = nt_gltf_create(&document, scene, options->allow_outside, error);
+	if (status)
+		return status;
+	scene->source = document;
+	scene->free_source = nt_gltf_free;
+	scene->format = document->is_glb ? NT_FORMAT_GLB : NT_FORMAT_GLTF;
+
+	/* The meshes, and which of them a scene shows. */
+	size_t count = 0;
+	status = count_primitives(document, &count, error);
+	if (status)
+		return status;
+	const size_t mesh_count = nt_json_count(nt_gltf_root_member(document, "meshes"));
+	bool *reached = nt_arena_alloc(&scene->arena, mesh_count, sizeof *reached);
+	scene->meshes = nt_arena_alloc(&scene->arena, count, sizeof *scene->meshes);
+	if (!reached || !scene->meshes)
+		return nt_fail_memory(error);
+	memset(reached, 0, mesh_count * sizeof *reached);
+	scene->mesh_count = count;
+	status = nt_gltf_reach(document, reached, mesh_count, error);
+	if (!status)
+		status = describe_meshes(scene, document, options, reached, error);
+
+	/* Their places, where the output is one mesh in the world. */
+	if (!status && options->world)
+		status = place_meshes(scene, document, error);
+	return status;
+}
+
+/* ---- loading ---- */
+
+static nmtan_status find_primitive(const nt_gltf *document, const nt_mesh *mesh,
+	const nt_json_value **primitive, nt_error *error)
+{
+	const nt_json_value *json =
+		nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh);
+	*primitive = nt_json_at(nt_json_find(json, "primitives"), mesh->gltf_primitive);
+	if (nt_json_find(nt_json_find(*primitive, "extensions"), "KHR_draco_mesh_compression"))
+		return nt_fail_pointer(error, NMTAN_ERROR_UNSUPPORTED, mesh->place.pointer,
+			"the primitive is compressed by KHR_draco_mesh_compression, which nmtan does not "
+			"read yet");
+	return NMTAN_OK;
+}
+
+/* An attribute of a primitive. *accessor has count 0 and no view where there is none. */
+typedef struct attribute {
+	bool exists;
+	nt_gltf_accessor accessor;
+} attribute;
+
+static nmtan_status find_attribute(nt_gltf *document, const nt_mesh *mesh,
+	const nt_json_value *attributes, const char *name, uint32_t least, uint32_t most,
+	attribute *found, nt_error *error)
+{
+	found->exists = false;
+	const nt_json_value *reference = nt_json_find(attributes, name);
+	if (!reference)
+		return NMTAN_OK;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "%.100s/attributes", mesh->place.pointer);
+	uint64_t index;
+	nmtan_status status =
+		nt_gltf_uint(attributes, pointer, name, UINT32_MAX - 1, NT_GLTF_REQUIRED, &index, error);
+	if (!status) {
+		snprintf(pointer, sizeof pointer, "%.100s/attributes/%.20s", mesh->place.pointer, name);
+		status = nt_gltf_get_accessor(document, index, pointer, &found->accessor, error);
+	}
+	if (status)
+		return status;
+	if (found->accessor.components < least || found->accessor.components > most)
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+			"accessor %llu has %u components, expected %u", (unsigned long long)index,
+			found->accessor.components, least);
+	found->exists = true;
+	return NMTAN_OK;
+}
+
+static nmtan_status check_count(const nt_mesh *mesh, const attribute *found, const char *name,
+	nt_error *error)
+{
+	if (!found->exists || found->accessor.count == mesh->vertex_count)
+		return NMTAN_OK;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "%.100s/attributes/%.20s", mesh->place.pointer, name);
+	return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+		"accessor %u has %llu elements, POSITION has %zu", found->accessor.index,
+		(unsigned long long)found->accessor.count, mesh->vertex_count);
+}
+
+/* What a load takes from a primitive. */
+typedef struct inputs {
+	attribute positions, normals, texcoords, tangents, colors;
+	char texcoord_name[32];
+} inputs;
+
+static nmtan_status find_inputs(nt_gltf *document, const nt_mesh *mesh, const nt_json_value *primitive,
+	const nt_read_options *options, inputs *in, nt_error *error)
+{
+	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
+	snprintf(in->texcoord_name, sizeof in->texcoord_name, "TEXCOORD_%u", mesh->texcoord_set);
+	in->colors.exists = false;
+	nmtan_status status =
+		find_attribute(document, mesh, attributes, "POSITION", 3, 3, &in->positions, error);
+	if (!status && !in->positions.exists)
+		status = nt_fail_pointer(error, NMTAN_ERROR_INPUT, mesh->place.pointer,
+			"the primitive has no POSITION");
+	if (!status)
+		status = find_attribute(document, mesh, attributes, "NORMAL", 3, 3, &in->normals, error);
+	if (!status)
+		status = find_attribute(document, mesh, attributes, in->texcoord_name, 2, 2,
+			&in->texcoords, error);
+	if (!status)
+		status = find_attribute(document, mesh, attributes, "TANGENT", 4, 4, &in->tangents, error);
+	if (!status && options->world)
+		status = find_attribute(document, mesh, attributes, "COLOR_0", 3, 4, &in->colors, error);
+	return status;
+}
+
+/* Counts must agree, and something in the file must stand behind them. */
+static nmtan_status check_inputs(const nt_mesh *mesh, const inputs *in, nt_error *error)
+{
+	nmtan_status status = check_count(mesh, &in->normals, "NORMAL", error);
+	if (!status)
+		status = check_count(mesh, &in->texcoords, in->texcoord_name, error);
+	if (!status)
+		status = check_count(mesh, &in->tangents, "TANGENT", error);
+	if (!status)
+		status = check_count(mesh, &in->colors, "COLOR_0", error);
+	const bool backed = in->positions.accessor.view != NT_NONE ||
+		(in->normals.exists && in->normals.accessor.view != NT_NONE) ||
+		(in->texcoords.exists && in->texcoords.accessor.view != NT_NONE);
+	if (!status && !backed && mesh->vertex_count > UNBACKED_ELEMENTS)
+		status = nt_fail_pointer(error, NMTAN_ERROR_UNSUPPORTED, mesh->place.pointer,
+			"%zu vertices, but neither positions nor normals nor texture coordinates have a "
+			"bufferView", mesh->vertex_count);
+	return status;
+}
+
+/* Integer normals are normalised; float ones are taken as they are. */
+static void normalise_quantized(const nt_gltf_accessor *accessor, float *normals)
+{
+	if (accessor->component_type == NT_GLTF_FLOAT)
+		return;
+	for (size_t i = 0; i < accessor->count; i++) {
+		float *n = normals + i * 3;
+		const double x = n[0], y = n[1], z = n[2], length = x * x + y * y + z * z;
+		if (!(length > 0))
+			continue;
+		const double scale = 1 / __builtin_sqrt(length);
+		n[0] = (float)(x * scale);
+		n[1] = (float)(y * scale);
+		n[2] = (float)(z * scale);
+	}
+}
+
+static nmtan_status load_vertices(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const inputs *in,
+	nt_error *error)
+{
+	nt_arena *arena = &scene->arena;
+	nmtan_status status = nt_gltf_floats(document, &in->positions.accessor, 3, 0, arena,
+		&mesh->positions, error);
+	if (!status && in->normals.exists) {
+		status = nt_gltf_floats(document, &in->normals.accessor, 3, 0, arena, &mesh->normals, error);
+		if (!status)
+			normalise_quantized(&in->normals.accessor, mesh->normals);
+	}
+	if (!status && in->tangents.exists)
+		status = nt_gltf_floats(document, &in->tangents.accessor, 4, 0, arena, &mesh->tangents,
+			error);
+	if (!status && in->colors.exists)
+		status = nt_gltf_floats(document, &in->colors.accessor, 4, 1, arena, &mesh->colors, error);
+	if (status || !in->texcoords.exists)
+		return status;
+
+	/* v points down in glTF. The copy is needed: the input stays as it is. */
+	float *decoded;
+	status = nt_gltf_floats(document, &in->texcoords.accessor, 2, 0, arena, &decoded, error);
+	if (status)
+		return status;
+	mesh->texcoords = nt_arena_alloc(arena, mesh->vertex_count, 2 * sizeof(float));
+	if (!mesh->texcoords)
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < mesh->vertex_count; i++) {
+		mesh->texcoords[2 * i] = decoded[2 * i];
+		mesh->texcoords[2 * i + 1] = -decoded[2 * i + 1];
+	}
+	return NMTAN_OK;
+}
+
+/* Triangles of a strip or fan, in the order and with the first corners that the specification gives. */
+static void list_triangles(uint64_t mode, const uint32_t *chain, size_t face_count, uint32_t *corners)
+{
+	for (size_t i = 0; i < face_count; i++) {
+		size_t a = i, b = i + 1 + i % 2, c = i + 2 - i % 2;
+		if (mode == MODE_FAN) {
+			a = i + 1;
+			b = i + 2;
+			c = 0;
+		}
+		const size_t from[3] = {a, b, c};
+		for (int k = 0; k < 3; k++)
+			corners[3 * i + (size_t)k] = chain ? chain[from[k]] : (uint32_t)from[k];
+	}
+}
+
+static nmtan_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
+	const nt_json_value *primitive, nt_error *error)
+{
+	uint64_t mode = MODE_TRIANGLES, index;
+	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
+	nmtan_status status = nt_gltf_uint(primitive, mesh->place.pointer, "indices", UINT32_MAX - 1,
+		NT_NONE, &index, error);
+	if (status)
+		return status;
+	uint32_t *chain = NULL;
+	uint64_t count = mesh->vertex_count;
+	if (index != NT_NONE) {
+		char pointer[NT_GLTF_POINTER];
+		snprintf(pointer, sizeof pointer, "%.100s/indices", mesh->place.pointer);
+		nt_gltf_accessor accessor;
+		status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
+		if (!status)
+			status = nt_gltf_indices(document, &accessor, mesh->vertex_count, &scene->arena,
+				&chain, error);
+		if (status)
+			return status;
+		count = accessor.count;
+	}
+	mesh->face_count = mode == MODE_TRIANGLES ? (size_t)count / 3 : count < 3 ? 0 : (size_t)count - 2;
+	mesh->corner_count = mesh->face_count * 3;
+	mesh->primitives[0].face_count = mesh->face_count;
+	mesh->indices = chain;
+	if (mode == MODE_TRIANGLES)
+		return NMTAN_OK;
+	mesh->indices = nt_arena_alloc(&scene->arena, mesh->corner_count, sizeof *mesh->indices);
+	if (!mesh->indices)
+		return nt_fail_memory(error);
+	list_triangles(mode, chain, mesh->face_count, mesh->indices);
+	return NMTAN_OK;
+}
+
+nmtan_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
+	nt_error *error)
+{
+	nt_gltf *document = scene->source;
+	const nt_json_value *primitive;
+	nmtan_status status = find_primitive(document, mesh, &primitive, error);
+	inputs in;
+	if (!status)
+		status = find_inputs(document, mesh, primitive, options, &in, error);
+	if (!status) {
+		mesh->vertex_count = mesh->source_vertex_count = (size_t)in.positions.accessor.count;
+		status = check_inputs(mesh, &in, error);
+	}
+	if (!status)
+		status = load_vertices(scene, document, mesh, &in, error);
+	if (!status)
+		status = load_faces(scene, document, mesh, primitive, error);
+	if (status && error && !error->place.object[0])
+		memcpy(error->place.object, mesh->place.object, sizeof error->place.object);
+	return status;
+}
