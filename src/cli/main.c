@@ -183,8 +183,10 @@ static int run(const nt_command *command, nt_style style)
 
 int main(int argc, char **argv)
 {
-	/* A reader that goes away is an error of writing, after which temporary files are removed. */
+	/* A reader that goes away, or a file beyond the limit, is an error of writing like any other, after
+	 * which temporary files are removed. */
 	signal(SIGPIPE, SIG_IGN);
+	signal(SIGXFSZ, SIG_IGN);
 	nt_output_catch_signals();
 
 	nt_command command;

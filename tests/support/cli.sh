@@ -32,6 +32,7 @@ scene() {
 
 # Ends the case at once as skipped, with the reason.
 skip_case() {
+	[ -n "$case_name" ] || return 0
 	cases=$((cases + 1))
 	echo "ok - $case_name # SKIP $1"
 	case_name=
@@ -91,6 +92,34 @@ same() {
 
 is() {
 	[ "$1" = "$2" ] || wrong "got '$1', expected '$2'"
+}
+
+# The value of a JavaScript expression over a glTF file: see gltf.mjs.
+gltf() {
+	node "$ROOT/tests/support/gltf.mjs" "$@"
+}
+
+# The output has no error in the Khronos validator that its input (if any) did not have.
+valid() {
+	if [ -f "$ROOT/build/node/node_modules/gltf-validator/package.json" ]; then
+		node "$ROOT/tests/support/validate.mjs" "$@" || wrong "$1 is not valid"
+	else
+		skip_case "gltf-validator is not installed (no network?)"
+	fi
+}
+
+# An OBJ grid of N by N quads with texture coordinates: big enough to last a while.
+grid_obj() {
+	awk -v n="$1" 'BEGIN {
+		for (j = 0; j <= n; j++) for (i = 0; i <= n; i++) {
+			printf "v %g %g %g\n", i / n, j / n, 0.05 * sin(i * 0.3) * cos(j * 0.2)
+			printf "vt %g %g\n", i / n, j / n
+		}
+		for (j = 0; j < n; j++) for (i = 0; i < n; i++) {
+			a = j * (n + 1) + i + 1; b = a + 1; c = b + n + 1; d = c - 1
+			printf "f %d/%d %d/%d %d/%d %d/%d\n", a, a, b, b, c, c, d, d
+		}
+	}'
 }
 
 done_testing() {

@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: MIT
+# --check judges, writes nothing, and fails for the right reason only.
+. "$ROOT/tests/support/cli.sh"
+
+scene "a sound mesh passes and nothing is written"
+run --check "$data/quad.obj" "$data/quad_le.ply"
+exits 0
+says "quad.obj: checked, 1 primitive"
+only
+
+scene "findings at or above --fail-on make the exit code 6"
+cp "$data/mirrored_cube.obj" .
+run --check mirrored_cube.obj
+says "warning:"
+says "[MTL_MISSING]"
+says "mirrored_cube.mtl"
+exits 0
+run --check --fail-on=warning mirrored_cube.obj
+exits 6
+run --check --fail-on=never mirrored_cube.obj
+exits 0
+run --fail-on=warning mirrored_cube.obj out.glb
+exits 6
+exists out.glb
+run mirrored_cube.obj out.glb
+exits 0
+
+scene "standard input can be judged"
+"$NMTAN" --check - <"$data/quad.obj" 2>"$WORK/err.txt"
+is $? 0
+
+scene "an input that cannot be read counts more than findings"
+cp "$data/mirrored_cube.obj" .
+run --check --fail-on=info mirrored_cube.obj nothing.obj
+exits 2
+
+done_testing

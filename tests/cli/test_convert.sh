@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: MIT
+# The main job on the meshes of data/.
+. "$ROOT/tests/support/cli.sh"
+
+scene "an OBJ becomes a GLB with tangents and one line says so"
+run "$data/quad.obj" quad.glb
+exits 0
+only quad.glb
+is "$(wc -l <"$WORK/err.txt")" 1
+says "1 primitive"
+says "2 triangles"
+# An upright quad: T along x, w = +1 in glTF.
+is "$(gltf quad.glb 'rows(g.meshes[0].primitives[0].attributes.TANGENT)')" \
+	"[[1,0,0,1],[1,0,0,1],[1,0,0,1],[1,0,0,1]]"
+
+scene "quiet says nothing"
+run -q "$data/quad.obj" quad.glb
+exits 0
+silent
+
+scene "vertices on a mirror seam are split, and no others"
+cp "$data/bumps.png" .
+run "$data/mirrored_cube.obj" cube.glb
+exits 0
+# Ten quads: two sides of 4 corners, four faces of 6 vertices, of which the 2 on the seam are doubled.
+is "$(gltf cube.glb 'g.accessors[g.meshes[0].primitives[0].attributes.POSITION].count')" 40
+says "32 -> 40 vertices"
+is "$(gltf cube.glb 'g.accessors[g.meshes[0].primitives[0].indices].count')" 60
+
+scene "the normal map of the MTL arrives in the output"
+run "$data/mirrored_cube.obj" cube.glb
+exits 0
+is "$(gltf cube.glb 'g.materials[0].name')" bumps
+is "$(gltf cube.glb 'g.materials[0].normalTexture !== undefined')" true
+is "$(gltf cube.glb 'g.images[0].uri === undefined')" true
+
+scene "w mirrors with the texture"
+run "$data/mirrored_cube.obj" cube.glb
+# 20 triangles, half of them mirrored, and w is the same at the corners of each.
+is "$(gltf cube.glb '(() => {
+	const p = g.meshes[0].primitives[0], t = rows(p.attributes.TANGENT), i = rows(p.indices).flat();
+	const w = [];
+	for (let k = 0; k < i.length; k += 3)
+		w.push(t[i[k]][3] === t[i[k + 1]][3] && t[i[k]][3] === t[i[k + 2]][3] ? t[i[k]][3] : 0);
+	return [w.filter((x) => x === 1).length, w.filter((x) => x === -1).length];
+})()')" "[10,10]"
+
+scene "a glTF gets tangents where its materials need them"
+run "$data/plates.glb" out.glb
+exits 0
+says "2 of 3 primitives"
+is "$(gltf out.glb 'g.meshes[0].primitives.map((p) => p.attributes.TANGENT !== undefined)')" \
+	"[true,false,true]"
+
+scene "the second of two runs finds nothing to do and copies the file"
+run "$data/plates.glb" one.glb
+run one.glb two.glb
+exits 0
+same one.glb two.glb
+
+scene "every form of output holds the same tangents"
+cp "$data/head.obj" .
+run head.obj head.glb
+exits 0
+run head.obj head.gltf
+exits 0
+exists head.gltf head.bin
+run --embed head.obj embedded.gltf
+exits 0
+run --output-format=glb head.obj unnamed
+exits 0
+same head.glb unnamed
+tangents='rows(g.meshes[0].primitives[0].attributes.TANGENT)'
+gltf head.glb "$tangents" >a
+gltf head.gltf "$tangents" >b
+gltf embedded.gltf "$tangents" >c
+same a b
+same a c
+is "$(gltf embedded.gltf 'g.buffers[0].uri.slice(0, 5)')" data:
+
+scene "triangles keep the order of the input"
+run "$data/head.obj" head.glb
+# Quad k of the file is cut into triangles 2k and 2k + 1, which have its corners.
+is "$(gltf head.glb 'g.accessors[g.meshes[0].primitives[0].indices].count')" "$((12 * 14 * 2 * 2 * 3))"
+
+scene "every variant of PLY gives the same frame"
+for name in ascii le be wedge; do
+	run "$data/quad_$name.ply" "$name.glb"
+	exits 0
+	is "$(gltf "$name.glb" 'rows(g.meshes[0].primitives[0].attributes.TANGENT).every(
+		(t) => t.join() === "1,0,0,1")')" true
+done
+
+scene "a PLY keeps its format and gains four properties"
+run "$data/quad_ascii.ply" ascii.ply
+exits 0
+grep -q '^format ascii 1.0' ascii.ply || wrong "not ascii"
+for property in tx ty tz tw; do
+	grep -q "^property float $property" ascii.ply || wrong "$property is missing"
+done
+grep -q '^comment one quad, texture upright' ascii.ply || wrong "the comment is lost"
+run --bitangents "$data/quad_be.ply" be.ply
+exits 0
+grep -aq '^format binary_big_endian 1.0' be.ply || wrong "not big endian"
+grep -aq '^property float bz' be.ply || wrong "no bitangents"
+
+scene "a glTF becomes a PLY"
+run --only=all "$data/plates.gltf" plates.ply
+exits 0
+grep -aq '^property float tw' plates.ply || wrong "no tangents"
+run plates.ply again.glb
+exits 0
+
+scene "pipes carry meshes in and out"
+cp "$data/plates.glb" x.glb
+"$NMTAN" -q x.glb direct.glb
+"$NMTAN" -q - - <x.glb >piped.glb || wrong "exit code $?"
+same direct.glb piped.glb
+# shellcheck disable=SC2002
+cat x.glb | "$NMTAN" -q - - | "$NMTAN" -q --output-format=glb - - >twice.glb || wrong "exit code $?"
+same direct.glb twice.glb
+"$NMTAN" -q - - <"$data/quad_ascii.ply" | head -c 3 | grep -q ply || wrong "PLY does not stay PLY"
+"$NMTAN" -q "$data/quad.obj" - | head -c 4 | grep -q glTF || wrong "OBJ does not become GLB"
+"$NMTAN" -q "$data/quad.obj" /dev/stdout | head -c 4 | grep -q glTF || wrong "/dev/stdout is no stream"
+
+scene "content counts before the name"
+cp "$data/plates.glb" really.obj
+run really.obj out.glb
+exits 0
+run "$data/plates.glb" expected.glb
+same out.glb expected.glb
+
+scene "the bytes are the same for every number of threads and every run"
+grid_obj 120 >grid.obj
+run -j1 grid.obj a.glb
+exits 0
+for threads in 1 2 3 8; do
+	run -j$threads grid.obj b.glb
+	exits 0
+	same a.glb b.glb
+done
+
+scene "the locale does not matter"
+run "$data/head.obj" a.glb
+LC_ALL=de_DE.UTF-8 LANG=de_DE.UTF-8 run "$data/head.obj" b.glb
+same a.glb b.glb
+run "$data/quad_ascii.ply" a.ply
+LC_ALL=de_DE.UTF-8 LANG=de_DE.UTF-8 run "$data/quad_ascii.ply" b.ply
+same a.ply b.ply
+
+scene "timing names the stages"
+run --timing "$data/head.obj" head.glb
+exits 0
+for stage in map parse tangents split write total; do
+	says "$stage"
+done
+
+scene "progress is shown when it is asked for and never in the output"
+run --progress=on "$data/head.obj" -
+exits 0
+says "head.obj: parse"
+"$NMTAN" -q "$data/head.obj" - | cmp -s - "$WORK/out.txt" || wrong "the output differs"
+
+scene "colours are for terminals without NO_COLOR alone"
+cp "$data/mirrored_cube.obj" .
+run mirrored_cube.obj cube.glb
+grep -q $'\033' "$WORK/err.txt" && wrong "colours in a file"
+if command -v script >/dev/null 2>&1; then
+	NO_COLOR= script -qec "'$NMTAN' mirrored_cube.obj cube.glb" typed >/dev/null 2>&1
+	grep -q $'\033' typed || wrong "no colours on a terminal"
+	NO_COLOR=1 script -qec "'$NMTAN' mirrored_cube.obj cube.glb" typed >/dev/null 2>&1
+	grep -q $'\033' typed && wrong "colours although NO_COLOR is set"
+fi
+
+done_testing

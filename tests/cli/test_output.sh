@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: MIT
+# Outputs: whole or not at all, never over an input, written through where they are no files.
+. "$ROOT/tests/support/cli.sh"
+
+scene "no-clobber keeps what exists"
+echo mine >out.glb
+run -n "$data/quad.obj" out.glb
+exits 2
+says "out.glb"
+is "$(cat out.glb)" mine
+only out.glb
+run -n "$data/quad.obj" new.glb
+exits 0
+exists new.glb
+
+scene "an output that is the input is refused by name"
+cp "$data/plates.glb" a.glb
+run a.glb a.glb
+exits 2
+says "a.glb"
+ln a.glb hard.glb
+ln -s a.glb soft.glb
+run a.glb hard.glb
+exits 2
+says "hard.glb"
+run a.glb soft.glb
+exits 2
+says "soft.glb"
+run a.glb ./././a.glb
+exits 2
+same a.glb "$data/plates.glb"
+only a.glb hard.glb soft.glb
+
+scene "a companion that is a file of the input is refused by name"
+cp "$data/plates.gltf" "$data/plates.bin" "$data/bumps.png" .
+mkdir out && mv plates.gltf other.gltf
+# plates.gltf would bring a plates.bin, which is what other.gltf reads.
+run --existing=replace other.gltf plates.gltf
+exits 2
+says "plates.bin"
+same plates.bin "$data/plates.bin"
+[ ! -e plates.gltf ] || wrong "plates.gltf was written"
+
+scene "in-place replaces the input and nothing else"
+cp "$data/plates.glb" a.glb
+run "$data/plates.glb" expected.glb
+run --in-place a.glb
+exits 0
+same a.glb expected.glb
+cp "$data/plates.glb" a.glb
+run --in-place a.glb a.glb
+exits 0
+same a.glb expected.glb
+cp "$data/plates.glb" b.glb
+run --in-place a.glb b.glb
+exits 1
+says "b.glb"
+same b.glb "$data/plates.glb"
+cp "$data/quad.obj" .
+run --in-place quad.obj
+exits 1
+same quad.obj "$data/quad.obj"
+
+scene "a link to the output stays a link"
+ln -s real.glb link.glb
+echo old >real.glb
+run "$data/quad.obj" link.glb
+exits 0
+[ -L link.glb ] || wrong "the link is gone"
+run "$data/quad.obj" direct.glb
+same real.glb direct.glb
+
+scene "a full disk is an error of writing"
+run --output-format=glb "$data/head.obj" /dev/full
+exits 2
+says "/dev/full"
+"$NMTAN" -q "$data/head.obj" - >/dev/full 2>"$WORK/err.txt"
+is $? 2
+says "No space left"
+
+scene "a reader that goes away is an error of writing"
+grid_obj 120 >grid.obj
+{ "$NMTAN" -q grid.obj - 2>"$WORK/err.txt"; echo $? >code; } | head -c 10 >/dev/null
+is "$(cat code)" 2
+says "Broken pipe"
+
+scene "the null device takes everything"
+run --output-format=glb "$data/head.obj" /dev/null
+exits 0
+[ -c /dev/null ] || wrong "/dev/null was replaced"
+
+scene "a named pipe is written through"
+mkfifo pipe.glb
+cat pipe.glb >copy.glb &
+run "$data/quad.obj" pipe.glb
+exits 0
+wait
+[ -p pipe.glb ] || wrong "the pipe was replaced"
+run "$data/quad.obj" direct.glb
+same copy.glb direct.glb
+
+scene "places that cannot be written are named"
+run "$data/quad.obj" nowhere/out.glb
+exits 2
+says "nowhere/out.glb"
+run "$data/quad.obj" /proc/nmtan.glb
+exits 2
+says "/proc/nmtan.glb"
+mkdir folder.glb
+run "$data/quad.obj" folder.glb
+exits 2
+says "folder.glb"
+only folder.glb
+if [ "$(id -u)" != 0 ]; then
+	mkdir closed && chmod 555 closed
+	run "$data/quad.obj" closed/out.glb
+	exits 2
+	says "closed/out.glb"
+	chmod 755 closed
+fi
+
+scene "inputs that cannot be read are named"
+run nothing.obj out.glb
+exits 2
+says "nothing.obj"
+mkdir folder
+run folder out.glb
+exits 2
+says "folder"
+only folder
+
+scene "a file that grows beyond the limit leaves nothing behind"
+cp "$data/head.obj" .
+(ulimit -f 8 && exec "$NMTAN" head.obj out.glb) 2>"$WORK/err.txt"
+is $? 2
+says "out.glb"
+only head.obj
+
+scene "an output that fails late leaves its companions behind no more than itself"
+cp "$data/head.obj" .
+mkdir head.gltf
+run head.obj head.gltf
+exits 2
+only head.gltf head.obj
+
+scene "modes follow the umask"
+for mask in 022 077 027; do
+	(umask $mask && exec "$NMTAN" -q "$data/head.obj" "m$mask.gltf")
+	is "$(stat -c %a "m$mask.gltf" "m$mask.bin" | sort -u)" "$(printf '%o' $((0666 & ~mask)))"
+done
+
+scene "signals leave no temporary files"
+grid_obj 220 >grid.obj
+ended=0
+for delay in 0.02 0.05 0.08 0.11 0.15 0.2 0.3; do
+	for signal in TERM INT; do
+		# A shell's background jobs ignore SIGINT; env gives them the default again.
+		env --default-signal=INT,TERM "$NMTAN" -q -j1 grid.obj out.gltf &
+		process=$!
+		sleep $delay
+		kill -$signal $process 2>/dev/null
+		wait $process 2>/dev/null
+		[ $? -lt 128 ] || ended=$((ended + 1))
+		left=$(find . -name '.nmtan*')
+		[ -z "$left" ] || wrong "left behind: $left"
+	done
+done
+[ $ended -gt 0 ] || wrong "no run lasted long enough to be ended"
+
+scene "a dry run writes nothing and says what it would do"
+cp "$data/quad.obj" .
+run --dry-run quad.obj out.gltf
+exits 0
+says "dry run"
+only quad.obj
+run --dry-run quad.obj -
+exits 0
+[ ! -s "$WORK/out.txt" ] || wrong "a dry run wrote to standard output"
+run --dry-run -d out quad.obj
+exits 0
+only quad.obj
+
+scene "sync and verify change nothing in the output"
+run "$data/plates.glb" a.glb
+run --sync --verify "$data/plates.glb" b.glb
+exits 0
+same a.glb b.glb
+
+done_testing

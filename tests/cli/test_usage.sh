@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+# Words: what is asked for goes to standard output and succeeds, what is wrong is named and fails.
+. "$ROOT/tests/support/cli.sh"
+
+scene "help goes to standard output and succeeds"
+run --help
+exits 0
+prints "--threads"
+[ ! -s "$WORK/err.txt" ] || wrong "help wrote to standard error"
+run -h
+exits 0
+
+scene "the version is one line"
+run --version
+exits 0
+is "$(cat "$WORK/out.txt")" "nmtan $(sed -n 's/^#define NMTAN_VERSION_STRING "\(.*\)"/\1/p' "$ROOT/include/nmtan.h")"
+
+scene "no words at all are a mistake, told on standard error"
+run
+exits 1
+says "usage:"
+[ ! -s "$WORK/out.txt" ] || wrong "wrote to standard output"
+
+for pair in "--frob|'--frob'" "--frob=1|'--frob'" "-x|'-x'" "--thread=2|'--thread'" \
+	"--verify=yes|'yes'" "--threads=two|'two'" "--threads=-1|'-1'" "--only=some|'some'" \
+	"--method=mikk|'mikk'" "--uv=1.5|'1.5'" "--output-format=obj|'obj'" "--fail-on=fatal|'fatal'" \
+	"-jfour|'four'" "-vj8x|'8x'"; do
+	scene "${pair%|*} is refused with the word that is wrong"
+	cp "$data/quad.obj" in.obj
+	run "${pair%|*}" in.obj out.glb
+	exits 1
+	says "${pair#*|}"
+	only in.obj
+done
+
+scene "a missing value is named"
+run a b --threads
+exits 1
+says "--threads"
+
+scene "combinations that cannot be are refused"
+run -q -v a b
+exits 1
+says "--quiet and --verbose"
+run --check --in-place a
+exits 1
+says "--in-place"
+run -n --in-place a
+exits 1
+says "--no-clobber"
+run --embed --output-format=ply a b
+exits 1
+says "'ply'"
+
+scene "one name is too few and three are too many"
+run only.obj
+exits 1
+says "only.obj"
+run a b third.obj
+exits 1
+says "third.obj"
+
+scene "an output name that tells no format is refused before the input is read"
+run "$data/quad.obj" out.xyz
+exits 1
+says "out.xyz"
+run "$data/quad.obj" out.obj
+exits 1
+says "out.obj"
+only
+
+scene "names that begin with a dash come after two dashes"
+cp "$data/quad.obj" ./-quad.obj
+run -- -quad.obj -out.glb
+exits 0
+exists ./-out.glb
+
+scene "help that cannot be written is an error"
+"$NMTAN" --help >/dev/full 2>"$WORK/err.txt"
+is $? 2
+says "standard output"
+
+scene "bash completes options, values and files"
+"$NMTAN" --completion=bash >completion || wrong "exit code $?"
+touch mesh.obj
+complete_words() {
+	bash -c '. ./completion
+		compopt() { :; }
+		COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _nmtan; printf "%s " "${COMPREPLY[@]}"' bash "$@"
+}
+is "$(complete_words nmtan --meth)" "--method= "
+is "$(complete_words nmtan --method = le)" "lengyel "
+is "$(complete_words nmtan --uv = '')" "auto "
+is "$(complete_words nmtan --ver)" "--verify --verbose --version "
+is "$(complete_words nmtan mes)" "mesh.obj "
+
+scene "the zsh completion names every option of help"
+"$NMTAN" --completion=zsh >completion || wrong "exit code $?"
+"$NMTAN" --help | grep -o -- '--[a-z][a-z-]*[a-z]' | sort -u >names
+while IFS= read -r name; do
+	case $name in --check | --in-place | --*) ;; esac
+	grep -qF -- "'$name" completion || wrong "$name is missing"
+done <names
+if command -v zsh >/dev/null 2>&1; then
+	zsh -n completion || wrong "zsh cannot read it"
+fi
+
+done_testing

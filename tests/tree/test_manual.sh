@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+# The manual page says what the option table says: every option, every value, every default, no others.
+. "$ROOT/tests/support/cli.sh"
+
+page=$ROOT/man/nmtan.1
+# The page as text without fonts, one option per line.
+plain() {
+	sed -e 's/\\f[BIRP]//g' -e 's/\\-/-/g' "$page"
+}
+
+scene "every option of help is in the manual and no other"
+"$NMTAN" --help | grep -oE '^ +(-[a-z], )?--[a-z-]+' | grep -oE -- '--[a-z-]+' | sort >table
+plain | grep -E '^\.BR? .*--[a-z]' | grep -oE -- '--[a-z-]+' | grep -vE '^--$' | sort -u >all
+plain | sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' | grep -A1 '^\.TP' | grep -oE -- '--[a-z-]+' | sort >manual
+diff table manual >difference || { sed 's/^/# /' difference; wrong "they differ"; }
+
+scene "short forms and values are those of help"
+"$NMTAN" --help | grep -oE '^  -[a-z], --[a-z-]+' | tr -d ' ' | sort >table
+plain | sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' | grep -A1 '^\.TP' | tr -d '" ' |
+	grep -oE -- '-[a-z],--[a-z-]+' | sort >manual
+diff table manual >difference || { sed 's/^/# /' difference; wrong "short forms differ"; }
+"$NMTAN" --help | grep -oE -- '--[a-z-]+=[a-z|N]+[|][a-zN|]+' | sort >table
+plain | sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' | grep -A1 '^\.TP' | tr -d '" ' |
+	grep -oE -- '--[a-z-]+=[a-z|N]+[|][a-zN|]+' | sort >manual
+diff table manual >difference || { sed 's/^/# /' difference; wrong "values differ"; }
+
+scene "every default of help is in the manual"
+"$NMTAN" --help | tr '\n' ' ' | tr -s ' ' | grep -oE 'default: [a-z0-9]+' | sort >table
+plain | sed -n '/^\.SH OPTIONS/,/^\.SH EXIT/p' | grep -oE '^Default: [a-z0-9]+' |
+	sed 's/^D/d/' | sort >manual
+diff <(grep -v 'default: by' table) manual >difference || { sed 's/^/# /' difference; wrong "they differ"; }
+
+scene "the manual has its sections and its version"
+for section in NAME SYNOPSIS DESCRIPTION OPTIONS "EXIT STATUS" EXAMPLES FILES "SEE ALSO"; do
+	grep -q "^\.SH $section$" "$page" || wrong "no section $section"
+done
+grep -q "\"nmtan $("$NMTAN" --version | cut -d' ' -f2)\"" "$page" || wrong "another version"
+if command -v man >/dev/null 2>&1; then
+	is "$(LC_ALL=C.UTF-8 man --warnings -l "$page" 2>&1 >/dev/null)" ""
+fi
+
+scene "every exit code of help is in the manual"
+for code in 0 1 2 3 4 5 6; do
+	sed -n '/^\.SH EXIT/,/^\.SH ENV/p' "$page" | grep -q "^\.B $code$" || wrong "$code is missing"
+done
+
+done_testing

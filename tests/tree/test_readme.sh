@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: MIT
+# README.md tells the truth: its C program compiles and prints what it says, its commands print what
+# stands below them, its links lead somewhere.
+. "$ROOT/tests/support/cli.sh"
+readme=$ROOT/README.md
+
+# block LANGUAGE N: the Nth fenced block of that language.
+block() {
+	awk -v fence="\`\`\`$1" -v n="$2" '
+		$0 == "```" && inside { inside = 0; next }
+		inside && count == n { print }
+		$0 == fence && !inside { inside = 1; count++; next }' "$readme"
+}
+
+scene "the C program of the README compiles without warnings and prints what stands below it"
+block c 1 >program.c
+block text 1 >expected
+exists program.c expected
+cc -std=c11 -Wall -Wextra -Werror -pedantic -I"$ROOT/include" -o program program.c \
+	"$ROOT/build/release/libnmtan.a" -fopenmp -lm || wrong "does not compile"
+./program >printed || wrong "exit code $?"
+diff expected printed || wrong "prints something else"
+
+scene "the README's demo is what make demo prints"
+# Times differ from run to run; numbers before "s" and the table of --timing are left out.
+clean() {
+	sed -E 's/[0-9.e-]+ s$/N s/; /^[a-z]+ +[0-9]+\.[0-9]+$/d; s/^(-[rwx-]+).* ([^ ]+)$/\1 \2/'
+}
+make -s -C "$ROOT" MAKEFLAGS= demo 2>&1 | clean >printed
+sed -n '/^\$ make demo$/,/^```$/p' "$readme" | sed '1d;$d' | clean >expected
+exists expected printed
+diff expected printed || wrong "prints something else"
+
+scene "the links of the README lead to files of the tree"
+grep -oE '\]\([^)#]+\)' "$readme" | tr -d '])(' | sed 's/^\[//' | while IFS= read -r target; do
+	case $target in http*) continue ;; esac
+	[ -e "$ROOT/$target" ] || echo "$target"
+done >missing
+is "$(cat missing)" ""
+
+done_testing
