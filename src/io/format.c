@@ -27,7 +27,11 @@ static const nt_format_entry table[] = {
 		.extensions = ".drc",
 		.recognise = recognise_drc,
 		.open = open_drc},
-	{.format = NT_FORMAT_PLY, .name = "ply", .extensions = ".ply"},
+	{.format = NT_FORMAT_PLY,
+		.name = "ply",
+		.extensions = ".ply",
+		.recognise = nt_ply_recognise,
+		.open = nt_ply_open},
 	{.format = NT_FORMAT_GLTF, .name = "gltf", .extensions = ".gltf"},
 	{.format = NT_FORMAT_OBJ, .name = "obj", .extensions = ".obj"},
 };

@@ -1,0 +1,229 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The rows of the vertex element become arrays of floats. A target says where the values of a property
+ * go; properties without one are passed over. Binary rows of fixed size are decoded column by column in
+ * blocks that stay in the first-level cache, so that the choice of a type is made once per block.
+ */
+#include "io/ply.h"
+
+#include <stdlib.h>
+
+/* Positions, normals, texture coordinates, colours, tangents. */
+enum { MOST_TARGETS = 3 + 3 + 2 + 4 + 4, BLOCK_ROWS = 512 };
+
+typedef struct target {
+	int property;
+	float *values;   /* of the first row */
+	size_t stride;   /* in floats */
+	float divisor;   /* integer colours: their largest value */
+} target;
+
+typedef struct reader {
+	const ply_element *element;
+	ply_cursor *cursor;
+	nt_error *error;
+	target targets[MOST_TARGETS];
+	size_t target_count;
+} reader;
+
+static void add_target(reader *r, int property, float *values, size_t stride, float divisor)
+{
+	if (property != PLY_NO_PROPERTY)
+		r->targets[r->target_count++] = (target){property, values, stride, divisor};
+}
+
+/* Integer colours become 0 to 1, float ones are taken as they are. */
+static float colour_divisor(const ply_element *element, int property)
+{
+	static const float largest[] = {[PLY_INT8] = 127.0f, [PLY_UINT8] = 255.0f,
+		[PLY_INT16] = 32767.0f, [PLY_UINT16] = 65535.0f, [PLY_INT32] = 2147483647.0f,
+		[PLY_UINT32] = 4294967295.0f, [PLY_FLOAT32] = 1.0f, [PLY_FLOAT64] = 1.0f};
+	return property == PLY_NO_PROPERTY ? 1.0f : largest[element->properties[property].type];
+}
+
+/* Allocates an array of `width` floats per row and makes it the target of as many properties. */
+static bool add_attribute(reader *r, nt_arena *arena, const int *properties, size_t width,
+	bool colour, float **array)
+{
+	*array = NULL;
+	if (properties[0] == PLY_NO_PROPERTY)
+		return true;
+	*array = nt_arena_alloc(arena, r->element->count, width * sizeof **array);
+	for (size_t i = 0; *array && i < width; i++)
+		add_target(r, properties[i], *array + i, width,
+			colour ? colour_divisor(r->element, properties[i]) : 1.0f);
+	return *array != NULL;
+}
+
+static void decode_floats(const unsigned char *from, size_t row_bytes, bool swap, size_t count,
+	float *to, size_t stride)
+{
+	for (size_t i = 0; i < count; i++) {
+		const uint32_t bits = ply_load32(from + i * row_bytes, swap);
+		memcpy(to + i * stride, &bits, sizeof bits);
+	}
+}
+
+static void decode_column(const reader *r, const target *t, const unsigned char *rows, size_t first,
+	size_t count)
+{
+	const ply_property *property = &r->element->properties[t->property];
+	const size_t row_bytes = r->element->row_bytes;
+	const bool swap = ply_swaps(r->cursor->encoding);
+	const unsigned char *from = rows + first * row_bytes + property->offset;
+	float *to = t->values + first * t->stride;
+	if (property->type == PLY_FLOAT32 && t->divisor == 1.0f) {
+		decode_floats(from, row_bytes, swap, count, to, t->stride);
+		return;
+	}
+	for (size_t i = 0; i < count; i++)
+		to[i * t->stride] =
+			ply_load_float(from + i * row_bytes, property->type, swap) / t->divisor;
+}
+
+static void decode_fixed(const reader *r)
+{
+	const size_t count = r->element->count;
+	for (size_t first = 0; first < count; first += BLOCK_ROWS) {
+		const size_t rows = count - first < BLOCK_ROWS ? count - first : BLOCK_ROWS;
+		for (size_t i = 0; i < r->target_count; i++)
+			decode_column(r, &r->targets[i], r->cursor->at, first, rows);
+	}
+	r->cursor->at += count * r->element->row_bytes;
+}
+
+/* Binary rows with lists: each is measured first, then its values are taken. */
+static nmtan_status decode_listed(const reader *r)
+{
+	const ply_element *element = r->element;
+	const bool swap = ply_swaps(r->cursor->encoding);
+	for (size_t row = 0; row < element->count; row++) {
+		const unsigned char *at = r->cursor->at;
+		const nmtan_status status = ply_skip_binary_row(r->cursor, element, row, r->error);
+		if (status)
+			return status;
+		for (size_t i = 0; i < element->property_count; i++) {
+			const ply_property *property = &element->properties[i];
+			if (property->list) {
+				at += ply_size(property->count_type) + ply_size(property->type) *
+					(size_t)ply_load_integer(at, property->count_type, swap);
+				continue;
+			}
+			for (size_t k = 0; k < r->target_count; k++) {
+				const target *t = &r->targets[k];
+				if (t->property == (int)i)
+					t->values[row * t->stride] =
+						ply_load_float(at, property->type, swap) / t->divisor;
+			}
+			at += ply_size(property->type);
+		}
+	}
+	return NMTAN_OK;
+}
+
+static nmtan_status fail_value(const reader *r, size_t row, const ply_property *property,
+	const unsigned char *at, const char *expected)
+{
+	char found[40];
+	return ply_fail_at(r->cursor, at, r->error, "%s %zu: found %s, expected %s \"%s\"",
+		r->element->name, row, ply_show(r->cursor, at, found), expected, property->name);
+}
+
+/* Passes over the list at *at. */
+static nmtan_status skip_list(const reader *r, size_t row, const ply_property *property,
+	const unsigned char **at)
+{
+	int64_t count;
+	const unsigned char *p = ply_read_integer(*at, r->cursor->end, &count);
+	if (!p || count < 0)
+		return fail_value(r, row, property, *at, "the length of list");
+	for (int64_t i = 0; i < count; i++) {
+		p = ply_skip_blanks(p, r->cursor->end);
+		const unsigned char *after = ply_skip_value(p, r->cursor->end);
+		if (after == p)
+			return fail_value(r, row, property, p, "another value of list");
+		p = after;
+	}
+	*at = p;
+	return NMTAN_OK;
+}
+
+/* One line. `by_property` has the target of each property or NULL. */
+static nmtan_status read_line(const reader *r, size_t row, const target *const *by_property)
+{
+	const unsigned char *at = r->cursor->at;
+	const unsigned char *const end = r->cursor->end;
+	for (size_t i = 0; i < r->element->property_count; i++) {
+		const ply_property *property = &r->element->properties[i];
+		const target *t = by_property[i];
+		at = ply_skip_blanks(at, end);
+		if (property->list) {
+			const nmtan_status status = skip_list(r, row, property, &at);
+			if (status)
+				return status;
+			continue;
+		}
+		float value;
+		const unsigned char *after = t ? ply_read_float(at, end, &value) : ply_skip_value(at, end);
+		if (!after || after == at)
+			return fail_value(r, row, property, at, "a number for property");
+		if (t)
+			t->values[row * t->stride] = t->divisor == 1.0f ? value : value / t->divisor;
+		at = after;
+	}
+	r->cursor->at = ply_skip_blanks(at, end);
+	return NMTAN_OK;
+}
+
+static nmtan_status read_lines(const reader *r)
+{
+	const target **by_property = nt_calloc(r->element->property_count, sizeof *by_property);
+	if (!by_property)
+		return nt_fail_memory(r->error);
+	for (size_t i = 0; i < r->target_count; i++)
+		by_property[r->targets[i].property] = &r->targets[i];
+	nmtan_status status = NMTAN_OK;
+	for (size_t row = 0; !status && row < r->element->count; row++) {
+		ply_next_row(r->cursor);
+		if (r->cursor->at == r->cursor->end)
+			status = ply_fail_at(r->cursor, r->cursor->at, r->error,
+				"the file ends where %s %zu of %zu was expected", r->element->name, row,
+				r->element->count);
+		else
+			status = read_line(r, row, by_property);
+		if (!status)
+			status = ply_check_row_end(r->cursor, r->element, row, r->error);
+	}
+	free((void *)by_property);
+	return status;
+}
+
+nmtan_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *source,
+	ply_cursor *cursor, nt_error *error)
+{
+	const ply_element *element = source->vertex;
+	const ply_roles *roles = &source->roles;
+	nmtan_status status = ply_check_count(cursor, element, error);
+	if (status)
+		return status;
+	reader r = {.element = element, .cursor = cursor, .error = error};
+	nt_arena *arena = &scene->arena;
+	if (!add_attribute(&r, arena, roles->position, 3, false, &mesh->positions) ||
+		!add_attribute(&r, arena, roles->normal, 3, false, &mesh->normals) ||
+		!add_attribute(&r, arena, roles->texcoord, 2, false, &mesh->texcoords) ||
+		!add_attribute(&r, arena, roles->color, 4, true, &mesh->colors) ||
+		!add_attribute(&r, arena, roles->tangent, 4, false, &mesh->tangents))
+		return nt_fail_memory(error);
+	if (mesh->colors && roles->color[3] == PLY_NO_PROPERTY)
+		for (size_t i = 0; i < element->count; i++)
+			mesh->colors[4 * i + 3] = 1.0f;
+
+	if (cursor->encoding == PLY_ASCII)
+		status = read_lines(&r);
+	else if (element->has_list)
+		status = decode_listed(&r);
+	else
+		decode_fixed(&r);
+	mesh->vertex_count = element->count;
+	return status;
+}
