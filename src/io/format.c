@@ -20,8 +20,16 @@ static nmtan_status open_drc(nt_scene *scene, const nt_read_options *options, nt
 	return nt_error_in_file(error, scene->path);
 }
 
+static nmtan_status write_gltf(nt_scene *scene, const nt_write_options *options,
+	nt_output *output, nt_error *error)
+{
+	if (scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB)
+		return nt_fail(error, NMTAN_ERROR_UNSUPPORTED, "glTF cannot be written from glTF");
+	return nt_gltf_compose(scene, options, output, error);
+}
+
 static const nt_format_entry table[] = {
-	{.format = NT_FORMAT_GLB, .name = "glb", .extensions = ".glb"},
+	{.format = NT_FORMAT_GLB, .name = "glb", .extensions = ".glb", .write = write_gltf},
 	{.format = NT_FORMAT_DRC,
 		.name = "drc",
 		.extensions = ".drc",
@@ -32,7 +40,7 @@ static const nt_format_entry table[] = {
 		.extensions = ".ply",
 		.recognise = nt_ply_recognise,
 		.open = nt_ply_open},
-	{.format = NT_FORMAT_GLTF, .name = "gltf", .extensions = ".gltf"},
+	{.format = NT_FORMAT_GLTF, .name = "gltf", .extensions = ".gltf", .write = write_gltf},
 	{.format = NT_FORMAT_OBJ, .name = "obj", .extensions = ".obj"},
 };
 enum { FORMAT_COUNT = sizeof table / sizeof table[0] };
