@@ -108,8 +108,12 @@ typedef enum nmtan_method {
 	NMTAN_METHOD_AREA,           /* all triangles of one orientation at a vertex, weighted by corner
 	                                angle times the two edge lengths: thin bevels do not tilt the
 	                                large faces beside them */
-	NMTAN_METHOD_LENGYEL         /* the same triangles, dP/du added as it is: E. Lengyel, "Computing
+	NMTAN_METHOD_LENGYEL,        /* the same triangles, dP/du added as it is: E. Lengyel, "Computing
 	                                Tangent Space Basis Vectors for an Arbitrary Mesh", 2001 */
+	NMTAN_METHOD_ROBUST          /* the same triangles with MikkTSpace's angle weights, without
+	                                rounding: exact differences and products, sums in double. Each
+	                                component of T is within 2^-23 of the exact value of the
+	                                formula, but for counts.ill_conditioned corners */
 } nmtan_method;
 
 /* What happens to results that a renderer cannot use. */
@@ -173,6 +177,10 @@ typedef struct nmtan_counts {
 	size_t repaired_not_finite;
 	size_t repaired_parallel;    /* tangents that were parallel to their normal */
 	size_t repaired_sign;        /* w changed to the exact orientation or to agree in its triangle */
+	size_t ill_conditioned;      /* robust: tangents for which more than 24 bits cancel, in the sum or
+	                                because dP/du runs along the normal. They are unit and
+	                                perpendicular like all others, their direction is as good as
+	                                double arithmetic makes it */
 } nmtan_counts;
 
 /* Where results go. Each array has one row per corner, tightly packed. */

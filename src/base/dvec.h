@@ -43,6 +43,11 @@ static inline nt_dvec3 nt_dvec3_cross(nt_dvec3 a, nt_dvec3 b)
 	return (nt_dvec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+static inline double nt_dvec3_length(nt_dvec3 v)
+{
+	return sqrt(nt_dvec3_dot(v, v));
+}
+
 /* v scaled to unit length; false, and v as it was, where it is zero or not finite. Scaled by its largest
  * component first, so that squares of tiny vectors do not vanish. */
 static inline bool nt_dvec3_normalise(nt_dvec3 *v)

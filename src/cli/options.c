@@ -27,7 +27,7 @@ const nt_option_row nt_option_rows[] = {
 		SETTING(only), false},
 	{"existing", 0, NT_OPTION_CHOICE, "keep|repair|replace", NT_EXISTING_KEEP, 0, "keep",
 		"what happens to tangents that the input has", SETTING(existing), false},
-	{"method", 0, NT_OPTION_CHOICE, "mikktspace|area|lengyel", NMTAN_METHOD_MIKKTSPACE, 0,
+	{"method", 0, NT_OPTION_CHOICE, "mikktspace|area|lengyel|robust", NMTAN_METHOD_MIKKTSPACE, 0,
 		"mikktspace", "how triangles are averaged", SETTING(method), false},
 	{"repair", 0, NT_OPTION_CHOICE, "on|off", NMTAN_REPAIR_ON, 0, "on",
 		"replace results that no renderer can use", SETTING(repair), false},

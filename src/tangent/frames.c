@@ -1,6 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Sums of frames, and the two methods that are nothing else. See frames.h.
+ * Sums of frames, and the three methods that are nothing else. See frames.h.
+ *
+ * `robust` is MikkTSpace's average without its rounding: angle weights, one sum for each welded vertex and
+ * exact orientation. MikkTSpace averages over the part of those triangles that hangs together by paired
+ * edges; where two fans meet in nothing but a vertex, or in a non-manifold edge, the parts depend on the
+ * order of the triangles. One sum does not, and costs no pairing.
  *
  * `area` weighs corner angle times the two edge lengths, so that a thin bevel, which has large angles
  * but little area, does not tilt the flat faces beside it. `lengyel` adds dP/du as the 2x2 system gives
@@ -12,11 +17,18 @@
 
 #include <string.h>
 #include "base/angle.h"
+#include "base/exact.h"
 #include "topology/corners.h"
 
 /* Below this share of the summed lengths a sum's direction is rounding noise: 2^-53 per addition and
  * term, with room for a million terms. */
 static const double CANCELLED = 1e-10;
+
+/* Sine of the angle between u and the normal below which the projected direction would be noise. */
+static const double PARALLEL = 1e-12;
+
+/* The condition up to which `robust` promises 2^-23 in each component. */
+static const double WELL_CONDITIONED = 16777216.0;
 
 nt_dvec3 nt_unit_normal(const nmtan_mesh *mesh, size_t vertex)
 {
@@ -63,48 +75,148 @@ int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool 
 		? sign : nt_face_orientation(mesh, face, first, false, NULL);
 }
 
-/* dP/du times the determinant's sign and magnitude; false where the determinant is zero or a value is
- * not finite. */
-static bool solve_u(const nmtan_mesh *mesh, const uint32_t corners[3], nt_dvec3 *u, double *determinant)
+/* What the sums need of a triangle. Its differences are exact, or pairs of doubles where they must be. */
+typedef struct solved {
+	nt_dvec3 u;          /* dP/du times |determinant|: growing u */
+	nt_dvec3 across;     /* cross product of the edges from the first corner */
+	nt_dvec3 edge[3];    /* from corner k to k + 1 */
+	double determinant;  /* of the UV edges, magnitude */
+	double across_length;
+} solved;
+
+static double largest_of(nt_dvec3 v)
 {
-	const size_t a = nt_vertex_of(mesh, corners[0]), b = nt_vertex_of(mesh, corners[1]),
-		     c = nt_vertex_of(mesh, corners[2]);
-	const float *ta = nt_texcoord(mesh, a), *tb = nt_texcoord(mesh, b), *tc = nt_texcoord(mesh, c);
-	const int sign = nt_orientation(ta, tb, tc);
-	const double bv = (double)tb[1] - ta[1], cv = (double)tc[1] - ta[1];
-	const double bu = (double)tb[0] - ta[0], cu = (double)tc[0] - ta[0];
-	const nt_dvec3 pa = nt_dvec3_load(nt_position(mesh, a));
-	const nt_dvec3 d1 = nt_dvec3_sub(nt_dvec3_load(nt_position(mesh, b)), pa);
-	const nt_dvec3 d2 = nt_dvec3_sub(nt_dvec3_load(nt_position(mesh, c)), pa);
-	*u = nt_dvec3_scale(sign, nt_dvec3_sub(nt_dvec3_scale(cv, d1), nt_dvec3_scale(bv, d2)));
-	*determinant = fabs(bu * cv - bv * cu);
-	return sign != 0 && isfinite(u->x + u->y + u->z);
+	return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
+}
+
+/* p - q of rounded products loses bits when more than two of them cancel; then the residuals count. */
+static bool cancels(nt_dvec3 p, nt_dvec3 q, nt_dvec3 difference)
+{
+	return 4.0 * largest_of(difference) < fmax(largest_of(p), largest_of(q));
+}
+
+/* s a - t b, good to a few units in the last place of its largest component. */
+static nt_dvec3 combine(double s, nt_dvec3 a, double t, nt_dvec3 b)
+{
+	const nt_dvec3 p = nt_dvec3_scale(s, a), q = nt_dvec3_scale(t, b);
+	const nt_dvec3 difference = nt_dvec3_sub(p, q);
+	if (!cancels(p, q, difference))
+		return difference;
+	return (nt_dvec3){nt_product_difference(s, a.x, t, b.x), nt_product_difference(s, a.y, t, b.y),
+		nt_product_difference(s, a.z, t, b.z)};
+}
+
+/* a x b, to the same precision. */
+static nt_dvec3 cross(nt_dvec3 a, nt_dvec3 b)
+{
+	const nt_dvec3 p = {a.y * b.z, a.z * b.x, a.x * b.y}, q = {a.z * b.y, a.x * b.z, a.y * b.x};
+	const nt_dvec3 difference = nt_dvec3_sub(p, q);
+	if (!cancels(p, q, difference))
+		return difference;
+	return (nt_dvec3){nt_product_difference(a.y, b.z, a.z, b.y),
+		nt_product_difference(a.z, b.x, a.x, b.z), nt_product_difference(a.x, b.y, a.y, b.x)};
+}
+
+static bool exact3(nt_dvec3 difference, const float *a, const float *b)
+{
+	return nt_is_difference(difference.x, a[0], b[0]) && nt_is_difference(difference.y, a[1], b[1]) &&
+	       nt_is_difference(difference.z, a[2], b[2]);
+}
+
+/* The same values by expansions, for triangles whose exponents lie so far apart that a difference is not
+ * a double. */
+static void solve_by_expansions(const float *const p[3], const float *const t[3], solved *f)
+{
+	double d1[3][2], d2[3][2], bu[2], bv[2], cu[2], cv[2];
+	for (int i = 0; i < 3; i++) {
+		nt_difference(d1[i], p[1][i], p[0][i]);
+		nt_difference(d2[i], p[2][i], p[0][i]);
+	}
+	nt_difference(bu, t[1][0], t[0][0]);
+	nt_difference(bv, t[1][1], t[0][1]);
+	nt_difference(cu, t[2][0], t[0][0]);
+	nt_difference(cv, t[2][1], t[0][1]);
+	double u[3], across[3];
+	for (int i = 0; i < 3; i++) {
+		const int j = (i + 1) % 3, k = (i + 2) % 3;
+		u[i] = nt_exact_product_difference(cv, d1[i], bv, d2[i]);
+		across[i] = nt_exact_product_difference(d1[j], d2[k], d1[k], d2[j]);
+	}
+	f->u = (nt_dvec3){u[0], u[1], u[2]};
+	f->across = (nt_dvec3){across[0], across[1], across[2]};
+	f->determinant = nt_exact_product_difference(bu, cv, bv, cu);
+}
+
+/* False where the determinant is zero or a value is not finite. */
+static bool solve_triangle(const nmtan_mesh *mesh, const uint32_t corners[3], solved *f)
+{
+	const float *p[3], *t[3];
+	for (int k = 0; k < 3; k++) {
+		const size_t vertex = nt_vertex_of(mesh, corners[k]);
+		p[k] = nt_position(mesh, vertex);
+		t[k] = nt_texcoord(mesh, vertex);
+	}
+	const int sign = nt_orientation(t[0], t[1], t[2]);
+	if (sign == 0)
+		return false;
+	for (int k = 0; k < 3; k++)
+		f->edge[k] = nt_dvec3_sub(nt_dvec3_load(p[(k + 1) % 3]), nt_dvec3_load(p[k]));
+	const nt_dvec3 d1 = f->edge[0], d2 = nt_dvec3_scale(-1.0, f->edge[2]);
+	const double bu = (double)t[1][0] - t[0][0], bv = (double)t[1][1] - t[0][1];
+	const double cu = (double)t[2][0] - t[0][0], cv = (double)t[2][1] - t[0][1];
+	if (exact3(d1, p[0], p[1]) && exact3(d2, p[0], p[2]) &&
+		nt_is_difference(bu, t[0][0], t[1][0]) && nt_is_difference(bv, t[0][1], t[1][1]) &&
+		nt_is_difference(cu, t[0][0], t[2][0]) && nt_is_difference(cv, t[0][1], t[2][1])) {
+		f->u = combine(cv, d1, bv, d2);
+		f->across = cross(d1, d2);
+		f->determinant = nt_product_difference(bu, cv, bv, cu);
+	} else {
+		solve_by_expansions(p, t, f);
+	}
+	f->u = nt_dvec3_scale(sign, f->u);
+	f->determinant = fabs(f->determinant);
+	f->across_length = sqrt(nt_dvec3_dot(f->across, f->across));
+	return isfinite(f->u.x + f->u.y + f->u.z);
+}
+
+/* A corner's angle seen along its normal n, and how much an error of the projection moves it: the
+ * condition, times the angle. The sine is the part of the triangle's cross product along n, which does not
+ * cancel in needles as the cross product of projected edges does. */
+static double corner_angle(const solved *f, int k, nt_dvec3 n, double *condition)
+{
+	const nt_dvec3 e = f->edge[k], g = f->edge[(k + 2) % 3];
+	const nt_dvec3 pe = nt_dvec3_reject(n, e), pg = nt_dvec3_reject(n, g);
+	const double c = -nt_dvec3_dot(pe, pg);
+	const bool has_normal = n.x != 0.0 || n.y != 0.0 || n.z != 0.0;
+	const double s = has_normal ? fabs(nt_dvec3_dot(n, f->across)) : f->across_length;
+	const double squared = s * s + c * c;
+	*condition = squared > 0.0
+		? (fabs(c) * f->across_length + s * sqrt(nt_dvec3_dot(e, e) * nt_dvec3_dot(g, g))) / squared
+		: 0.0;
+	return nt_angle(s, c);
 }
 
 /* Adds a triangle's direction u (unit but for NT_WEIGHT_NONE) at its corner k. */
-static void add_corner(const nmtan_mesh *mesh, nt_weight weight, const uint32_t corners[3], int k,
-	nt_dvec3 u, nt_frame_sum *sum)
+static void add_corner(const solved *f, nt_weight weight, nt_dvec3 u, nt_dvec3 n, int k, nt_frame_sum *sum)
 {
-	const size_t vertex = nt_vertex_of(mesh, corners[k]);
-	const nt_dvec3 n = nt_unit_normal(mesh, vertex);
 	nt_dvec3 direction = nt_dvec3_reject(n, u);
-	double factor = 1.0;
-	if (weight != NT_WEIGHT_NONE) {
-		const nt_dvec3 p = nt_dvec3_load(nt_position(mesh, vertex));
-		const size_t previous = nt_vertex_of(mesh, corners[(k + 2) % 3]);
-		const size_t next = nt_vertex_of(mesh, corners[(k + 1) % 3]);
-		const nt_dvec3 e1 = nt_dvec3_sub(nt_dvec3_load(nt_position(mesh, previous)), p);
-		const nt_dvec3 e2 = nt_dvec3_sub(nt_dvec3_load(nt_position(mesh, next)), p);
-		const nt_dvec3 f1 = nt_dvec3_reject(n, e1), f2 = nt_dvec3_reject(n, e2);
-		const nt_dvec3 normal_part = nt_dvec3_cross(f1, f2);
-		factor = nt_angle(sqrt(nt_dvec3_dot(normal_part, normal_part)), nt_dvec3_dot(f1, f2));
-		if (weight == NT_WEIGHT_AREA)
-			factor *= sqrt(nt_dvec3_dot(e1, e1)) * sqrt(nt_dvec3_dot(e2, e2));
-		if (!nt_dvec3_normalise(&direction))
-			return;
+	if (weight == NT_WEIGHT_NONE) {
+		sum->u = nt_dvec3_add(sum->u, direction);
+		sum->weights += nt_dvec3_length(direction);
+		sum->sensitivity += nt_dvec3_length(u);
+		return;
 	}
-	sum->u = nt_dvec3_add(sum->u, nt_dvec3_scale(factor, direction));
-	sum->weights += factor * sqrt(nt_dvec3_dot(direction, direction));
+	const double length = nt_dvec3_length(direction);
+	if (!(length > PARALLEL))
+		return;
+	double condition;
+	const double angle = corner_angle(f, k, n, &condition);
+	double factor = 1.0;
+	if (weight == NT_WEIGHT_AREA)
+		factor = nt_dvec3_length(f->edge[k]) * nt_dvec3_length(f->edge[(k + 2) % 3]);
+	sum->u = nt_dvec3_add(sum->u, nt_dvec3_scale(factor * angle / length, direction));
+	sum->weights += factor * angle;
+	sum->sensitivity += factor * (angle / length + condition);
 }
 
 void nt_sum_frames(const nmtan_mesh *mesh, nt_weight weight, const uint32_t *ids,
@@ -122,42 +234,45 @@ void nt_sum_frames(const nmtan_mesh *mesh, nt_weight weight, const uint32_t *ids
 		uint32_t corners[2][3];
 		const unsigned count = nt_face_triangles(mesh, face, first, corners);
 		for (unsigned i = 0; i < count; i++) {
-			nt_dvec3 u;
-			double determinant;
-			if (!solve_u(mesh, corners[i], &u, &determinant))
+			solved f;
+			if (!solve_triangle(mesh, corners[i], &f))
 				continue;
 			if (weight == NT_WEIGHT_NONE)
-				u = nt_dvec3_scale(1.0 / determinant, u);
-			else if (!nt_dvec3_normalise(&u))
+				f.u = nt_dvec3_scale(1.0 / f.determinant, f.u);
+			else if (!nt_dvec3_normalise(&f.u))
 				continue;
-			for (int k = 0; k < 3; k++)
-				if (ids[corners[i][k]] != NT_NO_ID)
-					add_corner(mesh, weight, corners[i], k, u,
-						&sums[ids[corners[i][k]]][orientation > 0]);
+			for (int k = 0; k < 3; k++) {
+				const uint32_t id = ids[corners[i][k]];
+				if (id != NT_NO_ID)
+					add_corner(&f, weight, f.u,
+						nt_unit_normal(mesh, nt_vertex_of(mesh, corners[i][k])),
+						k, &sums[id][orientation > 0]);
+			}
 		}
 	}
 }
 
 bool nt_sum_tangent(const nt_frame_sum *sum, nt_dvec3 n, nt_dvec3 *tangent)
 {
-	const double length = sqrt(nt_dvec3_dot(sum->u, sum->u));
-	if (!(length > CANCELLED * sum->weights))
+	if (!(nt_dvec3_length(sum->u) > CANCELLED * sum->weights))
 		return false;
 	*tangent = nt_dvec3_reject(n, sum->u);
 	return nt_dvec3_normalise(tangent);
 }
 
-/* Writes a corner's result; zero where the sum has no direction, for repair to fill. */
-static void write_corner(const nt_solve *solve, size_t corner, const nt_frame_sum *sum, float w)
+bool nt_sum_is_ill_conditioned(const nt_frame_sum *sum)
 {
-	const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, corner));
-	nt_dvec3 t = {0, 0, 0};
-	if (!nt_sum_tangent(sum, n, &t))
-		t = (nt_dvec3){0, 0, 0};
-	const nt_dvec3 b = nt_dvec3_scale(w, nt_dvec3_cross(n, t));
+	return !(sum->sensitivity <= WELL_CONDITIONED * nt_dvec3_length(sum->u));
+}
+
+/* Writes a corner's result; zero where the sum has no direction, for repair to fill. */
+static void write_corner(const nt_solve *solve, size_t corner, nt_dvec3 t, float w)
+{
 	const float tangent[4] = {(float)t.x, (float)t.y, (float)t.z, w};
 	memcpy(solve->tangents + 4 * corner, tangent, sizeof tangent);
 	if (solve->bitangents) {
+		const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, corner));
+		const nt_dvec3 b = nt_dvec3_scale(w, nt_dvec3_cross(n, t));
 		const float bitangent[3] = {(float)b.x, (float)b.y, (float)b.z};
 		memcpy(solve->bitangents + 3 * corner, bitangent, sizeof bitangent);
 	}
@@ -165,8 +280,26 @@ static void write_corner(const nt_solve *solve, size_t corner, const nt_frame_su
 		solve->magnitudes[2 * corner] = solve->magnitudes[2 * corner + 1] = 1.0f;
 }
 
+/* Turns each sum that some corner will read into its unit tangent, or zero. */
+static void finish_sums(const nt_solve *solve, const uint32_t *ids, nt_frame_sum (*sums)[2])
+{
+	uint32_t next = 0; /* ids go up in order of first use */
+	for (size_t c = 0; c < solve->corner_count; c++) {
+		if (ids[c] != next)
+			continue;
+		const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
+		for (int side = 0; side < 2; side++) {
+			nt_frame_sum *sum = &sums[next][side];
+			sum->sensitivity = nt_sum_is_ill_conditioned(sum);
+			nt_dvec3 t;
+			sum->u = nt_sum_tangent(sum, n, &t) ? t : (nt_dvec3){0, 0, 0};
+		}
+		next++;
+	}
+}
+
 /* Welds, sums, writes. A face without orientation takes the orientation that has a sum at its corners. */
-static nmtan_status solve_by_sums(const nt_solve *solve, nt_weight weight)
+static nmtan_status solve_by_sums(const nt_solve *solve, nt_weight weight, size_t *ill_conditioned)
 {
 	const nmtan_mesh *mesh = solve->mesh;
 	uint32_t *ids = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *ids);
@@ -182,6 +315,7 @@ static nmtan_status solve_by_sums(const nt_solve *solve, nt_weight weight)
 		return NMTAN_ERROR_MEMORY;
 	memset(sums, 0, id_count * sizeof *sums);
 	nt_sum_frames(mesh, weight, ids, sums);
+	finish_sums(solve, ids, sums);
 
 	size_t first = 0;
 	for (size_t face = 0; face < mesh->face_count; face++) {
@@ -189,7 +323,9 @@ static nmtan_status solve_by_sums(const nt_solve *solve, nt_weight weight)
 		const int orientation = nt_face_orientation(mesh, face, first, true, NULL);
 		for (size_t c = first; c < first + size; c++) {
 			const int side = orientation ? orientation > 0 : sums[ids[c]][1].weights > 0.0;
-			write_corner(solve, c, &sums[ids[c]][side], side ? 1.0f : -1.0f);
+			const nt_frame_sum *sum = &sums[ids[c]][side];
+			*ill_conditioned += sum->sensitivity > 0.0;
+			write_corner(solve, c, sum->u, side ? 1.0f : -1.0f);
 		}
 		first += size;
 	}
@@ -198,10 +334,18 @@ static nmtan_status solve_by_sums(const nt_solve *solve, nt_weight weight)
 
 nmtan_status nt_area(const nt_solve *solve)
 {
-	return solve_by_sums(solve, NT_WEIGHT_AREA);
+	size_t ignored = 0;
+	return solve_by_sums(solve, NT_WEIGHT_AREA, &ignored);
 }
 
 nmtan_status nt_lengyel(const nt_solve *solve)
 {
-	return solve_by_sums(solve, NT_WEIGHT_NONE);
+	size_t ignored = 0;
+	return solve_by_sums(solve, NT_WEIGHT_NONE, &ignored);
+}
+
+nmtan_status nt_robust(const nt_solve *solve, size_t *ill_conditioned)
+{
+	*ill_conditioned = 0;
+	return solve_by_sums(solve, NT_WEIGHT_ANGLE, ill_conditioned);
 }

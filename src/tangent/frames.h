@@ -3,9 +3,10 @@
  * Frames in double, summed per welded vertex and exact orientation: the methods besides MikkTSpace, and
  * the answers that repair falls back to.
  *
- * A triangle's directions come from the 2x2 system of its UV edges. With exact float differences the
- * products are good to 2^-53 of their size, so that a direction is lost only where the condition of the
- * system exceeds what float input can carry.
+ * A triangle's directions come from the 2x2 system of its UV edges, with exact differences and exact
+ * products wherever they cancel (base/exact.h): a direction is good to a few 2^-53 however thin the
+ * triangle is in space or in UV. What is lost afterwards is lost by geometry: a direction nearly along
+ * the normal, directions that cancel in the sum. `sensitivity` measures both.
  */
 #ifndef NT_TANGENT_FRAMES_H
 #define NT_TANGENT_FRAMES_H
@@ -24,6 +25,8 @@ typedef enum nt_weight {
 typedef struct nt_frame_sum {
 	nt_dvec3 u;     /* weighted directions of growing u, each perpendicular to the normal */
 	double weights; /* sum of the lengths that went in */
+	double sensitivity; /* sum of the lengths times their condition: by how much a relative error of
+	                       one in the projections could move u */
 } nt_frame_sum;
 
 #define NT_NO_ID UINT32_MAX
@@ -54,5 +57,8 @@ void nt_sum_frames(const nmtan_mesh *mesh, nt_weight weight, const uint32_t *ids
 /* The unit tangent of a sum, perpendicular to the unit (or zero) normal n; false where the sum has no
  * direction. */
 bool nt_sum_tangent(const nt_frame_sum *sum, nt_dvec3 n, nt_dvec3 *tangent);
+
+/* Whether more than 24 bits cancel in the sum and its projections, or all of them. */
+bool nt_sum_is_ill_conditioned(const nt_frame_sum *sum);
 
 #endif

@@ -30,4 +30,7 @@ nmtan_status nt_mikktspace_fast(const nt_solve *solve);
 nmtan_status nt_lengyel(const nt_solve *solve);
 nmtan_status nt_area(const nt_solve *solve);
 
+/* ill_conditioned receives how many corners have lost more than 24 bits, see nmtan_counts. */
+nmtan_status nt_robust(const nt_solve *solve, size_t *ill_conditioned);
+
 #endif

@@ -35,7 +35,7 @@ static nmtan_status check_attributes(nmtan_mesh *mesh)
 static nmtan_status check_options(const nmtan_options *options)
 {
 	const float degrees = options->angular_threshold_degrees;
-	if ((unsigned)options->method > NMTAN_METHOD_LENGYEL ||
+	if ((unsigned)options->method > NMTAN_METHOD_ROBUST ||
 		(unsigned)options->repair > NMTAN_REPAIR_OFF ||
 		(unsigned)options->path > NMTAN_PATH_FAST || (unsigned)options->isa > NMTAN_ISA_AVX512)
 		return NMTAN_ERROR_ARGUMENT;
@@ -50,7 +50,8 @@ static float threshold_cos(float degrees)
 	return (float)cos((double)((degrees * (float)M_PI) / 180.0f));
 }
 
-static nmtan_status run_method(const nt_solve *solve, const nmtan_options *options)
+static nmtan_status run_method(const nt_solve *solve, const nmtan_options *options,
+	size_t *ill_conditioned)
 {
 	switch (options->method) {
 	case NMTAN_METHOD_MIKKTSPACE:
@@ -59,6 +60,8 @@ static nmtan_status run_method(const nt_solve *solve, const nmtan_options *optio
 		return nt_area(solve);
 	case NMTAN_METHOD_LENGYEL:
 		return nt_lengyel(solve);
+	case NMTAN_METHOD_ROBUST:
+		return nt_robust(solve, ill_conditioned);
 	}
 	return NMTAN_ERROR_ARGUMENT;
 }
@@ -96,10 +99,12 @@ nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options
 
 	/* the method's own answer, then what a renderer can use */
 	const nt_scratch_mark mark = nt_scratch_here(solve.scratch);
-	status = run_method(&solve, options);
+	size_t ill_conditioned = 0;
+	status = run_method(&solve, options, &ill_conditioned);
 	nt_scratch_back(solve.scratch, mark);
 	if (!status)
 		status = nt_repair(&solve, options->repair == NMTAN_REPAIR_ON, &output->counts);
+	output->counts.ill_conditioned = ill_conditioned;
 	nt_scratch_back(solve.scratch, mark);
 	nt_scratch_free(&own);
 	return status;

@@ -10,57 +10,19 @@
 
 #include <math.h>
 #include <stddef.h>
+#include "base/exact.h"
 
-enum { DETERMINANT_TERMS = 16 };
-
-/* sum + error = a + b, exactly (Knuth). */
-static double two_sum(double a, double b, double *error)
-{
-	const double sum = a + b;
-	const double part = sum - a;
-	*error = (a - (sum - part)) + (b - part);
-	return sum;
-}
-
-/* Adds b to an expansion of n components, which grow in magnitude. */
-static size_t grow_expansion(double *expansion, size_t n, double b)
-{
-	double sum = b;
-	for (size_t i = 0; i < n; i++)
-		sum = two_sum(expansion[i], sum, &expansion[i]);
-	expansion[n] = sum;
-	return n + 1;
-}
+enum { DETERMINANT_TERMS = 2 * NT_PRODUCT_TERMS };
 
 /* Sign of a sum of terms: that of the largest component that is not zero. */
 static int sign_of_sum(const double *terms, size_t count)
 {
 	double expansion[2 * DETERMINANT_TERMS];
-	size_t n = 0;
-	for (size_t i = 0; i < count; i++)
-		n = grow_expansion(expansion, n, terms[i]);
+	size_t n = count;
+	nt_expand(expansion, terms, count);
 	while (n > 0 && expansion[n - 1] == 0.0)
 		n--;
 	return n == 0 ? 0 : expansion[n - 1] > 0.0 ? 1 : -1;
-}
-
-/* The terms of (xh + xl)(yh + yl) times sign. */
-static size_t product_terms(double *terms, const double x[2], const double y[2], double sign)
-{
-	size_t n = 0;
-	for (int i = 0; i < 2; i++) {
-		for (int k = 0; k < 2; k++) {
-			const double product = x[i] * y[k];
-			terms[n++] = sign * product;
-			terms[n++] = sign * fma(x[i], y[k], -product);
-		}
-	}
-	return n;
-}
-
-static void difference(double result[2], float a, float b)
-{
-	result[0] = two_sum(a, -(double)b, &result[1]);
 }
 
 static int is_finite(const float a[2])
@@ -77,12 +39,12 @@ static void determinant_terms(double terms[DETERMINANT_TERMS], const float a[2],
 	if (!is_finite(a) || !is_finite(b) || !is_finite(c))
 		return;
 	double bu[2], bv[2], cu[2], cv[2];
-	difference(bu, b[0], a[0]);
-	difference(bv, b[1], a[1]);
-	difference(cu, c[0], a[0]);
-	difference(cv, c[1], a[1]);
-	const size_t half = product_terms(terms, bu, cv, sign);
-	product_terms(terms + half, bv, cu, -sign);
+	nt_difference(bu, b[0], a[0]);
+	nt_difference(bv, b[1], a[1]);
+	nt_difference(cu, c[0], a[0]);
+	nt_difference(cv, c[1], a[1]);
+	const size_t half = nt_product_terms(terms, bu, cv, sign);
+	nt_product_terms(terms + half, bv, cu, -sign);
 }
 
 int nt_orientation_slow(const float a[2], const float b[2], const float c[2])

@@ -11,6 +11,7 @@
 #ifndef NT_TOPOLOGY_ORIENTATION_H
 #define NT_TOPOLOGY_ORIENTATION_H
 
+#include "base/exact.h"
 #include "nmtan.h"
 
 /* The same as nt_orientation for any input, by expansions alone. */
@@ -21,10 +22,8 @@ static inline int nt_orientation(const float a[2], const float b[2], const float
 {
 	const double bu = (double)b[0] - a[0], bv = (double)b[1] - a[1];
 	const double cu = (double)c[0] - a[0], cv = (double)c[1] - a[1];
-	/* an exact difference gives both operands back */
-	const int exact = bu + a[0] == b[0] && b[0] - bu == a[0] && bv + a[1] == b[1] &&
-			  b[1] - bv == a[1] && cu + a[0] == c[0] && c[0] - cu == a[0] &&
-			  cv + a[1] == c[1] && c[1] - cv == a[1];
+	const int exact = nt_is_difference(bu, a[0], b[0]) && nt_is_difference(bv, a[1], b[1]) &&
+			  nt_is_difference(cu, a[0], c[0]) && nt_is_difference(cv, a[1], c[1]);
 	const double p = bu * cv, r = bv * cu;
 	if (exact && p != r)
 		return p > r ? 1 : -1;

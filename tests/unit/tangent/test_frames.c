@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The weights of area and lengyel, on a ridge whose two sides have different size and texture density.
+ * The weights of area, lengyel and robust on a ridge whose two sides have different size and texture
+ * density, and what robust keeps where float arithmetic loses it.
  */
 #include "test.h"
 #include <math.h>
@@ -60,11 +61,90 @@ static void lengyel_weighs_by_texture_density(void **state)
 	assert_along(t, 1, 5);
 }
 
+static void robust_weighs_by_angle_alone(void **state)
+{
+	(void)state;
+	float t[4];
+	solve(NMTAN_METHOD_ROBUST, 3, 1, t);
+	assert_along(t, 1, 1);
+	solve(NMTAN_METHOD_ROBUST, 0.001f, 5, t);
+	assert_along(t, 1, 1);
+}
+
+/*
+ * One triangle whose UVs are a needle: a = (0, 0), b = (1, d), c = (2, 2 d + h) with d = 2^-12 and
+ * h = 2^-34, all exact. u = (cv d1 - bv d2) sign, with d1 = (1, 0, 0) and d2 = (2, 1, 0):
+ * (2 d + h) (1, 0) - d (2, 1) = (h, -d): the first component is left after 22 bits cancel, and the
+ * tangent is (2^-22, -1) but for 2^-45. A float product loses it whole.
+ */
+static void robust_keeps_what_is_left_of_a_needle(void **state)
+{
+	(void)state;
+	const float d = 1.0f / 4096, h = 1.0f / 4096 / 4194304;
+	const float positions[3][3] = {{0, 0, 0}, {1, 0, 0}, {2, 1, 0}};
+	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+	const float texcoords[3][2] = {{0, 0}, {1, d}, {2, 2 * d + h}};
+	assert_true(texcoords[2][1] - 2 * d == h);
+	const nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3, .positions = &positions[0][0],
+		.normals = &normals[0][0], .texcoords = &texcoords[0][0]};
+	const nmtan_options options = {.method = NMTAN_METHOD_ROBUST};
+	float tangents[3][4];
+	nmtan_output output = {.tangents = &tangents[0][0]};
+	assert_int_equal(nmtan_tangents(&mesh, &options, &output), NMTAN_OK);
+	assert_int_equal(output.counts.ill_conditioned, 0);
+	for (int c = 0; c < 3; c++) {
+		assert_true(tangents[c][0] == 1.0f / 4194304 && tangents[c][1] == -1.0f);
+		assert_true(tangents[c][2] == 0.0f && tangents[c][3] == 1.0f);
+	}
+}
+
+/* Exponents so far apart that differences need two doubles: b - a = (2^60 - 2^-60, 0), c - a the same in
+ * v. u = (1, 0, 0). */
+static void robust_takes_differences_that_no_double_holds(void **state)
+{
+	(void)state;
+	const float big = 1152921504606846976.0f, small = 1.0f / 1152921504606846976.0f; /* 2^60, 2^-60 */
+	const float positions[3][3] = {{small, 0, 0}, {big, 0, 0}, {small, big, 0}};
+	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+	const float texcoords[3][2] = {{small, -small}, {big, -small}, {small, big}};
+	const nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3, .positions = &positions[0][0],
+		.normals = &normals[0][0], .texcoords = &texcoords[0][0]};
+	const nmtan_options options = {.method = NMTAN_METHOD_ROBUST};
+	float tangents[3][4];
+	nmtan_output output = {.tangents = &tangents[0][0]};
+	assert_int_equal(nmtan_tangents(&mesh, &options, &output), NMTAN_OK);
+	for (int c = 0; c < 3; c++)
+		assert_true(tangents[c][0] == 1.0f && tangents[c][1] == 0.0f && tangents[c][3] == 1.0f);
+}
+
+/* dP/du along the normal but for 2^-30: what is left in the plane is right, and counted. */
+static void robust_counts_what_is_lost(void **state)
+{
+	(void)state;
+	const float d = 1.0f / 1073741824;
+	const float positions[3][3] = {{0, 0, 0}, {d, 0, 1}, {0, 1, 0}};
+	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+	const float texcoords[3][2] = {{0, 0}, {1, 0}, {0, 1}};
+	const nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3, .positions = &positions[0][0],
+		.normals = &normals[0][0], .texcoords = &texcoords[0][0]};
+	const nmtan_options options = {.method = NMTAN_METHOD_ROBUST};
+	float tangents[3][4];
+	nmtan_output output = {.tangents = &tangents[0][0]};
+	assert_int_equal(nmtan_tangents(&mesh, &options, &output), NMTAN_OK);
+	assert_int_equal(output.counts.ill_conditioned, 3);
+	for (int c = 0; c < 3; c++)
+		assert_true(tangents[c][0] == 1.0f && tangents[c][2] == 0.0f && tangents[c][3] == 1.0f);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(area_weighs_angle_times_both_edges),
 		cmocka_unit_test(lengyel_weighs_by_texture_density),
+		cmocka_unit_test(robust_weighs_by_angle_alone),
+		cmocka_unit_test(robust_keeps_what_is_left_of_a_needle),
+		cmocka_unit_test(robust_takes_differences_that_no_double_holds),
+		cmocka_unit_test(robust_counts_what_is_lost),
 	};
 	return cmocka_run_group_tests_name("tangent/frames", tests, NULL, NULL);
 }
