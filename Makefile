@@ -110,7 +110,6 @@ demo: need-build
 	@build/release/nmtan --timing $(DEMO) build/demo/mirrored_cube.glb
 	@echo "nmtan --check build/demo/mirrored_cube.glb"
 	@build/release/nmtan --check build/demo/mirrored_cube.glb
-	@ls -l build/demo/mirrored_cube.glb
 
 check: need-check
 	@$(MAKE) --no-print-directory -s check-built
