@@ -75,8 +75,6 @@ def ply():
     replace(binary, "ply_count_huge.ply", "element vertex 4", "element vertex 4000000000")
     patch(binary, "ply_index_binary.ply", -4, "<i", 4)
     save("ply_truncated.ply", good(binary)[:-5])
-    start = good(binary).index(b"end_header\n") + len(b"end_header\n")
-    patch(binary, "ply_nan.ply", start + 32, "<f", float("nan"))
 
 
 def glb():
@@ -111,7 +109,7 @@ def gltf():
     edit("view_offset", '"byteOffset": 0', '"byteOffset": 640')
     edit("view_buffer", '"buffer": 0', '"buffer": 1')
     edit("stride_small", '"byteOffset": 0,', '"byteOffset": 0, "byteStride": 8,')
-    edit("stride_odd", '"byteOffset": 0,', '"byteOffset": 0, "byteStride": 13,')
+    edit("stride_large", '"byteOffset": 0,', '"byteOffset": 0, "byteStride": 16,')
     edit("attribute", '"POSITION": 0', '"POSITION": 99')
     edit("attribute_word", '"POSITION": 0', '"POSITION": "zero"')
     edit("indices", '"indices": 3', '"indices": 99')
@@ -124,7 +122,8 @@ def gltf():
     edit("uri_scheme", '"uri": "plates.bin"', '"uri": "http://example.com/plates.bin"')
     edit("uri_base64", '"uri": "plates.bin"',
          '"uri": "data:application/octet-stream;base64,AA*A"')
-    edit("required", '"scene": 0,', '"extensionsRequired": ["KHR_draco_mesh_compression"], "scene": 0,')
+    edit("draco", '"indices": 3,',
+         '"indices": 3, "extensions": {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": {}}},')
     save("gltf_deep.gltf", b'{"asset":{"version":"2.0"},"extras":' + b"[" * 5000 + b"]" * 5000 + b"}")
     edit("index_above", '"uri": "plates.bin"', '"uri": "index.bin"')
     data = bytearray(good("plates.bin"))
