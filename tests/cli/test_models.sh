@@ -1,0 +1,47 @@
+# SPDX-License-Identifier: MIT
+# Public models and the validator's own corpus, where they lie beside the tree (../shared): whatever the
+# Khronos validator accepts, and every OBJ and PLY, converts to output in which it finds no new error.
+# Nothing crashes, valid or not.
+. "$ROOT/tests/support/cli.sh"
+shared=$ROOT/../shared
+cd "$WORK" || exit 1
+
+scene "public models convert to valid glTF"
+if [ ! -d "$shared" ]; then
+	skip_case "../shared is not here"
+	done_testing
+	exit
+fi
+
+# convert INPUT OUTPUT: exit codes 3 and 5 are kept for the list of what was refused.
+refused=$WORK/refused
+: >"$refused"
+number=0
+while IFS= read -r input; do
+	number=$((number + 1))
+	case $input in *.gltf) ending=gltf ;; *) ending=glb ;; esac
+	mkdir "o$number"
+	run --only=all "$input" "o$number/o.$ending"
+	case $status in
+	0) printf '%s\t%s\n' "$PWD/o$number/o.$ending" "$input" >>pairs ;;
+	3 | 5 | 2) printf '%s\t%s\t%s\n' "$status" "$input" "$(tail -1 "$WORK/err.txt")" >>"$refused" ;;
+	*) wrong "$input: exit code $status" ;;
+	esac
+done < <(find "$shared/models" "$shared/corpus" -type f \( -name '*.obj' -o -name '*.ply' -o -name '*.gltf' -o -name '*.glb' \) | sort)
+[ "$number" -gt 100 ] || wrong "only $number files found"
+valid --pairs pairs
+
+scene "what is refused is invalid, compressed or has no triangles"
+if [ -f "$ROOT/build/node/node_modules/gltf-validator/package.json" ]; then
+	grep -E '\.(gltf|glb)	' "$refused" | grep -v '^5' | cut -f2 >suspects
+	while IFS= read -r input; do
+		# A file the validator accepts without an error must not be refused as invalid.
+		! node "$ROOT/tests/support/validate.mjs" "$input" >/dev/null 2>&1 ||
+			wrong "refused although valid: $(grep -F "	$input	" "$refused" | cut -f3)"
+	done <suspects
+	grep -E '\.(obj|ply)	' "$refused" | cut -f3 | sed 's/^/# refused: /'
+else
+	skip_case "gltf-validator is not installed (no network?)"
+fi
+
+done_testing
