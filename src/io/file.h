@@ -66,6 +66,11 @@ uint64_t nt_sink_size(const nt_sink *sink);
 const char *nt_sink_temporary(const nt_sink *sink);
 nmtan_status nt_sink_flush(nt_sink *sink, nt_error *error);
 
+/* Flushes the file of the set that was added under `path` and says where it is for the time being; NULL when
+ * the set has no such file or writes it through. */
+nmtan_status nt_output_written(nt_output *output, const char *path, const char **temporary,
+	nt_error *error);
+
 /* Gives every file its name, in order; on failure everything is removed as by nt_output_abort. The set is freed
  * either way. */
 nmtan_status nt_output_commit(nt_output *output, nt_error *error);

@@ -321,6 +321,18 @@ nmtan_status nt_sink_flush(nt_sink *sink, nt_error *error)
 	return flush_with(sink, NULL, 0, error);
 }
 
+nmtan_status nt_output_written(nt_output *output, const char *path, const char **temporary,
+	nt_error *error)
+{
+	*temporary = NULL;
+	for (nt_sink *sink = output->first; sink; sink = sink->next)
+		if (sink->temporary && strcmp(sink->path, path) == 0) {
+			*temporary = nt_sink_temporary(sink);
+			return nt_sink_flush(sink, error);
+		}
+	return NMTAN_OK;
+}
+
 /* Everything onto the disk and closed. */
 static nmtan_status finish_sink(const nt_output *output, nt_sink *sink, nt_error *error)
 {

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <time.h>
+#include "io/verify.h"
 #include "pipeline/stages.h"
 
 /* What the stages of one run share. */
@@ -192,6 +193,10 @@ static nmtan_status write_scene(run *r)
 		status = nt_output_protect(output, r->input_path, r->error);
 	if (!status)
 		status = r->writer->write(&r->scene, &options, output, r->error);
+	if (!status && s->verify && !s->dry_run && r->writer->format != NT_FORMAT_PLY) {
+		begin_stage(r, NT_STAGE_VERIFY);
+		status = nt_verify_gltf(&r->scene, output, r->output_path, r->error);
+	}
 	if (status || s->dry_run) {
 		nt_output_abort(output);
 		return status;

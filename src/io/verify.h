@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A second opinion on glTF output before it takes its name: another parser reads the files, and finds in
+ * every corner the position and tangent that were to be written.
+ */
+#ifndef NT_IO_VERIFY_H
+#define NT_IO_VERIFY_H
+
+#include "io/format.h"
+
+/*
+ * Reads back the glTF or GLB `path` of an output set that is complete but not committed, and compares it
+ * with the scene it was written from. An output that is written through cannot be read back: nothing
+ * is done then.
+ *
+ * Returns NMTAN_OK; NMTAN_ERROR_INTERNAL where the output is not what it should be, which says mesh and
+ * corner; NMTAN_ERROR_IO, NMTAN_ERROR_MEMORY; NMTAN_ERROR_UNSUPPORTED for what tinygltf cannot take (4 GB and
+ * more, Draco, compressed views without bytes).
+ */
+nmtan_status nt_verify_gltf(const nt_scene *scene, nt_output *output, const char *path,
+	nt_error *error);
+
+#endif
