@@ -41,7 +41,11 @@ static const nt_format_entry table[] = {
 		.recognise = nt_ply_recognise,
 		.open = nt_ply_open},
 	{.format = NT_FORMAT_GLTF, .name = "gltf", .extensions = ".gltf", .write = write_gltf},
-	{.format = NT_FORMAT_OBJ, .name = "obj", .extensions = ".obj"},
+	{.format = NT_FORMAT_OBJ,
+		.name = "obj",
+		.extensions = ".obj",
+		.recognise = nt_obj_recognise,
+		.open = nt_obj_open},
 };
 enum { FORMAT_COUNT = sizeof table / sizeof table[0] };
 

@@ -1,0 +1,543 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * OBJ lines become arrays. A chunk is a run of whole lines, so several can be read at once; what a
+ * line means does not depend on the lines before it, but for faces that count back ("-1") and for the
+ * statements between faces, which are kept in order for later.
+ *
+ * Every chunk ends behind a line feed and has 8 readable bytes behind it (obj.c copies the last lines
+ * of the file to make it so). Numbers and blanks therefore stop by themselves, and nothing here asks
+ * for the end of the input within a line.
+ *
+ * Forgiving where exporters differ: blanks and tabs anywhere, CRLF and lone CR, `\` before a line end,
+ * comments behind a statement, trailing slashes ("3/"), statements of OBJ that say nothing about
+ * polygons. Strict where a guess could be wrong: numbers, their count, their finiteness, index 0.
+ */
+#include "io/obj_parts.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include "io/decimal.h"
+
+/* A chunk's arrays begin with room for one element per this many bytes of text, which is about what
+ * dense files hold; memory that is not used is never touched. */
+enum { BYTES_PER_ELEMENT = 24 };
+
+const char *const obj_ignored_names[OBJ_IGNORED_COUNT] = {
+	[OBJ_SMALL_FACE] = "f with fewer than 3 corners",
+	"l", "p", "vp", "deg", "bmat", "step", "cstype", "curv", "curv2", "surf", "parm", "trim", "hole",
+	"scrv", "sp", "end", "con", "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj",
+	"trace_obj", "ctech", "stech", "usemap", "maplib", "call", "csh", "bsp", "bzp", "cdc", "cdp",
+	[OBJ_UNKNOWN] = "unknown statement",
+};
+
+/* Where the reader stands. */
+typedef struct reader {
+	obj_chunk *chunk;
+	const char *p;
+	size_t line;           /* of p, within the chunk, from 0 */
+	const char *statement; /* where the statement began, and its line */
+	size_t statement_line;
+} reader;
+
+static bool is_blank(char c)
+{
+	return c == ' ' || c == '\t';
+}
+
+static bool is_line_end(char c)
+{
+	return c == '\n' || c == '\r';
+}
+
+static bool is_digit(char c)
+{
+	return c >= '0' && c <= '9';
+}
+
+/* Where the next line begins when p stands at a line end. */
+static const char *behind_line_end(const char *p)
+{
+	return p + (p[0] == '\r' && p[1] == '\n' ? 2 : 1);
+}
+
+/* A blank, or a `\` that joins the next line to this one. */
+static bool joins_lines(const char *p)
+{
+	return *p == '\\' && is_line_end(p[1]);
+}
+
+static void skip_blanks(reader *r)
+{
+	const char *p = r->p;
+	for (;;) {
+		while (is_blank(*p))
+			p++;
+		if (!joins_lines(p))
+			break;
+		p = behind_line_end(p + 1);
+		r->line++;
+	}
+	r->p = p;
+}
+
+/* Whether a word may end here. */
+static bool is_word_end(const char *p)
+{
+	return is_blank(*p) || is_line_end(*p) || joins_lines(p);
+}
+
+/* ---- errors ---- */
+
+/* The word at p as it may be shown: cut at 32 characters, bytes that are no ASCII as \xHH. */
+static void quote_word(char text[160], const char *p)
+{
+	if (is_line_end(*p) || *p == '#') {
+		snprintf(text, 160, "the end of the line");
+		return;
+	}
+	size_t used = (size_t)snprintf(text, 160, "\"");
+	for (int i = 0; i < 32 && !is_word_end(p); i++, p++) {
+		const unsigned char c = (unsigned char)*p;
+		used += (size_t)snprintf(text + used, 160 - used, c >= 0x20 && c < 0x7F ? "%c" : "\\x%02x", c);
+	}
+	snprintf(text + used, 160 - used, is_word_end(p) ? "\"" : "...\"");
+}
+
+/* Fails with "found WORD, expected EXPECTED" at the reader's line. */
+static nmtan_status fail_expected(reader *r, const char *expected)
+{
+	char found[160];
+	quote_word(found, r->p);
+	return nt_fail_line(&r->chunk->error, NMTAN_ERROR_INPUT, r->line + 1, "found %s, expected %s", found,
+		expected);
+}
+
+static nmtan_status fail_memory(reader *r)
+{
+	return nt_fail_memory(&r->chunk->error);
+}
+
+/* ---- arrays ---- */
+
+/* Room for one more row. A chunk never has 2^30 elements, which OBJ_BIAS relies on. */
+static bool reserve(obj_chunk *chunk, void **block, size_t *capacity, size_t count, size_t row_size)
+{
+	if (count < *capacity)
+		return true;
+	const size_t guess = (size_t)(chunk->end - chunk->begin) / BYTES_PER_ELEMENT + 1;
+	const size_t needed = *capacity ? count + 1 : guess;
+	return count + 1 < OBJ_BIAS && nt_grow(block, capacity, needed, row_size);
+}
+
+/* ---- v, vt, vn ---- */
+
+/* Reads numbers up to the end of the line, at most `most`. Returns how many, or -1 after an error. */
+static int read_numbers(reader *r, float *numbers, int most, const char *expected)
+{
+	for (int count = 0;; count++) {
+		skip_blanks(r);
+		if (is_line_end(*r->p) || *r->p == '#')
+			return count;
+		if (count == most) {
+			fail_expected(r, expected);
+			return -1;
+		}
+		const char *p = nt_read_decimal(r->p, r->chunk->end, &numbers[count]);
+		if (!p || !is_word_end(p)) {
+			fail_expected(r, "a number");
+			return -1;
+		}
+		if (!isfinite(numbers[count])) {
+			fail_expected(r, "a finite number");
+			return -1;
+		}
+		r->p = p;
+	}
+}
+
+/* Keeps the colour of the position that is about to be counted; positions before it are white. */
+static nmtan_status store_color(reader *r, const float *numbers, int count)
+{
+	obj_chunk *chunk = r->chunk;
+	if (!chunk->colors && count < 6)
+		return NMTAN_OK;
+	const size_t first = chunk->colors ? chunk->position_count : 0;
+	if (chunk->position_count >= chunk->color_capacity &&
+		!nt_grow((void **)&chunk->colors, &chunk->color_capacity, chunk->position_capacity,
+			4 * sizeof(float)))
+		return fail_memory(r);
+	for (size_t i = 4 * first; i < 4 * chunk->position_count + 4; i++)
+		chunk->colors[i] = 1;
+	if (count >= 6)
+		memcpy(&chunk->colors[4 * chunk->position_count], numbers + 3,
+			(size_t)(count - 3) * sizeof *numbers);
+	return NMTAN_OK;
+}
+
+/* v x y z [w] or v x y z r g b [a]. The weight w belongs to curves: polygons do not use it. */
+static nmtan_status read_position(reader *r)
+{
+	static const char expected[] = "3 coordinates, with a weight or a colour of 3 or 4 numbers";
+	obj_chunk *chunk = r->chunk;
+	float numbers[7];
+	const int count = read_numbers(r, numbers, 7, expected);
+	if (count < 0)
+		return chunk->error.status;
+	if (count < 3 || count == 5)
+		return fail_expected(r, count < 3 ? "3 coordinates" : expected);
+	if (!reserve(chunk, (void **)&chunk->positions, &chunk->position_capacity, chunk->position_count,
+			3 * sizeof(float)))
+		return fail_memory(r);
+	memcpy(&chunk->positions[3 * chunk->position_count], numbers, 3 * sizeof(float));
+	const nmtan_status status = store_color(r, numbers, count);
+	chunk->position_count++;
+	return status;
+}
+
+/* vt u [v [w]] */
+static nmtan_status read_texcoord(reader *r)
+{
+	obj_chunk *chunk = r->chunk;
+	float numbers[3] = {0, 0, 0};
+	const int count = read_numbers(r, numbers, 3, "at most 3 texture coordinates");
+	if (count < 0)
+		return chunk->error.status;
+	if (count == 0)
+		return fail_expected(r, "a texture coordinate");
+	if (!reserve(chunk, (void **)&chunk->texcoords, &chunk->texcoord_capacity, chunk->texcoord_count,
+			2 * sizeof(float)))
+		return fail_memory(r);
+	memcpy(&chunk->texcoords[2 * chunk->texcoord_count++], numbers, 2 * sizeof(float));
+	return NMTAN_OK;
+}
+
+/* vn x y z */
+static nmtan_status read_normal(reader *r)
+{
+	obj_chunk *chunk = r->chunk;
+	float numbers[3];
+	const int count = read_numbers(r, numbers, 3, "3 components of a normal and no more");
+	if (count < 0)
+		return chunk->error.status;
+	if (count < 3)
+		return fail_expected(r, "3 components of a normal");
+	if (!reserve(chunk, (void **)&chunk->normals, &chunk->normal_capacity, chunk->normal_count,
+			3 * sizeof(float)))
+		return fail_memory(r);
+	memcpy(&chunk->normals[3 * chunk->normal_count++], numbers, 3 * sizeof(float));
+	return NMTAN_OK;
+}
+
+/* ---- f ---- */
+
+/* An index of nine and more digits, one that counts back, or none. */
+static nmtan_status read_unusual_index(reader *r, size_t count, uint32_t *index)
+{
+	const char *p = r->p;
+	const bool back = *p == '-';
+	p += back;
+	if (!is_digit(*p))
+		return fail_expected(r, "the number of a vertex, as in 3, 3/1, 3//2 or 3/1/2");
+	uint64_t value = 0;
+	for (; is_digit(*p); p++)
+		if (value < OBJ_RELATIVE)
+			value = value * 10 + (uint64_t)(*p - '0');
+	if (value == 0)
+		return fail_expected(r, "an index, which begins at 1 or counts back from -1");
+	if (value > (back ? OBJ_BIAS : OBJ_RELATIVE - 1))
+		return fail_expected(r, "an index that a file can hold");
+	*index = back ? OBJ_RELATIVE | (uint32_t)(OBJ_BIAS + count - value) : (uint32_t)value - 1;
+	r->p = p;
+	return NMTAN_OK;
+}
+
+/* `count` elements of that kind precede the face in its chunk. */
+static inline nmtan_status read_index(reader *r, size_t count, uint32_t *index)
+{
+	uint32_t value;
+	const unsigned digits = nt_read_digits(r->p, &value);
+	if (digits == 0 || digits == 8 || value == 0)
+		return read_unusual_index(r, count, index);
+	r->p += digits;
+	*index = value - 1;
+	return NMTAN_OK;
+}
+
+/* v, v/t, v//n or v/t/n. */
+static inline nmtan_status read_corner(reader *r, obj_corner *corner)
+{
+	const obj_chunk *chunk = r->chunk;
+	nmtan_status status = read_index(r, chunk->position_count, &corner->v);
+	corner->t = corner->n = OBJ_ABSENT;
+	if (!status && *r->p == '/') {
+		r->p++;
+		if (*r->p != '/' && !is_word_end(r->p))
+			status = read_index(r, chunk->texcoord_count, &corner->t);
+		if (!status && *r->p == '/') {
+			r->p++;
+			if (!is_word_end(r->p))
+				status = read_index(r, chunk->normal_count, &corner->n);
+		}
+	}
+	if (!status && !is_word_end(r->p) && *r->p != '#')
+		return fail_expected(r, "a blank behind the corner of a face");
+	return status;
+}
+
+static nmtan_status store_large_face(reader *r, size_t size)
+{
+	obj_chunk *chunk = r->chunk;
+	if (!nt_grow((void **)&chunk->large, &chunk->large_capacity, chunk->large_count + 1,
+			sizeof *chunk->large))
+		return fail_memory(r);
+	chunk->large[chunk->large_count++] = (obj_large){chunk->face_count, size};
+	return NMTAN_OK;
+}
+
+static void ignore(reader *r, size_t which)
+{
+	obj_ignored *ignored = &r->chunk->ignored[which];
+	if (ignored->count++ == 0)
+		ignored->line = r->statement_line;
+}
+
+static nmtan_status read_face(reader *r)
+{
+	obj_chunk *chunk = r->chunk;
+	const size_t first = chunk->corner_count;
+	for (;;) {
+		skip_blanks(r);
+		if (is_line_end(*r->p) || *r->p == '#')
+			break;
+		if (!reserve(chunk, (void **)&chunk->corners, &chunk->corner_capacity, chunk->corner_count,
+				sizeof *chunk->corners))
+			return fail_memory(r);
+		const nmtan_status status = read_corner(r, &chunk->corners[chunk->corner_count]);
+		if (status)
+			return status;
+		chunk->corner_count++;
+	}
+	const size_t size = chunk->corner_count - first;
+	if (size < 3) {
+		chunk->corner_count = first;
+		ignore(r, OBJ_SMALL_FACE);
+		return NMTAN_OK;
+	}
+	if (!reserve(chunk, (void **)&chunk->face_sizes, &chunk->face_capacity, chunk->face_count, 1))
+		return fail_memory(r);
+	if (size >= OBJ_LARGE) {
+		const nmtan_status status = store_large_face(r, size);
+		if (status)
+			return status;
+	}
+	if (chunk->face_count == chunk->wanted_face)
+		chunk->wanted_line = r->statement_line;
+	chunk->face_sizes[chunk->face_count++] = (uint8_t)(size < OBJ_LARGE ? size : OBJ_LARGE);
+	return NMTAN_OK;
+}
+
+/* ---- o, usemtl, mtllib, s ---- */
+
+static nmtan_status store_event(reader *r, obj_event event)
+{
+	obj_chunk *chunk = r->chunk;
+	if (!nt_grow((void **)&chunk->events, &chunk->event_capacity, chunk->event_count + 1,
+			sizeof *chunk->events))
+		return fail_memory(r);
+	event.line = r->statement_line;
+	event.face = chunk->face_count;
+	event.corner = chunk->corner_count;
+	chunk->events[chunk->event_count++] = event;
+	return NMTAN_OK;
+}
+
+/* A name is what is left of the line, blanks inside included; `\` and `#` belong to it, because paths
+ * and names have them. */
+static nmtan_status read_name(reader *r, obj_event_kind kind)
+{
+	while (is_blank(*r->p))
+		r->p++;
+	const char *begin = r->p, *p = begin;
+	while (!is_line_end(*p)) {
+		if (*p == '\0') {
+			r->p = p;
+			return fail_expected(r, "a name in text");
+		}
+		p++;
+	}
+	r->p = p;
+	while (p > begin && is_blank(p[-1]))
+		p--;
+	return store_event(r, (obj_event){.kind = kind, .text = begin, .length = (size_t)(p - begin)});
+}
+
+/* s off, s on or s N: a group of faces that are shaded as one; 0 and off mean flat. */
+static nmtan_status read_smoothing(reader *r)
+{
+	skip_blanks(r);
+	const char *p = r->p;
+	uint32_t group = 0;
+	unsigned length = nt_read_digits(p, &group);
+	if (strncmp(p, "off", 3) == 0) {
+		length = 3;
+	} else if (strncmp(p, "on", 2) == 0) {
+		length = 2;
+		group = 1;
+	}
+	if (length == 0 || length == 8 || !is_word_end(p + length))
+		return fail_expected(r, "a smoothing group, on or off");
+	r->p = p + length;
+	return store_event(r, (obj_event){.kind = OBJ_EVENT_SMOOTHING, .group = group});
+}
+
+/* ---- lines ---- */
+
+/* To the end of the line; `\` joins the next one unless it is a comment. */
+static void skip_statement(reader *r, bool comment)
+{
+	const char *p = r->p;
+	while (!is_line_end(*p)) {
+		if (!comment && joins_lines(p)) {
+			p = behind_line_end(p + 1);
+			r->line++;
+		} else {
+			p++;
+		}
+	}
+	r->p = p;
+}
+
+/* A statement that is not used: one that OBJ defines, or any word. Bytes that no text has are an error,
+ * so that a file of another kind is not taken for an OBJ without faces. */
+static nmtan_status read_other(reader *r, const char *word, size_t length)
+{
+	for (size_t i = 0; i < length; i++)
+		if ((unsigned char)word[i] < 0x20 || (unsigned char)word[i] >= 0x7F) {
+			r->p = word;
+			return fail_expected(r, "a statement of an OBJ file");
+		}
+	size_t which = OBJ_SMALL_FACE + 1;
+	while (which < OBJ_UNKNOWN && (strlen(obj_ignored_names[which]) != length ||
+					      memcmp(obj_ignored_names[which], word, length) != 0))
+		which++;
+	if (which == OBJ_UNKNOWN && !r->chunk->unknown) {
+		r->chunk->unknown = word;
+		r->chunk->unknown_length = length;
+	}
+	ignore(r, which);
+	skip_statement(r, false);
+	return NMTAN_OK;
+}
+
+static bool is_word(const char *word, size_t length, const char *expected)
+{
+	return strlen(expected) == length && memcmp(word, expected, length) == 0;
+}
+
+/* A statement whose first letters are not v or f. */
+static nmtan_status read_rare(reader *r)
+{
+	const char *word = r->p;
+	while (!is_word_end(r->p))
+		r->p++;
+	const size_t length = (size_t)(r->p - word);
+	if (is_word(word, length, "v"))
+		return read_position(r);
+	if (is_word(word, length, "vt"))
+		return read_texcoord(r);
+	if (is_word(word, length, "vn"))
+		return read_normal(r);
+	if (is_word(word, length, "f") || is_word(word, length, "fo"))
+		return read_face(r);
+	if (is_word(word, length, "o"))
+		return read_name(r, OBJ_EVENT_OBJECT);
+	if (is_word(word, length, "usemtl"))
+		return read_name(r, OBJ_EVENT_MATERIAL);
+	if (is_word(word, length, "mtllib"))
+		return read_name(r, OBJ_EVENT_LIBRARY);
+	if (is_word(word, length, "s"))
+		return read_smoothing(r);
+	if (is_word(word, length, "g")) {
+		skip_statement(r, false);
+		return NMTAN_OK;
+	}
+	return read_other(r, word, length);
+}
+
+/* One statement, up to its line end or comment. The four that files consist of come first. */
+static inline nmtan_status read_statement(reader *r)
+{
+	const char *p = r->p;
+	if (p[0] == 'v' && is_blank(p[1])) {
+		r->p = p + 2;
+		return read_position(r);
+	}
+	if (p[0] == 'f' && is_blank(p[1])) {
+		r->p = p + 2;
+		return read_face(r);
+	}
+	if (p[0] == 'v' && p[1] == 'n' && is_blank(p[2])) {
+		r->p = p + 3;
+		return read_normal(r);
+	}
+	if (p[0] == 'v' && p[1] == 't' && is_blank(p[2])) {
+		r->p = p + 3;
+		return read_texcoord(r);
+	}
+	if (is_line_end(*p) || *p == '#')
+		return NMTAN_OK;
+	return read_rare(r);
+}
+
+nmtan_status obj_parse_chunk(obj_chunk *chunk)
+{
+	reader r = {.chunk = chunk, .p = chunk->begin};
+	while (r.p < chunk->end) {
+		skip_blanks(&r);
+		r.statement = r.p;
+		r.statement_line = r.line;
+		const nmtan_status status = read_statement(&r);
+		if (status)
+			return status;
+		if (*r.p == '#')
+			skip_statement(&r, true);
+		r.p = behind_line_end(r.p);
+		r.line++;
+		if (chunk->face_count > chunk->wanted_face)
+			break;
+	}
+	chunk->line_count = r.line;
+	return NMTAN_OK;
+}
+
+void obj_chunk_free(obj_chunk *chunk)
+{
+	free(chunk->positions);
+	free(chunk->colors);
+	free(chunk->texcoords);
+	free(chunk->normals);
+	free(chunk->corners);
+	free(chunk->face_sizes);
+	free(chunk->large);
+	free(chunk->events);
+	chunk->positions = chunk->colors = chunk->texcoords = chunk->normals = NULL;
+	chunk->corners = NULL;
+	chunk->face_sizes = NULL;
+	chunk->large = NULL;
+	chunk->events = NULL;
+}
+
+size_t obj_face_line(const obj_file *file, size_t face)
+{
+	size_t c = 0;
+	while (c + 1 < file->chunk_count && file->chunks[c + 1].first_face <= face)
+		c++;
+	const obj_chunk *chunk = &file->chunks[c];
+	obj_chunk again = {.begin = chunk->begin, .end = chunk->end};
+	again.wanted_face = face - chunk->first_face;
+	obj_parse_chunk(&again);
+	const size_t line = chunk->first_line + again.wanted_line + 1;
+	obj_chunk_free(&again);
+	return line;
+}

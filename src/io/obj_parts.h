@@ -1,0 +1,153 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the parts of the OBJ reader hand to each other: obj_parse.c turns lines into the arrays of a
+ * chunk, obj_vertices.c turns corners into vertices, obj_meshes.c makes meshes of them. obj.c says in
+ * which order. Nothing here is for other files.
+ */
+#ifndef NT_IO_OBJ_PARTS_H
+#define NT_IO_OBJ_PARTS_H
+
+#include "io/format.h"
+
+/* The numbers of a face corner, as they are kept until the file has been read. Bit 31 clear: counted
+ * from 0. Bit 31 set: counted back, the low bits are OBJ_BIAS plus the number relative to the chunk's
+ * first element, which may lie in an earlier chunk. */
+#define OBJ_ABSENT   UINT32_MAX
+#define OBJ_RELATIVE 0x80000000u
+#define OBJ_BIAS     0x40000000u
+
+typedef struct obj_corner {
+	uint32_t v, t, n;
+} obj_corner;
+
+typedef enum obj_event_kind {
+	OBJ_EVENT_OBJECT,    /* o */
+	OBJ_EVENT_MATERIAL,  /* usemtl */
+	OBJ_EVENT_SMOOTHING, /* s */
+	OBJ_EVENT_LIBRARY    /* mtllib */
+} obj_event_kind;
+
+/* A statement between faces. */
+typedef struct obj_event {
+	obj_event_kind kind;
+	uint32_t group;      /* SMOOTHING: its group, 0 off */
+	const char *text;    /* the others: the name, in the input */
+	size_t length;
+	size_t line;         /* within the chunk, from 0 */
+	size_t face, corner; /* faces and corners of the chunk before it */
+} obj_event;
+
+/* A polygon of OBJ_LARGE corners or more, whose size does not fit a byte. */
+enum { OBJ_LARGE = 255 };
+
+typedef struct obj_large {
+	size_t face; /* within the chunk; within the file after joining */
+	size_t size;
+} obj_large;
+
+/* Statements that are not used, by number; obj_ignored_names has their words. The last one stands for
+ * all that OBJ does not define. */
+enum { OBJ_IGNORED_COUNT = 36, OBJ_UNKNOWN = OBJ_IGNORED_COUNT - 1, OBJ_SMALL_FACE = 0 };
+extern const char *const obj_ignored_names[OBJ_IGNORED_COUNT];
+
+typedef struct obj_ignored {
+	size_t count;
+	size_t line; /* of the first, within the chunk */
+} obj_ignored;
+
+/* Whole lines of the file and what was in them. */
+typedef struct obj_chunk {
+	const char *begin, *end;
+
+	float *positions, *texcoords, *normals; /* rows of 3, 2 and 3 */
+	size_t position_count, texcoord_count, normal_count;
+	size_t position_capacity, texcoord_capacity, normal_capacity;
+	float *colors; /* rows of 4 as written, as many as positions; NULL while no `v` has one */
+	size_t color_capacity;
+
+	obj_corner *corners;
+	size_t corner_count, corner_capacity;
+	uint8_t *face_sizes; /* OBJ_LARGE: see large */
+	size_t face_count, face_capacity;
+	obj_large *large;
+	size_t large_count, large_capacity;
+	obj_event *events;
+	size_t event_count, event_capacity;
+
+	obj_ignored ignored[OBJ_IGNORED_COUNT];
+	const char *unknown; /* the first unknown statement's word */
+	size_t unknown_length;
+	size_t line_count;
+
+	/* How much comes before this chunk in the file; known after all have been read. */
+	size_t first_position, first_texcoord, first_normal, first_corner, first_face, first_line;
+
+	/* To find a line again: parsing stops behind this face and leaves its line. */
+	size_t wanted_face, wanted_line;
+
+	nt_error error; /* its line is within the chunk, from 1 */
+} obj_chunk;
+
+/* The whole file. */
+typedef struct obj_file {
+	nt_scene *scene;
+	unsigned threads;
+	obj_chunk *chunks;
+	size_t chunk_count;
+	char *tail; /* the last lines, padded */
+
+	/* Joined arrays. */
+	float *positions, *texcoords, *normals, *colors;
+	size_t position_count, texcoord_count, normal_count;
+	uint8_t *face_sizes;
+	size_t face_count, corner_count;
+	obj_large *large;
+	size_t large_count;
+	bool uses_smoothing;
+
+	/* Mesh m has the faces [mesh_faces[m], mesh_faces[m + 1]) of the file, and corners and vertices
+	 * likewise; mesh_count + 1 entries each. */
+	size_t mesh_count;
+	const obj_event **mesh_objects; /* the `o` of each; NULL: none */
+	size_t *mesh_lines;             /* its line */
+	size_t *mesh_faces, *mesh_corners, *mesh_vertices;
+
+	/* Stretches of faces of one material and smoothing group, in order. */
+	struct obj_span *spans;
+	size_t span_count, span_capacity;
+
+	uint32_t *corner_vertices;          /* [corner_count], relative to the mesh's first vertex */
+	struct obj_vertex *vertices;        /* of all meshes, in order */
+	size_t vertex_count;
+} obj_file;
+
+typedef struct obj_span {
+	size_t face; /* the first one; the span ends where the next begins */
+	uint32_t material;
+	uint32_t smoothing;
+} obj_span;
+
+/* A distinct corner of a mesh: rows of the joined arrays, OBJ_ABSENT where it has none. */
+typedef struct obj_vertex {
+	uint32_t v, t, n;
+	uint32_t next; /* for finding it: another vertex of the same v, plus 1; 0 none */
+} obj_vertex;
+
+/* Reads the lines of a chunk, which ends behind a line feed, with 8 readable bytes behind it. On failure
+ * chunk->error is set. */
+nmtan_status obj_parse_chunk(obj_chunk *chunk);
+void obj_chunk_free(obj_chunk *chunk);
+
+/* Line of a face of the file, by reading its chunk again. */
+size_t obj_face_line(const obj_file *file, size_t face);
+
+/* Fills corner_vertices, vertices and mesh_vertices. */
+nmtan_status obj_make_vertices(obj_file *file, nt_error *error);
+
+/* Meshes, spans and materials from the events; findings for what was ignored. */
+nmtan_status obj_read_events(obj_file *file, const nt_read_options *options, nt_error *error);
+
+/* Fills scene->meshes from all of it. */
+nmtan_status obj_make_meshes(obj_file *file, nt_error *error);
+
+#endif
