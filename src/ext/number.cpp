@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 //
-// fast_float behind two C functions. It takes no leading '+', which OBJ and PLY files contain.
+// fast_float behind two C functions, std::to_chars behind a third. fast_float takes no leading '+', which
+// OBJ and PLY files contain.
 #include "ext/number.h"
 
+#include <charconv>
 #include <fast_float/fast_float.h>
 #include <system_error>
 
@@ -26,4 +28,9 @@ const char *nt_read_float(const char *begin, const char *end, float *value)
 const char *nt_read_double(const char *begin, const char *end, double *value)
 {
 	return read_number(begin, end, value);
+}
+
+char *nt_write_float(char *text, float value)
+{
+	return std::to_chars(text, text + NT_FLOAT_TEXT, value).ptr;
 }

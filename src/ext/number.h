@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Reading decimal numbers, by fast_float: correctly rounded, independent of the locale.
+ * Reading and writing decimal numbers, by fast_float and the C++ library: correctly rounded,
+ * independent of the locale.
  */
 #ifndef NT_EXT_NUMBER_H
 #define NT_EXT_NUMBER_H
@@ -13,6 +14,11 @@ extern "C" {
  * where it ends, NULL when there is no number. Overflow gives infinity, underflow zero. */
 const char *nt_read_float(const char *begin, const char *end, float *value);
 const char *nt_read_double(const char *begin, const char *end, double *value);
+
+/* Writes the shortest decimal text that reads back as the same float ("nan", "inf" and "-inf" where it
+ * is no number), without a final NUL. Returns where it ends; text has room for NT_FLOAT_TEXT bytes. */
+#define NT_FLOAT_TEXT 24
+char *nt_write_float(char *text, float value);
 
 #ifdef __cplusplus
 }

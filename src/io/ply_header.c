@@ -55,6 +55,14 @@ ply_line ply_read_line(const unsigned char *bytes, size_t size, size_t begin)
 	return line;
 }
 
+ply_line ply_header_line(const ply_header *header, const unsigned char *bytes, size_t size, size_t begin)
+{
+	ply_line line = ply_read_line(bytes, size, begin);
+	if (line.newline && line.newline[0] == '\r' && strcmp(header->newline, "\r") == 0)
+		line.next = begin + line.length + 1;
+	return line;
+}
+
 size_t ply_next_word(const char **at, const char *end, const char **text)
 {
 	const char *p = *at;
@@ -275,10 +283,7 @@ nmtan_status ply_parse_header(ply_header *header, const unsigned char *bytes, si
 		if (!line.newline)
 			return nt_fail_line(error, NMTAN_ERROR_INPUT, p.line,
 				"the file ends within the header, end_header was expected");
-		const size_t begin = line.next;
-		line = ply_read_line(bytes, size, begin);
-		if (line.newline && line.newline[0] == '\r' && strcmp(header->newline, "\r") == 0)
-			line.next = begin + line.length + 1;
+		line = ply_header_line(header, bytes, size, line.next);
 		p.line++;
 		p.at = line.text;
 		p.end = line.text + line.length;

@@ -46,6 +46,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"triangles, but they may overlap.",
 		"Cut the polygon in the modelling tool.",
 		"an OBJ face of five corners in the order of a star"),
+	ROW(POLYGON_CUT, INFO, "{count} {polygon was|polygons were} written as triangles",
+		"A vertex has one tangent, but the triangles of these polygons (or strips) need different "
+		"ones at the same corner. PLY keeps its polygons where it can; here it could not.",
+		"Nothing, unless the polygons matter: then cut or unwrap them differently.",
+		"a PLY pentagon with one corner's texture coordinates mirrored"),
 	ROW(NORMALS_MADE, INFO, "normals were missing and have been made",
 		"Tangents need normals. OBJ gets them by its smoothing groups, PLY smooth ones, glTF only when "
 		"--normals asks for them.",

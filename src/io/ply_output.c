@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Writing PLY begins and ends here: see ply_output.h.
+ */
+#include "io/ply_output.h"
+
+enum { DRAIN_BYTES = 64 * 1024 };
+
+/* The low bytes of a number in the order of the encoding. */
+static void put_bits(ply_output *out, uint32_t bits, size_t size)
+{
+	unsigned char bytes[4];
+	for (size_t i = 0; i < size; i++)
+		bytes[out->encoding == PLY_BIG ? size - 1 - i : i] = (unsigned char)(bits >> 8 * i);
+	nt_buffer_append(&out->buffer, bytes, size);
+}
+
+void ply_put_float(ply_output *out, float value)
+{
+	if (out->encoding == PLY_ASCII) {
+		char text[NT_FLOAT_TEXT];
+		nt_buffer_append(&out->buffer, text, (size_t)(nt_write_float(text, value) - text));
+		return;
+	}
+	uint32_t bits;
+	memcpy(&bits, &value, sizeof bits);
+	put_bits(out, bits, sizeof bits);
+}
+
+void ply_put_integer(ply_output *out, uint32_t value, ply_type type)
+{
+	if (out->encoding != PLY_ASCII) {
+		put_bits(out, value, ply_size(type));
+		return;
+	}
+	char text[10];
+	size_t begin = sizeof text;
+	do
+		text[--begin] = (char)('0' + value % 10);
+	while (value /= 10);
+	nt_buffer_append(&out->buffer, text + begin, sizeof text - begin);
+}
+
+nmtan_status ply_drain(ply_output *out, nt_error *error)
+{
+	if (out->buffer.failed)
+		return nt_fail_memory(error);
+	return out->buffer.size < DRAIN_BYTES ? NMTAN_OK : ply_put_bytes(out, NULL, 0, error);
+}
+
+nmtan_status ply_put_bytes(ply_output *out, const void *bytes, size_t size, nt_error *error)
+{
+	if (out->buffer.failed)
+		return nt_fail_memory(error);
+	const nmtan_status status = nt_sink_write(out->sink, out->buffer.data, out->buffer.size, error);
+	out->buffer.size = 0;
+	return status || size == 0 ? status : nt_sink_write(out->sink, bytes, size, error);
+}
+
+void ply_bitangent(const float n[3], const float t[4], float b[3])
+{
+	b[0] = (n[1] * t[2] - n[2] * t[1]) * t[3];
+	b[1] = (n[2] * t[0] - n[0] * t[2]) * t[3];
+	b[2] = (n[0] * t[1] - n[1] * t[0]) * t[3];
+}
+
+nmtan_status nt_ply_write(nt_scene *scene, const nt_write_options *options, nt_output *output,
+	nt_error *error)
+{
+	ply_output out = {.encoding = PLY_LITTLE};
+	nmtan_status status = nt_output_add(output, options->path, true, &out.sink, error);
+	if (status)
+		return status;
+	status = scene->format == NT_FORMAT_PLY ? ply_write_source(scene, options, &out, error)
+						: ply_write_scene(scene, options, &out, error);
+	if (!status)
+		status = ply_put_bytes(&out, NULL, 0, error);
+	nt_buffer_free(&out.buffer);
+	return status;
+}

@@ -1,0 +1,37 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Values on their way into a PLY file, in any of the three encodings.
+ */
+#ifndef NT_IO_PLY_OUTPUT_H
+#define NT_IO_PLY_OUTPUT_H
+
+#include "base/buffer.h"
+#include "io/format.h"
+#include "io/ply.h"
+
+typedef struct ply_output {
+	nt_buffer buffer; /* what has not been written yet */
+	nt_sink *sink;
+	ply_encoding encoding;
+} ply_output;
+
+/* Append one value. ASCII: its text, without anything around it. The integer fits its type. */
+void ply_put_float(ply_output *out, float value);
+void ply_put_integer(ply_output *out, uint32_t value, ply_type type);
+
+/* Writes the buffer when it has become long; reports what failed since the last call. */
+nmtan_status ply_drain(ply_output *out, nt_error *error);
+
+/* Writes the buffer and then these bytes. */
+nmtan_status ply_put_bytes(ply_output *out, const void *bytes, size_t size, nt_error *error);
+
+/* cross(n, t) * w. */
+void ply_bitangent(const float n[3], const float t[4], float b[3]);
+
+/* PLY from a PLY, and from any other scene. */
+nmtan_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply_output *out,
+	nt_error *error);
+nmtan_status ply_write_scene(nt_scene *scene, const nt_write_options *options, ply_output *out,
+	nt_error *error);
+
+#endif

@@ -1,0 +1,727 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * PLY from a PLY: the file as it was, with the tangents added. Encoding, comments, elements, properties
+ * and their order stay; rows are copied as bytes, so that what nmtan does not know goes along.
+ *
+ * New vertices are appended with the whole row of the vertex they are copies of. Faces are rewritten
+ * only when there are new vertices, and keep their corner count and order; a larger polygon whose
+ * triangles disagree about the vertex of a corner is replaced by those triangles. Per-face texture
+ * coordinates stay where they are: vertices that were told apart only by them become one again where
+ * their tangents are equal.
+ */
+#include <stdlib.h>
+#include "io/ply_output.h"
+
+enum { MOST_EXTRAS = 3 + 4 + 3, MOST_CHAIN = 64 };
+
+/* Where the values of a row lie. */
+typedef struct span {
+	const unsigned char *begin, *end;
+} span;
+
+typedef struct plan {
+	nt_scene *scene;
+	const nt_mesh *mesh;
+	const ply_source *source;
+	ply_output *out;
+	nt_error *error;
+	ply_cursor cursor;
+
+	size_t row_count;        /* vertices of the source */
+	const uint32_t *indices; /* final vertex of each corner */
+	size_t final_count;      /* vertices after all stages; some of them become one in the output */
+	uint32_t *numbers;       /* [final_count - row_count] number in the output */
+	uint32_t *appended;      /* [appended_count] final vertex of each appended row */
+	size_t appended_count;
+
+	bool new_normals, new_tangents, new_bitangents;
+	bool *dropped;           /* [properties of vertex] replaced by new values */
+	bool drops_any;
+	const char *extra_names[MOST_EXTRAS];
+	size_t extra_count;
+
+	ply_type index_type;     /* of the faces written */
+	size_t added_rows;       /* by polygons that become triangles */
+	size_t cut_polygons;
+	span *spans;             /* of the element with most properties */
+	size_t *row_offsets;     /* [row_count] where the row of a vertex begins */
+} plan;
+
+/* Which final vertex is which. */
+
+/* The vertex of the mesh that a final vertex has its attributes from. */
+static size_t mesh_vertex(const plan *p, size_t vertex)
+{
+	const nt_mesh *mesh = p->mesh;
+	return vertex < mesh->vertex_count ? vertex : mesh->split.sources[vertex - mesh->vertex_count];
+}
+
+static size_t source_row(const plan *p, size_t vertex)
+{
+	const nt_mesh *mesh = p->mesh;
+	size_t v = mesh_vertex(p, vertex);
+	if (v >= mesh->source_vertex_count)
+		v = mesh->vertex_sources[v - mesh->source_vertex_count];
+	return v < p->row_count ? v : p->source->wedge_rows[v - p->row_count];
+}
+
+static bool same_values(const plan *p, size_t a, size_t b)
+{
+	const nt_mesh *mesh = p->mesh;
+	const float *tangents = mesh->split.vertex_tangents;
+	if (p->new_tangents && memcmp(tangents + 4 * a, tangents + 4 * b, 4 * sizeof *tangents) != 0)
+		return false;
+	return !p->new_normals || memcmp(mesh->normals + 3 * mesh_vertex(p, a),
+					  mesh->normals + 3 * mesh_vertex(p, b), 3 * sizeof(float)) == 0;
+}
+
+/* Vertices of one row with equal values become one. Rows with very many different copies stop looking
+ * after a while: the output is then larger, never wrong. */
+static bool merge_wedges(plan *p)
+{
+	uint32_t *last = nt_alloc(p->row_count, sizeof *last); /* newest output vertex of a row */
+	uint32_t *previous = nt_alloc(p->final_count - p->row_count, sizeof *previous);
+	if (last && previous) {
+		for (size_t row = 0; row < p->row_count; row++)
+			last[row] = (uint32_t)row;
+		for (size_t v = p->row_count; v < p->final_count; v++) {
+			const size_t row = source_row(p, v);
+			uint32_t other = last[row];
+			uint32_t found = NT_NONE;
+			for (int steps = 0; found == NT_NONE && steps < MOST_CHAIN; steps++) {
+				const bool is_row = other < p->row_count;
+				if (same_values(p, is_row ? other : p->appended[other - p->row_count], v))
+					found = other;
+				else if (is_row)
+					break;
+				else
+					other = previous[other - p->row_count];
+			}
+			if (found == NT_NONE) {
+				found = (uint32_t)(p->row_count + p->appended_count);
+				p->appended[p->appended_count] = (uint32_t)v;
+				previous[p->appended_count++] = last[row];
+				last[row] = found;
+			}
+			p->numbers[v - p->row_count] = found;
+		}
+	}
+	const bool done = last && previous;
+	free(last);
+	free(previous);
+	return done;
+}
+
+static nmtan_status number_vertices(plan *p)
+{
+	const nt_mesh *mesh = p->mesh;
+	p->final_count = mesh->vertex_count + mesh->split.source_count;
+	p->indices = mesh->split.indices ? mesh->split.indices : mesh->indices;
+	const size_t count = p->final_count - p->row_count;
+	p->numbers = nt_alloc(count, sizeof *p->numbers);
+	p->appended = nt_alloc(count, sizeof *p->appended);
+	if (!p->numbers || !p->appended)
+		return nt_fail_memory(p->error);
+	if (p->source->wedge_count > 0)
+		return merge_wedges(p) ? NMTAN_OK : nt_fail_memory(p->error);
+	for (size_t i = 0; i < count; i++) {
+		p->numbers[i] = (uint32_t)(p->row_count + i);
+		p->appended[i] = (uint32_t)(p->row_count + i);
+	}
+	p->appended_count = count;
+	return NMTAN_OK;
+}
+
+static uint32_t output_vertex(const plan *p, size_t corner)
+{
+	const uint32_t v = p->indices[corner];
+	return v < p->row_count ? v : p->numbers[v - p->row_count];
+}
+
+/* Vertices for the corners of a cut polygon whose triangles begin at `corner`; false: they disagree. */
+static bool resolve_polygon(const plan *p, size_t corner, size_t size, const uint32_t *cut,
+	uint32_t *vertices)
+{
+	bool agrees = true;
+	for (size_t k = 0; k < size; k++)
+		vertices[k] = NT_NONE;
+	for (size_t i = 0; i < 3 * (size - 2); i++) {
+		const uint32_t vertex = output_vertex(p, corner + i);
+		uint32_t *known = &vertices[cut[i]];
+		agrees &= *known == NT_NONE || *known == vertex;
+		*known = vertex;
+	}
+	for (size_t k = 0; k < size; k++)
+		agrees &= vertices[k] != NT_NONE;
+	return agrees;
+}
+
+/* Counts the polygons that become triangles: the header needs the number of faces. */
+static nmtan_status count_cut_polygons(plan *p)
+{
+	const nt_mesh *mesh = p->mesh;
+	uint32_t *vertices = NULL;
+	size_t capacity = 0, cut = 0;
+	for (size_t face = 0, corner = 0; mesh->face_polygon && face < mesh->face_count;) {
+		size_t end = face + 1;
+		while (end < mesh->face_count && mesh->face_polygon[end] == mesh->face_polygon[face])
+			end++;
+		const size_t triangles = end - face;
+		if (triangles == 1) {
+			corner += mesh->face_sizes ? mesh->face_sizes[face] : 3;
+		} else {
+			if (!nt_grow((void **)&vertices, &capacity, triangles + 2, sizeof *vertices)) {
+				free(vertices);
+				return nt_fail_memory(p->error);
+			}
+			if (!resolve_polygon(p, corner, triangles + 2, p->source->cuts.corners + cut, vertices)) {
+				p->cut_polygons++;
+				p->added_rows += triangles - 1;
+			}
+			corner += 3 * triangles;
+			cut += 3 * triangles;
+		}
+		face = end;
+	}
+	free(vertices);
+	return NMTAN_OK;
+}
+
+/* What changes in the header. */
+
+static void add_extras(plan *p, const char *const *names, size_t count)
+{
+	const ply_element *vertex = p->source->vertex;
+	for (size_t i = 0; i < count; i++) {
+		p->extra_names[p->extra_count++] = names[i];
+		const int old = ply_find_property(vertex, names[i]);
+		if (old != PLY_NO_PROPERTY)
+			p->drops_any = p->dropped[old] = true;
+	}
+}
+
+static nmtan_status plan_properties(plan *p, bool bitangents)
+{
+	static const char *const normals[] = {"nx", "ny", "nz"};
+	static const char *const tangents[] = {"tx", "ty", "tz", "tw"};
+	static const char *const bitangent_names[] = {"bx", "by", "bz"};
+	const ply_element *vertex = p->source->vertex;
+	size_t most = 0;
+	for (size_t i = 0; i < p->source->header.element_count; i++) {
+		const size_t count = p->source->header.elements[i].property_count;
+		most = count > most ? count : most;
+	}
+	p->dropped = nt_calloc(vertex->property_count, sizeof *p->dropped);
+	p->spans = nt_alloc(most, sizeof *p->spans);
+	p->row_offsets = nt_alloc(p->row_count, sizeof *p->row_offsets);
+	if (!p->dropped || !p->spans || !p->row_offsets)
+		return nt_fail_memory(p->error);
+	/* bitangents of other tangents must not stay */
+	p->new_bitangents = p->new_tangents && p->mesh->normals &&
+		(bitangents || ply_find_property(vertex, "bx") != PLY_NO_PROPERTY);
+	if (p->new_normals)
+		add_extras(p, normals, 3);
+	if (p->new_tangents)
+		add_extras(p, tangents, 4);
+	if (p->new_bitangents)
+		add_extras(p, bitangent_names, 3);
+	return NMTAN_OK;
+}
+
+static bool faces_change(const plan *p)
+{
+	return p->appended_count > 0 || p->cut_polygons > 0;
+}
+
+/* The type of indices, wider where the vertices have become too many for the source's. */
+static void plan_index_type(plan *p, const ply_element *element)
+{
+	static const size_t largest[] = {[PLY_INT8] = INT8_MAX, [PLY_UINT8] = UINT8_MAX,
+		[PLY_INT16] = INT16_MAX, [PLY_UINT16] = UINT16_MAX, [PLY_INT32] = INT32_MAX,
+		[PLY_UINT32] = UINT32_MAX};
+	p->index_type = element->properties[p->source->face_indices].type;
+	const size_t count = p->row_count + p->appended_count;
+	if (count > 0 && count - 1 > largest[p->index_type])
+		p->index_type = count - 1 > INT32_MAX ? PLY_UINT32 : PLY_INT32;
+}
+
+static bool replaces_strips(const plan *p)
+{
+	return p->source->strips && faces_change(p);
+}
+
+/* The header. */
+
+static void write_element_line(const plan *p, const char *name, size_t count)
+{
+	nt_buffer_format(&p->out->buffer, "element %s %zu%s", name, count, p->source->header.newline);
+}
+
+static void write_extra_lines(const plan *p)
+{
+	for (size_t i = 0; i < p->extra_count; i++)
+		nt_buffer_format(&p->out->buffer, "property float %s%s", p->extra_names[i],
+			p->source->header.newline);
+}
+
+/* An element line: true when its properties are to be left out. */
+static bool write_changed_element(const plan *p, const ply_element *element, const char *line, size_t size)
+{
+	const ply_source *source = p->source;
+	if (replaces_strips(p) && element == source->strips) {
+		write_element_line(p, "face", p->mesh->face_count);
+		nt_buffer_format(&p->out->buffer, "property list uchar %s vertex_indices%s",
+			ply_type_name(p->index_type), source->header.newline);
+		return true;
+	}
+	/* an empty element "face" beside strips would come twice */
+	if (replaces_strips(p) && strcmp(element->name, "face") == 0)
+		return true;
+	if (element == source->vertex && p->appended_count > 0)
+		write_element_line(p, element->name, p->row_count + p->appended_count);
+	else if (element == source->face && p->added_rows > 0)
+		write_element_line(p, element->name, element->count + p->added_rows);
+	else
+		nt_buffer_append(&p->out->buffer, line, size);
+	return false;
+}
+
+static void write_property(const plan *p, const ply_element *element, size_t number, const char *line,
+	size_t size)
+{
+	const ply_property *property = &element->properties[number];
+	const bool widened = element == p->source->face && (int)number == p->source->face_indices &&
+		p->index_type != property->type;
+	if (widened)
+		nt_buffer_format(&p->out->buffer, "property list %s %s %s%s",
+			ply_type_name(property->count_type), ply_type_name(p->index_type),
+			property->name, p->source->header.newline);
+	else if (element != p->source->vertex || !p->dropped[number])
+		nt_buffer_append(&p->out->buffer, line, size);
+	if (element == p->source->vertex && number + 1 == element->property_count)
+		write_extra_lines(p);
+}
+
+/* Walks the lines of the source's header once more. */
+static void write_header(const plan *p)
+{
+	const ply_header *header = &p->source->header;
+	const unsigned char *bytes = p->scene->bytes;
+	size_t element = 0, property = 0;
+	bool leave_out = false;
+	for (size_t begin = 0; begin < header->body;) {
+		const ply_line line = ply_header_line(header, bytes, header->body, begin);
+		const char *at = line.text, *word;
+		const size_t length = ply_next_word(&at, line.text + line.length, &word);
+		const size_t size = line.next - begin;
+		if (length == 7 && memcmp(word, "element", 7) == 0) {
+			leave_out = write_changed_element(p, &header->elements[element], line.text, size);
+			element++;
+			property = 0;
+		} else if (length == 8 && memcmp(word, "property", 8) == 0) {
+			if (!leave_out)
+				write_property(p, &header->elements[element - 1], property, line.text, size);
+			property++;
+		} else {
+			nt_buffer_append(&p->out->buffer, line.text, size);
+		}
+		begin = line.next;
+	}
+}
+
+/* Rows. The reader has checked them; checked again is that the mapped file has not shrunk or changed. */
+
+static nmtan_status fail_changed(const plan *p)
+{
+	return nt_fail(p->error, NMTAN_ERROR_IO, "the file changed while it was read");
+}
+
+static bool span_binary_row(plan *p, const ply_element *element)
+{
+	const bool swap = ply_swaps(p->cursor.encoding);
+	const unsigned char *at = p->cursor.at;
+	for (size_t i = 0; i < element->property_count; i++) {
+		const ply_property *property = &element->properties[i];
+		size_t bytes = ply_size(property->list ? property->count_type : property->type);
+		if (bytes > (size_t)(p->cursor.end - at))
+			return false;
+		if (property->list) {
+			const int64_t count = ply_load_integer(at, property->count_type, swap);
+			bytes += (size_t)count * ply_size(property->type);
+			if (count < 0 || bytes > (size_t)(p->cursor.end - at))
+				return false;
+		}
+		p->spans[i] = (span){at, at + bytes};
+		at += bytes;
+	}
+	p->cursor.at = at;
+	return true;
+}
+
+static bool span_text_row(plan *p, const ply_element *element)
+{
+	const unsigned char *const end = p->cursor.end;
+	ply_next_row(&p->cursor);
+	const unsigned char *at = p->cursor.at;
+	for (size_t i = 0; i < element->property_count; i++) {
+		at = ply_skip_blanks(at, end);
+		const unsigned char *begin = at;
+		int64_t values = 0;
+		if (element->properties[i].list && !ply_read_integer(at, end, &values))
+			return false;
+		at = ply_skip_value(at, end);
+		for (int64_t k = 0; k < values && at < end; k++)
+			at = ply_skip_value(ply_skip_blanks(at, end), end);
+		if (at == begin)
+			return false;
+		p->spans[i] = (span){begin, at};
+	}
+	p->cursor.at = at;
+	return true;
+}
+
+static bool span_row(plan *p, const ply_element *element)
+{
+	return p->cursor.encoding == PLY_ASCII ? span_text_row(p, element) : span_binary_row(p, element);
+}
+
+static void write_span(const plan *p, const unsigned char *begin, const unsigned char *end)
+{
+	nt_buffer_append(&p->out->buffer, begin, (size_t)(end - begin));
+}
+
+/* Between the values of an ASCII row. */
+static void write_gap(const plan *p, bool first)
+{
+	if (p->cursor.encoding == PLY_ASCII && !first)
+		nt_buffer_append(&p->out->buffer, " ", 1);
+}
+
+static void end_row(const plan *p)
+{
+	if (p->cursor.encoding == PLY_ASCII)
+		nt_buffer_text(&p->out->buffer, p->source->header.newline);
+}
+
+/* Vertices. */
+
+static void write_float(const plan *p, float value)
+{
+	write_gap(p, false);
+	ply_put_float(p->out, value);
+}
+
+static void write_extras(const plan *p, size_t vertex)
+{
+	const float *normals = p->mesh->normals;
+	const float *n = normals ? normals + 3 * mesh_vertex(p, vertex) : NULL;
+	for (size_t k = 0; p->new_normals && k < 3; k++)
+		write_float(p, n[k]);
+	if (!p->new_tangents)
+		return;
+	const float *t = p->mesh->split.vertex_tangents + 4 * vertex;
+	for (size_t k = 0; k < 4; k++)
+		write_float(p, t[k]);
+	if (!p->new_bitangents)
+		return;
+	float b[3];
+	ply_bitangent(n, t, b);
+	for (size_t k = 0; k < 3; k++)
+		write_float(p, b[k]);
+}
+
+/* The row at the cursor without what is dropped; spans are set when something is. */
+static void write_kept(const plan *p, const unsigned char *begin, const unsigned char *end)
+{
+	if (!p->drops_any) {
+		write_span(p, begin, end);
+		return;
+	}
+	bool first = true;
+	for (size_t i = 0; i < p->source->vertex->property_count; i++) {
+		if (p->dropped[i])
+			continue;
+		write_gap(p, first);
+		write_span(p, p->spans[i].begin, p->spans[i].end);
+		first = false;
+	}
+}
+
+static nmtan_status write_vertex(plan *p, size_t vertex)
+{
+	const ply_element *element = p->source->vertex;
+	const unsigned char *begin = p->cursor.at;
+	if (p->cursor.encoding != PLY_ASCII && !element->has_list && !p->drops_any) {
+		p->cursor.at += element->row_bytes;
+	} else {
+		if (!span_row(p, element))
+			return fail_changed(p);
+		begin = p->spans[0].begin;
+	}
+	write_kept(p, begin, p->cursor.at);
+	write_extras(p, vertex);
+	end_row(p);
+	return ply_drain(p->out, p->error);
+}
+
+static nmtan_status write_vertices(plan *p)
+{
+	nmtan_status status = NMTAN_OK;
+	for (size_t row = 0; !status && row < p->row_count; row++) {
+		p->row_offsets[row] = (size_t)(p->cursor.at - p->cursor.begin);
+		status = write_vertex(p, row);
+	}
+	const unsigned char *after = p->cursor.at;
+	for (size_t i = 0; !status && i < p->appended_count; i++) {
+		const size_t vertex = p->appended[i];
+		p->cursor.at = p->cursor.begin + p->row_offsets[source_row(p, vertex)];
+		status = write_vertex(p, vertex);
+	}
+	p->cursor.at = after;
+	return status;
+}
+
+/* Faces. */
+
+static void write_indices(const plan *p, const uint32_t *vertices, size_t count, ply_type count_type)
+{
+	ply_put_integer(p->out, (uint32_t)count, count_type);
+	for (size_t k = 0; k < count; k++) {
+		write_gap(p, false);
+		ply_put_integer(p->out, vertices[k], p->index_type);
+	}
+}
+
+/* A per-face list of texture coordinates, of which a triangle takes its corners' pairs. */
+static void write_uv_part(const plan *p, const ply_property *property, span all,
+	const uint32_t *corners)
+{
+	const bool ascii = p->cursor.encoding == PLY_ASCII;
+	const size_t value = ply_size(property->type);
+	ply_put_integer(p->out, 6, property->count_type);
+	for (size_t k = 0; k < 6; k++) {
+		const size_t number = 2 * corners[k / 2] + k % 2;
+		const unsigned char *at = all.begin + ply_size(property->count_type) + number * value;
+		const unsigned char *end = at + value;
+		if (ascii) {
+			at = ply_skip_blanks(ply_skip_value(all.begin, all.end), all.end);
+			for (size_t skip = 0; skip < number; skip++)
+				at = ply_skip_blanks(ply_skip_value(at, all.end), all.end);
+			end = ply_skip_value(at, all.end);
+		}
+		write_gap(p, false);
+		write_span(p, at, end);
+	}
+}
+
+static size_t list_length(const plan *p, const ply_property *property, span all)
+{
+	int64_t count = 0;
+	if (p->cursor.encoding == PLY_ASCII)
+		ply_read_integer(all.begin, all.end, &count);
+	else
+		count = ply_load_integer(all.begin, property->count_type, ply_swaps(p->cursor.encoding));
+	return count > 0 ? (size_t)count : 0;
+}
+
+/* The row at hand with other vertices; corners: which corners of the polygon they are, NULL: all. */
+static nmtan_status write_face(const plan *p, const uint32_t *vertices, size_t count, const uint32_t *corners)
+{
+	const ply_element *element = p->source->face;
+	for (size_t i = 0; i < element->property_count; i++) {
+		const ply_property *property = &element->properties[i];
+		const span all = p->spans[i];
+		write_gap(p, i == 0);
+		if ((int)i == p->source->face_indices)
+			write_indices(p, vertices, count, property->count_type);
+		else if (corners && (int)i == p->source->face_texcoords && list_length(p, property, all))
+			write_uv_part(p, property, all, corners);
+		else
+			write_span(p, all.begin, all.end);
+	}
+	end_row(p);
+	return ply_drain(p->out, p->error);
+}
+
+/* How far the mesh has been written. */
+typedef struct face_progress {
+	size_t corner, cut;
+	uint32_t *vertices;
+	size_t capacity;
+} face_progress;
+
+static nmtan_status write_triangles(const plan *p, const face_progress *done, size_t size)
+{
+	nmtan_status status = NMTAN_OK;
+	for (size_t t = 0; !status && t < size - 2; t++) {
+		uint32_t vertices[3];
+		for (size_t k = 0; k < 3; k++)
+			vertices[k] = output_vertex(p, done->corner + 3 * t + k);
+		status = write_face(p, vertices, 3, p->source->cuts.corners + done->cut + 3 * t);
+	}
+	return status;
+}
+
+/* A row of fewer than three corners is no face of the mesh: its vertices stay. */
+static nmtan_status write_short_face(const plan *p, span list, size_t size, uint32_t *vertices)
+{
+	const ply_property *property = &p->source->face->properties[p->source->face_indices];
+	const unsigned char *at = list.begin + ply_size(property->count_type);
+	for (size_t k = 0; k < size; k++) {
+		int64_t vertex = 0;
+		if (p->cursor.encoding == PLY_ASCII) {
+			at = ply_skip_value(k ? at : list.begin, list.end);
+			at = ply_skip_blanks(at, list.end);
+			ply_read_integer(at, list.end, &vertex);
+		} else {
+			vertex = ply_load_integer(at + k * ply_size(property->type), property->type,
+				ply_swaps(p->cursor.encoding));
+		}
+		vertices[k] = (uint32_t)vertex;
+	}
+	return write_face(p, vertices, size, NULL);
+}
+
+/* One polygon of the source. */
+static nmtan_status write_polygon(plan *p, face_progress *done)
+{
+	const ply_element *element = p->source->face;
+	if (!span_row(p, element))
+		return fail_changed(p);
+	const span list = p->spans[p->source->face_indices];
+	const size_t size = list_length(p, &element->properties[p->source->face_indices], list);
+	if (!nt_grow((void **)&done->vertices, &done->capacity, size, sizeof *done->vertices))
+		return nt_fail_memory(p->error);
+	const size_t corners = size < 3 ? 0 : size < 5 ? size : 3 * (size - 2);
+	if (corners > p->mesh->corner_count - done->corner ||
+		(size > 4 && corners > p->source->cuts.count - done->cut))
+		return fail_changed(p);
+	nmtan_status status;
+	if (size < 3) {
+		status = write_short_face(p, list, size, done->vertices);
+	} else if (size < 5) {
+		for (size_t k = 0; k < size; k++)
+			done->vertices[k] = output_vertex(p, done->corner + k);
+		status = write_face(p, done->vertices, size, NULL);
+	} else {
+		const uint32_t *cut = p->source->cuts.corners + done->cut;
+		status = resolve_polygon(p, done->corner, size, cut, done->vertices)
+				 ? write_face(p, done->vertices, size, NULL)
+				 : write_triangles(p, done, size);
+		done->cut += corners;
+	}
+	done->corner += corners;
+	return status;
+}
+
+static nmtan_status write_faces(plan *p)
+{
+	face_progress done = {0};
+	nmtan_status status = NMTAN_OK;
+	for (size_t row = 0; !status && row < p->source->face->count; row++)
+		status = write_polygon(p, &done);
+	free(done.vertices);
+	return status;
+}
+
+static nmtan_status write_strip_faces(plan *p)
+{
+	nmtan_status status = ply_skip_element(&p->cursor, p->source->strips, p->error);
+	for (size_t c = 0; !status && c < p->mesh->corner_count; c += 3) {
+		const uint32_t vertices[3] = {output_vertex(p, c), output_vertex(p, c + 1),
+			output_vertex(p, c + 2)};
+		write_indices(p, vertices, 3, PLY_UINT8);
+		end_row(p);
+		status = ply_drain(p->out, p->error);
+	}
+	return status;
+}
+
+/* The file. */
+
+static nmtan_status copy_element(plan *p, const ply_element *element)
+{
+	if (p->cursor.encoding == PLY_ASCII)
+		ply_next_row(&p->cursor);
+	const unsigned char *begin = p->cursor.at;
+	nmtan_status status = ply_skip_element(&p->cursor, element, p->error);
+	if (status || begin == p->cursor.at)
+		return status;
+	status = ply_put_bytes(p->out, begin, (size_t)(p->cursor.at - begin), p->error);
+	end_row(p);
+	return status;
+}
+
+static nmtan_status write_body(plan *p)
+{
+	const ply_header *header = &p->source->header;
+	nmtan_status status = NMTAN_OK;
+	for (size_t i = 0; !status && i < header->element_count; i++) {
+		const ply_element *element = &header->elements[i];
+		if (element == p->source->vertex)
+			status = write_vertices(p);
+		else if (element == p->source->face && faces_change(p))
+			status = write_faces(p);
+		else if (element == p->source->strips && faces_change(p))
+			status = write_strip_faces(p);
+		else
+			status = copy_element(p, element);
+	}
+	if (p->cursor.encoding == PLY_ASCII)
+		ply_next_row(&p->cursor);
+	if (!status)
+		status = ply_put_bytes(p->out, p->cursor.at, (size_t)(p->cursor.end - p->cursor.at), p->error);
+	return status;
+}
+
+static void report_cuts(const plan *p)
+{
+	const nt_mesh *mesh = p->mesh;
+	if (p->cut_polygons > 0)
+		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, &mesh->place, p->cut_polygons, NULL);
+	if (replaces_strips(p))
+		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, &mesh->place,
+			p->source->strips->count, "triangle strips");
+}
+
+static nmtan_status write_changed(plan *p, bool bitangents)
+{
+	nmtan_status status = number_vertices(p);
+	if (!status)
+		status = plan_properties(p, bitangents);
+	if (!status)
+		status = count_cut_polygons(p);
+	if (status)
+		return status;
+	const ply_element *faces = p->source->face ? p->source->face : p->source->strips;
+	if (faces)
+		plan_index_type(p, faces);
+	report_cuts(p);
+	write_header(p);
+	return write_body(p);
+}
+
+nmtan_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply_output *out,
+	nt_error *error)
+{
+	const ply_source *source = scene->source;
+	const nt_mesh *mesh = scene->meshes;
+	const ply_header *header = &source->header;
+	const unsigned char *body = scene->bytes + header->body;
+	plan p = {.scene = scene, .mesh = mesh, .source = source, .out = out, .error = error,
+		.row_count = source->vertex->count,
+		.new_normals = mesh->normals_made,
+		.new_tangents = mesh->split.vertex_tangents != NULL,
+		.cursor = {.begin = scene->bytes, .at = body, .end = scene->bytes + scene->byte_count,
+			.body = body, .body_line = header->body_line, .encoding = header->encoding}};
+	out->encoding = header->encoding;
+	if (!p.new_normals && !p.new_tangents)
+		return ply_put_bytes(out, scene->bytes, scene->byte_count, error);
+	const nmtan_status status = write_changed(&p, options->bitangents);
+	free(p.numbers);
+	free(p.appended);
+	free(p.dropped);
+	free(p.spans);
+	free(p.row_offsets);
+	return status;
+}
