@@ -18,6 +18,7 @@
 
 /* Enumerations are stored through int; the words of a choice are in the order of its constants. */
 _Static_assert(sizeof(nt_only) == sizeof(int) && sizeof(nmtan_method) == sizeof(int), "enum is int");
+_Static_assert(NMTAN_METHOD_ROBUST == NMTAN_METHOD_MIKKTSPACE + 3, "the words of --method");
 
 const nt_option_row nt_option_rows[] = {
 	{.kind = NT_OPTION_HEADING, .name = "Which primitives, and how"},
@@ -77,7 +78,7 @@ const nt_option_row nt_option_rows[] = {
 	{"quiet", 'q', NT_OPTION_SET, NULL, -1, 0, NULL, "say nothing but errors", FIELD(verbosity),
 		false},
 	{"verbose", 'v', NT_OPTION_SET, NULL, 1, 0, NULL,
-		"say what every primitive got and show every finding", FIELD(verbosity), false},
+		"show every finding: infos too, and all places", FIELD(verbosity), false},
 	{"progress", 0, NT_OPTION_CHOICE, "auto|on|off", NT_PROGRESS_AUTO, 0, "auto",
 		"show what is being done; auto: on a terminal, after one second", FIELD(progress), false},
 	{"timing", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "say how long each stage took", FIELD(timing),
