@@ -5,6 +5,7 @@
  */
 #include "io/link.h"
 
+#include <errno.h>
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,11 +15,18 @@ bool nt_link_folder(nt_buffer *text, const char *path)
 	const char *slash = strrchr(path, '/');
 	char *folder = slash ? strndup(path, (size_t)(slash - path) + (slash == path)) : strdup(".");
 	char *resolved = folder ? realpath(folder, NULL) : NULL;
-	if (resolved)
+	bool known = resolved != NULL;
+	if (resolved) {
 		nt_buffer_text(text, resolved);
+	} else if (folder && slash && errno == ENOENT) {
+		/* not there (yet, in a dry run): its own folder, and its name as it is spelled */
+		const char *name = strrchr(folder, '/');
+		known = nt_link_folder(text, folder);
+		nt_buffer_format(text, "/%s", name ? name + 1 : folder);
+	}
 	free(folder);
 	free(resolved);
-	return resolved != NULL;
+	return known;
 }
 
 static bool is_separator(char c)

@@ -10,7 +10,8 @@
 #include "base/buffer.h"
 
 /* Appends the absolute path of the folder that contains `path` (links resolved, no final slash but for
- * the root). False when there is no such folder. */
+ * the root). Folders that are not there are named as they are spelled. False when the place of `path` cannot
+ * be found out. */
 bool nt_link_folder(nt_buffer *text, const char *path);
 
 /* Appends `name` taken from `folder` (absolute), with "\" as "/", and "." and ".." resolved. */
