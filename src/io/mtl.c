@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * MTL: finding the files and reading their lines. Nothing in a material stands in the way of tangents,
- * so whatever is wrong here is a finding, never an error: a value that cannot be read keeps its default.
+ * MTL: finding the files and reading their lines. A library that is not there is a finding, since its
+ * meshes can do without; one that is there and damaged is an error with its line, as in the OBJ itself.
  *
  * Words are taken in any case, as exporters write map_Bump, map_bump and Map_Bump. Of several
  * normal maps `norm` and `map_Kn` come before the bump maps, whatever their order. What the older
@@ -54,25 +54,34 @@ static void ignore(const reader *r)
 	add_finding(r, "MTL: ", r->word);
 }
 
-static void ignore_value(const reader *r)
+/* Fails with "found WORD, expected EXPECTED" at a line of the MTL. */
+static nmtan_status fail_expected(const reader *r, const char *found, const char *expected)
 {
-	add_finding(r, "MTL: value that is no number: ", r->word);
+	size_t length = 0;
+	while (found + length < r->end && !is_blank(found[length]) && length < 64)
+		length++;
+	if (length)
+		nt_fail_line(r->error, NMTAN_ERROR_INPUT, r->line, "found \"%.*s\", expected %s", (int)length,
+			found, expected);
+	else
+		nt_fail_line(r->error, NMTAN_ERROR_INPUT, r->line, "found the end of the line, expected %s",
+			expected);
+	return nt_error_in_file(r->error, r->path);
 }
 
-/* Finite numbers at the beginning of the text, at most `most`. */
-static int read_numbers(const reader *r, float *numbers, int most)
+/* Numbers up to the end of the text, at most `most`; *count receives how many. */
+static nmtan_status read_numbers(const reader *r, float *numbers, int most, int *count)
 {
 	const char *p = r->text;
-	int count = 0;
-	while (count < most) {
+	for (*count = 0; *count < most && p < r->end; ++*count) {
+		const char *begin = p;
+		p = nt_read_float(p, r->end, &numbers[*count]);
+		if (!p || (p < r->end && !is_blank(*p)) || !isfinite(numbers[*count]))
+			return fail_expected(r, begin, "a finite number");
 		while (p < r->end && is_blank(*p))
 			p++;
-		p = p < r->end ? nt_read_float(p, r->end, &numbers[count]) : NULL;
-		if (!p || (p < r->end && !is_blank(*p)) || !isfinite(numbers[count]))
-			break;
-		count++;
 	}
-	return count;
+	return NMTAN_OK;
 }
 
 static float clamp_unit(float value)
@@ -80,31 +89,49 @@ static float clamp_unit(float value)
 	return value < 0 ? 0 : value > 1 ? 1 : value;
 }
 
-/* r g b, or one number for all three. "spectral" and "xyz" are not RGB. */
-static void read_color(const reader *r, float color[3], bool unit)
+static bool begins_with(const reader *r, const char *word)
 {
-	float numbers[3];
-	const int count = read_numbers(r, numbers, 3);
-	if (count != 1 && count != 3) {
-		ignore_value(r);
-		return;
+	const size_t length = strlen(word);
+	return (size_t)(r->end - r->text) > length && strncmp(r->text, word, length) == 0 &&
+		is_blank(r->text[length]);
+}
+
+/* r g b, or one number for all three. "spectral" and "xyz" are not RGB and not carried over. */
+static nmtan_status read_color(const reader *r, float color[3], bool unit)
+{
+	if (begins_with(r, "spectral") || begins_with(r, "xyz")) {
+		ignore(r);
+		return NMTAN_OK;
 	}
+	float numbers[3];
+	int count;
+	const nmtan_status status = read_numbers(r, numbers, 3, &count);
+	if (status)
+		return status;
+	if (count != 1 && count != 3)
+		return fail_expected(r, r->end, "3 numbers, or one for all");
 	for (int k = 0; k < 3; k++) {
 		const float value = fmaxf(numbers[count == 3 ? k : 0], 0);
 		color[k] = unit ? clamp_unit(value) : value;
 	}
+	return NMTAN_OK;
 }
 
-static void read_factor(const reader *r, float *factor, bool inverse)
+static nmtan_status read_factor(const reader *r, float *factor, bool inverse)
 {
 	reader at = *r;
-	if (at.end - at.text > 6 && strncmp(at.text, "-halo ", 6) == 0)
-		at.text += 6;
+	if (begins_with(r, "-halo"))
+		for (at.text += strlen("-halo"); is_blank(*at.text);)
+			at.text++;
 	float value;
-	if (read_numbers(&at, &value, 1) == 1)
-		*factor = clamp_unit(inverse ? 1 - value : value);
-	else
-		ignore_value(r);
+	int count;
+	const nmtan_status status = read_numbers(&at, &value, 1, &count);
+	if (status)
+		return status;
+	if (count != 1)
+		return fail_expected(&at, at.end, "a number");
+	*factor = clamp_unit(inverse ? 1 - value : value);
+	return NMTAN_OK;
 }
 
 /* A map: its options, then its file name. */
@@ -150,21 +177,16 @@ static nmtan_status read_property(reader *r, nt_mtl_definition *d, enum action a
 	nt_material *m = &d->material;
 	switch (action) {
 	case BASE_COLOR:
-		read_color(r, m->base_color, true);
-		break;
+		return read_color(r, m->base_color, true);
 	case EMISSIVE:
-		read_color(r, m->emissive, false);
-		break;
+		return read_color(r, m->emissive, false);
 	case OPACITY:
 	case TRANSPARENCY:
-		read_factor(r, &m->base_color[3], action == TRANSPARENCY);
-		break;
+		return read_factor(r, &m->base_color[3], action == TRANSPARENCY);
 	case ROUGHNESS:
-		read_factor(r, &m->roughness, false);
-		break;
+		return read_factor(r, &m->roughness, false);
 	case METALLIC:
-		read_factor(r, &m->metallic, false);
-		break;
+		return read_factor(r, &m->metallic, false);
 	case BASE_COLOR_MAP:
 		return read_map(r, &m->base_color_map, NULL);
 	case EMISSIVE_MAP:
@@ -236,6 +258,10 @@ nmtan_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char
 	const size_t first = mtl->count;
 	reader r = {.scene = scene, .path = path, .mtl = mtl, .line = 1, .error = error};
 	const char *p = (const char *)bytes, *const end = p + size;
+	if (memchr(bytes, '\0', size)) {
+		nt_fail(error, NMTAN_ERROR_INPUT, "a byte 0 in it, expected a material library in text");
+		return nt_error_in_file(error, path);
+	}
 	if (size >= 3 && memcmp(p, "\xEF\xBB\xBF", 3) == 0)
 		p += 3;
 	while (p < end) {
@@ -357,11 +383,7 @@ static nmtan_status read_library(const request *q, const char *text, size_t leng
 		return NMTAN_OK;
 	}
 	*found = true;
-	nmtan_status status = NMTAN_OK;
-	if (memchr(file.data, '\0', file.size))
-		report_missing(q, name, "not a text file");
-	else
-		status = nt_mtl_parse(q->scene, path, file.data, file.size, q->mtl, q->error);
+	const nmtan_status status = nt_mtl_parse(q->scene, path, file.data, file.size, q->mtl, q->error);
 	nt_file_close(&file);
 	return status;
 }

@@ -34,7 +34,8 @@ nt_material nt_mtl_default(const char *name);
  *   names, length   what follows "mtllib"
  *   line            of the statement
  *
- * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ * Returns NMTAN_OK, NMTAN_ERROR_INPUT (a number that is none, with the library's line) or
+ * NMTAN_ERROR_MEMORY.
  */
 nmtan_status nt_mtl_read(nt_scene *scene, const char *names, size_t length, size_t line,
 	const nt_read_options *options, nt_mtl *mtl, nt_error *error);

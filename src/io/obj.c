@@ -12,7 +12,8 @@
  *
  * An `o` makes a mesh; `g` does not. Of texture coordinates u and v are kept as they stand (v up).
  * Colours behind positions are sRGB, as Blender and three.js write them, and become linear.
- * Numbers that are not finite are an error wherever they stand: no output format can hold them.
+ * Numbers that are not finite are an error wherever they stand: no output format can hold them. So is a
+ * file without faces: there is nothing to put tangents on.
  */
 #include "io/obj_parts.h"
 

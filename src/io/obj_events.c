@@ -230,20 +230,33 @@ static nmtan_status make_materials(state *s, const nt_mtl *mtl)
 
 /* ---- what was ignored ---- */
 
-static void report_ignored(obj_file *file)
+/* The first chunk that has a statement of that kind, NULL for none, and how often the file has it. */
+static const obj_chunk *find_ignored(const obj_file *file, size_t which, size_t *count)
+{
+	const obj_chunk *first = NULL;
+	*count = 0;
+	for (size_t c = 0; c < file->chunk_count; c++) {
+		if (!first && file->chunks[c].ignored[which].count)
+			first = &file->chunks[c];
+		*count += file->chunks[c].ignored[which].count;
+	}
+	return first;
+}
+
+static size_t ignored_line(const obj_chunk *chunk, size_t which)
+{
+	return chunk->first_line + chunk->ignored[which].line + 1;
+}
+
+static void report_ignored(const obj_file *file)
 {
 	nt_scene *scene = file->scene;
 	for (size_t which = 0; which < OBJ_IGNORED_COUNT; which++) {
-		const obj_chunk *first = NULL;
-		size_t count = 0;
-		for (size_t c = 0; c < file->chunk_count; c++) {
-			if (!first && file->chunks[c].ignored[which].count)
-				first = &file->chunks[c];
-			count += file->chunks[c].ignored[which].count;
-		}
+		size_t count;
+		const obj_chunk *first = find_ignored(file, which, &count);
 		if (!first)
 			continue;
-		const nt_place place = line_place(scene, first->first_line + first->ignored[which].line + 1);
+		const nt_place place = line_place(scene, ignored_line(first, which));
 		if (which == OBJ_UNKNOWN)
 			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, count,
 				"OBJ: %s, the first is %.*s", obj_ignored_names[which],
@@ -252,17 +265,26 @@ static void report_ignored(obj_file *file)
 			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, count, "OBJ: %s",
 				obj_ignored_names[which]);
 	}
-	if (file->face_count == 0) {
-		const nt_place place = line_place(scene, 0);
-		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1,
-			"OBJ: the whole file, which has no faces");
-	}
+}
+
+/* A file without faces has nothing to put tangents on. */
+static nmtan_status fail_empty(const obj_file *file, nt_error *error)
+{
+	size_t count;
+	const obj_chunk *small = find_ignored(file, OBJ_SMALL_FACE, &count);
+	if (small)
+		return nt_fail_line(error, NMTAN_ERROR_INPUT, ignored_line(small, OBJ_SMALL_FACE),
+			"found a face of %zu corners and no larger one in the file, expected at least 3",
+			small->small_size);
+	return nt_fail(error, NMTAN_ERROR_INPUT, "found no faces, expected a mesh");
 }
 
 nmtan_status obj_read_events(obj_file *file, const nt_read_options *options, nt_error *error)
 {
 	state s = {.file = file, .error = error, .object_is_new = true};
 	nt_mtl mtl = {0};
+	if (file->face_count == 0)
+		return fail_empty(file, error);
 	nmtan_status status = read_stretches(&s) ? NMTAN_OK : nt_fail_memory(error);
 	if (!status)
 		status = read_libraries(&s, options, &mtl);

@@ -184,7 +184,7 @@ static nmtan_status triangulate(builder *b, nt_mesh *mesh, size_t face, const ui
 		nt_place place = mesh->place;
 		/* Finding the line costs a pass over a chunk, and only the first one's is kept. */
 		if (!b->found_unsound)
-			place.line = obj_face_line(b->file, face);
+			place.line = obj_face_line(b->file, face, NULL);
 		b->found_unsound = true;
 		nt_finding_add(findings, NT_CODE_POLYGON_DEGENERATE, &place, 1, NULL);
 	}

@@ -320,6 +320,8 @@ static nmtan_status read_face(reader *r)
 	}
 	const size_t size = chunk->corner_count - first;
 	if (size < 3) {
+		if (chunk->ignored[OBJ_SMALL_FACE].count == 0)
+			chunk->small_size = size;
 		chunk->corner_count = first;
 		ignore(r, OBJ_SMALL_FACE);
 		return NMTAN_OK;
@@ -528,7 +530,7 @@ void obj_chunk_free(obj_chunk *chunk)
 	chunk->events = NULL;
 }
 
-size_t obj_face_line(const obj_file *file, size_t face)
+size_t obj_face_line(const obj_file *file, size_t face, obj_corner *before)
 {
 	size_t c = 0;
 	while (c + 1 < file->chunk_count && file->chunks[c + 1].first_face <= face)
@@ -537,6 +539,9 @@ size_t obj_face_line(const obj_file *file, size_t face)
 	obj_chunk again = {.begin = chunk->begin, .end = chunk->end};
 	again.wanted_face = face - chunk->first_face;
 	obj_parse_chunk(&again);
+	if (before)
+		*before = (obj_corner){(uint32_t)again.position_count, (uint32_t)again.texcoord_count,
+			(uint32_t)again.normal_count};
 	const size_t line = chunk->first_line + again.wanted_line + 1;
 	obj_chunk_free(&again);
 	return line;

@@ -77,6 +77,7 @@ typedef struct obj_chunk {
 	obj_ignored ignored[OBJ_IGNORED_COUNT];
 	const char *unknown; /* the first unknown statement's word */
 	size_t unknown_length;
+	size_t small_size;   /* corners of the first face with fewer than 3 */
 	size_t line_count;
 
 	/* How much comes before this chunk in the file; known after all have been read. */
@@ -138,8 +139,9 @@ typedef struct obj_vertex {
 nmtan_status obj_parse_chunk(obj_chunk *chunk);
 void obj_chunk_free(obj_chunk *chunk);
 
-/* Line of a face of the file, by reading its chunk again. */
-size_t obj_face_line(const obj_file *file, size_t face);
+/* Line of a face of the file, by reading its chunk again. before: how many v, vt and vn of its chunk
+ * stand before it; NULL is allowed. */
+size_t obj_face_line(const obj_file *file, size_t face, obj_corner *before);
 
 /* Fills corner_vertices, vertices and mesh_vertices. */
 nmtan_status obj_make_vertices(obj_file *file, nt_error *error);

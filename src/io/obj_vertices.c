@@ -284,6 +284,20 @@ static void renumber_stretch(void *context, size_t begin, size_t end, unsigned s
 
 /* ---- errors ---- */
 
+/* The face of a corner of the file. */
+static size_t face_of_corner(const obj_file *file, const obj_chunk *chunk, size_t wanted)
+{
+	size_t face = chunk->first_face, corner = chunk->first_corner, large = 0;
+	while (large < file->large_count && file->large[large].face < face)
+		large++;
+	for (;; face++) {
+		const bool is_large = file->face_sizes[face] == OBJ_LARGE;
+		corner += is_large ? file->large[large++].size : file->face_sizes[face];
+		if (wanted < corner)
+			return face;
+	}
+}
+
 /* Says which index of the corner is out of range, as the file spells it. */
 static nmtan_status fail_index(const obj_file *file, size_t bad_corner, nt_error *error)
 {
@@ -292,42 +306,31 @@ static nmtan_status fail_index(const obj_file *file, size_t bad_corner, nt_error
 		c++;
 	const obj_chunk *chunk = &file->chunks[c];
 	const obj_corner corner = chunk->corners[bad_corner - chunk->first_corner];
-	size_t face = chunk->first_face, first = chunk->first_corner;
-	size_t large = 0;
-	while (large < file->large_count && file->large[large].face < face)
-		large++;
-	for (;; face++) {
-		size_t size = file->face_sizes[face];
-		if (size == OBJ_LARGE)
-			size = file->large[large++].size;
-		if (bad_corner < first + size)
-			break;
-		first += size;
-	}
+	obj_corner before;
+	const size_t line = obj_face_line(file, face_of_corner(file, chunk, bad_corner), &before);
 	const struct {
 		const char *word;
 		uint32_t index;
-		size_t before, count;
+		uint32_t before;      /* elements of the chunk before the face */
+		size_t first, count;
 	} parts[3] = {
-		{"v", corner.v, chunk->first_position, file->position_count},
-		{"vt", corner.t, chunk->first_texcoord, file->texcoord_count},
-		{"vn", corner.n, chunk->first_normal, file->normal_count},
+		{"v", corner.v, before.v, chunk->first_position, file->position_count},
+		{"vt", corner.t, before.t, chunk->first_texcoord, file->texcoord_count},
+		{"vn", corner.n, before.n, chunk->first_normal, file->normal_count},
 	};
 	int k = 0;
 	uint32_t row = parts[0].index;
-	while (k < 2 && resolve(&row, parts[k].before, parts[k].count))
+	while (k < 2 && resolve(&row, parts[k].first, parts[k].count))
 		row = parts[++k].index;
-	const size_t line = obj_face_line(file, face);
-	if (parts[k].index & OBJ_RELATIVE) {
-		const int64_t missing = (int64_t)(parts[k].index & ~OBJ_RELATIVE) - OBJ_BIAS +
-			(int64_t)parts[k].before;
+	const uint32_t index = parts[k].index;
+	if (index & OBJ_RELATIVE)
 		return nt_fail_line(error, NMTAN_ERROR_INPUT, line,
-			"face counts back beyond the first \"%s\" by %lld", parts[k].word,
-			(long long)-missing);
-	}
+			"face refers to \"%s\" number -%zu, but %zu precede it", parts[k].word,
+			(size_t)(parts[k].before + OBJ_BIAS - (index & ~OBJ_RELATIVE)),
+			parts[k].first + parts[k].before);
 	return nt_fail_line(error, NMTAN_ERROR_INPUT, line,
-		"face refers to \"%s\" number %zu, but the file has %zu", parts[k].word,
-		(size_t)parts[k].index + 1, parts[k].count);
+		"face refers to \"%s\" number %zu, but the file has %zu", parts[k].word, (size_t)index + 1,
+		parts[k].count);
 }
 
 /* The first failure in the order of the file. */
