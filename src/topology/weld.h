@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The weld of the fast path: which corners are one vertex (spec page, step 2), and each vertex's eight
+ * floats as one row of 32 bytes, so that a later pass finds all of a corner in one place.
+ *
+ * The numbers are those of nt_weld_corners() up to their order, and where no vertex is equal to another
+ * the mesh's own indices are used as they are.
+ */
+#ifndef NT_TOPOLOGY_WELD_H
+#define NT_TOPOLOGY_WELD_H
+
+#include "base/room.h"
+#include "nmtan.h"
+
+/* Attributes of a welded vertex, -0 made +0. */
+typedef struct nt_weld_row {
+	float position[3], normal[3], texcoord[2];
+} nt_weld_row;
+
+typedef struct nt_weld {
+	const uint32_t *ids;     /* [corner_count] welded vertex of each corner; may be mesh->indices */
+	const nt_weld_row *rows; /* [count] */
+	size_t count;
+} nt_weld;
+
+/* Corners and vertices that nt_weld can number. */
+#define NT_WELD_LIMIT ((size_t)1 << 28)
+
+/*
+ * Welds the corners of a mesh whose strides are filled in and whose indices are checked. Memory comes
+ * from the room. Linear time. Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ */
+nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, nt_room *room, nt_weld *weld);
+
+#endif
