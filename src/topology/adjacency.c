@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Adjacency: see adjacency.h. Two passes: count, then walk the blocks and turn counts into cursors. The
+ * price of blocks is padding; on meshes from modelling programs it is 5 to 40 per cent of the entries.
+ */
+#include "topology/adjacency.h"
+
+#include <string.h>
+#include "base/parallel.h"
+
+typedef struct counting {
+	const uint32_t *ids;
+	const nt_triangle_ranges *ranges;
+	const nt_adjacency *adjacency;
+} counting;
+
+static void count_range(const counting *c, size_t range)
+{
+	uint32_t *counts = c->adjacency->cursors + range * c->adjacency->vertex_count;
+	memset(counts, 0, c->adjacency->vertex_count * sizeof *counts);
+	const size_t end = 3 * c->ranges->bounds[range + 1];
+	for (size_t i = 3 * c->ranges->bounds[range]; i < end; i++)
+		counts[c->ids[i]]++;
+}
+
+static void count_ranges(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	for (size_t range = begin; range < end; range++)
+		count_range(context, range);
+}
+
+/* Turns the counts of one vertex into cursors that begin at `place`; returns the sum of the counts. */
+static uint32_t place_vertex(nt_adjacency *a, size_t vertex, uint32_t place)
+{
+	uint32_t total = 0;
+	for (unsigned r = 0; r < a->ranges; r++) {
+		uint32_t *cursor = &a->cursors[r * a->vertex_count + vertex];
+		const uint32_t count = *cursor;
+		const bool shared = total > 0 && count > 0;
+		*cursor = (place + total * NT_FAN_LANES) | (shared ? NT_CURSOR_SHARED : 0);
+		a->shared_counts[r] += shared ? count : 0;
+		total += count;
+	}
+	return total;
+}
+
+static uint32_t total_count(const nt_adjacency *a, size_t vertex)
+{
+	uint32_t total = 0;
+	for (unsigned r = 0; r < a->ranges; r++)
+		total += a->cursors[r * a->vertex_count + vertex];
+	return total;
+}
+
+static void mark_hub(nt_adjacency *a, size_t vertex)
+{
+	for (unsigned r = 0; r < a->ranges; r++) {
+		uint32_t *cursor = &a->cursors[r * a->vertex_count + vertex];
+		*cursor = (*cursor & NT_CURSOR_SHARED) | NT_CURSOR_HUB;
+	}
+}
+
+/* Returns the number of entries, padding included. */
+static size_t place_blocks(nt_adjacency *a)
+{
+	size_t place = 0;
+	for (size_t first = 0; first < a->vertex_count; first += NT_FAN_LANES) {
+		const size_t left = a->vertex_count - first, count = left < NT_FAN_LANES ? left : NT_FAN_LANES;
+		uint32_t depth = 0;
+		a->block_begin[first / NT_FAN_LANES] = (uint32_t)place;
+		for (size_t lane = 0; lane < count; lane++) {
+			const uint32_t degree = total_count(a, first + lane);
+			place_vertex(a, first + lane, (uint32_t)(place + lane));
+			if (degree > NT_FAN_DEPTH)
+				mark_hub(a, first + lane);
+			else
+				depth = degree > depth ? degree : depth;
+		}
+		place += (size_t)depth * NT_FAN_LANES;
+		if (place > NT_CURSOR_PLACE - NT_FAN_LANES * NT_FAN_DEPTH)
+			return SIZE_MAX;
+	}
+	a->block_begin[(a->vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES] = (uint32_t)place;
+	return place;
+}
+
+nmtan_status nt_adjacency_make(const uint32_t *ids, const nt_triangle_ranges *ranges,
+	size_t vertex_count, nt_room *room, nt_adjacency *adjacency)
+{
+	const size_t blocks = (vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES;
+	*adjacency = (nt_adjacency){.vertex_count = vertex_count, .ranges = ranges->count};
+	nt_adjacency *a = adjacency;
+	a->cursors = nt_room_alloc(room, vertex_count, ranges->count * sizeof *a->cursors);
+	a->block_begin = nt_room_alloc(room, blocks + 1, sizeof *a->block_begin);
+	a->shared_counts = nt_scratch_alloc(room->scratch, ranges->count, sizeof *a->shared_counts);
+	if (!a->cursors || !a->block_begin || !a->shared_counts)
+		return NMTAN_ERROR_MEMORY;
+	memset(a->shared_counts, 0, ranges->count * sizeof *a->shared_counts);
+
+	counting c = {ids, ranges, a};
+	nt_parallel_ranges(ranges->count, ranges->count, 1, count_ranges, &c);
+	const size_t entries = place_blocks(a);
+	if (entries == SIZE_MAX)
+		return NMTAN_ERROR_TOO_LARGE;
+	a->entries = nt_room_alloc(room, entries + 1, sizeof *a->entries);
+	return a->entries ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+}

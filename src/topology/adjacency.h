@@ -1,0 +1,65 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The corners around each welded vertex, laid out for lanes: vertices go in blocks of 16, and the k-th
+ * corners of a block's vertices lie side by side. A block is as deep as its vertex of most corners;
+ * vertices of more than NT_FAN_DEPTH corners have no entries here.
+ *
+ * Several ranges of triangles can be entered at the same time: each range has a cursor of its own for
+ * each vertex.
+ */
+#ifndef NT_TOPOLOGY_ADJACENCY_H
+#define NT_TOPOLOGY_ADJACENCY_H
+
+#include "base/room.h"
+#include "nmtan.h"
+
+enum { NT_FAN_LANES = 16, NT_FAN_DEPTH = 12 };
+
+/* One corner of a vertex: the vertices after and before it in its triangle. */
+typedef struct nt_fan_entry {
+	uint32_t next, previous;
+} nt_fan_entry;
+
+/* A cursor: where the vertex's next entry of this range goes (each corner moves it by NT_FAN_LANES), and
+ * two flags above. */
+#define NT_CURSOR_HUB ((uint32_t)1 << 31)    /* too many corners: there is no place */
+#define NT_CURSOR_SHARED ((uint32_t)1 << 30) /* an earlier range has corners of this vertex too */
+#define NT_CURSOR_PLACE (((uint32_t)1 << 28) - 1)
+
+typedef struct nt_adjacency {
+	size_t vertex_count;
+	unsigned ranges;
+	uint32_t *cursors;     /* [ranges][vertex_count] */
+	uint32_t *block_begin; /* [blocks + 1] index of a block's first entry */
+	size_t *shared_counts; /* [ranges] corners whose cursor is SHARED */
+	nt_fan_entry *entries;
+} nt_adjacency;
+
+/* Corners for which places can be numbered whatever the mesh looks like. */
+#define NT_ADJACENCY_LIMIT ((size_t)1 << 28)
+
+/* First triangle of each range: range r holds [bounds[r], bounds[r + 1]). */
+typedef struct nt_triangle_ranges {
+	unsigned count;
+	const size_t *bounds; /* [count + 1] */
+} nt_triangle_ranges;
+
+/*
+ * Counts the corners of each vertex and makes the places. Entries are not written.
+ *
+ *   ids     [3 * triangle count] vertices of the triangles
+ *
+ * Returns NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_TOO_LARGE.
+ */
+nmtan_status nt_adjacency_make(const uint32_t *ids, const nt_triangle_ranges *ranges,
+	size_t vertex_count, nt_room *room, nt_adjacency *adjacency);
+
+/* Corners of a vertex that has entries, after all of them are in. */
+static inline uint32_t nt_adjacency_degree(const nt_adjacency *a, size_t vertex)
+{
+	const size_t block = vertex / NT_FAN_LANES;
+	const uint32_t end = a->cursors[(a->ranges - 1) * a->vertex_count + vertex] & NT_CURSOR_PLACE;
+	return (end - a->block_begin[block]) / NT_FAN_LANES;
+}
+
+#endif
