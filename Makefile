@@ -73,6 +73,20 @@ $(B)/%.cpp.o: src/%.cpp
 	@mkdir -p $(@D)
 	$(CXX) $(NT_CXXFLAGS) $(FILE_FLAGS) -c -o $@ $<
 
+# The passes that need lanes, once for each instruction set. Exceptions are never looked at, so that
+# comparisons may be made for all lanes; contraction stays off and FMA is not among the sets.
+lanes := -O3 -fno-trapping-math
+ifeq ($(config),debug)
+lanes :=
+endif
+$(B)/tangent/kernel_baseline.c.o: FILE_FLAGS := $(lanes)
+ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
+$(B)/tangent/kernel_avx2.c.o: FILE_FLAGS := $(lanes) -mavx2
+$(B)/tangent/kernel_avx512.c.o: FILE_FLAGS := $(lanes) -mavx512f -mavx512bw -mavx512dq -mavx512vl \
+	-mprefer-vector-width=512
+endif
+$(B)/topology/weld.c.o: FILE_FLAGS := $(lanes)
+
 # Foreign headers whose warnings are not ours.
 $(B)/ext/openmesh.cpp.o: FILE_FLAGS := -Wno-maybe-uninitialized -Wno-class-memaccess
 

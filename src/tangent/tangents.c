@@ -55,7 +55,8 @@ static nmtan_status run_method(const nt_solve *solve, const nmtan_options *optio
 {
 	switch (options->method) {
 	case NMTAN_METHOD_MIKKTSPACE:
-		return nt_mikktspace_scalar(solve);
+		return options->path == NMTAN_PATH_SCALAR ? nt_mikktspace_scalar(solve)
+							  : nt_mikktspace_fast(solve);
 	case NMTAN_METHOD_AREA:
 		return nt_area(solve);
 	case NMTAN_METHOD_LENGYEL:

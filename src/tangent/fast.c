@@ -1,0 +1,486 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * MikkTSpace, fast: the bytes of mikktspace_scalar.c at the speed of memory. The passes in order, with
+ * what they cost on a clean mesh of a million triangles in 512-bit vectors (see tests/bench/core.c):
+ *
+ *   1 weld       hash every vertex's row, find equal ones                  topology/weld.c
+ *   2 cut        quads become triangles
+ *   3 adjacency  count the corners of each vertex, make places for them    topology/adjacency.c
+ *   4 accumulate frames and weights of 16 triangles at a time, added to
+ *                the records of their vertices in triangle order           kernel.h
+ *   5 settle     16 vertices at a time: is the record the result?          kernel.h
+ *   6 write      every corner gets its vertex's result
+ *   7 complex    the other vertices: pairs, groups, averages               complex.c
+ *   8 late       degenerate triangles copy a neighbour's corner
+ *
+ * Groups are not looked at before step 5, because nearly every vertex has one for each orientation;
+ * what that saves is the point of this file.
+ *
+ * Threads own ranges of triangles. A vertex belongs to the first range that touches it; later ranges
+ * put their contributions aside and these are added afterwards in order, so that every sum is in triangle
+ * order whatever the number of threads.
+ *
+ * Scratch lives in the output until step 6 where it fits.
+ */
+#include "tangent/fast.h"
+
+#include <string.h>
+#include "base/cpu.h"
+#include "base/parallel.h"
+#include "topology/corners.h"
+
+/* A range of triangles that is worth a thread: below, starting it costs more than it saves. */
+enum { TRIANGLE_GRAIN = 65536 };
+
+static const nt_kernels *kernels_for(nmtan_isa isa)
+{
+#if defined(__x86_64__)
+	if (isa == NMTAN_ISA_AVX512)
+		return &nt_kernels_avx512;
+	if (isa == NMTAN_ISA_AVX2)
+		return &nt_kernels_avx2;
+#endif
+	(void)isa;
+	return &nt_kernels_baseline;
+}
+
+/* 2 */
+
+static size_t count_triangles(const nmtan_mesh *mesh)
+{
+	size_t count = mesh->face_count;
+	for (size_t face = 0; mesh->face_sizes && face < mesh->face_count; face++)
+		count += mesh->face_sizes[face] == 4;
+	return count;
+}
+
+/* Triangles of a mesh with quads: their corners, vertices, and which are second halves. */
+static nmtan_status cut_faces(nt_fast *fast, const uint32_t *corner_ids)
+{
+	const nmtan_mesh *mesh = fast->solve->mesh;
+	uint32_t *corners = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 3 * sizeof *corners);
+	uint32_t *ids = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 3 * sizeof *ids);
+	if (!corners || !ids)
+		return NMTAN_ERROR_MEMORY;
+	size_t first = 0, t = 0;
+	for (size_t face = 0; face < mesh->face_count; first += mesh->face_sizes[face++]) {
+		uint32_t cut[2][3];
+		const unsigned count = nt_face_triangles(mesh, face, first, cut);
+		for (unsigned half = 0; half < count; half++, t++) {
+			fast->flags[t] = half ? NT_TRIANGLE_SECOND : 0;
+			for (int k = 0; k < 3; k++) {
+				corners[3 * t + (size_t)k] = cut[half][k];
+				ids[3 * t + (size_t)k] = corner_ids[cut[half][k]];
+			}
+		}
+	}
+	fast->corners = corners;
+	fast->ids = ids;
+	return NMTAN_OK;
+}
+
+static nmtan_status make_triangles(nt_fast *fast, const nt_weld *weld)
+{
+	fast->rows = weld->rows;
+	fast->vertex_count = weld->count;
+	fast->flags = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 1);
+	if (!fast->flags)
+		return NMTAN_ERROR_MEMORY;
+	if (fast->triangle_count != fast->solve->mesh->face_count)
+		return cut_faces(fast, weld->ids);
+	memset(fast->flags, 0, fast->triangle_count);
+	fast->ids = weld->ids;
+	return NMTAN_OK;
+}
+
+/* Contiguous ranges of triangles; halves of a quad stay together. */
+static nmtan_status make_ranges(nt_fast *fast, unsigned count)
+{
+	size_t *bounds = nt_scratch_alloc(fast->solve->scratch, count + 1, sizeof *bounds);
+	if (!bounds)
+		return NMTAN_ERROR_MEMORY;
+	for (unsigned r = 0; r <= count; r++) {
+		bounds[r] = fast->triangle_count / count * r + fast->triangle_count % count * r / count;
+		while (bounds[r] < fast->triangle_count && fast->flags[bounds[r]] & NT_TRIANGLE_SECOND)
+			bounds[r]++;
+	}
+	fast->ranges = (nt_triangle_ranges){count, bounds};
+	return NMTAN_OK;
+}
+
+/* 4 */
+
+static bool make_record(nt_fast *fast, int orient)
+{
+	nt_record *records = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *records);
+	if (!records)
+		return false;
+	for (size_t v = 0; v < fast->vertex_count; v++)
+		records[v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+	if (fast->wants_more) {
+		nt_record_more *more = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *more);
+		if (!more)
+			return false;
+		memset(more, 0, fast->vertex_count * sizeof *more);
+		fast->more[orient] = more;
+	}
+	fast->records[orient] = records;
+	return true;
+}
+
+static bool make_deferred(nt_fast *fast)
+{
+	const unsigned ranges = fast->ranges.count;
+	fast->deferred = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *fast->deferred);
+	fast->deferred_count = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *fast->deferred_count);
+	if (!fast->deferred || !fast->deferred_count)
+		return false;
+	for (unsigned r = 0; r < ranges; r++) {
+		fast->deferred_count[r] = 0;
+		fast->deferred[r] = nt_scratch_alloc(fast->solve->scratch, fast->adjacency.shared_counts[r],
+			sizeof **fast->deferred);
+		if (!fast->deferred[r])
+			return false;
+	}
+	return true;
+}
+
+typedef struct run {
+	nt_fast *fast;
+	const nt_kernels *kernels;
+	size_t *counts; /* [ranges] */
+} run;
+
+static void accumulate_ranges(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	const run *r = context;
+	const size_t *bounds = r->fast->ranges.bounds;
+	for (size_t range = begin; range < end; range++) {
+		int orient;
+		r->kernels->accumulate(r->fast, bounds[range], bounds[range + 1], (unsigned)range, &orient);
+	}
+}
+
+/* Contributions that later ranges put aside, in order. */
+static void add_deferred(nt_fast *fast)
+{
+	for (unsigned r = 1; r < fast->ranges.count; r++) {
+		for (size_t i = 0; i < fast->deferred_count[r]; i++) {
+			const nt_deferred *d = &fast->deferred[r][i];
+			nt_record *record = &fast->records[d->orient][d->vertex];
+			record->x += d->add.x;
+			record->y += d->add.y;
+			record->z += d->add.z;
+			record->state &= d->add.state;
+			if (!fast->wants_more)
+				continue;
+			nt_record_more *more = &fast->more[d->orient][d->vertex];
+			more->x += d->more.x;
+			more->y += d->more.y;
+			more->z += d->more.z;
+			more->angle += d->more.angle;
+			more->mag_s += d->more.mag_s;
+			more->mag_t += d->more.mag_t;
+		}
+	}
+}
+
+static nmtan_status accumulate(nt_fast *fast, const nt_kernels *kernels)
+{
+	if (fast->ranges.count == 1) {
+		/* records of an orientation exist from the first triangle that has it */
+		int orient = 0;
+		for (size_t t = 0;;) {
+			t = kernels->accumulate(fast, t, fast->triangle_count, 0, &orient);
+			if (t == fast->triangle_count)
+				return NMTAN_OK;
+			if (!make_record(fast, orient))
+				return NMTAN_ERROR_MEMORY;
+		}
+	}
+	if (!make_record(fast, 0) || !make_record(fast, 1) || !make_deferred(fast))
+		return NMTAN_ERROR_MEMORY;
+	run r = {fast, kernels, NULL};
+	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, accumulate_ranges, &r);
+	add_deferred(fast);
+	return NMTAN_OK;
+}
+
+/* 5 */
+
+/* The next triangle from t on that has one of these flags; triangle_count: none. */
+size_t nt_fast_next_flagged(const nt_fast *fast, size_t t, unsigned flags)
+{
+	const uint64_t pattern = 0x0101010101010101u * flags;
+	while (t < fast->triangle_count) {
+		uint64_t eight;
+		if (fast->triangle_count - t >= sizeof eight) {
+			memcpy(&eight, fast->flags + t, sizeof eight);
+			if (!(eight & pattern)) {
+				t += sizeof eight;
+				continue;
+			}
+		}
+		for (const size_t stop = t + sizeof eight; t < stop && t < fast->triangle_count; t++)
+			if (fast->flags[t] & flags)
+				return t;
+	}
+	return t;
+}
+
+/* An "any" triangle that groups of both orientations can reach takes the one that is seeded first. At its
+ * vertices order matters, so they are not settled. */
+static void mark_contested(nt_fast *fast)
+{
+	if (!fast->records[0] || !fast->records[1])
+		return;
+	size_t t = nt_fast_next_flagged(fast, 0, NT_TRIANGLE_ANY);
+	for (; t < fast->triangle_count; t = nt_fast_next_flagged(fast, t + 1, NT_TRIANGLE_ANY)) {
+		const uint32_t *v = fast->ids + 3 * t;
+		if (fast->flags[t] & NT_TRIANGLE_DEGENERATE)
+			continue;
+		uint32_t empty[2] = {NT_STATE_EMPTY, NT_STATE_EMPTY};
+		for (int k = 0; k < 3; k++)
+			for (int o = 0; o < 2; o++)
+				empty[o] &= fast->records[o][v[k]].state;
+		for (int k = 0; !empty[0] && !empty[1] && k < 3; k++)
+			fast->records[0][v[k]].state &= ~(uint32_t)NT_STATE_LOCAL;
+	}
+}
+
+static void settle_range(void *context, size_t begin, size_t end, unsigned slot)
+{
+	const run *r = context;
+	r->counts[slot] = r->kernels->settle(r->fast, begin, end);
+}
+
+static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, size_t *complex_count)
+{
+	const unsigned ranges = fast->ranges.count;
+	size_t *counts = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *counts);
+	if (!counts)
+		return NMTAN_ERROR_MEMORY;
+	memset(counts, 0, ranges * sizeof *counts);
+	run r = {fast, kernels, counts};
+	nt_parallel_ranges(ranges, (fast->vertex_count + NT_LANES - 1) / NT_LANES, 1, settle_range, &r);
+	*complex_count = 0;
+	for (unsigned i = 0; i < ranges; i++)
+		*complex_count += counts[i];
+	return NMTAN_OK;
+}
+
+/* 6 */
+
+static void write_corner(const nt_fast *fast, size_t corner, const nt_record *record,
+	const nt_record_more *more)
+{
+	const nt_solve *solve = fast->solve;
+	memcpy(solve->tangents + 4 * corner, record, sizeof *record);
+	if (solve->bitangents)
+		memcpy(solve->bitangents + 3 * corner, &more->x, 3 * sizeof(float));
+	if (solve->magnitudes)
+		memcpy(solve->magnitudes + 2 * corner, &more->mag_s, 2 * sizeof(float));
+}
+
+/* The orientation whose records stand for a vertex that has one only. */
+static int single_record(const nt_fast *fast, uint32_t vertex)
+{
+	const nt_record *negative = fast->records[0];
+	return !negative || (fast->records[1] && negative[vertex].state == NT_RESULT_NONE);
+}
+
+static void write_vertex(const nt_fast *fast, size_t corner, int orient, uint32_t vertex)
+{
+	write_corner(fast, corner, &fast->records[orient][vertex],
+		fast->wants_more ? &fast->more[orient][vertex] : NULL);
+}
+
+/* Whether the other half of a triangle's quad is sound. */
+static bool has_sound_half(const nt_fast *fast, size_t t)
+{
+	if (fast->flags[t] & NT_TRIANGLE_SECOND)
+		return !(fast->flags[t - 1] & NT_TRIANGLE_DEGENERATE);
+	return nt_fast_quad_begins(fast, t) && !(fast->flags[t + 1] & NT_TRIANGLE_DEGENERATE);
+}
+
+static void write_special(nt_fast *fast, size_t t)
+{
+	uint8_t *flags = &fast->flags[t];
+	const bool degenerate = *flags & NT_TRIANGLE_DEGENERATE;
+	if (degenerate && has_sound_half(fast, t)) {
+		*flags |= NT_TRIANGLE_LATE;
+		return;
+	}
+	for (size_t i = 3 * t; i < 3 * t + 3; i++) {
+		const uint32_t v = fast->ids[i];
+		const int o = single_record(fast, v);
+		const uint32_t state = fast->records[o][v].state;
+		const bool two = fast->records[!o] && state != NT_RESULT_NONE &&
+				 fast->records[!o][v].state != NT_RESULT_NONE;
+		if (state == NT_RESULT_COMPLEX)
+			*flags |= degenerate ? NT_TRIANGLE_LATE : NT_TRIANGLE_COMPLEX;
+		else if (degenerate && two)
+			*flags |= NT_TRIANGLE_LATE;
+		write_vertex(fast, nt_fast_corner(fast, i), o, v);
+	}
+}
+
+static void write_triangles(nt_fast *fast, size_t begin, size_t end)
+{
+	for (size_t t = begin; t < end; t++) {
+		uint8_t *flags = &fast->flags[t];
+		if (*flags & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
+			write_special(fast, t);
+			continue;
+		}
+		const int orient = *flags & NT_TRIANGLE_ORIENT;
+		for (size_t i = 3 * t; i < 3 * t + 3; i++) {
+			const uint32_t v = fast->ids[i];
+			if (fast->records[orient][v].state == NT_RESULT_COMPLEX)
+				*flags |= NT_TRIANGLE_COMPLEX;
+			write_vertex(fast, nt_fast_corner(fast, i), orient, v);
+		}
+	}
+}
+
+static void write_ranges(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	nt_fast *fast = ((const run *)context)->fast;
+	for (size_t range = begin; range < end; range++)
+		write_triangles(fast, fast->ranges.bounds[range], fast->ranges.bounds[range + 1]);
+}
+
+/* Without a sound triangle there is nothing but the default (step 10). */
+static void write_defaults(const nt_fast *fast)
+{
+	const nt_record record = {1.0f, 0.0f, 0.0f, NT_RESULT_MINUS};
+	const nt_record_more more = {.y = 1.0f, .mag_s = 1.0f, .mag_t = 1.0f};
+	for (size_t c = 0; c < fast->solve->corner_count; c++)
+		write_corner(fast, c, &record, &more);
+}
+
+/* 8 */
+
+static void copy_corner(const nt_solve *solve, size_t to, size_t from)
+{
+	memcpy(solve->tangents + 4 * to, solve->tangents + 4 * from, 4 * sizeof(float));
+	if (solve->bitangents)
+		memcpy(solve->bitangents + 3 * to, solve->bitangents + 3 * from, 3 * sizeof(float));
+	if (solve->magnitudes)
+		memcpy(solve->magnitudes + 2 * to, solve->magnitudes + 2 * from, 2 * sizeof(float));
+}
+
+/* The first corner of each vertex among the sound triangles. */
+static uint32_t *find_first_corners(const nt_fast *fast)
+{
+	uint32_t *first = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *first);
+	if (!first)
+		return NULL;
+	memset(first, 0xff, fast->vertex_count * sizeof *first);
+	for (size_t t = fast->triangle_count; t-- > 0;)
+		for (size_t i = 3 * t + 3; !(fast->flags[t] & NT_TRIANGLE_DEGENERATE) && i-- > 3 * t;)
+			first[fast->ids[i]] = (uint32_t)nt_fast_corner(fast, i);
+	return first;
+}
+
+static bool same_position(const nt_fast *fast, size_t i, size_t j)
+{
+	const nmtan_mesh *mesh = fast->solve->mesh;
+	const float *a = nt_position(mesh, nt_vertex_of(mesh, nt_fast_corner(fast, i)));
+	const float *b = nt_position(mesh, nt_vertex_of(mesh, nt_fast_corner(fast, j)));
+	return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+/* The vertex outside the sound half of a quad takes the result at its position. */
+static void copy_from_half(const nt_fast *fast, size_t t)
+{
+	const size_t sound = fast->flags[t] & NT_TRIANGLE_SECOND ? t - 1 : t + 1;
+	for (size_t i = 3 * t; i < 3 * t + 3; i++) {
+		const uint32_t corner = fast->corners[i];
+		size_t j = 3 * sound;
+		while (j < 3 * sound + 3 && fast->corners[j] != corner)
+			j++;
+		if (j < 3 * sound + 3)
+			continue;
+		for (j = 3 * sound; j < 3 * sound + 3; j++)
+			if (same_position(fast, i, j)) {
+				copy_corner(fast->solve, corner, fast->corners[j]);
+				break;
+			}
+	}
+}
+
+/* Degenerate triangles whose answer depends on a corner. Sources are corners of sound triangles, so the
+ * order of copying does not matter. */
+static nmtan_status write_late(nt_fast *fast)
+{
+	const uint32_t *first = NULL;
+	size_t t = nt_fast_next_flagged(fast, 0, NT_TRIANGLE_LATE);
+	for (; t < fast->triangle_count; t = nt_fast_next_flagged(fast, t + 1, NT_TRIANGLE_LATE)) {
+		if (has_sound_half(fast, t)) {
+			copy_from_half(fast, t);
+			continue;
+		}
+		if (!first && !(first = find_first_corners(fast)))
+			return NMTAN_ERROR_MEMORY;
+		for (size_t i = 3 * t; i < 3 * t + 3; i++)
+			if (first[fast->ids[i]] != UINT32_MAX)
+				copy_corner(fast->solve, nt_fast_corner(fast, i), first[fast->ids[i]]);
+	}
+	return NMTAN_OK;
+}
+
+static nmtan_status solve_with_ranges(const nt_solve *solve, size_t triangle_count, unsigned ranges)
+{
+	const nt_kernels *kernels = kernels_for(solve->isa);
+	nt_room room = nt_room_over(solve->tangents, solve->corner_count * 4 * sizeof(float), solve->scratch);
+	nt_fast fast = {.solve = solve, .triangle_count = triangle_count};
+	fast.wants_more = solve->bitangents || solve->magnitudes;
+
+	nt_weld weld;
+	nmtan_status status = nt_weld_mesh(solve->mesh, solve->corner_count, &room, &weld);
+	if (!status)
+		status = make_triangles(&fast, &weld);
+	if (!status)
+		status = make_ranges(&fast, ranges);
+	if (!status)
+		status = nt_adjacency_make(fast.ids, &fast.ranges, fast.vertex_count, &room, &fast.adjacency);
+	if (!status)
+		status = accumulate(&fast, kernels);
+	if (status)
+		return status;
+	if (!fast.records[0] && !fast.records[1]) {
+		write_defaults(&fast);
+		return NMTAN_OK;
+	}
+
+	mark_contested(&fast);
+	size_t complex_count;
+	if ((status = settle(&fast, kernels, &complex_count)))
+		return status;
+	run r = {&fast, kernels, NULL};
+	nt_parallel_ranges(ranges, ranges, 1, write_ranges, &r);
+	if (complex_count > 0 && (status = nt_fast_complex(&fast, complex_count)))
+		return status;
+	return write_late(&fast);
+}
+
+nmtan_status nt_mikktspace_fast_grain(const nt_solve *solve, size_t grain)
+{
+	/* what the lanes have no place for goes by the definition: other thresholds split most groups, and
+	 * beyond the limits numbers do not fit the entries */
+	const size_t triangles = count_triangles(solve->mesh);
+	if (solve->threshold_cos != -1.0f || 3 * triangles >= NT_ADJACENCY_LIMIT ||
+		solve->mesh->vertex_count >= NT_WELD_LIMIT)
+		return nt_mikktspace_scalar(solve);
+	const unsigned ranges = nt_parallel_slots(solve->threads, triangles, grain);
+	const nmtan_status status = solve_with_ranges(solve, triangles, ranges);
+	return status == NMTAN_ERROR_TOO_LARGE ? nt_mikktspace_scalar(solve) : status;
+}
+
+nmtan_status nt_mikktspace_fast(const nt_solve *solve)
+{
+	return nt_mikktspace_fast_grain(solve, TRIANGLE_GRAIN);
+}

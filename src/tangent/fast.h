@@ -1,0 +1,133 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the passes of the fast path share. fast.c is the recipe; kernel.h holds the passes that are
+ * compiled once for each instruction set; complex.c solves the vertices that need groups.
+ *
+ * A vertex here is a welded vertex. At most vertices all corners belong to one group, or to one group of
+ * either orientation, and the group's result is a sum over the vertex's corners in triangle order. So the
+ * first pass adds every triangle to one record for each (vertex, orientation), without looking at groups.
+ * The second looks at the corners of each vertex and either settles it, which makes the record
+ * the result, or leaves it to complex.c.
+ */
+#ifndef NT_TANGENT_FAST_H
+#define NT_TANGENT_FAST_H
+
+#include "tangent/solve.h"
+#include "topology/adjacency.h"
+#include "topology/weld.h"
+
+enum { NT_LANES = 16 };
+
+/* Sum over the corners of one orientation at a vertex; later its result. `state` is a set of bits that
+ * each corner may only clear: what is left holds for all of them. */
+typedef struct nt_record {
+	float x, y, z;
+	uint32_t state;
+} nt_record;
+
+/* The sums behind the optional outputs. */
+typedef struct nt_record_more {
+	float x, y, z, angle; /* bitangent; sum of the weights */
+	float mag_s, mag_t;
+	float unused[2];
+} nt_record_more;
+
+/* Bits of nt_record.state while it is a sum. All states carry NT_STATE_BASE, which makes them normal
+ * floats: the lane takes part in the addition of its record, and a denormal may cost 100 cycles. */
+enum {
+	NT_STATE_U = 0x3f,          /* one bit for each half-space that all u directions lie in */
+	NT_STATE_V = 0x3f << 6,     /* the same for v */
+	NT_STATE_SOUND = 1 << 12,   /* every value met was well inside float's range */
+	NT_STATE_EMPTY = 1 << 13,   /* no corner was added */
+	NT_STATE_NO_ANY = 1 << 14,  /* no triangle without a frame touches the vertex */
+	NT_STATE_LOCAL = 1 << 15,   /* the order in which groups are seeded does not matter */
+	NT_STATE_ALL = 0xffff,
+	NT_STATE_BASE = 0x40000000
+};
+
+/* nt_record.state when settled: the sign as a float, or one of these. */
+#define NT_RESULT_PLUS 0x3f800000u    /* 1.0f */
+#define NT_RESULT_MINUS 0xbf800000u   /* -1.0f */
+#define NT_RESULT_NONE 0u             /* no corner has this orientation */
+#define NT_RESULT_COMPLEX 0x40000000u /* ask complex.c */
+
+/* Bits of nt_fast.flags */
+enum {
+	NT_TRIANGLE_ORIENT = 1,     /* UV determinant positive (after a quad's halves agreed) */
+	NT_TRIANGLE_ANY = 2,        /* no frame: joins groups of any orientation */
+	NT_TRIANGLE_DEGENERATE = 4, /* two corners at one position: takes no part */
+	NT_TRIANGLE_SECOND = 8,     /* second half of a quad: the first is the triangle before */
+	NT_TRIANGLE_COMPLEX = 16,   /* has a corner at a complex vertex */
+	NT_TRIANGLE_LATE = 32,      /* degenerate, and copies a corner that is not known yet */
+	NT_TRIANGLE_TAKEN = 64      /* "any", and a group has a corner of it */
+};
+
+/* Entries of fans: orientation in bit 31; bit 30 marks a place without a corner, whose numbers differ
+ * from all others of its vertex. */
+#define NT_ENTRY_ORIENT ((uint32_t)1 << 31)
+#define NT_ENTRY_VOID ((uint32_t)1 << 30)
+#define NT_ENTRY_VERTEX (NT_ENTRY_ORIENT - 1)
+
+/* A contribution that has to wait for an earlier range's. */
+typedef struct nt_deferred {
+	uint32_t vertex;
+	uint32_t orient;
+	nt_record add;
+	nt_record_more more;
+} nt_deferred;
+
+typedef struct nt_fast {
+	const nt_solve *solve;
+	const uint32_t *ids;     /* [3 * triangle_count] welded vertices */
+	const uint32_t *corners; /* [3 * triangle_count] corners of the mesh; NULL: i is i */
+	size_t triangle_count;
+	const nt_weld_row *rows; /* [vertex_count] */
+	size_t vertex_count;
+	uint8_t *flags;          /* [triangle_count] */
+	nt_adjacency adjacency;
+	nt_record *records[2];       /* [vertex_count] for orientation false and true; NULL: not needed */
+	nt_record_more *more[2];     /* the same for the optional outputs */
+	bool wants_more;
+	nt_triangle_ranges ranges;
+	nt_deferred **deferred;      /* [ranges] */
+	size_t *deferred_count;      /* [ranges] */
+} nt_fast;
+
+/* The passes of one instruction set. */
+typedef struct nt_kernels {
+	/* Solves triangles [begin, end) of a range and adds them to their vertices. Stops before a
+	 * triangle whose record array does not exist and returns it, and its orientation in *orient;
+	 * otherwise returns end. */
+	size_t (*accumulate)(nt_fast *fast, size_t begin, size_t end, unsigned range, int *orient);
+	/* Turns the records of blocks [begin, end) of vertices into results; returns how many
+	 * vertices are complex. */
+	size_t (*settle)(nt_fast *fast, size_t begin, size_t end);
+} nt_kernels;
+
+extern const nt_kernels nt_kernels_baseline;
+#if defined(__x86_64__)
+extern const nt_kernels nt_kernels_avx2, nt_kernels_avx512;
+#endif
+
+/* Whether triangle t and t + 1 are halves of one quad. */
+static inline bool nt_fast_quad_begins(const nt_fast *fast, size_t t)
+{
+	return t + 1 < fast->triangle_count && (fast->flags[t + 1] & NT_TRIANGLE_SECOND);
+}
+
+static inline size_t nt_fast_corner(const nt_fast *fast, size_t i)
+{
+	return fast->corners ? fast->corners[i] : i;
+}
+
+/* The next triangle from t on that has one of these flags; triangle_count: none. */
+size_t nt_fast_next_flagged(const nt_fast *fast, size_t t, unsigned flags);
+
+/* nt_mikktspace_fast() with another least number of triangles for a thread, for tests: small meshes then
+ * use threads too. */
+nmtan_status nt_mikktspace_fast_grain(const nt_solve *solve, size_t grain);
+
+/* Solves the vertices whose records are NT_RESULT_COMPLEX and writes their corners. */
+nmtan_status nt_fast_complex(nt_fast *fast, size_t complex_count);
+
+#endif

@@ -1,0 +1,629 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The two passes that need lanes, as plain loops over 16 of them. kernel_*.c include this file once for
+ * each instruction set, with NT_KERNEL(name) giving the names; the compiler makes vectors of the
+ * loops. The arithmetic is that of the scalar definition, operation by operation, wherever a value
+ * reaches the output.
+ *
+ * accumulate: 16 triangles at a time. Frame (spec page, step 4), the three corners' weighted u directions
+ * (step 8), then, one triangle after the other, the addition to the records of the vertices and
+ * the entry in each vertex's fan.
+ *
+ * settle: 16 vertices at a time. A vertex is settled when the corners of each orientation make one fan
+ * (step 6 would flood them in one go) and no two directions can be antiparallel (step 7 would not
+ * split them). Then its sums are its results.
+ */
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+#include "tangent/acos.h"
+#include "tangent/fast.h"
+
+/* Two unit vectors whose components along one axis are both above H, or both below -H, have a dot product
+ * of at least 2 H^2 - 1 = -0.98, far from the -1 at which step 7 parts them. Any H well above rounding
+ * will do; the smaller it is, the fewer vertices fail the test. */
+#define HALF_SPACE 0.1f
+
+/* Lengths in here are normalised without loss: their squares neither overflow nor lose bits. */
+#define LEAST_LENGTH 1e-15f
+#define MOST_LENGTH 1e15f
+
+/* Ratios that a float quotient can hold with room to spare. */
+#define LEAST_RATIO 1e-30f
+#define MOST_RATIO 1e30f
+
+/* A bit of nt_record.state as the float that sets it: NT_STATE_BASE is 2.0f, whose last place is 2^-22. */
+#define STATE_BIT(bit) ((float)(bit) * 0x1p-22f)
+
+typedef float nt_float4 __attribute__((vector_size(16)));
+typedef int nt_int4 __attribute__((vector_size(16)));
+
+/* 16 triangles by component. */
+typedef struct lanes_in {
+	float row[3][8][NT_LANES]; /* corner, float of its nt_weld_row */
+} lanes_in;
+
+typedef struct lanes_out {
+	float add[3][4 * NT_LANES];  /* corner: nt_record of each lane */
+	float more[3][8 * NT_LANES]; /* corner: nt_record_more of each lane */
+	float area[NT_LANES];
+	int orient[NT_LANES];     /* area > 0 */
+	int frameless[NT_LANES];  /* no UV area at all: certainly "any" */
+	int sound[NT_LANES];      /* every length and ratio is well inside float's range: certainly not "any" */
+	int degenerate[NT_LANES];
+} lanes_out;
+
+typedef struct corner_sum {
+	float x, y, z, state;
+	float bx, by, bz, angle;
+} corner_sum;
+
+/* The weighted directions of one corner with normal n, edges e (to the previous) and f (to the next vertex).
+ * `state` gets the bits of what holds for it. */
+static inline __attribute__((always_inline)) corner_sum solve_corner(const float n[3], const float os[3],
+	const float ot[3], const float e[3], const float f[3], bool more)
+{
+	/* u and v: the directions without their part along n */
+	const float ns = n[0] * os[0] + n[1] * os[1] + n[2] * os[2];
+	const float nv = n[0] * ot[0] + n[1] * ot[1] + n[2] * ot[2];
+	float ux = os[0] - ns * n[0], uy = os[1] - ns * n[1], uz = os[2] - ns * n[2];
+	float vx = ot[0] - nv * n[0], vy = ot[1] - nv * n[1], vz = ot[2] - nv * n[2];
+	const float ul = sqrtf(ux * ux + uy * uy + uz * uz);
+	const float ur = 1.0f / ul;
+	ux = ur * ux, uy = ur * uy, uz = ur * uz;
+	const float vl = sqrtf(vx * vx + vy * vy + vz * vz);
+
+	/* the angle between the edges, seen along n */
+	const float ne = n[0] * e[0] + n[1] * e[1] + n[2] * e[2];
+	const float nf = n[0] * f[0] + n[1] * f[1] + n[2] * f[2];
+	float ex = e[0] - ne * n[0], ey = e[1] - ne * n[1], ez = e[2] - ne * n[2];
+	float fx = f[0] - nf * n[0], fy = f[1] - nf * n[1], fz = f[2] - nf * n[2];
+	const float el = sqrtf(ex * ex + ey * ey + ez * ez);
+	const float fl = sqrtf(fx * fx + fy * fy + fz * fz);
+	const float er = 1.0f / el, fr = 1.0f / fl;
+	ex = er * ex, ey = er * ey, ez = er * ez;
+	fx = fr * fx, fy = fr * fy, fz = fr * fz;
+	float c = ex * fx + ey * fy + ez * fz;
+	c = c > 1.0f ? 1.0f : c;
+	c = c < -1.0f ? -1.0f : c;
+	const float w = nt_acos(c);
+
+	/* a length above 0 means that the definition normalises as well */
+	const int sound = (ul > LEAST_LENGTH) & (ul < MOST_LENGTH) & (vl > LEAST_LENGTH) &
+			  (vl < MOST_LENGTH) & (el > 0.0f) & (fl > 0.0f) & (w >= 0.0f);
+	const float h = HALF_SPACE * vl;
+	float state = ux > HALF_SPACE ? STATE_BIT(1) : ux < -HALF_SPACE ? STATE_BIT(2) : 0.0f;
+	state += uy > HALF_SPACE ? STATE_BIT(4) : uy < -HALF_SPACE ? STATE_BIT(8) : 0.0f;
+	state += uz > HALF_SPACE ? STATE_BIT(16) : uz < -HALF_SPACE ? STATE_BIT(32) : 0.0f;
+	state += vx > h ? STATE_BIT(1 << 6) : vx < -h ? STATE_BIT(2 << 6) : 0.0f;
+	state += vy > h ? STATE_BIT(4 << 6) : vy < -h ? STATE_BIT(8 << 6) : 0.0f;
+	state += vz > h ? STATE_BIT(16 << 6) : vz < -h ? STATE_BIT(32 << 6) : 0.0f;
+	state += sound ? STATE_BIT(NT_STATE_SOUND) : 0.0f;
+	state += 2.0f + STATE_BIT(NT_STATE_NO_ANY + NT_STATE_LOCAL);
+
+	corner_sum sum = {w * ux, w * uy, w * uz, state, 0, 0, 0, w};
+	if (more) {
+		const float vr = 1.0f / vl;
+		sum.bx = w * (vr * vx), sum.by = w * (vr * vy), sum.bz = w * (vr * vz);
+	}
+	return sum;
+}
+
+static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *restrict in,
+	lanes_out *restrict out, bool more)
+{
+	for (int i = 0; i < NT_LANES; i++) {
+		float p[3][3], n[3][3], t[3][2];
+#pragma GCC unroll 3
+		for (int k = 0; k < 3; k++) {
+			p[k][0] = in->row[k][0][i], p[k][1] = in->row[k][1][i], p[k][2] = in->row[k][2][i];
+			n[k][0] = in->row[k][3][i], n[k][1] = in->row[k][4][i], n[k][2] = in->row[k][5][i];
+			t[k][0] = in->row[k][6][i], t[k][1] = in->row[k][7][i];
+		}
+		/* edge k from corner k to k + 1, and back */
+		float e[3][3], r[3][3];
+#pragma GCC unroll 3
+		for (int c = 0; c < 3; c++) {
+			e[0][c] = p[1][c] - p[0][c], e[1][c] = p[2][c] - p[1][c], e[2][c] = p[0][c] - p[2][c];
+			r[0][c] = p[0][c] - p[1][c], r[1][c] = p[1][c] - p[2][c], r[2][c] = p[2][c] - p[0][c];
+		}
+		const int same01 = (p[0][0] == p[1][0]) & (p[0][1] == p[1][1]) & (p[0][2] == p[1][2]);
+		const int same12 = (p[1][0] == p[2][0]) & (p[1][1] == p[2][1]) & (p[1][2] == p[2][2]);
+		const int same20 = (p[2][0] == p[0][0]) & (p[2][1] == p[0][1]) & (p[2][2] == p[0][2]);
+
+		/* the frame: d1 is edge 0, d2 edge 2 backwards */
+		const float t21x = t[1][0] - t[0][0], t21y = t[1][1] - t[0][1];
+		const float t31x = t[2][0] - t[0][0], t31y = t[2][1] - t[0][1];
+		const float area = t21x * t31y - t21y * t31x;
+		float os[3], ot[3];
+#pragma GCC unroll 3
+		for (int c = 0; c < 3; c++) {
+			os[c] = t31y * e[0][c] - t21y * r[2][c];
+			ot[c] = -t31x * e[0][c] + t21x * r[2][c];
+		}
+		const float ls = sqrtf(os[0] * os[0] + os[1] * os[1] + os[2] * os[2]);
+		const float lt = sqrtf(ot[0] * ot[0] + ot[1] * ot[1] + ot[2] * ot[2]);
+		const float size = fabsf(area), sign = area > 0.0f ? 1.0f : -1.0f;
+		const float rs = sign / ls, rt = sign / lt;
+#pragma GCC unroll 3
+		for (int c = 0; c < 3; c++)
+			os[c] = rs * os[c], ot[c] = rt * ot[c];
+		out->area[i] = area;
+		out->orient[i] = area > 0.0f;
+		out->degenerate[i] = same01 | same12 | same20;
+		out->frameless[i] = !(size > FLT_MIN);
+		out->sound[i] = (size > FLT_MIN) & (ls > FLT_MIN) & (lt > FLT_MIN) &
+				(ls > LEAST_RATIO * size) & (lt > LEAST_RATIO * size) &
+				(ls < MOST_RATIO * size) & (lt < MOST_RATIO * size);
+
+#pragma GCC unroll 3
+		for (int k = 0; k < 3; k++) {
+			const corner_sum sum = solve_corner(n[k], os, ot, r[(k + 2) % 3], e[k], more);
+			out->add[k][4 * i] = sum.x;
+			out->add[k][4 * i + 1] = sum.y;
+			out->add[k][4 * i + 2] = sum.z;
+			out->add[k][4 * i + 3] = sum.state;
+			if (more) {
+				out->more[k][8 * i] = sum.bx;
+				out->more[k][8 * i + 1] = sum.by;
+				out->more[k][8 * i + 2] = sum.bz;
+				out->more[k][8 * i + 3] = sum.angle;
+				out->more[k][8 * i + 4] = sum.angle * (ls / size);
+				out->more[k][8 * i + 5] = sum.angle * (lt / size);
+				out->more[k][8 * i + 6] = 0.0f;
+				out->more[k][8 * i + 7] = 0.0f;
+			}
+		}
+	}
+}
+
+static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *in, lanes_out *out)
+{
+	solve_lanes(in, out, false);
+}
+
+static void __attribute__((noinline)) solve_lanes_more(const lanes_in *in, lanes_out *out)
+{
+	solve_lanes(in, out, true);
+}
+
+/* Rows of the corners of `count` triangles; the lanes behind repeat the last one. */
+static void gather_lanes(const nt_fast *fast, size_t first, size_t count, lanes_in *restrict in)
+{
+	const float *restrict values = (const float *)fast->rows;
+	for (int k = 0; k < 3; k++) {
+		int at[NT_LANES];
+		for (size_t i = 0; i < NT_LANES; i++)
+			at[i] = (int)(8 * fast->ids[3 * (first + (i < count ? i : count - 1)) + (size_t)k]);
+		for (int c = 0; c < 8; c++)
+			for (int i = 0; i < NT_LANES; i++)
+				in->row[k][c][i] = values[at[i] + c];
+	}
+}
+
+/* Whether a triangle whose values are out of the ordinary has a frame: the definition's own test. */
+static bool has_frame(const lanes_in *in, int i, float area)
+{
+	const float t21x = in->row[1][6][i] - in->row[0][6][i], t21y = in->row[1][7][i] - in->row[0][7][i];
+	const float t31x = in->row[2][6][i] - in->row[0][6][i], t31y = in->row[2][7][i] - in->row[0][7][i];
+	float s[3], t[3];
+	for (int c = 0; c < 3; c++) {
+		const float d1 = in->row[1][c][i] - in->row[0][c][i], d2 = in->row[2][c][i] - in->row[0][c][i];
+		s[c] = t31y * d1 - t21y * d2;
+		t[c] = -t31x * d1 + t21x * d2;
+	}
+	const float ls = sqrtf(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+	const float lt = sqrtf(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
+	return fabsf(ls / fabsf(area)) > FLT_MIN && fabsf(lt / fabsf(area)) > FLT_MIN;
+}
+
+/* Both halves of a quad take the orientation of one of them: step 4. */
+static void orient_quads(uint8_t *flags, size_t count, const float *area)
+{
+	for (size_t i = 0; i + 1 < count; i++) {
+		uint8_t *a = &flags[i], *b = &flags[i + 1];
+		if (!(*b & NT_TRIANGLE_SECOND) || ((*a | *b) & NT_TRIANGLE_DEGENERATE) ||
+			!((*a ^ *b) & NT_TRIANGLE_ORIENT))
+			continue;
+		if ((*b & NT_TRIANGLE_ANY) || fabsf(area[i]) >= fabsf(area[i + 1]))
+			*b ^= NT_TRIANGLE_ORIENT;
+		else
+			*a ^= NT_TRIANGLE_ORIENT;
+	}
+}
+
+/* Flags of the lanes; true where all of them are ordinary triangles with a frame. */
+static bool classify_lanes(const nt_fast *fast, size_t first, size_t count, const lanes_in *in,
+	const lanes_out *out)
+{
+	uint8_t *flags = fast->flags + first;
+	int odd = 0, special = 0;
+	for (int i = 0; i < NT_LANES; i++) {
+		odd |= !(out->sound[i] | out->frameless[i]);
+		special |= out->degenerate[i] | !out->sound[i];
+	}
+	for (size_t i = 0; i < count; i++)
+		flags[i] = (uint8_t)((flags[i] & NT_TRIANGLE_SECOND) | (out->orient[i] ? NT_TRIANGLE_ORIENT : 0) |
+				     (out->frameless[i] ? NT_TRIANGLE_ANY : 0) |
+				     (out->degenerate[i] ? NT_TRIANGLE_DEGENERATE : 0));
+	for (size_t i = 0; odd && i < count; i++)
+		if (!out->sound[i] && !out->frameless[i] && !has_frame(in, (int)i, out->area[i]))
+			flags[i] |= NT_TRIANGLE_ANY;
+	if (fast->corners)
+		orient_quads(flags, count, out->area);
+	return !special;
+}
+
+static inline void add_record(nt_record *record, const float *add)
+{
+	static const nt_int4 state_lane = {0, 0, 0, -1};
+	nt_float4 old, new;
+	memcpy(&old, record, sizeof old);
+	memcpy(&new, add, sizeof new);
+	const nt_int4 sum = (nt_int4)(old + new), both = (nt_int4)old & (nt_int4)new;
+	const nt_int4 result = (both & state_lane) | (sum & ~state_lane);
+	memcpy(record, &result, sizeof result);
+}
+
+static inline void add_more(nt_record_more *record, const float *add)
+{
+	nt_float4 old[2], new[2];
+	memcpy(old, record, sizeof old);
+	memcpy(new, add, sizeof new);
+	old[0] += new[0], old[1] += new[1];
+	memcpy(record, old, sizeof old);
+}
+
+/* A corner of a hub, or of a vertex that an earlier range adds to. */
+static void __attribute__((noinline)) add_unusual(nt_fast *fast, unsigned range, uint32_t vertex,
+	uint32_t cursor, int orient, nt_fan_entry entry, const float *add, const float *more)
+{
+	if (!(cursor & NT_CURSOR_HUB))
+		fast->adjacency.entries[cursor & NT_CURSOR_PLACE] = entry;
+	if (cursor & NT_CURSOR_SHARED) {
+		nt_deferred *deferred = &fast->deferred[range][fast->deferred_count[range]++];
+		deferred->vertex = vertex;
+		deferred->orient = (uint32_t)orient;
+		memcpy(&deferred->add, add, sizeof deferred->add);
+		if (fast->wants_more)
+			memcpy(&deferred->more, more, sizeof deferred->more);
+		return;
+	}
+	add_record(&fast->records[orient][vertex], add);
+	if (fast->wants_more)
+		add_more(&fast->more[orient][vertex], more);
+}
+
+static inline void add_corner(nt_fast *fast, unsigned range, uint32_t vertex, int orient,
+	nt_fan_entry entry, const float *add, const float *more)
+{
+	const nt_adjacency *a = &fast->adjacency;
+	uint32_t *cursor = &a->cursors[range * a->vertex_count + vertex];
+	const uint32_t place = *cursor;
+	if (__builtin_expect(place >= NT_CURSOR_SHARED, 0)) {
+		*cursor = place + (place & NT_CURSOR_HUB ? 0 : NT_FAN_LANES);
+		add_unusual(fast, range, vertex, place, orient, entry, add, more);
+		return;
+	}
+	*cursor = place + NT_FAN_LANES;
+	a->entries[place] = entry;
+	add_record(&fast->records[orient][vertex], add);
+	if (fast->wants_more)
+		add_more(&fast->more[orient][vertex], more);
+}
+
+/* Adds a triangle with a frame. */
+static inline void add_triangle(nt_fast *fast, unsigned range, size_t t, int lane, const lanes_out *out)
+{
+	const uint32_t *v = fast->ids + 3 * t;
+	const int orient = fast->flags[t] & NT_TRIANGLE_ORIENT;
+	const uint32_t bit = (uint32_t)orient << 31;
+	const uint32_t a = v[0] | bit, b = v[1] | bit, c = v[2] | bit;
+	add_corner(fast, range, v[0], orient, (nt_fan_entry){b, c}, out->add[0] + 4 * lane,
+		out->more[0] + 8 * lane);
+	add_corner(fast, range, v[1], orient, (nt_fan_entry){c, a}, out->add[1] + 4 * lane,
+		out->more[1] + 8 * lane);
+	add_corner(fast, range, v[2], orient, (nt_fan_entry){a, b}, out->add[2] + 4 * lane,
+		out->more[2] + 8 * lane);
+}
+
+/* Orientation of the record that takes note of an "any" triangle: any that exists. */
+static int any_record(const nt_fast *fast, int orient)
+{
+	return fast->records[orient] || !fast->records[!orient] ? orient : !orient;
+}
+
+/* Adds a triangle that is degenerate (voids in the fans) or has no frame (a corner in the fans, a note in the
+ * records), or is ordinary but has values that the lanes do not vouch for. */
+static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range, size_t t, int lane,
+	lanes_out *out)
+{
+	static const float zero[8] = {0};
+	float note[4] = {0.0f, 0.0f, 0.0f, 2.0f + STATE_BIT(NT_STATE_ALL)};
+	const uint32_t *v = fast->ids + 3 * t;
+	const uint8_t flags = fast->flags[t];
+	if (!(flags & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY))) {
+		for (int k = 0; k < 3 && !out->sound[lane]; k++)
+			out->add[k][4 * lane + 3] = 2.0f + STATE_BIT(NT_STATE_NO_ANY + NT_STATE_LOCAL);
+		add_triangle(fast, range, t, lane, out);
+		return;
+	}
+	const int orient = any_record(fast, flags & NT_TRIANGLE_ORIENT);
+	if (flags & NT_TRIANGLE_DEGENERATE) {
+		uint32_t *cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
+		for (int k = 0; k < 3; k++) {
+			const uint32_t place = cursors[v[k]], number = place & NT_CURSOR_PLACE;
+			if (place & NT_CURSOR_HUB)
+				continue;
+			cursors[v[k]] = place + NT_FAN_LANES;
+			fast->adjacency.entries[number] = (nt_fan_entry){NT_ENTRY_VOID | number,
+				NT_ENTRY_VOID | NT_ENTRY_VOID >> 1 | number};
+		}
+		return;
+	}
+	note[3] -= STATE_BIT(NT_STATE_NO_ANY);
+	for (int k = 0; k < 3; k++)
+		add_corner(fast, range, v[k], orient, (nt_fan_entry){v[(k + 1) % 3], v[(k + 2) % 3]}, note,
+			zero);
+}
+
+/* The orientation of a record array that these triangles need and that does not exist; -1: none. */
+static int missing_record(const nt_fast *fast, size_t first, size_t count)
+{
+	if (fast->records[0] && fast->records[1])
+		return -1;
+	for (size_t i = 0; i < count; i++) {
+		const uint8_t flags = fast->flags[first + i];
+		int orient = flags & NT_TRIANGLE_ORIENT;
+		if (flags & NT_TRIANGLE_DEGENERATE)
+			continue;
+		if (flags & NT_TRIANGLE_ANY)
+			orient = any_record(fast, orient);
+		if (!fast->records[orient])
+			return orient;
+	}
+	return -1;
+}
+
+static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, int *orient)
+{
+	lanes_in in;
+	lanes_out out;
+	for (size_t first = begin, count; first < end; first += count) {
+		count = end - first < NT_LANES ? end - first : NT_LANES;
+		if (first + count < end && (fast->flags[first + count] & NT_TRIANGLE_SECOND))
+			count--; /* halves of a quad stay together */
+		gather_lanes(fast, first, count, &in);
+		if (fast->wants_more)
+			solve_lanes_more(&in, &out);
+		else
+			solve_lanes_plain(&in, &out);
+		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
+		const int missing = missing_record(fast, first, count);
+		if (missing >= 0) {
+			*orient = missing;
+			return first;
+		}
+		if (ordinary)
+			for (size_t i = 0; i < count; i++)
+				add_triangle(fast, range, first + i, (int)i, &out);
+		else
+			for (size_t i = 0; i < count; i++)
+				add_special(fast, range, first + i, (int)i, &out);
+	}
+	return end;
+}
+
+/* The fans of a block by lane: what settle asks of them. */
+typedef struct fan_lanes {
+	uint32_t next[NT_FAN_DEPTH][NT_LANES], previous[NT_FAN_DEPTH][NT_LANES];
+	uint32_t linked[NT_FAN_DEPTH][NT_LANES]; /* corner i: bit j for each neighbour j of its orientation */
+	uint32_t fans[NT_LANES];                 /* connected components */
+	uint32_t doubtful[NT_LANES];             /* a directed edge occurs twice: pairs depend on order */
+} fan_lanes;
+
+/* Loads entries, voids where a vertex has fewer corners than the block is deep. */
+static void load_fans(const nt_fast *fast, size_t block, uint32_t depth, const uint32_t *degree,
+	const uint32_t *mask, fan_lanes *restrict f)
+{
+	const nt_fan_entry *restrict entries =
+		fast->adjacency.entries + fast->adjacency.block_begin[block];
+	for (uint32_t k = 0; k < depth; k++)
+		for (int i = 0; i < NT_LANES; i++) {
+			const uint32_t next = entries[k * NT_FAN_LANES + (uint32_t)i].next & mask[i];
+			const uint32_t previous = entries[k * NT_FAN_LANES + (uint32_t)i].previous & mask[i];
+			/* above all numbers that accumulate gives to voids */
+			f->next[k][i] = k < degree[i] ? next : NT_ENTRY_VOID | 1u << 28 | k;
+			f->previous[k][i] = k < degree[i] ? previous : NT_ENTRY_VOID | 3u << 28 | k;
+		}
+}
+
+/* Links corners across shared edges, where these are unambiguous. */
+static void link_fans(uint32_t depth, fan_lanes *restrict f)
+{
+	for (int i = 0; i < NT_LANES; i++)
+		f->doubtful[i] = f->fans[i] = 0;
+	for (uint32_t k = 0; k < depth; k++)
+		for (int i = 0; i < NT_LANES; i++)
+			f->linked[k][i] = 0;
+	for (uint32_t a = 0; a < depth; a++)
+		for (uint32_t b = a + 1; b < depth; b++)
+			for (int i = 0; i < NT_LANES; i++) {
+				const uint32_t na = f->next[a][i], nb = f->next[b][i];
+				const uint32_t pa = f->previous[a][i], pb = f->previous[b][i];
+				const uint32_t link = (na == pb) | (nb == pa);
+				f->linked[a][i] |= link << b;
+				f->linked[b][i] |= link << a;
+				f->doubtful[i] |= (((na ^ nb) & NT_ENTRY_VERTEX) == 0) |
+						  (((pa ^ pb) & NT_ENTRY_VERTEX) == 0);
+			}
+}
+
+/* Counts components by elimination: a corner hands its links to the later ones it is linked with; one that
+ * has none when its turn comes is the last of its component. */
+static void count_fans(uint32_t depth, fan_lanes *restrict f)
+{
+	for (uint32_t a = 0; a < depth; a++) {
+		for (uint32_t b = a + 1; b < depth; b++)
+			for (int i = 0; i < NT_LANES; i++)
+				f->linked[b][i] |= f->linked[b][i] >> a & 1 ? f->linked[a][i] : 0;
+		for (int i = 0; i < NT_LANES; i++)
+			f->fans[i] += (f->linked[a][i] >> a) >> 1 == 0 && !(f->next[a][i] & NT_ENTRY_VOID);
+	}
+}
+
+/* The records of a block by component. */
+typedef struct record_lanes {
+	float x[NT_LANES], y[NT_LANES], z[NT_LANES];
+	uint32_t state[NT_LANES]; /* then the result's */
+	uint32_t present[NT_LANES];
+	uint32_t sound[NT_LANES];
+} record_lanes;
+
+static void load_records(const nt_record *restrict records, size_t count, record_lanes *restrict r)
+{
+	nt_record copy[NT_LANES];
+	if (!records || count < NT_LANES) {
+		for (int i = 0; i < NT_LANES; i++)
+			copy[i] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+		if (records)
+			memcpy(copy, records, count * sizeof *copy);
+		records = copy;
+	}
+	for (int i = 0; i < NT_LANES; i++) {
+		r->x[i] = records[i].x;
+		r->y[i] = records[i].y;
+		r->z[i] = records[i].z;
+		r->state[i] = records[i].state;
+	}
+	for (int i = 0; i < NT_LANES; i++) {
+		const uint32_t s = r->state[i];
+		r->present[i] = (s & NT_STATE_EMPTY) == 0;
+		r->sound[i] = (s & NT_STATE_U) != 0 && (s & NT_STATE_V) != 0 && (s & NT_STATE_SOUND) != 0;
+	}
+}
+
+static void normalise_records(record_lanes *restrict r)
+{
+	for (int i = 0; i < NT_LANES; i++) {
+		const float x = r->x[i], y = r->y[i], z = r->z[i];
+		const float scale = 1.0f / sqrtf(x * x + y * y + z * z);
+		const int not_zero = (fabsf(x) > FLT_MIN) | (fabsf(y) > FLT_MIN) | (fabsf(z) > FLT_MIN);
+		r->x[i] = not_zero ? scale * x : x;
+		r->y[i] = not_zero ? scale * y : y;
+		r->z[i] = not_zero ? scale * z : z;
+	}
+}
+
+static void store_records(nt_record *restrict records, size_t count, const record_lanes *restrict r)
+{
+	if (count == NT_LANES) {
+		for (int i = 0; i < NT_LANES; i++) {
+			records[i].x = r->x[i];
+			records[i].y = r->y[i];
+			records[i].z = r->z[i];
+			records[i].state = r->state[i];
+		}
+		return;
+	}
+	for (size_t i = 0; i < count; i++)
+		records[i] = (nt_record){r->x[i], r->y[i], r->z[i], r->state[i]};
+}
+
+static void normalise3(float *x, float *y, float *z)
+{
+	if (!(fabsf(*x) > FLT_MIN || fabsf(*y) > FLT_MIN || fabsf(*z) > FLT_MIN))
+		return;
+	const float scale = 1.0f / sqrtf(*x * *x + *y * *y + *z * *z);
+	*x = scale * *x, *y = scale * *y, *z = scale * *z;
+}
+
+static void settle_more(nt_record_more *more, size_t count, const uint32_t *present)
+{
+	for (size_t i = 0; i < count; i++) {
+		nt_record_more *m = &more[i];
+		if (!present[i]) {
+			*m = (nt_record_more){.y = 1.0f, .mag_s = 1.0f, .mag_t = 1.0f};
+			continue;
+		}
+		normalise3(&m->x, &m->y, &m->z);
+		if (m->angle > 0.0f) {
+			m->mag_s /= m->angle;
+			m->mag_t /= m->angle;
+		}
+	}
+}
+
+/* Corners of the block's vertices, and which of its vertices are hubs. */
+static void load_degrees(const nt_adjacency *a, size_t first, size_t count, uint32_t *restrict degree,
+	uint32_t *restrict hub)
+{
+	const uint32_t *cursors = a->cursors + (a->ranges - 1) * a->vertex_count + first;
+	const uint32_t begin = a->block_begin[first / NT_FAN_LANES];
+	for (size_t i = 0; i < NT_LANES; i++) {
+		const uint32_t cursor = i < count ? cursors[i] : begin;
+		hub[i] = cursor >> 31;
+		degree[i] = hub[i] ? 0 : ((cursor & NT_CURSOR_PLACE) - begin) / NT_FAN_LANES;
+	}
+}
+
+static size_t settle_block(nt_fast *fast, size_t block)
+{
+	const size_t first = block * NT_LANES, left = fast->vertex_count - first;
+	const size_t count = left < NT_LANES ? left : NT_LANES;
+	const nt_adjacency *a = &fast->adjacency;
+	const uint32_t depth = (a->block_begin[block + 1] - a->block_begin[block]) / NT_FAN_LANES;
+	uint32_t degree[NT_LANES], hub[NT_LANES], mask[NT_LANES], complex[NT_LANES];
+	record_lanes r[2];
+	fan_lanes f;
+	load_degrees(a, first, count, degree, hub);
+	for (int o = 0; o < 2; o++)
+		load_records(fast->records[o] ? fast->records[o] + first : NULL, count, &r[o]);
+
+	/* "any" corners join whatever orientation there is: with one only, it need not be compared */
+	for (int i = 0; i < NT_LANES; i++)
+		mask[i] = r[0].present[i] & r[1].present[i] ? UINT32_MAX : NT_ENTRY_VERTEX;
+	load_fans(fast, block, depth, degree, mask, &f);
+	link_fans(depth, &f);
+	count_fans(depth, &f);
+
+	size_t complex_count = 0;
+	for (int i = 0; i < NT_LANES; i++) {
+		const uint32_t both = r[0].state[i] & r[1].state[i];
+		const uint32_t present = r[0].present[i] + r[1].present[i];
+		const uint32_t unsound = (r[0].present[i] & !r[0].sound[i]) | (r[1].present[i] & !r[1].sound[i]);
+		const uint32_t mixed = present == 2 && !(both & NT_STATE_NO_ANY);
+		complex[i] = present != 0 && (unsound | mixed | hub[i] | f.doubtful[i] |
+						     !(both & NT_STATE_LOCAL) | (f.fans[i] != present));
+	}
+	for (int o = 0; o < 2; o++) {
+		if (!fast->records[o])
+			continue;
+		normalise_records(&r[o]);
+		const uint32_t sign = o ? NT_RESULT_PLUS : NT_RESULT_MINUS;
+		for (int i = 0; i < NT_LANES; i++) {
+			const uint32_t none = r[0].present[i] | r[1].present[i];
+			/* no group at all: the default of step 10 */
+			r[o].x[i] = none ? r[o].x[i] : 1.0f;
+			r[o].state[i] = complex[i] ? NT_RESULT_COMPLEX
+				: r[o].present[i] ? sign : none ? NT_RESULT_NONE : NT_RESULT_MINUS;
+		}
+		store_records(fast->records[o] + first, count, &r[o]);
+		if (fast->wants_more)
+			settle_more(fast->more[o] + first, count, r[o].present);
+	}
+	for (size_t i = 0; i < count; i++)
+		complex_count += complex[i];
+	return complex_count;
+}
+
+static size_t settle(nt_fast *fast, size_t begin, size_t end)
+{
+	size_t complex_count = 0;
+	for (size_t block = begin; block < end; block++)
+		complex_count += settle_block(fast, block);
+	return complex_count;
+}
+
+const nt_kernels NT_KERNEL = {accumulate, settle};
