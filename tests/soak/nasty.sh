@@ -1,0 +1,17 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+# 100 000 nasty meshes: the fast path against the definition, in as many processes as there are processors.
+build=$1
+each=$((100000 / $(nproc)))
+pids=()
+for ((i = 0; i < $(nproc); i++)); do
+	NT_NASTY_FROM=$((i * each + 1000000)) NT_NASTY_COUNT=$each \
+		"$build/tests/unit/tangent/test_fast" >"$build/nasty.$i.log" 2>&1 &
+	pids+=($!)
+done
+failed=0
+for i in "${!pids[@]}"; do
+	wait "${pids[$i]}" || { failed=$((failed + 1)); tail -20 "$build/nasty.$i.log"; }
+done
+echo "$((${#pids[@]} - failed)) passed, $failed failed"
+[ "$failed" -eq 0 ]

@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The fast path against the definition, byte by byte: goldens and nasty meshes, for every instruction set
+ * of this machine and several thread counts, with all outputs.
+ *
+ * NT_NASTY_FROM and NT_NASTY_COUNT in the environment choose other seeds (make soak tries 100 000).
+ */
+#include "test.h"
+#include <math.h>
+#include <stdio.h>
+#include <unistd.h>
+#include "base/cpu.h"
+#include "golden.h"
+#include "nasty.h"
+#include "tangent/fast.h"
+
+/* Floats with different bits that are not both NaN. */
+static size_t count_differences(const float *a, const float *b, size_t count)
+{
+	size_t differences = 0;
+	for (size_t i = 0; i < count; i++)
+		differences += memcmp(&a[i], &b[i], sizeof *a) != 0 && !(isnan(a[i]) && isnan(b[i]));
+	return differences;
+}
+
+typedef struct result {
+	float *tangents, *bitangents, *magnitudes;
+} result;
+
+static result result_make(size_t corners)
+{
+	return (result){malloc(corners * 16 + 1), malloc(corners * 12 + 1), malloc(corners * 8 + 1)};
+}
+
+static void result_free(result *r)
+{
+	free(r->tangents);
+	free(r->bitangents);
+	free(r->magnitudes);
+}
+
+static size_t result_differences(const result *a, const result *b, size_t corners, bool more)
+{
+	size_t differences = count_differences(a->tangents, b->tangents, 4 * corners);
+	if (more)
+		differences += count_differences(a->bitangents, b->bitangents, 3 * corners) +
+			       count_differences(a->magnitudes, b->magnitudes, 2 * corners);
+	return differences;
+}
+
+static nmtan_mesh filled(const nmtan_mesh *mesh)
+{
+	nmtan_mesh m = *mesh;
+	m.position_stride_bytes = m.position_stride_bytes ? m.position_stride_bytes : 12;
+	m.normal_stride_bytes = m.normal_stride_bytes ? m.normal_stride_bytes : 12;
+	m.texcoord_stride_bytes = m.texcoord_stride_bytes ? m.texcoord_stride_bytes : 8;
+	return m;
+}
+
+static nt_solve make_solve(const nmtan_mesh *mesh, size_t corners, nt_scratch *scratch, const result *r,
+	bool more)
+{
+	return (nt_solve){.mesh = mesh, .corner_count = corners, .threshold_cos = -1.0f, .threads = 1,
+		.isa = NMTAN_ISA_BASELINE, .scratch = scratch, .tangents = r->tangents,
+		.bitangents = more ? r->bitangents : NULL, .magnitudes = more ? r->magnitudes : NULL};
+}
+
+/* One run of the fast path against `expected`; prints what differs. */
+static size_t compare_run(const char *name, const nmtan_mesh *mesh, size_t corners, const result *expected,
+	bool more, nmtan_isa isa, unsigned threads)
+{
+	result got = result_make(corners);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	nt_solve solve = make_solve(mesh, corners, &scratch, &got, more);
+	solve.isa = isa;
+	solve.threads = threads;
+	memset(got.tangents, 0xab, corners * 16);
+	assert_int_equal(nt_mikktspace_fast_grain(&solve, 1), NMTAN_OK);
+	const size_t differences = result_differences(expected, &got, corners, more);
+	if (differences)
+		print_error("%s, set %d, %u threads: %zu of %zu floats differ\n", name, (int)isa, threads,
+			differences, corners * (more ? 9 : 4));
+	nt_scratch_free(&scratch);
+	result_free(&got);
+	return differences;
+}
+
+/* One thread with every instruction set, then more threads. */
+static size_t compare_variants(const char *name, const nmtan_mesh *mesh, size_t corners,
+	const result *expected, bool more)
+{
+	static const unsigned threads[] = {2, 3, 8};
+	size_t differences = 0;
+	for (nmtan_isa isa = NMTAN_ISA_BASELINE; isa <= NMTAN_ISA_AVX512; isa++)
+		if (nt_cpu_has(isa))
+			differences += compare_run(name, mesh, corners, expected, more, isa, 1);
+	for (int i = 0; i < 3; i++)
+		differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), threads[i]);
+	return differences;
+}
+
+static void compare_golden(const char *path, const nt_golden *golden, void *context)
+{
+	const nmtan_mesh loose = nt_golden_mesh(golden), mesh = filled(&loose);
+	const result expected = {golden->tangents, NULL, NULL};
+	*(size_t *)context += compare_variants(path, &mesh, golden->corner_count, &expected, false);
+}
+
+static void goldens_are_byte_identical(void **state)
+{
+	(void)state;
+	size_t differences = 0;
+	assert_int_equal(nt_golden_each(NT_DATA_DIR "/golden", compare_golden, &differences), 46);
+	assert_int_equal(differences, 0);
+}
+
+static size_t compare_nasty(uint64_t seed)
+{
+	char name[64];
+	nt_nasty nasty;
+	nt_nasty_make(seed, &nasty);
+	const nmtan_mesh mesh = filled(&nasty.mesh);
+	const bool more = seed % 2;
+	result expected = result_make(nasty.corner_count);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	const nt_solve solve = make_solve(&mesh, nasty.corner_count, &scratch, &expected, more);
+	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
+	nt_scratch_free(&scratch);
+	snprintf(name, sizeof name, "seed %llu", (unsigned long long)seed);
+	const size_t differences = compare_variants(name, &mesh, nasty.corner_count, &expected, more);
+	result_free(&expected);
+	nt_nasty_free(&nasty);
+	return differences;
+}
+
+static uint64_t environment(const char *name, uint64_t otherwise)
+{
+	const char *text = getenv(name);
+	return text ? strtoull(text, NULL, 10) : otherwise;
+}
+
+static void nasty_meshes_are_byte_identical(void **state)
+{
+	(void)state;
+	const uint64_t from = environment("NT_NASTY_FROM", 0), count = environment("NT_NASTY_COUNT", 2000);
+	size_t wrong = 0;
+	for (uint64_t seed = from; seed < from + count && wrong < 10; seed++)
+		wrong += compare_nasty(seed) > 0;
+	assert_int_equal(wrong, 0);
+}
+
+/* Eight threads on two processors must not spin while they wait: on a busy machine that takes 30 times as long.
+ * libgomp reads the policy before main. */
+static void wait_passively(char **arguments)
+{
+	if (getenv("OMP_WAIT_POLICY"))
+		return;
+	setenv("OMP_WAIT_POLICY", "passive", 1);
+	execv("/proc/self/exe", arguments);
+}
+
+int main(int count, char **arguments)
+{
+	(void)count;
+	wait_passively(arguments);
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(goldens_are_byte_identical),
+		cmocka_unit_test(nasty_meshes_are_byte_identical),
+	};
+	return cmocka_run_group_tests_name("tangent/fast", tests, NULL, NULL);
+}
