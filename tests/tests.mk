@@ -44,7 +44,6 @@ check-built: build/node/node_modules/gltf-validator/package.json
 	@$(MAKE) -s $(JOBS) config=release all tests
 	@echo "Building config=sanitize"
 	@$(MAKE) -s $(JOBS) config=sanitize all tests
-	@$(MAKE) -s config=release lint
 	@bash tests/run $(if $(filter true,$(CI)),--strict) build/release build/sanitize
 
 # Heavy runs: tests/soak/*.sh in turn, each with its own closing line.
