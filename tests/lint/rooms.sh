@@ -61,7 +61,7 @@ done < <(git ls-files 2>/dev/null)
 
 while IFS= read -r hit; do
 	fault "$hit"
-done < <(git grep -nIE 'registry\.[a-z]+\.|"resolved"|(^|[^a-zA-Z.])/work/|/root/|/home/[a-z]' -- . ':!tests/lint' 2>/dev/null)
+done < <(git grep -nIE 'registry\.[a-z]+\.|"resolved"|(^|[^a-zA-Z0-9_.}])/(work|root|home/[a-z]+)/' -- . ':!tests/lint' 2>/dev/null)
 
 # What the shared library shows to the world, and what the static one asks of it.
 build=${1-}
