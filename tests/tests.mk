@@ -9,15 +9,18 @@ unit_bin := $(patsubst tests/%.c,$(B)/tests/%,$(unit_src))
 api_bin := $(patsubst tests/%.c,$(B)/tests/%,$(api_src))
 support_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/support/*.c))
 
+# The oracle of tests/support/oracle128.c.
+QUADMATH := $(if $(filter x86_64 i686,$(shell uname -m)),-lquadmath)
+
 $(B)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
 	$(CC) $(NT_CFLAGS) -Itests/support -DNT_DATA_DIR='"data"' -c -o $@ $<
 
 $(unit_bin): $(B)/tests/%: $(B)/tests/%.o $(support_obj) $(B)/libtool.a $(B)/libnmtan.a
-	$(CXX) $(NT_LDFLAGS) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group -lcmocka $(TOOL_LIBS)
+	$(CXX) $(NT_LDFLAGS) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group -lcmocka $(TOOL_LIBS) $(QUADMATH)
 
 $(api_bin): $(B)/tests/%: $(B)/tests/%.o $(support_obj) $(B)/libnmtan.a
-	$(CC) $(NT_LDFLAGS) -o $@ $^ -lcmocka -lm
+	$(CC) $(NT_LDFLAGS) -o $@ $^ -lcmocka -lm $(QUADMATH)
 
 .PRECIOUS: $(B)/tests/%.o
 
@@ -50,3 +53,13 @@ check-built: build/node/node_modules/gltf-validator/package.json
 soak-built: check-built
 	@for script in tests/soak/*.sh; do [ ! -f $$script ] || \
 		{ echo "$$script" && bash $$script build/release build/sanitize || exit 1; }; done
+
+# make stress: numerical stability at the edges of floating point; tables and charts in build/stress.
+stress_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/stress/*.c))
+
+$(B)/tests/stress/stress: $(stress_obj) $(support_obj) $(B)/libnmtan.a
+	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm $(QUADMATH)
+
+.PHONY: stress
+stress: $(B)/tests/stress/stress
+	@sh tests/stress/run.sh $< build/stress

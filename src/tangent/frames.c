@@ -25,7 +25,7 @@
 static const double CANCELLED = 1e-10;
 
 /* Sine of the angle between u and the normal below which the projected direction would be noise. */
-static const double PARALLEL = 1e-12;
+static const double PARALLEL = 1e-15;
 
 /* The condition up to which `robust` promises 2^-23 in each component. */
 static const double WELL_CONDITIONED = 16777216.0;

@@ -1,0 +1,212 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * See judge.h. Nothing here calls into the library but nmtan_tangents(); signs and vectors come from the
+ * oracle.
+ */
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include "judge.h"
+#include "oracle128.h"
+
+const column columns[COLUMN_COUNT] = {
+	{"mikktspace raw", NMTAN_METHOD_MIKKTSPACE, NMTAN_REPAIR_OFF},
+	{"mikktspace", NMTAN_METHOD_MIKKTSPACE, NMTAN_REPAIR_ON},
+	{"area", NMTAN_METHOD_AREA, NMTAN_REPAIR_ON},
+	{"lengyel", NMTAN_METHOD_LENGYEL, NMTAN_REPAIR_ON},
+	{"robust", NMTAN_METHOD_ROBUST, NMTAN_REPAIR_ON},
+};
+
+static const double WELL_CONDITIONED = 16777216.0; /* 2^24 */
+static const double ONE_BIT = 1.0 / 8388608.0;     /* 2^-23 */
+
+static oracle_weight weight_of(nmtan_method method)
+{
+	return method == NMTAN_METHOD_AREA      ? ORACLE_AREA
+	       : method == NMTAN_METHOD_LENGYEL ? ORACLE_NONE
+						: ORACLE_ANGLE;
+}
+
+static double seconds(void)
+{
+	struct timespec t;
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static size_t triangle_count(const nmtan_mesh *mesh)
+{
+	size_t count = mesh->face_count;
+	for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
+		count += mesh->face_sizes[f] == 4;
+	return count;
+}
+
+/* Runs a method with a warm workspace, one thread, until 4 ms or 3 runs have passed; the best run counts. */
+static bool run(const nmtan_mesh *mesh, const column *c, nmtan_workspace *workspace, float *tangents,
+	score *s)
+{
+	const nmtan_options options = {.method = c->method, .repair = c->repair, .threads = 1,
+		.workspace = workspace};
+	nmtan_output output = {.tangents = tangents};
+	double total = 0, best = INFINITY;
+	for (int i = 0; i < 50 && (i < 3 || total < 0.004) && (i < 1 || total < 2); i++) {
+		const double start = seconds();
+		if (nmtan_tangents(mesh, &options, &output))
+			return false;
+		const double took = seconds() - start;
+		total += took;
+		best = fmin(best, took);
+	}
+	s->ns_per_triangle = 1e9 * best / (double)triangle_count(mesh);
+	s->counted = output.counts.ill_conditioned;
+	return true;
+}
+
+static const float *normal_of(const nmtan_mesh *mesh, size_t corner)
+{
+	return mesh->normals + 3 * (mesh->indices ? mesh->indices[corner] : corner);
+}
+
+static bool is_unit(const float *t)
+{
+	const double squared = (double)t[0] * t[0] + (double)t[1] * t[1] + (double)t[2] * t[2];
+	return isfinite(squared) && fabs(squared - 1) <= 33 * 1.1920929e-7;
+}
+
+/* Cosine of the angle between a unit T and N; 0 where N has no direction. */
+static double along_normal(const float *t, const float *n)
+{
+	const double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
+	if (!(length > 0) || !isfinite(length))
+		return 0;
+	return ((double)t[0] * n[0] + (double)t[1] * n[1] + (double)t[2] * n[2]) / length;
+}
+
+static double degrees_between(const float *t, const double *exact)
+{
+	double sine = 0, cosine = 0;
+	for (int i = 0; i < 3; i++) {
+		const int k = (i + 1) % 3, l = (i + 2) % 3;
+		const double x = t[k] * exact[l] - t[l] * exact[k];
+		sine += x * x;
+		cosine += t[i] * exact[i];
+	}
+	const double angle = atan2(sqrt(sine), cosine) * 57.29577951308232;
+	return isfinite(angle) ? angle : 180;
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+	const double x = *(const double *)a, y = *(const double *)b;
+	return (x > y) - (x < y);
+}
+
+static void score_signs(const nmtan_mesh *mesh, const oracle_corner *exact, const float *tangents, score *s)
+{
+	for (size_t f = 0, first = 0; f < mesh->face_count; f++) {
+		const size_t size = mesh->face_sizes ? mesh->face_sizes[f] : 3;
+		bool mixed = false, wrong = false;
+		for (size_t c = first; c < first + size; c++) {
+			mixed = mixed || tangents[4 * c + 3] != tangents[4 * first + 3];
+			wrong = wrong || tangents[4 * c + 3] != (float)exact[first].sign;
+		}
+		s->faces++;
+		s->oriented += exact[first].sign != 0;
+		s->mixed_sign += mixed;
+		s->wrong_sign += wrong && exact[first].sign != 0;
+		first += size;
+	}
+}
+
+static void score_vectors(const nmtan_mesh *mesh, const oracle_corner *exact, bool oracle,
+	const float *tangents, double *angles, score *s)
+{
+	for (size_t c = 0; c < s->corners; c++) {
+		const float *t = tangents + 4 * c;
+		const double cosine = along_normal(t, normal_of(mesh, c));
+		s->zero += !is_unit(t);
+		s->parallel += is_unit(t) && fabs(cosine) > 1 - 5e-7;
+		s->tilted += !(fabs(cosine) <= 4 * ONE_BIT);
+		if (exact[c].sign == 0 || !oracle)
+			continue;
+		if (!(exact[c].condition < WELL_CONDITIONED)) {
+			s->beyond++;
+			continue;
+		}
+		bool off = false;
+		for (int i = 0; i < 3; i++)
+			off = off || !(fabs(t[i] - exact[c].t[i]) <= ONE_BIT);
+		s->off += off;
+		angles[s->judged++] = degrees_between(t, exact[c].t);
+	}
+	if (s->judged == 0)
+		return;
+	qsort(angles, s->judged, sizeof *angles, compare_doubles);
+	s->worst_degrees = angles[s->judged - 1];
+	s->median_degrees = angles[s->judged / 2];
+	s->high_degrees = angles[(size_t)((double)(s->judged - 1) * 0.999)];
+}
+
+/* MikkTSpace's bytes stay where they are usable: a finite unit vector, not along N, in a face whose signs
+ * agree and are the exact one. */
+static size_t count_altered(const nmtan_mesh *mesh, const oracle_corner *exact, const float *raw,
+	const float *repaired)
+{
+	size_t altered = 0;
+	for (size_t f = 0, first = 0; f < mesh->face_count; f++) {
+		const size_t size = mesh->face_sizes ? mesh->face_sizes[f] : 3;
+		bool agree = true;
+		for (size_t c = first; c < first + size; c++)
+			agree = agree && raw[4 * c + 3] == (float)exact[first].sign;
+		for (size_t c = first; agree && c < first + size; c++)
+			altered += is_unit(raw + 4 * c) &&
+				   fabs(along_normal(raw + 4 * c, normal_of(mesh, c))) < 1 - 6e-7 &&
+				   memcmp(raw + 4 * c, repaired + 4 * c, 16) != 0;
+		first += size;
+	}
+	return altered;
+}
+
+bool judge_mesh(const nmtan_mesh *mesh, size_t corner_count, bool oracle, score scores[COLUMN_COUNT])
+{
+	float *tangents[2] = {malloc(16 * corner_count), malloc(16 * corner_count)}; /* raw, others */
+	double *angles = malloc(corner_count * sizeof *angles);
+	oracle_corner *exact = malloc(corner_count * sizeof *exact);
+	nmtan_workspace *workspace = nmtan_workspace_create(NULL);
+	bool done = tangents[0] && tangents[1] && angles && exact && workspace;
+	oracle_weight filled = ORACLE_ANGLE;
+	if (done && oracle)
+		done = oracle_solve(mesh, filled, exact);
+	if (done && !oracle)
+		for (size_t c = 0; c < corner_count; c++) /* size sweeps: all faces are wound alike */
+			exact[c] = (oracle_corner){.sign = 1};
+	for (int i = 0; done && i < COLUMN_COUNT; i++) {
+		/* the columns of one weight are visited together: raw, mikktspace, robust, area, lengyel */
+		static const int order[COLUMN_COUNT] = {COLUMN_RAW, COLUMN_REPAIRED, COLUMN_ROBUST, COLUMN_AREA,
+			COLUMN_LENGYEL};
+		const int at = order[i];
+		score *s = &scores[at];
+		float *to = tangents[at != COLUMN_RAW];
+		*s = (score){.corners = corner_count};
+		if (oracle && weight_of(columns[at].method) != filled) {
+			filled = weight_of(columns[at].method);
+			done = oracle_solve(mesh, filled, exact);
+		}
+		done = done && run(mesh, &columns[at], workspace, to, s);
+		if (!done)
+			break;
+		score_signs(mesh, exact, to, s);
+		score_vectors(mesh, exact, oracle, to, angles, s);
+		if (at == COLUMN_REPAIRED)
+			s->altered = count_altered(mesh, exact, tangents[0], to);
+	}
+	nmtan_workspace_destroy(workspace);
+	free(tangents[0]);
+	free(tangents[1]);
+	free(angles);
+	free(exact);
+	return done;
+}

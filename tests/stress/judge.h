@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Judges the results of every method on one mesh against the oracle, and counts.
+ */
+#ifndef NT_STRESS_JUDGE_H
+#define NT_STRESS_JUDGE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include "nmtan.h"
+
+enum { COLUMN_RAW, COLUMN_REPAIRED, COLUMN_AREA, COLUMN_LENGYEL, COLUMN_ROBUST, COLUMN_COUNT };
+
+typedef struct column {
+	const char *name;
+	nmtan_method method;
+	nmtan_repair repair;
+} column;
+
+extern const column columns[COLUMN_COUNT];
+
+/* What was found with one method on one mesh. */
+typedef struct score {
+	size_t faces, oriented; /* oriented: exact determinant not zero */
+	size_t corners;
+	size_t wrong_sign;  /* oriented faces with a corner whose w is not the exact sign */
+	size_t mixed_sign;  /* faces whose corners differ in w */
+	size_t zero;        /* corners: zero or not unit or not finite */
+	size_t parallel;    /* corners: T along N */
+	size_t judged;      /* corners whose condition is below 2^24 */
+	size_t beyond;      /* corners of oriented faces whose condition is not */
+	size_t counted;     /* robust: what the library counts as ill-conditioned */
+	size_t off;         /* judged corners with a component further than 2^-23 from the oracle */
+	size_t tilted;      /* corners: |T . N| above 2^-21 */
+	size_t altered;     /* usable MikkTSpace corners whose bytes repair changed */
+	double worst_degrees, median_degrees, high_degrees; /* over judged corners; high: 99.9 % */
+	double ns_per_triangle;
+} score;
+
+/* Scores all methods. With `oracle` false only time and what needs no oracle but signs. False: a call of
+ * the library failed or memory is exhausted. */
+bool judge_mesh(const nmtan_mesh *mesh, size_t corner_count, bool oracle, score scores[COLUMN_COUNT]);
+
+#endif

@@ -1,0 +1,238 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * make stress: every family at every level, every method, against the oracle.
+ *
+ *   stress FOLDER [FAMILY]
+ *
+ * Writes stress.csv, stress.md, samples.txt for check_fractions.py and two charts for each family (what is
+ * unusable or has a wrong sign; the worst angle). Ends with 1 when something that must hold does not:
+ *
+ *   mikktspace (repaired), finite families: no zero, non-unit or non-finite tangent; one w on every face;
+ *     the exact sign on every face that has one; MikkTSpace's bytes wherever they are usable
+ *   robust, finite families: the same but for the bytes; every component within 2^-23 of the oracle where
+ *     the condition is below 2^24; T perpendicular to N within 2^-21; all corners beyond that
+ *     condition are counted
+ *   sweeps of size: time per triangle within a factor of 8 from 10^4 triangles on
+ */
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "chart.h"
+#include "families.h"
+#include "judge.h"
+#include "sample.h"
+
+enum { MOST_LEVELS = 16, ORACLE_TRIANGLES = 120000 };
+
+typedef struct family_scores {
+	score at[MOST_LEVELS][COLUMN_COUNT];
+} family_scores;
+
+static size_t broken; /* how often something that must hold did not */
+
+static void must_hold(const family *f, double level, const char *method, const char *what, size_t count)
+{
+	if (count == 0)
+		return;
+	broken++;
+	printf("stress: DOES NOT HOLD: %s at %s %g, %s: %zu %s\n", f->name, f->level_name, level, method, count,
+		what);
+}
+
+static void check_level(const family *f, double level, const score scores[COLUMN_COUNT])
+{
+	static const int held[2] = {COLUMN_REPAIRED, COLUMN_ROBUST};
+	for (int i = 0; i < 2 && f->finite; i++) {
+		const score *s = &scores[held[i]];
+		const char *name = columns[held[i]].name;
+		must_hold(f, level, name, "zero, non-unit or non-finite tangents", s->zero);
+		must_hold(f, level, name, "faces with two values of w", s->mixed_sign);
+		must_hold(f, level, name, "faces with a wrong sign", s->wrong_sign);
+	}
+	if (!f->finite)
+		return;
+	must_hold(f, level, "mikktspace", "usable corners whose bytes changed", scores[COLUMN_REPAIRED].altered);
+	must_hold(f, level, "robust", "corners further than 2^-23 from the oracle", scores[COLUMN_ROBUST].off);
+	const size_t beyond = scores[COLUMN_ROBUST].beyond, counted = scores[COLUMN_ROBUST].counted;
+	must_hold(f, level, "robust", "ill-conditioned corners not counted",
+		beyond > counted + beyond / 100 ? beyond - counted : 0);
+	must_hold(f, level, "robust", "corners not perpendicular to their normal", scores[COLUMN_ROBUST].tilted);
+}
+
+/* From the first level of at least 10^4 triangles. */
+static void check_linear(const family *f, const family_scores *scores)
+{
+	static const int held[2] = {COLUMN_REPAIRED, COLUMN_ROBUST};
+	for (int i = 0; i < 2 && f->linear; i++) {
+		double first = 0;
+		for (size_t l = 0; l < f->level_count; l++) {
+			const double ns = scores->at[l][held[i]].ns_per_triangle;
+			if (first == 0 && f->levels[l] >= 1e4)
+				first = ns;
+			must_hold(f, f->levels[l], columns[held[i]].name, "times the time per triangle of 10^4",
+				first > 0 && ns > 8 * first ? (size_t)(ns / first) : 0);
+		}
+	}
+}
+
+static double percent(size_t part, size_t whole)
+{
+	return whole ? 100.0 * (double)part / (double)whole : 0;
+}
+
+static void write_csv(FILE *csv, const family *f, size_t l, const score scores[COLUMN_COUNT])
+{
+	for (int c = 0; c < COLUMN_COUNT; c++) {
+		const score *s = &scores[c];
+		fprintf(csv, "%s,%g,%s,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%.4g,%.4g,%.4g,%.1f\n", f->name,
+			f->levels[l], columns[c].name, s->faces, s->oriented, s->wrong_sign, s->mixed_sign,
+			s->corners, s->zero, s->parallel, s->judged, s->beyond, s->off, s->altered,
+			s->median_degrees, s->high_degrees, s->worst_degrees, s->ns_per_triangle);
+	}
+}
+
+static void write_table(FILE *md, const family *f, const family_scores *scores)
+{
+	fprintf(md, "\n## %s\n\nWrong signs (%% of faces that have one) / unusable corners (%%) / worst degrees / "
+		"ns per triangle.\n\n| %s |", f->name, f->level_name);
+	for (int c = 0; c < COLUMN_COUNT; c++)
+		fprintf(md, " %s |", columns[c].name);
+	fprintf(md, "\n|---|---|---|---|---|---|\n");
+	for (size_t l = 0; l < f->level_count; l++) {
+		fprintf(md, "| %g |", f->levels[l]);
+		for (int c = 0; c < COLUMN_COUNT; c++) {
+			const score *s = &scores->at[l][c];
+			fprintf(md, " %.3g / %.3g / ", percent(s->wrong_sign, s->oriented),
+				percent(s->zero + s->parallel, s->corners));
+			if (s->judged)
+				fprintf(md, "%.2g", s->worst_degrees);
+			else
+				fprintf(md, "-");
+			fprintf(md, " / %.0f |", s->ns_per_triangle);
+		}
+		fprintf(md, "\n");
+	}
+}
+
+/* One line for each family: the worst of all its levels. */
+static void write_summary(FILE *md, const family *f, const family_scores *scores)
+{
+	fprintf(md, "| %s |", f->name);
+	for (int c = 0; c < COLUMN_COUNT; c++) {
+		double wrong = 0, unusable = 0, worst = 0, beyond = 0;
+		for (size_t l = 0; l < f->level_count; l++) {
+			const score *s = &scores->at[l][c];
+			wrong = fmax(wrong, percent(s->wrong_sign, s->oriented));
+			unusable = fmax(unusable, percent(s->zero + s->parallel, s->corners));
+			worst = fmax(worst, s->worst_degrees);
+			beyond = fmax(beyond, percent(s->beyond, s->corners));
+		}
+		fprintf(md, " %.3g / %.3g / %.2g", wrong, unusable, worst);
+		if (c == COLUMN_ROBUST)
+			fprintf(md, " | %.3g |\n", beyond);
+		else
+			fprintf(md, " |");
+	}
+}
+
+static void write_chart(const char *folder, const family *f, const family_scores *scores, bool angles)
+{
+	double y[COLUMN_COUNT][MOST_LEVELS];
+	chart_series series[COLUMN_COUNT];
+	for (int c = 0; c < COLUMN_COUNT; c++) {
+		for (size_t l = 0; l < f->level_count; l++) {
+			const score *s = &scores->at[l][c];
+			y[c][l] = angles ? (s->judged ? fmax(s->worst_degrees, 1e-7) : NAN)
+					 : fmax(percent(s->wrong_sign, s->oriented),
+						   percent(s->zero + s->parallel, s->corners));
+		}
+		series[c] = (chart_series){columns[c].name, f->levels, y[c], f->level_count};
+	}
+	char path[512], title[128];
+	snprintf(title, sizeof title, angles ? "%s: worst angle" : "%s: wrong sign or unusable", f->name);
+	const chart ch = {.title = title, .subtitle = angles
+			? "against the 113-bit formula, where its condition is below 2^24 (1e-7 stands for less)"
+			: "the larger share: faces with a wrong w, corners that are not a unit vector beside N",
+		.x_label = f->level_name, .y_label = angles ? "degrees" : "per cent", .log_x = f->logarithmic,
+		.log_y = angles, .series = series, .series_count = COLUMN_COUNT};
+	snprintf(path, sizeof path, "%s/%s-%s.svg", folder, f->name, angles ? "angle" : "unusable");
+	for (char *p = path + strlen(folder); *p; p++)
+		*p = *p == ' ' ? '-' : *p;
+	if (!chart_write(path, &ch))
+		broken++;
+}
+
+static bool run_family(const family *f, family_scores *scores, FILE *csv, FILE *samples)
+{
+	for (size_t l = 0; l < f->level_count; l++) {
+		nt_owned mesh = f->make(f->levels[l], 1000 * l);
+		const bool done = judge_mesh(&mesh.mesh, mesh.corner_count,
+			mesh.mesh.face_count <= ORACLE_TRIANGLES, scores->at[l]);
+		sample_triangles(&mesh, samples);
+		nt_owned_free(&mesh);
+		if (!done) {
+			printf("stress: %s at %g: the call failed\n", f->name, f->levels[l]);
+			return false;
+		}
+		write_csv(csv, f, l, scores->at[l]);
+		check_level(f, f->levels[l], scores->at[l]);
+	}
+	check_linear(f, scores);
+	printf("stress: %s\n", f->name);
+	fflush(stdout);
+	return true;
+}
+
+static FILE *open_in(const char *folder, const char *name)
+{
+	char path[512];
+	snprintf(path, sizeof path, "%s/%s", folder, name);
+	FILE *f = fopen(path, "w");
+	if (!f)
+		printf("stress: cannot write %s\n", path);
+	return f;
+}
+
+int main(int argc, char **argv)
+{
+	if (argc < 2 || argc > 3) {
+		fprintf(stderr, "usage: stress FOLDER [FAMILY]\n");
+		return 2;
+	}
+	FILE *csv = open_in(argv[1], "stress.csv"), *md = open_in(argv[1], "stress.md");
+	FILE *samples = open_in(argv[1], "samples.txt");
+	family_scores *scores = calloc(family_count, sizeof *scores);
+	if (!csv || !md || !samples || !scores)
+		return 2;
+	fprintf(csv, "family,level,method,faces,oriented,wrong_sign,mixed_sign,corners,zero,parallel,judged,"
+		"beyond,off,altered,median_degrees,high_degrees,worst_degrees,ns_per_triangle\n");
+	bool done = true;
+	for (size_t i = 0; i < family_count; i++)
+		if (argc < 3 || strcmp(argv[2], families[i].name) == 0)
+			done = run_family(&families[i], &scores[i], csv, samples) && done;
+	fprintf(md, "# Numerical stability\n\nThe worst level of each family: wrong signs (%% of the faces that have "
+		"an exact one) / corners that are zero, not unit, not finite or along N (%%) / worst angle in "
+		"degrees against the 113-bit formula where its condition is below 2^24. The last column is the "
+		"share of corners (%%) beyond that.\n\n| family |");
+	for (int c = 0; c < COLUMN_COUNT; c++)
+		fprintf(md, " %s |", columns[c].name);
+	fprintf(md, " beyond |\n|---|---|---|---|---|---|---|\n");
+	for (size_t i = 0; i < family_count; i++)
+		if (scores[i].at[0][0].faces)
+			write_summary(md, &families[i], &scores[i]);
+	for (size_t i = 0; i < family_count; i++) {
+		if (!scores[i].at[0][0].faces)
+			continue;
+		write_table(md, &families[i], &scores[i]);
+		write_chart(argv[1], &families[i], &scores[i], true);
+		write_chart(argv[1], &families[i], &scores[i], false);
+	}
+	fprintf(md, "\n%s\n", broken ? "SOMETHING THAT MUST HOLD DOES NOT: see the output of make stress."
+				      : "Everything that must hold holds.");
+	done = fclose(csv) == 0 && fclose(md) == 0 && fclose(samples) == 0 && done;
+	free(scores);
+	printf("stress: %zu broken\n", broken);
+	return done && broken == 0 ? 0 : 1;
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The oracle: tangents by their formula in 113-bit arithmetic, exact signs by integers. It shares no code
+ * with the library, only the description of a mesh.
+ *
+ *   T(corner) = sum over the triangles of the corner's orientation at its welded vertex of
+ *               weight * project(dP/du), projected along the unit normal; then normalised
+ */
+#ifndef NT_ORACLE128_H
+#define NT_ORACLE128_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include "nmtan.h"
+
+typedef enum oracle_weight {
+	ORACLE_ANGLE, /* corner angle seen along the normal, unit directions: MikkTSpace, robust */
+	ORACLE_AREA,  /* the same times the lengths of the two edges */
+	ORACLE_NONE   /* dP/du as it is: Lengyel */
+} oracle_weight;
+
+typedef struct oracle_corner {
+	double t[3], b[3];  /* unit T and the unit sum of dP/dv */
+	double condition;   /* of T: sums and projections; infinite where T does not exist */
+	double condition_b;
+	int sign;           /* exact orientation of the corner's face, 0: none */
+} oracle_corner;
+
+/* Exact sign of the determinant of three texture coordinates; 0 where one is not finite. */
+int oracle_sign(const float a[2], const float b[2], const float c[2]);
+
+/* Fills corners[corner count]; the mesh is sound and may have strides of 0. False: out of memory. */
+bool oracle_solve(const nmtan_mesh *mesh, oracle_weight weight, oracle_corner *corners);
+
+#endif
