@@ -1,0 +1,480 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Vertices that splitting appended, in the accessors of a component.
+ *
+ * Accessors keep their number and their first rows. Attributes that are interleaved form a block whose
+ * rows are copied as a whole and inserted behind its last one. Where bytes of a block also belong to
+ * somebody else, its accessors move to new views. An accessor that has to keep its count, because a
+ * primitive without indices or an animation uses it too, is left alone and the solved primitives get a
+ * copy of it.
+ */
+#include "io/gltf_patch.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* An accessor that grows. */
+typedef struct item {
+	nt_gltf_accessor accessor;
+	uint32_t buffer;
+	uint64_t begin; /* in the buffer */
+	const nt_gltf_override *override;
+	uint32_t clone; /* accessor that takes its place in solved primitives; NT_NONE: it grows itself */
+} item;
+
+typedef struct growing {
+	nt_gltf_patcher *patcher;
+	const nt_gltf_cluster *component;
+	item *items;
+	size_t item_count, item_capacity;
+	bool *seen;    /* [accessor_count] */
+	bool *pinned;  /* [accessor_count] used by an unsolved member */
+	bool collecting_unsolved;
+} growing;
+
+static size_t added_rows(const growing *g)
+{
+	return g->component->rows.new_count - g->component->rows.old_count;
+}
+
+static uint32_t source_of(const growing *g, size_t row)
+{
+	const nt_gltf_rows *rows = &g->component->rows;
+	return row < rows->old_count ? (uint32_t)row : rows->sources[row - rows->old_count];
+}
+
+/* ---- which accessors ---- */
+
+static nmtan_status add_item(growing *g, uint32_t index)
+{
+	nt_gltf_patcher *p = g->patcher;
+	if (!nt_grow((void **)&g->items, &g->item_capacity, g->item_count + 1, sizeof *g->items))
+		return nt_fail_memory(p->error);
+	item *added = &g->items[g->item_count];
+	*added = (item){.clone = NT_NONE};
+	nmtan_status status =
+		nt_gltf_get_accessor(p->document, index, "/accessors", &added->accessor, p->error);
+	if (status)
+		return status;
+	if (added->accessor.count != g->component->rows.old_count) {
+		char pointer[NT_GLTF_POINTER];
+		snprintf(pointer, sizeof pointer, "/accessors/%u", index);
+		return nt_fail_pointer(p->error, NMTAN_ERROR_INPUT, pointer,
+			"%llu elements, but other attributes of the same primitives have %zu",
+			(unsigned long long)added->accessor.count, g->component->rows.old_count);
+	}
+	if (added->accessor.view != NT_NONE) {
+		nt_gltf_view view;
+		status = nt_gltf_get_view(p->document, added->accessor.view, "", &view, p->error);
+		if (status)
+			return status;
+		added->buffer = view.buffer;
+		added->begin = view.offset + added->accessor.offset;
+	}
+	g->item_count++;
+	p->own[p->sharing.canonical[index]] = g->component->number + 1;
+	return NMTAN_OK;
+}
+
+static nmtan_status collect_attribute(void *context, nt_json_value *attributes, const char *name,
+	uint32_t accessor)
+{
+	(void)attributes;
+	(void)name;
+	growing *g = context;
+	if (g->collecting_unsolved)
+		g->pinned[accessor] = true;
+	if (g->seen[accessor])
+		return NMTAN_OK;
+	g->seen[accessor] = true;
+	return add_item(g, accessor);
+}
+
+/* All accessors of all members. When nothing is appended, only those with new values. */
+static nmtan_status collect_items(growing *g, const nt_gltf_override *overrides, size_t override_count)
+{
+	const nt_gltf_patcher *p = g->patcher;
+	nmtan_status status = NMTAN_OK;
+	for (size_t i = 0; !status && added_rows(g) && i < g->component->member_count; i++) {
+		const nt_mesh *mesh = &p->scene->meshes[g->component->members[i]];
+		g->collecting_unsolved = g->component->rows.group_of[i] == NT_NONE;
+		status = nt_gltf_visit_attributes(nt_gltf_primitive_of(p->document, mesh),
+			p->sharing.accessor_count, collect_attribute, g);
+	}
+	for (size_t i = 0; !status && i < override_count; i++) {
+		g->collecting_unsolved = false;
+		status = collect_attribute(g, NULL, "TANGENT", overrides[i].accessor);
+	}
+	for (size_t i = 0; !status && i < g->item_count; i++)
+		for (size_t k = 0; k < override_count; k++)
+			if (g->items[i].accessor.index == overrides[k].accessor)
+				g->items[i].override = &overrides[k];
+	return status;
+}
+
+/* ---- accessors that must keep their count ---- */
+
+/* Primitives without indices draw every row, so rows must not be added to what they use. */
+static bool must_pin(const growing *g)
+{
+	const nt_gltf_patcher *p = g->patcher;
+	for (size_t i = 0; i < g->component->member_count; i++) {
+		const nt_mesh *mesh = &p->scene->meshes[g->component->members[i]];
+		if (g->component->rows.group_of[i] == NT_NONE &&
+			!nt_json_find(nt_gltf_primitive_of(p->document, mesh), "indices"))
+			return true;
+	}
+	for (size_t i = 0; i < g->item_count; i++)
+		if (p->sharing.foreign[p->sharing.canonical[g->items[i].accessor.index]])
+			return true;
+	return false;
+}
+
+/* The elements of an accessor after growing, `stride` apart; sparse values put in where `bake`. */
+static nmtan_status copy_rows(growing *g, const item *from, uint32_t stride, bool bake,
+	unsigned char **result)
+{
+	nt_gltf_patcher *p = g->patcher;
+	const nt_gltf_accessor *a = &from->accessor;
+	const size_t count = g->component->rows.new_count;
+	unsigned char *out = nt_arena_alloc(p->arena, count, stride);
+	if (!out)
+		return nt_fail_memory(p->error);
+	memset(out, 0, count * stride);
+	*result = out;
+	const unsigned char *rows;
+	nmtan_status status = nt_gltf_accessor_rows(p->document, a, &rows, p->error);
+	for (size_t row = 0; !status && rows && row < a->count; row++)
+		memcpy(out + row * stride, rows + row * a->stride, a->element_bytes);
+	if (!status && bake && a->sparse_count) {
+		const uint32_t *replaced;
+		const unsigned char *values;
+		status = nt_gltf_sparse(p->document, a, p->arena, &replaced, &values, p->error);
+		for (size_t i = 0; !status && i < a->sparse_count; i++)
+			memcpy(out + (size_t)replaced[i] * stride, values + i * a->element_bytes,
+				a->element_bytes);
+	}
+	for (size_t row = (size_t)a->count; !status && row < count; row++)
+		memcpy(out + row * stride, out + (size_t)source_of(g, row) * stride, a->element_bytes);
+	if (from->override)
+		for (size_t row = 0; !status && row < count; row++)
+			memcpy(out + row * stride, from->override->values + row * from->override->width,
+				from->override->width);
+	return status;
+}
+
+/* A new view with all rows of an accessor. */
+static nmtan_status add_rows_view(growing *g, const item *from, bool bake, uint32_t *view)
+{
+	const uint32_t element = from->accessor.element_bytes, stride = (element + 3) / 4 * 4;
+	unsigned char *rows = NULL;
+	const nmtan_status status = copy_rows(g, from, stride, bake, &rows);
+	if (status)
+		return status;
+	const size_t size = g->component->rows.new_count * stride;
+	return nt_layout_add_view(&g->patcher->layout, g->component->buffer, rows, size,
+		NT_GLTF_ARRAY_BUFFER, stride != element ? stride : 0, view, g->patcher->error);
+}
+
+static nmtan_status clone_accessor(growing *g, item *from)
+{
+	nt_gltf_patcher *p = g->patcher;
+	uint32_t view;
+	const nmtan_status status = add_rows_view(g, from, true, &view);
+	if (status)
+		return status;
+	nt_json_value *accessors = nt_gltf_root_member(p->document, "accessors");
+	from->clone = (uint32_t)nt_json_count(accessors);
+	nt_json_value *clone = nt_json_append(p->json, accessors);
+	nt_json_set_copy(p->json, clone, nt_json_at(accessors, from->accessor.index));
+	nt_json_set_uint64(p->json, nt_json_put(p->json, clone, "bufferView"), view);
+	nt_json_remove(p->json, clone, "byteOffset");
+	nt_json_remove(p->json, clone, "sparse");
+	nt_json_set_uint64(p->json, nt_json_put(p->json, clone, "count"), g->component->rows.new_count);
+	return NMTAN_OK;
+}
+
+static nmtan_status use_clone(void *context, nt_json_value *attributes, const char *name,
+	uint32_t accessor)
+{
+	growing *g = context;
+	for (size_t i = 0; i < g->item_count; i++)
+		if (g->items[i].accessor.index == accessor && g->items[i].clone != NT_NONE)
+			nt_json_set_uint64(g->patcher->json,
+				nt_json_put(g->patcher->json, attributes, name), g->items[i].clone);
+	return NMTAN_OK;
+}
+
+/* Copies the pinned accessors, points solved members to the copies and takes them off the list. */
+static nmtan_status clone_pinned(growing *g)
+{
+	const nt_gltf_patcher *p = g->patcher;
+	nmtan_status status = NMTAN_OK;
+	for (size_t i = 0; !status && i < g->item_count; i++) {
+		const uint32_t index = g->items[i].accessor.index;
+		if (g->pinned[index] || p->sharing.foreign[p->sharing.canonical[index]])
+			status = clone_accessor(g, &g->items[i]);
+	}
+	for (size_t i = 0; !status && i < g->component->member_count; i++)
+		if (g->component->rows.group_of[i] != NT_NONE)
+			nt_gltf_visit_attributes(nt_gltf_primitive_of(p->document,
+				&p->scene->meshes[g->component->members[i]]),
+				p->sharing.accessor_count, use_clone, g);
+	size_t kept = 0;
+	for (size_t i = 0; i < g->item_count; i++)
+		if (g->items[i].clone == NT_NONE)
+			g->items[kept++] = g->items[i];
+	g->item_count = kept;
+	return status;
+}
+
+/* ---- growing in place ---- */
+
+static int compare_items(const void *a, const void *b)
+{
+	const item *x = a, *y = b;
+	const bool x_has = x->accessor.view != NT_NONE, y_has = y->accessor.view != NT_NONE;
+	if (x_has != y_has)
+		return x_has ? -1 : 1;
+	if (x->buffer != y->buffer)
+		return x->buffer < y->buffer ? -1 : 1;
+	if (x->begin != y->begin)
+		return x->begin < y->begin ? -1 : 1;
+	return (x->accessor.index > y->accessor.index) - (x->accessor.index < y->accessor.index);
+}
+
+/* Interleaved accessors: rows of `width` bytes, `stride` apart. */
+typedef struct block {
+	item *items;
+	size_t count;
+	uint32_t buffer, stride, width;
+	uint64_t begin, end;
+	bool overridden;
+} block;
+
+/* The longest run of items from `items` on that share rows. */
+static block find_block(const growing *g, item *items, size_t left)
+{
+	block b = {.items = items, .count = 1, .buffer = items->buffer,
+		.stride = items->accessor.stride, .width = items->accessor.element_bytes,
+		.begin = items->begin, .overridden = items->override != NULL};
+	while (b.count < left) {
+		const item *next = &items[b.count];
+		const uint64_t end = next->begin - b.begin + next->accessor.element_bytes;
+		if (next->accessor.view == NT_NONE || next->buffer != b.buffer ||
+			next->accessor.stride != b.stride || end > b.stride)
+			break;
+		if (end > b.width)
+			b.width = (uint32_t)end;
+		b.overridden |= next->override != NULL;
+		b.count++;
+	}
+	b.end = b.begin + (g->component->rows.old_count - 1) * (uint64_t)b.stride + b.width;
+	return b;
+}
+
+/* Moves an accessor to a view of its own. */
+static nmtan_status move_away(growing *g, const item *moved)
+{
+	nt_gltf_patcher *p = g->patcher;
+	uint32_t view;
+	const nmtan_status status = add_rows_view(g, moved, false, &view);
+	if (status)
+		return status;
+	nt_json_value *json =
+		nt_json_at(nt_gltf_root_member(p->document, "accessors"), moved->accessor.index);
+	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "bufferView"), view);
+	nt_json_remove(p->json, json, "byteOffset");
+	return NMTAN_OK;
+}
+
+static nmtan_status block_bytes(growing *g, const block *b, const unsigned char **bytes)
+{
+	nt_gltf_patcher *p = g->patcher;
+	const nt_gltf_accessor *first = &b->items->accessor;
+	nt_gltf_view view;
+	nmtan_status status =
+		nt_gltf_get_view(p->document, first->view, "/accessors", &view, p->error);
+	/* each item has been checked against its own view; the block is their union */
+	for (size_t i = 0; !status && i < b->count; i++) {
+		const unsigned char *rows;
+		status = nt_gltf_accessor_rows(p->document, &b->items[i].accessor, &rows, p->error);
+		if (i == 0)
+			*bytes = rows;
+	}
+	return status;
+}
+
+/* Inserts the copied rows behind the block. */
+static nmtan_status insert_rows(growing *g, const block *b, const unsigned char *rows)
+{
+	nt_gltf_patcher *p = g->patcher;
+	const size_t added = added_rows(g), old_count = g->component->rows.old_count;
+	unsigned char *out = nt_arena_alloc(p->arena, added, b->stride);
+	if (!out)
+		return nt_fail_memory(p->error);
+	/* The last row of the block may end before its stride does: padding comes first. */
+	const size_t gap = b->stride - b->width;
+	for (size_t i = 0; i < added; i++) {
+		memset(out + i * b->stride, 0, gap);
+		memcpy(out + i * b->stride + gap,
+			rows + (size_t)source_of(g, old_count + i) * b->stride, b->width);
+	}
+	return nt_layout_edit(&p->layout, b->buffer, b->end, 0, out, added * b->stride, p->error);
+}
+
+/* Replaces the whole block: some of its values are new. */
+static nmtan_status replace_rows(growing *g, const block *b, const unsigned char *rows)
+{
+	nt_gltf_patcher *p = g->patcher;
+	const size_t count = g->component->rows.new_count, old_size = (size_t)(b->end - b->begin);
+	const size_t size = (count - 1) * b->stride + b->width;
+	unsigned char *out = nt_arena_alloc(p->arena, count, b->stride);
+	if (!out)
+		return nt_fail_memory(p->error);
+	memset(out, 0, count * b->stride);
+	memcpy(out, rows, old_size);
+	for (size_t row = g->component->rows.old_count; row < count; row++)
+		memcpy(out + row * b->stride, rows + (size_t)source_of(g, row) * b->stride, b->width);
+	for (size_t i = 0; i < b->count; i++) {
+		const nt_gltf_override *override = b->items[i].override;
+		unsigned char *at = out + (b->items[i].begin - b->begin);
+		for (size_t row = 0; override && row < count; row++)
+			memcpy(at + row * b->stride, override->values + row * override->width,
+				override->width);
+	}
+	return nt_layout_edit(&p->layout, b->buffer, b->begin, old_size, out, size, p->error);
+}
+
+static nmtan_status grow_block(growing *g, const block *b, uint64_t previous_end)
+{
+	nt_gltf_patcher *p = g->patcher;
+	nmtan_status status = NMTAN_OK;
+	if (b->begin < previous_end || nt_layout_is_foreign(&p->layout, b->buffer, b->begin, b->end,
+					       p->own, g->component->number + 1)) {
+		for (size_t i = 0; !status && i < b->count; i++)
+			status = move_away(g, &b->items[i]);
+		return status;
+	}
+	const unsigned char *rows;
+	status = block_bytes(g, b, &rows);
+	if (status)
+		return status;
+	return b->overridden ? replace_rows(g, b, rows) : insert_rows(g, b, rows);
+}
+
+/* ---- sparse accessors ---- */
+
+/* Puts a sparse part with its new elements into a new view. */
+static nmtan_status move_part(growing *g, const item *from, const char *name, const void *bytes,
+	size_t size)
+{
+	nt_gltf_patcher *p = g->patcher;
+	uint32_t view;
+	const nmtan_status status = nt_layout_add_view(&p->layout, g->component->buffer, bytes, size,
+		0, 0, &view, p->error);
+	nt_json_value *json = nt_json_find(nt_json_find(nt_json_at(
+		nt_gltf_root_member(p->document, "accessors"), from->accessor.index), "sparse"), name);
+	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "bufferView"), view);
+	nt_json_remove(p->json, json, "byteOffset");
+	return status;
+}
+
+/* Copies of rows that a sparse accessor replaces are replaced too. */
+static nmtan_status grow_sparse(growing *g, const item *from)
+{
+	nt_gltf_patcher *p = g->patcher;
+	const nt_gltf_accessor *a = &from->accessor;
+	const uint32_t *replaced;
+	const unsigned char *values;
+	nmtan_status status = nt_gltf_sparse(p->document, a, p->arena, &replaced, &values, p->error);
+	if (status)
+		return status;
+	const size_t old_count = (size_t)a->sparse_count, added = added_rows(g);
+	size_t total = old_count;
+	uint32_t *numbers = nt_arena_alloc(p->arena, old_count + added, sizeof *numbers);
+	unsigned char *elements = nt_arena_alloc(p->arena, old_count + added, a->element_bytes);
+	uint32_t *position = nt_alloc((size_t)a->count, sizeof *position); /* of a row in replaced */
+	if (!numbers || !elements || !position) {
+		free(position);
+		return nt_fail_memory(p->error);
+	}
+	memset(position, 0xFF, (size_t)a->count * sizeof *position);
+	for (size_t i = 0; i < old_count; i++) {
+		position[replaced[i]] = (uint32_t)i;
+		numbers[i] = replaced[i];
+	}
+	memcpy(elements, values, old_count * a->element_bytes);
+	for (size_t row = (size_t)a->count; row < a->count + added; row++) {
+		const uint32_t at = position[source_of(g, row)];
+		if (at == NT_NONE)
+			continue;
+		numbers[total] = (uint32_t)row;
+		memcpy(elements + total * a->element_bytes, values + at * a->element_bytes,
+			a->element_bytes);
+		total++;
+	}
+	free(position);
+	if (total == old_count)
+		return NMTAN_OK;
+
+	nt_json_value *sparse = nt_json_find(
+		nt_json_at(nt_gltf_root_member(p->document, "accessors"), a->index), "sparse");
+	nt_json_set_uint64(p->json, nt_json_put(p->json, sparse, "count"), total);
+	nt_json_set_uint64(p->json, nt_json_put(p->json, nt_json_find(sparse, "indices"),
+		"componentType"), NT_GLTF_UINT);
+	status = move_part(g, from, "indices", numbers, total * sizeof *numbers);
+	if (!status)
+		status = move_part(g, from, "values", elements, total * a->element_bytes);
+	return status;
+}
+
+/* ---- the whole ---- */
+
+static nmtan_status grow_items(growing *g)
+{
+	nt_gltf_patcher *p = g->patcher;
+	nt_json_value *accessors = nt_gltf_root_member(p->document, "accessors");
+	if (g->item_count)
+		qsort(g->items, g->item_count, sizeof *g->items, compare_items);
+	nmtan_status status = NMTAN_OK;
+	uint64_t previous_end = 0;
+	uint32_t previous_buffer = NT_NONE;
+	for (size_t i = 0; !status && i < g->item_count && g->items[i].accessor.view != NT_NONE;) {
+		const block b = find_block(g, &g->items[i], g->item_count - i);
+		status = grow_block(g, &b, b.buffer == previous_buffer ? previous_end : 0);
+		if (b.buffer != previous_buffer || b.end > previous_end)
+			previous_end = b.end;
+		previous_buffer = b.buffer;
+		i += b.count;
+	}
+	for (size_t i = 0; !status && added_rows(g) && i < g->item_count; i++) {
+		const item *grown = &g->items[i];
+		nt_json_set_uint64(p->json, nt_json_put(p->json,
+			nt_json_at(accessors, grown->accessor.index), "count"),
+			g->component->rows.new_count);
+		if (grown->accessor.sparse_count)
+			status = grow_sparse(g, grown);
+	}
+	return status;
+}
+
+nmtan_status nt_gltf_grow_attributes(nt_gltf_patcher *p, const nt_gltf_cluster *component,
+	const nt_gltf_override *overrides, size_t override_count)
+{
+	growing g = {.patcher = p, .component = component,
+		.seen = nt_calloc(p->sharing.accessor_count, sizeof(bool)),
+		.pinned = nt_calloc(p->sharing.accessor_count, sizeof(bool))};
+	nmtan_status status = g.seen && g.pinned ? NMTAN_OK : nt_fail_memory(p->error);
+	if (!status)
+		status = collect_items(&g, overrides, override_count);
+	if (!status && added_rows(&g) && must_pin(&g))
+		status = clone_pinned(&g);
+	if (!status)
+		status = grow_items(&g);
+	free(g.items);
+	free(g.seen);
+	free(g.pinned);
+	return status;
+}

@@ -1,0 +1,526 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The layout of changed buffers. A source buffer is a string of bytes; an edit replaces some of them;
+ * a position of the source moves by the sum of what edits that end at or before it have added. Views and
+ * accessors are intervals of that string, so both ends are mapped and the rest follows. Nothing is
+ * reordered and no byte is left behind.
+ */
+#include "io/gltf_layout.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALIGNMENT = 4, CAREFUL_ALIGNMENT = 8 };
+
+/* ---- who refers to what ---- */
+
+static bool add_extent(nt_gltf_layout *layout, uint32_t buffer, uint64_t begin, uint64_t end,
+	uint32_t accessor)
+{
+	if (!nt_grow((void **)&layout->extents, &layout->extent_capacity, layout->extent_count + 1,
+		sizeof *layout->extents))
+		return false;
+	layout->extents[layout->extent_count++] = (nt_gltf_extent){begin, end, 0, buffer, accessor};
+	return true;
+}
+
+static bool add_view_extent(nt_gltf_layout *layout, uint32_t index, uint64_t offset, uint64_t length,
+	uint32_t accessor, bool *view_used)
+{
+	nt_gltf_view view;
+	if (nt_gltf_get_view(layout->document, index, "", &view, NULL) != NMTAN_OK)
+		return true;
+	view_used[index] = true;
+	return add_extent(layout, view.buffer, view.offset + offset, view.offset + offset + length,
+		accessor);
+}
+
+static bool add_accessor_extents(nt_gltf_layout *layout, uint32_t index, bool *view_used)
+{
+	nt_gltf_accessor a;
+	if (nt_gltf_get_accessor(layout->document, index, "", &a, NULL) != NMTAN_OK || a.count == 0)
+		return true;
+	bool added = true;
+	if (a.view != NT_NONE)
+		added = add_view_extent(layout, a.view, a.offset,
+			(a.count - 1) * a.stride + a.element_bytes, index, view_used);
+	if (a.sparse_count) {
+		added = added && add_view_extent(layout, a.sparse_index_view, a.sparse_index_offset,
+			a.sparse_count * nt_gltf_component_bytes(a.sparse_index_type), index, view_used);
+		added = added && add_view_extent(layout, a.sparse_value_view, a.sparse_value_offset,
+			a.sparse_count * a.element_bytes, index, view_used);
+	}
+	return added;
+}
+
+/* The bytes behind a compressed view lie in another place than the view. */
+static nt_json_value *compressed_part(const nt_json_value *view)
+{
+	nt_json_value *extensions = nt_json_find(view, "extensions");
+	nt_json_value *part = nt_json_find(extensions, "EXT_meshopt_compression");
+	return part ? part : nt_json_find(extensions, "KHR_meshopt_compression");
+}
+
+static bool add_compressed_extent(nt_gltf_layout *layout, const nt_json_value *view)
+{
+	const nt_json_value *part = compressed_part(view);
+	uint64_t buffer, offset = 0, length;
+	if (!nt_json_get_uint64(nt_json_find(part, "buffer"), &buffer) || buffer >= UINT32_MAX ||
+		!nt_json_get_uint64(nt_json_find(part, "byteLength"), &length))
+		return true;
+	nt_json_get_uint64(nt_json_find(part, "byteOffset"), &offset);
+	if (length > UINT64_MAX - offset)
+		return true;
+	return add_extent(layout, (uint32_t)buffer, offset, offset + length, NT_NONE);
+}
+
+static void mark_image_views(const nt_gltf *document, bool *view_known, size_t view_count)
+{
+	const nt_json_value *images = nt_gltf_root_member(document, "images");
+	for (size_t i = 0; i < nt_json_count(images); i++) {
+		uint64_t view;
+		if (nt_json_get_uint64(nt_json_find(nt_json_at(images, i), "bufferView"), &view) &&
+			view < view_count)
+			view_known[view] = true;
+	}
+}
+
+/* Views without an accessor are used as a whole. Where nobody we know uses one, it may be data of an
+ * extension that wants 8-byte alignment (EXT_structural_metadata does). */
+static bool add_whole_views(nt_gltf_layout *layout, bool *view_used, size_t view_count)
+{
+	const nt_json_value *views = nt_gltf_root_member(layout->document, "bufferViews");
+	bool *known = nt_calloc(view_count, sizeof *known);
+	if (!known)
+		return false;
+	mark_image_views(layout->document, known, view_count);
+	bool added = true;
+	for (size_t i = 0; added && i < view_count; i++) {
+		nt_gltf_view view;
+		if (!view_used[i] &&
+			nt_gltf_get_view(layout->document, i, "", &view, NULL) == NMTAN_OK) {
+			added = add_extent(layout, view.buffer, view.offset, view.offset + view.length,
+				NT_NONE);
+			if (!known[i])
+				layout->alignment = CAREFUL_ALIGNMENT;
+		}
+		added = added && add_compressed_extent(layout, nt_json_at(views, i));
+	}
+	free(known);
+	return added;
+}
+
+static int compare_extents(const void *a, const void *b)
+{
+	const nt_gltf_extent *x = a, *y = b;
+	if (x->buffer != y->buffer)
+		return x->buffer < y->buffer ? -1 : 1;
+	if (x->begin != y->begin)
+		return x->begin < y->begin ? -1 : 1;
+	if (x->end != y->end)
+		return x->end < y->end ? -1 : 1;
+	return (x->accessor > y->accessor) - (x->accessor < y->accessor);
+}
+
+static bool find_extents(nt_gltf_layout *layout)
+{
+	const nt_gltf *document = layout->document;
+	const size_t view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
+	const size_t accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
+	bool *view_used = nt_calloc(view_count, sizeof *view_used);
+	bool added = view_used != NULL;
+	for (size_t i = 0; added && i < accessor_count; i++)
+		added = add_accessor_extents(layout, (uint32_t)i, view_used);
+	added = added && add_whole_views(layout, view_used, view_count);
+	free(view_used);
+	if (!added)
+		return false;
+	if (layout->extent_count)
+		qsort(layout->extents, layout->extent_count, sizeof *layout->extents, compare_extents);
+	for (size_t i = 0; i < layout->extent_count; i++) {
+		nt_gltf_extent *extent = &layout->extents[i];
+		const bool first = i == 0 || extent[-1].buffer != extent->buffer;
+		extent->reach = first || extent[-1].reach < extent->end ? extent->end : extent[-1].reach;
+	}
+	return true;
+}
+
+/* Number of extents before the first one of `buffer` that begins at or behind `position`. */
+static size_t extents_before(const nt_gltf_layout *layout, uint32_t buffer, uint64_t position)
+{
+	size_t low = 0, high = layout->extent_count;
+	while (low < high) {
+		const size_t middle = low + (high - low) / 2;
+		const nt_gltf_extent *extent = &layout->extents[middle];
+		if (extent->buffer < buffer || (extent->buffer == buffer && extent->begin < position))
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return low;
+}
+
+bool nt_layout_is_foreign(const nt_gltf_layout *layout, uint32_t buffer, uint64_t begin, uint64_t end,
+	const uint32_t *own, uint32_t mark)
+{
+	for (size_t i = extents_before(layout, buffer, end); i-- > 0;) {
+		const nt_gltf_extent *extent = &layout->extents[i];
+		if (extent->buffer != buffer || extent->reach <= begin)
+			break;
+		if (extent->end > begin && (extent->accessor == NT_NONE || own[extent->accessor] != mark))
+			return true;
+	}
+	return false;
+}
+
+/* ---- changes ---- */
+
+nmtan_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_error *error)
+{
+	*layout = (nt_gltf_layout){.document = document, .alignment = ALIGNMENT};
+	layout->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
+	layout->buffer_count = document->buffer_count;
+	layout->buffers = nt_calloc(document->buffer_count + 1, sizeof *layout->buffers);
+	if (!layout->buffers || !find_extents(layout)) {
+		nt_layout_free(layout);
+		return nt_fail_memory(error);
+	}
+	for (size_t i = 0; i < document->buffer_count; i++) {
+		nt_gltf_buffer *buffer;
+		if (nt_gltf_describe_buffer(document, i, "", &buffer, NULL) == NMTAN_OK)
+			layout->buffers[i].old_length = buffer->length;
+		layout->buffers[i].new_length = layout->buffers[i].old_length;
+	}
+	return NMTAN_OK;
+}
+
+void nt_layout_free(nt_gltf_layout *layout)
+{
+	for (size_t i = 0; layout->buffers && i < layout->buffer_count; i++) {
+		free(layout->buffers[i].edits);
+		free(layout->buffers[i].additions);
+	}
+	free(layout->buffers);
+	free(layout->extents);
+	nt_arena_free(&layout->arena);
+	*layout = (nt_gltf_layout){0};
+}
+
+nmtan_status nt_layout_edit(nt_gltf_layout *layout, uint32_t index, uint64_t at, uint64_t removed,
+	const unsigned char *bytes, size_t size, nt_error *error)
+{
+	nt_gltf_buffer_layout *buffer = &layout->buffers[index];
+	/* What is behind keeps its alignment. */
+	const size_t excess = (size_t)((size - removed) % layout->alignment);
+	if (excess) {
+		const size_t padded = size + layout->alignment - excess;
+		unsigned char *copy = nt_arena_alloc(&layout->arena, padded, 1);
+		if (!copy)
+			return nt_fail_memory(error);
+		memcpy(copy, bytes, size);
+		memset(copy + size, 0, padded - size);
+		bytes = copy;
+		size = padded;
+	}
+	if (!nt_grow((void **)&buffer->edits, &buffer->edit_capacity, buffer->edit_count + 1,
+		sizeof *buffer->edits))
+		return nt_fail_memory(error);
+	buffer->edits[buffer->edit_count++] = (nt_gltf_edit){at, removed, bytes, size, 0};
+	buffer->touched = true;
+	return NMTAN_OK;
+}
+
+nmtan_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t index, const void *bytes, size_t size,
+	uint32_t target, uint32_t stride, uint32_t *view, nt_error *error)
+{
+	nt_gltf_buffer_layout *buffer = &layout->buffers[index];
+	if (!nt_grow((void **)&buffer->additions, &buffer->addition_capacity,
+		buffer->addition_count + 1, sizeof *buffer->additions))
+		return nt_fail_memory(error);
+	nt_json *json = layout->document->json;
+	nt_json_value *views = nt_json_put(json, nt_json_root(json), "bufferViews");
+	*view = (uint32_t)nt_json_count(views);
+	nt_json_value *object = nt_json_append(json, views);
+	nt_json_set_uint64(json, nt_json_put(json, object, "buffer"), index);
+	nt_json_set_uint64(json, nt_json_put(json, object, "byteOffset"), 0);
+	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), size);
+	if (stride)
+		nt_json_set_uint64(json, nt_json_put(json, object, "byteStride"), stride);
+	if (target)
+		nt_json_set_uint64(json, nt_json_put(json, object, "target"), target);
+	buffer->additions[buffer->addition_count++] = (nt_gltf_addition){*view, 0, bytes, size};
+	buffer->touched = true;
+	return NMTAN_OK;
+}
+
+/* Whether a buffer has bytes that can be extended. */
+static bool can_extend(const nt_gltf *document, uint32_t index)
+{
+	return index < document->buffer_count && document->buffers[index].described &&
+		document->buffers[index].home != NT_GLTF_HOME_NOWHERE;
+}
+
+nmtan_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint32_t *buffer,
+	nt_error *error)
+{
+	const nt_gltf *document = layout->document;
+	*buffer = near;
+	if (near != NT_NONE && can_extend(document, near))
+		return NMTAN_OK;
+	if (layout->buffer_count > document->buffer_count) {
+		*buffer = (uint32_t)document->buffer_count;
+		return NMTAN_OK;
+	}
+	for (uint32_t i = 0; i < document->buffer_count; i++)
+		if (can_extend(document, i)) {
+			*buffer = i;
+			return NMTAN_OK;
+		}
+	/* layout->buffers has room for one more */
+	nt_json *json = document->json;
+	nt_json_value *buffers = nt_json_put(json, nt_json_root(json), "buffers");
+	*buffer = (uint32_t)nt_json_count(buffers);
+	nt_json_value *object = nt_json_append(json, buffers);
+	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), 0);
+	layout->buffer_count++;
+	return nt_json_failed(json) ? nt_fail_memory(error) : NMTAN_OK;
+}
+
+/* ---- moving offsets ---- */
+
+static int compare_edits(const void *a, const void *b)
+{
+	const nt_gltf_edit *x = a, *y = b;
+	if (x->at != y->at)
+		return x->at < y->at ? -1 : 1;
+	return (x->removed > y->removed) - (x->removed < y->removed);
+}
+
+/* Where a position of a source buffer goes. */
+static uint64_t map_position(const nt_gltf_buffer_layout *buffer, uint64_t position)
+{
+	size_t low = 0, high = buffer->edit_count;
+	while (low < high) {
+		const size_t middle = low + (high - low) / 2;
+		if (buffer->edits[middle].at + buffer->edits[middle].removed <= position)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return low ? position + (uint64_t)buffer->edits[low - 1].shift : position;
+}
+
+static void sort_edits(nt_gltf_buffer_layout *buffer)
+{
+	if (buffer->edit_count)
+		qsort(buffer->edits, buffer->edit_count, sizeof *buffer->edits, compare_edits);
+	int64_t shift = 0;
+	for (size_t i = 0; i < buffer->edit_count; i++) {
+		nt_gltf_edit *edit = &buffer->edits[i];
+		shift += (int64_t)edit->size - (int64_t)edit->removed;
+		edit->shift = shift;
+	}
+}
+
+static void place_additions(nt_gltf_layout *layout, nt_gltf_buffer_layout *buffer)
+{
+	nt_json *json = layout->document->json;
+	nt_json_value *views = nt_gltf_root_member(layout->document, "bufferViews");
+	uint64_t length = map_position(buffer, buffer->old_length);
+	for (size_t i = 0; i < buffer->addition_count; i++) {
+		nt_gltf_addition *addition = &buffer->additions[i];
+		addition->offset = (length + 3) / 4 * 4;
+		length = addition->offset + addition->size;
+		nt_json_set_uint64(json, nt_json_put(json, nt_json_at(views, addition->view), "byteOffset"),
+			addition->offset);
+	}
+	buffer->new_length = length;
+}
+
+/* Sets an offset; a zero that is not written stays so. */
+static void set_offset(nt_json *json, nt_json_value *object, const char *key, uint64_t value)
+{
+	uint64_t old = 0;
+	nt_json_get_uint64(nt_json_find(object, key), &old);
+	if (old != value)
+		nt_json_set_uint64(json, nt_json_put(json, object, key), value);
+}
+
+/* How a view moves, kept while the offsets of accessors in it are moved. */
+typedef struct moved_view {
+	const nt_gltf_buffer_layout *buffer; /* NULL: does not move */
+	uint64_t old_offset, new_offset;
+} moved_view;
+
+static void move_views(nt_gltf_layout *layout, moved_view *moved, size_t view_count)
+{
+	nt_json *json = layout->document->json;
+	nt_json_value *views = nt_gltf_root_member(layout->document, "bufferViews");
+	for (size_t i = 0; i < view_count; i++) {
+		nt_json_value *object = nt_json_at(views, i);
+		nt_gltf_view view;
+		nt_json_value *part = compressed_part(object);
+		uint64_t buffer, offset = 0;
+		if (part && nt_json_get_uint64(nt_json_find(part, "buffer"), &buffer) &&
+			buffer < layout->document->buffer_count) {
+			nt_json_get_uint64(nt_json_find(part, "byteOffset"), &offset);
+			set_offset(json, part, "byteOffset",
+				map_position(&layout->buffers[buffer], offset));
+		}
+		if (nt_gltf_get_view(layout->document, i, "", &view, NULL) != NMTAN_OK ||
+			layout->buffers[view.buffer].edit_count == 0)
+			continue;
+		moved[i].buffer = &layout->buffers[view.buffer];
+		moved[i].old_offset = view.offset;
+		moved[i].new_offset = map_position(moved[i].buffer, view.offset);
+		set_offset(json, object, "byteOffset", moved[i].new_offset);
+		set_offset(json, object, "byteLength",
+			map_position(moved[i].buffer, view.offset + view.length) - moved[i].new_offset);
+	}
+}
+
+/* Moves "byteOffset" of something that lies in the view its "bufferView" names. */
+static void move_in_view(nt_json *json, nt_json_value *object, const moved_view *moved,
+	size_t view_count)
+{
+	uint64_t view, offset = 0;
+	if (!nt_json_get_uint64(nt_json_find(object, "bufferView"), &view) || view >= view_count ||
+		!moved[view].buffer)
+		return;
+	nt_json_get_uint64(nt_json_find(object, "byteOffset"), &offset);
+	set_offset(json, object, "byteOffset",
+		map_position(moved[view].buffer, moved[view].old_offset + offset) -
+			moved[view].new_offset);
+}
+
+static void move_accessors(nt_gltf_layout *layout, const moved_view *moved, size_t view_count)
+{
+	nt_json *json = layout->document->json;
+	nt_json_value *accessors = nt_gltf_root_member(layout->document, "accessors");
+	for (size_t i = 0; i < nt_json_count(accessors); i++) {
+		nt_json_value *accessor = nt_json_at(accessors, i);
+		move_in_view(json, accessor, moved, view_count);
+		const nt_json_value *sparse = nt_json_find(accessor, "sparse");
+		if (sparse) {
+			move_in_view(json, nt_json_find(sparse, "indices"), moved, view_count);
+			move_in_view(json, nt_json_find(sparse, "values"), moved, view_count);
+		}
+	}
+}
+
+nmtan_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error)
+{
+	nt_gltf *document = layout->document;
+	const size_t view_count = layout->view_count;
+	moved_view *moved = nt_calloc(view_count, sizeof *moved);
+	if (!moved)
+		return nt_fail_memory(error);
+	bool shifted = false;
+	for (size_t i = 0; i < layout->buffer_count; i++) {
+		sort_edits(&layout->buffers[i]);
+		shifted |= layout->buffers[i].edit_count > 0;
+	}
+	if (shifted) {
+		move_views(layout, moved, view_count);
+		move_accessors(layout, moved, view_count);
+	}
+	free(moved);
+	nt_json *json = document->json;
+	for (size_t i = 0; i < layout->buffer_count; i++) {
+		nt_gltf_buffer_layout *buffer = &layout->buffers[i];
+		if (!buffer->touched)
+			continue;
+		place_additions(layout, buffer);
+		nt_json_value *buffers = nt_gltf_root_member(document, "buffers");
+		set_offset(json, nt_json_at(buffers, i), "byteLength", buffer->new_length);
+	}
+	return nt_json_failed(json) ? nt_fail_memory(error) : NMTAN_OK;
+}
+
+/* ---- writing ---- */
+
+/* Where the bytes of a buffer go: a sink or memory. */
+typedef struct target {
+	nt_sink *sink;
+	nt_buffer *memory;
+	const nt_file *input; /* the document's own file */
+} target;
+
+static nmtan_status put_bytes(const target *to, const void *bytes, size_t size, nt_error *error)
+{
+	if (to->sink)
+		return nt_sink_write(to->sink, bytes, size, error);
+	nt_buffer_append(to->memory, bytes, size);
+	return to->memory->failed ? nt_fail_memory(error) : NMTAN_OK;
+}
+
+static nmtan_status put_zeros(const target *to, uint64_t size, nt_error *error)
+{
+	static const unsigned char zeros[4096];
+	nmtan_status status = NMTAN_OK;
+	while (size && !status) {
+		const size_t part = size < sizeof zeros ? (size_t)size : sizeof zeros;
+		status = put_bytes(to, zeros, part, error);
+		size -= part;
+	}
+	return status;
+}
+
+/* A range of a source buffer: from file to file where that is possible. */
+static nmtan_status put_source(const nt_gltf_layout *layout, const nt_gltf_buffer *buffer,
+	const target *to, uint64_t begin, uint64_t end, nt_error *error)
+{
+	if (begin >= end)
+		return NMTAN_OK;
+	const uint64_t there = buffer->size < begin ? begin : buffer->size < end ? buffer->size : end;
+	const size_t size = (size_t)(there - begin);
+	nmtan_status status = NMTAN_OK;
+	if (size && to->sink && buffer->home == NT_GLTF_HOME_FILE)
+		status = nt_sink_copy(to->sink, &buffer->file, (size_t)begin, size, error);
+	else if (size && to->sink && buffer->home == NT_GLTF_HOME_BIN && to->input)
+		status = nt_sink_copy(to->sink, to->input,
+			layout->document->glb.bin.offset + (size_t)begin, size, error);
+	else if (size)
+		status = put_bytes(to, buffer->bytes + begin, size, error);
+	return status ? status : put_zeros(to, end - there, error);
+}
+
+static nmtan_status put_buffer(nt_gltf_layout *layout, uint32_t index, const target *to, nt_error *error)
+{
+	const nt_gltf_buffer_layout *plan = &layout->buffers[index];
+	nt_gltf_buffer *source = NULL;
+	nmtan_status status = NMTAN_OK;
+	uint64_t at = 0, written = map_position(plan, plan->old_length);
+	if (plan->old_length)
+		status = nt_gltf_open_buffer(layout->document, index, "/buffers", &source, error);
+	for (size_t i = 0; !status && i < plan->edit_count; i++) {
+		const nt_gltf_edit *edit = &plan->edits[i];
+		status = put_source(layout, source, to, at, edit->at, error);
+		if (!status)
+			status = put_bytes(to, edit->bytes, edit->size, error);
+		at = edit->at + edit->removed;
+	}
+	if (!status && source)
+		status = put_source(layout, source, to, at, plan->old_length, error);
+	for (size_t i = 0; !status && i < plan->addition_count; i++) {
+		const nt_gltf_addition *addition = &plan->additions[i];
+		status = put_zeros(to, addition->offset - written, error);
+		if (!status)
+			status = put_bytes(to, addition->bytes, addition->size, error);
+		written = addition->offset + addition->size;
+	}
+	return status;
+}
+
+nmtan_status nt_layout_write(nt_gltf_layout *layout, uint32_t buffer, const nt_file *input,
+	nt_sink *sink, nt_error *error)
+{
+	return put_buffer(layout, buffer, &(target){.sink = sink, .input = input}, error);
+}
+
+nmtan_status nt_layout_collect(nt_gltf_layout *layout, uint32_t buffer, nt_buffer *bytes,
+	nt_error *error)
+{
+	return put_buffer(layout, buffer, &(target){.memory = bytes}, error);
+}

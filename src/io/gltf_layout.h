@@ -1,0 +1,92 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What changes in the bytes of a document's buffers: insertions and replacements at places of the
+ * source, and new views behind the end. Everything else is streamed from the source as it is, and every
+ * offset in the JSON is moved by what was inserted before it.
+ */
+#ifndef NT_IO_GLTF_LAYOUT_H
+#define NT_IO_GLTF_LAYOUT_H
+
+#include "io/gltf_document.h"
+
+/* New bytes at a place of a source buffer. */
+typedef struct nt_gltf_edit {
+	uint64_t at;      /* byte of the source buffer */
+	uint64_t removed; /* bytes from there on that go */
+	const unsigned char *bytes;
+	size_t size;
+	int64_t shift;    /* of everything behind this edit: set by nt_layout_finish() */
+} nt_gltf_edit;
+
+/* A new view behind the end of a buffer. */
+typedef struct nt_gltf_addition {
+	uint32_t view;
+	uint64_t offset; /* in the new buffer: set by nt_layout_finish() */
+	const unsigned char *bytes;
+	size_t size;
+} nt_gltf_addition;
+
+typedef struct nt_gltf_buffer_layout {
+	nt_gltf_edit *edits;
+	size_t edit_count, edit_capacity;
+	nt_gltf_addition *additions;
+	size_t addition_count, addition_capacity;
+	uint64_t old_length; /* 0 for a new buffer */
+	uint64_t new_length; /* set by nt_layout_finish() */
+	bool touched;
+} nt_gltf_buffer_layout;
+
+/* Bytes of a source buffer that something in the document refers to. */
+typedef struct nt_gltf_extent {
+	uint64_t begin, end;
+	uint64_t reach;    /* largest end of this and all extents before it in the buffer */
+	uint32_t buffer;
+	uint32_t accessor; /* NT_NONE: an image, an extension, or an unknown user. Accessors over the same
+	                      bytes count as one: gltf_share.c puts the first of them here */
+} nt_gltf_extent;
+
+typedef struct nt_gltf_layout {
+	nt_gltf *document;
+	nt_arena arena;                 /* owns the new bytes */
+	nt_gltf_buffer_layout *buffers; /* [buffer_count]: the document's, and at most one new one */
+	size_t buffer_count;
+	size_t view_count;              /* of the source */
+	nt_gltf_extent *extents;        /* sorted by buffer and begin */
+	size_t extent_count, extent_capacity;
+	uint32_t alignment;             /* insertions are multiples of this */
+} nt_gltf_layout;
+
+/* Starts with no changes. Faulty parts of the document that nothing needs are passed over. */
+nmtan_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_error *error);
+void nt_layout_free(nt_gltf_layout *layout);
+
+/* Whether something other than the accessors marked in own[] refers to bytes of [begin, end). */
+bool nt_layout_is_foreign(const nt_gltf_layout *layout, uint32_t buffer, uint64_t begin, uint64_t end,
+	const uint32_t *own, uint32_t mark);
+
+/* Replaces `removed` bytes of a source buffer by others, which must live as long as the layout. The
+ * difference is padded with zeros to the layout's alignment. Edits must not overlap. */
+nmtan_status nt_layout_edit(nt_gltf_layout *layout, uint32_t buffer, uint64_t at, uint64_t removed,
+	const unsigned char *bytes, size_t size, nt_error *error);
+
+/* Adds a view with these bytes behind the end of a buffer. target and stride: 0 for none. */
+nmtan_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t buffer, const void *bytes, size_t size,
+	uint32_t target, uint32_t stride, uint32_t *view, nt_error *error);
+
+/* The buffer that takes new views of who uses source buffer `near` (NT_NONE: nobody in particular);
+ * a new buffer where no other can. */
+nmtan_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint32_t *buffer,
+	nt_error *error);
+
+/* Moves all offsets in the JSON and sets all lengths. Call once, after the last change. */
+nmtan_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error);
+
+/* Writes the bytes of a buffer as they are after the changes. `input` is the document's own file. */
+nmtan_status nt_layout_write(nt_gltf_layout *layout, uint32_t buffer, const nt_file *input,
+	nt_sink *sink, nt_error *error);
+
+/* The same into memory. */
+nmtan_status nt_layout_collect(nt_gltf_layout *layout, uint32_t buffer, nt_buffer *bytes,
+	nt_error *error);
+
+#endif

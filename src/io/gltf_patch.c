@@ -1,0 +1,282 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * glTF from glTF: the source document with tangents put in, and nothing else changed. Component by
+ * component: vertices are merged, attributes grow, indices follow, TANGENT comes; then offsets are moved
+ * and the container is written. What no solved primitive touches is not even looked at.
+ *
+ * The solve is made on (u, -v), so its w is glTF's as it stands.
+ */
+#include "io/gltf_patch.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "base/vec.h"
+
+nmtan_status nt_gltf_add_floats(nt_gltf_patcher *p, uint32_t buffer, const float *rows, size_t count,
+	uint32_t width, uint32_t *accessor)
+{
+	uint32_t view;
+	const nmtan_status status = nt_layout_add_view(&p->layout, buffer, rows,
+		count * width * sizeof(float), NT_GLTF_ARRAY_BUFFER, 0, &view, p->error);
+	if (status)
+		return status;
+	nt_json *json = p->json;
+	nt_json_value *accessors = nt_json_put(json, nt_json_root(json), "accessors");
+	*accessor = (uint32_t)nt_json_count(accessors);
+	nt_json_value *object = nt_json_append(json, accessors);
+	nt_json_set_uint64(json, nt_json_put(json, object, "bufferView"), view);
+	nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), NT_GLTF_FLOAT);
+	nt_json_set_uint64(json, nt_json_put(json, object, "count"), count);
+	nt_json_set_string(json, nt_json_put(json, object, "type"), width == 3 ? "VEC3" : "VEC4", 4);
+	return NMTAN_OK;
+}
+
+/* ---- tangents in place ---- */
+
+typedef struct tangent_users {
+	const nt_gltf_patcher *patcher;
+	uint32_t canonical;
+	uint32_t count; /* members that use it, under any name */
+} tangent_users;
+
+static nmtan_status count_user(void *context, nt_json_value *attributes, const char *name,
+	uint32_t accessor)
+{
+	(void)attributes;
+	(void)name;
+	tangent_users *users = context;
+	users->count += users->patcher->sharing.canonical[accessor] == users->canonical;
+	return NMTAN_OK;
+}
+
+static uint32_t tangent_of(const nt_gltf_patcher *p, const nt_mesh *mesh)
+{
+	uint64_t accessor;
+	const nt_json_value *attributes =
+		nt_json_find(nt_gltf_primitive_of(p->document, mesh), "attributes");
+	if (!nt_json_get_uint64(nt_json_find(attributes, "TANGENT"), &accessor) ||
+		accessor >= p->sharing.accessor_count)
+		return NT_NONE;
+	return (uint32_t)accessor;
+}
+
+/* The TANGENT accessor of the group's members whose values may simply be replaced: floats that nobody
+ * else uses. NT_NONE: there is none. */
+static uint32_t reusable_tangent(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group)
+{
+	uint32_t shared = NT_NONE, members = 0;
+	for (size_t i = 0; i < component->member_count; i++) {
+		if (component->rows.group_of[i] != group)
+			continue;
+		const uint32_t own = tangent_of(p, &p->scene->meshes[component->members[i]]);
+		if (own == NT_NONE || (members && own != shared))
+			return NT_NONE;
+		shared = own;
+		members++;
+	}
+	nt_gltf_accessor accessor;
+	if (nt_gltf_get_accessor(p->document, shared, "", &accessor, NULL) != NMTAN_OK ||
+		accessor.component_type != NT_GLTF_FLOAT || accessor.components != 4 ||
+		accessor.view == NT_NONE || accessor.sparse_count ||
+		p->sharing.foreign[p->sharing.canonical[shared]])
+		return NT_NONE;
+	tangent_users users = {p, p->sharing.canonical[shared], 0};
+	for (size_t i = 0; i < component->member_count; i++)
+		nt_gltf_visit_attributes(nt_gltf_primitive_of(p->document,
+			&p->scene->meshes[component->members[i]]), p->sharing.accessor_count, count_user,
+			&users);
+	return users.count == members ? shared : NT_NONE;
+}
+
+/* ---- one component ---- */
+
+static void set_attribute(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
+	const char *name, uint32_t accessor)
+{
+	for (size_t i = 0; i < component->member_count; i++) {
+		if (component->rows.group_of[i] != group)
+			continue;
+		nt_json_value *attributes = nt_json_find(nt_gltf_primitive_of(p->document,
+			&p->scene->meshes[component->members[i]]), "attributes");
+		nt_json_set_uint64(p->json, nt_json_put(p->json, attributes, name), accessor);
+	}
+}
+
+static const nt_mesh *first_of_group(const nt_gltf_patcher *p, const nt_gltf_cluster *component,
+	uint32_t group)
+{
+	for (size_t i = 0; i < component->member_count; i++)
+		if (component->rows.group_of[i] == group)
+			return &p->scene->meshes[component->members[i]];
+	return NULL;
+}
+
+/* cross(N, T) w, glTF's own definition of the bitangent. */
+static nmtan_status add_bitangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group)
+{
+	const nt_gltf_rows *rows = &component->rows;
+	const nt_mesh *mesh = first_of_group(p, component, group);
+	float *out = nt_arena_alloc(p->arena, rows->new_count, 3 * sizeof *out);
+	if (!out)
+		return nt_fail_memory(p->error);
+	for (size_t row = 0; row < rows->new_count; row++) {
+		const uint32_t source = row < rows->old_count ? (uint32_t)row :
+								rows->sources[row - rows->old_count];
+		const float *n = rows->normals[group] ? rows->normals[group] + 3 * row :
+							mesh->normals + 3 * (size_t)source;
+		const float *t = rows->tangents[group] + 4 * row;
+		const nt_vec3 b = nt_vec3_scale(t[3], nt_vec3_cross((nt_vec3){n[0], n[1], n[2]},
+			(nt_vec3){t[0], t[1], t[2]}));
+		memcpy(out + 3 * row, &b, 3 * sizeof *out);
+	}
+	uint32_t accessor;
+	const nmtan_status status =
+		nt_gltf_add_floats(p, component->buffer, out, rows->new_count, 3, &accessor);
+	if (!status)
+		set_attribute(p, component, group, "_BITANGENT", accessor);
+	return status;
+}
+
+/* NORMAL where it was made, TANGENT where it is not already in place, _BITANGENT where asked for. */
+static nmtan_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
+	bool tangent_in_place)
+{
+	const nt_gltf_rows *rows = &component->rows;
+	nmtan_status status = NMTAN_OK;
+	uint32_t accessor;
+	if (rows->normals[group]) {
+		status = nt_gltf_add_floats(p, component->buffer, rows->normals[group], rows->new_count, 3,
+			&accessor);
+		if (!status)
+			set_attribute(p, component, group, "NORMAL", accessor);
+	}
+	if (!status && !tangent_in_place) {
+		status = nt_gltf_add_floats(p, component->buffer, rows->tangents[group], rows->new_count,
+			4, &accessor);
+		if (!status)
+			set_attribute(p, component, group, "TANGENT", accessor);
+	}
+	if (!status && p->options->bitangents)
+		status = add_bitangents(p, component, group);
+	return status;
+}
+
+/* New views of the component go where its positions are. */
+static nmtan_status choose_buffer(nt_gltf_patcher *p, nt_gltf_cluster *component)
+{
+	const nt_mesh *mesh = first_of_group(p, component, 0);
+	const nt_json_value *attributes =
+		nt_json_find(nt_gltf_primitive_of(p->document, mesh), "attributes");
+	uint64_t index;
+	nt_gltf_accessor accessor;
+	nt_gltf_view view = {.buffer = NT_NONE};
+	if (nt_json_get_uint64(nt_json_find(attributes, "POSITION"), &index) &&
+		nt_gltf_get_accessor(p->document, index, "", &accessor, NULL) == NMTAN_OK &&
+		accessor.view != NT_NONE)
+		nt_gltf_get_view(p->document, accessor.view, "", &view, NULL);
+	return nt_layout_choose_buffer(&p->layout, view.buffer, &component->buffer, p->error);
+}
+
+static nmtan_status patch_component(nt_gltf_patcher *p, nt_gltf_cluster *component)
+{
+	/* One row for each tangent that a vertex has. */
+	nmtan_status status = nt_gltf_merge_rows(&component->rows, p->document, p->scene, &p->sharing,
+		component->members, component->member_count, p->arena, p->error);
+	if (!status && component->rows.group_count == 0)
+		return NMTAN_OK;
+	if (!status)
+		status = choose_buffer(p, component);
+	if (status)
+		return status;
+
+	/* Tangents that are there and may be replaced keep their place. */
+	const nt_gltf_rows *rows = &component->rows;
+	nt_gltf_override *overrides = nt_arena_alloc(p->arena, rows->group_count, sizeof *overrides);
+	bool *in_place = nt_arena_alloc(p->arena, rows->group_count, sizeof *in_place);
+	if (!overrides || !in_place)
+		return nt_fail_memory(p->error);
+	size_t override_count = 0;
+	for (uint32_t group = 0; group < rows->group_count; group++) {
+		const uint32_t accessor = reusable_tangent(p, component, group);
+		in_place[group] = accessor != NT_NONE;
+		if (accessor != NT_NONE)
+			overrides[override_count++] = (nt_gltf_override){accessor,
+				(const unsigned char *)rows->tangents[group], 4 * sizeof(float)};
+	}
+
+	/* The copied rows, the indices that use them, and what is new. */
+	if (override_count || rows->new_count > rows->old_count)
+		status = nt_gltf_grow_attributes(p, component, overrides, override_count);
+	if (!status)
+		status = nt_gltf_patch_indices(p, component);
+	for (uint32_t group = 0; !status && group < rows->group_count; group++)
+		status = add_group(p, component, group, in_place[group]);
+	return status;
+}
+
+/* ---- the whole ---- */
+
+static bool anything_solved(const nt_scene *scene)
+{
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		if (nt_gltf_is_solved(&scene->meshes[i]))
+			return true;
+	return false;
+}
+
+/* Accessors over the same bytes count as one when it is asked who else uses them. */
+static void canonise_extents(nt_gltf_patcher *p)
+{
+	for (size_t i = 0; i < p->layout.extent_count; i++) {
+		nt_gltf_extent *extent = &p->layout.extents[i];
+		if (extent->accessor != NT_NONE)
+			extent->accessor = p->sharing.canonical[extent->accessor];
+	}
+}
+
+static nmtan_status patch_components(nt_gltf_patcher *p)
+{
+	nmtan_status status = nt_gltf_find_sharing(&p->sharing, p->document, p->scene, p->arena, p->error);
+	if (status)
+		return status;
+	p->own = nt_arena_alloc(p->arena, p->sharing.accessor_count, sizeof *p->own);
+	if (!p->own)
+		return nt_fail_memory(p->error);
+	memset(p->own, 0, p->sharing.accessor_count * sizeof *p->own);
+	canonise_extents(p);
+	for (uint32_t i = 0; !status && i < p->sharing.component_count; i++) {
+		nt_gltf_cluster component = {.number = i,
+			.members = p->sharing.order + p->sharing.first[i],
+			.member_count = p->sharing.first[i + 1] - p->sharing.first[i]};
+		status = patch_component(p, &component);
+	}
+	return status;
+}
+
+nmtan_status nt_gltf_patch(nt_scene *scene, const nt_write_options *options, nt_output *output,
+	nt_error *error)
+{
+	/* Nothing to be done: the input as it is. */
+	bool written = false;
+	const bool solved = anything_solved(scene);
+	nmtan_status status = NMTAN_OK;
+	if (!solved)
+		status = nt_gltf_copy_unchanged(scene, options, output, &written, error);
+	if (status || written)
+		return status;
+
+	nt_gltf_patcher patcher = {.scene = scene, .document = scene->source, .options = options,
+		.error = error};
+	patcher.json = patcher.document->json;
+	patcher.arena = &patcher.layout.arena;
+	status = nt_layout_create(&patcher.layout, patcher.document, error);
+	if (status)
+		return status;
+	if (solved)
+		status = patch_components(&patcher);
+	if (!status)
+		status = nt_gltf_write_container(&patcher, output);
+	nt_layout_free(&patcher.layout);
+	return status;
+}

@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the parts of the glTF patch share: the document, the layout of its new bytes, and who shares
+ * accessors.
+ */
+#ifndef NT_IO_GLTF_PATCH_H
+#define NT_IO_GLTF_PATCH_H
+
+#include "io/gltf_layout.h"
+#include "io/gltf_share.h"
+
+enum { NT_GLTF_ARRAY_BUFFER = 34962, NT_GLTF_ELEMENT_ARRAY_BUFFER = 34963 };
+
+typedef struct nt_gltf_patcher {
+	nt_scene *scene;
+	nt_gltf *document;
+	nt_json *json;
+	const nt_write_options *options;
+	nt_gltf_layout layout;
+	nt_gltf_sharing sharing;
+	uint32_t *own;      /* [accessor_count] by canonical accessor: 1 + component that grows it */
+	nt_arena *arena;    /* the layout's */
+	nt_error *error;
+} nt_gltf_patcher;
+
+/* An accessor whose values are replaced in place: rows of `width` bytes for every new row. */
+typedef struct nt_gltf_override {
+	uint32_t accessor;
+	const unsigned char *values;
+	uint32_t width;
+} nt_gltf_override;
+
+/* The meshes of one component. */
+typedef struct nt_gltf_cluster {
+	uint32_t number;
+	const uint32_t *members; /* mesh numbers */
+	size_t member_count;
+	nt_gltf_rows rows;
+	uint32_t buffer;         /* of new views */
+} nt_gltf_cluster;
+
+/* Appends an accessor over a new view of `count` rows of floats; a VEC3 or VEC4 attribute. */
+nmtan_status nt_gltf_add_floats(nt_gltf_patcher *patcher, uint32_t buffer, const float *rows,
+	size_t count, uint32_t width, uint32_t *accessor);
+
+/* Gives every accessor of the component its copied rows, and overridden accessors their new values. */
+nmtan_status nt_gltf_grow_attributes(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
+	const nt_gltf_override *overrides, size_t override_count);
+
+/* Writes the indices of the component's solved meshes where they changed. */
+nmtan_status nt_gltf_patch_indices(nt_gltf_patcher *patcher, const nt_gltf_cluster *component);
+
+/* Writes the document with its buffers and images: gltf_container.c. */
+nmtan_status nt_gltf_write_container(nt_gltf_patcher *patcher, nt_output *output);
+
+/* Writes the input as it is where that is what the output should be; *written tells. */
+nmtan_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *options,
+	nt_output *output, bool *written, nt_error *error);
+
+#endif

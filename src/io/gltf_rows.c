@@ -1,0 +1,339 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Rows of a component: the vertices its accessors will have.
+ *
+ * Each mesh was solved and split by itself. Where several of them use the same vertex, their tangents
+ * for it may agree or not. The rows of a vertex form a chain that begins with its own; a mesh takes the
+ * first row of the chain where its group has no tangent yet or the same one, and appends a row where
+ * there is none. For a mesh that shares nothing this is exactly its own split.
+ */
+#include "io/gltf_share.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct merging {
+	nt_gltf_rows *rows;
+	size_t capacity;      /* of the arrays below, in rows */
+	uint32_t *source;     /* row of the source it is a copy of */
+	uint32_t *next;       /* next row of the same vertex, NT_NONE */
+	float **tangents;     /* [group] */
+	float **normals;      /* [group] or NULL */
+	bool **defined;       /* [group][row] */
+	bool *has_normals;    /* [group] */
+} merging;
+
+/* The three accessors that decide a tangent; meshes with the same ones form a group. */
+typedef struct group_key {
+	uint32_t positions, normals, texcoords;
+} group_key;
+
+static uint32_t canonical_of(const nt_gltf_sharing *sharing, const nt_json_value *attributes,
+	const char *name)
+{
+	uint64_t accessor;
+	if (!nt_json_get_uint64(nt_json_find(attributes, name), &accessor) ||
+		accessor >= sharing->accessor_count)
+		return NT_NONE;
+	return sharing->canonical[accessor];
+}
+
+static group_key key_of(const nt_gltf *document, const nt_gltf_sharing *sharing, const nt_mesh *mesh)
+{
+	char name[32];
+	snprintf(name, sizeof name, "TEXCOORD_%u", mesh->texcoord_set);
+	const nt_json_value *attributes =
+		nt_json_find(nt_gltf_primitive_of(document, mesh), "attributes");
+	return (group_key){canonical_of(sharing, attributes, "POSITION"),
+		canonical_of(sharing, attributes, "NORMAL"), canonical_of(sharing, attributes, name)};
+}
+
+static bool find_groups(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
+	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count)
+{
+	group_key *keys = nt_alloc(member_count, sizeof *keys);
+	if (!keys)
+		return false;
+	rows->group_count = 0;
+	for (size_t i = 0; i < member_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[members[i]];
+		rows->group_of[i] = NT_NONE;
+		if (!nt_gltf_is_solved(mesh))
+			continue;
+		const group_key key = key_of(document, sharing, mesh);
+		uint32_t group = 0;
+		while (group < rows->group_count && memcmp(&keys[group], &key, sizeof key) != 0)
+			group++;
+		if (group == rows->group_count)
+			keys[rows->group_count++] = key;
+		rows->group_of[i] = group;
+	}
+	free(keys);
+	return true;
+}
+
+static bool grow(void **block, size_t old_count, size_t new_count, size_t size)
+{
+	void *grown = nt_alloc(new_count, size);
+	if (!grown)
+		return false;
+	if (old_count)
+		memcpy(grown, *block, old_count * size);
+	memset((char *)grown + old_count * size, 0, (new_count - old_count) * size);
+	free(*block);
+	*block = grown;
+	return true;
+}
+
+static bool reserve_rows(merging *m, size_t needed)
+{
+	if (needed <= m->capacity)
+		return true;
+	const size_t old = m->capacity, wanted = needed + needed / 4 + 64;
+	bool grown = grow((void **)&m->source, old, wanted, sizeof *m->source) &&
+		grow((void **)&m->next, old, wanted, sizeof *m->next);
+	for (size_t g = 0; grown && g < m->rows->group_count; g++) {
+		grown = grow((void **)&m->tangents[g], old, wanted, 4 * sizeof(float)) &&
+			grow((void **)&m->defined[g], old, wanted, sizeof(bool));
+		if (grown && m->has_normals[g])
+			grown = grow((void **)&m->normals[g], old, wanted, 3 * sizeof(float));
+	}
+	if (grown)
+		m->capacity = wanted;
+	return grown;
+}
+
+static bool start_merging(merging *m, nt_gltf_rows *rows, const nt_scene *scene,
+	const uint32_t *members, size_t member_count)
+{
+	*m = (merging){.rows = rows,
+		.tangents = nt_calloc(rows->group_count, sizeof *m->tangents),
+		.normals = nt_calloc(rows->group_count, sizeof *m->normals),
+		.defined = nt_calloc(rows->group_count, sizeof *m->defined),
+		.has_normals = nt_calloc(rows->group_count, sizeof *m->has_normals)};
+	if (!m->tangents || !m->normals || !m->defined || !m->has_normals)
+		return false;
+	for (size_t i = 0; i < member_count; i++)
+		if (rows->group_of[i] != NT_NONE && scene->meshes[members[i]].normals_made)
+			m->has_normals[rows->group_of[i]] = true;
+	if (!reserve_rows(m, rows->old_count))
+		return false;
+	for (size_t i = 0; i < rows->old_count; i++) {
+		m->source[i] = (uint32_t)i;
+		m->next[i] = NT_NONE;
+	}
+	rows->new_count = rows->old_count;
+	return true;
+}
+
+static void end_merging(merging *m)
+{
+	for (size_t g = 0; g < m->rows->group_count; g++) {
+		if (m->tangents)
+			free(m->tangents[g]);
+		if (m->normals)
+			free(m->normals[g]);
+		if (m->defined)
+			free(m->defined[g]);
+	}
+	free(m->tangents);
+	free(m->normals);
+	free(m->defined);
+	free(m->has_normals);
+	free(m->source);
+	free(m->next);
+}
+
+/* Vertices of a mesh: the source's, those that made normals appended, those that the split appended. */
+static uint32_t before_split(const nt_mesh *mesh, uint32_t vertex)
+{
+	return vertex < mesh->vertex_count ? vertex : mesh->split.sources[vertex - mesh->vertex_count];
+}
+
+static uint32_t source_row(const nt_mesh *mesh, uint32_t vertex)
+{
+	vertex = before_split(mesh, vertex);
+	while (vertex >= mesh->source_vertex_count)
+		vertex = mesh->vertex_sources[vertex - mesh->source_vertex_count];
+	return vertex;
+}
+
+static bool row_fits(const merging *m, uint32_t group, uint32_t row, const float *tangent,
+	const float *normal)
+{
+	return !m->defined[group][row] ||
+		(memcmp(m->tangents[group] + 4 * (size_t)row, tangent, 4 * sizeof(float)) == 0 &&
+			(!normal || memcmp(m->normals[group] + 3 * (size_t)row, normal,
+					    3 * sizeof(float)) == 0));
+}
+
+static void define_row(merging *m, uint32_t group, uint32_t row, const float *tangent,
+	const float *normal)
+{
+	m->defined[group][row] = true;
+	memcpy(m->tangents[group] + 4 * (size_t)row, tangent, 4 * sizeof(float));
+	if (normal)
+		memcpy(m->normals[group] + 3 * (size_t)row, normal, 3 * sizeof(float));
+}
+
+/* The row for a vertex of a mesh; NT_NONE when memory is exhausted. */
+static uint32_t take_row(merging *m, const nt_mesh *mesh, uint32_t group, uint32_t vertex)
+{
+	const float *tangent = mesh->split.vertex_tangents + 4 * (size_t)vertex;
+	const float *normal =
+		mesh->normals_made ? mesh->normals + 3 * (size_t)before_split(mesh, vertex) : NULL;
+	uint32_t row = source_row(mesh, vertex), last = row;
+	for (; row != NT_NONE; row = m->next[row]) {
+		if (row_fits(m, group, row, tangent, normal)) {
+			define_row(m, group, row, tangent, normal);
+			return row;
+		}
+		last = row;
+	}
+	if (m->rows->new_count >= NT_NONE - 1 || !reserve_rows(m, m->rows->new_count + 1))
+		return NT_NONE;
+	row = (uint32_t)m->rows->new_count++;
+	m->source[row] = m->source[last];
+	m->next[row] = NT_NONE;
+	m->next[last] = row;
+	define_row(m, group, row, tangent, normal);
+	return row;
+}
+
+static bool merge_mesh(merging *m, const nt_mesh *mesh, uint32_t group, uint32_t *indices)
+{
+	const size_t vertex_count = mesh->vertex_count + mesh->split.source_count;
+	uint32_t *row_of = nt_alloc(vertex_count, sizeof *row_of);
+	if (!row_of)
+		return false;
+	enum { UNUSED = -1, USED = -2 };
+	memset(row_of, 0xFF, vertex_count * sizeof *row_of);
+	for (size_t c = 0; c < mesh->corner_count; c++)
+		row_of[mesh->split.indices[c]] = (uint32_t)USED;
+	bool merged = true;
+	for (uint32_t v = 0; merged && v < vertex_count; v++) {
+		if (row_of[v] != (uint32_t)USED)
+			continue;
+		row_of[v] = take_row(m, mesh, group, v);
+		merged = row_of[v] != NT_NONE;
+	}
+	for (size_t c = 0; merged && c < mesh->corner_count; c++)
+		indices[c] = row_of[mesh->split.indices[c]];
+	free(row_of);
+	return merged;
+}
+
+/* Rows that no corner of a group uses get the tangent that splitting gave them, copies that of the row
+ * they copy. */
+static void fill_unused(merging *m, const nt_mesh *mesh, uint32_t group)
+{
+	for (size_t row = 0; row < m->rows->new_count; row++) {
+		if (m->defined[group][row])
+			continue;
+		const uint32_t source = m->source[row];
+		const bool own = row < m->rows->old_count || !m->defined[group][source];
+		const float *tangent = own ? mesh->split.vertex_tangents + 4 * (size_t)source :
+					     m->tangents[group] + 4 * (size_t)source;
+		const float *normal = NULL;
+		if (m->has_normals[group])
+			normal = own ? mesh->normals + 3 * (size_t)source :
+				       m->normals[group] + 3 * (size_t)source;
+		define_row(m, group, (uint32_t)row, tangent, normal);
+	}
+}
+
+/* Hands the results to the arena. */
+static bool keep_rows(merging *m, nt_arena *arena)
+{
+	nt_gltf_rows *rows = m->rows;
+	rows->sources = nt_arena_alloc(arena, rows->new_count - rows->old_count, sizeof(uint32_t));
+	rows->tangents = nt_arena_alloc(arena, rows->group_count, sizeof *rows->tangents);
+	rows->normals = nt_arena_alloc(arena, rows->group_count, sizeof *rows->normals);
+	if (!rows->sources || !rows->tangents || !rows->normals)
+		return false;
+	for (size_t i = rows->old_count; i < rows->new_count; i++)
+		rows->sources[i - rows->old_count] = m->source[i];
+	bool kept = true;
+	for (size_t g = 0; g < rows->group_count; g++) {
+		rows->tangents[g] = m->tangents[g];
+		rows->normals[g] = m->normals[g];
+		m->tangents[g] = m->normals[g] = NULL;
+		kept &= nt_arena_adopt(arena, rows->tangents[g]);
+		kept &= nt_arena_adopt(arena, rows->normals[g]);
+	}
+	return kept;
+}
+
+/* The triangles of a mesh as the source has them. */
+static bool same_triangles(const nt_mesh *mesh, const uint32_t *indices)
+{
+	for (size_t c = 0; c < mesh->corner_count; c++)
+		if (indices[c] != (mesh->indices ? mesh->indices[c] : (uint32_t)c))
+			return false;
+	return true;
+}
+
+static bool merge_members(merging *m, const nt_scene *scene, const uint32_t *members,
+	size_t member_count, nt_arena *arena)
+{
+	nt_gltf_rows *rows = m->rows;
+	for (size_t i = 0; i < member_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[members[i]];
+		rows->indices[i] = NULL;
+		rows->changed[i] = false;
+		if (rows->group_of[i] == NT_NONE)
+			continue;
+		rows->indices[i] = nt_arena_alloc(arena, mesh->corner_count, sizeof(uint32_t));
+		if (!rows->indices[i] || !merge_mesh(m, mesh, rows->group_of[i], rows->indices[i]))
+			return false;
+		/* normals that were made may have given the mesh indices of its own */
+		rows->changed[i] = mesh->vertex_count > mesh->source_vertex_count ||
+			!same_triangles(mesh, rows->indices[i]);
+	}
+	for (size_t i = 0; i < member_count; i++)
+		if (rows->group_of[i] != NT_NONE)
+			fill_unused(m, &scene->meshes[members[i]], rows->group_of[i]);
+	return true;
+}
+
+/* All meshes of a component have the same number of vertices in a sound document. */
+static nmtan_status check_counts(nt_gltf_rows *rows, const nt_scene *scene, const uint32_t *members,
+	size_t member_count, nt_error *error)
+{
+	bool first = true;
+	for (size_t i = 0; i < member_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[members[i]];
+		if (rows->group_of[i] == NT_NONE)
+			continue;
+		if (!first && mesh->source_vertex_count != rows->old_count)
+			return nt_fail_pointer(error, NMTAN_ERROR_INPUT, mesh->place.pointer,
+				"%zu vertices, but a primitive that shares attributes with it has %zu",
+				mesh->source_vertex_count, rows->old_count);
+		rows->old_count = mesh->source_vertex_count;
+		first = false;
+	}
+	return NMTAN_OK;
+}
+
+nmtan_status nt_gltf_merge_rows(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
+	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count, nt_arena *arena,
+	nt_error *error)
+{
+	*rows = (nt_gltf_rows){
+		.group_of = nt_arena_alloc(arena, member_count, sizeof *rows->group_of),
+		.indices = nt_arena_alloc(arena, member_count, sizeof *rows->indices),
+		.changed = nt_arena_alloc(arena, member_count, sizeof *rows->changed),
+	};
+	if (!rows->group_of || !rows->indices || !rows->changed ||
+		!find_groups(rows, document, scene, sharing, members, member_count))
+		return nt_fail_memory(error);
+	nmtan_status status = check_counts(rows, scene, members, member_count, error);
+	if (status)
+		return status;
+	merging m;
+	const bool merged = start_merging(&m, rows, scene, members, member_count) &&
+		merge_members(&m, scene, members, member_count, arena) && keep_rows(&m, arena);
+	end_merging(&m);
+	return merged ? NMTAN_OK : nt_fail_memory(error);
+}

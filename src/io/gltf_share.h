@@ -1,0 +1,59 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Who shares what with whom, and the vertices that come out of it.
+ *
+ * Primitives that share an attribute accessor share its rows, so their vertices can only be split
+ * together: they form a component. Primitives of a component with the same positions, normals and texture
+ * coordinates form a group and share one TANGENT accessor.
+ */
+#ifndef NT_IO_GLTF_SHARE_H
+#define NT_IO_GLTF_SHARE_H
+
+#include "io/gltf_document.h"
+
+/* Calls visit() for the accessors of a primitive: its attributes and those of its morph targets. */
+typedef nmtan_status (*nt_gltf_visit)(void *context, nt_json_value *attributes, const char *name,
+	uint32_t accessor);
+nmtan_status nt_gltf_visit_attributes(const nt_json_value *primitive, size_t accessor_count,
+	nt_gltf_visit visit, void *context);
+
+/* The primitive of a mesh in the document. */
+nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh);
+
+typedef struct nt_gltf_sharing {
+	size_t accessor_count;
+	uint32_t *canonical;      /* [accessor_count] the first accessor over the same bytes */
+	bool *foreign;            /* [accessor_count] used by something else than attributes */
+	uint32_t *index_users;    /* [accessor_count] primitives that have it as indices */
+	uint32_t *order;          /* [mesh count] meshes, those of one component together */
+	uint32_t *component;      /* [mesh count] by mesh: number of the component */
+	size_t component_count;
+	uint32_t *first;          /* [component_count + 1] where each begins in order */
+} nt_gltf_sharing;
+
+nmtan_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, const nt_scene *scene,
+	nt_arena *arena, nt_error *error);
+
+/* Whether a mesh has tangents to be written. */
+bool nt_gltf_is_solved(const nt_mesh *mesh);
+
+/* Rows of one component after splitting. */
+typedef struct nt_gltf_rows {
+	size_t old_count;     /* rows of the source */
+	size_t new_count;
+	uint32_t *sources;    /* [new_count - old_count] rows of the source */
+	size_t group_count;
+	float **tangents;     /* [group_count][new_count][4] */
+	float **normals;      /* [group_count][new_count][3]: NULL where normals were not made */
+	uint32_t *group_of;   /* [member count] NT_NONE: not solved */
+	uint32_t **indices;   /* [member count][corner count]; NULL: not solved */
+	bool *changed;        /* [member count] indices differ from the source's triangles */
+} nt_gltf_rows;
+
+/* Merges the splits of a component's meshes: a vertex gets one row for each tangent (and made normal)
+ * that any of them wants. members are mesh numbers. Everything is in the arena. */
+nmtan_status nt_gltf_merge_rows(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
+	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count, nt_arena *arena,
+	nt_error *error);
+
+#endif
