@@ -24,12 +24,18 @@ static nmtan_status write_gltf(nt_scene *scene, const nt_write_options *options,
 	nt_output *output, nt_error *error)
 {
 	if (scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB)
-		return nt_fail(error, NMTAN_ERROR_UNSUPPORTED, "glTF cannot be written from glTF");
+		return nt_gltf_patch(scene, options, output, error);
 	return nt_gltf_compose(scene, options, output, error);
 }
 
 static const nt_format_entry table[] = {
-	{.format = NT_FORMAT_GLB, .name = "glb", .extensions = ".glb", .write = write_gltf},
+	{.format = NT_FORMAT_GLB,
+		.name = "glb",
+		.extensions = ".glb",
+		.recognise = nt_glb_recognise,
+		.open = nt_gltf_open,
+		.load = nt_gltf_load,
+		.write = write_gltf},
 	{.format = NT_FORMAT_DRC,
 		.name = "drc",
 		.extensions = ".drc",
@@ -41,7 +47,13 @@ static const nt_format_entry table[] = {
 		.recognise = nt_ply_recognise,
 		.open = nt_ply_open,
 		.write = nt_ply_write},
-	{.format = NT_FORMAT_GLTF, .name = "gltf", .extensions = ".gltf", .write = write_gltf},
+	{.format = NT_FORMAT_GLTF,
+		.name = "gltf",
+		.extensions = ".gltf",
+		.recognise = nt_gltf_recognise,
+		.open = nt_gltf_open,
+		.load = nt_gltf_load,
+		.write = write_gltf},
 	{.format = NT_FORMAT_OBJ,
 		.name = "obj",
 		.extensions = ".obj",

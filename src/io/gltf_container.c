@@ -202,7 +202,7 @@ static nmtan_status set_data(nt_gltf_container *c, uint32_t index, nt_json_value
 static nmtan_status write_companion(nt_gltf_container *c, uint32_t index, bool first,
 	nt_json_value *json, const nt_file *input)
 {
-	const char *path;
+	const char *path = NULL;
 	nmtan_status status = name_companion(c, index, first, &path);
 	if (status)
 		return status;

@@ -89,6 +89,7 @@ static nmtan_status open_scene(run *r)
 		return status;
 	r->summary->bytes_read = r->input.size;
 	r->scene.bytes = r->input.data;
+	r->scene.file = &r->input;
 	r->scene.byte_count = r->input.size;
 
 	begin_stage(r, NT_STAGE_PARSE);

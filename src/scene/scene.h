@@ -158,6 +158,7 @@ typedef struct nt_scene {
 	void (*unmap)(struct nt_scene *scene); /* releases the mapped input; NULL: none */
 	const unsigned char *bytes;
 	size_t byte_count;
+	const struct nt_file *file; /* the file of these bytes, to stream from; NULL: only the bytes are there */
 } nt_scene;
 
 /* An empty scene. */
