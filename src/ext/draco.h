@@ -1,0 +1,113 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Draco: compressed meshes to arrays and back. For KHR_draco_mesh_compression and .drc files.
+ *
+ * Nothing that Draco returns is believed: sizes are judged before it decodes, and after it every index, every
+ * mapping and every attribute's extent is checked. What it encodes is decoded again and compared with what
+ * went in, bit for bit after quantization. Functions may run in several threads at once.
+ */
+#ifndef NT_EXT_DRACO_H
+#define NT_EXT_DRACO_H
+
+#include "base/error.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum nt_draco_method { NT_DRACO_SEQUENTIAL, NT_DRACO_EDGEBREAKER } nt_draco_method;
+
+/* What Draco calls an attribute's type; tangents, joints and weights are generic and found by their id. */
+typedef enum nt_draco_kind {
+	NT_DRACO_POSITION,
+	NT_DRACO_NORMAL,
+	NT_DRACO_COLOR,
+	NT_DRACO_TEXCOORD,
+	NT_DRACO_GENERIC
+} nt_draco_kind;
+
+/* How floats were, or are to be, turned into integers. */
+typedef struct nt_draco_quantization {
+	int bits;          /* 1 to 30; 0: not at all */
+	bool octahedral;   /* decoding: unit vectors, by direction, without origin and range. Encoding takes
+	                      normals of three floats so, whatever this says */
+	bool explicit_box; /* encoding: take origin and range as they are instead of the values' box */
+	float origin[4], range;
+} nt_draco_quantization;
+
+typedef struct nt_draco_attribute {
+	uint32_t unique_id;
+	nt_draco_kind kind;
+	int component_type; /* as in glTF: 5120 int8 ... 5126 float, and 5124 for int32 */
+	int components;     /* 1 to 4 */
+	bool normalized;    /* integers that mean [0, 1] or [-1, 1] */
+	nt_draco_quantization quantization;
+	const void *data;   /* [point_count][components]; aligned for its type when decoded */
+	size_t stride_bytes; /* 0: tightly packed, as it is when decoded */
+} nt_draco_attribute;
+
+typedef struct nt_draco_mesh {
+	nt_draco_method method;
+	size_t point_count, face_count;
+	const uint32_t *indices; /* [face_count][3] */
+	const nt_draco_attribute *attributes;
+	size_t attribute_count;
+} nt_draco_mesh;
+
+/* Size of a component in bytes; 0: not a component type. */
+size_t nt_draco_component_size(int component_type);
+
+/* ---- decoding ---- */
+
+typedef struct nt_draco nt_draco;
+
+/*
+ * Decodes a mesh.
+ *
+ *   max_faces  the context's limit; 0: none but what so many bytes can plausibly hold
+ *   with_quantization  fills the attributes' quantization, for encoding them again; takes about as long again
+ *
+ * Returns NMTAN_OK; NMTAN_ERROR_INPUT for what is not Draco or damaged, with Draco's words;
+ * NMTAN_ERROR_UNSUPPORTED for point clouds and attributes that glTF cannot have; NMTAN_ERROR_TOO_LARGE when it
+ * declares more faces than allowed; NMTAN_ERROR_MEMORY.
+ */
+nmtan_status nt_draco_decode(nt_draco **result, const unsigned char *bytes, size_t size,
+	size_t max_faces, bool with_quantization, nt_error *error);
+
+/* NULL is allowed. */
+void nt_draco_free(nt_draco *result);
+
+/* The decoded mesh; it belongs to the result. */
+const nt_draco_mesh *nt_draco_get(const nt_draco *result);
+
+/* The attribute with that id; NULL: none. */
+const nt_draco_attribute *nt_draco_find(const nt_draco_mesh *mesh, uint32_t unique_id);
+
+/* ---- encoding ---- */
+
+typedef struct nt_draco_block {
+	unsigned char *bytes;
+	size_t size;
+	size_t point_count, face_count; /* as a decoder will see them */
+	uint32_t *sources; /* [point_count] sequential: the point of the input that each one is. NULL with
+	                      edgebreaker, which reorders points and splits them */
+} nt_draco_block;
+
+void nt_draco_block_free(nt_draco_block *block);
+
+/*
+ * Encodes a mesh. Points that no face uses are left out. Sequential keeps the order of faces and of the
+ * remaining points, and degenerate faces; edgebreaker is smaller, reorders, and drops faces with two corners
+ * at one position.
+ *
+ * Returns NMTAN_OK; NMTAN_ERROR_ARGUMENT for types, counts and bits out of range and quantized values that are
+ * not finite or outside of their explicit box; NMTAN_ERROR_INDEX; NMTAN_ERROR_TOO_LARGE; NMTAN_ERROR_INPUT when
+ * no face is left to encode; NMTAN_ERROR_INTERNAL when Draco fails or does not give back what it got;
+ * NMTAN_ERROR_MEMORY.
+ */
+nmtan_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

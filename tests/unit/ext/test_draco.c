@@ -1,0 +1,410 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include <math.h>
+#include <stdio.h>
+#include "ext/draco.h"
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+/* A grid of (SIDE + 1)^2 points over a bumpy surface, with normals, texture coordinates, tangents whose w changes
+ * in the middle, and joints. One face is degenerate, one point unused. */
+enum { SIDE = 12, POINTS = (SIDE + 1) * (SIDE + 1) + 1, FACES = 2 * SIDE * SIDE + 1 };
+
+typedef struct grid {
+	float positions[POINTS][3], normals[POINTS][3], texcoords[POINTS][2], tangents[POINTS][4];
+	uint16_t joints[POINTS][4];
+	uint32_t indices[FACES][3];
+	nt_draco_attribute attributes[5];
+	nt_draco_mesh mesh;
+} grid;
+
+static void add_attribute(grid *g, nt_draco_kind kind, uint32_t id, int type, int components,
+	int bits, const void *data)
+{
+	g->attributes[g->mesh.attribute_count++] = (nt_draco_attribute){.unique_id = id, .kind = kind,
+		.component_type = type, .components = components, .quantization.bits = bits, .data = data};
+}
+
+static void make_grid(grid *g, nt_draco_method method, int bits)
+{
+	memset(g, 0, sizeof *g);
+	for (int p = 0; p < POINTS; p++) {
+		const int x = p % (SIDE + 1), y = p / (SIDE + 1);
+		const float angle = 0.1f * (float)(x * y);
+		g->positions[p][0] = (float)x * 0.37f;
+		g->positions[p][1] = (float)y * 0.21f;
+		g->positions[p][2] = sinf(angle);
+		g->normals[p][1] = sinf(angle);
+		g->normals[p][2] = cosf(angle);
+		g->texcoords[p][0] = (float)x / SIDE;
+		g->texcoords[p][1] = (float)y / SIDE;
+		g->tangents[p][0] = cosf(angle);
+		g->tangents[p][1] = sinf(angle);
+		g->tangents[p][3] = x < SIDE / 2 ? 1 : -1;
+		g->joints[p][0] = (uint16_t)(1000 * x);
+	}
+	uint32_t(*to)[3] = g->indices;
+	for (uint32_t y = 0; y < SIDE; y++)
+		for (uint32_t x = 0; x < SIDE; x++) {
+			const uint32_t a = y * (SIDE + 1) + x, b = a + SIDE + 1;
+			const uint32_t two[2][3] = {{a, a + 1, b + 1}, {a, b + 1, b}};
+			memcpy(to, two, sizeof two);
+			to += 2;
+		}
+	(*to)[0] = (*to)[1] = 5;
+	g->mesh = (nt_draco_mesh){.method = method, .point_count = POINTS, .face_count = FACES,
+		.indices = &g->indices[0][0], .attributes = g->attributes};
+	add_attribute(g, NT_DRACO_POSITION, 0, 5126, 3, bits, g->positions);
+	add_attribute(g, NT_DRACO_NORMAL, 1, 5126, 3, bits, g->normals);
+	add_attribute(g, NT_DRACO_TEXCOORD, 2, 5126, 2, bits, g->texcoords);
+	add_attribute(g, NT_DRACO_GENERIC, 7, 5126, 4, bits, g->tangents);
+	add_attribute(g, NT_DRACO_GENERIC, 9, 5123, 4, 0, g->joints);
+}
+
+static nt_draco_block encoded(const nt_draco_mesh *mesh)
+{
+	nt_draco_block block;
+	nt_error error;
+	const nmtan_status status = nt_draco_encode(mesh, &block, &error);
+	if (status != NMTAN_OK)
+		fail_msg("%s", error.message);
+	return block;
+}
+
+static nt_draco *decoded(const nt_draco_block *block)
+{
+	nt_draco *result;
+	nt_error error;
+	const nmtan_status status = nt_draco_decode(&result, block->bytes, block->size, 0, true, &error);
+	if (status != NMTAN_OK)
+		fail_msg("%s", error.message);
+	return result;
+}
+
+static void sequential_without_quantization_is_exact(void **state)
+{
+	(void)state;
+	grid g;
+	make_grid(&g, NT_DRACO_SEQUENTIAL, 0);
+	nt_draco_block block = encoded(&g.mesh);
+	assert_int_equal(block.point_count, POINTS - 1); /* the last one is not used */
+	assert_int_equal(block.face_count, FACES);       /* the degenerate one stays */
+	assert_int_equal(block.sources[POINTS - 2], POINTS - 2);
+	nt_draco *result = decoded(&block);
+	const nt_draco_mesh *mesh = nt_draco_get(result);
+	assert_int_equal(mesh->method, NT_DRACO_SEQUENTIAL);
+	assert_memory_equal(mesh->indices, g.indices, sizeof g.indices);
+	assert_memory_equal(nt_draco_find(mesh, 0)->data, g.positions, sizeof g.positions - 12);
+	assert_memory_equal(nt_draco_find(mesh, 1)->data, g.normals, sizeof g.normals - 12);
+	assert_memory_equal(nt_draco_find(mesh, 2)->data, g.texcoords, sizeof g.texcoords - 8);
+	assert_memory_equal(nt_draco_find(mesh, 7)->data, g.tangents, sizeof g.tangents - 16);
+	assert_memory_equal(nt_draco_find(mesh, 9)->data, g.joints, sizeof g.joints - 8);
+	assert_int_equal(nt_draco_find(mesh, 9)->component_type, 5123);
+	assert_int_equal(nt_draco_find(mesh, 9)->components, 4);
+	assert_null(nt_draco_find(mesh, 3));
+	nt_draco_free(result);
+	nt_draco_block_free(&block);
+}
+
+/* Largest angle between tangents, in degrees; w must be exact. */
+static double tangent_error(const float (*tangents)[4], const float *back, size_t count)
+{
+	double worst = 0;
+	for (size_t p = 0; p < count; p++) {
+		const float *a = tangents[p], *b = back + 4 * p;
+		assert_true(b[3] == a[3]);
+		const double cross[3] = {(double)a[1] * b[2] - (double)a[2] * b[1],
+			(double)a[2] * b[0] - (double)a[0] * b[2], (double)a[0] * b[1] - (double)a[1] * b[0]};
+		const double sine = sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]);
+		worst = fmax(worst, asin(fmin(sine, 1)) * 180 / 3.14159265358979);
+	}
+	return worst;
+}
+
+static void twelve_bits_keep_tangents_and_their_sign(void **state)
+{
+	(void)state;
+	grid g;
+	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
+	nt_draco_block block = encoded(&g.mesh);
+	nt_draco *result = decoded(&block);
+	const nt_draco_attribute *tangents = nt_draco_find(nt_draco_get(result), 7);
+	assert_int_equal(tangents->quantization.bits, 12);
+	/* the box is [-1, 1]: half a step is 1/4095 in each of three coordinates, 0.0242 degrees */
+	assert_true(tangent_error(g.tangents, tangents->data, POINTS - 1) < 0.0243);
+	const nt_draco_attribute *normals = nt_draco_find(nt_draco_get(result), 1);
+	assert_true(normals->quantization.octahedral);
+	assert_int_equal(normals->quantization.bits, 12);
+	assert_int_equal(normals->component_type, 5126);
+	assert_int_equal(normals->components, 3);
+	nt_draco_free(result);
+	nt_draco_block_free(&block);
+}
+
+static void second_encoding_in_the_same_box_moves_nothing(void **state)
+{
+	(void)state;
+	grid g;
+	make_grid(&g, NT_DRACO_SEQUENTIAL, 11);
+	nt_draco_block first = encoded(&g.mesh);
+	nt_draco *once = decoded(&first);
+	const nt_draco_mesh *mesh = nt_draco_get(once);
+	/* origin and range came with the data: the box of the positions */
+	const nt_draco_quantization *box = &nt_draco_find(mesh, 0)->quantization;
+	assert_true(box->explicit_box);
+	assert_true(box->origin[0] == 0 && box->origin[1] == 0);
+	assert_true(box->range == g.positions[SIDE][0]);
+
+	/* half of the faces: their own box is another one */
+	nt_draco_mesh half = *mesh;
+	half.face_count /= 2;
+	nt_draco_block second = encoded(&half);
+	nt_draco *twice = decoded(&second);
+	for (uint32_t id = 0; id <= 7; id++) {
+		const nt_draco_attribute *a = nt_draco_find(mesh, id);
+		const nt_draco_attribute *b = nt_draco_find(nt_draco_get(twice), id);
+		if (!a || a->quantization.octahedral)
+			continue;
+		const size_t width = 4 * (size_t)a->components;
+		for (size_t p = 0; p < second.point_count; p++)
+			assert_memory_equal((const char *)b->data + p * width,
+				(const char *)a->data + second.sources[p] * width, width);
+	}
+	nt_draco_free(once);
+	nt_draco_free(twice);
+	nt_draco_block_free(&first);
+	nt_draco_block_free(&second);
+}
+
+static void edgebreaker_keeps_every_sound_face(void **state)
+{
+	(void)state;
+	for (int bits = 0; bits <= 14; bits += 7) {
+		grid g;
+		make_grid(&g, NT_DRACO_EDGEBREAKER, bits);
+		nt_draco_block block = encoded(&g.mesh); /* which compares the set of faces */
+		assert_int_equal(block.face_count, FACES - 1);
+		assert_null(block.sources);
+		nt_draco *result = decoded(&block);
+		assert_int_equal(nt_draco_get(result)->method, NT_DRACO_EDGEBREAKER);
+		assert_int_equal(nt_draco_get(result)->point_count, POINTS - 1);
+		nt_draco_free(result);
+		nt_draco_block_free(&block);
+	}
+}
+
+static void non_manifold_meshes_survive_edgebreaker(void **state)
+{
+	(void)state;
+	static const float positions[][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {9, 9, 9},
+		{9, 8, 9}, {8, 9, 9}};
+	/* three faces on one edge, one of them twice, and one apart */
+	static const uint32_t indices[] = {0, 1, 2, 0, 1, 3, 1, 0, 4, 0, 1, 2, 5, 6, 7};
+	const nt_draco_attribute position = {.component_type = 5126, .components = 3, .data = positions};
+	const nt_draco_mesh mesh = {.method = NT_DRACO_EDGEBREAKER, .point_count = 8, .face_count = 5,
+		.indices = indices, .attributes = &position, .attribute_count = 1};
+	nt_draco_block block = encoded(&mesh);
+	assert_int_equal(block.face_count, 5);
+	nt_draco_block_free(&block);
+}
+
+static nmtan_status encode_status(const grid *g, nt_error *error)
+{
+	nt_draco_block block;
+	const nmtan_status status = nt_draco_encode(&g->mesh, &block, error);
+	assert_true((status == NMTAN_OK) == (block.bytes != NULL));
+	nt_draco_block_free(&block);
+	return status;
+}
+
+static void what_cannot_be_encoded_is_refused(void **state)
+{
+	(void)state;
+	grid g;
+	nt_error error;
+	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
+	g.tangents[3][2] = NAN;
+	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	assert_non_null(strstr(error.message, "point 3 in attribute 7"));
+	g.attributes[3].quantization.bits = 0; /* as it is, it may be anything */
+	assert_int_equal(encode_status(&g, &error), NMTAN_OK);
+
+	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
+	g.indices[7][1] = POINTS;
+	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_INDEX);
+	make_grid(&g, NT_DRACO_SEQUENTIAL, 31);
+	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
+	g.attributes[4].quantization.bits = 8; /* integers */
+	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
+	g.attributes[0].quantization.explicit_box = true;
+	g.attributes[0].quantization.range = 1; /* positions reach 4.4 */
+	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	g.mesh.face_count = 0;
+	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_INPUT);
+	make_grid(&g, NT_DRACO_EDGEBREAKER, 12);
+	memset(g.indices, 0, sizeof g.indices); /* nothing but degenerate faces */
+	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_INPUT);
+}
+
+static nmtan_status decode_status(const unsigned char *bytes, size_t size, size_t max_faces,
+	nt_error *error)
+{
+	nt_draco *result;
+	const nmtan_status status = nt_draco_decode(&result, bytes, size, max_faces, true, error);
+	assert_true((status == NMTAN_OK) == (result != NULL));
+	nt_draco_free(result);
+	return status;
+}
+
+static void damaged_streams_are_refused(void **state)
+{
+	(void)state;
+	nt_error error;
+	assert_int_equal(decode_status((const unsigned char *)"", 0, 0, &error), NMTAN_ERROR_INPUT);
+	assert_int_equal(decode_status((const unsigned char *)"DRACO\2\2\1\1\0\0", 11, 0, &error),
+		NMTAN_ERROR_INPUT);
+	assert_int_equal(decode_status((const unsigned char *)"DRACO\2\3\0\1\0\0", 11, 0, &error),
+		NMTAN_ERROR_UNSUPPORTED); /* a point cloud */
+	/* 2^31 faces in a few bytes: sequential, faces and points as variable numbers */
+	assert_int_equal(decode_status((const unsigned char *)"DRACO\2\2\1\0\0\0\x80\x80\x80\x80\x08\x03\1", 18,
+				 0, &error), NMTAN_ERROR_TOO_LARGE);
+	assert_non_null(strstr(error.message, "2147483648 faces"));
+
+	grid g;
+	make_grid(&g, NT_DRACO_EDGEBREAKER, 12);
+	nt_draco_block block = encoded(&g.mesh);
+	assert_int_equal(decode_status(block.bytes, block.size, FACES - 1, &error), NMTAN_OK);
+	assert_int_equal(decode_status(block.bytes, block.size, FACES - 2, &error),
+		NMTAN_ERROR_TOO_LARGE);
+	for (size_t size = 0; size < block.size; size += 7)
+		assert_int_equal(decode_status(block.bytes, size, 0, &error), NMTAN_ERROR_INPUT);
+	nt_draco_block_free(&block);
+}
+
+/* xorshift32: the same mutations everywhere. */
+static uint32_t random_bits(uint32_t *state)
+{
+	*state ^= *state << 13;
+	*state ^= *state >> 17;
+	return *state ^= *state << 5;
+}
+
+/* Whatever decodes must have sound indices and values, which a sum over everything touches. */
+static void touch(const nt_draco_mesh *mesh)
+{
+	unsigned sum = 0;
+	for (size_t i = 0; i < 3 * mesh->face_count; i++)
+		assert_true(mesh->indices[i] < mesh->point_count);
+	for (size_t i = 0; i < mesh->attribute_count; i++) {
+		const nt_draco_attribute *a = &mesh->attributes[i];
+		const size_t size = nt_draco_component_size(a->component_type) * (size_t)a->components;
+		const unsigned char *bytes = a->data;
+		for (size_t k = 0; k < size * mesh->point_count; k++)
+			sum += bytes[k];
+	}
+	assert_true(sum < UINT32_MAX);
+}
+
+static size_t mutate(const unsigned char *bytes, size_t size, unsigned count, uint32_t *seed,
+	size_t max_faces)
+{
+	unsigned char *copy = malloc(size);
+	size_t good = 0;
+	for (unsigned i = 0; i < count; i++) {
+		memcpy(copy, bytes, size);
+		for (uint32_t k = random_bits(seed) % 3; k < 3; k++)
+			copy[11 + random_bits(seed) % (size - 11)] ^= (unsigned char)(1 << random_bits(seed) % 8);
+		nt_draco *result;
+		nt_error error;
+		if (nt_draco_decode(&result, copy, size, max_faces, i % 2, &error) == NMTAN_OK) {
+			touch(nt_draco_get(result));
+			good++;
+		}
+		nt_draco_free(result);
+	}
+	free(copy);
+	return good;
+}
+
+static void mutated_streams_do_no_harm(void **state)
+{
+	(void)state;
+	uint32_t seed = 2463534242u;
+	size_t good = 0;
+	for (int method = 0; method < 2; method++)
+		for (int bits = 0; bits <= 12; bits += 12) {
+			grid g;
+			make_grid(&g, (nt_draco_method)method, bits);
+			nt_draco_block block = encoded(&g.mesh);
+			good += mutate(block.bytes, block.size, 150, &seed, 4 * FACES);
+			nt_draco_block_free(&block);
+		}
+	assert_true(good > 20); /* else the mutations never come as far as the geometry */
+}
+
+static unsigned char *read_model(const char *name, size_t *size)
+{
+	char path[200];
+	snprintf(path, sizeof path, "../shared/models/drc/%s", name);
+	FILE *file = fopen(path, "rb");
+	if (!file)
+		return NULL;
+	fseek(file, 0, SEEK_END);
+	*size = (size_t)ftell(file);
+	rewind(file);
+	unsigned char *bytes = malloc(*size);
+	assert_int_equal(fread(bytes, 1, *size, file), *size);
+	fclose(file);
+	return bytes;
+}
+
+static void shared_models_decode_and_round_trip(void **state)
+{
+	(void)state;
+	/* a cube, the bunny's published counts, and what car.drc's head declares */
+	static const struct {
+		const char *name;
+		size_t faces, points;
+	} models[] = {{"car.drc", 1744, 1856}, {"bunny_gltf.drc", 69451, 34834}, {"cube_att.drc", 12, 24}};
+	for (size_t i = 0; i < COUNT(models); i++) {
+		size_t size;
+		unsigned char *bytes = read_model(models[i].name, &size);
+		if (!bytes) {
+			print_message("skipped: ../shared/models/drc/%s is not there\n", models[i].name);
+			continue;
+		}
+		const nt_draco_block block = {.bytes = bytes, .size = size};
+		nt_draco *result = decoded(&block);
+		nt_draco_mesh mesh = *nt_draco_get(result);
+		assert_int_equal(mesh.face_count, models[i].faces);
+		assert_int_equal(mesh.point_count, models[i].points);
+		touch(&mesh);
+		for (int method = 0; method < 2; method++) {
+			mesh.method = (nt_draco_method)method;
+			nt_draco_block again = encoded(&mesh);
+			nt_draco_block_free(&again);
+		}
+		uint32_t seed = 88172645;
+		mutate(bytes, size, 20, &seed, 4 * mesh.face_count);
+		nt_draco_free(result);
+		free(bytes);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(sequential_without_quantization_is_exact),
+		cmocka_unit_test(twelve_bits_keep_tangents_and_their_sign),
+		cmocka_unit_test(second_encoding_in_the_same_box_moves_nothing),
+		cmocka_unit_test(edgebreaker_keeps_every_sound_face),
+		cmocka_unit_test(non_manifold_meshes_survive_edgebreaker),
+		cmocka_unit_test(what_cannot_be_encoded_is_refused),
+		cmocka_unit_test(damaged_streams_are_refused),
+		cmocka_unit_test(mutated_streams_do_no_harm),
+		cmocka_unit_test(shared_models_decode_and_round_trip),
+	};
+	return cmocka_run_group_tests_name("ext/draco", tests, NULL, NULL);
+}
