@@ -12,15 +12,18 @@ support_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/support/*.c)
 # The oracle of tests/support/oracle128.c.
 QUADMATH := $(if $(filter x86_64 i686,$(shell uname -m)),-lquadmath)
 
+# tests/support/fail_alloc.c stands in for these
+WRAP := -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=strdup,--wrap=strndup
+
 $(B)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
 	$(CC) $(NT_CFLAGS) -Itests/support -DNT_DATA_DIR='"data"' -c -o $@ $<
 
 $(unit_bin): $(B)/tests/%: $(B)/tests/%.o $(support_obj) $(B)/libtool.a $(B)/libnmtan.a
-	$(CXX) $(NT_LDFLAGS) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group -lcmocka $(TOOL_LIBS) $(QUADMATH)
+	$(CXX) $(NT_LDFLAGS) $(WRAP) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group -lcmocka $(TOOL_LIBS) $(QUADMATH)
 
 $(api_bin): $(B)/tests/%: $(B)/tests/%.o $(support_obj) $(B)/libnmtan.a
-	$(CC) $(NT_LDFLAGS) -o $@ $^ -lcmocka -lm $(QUADMATH)
+	$(CC) $(NT_LDFLAGS) $(WRAP) -o $@ $^ -lcmocka -lm $(QUADMATH)
 
 .PRECIOUS: $(B)/tests/%.o
 

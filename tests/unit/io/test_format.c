@@ -33,6 +33,9 @@ static void format_of_an_input_is_its_content_before_its_name(void **state)
 {
 	(void)state;
 	assert_int_equal(of_input("DRACO\2\2", 7, "a.obj"), NT_FORMAT_DRC);
+	assert_int_equal(of_input("ply\n", 4, "a.gltf"), NT_FORMAT_PLY);
+	assert_int_equal(of_input("ply\rformat", 10, "-"), NT_FORMAT_PLY);
+	assert_int_equal(of_input("plyx", 4, "-"), NT_FORMAT_UNKNOWN);
 	assert_int_equal(of_input("", 0, "a.obj"), NT_FORMAT_OBJ);
 	assert_int_equal(of_input("", 0, "a.txt"), NT_FORMAT_UNKNOWN);
 	assert_int_equal(of_input("\0\1\2\3", 4, "-"), NT_FORMAT_UNKNOWN);

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+#include "fail_alloc.h"
+
+#include <errno.h>
+#include <stdint.h>
+
+static size_t left = SIZE_MAX; /* allocations that succeed; SIZE_MAX: all */
+static bool failed;
+
+void fail_allocations_from(size_t n)
+{
+	left = n;
+	failed = false;
+}
+
+bool stop_failing_allocations(void)
+{
+	left = SIZE_MAX;
+	return failed;
+}
+
+static bool fails(void)
+{
+	if (left == SIZE_MAX)
+		return false;
+	if (left > 0) {
+		left--;
+		return false;
+	}
+	failed = true;
+	errno = ENOMEM;
+	return true;
+}
+
+void *__real_malloc(size_t size);
+void *__real_calloc(size_t count, size_t size);
+void *__real_realloc(void *block, size_t size);
+char *__real_strdup(const char *text);
+char *__real_strndup(const char *text, size_t length);
+void *__wrap_malloc(size_t size);
+void *__wrap_calloc(size_t count, size_t size);
+void *__wrap_realloc(void *block, size_t size);
+char *__wrap_strdup(const char *text);
+char *__wrap_strndup(const char *text, size_t length);
+
+void *__wrap_malloc(size_t size)
+{
+	return fails() ? NULL : __real_malloc(size);
+}
+
+void *__wrap_calloc(size_t count, size_t size)
+{
+	return fails() ? NULL : __real_calloc(count, size);
+}
+
+void *__wrap_realloc(void *block, size_t size)
+{
+	return fails() ? NULL : __real_realloc(block, size);
+}
+
+char *__wrap_strdup(const char *text)
+{
+	return fails() ? NULL : __real_strdup(text);
+}
+
+char *__wrap_strndup(const char *text, size_t length)
+{
+	return fails() ? NULL : __real_strndup(text, length);
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Makes the n-th allocation of our own objects fail (malloc, calloc, realloc, strdup and strndup, by the
+ * linker's --wrap; what libraries allocate inside is not touched).
+ */
+#ifndef NT_TEST_FAIL_ALLOC_H
+#define NT_TEST_FAIL_ALLOC_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+/* From now on the allocation number n (0: the next one) fails, and every later one. */
+void fail_allocations_from(size_t n);
+
+/* Ends that. Returns whether an allocation failed meanwhile. */
+bool stop_failing_allocations(void);
+
+#endif
