@@ -8,18 +8,6 @@
 #include <string.h>
 #include <strings.h>
 
-static bool recognise_drc(const unsigned char *bytes, size_t size)
-{
-	return size >= 5 && memcmp(bytes, "DRACO", 5) == 0;
-}
-
-static nmtan_status open_drc(nt_scene *scene, const nt_read_options *options, nt_error *error)
-{
-	(void)options;
-	nt_fail(error, NMTAN_ERROR_UNSUPPORTED, "Draco files (.drc) cannot be read");
-	return nt_error_in_file(error, scene->path);
-}
-
 static nmtan_status write_gltf(nt_scene *scene, const nt_write_options *options,
 	nt_output *output, nt_error *error)
 {
@@ -39,8 +27,8 @@ static const nt_format_entry table[] = {
 	{.format = NT_FORMAT_DRC,
 		.name = "drc",
 		.extensions = ".drc",
-		.recognise = recognise_drc,
-		.open = open_drc},
+		.recognise = nt_drc_recognise,
+		.open = nt_drc_open},
 	{.format = NT_FORMAT_PLY,
 		.name = "ply",
 		.extensions = ".ply",

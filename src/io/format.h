@@ -65,6 +65,9 @@ nmtan_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_err
 nmtan_status nt_ply_write(nt_scene *scene, const nt_write_options *options, nt_output *output,
 	nt_error *error);
 
+bool nt_drc_recognise(const unsigned char *bytes, size_t size);
+nmtan_status nt_drc_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
+
 bool nt_gltf_recognise(const unsigned char *bytes, size_t size);
 bool nt_glb_recognise(const unsigned char *bytes, size_t size);
 nmtan_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error *error);

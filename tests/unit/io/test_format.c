@@ -55,26 +55,12 @@ static void format_names_are_those_of_the_option(void **state)
 	assert_null(nt_format_find(NT_FORMAT_UNKNOWN));
 }
 
-static void format_that_cannot_be_read_says_so(void **state)
-{
-	(void)state;
-	nt_scene scene;
-	nt_error error;
-	nt_scene_init(&scene, "a.drc");
-	const nt_format_entry *entry = nt_format_of_path(scene.path);
-	assert_int_equal(entry->open(&scene, NULL, &error), NMTAN_ERROR_UNSUPPORTED);
-	assert_string_equal(error.message, "Draco files (.drc) cannot be read");
-	assert_string_equal(error.place.file, "a.drc");
-	nt_scene_free(&scene);
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(format_of_a_name_is_its_extension_in_any_case),
 		cmocka_unit_test(format_of_an_input_is_its_content_before_its_name),
 		cmocka_unit_test(format_names_are_those_of_the_option),
-		cmocka_unit_test(format_that_cannot_be_read_says_so),
 	};
 	return cmocka_run_group_tests_name("io/format", tests, NULL, NULL);
 }
