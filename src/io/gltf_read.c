@@ -46,10 +46,11 @@ static void name_place(nt_gltf *document, nt_mesh *mesh, uint32_t material)
 		snprintf(words + used, room - (size_t)used, ", material %u", material);
 }
 
-/* How many elements an accessor claims; 0 where that cannot be said. */
+/* How many elements an accessor claims; where that cannot be said, enough for a triangle, so that loading
+ * meets the fault and says it. */
 static uint64_t claimed_count(const nt_gltf *document, const nt_json_value *reference)
 {
-	uint64_t index, count = 0;
+	uint64_t index, count = 3;
 	if (nt_json_get_uint64(reference, &index) && index < UINT32_MAX)
 		nt_json_get_uint64(nt_json_find(
 			nt_json_at(nt_gltf_root_member(document, "accessors"), (size_t)index), "count"),

@@ -208,6 +208,8 @@ static nmtan_status write_scene(run *r)
 static nmtan_status run_stages(run *r)
 {
 	nmtan_status status = choose_writer(r);
+	/* a PLY is one mesh in the world, so the reader has to say where the meshes stand */
+	r->read_options.world = r->writer && r->writer->format == NT_FORMAT_PLY;
 	if (!status)
 		status = read_scene(r);
 	if (!status)
