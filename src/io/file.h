@@ -71,6 +71,9 @@ nmtan_status nt_sink_flush(nt_sink *sink, nt_error *error);
 nmtan_status nt_output_written(nt_output *output, const char *path, const char **temporary,
 	nt_error *error);
 
+/* Bytes written to all files of the set so far. */
+uint64_t nt_output_size(const nt_output *output);
+
 /* Gives every file its name, in order; on failure everything is removed as by nt_output_abort. The set is freed
  * either way. */
 nmtan_status nt_output_commit(nt_output *output, nt_error *error);

@@ -333,6 +333,14 @@ nmtan_status nt_output_written(nt_output *output, const char *path, const char *
 	return NMTAN_OK;
 }
 
+uint64_t nt_output_size(const nt_output *output)
+{
+	uint64_t size = 0;
+	for (const nt_sink *sink = output->first; sink; sink = sink->next)
+		size += sink->size;
+	return size;
+}
+
 /* Everything onto the disk and closed. */
 static nmtan_status finish_sink(const nt_output *output, nt_sink *sink, nt_error *error)
 {

@@ -62,12 +62,10 @@ static nmtan_status choose_writer(run *r)
 			     is_stream(r->output_path) && !nt_format_of_path(r->output_path);
 	if (r->settings->check || (unnamed && !r->reader))
 		return NMTAN_OK;
-	if (unnamed) {
-		const bool ply = r->reader->format == NT_FORMAT_PLY;
-		r->writer = nt_format_find(ply ? NT_FORMAT_PLY : NT_FORMAT_GLB);
-		return NMTAN_OK;
-	}
-	if (r->settings->output_format != NT_FORMAT_UNKNOWN)
+	if (unnamed)
+		r->writer = nt_format_find(
+			r->reader->format == NT_FORMAT_PLY ? NT_FORMAT_PLY : NT_FORMAT_GLB);
+	else if (r->settings->output_format != NT_FORMAT_UNKNOWN)
 		r->writer = nt_format_find(r->settings->output_format);
 	else
 		r->writer = nt_format_of_path(r->output_path);
@@ -78,6 +76,9 @@ static nmtan_status choose_writer(run *r)
 	if (!r->writer->write)
 		return nt_fail(r->error, NMTAN_ERROR_USAGE, "\"%s\": %s cannot be written, only read",
 			r->output_path, r->writer->name);
+	if (r->settings->verify && r->writer->format == NT_FORMAT_PLY)
+		return nt_fail(r->error, NMTAN_ERROR_USAGE,
+			"--verify reads glTF back; \"%s\" will be PLY", r->output_path);
 	return NMTAN_OK;
 }
 
@@ -194,7 +195,9 @@ static nmtan_status write_scene(run *r)
 		status = nt_output_protect(output, r->input_path, r->error);
 	if (!status)
 		status = r->writer->write(&r->scene, &options, output, r->error);
-	if (!status && s->verify && !s->dry_run && r->writer->format != NT_FORMAT_PLY) {
+	if (!status)
+		r->summary->bytes_written = nt_output_size(output);
+	if (!status && s->verify && !s->dry_run) {
 		begin_stage(r, NT_STAGE_VERIFY);
 		status = nt_verify_gltf(&r->scene, output, r->output_path, r->error);
 	}

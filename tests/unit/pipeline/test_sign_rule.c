@@ -1,0 +1,235 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The sign rule on whole files, by another reader than ours: in what nmtan writes as glTF, B = cross(N, T) w
+ * runs along -dP/dv of the written texture coordinates on every triangle whose normals agree with its
+ * winding. The authored tangents of SheenCloth and of the pbr sphere obey the same rule, which
+ * shows that it is the right one.
+ */
+#include "test.h"
+#include <glob.h>
+#include <math.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include "ext/tinygltf.h"
+#include "io/file.h"
+#include "pipeline/run.h"
+
+typedef struct rule_count {
+	size_t triangles, judged, wrong, mixed;
+} rule_count;
+
+typedef struct folder {
+	const char *path;
+	nt_file files[16];
+	size_t count;
+} folder;
+
+static bool find_file(void *user, const char *uri, const unsigned char **bytes, size_t *size)
+{
+	folder *f = user;
+	char path[4096];
+	const char *slash = strrchr(f->path, '/');
+	snprintf(path, sizeof path, "%.*s/%s", slash ? (int)(slash - f->path) : 1, slash ? f->path : ".",
+		uri);
+	nt_error error;
+	if (f->count == 16 || nt_file_open(&f->files[f->count], path, &error))
+		return false;
+	*bytes = f->files[f->count].data;
+	*size = f->files[f->count++].size;
+	return true;
+}
+
+static uint32_t index_at(const nt_reread_array *indices, size_t i)
+{
+	if (!indices->data)
+		return (uint32_t)i;
+	const unsigned char *at = indices->data + i * indices->stride_bytes;
+	uint16_t two;
+	uint32_t four;
+	switch (indices->component_type) {
+	case NT_GLTF_UNSIGNED_BYTE:
+		return *at;
+	case NT_GLTF_UNSIGNED_SHORT:
+		memcpy(&two, at, 2);
+		return two;
+	default:
+		memcpy(&four, at, 4);
+		return four;
+	}
+}
+
+static void load(const nt_reread_array *array, uint32_t i, float *row, int n)
+{
+	memcpy(row, array->data + i * array->stride_bytes, (size_t)n * sizeof *row);
+}
+
+static void cross(const float a[3], const float b[3], double out[3])
+{
+	for (int i = 0; i < 3; i++)
+		out[i] = (double)a[(i + 1) % 3] * b[(i + 2) % 3] - (double)a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+static double dot(const double a[3], const float b[3])
+{
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* One triangle: dP/dv = (-cu d1 + bu d2) / det. */
+static void judge_triangle(const nt_reread_array *a, const uint32_t v[3], rule_count *count)
+{
+	float p[3][3], n[3][3], uv[3][2], t[3][4];
+	for (int k = 0; k < 3; k++) {
+		load(&a[0], v[k], p[k], 3);
+		load(&a[1], v[k], n[k], 3);
+		load(&a[2], v[k], uv[k], 2);
+		load(&a[3], v[k], t[k], 4);
+	}
+	count->triangles++;
+	count->mixed += t[0][3] != t[1][3] || t[0][3] != t[2][3];
+	const int sign = nmtan_orientation(uv[0], uv[1], uv[2]);
+	const double bu = (double)uv[1][0] - uv[0][0], cu = (double)uv[2][0] - uv[0][0];
+	float d1[3], d2[3], dv[3];
+	for (int i = 0; i < 3; i++) {
+		d1[i] = p[1][i] - p[0][i];
+		d2[i] = p[2][i] - p[0][i];
+		dv[i] = (float)(sign * (bu * d2[i] - cu * d1[i]));
+	}
+	double face[3];
+	cross(d1, d2, face);
+	for (int k = 0; k < 3; k++) {
+		if (sign == 0 || !(dot(face, n[k]) > 0))
+			continue;
+		double b[3];
+		cross(n[k], t[k], b);
+		const double along = -t[k][3] * dot(b, dv);
+		const double length = sqrt((double)dv[0] * dv[0] + (double)dv[1] * dv[1] + (double)dv[2] * dv[2]);
+		/* a vertex normal far from the face's, or an average over a sharp bend, can turn a frame
+		 * by nearly 90 degrees: only clear cases are judged */
+		if (fabs(along) < 0.1 * length)
+			continue;
+		count->judged++;
+		count->wrong += along < 0;
+	}
+}
+
+/* Judges every triangle of a glTF file that has tangents; false: tinygltf does not read it. */
+static bool judge_file(const char *path, rule_count *count)
+{
+	nt_error error;
+	nt_file file;
+	if (nt_file_open(&file, path, &error))
+		return false;
+	folder f = {.path = path};
+	nt_reread *model = NULL;
+	const bool read = nt_reread_open(&model, file.data, file.size, find_file, &f, &error) == NMTAN_OK;
+	for (size_t m = 0; read && m < nt_reread_mesh_count(model); m++) {
+		for (size_t p = 0; p < nt_reread_primitive_count(model, m); p++) {
+			static const char *const names[4] = {"POSITION", "NORMAL", "TEXCOORD_0", "TANGENT"};
+			nt_reread_array a[4], indices;
+			bool whole = nt_reread_attribute(model, m, p, NULL, &indices, &error) == NMTAN_OK;
+			for (int i = 0; i < 4; i++)
+				whole = nt_reread_attribute(model, m, p, names[i], &a[i], &error) == NMTAN_OK &&
+					a[i].data && a[i].component_type == NT_GLTF_FLOAT && whole;
+			if (!whole)
+				continue;
+			const size_t corners = indices.data ? indices.count : a[0].count;
+			for (size_t c = 0; c + 3 <= corners; c += 3) {
+				const uint32_t v[3] = {index_at(&indices, c), index_at(&indices, c + 1),
+					index_at(&indices, c + 2)};
+				judge_triangle(a, v, count);
+			}
+		}
+	}
+	nt_reread_free(model);
+	for (size_t i = 0; i < f.count; i++)
+		nt_file_close(&f.files[i]);
+	nt_file_close(&file);
+	return read;
+}
+
+/* Converts a file to a new GLB and judges that. */
+static void judge_conversion(const char *input, rule_count *count)
+{
+	char output[] = "/tmp/nmtan-sign-XXXXXX.glb";
+	const int fd = mkstemps(output, 4);
+	assert_true(fd >= 0);
+	close(fd);
+	const nt_settings settings = {.texcoord_set = -1, .existing = NT_EXISTING_REPLACE,
+		.images = NT_IMAGES_NONE, .verify = true};
+	nt_summary summary;
+	nt_error error;
+	const nmtan_status status = nt_run(input, output, &settings, &summary, &error);
+	if (status)
+		print_error("%s: %s\n", input, error.message);
+	assert_int_equal(status, NMTAN_OK);
+	nt_summary_free(&summary);
+	rule_count own = {0};
+	assert_true(judge_file(output, &own));
+	if (own.wrong || own.mixed)
+		print_error("%s: %zu of %zu corners wrong, %zu triangles mixed\n", input, own.wrong,
+			own.judged, own.mixed);
+	count->triangles += own.triangles;
+	count->judged += own.judged;
+	count->wrong += own.wrong;
+	count->mixed += own.mixed;
+	unlink(output);
+}
+
+static void judge_all(const char *const *patterns, rule_count *count)
+{
+	for (; *patterns; patterns++) {
+		glob_t found;
+		if (glob(*patterns, 0, NULL, &found) == 0)
+			for (size_t i = 0; i < found.gl_pathc; i++)
+				judge_conversion(found.gl_pathv[i], count);
+		globfree(&found);
+	}
+}
+
+static void bitangents_run_along_minus_v_in_our_own_data(void **state)
+{
+	(void)state;
+	static const char *const patterns[] = {"data/*.obj", "data/*.ply", "data/*.gltf", "data/*.glb", NULL};
+	rule_count count = {0};
+	judge_all(patterns, &count);
+	assert_true(count.judged > 0);
+	assert_int_equal(count.wrong, 0);
+	assert_int_equal(count.mixed, 0);
+}
+
+static void authored_tangents_obey_the_same_rule(void **state)
+{
+	(void)state;
+	struct stat info;
+	if (stat("../shared/models", &info) != 0) {
+		print_message("SKIP: ../shared is not here\n");
+		skip();
+	}
+	static const char *const authored[] = {
+		"../shared/models/gltf/SheenCloth/glTF_Binary/SheenCloth.glb",
+		"../shared/models/gltf/SheenCloth/glTF/SheenCloth.gltf"};
+	for (size_t i = 0; i < sizeof authored / sizeof *authored; i++) {
+		rule_count count = {0};
+		assert_true(judge_file(authored[i], &count));
+		assert_true(count.judged > 1000);
+		assert_int_equal(count.wrong, 0);
+	}
+	static const char *const patterns[] = {"../shared/models/obj/*.obj", "../shared/models/ply/*.ply",
+		"../shared/models/gltf/SheenCloth/glTF_Binary/*.glb", "../shared/models/gltf/pbr_sphere/*/*.gltf",
+		NULL};
+	rule_count count = {0};
+	judge_all(patterns, &count);
+	assert_true(count.judged > 10000);
+	assert_int_equal(count.wrong, 0);
+	assert_int_equal(count.mixed, 0);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(bitangents_run_along_minus_v_in_our_own_data),
+		cmocka_unit_test(authored_tangents_obey_the_same_rule),
+	};
+	return cmocka_run_group_tests_name("pipeline/sign_rule", tests, NULL, NULL);
+}
