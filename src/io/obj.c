@@ -314,7 +314,9 @@ static void free_file(obj_file *file)
 
 nmtan_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
-	obj_file file = {.scene = scene, .threads = nt_thread_count(options->threads)};
+	/* a file of a chunk or two is read before a second thread has begun */
+	const bool small = scene->byte_count <= 2 * CHUNK_BYTES;
+	obj_file file = {.scene = scene, .threads = small ? 1 : nt_thread_count(options->threads)};
 	scene->format = NT_FORMAT_OBJ;
 	nmtan_status status = split(&file, error);
 	if (!status)
