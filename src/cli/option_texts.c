@@ -58,7 +58,7 @@ static void help_row(nt_buffer *out, const nt_option_row *row)
 void nt_options_help(nt_buffer *out)
 {
 	nt_buffer_text(out,
-		"nmtan puts tangents on meshes: OBJ, PLY, glTF and GLB in, glTF, GLB and PLY out.\n\n"
+		"nmtan puts tangents on meshes: OBJ, PLY, glTF, GLB and DRC in, glTF, GLB and PLY out.\n\n"
 		"  nmtan [options] INPUT OUTPUT\n"
 		"  nmtan [options] -d DIR INPUT...    many files, several at once\n"
 		"  nmtan [options] --in-place INPUT\n"
