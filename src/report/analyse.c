@@ -1,0 +1,273 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * One report from one scene: see report.h. Each mesh is judged by itself, in one order of checks; the
+ * scene's own findings are added, everything is sorted, and OBJ lines are looked up for what is left.
+ *
+ * Time is linear in the size of the mesh; a million triangles take a fraction of a second beside the
+ * solve that authored tangents are compared with.
+ */
+#include "report/judge.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "scene/select.h"
+
+/* ---- facts that need no check ---- */
+
+static double determinant_of(const double m[16])
+{
+	return m[0] * (m[5] * m[10] - m[9] * m[6]) - m[4] * (m[1] * m[10] - m[9] * m[2]) +
+		m[8] * (m[1] * m[6] - m[5] * m[2]);
+}
+
+static void count_instances(nt_report *report, const nt_scene *scene)
+{
+	for (size_t i = 0; i < scene->instance_count; i++) {
+		const nt_instance *instance = &scene->instances[i];
+		if (instance->mesh >= report->mesh_count)
+			continue;
+		report->meshes[instance->mesh].instance_count++;
+		report->meshes[instance->mesh].negative_instances += determinant_of(instance->matrix) < 0.0;
+	}
+}
+
+static const char *copy_text(nt_arena *arena, const char *text)
+{
+	return nt_arena_text(arena, text ? text : "", text ? strlen(text) : 0);
+}
+
+/* "normal texture, anisotropy: tangents are computed" */
+static const char *describe_why(nt_arena *arena, const nt_mesh *mesh, const char *decision)
+{
+	static const struct {
+		unsigned slot;
+		const char *text;
+	} slots[] = {{NT_SLOT_NORMAL, "normal texture"}, {NT_SLOT_CLEARCOAT_NORMAL, "clearcoat normal texture"},
+		{NT_SLOT_ANISOTROPY, "anisotropy"}};
+	char text[256] = "";
+	size_t length = 0;
+	for (size_t i = 0; i < sizeof slots / sizeof slots[0]; i++)
+		if (mesh->slots & slots[i].slot)
+			length += (size_t)snprintf(text + length, sizeof text - length, "%s%s",
+				length ? ", " : "", slots[i].text);
+	snprintf(text + length, sizeof text - length, "%s%s", length ? ": " : "", decision);
+	return copy_text(arena, text);
+}
+
+static bool describe_mesh(nt_report *report, const nt_mesh *mesh, const nt_report_options *options,
+	nt_report_mesh *facts)
+{
+	const bool solve = mesh->decision == NT_DECISION_SOLVE && !options->converted;
+	*facts = (nt_report_mesh){.place = mesh->place,
+		.name = copy_text(&report->arena, mesh->name),
+		.why = describe_why(&report->arena, mesh,
+			solve ? "tangents would be computed" : nt_decision_text(mesh->decision)),
+		.gltf_mesh = mesh->gltf_mesh, .gltf_primitive = mesh->gltf_primitive,
+		.slots = mesh->slots, .texcoord_set = mesh->texcoord_set,
+		.has_normals = mesh->normals != NULL, .has_texcoords = mesh->texcoords != NULL,
+		.worst_orthogonality = NAN, .relative_determinant = {NAN, NAN, NAN},
+		.box = nt_box_empty()};
+	return facts->name && facts->why;
+}
+
+/* On --check a solve may have run too, but what is judged is what the file has. */
+static nt_stored stored_tangents(const nt_mesh *mesh, bool converted)
+{
+	if (converted && mesh->split.vertex_tangents && mesh->split.indices)
+		return NT_STORED_SPLIT;
+	if (converted && mesh->corner_tangents)
+		return NT_STORED_CORNERS;
+	return mesh->tangents ? NT_STORED_AUTHORED : NT_STORED_NONE;
+}
+
+static void measure_surface(nt_judge *judge)
+{
+	const nt_surface *s = &judge->surface;
+	nt_report_mesh *facts = judge->facts;
+	facts->face_count = judge->mesh->face_count;
+	facts->triangle_count = s->triangle_count;
+	for (size_t t = 0; t < s->triangle_count; t++) {
+		facts->triangles[s->orientation[t] + 1]++;
+		facts->areas[s->orientation[t] + 1] += s->areas[t];
+	}
+	for (int i = 0; i < 3; i++)
+		judge->total_area += facts->areas[i];
+	for (size_t c = 0; c < 3 * s->triangle_count; c++)
+		nt_box_add(&facts->box, nt_side_position(s, (uint32_t)c));
+	facts->vertices_before = judge->mesh->vertex_sources ? judge->mesh->source_vertex_count
+							     : judge->mesh->vertex_count;
+	judge->stored = stored_tangents(judge->mesh, judge->options->converted);
+	facts->judged_tangents = judge->stored != NT_STORED_NONE;
+	facts->analysed = true;
+}
+
+/* ---- what pictures need ---- */
+
+static void *copy_block(nt_arena *arena, const void *block, size_t count, size_t size, bool *failed)
+{
+	if (!block)
+		return NULL;
+	void *copy = nt_arena_alloc(arena, count, size);
+	*failed |= !copy;
+	return copy ? memcpy(copy, block, count * size) : NULL;
+}
+
+static nmtan_status keep_geometry(nt_judge *judge)
+{
+	const nt_mesh *mesh = judge->mesh;
+	const nt_surface *s = &judge->surface;
+	nt_arena *arena = &judge->report->arena;
+	const bool split = judge->stored == NT_STORED_SPLIT;
+	bool failed = false;
+	nt_report_geometry *g = nt_arena_alloc(arena, 1, sizeof *g);
+	if (!g)
+		return NMTAN_ERROR_MEMORY;
+	*g = (nt_report_geometry){.triangle_count = s->triangle_count,
+		.vertex_count = mesh->vertex_count + (split ? mesh->split.source_count : 0)};
+	g->positions = nt_arena_alloc(arena, 3 * g->vertex_count, sizeof(float));
+	g->normals = mesh->normals ? nt_arena_alloc(arena, 3 * g->vertex_count, sizeof(float)) : NULL;
+	g->texcoords = mesh->texcoords ? nt_arena_alloc(arena, 2 * g->vertex_count, sizeof(float)) : NULL;
+	g->indices = nt_arena_alloc(arena, 3 * s->triangle_count, sizeof *g->indices);
+	g->tangents = split ? copy_block(arena, mesh->split.vertex_tangents, g->vertex_count,
+				      4 * sizeof(float), &failed)
+			    : copy_block(arena, mesh->tangents, g->vertex_count, 4 * sizeof(float), &failed);
+	g->orientation = copy_block(arena, s->orientation, s->triangle_count, 1, &failed);
+	g->islands = copy_block(arena, judge->islands, s->triangle_count, sizeof(uint32_t), &failed);
+	if (failed || !g->positions || !g->indices || (mesh->normals && !g->normals) ||
+		(mesh->texcoords && !g->texcoords))
+		return NMTAN_ERROR_MEMORY;
+	for (size_t v = 0; v < g->vertex_count; v++) {
+		const size_t from = v < mesh->vertex_count ? v : mesh->split.sources[v - mesh->vertex_count];
+		memcpy(g->positions + 3 * v, mesh->positions + 3 * from, 3 * sizeof(float));
+		if (g->normals)
+			memcpy(g->normals + 3 * v, mesh->normals + 3 * from, 3 * sizeof(float));
+		if (g->texcoords)
+			nt_source_texcoord(judge->scene, mesh->texcoords + 2 * from, g->texcoords + 2 * v);
+	}
+	for (size_t c = 0; c < 3 * s->triangle_count; c++)
+		g->indices[c] = split ? mesh->split.indices[s->corners[c]] : s->vertices[c];
+	judge->facts->geometry = g;
+	return NMTAN_OK;
+}
+
+/* ---- one mesh ---- */
+
+static nmtan_status judge_mesh(nt_judge *judge)
+{
+	nmtan_status status = nt_surface_build(&judge->surface, judge->mesh, judge->scratch);
+	if (status || judge->surface.triangle_count == 0)
+		return status;
+	measure_surface(judge);
+	nmtan_status (*const checks[])(nt_judge *) = {nt_judge_edges, nt_judge_geometry,
+		nt_judge_islands, nt_judge_seams, nt_judge_tangents, nt_judge_growth};
+	for (size_t i = 0; i < sizeof checks / sizeof checks[0] && !status; i++)
+		status = checks[i](judge);
+	if (!status && judge->options->keep_geometry)
+		status = keep_geometry(judge);
+	return status ? status : judge->failed ? NMTAN_ERROR_MEMORY : NMTAN_OK;
+}
+
+/* Points and lines, empty meshes and ones that were never loaded have nothing to be judged. */
+static bool is_judged(const nt_mesh *mesh)
+{
+	return mesh->triangles && mesh->positions && mesh->face_count > 0;
+}
+
+static nmtan_status judge_scene(const nt_scene *scene, const nt_report_options *options,
+	nt_report *report)
+{
+	size_t issue_capacity = 0;
+	nt_judge judge = {.scene = scene, .options = options, .report = report,
+		.issue_capacity = &issue_capacity};
+	nmtan_status status = NMTAN_OK;
+	for (size_t i = 0; i < scene->mesh_count && !status; i++) {
+		if (!is_judged(&scene->meshes[i]))
+			continue;
+		nt_scratch scratch;
+		nt_scratch_init(&scratch, NULL);
+		nt_judge one = judge;
+		one.mesh_index = (uint32_t)i;
+		one.mesh = &scene->meshes[i];
+		one.facts = &report->meshes[i];
+		one.scratch = &scratch;
+		status = judge_mesh(&one);
+		nt_scratch_free(&scratch);
+	}
+	for (size_t i = 0; i < scene->findings.count && !status; i++)
+		nt_issues_add_finding(&judge, &scene->findings.items[i]);
+	return status ? status : judge.failed ? NMTAN_ERROR_MEMORY : NMTAN_OK;
+}
+
+static nt_report *new_report(const char *path)
+{
+	nt_report *report = nt_calloc(1, sizeof *report);
+	if (!report)
+		return NULL;
+	report->path = copy_text(&report->arena, path);
+	if (!report->path) {
+		nt_report_free(report);
+		return NULL;
+	}
+	return report;
+}
+
+static nmtan_status build(const nt_scene *scene, const nt_report_options *options, nt_report *report)
+{
+	report->format = scene->format;
+	report->mesh_count = scene->mesh_count;
+	report->meshes = nt_arena_alloc(&report->arena, scene->mesh_count, sizeof *report->meshes);
+	if (!report->meshes)
+		return NMTAN_ERROR_MEMORY;
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		if (!describe_mesh(report, &scene->meshes[i], options, &report->meshes[i]))
+			return NMTAN_ERROR_MEMORY;
+	count_instances(report, scene);
+	nmtan_status status = judge_scene(scene, options, report);
+	if (!status)
+		status = nt_issues_finish(report, options);
+	if (!status && scene->format == NT_FORMAT_OBJ)
+		status = nt_obj_lines(report, scene);
+	return status;
+}
+
+nmtan_status nt_report_build(const nt_scene *scene, const nt_report_options *options,
+	nt_report **report, nt_error *error)
+{
+	static const nt_report_options defaults;
+	*report = new_report(scene->path);
+	if (!*report)
+		return nt_fail_memory(error);
+	const nmtan_status status = build(scene, options ? options : &defaults, *report);
+	if (status == NMTAN_OK)
+		return NMTAN_OK;
+	nt_report_free(*report);
+	*report = NULL;
+	return status == NMTAN_ERROR_MEMORY
+		? nt_fail_memory(error)
+		: nt_fail(error, status, "the report cannot be made: %s", nmtan_status_text(status));
+}
+
+nt_report *nt_report_of_error(const char *path, const nt_error *failure)
+{
+	nt_report *report = new_report(path);
+	if (!report)
+		return NULL;
+	report->failure = copy_text(&report->arena, failure->message);
+	report->failure_place = failure->place;
+	if (!report->failure) {
+		nt_report_free(report);
+		return NULL;
+	}
+	return report;
+}
+
+void nt_report_free(nt_report *report)
+{
+	if (!report)
+		return;
+	free(report->issues);
+	nt_arena_free(&report->arena);
+	free(report);
+}

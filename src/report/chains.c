@@ -1,0 +1,320 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Marked edges in walking order: see chains.h.
+ *
+ * OpenMesh walks (ext/openmesh.h); it gets only the triangles that touch a marked edge's ends, which is
+ * all that a walk around these points needs and a small part of most meshes. What it cannot take comes
+ * back from it in pieces: edges that more than two triangles share, triangles against the winding of
+ * the others (the last face of a Moebius strip), fans that only meet in a point. The pieces, and edges it
+ * does not know, are then joined wherever exactly two ends meet, so that nothing is dropped.
+ */
+#include "report/chains.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "ext/openmesh.h"
+
+/* A run of edges in walking order, in the arrays of `runs`. */
+typedef struct run {
+	size_t first, count;
+	uint32_t ends[2]; /* points */
+	bool closed, used;
+} run;
+
+typedef struct runs {
+	run *items;
+	size_t count;
+	uint32_t *sides;
+	bool *reversed;
+	size_t side_count;
+} runs;
+
+/* ---- the triangles around the marked edges ---- */
+
+typedef struct vicinity {
+	uint32_t *triangles; /* [triangle_count][3] points, renumbered */
+	uint32_t *origin;    /* [triangle_count] triangle of the surface */
+	uint32_t *points;    /* [point_count] point of the surface */
+	size_t triangle_count, point_count;
+	uint8_t *marked;     /* [3 * triangle_count] */
+} vicinity;
+
+/* Whether the triangle has edges and one of its points is touched. */
+static bool is_near(const nt_surface *s, const uint8_t *touched, size_t t)
+{
+	const uint32_t *p = s->points + 3 * t;
+	const bool has_edges = s->flatness[t] == NT_SOUND || s->flatness[t] == NT_COLLINEAR;
+	return has_edges && (touched[p[0]] || touched[p[1]] || touched[p[2]]);
+}
+
+static nmtan_status find_vicinity(const nt_surface *s, const uint8_t *marked, nt_scratch *scratch,
+	vicinity *v)
+{
+	*v = (vicinity){0};
+	uint32_t *number = nt_scratch_alloc(scratch, s->point_count, sizeof *number);
+	uint8_t *touched = nt_scratch_alloc(scratch, s->point_count, 1);
+	if (!number || !touched)
+		return NMTAN_ERROR_MEMORY;
+	memset(number, 0xff, s->point_count * sizeof *number);
+	memset(touched, 0, s->point_count);
+	for (size_t side = 0; side < 3 * s->triangle_count; side++)
+		if (marked[side])
+			touched[s->points[side]] = touched[s->points[nt_side_next((uint32_t)side)]] = 1;
+	for (size_t t = 0; t < s->triangle_count; t++)
+		v->triangle_count += is_near(s, touched, t);
+	v->triangles = nt_scratch_alloc(scratch, 3 * v->triangle_count, sizeof *v->triangles);
+	v->origin = nt_scratch_alloc(scratch, v->triangle_count, sizeof *v->origin);
+	v->points = nt_scratch_alloc(scratch, 3 * v->triangle_count, sizeof *v->points);
+	v->marked = nt_scratch_alloc(scratch, 3 * v->triangle_count, 1);
+	if (!v->triangles || !v->origin || !v->points || !v->marked)
+		return NMTAN_ERROR_MEMORY;
+	size_t n = 0;
+	for (size_t t = 0; t < s->triangle_count; t++) {
+		if (!is_near(s, touched, t))
+			continue;
+		const uint32_t *p = s->points + 3 * t;
+		for (size_t k = 0; k < 3; k++) {
+			if (number[p[k]] == NT_NONE) {
+				number[p[k]] = (uint32_t)v->point_count;
+				v->points[v->point_count++] = p[k];
+			}
+			v->triangles[3 * n + k] = number[p[k]];
+			v->marked[3 * n + k] = marked[3 * t + k];
+		}
+		v->origin[n++] = (uint32_t)t;
+	}
+	return NMTAN_OK;
+}
+
+/* ---- OpenMesh's walks as runs ---- */
+
+/* The side of the surface that a side of the vicinity is, NT_NONE for NT_OPEN. */
+static uint32_t original_side(const vicinity *v, uint32_t side)
+{
+	return side == NT_OPEN ? NT_NONE : 3 * v->origin[side / 3] + side % 3;
+}
+
+/* The marked one of a step's two sides. */
+static uint32_t marked_side(const vicinity *v, const uint8_t *marked, uint32_t left, uint32_t right)
+{
+	const uint32_t a = original_side(v, left), b = original_side(v, right);
+	if (a != NT_NONE && marked[a])
+		return a;
+	return b != NT_NONE && marked[b] ? b : NT_NONE;
+}
+
+static void add_run(runs *r, const nt_surface *s, size_t first, bool closed)
+{
+	const size_t count = r->side_count - first;
+	if (count == 0)
+		return;
+	const uint32_t a = r->sides[first], b = r->sides[r->side_count - 1];
+	r->items[r->count++] = (run){.first = first, .count = count, .closed = closed,
+		.ends = {s->points[r->reversed[first] ? nt_side_next(a) : a],
+			s->points[r->reversed[r->side_count - 1] ? b : nt_side_next(b)]}};
+}
+
+static void take_walk(const nt_surface *s, const vicinity *v, const nt_walks *walks, size_t walk,
+	const uint8_t *marked, uint8_t *taken, runs *r)
+{
+	const size_t first = r->side_count;
+	bool whole = true;
+	for (size_t step = walks->first[walk]; step < walks->first[walk + 1]; step++) {
+		const uint32_t side = marked_side(v, marked, walks->left[step], walks->right[step]);
+		if (side == NT_NONE || taken[side]) {
+			whole = false;
+			continue;
+		}
+		taken[side] = 1;
+		r->sides[r->side_count] = side;
+		r->reversed[r->side_count++] = s->points[side] != v->points[walks->from[step]];
+	}
+	if (whole || r->side_count - first <= 1) {
+		add_run(r, s, first, whole && walks->closed[walk]);
+		return;
+	}
+	/* cannot be, but then each edge is a run of its own: joining puts them together */
+	const size_t end = r->side_count;
+	for (size_t i = first; i < end; i++) {
+		r->side_count = i + 1;
+		add_run(r, s, i, false);
+	}
+}
+
+static nmtan_status take_walks(const nt_surface *s, const vicinity *v, const uint8_t *marked,
+	uint8_t *taken, runs *r, size_t *left_out, nt_error *error)
+{
+	nt_halfedges *mesh = NULL;
+	nmtan_status status = nt_halfedges_build(&mesh, v->point_count, v->triangles,
+		v->triangle_count, error);
+	if (status)
+		return status;
+	const uint32_t *unused;
+	*left_out = nt_halfedges_left_out(mesh, &unused);
+	nt_walks walks = {0};
+	status = nt_halfedges_chains(mesh, v->marked, &walks, error);
+	for (size_t w = 0; !status && w < walks.count; w++)
+		take_walk(s, v, &walks, w, marked, taken, r);
+	nt_walks_free(&walks);
+	nt_halfedges_free(mesh);
+	return status;
+}
+
+/* ---- joining ---- */
+
+/* Ends of runs at points, in two slots per point. degree counts all of them. */
+typedef struct joints {
+	uint32_t *ends;  /* [2 * point_count] 2 * run + end */
+	uint32_t *degree;
+} joints;
+
+static nmtan_status find_joints(const nt_surface *s, const runs *r, nt_scratch *scratch, joints *j)
+{
+	j->ends = nt_scratch_alloc(scratch, 2 * s->point_count, sizeof *j->ends);
+	j->degree = nt_scratch_alloc(scratch, s->point_count, sizeof *j->degree);
+	if (!j->ends || !j->degree)
+		return NMTAN_ERROR_MEMORY;
+	memset(j->degree, 0, s->point_count * sizeof *j->degree);
+	for (size_t i = 0; i < r->side_count; i++) { /* inner points too: a run may pass another's end */
+		j->degree[s->points[r->sides[i]]]++;
+		j->degree[s->points[nt_side_next(r->sides[i])]]++;
+	}
+	memset(j->ends, 0xff, 2 * s->point_count * sizeof *j->ends);
+	for (size_t i = 0; i < r->count; i++) {
+		for (size_t end = 0; end < 2 && !r->items[i].closed; end++) {
+			uint32_t *slots = j->ends + 2 * (size_t)r->items[i].ends[end];
+			slots[slots[0] != NT_NONE] = (uint32_t)(2 * i + end);
+		}
+	}
+	return NMTAN_OK;
+}
+
+/* The run end that meets this one at a joint; NT_NONE at an open end or a junction. */
+static uint32_t partner_of(const runs *r, const joints *j, uint32_t end)
+{
+	const uint32_t point = r->items[end / 2].ends[end % 2];
+	if (j->degree[point] != 2)
+		return NT_NONE;
+	const uint32_t *slots = j->ends + 2 * (size_t)point;
+	return slots[0] == end ? slots[1] : slots[0];
+}
+
+static void append_run(const runs *r, const run *piece, bool backwards, nt_chains *chains, size_t *n)
+{
+	for (size_t i = 0; i < piece->count; i++) {
+		const size_t at = piece->first + (backwards ? piece->count - 1 - i : i);
+		chains->sides[*n] = r->sides[at];
+		chains->reversed[(*n)++] = r->reversed[at] != backwards;
+	}
+}
+
+/* Walks back from a run to where its chain begins, then forward to its end. */
+static void join_from(runs *r, const joints *j, size_t start, nt_chains *chains, size_t *n)
+{
+	uint32_t entry = (uint32_t)(2 * start); /* the end through which the walk enters a run */
+	bool closed = r->items[start].closed;
+	while (!closed) {
+		const uint32_t before = partner_of(r, j, entry);
+		if (before == NT_NONE)
+			break;
+		entry = before ^ 1u;
+		if (entry / 2 == start) {
+			closed = true;
+			entry = (uint32_t)(2 * start);
+		}
+	}
+	for (uint32_t end = entry;;) {
+		run *piece = &r->items[end / 2];
+		piece->used = true;
+		append_run(r, piece, end % 2 == 1, chains, n);
+		const uint32_t next = piece->closed ? NT_NONE : partner_of(r, j, end ^ 1u);
+		if (next == NT_NONE || r->items[next / 2].used)
+			break;
+		end = next;
+	}
+	chains->closed[chains->count++] = closed;
+	chains->first[chains->count] = *n;
+}
+
+static int by_lowest_side(const void *a, const void *b)
+{
+	const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+	return x < y ? -1 : x > y;
+}
+
+/* Joins runs, in the order of their lowest sides. */
+static nmtan_status join_runs(const nt_surface *s, runs *r, nt_scratch *scratch, nt_chains *chains)
+{
+	joints j;
+	uint64_t *order = nt_scratch_alloc(scratch, r->count, sizeof *order);
+	nmtan_status status = find_joints(s, r, scratch, &j);
+	if (status || !order)
+		return NMTAN_ERROR_MEMORY;
+	for (size_t i = 0; i < r->count; i++) {
+		uint32_t lowest = NT_NONE;
+		for (size_t k = 0; k < r->items[i].count; k++)
+			if (r->sides[r->items[i].first + k] < lowest)
+				lowest = r->sides[r->items[i].first + k];
+		order[i] = (uint64_t)lowest << 32 | i;
+	}
+	qsort(order, r->count, sizeof *order, by_lowest_side);
+	size_t n = 0;
+	chains->first[0] = 0;
+	for (size_t i = 0; i < r->count; i++) {
+		const size_t index = (size_t)(order[i] & UINT32_MAX);
+		if (!r->items[index].used)
+			join_from(r, &j, index, chains, &n);
+	}
+	return NMTAN_OK;
+}
+
+static nmtan_status allocate(nt_scratch *scratch, size_t edges, runs *r, nt_chains *chains)
+{
+	*r = (runs){.items = nt_scratch_alloc(scratch, edges, sizeof *r->items),
+		.sides = nt_scratch_alloc(scratch, edges, sizeof *r->sides),
+		.reversed = nt_scratch_alloc(scratch, edges, sizeof *r->reversed)};
+	*chains = (nt_chains){.first = nt_scratch_alloc(scratch, edges + 1, sizeof *chains->first),
+		.closed = nt_scratch_alloc(scratch, edges, sizeof *chains->closed),
+		.sides = nt_scratch_alloc(scratch, edges, sizeof *chains->sides),
+		.reversed = nt_scratch_alloc(scratch, edges, sizeof *chains->reversed)};
+	const bool complete = r->items && r->sides && r->reversed && chains->first && chains->closed &&
+		chains->sides && chains->reversed;
+	return complete ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+}
+
+nmtan_status nt_chains_trace(const nt_surface *surface, const uint8_t *marked, nt_scratch *scratch,
+	nt_chains *chains, nt_error *error)
+{
+	size_t edges = 0;
+	for (size_t side = 0; side < 3 * surface->triangle_count; side++)
+		edges += marked[side];
+	runs r;
+	nmtan_status status = allocate(scratch, edges, &r, chains);
+	if (status)
+		return status;
+	chains->first[0] = 0;
+	if (edges == 0)
+		return NMTAN_OK;
+
+	vicinity v;
+	uint8_t *taken = nt_scratch_alloc(scratch, 3 * surface->triangle_count, 1);
+	if (!taken)
+		return NMTAN_ERROR_MEMORY;
+	memset(taken, 0, 3 * surface->triangle_count);
+	status = find_vicinity(surface, marked, scratch, &v);
+	if (!status)
+		status = take_walks(surface, &v, marked, taken, &r, &chains->left_out, error);
+	if (status)
+		return status;
+
+	/* edges that OpenMesh does not know are runs by themselves */
+	for (size_t side = 0; side < 3 * surface->triangle_count; side++) {
+		if (marked[side] && !taken[side]) {
+			const size_t first = r.side_count;
+			r.sides[first] = (uint32_t)side;
+			r.reversed[r.side_count++] = false;
+			add_run(&r, surface, first, false);
+		}
+	}
+	return join_runs(surface, &r, scratch, chains);
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Marked edges of a surface in walking order: closed loops and open chains.
+ */
+#ifndef NT_REPORT_CHAINS_H
+#define NT_REPORT_CHAINS_H
+
+#include "report/surface.h"
+
+/* Chain i has the sides sides[first[i]] to sides[first[i + 1] - 1], one for each edge. A chain walks from
+ * one edge to the next across the point they share; reversed[s] says that sides[s] is walked against its
+ * own direction. */
+typedef struct nt_chains {
+	size_t count;
+	size_t *first; /* [count + 1] */
+	bool *closed;  /* [count] */
+	uint32_t *sides;
+	bool *reversed;
+	size_t left_out; /* triangles that OpenMesh could not take */
+} nt_chains;
+
+/*
+ * Puts marked edges in order. Chains are as long as possible without passing a junction, a point where
+ * more than two marked edges meet (unless in fans that have only this point in common); they are ordered by
+ * their lowest side.
+ *
+ *   marked  [3 * triangle_count] at most one side of each edge
+ *
+ * Everything is in scratch. Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ */
+nmtan_status nt_chains_trace(const nt_surface *surface, const uint8_t *marked, nt_scratch *scratch,
+	nt_chains *chains, nt_error *error);
+
+#endif

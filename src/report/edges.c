@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * One pass over the edges of a surface: which are open, which are shared by too many triangles or wound
+ * inconsistently, across which the texture coordinates continue (that gives the islands), are cut, or
+ * change their orientation (that gives the mirror edges, which seams.c puts in order).
+ *
+ * Two triangles of an edge continue each other in UV space when both ends have equal texture
+ * coordinates on both. On an edge of many triangles all that have the same coordinates do.
+ */
+#include "report/judge.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* ---- islands by union and find, the lower number on top ---- */
+
+static uint32_t find_root(uint32_t *parents, uint32_t t)
+{
+	while (parents[t] != t) {
+		parents[t] = parents[parents[t]];
+		t = parents[t];
+	}
+	return t;
+}
+
+static void unite(uint32_t *parents, uint32_t a, uint32_t b)
+{
+	a = find_root(parents, a);
+	b = find_root(parents, b);
+	if (a < b)
+		parents[b] = a;
+	else
+		parents[a] = b;
+}
+
+/* ---- one edge ---- */
+
+typedef struct edge_tallies {
+	nt_tally non_manifold, inconsistent;
+} edge_tallies;
+
+static bool same_way(const nt_surface *s, uint32_t a, uint32_t b)
+{
+	return s->points[a] == s->points[b];
+}
+
+/* Texture coordinates of a side's ends, the lower point first, for sorting. */
+typedef struct side_key {
+	float uv[4];
+	uint32_t side;
+} side_key;
+
+static int by_key(const void *a, const void *b)
+{
+	const side_key *x = a, *y = b;
+	for (int i = 0; i < 4; i++) {
+		if (x->uv[i] < y->uv[i] || x->uv[i] > y->uv[i])
+			return x->uv[i] < y->uv[i] ? -1 : 1;
+	}
+	return x->side < y->side ? -1 : x->side > y->side;
+}
+
+static side_key key_of(const nt_surface *s, uint32_t side)
+{
+	const uint32_t next = nt_side_next(side);
+	const bool ascending = s->points[side] < s->points[next];
+	const float *low = nt_side_texcoord(s, ascending ? side : next);
+	const float *high = nt_side_texcoord(s, ascending ? next : side);
+	return (side_key){{low[0], low[1], high[0], high[1]}, side};
+}
+
+static bool same_coordinates(const side_key *a, const side_key *b)
+{
+	return a->uv[0] == b->uv[0] && a->uv[1] == b->uv[1] && a->uv[2] == b->uv[2] &&
+		a->uv[3] == b->uv[3];
+}
+
+/* Unites all triangles of an edge of three and more that have the same coordinates along it. */
+static nmtan_status unite_many(const nt_surface *s, const uint32_t *sides, size_t count,
+	uint32_t *parents)
+{
+	side_key *keys = nt_alloc(count, sizeof *keys);
+	if (!keys)
+		return NMTAN_ERROR_MEMORY;
+	for (size_t i = 0; i < count; i++)
+		keys[i] = key_of(s, sides[i]);
+	qsort(keys, count, sizeof *keys, by_key);
+	for (size_t i = 1; i < count; i++)
+		if (same_coordinates(&keys[i], &keys[i - 1]))
+			unite(parents, keys[i].side / 3, keys[i - 1].side / 3);
+	free(keys);
+	return NMTAN_OK;
+}
+
+/* Remembers the first unmirrored and the first mirrored side of the edge, if it has both. */
+static void find_mirror(nt_judge *judge, const uint32_t *sides, size_t count)
+{
+	uint32_t found[2] = {NT_NONE, NT_NONE};
+	for (size_t i = count; i-- > 0;) {
+		const int sign = judge->surface.orientation[sides[i] / 3];
+		if (sign)
+			found[sign < 0] = sides[i];
+	}
+	if (found[0] == NT_NONE || found[1] == NT_NONE)
+		return;
+	const uint32_t index = (uint32_t)judge->mirror_edge_count++;
+	judge->mirror_edges[index] = (nt_mirror_edge){{found[0], found[1]}, count > 2};
+	judge->seam_edge[found[0]] = judge->seam_edge[found[1]] = index;
+}
+
+static nmtan_status judge_edge(nt_judge *judge, const uint32_t *sides, size_t count, uint32_t *parents,
+	edge_tallies *tallies)
+{
+	nt_report_mesh *facts = judge->facts;
+	const nt_surface *s = &judge->surface;
+	if (count == 1) {
+		facts->boundary_edges++;
+		judge->boundary[sides[0]] = 1;
+		return NMTAN_OK;
+	}
+	if (count > 2)
+		nt_tally_side(judge, &tallies->non_manifold, sides[0], (double)count);
+	else if (same_way(s, sides[0], sides[1]))
+		nt_tally_side(judge, &tallies->inconsistent, sides[0], (double)count);
+	if (!judge->mesh->texcoords)
+		return NMTAN_OK;
+	find_mirror(judge, sides, count);
+	if (count > 2)
+		return unite_many(s, sides, count, parents);
+	if (nt_sides_meet(s, sides[0], sides[1]))
+		unite(parents, sides[0] / 3, sides[1] / 3);
+	else
+		facts->uv_seam_edges++;
+	return NMTAN_OK;
+}
+
+/* Numbers islands by their lowest triangle. */
+static void number_islands(nt_judge *judge, uint32_t *parents)
+{
+	const nt_surface *s = &judge->surface;
+	uint32_t count = 0;
+	for (size_t t = 0; t < s->triangle_count; t++) {
+		const bool has_edges = s->flatness[t] == NT_SOUND || s->flatness[t] == NT_COLLINEAR;
+		const uint32_t root = find_root(parents, (uint32_t)t);
+		if (!has_edges || !judge->mesh->texcoords)
+			judge->islands[t] = NT_NONE;
+		else
+			judge->islands[t] = root == t ? count++ : judge->islands[root];
+	}
+	judge->facts->island_count = count;
+}
+
+static nmtan_status allocate(nt_judge *judge)
+{
+	const size_t sides = 3 * judge->surface.triangle_count;
+	judge->boundary = nt_scratch_alloc(judge->scratch, sides, sizeof *judge->boundary);
+	judge->seam_edge = nt_scratch_alloc(judge->scratch, sides, sizeof *judge->seam_edge);
+	judge->mirror_edges = nt_scratch_alloc(judge->scratch, judge->surface.edge_count,
+		sizeof *judge->mirror_edges);
+	judge->islands = nt_scratch_alloc(judge->scratch, sides / 3, sizeof *judge->islands);
+	if (!judge->boundary || !judge->seam_edge || !judge->mirror_edges || !judge->islands)
+		return NMTAN_ERROR_MEMORY;
+	memset(judge->boundary, 0, sides * sizeof *judge->boundary);
+	memset(judge->seam_edge, 0xff, sides * sizeof *judge->seam_edge);
+	return NMTAN_OK;
+}
+
+nmtan_status nt_judge_edges(nt_judge *judge)
+{
+	const nt_surface *s = &judge->surface;
+	nmtan_status status = allocate(judge);
+	if (status)
+		return status;
+	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
+	uint32_t *parents = nt_scratch_alloc(judge->scratch, s->triangle_count, sizeof *parents);
+	if (!parents)
+		return NMTAN_ERROR_MEMORY;
+	for (size_t t = 0; t < s->triangle_count; t++)
+		parents[t] = (uint32_t)t;
+
+	edge_tallies tallies = {{.code = NT_CODE_MESH_NON_MANIFOLD_EDGE},
+		{.code = NT_CODE_MESH_INCONSISTENT_WINDING}};
+	for (size_t e = 0; e < s->edge_count && !status; e++)
+		status = judge_edge(judge, s->sides + s->edge_first[e],
+			s->edge_first[e + 1] - s->edge_first[e], parents, &tallies);
+	if (status)
+		return status;
+	number_islands(judge, parents);
+	nt_scratch_back(judge->scratch, mark);
+
+	judge->facts->edge_count = s->edge_count;
+	judge->facts->non_manifold_edges = tallies.non_manifold.count;
+	judge->facts->inconsistent_edges = tallies.inconsistent.count;
+	nt_judge_report(judge, &tallies.non_manifold, NULL);
+	nt_judge_report(judge, &tallies.inconsistent, NULL);
+	return NMTAN_OK;
+}

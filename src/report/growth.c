@@ -1,0 +1,71 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Vertices that mirrored and unmirrored triangles share, and the copies that splitting made, by cause:
+ * a copy whose w differs from its source's stands on the other side of a mirror, any other one has
+ * another direction.
+ */
+#include "report/judge.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { UNMIRRORED = 1, MIRRORED = 2 };
+
+static nmtan_status judge_shared(nt_judge *judge)
+{
+	const nt_surface *s = &judge->surface;
+	const size_t vertex_count = judge->mesh->vertex_count;
+	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
+	uint8_t *sides = nt_scratch_alloc(judge->scratch, vertex_count, 1);
+	if (!sides)
+		return NMTAN_ERROR_MEMORY;
+	memset(sides, 0, vertex_count);
+	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
+		const int sign = s->orientation[c / 3];
+		if (sign)
+			sides[s->vertices[c]] |= sign > 0 ? UNMIRRORED : MIRRORED;
+	}
+	nt_tally shared = {.code = NT_CODE_TAN_MIRROR_SHARED_VERTEX};
+	for (size_t v = 0; v < vertex_count; v++)
+		if (sides[v] == (UNMIRRORED | MIRRORED))
+			nt_tally_vertex(judge, &shared, (uint32_t)v, NAN);
+	nt_scratch_back(judge->scratch, mark);
+	const bool split = judge->options->converted && judge->mesh->split.indices;
+	nt_judge_report_as(judge, &shared, split ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING, "%s",
+		split ? "they were split" : "");
+	return NMTAN_OK;
+}
+
+static void judge_copies(nt_judge *judge)
+{
+	const nt_mesh *mesh = judge->mesh;
+	nt_report_mesh *facts = judge->facts;
+	nt_tally growth = {.code = NT_CODE_TAN_VERTEX_GROWTH};
+	for (size_t v = facts->vertices_before; v < mesh->vertex_count; v++)
+		nt_tally_vertex(judge, &growth, (uint32_t)v, NAN);
+	facts->added_normals = growth.count;
+	const float *tangents = mesh->split.vertex_tangents;
+	for (size_t i = 0; i < mesh->split.source_count; i++) {
+		const size_t source = mesh->split.sources[i];
+		const bool mirror = tangents &&
+			tangents[4 * source + 3] != tangents[4 * (mesh->vertex_count + i) + 3];
+		*(mirror ? &facts->added_mirror : &facts->added_direction) += 1;
+		nt_tally_vertex(judge, &growth, (uint32_t)source, NAN);
+	}
+	facts->vertices_after = mesh->vertex_count + mesh->split.source_count;
+	if (!judge->options->converted)
+		return;
+	nt_tally_number(&growth, "mirrored", (double)facts->added_mirror);
+	nt_tally_number(&growth, "direction", (double)facts->added_direction);
+	nt_tally_number(&growth, "normals", (double)facts->added_normals);
+	nt_judge_report(judge, &growth, "%zu by mirroring, %zu by direction, %zu by normals",
+		facts->added_mirror, facts->added_direction, facts->added_normals);
+}
+
+nmtan_status nt_judge_growth(nt_judge *judge)
+{
+	const nmtan_status status = judge->mesh->texcoords ? judge_shared(judge) : NMTAN_OK;
+	if (!status)
+		judge_copies(judge);
+	return status;
+}

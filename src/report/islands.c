@@ -1,0 +1,403 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * UV islands: which are mirrored, which lie on a twin, which are folded.
+ *
+ * A mirrored island that shares its texture with an unmirrored one is how symmetric models are made. To
+ * tell it from a lone one, centroids of its triangles are looked up among the unmirrored triangles of
+ * the whole mesh. The points (about SAMPLE_COUNT of them, at least one of each island) go into a grid and the triangles stream over
+ * it; a point that is found leaves its cell, so that many stacked layers cost no more than one.
+ *
+ * An island with both windings is a fold, unless its mirrored part lies point by point on its own
+ * unmirrored part: then it is a symmetric model whose halves share the coordinates of the middle line.
+ */
+#include "report/judge.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SAMPLE_COUNT = 16384, GRID_SIZE = 128 };
+
+/* Cells that the streaming triangles may visit: some 0.3 s. Beyond, points count as not found. */
+static const size_t VISIT_LIMIT = 100000000;
+
+/* Shares from which on an island counts as lying on another, and as lying on its twin exactly. */
+static const double COVERED_SHARE = 0.5, TWIN_SHARE = 0.95;
+
+/* ---- what each island is made of ---- */
+
+static void measure_islands(nt_judge *judge)
+{
+	const nt_surface *s = &judge->surface;
+	for (size_t i = 0; i < judge->facts->island_count; i++)
+		judge->facts->islands[i] = (nt_island){.minimum = {INFINITY, INFINITY},
+			.maximum = {-INFINITY, -INFINITY}, .covered = NAN, .first_triangle = NT_NONE,
+			.box = nt_box_empty()};
+	for (size_t t = 0; t < s->triangle_count; t++) {
+		if (judge->islands[t] == NT_NONE)
+			continue;
+		nt_island *island = &judge->facts->islands[judge->islands[t]];
+		island->triangles[s->orientation[t] + 1]++;
+		island->area += s->areas[t];
+		if (island->first_triangle == NT_NONE)
+			island->first_triangle = (uint32_t)t;
+		for (size_t k = 0; k < 3; k++) {
+			const uint32_t side = (uint32_t)(3 * t + k);
+			float uv[2];
+			nt_source_texcoord(judge->scene, nt_side_texcoord(s, side), uv);
+			for (int i = 0; i < 2; i++) {
+				island->minimum[i] = fminf(island->minimum[i], uv[i]);
+				island->maximum[i] = fmaxf(island->maximum[i], uv[i]);
+			}
+			nt_box_add(&island->box, nt_side_position(s, side));
+		}
+	}
+}
+
+static nt_island_kind kind_of(const nt_island *island)
+{
+	if (island->triangles[0] && island->triangles[2])
+		return NT_ISLAND_MIXED;
+	if (island->triangles[0])
+		return NT_ISLAND_MIRRORED;
+	return island->triangles[2] ? NT_ISLAND_NORMAL : NT_ISLAND_DEGENERATE;
+}
+
+/* ---- which mirrored triangles lie on unmirrored ones ---- */
+
+typedef struct sample {
+	double u, v;
+	double weight;     /* area in UV space */
+	uint32_t island;
+	uint32_t next;     /* in its cell, NT_NONE at the end */
+	bool found;
+} sample;
+
+typedef struct grid {
+	double minimum[2], scale[2];
+	uint32_t cells[GRID_SIZE * GRID_SIZE]; /* first sample */
+	sample *samples;
+	size_t sample_count;
+	size_t visits;
+} grid;
+
+static double uv_area(const float *a, const float *b, const float *c)
+{
+	return ((double)b[0] - a[0]) * ((double)c[1] - a[1]) -
+		((double)b[1] - a[1]) * ((double)c[0] - a[0]);
+}
+
+static int cell_of(const grid *g, int axis, double value)
+{
+	const double cell = (value - g->minimum[axis]) * g->scale[axis];
+	return cell < 0.0 ? 0 : cell >= GRID_SIZE ? GRID_SIZE - 1 : (int)cell;
+}
+
+/* Takes every n-th mirrored triangle, at most SAMPLE_COUNT, and the first one of every island. `met` is
+ * cleared memory, one byte for each island. */
+static void take_samples(const nt_judge *judge, grid *g, size_t mirrored_count, uint8_t *met)
+{
+	const nt_surface *s = &judge->surface;
+	const size_t stride = (mirrored_count + SAMPLE_COUNT - 1) / SAMPLE_COUNT;
+	size_t seen = 0;
+	for (size_t t = 0; t < s->triangle_count; t++) {
+		if (s->orientation[t] >= 0 || judge->islands[t] == NT_NONE)
+			continue;
+		const bool first = !met[judge->islands[t]];
+		met[judge->islands[t]] = 1;
+		if (seen++ % stride != 0 && !first)
+			continue;
+		const float *a = nt_side_texcoord(s, (uint32_t)(3 * t));
+		const float *b = nt_side_texcoord(s, (uint32_t)(3 * t + 1));
+		const float *c = nt_side_texcoord(s, (uint32_t)(3 * t + 2));
+		g->samples[g->sample_count++] = (sample){.u = ((double)a[0] + b[0] + c[0]) / 3.0,
+			.v = ((double)a[1] + b[1] + c[1]) / 3.0,
+			.weight = -uv_area(a, b, c),
+			.island = judge->islands[t]};
+	}
+}
+
+static void fill_grid(grid *g)
+{
+	double maximum[2] = {-INFINITY, -INFINITY};
+	g->minimum[0] = g->minimum[1] = INFINITY;
+	for (size_t i = 0; i < g->sample_count; i++) {
+		g->minimum[0] = fmin(g->minimum[0], g->samples[i].u);
+		g->minimum[1] = fmin(g->minimum[1], g->samples[i].v);
+		maximum[0] = fmax(maximum[0], g->samples[i].u);
+		maximum[1] = fmax(maximum[1], g->samples[i].v);
+	}
+	for (int axis = 0; axis < 2; axis++) {
+		const double extent = maximum[axis] - g->minimum[axis];
+		g->scale[axis] = extent > 0.0 ? GRID_SIZE / extent : 0.0;
+	}
+	memset(g->cells, 0xff, sizeof g->cells);
+	for (size_t i = g->sample_count; i-- > 0;) {
+		const int x = cell_of(g, 0, g->samples[i].u), y = cell_of(g, 1, g->samples[i].v);
+		g->samples[i].next = g->cells[y * GRID_SIZE + x];
+		g->cells[y * GRID_SIZE + x] = (uint32_t)i;
+	}
+}
+
+static bool is_inside(const sample *p, const float *a, const float *b, const float *c)
+{
+	const double ab = ((double)b[0] - a[0]) * (p->v - a[1]) - ((double)b[1] - a[1]) * (p->u - a[0]);
+	const double bc = ((double)c[0] - b[0]) * (p->v - b[1]) - ((double)c[1] - b[1]) * (p->u - b[0]);
+	const double ca = ((double)a[0] - c[0]) * (p->v - c[1]) - ((double)a[1] - c[1]) * (p->u - c[0]);
+	return ab >= 0.0 && bc >= 0.0 && ca >= 0.0;
+}
+
+/* Takes the samples that lie in an unmirrored triangle out of a cell. */
+static void search_cell(grid *g, size_t cell, const float *a, const float *b, const float *c)
+{
+	for (uint32_t *link = &g->cells[cell]; *link != NT_NONE;) {
+		sample *p = &g->samples[*link];
+		g->visits++;
+		if (is_inside(p, a, b, c)) {
+			p->found = true;
+			*link = p->next;
+		} else {
+			link = &p->next;
+		}
+	}
+}
+
+static double least(float a, float b, float c)
+{
+	return fminf(a, fminf(b, c));
+}
+
+static double greatest(float a, float b, float c)
+{
+	return fmaxf(a, fmaxf(b, c));
+}
+
+static void stream_triangles(const nt_judge *judge, grid *g)
+{
+	const nt_surface *s = &judge->surface;
+	for (size_t t = 0; t < s->triangle_count && g->visits < VISIT_LIMIT; t++) {
+		if (s->orientation[t] <= 0)
+			continue;
+		const float *a = nt_side_texcoord(s, (uint32_t)(3 * t));
+		const float *b = nt_side_texcoord(s, (uint32_t)(3 * t + 1));
+		const float *c = nt_side_texcoord(s, (uint32_t)(3 * t + 2));
+		const double low_u = least(a[0], b[0], c[0]), high_u = greatest(a[0], b[0], c[0]);
+		const double low_v = least(a[1], b[1], c[1]), high_v = greatest(a[1], b[1], c[1]);
+		const int x0 = cell_of(g, 0, low_u), x1 = cell_of(g, 0, high_u);
+		const int y0 = cell_of(g, 1, low_v), y1 = cell_of(g, 1, high_v);
+		for (int y = y0; y <= y1; y++) {
+			for (int x = x0; x <= x1; x++) {
+				g->visits++;
+				search_cell(g, (size_t)y * GRID_SIZE + (size_t)x, a, b, c);
+			}
+		}
+	}
+}
+
+/* Sets `covered` of every island with mirrored triangles. */
+static nmtan_status find_covered(nt_judge *judge, size_t mirrored_count)
+{
+	const size_t islands = judge->facts->island_count;
+	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
+	grid *g = nt_scratch_alloc(judge->scratch, 1, sizeof *g);
+	sample *samples = nt_scratch_alloc(judge->scratch, SAMPLE_COUNT + islands, sizeof *samples);
+	uint8_t *met = nt_scratch_alloc(judge->scratch, islands, sizeof *met);
+	double *sums = nt_scratch_alloc(judge->scratch, 2 * islands, sizeof *sums);
+	if (!g || !samples || !sums || !met)
+		return NMTAN_ERROR_MEMORY;
+	memset(met, 0, islands * sizeof *met);
+	g->samples = samples;
+	g->sample_count = g->visits = 0;
+	take_samples(judge, g, mirrored_count, met);
+	fill_grid(g);
+	stream_triangles(judge, g);
+	memset(sums, 0, 2 * islands * sizeof *sums);
+	for (size_t i = 0; i < g->sample_count; i++) {
+		const sample *p = &samples[i];
+		sums[2 * p->island] += p->weight;
+		sums[2 * p->island + 1] += p->found ? p->weight : 0.0;
+	}
+	for (size_t i = 0; i < islands; i++)
+		if (sums[2 * i] > 0.0)
+			judge->facts->islands[i].covered = sums[2 * i + 1] / sums[2 * i];
+	nt_scratch_back(judge->scratch, mark);
+	return NMTAN_OK;
+}
+
+/* ---- folds and twins ---- */
+
+/* Texture coordinates of an island, in a hash table, and the point that has them. */
+typedef struct uv_key {
+	float uv[2];
+	uint32_t island; /* NT_NONE: free */
+	uint32_t point;  /* NT_NONE: several */
+} uv_key;
+
+static size_t hash_key(const float *uv, uint32_t island)
+{
+	uint32_t bits[2];
+	const float normal[2] = {uv[0] + 0.0f, uv[1] + 0.0f};
+	memcpy(bits, normal, sizeof bits);
+	uint64_t hash = ((uint64_t)bits[0] << 32 | bits[1]) * UINT64_C(0x9e3779b97f4a7c15);
+	hash ^= hash >> 32;
+	return (size_t)((hash ^ island) * UINT64_C(0xd6e8feb86659fd93) >> 20);
+}
+
+/* The entry of a key, or the free one where it belongs. NaN is found nowhere. */
+static uv_key *look_up(uv_key *table, size_t mask, const float *uv, uint32_t island)
+{
+	size_t slot = hash_key(uv, island) & mask;
+	for (; table[slot].island != NT_NONE; slot = (slot + 1) & mask)
+		if (table[slot].island == island && table[slot].uv[0] == uv[0] && table[slot].uv[1] == uv[1])
+			break;
+	return &table[slot];
+}
+
+static bool is_mixed(const nt_judge *judge, size_t t)
+{
+	return judge->islands[t] != NT_NONE &&
+		judge->facts->islands[judge->islands[t]].kind == NT_ISLAND_MIXED;
+}
+
+/* Notes an unmirrored corner, or counts a mirrored one: in counts[1] when an unmirrored corner at another
+ * point has its coordinates, in counts[0] when none has. Points of the fold itself say nothing. */
+static void meet_corner(const nt_surface *s, uint32_t side, uint32_t island, uv_key *entry, bool mirrored,
+	size_t *counts)
+{
+	const uint32_t point = s->points[side];
+	const float *uv = nt_side_texcoord(s, side);
+	if (mirrored) {
+		if (entry->island == NT_NONE || entry->point != point)
+			counts[2 * island + (entry->island != NT_NONE)]++;
+	} else if (entry->island == NT_NONE) {
+		*entry = (uv_key){{uv[0], uv[1]}, island, point};
+	} else if (entry->point != point) {
+		entry->point = NT_NONE;
+	}
+}
+
+/* Sets `twin` of mixed islands: mirrored corners lie on unmirrored corners of the same island, and the
+ * triangles on its triangles. */
+static nmtan_status find_twins(nt_judge *judge, size_t mixed_corners)
+{
+	const nt_surface *s = &judge->surface;
+	const size_t islands = judge->facts->island_count;
+	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
+	size_t capacity = 16;
+	while (capacity < 2 * mixed_corners)
+		capacity *= 2;
+	uv_key *table = nt_scratch_alloc(judge->scratch, capacity, sizeof *table);
+	size_t *counts = nt_scratch_alloc(judge->scratch, 2 * islands, sizeof *counts);
+	if (!table || !counts)
+		return NMTAN_ERROR_MEMORY;
+	memset(counts, 0, 2 * islands * sizeof *counts);
+	for (size_t i = 0; i < capacity; i++)
+		table[i].island = NT_NONE;
+	for (int pass = 0; pass < 2; pass++) {
+		for (size_t c = 0; c < 3 * s->triangle_count; c++) {
+			const int wanted = pass == 0 ? 1 : -1;
+			if (s->orientation[c / 3] != wanted || !is_mixed(judge, c / 3))
+				continue;
+			const uint32_t island = judge->islands[c / 3];
+			uv_key *entry = look_up(table, capacity - 1, nt_side_texcoord(s, (uint32_t)c),
+				island);
+			meet_corner(s, (uint32_t)c, island, entry, pass == 1, counts);
+		}
+	}
+	for (size_t i = 0; i < islands; i++) {
+		nt_island *island = &judge->facts->islands[i];
+		const double corners = (double)(counts[2 * i] + counts[2 * i + 1]);
+		island->twin = island->kind == NT_ISLAND_MIXED && island->covered >= TWIN_SHARE &&
+			counts[2 * i + 1] > 0 && (double)counts[2 * i + 1] >= TWIN_SHARE * corners;
+	}
+	nt_scratch_back(judge->scratch, mark);
+	return NMTAN_OK;
+}
+
+/* ---- findings ---- */
+
+static nt_code code_of(const nt_island *island)
+{
+	if (island->kind == NT_ISLAND_MIXED && !island->twin)
+		return NT_CODE_UV_MIXED_WINDING_ISLAND;
+	return island->kind == NT_ISLAND_MIXED || island->covered >= COVERED_SHARE
+		? NT_CODE_UV_MIRROR_OVERLAP
+		: NT_CODE_UV_MIRROR_LONE;
+}
+
+/* What a finding of this island counts: all its triangles for a fold, else the mirrored ones. */
+static size_t size_of(const nt_island *island)
+{
+	return code_of(island) == NT_CODE_UV_MIXED_WINDING_ISLAND
+		? island->triangles[0] + island->triangles[1] + island->triangles[2]
+		: island->triangles[0];
+}
+
+static void tally_island(const nt_judge *judge, nt_tally *tally, size_t index)
+{
+	const nt_island *island = &judge->facts->islands[index];
+	const size_t before = tally->count;
+	nt_tally_triangle(judge, tally, island->first_triangle, island->covered);
+	nt_box_join(&tally->box, &island->box);
+	tally->count = before + size_of(island);
+}
+
+static void report_island(nt_judge *judge, size_t index)
+{
+	const nt_island *island = &judge->facts->islands[index];
+	nt_tally tally = {.code = code_of(island), .island = (uint32_t)index + 1};
+	tally_island(judge, &tally, index);
+	nt_tally_number(&tally, "mirrored_triangles", (double)island->triangles[0]);
+	nt_tally_number(&tally, "unmirrored_triangles", (double)island->triangles[2]);
+	nt_tally_number(&tally, "covered_share", island->covered);
+	nt_judge_report(judge, &tally, "island %zu", index);
+}
+
+/* One finding per island; many of a kind beyond the first are one finding together. */
+static void report_islands(nt_judge *judge)
+{
+	static const nt_code codes[3] = {NT_CODE_UV_MIRROR_OVERLAP, NT_CODE_UV_MIRROR_LONE,
+		NT_CODE_UV_MIXED_WINDING_ISLAND};
+	for (int i = 0; i < 3; i++) {
+		size_t seen = 0;
+		nt_tally rest = {.code = codes[i]};
+		for (size_t k = 0; k < judge->facts->island_count; k++) {
+			const nt_island *island = &judge->facts->islands[k];
+			if (island->triangles[0] == 0 || code_of(island) != codes[i])
+				continue;
+			if (seen++ < NT_SINGLE_FINDINGS)
+				report_island(judge, k);
+			else
+				tally_island(judge, &rest, k);
+		}
+		if (seen > NT_SINGLE_FINDINGS)
+			nt_judge_report(judge, &rest, "%zu further islands", seen - NT_SINGLE_FINDINGS);
+	}
+}
+
+nmtan_status nt_judge_islands(nt_judge *judge)
+{
+	nt_report_mesh *facts = judge->facts;
+	if (!judge->mesh->texcoords || facts->island_count == 0)
+		return NMTAN_OK;
+	facts->islands = nt_arena_alloc(&judge->report->arena, facts->island_count,
+		sizeof *facts->islands);
+	if (!facts->islands)
+		return NMTAN_ERROR_MEMORY;
+	measure_islands(judge);
+	size_t mirrored = 0, mixed_corners = 0;
+	for (size_t i = 0; i < facts->island_count; i++) {
+		nt_island *island = &facts->islands[i];
+		island->kind = kind_of(island);
+		facts->island_kinds[island->kind]++;
+		mirrored += island->triangles[0];
+		if (island->kind == NT_ISLAND_MIXED)
+			mixed_corners += 3 * (island->triangles[0] + island->triangles[2]);
+	}
+	nmtan_status status = mirrored ? find_covered(judge, mirrored) : NMTAN_OK;
+	if (!status && mixed_corners)
+		status = find_twins(judge, mixed_corners);
+	if (!status)
+		report_islands(judge);
+	return status;
+}

@@ -1,0 +1,317 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * From occurrences to findings: tallies keep the count, the box and the first few places; a reported
+ * tally gets its sentence, its severity and its fingerprint. At the end findings are sorted, compared
+ * with the baseline and cut to the number asked for.
+ */
+#include "report/judge.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+nt_box nt_box_empty(void)
+{
+	return (nt_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+}
+
+void nt_box_add(nt_box *box, const float *position)
+{
+	for (int i = 0; i < 3; i++) {
+		if (!isfinite(position[i]))
+			continue;
+		if (position[i] < box->minimum[i])
+			box->minimum[i] = position[i];
+		if (position[i] > box->maximum[i])
+			box->maximum[i] = position[i];
+	}
+}
+
+void nt_box_join(nt_box *box, const nt_box *other)
+{
+	for (int i = 0; i < 3; i++) {
+		box->minimum[i] = fminf(box->minimum[i], other->minimum[i]);
+		box->maximum[i] = fmaxf(box->maximum[i], other->maximum[i]);
+	}
+}
+
+/* Counts an occurrence and returns the spot to fill, NULL when there are enough. */
+static nt_spot *count_one(nt_tally *tally, double value)
+{
+	if (tally->count++ == 0)
+		tally->box = nt_box_empty();
+	if (tally->spot_count == NT_SPOT_COUNT)
+		return NULL;
+	nt_spot *spot = &tally->spots[tally->spot_count++];
+	*spot = (nt_spot){.triangle = NT_NONE, .face = NT_NONE, .value = value};
+	return spot;
+}
+
+static void add_vertex(const nt_judge *judge, nt_tally *tally, nt_spot *spot, uint32_t vertex)
+{
+	const float *position = judge->mesh->positions + 3 * (size_t)vertex;
+	nt_box_add(&tally->box, position);
+	if (!spot)
+		return;
+	const unsigned k = spot->corner_count++;
+	spot->vertices[k] = nt_source_vertex(judge->mesh, vertex);
+	memcpy(spot->positions[k], position, sizeof spot->positions[k]);
+	spot->has_texcoords = judge->mesh->texcoords != NULL;
+	if (spot->has_texcoords)
+		nt_source_texcoord(judge->scene, judge->mesh->texcoords + 2 * (size_t)vertex,
+			spot->texcoords[k]);
+}
+
+static void set_triangle(const nt_judge *judge, nt_spot *spot, size_t triangle)
+{
+	if (!spot)
+		return;
+	const uint32_t face = judge->surface.faces[triangle];
+	spot->triangle = (uint32_t)triangle;
+	spot->face = judge->mesh->face_polygon ? judge->mesh->face_polygon[face] : face;
+}
+
+void nt_tally_triangle(const nt_judge *judge, nt_tally *tally, size_t triangle, double value)
+{
+	nt_spot *spot = count_one(tally, value);
+	set_triangle(judge, spot, triangle);
+	for (size_t k = 0; k < 3; k++)
+		add_vertex(judge, tally, spot, judge->surface.vertices[3 * triangle + k]);
+}
+
+void nt_tally_side(const nt_judge *judge, nt_tally *tally, uint32_t side, double value)
+{
+	nt_spot *spot = count_one(tally, value);
+	set_triangle(judge, spot, side / 3);
+	add_vertex(judge, tally, spot, judge->surface.vertices[side]);
+	add_vertex(judge, tally, spot, judge->surface.vertices[nt_side_next(side)]);
+}
+
+void nt_tally_vertex(const nt_judge *judge, nt_tally *tally, uint32_t vertex, double value)
+{
+	add_vertex(judge, tally, count_one(tally, value), vertex);
+}
+
+void nt_tally_number(nt_tally *tally, const char *name, double value)
+{
+	if (tally->number_count < NT_NUMBER_COUNT)
+		tally->numbers[tally->number_count++] = (nt_number){name, value};
+}
+
+/* FNV-1a. */
+static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size)
+{
+	const unsigned char *p = bytes;
+	for (size_t i = 0; i < size; i++)
+		hash = (hash ^ p[i]) * UINT64_C(0x100000001b3);
+	return hash;
+}
+
+static uint64_t hash_text(uint64_t hash, const char *text)
+{
+	return hash_bytes(hash, text, strlen(text) + 1);
+}
+
+/*
+ * Code, mesh and where in the mesh: the box in steps of 1/128 of the mesh's own largest extent. Numbers
+ * of vertices and triangles do not enter, nor does the count, so that an unrelated edit leaves it.
+ */
+static uint64_t fingerprint_of(const nt_issue *issue, const nt_report_mesh *mesh, const char *detail)
+{
+	uint64_t hash = hash_text(UINT64_C(0xcbf29ce484222325), nt_code_info(issue->code)->name);
+	hash = hash_text(hash, mesh ? mesh->name : "");
+	if (!mesh || !(issue->box.minimum[0] <= issue->box.maximum[0]))
+		return hash_text(hash, detail);
+	double extent = 0.0;
+	for (int i = 0; i < 3; i++)
+		extent = fmax(extent, (double)mesh->box.maximum[i] - mesh->box.minimum[i]);
+	for (int i = 0; i < 6; i++) {
+		const double value = i < 3 ? issue->box.minimum[i] : issue->box.maximum[i - 3];
+		const double steps = extent > 0.0 ? (value - mesh->box.minimum[i % 3]) / extent * 128.0 : 0.0;
+		const int32_t step = isfinite(steps) && fabs(steps) < 1e6 ? (int32_t)lround(steps) : 0;
+		const unsigned char bytes[4] = {(unsigned char)step, (unsigned char)(step >> 8),
+			(unsigned char)(step >> 16), (unsigned char)(step >> 24)};
+		hash = hash_bytes(hash, bytes, sizeof bytes);
+	}
+	return hash;
+}
+
+/* Completes and appends a finding whose code, place, count, box, numbers and spots are set. */
+static void add_issue(nt_judge *judge, nt_issue *issue, nt_severity severity, const char *detail)
+{
+	nt_report *report = judge->report;
+	if (judge->options->ignore[issue->code])
+		return;
+	const uint8_t wish = judge->options->severity[issue->code];
+	issue->severity = wish ? (nt_severity)(wish - 1) : severity;
+	nt_buffer sentence = {0};
+	nt_code_sentence(issue->code, issue->count, detail, &sentence);
+	issue->message = sentence.failed ? NULL
+					 : nt_arena_text(&report->arena, sentence.data, sentence.size);
+	nt_buffer_free(&sentence);
+	issue->fingerprint = fingerprint_of(issue,
+		issue->mesh == NT_NONE ? NULL : &report->meshes[issue->mesh], detail);
+	if (!issue->message || !nt_grow((void **)&report->issues, judge->issue_capacity,
+				       report->issue_count + 1, sizeof *issue)) {
+		judge->failed = true;
+		return;
+	}
+	report->issues[report->issue_count++] = *issue;
+}
+
+static void report_tally(nt_judge *judge, const nt_tally *tally, nt_severity severity,
+	const char *format, va_list arguments)
+{
+	if (tally->count == 0)
+		return;
+	char detail[256] = "";
+	if (format)
+		vsnprintf(detail, sizeof detail, format, arguments);
+	nt_issue issue = {.code = tally->code,
+		.mesh = judge->mesh_index,
+		.count = tally->count,
+		.place = judge->facts->place,
+		.box = tally->box,
+		.seam = tally->seam ? tally->seam - 1 : NT_NONE,
+		.island = tally->island ? tally->island - 1 : NT_NONE,
+		.number_count = tally->number_count,
+		.spot_count = tally->spot_count};
+	memcpy(issue.numbers, tally->numbers, sizeof issue.numbers);
+	memcpy(issue.spots, tally->spots, sizeof issue.spots);
+	add_issue(judge, &issue, severity, detail);
+}
+
+void nt_judge_report(nt_judge *judge, const nt_tally *tally, const char *detail_format, ...)
+{
+	va_list arguments;
+	va_start(arguments, detail_format);
+	report_tally(judge, tally, nt_code_info(tally->code)->severity, detail_format, arguments);
+	va_end(arguments);
+}
+
+void nt_judge_report_as(nt_judge *judge, const nt_tally *tally, nt_severity severity,
+	const char *detail_format, ...)
+{
+	va_list arguments;
+	va_start(arguments, detail_format);
+	report_tally(judge, tally, severity, detail_format, arguments);
+	va_end(arguments);
+}
+
+void nt_issues_add_finding(nt_judge *judge, const nt_finding *finding)
+{
+	/* the solve counts these too, but does not know where they are: geometry.c does */
+	if (finding->code == NT_CODE_UV_DEGENERATE_TRIANGLE ||
+		finding->code == NT_CODE_POS_DEGENERATE_TRIANGLE)
+		return;
+	nt_issue issue = {.code = finding->code,
+		.mesh = NT_NONE,
+		.count = finding->count,
+		.place = finding->place,
+		.box = nt_box_empty(),
+		.seam = NT_NONE,
+		.island = NT_NONE};
+	for (size_t i = 0; i < judge->report->mesh_count; i++) {
+		const nt_place *place = &judge->report->meshes[i].place;
+		const bool same = place->pointer[0] ? strcmp(place->pointer, finding->place.pointer) == 0
+						    : place->object[0] &&
+				strcmp(place->object, finding->place.object) == 0;
+		if (same) {
+			issue.mesh = (uint32_t)i;
+			break;
+		}
+	}
+	add_issue(judge, &issue, nt_code_info(finding->code)->severity, finding->detail);
+}
+
+static int by_severity(const void *a, const void *b)
+{
+	const nt_issue *x = a, *y = b;
+	if (x->severity != y->severity)
+		return x->severity > y->severity ? -1 : 1;
+	if (x->mesh != y->mesh)
+		return x->mesh + 1 < y->mesh + 1 ? -1 : 1; /* the file as a whole first */
+	return x->code < y->code ? -1 : x->code > y->code;
+}
+
+/* Merge sort: findings of one code stay in the order in which they were found. */
+static bool sort_issues(nt_issue *issues, size_t count)
+{
+	nt_issue *other = nt_alloc(count, sizeof *other);
+	if (!other)
+		return false;
+	for (size_t width = 1; width < count; width *= 2) {
+		for (size_t begin = 0; begin < count; begin += 2 * width) {
+			const size_t middle = begin + width < count ? begin + width : count;
+			const size_t end = middle + width < count ? middle + width : count;
+			size_t a = begin, b = middle;
+			for (size_t i = begin; i < end; i++) {
+				const bool left = b == end ||
+					(a < middle && by_severity(&issues[a], &issues[b]) <= 0);
+				other[i] = issues[left ? a++ : b++];
+			}
+		}
+		memcpy(issues, other, count * sizeof *issues);
+	}
+	free(other);
+	return true;
+}
+
+/* Marks findings whose fingerprint the baseline has, each of its entries once. */
+static bool apply_baseline(nt_report *report, const nt_baseline *baseline)
+{
+	bool *used = nt_calloc(baseline->count, sizeof *used);
+	if (!used)
+		return false;
+	for (size_t i = 0; i < report->issue_count; i++) {
+		const uint64_t wanted = report->issues[i].fingerprint;
+		size_t low = 0, high = baseline->count;
+		while (low < high) {
+			const size_t middle = (low + high) / 2;
+			if (baseline->fingerprints[middle] < wanted)
+				low = middle + 1;
+			else
+				high = middle;
+		}
+		for (; low < baseline->count && baseline->fingerprints[low] == wanted; low++) {
+			if (!used[low]) {
+				used[low] = report->issues[i].known = true;
+				break;
+			}
+		}
+	}
+	free(used);
+	return true;
+}
+
+nmtan_status nt_issues_finish(nt_report *report, const nt_report_options *options)
+{
+	if (!sort_issues(report->issues, report->issue_count))
+		return NMTAN_ERROR_MEMORY;
+	if (options->baseline && !apply_baseline(report, options->baseline))
+		return NMTAN_ERROR_MEMORY;
+	for (size_t i = 0; i < report->issue_count; i++) {
+		if (report->issues[i].known)
+			report->known++;
+		else
+			report->by_severity[report->issues[i].severity]++;
+	}
+	if (options->max_issues && report->issue_count > options->max_issues) {
+		report->dropped = report->issue_count - options->max_issues;
+		report->issue_count = options->max_issues;
+	}
+	return NMTAN_OK;
+}
+
+bool nt_report_worst(const nt_report *report, nt_severity *worst)
+{
+	for (int severity = NT_SEVERITY_ERROR; severity >= NT_SEVERITY_INFO; severity--) {
+		if (report->by_severity[severity]) {
+			*worst = (nt_severity)severity;
+			return true;
+		}
+	}
+	return false;
+}

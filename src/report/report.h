@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The validation report of one input: what was found, where, and the numbers behind it.
+ *
+ * nt_report_build() judges a scene whose meshes are loaded and, on conversion, solved and split; the
+ * report owns all it holds, so the scene may go. nt_report_write() (write.h) turns one or many reports
+ * into text, JSON and so on. Nothing here prints.
+ *
+ * What is found is data: one finding per seam, island or group of equal occurrences, with a fingerprint
+ * that stays the same when indices change, so that a later run can tell old findings from new ones.
+ */
+#ifndef NT_REPORT_REPORT_H
+#define NT_REPORT_REPORT_H
+
+#include "base/memory.h"
+#include "report/codes.h"
+#include "scene/scene.h"
+
+enum {
+	NT_SPOT_COUNT = 8,       /* places that a finding keeps */
+	NT_NUMBER_COUNT = 8,     /* numbers that a finding keeps */
+	NT_ANGLE_BINS = 6,       /* up to 1, 5, 15, 30, 60, 180 degrees */
+	NT_SINGLE_FINDINGS = 16, /* findings of one code in one mesh before the rest is put into one */
+	NT_SEAM_EDGES = 4096     /* edges that are kept of one seam */
+};
+
+/* The edges of the bins of nt_report_mesh.angle_histogram. */
+extern const double nt_angle_bins[NT_ANGLE_BINS];
+
+/* Fingerprints of earlier findings; equal ones count as often as they stand there. */
+typedef struct nt_baseline {
+	uint64_t *fingerprints; /* ascending */
+	size_t count;
+} nt_baseline;
+
+/* Zero-initialised means the defaults. */
+typedef struct nt_report_options {
+	bool converted;               /* the scene is what gets written, not what was read */
+	bool ignore[NT_CODE_COUNT];
+	uint8_t severity[NT_CODE_COUNT]; /* 0: the table's; else 1 + nt_severity */
+	size_t max_issues;            /* findings kept; 0: all */
+	const nt_baseline *baseline;  /* NULL: none */
+	bool keep_geometry;           /* for pictures: SVG and HTML */
+	unsigned threads;
+} nt_report_options;
+
+/* A triangle, an edge or a vertex where something was found. */
+typedef struct nt_spot {
+	uint32_t triangle;        /* NT_NONE: none. Numbers count after triangulation */
+	uint32_t face;            /* the source's face, NT_NONE: none */
+	unsigned corner_count;    /* 1, 2 or 3 */
+	uint32_t vertices[3];     /* as the source numbers them */
+	float positions[3][3];
+	float texcoords[3][2];    /* as the source has them */
+	bool has_texcoords;
+	double value;             /* the number that was judged; NaN: none */
+	size_t line;              /* OBJ: of the face; 0: unknown */
+	const char *source;       /* OBJ: the face's corners as written, "1/1/1 2/2/1 3/3/1"; NULL: none */
+} nt_spot;
+
+typedef struct nt_number {
+	const char *name; /* static */
+	double value;
+} nt_number;
+
+/* A box that nothing is in has minimum > maximum. */
+typedef struct nt_box {
+	float minimum[3], maximum[3];
+} nt_box;
+
+typedef struct nt_issue {
+	nt_code code;
+	nt_severity severity;
+	uint32_t mesh;        /* index into the report's meshes, NT_NONE: the file as a whole */
+	size_t count;         /* occurrences */
+	const char *message;  /* one sentence */
+	nt_place place;
+	nt_box box;           /* around all occurrences */
+	uint64_t fingerprint;
+	bool known;           /* the baseline has it */
+	uint32_t seam;        /* index into the mesh's seams, NT_NONE */
+	uint32_t island;      /* index into the mesh's islands, NT_NONE */
+	nt_number numbers[NT_NUMBER_COUNT];
+	unsigned number_count;
+	nt_spot spots[NT_SPOT_COUNT];
+	unsigned spot_count;
+} nt_issue;
+
+/* One edge of a seam: side 0 is the unmirrored one. Both sides go from the same end to the same end. */
+typedef struct nt_seam_edge {
+	uint32_t triangles[2];
+	uint32_t vertices[2][2]; /* [side][end] as the source numbers them */
+	uint32_t output[2][2];   /* after the split; the same where nothing was split */
+	float positions[2][3];   /* [end] */
+	float texcoords[2][2][2]; /* [side][end] as the source has them */
+	float dihedral, tangent_angle; /* degrees; NaN where a triangle has none */
+} nt_seam_edge;
+
+typedef struct nt_seam {
+	bool closed;
+	size_t edge_count;
+	nt_seam_edge *edges;   /* [min(edge_count, NT_SEAM_EDGES)] in walking order */
+	double length;
+	double dihedral[2];       /* least and greatest, degrees; NaN: none */
+	double tangent_angle[2];
+	uint32_t islands[2];      /* at the first edge: unmirrored, mirrored */
+	size_t shared_count;      /* edges whose two sides use the same vertices */
+	size_t non_manifold_count;
+	bool has_plane;
+	double plane[4];          /* a x + b y + c z = d, unit normal */
+	char plane_text[48];      /* "x = 0" */
+	nt_box box;
+} nt_seam;
+
+typedef enum nt_island_kind {
+	NT_ISLAND_NORMAL,
+	NT_ISLAND_MIRRORED,
+	NT_ISLAND_MIXED,
+	NT_ISLAND_DEGENERATE
+} nt_island_kind;
+
+typedef struct nt_island {
+	nt_island_kind kind;
+	size_t triangles[3];  /* mirrored, degenerate, normal: [orientation + 1] */
+	double area;          /* in space */
+	double covered;       /* share of the mirrored triangles that lie on unmirrored ones, NaN: none */
+	bool twin;            /* mixed, but the mirrored part lies point by point on its twin */
+	float minimum[2], maximum[2]; /* in the source's UV */
+	uint32_t first_triangle;
+	nt_box box;
+} nt_island;
+
+/* What pictures are drawn from. Everything per vertex or triangle of the mesh as judged. */
+typedef struct nt_report_geometry {
+	size_t vertex_count, triangle_count;
+	float *positions, *normals, *texcoords, *tangents; /* NULL: none. Texcoords as the source has them,
+	                                                      tangents with w as the judge has it, v up */
+	uint32_t *indices;     /* [triangle_count][3] */
+	int8_t *orientation;   /* [triangle_count] */
+	uint32_t *islands;     /* [triangle_count], NT_NONE: none */
+} nt_report_geometry;
+
+typedef struct nt_report_mesh {
+	const char *name;
+	nt_place place;
+	uint32_t gltf_mesh, gltf_primitive;
+	const char *why;          /* why tangents were or were not made */
+	unsigned slots;           /* enum nt_slot */
+	uint32_t texcoord_set;
+	bool has_normals, has_texcoords, judged_tangents;
+	bool analysed;            /* false: not triangles, or nothing was loaded */
+
+	size_t face_count, triangle_count;
+	size_t triangles[3];      /* mirrored, degenerate, normal: [orientation + 1] */
+	double areas[3];          /* the same, area in space */
+	size_t vertices_before, added_normals, added_mirror, added_direction, vertices_after;
+	size_t island_kinds[4];   /* by nt_island_kind */
+	size_t seam_count, seam_edges;
+	double seam_length;
+	size_t uv_seam_edges;     /* inner edges where the texture coordinates are cut */
+	size_t edge_count, boundary_edges, boundary_loops, boundary_chains, non_manifold_edges,
+		inconsistent_edges;
+	size_t left_out;          /* triangles at seams and boundaries that OpenMesh could not take */
+	double worst_orthogonality; /* degrees from perpendicular; NaN: nothing judged */
+	double relative_determinant[3]; /* least, median, greatest; NaN: none */
+	size_t angle_histogram[NT_ANGLE_BINS]; /* corners, against a fresh solve */
+	size_t instance_count, negative_instances;
+
+	nt_seam *seams;           /* [seam_count] */
+	nt_island *islands;       /* [island_count] */
+	size_t island_count;
+	nt_box box;
+	nt_report_geometry *geometry; /* NULL unless kept */
+} nt_report_mesh;
+
+typedef struct nt_report {
+	nt_arena arena;
+	const char *path;
+	nt_format format;
+	const char *failure;      /* the input could not be judged: why; NULL */
+	nt_place failure_place;
+	nt_report_mesh *meshes;
+	size_t mesh_count;
+	nt_issue *issues;         /* most severe first, then by mesh and code */
+	size_t issue_count;
+	size_t dropped;           /* findings beyond max_issues */
+	size_t by_severity[3];    /* findings, dropped ones too, that no baseline knows */
+	size_t known;             /* findings that the baseline knows */
+} nt_report;
+
+/*
+ * Judges a scene.
+ *
+ *   scene    meshes that have positions are judged; its findings become part of the report
+ *   options  NULL: defaults
+ *   report   receives the report, to be freed with nt_report_free()
+ *
+ * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ */
+nmtan_status nt_report_build(const nt_scene *scene, const nt_report_options *options,
+	nt_report **report, nt_error *error);
+
+/* A report that says no more than that the input could not be read, or NULL when out of memory. */
+nt_report *nt_report_of_error(const char *path, const nt_error *failure);
+
+/* NULL is allowed. */
+void nt_report_free(nt_report *report);
+
+/* The most severe new finding. False when there is none. */
+bool nt_report_worst(const nt_report *report, nt_severity *worst);
+
+/*
+ * Reads the fingerprints of a JSON report. Returns NMTAN_OK, NMTAN_ERROR_INPUT when the text is no report of
+ * nmtan, or NMTAN_ERROR_MEMORY.
+ */
+nmtan_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, nt_error *error);
+void nt_baseline_free(nt_baseline *baseline);
+
+#endif

@@ -1,0 +1,326 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Mirror seams: the edges on whose two sides texture coordinates are wound differently, in walking
+ * order, with what a technical artist asks of a seam: where it is, how long, whether it closes, how sharp
+ * the surface bends there, how far the tangents of its sides are apart, and in which plane it lies.
+ * Boundary loops are counted here too, since they are traced alike.
+ *
+ * Sides of one edge may share their vertices or have vertices of their own; both count.
+ */
+#include "report/judge.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include "base/angle.h"
+#include "base/dvec.h"
+#include "report/chains.h"
+
+/* A seam lies in a plane when its points keep within this part of the mesh's extent. */
+static const double PLANE_TOLERANCE = 1e-4;
+
+static const double DEGREES = 57.29577951308232;
+
+/* ---- one edge ---- */
+
+static nt_dvec3 face_normal(const nt_surface *s, uint32_t t)
+{
+	const nt_dvec3 a = nt_dvec3_load(nt_side_position(s, 3 * t));
+	const nt_dvec3 b = nt_dvec3_load(nt_side_position(s, 3 * t + 1));
+	const nt_dvec3 c = nt_dvec3_load(nt_side_position(s, 3 * t + 2));
+	return nt_dvec3_cross(nt_dvec3_sub(b, a), nt_dvec3_sub(c, a));
+}
+
+/* dP/du of a triangle, but for its length. */
+static nt_dvec3 face_tangent(const nt_surface *s, uint32_t t)
+{
+	const float *ta = nt_side_texcoord(s, 3 * t);
+	const float *tb = nt_side_texcoord(s, 3 * t + 1), *tc = nt_side_texcoord(s, 3 * t + 2);
+	const nt_dvec3 a = nt_dvec3_load(nt_side_position(s, 3 * t));
+	const nt_dvec3 d1 = nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, 3 * t + 1)), a);
+	const nt_dvec3 d2 = nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, 3 * t + 2)), a);
+	const double sign = s->orientation[t];
+	return nt_dvec3_sub(nt_dvec3_scale(sign * ((double)tc[1] - ta[1]), d1),
+		nt_dvec3_scale(sign * ((double)tb[1] - ta[1]), d2));
+}
+
+/* Degrees between two vectors, NaN where one has no direction. */
+static double angle_between(nt_dvec3 a, nt_dvec3 b)
+{
+	if (!nt_dvec3_normalise(&a) || !nt_dvec3_normalise(&b))
+		return NAN;
+	const nt_dvec3 cross = nt_dvec3_cross(a, b);
+	return nt_angle(sqrt(nt_dvec3_dot(cross, cross)), nt_dvec3_dot(a, b)) * DEGREES;
+}
+
+/* The vertex that stands for a corner in the output. */
+static uint32_t output_vertex(const nt_judge *judge, uint32_t side)
+{
+	const nt_mesh *mesh = judge->mesh;
+	return mesh->split.indices ? mesh->split.indices[judge->surface.corners[side]]
+				   : judge->surface.vertices[side];
+}
+
+/* An edge as seen in walking direction, from the point `from`. */
+static nt_seam_edge describe_edge(const nt_judge *judge, const nt_mirror_edge *edge, uint32_t from)
+{
+	const nt_surface *s = &judge->surface;
+	nt_seam_edge result = {.triangles = {edge->sides[0] / 3, edge->sides[1] / 3}};
+	for (int i = 0; i < 2; i++) {
+		const uint32_t side = edge->sides[i];
+		const bool along = s->points[side] == from;
+		const uint32_t ends[2] = {along ? side : nt_side_next(side),
+			along ? nt_side_next(side) : side};
+		for (int end = 0; end < 2; end++) {
+			result.vertices[i][end] = nt_source_vertex(judge->mesh, s->vertices[ends[end]]);
+			result.output[i][end] = output_vertex(judge, ends[end]);
+			nt_source_texcoord(judge->scene, nt_side_texcoord(s, ends[end]),
+				result.texcoords[i][end]);
+			memcpy(result.positions[end], nt_side_position(s, ends[end]),
+				sizeof result.positions[end]);
+		}
+	}
+	/* the dihedral angle is 0 on a flat surface; sides that run the same way face each other's back */
+	nt_dvec3 other = face_normal(s, result.triangles[1]);
+	if (s->points[edge->sides[0]] == s->points[edge->sides[1]])
+		other = nt_dvec3_scale(-1.0, other);
+	result.dihedral = (float)angle_between(face_normal(s, result.triangles[0]), other);
+	result.tangent_angle = (float)angle_between(face_tangent(s, result.triangles[0]),
+		face_tangent(s, result.triangles[1]));
+	return result;
+}
+
+static double edge_length(const nt_seam_edge *edge)
+{
+	const nt_dvec3 d = nt_dvec3_sub(nt_dvec3_load(edge->positions[1]), nt_dvec3_load(edge->positions[0]));
+	return sqrt(nt_dvec3_dot(d, d));
+}
+
+static void widen(double range[2], double value)
+{
+	range[0] = fmin(range[0], value); /* fmin and fmax pass NaN over */
+	range[1] = fmax(range[1], value);
+}
+
+/* ---- the plane ---- */
+
+/* What fitting a plane needs of a seam, summed over its edges. */
+typedef struct plane_sums {
+	nt_dvec3 across; /* from the mirrored triangles' third points to the unmirrored ones' */
+	nt_dvec3 points;
+	size_t count;
+} plane_sums;
+
+static nt_dvec3 third_point(const nt_surface *s, uint32_t side)
+{
+	return nt_dvec3_load(nt_side_position(s, nt_side_next(nt_side_next(side))));
+}
+
+static void add_to_sums(const nt_surface *s, const nt_mirror_edge *edge, plane_sums *sums)
+{
+	nt_dvec3 d = nt_dvec3_sub(third_point(s, edge->sides[0]), third_point(s, edge->sides[1]));
+	if (nt_dvec3_dot(d, sums->across) < 0.0)
+		d = nt_dvec3_scale(-1.0, d);
+	sums->across = nt_dvec3_add(sums->across, d);
+	sums->points = nt_dvec3_add(sums->points, nt_dvec3_load(nt_side_position(s, edge->sides[0])));
+	sums->points = nt_dvec3_add(sums->points,
+		nt_dvec3_load(nt_side_position(s, nt_side_next(edge->sides[0]))));
+	sums->count += 2;
+}
+
+/* Whether all points of the seam lie in the plane n p = d. */
+static bool plane_holds(const nt_judge *judge, const nt_chains *chains, size_t chain, nt_dvec3 n,
+	double d, double tolerance)
+{
+	for (size_t i = chains->first[chain]; i < chains->first[chain + 1]; i++) {
+		for (int end = 0; end < 2; end++) {
+			const uint32_t side = end ? nt_side_next(chains->sides[i]) : chains->sides[i];
+			const nt_dvec3 p = nt_dvec3_load(nt_side_position(&judge->surface, side));
+			if (!(fabs(nt_dvec3_dot(n, p) - d) <= tolerance))
+				return false;
+		}
+	}
+	return true;
+}
+
+static double extent_of(const nt_box *box)
+{
+	double extent = 0.0;
+	for (int i = 0; i < 3; i++)
+		extent = fmax(extent, (double)box->maximum[i] - box->minimum[i]);
+	return extent;
+}
+
+static double clean_zero(double value, double tolerance)
+{
+	return fabs(value) <= tolerance ? 0.0 : value;
+}
+
+/*
+ * The plane across which the triangles beside the seam are each other's image, if the seam lies in it: its
+ * normal is the mean direction from one side to the other. A plane along two axes is tried first, since
+ * that is how symmetric models are made.
+ */
+static void fit_plane(const nt_judge *judge, const nt_chains *chains, size_t chain, nt_seam *seam,
+	const plane_sums *sums)
+{
+	const double tolerance = PLANE_TOLERANCE * extent_of(&judge->facts->box);
+	const nt_dvec3 centre = nt_dvec3_scale(1.0 / (double)sums->count, sums->points);
+	const double at[3] = {centre.x, centre.y, centre.z};
+	const nt_dvec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+	nt_dvec3 across = sums->across;
+	if (!nt_dvec3_normalise(&across))
+		return;
+	int axis = fabs(across.x) >= fabs(across.y) ? 0 : 1;
+	if (fabs(across.z) > fabs(axis ? across.y : across.x))
+		axis = 2;
+	if (plane_holds(judge, chains, chain, axes[axis], at[axis], tolerance)) {
+		const double d = clean_zero(at[axis], tolerance);
+		seam->has_plane = true;
+		memcpy(seam->plane, (double[4]){axes[axis].x, axes[axis].y, axes[axis].z, d},
+			sizeof seam->plane);
+		snprintf(seam->plane_text, sizeof seam->plane_text, "%c = %.6g", "xyz"[axis], d);
+		return;
+	}
+	const double d = nt_dvec3_dot(across, centre);
+	if (!plane_holds(judge, chains, chain, across, d, tolerance))
+		return;
+	seam->has_plane = true;
+	memcpy(seam->plane, (double[4]){across.x, across.y, across.z, d}, sizeof seam->plane);
+	snprintf(seam->plane_text, sizeof seam->plane_text, "%.3gx %+.3gy %+.3gz = %.4g", across.x,
+		across.y, across.z, d);
+}
+
+/* ---- one seam ---- */
+
+static nmtan_status describe_seam(nt_judge *judge, const nt_chains *chains, size_t chain, nt_seam *seam)
+{
+	const nt_surface *s = &judge->surface;
+	const size_t first = chains->first[chain];
+	*seam = (nt_seam){.closed = chains->closed[chain],
+		.edge_count = chains->first[chain + 1] - first,
+		.dihedral = {NAN, NAN}, .tangent_angle = {NAN, NAN}, .box = nt_box_empty()};
+	const size_t kept = seam->edge_count < NT_SEAM_EDGES ? seam->edge_count : NT_SEAM_EDGES;
+	seam->edges = nt_arena_alloc(&judge->report->arena, kept, sizeof *seam->edges);
+	if (!seam->edges)
+		return NMTAN_ERROR_MEMORY;
+	plane_sums sums = {0};
+	for (size_t i = 0; i < seam->edge_count; i++) {
+		const uint32_t side = chains->sides[first + i];
+		const nt_mirror_edge *mirror = &judge->mirror_edges[judge->seam_edge[side]];
+		const uint32_t from = chains->reversed[first + i] ? nt_side_next(side) : side;
+		const nt_seam_edge edge = describe_edge(judge, mirror, s->points[from]);
+		if (i < kept)
+			seam->edges[i] = edge;
+		seam->length += edge_length(&edge);
+		widen(seam->dihedral, edge.dihedral);
+		widen(seam->tangent_angle, edge.tangent_angle);
+		seam->shared_count += edge.vertices[0][0] == edge.vertices[1][0] &&
+			edge.vertices[0][1] == edge.vertices[1][1];
+		seam->non_manifold_count += mirror->non_manifold;
+		nt_box_add(&seam->box, edge.positions[0]);
+		nt_box_add(&seam->box, edge.positions[1]);
+		add_to_sums(s, mirror, &sums);
+		if (i == 0) {
+			seam->islands[0] = judge->islands[edge.triangles[0]];
+			seam->islands[1] = judge->islands[edge.triangles[1]];
+		}
+	}
+	fit_plane(judge, chains, chain, seam, &sums);
+	return NMTAN_OK;
+}
+
+static void tally_seam(const nt_judge *judge, const nt_chains *chains, size_t chain, nt_tally *tally)
+{
+	for (size_t i = chains->first[chain]; i < chains->first[chain + 1]; i++)
+		nt_tally_side(judge, tally, chains->sides[i], NAN);
+}
+
+static void report_seam(nt_judge *judge, const nt_chains *chains, size_t index)
+{
+	const nt_seam *seam = &judge->facts->seams[index];
+	nt_tally tally = {.code = NT_CODE_UV_MIRROR_SEAM, .seam = (uint32_t)index + 1};
+	tally_seam(judge, chains, index, &tally);
+	nt_tally_number(&tally, "length", seam->length);
+	nt_tally_number(&tally, "dihedral_min_degrees", seam->dihedral[0]);
+	nt_tally_number(&tally, "dihedral_max_degrees", seam->dihedral[1]);
+	nt_tally_number(&tally, "tangent_angle_min_degrees", seam->tangent_angle[0]);
+	nt_tally_number(&tally, "tangent_angle_max_degrees", seam->tangent_angle[1]);
+	nt_tally_number(&tally, "edges_sharing_vertices", (double)seam->shared_count);
+	nt_judge_report(judge, &tally, "seam %zu, %s, length %.4g%s%s", index,
+		seam->closed ? "a closed loop" : "an open chain", seam->length,
+		seam->has_plane ? ", plane " : "", seam->plane_text);
+}
+
+static void report_seams(nt_judge *judge, const nt_chains *chains)
+{
+	nt_tally rest = {.code = NT_CODE_UV_MIRROR_SEAM};
+	for (size_t i = 0; i < chains->count; i++) {
+		if (i < NT_SINGLE_FINDINGS)
+			report_seam(judge, chains, i);
+		else
+			tally_seam(judge, chains, i, &rest);
+	}
+	if (chains->count > NT_SINGLE_FINDINGS)
+		nt_judge_report(judge, &rest, "%zu further seams", chains->count - NT_SINGLE_FINDINGS);
+}
+
+/* ---- entry ---- */
+
+static nmtan_status trace_boundary(nt_judge *judge)
+{
+	nt_chains chains;
+	const nmtan_status status =
+		nt_chains_trace(&judge->surface, judge->boundary, judge->scratch, &chains, NULL);
+	for (size_t i = 0; !status && i < chains.count; i++) {
+		if (chains.closed[i])
+			judge->facts->boundary_loops++;
+		else
+			judge->facts->boundary_chains++;
+	}
+	if (!status)
+		judge->facts->left_out = chains.left_out;
+	return status;
+}
+
+static nmtan_status trace_seams(nt_judge *judge)
+{
+	nt_report_mesh *facts = judge->facts;
+	const size_t side_count = 3 * judge->surface.triangle_count;
+	uint8_t *marked = nt_scratch_alloc(judge->scratch, side_count, 1);
+	if (!marked)
+		return NMTAN_ERROR_MEMORY;
+	memset(marked, 0, side_count);
+	for (size_t i = 0; i < judge->mirror_edge_count; i++)
+		marked[judge->mirror_edges[i].sides[0]] = 1;
+	nt_chains chains;
+	nmtan_status status = nt_chains_trace(&judge->surface, marked, judge->scratch, &chains, NULL);
+	if (status)
+		return status;
+	facts->seams = nt_arena_alloc(&judge->report->arena, chains.count, sizeof *facts->seams);
+	if (!facts->seams)
+		return NMTAN_ERROR_MEMORY;
+	for (size_t i = 0; i < chains.count; i++) {
+		status = describe_seam(judge, &chains, i, &facts->seams[i]);
+		if (status)
+			return status;
+		facts->seam_edges += facts->seams[i].edge_count;
+		facts->seam_length += facts->seams[i].length;
+		facts->seam_count++;
+	}
+	if (chains.left_out > facts->left_out)
+		facts->left_out = chains.left_out;
+	report_seams(judge, &chains);
+	return NMTAN_OK;
+}
+
+nmtan_status nt_judge_seams(nt_judge *judge)
+{
+	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
+	nmtan_status status = judge->facts->boundary_edges ? trace_boundary(judge) : NMTAN_OK;
+	nt_scratch_back(judge->scratch, mark);
+	if (!status && judge->mirror_edge_count)
+		status = trace_seams(judge);
+	nt_scratch_back(judge->scratch, mark);
+	return status;
+}

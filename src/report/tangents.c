@@ -1,0 +1,251 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Stored tangents, judged: authored ones on --check, the result on conversion.
+ *
+ * One by one: finite, of unit length, perpendicular to the normal, w a sign. By triangle: one w on its
+ * three corners, and the one that the exact orientation of the texture coordinates asks for. By corner:
+ * the angle to a fresh MikkTSpace solve, where there is one to compare with.
+ */
+#include "report/judge.h"
+
+#include <math.h>
+#include <string.h>
+#include "base/angle.h"
+#include "base/dvec.h"
+
+/* Below this a tangent has no length; the tolerance of the Khronos validator for the others. */
+static const double ZERO_LENGTH = 1e-6, UNIT_TOLERANCE = 0.00674;
+
+/* Degrees. Within PARALLEL of the normal the bitangent is noise; quantisation to 8 bits explains half a
+ * degree off perpendicular; MISMATCH is the limit of the fifth bin of the histogram. */
+static const double PARALLEL_DEGREES = 1.0, ORTHOGONAL_DEGREES = 1.0, MISMATCH_DEGREES = 30.0;
+
+/* Share of corners from which on other directions are a warning. */
+static const double MISMATCH_SHARE = 0.01;
+
+const double nt_angle_bins[NT_ANGLE_BINS] = {1.0, 5.0, 15.0, 30.0, 60.0, 180.0};
+
+static const double DEGREES = 57.29577951308232;
+
+typedef struct tangent_tallies {
+	nt_tally not_finite, zero, non_unit, bad_w, parallel, not_orthogonal;
+	double worst_length;
+} tangent_tallies;
+
+static double length_of(nt_dvec3 v)
+{
+	return sqrt(nt_dvec3_dot(v, v));
+}
+
+static double degrees_between(nt_dvec3 a, nt_dvec3 b)
+{
+	return nt_angle(length_of(nt_dvec3_cross(a, b)), nt_dvec3_dot(a, b)) * DEGREES;
+}
+
+static void judge_angle(nt_judge *judge, tangent_tallies *tt, uint32_t vertex, nt_dvec3 tangent)
+{
+	if (!judge->mesh->normals)
+		return;
+	nt_dvec3 normal = nt_dvec3_load(judge->mesh->normals + 3 * (size_t)vertex);
+	if (!nt_dvec3_normalise(&normal))
+		return;
+	const double off = fabs(degrees_between(normal, tangent) - 90.0);
+	nt_report_mesh *facts = judge->facts;
+	if (!(facts->worst_orthogonality >= off))
+		facts->worst_orthogonality = off;
+	if (off > 90.0 - PARALLEL_DEGREES)
+		nt_tally_vertex(judge, &tt->parallel, vertex, off);
+	else if (off > ORTHOGONAL_DEGREES)
+		nt_tally_vertex(judge, &tt->not_orthogonal, vertex, off);
+}
+
+static void judge_tangent(nt_judge *judge, tangent_tallies *tt, uint32_t vertex, const float *stored)
+{
+	if (!isfinite(stored[0]) || !isfinite(stored[1]) || !isfinite(stored[2]) || !isfinite(stored[3])) {
+		nt_tally_vertex(judge, &tt->not_finite, vertex, NAN);
+		return;
+	}
+	if (fabsf(stored[3]) != 1.0f)
+		nt_tally_vertex(judge, &tt->bad_w, vertex, stored[3]);
+	const nt_dvec3 tangent = nt_dvec3_load(stored);
+	const double length = length_of(tangent);
+	if (length < ZERO_LENGTH) {
+		nt_tally_vertex(judge, &tt->zero, vertex, length);
+		return;
+	}
+	if (fabs(length - 1.0) > UNIT_TOLERANCE) {
+		nt_tally_vertex(judge, &tt->non_unit, vertex, length);
+		if (fabs(length - 1.0) > fabs(tt->worst_length - 1.0))
+			tt->worst_length = length;
+	}
+	judge_angle(judge, tt, vertex, tangent);
+}
+
+static size_t tangent_count(const nt_judge *judge)
+{
+	const nt_mesh *mesh = judge->mesh;
+	if (judge->stored == NT_STORED_SPLIT)
+		return mesh->vertex_count + mesh->split.source_count;
+	return judge->stored == NT_STORED_CORNERS ? mesh->corner_count : mesh->vertex_count;
+}
+
+/* Tangents that no material uses cannot render wrong: then errors are warnings. */
+static nt_severity severity_of(const nt_judge *judge, nt_code code)
+{
+	const nt_severity severity = nt_code_info(code)->severity;
+	const bool gltf = judge->scene->format == NT_FORMAT_GLTF || judge->scene->format == NT_FORMAT_GLB;
+	const bool unused = gltf && judge->mesh->slots == 0 && judge->stored == NT_STORED_AUTHORED;
+	return unused && severity == NT_SEVERITY_ERROR ? NT_SEVERITY_WARNING : severity;
+}
+
+static nmtan_status judge_each(nt_judge *judge)
+{
+	const nt_surface *s = &judge->surface;
+	uint8_t *seen = nt_scratch_alloc(judge->scratch, tangent_count(judge), 1);
+	tangent_tallies *tt = nt_scratch_alloc(judge->scratch, 1, sizeof *tt);
+	if (!seen || !tt)
+		return NMTAN_ERROR_MEMORY;
+	memset(seen, 0, tangent_count(judge));
+	*tt = (tangent_tallies){.not_finite = {.code = NT_CODE_TAN_NOT_FINITE},
+		.zero = {.code = NT_CODE_TAN_ZERO}, .non_unit = {.code = NT_CODE_TAN_NON_UNIT},
+		.bad_w = {.code = NT_CODE_TAN_BAD_W}, .parallel = {.code = NT_CODE_TAN_PARALLEL_NORMAL},
+		.not_orthogonal = {.code = NT_CODE_TAN_NOT_ORTHOGONAL}, .worst_length = 1.0};
+	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
+		const size_t index = nt_tangent_index(judge, s->corners[c]);
+		if (seen[index])
+			continue;
+		seen[index] = 1;
+		judge_tangent(judge, tt, s->vertices[c], nt_stored_tangent(judge, s->corners[c]));
+	}
+	nt_tally_number(&tt->non_unit, "worst_length", tt->worst_length);
+	nt_tally_number(&tt->not_orthogonal, "worst_degrees", judge->facts->worst_orthogonality);
+	const nt_tally *all[] = {&tt->not_finite, &tt->zero, &tt->non_unit, &tt->bad_w, &tt->parallel};
+	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+		nt_judge_report_as(judge, all[i], severity_of(judge, all[i]->code), NULL);
+	nt_judge_report(judge, &tt->not_orthogonal, "the worst is %.3g degrees off",
+		judge->facts->worst_orthogonality);
+	return NMTAN_OK;
+}
+
+/* ---- signs ---- */
+
+static void judge_signs(nt_judge *judge)
+{
+	const nt_surface *s = &judge->surface;
+	nt_tally mixed = {.code = NT_CODE_TAN_MIXED_W_TRIANGLE};
+	nt_tally wrong = {.code = NT_CODE_TAN_SIGN_MISMATCH};
+	size_t judged = 0;
+	for (size_t t = 0; t < s->triangle_count; t++) {
+		float w[3];
+		for (size_t k = 0; k < 3; k++)
+			w[k] = nt_stored_tangent(judge, s->corners[3 * t + k])[3];
+		if (!isfinite(w[0] + w[1] + w[2]) || w[0] == 0.0f || w[1] == 0.0f || w[2] == 0.0f)
+			continue;
+		const bool same = (w[0] > 0.0f) == (w[1] > 0.0f) && (w[1] > 0.0f) == (w[2] > 0.0f);
+		if (!same) {
+			nt_tally_triangle(judge, &mixed, t, NAN);
+			continue;
+		}
+		if (s->orientation[t] == 0)
+			continue;
+		judged++;
+		if ((w[0] > 0.0f) != (s->orientation[t] > 0))
+			nt_tally_triangle(judge, &wrong, t, w[0]);
+	}
+	const double share = judged ? (double)wrong.count / (double)judged : 0.0;
+	nt_judge_report(judge, &mixed, NULL);
+	nt_tally_number(&wrong, "share", share);
+	nt_tally_number(&wrong, "judged_triangles", (double)judged);
+	nt_judge_report_as(judge, &wrong, severity_of(judge, NT_CODE_TAN_SIGN_MISMATCH),
+		"%.3g %% of %zu%s", 100.0 * share, judged,
+		wrong.count == judged ? ", the convention is inverted" : "");
+}
+
+/* ---- directions ---- */
+
+static void judge_directions(nt_judge *judge, const float *fresh)
+{
+	const nt_surface *s = &judge->surface;
+	nt_tally wrong = {.code = NT_CODE_TAN_DIRECTION_MISMATCH};
+	size_t judged = 0;
+	double worst = 0.0;
+	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
+		if (s->orientation[c / 3] == 0 || s->flatness[c / 3] != NT_SOUND)
+			continue;
+		nt_dvec3 stored = nt_dvec3_load(nt_stored_tangent(judge, s->corners[c]));
+		if (!nt_dvec3_normalise(&stored))
+			continue;
+		const double angle = degrees_between(stored, nt_dvec3_load(fresh + 4 * (size_t)s->corners[c]));
+		int bin = 0;
+		while (bin + 1 < NT_ANGLE_BINS && angle > nt_angle_bins[bin])
+			bin++;
+		judge->facts->angle_histogram[bin]++;
+		judged++;
+		if (angle > MISMATCH_DEGREES)
+			nt_tally_vertex(judge, &wrong, s->vertices[c], angle);
+		worst = fmax(worst, angle);
+	}
+	const double share = judged ? (double)wrong.count / (double)judged : 0.0;
+	nt_tally_number(&wrong, "share", share);
+	nt_tally_number(&wrong, "worst_degrees", worst);
+	nt_judge_report_as(judge, &wrong,
+		share > MISMATCH_SHARE ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO,
+		"%.3g %% of the corners, the worst by %.4g degrees", 100.0 * share, worst);
+}
+
+static nmtan_status compare_with_fresh(nt_judge *judge)
+{
+	const nt_mesh *mesh = judge->mesh;
+	float *fresh = nt_scratch_alloc(judge->scratch, 4 * mesh->corner_count, sizeof *fresh);
+	if (!fresh)
+		return NMTAN_ERROR_MEMORY;
+	const nmtan_mesh view = nt_mesh_view(mesh);
+	const nmtan_options options = {.threads = judge->options->threads};
+	nmtan_output output = {.tangents = fresh};
+	const nmtan_status status = nmtan_tangents(&view, &options, &output);
+	if (status == NMTAN_OK)
+		judge_directions(judge, fresh);
+	return status;
+}
+
+/* ---- tangents that are there for nothing, or are not there ---- */
+
+static void judge_presence(nt_judge *judge)
+{
+	const nt_mesh *mesh = judge->mesh;
+	const bool gltf = judge->scene->format == NT_FORMAT_GLTF || judge->scene->format == NT_FORMAT_GLB;
+	const bool present = judge->facts->judged_tangents;
+	if (!gltf)
+		return;
+	if (present && mesh->slots == 0) {
+		const nt_tally unused = {.code = NT_CODE_TAN_UNUSED, .count = 1, .box = judge->facts->box};
+		nt_judge_report(judge, &unused, NULL);
+	}
+	if (!present && mesh->slots != 0 && mesh->reachable) {
+		const nt_tally missing = {.code = NT_CODE_TAN_MISSING_REQUIRED, .count = 1,
+			.box = judge->facts->box};
+		const bool client_may_make = mesh->slots & NT_SLOT_NORMAL;
+		nt_judge_report_as(judge, &missing,
+			client_may_make ? NT_SEVERITY_INFO : NT_SEVERITY_ERROR, "%s",
+			client_may_make ? "clients make them from the normal texture's coordinates"
+					: "and without a normal texture no client can make them");
+	}
+}
+
+nmtan_status nt_judge_tangents(nt_judge *judge)
+{
+	const nt_mesh *mesh = judge->mesh;
+	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
+	judge_presence(judge);
+	nmtan_status status = NMTAN_OK;
+	if (judge->facts->judged_tangents) {
+		status = judge_each(judge);
+		if (!status && mesh->texcoords)
+			judge_signs(judge);
+		const bool authored = judge->stored == NT_STORED_AUTHORED;
+		if (!status && authored && mesh->texcoords && mesh->normals)
+			status = compare_with_fresh(judge);
+	}
+	nt_scratch_back(judge->scratch, mark);
+	return status;
+}

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Reports as text and files. All formats come from the same data; each is deterministic: no time, no
+ * absolute path, no order that depends on threads.
+ */
+#ifndef NT_REPORT_WRITE_H
+#define NT_REPORT_WRITE_H
+
+#include "report/report.h"
+
+typedef enum nt_report_format {
+	NT_REPORT_TEXT,     /* for people */
+	NT_REPORT_JSON,     /* everything; data/nmtan-report.schema.json */
+	NT_REPORT_SARIF,    /* 2.1.0, for code scanning */
+	NT_REPORT_JUNIT,    /* XML, for test dashboards */
+	NT_REPORT_CSV,      /* a row per finding */
+	NT_REPORT_MARKDOWN, /* for comments on pull requests */
+	NT_REPORT_HTML,     /* one page with UV layouts and a 3D view */
+	NT_REPORT_FORMAT_COUNT
+} nt_report_format;
+
+/* Names and extensions: "json" and ".json". */
+const char *nt_report_format_name(nt_report_format format);
+
+/* The format that a file name's extension means; false when it is none of them. */
+bool nt_report_format_of_path(const char *path, nt_report_format *format);
+
+typedef struct nt_report_style {
+	bool colour; /* text: for a terminal */
+} nt_report_style;
+
+/* Takes a piece of the output. */
+typedef nmtan_status (*nt_report_sink)(void *user, const void *bytes, size_t size, nt_error *error);
+
+/*
+ * Writes reports, one for each input, as one document. style may be NULL.
+ *
+ * Returns NMTAN_OK, NMTAN_ERROR_MEMORY, or what the sink returned.
+ */
+nmtan_status nt_report_write(const nt_report *const *reports, size_t count, nt_report_format format,
+	const nt_report_style *style, nt_report_sink sink, void *user, nt_error *error);
+
+#endif

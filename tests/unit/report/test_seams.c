@@ -1,0 +1,339 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Seams, islands, boundaries and edges of meshes made by hand; every count is derived beside its test.
+ */
+#include "hand_mesh.h"
+
+#include <math.h>
+
+/* Two triangles over one edge, the third corners at the same UV: one is the other's mirror image. */
+static hand_mesh *mirrored_pair(bool split)
+{
+	hand_mesh *h = hand_new();
+	const uint32_t a = hand_vertex(h, 0, 0, 0, 0.5f, 0), b = hand_vertex(h, 0, 1, 0, 0.5f, 1);
+	const uint32_t left = hand_vertex(h, -1, 0, 0, 0, 0), right = hand_vertex(h, 1, 0, 0, 0, 0);
+	const uint32_t c = split ? hand_vertex(h, 0, 0, 0, 0.5f, 0) : a;
+	const uint32_t d = split ? hand_vertex(h, 0, 1, 0, 0.5f, 1) : b;
+	hand_triangle(h, left, a, b);  /* (0,0) (.5,0) (.5,1): counterclockwise */
+	hand_triangle(h, d, c, right); /* (.5,1) (.5,0) (0,0): clockwise */
+	return h;
+}
+
+static void mirrored_pair_has_one_open_seam_of_one_edge(void **state)
+{
+	(void)state;
+	hand_mesh *h = mirrored_pair(false);
+	nt_report *report = hand_report(h, NULL);
+	const nt_report_mesh *m = &report->meshes[0];
+	assert_int_equal(m->triangles[0], 1);
+	assert_int_equal(m->triangles[2], 1);
+	assert_int_equal(m->seam_count, 1);
+	const nt_seam *seam = &m->seams[0];
+	assert_false(seam->closed);
+	assert_int_equal(seam->edge_count, 1);
+	assert_int_equal(seam->shared_count, 1);
+	assert_true(seam->length == 1.0);
+	assert_string_equal(seam->plane_text, "x = 0");
+	assert_true(seam->dihedral[0] == 0.0 && seam->dihedral[1] == 0.0);
+	/* u grows to the right on the left and to the left on the right */
+	assert_true(fabs(seam->tangent_angle[1] - 180.0) < 1e-9);
+	assert_int_equal(seam->edges[0].triangles[0], 0);
+	assert_int_equal(seam->edges[0].triangles[1], 1);
+	/* four outer edges, one loop */
+	assert_int_equal(m->edge_count, 5);
+	assert_int_equal(m->boundary_edges, 4);
+	assert_int_equal(m->boundary_loops, 1);
+	assert_int_equal(m->boundary_chains, 0);
+	/* one island, since the UVs continue; its mirrored half lies point by point on the other */
+	assert_int_equal(m->island_count, 1);
+	assert_true(m->islands[0].twin);
+	hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_MIXED_WINDING_ISLAND), 0);
+	assert_int_equal(hand_finding(report, NT_CODE_TAN_MIRROR_SHARED_VERTEX)->count, 2);
+	assert_int_equal(hand_finding(report, NT_CODE_UV_MIRROR_SEAM)->count, 1);
+	hand_free(h, report);
+}
+
+static void seam_between_split_vertices_counts_too(void **state)
+{
+	(void)state;
+	hand_mesh *h = mirrored_pair(true);
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(report->meshes[0].seam_count, 1);
+	assert_int_equal(report->meshes[0].seams[0].shared_count, 0);
+	assert_int_equal(report->meshes[0].seams[0].edges[0].vertices[1][0], 4);
+	assert_int_equal(hand_findings(report, NT_CODE_TAN_MIRROR_SHARED_VERTEX), 0);
+	hand_free(h, report);
+}
+
+/*
+ * A cube of 2 x 2 x 2, cut by x = 0 into two halves that share their texture: the front, back, top and bottom
+ * are two quads each, left and right one each: 10 quads. u = |x| / 2 on the four cut faces, u = a second
+ * coordinate on the ends; the half x < 0 is wound the other way.
+ */
+static void cut_face(hand_mesh *h, float y0, float z0, float y1, float z1)
+{
+	for (int side = -1; side <= 1; side += 2) {
+		const float x = (float)side;
+		const uint32_t a = hand_vertex(h, 0, y0, z0, 0, 0), b = hand_vertex(h, x, y0, z0, 0.5f, 0);
+		const uint32_t c = hand_vertex(h, x, y1, z1, 0.5f, 1), d = hand_vertex(h, 0, y1, z1, 0, 1);
+		if (side > 0)
+			hand_quad(h, a, b, c, d);
+		else
+			hand_quad(h, d, c, b, a);
+	}
+}
+
+static hand_mesh *mirrored_cube(void)
+{
+	hand_mesh *h = hand_new();
+	cut_face(h, -1, 1, 1, 1);   /* front */
+	cut_face(h, 1, 1, 1, -1);   /* top */
+	cut_face(h, 1, -1, -1, -1); /* back */
+	cut_face(h, -1, -1, -1, 1); /* bottom */
+	for (int side = -1; side <= 1; side += 2) {
+		const float x = (float)side;
+		const uint32_t a = hand_vertex(h, x, -1, 1, 0.5f, 0), b = hand_vertex(h, x, -1, -1, 1, 0);
+		const uint32_t c = hand_vertex(h, x, 1, -1, 1, 1), d = hand_vertex(h, x, 1, 1, 0.5f, 1);
+		if (side > 0)
+			hand_quad(h, a, b, c, d);
+		else
+			hand_quad(h, d, c, b, a);
+	}
+	return h;
+}
+
+static void mirrored_cube_has_one_closed_seam_around_x_0(void **state)
+{
+	(void)state;
+	hand_mesh *h = mirrored_cube();
+	nt_report *report = hand_report(h, NULL);
+	const nt_report_mesh *m = &report->meshes[0];
+	assert_int_equal(m->triangle_count, 20);
+	assert_int_equal(m->triangles[0], 10);
+	assert_int_equal(m->triangles[2], 10);
+	assert_int_equal(m->seam_count, 1);
+	assert_true(m->seams[0].closed);
+	assert_int_equal(m->seams[0].edge_count, 4);
+	assert_true(m->seams[0].length == 8.0);
+	assert_string_equal(m->seams[0].plane_text, "x = 0");
+	/* walked in order: each edge begins where the one before ends */
+	for (size_t i = 0; i < 4; i++)
+		assert_memory_equal(m->seams[0].edges[i].positions[1],
+			m->seams[0].edges[(i + 1) % 4].positions[0], 3 * sizeof(float));
+	/* closed surface: 3 * 20 / 2 edges, none open */
+	assert_int_equal(m->edge_count, 30);
+	assert_int_equal(m->boundary_edges, 0);
+	assert_int_equal(m->non_manifold_edges, 0);
+	/* the four cut faces are one island each, halves joined by the middle line; the front's and the
+	 * bottom's v = 0 and the like do not meet: 4 islands and the 2 ends, whose left edges u = 0.5
+	 * continue the front (0.5, 0)-(0.5, 1) */
+	assert_int_equal(m->island_kinds[NT_ISLAND_MIXED], 4);
+	assert_int_equal(m->island_count, 4);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_MIXED_WINDING_ISLAND), 0);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_OVERLAP), 4);
+	hand_free(h, report);
+}
+
+/* A sheet of 2n x m quads over x in [-n, n], u = |x|: symmetric like a head, centre vertices shared. */
+static void symmetric_sheet_has_a_seam_along_its_middle(void **state)
+{
+	(void)state;
+	enum { N = 3, M = 5 };
+	hand_mesh *h = hand_new();
+	for (int y = 0; y <= M; y++)
+		for (int x = -N; x <= N; x++)
+			hand_vertex(h, (float)x, (float)y, (float)(x * x), (float)abs(x) / N, (float)y / M);
+	for (uint32_t y = 0; y < M; y++) {
+		for (uint32_t x = 0; x < 2 * N; x++) {
+			const uint32_t a = y * (2 * N + 1) + x;
+			hand_quad(h, a, a + 1, a + 2 * N + 2, a + 2 * N + 1);
+		}
+	}
+	nt_report *report = hand_report(h, NULL);
+	const nt_report_mesh *m = &report->meshes[0];
+	assert_int_equal(m->triangles[0], 2 * N * M);
+	assert_int_equal(m->triangles[2], 2 * N * M);
+	assert_int_equal(m->seam_count, 1);
+	assert_int_equal(m->seams[0].edge_count, M);
+	assert_int_equal(m->seams[0].shared_count, M);
+	assert_false(m->seams[0].closed);
+	assert_true(m->seams[0].length == M);
+	assert_string_equal(m->seams[0].plane_text, "x = 0");
+	assert_int_equal(m->island_count, 1);
+	assert_int_equal(hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP)->count, 2 * N * M);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_MIXED_WINDING_ISLAND), 0);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_LONE), 0);
+	assert_int_equal(hand_finding(report, NT_CODE_TAN_MIRROR_SHARED_VERTEX)->count, M + 1);
+	hand_free(h, report);
+}
+
+/* A strip of n quads, closed with a half turn: vertex (i, side) for i < n, and the last quad joins
+ * (n - 1, s) to (0, 1 - s). */
+static void moebius_strip_has_one_edge_against_the_winding(void **state)
+{
+	(void)state;
+	enum { N = 12 };
+	hand_mesh *h = hand_new();
+	for (uint32_t i = 0; i <= N; i++) {
+		for (uint32_t s = 0; s < 2; s++) {
+			const uint32_t k = i % N, t = i == N ? 1 - s : s; /* position of (N, s) is that of (0, 1 - s) */
+			const double a = 6.283185307179586 * k / N, r = 2.0 + (t ? 0.5 : -0.5) * cos(a / 2);
+			hand_vertex(h, (float)(r * cos(a)), (float)(r * sin(a)),
+				(float)((t ? 0.5 : -0.5) * sin(a / 2)), (float)i / N, (float)s);
+		}
+	}
+	for (uint32_t i = 0; i < N; i++)
+		hand_quad(h, 2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1);
+	nt_report *report = hand_report(h, NULL);
+	const nt_report_mesh *m = &report->meshes[0];
+	assert_int_equal(m->triangle_count, 2 * N);
+	/* N diagonals, N rungs, 2 N rim edges, and the rim is one loop */
+	assert_int_equal(m->edge_count, 4 * N);
+	assert_int_equal(m->boundary_edges, 2 * N);
+	assert_int_equal(m->boundary_loops, 1);
+	assert_int_equal(m->boundary_chains, 0);
+	assert_int_equal(m->non_manifold_edges, 0);
+	/* the rung where it closes: both triangles run along it the same way */
+	assert_int_equal(hand_finding(report, NT_CODE_MESH_INCONSISTENT_WINDING)->count, 1);
+	assert_int_equal(m->seam_count, 0);
+	assert_int_equal(m->uv_seam_edges, 1);
+	assert_int_equal(m->island_count, 1);
+	hand_free(h, report);
+}
+
+/* Three quads in a row, u = 0, 1, 0.4, 1.4: the middle one runs back over the first, but not onto its
+ * corners. */
+static void fold_is_found_inside_its_island(void **state)
+{
+	(void)state;
+	static const float u[4] = {0.0f, 1.0f, 0.4f, 1.4f};
+	hand_mesh *h = hand_new();
+	for (int i = 0; i < 4; i++) {
+		hand_vertex(h, (float)i, 0, 0, u[i], 0);
+		hand_vertex(h, (float)i, 1, 0, u[i], 1);
+	}
+	for (uint32_t i = 0; i < 3; i++)
+		hand_quad(h, 2 * i, 2 * i + 2, 2 * i + 3, 2 * i + 1);
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(hand_finding(report, NT_CODE_UV_MIXED_WINDING_ISLAND)->count, 6);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_OVERLAP), 0);
+	assert_int_equal(report->meshes[0].triangles[0], 2);
+	assert_int_equal(report->meshes[0].seam_count, 2);
+	hand_free(h, report);
+}
+
+static void add_quad(hand_mesh *h, float x, float u, bool mirrored)
+{
+	const uint32_t a = hand_vertex(h, x, 0, 0, mirrored ? u + 1 : u, 0);
+	const uint32_t b = hand_vertex(h, x + 1, 0, 0, mirrored ? u : u + 1, 0);
+	const uint32_t c = hand_vertex(h, x + 1, 1, 0, mirrored ? u : u + 1, 1);
+	const uint32_t d = hand_vertex(h, x, 1, 0, mirrored ? u + 1 : u, 1);
+	hand_quad(h, a, b, c, d);
+}
+
+static void stacked_islands_are_told_from_lone_ones(void **state)
+{
+	(void)state;
+	hand_mesh *h = hand_new();
+	add_quad(h, 0, 0, false);
+	add_quad(h, 10, 0, true); /* on the first: another diagonal, but the same area */
+	add_quad(h, 20, 5, true); /* by itself */
+	add_quad(h, 30, 0, false); /* a copy, not mirrored */
+	nt_report *report = hand_report(h, NULL);
+	const nt_report_mesh *m = &report->meshes[0];
+	assert_int_equal(m->island_count, 4);
+	assert_int_equal(m->island_kinds[NT_ISLAND_NORMAL], 2);
+	assert_int_equal(m->island_kinds[NT_ISLAND_MIRRORED], 2);
+	assert_int_equal(m->seam_count, 0);
+	const nt_issue *overlap = hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP);
+	assert_int_equal(overlap->island, 1);
+	assert_int_equal(overlap->count, 2);
+	const nt_issue *lone = hand_finding(report, NT_CODE_UV_MIRROR_LONE);
+	assert_int_equal(lone->island, 2);
+	assert_int_equal(lone->severity, NT_SEVERITY_WARNING);
+	hand_free(h, report);
+}
+
+static void bowtie_of_two_triangles_meets_in_a_point_only(void **state)
+{
+	(void)state;
+	hand_mesh *h = hand_new();
+	const uint32_t m = hand_vertex(h, 0, 0, 0, 0.5f, 0.5f);
+	const uint32_t a = hand_vertex(h, 1, -1, 0, 1, 0), b = hand_vertex(h, 1, 1, 0, 1, 1);
+	const uint32_t c = hand_vertex(h, -1, 1, 0, 0, 1), d = hand_vertex(h, -1, -1, 0, 0, 0);
+	hand_triangle(h, m, a, b);
+	hand_triangle(h, m, c, d);
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(report->meshes[0].island_count, 2);
+	assert_int_equal(report->meshes[0].boundary_edges, 6);
+	assert_int_equal(report->meshes[0].boundary_loops, 2);
+	assert_int_equal(report->meshes[0].non_manifold_edges, 0);
+	assert_int_equal(report->issue_count, 0);
+	hand_free(h, report);
+}
+
+/* Three triangles on one edge, one of them mirrored: the edge is a seam and is not manifold. */
+static void edge_of_three_triangles_is_reported_and_still_a_seam(void **state)
+{
+	(void)state;
+	hand_mesh *h = hand_new();
+	const uint32_t a = hand_vertex(h, 0, 0, 0, 0, 0), b = hand_vertex(h, 0, 1, 0, 0, 1);
+	const uint32_t c = hand_vertex(h, -1, 0, 0, -1, 0), d = hand_vertex(h, 1, 0, 0, 1, 0);
+	const uint32_t e = hand_vertex(h, 0, 0, 1, -1, 0);
+	hand_triangle(h, c, a, b);
+	hand_triangle(h, b, a, d);
+	hand_triangle(h, b, a, e);
+	nt_report *report = hand_report(h, NULL);
+	const nt_report_mesh *m = &report->meshes[0];
+	assert_int_equal(hand_finding(report, NT_CODE_MESH_NON_MANIFOLD_EDGE)->count, 1);
+	assert_int_equal(m->edge_count, 7);
+	assert_int_equal(m->boundary_edges, 6);
+	assert_int_equal(m->seam_count, 1);
+	assert_int_equal(m->seams[0].edge_count, 1);
+	assert_int_equal(m->seams[0].non_manifold_count, 1);
+	hand_free(h, report);
+}
+
+static uint64_t seam_fingerprint(const hand_mesh *h)
+{
+	nt_report *report = hand_report(h, NULL);
+	const uint64_t fingerprint = hand_finding(report, NT_CODE_UV_MIRROR_SEAM)->fingerprint;
+	nt_report_free(report);
+	return fingerprint;
+}
+
+static void fingerprint_survives_other_indices_but_not_another_place(void **state)
+{
+	(void)state;
+	hand_mesh *h = mirrored_cube();
+	const uint64_t before = seam_fingerprint(h);
+	/* the last triangle becomes the first, corners rotate */
+	uint32_t last[3];
+	memcpy(last, h->indices + 57, sizeof last);
+	memmove(h->indices + 3, h->indices, 57 * sizeof *last);
+	h->indices[0] = last[1];
+	h->indices[1] = last[2];
+	h->indices[2] = last[0];
+	assert_true(seam_fingerprint(h) == before);
+	h->mesh.name = "another";
+	assert_false(seam_fingerprint(h) == before);
+	hand_free(h, NULL);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(mirrored_pair_has_one_open_seam_of_one_edge),
+		cmocka_unit_test(seam_between_split_vertices_counts_too),
+		cmocka_unit_test(mirrored_cube_has_one_closed_seam_around_x_0),
+		cmocka_unit_test(symmetric_sheet_has_a_seam_along_its_middle),
+		cmocka_unit_test(moebius_strip_has_one_edge_against_the_winding),
+		cmocka_unit_test(fold_is_found_inside_its_island),
+		cmocka_unit_test(stacked_islands_are_told_from_lone_ones),
+		cmocka_unit_test(bowtie_of_two_triangles_meets_in_a_point_only),
+		cmocka_unit_test(edge_of_three_triangles_is_reported_and_still_a_seam),
+		cmocka_unit_test(fingerprint_survives_other_indices_but_not_another_place),
+	};
+	return cmocka_run_group_tests_name("report/seams", tests, NULL, NULL);
+}
