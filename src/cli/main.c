@@ -15,11 +15,15 @@
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/progress.h"
+#include "cli/report_options.h"
 #include "report/codes.h"
 
 /* What the jobs' ends add up to. */
 typedef struct session {
 	const nt_command *command;
+	const nt_report_plan *plan;
+	nt_report **reports; /* [of the batch] taken from the jobs */
+	size_t report_count;
 	nt_style style;
 	nt_progress *progress;
 	nt_summary total; /* of the times and sizes alone */
@@ -60,13 +64,19 @@ static void version_text(nt_buffer *out)
 	nt_buffer_format(out, "nmtan %s\n", nmtan_version());
 }
 
-/* Whether findings reach the severity at which the run fails. */
-static bool findings_fail(const nt_finding_list *findings, int fail_on)
+/* Whether findings reach the severity at which the run fails: those of the report, which knows what is
+ * ignored or old, else what the stages noticed. */
+static bool findings_fail(const nt_summary *summary, int fail_on)
 {
 	static const nt_severity least[] = {[NT_FAIL_ON_ERROR] = NT_SEVERITY_ERROR,
 		[NT_FAIL_ON_WARNING] = NT_SEVERITY_WARNING, [NT_FAIL_ON_INFO] = NT_SEVERITY_INFO};
-	for (size_t i = 0; fail_on != NT_FAIL_ON_NEVER && i < findings->count; i++)
-		if (nt_code_info(findings->items[i].code)->severity >= least[fail_on])
+	if (fail_on == NT_FAIL_ON_NEVER)
+		return false;
+	nt_severity worst;
+	if (summary->report)
+		return nt_report_worst(summary->report, &worst) && worst >= least[fail_on];
+	for (size_t i = 0; i < summary->findings.count; i++)
+		if (nt_code_info(summary->findings.items[i].code)->severity >= least[fail_on])
 			return true;
 	return false;
 }
@@ -81,13 +91,15 @@ static void add_times(nt_summary *total, const nt_summary *one)
 }
 
 /* Called once per job, in order: says what became of it. */
-static void tell_job(void *user, const nt_job *job)
+static void tell_job(void *user, nt_job *job)
 {
 	session *s = user;
 	const nt_command *c = s->command;
 	nt_buffer text = {0};
 	int code = nt_exit_code(job->status);
-	if (s->style.verbosity >= 0)
+	/* a report on standard output says it better */
+	const char *report = s->plan->target.path;
+	if (s->style.verbosity >= 0 && !(report && strcmp(report, "-") == 0))
 		nt_message_findings(&text, &job->summary.findings, job->input,
 			c->settings.check || s->style.verbosity > 0, s->style);
 	if (job->status) {
@@ -98,7 +110,7 @@ static void tell_job(void *user, const nt_job *job)
 	} else {
 		if (s->style.verbosity >= 0)
 			nt_message_success(&text, job, &c->settings);
-		if (findings_fail(&job->summary.findings, c->fail_on))
+		if (findings_fail(&job->summary, c->fail_on))
 			code = NT_EXIT_FINDINGS;
 	}
 	s->exit_code = nt_exit_worse(s->exit_code, code);
@@ -109,6 +121,23 @@ static void tell_job(void *user, const nt_job *job)
 		fwrite(text.data, 1, text.size, stderr);
 	nt_progress_show(s->progress);
 	nt_buffer_free(&text);
+	s->reports[s->report_count++] = job->summary.report;
+	job->summary.report = NULL;
+}
+
+/* Writes the report of all inputs where it was asked for, and frees it. */
+static void tell_report(session *s)
+{
+	nt_error error;
+	if (s->plan->target.path &&
+		nt_report_to_file(s->reports, s->report_count, &s->plan->target, &error)) {
+		nt_error_in_file(&error, s->plan->target.path);
+		print_error(&error, s->style, false);
+		s->exit_code = nt_exit_worse(s->exit_code, nt_exit_code(error.status));
+	}
+	for (size_t i = 0; i < s->report_count; i++)
+		nt_report_free(s->reports[i]);
+	free(s->reports);
 }
 
 /* After the last of many: how many failed, by name; and the times. */
@@ -156,29 +185,48 @@ static nmtan_status prepare(nt_batch *batch, const nt_command *c, nt_error *erro
 	return nt_batch_pair(batch, input, output, error);
 }
 
-static int run(const nt_command *command, nt_style style)
+static int run_batch(const nt_command *command, nt_style style, const nt_report_plan *plan,
+	nt_batch *batch)
 {
-	nt_batch batch = {0};
+	session s = {.command = command, .plan = plan, .style = style,
+		.reports = calloc(batch->count, sizeof(nt_report *))};
 	nt_error error;
-	const nmtan_status status = prepare(&batch, command, &error);
-	if (status) {
-		print_error(&error, style, status == NMTAN_ERROR_USAGE);
-		nt_batch_free(&batch);
-		return nt_exit_code(status);
+	if (!s.reports) {
+		nt_fail_memory(&error);
+		print_error(&error, style, false);
+		return nt_exit_code(error.status);
 	}
-	session s = {.command = command, .style = style};
 	nt_settings settings = command->settings;
+	settings.report = plan->wanted ? &plan->options : NULL;
 	s.progress = nt_progress_start(style.verbosity < 0 ? NT_PROGRESS_OFF : command->progress,
-		batch.jobs[0].input, batch.count);
-	if (s.progress && batch.count == 1) {
+		batch->jobs[0].input, batch->count);
+	if (s.progress && batch->count == 1) {
 		settings.on_stage = nt_progress_stage;
 		settings.on_stage_user = s.progress;
 	}
-	nt_batch_run(&batch, &settings, nt_run, tell_job, &s);
+	nt_batch_run(batch, &settings, nt_run, tell_job, &s);
 	nt_progress_stop(s.progress);
-	tell_end(&s, batch.count);
-	nt_batch_free(&batch);
+	tell_report(&s);
+	tell_end(&s, batch->count);
 	return s.exit_code;
+}
+
+static int run(const nt_command *command, nt_style style, bool colour_on_stdout)
+{
+	nt_batch batch = {0};
+	nt_report_plan plan;
+	nt_error error;
+	nmtan_status status = nt_report_plan_make(&plan, command, colour_on_stdout, &error);
+	if (!status)
+		status = prepare(&batch, command, &error);
+	int code = nt_exit_code(status);
+	if (status)
+		print_error(&error, style, status == NMTAN_ERROR_USAGE);
+	else
+		code = run_batch(command, style, &plan, &batch);
+	nt_batch_free(&batch);
+	nt_report_plan_free(&plan);
+	return code;
 }
 
 int main(int argc, char **argv)
@@ -192,7 +240,8 @@ int main(int argc, char **argv)
 	nt_command command;
 	nt_error error;
 	const char *no_color = getenv("NO_COLOR");
-	nt_style style = {.colour = isatty(STDERR_FILENO) && !(no_color && *no_color)};
+	const bool may_colour = !(no_color && *no_color);
+	nt_style style = {.colour = may_colour && isatty(STDERR_FILENO)};
 	if (nt_options_parse(argc, argv, &command, &error)) {
 		print_error(&error, style, true);
 		return NT_EXIT_USAGE;
@@ -203,11 +252,13 @@ int main(int argc, char **argv)
 		return print_text(nt_options_help, style);
 	case NT_ACTION_VERSION:
 		return print_text(version_text, style);
+	case NT_ACTION_LIST_CODES:
+		return print_text(nt_codes_list, style);
 	case NT_ACTION_COMPLETION_BASH:
 		return print_text(nt_options_bash, style);
 	case NT_ACTION_COMPLETION_ZSH:
 		return print_text(nt_options_zsh, style);
 	default:
-		return run(&command, style);
+		return run(&command, style, may_colour && isatty(STDOUT_FILENO));
 	}
 }

@@ -141,12 +141,14 @@ static void append_skipped(nt_buffer *out, const nt_summary *s)
 	}
 }
 
-static void append_findings_count(nt_buffer *out, const nt_finding_list *findings)
+static void append_findings_count(nt_buffer *out, const nt_summary *s)
 {
 	size_t counts[3] = {0};
-	for (size_t i = 0; i < findings->count; i++)
-		counts[nt_code_info(findings->items[i].code)->severity]++;
-	if (!findings->count) {
+	for (size_t i = 0; !s->report && i < s->findings.count; i++)
+		counts[nt_code_info(s->findings.items[i].code)->severity]++;
+	if (s->report)
+		memcpy(counts, s->report->by_severity, sizeof counts);
+	if (!counts[0] && !counts[1] && !counts[2]) {
 		nt_buffer_text(out, ", no findings");
 		return;
 	}
@@ -187,7 +189,7 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		nt_buffer_format(out, ", repaired %zu of the tangents", repaired);
 	append_skipped(out, s);
 	if (settings->check)
-		append_findings_count(out, &s->findings);
+		append_findings_count(out, s);
 	nt_buffer_format(out, ", %.3g s\n", s->total_seconds);
 }
 
@@ -202,6 +204,7 @@ const char *nt_stage_name(nt_stage stage)
 		[NT_STAGE_SPLIT] = "split",
 		[NT_STAGE_WRITE] = "write",
 		[NT_STAGE_VERIFY] = "verify",
+		[NT_STAGE_REPORT] = "report",
 	};
 	return names[stage];
 }

@@ -15,6 +15,7 @@ enum nt_action {
 	NT_ACTION_RUN,
 	NT_ACTION_HELP,
 	NT_ACTION_VERSION,
+	NT_ACTION_LIST_CODES,
 	NT_ACTION_COMPLETION_BASH,
 	NT_ACTION_COMPLETION_ZSH
 };
@@ -32,6 +33,12 @@ typedef struct nt_command {
 	int fail_on;           /* enum nt_fail_on; without --check only an explicit one counts */
 	int progress;          /* enum nt_progress_mode */
 	bool timing;
+	const char *report;    /* file, "-"; NULL: none */
+	int report_format;     /* 1 + nt_report_format; 0: by name */
+	const char *ignore;    /* CODE,CODE; NULL: nothing */
+	const char *severity;  /* CODE=LEVEL,CODE=LEVEL; NULL: none */
+	const char *baseline;  /* file; NULL: none */
+	int max_issues;        /* 0: all */
 	const char *directory; /* -d; NULL: none */
 	const char **operands; /* in argv, which is reordered for it */
 	size_t operand_count;

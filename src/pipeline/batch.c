@@ -188,7 +188,7 @@ nmtan_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t co
 typedef struct progress {
 	nt_batch *batch;
 	size_t told; /* jobs before this one have been told about */
-	void (*done)(void *user, const nt_job *job);
+	void (*done)(void *user, nt_job *job);
 	void *user;
 } progress;
 
@@ -210,7 +210,7 @@ static void tell(progress *p, nt_job *ended)
 }
 
 void nt_batch_run(nt_batch *batch, const nt_settings *settings, nt_runner run,
-	void (*done)(void *user, const nt_job *job), void *user)
+	void (*done)(void *user, nt_job *job), void *user)
 {
 	progress p = {batch, 0, done, user};
 	if (batch->count == 1) {

@@ -50,9 +50,9 @@ typedef nmtan_status (*nt_runner)(const char *input, const char *output, const n
 	nt_summary *summary, nt_error *error);
 
 /* Runs all jobs. `done` is called once per job, in the order of the inputs, by one thread at a time, as
- * soon as the job and all before it have ended. */
+ * soon as the job and all before it have ended. It may take the summary's report, leaving NULL. */
 void nt_batch_run(nt_batch *batch, const nt_settings *settings, nt_runner run,
-	void (*done)(void *user, const nt_job *job), void *user);
+	void (*done)(void *user, nt_job *job), void *user);
 
 void nt_batch_free(nt_batch *batch);
 

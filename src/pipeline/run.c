@@ -117,15 +117,31 @@ static bool needs_all(const run *r)
 	return !(gltf_in && gltf_out) && r->reader->format != r->writer->format;
 }
 
+/* For the report alone: a mesh that cannot be read fails a check, but no conversion that does not need
+ * it. */
+static nmtan_status load_for_report(run *r, nt_mesh *mesh)
+{
+	const nmtan_status status = r->reader->load(&r->scene, mesh, &r->read_options, r->error);
+	if (!status || r->settings->check || status == NMTAN_ERROR_MEMORY)
+		return status;
+	mesh->positions = NULL;
+	nt_error_clear(r->error);
+	return NMTAN_OK;
+}
+
 static nmtan_status load_meshes(run *r)
 {
 	begin_stage(r, NT_STAGE_DECODE);
 	const bool all = needs_all(r);
 	for (size_t i = 0; r->reader->load && i < r->scene.mesh_count; i++) {
 		nt_mesh *mesh = &r->scene.meshes[i];
-		if (!is_wanted(mesh) && !(all && mesh->triangles && mesh->has_positions))
+		const bool loadable = mesh->triangles && mesh->has_positions;
+		const bool needed = is_wanted(mesh) || (all && loadable);
+		if (!needed && !(r->settings->report && loadable))
 			continue;
-		const nmtan_status status = r->reader->load(&r->scene, mesh, &r->read_options, r->error);
+		const nmtan_status status = needed
+			? r->reader->load(&r->scene, mesh, &r->read_options, r->error)
+			: load_for_report(r, mesh);
 		if (status)
 			return status;
 	}
@@ -228,6 +244,22 @@ static nmtan_status run_stages(run *r)
 	return status;
 }
 
+/* The report of the scene as it now is, or of what went wrong. */
+static nmtan_status make_report(run *r, nmtan_status status)
+{
+	if (!r->settings->report)
+		return status;
+	begin_stage(r, NT_STAGE_REPORT);
+	if (status) {
+		r->summary->report = nt_report_of_error(r->input_path, r->error);
+		return status;
+	}
+	nt_report_options options = *r->settings->report;
+	options.converted = r->writer != NULL;
+	options.threads = r->settings->threads;
+	return nt_report_build(&r->scene, &options, &r->summary->report, r->error);
+}
+
 nmtan_status nt_run(const char *input, const char *output, const nt_settings *settings,
 	nt_summary *summary, nt_error *error)
 {
@@ -242,6 +274,7 @@ nmtan_status nt_run(const char *input, const char *output, const nt_settings *se
 	nt_scene_init(&r.scene, input);
 
 	nmtan_status status = run_stages(&r);
+	status = make_report(&r, status);
 
 	/* what was found belongs to the caller, also after a failure */
 	end_stage(&r);
@@ -258,4 +291,6 @@ nmtan_status nt_run(const char *input, const char *output, const nt_settings *se
 void nt_summary_free(nt_summary *summary)
 {
 	nt_finding_list_free(&summary->findings);
+	nt_report_free(summary->report);
+	summary->report = NULL;
 }

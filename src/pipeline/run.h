@@ -7,6 +7,7 @@
 #define NT_PIPELINE_RUN_H
 
 #include "io/format.h"
+#include "report/report.h"
 #include "scene/select.h"
 
 typedef enum nt_normals { NT_NORMALS_AUTO, NT_NORMALS_FLAT, NT_NORMALS_SMOOTH } nt_normals;
@@ -21,6 +22,7 @@ typedef enum nt_stage {
 	NT_STAGE_SPLIT,
 	NT_STAGE_WRITE,
 	NT_STAGE_VERIFY,
+	NT_STAGE_REPORT,
 	NT_STAGE_COUNT
 } nt_stage;
 
@@ -46,6 +48,9 @@ typedef struct nt_settings {
 	bool in_place;
 	bool allow_outside;
 
+	/* What a report is to hold; NULL: none is made. `converted` is set by the run. */
+	const nt_report_options *report;
+
 	/* Called when a stage begins, from the thread that called nt_run; NULL: nobody looks. */
 	void (*on_stage)(void *user, nt_stage stage);
 	void *on_stage_user;
@@ -65,6 +70,7 @@ typedef struct nt_summary {
 	uint64_t bytes_read, bytes_written;
 	double seconds[NT_STAGE_COUNT];
 	double total_seconds;
+	nt_report *report; /* NULL unless asked for; of a failed run it says why */
 	bool copied; /* nothing was to be done and the output is a copy of the input */
 } nt_summary;
 

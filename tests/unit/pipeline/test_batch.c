@@ -142,7 +142,7 @@ typedef struct log {
 	size_t meshes, failures;
 } log;
 
-static void note(void *user, const nt_job *job)
+static void note(void *user, nt_job *job)
 {
 	log *l = user;
 	strcat(l->names, job->input);

@@ -1,0 +1,123 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Words to report options: see report_options.h.
+ */
+#include "cli/report_options.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Takes the next word of a list separated by commas; false at its end. */
+static bool next_word(const char **list, char *word, size_t size)
+{
+	if (!*list || !**list)
+		return false;
+	const size_t length = strcspn(*list, ",");
+	snprintf(word, size, "%.*s", (int)(length < size ? length : size - 1), *list);
+	*list += length;
+	*list += **list == ',';
+	return true;
+}
+
+static nmtan_status unknown_code(const char *option, const char *word, nt_error *error)
+{
+	return nt_fail(error, NMTAN_ERROR_USAGE,
+		"--%s: '%s' is no code of a finding; --list-codes shows them all", option, word);
+}
+
+static nmtan_status read_ignored(nt_report_options *options, const char *list, nt_error *error)
+{
+	char word[128];
+	while (next_word(&list, word, sizeof word)) {
+		nt_code code;
+		if (!nt_code_find(word, &code))
+			return unknown_code("ignore", word, error);
+		options->ignore[code] = true;
+	}
+	return NMTAN_OK;
+}
+
+static nmtan_status read_severities(nt_report_options *options, const char *list, nt_error *error)
+{
+	char word[128];
+	while (next_word(&list, word, sizeof word)) {
+		char *level = strchr(word, '=');
+		nt_code code;
+		nt_severity severity;
+		if (!level)
+			return nt_fail(error, NMTAN_ERROR_USAGE, "--severity: '%s' is not CODE=LEVEL", word);
+		*level++ = '\0';
+		if (!nt_code_find(word, &code))
+			return unknown_code("severity", word, error);
+		if (!nt_severity_find(level, &severity))
+			return nt_fail(error, NMTAN_ERROR_USAGE,
+				"--severity: '%s' is none of: error warning info", level);
+		options->severity[code] = (uint8_t)(1 + severity);
+	}
+	return NMTAN_OK;
+}
+
+static nmtan_status choose_target(nt_report_plan *plan, const nt_command *c, bool colour,
+	nt_error *error)
+{
+	nt_report_target *target = &plan->target;
+	target->no_clobber = c->settings.no_clobber;
+	target->inputs = c->operands;
+	target->input_count = c->settings.check || c->directory ? c->operand_count : 1;
+	target->path = c->report;
+	if (!target->path && c->settings.check && c->verbosity >= 0)
+		target->path = "-";
+	if (!target->path)
+		return NMTAN_OK;
+	const bool dash = strcmp(target->path, "-") == 0;
+	if (c->report_format)
+		target->format = (nt_report_format)(c->report_format - 1);
+	else if (dash || !c->report)
+		target->format = NT_REPORT_TEXT;
+	else if (!nt_report_format_of_path(target->path, &target->format))
+		return nt_fail(error, NMTAN_ERROR_USAGE,
+			"cannot tell the report's format from the name '%s': use --report-format",
+			target->path);
+	target->style.colour = dash && colour;
+	return NMTAN_OK;
+}
+
+/* Standard output holds one thing only. */
+static nmtan_status check_outputs(const nt_command *c, nt_error *error)
+{
+	const bool mesh_on_stdout = !c->settings.check && !c->directory && c->operand_count == 2 &&
+		strcmp(c->operands[1], "-") == 0;
+	if (mesh_on_stdout && c->report && strcmp(c->report, "-") == 0)
+		return nt_fail(error, NMTAN_ERROR_USAGE,
+			"the mesh and the report cannot both go to standard output");
+	if (!c->report && !c->settings.check && (c->report_format || c->baseline || c->max_issues))
+		return nt_fail(error, NMTAN_ERROR_USAGE, "--%s needs --report or --check",
+			c->report_format ? "report-format" : c->baseline ? "baseline" : "max-issues");
+	return NMTAN_OK;
+}
+
+nmtan_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, bool colour,
+	nt_error *error)
+{
+	*plan = (nt_report_plan){
+		.wanted = command->settings.check || command->report || command->ignore || command->severity};
+	plan->options.max_issues = (size_t)command->max_issues;
+	nmtan_status status = check_outputs(command, error);
+	if (!status)
+		status = read_ignored(&plan->options, command->ignore, error);
+	if (!status)
+		status = read_severities(&plan->options, command->severity, error);
+	if (!status)
+		status = choose_target(plan, command, colour, error);
+	if (!status && command->baseline) {
+		status = nt_baseline_open(&plan->baseline, command->baseline, error);
+		plan->options.baseline = &plan->baseline;
+	}
+	plan->options.keep_geometry = plan->target.path && plan->target.format == NT_REPORT_HTML;
+	return status;
+}
+
+void nt_report_plan_free(nt_report_plan *plan)
+{
+	nt_baseline_free(&plan->baseline);
+}

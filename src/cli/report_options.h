@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What --report and its companions mean: words to the options of a report, and where it goes.
+ */
+#ifndef NT_CLI_REPORT_OPTIONS_H
+#define NT_CLI_REPORT_OPTIONS_H
+
+#include "cli/options.h"
+#include "pipeline/report_file.h"
+
+/* The report of a command. */
+typedef struct nt_report_plan {
+	bool wanted;
+	nt_report_options options;
+	nt_baseline baseline;
+	nt_report_target target; /* its path is NULL where nothing is written */
+} nt_report_plan;
+
+/* Reads --ignore, --severity, --max-issues, --baseline, --report and --report-format. With --check there is
+ * always a report; without --report its text goes to standard output. Returns NMTAN_OK,
+ * NMTAN_ERROR_USAGE, or what reading the baseline returned. The plan is to be freed either way. */
+nmtan_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, bool colour,
+	nt_error *error);
+void nt_report_plan_free(nt_report_plan *plan);
+
+#endif

@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Reports to files, and the baseline from one.
+ */
+#ifndef NT_PIPELINE_REPORT_FILE_H
+#define NT_PIPELINE_REPORT_FILE_H
+
+#include "report/write.h"
+
+/* Where a report goes. */
+typedef struct nt_report_target {
+	const char *path;        /* "-" is standard output */
+	nt_report_format format;
+	nt_report_style style;
+	bool no_clobber;
+	const char *const *inputs; /* [input_count] files that must not be replaced */
+	size_t input_count;
+} nt_report_target;
+
+/* Writes one document about all reports: whole or not at all. NULLs among the reports are passed over. Returns
+ * NMTAN_OK, NMTAN_ERROR_IO or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_report_to_file(nt_report *const *reports, size_t count, const nt_report_target *target,
+	nt_error *error);
+
+/* Reads the fingerprints of a JSON report. The error names the file. */
+nmtan_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_error *error);
+
+#endif
