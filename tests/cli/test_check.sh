@@ -11,9 +11,8 @@ only
 scene "findings at or above --fail-on make the exit code 6"
 cp "$data/mirrored_cube.obj" .
 run --check mirrored_cube.obj
-says "warning:"
-says "[MTL_MISSING]"
-says "mirrored_cube.mtl"
+prints "warning   MTL_MISSING"
+prints "mirrored_cube.mtl"
 exits 0
 run --check --fail-on=warning mirrored_cube.obj
 exits 6

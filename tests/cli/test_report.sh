@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: MIT
+# The report: valid against its schema, equal to an independent count, honest about what is old and new.
+. "$ROOT/tests/support/cli.sh"
+schema=$ROOT/data/nmtan-report.schema.json
+report=$ROOT/tests/report
+
+validates() {
+	python3 "$report/schema.py" "$schema" "$@" >faults.txt || wrong "$(head -3 faults.txt)"
+	rm -f faults.txt
+}
+
+# The value of a Python expression over the report r.
+value() {
+	python3 -c 'import json, sys; r = json.load(open(sys.argv[1])); print(eval(sys.argv[2]))' "$@"
+}
+
+scene "reports of our own meshes are valid and the counts are those of an independent script"
+for name in mirrored_cube head quad; do
+	run --check --report=$name.json "$data/$name.obj"
+	exits 0
+	validates $name.json
+	is "$(python3 "$report/counts_of.py" $name.json)" "$(python3 "$report/count.py" "$data/$name.obj")"
+done
+
+scene "the mirrored cube has one closed seam of four edges in the plane x = 0"
+run --check --report=r.json "$data/mirrored_cube.obj"
+is "$(value r.json '[(s["closed"], s["edge_count"], s["length"], s["plane"]["text"])
+	for s in r["files"][0]["meshes"][0]["seams"]]')" "[(True, 4, 8, 'x = 0')]"
+
+scene "counts of difficult public meshes are those of the independent script"
+models=$ROOT/../shared/models/obj
+if [ -d "$models" ]; then
+	for name in tangeract crangeract spot cube cube_att; do
+		run --check --fail-on=never --report=$name.json "$models/$name.obj"
+		exits 0
+		validates $name.json
+		is "$name $(python3 "$report/counts_of.py" $name.json)" \
+			"$name $(python3 "$report/count.py" "$models/$name.obj")"
+	done
+else
+	skip_case "../shared is not here"
+fi
+
+scene "every public model gives a valid report"
+if [ -d "$ROOT/../shared/models" ]; then
+	find "$ROOT/../shared/models" -name '*.obj' -o -name '*.ply' -o -name '*.gltf' -o -name '*.glb' |
+		sort >names
+	xargs "$NMTAN" -q --check --report=all.json --allow-outside <names >/dev/null 2>&1
+	validates all.json
+	is "$(value all.json 'len(r["files"])')" "$(wc -l <names)"
+else
+	skip_case "../shared is not here"
+fi
+
+scene "the known traps are caught"
+if [ -d "$ROOT/../shared/models" ]; then
+	models=$ROOT/../shared/models
+	run --check "$models/obj/triangle_with_degenerate_tex_coords.obj"
+	prints "UV_DEGENERATE_TRIANGLE  1 triangle has no area in UV space"
+	for name in rancid_geometry obliterated; do
+		run --check "$models/obj/$name.obj"
+		prints "MESH_NON_MANIFOLD_EDGE"
+	done
+else
+	skip_case "../shared is not here"
+fi
+
+scene "the same input gives the same bytes, wherever it lies"
+run --check --report=a.json -j1 "$data/head.obj"
+cp "$data/head.obj" .
+run --check --report=b.json -j2 "$PWD/head.obj"
+cmp -s <(sed 's,"file":"[^"]*head.obj",,' a.json) <(sed 's,"file":"[^"]*head.obj",,' b.json) || wrong "they differ"
+! grep -qF "$PWD" b.json || wrong "an absolute path"
+
+scene "a degenerate face of an OBJ is named by line and numbers"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 2 0\n\n# f\nf 1/1 \\\n 2/2 3/3\n' >d.obj
+run --check --report=r.json d.obj
+is "$(value r.json '[(s["line"], s["source"]) for f in r["files"][0]["findings"]
+	for s in f["spots"] if f["code"] == "UV_DEGENERATE_TRIANGLE"]')" "[(9, '1/1 2/2 3/3')]"
+
+scene "exit codes follow the report, what is ignored and what is reweighed"
+cp "$data/head.obj" .
+run --check --fail-on=warning head.obj
+exits 6
+prints "TAN_MIRROR_SHARED_VERTEX"
+run --check --fail-on=warning --ignore=TAN_MIRROR_SHARED_VERTEX head.obj
+exits 0
+run --check --severity=UV_MIRROR_SEAM=error head.obj
+exits 6
+run --check --severity=TAN_MIRROR_SHARED_VERTEX=info,UV_MIRROR_SEAM=info --fail-on=warning head.obj
+exits 0
+run --check --ignore=UV_MIRROR head.obj
+exits 1
+says "'UV_MIRROR' is no code"
+run --check --severity=UV_MIRROR_SEAM=bad head.obj
+exits 1
+run --check --report=r.xyz head.obj
+exits 1
+
+scene "a baseline leaves only what is new"
+cp "$data/head.obj" .
+run --check --report=old.json head.obj
+run --check --fail-on=info --baseline=old.json --report=new.json head.obj
+exits 0
+is "$(value new.json '[r["totals"][k] for k in ("errors", "warnings", "infos")]')" "[0, 0, 0]"
+validates new.json
+run --check --fail-on=info --baseline=old.json "$data/mirrored_cube.obj"
+exits 6
+echo '{}' >broken.json
+run --check --baseline=broken.json head.obj
+exits 3
+says "broken.json"
+
+scene "--max-issues drops the least severe and says so"
+run --check --max-issues=1 --report=r.json "$data/head.obj"
+validates r.json
+is "$(value r.json '(r["truncated"], r["totals"]["dropped"] > 0, len(r["files"][0]["findings"]),
+	r["files"][0]["findings"][0]["severity"])')" "(True, True, 1, 'warning')"
+
+scene "converting with a report says what was split"
+run --report=r.json "$data/mirrored_cube.obj" out.glb
+exits 0
+exists out.glb
+validates r.json
+is "$(value r.json '[f["severity"] for f in r["files"][0]["findings"]
+	if f["code"] == "TAN_MIRROR_SHARED_VERTEX"]')" "['info']"
+is "$(value r.json '[f["code"] for f in r["files"][0]["findings"] if f["severity"] == "error"]')" "[]"
+
+scene "an input that cannot be read is in the report"
+echo 'f 1 2 3' >bad.obj
+run --check --report=r.json bad.obj "$data/quad.obj"
+exits 3
+validates r.json
+is "$(value r.json '[f["failure"] is not None for f in r["files"]]')" "[True, False]"
+
+scene "the report never replaces an input"
+cp "$data/quad.obj" q.obj
+run --check --report=q.obj --report-format=json q.obj
+exits 2
+same q.obj "$data/quad.obj"
+
+scene "a mesh called <script> and one with control characters stay text"
+printf 'o <script>alert(1)</script>\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 2 0\nf 1/1 2/2 3/3\n' >s.obj
+printf 'o a\033[31mb\377"\\\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 2 0\nf 4/4 5/5 6/6\n' >>s.obj
+run --check --report=r.json s.obj
+validates r.json
+is "$(value r.json 'r["files"][0]["meshes"][0]["name"]')" "<script>alert(1)</script>"
+run --check s.obj
+! grep -q "$(printf '\033')" ../out.txt || wrong "an escape sequence in the text"
+
+scene "--list-codes names every code of the schema"
+run --list-codes
+exits 0
+cut -d' ' -f1 ../out.txt | sort >listed
+python3 -c 'import json, sys; print("\n".join(sorted(json.load(open(sys.argv[1]))["$defs"]["code"]["enum"])))' \
+	"$schema" >known
+LC_ALL=C sort -c known
+diff <(LC_ALL=C sort listed) known >/dev/null || wrong "the lists differ"
+
+done_testing
