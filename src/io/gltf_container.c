@@ -24,6 +24,9 @@ typedef enum fate {
 	FATE_COMPANION /* a file beside the output */
 } fate;
 
+/* Zeros that a .glb may begin with because the source's first buffer has no data. */
+enum { EMPTY_BYTES = 1 << 24 };
+
 /* ---- the input as it is ---- */
 
 /* The document's own file, to stream from. */
@@ -96,7 +99,8 @@ static fate choose_fate(const nt_gltf_container *c, uint32_t index)
 	case NT_GLTF_HOME_FILE:
 		return plan->touched || into_glb || c->embed ? moved : FATE_LINK;
 	default:
-		return FATE_KEEP;
+		/* Buffer 0 of a .glb without a uri is the BIN chunk, so there has to be one. */
+		return into_glb && index == 0 && buffer->length <= EMPTY_BYTES ? FATE_BIN : FATE_KEEP;
 	}
 }
 
@@ -220,6 +224,16 @@ static nmtan_status write_companion(nt_gltf_container *c, uint32_t index, bool f
 			nt_layout_write(&c->patcher->layout, index, input, sink, c->error);
 }
 
+/* What will be written must be open before its uri changes. */
+static nmtan_status open_source(nt_gltf_container *c, uint32_t index, fate what)
+{
+	if (what == FATE_KEEP || what == FATE_LINK || index >= c->document->buffer_count ||
+		c->document->buffers[index].home == NT_GLTF_HOME_NOWHERE)
+		return NMTAN_OK;
+	nt_gltf_buffer *buffer;
+	return nt_gltf_open_buffer(c->document, index, "/buffers", &buffer, c->error);
+}
+
 /* Settles every buffer but the BIN chunk; *bin receives whether there is one. */
 static nmtan_status settle_buffers(nt_gltf_container *c, const nt_file *input, bool *bin)
 {
@@ -228,7 +242,11 @@ static nmtan_status settle_buffers(nt_gltf_container *c, const nt_file *input, b
 	*bin = false;
 	for (uint32_t i = 0; !status && i < c->patcher->layout.buffer_count; i++) {
 		nt_json_value *json = nt_json_at(nt_gltf_root_member(c->document, "buffers"), i);
-		switch (choose_fate(c, i)) {
+		const fate what = choose_fate(c, i);
+		status = open_source(c, i, what);
+		if (status)
+			break;
+		switch (what) {
 		case FATE_KEEP:
 			break;
 		case FATE_LINK:

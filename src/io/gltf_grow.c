@@ -8,51 +8,29 @@
  * primitive without indices or an animation uses it too, is left alone and the solved primitives get a
  * copy of it.
  */
-#include "io/gltf_patch.h"
+#include "io/gltf_grow.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* An accessor that grows. */
-typedef struct item {
-	nt_gltf_accessor accessor;
-	uint32_t buffer;
-	uint64_t begin; /* in the buffer */
-	const nt_gltf_override *override;
-	uint32_t clone; /* accessor that takes its place in solved primitives; NT_NONE: it grows itself */
-} item;
-
-typedef struct growing {
-	nt_gltf_patcher *patcher;
-	const nt_gltf_cluster *component;
-	item *items;
-	size_t item_count, item_capacity;
-	bool *seen;    /* [accessor_count] */
-	bool *pinned;  /* [accessor_count] used by an unsolved member */
-	bool collecting_unsolved;
-} growing;
-
-static size_t added_rows(const growing *g)
+bool nt_gltf_note_edit(nt_gltf_growing *g, uint32_t buffer, uint64_t begin, uint64_t end)
 {
-	return g->component->rows.new_count - g->component->rows.old_count;
-}
-
-static uint32_t source_of(const growing *g, size_t row)
-{
-	const nt_gltf_rows *rows = &g->component->rows;
-	return row < rows->old_count ? (uint32_t)row : rows->sources[row - rows->old_count];
+	if (!nt_grow((void **)&g->edited, &g->edited_capacity, g->edited_count + 1, sizeof *g->edited))
+		return false;
+	g->edited[g->edited_count++] = (nt_gltf_edited){buffer, begin, end};
+	return true;
 }
 
 /* ---- which accessors ---- */
 
-static nmtan_status add_item(growing *g, uint32_t index)
+static nmtan_status add_item(nt_gltf_growing *g, uint32_t index)
 {
 	nt_gltf_patcher *p = g->patcher;
 	if (!nt_grow((void **)&g->items, &g->item_capacity, g->item_count + 1, sizeof *g->items))
 		return nt_fail_memory(p->error);
-	item *added = &g->items[g->item_count];
-	*added = (item){.clone = NT_NONE};
+	nt_gltf_item *added = &g->items[g->item_count];
+	*added = (nt_gltf_item){.clone = NT_NONE};
 	nmtan_status status =
 		nt_gltf_get_accessor(p->document, index, "/accessors", &added->accessor, p->error);
 	if (status)
@@ -82,7 +60,7 @@ static nmtan_status collect_attribute(void *context, nt_json_value *attributes, 
 {
 	(void)attributes;
 	(void)name;
-	growing *g = context;
+	nt_gltf_growing *g = context;
 	if (g->collecting_unsolved)
 		g->pinned[accessor] = true;
 	if (g->seen[accessor])
@@ -92,11 +70,11 @@ static nmtan_status collect_attribute(void *context, nt_json_value *attributes, 
 }
 
 /* All accessors of all members. When nothing is appended, only those with new values. */
-static nmtan_status collect_items(growing *g, const nt_gltf_override *overrides, size_t override_count)
+static nmtan_status collect_items(nt_gltf_growing *g, const nt_gltf_override *overrides, size_t override_count)
 {
 	const nt_gltf_patcher *p = g->patcher;
 	nmtan_status status = NMTAN_OK;
-	for (size_t i = 0; !status && added_rows(g) && i < g->component->member_count; i++) {
+	for (size_t i = 0; !status && nt_gltf_added_rows(g) && i < g->component->member_count; i++) {
 		const nt_mesh *mesh = &p->scene->meshes[g->component->members[i]];
 		g->collecting_unsolved = g->component->rows.group_of[i] == NT_NONE;
 		status = nt_gltf_visit_attributes(nt_gltf_primitive_of(p->document, mesh),
@@ -116,7 +94,7 @@ static nmtan_status collect_items(growing *g, const nt_gltf_override *overrides,
 /* ---- accessors that must keep their count ---- */
 
 /* Primitives without indices draw every row, so rows must not be added to what they use. */
-static bool must_pin(const growing *g)
+static bool must_pin(const nt_gltf_growing *g)
 {
 	const nt_gltf_patcher *p = g->patcher;
 	for (size_t i = 0; i < g->component->member_count; i++) {
@@ -132,7 +110,7 @@ static bool must_pin(const growing *g)
 }
 
 /* The elements of an accessor after growing, `stride` apart; sparse values put in where `bake`. */
-static nmtan_status copy_rows(growing *g, const item *from, uint32_t stride, bool bake,
+static nmtan_status copy_rows(nt_gltf_growing *g, const nt_gltf_item *from, uint32_t stride, bool bake,
 	unsigned char **result)
 {
 	nt_gltf_patcher *p = g->patcher;
@@ -156,7 +134,7 @@ static nmtan_status copy_rows(growing *g, const item *from, uint32_t stride, boo
 				a->element_bytes);
 	}
 	for (size_t row = (size_t)a->count; !status && row < count; row++)
-		memcpy(out + row * stride, out + (size_t)source_of(g, row) * stride, a->element_bytes);
+		memcpy(out + row * stride, out + (size_t)nt_gltf_row_source(g, row) * stride, a->element_bytes);
 	if (from->override)
 		for (size_t row = 0; !status && row < count; row++)
 			memcpy(out + row * stride, from->override->values + row * from->override->width,
@@ -165,7 +143,7 @@ static nmtan_status copy_rows(growing *g, const item *from, uint32_t stride, boo
 }
 
 /* A new view with all rows of an accessor. */
-static nmtan_status add_rows_view(growing *g, const item *from, bool bake, uint32_t *view)
+static nmtan_status add_rows_view(nt_gltf_growing *g, const nt_gltf_item *from, bool bake, uint32_t *view)
 {
 	const uint32_t element = from->accessor.element_bytes, stride = (element + 3) / 4 * 4;
 	unsigned char *rows = NULL;
@@ -177,7 +155,7 @@ static nmtan_status add_rows_view(growing *g, const item *from, bool bake, uint3
 		NT_GLTF_ARRAY_BUFFER, stride != element ? stride : 0, view, g->patcher->error);
 }
 
-static nmtan_status clone_accessor(growing *g, item *from)
+static nmtan_status clone_accessor(nt_gltf_growing *g, nt_gltf_item *from)
 {
 	nt_gltf_patcher *p = g->patcher;
 	uint32_t view;
@@ -198,7 +176,7 @@ static nmtan_status clone_accessor(growing *g, item *from)
 static nmtan_status use_clone(void *context, nt_json_value *attributes, const char *name,
 	uint32_t accessor)
 {
-	growing *g = context;
+	nt_gltf_growing *g = context;
 	for (size_t i = 0; i < g->item_count; i++)
 		if (g->items[i].accessor.index == accessor && g->items[i].clone != NT_NONE)
 			nt_json_set_uint64(g->patcher->json,
@@ -207,7 +185,7 @@ static nmtan_status use_clone(void *context, nt_json_value *attributes, const ch
 }
 
 /* Copies the pinned accessors, points solved members to the copies and takes them off the list. */
-static nmtan_status clone_pinned(growing *g)
+static nmtan_status clone_pinned(nt_gltf_growing *g)
 {
 	const nt_gltf_patcher *p = g->patcher;
 	nmtan_status status = NMTAN_OK;
@@ -233,7 +211,7 @@ static nmtan_status clone_pinned(growing *g)
 
 static int compare_items(const void *a, const void *b)
 {
-	const item *x = a, *y = b;
+	const nt_gltf_item *x = a, *y = b;
 	const bool x_has = x->accessor.view != NT_NONE, y_has = y->accessor.view != NT_NONE;
 	if (x_has != y_has)
 		return x_has ? -1 : 1;
@@ -246,7 +224,7 @@ static int compare_items(const void *a, const void *b)
 
 /* Interleaved accessors: rows of `width` bytes, `stride` apart. */
 typedef struct block {
-	item *items;
+	nt_gltf_item *items;
 	size_t count;
 	uint32_t buffer, stride, width;
 	uint64_t begin, end;
@@ -254,13 +232,13 @@ typedef struct block {
 } block;
 
 /* The longest run of items from `items` on that share rows. */
-static block find_block(const growing *g, item *items, size_t left)
+static block find_block(const nt_gltf_growing *g, nt_gltf_item *items, size_t left)
 {
 	block b = {.items = items, .count = 1, .buffer = items->buffer,
 		.stride = items->accessor.stride, .width = items->accessor.element_bytes,
 		.begin = items->begin, .overridden = items->override != NULL};
 	while (b.count < left) {
-		const item *next = &items[b.count];
+		const nt_gltf_item *next = &items[b.count];
 		const uint64_t end = next->begin - b.begin + next->accessor.element_bytes;
 		if (next->accessor.view == NT_NONE || next->buffer != b.buffer ||
 			next->accessor.stride != b.stride || end > b.stride)
@@ -275,7 +253,7 @@ static block find_block(const growing *g, item *items, size_t left)
 }
 
 /* Moves an accessor to a view of its own. */
-static nmtan_status move_away(growing *g, const item *moved)
+static nmtan_status move_away(nt_gltf_growing *g, const nt_gltf_item *moved)
 {
 	nt_gltf_patcher *p = g->patcher;
 	uint32_t view;
@@ -289,7 +267,7 @@ static nmtan_status move_away(growing *g, const item *moved)
 	return NMTAN_OK;
 }
 
-static nmtan_status block_bytes(growing *g, const block *b, const unsigned char **bytes)
+static nmtan_status block_bytes(nt_gltf_growing *g, const block *b, const unsigned char **bytes)
 {
 	nt_gltf_patcher *p = g->patcher;
 	const nt_gltf_accessor *first = &b->items->accessor;
@@ -307,10 +285,10 @@ static nmtan_status block_bytes(growing *g, const block *b, const unsigned char 
 }
 
 /* Inserts the copied rows behind the block. */
-static nmtan_status insert_rows(growing *g, const block *b, const unsigned char *rows)
+static nmtan_status insert_rows(nt_gltf_growing *g, const block *b, const unsigned char *rows)
 {
 	nt_gltf_patcher *p = g->patcher;
-	const size_t added = added_rows(g), old_count = g->component->rows.old_count;
+	const size_t added = nt_gltf_added_rows(g), old_count = g->component->rows.old_count;
 	unsigned char *out = nt_arena_alloc(p->arena, added, b->stride);
 	if (!out)
 		return nt_fail_memory(p->error);
@@ -319,13 +297,13 @@ static nmtan_status insert_rows(growing *g, const block *b, const unsigned char 
 	for (size_t i = 0; i < added; i++) {
 		memset(out + i * b->stride, 0, gap);
 		memcpy(out + i * b->stride + gap,
-			rows + (size_t)source_of(g, old_count + i) * b->stride, b->width);
+			rows + (size_t)nt_gltf_row_source(g, old_count + i) * b->stride, b->width);
 	}
 	return nt_layout_edit(&p->layout, b->buffer, b->end, 0, out, added * b->stride, p->error);
 }
 
 /* Replaces the whole block: some of its values are new. */
-static nmtan_status replace_rows(growing *g, const block *b, const unsigned char *rows)
+static nmtan_status replace_rows(nt_gltf_growing *g, const block *b, const unsigned char *rows)
 {
 	nt_gltf_patcher *p = g->patcher;
 	const size_t count = g->component->rows.new_count, old_size = (size_t)(b->end - b->begin);
@@ -336,7 +314,7 @@ static nmtan_status replace_rows(growing *g, const block *b, const unsigned char
 	memset(out, 0, count * b->stride);
 	memcpy(out, rows, old_size);
 	for (size_t row = g->component->rows.old_count; row < count; row++)
-		memcpy(out + row * b->stride, rows + (size_t)source_of(g, row) * b->stride, b->width);
+		memcpy(out + row * b->stride, rows + (size_t)nt_gltf_row_source(g, row) * b->stride, b->width);
 	for (size_t i = 0; i < b->count; i++) {
 		const nt_gltf_override *override = b->items[i].override;
 		unsigned char *at = out + (b->items[i].begin - b->begin);
@@ -347,7 +325,7 @@ static nmtan_status replace_rows(growing *g, const block *b, const unsigned char
 	return nt_layout_edit(&p->layout, b->buffer, b->begin, old_size, out, size, p->error);
 }
 
-static nmtan_status grow_block(growing *g, const block *b, uint64_t previous_end)
+static nmtan_status grow_block(nt_gltf_growing *g, const block *b, uint64_t previous_end)
 {
 	nt_gltf_patcher *p = g->patcher;
 	nmtan_status status = NMTAN_OK;
@@ -359,80 +337,37 @@ static nmtan_status grow_block(growing *g, const block *b, uint64_t previous_end
 	}
 	const unsigned char *rows;
 	status = block_bytes(g, b, &rows);
+	if (!status && !nt_gltf_note_edit(g, b->buffer, b->begin, b->end))
+		status = nt_fail_memory(p->error);
 	if (status)
 		return status;
 	return b->overridden ? replace_rows(g, b, rows) : insert_rows(g, b, rows);
 }
 
-/* ---- sparse accessors ---- */
-
-/* Puts a sparse part with its new elements into a new view. */
-static nmtan_status move_part(growing *g, const item *from, const char *name, const void *bytes,
-	size_t size)
-{
-	nt_gltf_patcher *p = g->patcher;
-	uint32_t view;
-	const nmtan_status status = nt_layout_add_view(&p->layout, g->component->buffer, bytes, size,
-		0, 0, &view, p->error);
-	nt_json_value *json = nt_json_find(nt_json_find(nt_json_at(
-		nt_gltf_root_member(p->document, "accessors"), from->accessor.index), "sparse"), name);
-	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "bufferView"), view);
-	nt_json_remove(p->json, json, "byteOffset");
-	return status;
-}
-
-/* Copies of rows that a sparse accessor replaces are replaced too. */
-static nmtan_status grow_sparse(growing *g, const item *from)
-{
-	nt_gltf_patcher *p = g->patcher;
-	const nt_gltf_accessor *a = &from->accessor;
-	const uint32_t *replaced;
-	const unsigned char *values;
-	nmtan_status status = nt_gltf_sparse(p->document, a, p->arena, &replaced, &values, p->error);
-	if (status)
-		return status;
-	const size_t old_count = (size_t)a->sparse_count, added = added_rows(g);
-	size_t total = old_count;
-	uint32_t *numbers = nt_arena_alloc(p->arena, old_count + added, sizeof *numbers);
-	unsigned char *elements = nt_arena_alloc(p->arena, old_count + added, a->element_bytes);
-	uint32_t *position = nt_alloc((size_t)a->count, sizeof *position); /* of a row in replaced */
-	if (!numbers || !elements || !position) {
-		free(position);
-		return nt_fail_memory(p->error);
-	}
-	memset(position, 0xFF, (size_t)a->count * sizeof *position);
-	for (size_t i = 0; i < old_count; i++) {
-		position[replaced[i]] = (uint32_t)i;
-		numbers[i] = replaced[i];
-	}
-	memcpy(elements, values, old_count * a->element_bytes);
-	for (size_t row = (size_t)a->count; row < a->count + added; row++) {
-		const uint32_t at = position[source_of(g, row)];
-		if (at == NT_NONE)
-			continue;
-		numbers[total] = (uint32_t)row;
-		memcpy(elements + total * a->element_bytes, values + at * a->element_bytes,
-			a->element_bytes);
-		total++;
-	}
-	free(position);
-	if (total == old_count)
-		return NMTAN_OK;
-
-	nt_json_value *sparse = nt_json_find(
-		nt_json_at(nt_gltf_root_member(p->document, "accessors"), a->index), "sparse");
-	nt_json_set_uint64(p->json, nt_json_put(p->json, sparse, "count"), total);
-	nt_json_set_uint64(p->json, nt_json_put(p->json, nt_json_find(sparse, "indices"),
-		"componentType"), NT_GLTF_UINT);
-	status = move_part(g, from, "indices", numbers, total * sizeof *numbers);
-	if (!status)
-		status = move_part(g, from, "values", elements, total * a->element_bytes);
-	return status;
-}
-
 /* ---- the whole ---- */
 
-static nmtan_status grow_items(growing *g)
+/* Bounds of values that were replaced: "min" or "max" of an accessor that has it. */
+static void set_bound(nt_gltf_patcher *p, const nt_gltf_growing *g, const nt_gltf_item *from, const char *key, int sign)
+{
+	nt_json_value *bound = nt_json_find(nt_json_at(
+		nt_gltf_root_member(p->document, "accessors"), from->accessor.index), key);
+	const size_t width = from->override->width / sizeof(float);
+	if (nt_json_count(bound) != width)
+		return;
+	for (size_t k = 0; k < width; k++) {
+		float extreme = 0;
+		for (size_t row = 0; row < g->component->rows.new_count; row++) {
+			float value;
+			memcpy(&value, from->override->values + row * from->override->width +
+				k * sizeof value, sizeof value);
+			if (row == 0 || (sign < 0 ? value < extreme : value > extreme))
+				extreme = value;
+		}
+		nt_json_set_double(p->json, nt_json_at(bound, k), extreme);
+	}
+}
+
+static nmtan_status grow_items(nt_gltf_growing *g)
 {
 	nt_gltf_patcher *p = g->patcher;
 	nt_json_value *accessors = nt_gltf_root_member(p->document, "accessors");
@@ -449,13 +384,18 @@ static nmtan_status grow_items(growing *g)
 		previous_buffer = b.buffer;
 		i += b.count;
 	}
-	for (size_t i = 0; !status && added_rows(g) && i < g->item_count; i++) {
-		const item *grown = &g->items[i];
+	for (size_t i = 0; i < g->item_count; i++)
+		if (g->items[i].override) {
+			set_bound(p, g, &g->items[i], "min", -1);
+			set_bound(p, g, &g->items[i], "max", 1);
+		}
+	for (size_t i = 0; !status && nt_gltf_added_rows(g) && i < g->item_count; i++) {
+		const nt_gltf_item *grown = &g->items[i];
 		nt_json_set_uint64(p->json, nt_json_put(p->json,
 			nt_json_at(accessors, grown->accessor.index), "count"),
 			g->component->rows.new_count);
 		if (grown->accessor.sparse_count)
-			status = grow_sparse(g, grown);
+			status = nt_gltf_grow_sparse(g, grown);
 	}
 	return status;
 }
@@ -463,17 +403,18 @@ static nmtan_status grow_items(growing *g)
 nmtan_status nt_gltf_grow_attributes(nt_gltf_patcher *p, const nt_gltf_cluster *component,
 	const nt_gltf_override *overrides, size_t override_count)
 {
-	growing g = {.patcher = p, .component = component,
+	nt_gltf_growing g = {.patcher = p, .component = component,
 		.seen = nt_calloc(p->sharing.accessor_count, sizeof(bool)),
 		.pinned = nt_calloc(p->sharing.accessor_count, sizeof(bool))};
 	nmtan_status status = g.seen && g.pinned ? NMTAN_OK : nt_fail_memory(p->error);
 	if (!status)
 		status = collect_items(&g, overrides, override_count);
-	if (!status && added_rows(&g) && must_pin(&g))
+	if (!status && nt_gltf_added_rows(&g) && must_pin(&g))
 		status = clone_pinned(&g);
 	if (!status)
 		status = grow_items(&g);
 	free(g.items);
+	free(g.edited);
 	free(g.seen);
 	free(g.pinned);
 	return status;

@@ -492,8 +492,18 @@ static nmtan_status put_buffer(nt_gltf_layout *layout, uint32_t index, const tar
 	nt_gltf_buffer *source = NULL;
 	nmtan_status status = NMTAN_OK;
 	uint64_t at = 0, written = map_position(plan, plan->old_length);
+	if (plan->old_length && layout->document->buffers[index].home == NT_GLTF_HOME_NOWHERE)
+		return put_zeros(to, plan->old_length, error);
 	if (plan->old_length)
 		status = nt_gltf_open_buffer(layout->document, index, "/buffers", &source, error);
+	/* A length that lies must not become that many zeros; padding may lack. */
+	if (!status && source && plan->old_length - source->size >= ALIGNMENT) {
+		char pointer[NT_GLTF_POINTER];
+		snprintf(pointer, sizeof pointer, "/buffers/%u", index);
+		status = nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+			"byteLength is %llu, but only %zu bytes are there",
+			(unsigned long long)plan->old_length, source->size);
+	}
 	for (size_t i = 0; !status && i < plan->edit_count; i++) {
 		const nt_gltf_edit *edit = &plan->edits[i];
 		status = put_source(layout, source, to, at, edit->at, error);

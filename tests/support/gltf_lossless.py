@@ -1,0 +1,242 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""gltf_lossless.py INPUT OUTPUT [--tangents=REFERENCE]: says what OUTPUT changed that it should not have.
+
+A second reading of both files that shares no code with nmtan. Per triangle corner every attribute and
+morph target holds the same bytes; the JSON is equal value for value and in key order but for what
+tangents need; views that no triangle uses hold the same bytes; the buffers grew by TANGENT and the copied
+rows. With --tangents, corners have the tangents that REFERENCE has.
+"""
+import base64
+import json
+import os
+import struct
+import sys
+from urllib.parse import unquote
+
+SIZES = {5120: 1, 5121: 1, 5122: 2, 5123: 2, 5125: 4, 5126: 4}
+WIDTHS = {'SCALAR': 1, 'VEC2': 2, 'VEC3': 3, 'VEC4': 4, 'MAT2': 4, 'MAT3': 9, 'MAT4': 16}
+ADDED = ('TANGENT', '_BITANGENT', 'NORMAL')
+complaints = []
+
+
+def complain(text):
+    complaints.append(text)
+
+
+class File:
+    def __init__(self, path):
+        self.path = path
+        with open(path, 'rb') as f:
+            data = f.read()
+        self.chunk, self.others = None, []
+        if data[:4] == b'glTF':
+            at, n = 12, 0
+            while at + 8 <= len(data):
+                size, kind = struct.unpack_from('<II', data, at)
+                body = data[at + 8:at + 8 + size]
+                if n == 0:
+                    text = body
+                elif n == 1 and kind == 0x004E4942:
+                    self.chunk = body
+                else:
+                    self.others.append((kind, body))
+                at, n = at + 8 + size, n + 1
+        else:
+            text = data
+        self.g = json.loads(text)
+        self.cache = {}
+
+    def buffer(self, i):
+        if i not in self.cache:
+            uri = self.g['buffers'][i].get('uri')
+            if uri is None:
+                self.cache[i] = self.chunk or b''
+            elif uri.startswith('data:'):
+                self.cache[i] = base64.b64decode(uri.split(',', 1)[1])
+            else:
+                with open(os.path.join(os.path.dirname(self.path), unquote(uri)), 'rb') as f:
+                    self.cache[i] = f.read()
+        return self.cache[i]
+
+    def view(self, i):
+        v = self.g['bufferViews'][i]
+        o = v.get('byteOffset', 0)
+        return self.buffer(v['buffer'])[o:o + v['byteLength']]
+
+    def element(self, a):
+        return SIZES[a['componentType']] * WIDTHS[a['type']]
+
+    def rows(self, i):
+        """The bytes of each element."""
+        a = self.g['accessors'][i]
+        size, count = self.element(a), a['count']
+        rows = [b'\0' * size] * count
+        if 'bufferView' in a:
+            data = self.view(a['bufferView'])
+            stride = self.g['bufferViews'][a['bufferView']].get('byteStride') or size
+            o = a.get('byteOffset', 0)
+            if count and o + (count - 1) * stride + size > len(data):
+                complain('accessor %d ends behind its view' % i)
+                return rows
+            rows = [data[o + k * stride:o + k * stride + size] for k in range(count)]
+        if 'sparse' in a:
+            s = a['sparse']
+            w = SIZES[s['indices']['componentType']]
+            where = self.view(s['indices']['bufferView'])[s['indices'].get('byteOffset', 0):]
+            values = self.view(s['values']['bufferView'])[s['values'].get('byteOffset', 0):]
+            last = -1
+            for k in range(s['count']):
+                row = int.from_bytes(where[k * w:k * w + w], 'little')
+                if not last < row < count:
+                    complain('accessor %d: sparse indices are not in order' % i)
+                last = row
+                rows[row] = values[k * size:k * size + size]
+        return rows
+
+    def corners(self, p):
+        """Vertex of each corner of each triangle; the plain list for points and lines."""
+        mode = p.get('mode', 4)
+        if 'indices' in p:
+            chain = [int.from_bytes(r, 'little') for r in self.rows(p['indices'])]
+            width = SIZES[self.g['accessors'][p['indices']]['componentType']]
+            if chain and max(chain) == (1 << 8 * width) - 1:
+                complain('indices use the reserved value')
+        else:
+            chain = list(range(self.g['accessors'][p['attributes']['POSITION']]['count']))
+        if mode == 5:
+            chain = [c for i in range(len(chain) - 2)
+                     for c in (chain[i], chain[i + 1 + i % 2], chain[i + 2 - i % 2])]
+        elif mode == 6:
+            chain = [c for i in range(len(chain) - 2) for c in (chain[i + 1], chain[i + 2], chain[0])]
+        return chain
+
+
+def same_geometry(a, b):
+    for m, mesh in enumerate(a.g.get('meshes', [])):
+        for k, p in enumerate(mesh['primitives']):
+            q = b.g['meshes'][m]['primitives'][k]
+            where = 'mesh %d primitive %d' % (m, k)
+            old, new = a.corners(p), b.corners(q)
+            if len(old) != len(new):
+                complain('%s: %d corners became %d' % (where, len(old), len(new)))
+                continue
+            pairs = [(p['attributes'], q['attributes'])]
+            pairs += list(zip(p.get('targets', []), q.get('targets', [])))
+            counts = set()
+            for before, after in pairs:
+                counts |= {b.g['accessors'][i]['count'] for i in after.values()}
+                for name, accessor in before.items():
+                    if name == 'TANGENT':
+                        continue
+                    x, y = a.rows(accessor), b.rows(after[name])
+                    wrong = sum(x[i] != y[j] for i, j in zip(old, new))
+                    if wrong:
+                        complain('%s: %s differs at %d corners' % (where, name, wrong))
+            if len(counts) > 1:
+                complain('%s: attributes of different counts %s' % (where, sorted(counts)))
+
+
+def allowed(path, key):
+    """Whether a member may differ, appear or go."""
+    head = path[0] if path else ''
+    if head == 'accessors':
+        return key in ('bufferView', 'byteOffset', 'count', 'componentType', 'min', 'max') if len(path) == 2 else True
+    if head == 'bufferViews':
+        return key in ('byteOffset', 'byteLength')
+    if head == 'buffers':
+        return key in ('byteLength', 'uri')
+    if head == 'images':
+        return key in ('uri', 'bufferView', 'mimeType')
+    if head == 'meshes':
+        # the value of an attribute that other primitives share may be a copy of the accessor
+        return key in ADDED + ('indices', 'mode') or path[-1] == 'attributes' or 'targets' in path
+    return False
+
+
+def same_json(a, b, path=()):
+    where = '/' + '/'.join(map(str, path))
+    if isinstance(a, dict) and isinstance(b, dict):
+        if [k for k in a if k in b] != [k for k in b if k in a]:
+            complain('%s: keys in another order' % where)
+        for k in list(a) + [k for k in b if k not in a]:
+            if k in a and k in b:
+                if not (allowed(path, k) and not isinstance(a[k], (dict, list))):
+                    same_json(a[k], b[k], path + (k,))
+            elif not allowed(path, k) and not (not path and k in ('buffers', 'bufferViews', 'accessors')):
+                complain('%s/%s %s' % (where, k, 'is gone' if k in a else 'is new'))
+    elif isinstance(a, list) and isinstance(b, list):
+        may_grow = path in (('accessors',), ('bufferViews',), ('buffers',))
+        if len(a) > len(b) or (len(a) < len(b) and not may_grow):
+            complain('%s has %d elements, had %d' % (where, len(b), len(a)))
+        for i, (x, y) in enumerate(zip(a, b)):
+            same_json(x, y, path + (i,))
+    elif type(a) is not type(b) and not (isinstance(a, (int, float)) and isinstance(b, (int, float))) or a != b:
+        if not (len(path) >= 3 and path[0] == 'accessors' and path[2] in ('min', 'max')):
+            complain('%s: %r became %r' % (where, a, b))
+
+
+def same_views(a, b):
+    used = {x.get('bufferView') for x in a.g.get('accessors', [])}
+    for x in a.g.get('accessors', []):
+        for part in ('indices', 'values'):
+            used.add(x.get('sparse', {}).get(part, {}).get('bufferView'))
+    for i in range(len(a.g.get('bufferViews', []))):
+        if i not in used and a.view(i) != b.view(i):
+            complain('view %d holds other bytes' % i)
+    if a.others and b.chunk is not None and a.others != b.others:
+        complain('extra chunks are gone')
+
+
+def no_dead_bytes(a, b):
+    total = lambda f: sum(x['byteLength'] for x in f.g.get('buffers', []))
+    grown = 0
+    slack = 16
+    for i, x in enumerate(b.g.get('accessors', [])):
+        if i >= len(a.g['accessors']):
+            grown += x['count'] * ((b.element(x) + 3) // 4 * 4)
+        else:
+            old = a.g['accessors'][i]
+            view = b.g['bufferViews'][x['bufferView']] if 'bufferView' in x else {}
+            added = (x['count'] * b.element(x) - old['count'] * a.element(old)) * ('bufferView' in x)
+            if 'sparse' in x:
+                entry = SIZES[x['sparse']['indices']['componentType']] + b.element(x)
+                added += entry * (x['sparse']['count'] - old['sparse']['count'])
+            grown += added
+            slack += 8 * (added != 0) + (view.get('byteStride', 0) - b.element(x)) * max(0, x['count'] - old['count']) * (
+                'byteStride' in view)
+    if 'images' in a.g:
+        grown += sum(len(b.view(i['bufferView'])) for i, j in zip(b.g['images'], a.g['images'])
+                     if 'bufferView' in i and 'bufferView' not in j)
+    if not 0 <= total(b) - total(a) <= grown + slack:
+        complain('buffers grew by %d, expected at most %d' % (total(b) - total(a), grown + slack))
+
+
+def corner_tangents(f):
+    out = []
+    for mesh in f.g['meshes']:
+        for p in mesh['primitives']:
+            if 'TANGENT' in p['attributes']:
+                rows = f.rows(p['attributes']['TANGENT'])
+                out += [struct.unpack('<4f', rows[i]) for i in f.corners(p)]
+    return out
+
+
+def main():
+    a, b = File(sys.argv[1]), File(sys.argv[2])
+    same_json(a.g, b.g)
+    same_geometry(a, b)
+    same_views(a, b)
+    no_dead_bytes(a, b)
+    for option in sys.argv[3:]:
+        r = File(option.split('=', 1)[1])
+        mine, theirs = corner_tangents(b), corner_tangents(r)
+        if mine != theirs:
+            wrong = sum(x != y for x, y in zip(mine, theirs))
+            complain('tangents differ from the reference at %d of %d corners (%d)' % (wrong, len(mine), len(theirs)))
+    for text in complaints[:20]:
+        print('%s: %s' % (os.path.basename(sys.argv[2]), text))
+    sys.exit(1 if complaints else 0)
+
+
+main()
