@@ -166,6 +166,10 @@ std::string buffers_member(uint64_t length, nt_model_buffer kind, const char *ur
 
 constexpr int max_depth = 512;
 
+// Extensions whose accessors and buffers have no bytes of their own, which tinygltf takes for a fault.
+const char *const compressions[] = {"KHR_draco_mesh_compression", "EXT_meshopt_compression",
+	"KHR_meshopt_compression"};
+
 // How deep arrays and objects are nested, counted outside of strings. Whether the text is JSON at all is not
 // decided here.
 bool is_too_deep(const char *text, size_t size)
@@ -270,6 +274,10 @@ nmtan_status load(tinygltf::Model &document, const unsigned char *bytes, size_t 
 		: loader.LoadASCIIFromString(&document, &message, &warning, json, length, "");
 	if (loaded && message.empty())
 		return NMTAN_OK;
+	for (const char *extension : compressions)
+		if (memmem(json, json_size, extension, std::strlen(extension)))
+			return nt_fail(error, NMTAN_ERROR_UNSUPPORTED,
+				"tinygltf cannot read documents with %s back", extension);
 	for (char &c : message)
 		c = c == '\n' ? ' ' : c;
 	return nt_fail(error, NMTAN_ERROR_INPUT, "tinygltf refuses the document: %s", message.c_str());

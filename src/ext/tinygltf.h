@@ -126,7 +126,8 @@ typedef bool (*nt_reread_find)(void *user, const char *uri, const unsigned char 
  *   find   called for buffers and images in other files; NULL: there are none
  *
  * Returns NMTAN_OK; NMTAN_ERROR_INPUT with tinygltf's words when it refuses the file, or JSON is nested
- * deeper than 512; NMTAN_ERROR_UNSUPPORTED from 4 GB on, which its interface cannot take; NMTAN_ERROR_MEMORY.
+ * deeper than 512; NMTAN_ERROR_UNSUPPORTED from 4 GB on, which its interface cannot take, and for refused
+ * files with compressed meshes; NMTAN_ERROR_MEMORY.
  */
 nmtan_status nt_reread_open(nt_reread **model, const unsigned char *bytes, size_t size,
 	nt_reread_find find, void *user, nt_error *error);

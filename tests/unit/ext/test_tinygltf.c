@@ -169,6 +169,19 @@ static void reread_checks_accessors_against_views_and_buffers(void **state)
 		NMTAN_ERROR_INPUT);
 }
 
+static void compressed_documents_are_unsupported_not_wrong(void **state)
+{
+	(void)state;
+	static const char text[] = "{\"asset\":{\"version\":\"2.0\"},\"accessors\":[{\"bufferView\":-3,"
+		"\"componentType\":5126,\"count\":1,\"type\":1}],"
+		"\"extensionsRequired\":[\"KHR_draco_mesh_compression\"]}";
+	nt_reread *reread;
+	nt_error error;
+	assert_int_equal(nt_reread_open(&reread, (const unsigned char *)text, sizeof text - 1, NULL, NULL,
+				 &error), NMTAN_ERROR_UNSUPPORTED);
+	assert_non_null(strstr(error.message, "KHR_draco_mesh_compression"));
+}
+
 static void deep_json_is_refused_before_it_is_parsed(void **state)
 {
 	(void)state;
@@ -270,6 +283,7 @@ int main(void)
 		cmocka_unit_test(document_has_exact_bounds_and_no_empty_objects),
 		cmocka_unit_test(reread_finds_attributes_in_companions),
 		cmocka_unit_test(reread_checks_accessors_against_views_and_buffers),
+		cmocka_unit_test(compressed_documents_are_unsupported_not_wrong),
 		cmocka_unit_test(deep_json_is_refused_before_it_is_parsed),
 		cmocka_unit_test(names_in_latin_1_become_utf_8),
 		cmocka_unit_test(bright_emission_needs_the_extension),
