@@ -189,7 +189,6 @@ void add_triangle(nt_halfedges &mesh, const std::vector<uint32_t> &fan, uint32_t
 			mesh.left_corners.push_back(mesh.fan_vertex[at[k]]);
 		return;
 	}
-	mesh.side.resize(mesh.topology.n_halfedges(), NT_OPEN);
 	HalfedgeHandle h = mesh.topology.halfedge_handle(face);
 	for (int i = 0; i < 3; i++, h = mesh.topology.next_halfedge_handle(h)) {
 		const VertexHandle begin = mesh.topology.from_vertex_handle(h);
@@ -210,10 +209,15 @@ void build(nt_halfedges &mesh, size_t vertex_count, const uint32_t *triangles)
 	const std::vector<uint32_t> fan = split_fans(mesh, triangles, opposite, done, order);
 
 	const size_t fan_count = mesh.fan_vertex.size();
+	const size_t used = side_count - 3 * mesh.left_out.size();
+	size_t inner = 0;
+	for (const uint32_t other : opposite)
+		inner += other != NT_OPEN;
+	const size_t edge_count = used - inner / 2;
 	mesh.topology.resize(fan_count, 0, 0);
-	mesh.topology.reserve(fan_count, side_count / 2 + 1, mesh.triangle_count);
+	mesh.topology.reserve(fan_count, edge_count, mesh.triangle_count);
 	mesh.halfedge.assign(side_count, NT_OPEN);
-	mesh.side.reserve(side_count + 2);
+	mesh.side.assign(2 * edge_count, NT_OPEN);
 	for (const uint32_t t : order)
 		if (!done[t]) {
 			done[t] = true;
