@@ -95,11 +95,10 @@ typedef struct nmtan_mesh {
 	const float *texcoords; /* [vertex_count][2], v up, required */
 	size_t texcoord_stride_bytes;
 
-	/* The texture coordinates as they will be stored, v up, where storing rounds them (OBJ's v
-	 * becomes 1 - v in glTF: pass (u, -(1 - v))). Repair judges the sign of w by these, nothing else
-	 * uses them. NULL: texcoords are stored as they are. */
-	const float *stored_texcoords; /* [vertex_count][2] */
-	size_t stored_texcoord_stride_bytes;
+	/* Where v is rounded when it is stored: it will be stored as the float v + stored_v_offset. OBJ's v
+	 * becomes 1 - v in glTF, which is -(v - 1): -1; the v that was negated for glTF becomes 1 + v in PLY: 1.
+	 * Repair judges the sign of w by the v that is stored, nothing else uses it. 0: v is stored as it is. */
+	float stored_v_offset; /* finite */
 } nmtan_mesh;
 
 /* How the triangles around a vertex are averaged. */
@@ -170,8 +169,8 @@ typedef struct nmtan_counts {
 	size_t degenerate_positions; /* faces with two corners at one position in each half */
 	size_t degenerate_texcoords; /* triangles whose exact UV determinant is zero */
 	size_t mirrored;             /* triangles whose exact UV determinant is negative (v up) */
-	size_t stored_differently;   /* triangles whose orientation differs between texcoords and
-	                                stored_texcoords */
+	size_t stored_differently;   /* triangles whose orientation changes when v is stored (see
+	                                stored_v_offset) */
 	size_t folded_quads;         /* quads whose two halves are wound differently in UV space */
 	size_t repaired_zero;        /* tangents that were zero or not of unit length */
 	size_t repaired_not_finite;

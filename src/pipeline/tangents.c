@@ -31,25 +31,12 @@ static bool is_gltf(nt_format format)
 	return format == NT_FORMAT_GLTF || format == NT_FORMAT_GLB;
 }
 
-/* The texture coordinates as the output will hold them, v up: v = 1 - v' is rounded there. NULL and
- * *status OK where they are stored as they are. */
-static float *stored_texcoords(const tangent_job *job, const nt_mesh *mesh, nmtan_status *status)
+/* What v is added to when it is stored: nothing where the format stays, else see stored_v_offset. */
+static float stored_v_offset(const tangent_job *job)
 {
 	if (!job->round_trip)
-		return NULL;
-	float *stored = nt_alloc(mesh->vertex_count, 2 * sizeof *stored);
-	if (!stored) {
-		*status = NMTAN_ERROR_MEMORY;
-		return NULL;
-	}
-	/* OBJ and PLY to glTF: -(1 - v); glTF, read as -v, to PLY: 1 + (-v) */
-	const bool from_gltf = is_gltf(job->scene->format);
-	for (size_t v = 0; v < mesh->vertex_count; v++) {
-		stored[2 * v] = mesh->texcoords[2 * v];
-		const float t = mesh->texcoords[2 * v + 1];
-		stored[2 * v + 1] = from_gltf ? 1.0f + t : -(1.0f - t);
-	}
-	return stored;
+		return 0.0f;
+	return is_gltf(job->scene->format) ? 1.0f : -1.0f;
 }
 
 /* Whether the authored tangents of a face are valid: finite, unit, w the same and of the right sign. */
@@ -113,15 +100,10 @@ static nmtan_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned t
 {
 	const nmtan_options options = {.method = job->settings->method,
 		.repair = job->settings->repair, .threads = threads, .workspace = workspace};
-	nmtan_status status = NMTAN_OK;
-	float *stored = stored_texcoords(job, mesh, &status);
-	if (status)
-		return status;
 	nmtan_mesh view = nt_mesh_view(mesh);
-	view.stored_texcoords = stored;
+	view.stored_v_offset = stored_v_offset(job);
 	nmtan_output output = {.tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float))};
-	status = output.tangents ? nmtan_tangents(&view, &options, &output) : NMTAN_ERROR_MEMORY;
-	free(stored);
+	nmtan_status status = output.tangents ? nmtan_tangents(&view, &options, &output) : NMTAN_ERROR_MEMORY;
 	if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
 		restore_valid(mesh, output.tangents);
 	mesh->corner_tangents = output.tangents;

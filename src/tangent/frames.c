@@ -36,25 +36,33 @@ nt_dvec3 nt_unit_normal(const nmtan_mesh *mesh, size_t vertex)
 	return nt_dvec3_normalise(&n) ? n : (nt_dvec3){0, 0, 0};
 }
 
-int nt_triangle_orientation(const nmtan_mesh *mesh, const uint32_t corners[3], bool stored)
+/* The texture coordinates of a triangle, as given or as stored. */
+static void load_texcoords(const nmtan_mesh *mesh, const uint32_t corners[3], bool stored, float t[3][2])
 {
-	const float *t[3];
 	for (int k = 0; k < 3; k++) {
 		const size_t vertex = nt_vertex_of(mesh, corners[k]);
-		t[k] = stored ? nt_stored_texcoord(mesh, vertex) : nt_texcoord(mesh, vertex);
+		if (stored && mesh->stored_v_offset != 0.0f)
+			nt_stored_texcoord(mesh, vertex, t[k]);
+		else
+			memcpy(t[k], nt_texcoord(mesh, vertex), sizeof t[k]);
 	}
+}
+
+int nt_triangle_orientation(const nmtan_mesh *mesh, const uint32_t corners[3], bool stored)
+{
+	float t[3][2];
+	load_texcoords(mesh, corners, stored, t);
 	return nt_orientation(t[0], t[1], t[2]);
 }
 
 /* The sign of a quad whose halves have the given, different, non-zero signs. */
 static int larger_half(const nmtan_mesh *mesh, uint32_t corners[2][3], bool stored, const int signs[2])
 {
-	const float *t[6];
-	for (int i = 0; i < 6; i++) {
-		const size_t vertex = nt_vertex_of(mesh, corners[i / 3][i % 3]);
-		t[i] = stored ? nt_stored_texcoord(mesh, vertex) : nt_texcoord(mesh, vertex);
-	}
-	return nt_compare_area(t[0], t[1], t[2], t[3], t[4], t[5]) >= 0 ? signs[0] : signs[1];
+	float t[2][3][2];
+	load_texcoords(mesh, corners[0], stored, t[0]);
+	load_texcoords(mesh, corners[1], stored, t[1]);
+	const int larger = nt_compare_area(t[0][0], t[0][1], t[0][2], t[1][0], t[1][1], t[1][2]);
+	return larger >= 0 ? signs[0] : signs[1];
 }
 
 int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool stored, bool *folded)
@@ -71,7 +79,7 @@ int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool 
 	}
 	if (folded)
 		*folded = differ;
-	return sign || !stored || !mesh->stored_texcoords
+	return sign || !stored || mesh->stored_v_offset == 0.0f
 		? sign : nt_face_orientation(mesh, face, first, false, NULL);
 }
 

@@ -106,7 +106,7 @@ static void count_face(const nmtan_mesh *mesh, size_t face, size_t first, nmtan_
 		const int sign = nt_triangle_orientation(mesh, c, false);
 		counts->degenerate_texcoords += sign == 0;
 		counts->mirrored += sign < 0;
-		counts->stored_differently += mesh->stored_texcoords &&
+		counts->stored_differently += mesh->stored_v_offset != 0.0f &&
 					      sign != nt_triangle_orientation(mesh, c, true);
 	}
 	counts->degenerate_positions += degenerate;

@@ -27,7 +27,7 @@ static nmtan_status check_attributes(nmtan_mesh *mesh)
 	if (!fill_stride(&mesh->position_stride_bytes, 3 * sizeof(float)) ||
 		!fill_stride(&mesh->normal_stride_bytes, 3 * sizeof(float)) ||
 		!fill_stride(&mesh->texcoord_stride_bytes, 2 * sizeof(float)) ||
-		!fill_stride(&mesh->stored_texcoord_stride_bytes, 2 * sizeof(float)))
+		!isfinite(mesh->stored_v_offset))
 		return NMTAN_ERROR_ARGUMENT;
 	return NMTAN_OK;
 }

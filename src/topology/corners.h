@@ -53,11 +53,11 @@ static inline size_t nt_first_corner(const nmtan_mesh *mesh, size_t face)
 }
 
 /* Texture coordinates as they will be stored. */
-static inline const float *nt_stored_texcoord(const nmtan_mesh *mesh, size_t vertex)
+static inline void nt_stored_texcoord(const nmtan_mesh *mesh, size_t vertex, float stored[2])
 {
-	return mesh->stored_texcoords
-		? nt_row(mesh->stored_texcoords, mesh->stored_texcoord_stride_bytes, vertex)
-		: nt_texcoord(mesh, vertex);
+	const float *t = nt_texcoord(mesh, vertex);
+	stored[0] = t[0];
+	stored[1] = t[1] + mesh->stored_v_offset;
 }
 
 /* The one or two triangles of the face whose first corner is `first`, as corners of the mesh; quads are
