@@ -4,6 +4,7 @@
  * Everything else is the pipeline's.
  */
 #include <errno.h>
+#include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -229,8 +230,19 @@ static int run(const nt_command *command, nt_style style, bool colour_on_stdout)
 	return code;
 }
 
+/* A standard stream that the caller closed must not become an output file, into which messages would
+ * go. Reading and writing fails on what stands in for the first two; messages may vanish. */
+static void hold_standard_streams(void)
+{
+	static const int flags[] = {O_WRONLY, O_RDONLY, O_WRONLY};
+	for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
+		if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", flags[fd]) < 0)
+			return;
+}
+
 int main(int argc, char **argv)
 {
+	hold_standard_streams();
 	/* A reader that goes away, or a file beyond the limit, is an error of writing like any other, after
 	 * which temporary files are removed. */
 	signal(SIGPIPE, SIG_IGN);

@@ -161,6 +161,19 @@ exits 0
 says "head.obj: parse"
 "$NMTAN" -q "$data/head.obj" - | cmp -s - "$WORK/out.txt" || wrong "the output differs"
 
+scene "on a terminal progress is shown after a second and wiped away"
+if command -v script >/dev/null 2>&1; then
+	cp "$data/head.obj" .
+	script -qec "'$NMTAN' head.obj a.glb" typed >/dev/null 2>&1
+	grep -q $'\r\033\[K' typed && wrong "a short run shows progress"
+	script -qec "{ sleep 1.7; cat head.obj; } | '$NMTAN' - b.glb" typed >/dev/null 2>&1
+	grep -q ': map, 1 s' typed || wrong "a long run shows none"
+	grep -q $'\r\033\[K.*-> b.glb' typed || wrong "the line was not wiped away"
+	script -qec "{ sleep 1.7; cat head.obj; } | '$NMTAN' --progress=off - b.glb" typed >/dev/null 2>&1
+	grep -q ': map' typed && wrong "progress although it is off"
+	same a.glb b.glb
+fi
+
 scene "colours are for terminals without NO_COLOR alone"
 cp "$data/mirrored_cube.obj" .
 run mirrored_cube.obj cube.glb

@@ -78,6 +78,18 @@ says "/dev/full"
 is $? 2
 says "No space left"
 
+scene "closed standard streams do not become files"
+cp "$data/mirrored_cube.obj" a.obj
+cp "$data/mirrored_cube.obj" b.obj
+run --images=none -d expected a.obj b.obj
+"$NMTAN" --images=none -d out a.obj b.obj >&- 2>&- <&-
+is $? 0
+same out/a.glb expected/a.glb
+same out/b.glb expected/b.glb
+"$NMTAN" --images=none a.obj - >&- 2>"$WORK/err.txt"
+is $? 2
+says "Bad file descriptor"
+
 scene "a reader that goes away is an error of writing"
 grid_obj 120 >grid.obj
 { "$NMTAN" -q grid.obj - 2>"$WORK/err.txt"; echo $? >code; } | head -c 10 >/dev/null
