@@ -170,11 +170,13 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Compute the tangents again: nmtan --existing=replace.",
 		"a triangle with w = 1, 1, -1"),
 	ROW(TAN_SIGN_MISMATCH, ERROR,
-		"{count} {triangle has|triangles have} the wrong sign of w",
+		"{count} {triangle has|triangles have} a bitangent that runs the wrong way",
 		"In glTF the bitangent cross(N, T) * w runs along -dP/dv, that is, w is +1 where the stored "
-		"UVs have a negative determinant. Here it is the opposite and the normal map's green channel is "
-		"inverted. The finding gives the share: 100 % means that the exporter's convention is inverted, "
-		"which is what happens when V is not flipped. A warning where no material uses the tangents.",
+		"UVs have a negative determinant. Here w is the opposite, or T and the bitangent are both "
+		"reversed, and the normal map's green channel is inverted. The finding gives the share: 100 % "
+		"by w means that the exporter's convention is inverted, which is what happens when V is not "
+		"flipped; reversed tangents were made for other texture coordinates. A warning where no "
+		"material uses the tangents.",
 		"Compute the tangents again: nmtan --existing=replace.",
 		"a glTF quad, upright and not mirrored, with w = -1"),
 	ROW(TAN_DIRECTION_MISMATCH, WARNING,

@@ -129,36 +129,94 @@ static nmtan_status judge_each(nt_judge *judge)
 
 /* ---- signs ---- */
 
-static void judge_signs(nt_judge *judge)
+/* At most cos 120 degrees between a bitangent and where v grows: reversed beyond what averaging does. */
+static const double REVERSED_COSINE = -0.5;
+
+/* dP/dv of a triangle, scaled to unit length; false where it has no direction. */
+static bool direction_of_v(const nt_surface *s, size_t t, nt_dvec3 *v)
+{
+	const uint32_t c = (uint32_t)(3 * t);
+	const float *ta = nt_side_texcoord(s, c);
+	const float *tb = nt_side_texcoord(s, c + 1), *tc = nt_side_texcoord(s, c + 2);
+	const nt_dvec3 a = nt_dvec3_load(nt_side_position(s, c));
+	const nt_dvec3 d1 = nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, c + 1)), a);
+	const nt_dvec3 d2 = nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, c + 2)), a);
+	const double sign = s->orientation[t];
+	*v = nt_dvec3_sub(nt_dvec3_scale(sign * ((double)tb[0] - ta[0]), d2),
+		nt_dvec3_scale(sign * ((double)tc[0] - ta[0]), d1));
+	return nt_dvec3_normalise(v);
+}
+
+/* Whether all three bitangents run against growing v although the normals agree with the winding. Asked
+ * of triangles whose w is right: their tangents are then reversed too. */
+static bool is_reversed(const nt_judge *judge, size_t t)
 {
 	const nt_surface *s = &judge->surface;
-	nt_tally mixed = {.code = NT_CODE_TAN_MIXED_W_TRIANGLE};
-	nt_tally wrong = {.code = NT_CODE_TAN_SIGN_MISMATCH};
-	size_t judged = 0;
-	for (size_t t = 0; t < s->triangle_count; t++) {
-		float w[3];
-		for (size_t k = 0; k < 3; k++)
-			w[k] = nt_stored_tangent(judge, s->corners[3 * t + k])[3];
-		if (!isfinite(w[0] + w[1] + w[2]) || w[0] == 0.0f || w[1] == 0.0f || w[2] == 0.0f)
-			continue;
-		const bool same = (w[0] > 0.0f) == (w[1] > 0.0f) && (w[1] > 0.0f) == (w[2] > 0.0f);
-		if (!same) {
-			nt_tally_triangle(judge, &mixed, t, NAN);
-			continue;
-		}
-		if (s->orientation[t] == 0)
-			continue;
-		judged++;
-		if ((w[0] > 0.0f) != (s->orientation[t] > 0))
-			nt_tally_triangle(judge, &wrong, t, w[0]);
+	nt_dvec3 v;
+	if (judge->stored != NT_STORED_AUTHORED || !judge->mesh->normals || !direction_of_v(s, t, &v))
+		return false;
+	const nt_dvec3 a = nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t)));
+	const nt_dvec3 face = nt_dvec3_cross(
+		nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t + 1))), a),
+		nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t + 2))), a));
+	for (size_t k = 0; k < 3; k++) {
+		const float *stored = nt_stored_tangent(judge, s->corners[3 * t + k]);
+		const nt_dvec3 normal =
+			nt_dvec3_load(judge->mesh->normals + 3 * (size_t)s->vertices[3 * t + k]);
+		nt_dvec3 bitangent = nt_dvec3_scale(stored[3],
+			nt_dvec3_cross(normal, nt_dvec3_load(stored)));
+		if (!(nt_dvec3_dot(face, normal) > 0.0) || !nt_dvec3_normalise(&bitangent) ||
+			nt_dvec3_dot(bitangent, v) > REVERSED_COSINE)
+			return false;
 	}
-	const double share = judged ? (double)wrong.count / (double)judged : 0.0;
-	nt_judge_report(judge, &mixed, NULL);
-	nt_tally_number(&wrong, "share", share);
-	nt_tally_number(&wrong, "judged_triangles", (double)judged);
-	nt_judge_report_as(judge, &wrong, severity_of(judge, NT_CODE_TAN_SIGN_MISMATCH),
-		"%.3g %% of %zu%s", 100.0 * share, judged,
-		wrong.count == judged ? ", the convention is inverted" : "");
+	return true;
+}
+
+typedef struct sign_tallies {
+	nt_tally mixed, wrong;
+	size_t judged, by_w, reversed;
+} sign_tallies;
+
+static void judge_sign(const nt_judge *judge, size_t t, sign_tallies *st)
+{
+	const nt_surface *s = &judge->surface;
+	float w[3];
+	for (size_t k = 0; k < 3; k++)
+		w[k] = nt_stored_tangent(judge, s->corners[3 * t + k])[3];
+	if (!isfinite(w[0] + w[1] + w[2]) || w[0] == 0.0f || w[1] == 0.0f || w[2] == 0.0f)
+		return;
+	if ((w[0] > 0.0f) != (w[1] > 0.0f) || (w[1] > 0.0f) != (w[2] > 0.0f)) {
+		nt_tally_triangle(judge, &st->mixed, t, NAN);
+		return;
+	}
+	if (s->orientation[t] == 0)
+		return;
+	st->judged++;
+	const bool by_w = (w[0] > 0.0f) != (s->orientation[t] > 0);
+	const bool reversed = !by_w && is_reversed(judge, t);
+	st->by_w += by_w;
+	st->reversed += reversed;
+	if (by_w || reversed)
+		nt_tally_triangle(judge, &st->wrong, t, w[0]);
+}
+
+static void judge_signs(nt_judge *judge)
+{
+	sign_tallies st = {.mixed = {.code = NT_CODE_TAN_MIXED_W_TRIANGLE},
+		.wrong = {.code = NT_CODE_TAN_SIGN_MISMATCH}};
+	for (size_t t = 0; t < judge->surface.triangle_count; t++)
+		judge_sign(judge, t, &st);
+	nt_judge_report(judge, &st.mixed, NULL);
+	const double share = st.judged ? (double)st.wrong.count / (double)st.judged : 0.0;
+	nt_tally_number(&st.wrong, "share", share);
+	nt_tally_number(&st.wrong, "judged_triangles", (double)st.judged);
+	nt_tally_number(&st.wrong, "wrong_w", (double)st.by_w);
+	nt_tally_number(&st.wrong, "reversed_tangents", (double)st.reversed);
+	nt_judge_report_as(judge, &st.wrong, severity_of(judge, NT_CODE_TAN_SIGN_MISMATCH), "%.3g %% of %zu%s",
+		100.0 * share, st.judged,
+		st.by_w == st.judged ? ", the convention is inverted"
+		: st.by_w == 0	     ? ", the tangents are reversed too"
+				     : "");
 }
 
 /* ---- directions ---- */

@@ -61,6 +61,18 @@ if [ -d "$ROOT/../shared/models" ]; then
 		run --check "$models/obj/$name.obj"
 		prints "MESH_NON_MANIFOLD_EDGE"
 	done
+	multi=$models/gltf/MultiUVTest/glTF/MultiUVTest.gltf
+	run --check "$multi"
+	prints "TAN_UNUSED"
+	prints "TAN_SIGN_MISMATCH  6 triangles"
+	prints "TAN_DIRECTION_MISMATCH  18 corners"
+	exits 0
+	run --check --uv=1 "$multi" # the set they were made for
+	! grep -q "TAN_SIGN\|TAN_DIRECTION" ../out.txt || wrong "found what is not there"
+	for authored in SheenCloth/glTF/SheenCloth pbr_sphere/glTF/sphere; do
+		run --check --fail-on=info "$models/gltf/$authored.gltf"
+		exits 0
+	done
 else
 	skip_case "../shared is not here"
 fi
