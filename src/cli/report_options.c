@@ -57,6 +57,15 @@ static nmtan_status read_severities(nt_report_options *options, const char *list
 	return NMTAN_OK;
 }
 
+/* What fails a run fails its tests. */
+static int least_failure(const nt_command *c)
+{
+	static const int least[] = {[NT_FAIL_ON_ERROR] = NT_SEVERITY_ERROR,
+		[NT_FAIL_ON_WARNING] = NT_SEVERITY_WARNING, [NT_FAIL_ON_INFO] = NT_SEVERITY_INFO,
+		[NT_FAIL_ON_NEVER] = NT_SEVERITY_ERROR + 1};
+	return least[c->fail_on];
+}
+
 static nmtan_status choose_target(nt_report_plan *plan, const nt_command *c, bool colour,
 	nt_error *error)
 {
@@ -79,6 +88,7 @@ static nmtan_status choose_target(nt_report_plan *plan, const nt_command *c, boo
 			"cannot tell the report's format from the name '%s': use --report-format",
 			target->path);
 	target->style.colour = dash && colour;
+	target->style.least_failure = least_failure(c);
 	return NMTAN_OK;
 }
 

@@ -290,6 +290,7 @@ nmtan_status nt_issues_finish(nt_report *report, const nt_report_options *option
 {
 	if (!sort_issues(report->issues, report->issue_count))
 		return NMTAN_ERROR_MEMORY;
+	report->compared = options->baseline != NULL;
 	if (options->baseline && !apply_baseline(report, options->baseline))
 		return NMTAN_ERROR_MEMORY;
 	for (size_t i = 0; i < report->issue_count; i++) {

@@ -186,6 +186,7 @@ typedef struct nt_report {
 	size_t dropped;           /* findings beyond max_issues */
 	size_t by_severity[3];    /* findings, dropped ones too, that no baseline knows */
 	size_t known;             /* findings that the baseline knows */
+	bool compared;            /* there was a baseline */
 } nt_report;
 
 /*

@@ -14,6 +14,10 @@ static const struct {
 } formats[NT_REPORT_FORMAT_COUNT] = {
 	[NT_REPORT_TEXT] = {"text", ".txt", nt_write_text},
 	[NT_REPORT_JSON] = {"json", ".json", nt_write_json},
+	[NT_REPORT_SARIF] = {"sarif", ".sarif", nt_write_sarif},
+	[NT_REPORT_JUNIT] = {"junit", ".xml", nt_write_junit},
+	[NT_REPORT_CSV] = {"csv", ".csv", nt_write_csv},
+	[NT_REPORT_MARKDOWN] = {"markdown", ".md", nt_write_markdown},
 };
 
 const char *nt_report_format_name(nt_report_format format)

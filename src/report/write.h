@@ -26,7 +26,8 @@ const char *nt_report_format_name(nt_report_format format);
 bool nt_report_format_of_path(const char *path, nt_report_format *format);
 
 typedef struct nt_report_style {
-	bool colour; /* text: for a terminal */
+	bool colour;       /* text: for a terminal */
+	int least_failure; /* JUnit: the nt_severity from which on a finding is a failure; 3: none */
 } nt_report_style;
 
 /* Takes a piece of the output. */

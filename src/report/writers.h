@@ -16,6 +16,10 @@ typedef struct nt_report_list {
 
 void nt_write_text(const nt_report_list *reports, nt_buffer *out);
 void nt_write_json(const nt_report_list *reports, nt_buffer *out);
+void nt_write_sarif(const nt_report_list *reports, nt_buffer *out);
+void nt_write_junit(const nt_report_list *reports, nt_buffer *out);
+void nt_write_csv(const nt_report_list *reports, nt_buffer *out);
+void nt_write_markdown(const nt_report_list *reports, nt_buffer *out);
 
 /* A path as reports show it: without its folders where it is absolute. */
 const char *nt_shown_path(const char *path);

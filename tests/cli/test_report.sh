@@ -160,6 +160,53 @@ is "$(value r.json 'r["files"][0]["meshes"][0]["name"]')" "<script>alert(1)</scr
 run --check s.obj
 ! grep -q "$(printf '\033')" ../out.txt || wrong "an escape sequence in the text"
 
+nasty() { # an OBJ whose object has this name, and a triangle without UV area
+	printf 'o %s\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 2 0\nf 1/1 2/2 3/3\n' "$1"
+}
+
+scene "SARIF has a result per finding, with lines, pointers and fingerprints"
+run --check --fail-on=never --report=r.sarif "$data/mirrored_cube.obj" "$data/plates.gltf"
+exits 0
+run --check --fail-on=never --report=r.json "$data/mirrored_cube.obj" "$data/plates.gltf"
+is "$(python3 "$report/sarif.py" r.sarif)" "$(value r.json 'sum(len(f["findings"]) for f in r["files"])')"
+is "$(value r.sarif '({l["fullyQualifiedName"] for x in r["runs"][0]["results"] for p in x["locations"]
+	for l in p.get("logicalLocations", []) if "fullyQualifiedName" in l} ==
+	{"/meshes/0/primitives/0", "/meshes/0/primitives/2"})')" \
+	"True"
+nasty 'a"b\\<c>' >'odd name?.obj'
+run --check --report=r.sarif 'odd name?.obj' nothing.obj
+exits 2
+python3 "$report/sarif.py" r.sarif >/dev/null || wrong "not valid"
+is "$(value r.sarif 'r["runs"][0]["invocations"][0]["executionSuccessful"]')" False
+is "$(value r.sarif 'r["runs"][0]["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"]')" \
+	"odd%20name%3F.obj"
+
+scene "JUnit fails where the run fails, file by rule"
+run --check --fail-on=warning --report=r.xml "$data/head.obj" "$data/quad.obj"
+exits 6
+is "$(python3 -c 'import sys, xml.etree.ElementTree as x
+t = x.parse(sys.argv[1]).getroot()
+print([(s.get("name").split("/")[-1], s.get("failures"), [c.get("name") for c in s if c.find("failure") is not None])
+	for s in t], len(t[0]) == len(t[1]) == int(t[0].get("tests")))' r.xml)" \
+	"[('head.obj', '1', ['TAN_MIRROR_SHARED_VERTEX']), ('quad.obj', '0', [])] True"
+run --check --report=r.xml "$data/head.obj"
+exits 0
+! grep -q "<failure" r.xml || wrong "a failure although the run passes"
+
+scene "JUnit, CSV, Markdown and SARIF survive names made to break them"
+nasty "$(printf '=1+1,"<script>&]]>|`x`\033[31m\377')" >n.obj
+for format in xml csv md sarif; do
+	run --check --report=r.$format n.obj
+	exits 0
+done
+python3 "$report/sarif.py" r.sarif >/dev/null || wrong "SARIF is not valid"
+python3 -c 'import sys, xml.etree.ElementTree as x; x.parse(sys.argv[1])' r.xml || wrong "XML is not well formed"
+python3 -c 'import csv, sys
+rows = list(csv.reader(open(sys.argv[1], newline="", encoding="utf-8", errors="replace")))
+assert {len(r) for r in rows} == {15}, rows
+assert not any(c[:1] in tuple("=+@") for r in rows for c in r), rows' r.csv || wrong "CSV is broken"
+! grep -qE '<script|[^\\]\|`' r.md || wrong "markup in Markdown"
+
 scene "--list-codes names every code of the schema"
 run --list-codes
 exits 0
