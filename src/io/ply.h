@@ -8,6 +8,7 @@
 
 #include <string.h>
 #include "ext/number.h"
+#include "io/decimal.h"
 #include "scene/scene.h"
 
 typedef enum ply_encoding { PLY_ASCII, PLY_LITTLE, PLY_BIG } ply_encoding;
@@ -24,6 +25,9 @@ typedef enum ply_type {
 } ply_type;
 
 enum { PLY_NO_PROPERTY = -1 };
+
+/* Bytes behind its begin that nt_read_decimal may touch: sign, 8 digits, point, 24 digits. */
+enum { PLY_DECIMAL_MARGIN = 40 };
 
 typedef struct ply_property {
 	const char *name;
@@ -150,6 +154,23 @@ nmtan_status ply_read_faces(nt_scene *scene, nt_mesh *mesh, ply_source *source, 
 nmtan_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *source,
 	ply_cursor *cursor, nt_error *error);
 
+/* Rows of plain triangles or quads, read many at a time (ply_runs.c). */
+typedef struct ply_run_layout {
+	bool possible;     /* the element's rows can be read so */
+	ply_encoding encoding;
+	size_t lead, tail; /* binary: bytes of scalars before and after the list */
+} ply_run_layout;
+
+ply_run_layout ply_find_run_layout(const ply_element *element, int indices, ply_encoding encoding);
+
+/* The size, 3 or 4, that the row at the cursor seems to have; 0: read it the general way. */
+size_t ply_run_size(const ply_run_layout *layout, const ply_cursor *cursor);
+
+/* Reads at most `rows` faces of that size, up to the first that is not plain and sound; moves the
+ * cursor behind them and returns their number. indices has room for rows * size. */
+size_t ply_take_run(const ply_run_layout *layout, ply_cursor *cursor, size_t rows, size_t size,
+	size_t vertex_count, uint32_t *indices);
+
 static inline bool ply_is_blank(unsigned char c)
 {
 	return c == ' ' || c == '\t' || c == '\v' || c == '\f';
@@ -158,6 +179,12 @@ static inline bool ply_is_blank(unsigned char c)
 static inline bool ply_is_line_end(unsigned char c)
 {
 	return c == '\n' || c == '\r';
+}
+
+/* Any character that ends a value. */
+static inline bool ply_is_space(unsigned char c)
+{
+	return c == ' ' || (unsigned char)(c - '\t') <= '\r' - '\t';
 }
 
 /* Within an ASCII row: to the next value; behind the value at `at`. */
@@ -170,7 +197,7 @@ static inline const unsigned char *ply_skip_blanks(const unsigned char *at, cons
 
 static inline const unsigned char *ply_skip_value(const unsigned char *at, const unsigned char *end)
 {
-	while (at < end && !ply_is_blank(*at) && !ply_is_line_end(*at))
+	while (at < end && !ply_is_space(*at))
 		at++;
 	return at;
 }
@@ -179,9 +206,11 @@ static inline const unsigned char *ply_skip_value(const unsigned char *at, const
 static inline const unsigned char *ply_read_float(const unsigned char *at, const unsigned char *end,
 	float *value)
 {
-	const unsigned char *after = (const unsigned char *)nt_read_float(
-		(const char *)at, (const char *)end, value);
-	return after && (after == end || ply_is_blank(*after) || ply_is_line_end(*after)) ? after : NULL;
+	const char *const p = (const char *)at;
+	const unsigned char *after = (const unsigned char *)(end - at > PLY_DECIMAL_MARGIN
+			? nt_read_decimal(p, (const char *)end, value)
+			: nt_read_float(p, (const char *)end, value));
+	return after && (after == end || ply_is_space(*after)) ? after : NULL;
 }
 
 /* The same for an integer; one that does not fit is cut to a number that is out of every range. */
@@ -195,7 +224,7 @@ static inline const unsigned char *ply_read_integer(const unsigned char *at, con
 	for (; at < end && *at >= '0' && *at <= '9'; at++)
 		sum = sum < INT64_MAX / 100 ? sum * 10 + (*at - '0') : sum;
 	*value = negative ? -sum : sum;
-	const bool ends = at == end || ply_is_blank(*at) || ply_is_line_end(*at);
+	const bool ends = at == end || ply_is_space(*at);
 	return at > digits && ends ? at : NULL;
 }
 

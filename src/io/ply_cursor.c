@@ -30,15 +30,10 @@ nmtan_status ply_fail_at(const ply_cursor *cursor, const unsigned char *at, nt_e
 	return nt_fail_offset(error, NMTAN_ERROR_INPUT, (uint64_t)(at - cursor->begin), "%s", message);
 }
 
-static bool is_space(unsigned char c)
-{
-	return c == ' ' || (c >= '\t' && c <= '\r');
-}
-
 const char *ply_show(const ply_cursor *cursor, const unsigned char *at, char text[40])
 {
 	size_t length = 0;
-	while (length < 30 && at + length < cursor->end && !is_space(at[length]))
+	while (length < 30 && at + length < cursor->end && !ply_is_space(at[length]))
 		length++;
 	if (at == cursor->end)
 		return strcpy(text, "the end of the file");
@@ -54,7 +49,7 @@ const char *ply_show(const ply_cursor *cursor, const unsigned char *at, char tex
 
 void ply_next_row(ply_cursor *cursor)
 {
-	while (cursor->at < cursor->end && is_space(*cursor->at))
+	while (cursor->at < cursor->end && ply_is_space(*cursor->at))
 		cursor->at++;
 }
 

@@ -33,6 +33,7 @@ typedef struct builder {
 	size_t corner_count, uv_count, corner_capacity, uv_capacity;
 	uint32_t texture;
 
+	ply_run_layout runs;
 	bool has_wedges;
 	ply_wedges wedges;
 	float (*points)[3];
@@ -67,15 +68,16 @@ static nt_place place_of_row(const builder *b)
 
 /* Faces. */
 
-static bool make_room(builder *b, size_t corners)
+static bool make_room(builder *b, size_t faces, size_t corners)
 {
+	const size_t count = b->face_count + faces;
 	return nt_grow((void **)&b->indices, &b->index_capacity, b->index_count + corners,
 		       sizeof *b->indices) &&
-	       (!b->sizes || nt_grow((void **)&b->sizes, &b->size_capacity, b->face_count + 1, 1)) &&
-	       (!b->polygons || nt_grow((void **)&b->polygons, &b->polygon_capacity, b->face_count + 1,
+	       (!b->sizes || nt_grow((void **)&b->sizes, &b->size_capacity, count, 1)) &&
+	       (!b->polygons || nt_grow((void **)&b->polygons, &b->polygon_capacity, count,
 					sizeof *b->polygons)) &&
 	       (b->texture_property == PLY_NO_PROPERTY ||
-		       nt_grow((void **)&b->primitives, &b->primitive_capacity, b->face_count + 1,
+		       nt_grow((void **)&b->primitives, &b->primitive_capacity, count,
 			       sizeof *b->primitives));
 }
 
@@ -106,7 +108,7 @@ static nmtan_status add_face(builder *b, const uint32_t *vertices, size_t size)
 {
 	if (b->face_count == NMTAN_MAX_FACES)
 		return nt_fail(b->error, NMTAN_ERROR_TOO_LARGE, "more than %zu faces", NMTAN_MAX_FACES);
-	if (!make_room(b, 4))
+	if (!make_room(b, 1, 4))
 		return nt_fail_memory(b->error);
 	memcpy(b->indices + b->index_count, vertices, size * sizeof *vertices);
 	b->index_count += size;
@@ -372,21 +374,54 @@ static nmtan_status read_row(builder *b)
 	return ply_check_row_end(b->cursor, b->element, b->row, b->error);
 }
 
-static nmtan_status read_rows(builder *b)
+/* Reads as many plain faces as there are at the cursor: b->row moves behind them. */
+static nmtan_status take_run(builder *b)
+{
+	const size_t size = ply_run_size(&b->runs, b->cursor);
+	if (size == 0)
+		return NMTAN_OK;
+	const size_t left = b->element->count - b->row, room = NMTAN_MAX_FACES - b->face_count;
+	const size_t rows = left < room ? left : room;
+	if ((size == 4 && !start_sizes(b)) || !make_room(b, rows, size * rows + 4))
+		return nt_fail_memory(b->error);
+	const size_t taken = ply_take_run(&b->runs, b->cursor, rows, size, b->source->vertex->count,
+		b->indices + b->index_count);
+	if (b->sizes)
+		memset(b->sizes + b->face_count, (int)size, taken);
+	for (size_t i = 0; b->polygons && i < taken; i++)
+		b->polygons[b->face_count + i] = (uint32_t)(b->polygon_count + i);
+	b->index_count += size * taken;
+	b->face_count += taken;
+	b->polygon_count += taken;
+	b->row += taken;
+	return NMTAN_OK;
+}
+
+static nmtan_status read_any_row(builder *b)
 {
 	const bool ascii = b->cursor->encoding == PLY_ASCII;
+	b->row_begin = b->cursor->at;
+	if (b->cursor->at == b->cursor->end)
+		return ply_fail_at(b->cursor, b->cursor->at, b->error,
+			"the file ends where %s %zu of %zu was expected", b->element->name, b->row,
+			b->element->count);
+	nmtan_status status = ascii ? read_row(b) : load_row(b);
+	if (!status)
+		status = b->element == b->source->strips ? add_strips(b) : add_polygon(b);
+	b->row++;
+	return status;
+}
+
+static nmtan_status read_rows(builder *b)
+{
 	nmtan_status status = NMTAN_OK;
-	for (b->row = 0; !status && b->row < b->element->count; b->row++) {
-		if (ascii)
+	while (!status && b->row < b->element->count) {
+		if (b->cursor->encoding == PLY_ASCII)
 			ply_next_row(b->cursor);
-		b->row_begin = b->cursor->at;
-		if (b->cursor->at == b->cursor->end)
-			return ply_fail_at(b->cursor, b->cursor->at, b->error,
-				"the file ends where %s %zu of %zu was expected", b->element->name,
-				b->row, b->element->count);
-		status = ascii ? read_row(b) : load_row(b);
-		if (!status)
-			status = b->element == b->source->strips ? add_strips(b) : add_polygon(b);
+		const size_t before = b->row;
+		status = take_run(b);
+		if (!status && b->row == before)
+			status = read_any_row(b);
 	}
 	return status;
 }
@@ -459,6 +494,8 @@ static nmtan_status prepare(builder *b)
 	b->has_wedges = b->texcoords_property != PLY_NO_PROPERTY;
 	if (b->has_wedges && !ply_wedges_init(&b->wedges, b->source->vertex->count))
 		return nt_fail_memory(b->error);
+	if (!b->has_wedges && b->texture_property == PLY_NO_PROPERTY && element != b->source->strips)
+		b->runs = ply_find_run_layout(element, b->indices_property, b->cursor->encoding);
 	/* most files are triangles; the count has been checked against the file */
 	return nt_grow((void **)&b->indices, &b->index_capacity, 3 * element->count + 4,
 		       sizeof *b->indices)

@@ -175,26 +175,88 @@ static nmtan_status read_line(const reader *r, size_t row, const target *const *
 	return NMTAN_OK;
 }
 
+/* Where the number of a column goes. */
+typedef struct column {
+	float *to; /* NULL: nowhere */
+	size_t stride;
+	float divisor;
+} column;
+
+/* One line of numbers with single blanks between them, far enough from the end of the file; the place
+ * behind it, or NULL: read it the general way. */
+static inline const char *read_plain_line(const char *at, const char *end, size_t row,
+	const column *columns, size_t count)
+{
+	for (size_t i = 0; i < count; i++) {
+		if (end - at <= PLY_DECIMAL_MARGIN)
+			return NULL;
+		float value;
+		at = nt_read_decimal(at, end, &value);
+		if (!at || at == end)
+			return NULL;
+		const column *c = &columns[i];
+		if (c->to)
+			c->to[row * c->stride] = c->divisor == 1.0f ? value : value / c->divisor;
+		if (i + 1 < count && *at++ != ' ')
+			return NULL;
+	}
+	at += *at == '\r' && end - at > 1;
+	return *at == '\n' ? at + 1 : NULL;
+}
+
+static void read_plain_lines(const reader *r, size_t *row, const column *columns)
+{
+	const char *at = (const char *)r->cursor->at;
+	const char *const end = (const char *)r->cursor->end;
+	const size_t count = r->element->property_count;
+	for (const char *next; *row < r->element->count; at = next, ++*row) {
+		next = read_plain_line(at, end, *row, columns, count);
+		if (!next)
+			break;
+	}
+	r->cursor->at = (const unsigned char *)at;
+}
+
+static nmtan_status read_any_line(const reader *r, size_t row, const target *const *by_property)
+{
+	ply_next_row(r->cursor);
+	if (r->cursor->at == r->cursor->end)
+		return ply_fail_at(r->cursor, r->cursor->at, r->error,
+			"the file ends where %s %zu of %zu was expected", r->element->name, row,
+			r->element->count);
+	const nmtan_status status = read_line(r, row, by_property);
+	return status ? status : ply_check_row_end(r->cursor, r->element, row, r->error);
+}
+
+/* Plain lines as long as there are any, then one in the general way, and so on. */
+static nmtan_status read_lines_into(const reader *r, const target **by_property, column *columns)
+{
+	for (size_t i = 0; i < r->target_count; i++) {
+		const target *t = &r->targets[i];
+		by_property[t->property] = t;
+		columns[t->property] = (column){t->values, t->stride, t->divisor};
+	}
+	nmtan_status status = NMTAN_OK;
+	for (size_t row = 0; !status && row < r->element->count;) {
+		if (!r->element->has_list) {
+			ply_next_row(r->cursor);
+			read_plain_lines(r, &row, columns);
+		}
+		if (row < r->element->count)
+			status = read_any_line(r, row++, by_property);
+	}
+	return status;
+}
+
 static nmtan_status read_lines(const reader *r)
 {
-	const target **by_property = nt_calloc(r->element->property_count, sizeof *by_property);
-	if (!by_property)
-		return nt_fail_memory(r->error);
-	for (size_t i = 0; i < r->target_count; i++)
-		by_property[r->targets[i].property] = &r->targets[i];
-	nmtan_status status = NMTAN_OK;
-	for (size_t row = 0; !status && row < r->element->count; row++) {
-		ply_next_row(r->cursor);
-		if (r->cursor->at == r->cursor->end)
-			status = ply_fail_at(r->cursor, r->cursor->at, r->error,
-				"the file ends where %s %zu of %zu was expected", r->element->name, row,
-				r->element->count);
-		else
-			status = read_line(r, row, by_property);
-		if (!status)
-			status = ply_check_row_end(r->cursor, r->element, row, r->error);
-	}
+	const size_t count = r->element->property_count;
+	const target **by_property = nt_calloc(count, sizeof *by_property);
+	column *columns = nt_calloc(count, sizeof *columns);
+	const nmtan_status status = by_property && columns ? read_lines_into(r, by_property, columns)
+							   : nt_fail_memory(r->error);
 	free((void *)by_property);
+	free(columns);
 	return status;
 }
 
