@@ -60,9 +60,21 @@ soak-built: check-built
 # make stress: numerical stability at the edges of floating point; tables and charts in build/stress.
 stress_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/stress/*.c))
 
-$(B)/tests/stress/stress: $(stress_obj) $(support_obj) $(B)/libnmtan.a
+measure_obj := $(patsubst %,$(B)/tests/support/%.o,oracle128 surfaces soup chart golden)
+$(B)/tests/stress/stress: $(stress_obj) $(measure_obj) $(B)/libnmtan.a
 	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm $(QUADMATH)
 
 .PHONY: stress
 stress: $(B)/tests/stress/stress
 	@sh tests/stress/run.sh $< build/stress
+
+# make bench: run time against error, with the peers that the machine has; in build/bench.
+error_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/bench/error*.c))
+
+$(B)/tests/bench/error: $(error_obj) $(measure_obj) $(B)/libnmtan.a
+	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm $(QUADMATH)
+
+.PHONY: bench bench-error
+bench: bench-error
+bench-error: $(B)/tests/bench/error
+	@CC="$(CC)" sh tests/bench/run_error.sh $< build/bench
