@@ -17,6 +17,7 @@
 #ifndef NT_IO_DECIMAL_H
 #define NT_IO_DECIMAL_H
 
+#include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
 #include "ext/number.h"
@@ -60,17 +61,52 @@ static inline unsigned nt_read_digits(const char *p, uint32_t *value)
 	return count;
 }
 
+/* w / 10^fraction as a float; false: only fast_float knows. w is at most 2^53, fraction at most 16. */
+static inline bool nt_decimal_value(uint64_t w, unsigned fraction, bool negative, float *value)
+{
+	static const double power[17] = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11,
+		1e12, 1e13, 1e14, 1e15, 1e16};
+	const double magnitude = (double)(int64_t)w / power[fraction];
+	uint64_t bits;
+	memcpy(&bits, &magnitude, sizeof bits);
+	const bool midpoint = (bits & 0x1FFFFFFF) == 0x10000000;
+	bits |= (uint64_t)negative << 63;
+	double number;
+	memcpy(&number, &bits, sizeof number);
+	*value = (float)number;
+	return !midpoint;
+}
+
+static const uint32_t nt_integer_power[9] = {1, 10, 100, 1000, 10000, 100000, 1000000, 10000000,
+	100000000};
+
+/* Reads what most numbers are: a sign or none, fewer than 8 digits, and a point with fewer than 8
+ * digits behind it or none. NULL: it is something else, or no number at all. */
+static inline const char *nt_read_plain_decimal(const char *p, float *value)
+{
+	const bool negative = *p == '-';
+	p += negative;
+	uint32_t whole = (unsigned char)*p - (uint32_t)'0', part = 0;
+	unsigned digits = 1, fraction = 0;
+	if (whole > 9 || p[1] != '.')
+		digits = nt_read_digits(p, &whole);
+	p += digits;
+	if (*p == '.') {
+		fraction = nt_read_digits(++p, &part);
+		p += fraction;
+	}
+	if (digits % 8 == 0 || fraction == 8 || (*p | 0x20) == 'e')
+		return NULL;
+	const uint64_t w = (uint64_t)whole * nt_integer_power[fraction] + part;
+	return nt_decimal_value(w, fraction, negative, value) ? p : NULL;
+}
+
 /* Reads a float at p as nt_read_float does, to which the long way leads; end bounds only that. */
 static inline const char *nt_read_decimal(const char *p, const char *end, float *value)
 {
-	static const uint32_t integer_power[9] = {1, 10, 100, 1000, 10000, 100000, 1000000, 10000000,
-		100000000};
-	static const double power[17] = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11,
-		1e12, 1e13, 1e14, 1e15, 1e16};
 	const char *const begin = p;
-	const uint64_t negative = *p == '-';
+	const bool negative = *p == '-';
 	p += negative;
-
 	uint32_t digits;
 	const unsigned whole = nt_read_digits(p, &digits);
 	uint64_t w = digits;
@@ -78,30 +114,21 @@ static inline const char *nt_read_decimal(const char *p, const char *end, float 
 	p += whole;
 	if (*p == '.') {
 		fraction = nt_read_digits(++p, &digits);
-		w = w * integer_power[fraction] + digits;
+		w = w * nt_integer_power[fraction] + digits;
 		p += fraction;
 		if (fraction == 8) {
 			const unsigned more = nt_read_digits(p, &digits);
-			w = w * integer_power[more] + digits;
+			w = w * nt_integer_power[more] + digits;
 			p += more;
 			fraction += more;
 		}
 	}
 	/* w cannot have overflowed where there were at most 18 digits. */
 	const unsigned count = whole + fraction;
-	if (count == 0 || count > 18 || whole == 8 || fraction == 16 || (*p | 0x20) == 'e' ||
-		w > UINT64_C(1) << 53)
-		return nt_read_float(begin, end, value);
-	const double magnitude = (double)w / power[fraction];
-	uint64_t bits;
-	memcpy(&bits, &magnitude, sizeof bits);
-	if ((bits & 0x1FFFFFFF) == 0x10000000)
-		return nt_read_float(begin, end, value);
-	bits |= negative << 63;
-	double number;
-	memcpy(&number, &bits, sizeof number);
-	*value = (float)number;
-	return p;
+	const bool plain = count > 0 && count <= 18 && whole < 8 && fraction < 16 && (*p | 0x20) != 'e' &&
+		w <= UINT64_C(1) << 53;
+	return plain && nt_decimal_value(w, fraction, negative, value) ? p :
+		nt_read_float(begin, end, value);
 }
 
 #endif

@@ -23,6 +23,10 @@
  * dense files hold; memory that is not used is never touched. */
 enum { BYTES_PER_ELEMENT = 24 };
 
+/* Neighbouring faces share corners: a table of this size finds nearly all of them again within a chunk and
+ * stays in the cache. */
+enum { RECENT_COUNT = 1 << 13 };
+
 const char *const obj_ignored_names[OBJ_IGNORED_COUNT] = {
 	[OBJ_SMALL_FACE] = "f with fewer than 3 corners",
 	"l", "p", "vp", "deg", "bmat", "step", "cstype", "curv", "curv2", "surf", "parm", "trim", "hole",
@@ -36,8 +40,12 @@ typedef struct reader {
 	obj_chunk *chunk;
 	const char *p;
 	size_t line;           /* of p, within the chunk, from 0 */
-	const char *statement; /* where the statement began, and its line */
-	size_t statement_line;
+	size_t statement_line; /* of the statement's first word */
+
+	/* Number + 1 of the distinct corner that last had a v, by the low bits of v. Valid are those of
+	 * this object that still exist. */
+	uint32_t *recent;
+	size_t object_begin;   /* distinct corners of the chunk before the object */
 } reader;
 
 static bool is_blank(char c)
@@ -67,18 +75,23 @@ static bool joins_lines(const char *p)
 	return *p == '\\' && is_line_end(p[1]);
 }
 
-static void skip_blanks(reader *r)
+static void skip_joined_lines(reader *r)
 {
-	const char *p = r->p;
-	for (;;) {
-		while (is_blank(*p))
-			p++;
-		if (!joins_lines(p))
-			break;
-		p = behind_line_end(p + 1);
-		r->line++;
+	while (is_blank(*r->p) || joins_lines(r->p)) {
+		if (!is_blank(*r->p)) {
+			r->p = behind_line_end(r->p + 1) - 1;
+			r->line++;
+		}
+		r->p++;
 	}
-	r->p = p;
+}
+
+static inline void skip_blanks(reader *r)
+{
+	while (*r->p == ' ')
+		r->p++;
+	if (*r->p == '\t' || *r->p == '\\')
+		skip_joined_lines(r);
 }
 
 /* Whether a word may end here. */
@@ -132,7 +145,20 @@ static bool reserve(obj_chunk *chunk, void **block, size_t *capacity, size_t cou
 
 /* ---- v, vt, vn ---- */
 
-/* Reads numbers up to the end of the line, at most `most`. Returns how many, or -1 after an error. */
+/* The quick way for a line of `count` short decimals and nothing else; NULL: something else. */
+static inline const char *read_plain_numbers(const char *p, float *numbers, int count)
+{
+	for (int i = 0; i < count; i++) {
+		while (*p == ' ')
+			p++;
+		p = nt_read_plain_decimal(p, &numbers[i]);
+		if (!p || !(*p == ' ' || is_line_end(*p)))
+			return NULL;
+	}
+	return is_line_end(*p) ? p : NULL;
+}
+
+/* Reads numbers up to the end of the line, at most `most`; -1 after an error, else how many. */
 static int read_numbers(reader *r, float *numbers, int most, const char *expected)
 {
 	for (int count = 0;; count++) {
@@ -154,6 +180,16 @@ static int read_numbers(reader *r, float *numbers, int most, const char *expecte
 		}
 		r->p = p;
 	}
+}
+
+/* The same, with the quick way for the usual number of them tried first. */
+static inline int read_line(reader *r, float *numbers, int usual, int most, const char *expected)
+{
+	const char *p = read_plain_numbers(r->p, numbers, usual);
+	if (!p)
+		return read_numbers(r, numbers, most, expected);
+	r->p = p;
+	return usual;
 }
 
 /* Keeps the colour of the position that is about to be counted; positions before it are white. */
@@ -181,7 +217,7 @@ static nmtan_status read_position(reader *r)
 	static const char expected[] = "3 coordinates, with a weight or a colour of 3 or 4 numbers";
 	obj_chunk *chunk = r->chunk;
 	float numbers[7];
-	const int count = read_numbers(r, numbers, 7, expected);
+	const int count = read_line(r, numbers, 3, 7, expected);
 	if (count < 0)
 		return chunk->error.status;
 	if (count < 3 || count == 5)
@@ -200,7 +236,7 @@ static nmtan_status read_texcoord(reader *r)
 {
 	obj_chunk *chunk = r->chunk;
 	float numbers[3] = {0, 0, 0};
-	const int count = read_numbers(r, numbers, 3, "at most 3 texture coordinates");
+	const int count = read_line(r, numbers, 2, 3, "at most 3 texture coordinates");
 	if (count < 0)
 		return chunk->error.status;
 	if (count == 0)
@@ -217,7 +253,7 @@ static nmtan_status read_normal(reader *r)
 {
 	obj_chunk *chunk = r->chunk;
 	float numbers[3];
-	const int count = read_numbers(r, numbers, 3, "3 components of a normal and no more");
+	const int count = read_line(r, numbers, 3, 3, "3 components of a normal and no more");
 	if (count < 0)
 		return chunk->error.status;
 	if (count < 3)
@@ -253,7 +289,7 @@ static nmtan_status read_unusual_index(reader *r, size_t count, uint32_t *index)
 }
 
 /* `count` elements of that kind precede the face in its chunk. */
-static inline nmtan_status read_index(reader *r, size_t count, uint32_t *index)
+static nmtan_status read_index(reader *r, size_t count, uint32_t *index)
 {
 	uint32_t value;
 	const unsigned digits = nt_read_digits(r->p, &value);
@@ -264,8 +300,33 @@ static inline nmtan_status read_index(reader *r, size_t count, uint32_t *index)
 	return NMTAN_OK;
 }
 
+/* The quick way for v, v//n and v/t/n of short positive numbers before a blank or the line's end. NULL:
+ * something else, which read_corner() takes or refuses. */
+static inline const char *read_plain_corner(const char *p, obj_corner *corner)
+{
+	unsigned digits = nt_read_digits(p, &corner->v);
+	corner->t = corner->n = 0;
+	bool plain = digits % 8 != 0 && corner->v != 0;
+	p += digits;
+	if (*p == '/') {
+		if (*++p != '/') {
+			digits = nt_read_digits(p, &corner->t);
+			plain = plain && digits % 8 != 0 && corner->t != 0 && p[digits] == '/';
+			p += digits;
+		}
+		p++;
+		digits = nt_read_digits(p, &corner->n);
+		plain = plain && digits % 8 != 0 && corner->n != 0;
+		p += digits;
+	}
+	corner->v--;
+	corner->t--; /* 0, which none of the numbers was, becomes OBJ_ABSENT */
+	corner->n--;
+	return plain && (is_blank(*p) || is_line_end(*p)) ? p : NULL;
+}
+
 /* v, v/t, v//n or v/t/n. */
-static inline nmtan_status read_corner(reader *r, obj_corner *corner)
+static nmtan_status read_corner(reader *r, obj_corner *corner)
 {
 	const obj_chunk *chunk = r->chunk;
 	nmtan_status status = read_index(r, chunk->position_count, &corner->v);
@@ -302,27 +363,41 @@ static void ignore(reader *r, size_t which)
 		ignored->line = r->statement_line;
 }
 
-static nmtan_status read_face(reader *r)
+/* Appends a corner; one that was seen lately gets its number again. */
+static inline nmtan_status store_corner(reader *r, obj_corner corner)
 {
 	obj_chunk *chunk = r->chunk;
-	const size_t first = chunk->corner_count;
-	for (;;) {
-		skip_blanks(r);
-		if (is_line_end(*r->p) || *r->p == '#')
-			break;
-		if (!reserve(chunk, (void **)&chunk->corners, &chunk->corner_capacity, chunk->corner_count,
-				sizeof *chunk->corners))
-			return fail_memory(r);
-		const nmtan_status status = read_corner(r, &chunk->corners[chunk->corner_count]);
-		if (status)
-			return status;
-		chunk->corner_count++;
+	uint32_t *recent = &r->recent[corner.v % RECENT_COUNT];
+	const size_t number = (size_t)*recent - 1;
+	if (!reserve(chunk, (void **)&chunk->corners, &chunk->corner_capacity, chunk->corner_count,
+			sizeof *chunk->corners))
+		return fail_memory(r);
+	if (number - r->object_begin < chunk->distinct_count - r->object_begin) {
+		const obj_corner *seen = &chunk->distinct[number];
+		if (seen->v == corner.v && seen->t == corner.t && seen->n == corner.n) {
+			chunk->corners[chunk->corner_count++] = (uint32_t)number;
+			return NMTAN_OK;
+		}
 	}
-	const size_t size = chunk->corner_count - first;
+	if (!reserve(chunk, (void **)&chunk->distinct, &chunk->distinct_capacity, chunk->distinct_count,
+			sizeof *chunk->distinct))
+		return fail_memory(r);
+	chunk->distinct[chunk->distinct_count] = corner;
+	chunk->corners[chunk->corner_count++] = (uint32_t)chunk->distinct_count++;
+	*recent = (uint32_t)chunk->distinct_count;
+	return NMTAN_OK;
+}
+
+/* Closes the face that began at these counts, or takes it back where it is none. */
+static nmtan_status end_face(reader *r, size_t first_corner, size_t first_distinct)
+{
+	obj_chunk *chunk = r->chunk;
+	const size_t size = chunk->corner_count - first_corner;
 	if (size < 3) {
 		if (chunk->ignored[OBJ_SMALL_FACE].count == 0)
 			chunk->small_size = size;
-		chunk->corner_count = first;
+		chunk->corner_count = first_corner;
+		chunk->distinct_count = first_distinct;
 		ignore(r, OBJ_SMALL_FACE);
 		return NMTAN_OK;
 	}
@@ -339,6 +414,28 @@ static nmtan_status read_face(reader *r)
 	return NMTAN_OK;
 }
 
+static nmtan_status read_face(reader *r)
+{
+	const obj_chunk *chunk = r->chunk;
+	const size_t first_corner = chunk->corner_count, first_distinct = chunk->distinct_count;
+	for (;;) {
+		skip_blanks(r);
+		if (is_line_end(*r->p) || *r->p == '#')
+			return end_face(r, first_corner, first_distinct);
+		obj_corner corner;
+		const char *end = read_plain_corner(r->p, &corner);
+		nmtan_status status = NMTAN_OK;
+		if (end)
+			r->p = end;
+		else
+			status = read_corner(r, &corner);
+		if (!status)
+			status = store_corner(r, corner);
+		if (status)
+			return status;
+	}
+}
+
 /* ---- o, usemtl, mtllib, s ---- */
 
 static nmtan_status store_event(reader *r, obj_event event)
@@ -350,6 +447,8 @@ static nmtan_status store_event(reader *r, obj_event event)
 	event.line = r->statement_line;
 	event.face = chunk->face_count;
 	event.corner = chunk->corner_count;
+	if (event.kind == OBJ_EVENT_OBJECT)
+		r->object_begin = chunk->distinct_count;
 	chunk->events[chunk->event_count++] = event;
 	return NMTAN_OK;
 }
@@ -492,25 +591,33 @@ static inline nmtan_status read_statement(reader *r)
 	return read_rare(r);
 }
 
-nmtan_status obj_parse_chunk(obj_chunk *chunk)
+static nmtan_status read_lines(reader *r)
 {
-	reader r = {.chunk = chunk, .p = chunk->begin};
-	while (r.p < chunk->end) {
-		skip_blanks(&r);
-		r.statement = r.p;
-		r.statement_line = r.line;
-		const nmtan_status status = read_statement(&r);
+	obj_chunk *chunk = r->chunk;
+	while (r->p < chunk->end) {
+		skip_blanks(r);
+		r->statement_line = r->line;
+		const nmtan_status status = read_statement(r);
 		if (status)
 			return status;
-		if (*r.p == '#')
-			skip_statement(&r, true);
-		r.p = behind_line_end(r.p);
-		r.line++;
+		if (*r->p == '#')
+			skip_statement(r, true);
+		r->p = behind_line_end(r->p);
+		r->line++;
 		if (chunk->face_count > chunk->wanted_face)
 			break;
 	}
-	chunk->line_count = r.line;
+	chunk->line_count = r->line;
 	return NMTAN_OK;
+}
+
+nmtan_status obj_parse_chunk(obj_chunk *chunk)
+{
+	reader r = {.chunk = chunk, .p = chunk->begin};
+	r.recent = nt_calloc(RECENT_COUNT, sizeof *r.recent);
+	const nmtan_status status = r.recent ? read_lines(&r) : fail_memory(&r);
+	free(r.recent);
+	return status;
 }
 
 void obj_chunk_free(obj_chunk *chunk)
@@ -519,11 +626,13 @@ void obj_chunk_free(obj_chunk *chunk)
 	free(chunk->colors);
 	free(chunk->texcoords);
 	free(chunk->normals);
+	free(chunk->distinct);
 	free(chunk->corners);
 	free(chunk->face_sizes);
 	free(chunk->large);
 	free(chunk->events);
 	chunk->positions = chunk->colors = chunk->texcoords = chunk->normals = NULL;
+	chunk->distinct = NULL;
 	chunk->corners = NULL;
 	chunk->face_sizes = NULL;
 	chunk->large = NULL;

@@ -65,7 +65,11 @@ typedef struct obj_chunk {
 	float *colors; /* rows of 4 as written, as many as positions; NULL while no `v` has one */
 	size_t color_capacity;
 
-	obj_corner *corners;
+	/* Corners by number of their distinct v/t/n. Those are in order of first use; some come more than
+	 * once, and again in every object. */
+	obj_corner *distinct;
+	size_t distinct_count, distinct_capacity;
+	uint32_t *corners;
 	size_t corner_count, corner_capacity;
 	uint8_t *face_sizes; /* OBJ_LARGE: see large */
 	size_t face_count, face_capacity;

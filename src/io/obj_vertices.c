@@ -8,9 +8,9 @@
  * vertex of v, the others are linked. A link longer than LINK_MOST (the hub of a fan whose every corner
  * has its own vt) goes on in a hash table, so that no input makes this quadratic.
  *
- * In parallel each thread numbers the corners of its stretch of the file by itself; then the stretches'
- * vertices, far fewer than their corners, are added to those of the first in order. First uses come in
- * the same order as in one stretch, so the numbers are the same.
+ * The parser has already found most corners that neighbouring faces share: only the distinct ones of
+ * each chunk come here, in the order of the file, about a fifth of all. That is one thread's work; the
+ * corners then take their vertices' numbers in parallel.
  */
 #include "io/obj_parts.h"
 
@@ -18,8 +18,7 @@
 #include <string.h>
 #include "base/parallel.h"
 
-/* Each stretch has 4 bytes for each v; more than four of them stop to pay. */
-enum { LINK_MOST = 8, STRETCHES_MOST = 4, CORNERS_LEAST = 1 << 16 };
+enum { LINK_MOST = 8 };
 
 typedef struct table {
 	uint32_t *heads;      /* [position_count] vertex + 1; 0 or of an earlier mesh: none */
@@ -129,24 +128,7 @@ static uint32_t find_vertex(table *s, uint32_t v, uint32_t t, uint32_t n, size_t
 	return vertex;
 }
 
-/* ---- stretches ---- */
-
-/* Some chunks, their corners, and what became of them. */
-typedef struct stretch {
-	size_t chunk_begin, chunk_end;
-	size_t corner_begin, corner_end;
-	size_t mesh;               /* of the first corner */
-	table table;
-	uint32_t *renumber;        /* [table.count] number in the first stretch; NULL: the same */
-	nmtan_status status;
-	size_t bad_corner;         /* INPUT: the corner whose index is out of range */
-} stretch;
-
-typedef struct vertex_job {
-	obj_file *file;
-	stretch stretches[STRETCHES_MOST];
-	size_t stretch_count;
-} vertex_job;
+/* ---- distinct corners ---- */
 
 /* An index as a row number; false where there is no such row. */
 static inline bool resolve(uint32_t *index, size_t first, size_t count)
@@ -161,128 +143,6 @@ static inline bool resolve(uint32_t *index, size_t first, size_t count)
 	}
 	return *index < count;
 }
-
-static inline bool resolve_corner(const obj_file *file, const obj_chunk *chunk, obj_corner *corner)
-{
-	return resolve(&corner->v, chunk->first_position, file->position_count) &&
-		resolve(&corner->t, chunk->first_texcoord, file->texcoord_count) &&
-		resolve(&corner->n, chunk->first_normal, file->normal_count);
-}
-
-static void number_chunk(const obj_file *file, stretch *s, const obj_chunk *chunk, size_t *mesh,
-	size_t *base)
-{
-	for (size_t i = 0; i < chunk->corner_count; i++) {
-		const size_t c = chunk->first_corner + i;
-		while (c >= file->mesh_corners[*mesh + 1]) {
-			++*mesh;
-			*base = file->mesh_vertices[*mesh] = s->table.count;
-		}
-		obj_corner corner = chunk->corners[i];
-		if (!resolve_corner(file, chunk, &corner)) {
-			s->status = NMTAN_ERROR_INPUT;
-			s->bad_corner = c;
-			return;
-		}
-		const uint32_t vertex = find_vertex(&s->table, corner.v, corner.t, corner.n, *base);
-		if (vertex == NT_NONE) {
-			s->status = NMTAN_ERROR_MEMORY;
-			return;
-		}
-		file->corner_vertices[c] = vertex;
-	}
-}
-
-/* Numbers the corners of one stretch by itself. mesh_vertices of the meshes that begin in it are set in
- * its own numbers. */
-static void number_stretch(void *context, size_t begin, size_t end, unsigned slot)
-{
-	(void)slot;
-	vertex_job *job = context;
-	const obj_file *file = job->file;
-	for (size_t i = begin; i < end; i++) {
-		stretch *s = &job->stretches[i];
-		s->table.heads = nt_calloc(file->position_count, sizeof *s->table.heads);
-		if (!s->table.heads)
-			s->status = NMTAN_ERROR_MEMORY;
-		size_t mesh = s->mesh, base = 0;
-		for (size_t c = s->chunk_begin; c < s->chunk_end && !s->status; c++)
-			number_chunk(file, s, &file->chunks[c], &mesh, &base);
-	}
-}
-
-/* Chunks are dealt out by their corners. */
-static void plan_stretches(vertex_job *job)
-{
-	const obj_file *file = job->file;
-	const unsigned most = file->threads < STRETCHES_MOST ? file->threads : STRETCHES_MOST;
-	job->stretch_count = nt_parallel_slots(most, file->corner_count, CORNERS_LEAST);
-	size_t chunk = 0, corner = 0, mesh = 0;
-	for (size_t i = 0; i < job->stretch_count; i++) {
-		stretch *s = &job->stretches[i];
-		const size_t goal = file->corner_count / job->stretch_count * (i + 1);
-		s->chunk_begin = chunk;
-		s->corner_begin = corner;
-		while (chunk < file->chunk_count && (corner < goal || i + 1 == job->stretch_count))
-			corner += file->chunks[chunk++].corner_count;
-		s->chunk_end = chunk;
-		s->corner_end = corner;
-		while (mesh + 1 < file->mesh_count && file->mesh_corners[mesh + 1] <= s->corner_begin)
-			mesh++;
-		s->mesh = mesh;
-	}
-}
-
-/* Adds the vertices of a later stretch to the first one's, mesh by mesh. A mesh that begins exactly at
- * the stretch's first corner begins here too. */
-static bool add_stretch(obj_file *file, table *all, stretch *s)
-{
-	s->renumber = nt_alloc(s->table.count, sizeof *s->renumber);
-	if (!s->renumber)
-		return false;
-	size_t mesh = s->mesh, base = file->mesh_vertices[mesh];
-	if (file->mesh_corners[mesh] >= s->corner_begin)
-		base = file->mesh_vertices[mesh] = all->count;
-	for (size_t i = 0; i < s->table.count; i++) {
-		while (mesh + 1 < file->mesh_count && file->mesh_corners[mesh + 1] < s->corner_end &&
-			file->mesh_vertices[mesh + 1] == i)
-			base = file->mesh_vertices[++mesh] = all->count;
-		const obj_vertex *x = &s->table.vertices[i];
-		s->renumber[i] = find_vertex(all, x->v, x->t, x->n, base);
-		if (s->renumber[i] == NT_NONE)
-			return false;
-	}
-	return true;
-}
-
-/* Corners take their final numbers, relative to their mesh. */
-static void renumber_stretch(void *context, size_t begin, size_t end, unsigned slot)
-{
-	(void)slot;
-	const vertex_job *job = context;
-	const obj_file *file = job->file;
-	for (size_t i = begin; i < end; i++) {
-		const stretch *s = &job->stretches[i];
-		size_t mesh = s->mesh, c = s->corner_begin;
-		while (c < s->corner_end) {
-			while (c >= file->mesh_corners[mesh + 1])
-				mesh++;
-			const size_t stop = file->mesh_corners[mesh + 1] < s->corner_end ?
-				file->mesh_corners[mesh + 1] : s->corner_end;
-			const uint32_t base = (uint32_t)file->mesh_vertices[mesh];
-			uint32_t *vertex = file->corner_vertices;
-			if (s->renumber)
-				for (; c < stop; c++)
-					vertex[c] = s->renumber[vertex[c]] - base;
-			else if (base)
-				for (; c < stop; c++)
-					vertex[c] -= base;
-			c = stop;
-		}
-	}
-}
-
-/* ---- errors ---- */
 
 /* The face of a corner of the file. */
 static size_t face_of_corner(const obj_file *file, const obj_chunk *chunk, size_t wanted)
@@ -299,13 +159,13 @@ static size_t face_of_corner(const obj_file *file, const obj_chunk *chunk, size_
 }
 
 /* Says which index of the corner is out of range, as the file spells it. */
-static nmtan_status fail_index(const obj_file *file, size_t bad_corner, nt_error *error)
+static nmtan_status fail_index(const obj_file *file, const obj_chunk *chunk, size_t distinct,
+	nt_error *error)
 {
-	size_t c = 0;
-	while (bad_corner >= file->chunks[c].first_corner + file->chunks[c].corner_count)
-		c++;
-	const obj_chunk *chunk = &file->chunks[c];
-	const obj_corner corner = chunk->corners[bad_corner - chunk->first_corner];
+	size_t bad_corner = chunk->first_corner;
+	while (chunk->corners[bad_corner - chunk->first_corner] != distinct)
+		bad_corner++;
+	const obj_corner corner = chunk->distinct[distinct];
 	obj_corner before;
 	const size_t line = obj_face_line(file, face_of_corner(file, chunk, bad_corner), &before);
 	const struct {
@@ -333,44 +193,109 @@ static nmtan_status fail_index(const obj_file *file, size_t bad_corner, nt_error
 		parts[k].count);
 }
 
-/* The first failure in the order of the file. */
-static nmtan_status report_failure(const vertex_job *job, nt_error *error)
+/* Gives distinct corners [begin, end) of a chunk their vertices in the mesh whose vertices begin at
+ * `base`: the number takes the place of v. */
+static nmtan_status number_distinct(obj_file *file, obj_chunk *chunk, size_t begin, size_t end,
+	table *vertices, size_t base, nt_error *error)
 {
-	for (size_t i = 0; i < job->stretch_count; i++)
-		if (job->stretches[i].status == NMTAN_ERROR_INPUT)
-			return fail_index(job->file, job->stretches[i].bad_corner, error);
-		else if (job->stretches[i].status)
+	for (size_t i = begin; i < end; i++) {
+		obj_corner c = chunk->distinct[i];
+		if (!resolve(&c.v, chunk->first_position, file->position_count) ||
+			!resolve(&c.t, chunk->first_texcoord, file->texcoord_count) ||
+			!resolve(&c.n, chunk->first_normal, file->normal_count))
+			return fail_index(file, chunk, i, error);
+		chunk->distinct[i].v = find_vertex(vertices, c.v, c.t, c.n, base);
+		if (chunk->distinct[i].v == NT_NONE)
 			return nt_fail_memory(error);
+	}
 	return NMTAN_OK;
+}
+
+/* One chunk, whose first corner belongs to *mesh or begins the next one. */
+static nmtan_status number_chunk(obj_file *file, obj_chunk *chunk, table *vertices, size_t *mesh,
+	nt_error *error)
+{
+	const size_t end_corner = chunk->first_corner + chunk->corner_count;
+	size_t begin = 0;
+	while (*mesh + 1 < file->mesh_count && file->mesh_corners[*mesh + 1] < end_corner) {
+		/* The first corner of a mesh is a distinct one of its own. */
+		const size_t end = chunk->corners[file->mesh_corners[*mesh + 1] - chunk->first_corner];
+		const nmtan_status status = number_distinct(file, chunk, begin, end, vertices,
+			file->mesh_vertices[*mesh], error);
+		if (status)
+			return status;
+		file->mesh_vertices[++*mesh] = vertices->count;
+		begin = end;
+	}
+	return number_distinct(file, chunk, begin, chunk->distinct_count, vertices,
+		file->mesh_vertices[*mesh], error);
+}
+
+static nmtan_status number_all(obj_file *file, table *vertices, nt_error *error)
+{
+	vertices->heads = nt_calloc(file->position_count, sizeof *vertices->heads);
+	if (!vertices->heads)
+		return nt_fail_memory(error);
+	size_t mesh = 0;
+	for (size_t c = 0; c < file->chunk_count; c++) {
+		const nmtan_status status = number_chunk(file, &file->chunks[c], vertices, &mesh, error);
+		if (status)
+			return status;
+	}
+	file->mesh_vertices[file->mesh_count] = vertices->count;
+	return NMTAN_OK;
+}
+
+/* ---- corners ---- */
+
+/* The mesh of a corner of the file. */
+static size_t mesh_of_corner(const obj_file *file, size_t corner)
+{
+	size_t low = 0, high = file->mesh_count;
+	while (high - low > 1) {
+		const size_t middle = low + (high - low) / 2;
+		if (file->mesh_corners[middle] <= corner)
+			low = middle;
+		else
+			high = middle;
+	}
+	return low;
+}
+
+/* Writes the vertices of the corners of chunks [begin, end), relative to their meshes. */
+static void write_corners(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	const obj_file *file = context;
+	size_t mesh = mesh_of_corner(file, file->chunks[begin].first_corner);
+	for (size_t k = begin; k < end; k++) {
+		const obj_chunk *chunk = &file->chunks[k];
+		uint32_t *to = file->corner_vertices + chunk->first_corner;
+		for (size_t i = 0; i < chunk->corner_count;) {
+			while (file->mesh_corners[mesh + 1] <= chunk->first_corner + i)
+				mesh++;
+			const size_t left = file->mesh_corners[mesh + 1] - chunk->first_corner;
+			const size_t stop = left < chunk->corner_count ? left : chunk->corner_count;
+			const uint32_t base = (uint32_t)file->mesh_vertices[mesh];
+			for (; i < stop; i++)
+				to[i] = chunk->distinct[chunk->corners[i]].v - base;
+		}
+	}
 }
 
 nmtan_status obj_make_vertices(obj_file *file, nt_error *error)
 {
-	file->corner_vertices =
+	table vertices = {0};
+	nmtan_status status = number_all(file, &vertices, error);
+	file->corner_vertices = status ? NULL :
 		nt_arena_alloc(&file->scene->arena, file->corner_count, sizeof *file->corner_vertices);
-	if (!file->corner_vertices)
-		return nt_fail_memory(error);
-	if (file->mesh_count == 0)
-		return NMTAN_OK;
-	vertex_job job = {.file = file};
-	plan_stretches(&job);
-	nt_parallel_ranges((unsigned)job.stretch_count, job.stretch_count, 1, number_stretch, &job);
-	nmtan_status status = report_failure(&job, error);
-	for (size_t i = 1; i < job.stretch_count && !status; i++)
-		if (!add_stretch(file, &job.stretches[0].table, &job.stretches[i]))
-			status = nt_fail_memory(error);
-	if (!status) {
-		nt_parallel_ranges((unsigned)job.stretch_count, job.stretch_count, 1, renumber_stretch, &job);
-		file->vertices = job.stretches[0].table.vertices;
-		file->vertex_count = job.stretches[0].table.count;
-		file->mesh_vertices[file->mesh_count] = file->vertex_count;
-		job.stretches[0].table.vertices = NULL;
-	}
-	for (size_t i = 0; i < job.stretch_count; i++) {
-		free(job.stretches[i].table.heads);
-		free(job.stretches[i].table.vertices);
-		free(job.stretches[i].table.slots);
-		free(job.stretches[i].renumber);
-	}
+	if (!status && !file->corner_vertices)
+		status = nt_fail_memory(error);
+	if (!status)
+		nt_parallel_ranges(file->threads, file->chunk_count, 1, write_corners, file);
+	file->vertices = vertices.vertices;
+	file->vertex_count = vertices.count;
+	free(vertices.heads);
+	free(vertices.slots);
 	return status;
 }
