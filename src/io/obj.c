@@ -199,7 +199,7 @@ static void count_all(obj_file *file)
 		file->normal_count += chunk->normal_count;
 		file->face_count += chunk->face_count;
 		file->corner_count += chunk->corner_count;
-		file->large_count += chunk->large_count;
+		file->polygon_count += chunk->polygon_count;
 	}
 }
 
@@ -248,13 +248,16 @@ static void join_chunks(void *context, size_t begin, size_t end, unsigned slot)
 	}
 }
 
-static void join_large(obj_file *file)
+static void join_polygons(obj_file *file)
 {
-	obj_large *to = file->large;
+	obj_polygon *to = file->polygons;
 	for (size_t c = 0; c < file->chunk_count; c++) {
 		const obj_chunk *chunk = &file->chunks[c];
-		for (size_t i = 0; i < chunk->large_count; i++)
-			*to++ = (obj_large){chunk->first_face + chunk->large[i].face, chunk->large[i].size};
+		for (size_t i = 0; i < chunk->polygon_count; i++) {
+			const obj_polygon *polygon = &chunk->polygons[i];
+			*to++ = (obj_polygon){chunk->first_face + polygon->face, polygon->size,
+				chunk->first_line + polygon->line + 1};
+		}
 	}
 }
 
@@ -277,15 +280,16 @@ static nmtan_status join(obj_file *file, nt_error *error)
 	file->texcoords = nt_alloc(file->texcoord_count, 2 * sizeof(float));
 	file->normals = nt_alloc(file->normal_count, 3 * sizeof(float));
 	file->face_sizes = nt_arena_alloc(&file->scene->arena, file->face_count, 1);
-	file->large = nt_alloc(file->large_count, sizeof *file->large);
-	if (!file->positions || !file->texcoords || !file->normals || !file->face_sizes || !file->large)
+	file->polygons = nt_alloc(file->polygon_count, sizeof *file->polygons);
+	if (!file->positions || !file->texcoords || !file->normals || !file->face_sizes ||
+		!file->polygons)
 		return nt_fail_memory(error);
 	if (any_colors(file)) {
 		file->colors = nt_alloc(file->position_count, 4 * sizeof(float));
 		if (!file->colors)
 			return nt_fail_memory(error);
 	}
-	join_large(file);
+	join_polygons(file);
 	nt_parallel_ranges(file->threads, file->chunk_count, 1, join_chunks, file);
 	return NMTAN_OK;
 }
@@ -302,7 +306,7 @@ static void free_file(obj_file *file)
 	free(file->texcoords);
 	free(file->normals);
 	free(file->colors);
-	free(file->large);
+	free(file->polygons);
 	free(file->mesh_objects);
 	free(file->mesh_lines);
 	free(file->mesh_faces);

@@ -22,14 +22,13 @@ typedef struct builder {
 	float *positions, *normals, *texcoords, *colors;
 	uint8_t *lacks;
 	size_t span;              /* of the next face */
-	size_t large;             /* the next large polygon */
+	size_t polygon;           /* the next one of five corners and more */
 	uint32_t *material_slots; /* [material_count + 1] primitive of a material in the current mesh */
 
 	/* of one polygon */
 	float (*points)[3];
 	uint32_t *triangles;
 	size_t polygon_capacity;
-	bool found_unsound;       /* in the current mesh */
 } builder;
 
 /* ---- vertices ---- */
@@ -128,13 +127,10 @@ static face_counts count_faces(const builder *b, size_t begin, size_t end, size_
 	face_counts n = {0, 0, end - begin, corner_count};
 	for (size_t f = begin; f < end; f++) {
 		n.quads += sizes[f] == 4;
-		n.polygons += sizes[f] > 4;
+		n.polygons += sizes[f] == OBJ_POLYGON;
 	}
-	size_t large = b->large;
-	for (size_t f = begin; f < end && n.polygons; f++) {
-		if (sizes[f] <= 4)
-			continue;
-		const size_t size = sizes[f] == OBJ_LARGE ? b->file->large[large++].size : sizes[f];
+	for (size_t i = 0; i < n.polygons; i++) {
+		const size_t size = b->file->polygons[b->polygon + i].size;
 		n.faces += size - 3;
 		n.corners += 3 * (size - 2) - size;
 	}
@@ -167,9 +163,10 @@ static bool grow_polygon(builder *b, size_t size)
 }
 
 /* Replaces a polygon of the file by triangles: writes 3 * (size - 2) vertices. */
-static nmtan_status triangulate(builder *b, nt_mesh *mesh, size_t face, const uint32_t *corners,
-	size_t size, uint32_t *to)
+static nmtan_status triangulate(builder *b, nt_mesh *mesh, const obj_polygon *polygon,
+	const uint32_t *corners, uint32_t *to)
 {
+	const size_t size = polygon->size;
 	if (!grow_polygon(b, size))
 		return nt_fail_memory(b->error);
 	for (size_t i = 0; i < size; i++)
@@ -182,10 +179,7 @@ static nmtan_status triangulate(builder *b, nt_mesh *mesh, size_t face, const ui
 	if (!sound) {
 		nt_finding_list *findings = &b->file->scene->findings;
 		nt_place place = mesh->place;
-		/* Finding the line costs a pass over a chunk, and only the first one's is kept. */
-		if (!b->found_unsound)
-			place.line = obj_face_line(b->file, face, NULL);
-		b->found_unsound = true;
+		place.line = polygon->line;
 		nt_finding_add(findings, NT_CODE_POLYGON_DEGENERATE, &place, 1, NULL);
 	}
 	return NMTAN_OK;
@@ -205,17 +199,17 @@ static nmtan_status write_faces(builder *b, nt_mesh *mesh, size_t begin, size_t 
 	for (size_t f = begin; f < end; f++) {
 		size_t size = file->face_sizes[f], count = 1;
 		uint32_t *to = mesh->indices + w->corner;
-		if (size <= 4) {
-			memcpy(to, w->source, size * sizeof *to);
-			w->corner += size;
-		} else {
-			if (size == OBJ_LARGE)
-				size = file->large[b->large++].size;
-			const nmtan_status status = triangulate(b, mesh, f, w->source, size, to);
+		if (size == OBJ_POLYGON) {
+			const obj_polygon *polygon = &file->polygons[b->polygon++];
+			const nmtan_status status = triangulate(b, mesh, polygon, w->source, to);
 			if (status)
 				return status;
+			size = polygon->size;
 			count = size - 2;
 			w->corner += 3 * count;
+		} else {
+			memcpy(to, w->source, size * sizeof *to);
+			w->corner += size;
 		}
 		for (size_t i = 0; i < count; i++, w->face++) {
 			mesh->face_polygon[w->face] = (uint32_t)(f - mesh_begin);
@@ -345,7 +339,6 @@ static nmtan_status make_mesh(builder *b, size_t m)
 {
 	obj_file *file = b->file;
 	nt_mesh *mesh = &file->scene->meshes[m];
-	b->found_unsound = false;
 	*mesh = (nt_mesh){
 		.gltf_mesh = NT_NONE,
 		.gltf_primitive = NT_NONE,

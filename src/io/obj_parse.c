@@ -346,13 +346,13 @@ static nmtan_status read_corner(reader *r, obj_corner *corner)
 	return status;
 }
 
-static nmtan_status store_large_face(reader *r, size_t size)
+static nmtan_status store_polygon(reader *r, size_t size)
 {
 	obj_chunk *chunk = r->chunk;
-	if (!nt_grow((void **)&chunk->large, &chunk->large_capacity, chunk->large_count + 1,
-			sizeof *chunk->large))
+	if (!nt_grow((void **)&chunk->polygons, &chunk->polygon_capacity, chunk->polygon_count + 1,
+			sizeof *chunk->polygons))
 		return fail_memory(r);
-	chunk->large[chunk->large_count++] = (obj_large){chunk->face_count, size};
+	chunk->polygons[chunk->polygon_count++] = (obj_polygon){chunk->face_count, size, r->statement_line};
 	return NMTAN_OK;
 }
 
@@ -403,14 +403,14 @@ static nmtan_status end_face(reader *r, size_t first_corner, size_t first_distin
 	}
 	if (!reserve(chunk, (void **)&chunk->face_sizes, &chunk->face_capacity, chunk->face_count, 1))
 		return fail_memory(r);
-	if (size >= OBJ_LARGE) {
-		const nmtan_status status = store_large_face(r, size);
+	if (size >= OBJ_POLYGON) {
+		const nmtan_status status = store_polygon(r, size);
 		if (status)
 			return status;
 	}
 	if (chunk->face_count == chunk->wanted_face)
 		chunk->wanted_line = r->statement_line;
-	chunk->face_sizes[chunk->face_count++] = (uint8_t)(size < OBJ_LARGE ? size : OBJ_LARGE);
+	chunk->face_sizes[chunk->face_count++] = (uint8_t)(size < OBJ_POLYGON ? size : OBJ_POLYGON);
 	return NMTAN_OK;
 }
 
@@ -629,13 +629,13 @@ void obj_chunk_free(obj_chunk *chunk)
 	free(chunk->distinct);
 	free(chunk->corners);
 	free(chunk->face_sizes);
-	free(chunk->large);
+	free(chunk->polygons);
 	free(chunk->events);
 	chunk->positions = chunk->colors = chunk->texcoords = chunk->normals = NULL;
 	chunk->distinct = NULL;
 	chunk->corners = NULL;
 	chunk->face_sizes = NULL;
-	chunk->large = NULL;
+	chunk->polygons = NULL;
 	chunk->events = NULL;
 }
 

@@ -37,13 +37,14 @@ typedef struct obj_event {
 	size_t face, corner; /* faces and corners of the chunk before it */
 } obj_event;
 
-/* A polygon of OBJ_LARGE corners or more, whose size does not fit a byte. */
-enum { OBJ_LARGE = 255 };
+/* A face of five corners or more: face_sizes has OBJ_POLYGON for it. */
+enum { OBJ_POLYGON = 5 };
 
-typedef struct obj_large {
-	size_t face; /* within the chunk; within the file after joining */
+typedef struct obj_polygon {
+	size_t face; /* within the chunk, within the file after joining; its line, from 0 and 1, likewise */
 	size_t size;
-} obj_large;
+	size_t line;
+} obj_polygon;
 
 /* Statements that are not used, by number; obj_ignored_names has their words. The last one stands for
  * all that OBJ does not define. */
@@ -71,10 +72,10 @@ typedef struct obj_chunk {
 	size_t distinct_count, distinct_capacity;
 	uint32_t *corners;
 	size_t corner_count, corner_capacity;
-	uint8_t *face_sizes; /* OBJ_LARGE: see large */
+	uint8_t *face_sizes; /* 3, 4 or OBJ_POLYGON */
 	size_t face_count, face_capacity;
-	obj_large *large;
-	size_t large_count, large_capacity;
+	obj_polygon *polygons;
+	size_t polygon_count, polygon_capacity;
 	obj_event *events;
 	size_t event_count, event_capacity;
 
@@ -106,8 +107,8 @@ typedef struct obj_file {
 	size_t position_count, texcoord_count, normal_count;
 	uint8_t *face_sizes;
 	size_t face_count, corner_count;
-	obj_large *large;
-	size_t large_count;
+	obj_polygon *polygons;
+	size_t polygon_count;
 	bool uses_smoothing;
 
 	/* Mesh m has the faces [mesh_faces[m], mesh_faces[m + 1]) of the file, and corners and vertices

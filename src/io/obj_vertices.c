@@ -147,12 +147,12 @@ static inline bool resolve(uint32_t *index, size_t first, size_t count)
 /* The face of a corner of the file. */
 static size_t face_of_corner(const obj_file *file, const obj_chunk *chunk, size_t wanted)
 {
-	size_t face = chunk->first_face, corner = chunk->first_corner, large = 0;
-	while (large < file->large_count && file->large[large].face < face)
-		large++;
+	size_t face = chunk->first_face, corner = chunk->first_corner, polygon = 0;
+	while (polygon < file->polygon_count && file->polygons[polygon].face < face)
+		polygon++;
 	for (;; face++) {
-		const bool is_large = file->face_sizes[face] == OBJ_LARGE;
-		corner += is_large ? file->large[large++].size : file->face_sizes[face];
+		const uint8_t size = file->face_sizes[face];
+		corner += size == OBJ_POLYGON ? file->polygons[polygon++].size : size;
 		if (wanted < corner)
 			return face;
 	}
