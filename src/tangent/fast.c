@@ -148,7 +148,7 @@ static bool make_deferred(nt_fast *fast)
 typedef struct run {
 	nt_fast *fast;
 	const nt_kernels *kernels;
-	size_t *counts; /* [ranges] */
+	nt_settled *settled; /* [ranges] */
 } run;
 
 static void accumulate_ranges(void *context, size_t begin, size_t end, unsigned slot)
@@ -252,21 +252,25 @@ static void mark_contested(nt_fast *fast)
 static void settle_range(void *context, size_t begin, size_t end, unsigned slot)
 {
 	const run *r = context;
-	r->counts[slot] = r->kernels->settle(r->fast, begin, end);
+	nt_settled settled = {0};
+	r->kernels->settle(r->fast, begin, end, &settled);
+	r->settled[slot] = settled;
 }
 
-static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, size_t *complex_count)
+static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled *sum)
 {
 	const unsigned ranges = fast->ranges.count;
-	size_t *counts = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *counts);
-	if (!counts)
+	nt_settled *settled = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *settled);
+	if (!settled)
 		return NMTAN_ERROR_MEMORY;
-	memset(counts, 0, ranges * sizeof *counts);
-	run r = {fast, kernels, counts};
+	memset(settled, 0, ranges * sizeof *settled);
+	run r = {fast, kernels, settled};
 	nt_parallel_ranges(ranges, (fast->vertex_count + NT_LANES - 1) / NT_LANES, 1, settle_range, &r);
-	*complex_count = 0;
-	for (unsigned i = 0; i < ranges; i++)
-		*complex_count += counts[i];
+	*sum = (nt_settled){0};
+	for (unsigned i = 0; i < ranges; i++) {
+		sum->complex_count += settled[i].complex_count;
+		sum->unusable_count += settled[i].unusable_count;
+	}
 	return NMTAN_OK;
 }
 
@@ -432,6 +436,15 @@ static nmtan_status write_late(nt_fast *fast)
 	return NMTAN_OK;
 }
 
+/* Tells judge.c which triangles need no look: those with three settled corners, all of them usable, and
+ * a determinant whose sign is beyond doubt. */
+static void vouch(const nt_fast *fast)
+{
+	*fast->solve->vouched = (nt_vouched){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT,
+		.suspect = NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_COMPLEX |
+			   NT_TRIANGLE_UNCERTAIN};
+}
+
 static nmtan_status solve_with_ranges(const nt_solve *solve, size_t triangle_count, unsigned ranges)
 {
 	const nt_kernels *kernels = kernels_for(solve->isa);
@@ -457,13 +470,15 @@ static nmtan_status solve_with_ranges(const nt_solve *solve, size_t triangle_cou
 	}
 
 	mark_contested(&fast);
-	size_t complex_count;
-	if ((status = settle(&fast, kernels, &complex_count)))
+	nt_settled settled;
+	if ((status = settle(&fast, kernels, &settled)))
 		return status;
 	run r = {&fast, kernels, NULL};
 	nt_parallel_ranges(ranges, ranges, 1, write_ranges, &r);
-	if (complex_count > 0 && (status = nt_fast_complex(&fast, complex_count)))
+	if (settled.complex_count > 0 && (status = nt_fast_complex(&fast, settled.complex_count)))
 		return status;
+	if (solve->vouched && settled.unusable_count == 0)
+		vouch(&fast);
 	return write_late(&fast);
 }
 

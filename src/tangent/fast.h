@@ -59,7 +59,8 @@ enum {
 	NT_TRIANGLE_SECOND = 8,     /* second half of a quad: the first is the triangle before */
 	NT_TRIANGLE_COMPLEX = 16,   /* has a corner at a complex vertex */
 	NT_TRIANGLE_LATE = 32,      /* degenerate, and copies a corner that is not known yet */
-	NT_TRIANGLE_TAKEN = 64      /* "any", and a group has a corner of it */
+	NT_TRIANGLE_TAKEN = 64,     /* "any", and a group has a corner of it */
+	NT_TRIANGLE_UNCERTAIN = 128 /* the exact orientation, as stored too, may differ */
 };
 
 /* Entries of fans: orientation in bit 31; bit 30 marks a place without a corner, whose numbers differ
@@ -93,15 +94,19 @@ typedef struct nt_fast {
 	size_t *deferred_count;      /* [ranges] */
 } nt_fast;
 
+typedef struct nt_settled {
+	size_t complex_count, unusable_count;
+} nt_settled;
+
 /* The passes of one instruction set. */
 typedef struct nt_kernels {
 	/* Solves triangles [begin, end) of a range and adds them to their vertices. Stops before a
 	 * triangle whose record array does not exist and returns it, and its orientation in *orient;
 	 * otherwise returns end. */
 	size_t (*accumulate)(nt_fast *fast, size_t begin, size_t end, unsigned range, int *orient);
-	/* Turns the records of blocks [begin, end) of vertices into results; returns how many
-	 * vertices are complex. */
-	size_t (*settle)(nt_fast *fast, size_t begin, size_t end);
+	/* Turns the records of blocks [begin, end) of vertices into results; counts the vertices that are
+	 * complex, and the settled ones whose tangent is not usable. */
+	void (*settle)(nt_fast *fast, size_t begin, size_t end, nt_settled *settled);
 } nt_kernels;
 
 extern const nt_kernels nt_kernels_baseline;

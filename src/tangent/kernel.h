@@ -19,6 +19,7 @@
 #include <string.h>
 #include "tangent/acos.h"
 #include "tangent/fast.h"
+#include "tangent/judge.h"
 
 /* Two unit vectors whose components along one axis are both above H, or both below -H, have a dot product
  * of at least 2 H^2 - 1 = -0.98, far from the -1 at which step 7 parts them. Any H well above rounding
@@ -28,6 +29,9 @@
 /* Lengths in here are normalised without loss: their squares neither overflow nor lose bits. */
 #define LEAST_LENGTH 1e-15f
 #define MOST_LENGTH 1e15f
+
+/* Half a unit in the last place of 1: the relative error of a rounded float operation. */
+#define HALF_ULP 0x1p-24f
 
 /* Ratios that a float quotient can hold with room to spare. */
 #define LEAST_RATIO 1e-30f
@@ -50,6 +54,7 @@ typedef struct lanes_out {
 	float area[NT_LANES];
 	int orient[NT_LANES];     /* area > 0 */
 	int frameless[NT_LANES];  /* no UV area at all: certainly "any" */
+	int certain[NT_LANES];    /* the area's sign is exact, and stays when v is stored */
 	int sound[NT_LANES];      /* every length and ratio is well inside float's range: certainly not "any" */
 	int degenerate[NT_LANES];
 } lanes_out;
@@ -111,7 +116,7 @@ static inline __attribute__((always_inline)) corner_sum solve_corner(const float
 }
 
 static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *restrict in,
-	lanes_out *restrict out, bool more)
+	lanes_out *restrict out, float offset, float slack, bool more)
 {
 	for (int i = 0; i < NT_LANES; i++) {
 		float p[3][3], n[3][3], t[3][2];
@@ -149,6 +154,12 @@ static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *re
 #pragma GCC unroll 3
 		for (int c = 0; c < 3; c++)
 			os[c] = rs * os[c], ot[c] = rt * ot[c];
+		/* 3 u (|p| + |r|) bounds the rounding of the area, u = 2^-24, and the difference is rounded once
+		 * more; storing moves each v by u |v + offset| at most, an edge by twice that */
+		const float bound = 8 * HALF_ULP * (fabsf(t21x * t31y) + fabsf(t21y * t31x)) +
+				    slack * (fabsf(t[0][1]) + fabsf(t[1][1]) + fabsf(t[2][1]) + fabsf(offset)) *
+					    (fabsf(t21x) + fabsf(t31x));
+		out->certain[i] = size > bound;
 		out->area[i] = area;
 		out->orient[i] = area > 0.0f;
 		out->degenerate[i] = same01 | same12 | same20;
@@ -178,14 +189,16 @@ static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *re
 	}
 }
 
-static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *in, lanes_out *out)
+static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *in, lanes_out *out, float offset,
+	float slack)
 {
-	solve_lanes(in, out, false);
+	solve_lanes(in, out, offset, slack, false);
 }
 
-static void __attribute__((noinline)) solve_lanes_more(const lanes_in *in, lanes_out *out)
+static void __attribute__((noinline)) solve_lanes_more(const lanes_in *in, lanes_out *out, float offset,
+	float slack)
 {
-	solve_lanes(in, out, true);
+	solve_lanes(in, out, offset, slack, true);
 }
 
 /* Rows of the corners of `count` triangles; the lanes behind repeat the last one. */
@@ -226,6 +239,7 @@ static void orient_quads(uint8_t *flags, size_t count, const float *area)
 		if (!(*b & NT_TRIANGLE_SECOND) || ((*a | *b) & NT_TRIANGLE_DEGENERATE) ||
 			!((*a ^ *b) & NT_TRIANGLE_ORIENT))
 			continue;
+		*a |= NT_TRIANGLE_UNCERTAIN, *b |= NT_TRIANGLE_UNCERTAIN; /* folded */
 		if ((*b & NT_TRIANGLE_ANY) || fabsf(area[i]) >= fabsf(area[i + 1]))
 			*b ^= NT_TRIANGLE_ORIENT;
 		else
@@ -246,7 +260,8 @@ static bool classify_lanes(const nt_fast *fast, size_t first, size_t count, cons
 	for (size_t i = 0; i < count; i++)
 		flags[i] = (uint8_t)((flags[i] & NT_TRIANGLE_SECOND) | (out->orient[i] ? NT_TRIANGLE_ORIENT : 0) |
 				     (out->frameless[i] ? NT_TRIANGLE_ANY : 0) |
-				     (out->degenerate[i] ? NT_TRIANGLE_DEGENERATE : 0));
+				     (out->degenerate[i] ? NT_TRIANGLE_DEGENERATE : 0) |
+				     (out->certain[i] ? 0 : NT_TRIANGLE_UNCERTAIN));
 	for (size_t i = 0; odd && i < count; i++)
 		if (!out->sound[i] && !out->frameless[i] && !has_frame(in, (int)i, out->area[i]))
 			flags[i] |= NT_TRIANGLE_ANY;
@@ -390,15 +405,17 @@ static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range
 {
 	lanes_in in;
 	lanes_out out;
+	const float offset = fast->solve->mesh->stored_v_offset;
+	const float slack = offset != 0.0f ? 3 * HALF_ULP : 0.0f;
 	for (size_t first = begin, count; first < end; first += count) {
 		count = end - first < NT_LANES ? end - first : NT_LANES;
 		if (first + count < end && (fast->flags[first + count] & NT_TRIANGLE_SECOND))
 			count--; /* halves of a quad stay together */
 		gather_lanes(fast, first, count, &in);
 		if (fast->wants_more)
-			solve_lanes_more(&in, &out);
+			solve_lanes_more(&in, &out, offset, slack);
 		else
-			solve_lanes_plain(&in, &out);
+			solve_lanes_plain(&in, &out, offset, slack);
 		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
 		const int missing = missing_record(fast, first, count);
 		if (missing >= 0) {
@@ -516,6 +533,21 @@ static void normalise_records(record_lanes *restrict r)
 	}
 }
 
+/* Settled results that judge.c would not accept. */
+static size_t count_unusable(const nt_weld_row *rows, size_t count, const record_lanes *restrict r,
+	const uint32_t *restrict complex)
+{
+	uint32_t unusable = 0;
+	for (size_t i = 0; i < count; i++) {
+		const float t[3] = {r->x[i], r->y[i], r->z[i]};
+		const float *n = (const float *)&rows[i] + 3;
+		const float squared = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
+		const int good = (fabsf(squared - 1.0f) <= NT_UNIT_TOLERANCE) & !nt_is_parallel(t, n);
+		unusable += r->present[i] & !complex[i] & !good;
+	}
+	return unusable;
+}
+
 static void store_records(nt_record *restrict records, size_t count, const record_lanes *restrict r)
 {
 	if (count == NT_LANES) {
@@ -568,7 +600,7 @@ static void load_degrees(const nt_adjacency *a, size_t first, size_t count, uint
 	}
 }
 
-static size_t settle_block(nt_fast *fast, size_t block)
+static void settle_block(nt_fast *fast, size_t block, nt_settled *settled)
 {
 	const size_t first = block * NT_LANES, left = fast->vertex_count - first;
 	const size_t count = left < NT_LANES ? left : NT_LANES;
@@ -588,7 +620,6 @@ static size_t settle_block(nt_fast *fast, size_t block)
 	link_fans(depth, &f);
 	count_fans(depth, &f);
 
-	size_t complex_count = 0;
 	for (int i = 0; i < NT_LANES; i++) {
 		const uint32_t both = r[0].state[i] & r[1].state[i];
 		const uint32_t present = r[0].present[i] + r[1].present[i];
@@ -601,6 +632,7 @@ static size_t settle_block(nt_fast *fast, size_t block)
 		if (!fast->records[o])
 			continue;
 		normalise_records(&r[o]);
+		settled->unusable_count += count_unusable(fast->rows + first, count, &r[o], complex);
 		const uint32_t sign = o ? NT_RESULT_PLUS : NT_RESULT_MINUS;
 		for (int i = 0; i < NT_LANES; i++) {
 			const uint32_t none = r[0].present[i] | r[1].present[i];
@@ -614,16 +646,13 @@ static size_t settle_block(nt_fast *fast, size_t block)
 			settle_more(fast->more[o] + first, count, r[o].present);
 	}
 	for (size_t i = 0; i < count; i++)
-		complex_count += complex[i];
-	return complex_count;
+		settled->complex_count += complex[i];
 }
 
-static size_t settle(nt_fast *fast, size_t begin, size_t end)
+static void settle(nt_fast *fast, size_t begin, size_t end, nt_settled *settled)
 {
-	size_t complex_count = 0;
 	for (size_t block = begin; block < end; block++)
-		complex_count += settle_block(fast, block);
-	return complex_count;
+		settle_block(fast, block, settled);
 }
 
 const nt_kernels NT_KERNEL = {accumulate, settle};

@@ -8,9 +8,8 @@
 #include "tangent/solve.h"
 
 /*
- * Judges every corner tangent of a solve and counts what the mesh is like; with `repair` replaces the
- * unusable ones. A tangent is usable when it is finite, of unit length, not parallel to its normal, and
- * its w is the exact orientation of its face and the same on all the face's corners.
+ * Judges every corner tangent of a solve (judge.h) and counts what the mesh is like; with `repair` replaces
+ * the unusable ones.
  *
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */

@@ -9,6 +9,14 @@
 #include "base/scratch.h"
 #include "nmtan.h"
 
+/* What a method knows of its result, for judge.c. Of a triangle without a bit of `suspect` all corners are
+ * usable, it is not degenerate, no half of a folded quad, and its orientation, positive where a bit of
+ * `positive` is set, is exact and survives storing. */
+typedef struct nt_vouched {
+	const uint8_t *flags; /* [triangle_count], quads count as two; NULL: nothing is known */
+	uint8_t suspect, positive;
+} nt_vouched;
+
 typedef struct nt_solve {
 	const nmtan_mesh *mesh;  /* strides are never 0 */
 	size_t corner_count;
@@ -16,6 +24,7 @@ typedef struct nt_solve {
 	unsigned threads;        /* at least 1 */
 	nmtan_isa isa;           /* never AUTO */
 	nt_scratch *scratch;
+	nt_vouched *vouched;     /* for the method to fill; empty before; may be NULL */
 	float *tangents;         /* [corner_count][4] */
 	float *bitangents;       /* [corner_count][3] or NULL */
 	float *magnitudes;       /* [corner_count][2] or NULL */

@@ -81,7 +81,8 @@ nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options
 	nmtan_status status = check_options(options);
 	if (!status)
 		status = check_attributes(&checked);
-	nt_solve solve = {.mesh = &checked};
+	nt_vouched vouched = {0};
+	nt_solve solve = {.mesh = &checked, .vouched = &vouched};
 	if (!status)
 		status = nt_check_faces(&checked, &solve.corner_count);
 	if (status || solve.corner_count == 0)
@@ -102,7 +103,6 @@ nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options
 	const nt_scratch_mark mark = nt_scratch_here(solve.scratch);
 	size_t ill_conditioned = 0;
 	status = run_method(&solve, options, &ill_conditioned);
-	nt_scratch_back(solve.scratch, mark);
 	if (!status)
 		status = nt_repair(&solve, options->repair == NMTAN_REPAIR_ON, &output->counts);
 	output->counts.ill_conditioned = ill_conditioned;
