@@ -211,6 +211,9 @@ static nmtan_status write_scene(run *r)
 		status = nt_output_protect(output, r->input_path, r->error);
 	if (!status)
 		status = r->writer->write(&r->scene, &options, output, r->error);
+	/* the input may still be read here, and its faults are its own */
+	if (status && r->error->place.pointer[0])
+		nt_error_in_file(r->error, r->input_path);
 	if (!status)
 		r->summary->bytes_written = nt_output_size(output);
 	if (!status && s->verify && !s->dry_run) {

@@ -3,7 +3,9 @@
 #
 # tests/soak/formats.sh BUILD_DIR...: every public model of ../shared to every output format, with the
 # options that change what is written. No crash, no hang; what is written as glTF has no error in the
-# Khronos validator that the input did not have; what is written as PLY is read again.
+# Khronos validator that the input did not have; what is written as PLY is read again. Documents with a
+# buffer that is nowhere are left out: a GLB shows zeros where they have nothing to judge. --verify runs
+# over the models alone, because tinygltf refuses much of the validator's corpus, input or output.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 ROOT=$PWD
@@ -26,6 +28,7 @@ way() {
 	rm -rf "$work/o" && mkdir "$work/o"
 	: >"$work/pairs"
 	while IFS= read -r input; do
+		case $label:$input in *verified*:*/corpus/*) continue ;; esac
 		number=$((number + 1))
 		mkdir "$work/o/$number"
 		timeout 60 "$nmtan" -q "$@" "$input" "$work/o/$number/o.$ending" >"$work/said" 2>&1
@@ -50,7 +53,15 @@ way() {
 }
 
 find "$shared/models" "$shared/corpus" -type f \( -name '*.obj' -o -name '*.ply' -o -name '*.drc' \
-	-o -name '*.gltf' -o -name '*.glb' \) | sort >"$work/inputs"
+	-o -name '*.gltf' -o -name '*.glb' \) | sort | while IFS= read -r input; do
+	case $input in
+	*.gltf)
+		placed=$(node tests/support/gltf.mjs "$input" '(g.buffers ?? []).every((b) => b.uri)' 2>&1)
+		[ "$placed" = false ] || printf '%s\n' "$input"
+		;;
+	*) printf '%s\n' "$input" ;;
+	esac
+done >"$work/inputs"
 for build in "$@"; do
 	nmtan=$ROOT/$build/nmtan
 	way "$build glb" glb
