@@ -86,6 +86,10 @@ run --images=none -d expected a.obj b.obj
 is $? 0
 same out/a.glb expected/a.glb
 same out/b.glb expected/b.glb
+# The input would be 0 and the output 2, into which the stage "verify" would be told.
+"$NMTAN" --images=none --progress=on --verify a.obj c.glb <&- 2>&-
+is $? 0
+same c.glb expected/a.glb
 "$NMTAN" --images=none a.obj - >&- 2>"$WORK/err.txt"
 is $? 2
 says "Bad file descriptor"
