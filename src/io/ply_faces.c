@@ -5,6 +5,7 @@
  * become triangles. Lists are measured against the file before room is made for them, so that memory
  * stays in proportion to the file whatever its counts say.
  */
+#include <math.h>
 #include <stdlib.h>
 #include "io/ply_wedges.h"
 #include "scene/polygon.h"
@@ -256,8 +257,14 @@ static nmtan_status load_uvs(builder *b, const unsigned char *at, size_t count, 
 	if (!room_for_uvs(b, count))
 		return nt_fail_memory(b->error);
 	b->uv_count = count;
-	for (size_t k = 0; k < count; k++)
-		b->uvs[k] = ply_load_float(at + k * ply_size(type), type, b->swap);
+	for (size_t k = 0; k < count; k++) {
+		const unsigned char *value = at + k * ply_size(type);
+		b->uvs[k] = ply_load_float(value, type, b->swap);
+		if (!isfinite(b->uvs[k]))
+			return ply_fail_at(b->cursor, value, b->error,
+				"%s %zu: a value of list \"texcoord\" is not finite, expected a finite number",
+				b->element->name, b->row);
+	}
 	return NMTAN_OK;
 }
 
@@ -320,6 +327,8 @@ static nmtan_status read_value(builder *b, int number, size_t k, const unsigned 
 			status = take_index(b, k, integer, begin);
 	} else if (number == b->texcoords_property) {
 		after = ply_read_float(begin, end, &b->uvs[k]);
+		if (after && !isfinite(b->uvs[k]))
+			return fail_text(b, begin, "a finite number in list", property);
 	} else if (number == b->texture_property) {
 		after = ply_read_integer(begin, end, &integer);
 		if (after)
@@ -481,8 +490,11 @@ static nmtan_status finish(builder *b)
 static bool hand_over(builder *b)
 {
 	nt_arena *arena = &b->scene->arena;
-	return nt_arena_adopt(arena, b->indices) & nt_arena_adopt(arena, b->sizes) &
-	       nt_arena_adopt(arena, b->polygons) & nt_arena_adopt(arena, b->primitives);
+	void *const blocks[] = {b->indices, b->sizes, b->polygons, b->primitives};
+	bool kept = true;
+	for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
+		kept = nt_arena_adopt(arena, blocks[i]) && kept;
+	return kept;
 }
 
 static nmtan_status prepare(builder *b)

@@ -3,9 +3,14 @@
  * The rows of the vertex element become arrays of floats. A target says where the values of a property
  * go; properties without one are passed over. Binary rows of fixed size are decoded column by column in
  * blocks that stay in the first-level cache, so that the choice of a type is made once per block.
+ *
+ * A mesh must be finite, as in OBJ: there is no tangent at NaN and glTF cannot store it. Points are
+ * passed through as they are, and so are tangents, which the caller may want to judge.
  */
 #include "io/ply.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 
 /* Positions, normals, texture coordinates, colours, tangents. */
@@ -16,6 +21,7 @@ typedef struct target {
 	float *values;   /* of the first row */
 	size_t stride;   /* in floats */
 	float divisor;   /* integer colours: their largest value */
+	bool finite;     /* other values are refused */
 } target;
 
 typedef struct reader {
@@ -26,10 +32,9 @@ typedef struct reader {
 	size_t target_count;
 } reader;
 
-static void add_target(reader *r, int property, float *values, size_t stride, float divisor)
+static bool is_finite(float value)
 {
-	if (property != PLY_NO_PROPERTY)
-		r->targets[r->target_count++] = (target){property, values, stride, divisor};
+	return fabsf(value) <= FLT_MAX;
 }
 
 /* Integer colours become 0 to 1, float ones are taken as they are. */
@@ -38,21 +43,29 @@ static float colour_divisor(const ply_element *element, int property)
 	static const float largest[] = {[PLY_INT8] = 127.0f, [PLY_UINT8] = 255.0f,
 		[PLY_INT16] = 32767.0f, [PLY_UINT16] = 65535.0f, [PLY_INT32] = 2147483647.0f,
 		[PLY_UINT32] = 4294967295.0f, [PLY_FLOAT32] = 1.0f, [PLY_FLOAT64] = 1.0f};
-	return property == PLY_NO_PROPERTY ? 1.0f : largest[element->properties[property].type];
+	return largest[element->properties[property].type];
 }
 
 /* Allocates an array of `width` floats per row and makes it the target of as many properties. */
 static bool add_attribute(reader *r, nt_arena *arena, const int *properties, size_t width,
-	bool colour, float **array)
+	bool finite, float **array)
 {
 	*array = NULL;
 	if (properties[0] == PLY_NO_PROPERTY)
 		return true;
 	*array = nt_arena_alloc(arena, r->element->count, width * sizeof **array);
 	for (size_t i = 0; *array && i < width; i++)
-		add_target(r, properties[i], *array + i, width,
-			colour ? colour_divisor(r->element, properties[i]) : 1.0f);
+		if (properties[i] != PLY_NO_PROPERTY)
+			r->targets[r->target_count++] =
+				(target){properties[i], *array + i, width, 1.0f, finite};
 	return *array != NULL;
+}
+
+/* Targets from `first` on are colours. */
+static void scale_colors(reader *r, size_t first)
+{
+	for (size_t i = first; i < r->target_count; i++)
+		r->targets[i].divisor = colour_divisor(r->element, r->targets[i].property);
 }
 
 static void decode_floats(const unsigned char *from, size_t row_bytes, bool swap, size_t count,
@@ -81,15 +94,64 @@ static void decode_column(const reader *r, const target *t, const unsigned char 
 			ply_load_float(from + i * row_bytes, property->type, swap) / t->divisor;
 }
 
-static void decode_fixed(const reader *r)
+static nmtan_status fail_not_finite(const reader *r, size_t row, const ply_property *property,
+	const unsigned char *at)
+{
+	return ply_fail_at(r->cursor, at, r->error,
+		"%s %zu: property \"%s\" is not finite, expected a finite number", r->element->name, row,
+		property->name);
+}
+
+/* Looks over what a block has become, while it is in the cache. */
+static nmtan_status check_column(const reader *r, const target *t, size_t first, size_t count)
+{
+	const float *values = t->values + first * t->stride;
+	unsigned bad = 0;
+	for (size_t i = 0; i < count; i++)
+		bad |= !is_finite(values[i * t->stride]);
+	if (!bad)
+		return NMTAN_OK;
+	size_t row = 0;
+	while (is_finite(values[row * t->stride]))
+		row++;
+	const ply_property *property = &r->element->properties[t->property];
+	row += first;
+	return fail_not_finite(r, row, property,
+		r->cursor->at + row * r->element->row_bytes + property->offset);
+}
+
+static nmtan_status decode_fixed(const reader *r)
 {
 	const size_t count = r->element->count;
-	for (size_t first = 0; first < count; first += BLOCK_ROWS) {
+	nmtan_status status = NMTAN_OK;
+	for (size_t first = 0; !status && first < count; first += BLOCK_ROWS) {
 		const size_t rows = count - first < BLOCK_ROWS ? count - first : BLOCK_ROWS;
-		for (size_t i = 0; i < r->target_count; i++)
+		for (size_t i = 0; !status && i < r->target_count; i++) {
 			decode_column(r, &r->targets[i], r->cursor->at, first, rows);
+			if (r->targets[i].finite)
+				status = check_column(r, &r->targets[i], first, rows);
+		}
 	}
-	r->cursor->at += count * r->element->row_bytes;
+	if (!status)
+		r->cursor->at += count * r->element->row_bytes;
+	return status;
+}
+
+/* The value of property `number` at `at` to the targets that want it. */
+static nmtan_status decode_value(const reader *r, size_t row, size_t number, const unsigned char *at)
+{
+	const ply_property *property = &r->element->properties[number];
+	const bool swap = ply_swaps(r->cursor->encoding);
+	for (size_t k = 0; k < r->target_count; k++) {
+		const target *t = &r->targets[k];
+		if (t->property != (int)number)
+			continue;
+		const float value = ply_load_float(at, property->type, swap) / t->divisor;
+		if (t->finite && !is_finite(value))
+			return fail_not_finite(r, row, property, at);
+		t->values[row * t->stride] = value;
+	}
+	return NMTAN_OK;
 }
 
 /* Binary rows with lists: each is measured first, then its values are taken. */
@@ -97,28 +159,22 @@ static nmtan_status decode_listed(const reader *r)
 {
 	const ply_element *element = r->element;
 	const bool swap = ply_swaps(r->cursor->encoding);
-	for (size_t row = 0; row < element->count; row++) {
+	nmtan_status status = NMTAN_OK;
+	for (size_t row = 0; !status && row < element->count; row++) {
 		const unsigned char *at = r->cursor->at;
-		const nmtan_status status = ply_skip_binary_row(r->cursor, element, row, r->error);
-		if (status)
-			return status;
-		for (size_t i = 0; i < element->property_count; i++) {
+		status = ply_skip_binary_row(r->cursor, element, row, r->error);
+		for (size_t i = 0; !status && i < element->property_count; i++) {
 			const ply_property *property = &element->properties[i];
 			if (property->list) {
 				at += ply_size(property->count_type) + ply_size(property->type) *
 					(size_t)ply_load_integer(at, property->count_type, swap);
 				continue;
 			}
-			for (size_t k = 0; k < r->target_count; k++) {
-				const target *t = &r->targets[k];
-				if (t->property == (int)i)
-					t->values[row * t->stride] =
-						ply_load_float(at, property->type, swap) / t->divisor;
-			}
+			status = decode_value(r, row, i, at);
 			at += ply_size(property->type);
 		}
 	}
-	return NMTAN_OK;
+	return status;
 }
 
 static nmtan_status fail_value(const reader *r, size_t row, const ply_property *property,
@@ -167,6 +223,8 @@ static nmtan_status read_line(const reader *r, size_t row, const target *const *
 		const unsigned char *after = t ? ply_read_float(at, end, &value) : ply_skip_value(at, end);
 		if (!after || after == at)
 			return fail_value(r, row, property, at, "a number for property");
+		if (t && t->finite && !is_finite(value))
+			return fail_value(r, row, property, at, "a finite number for property");
 		if (t)
 			t->values[row * t->stride] = t->divisor == 1.0f ? value : value / t->divisor;
 		at = after;
@@ -180,6 +238,7 @@ typedef struct column {
 	float *to; /* NULL: nowhere */
 	size_t stride;
 	float divisor;
+	bool finite;
 } column;
 
 /* One line of numbers with single blanks between them, far enough from the end of the file; the place
@@ -195,6 +254,8 @@ static inline const char *read_plain_line(const char *at, const char *end, size_
 		if (!at || at == end)
 			return NULL;
 		const column *c = &columns[i];
+		if (c->finite && !is_finite(value))
+			return NULL;
 		if (c->to)
 			c->to[row * c->stride] = c->divisor == 1.0f ? value : value / c->divisor;
 		if (i + 1 < count && *at++ != ' ')
@@ -234,7 +295,7 @@ static nmtan_status read_lines_into(const reader *r, const target **by_property,
 	for (size_t i = 0; i < r->target_count; i++) {
 		const target *t = &r->targets[i];
 		by_property[t->property] = t;
-		columns[t->property] = (column){t->values, t->stride, t->divisor};
+		columns[t->property] = (column){t->values, t->stride, t->divisor, t->finite};
 	}
 	nmtan_status status = NMTAN_OK;
 	for (size_t row = 0; !status && row < r->element->count;) {
@@ -270,12 +331,16 @@ nmtan_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source 
 		return status;
 	reader r = {.element = element, .cursor = cursor, .error = error};
 	nt_arena *arena = &scene->arena;
-	if (!add_attribute(&r, arena, roles->position, 3, false, &mesh->positions) ||
-		!add_attribute(&r, arena, roles->normal, 3, false, &mesh->normals) ||
-		!add_attribute(&r, arena, roles->texcoord, 2, false, &mesh->texcoords) ||
-		!add_attribute(&r, arena, roles->color, 4, true, &mesh->colors) ||
+	const bool finite = source->face || source->strips;
+	if (!add_attribute(&r, arena, roles->position, 3, finite, &mesh->positions) ||
+		!add_attribute(&r, arena, roles->normal, 3, finite, &mesh->normals) ||
+		!add_attribute(&r, arena, roles->texcoord, 2, finite, &mesh->texcoords) ||
 		!add_attribute(&r, arena, roles->tangent, 4, false, &mesh->tangents))
 		return nt_fail_memory(error);
+	const size_t first_color = r.target_count;
+	if (!add_attribute(&r, arena, roles->color, 4, finite, &mesh->colors))
+		return nt_fail_memory(error);
+	scale_colors(&r, first_color);
 	if (mesh->colors && roles->color[3] == PLY_NO_PROPERTY)
 		for (size_t i = 0; i < element->count; i++)
 			mesh->colors[4 * i + 3] = 1.0f;
@@ -285,7 +350,7 @@ nmtan_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source 
 	else if (element->has_list)
 		status = decode_listed(&r);
 	else
-		decode_fixed(&r);
+		status = decode_fixed(&r);
 	mesh->vertex_count = element->count;
 	return status;
 }

@@ -10,9 +10,10 @@
  * their tangents are equal.
  */
 #include <stdlib.h>
+#include "io/ply_numbering.h"
 #include "io/ply_output.h"
 
-enum { MOST_EXTRAS = 3 + 4 + 3, MOST_CHAIN = 64 };
+enum { MOST_EXTRAS = 3 + 4 + 3 };
 
 /* Where the values of a row lie. */
 typedef struct span {
@@ -27,12 +28,7 @@ typedef struct plan {
 	nt_error *error;
 	ply_cursor cursor;
 
-	size_t row_count;        /* vertices of the source */
-	const uint32_t *indices; /* final vertex of each corner */
-	size_t final_count;      /* vertices after all stages; some of them become one in the output */
-	uint32_t *numbers;       /* [final_count - row_count] number in the output */
-	uint32_t *appended;      /* [appended_count] final vertex of each appended row */
-	size_t appended_count;
+	ply_numbering n;
 
 	bool new_normals, new_tangents, new_bitangents;
 	bool *dropped;           /* [properties of vertex] replaced by new values */
@@ -41,151 +37,9 @@ typedef struct plan {
 	size_t extra_count;
 
 	ply_type index_type;     /* of the faces written */
-	size_t added_rows;       /* by polygons that become triangles */
-	size_t cut_polygons;
 	span *spans;             /* of the element with most properties */
 	size_t *row_offsets;     /* [row_count] where the row of a vertex begins */
 } plan;
-
-/* Which final vertex is which. */
-
-/* The vertex of the mesh that a final vertex has its attributes from. */
-static size_t mesh_vertex(const plan *p, size_t vertex)
-{
-	const nt_mesh *mesh = p->mesh;
-	return vertex < mesh->vertex_count ? vertex : mesh->split.sources[vertex - mesh->vertex_count];
-}
-
-static size_t source_row(const plan *p, size_t vertex)
-{
-	const nt_mesh *mesh = p->mesh;
-	size_t v = mesh_vertex(p, vertex);
-	if (v >= mesh->source_vertex_count)
-		v = mesh->vertex_sources[v - mesh->source_vertex_count];
-	return v < p->row_count ? v : p->source->wedge_rows[v - p->row_count];
-}
-
-static bool same_values(const plan *p, size_t a, size_t b)
-{
-	const nt_mesh *mesh = p->mesh;
-	const float *tangents = mesh->split.vertex_tangents;
-	if (p->new_tangents && memcmp(tangents + 4 * a, tangents + 4 * b, 4 * sizeof *tangents) != 0)
-		return false;
-	return !p->new_normals || memcmp(mesh->normals + 3 * mesh_vertex(p, a),
-					  mesh->normals + 3 * mesh_vertex(p, b), 3 * sizeof(float)) == 0;
-}
-
-/* Vertices of one row with equal values become one. Rows with very many different copies stop looking
- * after a while: the output is then larger, never wrong. */
-static bool merge_wedges(plan *p)
-{
-	uint32_t *last = nt_alloc(p->row_count, sizeof *last); /* newest output vertex of a row */
-	uint32_t *previous = nt_alloc(p->final_count - p->row_count, sizeof *previous);
-	if (last && previous) {
-		for (size_t row = 0; row < p->row_count; row++)
-			last[row] = (uint32_t)row;
-		for (size_t v = p->row_count; v < p->final_count; v++) {
-			const size_t row = source_row(p, v);
-			uint32_t other = last[row];
-			uint32_t found = NT_NONE;
-			for (int steps = 0; found == NT_NONE && steps < MOST_CHAIN; steps++) {
-				const bool is_row = other < p->row_count;
-				if (same_values(p, is_row ? other : p->appended[other - p->row_count], v))
-					found = other;
-				else if (is_row)
-					break;
-				else
-					other = previous[other - p->row_count];
-			}
-			if (found == NT_NONE) {
-				found = (uint32_t)(p->row_count + p->appended_count);
-				p->appended[p->appended_count] = (uint32_t)v;
-				previous[p->appended_count++] = last[row];
-				last[row] = found;
-			}
-			p->numbers[v - p->row_count] = found;
-		}
-	}
-	const bool done = last && previous;
-	free(last);
-	free(previous);
-	return done;
-}
-
-static nmtan_status number_vertices(plan *p)
-{
-	const nt_mesh *mesh = p->mesh;
-	p->final_count = mesh->vertex_count + mesh->split.source_count;
-	p->indices = mesh->split.indices ? mesh->split.indices : mesh->indices;
-	const size_t count = p->final_count - p->row_count;
-	p->numbers = nt_alloc(count, sizeof *p->numbers);
-	p->appended = nt_alloc(count, sizeof *p->appended);
-	if (!p->numbers || !p->appended)
-		return nt_fail_memory(p->error);
-	if (p->source->wedge_count > 0)
-		return merge_wedges(p) ? NMTAN_OK : nt_fail_memory(p->error);
-	for (size_t i = 0; i < count; i++) {
-		p->numbers[i] = (uint32_t)(p->row_count + i);
-		p->appended[i] = (uint32_t)(p->row_count + i);
-	}
-	p->appended_count = count;
-	return NMTAN_OK;
-}
-
-static uint32_t output_vertex(const plan *p, size_t corner)
-{
-	const uint32_t v = p->indices[corner];
-	return v < p->row_count ? v : p->numbers[v - p->row_count];
-}
-
-/* Vertices for the corners of a cut polygon whose triangles begin at `corner`; false: they disagree. */
-static bool resolve_polygon(const plan *p, size_t corner, size_t size, const uint32_t *cut,
-	uint32_t *vertices)
-{
-	bool agrees = true;
-	for (size_t k = 0; k < size; k++)
-		vertices[k] = NT_NONE;
-	for (size_t i = 0; i < 3 * (size - 2); i++) {
-		const uint32_t vertex = output_vertex(p, corner + i);
-		uint32_t *known = &vertices[cut[i]];
-		agrees &= *known == NT_NONE || *known == vertex;
-		*known = vertex;
-	}
-	for (size_t k = 0; k < size; k++)
-		agrees &= vertices[k] != NT_NONE;
-	return agrees;
-}
-
-/* Counts the polygons that become triangles: the header needs the number of faces. */
-static nmtan_status count_cut_polygons(plan *p)
-{
-	const nt_mesh *mesh = p->mesh;
-	uint32_t *vertices = NULL;
-	size_t capacity = 0, cut = 0;
-	for (size_t face = 0, corner = 0; mesh->face_polygon && face < mesh->face_count;) {
-		size_t end = face + 1;
-		while (end < mesh->face_count && mesh->face_polygon[end] == mesh->face_polygon[face])
-			end++;
-		const size_t triangles = end - face;
-		if (triangles == 1) {
-			corner += mesh->face_sizes ? mesh->face_sizes[face] : 3;
-		} else {
-			if (!nt_grow((void **)&vertices, &capacity, triangles + 2, sizeof *vertices)) {
-				free(vertices);
-				return nt_fail_memory(p->error);
-			}
-			if (!resolve_polygon(p, corner, triangles + 2, p->source->cuts.corners + cut, vertices)) {
-				p->cut_polygons++;
-				p->added_rows += triangles - 1;
-			}
-			corner += 3 * triangles;
-			cut += 3 * triangles;
-		}
-		face = end;
-	}
-	free(vertices);
-	return NMTAN_OK;
-}
 
 /* What changes in the header. */
 
@@ -213,7 +67,7 @@ static nmtan_status plan_properties(plan *p, bool bitangents)
 	}
 	p->dropped = nt_calloc(vertex->property_count, sizeof *p->dropped);
 	p->spans = nt_alloc(most, sizeof *p->spans);
-	p->row_offsets = nt_alloc(p->row_count, sizeof *p->row_offsets);
+	p->row_offsets = nt_alloc(p->n.row_count, sizeof *p->row_offsets);
 	if (!p->dropped || !p->spans || !p->row_offsets)
 		return nt_fail_memory(p->error);
 	/* bitangents of other tangents must not stay */
@@ -230,7 +84,7 @@ static nmtan_status plan_properties(plan *p, bool bitangents)
 
 static bool faces_change(const plan *p)
 {
-	return p->appended_count > 0 || p->cut_polygons > 0;
+	return p->n.appended_count > 0 || p->n.cut_polygons > 0;
 }
 
 /* The type of indices, wider where the vertices have become too many for the source's. */
@@ -240,7 +94,7 @@ static void plan_index_type(plan *p, const ply_element *element)
 		[PLY_INT16] = INT16_MAX, [PLY_UINT16] = UINT16_MAX, [PLY_INT32] = INT32_MAX,
 		[PLY_UINT32] = UINT32_MAX};
 	p->index_type = element->properties[p->source->face_indices].type;
-	const size_t count = p->row_count + p->appended_count;
+	const size_t count = p->n.row_count + p->n.appended_count;
 	if (count > 0 && count - 1 > largest[p->index_type])
 		p->index_type = count - 1 > INT32_MAX ? PLY_UINT32 : PLY_INT32;
 }
@@ -277,10 +131,10 @@ static bool write_changed_element(const plan *p, const ply_element *element, con
 	/* an empty element "face" beside strips would come twice */
 	if (replaces_strips(p) && strcmp(element->name, "face") == 0)
 		return true;
-	if (element == source->vertex && p->appended_count > 0)
-		write_element_line(p, element->name, p->row_count + p->appended_count);
-	else if (element == source->face && p->added_rows > 0)
-		write_element_line(p, element->name, element->count + p->added_rows);
+	if (element == source->vertex && p->n.appended_count > 0)
+		write_element_line(p, element->name, p->n.row_count + p->n.appended_count);
+	else if (element == source->face && p->n.added_faces > 0)
+		write_element_line(p, element->name, element->count + p->n.added_faces);
 	else
 		nt_buffer_append(&p->out->buffer, line, size);
 	return false;
@@ -414,7 +268,7 @@ static void write_float(const plan *p, float value)
 static void write_extras(const plan *p, size_t vertex)
 {
 	const float *normals = p->mesh->normals;
-	const float *n = normals ? normals + 3 * mesh_vertex(p, vertex) : NULL;
+	const float *n = normals ? normals + 3 * ply_mesh_vertex(&p->n, vertex) : NULL;
 	for (size_t k = 0; p->new_normals && k < 3; k++)
 		write_float(p, n[k]);
 	if (!p->new_tangents)
@@ -467,14 +321,14 @@ static nmtan_status write_vertex(plan *p, size_t vertex)
 static nmtan_status write_vertices(plan *p)
 {
 	nmtan_status status = NMTAN_OK;
-	for (size_t row = 0; !status && row < p->row_count; row++) {
+	for (size_t row = 0; !status && row < p->n.row_count; row++) {
 		p->row_offsets[row] = (size_t)(p->cursor.at - p->cursor.begin);
 		status = write_vertex(p, row);
 	}
 	const unsigned char *after = p->cursor.at;
-	for (size_t i = 0; !status && i < p->appended_count; i++) {
-		const size_t vertex = p->appended[i];
-		p->cursor.at = p->cursor.begin + p->row_offsets[source_row(p, vertex)];
+	for (size_t i = 0; !status && i < p->n.appended_count; i++) {
+		const size_t vertex = p->n.appended[i];
+		p->cursor.at = p->cursor.begin + p->row_offsets[ply_source_row(&p->n, vertex)];
 		status = write_vertex(p, vertex);
 	}
 	p->cursor.at = after;
@@ -556,7 +410,7 @@ static nmtan_status write_triangles(const plan *p, const face_progress *done, si
 	for (size_t t = 0; !status && t < size - 2; t++) {
 		uint32_t vertices[3];
 		for (size_t k = 0; k < 3; k++)
-			vertices[k] = output_vertex(p, done->corner + 3 * t + k);
+			vertices[k] = ply_output_vertex(&p->n, done->corner + 3 * t + k);
 		status = write_face(p, vertices, 3, p->source->cuts.corners + done->cut + 3 * t);
 	}
 	return status;
@@ -601,11 +455,11 @@ static nmtan_status write_polygon(plan *p, face_progress *done)
 		status = write_short_face(p, list, size, done->vertices);
 	} else if (size < 5) {
 		for (size_t k = 0; k < size; k++)
-			done->vertices[k] = output_vertex(p, done->corner + k);
+			done->vertices[k] = ply_output_vertex(&p->n, done->corner + k);
 		status = write_face(p, done->vertices, size, NULL);
 	} else {
 		const uint32_t *cut = p->source->cuts.corners + done->cut;
-		status = resolve_polygon(p, done->corner, size, cut, done->vertices)
+		status = ply_resolve_polygon(&p->n, done->corner, size, cut, done->vertices)
 				 ? write_face(p, done->vertices, size, NULL)
 				 : write_triangles(p, done, size);
 		done->cut += corners;
@@ -628,8 +482,8 @@ static nmtan_status write_strip_faces(plan *p)
 {
 	nmtan_status status = ply_skip_element(&p->cursor, p->source->strips, p->error);
 	for (size_t c = 0; !status && c < p->mesh->corner_count; c += 3) {
-		const uint32_t vertices[3] = {output_vertex(p, c), output_vertex(p, c + 1),
-			output_vertex(p, c + 2)};
+		const uint32_t vertices[3] = {ply_output_vertex(&p->n, c), ply_output_vertex(&p->n, c + 1),
+			ply_output_vertex(&p->n, c + 2)};
 		write_indices(p, vertices, 3, PLY_UINT8);
 		end_row(p);
 		status = ply_drain(p->out, p->error);
@@ -677,8 +531,8 @@ static nmtan_status write_body(plan *p)
 static void report_cuts(const plan *p)
 {
 	const nt_mesh *mesh = p->mesh;
-	if (p->cut_polygons > 0)
-		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, &mesh->place, p->cut_polygons, NULL);
+	if (p->n.cut_polygons > 0)
+		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, &mesh->place, p->n.cut_polygons, NULL);
 	if (replaces_strips(p))
 		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, &mesh->place,
 			p->source->strips->count, "triangle strips");
@@ -686,11 +540,9 @@ static void report_cuts(const plan *p)
 
 static nmtan_status write_changed(plan *p, bool bitangents)
 {
-	nmtan_status status = number_vertices(p);
-	if (!status)
-		status = plan_properties(p, bitangents);
-	if (!status)
-		status = count_cut_polygons(p);
+	const nmtan_status status = ply_number_vertices(&p->n, p->mesh, p->source)
+					    ? plan_properties(p, bitangents)
+					    : nt_fail_memory(p->error);
 	if (status)
 		return status;
 	const ply_element *faces = p->source->face ? p->source->face : p->source->strips;
@@ -709,7 +561,6 @@ nmtan_status ply_write_source(nt_scene *scene, const nt_write_options *options, 
 	const ply_header *header = &source->header;
 	const unsigned char *body = scene->bytes + header->body;
 	plan p = {.scene = scene, .mesh = mesh, .source = source, .out = out, .error = error,
-		.row_count = source->vertex->count,
 		.new_normals = mesh->normals_made,
 		.new_tangents = mesh->split.vertex_tangents != NULL,
 		.cursor = {.begin = scene->bytes, .at = body, .end = scene->bytes + scene->byte_count,
@@ -718,8 +569,7 @@ nmtan_status ply_write_source(nt_scene *scene, const nt_write_options *options, 
 	if (!p.new_normals && !p.new_tangents)
 		return ply_put_bytes(out, scene->bytes, scene->byte_count, error);
 	const nmtan_status status = write_changed(&p, options->bitangents);
-	free(p.numbers);
-	free(p.appended);
+	ply_numbering_free(&p.n);
 	free(p.dropped);
 	free(p.spans);
 	free(p.row_offsets);

@@ -651,6 +651,37 @@ static void text_mistakes_have_their_line(void **state)
 		"face 1: list \"texcoord\" has 4 values, expected 6 for 3 corners, or none");
 }
 
+static void meshes_must_be_finite(void **state)
+{
+	(void)state;
+	assert_refused(HEAD("3") FACES("1") "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n", 11,
+		"vertex 1: found \"nan\", expected a finite number for property \"y\"");
+	assert_refused(HEAD("3") FACES("1") "0 0 0\n1 0 1e39\n0 1 0\n3 0 1 2\n", 11,
+		"vertex 1: found \"1e39\", expected a finite number for property \"z\"");
+	assert_refused(HEAD("3") WEDGES POINTS "3 0 1 2 6 0 0 1 0 -inf 1\n3 0 1 2 0\n", 14,
+		"face 0: found \"-inf\", expected a finite number in list \"texcoord\"");
+	for (int with_list = 0; with_list < 2; with_list++) {
+		image m = {0};
+		put_text(&m, "ply\nformat binary_little_endian 1.0\nelement vertex 600\n" XYZ);
+		put_text(&m, with_list ? "property list uchar int stuff\n" : "property uchar stuff\n");
+		put_text(&m, "element face 1\nproperty list uchar int vertex_indices\nend_header\n");
+		unsigned char *bytes = calloc(m.size + 600 * 13 + 1, 1);
+		memcpy(bytes, m.bytes, m.size);
+		const size_t at = m.size + 555 * 13 + 8;
+		bytes[at + 2] = 0x80; /* 7f 80 00 00: infinity */
+		bytes[at + 3] = 0x7f;
+		assert_refused_bytes(bytes, m.size + 600 * 13 + 1, NMTAN_ERROR_INPUT, 0, at,
+			"vertex 555: property \"z\" is not finite, expected a finite number");
+		free(bytes);
+	}
+	/* tangents are judged elsewhere */
+	reading r;
+	open_text(&r, HEAD("3") "property float tx\nproperty float ty\nproperty float tz\n"
+		"property float tw\n" FACES("1") "0 0 0 nan 0 0 1\n1 0 0 1 0 0 1\n0 1 0 1 0 0 1\n3 0 1 2\n");
+	assert_true(isnan(r.mesh->tangents[0]));
+	close_reading(&r);
+}
+
 static void counts_that_lie_are_refused(void **state)
 {
 	(void)state;
@@ -890,6 +921,7 @@ int main(void)
 		cmocka_unit_test(bytes_after_the_last_element_are_said),
 		cmocka_unit_test(header_mistakes_have_their_line),
 		cmocka_unit_test(text_mistakes_have_their_line),
+		cmocka_unit_test(meshes_must_be_finite),
 		cmocka_unit_test(counts_that_lie_are_refused),
 		cmocka_unit_test(binary_mistakes_have_their_offset),
 		cmocka_unit_test(the_three_encodings_say_the_same),
