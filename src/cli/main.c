@@ -126,16 +126,23 @@ static void tell_job(void *user, nt_job *job)
 	job->summary.report = NULL;
 }
 
-/* Writes the report of all inputs where it was asked for, and frees it. */
+static void tell_report_error(session *s, nt_error *error, const char *path)
+{
+	nt_error_in_file(error, path);
+	print_error(error, s->style, false);
+	s->exit_code = nt_exit_worse(s->exit_code, nt_exit_code(error->status));
+}
+
+/* Writes the report and the pictures of all inputs where they were asked for, and frees them. */
 static void tell_report(session *s)
 {
+	const nt_report_target *target = &s->plan->target;
+	const char *images = s->command->uv_image;
 	nt_error error;
-	if (s->plan->target.path &&
-		nt_report_to_file(s->reports, s->report_count, &s->plan->target, &error)) {
-		nt_error_in_file(&error, s->plan->target.path);
-		print_error(&error, s->style, false);
-		s->exit_code = nt_exit_worse(s->exit_code, nt_exit_code(error.status));
-	}
+	if (target->path && nt_report_to_file(s->reports, s->report_count, target, &error))
+		tell_report_error(s, &error, target->path);
+	if (images && nt_report_uv_images(s->reports, s->report_count, images, target, &error))
+		tell_report_error(s, &error, images);
 	for (size_t i = 0; i < s->report_count; i++)
 		nt_report_free(s->reports[i]);
 	free(s->reports);

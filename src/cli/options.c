@@ -74,7 +74,7 @@ const nt_option_row nt_option_rows[] = {
 	{"report", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
 		"write a report of what was found to FILE; - is standard output", FIELD(report), false},
 	{"report-format", 0, NT_OPTION_CHOICE,
-		"text|json|sarif|junit|csv|markdown", 1, 0,
+		"text|json|sarif|junit|csv|markdown|html", 1, 0,
 		"by name", "format of the report", FIELD(report_format), false},
 	{"ignore", 0, NT_OPTION_TEXT, "CODE,...", 0, 0, NULL, "findings that are not reported",
 		FIELD(ignore), false},
@@ -84,6 +84,8 @@ const nt_option_row nt_option_rows[] = {
 		"an earlier JSON report: only what it does not have counts", FIELD(baseline), false},
 	{"max-issues", 0, NT_OPTION_NUMBER, "N", 0, 1000000000, "0",
 		"how many findings of a file are reported; 0: all", FIELD(max_issues), false},
+	{"uv-image", 0, NT_OPTION_TEXT, "DIR", 0, 0, NULL,
+		"draw the UV layout of each mesh to DIR/NAME-MESH.svg", FIELD(uv_image), false},
 	{"list-codes", 0, NT_OPTION_SET, NULL, NT_ACTION_LIST_CODES, 0, NULL,
 		"print what can be found, and end", FIELD(action), false},
 

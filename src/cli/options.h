@@ -39,6 +39,7 @@ typedef struct nt_command {
 	const char *severity;  /* CODE=LEVEL,CODE=LEVEL; NULL: none */
 	const char *baseline;  /* file; NULL: none */
 	int max_issues;        /* 0: all */
+	const char *uv_image;  /* folder; NULL: none */
 	const char *directory; /* -d; NULL: none */
 	const char **operands; /* in argv, which is reordered for it */
 	size_t operand_count;

@@ -110,7 +110,8 @@ nmtan_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command
 	nt_error *error)
 {
 	*plan = (nt_report_plan){
-		.wanted = command->settings.check || command->report || command->ignore || command->severity};
+		.wanted = command->settings.check || command->report || command->ignore || command->severity ||
+			command->uv_image};
 	plan->options.max_issues = (size_t)command->max_issues;
 	nmtan_status status = check_outputs(command, error);
 	if (!status)
@@ -123,7 +124,8 @@ nmtan_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command
 		status = nt_baseline_open(&plan->baseline, command->baseline, error);
 		plan->options.baseline = &plan->baseline;
 	}
-	plan->options.keep_geometry = plan->target.path && plan->target.format == NT_REPORT_HTML;
+	plan->options.keep_geometry = command->uv_image ||
+		(plan->target.path && plan->target.format == NT_REPORT_HTML);
 	return status;
 }
 

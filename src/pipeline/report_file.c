@@ -5,7 +5,11 @@
  */
 #include "pipeline/report_file.h"
 
+#include <errno.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include "base/buffer.h"
 #include "io/file.h"
 
 static nmtan_status to_sink(void *user, const void *bytes, size_t size, nt_error *error)
@@ -48,6 +52,55 @@ nmtan_status nt_report_to_file(nt_report *const *reports, size_t count, const nt
 	const nmtan_status status = write_set(made, made_count, target, error);
 	free(made);
 	return status;
+}
+
+/* DIR/NAME-MESH.svg */
+static bool image_name(nt_buffer *name, const char *directory, const char *input, uint32_t mesh)
+{
+	const char *slash = strrchr(input, '/');
+	const char *base = slash ? slash + 1 : input;
+	const char *dot = strrchr(base, '.');
+	const size_t stem = dot && dot != base ? (size_t)(dot - base) : strlen(base);
+	nt_buffer_format(name, "%s/%.*s-%u.svg", directory, (int)stem, base, mesh);
+	return !name->failed;
+}
+
+static nmtan_status write_image(nt_output *output, const nt_report *report, uint32_t mesh,
+	const char *directory, nt_error *error)
+{
+	if (!report->meshes[mesh].geometry || !report->meshes[mesh].geometry->texcoords)
+		return NMTAN_OK;
+	nt_buffer name = {0};
+	nt_sink *sink = NULL;
+	bool drawn;
+	nmtan_status status = image_name(&name, directory, report->path, mesh)
+		? nt_output_add(output, name.data, true, &sink, error)
+		: nt_fail_memory(error);
+	if (!status)
+		status = nt_report_write_uv(report, mesh, &drawn, to_sink, sink, error);
+	nt_buffer_free(&name);
+	return status;
+}
+
+nmtan_status nt_report_uv_images(nt_report *const *reports, size_t count, const char *directory,
+	const nt_report_target *target, nt_error *error)
+{
+	if (mkdir(directory, 0777) && errno != EEXIST)
+		return nt_fail(error, NMTAN_ERROR_IO, "cannot make the folder \"%s\": %s", directory,
+			strerror(errno));
+	const nt_output_options options = {.no_clobber = target->no_clobber};
+	nt_output *output = NULL;
+	nmtan_status status = nt_output_create(&output, &options, error);
+	for (size_t i = 0; i < target->input_count && !status; i++)
+		status = nt_output_protect(output, target->inputs[i], error);
+	for (size_t i = 0; i < count && !status; i++)
+		for (size_t m = 0; reports[i] && m < reports[i]->mesh_count && !status; m++)
+			status = write_image(output, reports[i], (uint32_t)m, directory, error);
+	if (status) {
+		nt_output_abort(output);
+		return status;
+	}
+	return nt_output_commit(output, error);
 }
 
 nmtan_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_error *error)

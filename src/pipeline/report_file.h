@@ -22,6 +22,11 @@ typedef struct nt_report_target {
 nmtan_status nt_report_to_file(nt_report *const *reports, size_t count, const nt_report_target *target,
 	nt_error *error);
 
+/* Writes the UV layout of every mesh that has one to directory/NAME-MESH.svg, NAME being the input's name without
+ * its ending. The folder is made where it is missing. target->path is not used. Returns as above. */
+nmtan_status nt_report_uv_images(nt_report *const *reports, size_t count, const char *directory,
+	const nt_report_target *target, nt_error *error);
+
 /* Reads the fingerprints of a JSON report. The error names the file. */
 nmtan_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_error *error);
 

@@ -33,6 +33,13 @@ typedef struct nt_baseline {
 	size_t count;
 } nt_baseline;
 
+/* An image file's bytes, and its media type. */
+typedef struct nt_image {
+	const unsigned char *bytes;
+	size_t size;
+	const char *type; /* static */
+} nt_image;
+
 /* Zero-initialised means the defaults. */
 typedef struct nt_report_options {
 	bool converted;               /* the scene is what gets written, not what was read */
@@ -41,6 +48,9 @@ typedef struct nt_report_options {
 	size_t max_issues;            /* findings kept; 0: all */
 	const nt_baseline *baseline;  /* NULL: none */
 	bool keep_geometry;           /* for pictures: SVG and HTML */
+	/* Finds the bytes of a mesh's normal map for HTML; false: it has none. They are copied. NULL: nobody can */
+	bool (*find_normal_map)(void *user, const nt_scene *scene, const nt_mesh *mesh, nt_image *image);
+	void *find_normal_map_user;
 	unsigned threads;
 } nt_report_options;
 
@@ -171,6 +181,9 @@ typedef struct nt_report_mesh {
 	size_t island_count;
 	nt_box box;
 	nt_report_geometry *geometry; /* NULL unless kept */
+	const unsigned char *normal_map; /* the image as its file has it; NULL: none, or not kept */
+	size_t normal_map_size;
+	const char *normal_map_type;  /* "image/png" */
 } nt_report_mesh;
 
 typedef struct nt_report {

@@ -18,6 +18,7 @@ static const struct {
 	[NT_REPORT_JUNIT] = {"junit", ".xml", nt_write_junit},
 	[NT_REPORT_CSV] = {"csv", ".csv", nt_write_csv},
 	[NT_REPORT_MARKDOWN] = {"markdown", ".md", nt_write_markdown},
+	[NT_REPORT_HTML] = {"html", ".html .htm", nt_write_html},
 };
 
 const char *nt_report_format_name(nt_report_format format)
@@ -59,6 +60,20 @@ nmtan_status nt_report_write(const nt_report *const *reports, size_t count, nt_r
 	formats[format].write(&list, &out);
 	const nmtan_status status = out.failed ? nt_fail_memory(error)
 					       : sink(user, out.data ? out.data : "", out.size, error);
+	nt_buffer_free(&out);
+	return status;
+}
+
+nmtan_status nt_report_write_uv(const nt_report *report, uint32_t mesh, bool *drawn, nt_report_sink sink,
+	void *user, nt_error *error)
+{
+	nt_buffer out = {0};
+	*drawn = nt_write_uv_svg(report, mesh, &out);
+	nmtan_status status = NMTAN_OK;
+	if (out.failed)
+		status = nt_fail_memory(error);
+	else if (*drawn)
+		status = sink(user, out.data, out.size, error);
 	nt_buffer_free(&out);
 	return status;
 }

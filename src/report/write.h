@@ -41,4 +41,9 @@ typedef nmtan_status (*nt_report_sink)(void *user, const void *bytes, size_t siz
 nmtan_status nt_report_write(const nt_report *const *reports, size_t count, nt_report_format format,
 	const nt_report_style *style, nt_report_sink sink, void *user, nt_error *error);
 
+/* Writes the UV layout of one mesh as SVG. *drawn receives false, and nothing is written, where it has no
+ * texture coordinates; the report must have been built with keep_geometry. Statuses as above. */
+nmtan_status nt_report_write_uv(const nt_report *report, uint32_t mesh, bool *drawn, nt_report_sink sink,
+	void *user, nt_error *error);
+
 #endif

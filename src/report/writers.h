@@ -20,6 +20,11 @@ void nt_write_sarif(const nt_report_list *reports, nt_buffer *out);
 void nt_write_junit(const nt_report_list *reports, nt_buffer *out);
 void nt_write_csv(const nt_report_list *reports, nt_buffer *out);
 void nt_write_markdown(const nt_report_list *reports, nt_buffer *out);
+void nt_write_html(const nt_report_list *reports, nt_buffer *out);
+
+/* The UV layout of a mesh. False, and nothing appended, where it has no texture coordinates or its geometry
+ * was not kept. */
+bool nt_write_uv_svg(const nt_report *report, uint32_t mesh, nt_buffer *out);
 
 /* A path as reports show it: without its folders where it is absolute. */
 const char *nt_shown_path(const char *path);
