@@ -87,6 +87,9 @@ $(B)/tangent/kernel_avx512.c.o: FILE_FLAGS := $(lanes) -mavx512f -mavx512bw -mav
 endif
 $(B)/topology/weld.c.o: FILE_FLAGS := $(lanes)
 
+# The page of HTML reports is assembled into the binary: see page_assets.c.
+$(B)/report/page_assets.c.o: $(wildcard src/report/page/*)
+
 # Foreign headers whose warnings are not ours.
 $(B)/ext/openmesh.cpp.o: FILE_FLAGS := -Wno-maybe-uninitialized -Wno-class-memaccess
 

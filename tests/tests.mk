@@ -34,13 +34,13 @@ tests: $(unit_bin) $(api_bin)
 unit: tests
 	@for t in $(unit_bin) $(api_bin); do $$t || exit 1; done
 
-# The Khronos validator, outside the source tree. Nothing is fetched when it is there.
+# The Khronos validator and playwright-core, outside the source tree. Nothing is fetched when it is there.
 build/node/node_modules/gltf-validator/package.json: tests/support/package.json tests/support/package-lock.json
 	@mkdir -p build/node
 	@cp tests/support/package.json tests/support/package-lock.json build/node/
-	@echo "Installing gltf-validator (npm) into build/node"
+	@echo "Installing gltf-validator and playwright-core (npm) into build/node"
 	@npm ci --prefix build/node --no-audit --no-fund --loglevel=error >/dev/null || \
-		echo "npm cannot install gltf-validator: the tests that need it will be skipped"
+		echo "npm cannot install them: the tests that need it will be skipped"
 	@[ ! -f $@ ] || touch $@
 
 # Everything in release and under ASan and UBSan; make's own jobs carry over to the builds.

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <time.h>
+#include "io/normal_map.h"
 #include "io/verify.h"
 #include "pipeline/stages.h"
 
@@ -247,6 +248,20 @@ static nmtan_status run_stages(run *r)
 	return status;
 }
 
+/* A copy of a mesh's normal map for the report. */
+static bool copy_normal_map(nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh, size_t most_bytes,
+	nt_image *image)
+{
+	nt_normal_map map;
+	if (!nt_normal_map_open(&map, scene, mesh))
+		return false;
+	void *copy = map.size <= most_bytes ? nt_arena_alloc(arena, map.size, 1) : NULL;
+	if (copy)
+		*image = (nt_image){memcpy(copy, map.bytes, map.size), map.size, map.type};
+	nt_normal_map_close(&map);
+	return copy != NULL;
+}
+
 /* The report of the scene as it now is, or of what went wrong. */
 static nmtan_status make_report(run *r, nmtan_status status)
 {
@@ -259,6 +274,8 @@ static nmtan_status make_report(run *r, nmtan_status status)
 	}
 	nt_report_options options = *r->settings->report;
 	options.converted = r->writer != NULL;
+	if (options.keep_geometry)
+		options.find_normal_map = copy_normal_map;
 	options.threads = r->settings->threads;
 	return nt_report_build(&r->scene, &options, &r->summary->report, r->error);
 }

@@ -155,20 +155,13 @@ static nmtan_status keep_geometry(nt_judge *judge)
 /* Larger ones have no place in a page of 20 MB. */
 static const size_t MOST_IMAGE_BYTES = 2000000;
 
-static nmtan_status keep_normal_map(nt_judge *judge)
+static void keep_normal_map(nt_judge *judge)
 {
 	const nt_report_options *options = judge->options;
 	nt_image image;
-	if (!options->find_normal_map || !options->find_normal_map(options->find_normal_map_user,
-						 judge->scene, judge->mesh, &image))
-		return NMTAN_OK;
-	if (image.size > MOST_IMAGE_BYTES)
-		return NMTAN_OK;
-	bool failed = false;
-	judge->facts->normal_map = copy_block(&judge->report->arena, image.bytes, image.size, 1, &failed);
-	judge->facts->normal_map_size = image.size;
-	judge->facts->normal_map_type = image.type;
-	return failed ? NMTAN_ERROR_MEMORY : NMTAN_OK;
+	if (options->find_normal_map && options->find_normal_map(&judge->report->arena, judge->scene,
+						judge->mesh, MOST_IMAGE_BYTES, &image))
+		judge->facts->normal_map = image;
 }
 
 /* ---- one mesh ---- */
@@ -186,7 +179,7 @@ static nmtan_status judge_mesh(nt_judge *judge)
 	if (!status && judge->options->keep_geometry)
 		status = keep_geometry(judge);
 	if (!status)
-		status = keep_normal_map(judge);
+		keep_normal_map(judge);
 	return status ? status : judge->failed ? NMTAN_ERROR_MEMORY : NMTAN_OK;
 }
 

@@ -226,15 +226,15 @@ static void put_facts(const nt_report_mesh *m, nt_buffer *out)
 static void put_image(const nt_report_mesh *m, budget *left, nt_buffer *out)
 {
 	nt_buffer_text(out, ",\"image\":");
-	if (!m->normal_map || m->normal_map_size > left->images) {
+	if (!m->normal_map.bytes || m->normal_map.size > left->images) {
 		nt_buffer_text(out, "null");
 		return;
 	}
-	left->images -= m->normal_map_size;
+	left->images -= m->normal_map.size;
 	nt_buffer_format(out, "%zu", left->image_count);
 	nt_buffer_format(&left->sources, "%s\"data:%s;base64,", left->image_count++ ? "," : "",
-		m->normal_map_type);
-	put_base64(m->normal_map, m->normal_map_size, &left->sources);
+		m->normal_map.type);
+	put_base64(m->normal_map.bytes, m->normal_map.size, &left->sources);
 	nt_buffer_text(&left->sources, "\"");
 }
 

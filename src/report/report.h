@@ -48,9 +48,10 @@ typedef struct nt_report_options {
 	size_t max_issues;            /* findings kept; 0: all */
 	const nt_baseline *baseline;  /* NULL: none */
 	bool keep_geometry;           /* for pictures: SVG and HTML */
-	/* Finds the bytes of a mesh's normal map for HTML; false: it has none. They are copied. NULL: nobody can */
-	bool (*find_normal_map)(void *user, const nt_scene *scene, const nt_mesh *mesh, nt_image *image);
-	void *find_normal_map_user;
+	/* Gives a copy of a mesh's normal map, in the arena, for HTML: false where it has none or one of more
+	 * than most_bytes. NULL: nobody can. */
+	bool (*find_normal_map)(nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh, size_t most_bytes,
+		nt_image *image);
 	unsigned threads;
 } nt_report_options;
 
@@ -181,9 +182,7 @@ typedef struct nt_report_mesh {
 	size_t island_count;
 	nt_box box;
 	nt_report_geometry *geometry; /* NULL unless kept */
-	const unsigned char *normal_map; /* the image as its file has it; NULL: none, or not kept */
-	size_t normal_map_size;
-	const char *normal_map_type;  /* "image/png" */
+	nt_image normal_map;          /* bytes NULL: none, or not kept */
 } nt_report_mesh;
 
 typedef struct nt_report {

@@ -112,7 +112,9 @@ static void draw_grid(const canvas *c)
 	for (int u = u0; u < u1; u++) {
 		for (int v = v0; v < v1; v++) {
 			const int up = -v; /* image v 0..1 is the tile at the bottom, v 0..1 upwards */
-			if (u >= 0 && u <= 9 && up >= 0)
+			const bool seen = u + 0.5 < c->maximum[0] && u + 0.5 > c->minimum[0] &&
+				v + 0.5 < c->maximum[1] && v + 0.5 > c->minimum[1];
+			if (seen && u >= 0 && u <= 9 && up >= 0)
 				nt_buffer_format(c->out, "<text class=\"udim\" x=\"%.1f\" y=\"%.1f\">%d</text>\n",
 					x_of(c, u) + 6.0, (v + 1 - c->minimum[1]) * c->factor - 6.0,
 					1001 + u + 10 * up);

@@ -416,14 +416,15 @@ class View {
 		this.camera = {target: [0, 1, 2].map(i => (b[0][i] + b[1][i]) / 2), distance: 1.4 * this.extent(), yaw: 0.6, pitch: 0.35};
 	}
 
-	// Looks at the middle of a finding, from the side to which its surface faces.
+	// Looks at the middle of a finding, from the side to which its surface faces, else from outside.
 	focus(finding) {
 		if (!this.count || !finding.box) return;
 		const [low, high] = finding.box, size = Math.hypot(...sub(high, low));
 		this.camera.target = [0, 1, 2].map(i => (low[i] + high[i]) / 2);
 		this.camera.distance = Math.max(1.4 * size, 0.15 * this.extent());
-		if (finding.facing) {
-			const [x, y, z] = finding.facing;
+		const b = this.mesh.box, out = sub(this.camera.target, [0, 1, 2].map(i => (b[0][i] + b[1][i]) / 2));
+		if (finding.facing || Math.hypot(...out) > 0.01 * this.extent()) {
+			const [x, y, z] = finding.facing || unit(out);
 			this.camera.yaw = Math.atan2(x, z);
 			this.camera.pitch = Math.max(-1.4, Math.min(1.4, Math.asin(Math.max(-1, Math.min(1, y)))));
 		}

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: MIT
+# The HTML report in a real browser, and the UV pictures.
+. "$ROOT/tests/support/cli.sh"
+modules=$ROOT/build/node
+
+# A plain quad at u 0..0.4 with a triangle that has no UV area and one that has none at all, and a mirrored quad at u 0.6..1 with a name
+# that tries to be a script.
+two_quads() {
+	cat <<-'END'
+		o plain
+		v 0 0 0
+		v 1 0 0
+		v 1 1 0
+		v 0 1 0
+		v 10 0 0
+		v 11 0 0
+		v 11 1 0
+		v 10 1 0
+		v 0 1.1 0
+		v 1 1.1 0
+		v 0 1.5 0
+		vt 0 0
+		vt 0.4 0
+		vt 0.4 1
+		vt 0 1
+		vt 1 0
+		vt 0.6 0
+		vt 0.6 1
+		vt 1 1
+		vn 0 0 1
+		f 1/1/1 2/2/1 3/3/1 4/4/1
+		f 9/1/1 10/1/1 11/1/1
+		f 9/1/1 9/2/1 10/3/1
+		o </script><script>window.broken=1</script>
+		f 5/5/1 6/6/1 7/7/1 8/8/1
+	END
+}
+
+scene "the page works in Chromium: filters, sorting, both views, the keyboard, dark and light, names as text"
+two_quads >two.obj
+run --report=two.html two.obj two.glb
+exits 0
+if [ -f "$modules/node_modules/playwright-core/package.json" ] && command -v chromium >/dev/null 2>&1; then
+	node "$ROOT/tests/report/page.mjs" two.html "$modules" >page.txt 2>&1 || wrong "$(head -c 2000 page.txt)"
+else
+	skip_case "chromium or playwright-core is not installed"
+fi
+
+scene "the page of a large mesh stays below 20 MB and says what it leaves out"
+awk 'BEGIN { n = 500
+	for (i = 0; i <= n; i++) for (j = 0; j <= n; j++) {
+		printf "v %d %d %.3f\nvt %.5f %.5f\n", i, j, sin(i * j / 900), (i < n / 2 ? i : n - i) / n, j / n }
+	for (i = 0; i < n; i++) for (j = 0; j < n; j++) { a = i * (n + 1) + j + 1; b = a + n + 1
+		printf "f %d/%d %d/%d %d/%d %d/%d\n", a, a, b, b, b + 1, b + 1, a + 1, a + 1 } }' >large.obj
+run --check --report=large.html large.obj
+exits 0
+[ "$(wc -c <large.html)" -lt 20000000 ] || wrong "$(wc -c <large.html) bytes"
+grep -q "of 500000 triangles: the neighbourhood of the findings" large.html || wrong "it does not say so"
+
+scene "UV pictures are well-formed SVG with blue, red and seams"
+run --check --uv-image=pictures "$data/mirrored_cube.obj" "$data/plates.gltf"
+exists pictures/mirrored_cube-0.svg pictures/plates-0.svg pictures/plates-2.svg
+python3 -c 'import sys, xml.etree.ElementTree as x
+for name in sys.argv[1:]:
+	root = x.parse(name).getroot()
+	kinds = [e.get("class") for e in root]
+	assert root.tag.endswith("svg") and "normal" in kinds, kinds
+	if "cube" in name:
+		assert kinds.count("seam") == 2 and kinds.count("number") == 2, kinds
+		assert "mirrored" in kinds and "hatch" in kinds, kinds' pictures/*.svg || wrong "not as expected"
+run --check --uv-image=pictures "$data/mirrored_cube.obj" # again, into the same folder
+exits 0
+
+done_testing
