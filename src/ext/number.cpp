@@ -32,5 +32,5 @@ const char *nt_read_double(const char *begin, const char *end, double *value)
 
 char *nt_write_float(char *text, float value)
 {
-	return std::to_chars(text, text + NT_FLOAT_TEXT, value).ptr;
+	return std::to_chars(text, text + NT_FLOAT_TEXT - 1, value).ptr;
 }

@@ -16,7 +16,7 @@ const char *nt_read_float(const char *begin, const char *end, float *value);
 const char *nt_read_double(const char *begin, const char *end, double *value);
 
 /* Writes the shortest decimal text that reads back as the same float ("nan", "inf" and "-inf" where it
- * is no number), without a final NUL. Returns where it ends; text has room for NT_FLOAT_TEXT bytes. */
+ * is no number), without a final NUL. Returns where it ends; text has room for NT_FLOAT_TEXT - 1 bytes. */
 #define NT_FLOAT_TEXT 24
 char *nt_write_float(char *text, float value);
 

@@ -132,17 +132,18 @@ static void report_unused(nt_scene *scene, const ply_source *source)
 static nmtan_status read_element(nt_scene *scene, nt_mesh *mesh, ply_source *source,
 	const ply_element *element, ply_cursor *cursor, bool *have_vertices, nt_error *error)
 {
-	const size_t begin = (size_t)(cursor->at - cursor->begin);
 	if (element == source->vertex) {
-		source->vertex_begin = begin;
 		*have_vertices = true;
 		return ply_read_vertices(scene, mesh, source, cursor, error);
 	}
 	if (element != source->face && element != source->strips)
 		return ply_skip_element(cursor, element, error);
-	source->face_begin = begin;
-	return *have_vertices ? ply_read_faces(scene, mesh, source, cursor, error)
-			      : ply_skip_element(cursor, element, error);
+	source->face_begin = (size_t)(cursor->at - cursor->begin);
+	const nmtan_status status = *have_vertices
+					    ? ply_read_faces(scene, mesh, source, cursor, error)
+					    : ply_skip_element(cursor, element, error);
+	source->face_end = (size_t)(cursor->at - cursor->begin);
+	return status;
 }
 
 /* All elements in the order of the file; faces that come before the vertices at the end. */

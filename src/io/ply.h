@@ -138,7 +138,7 @@ typedef struct ply_source {
 	ply_roles roles;
 	const ply_element *vertex, *face, *strips; /* NULL: the file has none */
 	int face_indices, face_texcoords;          /* properties of face; PLY_NO_PROPERTY */
-	size_t vertex_begin, face_begin;           /* offsets of the first row; face: or strips */
+	size_t face_begin, face_end;               /* offsets of the rows of faces or strips */
 	/* per-face texture coordinates un-share vertices: vertex vertex->count + i of the mesh has the
 	 * row wedge_rows[i] */
 	uint32_t *wedge_rows;

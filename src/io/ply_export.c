@@ -163,22 +163,14 @@ static void place_tangent(const placement *p, const float *n, const float *from,
 	to[3] = p->mirrored ? -from[3] : from[3];
 }
 
-static void put_floats(ply_output *out, const float *values, size_t count)
-{
-	for (size_t i = 0; i < count; i++)
-		ply_put_float(out, values[i]);
-}
-
 static void put_color(ply_output *out, const layout *l, const float *color)
 {
 	static const float white[4] = {1.0f, 1.0f, 1.0f, 1.0f};
 	const float *c = color ? color : white;
-	for (size_t i = 0; i < 4; i++) {
-		if (l->byte_colors)
-			ply_put_integer(out, (uint32_t)rintf(c[i] * 255.0f), PLY_UINT8);
-		else
-			ply_put_float(out, c[i]);
-	}
+	if (!l->byte_colors)
+		ply_put_floats(out, c, 4);
+	for (size_t i = 0; l->byte_colors && i < 4; i++)
+		ply_put_integer(out, (uint32_t)rintf(c[i] * 255.0f), PLY_UINT8);
 }
 
 /* What a mesh does not have although others do is zero, a colour white. */
@@ -188,11 +180,11 @@ static void put_vertex(ply_output *out, const layout *l, const placement *p, con
 	const size_t v = mesh_vertex(mesh, vertex);
 	float position[3], normal[3] = {0}, uv[2] = {0}, tangent[4] = {0}, bitangent[3];
 	place_position(p, mesh->positions + 3 * v, position);
-	put_floats(out, position, 3);
+	ply_put_floats(out, position, 3);
 	if (mesh->normals)
 		place_normal(p, mesh->normals + 3 * v, normal);
 	if (l->normals)
-		put_floats(out, normal, 3);
+		ply_put_floats(out, normal, 3);
 	if (l->colors)
 		put_color(out, l, mesh->colors ? mesh->colors + 4 * v : NULL);
 	if (mesh->texcoords) {
@@ -200,15 +192,15 @@ static void put_vertex(ply_output *out, const layout *l, const placement *p, con
 		uv[1] = flip_v ? 1.0f + mesh->texcoords[2 * v + 1] : mesh->texcoords[2 * v + 1];
 	}
 	if (l->texcoords)
-		put_floats(out, uv, 2);
+		ply_put_floats(out, uv, 2);
 	const float *own = tangent_of(mesh, vertex);
 	if (own)
 		place_tangent(p, mesh->normals ? normal : NULL, own, tangent);
 	if (l->tangents)
-		put_floats(out, tangent, 4);
+		ply_put_floats(out, tangent, 4);
 	ply_bitangent(normal, tangent, bitangent);
 	if (l->bitangents)
-		put_floats(out, bitangent, 3);
+		ply_put_floats(out, bitangent, 3);
 }
 
 static nmtan_status put_vertices(nt_scene *scene, ply_output *out, const layout *l, nt_error *error)

@@ -4,33 +4,41 @@
  */
 #include "io/ply_output.h"
 
+#include <assert.h>
+
 enum { DRAIN_BYTES = 64 * 1024 };
 
 /* The low bytes of a number in the order of the encoding. */
-static void put_bits(ply_output *out, uint32_t bits, size_t size)
+static unsigned char *store_bits(const ply_output *out, uint32_t bits, size_t size, unsigned char *to)
 {
-	unsigned char bytes[4];
 	for (size_t i = 0; i < size; i++)
-		bytes[out->encoding == PLY_BIG ? size - 1 - i : i] = (unsigned char)(bits >> 8 * i);
-	nt_buffer_append(&out->buffer, bytes, size);
+		to[out->encoding == PLY_BIG ? size - 1 - i : i] = (unsigned char)(bits >> 8 * i);
+	return to + size;
 }
 
-void ply_put_float(ply_output *out, float value)
+void ply_put_floats(ply_output *out, const float *values, size_t count)
 {
-	if (out->encoding == PLY_ASCII) {
-		char text[NT_FLOAT_TEXT];
-		nt_buffer_append(&out->buffer, text, (size_t)(nt_write_float(text, value) - text));
-		return;
+	unsigned char bytes[PLY_MOST_FLOATS * NT_FLOAT_TEXT], *end = bytes;
+	assert(count <= PLY_MOST_FLOATS);
+	for (size_t i = 0; i < count; i++) {
+		uint32_t bits;
+		memcpy(&bits, &values[i], sizeof bits);
+		if (out->encoding != PLY_ASCII) {
+			end = store_bits(out, bits, sizeof bits, end);
+		} else {
+			*end++ = ' ';
+			end = (unsigned char *)nt_write_float((char *)end, values[i]);
+		}
 	}
-	uint32_t bits;
-	memcpy(&bits, &value, sizeof bits);
-	put_bits(out, bits, sizeof bits);
+	nt_buffer_append(&out->buffer, bytes, (size_t)(end - bytes));
 }
 
 void ply_put_integer(ply_output *out, uint32_t value, ply_type type)
 {
 	if (out->encoding != PLY_ASCII) {
-		put_bits(out, value, ply_size(type));
+		unsigned char bytes[4];
+		store_bits(out, value, ply_size(type), bytes);
+		nt_buffer_append(&out->buffer, bytes, ply_size(type));
 		return;
 	}
 	char text[10];

@@ -15,8 +15,13 @@ typedef struct ply_output {
 	ply_encoding encoding;
 } ply_output;
 
-/* Append one value. ASCII: its text, without anything around it. The integer fits its type. */
-void ply_put_float(ply_output *out, float value);
+/* Most values of one ply_put_floats: normal, tangent, bitangent. */
+enum { PLY_MOST_FLOATS = 3 + 4 + 3 };
+
+/* Append floats; ASCII: a blank and the text of each. */
+void ply_put_floats(ply_output *out, const float *values, size_t count);
+
+/* Appends an integer that fits its type; ASCII: its text alone. */
 void ply_put_integer(ply_output *out, uint32_t value, ply_type type);
 
 /* Writes the buffer when it has become long; reports what failed since the last call. */

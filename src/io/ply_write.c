@@ -13,8 +13,6 @@
 #include "io/ply_numbering.h"
 #include "io/ply_output.h"
 
-enum { MOST_EXTRAS = 3 + 4 + 3 };
-
 /* Where the values of a row lie. */
 typedef struct span {
 	const unsigned char *begin, *end;
@@ -33,7 +31,7 @@ typedef struct plan {
 	bool new_normals, new_tangents, new_bitangents;
 	bool *dropped;           /* [properties of vertex] replaced by new values */
 	bool drops_any;
-	const char *extra_names[MOST_EXTRAS];
+	const char *extra_names[PLY_MOST_FLOATS];
 	size_t extra_count;
 
 	ply_type index_type;     /* of the faces written */
@@ -259,29 +257,25 @@ static void end_row(const plan *p)
 
 /* Vertices. */
 
-static void write_float(const plan *p, float value)
-{
-	write_gap(p, false);
-	ply_put_float(p->out, value);
-}
-
 static void write_extras(const plan *p, size_t vertex)
 {
 	const float *normals = p->mesh->normals;
 	const float *n = normals ? normals + 3 * ply_mesh_vertex(&p->n, vertex) : NULL;
-	for (size_t k = 0; p->new_normals && k < 3; k++)
-		write_float(p, n[k]);
-	if (!p->new_tangents)
-		return;
-	const float *t = p->mesh->split.vertex_tangents + 4 * vertex;
-	for (size_t k = 0; k < 4; k++)
-		write_float(p, t[k]);
-	if (!p->new_bitangents)
-		return;
-	float b[3];
-	ply_bitangent(n, t, b);
-	for (size_t k = 0; k < 3; k++)
-		write_float(p, b[k]);
+	float values[PLY_MOST_FLOATS];
+	size_t count = 0;
+	if (p->new_normals) {
+		memcpy(values, n, 3 * sizeof *values);
+		count += 3;
+	}
+	if (p->new_tangents) {
+		const float *t = p->mesh->split.vertex_tangents + 4 * vertex;
+		memcpy(values + count, t, 4 * sizeof *values);
+		count += 4;
+		if (p->new_bitangents)
+			ply_bitangent(n, t, values + count);
+		count += p->new_bitangents ? 3 : 0;
+	}
+	ply_put_floats(p->out, values, count);
 }
 
 /* The row at the cursor without what is dropped; spans are set when something is. */
@@ -301,18 +295,32 @@ static void write_kept(const plan *p, const unsigned char *begin, const unsigned
 	}
 }
 
+static const unsigned char *find_line_end(const unsigned char *at, const unsigned char *end)
+{
+	while (at < end && !ply_is_line_end(*at))
+		at++;
+	return at;
+}
+
 static nmtan_status write_vertex(plan *p, size_t vertex)
 {
 	const ply_element *element = p->source->vertex;
-	const unsigned char *begin = p->cursor.at;
-	if (p->cursor.encoding != PLY_ASCII && !element->has_list && !p->drops_any) {
-		p->cursor.at += element->row_bytes;
+	const bool ascii = p->cursor.encoding == PLY_ASCII;
+	if (ascii)
+		ply_next_row(&p->cursor);
+	const unsigned char *begin = p->cursor.at, *end;
+	if (ascii && !p->drops_any) {
+		p->cursor.at = end = find_line_end(begin, p->cursor.end);
+		while (end > begin && ply_is_blank(end[-1]))
+			end--;
+	} else if (!ascii && !element->has_list && !p->drops_any) {
+		p->cursor.at = end = begin + element->row_bytes;
 	} else {
 		if (!span_row(p, element))
 			return fail_changed(p);
-		begin = p->spans[0].begin;
+		end = p->cursor.at;
 	}
-	write_kept(p, begin, p->cursor.at);
+	write_kept(p, begin, end);
 	write_extras(p, vertex);
 	end_row(p);
 	return ply_drain(p->out, p->error);
@@ -480,7 +488,8 @@ static nmtan_status write_faces(plan *p)
 
 static nmtan_status write_strip_faces(plan *p)
 {
-	nmtan_status status = ply_skip_element(&p->cursor, p->source->strips, p->error);
+	nmtan_status status = NMTAN_OK;
+	p->cursor.at = p->cursor.begin + p->source->face_end;
 	for (size_t c = 0; !status && c < p->mesh->corner_count; c += 3) {
 		const uint32_t vertices[3] = {ply_output_vertex(&p->n, c), ply_output_vertex(&p->n, c + 1),
 			ply_output_vertex(&p->n, c + 2)};
@@ -498,10 +507,18 @@ static nmtan_status copy_element(plan *p, const ply_element *element)
 	if (p->cursor.encoding == PLY_ASCII)
 		ply_next_row(&p->cursor);
 	const unsigned char *begin = p->cursor.at;
-	nmtan_status status = ply_skip_element(&p->cursor, element, p->error);
-	if (status || begin == p->cursor.at)
+	nmtan_status status = NMTAN_OK;
+	if (element == p->source->face || element == p->source->strips)
+		p->cursor.at = p->cursor.begin + p->source->face_end;
+	else
+		status = ply_skip_element(&p->cursor, element, p->error);
+	if (status || begin >= p->cursor.at)
 		return status;
-	status = ply_put_bytes(p->out, begin, (size_t)(p->cursor.at - begin), p->error);
+	/* the reader may have stopped before or behind the end of the last line */
+	const unsigned char *end = p->cursor.at;
+	while (p->cursor.encoding == PLY_ASCII && ply_is_space(end[-1]))
+		end--;
+	status = ply_put_bytes(p->out, begin, (size_t)(end - begin), p->error);
 	end_row(p);
 	return status;
 }

@@ -357,6 +357,32 @@ static void wedges_stay_and_do_not_split_without_need(void **state)
 	assert_written(&scene, false, expected);
 }
 
+/* Long enough for the tight loops of the reader, which stop elsewhere. */
+static void many_faces_are_copied_as_they_are(void **state)
+{
+	(void)state;
+	char *text = malloc(20000), *p = text;
+	p += sprintf(p, "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ "element face 100\n" LIST
+		"element end 30\nproperty int last\nend_header\n0 0 0\n1 0 0\n0 1 0\n");
+	const char *const faces = p;
+	uint32_t indices[300];
+	for (int i = 0; i < 100; i++) {
+		p += sprintf(p, "3 0 1 2\n");
+		for (uint32_t k = 0; k < 3; k++)
+			indices[3 * i + (int)k] = k;
+	}
+	for (int i = 0; i < 30; i++)
+		p += sprintf(p, "12345\n");
+	nt_scene scene;
+	open_text(&scene, text);
+	set_split(&scene, indices, NULL, 0);
+	nt_file file = write_scene(&scene, false);
+	assert_memory_equal(file.data + file.size - strlen(faces), faces, strlen(faces));
+	nt_file_close(&file);
+	nt_scene_free(&scene);
+	free(text);
+}
+
 static void index_types_grow_with_the_vertices(void **state)
 {
 	(void)state;
@@ -586,6 +612,7 @@ int main(void)
 		CASE(polygons_stay_where_their_triangles_agree),
 		CASE(polygons_whose_triangles_disagree_become_triangles),
 		CASE(wedges_stay_and_do_not_split_without_need),
+		CASE(many_faces_are_copied_as_they_are),
 		CASE(index_types_grow_with_the_vertices),
 		CASE(strips_stay_unless_vertices_split),
 		CASE(faces_before_vertices_stay_there),
