@@ -40,16 +40,20 @@ static inline unsigned nt_digit_count(uint64_t word)
 	return other ? (unsigned)__builtin_ctzll(other) >> 3 : 8;
 }
 
-/* The value of the first `count` digits of such a word. */
+/* The value of eight digits, the first in the low byte: neighbours are joined to two digits in every
+ * second byte, those to four, those to eight. */
+static inline uint32_t nt_eight_digits(uint64_t word)
+{
+	word = (word * (10 * 256 + 1)) >> 8;
+	word = ((word & 0x00FF00FF00FF00FFu) * (100 * 65536 + 1)) >> 16;
+	return (uint32_t)(((word & 0x0000FFFF0000FFFFu) * (10000 * (UINT64_C(1) << 32) + 1)) >> 32);
+}
+
+/* The value of the first `count` of eight digits. */
 static inline uint32_t nt_digits_value(uint64_t word, unsigned count)
 {
 	const unsigned half_shift = 4 * (8 - count); /* in two steps, as a shift by 64 is not defined */
-	word = word << half_shift << half_shift;     /* leading zeros */
-	word = word * 10 + (word >> 8);              /* pairs in every second byte */
-	const uint64_t mask = 0x000000FF000000FFu;
-	const uint64_t high = (word & mask) * (100 + (UINT64_C(1000000) << 32));
-	const uint64_t low = ((word >> 16) & mask) * (1 + (UINT64_C(10000) << 32));
-	return (uint32_t)((high + low) >> 32);
+	return nt_eight_digits(word << half_shift << half_shift); /* which brings leading zeros */
 }
 
 /* Digits at p, at most 8 of them are taken; the count is returned. */
@@ -61,42 +65,54 @@ static inline unsigned nt_read_digits(const char *p, uint32_t *value)
 	return count;
 }
 
+/* The same for numbers of at most 7 digits, which is quicker: the value of the digits at p, whose count
+ * is left in *count. What follows is a digit where there are more. */
+static inline uint32_t nt_read_short_digits(const char *p, unsigned *count)
+{
+	const uint64_t word = nt_load8(p) ^ 0x3030303030303030u;
+	const uint64_t other = ((word + 0x7676767676767676u) | word) & 0x8080808080808080u;
+	const unsigned bit = (unsigned)__builtin_ctzll(other | UINT64_C(1) << 63); /* 8 * count + 7 */
+	*count = bit >> 3;
+	return nt_eight_digits(word << (63 - bit) << 8);
+}
+
 /* w / 10^fraction as a float; false: only fast_float knows. w is at most 2^53, fraction at most 16. */
 static inline bool nt_decimal_value(uint64_t w, unsigned fraction, bool negative, float *value)
 {
-	static const double power[17] = {1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11,
-		1e12, 1e13, 1e14, 1e15, 1e16};
-	const double magnitude = (double)(int64_t)w / power[fraction];
+	static const double power[2][17] = {
+		{1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16},
+		{-1e0, -1e1, -1e2, -1e3, -1e4, -1e5, -1e6, -1e7, -1e8, -1e9, -1e10, -1e11, -1e12, -1e13, -1e14,
+			-1e15, -1e16},
+	};
+	const double number = (double)(int64_t)w / power[negative][fraction];
 	uint64_t bits;
-	memcpy(&bits, &magnitude, sizeof bits);
-	const bool midpoint = (bits & 0x1FFFFFFF) == 0x10000000;
-	bits |= (uint64_t)negative << 63;
-	double number;
-	memcpy(&number, &bits, sizeof number);
+	memcpy(&bits, &number, sizeof bits);
 	*value = (float)number;
-	return !midpoint;
+	return (bits & 0x1FFFFFFF) != 0x10000000;
 }
 
 static const uint32_t nt_integer_power[9] = {1, 10, 100, 1000, 10000, 100000, 1000000, 10000000,
 	100000000};
 
-/* Reads what most numbers are: a sign or none, fewer than 8 digits, and a point with fewer than 8
- * digits behind it or none. NULL: it is something else, or no number at all. */
+/* Reads what most numbers are: a sign or none, at most 7 digits, and a point with at most 7 digits behind
+ * it or none. NULL: it is something else, or no number at all. The caller has to see that a blank or a
+ * line end follows, not a digit or an exponent. */
 static inline const char *nt_read_plain_decimal(const char *p, float *value)
 {
 	const bool negative = *p == '-';
 	p += negative;
 	uint32_t whole = (unsigned char)*p - (uint32_t)'0', part = 0;
 	unsigned digits = 1, fraction = 0;
-	if (whole > 9 || p[1] != '.')
-		digits = nt_read_digits(p, &whole);
+	if (whole > 9 || p[1] != '.') {
+		whole = nt_read_short_digits(p, &digits);
+		if (digits == 0)
+			return NULL;
+	}
 	p += digits;
 	if (*p == '.') {
-		fraction = nt_read_digits(++p, &part);
+		part = nt_read_short_digits(++p, &fraction);
 		p += fraction;
 	}
-	if (digits % 8 == 0 || fraction == 8 || (*p | 0x20) == 'e')
-		return NULL;
 	const uint64_t w = (uint64_t)whole * nt_integer_power[fraction] + part;
 	return nt_decimal_value(w, fraction, negative, value) ? p : NULL;
 }

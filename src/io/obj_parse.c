@@ -152,7 +152,7 @@ static inline const char *read_plain_numbers(const char *p, float *numbers, int 
 		while (*p == ' ')
 			p++;
 		p = nt_read_plain_decimal(p, &numbers[i]);
-		if (!p || !(*p == ' ' || is_line_end(*p)))
+		if (!p || (unsigned char)*p > ' ')
 			return NULL;
 	}
 	return is_line_end(*p) ? p : NULL;
@@ -301,28 +301,28 @@ static nmtan_status read_index(reader *r, size_t count, uint32_t *index)
 }
 
 /* The quick way for v, v//n and v/t/n of short positive numbers before a blank or the line's end. NULL:
- * something else, which read_corner() takes or refuses. */
+ * something else, which read_corner() takes or refuses. 0 stands for no digits as well. Other bytes up
+ * to the blank end a corner, too: they will be no corner when they are next. */
 static inline const char *read_plain_corner(const char *p, obj_corner *corner)
 {
-	unsigned digits = nt_read_digits(p, &corner->v);
-	corner->t = corner->n = 0;
-	bool plain = digits % 8 != 0 && corner->v != 0;
+	uint32_t t = 0, n = 0;
+	unsigned digits;
+	const uint32_t v = nt_read_short_digits(p, &digits);
 	p += digits;
 	if (*p == '/') {
 		if (*++p != '/') {
-			digits = nt_read_digits(p, &corner->t);
-			plain = plain && digits % 8 != 0 && corner->t != 0 && p[digits] == '/';
+			t = nt_read_short_digits(p, &digits);
 			p += digits;
+			if (t == 0 || *p != '/')
+				return NULL;
 		}
-		p++;
-		digits = nt_read_digits(p, &corner->n);
-		plain = plain && digits % 8 != 0 && corner->n != 0;
+		n = nt_read_short_digits(++p, &digits);
 		p += digits;
+		if (n == 0)
+			return NULL;
 	}
-	corner->v--;
-	corner->t--; /* 0, which none of the numbers was, becomes OBJ_ABSENT */
-	corner->n--;
-	return plain && (is_blank(*p) || is_line_end(*p)) ? p : NULL;
+	*corner = (obj_corner){v - 1, t - 1, n - 1}; /* 0 becomes OBJ_ABSENT */
+	return v != 0 && (unsigned char)*p <= ' ' ? p : NULL;
 }
 
 /* v, v/t, v//n or v/t/n. */
@@ -363,29 +363,60 @@ static void ignore(reader *r, size_t which)
 		ignored->line = r->statement_line;
 }
 
-/* Appends a corner; one that was seen lately gets its number again. */
-static inline nmtan_status store_corner(reader *r, obj_corner corner)
+/* The number of a corner among the distinct ones of this object that were seen lately; where it is not
+ * there it takes the place of `next`, the next free number. */
+static inline uint32_t number_corner(const reader *r, const obj_corner *distinct, size_t next,
+	const obj_corner *corner)
+{
+	uint32_t *recent = &r->recent[corner->v % RECENT_COUNT];
+	const size_t number = (size_t)*recent - 1;
+	if (number - r->object_begin < next - r->object_begin) {
+		const obj_corner *seen = &distinct[number];
+		if (((seen->v ^ corner->v) | (seen->t ^ corner->t) | (seen->n ^ corner->n)) == 0)
+			return (uint32_t)number;
+	}
+	*recent = (uint32_t)next + 1;
+	return (uint32_t)next;
+}
+
+static nmtan_status store_corner(reader *r, obj_corner corner)
 {
 	obj_chunk *chunk = r->chunk;
-	uint32_t *recent = &r->recent[corner.v % RECENT_COUNT];
-	const size_t number = (size_t)*recent - 1;
 	if (!reserve(chunk, (void **)&chunk->corners, &chunk->corner_capacity, chunk->corner_count,
-			sizeof *chunk->corners))
+			sizeof *chunk->corners) ||
+		!reserve(chunk, (void **)&chunk->distinct, &chunk->distinct_capacity,
+			chunk->distinct_count, sizeof *chunk->distinct))
 		return fail_memory(r);
-	if (number - r->object_begin < chunk->distinct_count - r->object_begin) {
-		const obj_corner *seen = &chunk->distinct[number];
-		if (seen->v == corner.v && seen->t == corner.t && seen->n == corner.n) {
-			chunk->corners[chunk->corner_count++] = (uint32_t)number;
-			return NMTAN_OK;
-		}
-	}
-	if (!reserve(chunk, (void **)&chunk->distinct, &chunk->distinct_capacity, chunk->distinct_count,
-			sizeof *chunk->distinct))
-		return fail_memory(r);
-	chunk->distinct[chunk->distinct_count] = corner;
-	chunk->corners[chunk->corner_count++] = (uint32_t)chunk->distinct_count++;
-	*recent = (uint32_t)chunk->distinct_count;
+	const uint32_t number = number_corner(r, chunk->distinct, chunk->distinct_count, &corner);
+	if (number == chunk->distinct_count)
+		chunk->distinct[chunk->distinct_count++] = corner;
+	chunk->corners[chunk->corner_count++] = number;
 	return NMTAN_OK;
+}
+
+/* Takes corners the quick way as long as they are plain and there is room. */
+static void read_plain_corners(reader *r)
+{
+	obj_chunk *chunk = r->chunk;
+	obj_corner *const distinct = chunk->distinct;
+	size_t distinct_count = chunk->distinct_count, count = chunk->corner_count;
+	const char *p = r->p;
+	while (count < chunk->corner_capacity && distinct_count < chunk->distinct_capacity) {
+		while (*p == ' ')
+			p++;
+		obj_corner corner;
+		const char *end = read_plain_corner(p, &corner);
+		if (!end)
+			break;
+		p = end;
+		const uint32_t number = number_corner(r, distinct, distinct_count, &corner);
+		if (number == distinct_count)
+			distinct[distinct_count++] = corner;
+		chunk->corners[count++] = number;
+	}
+	r->p = p;
+	chunk->distinct_count = distinct_count;
+	chunk->corner_count = count;
 }
 
 /* Closes the face that began at these counts, or takes it back where it is none. */
@@ -419,16 +450,12 @@ static nmtan_status read_face(reader *r)
 	const obj_chunk *chunk = r->chunk;
 	const size_t first_corner = chunk->corner_count, first_distinct = chunk->distinct_count;
 	for (;;) {
+		read_plain_corners(r);
 		skip_blanks(r);
 		if (is_line_end(*r->p) || *r->p == '#')
 			return end_face(r, first_corner, first_distinct);
 		obj_corner corner;
-		const char *end = read_plain_corner(r->p, &corner);
-		nmtan_status status = NMTAN_OK;
-		if (end)
-			r->p = end;
-		else
-			status = read_corner(r, &corner);
+		nmtan_status status = read_corner(r, &corner);
 		if (!status)
 			status = store_corner(r, corner);
 		if (status)
