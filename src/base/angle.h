@@ -6,35 +6,51 @@
 #ifndef NT_BASE_ANGLE_H
 #define NT_BASE_ANGLE_H
 
+#include <stdbool.h>
+
 /* atan(t) for t in [0, 1]: atan(k/8) of the nearest k, plus atan(r) of what is left,
  * r = (t - k/8) / (1 + t k/8) with |r| <= 1/16. The first term left out of its series is
- * r^15 / 15 < 6e-20. */
+ * r^15 / 15 < 6e-20. The table is a chain of choices and not an array, so that loops can be vectors. */
 static inline double nt_atan_unit(double t)
 {
-	static const double atan_eighths[9] = {0.0, 0.12435499454676143503, 0.24497866312686415417,
-		0.35877067027057222040, 0.46364760900080611621, 0.55859931534356243597,
-		0.64350110879328438680, 0.71882999962162450542, 0.78539816339744830962};
-	const int k = (int)(t * 8.0 + 0.5);
-	const double base = k / 8.0;
+	double base = 0.0, arc = 0.0;
+#define NT_ATAN_STEP(eighths, value) \
+	base = t >= (eighths - 0.5) / 8 ? eighths / 8.0 : base; \
+	arc = t >= (eighths - 0.5) / 8 ? value : arc
+	NT_ATAN_STEP(1, 0.12435499454676143503);
+	NT_ATAN_STEP(2, 0.24497866312686415417);
+	NT_ATAN_STEP(3, 0.35877067027057222040);
+	NT_ATAN_STEP(4, 0.46364760900080611621);
+	NT_ATAN_STEP(5, 0.55859931534356243597);
+	NT_ATAN_STEP(6, 0.64350110879328438680);
+	NT_ATAN_STEP(7, 0.71882999962162450542);
+	NT_ATAN_STEP(8, 0.78539816339744830962);
+#undef NT_ATAN_STEP
 	const double r = (t - base) / (1.0 + t * base);
 	const double q = r * r;
 	const double series = 1.0 / 3 - q * (1.0 / 5 - q * (1.0 / 7 - q * (1.0 / 9 -
 			q * (1.0 / 11 - q * (1.0 / 13)))));
-	return atan_eighths[k] + (r - r * q * series);
+	return arc + (r - r * q * series);
 }
 
-/* The angle in [0, pi] whose sine and cosine are proportional to s >= 0 and c: atan2(s, c). 0 where both
- * are zero or one is NaN. */
-static inline double nt_angle(double s, double c)
+/* nt_angle() of finite values, without a branch. */
+static inline double nt_angle_finite(double s, double c)
 {
 	const double half_pi = 1.57079632679489661923, pi = 3.14159265358979323846;
 	const double a = c < 0.0 ? -c : c;
-	if (!(s > 0.0) && !(a > 0.0))
-		return 0.0;
-	if (s != s || a != a)
-		return 0.0;
-	const double first = s <= a ? nt_atan_unit(s / a) : half_pi - nt_atan_unit(a / s);
+	const double small = s <= a ? s : a, large = s <= a ? a : s;
+	const double arc = nt_atan_unit(small / (large > 0.0 ? large : 1.0));
+	const double first = s <= a ? arc : half_pi - arc;
 	return c < 0.0 ? pi - first : first;
+}
+
+/* The angle in [0, pi] whose sine and cosine are proportional to s >= 0 and c: atan2(s, c). 0 where both
+ * are zero or one is not finite. */
+static inline double nt_angle(double s, double c)
+{
+	const double largest = 1.7976931348623157e308;
+	const bool finite = s <= largest && c <= largest && c >= -largest;
+	return finite ? nt_angle_finite(s, c) : 0.0;
 }
 
 #endif

@@ -1,17 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Sums of frames, and the three methods that are nothing else. See frames.h.
- *
- * `robust` is MikkTSpace's average without its rounding: angle weights, one sum for each welded vertex and
- * exact orientation. MikkTSpace averages over the part of those triangles that hangs together by paired
- * edges; where two fans meet in nothing but a vertex, or in a non-manifold edge, the parts depend on the
- * order of the triangles. One sum does not, and costs no pairing.
- *
- * `area` weighs corner angle times the two edge lengths, so that a thin bevel, which has large angles
- * but little area, does not tilt the flat faces beside it. `lengyel` adds dP/du as the 2x2 system gives
- * it (E. Lengyel, "Computing Tangent Space Basis Vectors for an Arbitrary Mesh", 2001), which weighs a
- * triangle by the inverse of its texture density. Both keep mirrored triangles apart, so that w is the
- * sign of the determinant.
+ * One triangle after the other: the definition of what sums.c computes for many at a time, and what repair
+ * asks for a few. See frames.h.
  */
 #include "tangent/frames.h"
 
@@ -23,9 +13,6 @@
 /* Below this share of the summed lengths a sum's direction is rounding noise: 2^-53 per addition and
  * term, with room for a million terms. */
 static const double CANCELLED = 1e-10;
-
-/* Sine of the angle between u and the normal below which the projected direction would be noise. */
-static const double PARALLEL = 1e-15;
 
 /* The condition up to which `robust` promises 2^-23 in each component. */
 static const double WELL_CONDITIONED = 16777216.0;
@@ -97,10 +84,10 @@ static double largest_of(nt_dvec3 v)
 	return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
 }
 
-/* p - q of rounded products loses bits when more than two of them cancel; then the residuals count. */
+/* p - q of rounded products has lost bits when it is that much smaller; then the residuals count. */
 static bool cancels(nt_dvec3 p, nt_dvec3 q, nt_dvec3 difference)
 {
-	return 4.0 * largest_of(difference) < fmax(largest_of(p), largest_of(q));
+	return NT_CANCELLATION * largest_of(difference) < fmax(largest_of(p), largest_of(q));
 }
 
 /* s a - t b, good to a few units in the last place of its largest component. */
@@ -215,7 +202,7 @@ static void add_corner(const solved *f, nt_weight weight, nt_dvec3 u, nt_dvec3 n
 		return;
 	}
 	const double length = nt_dvec3_length(direction);
-	if (!(length > PARALLEL))
+	if (!(length > NT_PARALLEL))
 		return;
 	double condition;
 	const double angle = corner_angle(f, k, n, &condition);
@@ -225,6 +212,22 @@ static void add_corner(const solved *f, nt_weight weight, nt_dvec3 u, nt_dvec3 n
 	sum->u = nt_dvec3_add(sum->u, nt_dvec3_scale(factor * angle / length, direction));
 	sum->weights += factor * angle;
 	sum->sensitivity += factor * (angle / length + condition);
+}
+
+void nt_add_triangle(const nmtan_mesh *mesh, nt_weight weight, const uint32_t corners[3],
+	nt_frame_sum *const sums[3])
+{
+	solved f;
+	if (!solve_triangle(mesh, corners, &f))
+		return;
+	if (weight == NT_WEIGHT_NONE)
+		f.u = nt_dvec3_scale(1.0 / f.determinant, f.u);
+	else if (!nt_dvec3_normalise(&f.u))
+		return;
+	for (int k = 0; k < 3; k++)
+		if (sums[k])
+			add_corner(&f, weight, f.u, nt_unit_normal(mesh, nt_vertex_of(mesh, corners[k])), k,
+				sums[k]);
 }
 
 void nt_sum_frames(const nmtan_mesh *mesh, nt_weight weight, const uint32_t *ids,
@@ -238,24 +241,16 @@ void nt_sum_frames(const nmtan_mesh *mesh, nt_weight weight, const uint32_t *ids
 			wanted = wanted || ids[first + k] != NT_NO_ID;
 		if (!wanted)
 			continue;
-		const int orientation = nt_face_orientation(mesh, face, first, true, NULL);
+		const int side = nt_face_orientation(mesh, face, first, true, NULL) > 0;
 		uint32_t corners[2][3];
 		const unsigned count = nt_face_triangles(mesh, face, first, corners);
 		for (unsigned i = 0; i < count; i++) {
-			solved f;
-			if (!solve_triangle(mesh, corners[i], &f))
-				continue;
-			if (weight == NT_WEIGHT_NONE)
-				f.u = nt_dvec3_scale(1.0 / f.determinant, f.u);
-			else if (!nt_dvec3_normalise(&f.u))
-				continue;
+			nt_frame_sum *to[3];
 			for (int k = 0; k < 3; k++) {
 				const uint32_t id = ids[corners[i][k]];
-				if (id != NT_NO_ID)
-					add_corner(&f, weight, f.u,
-						nt_unit_normal(mesh, nt_vertex_of(mesh, corners[i][k])),
-						k, &sums[id][orientation > 0]);
+				to[k] = id == NT_NO_ID ? NULL : &sums[id][side];
 			}
+			nt_add_triangle(mesh, weight, corners[i], to);
 		}
 	}
 }
@@ -270,90 +265,6 @@ bool nt_sum_tangent(const nt_frame_sum *sum, nt_dvec3 n, nt_dvec3 *tangent)
 
 bool nt_sum_is_ill_conditioned(const nt_frame_sum *sum)
 {
-	return !(sum->sensitivity <= WELL_CONDITIONED * nt_dvec3_length(sum->u));
-}
-
-/* Writes a corner's result; zero where the sum has no direction, for repair to fill. */
-static void write_corner(const nt_solve *solve, size_t corner, nt_dvec3 t, float w)
-{
-	const float tangent[4] = {(float)t.x, (float)t.y, (float)t.z, w};
-	memcpy(solve->tangents + 4 * corner, tangent, sizeof tangent);
-	if (solve->bitangents) {
-		const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, corner));
-		const nt_dvec3 b = nt_dvec3_scale(w, nt_dvec3_cross(n, t));
-		const float bitangent[3] = {(float)b.x, (float)b.y, (float)b.z};
-		memcpy(solve->bitangents + 3 * corner, bitangent, sizeof bitangent);
-	}
-	if (solve->magnitudes)
-		solve->magnitudes[2 * corner] = solve->magnitudes[2 * corner + 1] = 1.0f;
-}
-
-/* Turns each sum that some corner will read into its unit tangent, or zero. */
-static void finish_sums(const nt_solve *solve, const uint32_t *ids, nt_frame_sum (*sums)[2])
-{
-	uint32_t next = 0; /* ids go up in order of first use */
-	for (size_t c = 0; c < solve->corner_count; c++) {
-		if (ids[c] != next)
-			continue;
-		const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
-		for (int side = 0; side < 2; side++) {
-			nt_frame_sum *sum = &sums[next][side];
-			sum->sensitivity = nt_sum_is_ill_conditioned(sum);
-			nt_dvec3 t;
-			sum->u = nt_sum_tangent(sum, n, &t) ? t : (nt_dvec3){0, 0, 0};
-		}
-		next++;
-	}
-}
-
-/* Welds, sums, writes. A face without orientation takes the orientation that has a sum at its corners. */
-static nmtan_status solve_by_sums(const nt_solve *solve, nt_weight weight, size_t *ill_conditioned)
-{
-	const nmtan_mesh *mesh = solve->mesh;
-	uint32_t *ids = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *ids);
-	if (!ids)
-		return NMTAN_ERROR_MEMORY;
-	size_t id_count;
-	const nmtan_status status = nt_weld_corners(mesh, solve->corner_count, solve->scratch, ids,
-		&id_count);
-	if (status)
-		return status;
-	nt_frame_sum (*sums)[2] = nt_scratch_alloc(solve->scratch, id_count, sizeof *sums);
-	if (!sums)
-		return NMTAN_ERROR_MEMORY;
-	memset(sums, 0, id_count * sizeof *sums);
-	nt_sum_frames(mesh, weight, ids, sums);
-	finish_sums(solve, ids, sums);
-
-	size_t first = 0;
-	for (size_t face = 0; face < mesh->face_count; face++) {
-		const unsigned size = nt_face_size(mesh, face);
-		const int orientation = nt_face_orientation(mesh, face, first, true, NULL);
-		for (size_t c = first; c < first + size; c++) {
-			const int side = orientation ? orientation > 0 : sums[ids[c]][1].weights > 0.0;
-			const nt_frame_sum *sum = &sums[ids[c]][side];
-			*ill_conditioned += sum->sensitivity > 0.0;
-			write_corner(solve, c, sum->u, side ? 1.0f : -1.0f);
-		}
-		first += size;
-	}
-	return NMTAN_OK;
-}
-
-nmtan_status nt_area(const nt_solve *solve)
-{
-	size_t ignored = 0;
-	return solve_by_sums(solve, NT_WEIGHT_AREA, &ignored);
-}
-
-nmtan_status nt_lengyel(const nt_solve *solve)
-{
-	size_t ignored = 0;
-	return solve_by_sums(solve, NT_WEIGHT_NONE, &ignored);
-}
-
-nmtan_status nt_robust(const nt_solve *solve, size_t *ill_conditioned)
-{
-	*ill_conditioned = 0;
-	return solve_by_sums(solve, NT_WEIGHT_ANGLE, ill_conditioned);
+	const double length = nt_dvec3_length(sum->u);
+	return !(length > 0.0 && sum->sensitivity <= WELL_CONDITIONED * length);
 }

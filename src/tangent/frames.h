@@ -31,6 +31,13 @@ typedef struct nt_frame_sum {
 
 #define NT_NO_ID UINT32_MAX
 
+/* Products are kept with their residuals where their difference is that much smaller: 2^-53 then becomes
+ * 2^-49, which a condition of 2^24 leaves below half of a float's last place. */
+#define NT_CANCELLATION 16.0
+
+/* Sine of the angle between u and the normal below which the projected direction would be noise. */
+#define NT_PARALLEL 1e-15
+
 /* Unit normal of a vertex; zero where it has none. */
 nt_dvec3 nt_unit_normal(const nmtan_mesh *mesh, size_t vertex);
 
@@ -43,6 +50,10 @@ int nt_triangle_orientation(const nmtan_mesh *mesh, const uint32_t corners[3], b
  * texture coordinates first.
  */
 int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool stored, bool *folded);
+
+/* Adds a triangle's frame to the sums of its corners; NULL: the corner is left out. */
+void nt_add_triangle(const nmtan_mesh *mesh, nt_weight weight, const uint32_t corners[3],
+	nt_frame_sum *const sums[3]);
 
 /*
  * Adds every triangle's frame to sums[id][0] (orientation -1) or sums[id][1] (+1) of its corners' ids,

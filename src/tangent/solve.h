@@ -23,6 +23,7 @@ typedef struct nt_solve {
 	float threshold_cos;     /* (float)cos of the angular threshold; -1 for 180 degrees */
 	unsigned threads;        /* at least 1 */
 	nmtan_isa isa;           /* never AUTO */
+	bool one_by_one;         /* sums: each triangle by the definition in frames.c */
 	nt_scratch *scratch;
 	nt_vouched *vouched;     /* for the method to fill; empty before; may be NULL */
 	float *tangents;         /* [corner_count][4] */

@@ -94,6 +94,7 @@ nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options
 	solve.threshold_cos = options->angular_threshold_degrees > 0.0f
 		? threshold_cos(options->angular_threshold_degrees) : -1.0f;
 	solve.threads = nt_thread_count(options->threads);
+	solve.one_by_one = options->path == NMTAN_PATH_SCALAR;
 	solve.isa = options->isa == NMTAN_ISA_AUTO ? nt_cpu_best() : options->isa;
 	solve.tangents = output->tangents;
 	solve.bitangents = output->bitangents;
