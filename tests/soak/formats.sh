@@ -5,7 +5,8 @@
 # options that change what is written. No crash, no hang; what is written as glTF has no error in the
 # Khronos validator that the input did not have; what is written as PLY is read again. Documents with a
 # buffer that is nowhere are left out: a GLB shows zeros where they have nothing to judge. --verify runs
-# over the models alone, because tinygltf refuses much of the validator's corpus, input or output.
+# over the models alone, because tinygltf refuses much of the validator's corpus, input or output;
+# --images=none over OBJ and PLY, because glTF keeps the names of images that are then elsewhere.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 ROOT=$PWD
@@ -28,7 +29,7 @@ way() {
 	rm -rf "$work/o" && mkdir "$work/o"
 	: >"$work/pairs"
 	while IFS= read -r input; do
-		case $label:$input in *verified*:*/corpus/*) continue ;; esac
+		case $label:$input in *verified*:*/corpus/* | *"no images"*:*.gl*) continue ;; esac
 		number=$((number + 1))
 		mkdir "$work/o/$number"
 		timeout 60 "$nmtan" -q "$@" "$input" "$work/o/$number/o.$ending" >"$work/said" 2>&1
