@@ -81,8 +81,8 @@ lanes :=
 endif
 $(B)/tangent/kernel_baseline.c.o: FILE_FLAGS := $(lanes)
 ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
-$(B)/tangent/kernel_avx2.c.o: FILE_FLAGS := $(lanes) -mavx2
-$(B)/tangent/kernel_avx512.c.o: FILE_FLAGS := $(lanes) -mavx512f -mavx512bw -mavx512dq -mavx512vl \
+$(B)/tangent/kernel_avx2.c.o: FILE_FLAGS := $(lanes) -mavx2 -mfma
+$(B)/tangent/kernel_avx512.c.o: FILE_FLAGS := $(lanes) -mavx512f -mavx512bw -mavx512dq -mavx512vl -mfma \
 	-mprefer-vector-width=512
 endif
 $(B)/topology/weld.c.o: FILE_FLAGS := $(lanes)

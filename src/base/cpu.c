@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Instruction sets: see cpu.h. AVX2 here means x86-64-v3 without its FMA, which would change bytes;
+ * Instruction sets: see cpu.h. AVX2 here means AVX2 and FMA (every processor of x86-64-v3; used by name only,
+ * contraction would change bytes);
  * AVX-512 means F, BW, DQ and VL, which every AVX-512 processor since 2017 has together.
  */
 #include "base/cpu.h"
@@ -13,9 +14,9 @@ bool nt_cpu_has(nmtan_isa isa)
 		return true;
 #if defined(__x86_64__)
 	case NMTAN_ISA_AVX2:
-		return __builtin_cpu_supports("avx2");
+		return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
 	case NMTAN_ISA_AVX512:
-		return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+		return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("avx512bw") &&
 		       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
 #else
 	case NMTAN_ISA_AVX2:

@@ -330,6 +330,7 @@ static void write_special(nt_fast *fast, size_t t)
 	}
 }
 
+/* Every corner of [begin, end) gets its vertex's result. */
 static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 {
 	for (size_t t = begin; t < end; t++) {
@@ -348,12 +349,36 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 	}
 }
 
+/* The same for the usual case, triangles and tangents only. This loop is a fifth of the whole time. */
+static void write_plain_triangles(nt_fast *fast, size_t begin, size_t end)
+{
+	const uint32_t *ids = fast->ids;
+	uint8_t *flags = fast->flags;
+	const nt_record *records[2] = {fast->records[0], fast->records[1]};
+	float *out = fast->solve->tangents;
+	for (size_t t = begin; t < end; t++) {
+		if (flags[t] & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
+			write_special(fast, t);
+			continue;
+		}
+		const nt_record *from = records[flags[t] & NT_TRIANGLE_ORIENT];
+		const nt_record a = from[ids[3 * t]], b = from[ids[3 * t + 1]], c = from[ids[3 * t + 2]];
+		memcpy(out + 12 * t, &a, sizeof a);
+		memcpy(out + 12 * t + 4, &b, sizeof b);
+		memcpy(out + 12 * t + 8, &c, sizeof c);
+		if (a.state == NT_RESULT_COMPLEX || b.state == NT_RESULT_COMPLEX || c.state == NT_RESULT_COMPLEX)
+			flags[t] |= NT_TRIANGLE_COMPLEX;
+	}
+}
+
 static void write_ranges(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
 	nt_fast *fast = ((const run *)context)->fast;
+	void (*write)(nt_fast *, size_t, size_t) =
+		fast->corners || fast->wants_more ? write_triangles : write_plain_triangles;
 	for (size_t range = begin; range < end; range++)
-		write_triangles(fast, fast->ranges.bounds[range], fast->ranges.bounds[range + 1]);
+		write(fast, fast->ranges.bounds[range], fast->ranges.bounds[range + 1]);
 }
 
 /* Without a sound triangle there is nothing but the default (step 10). */

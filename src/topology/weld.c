@@ -35,24 +35,25 @@ typedef struct welder {
 } welder;
 
 typedef struct batch {
-	nt_weld_row rows[BATCH];
 	uint64_t hashes[BATCH];
 	bool ordered[BATCH];
 } batch;
 
-/* Odd multipliers of no structure: the fractional bits of the square roots of the first primes. */
-static const uint32_t multipliers[ROW_FLOATS] = {0x6a09e667, 0xbb67ae85, 0x3c6ef373, 0xa54ff53b,
-	0x510e527f, 0x9b05688d, 0x1f83d9ab, 0x5be0cd19};
+/* Both halves of a 64 by 64 bit product, folded: every input bit reaches every output bit. */
+static uint64_t fold(uint64_t a, uint64_t b)
+{
+	const unsigned __int128 product = (unsigned __int128)a * b;
+	return (uint64_t)product ^ (uint64_t)(product >> 64);
+}
 
 static uint64_t hash_row(const nt_weld_row *row)
 {
-	uint32_t bits[ROW_FLOATS];
-	memcpy(bits, row, sizeof bits);
-	uint64_t hash = 0;
-	for (int i = 0; i < ROW_FLOATS; i++)
-		hash += (uint64_t)bits[i] * multipliers[i];
-	hash ^= hash >> 32;
-	return hash * 0x9e3779b97f4a7c15u;
+	/* digits of pi: numbers of no structure */
+	uint64_t words[4];
+	memcpy(words, row, sizeof words);
+	const uint64_t a = fold(words[0] ^ 0x243f6a8885a308d3u, words[1] ^ 0x13198a2e03707344u);
+	const uint64_t b = fold(words[2] ^ 0xa4093822299f31d0u, words[3] ^ 0x082efa98ec4e6c89u);
+	return fold(a ^ 0x452821e638d01377u, b ^ 0xbe5466cf34e90c6cu);
 }
 
 static void load_row(const nmtan_mesh *mesh, size_t vertex, nt_weld_row *row)
@@ -65,15 +66,15 @@ static void load_row(const nmtan_mesh *mesh, size_t vertex, nt_weld_row *row)
 /* -0 becomes +0, so that equal rows have equal bits; true where no value is NaN. */
 static bool canonise_row(nt_weld_row *row)
 {
-	float values[ROW_FLOATS];
+	typedef float float4 __attribute__((vector_size(16)));
+	typedef int64_t long2 __attribute__((vector_size(16)));
+	float4 values[2];
 	memcpy(values, row, sizeof values);
-	int unordered = 0;
-	for (int i = 0; i < ROW_FLOATS; i++) {
-		values[i] += 0.0f;
-		unordered |= values[i] != values[i];
-	}
+	values[0] += 0.0f;
+	values[1] += 0.0f;
+	const long2 unordered = (long2)((values[0] != values[0]) | (values[1] != values[1]));
 	memcpy(row, values, sizeof values);
-	return !unordered;
+	return (unordered[0] | unordered[1]) == 0;
 }
 
 static size_t slot_of(const welder *w, uint64_t hash)
@@ -130,24 +131,33 @@ static bool grow_rows(welder *w, size_t capacity)
 	return true;
 }
 
-/* Makes sure that one more batch fits. */
+/* Makes sure that one more batch fits: rows are loaded behind the last one and stay if they are new. */
 static bool reserve(welder *w)
 {
-	if (w->row_count + BATCH > w->row_capacity && w->row_capacity < w->item_count &&
-		!grow_rows(w, w->item_count))
+	if (w->row_count + BATCH > w->row_capacity && !grow_rows(w, w->item_count + BATCH))
 		return false;
 	return (w->row_count + BATCH) * 2 < (size_t)1 << w->table_bits || grow_table(w);
 }
 
 static void load_batch(const welder *w, size_t begin, size_t count, batch *b)
 {
+	nt_weld_row *rows = w->rows + w->row_count;
 	for (size_t i = 0; i < count; i++)
-		load_row(w->mesh, w->items ? w->items[begin + i] : begin + i, &b->rows[i]);
+		load_row(w->mesh, w->items ? w->items[begin + i] : begin + i, &rows[i]);
 	for (size_t i = 0; i < count; i++) {
-		b->ordered[i] = canonise_row(&b->rows[i]);
-		b->hashes[i] = hash_row(&b->rows[i]);
+		b->ordered[i] = canonise_row(&rows[i]);
+		b->hashes[i] = hash_row(&rows[i]);
 		__builtin_prefetch(&w->table[slot_of(w, b->hashes[i])], 1);
 	}
+}
+
+/* Keeps a row that is at its place or behind it. */
+static uint32_t keep_row(welder *w, const nt_weld_row *row)
+{
+	nt_weld_row *place = &w->rows[w->row_count];
+	if (place != row)
+		*place = *row;
+	return (uint32_t)w->row_count++;
 }
 
 /* The number of a row: that of an equal one, or the next. */
@@ -159,9 +169,8 @@ static uint32_t find_or_add(welder *w, const nt_weld_row *row, uint64_t hash)
 	for (size_t at = slot_of(w, hash);; at = (at + 1) & mask) {
 		const uint32_t entry = w->table[at];
 		if (entry == EMPTY) {
-			const uint32_t number = (uint32_t)w->row_count++;
+			const uint32_t number = keep_row(w, row);
 			w->table[at] = tag | number;
-			w->rows[number] = *row;
 			return number;
 		}
 		if ((entry & ~number_mask) == tag &&
@@ -189,13 +198,13 @@ static bool weld_items(welder *w, bool by_corner)
 		if (!reserve(w))
 			return false;
 		load_batch(w, begin, count, &b);
+		const nt_weld_row *loaded = w->rows + w->row_count;
 		for (size_t i = 0; i < count; i++) {
 			uint32_t number = UNORDERED;
 			if (b.ordered[i]) {
-				number = find_or_add(w, &b.rows[i], b.hashes[i]);
+				number = find_or_add(w, &loaded[i], b.hashes[i]);
 			} else if (by_corner) {
-				number = (uint32_t)w->row_count++;
-				w->rows[number] = b.rows[i];
+				number = keep_row(w, &loaded[i]);
 			} else {
 				w->unordered_count++;
 			}
@@ -258,8 +267,8 @@ nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, nt_room *
 	w.item_count = by_corner ? corner_count : mesh->vertex_count;
 
 	/* corners share vertices, usually six to one: begin small */
-	const size_t expected = by_corner ? corner_count / 4 + BATCH : w.item_count;
-	w.row_capacity = expected;
+	const size_t expected = by_corner ? corner_count / 4 : w.item_count;
+	w.row_capacity = expected + BATCH;
 	w.rows = nt_room_alloc(room, w.row_capacity, sizeof *w.rows);
 	if (!w.rows || !make_table(&w, bits_for(2 * (expected + BATCH) + 1)) || !weld_items(&w, by_corner))
 		return NMTAN_ERROR_MEMORY;
