@@ -35,6 +35,8 @@ typedef struct welder {
 } welder;
 
 typedef struct batch {
+	nt_weld_row *rows; /* where they were loaded */
+	size_t begin, count;
 	uint64_t hashes[BATCH];
 	bool ordered[BATCH];
 } batch;
@@ -131,20 +133,32 @@ static bool grow_rows(welder *w, size_t capacity)
 	return true;
 }
 
-/* Makes sure that one more batch fits: rows are loaded behind the last one and stay if they are new. */
-static bool reserve(welder *w)
+/* Room for rows that are loaded but not yet numbered: see next_place(). */
+enum { AHEAD = 5 * BATCH };
+
+static bool is_tight(const welder *w)
 {
-	if (w->row_count + BATCH > w->row_capacity && !grow_rows(w, w->item_count + BATCH))
-		return false;
-	return (w->row_count + BATCH) * 2 < (size_t)1 << w->table_bits || grow_table(w);
+	return w->row_count + AHEAD > w->row_capacity ||
+	       (w->row_count + AHEAD) * 2 >= (size_t)1 << w->table_bits;
 }
 
-static void load_batch(const welder *w, size_t begin, size_t count, batch *b)
+static bool reserve(welder *w)
 {
-	nt_weld_row *rows = w->rows + w->row_count;
-	for (size_t i = 0; i < count; i++)
+	if (w->row_count + AHEAD > w->row_capacity && !grow_rows(w, w->item_count + AHEAD))
+		return false;
+	return (w->row_count + AHEAD) * 2 < (size_t)1 << w->table_bits || grow_table(w);
+}
+
+/* Loads and hashes the rows of a batch to `rows`, and asks for their entries. */
+static void load_batch(const welder *w, size_t begin, nt_weld_row *rows, batch *b)
+{
+	const size_t left = w->item_count - begin;
+	b->rows = rows;
+	b->begin = begin;
+	b->count = left < BATCH ? left : BATCH;
+	for (size_t i = 0; i < b->count; i++)
 		load_row(w->mesh, w->items ? w->items[begin + i] : begin + i, &rows[i]);
-	for (size_t i = 0; i < count; i++) {
+	for (size_t i = 0; i < b->count; i++) {
 		b->ordered[i] = canonise_row(&rows[i]);
 		b->hashes[i] = hash_row(&rows[i]);
 		__builtin_prefetch(&w->table[slot_of(w, b->hashes[i])], 1);
@@ -161,7 +175,7 @@ static uint32_t keep_row(welder *w, const nt_weld_row *row)
 }
 
 /* The number of a row: that of an equal one, or the next. */
-static uint32_t find_or_add(welder *w, const nt_weld_row *row, uint64_t hash)
+static inline uint32_t find_or_add(welder *w, const nt_weld_row *row, uint64_t hash)
 {
 	const size_t mask = ((size_t)1 << w->table_bits) - 1;
 	const uint32_t number_mask = ((uint32_t)1 << w->index_bits) - 1;
@@ -190,28 +204,51 @@ static bool begin_numbers(welder *w, size_t item)
 	return true;
 }
 
+static bool number_batch(welder *w, const batch *b, bool by_corner)
+{
+	for (size_t i = 0; i < b->count; i++) {
+		uint32_t number = UNORDERED;
+		if (b->ordered[i])
+			number = find_or_add(w, &b->rows[i], b->hashes[i]);
+		else if (by_corner)
+			number = keep_row(w, &b->rows[i]);
+		else
+			w->unordered_count++;
+		if (!w->numbers && number != b->begin + i && !begin_numbers(w, b->begin + i))
+			return false;
+		if (w->numbers)
+			w->numbers[b->begin + i] = number;
+	}
+	return true;
+}
+
+/* Where the batch after `now` is loaded: right behind, so that rows of a mesh without doubles are
+ * never moved; once doubles have left a gap before `now`, into the gap, out of the way of the rows that
+ * `now` will keep. */
+static nt_weld_row *next_place(const welder *w, const batch *now)
+{
+	nt_weld_row *end = w->rows + w->row_count;
+	return now->rows - end >= 2 * BATCH ? end + BATCH : now->rows + BATCH;
+}
+
+/* While one batch is numbered, the entries of the next are on their way. */
 static bool weld_items(welder *w, bool by_corner)
 {
-	batch b;
-	for (size_t begin = 0; begin < w->item_count; begin += BATCH) {
-		const size_t left = w->item_count - begin, count = left < BATCH ? left : BATCH;
-		if (!reserve(w))
+	batch batches[2];
+	if (!reserve(w))
+		return false;
+	load_batch(w, 0, w->rows, &batches[0]);
+	for (size_t begin = 0, i = 0; begin < w->item_count; begin += BATCH, i ^= 1) {
+		batch *now = &batches[i], *later = &batches[i ^ 1];
+		if (begin + BATCH < w->item_count)
+			load_batch(w, begin + BATCH, next_place(w, now), later);
+		if (!number_batch(w, now, by_corner))
 			return false;
-		load_batch(w, begin, count, &b);
-		const nt_weld_row *loaded = w->rows + w->row_count;
-		for (size_t i = 0; i < count; i++) {
-			uint32_t number = UNORDERED;
-			if (b.ordered[i]) {
-				number = find_or_add(w, &loaded[i], b.hashes[i]);
-			} else if (by_corner) {
-				number = keep_row(w, &loaded[i]);
-			} else {
-				w->unordered_count++;
-			}
-			if (!w->numbers && number != begin + i && !begin_numbers(w, begin + i))
+		if (begin + BATCH < w->item_count && is_tight(w)) {
+			/* everything moves: the next batch is loaded again */
+			if (!reserve(w))
 				return false;
-			if (w->numbers)
-				w->numbers[begin + i] = number;
+			load_batch(w, begin + BATCH, w->rows + w->row_count, later);
 		}
 	}
 	return true;
@@ -268,9 +305,9 @@ nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, nt_room *
 
 	/* corners share vertices, usually six to one: begin small */
 	const size_t expected = by_corner ? corner_count / 4 : w.item_count;
-	w.row_capacity = expected + BATCH;
+	w.row_capacity = expected + AHEAD;
 	w.rows = nt_room_alloc(room, w.row_capacity, sizeof *w.rows);
-	if (!w.rows || !make_table(&w, bits_for(2 * (expected + BATCH) + 1)) || !weld_items(&w, by_corner))
+	if (!w.rows || !make_table(&w, bits_for(2 * (expected + AHEAD) + 1)) || !weld_items(&w, by_corner))
 		return NMTAN_ERROR_MEMORY;
 
 	if (by_corner && !number_items(&w))
