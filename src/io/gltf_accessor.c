@@ -176,6 +176,22 @@ static nmtan_status check_sparse(nt_gltf *document, const nt_json_value *sparse,
 		error);
 }
 
+/* The accessor of a compressed primitive is what the decoder gave, tightly packed. */
+static void use_decoded(const nt_gltf_decoded *decoded, nt_gltf_accessor *accessor)
+{
+	if (!decoded->rows)
+		return;
+	accessor->decoded = decoded->rows;
+	accessor->count = decoded->count;
+	accessor->component_type = decoded->component_type;
+	accessor->component_bytes = nt_gltf_component_bytes(decoded->component_type);
+	accessor->element_bytes = accessor->component_bytes * accessor->components;
+	accessor->stride = accessor->element_bytes;
+	accessor->view = NT_NONE;
+	accessor->offset = 0;
+	accessor->sparse_count = 0;
+}
+
 nmtan_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_accessor *accessor, nt_error *error)
 {
@@ -193,6 +209,8 @@ nmtan_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char 
 	const nt_json_value *sparse = nt_json_find(json, "sparse");
 	if (!status && sparse)
 		status = check_sparse(document, sparse, pointer, accessor, error);
+	if (!status && document->decoded && index < document->accessor_count)
+		use_decoded(&document->decoded[index], accessor);
 	return status;
 }
 
@@ -201,7 +219,9 @@ nmtan_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char 
 nmtan_status nt_gltf_accessor_rows(nt_gltf *document, const nt_gltf_accessor *accessor,
 	const unsigned char **rows, nt_error *error)
 {
-	*rows = NULL;
+	*rows = accessor->decoded;
+	if (accessor->decoded)
+		return NMTAN_OK;
 	if (accessor->view == NT_NONE || accessor->count == 0)
 		return NMTAN_OK;
 	char pointer[NT_GLTF_POINTER];
@@ -349,7 +369,7 @@ nmtan_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor
 			"the indices of a primitive are %u components of type %u, expected an unsigned "
 			"SCALAR", accessor->components, type);
 	const size_t count = (size_t)accessor->count;
-	if (accessor->view == NT_NONE && count > UNBACKED_INDICES)
+	if (accessor->view == NT_NONE && !accessor->decoded && count > UNBACKED_INDICES)
 		return nt_fail_pointer(error, NMTAN_ERROR_UNSUPPORTED, pointer,
 			"%zu indices without a bufferView", count);
 	const unsigned char *rows = NULL;

@@ -139,8 +139,13 @@ nmtan_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_
 	if (!status) {
 		document->buffer_count = nt_json_count(nt_gltf_root_member(document, "buffers"));
 		document->buffers = nt_calloc(document->buffer_count, sizeof *document->buffers);
-		if (!document->buffers)
+		document->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
+		document->virtual_of = nt_alloc(document->view_count, sizeof *document->virtual_of);
+		if (!document->buffers || !document->virtual_of)
 			status = nt_fail_memory(error);
+		else
+			memset(document->virtual_of, 0xFF,
+				document->view_count * sizeof *document->virtual_of);
 	}
 	if (status) {
 		nt_gltf_free(document);
@@ -161,6 +166,12 @@ void nt_gltf_free(void *source)
 		if (buffer->opened && buffer->home == NT_GLTF_HOME_FILE)
 			nt_file_close(&buffer->file);
 	}
+	for (size_t i = 0; i < document->virtual_count; i++)
+		free(document->virtuals[i].decoded);
+	nt_gltf_free_draco(document);
+	free(document->virtuals);
+	free(document->virtual_of);
+	free(document->decoded);
 	free(document->buffers);
 	nt_json_free(document->json);
 	nt_arena_free(&document->arena);
@@ -172,6 +183,10 @@ void nt_gltf_free(void *source)
 nmtan_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_buffer **result, nt_error *error)
 {
+	if (index >= NT_GLTF_VIRTUAL && index - NT_GLTF_VIRTUAL < document->virtual_count) {
+		*result = &document->virtuals[index - NT_GLTF_VIRTUAL];
+		return NMTAN_OK;
+	}
 	const nt_json_value *json;
 	nmtan_status status = nt_gltf_element(document, "buffers", index, from, &json, error);
 	if (status)
@@ -280,17 +295,6 @@ nmtan_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *
 
 /* ---- views ---- */
 
-/* The extension that compresses a view. */
-static const char *find_compression(const nt_json_value *view)
-{
-	static const char *const names[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
-	const nt_json_value *extensions = nt_json_find(view, "extensions");
-	for (size_t i = 0; i < 2; i++)
-		if (nt_json_find(extensions, names[i]))
-			return names[i];
-	return NULL;
-}
-
 nmtan_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
 	nt_error *error)
 {
@@ -324,7 +328,13 @@ nmtan_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *fro
 	view->index = (uint32_t)index;
 	view->buffer = (uint32_t)buffer_index;
 	view->stride = (uint32_t)stride;
-	view->compression = find_compression(json);
+	view->compression = NULL;
+	nt_gltf_compression_of(json, &view->compression);
+	if (index < document->view_count && document->virtual_of[index] != NT_NONE) {
+		view->buffer = document->virtual_of[index];
+		view->offset = 0;
+		view->compression = NULL;
+	}
 	return NMTAN_OK;
 }
 
@@ -337,9 +347,13 @@ nmtan_status nt_gltf_view_bytes(nt_gltf *document, uint32_t index, uint64_t offs
 		return status;
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "/bufferViews/%u", index);
-	if (view.compression)
-		return nt_fail_pointer(error, NMTAN_ERROR_UNSUPPORTED, pointer,
-			"the view is compressed by %s, which nmtan does not read yet", view.compression);
+	if (view.compression) {
+		status = nt_gltf_decompress_view(document, index, error);
+		if (!status)
+			status = nt_gltf_get_view(document, index, what, &view, error);
+		if (status)
+			return status;
+	}
 	if (offset > view.length || length > view.length - offset)
 		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, what,
 			"takes bytes %llu to %llu of bufferView %u, which has %llu",

@@ -49,7 +49,7 @@ typedef struct nt_gltf_view {
 	uint32_t buffer;
 	uint64_t offset, length;
 	uint32_t stride; /* 0: none given */
-	const char *compression; /* the extension that compresses it; NULL: none */
+	const char *compression; /* the extension that compresses it; NULL: none, or already undone */
 } nt_gltf_view;
 
 typedef struct nt_gltf_accessor {
@@ -60,13 +60,24 @@ typedef struct nt_gltf_accessor {
 	uint32_t element_bytes;  /* with the padding of matrix columns */
 	bool normalized;
 	uint64_t count;
-	uint32_t view;           /* NT_NONE: all zeros */
+	uint32_t view;           /* NT_NONE: all zeros, or decoded */
+	const unsigned char *decoded; /* rows from a compressed primitive; NULL: none */
 	uint64_t offset;         /* in the view */
 	uint32_t stride;         /* as it applies, never 0 */
 	uint64_t sparse_count;   /* 0: not sparse */
 	uint32_t sparse_index_type, sparse_index_view, sparse_value_view;
 	uint64_t sparse_index_offset, sparse_value_offset;
 } nt_gltf_accessor;
+
+/* Rows of an accessor that come from a compressed primitive. */
+typedef struct nt_gltf_decoded {
+	const unsigned char *rows; /* NULL: none */
+	size_t count;
+	uint32_t component_type;
+} nt_gltf_decoded;
+
+/* Numbers of buffers that are no buffers of the document: each holds one decompressed view. */
+#define NT_GLTF_VIRTUAL ((uint32_t)1 << 30)
 
 typedef struct nt_gltf {
 	nt_arena arena;
@@ -79,6 +90,13 @@ typedef struct nt_gltf {
 	bool allow_outside;
 	nt_gltf_buffer *buffers; /* [buffer_count] */
 	size_t buffer_count;
+	nt_gltf_buffer *virtuals;  /* [virtual_count] decompressed views; buffer NT_GLTF_VIRTUAL + i */
+	size_t virtual_count, virtual_capacity;
+	uint32_t *virtual_of;      /* [view_count] the buffer a view was decompressed to; NT_NONE */
+	size_t view_count;
+	nt_gltf_decoded *decoded;  /* [accessor_count] what Draco gave; NULL until there is something */
+	size_t accessor_count;
+	struct nt_gltf_draco *draco_blocks; /* gltf_draco.c */
 	uint64_t bytes_opened;   /* of external files and data URIs */
 } nt_gltf;
 
@@ -148,6 +166,24 @@ nmtan_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor
 
 /* Size of a component; 0 for an unknown type. */
 uint32_t nt_gltf_component_bytes(uint64_t component_type);
+
+/* ---- gltf_meshopt.c ---- */
+
+/* Decompresses a view of EXT_meshopt_compression or KHR_meshopt_compression: from then on it lies in a
+ * virtual buffer. */
+nmtan_status nt_gltf_decompress_view(nt_gltf *document, uint32_t view, nt_error *error);
+
+/* The extension object of a compressed view; NULL: none. *name (may be NULL) receives the extension. */
+nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **name);
+
+/* ---- gltf_draco.c ---- */
+
+/* Decodes a primitive's KHR_draco_mesh_compression, where it has one: from then on its accessors have
+ * their rows. */
+nmtan_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive,
+	const char *pointer, nt_error *error);
+
+void nt_gltf_free_draco(nt_gltf *document);
 
 /* ---- gltf_material.c ---- */
 

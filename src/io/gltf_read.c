@@ -248,17 +248,13 @@ nmtan_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_er
 
 /* ---- loading ---- */
 
-static nmtan_status find_primitive(const nt_gltf *document, const nt_mesh *mesh,
+static nmtan_status find_primitive(nt_gltf *document, const nt_mesh *mesh,
 	const nt_json_value **primitive, nt_error *error)
 {
 	const nt_json_value *json =
 		nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh);
 	*primitive = nt_json_at(nt_json_find(json, "primitives"), mesh->gltf_primitive);
-	if (nt_json_find(nt_json_find(*primitive, "extensions"), "KHR_draco_mesh_compression"))
-		return nt_fail_pointer(error, NMTAN_ERROR_UNSUPPORTED, mesh->place.pointer,
-			"the primitive is compressed by KHR_draco_mesh_compression, which nmtan does not "
-			"read yet");
-	return NMTAN_OK;
+	return nt_gltf_decode_draco(document, *primitive, mesh->place.pointer, error);
 }
 
 /* An attribute of a primitive. *accessor has count 0 and no view where there is none. */
@@ -335,6 +331,11 @@ static nmtan_status find_inputs(nt_gltf *document, const nt_mesh *mesh, const nt
 	return status;
 }
 
+static bool is_backed(const attribute *found)
+{
+	return found->exists && (found->accessor.view != NT_NONE || found->accessor.decoded);
+}
+
 /* Counts must agree, and something in the file must stand behind them. */
 static nmtan_status check_inputs(const nt_mesh *mesh, const inputs *in, nt_error *error)
 {
@@ -345,9 +346,8 @@ static nmtan_status check_inputs(const nt_mesh *mesh, const inputs *in, nt_error
 		status = check_count(mesh, &in->tangents, "TANGENT", error);
 	if (!status)
 		status = check_count(mesh, &in->colors, "COLOR_0", error);
-	const bool backed = in->positions.accessor.view != NT_NONE ||
-		(in->normals.exists && in->normals.accessor.view != NT_NONE) ||
-		(in->texcoords.exists && in->texcoords.accessor.view != NT_NONE);
+	const bool backed = is_backed(&in->positions) || is_backed(&in->normals) ||
+		is_backed(&in->texcoords);
 	if (!status && !backed && mesh->vertex_count > UNBACKED_ELEMENTS)
 		status = nt_fail_pointer(error, NMTAN_ERROR_UNSUPPORTED, mesh->place.pointer,
 			"%zu vertices, but neither positions nor normals nor texture coordinates have a "
