@@ -19,12 +19,20 @@ typedef struct nt_read_options {
 typedef enum nt_images { NT_IMAGES_DEFAULT, NT_IMAGES_LINK, NT_IMAGES_EMBED, NT_IMAGES_COPY,
 	NT_IMAGES_NONE } nt_images;
 
+/* What happens to compressed primitives that get tangents. */
+typedef enum nt_draco_choice {
+	NT_DRACO_KEEP, /* compressed again, with the source's method and quantization */
+	NT_DRACO_OFF   /* written plain */
+} nt_draco_choice;
+
 typedef struct nt_write_options {
 	nt_format format;   /* of the output */
 	const char *path;   /* of the output, "-" for standard output */
 	bool embed;         /* .gltf: buffers as data URIs */
 	bool bitangents;
 	nt_images images;
+	nt_draco_choice draco;
+	int draco_tangent_bits; /* 0: 12; quantization of tangents in compressed primitives */
 	bool allow_outside;
 } nt_write_options;
 

@@ -74,7 +74,8 @@ static nmtan_status collect_items(nt_gltf_growing *g, const nt_gltf_override *ov
 {
 	const nt_gltf_patcher *p = g->patcher;
 	nmtan_status status = NMTAN_OK;
-	for (size_t i = 0; !status && nt_gltf_added_rows(g) && i < g->component->member_count; i++) {
+	const bool all = nt_gltf_added_rows(g) || g->decoded_too;
+	for (size_t i = 0; !status && all && i < g->component->member_count; i++) {
 		const nt_mesh *mesh = &p->scene->meshes[g->component->members[i]];
 		g->collecting_unsolved = g->component->rows.group_of[i] == NT_NONE;
 		status = nt_gltf_visit_attributes(nt_gltf_primitive_of(p->document, mesh),
@@ -378,32 +379,36 @@ static nmtan_status grow_items(nt_gltf_growing *g)
 	uint32_t previous_buffer = NT_NONE;
 	for (size_t i = 0; !status && i < g->item_count && g->items[i].accessor.view != NT_NONE;) {
 		const block b = find_block(g, &g->items[i], g->item_count - i);
-		status = grow_block(g, &b, b.buffer == previous_buffer ? previous_end : 0);
+		if (nt_gltf_added_rows(g) || b.overridden)
+			status = grow_block(g, &b, b.buffer == previous_buffer ? previous_end : 0);
 		if (b.buffer != previous_buffer || b.end > previous_end)
 			previous_end = b.end;
 		previous_buffer = b.buffer;
 		i += b.count;
 	}
+	for (size_t i = 0; !status && g->decoded_too && i < g->item_count; i++)
+		if (g->items[i].accessor.decoded)
+			status = move_away(g, &g->items[i]);
 	for (size_t i = 0; i < g->item_count; i++)
 		if (g->items[i].override) {
 			set_bound(p, g, &g->items[i], "min", -1);
 			set_bound(p, g, &g->items[i], "max", 1);
 		}
-	for (size_t i = 0; !status && nt_gltf_added_rows(g) && i < g->item_count; i++) {
+	for (size_t i = 0; !status && (nt_gltf_added_rows(g) || g->decoded_too) && i < g->item_count; i++) {
 		const nt_gltf_item *grown = &g->items[i];
 		nt_json_set_uint64(p->json, nt_json_put(p->json,
 			nt_json_at(accessors, grown->accessor.index), "count"),
 			g->component->rows.new_count);
-		if (grown->accessor.sparse_count)
+		if (grown->accessor.sparse_count && nt_gltf_added_rows(g))
 			status = nt_gltf_grow_sparse(g, grown);
 	}
 	return status;
 }
 
 nmtan_status nt_gltf_grow_attributes(nt_gltf_patcher *p, const nt_gltf_cluster *component,
-	const nt_gltf_override *overrides, size_t override_count)
+	const nt_gltf_override *overrides, size_t override_count, bool decoded_too)
 {
-	nt_gltf_growing g = {.patcher = p, .component = component,
+	nt_gltf_growing g = {.patcher = p, .component = component, .decoded_too = decoded_too,
 		.seen = nt_calloc(p->sharing.accessor_count, sizeof(bool)),
 		.pinned = nt_calloc(p->sharing.accessor_count, sizeof(bool))};
 	nmtan_status status = g.seen && g.pinned ? NMTAN_OK : nt_fail_memory(p->error);

@@ -30,6 +30,7 @@ typedef struct nt_gltf_growing {
 	bool *seen;    /* [accessor_count] */
 	bool *pinned;  /* [accessor_count] used by an unsolved member */
 	bool collecting_unsolved;
+	bool decoded_too; /* decompressed accessors get plain views */
 	nt_gltf_edited *edited;
 	size_t edited_count, edited_capacity;
 } nt_gltf_growing;

@@ -131,6 +131,26 @@ static nmtan_status replace_indices(nt_gltf_patcher *p, const nt_gltf_accessor *
 	return nt_layout_edit(&p->layout, view.buffer, begin, size, bytes, new->size + pad, p->error);
 }
 
+/* Indices that were compressed get a view; the accessor stays. */
+static nmtan_status give_view(nt_gltf_patcher *p, uint32_t buffer, const nt_gltf_accessor *old,
+	const encoded *new, bool *done)
+{
+	*done = p->sharing.index_users[p->sharing.canonical[old->index]] == 1;
+	if (!*done)
+		return NMTAN_OK;
+	uint32_t view;
+	const nmtan_status status = nt_layout_add_view(&p->layout, buffer, new->bytes, new->size,
+		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, p->error);
+	nt_json_value *json = nt_json_at(nt_gltf_root_member(p->document, "accessors"), old->index);
+	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "bufferView"), view);
+	nt_json_remove(p->json, json, "byteOffset");
+	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "componentType"), new->type);
+	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "count"), new->count);
+	nt_json_remove(p->json, json, "min");
+	nt_json_remove(p->json, json, "max");
+	return status;
+}
+
 /* A member's new indices, to be found by members with the same ones. */
 typedef struct written {
 	uint32_t old_accessor; /* canonical; NT_NONE: there was none */
@@ -151,7 +171,7 @@ static nmtan_status patch_member(nt_gltf_patcher *p, const nt_gltf_cluster *comp
 {
 	const nt_mesh *mesh = &p->scene->meshes[component->members[member]];
 	nt_json_value *primitive = nt_gltf_primitive_of(p->document, mesh);
-	uint64_t index = NT_NONE, mode = MODE_TRIANGLES;
+	uint64_t index = NT_NONE, mode = MODE_TRIANGLES, type;
 	nt_json_get_uint64(nt_json_find(primitive, "indices"), &index);
 	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
 	nt_gltf_accessor old = {.count = mesh->source_vertex_count, .component_type = NT_GLTF_UBYTE};
@@ -160,6 +180,10 @@ static nmtan_status patch_member(nt_gltf_patcher *p, const nt_gltf_cluster *comp
 		status = nt_gltf_get_accessor(p->document, index, mesh->place.pointer, &old, p->error);
 	if (status)
 		return status;
+	/* What Draco gave has 32 bits; the accessor may say less. */
+	if (old.decoded && nt_json_get_uint64(nt_json_find(nt_json_at(
+		nt_gltf_root_member(p->document, "accessors"), (size_t)index), "componentType"), &type))
+		old.component_type = (uint32_t)type;
 	if (index == NT_NONE)
 		old.component_type = NT_GLTF_USHORT; /* the narrowest that all hardware likes */
 	log[member].old_accessor = index == NT_NONE ? NT_NONE : p->sharing.canonical[index];
@@ -175,7 +199,9 @@ static nmtan_status patch_member(nt_gltf_patcher *p, const nt_gltf_cluster *comp
 		bool done = false;
 		status = encode(p, mesh, component->rows.indices[member],
 			tail_of(mesh, mode, old.count), old.component_type, &new);
-		if (!status && index != NT_NONE)
+		if (!status && old.decoded)
+			status = give_view(p, component->buffer, &old, &new, &done);
+		else if (!status && index != NT_NONE)
 			status = replace_indices(p, &old, &new, &done);
 		accessor = (uint32_t)index;
 		if (!status && !done)

@@ -55,16 +55,9 @@ static bool add_accessor_extents(nt_gltf_layout *layout, uint32_t index, bool *v
 }
 
 /* The bytes behind a compressed view lie in another place than the view. */
-static nt_json_value *compressed_part(const nt_json_value *view)
-{
-	nt_json_value *extensions = nt_json_find(view, "extensions");
-	nt_json_value *part = nt_json_find(extensions, "EXT_meshopt_compression");
-	return part ? part : nt_json_find(extensions, "KHR_meshopt_compression");
-}
-
 static bool add_compressed_extent(nt_gltf_layout *layout, const nt_json_value *view)
 {
-	const nt_json_value *part = compressed_part(view);
+	const nt_json_value *part = nt_gltf_compression_of(view, NULL);
 	uint64_t buffer, offset = 0, length;
 	if (!nt_json_get_uint64(nt_json_find(part, "buffer"), &buffer) || buffer >= UINT32_MAX ||
 		!nt_json_get_uint64(nt_json_find(part, "byteLength"), &length))
@@ -174,7 +167,25 @@ bool nt_layout_is_foreign(const nt_gltf_layout *layout, uint32_t buffer, uint64_
 	return false;
 }
 
+size_t nt_layout_users(const nt_gltf_layout *layout, uint32_t buffer, uint64_t begin, uint64_t end)
+{
+	size_t users = 0;
+	for (size_t i = extents_before(layout, buffer, end); i-- > 0;) {
+		const nt_gltf_extent *extent = &layout->extents[i];
+		if (extent->buffer != buffer || extent->reach <= begin)
+			break;
+		users += extent->end > begin;
+	}
+	return users;
+}
+
 /* ---- changes ---- */
+
+static nt_gltf_buffer_layout *plan_of(nt_gltf_layout *layout, uint32_t buffer)
+{
+	return buffer >= NT_GLTF_VIRTUAL ? &layout->virtuals[buffer - NT_GLTF_VIRTUAL] :
+					   &layout->buffers[buffer];
+}
 
 nmtan_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_error *error)
 {
@@ -182,7 +193,9 @@ nmtan_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_erro
 	layout->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
 	layout->buffer_count = document->buffer_count;
 	layout->buffers = nt_calloc(document->buffer_count + 1, sizeof *layout->buffers);
-	if (!layout->buffers || !find_extents(layout)) {
+	layout->virtual_count = document->virtual_count;
+	layout->virtuals = nt_calloc(document->virtual_count, sizeof *layout->virtuals);
+	if (!layout->buffers || !layout->virtuals || !find_extents(layout)) {
 		nt_layout_free(layout);
 		return nt_fail_memory(error);
 	}
@@ -192,6 +205,8 @@ nmtan_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_erro
 			layout->buffers[i].old_length = buffer->length;
 		layout->buffers[i].new_length = layout->buffers[i].old_length;
 	}
+	for (size_t i = 0; i < document->virtual_count; i++)
+		layout->virtuals[i].old_length = document->virtuals[i].length;
 	return NMTAN_OK;
 }
 
@@ -201,6 +216,11 @@ void nt_layout_free(nt_gltf_layout *layout)
 		free(layout->buffers[i].edits);
 		free(layout->buffers[i].additions);
 	}
+	for (size_t i = 0; layout->virtuals && i < layout->virtual_count; i++) {
+		free(layout->virtuals[i].edits);
+		free(layout->virtuals[i].additions);
+	}
+	free(layout->virtuals);
 	free(layout->buffers);
 	free(layout->extents);
 	nt_arena_free(&layout->arena);
@@ -210,7 +230,7 @@ void nt_layout_free(nt_gltf_layout *layout)
 nmtan_status nt_layout_edit(nt_gltf_layout *layout, uint32_t index, uint64_t at, uint64_t removed,
 	const unsigned char *bytes, size_t size, nt_error *error)
 {
-	nt_gltf_buffer_layout *buffer = &layout->buffers[index];
+	nt_gltf_buffer_layout *buffer = plan_of(layout, index);
 	/* What is behind keeps its alignment. */
 	const size_t excess = (size_t)((size - removed) % layout->alignment);
 	if (excess) {
@@ -231,13 +251,22 @@ nmtan_status nt_layout_edit(nt_gltf_layout *layout, uint32_t index, uint64_t at,
 	return NMTAN_OK;
 }
 
-nmtan_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t index, const void *bytes, size_t size,
-	uint32_t target, uint32_t stride, uint32_t *view, nt_error *error)
+/* Bytes of a view behind the end of a buffer. */
+static nmtan_status add_bytes(nt_gltf_layout *layout, uint32_t index, uint32_t view, const void *bytes,
+	size_t size, nt_error *error)
 {
 	nt_gltf_buffer_layout *buffer = &layout->buffers[index];
 	if (!nt_grow((void **)&buffer->additions, &buffer->addition_capacity,
 		buffer->addition_count + 1, sizeof *buffer->additions))
 		return nt_fail_memory(error);
+	buffer->additions[buffer->addition_count++] = (nt_gltf_addition){view, 0, bytes, size};
+	buffer->touched = true;
+	return NMTAN_OK;
+}
+
+nmtan_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t index, const void *bytes, size_t size,
+	uint32_t target, uint32_t stride, uint32_t *view, nt_error *error)
+{
 	nt_json *json = layout->document->json;
 	nt_json_value *views = nt_json_put(json, nt_json_root(json), "bufferViews");
 	*view = (uint32_t)nt_json_count(views);
@@ -249,9 +278,7 @@ nmtan_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t index, const vo
 		nt_json_set_uint64(json, nt_json_put(json, object, "byteStride"), stride);
 	if (target)
 		nt_json_set_uint64(json, nt_json_put(json, object, "target"), target);
-	buffer->additions[buffer->addition_count++] = (nt_gltf_addition){*view, 0, bytes, size};
-	buffer->touched = true;
-	return NMTAN_OK;
+	return add_bytes(layout, index, *view, bytes, size, error);
 }
 
 /* Whether a buffer has bytes that can be extended. */
@@ -360,7 +387,7 @@ static void move_views(nt_gltf_layout *layout, moved_view *moved, size_t view_co
 	for (size_t i = 0; i < view_count; i++) {
 		nt_json_value *object = nt_json_at(views, i);
 		nt_gltf_view view;
-		nt_json_value *part = compressed_part(object);
+		nt_json_value *part = nt_gltf_compression_of(object, NULL);
 		uint64_t buffer, offset = 0;
 		if (part && nt_json_get_uint64(nt_json_find(part, "buffer"), &buffer) &&
 			buffer < layout->document->buffer_count) {
@@ -368,8 +395,9 @@ static void move_views(nt_gltf_layout *layout, moved_view *moved, size_t view_co
 			set_offset(json, part, "byteOffset",
 				map_position(&layout->buffers[buffer], offset));
 		}
-		if (nt_gltf_get_view(layout->document, i, "", &view, NULL) != NMTAN_OK ||
-			layout->buffers[view.buffer].edit_count == 0)
+		if (moved[i].buffer ||
+			nt_gltf_get_view(layout->document, i, "", &view, NULL) != NMTAN_OK ||
+			view.buffer >= NT_GLTF_VIRTUAL || layout->buffers[view.buffer].edit_count == 0)
 			continue;
 		moved[i].buffer = &layout->buffers[view.buffer];
 		moved[i].old_offset = view.offset;
@@ -407,35 +435,6 @@ static void move_accessors(nt_gltf_layout *layout, const moved_view *moved, size
 			move_in_view(json, nt_json_find(sparse, "values"), moved, view_count);
 		}
 	}
-}
-
-nmtan_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error)
-{
-	nt_gltf *document = layout->document;
-	const size_t view_count = layout->view_count;
-	moved_view *moved = nt_calloc(view_count, sizeof *moved);
-	if (!moved)
-		return nt_fail_memory(error);
-	bool shifted = false;
-	for (size_t i = 0; i < layout->buffer_count; i++) {
-		sort_edits(&layout->buffers[i]);
-		shifted |= layout->buffers[i].edit_count > 0;
-	}
-	if (shifted) {
-		move_views(layout, moved, view_count);
-		move_accessors(layout, moved, view_count);
-	}
-	free(moved);
-	nt_json *json = document->json;
-	for (size_t i = 0; i < layout->buffer_count; i++) {
-		nt_gltf_buffer_layout *buffer = &layout->buffers[i];
-		if (!buffer->touched)
-			continue;
-		place_additions(layout, buffer);
-		nt_json_value *buffers = nt_gltf_root_member(document, "buffers");
-		set_offset(json, nt_json_at(buffers, i), "byteLength", buffer->new_length);
-	}
-	return nt_json_failed(json) ? nt_fail_memory(error) : NMTAN_OK;
 }
 
 /* ---- writing ---- */
@@ -488,11 +487,12 @@ static nmtan_status put_source(const nt_gltf_layout *layout, const nt_gltf_buffe
 
 static nmtan_status put_buffer(nt_gltf_layout *layout, uint32_t index, const target *to, nt_error *error)
 {
-	const nt_gltf_buffer_layout *plan = &layout->buffers[index];
+	const nt_gltf_buffer_layout *plan = plan_of(layout, index);
 	nt_gltf_buffer *source = NULL;
 	nmtan_status status = NMTAN_OK;
 	uint64_t at = 0, written = map_position(plan, plan->old_length);
-	if (plan->old_length && layout->document->buffers[index].home == NT_GLTF_HOME_NOWHERE)
+	if (plan->old_length && index < NT_GLTF_VIRTUAL &&
+		layout->document->buffers[index].home == NT_GLTF_HOME_NOWHERE)
 		return put_zeros(to, plan->old_length, error);
 	if (plan->old_length)
 		status = nt_gltf_open_buffer(layout->document, index, "/buffers", &source, error);
@@ -521,6 +521,134 @@ static nmtan_status put_buffer(nt_gltf_layout *layout, uint32_t index, const tar
 		written = addition->offset + addition->size;
 	}
 	return status;
+}
+
+/* ---- views that were decompressed ---- */
+
+/* Takes the compressed bytes of a view out, if nobody else refers to them. */
+static nmtan_status remove_compressed(nt_gltf_layout *layout, const nt_json_value *part, nt_error *error)
+{
+	uint64_t buffer, offset = 0, length;
+	if (!nt_json_get_uint64(nt_json_find(part, "buffer"), &buffer) ||
+		!nt_json_get_uint64(nt_json_find(part, "byteLength"), &length) ||
+		buffer >= layout->document->buffer_count)
+		return NMTAN_OK;
+	nt_json_get_uint64(nt_json_find(part, "byteOffset"), &offset);
+	const size_t users = nt_layout_users(layout, (uint32_t)buffer, offset, offset + length);
+	return users == 1 ? nt_layout_edit(layout, (uint32_t)buffer, offset, length,
+				    (const unsigned char *)"", 0, error) :
+			    NMTAN_OK;
+}
+
+/* A decompressed view whose bytes have changed is written plain. */
+static nmtan_status settle_virtual(nt_gltf_layout *layout, uint32_t index, moved_view *moved,
+	nt_error *error)
+{
+	nt_gltf *document = layout->document;
+	nt_gltf_buffer_layout *plan = plan_of(layout, document->virtual_of[index]);
+	sort_edits(plan);
+	nt_buffer bytes = {0};
+	nmtan_status status =
+		put_buffer(layout, document->virtual_of[index], &(target){.memory = &bytes}, error);
+	const size_t size = bytes.size;
+	if (status || !nt_arena_adopt(&layout->arena, bytes.data)) {
+		if (status)
+			nt_buffer_free(&bytes);
+		return status ? status : nt_fail_memory(error);
+	}
+	nt_json_value *view = nt_json_at(nt_gltf_root_member(document, "bufferViews"), index);
+	const char *name = "";
+	nt_json_value *part = nt_gltf_compression_of(view, &name);
+	uint64_t near = NT_NONE;
+	nt_json_get_uint64(nt_json_find(part, "buffer"), &near);
+	uint32_t buffer = NT_NONE;
+	status = remove_compressed(layout, part, error);
+	if (!status)
+		status = nt_layout_choose_buffer(layout, (uint32_t)near, &buffer, error);
+	if (!status)
+		status = add_bytes(layout, buffer, index, bytes.data, size, error);
+	if (status)
+		return status;
+	nt_json *json = document->json;
+	nt_json_set_uint64(json, nt_json_put(json, view, "buffer"), buffer);
+	nt_json_set_uint64(json, nt_json_put(json, view, "byteLength"), size);
+	nt_json_value *extensions = nt_json_find(view, "extensions");
+	nt_json_remove(json, extensions, name);
+	if (nt_json_count(extensions) == 0)
+		nt_json_remove(json, view, "extensions");
+	*moved = (moved_view){plan, 0, 0};
+	return NMTAN_OK;
+}
+
+void nt_gltf_remove_extension(nt_gltf *document, const char *list, const char *name)
+{
+	nt_json_value *names = nt_gltf_root_member(document, list);
+	for (size_t i = nt_json_count(names); i-- > 0;) {
+		const char *text = nt_json_get_string(nt_json_at(names, i), NULL);
+		if (text && strcmp(text, name) == 0)
+			nt_json_remove_at(document->json, names, i);
+	}
+	/* an empty list is not valid */
+	if (names && nt_json_count(names) == 0)
+		nt_json_remove(document->json, nt_json_root(document->json), list);
+}
+
+/* An extension that no view needs any more is not required; its mark on a fallback buffer stays. */
+static void drop_unneeded_compression(nt_gltf *document)
+{
+	static const char *const names[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
+	if (document->virtual_count == 0)
+		return;
+	const nt_json_value *views = nt_gltf_root_member(document, "bufferViews");
+	for (size_t k = 0; k < 2; k++) {
+		bool used = false;
+		for (size_t i = 0; !used && i < nt_json_count(views); i++)
+			used = nt_json_find(nt_json_find(nt_json_at(views, i), "extensions"), names[k]);
+		if (!used)
+			nt_gltf_remove_extension(document, "extensionsRequired", names[k]);
+	}
+}
+
+/* ---- the whole ---- */
+
+nmtan_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error)
+{
+	nt_gltf *document = layout->document;
+	const size_t view_count = layout->view_count;
+	moved_view *moved = nt_calloc(view_count, sizeof *moved);
+	if (!moved)
+		return nt_fail_memory(error);
+	nmtan_status status = NMTAN_OK;
+	bool shifted = false;
+	for (uint32_t i = 0; !status && i < view_count; i++)
+		if (document->virtual_of[i] != NT_NONE && plan_of(layout, document->virtual_of[i])->touched) {
+			status = settle_virtual(layout, i, &moved[i], error);
+			shifted = true;
+		}
+	if (status) {
+		free(moved);
+		return status;
+	}
+	for (size_t i = 0; i < layout->buffer_count; i++) {
+		sort_edits(&layout->buffers[i]);
+		shifted |= layout->buffers[i].edit_count > 0;
+	}
+	if (shifted) {
+		move_views(layout, moved, view_count);
+		move_accessors(layout, moved, view_count);
+	}
+	free(moved);
+	nt_json *json = document->json;
+	for (size_t i = 0; i < layout->buffer_count; i++) {
+		nt_gltf_buffer_layout *buffer = &layout->buffers[i];
+		if (!buffer->touched)
+			continue;
+		place_additions(layout, buffer);
+		nt_json_value *buffers = nt_gltf_root_member(document, "buffers");
+		set_offset(json, nt_json_at(buffers, i), "byteLength", buffer->new_length);
+	}
+	drop_unneeded_compression(document);
+	return nt_json_failed(json) ? nt_fail_memory(error) : NMTAN_OK;
 }
 
 nmtan_status nt_layout_write(nt_gltf_layout *layout, uint32_t buffer, const nt_file *input,

@@ -51,6 +51,8 @@ typedef struct nt_gltf_layout {
 	nt_gltf_buffer_layout *buffers; /* [buffer_count]: the document's, and at most one new one */
 	size_t buffer_count;
 	size_t view_count;              /* of the source */
+	nt_gltf_buffer_layout *virtuals; /* [virtual_count] of decompressed views */
+	size_t virtual_count;
 	nt_gltf_extent *extents;        /* sorted by buffer and begin */
 	size_t extent_count, extent_capacity;
 	uint32_t alignment;             /* insertions are multiples of this */
@@ -63,6 +65,9 @@ void nt_layout_free(nt_gltf_layout *layout);
 /* Whether something other than the accessors marked in own[] refers to bytes of [begin, end). */
 bool nt_layout_is_foreign(const nt_gltf_layout *layout, uint32_t buffer, uint64_t begin, uint64_t end,
 	const uint32_t *own, uint32_t mark);
+
+/* How many things refer to bytes of [begin, end). */
+size_t nt_layout_users(const nt_gltf_layout *layout, uint32_t buffer, uint64_t begin, uint64_t end);
 
 /* Replaces `removed` bytes of a source buffer by others, which must live as long as the layout. The
  * difference is padded with zeros to the layout's alignment. Edits must not overlap. */
@@ -77,6 +82,9 @@ nmtan_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t buffer, const v
  * a new buffer where no other can. */
 nmtan_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint32_t *buffer,
 	nt_error *error);
+
+/* Takes an extension off "extensionsUsed" or "extensionsRequired". */
+void nt_gltf_remove_extension(nt_gltf *document, const char *list, const char *name);
 
 /* Moves all offsets in the JSON and sets all lengths. Call once, after the last change. */
 nmtan_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error);

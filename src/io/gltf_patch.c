@@ -112,12 +112,13 @@ static const nt_mesh *first_of_group(const nt_gltf_patcher *p, const nt_gltf_clu
 	return NULL;
 }
 
-/* cross(N, T) w, glTF's own definition of the bitangent. */
-static nmtan_status add_bitangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group)
+nmtan_status nt_gltf_bitangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
+	float **result)
 {
 	const nt_gltf_rows *rows = &component->rows;
 	const nt_mesh *mesh = first_of_group(p, component, group);
 	float *out = nt_arena_alloc(p->arena, rows->new_count, 3 * sizeof *out);
+	*result = out;
 	if (!out)
 		return nt_fail_memory(p->error);
 	for (size_t row = 0; row < rows->new_count; row++) {
@@ -130,12 +131,7 @@ static nmtan_status add_bitangents(nt_gltf_patcher *p, const nt_gltf_cluster *co
 			(nt_vec3){t[0], t[1], t[2]}));
 		memcpy(out + 3 * row, &b, 3 * sizeof *out);
 	}
-	uint32_t accessor;
-	const nmtan_status status =
-		nt_gltf_add_floats(p, component->buffer, out, rows->new_count, 3, &accessor);
-	if (!status)
-		set_attribute(p, component, group, "_BITANGENT", accessor);
-	return status;
+	return NMTAN_OK;
 }
 
 /* NORMAL where it was made, TANGENT where it is not already in place, _BITANGENT where asked for. */
@@ -157,8 +153,15 @@ static nmtan_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *compone
 		if (!status)
 			set_attribute(p, component, group, "TANGENT", accessor);
 	}
-	if (!status && p->options->bitangents)
-		status = add_bitangents(p, component, group);
+	if (!status && p->options->bitangents) {
+		float *bitangents;
+		status = nt_gltf_bitangents(p, component, group, &bitangents);
+		if (!status)
+			status = nt_gltf_add_floats(p, component->buffer, bitangents, rows->new_count, 3,
+				&accessor);
+		if (!status)
+			set_attribute(p, component, group, "_BITANGENT", accessor);
+	}
 	return status;
 }
 
@@ -190,6 +193,14 @@ static nmtan_status patch_component(nt_gltf_patcher *p, nt_gltf_cluster *compone
 	if (status)
 		return status;
 
+	/* Compressed primitives are compressed again, or become plain ones here. */
+	const bool draco = nt_gltf_has_draco(p, component);
+	bool done = false;
+	if (draco)
+		status = nt_gltf_patch_draco(p, component, &done);
+	if (status || done)
+		return status;
+
 	/* Tangents that are there and may be replaced keep their place. */
 	const nt_gltf_rows *rows = &component->rows;
 	nt_gltf_override *overrides = nt_arena_alloc(p->arena, rows->group_count, sizeof *overrides);
@@ -206,8 +217,8 @@ static nmtan_status patch_component(nt_gltf_patcher *p, nt_gltf_cluster *compone
 	}
 
 	/* The copied rows, the indices that use them, and what is new. */
-	if (override_count || rows->new_count > rows->old_count)
-		status = nt_gltf_grow_attributes(p, component, overrides, override_count);
+	if (draco || override_count || rows->new_count > rows->old_count)
+		status = nt_gltf_grow_attributes(p, component, overrides, override_count, draco);
 	if (!status)
 		status = nt_gltf_patch_indices(p, component);
 	for (uint32_t group = 0; !status && group < rows->group_count; group++)
@@ -251,6 +262,38 @@ static nmtan_status patch_components(nt_gltf_patcher *p)
 			.member_count = p->sharing.first[i + 1] - p->sharing.first[i]};
 		status = patch_component(p, &component);
 	}
+	nt_gltf_drop_draco(p);
+	return status;
+}
+
+static nmtan_status decompress_attribute(void *context, nt_json_value *attributes, const char *name,
+	uint32_t accessor)
+{
+	(void)attributes;
+	(void)name;
+	nt_gltf_patcher *p = context;
+	nt_gltf_accessor found;
+	nt_gltf_view view = {.compression = NULL};
+	const nmtan_status status =
+		nt_gltf_get_accessor(p->document, accessor, "/accessors", &found, p->error);
+	if (!status && found.view != NT_NONE)
+		nt_gltf_get_view(p->document, found.view, "", &view, NULL);
+	return status || !view.compression ? status :
+					     nt_gltf_decompress_view(p->document, found.view, p->error);
+}
+
+/* Compressed views of attributes that will grow. The layout has to know them before it begins. */
+static nmtan_status decompress_views(nt_gltf_patcher *p)
+{
+	nmtan_status status = NMTAN_OK;
+	for (size_t i = 0; !status && i < p->scene->mesh_count; i++) {
+		const nt_mesh *mesh = &p->scene->meshes[i];
+		if (nt_gltf_is_solved(mesh) &&
+			(mesh->split.source_count || mesh->vertex_count > mesh->source_vertex_count))
+			status = nt_gltf_visit_attributes(nt_gltf_primitive_of(p->document, mesh),
+				nt_json_count(nt_gltf_root_member(p->document, "accessors")),
+				decompress_attribute, p);
+	}
 	return status;
 }
 
@@ -270,7 +313,9 @@ nmtan_status nt_gltf_patch(nt_scene *scene, const nt_write_options *options, nt_
 		.error = error};
 	patcher.json = patcher.document->json;
 	patcher.arena = &patcher.layout.arena;
-	status = nt_layout_create(&patcher.layout, patcher.document, error);
+	status = decompress_views(&patcher);
+	if (!status)
+		status = nt_layout_create(&patcher.layout, patcher.document, error);
 	if (status)
 		return status;
 	if (solved)

@@ -43,9 +43,24 @@ typedef struct nt_gltf_cluster {
 nmtan_status nt_gltf_add_floats(nt_gltf_patcher *patcher, uint32_t buffer, const float *rows,
 	size_t count, uint32_t width, uint32_t *accessor);
 
-/* Gives every accessor of the component its copied rows, and overridden accessors their new values. */
+/* Gives every accessor of the component its copied rows, and overridden accessors their new values.
+ * decoded_too: what was decompressed by Draco goes into plain views. */
 nmtan_status nt_gltf_grow_attributes(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
-	const nt_gltf_override *overrides, size_t override_count);
+	const nt_gltf_override *overrides, size_t override_count, bool decoded_too);
+
+/* Whether a solved member of the component is compressed by Draco. */
+bool nt_gltf_has_draco(const nt_gltf_patcher *patcher, const nt_gltf_cluster *component);
+
+/* Writes a component with compressed members: compressed again where that is possible, else plain.
+ * *done false: plain, and what plain components need is still to be done. */
+nmtan_status nt_gltf_patch_draco(nt_gltf_patcher *patcher, nt_gltf_cluster *component, bool *done);
+
+/* cross(N, T) w of every row of a group, glTF's own definition of the bitangent. */
+nmtan_status nt_gltf_bitangents(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
+	uint32_t group, float **rows);
+
+/* Takes KHR_draco_mesh_compression off the lists where no primitive has it any more. */
+void nt_gltf_drop_draco(nt_gltf_patcher *patcher);
 
 /* Writes the indices of the component's solved meshes where they changed. */
 nmtan_status nt_gltf_patch_indices(nt_gltf_patcher *patcher, const nt_gltf_cluster *component);

@@ -1,0 +1,360 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Compressed primitives that got tangents.
+ *
+ * The block is encoded again with the copied rows and TANGENT among the attributes. Attributes keep the
+ * source's quantization, origin and range, so that they decode to the values they had. Where attributes
+ * lie outside of the block (morph targets, joints in some files) or faces are degenerate, order matters
+ * and the sequential method is taken. Where compressing again would lose something (the encoder drops
+ * vertices that no face uses, and rows outside of the block would no longer fit), where primitives share
+ * accessors, or where it is not wanted, the primitive is written plain.
+ */
+#include "io/gltf_draco.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "io/gltf_patch.h"
+
+enum { DEFAULT_TANGENT_BITS = 12, NORMAL_BITS = 12 };
+
+typedef struct recoding {
+	nt_gltf_patcher *patcher;
+	const nt_gltf_cluster *component;
+	const nt_mesh *mesh;
+	nt_json_value *primitive, *extension;
+	uint64_t view;
+	const nt_draco_mesh *source;
+	nt_draco_attribute *attributes;
+	size_t attribute_count;
+	const char **names;
+	bool outside; /* something of the primitive is not in the block */
+} recoding;
+
+bool nt_gltf_has_draco(const nt_gltf_patcher *p, const nt_gltf_cluster *component)
+{
+	for (size_t i = 0; i < component->member_count; i++)
+		if (component->rows.group_of[i] != NT_NONE &&
+			nt_gltf_draco_of(nt_gltf_primitive_of(p->document,
+				&p->scene->meshes[component->members[i]])))
+			return true;
+	return false;
+}
+
+void nt_gltf_drop_draco(nt_gltf_patcher *p)
+{
+	if (!p->document->draco_blocks)
+		return;
+	for (size_t i = 0; i < p->scene->mesh_count; i++)
+		if (nt_gltf_draco_of(nt_gltf_primitive_of(p->document, &p->scene->meshes[i])))
+			return;
+	nt_gltf_remove_extension(p->document, "extensionsRequired", "KHR_draco_mesh_compression");
+	nt_gltf_remove_extension(p->document, "extensionsUsed", "KHR_draco_mesh_compression");
+}
+
+/* ---- plain ---- */
+
+/* Takes the extension off a primitive. Its view cannot go, since views keep their numbers; what is left of
+ * it are four bytes. */
+static nmtan_status make_plain(nt_gltf_patcher *p, nt_gltf_cluster *component, size_t member)
+{
+	nt_json_value *primitive = nt_gltf_primitive_of(p->document,
+		&p->scene->meshes[component->members[member]]);
+	nt_json_value *extensions = nt_json_find(primitive, "extensions");
+	uint64_t index;
+	nt_gltf_view view;
+	nmtan_status status = NMTAN_OK;
+	if (nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(primitive), "bufferView"), &index) &&
+		nt_gltf_get_view(p->document, index, "", &view, NULL) == NMTAN_OK && view.length > 4 &&
+		nt_layout_users(&p->layout, view.buffer, view.offset, view.offset + view.length) == 1)
+		status = nt_layout_edit(&p->layout, view.buffer, view.offset, view.length,
+			(const unsigned char *)"\0\0\0\0", 4, p->error);
+	nt_json_remove(p->json, extensions, "KHR_draco_mesh_compression");
+	if (nt_json_count(extensions) == 0)
+		nt_json_remove(p->json, primitive, "extensions");
+	component->rows.changed[member] = true;
+	return status;
+}
+
+static nmtan_status make_all_plain(nt_gltf_patcher *p, nt_gltf_cluster *component)
+{
+	nmtan_status status = NMTAN_OK;
+	for (size_t i = 0; !status && i < component->member_count; i++)
+		if (component->rows.group_of[i] != NT_NONE &&
+			nt_gltf_draco_of(nt_gltf_primitive_of(p->document,
+				&p->scene->meshes[component->members[i]])))
+			status = make_plain(p, component, i);
+	return status;
+}
+
+/* ---- compressed again ---- */
+
+static nmtan_status note_outside(void *context, nt_json_value *attributes, const char *name,
+	uint32_t accessor)
+{
+	recoding *r = context;
+	(void)accessor;
+	const bool base = attributes == nt_json_find(r->primitive, "attributes");
+	if (!base || !nt_json_find(nt_json_find(r->extension, "attributes"), name))
+		r->outside = true;
+	return NMTAN_OK;
+}
+
+/* Whether every compressed accessor is this primitive's alone and has no uncompressed twin. */
+static bool accessors_are_own(const recoding *r)
+{
+	const nt_gltf_patcher *p = r->patcher;
+	const nt_json_value *ids = nt_json_find(r->extension, "attributes");
+	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
+	const nt_json_value *accessors = nt_gltf_root_member(p->document, "accessors");
+	for (size_t i = 0; i < nt_json_count(ids); i++) {
+		uint64_t accessor;
+		if (!nt_json_get_uint64(nt_json_find(attributes, nt_json_key(ids, i, NULL)), &accessor) ||
+			p->sharing.foreign[p->sharing.canonical[accessor]] ||
+			nt_json_find(nt_json_at(accessors, (size_t)accessor), "bufferView"))
+			return false;
+	}
+	uint64_t indices;
+	return nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &indices) &&
+		p->sharing.index_users[p->sharing.canonical[indices]] == 1 &&
+		!nt_json_find(nt_json_at(accessors, (size_t)indices), "bufferView");
+}
+
+/* Rows of a decoded attribute with their copies. */
+static nmtan_status copy_attribute(recoding *r, const nt_draco_attribute *from, const void **rows)
+{
+	nt_gltf_patcher *p = r->patcher;
+	const nt_gltf_rows *all = &r->component->rows;
+	const size_t width = nt_draco_component_size(from->component_type) * (size_t)from->components;
+	unsigned char *out = nt_arena_alloc(p->arena, all->new_count, width);
+	if (!out)
+		return nt_fail_memory(p->error);
+	memcpy(out, from->data, all->old_count * width);
+	for (size_t row = all->old_count; row < all->new_count; row++)
+		memcpy(out + row * width,
+			(const unsigned char *)from->data + all->sources[row - all->old_count] * width, width);
+	*rows = out;
+	return NMTAN_OK;
+}
+
+static void add_attribute(recoding *r, const char *name, nt_draco_attribute attribute)
+{
+	r->names[r->attribute_count] = name;
+	r->attributes[r->attribute_count++] = attribute;
+}
+
+static uint32_t free_id(const recoding *r)
+{
+	uint32_t id = 0;
+	for (size_t i = 0; i < r->attribute_count; i++)
+		if (r->attributes[i].unique_id >= id)
+			id = r->attributes[i].unique_id + 1;
+	return id;
+}
+
+/* An attribute of ours: takes the place of one of that name. */
+static void put_floats(recoding *r, const char *name, nt_draco_kind kind, int components,
+	const float *rows, int bits)
+{
+	const nt_draco_attribute attribute = {.unique_id = free_id(r), .kind = kind,
+		.component_type = NT_GLTF_FLOAT, .components = components,
+		.quantization = {.bits = bits}, .data = rows};
+	for (size_t i = 0; i < r->attribute_count; i++)
+		if (strcmp(r->names[i], name) == 0) {
+			const uint32_t id = r->attributes[i].unique_id;
+			r->attributes[i] = attribute;
+			r->attributes[i].unique_id = id;
+			return;
+		}
+	add_attribute(r, name, attribute);
+}
+
+static nmtan_status gather_attributes(recoding *r)
+{
+	nt_gltf_patcher *p = r->patcher;
+	const nt_gltf_rows *rows = &r->component->rows;
+	const nt_json_value *ids = nt_json_find(r->extension, "attributes");
+	r->attributes = nt_arena_alloc(p->arena, nt_json_count(ids) + 3, sizeof *r->attributes);
+	r->names = nt_arena_alloc(p->arena, nt_json_count(ids) + 3, sizeof *r->names);
+	if (!r->attributes || !r->names)
+		return nt_fail_memory(p->error);
+	nmtan_status status = NMTAN_OK;
+	for (size_t i = 0; !status && i < nt_json_count(ids); i++) {
+		uint64_t id = 0;
+		nt_json_get_uint64(nt_json_at(ids, i), &id);
+		nt_draco_attribute copy = *nt_draco_find(r->source, (uint32_t)id);
+		copy.quantization.explicit_box = copy.quantization.bits > 0;
+		copy.stride_bytes = 0;
+		status = copy_attribute(r, nt_draco_find(r->source, (uint32_t)id), &copy.data);
+		add_attribute(r, nt_json_key(ids, i, NULL), copy);
+	}
+	if (status)
+		return status;
+	const int wanted = p->options->draco_tangent_bits;
+	const int bits = wanted ? wanted : DEFAULT_TANGENT_BITS;
+	if (rows->normals[0])
+		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, rows->normals[0], NORMAL_BITS);
+	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, rows->tangents[0], bits);
+	if (p->options->bitangents) {
+		float *bitangents;
+		status = nt_gltf_bitangents(p, r->component, 0, &bitangents);
+		if (!status)
+			put_floats(r, "_BITANGENT", NT_DRACO_GENERIC, 3, bitangents, bits);
+	}
+	return status;
+}
+
+/* Whether edgebreaker would drop a face: two corners at one position. */
+static bool has_degenerate_face(const recoding *r)
+{
+	const uint32_t *indices = r->component->rows.indices[0];
+	for (size_t c = 0; c + 2 < r->mesh->corner_count; c += 3)
+		for (size_t k = 0; k < 3; k++) {
+			const size_t a = indices[c + k], b = indices[c + (k + 1) % 3];
+			const nt_gltf_rows *rows = &r->component->rows;
+			const size_t x = a < rows->old_count ? a : rows->sources[a - rows->old_count];
+			const size_t y = b < rows->old_count ? b : rows->sources[b - rows->old_count];
+			if (memcmp(r->mesh->positions + 3 * x, r->mesh->positions + 3 * y,
+				3 * sizeof(float)) == 0)
+				return true;
+		}
+	return false;
+}
+
+/* Whether rows outside of the block still fit the points in it. */
+static bool order_is_kept(const recoding *r, const nt_draco_block *block)
+{
+	if (block->point_count != r->component->rows.new_count || !block->sources)
+		return false;
+	for (size_t i = 0; i < block->point_count; i++)
+		if (block->sources[i] != i)
+			return false;
+	return true;
+}
+
+static void set_count(nt_gltf_patcher *p, uint64_t accessor, size_t count)
+{
+	nt_json_value *json =
+		nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)accessor);
+	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "count"), count);
+}
+
+/* An accessor without a view: its rows are in the block. */
+static uint32_t add_accessor(nt_gltf_patcher *p, int components, size_t count)
+{
+	nt_json *json = p->json;
+	nt_json_value *accessors = nt_json_put(json, nt_json_root(json), "accessors");
+	const uint32_t number = (uint32_t)nt_json_count(accessors);
+	nt_json_value *object = nt_json_append(json, accessors);
+	nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), NT_GLTF_FLOAT);
+	nt_json_set_uint64(json, nt_json_put(json, object, "count"), count);
+	nt_json_set_string(json, nt_json_put(json, object, "type"), components == 3 ? "VEC3" : "VEC4", 4);
+	return number;
+}
+
+/* The JSON of the primitive follows what a decoder will see. */
+static void describe_block(recoding *r, const nt_draco_block *block)
+{
+	nt_gltf_patcher *p = r->patcher;
+	nt_json *json = p->json;
+	nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
+	for (size_t i = 0; i < r->attribute_count; i++) {
+		const nt_draco_attribute *a = &r->attributes[i];
+		uint64_t accessor;
+		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &accessor))
+			set_count(p, accessor, block->point_count);
+		else
+			nt_json_set_uint64(json, nt_json_put(json, attributes, r->names[i]),
+				add_accessor(p, a->components, block->point_count));
+		nt_json_set_uint64(json, nt_json_put(json, nt_json_put(json, r->extension, "attributes"),
+			r->names[i]), a->unique_id);
+	}
+	uint64_t indices, type = 0;
+	nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &indices);
+	set_count(p, indices, block->face_count * 3);
+	nt_json_value *accessor =
+		nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)indices);
+	nt_json_get_uint64(nt_json_find(accessor, "componentType"), &type);
+	const size_t limit = type == NT_GLTF_UBYTE ? 0xFF : type == NT_GLTF_USHORT ? 0xFFFF : SIZE_MAX;
+	if (block->point_count > limit)
+		nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"),
+			block->point_count > 0xFFFF ? NT_GLTF_UINT : NT_GLTF_USHORT);
+	nt_json_remove(json, accessor, "min");
+	nt_json_remove(json, accessor, "max");
+}
+
+static nmtan_status store_block(recoding *r, const nt_draco_block *block)
+{
+	nt_gltf_patcher *p = r->patcher;
+	unsigned char *bytes = nt_arena_alloc(p->arena, block->size, 1);
+	if (!bytes)
+		return nt_fail_memory(p->error);
+	memcpy(bytes, block->bytes, block->size);
+	nt_gltf_view view;
+	nmtan_status status = nt_gltf_get_view(p->document, r->view, "", &view, p->error);
+	if (status)
+		return status;
+	if (nt_layout_users(&p->layout, view.buffer, view.offset, view.offset + view.length) == 1)
+		return nt_layout_edit(&p->layout, view.buffer, view.offset, view.length, bytes,
+			block->size, p->error);
+	uint32_t number;
+	status = nt_layout_add_view(&p->layout, r->component->buffer, bytes, block->size, 0, 0, &number,
+		p->error);
+	nt_json_set_uint64(p->json, nt_json_put(p->json, r->extension, "bufferView"), number);
+	return status;
+}
+
+/* Encodes; *done false where the result would not do. */
+static nmtan_status recode(recoding *r, bool *done)
+{
+	nt_gltf_patcher *p = r->patcher;
+	nmtan_status status = gather_attributes(r);
+	if (status)
+		return status;
+	const bool ordered = r->outside || has_degenerate_face(r);
+	const nt_draco_mesh mesh = {
+		.method = ordered ? NT_DRACO_SEQUENTIAL : r->source->method,
+		.point_count = r->component->rows.new_count,
+		.face_count = r->mesh->corner_count / 3,
+		.indices = r->component->rows.indices[0],
+		.attributes = r->attributes,
+		.attribute_count = r->attribute_count,
+	};
+	nt_draco_block block = {0};
+	nt_error ignored;
+	status = nt_draco_encode(&mesh, &block, &ignored);
+	if (status == NMTAN_ERROR_MEMORY)
+		return nt_fail_memory(p->error);
+	if (status || (r->outside && !order_is_kept(r, &block))) {
+		nt_draco_block_free(&block);
+		return NMTAN_OK; /* plain, then */
+	}
+	*done = true;
+	status = NMTAN_OK;
+	if (r->outside && r->component->rows.new_count > r->component->rows.old_count)
+		status = nt_gltf_grow_attributes(p, r->component, NULL, 0, false);
+	if (!status) {
+		describe_block(r, &block);
+		status = store_block(r, &block);
+	}
+	nt_draco_block_free(&block);
+	return status;
+}
+
+nmtan_status nt_gltf_patch_draco(nt_gltf_patcher *p, nt_gltf_cluster *component, bool *done)
+{
+	*done = false;
+	recoding r = {.patcher = p, .component = component,
+		.mesh = &p->scene->meshes[component->members[0]]};
+	r.primitive = nt_gltf_primitive_of(p->document, r.mesh);
+	r.extension = nt_gltf_draco_of(r.primitive);
+	nmtan_status status = NMTAN_OK;
+	if (p->options->draco != NT_DRACO_OFF && component->member_count == 1 && r.extension &&
+		accessors_are_own(&r) &&
+		nt_json_get_uint64(nt_json_find(r.extension, "bufferView"), &r.view)) {
+		r.source = nt_gltf_draco_block(p->document, r.view);
+		nt_gltf_visit_attributes(r.primitive, p->sharing.accessor_count, note_outside, &r);
+		status = recode(&r, done);
+	}
+	return status || *done ? status : make_all_plain(p, component);
+}
