@@ -54,6 +54,9 @@ const nt_option_row nt_option_rows[] = {
 	{"images", 0, NT_OPTION_CHOICE, "link|embed|copy|none", NT_IMAGES_LINK, 0,
 		"link for .gltf, embed for .glb", "how the output comes by its images", SETTING(images),
 		true},
+	{"draco", 0, NT_OPTION_CHOICE, "keep|off", NT_DRACO_KEEP, 0, "keep",
+		"glTF primitives that Draco compressed: compress them again with their tangents, or "
+		"write them plain", SETTING(draco), true},
 	{"bitangents", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"write bitangents too: bx by bz in PLY, _BITANGENT in glTF", SETTING(bitangents), true},
 	{"no-clobber", 'n', NT_OPTION_FLAG, NULL, 0, 0, NULL, "never replace a file",

@@ -187,6 +187,12 @@ void nt_gltf_free_draco(nt_gltf *document);
 
 /* ---- gltf_material.c ---- */
 
+/* What KHR_texture_transform does to directions; its offset does nothing to them. */
+typedef struct nt_gltf_transform {
+	bool exists, animated;
+	double rotation, scale[2];
+} nt_gltf_transform;
+
 /* What a primitive's materials ask for. */
 typedef struct nt_gltf_shading {
 	unsigned slots; /* enum nt_slot */
@@ -197,6 +203,8 @@ typedef struct nt_gltf_shading {
 	bool conflict;  /* another slot wants other_set */
 	uint32_t other_set;
 	uint32_t material; /* the primitive's own; NT_NONE: none */
+	nt_gltf_transform transform; /* of the texture that gives the set */
+	bool transforms_differ;      /* another material or slot transforms that set otherwise */
 } nt_gltf_shading;
 
 /* Judges the materials of a primitive, variants included. */

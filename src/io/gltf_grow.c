@@ -371,7 +371,6 @@ static void set_bound(nt_gltf_patcher *p, const nt_gltf_growing *g, const nt_glt
 static nmtan_status grow_items(nt_gltf_growing *g)
 {
 	nt_gltf_patcher *p = g->patcher;
-	nt_json_value *accessors = nt_gltf_root_member(p->document, "accessors");
 	if (g->item_count)
 		qsort(g->items, g->item_count, sizeof *g->items, compare_items);
 	nmtan_status status = NMTAN_OK;
@@ -396,8 +395,9 @@ static nmtan_status grow_items(nt_gltf_growing *g)
 		}
 	for (size_t i = 0; !status && (nt_gltf_added_rows(g) || g->decoded_too) && i < g->item_count; i++) {
 		const nt_gltf_item *grown = &g->items[i];
-		nt_json_set_uint64(p->json, nt_json_put(p->json,
-			nt_json_at(accessors, grown->accessor.index), "count"),
+		nt_json_value *json = nt_json_at(nt_gltf_root_member(p->document, "accessors"),
+			grown->accessor.index);
+		nt_json_set_uint64(p->json, nt_json_put(p->json, json, "count"),
 			g->component->rows.new_count);
 		if (grown->accessor.sparse_count && nt_gltf_added_rows(g))
 			status = nt_gltf_grow_sparse(g, grown);

@@ -236,10 +236,11 @@ static nmtan_status copy_image(nt_gltf_container *c, size_t index, nt_json_value
 nmtan_status nt_gltf_move_images(nt_gltf_container *c)
 {
 	const nt_images choice = nt_gltf_images_choice(c->options, c->same_container);
-	nt_json_value *images = nt_gltf_root_member(c->document, "images");
+	const size_t count = nt_json_count(nt_gltf_root_member(c->document, "images"));
 	nmtan_status status = NMTAN_OK;
-	for (size_t i = 0; !status && i < nt_json_count(images); i++) {
-		nt_json_value *image = nt_json_at(images, i);
+	for (size_t i = 0; !status && i < count; i++) {
+		/* embedding may give the root its first view, which moves the root's members */
+		nt_json_value *image = nt_json_at(nt_gltf_root_member(c->document, "images"), i);
 		size_t length;
 		if (!nt_gltf_external_uri(image, &length) || choice == NT_IMAGES_NONE)
 			continue;

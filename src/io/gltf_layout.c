@@ -183,8 +183,12 @@ size_t nt_layout_users(const nt_gltf_layout *layout, uint32_t buffer, uint64_t b
 
 static nt_gltf_buffer_layout *plan_of(nt_gltf_layout *layout, uint32_t buffer)
 {
-	return buffer >= NT_GLTF_VIRTUAL ? &layout->virtuals[buffer - NT_GLTF_VIRTUAL] :
-					   &layout->buffers[buffer];
+	if (buffer < NT_GLTF_VIRTUAL)
+		return &layout->buffers[buffer];
+	/* views may be decompressed at any time; there is room for all of them */
+	const uint32_t number = buffer - NT_GLTF_VIRTUAL;
+	layout->virtuals[number].old_length = layout->document->virtuals[number].length;
+	return &layout->virtuals[number];
 }
 
 nmtan_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_error *error)
@@ -193,8 +197,7 @@ nmtan_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_erro
 	layout->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
 	layout->buffer_count = document->buffer_count;
 	layout->buffers = nt_calloc(document->buffer_count + 1, sizeof *layout->buffers);
-	layout->virtual_count = document->virtual_count;
-	layout->virtuals = nt_calloc(document->virtual_count, sizeof *layout->virtuals);
+	layout->virtuals = nt_calloc(layout->view_count, sizeof *layout->virtuals);
 	if (!layout->buffers || !layout->virtuals || !find_extents(layout)) {
 		nt_layout_free(layout);
 		return nt_fail_memory(error);
@@ -205,8 +208,6 @@ nmtan_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_erro
 			layout->buffers[i].old_length = buffer->length;
 		layout->buffers[i].new_length = layout->buffers[i].old_length;
 	}
-	for (size_t i = 0; i < document->virtual_count; i++)
-		layout->virtuals[i].old_length = document->virtuals[i].length;
 	return NMTAN_OK;
 }
 
@@ -216,7 +217,7 @@ void nt_layout_free(nt_gltf_layout *layout)
 		free(layout->buffers[i].edits);
 		free(layout->buffers[i].additions);
 	}
-	for (size_t i = 0; layout->virtuals && i < layout->virtual_count; i++) {
+	for (size_t i = 0; layout->virtuals && i < layout->view_count; i++) {
 		free(layout->virtuals[i].edits);
 		free(layout->virtuals[i].additions);
 	}
@@ -599,8 +600,9 @@ static void drop_unneeded_compression(nt_gltf *document)
 	static const char *const names[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
 	if (document->virtual_count == 0)
 		return;
-	const nt_json_value *views = nt_gltf_root_member(document, "bufferViews");
 	for (size_t k = 0; k < 2; k++) {
+		/* taking a member off the root moves the others */
+		const nt_json_value *views = nt_gltf_root_member(document, "bufferViews");
 		bool used = false;
 		for (size_t i = 0; !used && i < nt_json_count(views); i++)
 			used = nt_json_find(nt_json_find(nt_json_at(views, i), "extensions"), names[k]);

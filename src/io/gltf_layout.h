@@ -51,8 +51,7 @@ typedef struct nt_gltf_layout {
 	nt_gltf_buffer_layout *buffers; /* [buffer_count]: the document's, and at most one new one */
 	size_t buffer_count;
 	size_t view_count;              /* of the source */
-	nt_gltf_buffer_layout *virtuals; /* [virtual_count] of decompressed views */
-	size_t virtual_count;
+	nt_gltf_buffer_layout *virtuals; /* [view_count] of decompressed views */
 	nt_gltf_extent *extents;        /* sorted by buffer and begin */
 	size_t extent_count, extent_capacity;
 	uint32_t alignment;             /* insertions are multiples of this */

@@ -12,6 +12,7 @@
  */
 #include "io/gltf_document.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -406,6 +407,46 @@ static nmtan_status load_vertices(nt_scene *scene, nt_gltf *document, nt_mesh *m
 	return NMTAN_OK;
 }
 
+/*
+ * Texture coordinates as KHR_texture_transform turns and scales them, rounded to float once. Its text says
+ * counterclockwise and its code clockwise (v points down); viewers and the sample model do what the text
+ * says, and with v up that is the usual rotation: (u, v) is scaled, then turned by the angle. The offset moves
+ * all triangles alike.
+ */
+static nmtan_status transform_texcoords(nt_scene *scene, nt_mesh *mesh, const nt_gltf_transform *t,
+	nt_error *error)
+{
+	mesh->solve_texcoords = nt_arena_alloc(&scene->arena, mesh->vertex_count, 2 * sizeof(float));
+	if (!mesh->solve_texcoords)
+		return nt_fail_memory(error);
+	const double c = cos(t->rotation), s = sin(t->rotation);
+	for (size_t i = 0; i < mesh->vertex_count; i++) {
+		const double u = t->scale[0] * mesh->texcoords[2 * i];
+		const double v = t->scale[1] * mesh->texcoords[2 * i + 1];
+		mesh->solve_texcoords[2 * i] = (float)(t->rotation != 0 ? c * u - s * v : u);
+		mesh->solve_texcoords[2 * i + 1] = (float)(t->rotation != 0 ? s * u + c * v : v);
+	}
+	return NMTAN_OK;
+}
+
+/* The transform of the texture that tangents serve; what cannot be served is a finding. */
+static nmtan_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
+	const nt_json_value *primitive, nt_error *error)
+{
+	nt_gltf_shading shading;
+	const nmtan_status status = nt_gltf_judge_materials(document, primitive, mesh->place.pointer,
+		&shading, error);
+	if (status || !shading.has_set || shading.set != mesh->texcoord_set || !mesh->texcoords)
+		return status;
+	if (shading.transforms_differ)
+		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, &mesh->place, 1,
+			"set %u with different texture transforms", mesh->texcoord_set);
+	if (shading.transform.animated)
+		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED, &mesh->place, 1, NULL);
+	return shading.transform.exists ?
+		transform_texcoords(scene, mesh, &shading.transform, error) : NMTAN_OK;
+}
+
 /* Triangles of a strip or fan, in the order and with the first corners that the specification gives. */
 static void list_triangles(uint64_t mode, const uint32_t *chain, size_t face_count, uint32_t *corners)
 {
@@ -473,6 +514,8 @@ nmtan_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options 
 	}
 	if (!status)
 		status = load_vertices(scene, document, mesh, &in, error);
+	if (!status)
+		status = apply_transform(scene, document, mesh, primitive, error);
 	if (!status)
 		status = load_faces(scene, document, mesh, primitive, error);
 	if (status && error && !error->place.object[0])

@@ -61,9 +61,10 @@ static float *grow_rows(nt_arena *arena, const float *rows, size_t floats, size_
 
 static bool grow_mesh(nt_arena *arena, nt_mesh *mesh, const uint32_t *sources, size_t source_count)
 {
-	float **const arrays[] = {&mesh->positions, &mesh->texcoords, &mesh->colors};
-	static const size_t floats[] = {3, 2, 4};
-	for (int i = 0; i < 3 && source_count > 0; i++) {
+	float **const arrays[] = {&mesh->positions, &mesh->texcoords, &mesh->colors,
+		&mesh->solve_texcoords};
+	static const size_t floats[] = {3, 2, 4, 2};
+	for (int i = 0; i < 4 && source_count > 0; i++) {
 		if (!*arrays[i])
 			continue;
 		*arrays[i] = grow_rows(arena, *arrays[i], floats[i], mesh->vertex_count, sources,

@@ -202,6 +202,7 @@ static nmtan_status write_scene(run *r)
 		.embed = s->embed,
 		.bitangents = s->bitangents,
 		.images = s->images,
+		.draco = s->draco,
 		.allow_outside = s->allow_outside,
 	};
 	nt_output *output = NULL;

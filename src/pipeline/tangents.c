@@ -49,7 +49,7 @@ static bool face_is_valid(const nt_mesh *mesh, const uint32_t *vertices, size_t 
 		if (!(fabs(sqrt(squared) - 1.0) <= 0.00674) || t[3] != w || (w != 1.0f && w != -1.0f))
 			return false;
 	}
-	const float *uv = mesh->texcoords;
+	const float *uv = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords;
 	const int sign = nmtan_orientation(uv + 2 * (size_t)vertices[0], uv + 2 * (size_t)vertices[1],
 		uv + 2 * (size_t)vertices[2]);
 	return sign == 0 || w == (float)sign;

@@ -31,6 +31,6 @@ nmtan_mesh nt_mesh_view(const nt_mesh *mesh)
 		.indices = mesh->indices,
 		.positions = mesh->positions,
 		.normals = mesh->normals,
-		.texcoords = mesh->texcoords,
+		.texcoords = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords,
 	};
 }

@@ -103,6 +103,8 @@ typedef struct nt_mesh {
 	float *positions;        /* [vertex_count][3] */
 	float *normals;          /* [vertex_count][3]; NULL: none */
 	float *texcoords;        /* [vertex_count][2], v up; NULL: none */
+	float *solve_texcoords;  /* [vertex_count][2] as a texture transform turns and scales them: what
+	                            tangents follow; NULL: texcoords themselves */
 	float *colors;           /* [vertex_count][4] linear RGBA; NULL: none */
 	float *tangents;         /* [vertex_count][4] authored, w for v up; NULL: none */
 	uint8_t *vertex_lacks;   /* [vertex_count] enum nt_lack bits; NULL: nothing lacks */

@@ -156,7 +156,8 @@ static void faults_have_their_pointer(void **state)
 	check_load_fails("\"attributes\":{\"POSITION\":0},\"indices\":\"x\"", NMTAN_ERROR_INPUT,
 		"/meshes/0/primitives/0/indices");
 	check_load_fails("\"attributes\":{\"POSITION\":0},\"extensions\":"
-		"{\"KHR_draco_mesh_compression\":{}}", NMTAN_ERROR_UNSUPPORTED, "/meshes/0/primitives/0");
+		"{\"KHR_draco_mesh_compression\":{}}", NMTAN_ERROR_INPUT,
+		"/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression");
 }
 
 /* One accessor of three elements, with anything about it. */
@@ -318,6 +319,64 @@ static void materials_become_slots(void **state)
 		mine, NT_SLOT_NORMAL, 0, false);
 }
 
+static void load_transformed(fixture *f, const char *transform, const char *more)
+{
+	char materials[1024];
+	snprintf(materials, sizeof materials, ",\"materials\":[{\"normalTexture\":{\"index\":0,"
+		"\"extensions\":{\"KHR_texture_transform\":{%s}}}}]%s", transform, more);
+	assert_int_equal(open_quad(f, QUAD_ATTRIBUTES ",\"material\":0", materials), NMTAN_OK);
+	assert_int_equal(nt_gltf_load(&f->scene, &f->scene.meshes[0], &plain_options, &f->error), NMTAN_OK);
+}
+
+static void texture_transforms_turn_and_scale(void **state)
+{
+	(void)state;
+	fixture f;
+	load_transformed(&f, "\"offset\":[0.5,0.25]", "");
+	assert_null(f.scene.meshes[0].solve_texcoords);
+	close_text(&f);
+
+	/* scale first, exactly */
+	load_transformed(&f, "\"scale\":[-2,0.5]", "");
+	for (size_t i = 0; i < 4; i++) {
+		const nt_mesh *mesh = &f.scene.meshes[0];
+		assert_true(mesh->solve_texcoords[2 * i] == -2 * quad.texcoords[i][0]);
+		assert_true(mesh->solve_texcoords[2 * i + 1] == -0.5f * quad.texcoords[i][1]);
+		assert_true(mesh->texcoords[2 * i] == quad.texcoords[i][0]);
+	}
+	close_text(&f);
+
+	/* a quarter turn, counterclockwise where v points up: (u, v) goes to (-v, u). glTF issue 1563: viewers
+	 * and TextureTransformTest take it so */
+	load_transformed(&f, "\"rotation\":1.5707963267948966", "");
+	for (size_t i = 0; i < 4; i++) {
+		const nt_mesh *mesh = &f.scene.meshes[0];
+		assert_true(fabsf(mesh->solve_texcoords[2 * i] - quad.texcoords[i][1]) < 1e-6f);
+		assert_true(fabsf(mesh->solve_texcoords[2 * i + 1] - quad.texcoords[i][0]) < 1e-6f);
+	}
+	assert_int_equal(f.scene.findings.count, 0);
+	close_text(&f);
+}
+
+static void animated_transforms_are_a_finding(void **state)
+{
+	(void)state;
+	fixture f;
+	const char *animation = ",\"animations\":[{\"channels\":[{\"target\":{\"extensions\":{"
+		"\"KHR_animation_pointer\":{\"pointer\":\"/materials/0/normalTexture/extensions/"
+		"KHR_texture_transform/%s\"}}}}]}]";
+	char text[512];
+	snprintf(text, sizeof text, animation, "rotation");
+	load_transformed(&f, "\"scale\":[1,1]", text);
+	assert_int_equal(f.scene.findings.count, 1);
+	assert_int_equal(f.scene.findings.items[0].code, NT_CODE_TAN_UV_TRANSFORM_ANIMATED);
+	close_text(&f);
+	snprintf(text, sizeof text, animation, "offset");
+	load_transformed(&f, "\"scale\":[1,1]", text);
+	assert_int_equal(f.scene.findings.count, 0);
+	close_text(&f);
+}
+
 static void scenes_decide_what_is_reached(void **state)
 {
 	(void)state;
@@ -398,6 +457,8 @@ int main(void)
 		cmocka_unit_test(sparse_rows_are_checked),
 		cmocka_unit_test(zeros_without_backing_are_limited),
 		cmocka_unit_test(materials_become_slots),
+		cmocka_unit_test(texture_transforms_turn_and_scale),
+		cmocka_unit_test(animated_transforms_are_a_finding),
 		cmocka_unit_test(scenes_decide_what_is_reached),
 		cmocka_unit_test(instances_have_world_matrices),
 		cmocka_unit_test(what_is_not_read_is_not_judged),

@@ -1,0 +1,413 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The same mesh plain, packed by meshoptimizer and compressed by Draco. Its u runs back in the middle,
+ * so that vertices have to be split.
+ */
+#include "test.h"
+#include <math.h>
+#include <meshoptimizer.h>
+#include <stdio.h>
+#include <unistd.h>
+#include "base/buffer.h"
+#include "ext/draco.h"
+#include "io/gltf_document.h"
+#include "pipeline/run.h"
+
+enum { N = 12, VERTICES = (N + 1) * (N + 1), CORNERS = N * N * 6 };
+
+typedef struct sheet {
+	float positions[VERTICES][3], normals[VERTICES][3], texcoords[VERTICES][2];
+	uint8_t colors[VERTICES][4];
+	uint32_t indices[CORNERS];
+} sheet;
+
+static void make_sheet(sheet *s)
+{
+	for (int y = 0; y <= N; y++)
+		for (int x = 0; x <= N; x++) {
+			const int v = y * (N + 1) + x, u = x < 5 ? x : 10 - x;
+			s->positions[v][0] = (float)x * 0.25f;
+			s->positions[v][1] = (float)y * 0.25f;
+			s->positions[v][2] = (float)((x * 7 + y * 3) % 5) * 0.0625f;
+			s->normals[v][0] = s->normals[v][1] = 0;
+			s->normals[v][2] = 1;
+			s->texcoords[v][0] = (float)u * 0.125f;
+			s->texcoords[v][1] = (float)y * 0.0625f;
+			for (int k = 0; k < 4; k++)
+				s->colors[v][k] = (uint8_t)(v * (k + 3));
+		}
+	uint32_t *at = s->indices;
+	for (uint32_t y = 0; y < N; y++)
+		for (uint32_t x = 0; x < N; x++) {
+			const uint32_t a = y * (N + 1) + x, quad[] = {a, a + 1, a + N + 2, a, a + N + 2, a + N + 1};
+			memcpy(at, quad, sizeof quad);
+			at += 6;
+		}
+}
+
+/* A GLB of these parts in a file; the folder is the caller's. */
+static void write_glb(const char *path, const char *json, const nt_buffer *bin)
+{
+	nt_error error;
+	nt_output *output;
+	nt_sink *sink;
+	assert_int_equal(nt_output_create(&output, &(nt_output_options){0}, &error), NMTAN_OK);
+	assert_int_equal(nt_output_add(output, path, true, &sink, &error), NMTAN_OK);
+	assert_int_equal(nt_glb_begin(sink, json, strlen(json), true, bin->size, 0, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_write(sink, bin->data, bin->size, &error), NMTAN_OK);
+	assert_int_equal(nt_glb_end_bin(sink, bin->size, &error), NMTAN_OK);
+	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+}
+
+static void pad(nt_buffer *buffer)
+{
+	while (buffer->size % 4)
+		nt_buffer_append(buffer, "", 1);
+}
+
+static size_t add_part(nt_buffer *bin, const void *bytes, size_t size)
+{
+	pad(bin);
+	const size_t at = bin->size;
+	nt_buffer_append(bin, bytes, size);
+	return at;
+}
+
+#define HEAD                                                                                       \
+	"{\"asset\":{\"version\":\"2.0\"},\"materials\":[{\"normalTexture\":{\"index\":0}}],"        \
+	"\"textures\":[{}],"
+#define ACCESSOR(view, type, count, kind, more)                                                    \
+	"{" view "\"componentType\":" type ",\"count\":" count ",\"type\":\"" kind "\"" more "}"
+#define BOUNDS ",\"min\":[0,0,0],\"max\":[3,3,0.25]"
+
+static const char *const accessors_with_views = "\"accessors\":["
+	ACCESSOR("\"bufferView\":0,", "5126", "169", "VEC3", BOUNDS) ","
+	ACCESSOR("\"bufferView\":1,", "5126", "169", "VEC3", "") ","
+	ACCESSOR("\"bufferView\":2,", "5126", "169", "VEC2", "") ","
+	ACCESSOR("\"bufferView\":3,", "5121", "169", "VEC4", ",\"normalized\":true") ","
+	ACCESSOR("\"bufferView\":4,", "5125", "864", "SCALAR", "") "],";
+static const char *const accessors_without = "\"accessors\":["
+	ACCESSOR("", "5126", "169", "VEC3", BOUNDS) "," ACCESSOR("", "5126", "169", "VEC3", "") ","
+	ACCESSOR("", "5126", "169", "VEC2", "") ","
+	ACCESSOR("", "5121", "169", "VEC4", ",\"normalized\":true") ","
+	ACCESSOR("", "5125", "864", "SCALAR", "") "],";
+#define PRIMITIVE                                                                                  \
+	"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2," \
+	"\"COLOR_0\":3},\"indices\":4,\"material\":0"
+
+static void write_plain(const sheet *s, const char *path)
+{
+	nt_buffer bin = {0}, json = {0};
+	const size_t at[5] = {add_part(&bin, s->positions, sizeof s->positions),
+		add_part(&bin, s->normals, sizeof s->normals),
+		add_part(&bin, s->texcoords, sizeof s->texcoords),
+		add_part(&bin, s->colors, sizeof s->colors), add_part(&bin, s->indices, sizeof s->indices)};
+	const size_t sizes[5] = {sizeof s->positions, sizeof s->normals, sizeof s->texcoords,
+		sizeof s->colors, sizeof s->indices};
+	nt_buffer_text(&json, HEAD "\"bufferViews\":[");
+	for (int i = 0; i < 5; i++)
+		nt_buffer_format(&json, "%s{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu}",
+			i ? "," : "", at[i], sizes[i]);
+	nt_buffer_format(&json, "],%s" PRIMITIVE "}]}],\"buffers\":[{\"byteLength\":%zu}]}",
+		accessors_with_views, bin.size);
+	write_glb(path, json.data, &bin);
+	nt_buffer_free(&bin);
+	nt_buffer_free(&json);
+}
+
+static void write_meshopt(const sheet *s, const char *path)
+{
+	const struct {
+		const void *bytes;
+		size_t count, stride;
+	} parts[5] = {{s->positions, VERTICES, 12}, {s->normals, VERTICES, 12}, {s->texcoords, VERTICES, 8},
+		{s->colors, VERTICES, 4}, {s->indices, CORNERS, 4}};
+	nt_buffer bin = {0}, json = {0};
+	unsigned char packed[16384];
+	size_t fallback = 0;
+	nt_buffer_text(&json, HEAD "\"extensionsUsed\":[\"EXT_meshopt_compression\"],"
+		"\"extensionsRequired\":[\"EXT_meshopt_compression\"],\"bufferViews\":[");
+	for (int i = 0; i < 5; i++) {
+		const size_t size = i < 4 ?
+			meshopt_encodeVertexBuffer(packed, sizeof packed, parts[i].bytes, parts[i].count,
+				parts[i].stride) :
+			meshopt_encodeIndexSequence(packed, sizeof packed, s->indices, CORNERS);
+		assert_true(size > 0);
+		const size_t at = add_part(&bin, packed, size);
+		nt_buffer_format(&json, "%s{\"buffer\":1,\"byteOffset\":%zu,\"byteLength\":%zu,%s"
+			"\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,\"byteOffset\":%zu,"
+			"\"byteLength\":%zu,\"byteStride\":%zu,\"count\":%zu,\"mode\":\"%s\"}}}",
+			i ? "," : "", fallback, parts[i].count * parts[i].stride,
+			i == 0 ? "\"byteStride\":12," : "", at, size, parts[i].stride, parts[i].count,
+			i < 4 ? "ATTRIBUTES" : "INDICES");
+		fallback += parts[i].count * parts[i].stride;
+	}
+	nt_buffer_format(&json, "],%s" PRIMITIVE "}]}],\"buffers\":[{\"byteLength\":%zu},{\"byteLength\":%zu,"
+		"\"extensions\":{\"EXT_meshopt_compression\":{\"fallback\":true}}}]}",
+		accessors_with_views, bin.size, fallback);
+	write_glb(path, json.data, &bin);
+	nt_buffer_free(&bin);
+	nt_buffer_free(&json);
+}
+
+static void write_draco(const sheet *s, nt_draco_method method, const char *path)
+{
+	const nt_draco_attribute attributes[] = {
+		{.unique_id = 0, .kind = NT_DRACO_POSITION, .component_type = 5126, .components = 3,
+			.quantization = {.bits = 14}, .data = s->positions},
+		{.unique_id = 1, .kind = NT_DRACO_NORMAL, .component_type = 5126, .components = 3,
+			.quantization = {.bits = 10}, .data = s->normals},
+		{.unique_id = 2, .kind = NT_DRACO_TEXCOORD, .component_type = 5126, .components = 2,
+			.quantization = {.bits = 12}, .data = s->texcoords},
+		{.unique_id = 3, .kind = NT_DRACO_COLOR, .component_type = 5121, .components = 4,
+			.normalized = true, .data = s->colors},
+	};
+	const nt_draco_mesh mesh = {.method = method, .point_count = VERTICES, .face_count = CORNERS / 3,
+		.indices = s->indices, .attributes = attributes, .attribute_count = 4};
+	nt_draco_block block;
+	nt_error error;
+	assert_int_equal(nt_draco_encode(&mesh, &block, &error), NMTAN_OK);
+	nt_buffer bin = {0}, json = {0};
+	nt_buffer_append(&bin, block.bytes, block.size);
+	nt_buffer_format(&json, HEAD "\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],"
+		"\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"bufferViews\":[{\"buffer\":0,"
+		"\"byteLength\":%zu}],%s" PRIMITIVE ",\"extensions\":{\"KHR_draco_mesh_compression\":{"
+		"\"bufferView\":0,\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2,\"COLOR_0\":3}}}}"
+		"]}],\"buffers\":[{\"byteLength\":%zu}]}", block.size, accessors_without, block.size);
+	write_glb(path, json.data, &bin);
+	nt_draco_block_free(&block);
+	nt_buffer_free(&bin);
+	nt_buffer_free(&json);
+}
+
+/* A file's only mesh, loaded. */
+typedef struct loaded {
+	nt_file file;
+	nt_scene scene;
+	nt_mesh *mesh;
+} loaded;
+
+static void load(loaded *l, const char *path)
+{
+	static const nt_read_options options = {.texcoord_set = -1, .world = true};
+	nt_error error;
+	nt_error_clear(&error);
+	assert_int_equal(nt_file_open(&l->file, path, &error), NMTAN_OK);
+	nt_scene_init(&l->scene, path);
+	l->scene.bytes = l->file.data;
+	l->scene.byte_count = l->file.size;
+	l->scene.format = NT_FORMAT_GLB;
+	if (nt_gltf_open(&l->scene, &options, &error) ||
+		nt_gltf_load(&l->scene, &l->scene.meshes[0], &options, &error))
+		fail_msg("%s: %s: %s", path, error.place.pointer, error.message);
+	l->mesh = &l->scene.meshes[0];
+}
+
+static void unload(loaded *l)
+{
+	nt_scene_free(&l->scene);
+	nt_file_close(&l->file);
+}
+
+static bool lists_extension(const loaded *l, const char *list)
+{
+	return nt_gltf_root_member(l->scene.source, list) != NULL;
+}
+
+static void solve(const char *input, const char *output, nt_draco_choice draco)
+{
+	const nt_settings settings = {.texcoord_set = -1, .draco = draco};
+	nt_summary summary;
+	nt_error error;
+	if (nt_run(input, output, &settings, &summary, &error))
+		fail_msg("%s: %s: %s", input, error.place.pointer, error.message);
+	assert_int_equal(summary.solved_count, 1);
+	nt_summary_free(&summary);
+}
+
+static const float *row(const float *rows, const nt_mesh *mesh, size_t corner, size_t width)
+{
+	return rows + width * (mesh->indices ? mesh->indices[corner] : corner);
+}
+
+/* Corner by corner, the attributes of both are the same bits. */
+static void check_same_corners(const nt_mesh *a, const nt_mesh *b)
+{
+	assert_int_equal(a->corner_count, b->corner_count);
+	for (size_t c = 0; c < a->corner_count; c++) {
+		assert_memory_equal(row(a->positions, a, c, 3), row(b->positions, b, c, 3), 12);
+		assert_memory_equal(row(a->normals, a, c, 3), row(b->normals, b, c, 3), 12);
+		assert_memory_equal(row(a->texcoords, a, c, 2), row(b->texcoords, b, c, 2), 8);
+		assert_memory_equal(row(a->colors, a, c, 4), row(b->colors, b, c, 4), 16);
+	}
+}
+
+/* Tangents agree within an angle; w is the same. */
+static void check_tangents(const nt_mesh *a, const nt_mesh *b, double degrees)
+{
+	assert_non_null(a->tangents);
+	assert_non_null(b->tangents);
+	for (size_t c = 0; c < a->corner_count; c++) {
+		const float *s = row(a->tangents, a, c, 4), *t = row(b->tangents, b, c, 4);
+		const double x = s[1] * t[2] - s[2] * t[1], y = s[2] * t[0] - s[0] * t[2];
+		const double z = s[0] * t[1] - s[1] * t[0], dot = s[0] * t[0] + s[1] * t[1] + s[2] * t[2];
+		assert_true(atan2(sqrt(x * x + y * y + z * z), dot) * 57.29577951 <= degrees);
+		assert_true(s[3] == t[3]);
+	}
+}
+
+static char folder[] = "/tmp/nmtan-test-compressed-XXXXXX";
+static sheet source;
+
+static const char *file(const char *name)
+{
+	static char paths[4][200];
+	static unsigned turn;
+	char *path = paths[turn++ % 4];
+	snprintf(path, 200, "%s/%s", folder, name);
+	return path;
+}
+
+static void meshopt_gives_what_plain_gives(void **state)
+{
+	(void)state;
+	write_plain(&source, file("plain.glb"));
+	write_meshopt(&source, file("packed.glb"));
+	solve(file("plain.glb"), file("plain_out.glb"), NT_DRACO_KEEP);
+	solve(file("packed.glb"), file("packed_out.glb"), NT_DRACO_KEEP);
+	loaded in, plain, packed;
+	load(&in, file("packed.glb"));
+	load(&plain, file("plain_out.glb"));
+	load(&packed, file("packed_out.glb"));
+	check_same_corners(in.mesh, packed.mesh);
+	check_same_corners(plain.mesh, packed.mesh);
+	check_tangents(plain.mesh, packed.mesh, 0);
+	assert_true(packed.mesh->vertex_count > VERTICES);
+	/* the views that changed are plain, and every view changed */
+	const nt_json_value *views = nt_gltf_root_member(packed.scene.source, "bufferViews");
+	for (size_t i = 0; i < nt_json_count(views); i++)
+		assert_null(nt_json_find(nt_json_at(views, i), "extensions"));
+	assert_true(lists_extension(&in, "extensionsRequired"));
+	assert_false(lists_extension(&packed, "extensionsRequired"));
+	/* no dead bytes: nothing is left of the packed ones, up to alignment of each view */
+	assert_true(packed.file.size < plain.file.size + 600);
+	unload(&in);
+	unload(&plain);
+	unload(&packed);
+}
+
+static void check_draco(nt_draco_method method)
+{
+	write_draco(&source, method, file("in.glb"));
+	solve(file("in.glb"), file("plain.glb"), NT_DRACO_OFF);
+	solve(file("in.glb"), file("out.glb"), NT_DRACO_KEEP);
+	loaded in, plain, out;
+	load(&in, file("in.glb"));
+	load(&plain, file("plain.glb"));
+	load(&out, file("out.glb"));
+	check_same_corners(in.mesh, plain.mesh);
+	assert_false(lists_extension(&plain, "extensionsUsed"));
+	assert_true(lists_extension(&out, "extensionsRequired"));
+	assert_true(out.mesh->vertex_count >= plain.mesh->vertex_count);
+	assert_int_equal(out.mesh->corner_count, CORNERS);
+	/* tangents compressed by 12 bits: libraries.md measured 0.024 degrees */
+	if (method == NT_DRACO_SEQUENTIAL) {
+		check_same_corners(in.mesh, out.mesh);
+		check_tangents(plain.mesh, out.mesh, 0.03);
+		assert_int_equal(out.mesh->vertex_count, plain.mesh->vertex_count);
+	} else {
+		assert_non_null(out.mesh->tangents);
+	}
+	assert_true(out.file.size < plain.file.size / 2);
+	unload(&in);
+	unload(&plain);
+	unload(&out);
+}
+
+static void draco_sequential_keeps_every_value(void **state)
+{
+	(void)state;
+	check_draco(NT_DRACO_SEQUENTIAL);
+}
+
+static int compare_floats(const void *a, const void *b)
+{
+	return memcmp(a, b, 3 * sizeof(float));
+}
+
+/* Edgebreaker reorders: the positions of all corners are the same as a set. */
+static void draco_edgebreaker_keeps_every_value(void **state)
+{
+	(void)state;
+	check_draco(NT_DRACO_EDGEBREAKER);
+	loaded in, out;
+	load(&in, file("in.glb"));
+	load(&out, file("out.glb"));
+	static float a[CORNERS][3], b[CORNERS][3];
+	for (size_t c = 0; c < CORNERS; c++) {
+		memcpy(a[c], row(in.mesh->positions, in.mesh, c, 3), sizeof a[c]);
+		memcpy(b[c], row(out.mesh->positions, out.mesh, c, 3), sizeof b[c]);
+	}
+	qsort(a, CORNERS, sizeof a[0], compare_floats);
+	qsort(b, CORNERS, sizeof b[0], compare_floats);
+	assert_memory_equal(a, b, sizeof a);
+	unload(&in);
+	unload(&out);
+}
+
+/* Byte for byte damage in the packed data is refused or gives some mesh, with indices that are checked. */
+static void damaged_blocks_are_harmless(void **state)
+{
+	(void)state;
+	for (int kind = 0; kind < 2; kind++) {
+		if (kind)
+			write_meshopt(&source, file("good.glb"));
+		else
+			write_draco(&source, NT_DRACO_EDGEBREAKER, file("good.glb"));
+		nt_file good;
+		nt_error error;
+		assert_int_equal(nt_file_open(&good, file("good.glb"), &error), NMTAN_OK);
+		unsigned char *bytes = malloc(good.size);
+		for (size_t i = 0; i < 150; i++) {
+			memcpy(bytes, good.data, good.size);
+			bytes[good.size - 1 - i * 13 % good.size] ^= (unsigned char)(1u << i % 8);
+			FILE *stream = fopen(file("bad.glb"), "wb");
+			assert_int_equal(fwrite(bytes, 1, good.size, stream), good.size);
+			fclose(stream);
+			const nt_settings settings = {.texcoord_set = -1, .dry_run = true};
+			nt_summary summary;
+			const nmtan_status status =
+				nt_run(file("bad.glb"), file("never.glb"), &settings, &summary, &error);
+			assert_int_not_equal(status, NMTAN_ERROR_INTERNAL);
+			nt_summary_free(&summary);
+		}
+		free(bytes);
+		nt_file_close(&good);
+	}
+}
+
+static int set_up(void **state)
+{
+	(void)state;
+	make_sheet(&source);
+	return mkdtemp(folder) ? 0 : -1;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	char command[200];
+	snprintf(command, sizeof command, "rm -rf '%s'", folder);
+	return system(command);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(meshopt_gives_what_plain_gives),
+		cmocka_unit_test(draco_sequential_keeps_every_value),
+		cmocka_unit_test(draco_edgebreaker_keeps_every_value),
+		cmocka_unit_test(damaged_blocks_are_harmless),
+	};
+	return cmocka_run_group_tests_name("io/gltf compressed", tests, set_up, tear_down);
+}
