@@ -16,8 +16,8 @@
 #include <string.h>
 #include "base/dvec.h"
 
-/* Degrees of rounding error from which on a triangle counts as nearly degenerate. */
-static const double NEAR_DEGENERATE_DEGREES = 1.0;
+/* Sine of the rounding error from which on a triangle counts as nearly degenerate: of one degree. */
+static const double NEAR_DEGENERATE_SINE = 0.017452406437283512;
 
 /* Share of the mesh's area from which on degenerate triangles are a warning. */
 static const double VISIBLE_SHARE = 0.01;
@@ -45,7 +45,7 @@ static bool is_finite(const float *values, size_t count)
 	return true;
 }
 
-/* Bound in degrees of how far rounding of the texture coordinates may turn the tangent. `determinant`
+/* Bound of the sine of how far rounding of the texture coordinates may turn the tangent. `determinant`
  * receives |det| / (|e1| |e2|). */
 static double rounding_bound(const nt_surface *s, size_t t, double *determinant)
 {
@@ -70,8 +70,7 @@ static double rounding_bound(const nt_surface *s, size_t t, double *determinant)
 	for (int i = 0; i < 2; i++)
 		size = fmax(size, fmax(fabs(ta[i]), fmax(fabs(tb[i]), fabs(tc[i]))));
 	const double error = 2.0 * 1.4142135623730951 * size * 0x1p-24;
-	const double bound = error * largest / det * sqrt((uu + vv) / uu);
-	return bound < 1.0 ? asin(bound) * DEGREES : 90.0;
+	return error * largest / det * sqrt((uu + vv) / uu);
 }
 
 /* How many corners of a degenerate triangle share their vertex with a sound one, whose tangent they take;
@@ -102,9 +101,10 @@ static void judge_triangle(nt_judge *judge, size_t t, const uint8_t *sound_verte
 		return;
 	}
 	double determinant;
-	const double bound = rounding_bound(s, t, &determinant);
+	const double sine = rounding_bound(s, t, &determinant);
 	tt->determinants[tt->determinant_count++] = (float)determinant;
-	if (!flat && bound > NEAR_DEGENERATE_DEGREES) {
+	if (!flat && !(sine <= NEAR_DEGENERATE_SINE)) {
+		const double bound = sine < 1.0 ? asin(sine) * DEGREES : 90.0;
 		nt_tally_triangle(judge, &tt->near, t, bound);
 		tt->near_share += s->areas[t];
 		tt->worst_bound = fmax(tt->worst_bound, bound);

@@ -276,34 +276,53 @@ static void meet_corner(const nt_surface *s, uint32_t side, uint32_t island, uv_
 	}
 }
 
-/* Sets `twin` of mixed islands: mirrored corners lie on unmirrored corners of the same island, and the
- * triangles on its triangles. */
-static nmtan_status find_twins(nt_judge *judge, size_t mixed_corners)
+/* Calls meet_corner, or only counts where table is NULL, for the triangles of one orientation in mixed
+ * islands: once for each vertex and island, as long as the island's triangles follow each other. */
+static size_t visit_vertices(nt_judge *judge, bool mirrored, uv_key *table, size_t mask, uint32_t *last,
+	size_t *counts)
 {
 	const nt_surface *s = &judge->surface;
+	size_t visits = 0;
+	memset(last, 0xff, judge->mesh->vertex_count * sizeof *last);
+	for (size_t t = 0; t < s->triangle_count; t++) {
+		if (s->orientation[t] != (mirrored ? -1 : 1) || !is_mixed(judge, t))
+			continue;
+		const uint32_t island = judge->islands[t];
+		for (uint32_t side = (uint32_t)(3 * t); side < 3 * t + 3; side++) {
+			if (last[s->vertices[side]] == island)
+				continue;
+			last[s->vertices[side]] = island;
+			visits++;
+			if (table)
+				meet_corner(s, side, island,
+					look_up(table, mask, nt_side_texcoord(s, side), island), mirrored, counts);
+		}
+	}
+	return visits;
+}
+
+/* Sets `twin` of mixed islands: mirrored corners lie on unmirrored corners of the same island, and the
+ * triangles on its triangles. */
+static nmtan_status find_twins(nt_judge *judge)
+{
 	const size_t islands = judge->facts->island_count;
 	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
+	uint32_t *last = nt_scratch_alloc(judge->scratch, judge->mesh->vertex_count, sizeof *last);
+	size_t *counts = nt_scratch_alloc(judge->scratch, 2 * islands, sizeof *counts);
+	if (!last || !counts)
+		return NMTAN_ERROR_MEMORY;
 	size_t capacity = 16;
-	while (capacity < 2 * mixed_corners)
+	const size_t unmirrored = visit_vertices(judge, false, NULL, 0, last, NULL);
+	while (capacity < 2 * unmirrored)
 		capacity *= 2;
 	uv_key *table = nt_scratch_alloc(judge->scratch, capacity, sizeof *table);
-	size_t *counts = nt_scratch_alloc(judge->scratch, 2 * islands, sizeof *counts);
-	if (!table || !counts)
+	if (!table)
 		return NMTAN_ERROR_MEMORY;
 	memset(counts, 0, 2 * islands * sizeof *counts);
 	for (size_t i = 0; i < capacity; i++)
 		table[i].island = NT_NONE;
-	for (int pass = 0; pass < 2; pass++) {
-		for (size_t c = 0; c < 3 * s->triangle_count; c++) {
-			const int wanted = pass == 0 ? 1 : -1;
-			if (s->orientation[c / 3] != wanted || !is_mixed(judge, c / 3))
-				continue;
-			const uint32_t island = judge->islands[c / 3];
-			uv_key *entry = look_up(table, capacity - 1, nt_side_texcoord(s, (uint32_t)c),
-				island);
-			meet_corner(s, (uint32_t)c, island, entry, pass == 1, counts);
-		}
-	}
+	visit_vertices(judge, false, table, capacity - 1, last, counts);
+	visit_vertices(judge, true, table, capacity - 1, last, counts);
 	for (size_t i = 0; i < islands; i++) {
 		nt_island *island = &judge->facts->islands[i];
 		const double corners = (double)(counts[2 * i] + counts[2 * i + 1]);
@@ -385,18 +404,16 @@ nmtan_status nt_judge_islands(nt_judge *judge)
 	if (!facts->islands)
 		return NMTAN_ERROR_MEMORY;
 	measure_islands(judge);
-	size_t mirrored = 0, mixed_corners = 0;
+	size_t mirrored = 0;
 	for (size_t i = 0; i < facts->island_count; i++) {
 		nt_island *island = &facts->islands[i];
 		island->kind = kind_of(island);
 		facts->island_kinds[island->kind]++;
 		mirrored += island->triangles[0];
-		if (island->kind == NT_ISLAND_MIXED)
-			mixed_corners += 3 * (island->triangles[0] + island->triangles[2]);
 	}
 	nmtan_status status = mirrored ? find_covered(judge, mirrored) : NMTAN_OK;
-	if (!status && mixed_corners)
-		status = find_twins(judge, mixed_corners);
+	if (!status && facts->island_kinds[NT_ISLAND_MIXED])
+		status = find_twins(judge);
 	if (!status)
 		report_islands(judge);
 	return status;

@@ -17,18 +17,6 @@ nt_box nt_box_empty(void)
 	return (nt_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
 }
 
-void nt_box_add(nt_box *box, const float *position)
-{
-	for (int i = 0; i < 3; i++) {
-		if (!isfinite(position[i]))
-			continue;
-		if (position[i] < box->minimum[i])
-			box->minimum[i] = position[i];
-		if (position[i] > box->maximum[i])
-			box->maximum[i] = position[i];
-	}
-}
-
 void nt_box_join(nt_box *box, const nt_box *other)
 {
 	for (int i = 0; i < 3; i++) {

@@ -6,6 +6,7 @@
 #ifndef NT_REPORT_JUDGE_H
 #define NT_REPORT_JUDGE_H
 
+#include <float.h>
 #include "report/report.h"
 #include "report/surface.h"
 
@@ -75,7 +76,17 @@ void nt_judge_report_as(nt_judge *judge, const nt_tally *tally, nt_severity seve
 
 /* Boxes. */
 nt_box nt_box_empty(void);
-void nt_box_add(nt_box *box, const float *position);
+static inline void nt_box_add(nt_box *box, const float *position)
+{
+	for (int i = 0; i < 3; i++) {
+		const float x = position[i];
+		if (x < box->minimum[i] && x >= -FLT_MAX)
+			box->minimum[i] = x;
+		if (x > box->maximum[i] && x <= FLT_MAX)
+			box->maximum[i] = x;
+	}
+}
+
 void nt_box_join(nt_box *box, const nt_box *other);
 
 /* The vertex as the source numbers it: copies that making normals appended are mapped back. */

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
+#include <stdio.h>
 #include "report/codes.h"
 
 static void every_code_has_a_complete_row_and_is_found_by_its_name(void **state)
@@ -44,12 +45,115 @@ static void severities_have_names(void **state)
 	assert_string_equal(nt_severity_name(NT_SEVERITY_ERROR), "error");
 }
 
+/* ---- the manual ---- */
+
+static const char manual_head[] =
+	".\\\" SPDX-License-Identifier: MIT\n"
+	".\\\" Checked against src/report/codes.c by tests/unit/report/test_codes.c, which writes it anew when\n"
+	".\\\" NMTAN_UPDATE is set.\n"
+	".TH NMTAN\\-REPORT 5 \"\" \"nmtan %s\" \"File formats\"\n"
+	".SH NAME\n"
+	"nmtan\\-report \\- what nmtan finds in a mesh, and how reports are written\n"
+	".SH DESCRIPTION\n"
+	".B nmtan \\-\\-check\n"
+	"and\n"
+	".B nmtan \\-\\-report\n"
+	"report findings. A finding has a code, a severity, a count, the places where it occurs (the first eight), the\n"
+	"numbers behind it, and a fingerprint. There is one finding for each mirror seam and each mirrored or\n"
+	"folded island (the first sixteen of a mesh; the rest is one finding together) and one for each group of\n"
+	"other occurrences in a mesh.\n"
+	".PP\n"
+	"The fingerprint is made from the code, the name of the mesh and the place in it, in steps of 1/128 of its\n"
+	"extent. It stays the same when vertices and triangles get other numbers, which is what\n"
+	".B \\-\\-baseline\n"
+	"relies on.\n"
+	".PP\n"
+	"Triangles are numbered from 0 as they are after triangulation, vertices and faces from 0 as the source has them.\n"
+	"\\(lqMirrored\\(rq means that the texture coordinates of a triangle run clockwise where v points up;\n"
+	"the sign is computed exactly. An island is a set of triangles that are connected in UV space: across an\n"
+	"edge whose two ends have equal texture coordinates on both sides. Points at one position are one point,\n"
+	"whatever their vertices, so that a seam between split vertices is a seam too.\n"
+	".SH FORMATS\n"
+	".TP\n.B text\nFor people; in colour on a terminal unless\n.B NO_COLOR\nis set.\n"
+	".TP\n.B json\nEverything. The schema is data/nmtan\\-report.schema.json.\n"
+	".TP\n.B sarif\nSARIF 2.1.0, one result for each finding. Files without lines have their results at line 1, an OBJ at\n"
+	"the line of the first face; the JSON pointer of a glTF primitive is the logical location.\n"
+	".TP\n.B junit\nJUnit XML, one suite for each file and one case for each code. A case fails where\n"
+	".B \\-\\-fail\\-on\nfails the run.\n"
+	".TP\n.B csv\nOne row for each finding.\n"
+	".TP\n.B markdown\nTwo tables, for comments on pull requests.\n"
+	".TP\n.B html\nOne file that needs no network: findings, UV layouts and the mesh in space.\n"
+	".PP\n"
+	"All are deterministic: no time, no absolute path.\n"
+	".SH CODES\n"
+	"The severity in parentheses is the usual one;\n"
+	".B \\-\\-severity\n"
+	"sets another.\n";
+
+static const char manual_tail[] =
+	".SH SEE ALSO\n"
+	".BR nmtan (1)\n";
+
+/* Text for troff: backslashes and hyphens escaped, a line per sentence not needed. */
+static void put_troff(const char *text, nt_buffer *out)
+{
+	for (; *text; text++) {
+		if (*text == '-')
+			nt_buffer_text(out, "\\-");
+		else if (*text == '\\')
+			nt_buffer_text(out, "\\e");
+		else
+			nt_buffer_append(out, text, 1);
+	}
+}
+
+static void write_manual(nt_buffer *out)
+{
+	nt_buffer_format(out, manual_head, nmtan_version());
+	for (unsigned i = 0; i < NT_CODE_COUNT; i++) {
+		const nt_code_row *row = nt_code_info((nt_code)i);
+		nt_buffer_format(out, ".SS %s (%s)\n", row->name, nt_severity_name(row->severity));
+		put_troff(row->meaning, out);
+		nt_buffer_text(out, "\n.br\n.I Remedy:\n");
+		put_troff(row->remedy, out);
+		nt_buffer_text(out, "\n.br\n.I Smallest example:\n");
+		put_troff(row->example, out);
+		nt_buffer_text(out, ".\n");
+	}
+	nt_buffer_text(out, manual_tail);
+}
+
+static void manual_lists_every_code_as_the_table_has_it(void **state)
+{
+	(void)state;
+	static const char path[] = "man/nmtan-report.5";
+	nt_buffer expected = {0};
+	write_manual(&expected);
+	if (getenv("NMTAN_UPDATE")) {
+		FILE *file = fopen(path, "wb");
+		assert_non_null(file);
+		assert_int_equal(fwrite(expected.data, 1, expected.size, file), expected.size);
+		fclose(file);
+	}
+	FILE *file = fopen(path, "rb");
+	assert_non_null(file);
+	char *found = calloc(1, expected.size + 2);
+	assert_non_null(found);
+	const size_t size = fread(found, 1, expected.size + 1, file);
+	fclose(file);
+	assert_int_equal(size, expected.size);
+	assert_string_equal(found, expected.data);
+	free(found);
+	nt_buffer_free(&expected);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_code_has_a_complete_row_and_is_found_by_its_name),
 		cmocka_unit_test(sentences_count_and_carry_the_detail),
 		cmocka_unit_test(severities_have_names),
+		cmocka_unit_test(manual_lists_every_code_as_the_table_has_it),
 	};
 	return cmocka_run_group_tests_name("report/codes", tests, NULL, NULL);
 }
