@@ -423,7 +423,7 @@ static void put_header(const nt_report_list *reports, nt_buffer *out)
 }
 
 static const char body[] =
-	"<main>\n<section class=\"panel\" aria-label=\"Findings\"><h2>Findings</h2>\n<div class=\"row\">"
+	"<main>\n<section>\n<div class=\"panel\"><h2>Findings</h2>\n<div class=\"row\">"
 	"<label><input type=\"checkbox\" id=\"show-error\" checked> errors</label>"
 	"<label><input type=\"checkbox\" id=\"show-warning\" checked> warnings</label>"
 	"<label><input type=\"checkbox\" id=\"show-info\" checked> infos</label>"
@@ -431,7 +431,10 @@ static const char body[] =
 	"<label>Text <input type=\"search\" id=\"text\"></label></div>\n"
 	"<p class=\"note\" id=\"shown\" role=\"status\"></p>\n"
 	"<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table of findings\">"
-	"<table><thead><tr id=\"columns\"></tr></thead><tbody id=\"rows\"></tbody></table></div></section>\n"
+	"<table><thead><tr id=\"columns\"></tr></thead><tbody id=\"rows\"></tbody></table></div></div>\n"
+	"<div class=\"panel\"><h2>UV layout</h2>\n<p class=\"note\">Blue: unmirrored. Red and hatched: mirrored. "
+	"Grey: degenerate. Thick: mirror seams, with their numbers on both sides.</p><div id=\"uv\"></div></div>\n"
+	"</section>\n"
 	"<section>\n<div class=\"panel\"><h2><label>Mesh <select id=\"mesh\"></select></label></h2>"
 	"<dl id=\"facts\"></dl></div>\n"
 	"<div class=\"panel\"><h2>In space</h2>\n<div class=\"row\">"
@@ -447,8 +450,6 @@ static const char body[] =
 	"<button type=\"button\" id=\"home\">Whole mesh</button></div>\n"
 	"<canvas id=\"view\" tabindex=\"0\" role=\"img\" aria-label=\"The mesh in space; arrow keys turn it, plus "
 	"and minus zoom, Home shows all of it\"></canvas>\n<p class=\"note\" id=\"note\"></p></div>\n"
-	"<div class=\"panel\"><h2>UV layout</h2>\n<p class=\"note\">Blue: unmirrored. Red and hatched: mirrored. "
-	"Grey: degenerate. Thick: mirror seams, with their numbers on both sides.</p><div id=\"uv\"></div></div>\n"
 	"</section>\n</main>\n";
 
 void nt_write_html(const nt_report_list *reports, nt_buffer *out)

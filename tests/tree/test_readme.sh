@@ -31,6 +31,12 @@ sed -n '/^\$ make demo$/,/^```$/p' "$readme" | sed '1d;$d' | clean >expected
 exists expected printed
 diff expected printed || wrong "prints something else"
 
+scene "the report in the README is what --check prints"
+(cd "$ROOT" && "$NMTAN" --check data/plates.gltf 2>"$WORK/err.txt") >printed
+sed -n '/^\$ nmtan --check data\/plates.gltf$/,/^```$/p' "$readme" | sed '1d;$d' >expected
+exists expected printed
+diff expected printed || wrong "prints something else"
+
 scene "the links of the README lead to files of the tree"
 grep -oE '\]\([^)#]+\)' "$readme" | tr -d '])(' | sed 's/^\[//' | while IFS= read -r target; do
 	case $target in http*) continue ;; esac

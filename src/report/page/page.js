@@ -413,7 +413,7 @@ class View {
 
 	home() {
 		const b = this.mesh.box || [[-1, -1, -1], [1, 1, 1]];
-		this.camera = {target: [0, 1, 2].map(i => (b[0][i] + b[1][i]) / 2), distance: 1.4 * this.extent(), yaw: 0.6, pitch: 0.35};
+		this.camera = {target: [0, 1, 2].map(i => (b[0][i] + b[1][i]) / 2), distance: 1.3 * this.extent(), yaw: 0.6, pitch: 0.35};
 	}
 
 	// Looks at the middle of a finding, from the side to which its surface faces, else from outside.
