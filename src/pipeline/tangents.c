@@ -70,29 +70,34 @@ static void restore_valid(const nt_mesh *mesh, float *corner_tangents)
 	}
 }
 
-static nmtan_status split_mesh(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options)
+/* Room for the worst case; pages that are not needed are never touched. */
+static nmtan_status make_split(const nt_mesh *mesh, nt_split *split, nmtan_split_output *output)
 {
-	/* worst case sizes; pages that are not needed are never touched */
 	const size_t capacity = mesh->corner_count;
-	nt_split split = {
-		.indices = nt_alloc(capacity, sizeof *split.indices),
-		.sources = nt_alloc(capacity, sizeof *split.sources),
+	*split = (nt_split){
+		.indices = nt_alloc(capacity, sizeof *split->indices),
+		.sources = nt_alloc(capacity, sizeof *split->sources),
 		.vertex_tangents = nt_alloc(mesh->vertex_count + capacity, 4 * sizeof(float)),
 	};
-	nmtan_status status = NMTAN_ERROR_MEMORY;
-	nmtan_split_output output = {.indices = split.indices, .sources = split.sources,
-		.source_capacity = capacity, .vertex_tangents = split.vertex_tangents};
-	if (split.indices && split.sources && split.vertex_tangents)
-		status = nmtan_split(view, mesh->corner_tangents, options, &output);
-	if (status) {
-		free(split.indices);
-		free(split.sources);
-		free(split.vertex_tangents);
-		return status;
-	}
-	split.source_count = output.source_count;
-	mesh->split = split;
-	return NMTAN_OK;
+	*output = (nmtan_split_output){.indices = split->indices, .sources = split->sources,
+		.source_capacity = capacity, .vertex_tangents = split->vertex_tangents};
+	return split->indices && split->sources && split->vertex_tangents ? NMTAN_OK
+									  : NMTAN_ERROR_MEMORY;
+}
+
+/* Tangents of corners: for the report alone, or to be mixed with authored ones before they are split. */
+static nmtan_status solve_corners(const nt_mesh *mesh, const nmtan_mesh *view,
+	const nmtan_options *options, float **tangents, nmtan_counts *counts)
+{
+	nmtan_output output = {.tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float))};
+	*tangents = output.tangents;
+	if (!output.tangents)
+		return NMTAN_ERROR_MEMORY;
+	const nmtan_status status = nmtan_tangents(view, options, &output);
+	*counts = output.counts;
+	if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
+		restore_valid(mesh, output.tangents);
+	return status;
 }
 
 static nmtan_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned threads,
@@ -102,18 +107,21 @@ static nmtan_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned t
 		.repair = job->settings->repair, .threads = threads, .workspace = workspace};
 	nmtan_mesh view = nt_mesh_view(mesh);
 	view.stored_v_offset = stored_v_offset(job);
-	nmtan_output output = {.tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float))};
-	nmtan_status status = output.tangents ? nmtan_tangents(&view, &options, &output) : NMTAN_ERROR_MEMORY;
-	if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
-		restore_valid(mesh, output.tangents);
-	mesh->corner_tangents = output.tangents;
-	mesh->counts = output.counts;
-	if (!status && !job->settings->check)
-		status = split_mesh(mesh, &view, &options);
-	if (!job->settings->check) {
-		free(mesh->corner_tangents);
-		mesh->corner_tangents = NULL;
+	if (job->settings->check)
+		return solve_corners(mesh, &view, &options, &mesh->corner_tangents, &mesh->counts);
+
+	nmtan_split_output output;
+	nmtan_status status = make_split(mesh, &mesh->split, &output);
+	if (!status && mesh->decision == NT_DECISION_REPAIR) {
+		float *tangents;
+		status = solve_corners(mesh, &view, &options, &tangents, &mesh->counts);
+		if (!status)
+			status = nmtan_split(&view, tangents, &options, &output);
+		free(tangents);
+	} else if (!status) {
+		status = nmtan_vertex_tangents(&view, &options, &output, &mesh->counts);
 	}
+	mesh->split.source_count = output.source_count;
 	return status;
 }
 

@@ -330,7 +330,7 @@ static void write_special(nt_fast *fast, size_t t)
 	}
 }
 
-/* Every corner of [begin, end) gets its vertex's result. */
+/* Every corner of [begin, end) gets its vertex's result; in a sparse solve those of suspects only. */
 static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 {
 	for (size_t t = begin; t < end; t++) {
@@ -339,13 +339,16 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 			write_special(fast, t);
 			continue;
 		}
+		const uint32_t *v = fast->ids + 3 * t;
 		const int orient = *flags & NT_TRIANGLE_ORIENT;
-		for (size_t i = 3 * t; i < 3 * t + 3; i++) {
-			const uint32_t v = fast->ids[i];
-			if (fast->records[orient][v].state == NT_RESULT_COMPLEX)
-				*flags |= NT_TRIANGLE_COMPLEX;
-			write_vertex(fast, nt_fast_corner(fast, i), orient, v);
-		}
+		const nt_record *records = fast->records[orient];
+		if (records[v[0]].state == NT_RESULT_COMPLEX || records[v[1]].state == NT_RESULT_COMPLEX ||
+			records[v[2]].state == NT_RESULT_COMPLEX)
+			*flags |= NT_TRIANGLE_COMPLEX;
+		if (fast->sparse && !(*flags & NT_TRIANGLE_SUSPECT))
+			continue;
+		for (size_t k = 0; k < 3; k++)
+			write_vertex(fast, nt_fast_corner(fast, 3 * t + k), orient, v[k]);
 	}
 }
 
@@ -375,10 +378,18 @@ static void write_ranges(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
 	nt_fast *fast = ((const run *)context)->fast;
-	void (*write)(nt_fast *, size_t, size_t) =
-		fast->corners || fast->wants_more ? write_triangles : write_plain_triangles;
+	void (*write)(nt_fast *, size_t, size_t) = fast->corners || fast->wants_more || fast->sparse
+		? write_triangles : write_plain_triangles;
 	for (size_t range = begin; range < end; range++)
 		write(fast, fast->ranges.bounds[range], fast->ranges.bounds[range + 1]);
+}
+
+void nt_fast_write_rest(nt_fast *fast)
+{
+	fast->sparse = false;
+	for (size_t t = 0; t < fast->triangle_count; t++)
+		if (!(fast->flags[t] & NT_TRIANGLE_SUSPECT))
+			write_triangles(fast, t, t + 1);
 }
 
 /* Without a sound triangle there is nothing but the default (step 10). */
@@ -461,62 +472,79 @@ static nmtan_status write_late(nt_fast *fast)
 	return NMTAN_OK;
 }
 
-/* Tells judge.c which triangles need no look: those with three settled corners, all of them usable, and
- * a determinant whose sign is beyond doubt. */
+/* Tells judge.c which triangles need no look. */
 static void vouch(const nt_fast *fast)
 {
 	*fast->solve->vouched = (nt_vouched){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT,
-		.suspect = NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_COMPLEX |
-			   NT_TRIANGLE_UNCERTAIN};
+		.suspect = NT_TRIANGLE_SUSPECT};
 }
 
-static nmtan_status solve_with_ranges(const nt_solve *solve, size_t triangle_count, unsigned ranges)
+/* 1 to 4 */
+static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ranges)
 {
-	const nt_kernels *kernels = kernels_for(solve->isa);
-	nt_room room = nt_room_over(solve->tangents, solve->corner_count * 4 * sizeof(float), solve->scratch);
-	nt_fast fast = {.solve = solve, .triangle_count = triangle_count};
-	fast.wants_more = solve->bitangents || solve->magnitudes;
-
+	const nt_solve *solve = fast->solve;
+	/* a sparse output is not filled, so that its pages need not exist */
+	nt_room room = nt_room_over(solve->tangents,
+		fast->sparse ? 0 : solve->corner_count * 4 * sizeof(float), solve->scratch);
 	nt_weld weld;
 	nmtan_status status = nt_weld_mesh(solve->mesh, solve->corner_count, &room, &weld);
 	if (!status)
-		status = make_triangles(&fast, &weld);
+		status = make_triangles(fast, &weld);
 	if (!status)
-		status = make_ranges(&fast, ranges);
+		status = make_ranges(fast, ranges);
 	if (!status)
-		status = nt_adjacency_make(fast.ids, &fast.ranges, fast.vertex_count, &room, &fast.adjacency);
-	if (!status)
-		status = accumulate(&fast, kernels);
+		status = nt_adjacency_make(fast->ids, &fast->ranges, fast->vertex_count, &room,
+			&fast->adjacency);
+	return status ? status : accumulate(fast, kernels);
+}
+
+static nmtan_status solve_with_grain(nt_fast *fast, const nt_solve *solve, bool sparse, size_t grain)
+{
+	const nt_kernels *kernels = kernels_for(solve->isa);
+	*fast = (nt_fast){.solve = solve, .sparse = sparse, .triangle_count = count_triangles(solve->mesh)};
+	fast->wants_more = solve->bitangents || solve->magnitudes;
+	/* what the lanes have no place for goes by the definition: other thresholds split most groups, and
+	 * beyond the limits numbers do not fit the entries */
+	if (solve->threshold_cos != -1.0f || 3 * fast->triangle_count >= NT_ADJACENCY_LIMIT ||
+		solve->mesh->vertex_count >= NT_WELD_LIMIT)
+		return NMTAN_ERROR_TOO_LARGE;
+
+	const unsigned ranges = nt_parallel_slots(solve->threads, fast->triangle_count, grain);
+	nmtan_status status = sum_up(fast, kernels, ranges);
 	if (status)
 		return status;
-	if (!fast.records[0] && !fast.records[1]) {
-		write_defaults(&fast);
+	if (!fast->records[0] && !fast->records[1]) {
+		fast->sparse = false;
+		write_defaults(fast);
 		return NMTAN_OK;
 	}
 
-	mark_contested(&fast);
+	mark_contested(fast);
 	nt_settled settled;
-	if ((status = settle(&fast, kernels, &settled)))
+	if ((status = settle(fast, kernels, &settled)))
 		return status;
-	run r = {&fast, kernels, NULL};
+	fast->sparse = fast->sparse && settled.unusable_count == 0;
+	run r = {fast, kernels, NULL};
 	nt_parallel_ranges(ranges, ranges, 1, write_ranges, &r);
-	if (settled.complex_count > 0 && (status = nt_fast_complex(&fast, settled.complex_count)))
+	if (settled.complex_count > 0 && (status = nt_fast_complex(fast, settled.complex_count)))
 		return status;
 	if (solve->vouched && settled.unusable_count == 0)
-		vouch(&fast);
-	return write_late(&fast);
+		vouch(fast);
+	/* late triangles copy corners, which must have been written */
+	if (fast->sparse && nt_fast_next_flagged(fast, 0, NT_TRIANGLE_LATE) < fast->triangle_count)
+		nt_fast_write_rest(fast);
+	return write_late(fast);
+}
+
+nmtan_status nt_fast_solve(nt_fast *fast, const nt_solve *solve, bool sparse)
+{
+	return solve_with_grain(fast, solve, sparse, TRIANGLE_GRAIN);
 }
 
 nmtan_status nt_mikktspace_fast_grain(const nt_solve *solve, size_t grain)
 {
-	/* what the lanes have no place for goes by the definition: other thresholds split most groups, and
-	 * beyond the limits numbers do not fit the entries */
-	const size_t triangles = count_triangles(solve->mesh);
-	if (solve->threshold_cos != -1.0f || 3 * triangles >= NT_ADJACENCY_LIMIT ||
-		solve->mesh->vertex_count >= NT_WELD_LIMIT)
-		return nt_mikktspace_scalar(solve);
-	const unsigned ranges = nt_parallel_slots(solve->threads, triangles, grain);
-	const nmtan_status status = solve_with_ranges(solve, triangles, ranges);
+	nt_fast fast;
+	const nmtan_status status = solve_with_grain(&fast, solve, false, grain);
 	return status == NMTAN_ERROR_TOO_LARGE ? nt_mikktspace_scalar(solve) : status;
 }
 

@@ -89,6 +89,7 @@ typedef struct nt_fast {
 	nt_record *records[2];       /* [vertex_count] for orientation false and true; NULL: not needed */
 	nt_record_more *more[2];     /* the same for the optional outputs */
 	bool wants_more;
+	bool sparse;             /* step 6 leaves out corners whose result is their record */
 	nt_triangle_ranges ranges;
 	nt_deferred **deferred;      /* [ranges] */
 	size_t *deferred_count;      /* [ranges] */
@@ -131,6 +132,23 @@ size_t nt_fast_next_flagged(const nt_fast *fast, size_t t, unsigned flags);
 /* nt_mikktspace_fast() with another least number of triangles for a thread, for tests: small meshes then
  * use threads too. */
 nmtan_status nt_mikktspace_fast_grain(const nt_solve *solve, size_t grain);
+
+/* The triangles whose corners have to be looked at one by one: those that do not have three settled
+ * corners, all of them usable, and a determinant whose sign is beyond doubt. */
+enum { NT_TRIANGLE_SUSPECT = NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_COMPLEX |
+			     NT_TRIANGLE_UNCERTAIN };
+
+/*
+ * All steps. With `sparse` the corners of triangles that are not suspect are not written: a corner's result
+ * is the record of its vertex and its triangle's orientation. Where that is not enough everything is
+ * written, and fast->sparse is false afterwards.
+ *
+ * Returns NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_TOO_LARGE (beyond the limits of the fast path).
+ */
+nmtan_status nt_fast_solve(nt_fast *fast, const nt_solve *solve, bool sparse);
+
+/* Writes what a sparse solve left out. */
+void nt_fast_write_rest(nt_fast *fast);
 
 /* Solves the vertices whose records are NT_RESULT_COMPLEX and writes their corners. */
 nmtan_status nt_fast_complex(nt_fast *fast, size_t complex_count);

@@ -188,3 +188,15 @@ nmtan_status nt_judge(const nt_solve *solve, nmtan_counts *counts)
 		add_counts(counts, &job.counts[slot]);
 	return NMTAN_OK;
 }
+
+size_t nt_fault_count(const nmtan_counts *counts)
+{
+	return counts->repaired_zero + counts->repaired_not_finite + counts->repaired_parallel +
+	       counts->repaired_sign;
+}
+
+void nt_forget_faults(nmtan_counts *counts)
+{
+	counts->repaired_zero = counts->repaired_not_finite = 0;
+	counts->repaired_parallel = counts->repaired_sign = 0;
+}

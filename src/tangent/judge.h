@@ -61,6 +61,10 @@ void nt_suspects_step(nt_suspects *s);
 /* Judges one face. `folded` may be NULL. */
 nt_verdict nt_judge_face(const nt_solve *solve, size_t face, size_t first, bool *folded);
 
+/* Unusable corners, by the repaired_ fields, and what sets these to 0. */
+size_t nt_fault_count(const nmtan_counts *counts);
+void nt_forget_faults(nmtan_counts *counts);
+
 /* Judges every face: what the mesh is like, and in the repaired_ fields how many corners are unusable.
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
 nmtan_status nt_judge(const nt_solve *solve, nmtan_counts *counts);

@@ -166,23 +166,16 @@ static void mend_face(const patient *p, size_t face, size_t first)
 	}
 }
 
-static size_t fault_count(const nmtan_counts *counts)
-{
-	return counts->repaired_zero + counts->repaired_not_finite + counts->repaired_parallel +
-	       counts->repaired_sign;
-}
-
 nmtan_status nt_repair(const nt_solve *solve, bool repair, nmtan_counts *counts)
 {
 	nmtan_status status = nt_judge(solve, counts);
 	if (status)
 		return status;
 	if (!repair) {
-		counts->repaired_zero = counts->repaired_not_finite = 0;
-		counts->repaired_parallel = counts->repaired_sign = 0;
+		nt_forget_faults(counts);
 		return NMTAN_OK;
 	}
-	if (fault_count(counts) == 0)
+	if (nt_fault_count(counts) == 0)
 		return NMTAN_OK;
 
 	patient p = {.solve = solve};

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "tangent/repair.h"
 #include "tangent/solve.h"
+#include "tangent/vertices.h"
 #include "topology/corners.h"
 
 /* A row stride: 0 becomes the row's size; false where the stride cannot be. */
@@ -67,47 +68,107 @@ static nmtan_status run_method(const nt_solve *solve, const nmtan_options *optio
 	return NMTAN_ERROR_ARGUMENT;
 }
 
+/* One call: the checked input, and the scratch where the caller gave none. */
+typedef struct request {
+	nmtan_options options;
+	nmtan_mesh mesh;
+	nt_vouched vouched;
+	nt_solve solve;
+	nt_scratch own;
+	nt_scratch_mark mark;
+} request;
+
+/* Checks everything before anything is computed, and fills in what was left to defaults. */
+static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmtan_options *options)
+{
+	*r = (request){.mesh = *mesh};
+	if (options)
+		r->options = *options;
+	nmtan_status status = check_options(&r->options);
+	if (!status)
+		status = check_attributes(&r->mesh);
+	if (!status)
+		status = nt_check_faces(&r->mesh, &r->solve.corner_count);
+	if (status)
+		return status;
+	nt_scratch_init(&r->own, r->options.allocator);
+	nt_solve *solve = &r->solve;
+	solve->mesh = &r->mesh;
+	solve->vouched = &r->vouched;
+	solve->scratch = r->options.workspace ? &r->options.workspace->scratch : &r->own;
+	solve->threshold_cos = r->options.angular_threshold_degrees > 0.0f
+		? threshold_cos(r->options.angular_threshold_degrees) : -1.0f;
+	solve->threads = nt_thread_count(r->options.threads);
+	solve->one_by_one = r->options.path == NMTAN_PATH_SCALAR;
+	solve->isa = r->options.isa == NMTAN_ISA_AUTO ? nt_cpu_best() : r->options.isa;
+	r->mark = nt_scratch_here(solve->scratch);
+	return NMTAN_OK;
+}
+
+static void end_request(request *r)
+{
+	nt_scratch_back(r->solve.scratch, r->mark);
+	nt_scratch_free(&r->own);
+}
+
 nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options, nmtan_output *output)
 {
-	static const nmtan_options defaults = {0};
 	if (!mesh || !output || !output->tangents)
 		return NMTAN_ERROR_ARGUMENT;
-	if (!options)
-		options = &defaults;
-
-	/* what was given must be sound before anything is computed */
-	nmtan_mesh checked = *mesh;
 	memset(&output->counts, 0, sizeof output->counts);
-	nmtan_status status = check_options(options);
-	if (!status)
-		status = check_attributes(&checked);
-	nt_vouched vouched = {0};
-	nt_solve solve = {.mesh = &checked, .vouched = &vouched};
-	if (!status)
-		status = nt_check_faces(&checked, &solve.corner_count);
-	if (status || solve.corner_count == 0)
+	request r;
+	nmtan_status status = begin_request(&r, mesh, options);
+	if (status || r.solve.corner_count == 0)
 		return status;
-
-	nt_scratch own;
-	nt_scratch_init(&own, options->allocator);
-	solve.scratch = options->workspace ? &options->workspace->scratch : &own;
-	solve.threshold_cos = options->angular_threshold_degrees > 0.0f
-		? threshold_cos(options->angular_threshold_degrees) : -1.0f;
-	solve.threads = nt_thread_count(options->threads);
-	solve.one_by_one = options->path == NMTAN_PATH_SCALAR;
-	solve.isa = options->isa == NMTAN_ISA_AUTO ? nt_cpu_best() : options->isa;
-	solve.tangents = output->tangents;
-	solve.bitangents = output->bitangents;
-	solve.magnitudes = output->magnitudes;
+	r.solve.tangents = output->tangents;
+	r.solve.bitangents = output->bitangents;
+	r.solve.magnitudes = output->magnitudes;
 
 	/* the method's own answer, then what a renderer can use */
-	const nt_scratch_mark mark = nt_scratch_here(solve.scratch);
 	size_t ill_conditioned = 0;
-	status = run_method(&solve, options, &ill_conditioned);
+	status = run_method(&r.solve, &r.options, &ill_conditioned);
 	if (!status)
-		status = nt_repair(&solve, options->repair == NMTAN_REPAIR_ON, &output->counts);
+		status = nt_repair(&r.solve, r.options.repair == NMTAN_REPAIR_ON, &output->counts);
 	output->counts.ill_conditioned = ill_conditioned;
-	nt_scratch_back(solve.scratch, mark);
-	nt_scratch_free(&own);
+	end_request(&r);
+	return status;
+}
+
+static nmtan_status solve_vertices(request *r, nt_splitter *splitter, nmtan_counts *counts)
+{
+	const bool repair = r->options.repair == NMTAN_REPAIR_ON;
+	if (r->options.method == NMTAN_METHOD_MIKKTSPACE && r->options.path != NMTAN_PATH_SCALAR)
+		return nt_mikktspace_vertices(&r->solve, repair, counts, splitter);
+	size_t ill_conditioned = 0;
+	nmtan_status status = run_method(&r->solve, &r->options, &ill_conditioned);
+	if (!status)
+		status = nt_repair(&r->solve, repair, counts);
+	counts->ill_conditioned = ill_conditioned;
+	return status ? status : nt_split_rows(&r->solve, splitter);
+}
+
+nmtan_status nmtan_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
+	nmtan_split_output *output, nmtan_counts *counts)
+{
+	nmtan_counts own_counts;
+	counts = counts ? counts : &own_counts;
+	if (!mesh || !output || !output->indices || !output->vertex_tangents ||
+		(output->source_capacity && !output->sources))
+		return NMTAN_ERROR_ARGUMENT;
+	memset(counts, 0, sizeof *counts);
+	output->source_count = 0;
+	request r;
+	nmtan_status status = begin_request(&r, mesh, options);
+	if (status)
+		return status;
+	nt_splitter splitter;
+	r.solve.tangents = nt_scratch_alloc(r.solve.scratch, r.solve.corner_count, 4 * sizeof(float));
+	status = r.solve.tangents ? nt_splitter_begin(&splitter, &r.mesh, output, r.solve.scratch)
+				  : NMTAN_ERROR_MEMORY;
+	if (!status && r.solve.corner_count > 0)
+		status = solve_vertices(&r, &splitter, counts);
+	if (!status)
+		nt_splitter_end(&splitter);
+	end_request(&r);
 	return status;
 }

@@ -1,0 +1,62 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Splitting one corner at a time, for callers that have tangents in another form than one row a corner.
+ */
+#ifndef NT_TOPOLOGY_SPLIT_H
+#define NT_TOPOLOGY_SPLIT_H
+
+#include <stdbool.h>
+#include <string.h>
+#include "base/scratch.h"
+#include "nmtan.h"
+
+/* The bits of a tangent's four floats, -0 made +0: equal floats have equal bits. */
+typedef struct nt_tangent_key {
+	uint32_t bits[4];
+} nt_tangent_key;
+
+/* A copy of a vertex and the tangent it was made for. */
+typedef struct nt_vertex_copy {
+	uint32_t original;
+	nt_tangent_key tangent;
+} nt_vertex_copy;
+
+typedef struct nt_splitter {
+	const nmtan_mesh *mesh; /* strides are filled in, indices checked */
+	nmtan_split_output *output;
+	nt_scratch *scratch;
+	float *tangents;        /* [vertex_count][4] of the vertices' first corners */
+	uint8_t *seen;          /* [vertex_count] tangents is set */
+	nt_vertex_copy *copies; /* [copy_capacity] */
+	size_t copy_count, copy_capacity;
+	uint32_t *table;        /* [table_size] numbers of copies; at most half full */
+	size_t table_size;
+} nt_splitter;
+
+/* Begins a split. mesh and output stay the caller's. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_splitter_begin(nt_splitter *s, const nmtan_mesh *mesh, nmtan_split_output *output,
+	nt_scratch *scratch);
+
+/* The rest of nt_splitter_take: a tangent that does not have the bits of the vertex's first one. */
+nmtan_status nt_splitter_differs(nt_splitter *s, uint32_t vertex, const float *tangent, size_t corner);
+
+/* The next corner in order, of that vertex, has this tangent: writes output->indices[corner]. Returns
+ * NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_TOO_LARGE. */
+static inline nmtan_status nt_splitter_take(nt_splitter *s, uint32_t vertex, const float *tangent,
+	size_t corner)
+{
+	float *first = s->tangents + 4 * (size_t)vertex;
+	if (!s->seen[vertex]) {
+		s->seen[vertex] = 1;
+		memcpy(first, tangent, 4 * sizeof(float));
+	} else if (memcmp(first, tangent, 4 * sizeof(float)) != 0) {
+		return nt_splitter_differs(s, vertex, tangent, corner);
+	}
+	s->output->indices[corner] = vertex;
+	return NMTAN_OK;
+}
+
+/* Ends a split: the count of copies, and the tangents of vertices without corners. */
+void nt_splitter_end(nt_splitter *s);
+
+#endif
