@@ -5,7 +5,7 @@
  *
  *   split     the file into chunks of 1 MiB, whatever the number of threads, so that it cannot show
  *   parse     obj_parse.c: numbers, corners, and the statements between faces
- *   join      positions, texture coordinates and normals into one array each
+ *   join      what was counted; rows of numbers stay in their chunks and are found there
  *   events    obj_events.c: objects, materials and smoothing groups, in order
  *   vertices  obj_vertices.c: equal v/vt/vn of one object become one vertex
  *   meshes    obj_meshes.c: faces, quads kept, larger polygons triangulated
@@ -18,7 +18,6 @@
 #include "io/obj_parts.h"
 
 #include <limits.h>
-#include <math.h>
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
@@ -189,63 +188,33 @@ static void count_all(obj_file *file)
 {
 	for (size_t c = 0; c < file->chunk_count; c++) {
 		obj_chunk *chunk = &file->chunks[c];
-		chunk->first_position = file->position_count;
-		chunk->first_texcoord = file->texcoord_count;
-		chunk->first_normal = file->normal_count;
+		for (int kind = 0; kind < OBJ_KIND_COUNT; kind++) {
+			chunk->rows[kind].first = file->row_counts[kind];
+			file->row_counts[kind] += chunk->rows[kind].count;
+		}
 		chunk->first_face = file->face_count;
 		chunk->first_corner = file->corner_count;
-		file->position_count += chunk->position_count;
-		file->texcoord_count += chunk->texcoord_count;
-		file->normal_count += chunk->normal_count;
 		file->face_count += chunk->face_count;
 		file->corner_count += chunk->corner_count;
 		file->polygon_count += chunk->polygon_count;
+		file->has_colors = file->has_colors || chunk->colors;
 	}
 }
 
-static float linear_from_srgb(float value)
+/* For every so many rows of a kind, the chunk that has the first of them. */
+static bool make_guide(obj_file *file, int kind)
 {
-	const double c = value < 0 ? 0 : value > 1 ? 1 : value;
-	return (float)(c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4));
-}
-
-static void join_colors(obj_file *file, const obj_chunk *chunk)
-{
-	float *to = file->colors + 4 * chunk->first_position;
-	for (size_t i = 0; i < 4 * chunk->position_count; i++) {
-		const float value = chunk->colors ? chunk->colors[i] : 1;
-		to[i] = i % 4 == 3 ? fminf(fmaxf(value, 0), 1) : linear_from_srgb(value);
+	const size_t count = (file->row_counts[kind] >> OBJ_GUIDE_SHIFT) + 1;
+	uint32_t *guide = nt_alloc(count, sizeof *guide);
+	file->guides[kind] = guide;
+	size_t c = 0;
+	for (size_t i = 0; guide && i < count; i++) {
+		const size_t row = i << OBJ_GUIDE_SHIFT;
+		while (c + 1 < file->chunk_count && file->chunks[c + 1].rows[kind].first <= row)
+			c++;
+		guide[i] = (uint32_t)c;
 	}
-}
-
-static void copy_rows(float *to, size_t first, const float *from, size_t count, size_t width)
-{
-	if (count)
-		memcpy(to + first * width, from, count * width * sizeof *to);
-}
-
-/* Moves the arrays of chunks [begin, end) into the file's, but for corners, which are used in place. */
-static void join_chunks(void *context, size_t begin, size_t end, unsigned slot)
-{
-	(void)slot;
-	obj_file *file = context;
-	for (size_t c = begin; c < end; c++) {
-		obj_chunk *chunk = &file->chunks[c];
-		copy_rows(file->positions, chunk->first_position, chunk->positions, chunk->position_count, 3);
-		copy_rows(file->texcoords, chunk->first_texcoord, chunk->texcoords, chunk->texcoord_count, 2);
-		copy_rows(file->normals, chunk->first_normal, chunk->normals, chunk->normal_count, 3);
-		if (file->colors)
-			join_colors(file, chunk);
-		if (chunk->face_count)
-			memcpy(file->face_sizes + chunk->first_face, chunk->face_sizes, chunk->face_count);
-		free(chunk->positions);
-		free(chunk->texcoords);
-		free(chunk->normals);
-		free(chunk->colors);
-		free(chunk->face_sizes);
-		chunk->positions = chunk->texcoords = chunk->normals = chunk->colors = NULL;
-		chunk->face_sizes = NULL;
-	}
+	return guide;
 }
 
 static void join_polygons(obj_file *file)
@@ -261,36 +230,26 @@ static void join_polygons(obj_file *file)
 	}
 }
 
-static bool any_colors(const obj_file *file)
-{
-	for (size_t c = 0; c < file->chunk_count; c++)
-		if (file->chunks[c].colors)
-			return true;
-	return false;
-}
-
 static nmtan_status join(obj_file *file, nt_error *error)
 {
 	count_all(file);
-	if (file->position_count > INT32_MAX || file->texcoord_count > INT32_MAX ||
-		file->normal_count > INT32_MAX || file->corner_count >= NT_NONE)
-		return nt_fail(error, NMTAN_ERROR_TOO_LARGE,
-			"more than 2^31 vertices or 2^32 face corners in one file");
-	file->positions = nt_alloc(file->position_count, 3 * sizeof(float));
-	file->texcoords = nt_alloc(file->texcoord_count, 2 * sizeof(float));
-	file->normals = nt_alloc(file->normal_count, 3 * sizeof(float));
+	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
+		if (file->row_counts[kind] > INT32_MAX)
+			return nt_fail(error, NMTAN_ERROR_TOO_LARGE, "more than 2^31 - 1 vertices in one file");
+	if (file->corner_count >= NT_NONE)
+		return nt_fail(error, NMTAN_ERROR_TOO_LARGE, "more than 2^32 - 1 face corners in one file");
+	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
+		if (!make_guide(file, kind))
+			return nt_fail_memory(error);
 	file->face_sizes = nt_arena_alloc(&file->scene->arena, file->face_count, 1);
 	file->polygons = nt_alloc(file->polygon_count, sizeof *file->polygons);
-	if (!file->positions || !file->texcoords || !file->normals || !file->face_sizes ||
-		!file->polygons)
+	if (!file->face_sizes || !file->polygons)
 		return nt_fail_memory(error);
-	if (any_colors(file)) {
-		file->colors = nt_alloc(file->position_count, 4 * sizeof(float));
-		if (!file->colors)
-			return nt_fail_memory(error);
-	}
 	join_polygons(file);
-	nt_parallel_ranges(file->threads, file->chunk_count, 1, join_chunks, file);
+	for (size_t c = 0; c < file->chunk_count; c++)
+		if (file->chunks[c].face_count)
+			memcpy(file->face_sizes + file->chunks[c].first_face, file->chunks[c].face_sizes,
+				file->chunks[c].face_count);
 	return NMTAN_OK;
 }
 
@@ -302,10 +261,8 @@ static void free_file(obj_file *file)
 		obj_chunk_free(&file->chunks[c]);
 	free(file->chunks);
 	free(file->tail);
-	free(file->positions);
-	free(file->texcoords);
-	free(file->normals);
-	free(file->colors);
+	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
+		free(file->guides[kind]);
 	free(file->polygons);
 	free(file->mesh_objects);
 	free(file->mesh_lines);

@@ -6,6 +6,7 @@
  */
 #include "io/obj_parts.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -33,12 +34,32 @@ typedef struct builder {
 
 /* ---- vertices ---- */
 
-static void copy_row(float *to, size_t i, const float *from, uint32_t row, size_t width)
+static void copy_row(const obj_file *file, int kind, uint32_t row, float *to)
 {
-	if (row == OBJ_ABSENT)
-		memset(to + i * width, 0, width * sizeof *to);
-	else
-		memcpy(to + i * width, from + row * width, width * sizeof *to);
+	const size_t width = obj_widths[kind];
+	if (row == OBJ_ABSENT) {
+		memset(to, 0, width * sizeof *to);
+	} else {
+		const obj_rows *rows = &obj_find_row(file, kind, row)->rows[kind];
+		memcpy(to, rows->data + (row - rows->first) * width, width * sizeof *to);
+	}
+}
+
+static float linear_from_srgb(float value)
+{
+	const double c = value < 0 ? 0 : value > 1 ? 1 : value;
+	return (float)(c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4));
+}
+
+static void copy_color(const obj_file *file, uint32_t row, float *to)
+{
+	const obj_chunk *chunk = obj_find_row(file, OBJ_V, row);
+	static const float white[4] = {1, 1, 1, 1};
+	const float *from =
+		chunk->colors ? chunk->colors + 4 * (row - chunk->rows[OBJ_V].first) : white;
+	for (int k = 0; k < 3; k++)
+		to[k] = linear_from_srgb(from[k]);
+	to[3] = fminf(fmaxf(from[3], 0), 1);
 }
 
 static void gather(void *context, size_t begin, size_t end, unsigned slot)
@@ -48,13 +69,13 @@ static void gather(void *context, size_t begin, size_t end, unsigned slot)
 	const obj_file *file = b->file;
 	for (size_t i = begin; i < end; i++) {
 		const obj_vertex *x = &file->vertices[i];
-		copy_row(b->positions, i, file->positions, x->v, 3);
+		copy_row(file, OBJ_V, x->v, b->positions + 3 * i);
 		if (b->texcoords)
-			copy_row(b->texcoords, i, file->texcoords, x->t, 2);
+			copy_row(file, OBJ_VT, x->t, b->texcoords + 2 * i);
 		if (b->normals)
-			copy_row(b->normals, i, file->normals, x->n, 3);
+			copy_row(file, OBJ_VN, x->n, b->normals + 3 * i);
 		if (b->colors)
-			copy_row(b->colors, i, file->colors, x->v, 4);
+			copy_color(file, x->v, b->colors + 4 * i);
 		b->lacks[i] = (uint8_t)((x->n == OBJ_ABSENT ? NT_LACKS_NORMAL : 0) |
 			(x->t == OBJ_ABSENT ? NT_LACKS_TEXCOORD : 0));
 	}
@@ -69,11 +90,11 @@ static nmtan_status gather_vertices(builder *b)
 	b->lacks = nt_arena_alloc(arena, count, 1);
 	if (!b->positions || !b->lacks)
 		return nt_fail_memory(b->error);
-	if (file->texcoord_count && !(b->texcoords = nt_arena_alloc(arena, count, 2 * sizeof(float))))
+	if (file->row_counts[OBJ_VT] && !(b->texcoords = nt_arena_alloc(arena, count, 2 * sizeof(float))))
 		return nt_fail_memory(b->error);
-	if (file->normal_count && !(b->normals = nt_arena_alloc(arena, count, 3 * sizeof(float))))
+	if (file->row_counts[OBJ_VN] && !(b->normals = nt_arena_alloc(arena, count, 3 * sizeof(float))))
 		return nt_fail_memory(b->error);
-	if (file->colors && !(b->colors = nt_arena_alloc(arena, count, 4 * sizeof(float))))
+	if (file->has_colors && !(b->colors = nt_arena_alloc(arena, count, 4 * sizeof(float))))
 		return nt_fail_memory(b->error);
 	nt_parallel_ranges(file->threads, count, GRAIN, gather, b);
 	return NMTAN_OK;

@@ -192,22 +192,30 @@ static inline int read_line(reader *r, float *numbers, int usual, int most, cons
 	return usual;
 }
 
-/* Keeps the colour of the position that is about to be counted; positions before it are white. */
+/* Appends a row of a kind: as many of the numbers as are kept. */
+static inline nmtan_status store_row(reader *r, int kind, const float *numbers)
+{
+	obj_rows *rows = &r->chunk->rows[kind];
+	const size_t bytes = obj_widths[kind] * sizeof(float);
+	if (!reserve(r->chunk, (void **)&rows->data, &rows->capacity, rows->count, bytes))
+		return fail_memory(r);
+	memcpy(&rows->data[obj_widths[kind] * rows->count++], numbers, bytes);
+	return NMTAN_OK;
+}
+
+/* Keeps the colour of the last position; positions before the first that has one are white. */
 static nmtan_status store_color(reader *r, const float *numbers, int count)
 {
 	obj_chunk *chunk = r->chunk;
-	if (!chunk->colors && count < 6)
-		return NMTAN_OK;
-	const size_t first = chunk->colors ? chunk->position_count : 0;
-	if (chunk->position_count >= chunk->color_capacity &&
-		!nt_grow((void **)&chunk->colors, &chunk->color_capacity, chunk->position_capacity,
-			4 * sizeof(float)))
+	const size_t last = chunk->rows[OBJ_V].count - 1;
+	const size_t first = chunk->colors ? last : 0;
+	if (last >= chunk->color_capacity && !nt_grow((void **)&chunk->colors, &chunk->color_capacity,
+							 chunk->rows[OBJ_V].capacity, 4 * sizeof(float)))
 		return fail_memory(r);
-	for (size_t i = 4 * first; i < 4 * chunk->position_count + 4; i++)
+	for (size_t i = 4 * first; i < 4 * last + 4; i++)
 		chunk->colors[i] = 1;
 	if (count >= 6)
-		memcpy(&chunk->colors[4 * chunk->position_count], numbers + 3,
-			(size_t)(count - 3) * sizeof *numbers);
+		memcpy(&chunk->colors[4 * last], numbers + 3, (size_t)(count - 3) * sizeof *numbers);
 	return NMTAN_OK;
 }
 
@@ -222,13 +230,8 @@ static nmtan_status read_position(reader *r)
 		return chunk->error.status;
 	if (count < 3 || count == 5)
 		return fail_expected(r, count < 3 ? "3 coordinates" : expected);
-	if (!reserve(chunk, (void **)&chunk->positions, &chunk->position_capacity, chunk->position_count,
-			3 * sizeof(float)))
-		return fail_memory(r);
-	memcpy(&chunk->positions[3 * chunk->position_count], numbers, 3 * sizeof(float));
-	const nmtan_status status = store_color(r, numbers, count);
-	chunk->position_count++;
-	return status;
+	const nmtan_status status = store_row(r, OBJ_V, numbers);
+	return status || (count < 6 && !chunk->colors) ? status : store_color(r, numbers, count);
 }
 
 /* vt u [v [w]] */
@@ -241,11 +244,7 @@ static nmtan_status read_texcoord(reader *r)
 		return chunk->error.status;
 	if (count == 0)
 		return fail_expected(r, "a texture coordinate");
-	if (!reserve(chunk, (void **)&chunk->texcoords, &chunk->texcoord_capacity, chunk->texcoord_count,
-			2 * sizeof(float)))
-		return fail_memory(r);
-	memcpy(&chunk->texcoords[2 * chunk->texcoord_count++], numbers, 2 * sizeof(float));
-	return NMTAN_OK;
+	return store_row(r, OBJ_VT, numbers);
 }
 
 /* vn x y z */
@@ -258,11 +257,7 @@ static nmtan_status read_normal(reader *r)
 		return chunk->error.status;
 	if (count < 3)
 		return fail_expected(r, "3 components of a normal");
-	if (!reserve(chunk, (void **)&chunk->normals, &chunk->normal_capacity, chunk->normal_count,
-			3 * sizeof(float)))
-		return fail_memory(r);
-	memcpy(&chunk->normals[3 * chunk->normal_count++], numbers, 3 * sizeof(float));
-	return NMTAN_OK;
+	return store_row(r, OBJ_VN, numbers);
 }
 
 /* ---- f ---- */
@@ -329,16 +324,16 @@ static inline const char *read_plain_corner(const char *p, obj_corner *corner)
 static nmtan_status read_corner(reader *r, obj_corner *corner)
 {
 	const obj_chunk *chunk = r->chunk;
-	nmtan_status status = read_index(r, chunk->position_count, &corner->v);
+	nmtan_status status = read_index(r, chunk->rows[OBJ_V].count, &corner->v);
 	corner->t = corner->n = OBJ_ABSENT;
 	if (!status && *r->p == '/') {
 		r->p++;
 		if (*r->p != '/' && !is_word_end(r->p))
-			status = read_index(r, chunk->texcoord_count, &corner->t);
+			status = read_index(r, chunk->rows[OBJ_VT].count, &corner->t);
 		if (!status && *r->p == '/') {
 			r->p++;
 			if (!is_word_end(r->p))
-				status = read_index(r, chunk->normal_count, &corner->n);
+				status = read_index(r, chunk->rows[OBJ_VN].count, &corner->n);
 		}
 	}
 	if (!status && !is_word_end(r->p) && *r->p != '#')
@@ -649,21 +644,14 @@ nmtan_status obj_parse_chunk(obj_chunk *chunk)
 
 void obj_chunk_free(obj_chunk *chunk)
 {
-	free(chunk->positions);
+	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
+		free(chunk->rows[kind].data);
 	free(chunk->colors);
-	free(chunk->texcoords);
-	free(chunk->normals);
 	free(chunk->distinct);
 	free(chunk->corners);
 	free(chunk->face_sizes);
 	free(chunk->polygons);
 	free(chunk->events);
-	chunk->positions = chunk->colors = chunk->texcoords = chunk->normals = NULL;
-	chunk->distinct = NULL;
-	chunk->corners = NULL;
-	chunk->face_sizes = NULL;
-	chunk->polygons = NULL;
-	chunk->events = NULL;
 }
 
 size_t obj_face_line(const obj_file *file, size_t face, obj_corner *before)
@@ -676,8 +664,8 @@ size_t obj_face_line(const obj_file *file, size_t face, obj_corner *before)
 	again.wanted_face = face - chunk->first_face;
 	obj_parse_chunk(&again);
 	if (before)
-		*before = (obj_corner){(uint32_t)again.position_count, (uint32_t)again.texcoord_count,
-			(uint32_t)again.normal_count};
+		*before = (obj_corner){(uint32_t)again.rows[OBJ_V].count, (uint32_t)again.rows[OBJ_VT].count,
+			(uint32_t)again.rows[OBJ_VN].count};
 	const size_t line = chunk->first_line + again.wanted_line + 1;
 	obj_chunk_free(&again);
 	return line;

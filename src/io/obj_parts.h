@@ -56,13 +56,23 @@ typedef struct obj_ignored {
 	size_t line; /* of the first, within the chunk */
 } obj_ignored;
 
+/* What corners refer to, and how many numbers of it are kept. */
+enum { OBJ_V, OBJ_VT, OBJ_VN, OBJ_KIND_COUNT };
+static const unsigned obj_widths[OBJ_KIND_COUNT] = {3, 2, 3};
+
+/* The elements of one kind in a chunk. They stay there: making one array of them would touch as much
+ * memory again. */
+typedef struct obj_rows {
+	float *data;
+	size_t count, capacity;
+	size_t first; /* of that kind in the file before this chunk; known after all have been read */
+} obj_rows;
+
 /* Whole lines of the file and what was in them. */
 typedef struct obj_chunk {
 	const char *begin, *end;
 
-	float *positions, *texcoords, *normals; /* rows of 3, 2 and 3 */
-	size_t position_count, texcoord_count, normal_count;
-	size_t position_capacity, texcoord_capacity, normal_capacity;
+	obj_rows rows[OBJ_KIND_COUNT];
 	float *colors; /* rows of 4 as written, as many as positions; NULL while no `v` has one */
 	size_t color_capacity;
 
@@ -86,7 +96,7 @@ typedef struct obj_chunk {
 	size_t line_count;
 
 	/* How much comes before this chunk in the file; known after all have been read. */
-	size_t first_position, first_texcoord, first_normal, first_corner, first_face, first_line;
+	size_t first_corner, first_face, first_line;
 
 	/* To find a line again: parsing stops behind this face and leaves its line. */
 	size_t wanted_face, wanted_line;
@@ -102,9 +112,12 @@ typedef struct obj_file {
 	size_t chunk_count;
 	char *tail; /* the last lines, padded */
 
+	/* Of each kind: how many there are, and the chunk that has number i << OBJ_GUIDE_SHIFT. */
+	size_t row_counts[OBJ_KIND_COUNT];
+	uint32_t *guides[OBJ_KIND_COUNT];
+	bool has_colors;
+
 	/* Joined arrays. */
-	float *positions, *texcoords, *normals, *colors;
-	size_t position_count, texcoord_count, normal_count;
 	uint8_t *face_sizes;
 	size_t face_count, corner_count;
 	obj_polygon *polygons;
@@ -126,6 +139,18 @@ typedef struct obj_file {
 	struct obj_vertex *vertices;        /* of all meshes, in order */
 	size_t vertex_count;
 } obj_file;
+
+/* A guide has an entry for so many rows. */
+enum { OBJ_GUIDE_SHIFT = 12 };
+
+/* The chunk of row number `row` of the file, which has to be there. */
+static inline const obj_chunk *obj_find_row(const obj_file *file, int kind, uint32_t row)
+{
+	const obj_chunk *chunk = &file->chunks[file->guides[kind][row >> OBJ_GUIDE_SHIFT]];
+	while (row - chunk->rows[kind].first >= chunk->rows[kind].count)
+		chunk++;
+	return chunk;
+}
 
 typedef struct obj_span {
 	size_t face; /* the first one; the span ends where the next begins */

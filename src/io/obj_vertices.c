@@ -174,9 +174,9 @@ static nmtan_status fail_index(const obj_file *file, const obj_chunk *chunk, siz
 		uint32_t before;      /* elements of the chunk before the face */
 		size_t first, count;
 	} parts[3] = {
-		{"v", corner.v, before.v, chunk->first_position, file->position_count},
-		{"vt", corner.t, before.t, chunk->first_texcoord, file->texcoord_count},
-		{"vn", corner.n, before.n, chunk->first_normal, file->normal_count},
+		{"v", corner.v, before.v, chunk->rows[OBJ_V].first, file->row_counts[OBJ_V]},
+		{"vt", corner.t, before.t, chunk->rows[OBJ_VT].first, file->row_counts[OBJ_VT]},
+		{"vn", corner.n, before.n, chunk->rows[OBJ_VN].first, file->row_counts[OBJ_VN]},
 	};
 	int k = 0;
 	uint32_t row = parts[0].index;
@@ -200,9 +200,9 @@ static nmtan_status number_distinct(obj_file *file, obj_chunk *chunk, size_t beg
 {
 	for (size_t i = begin; i < end; i++) {
 		obj_corner c = chunk->distinct[i];
-		if (!resolve(&c.v, chunk->first_position, file->position_count) ||
-			!resolve(&c.t, chunk->first_texcoord, file->texcoord_count) ||
-			!resolve(&c.n, chunk->first_normal, file->normal_count))
+		if (!resolve(&c.v, chunk->rows[OBJ_V].first, file->row_counts[OBJ_V]) ||
+			!resolve(&c.t, chunk->rows[OBJ_VT].first, file->row_counts[OBJ_VT]) ||
+			!resolve(&c.n, chunk->rows[OBJ_VN].first, file->row_counts[OBJ_VN]))
 			return fail_index(file, chunk, i, error);
 		chunk->distinct[i].v = find_vertex(vertices, c.v, c.t, c.n, base);
 		if (chunk->distinct[i].v == NT_NONE)
@@ -233,7 +233,7 @@ static nmtan_status number_chunk(obj_file *file, obj_chunk *chunk, table *vertic
 
 static nmtan_status number_all(obj_file *file, table *vertices, nt_error *error)
 {
-	vertices->heads = nt_calloc(file->position_count, sizeof *vertices->heads);
+	vertices->heads = nt_calloc(file->row_counts[OBJ_V], sizeof *vertices->heads);
 	if (!vertices->heads)
 		return nt_fail_memory(error);
 	size_t mesh = 0;
@@ -262,14 +262,15 @@ static size_t mesh_of_corner(const obj_file *file, size_t corner)
 	return low;
 }
 
-/* Writes the vertices of the corners of chunks [begin, end), relative to their meshes. */
+/* Writes the vertices of the corners of chunks [begin, end), relative to their meshes; the chunks' own
+ * corners have done their work. */
 static void write_corners(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
 	const obj_file *file = context;
 	size_t mesh = mesh_of_corner(file, file->chunks[begin].first_corner);
 	for (size_t k = begin; k < end; k++) {
-		const obj_chunk *chunk = &file->chunks[k];
+		obj_chunk *chunk = &file->chunks[k];
 		uint32_t *to = file->corner_vertices + chunk->first_corner;
 		for (size_t i = 0; i < chunk->corner_count;) {
 			while (file->mesh_corners[mesh + 1] <= chunk->first_corner + i)
@@ -280,6 +281,10 @@ static void write_corners(void *context, size_t begin, size_t end, unsigned slot
 			for (; i < stop; i++)
 				to[i] = chunk->distinct[chunk->corners[i]].v - base;
 		}
+		free(chunk->distinct);
+		free(chunk->corners);
+		chunk->distinct = NULL;
+		chunk->corners = NULL;
 	}
 }
 
