@@ -78,3 +78,15 @@ $(B)/tests/bench/error: $(error_obj) $(measure_obj) $(B)/libnmtan.a
 bench: bench-error
 bench-error: $(B)/tests/bench/error
 	@CC="$(CC)" sh tests/bench/run_error.sh $< build/bench
+
+# make bench-obj: reading the 104 MB file that speed is stated for; the line "parse" is the reader.
+build/bench/torus.obj: $(B)/tests/bench/make_obj.o
+	@mkdir -p $(@D)
+	$(CC) $(NT_LDFLAGS) -o $(B)/tests/bench/make_obj $< -lm
+	$(B)/tests/bench/make_obj 700 >$@.part && mv $@.part $@
+
+.PHONY: bench-obj
+bench-obj: build/bench/torus.obj $(B)/nmtan
+	@for threads in 1 2; do for run in 1 2 3 4 5; do \
+		$(B)/nmtan --timing --dry-run --threads=$$threads $< build/bench/torus.glb 2>&1 | \
+		sed -n "s/^parse/threads $$threads, parse ms/p"; done; done

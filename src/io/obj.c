@@ -4,7 +4,7 @@
  * bytes, in chunks of whole lines that threads take one after the other; then the chunks are joined.
  *
  *   split     the file into chunks of 1 MiB, whatever the number of threads, so that it cannot show
- *   parse     obj_parse.c: numbers, corners, and the statements between faces
+ *   parse     obj_parse.c, obj_faces.c: numbers, corners, and the statements between faces
  *   join      what was counted; rows of numbers stay in their chunks and are found there
  *   events    obj_events.c: objects, materials and smoothing groups, in order
  *   vertices  obj_vertices.c: equal v/vt/vn of one object become one vertex

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the parts of the OBJ reader hand to each other: obj_parse.c turns lines into the arrays of a
- * chunk, obj_vertices.c turns corners into vertices, obj_meshes.c makes meshes of them. obj.c says in
- * which order. Nothing here is for other files.
+ * What the parts of the OBJ reader hand to each other: obj_parse.c and obj_faces.c turn lines into the
+ * arrays of a chunk, obj_vertices.c turns corners into vertices, obj_meshes.c makes meshes of them. obj.c
+ * says in which order. Nothing here is for other files.
  */
 #ifndef NT_IO_OBJ_PARTS_H
 #define NT_IO_OBJ_PARTS_H
