@@ -80,6 +80,19 @@ static bool has_texcoords(const nt_json_value *attributes, uint32_t set)
 	return nt_json_find(attributes, name) != NULL;
 }
 
+/* Morph targets that move positions or normals and leave tangents as they are. */
+static uint32_t targets_without_tangents(const nt_json_value *primitive)
+{
+	const nt_json_value *targets = nt_json_find(primitive, "targets");
+	uint32_t count = 0;
+	for (size_t i = 0; i < nt_json_count(targets); i++) {
+		const nt_json_value *target = nt_json_at(targets, i);
+		const bool moves = nt_json_find(target, "POSITION") || nt_json_find(target, "NORMAL");
+		count += moves && !nt_json_find(target, "TANGENT");
+	}
+	return count;
+}
+
 static nmtan_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	const nt_json_value *primitive, nt_mesh *mesh, const nt_read_options *options, nt_error *error)
 {
@@ -109,6 +122,7 @@ static nmtan_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->has_normals = nt_json_find(attributes, "NORMAL") != NULL;
 	mesh->has_tangents = nt_json_find(attributes, "TANGENT") != NULL;
 	mesh->has_texcoords = has_texcoords(attributes, mesh->texcoord_set);
+	mesh->targets_without_tangents = targets_without_tangents(primitive);
 	mesh->face_count = claimed_faces(document, primitive, attributes, mode);
 	mesh->primitive_count = 1;
 	mesh->primitives = nt_arena_alloc(&scene->arena, 1, sizeof *mesh->primitives);

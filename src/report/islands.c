@@ -44,7 +44,7 @@ static void measure_islands(nt_judge *judge)
 		for (size_t k = 0; k < 3; k++) {
 			const uint32_t side = (uint32_t)(3 * t + k);
 			float uv[2];
-			nt_source_texcoord(judge->scene, nt_side_texcoord(s, side), uv);
+			nt_side_source_texcoord(judge, side, uv);
 			for (int i = 0; i < 2; i++) {
 				island->minimum[i] = fminf(island->minimum[i], uv[i]);
 				island->maximum[i] = fmaxf(island->maximum[i], uv[i]);

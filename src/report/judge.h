@@ -105,6 +105,13 @@ static inline void nt_source_texcoord(const nt_scene *scene, const float *texcoo
 	out[1] = v_down ? 0.0f - texcoord[1] : texcoord[1];
 }
 
+/* The same of where a side begins. */
+static inline void nt_side_source_texcoord(const nt_judge *judge, uint32_t side, float out[2])
+{
+	nt_source_texcoord(judge->scene,
+		judge->mesh->texcoords + 2 * (size_t)judge->surface.vertices[side], out);
+}
+
 /* Which of the stored tangents a corner has; the judge has some. */
 static inline size_t nt_tangent_index(const nt_judge *judge, uint32_t corner)
 {

@@ -74,8 +74,7 @@ static nt_seam_edge describe_edge(const nt_judge *judge, const nt_mirror_edge *e
 		for (int end = 0; end < 2; end++) {
 			result.vertices[i][end] = nt_source_vertex(judge->mesh, s->vertices[ends[end]]);
 			result.output[i][end] = output_vertex(judge, ends[end]);
-			nt_source_texcoord(judge->scene, nt_side_texcoord(s, ends[end]),
-				result.texcoords[i][end]);
+			nt_side_source_texcoord(judge, ends[end], result.texcoords[i][end]);
 			memcpy(result.positions[end], nt_side_position(s, ends[end]),
 				sizeof result.positions[end]);
 		}

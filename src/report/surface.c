@@ -44,14 +44,14 @@ static void add_triangle(nt_surface *s, size_t face, size_t first, const unsigne
 
 /* The row of nt_quad_triangles that cuts the quad whose first corner is `first`. Without texture
  * coordinates they are all taken as equal, which leaves the choice to the positions. */
-static int quad_cut(const nt_mesh *mesh, size_t first)
+static int quad_cut(const nt_surface *s, size_t first)
 {
 	static const float nowhere[2];
 	const float *uv[4], *p[4];
 	for (size_t k = 0; k < 4; k++) {
-		const size_t vertex = vertex_of(mesh, first + k);
-		uv[k] = mesh->texcoords ? mesh->texcoords + 2 * vertex : nowhere;
-		p[k] = mesh->positions + 3 * vertex;
+		const size_t vertex = vertex_of(s->mesh, first + k);
+		uv[k] = s->texcoords ? s->texcoords + 2 * vertex : nowhere;
+		p[k] = s->mesh->positions + 3 * vertex;
 	}
 	return nt_quad_diagonal(uv, p);
 }
@@ -67,7 +67,7 @@ static void cut_faces(nt_surface *s)
 			first += 3;
 			continue;
 		}
-		const int cut = quad_cut(mesh, first);
+		const int cut = quad_cut(s, first);
 		add_triangle(s, face, first, nt_quad_triangles[cut][0]);
 		add_triangle(s, face, first, nt_quad_triangles[cut][1]);
 		first += 4;
@@ -144,7 +144,7 @@ static void measure_triangle(nt_surface *s, size_t t)
 		s->flatness[t] = area > 0.0 ? NT_SOUND : NT_COLLINEAR;
 	s->areas[t] = isfinite(area) ? area : 0.0;
 	s->orientation[t] = 0;
-	if (s->mesh->texcoords)
+	if (s->texcoords)
 		s->orientation[t] = (int8_t)nt_orientation(nt_side_texcoord(s, (uint32_t)(3 * t)),
 			nt_side_texcoord(s, (uint32_t)(3 * t + 1)), nt_side_texcoord(s, (uint32_t)(3 * t + 2)));
 }
@@ -234,7 +234,8 @@ static nmtan_status find_edges(nt_surface *s, nt_scratch *scratch)
 
 nmtan_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, nt_scratch *scratch)
 {
-	*surface = (nt_surface){.mesh = mesh};
+	*surface = (nt_surface){.mesh = mesh,
+		.texcoords = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords};
 	size_t quads = 0;
 	for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
 		quads += mesh->face_sizes[f] == 4;

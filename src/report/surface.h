@@ -22,6 +22,8 @@ typedef enum nt_flatness {
 
 typedef struct nt_surface {
 	const nt_mesh *mesh;
+	const float *texcoords; /* [vertex_count][2] what is solved by: turned and scaled by a texture transform
+	                           where there is one; NULL: none */
 	size_t triangle_count;
 	uint32_t *corners;    /* [3 * triangle_count] corner of the mesh */
 	uint32_t *faces;      /* [triangle_count] face of the mesh */
@@ -57,7 +59,7 @@ static inline const float *nt_side_position(const nt_surface *s, uint32_t side)
 /* Where a side begins in UV space; the mesh has texture coordinates. */
 static inline const float *nt_side_texcoord(const nt_surface *s, uint32_t side)
 {
-	return s->mesh->texcoords + 2 * (size_t)s->vertices[side];
+	return s->texcoords + 2 * (size_t)s->vertices[side];
 }
 
 /* Whether two sides of one edge lie on each other in UV space. */

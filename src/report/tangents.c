@@ -12,6 +12,7 @@
 #include <string.h>
 #include "base/angle.h"
 #include "base/dvec.h"
+#include "topology/orientation.h"
 
 /* Below this a tangent has no length; the tolerance of the Khronos validator for the others. */
 static const double ZERO_LENGTH = 1e-6, UNIT_TOLERANCE = 0.00674;
@@ -98,6 +99,19 @@ static nt_severity severity_of(const nt_judge *judge, nt_code code)
 	return unused && severity == NT_SEVERITY_ERROR ? NT_SEVERITY_WARNING : severity;
 }
 
+/* On conversion: that tangents were kept although they are not usable. */
+static void report_kept(nt_judge *judge, const nt_tally *const *invalid, size_t count)
+{
+	nt_tally kept = {.code = NT_CODE_TAN_EXISTING_BAD, .box = nt_box_empty()};
+	for (size_t i = 0; i < count; i++) {
+		kept.count += invalid[i]->count;
+		if (invalid[i]->count)
+			nt_box_join(&kept.box, &invalid[i]->box);
+	}
+	if (judge->options->converted && judge->stored == NT_STORED_AUTHORED)
+		nt_judge_report(judge, &kept, NULL);
+}
+
 static nmtan_status judge_each(nt_judge *judge)
 {
 	const nt_surface *s = &judge->surface;
@@ -122,6 +136,7 @@ static nmtan_status judge_each(nt_judge *judge)
 	const nt_tally *all[] = {&tt->not_finite, &tt->zero, &tt->non_unit, &tt->bad_w, &tt->parallel};
 	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
 		nt_judge_report_as(judge, all[i], severity_of(judge, all[i]->code), NULL);
+	report_kept(judge, all, sizeof all / sizeof all[0]);
 	nt_judge_report(judge, &tt->not_orthogonal, "the worst is %.3g degrees off",
 		judge->facts->worst_orthogonality);
 	return NMTAN_OK;
@@ -175,7 +190,19 @@ static bool is_reversed(const nt_judge *judge, size_t t)
 typedef struct sign_tallies {
 	nt_tally mixed, wrong;
 	size_t judged, by_w, reversed;
+	size_t untransformed; /* wrong, but right without the texture transform */
 } sign_tallies;
+
+/* Whether w is right for the file's own coordinates, where a texture transform turns them over. */
+static bool fits_untransformed(const nt_judge *judge, size_t t, float w)
+{
+	const uint32_t *v = judge->surface.vertices + 3 * t;
+	const float *uv = judge->mesh->texcoords;
+	if (!judge->mesh->solve_texcoords)
+		return false;
+	const int sign = nt_orientation(uv + 2 * (size_t)v[0], uv + 2 * (size_t)v[1], uv + 2 * (size_t)v[2]);
+	return sign != 0 && (w > 0.0f) == (sign > 0);
+}
 
 static void judge_sign(const nt_judge *judge, size_t t, sign_tallies *st)
 {
@@ -196,6 +223,7 @@ static void judge_sign(const nt_judge *judge, size_t t, sign_tallies *st)
 	const bool reversed = !by_w && is_reversed(judge, t);
 	st->by_w += by_w;
 	st->reversed += reversed;
+	st->untransformed += by_w && fits_untransformed(judge, t, w[0]);
 	if (by_w || reversed)
 		nt_tally_triangle(judge, &st->wrong, t, w[0]);
 }
@@ -212,9 +240,14 @@ static void judge_signs(nt_judge *judge)
 	nt_tally_number(&st.wrong, "judged_triangles", (double)st.judged);
 	nt_tally_number(&st.wrong, "wrong_w", (double)st.by_w);
 	nt_tally_number(&st.wrong, "reversed_tangents", (double)st.reversed);
-	nt_judge_report_as(judge, &st.wrong, severity_of(judge, NT_CODE_TAN_SIGN_MISMATCH), "%.3g %% of %zu%s",
-		100.0 * share, st.judged,
-		st.by_w == st.judged ? ", the convention is inverted"
+	nt_tally_number(&st.wrong, "right_without_transform", (double)st.untransformed);
+	/* exporters disagree about texture transforms, and so do renderers: not an error */
+	const bool untransformed = st.untransformed > 0 && st.untransformed == st.wrong.count;
+	nt_judge_report_as(judge, &st.wrong,
+		untransformed ? NT_SEVERITY_WARNING : severity_of(judge, NT_CODE_TAN_SIGN_MISMATCH),
+		"%.3g %% of %zu%s", 100.0 * share, st.judged,
+		untransformed	     ? ", they were made without the texture transform"
+		: st.by_w == st.judged ? ", the convention is inverted"
 		: st.by_w == 0	     ? ", the tangents are reversed too"
 				     : "");
 }
@@ -278,6 +311,11 @@ static void judge_presence(nt_judge *judge)
 	if (present && mesh->slots == 0) {
 		const nt_tally unused = {.code = NT_CODE_TAN_UNUSED, .count = 1, .box = judge->facts->box};
 		nt_judge_report(judge, &unused, NULL);
+	}
+	if (judge->stored == NT_STORED_AUTHORED && mesh->slots != 0 && mesh->targets_without_tangents) {
+		const nt_tally morphs = {.code = NT_CODE_TAN_MORPH_MISSING,
+			.count = mesh->targets_without_tangents, .box = judge->facts->box};
+		nt_judge_report(judge, &morphs, NULL);
 	}
 	if (!present && mesh->slots != 0 && mesh->reachable) {
 		const nt_tally missing = {.code = NT_CODE_TAN_MISSING_REQUIRED, .count = 1,

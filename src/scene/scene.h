@@ -96,6 +96,7 @@ typedef struct nt_mesh {
 	uint32_t texcoord_set;   /* number of that set */
 	bool texcoord_conflict;  /* another slot of it asks for another set: texcoord_other_set */
 	uint32_t texcoord_other_set;
+	uint32_t targets_without_tangents; /* morph targets that move it and have no TANGENT */
 	nt_decision decision;
 
 	/* geometry: filled by load(). Arrays belong to the scene's arena or point into the input. */

@@ -150,6 +150,52 @@ static void required_tangents_are_missed(void **state)
 	hand_free(h, report);
 }
 
+static void kept_tangents_that_are_bad_are_told_on_conversion(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	set_tangent(h, 1, 0, 0, 0, 1);
+	const nt_report_options options = {.converted = true};
+	nt_report *report = hand_report(h, &options);
+	assert_int_equal(hand_finding(report, NT_CODE_TAN_EXISTING_BAD)->count, 1);
+	nt_report_free(report);
+	report = hand_report(h, NULL);
+	assert_int_equal(hand_findings(report, NT_CODE_TAN_EXISTING_BAD), 0);
+	hand_free(h, report);
+}
+
+static void morph_targets_without_tangents_are_told(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	h->mesh.targets_without_tangents = 2;
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(hand_finding(report, NT_CODE_TAN_MORPH_MISSING)->count, 2);
+	hand_free(h, report);
+}
+
+/* A texture transform that turns u over: what is mirrored is judged as it is looked up, what is shown are the
+ * file's own coordinates. */
+static void texture_transform_that_mirrors_counts(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	float solved[4][2];
+	for (size_t v = 0; v < 4; v++) {
+		solved[v][0] = -h->texcoords[v][0];
+		solved[v][1] = h->texcoords[v][1];
+	}
+	h->mesh.solve_texcoords = solved[0];
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(report->meshes[0].triangles[0], 2);
+	const nt_issue *sign = hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH);
+	assert_int_equal(sign->count, 2);
+	assert_int_equal(sign->severity, NT_SEVERITY_WARNING); /* right for the coordinates as stored */
+	assert_non_null(strstr(sign->message, "without the texture transform"));
+	assert_true(report->meshes[0].islands[0].maximum[0] == 1.0f);
+	hand_free(h, report);
+}
+
 static void degenerate_triangles_are_counted_and_weighed(void **state)
 {
 	(void)state;
@@ -288,6 +334,9 @@ int main(void)
 		cmocka_unit_test(mixed_w_is_counted_by_triangle),
 		cmocka_unit_test(directions_off_by_90_degrees_fill_one_bin),
 		cmocka_unit_test(required_tangents_are_missed),
+		cmocka_unit_test(kept_tangents_that_are_bad_are_told_on_conversion),
+		cmocka_unit_test(morph_targets_without_tangents_are_told),
+		cmocka_unit_test(texture_transform_that_mirrors_counts),
 		cmocka_unit_test(degenerate_triangles_are_counted_and_weighed),
 		cmocka_unit_test(nearly_collinear_coordinates_far_from_the_origin),
 		cmocka_unit_test(normals_are_judged),
