@@ -337,6 +337,8 @@ static nmtan_status recode(recoding *r, bool *done)
 		describe_block(r, &block);
 		status = store_block(r, &block);
 	}
+	if (!status)
+		status = nt_gltf_add_morphs(p, r->component, 0);
 	nt_draco_block_free(&block);
 	return status;
 }

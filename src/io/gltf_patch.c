@@ -134,6 +134,40 @@ nmtan_status nt_gltf_bitangents(nt_gltf_patcher *p, const nt_gltf_cluster *compo
 	return NMTAN_OK;
 }
 
+/* A target of every mesh of the group gets an attribute. */
+static void set_target(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
+	uint32_t target, const char *name, uint32_t accessor)
+{
+	for (size_t i = 0; i < component->member_count; i++) {
+		if (component->rows.group_of[i] != group)
+			continue;
+		nt_json_value *attributes = nt_json_at(nt_json_find(nt_gltf_primitive_of(p->document,
+			&p->scene->meshes[component->members[i]]), "targets"), target);
+		nt_json_set_uint64(p->json, nt_json_put(p->json, attributes, name), accessor);
+	}
+}
+
+nmtan_status nt_gltf_add_morphs(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group)
+{
+	const nt_gltf_rows *rows = &component->rows;
+	const nt_mesh *mesh = first_of_group(p, component, group);
+	nmtan_status status = NMTAN_OK;
+	for (size_t m = 0; !status && m < mesh->morph_count; m++) {
+		float *delta = nt_arena_alloc(p->arena, rows->new_count, 3 * sizeof *delta);
+		uint32_t accessor = 0;
+		if (!delta)
+			return nt_fail_memory(p->error);
+		for (size_t row = 0; row < rows->new_count; row++)
+			for (size_t k = 0; k < 3; k++)
+				delta[3 * row + k] = rows->morphs[group][m][3 * row + k] -
+					rows->tangents[group][4 * row + k];
+		status = nt_gltf_add_floats(p, component->buffer, delta, rows->new_count, 3, &accessor);
+		if (!status)
+			set_target(p, component, group, mesh->morphs[m].target, "TANGENT", accessor);
+	}
+	return status;
+}
+
 /* NORMAL where it was made, TANGENT where it is not already in place, _BITANGENT where asked for. */
 static nmtan_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
 	bool tangent_in_place)
@@ -153,6 +187,8 @@ static nmtan_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *compone
 		if (!status)
 			set_attribute(p, component, group, "TANGENT", accessor);
 	}
+	if (!status)
+		status = nt_gltf_add_morphs(p, component, group);
 	if (!status && p->options->bitangents) {
 		float *bitangents;
 		status = nt_gltf_bitangents(p, component, group, &bitangents);

@@ -59,6 +59,10 @@ nmtan_status nt_gltf_patch_draco(nt_gltf_patcher *patcher, nt_gltf_cluster *comp
 nmtan_status nt_gltf_bitangents(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
 	uint32_t group, float **rows);
 
+/* TANGENT of the morph targets of a group's meshes: what to add to the base's. */
+nmtan_status nt_gltf_add_morphs(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
+	uint32_t group);
+
 /* Takes KHR_draco_mesh_compression off the lists where no primitive has it any more. */
 void nt_gltf_drop_draco(nt_gltf_patcher *patcher);
 

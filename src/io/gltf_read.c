@@ -477,6 +477,83 @@ static void list_triangles(uint64_t mode, const uint32_t *chain, size_t face_cou
 	}
 }
 
+/* ---- morph targets ---- */
+
+/* Base and delta; NULL where the target does not move it. */
+static nmtan_status add_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *mesh,
+	const nt_json_value *target, const char *name, const char *pointer, const float *base,
+	float **moved, nt_error *error)
+{
+	*moved = NULL;
+	const nt_json_value *reference = nt_json_find(target, name);
+	if (!reference || !base)
+		return NMTAN_OK;
+	uint64_t index;
+	nt_gltf_accessor accessor;
+	nmtan_status status =
+		nt_gltf_uint(target, pointer, name, UINT32_MAX - 1, NT_GLTF_REQUIRED, &index, error);
+	if (!status)
+		status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
+	if (status)
+		return status;
+	if (accessor.components != 3 || accessor.count != mesh->vertex_count)
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+			"%s: accessor %llu has %llu elements of %u components, expected %zu of 3", name,
+			(unsigned long long)index, (unsigned long long)accessor.count,
+			accessor.components, mesh->vertex_count);
+	float *delta, *sum = nt_arena_alloc(&scene->arena, mesh->vertex_count, 3 * sizeof *sum);
+	if (!sum)
+		return nt_fail_memory(error);
+	status = nt_gltf_floats(document, &accessor, 3, 0, &scene->arena, &delta, error);
+	for (size_t i = 0; !status && i < 3 * mesh->vertex_count; i++)
+		sum[i] = base[i] + delta[i];
+	*moved = sum;
+	return status;
+}
+
+/* Sums of unit normals are not unit. */
+static void normalise_rows(float *rows, size_t count)
+{
+	for (size_t i = 0; i < count; i++) {
+		float *n = rows + 3 * i;
+		const double x = n[0], y = n[1], z = n[2], length = sqrt(x * x + y * y + z * z);
+		for (int k = 0; k < 3 && length > 0; k++)
+			n[k] = (float)(n[k] / length);
+	}
+}
+
+/* The mesh as each target moves it: their tangents differ from the base's. */
+static nmtan_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
+	const nt_json_value *primitive, nt_error *error)
+{
+	const nt_json_value *targets = nt_json_find(primitive, "targets");
+	const size_t count = nt_json_count(targets);
+	mesh->morph_count = 0;
+	if (count == 0)
+		return NMTAN_OK;
+	mesh->morphs = nt_arena_alloc(&scene->arena, count, sizeof *mesh->morphs);
+	if (!mesh->morphs)
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < count; i++) {
+		char pointer[NT_GLTF_POINTER];
+		snprintf(pointer, sizeof pointer, "%.100s/targets/%zu", mesh->place.pointer, i);
+		nt_morph morph = {.target = (uint32_t)i};
+		const nt_json_value *target = nt_json_at(targets, i);
+		nmtan_status status = add_delta(scene, document, mesh, target, "POSITION", pointer,
+			mesh->positions, &morph.positions, error);
+		if (!status)
+			status = add_delta(scene, document, mesh, target, "NORMAL", pointer, mesh->normals,
+				&morph.normals, error);
+		if (status)
+			return status;
+		if (morph.normals)
+			normalise_rows(morph.normals, mesh->vertex_count);
+		if (morph.positions || morph.normals)
+			mesh->morphs[mesh->morph_count++] = morph;
+	}
+	return NMTAN_OK;
+}
+
 static nmtan_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 	const nt_json_value *primitive, nt_error *error)
 {
@@ -532,6 +609,9 @@ nmtan_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options 
 		status = apply_transform(scene, document, mesh, primitive, error);
 	if (!status)
 		status = load_faces(scene, document, mesh, primitive, error);
+	/* a mesh in the world is written without its targets */
+	if (!status && !options->world)
+		status = load_morphs(scene, document, mesh, primitive, error);
 	if (status && error && !error->place.object[0])
 		memcpy(error->place.object, mesh->place.object, sizeof error->place.object);
 	return status;

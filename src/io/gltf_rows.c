@@ -20,6 +20,8 @@ typedef struct merging {
 	uint32_t *next;       /* next row of the same vertex, NT_NONE */
 	float **tangents;     /* [group] */
 	float **normals;      /* [group] or NULL */
+	float ***morphs;      /* [group][morph_counts[group]] */
+	size_t *morph_counts; /* [group] */
 	bool **defined;       /* [group][row] */
 	bool *has_normals;    /* [group] */
 } merging;
@@ -27,6 +29,7 @@ typedef struct merging {
 /* The three accessors that decide a tangent; meshes with the same ones form a group. */
 typedef struct group_key {
 	uint32_t positions, normals, texcoords;
+	uint32_t targets; /* a hash of what the morph targets move */
 } group_key;
 
 static uint32_t canonical_of(const nt_gltf_sharing *sharing, const nt_json_value *attributes,
@@ -43,10 +46,18 @@ static group_key key_of(const nt_gltf *document, const nt_gltf_sharing *sharing,
 {
 	char name[32];
 	snprintf(name, sizeof name, "TEXCOORD_%u", mesh->texcoord_set);
-	const nt_json_value *attributes =
-		nt_json_find(nt_gltf_primitive_of(document, mesh), "attributes");
+	const nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
+	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
+	const nt_json_value *targets = nt_json_find(primitive, "targets");
+	uint32_t hash = (uint32_t)mesh->morph_count;
+	for (size_t i = 0; i < nt_json_count(targets); i++) {
+		const nt_json_value *target = nt_json_at(targets, i);
+		hash = (hash ^ canonical_of(sharing, target, "POSITION")) * 16777619u;
+		hash = (hash ^ canonical_of(sharing, target, "NORMAL")) * 16777619u;
+	}
 	return (group_key){canonical_of(sharing, attributes, "POSITION"),
-		canonical_of(sharing, attributes, "NORMAL"), canonical_of(sharing, attributes, name)};
+		canonical_of(sharing, attributes, "NORMAL"), canonical_of(sharing, attributes, name),
+		hash};
 }
 
 static bool find_groups(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
@@ -98,6 +109,8 @@ static bool reserve_rows(merging *m, size_t needed)
 			grow((void **)&m->defined[g], old, wanted, sizeof(bool));
 		if (grown && m->has_normals[g])
 			grown = grow((void **)&m->normals[g], old, wanted, 3 * sizeof(float));
+		for (size_t k = 0; grown && k < m->morph_counts[g]; k++)
+			grown = grow((void **)&m->morphs[g][k], old, wanted, 3 * sizeof(float));
 	}
 	if (grown)
 		m->capacity = wanted;
@@ -111,12 +124,25 @@ static bool start_merging(merging *m, nt_gltf_rows *rows, const nt_scene *scene,
 		.tangents = nt_calloc(rows->group_count, sizeof *m->tangents),
 		.normals = nt_calloc(rows->group_count, sizeof *m->normals),
 		.defined = nt_calloc(rows->group_count, sizeof *m->defined),
-		.has_normals = nt_calloc(rows->group_count, sizeof *m->has_normals)};
-	if (!m->tangents || !m->normals || !m->defined || !m->has_normals)
+		.has_normals = nt_calloc(rows->group_count, sizeof *m->has_normals),
+		.morphs = nt_calloc(rows->group_count, sizeof *m->morphs),
+		.morph_counts = nt_calloc(rows->group_count, sizeof *m->morph_counts)};
+	if (!m->tangents || !m->normals || !m->defined || !m->has_normals || !m->morphs ||
+		!m->morph_counts)
 		return false;
-	for (size_t i = 0; i < member_count; i++)
-		if (rows->group_of[i] != NT_NONE && scene->meshes[members[i]].normals_made)
-			m->has_normals[rows->group_of[i]] = true;
+	for (size_t i = 0; i < member_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[members[i]];
+		const uint32_t group = rows->group_of[i];
+		if (group == NT_NONE)
+			continue;
+		m->has_normals[group] |= mesh->normals_made;
+		if (m->morphs[group])
+			continue;
+		m->morphs[group] = nt_calloc(mesh->morph_count, sizeof *m->morphs[group]);
+		if (!m->morphs[group])
+			return false;
+		m->morph_counts[group] = mesh->morph_count;
+	}
 	if (!reserve_rows(m, rows->old_count))
 		return false;
 	for (size_t i = 0; i < rows->old_count; i++) {
@@ -136,7 +162,13 @@ static void end_merging(merging *m)
 			free(m->normals[g]);
 		if (m->defined)
 			free(m->defined[g]);
+		for (size_t k = 0; m->morphs && m->morphs[g] && k < m->morph_counts[g]; k++)
+			free(m->morphs[g][k]);
+		if (m->morphs)
+			free(m->morphs[g]);
 	}
+	free(m->morphs);
+	free(m->morph_counts);
 	free(m->tangents);
 	free(m->normals);
 	free(m->defined);
@@ -157,6 +189,23 @@ static uint32_t source_row(const nt_mesh *mesh, uint32_t vertex)
 	while (vertex >= mesh->source_vertex_count)
 		vertex = mesh->vertex_sources[vertex - mesh->source_vertex_count];
 	return vertex;
+}
+
+static bool same_morphs(const merging *m, uint32_t group, uint32_t row, const nt_mesh *mesh,
+	uint32_t vertex)
+{
+	for (size_t k = 0; k < m->morph_counts[group]; k++)
+		if (memcmp(m->morphs[group][k] + 3 * (size_t)row,
+			mesh->morphs[k].vertex_tangents + 3 * (size_t)vertex, 3 * sizeof(float)) != 0)
+			return false;
+	return true;
+}
+
+static void define_morphs(merging *m, uint32_t group, uint32_t row, const nt_mesh *mesh, uint32_t vertex)
+{
+	for (size_t k = 0; k < m->morph_counts[group]; k++)
+		memcpy(m->morphs[group][k] + 3 * (size_t)row,
+			mesh->morphs[k].vertex_tangents + 3 * (size_t)vertex, 3 * sizeof(float));
 }
 
 static bool row_fits(const merging *m, uint32_t group, uint32_t row, const float *tangent,
@@ -185,8 +234,10 @@ static uint32_t take_row(merging *m, const nt_mesh *mesh, uint32_t group, uint32
 		mesh->normals_made ? mesh->normals + 3 * (size_t)before_split(mesh, vertex) : NULL;
 	uint32_t row = source_row(mesh, vertex), last = row;
 	for (; row != NT_NONE; row = m->next[row]) {
-		if (row_fits(m, group, row, tangent, normal)) {
+		if (row_fits(m, group, row, tangent, normal) &&
+			(!m->defined[group][row] || same_morphs(m, group, row, mesh, vertex))) {
 			define_row(m, group, row, tangent, normal);
+			define_morphs(m, group, row, mesh, vertex);
 			return row;
 		}
 		last = row;
@@ -198,6 +249,7 @@ static uint32_t take_row(merging *m, const nt_mesh *mesh, uint32_t group, uint32
 	m->next[row] = NT_NONE;
 	m->next[last] = row;
 	define_row(m, group, row, tangent, normal);
+	define_morphs(m, group, row, mesh, vertex);
 	return row;
 }
 
@@ -240,6 +292,10 @@ static void fill_unused(merging *m, const nt_mesh *mesh, uint32_t group)
 			normal = own ? mesh->normals + 3 * (size_t)source :
 				       m->normals[group] + 3 * (size_t)source;
 		define_row(m, group, (uint32_t)row, tangent, normal);
+		for (size_t k = 0; k < m->morph_counts[group]; k++)
+			memcpy(m->morphs[group][k] + 3 * row,
+				own ? mesh->morphs[k].vertex_tangents + 3 * (size_t)source :
+				      m->morphs[group][k] + 3 * (size_t)source, 3 * sizeof(float));
 	}
 }
 
@@ -250,7 +306,8 @@ static bool keep_rows(merging *m, nt_arena *arena)
 	rows->sources = nt_arena_alloc(arena, rows->new_count - rows->old_count, sizeof(uint32_t));
 	rows->tangents = nt_arena_alloc(arena, rows->group_count, sizeof *rows->tangents);
 	rows->normals = nt_arena_alloc(arena, rows->group_count, sizeof *rows->normals);
-	if (!rows->sources || !rows->tangents || !rows->normals)
+	rows->morphs = nt_arena_alloc(arena, rows->group_count, sizeof *rows->morphs);
+	if (!rows->sources || !rows->tangents || !rows->normals || !rows->morphs)
 		return false;
 	for (size_t i = rows->old_count; i < rows->new_count; i++)
 		rows->sources[i - rows->old_count] = m->source[i];
@@ -261,6 +318,11 @@ static bool keep_rows(merging *m, nt_arena *arena)
 		m->tangents[g] = m->normals[g] = NULL;
 		kept &= nt_arena_adopt(arena, rows->tangents[g]);
 		kept &= nt_arena_adopt(arena, rows->normals[g]);
+		rows->morphs[g] = m->morphs[g];
+		m->morphs[g] = NULL;
+		for (size_t k = 0; k < m->morph_counts[g]; k++)
+			kept &= nt_arena_adopt(arena, rows->morphs[g][k]);
+		kept &= nt_arena_adopt(arena, rows->morphs[g]);
 	}
 	return kept;
 }

@@ -45,6 +45,7 @@ typedef struct nt_gltf_rows {
 	size_t group_count;
 	float **tangents;     /* [group_count][new_count][4] */
 	float **normals;      /* [group_count][new_count][3]: NULL where normals were not made */
+	float ***morphs;      /* [group_count][morph count of its meshes][new_count][3] */
 	uint32_t *group_of;   /* [member count] NT_NONE: not solved */
 	uint32_t **indices;   /* [member count][corner count]; NULL: not solved */
 	bool *changed;        /* [member count] indices differ from the source's triangles */

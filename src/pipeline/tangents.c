@@ -7,6 +7,7 @@
  * not show.
  */
 #include "pipeline/stages.h"
+#include "pipeline/morphs.h"
 
 #include <math.h>
 #include <omp.h>
@@ -100,6 +101,24 @@ static nmtan_status solve_corners(const nt_mesh *mesh, const nmtan_mesh *view,
 	return status;
 }
 
+/* Splits with morph targets: wherever the base or a target needs it. */
+static nmtan_status split_morphs(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options,
+	nmtan_split_output *output)
+{
+	float *keys = nt_alloc(mesh->corner_count, 4 * sizeof *keys);
+	nmtan_status status = keys ? nt_morphs_solve(mesh, view, options) : NMTAN_ERROR_MEMORY;
+	if (!status)
+		status = nt_morphs_keys(mesh, view, keys);
+	if (!status)
+		status = nmtan_split(view, keys, options, output);
+	mesh->split.source_count = output->source_count;
+	if (!status)
+		status = nt_morphs_finish(mesh);
+	nt_morphs_free(mesh);
+	free(keys);
+	return status;
+}
+
 static nmtan_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned threads,
 	nmtan_workspace *workspace)
 {
@@ -112,12 +131,14 @@ static nmtan_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned t
 
 	nmtan_split_output output;
 	nmtan_status status = make_split(mesh, &mesh->split, &output);
-	if (!status && mesh->decision == NT_DECISION_REPAIR) {
-		float *tangents;
-		status = solve_corners(mesh, &view, &options, &tangents, &mesh->counts);
+	if (!status && (mesh->decision == NT_DECISION_REPAIR || mesh->morph_count)) {
+		status = solve_corners(mesh, &view, &options, &mesh->corner_tangents, &mesh->counts);
 		if (!status)
-			status = nmtan_split(&view, tangents, &options, &output);
-		free(tangents);
+			status = mesh->morph_count ?
+				split_morphs(mesh, &view, &options, &output) :
+				nmtan_split(&view, mesh->corner_tangents, &options, &output);
+		free(mesh->corner_tangents);
+		mesh->corner_tangents = NULL;
 	} else if (!status) {
 		status = nmtan_vertex_tangents(&view, &options, &output, &mesh->counts);
 	}
@@ -149,7 +170,10 @@ static void solve_small(tangent_job *job)
 /* Results live as long as the scene. */
 static bool keep_results(nt_scene *scene, nt_mesh *mesh)
 {
-	return nt_arena_adopt(&scene->arena, mesh->corner_tangents) &
+	bool kept = true;
+	for (size_t m = 0; m < mesh->morph_count; m++)
+		kept &= nt_arena_adopt(&scene->arena, mesh->morphs[m].vertex_tangents);
+	return kept & nt_arena_adopt(&scene->arena, mesh->corner_tangents) &
 	       nt_arena_adopt(&scene->arena, mesh->split.indices) &
 	       nt_arena_adopt(&scene->arena, mesh->split.sources) &
 	       nt_arena_adopt(&scene->arena, mesh->split.vertex_tangents);

@@ -72,6 +72,15 @@ typedef struct nt_primitive {
 	size_t face_count; /* faces of the mesh that belong to it */
 } nt_primitive;
 
+/* A mesh as one morph target moves it at weight 1. */
+typedef struct nt_morph {
+	uint32_t target;        /* its number in the source */
+	float *positions;       /* [vertex_count][3] moved; NULL: as the base */
+	float *normals;         /* [vertex_count][3] moved, unit; NULL: as the base */
+	float *corner_tangents; /* [corner_count][4] while it is being solved */
+	float *vertex_tangents; /* [vertex_count + split.source_count][3]; NULL until solved */
+} nt_morph;
+
 /* What splitting found: copies to append behind the mesh's vertices. */
 typedef struct nt_split {
 	uint32_t *indices;      /* [mesh corner_count] */
@@ -126,6 +135,9 @@ typedef struct nt_mesh {
 	size_t source_vertex_count;
 	uint32_t *vertex_sources; /* [vertex_count - source_vertex_count] */
 	bool normals_made;
+
+	nt_morph *morphs;         /* [morph_count] targets that move positions or normals; filled by load() */
+	size_t morph_count;
 
 	/* results */
 	float *corner_tangents;   /* [corner_count][4]; NULL until solved or after split */

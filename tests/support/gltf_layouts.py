@@ -35,7 +35,7 @@ def sheet():
             weights.append((65535 - i, i, 0, 0))
             custom.append((i * 0.5,))
             up.append((0.0, 0.0, x * 0.01))
-            turn.append((0.0, 0.001 * y, 0.0))
+            turn.append((0.0, 0.02 * (x % 5), 0.0))
     return {'POSITION': (FLOAT, False, positions), 'NORMAL': (FLOAT, False, normals),
             'TEXCOORD_0': (FLOAT, False, uvs), 'COLOR_0': (UBYTE, True, colors),
             'JOINTS_0': (UBYTE, False, joints), 'WEIGHTS_0': (USHORT, True, weights),
@@ -317,3 +317,20 @@ d.primitive(d.separate(attributes), d.indices(strip, USHORT), mode=5)
 fan = [6, 5, 6 + NX, 7 + NX, 8 + NX, 7]
 d.primitive(d.separate(attributes), d.indices(fan, USHORT), mode=6)
 d.write('strip_and_fan.gltf')
+
+# the plain mesh as each of its targets moves it, to compare targets' tangents with
+def single(value):
+    return struct.unpack('<f', struct.pack('<f', value))[0]
+
+
+for number, target in enumerate(targets):
+    d = Document()
+    moved = dict(attributes)
+    for n, delta in target.items():
+        rows = [tuple(single(single(a) + single(b)) for a, b in zip(r, t))
+                for r, t in zip(attributes[n][2], delta[2])]
+        if n == 'NORMAL':
+            rows = [tuple(c / sum(x * x for x in r) ** 0.5 for c in r) for r in rows]
+        moved[n] = (FLOAT, False, rows)
+    d.primitive(d.separate(moved), d.indices(triangles(), USHORT))
+    d.write('moved_%d.gltf' % number)

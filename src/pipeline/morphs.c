@@ -1,0 +1,108 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Tangents of morph targets. A client that finds TANGENT in a mesh computes none itself, so the targets need
+ * theirs: the tangents of the mesh as one target alone moves it, solved like any mesh. All targets share
+ * the base's vertices, so a vertex is split where the base or any target has different tangents.
+ */
+#include "pipeline/morphs.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { KEY_BITS = 20 }; /* of a corner number in each float of a key: floats are exact to 24 */
+
+nmtan_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options)
+{
+	for (size_t m = 0; m < mesh->morph_count; m++) {
+		nt_morph *morph = &mesh->morphs[m];
+		nmtan_mesh moved = *view;
+		if (morph->positions)
+			moved.positions = morph->positions;
+		if (morph->normals)
+			moved.normals = morph->normals;
+		morph->corner_tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float));
+		if (!morph->corner_tangents)
+			return NMTAN_ERROR_MEMORY;
+		nmtan_output output = {.tangents = morph->corner_tangents};
+		const nmtan_status status = nmtan_tangents(&moved, options, &output);
+		if (status)
+			return status;
+	}
+	return NMTAN_OK;
+}
+
+static bool same_corner(const nt_mesh *mesh, size_t a, size_t b)
+{
+	if (memcmp(mesh->corner_tangents + 4 * a, mesh->corner_tangents + 4 * b, 4 * sizeof(float)) != 0)
+		return false;
+	for (size_t m = 0; m < mesh->morph_count; m++) {
+		const float *tangents = mesh->morphs[m].corner_tangents;
+		/* targets have no w of their own */
+		if (memcmp(tangents + 4 * a, tangents + 4 * b, 3 * sizeof(float)) != 0)
+			return false;
+	}
+	return true;
+}
+
+nmtan_status nt_morphs_keys(const nt_mesh *mesh, const nmtan_mesh *view, float *keys)
+{
+	/* chains of corners of one vertex, one corner for each combination of tangents */
+	uint32_t *head = nt_alloc(mesh->vertex_count, sizeof *head);
+	uint32_t *next = nt_alloc(mesh->corner_count, sizeof *next);
+	if (!head || !next) {
+		free(head);
+		free(next);
+		return NMTAN_ERROR_MEMORY;
+	}
+	memset(head, 0xFF, mesh->vertex_count * sizeof *head);
+	for (uint32_t c = 0; c < mesh->corner_count; c++) {
+		const uint32_t vertex = view->indices ? view->indices[c] : c;
+		uint32_t first = head[vertex];
+		while (first != NT_NONE && !same_corner(mesh, first, c))
+			first = next[first];
+		if (first == NT_NONE) {
+			next[c] = head[vertex];
+			head[vertex] = first = c;
+		}
+		float *key = keys + 4 * (size_t)c;
+		key[0] = (float)(first & ((1u << KEY_BITS) - 1));
+		key[1] = (float)(first >> KEY_BITS);
+		key[2] = key[3] = 0;
+	}
+	free(head);
+	free(next);
+	return NMTAN_OK;
+}
+
+nmtan_status nt_morphs_finish(nt_mesh *mesh)
+{
+	nt_split *split = &mesh->split;
+	for (size_t c = 0; c < mesh->corner_count; c++)
+		memcpy(split->vertex_tangents + 4 * (size_t)split->indices[c],
+			mesh->corner_tangents + 4 * c, 4 * sizeof(float));
+	const size_t count = mesh->vertex_count + split->source_count;
+	for (size_t m = 0; m < mesh->morph_count; m++) {
+		nt_morph *morph = &mesh->morphs[m];
+		morph->vertex_tangents = nt_alloc(count, 3 * sizeof(float));
+		if (!morph->vertex_tangents)
+			return NMTAN_ERROR_MEMORY;
+		/* vertices without corners do not turn */
+		for (size_t v = 0; v < count; v++)
+			memcpy(morph->vertex_tangents + 3 * v, split->vertex_tangents + 4 * v,
+				3 * sizeof(float));
+		for (size_t c = 0; c < mesh->corner_count; c++)
+			memcpy(morph->vertex_tangents + 3 * (size_t)split->indices[c],
+				morph->corner_tangents + 4 * c, 3 * sizeof(float));
+		free(morph->corner_tangents);
+		morph->corner_tangents = NULL;
+	}
+	return NMTAN_OK;
+}
+
+void nt_morphs_free(nt_mesh *mesh)
+{
+	for (size_t m = 0; m < mesh->morph_count; m++) {
+		free(mesh->morphs[m].corner_tangents);
+		mesh->morphs[m].corner_tangents = NULL;
+	}
+}
