@@ -61,6 +61,9 @@ typedef struct nt_gltf_layout {
 nmtan_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_error *error);
 void nt_layout_free(nt_gltf_layout *layout);
 
+/* Fills extents; for nt_layout_create(). False: out of memory. */
+bool nt_layout_find_extents(nt_gltf_layout *layout);
+
 /* Whether something other than the accessors marked in own[] refers to bytes of [begin, end). */
 bool nt_layout_is_foreign(const nt_gltf_layout *layout, uint32_t buffer, uint64_t begin, uint64_t end,
 	const uint32_t *own, uint32_t mark);

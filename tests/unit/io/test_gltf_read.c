@@ -445,6 +445,26 @@ static void buffers_are_opened_only_when_wanted(void **state)
 	close_text(&f);
 }
 
+/* The other buffer does not exist; nobody asks for it. */
+static void a_buffer_that_nobody_wants_may_be_missing(void **state)
+{
+	(void)state;
+	fixture f;
+	memset(&f, 0, sizeof f);
+	nt_buffer_format(&f.text, "{\"asset\":{\"version\":\"2.0\"}," QUAD_ACCESSORS ",%s,\"meshes\":[{"
+		"\"primitives\":[{" QUAD_ATTRIBUTES "}]}],\"buffers\":[{\"byteLength\":%zu,\"uri\":\"",
+		QUAD_VIEWS, sizeof quad);
+	nt_uri_append_data(&f.text, "a/b", &quad, sizeof quad);
+	nt_buffer_text(&f.text, "\"},{\"byteLength\":100,\"uri\":\"../absent.bin\"},{\"uri\":7}]}");
+	nt_scene_init(&f.scene, "test.gltf");
+	f.scene.bytes = (const unsigned char *)f.text.data;
+	f.scene.byte_count = f.text.size;
+	assert_int_equal(nt_gltf_open(&f.scene, &plain_options, &f.error), NMTAN_OK);
+	assert_int_equal(nt_gltf_load(&f.scene, &f.scene.meshes[0], &plain_options, &f.error), NMTAN_OK);
+	assert_int_equal(((const nt_gltf *)f.scene.source)->bytes_opened, sizeof quad);
+	close_text(&f);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -463,6 +483,7 @@ int main(void)
 		cmocka_unit_test(instances_have_world_matrices),
 		cmocka_unit_test(what_is_not_read_is_not_judged),
 		cmocka_unit_test(buffers_are_opened_only_when_wanted),
+		cmocka_unit_test(a_buffer_that_nobody_wants_may_be_missing),
 	};
 	return cmocka_run_group_tests_name("io/gltf_read", tests, NULL, NULL);
 }
