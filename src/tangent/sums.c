@@ -25,13 +25,15 @@
 #include "topology/corners.h"
 #include "topology/weld.h"
 
-enum { TRIANGLE_GRAIN = 16384, VERTEX_GRAIN = 16384 };
+/* Below that, starting a thread costs more than it saves. */
+enum { TRIANGLE_GRAIN = 32768, VERTEX_GRAIN = 32768 };
 
 /* What becomes of one sum. */
 typedef struct sum_result {
 	float x, y, z; /* unit tangent, or zero for repair to fill */
 	uint32_t flags;
 } sum_result;
+enum { FLAG_POSITIVE = 1, FLAG_SUSPECT = 2 };
 enum { RESULT_ILL = 1, RESULT_MET = 2 /* some triangle has weight here */ };
 
 typedef struct deferred {
@@ -49,6 +51,7 @@ typedef struct summing {
 	size_t triangle_count;
 	const uint32_t *corners;   /* [3 * triangle_count] of the mesh; NULL: i is i */
 	int8_t *sides;             /* [triangle_count] orientation of its face */
+	uint8_t *flags;            /* [triangle_count] FLAG_: what judging need not look at */
 	bool know_sides;           /* filled in before the sums; else the sums fill them in */
 	uint32_t *first_triangle;  /* [weld.count] that touches the vertex */
 	nt_frame_sum (*sums)[2];   /* [weld.count] */
@@ -56,6 +59,7 @@ typedef struct summing {
 	unsigned ranges;
 	deferred **deferred;       /* [ranges] */
 	size_t *deferred_count;    /* [ranges] */
+	size_t *lost_counts;       /* [slots of the finishing pass] results that are zero against weight */
 	size_t *ill_counts;        /* [slots of the writing pass] */
 } summing;
 
@@ -80,7 +84,8 @@ static nmtan_status make_triangles(summing *s)
 	for (size_t face = 0; mesh->face_sizes && face < mesh->face_count; face++)
 		s->triangle_count += mesh->face_sizes[face] == 4;
 	s->sides = nt_scratch_alloc(s->solve->scratch, s->triangle_count, 1);
-	if (!s->sides)
+	s->flags = nt_scratch_alloc(s->solve->scratch, s->triangle_count, 1);
+	if (!s->sides || !s->flags)
 		return NMTAN_ERROR_MEMORY;
 	if (!s->know_sides)
 		return NMTAN_OK;
@@ -177,6 +182,7 @@ static void add_hard(summing *s, unsigned range, size_t range_first, size_t t)
 		corners[k] = (uint32_t)corner_of(s, 3 * t + k);
 	if (!s->know_sides)
 		s->sides[t] = (int8_t)nt_triangle_orientation(s->mesh, corners, false);
+	s->flags[t] = FLAG_SUSPECT;
 	nt_frame_sum parts[3] = {{{0, 0, 0}, 0, 0}, {{0, 0, 0}, 0, 0}, {{0, 0, 0}, 0, 0}};
 	nt_frame_sum *const to[3] = {&parts[0], &parts[1], &parts[2]};
 	nt_add_triangle(s->mesh, s->weight, corners, to);
@@ -189,6 +195,7 @@ static void add_block(summing *s, unsigned range, size_t range_first, size_t t, 
 {
 	if (!s->know_sides)
 		s->sides[t] = (int8_t)block->sign[lane];
+	s->flags[t] = (block->plain[lane] ? 0 : FLAG_SUSPECT) | (block->sign[lane] > 0 ? FLAG_POSITIVE : 0);
 	for (size_t k = 0; k < 3; k++) {
 		const double (*a)[NT_SUM_LANES] = block->add[k];
 		const nt_frame_sum add = {{a[0][lane], a[1][lane], a[2][lane]}, a[3][lane], a[4][lane]};
@@ -230,21 +237,36 @@ static void add_deferred(summing *s)
 
 static void finish_range(void *context, size_t begin, size_t end, unsigned slot)
 {
-	(void)slot;
 	const summing *s = context;
+	size_t lost = 0;
 	for (size_t v = begin; v < end; v++) {
 		for (int side = 0; side < 2; side++) {
 			const nt_frame_sum *sum = &s->sums[v][side];
 			sum_result *result = &s->results[v][side];
 			nt_dvec3 t;
-			if (!(sum->weights > 0.0) || !nt_sum_tangent(sum, s->normals[v], &t))
+			if (!nt_sum_tangent(sum, s->normals[v], &t)) {
 				t = (nt_dvec3){0, 0, 0};
+				lost += sum->weights > 0.0;
+			}
 			/* no -0, whose sign would tell the path that was taken */
 			*result = (sum_result){(float)t.x + 0.0f, (float)t.y + 0.0f, (float)t.z + 0.0f, 0};
 			result->flags = (nt_sum_is_ill_conditioned(sum) ? RESULT_ILL : 0) |
 					(sum->weights > 0.0 ? RESULT_MET : 0);
 		}
 	}
+	s->lost_counts[slot] = lost;
+}
+
+/* A plain triangle has weight at its corners, so its results are unit vectors perpendicular to N unless one
+ * was lost. Quads and rounded v are left to judging. */
+static void vouch(const summing *s, unsigned slots)
+{
+	size_t lost = 0;
+	for (unsigned slot = 0; slot < slots; slot++)
+		lost += s->lost_counts[slot];
+	if (s->solve->vouched && lost == 0 && !s->know_sides)
+		*s->solve->vouched = (nt_vouched){.flags = s->flags, .positive = FLAG_POSITIVE,
+			.suspect = FLAG_SUSPECT};
 }
 
 /* A face without orientation takes the orientation that has a sum at its corners. */
@@ -344,10 +366,15 @@ static nmtan_status solve_by_sums(const nt_solve *solve, nt_weight weight, size_
 	nt_parallel_ranges(solve->threads, s.weld.count, VERTEX_GRAIN, unit_normals, &s);
 	nt_parallel_ranges(s.ranges, s.ranges, 1, sum_range, &s);
 	add_deferred(&s);
+	unsigned slots = nt_parallel_slots(solve->threads, s.weld.count, VERTEX_GRAIN);
+	s.lost_counts = nt_scratch_alloc(solve->scratch, slots, sizeof *s.lost_counts);
+	if (!s.lost_counts)
+		return NMTAN_ERROR_MEMORY;
 	nt_parallel_ranges(solve->threads, s.weld.count, VERTEX_GRAIN, finish_range, &s);
+	vouch(&s, slots);
 
 	const size_t faces = solve->mesh->face_count;
-	const unsigned slots = nt_parallel_slots(solve->threads, faces, TRIANGLE_GRAIN);
+	slots = nt_parallel_slots(solve->threads, faces, TRIANGLE_GRAIN);
 	s.ill_counts = nt_scratch_alloc(solve->scratch, slots, sizeof *s.ill_counts);
 	if (!s.ill_counts)
 		return NMTAN_ERROR_MEMORY;

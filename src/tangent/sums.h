@@ -17,6 +17,7 @@ typedef struct nt_sum_block {
 	/* out: corner, then what is added to nt_frame_sum: u (0 to 2), weights (3), sensitivity (4) */
 	double add[3][5][NT_SUM_LANES];
 	int64_t sign[NT_SUM_LANES]; /* exact orientation; only where not hard */
+	int64_t plain[NT_SUM_LANES]; /* not hard, has area in space, and weight at each corner */
 	int64_t hard[NT_SUM_LANES]; /* nothing is known: nt_add_triangle() must do it */
 } nt_sum_block;
 

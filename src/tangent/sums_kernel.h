@@ -104,6 +104,9 @@ LANE_INLINE void lane_triangle(nt_sum_block *block, int lane, int by_area)
 	lane_corner(block, 0, lane, u, e0, e2, across, across_length, by_area);
 	lane_corner(block, 1, lane, u, e1, e0, across, across_length, by_area);
 	lane_corner(block, 2, lane, u, e2, e1, across, across_length, by_area);
+	block->plain[lane] = (block->hard[lane] ^ 1) & (int64_t)(across_length > 0.0) &
+			     (int64_t)(block->add[0][3][lane] > 0.0) & (int64_t)(block->add[1][3][lane] > 0.0) &
+			     (int64_t)(block->add[2][3][lane] > 0.0);
 }
 
 static void sum_by_angle(nt_sum_block *block)

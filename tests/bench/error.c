@@ -7,7 +7,8 @@
  *
  * Error is measured three ways: against the same formula in 113 bits (arithmetic), against the analytic
  * dP/du of the surface (truth), and by what a normal map looks like (eye). Tables in error.md and error.csv,
- * convergence.csv, bevel.csv, charts as SVG. Times are the best of several runs with a warm workspace.
+ * convergence.csv, bevel.csv, charts as SVG. Times are the best of several runs with a warm
+ * workspace, in rounds over all methods.
  */
 #include <errno.h>
 #include <math.h>
@@ -22,7 +23,7 @@
 #include "error_meshes.h"
 #include "oracle128.h"
 
-enum { MOST_RUNS = 24, WEIGHTS = 3, NO_WEIGHT = -1 };
+enum { MOST_RUNS = 24, WEIGHTS = 3, NO_WEIGHT = -1, ROUNDS = 4 };
 
 /* One way to get tangents: ours, or a peer's file. */
 typedef struct run {
@@ -50,6 +51,7 @@ typedef struct bench {
 	bench_mesh meshes[BENCH_MESH_COUNT];
 	oracle_corner *exact[BENCH_MESH_COUNT][WEIGHTS];
 	float (*baker[BENCH_MESH_COUNT])[4]; /* MikkTSpace, as bakers have it; eye meshes alone */
+	double best[MOST_RUNS][BENCH_MESH_COUNT]; /* seconds; negative: not there */
 	run runs[MOST_RUNS];
 	result results[MOST_RUNS];
 	size_t run_count;
@@ -204,7 +206,7 @@ static double run_ours(const run *r, const nt_owned *mesh, float (*tangents)[4])
 	options.workspace = nmtan_workspace_create(NULL);
 	nmtan_output output = {.tangents = &tangents[0][0]};
 	double best = INFINITY, total = 0;
-	for (int i = 0; i < 200 && (i < 5 || total < 0.25); i++) {
+	for (int i = 0; i < 100 && (i < 2 || total < 0.04); i++) {
 		const double start = seconds();
 		const nmtan_status status = nmtan_tangents(&mesh->mesh, &options, &output);
 		const double took = seconds() - start;
@@ -265,6 +267,31 @@ static void judge_vectors(bench *b, size_t mesh, const run *r, const float (*tan
 	}
 }
 
+/* Times ours in rounds over all runs, so that what else the machine does meets them alike. */
+static void time_runs(bench *b)
+{
+	for (int round = 0; round < ROUNDS; round++) {
+		for (size_t i = 0; i < b->run_count; i++) {
+			for (size_t m = 0; m < BENCH_MESH_COUNT && !b->runs[i].is_peer; m++) {
+				const nt_owned *mesh = &b->meshes[m].mesh;
+				if (mesh->mesh.face_count == 0)
+					continue;
+				float (*tangents)[4] = room(mesh->corner_count, sizeof *tangents);
+				const double took = run_ours(&b->runs[i], mesh, tangents);
+				b->best[i][m] = round == 0 ? took : fmin(b->best[i][m], took);
+				free(tangents);
+			}
+		}
+	}
+}
+
+/* Our tangents once more; false on failure. */
+static bool solve_ours(const run *r, const nt_owned *mesh, float (*tangents)[4])
+{
+	nmtan_output output = {.tangents = &tangents[0][0]};
+	return nmtan_tangents(&mesh->mesh, &r->options, &output) == NMTAN_OK;
+}
+
 static void judge_run(bench *b, size_t index)
 {
 	const run *r = &b->runs[index];
@@ -274,7 +301,9 @@ static void judge_run(bench *b, size_t index)
 		if (m->mesh.mesh.face_count == 0)
 			continue;
 		float (*tangents)[4] = room(m->mesh.corner_count, sizeof *tangents);
-		const double took = r->is_peer ? read_peer(b, r, m, tangents) : run_ours(r, &m->mesh, tangents);
+		const double took = r->is_peer                              ? read_peer(b, r, m, tangents)
+				    : solve_ours(r, &m->mesh, tangents) ? b->best[index][i]
+									: -1;
 		if (took >= 0) {
 			to->present = true;
 			if (m->is_eye) {
@@ -351,6 +380,14 @@ static void write_results(const bench *b, FILE *md)
 		fprintf(csv, "\n");
 	}
 	fclose(csv);
+	double standard = NAN, robust = NAN;
+	for (size_t i = 0; i < b->run_count; i++) {
+		if (strcmp(b->runs[i].name, "mikktspace") == 0)
+			standard = nanoseconds(&b->results[i]);
+		if (strcmp(b->runs[i].name, "robust") == 0)
+			robust = nanoseconds(&b->results[i]);
+	}
+	fprintf(md, "\nOne thread: robust takes %.2f times as long as the default.\n", robust / standard);
 }
 
 /* Charts: one series for each run, three points: median, 99.9 % and worst. */
@@ -551,6 +588,7 @@ static void judge(bench *b)
 {
 	list_runs(b);
 	make_bakers(b);
+	time_runs(b);
 	for (size_t i = 0; i < b->run_count; i++)
 		judge_run(b, i);
 	FILE *md = open_in(b->output, "error.md", "w");
