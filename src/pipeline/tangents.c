@@ -40,34 +40,41 @@ static float stored_v_offset(const tangent_job *job)
 	return is_gltf(job->scene->format) ? 1.0f : -1.0f;
 }
 
-/* Whether the authored tangents of a face are valid: finite, unit, w the same and of the right sign. */
-static bool face_is_valid(const nt_mesh *mesh, const uint32_t *vertices, size_t size)
+/* Whether authored tangents can stay on a face: finite, of unit length (to the Khronos validator's
+ * tolerance), one w, and that of the exact orientation of every triangle of it. */
+static bool face_is_valid(const nt_mesh *mesh, const size_t *vertices, size_t size)
 {
-	const float w = mesh->tangents[4 * (size_t)vertices[0] + 3];
+	const float w = mesh->tangents[4 * vertices[0] + 3];
 	for (size_t k = 0; k < size; k++) {
-		const float *t = mesh->tangents + 4 * (size_t)vertices[k];
+		const float *t = mesh->tangents + 4 * vertices[k];
 		const double squared = (double)t[0] * t[0] + (double)t[1] * t[1] + (double)t[2] * t[2];
 		if (!(fabs(sqrt(squared) - 1.0) <= 0.00674) || t[3] != w || (w != 1.0f && w != -1.0f))
 			return false;
 	}
-	const float *uv = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords;
-	const int sign = nmtan_orientation(uv + 2 * (size_t)vertices[0], uv + 2 * (size_t)vertices[1],
-		uv + 2 * (size_t)vertices[2]);
-	return sign == 0 || w == (float)sign;
+	for (size_t k = 0; k < size; k++) {
+		/* of a quad every corner's triangle, whichever diagonal it is cut along */
+		const int sign = nmtan_orientation(mesh->texcoords + 2 * vertices[k],
+			mesh->texcoords + 2 * vertices[(k + 1) % size],
+			mesh->texcoords + 2 * vertices[(k + 2) % size]);
+		if (sign != 0 && w != (float)sign)
+			return false;
+	}
+	return true;
 }
 
-/* --existing=repair: corners of valid faces take back their authored tangent. glTF has triangles only. */
+/* --existing=repair: corners of valid faces take back their authored tangent. */
 static void restore_valid(const nt_mesh *mesh, float *corner_tangents)
 {
+	size_t first = 0;
 	for (size_t face = 0; face < mesh->face_count; face++) {
-		uint32_t vertices[3];
-		for (size_t k = 0; k < 3; k++)
-			vertices[k] = mesh->indices ? mesh->indices[3 * face + k] : (uint32_t)(3 * face + k);
-		if (!face_is_valid(mesh, vertices, 3))
-			continue;
-		for (size_t k = 0; k < 3; k++)
-			memcpy(corner_tangents + 4 * (3 * face + k),
-				mesh->tangents + 4 * (size_t)vertices[k], 4 * sizeof(float));
+		const size_t size = mesh->face_sizes ? mesh->face_sizes[face] : 3;
+		size_t vertices[4];
+		for (size_t k = 0; k < size; k++)
+			vertices[k] = mesh->indices ? mesh->indices[first + k] : first + k;
+		for (size_t k = 0; k < size && face_is_valid(mesh, vertices, size); k++)
+			memcpy(corner_tangents + 4 * (first + k), mesh->tangents + 4 * vertices[k],
+				4 * sizeof(float));
+		first += size;
 	}
 }
 

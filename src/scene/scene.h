@@ -141,7 +141,6 @@ typedef struct nt_mesh {
 
 	/* results */
 	float *corner_tangents;   /* [corner_count][4]; NULL until solved or after split */
-	float *corner_bitangents; /* [corner_count][3]; NULL unless asked for */
 	nmtan_counts counts;
 	nt_split split;
 } nt_mesh;

@@ -10,7 +10,7 @@
  *   3 put degenerate triangles aside  7 split groups by angle, average each part
  *   4 solve each triangle's frame     8 give degenerate triangles a neighbour's answer
  *
- * All arithmetic is float, in the order written; double only for the angle's arc cosine. Time grows with
+ * All arithmetic is float, in the order written; double only inside the angle's arc cosine. Time grows with
  * n log n (sorting the edges of a vertex) but for the split by angle, which compares all pairs of a
  * group. Memory: about 150 bytes per triangle.
  */
@@ -19,6 +19,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/vec.h"
+#include "tangent/acos.h"
 #include "topology/corners.h"
 
 #define NO_TRIANGLE UINT32_MAX
@@ -372,7 +373,7 @@ static slot average(const state *s, const fan_corner *part, size_t count)
 		const nt_vec3 e2 = nt_vec3_project(n, nt_vec3_sub(next, p));
 		float c = nt_vec3_dot(e1, e2);
 		c = c > 1.0f ? 1.0f : c < -1.0f ? -1.0f : c;
-		const float angle = (float)acos((double)c);
+		const float angle = nt_acos(c); /* (float)acos((double)c), the same in every C library */
 		sum.os = nt_vec3_add(sum.os, nt_vec3_scale(angle, nt_vec3_project(n, t->os)));
 		sum.ot = nt_vec3_add(sum.ot, nt_vec3_scale(angle, nt_vec3_project(n, t->ot)));
 		sum.mag_s += angle * t->mag_s;
