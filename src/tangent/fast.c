@@ -32,6 +32,9 @@
 /* A range of triangles that is worth a thread: below, starting it costs more than it saves. */
 enum { TRIANGLE_GRAIN = 65536 };
 
+/* Triangles by which the records of a scattered mesh are asked for before they are written. */
+enum { WRITE_AHEAD = 16 };
+
 static const nt_kernels *kernels_for(nmtan_isa isa)
 {
 #if defined(__x86_64__)
@@ -77,6 +80,19 @@ static nmtan_status cut_faces(nt_fast *fast, const uint32_t *corner_ids)
 	fast->corners = corners;
 	fast->ids = ids;
 	return NMTAN_OK;
+}
+
+/* Whether following triangles tend to have vertices that lie far apart, by a sample. */
+static bool is_scattered(const nt_fast *fast)
+{
+	enum { SAMPLES = 256, FAR = 4096 };
+	const size_t step = fast->triangle_count / SAMPLES;
+	size_t far = 0;
+	for (size_t i = 0; step > 1 && i < SAMPLES; i++) {
+		const uint32_t a = fast->ids[3 * i * step], b = fast->ids[3 * i * step + 3];
+		far += (a > b ? a - b : b - a) > FAR;
+	}
+	return far > SAMPLES / 8;
 }
 
 static nmtan_status make_triangles(nt_fast *fast, const nt_weld *weld)
@@ -359,7 +375,11 @@ static void write_plain_triangles(nt_fast *fast, size_t begin, size_t end)
 	uint8_t *flags = fast->flags;
 	const nt_record *records[2] = {fast->records[0], fast->records[1]};
 	float *out = fast->solve->tangents;
+	const size_t ahead = fast->scattered ? 3 * WRITE_AHEAD : 0, last = 3 * end - 1;
 	for (size_t t = begin; t < end; t++) {
+		for (size_t i = 3 * t + ahead; ahead && i < 3 * t + ahead + 3; i++)
+			__builtin_prefetch(&records[flags[t + WRITE_AHEAD < end ? t + WRITE_AHEAD : t] & NT_TRIANGLE_ORIENT]
+					    [ids[i < last ? i : last]]);
 		if (flags[t] & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
 			write_special(fast, t);
 			continue;
@@ -492,6 +512,7 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ra
 		status = make_triangles(fast, &weld);
 	if (!status)
 		status = make_ranges(fast, ranges);
+	fast->scattered = !status && is_scattered(fast);
 	if (!status)
 		status = nt_adjacency_make(fast->ids, &fast->ranges, fast->vertex_count, &room,
 			&fast->adjacency);

@@ -90,6 +90,7 @@ typedef struct nt_fast {
 	nt_record_more *more[2];     /* the same for the optional outputs */
 	bool wants_more;
 	bool sparse;             /* step 6 leaves out corners whose result is their record */
+	bool scattered;          /* neighbouring triangles have vertices far apart: ask for them early */
 	nt_triangle_ranges ranges;
 	nt_deferred **deferred;      /* [ranges] */
 	size_t *deferred_count;      /* [ranges] */

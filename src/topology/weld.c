@@ -27,6 +27,7 @@ typedef struct welder {
 	const uint32_t *items; /* vertex of item i; NULL: i */
 	size_t item_count;
 	nt_weld_row *rows;
+	bool rows_in_room;
 	size_t row_capacity, row_count;
 	uint32_t *table;
 	unsigned table_bits, index_bits;
@@ -124,10 +125,13 @@ static bool grow_table(welder *w)
 
 static bool grow_rows(welder *w, size_t capacity)
 {
+	const bool in_room = nt_room_has(w->room, capacity, sizeof *w->rows);
 	nt_weld_row *rows = nt_room_alloc(w->room, capacity, sizeof *rows);
 	if (!rows)
 		return false;
-	memcpy(rows, w->rows, w->row_count * sizeof *rows);
+	if (w->rows)
+		memcpy(rows, w->rows, w->row_count * sizeof *rows);
+	w->rows_in_room = in_room;
 	w->rows = rows;
 	w->row_capacity = capacity;
 	return true;
@@ -305,14 +309,14 @@ nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, nt_room *
 
 	/* corners share vertices, usually six to one: begin small */
 	const size_t expected = by_corner ? corner_count / 4 : w.item_count;
-	w.row_capacity = expected + AHEAD;
-	w.rows = nt_room_alloc(room, w.row_capacity, sizeof *w.rows);
-	if (!w.rows || !make_table(&w, bits_for(2 * (expected + AHEAD) + 1)) || !weld_items(&w, by_corner))
+	if (!grow_rows(&w, expected + AHEAD) || !make_table(&w, bits_for(2 * (expected + AHEAD) + 1)) || !weld_items(&w, by_corner))
 		return NMTAN_ERROR_MEMORY;
 
 	if (by_corner && !number_items(&w))
 		return NMTAN_ERROR_MEMORY;
 	weld->ids = by_corner ? w.numbers : !w.numbers ? mesh->indices : number_corners(&w, corner_count);
+	if (w.rows_in_room)
+		nt_room_trim(room, w.rows, w.row_count * sizeof *w.rows);
 	weld->rows = w.rows;
 	weld->count = w.row_count;
 	return weld->ids ? NMTAN_OK : NMTAN_ERROR_MEMORY;

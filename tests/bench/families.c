@@ -179,12 +179,26 @@ static void flatten_uvs(nt_family_mesh *m)
 		}
 }
 
-/* Every n-th triangle becomes one with a repeated corner, of the triangle before it. */
-static void collapse(nt_family_mesh *m, unsigned one_in)
+/* Behind every n triangles comes one that repeats a corner of the last. */
+static int add_collapsed(nt_family_mesh *m, size_t n)
 {
-	for (size_t t = 1; t < m->triangle_count; t++)
-		if (t % one_in == 0)
-			m->indices[3 * t + 1] = m->indices[3 * t];
+	const size_t added = m->triangle_count / n;
+	unsigned *indices = malloc((m->corner_count + 3 * added) * sizeof *indices), *out = indices;
+	if (!indices)
+		return 0;
+	for (size_t t = 0; t < m->triangle_count; t++, out += 3) {
+		const unsigned *v = m->indices + 3 * t;
+		memcpy(out, v, 3 * sizeof *v);
+		if (t % n == n - 1 && t / n < added) {
+			out += 3;
+			memcpy(out, (unsigned[3]){v[0], v[0], v[2]}, 3 * sizeof *v);
+		}
+	}
+	free(m->indices);
+	m->indices = indices;
+	m->triangle_count += added;
+	m->corner_count += 3 * added;
+	return 1;
 }
 
 static int make_hubs(size_t triangles, nt_family_mesh *m)
@@ -225,7 +239,7 @@ int nt_family_make(nt_family family, size_t triangles, nt_family_mesh *m)
 	if (made && family == NT_FAMILY_ZERO_UV)
 		flatten_uvs(m);
 	if (made && (family == NT_FAMILY_COLLAPSED || family == NT_FAMILY_HALF))
-		collapse(m, family == NT_FAMILY_HALF ? 2 : 11);
+		made = add_collapsed(m, family == NT_FAMILY_HALF ? 1 : 10);
 	m->mesh.face_count = m->face_sizes ? m->triangle_count / 2 : m->triangle_count;
 	m->mesh.face_sizes = m->face_sizes;
 	m->mesh.indices = m->indices;

@@ -14,10 +14,10 @@ typedef enum nt_family {
 	NT_FAMILY_DEINDEXED, /* the clean torus, three rows for each triangle */
 	NT_FAMILY_MIRRORED,  /* texture mirrored every four columns */
 	NT_FAMILY_ZERO_UV,   /* 18 % of the vertices touch a triangle without UV area */
-	NT_FAMILY_COLLAPSED, /* one triangle in eleven has two corners at one position */
+	NT_FAMILY_COLLAPSED, /* one more triangle for ten, with two corners at one position */
 	NT_FAMILY_QUADS,     /* the clean torus in quads */
 	NT_FAMILY_HUB,       /* fans of 100 000 triangles */
-	NT_FAMILY_HALF,      /* half of the triangles collapsed */
+	NT_FAMILY_HALF,      /* as many collapsed triangles as sound ones */
 	NT_FAMILY_COUNT
 } nt_family;
 
