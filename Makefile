@@ -4,7 +4,7 @@
 #   make check    the same, then every test
 #   make          builds build/$(config)/nmtan, libnmtan.a and libnmtan.so
 #   make install PREFIX=/usr/local DESTDIR=
-#   make soak     the heavy tests; make bench, make format, make lint, make clean
+#   make soak     the heavy tests; make check-aarch64, make bench, make format, make lint, make clean
 #
 # config=release (default) | debug | sanitize | tsan
 

@@ -79,6 +79,17 @@ bench: bench-error
 bench-error: $(B)/tests/bench/error
 	@CC="$(CC)" sh tests/bench/run_error.sh $< build/bench
 
+# make bench-core: million triangles a second on each family of meshes.
+core_bench_obj := $(patsubst %,$(B)/tests/bench/%.o,core families)
+
+$(B)/tests/bench/core: $(core_bench_obj) $(B)/libnmtan.a
+	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm
+
+.PHONY: bench-core
+bench: bench-core
+bench-core: $(B)/tests/bench/core
+	@CC="$(CC)" sh tests/bench/run_core.sh $< build/bench/core
+
 # make bench-obj: reading the 104 MB file that speed is stated for; the line "parse" is the reader.
 build/bench/torus.obj: $(B)/tests/bench/make_obj.o
 	@mkdir -p $(@D)
@@ -90,3 +101,18 @@ bench-obj: build/bench/torus.obj $(B)/nmtan
 	@for threads in 1 2; do for run in 1 2 3 4 5; do \
 		$(B)/nmtan --timing --dry-run --threads=$$threads $< build/bench/torus.glb 2>&1 | \
 		sed -n "s/^parse/threads $$threads, parse ms/p"; done; done
+
+# make check-aarch64: the fast path on another processor, under qemu. Needs gcc-aarch64-linux-gnu and qemu-user.
+aarch64_src := $(core_src) tests/support/nasty.c tests/support/golden.c tests/aarch64/run_fast.c
+
+.PHONY: check-aarch64
+check-aarch64:
+	@if command -v aarch64-linux-gnu-gcc >/dev/null && command -v qemu-aarch64 >/dev/null; then \
+		$(MAKE) -s build/aarch64/run_fast && \
+		OMP_WAIT_POLICY=passive qemu-aarch64 -L /usr/aarch64-linux-gnu build/aarch64/run_fast data/golden 300; \
+	else echo "no aarch64-linux-gnu-gcc or qemu-aarch64 (gcc-aarch64-linux-gnu, qemu-user): skipped"; fi
+
+build/aarch64/run_fast: $(aarch64_src) $(wildcard src/*/*.h)
+	@mkdir -p $(@D)
+	aarch64-linux-gnu-gcc -std=c11 -D_GNU_SOURCE -O2 -ffp-contract=off -fno-math-errno -fno-trapping-math \
+		-fopenmp -Iinclude -Isrc -Itests/support -Wall -Wextra -o $@ $(aarch64_src) -lm

@@ -151,6 +151,79 @@ static void nasty_meshes_are_byte_identical(void **state)
 	assert_int_equal(wrong, 0);
 }
 
+/* An allocator that fails from the n-th request on. */
+typedef struct budget {
+	size_t left, live;
+} budget;
+
+static void *spend(void *user, size_t size)
+{
+	budget *b = user;
+	if (b->left == 0)
+		return NULL;
+	b->left--;
+	b->live++;
+	return malloc(size);
+}
+
+static void give_back(void *user, void *block, size_t size)
+{
+	(void)size;
+	((budget *)user)->live--;
+	free(block);
+}
+
+static nmtan_status solve_within(const nmtan_mesh *mesh, size_t corners, const result *r, size_t allowed,
+	unsigned threads)
+{
+	budget b = {allowed, 0};
+	const nmtan_allocator allocator = {spend, give_back, &b};
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, &allocator);
+	nt_solve solve = make_solve(mesh, corners, &scratch, r, true);
+	solve.threads = threads;
+	const nmtan_status status = nt_mikktspace_fast_grain(&solve, 1);
+	nt_scratch_free(&scratch);
+	assert_int_equal(b.live, 0);
+	return status;
+}
+
+/* Scratch comes in blocks of 64 KiB, so the meshes are made large enough for many of them: a grid beside
+ * which every nasty mesh is placed. */
+static void every_failed_allocation_is_told(void **state)
+{
+	(void)state;
+	enum { SIDE = 150 };
+	const size_t corners = 6 * SIDE * SIDE;
+	float *p = malloc(corners * 12), *n = malloc(corners * 12), *t = malloc(corners * 8);
+	for (size_t c = 0; c < corners; c++) {
+		static const unsigned char at[6][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}};
+		const size_t cell = c / 6;
+		const float x = (float)(cell % SIDE + at[c % 6][0]), y = (float)(cell / SIDE + at[c % 6][1]);
+		/* folds, so that there are both orientations, contested and complex vertices, collapsed faces */
+		memcpy(p + 3 * c, (float[3]){x, y, cell % 7 == 0 ? 0.0f : 0.1f * x}, 12);
+		memcpy(n + 3 * c, (float[3]){0, 0, 1}, 12);
+		memcpy(t + 2 * c, (float[2]){cell % 11 == 0 ? 0.0f : fabsf(x - 40.0f), cell % 13 == 0 ? x : y}, 8);
+	}
+	memcpy(p + 3 * 300, p, 12 * 2);
+	memcpy(p, p + 3, 12);
+	const nmtan_mesh loose = {.face_count = corners / 3, .vertex_count = corners, .positions = p, .normals = n,
+		.texcoords = t};
+	const nmtan_mesh mesh = filled(&loose);
+	result r = result_make(corners);
+	for (unsigned threads = 1; threads <= 3; threads += 2) {
+		size_t allowed = 0;
+		while (solve_within(&mesh, corners, &r, allowed, threads) == NMTAN_ERROR_MEMORY)
+			allowed++;
+		assert_int_equal(solve_within(&mesh, corners, &r, allowed, threads), NMTAN_OK);
+		assert_in_range(allowed, 8, 100);
+	}
+	result_free(&r);
+	free(p);
+	free(n);
+	free(t);
+}
+
 /* Eight threads on two processors must not spin while they wait: on a busy machine that takes 30 times as long.
  * libgomp reads the policy before main. */
 static void wait_passively(char **arguments)
@@ -168,6 +241,7 @@ int main(int count, char **arguments)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(goldens_are_byte_identical),
 		cmocka_unit_test(nasty_meshes_are_byte_identical),
+		cmocka_unit_test(every_failed_allocation_is_told),
 	};
 	return cmocka_run_group_tests_name("tangent/fast", tests, NULL, NULL);
 }
