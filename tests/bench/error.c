@@ -400,9 +400,11 @@ static void write_chart(const bench *b, const char *name, bool truth)
 	for (size_t i = 0; i < b->run_count; i++) {
 		const result *r = &b->results[i];
 		const pool *p = truth ? &r->truth : &r->arithmetic;
-		/* single instruction sets would crowd the chart; the table has them */
+		/* single instruction sets would crowd the chart, as would threads, which meshes of this size do
+		 * not use: the table has them */
 		const bool crowded = strstr(b->runs[i].name, "AVX") || strstr(b->runs[i].name, "baseline") ||
-				     strstr(b->runs[i].name, "repair off");
+				     strstr(b->runs[i].name, "repair off") ||
+				     strstr(b->runs[i].name, "all threads");
 		if (!r->present || crowded || !isfinite(p->median))
 			continue;
 		for (int k = 0; k < 3; k++)

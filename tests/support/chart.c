@@ -9,10 +9,10 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WIDTH = 860, HEIGHT = 520, LEFT = 80, RIGHT = 660, TOP = 60, BOTTOM = 460 };
+enum { WIDTH = 960, HEIGHT = 520, LEFT = 80, RIGHT = 660, TOP = 60, BOTTOM = 460 };
 
 static const char *const colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9",
-	"#000000", "#999999", "#8c564b", "#6a3d9a"};
+	"#000000", "#999999", "#8c564b", "#6a3d9a", "#b15928", "#e31a1c"};
 enum { COLOUR_COUNT = sizeof colours / sizeof *colours };
 
 typedef struct axis {
