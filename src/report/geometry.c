@@ -12,7 +12,6 @@
 #include "report/judge.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 #include "base/dvec.h"
 
@@ -35,6 +34,7 @@ typedef struct triangle_tallies {
 	double worst_bound, worst_determinant;
 	float *determinants; /* relative; of triangles with an orientation */
 	size_t determinant_count;
+	size_t *histogram; /* [65536] for their median */
 } triangle_tallies;
 
 static bool is_finite(const float *values, size_t count)
@@ -102,7 +102,8 @@ static void judge_triangle(nt_judge *judge, size_t t, const uint8_t *sound_verte
 	}
 	double determinant;
 	const double sine = rounding_bound(s, t, &determinant);
-	tt->determinants[tt->determinant_count++] = (float)determinant;
+	if (isfinite(determinant))
+		tt->determinants[tt->determinant_count++] = (float)determinant;
 	if (!flat && !(sine <= NEAR_DEGENERATE_SINE)) {
 		const double bound = sine < 1.0 ? asin(sine) * DEGREES : 90.0;
 		nt_tally_triangle(judge, &tt->near, t, bound);
@@ -112,43 +113,42 @@ static void judge_triangle(nt_judge *judge, size_t t, const uint8_t *sound_verte
 	}
 }
 
-static int by_value(const void *a, const void *b)
+static uint32_t bits_of(float value)
 {
-	const float x = *(const float *)a, y = *(const float *)b;
-	return x < y ? -1 : x > y;
+	uint32_t bits;
+	memcpy(&bits, &value, sizeof bits);
+	return bits;
 }
 
-/* The k-th smallest value: quickselect down to a small range, then a sort. */
-static float select_value(float *values, size_t count, size_t k)
+/* The k-th smallest of values that are not negative, whose bits are in the order of their values: a count of
+ * upper halves, then of the lower halves in the one that holds it. Linear whatever the values, which
+ * quickselect is not. `histogram` has room for 65536 counts. */
+static float select_value(const float *values, size_t count, size_t k, size_t *histogram)
 {
-	size_t low = 0, high = count;
-	while (high - low > 64) {
-		const float pivot = values[low + (high - low) / 2];
-		size_t less = low, equal = low, greater = high;
-		while (equal < greater) { /* three ways, since equal values are frequent */
-			const float value = values[equal];
-			if (value < pivot) {
-				values[equal++] = values[less];
-				values[less++] = value;
-			} else if (value > pivot) {
-				values[equal] = values[--greater];
-				values[greater] = value;
-			} else {
-				equal++;
-			}
+	uint32_t upper = 0;
+	for (int pass = 0; pass < 2; pass++) {
+		memset(histogram, 0, 65536 * sizeof *histogram);
+		for (size_t i = 0; i < count; i++) {
+			const uint32_t bits = bits_of(values[i]);
+			if (pass == 0)
+				histogram[bits >> 16]++;
+			else if (bits >> 16 == upper)
+				histogram[bits & 65535]++;
 		}
-		if (k < less)
-			high = less;
-		else if (k >= greater)
-			low = greater;
+		uint32_t at = 0;
+		while (at < 65535 && k >= histogram[at])
+			k -= histogram[at++];
+		if (pass == 0)
+			upper = at;
 		else
-			return pivot;
+			upper = upper << 16 | at;
 	}
-	qsort(values + low, high - low, sizeof *values, by_value);
-	return values[k];
+	float value;
+	memcpy(&value, &upper, sizeof value);
+	return value;
 }
 
-static void find_determinants(nt_report_mesh *facts, triangle_tallies *tt)
+static void find_determinants(nt_report_mesh *facts, const triangle_tallies *tt)
 {
 	const size_t count = tt->determinant_count;
 	if (count == 0)
@@ -159,7 +159,7 @@ static void find_determinants(nt_report_mesh *facts, triangle_tallies *tt)
 		greatest = fmaxf(greatest, tt->determinants[i]);
 	}
 	facts->relative_determinant[0] = least;
-	facts->relative_determinant[1] = select_value(tt->determinants, count, count / 2);
+	facts->relative_determinant[1] = select_value(tt->determinants, count, count / 2, tt->histogram);
 	facts->relative_determinant[2] = greatest;
 }
 
@@ -203,8 +203,9 @@ static nmtan_status judge_triangles(nt_judge *judge)
 		.no_uv_area = {.code = NT_CODE_UV_DEGENERATE_TRIANGLE},
 		.near = {.code = NT_CODE_UV_NEAR_DEGENERATE},
 		.worst_determinant = INFINITY,
-		.determinants = nt_scratch_alloc(judge->scratch, s->triangle_count, sizeof(float))};
-	if (!tt->determinants)
+		.determinants = nt_scratch_alloc(judge->scratch, s->triangle_count, sizeof(float)),
+		.histogram = nt_scratch_alloc(judge->scratch, 65536, sizeof(size_t))};
+	if (!tt->determinants || !tt->histogram)
 		return NMTAN_ERROR_MEMORY;
 	memset(sound_vertex, 0, judge->mesh->vertex_count);
 	for (size_t c = 0; c < 3 * s->triangle_count; c++)

@@ -241,6 +241,24 @@ static void nearly_collinear_coordinates_far_from_the_origin(void **state)
 	hand_free(h, report);
 }
 
+/* Right triangles but one with an angle of 30 degrees: the relative determinant is the sine of the angle. */
+static void relative_determinants_are_sines(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	hand_vertex(h, 5, 0, 0, 0, 0);
+	hand_vertex(h, 6, 0, 0, 1, 0);
+	hand_vertex(h, 5, 1, 0, 0.8660254f, 0.5f);
+	hand_triangle(h, 4, 5, 6);
+	nt_report *report = hand_report(h, NULL);
+	const double *d = report->meshes[0].relative_determinant;
+	/* the quad's halves: corner 0 at (0,0) between (1,0) and (1,1), and between (1,1) and (0,1): sin 45 */
+	assert_true(fabs(d[0] - 0.5) < 1e-6);
+	assert_true(fabs(d[1] - sqrt(0.5)) < 1e-6);
+	assert_true(fabs(d[2] - sqrt(0.5)) < 1e-6);
+	hand_free(h, report);
+}
+
 static void normals_are_judged(void **state)
 {
 	(void)state;
@@ -339,6 +357,7 @@ int main(void)
 		cmocka_unit_test(texture_transform_that_mirrors_counts),
 		cmocka_unit_test(degenerate_triangles_are_counted_and_weighed),
 		cmocka_unit_test(nearly_collinear_coordinates_far_from_the_origin),
+		cmocka_unit_test(relative_determinants_are_sines),
 		cmocka_unit_test(normals_are_judged),
 		cmocka_unit_test(values_that_are_not_finite_are_told_and_harmless),
 		cmocka_unit_test(options_ignore_reweigh_and_limit),
