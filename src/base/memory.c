@@ -8,8 +8,9 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
-enum { SMALL_BLOCK_BYTES = 64 * 1024, SMALL_REQUEST_BYTES = 8 * 1024, ALIGNMENT = 16 };
+enum { HUGE_PAGE_BYTES = 2 * 1024 * 1024, SMALL_BLOCK_BYTES = 64 * 1024, SMALL_REQUEST_BYTES = 8 * 1024, ALIGNMENT = 16 };
 
 struct nt_arena_block {
 	struct nt_arena_block *next;
@@ -18,12 +19,26 @@ struct nt_arena_block {
 	size_t capacity;
 };
 
+void *nt_alloc_large(size_t bytes)
+{
+#if defined(MADV_HUGEPAGE)
+	if (bytes >= 2 * HUGE_PAGE_BYTES) {
+		void *block;
+		if (posix_memalign(&block, HUGE_PAGE_BYTES, bytes) != 0)
+			return NULL;
+		madvise(block, bytes, MADV_HUGEPAGE); /* advice: a refusal changes nothing */
+		return block;
+	}
+#endif
+	return malloc(bytes);
+}
+
 void *nt_alloc(size_t count, size_t size)
 {
 	size_t bytes;
 	if (!nt_size_mul(count, size, &bytes))
 		return NULL;
-	return malloc(bytes ? bytes : 1);
+	return nt_alloc_large(bytes ? bytes : 1);
 }
 
 void *nt_calloc(size_t count, size_t size)
@@ -59,7 +74,7 @@ static struct nt_arena_block *push_block(nt_arena *arena, size_t capacity)
 	size_t bytes;
 	if (!nt_size_add(capacity, sizeof(struct nt_arena_block) + ALIGNMENT, &bytes))
 		return NULL;
-	struct nt_arena_block *block = malloc(bytes);
+	struct nt_arena_block *block = nt_alloc_large(bytes);
 	if (!block)
 		return NULL;
 	*block = (struct nt_arena_block){.next = arena->blocks, .capacity = capacity};

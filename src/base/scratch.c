@@ -21,7 +21,7 @@ struct nt_scratch_block {
 static void *default_allocate(void *user, size_t size_bytes)
 {
 	(void)user;
-	return malloc(size_bytes);
+	return nt_alloc_large(size_bytes);
 }
 
 static void default_release(void *user, void *block, size_t size_bytes)
