@@ -151,6 +151,13 @@ NMTAN_API nmtan_workspace *nmtan_workspace_create(const nmtan_allocator *allocat
 /* Frees a workspace; NULL is allowed. */
 NMTAN_API void nmtan_workspace_destroy(nmtan_workspace *workspace);
 
+/* Where the time of a call went, in seconds of the wall clock. */
+typedef struct nmtan_timing {
+	double weld;  /* finding equal vertices; 0 where the method does not tell */
+	double solve; /* the rest of the method, and repair */
+	double split; /* nmtan_vertex_tangents() only */
+} nmtan_timing;
+
 /* Options. All zero means the defaults; a NULL pointer to options means the same. */
 typedef struct nmtan_options {
 	nmtan_method method;
@@ -161,6 +168,8 @@ typedef struct nmtan_options {
 	nmtan_path path;                  /* for tests */
 	nmtan_isa isa;                    /* for tests */
 	const nmtan_allocator *allocator; /* NULL: malloc and free. Ignored when a workspace is given */
+	nmtan_timing *timing;             /* NULL, or where nmtan_tangents() and nmtan_vertex_tangents()
+	                                     add what their steps took */
 	nmtan_workspace *workspace;       /* NULL: scratch is allocated and released by the call */
 } nmtan_options;
 

@@ -200,6 +200,7 @@ const char *nt_stage_name(nt_stage stage)
 		[NT_STAGE_PARSE] = "parse",
 		[NT_STAGE_DECODE] = "decode",
 		[NT_STAGE_NORMALS] = "normals",
+		[NT_STAGE_WELD] = "weld",
 		[NT_STAGE_TANGENTS] = "tangents",
 		[NT_STAGE_SPLIT] = "split",
 		[NT_STAGE_WRITE] = "write",
@@ -223,4 +224,9 @@ void nt_message_timing(nt_buffer *out, const nt_summary *summary)
 		summary->total_seconds * 1e3);
 	nt_buffer_format(out, "%" PRIu64 " bytes read, %" PRIu64 " bytes written\n", summary->bytes_read,
 		summary->bytes_written);
+	for (int reason = 0; reason < NT_DECISION_COUNT; reason++)
+		if (summary->skipped[reason])
+			nt_buffer_format(out, "not decoded: %zu %s (%s)\n", summary->skipped[reason],
+				summary->skipped[reason] == 1 ? "primitive" : "primitives",
+				nt_decision_text((nt_decision)reason));
 }

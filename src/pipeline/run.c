@@ -6,9 +6,9 @@
 
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include "io/normal_map.h"
 #include "io/verify.h"
+#include "base/clock.h"
 #include "pipeline/stages.h"
 
 /* What the stages of one run share. */
@@ -25,17 +25,10 @@ typedef struct run {
 	nt_stage stage;
 } run;
 
-static double now(void)
-{
-	struct timespec time;
-	clock_gettime(CLOCK_MONOTONIC, &time);
-	return (double)time.tv_sec + 1e-9 * (double)time.tv_nsec;
-}
-
 /* Books the time since the last call on the stage that ends. */
 static void end_stage(run *r)
 {
-	const double time = now();
+	const double time = nt_seconds();
 	r->summary->seconds[r->stage] += time - r->stage_begin;
 	r->stage_begin = time;
 }
@@ -290,7 +283,7 @@ nmtan_status nt_run(const char *input, const char *output, const nt_settings *se
 		.error = error};
 	r.read_options = (nt_read_options){.texcoord_set = settings->texcoord_set,
 		.allow_outside = settings->allow_outside, .threads = settings->threads};
-	const double begin = now();
+	const double begin = nt_seconds();
 	r.stage_begin = begin;
 	nt_scene_init(&r.scene, input);
 
@@ -303,7 +296,7 @@ nmtan_status nt_run(const char *input, const char *output, const nt_settings *se
 	r.scene.findings = (nt_finding_list){0};
 	nt_scene_free(&r.scene);
 	nt_file_close(&r.input);
-	summary->total_seconds = now() - begin;
+	summary->total_seconds = nt_seconds() - begin;
 	if (!status && summary->findings.failed)
 		status = nt_fail_memory(error);
 	return status;

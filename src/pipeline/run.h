@@ -18,6 +18,7 @@ typedef enum nt_stage {
 	NT_STAGE_PARSE,
 	NT_STAGE_DECODE,
 	NT_STAGE_NORMALS,
+	NT_STAGE_WELD,     /* weld and split of large meshes; small ones count as tangents */
 	NT_STAGE_TANGENTS,
 	NT_STAGE_SPLIT,
 	NT_STAGE_WRITE,

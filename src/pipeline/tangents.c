@@ -25,6 +25,7 @@ typedef struct tangent_job {
 	nt_mesh **meshes;   /* the ones to solve */
 	nmtan_status *statuses;
 	size_t count;
+	nmtan_timing timing; /* of the large meshes */
 } tangent_job;
 
 static bool is_gltf(nt_format format)
@@ -127,10 +128,11 @@ static nmtan_status split_morphs(nt_mesh *mesh, const nmtan_mesh *view, const nm
 }
 
 static nmtan_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned threads,
-	nmtan_workspace *workspace)
+	nmtan_workspace *workspace, nmtan_timing *timing)
 {
 	const nmtan_options options = {.method = job->settings->method,
-		.repair = job->settings->repair, .threads = threads, .workspace = workspace};
+		.repair = job->settings->repair, .threads = threads, .workspace = workspace,
+		.timing = timing};
 	nmtan_mesh view = nt_mesh_view(mesh);
 	view.stored_v_offset = stored_v_offset(job);
 	if (job->settings->check)
@@ -157,7 +159,8 @@ static void solve_large(tangent_job *job)
 {
 	for (size_t i = 0; i < job->count; i++)
 		if (job->meshes[i]->corner_count >= LARGE_CORNERS)
-			job->statuses[i] = solve_mesh(job, job->meshes[i], job->settings->threads, NULL);
+			job->statuses[i] = solve_mesh(job, job->meshes[i], job->settings->threads, NULL,
+				&job->timing);
 }
 
 static void solve_small(tangent_job *job)
@@ -169,7 +172,8 @@ static void solve_small(tangent_job *job)
 #pragma omp for schedule(dynamic)
 		for (size_t i = 0; i < job->count; i++)
 			if (job->meshes[i]->corner_count < LARGE_CORNERS)
-				job->statuses[i] = solve_mesh(job, job->meshes[i], 1, workspace);
+				job->statuses[i] = solve_mesh(job, job->meshes[i], 1, workspace,
+					NULL);
 		nmtan_workspace_destroy(workspace);
 	}
 }
@@ -263,6 +267,9 @@ nmtan_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_
 				scene->meshes[i].decision == NT_DECISION_REPAIR)
 				job.meshes[job.count++] = &scene->meshes[i];
 		solve_large(&job);
+		summary->seconds[NT_STAGE_WELD] += job.timing.weld;
+		summary->seconds[NT_STAGE_SPLIT] += job.timing.split;
+		summary->seconds[NT_STAGE_TANGENTS] -= job.timing.weld + job.timing.split;
 		solve_small(&job);
 		status = finish(&job, summary, error);
 	}

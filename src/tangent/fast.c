@@ -25,6 +25,7 @@
 #include "tangent/fast.h"
 
 #include <string.h>
+#include "base/clock.h"
 #include "base/cpu.h"
 #include "base/parallel.h"
 #include "topology/corners.h"
@@ -507,7 +508,10 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ra
 	nt_room room = nt_room_over(solve->tangents,
 		fast->sparse ? 0 : solve->corner_count * 4 * sizeof(float), solve->scratch);
 	nt_weld weld;
+	const double begin = nt_seconds();
 	nmtan_status status = nt_weld_mesh(solve->mesh, solve->corner_count, &room, &weld);
+	if (solve->timing)
+		solve->timing->weld += nt_seconds() - begin;
 	if (!status)
 		status = make_triangles(fast, &weld);
 	if (!status)

@@ -25,6 +25,7 @@ typedef struct nt_solve {
 	nmtan_isa isa;           /* never AUTO */
 	bool one_by_one;         /* sums: each triangle by the definition in frames.c */
 	nt_scratch *scratch;
+	nmtan_timing *timing;    /* to be added to, or NULL */
 	nt_vouched *vouched;     /* for the method to fill; empty before; may be NULL */
 	float *tangents;         /* [corner_count][4] */
 	float *bitangents;       /* [corner_count][3] or NULL */

@@ -6,6 +6,7 @@
  */
 #include <math.h>
 #include <string.h>
+#include "base/clock.h"
 #include "base/cpu.h"
 #include "base/parallel.h"
 #include "tangent/repair.h"
@@ -76,12 +77,14 @@ typedef struct request {
 	nt_solve solve;
 	nt_scratch own;
 	nt_scratch_mark mark;
+	nmtan_timing timing; /* of this call */
+	double begin;
 } request;
 
 /* Checks everything before anything is computed, and fills in what was left to defaults. */
 static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmtan_options *options)
 {
-	*r = (request){.mesh = *mesh};
+	*r = (request){.mesh = *mesh, .begin = nt_seconds()};
 	if (options)
 		r->options = *options;
 	nmtan_status status = check_options(&r->options);
@@ -95,6 +98,7 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 	nt_solve *solve = &r->solve;
 	solve->mesh = &r->mesh;
 	solve->vouched = &r->vouched;
+	solve->timing = &r->timing;
 	solve->scratch = r->options.workspace ? &r->options.workspace->scratch : &r->own;
 	solve->threshold_cos = r->options.angular_threshold_degrees > 0.0f
 		? threshold_cos(r->options.angular_threshold_degrees) : -1.0f;
@@ -107,6 +111,12 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 
 static void end_request(request *r)
 {
+	nmtan_timing *sum = r->options.timing;
+	if (sum) {
+		sum->weld += r->timing.weld;
+		sum->split += r->timing.split;
+		sum->solve += nt_seconds() - r->begin - r->timing.weld - r->timing.split;
+	}
 	nt_scratch_back(r->solve.scratch, r->mark);
 	nt_scratch_free(&r->own);
 }

@@ -8,6 +8,7 @@
  */
 #include "tangent/vertices.h"
 
+#include "base/clock.h"
 #include "tangent/fast.h"
 #include "tangent/judge.h"
 #include "tangent/repair.h"
@@ -26,6 +27,7 @@ static const float *corner_tangent(const nt_fast *fast, size_t t, size_t i)
 static nmtan_status split_triangles(const nt_fast *fast, nt_splitter *splitter)
 {
 	const nmtan_mesh *mesh = fast->solve->mesh;
+	const double begin = nt_seconds();
 	for (size_t t = 0; t < fast->triangle_count; t++) {
 		for (size_t i = 3 * t; i < 3 * t + 3; i++) {
 			const nmtan_status status = nt_splitter_take(splitter,
@@ -34,17 +36,22 @@ static nmtan_status split_triangles(const nt_fast *fast, nt_splitter *splitter)
 				return status;
 		}
 	}
+	if (fast->solve->timing)
+		fast->solve->timing->split += nt_seconds() - begin;
 	return NMTAN_OK;
 }
 
 nmtan_status nt_split_rows(const nt_solve *solve, nt_splitter *splitter)
 {
+	const double begin = nt_seconds();
 	for (size_t c = 0; c < solve->corner_count; c++) {
 		const nmtan_status status = nt_splitter_take(splitter,
 			(uint32_t)nt_vertex_of(solve->mesh, c), solve->tangents + 4 * c, c);
 		if (status)
 			return status;
 	}
+	if (solve->timing)
+		solve->timing->split += nt_seconds() - begin;
 	return NMTAN_OK;
 }
 
