@@ -6,6 +6,10 @@
 #include "base/parallel.h"
 
 #include <omp.h>
+#include <stdbool.h>
+#if defined(__SANITIZE_THREAD__)
+#include <pthread.h>
+#endif
 
 unsigned nt_thread_count(unsigned requested)
 {
@@ -29,6 +33,55 @@ static size_t range_begin(size_t count, unsigned r, unsigned n)
 	return count / n * r + count % n * r / n;
 }
 
+#if defined(__SANITIZE_THREAD__)
+/* config=tsan: libgomp's barriers are invisible to the sanitiser, which then reports every hand-over between
+ * two regions as a race. With threads that it knows it reports real ones only. */
+typedef struct range_job {
+	void (*body)(void *context, size_t begin, size_t end, unsigned slot);
+	void *context;
+	size_t begin, end;
+	unsigned slot;
+} range_job;
+
+static void *run_job(void *argument)
+{
+	const range_job *job = argument;
+	job->body(job->context, job->begin, job->end, job->slot);
+	return NULL;
+}
+
+static void run_ranges(unsigned slots, size_t count,
+	void (*body)(void *context, size_t begin, size_t end, unsigned slot), void *context)
+{
+	enum { MOST = 64 };
+	pthread_t threads[MOST];
+	range_job jobs[MOST];
+	for (unsigned first = 0; first < slots; first += MOST) {
+		const unsigned here = slots - first < MOST ? slots - first : MOST;
+		bool started[MOST] = {false};
+		for (unsigned i = 0; i < here; i++) {
+			const unsigned slot = first + i;
+			jobs[i] = (range_job){body, context, range_begin(count, slot, slots),
+				range_begin(count, slot + 1, slots), slot};
+			started[i] = pthread_create(&threads[i], NULL, run_job, &jobs[i]) == 0;
+			if (!started[i])
+				run_job(&jobs[i]);
+		}
+		for (unsigned i = 0; i < here; i++)
+			if (started[i])
+				pthread_join(threads[i], NULL);
+	}
+}
+#else
+static void run_ranges(unsigned slots, size_t count,
+	void (*body)(void *context, size_t begin, size_t end, unsigned slot), void *context)
+{
+#pragma omp parallel for num_threads(slots) schedule(static, 1)
+	for (unsigned slot = 0; slot < slots; slot++)
+		body(context, range_begin(count, slot, slots), range_begin(count, slot + 1, slots), slot);
+}
+#endif
+
 void nt_parallel_ranges(unsigned threads, size_t count, size_t grain,
 	void (*body)(void *context, size_t begin, size_t end, unsigned slot), void *context)
 {
@@ -37,7 +90,5 @@ void nt_parallel_ranges(unsigned threads, size_t count, size_t grain,
 		body(context, 0, count, 0);
 		return;
 	}
-#pragma omp parallel for num_threads(slots) schedule(static, 1)
-	for (unsigned slot = 0; slot < slots; slot++)
-		body(context, range_begin(count, slot, slots), range_begin(count, slot + 1, slots), slot);
+	run_ranges(slots, count, body, context);
 }

@@ -116,10 +116,12 @@ extern const nt_kernels nt_kernels_baseline;
 extern const nt_kernels nt_kernels_avx2, nt_kernels_avx512;
 #endif
 
-/* Whether triangle t and t + 1 are halves of one quad. */
+/* Whether triangle t and t + 1 are halves of one quad: the second begins with the first's first or second
+ * corner. Not read from the flags, which belong to another thread where a range ends. */
 static inline bool nt_fast_quad_begins(const nt_fast *fast, size_t t)
 {
-	return t + 1 < fast->triangle_count && (fast->flags[t + 1] & NT_TRIANGLE_SECOND);
+	const uint32_t *corner = fast->corners ? fast->corners + 3 * t : NULL;
+	return corner && t + 1 < fast->triangle_count && (corner[3] == corner[0] || corner[3] == corner[1]);
 }
 
 static inline size_t nt_fast_corner(const nt_fast *fast, size_t i)
