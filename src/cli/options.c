@@ -57,6 +57,9 @@ const nt_option_row nt_option_rows[] = {
 	{"draco", 0, NT_OPTION_CHOICE, "keep|off", NT_DRACO_KEEP, 0, "keep",
 		"glTF primitives that Draco compressed: compress them again with their tangents, or "
 		"write them plain", SETTING(draco), true},
+	{"morph", 0, NT_OPTION_CHOICE, "bake|keep|drop", NT_MORPH_BAKE, 0, "bake",
+		"glTF morph targets of primitives that get tangents: compute their TANGENT, leave it as "
+		"it is, or take it away", SETTING(morphs), true},
 	{"bitangents", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"write bitangents too: bx by bz in PLY, _BITANGENT in glTF", SETTING(bitangents), true},
 	{"no-clobber", 'n', NT_OPTION_FLAG, NULL, 0, 0, NULL, "never replace a file",

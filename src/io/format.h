@@ -9,10 +9,18 @@
 #include "io/file.h"
 #include "scene/scene.h"
 
+/* TANGENT of the morph targets of primitives that get tangents. */
+typedef enum nt_morph_choice {
+	NT_MORPH_BAKE, /* what to add to the base's, by a solve of the mesh as the target moves it */
+	NT_MORPH_KEEP, /* as the source has it, or has it not */
+	NT_MORPH_DROP  /* none */
+} nt_morph_choice;
+
 typedef struct nt_read_options {
 	int texcoord_set;   /* -1: the set that the material's slot asks for; else TEXCOORD_n */
 	bool allow_outside; /* URIs may leave the folder of the input */
 	bool world;         /* the output is one mesh in the world: instances and colours are wanted too */
+	nt_morph_choice morphs; /* targets are loaded where they are to be baked */
 	unsigned threads;
 } nt_read_options;
 
@@ -32,6 +40,7 @@ typedef struct nt_write_options {
 	bool bitangents;
 	nt_images images;
 	nt_draco_choice draco;
+	nt_morph_choice morphs;
 	int draco_tangent_bits; /* 0: 12; quantization of tangents in compressed primitives */
 	bool allow_outside;
 } nt_write_options;

@@ -264,6 +264,19 @@ static nmtan_status patch_component(nt_gltf_patcher *p, nt_gltf_cluster *compone
 
 /* ---- the whole ---- */
 
+/* --morph=drop: before anything asks who uses which accessor. The accessors keep their numbers. */
+static void drop_target_tangents(nt_gltf_patcher *p)
+{
+	for (size_t i = 0; i < p->scene->mesh_count; i++) {
+		const nt_mesh *mesh = &p->scene->meshes[i];
+		if (!nt_gltf_is_solved(mesh))
+			continue;
+		nt_json_value *targets = nt_json_find(nt_gltf_primitive_of(p->document, mesh), "targets");
+		for (size_t t = 0; t < nt_json_count(targets); t++)
+			nt_json_remove(p->json, nt_json_at(targets, t), "TANGENT");
+	}
+}
+
 static bool anything_solved(const nt_scene *scene)
 {
 	for (size_t i = 0; i < scene->mesh_count; i++)
@@ -349,6 +362,8 @@ nmtan_status nt_gltf_patch(nt_scene *scene, const nt_write_options *options, nt_
 		.error = error};
 	patcher.json = patcher.document->json;
 	patcher.arena = &patcher.layout.arena;
+	if (options->morphs == NT_MORPH_DROP)
+		drop_target_tangents(&patcher);
 	status = decompress_views(&patcher);
 	if (!status)
 		status = nt_layout_create(&patcher.layout, patcher.document, error);

@@ -610,7 +610,7 @@ nmtan_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options 
 	if (!status)
 		status = load_faces(scene, document, mesh, primitive, error);
 	/* a mesh in the world is written without its targets */
-	if (!status && !options->world)
+	if (!status && !options->world && options->morphs == NT_MORPH_BAKE)
 		status = load_morphs(scene, document, mesh, primitive, error);
 	if (status && error && !error->place.object[0])
 		memcpy(error->place.object, mesh->place.object, sizeof error->place.object);

@@ -3,6 +3,10 @@
  * Tangents of morph targets. A client that finds TANGENT in a mesh computes none itself, so the targets need
  * theirs: the tangents of the mesh as one target alone moves it, solved like any mesh. All targets share
  * the base's vertices, so a vertex is split where the base or any target has different tangents.
+ *
+ * They share its w too, for targets have none. w is the orientation of the UVs, which no target changes; but
+ * where one turns a triangle to the other side of its normals, B = cross(N, T) w turns round with it. Such
+ * triangles are counted.
  */
 #include "pipeline/morphs.h"
 
@@ -11,8 +15,37 @@
 
 enum { KEY_BITS = 20 }; /* of a corner number in each float of a key: floats are exact to 24 */
 
+/* Which side of its winding the normals of a triangle are on: 1, -1, or 0 where that cannot be said. */
+static int side_of(const nmtan_mesh *view, size_t triangle)
+{
+	const float *p[3], *n[3];
+	for (size_t k = 0; k < 3; k++) {
+		const size_t corner = 3 * triangle + k;
+		const size_t vertex = view->indices ? view->indices[corner] : corner;
+		p[k] = view->positions + 3 * vertex;
+		n[k] = view->normals + 3 * vertex;
+	}
+	double along = 0;
+	for (size_t i = 0; i < 3; i++) {
+		const size_t j = (i + 1) % 3, k = (i + 2) % 3;
+		const double face = ((double)p[1][j] - p[0][j]) * ((double)p[2][k] - p[0][k]) -
+			((double)p[1][k] - p[0][k]) * ((double)p[2][j] - p[0][j]);
+		along += face * ((double)n[0][i] + n[1][i] + n[2][i]);
+	}
+	return along > 0 ? 1 : along < 0 ? -1 : 0;
+}
+
+static size_t count_turned(const nmtan_mesh *base, const nmtan_mesh *moved)
+{
+	size_t count = 0;
+	for (size_t t = 0; t < base->face_count; t++)
+		count += side_of(base, t) * side_of(moved, t) < 0;
+	return count;
+}
+
 nmtan_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options)
 {
+	mesh->morph_turned = 0;
 	for (size_t m = 0; m < mesh->morph_count; m++) {
 		nt_morph *morph = &mesh->morphs[m];
 		nmtan_mesh moved = *view;
@@ -23,6 +56,7 @@ nmtan_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_
 		morph->corner_tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float));
 		if (!morph->corner_tangents)
 			return NMTAN_ERROR_MEMORY;
+		mesh->morph_turned += count_turned(view, &moved);
 		nmtan_output output = {.tangents = morph->corner_tangents};
 		const nmtan_status status = nmtan_tangents(&moved, options, &output);
 		if (status)

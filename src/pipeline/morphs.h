@@ -7,7 +7,8 @@
 
 #include "scene/scene.h"
 
-/* Solves the mesh as each of its targets moves it: morph->corner_tangents. Blocks are malloc'ed. */
+/* Solves the mesh as each of its targets moves it: morph->corner_tangents, and
+ * mesh->morph_turned. Blocks are malloc'ed. */
 nmtan_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options);
 
 /* Writes to keys [corner_count][4] numbers that are equal for two corners of a vertex exactly where

@@ -196,6 +196,7 @@ static nmtan_status write_scene(run *r)
 		.bitangents = s->bitangents,
 		.images = s->images,
 		.draco = s->draco,
+		.morphs = s->morphs,
 		.allow_outside = s->allow_outside,
 	};
 	nt_output *output = NULL;
@@ -282,7 +283,8 @@ nmtan_status nt_run(const char *input, const char *output, const nt_settings *se
 	run r = {.input_path = input, .output_path = output, .settings = settings, .summary = summary,
 		.error = error};
 	r.read_options = (nt_read_options){.texcoord_set = settings->texcoord_set,
-		.allow_outside = settings->allow_outside, .threads = settings->threads};
+		.allow_outside = settings->allow_outside, .morphs = settings->morphs,
+		.threads = settings->threads};
 	const double begin = nt_seconds();
 	r.stage_begin = begin;
 	nt_scene_init(&r.scene, input);

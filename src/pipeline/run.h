@@ -37,6 +37,7 @@ typedef struct nt_settings {
 	nt_normals normals;
 	nt_images images;
 	nt_draco_choice draco;
+	nt_morph_choice morphs;
 	nt_format output_format; /* NT_FORMAT_UNKNOWN: by name */
 	int texcoord_set;        /* -1: auto */
 	unsigned threads;        /* 0: all */

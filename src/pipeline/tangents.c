@@ -201,6 +201,7 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 		{NT_CODE_POS_DEGENERATE_TRIANGLE, c->degenerate_positions},
 		{NT_CODE_UV_FOLDED_QUAD, c->folded_quads},
 		{NT_CODE_UV_ROUNDED_AWAY, c->stored_differently},
+		{NT_CODE_TAN_MORPH_TURNED, mesh->morph_turned},
 		{NT_CODE_TAN_REPAIRED, c->repaired_zero + c->repaired_not_finite +
 						c->repaired_parallel + c->repaired_sign},
 	};

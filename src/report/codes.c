@@ -251,6 +251,13 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"without deltas of their own the targets are lit with the base's tangents.",
 		"Convert the file with nmtan, which writes the deltas.",
 		"a primitive with TANGENT and a target with POSITION only"),
+	ROW(TAN_MORPH_TURNED, WARNING,
+		"{count} {triangle is|triangles are} turned to the other side of their normals by a morph target",
+		"Morph targets have no w of their own. Where one turns a triangle over and its normals do not follow, "
+		"the bitangent that w gives runs the wrong way, and bumps look like dents while the target acts. The "
+		"finding counts a triangle once for each target that turns it.",
+		"Let the target move the normals too, or leave the triangle on its side.",
+		"a flat triangle with normals along z and a target that moves x to -x"),
 	ROW(TAN_VERTEX_GROWTH, INFO, "{count} {vertex was|vertices were} added",
 		"A vertex is copied where its corners need different tangents or normals. The finding counts "
 		"by cause: mirrored texture coordinates, different tangent directions, normals that were made.",

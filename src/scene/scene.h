@@ -138,6 +138,8 @@ typedef struct nt_mesh {
 
 	nt_morph *morphs;         /* [morph_count] targets that move positions or normals; filled by load() */
 	size_t morph_count;
+	size_t morph_turned;      /* triangles that a target turns to the other side of their normals: no w
+	                             serves them with and without it; counted once for each target */
 
 	/* results */
 	float *corner_tangents;   /* [corner_count][4]; NULL until solved or after split */

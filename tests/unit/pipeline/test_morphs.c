@@ -1,0 +1,204 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Tangents of morph targets: what --morph does with them, on one quad in the plane z = 0 with normals along
+ * z and (u, v down) = (x, -y), so that T = (1, 0, 0).
+ *
+ * Target 0 tilts it by 45 degrees about y, normals too: T = (1, 0, 1) / sqrt 2. It has a TANGENT of its own,
+ * which is nonsense. Target 1 moves x to -x: T = (-1, 0, 0), and both triangles are seen from behind.
+ */
+#include "test.h"
+#include <math.h>
+#include <stdio.h>
+#include <unistd.h>
+#include "base/buffer.h"
+#include "io/gltf_document.h"
+#include "pipeline/run.h"
+
+static char folder[] = "/tmp/nmtan-test-morphs-XXXXXX";
+
+static const float rows[6][4][3] = {
+	{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},     /* 0: positions */
+	{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}},     /* 1: normals */
+	{{0, 0, 0}, {0, 0, 1}, {0, 0, 1}, {0, 0, 0}},     /* 2: positions of target 0 */
+	{{-1, 0, 0}, {-1, 0, 0}, {-1, 0, 0}, {-1, 0, 0}}, /* 3: normals of target 0 */
+	{{3, 1, 4}, {3, 1, 4}, {3, 1, 4}, {3, 1, 4}},     /* 4: tangents of target 0 */
+	{{0, 0, 0}, {-2, 0, 0}, {-2, 0, 0}, {0, 0, 0}},   /* 5: positions of target 1 */
+};
+static const float texcoords[4][2] = {{0, 0}, {1, 0}, {1, -1}, {0, -1}};
+static const uint16_t indices[6] = {0, 1, 2, 0, 2, 3};
+
+static const char *file(const char *name)
+{
+	static char paths[2][200];
+	static unsigned turn;
+	char *path = paths[turn++ % 2];
+	snprintf(path, 200, "%s/%s", folder, name);
+	return path;
+}
+
+static void write_input(void)
+{
+	nt_buffer bin = {0}, json = {0};
+	nt_buffer_append(&bin, rows, 6 * sizeof rows[0]);
+	nt_buffer_append(&bin, texcoords, sizeof texcoords);
+	nt_buffer_append(&bin, indices, sizeof indices);
+	nt_buffer_text(&json, "{\"asset\":{\"version\":\"2.0\"},\"materials\":[{\"normalTexture\":{\"index\":0}}],"
+		"\"textures\":[{}],\"bufferViews\":[");
+	for (int i = 0; i < 6; i++)
+		nt_buffer_format(&json, "{\"buffer\":0,\"byteOffset\":%d,\"byteLength\":48},", 48 * i);
+	nt_buffer_text(&json, "{\"buffer\":0,\"byteOffset\":288,\"byteLength\":32},"
+		"{\"buffer\":0,\"byteOffset\":320,\"byteLength\":12}],\"accessors\":[");
+	for (int i = 0; i < 6; i++)
+		nt_buffer_format(&json, "{\"bufferView\":%d,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},", i);
+	nt_buffer_format(&json, "{\"bufferView\":6,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"},"
+		"{\"bufferView\":7,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}],"
+		"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":6},"
+		"\"indices\":7,\"material\":0,\"targets\":[{\"POSITION\":2,\"NORMAL\":3,\"TANGENT\":4},"
+		"{\"POSITION\":5}]}]}],\"buffers\":[{\"byteLength\":%zu}]}", bin.size);
+	nt_error error;
+	nt_output *output;
+	nt_sink *sink;
+	assert_int_equal(nt_output_create(&output, &(nt_output_options){0}, &error), NMTAN_OK);
+	assert_int_equal(nt_output_add(output, file("in.glb"), true, &sink, &error), NMTAN_OK);
+	assert_int_equal(nt_glb_begin(sink, json.data, json.size, true, bin.size, 0, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_write(sink, bin.data, bin.size, &error), NMTAN_OK);
+	assert_int_equal(nt_glb_end_bin(sink, bin.size, &error), NMTAN_OK);
+	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	nt_buffer_free(&bin);
+	nt_buffer_free(&json);
+}
+
+typedef struct result {
+	nt_file file;
+	nt_scene scene;
+	size_t turned; /* what TAN_MORPH_TURNED counted */
+} result;
+
+/* Converts the input and opens what came out. */
+static void convert(result *r, nt_morph_choice morphs)
+{
+	const nt_settings settings = {.texcoord_set = -1, .morphs = morphs};
+	nt_summary summary;
+	nt_error error;
+	if (nt_run(file("in.glb"), file("out.glb"), &settings, &summary, &error))
+		fail_msg("%s: %s", error.place.pointer, error.message);
+	assert_int_equal(summary.solved_count, 1);
+	assert_int_equal(summary.appended_tangents, 0);
+	r->turned = 0;
+	for (size_t i = 0; i < summary.findings.count; i++)
+		if (summary.findings.items[i].code == NT_CODE_TAN_MORPH_TURNED)
+			r->turned += summary.findings.items[i].count;
+	nt_summary_free(&summary);
+
+	assert_int_equal(nt_file_open(&r->file, file("out.glb"), &error), NMTAN_OK);
+	nt_scene_init(&r->scene, "out.glb");
+	r->scene.bytes = r->file.data;
+	r->scene.byte_count = r->file.size;
+	r->scene.format = NT_FORMAT_GLB;
+	assert_int_equal(nt_gltf_open(&r->scene, &(nt_read_options){.texcoord_set = -1}, &error), NMTAN_OK);
+}
+
+static void close_result(result *r)
+{
+	nt_scene_free(&r->scene);
+	nt_file_close(&r->file);
+}
+
+/* The accessor of a target's TANGENT; target -1: the primitive's. NT_NONE: there is none. */
+static uint32_t tangent_of(const result *r, int target)
+{
+	const nt_json_value *primitive = nt_json_at(nt_json_find(
+		nt_json_at(nt_gltf_root_member(r->scene.source, "meshes"), 0), "primitives"), 0);
+	const nt_json_value *attributes = target < 0 ? nt_json_find(primitive, "attributes") :
+		nt_json_at(nt_json_find(primitive, "targets"), (size_t)target);
+	uint64_t index = NT_NONE;
+	nt_json_get_uint64(nt_json_find(attributes, "TANGENT"), &index);
+	return (uint32_t)index;
+}
+
+static void rows_are(const result *r, uint32_t index, uint32_t width, const float *expected)
+{
+	nt_gltf_accessor accessor;
+	nt_error error;
+	float *found;
+	assert_int_equal(nt_gltf_get_accessor(r->scene.source, index, "", &accessor, &error), NMTAN_OK);
+	assert_int_equal(nt_gltf_floats(r->scene.source, &accessor, width, 0, (nt_arena *)&r->scene.arena, &found,
+		&error), NMTAN_OK);
+	assert_int_equal(accessor.count, 4);
+	for (size_t i = 0; i < 4 * width; i++)
+		assert_true(fabsf(found[i] - expected[i % width]) <= 1.2e-7f);
+}
+
+static void baked_deltas_lead_to_the_moved_mesh(void **state)
+{
+	(void)state;
+	const float half = sqrtf(0.5f);
+	result r;
+	convert(&r, NT_MORPH_BAKE);
+	rows_are(&r, tangent_of(&r, -1), 4, (float[]){1, 0, 0, 1});
+	rows_are(&r, tangent_of(&r, 0), 3, (float[]){half - 1, 0, half});
+	rows_are(&r, tangent_of(&r, 1), 3, (float[]){-2, 0, 0});
+	close_result(&r);
+}
+
+static void kept_targets_are_as_they_were(void **state)
+{
+	(void)state;
+	result r;
+	convert(&r, NT_MORPH_KEEP);
+	rows_are(&r, tangent_of(&r, -1), 4, (float[]){1, 0, 0, 1});
+	assert_int_equal(tangent_of(&r, 0), 4);
+	rows_are(&r, 4, 3, rows[4][0]);
+	assert_int_equal(tangent_of(&r, 1), NT_NONE);
+	close_result(&r);
+}
+
+static void dropped_targets_have_none(void **state)
+{
+	(void)state;
+	result r;
+	convert(&r, NT_MORPH_DROP);
+	rows_are(&r, tangent_of(&r, -1), 4, (float[]){1, 0, 0, 1});
+	assert_int_equal(tangent_of(&r, 0), NT_NONE);
+	assert_int_equal(tangent_of(&r, 1), NT_NONE);
+	/* accessors keep their numbers */
+	rows_are(&r, 4, 3, rows[4][0]);
+	close_result(&r);
+}
+
+static void triangles_seen_from_behind_are_counted(void **state)
+{
+	(void)state;
+	result r;
+	convert(&r, NT_MORPH_BAKE);
+	assert_int_equal(r.turned, 2);
+	close_result(&r);
+}
+
+static int set_up(void **state)
+{
+	(void)state;
+	if (!mkdtemp(folder))
+		return -1;
+	write_input();
+	return 0;
+}
+
+static int tear_down(void **state)
+{
+	(void)state;
+	char command[200];
+	snprintf(command, sizeof command, "rm -rf '%s'", folder);
+	return system(command);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(baked_deltas_lead_to_the_moved_mesh),
+		cmocka_unit_test(kept_targets_are_as_they_were),
+		cmocka_unit_test(dropped_targets_have_none),
+		cmocka_unit_test(triangles_seen_from_behind_are_counted),
+	};
+	return cmocka_run_group_tests(tests, set_up, tear_down);
+}
