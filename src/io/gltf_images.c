@@ -79,11 +79,21 @@ nmtan_status nt_gltf_link_prefix(nt_arena *arena, const char *from, const char *
 	return exhausted ? nt_fail_memory(error) : NMTAN_OK;
 }
 
+/* Whether a URI is taken from the document's folder: not "/x", nor anything with a colon in its first
+ * segment, which is a scheme, a drive, or no URI at all (":"), and means the same from everywhere. */
+static bool is_relative(const char *uri, size_t length)
+{
+	size_t first = 0;
+	while (first < length && !strchr("/?#", uri[first]))
+		first++;
+	return length > 0 && uri[0] != '/' && !memchr(uri, ':', first);
+}
+
 nmtan_status nt_gltf_link(nt_gltf_container *c, nt_json_value *object)
 {
 	size_t length;
 	const char *uri = nt_gltf_external_uri(object, &length);
-	if (!uri || !*c->link_prefix || uri[0] == '/')
+	if (!uri || !*c->link_prefix || !is_relative(uri, length))
 		return NMTAN_OK;
 	nt_buffer text = {0};
 	nt_buffer_text(&text, c->link_prefix);

@@ -72,6 +72,17 @@ says "leaves the folder"
 run --existing=replace --embed --allow-outside out/deep/t.gltf again.gltf
 exits 0
 
+scene "URIs that are not relative stay as they are"
+mkdir out
+for uri in : x:y.png C:/x.png http://h/x.png /x.png '#a:b' a/b:c; do
+	sed "s|data:image/png[^\"]*|$uri|" "$WORK/layouts/plain.gltf" >plain.gltf
+	cp "$WORK/layouts/plain 0.bin" .
+	run --images=link plain.gltf out/o.glb
+	exits 0
+	case $uri in '#'* | a*) expected=../$uri ;; *) expected=$uri ;; esac
+	is "$(gltf out/o.glb 'g.images[0].uri')" "$expected"
+done
+
 scene "a companion never replaces a file of the input"
 cp "$WORK/layouts/plain.gltf" a.gltf
 cp "$WORK/layouts/plain 0.bin" b.bin
