@@ -52,8 +52,15 @@ check-built: build/node/node_modules/gltf-validator/package.json
 	@$(MAKE) -s $(JOBS) config=sanitize all tests
 	@bash tests/run $(if $(filter true,$(CI)),--strict) build/release build/sanitize
 
+# The tool's opens and renames are watched.
+$(B)/tests/soak/hostile: $(B)/tests/soak/hostile.o $(B)/tests/support/mutate.o $(B)/libtool.a $(B)/libnmtan.a
+	$(CXX) $(NT_LDFLAGS) -Wl,--wrap=open,--wrap=rename,--wrap=link -o $@ $(filter %.o,$^) \
+		-Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(TOOL_LIBS)
+
 # Heavy runs: tests/soak/*.sh in turn, each with its own closing line.
 soak-built: check-built
+	@$(MAKE) -s config=release build/release/tests/soak/hostile
+	@$(MAKE) -s config=sanitize build/sanitize/tests/soak/hostile
 	@for script in tests/soak/*.sh; do [ ! -f $$script ] || \
 		{ echo "$$script" && bash $$script build/release build/sanitize || exit 1; }; done
 
