@@ -235,7 +235,12 @@ static void nearly_collinear_coordinates_far_from_the_origin(void **state)
 	nt_report *report = hand_report(h, NULL);
 	assert_int_equal(hand_finding(report, NT_CODE_UV_NEAR_DEGENERATE)->count, 1);
 	nt_report_free(report);
-	h->texcoords[2][1] = 1.0f; /* high enough */
+	/* the limit is one degree: 2 sqrt(2) 1001 2^-24 / h^2 is 1.2 degrees for h = 0.09, 0.8 for 0.11 */
+	h->texcoords[2][1] = 0.09f;
+	report = hand_report(h, NULL);
+	assert_int_equal(hand_finding(report, NT_CODE_UV_NEAR_DEGENERATE)->count, 1);
+	nt_report_free(report);
+	h->texcoords[2][1] = 0.11f;
 	report = hand_report(h, NULL);
 	assert_int_equal(hand_findings(report, NT_CODE_UV_NEAR_DEGENERATE), 0);
 	hand_free(h, report);
@@ -341,6 +346,31 @@ static void baseline_knows_old_findings_each_as_often_as_it_has_them(void **stat
 	hand_free(h, report);
 }
 
+/* Two lone mirrored islands at one place have one fingerprint; a baseline with it once knows one of them. */
+static void baseline_entries_count_once_each(void **state)
+{
+	(void)state;
+	hand_mesh *h = hand_new();
+	for (uint32_t i = 0; i < 2; i++) {
+		hand_vertex(h, 0, 0, 0, 1 + 2 * (float)i, 0);
+		hand_vertex(h, 1, 0, 0, 2 * (float)i, 0);
+		hand_vertex(h, 0, 1, 0, 1 + 2 * (float)i, 1);
+		hand_triangle(h, 3 * i, 3 * i + 1, 3 * i + 2);
+	}
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_LONE), 2);
+	uint64_t fingerprint = 0;
+	for (size_t i = 0; i < report->issue_count; i++)
+		if (report->issues[i].code == NT_CODE_UV_MIRROR_LONE)
+			fingerprint = report->issues[i].fingerprint;
+	nt_report_free(report);
+	const nt_baseline baseline = {&fingerprint, 1};
+	const nt_report_options options = {.baseline = &baseline};
+	report = hand_report(h, &options);
+	assert_int_equal(report->known, 1);
+	hand_free(h, report);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -361,6 +391,7 @@ int main(void)
 		cmocka_unit_test(normals_are_judged),
 		cmocka_unit_test(values_that_are_not_finite_are_told_and_harmless),
 		cmocka_unit_test(options_ignore_reweigh_and_limit),
+		cmocka_unit_test(baseline_entries_count_once_each),
 		cmocka_unit_test(baseline_knows_old_findings_each_as_often_as_it_has_them),
 	};
 	return cmocka_run_group_tests_name("report/judgement", tests, NULL, NULL);
