@@ -54,9 +54,13 @@ const nt_option_row nt_option_rows[] = {
 	{"images", 0, NT_OPTION_CHOICE, "link|embed|copy|none", NT_IMAGES_LINK, 0,
 		"link for .gltf, embed for .glb", "how the output comes by its images", SETTING(images),
 		true},
-	{"draco", 0, NT_OPTION_CHOICE, "keep|off", NT_DRACO_KEEP, 0, "keep",
-		"glTF primitives that Draco compressed: compress them again with their tangents, or "
-		"write them plain", SETTING(draco), true},
+	{"draco", 0, NT_OPTION_CHOICE, "keep|off|sequential|edgebreaker", NT_DRACO_KEEP, 0, "keep",
+		"glTF primitives that get tangents; keep: compressed ones are compressed again; off: "
+		"written plain; sequential, edgebreaker: plain ones are compressed too",
+		SETTING(draco), true},
+	{"draco-bits", 0, NT_OPTION_TEXT, "POS,NRM,UV,TAN", 0, 0, "14,12,12,12",
+		"quantization of what was not quantized before; tangents get 12 bits or more",
+		FIELD(draco_bits), true},
 	{"morph", 0, NT_OPTION_CHOICE, "bake|keep|drop", NT_MORPH_BAKE, 0, "bake",
 		"glTF morph targets of primitives that get tangents: compute their TANGENT, leave it as "
 		"it is, or take it away", SETTING(morphs), true},
@@ -292,6 +296,38 @@ static bool given(const parser *p, const char *name)
 	return p->given >> (row - nt_option_rows) & 1;
 }
 
+/* "14,12,12,12": four whole numbers. Tangents of less than 12 bits can be seen. */
+static nmtan_status parse_draco_bits(parser *p)
+{
+	static const struct {
+		const char *what;
+		int least;
+	} parts[NT_DRACO_BITS_COUNT] = {{"positions", 1}, {"normals", 2}, {"texture coordinates", 1},
+		{"tangents", 12}};
+	enum { MOST = 30 };
+	const char *word = p->command->draco_bits;
+	for (size_t i = 0; word && i < NT_DRACO_BITS_COUNT; i++) {
+		char number[16] = "";
+		const size_t length = strcspn(word, ",");
+		const bool last = i + 1 == NT_DRACO_BITS_COUNT;
+		if (last != !word[length])
+			return nt_fail(p->error, NMTAN_ERROR_USAGE,
+				"--draco-bits: '%s' is not four numbers", p->command->draco_bits);
+		if (length < sizeof number)
+			memcpy(number, word, length);
+		const int bits = number_of(number, MOST);
+		if (bits < parts[i].least)
+			return nt_fail(p->error, NMTAN_ERROR_USAGE,
+				"--draco-bits: '%.*s' for %s is not a number from %d to %d", (int)length, word,
+				parts[i].what, parts[i].least, MOST);
+		p->command->settings.draco_bits[i] = bits;
+		word += length + 1;
+	}
+	if (p->command->draco_bits && p->command->settings.draco == NT_DRACO_OFF)
+		return nt_fail(p->error, NMTAN_ERROR_USAGE, "--draco=off leaves nothing for --draco-bits");
+	return NMTAN_OK;
+}
+
 /* Options that contradict each other. */
 static nmtan_status check_clashes(parser *p)
 {
@@ -383,6 +419,8 @@ nmtan_status nt_options_parse(int argc, char **argv, nt_command *command, nt_err
 		command->fail_on = NT_FAIL_ON_ERROR;
 	if (command->action != NT_ACTION_RUN)
 		return NMTAN_OK;
-	const nmtan_status status = check_clashes(&p);
+	nmtan_status status = parse_draco_bits(&p);
+	if (!status)
+		status = check_clashes(&p);
 	return status ? status : check_operands(&p);
 }

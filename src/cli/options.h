@@ -38,6 +38,7 @@ typedef struct nt_command {
 	const char *ignore;    /* CODE,CODE; NULL: nothing */
 	const char *severity;  /* CODE=LEVEL,CODE=LEVEL; NULL: none */
 	const char *baseline;  /* file; NULL: none */
+	const char *draco_bits; /* POS,NRM,UV,TAN, parsed into the settings; NULL: defaults */
 	int max_issues;        /* 0: all */
 	const char *uv_image;  /* folder; NULL: none */
 	const char *directory; /* -d; NULL: none */

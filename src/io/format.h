@@ -27,11 +27,22 @@ typedef struct nt_read_options {
 typedef enum nt_images { NT_IMAGES_DEFAULT, NT_IMAGES_LINK, NT_IMAGES_EMBED, NT_IMAGES_COPY,
 	NT_IMAGES_NONE } nt_images;
 
-/* What happens to compressed primitives that get tangents. */
+/* What happens to glTF primitives that get tangents. */
 typedef enum nt_draco_choice {
-	NT_DRACO_KEEP, /* compressed again, with the source's method and quantization */
-	NT_DRACO_OFF   /* written plain */
+	NT_DRACO_KEEP, /* compressed ones are compressed again, with the source's method and quantization */
+	NT_DRACO_OFF,  /* all are written plain */
+	NT_DRACO_AS_SEQUENTIAL, /* all are compressed, plain ones too */
+	NT_DRACO_AS_EDGEBREAKER
 } nt_draco_choice;
+
+/* Quantization of what was not quantized before, in bits. */
+typedef enum nt_draco_bits {
+	NT_DRACO_BITS_POSITION,
+	NT_DRACO_BITS_NORMAL,
+	NT_DRACO_BITS_TEXCOORD,
+	NT_DRACO_BITS_TANGENT,
+	NT_DRACO_BITS_COUNT
+} nt_draco_bits;
 
 typedef struct nt_write_options {
 	nt_format format;   /* of the output */
@@ -41,7 +52,7 @@ typedef struct nt_write_options {
 	nt_images images;
 	nt_draco_choice draco;
 	nt_morph_choice morphs;
-	int draco_tangent_bits; /* 0: 12; quantization of tangents in compressed primitives */
+	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
 	bool allow_outside;
 } nt_write_options;
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Compressed primitives that got tangents.
+ * Compressed primitives that got tangents; with an explicit --draco, plain ones that shall be compressed.
  *
  * The block is encoded again with the copied rows and TANGENT among the attributes. Attributes keep the
  * source's quantization, origin and range, so that they decode to the values they had. Where attributes
@@ -14,22 +14,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "io/gltf_patch.h"
-
-enum { DEFAULT_TANGENT_BITS = 12, NORMAL_BITS = 12 };
-
-typedef struct recoding {
-	nt_gltf_patcher *patcher;
-	const nt_gltf_cluster *component;
-	const nt_mesh *mesh;
-	nt_json_value *primitive, *extension;
-	uint64_t view;
-	const nt_draco_mesh *source;
-	nt_draco_attribute *attributes;
-	size_t attribute_count;
-	const char **names;
-	bool outside; /* something of the primitive is not in the block */
-} recoding;
 
 bool nt_gltf_has_draco(const nt_gltf_patcher *p, const nt_gltf_cluster *component)
 {
@@ -92,7 +76,7 @@ static nmtan_status make_all_plain(nt_gltf_patcher *p, nt_gltf_cluster *componen
 static nmtan_status note_outside(void *context, nt_json_value *attributes, const char *name,
 	uint32_t accessor)
 {
-	recoding *r = context;
+	nt_gltf_recoding *r = context;
 	(void)accessor;
 	const bool base = attributes == nt_json_find(r->primitive, "attributes");
 	if (!base || !nt_json_find(nt_json_find(r->extension, "attributes"), name))
@@ -101,7 +85,7 @@ static nmtan_status note_outside(void *context, nt_json_value *attributes, const
 }
 
 /* Whether every compressed accessor is this primitive's alone and has no uncompressed twin. */
-static bool accessors_are_own(const recoding *r)
+static bool accessors_are_own(const nt_gltf_recoding *r)
 {
 	const nt_gltf_patcher *p = r->patcher;
 	const nt_json_value *ids = nt_json_find(r->extension, "attributes");
@@ -121,7 +105,7 @@ static bool accessors_are_own(const recoding *r)
 }
 
 /* Rows of a decoded attribute with their copies. */
-static nmtan_status copy_attribute(recoding *r, const nt_draco_attribute *from, const void **rows)
+static nmtan_status copy_attribute(nt_gltf_recoding *r, const nt_draco_attribute *from, const void **rows)
 {
 	nt_gltf_patcher *p = r->patcher;
 	const nt_gltf_rows *all = &r->component->rows;
@@ -137,13 +121,19 @@ static nmtan_status copy_attribute(recoding *r, const nt_draco_attribute *from, 
 	return NMTAN_OK;
 }
 
-static void add_attribute(recoding *r, const char *name, nt_draco_attribute attribute)
+int nt_gltf_draco_bits(const nt_write_options *options, nt_draco_bits which)
+{
+	static const int defaults[NT_DRACO_BITS_COUNT] = {14, 12, 12, 12};
+	return options->draco_bits[which] ? options->draco_bits[which] : defaults[which];
+}
+
+void nt_gltf_draco_add(nt_gltf_recoding *r, const char *name, nt_draco_attribute attribute)
 {
 	r->names[r->attribute_count] = name;
 	r->attributes[r->attribute_count++] = attribute;
 }
 
-static uint32_t free_id(const recoding *r)
+static uint32_t free_id(const nt_gltf_recoding *r)
 {
 	uint32_t id = 0;
 	for (size_t i = 0; i < r->attribute_count; i++)
@@ -153,7 +143,7 @@ static uint32_t free_id(const recoding *r)
 }
 
 /* An attribute of ours: takes the place of one of that name. */
-static void put_floats(recoding *r, const char *name, nt_draco_kind kind, int components,
+static void put_floats(nt_gltf_recoding *r, const char *name, nt_draco_kind kind, int components,
 	const float *rows, int bits)
 {
 	const nt_draco_attribute attribute = {.unique_id = free_id(r), .kind = kind,
@@ -166,16 +156,18 @@ static void put_floats(recoding *r, const char *name, nt_draco_kind kind, int co
 			r->attributes[i].unique_id = id;
 			return;
 		}
-	add_attribute(r, name, attribute);
+	nt_gltf_draco_add(r, name, attribute);
 }
 
-static nmtan_status gather_attributes(recoding *r)
+/* What the source's block has, as it is. */
+static nmtan_status gather_block(nt_gltf_recoding *r)
 {
 	nt_gltf_patcher *p = r->patcher;
-	const nt_gltf_rows *rows = &r->component->rows;
 	const nt_json_value *ids = nt_json_find(r->extension, "attributes");
-	r->attributes = nt_arena_alloc(p->arena, nt_json_count(ids) + 3, sizeof *r->attributes);
-	r->names = nt_arena_alloc(p->arena, nt_json_count(ids) + 3, sizeof *r->names);
+	r->attributes = nt_arena_alloc(p->arena, nt_json_count(ids) + NT_GLTF_OWN_ATTRIBUTES,
+		sizeof *r->attributes);
+	r->names = nt_arena_alloc(p->arena, nt_json_count(ids) + NT_GLTF_OWN_ATTRIBUTES,
+		sizeof *r->names);
 	if (!r->attributes || !r->names)
 		return nt_fail_memory(p->error);
 	nmtan_status status = NMTAN_OK;
@@ -186,14 +178,21 @@ static nmtan_status gather_attributes(recoding *r)
 		copy.quantization.explicit_box = copy.quantization.bits > 0;
 		copy.stride_bytes = 0;
 		status = copy_attribute(r, nt_draco_find(r->source, (uint32_t)id), &copy.data);
-		add_attribute(r, nt_json_key(ids, i, NULL), copy);
+		nt_gltf_draco_add(r, nt_json_key(ids, i, NULL), copy);
 	}
-	if (status)
-		return status;
-	const int wanted = p->options->draco_tangent_bits;
-	const int bits = wanted ? wanted : DEFAULT_TANGENT_BITS;
+	return status;
+}
+
+/* What nmtan made. */
+static nmtan_status add_own_attributes(nt_gltf_recoding *r)
+{
+	nt_gltf_patcher *p = r->patcher;
+	const nt_gltf_rows *rows = &r->component->rows;
+	const int bits = nt_gltf_draco_bits(p->options, NT_DRACO_BITS_TANGENT);
+	nmtan_status status = NMTAN_OK;
 	if (rows->normals[0])
-		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, rows->normals[0], NORMAL_BITS);
+		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, rows->normals[0],
+			nt_gltf_draco_bits(p->options, NT_DRACO_BITS_NORMAL));
 	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, rows->tangents[0], bits);
 	if (p->options->bitangents) {
 		float *bitangents;
@@ -205,7 +204,7 @@ static nmtan_status gather_attributes(recoding *r)
 }
 
 /* Whether edgebreaker would drop a face: two corners at one position. */
-static bool has_degenerate_face(const recoding *r)
+static bool has_degenerate_face(const nt_gltf_recoding *r)
 {
 	const uint32_t *indices = r->component->rows.indices[0];
 	for (size_t c = 0; c + 2 < r->mesh->corner_count; c += 3)
@@ -222,7 +221,7 @@ static bool has_degenerate_face(const recoding *r)
 }
 
 /* Whether rows outside of the block still fit the points in it. */
-static bool order_is_kept(const recoding *r, const nt_draco_block *block)
+static bool order_is_kept(const nt_gltf_recoding *r, const nt_draco_block *block)
 {
 	if (block->point_count != r->component->rows.new_count || !block->sources)
 		return false;
@@ -240,20 +239,20 @@ static void set_count(nt_gltf_patcher *p, uint64_t accessor, size_t count)
 }
 
 /* An accessor without a view: its rows are in the block. */
-static uint32_t add_accessor(nt_gltf_patcher *p, int components, size_t count)
+static uint32_t add_accessor(nt_gltf_patcher *p, int type, const char *shape, size_t count)
 {
 	nt_json *json = p->json;
 	nt_json_value *accessors = nt_json_put(json, nt_json_root(json), "accessors");
 	const uint32_t number = (uint32_t)nt_json_count(accessors);
 	nt_json_value *object = nt_json_append(json, accessors);
-	nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), NT_GLTF_FLOAT);
+	nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), (uint64_t)type);
 	nt_json_set_uint64(json, nt_json_put(json, object, "count"), count);
-	nt_json_set_string(json, nt_json_put(json, object, "type"), components == 3 ? "VEC3" : "VEC4", 4);
+	nt_json_set_string(json, nt_json_put(json, object, "type"), shape, strlen(shape));
 	return number;
 }
 
 /* The JSON of the primitive follows what a decoder will see. */
-static void describe_block(recoding *r, const nt_draco_block *block)
+static void describe_block(nt_gltf_recoding *r, const nt_draco_block *block)
 {
 	nt_gltf_patcher *p = r->patcher;
 	nt_json *json = p->json;
@@ -265,12 +264,17 @@ static void describe_block(recoding *r, const nt_draco_block *block)
 			set_count(p, accessor, block->point_count);
 		else
 			nt_json_set_uint64(json, nt_json_put(json, attributes, r->names[i]),
-				add_accessor(p, a->components, block->point_count));
+				add_accessor(p, NT_GLTF_FLOAT, a->components == 3 ? "VEC3" : "VEC4",
+					block->point_count));
 		nt_json_set_uint64(json, nt_json_put(json, nt_json_put(json, r->extension, "attributes"),
 			r->names[i]), a->unique_id);
 	}
 	uint64_t indices, type = 0;
-	nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &indices);
+	if (!nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &indices)) {
+		indices = add_accessor(p, NT_GLTF_UINT, "SCALAR", 0);
+		nt_json_set_uint64(json, nt_json_put(json, r->primitive, "indices"), indices);
+		r->extension = nt_gltf_draco_of(r->primitive); /* members have moved */
+	}
 	set_count(p, indices, block->face_count * 3);
 	nt_json_value *accessor =
 		nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)indices);
@@ -283,7 +287,7 @@ static void describe_block(recoding *r, const nt_draco_block *block)
 	nt_json_remove(json, accessor, "max");
 }
 
-static nmtan_status store_block(recoding *r, const nt_draco_block *block)
+static nmtan_status store_block(nt_gltf_recoding *r, const nt_draco_block *block)
 {
 	nt_gltf_patcher *p = r->patcher;
 	unsigned char *bytes = nt_arena_alloc(p->arena, block->size, 1);
@@ -291,10 +295,12 @@ static nmtan_status store_block(recoding *r, const nt_draco_block *block)
 		return nt_fail_memory(p->error);
 	memcpy(bytes, block->bytes, block->size);
 	nt_gltf_view view;
-	nmtan_status status = nt_gltf_get_view(p->document, r->view, "", &view, p->error);
+	nmtan_status status = r->source ?
+		nt_gltf_get_view(p->document, r->view, "", &view, p->error) : NMTAN_OK;
 	if (status)
 		return status;
-	if (nt_layout_users(&p->layout, view.buffer, view.offset, view.offset + view.length) == 1)
+	if (r->source &&
+		nt_layout_users(&p->layout, view.buffer, view.offset, view.offset + view.length) == 1)
 		return nt_layout_edit(&p->layout, view.buffer, view.offset, view.length, bytes,
 			block->size, p->error);
 	uint32_t number;
@@ -304,25 +310,43 @@ static nmtan_status store_block(recoding *r, const nt_draco_block *block)
 	return status;
 }
 
-/* Encodes; *done false where the result would not do. */
-static nmtan_status recode(recoding *r, bool *done)
+static nmtan_status encode(const nt_gltf_recoding *r, nt_draco_method method, nt_draco_block *block)
 {
-	nt_gltf_patcher *p = r->patcher;
-	nmtan_status status = gather_attributes(r);
-	if (status)
-		return status;
-	const bool ordered = r->outside || has_degenerate_face(r);
 	const nt_draco_mesh mesh = {
-		.method = ordered ? NT_DRACO_SEQUENTIAL : r->source->method,
+		.method = method,
 		.point_count = r->component->rows.new_count,
 		.face_count = r->mesh->corner_count / 3,
 		.indices = r->component->rows.indices[0],
 		.attributes = r->attributes,
 		.attribute_count = r->attribute_count,
 	};
-	nt_draco_block block = {0};
 	nt_error ignored;
-	status = nt_draco_encode(&mesh, &block, &ignored);
+	return nt_draco_encode(&mesh, block, &ignored);
+}
+
+static nt_draco_method wanted_method(const nt_gltf_recoding *r)
+{
+	if (r->outside || has_degenerate_face(r) || r->patcher->options->draco == NT_DRACO_AS_SEQUENTIAL)
+		return NT_DRACO_SEQUENTIAL;
+	return r->patcher->options->draco == NT_DRACO_AS_EDGEBREAKER ? NT_DRACO_EDGEBREAKER :
+								       r->source->method;
+}
+
+/* Encodes; *done false where the result would not do. */
+static nmtan_status recode(nt_gltf_recoding *r, bool *done)
+{
+	nt_gltf_patcher *p = r->patcher;
+	nmtan_status status = r->source ? gather_block(r) : NMTAN_OK;
+	if (!status)
+		status = add_own_attributes(r);
+	if (status)
+		return status;
+	/* Edgebreaker does not give every mesh back; the other method has nothing to lose. */
+	const nt_draco_method method = wanted_method(r);
+	nt_draco_block block = {0};
+	status = encode(r, method, &block);
+	if (status && status != NMTAN_ERROR_MEMORY && method != NT_DRACO_SEQUENTIAL)
+		status = encode(r, NT_DRACO_SEQUENTIAL, &block);
 	if (status == NMTAN_ERROR_MEMORY)
 		return nt_fail_memory(p->error);
 	if (status || (r->outside && !order_is_kept(r, &block))) {
@@ -330,8 +354,8 @@ static nmtan_status recode(recoding *r, bool *done)
 		return NMTAN_OK; /* plain, then */
 	}
 	*done = true;
-	status = NMTAN_OK;
-	if (r->outside && r->component->rows.new_count > r->component->rows.old_count)
+	status = r->source ? NMTAN_OK : nt_gltf_draco_take_out(r, &block);
+	if (!status && r->outside && r->component->rows.new_count > r->component->rows.old_count)
 		status = nt_gltf_grow_attributes(p, r->component, NULL, 0, false);
 	if (!status) {
 		describe_block(r, &block);
@@ -346,17 +370,22 @@ static nmtan_status recode(recoding *r, bool *done)
 nmtan_status nt_gltf_patch_draco(nt_gltf_patcher *p, nt_gltf_cluster *component, bool *done)
 {
 	*done = false;
-	recoding r = {.patcher = p, .component = component,
+	nt_gltf_recoding r = {.patcher = p, .component = component,
 		.mesh = &p->scene->meshes[component->members[0]]};
 	r.primitive = nt_gltf_primitive_of(p->document, r.mesh);
 	r.extension = nt_gltf_draco_of(r.primitive);
 	nmtan_status status = NMTAN_OK;
-	if (p->options->draco != NT_DRACO_OFF && component->member_count == 1 && r.extension &&
-		accessors_are_own(&r) &&
+	const bool alone = component->member_count == 1;
+	if (p->options->draco != NT_DRACO_OFF && alone && r.extension && accessors_are_own(&r) &&
 		nt_json_get_uint64(nt_json_find(r.extension, "bufferView"), &r.view)) {
 		r.source = nt_gltf_draco_block(p->document, r.view);
 		nt_gltf_visit_attributes(r.primitive, p->sharing.accessor_count, note_outside, &r);
 		status = recode(&r, done);
+	} else if (p->options->draco > NT_DRACO_OFF && alone && !r.extension) {
+		bool possible = false;
+		status = nt_gltf_draco_gather_plain(&r, &possible);
+		if (!status && possible)
+			status = recode(&r, done);
 	}
 	return status || *done ? status : make_all_plain(p, component);
 }

@@ -232,7 +232,7 @@ static nmtan_status patch_component(nt_gltf_patcher *p, nt_gltf_cluster *compone
 	/* Compressed primitives are compressed again, or become plain ones here. */
 	const bool draco = nt_gltf_has_draco(p, component);
 	bool done = false;
-	if (draco)
+	if (draco || p->options->draco > NT_DRACO_OFF)
 		status = nt_gltf_patch_draco(p, component, &done);
 	if (status || done)
 		return status;

@@ -165,12 +165,27 @@ static void count_decisions(run *r)
 			r->summary->skipped[r->scene.meshes[i].decision]++;
 }
 
+/* What only a glTF made from a glTF can have. */
+static nmtan_status check_document_options(const run *r)
+{
+	const bool patch = r->writer && r->writer->format != NT_FORMAT_PLY &&
+		(r->scene.format == NT_FORMAT_GLTF || r->scene.format == NT_FORMAT_GLB);
+	if (r->writer && !patch && r->settings->draco > NT_DRACO_OFF)
+		return nt_fail(r->error, NMTAN_ERROR_USAGE,
+			"--draco=%s compresses only glTF that is made from glTF, not %s made from %s",
+			r->settings->draco == NT_DRACO_AS_SEQUENTIAL ? "sequential" : "edgebreaker",
+			r->writer->name, r->reader->name);
+	return NMTAN_OK;
+}
+
 static nmtan_status read_scene(run *r)
 {
 	nmtan_status status = open_scene(r);
 	if (status)
 		return nt_error_in_file(r->error, r->input_path);
 	status = choose_writer(r);
+	if (!status)
+		status = check_document_options(r);
 	if (status)
 		return status;
 
@@ -197,6 +212,7 @@ static nmtan_status write_scene(run *r)
 		.images = s->images,
 		.draco = s->draco,
 		.morphs = s->morphs,
+		.draco_bits = {s->draco_bits[0], s->draco_bits[1], s->draco_bits[2], s->draco_bits[3]},
 		.allow_outside = s->allow_outside,
 	};
 	nt_output *output = NULL;

@@ -38,6 +38,7 @@ typedef struct nt_settings {
 	nt_images images;
 	nt_draco_choice draco;
 	nt_morph_choice morphs;
+	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
 	nt_format output_format; /* NT_FORMAT_UNKNOWN: by name */
 	int texcoord_set;        /* -1: auto */
 	unsigned threads;        /* 0: all */

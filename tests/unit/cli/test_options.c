@@ -92,6 +92,13 @@ static void every_word_of_a_choice_is_its_constant(void **state)
 	assert_int_equal(c.settings.images, NT_IMAGES_LINK);
 	accepts(&c, WORDS("--images=copy", "a", "b"));
 	assert_int_equal(c.settings.images, NT_IMAGES_COPY);
+	accepts(&c, WORDS("--draco=off", "a", "b"));
+	assert_int_equal(c.settings.draco, NT_DRACO_OFF);
+	accepts(&c, WORDS("--draco=sequential", "a", "b"));
+	assert_int_equal(c.settings.draco, NT_DRACO_AS_SEQUENTIAL);
+	accepts(&c, WORDS("--draco=edgebreaker", "--draco-bits=16,10,1,30", "a", "b"));
+	assert_int_equal(c.settings.draco, NT_DRACO_AS_EDGEBREAKER);
+	assert_memory_equal(c.settings.draco_bits, ((int[]){16, 10, 1, 30}), 4 * sizeof(int));
 	accepts(&c, WORDS("--output-format=ply", "a", "b"));
 	assert_int_equal(c.settings.output_format, NT_FORMAT_PLY);
 	accepts(&c, WORDS("--output-format=glb", "a", "b"));
@@ -179,6 +186,12 @@ static void bad_values_are_refused_whole(void **state)
 	refuses("''", WORDS("--only=", "a", "b"));
 	refuses("auto needed all", WORDS("--only=some", "a", "b"));
 	refuses("''", WORDS("--directory=", "a", "b"));
+	refuses("'11' for tangents", WORDS("--draco-bits=14,12,12,11", "a", "b"));
+	refuses("'31' for positions", WORDS("--draco-bits=31,12,12,12", "a", "b"));
+	refuses("'1' for normals", WORDS("--draco-bits=14,1,12,12", "a", "b"));
+	refuses("''", WORDS("--draco-bits=14,12,,12", "a", "b"));
+	refuses("'14,12,12'", WORDS("--draco-bits=14,12,12", "a", "b"));
+	refuses("'14,12,12,12,12'", WORDS("--draco-bits=14,12,12,12,12", "a", "b"));
 }
 
 static void missing_and_superfluous_values_are_refused(void **state)
@@ -202,6 +215,7 @@ static void options_that_contradict_each_other_are_refused(void **state)
 	refuses("'glb'", WORDS("--embed", "--output-format=glb", "a", "b"));
 	refuses("--embed", WORDS("--output-format=gltf", "a", "-"));
 	refuses("--verify", WORDS("--verify", "a", "-"));
+	refuses("--draco=off", WORDS("--draco=off", "--draco-bits=14,12,12,12", "a", "b"));
 }
 
 static void names_must_be_as_many_as_the_form_takes(void **state)

@@ -10,7 +10,7 @@
 #include <unistd.h>
 #include "base/buffer.h"
 #include "ext/draco.h"
-#include "io/gltf_document.h"
+#include "io/gltf_draco.h"
 #include "pipeline/run.h"
 
 enum { N = 12, VERTICES = (N + 1) * (N + 1), CORNERS = N * N * 6 };
@@ -330,6 +330,108 @@ static void draco_sequential_keeps_every_value(void **state)
 	check_draco(NT_DRACO_SEQUENTIAL);
 }
 
+/* The block of a file's only primitive. */
+static const nt_draco_mesh *block_of(const loaded *l)
+{
+	uint64_t view;
+	const nt_json_value *meshes = nt_gltf_root_member(l->scene.source, "meshes");
+	const nt_json_value *primitive =
+		nt_json_at(nt_json_find(nt_json_at(meshes, 0), "primitives"), 0);
+	const nt_json_value *extension = nt_gltf_draco_of(primitive);
+	assert_true(nt_json_get_uint64(nt_json_find(extension, "bufferView"), &view));
+	const nt_draco_mesh *mesh = nt_gltf_draco_block(l->scene.source, view);
+	assert_non_null(mesh);
+	return mesh;
+}
+
+/* Half a step of the quantization of values over `range`, and rounding. */
+static double half_step(double range, int bits)
+{
+	return range / ((1 << bits) - 1) * 0.5 + 1e-6;
+}
+
+static void explicit_methods_compress_plain_primitives(void **state)
+{
+	(void)state;
+	write_plain(&source, file("in.glb"));
+	solve(file("in.glb"), file("plain.glb"), NT_DRACO_OFF);
+	solve(file("in.glb"), file("out.glb"), NT_DRACO_AS_SEQUENTIAL);
+	loaded plain, out;
+	load(&plain, file("plain.glb"));
+	load(&out, file("out.glb"));
+	assert_int_equal(block_of(&out)->method, NT_DRACO_SEQUENTIAL);
+	assert_true(lists_extension(&out, "extensionsUsed"));
+	assert_true(lists_extension(&out, "extensionsRequired"));
+	assert_int_equal(out.mesh->vertex_count, plain.mesh->vertex_count);
+	assert_int_equal(out.mesh->corner_count, plain.mesh->corner_count);
+	/* positions lie in a box of 3, 14 bits; texture coordinates (-2 to 5 times 0.125) in one of 0.875, 12 */
+	for (size_t c = 0; c < CORNERS; c++) {
+		for (size_t k = 0; k < 3; k++)
+			assert_true(fabs(row(out.mesh->positions, out.mesh, c, 3)[k] -
+				row(plain.mesh->positions, plain.mesh, c, 3)[k]) <= half_step(3, 14));
+		for (size_t k = 0; k < 2; k++)
+			assert_true(fabs(row(out.mesh->texcoords, out.mesh, c, 2)[k] -
+				row(plain.mesh->texcoords, plain.mesh, c, 2)[k]) <= half_step(0.875, 12));
+		assert_memory_equal(row(out.mesh->colors, out.mesh, c, 4),
+			row(plain.mesh->colors, plain.mesh, c, 4), 16);
+	}
+	check_tangents(plain.mesh, out.mesh, 0.03);
+	/* the plain rows are gone: four bytes are left of each */
+	assert_true(out.file.size < plain.file.size / 2);
+	unload(&plain);
+	unload(&out);
+}
+
+static void explicit_methods_replace_the_one_of_the_source(void **state)
+{
+	(void)state;
+	const struct {
+		nt_draco_method before, after;
+		nt_draco_choice choice;
+	} cases[] = {
+		{NT_DRACO_SEQUENTIAL, NT_DRACO_EDGEBREAKER, NT_DRACO_AS_EDGEBREAKER},
+		{NT_DRACO_EDGEBREAKER, NT_DRACO_SEQUENTIAL, NT_DRACO_AS_SEQUENTIAL},
+	};
+	for (size_t i = 0; i < 2; i++) {
+		write_draco(&source, cases[i].before, file("in.glb"));
+		solve(file("in.glb"), file("out.glb"), cases[i].choice);
+		loaded in, out;
+		load(&in, file("in.glb"));
+		load(&out, file("out.glb"));
+		assert_int_equal(block_of(&in)->method, cases[i].before);
+		assert_int_equal(block_of(&out)->method, cases[i].after);
+		assert_non_null(out.mesh->tangents);
+		assert_int_equal(out.mesh->corner_count, CORNERS);
+		/* nothing is quantized twice */
+		if (cases[i].after == NT_DRACO_SEQUENTIAL)
+			check_same_corners(in.mesh, out.mesh);
+		unload(&in);
+		unload(&out);
+	}
+	/* a plain one by edgebreaker */
+	write_plain(&source, file("in.glb"));
+	solve(file("in.glb"), file("out.glb"), NT_DRACO_AS_EDGEBREAKER);
+	loaded out;
+	load(&out, file("out.glb"));
+	assert_int_equal(block_of(&out)->method, NT_DRACO_EDGEBREAKER);
+	assert_int_equal(out.mesh->corner_count, CORNERS);
+	unload(&out);
+}
+
+static void faces_without_area_are_kept_by_the_sequential_method(void **state)
+{
+	(void)state;
+	sheet folded = source;
+	folded.indices[0] = folded.indices[1];
+	write_plain(&folded, file("in.glb"));
+	solve(file("in.glb"), file("out.glb"), NT_DRACO_AS_EDGEBREAKER);
+	loaded out;
+	load(&out, file("out.glb"));
+	assert_int_equal(block_of(&out)->method, NT_DRACO_SEQUENTIAL);
+	assert_int_equal(out.mesh->corner_count, CORNERS);
+	unload(&out);
+}
+
 static int compare_floats(const void *a, const void *b)
 {
 	return memcmp(a, b, 3 * sizeof(float));
@@ -407,6 +509,9 @@ int main(void)
 		cmocka_unit_test(meshopt_gives_what_plain_gives),
 		cmocka_unit_test(draco_sequential_keeps_every_value),
 		cmocka_unit_test(draco_edgebreaker_keeps_every_value),
+		cmocka_unit_test(explicit_methods_compress_plain_primitives),
+		cmocka_unit_test(explicit_methods_replace_the_one_of_the_source),
+		cmocka_unit_test(faces_without_area_are_kept_by_the_sequential_method),
 		cmocka_unit_test(damaged_blocks_are_harmless),
 	};
 	return cmocka_run_group_tests_name("io/gltf compressed", tests, set_up, tear_down);

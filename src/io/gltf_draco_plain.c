@@ -1,0 +1,378 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Plain primitives that an explicit --draco asks to compress.
+ *
+ * All attributes go into the block; floats that have a meaning we know are quantized, all other values
+ * stay exact. Where the order of vertices matters to somebody (morph targets, attributes that Draco
+ * cannot have, extensions of the primitive), the sequential method keeps it. A primitive is left plain
+ * where that would not do: accessors that somebody else uses too, sparse or compressed ones, strips.
+ *
+ * The rows leave the buffers, but views keep their numbers, so four bytes of each run remain.
+ */
+#include "io/gltf_draco.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* What is left of a run of rows: a view must not be empty. */
+static const unsigned char remainder_bytes[4];
+
+/* ---- what can be compressed ---- */
+
+static bool begins_with(const char *text, const char *start)
+{
+	return strncmp(text, start, strlen(start)) == 0;
+}
+
+static nt_draco_kind kind_of(const char *name)
+{
+	return strcmp(name, "POSITION") == 0 ? NT_DRACO_POSITION :
+	       strcmp(name, "NORMAL") == 0 ? NT_DRACO_NORMAL :
+	       begins_with(name, "COLOR_") ? NT_DRACO_COLOR :
+	       begins_with(name, "TEXCOORD_") ? NT_DRACO_TEXCOORD : NT_DRACO_GENERIC;
+}
+
+/* 0 for what must come back as it was. */
+static int bits_of(const nt_write_options *options, const char *name)
+{
+	switch (kind_of(name)) {
+	case NT_DRACO_POSITION:
+		return nt_gltf_draco_bits(options, NT_DRACO_BITS_POSITION);
+	case NT_DRACO_NORMAL:
+		return nt_gltf_draco_bits(options, NT_DRACO_BITS_NORMAL);
+	case NT_DRACO_TEXCOORD:
+		return nt_gltf_draco_bits(options, NT_DRACO_BITS_TEXCOORD);
+	default:
+		return strcmp(name, "TANGENT") == 0 ?
+			nt_gltf_draco_bits(options, NT_DRACO_BITS_TANGENT) : 0;
+	}
+}
+
+/* Whether the rows of an accessor lie in the file as they are. */
+static bool lies_plain(const nt_gltf_recoding *r, uint64_t index, nt_gltf_accessor *accessor)
+{
+	const nt_gltf_patcher *p = r->patcher;
+	nt_gltf_view view;
+	return index < p->sharing.accessor_count &&
+		nt_gltf_get_accessor(p->document, index, "", accessor, NULL) == NMTAN_OK &&
+		accessor->view != NT_NONE && !accessor->sparse_count && !accessor->decoded &&
+		nt_gltf_get_view(p->document, accessor->view, "", &view, NULL) == NMTAN_OK &&
+		!view.compression && view.buffer < NT_GLTF_VIRTUAL;
+}
+
+/* Matrices are no attributes of Draco's. */
+static bool is_vector(const nt_gltf_recoding *r, uint32_t accessor)
+{
+	const char *type = nt_json_get_string(nt_json_find(nt_json_at(
+		nt_gltf_root_member(r->patcher->document, "accessors"), accessor), "type"), NULL);
+	return type && !begins_with(type, "MAT");
+}
+
+static bool indices_are_own(const nt_gltf_recoding *r)
+{
+	const nt_gltf_patcher *p = r->patcher;
+	const nt_json_value *indices = nt_json_find(r->primitive, "indices");
+	nt_gltf_accessor accessor;
+	uint64_t index;
+	return !indices || (nt_json_get_uint64(indices, &index) && lies_plain(r, index, &accessor) &&
+		p->sharing.index_users[p->sharing.canonical[index]] == 1);
+}
+
+/* ---- gathering ---- */
+
+static nmtan_status tight_rows(nt_gltf_recoding *r, const nt_gltf_accessor *accessor, size_t width,
+	const void **result)
+{
+	nt_gltf_patcher *p = r->patcher;
+	const nt_gltf_rows *all = &r->component->rows;
+	const unsigned char *from;
+	unsigned char *out = nt_arena_alloc(p->arena, all->new_count, width);
+	if (!out)
+		return nt_fail_memory(p->error);
+	const nmtan_status status = nt_gltf_accessor_rows(p->document, accessor, &from, p->error);
+	for (size_t row = 0; !status && row < all->new_count; row++) {
+		const size_t source = row < all->old_count ? row : all->sources[row - all->old_count];
+		memcpy(out + row * width, from + source * accessor->stride, width);
+	}
+	*result = out;
+	return status;
+}
+
+static bool is_in_block(const nt_gltf_recoding *r, const nt_json_value *attributes, const char *name)
+{
+	if (attributes != nt_json_find(r->primitive, "attributes"))
+		return false;
+	for (size_t i = 0; i < r->attribute_count; i++)
+		if (strcmp(r->names[i], name) == 0)
+			return true;
+	return false;
+}
+
+/* *possible false where the attribute is not ours alone. */
+static nmtan_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_t index,
+	bool *possible)
+{
+	nt_gltf_accessor accessor;
+	*possible = lies_plain(r, index, &accessor) &&
+		accessor.count == r->component->rows.old_count &&
+		!r->patcher->sharing.foreign[r->patcher->sharing.canonical[index]];
+	if (!*possible)
+		return NMTAN_OK;
+	if (!is_vector(r, accessor.index)) {
+		r->outside = true;
+		return NMTAN_OK;
+	}
+	const bool is_float = accessor.component_type == NT_GLTF_FLOAT;
+	/* ours takes its place */
+	if (strcmp(name, "TANGENT") == 0 && !(is_float && accessor.components == 4))
+		*possible = false;
+	nt_draco_attribute attribute = {.unique_id = (uint32_t)r->attribute_count,
+		.kind = kind_of(name), .component_type = (int)accessor.component_type,
+		.components = (int)accessor.components, .normalized = accessor.normalized,
+		.quantization = {.bits = is_float ? bits_of(r->patcher->options, name) : 0}};
+	const size_t width = (size_t)accessor.components * accessor.component_bytes;
+	const nmtan_status status = tight_rows(r, &accessor, width, &attribute.data);
+	if (!status)
+		nt_gltf_draco_add(r, name, attribute);
+	return status;
+}
+
+/* How often an accessor is used inside of the block and outside of it. */
+typedef struct doubles {
+	const nt_gltf_recoding *recoding;
+	uint32_t canonical;
+	size_t inside, outside;
+} doubles;
+
+static nmtan_status count_use(void *context, nt_json_value *attributes, const char *name,
+	uint32_t accessor)
+{
+	doubles *d = context;
+	if (d->recoding->patcher->sharing.canonical[accessor] != d->canonical)
+		return NMTAN_OK;
+	if (is_in_block(d->recoding, attributes, name))
+		d->inside++;
+	else
+		d->outside++;
+	return NMTAN_OK;
+}
+
+static nmtan_status note_use(void *context, nt_json_value *attributes, const char *name,
+	uint32_t accessor)
+{
+	(void)accessor;
+	nt_gltf_recoding *r = context;
+	if (!is_in_block(r, attributes, name))
+		r->outside = true;
+	return NMTAN_OK;
+}
+
+static bool has_doubles(const nt_gltf_recoding *r)
+{
+	const nt_gltf_patcher *p = r->patcher;
+	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
+	for (size_t i = 0; i < r->attribute_count; i++) {
+		uint64_t index;
+		if (!nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index))
+			return true;
+		doubles d = {.recoding = r, .canonical = p->sharing.canonical[index]};
+		nt_gltf_visit_attributes(r->primitive, p->sharing.accessor_count, count_use, &d);
+		if (d.inside != 1 || d.outside)
+			return true;
+	}
+	return false;
+}
+
+nmtan_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r, bool *possible)
+{
+	nt_gltf_patcher *p = r->patcher;
+	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
+	const size_t count = nt_json_count(attributes);
+	uint64_t mode = 4;
+	nt_json_get_uint64(nt_json_find(r->primitive, "mode"), &mode);
+	*possible = mode == 4 && indices_are_own(r);
+	if (!*possible)
+		return NMTAN_OK;
+	r->attributes = nt_arena_alloc(p->arena, count + NT_GLTF_OWN_ATTRIBUTES, sizeof *r->attributes);
+	r->names = nt_arena_alloc(p->arena, count + NT_GLTF_OWN_ATTRIBUTES, sizeof *r->names);
+	if (!r->attributes || !r->names)
+		return nt_fail_memory(p->error);
+	nmtan_status status = NMTAN_OK;
+	for (size_t i = 0; !status && *possible && i < count; i++) {
+		/* names outlive the members that are put in behind them */
+		const char *key = nt_json_key(attributes, i, NULL);
+		const char *name = nt_arena_text(p->arena, key, strlen(key));
+		uint64_t index = UINT64_MAX;
+		nt_json_get_uint64(nt_json_at(attributes, i), &index);
+		status = name ? gather_attribute(r, name, index, possible) : nt_fail_memory(p->error);
+	}
+	if (status || !*possible)
+		return status;
+	*possible = !has_doubles(r);
+	nt_gltf_visit_attributes(r->primitive, p->sharing.accessor_count, note_use, r);
+	/* an extension that we do not know may number the vertices */
+	const nt_json_value *extensions = nt_json_find(r->primitive, "extensions");
+	for (size_t i = 0; i < nt_json_count(extensions); i++)
+		r->outside |= strcmp(nt_json_key(extensions, i, NULL), "KHR_materials_variants") != 0;
+	return NMTAN_OK;
+}
+
+/* ---- taking out ---- */
+
+/* Bytes of a buffer that accessors of the primitive fill. */
+typedef struct run {
+	uint64_t begin, end, view_begin, view_end;
+	uint32_t buffer, view;
+} run;
+
+static int compare_runs(const void *a, const void *b)
+{
+	const run *x = a, *y = b;
+	if (x->buffer != y->buffer)
+		return x->buffer < y->buffer ? -1 : 1;
+	return (x->begin > y->begin) - (x->begin < y->begin);
+}
+
+/* The bytes of an accessor, which loses its view. */
+static run detach(nt_gltf_patcher *p, uint64_t index)
+{
+	nt_gltf_accessor a = {0};
+	nt_gltf_view view = {0};
+	nt_gltf_get_accessor(p->document, index, "", &a, NULL);
+	nt_gltf_get_view(p->document, a.view, "", &view, NULL);
+	nt_json_value *json = nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)index);
+	nt_json_remove(p->json, json, "bufferView");
+	nt_json_remove(p->json, json, "byteOffset");
+	const uint64_t begin = view.offset + a.offset;
+	return (run){begin, begin + (a.count - 1) * a.stride + a.element_bytes, view.offset,
+		view.offset + view.length, view.buffer, a.view};
+}
+
+/* A view that nothing is left in has no rows, so it can have no stride. */
+static void drop_stride(nt_gltf_patcher *p, const run *runs, size_t count, const run *from)
+{
+	size_t users = 0;
+	for (size_t i = 0; i < count; i++)
+		users += runs[i].view == from->view;
+	if (nt_layout_users(&p->layout, from->buffer, from->view_begin, from->view_end) == users)
+		nt_json_remove(p->json, nt_json_at(nt_gltf_root_member(p->document, "bufferViews"),
+			from->view), "byteStride");
+}
+
+/* Bytes that somebody else has a use for stay, and those in which another view begins or ends. */
+static bool can_go(const nt_gltf_patcher *p, const run *runs, size_t count, uint64_t begin, uint64_t end)
+{
+	for (size_t i = 0; i < count; i++)
+		if (runs[i].view_begin > begin || runs[i].view_end < end)
+			return false;
+	return end - begin > sizeof remainder_bytes &&
+		nt_layout_users(&p->layout, runs->buffer, begin, end) == count;
+}
+
+static nmtan_status remove_runs(nt_gltf_patcher *p, run *runs, size_t count)
+{
+	if (count)
+		qsort(runs, count, sizeof *runs, compare_runs);
+	nmtan_status status = NMTAN_OK;
+	for (size_t first = 0, next; !status && first < count; first = next) {
+		const uint64_t begin = runs[first].begin;
+		uint64_t end = runs[first].end;
+		for (next = first + 1; next < count && runs[next].buffer == runs[first].buffer &&
+			runs[next].begin < end; next++)
+			end = runs[next].end > end ? runs[next].end : end;
+		if (!can_go(p, runs + first, next - first, begin, end))
+			continue;
+		for (size_t i = first; i < next; i++)
+			drop_stride(p, runs, count, &runs[i]);
+		status = nt_layout_edit(&p->layout, runs[first].buffer, begin, end - begin,
+			remainder_bytes, sizeof remainder_bytes, p->error);
+	}
+	return status;
+}
+
+/* Bounds of what a decoder will see; quantization moves values. */
+static void bound_accessor(nt_gltf_patcher *p, uint64_t index, const nt_draco_attribute *decoded,
+	size_t count)
+{
+	nt_json_value *json = nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)index);
+	nt_json_value *bounds[2] = {nt_json_find(json, "min"), nt_json_find(json, "max")};
+	const float *rows = decoded->data;
+	const size_t width = (size_t)decoded->components;
+	for (size_t b = 0; b < 2; b++)
+		for (size_t k = 0; k < width && nt_json_count(bounds[b]) == width; k++) {
+			float extreme = rows[k];
+			for (size_t row = 1; row < count; row++) {
+				const float value = rows[row * width + k];
+				if (b ? value > extreme : value < extreme)
+					extreme = value;
+			}
+			nt_json_set_double(p->json, nt_json_at(bounds[b], k), (double)extreme);
+		}
+}
+
+static nmtan_status set_bounds(nt_gltf_recoding *r, const nt_draco_block *block)
+{
+	nt_gltf_patcher *p = r->patcher;
+	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
+	nt_draco *decoded;
+	nmtan_status status =
+		nt_draco_decode(&decoded, block->bytes, block->size, 0, false, p->error);
+	if (status)
+		return status;
+	const nt_draco_mesh *mesh = nt_draco_get(decoded);
+	for (size_t i = 0; i < r->attribute_count; i++) {
+		uint64_t index;
+		const nt_draco_attribute *found = nt_draco_find(mesh, r->attributes[i].unique_id);
+		if (found && r->attributes[i].quantization.bits &&
+			nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index))
+			bound_accessor(p, index, found, mesh->point_count);
+	}
+	nt_draco_free(decoded);
+	return status;
+}
+
+static void list_extension(nt_gltf_patcher *p, const char *list)
+{
+	static const char name[] = "KHR_draco_mesh_compression";
+	nt_json_value *names = nt_json_put(p->json, nt_json_root(p->json), list);
+	for (size_t i = 0; i < nt_json_count(names); i++) {
+		const char *text = nt_json_get_string(nt_json_at(names, i), NULL);
+		if (text && strcmp(text, name) == 0)
+			return;
+	}
+	nt_json_set_string(p->json, nt_json_append(p->json, names), name, strlen(name));
+}
+
+static void put_extension(nt_gltf_recoding *r)
+{
+	nt_json *json = r->patcher->json;
+	nt_json_value *extensions = nt_json_put(json, r->primitive, "extensions");
+	r->extension = nt_json_put(json, extensions, "KHR_draco_mesh_compression");
+	nt_json_set_uint64(json, nt_json_put(json, r->extension, "bufferView"), 0);
+	nt_json_set_object(json, nt_json_put(json, r->extension, "attributes"));
+	list_extension(r->patcher, "extensionsUsed");
+	list_extension(r->patcher, "extensionsRequired");
+}
+
+nmtan_status nt_gltf_draco_take_out(nt_gltf_recoding *r, const nt_draco_block *block)
+{
+	nt_gltf_patcher *p = r->patcher;
+	run *runs = nt_arena_alloc(p->arena, r->attribute_count + 1, sizeof *runs);
+	if (!runs)
+		return nt_fail_memory(p->error);
+	nmtan_status status = set_bounds(r, block);
+	if (status)
+		return status;
+	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
+	size_t count = 0;
+	uint64_t index;
+	for (size_t i = 0; i < r->attribute_count; i++)
+		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index))
+			runs[count++] = detach(p, index);
+	if (nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &index))
+		runs[count++] = detach(p, index);
+	status = remove_runs(p, runs, count);
+	put_extension(r);
+	return status;
+}
