@@ -12,6 +12,8 @@
 /* Of one code so many places are shown without -v; the rest is counted. */
 enum { PLACES_SHOWN = 5 };
 
+static const double DEGREES = 57.29577951308232; /* of a radian */
+
 static const char *colour(nt_style style, const char *code)
 {
 	return style.colour ? code : "";
@@ -187,6 +189,10 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 				c->repaired_sign;
 	if (repaired)
 		nt_buffer_format(out, ", repaired %zu of the tangents", repaired);
+	if (s->rounding.count)
+		nt_buffer_format(out, ", rounded tangents by %.2g degrees at most, %.2g on average",
+			s->rounding.worst_radians * DEGREES,
+			s->rounding.sum_radians / (double)s->rounding.count * DEGREES);
 	append_skipped(out, s);
 	if (settings->check)
 		append_findings_count(out, s);

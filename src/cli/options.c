@@ -64,6 +64,9 @@ const nt_option_row nt_option_rows[] = {
 	{"morph", 0, NT_OPTION_CHOICE, "bake|keep|drop", NT_MORPH_BAKE, 0, "bake",
 		"glTF morph targets of primitives that get tangents: compute their TANGENT, leave it as "
 		"it is, or take it away", SETTING(morphs), true},
+	{"precision", 0, NT_OPTION_CHOICE, "float|short|byte", NT_PRECISION_FLOAT, 0, "float",
+		"how glTF stores tangents; short and byte need KHR_mesh_quantization", SETTING(precision),
+		true},
 	{"bitangents", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"write bitangents too: bx by bz in PLY, _BITANGENT in glTF", SETTING(bitangents), true},
 	{"no-clobber", 'n', NT_OPTION_FLAG, NULL, 0, 0, NULL, "never replace a file",

@@ -364,6 +364,7 @@ uint32_t nt_model_add_accessor(nt_model *model, const nt_model_accessor *accesso
 		item.componentType = accessor->component_type;
 		item.type = types[accessor->components - 1];
 		item.count = accessor->count;
+		item.normalized = accessor->normalized;
 		// exactly the float: a reader may compare in double
 		if (accessor->min)
 			item.minValues.assign(accessor->min, accessor->min + accessor->components);
@@ -392,6 +393,15 @@ uint32_t nt_model_image_view(nt_model *model, const char *name, uint32_t view,
 		image.bufferView = reference(view);
 		image.mimeType = media_type;
 		return append(model->document.images, std::move(image));
+	});
+}
+
+void nt_model_require(nt_model *model, const char *extension)
+{
+	add(model, [&] {
+		use_extension(model->document.extensionsUsed, extension);
+		use_extension(model->document.extensionsRequired, extension);
+		return 0;
 	});
 }
 

@@ -48,6 +48,7 @@ typedef struct nt_model_accessor {
 	int components;        /* 1 to 4: SCALAR, VEC2, VEC3, VEC4 */
 	size_t count;
 	const float *min, *max; /* [components], finite; NULL: none */
+	bool normalized;
 } nt_model_accessor;
 uint32_t nt_model_add_accessor(nt_model *model, const nt_model_accessor *accessor);
 
@@ -84,6 +85,9 @@ void nt_model_primitive(nt_model *model, uint32_t mesh, const nt_model_attribute
 
 /* A root node of the scene that shows a mesh. matrix: column-major; the identity is not written. */
 uint32_t nt_model_node(nt_model *model, const char *name, uint32_t mesh, const double matrix[16]);
+
+/* Lists an extension as used and required. */
+void nt_model_require(nt_model *model, const char *extension);
 
 /* The document's text, in two pieces: where the buffer is embedded its base64 goes between them, else the
  * second is empty. Free with nt_model_text_free(). */

@@ -16,6 +16,13 @@ typedef enum nt_morph_choice {
 	NT_MORPH_DROP  /* none */
 } nt_morph_choice;
 
+/* How tangents of glTF are stored, where Draco does not. */
+typedef enum nt_precision {
+	NT_PRECISION_FLOAT,
+	NT_PRECISION_SHORT, /* normalized integers: KHR_mesh_quantization */
+	NT_PRECISION_BYTE
+} nt_precision;
+
 typedef struct nt_read_options {
 	int texcoord_set;   /* -1: the set that the material's slot asks for; else TEXCOORD_n */
 	bool allow_outside; /* URIs may leave the folder of the input */
@@ -53,6 +60,7 @@ typedef struct nt_write_options {
 	nt_draco_choice draco;
 	nt_morph_choice morphs;
 	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
+	nt_precision precision;
 	bool allow_outside;
 } nt_write_options;
 

@@ -18,6 +18,7 @@
 #include "io/glb.h"
 #include "io/gltf_image.h"
 #include "io/gltf_part.h"
+#include "io/gltf_precision.h"
 #include "io/link.h"
 
 /* One range of the buffer that holds geometry. */
@@ -96,12 +97,19 @@ static uint32_t plan_stream(composition *c, const nt_part *part, nt_stream strea
 	if (!nt_part_has(part, stream) || (stream == NT_STREAM_BITANGENT && !c->options.bitangents))
 		return NT_MODEL_NONE;
 	const int width = nt_stream_width(stream);
+	const nt_precision precision =
+		stream == NT_STREAM_TANGENT ? c->options.precision : NT_PRECISION_FLOAT;
+	const bool integers = precision != NT_PRECISION_FLOAT;
+	const size_t row_bytes = integers ? nt_precision_bytes(precision) : (size_t)width * sizeof(float);
 	nt_model_accessor accessor = {
-		.view = add_block(c, part, stream, (uint64_t)part->vertex_count * (unsigned)width * 4),
-		.component_type = NT_GLTF_FLOAT,
+		.view = add_block(c, part, stream, (uint64_t)part->vertex_count * row_bytes),
+		.component_type = (int)nt_precision_component_type(precision),
 		.components = width,
 		.count = part->vertex_count,
+		.normalized = integers,
 	};
+	if (integers)
+		nt_model_require(c->model, NT_GLTF_QUANTIZATION);
 	float min[3], max[3];
 	if (stream == NT_STREAM_POSITION) {
 		nt_part_bounds(part, min, max);
@@ -256,6 +264,47 @@ static nmtan_status stream_bytes(void *user, const void *bytes, size_t size, nt_
 			      : nt_sink_write(stream->sink, bytes, size, error);
 }
 
+/* Tangents on their way to integers. */
+typedef struct rounding_stream {
+	byte_stream *stream;
+	nt_precision precision;
+	nt_rounding cost;
+} rounding_stream;
+
+static nmtan_status stream_rounded(void *user, const void *bytes, size_t size, nt_error *error)
+{
+	enum { BLOCK_ROWS = 256 };
+	rounding_stream *rounding = user;
+	const float *rows = bytes;
+	float chunk[BLOCK_ROWS][4];
+	unsigned char out[sizeof chunk];
+	nmtan_status status = NMTAN_OK;
+	for (size_t left = size / sizeof *chunk, count; left && status == NMTAN_OK; left -= count) {
+		count = left < BLOCK_ROWS ? left : BLOCK_ROWS;
+		memcpy(chunk, rows, count * sizeof *chunk);
+		rows += 4 * count;
+		nt_precision_round(rounding->precision, chunk[0], count, &rounding->cost);
+		nt_precision_encode(rounding->precision, chunk[0], count, out);
+		status = stream_bytes(rounding->stream, out,
+			count * nt_precision_bytes(rounding->precision), error);
+	}
+	return status;
+}
+
+/* One stream of a part. */
+static nmtan_status write_block(const composition *c, const block *b, byte_stream *stream, nt_error *error)
+{
+	if (b->stream == NT_STREAM_COUNT)
+		return nt_part_write_indices(b->part, stream_bytes, stream, error);
+	if (b->stream != NT_STREAM_TANGENT || c->options.precision == NT_PRECISION_FLOAT)
+		return nt_part_write_stream(b->part, b->stream, stream_bytes, stream, error);
+	rounding_stream rounding = {.stream = stream, .precision = c->options.precision};
+	const nmtan_status status =
+		nt_part_write_stream(b->part, b->stream, stream_rounded, &rounding, error);
+	nt_precision_report(c->scene, c->options.precision, &rounding.cost, &b->part->mesh->place);
+	return status;
+}
+
 static nmtan_status pad_to(byte_stream *stream, uint64_t offset, nt_error *error)
 {
 	static const char zeros[4];
@@ -279,9 +328,7 @@ static nmtan_status write_buffer(const composition *c, byte_stream *stream, nt_e
 		status = pad_to(stream, b->offset, error);
 		if (status != NMTAN_OK)
 			break;
-		status = b->stream == NT_STREAM_COUNT
-			? nt_part_write_indices(b->part, stream_bytes, stream, error)
-			: nt_part_write_stream(b->part, b->stream, stream_bytes, stream, error);
+		status = write_block(c, b, stream, error);
 	}
 	const size_t images = nt_image_set_embedded_count(c->images);
 	for (size_t i = 0; i < images && status == NMTAN_OK; i++) {

@@ -347,20 +347,38 @@ static nmtan_status grow_block(nt_gltf_growing *g, const block *b, uint64_t prev
 
 /* ---- the whole ---- */
 
+/* Component k of a row of new tangents, by the size of the row. */
+static double new_value(const nt_gltf_override *override, size_t row, size_t k)
+{
+	const size_t size = override->width / 4;
+	const unsigned char *at = override->values + row * override->width + k * size;
+	float real;
+	int16_t integer;
+	int8_t small;
+	switch (size) {
+	case sizeof small:
+		memcpy(&small, at, sizeof small);
+		return small;
+	case sizeof integer:
+		memcpy(&integer, at, sizeof integer);
+		return integer;
+	default:
+		memcpy(&real, at, sizeof real);
+		return real;
+	}
+}
+
 /* Bounds of values that were replaced: "min" or "max" of an accessor that has it. */
 static void set_bound(nt_gltf_patcher *p, const nt_gltf_growing *g, const nt_gltf_item *from, const char *key, int sign)
 {
 	nt_json_value *bound = nt_json_find(nt_json_at(
 		nt_gltf_root_member(p->document, "accessors"), from->accessor.index), key);
-	const size_t width = from->override->width / sizeof(float);
-	if (nt_json_count(bound) != width)
+	if (nt_json_count(bound) != 4)
 		return;
-	for (size_t k = 0; k < width; k++) {
-		float extreme = 0;
+	for (size_t k = 0; k < 4; k++) {
+		double extreme = 0;
 		for (size_t row = 0; row < g->component->rows.new_count; row++) {
-			float value;
-			memcpy(&value, from->override->values + row * from->override->width +
-				k * sizeof value, sizeof value);
+			const double value = new_value(from->override, row, k);
 			if (row == 0 || (sign < 0 ? value < extreme : value > extreme))
 				extreme = value;
 		}

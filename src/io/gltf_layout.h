@@ -85,6 +85,9 @@ nmtan_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t buffer, const v
 nmtan_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint32_t *buffer,
 	nt_error *error);
 
+/* Adds an extension to extensionsUsed or extensionsRequired, where it is not there yet. */
+void nt_gltf_list_extension(nt_gltf *document, const char *list, const char *name);
+
 /* Takes an extension off "extensionsUsed" or "extensionsRequired". */
 void nt_gltf_remove_extension(nt_gltf *document, const char *list, const char *name);
 

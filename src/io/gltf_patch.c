@@ -12,13 +12,15 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/vec.h"
+#include "io/gltf_precision.h"
 
-nmtan_status nt_gltf_add_floats(nt_gltf_patcher *p, uint32_t buffer, const float *rows, size_t count,
-	uint32_t width, uint32_t *accessor)
+/* Appends an accessor over a new view. */
+static nmtan_status add_accessor(nt_gltf_patcher *p, uint32_t buffer, const void *rows, size_t count,
+	size_t row_bytes, uint32_t component_type, const char *type, uint32_t *accessor)
 {
 	uint32_t view;
-	const nmtan_status status = nt_layout_add_view(&p->layout, buffer, rows,
-		count * width * sizeof(float), NT_GLTF_ARRAY_BUFFER, 0, &view, p->error);
+	const nmtan_status status = nt_layout_add_view(&p->layout, buffer, rows, count * row_bytes,
+		NT_GLTF_ARRAY_BUFFER, 0, &view, p->error);
 	if (status)
 		return status;
 	nt_json *json = p->json;
@@ -26,10 +28,19 @@ nmtan_status nt_gltf_add_floats(nt_gltf_patcher *p, uint32_t buffer, const float
 	*accessor = (uint32_t)nt_json_count(accessors);
 	nt_json_value *object = nt_json_append(json, accessors);
 	nt_json_set_uint64(json, nt_json_put(json, object, "bufferView"), view);
-	nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), NT_GLTF_FLOAT);
+	nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), component_type);
+	if (component_type != NT_GLTF_FLOAT)
+		nt_json_set_bool(json, nt_json_put(json, object, "normalized"), true);
 	nt_json_set_uint64(json, nt_json_put(json, object, "count"), count);
-	nt_json_set_string(json, nt_json_put(json, object, "type"), width == 3 ? "VEC3" : "VEC4", 4);
+	nt_json_set_string(json, nt_json_put(json, object, "type"), type, 4);
 	return NMTAN_OK;
+}
+
+nmtan_status nt_gltf_add_floats(nt_gltf_patcher *p, uint32_t buffer, const float *rows, size_t count,
+	uint32_t width, uint32_t *accessor)
+{
+	return add_accessor(p, buffer, rows, count, width * sizeof(float), NT_GLTF_FLOAT,
+		width == 3 ? "VEC3" : "VEC4", accessor);
 }
 
 /* ---- tangents in place ---- */
@@ -61,8 +72,8 @@ static uint32_t tangent_of(const nt_gltf_patcher *p, const nt_mesh *mesh)
 	return (uint32_t)accessor;
 }
 
-/* The TANGENT accessor of the group's members whose values may simply be replaced: floats that nobody
- * else uses. NT_NONE: there is none. */
+/* The TANGENT accessor of the group's members whose values may simply be replaced: of the type that is to
+ * be written, and nobody else uses it. NT_NONE: there is none. */
 static uint32_t reusable_tangent(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group)
 {
 	uint32_t shared = NT_NONE, members = 0;
@@ -77,7 +88,9 @@ static uint32_t reusable_tangent(nt_gltf_patcher *p, const nt_gltf_cluster *comp
 	}
 	nt_gltf_accessor accessor;
 	if (nt_gltf_get_accessor(p->document, shared, "", &accessor, NULL) != NMTAN_OK ||
-		accessor.component_type != NT_GLTF_FLOAT || accessor.components != 4 ||
+		accessor.component_type != nt_precision_component_type(p->options->precision) ||
+		(accessor.component_type != NT_GLTF_FLOAT && !accessor.normalized) ||
+		accessor.components != 4 ||
 		accessor.view == NT_NONE || accessor.sparse_count ||
 		p->sharing.foreign[p->sharing.canonical[shared]])
 		return NT_NONE;
@@ -168,6 +181,36 @@ nmtan_status nt_gltf_add_morphs(nt_gltf_patcher *p, const nt_gltf_cluster *compo
 	return status;
 }
 
+/* Tangents as they are stored. */
+static nmtan_status stored_tangents(nt_gltf_patcher *p, const nt_gltf_rows *rows, uint32_t group,
+	const unsigned char **bytes)
+{
+	const nt_precision precision = p->options->precision;
+	*bytes = (const unsigned char *)rows->tangents[group];
+	if (precision == NT_PRECISION_FLOAT)
+		return NMTAN_OK;
+	unsigned char *out = nt_arena_alloc(p->arena, rows->new_count, nt_precision_bytes(precision));
+	if (!out)
+		return nt_fail_memory(p->error);
+	nt_precision_encode(precision, rows->tangents[group], rows->new_count, out);
+	*bytes = out;
+	return NMTAN_OK;
+}
+
+/* Rounds the tangents of all groups, so that what is derived from them fits what readers will see. */
+static void round_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *component)
+{
+	const nt_gltf_rows *rows = &component->rows;
+	for (uint32_t group = 0; p->options->precision != NT_PRECISION_FLOAT && group < rows->group_count;
+		group++) {
+		nt_rounding cost = {0};
+		nt_precision_round(p->options->precision, rows->tangents[group], rows->new_count, &cost);
+		nt_precision_report(p->scene, p->options->precision, &cost,
+			&first_of_group(p, component, group)->place);
+		p->quantized = true;
+	}
+}
+
 /* NORMAL where it was made, TANGENT where it is not already in place, _BITANGENT where asked for. */
 static nmtan_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
 	bool tangent_in_place)
@@ -182,8 +225,13 @@ static nmtan_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *compone
 			set_attribute(p, component, group, "NORMAL", accessor);
 	}
 	if (!status && !tangent_in_place) {
-		status = nt_gltf_add_floats(p, component->buffer, rows->tangents[group], rows->new_count,
-			4, &accessor);
+		const nt_precision precision = p->options->precision;
+		const unsigned char *bytes;
+		status = stored_tangents(p, rows, group, &bytes);
+		if (!status)
+			status = add_accessor(p, component->buffer, bytes, rows->new_count,
+				nt_precision_bytes(precision), nt_precision_component_type(precision),
+				"VEC4", &accessor);
 		if (!status)
 			set_attribute(p, component, group, "TANGENT", accessor);
 	}
@@ -237,6 +285,8 @@ static nmtan_status patch_component(nt_gltf_patcher *p, nt_gltf_cluster *compone
 	if (status || done)
 		return status;
 
+	round_tangents(p, component);
+
 	/* Tangents that are there and may be replaced keep their place. */
 	const nt_gltf_rows *rows = &component->rows;
 	nt_gltf_override *overrides = nt_arena_alloc(p->arena, rows->group_count, sizeof *overrides);
@@ -244,16 +294,19 @@ static nmtan_status patch_component(nt_gltf_patcher *p, nt_gltf_cluster *compone
 	if (!overrides || !in_place)
 		return nt_fail_memory(p->error);
 	size_t override_count = 0;
-	for (uint32_t group = 0; group < rows->group_count; group++) {
+	for (uint32_t group = 0; !status && group < rows->group_count; group++) {
 		const uint32_t accessor = reusable_tangent(p, component, group);
 		in_place[group] = accessor != NT_NONE;
-		if (accessor != NT_NONE)
-			overrides[override_count++] = (nt_gltf_override){accessor,
-				(const unsigned char *)rows->tangents[group], 4 * sizeof(float)};
+		if (accessor == NT_NONE)
+			continue;
+		nt_gltf_override *override = &overrides[override_count++];
+		override->accessor = accessor;
+		override->width = (uint32_t)nt_precision_bytes(p->options->precision);
+		status = stored_tangents(p, rows, group, &override->values);
 	}
 
 	/* The copied rows, the indices that use them, and what is new. */
-	if (draco || override_count || rows->new_count > rows->old_count)
+	if (!status && (draco || override_count || rows->new_count > rows->old_count))
 		status = nt_gltf_grow_attributes(p, component, overrides, override_count, draco);
 	if (!status)
 		status = nt_gltf_patch_indices(p, component);
@@ -312,6 +365,10 @@ static nmtan_status patch_components(nt_gltf_patcher *p)
 		status = patch_component(p, &component);
 	}
 	nt_gltf_drop_draco(p);
+	if (!status && p->quantized) {
+		nt_gltf_list_extension(p->document, "extensionsUsed", NT_GLTF_QUANTIZATION);
+		nt_gltf_list_extension(p->document, "extensionsRequired", NT_GLTF_QUANTIZATION);
+	}
 	return status;
 }
 

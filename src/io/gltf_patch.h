@@ -20,6 +20,7 @@ typedef struct nt_gltf_patcher {
 	nt_gltf_sharing sharing;
 	uint32_t *own;      /* [accessor_count] by canonical accessor: 1 + component that grows it */
 	nt_arena *arena;    /* the layout's */
+	bool quantized;     /* TANGENT was written as integers */
 	nt_error *error;
 } nt_gltf_patcher;
 

@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "ext/tinygltf.h"
+#include "io/gltf_precision.h"
 #include "io/link.h"
 
 /* ---- finding the files ---- */
@@ -128,6 +129,19 @@ static const unsigned char *row_at(const nt_reread_array *array, size_t vertex)
 	return vertex < array->count ? array->data + vertex * array->stride_bytes : NULL;
 }
 
+/* Whether a row holds a tangent: as it is, or rounded to the integers that it is stored as. */
+static bool tangent_matches(const nt_reread_array *array, const unsigned char *row, const float *tangent)
+{
+	const nt_precision precision = array->component_type == NT_GLTF_SHORT ? NT_PRECISION_SHORT
+		: array->component_type == NT_GLTF_BYTE ? NT_PRECISION_BYTE : NT_PRECISION_FLOAT;
+	float rounded[4];
+	unsigned char bytes[sizeof rounded];
+	memcpy(rounded, tangent, sizeof rounded);
+	nt_precision_round(precision, rounded, 1, NULL);
+	nt_precision_encode(precision, rounded, 1, bytes);
+	return memcmp(row, bytes, nt_precision_bytes(precision)) == 0;
+}
+
 /* The document's next corner of the primitive against the scene's. Arrays that are not float are decoded by the
  * reader of the source, so that positions of other types are not compared. */
 static bool corner_matches(const nt_mesh *mesh, size_t corner, primitive_view *view)
@@ -145,7 +159,7 @@ static bool corner_matches(const nt_mesh *mesh, size_t corner, primitive_view *v
 				 memcmp(position, mesh->positions + 3 * source, 12) != 0))
 		return false;
 	return !mesh->split.vertex_tangents || !mesh->normals ||
-		(tangent && memcmp(tangent, mesh->split.vertex_tangents + 4 * split, 16) == 0);
+		(tangent && tangent_matches(&view->tangents, tangent, mesh->split.vertex_tangents + 4 * split));
 }
 
 static nmtan_status fail_corner(const nt_mesh *mesh, size_t corner, nt_error *error)

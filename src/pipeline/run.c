@@ -73,6 +73,10 @@ static nmtan_status choose_writer(run *r)
 	if (r->settings->verify && r->writer->format == NT_FORMAT_PLY)
 		return nt_fail(r->error, NMTAN_ERROR_USAGE,
 			"--verify reads glTF back; \"%s\" will be PLY", r->output_path);
+	if (r->settings->precision != NT_PRECISION_FLOAT && r->writer->format == NT_FORMAT_PLY)
+		return nt_fail(r->error, NMTAN_ERROR_USAGE,
+			"--precision is about glTF; \"%s\" will be PLY, whose tangents are floats",
+			r->output_path);
 	return NMTAN_OK;
 }
 
@@ -213,6 +217,7 @@ static nmtan_status write_scene(run *r)
 		.draco = s->draco,
 		.morphs = s->morphs,
 		.draco_bits = {s->draco_bits[0], s->draco_bits[1], s->draco_bits[2], s->draco_bits[3]},
+		.precision = s->precision,
 		.allow_outside = s->allow_outside,
 	};
 	nt_output *output = NULL;
@@ -311,6 +316,7 @@ nmtan_status nt_run(const char *input, const char *output, const nt_settings *se
 	/* what was found belongs to the caller, also after a failure */
 	end_stage(&r);
 	summary->findings = r.scene.findings;
+	summary->rounding = r.scene.rounding;
 	r.scene.findings = (nt_finding_list){0};
 	nt_scene_free(&r.scene);
 	nt_file_close(&r.input);

@@ -39,6 +39,7 @@ typedef struct nt_settings {
 	nt_draco_choice draco;
 	nt_morph_choice morphs;
 	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
+	nt_precision precision;
 	nt_format output_format; /* NT_FORMAT_UNKNOWN: by name */
 	int texcoord_set;        /* -1: auto */
 	unsigned threads;        /* 0: all */
@@ -70,6 +71,7 @@ typedef struct nt_summary {
 	size_t appended_normals; /* vertices added because normals were made */
 	size_t appended_tangents;/* vertices added because tangents differ */
 	nmtan_counts counts;     /* of all solves */
+	nt_rounding rounding;    /* of tangents that were stored as integers */
 	nt_finding_list findings;
 	uint64_t bytes_read, bytes_written;
 	double seconds[NT_STAGE_COUNT];

@@ -263,6 +263,13 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"by cause: mirrored texture coordinates, different tangent directions, normals that were made.",
 		"Nothing. Fewer mirror seams and hard edges cost fewer vertices.",
 		"converting two triangles that share two vertices and mirror their UVs"),
+	ROW(TAN_QUANTIZED, INFO, "{count} {tangent was|tangents were} stored as integers",
+		"--precision=short or byte rounds tangents to the nearest direction that normalized integers can "
+		"say. The detail is what that costs: the largest and the mean angle between what was computed and "
+		"what is stored.",
+		"Nothing, if the angle is small against what the normal map's texels resolve; else "
+		"--precision=float.",
+		"converting any quad with --precision=byte"),
 	ROW(TAN_REPAIRED, INFO, "{count} {corner|corners} got a tangent that MikkTSpace could not give",
 		"MikkTSpace leaves zero vectors, defaults or mixed signs at degenerate triangles. nmtan "
 		"replaced them by the nearest usable frame.",

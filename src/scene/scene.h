@@ -156,6 +156,12 @@ typedef struct nt_instance {
 	double matrix[16]; /* column-major, as in glTF */
 } nt_instance;
 
+/* What storing tangents as integers does to their directions. */
+typedef struct nt_rounding {
+	size_t count; /* tangents that were rounded */
+	double worst_radians, sum_radians;
+} nt_rounding;
+
 typedef struct nt_scene {
 	nt_arena arena;
 	nt_format format;
@@ -167,6 +173,7 @@ typedef struct nt_scene {
 	nt_instance *instances;
 	size_t instance_count;
 	nt_finding_list findings;
+	nt_rounding rounding; /* of all meshes that were written */
 
 	/* What a reader keeps for the writer of the same format, and the input's bytes. */
 	void *source;

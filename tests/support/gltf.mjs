@@ -25,7 +25,7 @@ function bufferBytes(index) {
 }
 
 const widths = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
-const readers = { 5121: ['readUInt8', 1], 5123: ['readUInt16LE', 2], 5125: ['readUInt32LE', 4], 5126: ['readFloatLE', 4] };
+const readers = { 5120: ['readInt8', 1], 5122: ['readInt16LE', 2], 5121: ['readUInt8', 1], 5123: ['readUInt16LE', 2], 5125: ['readUInt32LE', 4], 5126: ['readFloatLE', 4] };
 
 function rows(number) {
 	const accessor = g.accessors[number], view = g.bufferViews[accessor.bufferView];

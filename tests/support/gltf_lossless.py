@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""gltf_lossless.py INPUT OUTPUT [--tangents=REFERENCE]: says what OUTPUT changed that it should not have.
+"""gltf_lossless.py [--quantized] INPUT OUTPUT [--tangents=REFERENCE]: says what OUTPUT changed that it should not have.
 
 A second reading of both files that shares no code with nmtan. Per triangle corner every attribute and
 morph target holds the same bytes; the JSON is equal value for value and in key order but for what
 tangents need; views that no triangle uses hold the same bytes; the buffers grew by TANGENT and the copied
-rows. With --tangents, corners have the tangents that REFERENCE has.
+rows. With --tangents, corners have the tangents that REFERENCE has. With --quantized, OUTPUT requires
+KHR_mesh_quantization and its tangents are normalized integers.
 """
 import base64
 import json
@@ -222,8 +223,28 @@ def corner_tangents(f):
     return out
 
 
+def take_quantization(a, b):
+    for key in ('extensionsUsed', 'extensionsRequired'):
+        if 'KHR_mesh_quantization' not in b.g.get(key, []):
+            complain('%s has no KHR_mesh_quantization' % key)
+        elif 'KHR_mesh_quantization' not in a.g.get(key, []):
+            b.g[key].remove('KHR_mesh_quantization')
+            if not b.g[key]:
+                del b.g[key]
+    for mesh in b.g['meshes']:
+        for p in mesh['primitives']:
+            accessor = b.g['accessors'][p['attributes']['TANGENT']] if 'TANGENT' in p['attributes'] else None
+            if accessor and (accessor['componentType'] not in (5120, 5122) or not accessor.get('normalized')):
+                complain('a TANGENT is of type %d' % accessor['componentType'])
+
+
 def main():
+    quantized = '--quantized' in sys.argv
+    if quantized:
+        sys.argv.remove('--quantized')
     a, b = File(sys.argv[1]), File(sys.argv[2])
+    if quantized:
+        take_quantization(a, b)
     same_json(a.g, b.g)
     same_geometry(a, b)
     same_views(a, b)
