@@ -20,6 +20,7 @@
 #include "io/gltf_part.h"
 #include "io/gltf_precision.h"
 #include "io/link.h"
+#include "io/uri.h"
 
 /* One range of the buffer that holds geometry. */
 typedef struct block {
@@ -400,7 +401,7 @@ static nmtan_status write_with_bin(const composition *c, nt_sink *sink, nt_error
 	if (!path.failed) {
 		const char *slash = strrchr(path.data, '/');
 		const char *name = slash ? slash + 1 : path.data;
-		nt_link_encode(&uri, name, strlen(name));
+		nt_uri_append_path(&uri, name);
 	}
 	if (path.failed || uri.failed)
 		status = nt_fail_memory(error);

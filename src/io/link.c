@@ -9,6 +9,7 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include "io/uri.h"
 
 bool nt_link_folder(nt_buffer *text, const char *path)
 {
@@ -96,17 +97,5 @@ void nt_link_uri(nt_buffer *text, const char *folder, const char *path)
 		if (*rest == '/')
 			nt_buffer_text(text, "../");
 	const char *name = path + common + 1;
-	nt_link_encode(text, name, strlen(name));
-}
-
-void nt_link_encode(nt_buffer *text, const char *name, size_t length)
-{
-	static const char kept[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~/";
-	for (size_t i = 0; i < length; i++) {
-		const char c = name[i];
-		if (c != '\0' && strchr(kept, c))
-			nt_buffer_append(text, &c, 1);
-		else
-			nt_buffer_format(text, "%%%02X", (unsigned)(unsigned char)c);
-	}
+	nt_uri_append_path(text, name);
 }

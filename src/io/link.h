@@ -26,7 +26,4 @@ bool nt_link_is_inside(const char *path, const char *folder);
 /* Appends the URI by which a document in `folder` reaches `path`; both absolute and resolved. */
 void nt_link_uri(nt_buffer *text, const char *folder, const char *path);
 
-/* Appends a name with everything percent-encoded that may not stand in a URI's path. "/" stays. */
-void nt_link_encode(nt_buffer *text, const char *name, size_t length);
-
 #endif
