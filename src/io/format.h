@@ -31,6 +31,14 @@ typedef struct nt_read_options {
 	unsigned threads;
 } nt_read_options;
 
+/* External buffers of a glTF input that nothing changed; changed ones are always written anew. */
+typedef enum nt_buffers {
+	NT_BUFFERS_LINK, /* the files where they are */
+	NT_BUFFERS_COPY, /* beside the output */
+	NT_BUFFERS_EMBED /* data URIs: the same as nt_write_options.embed */
+} nt_buffers;
+
+/* NONE: for new documents; a document that is patched keeps its images. */
 typedef enum nt_images { NT_IMAGES_DEFAULT, NT_IMAGES_LINK, NT_IMAGES_EMBED, NT_IMAGES_COPY,
 	NT_IMAGES_NONE } nt_images;
 
@@ -57,6 +65,7 @@ typedef struct nt_write_options {
 	bool embed;         /* .gltf: buffers as data URIs */
 	bool bitangents;
 	nt_images images;
+	nt_buffers buffers;
 	nt_draco_choice draco;
 	nt_morph_choice morphs;
 	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */

@@ -60,7 +60,7 @@ nmtan_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *opt
 	*written = false;
 	if (buffers || images)
 		status = nt_gltf_link_prefix(&arena, options->path, scene->path, &prefix, error);
-	const bool moves = *prefix && (buffers || (images && choice != NT_IMAGES_NONE));
+	const bool moves = *prefix && (buffers || images);
 	const bool embeds = (options->embed && buffers) || (choice == NT_IMAGES_EMBED && images);
 	nt_arena_free(&arena);
 	if (status || !same_container || moves || embeds)
@@ -97,11 +97,28 @@ static fate choose_fate(const nt_gltf_container *c, uint32_t index)
 			return FATE_BIN;
 		return plan->touched ? FATE_DATA : FATE_KEEP;
 	case NT_GLTF_HOME_FILE:
-		return plan->touched || into_glb || c->embed ? moved : FATE_LINK;
+		if (plan->touched || into_glb || c->embed)
+			return moved;
+		/* where the folder stays the same it is there already, as with images */
+		return c->options->buffers == NT_BUFFERS_COPY && *c->link_prefix ? FATE_COMPANION : FATE_LINK;
 	default:
 		/* Buffer 0 of a .glb without a uri is the BIN chunk, so there has to be one. */
 		return into_glb && index == 0 && buffer->length <= EMPTY_BYTES ? FATE_BIN : FATE_KEEP;
 	}
+}
+
+/* In a .glb a buffer 0 without a uri is the BIN chunk. Bytes that nobody ever had cannot be put there: zeros would
+ * be other data, and faulty where bounds or matrices are asked for. */
+static nmtan_status check_first_buffer(nt_gltf_container *c)
+{
+	const nt_gltf_buffer *first = c->document->buffers;
+	if (!c->to_glb || c->same_container || !c->document->buffer_count || !first->described ||
+		first->home != NT_GLTF_HOME_NOWHERE ||
+		nt_layout_users(&c->patcher->layout, 0, 0, first->length) == 0)
+		return NMTAN_OK;
+	return nt_fail_pointer(c->error, NMTAN_ERROR_UNSUPPORTED, "/buffers/0",
+		"no uri, so that a .glb would need its bytes as BIN chunk, which are not there; "
+		"write .gltf");
 }
 
 /* Whether a path names the input or a file it refers to. */
@@ -331,6 +348,8 @@ nmtan_status nt_gltf_write_container(nt_gltf_patcher *patcher, nt_output *output
 	bool bin;
 	nmtan_status status = nt_gltf_link_prefix(&c.arena, options->path, c.document->path,
 		&c.link_prefix, c.error);
+	if (!status)
+		status = check_first_buffer(&c);
 	if (!status)
 		status = protect_inputs(&c);
 	if (!status)

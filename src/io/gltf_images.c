@@ -252,7 +252,7 @@ nmtan_status nt_gltf_move_images(nt_gltf_container *c)
 		/* embedding may give the root its first view, which moves the root's members */
 		nt_json_value *image = nt_json_at(nt_gltf_root_member(c->document, "images"), i);
 		size_t length;
-		if (!nt_gltf_external_uri(image, &length) || choice == NT_IMAGES_NONE)
+		if (!nt_gltf_external_uri(image, &length))
 			continue;
 		if (choice == NT_IMAGES_EMBED)
 			status = embed_image(c, i, image);

@@ -179,6 +179,10 @@ static nmtan_status check_document_options(const run *r)
 			"--draco=%s compresses only glTF that is made from glTF, not %s made from %s",
 			r->settings->draco == NT_DRACO_AS_SEQUENTIAL ? "sequential" : "edgebreaker",
 			r->writer->name, r->reader->name);
+	/* taking images away would renumber what refers to them */
+	if (patch && r->settings->images == NT_IMAGES_NONE)
+		return nt_fail(r->error, NMTAN_ERROR_USAGE,
+			"--images=none: a glTF made from a glTF keeps its images; use link, embed or copy");
 	return NMTAN_OK;
 }
 
@@ -211,9 +215,10 @@ static nmtan_status write_scene(run *r)
 	const nt_write_options options = {
 		.format = r->writer->format,
 		.path = r->output_path,
-		.embed = s->embed,
+		.embed = s->embed || s->buffers == NT_BUFFERS_EMBED,
 		.bitangents = s->bitangents,
 		.images = s->images,
+		.buffers = s->buffers,
 		.draco = s->draco,
 		.morphs = s->morphs,
 		.draco_bits = {s->draco_bits[0], s->draco_bits[1], s->draco_bits[2], s->draco_bits[3]},

@@ -36,6 +36,7 @@ typedef struct nt_settings {
 	nt_existing existing;
 	nt_normals normals;
 	nt_images images;
+	nt_buffers buffers;
 	nt_draco_choice draco;
 	nt_morph_choice morphs;
 	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */

@@ -83,6 +83,46 @@ for uri in : x:y.png C:/x.png http://h/x.png /x.png '#a:b' a/b:c; do
 	is "$(gltf out/o.glb 'g.images[0].uri')" "$expected"
 done
 
+scene "buffers are linked, copied or embedded"
+mkdir in out
+cp "$WORK"/layouts/three* in
+run in/three_buffers.gltf out/link.gltf
+uris='g.buffers.map((b) => b.uri.slice(0, 40))'
+links=$(gltf out/link.gltf "$uris")
+linked=$(grep -o '\.\./in/' <<<"$links" | wc -l)
+[ "$linked" -gt 0 ] || wrong "nothing is linked: $links"
+run --buffers=link in/three_buffers.gltf out/again.gltf
+is "$(gltf out/again.gltf "$uris" | sed s/again/link/g)" "$links"
+run --buffers=copy in/three_buffers.gltf out/copy.gltf
+exits 0
+copies=$(gltf out/copy.gltf "$uris")
+case $copies in *"../"* | *data:*) wrong "$copies" ;; esac
+lossless in/three_buffers.gltf out/copy.gltf
+rm out/link* out/again*
+is "$(ls out | wc -l)" 4
+run --buffers=embed in/three_buffers.gltf out/embed.gltf
+exits 0
+run --embed in/three_buffers.gltf out/old.gltf
+same out/embed.gltf out/old.gltf
+lossless in/three_buffers.gltf out/embed.gltf
+# nothing to be done, but the folder is another
+run --buffers=copy out/copy.gltf moved.gltf
+exits 0
+is "$(ls moved* | wc -l)" 4
+mkdir away && mv moved* away
+lossless out/copy.gltf away/moved.gltf
+# what is there already stays
+cp in/three_buffers* .
+run --buffers=copy --existing=replace three_buffers.gltf here.gltf
+exits 0
+is "$(ls here* | wc -l)" $((4 - linked))
+
+scene "a glTF made from a glTF keeps its images"
+run --images=none "$data/plates.gltf" out.gltf
+exits 1
+says "--images=none"
+only
+
 scene "a companion never replaces a file of the input"
 cp "$WORK/layouts/plain.gltf" a.gltf
 cp "$WORK/layouts/plain 0.bin" b.bin

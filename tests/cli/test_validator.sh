@@ -8,7 +8,7 @@ for input in quad.obj mirrored_cube.obj head.obj quad_ascii.ply quad_le.ply quad
 	cp "$data"/*.png "$data"/*.mtl "$data"/*.bin .
 	mkdir out
 	for words in "out/a.glb" "out/b.gltf" "--embed out/c.gltf" "--bitangents out/d.glb" \
-		"--images=embed out/e.gltf" "--images=copy out/f.gltf" "--images=none out/g.gltf" \
+		"--images=embed out/e.gltf" "--images=copy out/f.gltf" "--buffers=copy out/g.gltf" \
 		"--method=lengyel out/h.glb" "--method=area --normals=flat out/i.glb"; do
 		# shellcheck disable=SC2086
 		run "$data/$input" $words
@@ -20,5 +20,27 @@ for input in quad.obj mirrored_cube.obj head.obj quad_ascii.ply quad_le.ply quad
 	done
 	valid --pairs pairs
 done
+
+scene "a buffer without bytes does not become a BIN chunk of zeros"
+node -e '
+	const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1]));
+	delete g.buffers[0].uri;
+	delete g.images;
+	delete g.textures;
+	g.materials = g.materials.map(() => ({}));
+	fs.writeFileSync("bare.gltf", JSON.stringify(g));
+' "$data/plates.gltf"
+run bare.gltf bare.glb
+exits 5
+says "/buffers/0"
+only bare.gltf
+run bare.gltf copy.gltf
+exits 0
+same bare.gltf copy.gltf
+# nothing lies in this one
+echo '{"asset":{"version":"2.0"},"buffers":[{"byteLength":4}]}' >empty.gltf
+run empty.gltf empty.glb
+exits 0
+valid empty.glb empty.gltf
 
 done_testing

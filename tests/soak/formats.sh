@@ -6,7 +6,7 @@
 # Khronos validator that the input did not have; what is written as PLY is read again. Documents with a
 # buffer that is nowhere are left out: a GLB shows zeros where they have nothing to judge. --verify runs
 # over the models alone, because tinygltf refuses much of the validator's corpus, input or output;
-# --images=none over OBJ and PLY, because glTF keeps the names of images that are then elsewhere.
+# --images=none over OBJ and PLY, because a glTF made from a glTF keeps its images.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 ROOT=$PWD

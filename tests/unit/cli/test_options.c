@@ -92,6 +92,10 @@ static void every_word_of_a_choice_is_its_constant(void **state)
 	assert_int_equal(c.settings.images, NT_IMAGES_LINK);
 	accepts(&c, WORDS("--images=copy", "a", "b"));
 	assert_int_equal(c.settings.images, NT_IMAGES_COPY);
+	accepts(&c, WORDS("--buffers=copy", "a", "b"));
+	assert_int_equal(c.settings.buffers, NT_BUFFERS_COPY);
+	accepts(&c, WORDS("--buffers=embed", "a", "b"));
+	assert_true(c.settings.embed);
 	accepts(&c, WORDS("--draco=off", "a", "b"));
 	assert_int_equal(c.settings.draco, NT_DRACO_OFF);
 	accepts(&c, WORDS("--draco=sequential", "a", "b"));
@@ -215,6 +219,7 @@ static void options_that_contradict_each_other_are_refused(void **state)
 	refuses("'glb'", WORDS("--embed", "--output-format=glb", "a", "b"));
 	refuses("--embed", WORDS("--output-format=gltf", "a", "-"));
 	refuses("--verify", WORDS("--verify", "a", "-"));
+	refuses("--buffers=copy", WORDS("--embed", "--buffers=copy", "a", "b"));
 	refuses("--draco=off", WORDS("--draco=off", "--draco-bits=14,12,12,12", "a", "b"));
 }
 

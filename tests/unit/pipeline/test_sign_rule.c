@@ -159,7 +159,7 @@ static void judge_conversion(const char *input, rule_count *count)
 	assert_true(fd >= 0);
 	close(fd);
 	const nt_settings settings = {.texcoord_set = -1, .existing = NT_EXISTING_REPLACE,
-		.images = NT_IMAGES_NONE, .verify = true};
+		.images = NT_IMAGES_LINK, .verify = true};
 	nt_summary summary;
 	nt_error error;
 	const nmtan_status status = nt_run(input, output, &settings, &summary, &error);
