@@ -197,7 +197,9 @@ static void judge_all(const char *const *patterns, rule_count *count)
 static void bitangents_run_along_minus_v_in_our_own_data(void **state)
 {
 	(void)state;
-	static const char *const patterns[] = {"data/*.obj", "data/*.ply", "data/*.gltf", "data/*.glb", NULL};
+	/* not transformed.gltf: its mirrored square has the sign of what the transform makes of the coordinates,
+	 * see test_small_models.sh */
+	static const char *const patterns[] = {"data/*.obj", "data/*.ply", "data/[!t]*.gltf", "data/*.glb", NULL};
 	rule_count count = {0};
 	judge_all(patterns, &count);
 	assert_true(count.judged > 0);
