@@ -25,6 +25,9 @@ $(unit_bin): $(B)/tests/%: $(B)/tests/%.o $(support_obj) $(B)/libtool.a $(B)/lib
 $(api_bin): $(B)/tests/%: $(B)/tests/%.o $(support_obj) $(B)/libnmtan.a
 	$(CC) $(NT_LDFLAGS) $(WRAP) -o $@ $^ -lcmocka -lm $(QUADMATH)
 
+# What is read of a mapped file is watched.
+$(B)/tests/unit/pipeline/test_needed: WRAP += -Wl,--wrap=mmap
+
 .PRECIOUS: $(B)/tests/%.o
 
 .PHONY: tests
