@@ -99,6 +99,12 @@ typedef struct nmtan_mesh {
 	 * becomes 1 - v in glTF, which is -(v - 1): -1; the v that was negated for glTF becomes 1 + v in PLY: 1.
 	 * Repair judges the sign of w by the v that is stored, nothing else uses it. 0: v is stored as it is. */
 	float stored_v_offset; /* finite */
+
+	/* What `texcoords` were rounded from, when a renderer scales and turns them: the sign of w is then
+	 * the exact orientation of these, reversed where the scale mirrors. stored_v_offset applies to these.
+	 * As with stored_v_offset, only repair looks. NULL: texcoords are the original. */
+	const float *exact_texcoords; /* [vertex_count][2], tightly packed */
+	int exact_mirrored;           /* not 0: the transform reverses their orientation */
 } nmtan_mesh;
 
 /* How the triangles around a vertex are averaged. */

@@ -433,6 +433,11 @@ static nmtan_status transform_texcoords(nt_scene *scene, nt_mesh *mesh, const nt
 	mesh->solve_texcoords = nt_arena_alloc(&scene->arena, mesh->vertex_count, 2 * sizeof(float));
 	if (!mesh->solve_texcoords)
 		return nt_fail_memory(error);
+	/* turning keeps the orientation; only scales can reverse it */
+	for (int k = 0; k < 2; k++) {
+		const int sign = (t->scale[k] > 0) - (t->scale[k] < 0);
+		mesh->solve_sign = k ? mesh->solve_sign * sign : sign;
+	}
 	const double c = cos(t->rotation), s = sin(t->rotation);
 	for (size_t i = 0; i < mesh->vertex_count; i++) {
 		const double u = t->scale[0] * mesh->texcoords[2 * i];

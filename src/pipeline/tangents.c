@@ -54,9 +54,10 @@ static bool face_is_valid(const nt_mesh *mesh, const size_t *vertices, size_t si
 	}
 	for (size_t k = 0; k < size; k++) {
 		/* of a quad every corner's triangle, whichever diagonal it is cut along */
-		const int sign = nmtan_orientation(mesh->texcoords + 2 * vertices[k],
-			mesh->texcoords + 2 * vertices[(k + 1) % size],
-			mesh->texcoords + 2 * vertices[(k + 2) % size]);
+		const int sign = (mesh->solve_texcoords ? mesh->solve_sign : 1) *
+			nmtan_orientation(mesh->texcoords + 2 * vertices[k],
+				mesh->texcoords + 2 * vertices[(k + 1) % size],
+				mesh->texcoords + 2 * vertices[(k + 2) % size]);
 		if (sign != 0 && w != (float)sign)
 			return false;
 	}

@@ -143,10 +143,15 @@ static void measure_triangle(nt_surface *s, size_t t)
 	else
 		s->flatness[t] = area > 0.0 ? NT_SOUND : NT_COLLINEAR;
 	s->areas[t] = isfinite(area) ? area : 0.0;
+	/* of a texture transform the exact sign, not that of its rounded result */
+	const bool exact = s->mesh->solve_texcoords && s->mesh->solve_sign;
+	const float *texcoords = exact ? s->mesh->texcoords : s->texcoords;
+	const uint32_t *v = s->vertices + 3 * t;
 	s->orientation[t] = 0;
-	if (s->texcoords)
-		s->orientation[t] = (int8_t)nt_orientation(nt_side_texcoord(s, (uint32_t)(3 * t)),
-			nt_side_texcoord(s, (uint32_t)(3 * t + 1)), nt_side_texcoord(s, (uint32_t)(3 * t + 2)));
+	if (texcoords)
+		s->orientation[t] = (int8_t)(nt_orientation(texcoords + 2 * (size_t)v[0],
+			texcoords + 2 * (size_t)v[1], texcoords + 2 * (size_t)v[2]) *
+			(exact ? s->mesh->solve_sign : 1));
 }
 
 typedef struct edge_end {

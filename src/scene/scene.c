@@ -32,5 +32,7 @@ nmtan_mesh nt_mesh_view(const nt_mesh *mesh)
 		.positions = mesh->positions,
 		.normals = mesh->normals,
 		.texcoords = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords,
+		.exact_texcoords = mesh->solve_texcoords && mesh->solve_sign ? mesh->texcoords : NULL,
+		.exact_mirrored = mesh->solve_sign < 0,
 	};
 }

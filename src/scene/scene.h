@@ -115,6 +115,7 @@ typedef struct nt_mesh {
 	float *texcoords;        /* [vertex_count][2], v up; NULL: none */
 	float *solve_texcoords;  /* [vertex_count][2] as a texture transform turns and scales them: what
 	                            tangents follow; NULL: texcoords themselves */
+	int solve_sign;          /* of that transform's determinant; 0 also where there is none */
 	float *colors;           /* [vertex_count][4] linear RGBA; NULL: none */
 	float *tangents;         /* [vertex_count][4] authored, w for v up; NULL: none */
 	uint8_t *vertex_lacks;   /* [vertex_count] enum nt_lack bits; NULL: nothing lacks */

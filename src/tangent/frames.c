@@ -28,7 +28,7 @@ static void load_texcoords(const nmtan_mesh *mesh, const uint32_t corners[3], bo
 {
 	for (int k = 0; k < 3; k++) {
 		const size_t vertex = nt_vertex_of(mesh, corners[k]);
-		if (stored && mesh->stored_v_offset != 0.0f)
+		if (stored && nt_has_stored(mesh))
 			nt_stored_texcoord(mesh, vertex, t[k]);
 		else
 			memcpy(t[k], nt_texcoord(mesh, vertex), sizeof t[k]);
@@ -39,7 +39,8 @@ int nt_triangle_orientation(const nmtan_mesh *mesh, const uint32_t corners[3], b
 {
 	float t[3][2];
 	load_texcoords(mesh, corners, stored, t);
-	return nt_orientation(t[0], t[1], t[2]);
+	const int sign = nt_orientation(t[0], t[1], t[2]);
+	return stored && mesh->exact_texcoords && mesh->exact_mirrored ? -sign : sign;
 }
 
 /* The sign of a quad whose halves have the given, different, non-zero signs. */
@@ -66,7 +67,7 @@ int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool 
 	}
 	if (folded)
 		*folded = differ;
-	return sign || !stored || mesh->stored_v_offset == 0.0f
+	return sign || !stored || !nt_has_stored(mesh)
 		? sign : nt_face_orientation(mesh, face, first, false, NULL);
 }
 

@@ -79,7 +79,7 @@ static size_t range_begin(const summing *s, unsigned range)
 static nmtan_status make_triangles(summing *s)
 {
 	const nmtan_mesh *mesh = s->mesh;
-	s->know_sides = mesh->face_sizes || mesh->stored_v_offset != 0.0f;
+	s->know_sides = mesh->face_sizes || nt_has_stored(mesh);
 	s->triangle_count = mesh->face_count;
 	for (size_t face = 0; mesh->face_sizes && face < mesh->face_count; face++)
 		s->triangle_count += mesh->face_sizes[face] == 4;

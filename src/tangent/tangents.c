@@ -97,7 +97,8 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 	nt_scratch_init(&r->own, r->options.allocator);
 	nt_solve *solve = &r->solve;
 	solve->mesh = &r->mesh;
-	solve->vouched = &r->vouched;
+	/* bounds on the error of the determinants of `texcoords` say nothing about those of others */
+	solve->vouched = r->mesh.exact_texcoords ? NULL : &r->vouched;
 	solve->timing = &r->timing;
 	solve->scratch = r->options.workspace ? &r->options.workspace->scratch : &r->own;
 	solve->threshold_cos = r->options.angular_threshold_degrees > 0.0f

@@ -59,7 +59,7 @@ nmtan_status nt_mikktspace_vertices(const nt_solve *solve, bool repair, nmtan_co
 	nt_splitter *splitter)
 {
 	nt_fast fast;
-	nmtan_status status = nt_fast_solve(&fast, solve, !solve->mesh->face_sizes);
+	nmtan_status status = nt_fast_solve(&fast, solve, !solve->mesh->face_sizes && solve->vouched);
 	if (status == NMTAN_ERROR_TOO_LARGE)
 		status = nt_mikktspace_scalar(solve);
 	else if (!status && fast.sparse) {

@@ -52,10 +52,16 @@ static inline size_t nt_first_corner(const nmtan_mesh *mesh, size_t face)
 	return 3 * face + quads;
 }
 
+/* Whether other texture coordinates than those of the solve decide the sign. */
+static inline bool nt_has_stored(const nmtan_mesh *mesh)
+{
+	return mesh->stored_v_offset != 0.0f || mesh->exact_texcoords;
+}
+
 /* Texture coordinates as they will be stored. */
 static inline void nt_stored_texcoord(const nmtan_mesh *mesh, size_t vertex, float stored[2])
 {
-	const float *t = nt_texcoord(mesh, vertex);
+	const float *t = mesh->exact_texcoords ? mesh->exact_texcoords + 2 * vertex : nt_texcoord(mesh, vertex);
 	stored[0] = t[0];
 	stored[1] = t[1] + mesh->stored_v_offset;
 }

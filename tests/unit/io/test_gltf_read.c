@@ -334,6 +334,7 @@ static void texture_transforms_turn_and_scale(void **state)
 	fixture f;
 	load_transformed(&f, "\"offset\":[0.5,0.25]", "");
 	assert_null(f.scene.meshes[0].solve_texcoords);
+	assert_int_equal(f.scene.meshes[0].solve_sign, 0);
 	close_text(&f);
 
 	/* scale first, exactly */
@@ -344,6 +345,7 @@ static void texture_transforms_turn_and_scale(void **state)
 		assert_true(mesh->solve_texcoords[2 * i + 1] == -0.5f * quad.texcoords[i][1]);
 		assert_true(mesh->texcoords[2 * i] == quad.texcoords[i][0]);
 	}
+	assert_int_equal(f.scene.meshes[0].solve_sign, -1);
 	close_text(&f);
 
 	/* a quarter turn, counterclockwise where v points up: (u, v) goes to (-v, u). glTF issue 1563: viewers

@@ -184,6 +184,43 @@ static void stored_texture_coordinates_decide_the_sign(void **state)
 	assert_int_equal(output.counts.stored_differently, 0);
 }
 
+/* u is scaled by 3 and rounded. In units of 2^-23 b is at u = 1 + 3 and c at 0.875 + 2.5, with v = 1 and 0.875:
+ * det = 0.875 * 3 - 2.5 = 0.125 is positive. Floats from 2 to 4 have steps of 2 units: 3 b = 3 + 9 is a tie
+ * and becomes 3 + 8, 3 c = 2.625 + 7.5 becomes 2.625 + 8, and the determinant 0.875 * 8 - 8 = -1. */
+static void coordinates_before_a_transform_decide_the_sign(void **state)
+{
+	(void)state;
+	const float positions[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+	const float unit = 1.1920929e-7f;
+	const float exact[3][2] = {{0, 0}, {1 + 3 * unit, 1}, {0.875f + 2.5f * unit, 0.875f}};
+	float scaled[3][2];
+	for (int k = 0; k < 3; k++) {
+		scaled[k][0] = 3 * exact[k][0];
+		scaled[k][1] = exact[k][1];
+	}
+	assert_int_equal(nmtan_orientation(exact[0], exact[1], exact[2]), 1);
+	assert_int_equal(nmtan_orientation(scaled[0], scaled[1], scaled[2]), -1);
+	for (int method = NMTAN_METHOD_MIKKTSPACE; method <= NMTAN_METHOD_ROBUST; method++)
+		for (int mirrored = 0; mirrored < 2; mirrored++) {
+			nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3, .positions = &positions[0][0],
+				.normals = &normals[0][0], .texcoords = &scaled[0][0],
+				.exact_texcoords = &exact[0][0], .exact_mirrored = mirrored};
+			const nmtan_options options = {.method = (nmtan_method)method};
+			float tangents[3][4], split[6][4];
+			uint32_t indices[3], sources[3];
+			nmtan_output output = {.tangents = &tangents[0][0]};
+			nmtan_split_output vertices = {.indices = indices, .sources = sources,
+				.source_capacity = 3, .vertex_tangents = &split[0][0]};
+			assert_int_equal(nmtan_tangents(&mesh, &options, &output), NMTAN_OK);
+			assert_int_equal(nmtan_vertex_tangents(&mesh, &options, &vertices, NULL), NMTAN_OK);
+			for (int c = 0; c < 3; c++) {
+				assert_true(tangents[c][3] == (mirrored ? -1.0f : 1.0f));
+				assert_memory_equal(split[indices[c]], tangents[c], sizeof tangents[c]);
+			}
+		}
+}
+
 /* Two halves wound differently: (0,0) (1,0) (1,1) is positive with twice the area 1, and with the fourth
  * corner at (0.75, 0.5), the shorter diagonal is 1-3, (0,0) (1,0) (.75,.5) has 0.5 and (1,0) (1,1)
  * (.75,.5) has 0.25: not folded. With the fourth corner at (1.25, 0.5) the second half is negative. */
@@ -215,6 +252,7 @@ int main(void)
 		cmocka_unit_test(frames_survive_extreme_scales),
 		cmocka_unit_test(missing_texture_space_gives_a_perpendicular),
 		cmocka_unit_test(stored_texture_coordinates_decide_the_sign),
+		cmocka_unit_test(coordinates_before_a_transform_decide_the_sign),
 		cmocka_unit_test(folded_quad_takes_the_sign_of_its_larger_half),
 	};
 	return cmocka_run_group_tests_name("tangent/repair", tests, NULL, NULL);
