@@ -15,7 +15,7 @@
 #include "base/cpu.h"
 #include "base/parallel.h"
 
-enum { RUNS = 7, SMALL_SIZES = 3 };
+enum { RUNS = 3, SMALL_SIZES = 3 };
 
 typedef struct column {
 	const char *name;
