@@ -2,8 +2,7 @@
 /*
  * Runs of plain faces: nearly every file is triangles (or quads) whose row is a list of numbers and
  * little else. They are read here in tight loops that stop at the first row that is anything else, be
- * it wrong or only unusual, and leave it to ply_faces.c. On 1M triangles this brought reading faces
- * from 30 to 7 ms (binary) and from 95 to 19 ms (ASCII), Intel Xeon, gcc 12.
+ * it wrong or only unusual, and leave it to ply_faces.c.
  */
 #include "io/decimal.h"
 #include "io/ply.h"

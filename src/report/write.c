@@ -21,11 +21,6 @@ static const struct {
 	[NT_REPORT_HTML] = {"html", ".html .htm", nt_write_html},
 };
 
-const char *nt_report_format_name(nt_report_format format)
-{
-	return formats[format].name;
-}
-
 /* Whether a list of extensions separated by spaces has the one that the path ends in. */
 static bool ends_in(const char *path, const char *extensions)
 {

@@ -19,9 +19,6 @@ typedef enum nt_report_format {
 	NT_REPORT_FORMAT_COUNT
 } nt_report_format;
 
-/* Names and extensions: "json" and ".json". */
-const char *nt_report_format_name(nt_report_format format);
-
 /* The format that a file name's extension means; false when it is none of them. */
 bool nt_report_format_of_path(const char *path, nt_report_format *format);
 
