@@ -403,7 +403,7 @@ static unsigned half_spaces(nt_vec3 v)
 	return (v.x > h) | (v.x < -h) << 1 | (v.y > h) << 2 | (v.y < -h) << 3 | (v.z > h) << 4 | (v.z < -h) << 5;
 }
 
-/* Whether no two members can have antiparallel directions, by one look at each: see kernel.h. */
+/* Whether no two members can have antiparallel directions, by one look at each: see kernel_settle.h. */
 static bool no_split(const member *members, size_t count)
 {
 	unsigned u = 0x3f, v = 0x3f;

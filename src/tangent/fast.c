@@ -7,8 +7,8 @@
  *   2 cut        quads become triangles
  *   3 adjacency  count the corners of each vertex, make places for them    topology/adjacency.c
  *   4 accumulate frames and weights of 16 triangles at a time, added to
- *                the records of their vertices in triangle order           kernel.h
- *   5 settle     16 vertices at a time: is the record the result?          kernel.h
+ *                the records of their vertices in triangle order           kernel_accumulate.h
+ *   5 settle     16 vertices at a time: is the record the result?          kernel_settle.h
  *   6 write      every corner gets its vertex's result
  *   7 complex    the other vertices: pairs, groups, averages               complex.c
  *   8 late       degenerate triangles copy a neighbour's corner

@@ -1,0 +1,218 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The first pass: frames and weights of 16 triangles (kernel_lanes.h), then, one triangle after the other, the
+ * addition to the records of the vertices and the entry in each vertex's fan. Included by kernel.h.
+ */
+#ifndef NT_TANGENT_KERNEL_ACCUMULATE_H
+#define NT_TANGENT_KERNEL_ACCUMULATE_H
+
+#include "tangent/kernel_lanes.h"
+
+static inline void add_record(nt_record *record, const float *add)
+{
+	static const nt_int4 state_lane = {0, 0, 0, -1};
+	nt_float4 old, new;
+	memcpy(&old, record, sizeof old);
+	memcpy(&new, add, sizeof new);
+	const nt_int4 sum = (nt_int4)(old + new), both = (nt_int4)old & (nt_int4)new;
+	const nt_int4 result = (both & state_lane) | (sum & ~state_lane);
+	memcpy(record, &result, sizeof result);
+}
+
+static inline void add_more(nt_record_more *record, const float *add)
+{
+	nt_float4 old[2], new[2];
+	memcpy(old, record, sizeof old);
+	memcpy(new, add, sizeof new);
+	old[0] += new[0], old[1] += new[1];
+	memcpy(record, old, sizeof old);
+}
+
+/* A corner of a hub, or of a vertex that an earlier range adds to. */
+static void __attribute__((noinline)) add_unusual(nt_fast *fast, unsigned range, uint32_t vertex,
+	uint32_t cursor, int orient, nt_fan_entry entry, const float *add, const float *more)
+{
+	if (!(cursor & NT_CURSOR_HUB))
+		fast->adjacency.entries[cursor & NT_CURSOR_PLACE] = entry;
+	if (cursor & NT_CURSOR_SHARED) {
+		nt_deferred *deferred = &fast->deferred[range][fast->deferred_count[range]++];
+		deferred->vertex = vertex;
+		deferred->orient = (uint32_t)orient;
+		memcpy(&deferred->add, add, sizeof deferred->add);
+		if (fast->wants_more)
+			memcpy(&deferred->more, more, sizeof deferred->more);
+		return;
+	}
+	add_record(&fast->records[orient][vertex], add);
+	if (fast->wants_more)
+		add_more(&fast->more[orient][vertex], more);
+}
+
+/* One corner, whatever its vertex is. */
+static void add_corner(nt_fast *fast, unsigned range, uint32_t vertex, int orient, nt_fan_entry entry,
+	const float *add, const float *more)
+{
+	const nt_adjacency *a = &fast->adjacency;
+	uint32_t *cursor = &a->cursors[range * a->vertex_count + vertex];
+	const uint32_t place = *cursor;
+	*cursor = place + (place & NT_CURSOR_HUB ? 0 : NT_FAN_LANES);
+	if (place >= NT_CURSOR_SHARED) {
+		add_unusual(fast, range, vertex, place, orient, entry, add, more);
+		return;
+	}
+	a->entries[place] = entry;
+	add_record(&fast->records[orient][vertex], add);
+	if (fast->wants_more)
+		add_more(&fast->more[orient][vertex], more);
+}
+
+/* A triangle with a frame. */
+static void add_triangle(nt_fast *fast, unsigned range, size_t t, int lane, const lanes_out *out)
+{
+	const uint32_t *v = fast->ids + 3 * t;
+	const int orient = fast->flags[t] & NT_TRIANGLE_ORIENT;
+	const uint32_t bit = (uint32_t)orient << 31;
+	for (size_t k = 0; k < 3; k++)
+		add_corner(fast, range, v[k], orient,
+			(nt_fan_entry){v[(k + 1) % 3] | bit, v[(k + 2) % 3] | bit}, out->add[k] + 4 * lane,
+			out->more[k] + 8 * lane);
+}
+
+/* Triangles with frames: add_triangle() with everything that does not change kept at hand. */
+static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t count, const lanes_out *out)
+{
+	uint32_t *const cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
+	nt_fan_entry *const entries = fast->adjacency.entries;
+	nt_record *const records[2] = {fast->records[0], fast->records[1]};
+	const uint32_t *ids = fast->ids + 3 * first;
+	const uint8_t *flags = fast->flags + first;
+	for (size_t i = 0; i < count; i++, ids += 3) {
+		const uint32_t a = ids[0], b = ids[1], c = ids[2];
+		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
+		const unsigned orient = flags[i] & NT_TRIANGLE_ORIENT;
+		if (__builtin_expect((pa | pb | pc) >= NT_CURSOR_SHARED, 0) || fast->wants_more) {
+			add_triangle(fast, range, first + i, (int)i, out);
+			continue;
+		}
+		const uint32_t bit = orient << 31;
+		cursors[a] = pa + NT_FAN_LANES;
+		cursors[b] = pb + NT_FAN_LANES;
+		cursors[c] = pc + NT_FAN_LANES;
+		entries[pa] = (nt_fan_entry){b | bit, c | bit};
+		entries[pb] = (nt_fan_entry){c | bit, a | bit};
+		entries[pc] = (nt_fan_entry){a | bit, b | bit};
+		nt_record *const to = records[orient];
+		add_record(to + a, out->add[0] + 4 * i);
+		add_record(to + b, out->add[1] + 4 * i);
+		add_record(to + c, out->add[2] + 4 * i);
+	}
+}
+
+/* Orientation of the record that takes note of an "any" triangle: any that exists. */
+static int any_record(const nt_fast *fast, int orient)
+{
+	return fast->records[orient] || !fast->records[!orient] ? orient : !orient;
+}
+
+/* Adds a triangle that is degenerate (voids in the fans) or has no frame (a corner in the fans, a note in the
+ * records), or is ordinary but has values that the lanes do not vouch for. */
+static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range, size_t t, int lane,
+	lanes_out *out)
+{
+	static const float zero[8] = {0};
+	float note[4] = {0.0f, 0.0f, 0.0f, 2.0f + STATE_BIT(NT_STATE_ALL)};
+	const uint32_t *v = fast->ids + 3 * t;
+	const uint8_t flags = fast->flags[t];
+	if (!(flags & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY))) {
+		for (int k = 0; k < 3 && !out->sound[lane]; k++)
+			out->add[k][4 * lane + 3] = 2.0f + STATE_BIT(NT_STATE_NO_ANY + NT_STATE_LOCAL);
+		add_triangle(fast, range, t, lane, out);
+		return;
+	}
+	const int orient = any_record(fast, flags & NT_TRIANGLE_ORIENT);
+	if (flags & NT_TRIANGLE_DEGENERATE) {
+		uint32_t *cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
+		for (int k = 0; k < 3; k++) {
+			const uint32_t place = cursors[v[k]], number = place & NT_CURSOR_PLACE;
+			if (place & NT_CURSOR_HUB)
+				continue;
+			cursors[v[k]] = place + NT_FAN_LANES;
+			fast->adjacency.entries[number] = (nt_fan_entry){NT_ENTRY_VOID | number,
+				NT_ENTRY_VOID | NT_ENTRY_VOID >> 1 | number};
+		}
+		return;
+	}
+	note[3] -= STATE_BIT(NT_STATE_NO_ANY);
+	for (int k = 0; k < 3; k++)
+		add_corner(fast, range, v[k], orient, (nt_fan_entry){v[(k + 1) % 3], v[(k + 2) % 3]}, note,
+			zero);
+}
+
+/* The orientation of a record array that these triangles need and that does not exist; -1: none. */
+static int missing_record(const nt_fast *fast, size_t first, size_t count)
+{
+	if (fast->records[0] && fast->records[1])
+		return -1;
+	for (size_t i = 0; i < count; i++) {
+		const uint8_t flags = fast->flags[first + i];
+		int orient = flags & NT_TRIANGLE_ORIENT;
+		if (flags & NT_TRIANGLE_DEGENERATE)
+			continue;
+		if (flags & NT_TRIANGLE_ANY)
+			orient = any_record(fast, orient);
+		if (!fast->records[orient])
+			return orient;
+	}
+	return -1;
+}
+
+/* Scattered vertices: rows and cursors of the batch after the next, then, when its cursors are there, the
+ * entries of the next. Always inline: to gcc 12 a function of prefetches alone has no effect, and goes. */
+static inline __attribute__((always_inline)) void ask_ahead(const nt_fast *fast, unsigned range, size_t first, size_t end)
+{
+	const uint32_t *cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
+	const nt_record *records = fast->records[1] ? fast->records[1] : fast->records[0];
+	const size_t far = first + 2 * NT_LANES, near = first + NT_LANES;
+	for (size_t i = 3 * far; i < 3 * (far + NT_LANES) && i < 3 * end; i++) {
+		__builtin_prefetch(&fast->rows[fast->ids[i]]);
+		__builtin_prefetch(&cursors[fast->ids[i]], 1);
+		if (records)
+			__builtin_prefetch(&records[fast->ids[i]], 1);
+	}
+	for (size_t i = 3 * near; i < 3 * (near + NT_LANES) && i < 3 * end; i++)
+		__builtin_prefetch(&fast->adjacency.entries[cursors[fast->ids[i]] & NT_CURSOR_PLACE], 1);
+}
+
+static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, int *orient)
+{
+	lanes_in in;
+	lanes_out out;
+	const float offset = fast->solve->mesh->stored_v_offset;
+	const float slack = offset != 0.0f ? 3 * HALF_ULP : 0.0f;
+	for (size_t first = begin, count; first < end; first += count) {
+		count = end - first < NT_LANES ? end - first : NT_LANES;
+		if (first + count < end && (fast->flags[first + count] & NT_TRIANGLE_SECOND))
+			count--; /* halves of a quad stay together */
+		if (fast->scattered)
+			ask_ahead(fast, range, first, end);
+		gather_lanes(fast, first, count, &in);
+		if (fast->wants_more)
+			solve_lanes_more(&in, &out, offset, slack);
+		else
+			solve_lanes_plain(&in, &out, offset, slack);
+		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
+		const int missing = missing_record(fast, first, count);
+		if (missing >= 0) {
+			*orient = missing;
+			return first;
+		}
+		if (ordinary)
+			add_ordinary(fast, range, first, count, &out);
+		else
+			for (size_t i = 0; i < count; i++)
+				add_special(fast, range, first + i, (int)i, &out);
+	}
+	return end;
+}
+
+#endif
