@@ -13,6 +13,9 @@
  *   7 complex    the other vertices: pairs, groups, averages               complex.c
  *   8 late       degenerate triangles copy a neighbour's corner
  *
+ * Where neighbouring triangles have vertices far apart there is no step 3, step 4 writes corners down in bins
+ * of vertices, and step 5 adds up and settles one bin after the other (bins.h).
+ *
  * Groups are not looked at before step 5, because nearly every vertex has one for each orientation;
  * what that saves is the point of this file.
  *
@@ -30,8 +33,8 @@
 #include "base/parallel.h"
 #include "topology/corners.h"
 
-/* A range of triangles that is worth a thread: below, starting it costs more than it saves. */
-enum { TRIANGLE_GRAIN = 65536 };
+/* Starting a thread costs more than it saves with fewer triangles. */
+static const nt_fast_plan usual = {.grain = 65536};
 
 /* Triangles by which the records of a scattered mesh are asked for before they are written. */
 enum { WRITE_AHEAD = 16 };
@@ -93,7 +96,7 @@ static bool is_scattered(const nt_fast *fast)
 		const uint32_t a = fast->ids[3 * i * step], b = fast->ids[3 * i * step + 3];
 		far += (a > b ? a - b : b - a) > FAR;
 	}
-	return far > SAMPLES / 8;
+	return far > SAMPLES / 8 && fast->vertex_count >= NT_BINS_LEAST;
 }
 
 static nmtan_status make_triangles(nt_fast *fast, const nt_weld *weld)
@@ -132,7 +135,7 @@ static bool make_record(nt_fast *fast, int orient)
 	nt_record *records = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *records);
 	if (!records)
 		return false;
-	for (size_t v = 0; v < fast->vertex_count; v++)
+	for (size_t v = 0; !fast->bins.cursors && v < fast->vertex_count; v++)
 		records[v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
 	if (fast->wants_more) {
 		nt_record_more *more = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *more);
@@ -165,7 +168,8 @@ static bool make_deferred(nt_fast *fast)
 typedef struct run {
 	nt_fast *fast;
 	const nt_kernels *kernels;
-	nt_settled *settled; /* [ranges] */
+	nt_settled *settled;       /* [ranges] */
+	nt_adjacency *adjacencies; /* [ranges] each for one bin after the other */
 } run;
 
 static void accumulate_ranges(void *context, size_t begin, size_t end, unsigned slot)
@@ -203,8 +207,31 @@ static void add_deferred(nt_fast *fast)
 	}
 }
 
+/* Records of the orientations that came up; without a frame anywhere, some that can take notes. */
+static bool make_seen_records(nt_fast *fast)
+{
+	unsigned seen = 0;
+	for (unsigned r = 0; r < fast->ranges.count; r++)
+		seen |= fast->bins.seen[r];
+	if (seen == NT_SEEN_ANY)
+		seen = NT_SEEN(0);
+	for (int o = 0; o < 2; o++)
+		if ((seen & NT_SEEN(o)) && !make_record(fast, o))
+			return false;
+	return true;
+}
+
+static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels)
+{
+	run r = {.fast = fast, .kernels = kernels};
+	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, accumulate_ranges, &r);
+	return make_seen_records(fast) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+}
+
 static nmtan_status accumulate(nt_fast *fast, const nt_kernels *kernels)
 {
+	if (fast->bins.cursors)
+		return fill_bins(fast, kernels);
 	if (fast->ranges.count == 1) {
 		/* records of an orientation exist from the first triangle that has it */
 		int orient = 0;
@@ -218,7 +245,7 @@ static nmtan_status accumulate(nt_fast *fast, const nt_kernels *kernels)
 	}
 	if (!make_record(fast, 0) || !make_record(fast, 1) || !make_deferred(fast))
 		return NMTAN_ERROR_MEMORY;
-	run r = {fast, kernels, NULL};
+	run r = {.fast = fast, .kernels = kernels};
 	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, accumulate_ranges, &r);
 	add_deferred(fast);
 	return NMTAN_OK;
@@ -266,27 +293,55 @@ static void mark_contested(nt_fast *fast)
 	}
 }
 
-static void settle_range(void *context, size_t begin, size_t end, unsigned slot)
+static void settle_blocks(void *context, size_t begin, size_t end, unsigned slot)
 {
 	const run *r = context;
 	nt_settled settled = {0};
-	r->kernels->settle(r->fast, begin, end, &settled);
+	r->kernels->settle(r->fast, &r->fast->adjacency, begin, end, &settled);
+	r->settled[slot] = settled;
+}
+
+/* Adds up bins and settles their vertices while they are at hand. */
+static void settle_bins(void *context, size_t begin, size_t end, unsigned slot)
+{
+	const run *r = context;
+	nt_settled settled = {0};
+	nt_adjacency adjacency = r->adjacencies[slot];
+	for (size_t bin = begin; bin < end; bin++) {
+		nt_bins_add(&r->fast->bins, bin, r->fast->records, &adjacency);
+		const size_t first = adjacency.first_vertex / NT_LANES;
+		r->kernels->settle(r->fast, &adjacency, first,
+			first + (adjacency.vertex_count + NT_LANES - 1) / NT_LANES, &settled);
+	}
 	r->settled[slot] = settled;
 }
 
 static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled *sum)
 {
 	const unsigned ranges = fast->ranges.count;
-	nt_settled *settled = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *settled);
-	if (!settled)
+	nt_scratch *scratch = fast->solve->scratch;
+	run r = {.fast = fast, .kernels = kernels};
+	r.settled = nt_scratch_alloc(scratch, ranges, sizeof *r.settled);
+	if (!r.settled)
 		return NMTAN_ERROR_MEMORY;
-	memset(settled, 0, ranges * sizeof *settled);
-	run r = {fast, kernels, settled};
-	nt_parallel_ranges(ranges, (fast->vertex_count + NT_LANES - 1) / NT_LANES, 1, settle_range, &r);
+	memset(r.settled, 0, ranges * sizeof *r.settled);
+	if (fast->bins.cursors) {
+		r.adjacencies = nt_scratch_alloc(scratch, ranges, sizeof *r.adjacencies);
+		if (!r.adjacencies)
+			return NMTAN_ERROR_MEMORY;
+		for (unsigned i = 0; i < ranges; i++)
+			if (nt_bins_adjacency(&fast->bins, scratch, &r.adjacencies[i]))
+				return NMTAN_ERROR_MEMORY;
+		nt_parallel_ranges(ranges, fast->bins.count, 1, settle_bins, &r);
+	} else {
+		mark_contested(fast);
+		nt_parallel_ranges(ranges, (fast->vertex_count + NT_LANES - 1) / NT_LANES, 1, settle_blocks,
+			&r);
+	}
 	*sum = (nt_settled){0};
 	for (unsigned i = 0; i < ranges; i++) {
-		sum->complex_count += settled[i].complex_count;
-		sum->unusable_count += settled[i].unusable_count;
+		sum->complex_count += r.settled[i].complex_count;
+		sum->unusable_count += r.settled[i].unusable_count;
 	}
 	return NMTAN_OK;
 }
@@ -501,7 +556,7 @@ static void vouch(const nt_fast *fast)
 }
 
 /* 1 to 4 */
-static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ranges)
+static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ranges, unsigned bin_bits)
 {
 	const nt_solve *solve = fast->solve;
 	/* a sparse output is not filled, so that its pages need not exist */
@@ -516,14 +571,18 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ra
 		status = make_triangles(fast, &weld);
 	if (!status)
 		status = make_ranges(fast, ranges);
-	fast->scattered = !status && is_scattered(fast);
-	if (!status)
+	fast->scattered = !status && (bin_bits || is_scattered(fast));
+	if (!bin_bits)
+		bin_bits = nt_bins_bits(fast->vertex_count);
+	if (!status && fast->scattered && !fast->wants_more)
+		status = nt_bins_make(fast->ids, &fast->ranges, fast->vertex_count, bin_bits, &room, &fast->bins);
+	else if (!status)
 		status = nt_adjacency_make(fast->ids, &fast->ranges, fast->vertex_count, &room,
 			&fast->adjacency);
 	return status ? status : accumulate(fast, kernels);
 }
 
-static nmtan_status solve_with_grain(nt_fast *fast, const nt_solve *solve, bool sparse, size_t grain)
+static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, bool sparse, const nt_fast_plan *plan)
 {
 	const nt_kernels *kernels = kernels_for(solve->isa);
 	*fast = (nt_fast){.solve = solve, .sparse = sparse, .triangle_count = count_triangles(solve->mesh)};
@@ -534,8 +593,8 @@ static nmtan_status solve_with_grain(nt_fast *fast, const nt_solve *solve, bool 
 		solve->mesh->vertex_count >= NT_WELD_LIMIT)
 		return NMTAN_ERROR_TOO_LARGE;
 
-	const unsigned ranges = nt_parallel_slots(solve->threads, fast->triangle_count, grain);
-	nmtan_status status = sum_up(fast, kernels, ranges);
+	const unsigned ranges = nt_parallel_slots(solve->threads, fast->triangle_count, plan->grain);
+	nmtan_status status = sum_up(fast, kernels, ranges, plan->bin_bits);
 	if (status)
 		return status;
 	if (!fast->records[0] && !fast->records[1]) {
@@ -544,12 +603,11 @@ static nmtan_status solve_with_grain(nt_fast *fast, const nt_solve *solve, bool 
 		return NMTAN_OK;
 	}
 
-	mark_contested(fast);
 	nt_settled settled;
 	if ((status = settle(fast, kernels, &settled)))
 		return status;
 	fast->sparse = fast->sparse && settled.unusable_count == 0;
-	run r = {fast, kernels, NULL};
+	run r = {.fast = fast};
 	nt_parallel_ranges(ranges, ranges, 1, write_ranges, &r);
 	if (settled.complex_count > 0 && (status = nt_fast_complex(fast, settled.complex_count)))
 		return status;
@@ -563,17 +621,17 @@ static nmtan_status solve_with_grain(nt_fast *fast, const nt_solve *solve, bool 
 
 nmtan_status nt_fast_solve(nt_fast *fast, const nt_solve *solve, bool sparse)
 {
-	return solve_with_grain(fast, solve, sparse, TRIANGLE_GRAIN);
+	return solve_as(fast, solve, sparse, &usual);
 }
 
-nmtan_status nt_mikktspace_fast_grain(const nt_solve *solve, size_t grain)
+nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *plan)
 {
 	nt_fast fast;
-	const nmtan_status status = solve_with_grain(&fast, solve, false, grain);
+	const nmtan_status status = solve_as(&fast, solve, false, plan);
 	return status == NMTAN_ERROR_TOO_LARGE ? nt_mikktspace_scalar(solve) : status;
 }
 
 nmtan_status nt_mikktspace_fast(const nt_solve *solve)
 {
-	return nt_mikktspace_fast_grain(solve, TRIANGLE_GRAIN);
+	return nt_mikktspace_fast_as(solve, &usual);
 }

@@ -12,44 +12,12 @@
 #ifndef NT_TANGENT_FAST_H
 #define NT_TANGENT_FAST_H
 
+#include "tangent/bins.h"
 #include "tangent/solve.h"
 #include "topology/adjacency.h"
 #include "topology/weld.h"
 
 enum { NT_LANES = 16 };
-
-/* Sum over the corners of one orientation at a vertex; later its result. `state` is a set of bits that
- * each corner may only clear: what is left holds for all of them. */
-typedef struct nt_record {
-	float x, y, z;
-	uint32_t state;
-} nt_record;
-
-/* The sums behind the optional outputs. */
-typedef struct nt_record_more {
-	float x, y, z, angle; /* bitangent; sum of the weights */
-	float mag_s, mag_t;
-	float unused[2];
-} nt_record_more;
-
-/* Bits of nt_record.state while it is a sum. All states carry NT_STATE_BASE, which makes them normal
- * floats: the lane takes part in the addition of its record, and a denormal may cost 100 cycles. */
-enum {
-	NT_STATE_U = 0x3f,          /* one bit for each half-space that all u directions lie in */
-	NT_STATE_V = 0x3f << 6,     /* the same for v */
-	NT_STATE_SOUND = 1 << 12,   /* every value met was well inside float's range */
-	NT_STATE_EMPTY = 1 << 13,   /* no corner was added */
-	NT_STATE_NO_ANY = 1 << 14,  /* no triangle without a frame touches the vertex */
-	NT_STATE_LOCAL = 1 << 15,   /* the order in which groups are seeded does not matter */
-	NT_STATE_ALL = 0xffff,
-	NT_STATE_BASE = 0x40000000
-};
-
-/* nt_record.state when settled: the sign as a float, or one of these. */
-#define NT_RESULT_PLUS 0x3f800000u    /* 1.0f */
-#define NT_RESULT_MINUS 0xbf800000u   /* -1.0f */
-#define NT_RESULT_NONE 0u             /* no corner has this orientation */
-#define NT_RESULT_COMPLEX 0x40000000u /* ask complex.c */
 
 /* Bits of nt_fast.flags */
 enum {
@@ -91,6 +59,7 @@ typedef struct nt_fast {
 	bool wants_more;
 	bool sparse;             /* step 6 leaves out corners whose result is their record */
 	bool scattered;          /* neighbouring triangles have vertices far apart: ask for them early */
+	nt_bins bins;            /* of a scattered mesh: its corners on their way to the records */
 	nt_triangle_ranges ranges;
 	nt_deferred **deferred;      /* [ranges] */
 	size_t *deferred_count;      /* [ranges] */
@@ -102,13 +71,14 @@ typedef struct nt_settled {
 
 /* The passes of one instruction set. */
 typedef struct nt_kernels {
-	/* Solves triangles [begin, end) of a range and adds them to their vertices. Stops before a
-	 * triangle whose record array does not exist and returns it, and its orientation in *orient;
-	 * otherwise returns end. */
+	/* Solves triangles [begin, end) of a range and adds them to their vertices, or to the bins where
+	 * there are bins. Without them it stops before a triangle whose record array does not exist and
+	 * returns it, and its orientation in *orient; otherwise returns end. */
 	size_t (*accumulate)(nt_fast *fast, size_t begin, size_t end, unsigned range, int *orient);
-	/* Turns the records of blocks [begin, end) of vertices into results; counts the vertices that are
-	 * complex, and the settled ones whose tangent is not usable. */
-	void (*settle)(nt_fast *fast, size_t begin, size_t end, nt_settled *settled);
+	/* Turns the records of blocks [begin, end) of vertices, all of them in the adjacency, into results;
+	 * counts the vertices that are complex, and the settled ones whose tangent is not usable. */
+	void (*settle)(nt_fast *fast, const nt_adjacency *adjacency, size_t begin, size_t end,
+		nt_settled *settled);
 } nt_kernels;
 
 extern const nt_kernels nt_kernels_baseline;
@@ -132,9 +102,14 @@ static inline size_t nt_fast_corner(const nt_fast *fast, size_t i)
 /* The next triangle from t on that has one of these flags; triangle_count: none. */
 size_t nt_fast_next_flagged(const nt_fast *fast, size_t t, unsigned flags);
 
-/* nt_mikktspace_fast() with another least number of triangles for a thread, for tests: small meshes then
- * use threads too. */
-nmtan_status nt_mikktspace_fast_grain(const nt_solve *solve, size_t grain);
+/* What depends on a mesh's size and order; tests choose it themselves, so that small meshes go every way. */
+typedef struct nt_fast_plan {
+	size_t grain;      /* least triangles for a thread */
+	unsigned bin_bits; /* log2 of the vertices of a bin, from 4 on; 0: bins where the mesh is scattered */
+} nt_fast_plan;
+
+/* nt_mikktspace_fast() by another plan. */
+nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *plan);
 
 /* The triangles whose corners have to be looked at one by one: those that do not have three settled
  * corners, all of them usable, and a determinant whose sign is beyond doubt. */

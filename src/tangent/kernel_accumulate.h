@@ -8,15 +8,14 @@
 
 #include "tangent/kernel_lanes.h"
 
+/* Corners by which a bin's place is asked for before it is written: some lines. */
+enum { BIN_AHEAD = 12 };
+
 static inline void add_record(nt_record *record, const float *add)
 {
-	static const nt_int4 state_lane = {0, 0, 0, -1};
-	nt_float4 old, new;
-	memcpy(&old, record, sizeof old);
-	memcpy(&new, add, sizeof new);
-	const nt_int4 sum = (nt_int4)(old + new), both = (nt_int4)old & (nt_int4)new;
-	const nt_int4 result = (both & state_lane) | (sum & ~state_lane);
-	memcpy(record, &result, sizeof result);
+	nt_int4 sum;
+	memcpy(&sum, add, sizeof sum);
+	nt_record_add(record, sum);
 }
 
 static inline void add_more(nt_record_more *record, const float *add)
@@ -48,11 +47,32 @@ static void __attribute__((noinline)) add_unusual(nt_fast *fast, unsigned range,
 		add_more(&fast->more[orient][vertex], more);
 }
 
+/* Writes a corner down in its vertex's bin. */
+static inline void bin_corner(const nt_bins *bins, uint32_t *cursors, uint32_t vertex, uint32_t orient,
+	nt_fan_entry entry, const float *add)
+{
+	const uint32_t lane = vertex & (((uint32_t)1 << bins->vertex_bits) - 1);
+	const uint32_t at = cursors[vertex >> bins->vertex_bits]++;
+	const nt_int4 tag = {0, 0, 0, (int)(orient << 31 | lane << NT_BINNED_SHIFT)};
+	nt_int4 sum;
+	memcpy(&sum, add, sizeof sum);
+	sum |= tag;
+	__builtin_prefetch(&bins->sums[at + BIN_AHEAD], 1);
+	__builtin_prefetch(&bins->entries[at + 2 * BIN_AHEAD], 1);
+	memcpy(&bins->sums[at], &sum, sizeof sum);
+	bins->entries[at] = entry;
+}
+
 /* One corner, whatever its vertex is. */
 static void add_corner(nt_fast *fast, unsigned range, uint32_t vertex, int orient, nt_fan_entry entry,
 	const float *add, const float *more)
 {
 	const nt_adjacency *a = &fast->adjacency;
+	if (fast->bins.cursors) {
+		bin_corner(&fast->bins, fast->bins.cursors + range * fast->bins.count, vertex, (uint32_t)orient,
+			entry, add);
+		return;
+	}
 	uint32_t *cursor = &a->cursors[range * a->vertex_count + vertex];
 	const uint32_t place = *cursor;
 	*cursor = place + (place & NT_CURSOR_HUB ? 0 : NT_FAN_LANES);
@@ -108,6 +128,23 @@ static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t cou
 	}
 }
 
+/* The same into bins. */
+static void bin_ordinary(const nt_fast *fast, unsigned range, size_t first, size_t count, const lanes_out *out)
+{
+	const nt_bins bins = fast->bins;
+	uint32_t *const cursors = bins.cursors + range * bins.count;
+	const uint32_t *v = fast->ids + 3 * first;
+	unsigned seen = 0;
+	for (size_t i = 0; i < count; i++, v += 3) {
+		const uint32_t orient = fast->flags[first + i] & NT_TRIANGLE_ORIENT, bit = orient << 31;
+		bin_corner(&bins, cursors, v[0], orient, (nt_fan_entry){v[1] | bit, v[2] | bit}, out->add[0] + 4 * i);
+		bin_corner(&bins, cursors, v[1], orient, (nt_fan_entry){v[2] | bit, v[0] | bit}, out->add[1] + 4 * i);
+		bin_corner(&bins, cursors, v[2], orient, (nt_fan_entry){v[0] | bit, v[1] | bit}, out->add[2] + 4 * i);
+		seen |= NT_SEEN(orient);
+	}
+	bins.seen[range] |= (uint8_t)seen;
+}
+
 /* Orientation of the record that takes note of an "any" triangle: any that exists. */
 static int any_record(const nt_fast *fast, int orient)
 {
@@ -123,6 +160,8 @@ static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range,
 	float note[4] = {0.0f, 0.0f, 0.0f, 2.0f + STATE_BIT(NT_STATE_ALL)};
 	const uint32_t *v = fast->ids + 3 * t;
 	const uint8_t flags = fast->flags[t];
+	if (fast->bins.cursors && !(flags & NT_TRIANGLE_DEGENERATE))
+		fast->bins.seen[range] |= flags & NT_TRIANGLE_ANY ? NT_SEEN_ANY : NT_SEEN(flags & NT_TRIANGLE_ORIENT);
 	if (!(flags & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY))) {
 		for (int k = 0; k < 3 && !out->sound[lane]; k++)
 			out->add[k][4 * lane + 3] = 2.0f + STATE_BIT(NT_STATE_NO_ANY + NT_STATE_LOCAL);
@@ -130,6 +169,8 @@ static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range,
 		return;
 	}
 	const int orient = any_record(fast, flags & NT_TRIANGLE_ORIENT);
+	if ((flags & NT_TRIANGLE_DEGENERATE) && fast->bins.cursors)
+		return;
 	if (flags & NT_TRIANGLE_DEGENERATE) {
 		uint32_t *cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
 		for (int k = 0; k < 3; k++) {
@@ -151,7 +192,7 @@ static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range,
 /* The orientation of a record array that these triangles need and that does not exist; -1: none. */
 static int missing_record(const nt_fast *fast, size_t first, size_t count)
 {
-	if (fast->records[0] && fast->records[1])
+	if (fast->bins.cursors || (fast->records[0] && fast->records[1]))
 		return -1;
 	for (size_t i = 0; i < count; i++) {
 		const uint8_t flags = fast->flags[first + i];
@@ -166,21 +207,14 @@ static int missing_record(const nt_fast *fast, size_t first, size_t count)
 	return -1;
 }
 
-/* Scattered vertices: rows and cursors of the batch after the next, then, when its cursors are there, the
- * entries of the next. Always inline: to gcc 12 a function of prefetches alone has no effect, and goes. */
-static inline __attribute__((always_inline)) void ask_ahead(const nt_fast *fast, unsigned range, size_t first, size_t end)
+/* Scattered vertices: the rows of corner k of the batch after the next. A third at a time, since no more misses
+ * than that can be under way. Always inline: to gcc 12 a function of prefetches alone has no effect, and goes. */
+static inline __attribute__((always_inline)) void ask_ahead(const nt_fast *fast, size_t first, size_t end, size_t k)
 {
-	const uint32_t *cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
-	const nt_record *records = fast->records[1] ? fast->records[1] : fast->records[0];
-	const size_t far = first + 2 * NT_LANES, near = first + NT_LANES;
-	for (size_t i = 3 * far; i < 3 * (far + NT_LANES) && i < 3 * end; i++) {
-		__builtin_prefetch(&fast->rows[fast->ids[i]]);
-		__builtin_prefetch(&cursors[fast->ids[i]], 1);
-		if (records)
-			__builtin_prefetch(&records[fast->ids[i]], 1);
-	}
-	for (size_t i = 3 * near; i < 3 * (near + NT_LANES) && i < 3 * end; i++)
-		__builtin_prefetch(&fast->adjacency.entries[cursors[fast->ids[i]] & NT_CURSOR_PLACE], 1);
+	const size_t far = first + 2 * NT_LANES;
+	const uint32_t *ids = fast->ids + k;
+	for (size_t t = far; t < far + NT_LANES && t < end; t++)
+		__builtin_prefetch(&fast->rows[ids[3 * t]]);
 }
 
 static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, int *orient)
@@ -194,19 +228,25 @@ static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range
 		if (first + count < end && (fast->flags[first + count] & NT_TRIANGLE_SECOND))
 			count--; /* halves of a quad stay together */
 		if (fast->scattered)
-			ask_ahead(fast, range, first, end);
+			ask_ahead(fast, first, end, 0);
 		gather_lanes(fast, first, count, &in);
+		if (fast->scattered)
+			ask_ahead(fast, first, end, 1);
 		if (fast->wants_more)
 			solve_lanes_more(&in, &out, offset, slack);
 		else
 			solve_lanes_plain(&in, &out, offset, slack);
+		if (fast->scattered)
+			ask_ahead(fast, first, end, 2);
 		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
 		const int missing = missing_record(fast, first, count);
 		if (missing >= 0) {
 			*orient = missing;
 			return first;
 		}
-		if (ordinary)
+		if (ordinary && fast->bins.cursors)
+			bin_ordinary(fast, range, first, count, &out);
+		else if (ordinary)
 			add_ordinary(fast, range, first, count, &out);
 		else
 			for (size_t i = 0; i < count; i++)

@@ -34,9 +34,6 @@
 /* A bit of nt_record.state as the float that sets it: NT_STATE_BASE is 2.0f, whose last place is 2^-22. */
 #define STATE_BIT(bit) ((float)(bit) * 0x1p-22f)
 
-typedef float nt_float4 __attribute__((vector_size(16)));
-typedef int nt_int4 __attribute__((vector_size(16)));
-
 /* 16 triangles by component. */
 typedef struct lanes_in {
 	float row[3][8][NT_LANES]; /* corner, float of its nt_weld_row */

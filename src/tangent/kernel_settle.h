@@ -191,29 +191,32 @@ static void settle_more(nt_record_more *more, size_t count, const uint32_t *pres
 	}
 }
 
-/* Corners of the block's vertices, and which of its vertices are hubs. */
-static void load_degrees(const nt_adjacency *a, size_t first, size_t count, uint32_t *restrict degree,
+/* Corners of the block's vertices, and which of its vertices are hubs. Returns the most corners. */
+static uint32_t load_degrees(const nt_adjacency *a, size_t first, size_t count, uint32_t *restrict degree,
 	uint32_t *restrict hub)
 {
-	const uint32_t *cursors = a->cursors + (a->ranges - 1) * a->vertex_count + first;
-	const uint32_t begin = a->block_begin[first / NT_FAN_LANES];
+	const size_t place = first - a->first_vertex;
+	const uint32_t *cursors = a->cursors + (a->ranges - 1) * a->vertex_count + place;
+	const uint32_t begin = a->block_begin[place / NT_FAN_LANES];
+	uint32_t most = 0;
 	for (size_t i = 0; i < NT_LANES; i++) {
 		const uint32_t cursor = i < count ? cursors[i] : begin;
 		hub[i] = cursor >> 31;
 		degree[i] = hub[i] ? 0 : ((cursor & NT_CURSOR_PLACE) - begin) / NT_FAN_LANES;
+		most = degree[i] > most ? degree[i] : most;
 	}
+	return most;
 }
 
-static void settle_block(nt_fast *fast, size_t block, nt_settled *settled)
+static void settle_block(nt_fast *fast, const nt_adjacency *a, size_t block, nt_settled *settled)
 {
 	const size_t first = block * NT_LANES, left = fast->vertex_count - first;
 	const size_t count = left < NT_LANES ? left : NT_LANES;
-	const nt_adjacency *a = &fast->adjacency;
-	const uint32_t depth = (a->block_begin[block + 1] - a->block_begin[block]) / NT_FAN_LANES;
+	const nt_fan_entry *entries = a->entries + a->block_begin[block - a->first_vertex / NT_FAN_LANES];
 	uint32_t degree[NT_LANES], hub[NT_LANES], mask[NT_LANES], complex[NT_LANES];
 	uint32_t doubtful[NT_LANES], fan_count[NT_LANES];
 	record_lanes r[2];
-	load_degrees(a, first, count, degree, hub);
+	const uint32_t depth = load_degrees(a, first, count, degree, hub);
 	for (int o = 0; o < 2; o++)
 		load_records(fast->records[o] ? fast->records[o] + first : NULL, count, &r[o]);
 
@@ -222,7 +225,7 @@ static void settle_block(nt_fast *fast, size_t block, nt_settled *settled)
 		mask[i] = r[0].present[i] & r[1].present[i] ? UINT32_MAX : NT_ENTRY_VERTEX;
 	for (size_t i = 0; i < NT_LANES; i += WIDTH) {
 		fans f;
-		load_fans(a->entries + a->block_begin[block] + i, depth, load_lanes(degree + i),
+		load_fans(entries + i, depth, load_lanes(degree + i),
 			load_lanes(mask + i), &f);
 		const lanes twice = link_fans(depth, &f), counted = count_fans(depth, &f, f.linked);
 		memcpy(doubtful + i, &twice, sizeof twice);
@@ -259,10 +262,11 @@ static void settle_block(nt_fast *fast, size_t block, nt_settled *settled)
 		settled->complex_count += complex[i];
 }
 
-static void settle(nt_fast *fast, size_t begin, size_t end, nt_settled *settled)
+static void settle(nt_fast *fast, const nt_adjacency *adjacency, size_t begin, size_t end,
+	nt_settled *settled)
 {
 	for (size_t block = begin; block < end; block++)
-		settle_block(fast, block, settled);
+		settle_block(fast, adjacency, block, settled);
 }
 
 #endif

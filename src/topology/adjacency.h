@@ -27,7 +27,7 @@ typedef struct nt_fan_entry {
 #define NT_CURSOR_PLACE (((uint32_t)1 << 28) - 1)
 
 typedef struct nt_adjacency {
-	size_t vertex_count;
+	size_t first_vertex, vertex_count; /* the first is a multiple of NT_FAN_LANES */
 	unsigned ranges;
 	uint32_t *cursors;     /* [ranges][vertex_count] */
 	uint32_t *block_begin; /* [blocks + 1] index of a block's first entry */
@@ -53,13 +53,5 @@ typedef struct nt_triangle_ranges {
  */
 nmtan_status nt_adjacency_make(const uint32_t *ids, const nt_triangle_ranges *ranges,
 	size_t vertex_count, nt_room *room, nt_adjacency *adjacency);
-
-/* Corners of a vertex that has entries, after all of them are in. */
-static inline uint32_t nt_adjacency_degree(const nt_adjacency *a, size_t vertex)
-{
-	const size_t block = vertex / NT_FAN_LANES;
-	const uint32_t end = a->cursors[(a->ranges - 1) * a->vertex_count + vertex] & NT_CURSOR_PLACE;
-	return (end - a->block_begin[block]) / NT_FAN_LANES;
-}
 
 #endif

@@ -67,8 +67,9 @@ static nt_solve make_solve(const nmtan_mesh *mesh, size_t corners, nt_scratch *s
 
 /* One run of the fast path against `expected`; prints what differs. */
 static size_t compare_run(const char *name, const nmtan_mesh *mesh, size_t corners, const result *expected,
-	bool more, nmtan_isa isa, unsigned threads)
+	bool more, nmtan_isa isa, unsigned threads, unsigned bin_bits)
 {
+	const nt_fast_plan plan = {.grain = 1, .bin_bits = bin_bits};
 	result got = result_make(corners);
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
@@ -76,17 +77,17 @@ static size_t compare_run(const char *name, const nmtan_mesh *mesh, size_t corne
 	solve.isa = isa;
 	solve.threads = threads;
 	memset(got.tangents, 0xab, corners * 16);
-	assert_int_equal(nt_mikktspace_fast_grain(&solve, 1), NMTAN_OK);
+	assert_int_equal(nt_mikktspace_fast_as(&solve, &plan), NMTAN_OK);
 	const size_t differences = result_differences(expected, &got, corners, more);
 	if (differences)
-		print_error("%s, set %d, %u threads: %zu of %zu floats differ\n", name, (int)isa, threads,
-			differences, corners * (more ? 9 : 4));
+		print_error("%s, set %d, %u threads, bins of 2^%u: %zu of %zu floats differ\n", name, (int)isa, threads,
+			bin_bits, differences, corners * (more ? 9 : 4));
 	nt_scratch_free(&scratch);
 	result_free(&got);
 	return differences;
 }
 
-/* One thread with every instruction set, then more threads. */
+/* One thread with every instruction set, then more threads; the same by bins where there is a choice. */
 static size_t compare_variants(const char *name, const nmtan_mesh *mesh, size_t corners,
 	const result *expected, bool more)
 {
@@ -94,10 +95,15 @@ static size_t compare_variants(const char *name, const nmtan_mesh *mesh, size_t 
 	size_t differences = 0;
 	for (nmtan_isa isa = NMTAN_ISA_BASELINE; isa <= NMTAN_ISA_AVX512; isa++)
 		if (nt_cpu_has(isa))
-			differences += compare_run(name, mesh, corners, expected, more, isa, 1);
+			differences += compare_run(name, mesh, corners, expected, more, isa, 1, 0);
 	for (int i = 0; i < 3; i++)
-		differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), threads[i]);
-	return differences;
+		differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), threads[i], 0);
+	if (more)
+		return differences;
+	for (nmtan_isa isa = NMTAN_ISA_BASELINE; isa <= NMTAN_ISA_AVX512; isa++)
+		if (nt_cpu_has(isa))
+			differences += compare_run(name, mesh, corners, expected, false, isa, 1, 4);
+	return differences + compare_run(name, mesh, corners, expected, false, nt_cpu_best(), 3, 5);
 }
 
 static void compare_golden(const char *path, const nt_golden *golden, void *context)
@@ -151,6 +157,48 @@ static void nasty_meshes_are_byte_identical(void **state)
 	assert_int_equal(wrong, 0);
 }
 
+/* Large enough for the plan to choose bins by itself; vertices and triangles are numbered by a stride that is
+ * prime to their count. */
+static void scattered_meshes_are_byte_identical(void **state)
+{
+	(void)state;
+	enum { SIDE = 300, VERTICES = SIDE * SIDE, FACES = 2 * (SIDE - 1) * (SIDE - 1) };
+	float *p = malloc(VERTICES * 12), *n = malloc(VERTICES * 12), *t = malloc(VERTICES * 8);
+	unsigned *indices = malloc(FACES * 12);
+	assert_true(VERTICES >= NT_BINS_LEAST);
+	for (size_t i = 0; i < VERTICES; i++) {
+		const size_t v = i * 39119 % VERTICES;
+		const float x = (float)(i % SIDE), y = (float)(i / SIDE);
+		memcpy(p + 3 * v, (float[3]){x, y, 0.3f * sinf(x) * cosf(2 * y)}, 12);
+		memcpy(n + 3 * v, (float[3]){0, 0, 1}, 12);
+		memcpy(t + 2 * v, (float[2]){fabsf(x - 150.0f), i % 97 == 0 ? 0.0f : y}, 8);
+	}
+	for (size_t i = 0; i < FACES; i++) {
+		static const size_t at[2][3] = {{0, 1, SIDE + 1}, {0, SIDE + 1, SIDE}};
+		const size_t cell = i / 2 + i / 2 / (SIDE - 1), face = i * 39119 % FACES;
+		for (size_t k = 0; k < 3; k++)
+			indices[3 * face + k] = (unsigned)((cell + at[i % 2][k]) * 39119 % VERTICES);
+	}
+	const nmtan_mesh loose = {.face_count = FACES, .vertex_count = VERTICES, .positions = p, .normals = n,
+		.texcoords = t, .indices = indices};
+	const nmtan_mesh mesh = filled(&loose);
+	result expected = result_make(3 * FACES);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	const nt_solve solve = make_solve(&mesh, 3 * FACES, &scratch, &expected, true);
+	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
+	nt_scratch_free(&scratch);
+	for (unsigned threads = 1; threads <= 2; threads++)
+		for (int more = 0; more < 2; more++)
+			assert_int_equal(compare_run("scattered", &mesh, 3 * FACES, &expected, more, nt_cpu_best(),
+				threads, 0), 0);
+	result_free(&expected);
+	free(p);
+	free(n);
+	free(t);
+	free(indices);
+}
+
 /* An allocator that fails from the n-th request on. */
 typedef struct budget {
 	size_t left, live;
@@ -174,15 +222,16 @@ static void give_back(void *user, void *block, size_t size)
 }
 
 static nmtan_status solve_within(const nmtan_mesh *mesh, size_t corners, const result *r, size_t allowed,
-	unsigned threads)
+	unsigned threads, unsigned bin_bits)
 {
+	const nt_fast_plan plan = {.grain = 1, .bin_bits = bin_bits};
 	budget b = {allowed, 0};
 	const nmtan_allocator allocator = {spend, give_back, &b};
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, &allocator);
-	nt_solve solve = make_solve(mesh, corners, &scratch, r, true);
+	nt_solve solve = make_solve(mesh, corners, &scratch, r, bin_bits == 0);
 	solve.threads = threads;
-	const nmtan_status status = nt_mikktspace_fast_grain(&solve, 1);
+	const nmtan_status status = nt_mikktspace_fast_as(&solve, &plan);
 	nt_scratch_free(&scratch);
 	assert_int_equal(b.live, 0);
 	return status;
@@ -211,11 +260,12 @@ static void every_failed_allocation_is_told(void **state)
 		.texcoords = t};
 	const nmtan_mesh mesh = filled(&loose);
 	result r = result_make(corners);
-	for (unsigned threads = 1; threads <= 3; threads += 2) {
+	for (unsigned i = 0; i < 4; i++) {
+		const unsigned threads = i % 2 ? 3 : 1, bin_bits = i < 2 ? 0 : 9;
 		size_t allowed = 0;
-		while (solve_within(&mesh, corners, &r, allowed, threads) == NMTAN_ERROR_MEMORY)
+		while (solve_within(&mesh, corners, &r, allowed, threads, bin_bits) == NMTAN_ERROR_MEMORY)
 			allowed++;
-		assert_int_equal(solve_within(&mesh, corners, &r, allowed, threads), NMTAN_OK);
+		assert_int_equal(solve_within(&mesh, corners, &r, allowed, threads, bin_bits), NMTAN_OK);
 		assert_in_range(allowed, 8, 100);
 	}
 	result_free(&r);
@@ -241,6 +291,7 @@ int main(int count, char **arguments)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(goldens_are_byte_identical),
 		cmocka_unit_test(nasty_meshes_are_byte_identical),
+		cmocka_unit_test(scattered_meshes_are_byte_identical),
 		cmocka_unit_test(every_failed_allocation_is_told),
 	};
 	return cmocka_run_group_tests_name("tangent/fast", tests, NULL, NULL);
