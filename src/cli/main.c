@@ -82,6 +82,7 @@ static bool findings_fail(const nt_summary *summary, int fail_on)
 	return false;
 }
 
+/* What --timing shows of all of them. */
 static void add_times(nt_summary *total, const nt_summary *one)
 {
 	for (int stage = 0; stage < NT_STAGE_COUNT; stage++)
@@ -89,6 +90,9 @@ static void add_times(nt_summary *total, const nt_summary *one)
 	total->total_seconds += one->total_seconds;
 	total->bytes_read += one->bytes_read;
 	total->bytes_written += one->bytes_written;
+	total->same_count += one->same_count;
+	for (int reason = 0; reason < NT_DECISION_COUNT; reason++)
+		total->skipped[reason] += one->skipped[reason];
 }
 
 /* Called once per job, in order: says what became of it. */

@@ -180,6 +180,8 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		append_count(out, s->mesh_count, "primitive");
 	else
 		nt_buffer_format(out, "%zu of %zu primitives", s->solved_count, s->mesh_count);
+	if (s->same_count)
+		nt_buffer_format(out, " (%zu the same as others)", s->same_count);
 	if (s->solved_count) {
 		nt_buffer_text(out, ", ");
 		append_count(out, s->triangle_count, "triangle");
@@ -230,6 +232,9 @@ void nt_message_timing(nt_buffer *out, const nt_summary *summary)
 		summary->total_seconds * 1e3);
 	nt_buffer_format(out, "%" PRIu64 " bytes read, %" PRIu64 " bytes written\n", summary->bytes_read,
 		summary->bytes_written);
+	if (summary->same_count)
+		nt_buffer_format(out, "not solved again: %zu %s (the same geometry as another)\n",
+			summary->same_count, summary->same_count == 1 ? "primitive" : "primitives");
 	for (int reason = 0; reason < NT_DECISION_COUNT; reason++)
 		if (summary->skipped[reason])
 			nt_buffer_format(out, "not decoded: %zu %s (%s)\n", summary->skipped[reason],

@@ -82,6 +82,9 @@ typedef struct nt_format_entry {
 	bool (*recognise)(const unsigned char *bytes, size_t size);
 	/* Describes the meshes of scene->bytes (and loads them, where that is one step). */
 	nmtan_status (*open)(nt_scene *scene, const nt_read_options *options, nt_error *error);
+	/* After the decisions: sets same_as of meshes that will be solved and have the geometry of an earlier one;
+	 * NULL: no two have the same. */
+	nmtan_status (*find_same)(nt_scene *scene, const nt_read_options *options, nt_error *error);
 	/* Brings the geometry of one mesh; NULL: open did. */
 	nmtan_status (*load)(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 		nt_error *error);
@@ -116,6 +119,7 @@ nmtan_status nt_drc_open(nt_scene *scene, const nt_read_options *options, nt_err
 bool nt_gltf_recognise(const unsigned char *bytes, size_t size);
 bool nt_glb_recognise(const unsigned char *bytes, size_t size);
 nmtan_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
+nmtan_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_error *error);
 nmtan_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 	nt_error *error);
 /* glTF from glTF: a patch of the document. */

@@ -76,7 +76,7 @@ static bool indices_are_own(const nt_gltf_recoding *r)
 	nt_gltf_accessor accessor;
 	uint64_t index;
 	return !indices || (nt_json_get_uint64(indices, &index) && lies_plain(r, index, &accessor) &&
-		p->sharing.index_users[p->sharing.canonical[index]] == 1);
+		p->sharing.index_users[p->sharing.canonical[index]] == r->component->member_count);
 }
 
 /* ---- gathering ---- */
@@ -212,9 +212,12 @@ nmtan_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r, bool *possible)
 	*possible = !has_doubles(r);
 	nt_gltf_visit_attributes(r->primitive, p->sharing.accessor_count, note_use, r);
 	/* an extension that we do not know may number the vertices */
-	const nt_json_value *extensions = nt_json_find(r->primitive, "extensions");
-	for (size_t i = 0; i < nt_json_count(extensions); i++)
-		r->outside |= strcmp(nt_json_key(extensions, i, NULL), "KHR_materials_variants") != 0;
+	for (size_t m = 0; m < r->component->member_count; m++) {
+		const nt_json_value *extensions = nt_json_find(nt_gltf_primitive_of(p->document,
+			&p->scene->meshes[r->component->members[m]]), "extensions");
+		for (size_t i = 0; i < nt_json_count(extensions); i++)
+			r->outside |= strcmp(nt_json_key(extensions, i, NULL), "KHR_materials_variants") != 0;
+	}
 	return NMTAN_OK;
 }
 

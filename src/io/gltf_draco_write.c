@@ -7,7 +7,7 @@
  * lie outside of the block (morph targets, joints in some files) or faces are degenerate, order matters
  * and the sequential method is taken. Where compressing again would lose something (the encoder drops
  * vertices that no face uses, and rows outside of the block would no longer fit), where primitives share
- * accessors, or where it is not wanted, the primitive is written plain.
+ * accessors but not all else, or where it is not wanted, the primitive is written plain.
  */
 #include "io/gltf_draco.h"
 
@@ -36,6 +36,13 @@ void nt_gltf_drop_draco(nt_gltf_patcher *p)
 	nt_gltf_remove_extension(p->document, "extensionsUsed", "KHR_draco_mesh_compression");
 }
 
+/* So many primitives do not refer to a block any more. Whether nobody does. */
+static bool release_block(nt_gltf_patcher *p, uint64_t view, size_t count)
+{
+	p->sharing.block_users[view] -= (uint32_t)count;
+	return p->sharing.block_users[view] == 0;
+}
+
 /* ---- plain ---- */
 
 /* Takes the extension off a primitive. Its view cannot go, since views keep their numbers; what is left of
@@ -49,7 +56,8 @@ static nmtan_status make_plain(nt_gltf_patcher *p, nt_gltf_cluster *component, s
 	nt_gltf_view view;
 	nmtan_status status = NMTAN_OK;
 	if (nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(primitive), "bufferView"), &index) &&
-		nt_gltf_get_view(p->document, index, "", &view, NULL) == NMTAN_OK && view.length > 4 &&
+		nt_gltf_get_view(p->document, index, "", &view, NULL) == NMTAN_OK &&
+		release_block(p, index, 1) && view.length > 4 &&
 		nt_layout_users(&p->layout, view.buffer, view.offset, view.offset + view.length) == 1)
 		status = nt_layout_edit(&p->layout, view.buffer, view.offset, view.length,
 			(const unsigned char *)"\0\0\0\0", 4, p->error);
@@ -84,7 +92,7 @@ static nmtan_status note_outside(void *context, nt_json_value *attributes, const
 	return NMTAN_OK;
 }
 
-/* Whether every compressed accessor is this primitive's alone and has no uncompressed twin. */
+/* Whether every compressed accessor is used by the component alone and has no uncompressed twin. */
 static bool accessors_are_own(const nt_gltf_recoding *r)
 {
 	const nt_gltf_patcher *p = r->patcher;
@@ -100,7 +108,7 @@ static bool accessors_are_own(const nt_gltf_recoding *r)
 	}
 	uint64_t indices;
 	return nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &indices) &&
-		p->sharing.index_users[p->sharing.canonical[indices]] == 1 &&
+		p->sharing.index_users[p->sharing.canonical[indices]] == r->component->member_count &&
 		!nt_json_find(nt_json_at(accessors, (size_t)indices), "bufferView");
 }
 
@@ -299,7 +307,7 @@ static nmtan_status store_block(nt_gltf_recoding *r, const nt_draco_block *block
 		nt_gltf_get_view(p->document, r->view, "", &view, p->error) : NMTAN_OK;
 	if (status)
 		return status;
-	if (r->source &&
+	if (r->source && release_block(p, r->view, r->component->member_count) &&
 		nt_layout_users(&p->layout, view.buffer, view.offset, view.offset + view.length) == 1)
 		return nt_layout_edit(&p->layout, view.buffer, view.offset, view.length, bytes,
 			block->size, p->error);
@@ -367,6 +375,47 @@ static nmtan_status recode(nt_gltf_recoding *r, bool *done)
 	return status;
 }
 
+static nt_json_value *member_primitive(const nt_gltf_patcher *p, const nt_gltf_cluster *component,
+	size_t member)
+{
+	return nt_gltf_primitive_of(p->document, &p->scene->meshes[component->members[member]]);
+}
+
+/* Whether the component is one primitive, perhaps several times: with the same geometry and the same
+ * accessors, so that one block serves them all. */
+static bool is_one_primitive(const nt_gltf_patcher *p, const nt_gltf_cluster *component)
+{
+	const nt_json_value *first = member_primitive(p, component, 0);
+	for (size_t i = 1; i < component->member_count; i++) {
+		const nt_mesh *mesh = &p->scene->meshes[component->members[i]];
+		const nt_json_value *other = member_primitive(p, component, i);
+		if (mesh->same_as != &p->scene->meshes[component->members[0]] ||
+			!nt_json_equal(nt_gltf_draco_of(first), nt_gltf_draco_of(other)))
+			return false;
+		static const char *const members[] = {"attributes", "targets", "indices"};
+		for (size_t k = 0; k < 3; k++)
+			if (!nt_json_equal(nt_json_find(first, members[k]), nt_json_find(other, members[k])))
+				return false;
+	}
+	return true;
+}
+
+/* The other members refer to what the first one now does. */
+static void share_block(nt_gltf_recoding *r)
+{
+	nt_json *json = r->patcher->json;
+	static const char *const members[] = {"attributes", "targets", "indices"};
+	for (size_t i = 1; i < r->component->member_count; i++) {
+		nt_json_value *other = member_primitive(r->patcher, r->component, i);
+		for (size_t k = 0; k < 3; k++)
+			if (nt_json_find(r->primitive, members[k]))
+				nt_json_set_copy(json, nt_json_put(json, other, members[k]),
+					nt_json_find(r->primitive, members[k]));
+		nt_json_set_copy(json, nt_json_put(json, nt_json_put(json, other, "extensions"),
+			"KHR_draco_mesh_compression"), nt_gltf_draco_of(r->primitive));
+	}
+}
+
 nmtan_status nt_gltf_patch_draco(nt_gltf_patcher *p, nt_gltf_cluster *component, bool *done)
 {
 	*done = false;
@@ -375,7 +424,7 @@ nmtan_status nt_gltf_patch_draco(nt_gltf_patcher *p, nt_gltf_cluster *component,
 	r.primitive = nt_gltf_primitive_of(p->document, r.mesh);
 	r.extension = nt_gltf_draco_of(r.primitive);
 	nmtan_status status = NMTAN_OK;
-	const bool alone = component->member_count == 1;
+	const bool alone = is_one_primitive(p, component);
 	if (p->options->draco != NT_DRACO_OFF && alone && r.extension && accessors_are_own(&r) &&
 		nt_json_get_uint64(nt_json_find(r.extension, "bufferView"), &r.view)) {
 		r.source = nt_gltf_draco_block(p->document, r.view);
@@ -387,5 +436,7 @@ nmtan_status nt_gltf_patch_draco(nt_gltf_patcher *p, nt_gltf_cluster *component,
 		if (!status && possible)
 			status = recode(&r, done);
 	}
+	if (!status && *done)
+		share_block(&r);
 	return status || *done ? status : make_all_plain(p, component);
 }

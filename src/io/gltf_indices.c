@@ -82,15 +82,14 @@ static nmtan_status add_indices(nt_gltf_patcher *p, uint32_t buffer, const encod
 	return NMTAN_OK;
 }
 
-/* Rewrites the accessor where its bytes are its own; *done tells. */
+/* Rewrites the accessor, all of whose users agree, where its bytes are its own; *done tells. */
 static nmtan_status replace_indices(nt_gltf_patcher *p, const nt_gltf_accessor *old, const encoded *new,
 	bool *done)
 {
 	*done = false;
 	const uint32_t canonical = p->sharing.canonical[old->index];
 	const uint32_t old_width = nt_gltf_component_bytes(old->component_type);
-	if (old->view == NT_NONE || old->sparse_count || old->stride != old_width ||
-		p->sharing.index_users[canonical] != 1)
+	if (old->view == NT_NONE || old->sparse_count || old->stride != old_width)
 		return NMTAN_OK;
 	nt_gltf_view view;
 	nmtan_status status = nt_gltf_get_view(p->document, old->view, "", &view, p->error);
@@ -135,9 +134,7 @@ static nmtan_status replace_indices(nt_gltf_patcher *p, const nt_gltf_accessor *
 static nmtan_status give_view(nt_gltf_patcher *p, uint32_t buffer, const nt_gltf_accessor *old,
 	const encoded *new, bool *done)
 {
-	*done = p->sharing.index_users[p->sharing.canonical[old->index]] == 1;
-	if (!*done)
-		return NMTAN_OK;
+	*done = true;
 	uint32_t view;
 	const nmtan_status status = nt_layout_add_view(&p->layout, buffer, new->bytes, new->size,
 		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, p->error);
@@ -153,8 +150,9 @@ static nmtan_status give_view(nt_gltf_patcher *p, uint32_t buffer, const nt_gltf
 
 /* A member's new indices, to be found by members with the same ones. */
 typedef struct written {
-	uint32_t old_accessor; /* canonical; NT_NONE: there was none */
-	uint32_t accessor;
+	uint32_t index;        /* the accessor of the source; NT_NONE: there was none */
+	uint32_t old_accessor; /* that, canonical */
+	uint32_t accessor;     /* the one in the output; NT_NONE: not yet */
 } written;
 
 static bool equal_indices(const nt_gltf_patcher *p, const nt_gltf_cluster *component, size_t a, size_t b)
@@ -162,8 +160,22 @@ static bool equal_indices(const nt_gltf_patcher *p, const nt_gltf_cluster *compo
 	const nt_mesh *x = &p->scene->meshes[component->members[a]];
 	const nt_mesh *y = &p->scene->meshes[component->members[b]];
 	return x->corner_count == y->corner_count &&
-		memcmp(component->rows.indices[a], component->rows.indices[b],
-			x->corner_count * sizeof(uint32_t)) == 0;
+		(component->rows.indices[a] == component->rows.indices[b] || memcmp(component->rows.indices[a], component->rows.indices[b],
+			x->corner_count * sizeof(uint32_t)) == 0);
+}
+
+/* Whether everybody who uses a member's indices will have the same new ones. */
+static bool all_users_agree(const nt_gltf_patcher *p, const nt_gltf_cluster *component, size_t member,
+	const written *log)
+{
+	if (log[member].index == NT_NONE)
+		return false;
+	const uint32_t users = p->sharing.index_users[log[member].old_accessor];
+	uint32_t agreeing = 1;
+	for (size_t i = 0; users > 1 && i < component->member_count; i++)
+		agreeing += i != member && component->rows.changed[i] && log[i].index == log[member].index &&
+			equal_indices(p, component, i, member);
+	return agreeing == users;
 }
 
 static nmtan_status patch_member(nt_gltf_patcher *p, const nt_gltf_cluster *component, size_t member,
@@ -171,8 +183,8 @@ static nmtan_status patch_member(nt_gltf_patcher *p, const nt_gltf_cluster *comp
 {
 	const nt_mesh *mesh = &p->scene->meshes[component->members[member]];
 	nt_json_value *primitive = nt_gltf_primitive_of(p->document, mesh);
-	uint64_t index = NT_NONE, mode = MODE_TRIANGLES, type;
-	nt_json_get_uint64(nt_json_find(primitive, "indices"), &index);
+	const uint32_t index = log[member].index;
+	uint64_t mode = MODE_TRIANGLES, type;
 	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
 	nt_gltf_accessor old = {.count = mesh->source_vertex_count, .component_type = NT_GLTF_UBYTE};
 	nmtan_status status = NMTAN_OK;
@@ -182,11 +194,10 @@ static nmtan_status patch_member(nt_gltf_patcher *p, const nt_gltf_cluster *comp
 		return status;
 	/* What Draco gave has 32 bits; the accessor may say less. */
 	if (old.decoded && nt_json_get_uint64(nt_json_find(nt_json_at(
-		nt_gltf_root_member(p->document, "accessors"), (size_t)index), "componentType"), &type))
+		nt_gltf_root_member(p->document, "accessors"), index), "componentType"), &type))
 		old.component_type = (uint32_t)type;
 	if (index == NT_NONE)
 		old.component_type = NT_GLTF_USHORT; /* the narrowest that all hardware likes */
-	log[member].old_accessor = index == NT_NONE ? NT_NONE : p->sharing.canonical[index];
 
 	uint32_t accessor = NT_NONE;
 	for (size_t i = 0; i < member && accessor == NT_NONE; i++)
@@ -197,13 +208,14 @@ static nmtan_status patch_member(nt_gltf_patcher *p, const nt_gltf_cluster *comp
 	if (accessor == NT_NONE) {
 		encoded new = {0};
 		bool done = false;
+		const bool own = all_users_agree(p, component, member, log);
 		status = encode(p, mesh, component->rows.indices[member],
 			tail_of(mesh, mode, old.count), old.component_type, &new);
-		if (!status && old.decoded)
+		if (!status && own && old.decoded)
 			status = give_view(p, component->buffer, &old, &new, &done);
-		else if (!status && index != NT_NONE)
+		else if (!status && own)
 			status = replace_indices(p, &old, &new, &done);
-		accessor = (uint32_t)index;
+		accessor = index;
 		if (!status && !done)
 			status = add_indices(p, component->buffer, &new, &accessor);
 	}
@@ -223,10 +235,20 @@ nmtan_status nt_gltf_patch_indices(nt_gltf_patcher *p, const nt_gltf_cluster *co
 	if (!log)
 		return nt_fail_memory(p->error);
 	nmtan_status status = NMTAN_OK;
-	for (size_t i = 0; !status && i < component->member_count; i++) {
-		log[i] = (written){NT_NONE, NT_NONE};
+	for (size_t i = 0; i < component->member_count; i++) {
+		const nt_json_value *primitive = nt_gltf_primitive_of(p->document,
+			&p->scene->meshes[component->members[i]]);
+		uint64_t index;
+		log[i] = (written){NT_NONE, NT_NONE, NT_NONE};
+		if (component->rows.changed[i] &&
+			nt_json_get_uint64(nt_json_find(primitive, "indices"), &index) &&
+			index < p->sharing.accessor_count) {
+			log[i].index = (uint32_t)index;
+			log[i].old_accessor = p->sharing.canonical[index];
+		}
+	}
+	for (size_t i = 0; !status && i < component->member_count; i++)
 		if (component->rows.changed[i])
 			status = patch_member(p, component, i, log);
-	}
 	return status;
 }

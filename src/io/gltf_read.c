@@ -15,6 +15,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include "io/gltf_share.h"
 
 enum { MODE_TRIANGLES = 4, MODE_STRIP = 5, MODE_FAN = 6 };
 /* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
@@ -448,7 +449,8 @@ static nmtan_status transform_texcoords(nt_scene *scene, nt_mesh *mesh, const nt
 	return NMTAN_OK;
 }
 
-/* The transform of the texture that tangents serve; what cannot be served is a finding. */
+/* The transform of the texture that tangents serve; what cannot be served is a finding. A mesh that shares
+ * its geometry has the same one applied already. */
 static nmtan_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 	const nt_json_value *primitive, nt_error *error)
 {
@@ -462,7 +464,7 @@ static nmtan_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh 
 			"set %u with different texture transforms", mesh->texcoord_set);
 	if (shading.transform.animated)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED, &mesh->place, 1, NULL);
-	return shading.transform.exists ?
+	return shading.transform.exists && !mesh->same_as ?
 		transform_texcoords(scene, mesh, &shading.transform, error) : NMTAN_OK;
 }
 
@@ -600,6 +602,10 @@ nmtan_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options 
 {
 	nt_gltf *document = scene->source;
 	const nt_json_value *primitive;
+	if (mesh->same_as) {
+		nt_mesh_share(mesh);
+		return apply_transform(scene, document, mesh, nt_gltf_primitive_of(document, mesh), error);
+	}
 	nmtan_status status = find_primitive(document, mesh, &primitive, error);
 	inputs in;
 	if (!status)

@@ -26,7 +26,8 @@ typedef struct merging {
 	bool *has_normals;    /* [group] */
 } merging;
 
-/* The three accessors that decide a tangent; meshes with the same ones form a group. */
+/* The three accessors that decide a tangent; meshes with the same ones form a group, if texture
+ * transforms are the same too. */
 typedef struct group_key {
 	uint32_t positions, normals, texcoords;
 	uint32_t targets; /* a hash of what the morph targets move */
@@ -60,12 +61,27 @@ static group_key key_of(const nt_gltf *document, const nt_gltf_sharing *sharing,
 		hash};
 }
 
+/* Whether texture transforms do the same to two meshes over the same texture coordinates. Where they do not, hardly a
+ * tangent agrees: a TANGENT for each is less than a copy of every row. */
+static bool same_directions(const nt_mesh *a, const nt_mesh *b)
+{
+	const float *x = a->solve_texcoords, *y = b->solve_texcoords;
+	if (x == y)
+		return true;
+	return x && y && a->vertex_count == b->vertex_count &&
+		memcmp(x, y, a->vertex_count * 2 * sizeof *x) == 0;
+}
+
 static bool find_groups(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
 	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count)
 {
 	group_key *keys = nt_alloc(member_count, sizeof *keys);
-	if (!keys)
+	const nt_mesh **firsts = nt_alloc(member_count, sizeof *firsts); /* of each group */
+	if (!keys || !firsts) {
+		free(keys);
+		free(firsts);
 		return false;
+	}
 	rows->group_count = 0;
 	for (size_t i = 0; i < member_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[members[i]];
@@ -74,13 +90,17 @@ static bool find_groups(nt_gltf_rows *rows, const nt_gltf *document, const nt_sc
 			continue;
 		const group_key key = key_of(document, sharing, mesh);
 		uint32_t group = 0;
-		while (group < rows->group_count && memcmp(&keys[group], &key, sizeof key) != 0)
+		while (group < rows->group_count && (memcmp(&keys[group], &key, sizeof key) != 0 ||
+			!same_directions(firsts[group], mesh)))
 			group++;
-		if (group == rows->group_count)
+		if (group == rows->group_count) {
+			firsts[group] = mesh;
 			keys[rows->group_count++] = key;
+		}
 		rows->group_of[i] = group;
 	}
 	free(keys);
+	free(firsts);
 	return true;
 }
 
@@ -336,6 +356,23 @@ static bool same_triangles(const nt_mesh *mesh, const uint32_t *indices)
 	return true;
 }
 
+/* The member of the component that a mesh shares its geometry with: members are in the order of their
+ * numbers. NT_NONE: none, or of another component. */
+static uint32_t find_same(const nt_scene *scene, const uint32_t *members, size_t member_count,
+	const nt_mesh *mesh)
+{
+	size_t low = 0, high = member_count;
+	const uint32_t wanted = mesh->same_as ? (uint32_t)(mesh->same_as - scene->meshes) : NT_NONE;
+	while (low < high) {
+		const size_t middle = low + (high - low) / 2;
+		if (members[middle] < wanted)
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return low < member_count && members[low] == wanted ? (uint32_t)low : NT_NONE;
+}
+
 static bool merge_members(merging *m, const nt_scene *scene, const uint32_t *members,
 	size_t member_count, nt_arena *arena)
 {
@@ -346,6 +383,12 @@ static bool merge_members(merging *m, const nt_scene *scene, const uint32_t *mem
 		rows->changed[i] = false;
 		if (rows->group_of[i] == NT_NONE)
 			continue;
+		const uint32_t same = find_same(scene, members, member_count, mesh);
+		if (same != NT_NONE) {
+			rows->indices[i] = rows->indices[same];
+			rows->changed[i] = rows->changed[same];
+			continue;
+		}
 		rows->indices[i] = nt_arena_alloc(arena, mesh->corner_count, sizeof(uint32_t));
 		if (!rows->indices[i] || !merge_mesh(m, mesh, rows->group_of[i], rows->indices[i]))
 			return false;

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "io/gltf_draco.h"
 
 bool nt_gltf_is_solved(const nt_mesh *mesh)
 {
@@ -67,14 +68,14 @@ static bool same_bytes(nt_gltf_accessor a, nt_gltf_accessor b)
 	return compare_accessors(&a, &b) == 0;
 }
 
-static bool find_canonical(nt_gltf_sharing *sharing, nt_gltf *document)
+bool nt_gltf_find_canonical(nt_gltf *document, uint32_t *canonical, size_t accessor_count)
 {
-	nt_gltf_accessor *list = nt_alloc(sharing->accessor_count, sizeof *list);
+	nt_gltf_accessor *list = nt_alloc(accessor_count, sizeof *list);
 	if (!list)
 		return false;
 	size_t count = 0;
-	for (uint32_t i = 0; i < sharing->accessor_count; i++) {
-		sharing->canonical[i] = i;
+	for (uint32_t i = 0; i < accessor_count; i++) {
+		canonical[i] = i;
 		nt_gltf_accessor accessor;
 		if (nt_gltf_get_accessor(document, i, "", &accessor, NULL) == NMTAN_OK &&
 			accessor.view != NT_NONE && !accessor.sparse_count)
@@ -84,7 +85,7 @@ static bool find_canonical(nt_gltf_sharing *sharing, nt_gltf *document)
 		qsort(list, count, sizeof *list, compare_accessors);
 	for (size_t i = 1; i < count; i++)
 		if (same_bytes(list[i], list[i - 1]))
-			sharing->canonical[list[i].index] = sharing->canonical[list[i - 1].index];
+			canonical[list[i].index] = canonical[list[i - 1].index];
 	free(list);
 	return true;
 }
@@ -187,6 +188,7 @@ nmtan_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, c
 		.canonical = nt_arena_alloc(arena, accessor_count, sizeof(uint32_t)),
 		.foreign = nt_arena_alloc(arena, accessor_count, sizeof(bool)),
 		.index_users = nt_arena_alloc(arena, accessor_count, sizeof(uint32_t)),
+		.block_users = nt_arena_alloc(arena, document->view_count, sizeof(uint32_t)),
 		.order = nt_arena_alloc(arena, scene->mesh_count, sizeof(uint32_t)),
 		.component = nt_arena_alloc(arena, scene->mesh_count, sizeof(uint32_t)),
 		.first = nt_arena_alloc(arena, scene->mesh_count + 1, sizeof(uint32_t)),
@@ -194,14 +196,15 @@ nmtan_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, c
 	joining j = {.sharing = sharing, .parent = nt_alloc(scene->mesh_count, sizeof(uint32_t)),
 		.first_user = nt_alloc(accessor_count, sizeof(uint32_t))};
 	const bool allocated = sharing->canonical && sharing->foreign && sharing->index_users &&
-		sharing->order && sharing->component && sharing->first && j.parent && j.first_user;
-	if (!allocated || !find_canonical(sharing, document)) {
+		sharing->block_users && sharing->order && sharing->component && sharing->first && j.parent && j.first_user;
+	if (!allocated || !nt_gltf_find_canonical(document, sharing->canonical, accessor_count)) {
 		free(j.parent);
 		free(j.first_user);
 		return nt_fail_memory(error);
 	}
 	memset(sharing->foreign, 0, accessor_count * sizeof *sharing->foreign);
 	memset(sharing->index_users, 0, accessor_count * sizeof *sharing->index_users);
+	memset(sharing->block_users, 0, document->view_count * sizeof *sharing->block_users);
 	memset(j.first_user, 0xFF, accessor_count * sizeof *j.first_user);
 	find_foreign(sharing, document);
 	for (uint32_t i = 0; i < scene->mesh_count; i++)
@@ -210,7 +213,10 @@ nmtan_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, c
 		const nt_json_value *primitive =
 			nt_gltf_primitive_of(document, &scene->meshes[j.mesh]);
 		nt_gltf_visit_attributes(primitive, accessor_count, join_user, &j);
-		uint64_t indices;
+		uint64_t indices, view;
+		if (nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(primitive), "bufferView"), &view) &&
+			view < document->view_count)
+			sharing->block_users[view]++;
 		if (nt_json_get_uint64(nt_json_find(primitive, "indices"), &indices) &&
 			indices < accessor_count) {
 			sharing->foreign[sharing->canonical[indices]] = true;

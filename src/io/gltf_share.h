@@ -4,7 +4,7 @@
  *
  * Primitives that share an attribute accessor share its rows, so their vertices can only be split
  * together: they form a component. Primitives of a component with the same positions, normals and texture
- * coordinates form a group and share one TANGENT accessor.
+ * coordinates (as texture transforms turn them) form a group and share one TANGENT accessor.
  */
 #ifndef NT_IO_GLTF_SHARE_H
 #define NT_IO_GLTF_SHARE_H
@@ -17,6 +17,9 @@ typedef nmtan_status (*nt_gltf_visit)(void *context, nt_json_value *attributes, 
 nmtan_status nt_gltf_visit_attributes(const nt_json_value *primitive, size_t accessor_count,
 	nt_gltf_visit visit, void *context);
 
+/* Fills canonical [accessor_count]: the first accessor over the same bytes, for each. False: out of memory. */
+bool nt_gltf_find_canonical(nt_gltf *document, uint32_t *canonical, size_t accessor_count);
+
 /* The primitive of a mesh in the document. */
 nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh);
 
@@ -25,6 +28,7 @@ typedef struct nt_gltf_sharing {
 	uint32_t *canonical;      /* [accessor_count] the first accessor over the same bytes */
 	bool *foreign;            /* [accessor_count] used by something else than attributes */
 	uint32_t *index_users;    /* [accessor_count] primitives that have it as indices */
+	uint32_t *block_users;    /* [view_count] primitives that are compressed in it */
 	uint32_t *order;          /* [mesh count] meshes, those of one component together */
 	uint32_t *component;      /* [mesh count] by mesh: number of the component */
 	size_t component_count;

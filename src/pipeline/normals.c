@@ -145,6 +145,7 @@ static nmtan_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job, size_
 	mesh->vertex_lacks = NULL;
 	mesh->tangents = NULL; /* authored for other normals */
 	mesh->normals_made = true;
+	mesh->made_normal_corners = made;
 	mesh->has_normals = true;
 	uint32_t *indices = job->indices, *sources = job->sources;
 	float *normals = job->normals;

@@ -131,6 +131,11 @@ static nmtan_status load_meshes(run *r)
 {
 	begin_stage(r, NT_STAGE_DECODE);
 	const bool all = needs_all(r);
+	if (r->reader->find_same) {
+		const nmtan_status status = r->reader->find_same(&r->scene, &r->read_options, r->error);
+		if (status)
+			return status;
+	}
 	for (size_t i = 0; r->reader->load && i < r->scene.mesh_count; i++) {
 		nt_mesh *mesh = &r->scene.meshes[i];
 		const bool loadable = mesh->triangles && mesh->has_positions;
@@ -153,6 +158,13 @@ static nmtan_status make_normals(run *r)
 		nt_mesh *mesh = &r->scene.meshes[i];
 		if (!is_wanted(mesh))
 			continue;
+		if (mesh->same_as) {
+			nt_mesh_share(mesh);
+			if (mesh->normals_made)
+				nt_finding_add(&r->scene.findings, NT_CODE_NORMALS_MADE, &mesh->place,
+					mesh->made_normal_corners, NULL);
+			continue;
+		}
 		const nmtan_status status =
 			nt_stage_normals(&r->scene, mesh, r->settings->normals, r->error);
 		if (status)

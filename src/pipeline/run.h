@@ -66,6 +66,8 @@ typedef struct nt_settings {
 typedef struct nt_summary {
 	size_t mesh_count;       /* meshes (glTF: primitives) in the input */
 	size_t solved_count;     /* of them, those that got tangents */
+	size_t same_count;       /* of the solved ones, those that took the result of another: they have the
+	                            same geometry */
 	size_t skipped[NT_DECISION_COUNT]; /* of them, by reason */
 	size_t triangle_count;   /* of the solved ones, after triangulation */
 	size_t vertex_count;     /* of the solved ones, before */

@@ -4,7 +4,7 @@
  *
  * A mesh large enough to occupy all threads is solved alone; smaller ones are solved side by side, each by
  * one thread with a workspace of its own. Each mesh's result depends on that mesh only, so the order does
- * not show.
+ * not show. Meshes with the same geometry as an earlier one take its result.
  */
 #include "pipeline/stages.h"
 #include "pipeline/morphs.h"
@@ -232,6 +232,12 @@ static void add_counts(nt_summary *summary, const nt_mesh *mesh)
 	sum->repaired_sign += c->repaired_sign;
 }
 
+static bool is_wanted(const nt_mesh *mesh)
+{
+	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR;
+}
+
+/* What was solved is kept, shared with the meshes that have the same geometry, and counted for each. */
 static nmtan_status finish(const tangent_job *job, nt_summary *summary, nt_error *error)
 {
 	bool kept = true;
@@ -246,6 +252,15 @@ static nmtan_status finish(const tangent_job *job, nt_summary *summary, nt_error
 				nmtan_status_text(job->statuses[i]));
 			error->place = mesh->place;
 			return job->statuses[i];
+		}
+	}
+	for (size_t i = 0; i < job->scene->mesh_count; i++) {
+		nt_mesh *mesh = &job->scene->meshes[i];
+		if (!is_wanted(mesh))
+			continue;
+		if (mesh->same_as) {
+			nt_mesh_share(mesh);
+			summary->same_count++;
 		}
 		add_findings(&job->scene->findings, mesh);
 		add_counts(summary, mesh);
@@ -265,8 +280,7 @@ nmtan_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_
 		status = nt_fail_memory(error);
 	} else {
 		for (size_t i = 0; i < scene->mesh_count; i++)
-			if (scene->meshes[i].decision == NT_DECISION_SOLVE ||
-				scene->meshes[i].decision == NT_DECISION_REPAIR)
+			if (is_wanted(&scene->meshes[i]) && !scene->meshes[i].same_as)
 				job.meshes[job.count++] = &scene->meshes[i];
 		solve_large(&job);
 		summary->seconds[NT_STAGE_WELD] += job.timing.weld;

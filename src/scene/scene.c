@@ -22,6 +22,31 @@ void nt_scene_free(nt_scene *scene)
 	memset(scene, 0, sizeof *scene);
 }
 
+void nt_mesh_share(nt_mesh *mesh)
+{
+	const nt_mesh own = *mesh;
+	*mesh = *own.same_as;
+	/* all but geometry and results: what it is called, what decides, and its material */
+	mesh->name = own.name;
+	mesh->place = own.place;
+	mesh->gltf_mesh = own.gltf_mesh;
+	mesh->gltf_primitive = own.gltf_primitive;
+	mesh->slots = own.slots;
+	mesh->triangles = own.triangles;
+	mesh->reachable = own.reachable;
+	mesh->unlit = own.unlit;
+	mesh->texcoord_set = own.texcoord_set;
+	mesh->texcoord_conflict = own.texcoord_conflict;
+	mesh->texcoord_other_set = own.texcoord_other_set;
+	mesh->targets_without_tangents = own.targets_without_tangents;
+	mesh->decision = own.decision;
+	mesh->same_as = own.same_as;
+	mesh->primitives = own.primitives;
+	mesh->primitive_count = own.primitive_count;
+	if (mesh->primitive_count == 1)
+		mesh->primitives[0].face_count = mesh->face_count;
+}
+
 nmtan_mesh nt_mesh_view(const nt_mesh *mesh)
 {
 	return (nmtan_mesh){

@@ -107,6 +107,8 @@ typedef struct nt_mesh {
 	uint32_t texcoord_other_set;
 	uint32_t targets_without_tangents; /* morph targets that move it and have no TANGENT */
 	nt_decision decision;
+	const struct nt_mesh *same_as; /* an earlier mesh with the same geometry, which is loaded and solved once;
+	                                  NULL: none. That one has none */
 
 	/* geometry: filled by load(). Arrays belong to the scene's arena or point into the input. */
 	size_t vertex_count;
@@ -136,6 +138,7 @@ typedef struct nt_mesh {
 	size_t source_vertex_count;
 	uint32_t *vertex_sources; /* [vertex_count - source_vertex_count] */
 	bool normals_made;
+	size_t made_normal_corners; /* corners whose normals were made */
 
 	nt_morph *morphs;         /* [morph_count] targets that move positions or normals; filled by load() */
 	size_t morph_count;
@@ -190,6 +193,10 @@ void nt_scene_init(nt_scene *scene, const char *path);
 
 /* Frees everything; the scene is empty afterwards. */
 void nt_scene_free(nt_scene *scene);
+
+/* Gives a mesh with same_as the geometry and the results that the other has by now. They are shared, not
+ * copied. */
+void nt_mesh_share(nt_mesh *mesh);
 
 /* The public view of a loaded mesh, for nmtan_tangents() and nmtan_split(). */
 nmtan_mesh nt_mesh_view(const nt_mesh *mesh);

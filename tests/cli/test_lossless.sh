@@ -16,7 +16,7 @@ for input in "$WORK"/layouts/*.gl*; do
 	mkdir same other
 	case $name in
 	# solved in several pieces, from rounded numbers, or other triangles: their tangents are their own
-	two_ranges* | twin* | quantized* | strip* | moved*) reference= ;;
+	two_ranges* | twin* | instanced* | quantized* | strip* | moved*) reference= ;;
 	*) reference=--tangents=reference.gltf ;;
 	esac
 	run "$WORK/layouts/plain.gltf" reference.gltf
@@ -47,6 +47,63 @@ for input in plain.gltf sequential_u8.gltf interleaved_u32.gltf; do
 			wrong "$input: target $target"
 	done
 done
+
+# alone.gltf: the file of instanced primitives with these of them.
+only_primitives() {
+	cp "$WORK/layouts/instanced_turned 0.bin" .
+	node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1]));
+		g.meshes[0].primitives = process.argv.slice(2).map((i) => g.meshes[0].primitives[i]);
+		fs.writeFileSync("alone.gltf", JSON.stringify(g))' "$WORK/layouts/instanced_turned.gltf" "$@"
+}
+
+scene "primitives with the same geometry are solved once and share their tangents"
+run --timing "$WORK/layouts/plain.gltf" one.glb
+exits 0
+says_not "not solved again"
+run --timing "$WORK/layouts/instanced.gltf" three.glb
+exits 0
+says "3 primitives (2 the same as others)"
+says "not solved again: 2 primitives"
+p='g.meshes[0].primitives'
+is "$(gltf three.glb "new Set($p.map((p) => p.attributes.TANGENT)).size")" 1
+is "$(gltf three.glb "new Set($p.map((p) => p.indices)).size")" 1
+is "$(gltf three.glb "new Set($p.map((p) => p.targets[1].TANGENT)).size")" 1
+is "$(gltf three.glb "rows($p[2].attributes.TANGENT)")" "$(gltf one.glb "rows($p[0].attributes.TANGENT)")"
+# not a byte more than for one of them
+is "$(gltf three.glb g.buffers[0].byteLength)" "$(gltf one.glb g.buffers[0].byteLength)"
+# tangents that differ at every vertex have an accessor of their own; the rows are not copied for them
+run --timing "$WORK/layouts/instanced_turned.gltf" four.glb
+exits 0
+says "not solved again: 2 primitives"
+is "$(gltf four.glb "new Set($p.map((p) => p.attributes.TANGENT)).size")" 2
+is "$(gltf four.glb "new Set($p.map((p) => p.attributes.POSITION)).size")" 2
+is "$(gltf four.glb "g.accessors[$p[3].attributes.POSITION].count")" "$(gltf one.glb "g.accessors[$p[0].attributes.POSITION].count")"
+# one at a time, by an independent split of the file
+for primitive in 0 3; do
+	only_primitives $primitive
+	run alone.gltf alone.glb
+	exits 0
+	corners='rows(P.indices).map(([i]) => rows(P.attributes.TANGENT)[i])'
+	is "$(gltf four.glb "${corners//P./$p[$primitive].}" | md5sum)" "$(gltf alone.glb "${corners//P./$p[0].}" | md5sum)"
+done
+
+scene "a compressed primitive that is there twice stays compressed, in one block"
+only_primitives 0 1
+run --draco=sequential alone.gltf packed.glb
+exits 0
+one_block='new Set(g.meshes[0].primitives.map((p) => p.extensions.KHR_draco_mesh_compression.bufferView)).size'
+is "$(gltf packed.glb "$one_block")" 1
+valid packed.glb
+run --existing=replace packed.glb again.glb
+exits 0
+says "2 primitives (1 the same as others)"
+is "$(gltf again.glb "$one_block")" 1
+run --existing=replace --draco=off again.glb plain.glb
+exits 0
+run alone.gltf direct.glb
+positions='rows(g.meshes[0].primitives[1].attributes.POSITION).length'
+is "$(gltf plain.glb "$positions")" "$(gltf direct.glb "$positions")"
+valid plain.glb
 
 scene "a file in which nothing needs tangents is copied byte by byte"
 for input in interleaved_gap.glb interleaved_u32.gltf; do

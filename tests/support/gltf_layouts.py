@@ -250,6 +250,28 @@ d.json['materials'].append({'name': 'smooth'})
 d.primitive({'POSITION': twins['POSITION'], 'NORMAL': shared['NORMAL']}, d.indices(triangles(0, 2), USHORT), material=1)
 d.write('twin_accessors.gltf')
 
+# one primitive three times: twice with the same accessors, once with others over the same bytes. A fourth is
+# turned by its texture transform, and has a TANGENT of its own over the same rows.
+d = Document()
+shared = d.separate(attributes)
+moves = with_targets(d, targets)
+whole = d.indices(triangles(), USHORT)
+again = {}
+for n, a in shared.items():
+    d.json['accessors'].append(dict(d.json['accessors'][a]))
+    again[n] = len(d.json['accessors']) - 1
+d.json['materials'].append({'name': 'bumpy too', 'normalTexture': {'index': 0, 'scale': 0.5}})
+d.primitive(dict(shared), whole, targets=[dict(t) for t in moves])
+d.primitive(dict(shared), whole, targets=[dict(t) for t in moves], material=1)
+d.primitive(again, whole, targets=[dict(t) for t in moves])
+d.write('instanced.gltf')
+d.json['buffers'] = []
+d.json['extensionsUsed'] = ['KHR_texture_transform']
+d.json['materials'].append({'name': 'turned', 'normalTexture': {
+    'index': 0, 'extensions': {'KHR_texture_transform': {'rotation': 0.5}}}})
+d.primitive(dict(shared), whole, targets=[dict(t) for t in moves], material=2)
+d.write('instanced_turned.gltf')
+
 # points without indices share the positions: these must keep their count
 d = Document()
 shared = d.separate(attributes)
