@@ -4,11 +4,13 @@
  * files themselves too. The tests of hostile.sh.
  *
  * Each file is worked on by child processes, a few dozen runs each, so that a crash, a leak (LeakSanitizer
- * speaks when a child ends), a run of more than ten
- * seconds of the processor, or more than 2 GB of memory costs one child and
- * names its run. The opens and renames of the tool are watched by way of the linker's --wrap: what lies
- * outside the input's folder must not be opened, and nothing outside the output's be made; a failed run
- * leaves nothing. Files that come as far as geometry when they are whole get nine of ten mutations.
+ * speaks when a child ends), a run of more than ten seconds of the processor (however long others keep it
+ * waiting), or more than 2 GB of memory costs one child and names its run. Without a sanitizer the 2 GB are
+ * address space (RLIMIT_AS); AddressSanitizer reserves terabytes of that, so under it the child's peak of
+ * memory is compared afterwards. The opens and renames of the tool are watched by way of the linker's
+ * --wrap: what lies outside the input's folder must not be opened, and nothing outside the output's be made;
+ * a failed run leaves nothing, and has a place and a sentence. Files that come as far as geometry when they
+ * are whole get nine of ten mutations.
  */
 #include <dirent.h>
 #include <fcntl.h>
@@ -27,12 +29,12 @@
 #include "mutate.h"
 #include "pipeline/run.h"
 
-enum { GROUP = 25, SECONDS = 10, MEGABYTES = 2048, EXIT_WRONG = 3 };
+enum { GROUP = 25, SECONDS = 10, STUCK_SECONDS = 600, MEGABYTES = 2048, EXIT_WRONG = 3 };
 
 /* What children and their parent share. */
 static struct {
 	size_t run;      /* under way, of the file's */
-	size_t runs, written, refused, geometry, opened;
+	size_t runs, written, refused, geometry, opened, memory;
 	double slowest;  /* seconds */
 	long largest;    /* KB */
 } *shared;
@@ -126,12 +128,12 @@ static size_t empty_folder(const char *path)
 	return count;
 }
 
-/* Seconds of the processor, since others may be using it; of the clock, six times as many. */
-static void set_limits(unsigned seconds)
+/* Seconds of the processor, since others may be using it; the clock ends only what waits for ever. */
+static void set_limits(unsigned seconds, unsigned stuck)
 {
 	const struct itimerval limit = {.it_value.tv_sec = seconds};
 	setitimer(ITIMER_PROF, &limit, NULL);
-	alarm(6 * seconds);
+	alarm(stuck);
 }
 
 static double cpu_seconds(void)
@@ -157,14 +159,21 @@ static bool run_input(uint32_t *chance)
 	static const nt_format formats[] = {NT_FORMAT_GLB, NT_FORMAT_GLB, NT_FORMAT_GLTF, NT_FORMAT_PLY};
 	static const char *const names[] = {"o.glb", "o.glb", "o.gltf", "o.ply"};
 	static const nt_images images[] = {NT_IMAGES_DEFAULT, NT_IMAGES_LINK, NT_IMAGES_EMBED, NT_IMAGES_COPY};
+	static const nt_draco_choice draco[] = {NT_DRACO_OFF, NT_DRACO_OFF, NT_DRACO_KEEP, NT_DRACO_KEEP,
+		NT_DRACO_AS_SEQUENTIAL, NT_DRACO_AS_EDGEBREAKER};
 	const nt_report_options report = {.threads = 1};
 	const uint32_t form = mutate_random(chance, 4);
 	const bool check = mutate_random(chance, 8) == 0;
+	const bool patched = strstr(input, ".gl") && formats[form] != NT_FORMAT_PLY && !check;
+	const bool integers = mutate_random(chance, 6) == 0 && formats[form] != NT_FORMAT_PLY;
 	const nt_settings settings = {.texcoord_set = -1, .only = mutate_random(chance, 4) ? NT_ONLY_ALL : 0,
 		.existing = mutate_random(chance, 2) ? NT_EXISTING_REPLACE : 0, .threads = 1,
 		.normals = mutate_random(chance, 3) ? NT_NORMALS_FLAT : NT_NORMALS_AUTO,
 		.images = images[mutate_random(chance, 4)], .embed = mutate_random(chance, 4) == 0,
-		.draco = mutate_random(chance, 2) ? NT_DRACO_OFF : NT_DRACO_KEEP,
+		.buffers = (nt_buffers)mutate_random(chance, 3),
+		.draco = draco[mutate_random(chance, patched ? 6 : 4)], .morphs = (nt_morph_choice)mutate_random(chance, 3),
+		.precision = integers ? (nt_precision)(1 + mutate_random(chance, 2)) : NT_PRECISION_FLOAT,
+		.method = (nmtan_method)(mutate_random(chance, 4) ? 0 : mutate_random(chance, 4)),
 		.bitangents = mutate_random(chance, 8) == 0, .output_format = check ? 0 : formats[form],
 		.report = mutate_random(chance, 4) && !check ? NULL : &report, .check = check};
 	char output[200];
@@ -181,8 +190,9 @@ static bool run_input(uint32_t *chance)
 	if ((made == 0) != (status != NMTAN_OK || check))
 		wrong("status %d and %zu files", (int)status, made);
 	if (status && getenv("NT_VERBOSE"))
-		fprintf(stderr, "%s:%zu %s: %s\n", error.place.file, error.place.line, error.place.pointer,
-			error.message);
+		fprintf(stderr, "%d %s:%zu:%lld %s: %s\n", (int)status, error.place.file, error.place.line,
+			(long long)error.place.offset, error.place.pointer, error.message);
+	shared->memory += status == NMTAN_ERROR_MEMORY;
 	shared->written += status == NMTAN_OK;
 	shared->refused += status != NMTAN_OK;
 	return met;
@@ -205,9 +215,9 @@ static void run_damaged(const char *bytes, char *copy, size_t size, size_t numbe
 			size = mutate(copy, size, &chance);
 	store(copy, size);
 	const double begin = cpu_seconds();
-	set_limits(SECONDS);
+	set_limits(SECONDS, STUCK_SECONDS);
 	const bool met = run_input(&chance);
-	set_limits(0);
+	set_limits(0, 0);
 	const double seconds = cpu_seconds() - begin;
 	if (seconds > shared->slowest)
 		shared->slowest = seconds;
