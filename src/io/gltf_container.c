@@ -241,6 +241,30 @@ static nmtan_status write_companion(nt_gltf_container *c, uint32_t index, bool f
 			nt_layout_write(&c->patcher->layout, index, input, sink, c->error);
 }
 
+/* A .glb ends at 4 GiB. Said before data URIs are made of buffers that cannot fit, and before a file is begun; the
+ * JSON's own length is added when it is known. */
+static nmtan_status check_room(nt_gltf_container *c)
+{
+	uint64_t sum = 0;
+	for (uint32_t i = 0; c->to_glb && i < c->patcher->layout.buffer_count; i++) {
+		const uint64_t length = c->patcher->layout.buffers[i].new_length;
+		const fate what = choose_fate(c, i);
+		if (what != FATE_BIN && what != FATE_DATA)
+			continue;
+		/* no sum of lengths below 2^32 wraps */
+		if (length <= UINT32_MAX)
+			sum += what == FATE_DATA ? (length + 2) / 3 * 4 : length;
+		if (length <= UINT32_MAX && sum <= UINT32_MAX)
+			continue;
+		char pointer[NT_GLTF_POINTER];
+		snprintf(pointer, sizeof pointer, "/buffers/%u", i);
+		return nt_fail_pointer(c->error, NMTAN_ERROR_UNSUPPORTED, pointer,
+			"with this buffer of %llu bytes the output would take 4 GiB or more, which GLB cannot "
+			"hold; write .gltf", (unsigned long long)length);
+	}
+	return NMTAN_OK;
+}
+
 /* What will be written must be open before its uri changes. */
 static nmtan_status open_source(nt_gltf_container *c, uint32_t index, fate what)
 {
@@ -356,6 +380,8 @@ nmtan_status nt_gltf_write_container(nt_gltf_patcher *patcher, nt_output *output
 		status = nt_gltf_move_images(&c);
 	if (!status)
 		status = nt_layout_finish(&patcher->layout, c.error);
+	if (!status)
+		status = check_room(&c);
 	if (!status)
 		status = settle_buffers(&c, &input, &bin);
 	if (!status)

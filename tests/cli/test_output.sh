@@ -31,6 +31,17 @@ exits 2
 same a.glb "$data/plates.glb"
 only a.glb hard.glb soft.glb
 
+scene "a buffer that no .glb can hold is refused by name before anything is made"
+sed '/"plates.bin"/{n;s/[0-9][0-9]*/4400000000/;}' "$data/plates.gltf" >plates.gltf
+cp "$data/plates.bin" . && truncate -s 4400000000 plates.bin
+mkdir out
+run plates.gltf out/plates.glb
+exits 5
+says "plates.gltf: /buffers/0: "
+says "4 GiB"
+only plates.gltf plates.bin out
+rmdir out || wrong "something was left behind"
+
 scene "a companion that is a file of the input is refused by name"
 cp "$data/plates.gltf" "$data/plates.bin" "$data/bumps.png" .
 mkdir out && mv plates.gltf other.gltf
