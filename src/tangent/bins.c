@@ -55,14 +55,13 @@ unsigned nt_bins_bits(size_t vertex_count)
 }
 
 nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges, size_t vertex_count,
-	unsigned vertex_bits, nt_room *room, nt_bins *bins)
+	unsigned vertex_bits, nt_record *sums, nt_scratch *scratch, nt_bins *bins)
 {
 	const size_t count = (vertex_count + ((size_t)1 << vertex_bits) - 1) >> vertex_bits;
 	const size_t corners = 3 * ranges->bounds[ranges->count];
-	nt_scratch *scratch = room->scratch;
 	nt_bins b = {.vertex_bits = vertex_bits, .ranges = ranges->count, .count = count, .vertex_count = vertex_count};
-	b.entries = nt_room_alloc(room, corners, sizeof *b.entries);
-	b.sums = nt_room_alloc(room, corners, sizeof *b.sums);
+	b.sums = sums ? sums : nt_scratch_alloc(scratch, corners, sizeof *b.sums);
+	b.entries = nt_scratch_alloc(scratch, corners, sizeof *b.entries);
 	b.begins = nt_scratch_alloc(scratch, count, ranges->count * sizeof *b.begins);
 	b.seen = nt_scratch_alloc(scratch, ranges->count, sizeof *b.seen);
 	b.cursors = nt_scratch_alloc(scratch, count, ranges->count * sizeof *b.cursors);

@@ -46,11 +46,12 @@ unsigned nt_bins_bits(size_t vertex_count);
  *
  *   ids           [3 * triangle count] vertices of the triangles
  *   vertex_bits   log2 of the vertices of a bin: 4, a block of the adjacency, to NT_BINNED_BITS
+ *   sums          [3 * triangle count] lent until the bins are added up; NULL: taken from the scratch
  *
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */
 nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges, size_t vertex_count,
-	unsigned vertex_bits, nt_room *room, nt_bins *bins);
+	unsigned vertex_bits, nt_record *sums, nt_scratch *scratch, nt_bins *bins);
 
 /* Memory for the adjacency of one bin, whichever it is. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
 nmtan_status nt_bins_adjacency(const nt_bins *bins, nt_scratch *scratch, nt_adjacency *adjacency);

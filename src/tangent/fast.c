@@ -86,17 +86,19 @@ static nmtan_status cut_faces(nt_fast *fast, const uint32_t *corner_ids)
 	return NMTAN_OK;
 }
 
-/* Whether following triangles tend to have vertices that lie far apart, by a sample. */
-static bool is_scattered(const nt_fast *fast)
+/* Whether faces that follow each other tend to have vertices that lie far apart, by a sample of corners. */
+static bool is_scattered(const uint32_t *vertices, size_t corner_count, size_t vertex_count)
 {
 	enum { SAMPLES = 256, FAR = 4096 };
-	const size_t step = fast->triangle_count / SAMPLES;
+	const size_t step = corner_count / SAMPLES;
 	size_t far = 0;
-	for (size_t i = 0; step > 1 && i < SAMPLES; i++) {
-		const uint32_t a = fast->ids[3 * i * step], b = fast->ids[3 * i * step + 3];
+	if (vertex_count < NT_BINS_LEAST || step < 6)
+		return false;
+	for (size_t i = 0; i < SAMPLES; i++) {
+		const uint32_t a = vertices[i * step], b = vertices[i * step + 3];
 		far += (a > b ? a - b : b - a) > FAR;
 	}
-	return far > SAMPLES / 8 && fast->vertex_count >= NT_BINS_LEAST;
+	return far > SAMPLES / 8;
 }
 
 static nmtan_status make_triangles(nt_fast *fast, const nt_weld *weld)
@@ -402,11 +404,22 @@ static void write_special(nt_fast *fast, size_t t)
 	}
 }
 
+/* The records of a later triangle of a scattered mesh; the last ones of the range ask twice. */
+static inline void ask_records(const nt_fast *fast, size_t t, size_t end)
+{
+	const size_t later = t + WRITE_AHEAD < end ? t + WRITE_AHEAD : end - 1;
+	const nt_record *records = fast->records[fast->flags[later] & NT_TRIANGLE_ORIENT];
+	for (size_t i = 3 * later; records && i < 3 * later + 3; i++)
+		__builtin_prefetch(&records[fast->ids[i]]);
+}
+
 /* Every corner of [begin, end) gets its vertex's result; in a sparse solve those of suspects only. */
 static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 {
 	for (size_t t = begin; t < end; t++) {
 		uint8_t *flags = &fast->flags[t];
+		if (fast->scattered)
+			ask_records(fast, t, end);
 		if (*flags & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
 			write_special(fast, t);
 			continue;
@@ -431,11 +444,10 @@ static void write_plain_triangles(nt_fast *fast, size_t begin, size_t end)
 	uint8_t *flags = fast->flags;
 	const nt_record *records[2] = {fast->records[0], fast->records[1]};
 	float *out = fast->solve->tangents;
-	const size_t ahead = fast->scattered ? 3 * WRITE_AHEAD : 0, last = 3 * end - 1;
+	const bool scattered = fast->scattered;
 	for (size_t t = begin; t < end; t++) {
-		for (size_t i = 3 * t + ahead; ahead && i < 3 * t + ahead + 3; i++)
-			__builtin_prefetch(&records[flags[t + WRITE_AHEAD < end ? t + WRITE_AHEAD : t] & NT_TRIANGLE_ORIENT]
-					    [ids[i < last ? i : last]]);
+		if (scattered)
+			ask_records(fast, t, end);
 		if (flags[t] & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
 			write_special(fast, t);
 			continue;
@@ -555,30 +567,43 @@ static void vouch(const nt_fast *fast)
 		.suspect = NT_TRIANGLE_SUSPECT};
 }
 
+/* 3 */
+static nmtan_status make_places(nt_fast *fast, unsigned bin_bits, nt_record *sums, nt_room *room)
+{
+	const size_t corners = 3 * fast->triangle_count;
+	fast->scattered = bin_bits || is_scattered(fast->ids, corners, fast->vertex_count);
+	if (!fast->scattered || fast->wants_more)
+		return nt_adjacency_make(fast->ids, &fast->ranges, fast->vertex_count, room, &fast->adjacency);
+	if (!bin_bits)
+		bin_bits = nt_bins_bits(fast->vertex_count);
+	return nt_bins_make(fast->ids, &fast->ranges, fast->vertex_count, bin_bits, sums, room->scratch,
+		&fast->bins);
+}
+
 /* 1 to 4 */
 static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ranges, unsigned bin_bits)
 {
 	const nt_solve *solve = fast->solve;
-	/* a sparse output is not filled, so that its pages need not exist */
+	const nmtan_mesh *mesh = solve->mesh;
+	/* the output lends its bytes, to the sums of binned corners if there are going to be any: rows at
+	 * random are better off in the large pages of the scratch. A sparse output is not filled, so that
+	 * its pages need not exist. */
+	const bool lends = !fast->sparse;
+	const bool lends_sums = lends && !fast->wants_more && solve->corner_count == 3 * fast->triangle_count &&
+		mesh->indices && (bin_bits || is_scattered(mesh->indices, solve->corner_count, mesh->vertex_count));
 	nt_room room = nt_room_over(solve->tangents,
-		fast->sparse ? 0 : solve->corner_count * 4 * sizeof(float), solve->scratch);
+		lends && !lends_sums ? solve->corner_count * 4 * sizeof(float) : 0, solve->scratch);
 	nt_weld weld;
 	const double begin = nt_seconds();
-	nmtan_status status = nt_weld_mesh(solve->mesh, solve->corner_count, &room, &weld);
+	nmtan_status status = nt_weld_mesh(mesh, solve->corner_count, &room, &weld);
 	if (solve->timing)
 		solve->timing->weld += nt_seconds() - begin;
 	if (!status)
 		status = make_triangles(fast, &weld);
 	if (!status)
 		status = make_ranges(fast, ranges);
-	fast->scattered = !status && (bin_bits || is_scattered(fast));
-	if (!bin_bits)
-		bin_bits = nt_bins_bits(fast->vertex_count);
-	if (!status && fast->scattered && !fast->wants_more)
-		status = nt_bins_make(fast->ids, &fast->ranges, fast->vertex_count, bin_bits, &room, &fast->bins);
-	else if (!status)
-		status = nt_adjacency_make(fast->ids, &fast->ranges, fast->vertex_count, &room,
-			&fast->adjacency);
+	if (!status)
+		status = make_places(fast, bin_bits, lends_sums ? (nt_record *)solve->tangents : NULL, &room);
 	return status ? status : accumulate(fast, kernels);
 }
 

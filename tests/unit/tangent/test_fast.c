@@ -165,7 +165,7 @@ static void scattered_meshes_are_byte_identical(void **state)
 	enum { SIDE = 300, VERTICES = SIDE * SIDE, FACES = 2 * (SIDE - 1) * (SIDE - 1) };
 	float *p = malloc(VERTICES * 12), *n = malloc(VERTICES * 12), *t = malloc(VERTICES * 8);
 	unsigned *indices = malloc(FACES * 12);
-	assert_true(VERTICES >= NT_BINS_LEAST);
+	assert_in_range(VERTICES, NT_BINS_LEAST, SIZE_MAX);
 	for (size_t i = 0; i < VERTICES; i++) {
 		const size_t v = i * 39119 % VERTICES;
 		const float x = (float)(i % SIDE), y = (float)(i / SIDE);
