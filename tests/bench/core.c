@@ -4,6 +4,10 @@
  * people. Runs of all columns are interleaved, so that a busy machine hurts all of them; best and median.
  * Output and workspace are warm. One thread is timed by the processor's clock for the thread, more by the wall's.
  *
+ * The scalar definition is there to be compared, takes some 20 times as long, and on hubs its time grows
+ * with the square of their size. Its column is measured once, on smaller meshes of the family, whose number of
+ * triangles stands beside it.
+ *
  * With FOLDER the meshes are also written there as FOLDER/NAME.mesh, for the peers that run_core.sh knows.
  */
 #include "families.h"
@@ -15,7 +19,10 @@
 #include "base/cpu.h"
 #include "base/parallel.h"
 
-enum { RUNS = 3, SMALL_SIZES = 3 };
+enum { RUNS = 3, MOST_COLUMNS = 16, SMALL_COUNT = 2000 };
+
+/* Triangles for the definition. */
+enum { DEFINITION_SIZE = 100000, DEFINITION_HUB = 2000 };
 
 typedef struct column {
 	const char *name;
@@ -55,37 +62,73 @@ static void print_machine(void)
 		nt_thread_count(0));
 }
 
-/* Seconds for one solve; small meshes are repeated until it takes a while. */
-static double time_run(const column *c, const nt_family_mesh *m, nmtan_output *output, nmtan_workspace *workspace)
+/* What a row of the table is timed on: one mesh, or many small ones in turn. */
+typedef struct workload {
+	nt_family_mesh *meshes; /* [count] */
+	size_t count, triangles, most_corners;
+} workload;
+
+static workload make_workload(nt_family family, size_t count, size_t triangles)
+{
+	workload w = {.meshes = calloc(count, sizeof *w.meshes), .count = count};
+	for (size_t i = 0; i < count; i++) {
+		if (!w.meshes || !nt_family_make(family, triangles, &w.meshes[i])) {
+			fprintf(stderr, "core: out of memory\n");
+			exit(1);
+		}
+		w.triangles += w.meshes[i].triangle_count;
+		if (w.meshes[i].corner_count > w.most_corners)
+			w.most_corners = w.meshes[i].corner_count;
+	}
+	return w;
+}
+
+static void free_workload(workload *w)
+{
+	for (size_t i = 0; i < w->count; i++)
+		nt_family_free(&w->meshes[i]);
+	free(w->meshes);
+}
+
+/* Seconds for solving every mesh once; what is small is repeated until it takes a while. */
+static double time_run(const column *c, const workload *w, nmtan_output *output, nmtan_workspace *workspace)
 {
 	const nmtan_options options = {.method = c->method, .repair = NMTAN_REPAIR_OFF, .threads = c->threads,
 		.path = c->path, .isa = c->isa, .workspace = workspace};
-	const size_t repeat = m->triangle_count < 100000 ? 400000 / m->triangle_count : 1;
+	const size_t repeat = c->path != NMTAN_PATH_SCALAR && w->triangles < 100000 ? 400000 / w->triangles : 1;
 	const clockid_t clock = c->threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC;
 	const double begin = seconds(clock);
-	for (size_t i = 0; i < repeat; i++)
-		if (nmtan_tangents(&m->mesh, &options, output)) {
+	for (size_t i = 0; i < repeat * w->count; i++)
+		if (nmtan_tangents(&w->meshes[i % w->count].mesh, &options, output)) {
 			fprintf(stderr, "core: solving failed\n");
 			exit(1);
 		}
 	return (seconds(clock) - begin) / (double)repeat;
 }
 
-static void time_mesh(const char *name, const nt_family_mesh *m, const column *columns, size_t count)
+/* One row of the table; `smaller` is what the definition gets. */
+static void time_row(const char *name, const workload *w, const workload *smaller, const column *columns,
+	size_t count)
 {
-	double times[16][RUNS];
-	nmtan_output output = {.tangents = calloc(m->corner_count, 4 * sizeof(float))};
+	double times[MOST_COLUMNS][RUNS];
+	const size_t corners = w->most_corners > smaller->most_corners ? w->most_corners : smaller->most_corners;
+	nmtan_output output = {.tangents = calloc(corners, 4 * sizeof(float))};
 	nmtan_workspace *workspace = nmtan_workspace_create(NULL);
 	if (!output.tangents || !workspace)
 		exit(1);
 	for (int run = 0; run < RUNS; run++)
 		for (size_t c = 0; c < count; c++)
 			if (run < columns[c].runs)
-				times[c][run] = time_run(&columns[c], m, &output, workspace);
-	printf("%-20s %8zu", name, m->triangle_count);
+				times[c][run] = time_run(&columns[c],
+					columns[c].path == NMTAN_PATH_SCALAR ? smaller : w, &output, workspace);
+	printf("%-22s %8zu", name, w->triangles);
 	for (size_t c = 0; c < count; c++) {
 		qsort(times[c], (size_t)columns[c].runs, sizeof(double), compare_doubles);
-		const double million = 1e-6 * (double)m->triangle_count;
+		if (columns[c].path == NMTAN_PATH_SCALAR) {
+			printf(" %6.2f (%7zu)", 1e-6 * (double)smaller->triangles / times[c][0], smaller->triangles);
+			continue;
+		}
+		const double million = 1e-6 * (double)w->triangles;
 		printf(" %6.2f %6.2f", million / times[c][0], million / times[c][columns[c].runs / 2]);
 	}
 	printf("\n");
@@ -115,36 +158,61 @@ static void export_mesh(const char *folder, int family, const nt_family_mesh *m)
 	printf("%s is %s\n", path, nt_family_names[family]);
 }
 
-int main(int count, char **arguments)
+static size_t list_columns(column columns[MOST_COLUMNS])
 {
-	static const size_t sizes[NT_FAMILY_COUNT] = {1000000, 2000000, 2000000, 1000000, 2000000, 1000000, 1000000,
-		1000000, 1000000, 1000000};
-	static const size_t small[SMALL_SIZES] = {200, 2000, 20000};
-	column columns[16] = {{"definition", NMTAN_METHOD_MIKKTSPACE, NMTAN_PATH_SCALAR, NMTAN_ISA_AUTO, 1, 1}};
 	static const char *const sets[] = {"", "baseline", "AVX2", "AVX-512"};
-	size_t n = 1;
+	size_t n = 0;
+	columns[n++] = (column){"definition (size)", NMTAN_METHOD_MIKKTSPACE, NMTAN_PATH_SCALAR, NMTAN_ISA_AUTO, 1, 1};
 	for (nmtan_isa isa = NMTAN_ISA_BASELINE; isa <= NMTAN_ISA_AVX512; isa++)
 		if (nt_cpu_has(isa))
 			columns[n++] = (column){sets[isa], NMTAN_METHOD_MIKKTSPACE, NMTAN_PATH_FAST, isa, 1, RUNS};
 	columns[n++] = (column){"all threads", NMTAN_METHOD_MIKKTSPACE, NMTAN_PATH_FAST, NMTAN_ISA_AUTO,
 		nt_thread_count(0), RUNS};
-	columns[n++] = (column){"area", NMTAN_METHOD_AREA, NMTAN_PATH_AUTO, NMTAN_ISA_AUTO, 1, 3};
-	columns[n++] = (column){"lengyel", NMTAN_METHOD_LENGYEL, NMTAN_PATH_AUTO, NMTAN_ISA_AUTO, 1, 3};
+	columns[n++] = (column){"area", NMTAN_METHOD_AREA, NMTAN_PATH_AUTO, NMTAN_ISA_AUTO, 1, RUNS};
+	columns[n++] = (column){"lengyel", NMTAN_METHOD_LENGYEL, NMTAN_PATH_AUTO, NMTAN_ISA_AUTO, 1, RUNS};
+	columns[n++] = (column){"robust", NMTAN_METHOD_ROBUST, NMTAN_PATH_AUTO, NMTAN_ISA_AUTO, 1, RUNS};
+	return n;
+}
+
+int main(int argument_count, char **arguments)
+{
+	static const size_t sizes[NT_FAMILY_COUNT] = {1000000, 2000000, 2000000, 1000000, 2000000, 1000000, 1000000,
+		1000000, 1000000, 1000000};
+	static const struct {
+		const char *name;
+		nt_family family;
+		size_t count, triangles;
+	} small[] = {
+		{"one mesh", NT_FAMILY_CLEAN, 1, 20000},
+		{"one mesh", NT_FAMILY_CLEAN, 1, 2000},
+		{"2000 meshes of 200", NT_FAMILY_CLEAN, SMALL_COUNT, 200},
+		{"2000 noisy ones of 200", NT_FAMILY_NOISE, SMALL_COUNT, 200},
+		{"2000 meshes of 100", NT_FAMILY_CLEAN, SMALL_COUNT, 100},
+		{"2000 meshes of 50", NT_FAMILY_CLEAN, SMALL_COUNT, 50},
+		{"2000 meshes of 20", NT_FAMILY_CLEAN, SMALL_COUNT, 20},
+		{"2000 noisy ones of 20", NT_FAMILY_NOISE, SMALL_COUNT, 20},
+	};
+	column columns[MOST_COLUMNS];
+	const size_t n = list_columns(columns);
 
 	print_machine();
-	printf("million triangles a second, best and median\n%-29s", "");
+	printf("million triangles a second, best and median\n%-22s %8s", "", "");
 	for (size_t c = 0; c < n; c++)
-		printf(" %13s", columns[c].name);
+		printf(" %*s", columns[c].path == NMTAN_PATH_SCALAR ? 16 : 13, columns[c].name);
 	printf("\n");
-	for (int i = 0; i < NT_FAMILY_COUNT + SMALL_SIZES; i++) {
-		const int family = i < NT_FAMILY_COUNT ? i : NT_FAMILY_CLEAN;
-		nt_family_mesh m;
-		if (!nt_family_make((nt_family)family, i < NT_FAMILY_COUNT ? sizes[i] : small[i - NT_FAMILY_COUNT], &m))
-			return 1;
-		if (count > 1 && i < NT_FAMILY_COUNT)
-			export_mesh(arguments[1], family, &m);
-		time_mesh(i < NT_FAMILY_COUNT ? nt_family_names[family] : "clean, small", &m, columns, n);
-		nt_family_free(&m);
+	for (size_t i = 0; i < NT_FAMILY_COUNT; i++) {
+		workload w = make_workload((nt_family)i, 1, sizes[i]);
+		workload smaller = make_workload((nt_family)i, 1, i == NT_FAMILY_HUB ? DEFINITION_HUB : DEFINITION_SIZE);
+		if (argument_count > 1)
+			export_mesh(arguments[1], (int)i, w.meshes);
+		time_row(nt_family_names[i], &w, &smaller, columns, n);
+		free_workload(&w);
+		free_workload(&smaller);
+	}
+	for (size_t i = 0; i < sizeof small / sizeof *small; i++) {
+		workload w = make_workload(small[i].family, small[i].count, small[i].triangles);
+		time_row(small[i].name, &w, &w, columns, n);
+		free_workload(&w);
 	}
 	return 0;
 }
