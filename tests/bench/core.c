@@ -137,7 +137,7 @@ static void time_row(const char *name, const workload *w, const workload *smalle
 	free(output.tangents);
 }
 
-/* The exchange format of peers.mjs: quads have no place in it. */
+/* The exchange format of peers.mjs, where quads have no place, and a line of names.txt: what the mesh is. */
 static void export_mesh(const char *folder, int family, const nt_family_mesh *m)
 {
 	char path[1024];
@@ -145,17 +145,24 @@ static void export_mesh(const char *folder, int family, const nt_family_mesh *m)
 		return;
 	snprintf(path, sizeof path, "%s/core%d.mesh", folder, family);
 	FILE *f = fopen(path, "wb");
-	if (!f)
-		return;
+	snprintf(path, sizeof path, "%s/names.txt", folder);
+	FILE *names = fopen(path, "a");
+	if (!f || !names) {
+		fprintf(stderr, "core: cannot write to %s\n", folder);
+		exit(2);
+	}
 	const uint32_t head[2] = {(uint32_t)m->mesh.vertex_count, (uint32_t)m->corner_count};
 	fwrite(head, sizeof head, 1, f);
 	fwrite(m->positions, 12, m->mesh.vertex_count, f);
 	fwrite(m->normals, 12, m->mesh.vertex_count, f);
 	fwrite(m->texcoords, 8, m->mesh.vertex_count, f);
 	fwrite(m->indices, 4, m->corner_count, f);
-	if (fclose(f) != 0)
-		fprintf(stderr, "core: cannot write %s\n", path);
-	printf("%s is %s\n", path, nt_family_names[family]);
+	fprintf(names, "core%d %zu %s\n", family, m->triangle_count, nt_family_names[family]);
+	const int failed = fclose(f) | fclose(names);
+	if (failed) {
+		fprintf(stderr, "core: cannot write to %s\n", folder);
+		exit(2);
+	}
 }
 
 static size_t list_columns(column columns[MOST_COLUMNS])

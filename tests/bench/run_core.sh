@@ -28,4 +28,9 @@ else
 	echo "bench: no node and npm, their peers are skipped"
 fi
 rm -f "$folder"/*.mesh "$folder"/*.tan
-[ ! -f "$folder/peers.txt" ] || { echo "peers: mesh, peer, seconds"; cat "$folder/peers.txt"; }
+[ -f "$folder/peers.txt" ] || exit 0
+echo
+echo "peers, million triangles a second, best of the runs that fit into a second; npm's are wasm under node"
+awk 'FNR == NR { size[$1] = $2; name[$1] = $0; sub(/^[^ ]+ [^ ]+ /, "", name[$1]); next }
+	{ printf "%-22s %8d %-28s %7.3f\n", name[$1], size[$1], $2, 1e-6 * size[$1] / $3 }' \
+	"$folder/names.txt" "$folder/peers.txt" | sort | tee "$folder/peers.table"
