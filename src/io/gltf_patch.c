@@ -198,17 +198,25 @@ static nmtan_status stored_tangents(nt_gltf_patcher *p, const nt_gltf_rows *rows
 }
 
 /* Rounds the tangents of all groups, so that what is derived from them fits what readers will see. */
-static void round_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *component)
+static nmtan_status round_tangents(nt_gltf_patcher *p, nt_gltf_cluster *component)
 {
-	const nt_gltf_rows *rows = &component->rows;
+	nt_gltf_rows *rows = &component->rows;
 	for (uint32_t group = 0; p->options->precision != NT_PRECISION_FLOAT && group < rows->group_count;
 		group++) {
 		nt_rounding cost = {0};
+		if (rows->borrowed) {
+			float *own = nt_arena_alloc(p->arena, rows->new_count, 4 * sizeof *own);
+			if (!own)
+				return nt_fail_memory(p->error);
+			rows->tangents[group] = memcpy(own, rows->tangents[group],
+				rows->new_count * 4 * sizeof *own);
+		}
 		nt_precision_round(p->options->precision, rows->tangents[group], rows->new_count, &cost);
 		nt_precision_report(p->scene, p->options->precision, &cost,
 			&first_of_group(p, component, group)->place);
 		p->quantized = true;
 	}
+	return NMTAN_OK;
 }
 
 /* NORMAL where it was made, TANGENT where it is not already in place, _BITANGENT where asked for. */
@@ -285,7 +293,9 @@ static nmtan_status patch_component(nt_gltf_patcher *p, nt_gltf_cluster *compone
 	if (status || done)
 		return status;
 
-	round_tangents(p, component);
+	status = round_tangents(p, component);
+	if (status)
+		return status;
 
 	/* Tangents that are there and may be replaced keep their place. */
 	const nt_gltf_rows *rows = &component->rows;

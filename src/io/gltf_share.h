@@ -53,10 +53,12 @@ typedef struct nt_gltf_rows {
 	uint32_t *group_of;   /* [member count] NT_NONE: not solved */
 	uint32_t **indices;   /* [member count][corner count]; NULL: not solved */
 	bool *changed;        /* [member count] indices differ from the source's triangles */
+	bool borrowed;        /* sources, tangents and indices are the scene's: do not write to them */
 } nt_gltf_rows;
 
 /* Merges the splits of a component's meshes: a vertex gets one row for each tangent (and made normal)
- * that any of them wants. members are mesh numbers. Everything is in the arena. */
+ * that any of them wants. members are mesh numbers. Everything is in the arena,
+ * or borrowed from the scene. */
 nmtan_status nt_gltf_merge_rows(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
 	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count, nt_arena *arena,
 	nt_error *error);
