@@ -273,6 +273,13 @@ static uint32_t take_row(merging *m, const nt_mesh *mesh, uint32_t group, uint32
 	return row;
 }
 
+/* The vertex of a corner after the split. */
+static uint32_t split_vertex(const nt_mesh *mesh, size_t corner)
+{
+	const uint32_t *indices = mesh->split.indices ? mesh->split.indices : mesh->indices;
+	return indices ? indices[corner] : (uint32_t)corner;
+}
+
 static bool merge_mesh(merging *m, const nt_mesh *mesh, uint32_t group, uint32_t *indices)
 {
 	const size_t vertex_count = mesh->vertex_count + mesh->split.source_count;
@@ -282,7 +289,7 @@ static bool merge_mesh(merging *m, const nt_mesh *mesh, uint32_t group, uint32_t
 	enum { UNUSED = -1, USED = -2 };
 	memset(row_of, 0xFF, vertex_count * sizeof *row_of);
 	for (size_t c = 0; c < mesh->corner_count; c++)
-		row_of[mesh->split.indices[c]] = (uint32_t)USED;
+		row_of[split_vertex(mesh, c)] = (uint32_t)USED;
 	bool merged = true;
 	for (uint32_t v = 0; merged && v < vertex_count; v++) {
 		if (row_of[v] != (uint32_t)USED)
@@ -291,7 +298,7 @@ static bool merge_mesh(merging *m, const nt_mesh *mesh, uint32_t group, uint32_t
 		merged = row_of[v] != NT_NONE;
 	}
 	for (size_t c = 0; merged && c < mesh->corner_count; c++)
-		indices[c] = row_of[mesh->split.indices[c]];
+		indices[c] = row_of[split_vertex(mesh, c)];
 	free(row_of);
 	return merged;
 }

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
+#include "tangent/vertices.h"
 
 /* Corners from which one mesh is worth all threads. */
 enum { LARGE_CORNERS = 3 * 128 * 1024 };
@@ -150,9 +151,13 @@ static nmtan_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned t
 		free(mesh->corner_tangents);
 		mesh->corner_tangents = NULL;
 	} else if (!status) {
-		status = nmtan_vertex_tangents(&view, &options, &output, &mesh->counts);
+		status = nt_vertex_tangents(&view, &options, &output, &mesh->counts);
 	}
 	mesh->split.source_count = output.source_count;
+	if (!status && output.source_count == 0) {
+		free(mesh->split.indices);
+		mesh->split.indices = NULL;
+	}
 	return status;
 }
 

@@ -75,7 +75,7 @@ static bool describe_mesh(nt_report *report, const nt_mesh *mesh, const nt_repor
 /* On --check a solve may have run too, but what is judged is what the file has. */
 static nt_stored stored_tangents(const nt_mesh *mesh, bool converted)
 {
-	if (converted && mesh->split.vertex_tangents && mesh->split.indices)
+	if (converted && mesh->split.vertex_tangents)
 		return NT_STORED_SPLIT;
 	if (converted && mesh->corner_tangents)
 		return NT_STORED_CORNERS;
@@ -147,7 +147,7 @@ static nmtan_status keep_geometry(nt_judge *judge)
 			nt_source_texcoord(judge->scene, mesh->texcoords + 2 * from, g->texcoords + 2 * v);
 	}
 	for (size_t c = 0; c < 3 * s->triangle_count; c++)
-		g->indices[c] = split ? mesh->split.indices[s->corners[c]] : s->vertices[c];
+		g->indices[c] = split && mesh->split.indices ? mesh->split.indices[s->corners[c]] : s->vertices[c];
 	judge->facts->geometry = g;
 	return NMTAN_OK;
 }

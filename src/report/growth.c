@@ -30,7 +30,7 @@ static nmtan_status judge_shared(nt_judge *judge)
 		if (sides[v] == (UNMIRRORED | MIRRORED))
 			nt_tally_vertex(judge, &shared, (uint32_t)v, NAN);
 	nt_scratch_back(judge->scratch, mark);
-	const bool split = judge->options->converted && judge->mesh->split.indices;
+	const bool split = judge->options->converted && judge->mesh->split.vertex_tangents;
 	nt_judge_report_as(judge, &shared, split ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING, "%s",
 		split ? "they were split" : "");
 	return NMTAN_OK;

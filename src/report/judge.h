@@ -116,7 +116,7 @@ static inline void nt_side_source_texcoord(const nt_judge *judge, uint32_t side,
 static inline size_t nt_tangent_index(const nt_judge *judge, uint32_t corner)
 {
 	const nt_mesh *mesh = judge->mesh;
-	if (judge->stored == NT_STORED_SPLIT)
+	if (judge->stored == NT_STORED_SPLIT && mesh->split.indices)
 		return mesh->split.indices[corner];
 	if (judge->stored == NT_STORED_CORNERS)
 		return corner;

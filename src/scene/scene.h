@@ -83,7 +83,7 @@ typedef struct nt_morph {
 
 /* What splitting found: copies to append behind the mesh's vertices. */
 typedef struct nt_split {
-	uint32_t *indices;      /* [mesh corner_count] */
+	uint32_t *indices;      /* [mesh corner_count]; NULL: the mesh's own, nothing was split */
 	uint32_t *sources;      /* [source_count] vertex each appended one is a copy of */
 	size_t source_count;
 	float *vertex_tangents; /* [vertex_count + source_count][4] */

@@ -158,8 +158,8 @@ static nmtan_status solve_vertices(request *r, nt_splitter *splitter, nmtan_coun
 	return status ? status : nt_split_rows(&r->solve, splitter);
 }
 
-nmtan_status nmtan_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
-	nmtan_split_output *output, nmtan_counts *counts)
+static nmtan_status find_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
+	nmtan_split_output *output, nmtan_counts *counts, bool lazy)
 {
 	nmtan_counts own_counts;
 	counts = counts ? counts : &own_counts;
@@ -174,12 +174,26 @@ nmtan_status nmtan_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *
 		return status;
 	nt_splitter splitter;
 	r.solve.tangents = nt_scratch_alloc(r.solve.scratch, r.solve.corner_count, 4 * sizeof(float));
-	status = r.solve.tangents ? nt_splitter_begin(&splitter, &r.mesh, output, r.solve.scratch)
+	status = r.solve.tangents ? nt_splitter_begin(&splitter, &r.mesh, r.solve.corner_count,
+					    output, r.solve.scratch)
 				  : NMTAN_ERROR_MEMORY;
+	splitter.lazy = lazy;
 	if (!status && r.solve.corner_count > 0)
 		status = solve_vertices(&r, &splitter, counts);
 	if (!status)
 		nt_splitter_end(&splitter);
 	end_request(&r);
 	return status;
+}
+
+nmtan_status nmtan_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
+	nmtan_split_output *output, nmtan_counts *counts)
+{
+	return find_vertex_tangents(mesh, options, output, counts, false);
+}
+
+nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
+	nmtan_split_output *output, nmtan_counts *counts)
+{
+	return find_vertex_tangents(mesh, options, output, counts, true);
 }

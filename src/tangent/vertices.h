@@ -5,13 +5,22 @@
 #ifndef NT_TANGENT_VERTICES_H
 #define NT_TANGENT_VERTICES_H
 
-#include "tangent/solve.h"
+#include "tangent/fast.h"
 #include "topology/split.h"
+
+/* nmtan_vertex_tangents() for callers that take the mesh's own indices where nothing is split: with
+ * source_count 0 output->indices has not been written. */
+nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
+	nmtan_split_output *output, nmtan_counts *counts);
 
 /* MikkTSpace for vertices. solve->tangents is scratch and may or may not be filled. Returns what
  * nmtan_vertex_tangents() does. */
 nmtan_status nt_mikktspace_vertices(const nt_solve *solve, bool repair, nmtan_counts *counts,
 	nt_splitter *splitter);
+
+/* Takes every corner's record, or row of solve->tangents where its triangle is suspect, of a sparse solve of
+ * triangles. Returns NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_TOO_LARGE. */
+nmtan_status nt_split_records(const nt_fast *fast, nt_splitter *splitter);
 
 /* Takes every corner's row of solve->tangents. */
 nmtan_status nt_split_rows(const nt_solve *solve, nt_splitter *splitter);

@@ -4,7 +4,8 @@
  *
  * Corners are visited in order. The tangent of a vertex's first corner stays with the vertex; only a
  * corner that differs from it asks a hash table of (vertex, tangent) for the copy that has its tangent, so
- * that meshes without splits pay one comparison a corner and a hub with many tangents stays linear.
+ * that meshes without splits pay one comparison a corner and a hub with many tangents stays linear. Indices
+ * are not written before the first copy.
  */
 #include "topology/split.h"
 
@@ -101,10 +102,10 @@ static void set_unused_tangent(const nmtan_mesh *mesh, size_t vertex, float *tan
 	memcpy(tangent, result, sizeof result);
 }
 
-nmtan_status nt_splitter_begin(nt_splitter *s, const nmtan_mesh *mesh, nmtan_split_output *output,
-	nt_scratch *scratch)
+nmtan_status nt_splitter_begin(nt_splitter *s, const nmtan_mesh *mesh, size_t corner_count,
+	nmtan_split_output *output, nt_scratch *scratch)
 {
-	*s = (nt_splitter){.mesh = mesh, .output = output, .scratch = scratch};
+	*s = (nt_splitter){.mesh = mesh, .corner_count = corner_count, .output = output, .scratch = scratch};
 	s->tangents = output->vertex_tangents
 		? output->vertex_tangents
 		: nt_scratch_alloc(scratch, mesh->vertex_count, 4 * sizeof *s->tangents);
@@ -115,17 +116,31 @@ nmtan_status nt_splitter_begin(nt_splitter *s, const nmtan_mesh *mesh, nmtan_spl
 	return NMTAN_OK;
 }
 
+/* The mesh's indices, to be changed where corners move to copies. */
+static void copy_indices(nt_splitter *s)
+{
+	uint32_t *to = s->output->indices;
+	const uint32_t *from = s->mesh->indices;
+	s->indexed = true;
+	if (from && from != to)
+		memcpy(to, from, s->corner_count * sizeof *to);
+	for (size_t c = 0; !from && c < s->corner_count; c++)
+		to[c] = (uint32_t)c;
+}
+
 nmtan_status nt_splitter_differs(nt_splitter *s, uint32_t vertex, const float *tangent, size_t corner)
 {
 	const nt_tangent_key key = make_key(tangent);
 	const nt_tangent_key first = make_key(s->tangents + 4 * (size_t)vertex);
-	if (!equal_keys(&key, &first)) {
-		const nmtan_status status = take_copy(s, vertex, &key, &vertex);
-		if (status)
-			return status;
-		if (s->output->vertex_tangents)
-			memcpy(s->output->vertex_tangents + 4 * (size_t)vertex, tangent, 4 * sizeof(float));
-	}
+	if (equal_keys(&key, &first))
+		return NMTAN_OK;
+	const nmtan_status status = take_copy(s, vertex, &key, &vertex);
+	if (status)
+		return status;
+	if (s->output->vertex_tangents)
+		memcpy(s->output->vertex_tangents + 4 * (size_t)vertex, tangent, 4 * sizeof(float));
+	if (!s->indexed)
+		copy_indices(s);
 	s->output->indices[corner] = vertex;
 	return NMTAN_OK;
 }
@@ -133,14 +148,16 @@ nmtan_status nt_splitter_differs(nt_splitter *s, uint32_t vertex, const float *t
 void nt_splitter_end(nt_splitter *s)
 {
 	s->output->source_count = s->copy_count;
+	if (!s->indexed && !s->lazy)
+		copy_indices(s);
 	for (size_t v = 0; s->output->vertex_tangents && v < s->mesh->vertex_count; v++)
 		if (!s->seen[v])
 			set_unused_tangent(s->mesh, v, s->output->vertex_tangents + 4 * v);
 }
 
-static nmtan_status split_mesh(nt_splitter *s, const float *tangents, size_t corner_count)
+static nmtan_status split_mesh(nt_splitter *s, const float *tangents)
 {
-	for (size_t c = 0; c < corner_count; c++) {
+	for (size_t c = 0; c < s->corner_count; c++) {
 		const nmtan_status status =
 			nt_splitter_take(s, (uint32_t)nt_vertex_of(s->mesh, c), tangents + 4 * c, c);
 		if (status)
@@ -170,9 +187,9 @@ nmtan_status nmtan_split(const nmtan_mesh *mesh, const float *tangents, const nm
 	nt_scratch *scratch = options && options->workspace ? &options->workspace->scratch : &own;
 	const nt_scratch_mark mark = nt_scratch_here(scratch);
 	nt_splitter s;
-	status = nt_splitter_begin(&s, &checked, output, scratch);
+	status = nt_splitter_begin(&s, &checked, corner_count, output, scratch);
 	if (!status)
-		status = split_mesh(&s, tangents, corner_count);
+		status = split_mesh(&s, tangents);
 	nt_scratch_back(scratch, mark);
 	nt_scratch_free(&own);
 	return status;

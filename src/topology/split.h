@@ -25,6 +25,9 @@ typedef struct nt_splitter {
 	const nmtan_mesh *mesh; /* strides are filled in, indices checked */
 	nmtan_split_output *output;
 	nt_scratch *scratch;
+	size_t corner_count;
+	bool lazy;              /* output->indices is left alone when no vertex is split */
+	bool indexed;           /* output->indices holds the mesh's indices */
 	float *tangents;        /* [vertex_count][4] of the vertices' first corners */
 	uint8_t *seen;          /* [vertex_count] tangents is set */
 	nt_vertex_copy *copies; /* [copy_capacity] */
@@ -34,14 +37,16 @@ typedef struct nt_splitter {
 } nt_splitter;
 
 /* Begins a split. mesh and output stay the caller's. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
-nmtan_status nt_splitter_begin(nt_splitter *s, const nmtan_mesh *mesh, nmtan_split_output *output,
-	nt_scratch *scratch);
+nmtan_status nt_splitter_begin(nt_splitter *s, const nmtan_mesh *mesh, size_t corner_count,
+	nmtan_split_output *output, nt_scratch *scratch);
 
-/* The rest of nt_splitter_take: a tangent that does not have the bits of the vertex's first one. */
+/* The rest of nt_splitter_take: a tangent that does not have the bits of the vertex's first one. The first
+ * that differs makes output->indices a copy of the mesh's. */
 nmtan_status nt_splitter_differs(nt_splitter *s, uint32_t vertex, const float *tangent, size_t corner);
 
-/* The next corner in order, of that vertex, has this tangent: writes output->indices[corner]. Returns
- * NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_TOO_LARGE. */
+/* The next corner in order, of that vertex, has this tangent. Corners whose vertex is known to have one
+ * tangent only may be left out once that is in `tangents` and `seen`. Returns NMTAN_OK, NMTAN_ERROR_MEMORY or
+ * NMTAN_ERROR_TOO_LARGE. */
 static inline nmtan_status nt_splitter_take(nt_splitter *s, uint32_t vertex, const float *tangent,
 	size_t corner)
 {
@@ -52,11 +57,11 @@ static inline nmtan_status nt_splitter_take(nt_splitter *s, uint32_t vertex, con
 	} else if (memcmp(first, tangent, 4 * sizeof(float)) != 0) {
 		return nt_splitter_differs(s, vertex, tangent, corner);
 	}
-	s->output->indices[corner] = vertex;
 	return NMTAN_OK;
 }
 
-/* Ends a split: the count of copies, and the tangents of vertices without corners. */
+/* Ends a split: the count of copies, the tangents of vertices without corners, and the indices unless
+ * `lazy`. */
 void nt_splitter_end(nt_splitter *s);
 
 #endif
