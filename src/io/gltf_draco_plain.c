@@ -7,16 +7,14 @@
  * cannot have, extensions of the primitive), the sequential method keeps it. A primitive is left plain
  * where that would not do: accessors that somebody else uses too, sparse or compressed ones, strips.
  *
- * The rows leave the buffers, but views keep their numbers, so four bytes of each run remain.
+ * The rows leave the buffers. Views keep their numbers: one takes the block, others that are empty then share bytes
+ * with it.
  */
 #include "io/gltf_draco.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* What is left of a run of rows: a view must not be empty. */
-static const unsigned char remainder_bytes[4];
 
 /* ---- what can be compressed ---- */
 
@@ -252,44 +250,44 @@ static run detach(nt_gltf_patcher *p, uint64_t index)
 		view.offset + view.length, view.buffer, a.view};
 }
 
-/* A view that nothing is left in has no rows, so it can have no stride. */
-static void drop_stride(nt_gltf_patcher *p, const run *runs, size_t count, const run *from)
+/* Views that only runs lie in go as a whole. */
+static nmtan_status remove_views(nt_gltf_patcher *p, const run *runs, size_t count)
 {
-	size_t users = 0;
-	for (size_t i = 0; i < count; i++)
-		users += runs[i].view == from->view;
-	if (nt_layout_users(&p->layout, from->buffer, from->view_begin, from->view_end) == users)
-		nt_json_remove(p->json, nt_json_at(nt_gltf_root_member(p->document, "bufferViews"),
-			from->view), "byteStride");
+	nmtan_status status = NMTAN_OK;
+	for (size_t i = 0; !status && i < count; i++) {
+		size_t users = 0;
+		for (size_t k = 0; k < count; k++)
+			users += runs[k].view == runs[i].view;
+		status = nt_layout_vacate_view(&p->layout, runs[i].view, users, p->error);
+	}
+	return status;
 }
 
-/* Bytes that somebody else has a use for stay, and those in which another view begins or ends. */
+/* Bytes that somebody else has a use for stay, those in which another view begins or ends, and those that are all of
+ * some view. */
 static bool can_go(const nt_gltf_patcher *p, const run *runs, size_t count, uint64_t begin, uint64_t end)
 {
 	for (size_t i = 0; i < count; i++)
-		if (runs[i].view_begin > begin || runs[i].view_end < end)
+		if (runs[i].view_begin > begin || runs[i].view_end < end ||
+			(runs[i].view_begin == begin && runs[i].view_end == end))
 			return false;
-	return end - begin > sizeof remainder_bytes &&
-		nt_layout_users(&p->layout, runs->buffer, begin, end) == count;
+	return nt_layout_users(&p->layout, runs->buffer, begin, end) == count;
 }
 
 static nmtan_status remove_runs(nt_gltf_patcher *p, run *runs, size_t count)
 {
 	if (count)
 		qsort(runs, count, sizeof *runs, compare_runs);
-	nmtan_status status = NMTAN_OK;
+	nmtan_status status = remove_views(p, runs, count);
 	for (size_t first = 0, next; !status && first < count; first = next) {
 		const uint64_t begin = runs[first].begin;
 		uint64_t end = runs[first].end;
 		for (next = first + 1; next < count && runs[next].buffer == runs[first].buffer &&
 			runs[next].begin < end; next++)
 			end = runs[next].end > end ? runs[next].end : end;
-		if (!can_go(p, runs + first, next - first, begin, end))
-			continue;
-		for (size_t i = first; i < next; i++)
-			drop_stride(p, runs, count, &runs[i]);
-		status = nt_layout_edit(&p->layout, runs[first].buffer, begin, end - begin,
-			remainder_bytes, sizeof remainder_bytes, p->error);
+		if (!p->layout.vacant[runs[first].view] && can_go(p, runs + first, next - first, begin, end))
+			status = nt_layout_edit(&p->layout, runs[first].buffer, begin, end - begin,
+				(const unsigned char *)"", 0, p->error);
 	}
 	return status;
 }

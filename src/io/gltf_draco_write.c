@@ -45,8 +45,7 @@ static bool release_block(nt_gltf_patcher *p, uint64_t view, size_t count)
 
 /* ---- plain ---- */
 
-/* Takes the extension off a primitive. Its view cannot go, since views keep their numbers; what is left of
- * it are four bytes. */
+/* Takes the extension off a primitive, and its block out of the buffer. The view takes some of the rows. */
 static nmtan_status make_plain(nt_gltf_patcher *p, nt_gltf_cluster *component, size_t member)
 {
 	nt_json_value *primitive = nt_gltf_primitive_of(p->document,
@@ -57,10 +56,8 @@ static nmtan_status make_plain(nt_gltf_patcher *p, nt_gltf_cluster *component, s
 	nmtan_status status = NMTAN_OK;
 	if (nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(primitive), "bufferView"), &index) &&
 		nt_gltf_get_view(p->document, index, "", &view, NULL) == NMTAN_OK &&
-		release_block(p, index, 1) && view.length > 4 &&
-		nt_layout_users(&p->layout, view.buffer, view.offset, view.offset + view.length) == 1)
-		status = nt_layout_edit(&p->layout, view.buffer, view.offset, view.length,
-			(const unsigned char *)"\0\0\0\0", 4, p->error);
+		release_block(p, index, 1))
+		status = nt_layout_vacate(&p->layout, (uint32_t)index, 0, view.length, p->error);
 	nt_json_remove(p->json, extensions, "KHR_draco_mesh_compression");
 	if (nt_json_count(extensions) == 0)
 		nt_json_remove(p->json, primitive, "extensions");

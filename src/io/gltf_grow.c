@@ -74,6 +74,9 @@ static nmtan_status collect_items(nt_gltf_growing *g, const nt_gltf_override *ov
 {
 	const nt_gltf_patcher *p = g->patcher;
 	nmtan_status status = NMTAN_OK;
+	for (size_t i = 0; i < override_count; i++)
+		if (!overrides[i].values)
+			g->seen[overrides[i].accessor] = true;
 	const bool all = nt_gltf_added_rows(g) || g->decoded_too;
 	for (size_t i = 0; !status && all && i < g->component->member_count; i++) {
 		const nt_mesh *mesh = &p->scene->meshes[g->component->members[i]];
@@ -122,6 +125,12 @@ static nmtan_status copy_rows(nt_gltf_growing *g, const nt_gltf_item *from, uint
 		return nt_fail_memory(p->error);
 	memset(out, 0, count * stride);
 	*result = out;
+	if (from->override) {
+		for (size_t row = 0; row < count; row++)
+			memcpy(out + row * stride, from->override->values + row * from->override->width,
+				from->override->width);
+		return NMTAN_OK;
+	}
 	const unsigned char *rows;
 	nmtan_status status = nt_gltf_accessor_rows(p->document, a, &rows, p->error);
 	for (size_t row = 0; !status && rows && row < a->count; row++)
@@ -136,17 +145,14 @@ static nmtan_status copy_rows(nt_gltf_growing *g, const nt_gltf_item *from, uint
 	}
 	for (size_t row = (size_t)a->count; !status && row < count; row++)
 		memcpy(out + row * stride, out + (size_t)nt_gltf_row_source(g, row) * stride, a->element_bytes);
-	if (from->override)
-		for (size_t row = 0; !status && row < count; row++)
-			memcpy(out + row * stride, from->override->values + row * from->override->width,
-				from->override->width);
 	return status;
 }
 
 /* A new view with all rows of an accessor. */
 static nmtan_status add_rows_view(nt_gltf_growing *g, const nt_gltf_item *from, bool bake, uint32_t *view)
 {
-	const uint32_t element = from->accessor.element_bytes, stride = (element + 3) / 4 * 4;
+	const uint32_t element = from->override ? from->override->width : from->accessor.element_bytes;
+	const uint32_t stride = (element + 3) / 4 * 4;
 	unsigned char *rows = NULL;
 	const nmtan_status status = copy_rows(g, from, stride, bake, &rows);
 	if (status)
@@ -319,9 +325,11 @@ static nmtan_status replace_rows(nt_gltf_growing *g, const block *b, const unsig
 	for (size_t i = 0; i < b->count; i++) {
 		const nt_gltf_override *override = b->items[i].override;
 		unsigned char *at = out + (b->items[i].begin - b->begin);
-		for (size_t row = 0; override && row < count; row++)
+		for (size_t row = 0; override && row < count; row++) {
+			memset(at + row * b->stride, 0, b->items[i].accessor.element_bytes);
 			memcpy(at + row * b->stride, override->values + row * override->width,
 				override->width);
+		}
 	}
 	return nt_layout_edit(&p->layout, b->buffer, b->begin, old_size, out, size, p->error);
 }

@@ -3,7 +3,7 @@
  * The layout of changed buffers. A source buffer is a string of bytes; an edit replaces some of them;
  * a position of the source moves by the sum of what edits that end at or before it have added. Views and
  * accessors are intervals of that string, so both ends are mapped and the rest follows. Nothing is
- * reordered and no byte is left behind.
+ * reordered and no byte is left behind: a view whose content is gone takes what is new.
  */
 #include "io/gltf_layout.h"
 
@@ -12,6 +12,8 @@
 #include <string.h>
 
 enum { ALIGNMENT = 4 };
+/* Of a vacant view that nothing new came for. */
+enum { VACANT_BYTES = 4 };
 
 /* ---- changes ---- */
 
@@ -32,7 +34,10 @@ nmtan_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_erro
 	layout->buffer_count = document->buffer_count;
 	layout->buffers = nt_calloc(document->buffer_count + 1, sizeof *layout->buffers);
 	layout->virtuals = nt_calloc(layout->view_count, sizeof *layout->virtuals);
-	if (!layout->buffers || !layout->virtuals || !nt_layout_find_extents(layout)) {
+	layout->vacant = nt_calloc(layout->view_count, sizeof *layout->vacant);
+	layout->vacancies = nt_alloc(layout->view_count, sizeof *layout->vacancies);
+	if (!layout->buffers || !layout->virtuals || !layout->vacant || !layout->vacancies ||
+		!nt_layout_find_extents(layout)) {
 		nt_layout_free(layout);
 		return nt_fail_memory(error);
 	}
@@ -55,6 +60,8 @@ void nt_layout_free(nt_gltf_layout *layout)
 		free(layout->virtuals[i].edits);
 		free(layout->virtuals[i].additions);
 	}
+	free(layout->vacant);
+	free(layout->vacancies);
 	free(layout->virtuals);
 	free(layout->buffers);
 	free(layout->extents);
@@ -67,7 +74,8 @@ nmtan_status nt_layout_edit(nt_gltf_layout *layout, uint32_t index, uint64_t at,
 {
 	nt_gltf_buffer_layout *buffer = plan_of(layout, index);
 	/* What is behind keeps its alignment. */
-	const size_t excess = (size_t)((size - removed) % layout->alignment);
+	const size_t excess =
+		at + removed < buffer->old_length ? (size_t)((size - removed) % layout->alignment) : 0;
 	if (excess) {
 		const size_t padded = size + layout->alignment - excess;
 		unsigned char *copy = nt_arena_alloc(&layout->arena, padded, 1);
@@ -99,13 +107,27 @@ static nmtan_status add_bytes(nt_gltf_layout *layout, uint32_t index, uint32_t v
 	return NMTAN_OK;
 }
 
+/* The object of a new view: of a vacant one, with what else it says, or appended. */
+static nt_json_value *take_view(nt_gltf_layout *layout, uint32_t *view)
+{
+	nt_json *json = layout->document->json;
+	nt_json_value *views = nt_json_put(json, nt_json_root(json), "bufferViews");
+	if (!layout->vacancy_count) {
+		*view = (uint32_t)nt_json_count(views);
+		return nt_json_append(json, views);
+	}
+	*view = layout->vacancies[--layout->vacancy_count];
+	nt_json_value *object = nt_json_at(views, *view);
+	nt_json_remove(json, object, "byteStride");
+	nt_json_remove(json, object, "target");
+	return object;
+}
+
 nmtan_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t index, const void *bytes, size_t size,
 	uint32_t target, uint32_t stride, uint32_t *view, nt_error *error)
 {
 	nt_json *json = layout->document->json;
-	nt_json_value *views = nt_json_put(json, nt_json_root(json), "bufferViews");
-	*view = (uint32_t)nt_json_count(views);
-	nt_json_value *object = nt_json_append(json, views);
+	nt_json_value *object = take_view(layout, view);
 	nt_json_set_uint64(json, nt_json_put(json, object, "buffer"), index);
 	nt_json_set_uint64(json, nt_json_put(json, object, "byteOffset"), 0);
 	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), size);
@@ -194,8 +216,9 @@ static void place_additions(nt_gltf_layout *layout, nt_gltf_buffer_layout *buffe
 		nt_gltf_addition *addition = &buffer->additions[i];
 		addition->offset = (length + 3) / 4 * 4;
 		length = addition->offset + addition->size;
-		nt_json_set_uint64(json, nt_json_put(json, nt_json_at(views, addition->view), "byteOffset"),
-			addition->offset);
+		if (addition->view != NT_NONE)
+			nt_json_set_uint64(json, nt_json_put(json, nt_json_at(views, addition->view),
+				"byteOffset"), addition->offset);
 	}
 	buffer->new_length = length;
 }
@@ -207,6 +230,36 @@ static void set_offset(nt_json *json, nt_json_value *object, const char *key, ui
 	nt_json_get_uint64(nt_json_find(object, key), &old);
 	if (old != value)
 		nt_json_set_uint64(json, nt_json_put(json, object, key), value);
+}
+
+/* A buffer must not be empty. */
+static nmtan_status fill_empty_buffers(nt_gltf_layout *layout, nt_error *error)
+{
+	static const unsigned char zeros[VACANT_BYTES];
+	nmtan_status status = NMTAN_OK;
+	for (uint32_t i = 0; !status && i < layout->buffer_count; i++) {
+		const nt_gltf_buffer_layout *buffer = &layout->buffers[i];
+		if (buffer->touched && !buffer->addition_count && buffer->old_length &&
+			map_position(buffer, buffer->old_length) == 0)
+			status = add_bytes(layout, i, NT_NONE, zeros, sizeof zeros, error);
+	}
+	return status;
+}
+
+/* Vacant views that nothing came for share the first bytes of their buffer. */
+static void settle_vacancies(nt_gltf_layout *layout)
+{
+	nt_json *json = layout->document->json;
+	const nt_json_value *views = nt_gltf_root_member(layout->document, "bufferViews");
+	for (size_t i = 0; i < layout->vacancy_count; i++) {
+		nt_json_value *object = nt_json_at(views, layout->vacancies[i]);
+		uint64_t buffer = 0;
+		nt_json_get_uint64(nt_json_find(object, "buffer"), &buffer);
+		const uint64_t length = layout->buffers[buffer].new_length;
+		nt_json_remove(json, object, "byteStride");
+		set_offset(json, object, "byteOffset", 0);
+		set_offset(json, object, "byteLength", length < VACANT_BYTES ? length : VACANT_BYTES);
+	}
 }
 
 /* How a view moves, kept while the offsets of accessors in it are moved. */
@@ -230,7 +283,7 @@ static void move_views(nt_gltf_layout *layout, moved_view *moved, size_t view_co
 			set_offset(json, part, "byteOffset",
 				map_position(&layout->buffers[buffer], offset));
 		}
-		if (moved[i].buffer ||
+		if (moved[i].buffer || layout->vacant[i] ||
 			nt_gltf_get_view(layout->document, i, "", &view, NULL) != NMTAN_OK ||
 			view.buffer >= NT_GLTF_VIRTUAL || layout->buffers[view.buffer].edit_count == 0)
 			continue;
@@ -481,6 +534,11 @@ nmtan_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error)
 		sort_edits(&layout->buffers[i]);
 		shifted |= layout->buffers[i].edit_count > 0;
 	}
+	status = fill_empty_buffers(layout, error);
+	if (status) {
+		free(moved);
+		return status;
+	}
 	if (shifted) {
 		move_views(layout, moved, view_count);
 		move_accessors(layout, moved, view_count);
@@ -495,6 +553,7 @@ nmtan_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error)
 		nt_json_value *buffers = nt_gltf_root_member(document, "buffers");
 		set_offset(json, nt_json_at(buffers, i), "byteLength", buffer->new_length);
 	}
+	settle_vacancies(layout);
 	drop_unneeded_compression(document);
 	return nt_json_failed(json) ? nt_fail_memory(error) : NMTAN_OK;
 }

@@ -20,7 +20,7 @@ typedef struct nt_gltf_edit {
 
 /* A new view behind the end of a buffer. */
 typedef struct nt_gltf_addition {
-	uint32_t view;
+	uint32_t view;   /* NT_NONE: of no view */
 	uint64_t offset; /* in the new buffer: set by nt_layout_finish() */
 	const unsigned char *bytes;
 	size_t size;
@@ -51,6 +51,9 @@ typedef struct nt_gltf_layout {
 	nt_gltf_buffer_layout *buffers; /* [buffer_count]: the document's, and at most one new one */
 	size_t buffer_count;
 	size_t view_count;              /* of the source */
+	bool *vacant;                   /* [view_count] what it held is gone: see nt_layout_vacate() */
+	uint32_t *vacancies;            /* [vacancy_count] those that nothing new has taken over */
+	size_t vacancy_count;
 	nt_gltf_buffer_layout *virtuals; /* [view_count] of decompressed views */
 	nt_gltf_extent *extents;        /* sorted by buffer and begin */
 	size_t extent_count, extent_capacity;
@@ -75,6 +78,18 @@ size_t nt_layout_users(const nt_gltf_layout *layout, uint32_t buffer, uint64_t b
  * difference is padded with zeros to the layout's alignment. Edits must not overlap. */
 nmtan_status nt_layout_edit(nt_gltf_layout *layout, uint32_t buffer, uint64_t at, uint64_t removed,
 	const unsigned char *bytes, size_t size, nt_error *error);
+
+/*
+ * Takes out a view to which so many things refer that will do so no more; nothing happens where anybody else
+ * refers to its bytes, where it is compressed or has extensions. Views are never removed or renumbered: it
+ * becomes vacant, and the next new view takes its number. If there is none it shares bytes with others, since a
+ * view may not be empty.
+ */
+nmtan_status nt_layout_vacate_view(nt_gltf_layout *layout, uint32_t view, size_t users, nt_error *error);
+
+/* The same for bytes of a view that one thing alone refers to; the view stays for what else is in it. */
+nmtan_status nt_layout_vacate(nt_gltf_layout *layout, uint32_t view, uint64_t offset, uint64_t length,
+	nt_error *error);
 
 /* Adds a view with these bytes behind the end of a buffer. target and stride: 0 for none. */
 nmtan_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t buffer, const void *bytes, size_t size,

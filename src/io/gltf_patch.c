@@ -43,65 +43,6 @@ nmtan_status nt_gltf_add_floats(nt_gltf_patcher *p, uint32_t buffer, const float
 		width == 3 ? "VEC3" : "VEC4", accessor);
 }
 
-/* ---- tangents in place ---- */
-
-typedef struct tangent_users {
-	const nt_gltf_patcher *patcher;
-	uint32_t canonical;
-	uint32_t count; /* members that use it, under any name */
-} tangent_users;
-
-static nmtan_status count_user(void *context, nt_json_value *attributes, const char *name,
-	uint32_t accessor)
-{
-	(void)attributes;
-	(void)name;
-	tangent_users *users = context;
-	users->count += users->patcher->sharing.canonical[accessor] == users->canonical;
-	return NMTAN_OK;
-}
-
-static uint32_t tangent_of(const nt_gltf_patcher *p, const nt_mesh *mesh)
-{
-	uint64_t accessor;
-	const nt_json_value *attributes =
-		nt_json_find(nt_gltf_primitive_of(p->document, mesh), "attributes");
-	if (!nt_json_get_uint64(nt_json_find(attributes, "TANGENT"), &accessor) ||
-		accessor >= p->sharing.accessor_count)
-		return NT_NONE;
-	return (uint32_t)accessor;
-}
-
-/* The TANGENT accessor of the group's members whose values may simply be replaced: of the type that is to
- * be written, and nobody else uses it. NT_NONE: there is none. */
-static uint32_t reusable_tangent(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group)
-{
-	uint32_t shared = NT_NONE, members = 0;
-	for (size_t i = 0; i < component->member_count; i++) {
-		if (component->rows.group_of[i] != group)
-			continue;
-		const uint32_t own = tangent_of(p, &p->scene->meshes[component->members[i]]);
-		if (own == NT_NONE || (members && own != shared))
-			return NT_NONE;
-		shared = own;
-		members++;
-	}
-	nt_gltf_accessor accessor;
-	if (nt_gltf_get_accessor(p->document, shared, "", &accessor, NULL) != NMTAN_OK ||
-		accessor.component_type != nt_precision_component_type(p->options->precision) ||
-		(accessor.component_type != NT_GLTF_FLOAT && !accessor.normalized) ||
-		accessor.components != 4 ||
-		accessor.view == NT_NONE || accessor.sparse_count ||
-		p->sharing.foreign[p->sharing.canonical[shared]])
-		return NT_NONE;
-	tangent_users users = {p, p->sharing.canonical[shared], 0};
-	for (size_t i = 0; i < component->member_count; i++)
-		nt_gltf_visit_attributes(nt_gltf_primitive_of(p->document,
-			&p->scene->meshes[component->members[i]]), p->sharing.accessor_count, count_user,
-			&users);
-	return users.count == members ? shared : NT_NONE;
-}
-
 /* ---- one component ---- */
 
 static void set_attribute(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
@@ -219,9 +160,44 @@ static nmtan_status round_tangents(nt_gltf_patcher *p, nt_gltf_cluster *componen
 	return NMTAN_OK;
 }
 
+/* Tangents in new bytes: for the accessors that the group's meshes had, or for a new one. */
+static nmtan_status add_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
+	const nt_gltf_old_tangents *old)
+{
+	const nt_gltf_rows *rows = &component->rows;
+	const nt_precision precision = p->options->precision;
+	const size_t row_bytes = nt_precision_bytes(precision);
+	const unsigned char *bytes;
+	uint32_t view, accessor;
+	nmtan_status status = stored_tangents(p, rows, group, &bytes);
+	if (!status && old->count) {
+		status = nt_layout_add_view(&p->layout, component->buffer, bytes,
+			rows->new_count * row_bytes, NT_GLTF_ARRAY_BUFFER, 0, &view, p->error);
+		if (!status)
+			nt_gltf_move_tangents(p, old, view, rows->new_count);
+	} else if (!status) {
+		status = add_accessor(p, component->buffer, bytes, rows->new_count, row_bytes,
+			nt_precision_component_type(precision), "VEC4", &accessor);
+		if (!status)
+			set_attribute(p, component, group, "TANGENT", accessor);
+	}
+	return status;
+}
+
+/* Meshes of the group that had no tangents take those of the others. */
+static void complete_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
+	const nt_gltf_old_tangents *old)
+{
+	for (size_t i = 0; old->count && i < component->member_count; i++)
+		if (component->rows.group_of[i] == group && nt_gltf_tangent_of(p, component, i) == NT_NONE)
+			nt_json_set_uint64(p->json, nt_json_put(p->json, nt_json_find(nt_gltf_primitive_of(
+				p->document, &p->scene->meshes[component->members[i]]), "attributes"),
+				"TANGENT"), old->accessors[0]);
+}
+
 /* NORMAL where it was made, TANGENT where it is not already in place, _BITANGENT where asked for. */
 static nmtan_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
-	bool tangent_in_place)
+	const nt_gltf_old_tangents *old)
 {
 	const nt_gltf_rows *rows = &component->rows;
 	nmtan_status status = NMTAN_OK;
@@ -232,17 +208,12 @@ static nmtan_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *compone
 		if (!status)
 			set_attribute(p, component, group, "NORMAL", accessor);
 	}
-	if (!status && !tangent_in_place) {
-		const nt_precision precision = p->options->precision;
-		const unsigned char *bytes;
-		status = stored_tangents(p, rows, group, &bytes);
-		if (!status)
-			status = add_accessor(p, component->buffer, bytes, rows->new_count,
-				nt_precision_bytes(precision), nt_precision_component_type(precision),
-				"VEC4", &accessor);
-		if (!status)
-			set_attribute(p, component, group, "TANGENT", accessor);
-	}
+	if (!status && !old->in_place)
+		status = add_tangents(p, component, group, old);
+	if (!status && old->in_place)
+		nt_gltf_retype_tangents(p, old);
+	if (!status)
+		complete_tangents(p, component, group, old);
 	if (!status)
 		status = nt_gltf_add_morphs(p, component, group);
 	if (!status && p->options->bitangents) {
@@ -273,6 +244,19 @@ static nmtan_status choose_buffer(nt_gltf_patcher *p, nt_gltf_cluster *component
 	return nt_layout_choose_buffer(&p->layout, view.buffer, &component->buffer, p->error);
 }
 
+/* New values for accessors that stay in place; the others lose their bytes. */
+static nmtan_status override_tangents(nt_gltf_patcher *p, const nt_gltf_rows *rows, uint32_t group,
+	const nt_gltf_old_tangents *old, nt_gltf_override *overrides, size_t *count)
+{
+	const unsigned char *values = NULL;
+	nmtan_status status = old->in_place ? stored_tangents(p, rows, group, &values)
+					    : nt_gltf_vacate_tangents(p, old);
+	for (size_t i = 0; !status && i < old->count; i++)
+		overrides[(*count)++] = (nt_gltf_override){.accessor = old->accessors[i], .values = values,
+			.width = (uint32_t)nt_precision_bytes(p->options->precision)};
+	return status;
+}
+
 static nmtan_status patch_component(nt_gltf_patcher *p, nt_gltf_cluster *component)
 {
 	/* One row for each tangent that a vertex has. */
@@ -297,22 +281,17 @@ static nmtan_status patch_component(nt_gltf_patcher *p, nt_gltf_cluster *compone
 	if (status)
 		return status;
 
-	/* Tangents that are there and may be replaced keep their place. */
+	/* Tangents that are there keep their accessor, and their place where that will do. */
 	const nt_gltf_rows *rows = &component->rows;
-	nt_gltf_override *overrides = nt_arena_alloc(p->arena, rows->group_count, sizeof *overrides);
-	bool *in_place = nt_arena_alloc(p->arena, rows->group_count, sizeof *in_place);
-	if (!overrides || !in_place)
+	nt_gltf_override *overrides = nt_arena_alloc(p->arena, component->member_count, sizeof *overrides);
+	nt_gltf_old_tangents *old = nt_arena_alloc(p->arena, rows->group_count, sizeof *old);
+	if (!overrides || !old)
 		return nt_fail_memory(p->error);
 	size_t override_count = 0;
 	for (uint32_t group = 0; !status && group < rows->group_count; group++) {
-		const uint32_t accessor = reusable_tangent(p, component, group);
-		in_place[group] = accessor != NT_NONE;
-		if (accessor == NT_NONE)
-			continue;
-		nt_gltf_override *override = &overrides[override_count++];
-		override->accessor = accessor;
-		override->width = (uint32_t)nt_precision_bytes(p->options->precision);
-		status = stored_tangents(p, rows, group, &override->values);
+		status = nt_gltf_find_tangents(p, component, group, &old[group]);
+		if (!status)
+			status = override_tangents(p, rows, group, &old[group], overrides, &override_count);
 	}
 
 	/* The copied rows, the indices that use them, and what is new. */
@@ -321,7 +300,7 @@ static nmtan_status patch_component(nt_gltf_patcher *p, nt_gltf_cluster *compone
 	if (!status)
 		status = nt_gltf_patch_indices(p, component);
 	for (uint32_t group = 0; !status && group < rows->group_count; group++)
-		status = add_group(p, component, group, in_place[group]);
+		status = add_group(p, component, group, &old[group]);
 	return status;
 }
 

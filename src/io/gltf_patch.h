@@ -24,7 +24,8 @@ typedef struct nt_gltf_patcher {
 	nt_error *error;
 } nt_gltf_patcher;
 
-/* An accessor whose values are replaced in place: rows of `width` bytes for every new row. */
+/* An accessor whose values are replaced in place: rows of `width` bytes for every new row. Without values it does not
+ * grow: it will get a view of its own. */
 typedef struct nt_gltf_override {
 	uint32_t accessor;
 	const unsigned char *values;
@@ -39,6 +40,33 @@ typedef struct nt_gltf_cluster {
 	nt_gltf_rows rows;
 	uint32_t buffer;         /* of new views */
 } nt_gltf_cluster;
+
+/* TANGENT accessors that a group's meshes have and nobody else uses. */
+typedef struct nt_gltf_old_tangents {
+	uint32_t *accessors; /* [count]; none: a new one is appended */
+	size_t count;
+	bool in_place;       /* the new rows go where the old ones are */
+} nt_gltf_old_tangents;
+
+/* ---- gltf_tangent.c ---- */
+
+/* The TANGENT accessor of a member; NT_NONE: none. */
+uint32_t nt_gltf_tangent_of(const nt_gltf_patcher *patcher, const nt_gltf_cluster *component, size_t member);
+
+nmtan_status nt_gltf_find_tangents(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
+	uint32_t group, nt_gltf_old_tangents *old);
+
+/* Takes their bytes out of the buffers, where nobody else refers to them. */
+nmtan_status nt_gltf_vacate_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents *old);
+
+/* Gives them the type that is stored. */
+void nt_gltf_retype_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents *old);
+
+/* Lets them refer to `count` rows in a new view. */
+void nt_gltf_move_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents *old, uint32_t view,
+	size_t count);
+
+/* ---- the other parts ---- */
 
 /* Appends an accessor over a new view of `count` rows of floats; a VEC3 or VEC4 attribute. */
 nmtan_status nt_gltf_add_floats(nt_gltf_patcher *patcher, uint32_t buffer, const float *rows,

@@ -308,6 +308,26 @@ tangents = (FLOAT, False, [(0.0, 1.0, 0.0, 1.0)] * len(positions[2]))
 d.primitive(d.interleaved({**attributes, 'TANGENT': tangents}), d.indices(triangles(), USHORT))
 d.write('tangents_interleaved.gltf')
 
+# the same in views of their own: as floats, as integers, and sparse over zeros
+d = Document()
+d.primitive(d.separate({'TANGENT': tangents, **attributes}), d.indices(triangles(), USHORT))
+d.write('tangents_separate.gltf')
+d = Document()
+d.json['extensionsUsed'] = d.json['extensionsRequired'] = ['KHR_mesh_quantization']
+names = d.separate({'TANGENT': (SHORT, True, [(0, 32767, 0, 32767)] * len(positions[2])), **attributes})
+d.primitive(names, d.indices(triangles(), USHORT))
+d.write('tangents_short.gltf')
+d = Document()
+names = d.separate(attributes)
+every = range(len(positions[2]))
+names['TANGENT'] = d.accessor(tangents, None)
+d.json['accessors'][names['TANGENT']]['sparse'] = {
+    'count': len(every),
+    'indices': {'bufferView': d.view(b''.join(pack(USHORT, (i,)) for i in every)), 'componentType': USHORT},
+    'values': {'bufferView': d.view(b''.join(pack(FLOAT, r) for r in tangents[2]))}}
+d.primitive(names, d.indices(triangles(), USHORT))
+d.write('tangents_sparse.gltf')
+
 # several buffers, one of which nothing touches
 d = Document()
 d.bins.append(bytearray())
