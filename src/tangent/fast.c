@@ -27,6 +27,7 @@
  */
 #include "tangent/fast.h"
 
+#include <pthread.h>
 #include <string.h>
 #include "base/clock.h"
 #include "base/cpu.h"
@@ -35,6 +36,9 @@
 
 /* Starting a thread costs more than it saves with fewer triangles. */
 static const nt_fast_plan usual = {.grain = 65536};
+
+/* Vertices of a range whose records are only cleared. */
+enum { RECORD_GRAIN = 65536 };
 
 /* Triangles by which the records of a scattered mesh are asked for before they are written. */
 enum { WRITE_AHEAD = 16 };
@@ -132,13 +136,21 @@ static nmtan_status make_ranges(nt_fast *fast, unsigned count)
 
 /* 4 */
 
-static bool make_record(nt_fast *fast, int orient)
+static void clear_records(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	nt_record *records = context;
+	for (size_t v = begin; v < end; v++)
+		records[v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+}
+
+static bool make_record(nt_fast *fast, int orient, unsigned threads)
 {
 	nt_record *records = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *records);
 	if (!records)
 		return false;
-	for (size_t v = 0; !fast->bins.cursors && v < fast->vertex_count; v++)
-		records[v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+	if (!fast->bins.cursors)
+		nt_parallel_ranges(threads, fast->vertex_count, RECORD_GRAIN, clear_records, records);
 	if (fast->wants_more) {
 		nt_record_more *more = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *more);
 		if (!more)
@@ -172,9 +184,12 @@ typedef struct run {
 	const nt_kernels *kernels;
 	nt_settled *settled;       /* [ranges] */
 	nt_adjacency *adjacencies; /* [ranges] each for one bin after the other */
+	size_t begun;              /* triangles that the first range has behind it */
+	pthread_mutex_t *lock;     /* of fast->records, while triangles are added */
+	bool failed;
 } run;
 
-static void accumulate_ranges(void *context, size_t begin, size_t end, unsigned slot)
+static void fill_ranges(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
 	const run *r = context;
@@ -182,6 +197,33 @@ static void accumulate_ranges(void *context, size_t begin, size_t end, unsigned 
 	for (size_t range = begin; range < end; range++) {
 		int orient;
 		r->kernels->accumulate(r->fast, bounds[range], bounds[range + 1], (unsigned)range, &orient);
+	}
+}
+
+/* What all ranges share, as it is now; first with the record array that this one misses (-1: none). False: out
+ * of memory. */
+static bool look_at_records(run *r, int missing, nt_fast *view)
+{
+	pthread_mutex_lock(r->lock);
+	if (missing >= 0 && !r->failed && !r->fast->records[missing])
+		r->failed = !make_record(r->fast, missing, 1);
+	*view = *r->fast;
+	const bool failed = r->failed;
+	pthread_mutex_unlock(r->lock);
+	return !failed;
+}
+
+/* Records of an orientation exist from the first triangle on that has it: most meshes have one only. */
+static void accumulate_ranges(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	run *r = context;
+	const size_t *bounds = r->fast->ranges.bounds;
+	for (size_t range = begin; range < end; range++) {
+		nt_fast view;
+		int missing = -1;
+		for (size_t t = range ? bounds[range] : r->begun; t < bounds[range + 1] && look_at_records(r, missing, &view);)
+			t = r->kernels->accumulate(&view, t, bounds[range + 1], (unsigned)range, &missing);
 	}
 }
 
@@ -218,7 +260,7 @@ static bool make_seen_records(nt_fast *fast)
 	if (seen == NT_SEEN_ANY)
 		seen = NT_SEEN(0);
 	for (int o = 0; o < 2; o++)
-		if ((seen & NT_SEEN(o)) && !make_record(fast, o))
+		if ((seen & NT_SEEN(o)) && !make_record(fast, o, 1))
 			return false;
 	return true;
 }
@@ -226,7 +268,7 @@ static bool make_seen_records(nt_fast *fast)
 static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels)
 {
 	run r = {.fast = fast, .kernels = kernels};
-	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, accumulate_ranges, &r);
+	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, fill_ranges, &r);
 	return make_seen_records(fast) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }
 
@@ -234,23 +276,25 @@ static nmtan_status accumulate(nt_fast *fast, const nt_kernels *kernels)
 {
 	if (fast->bins.cursors)
 		return fill_bins(fast, kernels);
-	if (fast->ranges.count == 1) {
-		/* records of an orientation exist from the first triangle that has it */
-		int orient = 0;
-		for (size_t t = 0;;) {
-			t = kernels->accumulate(fast, t, fast->triangle_count, 0, &orient);
-			if (t == fast->triangle_count)
-				return NMTAN_OK;
-			if (!make_record(fast, orient))
-				return NMTAN_ERROR_MEMORY;
-		}
-	}
-	if (!make_record(fast, 0) || !make_record(fast, 1) || !make_deferred(fast))
+	/* the first range runs up to the first record array it needs, which all threads clear */
+	int orient = 0;
+	size_t t = kernels->accumulate(fast, 0, fast->ranges.bounds[1], 0, &orient);
+	if (t < fast->ranges.bounds[1] && !make_record(fast, orient, fast->ranges.count))
 		return NMTAN_ERROR_MEMORY;
-	run r = {.fast = fast, .kernels = kernels};
+	if (fast->ranges.count == 1) {
+		while ((t = kernels->accumulate(fast, t, fast->triangle_count, 0, &orient)) < fast->triangle_count)
+			if (!make_record(fast, orient, 1))
+				return NMTAN_ERROR_MEMORY;
+		return NMTAN_OK;
+	}
+	if (!make_deferred(fast))
+		return NMTAN_ERROR_MEMORY;
+	pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+	run r = {.fast = fast, .kernels = kernels, .begun = t, .lock = &lock};
 	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, accumulate_ranges, &r);
+	pthread_mutex_destroy(&lock);
 	add_deferred(fast);
-	return NMTAN_OK;
+	return r.failed ? NMTAN_ERROR_MEMORY : NMTAN_OK;
 }
 
 /* 5 */
