@@ -302,7 +302,7 @@ static bool given(const parser *p, const char *name)
 	return p->given >> (row - nt_option_rows) & 1;
 }
 
-/* "14,12,12,12": four whole numbers. Tangents of less than 12 bits can be seen. */
+/* "14,12,12,12": four whole numbers. Tangents of less than 12 bits can be seen; more than 24 a float does not have. */
 static nmtan_status parse_draco_bits(parser *p)
 {
 	static const struct {
@@ -310,7 +310,7 @@ static nmtan_status parse_draco_bits(parser *p)
 		int least;
 	} parts[NT_DRACO_BITS_COUNT] = {{"positions", 1}, {"normals", 2}, {"texture coordinates", 1},
 		{"tangents", 12}};
-	enum { MOST = 30 };
+	enum { MOST = NT_DRACO_MOST_BITS };
 	const char *word = p->command->draco_bits;
 	for (size_t i = 0; word && i < NT_DRACO_BITS_COUNT; i++) {
 		char number[16] = "";

@@ -186,9 +186,10 @@ size_t plausible_faces(size_t size)
 
 // ---- decoding ----
 
-nmtan_status damaged(nt_error *error, const char *what)
+// `offset`: how far the decoder came.
+nmtan_status damaged(nt_error *error, size_t offset, const char *what)
 {
-	return nt_fail(error, NMTAN_ERROR_INPUT, "damaged Draco data: %s", what);
+	return nt_fail_offset(error, NMTAN_ERROR_INPUT, offset, "damaged Draco data: %s", what);
 }
 
 nt_draco_kind kind_of(const PointAttribute &attribute)
@@ -277,7 +278,9 @@ nmtan_status take_attribute(nt_draco &result, const PointAttribute &decoded, nt_
 			decoded.unique_id(), static_cast<int>(decoded.data_type()),
 			static_cast<int>(decoded.num_components()));
 	if (!is_sound(decoded, point_count))
-		return damaged(error, "an attribute has fewer values than its points refer to");
+		return nt_fail(error, NMTAN_ERROR_INPUT,
+			"damaged Draco data: attribute %u has fewer values than its points refer to",
+			decoded.unique_id());
 	attribute.component_type = row->type;
 	attribute.components = decoded.num_components();
 	attribute.normalized = decoded.normalized();
@@ -316,11 +319,12 @@ nmtan_status judge_head(const unsigned char *bytes, size_t size, size_t limit, s
 	nt_error *error)
 {
 	if (!read_head(bytes, size, head))
-		return nt_fail(error, NMTAN_ERROR_INPUT, "not Draco data, or its head is cut off");
+		return nt_fail_offset(error, NMTAN_ERROR_INPUT, 0, "not Draco data, or its head is cut off");
 	if (!head->is_mesh)
-		return nt_fail(error, NMTAN_ERROR_UNSUPPORTED, "Draco point cloud: it has no faces");
+		return nt_fail_offset(error, NMTAN_ERROR_UNSUPPORTED, 0,
+			"Draco point cloud: it has no faces, expected a mesh");
 	if (head->faces > limit || head->points > 3 * static_cast<uint64_t>(limit))
-		return nt_fail(error, NMTAN_ERROR_TOO_LARGE,
+		return nt_fail_offset(error, NMTAN_ERROR_TOO_LARGE, 0,
 			"Draco data of %zu bytes declares %llu faces and %llu points, at most %zu faces are "
 			"expected", size, static_cast<unsigned long long>(head->faces),
 			static_cast<unsigned long long>(head->points), limit);
@@ -328,14 +332,16 @@ nmtan_status judge_head(const unsigned char *bytes, size_t size, size_t limit, s
 }
 
 draco::StatusOr<std::unique_ptr<draco::Mesh>> run_decoder(const unsigned char *bytes, size_t size,
-	bool leave_integers)
+	bool leave_integers, size_t *reached)
 {
 	draco::Decoder decoder;
 	for (int type = 0; leave_integers && type < draco::GeometryAttribute::NAMED_ATTRIBUTES_COUNT; type++)
 		decoder.SetSkipAttributeTransform(static_cast<draco::GeometryAttribute::Type>(type));
 	draco::DecoderBuffer buffer;
 	buffer.Init(reinterpret_cast<const char *>(bytes), size);
-	return decoder.DecodeMeshFromBuffer(&buffer);
+	auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+	*reached = static_cast<size_t>(buffer.decoded_size());
+	return decoded;
 }
 
 nmtan_status decode(nt_draco &result, const unsigned char *bytes, size_t size, size_t limit,
@@ -345,9 +351,10 @@ nmtan_status decode(nt_draco &result, const unsigned char *bytes, size_t size, s
 	const nmtan_status status = judge_head(bytes, size, limit, &head, error);
 	if (status != NMTAN_OK)
 		return status;
-	const auto decoded = run_decoder(bytes, size, false);
+	size_t reached = 0;
+	const auto decoded = run_decoder(bytes, size, false, &reached);
 	if (!decoded.ok())
-		return damaged(error, decoded.status().error_msg());
+		return damaged(error, reached, decoded.status().error_msg());
 	result.mesh.method = head.method;
 	return take_mesh(result, *decoded.value(), error);
 }
@@ -356,9 +363,10 @@ nmtan_status decode(nt_draco &result, const unsigned char *bytes, size_t size, s
 nmtan_status add_quantization(nt_draco &result, const unsigned char *bytes, size_t size,
 	nt_error *error)
 {
-	const auto decoded = run_decoder(bytes, size, true);
+	size_t reached = 0;
+	const auto decoded = run_decoder(bytes, size, true, &reached);
 	if (!decoded.ok() || decoded.value()->num_attributes() != static_cast<int>(result.attributes.size()))
-		return damaged(error, "it does not decode twice");
+		return damaged(error, reached, "it does not decode twice");
 	for (size_t i = 0; i < result.attributes.size(); i++)
 		result.attributes[i].quantization =
 			quantization_of(*decoded.value()->attribute(static_cast<int>(i)));
@@ -383,14 +391,37 @@ const unsigned char *value_of(const nt_draco_attribute &a, size_t point)
 	return static_cast<const unsigned char *>(a.data) + stride_of(a) * point;
 }
 
+// Draco's entropy coder takes a table of four bytes for every number up to the largest it meets, whose sign costs a
+// bit: 30 bits take 4 GB and half a minute for one triangle, 32 its life. 24 take 130 MB at most.
+enum { MOST_BITS = 24 };
+
+// Whether integers of four bytes are small enough for the entropy coder.
+bool fits_coder(const nt_draco_mesh &mesh, const nt_draco_attribute &a)
+{
+	const int64_t limit = int64_t(1) << MOST_BITS;
+	for (size_t p = 0; p < mesh.point_count; p++)
+		for (int i = 0; i < a.components; i++) {
+			uint32_t bits;
+			std::memcpy(&bits, value_of(a, p) + 4 * i, sizeof bits);
+			const int64_t value = a.component_type == 5124 ? int64_t(int32_t(bits)) : int64_t(bits);
+			if (value > limit || value < -limit)
+				return false;
+		}
+	return true;
+}
+
 nmtan_status check_attribute(const nt_draco_mesh &mesh, const nt_draco_attribute &a, nt_error *error)
 {
 	const nt_draco_quantization &q = a.quantization;
 	if (!row_of_type(a.component_type) || a.components < 1 || a.components > 4 || q.bits < 0 ||
-		q.bits > 30 || (q.bits == 1 && is_octahedral(a)) || (q.bits && a.component_type != 5126))
+		q.bits > MOST_BITS || (q.bits == 1 && is_octahedral(a)) || (q.bits && a.component_type != 5126))
 		return nt_fail(error, NMTAN_ERROR_ARGUMENT,
 			"Draco cannot encode attribute %u with type %d, %d components and %d bits",
 			a.unique_id, a.component_type, a.components, q.bits);
+	if ((a.component_type == 5124 || a.component_type == 5125) && !fits_coder(mesh, a))
+		return nt_fail(error, NMTAN_ERROR_ARGUMENT,
+			"attribute %u has integers of more than %d bits, which Draco cannot encode in reasonable "
+			"memory", a.unique_id, int(MOST_BITS));
 	if (!q.bits)
 		return NMTAN_OK;
 	const bool box = q.explicit_box && !is_octahedral(a);

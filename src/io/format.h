@@ -50,7 +50,8 @@ typedef enum nt_draco_choice {
 	NT_DRACO_AS_EDGEBREAKER
 } nt_draco_choice;
 
-/* Quantization of what was not quantized before, in bits. */
+/* Quantization of what was not quantized before, in bits: at most as many as ext/draco.h encodes. */
+enum { NT_DRACO_MOST_BITS = 24 };
 typedef enum nt_draco_bits {
 	NT_DRACO_BITS_POSITION,
 	NT_DRACO_BITS_NORMAL,

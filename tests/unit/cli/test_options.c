@@ -100,9 +100,9 @@ static void every_word_of_a_choice_is_its_constant(void **state)
 	assert_int_equal(c.settings.draco, NT_DRACO_OFF);
 	accepts(&c, WORDS("--draco=sequential", "a", "b"));
 	assert_int_equal(c.settings.draco, NT_DRACO_AS_SEQUENTIAL);
-	accepts(&c, WORDS("--draco=edgebreaker", "--draco-bits=16,10,1,30", "a", "b"));
+	accepts(&c, WORDS("--draco=edgebreaker", "--draco-bits=16,10,1,24", "a", "b"));
 	assert_int_equal(c.settings.draco, NT_DRACO_AS_EDGEBREAKER);
-	assert_memory_equal(c.settings.draco_bits, ((int[]){16, 10, 1, 30}), 4 * sizeof(int));
+	assert_memory_equal(c.settings.draco_bits, ((int[]){16, 10, 1, 24}), 4 * sizeof(int));
 	accepts(&c, WORDS("--output-format=ply", "a", "b"));
 	assert_int_equal(c.settings.output_format, NT_FORMAT_PLY);
 	accepts(&c, WORDS("--output-format=glb", "a", "b"));
@@ -191,7 +191,7 @@ static void bad_values_are_refused_whole(void **state)
 	refuses("auto needed all", WORDS("--only=some", "a", "b"));
 	refuses("''", WORDS("--directory=", "a", "b"));
 	refuses("'11' for tangents", WORDS("--draco-bits=14,12,12,11", "a", "b"));
-	refuses("'31' for positions", WORDS("--draco-bits=31,12,12,12", "a", "b"));
+	refuses("'25' for positions", WORDS("--draco-bits=25,12,12,12", "a", "b"));
 	refuses("'1' for normals", WORDS("--draco-bits=14,1,12,12", "a", "b"));
 	refuses("''", WORDS("--draco-bits=14,12,,12", "a", "b"));
 	refuses("'14,12,12'", WORDS("--draco-bits=14,12,12", "a", "b"));

@@ -232,7 +232,23 @@ static void what_cannot_be_encoded_is_refused(void **state)
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
 	g.indices[7][1] = POINTS;
 	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_INDEX);
-	make_grid(&g, NT_DRACO_SEQUENTIAL, 31);
+	make_grid(&g, NT_DRACO_SEQUENTIAL, 25);
+	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
+	/* the coder's table would have 2^32 rows, and has none */
+	uint32_t large[4 * POINTS] = {0};
+	g.attributes[4].component_type = 5125;
+	g.attributes[4].data = large;
+	large[5] = 1u << 24;
+	assert_int_equal(encode_status(&g, &error), NMTAN_OK);
+	large[5]++;
+	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	large[5] = UINT32_MAX;
+	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	assert_non_null(strstr(error.message, "24 bits"));
+	g.attributes[4].component_type = 5124; /* -1 */
+	assert_int_equal(encode_status(&g, &error), NMTAN_OK);
+	large[5] = (uint32_t)-(1 << 24) - 1;
 	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
 	g.attributes[4].quantization.bits = 8; /* integers */
@@ -278,8 +294,10 @@ static void damaged_streams_are_refused(void **state)
 	assert_int_equal(decode_status(block.bytes, block.size, FACES - 1, &error), NMTAN_OK);
 	assert_int_equal(decode_status(block.bytes, block.size, FACES - 2, &error),
 		NMTAN_ERROR_TOO_LARGE);
-	for (size_t size = 0; size < block.size; size += 7)
+	for (size_t size = 0; size < block.size; size += 7) {
 		assert_int_equal(decode_status(block.bytes, size, 0, &error), NMTAN_ERROR_INPUT);
+		assert_true(error.place.offset <= size); /* how far the decoder came */
+	}
 	nt_draco_block_free(&block);
 }
 
