@@ -289,28 +289,33 @@ void find_style(nt_json *document, const char *text, size_t size)
 
 // ---- writing ----
 
-// A stream into an nt_buffer: the library prints only to streams and to strings of its own.
+// A stream into an nt_buffer: the library prints only to streams and to strings of its own. It prints character by
+// character, so a block gathers them.
 class buffer_stream : public std::streambuf {
 public:
 	explicit buffer_stream(nt_buffer *buffer_) : buffer(buffer_)
 	{
+		setp(block, block + sizeof block);
 	}
 
 protected:
 	int_type overflow(int_type character) override
 	{
-		const char byte = traits_type::to_char_type(character);
-		nt_buffer_append(buffer, &byte, 1);
-		return buffer->failed ? traits_type::eof() : character;
+		if (sync() != 0)
+			return traits_type::eof();
+		return traits_type::eq_int_type(character, traits_type::eof()) ? 0
+			: sputc(traits_type::to_char_type(character));
 	}
-	std::streamsize xsputn(const char *bytes, std::streamsize count) override
+	int sync() override
 	{
-		nt_buffer_append(buffer, bytes, static_cast<size_t>(count));
-		return buffer->failed ? 0 : count;
+		nt_buffer_append(buffer, block, static_cast<size_t>(pptr() - pbase()));
+		setp(block, block + sizeof block);
+		return buffer->failed ? -1 : 0;
 	}
 
 private:
 	nt_buffer *buffer;
+	char block[4096];
 };
 
 // ---- changing ----
@@ -333,10 +338,12 @@ json::object_t::Container &members_of(json *object)
 	return object->get_ref<json::object_t &>();
 }
 
-json *find_member(json::object_t::Container &members, const char *key)
+// Measures the key once: most members are told apart by their lengths.
+template <typename Members> auto find_member(Members &members, const char *key) -> decltype(&members[0].second)
 {
+	const size_t length = std::strlen(key);
 	for (auto &entry : members)
-		if (entry.first == key)
+		if (entry.first.size() == length && std::memcmp(entry.first.data(), key, length) == 0)
 			return &entry.second;
 	return nullptr;
 }
@@ -424,7 +431,7 @@ nmtan_status nt_json_dump(const nt_json *document, nt_buffer *text, nt_error *er
 		std::ostream out(&stream);
 		if (document->indent > 0)
 			out << std::setw(document->indent) << std::setfill(document->indent_character);
-		out << document->root;
+		out << document->root << std::flush;
 		return text->failed ? nt_fail_memory(error) : NMTAN_OK;
 	});
 }
@@ -494,10 +501,8 @@ nt_json_value *nt_json_find(const nt_json_value *object, const char *key)
 {
 	if (!object || !unwrap(object)->is_object())
 		return nullptr;
-	for (const auto &entry : unwrap(object)->get_ref<const json::object_t &>())
-		if (entry.first == key)
-			return wrap(&entry.second);
-	return nullptr;
+	const json::object_t::Container &members = unwrap(object)->get_ref<const json::object_t &>();
+	return wrap(find_member(members, key));
 }
 
 bool nt_json_get_bool(const nt_json_value *value, bool *result)

@@ -58,7 +58,6 @@ nmtan_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_
 nmtan_status nt_gltf_uint(const nt_json_value *object, const char *pointer, const char *key,
 	uint64_t limit, uint64_t otherwise, uint64_t *value, nt_error *error)
 {
-	char place[NT_GLTF_POINTER * 2];
 	const nt_json_value *member = nt_json_find(object, key);
 	if (!member && otherwise != NT_GLTF_REQUIRED) {
 		*value = otherwise;
@@ -66,14 +65,17 @@ nmtan_status nt_gltf_uint(const nt_json_value *object, const char *pointer, cons
 	}
 	if (!member)
 		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "\"%s\" is missing", key);
+	const bool whole = nt_json_get_uint64(member, value);
+	if (whole && *value <= limit)
+		return NMTAN_OK;
+	/* made for faults alone: a document asks for millions of numbers */
+	char place[NT_GLTF_POINTER * 2];
 	snprintf(place, sizeof place, "%s/%s", pointer, key);
-	if (!nt_json_get_uint64(member, value))
+	if (!whole)
 		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, place,
 			"%s, expected a whole number of at least 0", nt_json_type_text(member));
-	if (*value > limit)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, place, "%llu, expected at most %llu",
-			(unsigned long long)*value, (unsigned long long)limit);
-	return NMTAN_OK;
+	return nt_fail_pointer(error, NMTAN_ERROR_INPUT, place, "%llu, expected at most %llu",
+		(unsigned long long)*value, (unsigned long long)limit);
 }
 
 /* ---- documents ---- */
