@@ -32,6 +32,7 @@ typedef struct nt_gltf_recoding {
 	size_t attribute_count;
 	const char **names;
 	bool outside; /* something of the primitive is not in the block */
+	const char *obstacle; /* why it cannot be compressed; NULL: nothing is known to stand in the way */
 } nt_gltf_recoding;
 
 /* Attributes that nmtan may add to those of the source: NORMAL, TANGENT, _BITANGENT. */
@@ -45,8 +46,8 @@ void nt_gltf_draco_add(nt_gltf_recoding *recoding, const char *name, nt_draco_at
 
 /* ---- gltf_draco_plain.c ---- */
 
-/* The attributes of a plain primitive; *possible false where it cannot be compressed. */
-nmtan_status nt_gltf_draco_gather_plain(nt_gltf_recoding *recoding, bool *possible);
+/* The attributes of a plain primitive; recoding->obstacle where it cannot be compressed. */
+nmtan_status nt_gltf_draco_gather_plain(nt_gltf_recoding *recoding);
 
 /* Takes what the block holds out of the buffers, and gives the primitive its extension. */
 nmtan_status nt_gltf_draco_take_out(nt_gltf_recoding *recoding, const nt_draco_block *block);

@@ -107,15 +107,14 @@ static bool is_in_block(const nt_gltf_recoding *r, const nt_json_value *attribut
 	return false;
 }
 
-/* *possible false where the attribute is not ours alone. */
-static nmtan_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_t index,
-	bool *possible)
+static nmtan_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_t index)
 {
 	nt_gltf_accessor accessor;
-	*possible = lies_plain(r, index, &accessor) &&
-		accessor.count == r->component->rows.old_count &&
-		!r->patcher->sharing.foreign[r->patcher->sharing.canonical[index]];
-	if (!*possible)
+	if (!lies_plain(r, index, &accessor) || accessor.count != r->component->rows.old_count)
+		r->obstacle = "an attribute is sparse or compressed";
+	else if (r->patcher->sharing.foreign[r->patcher->sharing.canonical[index]])
+		r->obstacle = "something else uses its attributes";
+	if (r->obstacle)
 		return NMTAN_OK;
 	if (!is_vector(r, accessor.index)) {
 		r->outside = true;
@@ -124,7 +123,7 @@ static nmtan_status gather_attribute(nt_gltf_recoding *r, const char *name, uint
 	const bool is_float = accessor.component_type == NT_GLTF_FLOAT;
 	/* ours takes its place */
 	if (strcmp(name, "TANGENT") == 0 && !(is_float && accessor.components == 4))
-		*possible = false;
+		r->obstacle = "it has tangents that are no floats";
 	nt_draco_attribute attribute = {.unique_id = (uint32_t)r->attribute_count,
 		.kind = kind_of(name), .component_type = (int)accessor.component_type,
 		.components = (int)accessor.components, .normalized = accessor.normalized,
@@ -182,32 +181,36 @@ static bool has_doubles(const nt_gltf_recoding *r)
 	return false;
 }
 
-nmtan_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r, bool *possible)
+nmtan_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r)
 {
 	nt_gltf_patcher *p = r->patcher;
 	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
 	const size_t count = nt_json_count(attributes);
 	uint64_t mode = 4;
 	nt_json_get_uint64(nt_json_find(r->primitive, "mode"), &mode);
-	*possible = mode == 4 && indices_are_own(r);
-	if (!*possible)
+	if (mode != 4)
+		r->obstacle = "it is a strip or a fan";
+	else if (!indices_are_own(r))
+		r->obstacle = "its indices are shared, sparse or compressed";
+	if (r->obstacle)
 		return NMTAN_OK;
 	r->attributes = nt_arena_alloc(p->arena, count + NT_GLTF_OWN_ATTRIBUTES, sizeof *r->attributes);
 	r->names = nt_arena_alloc(p->arena, count + NT_GLTF_OWN_ATTRIBUTES, sizeof *r->names);
 	if (!r->attributes || !r->names)
 		return nt_fail_memory(p->error);
 	nmtan_status status = NMTAN_OK;
-	for (size_t i = 0; !status && *possible && i < count; i++) {
+	for (size_t i = 0; !status && !r->obstacle && i < count; i++) {
 		/* names outlive the members that are put in behind them */
 		const char *key = nt_json_key(attributes, i, NULL);
 		const char *name = nt_arena_text(p->arena, key, strlen(key));
 		uint64_t index = UINT64_MAX;
 		nt_json_get_uint64(nt_json_at(attributes, i), &index);
-		status = name ? gather_attribute(r, name, index, possible) : nt_fail_memory(p->error);
+		status = name ? gather_attribute(r, name, index) : nt_fail_memory(p->error);
 	}
-	if (status || !*possible)
+	if (status || r->obstacle)
 		return status;
-	*possible = !has_doubles(r);
+	if (has_doubles(r))
+		r->obstacle = "two of its attributes are one accessor";
 	nt_gltf_visit_attributes(r->primitive, p->sharing.accessor_count, note_use, r);
 	/* an extension that we do not know may number the vertices */
 	for (size_t m = 0; m < r->component->member_count; m++) {

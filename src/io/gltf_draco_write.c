@@ -355,6 +355,8 @@ static nmtan_status recode(nt_gltf_recoding *r, bool *done)
 	if (status == NMTAN_ERROR_MEMORY)
 		return nt_fail_memory(p->error);
 	if (status || (r->outside && !order_is_kept(r, &block))) {
+		r->obstacle = status ? "Draco does not give it back"
+				     : "no face uses some of its vertices, whose order matters";
 		nt_draco_block_free(&block);
 		return NMTAN_OK; /* plain, then */
 	}
@@ -413,27 +415,52 @@ static void share_block(nt_gltf_recoding *r)
 	}
 }
 
+/* What the user asked for and does not get. */
+static void report_members(const nt_gltf_recoding *r, bool compressed)
+{
+	const nt_gltf_patcher *p = r->patcher;
+	nt_finding_list *findings = &p->scene->findings;
+	for (size_t i = 0; i < r->component->member_count; i++) {
+		const nt_mesh *mesh = &p->scene->meshes[r->component->members[i]];
+		if (r->component->rows.group_of[i] == NT_NONE)
+			continue;
+		const bool wanted = p->options->draco > NT_DRACO_OFF ||
+			nt_gltf_draco_of(member_primitive(p, r->component, i));
+		if (!compressed && wanted)
+			nt_finding_add(findings, NT_CODE_DRACO_PLAIN, &mesh->place, 1, "%s", r->obstacle);
+		else if (compressed && p->options->precision != NT_PRECISION_FLOAT)
+			nt_finding_add(findings, NT_CODE_DRACO_PRECISION, &mesh->place, 1, "%d bits",
+				nt_gltf_draco_bits(p->options, NT_DRACO_BITS_TANGENT));
+	}
+}
+
 nmtan_status nt_gltf_patch_draco(nt_gltf_patcher *p, nt_gltf_cluster *component, bool *done)
 {
 	*done = false;
+	if (p->options->draco == NT_DRACO_OFF)
+		return make_all_plain(p, component);
 	nt_gltf_recoding r = {.patcher = p, .component = component,
 		.mesh = &p->scene->meshes[component->members[0]]};
 	r.primitive = nt_gltf_primitive_of(p->document, r.mesh);
 	r.extension = nt_gltf_draco_of(r.primitive);
 	nmtan_status status = NMTAN_OK;
-	const bool alone = is_one_primitive(p, component);
-	if (p->options->draco != NT_DRACO_OFF && alone && r.extension && accessors_are_own(&r) &&
-		nt_json_get_uint64(nt_json_find(r.extension, "bufferView"), &r.view)) {
+	if (!is_one_primitive(p, component)) {
+		r.obstacle = "it shares vertices with other primitives";
+	} else if (!r.extension) {
+		status = nt_gltf_draco_gather_plain(&r);
+	} else if (!accessors_are_own(&r) ||
+		!nt_json_get_uint64(nt_json_find(r.extension, "bufferView"), &r.view)) {
+		r.obstacle = "something else uses its accessors";
+	} else {
 		r.source = nt_gltf_draco_block(p->document, r.view);
 		nt_gltf_visit_attributes(r.primitive, p->sharing.accessor_count, note_outside, &r);
-		status = recode(&r, done);
-	} else if (p->options->draco > NT_DRACO_OFF && alone && !r.extension) {
-		bool possible = false;
-		status = nt_gltf_draco_gather_plain(&r, &possible);
-		if (!status && possible)
-			status = recode(&r, done);
 	}
-	if (!status && *done)
+	if (!status && !r.obstacle)
+		status = recode(&r, done);
+	if (status)
+		return status;
+	if (*done)
 		share_block(&r);
-	return status || *done ? status : make_all_plain(p, component);
+	report_members(&r, *done);
+	return *done ? NMTAN_OK : make_all_plain(p, component);
 }

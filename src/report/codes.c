@@ -61,6 +61,19 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Choose another output format, or add it again by hand.",
 		"a glTF with animations that is written as PLY"),
 
+	ROW(DRACO_PLAIN, WARNING, "the primitive is written without Draco compression",
+		"--draco asks for compression, or the primitive came compressed, but a block could not give back "
+		"what it has: vertices that are shared with other primitives, strips and fans, sparse accessors, "
+		"or vertices whose order matters and that no face uses. The detail says which.",
+		"Nothing, if the size does not matter; --draco=off says that it does not. Else give the primitive "
+		"accessors of its own, and triangles.",
+		"converting two normal-mapped primitives with one POSITION accessor, --draco=sequential"),
+	ROW(DRACO_PRECISION, WARNING, "--precision does not reach tangents that Draco compresses",
+		"Inside of a Draco block tangents are floats, which Draco quantizes itself. They have its "
+		"precision, not the one that --precision names.",
+		"Use --draco-bits for them, or --draco=off.",
+		"converting any glTF with --draco=sequential --precision=byte"),
+
 	ROW(UV_MIRROR_SEAM, INFO,
 		"texture coordinates are mirrored across a seam of {count} {edge|edges}",
 		"The two triangles at each of these edges are wound in opposite directions in UV space, so w "

@@ -14,7 +14,7 @@ typedef enum nt_severity { NT_SEVERITY_INFO, NT_SEVERITY_WARNING, NT_SEVERITY_ER
 /* Codes in the order of the table in report/codes.c, which has one row for each and says what they mean.
  * A code's public name is its name here without NT_CODE_. */
 typedef enum nt_code {
-	/* what readers report */
+	/* what readers and writers report */
 	NT_CODE_MTL_MISSING,
 	NT_CODE_MATERIAL_UNKNOWN,
 	NT_CODE_IMAGE_MISSING,
@@ -25,6 +25,8 @@ typedef enum nt_code {
 	NT_CODE_POLYGON_CUT,
 	NT_CODE_NORMALS_MADE,
 	NT_CODE_REFERENCE_LOST,
+	NT_CODE_DRACO_PLAIN,
+	NT_CODE_DRACO_PRECISION,
 	/* texture coordinates */
 	NT_CODE_UV_MIRROR_SEAM,
 	NT_CODE_UV_MIRROR_OVERLAP,

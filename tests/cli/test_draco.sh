@@ -18,10 +18,21 @@ for input in "$WORK"/layouts/*.gl*; do
 	tangents_s[hp]* | shared* | sparse* | strip* | twin* | two_ranges* | instanced*) expected=0 ;;
 	*) expected=1 ;;
 	esac
+	case $name in
+	shared* | twin* | two_ranges* | instanced*) reason="it shares vertices with other primitives" ;;
+	strip*) reason="it is a strip or a fan" ;;
+	sparse* | *_sparse*) reason="an attribute is sparse or compressed" ;;
+	*) reason="it has tangents that are no floats" ;;
+	esac
 	for method in sequential edgebreaker; do
 		run --existing=replace --draco=$method "$input" $method.glb
 		exits 0
 		is "$(compressed $method.glb)" $expected
+		if [ $expected = 0 ]; then
+			says "warning: the primitive is written without Draco compression: $reason [DRACO_PLAIN]"
+		else
+			says_not DRACO
+		fi
 		# the same triangles and vertices that agree with what the file says of itself
 		run --existing=replace --draco=off $method.glb plain.glb
 		exits 0
@@ -42,6 +53,40 @@ is "$(compressed packed.glb)" 1
 run "$WORK/layouts/plain.gltf" plain.glb
 moves='g.meshes[0].primitives[0].targets.map((t) => rows(t.POSITION))'
 is "$(gltf packed.glb "$moves")" "$(gltf plain.glb "$moves")"
+
+scene "a compressed primitive that becomes plain without being told so is a finding"
+run --draco=sequential "$WORK/layouts/plain.gltf" packed.glb
+exits 0
+run --existing=replace packed.glb kept.glb
+exits 0
+says_not DRACO
+run --existing=replace --draco=off packed.glb off.glb
+exits 0
+says_not DRACO
+# a second primitive over the same positions, with tangents of its own
+node -e 'const fs = require("fs"), b = fs.readFileSync("packed.glb"), size = b.readUInt32LE(12);
+	const g = JSON.parse(b.subarray(20, 20 + size)), p = structuredClone(g.meshes[0].primitives[0]);
+	delete p.targets;
+	g.meshes[0].primitives.push(p);
+	g.buffers[0].uri = "packed.bin";
+	fs.writeFileSync("packed.bin", b.subarray(28 + size));
+	fs.writeFileSync("two.gltf", JSON.stringify(g))'
+run --existing=replace --fail-on=warning two.gltf two.glb
+exits 6
+says "mesh \"sheet\", primitive 1"
+says "it shares vertices with other primitives [DRACO_PLAIN]"
+is "$(compressed two.glb)" 0
+
+scene "--precision says that it does not reach into a block"
+run --draco=edgebreaker --draco-bits=14,12,12,16 --precision=short "$WORK/layouts/plain.gltf" packed.glb
+exits 0
+says "warning: --precision does not reach tangents that Draco compresses: 16 bits [DRACO_PRECISION]"
+run --precision=short --existing=replace packed.glb again.glb
+exits 0
+says "[DRACO_PRECISION]"
+run --precision=short --existing=replace --draco=off packed.glb again.glb
+exits 0
+says_not DRACO_PRECISION
 
 scene "only a glTF made from a glTF is compressed"
 run --draco=edgebreaker "$data/quad.obj" quad.glb
