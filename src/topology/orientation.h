@@ -17,6 +17,13 @@
 /* The same as nt_orientation for any input, by expansions alone. */
 int nt_orientation_slow(const float a[2], const float b[2], const float c[2]);
 
+/* The same for equal products p = fl(bu cv) = fl(bv cu) of exact differences: the residuals decide. */
+static inline int nt_orientation_residual(double bu, double bv, double cu, double cv, double p)
+{
+	const double left = fma(bu, cv, -p), right = fma(bv, cu, -p);
+	return p == 0.0 ? 0 : (left > right) - (left < right);
+}
+
 /* Exact sign of the UV determinant of a triangle: see nmtan_orientation(), which calls this. */
 static inline int nt_orientation(const float a[2], const float b[2], const float c[2])
 {
@@ -25,8 +32,8 @@ static inline int nt_orientation(const float a[2], const float b[2], const float
 	const int exact = nt_is_difference(bu, a[0], b[0]) && nt_is_difference(bv, a[1], b[1]) &&
 			  nt_is_difference(cu, a[0], c[0]) && nt_is_difference(cv, a[1], c[1]);
 	const double p = bu * cv, r = bv * cu;
-	if (exact && p != r)
-		return p > r ? 1 : -1;
+	if (exact)
+		return p != r ? p > r ? 1 : -1 : nt_orientation_residual(bu, bv, cu, cv, p);
 	return nt_orientation_slow(a, b, c);
 }
 
