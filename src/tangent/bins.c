@@ -46,6 +46,20 @@ static void place_corners(nt_bins *b)
 		}
 }
 
+bool nt_is_scattered(const uint32_t *vertices, size_t corner_count, size_t vertex_count)
+{
+	enum { SAMPLES = 256, FAR = 4096 };
+	const size_t step = corner_count / SAMPLES;
+	size_t far = 0;
+	if (vertex_count < NT_BINS_LEAST || step < 6)
+		return false;
+	for (size_t i = 0; i < SAMPLES; i++) {
+		const uint32_t a = vertices[i * step], b = vertices[i * step + 3];
+		far += (a > b ? a - b : b - a) > FAR;
+	}
+	return far > SAMPLES / 8;
+}
+
 unsigned nt_bins_bits(size_t vertex_count)
 {
 	unsigned bits = LEAST_BITS;

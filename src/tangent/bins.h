@@ -38,6 +38,9 @@ typedef struct nt_bins {
 	uint8_t *seen;         /* [ranges] */
 } nt_bins;
 
+/* Whether faces that follow each other tend to have vertices that lie far apart, by a sample of corners. */
+bool nt_is_scattered(const uint32_t *vertices, size_t corner_count, size_t vertex_count);
+
 /* log2 of the vertices of a bin that suit a mesh. */
 unsigned nt_bins_bits(size_t vertex_count);
 

@@ -90,21 +90,6 @@ static nmtan_status cut_faces(nt_fast *fast, const uint32_t *corner_ids)
 	return NMTAN_OK;
 }
 
-/* Whether faces that follow each other tend to have vertices that lie far apart, by a sample of corners. */
-static bool is_scattered(const uint32_t *vertices, size_t corner_count, size_t vertex_count)
-{
-	enum { SAMPLES = 256, FAR = 4096 };
-	const size_t step = corner_count / SAMPLES;
-	size_t far = 0;
-	if (vertex_count < NT_BINS_LEAST || step < 6)
-		return false;
-	for (size_t i = 0; i < SAMPLES; i++) {
-		const uint32_t a = vertices[i * step], b = vertices[i * step + 3];
-		far += (a > b ? a - b : b - a) > FAR;
-	}
-	return far > SAMPLES / 8;
-}
-
 static nmtan_status make_triangles(nt_fast *fast, const nt_weld *weld)
 {
 	fast->rows = weld->rows;
@@ -516,7 +501,8 @@ static void write_ranges(void *context, size_t begin, size_t end, unsigned slot)
 		write(fast, fast->ranges.bounds[range], fast->ranges.bounds[range + 1]);
 }
 
-void nt_fast_write_rest(nt_fast *fast)
+/* Writes what a sparse solve left out. */
+static void write_rest(nt_fast *fast)
 {
 	fast->sparse = false;
 	for (size_t t = 0; t < fast->triangle_count; t++)
@@ -615,7 +601,7 @@ static void vouch(const nt_fast *fast)
 static nmtan_status make_places(nt_fast *fast, unsigned bin_bits, nt_record *sums, nt_room *room)
 {
 	const size_t corners = 3 * fast->triangle_count;
-	fast->scattered = bin_bits || is_scattered(fast->ids, corners, fast->vertex_count);
+	fast->scattered = bin_bits || nt_is_scattered(fast->ids, corners, fast->vertex_count);
 	if (!fast->scattered || fast->wants_more)
 		return nt_adjacency_make(fast->ids, &fast->ranges, fast->vertex_count, room, &fast->adjacency);
 	if (!bin_bits)
@@ -634,7 +620,7 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ra
 	 * its pages need not exist. */
 	const bool lends = !fast->sparse;
 	const bool lends_sums = lends && !fast->wants_more && solve->corner_count == 3 * fast->triangle_count &&
-		mesh->indices && (bin_bits || is_scattered(mesh->indices, solve->corner_count, mesh->vertex_count));
+		mesh->indices && (bin_bits || nt_is_scattered(mesh->indices, solve->corner_count, mesh->vertex_count));
 	nt_room room = nt_room_over(solve->tangents,
 		lends && !lends_sums ? solve->corner_count * 4 * sizeof(float) : 0, solve->scratch);
 	nt_weld weld;
@@ -684,7 +670,7 @@ static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, bool sparse, 
 		vouch(fast);
 	/* late triangles copy corners, which must have been written */
 	if (fast->sparse && nt_fast_next_flagged(fast, 0, NT_TRIANGLE_LATE) < fast->triangle_count)
-		nt_fast_write_rest(fast);
+		write_rest(fast);
 	return write_late(fast);
 }
 

@@ -125,9 +125,6 @@ enum { NT_TRIANGLE_SUSPECT = NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE | NT_TRIAN
  */
 nmtan_status nt_fast_solve(nt_fast *fast, const nt_solve *solve, bool sparse);
 
-/* Writes what a sparse solve left out. */
-void nt_fast_write_rest(nt_fast *fast);
-
 /* Solves the vertices whose records are NT_RESULT_COMPLEX and writes their corners. */
 nmtan_status nt_fast_complex(nt_fast *fast, size_t complex_count);
 

@@ -6,21 +6,15 @@
 #include "tangent/frames.h"
 
 #include <string.h>
-#include "base/angle.h"
 #include "base/exact.h"
+#include "tangent/weigh.h"
 #include "topology/corners.h"
-
-/* Below this share of the summed lengths a sum's direction is rounding noise: 2^-53 per addition and
- * term, with room for a million terms. */
-static const double CANCELLED = 1e-10;
-
-/* The condition up to which `robust` promises 2^-23 in each component. */
-static const double WELL_CONDITIONED = 16777216.0;
 
 nt_dvec3 nt_unit_normal(const nmtan_mesh *mesh, size_t vertex)
 {
-	nt_dvec3 n = nt_dvec3_load(nt_normal(mesh, vertex));
-	return nt_dvec3_normalise(&n) ? n : (nt_dvec3){0, 0, 0};
+	const float *n = nt_normal(mesh, vertex);
+	const bool finite = isfinite(n[0]) && isfinite(n[1]) && isfinite(n[2]);
+	return finite ? nt_weigh_normal(n[0], n[1], n[2]) : (nt_dvec3){0, 0, 0};
 }
 
 /* The texture coordinates of a triangle, as given or as stored. */
@@ -53,10 +47,8 @@ static int larger_half(const nmtan_mesh *mesh, uint32_t corners[2][3], bool stor
 	return larger >= 0 ? signs[0] : signs[1];
 }
 
-int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool stored, bool *folded)
+int nt_cut_orientation(const nmtan_mesh *mesh, uint32_t corners[2][3], unsigned count, bool stored, bool *folded)
 {
-	uint32_t corners[2][3];
-	const unsigned count = nt_face_triangles(mesh, face, first, corners);
 	int signs[2] = {nt_triangle_orientation(mesh, corners[0], stored), 0};
 	int sign = signs[0];
 	bool differ = false;
@@ -68,16 +60,22 @@ int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool 
 	if (folded)
 		*folded = differ;
 	return sign || !stored || !nt_has_stored(mesh)
-		? sign : nt_face_orientation(mesh, face, first, false, NULL);
+		? sign : nt_cut_orientation(mesh, corners, count, false, NULL);
 }
 
-/* What the sums need of a triangle. Its differences are exact, or pairs of doubles where they must be. */
+int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool stored, bool *folded)
+{
+	uint32_t corners[2][3];
+	const unsigned count = nt_face_triangles(mesh, face, first, corners);
+	return nt_cut_orientation(mesh, corners, count, stored, folded);
+}
+
+/* What the sums need of a triangle. */
 typedef struct solved {
 	nt_dvec3 u;          /* dP/du times |determinant|: growing u */
 	nt_dvec3 across;     /* cross product of the edges from the first corner */
 	nt_dvec3 edge[3];    /* from corner k to k + 1 */
 	double determinant;  /* of the UV edges, magnitude */
-	double across_length;
 } solved;
 
 static double largest_of(nt_dvec3 v)
@@ -85,30 +83,36 @@ static double largest_of(nt_dvec3 v)
 	return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
 }
 
-/* p - q of rounded products has lost bits when it is that much smaller; then the residuals count. */
-static bool cancels(nt_dvec3 p, nt_dvec3 q, nt_dvec3 difference)
+/* A difference p - q of products, or of their largest components, that loses more than `most` bits' worth. */
+static bool cancels(double most, double p, double q, double difference)
 {
-	return NT_CANCELLATION * largest_of(difference) < fmax(largest_of(p), largest_of(q));
+	return most * difference < fmax(p, q);
 }
 
-/* s a - t b, good to a few units in the last place of its largest component. */
-static nt_dvec3 combine(double s, nt_dvec3 a, double t, nt_dvec3 b)
+/* s a - t b as rounded products have it; false where they cancel. */
+static bool combine(double most, double s, nt_dvec3 a, double t, nt_dvec3 b, nt_dvec3 *difference)
 {
 	const nt_dvec3 p = nt_dvec3_scale(s, a), q = nt_dvec3_scale(t, b);
-	const nt_dvec3 difference = nt_dvec3_sub(p, q);
-	if (!cancels(p, q, difference))
-		return difference;
+	*difference = nt_dvec3_sub(p, q);
+	return !cancels(most, largest_of(p), largest_of(q), largest_of(*difference));
+}
+
+/* a x b, the same. */
+static bool cross(double most, nt_dvec3 a, nt_dvec3 b, nt_dvec3 *difference)
+{
+	const nt_dvec3 p = {a.y * b.z, a.z * b.x, a.x * b.y}, q = {a.z * b.y, a.x * b.z, a.y * b.x};
+	*difference = nt_dvec3_sub(p, q);
+	return !cancels(most, largest_of(p), largest_of(q), largest_of(*difference));
+}
+
+static nt_dvec3 combine_exactly(double s, nt_dvec3 a, double t, nt_dvec3 b)
+{
 	return (nt_dvec3){nt_product_difference(s, a.x, t, b.x), nt_product_difference(s, a.y, t, b.y),
 		nt_product_difference(s, a.z, t, b.z)};
 }
 
-/* a x b, to the same precision. */
-static nt_dvec3 cross(nt_dvec3 a, nt_dvec3 b)
+static nt_dvec3 cross_exactly(nt_dvec3 a, nt_dvec3 b)
 {
-	const nt_dvec3 p = {a.y * b.z, a.z * b.x, a.x * b.y}, q = {a.z * b.y, a.x * b.z, a.y * b.x};
-	const nt_dvec3 difference = nt_dvec3_sub(p, q);
-	if (!cancels(p, q, difference))
-		return difference;
 	return (nt_dvec3){nt_product_difference(a.y, b.z, a.z, b.y),
 		nt_product_difference(a.z, b.x, a.x, b.z), nt_product_difference(a.x, b.y, a.y, b.x)};
 }
@@ -120,7 +124,7 @@ static bool exact3(nt_dvec3 difference, const float *a, const float *b)
 }
 
 /* The same values by expansions, for triangles whose exponents lie so far apart that a difference is not
- * a double. */
+ * a double, and whose products cancel. */
 static void solve_by_expansions(const float *const p[3], const float *const t[3], solved *f)
 {
 	double d1[3][2], d2[3][2], bu[2], bv[2], cu[2], cv[2];
@@ -143,76 +147,73 @@ static void solve_by_expansions(const float *const p[3], const float *const t[3]
 	f->determinant = nt_exact_product_difference(bu, cv, bv, cu);
 }
 
+/* From differences that are doubles, or nearly; false where that is not enough. */
+static bool solve_by_doubles(const float *const p[3], const float *const t[3], solved *f)
+{
+	const nt_dvec3 d1 = f->edge[0], d2 = nt_dvec3_scale(-1.0, f->edge[2]);
+	const double bu = (double)t[1][0] - t[0][0], bv = (double)t[1][1] - t[0][1];
+	const double cu = (double)t[2][0] - t[0][0], cv = (double)t[2][1] - t[0][1];
+	const bool exact_uv = nt_is_difference(bu, t[0][0], t[1][0]) && nt_is_difference(bv, t[0][1], t[1][1]) &&
+			      nt_is_difference(cu, t[0][0], t[2][0]) && nt_is_difference(cv, t[0][1], t[2][1]);
+	const bool exact = exact_uv && exact3(d1, p[0], p[1]) && exact3(d2, p[0], p[2]);
+	const double most = exact ? NT_CANCELLATION : NT_CANCELLATION_INEXACT;
+	if (!combine(most, cv, d1, bv, d2, &f->u)) {
+		if (!exact)
+			return false;
+		f->u = combine_exactly(cv, d1, bv, d2);
+	}
+	if (!cross(most, d1, d2, &f->across)) {
+		if (!exact)
+			return false;
+		f->across = cross_exactly(d1, d2);
+	}
+	f->determinant = nt_product_difference(bu, cv, bv, cu);
+	return exact_uv || !cancels(most, fabs(bu * cv), fabs(bv * cu), fabs(bu * cv - bv * cu));
+}
+
 /* False where the determinant is zero or a value is not finite. */
 static bool solve_triangle(const nmtan_mesh *mesh, const uint32_t corners[3], solved *f)
 {
 	const float *p[3], *t[3];
+	bool finite = true;
 	for (int k = 0; k < 3; k++) {
 		const size_t vertex = nt_vertex_of(mesh, corners[k]);
 		p[k] = nt_position(mesh, vertex);
 		t[k] = nt_texcoord(mesh, vertex);
+		finite = finite && isfinite(p[k][0]) && isfinite(p[k][1]) && isfinite(p[k][2]);
 	}
-	const int sign = nt_orientation(t[0], t[1], t[2]);
-	if (sign == 0)
+	const int sign = nt_orientation(t[0], t[1], t[2]); /* 0 where one is not finite */
+	if (sign == 0 || !finite)
 		return false;
 	for (int k = 0; k < 3; k++)
 		f->edge[k] = nt_dvec3_sub(nt_dvec3_load(p[(k + 1) % 3]), nt_dvec3_load(p[k]));
-	const nt_dvec3 d1 = f->edge[0], d2 = nt_dvec3_scale(-1.0, f->edge[2]);
-	const double bu = (double)t[1][0] - t[0][0], bv = (double)t[1][1] - t[0][1];
-	const double cu = (double)t[2][0] - t[0][0], cv = (double)t[2][1] - t[0][1];
-	if (exact3(d1, p[0], p[1]) && exact3(d2, p[0], p[2]) &&
-		nt_is_difference(bu, t[0][0], t[1][0]) && nt_is_difference(bv, t[0][1], t[1][1]) &&
-		nt_is_difference(cu, t[0][0], t[2][0]) && nt_is_difference(cv, t[0][1], t[2][1])) {
-		f->u = combine(cv, d1, bv, d2);
-		f->across = cross(d1, d2);
-		f->determinant = nt_product_difference(bu, cv, bv, cu);
-	} else {
+	if (!solve_by_doubles(p, t, f))
 		solve_by_expansions(p, t, f);
-	}
 	f->u = nt_dvec3_scale(sign, f->u);
 	f->determinant = fabs(f->determinant);
-	f->across_length = sqrt(nt_dvec3_dot(f->across, f->across));
-	return isfinite(f->u.x + f->u.y + f->u.z);
+	return true;
 }
 
-/* A corner's angle seen along its normal n, and how much an error of the projection moves it: the
- * condition, times the angle. The sine is the part of the triangle's cross product along n, which does not
- * cancel in needles as the cross product of projected edges does. */
-static double corner_angle(const solved *f, int k, nt_dvec3 n, double *condition)
+/* Adds dP/du at a corner. */
+static void add_unweighted(nt_dvec3 u, nt_dvec3 n, nt_frame_sum *sum)
 {
-	const nt_dvec3 e = f->edge[k], g = f->edge[(k + 2) % 3];
-	const nt_dvec3 pe = nt_dvec3_reject(n, e), pg = nt_dvec3_reject(n, g);
-	const double c = -nt_dvec3_dot(pe, pg);
+	const nt_dvec3 direction = nt_dvec3_reject(n, u);
+	sum->u = nt_dvec3_add(sum->u, direction);
+	sum->weights += nt_dvec3_length(direction);
+	sum->sensitivity += nt_dvec3_length(u);
+}
+
+static void add_weighted(const nt_measured *m, const double lengths[3], const solved *f, nt_dvec3 n, int k,
+	int by_area, nt_frame_sum *sum)
+{
+	const int before = (k + 2) % 3;
 	const bool has_normal = n.x != 0.0 || n.y != 0.0 || n.z != 0.0;
-	const double s = has_normal ? fabs(nt_dvec3_dot(n, f->across)) : f->across_length;
-	const double squared = s * s + c * c;
-	*condition = squared > 0.0
-		? (fabs(c) * f->across_length + s * sqrt(nt_dvec3_dot(e, e) * nt_dvec3_dot(g, g))) / squared
-		: 0.0;
-	return nt_angle(s, c);
-}
-
-/* Adds a triangle's direction u (unit but for NT_WEIGHT_NONE) at its corner k. */
-static void add_corner(const solved *f, nt_weight weight, nt_dvec3 u, nt_dvec3 n, int k, nt_frame_sum *sum)
-{
-	nt_dvec3 direction = nt_dvec3_reject(n, u);
-	if (weight == NT_WEIGHT_NONE) {
-		sum->u = nt_dvec3_add(sum->u, direction);
-		sum->weights += nt_dvec3_length(direction);
-		sum->sensitivity += nt_dvec3_length(u);
-		return;
-	}
-	const double length = nt_dvec3_length(direction);
-	if (!(length > NT_PARALLEL))
-		return;
-	double condition;
-	const double angle = corner_angle(f, k, n, &condition);
-	double factor = 1.0;
-	if (weight == NT_WEIGHT_AREA)
-		factor = nt_dvec3_length(f->edge[k]) * nt_dvec3_length(f->edge[(k + 2) % 3]);
-	sum->u = nt_dvec3_add(sum->u, nt_dvec3_scale(factor * angle / length, direction));
-	sum->weights += factor * angle;
-	sum->sensitivity += factor * (angle / length + condition);
+	const double sine = has_normal ? fabs(nt_dvec3_dot(n, f->across)) : nt_dvec3_length(f->across);
+	const nt_weighed w = nt_weigh_corner(m, n, f->edge[k], f->edge[before], lengths[k], lengths[before], sine,
+		by_area);
+	sum->u = nt_dvec3_add(sum->u, w.u);
+	sum->weights += w.weight;
+	sum->sensitivity += w.sensitivity;
 }
 
 void nt_add_triangle(const nmtan_mesh *mesh, nt_weight weight, const uint32_t corners[3],
@@ -221,14 +222,20 @@ void nt_add_triangle(const nmtan_mesh *mesh, nt_weight weight, const uint32_t co
 	solved f;
 	if (!solve_triangle(mesh, corners, &f))
 		return;
-	if (weight == NT_WEIGHT_NONE)
-		f.u = nt_dvec3_scale(1.0 / f.determinant, f.u);
-	else if (!nt_dvec3_normalise(&f.u))
-		return;
+	const int by_area = weight == NT_WEIGHT_AREA;
+	const nt_measured m = nt_measure(f.u, f.across);
+	double lengths[3];
 	for (int k = 0; k < 3; k++)
-		if (sums[k])
-			add_corner(&f, weight, f.u, nt_unit_normal(mesh, nt_vertex_of(mesh, corners[k])), k,
-				sums[k]);
+		lengths[k] = nt_measure_edge(f.edge[k], by_area);
+	for (int k = 0; k < 3; k++) {
+		const nt_dvec3 n = nt_unit_normal(mesh, nt_vertex_of(mesh, corners[k]));
+		if (!sums[k])
+			continue;
+		if (weight == NT_WEIGHT_NONE)
+			add_unweighted(nt_dvec3_scale(1.0 / f.determinant, f.u), n, sums[k]);
+		else
+			add_weighted(&m, lengths, &f, n, k, by_area, sums[k]);
+	}
 }
 
 void nt_sum_frames(const nmtan_mesh *mesh, nt_weight weight, const uint32_t *ids,
@@ -258,14 +265,8 @@ void nt_sum_frames(const nmtan_mesh *mesh, nt_weight weight, const uint32_t *ids
 
 bool nt_sum_tangent(const nt_frame_sum *sum, nt_dvec3 n, nt_dvec3 *tangent)
 {
-	if (!(nt_dvec3_length(sum->u) > CANCELLED * sum->weights))
+	if (!(nt_dvec3_length(sum->u) > NT_CANCELLED * sum->weights))
 		return false;
 	*tangent = nt_dvec3_reject(n, sum->u);
 	return nt_dvec3_normalise(tangent);
-}
-
-bool nt_sum_is_ill_conditioned(const nt_frame_sum *sum)
-{
-	const double length = nt_dvec3_length(sum->u);
-	return !(length > 0.0 && sum->sensitivity <= WELL_CONDITIONED * length);
 }

@@ -32,8 +32,18 @@ typedef struct nt_frame_sum {
 #define NT_NO_ID UINT32_MAX
 
 /* Products are kept with their residuals where their difference is that much smaller: 2^-53 then becomes
- * 2^-49, which a condition of 2^24 leaves below half of a float's last place. */
-#define NT_CANCELLATION 16.0
+ * 29 times that in the length of u, which a condition of 2^24 leaves below half of a float's last place. */
+#define NT_CANCELLATION 8.0
+
+/* The same where differences of coordinates were rounded too: 23 times 2^-53. Beyond, they are not. */
+#define NT_CANCELLATION_INEXACT 2.0
+
+/* Below this share of the summed lengths a sum's direction is rounding noise: 2^-53 per addition and
+ * term, with room for a million terms. */
+#define NT_CANCELLED 1e-10
+
+/* The condition up to which `robust` promises 2^-23 in each component. */
+#define NT_WELL_CONDITIONED 16777216.0
 
 /* Sine of the angle between u and the normal below which the projected direction would be noise. */
 #define NT_PARALLEL 1e-15
@@ -50,6 +60,9 @@ int nt_triangle_orientation(const nmtan_mesh *mesh, const uint32_t corners[3], b
  * texture coordinates first.
  */
 int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool stored, bool *folded);
+
+/* The same of a face that is cut into `count` triangles. */
+int nt_cut_orientation(const nmtan_mesh *mesh, uint32_t corners[2][3], unsigned count, bool stored, bool *folded);
 
 /* Adds a triangle's frame to the sums of its corners; NULL: the corner is left out. */
 void nt_add_triangle(const nmtan_mesh *mesh, nt_weight weight, const uint32_t corners[3],
@@ -68,8 +81,5 @@ void nt_sum_frames(const nmtan_mesh *mesh, nt_weight weight, const uint32_t *ids
 /* The unit tangent of a sum, perpendicular to the unit (or zero) normal n; false where the sum has no
  * direction. */
 bool nt_sum_tangent(const nt_frame_sum *sum, nt_dvec3 n, nt_dvec3 *tangent);
-
-/* Whether more than 24 bits cancel in the sum and its projections, or all of them. */
-bool nt_sum_is_ill_conditioned(const nt_frame_sum *sum);
 
 #endif

@@ -11,10 +11,16 @@
 
 /* What a method knows of its result, for judge.c. Of a triangle without a bit of `suspect` all corners are
  * usable, it is not degenerate, no half of a folded quad, and its orientation, positive where a bit of
- * `positive` is set, is exact and survives storing. */
+ * `positive` is set, is exact and survives storing.
+ *
+ * With ids the rows of triangles without a bit of `suspect` may not have been written: the tangent of
+ * such a corner is that of its vertex and its triangle's orientation. Meshes with quads have no ids. */
 typedef struct nt_vouched {
 	const uint8_t *flags; /* [triangle_count], quads count as two; NULL: nothing is known */
 	uint8_t suspect, positive;
+	const uint32_t *ids;  /* [corner_count] welded vertices, or NULL */
+	const float *rows[2]; /* [vertex count][4] by orientation, w = 0 where no triangle at the vertex
+	                         has it; NULL: none at all */
 } nt_vouched;
 
 typedef struct nt_solve {
@@ -27,6 +33,7 @@ typedef struct nt_solve {
 	nt_scratch *scratch;
 	nmtan_timing *timing;    /* to be added to, or NULL */
 	nt_vouched *vouched;     /* for the method to fill; empty before; may be NULL */
+	bool sparse;             /* sums: rows that vouched.ids stands for need not be written */
 	float *tangents;         /* [corner_count][4] */
 	float *bitangents;       /* [corner_count][3] or NULL */
 	float *magnitudes;       /* [corner_count][2] or NULL */

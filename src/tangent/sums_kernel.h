@@ -1,17 +1,41 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Frames and weights of 16 triangles in double, as one plain loop that the compiler makes vectors of.
- * kernel_*.c include this file once for each instruction set, with NT_SUM_KERNEL giving the name.
+ * The passes of sums.c that need lanes, as plain loops over 16 of them that the compiler makes vectors of.
+ * kernel_*.c include this file once for each instruction set, behind kernel.h, whose turn() and gather_four() it
+ * uses, with NT_SUM_KERNEL giving the name.
  *
- * The arithmetic is that of frames.c, operation by operation. What it does with branches (differences
- * that are no doubles, products that cancel, values that are not finite) is only noticed here: such a lane
- * is hard and is left to frames.c. On ordinary meshes few are.
+ * accumulate: 16 triangles at a time. The arithmetic is that of frames.c, operation by operation, in steps
+ * that each fit the registers: directions, their second look where products cancel, lengths, corners.
+ * Values that are not finite, vertices without a normal and differences that are no doubles and cancel
+ * are only noticed here: such a lane is hard and is left to frames.c. On ordinary meshes none is.
+ *
+ * finish: 16 vertices at a time, sums become tangents.
  */
 #include <math.h>
-#include "base/angle.h"
 #include "tangent/sums.h"
+#include "tangent/weigh.h"
 
 #define LANE_INLINE static inline __attribute__((always_inline))
+#define LANES(i) for (int i = 0; i < NT_SUM_LANES; i++)
+
+/* Everything finite is below; so are products of three. */
+#define SUM_HUGE 1e100
+
+typedef double nt_double4 __attribute__((vector_size(32)));
+
+/* What goes from one step to the next, by lane. */
+typedef struct sum_lanes {
+	float row[3][8][NT_SUM_LANES]; /* corner, float of its nt_weld_row */
+	double uv[4][NT_SUM_LANES];    /* the texture edges bu, bv, cu, cv */
+	double edge[3][3][NT_SUM_LANES];
+	double u[3][NT_SUM_LANES], across[3][NT_SUM_LANES];
+	double sign[NT_SUM_LANES];
+	double squared[NT_SUM_LANES], u_length[NT_SUM_LANES], across_length[NT_SUM_LANES];
+	double length[3][NT_SUM_LANES]; /* of edges */
+	double normals[NT_SUM_LANES];   /* product of the normals' squares; > 0: all are there */
+	double weight[NT_SUM_LANES];    /* the least sensitivity of the corners */
+	int64_t u_cancels[NT_SUM_LANES], across_cancels[NT_SUM_LANES], tie[NT_SUM_LANES];
+} sum_lanes;
 
 LANE_INLINE double lane_larger(double a, double b)
 {
@@ -29,96 +53,421 @@ LANE_INLINE int64_t lane_is_difference(double d, double a, double b)
 	return (int64_t)(d + a == b) & (int64_t)(b - d == a);
 }
 
-LANE_INLINE int64_t lane_cancels(nt_dvec3 p, nt_dvec3 q, nt_dvec3 d)
+LANE_INLINE int64_t lane_cancels(double most, nt_dvec3 p, nt_dvec3 q, nt_dvec3 d)
 {
-	return NT_CANCELLATION * lane_largest(d.x, d.y, d.z) <
+	return most * lane_largest(d.x, d.y, d.z) <
 	       lane_larger(lane_largest(p.x, p.y, p.z), lane_largest(q.x, q.y, q.z));
 }
 
-LANE_INLINE nt_dvec3 lane_load(const nt_sum_block *block, int corner, int from, int lane)
+LANE_INLINE nt_dvec3 lane_load(const double (*from)[NT_SUM_LANES], int i)
 {
-	return (nt_dvec3){block->row[corner][from][lane], block->row[corner][from + 1][lane],
-		block->row[corner][from + 2][lane]};
+	return (nt_dvec3){from[0][i], from[1][i], from[2][i]};
 }
 
-/* One corner with edges e to the next and g from the previous vertex; u is the unit direction. */
-LANE_INLINE void lane_corner(nt_sum_block *block, int corner, int lane, nt_dvec3 u, nt_dvec3 e, nt_dvec3 g,
-	nt_dvec3 across, double across_length, int by_area)
+LANE_INLINE void lane_store(double (*to)[NT_SUM_LANES], int i, nt_dvec3 v)
 {
-	const nt_dvec3 n = lane_load(block, corner, 3, lane);
-	const nt_dvec3 direction = nt_dvec3_reject(n, u);
-	const double length = nt_dvec3_length(direction);
-	const nt_dvec3 pe = nt_dvec3_reject(n, e), pg = nt_dvec3_reject(n, g);
-	const double c = -nt_dvec3_dot(pe, pg);
-	const double along = fabs(nt_dvec3_dot(n, across));
-	const double s = lane_largest(n.x, n.y, n.z) > 0.0 ? along : across_length;
-	const double squared = s * s + c * c;
-	/* divisors that may be zero are replaced, not branched around: what is divided is zero then, or dropped */
-	const double condition = (fabs(c) * across_length + s * sqrt(nt_dvec3_dot(e, e) * nt_dvec3_dot(g, g))) /
-				 (squared > 0.0 ? squared : 1.0);
-	const double angle = nt_angle_finite(s, c);
-	const double factor = by_area ? nt_dvec3_length(e) * nt_dvec3_length(g) : 1.0;
-	const double usable = length > NT_PARALLEL ? 1.0 : 0.0;
-	const double divisor = length > NT_PARALLEL ? length : 1.0;
-	const double scale = usable * (factor * angle / divisor);
-	block->add[corner][0][lane] = scale * direction.x;
-	block->add[corner][1][lane] = scale * direction.y;
-	block->add[corner][2][lane] = scale * direction.z;
-	block->add[corner][3][lane] = usable * (factor * angle);
-	block->add[corner][4][lane] = usable * (factor * (angle / divisor + condition));
+	to[0][i] = v.x, to[1][i] = v.y, to[2][i] = v.z;
 }
 
-LANE_INLINE void lane_triangle(nt_sum_block *block, int lane, int by_area)
+LANE_INLINE nt_dvec3 lane_floats(const float (*from)[NT_SUM_LANES], int i)
 {
-	const nt_dvec3 p0 = lane_load(block, 0, 0, lane), p1 = lane_load(block, 1, 0, lane),
-		       p2 = lane_load(block, 2, 0, lane);
-	const double u0 = block->row[0][6][lane], v0 = block->row[0][7][lane];
-	const double u1 = block->row[1][6][lane], v1 = block->row[1][7][lane];
-	const double u2 = block->row[2][6][lane], v2 = block->row[2][7][lane];
-	const nt_dvec3 e0 = nt_dvec3_sub(p1, p0), e1 = nt_dvec3_sub(p2, p1), e2 = nt_dvec3_sub(p0, p2);
-	const nt_dvec3 d2 = nt_dvec3_scale(-1.0, e2);
-	const double bu = u1 - u0, bv = v1 - v0, cu = u2 - u0, cv = v2 - v0;
-	int64_t exact = lane_is_difference(e0.x, p0.x, p1.x) & lane_is_difference(e0.y, p0.y, p1.y) &
-			lane_is_difference(e0.z, p0.z, p1.z) & lane_is_difference(d2.x, p0.x, p2.x) &
-			lane_is_difference(d2.y, p0.y, p2.y) & lane_is_difference(d2.z, p0.z, p2.z);
-	exact &= lane_is_difference(bu, u0, u1) & lane_is_difference(bv, v0, v1) &
-		 lane_is_difference(cu, u0, u2) & lane_is_difference(cv, v0, v2);
-	const double left = bu * cv, right = bv * cu;
-	const double sign = left > right ? 1.0 : -1.0;
-
-	const nt_dvec3 up = nt_dvec3_scale(cv, e0), uq = nt_dvec3_scale(bv, d2);
-	const nt_dvec3 ud = nt_dvec3_sub(up, uq), su = nt_dvec3_scale(sign, ud);
-	const nt_dvec3 ap = {e0.y * d2.z, e0.z * d2.x, e0.x * d2.y};
-	const nt_dvec3 aq = {e0.z * d2.y, e0.x * d2.z, e0.y * d2.x};
-	const nt_dvec3 across = nt_dvec3_sub(ap, aq);
-	const double across_length = nt_dvec3_length(across);
-
-	/* unit u, as nt_dvec3_normalise() */
-	const double largest = lane_largest(su.x, su.y, su.z);
-	const nt_dvec3 scaled = {su.x / largest, su.y / largest, su.z / largest};
-	const nt_dvec3 u = nt_dvec3_scale(1.0 / sqrt(nt_dvec3_dot(scaled, scaled)), scaled);
-
-	const int64_t easy = exact & (int64_t)(left != right) & (int64_t)(largest > 0.0);
-	block->hard[lane] = (easy ^ 1) | lane_cancels(up, uq, ud) | lane_cancels(ap, aq, across);
-	block->sign[lane] = left > right ? 1 : -1;
-	lane_corner(block, 0, lane, u, e0, e2, across, across_length, by_area);
-	lane_corner(block, 1, lane, u, e1, e0, across, across_length, by_area);
-	lane_corner(block, 2, lane, u, e2, e1, across, across_length, by_area);
-	block->plain[lane] = (block->hard[lane] ^ 1) & (int64_t)(across_length > 0.0) &
-			     (int64_t)(block->add[0][3][lane] > 0.0) & (int64_t)(block->add[1][3][lane] > 0.0) &
-			     (int64_t)(block->add[2][3][lane] > 0.0);
+	return (nt_dvec3){from[0][i], from[1][i], from[2][i]};
 }
 
-static void sum_by_angle(nt_sum_block *block)
+/* Directions and signs. */
+static void __attribute__((noinline)) sum_frames(sum_lanes *restrict l, nt_sum_block *restrict block,
+	double offset, double slack)
 {
-	for (int lane = 0; lane < NT_SUM_LANES; lane++)
-		lane_triangle(block, lane, 0);
+	LANES(i) {
+		const nt_dvec3 p0 = lane_floats(l->row[0], i), p1 = lane_floats(l->row[1], i),
+			       p2 = lane_floats(l->row[2], i);
+		const double u0 = l->row[0][6][i], v0 = l->row[0][7][i];
+		const double u1 = l->row[1][6][i], v1 = l->row[1][7][i];
+		const double u2 = l->row[2][6][i], v2 = l->row[2][7][i];
+		const nt_dvec3 e0 = nt_dvec3_sub(p1, p0), e1 = nt_dvec3_sub(p2, p1), e2 = nt_dvec3_sub(p0, p2);
+		const nt_dvec3 d2 = nt_dvec3_scale(-1.0, e2);
+		const double bu = u1 - u0, bv = v1 - v0, cu = u2 - u0, cv = v2 - v0;
+		const int64_t exact_uv = lane_is_difference(bu, u0, u1) & lane_is_difference(bv, v0, v1) &
+					 lane_is_difference(cu, u0, u2) & lane_is_difference(cv, v0, v2);
+		const int64_t exact = exact_uv & lane_is_difference(e0.x, p0.x, p1.x) &
+			lane_is_difference(e0.y, p0.y, p1.y) & lane_is_difference(e0.z, p0.z, p1.z) &
+			lane_is_difference(d2.x, p0.x, p2.x) & lane_is_difference(d2.y, p0.y, p2.y) &
+			lane_is_difference(d2.z, p0.z, p2.z);
+		const int64_t finite = fabs(e0.x) + fabs(e0.y) + fabs(e0.z) + fabs(d2.x) + fabs(d2.y) + fabs(d2.z) +
+				       fabs(bu) + fabs(bv) + fabs(cu) + fabs(cv) < SUM_HUGE;
+
+		const double left = bu * cv, right = bv * cu, difference = fabs(left - right);
+		const double larger = lane_larger(fabs(left), fabs(right));
+		const int64_t flat = (int64_t)(left == 0.0) & (int64_t)(right == 0.0);
+		const int64_t tie = exact_uv & (int64_t)(left == right) & (flat ^ 1);
+		const int64_t apart = (int64_t)(NT_CANCELLATION_INEXACT * difference >= larger);
+		const int64_t known = flat | exact_uv | apart;
+
+		const nt_dvec3 up = nt_dvec3_scale(cv, e0), uq = nt_dvec3_scale(bv, d2), u = nt_dvec3_sub(up, uq);
+		const nt_dvec3 ap = {e0.y * d2.z, e0.z * d2.x, e0.x * d2.y};
+		const nt_dvec3 aq = {e0.z * d2.y, e0.x * d2.z, e0.y * d2.x};
+		const nt_dvec3 across = nt_dvec3_sub(ap, aq);
+		const double most = exact ? NT_CANCELLATION : NT_CANCELLATION_INEXACT;
+		const int64_t u_cancels = lane_cancels(most, up, uq, u);
+		const int64_t across_cancels = lane_cancels(most, ap, aq, across);
+
+		l->tie[i] = tie;
+		l->u_cancels[i] = u_cancels & exact;
+		l->across_cancels[i] = across_cancels & exact;
+		block->hard[i] = (finite ^ 1) | (known ^ 1) |
+				 ((flat ^ 1) & (exact ^ 1) & (u_cancels | across_cancels));
+		l->sign[i] = left > right ? 1.0 : left < right ? -1.0 : 0.0;
+		/* storing moves each v by u |v + offset| at most, u = 2^-24, an edge by twice that */
+		block->certain[i] = slack * ((fabs(v0) + fabs(v1) + fabs(v2) + offset) * (fabs(bu) + fabs(cu))) <=
+				    difference;
+		l->uv[0][i] = bu, l->uv[1][i] = bv, l->uv[2][i] = cu, l->uv[3][i] = cv;
+		lane_store(l->edge[0], i, e0);
+		lane_store(l->edge[1], i, e1);
+		lane_store(l->edge[2], i, e2);
+		lane_store(l->u, i, u);
+		lane_store(l->across, i, across);
+	}
 }
 
-static void sum_by_area(nt_sum_block *block)
+#if defined(__FMA__) || defined(__ARM_FEATURE_FMA)
+LANE_INLINE double lane_product_difference(double a, double b, double c, double d)
 {
-	for (int lane = 0; lane < NT_SUM_LANES; lane++)
-		lane_triangle(block, lane, 1);
+	const double product = c * d;
+	return fma(a, b, -product) + fma(-c, d, product);
 }
 
-const nt_sum_kernels NT_SUM_KERNEL = {sum_by_angle, sum_by_area};
+/* A second look, with residuals, at what cancels. */
+static void __attribute__((noinline)) sum_cancelled(sum_lanes *restrict l, nt_sum_block *restrict block)
+{
+	(void)block;
+	LANES(i) {
+		const nt_dvec3 d1 = lane_load(l->edge[0], i), e2 = lane_load(l->edge[2], i);
+		const nt_dvec3 d2 = nt_dvec3_scale(-1.0, e2);
+		const double bu = l->uv[0][i], bv = l->uv[1][i], cu = l->uv[2][i], cv = l->uv[3][i];
+		const nt_dvec3 u = {lane_product_difference(cv, d1.x, bv, d2.x),
+			lane_product_difference(cv, d1.y, bv, d2.y), lane_product_difference(cv, d1.z, bv, d2.z)};
+		const nt_dvec3 across = {lane_product_difference(d1.y, d2.z, d1.z, d2.y),
+			lane_product_difference(d1.z, d2.x, d1.x, d2.z),
+			lane_product_difference(d1.x, d2.y, d1.y, d2.x)};
+		for (int c = 0; c < 3; c++) {
+			const double uc = c == 0 ? u.x : c == 1 ? u.y : u.z;
+			const double ac = c == 0 ? across.x : c == 1 ? across.y : across.z;
+			l->u[c][i] = l->u_cancels[i] ? uc : l->u[c][i];
+			l->across[c][i] = l->across_cancels[i] ? ac : l->across[c][i];
+		}
+		const double rest = fma(bu, cv, -(bu * cv)) - fma(bv, cu, -(bv * cu));
+		const double sign = rest > 0.0 ? 1.0 : rest < 0.0 ? -1.0 : 0.0;
+		l->sign[i] = l->tie[i] ? sign : l->sign[i];
+	}
+}
+#else
+/* Without fused operations these lanes are hard. */
+static void sum_cancelled(sum_lanes *restrict l, nt_sum_block *restrict block)
+{
+	LANES(i)
+		block->hard[i] |= l->u_cancels[i] | l->across_cancels[i] | l->tie[i];
+}
+#endif
+
+LANE_INLINE void sum_lengths(sum_lanes *restrict l, nt_sum_block *restrict block, int by_area)
+{
+	LANES(i) {
+		const nt_dvec3 u = nt_dvec3_scale(l->sign[i], lane_load(l->u, i));
+		const nt_measured m = nt_measure(u, lane_load(l->across, i));
+		lane_store(l->u, i, u);
+		l->squared[i] = m.squared;
+		l->u_length[i] = m.u_length;
+		l->across_length[i] = m.across_length;
+		for (int k = 0; k < 3; k++)
+			l->length[k][i] = nt_measure_edge(lane_load(l->edge[k], i), by_area);
+		l->normals[i] = 1.0;
+		l->weight[i] = INFINITY;
+		block->sign[i] = (int64_t)(l->sign[i] > 0.0) - (int64_t)(l->sign[i] < 0.0);
+	}
+}
+
+LANE_INLINE void sum_corner(sum_lanes *restrict l, nt_sum_block *restrict block, int k, int by_area)
+{
+	const int before = (k + 2) % 3;
+	LANES(i) {
+		const nt_dvec3 raw = lane_floats(l->row[k] + 3, i), n = nt_weigh_normal(raw.x, raw.y, raw.z);
+		const double squared = nt_dvec3_dot(raw, raw);
+		const nt_measured m = {lane_load(l->u, i), lane_load(l->across, i), l->squared[i], l->u_length[i],
+			l->across_length[i]};
+		const double sine = fabs(nt_dvec3_dot(n, m.across));
+		const nt_weighed w = nt_weigh_corner(&m, n, lane_load(l->edge[k], i), lane_load(l->edge[before], i),
+			l->length[k][i], l->length[before][i], sine, by_area);
+		lane_store(block->add[k], i, w.u);
+		block->add[k][3][i] = w.sensitivity;
+		l->normals[i] = squared > 0.0 && squared < SUM_HUGE ? l->normals[i] : 0.0;
+		l->weight[i] = w.sensitivity < l->weight[i] ? w.sensitivity : l->weight[i];
+	}
+}
+
+LANE_INLINE void sum_corners(sum_lanes *restrict l, nt_sum_block *restrict block, int by_area)
+{
+	sum_lengths(l, block, by_area);
+	sum_corner(l, block, 0, by_area);
+	sum_corner(l, block, 1, by_area);
+	sum_corner(l, block, 2, by_area);
+	LANES(i) {
+		block->hard[i] |= (int64_t)!(l->normals[i] > 0.0);
+		block->plain[i] = (block->hard[i] ^ 1) & (int64_t)(l->sign[i] != 0.0) &
+				  (int64_t)(l->across_length[i] > 0.0) & (int64_t)(l->weight[i] > 0.0);
+	}
+}
+
+static void __attribute__((noinline)) sum_corners_by_angle(sum_lanes *l, nt_sum_block *block)
+{
+	sum_corners(l, block, 0);
+}
+
+static void __attribute__((noinline)) sum_corners_by_area(sum_lanes *l, nt_sum_block *block)
+{
+	sum_corners(l, block, 1);
+}
+
+/* Rows of the corners of `count` triangles; the lanes behind repeat the last one. */
+static void sum_gather(const nt_sums *s, size_t first, size_t count, sum_lanes *restrict l)
+{
+	uint32_t padded[3 * NT_SUM_LANES];
+	const uint32_t *ids = s->ids + 3 * first;
+	if (count < NT_SUM_LANES) {
+		for (size_t i = 0; i < NT_SUM_LANES; i++)
+			memcpy(padded + 3 * i, ids + 3 * (i < count ? i : count - 1), 3 * sizeof *ids);
+		ids = padded;
+	}
+	for (size_t k = 0; k < 3; k++)
+		for (size_t lane = 0; lane < NT_SUM_LANES; lane += 4) {
+			gather_four(s->weld.rows, ids + k, 0, l->row[k], lane);
+			gather_four(s->weld.rows, ids + k, 4, l->row[k], lane);
+		}
+}
+
+static void sum_solve(const nt_sums *s, size_t first, size_t count, sum_lanes *l, nt_sum_block *block)
+{
+	const double offset = s->solve->mesh->stored_v_offset;
+	sum_gather(s, first, count, l);
+	sum_frames(l, block, fabs(offset), offset != 0.0 ? 3 * 0x1p-24 : 0.0);
+	int64_t cancelled = 0;
+	LANES(i)
+		cancelled |= l->u_cancels[i] | l->across_cancels[i] | l->tie[i];
+	if (cancelled)
+		sum_cancelled(l, block);
+	if (s->weight == NT_WEIGHT_AREA)
+		sum_corners_by_area(l, block);
+	else
+		sum_corners_by_angle(l, block);
+}
+
+LANE_INLINE uint8_t sum_flags(const nt_sum_block *block, size_t i)
+{
+	return (uint8_t)((block->sign[i] > 0 ? NT_SUM_POSITIVE : 0) | (block->sign[i] == 0 ? NT_SUM_NONE : 0) |
+			 (block->plain[i] ? 0 : NT_SUM_SUSPECT));
+}
+
+/* Flags of the lanes, after hard ones have been done. */
+static void sum_classify(const nt_sums *s, size_t first, size_t count, nt_sum_block *block)
+{
+	uint8_t *flags = s->flags + first;
+	const bool ask = s->solve->mesh->exact_texcoords;
+	int64_t odd = s->one_by_one;
+	LANES(i)
+		odd |= block->hard[i] | (block->certain[i] ^ 1);
+	if (!odd && !s->corners && !ask) {
+		for (size_t i = 0; i < count; i++)
+			flags[i] = sum_flags(block, i);
+		return;
+	}
+	for (size_t i = 0; i < count; i++) {
+		if (block->hard[i] || s->one_by_one)
+			nt_sums_do_hard(s, first + i, (int)i, block);
+		flags[i] = (flags[i] & NT_SUM_SECOND) | sum_flags(block, i);
+	}
+	for (size_t i = 0; i < count; i++) {
+		const bool quad = i + 1 < count && (flags[i + 1] & NT_SUM_SECOND);
+		const bool differ = quad && ((flags[i] ^ flags[i + 1]) & (NT_SUM_POSITIVE | NT_SUM_NONE));
+		const bool doubtful = ask || !block->certain[i] || (quad && !block->certain[i + 1]);
+		if (differ || doubtful)
+			nt_sums_orient(s, first + i);
+		i += quad;
+	}
+}
+
+/* Which sums these triangles need that do not exist; -1: none. */
+static int sum_missing(const nt_sums *s, size_t first, size_t count)
+{
+	unsigned seen = 0;
+	if (s->sums[0] && s->sums[1])
+		return -1;
+	for (size_t i = 0; i < count; i++)
+		seen |= s->flags[first + i] & NT_SUM_NONE ? 0 : 1u << (s->flags[first + i] & NT_SUM_POSITIVE);
+	return (seen & 1) && !s->sums[0] ? 0 : (seen & 2) && !s->sums[1] ? 1 : -1;
+}
+
+LANE_INLINE void turn_doubles(nt_double4 rows[4])
+{
+	const nt_double4 ab02 = __builtin_shufflevector(rows[0], rows[1], 0, 4, 2, 6);
+	const nt_double4 ab13 = __builtin_shufflevector(rows[0], rows[1], 1, 5, 3, 7);
+	const nt_double4 cd02 = __builtin_shufflevector(rows[2], rows[3], 0, 4, 2, 6);
+	const nt_double4 cd13 = __builtin_shufflevector(rows[2], rows[3], 1, 5, 3, 7);
+	rows[0] = __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5);
+	rows[1] = __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5);
+	rows[2] = __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7);
+	rows[3] = __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7);
+}
+
+LANE_INLINE void sum_add_one(nt_vertex_sum *to, const nt_double4 *add)
+{
+	nt_double4 sum;
+	memcpy(&sum, to, sizeof sum);
+	sum += *add;
+	memcpy(to, &sum, sizeof sum);
+}
+
+/* Adds the lanes to their vertices, in order; or aside, where the vertex belongs to an earlier range. */
+static void sum_add(nt_sums *s, size_t first, size_t count, unsigned range, const nt_sum_block *block)
+{
+	const uint32_t *ids = s->ids + 3 * first;
+	for (size_t i = 0; i < count; i += 4) {
+		nt_double4 rows[3][4];
+		for (size_t k = 0; k < 3; k++) {
+			for (size_t c = 0; c < 4; c++)
+				memcpy(&rows[k][c], block->add[k][c] + i, sizeof rows[k][c]);
+			turn_doubles(rows[k]);
+		}
+		for (size_t j = 0; j < 4 && i + j < count; j++, ids += 3) {
+			const uint8_t flags = s->flags[first + i + j];
+			if (flags & NT_SUM_NONE)
+				continue;
+			nt_vertex_sum *to = s->sums[flags & NT_SUM_POSITIVE];
+			for (size_t k = 0; k < 3; k++) {
+				if (s->ranges == 1 || s->owners[ids[k]] == range) {
+					sum_add_one(to + ids[k], &rows[k][j]);
+					continue;
+				}
+				nt_later *later = &s->later[range][s->later_counts[range]++];
+				later->to = to + ids[k];
+				memcpy(&later->add, &rows[k][j], sizeof later->add);
+			}
+		}
+	}
+}
+
+/* Scattered vertices: what the batch after the next needs. */
+LANE_INLINE void sum_ask_ahead(const nt_sums *s, size_t first, size_t end)
+{
+	const nt_vertex_sum *sums = s->sums[1] ? s->sums[1] : s->sums[0];
+	const size_t far = first + 2 * NT_SUM_LANES;
+	for (size_t i = 3 * far; i < 3 * (far + NT_SUM_LANES) && i < 3 * end; i++) {
+		__builtin_prefetch(&s->weld.rows[s->ids[i]]);
+		if (sums)
+			__builtin_prefetch(&sums[s->ids[i]], 1);
+	}
+}
+
+static size_t sum_accumulate(nt_sums *s, size_t begin, size_t end, unsigned range, int *side)
+{
+	sum_lanes l;
+	nt_sum_block block = {.hard = {0}};
+	for (size_t first = begin, count; first < end; first += count) {
+		count = end - first < NT_SUM_LANES ? end - first : NT_SUM_LANES;
+		if (first + count < end && (s->flags[first + count] & NT_SUM_SECOND))
+			count--; /* halves of a quad stay together */
+		if (s->scattered)
+			sum_ask_ahead(s, first, end);
+		if (!s->one_by_one)
+			sum_solve(s, first, count, &l, &block);
+		sum_classify(s, first, count, &block);
+		const int missing = sum_missing(s, first, count);
+		if (missing >= 0) {
+			*side = missing;
+			return first;
+		}
+		sum_add(s, first, count, range, &block);
+	}
+	return end;
+}
+
+/* Finishing */
+
+typedef struct finish_lanes {
+	double sum[4][NT_SUM_LANES];
+	double normal[3][NT_SUM_LANES];
+	float tangent[3][NT_SUM_LANES];
+	uint8_t flags[NT_SUM_LANES];
+} finish_lanes;
+
+static void __attribute__((noinline)) finish_solve(finish_lanes *restrict l)
+{
+	LANES(i) {
+		const nt_dvec3 sum = lane_load(l->sum, i), raw = lane_load(l->normal, i);
+		const double normal_squared = nt_dvec3_dot(raw, raw), sensitivity = l->sum[3][i];
+		const double has_normal = normal_squared < SUM_HUGE ? 1.0 : 0.0;
+		const nt_dvec3 unit = nt_weigh_normal(raw.x, raw.y, raw.z);
+		const nt_dvec3 n = {has_normal != 0.0 ? unit.x : 0.0, has_normal != 0.0 ? unit.y : 0.0,
+			has_normal != 0.0 ? unit.z : 0.0};
+		const double squared = nt_dvec3_dot(sum, sum), bound = sensitivity * sensitivity;
+		const nt_dvec3 t = nt_dvec3_reject(n, sum);
+		const double length = nt_dvec3_dot(t, t);
+		const int64_t sound = (int64_t)(squared > NT_CANCELLED * NT_CANCELLED * bound) &
+				      (int64_t)(length > 0.0) & (int64_t)(length < SUM_HUGE * SUM_HUGE);
+		const int64_t well = (int64_t)(bound <= NT_WELL_CONDITIONED * NT_WELL_CONDITIONED * squared) & sound;
+		const int64_t met = (int64_t)(sensitivity > 0.0);
+		const double scale = nt_rsqrt(length);
+		/* no -0, whose sign would tell the path that was taken */
+		l->tangent[0][i] = sound ? (float)(scale * t.x) + 0.0f : 0.0f;
+		l->tangent[1][i] = sound ? (float)(scale * t.y) + 0.0f : 0.0f;
+		l->tangent[2][i] = sound ? (float)(scale * t.z) + 0.0f : 0.0f;
+		l->flags[i] = (uint8_t)((met ? NT_VERTEX_MET : 0) | (met & (sound ^ 1) ? NT_VERTEX_LOST : 0) |
+					(well ? 0 : NT_VERTEX_ILL));
+	}
+}
+
+static void finish_load(const nt_sums *s, int side, size_t first, size_t count, finish_lanes *restrict l)
+{
+	const nt_vertex_sum *sums = s->sums[side] + first;
+	const nt_weld_row *rows = s->weld.rows + first;
+	nt_vertex_sum copy[NT_SUM_LANES];
+	if (count < NT_SUM_LANES) {
+		memset(copy, 0, sizeof copy);
+		memcpy(copy, sums, count * sizeof *copy);
+		sums = copy;
+	}
+	for (size_t i = 0; i < NT_SUM_LANES; i += 4) {
+		nt_double4 four[4];
+		memcpy(four, sums + i, sizeof four);
+		turn_doubles(four);
+		for (size_t c = 0; c < 4; c++)
+			memcpy(l->sum[c] + i, &four[c], sizeof four[c]);
+	}
+	for (size_t i = 0; i < NT_SUM_LANES; i++) {
+		const float *n = rows[i < count ? i : 0].normal;
+		l->normal[0][i] = n[0], l->normal[1][i] = n[1], l->normal[2][i] = n[2];
+	}
+}
+
+static void sum_finish(const nt_sums *s, size_t begin, size_t end, nt_sums_finished *finished)
+{
+	finish_lanes l;
+	for (size_t first = begin * NT_SUM_LANES; first < end * NT_SUM_LANES; first += NT_SUM_LANES) {
+		const size_t left = s->weld.count - first, count = left < NT_SUM_LANES ? left : NT_SUM_LANES;
+		uint8_t *flags = s->vertex_flags + first;
+		memset(flags, 0, count);
+		for (int side = 0; side < 2; side++) {
+			if (!s->sums[side])
+				continue;
+			finish_load(s, side, first, count, &l);
+			finish_solve(&l);
+			for (size_t i = 0; i < count; i++) {
+				s->results[side][first + i] = (nt_vertex_tangent){l.tangent[0][i], l.tangent[1][i],
+					l.tangent[2][i], !(l.flags[i] & NT_VERTEX_MET) ? 0.0f : side ? 1.0f : -1.0f};
+				flags[i] |= (uint8_t)(l.flags[i] << side);
+				finished->lost += (l.flags[i] & NT_VERTEX_LOST) != 0;
+				finished->ill += (l.flags[i] & NT_VERTEX_MET) && (l.flags[i] & NT_VERTEX_ILL);
+			}
+		}
+	}
+}
+
+const nt_sum_kernels NT_SUM_KERNEL = {sum_accumulate, sum_finish};

@@ -151,11 +151,12 @@ static nmtan_status solve_vertices(request *r, nt_splitter *splitter, nmtan_coun
 	if (r->options.method == NMTAN_METHOD_MIKKTSPACE && r->options.path != NMTAN_PATH_SCALAR)
 		return nt_mikktspace_vertices(&r->solve, repair, counts, splitter);
 	size_t ill_conditioned = 0;
+	r->solve.sparse = r->solve.vouched && !r->mesh.face_sizes;
 	nmtan_status status = run_method(&r->solve, &r->options, &ill_conditioned);
 	if (!status)
-		status = nt_repair(&r->solve, repair, counts);
+		status = nt_repair_and_split(&r->solve, repair, counts, splitter);
 	counts->ill_conditioned = ill_conditioned;
-	return status ? status : nt_split_rows(&r->solve, splitter);
+	return status;
 }
 
 static nmtan_status find_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,

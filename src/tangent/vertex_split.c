@@ -1,27 +1,26 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The split of a sparse solve (fast.h). A vertex whose corners all have one record needs no look at its
- * corners: its tangent is that record. Only vertices of both orientations and those of suspect triangles stay
+ * The split of a sparse solve (nt_vouched.ids). A vertex whose corners all have one row needs no look at its
+ * corners: its tangent is that row. Only vertices of both orientations and those of suspect triangles stay
  * open and are split corner by corner, in order.
  *
- * On a clean mesh this reads each record once, where going by corners reads it six times, and writes no index.
+ * On a clean mesh this reads each row once, where going by corners reads it six times, and writes no index.
  * All passes but the one over open corners go by ranges of vertices or triangles.
  */
 #include <string.h>
 #include "base/clock.h"
 #include "base/parallel.h"
-#include "tangent/fast.h"
+#include "tangent/judge.h"
 #include "tangent/vertices.h"
 #include "topology/corners.h"
 
 /* The tangent of corner i of the triangles. */
-static const float *corner_tangent(const nt_fast *fast, size_t t, size_t i)
+static const float *corner_tangent(const nt_solve *solve, size_t t, size_t i)
 {
-	const uint8_t flags = fast->flags[t];
-	if (flags & NT_TRIANGLE_SUSPECT)
-		return fast->solve->tangents + 4 * i;
-	/* x, y, z, and as state the sign */
-	return &fast->records[flags & NT_TRIANGLE_ORIENT][fast->ids[i]].x;
+	const nt_vouched *v = solve->vouched;
+	if (v->flags[t] & v->suspect)
+		return solve->tangents + 4 * i;
+	return v->rows[(v->flags[t] & v->positive) != 0] + 4 * (size_t)v->ids[i];
 }
 
 typedef struct vertex_tally {
@@ -29,7 +28,7 @@ typedef struct vertex_tally {
 } vertex_tally;
 
 typedef struct vertex_split {
-	const nt_fast *fast;
+	const nt_solve *solve;
 	nt_splitter *splitter;
 	const uint32_t *numbers; /* [vertex_count] welded vertex of each; NULL: v is v */
 	uint32_t *found;         /* numbers, while they are being found */
@@ -50,7 +49,7 @@ static void find_numbers(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
 	const vertex_split *job = context;
-	const uint32_t *indices = job->fast->solve->mesh->indices, *ids = job->fast->ids;
+	const uint32_t *indices = job->solve->mesh->indices, *ids = job->solve->vouched->ids;
 	for (size_t c = 3 * begin; c < 3 * end; c++)
 		__atomic_store_n(&job->found[indices[c]], ids[c], __ATOMIC_RELAXED);
 }
@@ -60,7 +59,7 @@ static void check_numbers(void *context, size_t begin, size_t end, unsigned slot
 {
 	(void)slot;
 	const vertex_split *job = context;
-	const uint32_t *indices = job->fast->solve->mesh->indices, *ids = job->fast->ids;
+	const uint32_t *indices = job->solve->mesh->indices, *ids = job->solve->vouched->ids;
 	for (size_t c = 3 * begin; c < 3 * end; c++)
 		if (job->numbers[indices[c]] != ids[c])
 			__atomic_store_n(&job->splitter->seen[indices[c]], SEEN_OPEN, __ATOMIC_RELAXED);
@@ -69,66 +68,65 @@ static void check_numbers(void *context, size_t begin, size_t end, unsigned slot
 /* Which welded vertex each vertex of the mesh is. */
 static nmtan_status number_vertices(vertex_split *job)
 {
-	const nt_fast *fast = job->fast;
-	const nmtan_mesh *mesh = fast->solve->mesh;
-	if (fast->ids == mesh->indices)
+	const nt_solve *solve = job->solve;
+	const nmtan_mesh *mesh = solve->mesh;
+	if (solve->vouched->ids == mesh->indices)
 		return NMTAN_OK;
 	if (!mesh->indices) {
-		job->numbers = fast->ids;
+		job->numbers = solve->vouched->ids;
 		return NMTAN_OK;
 	}
-	job->found = nt_scratch_alloc(fast->solve->scratch, mesh->vertex_count, sizeof *job->found);
+	job->found = nt_scratch_alloc(solve->scratch, mesh->vertex_count, sizeof *job->found);
 	if (!job->found)
 		return NMTAN_ERROR_MEMORY;
 	memset(job->found, 0xff, mesh->vertex_count * sizeof *job->found);
 	job->numbers = job->found;
-	nt_parallel_ranges(fast->solve->threads, fast->triangle_count, VERTEX_GRAIN, find_numbers, job);
-	nt_parallel_ranges(fast->solve->threads, fast->triangle_count, VERTEX_GRAIN, check_numbers, job);
+	nt_parallel_ranges(solve->threads, solve->mesh->face_count, VERTEX_GRAIN, find_numbers, job);
+	nt_parallel_ranges(solve->threads, solve->mesh->face_count, VERTEX_GRAIN, check_numbers, job);
 	return NMTAN_OK;
 }
 
 /* Corners of suspect triangles have rows of their own. */
 static void open_suspects(const vertex_split *job)
 {
-	const nt_fast *fast = job->fast;
-	size_t t = nt_fast_next_flagged(fast, 0, NT_TRIANGLE_SUSPECT);
-	for (; t < fast->triangle_count; t = nt_fast_next_flagged(fast, t + 1, NT_TRIANGLE_SUSPECT))
-		for (size_t i = 3 * t; i < 3 * t + 3; i++)
-			job->splitter->seen[nt_vertex_of(fast->solve->mesh, i)] = SEEN_OPEN;
+	const nt_solve *solve = job->solve;
+	nt_suspects s = nt_suspects_among(solve, 0, solve->mesh->face_count);
+	for (; nt_suspects_find(&s, NULL); nt_suspects_step(&s))
+		for (size_t i = s.corner; i < s.corner + 3; i++)
+			job->splitter->seen[nt_vertex_of(solve->mesh, i)] = SEEN_OPEN;
 }
 
 /* What a vertex gets that no sound triangle touches: perhaps because none does at all. */
-static bool is_default(const nt_record *record)
+static bool is_default(const float *row)
 {
-	return record->x == 1.0f && record->y == 0.0f && record->z == 0.0f && record->state == NT_RESULT_MINUS;
+	return row[0] == 1.0f && row[1] == 0.0f && row[2] == 0.0f && row[3] == -1.0f;
 }
 
-static bool has_result(const nt_record *records, uint32_t number)
+static bool has_result(const float *rows, uint32_t number)
 {
-	return records && records[number].state != NT_RESULT_NONE;
+	return rows && rows[4 * (size_t)number + 3] != 0.0f;
 }
 
-/* Gives vertices [begin, end) their one record; counts those that do not have one. */
+/* Gives vertices [begin, end) their one row; counts those that do not have one. */
 static void take_vertices(void *context, size_t begin, size_t end, unsigned slot)
 {
 	const vertex_split *job = context;
-	nt_record *const *records = job->fast->records;
+	const float *const *rows = job->solve->vouched->rows;
 	vertex_tally tally = {0};
 	for (size_t v = begin; v < end; v++) {
 		const uint32_t number = job->numbers ? job->numbers[v] : (uint32_t)v;
 		uint8_t *seen = &job->splitter->seen[v];
 		if (number == NO_NUMBER)
 			continue;
-		const bool positive = has_result(records[1], number);
-		if (*seen == SEEN_OPEN || (positive && has_result(records[0], number))) {
+		const bool positive = has_result(rows[1], number);
+		if (*seen == SEEN_OPEN || (positive && has_result(rows[0], number))) {
 			*seen = SEEN_NOT;
 			tally.open++;
-		} else if (positive || has_result(records[0], number)) {
-			const nt_record *record = &records[positive][number];
+		} else if (positive || has_result(rows[0], number)) {
+			const float *row = rows[positive] + 4 * (size_t)number;
 			*seen = SEEN_ONE;
-			tally.doubtful += !job->numbers && is_default(record);
-			/* x, y, z, and as state the sign */
-			memcpy(job->splitter->tangents + 4 * v, record, 4 * sizeof(float));
+			tally.doubtful += !job->numbers && is_default(row);
+			memcpy(job->splitter->tangents + 4 * v, row, 4 * sizeof(float));
 		}
 	}
 	job->tallies[slot] = tally;
@@ -138,7 +136,7 @@ static void mark_used(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
 	const vertex_split *job = context;
-	const uint32_t *indices = job->fast->solve->mesh->indices;
+	const uint32_t *indices = job->solve->mesh->indices;
 	for (size_t c = 3 * begin; c < 3 * end; c++)
 		__atomic_store_n(&job->used[indices[c]], 1, __ATOMIC_RELAXED);
 }
@@ -146,13 +144,13 @@ static void mark_used(void *context, size_t begin, size_t end, unsigned slot)
 /* A vertex without corners has not been seen. */
 static nmtan_status forget_unused(vertex_split *job)
 {
-	const nt_fast *fast = job->fast;
-	const size_t vertex_count = fast->solve->mesh->vertex_count;
-	job->used = nt_scratch_alloc(fast->solve->scratch, vertex_count, 1);
+	const nt_solve *solve = job->solve;
+	const size_t vertex_count = solve->mesh->vertex_count;
+	job->used = nt_scratch_alloc(solve->scratch, vertex_count, 1);
 	if (!job->used)
 		return NMTAN_ERROR_MEMORY;
 	memset(job->used, 0, vertex_count);
-	nt_parallel_ranges(fast->solve->threads, fast->triangle_count, VERTEX_GRAIN, mark_used, job);
+	nt_parallel_ranges(solve->threads, solve->mesh->face_count, VERTEX_GRAIN, mark_used, job);
 	for (size_t v = 0; v < vertex_count; v++)
 		job->splitter->seen[v] &= job->used[v];
 	return NMTAN_OK;
@@ -162,7 +160,7 @@ static void touch_triangles(void *context, size_t begin, size_t end, unsigned sl
 {
 	(void)slot;
 	const vertex_split *job = context;
-	const nmtan_mesh *mesh = job->fast->solve->mesh;
+	const nmtan_mesh *mesh = job->solve->mesh;
 	const uint8_t *seen = job->splitter->seen;
 	for (size_t t = begin; t < end; t++)
 		job->touched[t] = !(seen[nt_vertex_of(mesh, 3 * t)] & seen[nt_vertex_of(mesh, 3 * t + 1)] &
@@ -172,27 +170,26 @@ static void touch_triangles(void *context, size_t begin, size_t end, unsigned sl
 /* The corners at open vertices, in order. */
 static nmtan_status split_open(vertex_split *job)
 {
-	const nt_fast *fast = job->fast;
-	job->touched = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 1);
+	const nt_solve *solve = job->solve;
+	job->touched = nt_scratch_alloc(solve->scratch, solve->mesh->face_count, 1);
 	if (!job->touched)
 		return NMTAN_ERROR_MEMORY;
-	nt_parallel_ranges(fast->solve->threads, fast->triangle_count, VERTEX_GRAIN, touch_triangles, job);
+	nt_parallel_ranges(solve->threads, solve->mesh->face_count, VERTEX_GRAIN, touch_triangles, job);
 	nmtan_status status = NMTAN_OK;
-	for (size_t t = 0; !status && t < fast->triangle_count; t++)
+	for (size_t t = 0; !status && t < solve->mesh->face_count; t++)
 		for (size_t i = 3 * t; !status && job->touched[t] && i < 3 * t + 3; i++)
 			status = nt_splitter_take(job->splitter,
-				(uint32_t)nt_vertex_of(fast->solve->mesh, i), corner_tangent(fast, t, i), i);
+				(uint32_t)nt_vertex_of(solve->mesh, i), corner_tangent(solve, t, i), i);
 	return status;
 }
 
-nmtan_status nt_split_records(const nt_fast *fast, nt_splitter *splitter)
+nmtan_status nt_split_shared(const nt_solve *solve, nt_splitter *splitter)
 {
-	const nt_solve *solve = fast->solve;
 	/* without indices vertices behind the last corner have none */
 	const size_t vertex_count = solve->mesh->indices ? solve->mesh->vertex_count : solve->corner_count;
 	const double begin = nt_seconds();
 	const unsigned slots = nt_parallel_slots(solve->threads, vertex_count, VERTEX_GRAIN);
-	vertex_split job = {.fast = fast, .splitter = splitter,
+	vertex_split job = {.solve = solve, .splitter = splitter,
 		.tallies = nt_scratch_alloc(solve->scratch, slots, sizeof *job.tallies)};
 	nmtan_status status = job.tallies ? number_vertices(&job) : NMTAN_ERROR_MEMORY;
 	if (status)

@@ -2,7 +2,7 @@
 /*
  * Tangents of vertices: solve, repair and split in one, without a row for every corner.
  *
- * Nearly every corner's tangent is the record of its welded vertex (fast.h), so the split reads it there:
+ * Nearly every corner's tangent is that of its welded vertex (nt_vouched.ids), so the split reads it there:
  * vertex_split.c. Where something has to be repaired, and for meshes with quads, all rows are written and the
  * ordinary functions do the work.
  */
@@ -14,7 +14,18 @@
 #include "tangent/repair.h"
 #include "topology/corners.h"
 
-nmtan_status nt_split_rows(const nt_solve *solve, nt_splitter *splitter)
+/* Writes the rows that a sparse solve left out. */
+static void write_shared(const nt_solve *solve)
+{
+	const nt_vouched *v = solve->vouched;
+	for (size_t t = 0; t < solve->mesh->face_count; t++) {
+		const float *shared = v->rows[(v->flags[t] & v->positive) != 0];
+		for (size_t i = 3 * t; !(v->flags[t] & v->suspect) && i < 3 * t + 3; i++)
+			memcpy(solve->tangents + 4 * i, shared + 4 * (size_t)v->ids[i], 4 * sizeof(float));
+	}
+}
+
+static nmtan_status split_rows(const nt_solve *solve, nt_splitter *splitter)
 {
 	const double begin = nt_seconds();
 	for (size_t c = 0; c < solve->corner_count; c++) {
@@ -28,6 +39,22 @@ nmtan_status nt_split_rows(const nt_solve *solve, nt_splitter *splitter)
 	return NMTAN_OK;
 }
 
+nmtan_status nt_repair_and_split(const nt_solve *solve, bool repair, nmtan_counts *counts, nt_splitter *splitter)
+{
+	nmtan_status status = NMTAN_OK;
+	if (solve->vouched && solve->vouched->ids) {
+		status = nt_judge(solve, counts);
+		if (!status && (!repair || nt_fault_count(counts) == 0)) {
+			nt_forget_faults(counts);
+			return nt_split_shared(solve, splitter);
+		}
+		write_shared(solve);
+	}
+	if (!status)
+		status = nt_repair(solve, repair, counts);
+	return status ? status : split_rows(solve, splitter);
+}
+
 nmtan_status nt_mikktspace_vertices(const nt_solve *solve, bool repair, nmtan_counts *counts,
 	nt_splitter *splitter)
 {
@@ -36,14 +63,10 @@ nmtan_status nt_mikktspace_vertices(const nt_solve *solve, bool repair, nmtan_co
 	if (status == NMTAN_ERROR_TOO_LARGE)
 		status = nt_mikktspace_scalar(solve);
 	else if (!status && fast.sparse) {
-		status = nt_judge(solve, counts);
-		if (!status && (!repair || nt_fault_count(counts) == 0)) {
-			nt_forget_faults(counts);
-			return nt_split_records(&fast, splitter);
-		}
-		nt_fast_write_rest(&fast);
+		/* a record is x, y, z and, as state, the sign */
+		solve->vouched->ids = fast.ids;
+		for (int orient = 0; orient < 2; orient++)
+			solve->vouched->rows[orient] = fast.records[orient] ? &fast.records[orient]->x : NULL;
 	}
-	if (!status)
-		status = nt_repair(solve, repair, counts);
-	return status ? status : nt_split_rows(solve, splitter);
+	return status ? status : nt_repair_and_split(solve, repair, counts, splitter);
 }

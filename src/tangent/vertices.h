@@ -5,7 +5,7 @@
 #ifndef NT_TANGENT_VERTICES_H
 #define NT_TANGENT_VERTICES_H
 
-#include "tangent/fast.h"
+#include "tangent/solve.h"
 #include "topology/split.h"
 
 /* nmtan_vertex_tangents() for callers that take the mesh's own indices where nothing is split: with
@@ -18,11 +18,11 @@ nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *opt
 nmtan_status nt_mikktspace_vertices(const nt_solve *solve, bool repair, nmtan_counts *counts,
 	nt_splitter *splitter);
 
-/* Takes every corner's record, or row of solve->tangents where its triangle is suspect, of a sparse solve of
- * triangles. Returns NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_TOO_LARGE. */
-nmtan_status nt_split_records(const nt_fast *fast, nt_splitter *splitter);
+/* The same from a method's result: judges or repairs it, and splits. */
+nmtan_status nt_repair_and_split(const nt_solve *solve, bool repair, nmtan_counts *counts, nt_splitter *splitter);
 
-/* Takes every corner's row of solve->tangents. */
-nmtan_status nt_split_rows(const nt_solve *solve, nt_splitter *splitter);
+/* Takes the tangents of all corners of triangles from solve->vouched, which has ids, and from solve->tangents where
+ * a triangle is suspect. Returns NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_TOO_LARGE. */
+nmtan_status nt_split_shared(const nt_solve *solve, nt_splitter *splitter);
 
 #endif

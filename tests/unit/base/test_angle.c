@@ -35,12 +35,31 @@ static void axes_and_nonsense_have_their_values(void **state)
 	assert_true(nt_angle(1, NAN) == 0.0);
 }
 
+/* To 2^-50 of itself, for points a little off the circle too: the caller's sine and cosine are rounded. */
+static void angle_of_a_point_on_the_circle_is_atan2(void **state)
+{
+	(void)state;
+	for (int i = 0; i <= 200000; i++) {
+		const double a = 3.14159265358979323846 * i / 200000.0;
+		const double s = fabs(sin(a)), c = cos(a), scale = 1 + (i % 3 - 1) * 4.4e-16;
+		const double expected = atan2(s, c);
+		assert_true(fabs(nt_angle_on_circle(s * scale, c * scale) - expected) <= 0x1p-50 * expected);
+	}
+	for (int e = -300; e < 0; e += 7) {
+		const double t = ldexp(1.25, e), length = hypot(t, 1);
+		assert_true(fabs(nt_angle_on_circle(t / length, 1 / length) / atan(t) - 1) < 0x1p-50);
+	}
+	assert_true(nt_angle_on_circle(0, 0) == 0.0);
+	assert_true(nt_angle_on_circle(0, -1) == 3.14159265358979323846);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(angle_is_atan2_to_three_ulps),
 		cmocka_unit_test(tiny_angles_keep_their_relative_precision),
 		cmocka_unit_test(axes_and_nonsense_have_their_values),
+		cmocka_unit_test(angle_of_a_point_on_the_circle_is_atan2),
 	};
 	return cmocka_run_group_tests_name("base/angle", tests, NULL, NULL);
 }

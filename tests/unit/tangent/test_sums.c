@@ -79,11 +79,53 @@ static void all_paths_give_the_same_bytes_on_a_large_mesh(void **state)
 	nt_owned_free(&grid);
 }
 
+/* A plane grid of quads: some cells have their texture turned over in one half (folded), some have a corner of
+ * theirs collapsed, some normals are zero or not numbers, and every third row is mirrored. */
+static void all_paths_give_the_same_bytes_on_quads(void **state)
+{
+	(void)state;
+	enum { N = 190 };
+	nt_owned grid = nt_surface_grid(NT_TORUS, N, N, 0.2, 5);
+	uint8_t *sizes = malloc(grid.corner_count);
+	uint32_t *indices = malloc(4 * grid.corner_count);
+	size_t faces = 0, corners = 0;
+	for (uint32_t y = 0; y < N; y++) {
+		for (uint32_t x = 0; x < N; x++) {
+			const uint32_t a = y * (N + 1) + x, odd = x * 7 + y * 13;
+			const uint32_t quad[4] = {a, a + 1, odd % 29 == 0 ? a + 1 : a + N + 2, a + N + 1};
+			const size_t size = odd % 5 == 0 ? 3 : 4;
+			memcpy(indices + corners, quad, size * sizeof *quad);
+			sizes[faces++] = (uint8_t)size;
+			corners += size;
+		}
+	}
+	for (size_t v = 0; v < grid.mesh.vertex_count; v++) {
+		if (v % 31 == 0)
+			grid.texcoords[v][0] += 0.02f;
+		if (v / (N + 1) % 3 == 0)
+			grid.texcoords[v][0] = -grid.texcoords[v][0];
+		if (v % 97 == 0)
+			memset(grid.normals[v], 0, sizeof grid.normals[v]);
+		if (v % 101 == 0)
+			grid.normals[v][1] = NAN;
+	}
+	grid.mesh.face_sizes = sizes;
+	grid.mesh.indices = indices;
+	grid.mesh.face_count = faces;
+	compare_paths(&grid.mesh, corners);
+	grid.mesh.stored_v_offset = -1;
+	compare_paths(&grid.mesh, corners);
+	nt_owned_free(&grid);
+	free(indices);
+	free(sizes);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(all_paths_give_the_same_bytes_on_goldens),
 		cmocka_unit_test(all_paths_give_the_same_bytes_on_a_large_mesh),
+		cmocka_unit_test(all_paths_give_the_same_bytes_on_quads),
 	};
 	return cmocka_run_group_tests_name("tangent/sums", tests, NULL, NULL);
 }
