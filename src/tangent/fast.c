@@ -624,7 +624,7 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ra
 	nt_room room = nt_room_over(solve->tangents,
 		lends && !lends_sums ? solve->corner_count * 4 * sizeof(float) : 0, solve->scratch);
 	nt_weld weld;
-	const double begin = nt_seconds();
+	const double begin = solve->timing ? nt_seconds() : 0;
 	nmtan_status status = nt_weld_mesh(mesh, solve->corner_count, &room, &weld);
 	if (solve->timing)
 		solve->timing->weld += nt_seconds() - begin;

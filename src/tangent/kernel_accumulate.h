@@ -234,6 +234,8 @@ static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range
 			ask_ahead(fast, first, end, 1);
 		if (fast->wants_more)
 			solve_lanes_more(&in, &out, offset, slack);
+		else if (count <= FEW_LANES)
+			solve_few_lanes(&in, &out, offset, slack, count);
 		else
 			solve_lanes_plain(&in, &out, offset, slack);
 		if (fast->scattered)

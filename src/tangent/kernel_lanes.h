@@ -110,10 +110,11 @@ static inline __attribute__((always_inline)) corner_sum solve_corner(const float
 	return sum;
 }
 
+/* Lanes [begin, begin + count). */
 static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *restrict in,
-	lanes_out *restrict out, float offset, float slack, bool more)
+	lanes_out *restrict out, float offset, float slack, bool more, int begin, int count)
 {
-	for (int i = 0; i < NT_LANES; i++) {
+	for (int i = begin; i < begin + count; i++) {
 		float p[3][3], n[3][3], t[3][2];
 #pragma GCC unroll 3
 		for (int k = 0; k < 3; k++) {
@@ -215,7 +216,28 @@ static inline __attribute__((always_inline)) void interleave(const float in[4][N
 static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *in, lanes_out *out, float offset,
 	float slack)
 {
-	solve_lanes(in, out, offset, slack, false);
+	solve_lanes(in, out, offset, slack, false, 0, NT_LANES);
+	for (int k = 0; k < 3; k++)
+		interleave(out->sum[k], out->add[k], 4);
+}
+
+/* The same for the few triangles of a small mesh, four at a time; the compiler's vectors of four cost as much as
+ * wider ones where the set has them. */
+#if defined(__AVX512F__)
+enum { FEW_LANES = 4 };
+#else
+enum { FEW_LANES = 8 };
+#endif
+
+static void __attribute__((noinline)) solve_few_lanes(const lanes_in *in, lanes_out *out, float offset,
+	float slack, size_t count)
+{
+	for (int i = 0; i < NT_LANES; i++) {
+		out->sound[i] = 1;
+		out->frameless[i] = out->degenerate[i] = 0;
+	}
+	for (int begin = 0; begin < (int)count; begin += 4)
+		solve_lanes(in, out, offset, slack, false, begin, 4);
 	for (int k = 0; k < 3; k++)
 		interleave(out->sum[k], out->add[k], 4);
 }
@@ -223,7 +245,7 @@ static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *in, lane
 static void __attribute__((noinline)) solve_lanes_more(const lanes_in *in, lanes_out *out, float offset,
 	float slack)
 {
-	solve_lanes(in, out, offset, slack, true);
+	solve_lanes(in, out, offset, slack, true, 0, NT_LANES);
 	for (int k = 0; k < 3; k++) {
 		interleave(out->sum[k], out->add[k], 4);
 		interleave(out->extra[k], out->more[k], 8);
@@ -243,9 +265,11 @@ static inline __attribute__((always_inline)) void gather_four(const nt_weld_row 
 		memcpy(out[offset + j] + lane, &four[j], sizeof four[j]);
 }
 
-/* Rows of the corners of `count` triangles; the lanes behind repeat the last one. */
+/* Rows of the corners of `count` triangles; the lanes behind, where they are going to be solved too, repeat the
+ * last one. */
 static void gather_lanes(const nt_fast *fast, size_t first, size_t count, lanes_in *restrict in)
 {
+	const size_t lanes = count <= FEW_LANES ? count : NT_LANES;
 	uint32_t padded[3 * NT_LANES];
 	const uint32_t *ids = fast->ids + 3 * first;
 	if (count < NT_LANES) {
@@ -254,7 +278,7 @@ static void gather_lanes(const nt_fast *fast, size_t first, size_t count, lanes_
 		ids = padded;
 	}
 	for (size_t k = 0; k < 3; k++)
-		for (size_t lane = 0; lane < NT_LANES; lane += 4) {
+		for (size_t lane = 0; lane < lanes; lane += 4) {
 			gather_four(fast->rows, ids + k, 0, in->row[k], lane);
 			gather_four(fast->rows, ids + k, 4, in->row[k], lane);
 		}
