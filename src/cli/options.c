@@ -51,8 +51,9 @@ const nt_option_row nt_option_rows[] = {
 		SETTING(in_place), true},
 	{"embed", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, ".gltf: buffers inside, as data URIs",
 		SETTING(embed), true},
-	{"buffers", 0, NT_OPTION_CHOICE, "link|copy|embed", NT_BUFFERS_LINK, 0, "link",
-		"glTF from .gltf: what becomes of .bin files that nothing changed; embed: as --embed",
+	{"buffers", 0, NT_OPTION_CHOICE, "link|copy|embed", NT_BUFFERS_LINK, 0,
+		"embed for .glb from .gltf, else link",
+		"glTF from glTF: what becomes of .bin files that nothing changed; embed: as --embed",
 		SETTING(buffers), true},
 	{"images", 0, NT_OPTION_CHOICE, "link|embed|copy|none", NT_IMAGES_LINK, 0,
 		"link for .gltf, embed for .glb", "how the output comes by its images", SETTING(images),
@@ -354,11 +355,11 @@ static nmtan_status check_clashes(parser *p)
 		return nt_fail(p->error, NMTAN_ERROR_USAGE,
 			"--embed and --buffers=%s contradict each other",
 			s->buffers == NT_BUFFERS_COPY ? "copy" : "link");
-	s->embed |= s->buffers == NT_BUFFERS_EMBED;
 	if (s->embed && s->output_format != NT_FORMAT_UNKNOWN && s->output_format != NT_FORMAT_GLTF)
 		return nt_fail(p->error, NMTAN_ERROR_USAGE,
 			"--embed is about .gltf, --output-format says '%s'",
 			s->output_format == NT_FORMAT_GLB ? "glb" : "ply");
+	s->embed |= s->buffers == NT_BUFFERS_EMBED;
 	return NMTAN_OK;
 }
 

@@ -31,11 +31,13 @@ typedef struct nt_read_options {
 	unsigned threads;
 } nt_read_options;
 
-/* External buffers of a glTF input that nothing changed; changed ones are always written anew. */
+/* External buffers of a glTF input that nothing changed; changed ones are always written anew: beside a .gltf; in a
+ * .glb, the first as BIN chunk, the others beside it where it is to have files. */
 typedef enum nt_buffers {
-	NT_BUFFERS_LINK, /* the files where they are */
-	NT_BUFFERS_COPY, /* beside the output */
-	NT_BUFFERS_EMBED /* data URIs: the same as nt_write_options.embed */
+	NT_BUFFERS_DEFAULT, /* EMBED where a .gltf becomes a .glb, else LINK */
+	NT_BUFFERS_LINK,    /* the files where they are */
+	NT_BUFFERS_COPY,    /* beside the output */
+	NT_BUFFERS_EMBED    /* data URIs, of a .glb the first one as BIN chunk: the same as nt_write_options.embed */
 } nt_buffers;
 
 /* NONE: for new documents; a document that is patched keeps its images. */

@@ -4,8 +4,10 @@
  *
  * A buffer stays what it was where it can: a data URI remains one, an external file that nothing
  * changed is linked to, several buffers remain several. A changed external buffer becomes a companion of
- * the output, so that no file of the input is ever written. In a .glb buffer 0 is the BIN chunk and the
- * others are data URIs, since buffers are never renumbered.
+ * the output, so that no file of the input is ever written. A .glb from a .gltf is one file unless files
+ * are asked for: buffer 0 is the BIN chunk and the others are data URIs. Their bytes could be one chunk, as
+ * other tools have it, but only with other buffer numbers and offsets, to which extensions that we do not
+ * know may refer.
  */
 #include "io/gltf_container.h"
 
@@ -74,6 +76,15 @@ nmtan_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *opt
 
 /* ---- what happens to each buffer ---- */
 
+/* Whether the user wants the output to have files beside it; standard output has none. */
+static bool keeps_files(const nt_gltf_container *c)
+{
+	const nt_buffers wish = c->options->buffers;
+	if (strcmp(c->options->path, "-") == 0)
+		return false;
+	return wish == NT_BUFFERS_LINK || wish == NT_BUFFERS_COPY;
+}
+
 static fate choose_fate(const nt_gltf_container *c, uint32_t index)
 {
 	const nt_gltf *document = c->document;
@@ -81,7 +92,8 @@ static fate choose_fate(const nt_gltf_container *c, uint32_t index)
 	/* The BIN chunk can be buffer 0 only, and only when the source's own chunk is not something else. */
 	const bool chunk_is_other = document->is_glb && document->glb.has_bin &&
 		document->buffer_count && document->buffers[0].home != NT_GLTF_HOME_BIN;
-	const fate in_glb = index == 0 && !chunk_is_other ? FATE_BIN : FATE_DATA;
+	const bool files = keeps_files(c);
+	const fate in_glb = index == 0 && !chunk_is_other ? FATE_BIN : files ? FATE_COMPANION : FATE_DATA;
 	const fate moved = c->to_glb ? in_glb : c->embed ? FATE_DATA : FATE_COMPANION;
 	if (index >= document->buffer_count)
 		return moved;
@@ -97,10 +109,11 @@ static fate choose_fate(const nt_gltf_container *c, uint32_t index)
 			return FATE_BIN;
 		return plan->touched ? FATE_DATA : FATE_KEEP;
 	case NT_GLTF_HOME_FILE:
-		if (plan->touched || into_glb || c->embed)
+		if (plan->touched || c->embed || (into_glb && !files))
 			return moved;
 		/* where the folder stays the same it is there already, as with images */
-		return c->options->buffers == NT_BUFFERS_COPY && *c->link_prefix ? FATE_COMPANION : FATE_LINK;
+		return c->options->buffers == NT_BUFFERS_COPY && *c->link_prefix && files ? FATE_COMPANION
+											  : FATE_LINK;
 	default:
 		/* Buffer 0 of a .glb without a uri is the BIN chunk, so there has to be one. */
 		return into_glb && index == 0 && buffer->length <= EMPTY_BYTES ? FATE_BIN : FATE_KEEP;

@@ -174,6 +174,58 @@ run --buffers=copy --existing=replace three_buffers.gltf here.gltf
 exits 0
 is "$(ls here* | wc -l)" $((4 - linked))
 
+scene "a .glb made from several buffers is one file, or has files where they are asked for"
+mkdir in out
+cp "$WORK"/layouts/three* in
+kinds='g.buffers.map((b) => b.uri === undefined ? "BIN" : b.uri.slice(0, 5) === "data:" ? "data" : b.uri)'
+run --verify in/three_buffers.gltf out/one.glb
+exits 0
+is "$(gltf out/one.glb "$kinds")" '["BIN","data","data"]'
+lossless in/three_buffers.gltf out/one.glb
+valid out/one.glb
+run --buffers=embed in/three_buffers.gltf out/embed.glb
+exits 0
+same out/one.glb out/embed.glb
+is "$(ls out | wc -l)" 2
+# new tangents and copied rows are in the first two, the third is untouched
+run --verify --buffers=link in/three_buffers.gltf out/link.glb
+exits 0
+is "$(gltf out/link.glb "$kinds")" '["BIN","link.bin","../in/three_buffers%202.bin"]'
+lossless in/three_buffers.gltf out/link.glb
+valid out/link.glb
+is "$(ls out | wc -l)" 4
+run --verify --buffers=copy in/three_buffers.gltf out/copy.glb
+exits 0
+is "$(gltf out/copy.glb "$kinds")" '["BIN","copy.bin","copy-2.bin"]'
+cmp -s out/copy-2.bin "in/three_buffers 2.bin" || wrong "the copy differs"
+lossless in/three_buffers.gltf out/copy.glb
+# nothing to be done: all of them can stay where they are
+run --buffers=link out/one.glb plain.gltf
+exits 0
+run --buffers=link plain.gltf out/files.glb
+exits 0
+is "$(gltf out/files.glb "$kinds")" '["../plain.bin","data","data"]'
+lossless plain.gltf out/files.glb
+valid out/files.glb
+# standard output has nothing beside it
+"$NMTAN" --buffers=link --output-format=glb in/three_buffers.gltf - >stream.glb 2>"$WORK/err.txt" || wrong "fails"
+is "$(gltf stream.glb "$kinds")" '["BIN","data","data"]'
+is "$(ls)" "in
+out
+plain.bin
+plain.gltf
+stream.glb"
+
+scene "a first buffer without uri cannot become the BIN chunk"
+sed 's/"uri": "[^"]*buffers%200.bin"/"extras": 1/' "$WORK/layouts/three_buffers.gltf" >nameless.gltf
+cp "$WORK"/layouts/three* .
+sed -i 's/"mode": 4/"mode": 0/; s/"material": 0/"material": 0, "mode": 0/' nameless.gltf
+run nameless.gltf out.glb
+exits 5
+says "/buffers/0: no uri"
+run nameless.gltf out.gltf
+exits 0
+
 scene "a glTF made from a glTF keeps its images"
 run --images=none "$data/plates.gltf" out.gltf
 exits 1
