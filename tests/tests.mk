@@ -70,7 +70,7 @@ soak-built: check-built
 # make stress: numerical stability at the edges of floating point; tables and charts in build/stress.
 stress_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/stress/*.c))
 
-measure_obj := $(patsubst %,$(B)/tests/support/%.o,oracle128 surfaces soup chart golden)
+measure_obj := $(patsubst %,$(B)/tests/support/%.o,oracle128 surfaces soup chart golden measure)
 $(B)/tests/stress/stress: $(stress_obj) $(measure_obj) $(B)/libnmtan.a
 	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm $(QUADMATH)
 
@@ -90,7 +90,7 @@ bench-error: $(B)/tests/bench/error
 	@CC="$(CC)" sh tests/bench/run_error.sh $< build/bench
 
 # make bench-core: million triangles a second on each family of meshes.
-core_bench_obj := $(patsubst %,$(B)/tests/bench/%.o,core families)
+core_bench_obj := $(patsubst %,$(B)/tests/%.o,bench/core bench/families support/measure)
 
 $(B)/tests/bench/core: $(core_bench_obj) $(B)/libnmtan.a
 	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm

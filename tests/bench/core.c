@@ -18,6 +18,7 @@
 #include <time.h>
 #include "base/cpu.h"
 #include "base/parallel.h"
+#include "measure.h"
 
 enum { RUNS = 3, MOST_COLUMNS = 16, SMALL_COUNT = 2000 };
 
@@ -38,12 +39,6 @@ static double seconds(clockid_t clock)
 	struct timespec t;
 	clock_gettime(clock, &t);
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
-static int compare_doubles(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
 }
 
 static void print_machine(void)
@@ -123,7 +118,7 @@ static void time_row(const char *name, const workload *w, const workload *smalle
 					columns[c].path == NMTAN_PATH_SCALAR ? smaller : w, &output, workspace);
 	printf("%-22s %8zu", name, w->triangles);
 	for (size_t c = 0; c < count; c++) {
-		qsort(times[c], (size_t)columns[c].runs, sizeof(double), compare_doubles);
+		qsort(times[c], (size_t)columns[c].runs, sizeof(double), measure_compare);
 		if (columns[c].path == NMTAN_PATH_SCALAR) {
 			printf(" %6.2f (%7zu)", 1e-6 * (double)smaller->triangles / times[c][0], smaller->triangles);
 			continue;

@@ -10,17 +10,17 @@
  * convergence.csv, bevel.csv, charts as SVG. Times are the best of several runs with a warm
  * workspace, in rounds over all methods.
  */
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include "base/cpu.h"
 #include "base/parallel.h"
 #include "chart.h"
 #include "error_eye.h"
 #include "error_meshes.h"
+#include "error_sweeps.h"
+#include "measure.h"
 #include "oracle128.h"
 
 enum { MOST_RUNS = 24, WEIGHTS = 3, NO_WEIGHT = -1, ROUNDS = 4 };
@@ -33,16 +33,9 @@ typedef struct run {
 	int weight; /* enum oracle_weight of its formula; NO_WEIGHT: another formula */
 } run;
 
-/* Angles in degrees, collected over meshes. */
-typedef struct pool {
-	double *values;
-	size_t count, capacity;
-	double median, high, worst;
-} pool;
-
 typedef struct result {
 	double seconds, triangles; /* of the meshes that are timed */
-	pool arithmetic, truth;
+	measure_pool arithmetic, truth;
 	eye_sum baked, tiled;
 	bool present;
 } result;
@@ -58,42 +51,13 @@ typedef struct bench {
 	const char *exchange, *output;
 } bench;
 
-static void *room(size_t count, size_t size)
-{
-	void *block = calloc(count ? count : 1, size);
-	if (!block) {
-		fprintf(stderr, "error: out of memory\n");
-		exit(4);
-	}
-	return block;
-}
-
-static FILE *open_in(const char *folder, const char *name, const char *mode)
-{
-	char path[512];
-	snprintf(path, sizeof path, "%s/%s", folder, name);
-	FILE *f = fopen(path, mode);
-	if (!f && mode[0] == 'w') {
-		fprintf(stderr, "error: %s: %s\n", path, strerror(errno));
-		exit(2);
-	}
-	return f;
-}
-
-static double seconds(void)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 /* Export */
 
 static void export_mesh(const char *folder, const bench_mesh *m)
 {
 	char name[64];
 	snprintf(name, sizeof name, "%s.mesh", m->name);
-	FILE *f = open_in(folder, name, "wb");
+	FILE *f = measure_open(folder, name, "wb");
 	const uint32_t head[2] = {(uint32_t)m->mesh.mesh.vertex_count, (uint32_t)m->mesh.corner_count};
 	fwrite(head, 4, 2, f);
 	fwrite(m->mesh.positions, 12, head[0], f);
@@ -101,51 +65,6 @@ static void export_mesh(const char *folder, const bench_mesh *m)
 	fwrite(m->mesh.texcoords, 8, head[0], f);
 	fwrite(m->mesh.indices, 4, head[1], f);
 	fclose(f);
-}
-
-/* Angles */
-
-static double degrees_between(const float *t, const double *exact)
-{
-	double sine = 0, cosine = 0;
-	for (int i = 0; i < 3; i++) {
-		const int k = (i + 1) % 3, l = (i + 2) % 3;
-		const double x = t[k] * exact[l] - t[l] * exact[k];
-		sine += x * x;
-		cosine += t[i] * exact[i];
-	}
-	const double angle = atan2(sqrt(sine), cosine) * 57.29577951308232;
-	return isfinite(angle) ? angle : 180;
-}
-
-static void pool_add(pool *p, double value)
-{
-	if (p->count == p->capacity) {
-		p->capacity = p->capacity ? 2 * p->capacity : 65536;
-		p->values = realloc(p->values, p->capacity * sizeof *p->values);
-		if (!p->values)
-			exit(4);
-	}
-	p->values[p->count++] = value;
-}
-
-static int compare_doubles(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
-}
-
-static void pool_finish(pool *p)
-{
-	p->median = p->high = p->worst = NAN;
-	if (p->count > 0) {
-		qsort(p->values, p->count, sizeof *p->values, compare_doubles);
-		p->median = p->values[p->count / 2];
-		p->high = p->values[(size_t)((double)(p->count - 1) * 0.999)];
-		p->worst = p->values[p->count - 1];
-	}
-	free(p->values);
-	p->values = NULL;
 }
 
 /* Runs */
@@ -207,9 +126,9 @@ static double run_ours(const run *r, const nt_owned *mesh, float (*tangents)[4])
 	nmtan_output output = {.tangents = &tangents[0][0]};
 	double best = INFINITY, total = 0;
 	for (int i = 0; i < 100 && (i < 2 || total < 0.04); i++) {
-		const double start = seconds();
+		const double start = measure_seconds();
 		const nmtan_status status = nmtan_tangents(&mesh->mesh, &options, &output);
-		const double took = seconds() - start;
+		const double took = measure_seconds() - start;
 		if (status) {
 			fprintf(stderr, "error: %s: %s\n", r->name, nmtan_status_text(status));
 			best = -1;
@@ -227,13 +146,13 @@ static double read_peer(const bench *b, const run *r, const bench_mesh *m, float
 {
 	char name[128], mesh_name[64], peer[64];
 	snprintf(name, sizeof name, "%s.%s.tan", m->name, r->name);
-	FILE *f = open_in(b->exchange, name, "rb");
+	FILE *f = measure_open(b->exchange, name, "rb");
 	if (!f)
 		return -1;
 	const bool whole = fread(tangents, 16, m->mesh.corner_count, f) == m->mesh.corner_count;
 	fclose(f);
 	double best = -1, took;
-	f = open_in(b->exchange, "peers.txt", "r");
+	f = measure_open(b->exchange, "peers.txt", "r");
 	while (whole && f && fscanf(f, "%63s %63s %lf", mesh_name, peer, &took) == 3)
 		if (strcmp(mesh_name, m->name) == 0 && strcmp(peer, r->name) == 0)
 			best = took;
@@ -248,7 +167,7 @@ static const oracle_corner *exact_of(bench *b, size_t mesh, int weight)
 {
 	oracle_corner **at = &b->exact[mesh][weight];
 	if (!*at) {
-		*at = room(b->meshes[mesh].mesh.corner_count, sizeof **at);
+		*at = measure_room(b->meshes[mesh].mesh.corner_count, sizeof **at);
 		if (!oracle_solve(&b->meshes[mesh].mesh.mesh, (oracle_weight)weight, *at))
 			exit(4);
 	}
@@ -261,9 +180,9 @@ static void judge_vectors(bench *b, size_t mesh, const run *r, const float (*tan
 	const oracle_corner *exact = r->weight == NO_WEIGHT ? NULL : exact_of(b, mesh, r->weight);
 	for (size_t c = 0; c < m->mesh.corner_count; c++) {
 		if (exact && exact[c].sign != 0 && exact[c].condition < 1e6)
-			pool_add(&to->arithmetic, degrees_between(tangents[c], exact[c].t));
+			measure_pool_add(&to->arithmetic, measure_degrees(tangents[c], exact[c].t));
 		if (m->has_truth)
-			pool_add(&to->truth, degrees_between(tangents[c], m->mesh.truth[m->mesh.indices[c]]));
+			measure_pool_add(&to->truth, measure_degrees(tangents[c], m->mesh.truth[m->mesh.indices[c]]));
 	}
 }
 
@@ -276,7 +195,7 @@ static void time_runs(bench *b)
 				const nt_owned *mesh = &b->meshes[m].mesh;
 				if (mesh->mesh.face_count == 0)
 					continue;
-				float (*tangents)[4] = room(mesh->corner_count, sizeof *tangents);
+				float (*tangents)[4] = measure_room(mesh->corner_count, sizeof *tangents);
 				const double took = run_ours(&b->runs[i], mesh, tangents);
 				b->best[i][m] = round == 0 ? took : fmin(b->best[i][m], took);
 				free(tangents);
@@ -300,7 +219,7 @@ static void judge_run(bench *b, size_t index)
 		const bench_mesh *m = &b->meshes[i];
 		if (m->mesh.mesh.face_count == 0)
 			continue;
-		float (*tangents)[4] = room(m->mesh.corner_count, sizeof *tangents);
+		float (*tangents)[4] = measure_room(m->mesh.corner_count, sizeof *tangents);
 		const double took = r->is_peer                              ? read_peer(b, r, m, tangents)
 				    : solve_ours(r, &m->mesh, tangents) ? b->best[index][i]
 									: -1;
@@ -317,8 +236,8 @@ static void judge_run(bench *b, size_t index)
 		}
 		free(tangents);
 	}
-	pool_finish(&to->arithmetic);
-	pool_finish(&to->truth);
+	measure_pool_finish(&to->arithmetic);
+	measure_pool_finish(&to->truth);
 	printf("bench: %s%s\n", r->name, to->present ? "" : " is not there, skipped");
 	fflush(stdout);
 }
@@ -328,7 +247,7 @@ static void make_bakers(bench *b)
 	for (size_t i = 0; i < BENCH_MESH_COUNT; i++) {
 		if (!b->meshes[i].is_eye)
 			continue;
-		b->baker[i] = room(b->meshes[i].mesh.corner_count, sizeof *b->baker[i]);
+		b->baker[i] = measure_room(b->meshes[i].mesh.corner_count, sizeof *b->baker[i]);
 		const nmtan_options options = {.repair = NMTAN_REPAIR_OFF};
 		nmtan_output output = {.tangents = &b->baker[i][0][0]};
 		if (nmtan_tangents(&b->meshes[i].mesh.mesh, &options, &output))
@@ -353,7 +272,7 @@ static double nanoseconds(const result *r)
 
 static void write_results(const bench *b, FILE *md)
 {
-	FILE *csv = open_in(b->output, "error.csv", "w");
+	FILE *csv = measure_open(b->output, "error.csv", "w");
 	fprintf(csv, "method,precision,ns_per_triangle,arithmetic_median,arithmetic_999,arithmetic_worst,"
 		"truth_median,truth_999,truth_worst,baked_rms,baked_worst,baked_psnr,tiled_rms,tiled_worst,"
 		"tiled_psnr\n");
@@ -399,7 +318,7 @@ static void write_chart(const bench *b, const char *name, bool truth)
 	size_t count = 0;
 	for (size_t i = 0; i < b->run_count; i++) {
 		const result *r = &b->results[i];
-		const pool *p = truth ? &r->truth : &r->arithmetic;
+		const measure_pool *p = truth ? &r->truth : &r->arithmetic;
 		/* single instruction sets would crowd the chart, as would threads, which meshes of this size do
 		 * not use: the table has them */
 		const bool crowded = strstr(b->runs[i].name, "AVX") || strstr(b->runs[i].name, "baseline") ||
@@ -422,142 +341,6 @@ static void write_chart(const bench *b, const char *name, bool truth)
 				  : "angle to the same formula in 113 bits; seven meshes",
 		.x_label = "nanoseconds per triangle (-npm: wasm under node)", .y_label = "degrees", .log_x = true,
 		.log_y = true, .points = true, .marks = marks, .series = series, .series_count = count};
-	if (!chart_write(path, &c))
-		exit(2);
-}
-
-/* Convergence: error against the analytic dP/du over resolutions. */
-
-enum { LEVELS = 8, SUMMED = 4 };
-static const char *const summed_names[SUMMED] = {"mikktspace (angle, float)", "robust (angle, double)", "area",
-	"lengyel"};
-static const nmtan_method summed_methods[SUMMED] = {NMTAN_METHOD_MIKKTSPACE, NMTAN_METHOD_ROBUST,
-	NMTAN_METHOD_AREA, NMTAN_METHOD_LENGYEL};
-
-static void judge_level(uint32_t cells, double median[SUMMED], double worst[SUMMED])
-{
-	pool pools[SUMMED] = {{0}};
-	for (int s = 0; s < NT_SURFACE_COUNT; s++) {
-		nt_owned mesh = nt_surface_grid((nt_surface)s, cells, cells, 0.25, cells);
-		float (*tangents)[4] = room(mesh.corner_count, sizeof *tangents);
-		for (int m = 0; m < SUMMED; m++) {
-			const nmtan_options options = {.method = summed_methods[m]};
-			nmtan_output output = {.tangents = &tangents[0][0]};
-			if (nmtan_tangents(&mesh.mesh, &options, &output))
-				exit(3);
-			/* large meshes by a sample */
-			const size_t step = mesh.corner_count / 100000 * 2 + 1;
-			for (size_t c = 0; c < mesh.corner_count; c += step)
-				pool_add(&pools[m], degrees_between(tangents[c], mesh.truth[mesh.indices[c]]));
-		}
-		free(tangents);
-		nt_owned_free(&mesh);
-	}
-	for (int m = 0; m < SUMMED; m++) {
-		pool_finish(&pools[m]);
-		median[m] = pools[m].median;
-		worst[m] = pools[m].worst;
-	}
-}
-
-static void judge_convergence(const bench *b, FILE *md)
-{
-	double cells[LEVELS], median[SUMMED][LEVELS], worst[SUMMED][LEVELS];
-	FILE *csv = open_in(b->output, "convergence.csv", "w");
-	fprintf(csv, "cells,method,median_degrees,worst_degrees\n");
-	for (int l = 0; l < LEVELS; l++) {
-		double med[SUMMED], wor[SUMMED];
-		cells[l] = 8 << l;
-		judge_level((uint32_t)cells[l], med, wor);
-		for (int m = 0; m < SUMMED; m++) {
-			median[m][l] = med[m];
-			worst[m][l] = wor[m];
-			fprintf(csv, "%g,%s,%.5g,%.5g\n", cells[l], summed_names[m], med[m], wor[m]);
-		}
-	}
-	fclose(csv);
-	fprintf(md, "\n## Convergence to the analytic dP/du\n\nSphere, torus, twisted strip, sheared saddle and noise, "
-		"vertices moved by up to a quarter of a cell; median / worst degrees. The order is the slope of the "
-		"median from 16 to 128 cells.\n\n| cells |");
-	for (int l = 0; l < LEVELS; l++)
-		fprintf(md, " %g |", cells[l]);
-	fprintf(md, " order |\n|---|");
-	for (int l = 0; l <= LEVELS; l++)
-		fprintf(md, "---|");
-	chart_series series[SUMMED];
-	for (int m = 0; m < SUMMED; m++) {
-		fprintf(md, "\n| %s |", summed_names[m]);
-		for (int l = 0; l < LEVELS; l++)
-			fprintf(md, " %.2g / %.2g |", median[m][l], worst[m][l]);
-		fprintf(md, " %.2f |", log2(median[m][1] / median[m][4]) / 3);
-		series[m] = (chart_series){summed_names[m], cells, median[m], LEVELS};
-	}
-	fprintf(md, "\n");
-	char path[512];
-	snprintf(path, sizeof path, "%s/convergence.svg", b->output);
-	const chart c = {.title = "Convergence to the analytic dP/du", .subtitle = "median over five surfaces",
-		.x_label = "cells along a side", .y_label = "degrees", .log_x = true, .log_y = true, .series = series,
-		.series_count = SUMMED};
-	if (!chart_write(path, &c))
-		exit(2);
-	printf("bench: convergence\n");
-}
-
-/* Thin bevels: how far the plane's tangents are tilted at the bevel's edge. */
-
-enum { WIDTHS = 9 };
-
-static double bevel_tilt(double width, nmtan_method method)
-{
-	nt_owned mesh = bench_bevel(width, 4);
-	float (*tangents)[4] = room(mesh.corner_count, sizeof *tangents);
-	const nmtan_options options = {.method = method};
-	nmtan_output output = {.tangents = &tangents[0][0]};
-	if (nmtan_tangents(&mesh.mesh, &options, &output))
-		exit(3);
-	pool p = {0};
-	for (size_t c = 0; c < mesh.corner_count; c++) {
-		const uint32_t v = mesh.indices[c], column = v % 10, row = v / 10;
-		if (column == 4 && row > 0 && row < 4) /* the edge, away from its ends */
-			pool_add(&p, degrees_between(tangents[c], mesh.truth[v]));
-	}
-	pool_finish(&p);
-	free(tangents);
-	nt_owned_free(&mesh);
-	return p.median;
-}
-
-static void judge_bevels(const bench *b, FILE *md)
-{
-	static const double widths[WIDTHS] = {0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1};
-	double tilt[SUMMED][WIDTHS];
-	FILE *csv = open_in(b->output, "bevel.csv", "w");
-	fprintf(csv, "width,method,tilt_degrees\n");
-	fprintf(md, "\n## Thin bevels\n\nTilt in degrees of the tangents of a plane (cells of 0.25) beside a bevel of "
-		"the given width whose texture is sheared by 4/3.\n\n| width |");
-	for (int w = 0; w < WIDTHS; w++)
-		fprintf(md, " %g |", widths[w]);
-	fprintf(md, "\n|---|");
-	for (int w = 0; w < WIDTHS; w++)
-		fprintf(md, "---|");
-	chart_series series[SUMMED];
-	for (int m = 0; m < SUMMED; m++) {
-		fprintf(md, "\n| %s |", summed_names[m]);
-		for (int w = 0; w < WIDTHS; w++) {
-			tilt[m][w] = bevel_tilt(widths[w], summed_methods[m]);
-			fprintf(md, " %.3g |", tilt[m][w]);
-			fprintf(csv, "%g,%s,%.5g\n", widths[w], summed_names[m], tilt[m][w]);
-		}
-		series[m] = (chart_series){summed_names[m], widths, tilt[m], WIDTHS};
-	}
-	fprintf(md, "\n");
-	fclose(csv);
-	char path[512];
-	snprintf(path, sizeof path, "%s/bevel.svg", b->output);
-	const chart c = {.title = "Thin bevels tilt the plane beside them",
-		.subtitle = "angle between the plane's tangent at the bevel's edge and its dP/du",
-		.x_label = "width of the bevel (cells are 0.25)", .y_label = "degrees", .log_x = true, .log_y = true,
-		.series = series, .series_count = SUMMED};
 	if (!chart_write(path, &c))
 		exit(2);
 }
@@ -593,13 +376,13 @@ static void judge(bench *b)
 	time_runs(b);
 	for (size_t i = 0; i < b->run_count; i++)
 		judge_run(b, i);
-	FILE *md = open_in(b->output, "error.md", "w");
+	FILE *md = measure_open(b->output, "error.md", "w");
 	write_machine(md);
 	write_results(b, md);
 	write_chart(b, "error-arithmetic.svg", false);
 	write_chart(b, "error-truth.svg", true);
-	judge_bevels(b, md);
-	judge_convergence(b, md);
+	sweep_bevels(b->output, md);
+	sweep_convergence(b->output, md);
 	fclose(md);
 	for (size_t i = 0; i < BENCH_MESH_COUNT; i++) {
 		free(b->baker[i]);

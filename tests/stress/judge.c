@@ -7,8 +7,8 @@
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include "judge.h"
+#include "measure.h"
 #include "oracle128.h"
 
 const column columns[COLUMN_COUNT] = {
@@ -29,13 +29,6 @@ static oracle_weight weight_of(nmtan_method method)
 						: ORACLE_ANGLE;
 }
 
-static double seconds(void)
-{
-	struct timespec t;
-	clock_gettime(CLOCK_MONOTONIC, &t);
-	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static size_t triangle_count(const nmtan_mesh *mesh)
 {
 	size_t count = mesh->face_count;
@@ -53,10 +46,10 @@ static bool run(const nmtan_mesh *mesh, const column *c, nmtan_workspace *worksp
 	nmtan_output output = {.tangents = tangents};
 	double total = 0, best = INFINITY;
 	for (int i = 0; i < 50 && (i < 3 || total < 0.004) && (i < 1 || total < 2); i++) {
-		const double start = seconds();
+		const double start = measure_seconds();
 		if (nmtan_tangents(mesh, &options, &output))
 			return false;
-		const double took = seconds() - start;
+		const double took = measure_seconds() - start;
 		total += took;
 		best = fmin(best, took);
 	}
@@ -83,25 +76,6 @@ static double along_normal(const float *t, const float *n)
 	if (!(length > 0) || !isfinite(length))
 		return 0;
 	return ((double)t[0] * n[0] + (double)t[1] * n[1] + (double)t[2] * n[2]) / length;
-}
-
-static double degrees_between(const float *t, const double *exact)
-{
-	double sine = 0, cosine = 0;
-	for (int i = 0; i < 3; i++) {
-		const int k = (i + 1) % 3, l = (i + 2) % 3;
-		const double x = t[k] * exact[l] - t[l] * exact[k];
-		sine += x * x;
-		cosine += t[i] * exact[i];
-	}
-	const double angle = atan2(sqrt(sine), cosine) * 57.29577951308232;
-	return isfinite(angle) ? angle : 180;
-}
-
-static int compare_doubles(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-	return (x > y) - (x < y);
 }
 
 static void score_signs(const nmtan_mesh *mesh, const oracle_corner *exact, const float *tangents, score *s)
@@ -140,11 +114,11 @@ static void score_vectors(const nmtan_mesh *mesh, const oracle_corner *exact, bo
 		for (int i = 0; i < 3; i++)
 			off = off || !(fabs(t[i] - exact[c].t[i]) <= ONE_BIT);
 		s->off += off;
-		angles[s->judged++] = degrees_between(t, exact[c].t);
+		angles[s->judged++] = measure_degrees(t, exact[c].t);
 	}
 	if (s->judged == 0)
 		return;
-	qsort(angles, s->judged, sizeof *angles, compare_doubles);
+	qsort(angles, s->judged, sizeof *angles, measure_compare);
 	s->worst_degrees = angles[s->judged - 1];
 	s->median_degrees = angles[s->judged / 2];
 	s->high_degrees = angles[(size_t)((double)(s->judged - 1) * 0.999)];
