@@ -69,6 +69,12 @@ static nmtan_status collect_attribute(void *context, nt_json_value *attributes, 
 	return add_item(g, accessor);
 }
 
+static int compare_overrides(const void *a, const void *b)
+{
+	const uint32_t x = ((const nt_gltf_override *)a)->accessor, y = ((const nt_gltf_override *)b)->accessor;
+	return (x > y) - (x < y);
+}
+
 /* All accessors of all members. When nothing is appended, only those with new values. */
 static nmtan_status collect_items(nt_gltf_growing *g, const nt_gltf_override *overrides, size_t override_count)
 {
@@ -88,10 +94,11 @@ static nmtan_status collect_items(nt_gltf_growing *g, const nt_gltf_override *ov
 		g->collecting_unsolved = false;
 		status = collect_attribute(g, NULL, "TANGENT", overrides[i].accessor);
 	}
-	for (size_t i = 0; !status && i < g->item_count; i++)
-		for (size_t k = 0; k < override_count; k++)
-			if (g->items[i].accessor.index == overrides[k].accessor)
-				g->items[i].override = &overrides[k];
+	for (size_t i = 0; !status && override_count && i < g->item_count; i++) {
+		const nt_gltf_override key = {.accessor = g->items[i].accessor.index};
+		g->items[i].override =
+			bsearch(&key, overrides, override_count, sizeof key, compare_overrides);
+	}
 	return status;
 }
 
@@ -432,12 +439,14 @@ static nmtan_status grow_items(nt_gltf_growing *g)
 }
 
 nmtan_status nt_gltf_grow_attributes(nt_gltf_patcher *p, const nt_gltf_cluster *component,
-	const nt_gltf_override *overrides, size_t override_count, bool decoded_too)
+	nt_gltf_override *overrides, size_t override_count, bool decoded_too)
 {
 	nt_gltf_growing g = {.patcher = p, .component = component, .decoded_too = decoded_too,
 		.seen = nt_calloc(p->sharing.accessor_count, sizeof(bool)),
 		.pinned = nt_calloc(p->sharing.accessor_count, sizeof(bool))};
 	nmtan_status status = g.seen && g.pinned ? NMTAN_OK : nt_fail_memory(p->error);
+	if (override_count)
+		qsort(overrides, override_count, sizeof *overrides, compare_overrides);
 	if (!status)
 		status = collect_items(&g, overrides, override_count);
 	if (!status && nt_gltf_added_rows(&g) && must_pin(&g))

@@ -48,9 +48,8 @@ nmtan_status nt_gltf_add_floats(nt_gltf_patcher *p, uint32_t buffer, const float
 static void set_attribute(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
 	const char *name, uint32_t accessor)
 {
-	for (size_t i = 0; i < component->member_count; i++) {
-		if (component->rows.group_of[i] != group)
-			continue;
+	const nt_gltf_rows *rows = &component->rows;
+	for (uint32_t i = rows->group_first[group]; i != NT_NONE; i = rows->next_of[i]) {
 		nt_json_value *attributes = nt_json_find(nt_gltf_primitive_of(p->document,
 			&p->scene->meshes[component->members[i]]), "attributes");
 		nt_json_set_uint64(p->json, nt_json_put(p->json, attributes, name), accessor);
@@ -60,10 +59,7 @@ static void set_attribute(nt_gltf_patcher *p, const nt_gltf_cluster *component, 
 static const nt_mesh *first_of_group(const nt_gltf_patcher *p, const nt_gltf_cluster *component,
 	uint32_t group)
 {
-	for (size_t i = 0; i < component->member_count; i++)
-		if (component->rows.group_of[i] == group)
-			return &p->scene->meshes[component->members[i]];
-	return NULL;
+	return &p->scene->meshes[component->members[component->rows.group_first[group]]];
 }
 
 nmtan_status nt_gltf_bitangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
@@ -92,9 +88,8 @@ nmtan_status nt_gltf_bitangents(nt_gltf_patcher *p, const nt_gltf_cluster *compo
 static void set_target(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
 	uint32_t target, const char *name, uint32_t accessor)
 {
-	for (size_t i = 0; i < component->member_count; i++) {
-		if (component->rows.group_of[i] != group)
-			continue;
+	const nt_gltf_rows *rows = &component->rows;
+	for (uint32_t i = rows->group_first[group]; i != NT_NONE; i = rows->next_of[i]) {
 		nt_json_value *attributes = nt_json_at(nt_json_find(nt_gltf_primitive_of(p->document,
 			&p->scene->meshes[component->members[i]]), "targets"), target);
 		nt_json_set_uint64(p->json, nt_json_put(p->json, attributes, name), accessor);
@@ -188,8 +183,9 @@ static nmtan_status add_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *comp
 static void complete_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
 	const nt_gltf_old_tangents *old)
 {
-	for (size_t i = 0; old->count && i < component->member_count; i++)
-		if (component->rows.group_of[i] == group && nt_gltf_tangent_of(p, component, i) == NT_NONE)
+	const nt_gltf_rows *rows = &component->rows;
+	for (uint32_t i = rows->group_first[group]; old->count && i != NT_NONE; i = rows->next_of[i])
+		if (nt_gltf_tangent_of(p, component, i) == NT_NONE)
 			nt_json_set_uint64(p->json, nt_json_put(p->json, nt_json_find(nt_gltf_primitive_of(
 				p->document, &p->scene->meshes[component->members[i]]), "attributes"),
 				"TANGENT"), old->accessors[0]);

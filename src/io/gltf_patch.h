@@ -72,10 +72,10 @@ void nt_gltf_move_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents 
 nmtan_status nt_gltf_add_floats(nt_gltf_patcher *patcher, uint32_t buffer, const float *rows,
 	size_t count, uint32_t width, uint32_t *accessor);
 
-/* Gives every accessor of the component its copied rows, and overridden accessors their new values.
- * decoded_too: what was decompressed by Draco goes into plain views. */
+/* Gives every accessor of the component its copied rows, and overridden accessors their new values;
+ * `overrides` is sorted for that. decoded_too: what was decompressed by Draco goes into plain views. */
 nmtan_status nt_gltf_grow_attributes(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
-	const nt_gltf_override *overrides, size_t override_count, bool decoded_too);
+	nt_gltf_override *overrides, size_t override_count, bool decoded_too);
 
 /* Whether a solved member of the component is compressed by Draco. */
 bool nt_gltf_has_draco(const nt_gltf_patcher *patcher, const nt_gltf_cluster *component);

@@ -72,36 +72,72 @@ static bool same_directions(const nt_mesh *a, const nt_mesh *b)
 		memcmp(x, y, a->vertex_count * 2 * sizeof *x) == 0;
 }
 
+/* What is known of the groups while they are found: thousands may share one accessor of positions, so they
+ * stand in a table by the hash of their key. */
+typedef struct grouping {
+	group_key *keys;    /* [group] */
+	uint32_t *last;     /* [group] its last member yet */
+	uint32_t *table;    /* [table_size] groups or NT_NONE; at most half full */
+	size_t table_size;  /* a power of two */
+} grouping;
+
+static size_t slot_of(const group_key *key, size_t table_size)
+{
+	uint64_t hash = key->positions;
+	hash = (hash ^ key->normals) * 0x9E3779B97F4A7C15u;
+	hash = (hash ^ hash >> 32 ^ key->texcoords) * 0x9E3779B97F4A7C15u;
+	hash = (hash ^ hash >> 32 ^ key->targets) * 0x9E3779B97F4A7C15u;
+	return (size_t)(hash >> 32) & (table_size - 1);
+}
+
+/* Appends a member to its group, which may be a new one. */
+static void join_group(grouping *g, nt_gltf_rows *rows, const nt_scene *scene, const uint32_t *members,
+	uint32_t member, const group_key *key)
+{
+	const nt_mesh *mesh = &scene->meshes[members[member]];
+	size_t slot = slot_of(key, g->table_size);
+	for (; g->table[slot] != NT_NONE; slot = (slot + 1) & (g->table_size - 1)) {
+		const uint32_t group = g->table[slot];
+		if (memcmp(&g->keys[group], key, sizeof *key) != 0 ||
+			!same_directions(&scene->meshes[members[rows->group_first[group]]], mesh))
+			continue;
+		rows->next_of[g->last[group]] = member;
+		g->last[group] = member;
+		rows->group_of[member] = group;
+		return;
+	}
+	const uint32_t group = (uint32_t)rows->group_count++;
+	g->table[slot] = group;
+	g->keys[group] = *key;
+	g->last[group] = rows->group_first[group] = member;
+	rows->group_of[member] = group;
+}
+
 static bool find_groups(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
 	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count)
 {
-	group_key *keys = nt_alloc(member_count, sizeof *keys);
-	const nt_mesh **firsts = nt_alloc(member_count, sizeof *firsts); /* of each group */
-	if (!keys || !firsts) {
-		free(keys);
-		free(firsts);
-		return false;
-	}
+	grouping g = {.table_size = 2};
+	while (g.table_size < 2 * member_count)
+		g.table_size *= 2;
+	g.keys = nt_alloc(member_count, sizeof *g.keys);
+	g.last = nt_alloc(member_count, sizeof *g.last);
+	g.table = nt_alloc(g.table_size, sizeof *g.table);
+	const bool room = g.keys && g.last && g.table;
+	if (room)
+		memset(g.table, 0xff, g.table_size * sizeof *g.table);
 	rows->group_count = 0;
-	for (size_t i = 0; i < member_count; i++) {
+	for (uint32_t i = 0; room && i < member_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[members[i]];
-		rows->group_of[i] = NT_NONE;
+		rows->group_of[i] = rows->next_of[i] = NT_NONE;
 		if (!nt_gltf_is_solved(mesh))
 			continue;
 		const group_key key = key_of(document, sharing, mesh);
-		uint32_t group = 0;
-		while (group < rows->group_count && (memcmp(&keys[group], &key, sizeof key) != 0 ||
-			!same_directions(firsts[group], mesh)))
-			group++;
-		if (group == rows->group_count) {
-			firsts[group] = mesh;
-			keys[rows->group_count++] = key;
-		}
-		rows->group_of[i] = group;
+		join_group(&g, rows, scene, members, i, &key);
 	}
-	free(keys);
-	free(firsts);
-	return true;
+	free(g.keys);
+	free(g.last);
+	free(g.table);
+	return room;
 }
 
 static bool grow(void **block, size_t old_count, size_t new_count, size_t size)
@@ -488,10 +524,12 @@ nmtan_status nt_gltf_merge_rows(nt_gltf_rows *rows, const nt_gltf *document, con
 {
 	*rows = (nt_gltf_rows){
 		.group_of = nt_arena_alloc(arena, member_count, sizeof *rows->group_of),
+		.group_first = nt_arena_alloc(arena, member_count, sizeof *rows->group_first),
+		.next_of = nt_arena_alloc(arena, member_count, sizeof *rows->next_of),
 		.indices = nt_arena_alloc(arena, member_count, sizeof *rows->indices),
 		.changed = nt_arena_alloc(arena, member_count, sizeof *rows->changed),
 	};
-	if (!rows->group_of || !rows->indices || !rows->changed ||
+	if (!rows->group_of || !rows->group_first || !rows->next_of || !rows->indices || !rows->changed ||
 		!find_groups(rows, document, scene, sharing, members, member_count))
 		return nt_fail_memory(error);
 	nmtan_status status = check_counts(rows, scene, members, member_count, error);

@@ -146,6 +146,7 @@ static nmtan_status join_user(void *context, nt_json_value *attributes, const ch
 	(void)attributes;
 	(void)name;
 	joining *j = context;
+	j->sharing->attribute_users[j->sharing->canonical[accessor]]++;
 	uint32_t *user = &j->first_user[j->sharing->canonical[accessor]];
 	if (*user == NT_NONE) {
 		*user = j->mesh;
@@ -187,6 +188,7 @@ nmtan_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, c
 		.accessor_count = accessor_count,
 		.canonical = nt_arena_alloc(arena, accessor_count, sizeof(uint32_t)),
 		.foreign = nt_arena_alloc(arena, accessor_count, sizeof(bool)),
+		.attribute_users = nt_arena_alloc(arena, accessor_count, sizeof(uint32_t)),
 		.index_users = nt_arena_alloc(arena, accessor_count, sizeof(uint32_t)),
 		.block_users = nt_arena_alloc(arena, document->view_count, sizeof(uint32_t)),
 		.order = nt_arena_alloc(arena, scene->mesh_count, sizeof(uint32_t)),
@@ -195,14 +197,16 @@ nmtan_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, c
 	};
 	joining j = {.sharing = sharing, .parent = nt_alloc(scene->mesh_count, sizeof(uint32_t)),
 		.first_user = nt_alloc(accessor_count, sizeof(uint32_t))};
-	const bool allocated = sharing->canonical && sharing->foreign && sharing->index_users &&
-		sharing->block_users && sharing->order && sharing->component && sharing->first && j.parent && j.first_user;
+	const bool allocated = sharing->canonical && sharing->foreign && sharing->attribute_users &&
+		sharing->index_users && sharing->block_users && sharing->order && sharing->component &&
+		sharing->first && j.parent && j.first_user;
 	if (!allocated || !nt_gltf_find_canonical(document, sharing->canonical, accessor_count)) {
 		free(j.parent);
 		free(j.first_user);
 		return nt_fail_memory(error);
 	}
 	memset(sharing->foreign, 0, accessor_count * sizeof *sharing->foreign);
+	memset(sharing->attribute_users, 0, accessor_count * sizeof *sharing->attribute_users);
 	memset(sharing->index_users, 0, accessor_count * sizeof *sharing->index_users);
 	memset(sharing->block_users, 0, document->view_count * sizeof *sharing->block_users);
 	memset(j.first_user, 0xFF, accessor_count * sizeof *j.first_user);

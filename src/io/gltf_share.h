@@ -27,6 +27,7 @@ typedef struct nt_gltf_sharing {
 	size_t accessor_count;
 	uint32_t *canonical;      /* [accessor_count] the first accessor over the same bytes */
 	bool *foreign;            /* [accessor_count] used by something else than attributes */
+	uint32_t *attribute_users; /* [accessor_count] uses as attribute, of morph targets too; by canonical accessor */
 	uint32_t *index_users;    /* [accessor_count] primitives that have it as indices */
 	uint32_t *block_users;    /* [view_count] primitives that are compressed in it */
 	uint32_t *order;          /* [mesh count] meshes, those of one component together */
@@ -51,6 +52,8 @@ typedef struct nt_gltf_rows {
 	float **normals;      /* [group_count][new_count][3]: NULL where normals were not made */
 	float ***morphs;      /* [group_count][morph count of its meshes][new_count][3] */
 	uint32_t *group_of;   /* [member count] NT_NONE: not solved */
+	uint32_t *group_first; /* [group_count] first member of each; what belongs to one is found without the others */
+	uint32_t *next_of;    /* [member count] the next member of the same group, NT_NONE: none */
 	uint32_t **indices;   /* [member count][corner count]; NULL: not solved */
 	bool *changed;        /* [member count] indices differ from the source's triangles */
 	bool borrowed;        /* sources, tangents and indices are the scene's: do not write to them */

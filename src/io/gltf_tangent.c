@@ -12,23 +12,8 @@
  */
 #include "io/gltf_patch.h"
 
+#include <stdlib.h>
 #include "io/gltf_precision.h"
-
-typedef struct tangent_users {
-	const nt_gltf_patcher *patcher;
-	uint32_t canonical;
-	uint32_t count; /* members that use it, under any name */
-} tangent_users;
-
-static nmtan_status count_user(void *context, nt_json_value *attributes, const char *name,
-	uint32_t accessor)
-{
-	(void)attributes;
-	(void)name;
-	tangent_users *users = context;
-	users->count += users->patcher->sharing.canonical[accessor] == users->canonical;
-	return NMTAN_OK;
-}
 
 uint32_t nt_gltf_tangent_of(const nt_gltf_patcher *p, const nt_gltf_cluster *component, size_t member)
 {
@@ -41,25 +26,14 @@ uint32_t nt_gltf_tangent_of(const nt_gltf_patcher *p, const nt_gltf_cluster *com
 	return (uint32_t)accessor;
 }
 
-/* Whether the group's meshes alone use an accessor, as TANGENT. */
-static bool is_own(const nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group, uint32_t index)
+/* Whether nobody uses an accessor but the `known` meshes of a group that have it as TANGENT. */
+static bool is_own(const nt_gltf_patcher *p, uint32_t index, size_t known)
 {
 	const uint32_t canonical = p->sharing.canonical[index];
 	nt_gltf_accessor accessor;
-	if (p->sharing.foreign[canonical] ||
-		nt_gltf_get_accessor(p->document, index, "", &accessor, NULL) != NMTAN_OK ||
-		accessor.components != 4)
-		return false;
-	tangent_users users = {p, canonical, 0};
-	uint32_t known = 0;
-	for (size_t i = 0; i < component->member_count; i++) {
-		nt_gltf_visit_attributes(nt_gltf_primitive_of(p->document,
-			&p->scene->meshes[component->members[i]]), p->sharing.accessor_count, count_user,
-			&users);
-		known += component->rows.group_of[i] == group &&
-			nt_gltf_tangent_of(p, component, i) == index;
-	}
-	return users.count == known;
+	return !p->sharing.foreign[canonical] && p->sharing.attribute_users[canonical] == known &&
+		nt_gltf_get_accessor(p->document, index, "", &accessor, NULL) == NMTAN_OK &&
+		accessor.components == 4;
 }
 
 /* Whether the new rows go where the old ones are. */
@@ -79,28 +53,52 @@ static bool fits_in_place(const nt_gltf_patcher *p, uint32_t index)
 		nt_layout_users(&p->layout, view.buffer, begin, end) > 1;
 }
 
+static int compare_indices(const void *a, const void *b)
+{
+	const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+	return (x > y) - (x < y);
+}
+
+/* The TANGENT accessors of a group's meshes, in ascending order, each as often as it is used. */
+static nmtan_status list_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
+	uint32_t **list, size_t *count)
+{
+	const nt_gltf_rows *rows = &component->rows;
+	size_t members = 0;
+	for (uint32_t i = rows->group_first[group]; i != NT_NONE; i = rows->next_of[i])
+		members++;
+	*list = nt_arena_alloc(p->arena, members, sizeof **list);
+	if (!*list)
+		return nt_fail_memory(p->error);
+	*count = 0;
+	for (uint32_t i = rows->group_first[group]; i != NT_NONE; i = rows->next_of[i]) {
+		const uint32_t index = nt_gltf_tangent_of(p, component, i);
+		if (index != NT_NONE)
+			(*list)[(*count)++] = index;
+	}
+	qsort(*list, *count, sizeof **list, compare_indices);
+	return NMTAN_OK;
+}
+
 nmtan_status nt_gltf_find_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
 	nt_gltf_old_tangents *old)
 {
-	*old = (nt_gltf_old_tangents){.in_place = true,
-		.accessors = nt_arena_alloc(p->arena, component->member_count, sizeof *old->accessors)};
-	if (!old->accessors)
-		return nt_fail_memory(p->error);
-	for (size_t i = 0; i < component->member_count; i++) {
-		const uint32_t index = nt_gltf_tangent_of(p, component, i);
-		if (component->rows.group_of[i] != group || index == NT_NONE)
-			continue;
-		bool known = false;
-		for (size_t k = 0; k < old->count && !known; k++)
-			known = old->accessors[k] == index;
-		if (known)
-			continue;
-		if (!is_own(p, component, group, index)) {
+	uint32_t *list;
+	size_t count = 0;
+	*old = (nt_gltf_old_tangents){.in_place = true};
+	const nmtan_status status = list_tangents(p, component, group, &list, &count);
+	if (status)
+		return status;
+	old->accessors = list; /* what is kept overtakes nothing that is still to be read */
+	for (size_t i = 0, end; i < count; i = end) {
+		for (end = i + 1; end < count && list[end] == list[i];)
+			end++;
+		if (!is_own(p, list[i], end - i)) {
 			old->count = 0;
 			break;
 		}
-		old->in_place &= fits_in_place(p, index);
-		old->accessors[old->count++] = index;
+		old->in_place &= fits_in_place(p, list[i]);
+		old->accessors[old->count++] = list[i];
 	}
 	old->in_place &= old->count > 0;
 	return NMTAN_OK;
