@@ -118,6 +118,18 @@ void nt_file_close(nt_file *file)
 	*file = (nt_file){.data = no_bytes, .fd = -1};
 }
 
+void nt_file_forget(const nt_file *file, const void *bytes, size_t size)
+{
+	const uintptr_t map = (uintptr_t)file->data, at = (uintptr_t)bytes;
+	if (!file->mapped || at < map || at - map > file->size || size > file->size - (at - map))
+		return;
+	/* whole pages only: the others hold something else too */
+	const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+	const size_t begin = (at - map + page - 1) / page * page, end = (at - map + size) / page * page;
+	if (begin < end)
+		madvise((void *)(map + begin), end - begin, MADV_DONTNEED); /* a refusal changes nothing */
+}
+
 bool nt_file_is(const nt_file *file, const char *path)
 {
 	struct stat status;

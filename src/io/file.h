@@ -26,6 +26,10 @@ typedef struct nt_file {
 nmtan_status nt_file_open(nt_file *file, const char *path, nt_error *error);
 void nt_file_close(nt_file *file);
 
+/* Says that bytes of a mapped file will hardly be read again: their pages no longer count as memory of this
+ * process, and come back when they are read all the same. What is not in the map is left alone. */
+void nt_file_forget(const nt_file *file, const void *bytes, size_t size);
+
 /* Whether path names the file that was opened. */
 bool nt_file_is(const nt_file *file, const char *path);
 

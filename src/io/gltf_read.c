@@ -419,6 +419,8 @@ static nmtan_status load_vertices(nt_scene *scene, nt_gltf *document, nt_mesh *m
 		mesh->texcoords[2 * i] = decoded[2 * i];
 		mesh->texcoords[2 * i + 1] = -decoded[2 * i + 1];
 	}
+	if (scene->file)
+		nt_file_forget(scene->file, decoded, mesh->vertex_count * 2 * sizeof(float));
 	return NMTAN_OK;
 }
 

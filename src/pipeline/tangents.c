@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
+#include "io/file.h"
 #include "tangent/vertices.h"
 
 /* Corners from which one mesh is worth all threads. */
@@ -23,11 +24,17 @@ typedef struct tangent_job {
 	nt_scene *scene;
 	const nt_settings *settings;
 	bool round_trip;    /* the output stores 1 - v */
+	bool forgets;       /* the input is not read again after the solve */
 	nt_mesh **meshes;   /* the ones to solve */
 	nmtan_status *statuses;
 	size_t count;
 	nmtan_timing timing; /* of the large meshes */
 } tangent_job;
+
+typedef struct mesh_bytes {
+	const nt_file *file;
+	const nt_mesh *mesh;
+} mesh_bytes;
 
 static bool is_gltf(nt_format format)
 {
@@ -129,6 +136,19 @@ static nmtan_status split_morphs(nt_mesh *mesh, const nmtan_mesh *view, const nm
 	return status;
 }
 
+/* The input's pages that a solve is done with: glTF that is made from glTF is copied by the kernel. */
+static void forget_part(void *user, nt_mesh_part part)
+{
+	const mesh_bytes *bytes = user;
+	const nt_mesh *mesh = bytes->mesh;
+	if (part == NT_PART_ATTRIBUTES) {
+		nt_file_forget(bytes->file, mesh->positions, 3 * sizeof(float) * mesh->vertex_count);
+		nt_file_forget(bytes->file, mesh->normals, 3 * sizeof(float) * mesh->vertex_count);
+	} else {
+		nt_file_forget(bytes->file, mesh->indices, sizeof(uint32_t) * mesh->corner_count);
+	}
+}
+
 static nmtan_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned threads,
 	nmtan_workspace *workspace, nmtan_timing *timing)
 {
@@ -151,7 +171,10 @@ static nmtan_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned t
 		free(mesh->corner_tangents);
 		mesh->corner_tangents = NULL;
 	} else if (!status) {
-		status = nt_vertex_tangents(&view, &options, &output, &mesh->counts);
+		mesh_bytes bytes = {job->scene->file, mesh};
+		const nt_vertex_request request = {.lazy_indices = true,
+			.passed = job->forgets ? forget_part : NULL, .user = &bytes};
+		status = nt_vertex_tangents(&view, &options, &request, &output, &mesh->counts);
 	}
 	mesh->split.source_count = output.source_count;
 	if (!status && output.source_count == 0) {
@@ -278,6 +301,8 @@ nmtan_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_
 {
 	tangent_job job = {.scene = scene, .settings = settings,
 		.round_trip = output != NT_FORMAT_UNKNOWN && is_gltf(scene->format) != is_gltf(output),
+		.forgets = scene->file && is_gltf(scene->format) && is_gltf(output) && !settings->report &&
+			!settings->verify,
 		.meshes = nt_alloc(scene->mesh_count, sizeof *job.meshes),
 		.statuses = nt_calloc(scene->mesh_count, sizeof *job.statuses)};
 	nmtan_status status = NMTAN_OK;

@@ -617,15 +617,18 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ra
 	const nmtan_mesh *mesh = solve->mesh;
 	/* the output lends its bytes, to the sums of binned corners if there are going to be any: rows at
 	 * random are better off in the large pages of the scratch. A sparse output is not filled, so that
-	 * its pages need not exist. */
-	const bool lends = !fast->sparse;
-	const bool lends_sums = lends && !fast->wants_more && solve->corner_count == 3 * fast->triangle_count &&
+	 * its pages need not exist: there the caller lends what it fills from the records. */
+	const bool lends_sums = !fast->sparse && !fast->wants_more && solve->corner_count == 3 * fast->triangle_count &&
 		mesh->indices && (bin_bits || nt_is_scattered(mesh->indices, solve->corner_count, mesh->vertex_count));
-	nt_room room = nt_room_over(solve->tangents,
-		lends && !lends_sums ? solve->corner_count * 4 * sizeof(float) : 0, solve->scratch);
+	nt_room room = fast->sparse
+		? nt_room_over(solve->lent, solve->lent_bytes, solve->scratch)
+		: nt_room_over(solve->tangents,
+			lends_sums ? 0 : solve->corner_count * 4 * sizeof(float), solve->scratch);
 	nt_weld weld;
 	const double begin = solve->timing ? nt_seconds() : 0;
 	nmtan_status status = nt_weld_mesh(mesh, solve->corner_count, &room, &weld);
+	if (solve->passed)
+		solve->passed(solve->user, NT_PART_ATTRIBUTES);
 	if (solve->timing)
 		solve->timing->weld += nt_seconds() - begin;
 	if (!status)

@@ -23,6 +23,9 @@ typedef struct nt_vouched {
 	                         has it; NULL: none at all */
 } nt_vouched;
 
+/* Parts of a mesh in the order in which a solve is done with them. */
+typedef enum nt_mesh_part { NT_PART_ATTRIBUTES, NT_PART_INDICES } nt_mesh_part;
+
 typedef struct nt_solve {
 	const nmtan_mesh *mesh;  /* strides are never 0 */
 	size_t corner_count;
@@ -34,6 +37,12 @@ typedef struct nt_solve {
 	nmtan_timing *timing;    /* to be added to, or NULL */
 	nt_vouched *vouched;     /* for the method to fill; empty before; may be NULL */
 	bool sparse;             /* sums: rows that vouched.ids stands for need not be written */
+	/* Memory that is filled after the method is done: it may serve as scratch. */
+	void *lent;
+	size_t lent_bytes;
+	/* Called when a part of the mesh will hardly be read again; may be NULL. */
+	void (*passed)(void *user, nt_mesh_part part);
+	void *user;
 	float *tangents;         /* [corner_count][4] */
 	float *bitangents;       /* [corner_count][3] or NULL */
 	float *magnitudes;       /* [corner_count][2] or NULL */

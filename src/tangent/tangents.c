@@ -159,8 +159,8 @@ static nmtan_status solve_vertices(request *r, nt_splitter *splitter, nmtan_coun
 	return status;
 }
 
-static nmtan_status find_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
-	nmtan_split_output *output, nmtan_counts *counts, bool lazy)
+nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
+	const nt_vertex_request *wanted, nmtan_split_output *output, nmtan_counts *counts)
 {
 	nmtan_counts own_counts;
 	counts = counts ? counts : &own_counts;
@@ -174,11 +174,15 @@ static nmtan_status find_vertex_tangents(const nmtan_mesh *mesh, const nmtan_opt
 	if (status)
 		return status;
 	nt_splitter splitter;
+	r.solve.passed = wanted->passed;
+	r.solve.user = wanted->user;
+	r.solve.lent = output->vertex_tangents; /* the split fills it at the end */
+	r.solve.lent_bytes = r.mesh.vertex_count * 4 * sizeof(float);
 	r.solve.tangents = nt_scratch_alloc(r.solve.scratch, r.solve.corner_count, 4 * sizeof(float));
 	status = r.solve.tangents ? nt_splitter_begin(&splitter, &r.mesh, r.solve.corner_count,
 					    output, r.solve.scratch)
 				  : NMTAN_ERROR_MEMORY;
-	splitter.lazy = lazy;
+	splitter.lazy = wanted->lazy_indices;
 	if (!status && r.solve.corner_count > 0)
 		status = solve_vertices(&r, &splitter, counts);
 	if (!status)
@@ -190,11 +194,6 @@ static nmtan_status find_vertex_tangents(const nmtan_mesh *mesh, const nmtan_opt
 nmtan_status nmtan_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	nmtan_split_output *output, nmtan_counts *counts)
 {
-	return find_vertex_tangents(mesh, options, output, counts, false);
-}
-
-nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
-	nmtan_split_output *output, nmtan_counts *counts)
-{
-	return find_vertex_tangents(mesh, options, output, counts, true);
+	const nt_vertex_request nothing = {.lazy_indices = false};
+	return nt_vertex_tangents(mesh, options, &nothing, output, counts);
 }

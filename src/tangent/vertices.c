@@ -46,6 +46,8 @@ nmtan_status nt_repair_and_split(const nt_solve *solve, bool repair, nmtan_count
 		status = nt_judge(solve, counts);
 		if (!status && (!repair || nt_fault_count(counts) == 0)) {
 			nt_forget_faults(counts);
+			if (solve->passed)
+				solve->passed(solve->user, NT_PART_INDICES);
 			return nt_split_shared(solve, splitter);
 		}
 		write_shared(solve);

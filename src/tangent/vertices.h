@@ -8,10 +8,16 @@
 #include "tangent/solve.h"
 #include "topology/split.h"
 
-/* nmtan_vertex_tangents() for callers that take the mesh's own indices where nothing is split: with
- * source_count 0 output->indices has not been written. */
+/* What the tool asks beyond nmtan.h. */
+typedef struct nt_vertex_request {
+	bool lazy_indices; /* with source_count 0 output->indices is not written: they are the mesh's own */
+	void (*passed)(void *user, nt_mesh_part part); /* see nt_solve */
+	void *user;
+} nt_vertex_request;
+
+/* nmtan_vertex_tangents() with a request. */
 nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
-	nmtan_split_output *output, nmtan_counts *counts);
+	const nt_vertex_request *request, nmtan_split_output *output, nmtan_counts *counts);
 
 /* MikkTSpace for vertices. solve->tangents is scratch and may or may not be filled. Returns what
  * nmtan_vertex_tangents() does. */

@@ -93,7 +93,7 @@ static uint32_t make_entry(const welder *w, uint64_t hash, uint32_t number)
 
 static bool make_table(welder *w, unsigned bits)
 {
-	uint32_t *table = nt_scratch_alloc(w->room->scratch, (size_t)1 << bits, sizeof *table);
+	uint32_t *table = nt_room_alloc(w->room, (size_t)1 << bits, sizeof *table);
 	if (!table)
 		return false;
 	memset(table, 0xff, ((size_t)1 << bits) * sizeof *table);
@@ -309,8 +309,15 @@ nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, nt_room *
 
 	/* corners share vertices, usually six to one: begin small */
 	const size_t expected = by_corner ? corner_count / 4 : w.item_count;
-	if (!grow_rows(&w, expected + AHEAD) || !make_table(&w, bits_for(2 * (expected + AHEAD) + 1)) || !weld_items(&w, by_corner))
+	if (!grow_rows(&w, expected + AHEAD))
 		return NMTAN_ERROR_MEMORY;
+	const nt_weld_row *first_rows = w.rows;
+	char *behind_rows = room->begin;
+	if (!make_table(&w, bits_for(2 * (expected + AHEAD) + 1)) || !weld_items(&w, by_corner))
+		return NMTAN_ERROR_MEMORY;
+	/* tables are not needed any more */
+	if (w.rows == first_rows)
+		room->begin = behind_rows;
 
 	if (by_corner && !number_items(&w))
 		return NMTAN_ERROR_MEMORY;

@@ -120,6 +120,60 @@ static void input_is_mapped_and_knows_which_file_it_is(void **state)
 	nt_file_close(&file);
 }
 
+/* How many of the pages from `bytes` on are in our page tables (Documentation/admin-guide/mm/pagemap.rst). */
+static unsigned present_pages(const unsigned char *bytes, size_t count, size_t page)
+{
+	const int fd = open("/proc/self/pagemap", O_RDONLY);
+	assert_true(fd >= 0);
+	unsigned present = 0;
+	for (size_t i = 0; i < count; i++) {
+		uint64_t entry;
+		assert_int_equal(pread(fd, &entry, sizeof entry,
+			(off_t)(((uintptr_t)bytes / page + i) * sizeof entry)), sizeof entry);
+		present += entry >> 63;
+	}
+	close(fd);
+	return present;
+}
+
+static void input_pages_that_are_forgotten_go_and_come_back(void **state)
+{
+	(void)state;
+	enum { PAGES = 8 };
+	const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+	FILE *stream = fopen(at("in"), "wb");
+	for (size_t i = 0; i < PAGES * page; i++)
+		fputc((int)(i / page * 7 + i % 251), stream);
+	fclose(stream);
+	nt_error error;
+	nt_file file;
+	assert_int_equal(nt_file_open(&file, at("in"), &error), NMTAN_OK);
+	unsigned sum = 0;
+	for (size_t i = 0; i < file.size; i++)
+		sum += file.data[i];
+	assert_int_equal(present_pages(file.data, PAGES, page), PAGES);
+
+	/* from the middle of page 1 to the middle of page 5: pages 2, 3 and 4 */
+	nt_file_forget(&file, file.data + page + page / 2, 4 * page);
+	assert_int_equal(present_pages(file.data, PAGES, page), PAGES - 3);
+	for (size_t i = 0; i < file.size; i++)
+		sum -= file.data[i];
+	assert_int_equal(sum, 0);
+
+	/* ranges that are not, or not quite, of the map: memory of ours keeps its content */
+	unsigned char *own = malloc(3 * page);
+	memset(own, 42, 3 * page);
+	nt_file_forget(&file, own, 3 * page);
+	for (size_t i = 0; i < 3 * page; i++)
+		assert_int_equal(own[i], 42);
+	nt_file_forget(&file, file.data + page, file.size);
+	nt_file_forget(&file, file.data, SIZE_MAX);
+	nt_file_forget(&file, NULL, 3 * page);
+	assert_int_equal(present_pages(file.data, PAGES, page), PAGES);
+	free(own);
+	nt_file_close(&file);
+}
+
 static void input_empty_is_no_error(void **state)
 {
 	(void)state;
@@ -499,6 +553,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		CASE(input_is_mapped_and_knows_which_file_it_is),
+		CASE(input_pages_that_are_forgotten_go_and_come_back),
 		CASE(input_empty_is_no_error),
 		CASE(input_missing_or_a_folder_is_named),
 		CASE(input_without_permission_is_named),
