@@ -590,11 +590,17 @@ static nmtan_status write_late(nt_fast *fast)
 	return NMTAN_OK;
 }
 
-/* Tells judge.c which triangles need no look. */
-static void vouch(const nt_fast *fast)
+/* Tells judge.c which triangles need no look, where all settled results are usable, and repair.c what is welded. */
+static void vouch(const nt_fast *fast, bool usable)
 {
-	*fast->solve->vouched = (nt_vouched){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT,
-		.suspect = NT_TRIANGLE_SUSPECT};
+	nt_vouched *vouched = fast->solve->vouched;
+	if (usable)
+		*vouched = (nt_vouched){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT,
+			.suspect = NT_TRIANGLE_SUSPECT};
+	if (!fast->corners) {
+		vouched->welded = fast->ids;
+		vouched->welded_count = fast->vertex_count;
+	}
 }
 
 /* 3 */
@@ -669,8 +675,8 @@ static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, bool sparse, 
 	nt_parallel_ranges(ranges, ranges, 1, write_ranges, &r);
 	if (settled.complex_count > 0 && (status = nt_fast_complex(fast, settled.complex_count)))
 		return status;
-	if (solve->vouched && settled.unusable_count == 0)
-		vouch(fast);
+	if (solve->vouched)
+		vouch(fast, settled.unusable_count == 0);
 	/* late triangles copy corners, which must have been written */
 	if (fast->sparse && nt_fast_next_flagged(fast, 0, NT_TRIANGLE_LATE) < fast->triangle_count)
 		write_rest(fast);

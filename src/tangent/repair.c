@@ -26,27 +26,39 @@ typedef struct patient {
 	uint32_t (*usable)[2];     /* [id_count] first usable corner with w = -1 and +1, or NT_NO_ID */
 } patient;
 
+/* The welded vertices of all corners: the method's, if it tells. */
+static nmtan_status weld(const nt_solve *solve, const uint32_t **ids, size_t *count)
+{
+	if (solve->vouched && solve->vouched->welded) {
+		*ids = solve->vouched->welded;
+		*count = solve->vouched->welded_count;
+		return NMTAN_OK;
+	}
+	uint32_t *own = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *own);
+	*ids = own;
+	return own ? nt_weld_corners(solve->mesh, solve->corner_count, solve->scratch, own, count)
+		   : NMTAN_ERROR_MEMORY;
+}
+
 /* Numbers the welded vertices that have a faulty corner; all others become NT_NO_ID. */
 static nmtan_status number_vertices(patient *p)
 {
 	const size_t corner_count = p->solve->corner_count;
+	const uint32_t *welded;
 	size_t welded_count;
-	p->ids = nt_scratch_alloc(p->solve->scratch, corner_count, sizeof *p->ids);
-	if (!p->ids)
-		return NMTAN_ERROR_MEMORY;
-	const nmtan_status status = nt_weld_corners(p->solve->mesh, corner_count, p->solve->scratch,
-		p->ids, &welded_count);
+	const nmtan_status status = weld(p->solve, &welded, &welded_count);
 	if (status)
 		return status;
+	p->ids = nt_scratch_alloc(p->solve->scratch, corner_count, sizeof *p->ids);
 	uint32_t *number = nt_scratch_alloc(p->solve->scratch, welded_count, sizeof *number);
-	if (!number)
+	if (!p->ids || !number)
 		return NMTAN_ERROR_MEMORY;
 	memset(number, 0xff, welded_count * sizeof *number);
 	for (size_t c = 0; c < corner_count; c++)
-		if (p->faults[c] != NT_FAULT_NONE && number[p->ids[c]] == NT_NO_ID)
-			number[p->ids[c]] = (uint32_t)p->id_count++;
+		if (p->faults[c] != NT_FAULT_NONE && number[welded[c]] == NT_NO_ID)
+			number[welded[c]] = (uint32_t)p->id_count++;
 	for (size_t c = 0; c < corner_count; c++)
-		p->ids[c] = number[p->ids[c]];
+		p->ids[c] = number[welded[c]];
 	return NMTAN_OK;
 }
 

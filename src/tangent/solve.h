@@ -21,6 +21,9 @@ typedef struct nt_vouched {
 	const uint32_t *ids;  /* [corner_count] welded vertices, or NULL */
 	const float *rows[2]; /* [vertex count][4] by orientation, w = 0 where no triangle at the vertex
 	                         has it; NULL: none at all */
+	const uint32_t *welded; /* [corner_count] welded vertices, below welded_count, whatever else is
+	                           known; NULL: ask nt_weld_corners() */
+	size_t welded_count;
 } nt_vouched;
 
 /* Parts of a mesh in the order in which a solve is done with them. */

@@ -382,7 +382,8 @@ static void vouch(const nt_sums *s, bool sparse)
 	nt_vouched *vouched = s->solve->vouched;
 	if (!vouched)
 		return;
-	*vouched = (nt_vouched){.flags = s->flags, .positive = NT_SUM_POSITIVE, .suspect = NT_SUM_SUSPECT};
+	*vouched = (nt_vouched){.flags = s->flags, .positive = NT_SUM_POSITIVE, .suspect = NT_SUM_SUSPECT,
+		.welded = s->weld.ids, .welded_count = s->weld.count};
 	if (!sparse)
 		return;
 	vouched->ids = s->ids;
