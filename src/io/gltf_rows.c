@@ -4,20 +4,24 @@
  *
  * Each mesh was solved and split by itself. Where several of them use the same vertex, their tangents
  * for it may agree or not. The rows of a vertex form a chain that begins with its own; a mesh takes the
- * first row of the chain where its group has no tangent yet or the same one, and appends a row where
- * there is none. For a mesh that shares nothing this is exactly its own split, which is taken as it is.
+ * row of the chain where its group has the same tangent, else the first one where it has none yet, and
+ * appends a row where all have one; by hash, since a hub may have any number of rows. For a mesh that shares nothing this is exactly its own split, which is taken as it is.
  */
 #include "io/gltf_share.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/hash_index.h"
 
 typedef struct merging {
 	nt_gltf_rows *rows;
 	size_t capacity;      /* of the arrays below, in rows */
 	uint32_t *source;     /* row of the source it is a copy of */
 	uint32_t *next;       /* next row of the same vertex, NT_NONE */
+	uint32_t *last;       /* [old_count] last row of each vertex */
+	uint32_t **first_free; /* [group][old_count] before this row the group has a tangent for all of a vertex */
+	nt_hash_index known;  /* defined rows behind the first of their vertex, of all groups */
 	float **tangents;     /* [group] */
 	float **normals;      /* [group] or NULL */
 	float ***morphs;      /* [group][morph_counts[group]] */
@@ -199,11 +203,19 @@ static bool start_merging(merging *m, nt_gltf_rows *rows, const nt_scene *scene,
 			return false;
 		m->morph_counts[group] = mesh->morph_count;
 	}
-	if (!reserve_rows(m, rows->old_count))
+	m->last = nt_alloc(rows->old_count, sizeof *m->last);
+	m->first_free = nt_calloc(rows->group_count, sizeof *m->first_free);
+	if (!m->last || !m->first_free || !reserve_rows(m, rows->old_count))
 		return false;
 	for (size_t i = 0; i < rows->old_count; i++) {
-		m->source[i] = (uint32_t)i;
+		m->source[i] = m->last[i] = (uint32_t)i;
 		m->next[i] = NT_NONE;
+	}
+	for (size_t g = 0; g < rows->group_count; g++) {
+		m->first_free[g] = nt_alloc(rows->old_count, sizeof **m->first_free);
+		if (!m->first_free[g])
+			return false;
+		memcpy(m->first_free[g], m->source, rows->old_count * sizeof **m->first_free);
 	}
 	rows->new_count = rows->old_count;
 	return true;
@@ -218,6 +230,8 @@ static void end_merging(merging *m)
 			free(m->normals[g]);
 		if (m->defined)
 			free(m->defined[g]);
+		if (m->first_free)
+			free(m->first_free[g]);
 		for (size_t k = 0; m->morphs && m->morphs[g] && k < m->morph_counts[g]; k++)
 			free(m->morphs[g][k]);
 		if (m->morphs)
@@ -231,6 +245,9 @@ static void end_merging(merging *m)
 	free(m->has_normals);
 	free(m->source);
 	free(m->next);
+	free(m->last);
+	free(m->first_free);
+	nt_hash_index_free(&m->known);
 }
 
 /* Vertices of a mesh: the source's, those that made normals appended, those that the split appended. */
@@ -264,13 +281,17 @@ static void define_morphs(merging *m, uint32_t group, uint32_t row, const nt_mes
 			mesh->morphs[k].vertex_tangents + 3 * (size_t)vertex, 3 * sizeof(float));
 }
 
+static uint64_t hash_row(uint32_t group, uint32_t source, const float *tangent)
+{
+	const uint32_t place[2] = {group, source};
+	return nt_hash_bytes(nt_hash_bytes(0, place, sizeof place), tangent, 4 * sizeof *tangent);
+}
+
 static bool row_fits(const merging *m, uint32_t group, uint32_t row, const float *tangent,
 	const float *normal)
 {
-	return !m->defined[group][row] ||
-		(memcmp(m->tangents[group] + 4 * (size_t)row, tangent, 4 * sizeof(float)) == 0 &&
-			(!normal || memcmp(m->normals[group] + 3 * (size_t)row, normal,
-					    3 * sizeof(float)) == 0));
+	return memcmp(m->tangents[group] + 4 * (size_t)row, tangent, 4 * sizeof(float)) == 0 &&
+		(!normal || memcmp(m->normals[group] + 3 * (size_t)row, normal, 3 * sizeof(float)) == 0);
 }
 
 static void define_row(merging *m, uint32_t group, uint32_t row, const float *tangent,
@@ -282,28 +303,59 @@ static void define_row(merging *m, uint32_t group, uint32_t row, const float *ta
 		memcpy(m->normals[group] + 3 * (size_t)row, normal, 3 * sizeof(float));
 }
 
+/* A row of the vertex `source` that has the mesh's tangent already; NT_NONE: none. */
+static uint32_t find_row(const merging *m, const nt_mesh *mesh, uint32_t group, uint32_t vertex, uint32_t source,
+	uint64_t hash, const float *normal)
+{
+	const float *tangent = mesh->split.vertex_tangents + 4 * (size_t)vertex;
+	if (m->defined[group][source] && row_fits(m, group, source, tangent, normal) &&
+		same_morphs(m, group, source, mesh, vertex))
+		return source;
+	uint32_t row;
+	for (size_t at = NT_HASH_BEGIN; (row = nt_hash_index_next(&m->known, hash, &at)) != NT_NONE;)
+		if (m->source[row] == source && m->defined[group][row] &&
+			row_fits(m, group, row, tangent, normal) && same_morphs(m, group, row, mesh, vertex))
+			return row;
+	return NT_NONE;
+}
+
+/* The first row of a vertex that the group has no tangent for, appended where it has all; NT_NONE when memory
+ * is exhausted. */
+static uint32_t find_free_row(merging *m, uint32_t group, uint32_t source)
+{
+	uint32_t row = m->first_free[group][source];
+	while (row != NT_NONE && m->defined[group][row])
+		row = m->next[row];
+	if (row == NT_NONE) {
+		if (m->rows->new_count >= NT_NONE - 1 || !reserve_rows(m, m->rows->new_count + 1))
+			return NT_NONE;
+		row = (uint32_t)m->rows->new_count++;
+		m->source[row] = source;
+		m->next[row] = NT_NONE;
+		m->next[m->last[source]] = row;
+		m->last[source] = row;
+	}
+	m->first_free[group][source] = row;
+	return row;
+}
+
 /* The row for a vertex of a mesh; NT_NONE when memory is exhausted. */
 static uint32_t take_row(merging *m, const nt_mesh *mesh, uint32_t group, uint32_t vertex)
 {
 	const float *tangent = mesh->split.vertex_tangents + 4 * (size_t)vertex;
 	const float *normal =
 		mesh->normals_made ? mesh->normals + 3 * (size_t)before_split(mesh, vertex) : NULL;
-	uint32_t row = source_row(mesh, vertex), last = row;
-	for (; row != NT_NONE; row = m->next[row]) {
-		if (row_fits(m, group, row, tangent, normal) &&
-			(!m->defined[group][row] || same_morphs(m, group, row, mesh, vertex))) {
-			define_row(m, group, row, tangent, normal);
-			define_morphs(m, group, row, mesh, vertex);
-			return row;
-		}
-		last = row;
-	}
-	if (m->rows->new_count >= NT_NONE - 1 || !reserve_rows(m, m->rows->new_count + 1))
+	const uint32_t source = source_row(mesh, vertex);
+	uint64_t hash = hash_row(group, source, tangent);
+	for (size_t k = 0; k < m->morph_counts[group]; k++)
+		hash = nt_hash_bytes(hash, mesh->morphs[k].vertex_tangents + 3 * (size_t)vertex,
+			3 * sizeof(float));
+	uint32_t row = find_row(m, mesh, group, vertex, source, hash, normal);
+	if (row != NT_NONE)
+		return row;
+	row = find_free_row(m, group, source);
+	if (row == NT_NONE || (row != source && !nt_hash_index_add(&m->known, hash, row)))
 		return NT_NONE;
-	row = (uint32_t)m->rows->new_count++;
-	m->source[row] = m->source[last];
-	m->next[row] = NT_NONE;
-	m->next[last] = row;
 	define_row(m, group, row, tangent, normal);
 	define_morphs(m, group, row, mesh, vertex);
 	return row;

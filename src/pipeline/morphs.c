@@ -12,6 +12,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "base/hash_index.h"
 
 enum { KEY_BITS = 20 }; /* of a corner number in each float of a key: floats are exact to 24 */
 
@@ -78,34 +79,53 @@ static bool same_corner(const nt_mesh *mesh, size_t a, size_t b)
 	return true;
 }
 
+static uint64_t hash_corner(const nt_mesh *mesh, uint32_t vertex, uint32_t corner)
+{
+	uint64_t hash = nt_hash_bytes(vertex, mesh->corner_tangents + 4 * (size_t)corner, 4 * sizeof(float));
+	for (size_t m = 0; m < mesh->morph_count; m++)
+		hash = nt_hash_bytes(hash, mesh->morphs[m].corner_tangents + 4 * (size_t)corner,
+			3 * sizeof(float));
+	return hash;
+}
+
+/* The first corner of its vertex with the same tangents, behind the very first; which may be itself. */
+static nmtan_status find_other(const nt_mesh *mesh, const nmtan_mesh *view, uint32_t corner,
+	nt_hash_index *others, uint32_t *first)
+{
+	const uint32_t vertex = view->indices ? view->indices[corner] : corner;
+	const uint64_t hash = hash_corner(mesh, vertex, corner);
+	for (size_t at = NT_HASH_BEGIN; (*first = nt_hash_index_next(others, hash, &at)) != UINT32_MAX;)
+		if ((view->indices ? view->indices[*first] : *first) == vertex &&
+			same_corner(mesh, *first, corner))
+			return NMTAN_OK;
+	*first = corner;
+	return nt_hash_index_add(others, hash, corner) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+}
+
 nmtan_status nt_morphs_keys(const nt_mesh *mesh, const nmtan_mesh *view, float *keys)
 {
-	/* chains of corners of one vertex, one corner for each combination of tangents */
+	/* the first corner of each vertex; corners that differ from it by hash, one for each combination */
 	uint32_t *head = nt_alloc(mesh->vertex_count, sizeof *head);
-	uint32_t *next = nt_alloc(mesh->corner_count, sizeof *next);
-	if (!head || !next) {
-		free(head);
-		free(next);
+	if (!head)
 		return NMTAN_ERROR_MEMORY;
-	}
+	nt_hash_index others = {0};
+	nmtan_status status = NMTAN_OK;
 	memset(head, 0xFF, mesh->vertex_count * sizeof *head);
-	for (uint32_t c = 0; c < mesh->corner_count; c++) {
+	for (uint32_t c = 0; !status && c < mesh->corner_count; c++) {
 		const uint32_t vertex = view->indices ? view->indices[c] : c;
 		uint32_t first = head[vertex];
-		while (first != NT_NONE && !same_corner(mesh, first, c))
-			first = next[first];
-		if (first == NT_NONE) {
-			next[c] = head[vertex];
+		if (first == NT_NONE)
 			head[vertex] = first = c;
-		}
+		else if (!same_corner(mesh, first, c))
+			status = find_other(mesh, view, c, &others, &first);
 		float *key = keys + 4 * (size_t)c;
 		key[0] = (float)(first & ((1u << KEY_BITS) - 1));
 		key[1] = (float)(first >> KEY_BITS);
 		key[2] = key[3] = 0;
 	}
 	free(head);
-	free(next);
-	return NMTAN_OK;
+	nt_hash_index_free(&others);
+	return status;
 }
 
 nmtan_status nt_morphs_finish(nt_mesh *mesh)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The list of findings. Equal findings are merged by looking back through the list: an input has many
- * occurrences but few different findings, since details name files and statements, not elements.
+ * The list of findings. Equal findings are merged; a hostile file has as many objects, and so as many different
+ * ones, as it likes, which are therefore found by hash.
  */
 #include "scene/finding.h"
 
@@ -10,6 +10,19 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/memory.h"
+
+static uint64_t hash_finding(const nt_finding *finding)
+{
+	uint64_t hash = nt_hash_bytes(0, &finding->code, sizeof finding->code);
+	hash = nt_hash_bytes(hash, finding->place.object, strlen(finding->place.object));
+	return nt_hash_bytes(hash, finding->detail, strlen(finding->detail));
+}
+
+static bool same_finding(const nt_finding *a, const nt_finding *b)
+{
+	return a->code == b->code && strcmp(a->detail, b->detail) == 0 &&
+		strcmp(a->place.object, b->place.object) == 0;
+}
 
 void nt_finding_add(nt_finding_list *list, nt_code code, const nt_place *place, size_t count,
 	const char *detail_format, ...)
@@ -24,15 +37,17 @@ void nt_finding_add(nt_finding_list *list, nt_code code, const nt_place *place, 
 		vsnprintf(finding.detail, sizeof finding.detail, detail_format, arguments);
 		va_end(arguments);
 	}
-	for (size_t i = list->count; i-- > 0;) {
-		nt_finding *earlier = &list->items[i];
-		if (earlier->code == code && strcmp(earlier->detail, finding.detail) == 0 &&
-			strcmp(earlier->place.object, finding.place.object) == 0) {
-			earlier->count += count;
+	const uint64_t hash = hash_finding(&finding);
+	uint32_t number;
+	for (size_t at = NT_HASH_BEGIN;
+		(number = nt_hash_index_next(&list->known, hash, &at)) != UINT32_MAX;)
+		if (same_finding(&list->items[number], &finding)) {
+			list->items[number].count += count;
 			return;
 		}
-	}
-	if (!nt_grow((void **)&list->items, &list->capacity, list->count + 1, sizeof finding)) {
+	if (list->count >= UINT32_MAX ||
+		!nt_grow((void **)&list->items, &list->capacity, list->count + 1, sizeof finding) ||
+		!nt_hash_index_add(&list->known, hash, (uint32_t)list->count)) {
 		list->failed = true;
 		return;
 	}
@@ -42,5 +57,6 @@ void nt_finding_add(nt_finding_list *list, nt_code code, const nt_place *place, 
 void nt_finding_list_free(nt_finding_list *list)
 {
 	free(list->items);
+	nt_hash_index_free(&list->known);
 	*list = (nt_finding_list){0};
 }

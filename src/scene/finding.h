@@ -8,6 +8,7 @@
 #define NT_SCENE_FINDING_H
 
 #include "base/error.h"
+#include "base/hash_index.h"
 
 typedef enum nt_severity { NT_SEVERITY_INFO, NT_SEVERITY_WARNING, NT_SEVERITY_ERROR } nt_severity;
 
@@ -83,6 +84,7 @@ typedef struct nt_finding_list {
 	nt_finding *items;
 	size_t count;
 	size_t capacity;
+	nt_hash_index known; /* items by code, object and detail */
 	bool failed; /* out of memory while adding */
 } nt_finding_list;
 

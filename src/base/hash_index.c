@@ -1,0 +1,86 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The index of hash_index.h.
+ */
+#include "base/hash_index.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "base/memory.h"
+
+enum { FIRST_SIZE = 64 };
+
+uint64_t nt_hash_bytes(uint64_t seed, const void *bytes, size_t size)
+{
+	const unsigned char *at = bytes;
+	uint64_t hash = seed ^ 0x9e3779b97f4a7c15u ^ size;
+	for (; size; at += 4) {
+		uint32_t word = 0;
+		const size_t part = size < sizeof word ? size : sizeof word;
+		memcpy(&word, at, part);
+		hash = (hash ^ word) * 0xff51afd7ed558ccdu;
+		hash ^= hash >> 32;
+		size -= part;
+	}
+	return hash;
+}
+
+/* Linear probing keeps numbers of one hash in the order they came, also when they are put in again in the
+ * order of the old table, as long as that is read from behind a free place. */
+static void put(nt_hash_index *index, uint64_t hash, uint32_t number)
+{
+	size_t at = (size_t)hash & (index->size - 1);
+	while (index->numbers[at] != UINT32_MAX)
+		at = (at + 1) & (index->size - 1);
+	index->hashes[at] = hash;
+	index->numbers[at] = number;
+}
+
+static bool grow(nt_hash_index *index)
+{
+	nt_hash_index larger = {.size = index->size ? 2 * index->size : FIRST_SIZE, .count = index->count};
+	larger.hashes = nt_alloc(larger.size, sizeof *larger.hashes);
+	larger.numbers = nt_alloc(larger.size, sizeof *larger.numbers);
+	if (!larger.hashes || !larger.numbers) {
+		nt_hash_index_free(&larger);
+		return false;
+	}
+	memset(larger.numbers, 0xFF, larger.size * sizeof *larger.numbers);
+	size_t begin = 0;
+	while (begin < index->size && index->numbers[begin] != UINT32_MAX)
+		begin++;
+	for (size_t i = 0; i < index->size; i++) {
+		const size_t at = (begin + i) & (index->size - 1);
+		if (index->numbers[at] != UINT32_MAX)
+			put(&larger, index->hashes[at], index->numbers[at]);
+	}
+	nt_hash_index_free(index);
+	*index = larger;
+	return true;
+}
+
+bool nt_hash_index_add(nt_hash_index *index, uint64_t hash, uint32_t number)
+{
+	if (2 * (index->count + 1) > index->size && !grow(index))
+		return false;
+	put(index, hash, number);
+	index->count++;
+	return true;
+}
+
+uint32_t nt_hash_index_next(const nt_hash_index *index, uint64_t hash, size_t *at)
+{
+	if (index->size == 0)
+		return UINT32_MAX;
+	*at = *at == NT_HASH_BEGIN ? (size_t)hash & (index->size - 1) : (*at + 1) & (index->size - 1);
+	while (index->numbers[*at] != UINT32_MAX && index->hashes[*at] != hash)
+		*at = (*at + 1) & (index->size - 1);
+	return index->numbers[*at];
+}
+
+void nt_hash_index_free(nt_hash_index *index)
+{
+	free(index->hashes);
+	free(index->numbers);
+	*index = (nt_hash_index){0};
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * An index of numbered things by hash: whoever owns the things compares those that have the same hash. Open
+ * addressing with the hashes stored, so that growing needs nothing of the things.
+ */
+#ifndef NT_BASE_HASH_INDEX_H
+#define NT_BASE_HASH_INDEX_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* Zeroed: empty. */
+typedef struct nt_hash_index {
+	uint64_t *hashes;
+	uint32_t *numbers; /* [size] UINT32_MAX: free */
+	size_t size, count; /* size: 0 or a power of two, at least twice the count */
+} nt_hash_index;
+
+/* The hash of `size` bytes that follow those of `seed`; 0 begins. */
+uint64_t nt_hash_bytes(uint64_t seed, const void *bytes, size_t size);
+
+/* Adds a number, which is not UINT32_MAX. False, and everything as it was, when memory is exhausted. */
+bool nt_hash_index_add(nt_hash_index *index, uint64_t hash, uint32_t number);
+
+/* The numbers that were added with this hash, one by one in the order of adding; UINT32_MAX behind the last.
+ * *at begins with NT_HASH_BEGIN. */
+#define NT_HASH_BEGIN SIZE_MAX
+uint32_t nt_hash_index_next(const nt_hash_index *index, uint64_t hash, size_t *at);
+
+void nt_hash_index_free(nt_hash_index *index);
+
+#endif

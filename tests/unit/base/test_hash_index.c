@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include "base/hash_index.h"
+
+static void numbers_of_a_hash_come_in_the_order_of_adding(void **state)
+{
+	(void)state;
+	nt_hash_index index = {0};
+	/* the last place of every table is the home of hash ~0: its numbers run over to the first places */
+	const uint64_t hashes[] = {~(uint64_t)0, 0, 63};
+	for (uint32_t i = 0; i < 3000; i++)
+		assert_true(nt_hash_index_add(&index, hashes[i % 3], i));
+	for (uint32_t k = 0; k < 3; k++) {
+		size_t at = NT_HASH_BEGIN;
+		for (uint32_t i = k; i < 3000; i += 3)
+			assert_int_equal(nt_hash_index_next(&index, hashes[k], &at), i);
+		assert_int_equal(nt_hash_index_next(&index, hashes[k], &at), UINT32_MAX);
+	}
+	assert_int_equal(index.count, 3000);
+	nt_hash_index_free(&index);
+}
+
+static void an_empty_index_has_nothing(void **state)
+{
+	(void)state;
+	const nt_hash_index index = {0};
+	size_t at = NT_HASH_BEGIN;
+	assert_int_equal(nt_hash_index_next(&index, 7, &at), UINT32_MAX);
+}
+
+static void hashes_tell_texts_and_lengths_apart(void **state)
+{
+	(void)state;
+	const uint64_t a = nt_hash_bytes(0, "abcde", 5);
+	assert_true(a == nt_hash_bytes(0, "abcdeX", 5));
+	assert_true(a != nt_hash_bytes(0, "abcdf", 5));
+	assert_true(a != nt_hash_bytes(1, "abcde", 5));
+	/* a zero more is another text */
+	assert_true(a != nt_hash_bytes(0, "abcde\0", 6));
+	assert_true(nt_hash_bytes(0, "", 0) != nt_hash_bytes(0, "\0", 1));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(numbers_of_a_hash_come_in_the_order_of_adding),
+		cmocka_unit_test(an_empty_index_has_nothing),
+		cmocka_unit_test(hashes_tell_texts_and_lengths_apart),
+	};
+	return cmocka_run_group_tests_name("base/hash_index", tests, NULL, NULL);
+}

@@ -1,0 +1,64 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include <time.h>
+#include "scene/finding.h"
+
+static void add(nt_finding_list *list, nt_code code, const char *object, size_t count, const char *detail)
+{
+	nt_place place;
+	nt_place_clear(&place);
+	snprintf(place.object, sizeof place.object, "%s", object);
+	nt_finding_add(list, code, &place, count, "%s", detail);
+}
+
+static void equal_findings_are_one_with_the_sum_of_their_counts(void **state)
+{
+	(void)state;
+	nt_finding_list list = {0};
+	add(&list, NT_CODE_TAN_ZERO, "a", 1, "x");
+	add(&list, NT_CODE_TAN_ZERO, "b", 1, "x");
+	add(&list, NT_CODE_TAN_ZERO, "a", 1, "y");
+	add(&list, NT_CODE_TAN_BAD_W, "a", 1, "x");
+	/* the texts "a" and "x" in another distribution */
+	add(&list, NT_CODE_TAN_ZERO, "ax", 1, "");
+	add(&list, NT_CODE_TAN_ZERO, "a", 41, "x");
+	assert_int_equal(list.count, 5);
+	assert_int_equal(list.items[0].count, 42);
+	for (size_t i = 1; i < 5; i++)
+		assert_int_equal(list.items[i].count, 1);
+	nt_finding_add(&list, NT_CODE_TAN_ZERO, NULL, 2, NULL);
+	nt_finding_add(&list, NT_CODE_TAN_ZERO, NULL, 3, NULL);
+	assert_int_equal(list.count, 6);
+	assert_int_equal(list.items[5].count, 5);
+	nt_finding_list_free(&list);
+	assert_int_equal(list.count, 0);
+}
+
+/* Compared one with another these would be 2 * 10^10 pairs of texts. */
+static void two_hundred_thousand_objects_are_no_burden(void **state)
+{
+	(void)state;
+	enum { COUNT = 200000 };
+	nt_finding_list list = {0};
+	const clock_t begin = clock();
+	for (int round = 0; round < 2; round++)
+		for (int i = 0; i < COUNT; i++) {
+			char object[64];
+			snprintf(object, sizeof object, "mesh %d, primitive 0", i);
+			add(&list, NT_CODE_TAN_REPAIRED, object, 1, "");
+		}
+	assert_true(clock() - begin < 20 * CLOCKS_PER_SEC);
+	assert_int_equal(list.count, COUNT);
+	for (int i = 0; i < COUNT; i++)
+		assert_int_equal(list.items[i].count, 2);
+	nt_finding_list_free(&list);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(equal_findings_are_one_with_the_sum_of_their_counts),
+		cmocka_unit_test(two_hundred_thousand_objects_are_no_burden),
+	};
+	return cmocka_run_group_tests_name("scene/finding", tests, NULL, NULL);
+}
