@@ -17,6 +17,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -410,6 +411,27 @@ bool fits_coder(const nt_draco_mesh &mesh, const nt_draco_attribute &a)
 	return true;
 }
 
+// Whether Draco can lay its grid over the values: it counts cells by their range in float, so that a range beyond
+// float, or so small that the cells in one unit are, gives integers out of nothing.
+bool can_lay_grid(const nt_draco_mesh &mesh, const nt_draco_attribute &a)
+{
+	float range = a.quantization.explicit_box ? a.quantization.range : 0;
+	for (int i = 0; i < a.components && !a.quantization.explicit_box; i++) {
+		float least = std::numeric_limits<float>::max(), most = -least;
+		for (size_t p = 0; p < mesh.point_count; p++) {
+			float value;
+			std::memcpy(&value, value_of(a, p) + 4 * i, sizeof value);
+			least = std::min(least, value);
+			most = std::max(most, value);
+		}
+		range = std::max(range, most - least);
+	}
+	const float cells = static_cast<float>((1u << a.quantization.bits) - 1);
+	if (range == 0) // Draco takes 1 then, but leaves a given range alone
+		return !a.quantization.explicit_box;
+	return std::isfinite(range) && range > 0 && std::isfinite(cells / range);
+}
+
 nmtan_status check_attribute(const nt_draco_mesh &mesh, const nt_draco_attribute &a, nt_error *error)
 {
 	const nt_draco_quantization &q = a.quantization;
@@ -437,6 +459,10 @@ nmtan_status check_attribute(const nt_draco_mesh &mesh, const nt_draco_attribute
 					"Draco cannot quantize value %g of point %zu in attribute %u",
 					static_cast<double>(value), p, a.unique_id);
 		}
+	if (!is_octahedral(a) && !can_lay_grid(mesh, a))
+		return nt_fail(error, NMTAN_ERROR_ARGUMENT,
+			"Draco cannot quantize attribute %u: its values span more than a float holds, or next to "
+			"nothing", a.unique_id);
 	return NMTAN_OK;
 }
 

@@ -198,11 +198,11 @@ static bool run_input(uint32_t *chance)
 	return met;
 }
 
-static void store(const char *bytes, size_t size)
+static void store(const char *path, const char *bytes, size_t size)
 {
-	FILE *stream = fopen(input, "wb");
+	FILE *stream = fopen(path, "wb");
 	if (!stream || fwrite(bytes, 1, size, stream) != size || fclose(stream) != 0)
-		wrong("cannot be written");
+		wrong("%s cannot be written", path);
 }
 
 /* Run 0 is the file as it is. */
@@ -213,7 +213,9 @@ static void run_damaged(const char *bytes, char *copy, size_t size, size_t numbe
 	if (run > 0)
 		for (uint32_t k = 1 + mutate_random(&chance, 2); k-- > 0 && size > 0;)
 			size = mutate(copy, size, &chance);
-	store(copy, size);
+	store(input, copy, size);
+	if (getenv("NT_KEEP"))
+		store(getenv("NT_KEEP"), copy, size);
 	const double begin = cpu_seconds();
 	set_limits(SECONDS, STUCK_SECONDS);
 	const bool met = run_input(&chance);

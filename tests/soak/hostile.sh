@@ -4,7 +4,7 @@
 # tests/soak/hostile.sh BUILD_DIR...: 10 000 damaged copies (NT_MUTATIONS) of every file of ../shared that
 # is a model or a test of the validator, and the files themselves, in as many processes as there are
 # processors: see hostile.c. A third or more must come as far as geometry. NT_RUN=FILE:RUN, as the
-# messages number them, runs one alone.
+# messages number them, runs one alone; NT_KEEP=PATH keeps its input.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 [ -d ../shared ] || { echo "hostile.sh: ../shared is not here, nothing to run"; exit 0; }

@@ -235,6 +235,18 @@ static void what_cannot_be_encoded_is_refused(void **state)
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 25);
 	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
+	g.positions[2][0] = 3e38f;
+	assert_int_equal(encode_status(&g, &error), NMTAN_OK);
+	g.positions[3][0] = -3e38f; /* the range is infinite */
+	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	assert_non_null(strstr(error.message, "attribute 0"));
+	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
+	for (int p = 0; p < POINTS; p++)
+		memset(g.texcoords[p], 0, sizeof g.texcoords[p]);
+	assert_int_equal(encode_status(&g, &error), NMTAN_OK);
+	g.texcoords[7][1] = 1e-40f; /* cells in one unit: more than a float holds */
+	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
 	/* the coder's table would have 2^32 rows, and has none */
 	uint32_t large[4 * POINTS] = {0};
 	g.attributes[4].component_type = 5125;
