@@ -167,8 +167,14 @@ static bool solve_by_doubles(const float *const p[3], const float *const t[3], s
 			return false;
 		f->across = cross_exactly(d1, d2);
 	}
-	f->determinant = nt_product_difference(bu, cv, bv, cu);
-	return exact_uv || !cancels(most, fabs(bu * cv), fabs(bv * cu), fabs(bu * cv - bv * cu));
+	f->determinant = bu * cv - bv * cu;
+	if (cancels(exact_uv ? NT_CANCELLATION : NT_CANCELLATION_INEXACT, fabs(bu * cv), fabs(bv * cu),
+		    fabs(f->determinant))) {
+		if (!exact_uv)
+			return false;
+		f->determinant = nt_product_difference(bu, cv, bv, cu);
+	}
+	return true;
 }
 
 /* False where the determinant is zero or a value is not finite. */
@@ -194,23 +200,15 @@ static bool solve_triangle(const nmtan_mesh *mesh, const uint32_t corners[3], so
 	return true;
 }
 
-/* Adds dP/du at a corner. */
-static void add_unweighted(nt_dvec3 u, nt_dvec3 n, nt_frame_sum *sum)
+static void add_corner(const solved *f, const nt_measured *m, const double lengths[3], nt_weight weight, nt_dvec3 n,
+	int k, nt_frame_sum *sum)
 {
-	const nt_dvec3 direction = nt_dvec3_reject(n, u);
-	sum->u = nt_dvec3_add(sum->u, direction);
-	sum->weights += nt_dvec3_length(direction);
-	sum->sensitivity += nt_dvec3_length(u);
-}
-
-static void add_weighted(const nt_measured *m, const double lengths[3], const solved *f, nt_dvec3 n, int k,
-	int by_area, nt_frame_sum *sum)
-{
-	const int before = (k + 2) % 3;
+	const int before = (k + 2) % 3, by_area = weight == NT_WEIGHT_AREA;
 	const bool has_normal = n.x != 0.0 || n.y != 0.0 || n.z != 0.0;
 	const double sine = has_normal ? fabs(nt_dvec3_dot(n, f->across)) : nt_dvec3_length(f->across);
-	const nt_weighed w = nt_weigh_corner(m, n, f->edge[k], f->edge[before], lengths[k], lengths[before], sine,
-		by_area);
+	const nt_weighed w = weight == NT_WEIGHT_NONE
+		? nt_weigh_nothing(m, n, 1.0 / f->determinant)
+		: nt_weigh_corner(m, n, f->edge[k], f->edge[before], lengths[k], lengths[before], sine, by_area);
 	sum->u = nt_dvec3_add(sum->u, w.u);
 	sum->weights += w.weight;
 	sum->sensitivity += w.sensitivity;
@@ -222,20 +220,14 @@ void nt_add_triangle(const nmtan_mesh *mesh, nt_weight weight, const uint32_t co
 	solved f;
 	if (!solve_triangle(mesh, corners, &f))
 		return;
-	const int by_area = weight == NT_WEIGHT_AREA;
 	const nt_measured m = nt_measure(f.u, f.across);
 	double lengths[3];
 	for (int k = 0; k < 3; k++)
-		lengths[k] = nt_measure_edge(f.edge[k], by_area);
-	for (int k = 0; k < 3; k++) {
-		const nt_dvec3 n = nt_unit_normal(mesh, nt_vertex_of(mesh, corners[k]));
-		if (!sums[k])
-			continue;
-		if (weight == NT_WEIGHT_NONE)
-			add_unweighted(nt_dvec3_scale(1.0 / f.determinant, f.u), n, sums[k]);
-		else
-			add_weighted(&m, lengths, &f, n, k, by_area, sums[k]);
-	}
+		lengths[k] = nt_measure_edge(f.edge[k], weight == NT_WEIGHT_AREA);
+	for (int k = 0; k < 3; k++)
+		if (sums[k])
+			add_corner(&f, &m, lengths, weight, nt_unit_normal(mesh, nt_vertex_of(mesh, corners[k])), k,
+				sums[k]);
 }
 
 void nt_sum_frames(const nmtan_mesh *mesh, nt_weight weight, const uint32_t *ids,

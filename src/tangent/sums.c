@@ -422,8 +422,7 @@ static const nt_sum_kernels *kernels_for(nmtan_isa isa)
 
 static nmtan_status solve_by_sums(const nt_solve *solve, nt_weight weight, size_t *ill_conditioned)
 {
-	nt_sums s = {.solve = solve, .weight = weight,
-		.one_by_one = solve->one_by_one || weight == NT_WEIGHT_NONE};
+	nt_sums s = {.solve = solve, .weight = weight, .one_by_one = solve->one_by_one};
 	run r = {.s = &s, .kernels = kernels_for(solve->isa)};
 	/* a sparse output is not filled, so that its pages need not exist */
 	nt_room room = nt_room_over(solve->tangents, solve->sparse ? 0 : solve->corner_count * 4 * sizeof(float),

@@ -29,12 +29,13 @@ typedef struct sum_lanes {
 	double uv[4][NT_SUM_LANES];    /* the texture edges bu, bv, cu, cv */
 	double edge[3][3][NT_SUM_LANES];
 	double u[3][NT_SUM_LANES], across[3][NT_SUM_LANES];
-	double sign[NT_SUM_LANES];
+	double sign[NT_SUM_LANES], determinant[NT_SUM_LANES]; /* |determinant| of the texture edges */
 	double squared[NT_SUM_LANES], u_length[NT_SUM_LANES], across_length[NT_SUM_LANES];
 	double length[3][NT_SUM_LANES]; /* of edges */
 	double normals[NT_SUM_LANES];   /* product of the normals' squares; > 0: all are there */
 	double weight[NT_SUM_LANES];    /* the least sensitivity of the corners */
 	int64_t u_cancels[NT_SUM_LANES], across_cancels[NT_SUM_LANES], tie[NT_SUM_LANES];
+	int64_t determinant_cancels[NT_SUM_LANES];
 } sum_lanes;
 
 LANE_INLINE double lane_larger(double a, double b)
@@ -112,6 +113,8 @@ static void __attribute__((noinline)) sum_frames(sum_lanes *restrict l, nt_sum_b
 		const int64_t across_cancels = lane_cancels(most, ap, aq, across);
 
 		l->tie[i] = tie;
+		l->determinant[i] = difference;
+		l->determinant_cancels[i] = exact_uv & (int64_t)(NT_CANCELLATION * difference < larger);
 		l->u_cancels[i] = u_cancels & exact;
 		l->across_cancels[i] = across_cancels & exact;
 		block->hard[i] = (finite ^ 1) | (known ^ 1) |
@@ -155,6 +158,8 @@ static void __attribute__((noinline)) sum_cancelled(sum_lanes *restrict l, nt_su
 			l->u[c][i] = l->u_cancels[i] ? uc : l->u[c][i];
 			l->across[c][i] = l->across_cancels[i] ? ac : l->across[c][i];
 		}
+		const double determinant = fabs(lane_product_difference(bu, cv, bv, cu));
+		l->determinant[i] = l->determinant_cancels[i] ? determinant : l->determinant[i];
 		const double rest = fma(bu, cv, -(bu * cv)) - fma(bv, cu, -(bv * cu));
 		const double sign = rest > 0.0 ? 1.0 : rest < 0.0 ? -1.0 : 0.0;
 		l->sign[i] = l->tie[i] ? sign : l->sign[i];
@@ -165,7 +170,7 @@ static void __attribute__((noinline)) sum_cancelled(sum_lanes *restrict l, nt_su
 static void sum_cancelled(sum_lanes *restrict l, nt_sum_block *restrict block)
 {
 	LANES(i)
-		block->hard[i] |= l->u_cancels[i] | l->across_cancels[i] | l->tie[i];
+		block->hard[i] |= l->u_cancels[i] | l->across_cancels[i] | l->tie[i] | l->determinant_cancels[i];
 }
 #endif
 
@@ -186,17 +191,20 @@ LANE_INLINE void sum_lengths(sum_lanes *restrict l, nt_sum_block *restrict block
 	}
 }
 
-LANE_INLINE void sum_corner(sum_lanes *restrict l, nt_sum_block *restrict block, int k, int by_area)
+LANE_INLINE void sum_corner(sum_lanes *restrict l, nt_sum_block *restrict block, int k, nt_weight weight)
 {
-	const int before = (k + 2) % 3;
+	const int before = (k + 2) % 3, by_area = weight == NT_WEIGHT_AREA;
 	LANES(i) {
 		const nt_dvec3 raw = lane_floats(l->row[k] + 3, i), n = nt_weigh_normal(raw.x, raw.y, raw.z);
 		const double squared = nt_dvec3_dot(raw, raw);
 		const nt_measured m = {lane_load(l->u, i), lane_load(l->across, i), l->squared[i], l->u_length[i],
 			l->across_length[i]};
 		const double sine = fabs(nt_dvec3_dot(n, m.across));
-		const nt_weighed w = nt_weigh_corner(&m, n, lane_load(l->edge[k], i), lane_load(l->edge[before], i),
-			l->length[k][i], l->length[before][i], sine, by_area);
+		const double inverse = l->sign[i] != 0.0 ? 1.0 / l->determinant[i] : 0.0;
+		const nt_weighed w = weight == NT_WEIGHT_NONE
+			? nt_weigh_nothing(&m, n, inverse)
+			: nt_weigh_corner(&m, n, lane_load(l->edge[k], i), lane_load(l->edge[before], i),
+				  l->length[k][i], l->length[before][i], sine, by_area);
 		lane_store(block->add[k], i, w.u);
 		block->add[k][3][i] = w.sensitivity;
 		l->normals[i] = squared > 0.0 && squared < SUM_HUGE ? l->normals[i] : 0.0;
@@ -204,12 +212,12 @@ LANE_INLINE void sum_corner(sum_lanes *restrict l, nt_sum_block *restrict block,
 	}
 }
 
-LANE_INLINE void sum_corners(sum_lanes *restrict l, nt_sum_block *restrict block, int by_area)
+LANE_INLINE void sum_corners(sum_lanes *restrict l, nt_sum_block *restrict block, nt_weight weight)
 {
-	sum_lengths(l, block, by_area);
-	sum_corner(l, block, 0, by_area);
-	sum_corner(l, block, 1, by_area);
-	sum_corner(l, block, 2, by_area);
+	sum_lengths(l, block, weight == NT_WEIGHT_AREA);
+	sum_corner(l, block, 0, weight);
+	sum_corner(l, block, 1, weight);
+	sum_corner(l, block, 2, weight);
 	LANES(i) {
 		block->hard[i] |= (int64_t)!(l->normals[i] > 0.0);
 		block->plain[i] = (block->hard[i] ^ 1) & (int64_t)(l->sign[i] != 0.0) &
@@ -219,12 +227,17 @@ LANE_INLINE void sum_corners(sum_lanes *restrict l, nt_sum_block *restrict block
 
 static void __attribute__((noinline)) sum_corners_by_angle(sum_lanes *l, nt_sum_block *block)
 {
-	sum_corners(l, block, 0);
+	sum_corners(l, block, NT_WEIGHT_ANGLE);
 }
 
 static void __attribute__((noinline)) sum_corners_by_area(sum_lanes *l, nt_sum_block *block)
 {
-	sum_corners(l, block, 1);
+	sum_corners(l, block, NT_WEIGHT_AREA);
+}
+
+static void __attribute__((noinline)) sum_corners_unweighted(sum_lanes *l, nt_sum_block *block)
+{
+	sum_corners(l, block, NT_WEIGHT_NONE);
 }
 
 /* Rows of the corners of `count` triangles; the lanes behind repeat the last one. */
@@ -250,12 +263,16 @@ static void sum_solve(const nt_sums *s, size_t first, size_t count, sum_lanes *l
 	sum_gather(s, first, count, l);
 	sum_frames(l, block, fabs(offset), offset != 0.0 ? 3 * 0x1p-24 : 0.0);
 	int64_t cancelled = 0;
-	LANES(i)
-		cancelled |= l->u_cancels[i] | l->across_cancels[i] | l->tie[i];
+	LANES(i) {
+		l->determinant_cancels[i] &= -(int64_t)(s->weight == NT_WEIGHT_NONE);
+		cancelled |= l->u_cancels[i] | l->across_cancels[i] | l->tie[i] | l->determinant_cancels[i];
+	}
 	if (cancelled)
 		sum_cancelled(l, block);
 	if (s->weight == NT_WEIGHT_AREA)
 		sum_corners_by_area(l, block);
+	else if (s->weight == NT_WEIGHT_NONE)
+		sum_corners_unweighted(l, block);
 	else
 		sum_corners_by_angle(l, block);
 }

@@ -70,4 +70,12 @@ static inline __attribute__((always_inline)) nt_weighed nt_weigh_corner(const nt
 	return (nt_weighed){nt_dvec3_scale(scale, d), weight, scale * m->u_length + factor * condition};
 }
 
+/* The same for Lengyel's sum: dP/du as it is, u times the inverse determinant, without its part along n. */
+static inline __attribute__((always_inline)) nt_weighed nt_weigh_nothing(const nt_measured *m, nt_dvec3 n,
+	double inverse)
+{
+	const double length = m->u_length * inverse;
+	return (nt_weighed){nt_dvec3_reject(n, nt_dvec3_scale(inverse, m->u)), length, length};
+}
+
 #endif
