@@ -158,8 +158,12 @@ static void parse_chunks(void *context, size_t begin, size_t end, unsigned slot)
 		const size_t c = atomic_fetch_add(&job->next, 1);
 		if (c >= job->file->chunk_count)
 			return;
+		const obj_chunk *chunk = &job->file->chunks[c];
 		if (obj_parse_chunk(&job->file->chunks[c]))
 			atomic_store(&job->failed, true);
+		/* text is half of what a conversion would hold, and only names are read again */
+		if (job->file->scene->file)
+			nt_file_forget(job->file->scene->file, chunk->begin, (size_t)(chunk->end - chunk->begin));
 	}
 }
 
