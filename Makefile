@@ -42,6 +42,7 @@ TOOL_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lm
 
 # The compute library: no files, no C++.
 core_src := src/base/status.c src/base/memory.c src/base/parallel.c src/base/cpu.c src/base/scratch.c \
+	src/base/largest.c \
 	$(wildcard src/topology/*.c src/tangent/*.c)
 tool_src := $(filter-out $(core_src) src/cli/main.c,$(wildcard src/*/*.c)) $(wildcard src/ext/*.cpp)
 objects = $(patsubst src/%,$(B)/%.o,$(1))
@@ -86,6 +87,7 @@ $(B)/tangent/kernel_avx512.c.o: FILE_FLAGS := $(lanes) -mavx512f -mavx512bw -mav
 	-mprefer-vector-width=512
 endif
 $(B)/topology/weld.c.o: FILE_FLAGS := $(lanes)
+$(B)/base/largest.c.o: FILE_FLAGS := $(lanes)
 
 # The page of HTML reports is assembled into the binary: see page_assets.c.
 $(B)/report/page_assets.c.o: $(wildcard src/report/page/*)

@@ -8,6 +8,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include "base/largest.h"
 
 /* Indices that an accessor without a bufferView may have: nothing in the file backs their number. */
 enum { UNBACKED_INDICES = 65536 };
@@ -358,7 +359,7 @@ nmtan_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor,
 }
 
 nmtan_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, size_t vertex_count,
-	nt_arena *arena, uint32_t **indices, nt_error *error)
+	unsigned threads, nt_arena *arena, uint32_t **indices, nt_error *error)
 {
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "/accessors/%u", accessor->index);
@@ -395,7 +396,9 @@ nmtan_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor
 			out[replaced[i]] = read_unsigned(values + i * accessor->element_bytes, type);
 	}
 	const uint32_t reserved = type == NT_GLTF_UBYTE ? 0xFF : type == NT_GLTF_USHORT ? 0xFFFF : NT_NONE;
-	for (size_t i = 0; i < count; i++)
+	const uint32_t most = nt_largest(out, count, threads);
+	const bool sound = count == 0 || (most < vertex_count && most < reserved);
+	for (size_t i = 0; !sound && i < count; i++)
 		if (out[i] >= vertex_count || out[i] == reserved)
 			return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
 				"index %zu is %u%s, there are %zu vertices", i, out[i],

@@ -15,6 +15,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include "base/parallel.h"
 #include "io/gltf_share.h"
 
 enum { MODE_TRIANGLES = 4, MODE_STRIP = 5, MODE_FAN = 6 };
@@ -388,8 +389,39 @@ static void normalise_quantized(const nt_gltf_accessor *accessor, float *normals
 	}
 }
 
-static nmtan_status load_vertices(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const inputs *in,
+typedef struct flipping {
+	const float *from;
+	float *to;
+} flipping;
+
+static void flip_rows(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	const flipping *f = context;
+	for (size_t i = begin; i < end; i++) {
+		f->to[2 * i] = f->from[2 * i];
+		f->to[2 * i + 1] = -f->from[2 * i + 1];
+	}
+}
+
+/* v points down in glTF. The copy is needed: the input stays as it is. */
+static nmtan_status flip_texcoords(nt_scene *scene, nt_mesh *mesh, const float *stored, unsigned threads,
 	nt_error *error)
+{
+	enum { GRAIN = 1 << 16 };
+	const size_t count = mesh->vertex_count;
+	mesh->texcoords = nt_arena_alloc(&scene->arena, count, 2 * sizeof(float));
+	if (!mesh->texcoords)
+		return nt_fail_memory(error);
+	flipping f = {stored, mesh->texcoords};
+	nt_parallel_ranges(count < 2 * GRAIN ? 1 : nt_thread_count(threads), count, GRAIN, flip_rows, &f);
+	if (scene->file)
+		nt_file_forget(scene->file, stored, count * 2 * sizeof(float));
+	return NMTAN_OK;
+}
+
+static nmtan_status load_vertices(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const inputs *in,
+	unsigned threads, nt_error *error)
 {
 	nt_arena *arena = &scene->arena;
 	nmtan_status status = nt_gltf_floats(document, &in->positions.accessor, 3, 0, arena,
@@ -407,21 +439,9 @@ static nmtan_status load_vertices(nt_scene *scene, nt_gltf *document, nt_mesh *m
 	if (status || !in->texcoords.exists)
 		return status;
 
-	/* v points down in glTF. The copy is needed: the input stays as it is. */
-	float *decoded;
-	status = nt_gltf_floats(document, &in->texcoords.accessor, 2, 0, arena, &decoded, error);
-	if (status)
-		return status;
-	mesh->texcoords = nt_arena_alloc(arena, mesh->vertex_count, 2 * sizeof(float));
-	if (!mesh->texcoords)
-		return nt_fail_memory(error);
-	for (size_t i = 0; i < mesh->vertex_count; i++) {
-		mesh->texcoords[2 * i] = decoded[2 * i];
-		mesh->texcoords[2 * i + 1] = -decoded[2 * i + 1];
-	}
-	if (scene->file)
-		nt_file_forget(scene->file, decoded, mesh->vertex_count * 2 * sizeof(float));
-	return NMTAN_OK;
+	float *stored;
+	status = nt_gltf_floats(document, &in->texcoords.accessor, 2, 0, arena, &stored, error);
+	return status ? status : flip_texcoords(scene, mesh, stored, threads, error);
 }
 
 /*
@@ -564,7 +584,7 @@ static nmtan_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mes
 }
 
 static nmtan_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
-	const nt_json_value *primitive, nt_error *error)
+	const nt_json_value *primitive, unsigned threads, nt_error *error)
 {
 	uint64_t mode = MODE_TRIANGLES, index;
 	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
@@ -580,8 +600,8 @@ static nmtan_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh
 		nt_gltf_accessor accessor;
 		status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
 		if (!status)
-			status = nt_gltf_indices(document, &accessor, mesh->vertex_count, &scene->arena,
-				&chain, error);
+			status = nt_gltf_indices(document, &accessor, mesh->vertex_count, threads,
+				&scene->arena, &chain, error);
 		if (status)
 			return status;
 		count = accessor.count;
@@ -617,11 +637,11 @@ nmtan_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options 
 		status = check_inputs(mesh, &in, error);
 	}
 	if (!status)
-		status = load_vertices(scene, document, mesh, &in, error);
+		status = load_vertices(scene, document, mesh, &in, options->threads, error);
 	if (!status)
 		status = apply_transform(scene, document, mesh, primitive, error);
 	if (!status)
-		status = load_faces(scene, document, mesh, primitive, error);
+		status = load_faces(scene, document, mesh, primitive, options->threads, error);
 	/* a mesh in the world is written without its targets */
 	if (!status && !options->world && options->morphs == NT_MORPH_BAKE)
 		status = load_morphs(scene, document, mesh, primitive, error);

@@ -7,6 +7,7 @@
 #include "topology/corners.h"
 
 #include <string.h>
+#include "base/largest.h"
 
 /* Counts the corners; every face must have 3 or 4. */
 static nmtan_status count_corners(const nmtan_mesh *mesh, size_t *corner_count)
@@ -23,7 +24,7 @@ static nmtan_status count_corners(const nmtan_mesh *mesh, size_t *corner_count)
 	return wrong ? NMTAN_ERROR_FACE_SIZE : NMTAN_OK;
 }
 
-nmtan_status nt_check_faces(const nmtan_mesh *mesh, size_t *corner_count)
+nmtan_status nt_check_faces(const nmtan_mesh *mesh, unsigned threads, size_t *corner_count)
 {
 	if (mesh->face_count > NMTAN_MAX_FACES || mesh->vertex_count > UINT32_MAX)
 		return NMTAN_ERROR_TOO_LARGE;
@@ -32,9 +33,7 @@ nmtan_status nt_check_faces(const nmtan_mesh *mesh, size_t *corner_count)
 		return status;
 	if (!mesh->indices)
 		return *corner_count > mesh->vertex_count ? NMTAN_ERROR_INDEX : NMTAN_OK;
-	uint32_t most = 0;
-	for (size_t corner = 0; corner < *corner_count; corner++)
-		most = mesh->indices[corner] > most ? mesh->indices[corner] : most;
+	const uint32_t most = nt_largest(mesh->indices, *corner_count, threads);
 	return *corner_count > 0 && most >= mesh->vertex_count ? NMTAN_ERROR_INDEX : NMTAN_OK;
 }
 

@@ -178,7 +178,7 @@ nmtan_status nmtan_split(const nmtan_mesh *mesh, const float *tangents, const nm
 	if (checked.normal_stride_bytes == 0)
 		checked.normal_stride_bytes = 3 * sizeof(float);
 	size_t corner_count;
-	nmtan_status status = nt_check_faces(&checked, &corner_count);
+	nmtan_status status = nt_check_faces(&checked, options ? options->threads : 0, &corner_count);
 	if (status)
 		return status;
 
