@@ -5,11 +5,14 @@
  */
 #include "io/verify.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "ext/draco.h"
 #include "ext/tinygltf.h"
 #include "io/gltf_precision.h"
 #include "io/link.h"
+#include "io/verify_faces.h"
 
 /* ---- finding the files ---- */
 
@@ -21,7 +24,7 @@ typedef struct companion {
 } companion;
 
 typedef struct file_set {
-	nt_output *output;
+	nt_output *output; /* NULL: the files of an input */
 	const char *path; /* of the document */
 	companion items[COMPANION_LIMIT];
 	size_t count;
@@ -37,7 +40,7 @@ static bool open_companion(file_set *set, const char *uri, nt_file *file)
 	nt_buffer_text(&path, uri);
 	nmtan_status status = path.failed ? nt_fail_memory(set->error) : NMTAN_OK;
 	const char *written = NULL;
-	if (status == NMTAN_OK)
+	if (status == NMTAN_OK && set->output)
 		status = nt_output_written(set->output, path.data, &written, set->error);
 	if (status == NMTAN_OK)
 		status = nt_file_open(file, written ? written : path.data, set->error);
@@ -83,18 +86,79 @@ static void close_companions(file_set *set)
 typedef struct primitive_view {
 	nt_reread_array positions, tangents, indices;
 	size_t corner; /* the next one */
+	nt_draco *block; /* of a compressed primitive */
+	nt_verify_tolerance tolerance;
 } primitive_view;
 
-static nmtan_status open_primitive(const nt_reread *model, size_t mesh, size_t primitive,
+static nt_reread_array block_array(const nt_draco_attribute *attribute, size_t count)
+{
+	const size_t size = nt_draco_component_size(attribute->component_type);
+	return (nt_reread_array){attribute->data, count, size * (size_t)attribute->components,
+		attribute->component_type, attribute->components, attribute->normalized};
+}
+
+/* Half a step of the quantization, and what float arithmetic adds. */
+static float tolerance_of(const nt_draco_attribute *a, size_t count)
+{
+	if (a->component_type != NT_GLTF_FLOAT)
+		return 1e-6f; /* of what integers are mapped to */
+	if (!a->quantization.bits)
+		return 0;
+	float largest = 0;
+	const float *values = a->data;
+	for (size_t i = 0; i < count * (size_t)a->components; i++)
+		largest = fmaxf(largest, fabsf(values[i]));
+	const double steps = (double)(((uint64_t)1 << a->quantization.bits) - 1);
+	return (float)(0.501 * a->quantization.range / steps + 1e-6 * largest);
+}
+
+/* What a compressed primitive has in its block, decoded. */
+static nmtan_status open_block(nt_reread *model, size_t mesh, size_t primitive, const unsigned char *bytes,
+	size_t size, primitive_view *view, nt_error *error)
+{
+	if (!bytes)
+		return nt_fail(error, NMTAN_ERROR_INPUT, "the compressed block is not inside of a buffer");
+	const nmtan_status status = nt_draco_decode(&view->block, bytes, size, 0, true, error);
+	if (status != NMTAN_OK)
+		return status;
+	const nt_draco_mesh *decoded = nt_draco_get(view->block);
+	const char *const names[] = {"POSITION", "TANGENT"};
+	nt_reread_array *const arrays[] = {&view->positions, &view->tangents};
+	float *const tolerances[] = {&view->tolerance.position, &view->tolerance.tangent};
+	for (size_t i = 0; i < 2; i++) {
+		uint32_t id;
+		const nt_draco_attribute *found = nt_reread_block_id(model, mesh, primitive, names[i], &id)
+			? nt_draco_find(decoded, id) : NULL;
+		if (!found)
+			continue; /* outside of the block */
+		*arrays[i] = block_array(found, decoded->point_count);
+		*tolerances[i] = tolerance_of(found, decoded->point_count);
+	}
+	view->indices = (nt_reread_array){(const unsigned char *)decoded->indices, decoded->face_count * 3,
+		sizeof(uint32_t), NT_GLTF_UNSIGNED_INT, 1, false};
+	return NMTAN_OK;
+}
+
+static void close_primitive(primitive_view *view)
+{
+	nt_draco_free(view->block);
+	view->block = NULL;
+}
+
+static nmtan_status open_primitive(nt_reread *model, size_t mesh, size_t primitive,
 	primitive_view *view, nt_error *error)
 {
-	view->corner = 0;
+	*view = (primitive_view){.corner = 0};
+	const unsigned char *bytes;
+	size_t size;
 	nmtan_status status =
 		nt_reread_attribute(model, mesh, primitive, "POSITION", &view->positions, error);
 	if (status == NMTAN_OK)
 		status = nt_reread_attribute(model, mesh, primitive, "TANGENT", &view->tangents, error);
 	if (status == NMTAN_OK)
 		status = nt_reread_attribute(model, mesh, primitive, NULL, &view->indices, error);
+	if (status == NMTAN_OK && nt_reread_block(model, mesh, primitive, &bytes, &size))
+		status = open_block(model, mesh, primitive, bytes, size, view, error);
 	return status;
 }
 
@@ -190,7 +254,7 @@ static nmtan_status compare_mesh(const nt_mesh *mesh, primitive_view *views, nt_
 }
 
 /* A mesh of a composed document: its primitives are those that have faces, in order. */
-static nmtan_status verify_composed(const nt_reread *model, const nt_mesh *mesh, size_t number,
+static nmtan_status verify_composed(nt_reread *model, const nt_mesh *mesh, size_t number,
 	nt_error *error)
 {
 	const size_t count = mesh->primitive_count ? mesh->primitive_count : 1;
@@ -210,21 +274,105 @@ static nmtan_status verify_composed(const nt_reread *model, const nt_mesh *mesh,
 	return status;
 }
 
-/* A mesh of a patched document stands where it stood. Strips and fans keep their own indices: there only the
- * number of tangents is checked. */
-static nmtan_status verify_patched(const nt_reread *model, const nt_mesh *mesh, nt_error *error)
+/* ---- compressed primitives ---- */
+
+/* A corner as the scene has it. */
+static nt_verify_corner wanted_corner(const nt_mesh *mesh, size_t corner)
 {
-	primitive_view view;
-	const nmtan_status status =
-		open_primitive(model, mesh->gltf_mesh, mesh->gltf_primitive, &view, error);
-	if (status != NMTAN_OK || !mesh->split.vertex_tangents)
-		return status;
-	if (corner_count(&view) == mesh->corner_count)
-		return compare_mesh(mesh, &view, error);
-	return view.tangents.count == view.positions.count ? NMTAN_OK : fail_corner(mesh, 0, error);
+	const uint32_t *vertices = mesh->split.indices ? mesh->split.indices : mesh->indices;
+	const size_t split = vertices ? vertices[corner] : corner;
+	const size_t source = split < mesh->vertex_count ? split
+		: mesh->split.sources[split - mesh->vertex_count];
+	nt_verify_corner result;
+	memcpy(result.position, mesh->positions + 3 * source, sizeof result.position);
+	memcpy(result.tangent, mesh->split.vertex_tangents + 4 * split, sizeof result.tangent);
+	return result;
 }
 
-static nmtan_status compare_scene(const nt_scene *scene, const nt_reread *model, nt_error *error)
+/* One component: what it says, as glTF maps integers. */
+static float component_at(const nt_reread_array *array, const unsigned char *row, size_t k)
+{
+	float real;
+	int8_t byte;
+	int16_t half;
+	uint16_t natural;
+	switch (array->component_type) {
+	case NT_GLTF_BYTE:
+		memcpy(&byte, row + k, sizeof byte);
+		return array->normalized ? fmaxf((float)byte / 127.0f, -1.0f) : (float)byte;
+	case NT_GLTF_UNSIGNED_BYTE:
+		return array->normalized ? (float)row[k] / 255.0f : (float)row[k];
+	case NT_GLTF_SHORT:
+		memcpy(&half, row + k * sizeof half, sizeof half);
+		return array->normalized ? fmaxf((float)half / 32767.0f, -1.0f) : (float)half;
+	case NT_GLTF_UNSIGNED_SHORT:
+		memcpy(&natural, row + k * sizeof natural, sizeof natural);
+		return array->normalized ? (float)natural / 65535.0f : (float)natural;
+	default:
+		memcpy(&real, row + k * sizeof real, sizeof real);
+		return real;
+	}
+}
+
+/* The same as the document has it. */
+static bool found_corner(const primitive_view *view, size_t corner, nt_verify_corner *found)
+{
+	const size_t vertex = vertex_at(view, corner);
+	const unsigned char *position = row_at(&view->positions, vertex);
+	const unsigned char *tangent = row_at(&view->tangents, vertex);
+	if (!position || !tangent || view->positions.components != 3 ||
+		view->tangents.component_type != NT_GLTF_FLOAT || view->tangents.components != 4)
+		return false;
+	for (size_t k = 0; k < 3; k++)
+		found->position[k] = component_at(&view->positions, position, k);
+	memcpy(found->tangent, tangent, sizeof found->tangent);
+	return true;
+}
+
+/* The sequential method keeps corners where they are; if they are elsewhere, the surface has to be the same. */
+static nmtan_status compare_block(const nt_mesh *mesh, const primitive_view *view, nt_error *error)
+{
+	const size_t count = mesh->corner_count;
+	if (view->indices.count != count)
+		return fail_corner(mesh, 0, error);
+	nt_verify_corner *wanted = nt_alloc(count, sizeof *wanted), *found = nt_alloc(count, sizeof *found);
+	nmtan_status status = wanted && found ? NMTAN_OK : nt_fail_memory(error);
+	bool ordered = true;
+	for (size_t c = 0; c < count && status == NMTAN_OK; c++) {
+		wanted[c] = wanted_corner(mesh, c);
+		if (!found_corner(view, c, &found[c]))
+			status = fail_corner(mesh, c, error);
+		else
+			ordered &= nt_verify_close(&wanted[c], &found[c], &view->tolerance);
+	}
+	size_t first = SIZE_MAX;
+	if (status == NMTAN_OK && !ordered &&
+		nt_verify_faces(wanted, count / 3, found, count / 3, &view->tolerance, &first) != NMTAN_OK)
+		status = nt_fail_memory(error);
+	if (status == NMTAN_OK && first != SIZE_MAX)
+		status = fail_corner(mesh, 3 * first, error);
+	free(wanted);
+	free(found);
+	return status;
+}
+
+/* A mesh of a patched document stands where it stood. Strips and fans keep their own indices: there only the
+ * number of tangents is checked. */
+static nmtan_status verify_patched(nt_reread *model, const nt_mesh *mesh, nt_error *error)
+{
+	primitive_view view;
+	nmtan_status status = open_primitive(model, mesh->gltf_mesh, mesh->gltf_primitive, &view, error);
+	if (status == NMTAN_OK && view.block)
+		status = compare_block(mesh, &view, error);
+	else if (status == NMTAN_OK && corner_count(&view) == mesh->corner_count)
+		status = compare_mesh(mesh, &view, error);
+	else if (status == NMTAN_OK && view.tangents.count != view.positions.count)
+		status = fail_corner(mesh, 0, error);
+	close_primitive(&view);
+	return status;
+}
+
+static nmtan_status compare_scene(const nt_scene *scene, nt_reread *model, nt_error *error)
 {
 	size_t number = 0;
 	for (size_t m = 0; m < scene->mesh_count; m++) {
@@ -241,7 +389,29 @@ static nmtan_status compare_scene(const nt_scene *scene, const nt_reread *model,
 	return NMTAN_OK;
 }
 
-nmtan_status nt_verify_gltf(const nt_scene *scene, nt_output *output, const char *path,
+/* Whether tinygltf refuses the input as well. Then nobody can say by it what became of the output, and a finding
+ * says so. */
+static nmtan_status judge_input(nt_scene *scene, nt_error *error)
+{
+	if (scene->format != NT_FORMAT_GLTF && scene->format != NT_FORMAT_GLB)
+		return NMTAN_ERROR_INTERNAL;
+	nt_error ignored, refusal;
+	nt_error_clear(&refusal);
+	nt_reread *model = NULL;
+	file_set set = {.path = scene->path, .error = &ignored};
+	const nmtan_status status =
+		nt_reread_open(&model, scene->bytes, scene->byte_count, find_companion, &set, &refusal);
+	nt_reread_free(model);
+	close_companions(&set);
+	if (status == NMTAN_ERROR_MEMORY)
+		return nt_fail_memory(error);
+	if (status != NMTAN_ERROR_INPUT)
+		return NMTAN_ERROR_INTERNAL;
+	nt_finding_add(&scene->findings, NT_CODE_NOT_VERIFIED, NULL, 1, "%s", refusal.message);
+	return NMTAN_OK;
+}
+
+nmtan_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path,
 	nt_error *error)
 {
 	const char *written;
@@ -256,9 +426,12 @@ nmtan_status nt_verify_gltf(const nt_scene *scene, nt_output *output, const char
 	nt_error ignored;
 	file_set set = {.output = output, .path = path, .error = &ignored};
 	status = nt_reread_open(&model, file.data, file.size, find_companion, &set, error);
-	if (status == NMTAN_ERROR_INPUT)
-		status = error->status = NMTAN_ERROR_INTERNAL;
-	if (status == NMTAN_OK)
+	const bool refused = status == NMTAN_ERROR_INPUT;
+	if (refused)
+		status = judge_input(scene, error);
+	if (status == NMTAN_ERROR_INTERNAL)
+		error->status = status;
+	if (status == NMTAN_OK && !refused)
 		status = compare_scene(scene, model, error);
 	nt_reread_free(model);
 	close_companions(&set);

@@ -73,6 +73,12 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"precision, not the one that --precision names.",
 		"Use --draco-bits for them, or --draco=off.",
 		"converting any glTF with --draco=sequential --precision=byte"),
+	ROW(NOT_VERIFIED, WARNING, "the output could not be verified, since the input has a fault",
+		"--verify reads the output with tinygltf, which refuses it. It refuses the input too, in the words "
+		"of the detail, so that the fault is not nmtan's, and was kept like everything that has nothing to do "
+		"with tangents.",
+		"Mend the input, if it is to be read by tinygltf.",
+		"a glTF with a skin without inverseBindMatrices, --verify"),
 
 	ROW(UV_MIRROR_SEAM, INFO,
 		"texture coordinates are mirrored across a seam of {count} {edge|edges}",

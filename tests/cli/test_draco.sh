@@ -25,7 +25,7 @@ for input in "$WORK"/layouts/*.gl*; do
 	*) reason="it has tangents that are no floats" ;;
 	esac
 	for method in sequential edgebreaker; do
-		run --existing=replace --draco=$method "$input" $method.glb
+		run --existing=replace --draco=$method --verify "$input" $method.glb
 		exits 0
 		is "$(compressed $method.glb)" $expected
 		if [ $expected = 0 ]; then

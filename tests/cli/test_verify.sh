@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: MIT
+# --verify on glTF made from glTF: every way to store it is read back, and a fault of the input is not ours.
+. "$ROOT/tests/support/cli.sh"
+mkdir -p "$WORK/layouts"
+PYTHONDONTWRITEBYTECODE=1 python3 "$ROOT/tests/support/gltf_layouts.py" "$WORK/layouts" || exit 1
+
+for input in "$WORK"/layouts/*.gl*; do
+	scene "${input##*/} is verified: plain, rounded, compressed, and compressed again"
+	for options in --draco=keep --precision=short --draco=sequential "--draco=edgebreaker --draco-bits=8,8,8,12"; do
+		# shellcheck disable=SC2086
+		run --existing=replace --verify $options "$input" out.glb
+		exits 0
+		says_not NOT_VERIFIED
+	done
+	run --existing=replace --verify out.glb again.gltf
+	exits 0
+done
+
+# tinygltf wants inverseBindMatrices in skins, glTF does not.
+spoiled() {
+	node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1]));
+		g.skins = [{ joints: [0] }];
+		fs.writeFileSync(process.argv[2], JSON.stringify(g))' "$WORK/layouts/$1" "$2"
+}
+
+scene "what tinygltf refuses before and after is a finding, and the output is written"
+cp "$WORK"/layouts/*.bin .
+spoiled plain.gltf plain.gltf
+for options in --draco=keep --draco=edgebreaker --buffers=link; do
+	run --verify $options plain.gltf out.glb
+	exits 0
+	says "warning: the output could not be verified, since the input has a fault"
+	says "inverseBindMatrices"
+	says "[NOT_VERIFIED]"
+	exists out.glb
+done
+run --verify --fail-on=warning plain.gltf out.gltf
+exits 6
+run --verify "$WORK/layouts/plain.gltf" out.gltf
+exits 0
+says_not NOT_VERIFIED
+
+scene "compressed views cannot be verified, which is said"
+node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1]));
+	g.extensionsUsed = ["EXT_meshopt_compression"];
+	g.buffers.push({ byteLength: 4, extensions: { EXT_meshopt_compression: { fallback: true } } });
+	fs.writeFileSync("views.gltf", JSON.stringify(g))' "$WORK/layouts/plain.gltf"
+cp "$WORK"/layouts/plain*.bin .
+run --verify views.gltf out.gltf
+exits 5
+says "tinygltf cannot read documents with EXT_meshopt_compression back"
+run views.gltf out.gltf
+exits 0
+
+done_testing
