@@ -130,6 +130,28 @@ void nt_file_forget(const nt_file *file, const void *bytes, size_t size)
 		madvise((void *)(map + begin), end - begin, MADV_DONTNEED); /* a refusal changes nothing */
 }
 
+/* Advice on the whole pages that hold a range. */
+static void advise(const nt_file *file, size_t offset, size_t size, int advice)
+{
+	const size_t page = (size_t)sysconf(_SC_PAGESIZE), begin = offset / page * page;
+	if (file->mapped && size)
+		madvise((void *)(uintptr_t)(file->data + begin), offset + size - begin, advice);
+}
+
+void nt_file_fetch(const nt_file *file, size_t offset, size_t size)
+{
+#ifdef MADV_POPULATE_READ
+	advise(file, offset, size, MADV_POPULATE_READ);
+#else
+	advise(file, offset, size, MADV_WILLNEED);
+#endif
+}
+
+void nt_file_release(const nt_file *file, size_t offset, size_t size)
+{
+	advise(file, offset, size, MADV_DONTNEED);
+}
+
 bool nt_file_is(const nt_file *file, const char *path)
 {
 	struct stat status;

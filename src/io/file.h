@@ -30,6 +30,12 @@ void nt_file_close(nt_file *file);
  * process, and come back when they are read all the same. What is not in the map is left alone. */
 void nt_file_forget(const nt_file *file, const void *bytes, size_t size);
 
+/* Brings the pages of a range of a mapped file in at once, which costs less than a fault for every few of them,
+ * and lets go of them again, so that a file that is copied does not fill the memory. Nothing is lost: what is
+ * read afterwards comes back. For files that are not mapped, and kernels that cannot, nothing happens. */
+void nt_file_fetch(const nt_file *file, size_t offset, size_t size);
+void nt_file_release(const nt_file *file, size_t offset, size_t size);
+
 /* Whether path names the file that was opened. */
 bool nt_file_is(const nt_file *file, const char *path);
 
@@ -58,7 +64,8 @@ nmtan_status nt_output_add(nt_output *output, const char *path, bool main, nt_si
 /* Appends bytes. Small writes are buffered, large ones go straight to the file. */
 nmtan_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error *error);
 
-/* Appends a range of an input: by copy_file_range where the kernel can, else like nt_sink_write. */
+/* Appends a range of an input: by copy_file_range where the kernel can and the pages of both
+ * files meet, else like nt_sink_write. */
 nmtan_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
 	nt_error *error);
 

@@ -21,7 +21,8 @@
 #include "io/temporary.h"
 
 /* Buffer of a sink, and from which size on the kernel copies better than write() does. */
-enum { SINK_BUFFER_BYTES = 256 * 1024, KERNEL_COPY_BYTES = 1024 * 1024 };
+enum { SINK_BUFFER_BYTES = 256 * 1024, KERNEL_COPY_BYTES = 1024 * 1024,
+	MAPPED_COPY_BYTES = 2 * 1024 * 1024 };
 
 struct nt_sink {
 	nt_sink *next;            /* in the order of adding */
@@ -290,6 +291,27 @@ static void copy_in_kernel(nt_sink *sink, const nt_file *from, size_t offset, si
 	}
 }
 
+/* Whether pages of a range fall on pages of the output. Where they do not, the kernel would write every page of the
+ * output in two pieces: 62 ms for 197 MB, where pages that are fetched and written take 52. */
+static bool pages_meet(const nt_sink *sink, size_t offset)
+{
+	return (sink->size - offset) % (size_t)sysconf(_SC_PAGESIZE) == 0;
+}
+
+/* From the map, some of it at a time, which is let go of again. */
+static nmtan_status copy_mapped(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
+	nt_error *error)
+{
+	nmtan_status status = NMTAN_OK;
+	for (size_t left = size, part; left && !status; left -= part, offset += part) {
+		part = left < MAPPED_COPY_BYTES ? left : MAPPED_COPY_BYTES;
+		nt_file_fetch(from, offset, part);
+		status = nt_sink_write(sink, from->data + offset, part, error);
+		nt_file_release(from, offset, part);
+	}
+	return status;
+}
+
 nmtan_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
 	nt_error *error)
 {
@@ -297,6 +319,8 @@ nmtan_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, siz
 		return nt_fail(error, NMTAN_ERROR_INTERNAL, "a range to copy is outside of its file");
 	if (size < KERNEL_COPY_BYTES || !from->mapped || !sink->temporary || sink->no_kernel_copy)
 		return nt_sink_write(sink, from->data + offset, size, error);
+	if (!pages_meet(sink, offset))
+		return copy_mapped(sink, from, offset, size, error);
 	const nmtan_status status = flush_with(sink, NULL, 0, error);
 	if (status)
 		return status;
