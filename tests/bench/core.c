@@ -2,7 +2,7 @@
 /*
  * core [FOLDER]: how many million triangles a second the core does on each family of meshes, as a table for
  * people. Runs of all columns are interleaved, so that a busy machine hurts all of them; best and median.
- * Output and workspace are warm. One thread is timed by the processor's clock for the thread, more by the wall's.
+ * Repair is on, output and workspace are warm. One thread is timed by the processor's clock for the thread, more by the wall's.
  *
  * The scalar definition is there to be compared, takes some 20 times as long, and on hubs its time grows
  * with the square of their size. Its column is measured once, on smaller meshes of the family, whose number of
@@ -88,8 +88,8 @@ static void free_workload(workload *w)
 /* Seconds for solving every mesh once; what is small is repeated until it takes a while. */
 static double time_run(const column *c, const workload *w, nmtan_output *output, nmtan_workspace *workspace)
 {
-	const nmtan_options options = {.method = c->method, .repair = NMTAN_REPAIR_OFF, .threads = c->threads,
-		.path = c->path, .isa = c->isa, .workspace = workspace};
+	const nmtan_options options = {.method = c->method, .threads = c->threads, .path = c->path, .isa = c->isa,
+		.workspace = workspace};
 	const size_t repeat = c->path != NMTAN_PATH_SCALAR && w->triangles < 100000 ? 400000 / w->triangles : 1;
 	const clockid_t clock = c->threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC;
 	const double begin = seconds(clock);
