@@ -93,6 +93,28 @@ static void orientation_agrees_with_integers(void **state)
 	}
 }
 
+/* Differences of 53 bits, so that products are rounded and tie: a is 2^-29 times small integers, c = 2 b of 24 bits.
+ * (b - a) x (2 b - a) = b x a. */
+static void orientation_of_ties_is_decided_by_residuals(void **state)
+{
+	(void)state;
+	uint32_t seed = 7;
+	int ties = 0;
+	for (int i = 0; i < 20000; i++) {
+		const int64_t k[2] = {(int64_t)(next_random(&seed) % 7) - 3, (int64_t)(next_random(&seed) % 7) - 3};
+		const int64_t x[2] = {(int64_t)(next_random(&seed) | 1 << 23), (int64_t)(next_random(&seed) | 1 << 23)};
+		const float a[2] = {ldexpf((float)k[0], -29), ldexpf((float)k[1], -29)};
+		const float b[2] = {(float)x[0], (float)x[1]}, c[2] = {2 * b[0], 2 * b[1]};
+		const int64_t det = x[0] * k[1] - x[1] * k[0];
+		const int sign = (det > 0) - (det < 0);
+		assert_int_equal(nt_orientation(a, b, c), sign);
+		assert_int_equal(nt_orientation_slow(a, b, c), sign);
+		const double left = ((double)b[0] - a[0]) * ((double)c[1] - a[1]);
+		ties += left == ((double)b[1] - a[1]) * ((double)c[0] - a[0]) && sign != 0;
+	}
+	assert_true(ties > 1000);
+}
+
 static void quad_diagonal_is_the_shorter_one_in_uv_then_in_space(void **state)
 {
 	(void)state;
@@ -117,6 +139,7 @@ int main(void)
 		cmocka_unit_test(orientation_takes_mixed_exponents),
 		cmocka_unit_test(orientation_of_values_that_are_not_finite_is_zero),
 		cmocka_unit_test(orientation_agrees_with_integers),
+		cmocka_unit_test(orientation_of_ties_is_decided_by_residuals),
 		cmocka_unit_test(quad_diagonal_is_the_shorter_one_in_uv_then_in_space),
 	};
 	return cmocka_run_group_tests_name("topology/orientation", tests, NULL, NULL);
