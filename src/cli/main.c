@@ -89,6 +89,7 @@ static void add_times(nt_summary *total, const nt_summary *one)
 		total->seconds[stage] += one->seconds[stage];
 	total->total_seconds += one->total_seconds;
 	total->bytes_read += one->bytes_read;
+	total->bytes_copied += one->bytes_copied;
 	total->bytes_written += one->bytes_written;
 	total->same_count += one->same_count;
 	for (int reason = 0; reason < NT_DECISION_COUNT; reason++)
@@ -107,6 +108,7 @@ static void tell_job(void *user, nt_job *job)
 	if (s->style.verbosity >= 0 && !(report && strcmp(report, "-") == 0))
 		nt_message_findings(&text, &job->summary.findings, job->input,
 			c->settings.check || s->style.verbosity > 0, s->style);
+	nt_message_meshes(&text, job); /* none unless -v asked for them */
 	if (job->status) {
 		nt_message_error(&text, &job->error, s->style);
 		nt_buffer_format(&s->failures, "%s", s->failed++ ? ", " : "");
@@ -210,6 +212,7 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 	}
 	nt_settings settings = command->settings;
 	settings.report = plan->wanted ? &plan->options : NULL;
+	settings.list_meshes = style.verbosity > 0;
 	s.progress = nt_progress_start(style.verbosity < 0 ? NT_PROGRESS_OFF : command->progress,
 		batch->jobs[0].input, batch->count);
 	if (s.progress && batch->count == 1) {

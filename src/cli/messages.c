@@ -201,6 +201,24 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	nt_buffer_format(out, ", %.3g s\n", s->total_seconds);
 }
 
+void nt_message_meshes(nt_buffer *out, const nt_job *job)
+{
+	for (size_t i = 0; i < job->summary.line_count; i++) {
+		const nt_mesh_line *line = &job->summary.lines[i];
+		const bool solved = line->decision == NT_DECISION_SOLVE || line->decision == NT_DECISION_REPAIR;
+		nt_buffer_text(out, "nmtan: ");
+		append_place(out, &line->place, job->input);
+		nt_buffer_format(out, "%s%s%s%s, ", solved ? "" : "skipped (", nt_decision_text(line->decision),
+			solved ? "" : ")", line->same ? " (the same as an earlier one's)" : "");
+		append_count(out, line->triangle_count, "triangle");
+		if (solved)
+			nt_buffer_format(out, ", %zu", line->vertex_count);
+		if (solved && line->appended)
+			nt_buffer_format(out, " -> %zu", line->vertex_count + line->appended);
+		nt_buffer_text(out, solved ? " vertices\n" : "\n");
+	}
+}
+
 const char *nt_stage_name(nt_stage stage)
 {
 	static const char *const names[NT_STAGE_COUNT] = {
@@ -230,8 +248,10 @@ void nt_message_timing(nt_buffer *out, const nt_summary *summary)
 	const double rest = summary->total_seconds - known;
 	nt_buffer_format(out, "%-9s %8.3f\n%-9s %8.3f\n", "other", (rest > 0 ? rest : 0) * 1e3, "total",
 		summary->total_seconds * 1e3);
-	nt_buffer_format(out, "%" PRIu64 " bytes read, %" PRIu64 " bytes written\n", summary->bytes_read,
-		summary->bytes_written);
+	nt_buffer_format(out, "%" PRIu64 " bytes read, ", summary->bytes_read);
+	if (summary->bytes_copied)
+		nt_buffer_format(out, "%" PRIu64 " copied as they are, ", summary->bytes_copied);
+	nt_buffer_format(out, "%" PRIu64 " bytes written\n", summary->bytes_written);
 	if (summary->same_count)
 		nt_buffer_format(out, "not solved again: %zu %s (the same geometry as another)\n",
 			summary->same_count, summary->same_count == 1 ? "primitive" : "primitives");

@@ -27,6 +27,9 @@ void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style);
 void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, bool infos,
 	nt_style style);
 
+/* A line for each mesh of the summary's list: what was decided and why, triangles, vertices. */
+void nt_message_meshes(nt_buffer *out, const nt_job *job);
+
 /* One line: what happened. */
 void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *settings);
 

@@ -112,7 +112,7 @@ const nt_option_row nt_option_rows[] = {
 	{"quiet", 'q', NT_OPTION_SET, NULL, -1, 0, NULL, "say nothing but errors", FIELD(verbosity),
 		false},
 	{"verbose", 'v', NT_OPTION_SET, NULL, 1, 0, NULL,
-		"show every finding: infos too, and all places", FIELD(verbosity), false},
+		"show every finding, and what became of each mesh", FIELD(verbosity), false},
 	{"progress", 0, NT_OPTION_CHOICE, "auto|on|off", NT_PROGRESS_AUTO, 0, "auto",
 		"show what is being done; auto: on a terminal, after one second", FIELD(progress), false},
 	{"timing", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "say how long each stage took", FIELD(timing),

@@ -85,6 +85,9 @@ nmtan_status nt_output_written(nt_output *output, const char *path, const char *
 /* Bytes written to all files of the set so far. */
 uint64_t nt_output_size(const nt_output *output);
 
+/* Bytes of them that came from an input file as they are (nt_sink_copy). */
+uint64_t nt_output_copied(const nt_output *output);
+
 /* Gives every file its name, in order; on failure everything is removed as by nt_output_abort. The set is freed
  * either way. */
 nmtan_status nt_output_commit(nt_output *output, nt_error *error);

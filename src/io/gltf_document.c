@@ -340,6 +340,33 @@ nmtan_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *fro
 	return NMTAN_OK;
 }
 
+void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin, uint64_t length)
+{
+	if (length == 0 || (buffer->home != NT_GLTF_HOME_BIN && buffer->home != NT_GLTF_HOME_FILE))
+		return;
+	if (!buffer->pages) {
+		const size_t words = buffer->size / NT_GLTF_PAGE / 64 + 1;
+		buffer->pages = nt_arena_alloc(&document->arena, words, sizeof *buffer->pages);
+		if (!buffer->pages)
+			return; /* a figure is missing, nothing else */
+		memset(buffer->pages, 0, words * sizeof *buffer->pages);
+	}
+	for (uint64_t page = begin / NT_GLTF_PAGE; page <= (begin + length - 1) / NT_GLTF_PAGE; page++) {
+		const uint64_t bit = (uint64_t)1 << page % 64;
+		if (buffer->pages[page / 64] & bit)
+			continue;
+		buffer->pages[page / 64] |= bit;
+		const uint64_t left = buffer->size - page * NT_GLTF_PAGE;
+		document->bytes_read += left < NT_GLTF_PAGE ? left : NT_GLTF_PAGE;
+	}
+}
+
+uint64_t nt_gltf_bytes_read(const nt_gltf *document)
+{
+	return (document->is_glb ? document->glb.json.offset + document->glb.json.size : document->byte_count) +
+		document->bytes_read;
+}
+
 nmtan_status nt_gltf_view_bytes(nt_gltf *document, uint32_t index, uint64_t offset, uint64_t length,
 	const char *what, const unsigned char **bytes, nt_error *error)
 {
@@ -372,5 +399,7 @@ nmtan_status nt_gltf_view_bytes(nt_gltf *document, uint32_t index, uint64_t offs
 			(unsigned long long)buffer->length, buffer->size);
 	}
 	*bytes = buffer->bytes + view.offset + offset;
+	if (view.buffer < NT_GLTF_VIRTUAL)
+		nt_gltf_note_read(document, buffer, view.offset + offset, length);
 	return NMTAN_OK;
 }

@@ -41,6 +41,7 @@ typedef struct nt_gltf_buffer {
 	size_t size;                /* bytes that are there: byteLength or less */
 	unsigned char *decoded;     /* of a data URI: owned */
 	nt_file file;               /* of an external file: owned */
+	uint64_t *pages;            /* one bit for each NT_GLTF_PAGE bytes that were read; NULL: none yet */
 	const char *path;           /* of an external file */
 } nt_gltf_buffer;
 
@@ -97,6 +98,7 @@ typedef struct nt_gltf {
 	nt_gltf_decoded *decoded;  /* [accessor_count] what Draco gave; NULL until there is something */
 	size_t accessor_count;
 	struct nt_gltf_draco *draco_blocks; /* gltf_draco.c */
+	uint64_t bytes_read;     /* of buffers */
 	uint64_t bytes_opened;   /* of external files and data URIs */
 } nt_gltf;
 
@@ -132,6 +134,13 @@ nmtan_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *
 /* A bufferView, checked against its buffer's byteLength. */
 nmtan_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
 	nt_error *error);
+
+/* Books bytes of a buffer as read: whole pages, each once. What a data URI holds was read with the JSON. */
+enum { NT_GLTF_PAGE = 4096 };
+void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin, uint64_t length);
+
+/* Bytes that were read: the JSON and what was booked. */
+uint64_t nt_gltf_bytes_read(const nt_gltf *document);
 
 /* Bytes of a view, `length` of them from `offset` on; compressed views are refused. `what` is the JSON
  * pointer of who wants them. */

@@ -355,7 +355,7 @@ static nmtan_status put_zeros(const target *to, uint64_t size, nt_error *error)
 }
 
 /* A range of a source buffer: from file to file where that is possible. */
-static nmtan_status put_source(const nt_gltf_layout *layout, const nt_gltf_buffer *buffer,
+static nmtan_status put_source(const nt_gltf_layout *layout, nt_gltf_buffer *buffer,
 	const target *to, uint64_t begin, uint64_t end, nt_error *error)
 {
 	if (begin >= end)
@@ -370,6 +370,8 @@ static nmtan_status put_source(const nt_gltf_layout *layout, const nt_gltf_buffe
 			layout->document->glb.bin.offset + (size_t)begin, size, error);
 	else if (size)
 		status = put_bytes(to, buffer->bytes + begin, size, error);
+	if (!to->sink)
+		nt_gltf_note_read(layout->document, buffer, begin, size);
 	return status ? status : put_zeros(to, end - there, error);
 }
 

@@ -163,6 +163,7 @@ nmtan_status nt_gltf_decompress_view(nt_gltf *document, uint32_t index, nt_error
 		free(bytes);
 		return nt_fail_memory(error);
 	}
+	nt_gltf_note_read(document, buffer, p.offset, p.length);
 	status = unpack(&p, buffer->bytes + p.offset, bytes, pointer, error);
 	if (status) {
 		free(bytes);

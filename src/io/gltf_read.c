@@ -231,6 +231,11 @@ static nmtan_status place_meshes(nt_scene *scene, const nt_gltf *document, nt_er
 	return nt_gltf_walk_world(document, place_mesh, &world, error);
 }
 
+static uint64_t count_read(const void *source)
+{
+	return nt_gltf_bytes_read(source);
+}
+
 nmtan_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
 	nt_gltf *document;
@@ -239,6 +244,7 @@ nmtan_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_er
 		return status;
 	scene->source = document;
 	scene->free_source = nt_gltf_free;
+	scene->read_of_source = count_read;
 	scene->format = document->is_glb ? NT_FORMAT_GLB : NT_FORMAT_GLTF;
 
 	/* The meshes, and which of them a scene shows. */

@@ -33,6 +33,7 @@ struct nt_sink {
 	bool no_kernel_copy;      /* it was tried in vain */
 	bool dry;                 /* counts bytes and drops them */
 	uint64_t size;
+	uint64_t copied; /* of them from an input file as they are */
 	size_t used;              /* bytes in buffer */
 	unsigned char *buffer;
 	char *path;               /* as the caller named it */
@@ -317,6 +318,7 @@ nmtan_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, siz
 {
 	if (offset > from->size || size > from->size - offset)
 		return nt_fail(error, NMTAN_ERROR_INTERNAL, "a range to copy is outside of its file");
+	sink->copied += size;
 	if (size < KERNEL_COPY_BYTES || !from->mapped || !sink->temporary || sink->no_kernel_copy)
 		return nt_sink_write(sink, from->data + offset, size, error);
 	if (!pages_meet(sink, offset))
@@ -362,6 +364,14 @@ uint64_t nt_output_size(const nt_output *output)
 	uint64_t size = 0;
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
 		size += sink->size;
+	return size;
+}
+
+uint64_t nt_output_copied(const nt_output *output)
+{
+	uint64_t size = 0;
+	for (const nt_sink *sink = output->first; sink; sink = sink->next)
+		size += sink->copied;
 	return size;
 }
 

@@ -4,6 +4,7 @@
  */
 #include "pipeline/run.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include "io/normal_map.h"
@@ -250,6 +251,8 @@ static nmtan_status write_scene(run *r)
 		nt_error_in_file(r->error, r->input_path);
 	if (!status)
 		r->summary->bytes_written = nt_output_size(output);
+	if (!status)
+		r->summary->bytes_copied = nt_output_copied(output);
 	if (!status && s->verify && !s->dry_run) {
 		begin_stage(r, NT_STAGE_VERIFY);
 		status = nt_verify_gltf(&r->scene, output, r->output_path, r->error);
@@ -276,6 +279,8 @@ static nmtan_status run_stages(run *r)
 			r->writer ? r->writer->format : NT_FORMAT_UNKNOWN, r->summary, r->error);
 		nt_error_in_file(r->error, r->input_path);
 	}
+	if (!status && r->settings->list_meshes)
+		status = nt_stage_listing(&r->scene, r->summary, r->error);
 	if (!status && r->writer)
 		status = write_scene(r);
 	return status;
@@ -332,6 +337,8 @@ nmtan_status nt_run(const char *input, const char *output, const nt_settings *se
 
 	/* what was found belongs to the caller, also after a failure */
 	end_stage(&r);
+	if (r.scene.read_of_source)
+		summary->bytes_read = r.scene.read_of_source(r.scene.source);
 	summary->findings = r.scene.findings;
 	summary->rounding = r.scene.rounding;
 	r.scene.findings = (nt_finding_list){0};
@@ -347,5 +354,7 @@ void nt_summary_free(nt_summary *summary)
 {
 	nt_finding_list_free(&summary->findings);
 	nt_report_free(summary->report);
+	free(summary->lines);
+	summary->lines = NULL;
 	summary->report = NULL;
 }

@@ -51,6 +51,7 @@ typedef struct nt_settings {
 	bool check;    /* judge only: no output */
 	bool sync;
 	bool no_clobber;
+	bool list_meshes; /* summary->lines is wanted */
 	bool in_place;
 	bool allow_outside;
 
@@ -61,6 +62,16 @@ typedef struct nt_settings {
 	void (*on_stage)(void *user, nt_stage stage);
 	void *on_stage_user;
 } nt_settings;
+
+/* What became of one mesh (glTF: primitive). */
+typedef struct nt_mesh_line {
+	nt_place place;
+	nt_decision decision;
+	bool same;             /* the geometry of an earlier one, whose tangents it shares */
+	size_t triangle_count; /* of skipped ones: as the source claims */
+	size_t vertex_count;   /* before; 0 where nothing was loaded */
+	size_t appended;       /* vertices added */
+} nt_mesh_line;
 
 /* What a run did. */
 typedef struct nt_summary {
@@ -76,10 +87,14 @@ typedef struct nt_summary {
 	nmtan_counts counts;     /* of all solves */
 	nt_rounding rounding;    /* of tangents that were stored as integers */
 	nt_finding_list findings;
-	uint64_t bytes_read, bytes_written;
+	uint64_t bytes_read;     /* of the inputs, as far as known; what is only copied is not */
+	uint64_t bytes_copied;   /* from an input to the output as they are */
+	uint64_t bytes_written;  /* those too */
 	double seconds[NT_STAGE_COUNT];
 	double total_seconds;
 	nt_report *report; /* NULL unless asked for; of a failed run it says why */
+	nt_mesh_line *lines; /* [line_count] in the order of the input; NULL unless asked for */
+	size_t line_count;
 	bool copied; /* nothing was to be done and the output is a copy of the input */
 } nt_summary;
 

@@ -16,6 +16,9 @@ nmtan_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, n
 nmtan_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
 	nt_summary *summary, nt_error *error);
 
+/* Fills summary->lines. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error *error);
+
 /* Says of every mesh with quads where they are cut (face_diagonals). For writers of triangles. */
 nmtan_status nt_stage_quads(nt_scene *scene, nt_error *error);
 

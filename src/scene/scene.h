@@ -182,6 +182,8 @@ typedef struct nt_scene {
 	/* What a reader keeps for the writer of the same format, and the input's bytes. */
 	void *source;
 	void (*free_source)(void *source);
+	uint64_t (*read_of_source)(const void *source); /* bytes of the input and its files that were read, as far as
+	                                                   the reader knows; NULL: all of the input */
 	void (*unmap)(struct nt_scene *scene); /* releases the mapped input; NULL: none */
 	const unsigned char *bytes;
 	size_t byte_count;

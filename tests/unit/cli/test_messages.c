@@ -108,6 +108,27 @@ static void success_is_one_line_that_accounts_for_everything(void **state)
 		   "tangents, no findings, 0 s\n");
 }
 
+static void a_list_has_a_line_for_each_mesh(void **state)
+{
+	(void)state;
+	nt_buffer out = {0};
+	nt_mesh_line lines[] = {
+		{.decision = NT_DECISION_SOLVE, .triangle_count = 4, .vertex_count = 6, .appended = 2},
+		{.decision = NT_SKIP_NO_SLOT, .triangle_count = 1},
+		{.decision = NT_DECISION_SOLVE, .same = true, .triangle_count = 4, .vertex_count = 6},
+	};
+	for (size_t i = 0; i < 3; i++)
+		nt_place_clear(&lines[i].place);
+	strcpy(lines[1].place.pointer, "/meshes/0/primitives/1");
+	strcpy(lines[1].place.object, "mesh \"head\", primitive 1");
+	const nt_job job = {.input = "a.glb", .summary = {.lines = lines, .line_count = 3}};
+	nt_message_meshes(&out, &job);
+	says(&out, "nmtan: a.glb: tangents are computed, 4 triangles, 6 -> 8 vertices\n"
+		   "nmtan: a.glb: /meshes/0/primitives/1: mesh \"head\", primitive 1: skipped (no material of "
+		   "it uses tangents), 1 triangle\n"
+		   "nmtan: a.glb: tangents are computed (the same as an earlier one's), 4 triangles, 6 vertices\n");
+}
+
 static void timing_names_every_stage(void **state)
 {
 	(void)state;
@@ -119,7 +140,11 @@ static void timing_names_every_stage(void **state)
 		assert_non_null(strstr(out.data, nt_stage_name((nt_stage)stage)));
 	assert_non_null(strstr(out.data, "parse     1500.000\n"));
 	assert_non_null(strstr(out.data, "other      500.000\n"));
-	assert_non_null(strstr(out.data, "5000000000 bytes read"));
+	assert_non_null(strstr(out.data, "5000000000 bytes read, 0 bytes written"));
+	nt_buffer_free(&out);
+	summary.bytes_copied = 7;
+	nt_message_timing(&out, &summary);
+	assert_non_null(strstr(out.data, "5000000000 bytes read, 7 copied as they are, 0 bytes written"));
 	nt_buffer_free(&out);
 }
 
@@ -150,6 +175,7 @@ int main(void)
 		cmocka_unit_test(text_from_files_cannot_steer_the_terminal),
 		cmocka_unit_test(findings_come_worst_first_and_grouped),
 		cmocka_unit_test(success_is_one_line_that_accounts_for_everything),
+		cmocka_unit_test(a_list_has_a_line_for_each_mesh),
 		cmocka_unit_test(timing_names_every_stage),
 		cmocka_unit_test(of_many_exit_codes_the_worst_counts),
 	};

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What became of each mesh, for those who want to see it: copied out of the scene, which is gone when the run
+ * is over.
+ */
+#include "base/memory.h"
+#include "pipeline/stages.h"
+
+static size_t triangles_of(const nt_mesh *mesh)
+{
+	size_t quads = 0;
+	for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
+		quads += mesh->face_sizes[f] == 4;
+	return mesh->face_count + quads;
+}
+
+nmtan_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error *error)
+{
+	summary->lines = nt_calloc(scene->mesh_count, sizeof *summary->lines);
+	if (!summary->lines)
+		return nt_fail_memory(error);
+	summary->line_count = scene->mesh_count;
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[i];
+		const nt_mesh *solved = mesh->same_as ? mesh->same_as : mesh;
+		nt_mesh_line *line = &summary->lines[i];
+		*line = (nt_mesh_line){.place = mesh->place, .decision = mesh->decision,
+			.same = mesh->same_as != NULL, .triangle_count = triangles_of(solved),
+			.vertex_count = solved->source_vertex_count};
+		if (solved->vertex_count > solved->source_vertex_count)
+			line->appended = solved->vertex_count - solved->source_vertex_count;
+		line->appended += solved->split.source_count;
+	}
+	return NMTAN_OK;
+}
