@@ -632,7 +632,7 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ra
 			lends_sums ? 0 : solve->corner_count * 4 * sizeof(float), solve->scratch);
 	nt_weld weld;
 	const double begin = solve->timing ? nt_seconds() : 0;
-	nmtan_status status = nt_weld_mesh(mesh, solve->corner_count, &room, &weld);
+	nmtan_status status = nt_weld_mesh(mesh, solve->corner_count, ranges, &room, &weld);
 	if (solve->passed)
 		solve->passed(solve->user, NT_PART_ATTRIBUTES);
 	if (solve->timing)

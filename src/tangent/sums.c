@@ -31,7 +31,7 @@
 #include "topology/corners.h"
 
 /* Below that, starting a thread costs more than it saves. */
-enum { TRIANGLE_GRAIN = 32768, BLOCK_GRAIN = 2048, MOST_RANGES = UINT16_MAX };
+enum { TRIANGLE_GRAIN = 32768, WELD_GRAIN = 3 * 65536, BLOCK_GRAIN = 2048, MOST_RANGES = UINT16_MAX };
 
 /* Triangles by which the results of a scattered mesh are asked for before they are written. */
 enum { WRITE_AHEAD = 16 };
@@ -121,7 +121,8 @@ static nmtan_status weld_any_size(nt_sums *s, nt_room *room)
 {
 	const nt_solve *solve = s->solve;
 	if (solve->corner_count < NT_WELD_LIMIT && solve->mesh->vertex_count < NT_WELD_LIMIT)
-		return nt_weld_mesh(solve->mesh, solve->corner_count, room, &s->weld);
+		return nt_weld_mesh(solve->mesh, solve->corner_count,
+			nt_parallel_slots(solve->threads, solve->corner_count, WELD_GRAIN), room, &s->weld);
 	uint32_t *ids = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *ids);
 	nt_weld_row *rows = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *rows);
 	if (!ids || !rows)

@@ -28,8 +28,14 @@ typedef struct nt_weld {
 
 /*
  * Welds the corners of a mesh whose strides are filled in and whose indices are checked. Memory comes
- * from the room. Linear time. Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ * from the room. Linear time.
+ *
+ *   ranges   threads to use, at least 1; they pay from about 65536 triangles each. The result does not
+ *            depend on them.
+ *
+ * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */
-nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, nt_room *room, nt_weld *weld);
+nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_room *room,
+	nt_weld *weld);
 
 #endif

@@ -1,0 +1,241 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The weld of the fast path against nt_weld_corners(), which is the definition: on every number of threads the
+ * same corners are one vertex. What one thread makes is what all make, byte for byte.
+ */
+#include "test.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "topology/corners.h"
+#include "topology/weld.h"
+
+static const unsigned thread_counts[] = {1, 2, 3, 8};
+enum { THREAD_COUNTS = 4 };
+
+typedef float vertex_row[8];
+
+static nmtan_mesh mesh_of(const vertex_row *rows, size_t vertices, const uint32_t *indices, size_t corners)
+{
+	return (nmtan_mesh){.face_count = corners / 3, .vertex_count = vertices, .indices = indices,
+		.positions = rows[0], .position_stride_bytes = 32, .normals = rows[0] + 3,
+		.normal_stride_bytes = 32, .texcoords = rows[0] + 6, .texcoord_stride_bytes = 32};
+}
+
+/* Whether two numberings of corners have the same classes: each number of one always meets one of the other. */
+static void assert_same_classes(const uint32_t *a, const uint32_t *b, size_t corners, size_t count)
+{
+	uint32_t *of = malloc(2 * count * sizeof *of);
+	memset(of, 0xff, 2 * count * sizeof *of);
+	for (size_t c = 0; c < corners; c++) {
+		assert_in_range(a[c], 0, count - 1);
+		assert_in_range(b[c], 0, count - 1);
+		uint32_t *there = &of[a[c]], *back = &of[count + b[c]];
+		if (*there == UINT32_MAX && *back == UINT32_MAX)
+			*there = b[c], *back = a[c];
+		assert_int_equal(*there, b[c]);
+		assert_int_equal(*back, a[c]);
+	}
+	free(of);
+}
+
+/* Each corner's row of the weld is that of its vertex, as floats. */
+static void assert_rows(const nt_weld *weld, const nmtan_mesh *mesh, size_t corners)
+{
+	for (size_t c = 0; c < corners; c++) {
+		const size_t v = nt_vertex_of(mesh, c);
+		const nt_weld_row *row = &weld->rows[weld->ids[c]];
+		for (int i = 0; i < 8; i++) {
+			const float expected = nt_position(mesh, v)[i];
+			const float found = ((const float *)row)[i];
+			assert_true(found == expected || (isnan(found) && isnan(expected)));
+		}
+	}
+}
+
+/* Welds on every number of threads; `room_bytes` are lent. */
+static void check(const nmtan_mesh *mesh, size_t corners, size_t room_bytes)
+{
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	uint32_t *expected = nt_scratch_alloc(&scratch, corners, sizeof *expected);
+	size_t count;
+	assert_int_equal(nt_weld_corners(mesh, corners, &scratch, expected, &count), NMTAN_OK);
+	nt_weld first = {0};
+	for (int i = 0; i < THREAD_COUNTS; i++) {
+		nt_room room = nt_room_over(nt_scratch_alloc(&scratch, room_bytes, 1), room_bytes, &scratch);
+		nt_weld weld;
+		assert_int_equal(nt_weld_mesh(mesh, corners, thread_counts[i], &room, &weld), NMTAN_OK);
+		assert_rows(&weld, mesh, corners);
+		if (i == 0) {
+			first = weld;
+			/* the definition numbers used vertices only */
+			if (!mesh->indices)
+				assert_int_equal(weld.count, count);
+			assert_true(weld.count >= count);
+			assert_same_classes(weld.ids, expected, corners, weld.count);
+			continue;
+		}
+		assert_int_equal(weld.count, first.count);
+		assert_memory_equal(weld.ids, first.ids, corners * sizeof *weld.ids);
+		assert_memory_equal(weld.rows, first.rows, weld.count * sizeof *weld.rows);
+	}
+	nt_scratch_free(&scratch);
+}
+
+static uint32_t next_random(uint32_t *state)
+{
+	*state = *state * 1664525u + 1013904223u;
+	return *state >> 8;
+}
+
+/* Rows of `kinds` values; the more there are the fewer are equal. */
+static vertex_row *random_rows(size_t count, uint32_t kinds, float odd)
+{
+	vertex_row *rows = malloc(count * sizeof *rows);
+	uint32_t state = 1 + kinds;
+	for (size_t i = 0; i < count; i++) {
+		const uint32_t kind = next_random(&state) % kinds;
+		memcpy(rows[i], (float[8]){(float)kind, 0, 1, 0, 0, 1, (float)(kind % 7), 3}, sizeof *rows);
+		if (next_random(&state) % 9 == 0)
+			rows[i][next_random(&state) % 2 ? 1 : 3] = odd;
+	}
+	return rows;
+}
+
+static void corners_weld_alike_on_all_threads(void **state)
+{
+	(void)state;
+	enum { COUNT = 9000 };
+	/* from nearly one row to nearly all different, which the first table does not hold; -0 is 0 */
+	static const uint32_t kinds[] = {1, 5, 1500, 4000, 1 << 24};
+	for (int k = 0; k < 5; k++)
+		for (int odd = 0; odd < 2; odd++) {
+			vertex_row *rows = random_rows(COUNT, kinds[k], odd ? NAN : -0.0f);
+			const nmtan_mesh mesh = mesh_of(rows, COUNT, NULL, COUNT);
+			check(&mesh, COUNT, 0);
+			check(&mesh, COUNT, COUNT * 48);
+			free(rows);
+		}
+}
+
+static void vertices_weld_alike_on_all_threads(void **state)
+{
+	(void)state;
+	enum { VERTICES = 5000, CORNERS = 9000 };
+	static const uint32_t kinds[] = {1, 5, 1500, 4000, 1 << 24};
+	uint32_t indices[CORNERS], random = 7;
+	for (int k = 0; k < 5; k++)
+		for (int odd = 0; odd < 2; odd++) {
+			vertex_row *rows = random_rows(VERTICES, kinds[k], odd ? NAN : -0.0f);
+			for (size_t c = 0; c < CORNERS; c++)
+				indices[c] = next_random(&random) % VERTICES;
+			const nmtan_mesh mesh = mesh_of(rows, VERTICES, indices, CORNERS);
+			check(&mesh, CORNERS, 0);
+			check(&mesh, CORNERS, CORNERS * 16);
+			free(rows);
+		}
+}
+
+/* Two corners for three vertices and more: the weld goes by corner. */
+static void few_of_many_vertices_weld_alike(void **state)
+{
+	(void)state;
+	enum { VERTICES = 5000, CORNERS = 900 };
+	uint32_t indices[CORNERS], random = 7;
+	vertex_row *rows = random_rows(VERTICES, 300, -0.0f);
+	for (size_t c = 0; c < CORNERS; c++)
+		indices[c] = next_random(&random) % VERTICES;
+	const nmtan_mesh mesh = mesh_of(rows, VERTICES, indices, CORNERS);
+	check(&mesh, CORNERS, CORNERS * 16);
+	free(rows);
+}
+
+static void without_doubles_the_indices_of_the_mesh_are_the_numbers(void **state)
+{
+	(void)state;
+	enum { VERTICES = 3000 };
+	vertex_row *rows = calloc(VERTICES, sizeof *rows);
+	uint32_t indices[VERTICES];
+	for (size_t i = 0; i < VERTICES; i++) {
+		rows[i][0] = (float)i;
+		indices[i] = (uint32_t)(VERTICES - 1 - i);
+	}
+	const nmtan_mesh mesh = mesh_of(rows, VERTICES, indices, VERTICES);
+	for (int i = 0; i < THREAD_COUNTS; i++) {
+		nt_scratch scratch;
+		nt_scratch_init(&scratch, NULL);
+		nt_room room = nt_room_over(NULL, 0, &scratch);
+		nt_weld weld;
+		assert_int_equal(nt_weld_mesh(&mesh, VERTICES, thread_counts[i], &room, &weld), NMTAN_OK);
+		assert_ptr_equal(weld.ids, indices);
+		assert_int_equal(weld.count, VERTICES);
+		assert_memory_equal(weld.rows, rows, VERTICES * sizeof *rows);
+		nt_scratch_free(&scratch);
+	}
+	free(rows);
+}
+
+typedef struct budget {
+	size_t allowed;
+} budget;
+
+static void *take_budget(void *user, size_t bytes)
+{
+	budget *b = user;
+	if (b->allowed == 0)
+		return NULL;
+	b->allowed--;
+	return malloc(bytes);
+}
+
+static void give_back(void *user, void *block, size_t bytes)
+{
+	(void)user;
+	(void)bytes;
+	free(block);
+}
+
+static void every_failed_allocation_is_told(void **state)
+{
+	(void)state;
+	enum { COUNT = 60000 };
+	static const uint32_t kinds[] = {5, 20000, 1 << 26};
+	for (int k = 0; k < 3; k++) {
+		vertex_row *rows = random_rows(COUNT, kinds[k], NAN);
+		uint32_t *indices = malloc(COUNT * sizeof *indices);
+		for (uint32_t c = 0; c < COUNT; c++)
+			indices[c] = c;
+		for (int i = 0; i < 4; i++) {
+			const nmtan_mesh mesh = mesh_of(rows, COUNT, i < 2 ? indices : NULL, COUNT);
+			nmtan_status status = NMTAN_ERROR_MEMORY;
+			size_t allowed = 0;
+			for (; status; allowed++) {
+				budget b = {allowed};
+				nt_scratch scratch;
+				nt_scratch_init(&scratch, &(nmtan_allocator){take_budget, give_back, &b});
+				nt_room room = nt_room_over(NULL, 0, &scratch);
+				nt_weld weld;
+				status = nt_weld_mesh(&mesh, COUNT, i % 2 ? 3 : 1, &room, &weld);
+				assert_true(status == NMTAN_OK || status == NMTAN_ERROR_MEMORY);
+				nt_scratch_free(&scratch);
+				assert_in_range(allowed, 0, 10);
+			}
+			assert_in_range(allowed, 3, 10);
+		}
+		free(rows);
+		free(indices);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(corners_weld_alike_on_all_threads),
+		cmocka_unit_test(vertices_weld_alike_on_all_threads),
+		cmocka_unit_test(few_of_many_vertices_weld_alike),
+		cmocka_unit_test(without_doubles_the_indices_of_the_mesh_are_the_numbers),
+		cmocka_unit_test(every_failed_allocation_is_told),
+	};
+	return cmocka_run_group_tests_name("topology/weld", tests, NULL, NULL);
+}
