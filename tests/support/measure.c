@@ -8,11 +8,21 @@
 #include <string.h>
 #include <time.h>
 
-double measure_seconds(void)
+static double seconds_of(clockid_t clock)
 {
 	struct timespec t;
-	clock_gettime(CLOCK_MONOTONIC, &t);
+	clock_gettime(clock, &t);
 	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+double measure_seconds(void)
+{
+	return seconds_of(CLOCK_MONOTONIC);
+}
+
+double measure_thread_seconds(void)
+{
+	return seconds_of(CLOCK_THREAD_CPUTIME_ID);
 }
 
 double measure_degrees(const float *tangent, const double *exact)

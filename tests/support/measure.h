@@ -11,6 +11,9 @@
 /* Seconds of the wall's clock. */
 double measure_seconds(void);
 
+/* Seconds that this thread has had a processor: what else the machine does matters less. */
+double measure_thread_seconds(void);
+
 /* The angle in degrees between a tangent and an exact direction; 180 where it is none. */
 double measure_degrees(const float *tangent, const double *exact);
 
