@@ -497,20 +497,20 @@ static bool merge_members(merging *m, const nt_scene *scene, const uint32_t *mem
 	return true;
 }
 
-/* A component's only solved mesh; NULL where there are several, or where rows are more than its split. */
+/* A component's only solved mesh, which others may be the same as; NULL where there are several, or where rows
+ * are more than its split. */
 static const nt_mesh *lone_mesh(const nt_gltf_rows *rows, const nt_scene *scene, const uint32_t *members,
-	size_t member_count, size_t *member)
+	size_t member_count)
 {
 	const nt_mesh *lone = NULL;
 	for (size_t i = 0; i < member_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[members[i]];
-		if (rows->group_of[i] == NT_NONE)
+		if (rows->group_of[i] == NT_NONE || (lone && mesh->same_as == lone))
 			continue;
 		if (lone || mesh->normals_made || mesh->morph_count ||
 			mesh->vertex_count != mesh->source_vertex_count)
 			return NULL;
 		lone = mesh;
-		*member = i;
 	}
 	return lone;
 }
@@ -528,8 +528,7 @@ static uint32_t *split_triangles(const nt_mesh *mesh, nt_arena *arena)
 
 /* Rows of a mesh that shares nothing: its split as it stands, borrowed from the scene. Merging would come
  * to the same in a fifth of the time that the whole conversion of a million triangles takes. */
-static bool borrow_rows(nt_gltf_rows *rows, const nt_mesh *mesh, size_t member, size_t member_count,
-	nt_arena *arena)
+static bool borrow_rows(nt_gltf_rows *rows, const nt_mesh *mesh, size_t member_count, nt_arena *arena)
 {
 	rows->new_count = rows->old_count + mesh->split.source_count;
 	rows->sources = mesh->split.sources;
@@ -542,13 +541,13 @@ static bool borrow_rows(nt_gltf_rows *rows, const nt_mesh *mesh, size_t member, 
 	rows->tangents[0] = mesh->split.vertex_tangents;
 	rows->normals[0] = NULL;
 	rows->morphs[0] = NULL;
+	uint32_t *triangles = split_triangles(mesh, arena);
 	for (size_t i = 0; i < member_count; i++) {
-		rows->indices[i] = NULL;
-		rows->changed[i] = false;
+		const bool solved = rows->group_of[i] != NT_NONE;
+		rows->indices[i] = solved ? triangles : NULL;
+		rows->changed[i] = solved && mesh->split.source_count > 0;
 	}
-	rows->indices[member] = split_triangles(mesh, arena);
-	rows->changed[member] = mesh->split.source_count > 0;
-	return rows->indices[member] != NULL;
+	return triangles != NULL;
 }
 
 /* All meshes of a component have the same number of vertices in a sound document. */
@@ -587,11 +586,9 @@ nmtan_status nt_gltf_merge_rows(nt_gltf_rows *rows, const nt_gltf *document, con
 	nmtan_status status = check_counts(rows, scene, members, member_count, error);
 	if (status)
 		return status;
-	size_t member;
-	const nt_mesh *lone = lone_mesh(rows, scene, members, member_count, &member);
+	const nt_mesh *lone = lone_mesh(rows, scene, members, member_count);
 	if (lone)
-		return borrow_rows(rows, lone, member, member_count, arena) ? NMTAN_OK
-									     : nt_fail_memory(error);
+		return borrow_rows(rows, lone, member_count, arena) ? NMTAN_OK : nt_fail_memory(error);
 	merging m;
 	const bool merged = start_merging(&m, rows, scene, members, member_count) &&
 		merge_members(&m, scene, members, member_count, arena) && keep_rows(&m, arena);

@@ -271,6 +271,11 @@ d.json['materials'].append({'name': 'turned', 'normalTexture': {
     'index': 0, 'extensions': {'KHR_texture_transform': {'rotation': 0.5}}}})
 d.primitive(dict(shared), whole, targets=[dict(t) for t in moves], material=2)
 d.write('instanced_turned.gltf')
+# and without targets
+d.json['buffers'] = []
+d.json['meshes'][0]['primitives'] = [{k: v for k, v in p.items() if k != 'targets'}
+                                     for p in d.json['meshes'][0]['primitives'][:3]]
+d.write('instanced_still.gltf')
 
 # points without indices share the positions: these must keep their count
 d = Document()
