@@ -8,6 +8,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include "base/largest.h"
 
 enum { MODE_TRIANGLES = 4 };
 
@@ -43,15 +44,18 @@ static size_t tail_of(const nt_mesh *mesh, uint64_t mode, uint64_t old_count)
 static nmtan_status encode(nt_gltf_patcher *p, const nt_mesh *mesh, const uint32_t *indices, size_t tail,
 	uint32_t least, encoded *out)
 {
-	uint32_t highest = 0;
+	uint32_t highest = nt_largest(indices, mesh->corner_count, 1);
 	out->count = mesh->corner_count + tail;
-	for (size_t c = 0; c < mesh->corner_count; c++)
-		highest = indices[c] > highest ? indices[c] : highest;
 	for (size_t c = mesh->corner_count; c < out->count; c++)
 		highest = mesh->indices[c] > highest ? mesh->indices[c] : highest;
 	out->type = choose_type(highest, least);
 	out->width = nt_gltf_component_bytes(out->type);
 	out->size = out->count * out->width;
+	/* they live as long as the scene: nothing to be encoded */
+	if (out->width == sizeof *indices && tail == 0 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__) {
+		out->bytes = (const unsigned char *)indices;
+		return NMTAN_OK;
+	}
 	unsigned char *bytes = nt_arena_alloc(p->arena, out->count, out->width);
 	if (!bytes)
 		return nt_fail_memory(p->error);
