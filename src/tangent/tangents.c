@@ -183,6 +183,7 @@ nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *opt
 					    output, r.solve.scratch)
 				  : NMTAN_ERROR_MEMORY;
 	splitter.lazy = wanted->lazy_indices;
+	splitter.threads = r.solve.threads;
 	if (!status && r.solve.corner_count > 0)
 		status = solve_vertices(&r, &splitter, counts);
 	if (!status)

@@ -167,6 +167,20 @@ static void touch_triangles(void *context, size_t begin, size_t end, unsigned sl
 			seen[nt_vertex_of(mesh, 3 * t + 2)]);
 }
 
+/* The next touched triangle from t on; the number of triangles: none. Most are not, eight a step. */
+static size_t next_touched(const vertex_split *job, size_t t)
+{
+	const size_t count = job->solve->mesh->face_count;
+	uint64_t eight;
+	while (t < count && !job->touched[t]) {
+		const bool skips = count - t >= sizeof eight;
+		if (skips)
+			memcpy(&eight, job->touched + t, sizeof eight);
+		t += skips && !eight ? sizeof eight : 1;
+	}
+	return t;
+}
+
 /* The corners at open vertices, in order. */
 static nmtan_status split_open(vertex_split *job)
 {
@@ -176,8 +190,8 @@ static nmtan_status split_open(vertex_split *job)
 		return NMTAN_ERROR_MEMORY;
 	nt_parallel_ranges(solve->threads, solve->mesh->face_count, VERTEX_GRAIN, touch_triangles, job);
 	nmtan_status status = NMTAN_OK;
-	for (size_t t = 0; !status && t < solve->mesh->face_count; t++)
-		for (size_t i = 3 * t; !status && job->touched[t] && i < 3 * t + 3; i++)
+	for (size_t t = next_touched(job, 0); !status && t < solve->mesh->face_count; t = next_touched(job, t + 1))
+		for (size_t i = 3 * t; !status && i < 3 * t + 3; i++)
 			status = nt_splitter_take(job->splitter,
 				(uint32_t)nt_vertex_of(solve->mesh, i), corner_tangent(solve, t, i), i);
 	return status;

@@ -11,9 +11,12 @@
 
 #include <string.h>
 #include "base/dvec.h"
+#include "base/parallel.h"
 #include "topology/corners.h"
 
 #define NO_COPY UINT32_MAX
+
+enum { COPY_GRAIN = 1 << 18 }; /* indices per thread below which threads do not pay */
 
 static nt_tangent_key make_key(const float *tangent)
 {
@@ -116,16 +119,24 @@ nmtan_status nt_splitter_begin(nt_splitter *s, const nmtan_mesh *mesh, size_t co
 	return NMTAN_OK;
 }
 
+static void copy_range(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	const nt_splitter *s = context;
+	uint32_t *to = s->output->indices;
+	const uint32_t *from = s->mesh->indices;
+	if (from)
+		memcpy(to + begin, from + begin, (end - begin) * sizeof *to);
+	for (size_t c = begin; !from && c < end; c++)
+		to[c] = (uint32_t)c;
+}
+
 /* The mesh's indices, to be changed where corners move to copies. */
 static void copy_indices(nt_splitter *s)
 {
-	uint32_t *to = s->output->indices;
-	const uint32_t *from = s->mesh->indices;
 	s->indexed = true;
-	if (from && from != to)
-		memcpy(to, from, s->corner_count * sizeof *to);
-	for (size_t c = 0; !from && c < s->corner_count; c++)
-		to[c] = (uint32_t)c;
+	if (s->mesh->indices != s->output->indices)
+		nt_parallel_ranges(s->threads, s->corner_count, COPY_GRAIN, copy_range, s);
 }
 
 nmtan_status nt_splitter_differs(nt_splitter *s, uint32_t vertex, const float *tangent, size_t corner)

@@ -26,6 +26,7 @@ typedef struct nt_splitter {
 	nmtan_split_output *output;
 	nt_scratch *scratch;
 	size_t corner_count;
+	unsigned threads;       /* that copy the indices; 0 is 1 */
 	bool lazy;              /* output->indices is left alone when no vertex is split */
 	bool indexed;           /* output->indices holds the mesh's indices */
 	float *tangents;        /* [vertex_count][4] of the vertices' first corners */
