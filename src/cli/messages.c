@@ -224,6 +224,7 @@ const char *nt_stage_name(nt_stage stage)
 	static const char *const names[NT_STAGE_COUNT] = {
 		[NT_STAGE_MAP] = "map",
 		[NT_STAGE_PARSE] = "parse",
+		[NT_STAGE_INDEX] = "index",
 		[NT_STAGE_DECODE] = "decode",
 		[NT_STAGE_NORMALS] = "normals",
 		[NT_STAGE_WELD] = "weld",

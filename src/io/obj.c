@@ -21,6 +21,7 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/clock.h"
 #include "base/parallel.h"
 
 enum {
@@ -290,8 +291,10 @@ nmtan_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_err
 		status = join(&file, error);
 	if (!status)
 		status = obj_read_events(&file, options, error);
+	const double begin = nt_seconds();
 	if (!status)
 		status = obj_make_vertices(&file, error);
+	scene->index_seconds = nt_seconds() - begin;
 	if (!status)
 		status = obj_make_meshes(&file, error);
 	if (!status && scene->findings.failed)

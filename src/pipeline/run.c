@@ -98,7 +98,11 @@ static nmtan_status open_scene(run *r)
 		return nt_fail(r->error, NMTAN_ERROR_INPUT,
 			"not recognised: expected OBJ, PLY, glTF or GLB");
 	r->scene.format = r->reader->format;
-	return r->reader->open(&r->scene, &r->read_options, r->error);
+	status = r->reader->open(&r->scene, &r->read_options, r->error);
+	end_stage(r);
+	r->summary->seconds[NT_STAGE_INDEX] += r->scene.index_seconds;
+	r->summary->seconds[NT_STAGE_PARSE] -= r->scene.index_seconds;
+	return status;
 }
 
 static bool is_wanted(const nt_mesh *mesh)

@@ -16,6 +16,7 @@ typedef enum nt_normals { NT_NORMALS_AUTO, NT_NORMALS_FLAT, NT_NORMALS_SMOOTH } 
 typedef enum nt_stage {
 	NT_STAGE_MAP,
 	NT_STAGE_PARSE,
+	NT_STAGE_INDEX,    /* corners with indices of their own become vertices: OBJ */
 	NT_STAGE_DECODE,
 	NT_STAGE_NORMALS,
 	NT_STAGE_WELD,     /* weld and split of large meshes; small ones count as tangents */

@@ -185,6 +185,7 @@ typedef struct nt_scene {
 	uint64_t (*read_of_source)(const void *source); /* bytes of the input and its files that were read, as far as
 	                                                   the reader knows; NULL: all of the input */
 	void (*unmap)(struct nt_scene *scene); /* releases the mapped input; NULL: none */
+	double index_seconds; /* of open(), spent on making vertices of corners; --timing shows them apart */
 	const unsigned char *bytes;
 	size_t byte_count;
 	const struct nt_file *file; /* the file of these bytes, to stream from; NULL: only the bytes are there */
