@@ -45,7 +45,7 @@ typedef struct complex {
 	size_t group_count;
 	uint32_t *group_begin; /* [group_count + 1] */
 	uint32_t *members;   /* [corner_count] places by group, ascending */
-	slot *slots;         /* [corner_count] */
+	slot *slots;         /* [corner_count] until the halves of quads meet; NULL: written at once */
 	member *room;        /* [size of the largest group] */
 } complex;
 
@@ -424,6 +424,21 @@ static bool whole_group_belongs(const complex *c, const member *members, size_t 
 	return true;
 }
 
+static void write_slot(const nt_solve *solve, size_t corner, const slot *s, float sign)
+{
+	memcpy(solve->tangents + 4 * corner, (float[4]){s->os.x, s->os.y, s->os.z, sign}, 4 * sizeof(float));
+	if (solve->bitangents)
+		memcpy(solve->bitangents + 3 * corner, (float[3]){s->ot.x, s->ot.y, s->ot.z},
+			3 * sizeof(float));
+	if (solve->magnitudes)
+		memcpy(solve->magnitudes + 2 * corner, (float[2]){s->mag_s, s->mag_t}, 2 * sizeof(float));
+}
+
+static float group_sign(const complex *c, uint32_t place)
+{
+	return c->fast->flags[triangle_of(c, place)] & NT_TRIANGLE_ORIENT ? 1.0f : -1.0f;
+}
+
 static void solve_group(complex *c, size_t g)
 {
 	const uint32_t *places = c->members + c->group_begin[g];
@@ -432,9 +447,14 @@ static void solve_group(complex *c, size_t g)
 		c->room[i] = solve_corner(c, places[i]);
 	const slot whole = average(c, c->room, count, NULL);
 	const bool one = no_split(c->room, count);
-	for (size_t i = 0; i < count; i++)
-		c->slots[places[i]] = one || whole_group_belongs(c, c->room, count, &c->room[i])
+	for (size_t i = 0; i < count; i++) {
+		const slot result = one || whole_group_belongs(c, c->room, count, &c->room[i])
 			? whole : average(c, c->room, count, &c->room[i]);
+		if (c->slots)
+			c->slots[places[i]] = result;
+		else
+			write_slot(c->fast->solve, c->items[places[i]], &result, group_sign(c, places[i]));
+	}
 }
 
 static nmtan_status solve_groups(complex *c)
@@ -445,8 +465,10 @@ static nmtan_status solve_groups(complex *c)
 		return status;
 	nt_scratch *scratch = c->fast->solve->scratch;
 	c->room = nt_scratch_alloc(scratch, largest, sizeof *c->room);
-	c->slots = nt_scratch_alloc(scratch, c->corner_count, sizeof *c->slots);
-	if (!c->room || !c->slots)
+	/* a corner of a triangle has one result, which need not wait: 32 bytes for each corner at a hub */
+	if (c->fast->corners)
+		c->slots = nt_scratch_alloc(scratch, c->corner_count, sizeof *c->slots);
+	if (!c->room || (c->fast->corners && !c->slots))
 		return NMTAN_ERROR_MEMORY;
 	for (size_t g = 0; g < c->group_count; g++)
 		solve_group(c, g);
@@ -468,21 +490,6 @@ static slot merge_slots(slot a, slot b)
 	return (slot){nt_vec3_normalise_safe(nt_vec3_add(a.os, b.os)),
 		nt_vec3_normalise_safe(nt_vec3_add(a.ot, b.ot)), 0.5f * (a.mag_s + b.mag_s),
 		0.5f * (a.mag_t + b.mag_t)};
-}
-
-static void write_slot(const nt_solve *solve, size_t corner, const slot *s, float sign)
-{
-	memcpy(solve->tangents + 4 * corner, (float[4]){s->os.x, s->os.y, s->os.z, sign}, 4 * sizeof(float));
-	if (solve->bitangents)
-		memcpy(solve->bitangents + 3 * corner, (float[3]){s->ot.x, s->ot.y, s->ot.z},
-			3 * sizeof(float));
-	if (solve->magnitudes)
-		memcpy(solve->magnitudes + 2 * corner, (float[2]){s->mag_s, s->mag_t}, 2 * sizeof(float));
-}
-
-static float group_sign(const complex *c, uint32_t place)
-{
-	return c->fast->flags[triangle_of(c, place)] & NT_TRIANGLE_ORIENT ? 1.0f : -1.0f;
 }
 
 /* Writes the corner at `place`, and at `other` (NONE: there is none), the other half's corner of the same face
@@ -510,7 +517,8 @@ static void write_corners(const complex *c)
 		for (uint32_t place = c->begin[v]; place < c->begin[v + 1]; place++) {
 			const bool paired = c->fast->corners && place + 1 < c->begin[v + 1] &&
 				c->fast->corners[c->items[place]] == c->fast->corners[c->items[place + 1]];
-			write_place(c, place, paired ? place + 1 : NONE);
+			if (c->slots || c->group[place] == NONE)
+				write_place(c, place, paired ? place + 1 : NONE);
 			place += paired;
 		}
 	}
