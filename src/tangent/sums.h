@@ -45,10 +45,11 @@ typedef struct nt_later {
 /* What 16 triangles add, and what they are. */
 typedef struct nt_sum_block {
 	double add[3][4][NT_SUM_LANES]; /* corner, double of its nt_vertex_sum */
-	int64_t sign[NT_SUM_LANES];     /* exact orientation; only where not hard */
-	int64_t plain[NT_SUM_LANES];    /* has area in space and UV, and weight at each corner */
-	int64_t hard[NT_SUM_LANES];     /* nothing is known: frames.c must do it */
-	int64_t certain[NT_SUM_LANES];  /* the sign is that of the stored coordinates too */
+	double sign[NT_SUM_LANES];      /* exact orientation; only where not hard */
+	/* flags, 0 or not */
+	double plain[NT_SUM_LANES];     /* has area in space and UV, and weight at each corner */
+	double hard[NT_SUM_LANES];      /* nothing is known: frames.c must do it */
+	double certain[NT_SUM_LANES];   /* the sign is that of the stored coordinates too */
 } nt_sum_block;
 
 typedef struct nt_sums {

@@ -34,8 +34,9 @@ typedef struct sum_lanes {
 	double length[3][NT_SUM_LANES]; /* of edges */
 	double normals[NT_SUM_LANES];   /* product of the normals' squares; > 0: all are there */
 	double weight[NT_SUM_LANES];    /* the least sensitivity of the corners */
-	int64_t u_cancels[NT_SUM_LANES], across_cancels[NT_SUM_LANES], tie[NT_SUM_LANES];
-	int64_t determinant_cancels[NT_SUM_LANES];
+	/* 0 or 1: a second look is needed */
+	double u_cancels[NT_SUM_LANES], across_cancels[NT_SUM_LANES], tie[NT_SUM_LANES];
+	double determinant_cancels[NT_SUM_LANES];
 } sum_lanes;
 
 LANE_INLINE double lane_larger(double a, double b)
@@ -48,16 +49,19 @@ LANE_INLINE double lane_largest(double x, double y, double z)
 	return lane_larger(fabs(x), lane_larger(fabs(y), fabs(z)));
 }
 
-/* nt_is_difference() without a branch. */
-LANE_INLINE int64_t lane_is_difference(double d, double a, double b)
+/* Flags are doubles, 0 or 1: SSE2 has no comparison of 64-bit integers. */
+#define FLAG(condition) ((condition) ? 1.0 : 0.0)
+
+/* Zero where nt_is_difference() holds. */
+LANE_INLINE double lane_inexact(double d, double a, double b)
 {
-	return (int64_t)(d + a == b) & (int64_t)(b - d == a);
+	return fabs((d + a) - b) + fabs((b - d) - a);
 }
 
-LANE_INLINE int64_t lane_cancels(double most, nt_dvec3 p, nt_dvec3 q, nt_dvec3 d)
+LANE_INLINE double lane_cancels(double most, nt_dvec3 p, nt_dvec3 q, nt_dvec3 d)
 {
-	return most * lane_largest(d.x, d.y, d.z) <
-	       lane_larger(lane_largest(p.x, p.y, p.z), lane_largest(q.x, q.y, q.z));
+	return FLAG(most * lane_largest(d.x, d.y, d.z) <
+		    lane_larger(lane_largest(p.x, p.y, p.z), lane_largest(q.x, q.y, q.z)));
 }
 
 LANE_INLINE nt_dvec3 lane_load(const double (*from)[NT_SUM_LANES], int i)
@@ -88,41 +92,41 @@ static void __attribute__((noinline)) sum_frames(sum_lanes *restrict l, nt_sum_b
 		const nt_dvec3 e0 = nt_dvec3_sub(p1, p0), e1 = nt_dvec3_sub(p2, p1), e2 = nt_dvec3_sub(p0, p2);
 		const nt_dvec3 d2 = nt_dvec3_scale(-1.0, e2);
 		const double bu = u1 - u0, bv = v1 - v0, cu = u2 - u0, cv = v2 - v0;
-		const int64_t exact_uv = lane_is_difference(bu, u0, u1) & lane_is_difference(bv, v0, v1) &
-					 lane_is_difference(cu, u0, u2) & lane_is_difference(cv, v0, v2);
-		const int64_t exact = exact_uv & lane_is_difference(e0.x, p0.x, p1.x) &
-			lane_is_difference(e0.y, p0.y, p1.y) & lane_is_difference(e0.z, p0.z, p1.z) &
-			lane_is_difference(d2.x, p0.x, p2.x) & lane_is_difference(d2.y, p0.y, p2.y) &
-			lane_is_difference(d2.z, p0.z, p2.z);
-		const int64_t finite = fabs(e0.x) + fabs(e0.y) + fabs(e0.z) + fabs(d2.x) + fabs(d2.y) + fabs(d2.z) +
-				       fabs(bu) + fabs(bv) + fabs(cu) + fabs(cv) < SUM_HUGE;
+		const double inexact_uv = lane_inexact(bu, u0, u1) + lane_inexact(bv, v0, v1) +
+					  lane_inexact(cu, u0, u2) + lane_inexact(cv, v0, v2);
+		const double inexact = inexact_uv + lane_inexact(e0.x, p0.x, p1.x) + lane_inexact(e0.y, p0.y, p1.y) +
+			lane_inexact(e0.z, p0.z, p1.z) + lane_inexact(d2.x, p0.x, p2.x) +
+			lane_inexact(d2.y, p0.y, p2.y) + lane_inexact(d2.z, p0.z, p2.z);
+		const double exact_uv = FLAG(inexact_uv == 0.0), exact = FLAG(inexact == 0.0);
+		const double sum = fabs(e0.x) + fabs(e0.y) + fabs(e0.z) + fabs(d2.x) + fabs(d2.y) + fabs(d2.z) +
+				   fabs(bu) + fabs(bv) + fabs(cu) + fabs(cv);
 
 		const double left = bu * cv, right = bv * cu, difference = fabs(left - right);
 		const double larger = lane_larger(fabs(left), fabs(right));
-		const int64_t flat = (int64_t)(left == 0.0) & (int64_t)(right == 0.0);
-		const int64_t tie = exact_uv & (int64_t)(left == right) & (flat ^ 1);
-		const int64_t apart = (int64_t)(NT_CANCELLATION_INEXACT * difference >= larger);
-		const int64_t known = flat | exact_uv | apart;
+		const double some = FLAG(larger > 0.0), uneven = FLAG(difference > 0.0);
+		const double tie = exact_uv * some * (1.0 - uneven);
+		const double apart = FLAG(NT_CANCELLATION_INEXACT * difference >= larger);
 
 		const nt_dvec3 up = nt_dvec3_scale(cv, e0), uq = nt_dvec3_scale(bv, d2), u = nt_dvec3_sub(up, uq);
 		const nt_dvec3 ap = {e0.y * d2.z, e0.z * d2.x, e0.x * d2.y};
 		const nt_dvec3 aq = {e0.z * d2.y, e0.x * d2.z, e0.y * d2.x};
 		const nt_dvec3 across = nt_dvec3_sub(ap, aq);
-		const double most = exact ? NT_CANCELLATION : NT_CANCELLATION_INEXACT;
-		const int64_t u_cancels = lane_cancels(most, up, uq, u);
-		const int64_t across_cancels = lane_cancels(most, ap, aq, across);
+		const double most = inexact == 0.0 ? NT_CANCELLATION : NT_CANCELLATION_INEXACT;
+		const double u_cancels = lane_cancels(most, up, uq, u);
+		const double across_cancels = lane_cancels(most, ap, aq, across);
 
 		l->tie[i] = tie;
 		l->determinant[i] = difference;
-		l->determinant_cancels[i] = exact_uv & (int64_t)(NT_CANCELLATION * difference < larger);
-		l->u_cancels[i] = u_cancels & exact;
-		l->across_cancels[i] = across_cancels & exact;
-		block->hard[i] = (finite ^ 1) | (known ^ 1) |
-				 ((flat ^ 1) & (exact ^ 1) & (u_cancels | across_cancels));
+		l->determinant_cancels[i] = exact_uv * FLAG(NT_CANCELLATION * difference < larger);
+		l->u_cancels[i] = u_cancels * exact;
+		l->across_cancels[i] = across_cancels * exact;
+		/* not finite; a sign in doubt; inexact and cancelling */
+		block->hard[i] = FLAG(!(sum < SUM_HUGE)) + (1.0 - exact_uv) * (1.0 - apart) +
+				 some * (1.0 - exact) * (u_cancels + across_cancels);
 		l->sign[i] = left > right ? 1.0 : left < right ? -1.0 : 0.0;
 		/* storing moves each v by u |v + offset| at most, u = 2^-24, an edge by twice that */
-		block->certain[i] = slack * ((fabs(v0) + fabs(v1) + fabs(v2) + offset) * (fabs(bu) + fabs(cu))) <=
-				    difference;
+		block->certain[i] = FLAG(slack * ((fabs(v0) + fabs(v1) + fabs(v2) + offset) * (fabs(bu) + fabs(cu))) <=
+					 difference);
 		l->uv[0][i] = bu, l->uv[1][i] = bv, l->uv[2][i] = cu, l->uv[3][i] = cv;
 		lane_store(l->edge[0], i, e0);
 		lane_store(l->edge[1], i, e1);
@@ -155,14 +159,14 @@ static void __attribute__((noinline)) sum_cancelled(sum_lanes *restrict l, nt_su
 		for (int c = 0; c < 3; c++) {
 			const double uc = c == 0 ? u.x : c == 1 ? u.y : u.z;
 			const double ac = c == 0 ? across.x : c == 1 ? across.y : across.z;
-			l->u[c][i] = l->u_cancels[i] ? uc : l->u[c][i];
-			l->across[c][i] = l->across_cancels[i] ? ac : l->across[c][i];
+			l->u[c][i] = l->u_cancels[i] != 0.0 ? uc : l->u[c][i];
+			l->across[c][i] = l->across_cancels[i] != 0.0 ? ac : l->across[c][i];
 		}
 		const double determinant = fabs(lane_product_difference(bu, cv, bv, cu));
-		l->determinant[i] = l->determinant_cancels[i] ? determinant : l->determinant[i];
+		l->determinant[i] = l->determinant_cancels[i] != 0.0 ? determinant : l->determinant[i];
 		const double rest = fma(bu, cv, -(bu * cv)) - fma(bv, cu, -(bv * cu));
 		const double sign = rest > 0.0 ? 1.0 : rest < 0.0 ? -1.0 : 0.0;
-		l->sign[i] = l->tie[i] ? sign : l->sign[i];
+		l->sign[i] = l->tie[i] != 0.0 ? sign : l->sign[i];
 	}
 }
 #else
@@ -170,7 +174,7 @@ static void __attribute__((noinline)) sum_cancelled(sum_lanes *restrict l, nt_su
 static void sum_cancelled(sum_lanes *restrict l, nt_sum_block *restrict block)
 {
 	LANES(i)
-		block->hard[i] |= l->u_cancels[i] | l->across_cancels[i] | l->tie[i] | l->determinant_cancels[i];
+		block->hard[i] += l->u_cancels[i] + l->across_cancels[i] + l->tie[i] + l->determinant_cancels[i];
 }
 #endif
 
@@ -187,7 +191,7 @@ LANE_INLINE void sum_lengths(sum_lanes *restrict l, nt_sum_block *restrict block
 			l->length[k][i] = nt_measure_edge(lane_load(l->edge[k], i), by_area);
 		l->normals[i] = 1.0;
 		l->weight[i] = INFINITY;
-		block->sign[i] = (int64_t)(l->sign[i] > 0.0) - (int64_t)(l->sign[i] < 0.0);
+		block->sign[i] = l->sign[i];
 	}
 }
 
@@ -219,9 +223,9 @@ LANE_INLINE void sum_corners(sum_lanes *restrict l, nt_sum_block *restrict block
 	sum_corner(l, block, 1, weight);
 	sum_corner(l, block, 2, weight);
 	LANES(i) {
-		block->hard[i] |= (int64_t)!(l->normals[i] > 0.0);
-		block->plain[i] = (block->hard[i] ^ 1) & (int64_t)(l->sign[i] != 0.0) &
-				  (int64_t)(l->across_length[i] > 0.0) & (int64_t)(l->weight[i] > 0.0);
+		block->hard[i] += FLAG(!(l->normals[i] > 0.0));
+		block->plain[i] = FLAG(block->hard[i] == 0.0) * FLAG(l->sign[i] != 0.0) *
+				  FLAG(l->across_length[i] > 0.0) * FLAG(l->weight[i] > 0.0);
 	}
 }
 
@@ -262,12 +266,13 @@ static void sum_solve(const nt_sums *s, size_t first, size_t count, sum_lanes *l
 	const double offset = s->solve->mesh->stored_v_offset;
 	sum_gather(s, first, count, l);
 	sum_frames(l, block, fabs(offset), offset != 0.0 ? 3 * 0x1p-24 : 0.0);
-	int64_t cancelled = 0;
+	const double asked = FLAG(s->weight == NT_WEIGHT_NONE);
+	double cancelled = 0.0;
 	LANES(i) {
-		l->determinant_cancels[i] &= -(int64_t)(s->weight == NT_WEIGHT_NONE);
-		cancelled |= l->u_cancels[i] | l->across_cancels[i] | l->tie[i] | l->determinant_cancels[i];
+		l->determinant_cancels[i] *= asked;
+		cancelled += l->u_cancels[i] + l->across_cancels[i] + l->tie[i] + l->determinant_cancels[i];
 	}
-	if (cancelled)
+	if (cancelled != 0.0)
 		sum_cancelled(l, block);
 	if (s->weight == NT_WEIGHT_AREA)
 		sum_corners_by_area(l, block);
@@ -279,8 +284,8 @@ static void sum_solve(const nt_sums *s, size_t first, size_t count, sum_lanes *l
 
 LANE_INLINE uint8_t sum_flags(const nt_sum_block *block, size_t i)
 {
-	return (uint8_t)((block->sign[i] > 0 ? NT_SUM_POSITIVE : 0) | (block->sign[i] == 0 ? NT_SUM_NONE : 0) |
-			 (block->plain[i] ? 0 : NT_SUM_SUSPECT));
+	return (uint8_t)((block->sign[i] > 0.0 ? NT_SUM_POSITIVE : 0) | (block->sign[i] == 0.0 ? NT_SUM_NONE : 0) |
+			 (block->plain[i] != 0.0 ? 0 : NT_SUM_SUSPECT));
 }
 
 /* Flags of the lanes, after hard ones have been done. */
@@ -288,23 +293,23 @@ static void sum_classify(const nt_sums *s, size_t first, size_t count, nt_sum_bl
 {
 	uint8_t *flags = s->flags + first;
 	const bool ask = s->solve->mesh->exact_texcoords;
-	int64_t odd = s->one_by_one;
+	double odd = s->one_by_one;
 	LANES(i)
-		odd |= block->hard[i] | (block->certain[i] ^ 1);
-	if (!odd && !s->corners && !ask) {
+		odd += block->hard[i] + (1.0 - block->certain[i]);
+	if (odd == 0.0 && !s->corners && !ask) {
 		for (size_t i = 0; i < count; i++)
 			flags[i] = sum_flags(block, i);
 		return;
 	}
 	for (size_t i = 0; i < count; i++) {
-		if (block->hard[i] || s->one_by_one)
+		if (block->hard[i] != 0.0 || s->one_by_one)
 			nt_sums_do_hard(s, first + i, (int)i, block);
 		flags[i] = (flags[i] & NT_SUM_SECOND) | sum_flags(block, i);
 	}
 	for (size_t i = 0; i < count; i++) {
 		const bool quad = i + 1 < count && (flags[i + 1] & NT_SUM_SECOND);
 		const bool differ = quad && ((flags[i] ^ flags[i + 1]) & (NT_SUM_POSITIVE | NT_SUM_NONE));
-		const bool doubtful = ask || !block->certain[i] || (quad && !block->certain[i + 1]);
+		const bool doubtful = ask || block->certain[i] == 0.0 || (quad && block->certain[i + 1] == 0.0);
 		if (differ || doubtful)
 			nt_sums_orient(s, first + i);
 		i += quad;
@@ -411,8 +416,8 @@ static size_t sum_accumulate(nt_sums *s, size_t begin, size_t end, unsigned rang
 typedef struct finish_lanes {
 	double sum[4][NT_SUM_LANES];
 	double normal[3][NT_SUM_LANES];
-	float tangent[3][NT_SUM_LANES];
-	uint8_t flags[NT_SUM_LANES];
+	double tangent[3][NT_SUM_LANES];
+	double flags[NT_SUM_LANES]; /* of NT_VERTEX_MET and its like, which are small numbers */
 } finish_lanes;
 
 static void __attribute__((noinline)) finish_solve(finish_lanes *restrict l)
@@ -427,17 +432,15 @@ static void __attribute__((noinline)) finish_solve(finish_lanes *restrict l)
 		const double squared = nt_dvec3_dot(sum, sum), bound = sensitivity * sensitivity;
 		const nt_dvec3 t = nt_dvec3_reject(n, sum);
 		const double length = nt_dvec3_dot(t, t);
-		const int64_t sound = (int64_t)(squared > NT_CANCELLED * NT_CANCELLED * bound) &
-				      (int64_t)(length > 0.0) & (int64_t)(length < SUM_HUGE * SUM_HUGE);
-		const int64_t well = (int64_t)(bound <= NT_WELL_CONDITIONED * NT_WELL_CONDITIONED * squared) & sound;
-		const int64_t met = (int64_t)(sensitivity > 0.0);
+		const double sound = FLAG(squared > NT_CANCELLED * NT_CANCELLED * bound) * FLAG(length > 0.0) *
+				     FLAG(length < SUM_HUGE * SUM_HUGE);
+		const double well = FLAG(bound <= NT_WELL_CONDITIONED * NT_WELL_CONDITIONED * squared) * sound;
+		const double met = FLAG(sensitivity > 0.0);
 		const double scale = nt_rsqrt(length);
-		/* no -0, whose sign would tell the path that was taken */
-		l->tangent[0][i] = sound ? (float)(scale * t.x) + 0.0f : 0.0f;
-		l->tangent[1][i] = sound ? (float)(scale * t.y) + 0.0f : 0.0f;
-		l->tangent[2][i] = sound ? (float)(scale * t.z) + 0.0f : 0.0f;
-		l->flags[i] = (uint8_t)((met ? NT_VERTEX_MET : 0) | (met & (sound ^ 1) ? NT_VERTEX_LOST : 0) |
-					(well ? 0 : NT_VERTEX_ILL));
+		l->tangent[0][i] = sound != 0.0 ? scale * t.x + 0.0 : 0.0;
+		l->tangent[1][i] = sound != 0.0 ? scale * t.y + 0.0 : 0.0;
+		l->tangent[2][i] = sound != 0.0 ? scale * t.z + 0.0 : 0.0;
+		l->flags[i] = NT_VERTEX_MET * met + NT_VERTEX_LOST * met * (1.0 - sound) + NT_VERTEX_ILL * (1.0 - well);
 	}
 }
 
@@ -477,11 +480,14 @@ static void sum_finish(const nt_sums *s, size_t begin, size_t end, nt_sums_finis
 			finish_load(s, side, first, count, &l);
 			finish_solve(&l);
 			for (size_t i = 0; i < count; i++) {
-				s->results[side][first + i] = (nt_vertex_tangent){l.tangent[0][i], l.tangent[1][i],
-					l.tangent[2][i], !(l.flags[i] & NT_VERTEX_MET) ? 0.0f : side ? 1.0f : -1.0f};
-				flags[i] |= (uint8_t)(l.flags[i] << side);
-				finished->lost += (l.flags[i] & NT_VERTEX_LOST) != 0;
-				finished->ill += (l.flags[i] & NT_VERTEX_MET) && (l.flags[i] & NT_VERTEX_ILL);
+				const unsigned found = (unsigned)l.flags[i];
+				const float w = !(found & NT_VERTEX_MET) ? 0.0f : side ? 1.0f : -1.0f;
+				/* no -0, whose sign would tell the path that was taken */
+				s->results[side][first + i] = (nt_vertex_tangent){(float)l.tangent[0][i] + 0.0f,
+					(float)l.tangent[1][i] + 0.0f, (float)l.tangent[2][i] + 0.0f, w};
+				flags[i] |= (uint8_t)(found << side);
+				finished->lost += (found & NT_VERTEX_LOST) != 0;
+				finished->ill += (found & NT_VERTEX_MET) && (found & NT_VERTEX_ILL);
 			}
 		}
 	}
