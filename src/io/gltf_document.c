@@ -157,6 +157,21 @@ nmtan_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_
 	return NMTAN_OK;
 }
 
+void nt_gltf_forget(const nt_scene *scene, const void *bytes, size_t size)
+{
+	enum { WORTH_BYTES = 256 * 1024 }; /* a system call, and a look at all buffers */
+	const nt_gltf *document = scene->source;
+	if (size < WORTH_BYTES)
+		return;
+	if (scene->file)
+		nt_file_forget(scene->file, bytes, size);
+	for (size_t i = 0; i < document->buffer_count; i++) {
+		const nt_gltf_buffer *buffer = &document->buffers[i];
+		if (buffer->opened && buffer->home == NT_GLTF_HOME_FILE)
+			nt_file_forget(&buffer->file, bytes, size);
+	}
+}
+
 void nt_gltf_free(void *source)
 {
 	nt_gltf *document = source;

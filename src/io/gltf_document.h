@@ -110,6 +110,10 @@ nmtan_status nt_gltf_create(nt_gltf **document, const nt_scene *scene, bool allo
 /* For nt_scene.free_source. */
 void nt_gltf_free(void *document);
 
+/* nt_file_forget() for the file that has the bytes: the scene's own or one of its .bin files. The scene is a
+ * glTF. */
+void nt_gltf_forget(const nt_scene *scene, const void *bytes, size_t size);
+
 /* A member of the root: NULL where there is none. */
 nt_json_value *nt_gltf_root_member(const nt_gltf *document, const char *name);
 

@@ -421,8 +421,7 @@ static nmtan_status flip_texcoords(nt_scene *scene, nt_mesh *mesh, const float *
 		return nt_fail_memory(error);
 	flipping f = {stored, mesh->texcoords};
 	nt_parallel_ranges(count < 2 * GRAIN ? 1 : nt_thread_count(threads), count, GRAIN, flip_rows, &f);
-	if (scene->file)
-		nt_file_forget(scene->file, stored, count * 2 * sizeof(float));
+	nt_gltf_forget(scene, stored, count * 2 * sizeof(float));
 	return NMTAN_OK;
 }
 

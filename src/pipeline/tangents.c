@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
-#include "io/file.h"
+#include "io/gltf_document.h"
 #include "tangent/vertices.h"
 
 /* Corners from which one mesh is worth all threads. */
@@ -32,7 +32,7 @@ typedef struct tangent_job {
 } tangent_job;
 
 typedef struct mesh_bytes {
-	const nt_file *file;
+	const nt_scene *scene;
 	const nt_mesh *mesh;
 } mesh_bytes;
 
@@ -142,10 +142,10 @@ static void forget_part(void *user, nt_mesh_part part)
 	const mesh_bytes *bytes = user;
 	const nt_mesh *mesh = bytes->mesh;
 	if (part == NT_PART_ATTRIBUTES) {
-		nt_file_forget(bytes->file, mesh->positions, 3 * sizeof(float) * mesh->vertex_count);
-		nt_file_forget(bytes->file, mesh->normals, 3 * sizeof(float) * mesh->vertex_count);
+		nt_gltf_forget(bytes->scene, mesh->positions, 3 * sizeof(float) * mesh->vertex_count);
+		nt_gltf_forget(bytes->scene, mesh->normals, 3 * sizeof(float) * mesh->vertex_count);
 	} else {
-		nt_file_forget(bytes->file, mesh->indices, sizeof(uint32_t) * mesh->corner_count);
+		nt_gltf_forget(bytes->scene, mesh->indices, sizeof(uint32_t) * mesh->corner_count);
 	}
 }
 
@@ -171,7 +171,7 @@ static nmtan_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned t
 		free(mesh->corner_tangents);
 		mesh->corner_tangents = NULL;
 	} else if (!status) {
-		mesh_bytes bytes = {job->scene->file, mesh};
+		mesh_bytes bytes = {job->scene, mesh};
 		const nt_vertex_request request = {.lazy_indices = true,
 			.passed = job->forgets ? forget_part : NULL, .user = &bytes};
 		status = nt_vertex_tangents(&view, &options, &request, &output, &mesh->counts);
@@ -301,7 +301,7 @@ nmtan_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_
 {
 	tangent_job job = {.scene = scene, .settings = settings,
 		.round_trip = output != NT_FORMAT_UNKNOWN && is_gltf(scene->format) != is_gltf(output),
-		.forgets = scene->file && is_gltf(scene->format) && is_gltf(output) && !settings->report &&
+		.forgets = is_gltf(scene->format) && is_gltf(output) && !settings->report &&
 			!settings->verify,
 		.meshes = nt_alloc(scene->mesh_count, sizeof *job.meshes),
 		.statuses = nt_calloc(scene->mesh_count, sizeof *job.statuses)};
