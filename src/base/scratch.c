@@ -12,10 +12,12 @@
 
 enum { ALIGNMENT = 64, LEAST_BLOCK_BYTES = 64 * 1024 };
 
+/* Not in front of its memory: that may be a large page which nobody else touches. */
 struct nt_scratch_block {
 	struct nt_scratch_block *next;
-	size_t size_bytes; /* of the whole allocation */
-	size_t used;       /* offset of the first free byte from the start of the allocation */
+	char *memory;
+	size_t size_bytes;
+	size_t used; /* offset of the first free byte */
 };
 
 static void *default_allocate(void *user, size_t size_bytes)
@@ -41,7 +43,7 @@ void nt_scratch_init(nt_scratch *scratch, const nmtan_allocator *allocator)
 /* Offset of the next aligned byte of a block. */
 static size_t aligned_offset(const struct nt_scratch_block *block)
 {
-	const uintptr_t at = (uintptr_t)block + block->used;
+	const uintptr_t at = (uintptr_t)block->memory + block->used;
 	return block->used + (ALIGNMENT - at % ALIGNMENT) % ALIGNMENT;
 }
 
@@ -51,21 +53,26 @@ static void *take(struct nt_scratch_block *block, size_t bytes)
 	if (offset > block->size_bytes || block->size_bytes - offset < bytes)
 		return NULL;
 	block->used = offset + bytes;
-	return (char *)block + offset;
+	return block->memory + offset;
 }
 
 static struct nt_scratch_block *insert_block(nt_scratch *scratch, size_t bytes)
 {
 	size_t size_bytes;
-	if (!nt_size_add(bytes, sizeof(struct nt_scratch_block) + ALIGNMENT, &size_bytes))
+	if (!nt_size_add(bytes, ALIGNMENT, &size_bytes))
 		return NULL;
 	if (size_bytes < LEAST_BLOCK_BYTES)
 		size_bytes = LEAST_BLOCK_BYTES;
-	struct nt_scratch_block *block =
-		scratch->allocator.allocate(scratch->allocator.user, size_bytes);
+	const nmtan_allocator *from = &scratch->allocator;
+	struct nt_scratch_block *block = from->allocate(from->user, sizeof *block);
 	if (!block)
 		return NULL;
-	*block = (struct nt_scratch_block){.size_bytes = size_bytes, .used = sizeof *block};
+	*block = (struct nt_scratch_block){.memory = from->allocate(from->user, size_bytes),
+		.size_bytes = size_bytes};
+	if (!block->memory) {
+		from->release(from->user, block, sizeof *block);
+		return NULL;
+	}
 	if (scratch->current) {
 		block->next = scratch->current->next;
 		scratch->current->next = block;
@@ -109,7 +116,7 @@ void nt_scratch_back(nt_scratch *scratch, nt_scratch_mark mark)
 {
 	struct nt_scratch_block *block = mark.block ? mark.block->next : scratch->first;
 	for (; block; block = block->next)
-		block->used = sizeof *block;
+		block->used = 0;
 	if (mark.block)
 		mark.block->used = mark.used;
 	scratch->current = mark.block;
@@ -128,7 +135,8 @@ void nt_scratch_free(nt_scratch *scratch)
 	struct nt_scratch_block *block = scratch->first;
 	while (block) {
 		struct nt_scratch_block *next = block->next;
-		scratch->allocator.release(scratch->allocator.user, block, block->size_bytes);
+		scratch->allocator.release(scratch->allocator.user, block->memory, block->size_bytes);
+		scratch->allocator.release(scratch->allocator.user, block, sizeof *block);
 		block = next;
 	}
 	scratch->first = scratch->current = NULL;
