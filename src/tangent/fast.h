@@ -125,6 +125,20 @@ enum { NT_TRIANGLE_SUSPECT = NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE | NT_TRIAN
  */
 nmtan_status nt_fast_solve(nt_fast *fast, const nt_solve *solve, bool sparse);
 
+/* Every corner gets the result of its vertex; with fast->sparse those of suspects only. Marks triangles COMPLEX
+ * and LATE. */
+void nt_fast_write(nt_fast *fast);
+
+/* Writes what a sparse solve left out. */
+void nt_fast_write_rest(nt_fast *fast);
+
+/* Writes the default to every corner, for a mesh without a sound triangle (step 10 of the spec page). */
+void nt_fast_write_defaults(const nt_fast *fast);
+
+/* Corners of triangles that are LATE copy those of others, which must have been written. Returns NMTAN_OK or
+ * NMTAN_ERROR_MEMORY. */
+nmtan_status nt_fast_write_late(nt_fast *fast);
+
 /* Solves the vertices whose records are NT_RESULT_COMPLEX and writes their corners. */
 nmtan_status nt_fast_complex(nt_fast *fast, size_t complex_count);
 
