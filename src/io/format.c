@@ -90,11 +90,3 @@ const nt_format_entry *nt_format_of_path(const char *path)
 			return &table[i];
 	return NULL;
 }
-
-const nt_format_entry *nt_format_of_name(const char *name)
-{
-	for (size_t i = 0; i < FORMAT_COUNT; i++)
-		if (strcmp(table[i].name, name) == 0)
-			return &table[i];
-	return NULL;
-}

@@ -103,9 +103,8 @@ const nt_format_entry *nt_format_find(nt_format format);
 /* The entry for an input: by content, then by name. NULL when nothing fits. */
 const nt_format_entry *nt_format_of_input(const unsigned char *bytes, size_t size, const char *path);
 
-/* The entry whose extension the path ends in (any case), or whose name equals `name`; NULL: none. */
+/* The entry whose extension the path ends in, in any case; NULL: none. */
 const nt_format_entry *nt_format_of_path(const char *path);
-const nt_format_entry *nt_format_of_name(const char *name);
 
 /* The formats' own functions, for the table. */
 bool nt_obj_recognise(const unsigned char *bytes, size_t size);

@@ -41,17 +41,16 @@ static void format_of_an_input_is_its_content_before_its_name(void **state)
 	assert_int_equal(of_input("\0\1\2\3", 4, "-"), NT_FORMAT_UNKNOWN);
 }
 
-static void format_names_are_those_of_the_option(void **state)
+static void every_format_is_found_by_its_number(void **state)
 {
 	(void)state;
-	const char *const names[] = {"obj", "ply", "gltf", "glb", "drc"};
+	const char *const paths[] = {"a.obj", "a.ply", "a.gltf", "a.glb", "a.drc"};
 	for (size_t i = 0; i < 5; i++) {
-		const nt_format_entry *entry = nt_format_of_name(names[i]);
+		const nt_format_entry *entry = nt_format_of_path(paths[i]);
 		assert_non_null(entry);
+		assert_string_equal(entry->name, paths[i] + 2);
 		assert_ptr_equal(nt_format_find(entry->format), entry);
 	}
-	assert_null(nt_format_of_name("stl"));
-	assert_null(nt_format_of_name(""));
 	assert_null(nt_format_find(NT_FORMAT_UNKNOWN));
 }
 
@@ -60,7 +59,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(format_of_a_name_is_its_extension_in_any_case),
 		cmocka_unit_test(format_of_an_input_is_its_content_before_its_name),
-		cmocka_unit_test(format_names_are_those_of_the_option),
+		cmocka_unit_test(every_format_is_found_by_its_number),
 	};
 	return cmocka_run_group_tests_name("io/format", tests, NULL, NULL);
 }
