@@ -213,10 +213,12 @@ static bool keep_results(nt_scene *scene, nt_mesh *mesh)
 	bool kept = true;
 	for (size_t m = 0; m < mesh->morph_count; m++)
 		kept &= nt_arena_adopt(&scene->arena, mesh->morphs[m].vertex_tangents);
-	return kept & nt_arena_adopt(&scene->arena, mesh->corner_tangents) &
-	       nt_arena_adopt(&scene->arena, mesh->split.indices) &
-	       nt_arena_adopt(&scene->arena, mesh->split.sources) &
-	       nt_arena_adopt(&scene->arena, mesh->split.vertex_tangents);
+	/* all of them are tried: what is not kept is freed */
+	kept &= nt_arena_adopt(&scene->arena, mesh->corner_tangents);
+	kept &= nt_arena_adopt(&scene->arena, mesh->split.indices);
+	kept &= nt_arena_adopt(&scene->arena, mesh->split.sources);
+	kept &= nt_arena_adopt(&scene->arena, mesh->split.vertex_tangents);
+	return kept;
 }
 
 static void add_findings(nt_finding_list *list, const nt_mesh *mesh)

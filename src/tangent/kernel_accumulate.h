@@ -229,7 +229,7 @@ static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range
 			count--; /* halves of a quad stay together */
 		if (fast->scattered)
 			ask_ahead(fast, first, end, 0);
-		gather_lanes(fast, first, count, &in);
+		gather_rows(fast->rows, fast->ids + 3 * first, count, count <= FEW_LANES ? count : NT_LANES, in.row);
 		if (fast->scattered)
 			ask_ahead(fast, first, end, 1);
 		if (fast->wants_more)

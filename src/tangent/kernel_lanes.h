@@ -265,13 +265,11 @@ static inline __attribute__((always_inline)) void gather_four(const nt_weld_row 
 		memcpy(out[offset + j] + lane, &four[j], sizeof four[j]);
 }
 
-/* Rows of the corners of `count` triangles; the lanes behind, where they are going to be solved too, repeat the
- * last one. */
-static void gather_lanes(const nt_fast *fast, size_t first, size_t count, lanes_in *restrict in)
+/* Rows of the corners of `count` triangles; up to `lanes` the lanes behind repeat the last one. */
+static void gather_rows(const nt_weld_row *rows, const uint32_t *ids, size_t count, size_t lanes,
+	float (*restrict out)[8][NT_LANES])
 {
-	const size_t lanes = count <= FEW_LANES ? count : NT_LANES;
 	uint32_t padded[3 * NT_LANES];
-	const uint32_t *ids = fast->ids + 3 * first;
 	if (count < NT_LANES) {
 		for (size_t i = 0; i < NT_LANES; i++)
 			memcpy(padded + 3 * i, ids + 3 * (i < count ? i : count - 1), 3 * sizeof *ids);
@@ -279,8 +277,8 @@ static void gather_lanes(const nt_fast *fast, size_t first, size_t count, lanes_
 	}
 	for (size_t k = 0; k < 3; k++)
 		for (size_t lane = 0; lane < lanes; lane += 4) {
-			gather_four(fast->rows, ids + k, 0, in->row[k], lane);
-			gather_four(fast->rows, ids + k, 4, in->row[k], lane);
+			gather_four(rows, ids + k, 0, out[k], lane);
+			gather_four(rows, ids + k, 4, out[k], lane);
 		}
 }
 

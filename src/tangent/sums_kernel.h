@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The passes of sums.c that need lanes, as plain loops over 16 of them that the compiler makes vectors of.
- * kernel_*.c include this file once for each instruction set, behind kernel.h, whose turn() and gather_four() it
+ * kernel_*.c include this file once for each instruction set, behind kernel.h, whose turn() and gather_rows() it
  * uses, with NT_SUM_KERNEL giving the name.
  *
  * accumulate: 16 triangles at a time. The arithmetic is that of frames.c, operation by operation, in steps
@@ -244,27 +244,10 @@ static void __attribute__((noinline)) sum_corners_unweighted(sum_lanes *l, nt_su
 	sum_corners(l, block, NT_WEIGHT_NONE);
 }
 
-/* Rows of the corners of `count` triangles; the lanes behind repeat the last one. */
-static void sum_gather(const nt_sums *s, size_t first, size_t count, sum_lanes *restrict l)
-{
-	uint32_t padded[3 * NT_SUM_LANES];
-	const uint32_t *ids = s->ids + 3 * first;
-	if (count < NT_SUM_LANES) {
-		for (size_t i = 0; i < NT_SUM_LANES; i++)
-			memcpy(padded + 3 * i, ids + 3 * (i < count ? i : count - 1), 3 * sizeof *ids);
-		ids = padded;
-	}
-	for (size_t k = 0; k < 3; k++)
-		for (size_t lane = 0; lane < NT_SUM_LANES; lane += 4) {
-			gather_four(s->weld.rows, ids + k, 0, l->row[k], lane);
-			gather_four(s->weld.rows, ids + k, 4, l->row[k], lane);
-		}
-}
-
 static void sum_solve(const nt_sums *s, size_t first, size_t count, sum_lanes *l, nt_sum_block *block)
 {
 	const double offset = s->solve->mesh->stored_v_offset;
-	sum_gather(s, first, count, l);
+	gather_rows(s->weld.rows, s->ids + 3 * first, count, NT_SUM_LANES, l->row);
 	sum_frames(l, block, fabs(offset), offset != 0.0 ? 3 * 0x1p-24 : 0.0);
 	const double asked = FLAG(s->weight == NT_WEIGHT_NONE);
 	double cancelled = 0.0;
