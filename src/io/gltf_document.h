@@ -22,6 +22,9 @@ enum nt_gltf_component {
 	NT_GLTF_FLOAT = 5126
 };
 
+/* Values of a primitive's mode that have faces. */
+enum nt_gltf_mode { NT_GLTF_TRIANGLES = 4, NT_GLTF_STRIP = 5, NT_GLTF_FAN = 6 };
+
 /* Room for the JSON pointers we make ourselves. */
 enum { NT_GLTF_POINTER = 160 };
 
