@@ -31,9 +31,13 @@ struct component_row {
 };
 
 const component_row component_table[] = {
-	{5120, draco::DT_INT8, 1},   {5121, draco::DT_UINT8, 1},  {5122, draco::DT_INT16, 2},
-	{5123, draco::DT_UINT16, 2}, {5124, draco::DT_INT32, 4},  {5125, draco::DT_UINT32, 4},
-	{5126, draco::DT_FLOAT32, 4},
+	{NT_GLTF_BYTE, draco::DT_INT8, 1},
+	{NT_GLTF_UBYTE, draco::DT_UINT8, 1},
+	{NT_GLTF_SHORT, draco::DT_INT16, 2},
+	{NT_GLTF_USHORT, draco::DT_UINT16, 2},
+	{NT_GLTF_INT, draco::DT_INT32, 4},
+	{NT_GLTF_UINT, draco::DT_UINT32, 4},
+	{NT_GLTF_FLOAT, draco::DT_FLOAT32, 4},
 };
 
 const component_row *row_of_type(int type)

@@ -65,7 +65,7 @@ uint64_t hash_point(const nt_draco_mesh &mesh, uint32_t point)
 		for (int c = 0; c < a.components; c++) {
 			uint32_t bits = 0;
 			std::memcpy(&bits, value_of(a, point) + size * static_cast<size_t>(c), size);
-			if (a.component_type == 5126 && bits == 0x80000000)
+			if (a.component_type == NT_GLTF_FLOAT && bits == 0x80000000)
 				bits = 0;
 			hash = (hash ^ bits) * 0xff51afd7ed558ccd;
 			hash ^= hash >> 32;

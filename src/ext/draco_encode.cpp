@@ -37,7 +37,7 @@ bool fits_coder(const nt_draco_mesh &mesh, const nt_draco_attribute &a)
 		for (int i = 0; i < a.components; i++) {
 			uint32_t bits;
 			std::memcpy(&bits, value_of(a, p) + 4 * i, sizeof bits);
-			const int64_t value = a.component_type == 5124 ? int64_t(int32_t(bits)) : int64_t(bits);
+			const int64_t value = a.component_type == NT_GLTF_INT ? int64_t(int32_t(bits)) : int64_t(bits);
 			if (value > limit || value < -limit)
 				return false;
 		}
@@ -68,12 +68,13 @@ bool can_lay_grid(const nt_draco_mesh &mesh, const nt_draco_attribute &a)
 nmtan_status check_attribute(const nt_draco_mesh &mesh, const nt_draco_attribute &a, nt_error *error)
 {
 	const nt_draco_quantization &q = a.quantization;
-	if (nt::draco_type_of(a.component_type) == draco::DT_INVALID || a.components < 1 || a.components > 4 || q.bits < 0 ||
-		q.bits > MOST_BITS || (q.bits == 1 && is_octahedral(a)) || (q.bits && a.component_type != 5126))
+	const bool is_float = a.component_type == NT_GLTF_FLOAT;
+	if (nt::draco_type_of(a.component_type) == draco::DT_INVALID || a.components < 1 || a.components > 4 ||
+		q.bits < 0 || q.bits > MOST_BITS || (q.bits == 1 && is_octahedral(a)) || (q.bits && !is_float))
 		return nt_fail(error, NMTAN_ERROR_ARGUMENT,
 			"Draco cannot encode attribute %u with type %d, %d components and %d bits",
 			a.unique_id, a.component_type, a.components, q.bits);
-	if ((a.component_type == 5124 || a.component_type == 5125) && !fits_coder(mesh, a))
+	if ((a.component_type == NT_GLTF_INT || a.component_type == NT_GLTF_UINT) && !fits_coder(mesh, a))
 		return nt_fail(error, NMTAN_ERROR_ARGUMENT,
 			"attribute %u has integers of more than %d bits, which Draco cannot encode in reasonable "
 			"memory", a.unique_id, int(MOST_BITS));

@@ -9,8 +9,6 @@
 #include "io/gltf_layout.h"
 #include "io/gltf_share.h"
 
-enum { NT_GLTF_ARRAY_BUFFER = 34962, NT_GLTF_ELEMENT_ARRAY_BUFFER = 34963 };
-
 typedef struct nt_gltf_patcher {
 	nt_scene *scene;
 	nt_gltf *document;

@@ -146,7 +146,7 @@ static void assert_indices(const opened *file, size_t primitive, const uint16_t 
 {
 	const nt_reread_array array = array_of(file, 0, primitive, NULL);
 	assert_int_equal(array.count, count);
-	assert_int_equal(array.component_type, NT_GLTF_UNSIGNED_SHORT);
+	assert_int_equal(array.component_type, NT_GLTF_USHORT);
 	assert_memory_equal(array.data, expected, count * sizeof *expected);
 }
 
@@ -340,7 +340,7 @@ static void index_65535_is_reserved(void **state)
 		compose_well(scene, (nt_write_options){0}, "many.glb");
 		opened file = open_back("many.glb");
 		const nt_reread_array indices = array_of(&file, 0, 0, NULL);
-		const int type = count < MOST ? NT_GLTF_UNSIGNED_SHORT : NT_GLTF_UNSIGNED_INT;
+		const int type = count < MOST ? NT_GLTF_USHORT : NT_GLTF_UINT;
 		assert_int_equal(indices.component_type, type);
 		assert_int_equal(array_of(&file, 0, 0, "POSITION").count, count);
 		close_back(&file);
