@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
+#include "folder.h"
 #include <math.h>
 #include <stdio.h>
 #include <sys/stat.h>
@@ -9,42 +10,9 @@
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))
 
-static char folder[] = "/tmp/nmtan-compose-XXXXXX";
-
-static int make_folder(void **state)
-{
-	(void)state;
-	return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-	(void)state;
-	char command[100];
-	snprintf(command, sizeof command, "rm -r '%s'", folder);
-	return system(command);
-}
-
-static const char *path_of(const char *name)
-{
-	static char paths[4][200];
-	static unsigned next;
-	char *path = paths[next++ % 4];
-	snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-	return path;
-}
-
-static void write_file(const char *name, const void *bytes, size_t size)
-{
-	FILE *file = fopen(path_of(name), "wb");
-	assert_non_null(file);
-	assert_int_equal(fwrite(bytes, 1, size, file), size);
-	fclose(file);
-}
-
 static bool exists(const char *name)
 {
-	return access(path_of(name), F_OK) == 0;
+	return access(in_folder(name), F_OK) == 0;
 }
 
 /* The text of a file, for strstr(). */
@@ -52,7 +20,7 @@ static char *text_of(const char *name)
 {
 	nt_file file;
 	nt_error error;
-	assert_int_equal(nt_file_open(&file, path_of(name), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder(name), &error), NMTAN_OK);
 	char *text = calloc(file.size + 1, 1);
 	memcpy(text, file.data, file.size);
 	nt_file_close(&file);
@@ -65,7 +33,7 @@ static nmtan_status compose(nt_scene *scene, nt_write_options options, const cha
 	nt_error *error)
 {
 	nt_output *output;
-	options.path = path_of(name);
+	options.path = in_folder(name);
 	options.format = strstr(name, ".glb") ? NT_FORMAT_GLB : NT_FORMAT_GLTF;
 	assert_int_equal(nt_output_create(&output, NULL, error), NMTAN_OK);
 	const nmtan_status status = nt_gltf_compose(scene, &options, output, error);
@@ -93,7 +61,7 @@ static bool find_companion(void *user, const char *uri, const unsigned char **by
 	opened *file = user;
 	nt_error error;
 	if (strstr(uri, ".bin") == NULL ||
-		nt_file_open(&file->companion, path_of(uri), &error) != NMTAN_OK)
+		nt_file_open(&file->companion, in_folder(uri), &error) != NMTAN_OK)
 		return false;
 	*bytes = file->companion.data;
 	*size = file->companion.size;
@@ -104,7 +72,7 @@ static opened open_back(const char *name)
 {
 	opened file = {.companion = {.fd = -1}};
 	nt_error error;
-	assert_int_equal(nt_file_open(&file.main, path_of(name), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file.main, in_folder(name), &error), NMTAN_OK);
 	const nmtan_status status = nt_reread_open(&file.reread, file.main.data, file.main.size,
 		find_companion, &file, &error);
 	if (status != NMTAN_OK)
@@ -189,7 +157,7 @@ static nt_scene *make_scene(hand_scene *hand)
 		.instance = {.matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}},
 		.material = {.name = "m", .base_color = {1, 1, 1, 1}, .roughness = 1, .normal_scale = 1},
 	};
-	nt_scene_init(&hand->scene, path_of("hand.obj"));
+	nt_scene_init(&hand->scene, in_folder("hand.obj"));
 	hand->mesh.primitives = hand->primitives;
 	hand->scene.meshes = &hand->mesh;
 	hand->scene.mesh_count = 1;
@@ -405,15 +373,15 @@ static const unsigned char jpeg[] = "\xff\xd8\xff\xe0 and then some more";
 static nt_scene *make_textured(hand_scene *hand)
 {
 	nt_scene *scene = make_scene(hand);
-	mkdir(path_of("mtl"), 0777);
-	mkdir(path_of("mtl/tex"), 0777);
-	write_file("mtl/m.mtl", "", 0);
-	write_file("mtl/tex/a b.png", png, sizeof png);
-	write_file("mtl/n.jpg", jpeg, sizeof jpeg);
-	write_file("mtl/t.tga", "\0\0\2", 3);
-	write_file("outside.png", png, sizeof png);
+	mkdir(in_folder("mtl"), 0777);
+	mkdir(in_folder("mtl/tex"), 0777);
+	put_file("mtl/m.mtl", "", 0);
+	put_file("mtl/tex/a b.png", png, sizeof png);
+	put_file("mtl/n.jpg", jpeg, sizeof jpeg);
+	put_file("mtl/t.tga", "\0\0\2", 3);
+	put_file("outside.png", png, sizeof png);
 	static char library[200];
-	snprintf(library, sizeof library, "%s", path_of("mtl/m.mtl"));
+	snprintf(library, sizeof library, "%s", in_folder("mtl/m.mtl"));
 	hand->material.library = library;
 	hand->material.line = 3;
 	hand->material.base_color_map = "tex\\a b.png";
@@ -436,7 +404,7 @@ static void linked_images_are_relative_to_the_output(void **state)
 	(void)state;
 	hand_scene hand;
 	nt_scene *scene = make_textured(&hand);
-	mkdir(path_of("out"), 0777);
+	mkdir(in_folder("out"), 0777);
 	compose_well(scene, (nt_write_options){0}, "out/linked.gltf");
 	char *text = text_of("out/linked.gltf");
 	assert_non_null(strstr(text, "\"uri\":\"../mtl/tex/a%20b.png\""));
@@ -459,7 +427,7 @@ static void embedded_images_lie_behind_the_geometry(void **state)
 	compose_well(scene, (nt_write_options){0}, "images.glb");
 	nt_file file;
 	nt_error error;
-	assert_int_equal(nt_file_open(&file, path_of("images.glb"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("images.glb"), &error), NMTAN_OK);
 	assert_non_null(memmem(file.data, file.size, "\"mimeType\":\"image/png\"", 22));
 	/* the last one ends the chunk, which is padded to 4 */
 	const size_t padding = (4 - sizeof jpeg % 4) % 4;
@@ -477,7 +445,7 @@ static void copied_images_stand_beside_the_output(void **state)
 	(void)state;
 	hand_scene hand;
 	nt_scene *scene = make_textured(&hand);
-	mkdir(path_of("copies"), 0777);
+	mkdir(in_folder("copies"), 0777);
 	compose_well(scene, (nt_write_options){.images = NT_IMAGES_COPY}, "copies/c.gltf");
 	char *text = text_of("copies/c.gltf"), *copy = text_of("copies/n.jpg");
 	assert_non_null(strstr(text, "\"uri\":\"n.jpg\""));
@@ -488,7 +456,7 @@ static void copied_images_stand_beside_the_output(void **state)
 	free(copy);
 
 	/* two of one name, and one that is there already */
-	write_file("mtl/a b.png", png, sizeof png);
+	put_file("mtl/a b.png", png, sizeof png);
 	hand.material.normal_map = "a b.png";
 	compose_well(scene, (nt_write_options){.images = NT_IMAGES_COPY}, "mtl/c.gltf");
 	text = text_of("mtl/c.gltf");
@@ -545,7 +513,7 @@ static void images_outside_of_the_mtl_folder_need_leave(void **state)
 	(void)state;
 	hand_scene hand;
 	nt_scene *scene = make_textured(&hand);
-	assert_int_equal(symlink("../outside.png", path_of("mtl/link.png")), 0);
+	assert_int_equal(symlink("../outside.png", in_folder("mtl/link.png")), 0);
 	hand.material.base_color_map = "../outside.png";
 	hand.material.emissive_map = "link.png";
 	hand.material.normal_map = "C:\\work\\n.jpg"; /* found by its last part */
@@ -584,7 +552,7 @@ static void images_are_safe_from_the_output(void **state)
 	(void)state;
 	hand_scene hand;
 	nt_scene *scene = make_textured(&hand);
-	write_file("mtl/n.bin", png, sizeof png);
+	put_file("mtl/n.bin", png, sizeof png);
 	hand.material.normal_map = "n.bin"; /* a PNG by content, and where the buffer would go */
 	nt_error error;
 	assert_int_equal(compose(scene, (nt_write_options){0}, "mtl/n.gltf", &error), NMTAN_ERROR_IO);

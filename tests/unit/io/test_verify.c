@@ -1,21 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
+#include "folder.h"
 #include <stdio.h>
-#include <unistd.h>
 #include "io/verify.h"
 
-static char folder[] = "/tmp/nmtan-verify-XXXXXX";
-
-static int make_folder(void **state)
+/* Nothing is committed, so nothing may be left. */
+static int remove_empty_folder(void **state)
 {
-	(void)state;
-	return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-	(void)state;
-	return rmdir(folder); /* nothing was committed, so nothing may be left */
+	return count_in_folder() ? -1 : remove_folder(state);
 }
 
 /* A quad and a triangle of two materials, the triangle first in the document; vertex 2 is split. */
@@ -60,8 +52,7 @@ static nmtan_status verify_after(const char *name, void (*spoil)(hand_scene *), 
 {
 	hand_scene hand;
 	make_scene(&hand);
-	char path[100];
-	snprintf(path, sizeof path, "%s/%s", folder, name);
+	const char *path = in_folder(name);
 	const nt_write_options options = {.path = path,
 		.format = strstr(name, ".glb") ? NT_FORMAT_GLB : NT_FORMAT_GLTF};
 	nt_output *output;
@@ -118,5 +109,5 @@ int main(void)
 		cmocka_unit_test(good_output_is_good),
 		cmocka_unit_test(every_difference_is_told),
 	};
-	return cmocka_run_group_tests_name("io/verify", tests, make_folder, remove_folder);
+	return cmocka_run_group_tests_name("io/verify", tests, make_folder, remove_empty_folder);
 }
