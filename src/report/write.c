@@ -135,17 +135,6 @@ void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out)
 		nt_buffer_format(out, "mesh %u", mesh);
 }
 
-void nt_clean_text(const char *text, nt_buffer *out)
-{
-	for (; *text; text++) {
-		const unsigned char c = (unsigned char)*text;
-		if (c < 0x20 || c == 0x7f)
-			nt_buffer_format(out, "\\x%02x", c);
-		else
-			nt_buffer_append(out, text, 1);
-	}
-}
-
 size_t nt_utf8_length(const char *text)
 {
 	const unsigned char *p = (const unsigned char *)text;
