@@ -71,17 +71,9 @@ static nmtan_status add_indices(nt_gltf_patcher *p, uint32_t buffer, const encod
 	uint32_t view;
 	const nmtan_status status = nt_layout_add_view(&p->layout, buffer, new->bytes, new->size,
 		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, p->error);
-	if (status)
-		return status;
-	nt_json *json = p->json;
-	nt_json_value *accessors = nt_json_put(json, nt_json_root(json), "accessors");
-	*accessor = (uint32_t)nt_json_count(accessors);
-	nt_json_value *object = nt_json_append(json, accessors);
-	nt_json_set_uint64(json, nt_json_put(json, object, "bufferView"), view);
-	nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), new->type);
-	nt_json_set_uint64(json, nt_json_put(json, object, "count"), new->count);
-	nt_json_set_string(json, nt_json_put(json, object, "type"), "SCALAR", 6);
-	return NMTAN_OK;
+	if (!status)
+		*accessor = nt_gltf_new_accessor(p, view, new->type, "SCALAR", new->count, false);
+	return status;
 }
 
 /* Rewrites the accessor, all of whose users agree, where its bytes are its own; *done tells. */
