@@ -62,28 +62,23 @@ static size_t count_triangles(const nmtan_mesh *mesh)
 	return count;
 }
 
-/* Triangles of a mesh with quads: their corners, vertices, and which are second halves. */
-static nmtan_status cut_faces(nt_fast *fast, const uint32_t *corner_ids)
+/* Triangles of a mesh with quads: how they are cut, and which are second halves. */
+static nmtan_status cut_faces(nt_fast *fast)
 {
 	const nmtan_mesh *mesh = fast->solve->mesh;
-	uint32_t *corners = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 3 * sizeof *corners);
-	uint32_t *ids = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 3 * sizeof *ids);
-	if (!corners || !ids)
+	uint32_t *cuts = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, sizeof *cuts);
+	if (!cuts)
 		return NMTAN_ERROR_MEMORY;
 	size_t first = 0, t = 0;
 	for (size_t face = 0; face < mesh->face_count; first += mesh->face_sizes[face++]) {
-		uint32_t cut[2][3];
-		const unsigned count = nt_face_triangles(mesh, face, first, cut);
+		uint32_t corners[2][3];
+		const unsigned count = nt_face_triangles(mesh, face, first, corners);
 		for (unsigned half = 0; half < count; half++, t++) {
 			fast->flags[t] = half ? NT_TRIANGLE_SECOND : 0;
-			for (int k = 0; k < 3; k++) {
-				corners[3 * t + (size_t)k] = cut[half][k];
-				ids[3 * t + (size_t)k] = corner_ids[cut[half][k]];
-			}
+			cuts[t] = nt_cut_of((uint32_t)first, corners[half]);
 		}
 	}
-	fast->corners = corners;
-	fast->ids = ids;
+	fast->triangles.cuts = cuts;
 	return NMTAN_OK;
 }
 
@@ -94,10 +89,10 @@ static nmtan_status make_triangles(nt_fast *fast, const nt_weld *weld)
 	fast->flags = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 1);
 	if (!fast->flags)
 		return NMTAN_ERROR_MEMORY;
+	fast->triangles.ids = weld->ids;
 	if (fast->triangle_count != fast->solve->mesh->face_count)
-		return cut_faces(fast, weld->ids);
+		return cut_faces(fast);
 	memset(fast->flags, 0, fast->triangle_count);
-	fast->ids = weld->ids;
 	return NMTAN_OK;
 }
 
@@ -309,7 +304,8 @@ static void mark_contested(nt_fast *fast)
 		return;
 	size_t t = nt_fast_next_flagged(fast, 0, NT_TRIANGLE_ANY);
 	for (; t < fast->triangle_count; t = nt_fast_next_flagged(fast, t + 1, NT_TRIANGLE_ANY)) {
-		const uint32_t *v = fast->ids + 3 * t;
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
 		if (fast->flags[t] & NT_TRIANGLE_DEGENERATE)
 			continue;
 		uint32_t empty[2] = {NT_STATE_EMPTY, NT_STATE_EMPTY};
@@ -381,22 +377,20 @@ static void vouch(const nt_fast *fast, bool usable)
 	if (usable)
 		*vouched = (nt_vouched){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT,
 			.suspect = NT_TRIANGLE_SUSPECT};
-	if (!fast->corners) {
-		vouched->welded = fast->ids;
-		vouched->welded_count = fast->vertex_count;
-	}
+	vouched->welded = fast->triangles.ids;
+	vouched->welded_count = fast->vertex_count;
 }
 
 /* 3 */
 static nmtan_status make_places(nt_fast *fast, unsigned bin_bits, nt_record *sums, nt_room *room)
 {
-	const size_t corners = 3 * fast->triangle_count;
-	fast->scattered = bin_bits || nt_is_scattered(fast->ids, corners, fast->vertex_count);
+	fast->scattered = bin_bits ||
+			  nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
 	if (!fast->scattered || fast->wants_more)
-		return nt_adjacency_make(fast->ids, &fast->ranges, fast->vertex_count, room, &fast->adjacency);
+		return nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count, room, &fast->adjacency);
 	if (!bin_bits)
 		bin_bits = nt_bins_bits(fast->vertex_count);
-	return nt_bins_make(fast->ids, &fast->ranges, fast->vertex_count, bin_bits, sums, room->scratch,
+	return nt_bins_make(&fast->triangles, &fast->ranges, fast->vertex_count, bin_bits, sums, room->scratch,
 		&fast->bins);
 }
 
