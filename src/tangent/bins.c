@@ -11,6 +11,9 @@
 
 enum { LEAST_BITS = 13, MOST_BINS = 512 };
 
+/* Triangles whose vertices are looked up at a time. */
+enum { BATCH = 16 };
+
 /* Every block has the full depth: what is not used is not touched, and nothing has to be counted. */
 enum { BLOCK_ENTRIES = NT_FAN_LANES * NT_FAN_DEPTH };
 
@@ -28,11 +31,13 @@ static void count_ranges(void *context, size_t begin, size_t end, unsigned slot)
 	for (size_t range = begin; range < end; range++) {
 		uint32_t *counts = c->bins->cursors + range * c->bins->count;
 		memset(counts, 0, c->bins->count * sizeof *counts);
-		for (size_t t = c->ranges->bounds[range]; t < c->ranges->bounds[range + 1]; t++) {
-			uint32_t copy[3];
-			const uint32_t *v = nt_triangle_vertices(c->triangles, t, 1, copy);
-			for (int k = 0; k < 3; k++)
-				counts[v[k] >> bits]++;
+		const size_t last = c->ranges->bounds[range + 1];
+		for (size_t t = c->ranges->bounds[range], step; t < last; t += step) {
+			uint32_t copy[3 * BATCH];
+			step = last - t < BATCH ? last - t : BATCH;
+			const uint32_t *v = nt_triangle_vertices(c->triangles, t, step, copy);
+			for (size_t i = 0; i < 3 * step; i++)
+				counts[v[i] >> bits]++;
 		}
 	}
 }

@@ -382,16 +382,29 @@ static void vouch(const nt_fast *fast, bool usable)
 }
 
 /* 3 */
-static nmtan_status make_places(nt_fast *fast, unsigned bin_bits, nt_record *sums, nt_room *room)
+static nmtan_status make_places(nt_fast *fast, unsigned bin_bits, nt_record *sums, nt_room *row_room, nt_room *room)
 {
 	fast->scattered = bin_bits ||
 			  nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
 	if (!fast->scattered || fast->wants_more)
-		return nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count, room, &fast->adjacency);
+		return nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count, row_room, room,
+			&fast->adjacency);
 	if (!bin_bits)
 		bin_bits = nt_bins_bits(fast->vertex_count);
 	return nt_bins_make(&fast->triangles, &fast->ranges, fast->vertex_count, bin_bits, sums, room->scratch,
 		&fast->bins);
+}
+
+/* Whether there is room for the rows beside the entries. If not, the larger of them should have it. */
+static bool has_room_for_rows(const nt_fast *fast, const nt_room *room)
+{
+	const nmtan_mesh *mesh = fast->solve->mesh;
+	const size_t free = (size_t)(room->end - room->begin);
+	/* without indices: two triangles for a vertex */
+	const size_t vertices = mesh->indices ? mesh->vertex_count : fast->triangle_count / 2;
+	const size_t entries = 3 * fast->triangle_count * sizeof(nt_fan_entry);
+	const size_t rows = vertices * (sizeof(nt_weld_row) + sizeof(uint32_t));
+	return rows + entries <= free || entries > free || rows > entries;
 }
 
 /* 1 to 4 */
@@ -399,18 +412,19 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ra
 {
 	const nt_solve *solve = fast->solve;
 	const nmtan_mesh *mesh = solve->mesh;
-	/* the output lends its bytes, to the sums of binned corners if there are going to be any: rows at
-	 * random are better off in the large pages of the scratch. A sparse output is not filled, so that
-	 * its pages need not exist: there the caller lends what it fills from the records. */
+	/* the output lends its bytes, after the weld to the sums of binned corners if there are going to be any:
+	 * rows at random are better off in the large pages of the scratch. A sparse output is not filled, so
+	 * that its pages need not exist: there the caller lends what it fills from the records. */
 	const bool lends_sums = !fast->sparse && !fast->wants_more && solve->corner_count == 3 * fast->triangle_count &&
 		mesh->indices && (bin_bits || nt_is_scattered(mesh->indices, solve->corner_count, mesh->vertex_count));
 	nt_room room = fast->sparse
 		? nt_room_over(solve->lent, solve->lent_bytes, solve->scratch)
-		: nt_room_over(solve->tangents,
-			lends_sums ? 0 : solve->corner_count * 4 * sizeof(float), solve->scratch);
+		: nt_room_over(solve->tangents, solve->corner_count * 4 * sizeof(float), solve->scratch);
+	nt_room none = nt_room_over(solve->tangents, 0, solve->scratch);
+	nt_room *const row_room = !lends_sums && has_room_for_rows(fast, &room) ? &room : &none;
 	nt_weld weld;
 	const double begin = solve->timing ? nt_seconds() : 0;
-	nmtan_status status = nt_weld_mesh(mesh, solve->corner_count, ranges, &room, &weld);
+	nmtan_status status = nt_weld_mesh(mesh, solve->corner_count, ranges, row_room, &room, &weld);
 	if (solve->passed)
 		solve->passed(solve->user, NT_PART_ATTRIBUTES);
 	if (solve->timing)
@@ -420,7 +434,7 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ra
 	if (!status)
 		status = make_ranges(fast, ranges);
 	if (!status)
-		status = make_places(fast, bin_bits, lends_sums ? (nt_record *)solve->tangents : NULL, &room);
+		status = make_places(fast, bin_bits, lends_sums ? (nt_record *)solve->tangents : NULL, row_room, &room);
 	return status ? status : accumulate(fast, kernels);
 }
 

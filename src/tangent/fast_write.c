@@ -69,8 +69,10 @@ static inline void ask_records(const nt_fast *fast, size_t t, size_t end)
 {
 	const size_t later = t + WRITE_AHEAD < end ? t + WRITE_AHEAD : end - 1;
 	const nt_record *records = fast->records[fast->flags[later] & NT_TRIANGLE_ORIENT];
-	for (unsigned k = 0; records && k < 3; k++)
-		__builtin_prefetch(&records[fast->triangles.ids[nt_triangle_corner(&fast->triangles, later, k)]]);
+	uint32_t copy[3];
+	const uint32_t *v = nt_triangle_vertices(&fast->triangles, later, 1, copy);
+	for (int k = 0; records && k < 3; k++)
+		__builtin_prefetch(&records[v[k]]);
 }
 
 /* Every corner of [begin, end) gets its vertex's result; in a sparse solve those of suspects only. */

@@ -207,11 +207,14 @@ static int missing_record(const nt_fast *fast, size_t first, size_t count)
 
 /* Scattered vertices: the rows of corner k of the batch after the next. A third at a time, since no more misses
  * than that can be under way. Always inline: to gcc 12 a function of prefetches alone has no effect, and goes. */
-static inline __attribute__((always_inline)) void ask_ahead(const nt_fast *fast, size_t first, size_t end, unsigned k)
+static inline __attribute__((always_inline)) void ask_ahead(const nt_fast *fast, size_t first, size_t end, size_t k)
 {
-	const size_t far = first + 2 * NT_LANES;
-	for (size_t t = far; t < far + NT_LANES && t < end; t++)
-		__builtin_prefetch(&fast->rows[fast->triangles.ids[nt_triangle_corner(&fast->triangles, t, k)]]);
+	const size_t far = first + 2 * NT_LANES < end ? first + 2 * NT_LANES : end;
+	const size_t count = end - far < NT_LANES ? end - far : NT_LANES;
+	uint32_t copy[3 * NT_LANES];
+	const uint32_t *ids = nt_triangle_vertices(&fast->triangles, far, count, copy) + k;
+	for (size_t i = 0; i < count; i++)
+		__builtin_prefetch(&fast->rows[ids[3 * i]]);
 }
 
 static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, int *orient)

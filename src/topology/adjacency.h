@@ -42,9 +42,11 @@ typedef struct nt_adjacency {
 /*
  * Counts the corners of each vertex and makes the places. Entries are not written.
  *
+ *   cursor_room, room   the memory of cursors and of entries; may be the same
+ *
  * Returns NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_TOO_LARGE.
  */
 nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_ranges *ranges,
-	size_t vertex_count, nt_room *room, nt_adjacency *adjacency);
+	size_t vertex_count, nt_room *cursor_room, nt_room *room, nt_adjacency *adjacency);
 
 #endif

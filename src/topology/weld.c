@@ -57,8 +57,8 @@ static bool grow_table(nt_welder *w)
 
 bool nt_weld_grow_rows(nt_welder *w, size_t capacity)
 {
-	const bool in_room = nt_room_has(w->room, capacity, sizeof *w->rows);
-	nt_weld_row *rows = nt_room_alloc(w->room, capacity, sizeof *rows);
+	const bool in_room = nt_room_has(w->row_room, capacity, sizeof *w->rows);
+	nt_weld_row *rows = nt_room_alloc(w->row_room, capacity, sizeof *rows);
 	if (!rows)
 		return false;
 	if (w->rows)
@@ -278,12 +278,12 @@ static bool weld_alone(nt_welder *w)
 	return !w->by_corner || w->numbers || begin_numbers(w, w->item_count);
 }
 
-nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_room *room,
-	nt_weld *weld)
+nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_room *row_room,
+	nt_room *room, nt_weld *weld)
 {
 	/* few of many vertices used: corner by corner, so that time follows the corners */
 	const bool by_corner = !mesh->indices || mesh->vertex_count / 2 > corner_count;
-	nt_welder w = {.mesh = mesh, .room = room, .by_corner = by_corner};
+	nt_welder w = {.mesh = mesh, .row_room = row_room, .room = room, .by_corner = by_corner};
 	w.items = by_corner ? mesh->indices : NULL;
 	w.item_count = by_corner ? corner_count : mesh->vertex_count;
 
@@ -293,10 +293,10 @@ nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned 
 		return NMTAN_ERROR_MEMORY;
 	weld->ids = by_corner ? w.numbers : !w.numbers ? mesh->indices : number_corners(&w, corner_count, ranges);
 	/* tables and numbers of vertices are not needed any more */
-	if (w.rows_in_room)
-		nt_room_trim(room, w.rows, w.row_count * sizeof *w.rows);
-	else
+	if (row_room != room || !w.rows_in_room)
 		room->begin = begin;
+	if (w.rows_in_room)
+		nt_room_trim(row_room, w.rows, w.row_count * sizeof *w.rows);
 	weld->rows = w.rows;
 	weld->count = w.row_count;
 	return weld->ids ? NMTAN_OK : NMTAN_ERROR_MEMORY;

@@ -21,7 +21,7 @@ enum { NT_WELD_BATCH = 32 };
 
 typedef struct nt_welder {
 	const nmtan_mesh *mesh;
-	nt_room *room;
+	nt_room *row_room, *room; /* for the rows, for everything else */
 	const uint32_t *items; /* vertex of item i; NULL: i */
 	size_t item_count;
 	bool by_corner;        /* items are corners, not vertices */
