@@ -7,6 +7,7 @@
 // object is appended to the text, where it is cut in two around a data URI. It writes null for empty nodes, scenes
 // and attribute lists, so none is made; it throws on invalid UTF-8, so names are converted.
 #include "ext/tinygltf.h"
+#include "base/utf8.h"
 #include "ext/guard.hpp"
 
 #include <charconv>
@@ -28,37 +29,19 @@ namespace {
 
 const char library[] = "tinygltf";
 
-// Length of the UTF-8 sequence at the beginning of text, 0 where there is none (RFC 3629: no overlong
-// forms, no surrogates, nothing above U+10FFFF).
-size_t sequence_length(const unsigned char *text, size_t size)
-{
-	if (text[0] < 0x80)
-		return 1;
-	const size_t length = text[0] >= 0xf0 ? 4 : text[0] >= 0xe0 ? 3 : 2;
-	if (text[0] < 0xc2 || text[0] > 0xf4 || size < length)
-		return 0;
-	for (size_t i = 1; i < length; i++)
-		if ((text[i] & 0xc0) != 0x80)
-			return 0;
-	const bool overlong = (text[0] == 0xe0 && text[1] < 0xa0) || (text[0] == 0xf0 && text[1] < 0x90);
-	const bool beyond = (text[0] == 0xed && text[1] > 0x9f) || (text[0] == 0xf4 && text[1] > 0x8f);
-	return overlong || beyond ? 0 : length;
-}
-
+// Text that may be any bytes as UTF-8.
 std::string utf8(const char *text)
 {
 	std::string result;
-	const size_t size = text ? std::strlen(text) : 0;
-	const auto *bytes = reinterpret_cast<const unsigned char *>(text);
-	for (size_t i = 0; i < size;) {
-		const size_t length = sequence_length(bytes + i, size - i);
+	while (text && *text) {
+		const size_t length = nt_utf8_length(text, SIZE_MAX);
 		if (length) {
-			result.append(text + i, length);
-			i += length;
+			result.append(text, length);
+			text += length;
 		} else { // Latin-1: the code point is the byte
-			result += static_cast<char>(0xc0 | bytes[i] >> 6);
-			result += static_cast<char>(0x80 | (bytes[i] & 0x3f));
-			i++;
+			const unsigned byte = static_cast<unsigned char>(*text++);
+			result += static_cast<char>(0xc0 | byte >> 6);
+			result += static_cast<char>(0x80 | (byte & 0x3f));
 		}
 	}
 	return result;
