@@ -82,15 +82,6 @@ bool whole_number(const json *value, double *number)
 
 // ---- documents ----
 
-nt_json *nt_json_create(void)
-{
-	try {
-		return new nt_json;
-	} catch (...) {
-		return nullptr;
-	}
-}
-
 void nt_json_free(nt_json *document)
 {
 	delete document;
@@ -183,25 +174,6 @@ bool nt_json_get_bool(const nt_json_value *value, bool *result)
 	return true;
 }
 
-bool nt_json_get_int64(const nt_json_value *value, int64_t *result)
-{
-	const json *number = unwrap(value);
-	double real;
-	if (whole_number(number, &real)) {
-		if (!(real >= -0x1p63 && real < 0x1p63))
-			return false;
-		*result = static_cast<int64_t>(real);
-		return true;
-	}
-	if (!number || !number->is_number_integer())
-		return false;
-	if (number->is_number_unsigned() &&
-		number->get<uint64_t>() > uint64_t(std::numeric_limits<int64_t>::max()))
-		return false;
-	*result = number->get<int64_t>();
-	return true;
-}
-
 bool nt_json_get_uint64(const nt_json_value *value, uint64_t *result)
 {
 	const json *number = unwrap(value);
@@ -249,30 +221,12 @@ bool nt_json_equal(const nt_json_value *a, const nt_json_value *b)
 
 nt_json_value *nt_json_put(nt_json *document, nt_json_value *object, const char *key)
 {
-	return nt_json_insert(document, object, SIZE_MAX, key);
-}
-
-nt_json_value *nt_json_insert(nt_json *document, nt_json_value *object, size_t index, const char *key)
-{
 	return change(document, [&] {
 		json::object_t::Container &members = members_of(unwrap(object));
 		if (json *found = find_member(members, key))
 			return found;
 		grow_object(members);
 		members.emplace_back(std::string(key), json());
-		// Members cannot be assigned (their keys are constant): those behind `index` are made anew.
-		if (index < members.size() - 1) {
-			json::object_t::Container ordered;
-			ordered.reserve(members.capacity());
-			for (size_t i = 0; i < members.size(); i++) {
-				if (i == index)
-					ordered.emplace_back(members.back().first, json());
-				if (i + 1 < members.size())
-					ordered.emplace_back(members[i].first, std::move(members[i].second));
-			}
-			members.swap(ordered);
-			return &members[index].second;
-		}
 		return &members.back().second;
 	});
 }
@@ -352,11 +306,6 @@ void nt_json_set_double(nt_json *document, nt_json_value *value, double content)
 void nt_json_set_string(nt_json *document, nt_json_value *value, const char *text, size_t length)
 {
 	assign(document, value, [&] { return json(std::string(text, length)); });
-}
-
-void nt_json_set_array(nt_json *document, nt_json_value *value)
-{
-	assign(document, value, [&] { return json(json::array()); });
 }
 
 void nt_json_set_object(nt_json *document, nt_json_value *value)

@@ -44,7 +44,8 @@ static nmtan_status add_attribute(nt_gltf_patcher *p, uint32_t buffer, const voi
 	return status;
 }
 
-nmtan_status nt_gltf_add_floats(nt_gltf_patcher *p, uint32_t buffer, const float *rows, size_t count,
+/* A VEC3 or VEC4 of floats. */
+static nmtan_status add_floats(nt_gltf_patcher *p, uint32_t buffer, const float *rows, size_t count,
 	uint32_t width, uint32_t *accessor)
 {
 	return add_attribute(p, buffer, rows, count, width * sizeof(float), NT_GLTF_FLOAT,
@@ -118,7 +119,7 @@ nmtan_status nt_gltf_add_morphs(nt_gltf_patcher *p, const nt_gltf_cluster *compo
 			for (size_t k = 0; k < 3; k++)
 				delta[3 * row + k] = rows->morphs[group][m][3 * row + k] -
 					rows->tangents[group][4 * row + k];
-		status = nt_gltf_add_floats(p, component->buffer, delta, rows->new_count, 3, &accessor);
+		status = add_floats(p, component->buffer, delta, rows->new_count, 3, &accessor);
 		if (!status)
 			set_target(p, component, group, mesh->morphs[m].target, "TANGENT", accessor);
 	}
@@ -207,7 +208,7 @@ static nmtan_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *compone
 	nmtan_status status = NMTAN_OK;
 	uint32_t accessor;
 	if (rows->normals[group]) {
-		status = nt_gltf_add_floats(p, component->buffer, rows->normals[group], rows->new_count, 3,
+		status = add_floats(p, component->buffer, rows->normals[group], rows->new_count, 3,
 			&accessor);
 		if (!status)
 			set_attribute(p, component, group, "NORMAL", accessor);
@@ -224,7 +225,7 @@ static nmtan_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *compone
 		float *bitangents;
 		status = nt_gltf_bitangents(p, component, group, &bitangents);
 		if (!status)
-			status = nt_gltf_add_floats(p, component->buffer, bitangents, rows->new_count, 3,
+			status = add_floats(p, component->buffer, bitangents, rows->new_count, 3,
 				&accessor);
 		if (!status)
 			set_attribute(p, component, group, "_BITANGENT", accessor);

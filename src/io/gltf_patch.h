@@ -70,10 +70,6 @@ void nt_gltf_move_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents 
 uint32_t nt_gltf_new_accessor(nt_gltf_patcher *patcher, uint32_t view, uint32_t component_type,
 	const char *type, size_t count, bool normalized);
 
-/* Appends an accessor over a new view of `count` rows of floats; a VEC3 or VEC4 attribute. */
-nmtan_status nt_gltf_add_floats(nt_gltf_patcher *patcher, uint32_t buffer, const float *rows,
-	size_t count, uint32_t width, uint32_t *accessor);
-
 /* Gives every accessor of the component its copied rows, and overridden accessors their new values;
  * `overrides` is sorted for that. decoded_too: what was decompressed by Draco goes into plain views. */
 nmtan_status nt_gltf_grow_attributes(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,

@@ -202,7 +202,7 @@ static void output_appears_at_commit_only(void **state)
 	nt_sink *companion = add(output, in_folder("out.bin"), false);
 	assert_int_equal(nt_sink_write(main, "new document", 12, &error), NMTAN_OK);
 	assert_int_equal(nt_sink_write(companion, "bytes", 5, &error), NMTAN_OK);
-	assert_int_equal(nt_sink_size(main), 12);
+	assert_int_equal(nt_output_size(output), 17);
 	assert_content("out.gltf", "old");
 	assert_int_equal(access(in_folder("out.bin"), F_OK), -1);
 	assert_int_equal(count_in_folder(), 3);
@@ -243,7 +243,7 @@ static void output_bytes_are_the_same_for_small_and_large_writes(void **state)
 		assert_int_equal(nt_sink_write(sink, bytes + done, size, &error), NMTAN_OK);
 		done += size;
 	}
-	assert_int_equal(nt_sink_size(sink), SIZE);
+	assert_int_equal(nt_output_size(output), SIZE);
 	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
 	nt_file file;
 	assert_int_equal(nt_file_open(&file, in_folder("out"), &error), NMTAN_OK);
@@ -260,7 +260,7 @@ static void output_bytes_are_the_same_for_small_and_large_writes(void **state)
 		assert_int_equal(nt_sink_copy(sink, &file, first + 2000000, 100, &error), NMTAN_OK);
 		assert_int_equal(nt_sink_copy(sink, &file, 0, 0, &error), NMTAN_OK);
 		assert_int_equal(nt_sink_copy(sink, &file, SIZE - 1, 2, &error), NMTAN_ERROR_INTERNAL);
-		assert_int_equal(nt_sink_size(sink), 2000104);
+		assert_int_equal(nt_output_size(output), 2000104);
 		assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
 		nt_file copy;
 		assert_int_equal(nt_file_open(&copy, in_folder("copy"), &error), NMTAN_OK);
@@ -281,9 +281,10 @@ static void output_can_be_read_back_before_it_has_its_name(void **state)
 	nt_output *output = start(&(nt_output_options){.sync = true});
 	nt_sink *sink = add(output, in_folder("out"), true);
 	assert_int_equal(nt_sink_write(sink, "text", 4, &error), NMTAN_OK);
-	assert_int_equal(nt_sink_flush(sink, &error), NMTAN_OK);
+	const char *temporary;
+	assert_int_equal(nt_output_written(output, in_folder("out"), &temporary, &error), NMTAN_OK);
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, nt_sink_temporary(sink), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, temporary, &error), NMTAN_OK);
 	assert_int_equal(file.size, 4);
 	nt_file_close(&file);
 	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
@@ -408,8 +409,10 @@ static void output_dry_run_counts_and_refuses_but_writes_nothing(void **state)
 	assert_int_equal(nt_output_add(output, "-", false, &stream, &error), NMTAN_OK);
 	assert_int_equal(nt_sink_write(sink, "new!", 4, &error), NMTAN_OK);
 	assert_int_equal(nt_sink_write(stream, "noise", 5, &error), NMTAN_OK);
-	assert_int_equal(nt_sink_size(sink), 4);
-	assert_null(nt_sink_temporary(sink));
+	assert_int_equal(nt_output_size(output), 9);
+	const char *temporary;
+	assert_int_equal(nt_output_written(output, in_folder("dry"), &temporary, &error), NMTAN_OK);
+	assert_null(temporary);
 	assert_int_equal(count_in_folder(), before);
 	nt_sink *refused;
 	assert_int_equal(nt_output_add(output, in_folder(""), false, &refused, &error), NMTAN_ERROR_IO);
@@ -434,7 +437,9 @@ static void output_pipe_is_written_through(void **state)
 	nt_error error;
 	nt_output *output = start(&(nt_output_options){.no_clobber = true, .sync = true});
 	nt_sink *sink = add(output, in_folder("pipe"), true);
-	assert_null(nt_sink_temporary(sink));
+	const char *temporary;
+	assert_int_equal(nt_output_written(output, in_folder("pipe"), &temporary, &error), NMTAN_OK);
+	assert_null(temporary);
 	assert_int_equal(nt_sink_write(sink, "through", 7, &error), NMTAN_OK);
 	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
 	int code;
