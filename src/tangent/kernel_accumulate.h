@@ -18,18 +18,34 @@ static inline void add_record(nt_record *record, const float *add)
 	nt_record_add(record, sum);
 }
 
-static inline void add_more(nt_record_more *record, const float *add)
+/* What a corner adds: that of corner k of the triangle whose rows lie at `place`. */
+typedef struct addition {
+	const float *sum, *more[2];
+} addition;
+
+static inline addition addition_of(const lanes_out *out, size_t k, size_t place)
+{
+	return (addition){out->add[k] + 4 * place, {out->more[k][0] + 4 * place, out->more[k][1] + 4 * place}};
+}
+
+static inline void load_more(const addition *add, nt_float4 more[2])
+{
+	memcpy(&more[0], add->more[0], sizeof *more);
+	memcpy(&more[1], add->more[1], sizeof *more);
+}
+
+static inline void add_more(nt_record_more *record, const addition *add)
 {
 	nt_float4 old[2], new[2];
 	memcpy(old, record, sizeof old);
-	memcpy(new, add, sizeof new);
+	load_more(add, new);
 	old[0] += new[0], old[1] += new[1];
 	memcpy(record, old, sizeof old);
 }
 
 /* A corner of a hub, or of a vertex that an earlier range adds to. */
 static void __attribute__((noinline)) add_unusual(nt_fast *fast, unsigned range, uint32_t vertex,
-	uint32_t cursor, int orient, nt_fan_entry entry, const float *add, const float *more)
+	uint32_t cursor, int orient, nt_fan_entry entry, const addition *add)
 {
 	if (!(cursor & NT_CURSOR_HUB))
 		fast->adjacency.entries[cursor & NT_CURSOR_PLACE] = entry;
@@ -37,14 +53,17 @@ static void __attribute__((noinline)) add_unusual(nt_fast *fast, unsigned range,
 		nt_deferred *deferred = &fast->deferred[range][fast->deferred_count[range]++];
 		deferred->vertex = vertex;
 		deferred->orient = (uint32_t)orient;
-		memcpy(&deferred->add, add, sizeof deferred->add);
-		if (fast->wants_more)
+		memcpy(&deferred->add, add->sum, sizeof deferred->add);
+		if (fast->wants_more) {
+			nt_float4 more[2];
+			load_more(add, more);
 			memcpy(&deferred->more, more, sizeof deferred->more);
+		}
 		return;
 	}
-	add_record(&fast->records[orient][vertex], add);
+	add_record(&fast->records[orient][vertex], add->sum);
 	if (fast->wants_more)
-		add_more(&fast->more[orient][vertex], more);
+		add_more(&fast->more[orient][vertex], add);
 }
 
 /* Writes a corner down in its vertex's bin. */
@@ -65,55 +84,57 @@ static inline void bin_corner(const nt_bins *bins, uint32_t *cursors, uint32_t v
 
 /* One corner, whatever its vertex is. */
 static void add_corner(nt_fast *fast, unsigned range, uint32_t vertex, int orient, nt_fan_entry entry,
-	const float *add, const float *more)
+	addition add)
 {
 	const nt_adjacency *a = &fast->adjacency;
 	if (fast->bins.cursors) {
 		bin_corner(&fast->bins, fast->bins.cursors + range * fast->bins.count, vertex, (uint32_t)orient,
-			entry, add);
+			entry, add.sum);
 		return;
 	}
 	uint32_t *cursor = &a->cursors[range * a->vertex_count + vertex];
 	const uint32_t place = *cursor;
 	*cursor = place + (place & NT_CURSOR_HUB ? 0 : NT_FAN_LANES);
 	if (place >= NT_CURSOR_SHARED) {
-		add_unusual(fast, range, vertex, place, orient, entry, add, more);
+		add_unusual(fast, range, vertex, place, orient, entry, &add);
 		return;
 	}
 	a->entries[place] = entry;
-	add_record(&fast->records[orient][vertex], add);
+	add_record(&fast->records[orient][vertex], add.sum);
 	if (fast->wants_more)
-		add_more(&fast->more[orient][vertex], more);
+		add_more(&fast->more[orient][vertex], &add);
 }
 
-/* Triangle t, of vertices v, with a frame. */
-static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t *v, int lane, const lanes_out *out)
+/* A triangle with a frame. */
+static void add_triangle(nt_fast *fast, unsigned range, size_t t, int lane, const lanes_out *out)
 {
+	const uint32_t *v = fast->ids + 3 * t;
 	const int orient = fast->flags[t] & NT_TRIANGLE_ORIENT;
 	const uint32_t bit = (uint32_t)orient << 31;
 	for (size_t k = 0; k < 3; k++)
 		add_corner(fast, range, v[k], orient,
-			(nt_fan_entry){v[(k + 1) % 3] | bit, v[(k + 2) % 3] | bit}, out->add[k] + 4 * lane,
-			out->more[k] + 8 * lane);
+			(nt_fan_entry){v[(k + 1) % 3] | bit, v[(k + 2) % 3] | bit},
+			addition_of(out, k, turned_place((size_t)lane)));
 }
 
 /* Triangles with frames: add_triangle() with everything that does not change kept at hand. */
-static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t count, const uint32_t *ids,
-	const lanes_out *out)
+static void __attribute__((noinline)) add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t count, const lanes_out *out)
 {
 	uint32_t *const cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
 	nt_fan_entry *const entries = fast->adjacency.entries;
 	nt_record *const records[2] = {fast->records[0], fast->records[1]};
+	const uint32_t *ids = fast->ids + 3 * first;
 	const uint8_t *flags = fast->flags + first;
 	for (size_t i = 0; i < count; i++, ids += 3) {
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
 		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
 		const unsigned orient = flags[i] & NT_TRIANGLE_ORIENT;
 		if (__builtin_expect((pa | pb | pc) >= NT_CURSOR_SHARED, 0) || fast->wants_more) {
-			add_triangle(fast, range, first + i, ids, (int)i, out);
+			add_triangle(fast, range, first + i, (int)i, out);
 			continue;
 		}
 		const uint32_t bit = orient << 31;
+		const size_t place = 4 * turned_place(i);
 		cursors[a] = pa + NT_FAN_LANES;
 		cursors[b] = pb + NT_FAN_LANES;
 		cursors[c] = pc + NT_FAN_LANES;
@@ -121,24 +142,25 @@ static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t cou
 		entries[pb] = (nt_fan_entry){c | bit, a | bit};
 		entries[pc] = (nt_fan_entry){a | bit, b | bit};
 		nt_record *const to = records[orient];
-		add_record(to + a, out->add[0] + 4 * i);
-		add_record(to + b, out->add[1] + 4 * i);
-		add_record(to + c, out->add[2] + 4 * i);
+		add_record(to + a, out->add[0] + place);
+		add_record(to + b, out->add[1] + place);
+		add_record(to + c, out->add[2] + place);
 	}
 }
 
 /* The same into bins. */
-static void bin_ordinary(const nt_fast *fast, unsigned range, size_t first, size_t count, const uint32_t *v,
-	const lanes_out *out)
+static void __attribute__((noinline)) bin_ordinary(const nt_fast *fast, unsigned range, size_t first, size_t count, const lanes_out *out)
 {
 	const nt_bins bins = fast->bins;
 	uint32_t *const cursors = bins.cursors + range * bins.count;
+	const uint32_t *v = fast->ids + 3 * first;
 	unsigned seen = 0;
 	for (size_t i = 0; i < count; i++, v += 3) {
 		const uint32_t orient = fast->flags[first + i] & NT_TRIANGLE_ORIENT, bit = orient << 31;
-		bin_corner(&bins, cursors, v[0], orient, (nt_fan_entry){v[1] | bit, v[2] | bit}, out->add[0] + 4 * i);
-		bin_corner(&bins, cursors, v[1], orient, (nt_fan_entry){v[2] | bit, v[0] | bit}, out->add[1] + 4 * i);
-		bin_corner(&bins, cursors, v[2], orient, (nt_fan_entry){v[0] | bit, v[1] | bit}, out->add[2] + 4 * i);
+		const size_t place = 4 * turned_place(i);
+		bin_corner(&bins, cursors, v[0], orient, (nt_fan_entry){v[1] | bit, v[2] | bit}, out->add[0] + place);
+		bin_corner(&bins, cursors, v[1], orient, (nt_fan_entry){v[2] | bit, v[0] | bit}, out->add[1] + place);
+		bin_corner(&bins, cursors, v[2], orient, (nt_fan_entry){v[0] | bit, v[1] | bit}, out->add[2] + place);
 		seen |= NT_SEEN(orient);
 	}
 	bins.seen[range] |= (uint8_t)seen;
@@ -152,18 +174,19 @@ static int any_record(const nt_fast *fast, int orient)
 
 /* Adds a triangle that is degenerate (voids in the fans) or has no frame (a corner in the fans, a note in the
  * records), or is ordinary but has values that the lanes do not vouch for. */
-static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range, size_t t, const uint32_t *v,
-	int lane, lanes_out *out)
+static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range, size_t t, int lane,
+	lanes_out *out)
 {
-	static const float zero[8] = {0};
-	float note[4] = {0.0f, 0.0f, 0.0f, 2.0f + STATE_BIT(NT_STATE_ALL)};
+	static const float zero[4] = {0};
+	const float note[4] = {0.0f, 0.0f, 0.0f, 2.0f + STATE_BIT(NT_STATE_ALL - NT_STATE_NO_ANY)};
+	const uint32_t *v = fast->ids + 3 * t;
 	const uint8_t flags = fast->flags[t];
 	if (fast->bins.cursors && !(flags & NT_TRIANGLE_DEGENERATE))
 		fast->bins.seen[range] |= flags & NT_TRIANGLE_ANY ? NT_SEEN_ANY : NT_SEEN(flags & NT_TRIANGLE_ORIENT);
 	if (!(flags & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY))) {
 		for (int k = 0; k < 3 && !out->sound[lane]; k++)
-			out->add[k][4 * lane + 3] = 2.0f + STATE_BIT(NT_STATE_NO_ANY + NT_STATE_LOCAL);
-		add_triangle(fast, range, t, v, lane, out);
+			out->add[k][4 * turned_place((size_t)lane) + 3] = 2.0f + STATE_BIT(NT_STATE_NO_ANY + NT_STATE_LOCAL);
+		add_triangle(fast, range, t, lane, out);
 		return;
 	}
 	const int orient = any_record(fast, flags & NT_TRIANGLE_ORIENT);
@@ -181,10 +204,9 @@ static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range,
 		}
 		return;
 	}
-	note[3] -= STATE_BIT(NT_STATE_NO_ANY);
 	for (int k = 0; k < 3; k++)
-		add_corner(fast, range, v[k], orient, (nt_fan_entry){v[(k + 1) % 3], v[(k + 2) % 3]}, note,
-			zero);
+		add_corner(fast, range, v[k], orient, (nt_fan_entry){v[(k + 1) % 3], v[(k + 2) % 3]},
+			(addition){note, {zero, zero}});
 }
 
 /* The orientation of a record array that these triangles need and that does not exist; -1: none. */
@@ -209,12 +231,10 @@ static int missing_record(const nt_fast *fast, size_t first, size_t count)
  * than that can be under way. Always inline: to gcc 12 a function of prefetches alone has no effect, and goes. */
 static inline __attribute__((always_inline)) void ask_ahead(const nt_fast *fast, size_t first, size_t end, size_t k)
 {
-	const size_t far = first + 2 * NT_LANES < end ? first + 2 * NT_LANES : end;
-	const size_t count = end - far < NT_LANES ? end - far : NT_LANES;
-	uint32_t copy[3 * NT_LANES];
-	const uint32_t *ids = nt_triangle_vertices(&fast->triangles, far, count, copy) + k;
-	for (size_t i = 0; i < count; i++)
-		__builtin_prefetch(&fast->rows[ids[3 * i]]);
+	const size_t far = first + 2 * NT_LANES;
+	const uint32_t *ids = fast->ids + k;
+	for (size_t t = far; t < far + NT_LANES && t < end; t++)
+		__builtin_prefetch(&fast->rows[ids[3 * t]]);
 }
 
 static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, int *orient)
@@ -229,9 +249,7 @@ static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range
 			count--; /* halves of a quad stay together */
 		if (fast->scattered)
 			ask_ahead(fast, first, end, 0);
-		uint32_t copy[3 * NT_LANES];
-		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
-		gather_rows(fast->rows, ids, count, count <= FEW_LANES ? count : NT_LANES, in.row);
+		gather_rows(fast->rows, fast->ids + 3 * first, count, in.row);
 		if (fast->scattered)
 			ask_ahead(fast, first, end, 1);
 		if (fast->wants_more)
@@ -249,12 +267,12 @@ static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range
 			return first;
 		}
 		if (ordinary && fast->bins.cursors)
-			bin_ordinary(fast, range, first, count, ids, &out);
+			bin_ordinary(fast, range, first, count, &out);
 		else if (ordinary)
-			add_ordinary(fast, range, first, count, ids, &out);
+			add_ordinary(fast, range, first, count, &out);
 		else
 			for (size_t i = 0; i < count; i++)
-				add_special(fast, range, first + i, ids + 3 * i, (int)i, &out);
+				add_special(fast, range, first + i, (int)i, &out);
 	}
 	return end;
 }

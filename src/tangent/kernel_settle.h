@@ -9,87 +9,73 @@
 
 #include "tangent/kernel_lanes.h"
 
-/* Vectors of the set's own width, for what the compiler does not make of loops. */
-#if defined(__AVX512F__)
-enum { WIDTH = 16 };
-#define EVEN 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30
-#define ODD 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31
-#elif defined(__AVX2__)
-enum { WIDTH = 8 };
-#define EVEN 0, 2, 4, 6, 8, 10, 12, 14
-#define ODD 1, 3, 5, 7, 9, 11, 13, 15
-#else
-enum { WIDTH = 4 };
-#define EVEN 0, 2, 4, 6
-#define ODD 1, 3, 5, 7
-#endif
-typedef uint32_t lanes __attribute__((vector_size(4 * WIDTH)));
+/* Degree of a hub, whose fans are not looked at; a number of fans that no vertex has. */
+#define HUB UINT32_MAX
+#define DOUBTFUL ((uint32_t)1 << 16)
 
-static inline lanes load_lanes(const void *from)
+/*
+ * The fans of WIDTH vertices with at most `depth` corners: how many there are, DOUBTFUL added where a directed edge
+ * occurs twice, because there pairs depend on order.
+ *
+ *   degree   corners of each vertex
+ *   mask     the bits of entries that count
+ */
+static inline __attribute__((always_inline)) lanes count_fans_of(const nt_fan_entry *entries, const uint32_t depth,
+	lanes degree, lanes mask)
 {
-	lanes result;
-	memcpy(&result, from, sizeof result);
-	return result;
-}
-
-/* The fans of WIDTH vertices by corner. */
-typedef struct fans {
 	lanes next[NT_FAN_DEPTH], previous[NT_FAN_DEPTH];
 	lanes linked[NT_FAN_DEPTH]; /* corner i: bit j for each neighbour j of its orientation */
-} fans;
-
-/* Loads entries, voids where a vertex has fewer corners than the block is deep. */
-static inline void load_fans(const nt_fan_entry *entries, uint32_t depth, lanes degree, lanes mask, fans *f)
-{
+	lanes doubtful = {0}, count = {0};
+	/* voids where a vertex has fewer corners, above all numbers that accumulate gives to voids */
+#pragma GCC unroll 8
 	for (uint32_t k = 0; k < depth; k++, entries += NT_FAN_LANES) {
 		const lanes low = load_lanes(entries), high = load_lanes(entries + WIDTH / 2);
-		const lanes next = __builtin_shufflevector(low, high, EVEN) & mask;
-		const lanes previous = __builtin_shufflevector(low, high, ODD) & mask;
 		const lanes there = (lanes)(degree > k);
-		/* above all numbers that accumulate gives to voids */
-		f->next[k] = (next & there) | ((NT_ENTRY_VOID | 1u << 28 | k) & ~there);
-		f->previous[k] = (previous & there) | ((NT_ENTRY_VOID | 3u << 28 | k) & ~there);
-		f->linked[k] = there & 0;
+		next[k] = __builtin_shufflevector(low, high, EVEN) & mask;
+		previous[k] = __builtin_shufflevector(low, high, ODD) & mask;
+		next[k] = (next[k] & there) | ((NT_ENTRY_VOID | 1u << 28 | k) & ~there);
+		previous[k] = (previous[k] & there) | ((NT_ENTRY_VOID | 3u << 28 | k) & ~there);
+		linked[k] = there & 0;
 	}
-}
-
-/* Links corners across shared edges. Returns all ones where a directed edge occurs twice: there pairs depend
- * on order. */
-static inline lanes link_fans(uint32_t depth, fans *f)
-{
-	lanes doubtful = {0};
-	for (uint32_t a = 0; a + 1 < depth; a++) {
-		const lanes na = f->next[a], pa = f->previous[a];
-		lanes linked = f->linked[a];
+	/* links across shared edges; edges are compared without the orientation in bit 31 */
+#pragma GCC unroll 8
+	for (uint32_t a = 0; a < depth; a++) {
+		const lanes bare_next = next[a] << 1, bare_previous = previous[a] << 1;
+#pragma GCC unroll 8
 		for (uint32_t b = a + 1; b < depth; b++) {
-			const lanes nb = f->next[b], pb = f->previous[b];
-			const lanes link = (lanes)(na == pb) | (lanes)(nb == pa);
-			/* compared without the orientation in bit 31 */
-			doubtful |= (lanes)((na ^ nb) << 1 == 0) | (lanes)((pa ^ pb) << 1 == 0);
-			linked |= link & 1u << b;
-			f->linked[b] |= link & 1u << a;
+			const lanes link = (lanes)(next[a] == previous[b]) | (lanes)(next[b] == previous[a]);
+			doubtful |= (lanes)(bare_next == next[b] << 1) | (lanes)(bare_previous == previous[b] << 1);
+			linked[a] |= link & 1u << b;
+			linked[b] |= link & 1u << a;
 		}
-		f->linked[a] = linked;
 	}
-	return doubtful;
-}
-
-/* Counts components by elimination: a corner hands its links to the later ones it is linked with; one that
- * has none when its turn comes is the last of its component. */
-static inline lanes count_fans(uint32_t depth, const fans *fan, lanes *linked)
-{
-	lanes count = {0};
+	/* components by elimination: a corner hands its links to the later ones it is linked with; one that
+	 * has none when its turn comes is the last of its component */
+#pragma GCC unroll 8
 	for (uint32_t a = 0; a < depth; a++) {
 		const lanes mine = linked[a];
+#pragma GCC unroll 8
 		for (uint32_t b = a + 1; b < depth; b++)
 			linked[b] |= (lanes)((mine & 1u << b) != 0) & mine;
-		const lanes last = (lanes)(mine >> a >> 1 == 0) & (lanes)((fan->next[a] & NT_ENTRY_VOID) == 0);
-		count -= last;
+		count -= (lanes)(mine >> a >> 1 == 0) & (lanes)((next[a] & NT_ENTRY_VOID) == 0);
 	}
-	return count;
+	return count | (doubtful & DOUBTFUL);
 }
 
-/* The records of a block by component. */
+/* The usual depths are worth a loop without branches each. */
+static lanes count_fans(const nt_fan_entry *entries, uint32_t depth, lanes degree, lanes mask)
+{
+	switch (depth) {
+	case 4: return count_fans_of(entries, 4, degree, mask);
+	case 5: return count_fans_of(entries, 5, degree, mask);
+	case 6: return count_fans_of(entries, 6, degree, mask);
+	case 7: return count_fans_of(entries, 7, degree, mask);
+	case 8: return count_fans_of(entries, 8, degree, mask);
+	default: return count_fans_of(entries, depth, degree, mask);
+	}
+}
+
+/* The records of a block by component, in turned places: lane i has the record of vertex turned_place(i). */
 typedef struct record_lanes {
 	float x[NT_LANES], y[NT_LANES], z[NT_LANES];
 	uint32_t state[NT_LANES]; /* then the result's */
@@ -100,16 +86,22 @@ typedef struct record_lanes {
 static void load_records(const nt_record *restrict records, size_t count, record_lanes *restrict r)
 {
 	nt_record copy[NT_LANES];
-	if (!records || count < NT_LANES) {
+	if (!records) {
+		memset(r, 0, sizeof *r);
+		for (int i = 0; i < NT_LANES; i++)
+			r->state[i] = NT_STATE_BASE | NT_STATE_ALL;
+		return;
+	}
+	if (count < NT_LANES) {
 		for (int i = 0; i < NT_LANES; i++)
 			copy[i] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
-		if (records)
-			memcpy(copy, records, count * sizeof *copy);
+		memcpy(copy, records, count * sizeof *copy);
 		records = copy;
 	}
-	for (size_t i = 0; i < NT_LANES; i += 4) {
-		nt_float4 four[4];
-		memcpy(four, records + i, sizeof four);
+	for (size_t i = 0; i < NT_LANES; i += WIDTH) {
+		lanes four[4];
+		for (size_t j = 0; j < 4; j++)
+			four[j] = load_lanes((const char *)(records + i) + sizeof *four * j);
 		turn(four);
 		memcpy(r->x + i, &four[0], sizeof *four);
 		memcpy(r->y + i, &four[1], sizeof *four);
@@ -140,9 +132,10 @@ static size_t count_unusable(const nt_weld_row *rows, size_t count, const record
 	const uint32_t *restrict complex)
 {
 	uint32_t unusable = 0;
-	for (size_t i = 0; i < count; i++) {
+	for (size_t i = 0; i < NT_LANES; i++) {
+		const size_t vertex = turned_place(i);
 		const float t[3] = {r->x[i], r->y[i], r->z[i]};
-		const float *n = (const float *)&rows[i] + 3;
+		const float *n = (const float *)&rows[vertex < count ? vertex : 0] + 3;
 		const float squared = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
 		const int good = (fabsf(squared - 1.0f) <= NT_UNIT_TOLERANCE) & !nt_is_parallel(t, n);
 		unusable += r->present[i] & !complex[i] & !good;
@@ -154,14 +147,15 @@ static void store_records(nt_record *restrict records, size_t count, const recor
 {
 	nt_record copy[NT_LANES];
 	nt_record *to = count == NT_LANES ? records : copy;
-	for (size_t i = 0; i < NT_LANES; i += 4) {
-		nt_float4 four[4];
-		memcpy(&four[0], r->x + i, sizeof *four);
-		memcpy(&four[1], r->y + i, sizeof *four);
-		memcpy(&four[2], r->z + i, sizeof *four);
-		memcpy(&four[3], r->state + i, sizeof *four);
+	for (size_t i = 0; i < NT_LANES; i += WIDTH) {
+		lanes four[4];
+		four[0] = load_lanes(r->x + i);
+		four[1] = load_lanes(r->y + i);
+		four[2] = load_lanes(r->z + i);
+		four[3] = load_lanes(r->state + i);
 		turn(four);
-		memcpy(to + i, four, sizeof four);
+		for (size_t j = 0; j < 4; j++)
+			memcpy((char *)(to + i) + sizeof *four * j, &four[j], sizeof *four);
 	}
 	if (to == copy)
 		memcpy(records, copy, count * sizeof *copy);
@@ -177,8 +171,10 @@ static void normalise3(float *x, float *y, float *z)
 
 static void settle_more(nt_record_more *more, size_t count, const uint32_t *present)
 {
-	for (size_t i = 0; i < count; i++) {
-		nt_record_more *m = &more[i];
+	for (size_t i = 0; i < NT_LANES; i++) {
+		nt_record_more *m = &more[turned_place(i)];
+		if (turned_place(i) >= count)
+			continue;
 		if (!present[i]) {
 			*m = (nt_record_more){.y = 1.0f, .mag_s = 1.0f, .mag_t = 1.0f};
 			continue;
@@ -191,9 +187,8 @@ static void settle_more(nt_record_more *more, size_t count, const uint32_t *pres
 	}
 }
 
-/* Corners of the block's vertices, and which of its vertices are hubs. Returns the most corners. */
-static uint32_t load_degrees(const nt_adjacency *a, size_t first, size_t count, uint32_t *restrict degree,
-	uint32_t *restrict hub)
+/* Corners of the block's vertices, HUB for a hub. Returns the most corners. */
+static uint32_t load_degrees(const nt_adjacency *a, size_t first, size_t count, uint32_t *restrict degree)
 {
 	const size_t place = first - a->first_vertex;
 	const uint32_t *cursors = a->cursors + (a->ranges - 1) * a->vertex_count + place;
@@ -201,9 +196,10 @@ static uint32_t load_degrees(const nt_adjacency *a, size_t first, size_t count, 
 	uint32_t most = 0;
 	for (size_t i = 0; i < NT_LANES; i++) {
 		const uint32_t cursor = i < count ? cursors[i] : begin;
-		hub[i] = cursor >> 31;
-		degree[i] = hub[i] ? 0 : ((cursor & NT_CURSOR_PLACE) - begin) / NT_FAN_LANES;
-		most = degree[i] > most ? degree[i] : most;
+		const uint32_t corners = ((cursor & NT_CURSOR_PLACE) - begin) / NT_FAN_LANES;
+		const uint32_t known = cursor & NT_CURSOR_HUB ? 0 : corners;
+		most = known > most ? known : most;
+		degree[i] = cursor & NT_CURSOR_HUB ? HUB : corners;
 	}
 	return most;
 }
@@ -213,10 +209,9 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, size_t block, nt_
 	const size_t first = block * NT_LANES, left = fast->vertex_count - first;
 	const size_t count = left < NT_LANES ? left : NT_LANES;
 	const nt_fan_entry *entries = a->entries + a->block_begin[block - a->first_vertex / NT_FAN_LANES];
-	uint32_t degree[NT_LANES], hub[NT_LANES], mask[NT_LANES], complex[NT_LANES];
-	uint32_t doubtful[NT_LANES], fan_count[NT_LANES];
+	uint32_t degree[NT_LANES], mask[NT_LANES], fan_count[NT_LANES], complex[NT_LANES];
 	record_lanes r[2];
-	const uint32_t depth = load_degrees(a, first, count, degree, hub);
+	const uint32_t depth = load_degrees(a, first, count, degree);
 	for (int o = 0; o < 2; o++)
 		load_records(fast->records[o] ? fast->records[o] + first : NULL, count, &r[o]);
 
@@ -224,12 +219,11 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, size_t block, nt_
 	for (int i = 0; i < NT_LANES; i++)
 		mask[i] = r[0].present[i] & r[1].present[i] ? UINT32_MAX : NT_ENTRY_VERTEX;
 	for (size_t i = 0; i < NT_LANES; i += WIDTH) {
-		fans f;
-		load_fans(entries + i, depth, load_lanes(degree + i),
-			load_lanes(mask + i), &f);
-		const lanes twice = link_fans(depth, &f), counted = count_fans(depth, &f, f.linked);
-		memcpy(doubtful + i, &twice, sizeof twice);
-		memcpy(fan_count + i, &counted, sizeof counted);
+		const lanes degrees = load_lanes(degree + i), masks = load_lanes(mask + i);
+		const lanes counted = count_fans(entries + i, depth, degrees,
+			__builtin_shufflevector(masks, masks, UNTURNED)) | ((lanes)(degrees == HUB) & DOUBTFUL);
+		const lanes turned = __builtin_shufflevector(counted, counted, TURNED);
+		memcpy(fan_count + i, &turned, sizeof turned);
 	}
 
 	for (int i = 0; i < NT_LANES; i++) {
@@ -237,8 +231,8 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, size_t block, nt_
 		const uint32_t present = r[0].present[i] + r[1].present[i];
 		const uint32_t unsound = (r[0].present[i] & !r[0].sound[i]) | (r[1].present[i] & !r[1].sound[i]);
 		const uint32_t mixed = present == 2 && !(both & NT_STATE_NO_ANY);
-		complex[i] = present != 0 && 0 != (unsound | mixed | hub[i] | doubtful[i] |
-						     !(both & NT_STATE_LOCAL) | (fan_count[i] != present));
+		complex[i] = present != 0 && 0 != (unsound | mixed | !(both & NT_STATE_LOCAL) |
+						     (fan_count[i] != present));
 	}
 	for (int o = 0; o < 2; o++) {
 		if (!fast->records[o])
@@ -258,7 +252,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, size_t block, nt_
 		if (fast->wants_more)
 			settle_more(fast->more[o] + first, count, r[o].present);
 	}
-	for (size_t i = 0; i < count; i++)
+	for (size_t i = 0; i < NT_LANES; i++)
 		settled->complex_count += complex[i];
 }
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The passes of sums.c that need lanes, as plain loops over 16 of them that the compiler makes vectors of.
- * kernel_*.c include this file once for each instruction set, behind kernel.h, whose turn() and gather_rows() it
- * uses, with NT_SUM_KERNEL giving the name.
+ * kernel_*.c include this file once for each instruction set, behind kernel.h, whose gather_rows() it uses,
+ * with NT_SUM_KERNEL giving the name.
  *
  * accumulate: 16 triangles at a time. The arithmetic is that of frames.c, operation by operation, in steps
  * that each fit the registers: directions, their second look where products cancel, lengths, corners.
@@ -247,7 +247,7 @@ static void __attribute__((noinline)) sum_corners_unweighted(sum_lanes *l, nt_su
 static void sum_solve(const nt_sums *s, size_t first, size_t count, sum_lanes *l, nt_sum_block *block)
 {
 	const double offset = s->solve->mesh->stored_v_offset;
-	gather_rows(s->weld.rows, s->ids + 3 * first, count, NT_SUM_LANES, l->row);
+	gather_rows(s->weld.rows, s->ids + 3 * first, count, l->row);
 	sum_frames(l, block, fabs(offset), offset != 0.0 ? 3 * 0x1p-24 : 0.0);
 	const double asked = FLAG(s->weight == NT_WEIGHT_NONE);
 	double cancelled = 0.0;
