@@ -176,10 +176,8 @@ static void fill_ranges(void *context, size_t begin, size_t end, unsigned slot)
 	(void)slot;
 	const run *r = context;
 	const size_t *bounds = r->fast->ranges.bounds;
-	for (size_t range = begin; range < end; range++) {
-		int orient;
-		r->kernels->accumulate(r->fast, bounds[range], bounds[range + 1], (unsigned)range, &orient);
-	}
+	for (size_t range = begin; range < end; range++)
+		r->kernels->accumulate(r->fast, bounds[range], bounds[range + 1], (unsigned)range, NULL, NULL);
 }
 
 /* What all ranges share, as it is now; first with the record array that this one misses (-1: none). False: out
@@ -195,7 +193,26 @@ static bool look_at_records(run *r, int missing, nt_fast *view)
 	return !failed;
 }
 
-/* Records of an orientation exist from the first triangle on that has it: most meshes have one only. */
+/* Records of an orientation exist from the first triangle on that has it: most meshes have one only. Three ways to
+ * make them: one thread alone; a thread that stops, so that all can clear them; one of several, for all. */
+static bool make_alone(nt_fast *fast, int orient, void *context)
+{
+	(void)context;
+	return make_record(fast, orient, 1);
+}
+
+static bool stop_for_record(nt_fast *fast, int orient, void *context)
+{
+	(void)fast;
+	*(int *)context = orient;
+	return false;
+}
+
+static bool make_shared(nt_fast *view, int orient, void *context)
+{
+	return look_at_records(context, orient, view);
+}
+
 static void accumulate_ranges(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
@@ -203,9 +220,9 @@ static void accumulate_ranges(void *context, size_t begin, size_t end, unsigned 
 	const size_t *bounds = r->fast->ranges.bounds;
 	for (size_t range = begin; range < end; range++) {
 		nt_fast view;
-		int missing = -1;
-		for (size_t t = range ? bounds[range] : r->begun; t < bounds[range + 1] && look_at_records(r, missing, &view);)
-			t = r->kernels->accumulate(&view, t, bounds[range + 1], (unsigned)range, &missing);
+		if (look_at_records(r, -1, &view))
+			r->kernels->accumulate(&view, range ? bounds[range] : r->begun, bounds[range + 1],
+				(unsigned)range, make_shared, r);
 	}
 }
 
@@ -258,17 +275,15 @@ static nmtan_status accumulate(nt_fast *fast, const nt_kernels *kernels)
 {
 	if (fast->bins.cursors)
 		return fill_bins(fast, kernels);
+	const size_t end = fast->ranges.bounds[1];
+	if (fast->ranges.count == 1)
+		return kernels->accumulate(fast, 0, end, 0, make_alone, NULL) == end ? NMTAN_OK
+										     : NMTAN_ERROR_MEMORY;
 	/* the first range runs up to the first record array it needs, which all threads clear */
 	int orient = 0;
-	size_t t = kernels->accumulate(fast, 0, fast->ranges.bounds[1], 0, &orient);
-	if (t < fast->ranges.bounds[1] && !make_record(fast, orient, fast->ranges.count))
+	const size_t t = kernels->accumulate(fast, 0, end, 0, stop_for_record, &orient);
+	if (t < end && !make_record(fast, orient, fast->ranges.count))
 		return NMTAN_ERROR_MEMORY;
-	if (fast->ranges.count == 1) {
-		while ((t = kernels->accumulate(fast, t, fast->triangle_count, 0, &orient)) < fast->triangle_count)
-			if (!make_record(fast, orient, 1))
-				return NMTAN_ERROR_MEMORY;
-		return NMTAN_OK;
-	}
 	if (!make_deferred(fast))
 		return NMTAN_ERROR_MEMORY;
 	pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;

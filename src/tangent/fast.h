@@ -69,12 +69,16 @@ typedef struct nt_settled {
 	size_t complex_count, unusable_count;
 } nt_settled;
 
+/* Makes fast->records[orient], which a triangle needs and which does not exist; false: it cannot be had now. */
+typedef bool nt_record_maker(nt_fast *fast, int orient, void *context);
+
 /* The passes of one instruction set. */
 typedef struct nt_kernels {
 	/* Solves triangles [begin, end) of a range and adds them to their vertices, or to the bins where
-	 * there are bins. Without them it stops before a triangle whose record array does not exist and
-	 * returns it, and its orientation in *orient; otherwise returns end. */
-	size_t (*accumulate)(nt_fast *fast, size_t begin, size_t end, unsigned range, int *orient);
+	 * there are bins. Without them it asks for record arrays that do not exist, and stops where it does not
+	 * get one. Returns the triangle up to which it came. */
+	size_t (*accumulate)(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
+		void *context);
 	/* Turns the records of blocks [begin, end) of vertices, all of them in the adjacency, into results;
 	 * counts the vertices that are complex, and the settled ones whose tangent is not usable. */
 	void (*settle)(nt_fast *fast, const nt_adjacency *adjacency, size_t begin, size_t end,

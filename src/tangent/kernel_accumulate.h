@@ -237,7 +237,8 @@ static inline __attribute__((always_inline)) void ask_ahead(const nt_fast *fast,
 		__builtin_prefetch(&fast->rows[ids[3 * t]]);
 }
 
-static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, int *orient)
+static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
+	void *context)
 {
 	lanes_in in;
 	lanes_out out;
@@ -261,11 +262,9 @@ static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range
 		if (fast->scattered)
 			ask_ahead(fast, first, end, 2);
 		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
-		const int missing = missing_record(fast, first, count);
-		if (missing >= 0) {
-			*orient = missing;
-			return first;
-		}
+		for (int missing; (missing = missing_record(fast, first, count)) >= 0;)
+			if (!make(fast, missing, context))
+				return first;
 		if (ordinary && fast->bins.cursors)
 			bin_ordinary(fast, range, first, count, &out);
 		else if (ordinary)
