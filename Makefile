@@ -175,4 +175,4 @@ clean:
 	rm -rf build
 
 format:
-	clang-format -i $(wildcard src/*/*.[ch] src/*/*.cpp include/*.h tests/*/*.[ch] tests/*/*/*.[ch])
+	clang-format -i $(wildcard src/*/*.[ch] src/*/*.[ch]pp include/*.h tests/*/*.[ch] tests/*/*/*.[ch])

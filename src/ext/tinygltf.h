@@ -8,6 +8,7 @@
 #define NT_EXT_TINYGLTF_H
 
 #include "base/error.h"
+#include "ext/gltf_numbers.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -15,11 +16,6 @@ extern "C" {
 
 /* No index: an optional reference that is absent, and the result of an addition that failed. */
 #define NT_MODEL_NONE UINT32_MAX
-
-/* Numbers of the glTF specification. */
-enum { NT_GLTF_BYTE = 5120, NT_GLTF_UNSIGNED_BYTE = 5121, NT_GLTF_SHORT = 5122,
-	NT_GLTF_UNSIGNED_SHORT = 5123, NT_GLTF_UNSIGNED_INT = 5125, NT_GLTF_FLOAT = 5126 };
-enum { NT_GLTF_NO_TARGET = 0, NT_GLTF_ARRAY_BUFFER = 34962, NT_GLTF_ELEMENT_ARRAY_BUFFER = 34963 };
 
 /* ---- a new document ---- */
 

@@ -127,7 +127,7 @@ static uint32_t plan_indices(composition *c, const nt_part *part)
 	const size_t size = nt_part_index_size(part);
 	const nt_model_accessor accessor = {
 		.view = add_block(c, part, NT_STREAM_COUNT, (uint64_t)part->index_count * size),
-		.component_type = size == 2 ? NT_GLTF_UNSIGNED_SHORT : NT_GLTF_UNSIGNED_INT,
+		.component_type = size == 2 ? NT_GLTF_USHORT : NT_GLTF_UINT,
 		.components = 1,
 		.count = part->index_count,
 	};

@@ -135,7 +135,7 @@ static nmtan_status open_block(nt_reread *model, size_t mesh, size_t primitive, 
 		*tolerances[i] = tolerance_of(found, decoded->point_count);
 	}
 	view->indices = (nt_reread_array){(const unsigned char *)decoded->indices, decoded->face_count * 3,
-		sizeof(uint32_t), NT_GLTF_UNSIGNED_INT, 1, false};
+		sizeof(uint32_t), NT_GLTF_UINT, 1, false};
 	return NMTAN_OK;
 }
 
@@ -176,9 +176,9 @@ static size_t vertex_at(const primitive_view *view, size_t corner)
 	uint16_t half;
 	uint32_t word;
 	switch (array->component_type) {
-	case NT_GLTF_UNSIGNED_BYTE:
+	case NT_GLTF_UBYTE:
 		return *at;
-	case NT_GLTF_UNSIGNED_SHORT:
+	case NT_GLTF_USHORT:
 		memcpy(&half, at, sizeof half);
 		return half;
 	default:
@@ -300,12 +300,12 @@ static float component_at(const nt_reread_array *array, const unsigned char *row
 	case NT_GLTF_BYTE:
 		memcpy(&byte, row + k, sizeof byte);
 		return array->normalized ? fmaxf((float)byte / 127.0f, -1.0f) : (float)byte;
-	case NT_GLTF_UNSIGNED_BYTE:
+	case NT_GLTF_UBYTE:
 		return array->normalized ? (float)row[k] / 255.0f : (float)row[k];
 	case NT_GLTF_SHORT:
 		memcpy(&half, row + k * sizeof half, sizeof half);
 		return array->normalized ? fmaxf((float)half / 32767.0f, -1.0f) : (float)half;
-	case NT_GLTF_UNSIGNED_SHORT:
+	case NT_GLTF_USHORT:
 		memcpy(&natural, row + k * sizeof natural, sizeof natural);
 		return array->normalized ? (float)natural / 65535.0f : (float)natural;
 	default:

@@ -11,11 +11,14 @@
 
 enum { LEAST_BITS = 13, MOST_BINS = 512 };
 
+/* Triangles whose vertices are looked up at a time. */
+enum { BATCH = 16 };
+
 /* Every block has the full depth: what is not used is not touched, and nothing has to be counted. */
 enum { BLOCK_ENTRIES = NT_FAN_LANES * NT_FAN_DEPTH };
 
 typedef struct counting {
-	const uint32_t *ids;
+	const nt_triangles *triangles;
 	const nt_triangle_ranges *ranges;
 	const nt_bins *bins;
 } counting;
@@ -28,8 +31,14 @@ static void count_ranges(void *context, size_t begin, size_t end, unsigned slot)
 	for (size_t range = begin; range < end; range++) {
 		uint32_t *counts = c->bins->cursors + range * c->bins->count;
 		memset(counts, 0, c->bins->count * sizeof *counts);
-		for (size_t i = 3 * c->ranges->bounds[range]; i < 3 * c->ranges->bounds[range + 1]; i++)
-			counts[c->ids[i] >> bits]++;
+		const size_t last = c->ranges->bounds[range + 1];
+		for (size_t t = c->ranges->bounds[range], step; t < last; t += step) {
+			uint32_t copy[3 * BATCH];
+			step = last - t < BATCH ? last - t : BATCH;
+			const uint32_t *v = nt_triangle_vertices(c->triangles, t, step, copy);
+			for (size_t i = 0; i < 3 * step; i++)
+				counts[v[i] >> bits]++;
+		}
 	}
 }
 
@@ -68,7 +77,7 @@ unsigned nt_bins_bits(size_t vertex_count)
 	return bits;
 }
 
-nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges, size_t vertex_count,
+nmtan_status nt_bins_make(const nt_triangles *triangles, const nt_triangle_ranges *ranges, size_t vertex_count,
 	unsigned vertex_bits, nt_record *sums, nt_scratch *scratch, nt_bins *bins)
 {
 	const size_t count = (vertex_count + ((size_t)1 << vertex_bits) - 1) >> vertex_bits;
@@ -82,7 +91,7 @@ nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges,
 	if (!b.entries || !b.sums || !b.begins || !b.seen || !b.cursors)
 		return NMTAN_ERROR_MEMORY;
 	memset(b.seen, 0, ranges->count * sizeof *b.seen);
-	counting c = {ids, ranges, &b};
+	counting c = {triangles, ranges, &b};
 	nt_parallel_ranges(ranges->count, ranges->count, 1, count_ranges, &c);
 	place_corners(&b);
 	*bins = b;

@@ -47,13 +47,12 @@ unsigned nt_bins_bits(size_t vertex_count);
 /*
  * Makes places for the corners of all triangles.
  *
- *   ids           [3 * triangle count] vertices of the triangles
  *   vertex_bits   log2 of the vertices of a bin: 4, a block of the adjacency, to NT_BINNED_BITS
  *   sums          [3 * triangle count] lent until the bins are added up; NULL: taken from the scratch
  *
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */
-nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges, size_t vertex_count,
+nmtan_status nt_bins_make(const nt_triangles *triangles, const nt_triangle_ranges *ranges, size_t vertex_count,
 	unsigned vertex_bits, nt_record *sums, nt_scratch *scratch, nt_bins *bins);
 
 /* Memory for the adjacency of one bin, whichever it is. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */

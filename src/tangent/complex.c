@@ -69,13 +69,13 @@ static uint32_t triangle_of(const complex *c, uint32_t place)
 static uint32_t next_vertex(const complex *c, uint32_t place)
 {
 	const uint32_t i = c->items[place];
-	return c->fast->ids[i % 3 == 2 ? i - 2 : i + 1];
+	return nt_fast_vertex(c->fast, i % 3 == 2 ? i - 2 : i + 1);
 }
 
 static uint32_t previous_vertex(const complex *c, uint32_t place)
 {
 	const uint32_t i = c->items[place];
-	return c->fast->ids[i % 3 == 0 ? i + 2 : i - 1];
+	return nt_fast_vertex(c->fast, i % 3 == 0 ? i + 2 : i - 1);
 }
 
 /* Collecting */
@@ -106,8 +106,8 @@ static nmtan_status collect_corners(complex *c)
 	memset(c->begin, 0, (c->vertex_count + 2) * sizeof *c->begin);
 	for (size_t t = next_triangle(c, 0); t < fast->triangle_count; t = next_triangle(c, t + 1))
 		for (size_t i = 3 * t; i < 3 * t + 3; i++)
-			if (is_complex(c, fast->ids[i])) {
-				at[vertex_number(c, fast->ids[i]) + 1]++;
+			if (is_complex(c, nt_fast_vertex(fast, i))) {
+				at[vertex_number(c, nt_fast_vertex(fast, i)) + 1]++;
 				c->corner_count++;
 			}
 	for (size_t v = 1; v <= c->vertex_count; v++)
@@ -120,8 +120,8 @@ static nmtan_status collect_corners(complex *c)
 	size_t seen = 0;
 	for (size_t t = next_triangle(c, 0); t < fast->triangle_count; t = next_triangle(c, t + 1))
 		for (size_t i = 3 * t; i < 3 * t + 3; i++)
-			if (is_complex(c, fast->ids[i])) {
-				const uint32_t place = at[vertex_number(c, fast->ids[i])]++;
+			if (is_complex(c, nt_fast_vertex(fast, i))) {
+				const uint32_t place = at[vertex_number(c, nt_fast_vertex(fast, i))]++;
 				c->items[place] = (uint32_t)i;
 				c->order[seen++] = place;
 			}
@@ -466,9 +466,9 @@ static nmtan_status solve_groups(complex *c)
 	nt_scratch *scratch = c->fast->solve->scratch;
 	c->room = nt_scratch_alloc(scratch, largest, sizeof *c->room);
 	/* a corner of a triangle has one result, which need not wait: 32 bytes for each corner at a hub */
-	if (c->fast->corners)
+	if (c->fast->triangles.cuts)
 		c->slots = nt_scratch_alloc(scratch, c->corner_count, sizeof *c->slots);
-	if (!c->room || (c->fast->corners && !c->slots))
+	if (!c->room || (c->fast->triangles.cuts && !c->slots))
 		return NMTAN_ERROR_MEMORY;
 	for (size_t g = 0; g < c->group_count; g++)
 		solve_group(c, g);
@@ -515,8 +515,8 @@ static void write_corners(const complex *c)
 {
 	for (size_t v = 0; v < c->vertex_count; v++) {
 		for (uint32_t place = c->begin[v]; place < c->begin[v + 1]; place++) {
-			const bool paired = c->fast->corners && place + 1 < c->begin[v + 1] &&
-				c->fast->corners[c->items[place]] == c->fast->corners[c->items[place + 1]];
+			const bool paired = c->fast->triangles.cuts && place + 1 < c->begin[v + 1] &&
+				nt_fast_corner(c->fast, c->items[place]) == nt_fast_corner(c->fast, c->items[place + 1]);
 			if (c->slots || c->group[place] == NONE)
 				write_place(c, place, paired ? place + 1 : NONE);
 			place += paired;

@@ -62,28 +62,23 @@ static size_t count_triangles(const nmtan_mesh *mesh)
 	return count;
 }
 
-/* Triangles of a mesh with quads: their corners, vertices, and which are second halves. */
-static nmtan_status cut_faces(nt_fast *fast, const uint32_t *corner_ids)
+/* Triangles of a mesh with quads: how they are cut, and which are second halves. */
+static nmtan_status cut_faces(nt_fast *fast)
 {
 	const nmtan_mesh *mesh = fast->solve->mesh;
-	uint32_t *corners = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 3 * sizeof *corners);
-	uint32_t *ids = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 3 * sizeof *ids);
-	if (!corners || !ids)
+	uint32_t *cuts = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, sizeof *cuts);
+	if (!cuts)
 		return NMTAN_ERROR_MEMORY;
 	size_t first = 0, t = 0;
 	for (size_t face = 0; face < mesh->face_count; first += mesh->face_sizes[face++]) {
-		uint32_t cut[2][3];
-		const unsigned count = nt_face_triangles(mesh, face, first, cut);
+		uint32_t corners[2][3];
+		const unsigned count = nt_face_triangles(mesh, face, first, corners);
 		for (unsigned half = 0; half < count; half++, t++) {
 			fast->flags[t] = half ? NT_TRIANGLE_SECOND : 0;
-			for (int k = 0; k < 3; k++) {
-				corners[3 * t + (size_t)k] = cut[half][k];
-				ids[3 * t + (size_t)k] = corner_ids[cut[half][k]];
-			}
+			cuts[t] = nt_cut_of((uint32_t)first, corners[half]);
 		}
 	}
-	fast->corners = corners;
-	fast->ids = ids;
+	fast->triangles.cuts = cuts;
 	return NMTAN_OK;
 }
 
@@ -94,10 +89,10 @@ static nmtan_status make_triangles(nt_fast *fast, const nt_weld *weld)
 	fast->flags = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 1);
 	if (!fast->flags)
 		return NMTAN_ERROR_MEMORY;
+	fast->triangles.ids = weld->ids;
 	if (fast->triangle_count != fast->solve->mesh->face_count)
-		return cut_faces(fast, weld->ids);
+		return cut_faces(fast);
 	memset(fast->flags, 0, fast->triangle_count);
-	fast->ids = weld->ids;
 	return NMTAN_OK;
 }
 
@@ -324,7 +319,8 @@ static void mark_contested(nt_fast *fast)
 		return;
 	size_t t = nt_fast_next_flagged(fast, 0, NT_TRIANGLE_ANY);
 	for (; t < fast->triangle_count; t = nt_fast_next_flagged(fast, t + 1, NT_TRIANGLE_ANY)) {
-		const uint32_t *v = fast->ids + 3 * t;
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
 		if (fast->flags[t] & NT_TRIANGLE_DEGENERATE)
 			continue;
 		uint32_t empty[2] = {NT_STATE_EMPTY, NT_STATE_EMPTY};
@@ -396,23 +392,34 @@ static void vouch(const nt_fast *fast, bool usable)
 	if (usable)
 		*vouched = (nt_vouched){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT,
 			.suspect = NT_TRIANGLE_SUSPECT};
-	if (!fast->corners) {
-		vouched->welded = fast->ids;
-		vouched->welded_count = fast->vertex_count;
-	}
+	vouched->welded = fast->triangles.ids;
+	vouched->welded_count = fast->vertex_count;
 }
 
 /* 3 */
-static nmtan_status make_places(nt_fast *fast, unsigned bin_bits, nt_record *sums, nt_room *room)
+static nmtan_status make_places(nt_fast *fast, unsigned bin_bits, nt_record *sums, nt_room *row_room, nt_room *room)
 {
-	const size_t corners = 3 * fast->triangle_count;
-	fast->scattered = bin_bits || nt_is_scattered(fast->ids, corners, fast->vertex_count);
+	fast->scattered = bin_bits ||
+			  nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
 	if (!fast->scattered || fast->wants_more)
-		return nt_adjacency_make(fast->ids, &fast->ranges, fast->vertex_count, room, &fast->adjacency);
+		return nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count, row_room, room,
+			&fast->adjacency);
 	if (!bin_bits)
 		bin_bits = nt_bins_bits(fast->vertex_count);
-	return nt_bins_make(fast->ids, &fast->ranges, fast->vertex_count, bin_bits, sums, room->scratch,
+	return nt_bins_make(&fast->triangles, &fast->ranges, fast->vertex_count, bin_bits, sums, room->scratch,
 		&fast->bins);
+}
+
+/* Whether there is room for the rows beside the entries. If not, the larger of them should have it. */
+static bool has_room_for_rows(const nt_fast *fast, const nt_room *room)
+{
+	const nmtan_mesh *mesh = fast->solve->mesh;
+	const size_t free = (size_t)(room->end - room->begin);
+	/* without indices: two triangles for a vertex */
+	const size_t vertices = mesh->indices ? mesh->vertex_count : fast->triangle_count / 2;
+	const size_t entries = 3 * fast->triangle_count * sizeof(nt_fan_entry);
+	const size_t rows = vertices * (sizeof(nt_weld_row) + sizeof(uint32_t));
+	return rows + entries <= free || entries > free || rows > entries;
 }
 
 /* 1 to 4 */
@@ -420,18 +427,19 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ra
 {
 	const nt_solve *solve = fast->solve;
 	const nmtan_mesh *mesh = solve->mesh;
-	/* the output lends its bytes, to the sums of binned corners if there are going to be any: rows at
-	 * random are better off in the large pages of the scratch. A sparse output is not filled, so that
-	 * its pages need not exist: there the caller lends what it fills from the records. */
+	/* the output lends its bytes, after the weld to the sums of binned corners if there are going to be any:
+	 * rows at random are better off in the large pages of the scratch. A sparse output is not filled, so
+	 * that its pages need not exist: there the caller lends what it fills from the records. */
 	const bool lends_sums = !fast->sparse && !fast->wants_more && solve->corner_count == 3 * fast->triangle_count &&
 		mesh->indices && (bin_bits || nt_is_scattered(mesh->indices, solve->corner_count, mesh->vertex_count));
 	nt_room room = fast->sparse
 		? nt_room_over(solve->lent, solve->lent_bytes, solve->scratch)
-		: nt_room_over(solve->tangents,
-			lends_sums ? 0 : solve->corner_count * 4 * sizeof(float), solve->scratch);
+		: nt_room_over(solve->tangents, solve->corner_count * 4 * sizeof(float), solve->scratch);
+	nt_room none = nt_room_over(solve->tangents, 0, solve->scratch);
+	nt_room *const row_room = !lends_sums && has_room_for_rows(fast, &room) ? &room : &none;
 	nt_weld weld;
 	const double begin = solve->timing ? nt_seconds() : 0;
-	nmtan_status status = nt_weld_mesh(mesh, solve->corner_count, ranges, &room, &weld);
+	nmtan_status status = nt_weld_mesh(mesh, solve->corner_count, ranges, row_room, &room, &weld);
 	if (solve->passed)
 		solve->passed(solve->user, NT_PART_ATTRIBUTES);
 	if (solve->timing)
@@ -441,7 +449,7 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ra
 	if (!status)
 		status = make_ranges(fast, ranges);
 	if (!status)
-		status = make_places(fast, bin_bits, lends_sums ? (nt_record *)solve->tangents : NULL, &room);
+		status = make_places(fast, bin_bits, lends_sums ? (nt_record *)solve->tangents : NULL, row_room, &room);
 	return status ? status : accumulate(fast, kernels);
 }
 

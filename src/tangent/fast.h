@@ -47,8 +47,7 @@ typedef struct nt_deferred {
 
 typedef struct nt_fast {
 	const nt_solve *solve;
-	const uint32_t *ids;     /* [3 * triangle_count] welded vertices */
-	const uint32_t *corners; /* [3 * triangle_count] corners of the mesh; NULL: i is i */
+	nt_triangles triangles;  /* of welded vertices */
 	size_t triangle_count;
 	const nt_weld_row *rows; /* [vertex_count] */
 	size_t vertex_count;
@@ -90,17 +89,22 @@ extern const nt_kernels nt_kernels_baseline;
 extern const nt_kernels nt_kernels_avx2, nt_kernels_avx512;
 #endif
 
-/* Whether triangle t and t + 1 are halves of one quad: the second begins with the first's first or second
- * corner. Not read from the flags, which belong to another thread where a range ends. */
+/* Whether triangle t and t + 1 are halves of one quad. Not read from the flags, which belong to another thread
+ * where a range ends. */
 static inline bool nt_fast_quad_begins(const nt_fast *fast, size_t t)
 {
-	const uint32_t *corner = fast->corners ? fast->corners + 3 * t : NULL;
-	return corner && t + 1 < fast->triangle_count && (corner[3] == corner[0] || corner[3] == corner[1]);
+	return t + 1 < fast->triangle_count && nt_is_cut_between(&fast->triangles, t);
 }
 
+/* Corner i % 3 of triangle i / 3: the mesh's number of it, and its vertex. */
 static inline size_t nt_fast_corner(const nt_fast *fast, size_t i)
 {
-	return fast->corners ? fast->corners[i] : i;
+	return fast->triangles.cuts ? nt_triangle_corner(&fast->triangles, i / 3, i % 3) : i;
+}
+
+static inline uint32_t nt_fast_vertex(const nt_fast *fast, size_t i)
+{
+	return fast->triangles.ids[nt_fast_corner(fast, i)];
 }
 
 /* The next triangle from t on that has one of these flags; triangle_count: none. */

@@ -105,10 +105,9 @@ static void add_corner(nt_fast *fast, unsigned range, uint32_t vertex, int orien
 		add_more(&fast->more[orient][vertex], &add);
 }
 
-/* A triangle with a frame. */
-static void add_triangle(nt_fast *fast, unsigned range, size_t t, int lane, const lanes_out *out)
+/* Triangle t, of vertices v, with a frame. */
+static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t *v, int lane, const lanes_out *out)
 {
-	const uint32_t *v = fast->ids + 3 * t;
 	const int orient = fast->flags[t] & NT_TRIANGLE_ORIENT;
 	const uint32_t bit = (uint32_t)orient << 31;
 	for (size_t k = 0; k < 3; k++)
@@ -118,19 +117,19 @@ static void add_triangle(nt_fast *fast, unsigned range, size_t t, int lane, cons
 }
 
 /* Triangles with frames: add_triangle() with everything that does not change kept at hand. */
-static void __attribute__((noinline)) add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t count, const lanes_out *out)
+static void __attribute__((noinline)) add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t count,
+	const uint32_t *ids, const lanes_out *out)
 {
 	uint32_t *const cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
 	nt_fan_entry *const entries = fast->adjacency.entries;
 	nt_record *const records[2] = {fast->records[0], fast->records[1]};
-	const uint32_t *ids = fast->ids + 3 * first;
 	const uint8_t *flags = fast->flags + first;
 	for (size_t i = 0; i < count; i++, ids += 3) {
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
 		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
 		const unsigned orient = flags[i] & NT_TRIANGLE_ORIENT;
 		if (__builtin_expect((pa | pb | pc) >= NT_CURSOR_SHARED, 0) || fast->wants_more) {
-			add_triangle(fast, range, first + i, (int)i, out);
+			add_triangle(fast, range, first + i, ids, (int)i, out);
 			continue;
 		}
 		const uint32_t bit = orient << 31;
@@ -149,11 +148,11 @@ static void __attribute__((noinline)) add_ordinary(nt_fast *fast, unsigned range
 }
 
 /* The same into bins. */
-static void __attribute__((noinline)) bin_ordinary(const nt_fast *fast, unsigned range, size_t first, size_t count, const lanes_out *out)
+static void __attribute__((noinline)) bin_ordinary(const nt_fast *fast, unsigned range, size_t first, size_t count,
+	const uint32_t *v, const lanes_out *out)
 {
 	const nt_bins bins = fast->bins;
 	uint32_t *const cursors = bins.cursors + range * bins.count;
-	const uint32_t *v = fast->ids + 3 * first;
 	unsigned seen = 0;
 	for (size_t i = 0; i < count; i++, v += 3) {
 		const uint32_t orient = fast->flags[first + i] & NT_TRIANGLE_ORIENT, bit = orient << 31;
@@ -174,19 +173,18 @@ static int any_record(const nt_fast *fast, int orient)
 
 /* Adds a triangle that is degenerate (voids in the fans) or has no frame (a corner in the fans, a note in the
  * records), or is ordinary but has values that the lanes do not vouch for. */
-static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range, size_t t, int lane,
-	lanes_out *out)
+static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range, size_t t, const uint32_t *v,
+	int lane, lanes_out *out)
 {
 	static const float zero[4] = {0};
 	const float note[4] = {0.0f, 0.0f, 0.0f, 2.0f + STATE_BIT(NT_STATE_ALL - NT_STATE_NO_ANY)};
-	const uint32_t *v = fast->ids + 3 * t;
 	const uint8_t flags = fast->flags[t];
 	if (fast->bins.cursors && !(flags & NT_TRIANGLE_DEGENERATE))
 		fast->bins.seen[range] |= flags & NT_TRIANGLE_ANY ? NT_SEEN_ANY : NT_SEEN(flags & NT_TRIANGLE_ORIENT);
 	if (!(flags & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY))) {
 		for (int k = 0; k < 3 && !out->sound[lane]; k++)
 			out->add[k][4 * turned_place((size_t)lane) + 3] = 2.0f + STATE_BIT(NT_STATE_NO_ANY + NT_STATE_LOCAL);
-		add_triangle(fast, range, t, lane, out);
+		add_triangle(fast, range, t, v, lane, out);
 		return;
 	}
 	const int orient = any_record(fast, flags & NT_TRIANGLE_ORIENT);
@@ -231,10 +229,12 @@ static int missing_record(const nt_fast *fast, size_t first, size_t count)
  * than that can be under way. Always inline: to gcc 12 a function of prefetches alone has no effect, and goes. */
 static inline __attribute__((always_inline)) void ask_ahead(const nt_fast *fast, size_t first, size_t end, size_t k)
 {
-	const size_t far = first + 2 * NT_LANES;
-	const uint32_t *ids = fast->ids + k;
-	for (size_t t = far; t < far + NT_LANES && t < end; t++)
-		__builtin_prefetch(&fast->rows[ids[3 * t]]);
+	const size_t far = first + 2 * NT_LANES < end ? first + 2 * NT_LANES : end;
+	const size_t count = end - far < NT_LANES ? end - far : NT_LANES;
+	uint32_t copy[3 * NT_LANES];
+	const uint32_t *ids = nt_triangle_vertices(&fast->triangles, far, count, copy) + k;
+	for (size_t i = 0; i < count; i++)
+		__builtin_prefetch(&fast->rows[ids[3 * i]]);
 }
 
 static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
@@ -250,7 +250,9 @@ static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range
 			count--; /* halves of a quad stay together */
 		if (fast->scattered)
 			ask_ahead(fast, first, end, 0);
-		gather_rows(fast->rows, fast->ids + 3 * first, count, in.row);
+		uint32_t copy[3 * NT_LANES];
+		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
+		gather_rows(fast->rows, ids, count, in.row);
 		if (fast->scattered)
 			ask_ahead(fast, first, end, 1);
 		if (fast->wants_more)
@@ -266,12 +268,12 @@ static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range
 			if (!make(fast, missing, context))
 				return first;
 		if (ordinary && fast->bins.cursors)
-			bin_ordinary(fast, range, first, count, &out);
+			bin_ordinary(fast, range, first, count, ids, &out);
 		else if (ordinary)
-			add_ordinary(fast, range, first, count, &out);
+			add_ordinary(fast, range, first, count, ids, &out);
 		else
 			for (size_t i = 0; i < count; i++)
-				add_special(fast, range, first + i, (int)i, &out);
+				add_special(fast, range, first + i, ids + 3 * i, (int)i, &out);
 	}
 	return end;
 }

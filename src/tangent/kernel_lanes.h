@@ -305,7 +305,7 @@ static bool __attribute__((noinline)) classify_lanes(const nt_fast *fast, size_t
 	for (size_t i = 0; odd && i < count; i++)
 		if (!out->sound[i] && !out->frameless[i] && !has_frame(in, (int)i, out->area[i]))
 			flags[i] |= NT_TRIANGLE_ANY;
-	if (fast->corners)
+	if (fast->triangles.cuts)
 		orient_quads(flags, count, out->area);
 	return !special;
 }

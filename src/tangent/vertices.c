@@ -66,7 +66,7 @@ nmtan_status nt_mikktspace_vertices(const nt_solve *solve, bool repair, nmtan_co
 		status = nt_mikktspace_scalar(solve);
 	else if (!status && fast.sparse) {
 		/* a record is x, y, z and, as state, the sign */
-		solve->vouched->ids = fast.ids;
+		solve->vouched->ids = fast.triangles.ids;
 		for (int orient = 0; orient < 2; orient++)
 			solve->vouched->rows[orient] = fast.records[orient] ? &fast.records[orient]->x : NULL;
 	}

@@ -17,7 +17,7 @@ typedef struct batch {
 	nt_weld_row *rows; /* where they were loaded */
 	size_t begin, count;
 	uint64_t hashes[NT_WELD_BATCH];
-	bool ordered[NT_WELD_BATCH];
+	bool ordered; /* no row holds a NaN */
 } batch;
 
 bool nt_weld_make_table(nt_welder *w, unsigned table_bits, unsigned index_bits)
@@ -44,8 +44,7 @@ static bool grow_table(nt_welder *w)
 	const size_t mask = ((size_t)1 << w->table_bits) - 1;
 	for (size_t i = 0; i < w->row_count; i++) {
 		const nt_weld_row *row = &w->rows[i];
-		nt_weld_row copy = *row;
-		if (!nt_weld_canonise(&copy))
+		if (!nt_weld_row_ordered(row))
 			continue;
 		const uint64_t hash = nt_weld_hash(row);
 		size_t at = nt_weld_slot(w, hash);
@@ -58,8 +57,8 @@ static bool grow_table(nt_welder *w)
 
 bool nt_weld_grow_rows(nt_welder *w, size_t capacity)
 {
-	const bool in_room = nt_room_has(w->room, capacity, sizeof *w->rows);
-	nt_weld_row *rows = nt_room_alloc(w->room, capacity, sizeof *rows);
+	const bool in_room = nt_room_has(w->row_room, capacity, sizeof *w->rows);
+	nt_weld_row *rows = nt_room_alloc(w->row_room, capacity, sizeof *rows);
 	if (!rows)
 		return false;
 	if (w->rows)
@@ -86,24 +85,39 @@ static bool reserve(nt_welder *w)
 	return (w->row_count + AHEAD) * 2 < (size_t)1 << w->table_bits || grow_table(w);
 }
 
+/* A row, its hash, and its entry on the way. Returns the flags of nt_weld_load(). */
+static inline nt_weld_flags load_item(const nt_welder *w, const nmtan_mesh *mesh, size_t vertex, nt_weld_row *row,
+	uint64_t *hash)
+{
+	const nt_weld_flags unordered = nt_weld_load(mesh, vertex, row);
+	*hash = nt_weld_hash(row);
+	__builtin_prefetch(&w->table[nt_weld_slot(w, *hash)], 1);
+	return unordered;
+}
+
 /* Loads and hashes the rows of a batch to `rows`, and asks for their entries. */
 static void load_batch(const nt_welder *w, size_t begin, nt_weld_row *rows, batch *b)
 {
 	const size_t left = w->item_count - begin;
+	const size_t count = left < NT_WELD_BATCH ? left : NT_WELD_BATCH;
+	/* copies, which no store changes */
+	const nt_welder local = *w;
+	const nmtan_mesh mesh = *w->mesh;
+	nt_weld_flags unordered = {0};
+	if (local.items)
+		for (size_t i = 0; i < count; i++)
+			unordered |= load_item(&local, &mesh, local.items[begin + i], &rows[i], &b->hashes[i]);
+	else
+		for (size_t i = 0; i < count; i++)
+			unordered |= load_item(&local, &mesh, begin + i, &rows[i], &b->hashes[i]);
 	b->rows = rows;
 	b->begin = begin;
-	b->count = left < NT_WELD_BATCH ? left : NT_WELD_BATCH;
-	for (size_t i = 0; i < b->count; i++)
-		nt_weld_load(w->mesh, nt_weld_vertex(w, begin + i), &rows[i]);
-	for (size_t i = 0; i < b->count; i++) {
-		b->ordered[i] = nt_weld_canonise(&rows[i]);
-		b->hashes[i] = nt_weld_hash(&rows[i]);
-		__builtin_prefetch(&w->table[nt_weld_slot(w, b->hashes[i])], 1);
-	}
+	b->count = count;
+	b->ordered = nt_weld_ordered(unordered);
 }
 
 /* Keeps a row that is at its place or behind it. */
-static uint32_t keep_row(nt_welder *w, const nt_weld_row *row)
+static inline uint32_t keep_row(nt_welder *w, const nt_weld_row *row)
 {
 	nt_weld_row *place = &w->rows[w->row_count];
 	if (place != row)
@@ -125,7 +139,7 @@ static inline uint32_t find_or_add(nt_welder *w, const nt_weld_row *row, uint64_
 			return number;
 		}
 		if ((entry & ~number_mask) == tag &&
-			memcmp(&w->rows[entry & number_mask], row, sizeof *row) == 0)
+			nt_weld_same(&w->rows[entry & number_mask], row))
 			return entry & number_mask;
 	}
 }
@@ -136,7 +150,7 @@ uint32_t *nt_weld_alloc_numbers(nt_welder *w)
 			    : nt_room_alloc(w->room, w->item_count, sizeof *w->numbers);
 }
 
-/* From the first item whose number is not its own, numbers are written down. */
+/* From the first batch where a number is not its item's own, numbers are written down. */
 static bool begin_numbers(nt_welder *w, size_t item)
 {
 	w->numbers = nt_weld_alloc_numbers(w);
@@ -149,19 +163,27 @@ static bool begin_numbers(nt_welder *w, size_t item)
 
 static bool number_batch(nt_welder *w, const batch *b)
 {
+	uint32_t own[NT_WELD_BATCH];
+	uint32_t *numbers = w->numbers ? w->numbers + b->begin : own;
+	nt_welder local = *w; /* a copy, which no store changes */
 	for (size_t i = 0; i < b->count; i++) {
 		uint32_t number = NT_WELD_UNORDERED;
-		if (b->ordered[i])
-			number = find_or_add(w, &b->rows[i], b->hashes[i]);
-		else if (w->by_corner)
-			number = keep_row(w, &b->rows[i]);
+		if (b->ordered || nt_weld_row_ordered(&b->rows[i]))
+			number = find_or_add(&local, &b->rows[i], b->hashes[i]);
+		else if (local.by_corner)
+			number = keep_row(&local, &b->rows[i]);
 		else
-			w->unordered_count++;
-		if (!w->numbers && number != b->begin + i && !begin_numbers(w, b->begin + i))
-			return false;
-		if (w->numbers)
-			w->numbers[b->begin + i] = number;
+			local.unordered_count++;
+		numbers[i] = number;
 	}
+	w->row_count = local.row_count;
+	w->unordered_count = local.unordered_count;
+	/* as many rows as items: each is its own */
+	if (w->numbers || w->row_count == b->begin + b->count)
+		return true;
+	if (!begin_numbers(w, b->begin))
+		return false;
+	memcpy(w->numbers + b->begin, own, b->count * sizeof *own);
 	return true;
 }
 
@@ -210,6 +232,14 @@ static void copy_numbers(void *context, size_t begin, size_t end, unsigned slot)
 		job->ids[c] = job->numbers[job->indices[c]];
 }
 
+/* A row as it is in the mesh. */
+static void copy_row(const nmtan_mesh *mesh, size_t vertex, nt_weld_row *row)
+{
+	memcpy(row->position, nt_position(mesh, vertex), sizeof row->position);
+	memcpy(row->normal, nt_normal(mesh, vertex), sizeof row->normal);
+	memcpy(row->texcoord, nt_texcoord(mesh, vertex), sizeof row->texcoord);
+}
+
 /* Numbers of corners from numbers of vertices; corners with a NaN get rows of their own. */
 static const uint32_t *number_corners(nt_welder *w, size_t corner_count, unsigned ranges)
 {
@@ -230,7 +260,7 @@ static const uint32_t *number_corners(nt_welder *w, size_t corner_count, unsigne
 		ids[c] = w->numbers[indices[c]];
 		if (ids[c] == NT_WELD_UNORDERED) {
 			ids[c] = (uint32_t)w->row_count++;
-			nt_weld_load(w->mesh, indices[c], &w->rows[ids[c]]);
+			copy_row(w->mesh, indices[c], &w->rows[ids[c]]);
 		}
 	}
 	return ids;
@@ -248,12 +278,12 @@ static bool weld_alone(nt_welder *w)
 	return !w->by_corner || w->numbers || begin_numbers(w, w->item_count);
 }
 
-nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_room *room,
-	nt_weld *weld)
+nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_room *row_room,
+	nt_room *room, nt_weld *weld)
 {
 	/* few of many vertices used: corner by corner, so that time follows the corners */
 	const bool by_corner = !mesh->indices || mesh->vertex_count / 2 > corner_count;
-	nt_welder w = {.mesh = mesh, .room = room, .by_corner = by_corner};
+	nt_welder w = {.mesh = mesh, .row_room = row_room, .room = room, .by_corner = by_corner};
 	w.items = by_corner ? mesh->indices : NULL;
 	w.item_count = by_corner ? corner_count : mesh->vertex_count;
 
@@ -263,10 +293,10 @@ nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned 
 		return NMTAN_ERROR_MEMORY;
 	weld->ids = by_corner ? w.numbers : !w.numbers ? mesh->indices : number_corners(&w, corner_count, ranges);
 	/* tables and numbers of vertices are not needed any more */
-	if (w.rows_in_room)
-		nt_room_trim(room, w.rows, w.row_count * sizeof *w.rows);
-	else
+	if (row_room != room || !w.rows_in_room)
 		room->begin = begin;
+	if (w.rows_in_room)
+		nt_room_trim(row_room, w.rows, w.row_count * sizeof *w.rows);
 	weld->rows = w.rows;
 	weld->count = w.row_count;
 	return weld->ids ? NMTAN_OK : NMTAN_ERROR_MEMORY;

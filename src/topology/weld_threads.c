@@ -67,10 +67,8 @@ static void load_batch(const nt_welder *w, size_t begin, size_t end, batch *b)
 	b->begin = begin;
 	b->count = end - begin < NT_WELD_BATCH ? end - begin : NT_WELD_BATCH;
 	b->rows = w->by_corner ? b->own : w->rows + begin;
-	for (size_t i = 0; i < b->count; i++)
-		nt_weld_load(w->mesh, nt_weld_vertex(w, begin + i), &b->rows[i]);
 	for (size_t i = 0; i < b->count; i++) {
-		b->ordered[i] = nt_weld_canonise(&b->rows[i]);
+		b->ordered[i] = nt_weld_ordered(nt_weld_load(w->mesh, nt_weld_vertex(w, begin + i), &b->rows[i]));
 		b->hashes[i] = nt_weld_hash(&b->rows[i]);
 		__builtin_prefetch(&w->table[nt_weld_slot(w, b->hashes[i])], 1);
 	}
@@ -80,15 +78,8 @@ static bool has_row(const nt_welder *w, size_t item, const nt_weld_row *row)
 {
 	if (!w->by_corner)
 		return memcmp(&w->rows[item], row, sizeof *row) == 0;
-	const size_t vertex = nt_weld_vertex(w, item);
-	if (memcmp(nt_position(w->mesh, vertex), row->position, sizeof row->position) == 0 &&
-		memcmp(nt_normal(w->mesh, vertex), row->normal, sizeof row->normal) == 0 &&
-		memcmp(nt_texcoord(w->mesh, vertex), row->texcoord, sizeof row->texcoord) == 0)
-		return true;
-	/* 0 and -0 */
 	nt_weld_row other;
-	nt_weld_load(w->mesh, vertex, &other);
-	nt_weld_canonise(&other);
+	nt_weld_load(w->mesh, nt_weld_vertex(w, item), &other);
 	return memcmp(&other, row, sizeof *row) == 0;
 }
 
@@ -226,10 +217,8 @@ static void number_range(void *context, size_t begin, size_t end, unsigned slot)
 		if (at != NT_WELD_UNORDERED)
 			w->table[at & ~OWNER] = number;
 		/* from the mesh, because another range's row may have come here already */
-		if (w->by_corner || number != i) {
+		if (w->by_corner || number != i)
 			nt_weld_load(w->mesh, nt_weld_vertex(w, i), &w->rows[number]);
-			nt_weld_canonise(&w->rows[number]);
-		}
 		w->numbers[i] = number++ | FINAL;
 	}
 }

@@ -46,7 +46,7 @@ static nt_model *triangle_model(uint32_t material)
 	const nt_model_attribute attribute = {"POSITION", nt_model_add_accessor(model, &position)};
 	const nt_model_accessor index = {
 		.view = nt_model_view(model, 36, 6, NT_GLTF_ELEMENT_ARRAY_BUFFER),
-		.component_type = NT_GLTF_UNSIGNED_SHORT, .components = 1, .count = 3};
+		.component_type = NT_GLTF_USHORT, .components = 1, .count = 3};
 	const uint32_t index_accessor = nt_model_add_accessor(model, &index);
 	const uint32_t mesh = nt_model_mesh(model, "tri");
 	nt_model_primitive(model, mesh, &attribute, 1, index_accessor, material);
@@ -111,7 +111,7 @@ static void reread_finds_attributes_in_companions(void **state)
 	assert_int_equal(array.components, 3);
 	assert_memory_equal(array.data, positions, sizeof positions);
 	assert_int_equal(nt_reread_attribute(reread, 0, 0, NULL, &array, &error), NMTAN_OK);
-	assert_int_equal(array.component_type, NT_GLTF_UNSIGNED_SHORT);
+	assert_int_equal(array.component_type, NT_GLTF_USHORT);
 	assert_memory_equal(array.data, indices, sizeof indices);
 	assert_int_equal(nt_reread_attribute(reread, 0, 0, "TANGENT", &array, &error), NMTAN_OK);
 	assert_null(array.data);

@@ -1,58 +1,11 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
-#include <stdio.h>
-#include <unistd.h>
+#include "hand_gltf.h"
 #include "io/verify.h"
 
-static char folder[] = "/tmp/nmtan-verify-XXXXXX";
-
-static int make_folder(void **state)
+/* Nothing is committed, so nothing may be left. */
+static int remove_empty_folder(void **state)
 {
-	(void)state;
-	return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-	(void)state;
-	return rmdir(folder); /* nothing was committed, so nothing may be left */
-}
-
-/* A quad and a triangle of two materials, the triangle first in the document; vertex 2 is split. */
-static float positions[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 1, 0};
-static float normals[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
-static uint32_t corners[] = {0, 1, 2, 3, 1, 4, 2};
-static uint32_t split_corners[] = {0, 1, 2, 3, 1, 4, 5};
-static uint32_t sources[] = {2};
-static uint8_t sizes[] = {4, 3}, diagonals[] = {1, 0};
-static uint32_t face_primitive[] = {1, 0};
-
-typedef struct hand_scene {
-	nt_scene scene;
-	nt_mesh mesh;
-	nt_primitive primitives[2];
-	nt_instance instance;
-	float tangents[24];
-} hand_scene;
-
-static void make_scene(hand_scene *hand)
-{
-	*hand = (hand_scene){
-		.mesh = {.name = "hand", .vertex_count = 5, .positions = positions, .normals = normals,
-			.face_count = 2, .corner_count = 7, .face_sizes = sizes, .face_diagonals = diagonals,
-			.indices = corners, .primitive_count = 2, .face_primitive = face_primitive,
-			.split = {split_corners, sources, 1, hand->tangents}},
-		.primitives = {{.material = NT_NONE}, {.material = NT_NONE}},
-		.instance = {.matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}},
-	};
-	for (int v = 0; v < 6; v++)
-		hand->tangents[4 * v] = hand->tangents[4 * v + 3] = v == 5 ? -1 : 1;
-	nt_scene_init(&hand->scene, "hand.obj");
-	hand->mesh.primitives = hand->primitives;
-	hand->scene.meshes = &hand->mesh;
-	hand->scene.mesh_count = 1;
-	hand->scene.instances = &hand->instance;
-	hand->scene.instance_count = 1;
+	return count_in_folder() ? -1 : remove_folder(state);
 }
 
 /* Writes the scene, lets `spoil` change what the writer should have written, and verifies. */
@@ -60,8 +13,8 @@ static nmtan_status verify_after(const char *name, void (*spoil)(hand_scene *), 
 {
 	hand_scene hand;
 	make_scene(&hand);
-	char path[100];
-	snprintf(path, sizeof path, "%s/%s", folder, name);
+	divide(&hand);
+	const char *path = in_folder(name);
 	const nt_write_options options = {.path = path,
 		.format = strstr(name, ".glb") ? NT_FORMAT_GLB : NT_FORMAT_GLTF};
 	nt_output *output;
@@ -118,5 +71,5 @@ int main(void)
 		cmocka_unit_test(good_output_is_good),
 		cmocka_unit_test(every_difference_is_told),
 	};
-	return cmocka_run_group_tests_name("io/verify", tests, make_folder, remove_folder);
+	return cmocka_run_group_tests_name("io/verify", tests, make_folder, remove_empty_folder);
 }

@@ -5,6 +5,7 @@
  * process of its own, whose peak the system tells.
  */
 #include "test.h"
+#include "folder.h"
 #include <math.h>
 #include <stdio.h>
 #include <sys/resource.h>
@@ -14,17 +15,6 @@
 #include "pipeline/run.h"
 
 enum { SIDE = 420 }; /* quads along an edge */
-
-static char folder[64];
-
-static const char *at(const char *name)
-{
-	static char paths[4][128];
-	static unsigned turn;
-	char *path = paths[turn++ % 4];
-	snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-	return path;
-}
 
 static size_t size_of(const char *path)
 {
@@ -150,8 +140,8 @@ static size_t peak_of(const char *input, const char *output)
 
 static void assert_peak(const char *small, const char *large)
 {
-	const size_t base = peak_of(small, at("out.glb")), peak = peak_of(large, at("out.glb"));
-	const size_t in = size_of(large), out = size_of(at("out.glb"));
+	const size_t base = peak_of(small, in_folder("out.glb")), peak = peak_of(large, in_folder("out.glb"));
+	const size_t in = size_of(large), out = size_of(in_folder("out.glb"));
 	print_message("%zu bytes to %zu: peak %zu, %zu of them for a triangle or two\n", in, out, peak, base);
 	assert_true(SANITIZED || peak - base <= in + out + out / 2);
 }
@@ -159,33 +149,17 @@ static void assert_peak(const char *small, const char *large)
 static void a_glb_takes_little_more_than_its_output(void **state)
 {
 	(void)state;
-	make_glb(at("small.glb"), 1);
-	make_glb(at("large.glb"), SIDE);
-	assert_peak(at("small.glb"), at("large.glb"));
+	make_glb(in_folder("small.glb"), 1);
+	make_glb(in_folder("large.glb"), SIDE);
+	assert_peak(in_folder("small.glb"), in_folder("large.glb"));
 }
 
 static void an_obj_takes_little_more_than_its_output(void **state)
 {
 	(void)state;
-	make_obj(at("small.obj"), 1);
-	make_obj(at("large.obj"), SIDE);
-	assert_peak(at("small.obj"), at("large.obj"));
-}
-
-static int make_folder(void **state)
-{
-	(void)state;
-	strcpy(folder, "/tmp/nmtan-test-memory-XXXXXX");
-	return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-	(void)state;
-	static const char *const names[] = {"small.glb", "large.glb", "small.obj", "large.obj", "out.glb"};
-	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-		unlink(at(names[i]));
-	return rmdir(folder);
+	make_obj(in_folder("small.obj"), 1);
+	make_obj(in_folder("large.obj"), SIDE);
+	assert_peak(in_folder("small.obj"), in_folder("large.obj"));
 }
 
 int main(void)

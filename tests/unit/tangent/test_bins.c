@@ -108,7 +108,7 @@ static void check(unsigned ranges, bool both)
 	nt_scratch_init(&scratch, NULL);
 	const nt_triangle_ranges cut = {ranges, bounds[ranges]};
 	nt_bins bins;
-	assert_int_equal(nt_bins_make(ids, &cut, VERTICES, BITS, NULL, &scratch, &bins), NMTAN_OK);
+	assert_int_equal(nt_bins_make(&(nt_triangles){.ids = ids}, &cut, VERTICES, BITS, NULL, &scratch, &bins), NMTAN_OK);
 	assert_int_equal(bins.count, 4);
 	for (unsigned r = ranges; r-- > 0;)
 		fill(&bins, r, ids, cut.bounds[r], cut.bounds[r + 1]);

@@ -65,7 +65,7 @@ static void check(const nmtan_mesh *mesh, size_t corners, size_t room_bytes)
 	for (int i = 0; i < THREAD_COUNTS; i++) {
 		nt_room room = nt_room_over(nt_scratch_alloc(&scratch, room_bytes, 1), room_bytes, &scratch);
 		nt_weld weld;
-		assert_int_equal(nt_weld_mesh(mesh, corners, thread_counts[i], &room, &weld), NMTAN_OK);
+		assert_int_equal(nt_weld_mesh(mesh, corners, thread_counts[i], &room, &room, &weld), NMTAN_OK);
 		assert_rows(&weld, mesh, corners);
 		if (i == 0) {
 			first = weld;
@@ -167,7 +167,7 @@ static void without_doubles_the_indices_of_the_mesh_are_the_numbers(void **state
 		nt_scratch_init(&scratch, NULL);
 		nt_room room = nt_room_over(NULL, 0, &scratch);
 		nt_weld weld;
-		assert_int_equal(nt_weld_mesh(&mesh, VERTICES, thread_counts[i], &room, &weld), NMTAN_OK);
+		assert_int_equal(nt_weld_mesh(&mesh, VERTICES, thread_counts[i], &room, &room, &weld), NMTAN_OK);
 		assert_ptr_equal(weld.ids, indices);
 		assert_int_equal(weld.count, VERTICES);
 		assert_memory_equal(weld.rows, rows, VERTICES * sizeof *rows);
@@ -216,7 +216,7 @@ static void every_failed_allocation_is_told(void **state)
 				nt_scratch_init(&scratch, &(nmtan_allocator){take_budget, give_back, &b});
 				nt_room room = nt_room_over(NULL, 0, &scratch);
 				nt_weld weld;
-				status = nt_weld_mesh(&mesh, COUNT, i % 2 ? 3 : 1, &room, &weld);
+				status = nt_weld_mesh(&mesh, COUNT, i % 2 ? 3 : 1, &room, &room, &weld);
 				assert_true(status == NMTAN_OK || status == NMTAN_ERROR_MEMORY);
 				nt_scratch_free(&scratch);
 				assert_in_range(allowed, 0, 20);
