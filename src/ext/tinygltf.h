@@ -156,6 +156,10 @@ typedef struct nt_reread_array {
 nmtan_status nt_reread_attribute(nt_reread *model, size_t mesh, size_t primitive,
 	const char *name, nt_reread_array *array, nt_error *error);
 
+/* The same of a morph target of the primitive. */
+nmtan_status nt_reread_target(nt_reread *model, size_t mesh, size_t primitive, size_t target,
+	const char *name, nt_reread_array *array, nt_error *error);
+
 /* The KHR_draco_mesh_compression block of a primitive; false: it has none. *bytes NULL: it is not inside of a
  * buffer. */
 bool nt_reread_block(const nt_reread *model, size_t mesh, size_t primitive, const unsigned char **bytes,

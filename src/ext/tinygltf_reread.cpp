@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cstring>
 #include <deque>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -298,6 +299,34 @@ const char *resolve(const tinygltf::Model &document, std::deque<std::vector<unsi
 	return fault;
 }
 
+int index_of(const std::map<std::string, int> &attributes, const char *name)
+{
+	const auto found = attributes.find(name);
+	return found == attributes.end() ? -1 : found->second;
+}
+
+constexpr size_t place_size = 200;
+
+// The array of the accessor that find() gives, -1 for none; it also says where in the primitive that stands.
+template <typename Find>
+nmtan_status read_array(nt_reread *model, size_t mesh, size_t primitive, nt_reread_array *array, nt_error *error,
+	Find &&find)
+{
+	*array = {};
+	if (primitive >= nt_reread_primitive_count(model, mesh))
+		return nt_fail(error, NMTAN_ERROR_INPUT, "mesh %zu has no primitive %zu", mesh, primitive);
+	return nt::guard(error, library, [&]() -> nmtan_status {
+		char place[place_size], pointer[place_size + 100];
+		const int index = find(model->document.meshes[mesh].primitives[primitive], place);
+		const char *fault =
+			index < 0 ? nullptr : resolve(model->document, model->rows, index, array);
+		if (!fault)
+			return NMTAN_OK;
+		std::snprintf(pointer, sizeof pointer, "/meshes/%zu/primitives/%zu/%s", mesh, primitive, place);
+		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "%s", fault);
+	});
+}
+
 // The extension of a compressed primitive; null: none.
 const tinygltf::Value *block_of(const nt_reread *model, size_t mesh, size_t primitive)
 {
@@ -344,27 +373,18 @@ size_t nt_reread_primitive_count(const nt_reread *model, size_t mesh)
 nmtan_status nt_reread_attribute(nt_reread *model, size_t mesh, size_t primitive,
 	const char *name, nt_reread_array *array, nt_error *error)
 {
-	*array = {};
-	if (primitive >= nt_reread_primitive_count(model, mesh))
-		return nt_fail(error, NMTAN_ERROR_INPUT, "mesh %zu has no primitive %zu", mesh, primitive);
-	return nt::guard(error, library, [&]() -> nmtan_status {
-		const tinygltf::Primitive &item = model->document.meshes[mesh].primitives[primitive];
-		int index = item.indices;
-		if (name) {
-			const auto found = item.attributes.find(name);
-			if (found == item.attributes.end())
-				return NMTAN_OK;
-			index = found->second;
-		} else if (index < 0) {
-			return NMTAN_OK;
-		}
-		const char *fault = resolve(model->document, model->rows, index, array);
-		if (!fault)
-			return NMTAN_OK;
-		char pointer[256];
-		std::snprintf(pointer, sizeof pointer, "/meshes/%zu/primitives/%zu/%s%s", mesh, primitive,
-			name ? "attributes/" : "indices", name ? name : "");
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "%s", fault);
+	return read_array(model, mesh, primitive, array, error, [&](const tinygltf::Primitive &item, char *place) {
+		std::snprintf(place, place_size, "%s%s", name ? "attributes/" : "indices", name ? name : "");
+		return name ? index_of(item.attributes, name) : item.indices;
+	});
+}
+
+nmtan_status nt_reread_target(nt_reread *model, size_t mesh, size_t primitive, size_t target,
+	const char *name, nt_reread_array *array, nt_error *error)
+{
+	return read_array(model, mesh, primitive, array, error, [&](const tinygltf::Primitive &item, char *place) {
+		std::snprintf(place, place_size, "targets/%zu/%s", target, name);
+		return target < item.targets.size() ? index_of(item.targets[target], name) : -1;
 	});
 }
 

@@ -16,6 +16,12 @@ for input in "$WORK"/layouts/*.gl*; do
 	exits 0
 done
 
+scene "tangents of morph targets are read back too"
+for options in --morph=bake --morph=keep --precision=byte --draco=sequential; do
+	run --verify "$options" "$ROOT/data/morph.gltf" out.glb
+	exits 0
+done
+
 # tinygltf wants inverseBindMatrices in skins, glTF does not.
 spoiled() {
 	node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1]));
