@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
 // tinygltf behind a C header: its loader, as a second opinion on files that we wrote. It searches the current
-// directory, decodes images, overflows its stack on deep JSON and checks no accessor: so it gets its files through
-// callbacks, an image loader that does nothing and text whose depth was counted, and its accessors are checked
-// here. New documents are in tinygltf_model.cpp.
+// directory, decodes images, overflows its stack on deep JSON, knows no compression and checks no accessor: so it
+// gets its files through callbacks, an image loader that does nothing and text made for it (tinygltf_text.cpp), and
+// its accessors are checked and unpacked here. New documents are in tinygltf_model.cpp.
 #include "ext/tinygltf.h"
 #include "ext/guard.hpp"
+#include "ext/meshopt.h"
+#include "ext/tinygltf_text.hpp"
 
-#include <algorithm>
 #include <cstring>
 #include <deque>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -19,6 +19,8 @@
 
 struct nt_reread {
 	tinygltf::Model document;
+	nt::packed_views packed;
+	std::map<size_t, std::vector<unsigned char>> unpacked; // by view
 	// rows of accessors that do not lie in a buffer as they are
 	std::deque<std::vector<unsigned char>> rows;
 };
@@ -28,43 +30,6 @@ namespace {
 const char library[] = "tinygltf";
 
 // ---- loading ----
-
-constexpr int max_depth = 512;
-
-// Extensions whose accessors and buffers have no bytes of their own, which tinygltf takes for a fault.
-const char *const compressions[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
-const char draco[] = "KHR_draco_mesh_compression";
-
-// How deep arrays and objects are nested, counted outside of strings. Whether the text is JSON at all is not
-// decided here.
-bool is_too_deep(const char *text, size_t size)
-{
-	int depth = 0;
-	bool in_string = false;
-	for (size_t i = 0; i < size; i++) {
-		const char c = text[i];
-		if (in_string) {
-			if (c == '\\')
-				i++;
-			else if (c == '"')
-				in_string = false;
-		} else if (c == '"') {
-			in_string = true;
-		} else if (c == '[' || c == '{') {
-			if (++depth > max_depth)
-				return true;
-		} else if (c == ']' || c == '}') {
-			depth--;
-		}
-	}
-	return false;
-}
-
-uint32_t little_endian(const unsigned char *bytes)
-{
-	return static_cast<uint32_t>(bytes[0]) | static_cast<uint32_t>(bytes[1]) << 8 |
-		static_cast<uint32_t>(bytes[2]) << 16 | static_cast<uint32_t>(bytes[3]) << 24;
-}
 
 struct finder {
 	nt_reread_find find;
@@ -113,63 +78,12 @@ bool decode_nothing(tinygltf::Image *, int, std::string *, std::string *, int, i
 	return true;
 }
 
-// tinygltf refuses primitives whose indices have no buffer view, which is how compressed ones have them. It
-// gets a text without these; who asks for the primitive's block reads them there. Text that is not JSON is left
-// to tinygltf.
-bool take_out_compressed_indices(std::string &text)
+nmtan_status load(nt_reread &model, const unsigned char *bytes, size_t size, finder files, nt_error *error)
 {
-	nlohmann::ordered_json document = nlohmann::ordered_json::parse(text, nullptr, false);
-	if (!document.is_object() || !document.contains("meshes"))
-		return false;
-	for (auto &mesh : document["meshes"]) {
-		if (!mesh.is_object() || !mesh.contains("primitives"))
-			continue;
-		for (auto &primitive : mesh["primitives"])
-			if (primitive.is_object() && primitive.contains("extensions") &&
-				primitive["extensions"].is_object() && primitive["extensions"].contains(draco))
-				primitive.erase("indices");
-	}
-	text = document.dump();
-	return true;
-}
-
-void put_little_endian(std::string &out, uint32_t value)
-{
-	for (int shift = 0; shift < 32; shift += 8)
-		out += static_cast<char>(value >> shift & 0xff);
-}
-
-// A document without the indices of compressed primitives; empty where there is nothing to take out.
-std::string without_compressed_indices(const unsigned char *bytes, size_t size, bool binary, const char *json,
-	size_t json_size)
-{
-	if (!memmem(json, json_size, draco, sizeof draco - 1))
-		return {};
-	std::string text(json, json_size);
-	if (!take_out_compressed_indices(text) || !binary)
-		return binary ? std::string() : text;
-	text.append(-text.size() & 3, ' ');
-	const size_t rest = size - 20 - json_size;
-	std::string out(reinterpret_cast<const char *>(bytes), 8);
-	put_little_endian(out, static_cast<uint32_t>(20 + text.size() + rest));
-	put_little_endian(out, static_cast<uint32_t>(text.size()));
-	out.append(reinterpret_cast<const char *>(bytes) + 16, 4);
-	out += text;
-	return out.append(reinterpret_cast<const char *>(bytes) + 20 + json_size, rest);
-}
-
-nmtan_status load(tinygltf::Model &document, const unsigned char *bytes, size_t size, finder files,
-	nt_error *error)
-{
-	const bool binary = size >= 20 && std::memcmp(bytes, "glTF", 4) == 0;
-	const char *json = reinterpret_cast<const char *>(bytes);
-	size_t json_size = size;
-	if (binary) {
-		json += 20;
-		json_size = std::min<size_t>(little_endian(bytes + 12), size - 20);
-	}
-	if (is_too_deep(json, json_size))
-		return nt_fail(error, NMTAN_ERROR_INPUT, "JSON is nested deeper than %d levels", max_depth);
+	const nt::gltf_text text(bytes, size);
+	if (text.is_too_deep())
+		return nt_fail(error, NMTAN_ERROR_INPUT, "JSON is nested deeper than %d levels",
+			nt::gltf_text::max_depth);
 	if (size > 0xffffffffu)
 		return nt_fail(error, NMTAN_ERROR_UNSUPPORTED,
 			"tinygltf cannot read a file of %zu bytes back, the limit is 4294967295", size);
@@ -178,19 +92,15 @@ nmtan_status load(tinygltf::Model &document, const unsigned char *bytes, size_t 
 	loader.SetImageLoader(decode_nothing, nullptr);
 	loader.SetFsCallbacks({file_exists, same_path, read_file, write_nothing, &files});
 	std::string message, warning;
-	const std::string plain = without_compressed_indices(bytes, size, binary, json, json_size);
-	const char *text = plain.empty() ? reinterpret_cast<const char *>(bytes) : plain.data();
-	const unsigned length = static_cast<unsigned>(plain.empty() ? size : plain.size());
-	const bool loaded = binary
-		? loader.LoadBinaryFromMemory(&document, &message, &warning,
-			reinterpret_cast<const unsigned char *>(text), length)
-		: loader.LoadASCIIFromString(&document, &message, &warning, text, length, "");
+	const std::string eased = text.eased(model.packed);
+	const char *begin = eased.empty() ? reinterpret_cast<const char *>(bytes) : eased.data();
+	const unsigned length = static_cast<unsigned>(eased.empty() ? size : eased.size());
+	const bool loaded = text.is_binary()
+		? loader.LoadBinaryFromMemory(&model.document, &message, &warning,
+			reinterpret_cast<const unsigned char *>(begin), length)
+		: loader.LoadASCIIFromString(&model.document, &message, &warning, begin, length, "");
 	if (loaded && message.empty())
 		return NMTAN_OK;
-	for (const char *extension : compressions)
-		if (memmem(json, json_size, extension, std::strlen(extension)))
-			return nt_fail(error, NMTAN_ERROR_UNSUPPORTED,
-				"tinygltf cannot read documents with %s back", extension);
 	for (char &c : message)
 		c = c == '\n' ? ' ' : c;
 	return nt_fail(error, NMTAN_ERROR_INPUT, "tinygltf refuses the document: %s", message.c_str());
@@ -198,40 +108,69 @@ nmtan_status load(tinygltf::Model &document, const unsigned char *bytes, size_t 
 
 // ---- accessors ----
 
-// The bytes of a view; the message of what is wrong with it otherwise.
-const char *view_bytes(const tinygltf::Model &document, int index, const unsigned char **bytes, size_t *size,
-	size_t *stride)
+// Bytes of a buffer; null where they are not inside of it.
+const unsigned char *buffer_bytes(const tinygltf::Model &document, uint64_t buffer, uint64_t offset, uint64_t size)
 {
+	if (buffer >= document.buffers.size())
+		return nullptr;
+	const std::vector<unsigned char> &data = document.buffers[buffer].data;
+	return offset > data.size() || size > data.size() - offset ? nullptr : data.data() + offset;
+}
+
+// The bytes of a view that meshoptimizer packed, unpacked once; the message of what is wrong with it otherwise.
+const char *unpack(nt_reread &model, size_t index, size_t size, const unsigned char **bytes)
+{
+	const nt::packed_view &packed = model.packed.at(index);
+	std::vector<unsigned char> &unpacked = model.unpacked[index];
+	if (unpacked.empty()) {
+		const nt_meshopt_view view = {packed.mode.c_str(), packed.filter.c_str(), packed.stride, packed.count,
+			packed.size};
+		const unsigned char *from =
+			buffer_bytes(model.document, packed.buffer, packed.offset, packed.size);
+		if (!from || nt_meshopt_check(&view, size, "", nullptr) != NMTAN_OK)
+			return "the buffer view is packed, and its packed bytes are not as it says";
+		std::vector<unsigned char> made(size + 1); // never empty
+		if (nt_meshopt_unpack(&view, from, made.data(), "", nullptr) != NMTAN_OK)
+			return "meshoptimizer cannot unpack the buffer view";
+		unpacked = std::move(made);
+	}
+	*bytes = unpacked.data();
+	return nullptr;
+}
+
+// The bytes of a view; the message of what is wrong with it otherwise.
+const char *view_bytes(nt_reread &model, int index, const unsigned char **bytes, size_t *size, size_t *stride)
+{
+	const tinygltf::Model &document = model.document;
 	if (index < 0 || static_cast<size_t>(index) >= document.bufferViews.size())
 		return "the accessor has no buffer view";
 	const tinygltf::BufferView &view = document.bufferViews[static_cast<size_t>(index)];
-	if (!view.extensions.empty())
-		return "the buffer view has an extension";
-	if (view.buffer < 0 || static_cast<size_t>(view.buffer) >= document.buffers.size())
-		return "the buffer view has no buffer";
-	const std::vector<unsigned char> &data = document.buffers[static_cast<size_t>(view.buffer)].data;
-	if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
-		return "the buffer view is not inside its buffer";
-	*bytes = data.data() + view.byteOffset;
 	*size = view.byteLength;
 	*stride = view.byteStride;
-	return nullptr;
+	if (model.packed.count(static_cast<size_t>(index)))
+		return unpack(model, static_cast<size_t>(index), view.byteLength, bytes);
+	if (!view.extensions.empty())
+		return "the buffer view has an extension";
+	if (view.buffer < 0)
+		return "the buffer view has no buffer";
+	*bytes = buffer_bytes(document, static_cast<uint64_t>(view.buffer), view.byteOffset, view.byteLength);
+	return *bytes ? nullptr : "the buffer view is not inside its buffer";
 }
 
 // Elements an accessor without a view may have; what we read back had its positions somewhere.
 constexpr size_t most_zeros = 1 << 24;
 
 // Puts the values of a sparse accessor into its rows.
-const char *put_sparse(const tinygltf::Model &document, const tinygltf::Accessor &accessor, size_t element,
+const char *put_sparse(nt_reread &model, const tinygltf::Accessor &accessor, size_t element,
 	std::vector<unsigned char> &rows)
 {
 	const auto &sparse = accessor.sparse;
 	const int width = tinygltf::GetComponentSizeInBytes(static_cast<uint32_t>(sparse.indices.componentType));
 	const unsigned char *indices, *values;
 	size_t index_size, value_size, stride;
-	const char *fault = view_bytes(document, sparse.indices.bufferView, &indices, &index_size, &stride);
+	const char *fault = view_bytes(model, sparse.indices.bufferView, &indices, &index_size, &stride);
 	if (!fault)
-		fault = view_bytes(document, sparse.values.bufferView, &values, &value_size, &stride);
+		fault = view_bytes(model, sparse.values.bufferView, &values, &value_size, &stride);
 	if (fault)
 		return fault;
 	const size_t count = static_cast<size_t>(sparse.count);
@@ -255,10 +194,10 @@ const char *put_sparse(const tinygltf::Model &document, const tinygltf::Accessor
 }
 
 // Fills an array from an accessor; the message of what is wrong with it otherwise. Sparse accessors and those of
-// zeros get rows in `owner`.
-const char *resolve(const tinygltf::Model &document, std::deque<std::vector<unsigned char>> &owner, int index,
-	nt_reread_array *array)
+// zeros get rows of their own.
+const char *resolve(nt_reread &model, int index, nt_reread_array *array)
 {
+	const tinygltf::Model &document = model.document;
 	if (index < 0 || static_cast<size_t>(index) >= document.accessors.size())
 		return "there is no such accessor";
 	const tinygltf::Accessor &accessor = document.accessors[static_cast<size_t>(index)];
@@ -271,7 +210,7 @@ const char *resolve(const tinygltf::Model &document, std::deque<std::vector<unsi
 	const unsigned char *bytes = nullptr;
 	size_t size = 0, stride = 0;
 	if (accessor.bufferView >= 0) {
-		const char *fault = view_bytes(document, accessor.bufferView, &bytes, &size, &stride);
+		const char *fault = view_bytes(model, accessor.bufferView, &bytes, &size, &stride);
 		if (fault)
 			return fault;
 		stride = stride ? stride : element;
@@ -292,9 +231,9 @@ const char *resolve(const tinygltf::Model &document, std::deque<std::vector<unsi
 	for (size_t row = 0; bytes && row < accessor.count; row++)
 		std::memcpy(rows.data() + row * element, bytes + row * stride, element);
 	const char *fault =
-		accessor.sparse.isSparse ? put_sparse(document, accessor, element, rows) : nullptr;
-	owner.push_back(std::move(rows));
-	array->data = owner.back().data();
+		accessor.sparse.isSparse ? put_sparse(model, accessor, element, rows) : nullptr;
+	model.rows.push_back(std::move(rows));
+	array->data = model.rows.back().data();
 	array->stride_bytes = element;
 	return fault;
 }
@@ -319,7 +258,7 @@ nmtan_status read_array(nt_reread *model, size_t mesh, size_t primitive, nt_rere
 		char place[place_size], pointer[place_size + 100];
 		const int index = find(model->document.meshes[mesh].primitives[primitive], place);
 		const char *fault =
-			index < 0 ? nullptr : resolve(model->document, model->rows, index, array);
+			index < 0 ? nullptr : resolve(*model, index, array);
 		if (!fault)
 			return NMTAN_OK;
 		std::snprintf(pointer, sizeof pointer, "/meshes/%zu/primitives/%zu/%s", mesh, primitive, place);
@@ -333,7 +272,7 @@ const tinygltf::Value *block_of(const nt_reread *model, size_t mesh, size_t prim
 	if (primitive >= nt_reread_primitive_count(model, mesh))
 		return nullptr;
 	const tinygltf::ExtensionMap &extensions = model->document.meshes[mesh].primitives[primitive].extensions;
-	const auto found = extensions.find(draco);
+	const auto found = extensions.find(nt::draco_extension);
 	return found == extensions.end() || !found->second.IsObject() ? nullptr : &found->second;
 }
 
@@ -346,7 +285,7 @@ nmtan_status nt_reread_open(nt_reread **model, const unsigned char *bytes, size_
 	nt_reread *made = nullptr;
 	const nmtan_status status = nt::guard(error, library, [&] {
 		made = new nt_reread;
-		return load(made->document, bytes, size, {find, user}, error);
+		return load(*made, bytes, size, {find, user}, error);
 	});
 	if (status == NMTAN_OK)
 		*model = made;
@@ -388,7 +327,7 @@ nmtan_status nt_reread_target(nt_reread *model, size_t mesh, size_t primitive, s
 	});
 }
 
-bool nt_reread_block(const nt_reread *model, size_t mesh, size_t primitive, const unsigned char **bytes,
+bool nt_reread_block(nt_reread *model, size_t mesh, size_t primitive, const unsigned char **bytes,
 	size_t *size)
 {
 	const tinygltf::Value *block = block_of(model, mesh, primitive);
@@ -396,7 +335,7 @@ bool nt_reread_block(const nt_reread *model, size_t mesh, size_t primitive, cons
 		return false;
 	size_t stride;
 	const int view = block->Get("bufferView").IsInt() ? block->Get("bufferView").GetNumberAsInt() : -1;
-	if (view_bytes(model->document, view, bytes, size, &stride))
+	if (view_bytes(*model, view, bytes, size, &stride))
 		*bytes = nullptr, *size = 0;
 	return true;
 }

@@ -202,7 +202,7 @@ static bool lists_extension(const loaded *l, const char *list)
 
 static void solve(const char *input, const char *output, nt_draco_choice draco)
 {
-	const nt_settings settings = {.texcoord_set = -1, .draco = draco};
+	const nt_settings settings = {.texcoord_set = -1, .draco = draco, .verify = true};
 	nt_summary summary;
 	nt_error error;
 	if (nt_run(input, output, &settings, &summary, &error))
@@ -270,6 +270,23 @@ static void meshopt_gives_what_plain_gives(void **state)
 	unload(&in);
 	unload(&plain);
 	unload(&packed);
+}
+
+/* Nothing is split, so that nothing has to be unpacked; --verify does. */
+static void meshopt_views_that_do_not_change_stay_packed(void **state)
+{
+	(void)state;
+	sheet even = source;
+	for (int v = 0; v < VERTICES; v++)
+		even.texcoords[v][0] = (float)(v % (N + 1)) * 0.125f;
+	write_meshopt(&even, "packed.glb");
+	solve(in_folder("packed.glb"), in_folder("packed_out.glb"), NT_DRACO_KEEP);
+	loaded out;
+	load(&out, in_folder("packed_out.glb"));
+	assert_int_equal(out.mesh->vertex_count, VERTICES);
+	assert_memory_equal(out.mesh->positions, even.positions, sizeof even.positions);
+	assert_true(lists_extension(&out, "extensionsRequired"));
+	unload(&out);
 }
 
 static void check_draco(nt_draco_method method)
@@ -472,6 +489,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(meshopt_gives_what_plain_gives),
+		cmocka_unit_test(meshopt_views_that_do_not_change_stay_packed),
 		cmocka_unit_test(draco_sequential_keeps_every_value),
 		cmocka_unit_test(draco_edgebreaker_keeps_every_value),
 		cmocka_unit_test(explicit_methods_compress_plain_primitives),
