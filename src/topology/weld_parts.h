@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the weld on one thread (weld.c) and on several (weld_threads.c) share: rows, their hash, entries of the
- * table. For these two files only.
+ * What the weld by a table on one thread (weld.c), that on several (weld_threads.c) and the sieve of vertices
+ * (weld_sieve.c) share: rows, their hash, entries of the table. For these files only.
  *
  * An entry of 4 bytes holds a number and, in the bits that the number leaves free, a tag of the hash, so that
  * a foreign row is read about once in 2^tag probes. Tables are open-addressing and at most half full.
@@ -17,21 +17,21 @@
 enum { NT_WELD_BATCH = 32 };
 
 #define NT_WELD_EMPTY UINT32_MAX
-#define NT_WELD_UNORDERED UINT32_MAX /* in `numbers`: the row holds a NaN */
+#define NT_WELD_TAKEN UINT32_MAX /* in place of the number of a vertex with a NaN: it was given to a corner */
 
 typedef struct nt_welder {
 	const nmtan_mesh *mesh;
 	nt_room *row_room, *room; /* for the rows, for everything else */
 	const uint32_t *items; /* vertex of item i; NULL: i */
 	size_t item_count;
-	bool by_corner;        /* items are corners, not vertices */
+	size_t row_guess;      /* rows for which there is room at first */
 	nt_weld_row *rows;
 	bool rows_in_room;
 	size_t row_capacity, row_count;
 	uint32_t *table;
 	unsigned table_bits, index_bits; /* log2 of the entries; bits of an entry's number */
-	uint32_t *numbers; /* [item_count] row of each item; NULL while number i is i */
-	size_t unordered_count; /* vertices of an indexed mesh that hold a NaN: they have no row yet */
+	uint32_t *numbers; /* [item_count] row of each item */
+	bool unordered;    /* an item holds a NaN */
 } nt_welder;
 
 /* Eight bytes of a row, read by themselves: gcc takes an array of four by way of the stack. */
@@ -122,7 +122,7 @@ static inline uint32_t nt_weld_entry(const nt_welder *w, uint64_t hash, uint32_t
 
 static inline unsigned nt_weld_bits_for(size_t entries)
 {
-	unsigned bits = 8;
+	unsigned bits = 4;
 	while ((size_t)1 << bits < entries)
 		bits++;
 	return bits;
@@ -131,15 +131,16 @@ static inline unsigned nt_weld_bits_for(size_t entries)
 /* A table that is not cleared. */
 bool nt_weld_make_table(nt_welder *w, unsigned table_bits, unsigned index_bits);
 
-/* Memory for a number for each item: for good where items are corners; else in the room, until the corners are
- * numbered. */
-uint32_t *nt_weld_alloc_numbers(nt_welder *w);
-
 /* A larger place for the rows, which move. */
 bool nt_weld_grow_rows(nt_welder *w, size_t capacity);
 
-/* Numbers the items on `ranges` threads (at least 2): rows, row_count, numbers and unordered_count become what
- * one thread makes them. False when out of memory. */
+/* Numbers the items in order of first appearance, by a table: rows, row_count and what lies at `numbers` come to be.
+ * An item with a NaN has a row of its own. The second is for at least two threads. False when out of memory. */
+bool nt_weld_items(nt_welder *w, unsigned ranges);
 bool nt_weld_items_threads(nt_welder *w, unsigned ranges);
+
+/* Welds the vertices, which are the items, of a mesh with indices; rows and row_count come to be. Returns the number of
+ * each corner, which may be the mesh's indices; NULL when out of memory. */
+const uint32_t *nt_weld_vertices(nt_welder *w, size_t corner_count, unsigned ranges);
 
 #endif
