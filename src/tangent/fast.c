@@ -396,6 +396,23 @@ static void vouch(const nt_fast *fast, bool usable)
 	vouched->welded_count = fast->vertex_count;
 }
 
+/* What step 7 may use: the larger of two arrays that are done with, unless it lies in the output. */
+static nt_room dead_room(const nt_fast *fast)
+{
+	const nt_solve *solve = fast->solve;
+	const bool binned = fast->bins.cursors;
+	char *const arrays[2] = {(char *)(binned ? fast->bins.entries : fast->adjacency.entries), (char *)fast->rows};
+	const size_t bytes[2] = {(binned ? 3 * fast->triangle_count : fast->adjacency.entry_count) * sizeof(nt_fan_entry),
+		fast->vertex_count * sizeof(nt_weld_row)};
+	nt_room largest = nt_room_over(NULL, 0, solve->scratch);
+	for (int i = 0; i < 2; i++) {
+		const bool in_output = (uintptr_t)arrays[i] - (uintptr_t)solve->tangents < solve->corner_count * 16;
+		if (!in_output && bytes[i] > (size_t)(largest.end - largest.begin))
+			largest = nt_room_over(arrays[i], bytes[i], solve->scratch);
+	}
+	return largest;
+}
+
 /* 3 */
 static nmtan_status make_places(nt_fast *fast, unsigned bin_bits, nt_record *sums, nt_room *row_room, nt_room *room)
 {
@@ -479,7 +496,8 @@ static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, bool sparse, 
 		return status;
 	fast->sparse = fast->sparse && settled.unusable_count == 0;
 	nt_fast_write(fast);
-	if (settled.complex_count > 0 && (status = nt_fast_complex(fast, settled.complex_count)))
+	nt_room room = dead_room(fast);
+	if (settled.complex_count > 0 && (status = nt_fast_complex(fast, kernels, settled.complex_count, &room)))
 		return status;
 	if (solve->vouched)
 		vouch(fast, settled.unusable_count == 0);

@@ -71,6 +71,16 @@ typedef struct nt_settled {
 /* Makes fast->records[orient], which a triangle needs and which does not exist; false: it cannot be had now. */
 typedef bool nt_record_maker(nt_fast *fast, int orient, void *context);
 
+/* What a corner adds to its group, solved by itself. */
+typedef struct nt_corner {
+	float u[3], mag_s, v[3], mag_t; /* unit directions perpendicular to the normal, magnitudes */
+	float angle;                    /* the weight */
+	uint32_t kind;
+} nt_corner;
+
+/* nt_corner.kind: u and v have length 1 up to 1e-5; they may not; there is no frame, and all values are 0. */
+enum { NT_CORNER_UNIT, NT_CORNER_EXTREME, NT_CORNER_ANY };
+
 /* The passes of one instruction set. */
 typedef struct nt_kernels {
 	/* Solves triangles [begin, end) of a range and adds them to their vertices, or to the bins where
@@ -82,6 +92,8 @@ typedef struct nt_kernels {
 	 * counts the vertices that are complex, and the settled ones whose tangent is not usable. */
 	void (*settle)(nt_fast *fast, const nt_adjacency *adjacency, size_t begin, size_t end,
 		nt_settled *settled);
+	/* Solves corners, given as 4 * triangle + k. `solved` has room for a multiple of NT_LANES. */
+	void (*corners)(const nt_fast *fast, const uint32_t *corners, size_t count, nt_corner *solved);
 } nt_kernels;
 
 extern const nt_kernels nt_kernels_baseline;
@@ -147,7 +159,8 @@ void nt_fast_write_defaults(const nt_fast *fast);
  * NMTAN_ERROR_MEMORY. */
 nmtan_status nt_fast_write_late(nt_fast *fast);
 
-/* Solves the vertices whose records are NT_RESULT_COMPLEX and writes their corners. */
-nmtan_status nt_fast_complex(nt_fast *fast, size_t complex_count);
+/* Solves the vertices whose records are NT_RESULT_COMPLEX and writes their corners. `room` lends what the passes
+ * before have left. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_fast_complex(nt_fast *fast, const nt_kernels *kernels, size_t complex_count, nt_room *room);
 
 #endif

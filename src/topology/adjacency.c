@@ -124,6 +124,7 @@ nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_
 	const size_t entries = place_blocks(a);
 	if (entries == SIZE_MAX)
 		return NMTAN_ERROR_TOO_LARGE;
+	a->entry_count = entries;
 	a->entries = nt_room_alloc(room, entries + 1, sizeof *a->entries);
 	return a->entries ? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }

@@ -33,7 +33,8 @@ typedef struct nt_adjacency {
 	uint32_t *cursors;     /* [ranges][vertex_count] */
 	uint32_t *block_begin; /* [blocks + 1] index of a block's first entry */
 	size_t *shared_counts; /* [ranges] corners whose cursor is SHARED */
-	nt_fan_entry *entries;
+	nt_fan_entry *entries; /* [entry_count] */
+	size_t entry_count;
 } nt_adjacency;
 
 /* Corners for which places can be numbered whatever the mesh looks like. */
