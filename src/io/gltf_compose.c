@@ -349,11 +349,15 @@ static nmtan_status write_buffer(const composition *c, byte_stream *stream, nt_e
 static nmtan_status write_glb(const composition *c, nt_sink *sink, nt_error *error)
 {
 	nt_model_text text;
+	const bool has_bin = c->buffer_size > 0;
 	byte_stream stream = {.sink = sink};
 	nmtan_status status = nt_model_json(c->model, c->buffer_size, NT_MODEL_CHUNK, NULL, &text, error);
 	if (status == NMTAN_OK)
-		status = nt_glb_begin(sink, text.data, text.size, c->buffer_size > 0, c->buffer_size, 0,
-			error);
+		status = nt_glb_begin(sink, text.size, has_bin, c->buffer_size, 0, error);
+	if (status == NMTAN_OK)
+		status = nt_sink_write(sink, text.data, text.size, error);
+	if (status == NMTAN_OK)
+		status = nt_glb_end_json(sink, text.size, has_bin, c->buffer_size, error);
 	if (status == NMTAN_OK)
 		status = write_buffer(c, &stream, error);
 	if (status == NMTAN_OK)

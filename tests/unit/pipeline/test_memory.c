@@ -118,7 +118,7 @@ static size_t peak_of(const char *input, const char *output)
 	const pid_t child = fork();
 	assert_true(child >= 0);
 	if (child == 0) {
-		const nt_settings settings = {.texcoord_set = -1, .output_format = NT_FORMAT_GLB, .threads = 2};
+		const nt_settings settings = {.texcoord_set = -1, .embed = strstr(output, ".gltf"), .threads = 2};
 		nt_summary summary;
 		nt_error error;
 		const nmtan_status status = nt_run(input, output, &settings, &summary, &error);
@@ -138,10 +138,10 @@ static size_t peak_of(const char *input, const char *output)
 #define SANITIZED 0
 #endif
 
-static void assert_peak(const char *small, const char *large)
+static void assert_peak(const char *small, const char *large, const char *output)
 {
-	const size_t base = peak_of(small, in_folder("out.glb")), peak = peak_of(large, in_folder("out.glb"));
-	const size_t in = size_of(large), out = size_of(in_folder("out.glb"));
+	const size_t base = peak_of(small, output), peak = peak_of(large, output);
+	const size_t in = size_of(large), out = size_of(output);
 	print_message("%zu bytes to %zu: peak %zu, %zu of them for a triangle or two\n", in, out, peak, base);
 	assert_true(SANITIZED || peak - base <= in + out + out / 2);
 }
@@ -151,7 +151,16 @@ static void a_glb_takes_little_more_than_its_output(void **state)
 	(void)state;
 	make_glb(in_folder("small.glb"), 1);
 	make_glb(in_folder("large.glb"), SIDE);
-	assert_peak(in_folder("small.glb"), in_folder("large.glb"));
+	assert_peak(in_folder("small.glb"), in_folder("large.glb"), in_folder("out.glb"));
+}
+
+/* The base64 of a buffer is not held. */
+static void a_gltf_with_its_buffer_inside_takes_little_more_than_its_output(void **state)
+{
+	(void)state;
+	make_glb(in_folder("small.glb"), 1);
+	make_glb(in_folder("large.glb"), SIDE);
+	assert_peak(in_folder("small.glb"), in_folder("large.glb"), in_folder("out.gltf"));
 }
 
 static void an_obj_takes_little_more_than_its_output(void **state)
@@ -159,13 +168,15 @@ static void an_obj_takes_little_more_than_its_output(void **state)
 	(void)state;
 	make_obj(in_folder("small.obj"), 1);
 	make_obj(in_folder("large.obj"), SIDE);
-	assert_peak(in_folder("small.obj"), in_folder("large.obj"));
+	assert_peak(in_folder("small.obj"), in_folder("large.obj"), in_folder("out.glb"));
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(a_glb_takes_little_more_than_its_output, make_folder, remove_folder),
+		cmocka_unit_test_setup_teardown(a_gltf_with_its_buffer_inside_takes_little_more_than_its_output,
+			make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(an_obj_takes_little_more_than_its_output, make_folder, remove_folder),
 	};
 	return cmocka_run_group_tests_name("pipeline/memory", tests, NULL, NULL);
