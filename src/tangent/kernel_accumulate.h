@@ -252,15 +252,17 @@ static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range
 			ask_ahead(fast, first, end, 0);
 		uint32_t copy[3 * NT_LANES];
 		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
-		gather_rows(fast->rows, ids, count, in.row);
+		gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : lanes_of(count), in.row);
 		if (fast->scattered)
 			ask_ahead(fast, first, end, 1);
 		if (fast->wants_more)
 			solve_lanes_more(&in, &out, offset, slack);
-		else if (count <= FEW_LANES)
-			solve_few_lanes(&in, &out, offset, slack, count);
+#if WIDTH > 4
+		else if (count <= 4)
+			solve_four(&in, &out, offset, slack);
+#endif
 		else
-			solve_lanes_plain(&in, &out, offset, slack);
+			solve_lanes_plain(&in, &out, offset, slack, count);
 		if (fast->scattered)
 			ask_ahead(fast, first, end, 2);
 		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
