@@ -35,7 +35,7 @@ typedef struct complex {
 	nt_fast *fast;
 	const nt_kernels *kernels;
 	nt_room *room;
-	nt_record *records;
+	int orient;          /* of the records that say which vertices are complex */
 	size_t vertex_count, corner_count;
 	size_t most;         /* corners of one vertex */
 	uint32_t *begin;     /* [vertex_count + 1] first place of each vertex */
@@ -64,15 +64,20 @@ static void *allocate(const complex *c, size_t count, size_t size)
 
 /* Collecting */
 
+static nt_record *record_of(const complex *c, uint32_t vertex)
+{
+	return nt_fast_record(c->fast, c->orient, vertex);
+}
+
 static bool is_complex(const complex *c, uint32_t vertex)
 {
-	return (c->records[vertex].state | 1) == NUMBERED;
+	return (record_of(c, vertex)->state | 1) == NUMBERED;
 }
 
 static uint32_t number_of(const complex *c, uint32_t vertex)
 {
 	uint32_t number;
-	memcpy(&number, &c->records[vertex].x, sizeof number);
+	memcpy(&number, &record_of(c, vertex)->x, sizeof number);
 	return number;
 }
 
@@ -92,9 +97,10 @@ static void count_corners(complex *c, uint32_t *counts)
 		const uint32_t *vertices = nt_triangle_vertices(&fast->triangles, t, 1, copy);
 		for (size_t k = 0; k < 3; k++) {
 			const uint32_t v = vertices[k];
-			if (c->records[v].state == NT_RESULT_COMPLEX) {
-				c->records[v].state = NUMBERED;
-				memcpy(&c->records[v].x, &numbers, sizeof numbers);
+			nt_record *record = record_of(c, v);
+			if (record->state == NT_RESULT_COMPLEX) {
+				record->state = NUMBERED;
+				memcpy(&record->x, &numbers, sizeof numbers);
 				numbers++;
 			}
 			if (is_complex(c, v))
@@ -504,7 +510,7 @@ nmtan_status nt_fast_complex(nt_fast *fast, const nt_kernels *kernels, size_t co
 {
 	complex c = {.fast = fast, .kernels = kernels, .room = room, .vertex_count = complex_count,
 		.more = fast->wants_more || fast->triangles.cuts};
-	c.records = fast->records[0] ? fast->records[0] : fast->records[1];
+	c.orient = !fast->records[0];
 	c.waiting = allocate(&c, fast->vertex_count, sizeof *c.waiting);
 	if (!c.waiting)
 		return NMTAN_ERROR_MEMORY;

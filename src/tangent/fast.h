@@ -53,8 +53,9 @@ typedef struct nt_fast {
 	size_t vertex_count;
 	uint8_t *flags;          /* [triangle_count] */
 	nt_adjacency adjacency;
-	nt_record *records[2];       /* [vertex_count] for orientation false and true; NULL: not needed */
-	nt_record_more *more[2];     /* the same for the optional outputs */
+	nt_record *records[2];       /* for orientation false and true, see nt_fast_record(); NULL: not needed */
+	size_t record_step;          /* from one vertex to the next */
+	nt_record_more *more[2];     /* [vertex_count] the same for the optional outputs */
 	bool wants_more;
 	bool sparse;             /* step 6 leaves out corners whose result is their record */
 	bool scattered;          /* neighbouring triangles have vertices far apart: ask for them early */
@@ -88,10 +89,12 @@ typedef struct nt_kernels {
 	 * get one. Returns the triangle up to which it came. */
 	size_t (*accumulate)(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
 		void *context);
-	/* Turns the records of blocks [begin, end) of vertices, all of them in the adjacency, into results;
-	 * counts the vertices that are complex, and the settled ones whose tangent is not usable. */
-	void (*settle)(nt_fast *fast, const nt_adjacency *adjacency, size_t begin, size_t end,
-		nt_settled *settled);
+	/* Turns the sums of blocks [begin, end) of vertices, all of them in the adjacency, into results, which go
+	 * to the records; counts the vertices that are complex, and the settled ones whose tangent is not
+	 * usable. Sums are counted from the adjacency's first vertex. Results may
+	 * replace the rows of their block and of those before. */
+	void (*settle)(nt_fast *fast, const nt_adjacency *adjacency, nt_record *const sums[2], size_t begin,
+		size_t end, nt_settled *settled);
 	/* Solves corners, given as 4 * triangle + k. `solved` has room for a multiple of NT_LANES. */
 	void (*corners)(const nt_fast *fast, const uint32_t *corners, size_t count, nt_corner *solved);
 } nt_kernels;
@@ -117,6 +120,11 @@ static inline size_t nt_fast_corner(const nt_fast *fast, size_t i)
 static inline uint32_t nt_fast_vertex(const nt_fast *fast, size_t i)
 {
 	return fast->triangles.ids[nt_fast_corner(fast, i)];
+}
+
+static inline nt_record *nt_fast_record(const nt_fast *fast, int orient, uint32_t vertex)
+{
+	return &fast->records[orient][fast->record_step * vertex];
 }
 
 /* The next triangle from t on that has one of these flags; triangle_count: none. */

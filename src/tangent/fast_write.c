@@ -24,13 +24,12 @@ static void write_corner(const nt_fast *fast, size_t corner, const nt_record *re
 /* The orientation whose records stand for a vertex that has one only. */
 static int single_record(const nt_fast *fast, uint32_t vertex)
 {
-	const nt_record *negative = fast->records[0];
-	return !negative || (fast->records[1] && negative[vertex].state == NT_RESULT_NONE);
+	return !fast->records[0] || (fast->records[1] && nt_fast_record(fast, 0, vertex)->state == NT_RESULT_NONE);
 }
 
 static void write_vertex(const nt_fast *fast, size_t corner, int orient, uint32_t vertex)
 {
-	write_corner(fast, corner, &fast->records[orient][vertex],
+	write_corner(fast, corner, nt_fast_record(fast, orient, vertex),
 		fast->wants_more ? &fast->more[orient][vertex] : NULL);
 }
 
@@ -53,9 +52,9 @@ static void write_special(nt_fast *fast, size_t t)
 	for (size_t i = 3 * t; i < 3 * t + 3; i++) {
 		const uint32_t v = nt_fast_vertex(fast, i);
 		const int o = single_record(fast, v);
-		const uint32_t state = fast->records[o][v].state;
+		const uint32_t state = nt_fast_record(fast, o, v)->state;
 		const bool two = fast->records[!o] && state != NT_RESULT_NONE &&
-				 fast->records[!o][v].state != NT_RESULT_NONE;
+				 nt_fast_record(fast, !o, v)->state != NT_RESULT_NONE;
 		if (state == NT_RESULT_COMPLEX)
 			*flags |= degenerate ? NT_TRIANGLE_LATE : NT_TRIANGLE_COMPLEX;
 		else if (degenerate && two)
@@ -68,11 +67,11 @@ static void write_special(nt_fast *fast, size_t t)
 static inline void ask_records(const nt_fast *fast, size_t t, size_t end)
 {
 	const size_t later = t + WRITE_AHEAD < end ? t + WRITE_AHEAD : end - 1;
-	const nt_record *records = fast->records[fast->flags[later] & NT_TRIANGLE_ORIENT];
+	const int orient = fast->flags[later] & NT_TRIANGLE_ORIENT;
 	uint32_t copy[3];
 	const uint32_t *v = nt_triangle_vertices(&fast->triangles, later, 1, copy);
-	for (int k = 0; records && k < 3; k++)
-		__builtin_prefetch(&records[v[k]]);
+	for (int k = 0; fast->records[orient] && k < 3; k++)
+		__builtin_prefetch(nt_fast_record(fast, orient, v[k]));
 }
 
 /* Every corner of [begin, end) gets its vertex's result; in a sparse solve those of suspects only. */
@@ -89,10 +88,9 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 		uint32_t copy[3];
 		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
 		const int orient = *flags & NT_TRIANGLE_ORIENT;
-		const nt_record *records = fast->records[orient];
-		if (records[v[0]].state == NT_RESULT_COMPLEX || records[v[1]].state == NT_RESULT_COMPLEX ||
-			records[v[2]].state == NT_RESULT_COMPLEX)
-			*flags |= NT_TRIANGLE_COMPLEX;
+		for (int k = 0; k < 3; k++)
+			if (nt_fast_record(fast, orient, v[k])->state == NT_RESULT_COMPLEX)
+				*flags |= NT_TRIANGLE_COMPLEX;
 		if (fast->sparse && !(*flags & NT_TRIANGLE_SUSPECT))
 			continue;
 		for (unsigned k = 0; k < 3; k++)
@@ -107,6 +105,7 @@ static void write_plain_triangles(nt_fast *fast, size_t begin, size_t end)
 	uint8_t *flags = fast->flags;
 	const nt_record *records[2] = {fast->records[0], fast->records[1]};
 	float *out = fast->solve->tangents;
+	const size_t step = fast->record_step;
 	const bool scattered = fast->scattered;
 	for (size_t t = begin; t < end; t++) {
 		if (scattered)
@@ -118,7 +117,7 @@ static void write_plain_triangles(nt_fast *fast, size_t begin, size_t end)
 		const nt_record *from = records[flags[t] & NT_TRIANGLE_ORIENT];
 		uint32_t copy[3];
 		const uint32_t *v = nt_triangle_vertices(&triangles, t, 1, copy);
-		const nt_record a = from[v[0]], b = from[v[1]], c = from[v[2]];
+		const nt_record a = from[step * v[0]], b = from[step * v[1]], c = from[step * v[2]];
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 0), &a, sizeof a);
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 1), &b, sizeof b);
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 2), &c, sizeof c);

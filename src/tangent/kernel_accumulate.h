@@ -68,18 +68,18 @@ static void __attribute__((noinline)) add_unusual(nt_fast *fast, unsigned range,
 
 /* Writes a corner down in its vertex's bin. */
 static inline void bin_corner(const nt_bins *bins, uint32_t *cursors, uint32_t vertex, uint32_t orient,
-	nt_fan_entry entry, const float *add)
+	uint32_t next, uint32_t previous, const float *add)
 {
 	const uint32_t lane = vertex & (((uint32_t)1 << bins->vertex_bits) - 1);
-	const uint32_t at = cursors[vertex >> bins->vertex_bits]++;
+	const size_t at = cursors[vertex >> bins->vertex_bits]++;
 	const nt_int4 tag = {0, 0, 0, (int)(orient << 31 | lane << NT_BINNED_SHIFT)};
 	nt_int4 sum;
 	memcpy(&sum, add, sizeof sum);
 	sum |= tag;
 	__builtin_prefetch(&bins->sums[at + BIN_AHEAD], 1);
-	__builtin_prefetch(&bins->entries[at + 2 * BIN_AHEAD], 1);
+	__builtin_prefetch(&bins->entries[NT_BINNED_ENTRY * (at + 2 * BIN_AHEAD)], 1);
 	memcpy(&bins->sums[at], &sum, sizeof sum);
-	bins->entries[at] = entry;
+	nt_binned_store(bins->entries + NT_BINNED_ENTRY * at, next, previous);
 }
 
 /* One corner, whatever its vertex is. */
@@ -89,7 +89,7 @@ static void add_corner(nt_fast *fast, unsigned range, uint32_t vertex, int orien
 	const nt_adjacency *a = &fast->adjacency;
 	if (fast->bins.cursors) {
 		bin_corner(&fast->bins, fast->bins.cursors + range * fast->bins.count, vertex, (uint32_t)orient,
-			entry, add.sum);
+			entry.next & NT_ENTRY_VERTEX, entry.previous & NT_ENTRY_VERTEX, add.sum);
 		return;
 	}
 	uint32_t *cursor = &a->cursors[range * a->vertex_count + vertex];
@@ -155,11 +155,11 @@ static void __attribute__((noinline)) bin_ordinary(const nt_fast *fast, unsigned
 	uint32_t *const cursors = bins.cursors + range * bins.count;
 	unsigned seen = 0;
 	for (size_t i = 0; i < count; i++, v += 3) {
-		const uint32_t orient = fast->flags[first + i] & NT_TRIANGLE_ORIENT, bit = orient << 31;
+		const uint32_t orient = fast->flags[first + i] & NT_TRIANGLE_ORIENT;
 		const size_t place = 4 * turned_place(i);
-		bin_corner(&bins, cursors, v[0], orient, (nt_fan_entry){v[1] | bit, v[2] | bit}, out->add[0] + place);
-		bin_corner(&bins, cursors, v[1], orient, (nt_fan_entry){v[2] | bit, v[0] | bit}, out->add[1] + place);
-		bin_corner(&bins, cursors, v[2], orient, (nt_fan_entry){v[0] | bit, v[1] | bit}, out->add[2] + place);
+		bin_corner(&bins, cursors, v[0], orient, v[1], v[2], out->add[0] + place);
+		bin_corner(&bins, cursors, v[1], orient, v[2], v[0], out->add[1] + place);
+		bin_corner(&bins, cursors, v[2], orient, v[0], v[1], out->add[2] + place);
 		seen |= NT_SEEN(orient);
 	}
 	bins.seen[range] |= (uint8_t)seen;

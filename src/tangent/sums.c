@@ -388,6 +388,7 @@ static void vouch(const nt_sums *s, bool sparse)
 	if (!sparse)
 		return;
 	vouched->ids = s->ids;
+	vouched->row_step = 4;
 	for (int side = 0; side < 2; side++)
 		vouched->rows[side] = s->results[side] ? &s->results[side]->x : NULL;
 }
