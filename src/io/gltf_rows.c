@@ -5,7 +5,8 @@
  * Each mesh was solved and split by itself. Where several of them use the same vertex, their tangents
  * for it may agree or not. The rows of a vertex form a chain that begins with its own; a mesh takes the
  * row of the chain where its group has the same tangent, else the first one where it has none yet, and
- * appends a row where all have one; by hash, since a hub may have any number of rows. For a mesh that shares nothing this is exactly its own split, which is taken as it is.
+ * appends a row where all have one; by hash, since a hub may have any number of rows. For a mesh that shares nothing
+ * this is exactly its own split, which is taken as it is.
  */
 #include "io/gltf_share.h"
 
@@ -34,7 +35,8 @@ typedef struct merging {
  * transforms are the same too. */
 typedef struct group_key {
 	uint32_t positions, normals, texcoords;
-	uint32_t targets; /* a hash of what the morph targets move */
+	uint32_t targets;    /* a hash of what the morph targets move */
+	uint64_t directions; /* a hash of what a texture transform makes of the texture coordinates; 0: there is none */
 } group_key;
 
 static uint32_t canonical_of(const nt_gltf_sharing *sharing, const nt_json_value *attributes,
@@ -60,9 +62,11 @@ static group_key key_of(const nt_gltf *document, const nt_gltf_sharing *sharing,
 		hash = (hash ^ canonical_of(sharing, target, "POSITION")) * 16777619u;
 		hash = (hash ^ canonical_of(sharing, target, "NORMAL")) * 16777619u;
 	}
+	const uint64_t directions = !mesh->solve_texcoords ? 0 :
+		nt_hash_bytes(1, mesh->solve_texcoords, mesh->vertex_count * 2 * sizeof *mesh->solve_texcoords);
 	return (group_key){canonical_of(sharing, attributes, "POSITION"),
 		canonical_of(sharing, attributes, "NORMAL"), canonical_of(sharing, attributes, name),
-		hash};
+		hash, directions};
 }
 
 /* Whether texture transforms do the same to two meshes over the same texture coordinates. Where they do not, hardly a
@@ -87,11 +91,7 @@ typedef struct grouping {
 
 static size_t slot_of(const group_key *key, size_t table_size)
 {
-	uint64_t hash = key->positions;
-	hash = (hash ^ key->normals) * 0x9E3779B97F4A7C15u;
-	hash = (hash ^ hash >> 32 ^ key->texcoords) * 0x9E3779B97F4A7C15u;
-	hash = (hash ^ hash >> 32 ^ key->targets) * 0x9E3779B97F4A7C15u;
-	return (size_t)(hash >> 32) & (table_size - 1);
+	return (size_t)(nt_hash_bytes(0, key, sizeof *key) >> 32) & (table_size - 1);
 }
 
 /* Appends a member to its group, which may be a new one. */
