@@ -25,7 +25,7 @@ typedef double nt_double4 __attribute__((vector_size(32)));
 
 /* What goes from one step to the next, by lane. */
 typedef struct sum_lanes {
-	float row[3][8][NT_SUM_LANES]; /* corner, float of its nt_weld_row */
+	_Alignas(64) float row[3][8][NT_SUM_LANES]; /* corner, float of its nt_weld_row */
 	double uv[4][NT_SUM_LANES];    /* the texture edges bu, bv, cu, cv */
 	double edge[3][3][NT_SUM_LANES];
 	double u[3][NT_SUM_LANES], across[3][NT_SUM_LANES];
@@ -310,51 +310,78 @@ static int sum_missing(const nt_sums *s, size_t first, size_t count)
 	return (seen & 1) && !s->sums[0] ? 0 : (seen & 2) && !s->sums[1] ? 1 : -1;
 }
 
-LANE_INLINE void turn_doubles(nt_double4 rows[4])
+/* Four rows of four doubles, turned, in each 32-byte part of the vectors: see turn(). */
+#if WIDTH == 16
+enum { SUM_PARTS = 2 };
+#define IN_DOUBLES(a, b, c, d) DOUBLES(0, a, b, c, d), DOUBLES(4, a, b, c, d)
+#else
+enum { SUM_PARTS = 1 };
+#define IN_DOUBLES(a, b, c, d) DOUBLES(0, a, b, c, d)
+#endif
+#define DOUBLES(part, a, b, c, d) DOUBLE(part, a), DOUBLE(part, b), DOUBLE(part, c), DOUBLE(part, d)
+#define DOUBLE(part, i) ((part) + (i) % 4 + (i) / 4 * 4 * SUM_PARTS)
+typedef double double_lanes __attribute__((vector_size(32 * SUM_PARTS)));
+
+LANE_INLINE void turn_doubles(double_lanes rows[4])
 {
-	const nt_double4 ab02 = __builtin_shufflevector(rows[0], rows[1], 0, 4, 2, 6);
-	const nt_double4 ab13 = __builtin_shufflevector(rows[0], rows[1], 1, 5, 3, 7);
-	const nt_double4 cd02 = __builtin_shufflevector(rows[2], rows[3], 0, 4, 2, 6);
-	const nt_double4 cd13 = __builtin_shufflevector(rows[2], rows[3], 1, 5, 3, 7);
-	rows[0] = __builtin_shufflevector(ab02, cd02, 0, 1, 4, 5);
-	rows[1] = __builtin_shufflevector(ab13, cd13, 0, 1, 4, 5);
-	rows[2] = __builtin_shufflevector(ab02, cd02, 2, 3, 6, 7);
-	rows[3] = __builtin_shufflevector(ab13, cd13, 2, 3, 6, 7);
+	const double_lanes ab02 = __builtin_shufflevector(rows[0], rows[1], IN_DOUBLES(0, 4, 2, 6));
+	const double_lanes ab13 = __builtin_shufflevector(rows[0], rows[1], IN_DOUBLES(1, 5, 3, 7));
+	const double_lanes cd02 = __builtin_shufflevector(rows[2], rows[3], IN_DOUBLES(0, 4, 2, 6));
+	const double_lanes cd13 = __builtin_shufflevector(rows[2], rows[3], IN_DOUBLES(1, 5, 3, 7));
+	rows[0] = __builtin_shufflevector(ab02, cd02, IN_DOUBLES(0, 1, 4, 5));
+	rows[1] = __builtin_shufflevector(ab13, cd13, IN_DOUBLES(0, 1, 4, 5));
+	rows[2] = __builtin_shufflevector(ab02, cd02, IN_DOUBLES(2, 3, 6, 7));
+	rows[3] = __builtin_shufflevector(ab13, cd13, IN_DOUBLES(2, 3, 6, 7));
 }
 
-LANE_INLINE void sum_add_one(nt_vertex_sum *to, const nt_double4 *add)
+LANE_INLINE size_t turned_double_place(size_t lane)
 {
-	nt_double4 sum;
+	const size_t in_vectors = lane % (4 * SUM_PARTS);
+	return lane - in_vectors + in_vectors % 4 * SUM_PARTS + in_vectors / 4;
+}
+
+LANE_INLINE void sum_add_one(nt_vertex_sum *to, const nt_vertex_sum *add)
+{
+	nt_double4 sum, more;
 	memcpy(&sum, to, sizeof sum);
-	sum += *add;
+	memcpy(&more, add, sizeof more);
+	sum += more;
 	memcpy(to, &sum, sizeof sum);
 }
 
 /* Adds the lanes to their vertices, in order; or aside, where the vertex belongs to an earlier range. */
-static void sum_add(nt_sums *s, size_t first, size_t count, unsigned range, const nt_sum_block *block)
+static void __attribute__((noinline)) sum_add(nt_sums *s, size_t first, size_t count, unsigned range,
+	const nt_sum_block *block)
 {
-	const uint32_t *ids = s->ids + 3 * first;
-	for (size_t i = 0; i < count; i += 4) {
-		nt_double4 rows[3][4];
-		for (size_t k = 0; k < 3; k++) {
-			for (size_t c = 0; c < 4; c++)
-				memcpy(&rows[k][c], block->add[k][c] + i, sizeof rows[k][c]);
-			turn_doubles(rows[k]);
-		}
-		for (size_t j = 0; j < 4 && i + j < count; j++, ids += 3) {
-			const uint8_t flags = s->flags[first + i + j];
-			if (flags & NT_SUM_NONE)
-				continue;
-			nt_vertex_sum *to = s->sums[flags & NT_SUM_POSITIVE];
-			for (size_t k = 0; k < 3; k++) {
-				if (s->ranges == 1 || s->owners[ids[k]] == range) {
-					sum_add_one(to + ids[k], &rows[k][j]);
-					continue;
-				}
-				nt_later *later = &s->later[range][s->later_counts[range]++];
-				later->to = to + ids[k];
-				memcpy(&later->add, &rows[k][j], sizeof later->add);
+	_Alignas(64) nt_vertex_sum rows[3][NT_SUM_LANES]; /* in turned places */
+	for (size_t k = 0; k < 3; k++)
+		for (size_t i = 0; i < NT_SUM_LANES; i += 4 * SUM_PARTS) {
+			double_lanes four[4];
+			for (size_t c = 0; c < 4; c++) {
+				double_lanes one; /* copied to an element it would go by halves (gcc 12, AVX2) */
+				memcpy(&one, block->add[k][c] + i, sizeof one);
+				four[c] = one;
 			}
+			turn_doubles(four);
+			for (size_t c = 0; c < 4; c++)
+				memcpy(rows[k] + i + SUM_PARTS * c, &four[c], sizeof four[c]);
+		}
+	const uint32_t *ids = s->ids + 3 * first;
+	const bool alone = s->ranges == 1;
+	for (size_t i = 0; i < count; i++, ids += 3) {
+		const uint8_t flags = s->flags[first + i];
+		const size_t place = turned_double_place(i);
+		if (flags & NT_SUM_NONE)
+			continue;
+		nt_vertex_sum *to = s->sums[flags & NT_SUM_POSITIVE];
+		for (size_t k = 0; k < 3; k++) {
+			if (alone || s->owners[ids[k]] == range) {
+				sum_add_one(to + ids[k], &rows[k][place]);
+				continue;
+			}
+			nt_later *later = &s->later[range][s->later_counts[range]++];
+			later->to = to + ids[k];
+			later->add = rows[k][place];
 		}
 	}
 }
@@ -398,20 +425,34 @@ static size_t sum_accumulate(nt_sums *s, size_t begin, size_t end, unsigned rang
 
 typedef struct finish_lanes {
 	double sum[4][NT_SUM_LANES];
+	float row[8][NT_SUM_LANES];
 	double normal[3][NT_SUM_LANES];
-	double tangent[3][NT_SUM_LANES];
+	float tangent[4][NT_SUM_LANES];
 	double flags[NT_SUM_LANES]; /* of NT_VERTEX_MET and its like, which are small numbers */
 } finish_lanes;
 
-static void __attribute__((noinline)) finish_solve(finish_lanes *restrict l)
+/* Unit normals of `count` vertices; zero where they are not finite. */
+static void __attribute__((noinline)) finish_normals(const nt_weld_row *rows, size_t count, finish_lanes *restrict l)
+{
+	uint32_t ids[3 * NT_SUM_LANES];
+	for (uint32_t i = 0; i < NT_SUM_LANES; i++)
+		ids[3 * i] = i < count ? i : 0;
+	for (size_t lane = 0; lane < NT_SUM_LANES; lane += WIDTH)
+		gather_corner(rows, ids + 3 * lane, lane, l->row);
+	LANES(i) {
+		const nt_dvec3 raw = lane_floats(l->row + 3, i), unit = nt_weigh_normal(raw.x, raw.y, raw.z);
+		const double finite = nt_dvec3_dot(raw, raw) < SUM_HUGE ? 1.0 : 0.0;
+		l->normal[0][i] = finite != 0.0 ? unit.x : 0.0;
+		l->normal[1][i] = finite != 0.0 ? unit.y : 0.0;
+		l->normal[2][i] = finite != 0.0 ? unit.z : 0.0;
+	}
+}
+
+static void __attribute__((noinline)) finish_solve(finish_lanes *restrict l, float sign)
 {
 	LANES(i) {
-		const nt_dvec3 sum = lane_load(l->sum, i), raw = lane_load(l->normal, i);
-		const double normal_squared = nt_dvec3_dot(raw, raw), sensitivity = l->sum[3][i];
-		const double has_normal = normal_squared < SUM_HUGE ? 1.0 : 0.0;
-		const nt_dvec3 unit = nt_weigh_normal(raw.x, raw.y, raw.z);
-		const nt_dvec3 n = {has_normal != 0.0 ? unit.x : 0.0, has_normal != 0.0 ? unit.y : 0.0,
-			has_normal != 0.0 ? unit.z : 0.0};
+		const nt_dvec3 sum = lane_load(l->sum, i), n = lane_load(l->normal, i);
+		const double sensitivity = l->sum[3][i];
 		const double squared = nt_dvec3_dot(sum, sum), bound = sensitivity * sensitivity;
 		const nt_dvec3 t = nt_dvec3_reject(n, sum);
 		const double length = nt_dvec3_dot(t, t);
@@ -420,9 +461,11 @@ static void __attribute__((noinline)) finish_solve(finish_lanes *restrict l)
 		const double well = FLAG(bound <= NT_WELL_CONDITIONED * NT_WELL_CONDITIONED * squared) * sound;
 		const double met = FLAG(sensitivity > 0.0);
 		const double scale = nt_rsqrt(length);
-		l->tangent[0][i] = sound != 0.0 ? scale * t.x + 0.0 : 0.0;
-		l->tangent[1][i] = sound != 0.0 ? scale * t.y + 0.0 : 0.0;
-		l->tangent[2][i] = sound != 0.0 ? scale * t.z + 0.0 : 0.0;
+		/* no -0, whose sign would tell the path that was taken */
+		l->tangent[0][i] = (float)(sound != 0.0 ? scale * t.x : 0.0) + 0.0f;
+		l->tangent[1][i] = (float)(sound != 0.0 ? scale * t.y : 0.0) + 0.0f;
+		l->tangent[2][i] = (float)(sound != 0.0 ? scale * t.z : 0.0) + 0.0f;
+		l->tangent[3][i] = sensitivity > 0.0 ? sign : 0.0f;
 		l->flags[i] = NT_VERTEX_MET * met + NT_VERTEX_LOST * met * (1.0 - sound) + NT_VERTEX_ILL * (1.0 - well);
 	}
 }
@@ -430,7 +473,6 @@ static void __attribute__((noinline)) finish_solve(finish_lanes *restrict l)
 static void finish_load(const nt_sums *s, int side, size_t first, size_t count, finish_lanes *restrict l)
 {
 	const nt_vertex_sum *sums = s->sums[side] + first;
-	const nt_weld_row *rows = s->weld.rows + first;
 	nt_vertex_sum copy[NT_SUM_LANES];
 	if (count < NT_SUM_LANES) {
 		memset(copy, 0, sizeof copy);
@@ -438,15 +480,12 @@ static void finish_load(const nt_sums *s, int side, size_t first, size_t count, 
 		sums = copy;
 	}
 	for (size_t i = 0; i < NT_SUM_LANES; i += 4) {
-		nt_double4 four[4];
+		nt_vertex_sum four[4];
 		memcpy(four, sums + i, sizeof four);
-		turn_doubles(four);
-		for (size_t c = 0; c < 4; c++)
-			memcpy(l->sum[c] + i, &four[c], sizeof four[c]);
-	}
-	for (size_t i = 0; i < NT_SUM_LANES; i++) {
-		const float *n = rows[i < count ? i : 0].normal;
-		l->normal[0][i] = n[0], l->normal[1][i] = n[1], l->normal[2][i] = n[2];
+		for (size_t j = 0; j < 4; j++) {
+			l->sum[0][i + j] = four[j].x, l->sum[1][i + j] = four[j].y;
+			l->sum[2][i + j] = four[j].z, l->sum[3][i + j] = four[j].sensitivity;
+		}
 	}
 }
 
@@ -457,17 +496,17 @@ static void sum_finish(const nt_sums *s, size_t begin, size_t end, nt_sums_finis
 		const size_t left = s->weld.count - first, count = left < NT_SUM_LANES ? left : NT_SUM_LANES;
 		uint8_t *flags = s->vertex_flags + first;
 		memset(flags, 0, count);
+		finish_normals(s->weld.rows + first, count, &l);
 		for (int side = 0; side < 2; side++) {
 			if (!s->sums[side])
 				continue;
 			finish_load(s, side, first, count, &l);
-			finish_solve(&l);
+			finish_solve(&l, side ? 1.0f : -1.0f);
+			float tangents[4 * NT_SUM_LANES];
+			interleave(l.tangent, tangents);
 			for (size_t i = 0; i < count; i++) {
 				const unsigned found = (unsigned)l.flags[i];
-				const float w = !(found & NT_VERTEX_MET) ? 0.0f : side ? 1.0f : -1.0f;
-				/* no -0, whose sign would tell the path that was taken */
-				s->results[side][first + i] = (nt_vertex_tangent){(float)l.tangent[0][i] + 0.0f,
-					(float)l.tangent[1][i] + 0.0f, (float)l.tangent[2][i] + 0.0f, w};
+				memcpy(&s->results[side][first + i], tangents + 4 * turned_place(i), 4 * sizeof(float));
 				flags[i] |= (uint8_t)(found << side);
 				finished->lost += (found & NT_VERTEX_LOST) != 0;
 				finished->ill += (found & NT_VERTEX_MET) && (found & NT_VERTEX_ILL);
