@@ -50,6 +50,17 @@ void nt_buffer_format(nt_buffer *buffer, const char *format, ...)
 	va_end(again);
 }
 
+void nt_buffer_clean(nt_buffer *buffer, const char *text)
+{
+	for (; *text; text++) {
+		const unsigned char c = (unsigned char)*text;
+		if (c < 0x20 || c == 0x7f)
+			nt_buffer_format(buffer, "\\x%02x", c);
+		else
+			nt_buffer_append(buffer, text, 1);
+	}
+}
+
 void nt_buffer_free(nt_buffer *buffer)
 {
 	free(buffer->data);

@@ -23,6 +23,9 @@ void nt_buffer_append(nt_buffer *buffer, const void *bytes, size_t size);
 void nt_buffer_text(nt_buffer *buffer, const char *text);
 void nt_buffer_format(nt_buffer *buffer, const char *format, ...) NT_PRINTF(2, 3);
 
+/* Appends text that may come from a file, with control characters as \x1b: they must not reach a terminal. */
+void nt_buffer_clean(nt_buffer *buffer, const char *text);
+
 /* Appends `size` bytes and returns where they begin, not cleared; NULL when out of memory. The pointer is
  * valid until the next append. */
 void *nt_buffer_extend(nt_buffer *buffer, size_t size);

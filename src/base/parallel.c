@@ -21,10 +21,11 @@ unsigned nt_thread_count(unsigned requested)
 
 unsigned nt_parallel_slots(unsigned threads, size_t count, size_t grain)
 {
-	const size_t most = grain ? count / grain : count;
-	if (most <= 1)
+	/* no division for the small meshes that come by the thousand */
+	if (threads <= 1 || count / 2 < grain)
 		return 1;
-	return most < threads ? (unsigned)most : threads ? threads : 1;
+	const size_t most = grain ? count / grain : count;
+	return most <= 1 ? 1 : most < threads ? (unsigned)most : threads;
 }
 
 /* First item of range r: count * r / n without overflow. */

@@ -112,7 +112,7 @@ static void tell_job(void *user, nt_job *job)
 	if (job->status) {
 		nt_message_error(&text, &job->error, s->style);
 		nt_buffer_format(&s->failures, "%s", s->failed++ ? ", " : "");
-		nt_message_clean(&s->failures, job->input);
+		nt_buffer_clean(&s->failures, job->input);
 		nt_buffer_format(&s->failures, " (%s)", nmtan_status_text(job->status));
 	} else {
 		if (s->style.verbosity >= 0)

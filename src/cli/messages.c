@@ -19,23 +19,12 @@ static const char *colour(nt_style style, const char *code)
 	return style.colour ? code : "";
 }
 
-void nt_message_clean(nt_buffer *out, const char *text)
-{
-	for (; *text; text++) {
-		const unsigned char c = (unsigned char)*text;
-		if (c < 0x20 || c == 0x7f)
-			nt_buffer_format(out, "\\x%02x", c);
-		else
-			nt_buffer_append(out, text, 1);
-	}
-}
-
 /* "file:line: ", "file: at byte N: ", "file: /pointer: ", then "mesh "head": ". */
 static void append_place(nt_buffer *out, const nt_place *place, const char *file)
 {
 	const char *name = place->file[0] ? place->file : file;
 	if (name && *name) {
-		nt_message_clean(out, strcmp(name, "-") == 0 ? "standard input" : name);
+		nt_buffer_clean(out, strcmp(name, "-") == 0 ? "standard input" : name);
 		if (place->line)
 			nt_buffer_format(out, ":%zu", place->line);
 		nt_buffer_text(out, ": ");
@@ -43,11 +32,11 @@ static void append_place(nt_buffer *out, const nt_place *place, const char *file
 	if (place->offset != NT_NO_OFFSET)
 		nt_buffer_format(out, "at byte %" PRIu64 ": ", place->offset);
 	if (place->pointer[0]) {
-		nt_message_clean(out, place->pointer);
+		nt_buffer_clean(out, place->pointer);
 		nt_buffer_text(out, ": ");
 	}
 	if (place->object[0]) {
-		nt_message_clean(out, place->object);
+		nt_buffer_clean(out, place->object);
 		nt_buffer_text(out, ": ");
 	}
 }
@@ -56,7 +45,7 @@ void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style)
 {
 	nt_buffer_format(out, "%snmtan:%s ", colour(style, "\033[1;31m"), colour(style, "\033[0m"));
 	append_place(out, &error->place, NULL);
-	nt_message_clean(out, error->message[0] ? error->message : nmtan_status_text(error->status));
+	nt_buffer_clean(out, error->message[0] ? error->message : nmtan_status_text(error->status));
 	nt_buffer_text(out, "\n");
 }
 
@@ -72,7 +61,7 @@ static void append_finding(nt_buffer *out, const nt_finding *finding, const char
 	append_place(out, &finding->place, file);
 	nt_buffer_format(out, "%s%s:%s ", colour(style, colours[row->severity]),
 		nt_severity_name(row->severity), colour(style, "\033[0m"));
-	nt_message_clean(out, sentence.data ? sentence.data : "");
+	nt_buffer_clean(out, sentence.data ? sentence.data : "");
 	nt_buffer_format(out, " [%s]\n", row->name);
 	nt_buffer_free(&sentence);
 }
@@ -166,10 +155,10 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	const nt_summary *s = &job->summary;
 	const nmtan_counts *c = &s->counts;
 	nt_buffer_text(out, "nmtan: ");
-	nt_message_clean(out, job->input);
+	nt_buffer_clean(out, job->input);
 	if (job->output) {
 		nt_buffer_text(out, " -> ");
-		nt_message_clean(out, job->output);
+		nt_buffer_clean(out, job->output);
 	}
 	nt_buffer_format(out, ": %s", settings->check ? "checked, "
 				      : settings->dry_run ? "dry run, nothing written, "

@@ -39,7 +39,4 @@ void nt_message_timing(nt_buffer *out, const nt_summary *summary);
 /* How a stage is called: "tangents". */
 const char *nt_stage_name(nt_stage stage);
 
-/* Appends text that may come from a file. */
-void nt_message_clean(nt_buffer *out, const char *text);
-
 #endif

@@ -46,7 +46,7 @@ static void draw(nt_progress *p)
 	if (p->files > 1) {
 		nt_buffer_format(&line, "%zu of %zu files", p->ended, p->files);
 	} else {
-		nt_message_clean(&line, p->label);
+		nt_buffer_clean(&line, p->label);
 		nt_buffer_format(&line, ": %s", nt_stage_name(p->stage));
 	}
 	if (line.failed || !line.data) {

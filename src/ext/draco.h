@@ -10,6 +10,7 @@
 #define NT_EXT_DRACO_H
 
 #include "base/error.h"
+#include "ext/gltf_numbers.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -38,7 +39,7 @@ typedef struct nt_draco_quantization {
 typedef struct nt_draco_attribute {
 	uint32_t unique_id;
 	nt_draco_kind kind;
-	int component_type; /* as in glTF: 5120 int8 ... 5126 float, and 5124 for int32 */
+	int component_type; /* of ext/gltf_numbers.h */
 	int components;     /* 1 to 4 */
 	bool normalized;    /* integers that mean [0, 1] or [-1, 1] */
 	nt_draco_quantization quantization;

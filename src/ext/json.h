@@ -50,9 +50,6 @@ typedef enum nt_json_type {
  */
 nmtan_status nt_json_parse(nt_json **document, const char *text, size_t size, nt_error *error);
 
-/* A new document: an empty object. NULL when out of memory. */
-nt_json *nt_json_create(void);
-
 /* NULL is allowed. */
 void nt_json_free(nt_json *document);
 
@@ -83,7 +80,6 @@ nt_json_value *nt_json_find(const nt_json_value *object, const char *key);
 /* The value as a C type. False, and *result untouched, when it is something else or does not fit. Whole
  * numbers written as reals (2.0, 1e3) count as integers, as glTF asks. */
 bool nt_json_get_bool(const nt_json_value *value, bool *result);
-bool nt_json_get_int64(const nt_json_value *value, int64_t *result);
 bool nt_json_get_uint64(const nt_json_value *value, uint64_t *result);
 bool nt_json_get_double(const nt_json_value *value, double *result);
 
@@ -101,9 +97,6 @@ bool nt_json_equal(const nt_json_value *a, const nt_json_value *b);
  * object becomes an empty one. */
 nt_json_value *nt_json_put(nt_json *document, nt_json_value *object, const char *key);
 
-/* The same, but a new member is inserted before member `index`. */
-nt_json_value *nt_json_insert(nt_json *document, nt_json_value *object, size_t index, const char *key);
-
 /* A null appended to an array. A value that is not an array becomes an empty one. */
 nt_json_value *nt_json_append(nt_json *document, nt_json_value *array);
 
@@ -116,7 +109,6 @@ void nt_json_set_bool(nt_json *document, nt_json_value *value, bool content);
 void nt_json_set_uint64(nt_json *document, nt_json_value *value, uint64_t content);
 void nt_json_set_double(nt_json *document, nt_json_value *value, double content);
 void nt_json_set_string(nt_json *document, nt_json_value *value, const char *text, size_t length);
-void nt_json_set_array(nt_json *document, nt_json_value *value);  /* empty */
 void nt_json_set_object(nt_json *document, nt_json_value *value); /* empty */
 void nt_json_set_copy(nt_json *document, nt_json_value *value, const nt_json_value *from);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// fast_float behind two C functions, std::to_chars behind a third. fast_float takes no leading '+', which
+// fast_float behind one C function, std::to_chars behind another. fast_float takes no leading '+', which
 // OBJ and PLY files contain.
 #include "ext/number.h"
 
@@ -8,8 +8,7 @@
 #include <fast_float/fast_float.h>
 #include <system_error>
 
-template <typename Number>
-static const char *read_number(const char *begin, const char *end, Number *value)
+const char *nt_read_float(const char *begin, const char *end, float *value)
 {
 	if (begin != end && *begin == '+') {
 		++begin;
@@ -18,16 +17,6 @@ static const char *read_number(const char *begin, const char *end, Number *value
 	}
 	const auto result = fast_float::from_chars(begin, end, *value);
 	return result.ec == std::errc::invalid_argument ? nullptr : result.ptr;
-}
-
-const char *nt_read_float(const char *begin, const char *end, float *value)
-{
-	return read_number(begin, end, value);
-}
-
-const char *nt_read_double(const char *begin, const char *end, double *value)
-{
-	return read_number(begin, end, value);
 }
 
 char *nt_write_float(char *text, float value)

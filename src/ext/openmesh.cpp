@@ -316,16 +316,6 @@ nmtan_status walk_list::move_to(nt_walks *walks, nt_error *error) const
 	return nt_fail_memory(error);
 }
 
-// The outline's half-edge after h: around the end of h to the first edge that is cut or open.
-HalfedgeHandle next_on_outline(const nt_halfedges &mesh, const uint8_t *cut, HalfedgeHandle h)
-{
-	HalfedgeHandle next = mesh.topology.next_halfedge_handle(h);
-	while (side_of(mesh, opposite_of(mesh, next)) != NT_OPEN &&
-		!(cut && is_flagged(mesh, cut, next)))
-		next = mesh.topology.next_halfedge_handle(opposite_of(mesh, next));
-	return next;
-}
-
 // Marked edges, by half-edge, and how they meet.
 struct marked_edges {
 	const nt_halfedges &mesh;
@@ -428,70 +418,6 @@ size_t nt_halfedges_left_out(const nt_halfedges *mesh, const uint32_t **triangle
 {
 	*triangles = mesh->left_out.data();
 	return mesh->left_out.size();
-}
-
-uint32_t nt_halfedges_opposite(const nt_halfedges *mesh, uint32_t side)
-{
-	const uint32_t h = mesh->halfedge[side];
-	return h == NT_OPEN ? NT_OPEN
-			    : side_of(*mesh, opposite_of(*mesh, HalfedgeHandle(static_cast<int>(h))));
-}
-
-nmtan_status nt_halfedges_islands(const nt_halfedges *mesh, const uint8_t *cut, uint32_t *islands,
-	size_t *count, nt_error *error)
-{
-	return nt::guard(error, "OpenMesh", [&] {
-		std::vector<uint32_t> stack;
-		std::fill(islands, islands + mesh->triangle_count, NT_OPEN);
-		uint32_t number = 0;
-		for (size_t t = 0; t < mesh->triangle_count; t++) {
-			if (islands[t] != NT_OPEN)
-				continue;
-			islands[t] = number;
-			stack.push_back(static_cast<uint32_t>(t));
-			while (!stack.empty()) {
-				const uint32_t side = 3 * stack.back();
-				stack.pop_back();
-				for (uint32_t k = 0; k < 3; k++) {
-					const uint32_t other = nt_halfedges_opposite(mesh, side + k);
-					if (other == NT_OPEN || islands[other / 3] != NT_OPEN ||
-						(cut && (cut[side + k] || cut[other])))
-						continue;
-					islands[other / 3] = number;
-					stack.push_back(other / 3);
-				}
-			}
-			number++;
-		}
-		*count = number;
-		return NMTAN_OK;
-	});
-}
-
-nmtan_status nt_halfedges_outlines(const nt_halfedges *mesh, const uint8_t *cut, nt_walks *walks,
-	nt_error *error)
-{
-	std::memset(walks, 0, sizeof *walks);
-	return nt::guard(error, "OpenMesh", [&] {
-		walk_list list;
-		std::vector<bool> walked(mesh->halfedge.size());
-		for (size_t s = 0; s < mesh->halfedge.size(); s++) {
-			if (walked[s] || mesh->halfedge[s] == NT_OPEN)
-				continue;
-			const HalfedgeHandle begin(static_cast<int>(mesh->halfedge[s]));
-			if (side_of(*mesh, opposite_of(*mesh, begin)) != NT_OPEN &&
-				!(cut && is_flagged(*mesh, cut, begin)))
-				continue;
-			HalfedgeHandle h = begin;
-			do {
-				list.step(*mesh, h);
-				walked[side_of(*mesh, h)] = true;
-				h = next_on_outline(*mesh, cut, h);
-			} while (h != begin);
-			list.end(true);
-		}
-		return list.move_to(walks, error);
-	});
 }
 
 nmtan_status nt_halfedges_chains(const nt_halfedges *mesh, const uint8_t *marked, nt_walks *walks,

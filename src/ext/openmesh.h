@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Half-edge topology of a welded triangle mesh, by OpenMesh: connected pieces, boundary loops and
- * chains of marked edges, each in the order in which one walks along them.
+ * Half-edge topology of a welded triangle mesh, by OpenMesh: chains of marked edges, in the order in which one
+ * walks along them.
  *
  * Edges are numbered like corners: side 3 * t + k runs from corner k of triangle t to its next corner.
  * An inner edge has two sides, each other's opposite; NT_OPEN stands where there is none. Flags on edges
@@ -45,23 +45,6 @@ void nt_halfedges_free(nt_halfedges *mesh);
  * on an edge that is taken. *triangles belongs to the structure; returns how many there are. */
 size_t nt_halfedges_left_out(const nt_halfedges *mesh, const uint32_t **triangles);
 
-/* The side across; NT_OPEN on a boundary and for triangles left out. */
-uint32_t nt_halfedges_opposite(const nt_halfedges *mesh, uint32_t side);
-
-/*
- * Connected pieces: triangles that reach each other across edges that are not cut. A triangle left out is
- * a piece of its own.
- *
- *   cut      [3 * triangle_count] edges that separate; NULL: none
- *   islands  [triangle_count] receives the piece of each triangle; pieces are numbered from 0 by their
- *            lowest triangle
- *   count    receives how many pieces there are
- *
- * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
- */
-nmtan_status nt_halfedges_islands(const nt_halfedges *mesh, const uint8_t *cut, uint32_t *islands,
-	size_t *count, nt_error *error);
-
 /* Walks along edges. Walk w has steps first[w] to first[w + 1] - 1. Step s goes along the sides left[s]
  * and right[s], seen in the direction of the walk, from vertex from[s] to vertex to[s]; to of a step is
  * from of the next, and in a closed walk to of the last is from of the first. One of left and right may
@@ -74,16 +57,6 @@ typedef struct nt_walks {
 } nt_walks;
 
 void nt_walks_free(nt_walks *walks);
-
-/*
- * The outlines of the pieces that `cut` makes, or, where cut is NULL, the boundary loops of the mesh:
- * closed walks with the piece on their left, which turn at each vertex into the same piece. An edge that
- * is cut and inner is walked twice, once from each side. Triangles left out are not walked around.
- *
- * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
- */
-nmtan_status nt_halfedges_outlines(const nt_halfedges *mesh, const uint8_t *cut, nt_walks *walks,
-	nt_error *error);
 
 /*
  * The marked edges, each once, as walks that are as long as possible without passing a junction, which is a

@@ -8,6 +8,7 @@
 #define NT_EXT_TINYGLTF_H
 
 #include "base/error.h"
+#include "ext/gltf_numbers.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -15,11 +16,6 @@ extern "C" {
 
 /* No index: an optional reference that is absent, and the result of an addition that failed. */
 #define NT_MODEL_NONE UINT32_MAX
-
-/* Numbers of the glTF specification. */
-enum { NT_GLTF_BYTE = 5120, NT_GLTF_UNSIGNED_BYTE = 5121, NT_GLTF_SHORT = 5122,
-	NT_GLTF_UNSIGNED_SHORT = 5123, NT_GLTF_UNSIGNED_INT = 5125, NT_GLTF_FLOAT = 5126 };
-enum { NT_GLTF_NO_TARGET = 0, NT_GLTF_ARRAY_BUFFER = 34962, NT_GLTF_ELEMENT_ARRAY_BUFFER = 34963 };
 
 /* ---- a new document ---- */
 
@@ -130,8 +126,7 @@ typedef bool (*nt_reread_find)(void *user, const char *uri, const unsigned char 
  *   find   called for buffers and images in other files; NULL: there are none
  *
  * Returns NMTAN_OK; NMTAN_ERROR_INPUT with tinygltf's words when it refuses the file, or JSON is nested
- * deeper than 512; NMTAN_ERROR_UNSUPPORTED from 4 GB on, which its interface cannot take, and for refused
- * files with compressed views; NMTAN_ERROR_MEMORY.
+ * deeper than 512; NMTAN_ERROR_UNSUPPORTED from 4 GB on, which its interface cannot take; NMTAN_ERROR_MEMORY.
  */
 nmtan_status nt_reread_open(nt_reread **model, const unsigned char *bytes, size_t size,
 	nt_reread_find find, void *user, nt_error *error);
@@ -154,15 +149,19 @@ typedef struct nt_reread_array {
  * An attribute of a primitive by its name; its indices for a NULL name.
  *
  * Returns NMTAN_OK (with data NULL and count 0 when the primitive has none), NMTAN_ERROR_INPUT when the
- * accessor is not inside its view and buffer or its view is compressed, or NMTAN_ERROR_MEMORY. What a compressed
- * primitive has in its block is zeros here, and its indices are none: see nt_reread_block().
+ * accessor is not inside its view and buffer, or NMTAN_ERROR_MEMORY. Views that meshoptimizer packed are unpacked.
+ * What Draco has in the primitive's block is zeros here, and its indices are none: see nt_reread_block().
  */
 nmtan_status nt_reread_attribute(nt_reread *model, size_t mesh, size_t primitive,
 	const char *name, nt_reread_array *array, nt_error *error);
 
+/* The same of a morph target of the primitive. */
+nmtan_status nt_reread_target(nt_reread *model, size_t mesh, size_t primitive, size_t target,
+	const char *name, nt_reread_array *array, nt_error *error);
+
 /* The KHR_draco_mesh_compression block of a primitive; false: it has none. *bytes NULL: it is not inside of a
  * buffer. */
-bool nt_reread_block(const nt_reread *model, size_t mesh, size_t primitive, const unsigned char **bytes,
+bool nt_reread_block(nt_reread *model, size_t mesh, size_t primitive, const unsigned char **bytes,
 	size_t *size);
 
 /* The id that an attribute has in the block; false: it is not in it. */

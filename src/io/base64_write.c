@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Base64 into a sink: see base64_write.h. Groups of three bytes become four characters in a buffer on the
+ * See base64_write.h. Groups of three bytes become four characters, on their way to a sink in a buffer on the
  * stack.
  */
 #include "io/base64_write.h"
+
+#include <string.h>
 
 enum { BUFFER_GROUPS = 4096 };
 
@@ -44,17 +46,33 @@ nmtan_status nt_base64_write(nt_base64 *base64, const void *bytes, size_t size, 
 	return used ? nt_sink_write(base64->sink, out, used, error) : NMTAN_OK;
 }
 
+/* Less than three bytes, with what stands for those that lack. */
+static void encode_last(const unsigned char *in, size_t count, char out[4])
+{
+	unsigned char group[3] = {0};
+	memcpy(group, in, count);
+	encode_group(group, out);
+	memset(out + count + 1, '=', 3 - count);
+}
+
 nmtan_status nt_base64_end(nt_base64 *base64, nt_error *error)
 {
 	if (base64->rest_count == 0)
 		return NMTAN_OK;
-	const unsigned count = base64->rest_count;
-	for (unsigned i = count; i < 3; i++)
-		base64->rest[i] = 0;
 	char out[4];
-	encode_group(base64->rest, out);
-	for (unsigned i = count + 1; i < 4; i++)
-		out[i] = '=';
+	encode_last(base64->rest, base64->rest_count, out);
 	base64->rest_count = 0;
 	return nt_sink_write(base64->sink, out, sizeof out, error);
+}
+
+void nt_base64_append(nt_buffer *buffer, const void *bytes, size_t size)
+{
+	const unsigned char *in = bytes;
+	char *out = nt_buffer_extend(buffer, (size / 3 + (size % 3 != 0)) * 4);
+	if (!out)
+		return;
+	for (; size >= 3; in += 3, out += 4, size -= 3)
+		encode_group(in, out);
+	if (size)
+		encode_last(in, size, out);
 }

@@ -26,21 +26,21 @@ static float component(const nt_draco_attribute *a, const unsigned char *value, 
 	uint32_t u32;
 	float f32;
 	switch (a->component_type) {
-	case 5120:
+	case NT_GLTF_BYTE:
 		memcpy(&i8, value + k, sizeof i8);
 		return a->normalized ? (i8 < -127 ? -1.0f : (float)i8 / 127.0f) : (float)i8;
-	case 5121:
+	case NT_GLTF_UBYTE:
 		return a->normalized ? (float)value[k] / 255.0f : (float)value[k];
-	case 5122:
+	case NT_GLTF_SHORT:
 		memcpy(&i16, value + 2 * k, sizeof i16);
 		return a->normalized ? (i16 < -32767 ? -1.0f : (float)i16 / 32767.0f) : (float)i16;
-	case 5123:
+	case NT_GLTF_USHORT:
 		memcpy(&u16, value + 2 * k, sizeof u16);
 		return a->normalized ? (float)u16 / 65535.0f : (float)u16;
-	case 5124:
+	case NT_GLTF_INT:
 		memcpy(&i32, value + 4 * k, sizeof i32);
 		return (float)i32;
-	case 5125:
+	case NT_GLTF_UINT:
 		memcpy(&u32, value + 4 * k, sizeof u32);
 		return (float)u32;
 	default:
@@ -57,7 +57,7 @@ static float *read_rows(nt_scene *scene, const nt_draco_attribute *a, size_t cou
 	if (!rows)
 		return NULL;
 	const size_t size = nt_draco_component_size(a->component_type) * (size_t)a->components;
-	if (a->component_type == 5126 && a->components == width) {
+	if (a->component_type == NT_GLTF_FLOAT && a->components == width) {
 		memcpy(rows, a->data, count * size);
 		return rows;
 	}

@@ -69,14 +69,6 @@ nmtan_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_err
 nmtan_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
 	nt_error *error);
 
-/* Bytes written to a sink so far. */
-uint64_t nt_sink_size(const nt_sink *sink);
-
-/* For reading back what was written before it gets its name: where it is for the time being; NULL when the
- * output is written through. Flush first. */
-const char *nt_sink_temporary(const nt_sink *sink);
-nmtan_status nt_sink_flush(nt_sink *sink, nt_error *error);
-
 /* Flushes the file of the set that was added under `path` and says where it is for the time being; NULL when
  * the set has no such file or writes it through. */
 nmtan_status nt_output_written(nt_output *output, const char *path, const char **temporary,

@@ -37,10 +37,11 @@ nmtan_status nt_glb_parse(nt_glb *glb, nt_arena *arena, const unsigned char *byt
 	nt_error *error);
 
 /*
- * Writes everything before the BIN chunk's data: header, JSON chunk, and the head of the BIN chunk. The
- * caller then writes exactly bin_size bytes, nt_glb_end_bin(), and chunks with nt_glb_write_chunk().
+ * Begins a file: header and head of the JSON chunk. The caller then writes exactly json_size bytes of text,
+ * nt_glb_end_json(), where there is a BIN chunk exactly bin_size bytes and nt_glb_end_bin(), and chunks with
+ * nt_glb_write_chunk().
  *
- *   json, json_size  text of the document; padded with spaces
+ *   json_size        of the text; padding is added
  *   has_bin          whether there is a BIN chunk
  *   bin_size         size of its data; padding is added
  *   other_bytes      sum of nt_glb_chunk_bytes() over the chunks that follow
@@ -48,8 +49,12 @@ nmtan_status nt_glb_parse(nt_glb *glb, nt_arena *arena, const unsigned char *byt
  * Returns NMTAN_OK, NMTAN_ERROR_IO, or NMTAN_ERROR_UNSUPPORTED where the file would reach 4 GiB, which
  * the container cannot say.
  */
-nmtan_status nt_glb_begin(nt_sink *sink, const char *json, size_t json_size, bool has_bin,
-	uint64_t bin_size, uint64_t other_bytes, nt_error *error);
+nmtan_status nt_glb_begin(nt_sink *sink, uint64_t json_size, bool has_bin, uint64_t bin_size,
+	uint64_t other_bytes, nt_error *error);
+
+/* Pads the JSON chunk with spaces and writes the head of the BIN chunk, if there is one. */
+nmtan_status nt_glb_end_json(nt_sink *sink, uint64_t json_size, bool has_bin, uint64_t bin_size,
+	nt_error *error);
 
 /* Pads the BIN chunk. */
 nmtan_status nt_glb_end_bin(nt_sink *sink, uint64_t bin_size, nt_error *error);

@@ -41,8 +41,8 @@ static nmtan_status write_padding(nt_sink *sink, uint64_t size, char with, nt_er
 	return nt_sink_write(sink, bytes, (size_t)padding(size), error);
 }
 
-nmtan_status nt_glb_begin(nt_sink *sink, const char *json, size_t json_size, bool has_bin,
-	uint64_t bin_size, uint64_t other_bytes, nt_error *error)
+nmtan_status nt_glb_begin(nt_sink *sink, uint64_t json_size, bool has_bin, uint64_t bin_size,
+	uint64_t other_bytes, nt_error *error)
 {
 	/* Each part is below 2^62, so that their sum cannot wrap. */
 	const uint64_t limit = (uint64_t)1 << 62;
@@ -58,13 +58,13 @@ nmtan_status nt_glb_begin(nt_sink *sink, const char *json, size_t json_size, boo
 	memcpy(header, "glTF", 4);
 	store_u32(header + 4, 2);
 	store_u32(header + 8, (uint32_t)total);
-	nmtan_status status = nt_sink_write(sink, header, sizeof header, error);
-	if (!status)
-		status = write_chunk_head(sink, type_json, json_size, error);
-	if (!status)
-		status = nt_sink_write(sink, json, json_size, error);
-	if (!status)
-		status = write_padding(sink, json_size, ' ', error);
+	const nmtan_status status = nt_sink_write(sink, header, sizeof header, error);
+	return status ? status : write_chunk_head(sink, type_json, json_size, error);
+}
+
+nmtan_status nt_glb_end_json(nt_sink *sink, uint64_t json_size, bool has_bin, uint64_t bin_size, nt_error *error)
+{
+	nmtan_status status = write_padding(sink, json_size, ' ', error);
 	if (!status && has_bin)
 		status = write_chunk_head(sink, type_bin, bin_size, error);
 	return status;

@@ -127,7 +127,7 @@ static uint32_t plan_indices(composition *c, const nt_part *part)
 	const size_t size = nt_part_index_size(part);
 	const nt_model_accessor accessor = {
 		.view = add_block(c, part, NT_STREAM_COUNT, (uint64_t)part->index_count * size),
-		.component_type = size == 2 ? NT_GLTF_UNSIGNED_SHORT : NT_GLTF_UNSIGNED_INT,
+		.component_type = size == 2 ? NT_GLTF_USHORT : NT_GLTF_UINT,
 		.components = 1,
 		.count = part->index_count,
 	};
@@ -349,11 +349,15 @@ static nmtan_status write_buffer(const composition *c, byte_stream *stream, nt_e
 static nmtan_status write_glb(const composition *c, nt_sink *sink, nt_error *error)
 {
 	nt_model_text text;
+	const bool has_bin = c->buffer_size > 0;
 	byte_stream stream = {.sink = sink};
 	nmtan_status status = nt_model_json(c->model, c->buffer_size, NT_MODEL_CHUNK, NULL, &text, error);
 	if (status == NMTAN_OK)
-		status = nt_glb_begin(sink, text.data, text.size, c->buffer_size > 0, c->buffer_size, 0,
-			error);
+		status = nt_glb_begin(sink, text.size, has_bin, c->buffer_size, 0, error);
+	if (status == NMTAN_OK)
+		status = nt_sink_write(sink, text.data, text.size, error);
+	if (status == NMTAN_OK)
+		status = nt_glb_end_json(sink, text.size, has_bin, c->buffer_size, error);
 	if (status == NMTAN_OK)
 		status = write_buffer(c, &stream, error);
 	if (status == NMTAN_OK)

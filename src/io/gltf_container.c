@@ -203,36 +203,6 @@ static nmtan_status name_companion(nt_gltf_container *c, uint32_t index, bool fi
 	return NMTAN_OK;
 }
 
-/* ---- what the JSON says of it ---- */
-
-/* The text of a data URI before its data, as the source had it. */
-static void append_data_head(nt_buffer *text, const nt_json_value *buffer)
-{
-	size_t length = 0;
-	const char *uri = nt_json_get_string(nt_json_find(buffer, "uri"), &length);
-	const char *comma = uri && nt_uri_is_data(uri, length) ? memchr(uri, ',', length) : NULL;
-	if (comma && comma - uri >= 7 && strncmp(comma - 7, ";base64", 7) == 0)
-		nt_buffer_append(text, uri, (size_t)(comma - uri) + 1);
-	else
-		nt_buffer_text(text, "data:application/octet-stream;base64,");
-}
-
-static nmtan_status set_data(nt_gltf_container *c, uint32_t index, nt_json_value *json)
-{
-	nt_buffer bytes = {0}, text = {0};
-	nmtan_status status = nt_layout_collect(&c->patcher->layout, index, &bytes, c->error);
-	if (!status) {
-		append_data_head(&text, json);
-		nt_base64_append(&text, bytes.data ? bytes.data : "", bytes.size);
-		status = text.failed ? nt_fail_memory(c->error) : NMTAN_OK;
-	}
-	if (!status)
-		nt_json_set_string(c->json, nt_json_put(c->json, json, "uri"), text.data, text.size);
-	nt_buffer_free(&bytes);
-	nt_buffer_free(&text);
-	return status;
-}
-
 static nmtan_status write_companion(nt_gltf_container *c, uint32_t index, bool first,
 	nt_json_value *json, const nt_file *input)
 {
@@ -266,7 +236,7 @@ static nmtan_status check_room(nt_gltf_container *c)
 			continue;
 		/* no sum of lengths below 2^32 wraps */
 		if (length <= UINT32_MAX)
-			sum += what == FATE_DATA ? (length + 2) / 3 * 4 : length;
+			sum += what == FATE_DATA ? nt_base64_length(length) : length;
 		if (length <= UINT32_MAX && sum <= UINT32_MAX)
 			continue;
 		char pointer[NT_GLTF_POINTER];
@@ -307,7 +277,7 @@ static nmtan_status settle_buffers(nt_gltf_container *c, const nt_file *input, b
 			status = nt_gltf_link(c, json);
 			break;
 		case FATE_DATA:
-			status = set_data(c, i, json);
+			status = nt_gltf_embed(c, i);
 			break;
 		case FATE_BIN:
 			nt_json_remove(c->json, json, "uri");
@@ -332,7 +302,7 @@ static uint64_t other_bytes(const nt_gltf *document)
 	return sum;
 }
 
-static nmtan_status write_glb(nt_gltf_container *c, const nt_buffer *text, const nt_file *input,
+static nmtan_status write_glb(nt_gltf_container *c, const nt_buffer *text, uint64_t length, const nt_file *input,
 	bool bin, nt_sink *sink)
 {
 	const nt_gltf *document = c->document;
@@ -340,8 +310,12 @@ static nmtan_status write_glb(nt_gltf_container *c, const nt_buffer *text, const
 	const bool raw = !bin && document->is_glb && document->glb.has_bin;
 	const uint64_t size = bin ? c->patcher->layout.buffers[0].new_length :
 			      raw ? document->glb.bin.size : 0;
-	nmtan_status status = nt_glb_begin(sink, text->data, text->size, bin || raw, size,
-		other_bytes(document), c->error);
+	nmtan_status status =
+		nt_glb_begin(sink, length, bin || raw, size, other_bytes(document), c->error);
+	if (!status)
+		status = nt_gltf_write_text(c, text, sink);
+	if (!status)
+		status = nt_glb_end_json(sink, length, bin || raw, size, c->error);
 	if (!status && bin)
 		status = nt_layout_write(&c->patcher->layout, 0, input, sink, c->error);
 	if (!status && raw)
@@ -360,13 +334,14 @@ static nmtan_status write_glb(nt_gltf_container *c, const nt_buffer *text, const
 static nmtan_status write_main(nt_gltf_container *c, const nt_file *input, bool bin)
 {
 	nt_buffer text = {0};
+	uint64_t length;
 	nt_sink *sink;
-	nmtan_status status = nt_json_dump(c->json, &text, c->error);
+	nmtan_status status = nt_gltf_embedding_text(c, &text, &length);
 	if (!status)
 		status = nt_output_add(c->output, c->options->path, true, &sink, c->error);
 	if (!status)
-		status = c->to_glb ? write_glb(c, &text, input, bin, sink) :
-				     nt_sink_write(sink, text.data, text.size, c->error);
+		status = c->to_glb ? write_glb(c, &text, length, input, bin, sink) :
+				     nt_gltf_write_text(c, &text, sink);
 	nt_buffer_free(&text);
 	return status;
 }

@@ -8,19 +8,10 @@
 #ifndef NT_IO_GLTF_DOCUMENT_H
 #define NT_IO_GLTF_DOCUMENT_H
 
+#include "ext/gltf_numbers.h"
 #include "ext/json.h"
 #include "io/format.h"
 #include "io/glb.h"
-
-/* Values of componentType. */
-enum nt_gltf_component {
-	NT_GLTF_BYTE = 5120,
-	NT_GLTF_UBYTE = 5121,
-	NT_GLTF_SHORT = 5122,
-	NT_GLTF_USHORT = 5123,
-	NT_GLTF_UINT = 5125,
-	NT_GLTF_FLOAT = 5126
-};
 
 /* Room for the JSON pointers we make ourselves. */
 enum { NT_GLTF_POINTER = 160 };

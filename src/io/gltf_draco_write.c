@@ -243,20 +243,8 @@ static void set_count(nt_gltf_patcher *p, uint64_t accessor, size_t count)
 	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "count"), count);
 }
 
-/* An accessor without a view: its rows are in the block. */
-static uint32_t add_accessor(nt_gltf_patcher *p, int type, const char *shape, size_t count)
-{
-	nt_json *json = p->json;
-	nt_json_value *accessors = nt_json_put(json, nt_json_root(json), "accessors");
-	const uint32_t number = (uint32_t)nt_json_count(accessors);
-	nt_json_value *object = nt_json_append(json, accessors);
-	nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), (uint64_t)type);
-	nt_json_set_uint64(json, nt_json_put(json, object, "count"), count);
-	nt_json_set_string(json, nt_json_put(json, object, "type"), shape, strlen(shape));
-	return number;
-}
-
-/* The JSON of the primitive follows what a decoder will see. */
+/* The JSON of the primitive follows what a decoder will see; new accessors have no view, their rows are in the
+ * block. */
 static void describe_block(nt_gltf_recoding *r, const nt_draco_block *block)
 {
 	nt_gltf_patcher *p = r->patcher;
@@ -269,14 +257,14 @@ static void describe_block(nt_gltf_recoding *r, const nt_draco_block *block)
 			set_count(p, accessor, block->point_count);
 		else
 			nt_json_set_uint64(json, nt_json_put(json, attributes, r->names[i]),
-				add_accessor(p, NT_GLTF_FLOAT, a->components == 3 ? "VEC3" : "VEC4",
-					block->point_count));
+				nt_gltf_new_accessor(p, NT_NONE, NT_GLTF_FLOAT,
+					a->components == 3 ? "VEC3" : "VEC4", block->point_count, false));
 		nt_json_set_uint64(json, nt_json_put(json, nt_json_put(json, r->extension, "attributes"),
 			r->names[i]), a->unique_id);
 	}
 	uint64_t indices, type = 0;
 	if (!nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &indices)) {
-		indices = add_accessor(p, NT_GLTF_UINT, "SCALAR", 0);
+		indices = nt_gltf_new_accessor(p, NT_NONE, NT_GLTF_UINT, "SCALAR", 0, false);
 		nt_json_set_uint64(json, nt_json_put(json, r->primitive, "indices"), indices);
 		r->extension = nt_gltf_draco_of(r->primitive); /* members have moved */
 	}

@@ -10,8 +10,6 @@
 #include <string.h>
 #include "base/largest.h"
 
-enum { MODE_TRIANGLES = 4 };
-
 /* New indices of one primitive, encoded. */
 typedef struct encoded {
 	const unsigned char *bytes;
@@ -37,7 +35,7 @@ static void store_index(unsigned char *bytes, uint32_t value, uint32_t width)
 static size_t tail_of(const nt_mesh *mesh, uint64_t mode, uint64_t old_count)
 {
 	const size_t tail = (size_t)(old_count - mesh->corner_count);
-	return mode == MODE_TRIANGLES && old_count > mesh->corner_count && tail < 3 &&
+	return mode == NT_GLTF_TRIANGLES && old_count > mesh->corner_count && tail < 3 &&
 			mesh->indices ? tail : 0;
 }
 
@@ -73,17 +71,9 @@ static nmtan_status add_indices(nt_gltf_patcher *p, uint32_t buffer, const encod
 	uint32_t view;
 	const nmtan_status status = nt_layout_add_view(&p->layout, buffer, new->bytes, new->size,
 		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, p->error);
-	if (status)
-		return status;
-	nt_json *json = p->json;
-	nt_json_value *accessors = nt_json_put(json, nt_json_root(json), "accessors");
-	*accessor = (uint32_t)nt_json_count(accessors);
-	nt_json_value *object = nt_json_append(json, accessors);
-	nt_json_set_uint64(json, nt_json_put(json, object, "bufferView"), view);
-	nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), new->type);
-	nt_json_set_uint64(json, nt_json_put(json, object, "count"), new->count);
-	nt_json_set_string(json, nt_json_put(json, object, "type"), "SCALAR", 6);
-	return NMTAN_OK;
+	if (!status)
+		*accessor = nt_gltf_new_accessor(p, view, new->type, "SCALAR", new->count, false);
+	return status;
 }
 
 /* Rewrites the accessor, all of whose users agree, where its bytes are its own; *done tells. */
@@ -188,7 +178,7 @@ static nmtan_status patch_member(nt_gltf_patcher *p, const nt_gltf_cluster *comp
 	const nt_mesh *mesh = &p->scene->meshes[component->members[member]];
 	nt_json_value *primitive = nt_gltf_primitive_of(p->document, mesh);
 	const uint32_t index = log[member].index;
-	uint64_t mode = MODE_TRIANGLES, type;
+	uint64_t mode = NT_GLTF_TRIANGLES, type;
 	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
 	nt_gltf_accessor old = {.count = mesh->source_vertex_count, .component_type = NT_GLTF_UBYTE};
 	nmtan_status status = NMTAN_OK;
@@ -228,8 +218,8 @@ static nmtan_status patch_member(nt_gltf_patcher *p, const nt_gltf_cluster *comp
 	log[member].accessor = accessor;
 	if (accessor != index)
 		nt_json_set_uint64(p->json, nt_json_put(p->json, primitive, "indices"), accessor);
-	if (mode != MODE_TRIANGLES)
-		nt_json_set_uint64(p->json, nt_json_put(p->json, primitive, "mode"), MODE_TRIANGLES);
+	if (mode != NT_GLTF_TRIANGLES)
+		nt_json_set_uint64(p->json, nt_json_put(p->json, primitive, "mode"), NT_GLTF_TRIANGLES);
 	return NMTAN_OK;
 }
 

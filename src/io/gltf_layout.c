@@ -330,6 +330,7 @@ static void move_accessors(nt_gltf_layout *layout, const moved_view *moved, size
 /* Where the bytes of a buffer go: a sink or memory. */
 typedef struct target {
 	nt_sink *sink;
+	nt_base64 *base64;
 	nt_buffer *memory;
 	const nt_file *input; /* the document's own file */
 } target;
@@ -338,6 +339,8 @@ static nmtan_status put_bytes(const target *to, const void *bytes, size_t size, 
 {
 	if (to->sink)
 		return nt_sink_write(to->sink, bytes, size, error);
+	if (to->base64)
+		return nt_base64_write(to->base64, bytes, size, error);
 	nt_buffer_append(to->memory, bytes, size);
 	return to->memory->failed ? nt_fail_memory(error) : NMTAN_OK;
 }
@@ -566,8 +569,7 @@ nmtan_status nt_layout_write(nt_gltf_layout *layout, uint32_t buffer, const nt_f
 	return put_buffer(layout, buffer, &(target){.sink = sink, .input = input}, error);
 }
 
-nmtan_status nt_layout_collect(nt_gltf_layout *layout, uint32_t buffer, nt_buffer *bytes,
-	nt_error *error)
+nmtan_status nt_layout_encode(nt_gltf_layout *layout, uint32_t buffer, nt_base64 *base64, nt_error *error)
 {
-	return put_buffer(layout, buffer, &(target){.memory = bytes}, error);
+	return put_buffer(layout, buffer, &(target){.base64 = base64}, error);
 }

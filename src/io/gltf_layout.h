@@ -7,6 +7,7 @@
 #ifndef NT_IO_GLTF_LAYOUT_H
 #define NT_IO_GLTF_LAYOUT_H
 
+#include "io/base64_write.h"
 #include "io/gltf_document.h"
 
 /* New bytes at a place of a source buffer. */
@@ -113,8 +114,7 @@ nmtan_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error);
 nmtan_status nt_layout_write(nt_gltf_layout *layout, uint32_t buffer, const nt_file *input,
 	nt_sink *sink, nt_error *error);
 
-/* The same into memory. */
-nmtan_status nt_layout_collect(nt_gltf_layout *layout, uint32_t buffer, nt_buffer *bytes,
-	nt_error *error);
+/* The same as base64, without the last group's padding. */
+nmtan_status nt_layout_encode(nt_gltf_layout *layout, uint32_t buffer, nt_base64 *base64, nt_error *error);
 
 #endif

@@ -14,32 +14,41 @@
 #include "base/vec.h"
 #include "io/gltf_precision.h"
 
-/* Appends an accessor over a new view. */
-static nmtan_status add_accessor(nt_gltf_patcher *p, uint32_t buffer, const void *rows, size_t count,
+uint32_t nt_gltf_new_accessor(nt_gltf_patcher *p, uint32_t view, uint32_t component_type, const char *type,
+	size_t count, bool normalized)
+{
+	nt_json *json = p->json;
+	nt_json_value *accessors = nt_json_put(json, nt_json_root(json), "accessors");
+	const uint32_t number = (uint32_t)nt_json_count(accessors);
+	nt_json_value *object = nt_json_append(json, accessors);
+	if (view != NT_NONE)
+		nt_json_set_uint64(json, nt_json_put(json, object, "bufferView"), view);
+	nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), component_type);
+	if (normalized)
+		nt_json_set_bool(json, nt_json_put(json, object, "normalized"), true);
+	nt_json_set_uint64(json, nt_json_put(json, object, "count"), count);
+	nt_json_set_string(json, nt_json_put(json, object, "type"), type, strlen(type));
+	return number;
+}
+
+/* An attribute's accessor over a new view. */
+static nmtan_status add_attribute(nt_gltf_patcher *p, uint32_t buffer, const void *rows, size_t count,
 	size_t row_bytes, uint32_t component_type, const char *type, uint32_t *accessor)
 {
 	uint32_t view;
 	const nmtan_status status = nt_layout_add_view(&p->layout, buffer, rows, count * row_bytes,
 		NT_GLTF_ARRAY_BUFFER, 0, &view, p->error);
-	if (status)
-		return status;
-	nt_json *json = p->json;
-	nt_json_value *accessors = nt_json_put(json, nt_json_root(json), "accessors");
-	*accessor = (uint32_t)nt_json_count(accessors);
-	nt_json_value *object = nt_json_append(json, accessors);
-	nt_json_set_uint64(json, nt_json_put(json, object, "bufferView"), view);
-	nt_json_set_uint64(json, nt_json_put(json, object, "componentType"), component_type);
-	if (component_type != NT_GLTF_FLOAT)
-		nt_json_set_bool(json, nt_json_put(json, object, "normalized"), true);
-	nt_json_set_uint64(json, nt_json_put(json, object, "count"), count);
-	nt_json_set_string(json, nt_json_put(json, object, "type"), type, 4);
-	return NMTAN_OK;
+	if (!status)
+		*accessor = nt_gltf_new_accessor(p, view, component_type, type, count,
+			component_type != NT_GLTF_FLOAT);
+	return status;
 }
 
-nmtan_status nt_gltf_add_floats(nt_gltf_patcher *p, uint32_t buffer, const float *rows, size_t count,
+/* A VEC3 or VEC4 of floats. */
+static nmtan_status add_floats(nt_gltf_patcher *p, uint32_t buffer, const float *rows, size_t count,
 	uint32_t width, uint32_t *accessor)
 {
-	return add_accessor(p, buffer, rows, count, width * sizeof(float), NT_GLTF_FLOAT,
+	return add_attribute(p, buffer, rows, count, width * sizeof(float), NT_GLTF_FLOAT,
 		width == 3 ? "VEC3" : "VEC4", accessor);
 }
 
@@ -110,7 +119,7 @@ nmtan_status nt_gltf_add_morphs(nt_gltf_patcher *p, const nt_gltf_cluster *compo
 			for (size_t k = 0; k < 3; k++)
 				delta[3 * row + k] = rows->morphs[group][m][3 * row + k] -
 					rows->tangents[group][4 * row + k];
-		status = nt_gltf_add_floats(p, component->buffer, delta, rows->new_count, 3, &accessor);
+		status = add_floats(p, component->buffer, delta, rows->new_count, 3, &accessor);
 		if (!status)
 			set_target(p, component, group, mesh->morphs[m].target, "TANGENT", accessor);
 	}
@@ -171,7 +180,7 @@ static nmtan_status add_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *comp
 		if (!status)
 			nt_gltf_move_tangents(p, old, view, rows->new_count);
 	} else if (!status) {
-		status = add_accessor(p, component->buffer, bytes, rows->new_count, row_bytes,
+		status = add_attribute(p, component->buffer, bytes, rows->new_count, row_bytes,
 			nt_precision_component_type(precision), "VEC4", &accessor);
 		if (!status)
 			set_attribute(p, component, group, "TANGENT", accessor);
@@ -199,7 +208,7 @@ static nmtan_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *compone
 	nmtan_status status = NMTAN_OK;
 	uint32_t accessor;
 	if (rows->normals[group]) {
-		status = nt_gltf_add_floats(p, component->buffer, rows->normals[group], rows->new_count, 3,
+		status = add_floats(p, component->buffer, rows->normals[group], rows->new_count, 3,
 			&accessor);
 		if (!status)
 			set_attribute(p, component, group, "NORMAL", accessor);
@@ -216,7 +225,7 @@ static nmtan_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *compone
 		float *bitangents;
 		status = nt_gltf_bitangents(p, component, group, &bitangents);
 		if (!status)
-			status = nt_gltf_add_floats(p, component->buffer, bitangents, rows->new_count, 3,
+			status = add_floats(p, component->buffer, bitangents, rows->new_count, 3,
 				&accessor);
 		if (!status)
 			set_attribute(p, component, group, "_BITANGENT", accessor);

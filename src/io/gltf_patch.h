@@ -9,8 +9,6 @@
 #include "io/gltf_layout.h"
 #include "io/gltf_share.h"
 
-enum { NT_GLTF_ARRAY_BUFFER = 34962, NT_GLTF_ELEMENT_ARRAY_BUFFER = 34963 };
-
 typedef struct nt_gltf_patcher {
 	nt_scene *scene;
 	nt_gltf *document;
@@ -68,9 +66,9 @@ void nt_gltf_move_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents 
 
 /* ---- the other parts ---- */
 
-/* Appends an accessor over a new view of `count` rows of floats; a VEC3 or VEC4 attribute. */
-nmtan_status nt_gltf_add_floats(nt_gltf_patcher *patcher, uint32_t buffer, const float *rows,
-	size_t count, uint32_t width, uint32_t *accessor);
+/* Appends the JSON of an accessor; view NT_NONE: without one. Returns its number. */
+uint32_t nt_gltf_new_accessor(nt_gltf_patcher *patcher, uint32_t view, uint32_t component_type,
+	const char *type, size_t count, bool normalized);
 
 /* Gives every accessor of the component its copied rows, and overridden accessors their new values;
  * `overrides` is sorted for that. decoded_too: what was decompressed by Draco goes into plain views. */

@@ -42,11 +42,6 @@ uint32_t nt_precision_component_type(nt_precision precision)
 	return kinds[precision].component_type;
 }
 
-const char *nt_precision_name(nt_precision precision)
-{
-	return kinds[precision].name;
-}
-
 /* The best integer vector for a direction of unit length. */
 static nt_dvec3 nearest_direction(nt_dvec3 t, double most)
 {
@@ -123,6 +118,6 @@ void nt_precision_report(nt_scene *scene, nt_precision precision, const nt_round
 	scene->rounding.worst_radians = fmax(scene->rounding.worst_radians, cost->worst_radians);
 	const double degrees = 180 / M_PI;
 	nt_finding_add(&scene->findings, NT_CODE_TAN_QUANTIZED, place, cost->count,
-		"%s, %.2g degrees at most, %.2g on average", nt_precision_name(precision),
+		"%s, %.2g degrees at most, %.2g on average", kinds[precision].name,
 		cost->worst_radians * degrees, cost->sum_radians / (double)cost->count * degrees);
 }

@@ -9,10 +9,9 @@
 
 #define NT_GLTF_QUANTIZATION "KHR_mesh_quantization"
 
-/* Bytes of a row, a multiple of 4 as glTF wants it; componentType; the word of --precision. */
+/* Bytes of a row, a multiple of 4 as glTF wants it; componentType. */
 size_t nt_precision_bytes(nt_precision precision);
 uint32_t nt_precision_component_type(nt_precision precision);
-const char *nt_precision_name(nt_precision precision);
 
 /*
  * Rounds tangents to what the integers can say; afterwards the rows hold what a reader will decode. w becomes

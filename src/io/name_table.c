@@ -6,6 +6,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "base/utf8.h"
 
 static size_t hash_text(const char *text, size_t length)
 {
@@ -70,27 +71,10 @@ void nt_name_table_free(nt_name_table *table)
 	*table = (nt_name_table){0};
 }
 
-/* Length of the UTF-8 sequence at p, 0 where there is none: RFC 3629, table of section 4. */
-static size_t utf8_sequence(const unsigned char *p, size_t left)
-{
-	if (p[0] < 0x80)
-		return 1;
-	const size_t length = p[0] >= 0xF0 ? 4 : p[0] >= 0xE0 ? 3 : 2;
-	if (p[0] < 0xC2 || p[0] > 0xF4 || length > left)
-		return 0;
-	for (size_t i = 1; i < length; i++)
-		if ((p[i] & 0xC0) != 0x80)
-			return 0;
-	const bool overlong = (p[0] == 0xE0 && p[1] < 0xA0) || (p[0] == 0xF0 && p[1] < 0x90);
-	const bool surrogate = p[0] == 0xED && p[1] > 0x9F;
-	const bool beyond = p[0] == 0xF4 && p[1] > 0x8F;
-	return overlong || surrogate || beyond ? 0 : length;
-}
-
 static bool is_utf8(const char *text, size_t length)
 {
 	for (size_t i = 0; i < length;) {
-		const size_t step = utf8_sequence((const unsigned char *)text + i, length - i);
+		const size_t step = nt_utf8_length(text + i, length - i);
 		if (step == 0)
 			return false;
 		i += step;

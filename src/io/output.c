@@ -332,29 +332,14 @@ nmtan_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, siz
 	return nt_sink_write(sink, from->data + offset + done, size - done, error);
 }
 
-uint64_t nt_sink_size(const nt_sink *sink)
-{
-	return sink->size;
-}
-
-const char *nt_sink_temporary(const nt_sink *sink)
-{
-	return sink->temporary ? nt_temporary_path(sink->temporary) : NULL;
-}
-
-nmtan_status nt_sink_flush(nt_sink *sink, nt_error *error)
-{
-	return flush_with(sink, NULL, 0, error);
-}
-
 nmtan_status nt_output_written(nt_output *output, const char *path, const char **temporary,
 	nt_error *error)
 {
 	*temporary = NULL;
 	for (nt_sink *sink = output->first; sink; sink = sink->next)
 		if (sink->temporary && strcmp(sink->path, path) == 0) {
-			*temporary = nt_sink_temporary(sink);
-			return nt_sink_flush(sink, error);
+			*temporary = nt_temporary_path(sink->temporary);
+			return flush_with(sink, NULL, 0, error);
 		}
 	return NMTAN_OK;
 }
@@ -378,7 +363,7 @@ uint64_t nt_output_copied(const nt_output *output)
 /* Everything onto the disk and closed. */
 static nmtan_status finish_sink(const nt_output *output, nt_sink *sink, nt_error *error)
 {
-	const nmtan_status status = nt_sink_flush(sink, error);
+	const nmtan_status status = flush_with(sink, NULL, 0, error);
 	if (status)
 		return status;
 	if (output->options.sync && sink->temporary && fsync(sink->fd) != 0)

@@ -78,9 +78,8 @@ typedef struct ply_line {
 	size_t next;
 	const char *newline; /* NULL: the file ends here */
 } ply_line;
-ply_line ply_read_line(const unsigned char *bytes, size_t size, size_t begin);
 
-/* The same within a header, where '\r' may be a line's end by itself. */
+/* The next line of a header, where '\r' may be a line's end by itself. */
 ply_line ply_header_line(const ply_header *header, const unsigned char *bytes, size_t size, size_t begin);
 
 /* The next word of [*at, end), blanks around it skipped; its length, 0: none. */

@@ -41,7 +41,8 @@ const char *ply_type_name(ply_type type)
 	return type_names[type].name;
 }
 
-ply_line ply_read_line(const unsigned char *bytes, size_t size, size_t begin)
+/* The line that begins there, which may end in any way. */
+static ply_line read_line(const unsigned char *bytes, size_t size, size_t begin)
 {
 	size_t end = begin;
 	while (end < size && bytes[end] != '\n' && bytes[end] != '\r')
@@ -57,7 +58,7 @@ ply_line ply_read_line(const unsigned char *bytes, size_t size, size_t begin)
 
 ply_line ply_header_line(const ply_header *header, const unsigned char *bytes, size_t size, size_t begin)
 {
-	ply_line line = ply_read_line(bytes, size, begin);
+	ply_line line = read_line(bytes, size, begin);
 	if (line.newline && line.newline[0] == '\r' && strcmp(header->newline, "\r") == 0)
 		line.next = begin + line.length + 1;
 	return line;
@@ -271,7 +272,7 @@ nmtan_status ply_parse_header(ply_header *header, const unsigned char *bytes, si
 	nt_error *error)
 {
 	parser p = {.header = header, .error = error, .line = 1};
-	ply_line line = ply_read_line(bytes, size, 0);
+	ply_line line = read_line(bytes, size, 0);
 	p.at = line.text;
 	p.end = line.text + line.length;
 	if (!is(next_word(&p), "ply"))

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include "io/base64_write.h"
 
 enum { SHOWN = 200 }; /* characters of a URI that a message shows */
 
@@ -131,25 +132,6 @@ nmtan_status nt_uri_decode_data(const char *uri, size_t length, unsigned char **
 	else
 		*bytes = block;
 	return status;
-}
-
-void nt_base64_append(nt_buffer *buffer, const void *bytes, size_t size)
-{
-	static const char digits[] =
-		"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-	const unsigned char *in = bytes;
-	char *out = nt_buffer_extend(buffer, (size / 3 + (size % 3 != 0)) * 4);
-	if (!out)
-		return;
-	for (size_t i = 0; i < size; i += 3) {
-		const size_t left = size - i;
-		const uint32_t group = (uint32_t)in[i] << 16 | (left > 1 ? (uint32_t)in[i + 1] << 8 : 0) |
-			(left > 2 ? in[i + 2] : 0);
-		*out++ = digits[group >> 18];
-		*out++ = digits[group >> 12 & 63];
-		*out++ = left > 1 ? digits[group >> 6 & 63] : '=';
-		*out++ = left > 2 ? digits[group & 63] : '=';
-	}
 }
 
 void nt_uri_append_data(nt_buffer *buffer, const char *media_type, const void *bytes, size_t size)

@@ -45,8 +45,4 @@ void nt_uri_append_path(nt_buffer *buffer, const char *path);
 /* Appends "data:<media_type>;base64," and the data. */
 void nt_uri_append_data(nt_buffer *buffer, const char *media_type, const void *bytes, size_t size);
 
-/* Appends base64 text of `size` bytes; padded, so that pieces can follow one another only where size is
- * a multiple of 3. */
-void nt_base64_append(nt_buffer *buffer, const void *bytes, size_t size);
-
 #endif

@@ -85,6 +85,7 @@ static void close_companions(file_set *set)
 /* What is compared of one primitive. */
 typedef struct primitive_view {
 	nt_reread_array positions, tangents, indices;
+	nt_reread_array *target_tangents; /* [morph_count] of the scene's mesh; NULL: none are compared */
 	size_t corner; /* the next one */
 	nt_draco *block; /* of a compressed primitive */
 	nt_verify_tolerance tolerance;
@@ -135,14 +136,15 @@ static nmtan_status open_block(nt_reread *model, size_t mesh, size_t primitive, 
 		*tolerances[i] = tolerance_of(found, decoded->point_count);
 	}
 	view->indices = (nt_reread_array){(const unsigned char *)decoded->indices, decoded->face_count * 3,
-		sizeof(uint32_t), NT_GLTF_UNSIGNED_INT, 1, false};
+		sizeof(uint32_t), NT_GLTF_UINT, 1, false};
 	return NMTAN_OK;
 }
 
 static void close_primitive(primitive_view *view)
 {
 	nt_draco_free(view->block);
-	view->block = NULL;
+	free(view->target_tangents);
+	*view = (primitive_view){0};
 }
 
 static nmtan_status open_primitive(nt_reread *model, size_t mesh, size_t primitive,
@@ -162,6 +164,19 @@ static nmtan_status open_primitive(nt_reread *model, size_t mesh, size_t primiti
 	return status;
 }
 
+/* TANGENT of the targets that were solved. */
+static nmtan_status open_targets(nt_reread *model, const nt_mesh *mesh, primitive_view *view, nt_error *error)
+{
+	if (mesh->morph_count == 0)
+		return NMTAN_OK;
+	view->target_tangents = nt_calloc(mesh->morph_count, sizeof *view->target_tangents);
+	nmtan_status status = view->target_tangents ? NMTAN_OK : nt_fail_memory(error);
+	for (size_t m = 0; m < mesh->morph_count && status == NMTAN_OK; m++)
+		status = nt_reread_target(model, mesh->gltf_mesh, mesh->gltf_primitive, mesh->morphs[m].target,
+			"TANGENT", &view->target_tangents[m], error);
+	return status;
+}
+
 static size_t corner_count(const primitive_view *view)
 {
 	return view->indices.data ? view->indices.count : view->positions.count;
@@ -176,9 +191,9 @@ static size_t vertex_at(const primitive_view *view, size_t corner)
 	uint16_t half;
 	uint32_t word;
 	switch (array->component_type) {
-	case NT_GLTF_UNSIGNED_BYTE:
+	case NT_GLTF_UBYTE:
 		return *at;
-	case NT_GLTF_UNSIGNED_SHORT:
+	case NT_GLTF_USHORT:
 		memcpy(&half, at, sizeof half);
 		return half;
 	default:
@@ -194,16 +209,41 @@ static const unsigned char *row_at(const nt_reread_array *array, size_t vertex)
 }
 
 /* Whether a row holds a tangent: as it is, or rounded to the integers that it is stored as. */
-static bool tangent_matches(const nt_reread_array *array, const unsigned char *row, const float *tangent)
+static bool tangent_matches(const nt_reread_array *array, const unsigned char *row, const float *tangent,
+	float rounded[4])
 {
 	const nt_precision precision = array->component_type == NT_GLTF_SHORT ? NT_PRECISION_SHORT
 		: array->component_type == NT_GLTF_BYTE ? NT_PRECISION_BYTE : NT_PRECISION_FLOAT;
-	float rounded[4];
-	unsigned char bytes[sizeof rounded];
-	memcpy(rounded, tangent, sizeof rounded);
+	unsigned char bytes[4 * sizeof *rounded];
+	memcpy(rounded, tangent, 4 * sizeof *rounded);
 	nt_precision_round(precision, rounded, 1, NULL);
 	nt_precision_encode(precision, rounded, 1, bytes);
 	return memcmp(row, bytes, nt_precision_bytes(precision)) == 0;
+}
+
+/* Whether a vertex's targets say what leads from its stored tangent to theirs. */
+static bool targets_match(const nt_mesh *mesh, const primitive_view *view, size_t vertex, size_t split,
+	const float *stored)
+{
+	for (size_t m = 0; view->target_tangents && m < mesh->morph_count; m++) {
+		const nt_reread_array *array = &view->target_tangents[m];
+		const unsigned char *row = row_at(array, vertex);
+		const float *moved = mesh->morphs[m].vertex_tangents + 3 * split;
+		const float delta[3] = {moved[0] - stored[0], moved[1] - stored[1], moved[2] - stored[2]};
+		if (!row || array->component_type != NT_GLTF_FLOAT || array->components != 3 ||
+			memcmp(row, delta, sizeof delta) != 0)
+			return false;
+	}
+	return true;
+}
+
+/* The scene's vertex of a corner, copies behind the others; *source: the one it is a copy of, or itself. */
+static size_t split_vertex(const nt_mesh *mesh, size_t corner, size_t *source)
+{
+	const uint32_t *vertices = mesh->split.indices ? mesh->split.indices : mesh->indices;
+	const size_t split = vertices ? vertices[corner] : corner;
+	*source = split < mesh->vertex_count ? split : mesh->split.sources[split - mesh->vertex_count];
+	return split;
 }
 
 /* The document's next corner of the primitive against the scene's. Arrays that are not float are decoded by the
@@ -212,18 +252,19 @@ static bool corner_matches(const nt_mesh *mesh, size_t corner, primitive_view *v
 {
 	if (view->corner >= corner_count(view))
 		return false;
-	const uint32_t *vertices = mesh->split.indices ? mesh->split.indices : mesh->indices;
-	const size_t split = vertices ? vertices[corner] : corner;
-	const size_t source = split < mesh->vertex_count ? split
-		: mesh->split.sources[split - mesh->vertex_count];
+	size_t source;
+	const size_t split = split_vertex(mesh, corner, &source);
 	const size_t vertex = vertex_at(view, view->corner++);
 	const unsigned char *position = row_at(&view->positions, vertex);
 	const unsigned char *tangent = row_at(&view->tangents, vertex);
 	if (!position || (view->positions.component_type == NT_GLTF_FLOAT &&
 				 memcmp(position, mesh->positions + 3 * source, 12) != 0))
 		return false;
-	return !mesh->split.vertex_tangents || !mesh->normals ||
-		(tangent && tangent_matches(&view->tangents, tangent, mesh->split.vertex_tangents + 4 * split));
+	if (!mesh->split.vertex_tangents || !mesh->normals)
+		return true;
+	float stored[4];
+	return tangent && tangent_matches(&view->tangents, tangent, mesh->split.vertex_tangents + 4 * split, stored) &&
+		targets_match(mesh, view, vertex, split, stored);
 }
 
 static nmtan_status fail_corner(const nt_mesh *mesh, size_t corner, nt_error *error)
@@ -279,10 +320,8 @@ static nmtan_status verify_composed(nt_reread *model, const nt_mesh *mesh, size_
 /* A corner as the scene has it. */
 static nt_verify_corner wanted_corner(const nt_mesh *mesh, size_t corner)
 {
-	const uint32_t *vertices = mesh->split.indices ? mesh->split.indices : mesh->indices;
-	const size_t split = vertices ? vertices[corner] : corner;
-	const size_t source = split < mesh->vertex_count ? split
-		: mesh->split.sources[split - mesh->vertex_count];
+	size_t source;
+	const size_t split = split_vertex(mesh, corner, &source);
 	nt_verify_corner result;
 	memcpy(result.position, mesh->positions + 3 * source, sizeof result.position);
 	memcpy(result.tangent, mesh->split.vertex_tangents + 4 * split, sizeof result.tangent);
@@ -300,12 +339,12 @@ static float component_at(const nt_reread_array *array, const unsigned char *row
 	case NT_GLTF_BYTE:
 		memcpy(&byte, row + k, sizeof byte);
 		return array->normalized ? fmaxf((float)byte / 127.0f, -1.0f) : (float)byte;
-	case NT_GLTF_UNSIGNED_BYTE:
+	case NT_GLTF_UBYTE:
 		return array->normalized ? (float)row[k] / 255.0f : (float)row[k];
 	case NT_GLTF_SHORT:
 		memcpy(&half, row + k * sizeof half, sizeof half);
 		return array->normalized ? fmaxf((float)half / 32767.0f, -1.0f) : (float)half;
-	case NT_GLTF_UNSIGNED_SHORT:
+	case NT_GLTF_USHORT:
 		memcpy(&natural, row + k * sizeof natural, sizeof natural);
 		return array->normalized ? (float)natural / 65535.0f : (float)natural;
 	default:
@@ -327,6 +366,18 @@ static bool found_corner(const primitive_view *view, size_t corner, nt_verify_co
 		found->position[k] = component_at(&view->positions, position, k);
 	memcpy(found->tangent, tangent, sizeof found->tangent);
 	return true;
+}
+
+/* What lies outside of a block goes by its vertices, so that they are in order. */
+static nmtan_status compare_block_targets(const nt_mesh *mesh, const primitive_view *view, nt_error *error)
+{
+	for (size_t c = 0; c < mesh->corner_count; c++) {
+		size_t source;
+		const size_t split = split_vertex(mesh, c, &source);
+		if (!targets_match(mesh, view, vertex_at(view, c), split, mesh->split.vertex_tangents + 4 * split))
+			return fail_corner(mesh, c, error);
+	}
+	return NMTAN_OK;
 }
 
 /* The sequential method keeps corners where they are; if they are elsewhere, the surface has to be the same. */
@@ -351,9 +402,19 @@ static nmtan_status compare_block(const nt_mesh *mesh, const primitive_view *vie
 		status = nt_fail_memory(error);
 	if (status == NMTAN_OK && first != SIZE_MAX)
 		status = fail_corner(mesh, 3 * first, error);
+	if (status == NMTAN_OK && view->target_tangents)
+		status = compare_block_targets(mesh, view, error);
 	free(wanted);
 	free(found);
 	return status;
+}
+
+static bool counts_match(const nt_mesh *mesh, const primitive_view *view)
+{
+	bool match = view->tangents.count == view->positions.count;
+	for (size_t m = 0; view->target_tangents && m < mesh->morph_count; m++)
+		match &= view->target_tangents[m].count == view->positions.count;
+	return match;
 }
 
 /* A mesh of a patched document stands where it stood. Strips and fans keep their own indices: there only the
@@ -362,11 +423,13 @@ static nmtan_status verify_patched(nt_reread *model, const nt_mesh *mesh, nt_err
 {
 	primitive_view view;
 	nmtan_status status = open_primitive(model, mesh->gltf_mesh, mesh->gltf_primitive, &view, error);
+	if (status == NMTAN_OK)
+		status = open_targets(model, mesh, &view, error);
 	if (status == NMTAN_OK && view.block)
 		status = compare_block(mesh, &view, error);
 	else if (status == NMTAN_OK && corner_count(&view) == mesh->corner_count)
 		status = compare_mesh(mesh, &view, error);
-	else if (status == NMTAN_OK && view.tangents.count != view.positions.count)
+	else if (status == NMTAN_OK && !counts_match(mesh, &view))
 		status = fail_corner(mesh, 0, error);
 	close_primitive(&view);
 	return status;

@@ -10,14 +10,15 @@
 
 /*
  * Reads back the glTF or GLB `path` of an output set that is complete but not committed, and compares it
- * with the scene it was written from; what Draco compresses within its quantization, and with triangles in
- * any order where the method is edgebreaker. An output that is written through cannot be read back: nothing
+ * with the scene it was written from, morph targets included; views that meshoptimizer
+ * packed unpacked, what Draco compresses within its quantization, and with triangles in any order where the method
+ * is edgebreaker. An output that is written through cannot be read back: nothing
  * is done then. Where tinygltf refuses an output that was made from a glTF and refuses the input too, the
  * fault is not ours: the scene gets the finding NOT_VERIFIED.
  *
  * Returns NMTAN_OK; NMTAN_ERROR_INTERNAL where the output is not what it should be, which says mesh and
  * corner; NMTAN_ERROR_IO, NMTAN_ERROR_MEMORY; NMTAN_ERROR_UNSUPPORTED for what tinygltf cannot take (4 GB and
- * more, compressed views without bytes).
+ * more).
  */
 nmtan_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path,
 	nt_error *error);

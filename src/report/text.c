@@ -51,7 +51,7 @@ static void write_mesh(const nt_report *report, uint32_t index, nt_buffer *out)
 	nt_buffer label = {0};
 	nt_mesh_label(report, index, &label);
 	nt_buffer_text(out, "  ");
-	nt_clean_text(label.data ? label.data : "", out);
+	nt_buffer_clean(out, label.data ? label.data : "");
 	nt_buffer_free(&label);
 	if (!mesh->analysed) {
 		nt_buffer_format(out, ": %s\n", mesh->why);
@@ -90,7 +90,7 @@ static void write_spot(const nt_spot *spot, nt_buffer *out)
 		nt_buffer_format(out, "triangle %u, ", spot->triangle);
 	if (spot->source) {
 		nt_buffer_text(out, "f ");
-		nt_clean_text(spot->source, out);
+		nt_buffer_clean(out, spot->source);
 	} else {
 		nt_buffer_text(out, kinds[spot->corner_count - 1]);
 		for (unsigned k = 0; k < spot->corner_count; k++)
@@ -116,13 +116,13 @@ static void write_issue(const nt_report_list *reports, const nt_report *report, 
 	nt_buffer_text(out, nt_code_info(issue->code)->name);
 	paint(reports, plain, out);
 	nt_buffer_text(out, "  ");
-	nt_clean_text(issue->message, out);
+	nt_buffer_clean(out, issue->message);
 	nt_buffer_text(out, issue->known ? " (known)\n" : "\n");
 	if (issue->mesh != NT_NONE && report->mesh_count > 1) {
 		nt_buffer label = {0};
 		nt_mesh_label(report, issue->mesh, &label);
 		nt_buffer_text(out, "            in ");
-		nt_clean_text(label.data ? label.data : "", out);
+		nt_buffer_clean(out, label.data ? label.data : "");
 		nt_buffer_text(out, "\n");
 		nt_buffer_free(&label);
 	}
@@ -142,12 +142,12 @@ static void write_report(const nt_report_list *reports, const nt_report *report,
 	const nt_report_list one = {.items = &report, .count = 1};
 	const nt_totals totals = nt_report_totals(&one);
 	paint(reports, bold, out);
-	nt_clean_text(nt_shown_path(report->path), out);
+	nt_buffer_clean(out, nt_shown_path(report->path));
 	paint(reports, plain, out);
 	nt_buffer_text(out, ": ");
 	if (report->failure) {
 		nt_buffer_text(out, "not judged: ");
-		nt_clean_text(report->failure, out);
+		nt_buffer_clean(out, report->failure);
 		nt_buffer_text(out, "\n");
 		return;
 	}

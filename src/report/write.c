@@ -7,6 +7,7 @@
 #include <math.h>
 #include <string.h>
 #include <strings.h>
+#include "base/utf8.h"
 
 static const struct {
 	const char *name, *extensions;
@@ -135,38 +136,12 @@ void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out)
 		nt_buffer_format(out, "mesh %u", mesh);
 }
 
-void nt_clean_text(const char *text, nt_buffer *out)
-{
-	for (; *text; text++) {
-		const unsigned char c = (unsigned char)*text;
-		if (c < 0x20 || c == 0x7f)
-			nt_buffer_format(out, "\\x%02x", c);
-		else
-			nt_buffer_append(out, text, 1);
-	}
-}
-
-size_t nt_utf8_length(const char *text)
-{
-	const unsigned char *p = (const unsigned char *)text;
-	const unsigned char c = p[0];
-	const size_t length = c < 0x80 ? 1 : c >= 0xc2 && c < 0xe0 ? 2 : c >= 0xe0 && c < 0xf0 ? 3
-		: c >= 0xf0 && c < 0xf5 ? 4 : 0;
-	for (size_t i = 1; i < length; i++)
-		if ((p[i] & 0xc0) != 0x80)
-			return 0;
-	if ((c == 0xe0 && p[1] < 0xa0) || (c == 0xed && p[1] >= 0xa0) || (c == 0xf0 && p[1] < 0x90) ||
-		(c == 0xf4 && p[1] >= 0x90))
-		return 0;
-	return length;
-}
-
 void nt_json_string(const char *text, nt_buffer *out)
 {
 	nt_buffer_text(out, "\"");
 	while (*text) {
 		const unsigned char c = (unsigned char)*text;
-		const size_t length = nt_utf8_length(text);
+		const size_t length = nt_utf8_length(text, SIZE_MAX);
 		if (c == '"' || c == '\\')
 			nt_buffer_format(out, "\\%c", c);
 		else if (c == '\n')
@@ -194,7 +169,7 @@ void nt_xml_text(const char *text, nt_buffer *out)
 {
 	while (*text) {
 		const unsigned char c = (unsigned char)*text;
-		const size_t length = nt_utf8_length(text);
+		const size_t length = nt_utf8_length(text, SIZE_MAX);
 		if (c == '<')
 			nt_buffer_text(out, "&lt;");
 		else if (c == '>')

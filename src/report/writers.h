@@ -44,12 +44,6 @@ void nt_totals_text(const nt_totals *totals, nt_buffer *out);
 /* The name a mesh is shown with: its object in words, its name or its number. Never empty. */
 void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out);
 
-/* Appends text with control characters as \x1b; they must not reach a terminal. */
-void nt_clean_text(const char *text, nt_buffer *out);
-
-/* The length of the UTF-8 sequence at `text`, 0 where it is none. */
-size_t nt_utf8_length(const char *text);
-
 /* A JSON string with its quotes; bytes that are no UTF-8 become U+FFFD. */
 void nt_json_string(const char *text, nt_buffer *out);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Bins: see bins.h. What a bin is added up in (24 bytes a corner, its cursors, entries and records) should
+ * Bins: see bins.h. What a bin is added up in (23 bytes a corner, its cursors, entries and sums) should
  * fit the second-level cache; but the more bins, the more streams, and each is a line in the first-level
  * cache and a page. 8192 vertices of six corners are about two megabytes.
  */
@@ -9,7 +9,11 @@
 #include <string.h>
 #include "base/parallel.h"
 
-enum { LEAST_BITS = 13, MOST_BINS = 512 };
+enum { USUAL_BITS = 13, MOST_BINS = 512 };
+
+/* Fewer, smaller meshes have smaller bins: places for one at hand are as many as its vertices could need, which is
+ * not to be more than half a byte for each triangle. */
+enum { LEAST_BINS = 128 };
 
 /* Every block has the full depth: what is not used is not touched, and nothing has to be counted. */
 enum { BLOCK_ENTRIES = NT_FAN_LANES * NT_FAN_DEPTH };
@@ -62,20 +66,23 @@ bool nt_is_scattered(const uint32_t *vertices, size_t corner_count, size_t verte
 
 unsigned nt_bins_bits(size_t vertex_count)
 {
-	unsigned bits = LEAST_BITS;
+	unsigned bits = USUAL_BITS;
 	while (bits < NT_BINNED_BITS && vertex_count >> bits >= MOST_BINS)
 		bits++;
+	while (vertex_count >> bits < LEAST_BINS && bits > 4)
+		bits--;
 	return bits;
 }
 
 nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges, size_t vertex_count,
-	unsigned vertex_bits, nt_record *sums, nt_scratch *scratch, nt_bins *bins)
+	unsigned vertex_bits, nt_record *sums, nt_room *room, nt_bins *bins)
 {
 	const size_t count = (vertex_count + ((size_t)1 << vertex_bits) - 1) >> vertex_bits;
 	const size_t corners = 3 * ranges->bounds[ranges->count];
+	nt_scratch *scratch = room->scratch;
 	nt_bins b = {.vertex_bits = vertex_bits, .ranges = ranges->count, .count = count, .vertex_count = vertex_count};
-	b.sums = sums ? sums : nt_scratch_alloc(scratch, corners, sizeof *b.sums);
-	b.entries = nt_scratch_alloc(scratch, corners, sizeof *b.entries);
+	b.sums = sums ? sums : nt_room_alloc(room, corners, sizeof *b.sums);
+	b.entries = nt_scratch_alloc(scratch, corners * NT_BINNED_ENTRY + 1, 1);
 	b.begins = nt_scratch_alloc(scratch, count, ranges->count * sizeof *b.begins);
 	b.seen = nt_scratch_alloc(scratch, ranges->count, sizeof *b.seen);
 	b.cursors = nt_scratch_alloc(scratch, count, ranges->count * sizeof *b.cursors);
@@ -89,18 +96,21 @@ nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges,
 	return NMTAN_OK;
 }
 
-nmtan_status nt_bins_adjacency(const nt_bins *bins, nt_scratch *scratch, nt_adjacency *adjacency)
+nmtan_status nt_bin_make(const nt_bins *bins, const bool needed[2], nt_scratch *scratch, nt_bin *bin)
 {
 	const size_t vertices = (size_t)1 << bins->vertex_bits;
-	nt_adjacency a = {.ranges = 1};
-	a.cursors = nt_scratch_alloc(scratch, vertices, sizeof *a.cursors);
-	a.block_begin = nt_scratch_alloc(scratch, vertices / NT_FAN_LANES + 1, sizeof *a.block_begin);
-	a.entries = nt_scratch_alloc(scratch, vertices * NT_FAN_DEPTH, sizeof *a.entries);
-	*adjacency = a;
-	if (!a.cursors || !a.block_begin || !a.entries)
+	*bin = (nt_bin){.adjacency = {.ranges = 1}};
+	nt_adjacency *a = &bin->adjacency;
+	a->cursors = nt_scratch_alloc(scratch, vertices, sizeof *a->cursors);
+	a->block_begin = nt_scratch_alloc(scratch, vertices / NT_FAN_LANES + 1, sizeof *a->block_begin);
+	a->entries = nt_scratch_alloc(scratch, vertices * NT_FAN_DEPTH, sizeof *a->entries);
+	if (!a->cursors || !a->block_begin || !a->entries)
 		return NMTAN_ERROR_MEMORY;
 	for (size_t block = 0; block <= vertices / NT_FAN_LANES; block++)
-		a.block_begin[block] = (uint32_t)block * BLOCK_ENTRIES;
+		a->block_begin[block] = (uint32_t)block * BLOCK_ENTRIES;
+	for (int o = 0; o < 2; o++)
+		if (needed[o] && !(bin->sums[o] = nt_scratch_alloc(scratch, vertices, sizeof *bin->sums[o])))
+			return NMTAN_ERROR_MEMORY;
 	return NMTAN_OK;
 }
 
@@ -119,7 +129,7 @@ static void add_corners(const nt_bins *b, size_t begin, size_t end, nt_record *c
 		const uint32_t cursor = a->cursors[vertex];
 		const bool full = cursor >= (vertex / NT_FAN_LANES + 1) * BLOCK_ENTRIES;
 		if (!full)
-			a->entries[cursor] = b->entries[i];
+			a->entries[cursor] = nt_binned_load(b->entries + NT_BINNED_ENTRY * i, state & NT_BINNED_ORIENT);
 		a->cursors[vertex] = full ? NT_CURSOR_HUB : cursor + NT_FAN_LANES;
 		nt_int4 sum;
 		memcpy(&sum, &b->sums[i], sizeof sum);
@@ -130,12 +140,12 @@ static void add_corners(const nt_bins *b, size_t begin, size_t end, nt_record *c
 	}
 }
 
-void nt_bins_add(const nt_bins *bins, size_t bin, nt_record *const records[2], nt_adjacency *adjacency)
+void nt_bin_add_up(const nt_bins *bins, size_t index, nt_bin *bin)
 {
-	const size_t first = bin << bins->vertex_bits, left = bins->vertex_count - first;
+	const size_t first = index << bins->vertex_bits, left = bins->vertex_count - first;
 	const size_t most = (size_t)1 << bins->vertex_bits;
-	const uint32_t *begins = bins->begins + bin * bins->ranges;
-	nt_adjacency *a = adjacency;
+	const uint32_t *begins = bins->begins + index * bins->ranges;
+	nt_adjacency *a = &bin->adjacency;
 	a->first_vertex = first;
 	a->vertex_count = left < most ? left : most;
 
@@ -143,11 +153,11 @@ void nt_bins_add(const nt_bins *bins, size_t bin, nt_record *const records[2], n
 		a->cursors[v] = v / NT_FAN_LANES * BLOCK_ENTRIES + v % NT_FAN_LANES;
 	nt_record *to[2];
 	for (int o = 0; o < 2; o++) {
-		to[o] = (records[o] ? records[o] : records[!o]) + first;
+		to[o] = bin->sums[o] ? bin->sums[o] : bin->sums[!o];
 		for (size_t v = 0; v < a->vertex_count; v++)
 			to[o][v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
 	}
 	for (unsigned range = 0; range < bins->ranges; range++)
-		add_corners(bins, begins[range], bins->cursors[range * bins->count + bin], to,
-			records[0] && records[1], a);
+		add_corners(bins, begins[range], bins->cursors[range * bins->count + index], to,
+			bin->sums[0] && bin->sums[1], a);
 }

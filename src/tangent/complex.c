@@ -2,542 +2,521 @@
 /*
  * The vertices that are not settled by their sums: pinches, edges with three triangles, triangles without a
  * frame between orientations, nearly antiparallel directions, hubs. The steps are those of the scalar
- * definition, but at these vertices only, and in linear time but for directions that really are
- * antiparallel: there every member of a group may have a sum of its own.
+ * definition, but at these vertices only:
  *
- * Pairing is local to a vertex. Groups are seeded in the order of triangles over all vertices, because
- * a triangle without a frame keeps the orientation of the first group that takes it.
+ *   collect   corners of complex vertices, sorted by vertex and then by triangle
+ *   adopt     which orientation each triangle without a frame takes. It keeps that of the first group that
+ *             reaches it, wherever that is: the one thing that depends on the order of all corners
+ *   then for a few vertices at a time, so that all of it stays in the first-level cache:
+ *   pair      edges of triangles that meet at the vertex
+ *   flood     groups
+ *   solve     corners, in lanes (kernel_corners.h)
+ *   average   and write
+ *
+ * In linear time but for directions that really are antiparallel: there every member of a group may have a
+ * sum of its own.
  */
 #include <string.h>
 #include "base/vec.h"
-#include "tangent/acos.h"
 #include "tangent/fast.h"
 #include "topology/corners.h"
 
 #define NONE UINT32_MAX
 
-/* A result, and what the reference keeps beside it. */
-typedef struct slot {
-	nt_vec3 os, ot;
-	float mag_s, mag_t;
-} slot;
+/* Corners that are solved together, unless one vertex has more. */
+enum { BATCH = 128 };
 
-/* What a corner adds to its group. */
-typedef struct member {
-	nt_vec3 u, v; /* unit directions perpendicular to the normal */
-	float angle, mag_s, mag_t;
-	uint32_t triangle;
-	bool any;
-} member;
+/* nt_record.state of a complex vertex that has its number in x, bit by bit. */
+#define NUMBERED (NT_RESULT_COMPLEX | 1)
 
-/* Corners of complex vertices, sorted by vertex and then by triangle. A "place" is an index into this
- * order. */
+/* A corner is 4 * triangle + k here, so that parting the two is no division. A "place" is an index into all
+ * corners of complex vertices. */
 typedef struct complex {
 	nt_fast *fast;
-	nt_record *records;  /* x of a complex vertex holds its number, bit by bit */
+	const nt_kernels *kernels;
+	nt_room *room;
+	int orient;          /* of the records that say which vertices are complex */
 	size_t vertex_count, corner_count;
+	size_t most;         /* corners of one vertex */
 	uint32_t *begin;     /* [vertex_count + 1] first place of each vertex */
-	uint32_t *items;     /* [corner_count] 3 * triangle + k */
-	uint32_t *order;     /* [corner_count] places in the order of triangles */
-	uint32_t *across[2]; /* [corner_count] place beyond the edge to the next and from the previous vertex */
-	uint32_t *group;     /* [corner_count] or NONE */
-	uint32_t *stack;     /* [corner_count] */
-	size_t group_count;
-	uint32_t *group_begin; /* [group_count + 1] */
-	uint32_t *members;   /* [corner_count] places by group, ascending */
-	slot *slots;         /* [corner_count] until the halves of quads meet; NULL: written at once */
-	member *room;        /* [size of the largest group] */
+	uint32_t *corners;   /* [corner_count] */
+	uint32_t *waiting;   /* [welded vertices] see pair_edge() */
+	bool any;            /* some have no frame */
+	bool more;           /* results are whole, not only their u */
 } complex;
 
-static uint32_t vertex_number(const complex *c, uint32_t vertex)
+/* The corners of some vertices. Indices are places, counted from the first. */
+typedef struct batch {
+	uint32_t first, count;
+	uint32_t *across[2]; /* the corner beyond the edge to the next and from the previous vertex, or NONE */
+	uint32_t *behind;    /* [2 * capacity] see pair_edge(); then solved's memory */
+	uint32_t *group;     /* or NONE */
+	uint32_t group_count;
+	uint32_t *head;      /* first member of each group */
+	uint32_t *later;     /* the next member, ascending */
+	nt_corner *solved;
+} batch;
+
+static void *allocate(const complex *c, size_t count, size_t size)
 {
-	uint32_t number;
-	memcpy(&number, &c->records[vertex].x, sizeof number);
-	return number;
+	return nt_room_alloc(c->room, count, size);
+}
+
+/* Collecting */
+
+static nt_record *record_of(const complex *c, uint32_t vertex)
+{
+	return nt_fast_record(c->fast, c->orient, vertex);
 }
 
 static bool is_complex(const complex *c, uint32_t vertex)
 {
-	return c->records[vertex].state == NT_RESULT_COMPLEX;
+	return (record_of(c, vertex)->state | 1) == NUMBERED;
 }
 
-static uint32_t triangle_of(const complex *c, uint32_t place)
+static uint32_t number_of(const complex *c, uint32_t vertex)
 {
-	return c->items[place] / 3;
+	uint32_t number;
+	memcpy(&number, &record_of(c, vertex)->x, sizeof number);
+	return number;
 }
-
-static uint32_t next_vertex(const complex *c, uint32_t place)
-{
-	const uint32_t i = c->items[place];
-	return c->fast->ids[i % 3 == 2 ? i - 2 : i + 1];
-}
-
-static uint32_t previous_vertex(const complex *c, uint32_t place)
-{
-	const uint32_t i = c->items[place];
-	return c->fast->ids[i % 3 == 0 ? i + 2 : i - 1];
-}
-
-/* Collecting */
 
 static size_t next_triangle(const complex *c, size_t t)
 {
 	return nt_fast_next_flagged(c->fast, t, NT_TRIANGLE_COMPLEX);
 }
 
-static nmtan_status number_vertices(complex *c)
-{
-	uint32_t number = 0;
-	for (uint32_t v = 0; v < c->fast->vertex_count; v++) {
-		if (!is_complex(c, v))
-			continue;
-		memcpy(&c->records[v].x, &number, sizeof number);
-		number++;
-	}
-	c->begin = nt_scratch_alloc(c->fast->solve->scratch, c->vertex_count + 2, sizeof *c->begin);
-	return c->begin ? NMTAN_OK : NMTAN_ERROR_MEMORY;
-}
-
-static nmtan_status collect_corners(complex *c)
+/* Numbers the vertices as they come up and counts their corners. */
+static void count_corners(complex *c, uint32_t *counts)
 {
 	const nt_fast *fast = c->fast;
+	uint32_t numbers = 0;
+	for (size_t t = next_triangle(c, 0); t < fast->triangle_count; t = next_triangle(c, t + 1)) {
+		c->any |= (fast->flags[t] & NT_TRIANGLE_ANY) != 0;
+		uint32_t copy[3];
+		const uint32_t *vertices = nt_triangle_vertices(&fast->triangles, t, 1, copy);
+		for (size_t k = 0; k < 3; k++) {
+			const uint32_t v = vertices[k];
+			nt_record *record = record_of(c, v);
+			if (record->state == NT_RESULT_COMPLEX) {
+				record->state = NUMBERED;
+				memcpy(&record->x, &numbers, sizeof numbers);
+				numbers++;
+			}
+			if (is_complex(c, v))
+				counts[number_of(c, v)]++;
+		}
+	}
+}
+
+static nmtan_status collect(complex *c)
+{
+	c->begin = allocate(c, c->vertex_count + 2, sizeof *c->begin);
+	if (!c->begin)
+		return NMTAN_ERROR_MEMORY;
 	/* counted two places ahead: filling then moves each begin to where it belongs */
 	uint32_t *at = c->begin + 1;
 	memset(c->begin, 0, (c->vertex_count + 2) * sizeof *c->begin);
-	for (size_t t = next_triangle(c, 0); t < fast->triangle_count; t = next_triangle(c, t + 1))
-		for (size_t i = 3 * t; i < 3 * t + 3; i++)
-			if (is_complex(c, fast->ids[i])) {
-				at[vertex_number(c, fast->ids[i]) + 1]++;
-				c->corner_count++;
-			}
-	for (size_t v = 1; v <= c->vertex_count; v++)
+	count_corners(c, at + 1);
+	for (size_t v = 1; v <= c->vertex_count; v++) {
+		c->most = at[v] > c->most ? at[v] : c->most;
 		at[v] += at[v - 1];
-	nt_scratch *scratch = fast->solve->scratch;
-	c->items = nt_scratch_alloc(scratch, c->corner_count, sizeof *c->items);
-	c->order = nt_scratch_alloc(scratch, c->corner_count, sizeof *c->order);
-	if (!c->items || !c->order)
+	}
+	c->corner_count = at[c->vertex_count];
+	c->corners = allocate(c, c->corner_count, sizeof *c->corners);
+	if (!c->corners)
 		return NMTAN_ERROR_MEMORY;
-	size_t seen = 0;
-	for (size_t t = next_triangle(c, 0); t < fast->triangle_count; t = next_triangle(c, t + 1))
-		for (size_t i = 3 * t; i < 3 * t + 3; i++)
-			if (is_complex(c, fast->ids[i])) {
-				const uint32_t place = at[vertex_number(c, fast->ids[i])]++;
-				c->items[place] = (uint32_t)i;
-				c->order[seen++] = place;
-			}
+	for (size_t t = next_triangle(c, 0); t < c->fast->triangle_count; t = next_triangle(c, t + 1)) {
+		uint32_t copy[3];
+		const uint32_t *vertices = nt_triangle_vertices(&c->fast->triangles, t, 1, copy);
+		for (size_t k = 0; k < 3; k++)
+			if (is_complex(c, vertices[k]))
+				c->corners[at[number_of(c, vertices[k])]++] = (uint32_t)(4 * t + k);
+	}
 	return NMTAN_OK;
 }
 
 /* Pairing */
 
-/* Above this many corners a vertex is paired by hashing; below, looking at all of them is faster. */
-enum { FEW = 24 };
-
-/* The first later corner that is free and has the edge in the other direction. */
-static void pair_few(complex *c, uint32_t begin, uint32_t end)
+/* The vertex at the far end of a corner's edge: way 0 to the next, 1 from the previous. */
+static uint32_t far_vertex(const complex *c, uint32_t corner, uint32_t way)
 {
-	uint32_t next[FEW], previous[FEW];
-	for (uint32_t i = begin; i < end; i++) {
-		next[i - begin] = next_vertex(c, i);
-		previous[i - begin] = previous_vertex(c, i);
-	}
-	for (uint32_t i = begin; i < end; i++) {
-		for (uint32_t j = i + 1; c->across[0][i] == NONE && j < end; j++)
-			if (previous[j - begin] == next[i - begin] && c->across[1][j] == NONE) {
-				c->across[0][i] = j;
-				c->across[1][j] = i;
-			}
-		for (uint32_t j = i + 1; c->across[1][i] == NONE && j < end; j++)
-			if (next[j - begin] == previous[i - begin] && c->across[0][j] == NONE) {
-				c->across[1][i] = j;
-				c->across[0][j] = i;
-			}
-	}
+	static const uint8_t step[2][4] = {{1, 2, 0, 0}, {2, 0, 1, 0}};
+	const nt_triangles *triangles = &c->fast->triangles;
+	return triangles->ids[nt_triangle_corner(triangles, corner >> 2, step[way][corner & 3])];
 }
 
-/* The edges between a hub and one other vertex that wait for a partner: all run the same way, first in,
- * first out. */
-typedef struct waiting {
-	uint32_t vertex; /* NONE: the entry is empty */
-	uint32_t way;    /* index into across */
-	uint32_t head, tail;
-} waiting;
-
-typedef struct waiting_table {
-	waiting *entries;
-	uint32_t *after; /* [2 * corners of the largest hub] what waits behind */
-	size_t mask;
-} waiting_table;
-
-static waiting *find_waiting(const waiting_table *table, uint32_t vertex)
+/*
+ * Edge 2 * place + way meets the first edge in the other direction that waits at its far end; if there is none
+ * it waits there itself. Those that wait at one vertex all run the same way. They stand in a ring, of which
+ * `waiting` knows the last and `behind` has each one's follower. What waits since another vertex's turn has a
+ * number below `begin`. Numbers are kept with 1 added, 0 being nobody.
+ */
+static void pair_edge(const complex *c, batch *b, uint32_t begin, uint32_t edge, uint32_t far)
 {
-	size_t at = (vertex * 0x9e3779b1u) & table->mask;
-	while (table->entries[at].vertex != NONE && table->entries[at].vertex != vertex)
-		at = (at + 1) & table->mask;
-	return &table->entries[at];
-}
-
-static void pair_edge(complex *c, const waiting_table *table, uint32_t begin, uint32_t place, uint32_t way,
-	uint32_t vertex)
-{
-	waiting *w = find_waiting(table, vertex);
-	if (w->vertex == NONE || w->head == NONE) {
-		*w = (waiting){vertex, way, place, place};
-		table->after[2 * (place - begin) + way] = NONE;
-	} else if (w->way == way) {
-		table->after[2 * (w->tail - begin) + way] = place;
-		table->after[2 * (place - begin) + way] = NONE;
-		w->tail = place;
+	uint32_t *behind = b->behind, *waiting = &c->waiting[far];
+	const uint32_t zero = 2 * b->first, last = *waiting - 1 - zero, e = edge - zero;
+	if (*waiting <= begin) {
+		behind[e] = e;
+		*waiting = edge + 1;
+	} else if ((last ^ e) % 2 == 0) {
+		behind[e] = behind[last];
+		behind[last] = e;
+		*waiting = edge + 1;
 	} else {
-		const uint32_t partner = w->head;
-		c->across[way][place] = partner;
-		c->across[w->way][partner] = place;
-		w->head = table->after[2 * (partner - begin) + w->way];
+		const uint32_t partner = behind[last];
+		b->across[e % 2][e / 2] = partner / 2;
+		b->across[partner % 2][partner / 2] = e / 2;
+		behind[last] = behind[partner];
+		if (partner == last)
+			*waiting = 0;
 	}
 }
 
-static nmtan_status pair_many(complex *c, uint32_t begin, uint32_t end)
+/* The vertex whose places are [begin, end). */
+static void pair_vertex(const complex *c, batch *b, uint32_t begin, uint32_t end)
 {
-	nt_scratch *scratch = c->fast->solve->scratch;
-	const nt_scratch_mark mark = nt_scratch_here(scratch);
-	size_t size = 64;
-	while (size < 4 * (size_t)(end - begin))
-		size *= 2;
-	waiting_table table = {.mask = size - 1};
-	table.entries = nt_scratch_alloc(scratch, size, sizeof *table.entries);
-	table.after = nt_scratch_alloc(scratch, end - begin, 2 * sizeof *table.after);
-	if (!table.entries || !table.after)
-		return NMTAN_ERROR_MEMORY;
-	memset(table.entries, 0xff, size * sizeof *table.entries);
-	for (uint32_t place = begin; place < end; place++) {
-		pair_edge(c, &table, begin, place, 0, next_vertex(c, place));
-		pair_edge(c, &table, begin, place, 1, previous_vertex(c, place));
-	}
-	nt_scratch_back(scratch, mark);
-	return NMTAN_OK;
-}
-
-static nmtan_status pair_corners(complex *c)
-{
-	for (int way = 0; way < 2; way++) {
-		c->across[way] = nt_scratch_alloc(c->fast->solve->scratch, c->corner_count,
-			sizeof *c->across[way]);
-		if (!c->across[way])
-			return NMTAN_ERROR_MEMORY;
-		memset(c->across[way], 0xff, c->corner_count * sizeof *c->across[way]);
-	}
-	for (size_t v = 0; v < c->vertex_count; v++) {
-		nmtan_status status = NMTAN_OK;
-		if (c->begin[v + 1] - c->begin[v] <= FEW)
-			pair_few(c, c->begin[v], c->begin[v + 1]);
-		else
-			status = pair_many(c, c->begin[v], c->begin[v + 1]);
-		if (status)
-			return status;
-	}
-	return NMTAN_OK;
+	for (uint32_t place = begin; place < end; place++)
+		for (uint32_t way = 0; way < 2; way++) {
+			b->across[way][place - b->first] = NONE;
+			pair_edge(c, b, 2 * begin, 2 * place + way, far_vertex(c, c->corners[place], way));
+		}
 }
 
 /* Groups */
 
 /* Takes a corner into the group, if it is free and of its orientation. */
-static bool join_group(complex *c, uint32_t place, unsigned orient)
+static bool join_group(const complex *c, batch *b, uint32_t i, unsigned orient)
 {
-	if (place == NONE || c->group[place] != NONE)
+	if (i == NONE || b->group[i] != NONE)
 		return false;
-	uint8_t *flags = &c->fast->flags[triangle_of(c, place)];
+	uint8_t *flags = &c->fast->flags[c->corners[b->first + i] >> 2];
 	if ((*flags & NT_TRIANGLE_ANY) && !(*flags & NT_TRIANGLE_TAKEN))
 		*flags = (uint8_t)((*flags & ~NT_TRIANGLE_ORIENT) | orient | NT_TRIANGLE_TAKEN);
 	if ((*flags & NT_TRIANGLE_ORIENT) != orient)
 		return false;
-	c->group[place] = (uint32_t)c->group_count;
+	b->group[i] = b->group_count;
 	return true;
 }
 
-static void flood_group(complex *c, uint32_t seed)
+/* The group that begins at a corner, if that is free and has a frame. Corners are rows or rings: it is
+ * followed both ways. */
+static void flood_group(const complex *c, batch *b, uint32_t seed)
 {
-	const unsigned orient = c->fast->flags[triangle_of(c, seed)] & NT_TRIANGLE_ORIENT;
-	size_t depth = 0;
-	c->group[seed] = (uint32_t)c->group_count;
-	c->stack[depth++] = seed;
-	while (depth > 0) {
-		const uint32_t place = c->stack[--depth];
-		for (int way = 0; way < 2; way++)
-			if (join_group(c, c->across[way][place], orient))
-				c->stack[depth++] = c->across[way][place];
-	}
-	c->group_count++;
-}
-
-static nmtan_status find_groups(complex *c)
-{
-	nt_scratch *scratch = c->fast->solve->scratch;
-	c->group = nt_scratch_alloc(scratch, c->corner_count, sizeof *c->group);
-	c->stack = nt_scratch_alloc(scratch, c->corner_count, sizeof *c->stack);
-	if (!c->group || !c->stack)
-		return NMTAN_ERROR_MEMORY;
-	memset(c->group, 0xff, c->corner_count * sizeof *c->group);
-	for (size_t i = 0; i < c->corner_count; i++) {
-		const uint32_t seed = c->order[i];
-		const uint8_t flags = c->fast->flags[triangle_of(c, seed)];
-		if (!(flags & NT_TRIANGLE_ANY) && c->group[seed] == NONE)
-			flood_group(c, seed);
-	}
-	return NMTAN_OK;
+	const unsigned flags = c->fast->flags[c->corners[b->first + seed] >> 2];
+	if ((flags & NT_TRIANGLE_ANY) || b->group[seed] != NONE)
+		return;
+	b->group[seed] = b->group_count;
+	for (int way = 0; way < 2; way++)
+		for (uint32_t i = b->across[way][seed]; join_group(c, b, i, flags & NT_TRIANGLE_ORIENT);)
+			i = b->across[way][i];
+	b->group_count++;
 }
 
 /* Members of each group, ascending. */
-static nmtan_status sort_members(complex *c, size_t *largest)
+static void list_members(batch *b)
 {
-	nt_scratch *scratch = c->fast->solve->scratch;
-	c->group_begin = nt_scratch_alloc(scratch, c->group_count + 2, sizeof *c->group_begin);
-	if (!c->group_begin)
-		return NMTAN_ERROR_MEMORY;
-	c->members = c->stack; /* of the same size, and no longer needed */
-	uint32_t *at = c->group_begin + 1;
-	memset(c->group_begin, 0, (c->group_count + 2) * sizeof *c->group_begin);
-	for (size_t i = 0; i < c->corner_count; i++)
-		if (c->group[i] != NONE)
-			at[c->group[i] + 1]++;
-	*largest = 0;
-	for (size_t g = 1; g <= c->group_count; g++) {
-		*largest = at[g] > *largest ? at[g] : *largest;
-		at[g] += at[g - 1];
+	memset(b->head, 0xff, b->group_count * sizeof *b->head);
+	b->later = b->across[0]; /* no longer needed */
+	for (uint32_t i = b->count; i-- > 0;)
+		if (b->group[i] != NONE) {
+			b->later[i] = b->head[b->group[i]];
+			b->head[b->group[i]] = i;
+		}
+}
+
+/* Adopting */
+
+static bool alloc_pairs(const complex *c, batch *b, size_t capacity)
+{
+	b->across[0] = allocate(c, capacity, sizeof **b->across);
+	b->across[1] = allocate(c, capacity, sizeof **b->across);
+	b->group = allocate(c, capacity, sizeof *b->group);
+	return b->across[0] && b->across[1] && b->group;
+}
+
+/* Pairs the corners of vertices that touch a triangle without a frame. Begins of the others become NONE. */
+static void pair_undecided(const complex *c, batch *b, uint32_t *begin)
+{
+	for (size_t v = 0; v < c->vertex_count; v++) {
+		bool any = false;
+		for (uint32_t place = c->begin[v]; place < c->begin[v + 1] && !any; place++)
+			any = c->fast->flags[c->corners[place] >> 2] & NT_TRIANGLE_ANY;
+		begin[v] = any ? c->begin[v] : NONE;
+		if (any)
+			pair_vertex(c, b, c->begin[v], c->begin[v + 1]);
 	}
-	for (uint32_t i = 0; i < c->corner_count; i++)
-		if (c->group[i] != NONE)
-			c->members[at[c->group[i]]++] = i;
+}
+
+/* Floods in the order of triangles, for what that does to flags. */
+static nmtan_status adopt(complex *c)
+{
+	const nt_fast *fast = c->fast;
+	if (!c->any || !fast->records[0] || !fast->records[1])
+		return NMTAN_OK;
+	const nt_scratch_mark mark = nt_scratch_here(c->room->scratch);
+	const nt_room room = *c->room;
+	batch b = {.count = (uint32_t)c->corner_count};
+	uint32_t *at = allocate(c, c->vertex_count, sizeof *at);
+	b.behind = allocate(c, c->corner_count, 2 * sizeof *b.behind);
+	if (!alloc_pairs(c, &b, c->corner_count) || !at || !b.behind)
+		return NMTAN_ERROR_MEMORY;
+	memset(b.group, 0xff, c->corner_count * sizeof *b.group);
+	pair_undecided(c, &b, at);
+	for (size_t t = next_triangle(c, 0); t < fast->triangle_count; t = next_triangle(c, t + 1)) {
+		uint32_t copy[3];
+		const uint32_t *vertices = nt_triangle_vertices(&fast->triangles, t, 1, copy);
+		for (size_t k = 0; k < 3; k++)
+			if (is_complex(c, vertices[k]) && at[number_of(c, vertices[k])] != NONE)
+				flood_group(c, &b, at[number_of(c, vertices[k])]++);
+	}
+	nt_scratch_back(c->room->scratch, mark);
+	*c->room = room;
+	memset(c->waiting, 0, fast->vertex_count * sizeof *c->waiting);
 	return NMTAN_OK;
 }
 
 /* Averages */
 
-static nt_vec3 load3(const float *p)
+static bool is_second_half(const complex *c, uint32_t triangle, uint32_t first)
 {
-	return (nt_vec3){p[0], p[1], p[2]};
+	return triangle == first + 1 && (c->fast->flags[triangle] & NT_TRIANGLE_SECOND);
 }
 
-/* Steps 4 and 8 for one corner. */
-static member solve_corner(const complex *c, uint32_t place)
+static float dot3(const float *a, const float *b)
 {
-	const uint32_t item = c->items[place], t = item / 3, k = item % 3;
-	const nmtan_mesh *mesh = c->fast->solve->mesh;
-	member m = {.triangle = t, .any = c->fast->flags[t] & NT_TRIANGLE_ANY};
-	if (m.any)
-		return m;
-	/* from the mesh: the welded rows lay in the output, which is written by now */
-	size_t vertex[3];
-	for (size_t i = 0; i < 3; i++)
-		vertex[i] = nt_vertex_of(mesh, nt_fast_corner(c->fast, 3 * (size_t)t + i));
-	const float *ta = nt_texcoord(mesh, vertex[0]), *tb = nt_texcoord(mesh, vertex[1]),
-		    *tc = nt_texcoord(mesh, vertex[2]);
-	const float t21x = tb[0] - ta[0], t21y = tb[1] - ta[1];
-	const float t31x = tc[0] - ta[0], t31y = tc[1] - ta[1];
-	const nt_vec3 pa = load3(nt_position(mesh, vertex[0]));
-	const nt_vec3 d1 = nt_vec3_sub(load3(nt_position(mesh, vertex[1])), pa);
-	const nt_vec3 d2 = nt_vec3_sub(load3(nt_position(mesh, vertex[2])), pa);
-	const float area = t21x * t31y - t21y * t31x, sign = area > 0.0f ? 1.0f : -1.0f;
-	nt_vec3 os = nt_vec3_sub(nt_vec3_scale(t31y, d1), nt_vec3_scale(t21y, d2));
-	nt_vec3 ot = nt_vec3_add(nt_vec3_scale(-t31x, d1), nt_vec3_scale(t21x, d2));
-	const float ls = nt_vec3_length(os), lt = nt_vec3_length(ot);
-	os = nt_not_zero(ls) ? nt_vec3_scale(sign / ls, os) : (nt_vec3){0, 0, 0};
-	ot = nt_not_zero(lt) ? nt_vec3_scale(sign / lt, ot) : (nt_vec3){0, 0, 0};
-	m.mag_s = ls / fabsf(area);
-	m.mag_t = lt / fabsf(area);
-
-	const nt_vec3 n = load3(nt_normal(mesh, vertex[k])), p = load3(nt_position(mesh, vertex[k]));
-	const nt_vec3 previous = load3(nt_position(mesh, vertex[(k + 2) % 3]));
-	const nt_vec3 next = load3(nt_position(mesh, vertex[(k + 1) % 3]));
-	const nt_vec3 e1 = nt_vec3_project(n, nt_vec3_sub(previous, p));
-	const nt_vec3 e2 = nt_vec3_project(n, nt_vec3_sub(next, p));
-	float cosine = nt_vec3_dot(e1, e2);
-	cosine = cosine > 1.0f ? 1.0f : cosine < -1.0f ? -1.0f : cosine;
-	m.angle = nt_acos(cosine);
-	m.u = nt_vec3_project(n, os);
-	m.v = nt_vec3_project(n, ot);
-	return m;
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 /* Whether two members of a group are averaged together: step 7 with the default threshold. */
-static bool belong_together(const complex *c, const member *f, const member *t)
+static bool belong_together(const complex *c, const batch *b, uint32_t i, uint32_t j)
 {
-	if (f->any || t->any || f->triangle == t->triangle)
+	const nt_corner *f = &b->solved[i], *t = &b->solved[j];
+	const uint32_t ft = c->corners[b->first + i] >> 2, tt = c->corners[b->first + j] >> 2;
+	if (f->kind == NT_CORNER_ANY || t->kind == NT_CORNER_ANY || ft == tt || is_second_half(c, ft, tt) || is_second_half(c, tt, ft))
 		return true;
-	const uint32_t low = f->triangle < t->triangle ? f->triangle : t->triangle;
-	const uint32_t high = f->triangle < t->triangle ? t->triangle : f->triangle;
-	if (high == low + 1 && (c->fast->flags[high] & NT_TRIANGLE_SECOND))
-		return true;
-	return nt_vec3_dot(f->u, t->u) > -1.0f && nt_vec3_dot(f->v, t->v) > -1.0f;
+	return dot3(f->u, t->u) > -1.0f && dot3(f->v, t->v) > -1.0f;
 }
 
-/* The average over the members that belong together with f; f NULL: over all. */
-static slot average(const complex *c, const member *members, size_t count, const member *f)
+static void normalise_safe(float v[3])
 {
-	slot sum = {0};
-	float angles = 0.0f;
-	for (size_t i = 0; i < count; i++) {
-		const member *m = &members[i];
-		if (m->any || (f && !belong_together(c, f, m)))
+	const nt_vec3 n = nt_vec3_normalise_safe((nt_vec3){v[0], v[1], v[2]});
+	v[0] = n.x, v[1] = n.y, v[2] = n.z;
+}
+
+/* The sum over the members that belong together with f; f NONE: over all. Members without a frame add 0. */
+static nt_corner add_members(const complex *c, const batch *b, uint32_t group, uint32_t f)
+{
+	nt_float4 u = {0}, v = {0};
+	nt_corner sum = {.kind = NT_CORNER_EXTREME};
+	for (uint32_t i = b->head[group]; i != NONE; i = b->later[i]) {
+		const nt_corner *m = &b->solved[i];
+		if (f != NONE && !belong_together(c, b, f, i))
 			continue;
-		sum.os = nt_vec3_add(sum.os, nt_vec3_scale(m->angle, m->u));
-		sum.ot = nt_vec3_add(sum.ot, nt_vec3_scale(m->angle, m->v));
-		sum.mag_s += m->angle * m->mag_s;
-		sum.mag_t += m->angle * m->mag_t;
-		angles += m->angle;
+		nt_float4 mu, mv;
+		memcpy(&mu, m->u, sizeof mu);
+		memcpy(&mv, m->v, sizeof mv);
+		u += m->angle * mu;
+		v += m->angle * mv;
+		sum.angle += m->angle;
 	}
-	sum.os = nt_vec3_normalise_safe(sum.os);
-	sum.ot = nt_vec3_normalise_safe(sum.ot);
-	if (angles > 0.0f) {
-		sum.mag_s /= angles;
-		sum.mag_t /= angles;
-	}
+	memcpy(sum.u, &u, sizeof u);
+	memcpy(sum.v, &v, sizeof v);
 	return sum;
 }
 
-/* The half-spaces that a vector lies well inside of, one bit each; 0 where it is not nearly a unit vector. */
-static unsigned half_spaces(nt_vec3 v)
+/* From a sum to the average. */
+static void finish(const complex *c, nt_corner *sum)
 {
-	const float h = 0.1f, squared = nt_vec3_dot(v, v);
-	if (!(squared > 0.99f && squared < 1.01f))
-		return 0;
-	return (v.x > h) | (v.x < -h) << 1 | (v.y > h) << 2 | (v.y < -h) << 3 | (v.z > h) << 4 | (v.z < -h) << 5;
-}
-
-/* Whether no two members can have antiparallel directions, by one look at each: see kernel_settle.h. */
-static bool no_split(const member *members, size_t count)
-{
-	unsigned u = 0x3f, v = 0x3f;
-	for (size_t i = 0; i < count; i++) {
-		if (members[i].any)
-			continue;
-		u &= half_spaces(members[i].u);
-		v &= half_spaces(members[i].v);
+	normalise_safe(sum->u);
+	if (!c->more)
+		return;
+	normalise_safe(sum->v);
+	if (sum->angle > 0.0f) {
+		sum->mag_s /= sum->angle;
+		sum->mag_t /= sum->angle;
 	}
-	return u && v;
 }
 
-static bool whole_group_belongs(const complex *c, const member *members, size_t count, const member *f)
+/* Whether the angle between a unit vector and a sum is below 89.4 degrees. Of two such vectors the dot product
+ * is at least -0.9998, as that of vectors in one half-space: see kernel_lanes.h. */
+static bool leans(const float *unit, const float *sum, float sum_squared)
 {
-	for (size_t i = 0; i < count; i++)
-		if (!belong_together(c, f, &members[i]))
+	const float along = dot3(unit, sum);
+	return along > 0.0f && along * along > 1e-4f * sum_squared;
+}
+
+/* Whether no two members can have antiparallel directions, by one look at each. */
+static bool no_split(const batch *b, uint32_t group, const nt_corner *sum)
+{
+	const float uu = dot3(sum->u, sum->u), vv = dot3(sum->v, sum->v);
+	for (uint32_t i = b->head[group]; i != NONE; i = b->later[i]) {
+		const nt_corner *m = &b->solved[i];
+		const bool sure = m->kind == NT_CORNER_UNIT && leans(m->u, sum->u, uu) && leans(m->v, sum->v, vv);
+		if (!sure && m->kind != NT_CORNER_ANY)
+			return false;
+	}
+	return true;
+}
+
+static bool whole_group_belongs(const complex *c, const batch *b, uint32_t group, uint32_t f)
+{
+	for (uint32_t i = b->head[group]; i != NONE; i = b->later[i])
+		if (!belong_together(c, b, f, i))
 			return false;
 	return true;
 }
 
-static void write_slot(const nt_solve *solve, size_t corner, const slot *s, float sign)
+/* Writing */
+
+static size_t mesh_corner(const complex *c, const batch *b, uint32_t i)
 {
-	memcpy(solve->tangents + 4 * corner, (float[4]){s->os.x, s->os.y, s->os.z, sign}, 4 * sizeof(float));
+	const uint32_t corner = c->corners[b->first + i];
+	return nt_triangle_corner(&c->fast->triangles, corner >> 2, corner & 3);
+}
+
+static void write_corner(const complex *c, size_t corner, const nt_corner *r, float sign)
+{
+	const nt_solve *solve = c->fast->solve;
+	memcpy(solve->tangents + 4 * corner, (float[4]){r->u[0], r->u[1], r->u[2], sign}, 4 * sizeof(float));
 	if (solve->bitangents)
-		memcpy(solve->bitangents + 3 * corner, (float[3]){s->ot.x, s->ot.y, s->ot.z},
-			3 * sizeof(float));
+		memcpy(solve->bitangents + 3 * corner, r->v, 3 * sizeof(float));
 	if (solve->magnitudes)
-		memcpy(solve->magnitudes + 2 * corner, (float[2]){s->mag_s, s->mag_t}, 2 * sizeof(float));
+		memcpy(solve->magnitudes + 2 * corner, (float[2]){r->mag_s, r->mag_t}, 2 * sizeof(float));
 }
 
-static float group_sign(const complex *c, uint32_t place)
+/* The sign of a group, by any of its members. */
+static float group_sign(const complex *c, const batch *b, uint32_t i)
 {
-	return c->fast->flags[triangle_of(c, place)] & NT_TRIANGLE_ORIENT ? 1.0f : -1.0f;
+	return c->fast->flags[c->corners[b->first + i] >> 2] & NT_TRIANGLE_ORIENT ? 1.0f : -1.0f;
 }
 
-static void solve_group(complex *c, size_t g)
+/* Results go to their corners, or to `results` where the halves of quads have to meet. */
+static void solve_group(const complex *c, const batch *b, uint32_t group, nt_corner *results)
 {
-	const uint32_t *places = c->members + c->group_begin[g];
-	const size_t count = c->group_begin[g + 1] - c->group_begin[g];
-	for (size_t i = 0; i < count; i++)
-		c->room[i] = solve_corner(c, places[i]);
-	const slot whole = average(c, c->room, count, NULL);
-	const bool one = no_split(c->room, count);
-	for (size_t i = 0; i < count; i++) {
-		const slot result = one || whole_group_belongs(c, c->room, count, &c->room[i])
-			? whole : average(c, c->room, count, &c->room[i]);
-		if (c->slots)
-			c->slots[places[i]] = result;
+	nt_corner whole = add_members(c, b, group, NONE);
+	const bool one = no_split(b, group, &whole);
+	finish(c, &whole);
+	const float sign = group_sign(c, b, b->head[group]);
+	for (uint32_t i = b->head[group]; i != NONE; i = b->later[i]) {
+		nt_corner r = whole;
+		if (!one && !whole_group_belongs(c, b, group, i)) {
+			r = add_members(c, b, group, i);
+			finish(c, &r);
+		}
+		if (results)
+			results[i] = r;
 		else
-			write_slot(c->fast->solve, c->items[places[i]], &result, group_sign(c, places[i]));
+			write_corner(c, mesh_corner(c, b, i), &r, sign);
 	}
 }
 
-static nmtan_status solve_groups(complex *c)
-{
-	size_t largest;
-	const nmtan_status status = sort_members(c, &largest);
-	if (status)
-		return status;
-	nt_scratch *scratch = c->fast->solve->scratch;
-	c->room = nt_scratch_alloc(scratch, largest, sizeof *c->room);
-	/* a corner of a triangle has one result, which need not wait: 32 bytes for each corner at a hub */
-	if (c->fast->corners)
-		c->slots = nt_scratch_alloc(scratch, c->corner_count, sizeof *c->slots);
-	if (!c->room || (c->fast->corners && !c->slots))
-		return NMTAN_ERROR_MEMORY;
-	for (size_t g = 0; g < c->group_count; g++)
-		solve_group(c, g);
-	return NMTAN_OK;
-}
+/* A corner that no group reached keeps the default: step 10. */
+static const nt_corner untouched = {.u = {1, 0, 0}, .mag_s = 1, .v = {0, 1, 0}, .mag_t = 1};
 
-/* Writing */
-
-static bool equal3(nt_vec3 a, nt_vec3 b)
+static void write_untouched(const complex *c, const batch *b)
 {
-	return a.x == b.x && a.y == b.y && a.z == b.z;
+	for (uint32_t i = 0; i < b->count; i++)
+		if (b->group[i] == NONE)
+			write_corner(c, mesh_corner(c, b, i), &untouched, -1.0f);
 }
 
 /* The corner of a quad's diagonal gets two results, one from each half: they are averaged. */
-static slot merge_slots(slot a, slot b)
+static nt_corner merge(const nt_corner *a, const nt_corner *b)
 {
-	if (a.mag_s == b.mag_s && a.mag_t == b.mag_t && equal3(a.os, b.os) && equal3(a.ot, b.ot))
-		return a;
-	return (slot){nt_vec3_normalise_safe(nt_vec3_add(a.os, b.os)),
-		nt_vec3_normalise_safe(nt_vec3_add(a.ot, b.ot)), 0.5f * (a.mag_s + b.mag_s),
-		0.5f * (a.mag_t + b.mag_t)};
+	const float *x = a->u, *y = b->u; /* with what lies behind: eight floats */
+	bool equal = true;
+	for (size_t i = 0; i < 8; i++)
+		equal &= x[i] == y[i];
+	if (equal)
+		return *a;
+	nt_corner r = {.mag_s = 0.5f * (a->mag_s + b->mag_s), .mag_t = 0.5f * (a->mag_t + b->mag_t)};
+	for (int i = 0; i < 3; i++) {
+		r.u[i] = a->u[i] + b->u[i];
+		r.v[i] = a->v[i] + b->v[i];
+	}
+	normalise_safe(r.u);
+	normalise_safe(r.v);
+	return r;
 }
 
-/* Writes the corner at `place`, and at `other` (NONE: there is none), the other half's corner of the same face
- * vertex. */
-static void write_place(const complex *c, uint32_t place, uint32_t other)
+/* Writes the corner i, and j (NONE: there is none), the other half's corner of the same face vertex. */
+static void write_halves(const complex *c, const batch *b, uint32_t i, uint32_t j, const nt_corner *results)
 {
-	const size_t corner = nt_fast_corner(c->fast, c->items[place]);
-	const bool first = c->group[place] != NONE, second = other != NONE && c->group[other] != NONE;
-	slot result = {{1, 0, 0}, {0, 1, 0}, 1, 1};
-	float sign = -1.0f;
+	const bool first = b->group[i] != NONE, second = j != NONE && b->group[j] != NONE;
+	const size_t corner = mesh_corner(c, b, i);
 	if (first && second) {
+		const nt_corner r = merge(&results[i], &results[j]);
 		/* the orientation is that of the later group */
-		result = merge_slots(c->slots[place], c->slots[other]);
-		sign = group_sign(c, c->group[place] > c->group[other] ? place : other);
+		write_corner(c, corner, &r, group_sign(c, b, b->group[i] > b->group[j] ? i : j));
 	} else if (first || second) {
-		result = c->slots[first ? place : other];
-		sign = group_sign(c, first ? place : other);
-	}
-	write_slot(c->fast->solve, corner, &result, sign);
-}
-
-static void write_corners(const complex *c)
-{
-	for (size_t v = 0; v < c->vertex_count; v++) {
-		for (uint32_t place = c->begin[v]; place < c->begin[v + 1]; place++) {
-			const bool paired = c->fast->corners && place + 1 < c->begin[v + 1] &&
-				c->fast->corners[c->items[place]] == c->fast->corners[c->items[place + 1]];
-			if (c->slots || c->group[place] == NONE)
-				write_place(c, place, paired ? place + 1 : NONE);
-			place += paired;
-		}
+		write_corner(c, corner, &results[first ? i : j], group_sign(c, b, first ? i : j));
+	} else {
+		write_corner(c, corner, &untouched, -1.0f);
 	}
 }
 
-nmtan_status nt_fast_complex(nt_fast *fast, size_t complex_count)
+static void write_quads(const complex *c, const batch *b, const nt_corner *results)
 {
-	complex c = {.fast = fast, .vertex_count = complex_count};
-	c.records = fast->records[0] ? fast->records[0] : fast->records[1];
-	nmtan_status status = number_vertices(&c);
+	for (uint32_t i = 0; i < b->count; i++) {
+		const bool two = i + 1 < b->count && mesh_corner(c, b, i) == mesh_corner(c, b, i + 1);
+		write_halves(c, b, i, two ? i + 1 : NONE, results);
+		i += two;
+	}
+}
+
+/* All steps */
+
+static void solve_batch(const complex *c, batch *b, nt_corner *results)
+{
+	memset(b->group, 0xff, b->count * sizeof *b->group);
+	b->group_count = 0;
+	for (uint32_t i = 0; i < b->count; i++)
+		flood_group(c, b, i);
+	list_members(b);
+	c->kernels->corners(c->fast, c->corners + b->first, b->count, b->solved);
+	for (uint32_t group = 0; group < b->group_count; group++)
+		solve_group(c, b, group, results);
+	if (results)
+		write_quads(c, b, results);
+	else
+		write_untouched(c, b);
+}
+
+static nmtan_status solve_batches(complex *c)
+{
+	batch b = {0};
+	const size_t capacity = c->most > BATCH ? c->most : BATCH;
+	const bool quads = c->fast->triangles.cuts;
+	nt_corner *results = quads ? allocate(c, capacity, sizeof *results) : NULL;
+	b.head = allocate(c, capacity, sizeof *b.head);
+	b.solved = allocate(c, capacity + NT_LANES, sizeof *b.solved);
+	if (!alloc_pairs(c, &b, capacity) || !b.head || !b.solved || (quads && !results))
+		return NMTAN_ERROR_MEMORY;
+	b.behind = (uint32_t *)b.solved; /* pairs are found before corners are solved */
+	for (size_t v = 0; v < c->vertex_count;) {
+		b.first = c->begin[v];
+		do {
+			pair_vertex(c, &b, c->begin[v], c->begin[v + 1]);
+			v++;
+		} while (v < c->vertex_count && c->begin[v + 1] - b.first <= BATCH);
+		b.count = c->begin[v] - b.first;
+		solve_batch(c, &b, results);
+	}
+	return NMTAN_OK;
+}
+
+nmtan_status nt_fast_complex(nt_fast *fast, const nt_kernels *kernels, size_t complex_count, nt_room *room)
+{
+	complex c = {.fast = fast, .kernels = kernels, .room = room, .vertex_count = complex_count,
+		.more = fast->wants_more || fast->triangles.cuts};
+	c.orient = !fast->records[0];
+	c.waiting = allocate(&c, fast->vertex_count, sizeof *c.waiting);
+	if (!c.waiting)
+		return NMTAN_ERROR_MEMORY;
+	memset(c.waiting, 0, fast->vertex_count * sizeof *c.waiting);
+	nmtan_status status = collect(&c);
 	if (!status)
-		status = collect_corners(&c);
-	if (!status)
-		status = pair_corners(&c);
-	if (!status)
-		status = find_groups(&c);
-	if (!status)
-		status = solve_groups(&c);
-	if (!status)
-		write_corners(&c);
-	return status;
+		status = adopt(&c);
+	return status ? status : solve_batches(&c);
 }

@@ -62,28 +62,23 @@ static size_t count_triangles(const nmtan_mesh *mesh)
 	return count;
 }
 
-/* Triangles of a mesh with quads: their corners, vertices, and which are second halves. */
-static nmtan_status cut_faces(nt_fast *fast, const uint32_t *corner_ids)
+/* Triangles of a mesh with quads: how they are cut, and which are second halves. */
+static nmtan_status cut_faces(nt_fast *fast)
 {
 	const nmtan_mesh *mesh = fast->solve->mesh;
-	uint32_t *corners = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 3 * sizeof *corners);
-	uint32_t *ids = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 3 * sizeof *ids);
-	if (!corners || !ids)
+	uint32_t *cuts = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, sizeof *cuts);
+	if (!cuts)
 		return NMTAN_ERROR_MEMORY;
 	size_t first = 0, t = 0;
 	for (size_t face = 0; face < mesh->face_count; first += mesh->face_sizes[face++]) {
-		uint32_t cut[2][3];
-		const unsigned count = nt_face_triangles(mesh, face, first, cut);
+		uint32_t corners[2][3];
+		const unsigned count = nt_face_triangles(mesh, face, first, corners);
 		for (unsigned half = 0; half < count; half++, t++) {
 			fast->flags[t] = half ? NT_TRIANGLE_SECOND : 0;
-			for (int k = 0; k < 3; k++) {
-				corners[3 * t + (size_t)k] = cut[half][k];
-				ids[3 * t + (size_t)k] = corner_ids[cut[half][k]];
-			}
+			cuts[t] = nt_cut_of((uint32_t)first, corners[half]);
 		}
 	}
-	fast->corners = corners;
-	fast->ids = ids;
+	fast->triangles.cuts = cuts;
 	return NMTAN_OK;
 }
 
@@ -94,10 +89,10 @@ static nmtan_status make_triangles(nt_fast *fast, const nt_weld *weld)
 	fast->flags = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 1);
 	if (!fast->flags)
 		return NMTAN_ERROR_MEMORY;
+	fast->triangles.ids = weld->ids;
 	if (fast->triangle_count != fast->solve->mesh->face_count)
-		return cut_faces(fast, weld->ids);
+		return cut_faces(fast);
 	memset(fast->flags, 0, fast->triangle_count);
-	fast->ids = weld->ids;
 	return NMTAN_OK;
 }
 
@@ -131,8 +126,7 @@ static bool make_record(nt_fast *fast, int orient, unsigned threads)
 	nt_record *records = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *records);
 	if (!records)
 		return false;
-	if (!fast->bins.cursors)
-		nt_parallel_ranges(threads, fast->vertex_count, RECORD_GRAIN, clear_records, records);
+	nt_parallel_ranges(threads, fast->vertex_count, RECORD_GRAIN, clear_records, records);
 	if (fast->wants_more) {
 		nt_record_more *more = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *more);
 		if (!more)
@@ -165,7 +159,7 @@ typedef struct run {
 	nt_fast *fast;
 	const nt_kernels *kernels;
 	nt_settled *settled;       /* [ranges] */
-	nt_adjacency *adjacencies; /* [ranges] each for one bin after the other */
+	nt_bin *bins;              /* [ranges] each for one after the other */
 	size_t begun;              /* triangles that the first range has behind it */
 	pthread_mutex_t *lock;     /* of fast->records, while triangles are added */
 	bool failed;
@@ -176,10 +170,8 @@ static void fill_ranges(void *context, size_t begin, size_t end, unsigned slot)
 	(void)slot;
 	const run *r = context;
 	const size_t *bounds = r->fast->ranges.bounds;
-	for (size_t range = begin; range < end; range++) {
-		int orient;
-		r->kernels->accumulate(r->fast, bounds[range], bounds[range + 1], (unsigned)range, &orient);
-	}
+	for (size_t range = begin; range < end; range++)
+		r->kernels->accumulate(r->fast, bounds[range], bounds[range + 1], (unsigned)range, NULL, NULL);
 }
 
 /* What all ranges share, as it is now; first with the record array that this one misses (-1: none). False: out
@@ -195,7 +187,26 @@ static bool look_at_records(run *r, int missing, nt_fast *view)
 	return !failed;
 }
 
-/* Records of an orientation exist from the first triangle on that has it: most meshes have one only. */
+/* Records of an orientation exist from the first triangle on that has it: most meshes have one only. Three ways to
+ * make them: one thread alone; a thread that stops, so that all can clear them; one of several, for all. */
+static bool make_alone(nt_fast *fast, int orient, void *context)
+{
+	(void)context;
+	return make_record(fast, orient, 1);
+}
+
+static bool stop_for_record(nt_fast *fast, int orient, void *context)
+{
+	(void)fast;
+	*(int *)context = orient;
+	return false;
+}
+
+static bool make_shared(nt_fast *view, int orient, void *context)
+{
+	return look_at_records(context, orient, view);
+}
+
 static void accumulate_ranges(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
@@ -203,9 +214,9 @@ static void accumulate_ranges(void *context, size_t begin, size_t end, unsigned 
 	const size_t *bounds = r->fast->ranges.bounds;
 	for (size_t range = begin; range < end; range++) {
 		nt_fast view;
-		int missing = -1;
-		for (size_t t = range ? bounds[range] : r->begun; t < bounds[range + 1] && look_at_records(r, missing, &view);)
-			t = r->kernels->accumulate(&view, t, bounds[range + 1], (unsigned)range, &missing);
+		if (look_at_records(r, -1, &view))
+			r->kernels->accumulate(&view, range ? bounds[range] : r->begun, bounds[range + 1],
+				(unsigned)range, make_shared, r);
 	}
 }
 
@@ -233,47 +244,70 @@ static void add_deferred(nt_fast *fast)
 	}
 }
 
-/* Records of the orientations that came up; without a frame anywhere, some that can take notes. */
-static bool make_seen_records(nt_fast *fast)
+/* Orientations that came up, as a set of NT_SEEN(); without a frame anywhere, one whose records can take notes. */
+static unsigned seen_orientations(const nt_fast *fast)
 {
 	unsigned seen = 0;
 	for (unsigned r = 0; r < fast->ranges.count; r++)
 		seen |= fast->bins.seen[r];
-	if (seen == NT_SEEN_ANY)
-		seen = NT_SEEN(0);
-	for (int o = 0; o < 2; o++)
-		if ((seen & NT_SEEN(o)) && !make_record(fast, o, 1))
-			return false;
-	return true;
+	return seen == NT_SEEN_ANY ? NT_SEEN(0) : seen & ~NT_SEEN_ANY;
 }
 
-static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels)
+/* Records of a binned mesh take the rows' place: settle looks at the normals of a block before it writes its
+ * records. Those of both orientations lie in pairs. Those of one are packed, or write would take a third longer;
+ * but only one thread alone has passed all the rows that it then overwrites. */
+static bool place_records(nt_fast *fast)
 {
+	_Static_assert(sizeof(nt_weld_row) == 2 * sizeof(nt_record), "a pair of records is as large as a row");
+	const unsigned seen = seen_orientations(fast);
+	const bool both = seen == (NT_SEEN(0) | NT_SEEN(1));
+	nt_record *records = both || fast->ranges.count == 1
+		? (nt_record *)fast->rows
+		: nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *records);
+	for (int o = 0; o < 2; o++)
+		fast->records[o] = seen & NT_SEEN(o) ? records + (both ? o : 0) : NULL;
+	fast->record_step = both ? 2 : 1;
+	return records;
+}
+
+/* 3 and 4 by way of bins. */
+static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned bin_bits, nt_room *room)
+{
+	nt_record *lent = fast->sparse ? NULL : (nt_record *)fast->solve->tangents;
+	const nmtan_status status = nt_bins_make(fast->triangles.ids, &fast->ranges, fast->vertex_count,
+		bin_bits ? bin_bits : nt_bins_bits(fast->vertex_count), lent, room, &fast->bins);
+	if (status)
+		return status;
+	fast->scattered = true;
 	run r = {.fast = fast, .kernels = kernels};
 	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, fill_ranges, &r);
-	return make_seen_records(fast) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+	return place_records(fast) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }
 
-static nmtan_status accumulate(nt_fast *fast, const nt_kernels *kernels)
+/* 3 and 4 directly. */
+static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, nt_room *row_room, nt_room *room)
 {
-	if (fast->bins.cursors)
-		return fill_bins(fast, kernels);
+	const nmtan_status status = nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count, row_room,
+		room, &fast->adjacency);
+	if (status)
+		return status;
+	fast->scattered = nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
+	fast->record_step = 1;
+	const unsigned ranges = fast->ranges.count;
+	const size_t end = fast->ranges.bounds[1];
+	if (ranges == 1)
+		return kernels->accumulate(fast, 0, end, 0, make_alone, NULL) == end ? NMTAN_OK
+										     : NMTAN_ERROR_MEMORY;
 	/* the first range runs up to the first record array it needs, which all threads clear */
 	int orient = 0;
-	size_t t = kernels->accumulate(fast, 0, fast->ranges.bounds[1], 0, &orient);
-	if (t < fast->ranges.bounds[1] && !make_record(fast, orient, fast->ranges.count))
+	const size_t t = kernels->accumulate(fast, 0, end, 0, stop_for_record, &orient);
+	if (t < end && !make_record(fast, orient, ranges))
 		return NMTAN_ERROR_MEMORY;
-	if (fast->ranges.count == 1) {
-		while ((t = kernels->accumulate(fast, t, fast->triangle_count, 0, &orient)) < fast->triangle_count)
-			if (!make_record(fast, orient, 1))
-				return NMTAN_ERROR_MEMORY;
-		return NMTAN_OK;
-	}
 	if (!make_deferred(fast))
 		return NMTAN_ERROR_MEMORY;
 	pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 	run r = {.fast = fast, .kernels = kernels, .begun = t, .lock = &lock};
-	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, accumulate_ranges, &r);
+	nt_parallel_ranges(ranges, ranges, 1, accumulate_ranges, &r);
 	pthread_mutex_destroy(&lock);
 	add_deferred(fast);
 	return r.failed ? NMTAN_ERROR_MEMORY : NMTAN_OK;
@@ -309,7 +343,8 @@ static void mark_contested(nt_fast *fast)
 		return;
 	size_t t = nt_fast_next_flagged(fast, 0, NT_TRIANGLE_ANY);
 	for (; t < fast->triangle_count; t = nt_fast_next_flagged(fast, t + 1, NT_TRIANGLE_ANY)) {
-		const uint32_t *v = fast->ids + 3 * t;
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
 		if (fast->flags[t] & NT_TRIANGLE_DEGENERATE)
 			continue;
 		uint32_t empty[2] = {NT_STATE_EMPTY, NT_STATE_EMPTY};
@@ -325,7 +360,7 @@ static void settle_blocks(void *context, size_t begin, size_t end, unsigned slot
 {
 	const run *r = context;
 	nt_settled settled = {0};
-	r->kernels->settle(r->fast, &r->fast->adjacency, begin, end, &settled);
+	r->kernels->settle(r->fast, &r->fast->adjacency, r->fast->records, begin, end, &settled);
 	r->settled[slot] = settled;
 }
 
@@ -334,32 +369,38 @@ static void settle_bins(void *context, size_t begin, size_t end, unsigned slot)
 {
 	const run *r = context;
 	nt_settled settled = {0};
-	nt_adjacency adjacency = r->adjacencies[slot];
-	for (size_t bin = begin; bin < end; bin++) {
-		nt_bins_add(&r->fast->bins, bin, r->fast->records, &adjacency);
-		const size_t first = adjacency.first_vertex / NT_LANES;
-		r->kernels->settle(r->fast, &adjacency, first,
-			first + (adjacency.vertex_count + NT_LANES - 1) / NT_LANES, &settled);
+	nt_bin *bin = &r->bins[slot];
+	for (size_t index = begin; index < end; index++) {
+		nt_bin_add_up(&r->fast->bins, index, bin);
+		const size_t first = bin->adjacency.first_vertex / NT_LANES;
+		r->kernels->settle(r->fast, &bin->adjacency, bin->sums, first,
+			first + (bin->adjacency.vertex_count + NT_LANES - 1) / NT_LANES, &settled);
 	}
 	r->settled[slot] = settled;
+}
+
+static bool make_bins_at_hand(run *r, unsigned ranges)
+{
+	const nt_fast *fast = r->fast;
+	const bool needed[2] = {fast->records[0], fast->records[1]};
+	r->bins = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *r->bins);
+	for (unsigned i = 0; r->bins && i < ranges; i++)
+		if (nt_bin_make(&fast->bins, needed, fast->solve->scratch, &r->bins[i]))
+			return false;
+	return r->bins;
 }
 
 static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled *sum)
 {
 	const unsigned ranges = fast->ranges.count;
-	nt_scratch *scratch = fast->solve->scratch;
 	run r = {.fast = fast, .kernels = kernels};
-	r.settled = nt_scratch_alloc(scratch, ranges, sizeof *r.settled);
+	r.settled = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *r.settled);
 	if (!r.settled)
 		return NMTAN_ERROR_MEMORY;
 	memset(r.settled, 0, ranges * sizeof *r.settled);
 	if (fast->bins.cursors) {
-		r.adjacencies = nt_scratch_alloc(scratch, ranges, sizeof *r.adjacencies);
-		if (!r.adjacencies)
+		if (!make_bins_at_hand(&r, ranges))
 			return NMTAN_ERROR_MEMORY;
-		for (unsigned i = 0; i < ranges; i++)
-			if (nt_bins_adjacency(&fast->bins, scratch, &r.adjacencies[i]))
-				return NMTAN_ERROR_MEMORY;
 		nt_parallel_ranges(ranges, fast->bins.count, 1, settle_bins, &r);
 	} else {
 		mark_contested(fast);
@@ -381,42 +422,68 @@ static void vouch(const nt_fast *fast, bool usable)
 	if (usable)
 		*vouched = (nt_vouched){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT,
 			.suspect = NT_TRIANGLE_SUSPECT};
-	if (!fast->corners) {
-		vouched->welded = fast->ids;
-		vouched->welded_count = fast->vertex_count;
-	}
+	vouched->welded = fast->triangles.ids;
+	vouched->welded_count = fast->vertex_count;
 }
 
-/* 3 */
-static nmtan_status make_places(nt_fast *fast, unsigned bin_bits, nt_record *sums, nt_room *room)
+/* What step 7 may use: the larger of two arrays that are done with, unless it lies in the output. */
+static nt_room dead_room(const nt_fast *fast)
 {
-	const size_t corners = 3 * fast->triangle_count;
-	fast->scattered = bin_bits || nt_is_scattered(fast->ids, corners, fast->vertex_count);
-	if (!fast->scattered || fast->wants_more)
-		return nt_adjacency_make(fast->ids, &fast->ranges, fast->vertex_count, room, &fast->adjacency);
-	if (!bin_bits)
-		bin_bits = nt_bins_bits(fast->vertex_count);
-	return nt_bins_make(fast->ids, &fast->ranges, fast->vertex_count, bin_bits, sums, room->scratch,
-		&fast->bins);
+	const nt_solve *solve = fast->solve;
+	/* records have taken the place of the rows of a binned mesh */
+	const bool binned = fast->bins.cursors;
+	char *const arrays[2] = {binned ? (char *)fast->bins.entries : (char *)fast->adjacency.entries, (char *)fast->rows};
+	const size_t bytes[2] = {binned ? 3 * fast->triangle_count * NT_BINNED_ENTRY
+					: fast->adjacency.entry_count * sizeof(nt_fan_entry),
+		binned ? 0 : fast->vertex_count * sizeof(nt_weld_row)};
+	nt_room largest = nt_room_over(NULL, 0, solve->scratch);
+	for (int i = 0; i < 2; i++) {
+		const bool in_output = (uintptr_t)arrays[i] - (uintptr_t)solve->tangents < solve->corner_count * 16;
+		if (!in_output && bytes[i] > (size_t)(largest.end - largest.begin))
+			largest = nt_room_over(arrays[i], bytes[i], solve->scratch);
+	}
+	return largest;
+}
+
+/* Whether corners go by way of bins: the sums of all of them need as much room as the output of triangles. A sparse
+ * solve, which does not fill it, has them in the scratch. */
+static bool is_binned(const nt_fast *fast, unsigned bin_bits)
+{
+	const nmtan_mesh *mesh = fast->solve->mesh;
+	if (fast->wants_more || fast->triangle_count != mesh->face_count)
+		return false;
+	return bin_bits || (mesh->indices &&
+		nt_is_scattered(mesh->indices, fast->solve->corner_count, mesh->vertex_count));
+}
+
+/* Whether there is room for the rows beside the entries. If not, the larger of them should have it. */
+static bool has_room_for_rows(const nt_fast *fast, const nt_room *room)
+{
+	const nmtan_mesh *mesh = fast->solve->mesh;
+	const size_t free = (size_t)(room->end - room->begin);
+	/* without indices: two triangles for a vertex */
+	const size_t vertices = mesh->indices ? mesh->vertex_count : fast->triangle_count / 2;
+	const size_t entries = 3 * fast->triangle_count * sizeof(nt_fan_entry);
+	const size_t rows = vertices * (sizeof(nt_weld_row) + sizeof(uint32_t));
+	return rows + entries <= free || entries > free || rows > entries;
 }
 
 /* 1 to 4 */
 static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ranges, unsigned bin_bits)
 {
 	const nt_solve *solve = fast->solve;
-	const nmtan_mesh *mesh = solve->mesh;
-	/* the output lends its bytes, to the sums of binned corners if there are going to be any: rows at
-	 * random are better off in the large pages of the scratch. A sparse output is not filled, so that
-	 * its pages need not exist: there the caller lends what it fills from the records. */
-	const bool lends_sums = !fast->sparse && !fast->wants_more && solve->corner_count == 3 * fast->triangle_count &&
-		mesh->indices && (bin_bits || nt_is_scattered(mesh->indices, solve->corner_count, mesh->vertex_count));
+	const bool binned = is_binned(fast, bin_bits);
+	/* the output lends its bytes. A sparse one is not filled, so that its pages need not exist: there the
+	 * caller lends what it fills from the records. */
 	nt_room room = fast->sparse
 		? nt_room_over(solve->lent, solve->lent_bytes, solve->scratch)
-		: nt_room_over(solve->tangents,
-			lends_sums ? 0 : solve->corner_count * 4 * sizeof(float), solve->scratch);
+		: nt_room_over(solve->tangents, solve->corner_count * 4 * sizeof(float), solve->scratch);
+	nt_room none = nt_room_over(solve->tangents, 0, solve->scratch);
+	/* rows at random are better off in the large pages of the scratch, and records will replace them */
+	nt_room *const row_room = !binned && has_room_for_rows(fast, &room) ? &room : &none;
 	nt_weld weld;
 	const double begin = solve->timing ? nt_seconds() : 0;
-	nmtan_status status = nt_weld_mesh(mesh, solve->corner_count, ranges, &room, &weld);
+	nmtan_status status = nt_weld_mesh(solve->mesh, solve->corner_count, ranges, row_room, &room, &weld);
 	if (solve->passed)
 		solve->passed(solve->user, NT_PART_ATTRIBUTES);
 	if (solve->timing)
@@ -426,8 +493,9 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ra
 	if (!status)
 		status = make_ranges(fast, ranges);
 	if (!status)
-		status = make_places(fast, bin_bits, lends_sums ? (nt_record *)solve->tangents : NULL, &room);
-	return status ? status : accumulate(fast, kernels);
+		status = binned ? fill_bins(fast, kernels, bin_bits, &room)
+				: add_to_records(fast, kernels, row_room, &room);
+	return status;
 }
 
 static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, bool sparse, const nt_fast_plan *plan)
@@ -456,7 +524,8 @@ static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, bool sparse, 
 		return status;
 	fast->sparse = fast->sparse && settled.unusable_count == 0;
 	nt_fast_write(fast);
-	if (settled.complex_count > 0 && (status = nt_fast_complex(fast, settled.complex_count)))
+	nt_room room = dead_room(fast);
+	if (settled.complex_count > 0 && (status = nt_fast_complex(fast, kernels, settled.complex_count, &room)))
 		return status;
 	if (solve->vouched)
 		vouch(fast, settled.unusable_count == 0);

@@ -47,15 +47,15 @@ typedef struct nt_deferred {
 
 typedef struct nt_fast {
 	const nt_solve *solve;
-	const uint32_t *ids;     /* [3 * triangle_count] welded vertices */
-	const uint32_t *corners; /* [3 * triangle_count] corners of the mesh; NULL: i is i */
+	nt_triangles triangles;  /* of welded vertices */
 	size_t triangle_count;
 	const nt_weld_row *rows; /* [vertex_count] */
 	size_t vertex_count;
 	uint8_t *flags;          /* [triangle_count] */
 	nt_adjacency adjacency;
-	nt_record *records[2];       /* [vertex_count] for orientation false and true; NULL: not needed */
-	nt_record_more *more[2];     /* the same for the optional outputs */
+	nt_record *records[2];       /* for orientation false and true, see nt_fast_record(); NULL: not needed */
+	size_t record_step;          /* from one vertex to the next */
+	nt_record_more *more[2];     /* [vertex_count] the same for the optional outputs */
 	bool wants_more;
 	bool sparse;             /* step 6 leaves out corners whose result is their record */
 	bool scattered;          /* neighbouring triangles have vertices far apart: ask for them early */
@@ -69,16 +69,34 @@ typedef struct nt_settled {
 	size_t complex_count, unusable_count;
 } nt_settled;
 
+/* Makes fast->records[orient], which a triangle needs and which does not exist; false: it cannot be had now. */
+typedef bool nt_record_maker(nt_fast *fast, int orient, void *context);
+
+/* What a corner adds to its group, solved by itself. */
+typedef struct nt_corner {
+	float u[3], mag_s, v[3], mag_t; /* unit directions perpendicular to the normal, magnitudes */
+	float angle;                    /* the weight */
+	uint32_t kind;
+} nt_corner;
+
+/* nt_corner.kind: u and v have length 1 up to 1e-5; they may not; there is no frame, and all values are 0. */
+enum { NT_CORNER_UNIT, NT_CORNER_EXTREME, NT_CORNER_ANY };
+
 /* The passes of one instruction set. */
 typedef struct nt_kernels {
 	/* Solves triangles [begin, end) of a range and adds them to their vertices, or to the bins where
-	 * there are bins. Without them it stops before a triangle whose record array does not exist and
-	 * returns it, and its orientation in *orient; otherwise returns end. */
-	size_t (*accumulate)(nt_fast *fast, size_t begin, size_t end, unsigned range, int *orient);
-	/* Turns the records of blocks [begin, end) of vertices, all of them in the adjacency, into results;
-	 * counts the vertices that are complex, and the settled ones whose tangent is not usable. */
-	void (*settle)(nt_fast *fast, const nt_adjacency *adjacency, size_t begin, size_t end,
-		nt_settled *settled);
+	 * there are bins. Without them it asks for record arrays that do not exist, and stops where it does not
+	 * get one. Returns the triangle up to which it came. */
+	size_t (*accumulate)(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
+		void *context);
+	/* Turns the sums of blocks [begin, end) of vertices, all of them in the adjacency, into results, which go
+	 * to the records; counts the vertices that are complex, and the settled ones whose tangent is not
+	 * usable. Sums are counted from the adjacency's first vertex. Results may
+	 * replace the rows of their block and of those before. */
+	void (*settle)(nt_fast *fast, const nt_adjacency *adjacency, nt_record *const sums[2], size_t begin,
+		size_t end, nt_settled *settled);
+	/* Solves corners, given as 4 * triangle + k. `solved` has room for a multiple of NT_LANES. */
+	void (*corners)(const nt_fast *fast, const uint32_t *corners, size_t count, nt_corner *solved);
 } nt_kernels;
 
 extern const nt_kernels nt_kernels_baseline;
@@ -86,17 +104,27 @@ extern const nt_kernels nt_kernels_baseline;
 extern const nt_kernels nt_kernels_avx2, nt_kernels_avx512;
 #endif
 
-/* Whether triangle t and t + 1 are halves of one quad: the second begins with the first's first or second
- * corner. Not read from the flags, which belong to another thread where a range ends. */
+/* Whether triangle t and t + 1 are halves of one quad. Not read from the flags, which belong to another thread
+ * where a range ends. */
 static inline bool nt_fast_quad_begins(const nt_fast *fast, size_t t)
 {
-	const uint32_t *corner = fast->corners ? fast->corners + 3 * t : NULL;
-	return corner && t + 1 < fast->triangle_count && (corner[3] == corner[0] || corner[3] == corner[1]);
+	return t + 1 < fast->triangle_count && nt_is_cut_between(&fast->triangles, t);
 }
 
+/* Corner i % 3 of triangle i / 3: the mesh's number of it, and its vertex. */
 static inline size_t nt_fast_corner(const nt_fast *fast, size_t i)
 {
-	return fast->corners ? fast->corners[i] : i;
+	return fast->triangles.cuts ? nt_triangle_corner(&fast->triangles, i / 3, i % 3) : i;
+}
+
+static inline uint32_t nt_fast_vertex(const nt_fast *fast, size_t i)
+{
+	return fast->triangles.ids[nt_fast_corner(fast, i)];
+}
+
+static inline nt_record *nt_fast_record(const nt_fast *fast, int orient, uint32_t vertex)
+{
+	return &fast->records[orient][fast->record_step * vertex];
 }
 
 /* The next triangle from t on that has one of these flags; triangle_count: none. */
@@ -139,7 +167,8 @@ void nt_fast_write_defaults(const nt_fast *fast);
  * NMTAN_ERROR_MEMORY. */
 nmtan_status nt_fast_write_late(nt_fast *fast);
 
-/* Solves the vertices whose records are NT_RESULT_COMPLEX and writes their corners. */
-nmtan_status nt_fast_complex(nt_fast *fast, size_t complex_count);
+/* Solves the vertices whose records are NT_RESULT_COMPLEX and writes their corners. `room` lends what the passes
+ * before have left. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_fast_complex(nt_fast *fast, const nt_kernels *kernels, size_t complex_count, nt_room *room);
 
 #endif

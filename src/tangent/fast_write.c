@@ -24,13 +24,12 @@ static void write_corner(const nt_fast *fast, size_t corner, const nt_record *re
 /* The orientation whose records stand for a vertex that has one only. */
 static int single_record(const nt_fast *fast, uint32_t vertex)
 {
-	const nt_record *negative = fast->records[0];
-	return !negative || (fast->records[1] && negative[vertex].state == NT_RESULT_NONE);
+	return !fast->records[0] || (fast->records[1] && nt_fast_record(fast, 0, vertex)->state == NT_RESULT_NONE);
 }
 
 static void write_vertex(const nt_fast *fast, size_t corner, int orient, uint32_t vertex)
 {
-	write_corner(fast, corner, &fast->records[orient][vertex],
+	write_corner(fast, corner, nt_fast_record(fast, orient, vertex),
 		fast->wants_more ? &fast->more[orient][vertex] : NULL);
 }
 
@@ -51,11 +50,11 @@ static void write_special(nt_fast *fast, size_t t)
 		return;
 	}
 	for (size_t i = 3 * t; i < 3 * t + 3; i++) {
-		const uint32_t v = fast->ids[i];
+		const uint32_t v = nt_fast_vertex(fast, i);
 		const int o = single_record(fast, v);
-		const uint32_t state = fast->records[o][v].state;
+		const uint32_t state = nt_fast_record(fast, o, v)->state;
 		const bool two = fast->records[!o] && state != NT_RESULT_NONE &&
-				 fast->records[!o][v].state != NT_RESULT_NONE;
+				 nt_fast_record(fast, !o, v)->state != NT_RESULT_NONE;
 		if (state == NT_RESULT_COMPLEX)
 			*flags |= degenerate ? NT_TRIANGLE_LATE : NT_TRIANGLE_COMPLEX;
 		else if (degenerate && two)
@@ -68,9 +67,11 @@ static void write_special(nt_fast *fast, size_t t)
 static inline void ask_records(const nt_fast *fast, size_t t, size_t end)
 {
 	const size_t later = t + WRITE_AHEAD < end ? t + WRITE_AHEAD : end - 1;
-	const nt_record *records = fast->records[fast->flags[later] & NT_TRIANGLE_ORIENT];
-	for (size_t i = 3 * later; records && i < 3 * later + 3; i++)
-		__builtin_prefetch(&records[fast->ids[i]]);
+	const int orient = fast->flags[later] & NT_TRIANGLE_ORIENT;
+	uint32_t copy[3];
+	const uint32_t *v = nt_triangle_vertices(&fast->triangles, later, 1, copy);
+	for (int k = 0; fast->records[orient] && k < 3; k++)
+		__builtin_prefetch(nt_fast_record(fast, orient, v[k]));
 }
 
 /* Every corner of [begin, end) gets its vertex's result; in a sparse solve those of suspects only. */
@@ -84,26 +85,27 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 			write_special(fast, t);
 			continue;
 		}
-		const uint32_t *v = fast->ids + 3 * t;
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
 		const int orient = *flags & NT_TRIANGLE_ORIENT;
-		const nt_record *records = fast->records[orient];
-		if (records[v[0]].state == NT_RESULT_COMPLEX || records[v[1]].state == NT_RESULT_COMPLEX ||
-			records[v[2]].state == NT_RESULT_COMPLEX)
-			*flags |= NT_TRIANGLE_COMPLEX;
+		for (int k = 0; k < 3; k++)
+			if (nt_fast_record(fast, orient, v[k])->state == NT_RESULT_COMPLEX)
+				*flags |= NT_TRIANGLE_COMPLEX;
 		if (fast->sparse && !(*flags & NT_TRIANGLE_SUSPECT))
 			continue;
-		for (size_t k = 0; k < 3; k++)
-			write_vertex(fast, nt_fast_corner(fast, 3 * t + k), orient, v[k]);
+		for (unsigned k = 0; k < 3; k++)
+			write_vertex(fast, nt_triangle_corner(&fast->triangles, t, k), orient, v[k]);
 	}
 }
 
-/* The same for the usual case, triangles and tangents only. This loop is a fifth of the whole time. */
+/* The same for the usual case, tangents only. This loop is a fifth of the whole time. */
 static void write_plain_triangles(nt_fast *fast, size_t begin, size_t end)
 {
-	const uint32_t *ids = fast->ids;
+	const nt_triangles triangles = fast->triangles;
 	uint8_t *flags = fast->flags;
 	const nt_record *records[2] = {fast->records[0], fast->records[1]};
 	float *out = fast->solve->tangents;
+	const size_t step = fast->record_step;
 	const bool scattered = fast->scattered;
 	for (size_t t = begin; t < end; t++) {
 		if (scattered)
@@ -113,10 +115,12 @@ static void write_plain_triangles(nt_fast *fast, size_t begin, size_t end)
 			continue;
 		}
 		const nt_record *from = records[flags[t] & NT_TRIANGLE_ORIENT];
-		const nt_record a = from[ids[3 * t]], b = from[ids[3 * t + 1]], c = from[ids[3 * t + 2]];
-		memcpy(out + 12 * t, &a, sizeof a);
-		memcpy(out + 12 * t + 4, &b, sizeof b);
-		memcpy(out + 12 * t + 8, &c, sizeof c);
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&triangles, t, 1, copy);
+		const nt_record a = from[step * v[0]], b = from[step * v[1]], c = from[step * v[2]];
+		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 0), &a, sizeof a);
+		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 1), &b, sizeof b);
+		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 2), &c, sizeof c);
 		if (a.state == NT_RESULT_COMPLEX || b.state == NT_RESULT_COMPLEX || c.state == NT_RESULT_COMPLEX)
 			flags[t] |= NT_TRIANGLE_COMPLEX;
 	}
@@ -126,7 +130,7 @@ static void write_ranges(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
 	nt_fast *fast = context;
-	void (*write)(nt_fast *, size_t, size_t) = fast->corners || fast->wants_more || fast->sparse
+	void (*write)(nt_fast *, size_t, size_t) = fast->wants_more || fast->sparse
 		? write_triangles : write_plain_triangles;
 	for (size_t range = begin; range < end; range++)
 		write(fast, fast->ranges.bounds[range], fast->ranges.bounds[range + 1]);
@@ -172,7 +176,7 @@ static uint32_t *find_first_corners(const nt_fast *fast)
 	memset(first, 0xff, fast->vertex_count * sizeof *first);
 	for (size_t t = fast->triangle_count; t-- > 0;)
 		for (size_t i = 3 * t + 3; !(fast->flags[t] & NT_TRIANGLE_DEGENERATE) && i-- > 3 * t;)
-			first[fast->ids[i]] = (uint32_t)nt_fast_corner(fast, i);
+			first[nt_fast_vertex(fast, i)] = (uint32_t)nt_fast_corner(fast, i);
 	return first;
 }
 
@@ -189,15 +193,15 @@ static void copy_from_half(const nt_fast *fast, size_t t)
 {
 	const size_t sound = fast->flags[t] & NT_TRIANGLE_SECOND ? t - 1 : t + 1;
 	for (size_t i = 3 * t; i < 3 * t + 3; i++) {
-		const uint32_t corner = fast->corners[i];
+		const size_t corner = nt_fast_corner(fast, i);
 		size_t j = 3 * sound;
-		while (j < 3 * sound + 3 && fast->corners[j] != corner)
+		while (j < 3 * sound + 3 && nt_fast_corner(fast, j) != corner)
 			j++;
 		if (j < 3 * sound + 3)
 			continue;
 		for (j = 3 * sound; j < 3 * sound + 3; j++)
 			if (same_position(fast, i, j)) {
-				copy_corner(fast->solve, corner, fast->corners[j]);
+				copy_corner(fast->solve, corner, nt_fast_corner(fast, j));
 				break;
 			}
 	}
@@ -217,8 +221,8 @@ nmtan_status nt_fast_write_late(nt_fast *fast)
 		if (!first && !(first = find_first_corners(fast)))
 			return NMTAN_ERROR_MEMORY;
 		for (size_t i = 3 * t; i < 3 * t + 3; i++)
-			if (first[fast->ids[i]] != UINT32_MAX)
-				copy_corner(fast->solve, nt_fast_corner(fast, i), first[fast->ids[i]]);
+			if (first[nt_fast_vertex(fast, i)] != UINT32_MAX)
+				copy_corner(fast->solve, nt_fast_corner(fast, i), first[nt_fast_vertex(fast, i)]);
 	}
 	return NMTAN_OK;
 }

@@ -68,18 +68,18 @@ static void __attribute__((noinline)) add_unusual(nt_fast *fast, unsigned range,
 
 /* Writes a corner down in its vertex's bin. */
 static inline void bin_corner(const nt_bins *bins, uint32_t *cursors, uint32_t vertex, uint32_t orient,
-	nt_fan_entry entry, const float *add)
+	uint32_t next, uint32_t previous, const float *add)
 {
 	const uint32_t lane = vertex & (((uint32_t)1 << bins->vertex_bits) - 1);
-	const uint32_t at = cursors[vertex >> bins->vertex_bits]++;
+	const size_t at = cursors[vertex >> bins->vertex_bits]++;
 	const nt_int4 tag = {0, 0, 0, (int)(orient << 31 | lane << NT_BINNED_SHIFT)};
 	nt_int4 sum;
 	memcpy(&sum, add, sizeof sum);
 	sum |= tag;
 	__builtin_prefetch(&bins->sums[at + BIN_AHEAD], 1);
-	__builtin_prefetch(&bins->entries[at + 2 * BIN_AHEAD], 1);
+	__builtin_prefetch(&bins->entries[NT_BINNED_ENTRY * (at + 2 * BIN_AHEAD)], 1);
 	memcpy(&bins->sums[at], &sum, sizeof sum);
-	bins->entries[at] = entry;
+	nt_binned_store(bins->entries + NT_BINNED_ENTRY * at, next, previous);
 }
 
 /* One corner, whatever its vertex is. */
@@ -89,7 +89,7 @@ static void add_corner(nt_fast *fast, unsigned range, uint32_t vertex, int orien
 	const nt_adjacency *a = &fast->adjacency;
 	if (fast->bins.cursors) {
 		bin_corner(&fast->bins, fast->bins.cursors + range * fast->bins.count, vertex, (uint32_t)orient,
-			entry, add.sum);
+			entry.next & NT_ENTRY_VERTEX, entry.previous & NT_ENTRY_VERTEX, add.sum);
 		return;
 	}
 	uint32_t *cursor = &a->cursors[range * a->vertex_count + vertex];
@@ -105,10 +105,9 @@ static void add_corner(nt_fast *fast, unsigned range, uint32_t vertex, int orien
 		add_more(&fast->more[orient][vertex], &add);
 }
 
-/* A triangle with a frame. */
-static void add_triangle(nt_fast *fast, unsigned range, size_t t, int lane, const lanes_out *out)
+/* Triangle t, of vertices v, with a frame. */
+static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t *v, int lane, const lanes_out *out)
 {
-	const uint32_t *v = fast->ids + 3 * t;
 	const int orient = fast->flags[t] & NT_TRIANGLE_ORIENT;
 	const uint32_t bit = (uint32_t)orient << 31;
 	for (size_t k = 0; k < 3; k++)
@@ -118,19 +117,19 @@ static void add_triangle(nt_fast *fast, unsigned range, size_t t, int lane, cons
 }
 
 /* Triangles with frames: add_triangle() with everything that does not change kept at hand. */
-static void __attribute__((noinline)) add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t count, const lanes_out *out)
+static void __attribute__((noinline)) add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t count,
+	const uint32_t *ids, const lanes_out *out)
 {
 	uint32_t *const cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
 	nt_fan_entry *const entries = fast->adjacency.entries;
 	nt_record *const records[2] = {fast->records[0], fast->records[1]};
-	const uint32_t *ids = fast->ids + 3 * first;
 	const uint8_t *flags = fast->flags + first;
 	for (size_t i = 0; i < count; i++, ids += 3) {
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
 		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
 		const unsigned orient = flags[i] & NT_TRIANGLE_ORIENT;
 		if (__builtin_expect((pa | pb | pc) >= NT_CURSOR_SHARED, 0) || fast->wants_more) {
-			add_triangle(fast, range, first + i, (int)i, out);
+			add_triangle(fast, range, first + i, ids, (int)i, out);
 			continue;
 		}
 		const uint32_t bit = orient << 31;
@@ -149,18 +148,18 @@ static void __attribute__((noinline)) add_ordinary(nt_fast *fast, unsigned range
 }
 
 /* The same into bins. */
-static void __attribute__((noinline)) bin_ordinary(const nt_fast *fast, unsigned range, size_t first, size_t count, const lanes_out *out)
+static void __attribute__((noinline)) bin_ordinary(const nt_fast *fast, unsigned range, size_t first, size_t count,
+	const uint32_t *v, const lanes_out *out)
 {
 	const nt_bins bins = fast->bins;
 	uint32_t *const cursors = bins.cursors + range * bins.count;
-	const uint32_t *v = fast->ids + 3 * first;
 	unsigned seen = 0;
 	for (size_t i = 0; i < count; i++, v += 3) {
-		const uint32_t orient = fast->flags[first + i] & NT_TRIANGLE_ORIENT, bit = orient << 31;
+		const uint32_t orient = fast->flags[first + i] & NT_TRIANGLE_ORIENT;
 		const size_t place = 4 * turned_place(i);
-		bin_corner(&bins, cursors, v[0], orient, (nt_fan_entry){v[1] | bit, v[2] | bit}, out->add[0] + place);
-		bin_corner(&bins, cursors, v[1], orient, (nt_fan_entry){v[2] | bit, v[0] | bit}, out->add[1] + place);
-		bin_corner(&bins, cursors, v[2], orient, (nt_fan_entry){v[0] | bit, v[1] | bit}, out->add[2] + place);
+		bin_corner(&bins, cursors, v[0], orient, v[1], v[2], out->add[0] + place);
+		bin_corner(&bins, cursors, v[1], orient, v[2], v[0], out->add[1] + place);
+		bin_corner(&bins, cursors, v[2], orient, v[0], v[1], out->add[2] + place);
 		seen |= NT_SEEN(orient);
 	}
 	bins.seen[range] |= (uint8_t)seen;
@@ -174,19 +173,18 @@ static int any_record(const nt_fast *fast, int orient)
 
 /* Adds a triangle that is degenerate (voids in the fans) or has no frame (a corner in the fans, a note in the
  * records), or is ordinary but has values that the lanes do not vouch for. */
-static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range, size_t t, int lane,
-	lanes_out *out)
+static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range, size_t t, const uint32_t *v,
+	int lane, lanes_out *out)
 {
 	static const float zero[4] = {0};
 	const float note[4] = {0.0f, 0.0f, 0.0f, 2.0f + STATE_BIT(NT_STATE_ALL - NT_STATE_NO_ANY)};
-	const uint32_t *v = fast->ids + 3 * t;
 	const uint8_t flags = fast->flags[t];
 	if (fast->bins.cursors && !(flags & NT_TRIANGLE_DEGENERATE))
 		fast->bins.seen[range] |= flags & NT_TRIANGLE_ANY ? NT_SEEN_ANY : NT_SEEN(flags & NT_TRIANGLE_ORIENT);
 	if (!(flags & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY))) {
 		for (int k = 0; k < 3 && !out->sound[lane]; k++)
 			out->add[k][4 * turned_place((size_t)lane) + 3] = 2.0f + STATE_BIT(NT_STATE_NO_ANY + NT_STATE_LOCAL);
-		add_triangle(fast, range, t, lane, out);
+		add_triangle(fast, range, t, v, lane, out);
 		return;
 	}
 	const int orient = any_record(fast, flags & NT_TRIANGLE_ORIENT);
@@ -231,13 +229,16 @@ static int missing_record(const nt_fast *fast, size_t first, size_t count)
  * than that can be under way. Always inline: to gcc 12 a function of prefetches alone has no effect, and goes. */
 static inline __attribute__((always_inline)) void ask_ahead(const nt_fast *fast, size_t first, size_t end, size_t k)
 {
-	const size_t far = first + 2 * NT_LANES;
-	const uint32_t *ids = fast->ids + k;
-	for (size_t t = far; t < far + NT_LANES && t < end; t++)
-		__builtin_prefetch(&fast->rows[ids[3 * t]]);
+	const size_t far = first + 2 * NT_LANES < end ? first + 2 * NT_LANES : end;
+	const size_t count = end - far < NT_LANES ? end - far : NT_LANES;
+	uint32_t copy[3 * NT_LANES];
+	const uint32_t *ids = nt_triangle_vertices(&fast->triangles, far, count, copy) + k;
+	for (size_t i = 0; i < count; i++)
+		__builtin_prefetch(&fast->rows[ids[3 * i]]);
 }
 
-static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, int *orient)
+static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
+	void *context)
 {
 	lanes_in in;
 	lanes_out out;
@@ -249,30 +250,32 @@ static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range
 			count--; /* halves of a quad stay together */
 		if (fast->scattered)
 			ask_ahead(fast, first, end, 0);
-		gather_rows(fast->rows, fast->ids + 3 * first, count, in.row);
+		uint32_t copy[3 * NT_LANES];
+		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
+		gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : lanes_of(count), in.row);
 		if (fast->scattered)
 			ask_ahead(fast, first, end, 1);
 		if (fast->wants_more)
 			solve_lanes_more(&in, &out, offset, slack);
-		else if (count <= FEW_LANES)
-			solve_few_lanes(&in, &out, offset, slack, count);
+#if WIDTH > 4
+		else if (count <= 4)
+			solve_four(&in, &out, offset, slack);
+#endif
 		else
-			solve_lanes_plain(&in, &out, offset, slack);
+			solve_lanes_plain(&in, &out, offset, slack, count);
 		if (fast->scattered)
 			ask_ahead(fast, first, end, 2);
 		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
-		const int missing = missing_record(fast, first, count);
-		if (missing >= 0) {
-			*orient = missing;
-			return first;
-		}
+		for (int missing; (missing = missing_record(fast, first, count)) >= 0;)
+			if (!make(fast, missing, context))
+				return first;
 		if (ordinary && fast->bins.cursors)
-			bin_ordinary(fast, range, first, count, &out);
+			bin_ordinary(fast, range, first, count, ids, &out);
 		else if (ordinary)
-			add_ordinary(fast, range, first, count, &out);
+			add_ordinary(fast, range, first, count, ids, &out);
 		else
 			for (size_t i = 0; i < count; i++)
-				add_special(fast, range, first + i, (int)i, &out);
+				add_special(fast, range, first + i, ids + 3 * i, (int)i, &out);
 	}
 	return end;
 }

@@ -143,10 +143,11 @@ static size_t count_unusable(const nt_weld_row *rows, size_t count, const record
 	return unusable;
 }
 
-static void store_records(nt_record *restrict records, size_t count, const record_lanes *restrict r)
+/* Stores `count` records, `step` apart. */
+static void store_records(nt_record *restrict records, size_t step, size_t count, const record_lanes *restrict r)
 {
 	nt_record copy[NT_LANES];
-	nt_record *to = count == NT_LANES ? records : copy;
+	nt_record *to = count == NT_LANES && step == 1 ? records : copy;
 	for (size_t i = 0; i < NT_LANES; i += WIDTH) {
 		lanes four[4];
 		four[0] = load_lanes(r->x + i);
@@ -157,8 +158,8 @@ static void store_records(nt_record *restrict records, size_t count, const recor
 		for (size_t j = 0; j < 4; j++)
 			memcpy((char *)(to + i) + sizeof *four * j, &four[j], sizeof *four);
 	}
-	if (to == copy)
-		memcpy(records, copy, count * sizeof *copy);
+	for (size_t i = 0; to == copy && i < count; i++)
+		records[step * i] = copy[i];
 }
 
 static void normalise3(float *x, float *y, float *z)
@@ -204,7 +205,8 @@ static uint32_t load_degrees(const nt_adjacency *a, size_t first, size_t count, 
 	return most;
 }
 
-static void settle_block(nt_fast *fast, const nt_adjacency *a, size_t block, nt_settled *settled)
+static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const sums[2], size_t block,
+	nt_settled *settled)
 {
 	const size_t first = block * NT_LANES, left = fast->vertex_count - first;
 	const size_t count = left < NT_LANES ? left : NT_LANES;
@@ -213,7 +215,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, size_t block, nt_
 	record_lanes r[2];
 	const uint32_t depth = load_degrees(a, first, count, degree);
 	for (int o = 0; o < 2; o++)
-		load_records(fast->records[o] ? fast->records[o] + first : NULL, count, &r[o]);
+		load_records(sums[o] ? sums[o] + first - a->first_vertex : NULL, count, &r[o]);
 
 	/* "any" corners join whatever orientation there is: with one only, it need not be compared */
 	for (int i = 0; i < NT_LANES; i++)
@@ -235,11 +237,16 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, size_t block, nt_
 						     (fan_count[i] != present));
 	}
 	for (int o = 0; o < 2; o++) {
-		if (!fast->records[o])
+		if (!sums[o])
 			continue;
 		normalise_records(&r[o]);
 		if (fast->solve->vouched)
 			settled->unusable_count += count_unusable(fast->rows + first, count, &r[o], complex);
+	}
+	/* from here on the rows may be overwritten */
+	for (int o = 0; o < 2; o++) {
+		if (!sums[o])
+			continue;
 		const uint32_t sign = o ? NT_RESULT_PLUS : NT_RESULT_MINUS;
 		for (int i = 0; i < NT_LANES; i++) {
 			const uint32_t none = r[0].present[i] | r[1].present[i];
@@ -248,7 +255,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, size_t block, nt_
 			r[o].state[i] = complex[i] ? NT_RESULT_COMPLEX
 				: r[o].present[i] ? sign : none ? NT_RESULT_NONE : NT_RESULT_MINUS;
 		}
-		store_records(fast->records[o] + first, count, &r[o]);
+		store_records(nt_fast_record(fast, o, (uint32_t)first), fast->record_step, count, &r[o]);
 		if (fast->wants_more)
 			settle_more(fast->more[o] + first, count, r[o].present);
 	}
@@ -256,11 +263,11 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, size_t block, nt_
 		settled->complex_count += complex[i];
 }
 
-static void settle(nt_fast *fast, const nt_adjacency *adjacency, size_t begin, size_t end,
+static void settle(nt_fast *fast, const nt_adjacency *adjacency, nt_record *const sums[2], size_t begin, size_t end,
 	nt_settled *settled)
 {
 	for (size_t block = begin; block < end; block++)
-		settle_block(fast, adjacency, block, settled);
+		settle_block(fast, adjacency, sums, block, settled);
 }
 
 #endif

@@ -69,11 +69,32 @@ static inline __attribute__((always_inline)) void turn(lanes rows[4])
 	rows[3] = __builtin_shufflevector(ab23, cd23, IN_PARTS(2, 3, 6, 7));
 }
 
+#if WIDTH > 4
+/* The same for one part alone. */
+static inline __attribute__((always_inline)) void turn_four(nt_float4 rows[4])
+{
+	const nt_float4 ab01 = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
+	const nt_float4 ab23 = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
+	const nt_float4 cd01 = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
+	const nt_float4 cd23 = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
+	rows[0] = __builtin_shufflevector(ab01, cd01, 0, 1, 4, 5);
+	rows[1] = __builtin_shufflevector(ab01, cd01, 2, 3, 6, 7);
+	rows[2] = __builtin_shufflevector(ab23, cd23, 0, 1, 4, 5);
+	rows[3] = __builtin_shufflevector(ab23, cd23, 2, 3, 6, 7);
+}
+#endif
+
 /* Where turn() leaves the row of a lane, and from where it takes it. */
 static inline size_t turned_place(size_t lane)
 {
 	const size_t in_vector = lane % WIDTH;
 	return lane - in_vector + in_vector % 4 * (WIDTH / 4) + in_vector / 4;
+}
+
+/* Lanes that `count` triangles take: whole vectors, or four in vectors of four where the set has them. */
+static inline size_t lanes_of(size_t count)
+{
+	return count <= 4 ? 4 : (count + WIDTH - 1) / WIDTH * WIDTH;
 }
 
 /* Four components of 16 lanes become rows in turned places. */
@@ -139,19 +160,46 @@ static inline __attribute__((always_inline)) void gather_corner(const nt_weld_ro
 }
 #endif
 
-/* Rows of the corners of `count` triangles; lanes behind repeat the last one. */
-static void __attribute__((noinline)) gather_rows(const nt_weld_row *rows, const uint32_t *ids, size_t count,
-	float (*restrict out)[8][NT_LANES])
+#if WIDTH > 4
+/* The same for four triangles. */
+static inline __attribute__((always_inline)) void gather_four(const nt_weld_row *rows, const uint32_t *ids,
+	float (*out)[NT_LANES])
+{
+	for (size_t half = 0; half < 8; half += 4) {
+		nt_float4 four[4];
+		for (size_t j = 0; j < 4; j++)
+			memcpy(&four[j], (const float *)&rows[ids[3 * j]] + half, sizeof four[j]);
+		turn_four(four);
+		for (size_t j = 0; j < 4; j++)
+			memcpy(out[half + j], &four[j], sizeof four[j]);
+	}
+}
+#endif
+
+/* Rows of the corners of `count` triangles; up to `lane_count` the lanes behind repeat the last one. */
+static void __attribute__((noinline)) gather_lanes(const nt_weld_row *rows, const uint32_t *ids, size_t count,
+	size_t lane_count, float (*restrict out)[8][NT_LANES])
 {
 	uint32_t padded[3 * NT_LANES];
-	if (count < NT_LANES) {
-		for (size_t i = 0; i < NT_LANES; i++)
+	if (count < lane_count) {
+		for (size_t i = 0; i < lane_count; i++)
 			memcpy(padded + 3 * i, ids + 3 * (i < count ? i : count - 1), 3 * sizeof *ids);
 		ids = padded;
 	}
+#if WIDTH > 4
+	for (size_t k = 0; lane_count == 4 && k < 3; k++)
+		gather_four(rows, ids + k, out[k]);
+#endif
 	for (size_t k = 0; k < 3; k++)
-		for (size_t lane = 0; lane < NT_LANES; lane += WIDTH)
+		for (size_t lane = 0; lane + WIDTH <= lane_count; lane += WIDTH)
 			gather_corner(rows, ids + 3 * lane + k, lane, out[k]);
+}
+
+/* The same for all lanes. */
+static inline void gather_rows(const nt_weld_row *rows, const uint32_t *ids, size_t count,
+	float (*restrict out)[8][NT_LANES])
+{
+	gather_lanes(rows, ids, count, NT_LANES, out);
 }
 
 #endif

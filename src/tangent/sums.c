@@ -122,7 +122,7 @@ static nmtan_status weld_any_size(nt_sums *s, nt_room *room)
 	const nt_solve *solve = s->solve;
 	if (solve->corner_count < NT_WELD_LIMIT && solve->mesh->vertex_count < NT_WELD_LIMIT)
 		return nt_weld_mesh(solve->mesh, solve->corner_count,
-			nt_parallel_slots(solve->threads, solve->corner_count, WELD_GRAIN), room, &s->weld);
+			nt_parallel_slots(solve->threads, solve->corner_count, WELD_GRAIN), room, room, &s->weld);
 	uint32_t *ids = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *ids);
 	nt_weld_row *rows = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *rows);
 	if (!ids || !rows)
@@ -388,6 +388,7 @@ static void vouch(const nt_sums *s, bool sparse)
 	if (!sparse)
 		return;
 	vouched->ids = s->ids;
+	vouched->row_step = 4;
 	for (int side = 0; side < 2; side++)
 		vouched->rows[side] = s->results[side] ? &s->results[side]->x : NULL;
 }

@@ -14,6 +14,9 @@
 #include "tangent/vertices.h"
 #include "topology/corners.h"
 
+/* No stage shares fewer corners among threads. */
+enum { LEAST_SHARED_CORNERS = 1 << 14 };
+
 /* A row stride: 0 becomes the row's size; false where the stride cannot be. */
 static bool fill_stride(size_t *stride_bytes, size_t row_bytes)
 {
@@ -84,9 +87,11 @@ typedef struct request {
 /* Checks everything before anything is computed, and fills in what was left to defaults. */
 static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmtan_options *options)
 {
-	*r = (request){.mesh = *mesh, .begin = nt_seconds()};
+	*r = (request){.mesh = *mesh};
 	if (options)
 		r->options = *options;
+	if (r->options.timing)
+		r->begin = nt_seconds();
 	nmtan_status status = check_options(&r->options);
 	if (!status)
 		status = check_attributes(&r->mesh);
@@ -99,11 +104,12 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 	solve->mesh = &r->mesh;
 	/* bounds on the error of the determinants of `texcoords` say nothing about those of others */
 	solve->vouched = r->mesh.exact_texcoords ? NULL : &r->vouched;
-	solve->timing = &r->timing;
+	solve->timing = r->options.timing ? &r->timing : NULL;
 	solve->scratch = r->options.workspace ? &r->options.workspace->scratch : &r->own;
 	solve->threshold_cos = r->options.angular_threshold_degrees > 0.0f
 		? threshold_cos(r->options.angular_threshold_degrees) : -1.0f;
-	solve->threads = nt_thread_count(r->options.threads);
+	/* asking how many processors there are is a system call */
+	solve->threads = solve->corner_count < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(r->options.threads);
 	solve->one_by_one = r->options.path == NMTAN_PATH_SCALAR;
 	solve->isa = r->options.isa == NMTAN_ISA_AUTO ? nt_cpu_best() : r->options.isa;
 	r->mark = nt_scratch_here(solve->scratch);

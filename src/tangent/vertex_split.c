@@ -20,7 +20,7 @@ static const float *corner_tangent(const nt_solve *solve, size_t t, size_t i)
 	const nt_vouched *v = solve->vouched;
 	if (v->flags[t] & v->suspect)
 		return solve->tangents + 4 * i;
-	return v->rows[(v->flags[t] & v->positive) != 0] + 4 * (size_t)v->ids[i];
+	return v->rows[(v->flags[t] & v->positive) != 0] + v->row_step * v->ids[i];
 }
 
 typedef struct vertex_tally {
@@ -102,28 +102,28 @@ static bool is_default(const float *row)
 	return row[0] == 1.0f && row[1] == 0.0f && row[2] == 0.0f && row[3] == -1.0f;
 }
 
-static bool has_result(const float *rows, uint32_t number)
+static bool has_result(const nt_vouched *vouched, int side, uint32_t number)
 {
-	return rows && rows[4 * (size_t)number + 3] != 0.0f;
+	return vouched->rows[side] && vouched->rows[side][vouched->row_step * number + 3] != 0.0f;
 }
 
 /* Gives vertices [begin, end) their one row; counts those that do not have one. */
 static void take_vertices(void *context, size_t begin, size_t end, unsigned slot)
 {
 	const vertex_split *job = context;
-	const float *const *rows = job->solve->vouched->rows;
+	const nt_vouched *vouched = job->solve->vouched;
 	vertex_tally tally = {0};
 	for (size_t v = begin; v < end; v++) {
 		const uint32_t number = job->numbers ? job->numbers[v] : (uint32_t)v;
 		uint8_t *seen = &job->splitter->seen[v];
 		if (number == NO_NUMBER)
 			continue;
-		const bool positive = has_result(rows[1], number);
-		if (*seen == SEEN_OPEN || (positive && has_result(rows[0], number))) {
+		const bool positive = has_result(vouched, 1, number);
+		if (*seen == SEEN_OPEN || (positive && has_result(vouched, 0, number))) {
 			*seen = SEEN_NOT;
 			tally.open++;
-		} else if (positive || has_result(rows[0], number)) {
-			const float *row = rows[positive] + 4 * (size_t)number;
+		} else if (positive || has_result(vouched, 0, number)) {
+			const float *row = vouched->rows[positive] + vouched->row_step * number;
 			*seen = SEEN_ONE;
 			tally.doubtful += !job->numbers && is_default(row);
 			memcpy(job->splitter->tangents + 4 * v, row, 4 * sizeof(float));

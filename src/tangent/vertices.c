@@ -21,7 +21,7 @@ static void write_shared(const nt_solve *solve)
 	for (size_t t = 0; t < solve->mesh->face_count; t++) {
 		const float *shared = v->rows[(v->flags[t] & v->positive) != 0];
 		for (size_t i = 3 * t; !(v->flags[t] & v->suspect) && i < 3 * t + 3; i++)
-			memcpy(solve->tangents + 4 * i, shared + 4 * (size_t)v->ids[i], 4 * sizeof(float));
+			memcpy(solve->tangents + 4 * i, shared + v->row_step * v->ids[i], 4 * sizeof(float));
 	}
 }
 
@@ -66,7 +66,8 @@ nmtan_status nt_mikktspace_vertices(const nt_solve *solve, bool repair, nmtan_co
 		status = nt_mikktspace_scalar(solve);
 	else if (!status && fast.sparse) {
 		/* a record is x, y, z and, as state, the sign */
-		solve->vouched->ids = fast.ids;
+		solve->vouched->ids = fast.triangles.ids;
+		solve->vouched->row_step = fast.record_step * sizeof(nt_record) / sizeof(float);
 		for (int orient = 0; orient < 2; orient++)
 			solve->vouched->rows[orient] = fast.records[orient] ? &fast.records[orient]->x : NULL;
 	}

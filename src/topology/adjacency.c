@@ -11,24 +11,37 @@
 /* Corners by which a count is asked for before it is needed: costs nothing where neighbours are near. */
 enum { COUNT_AHEAD = 48 };
 
+/* Triangles whose vertices are looked up at a time. */
+enum { BATCH = 16 };
+
 typedef struct counting {
-	const uint32_t *ids;
+	const nt_triangles *triangles;
 	const nt_triangle_ranges *ranges;
 	const nt_adjacency *adjacency;
 } counting;
+
+static void count_corners(uint32_t *counts, const uint32_t *ids, size_t count)
+{
+	size_t i = 0;
+	for (; i + COUNT_AHEAD < count; i++) {
+		__builtin_prefetch(&counts[ids[i + COUNT_AHEAD]], 1);
+		counts[ids[i]]++;
+	}
+	for (; i < count; i++)
+		counts[ids[i]]++;
+}
 
 static void count_range(const counting *c, size_t range)
 {
 	uint32_t *counts = c->adjacency->cursors + range * c->adjacency->vertex_count;
 	memset(counts, 0, c->adjacency->vertex_count * sizeof *counts);
-	const size_t end = 3 * c->ranges->bounds[range + 1];
-	size_t i = 3 * c->ranges->bounds[range];
-	for (; i + COUNT_AHEAD < end; i++) {
-		__builtin_prefetch(&counts[c->ids[i + COUNT_AHEAD]], 1);
-		counts[c->ids[i]]++;
+	const size_t end = c->ranges->bounds[range + 1];
+	size_t step;
+	for (size_t t = c->ranges->bounds[range]; t < end; t += step) {
+		uint32_t copy[3 * BATCH];
+		step = c->triangles->cuts && end - t > BATCH ? BATCH : end - t;
+		count_corners(counts, nt_triangle_vertices(c->triangles, t, step, copy), 3 * step);
 	}
-	for (; i < end; i++)
-		counts[c->ids[i]]++;
 }
 
 static void count_ranges(void *context, size_t begin, size_t end, unsigned slot)
@@ -93,24 +106,25 @@ static size_t place_blocks(nt_adjacency *a)
 	return place;
 }
 
-nmtan_status nt_adjacency_make(const uint32_t *ids, const nt_triangle_ranges *ranges,
-	size_t vertex_count, nt_room *room, nt_adjacency *adjacency)
+nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_ranges *ranges,
+	size_t vertex_count, nt_room *cursor_room, nt_room *room, nt_adjacency *adjacency)
 {
 	const size_t blocks = (vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES;
 	*adjacency = (nt_adjacency){.vertex_count = vertex_count, .ranges = ranges->count};
 	nt_adjacency *a = adjacency;
-	a->cursors = nt_room_alloc(room, vertex_count, ranges->count * sizeof *a->cursors);
-	a->block_begin = nt_room_alloc(room, blocks + 1, sizeof *a->block_begin);
+	a->cursors = nt_room_alloc(cursor_room, vertex_count, ranges->count * sizeof *a->cursors);
+	a->block_begin = nt_room_alloc(cursor_room, blocks + 1, sizeof *a->block_begin);
 	a->shared_counts = nt_scratch_alloc(room->scratch, ranges->count, sizeof *a->shared_counts);
 	if (!a->cursors || !a->block_begin || !a->shared_counts)
 		return NMTAN_ERROR_MEMORY;
 	memset(a->shared_counts, 0, ranges->count * sizeof *a->shared_counts);
 
-	counting c = {ids, ranges, a};
+	counting c = {triangles, ranges, a};
 	nt_parallel_ranges(ranges->count, ranges->count, 1, count_ranges, &c);
 	const size_t entries = place_blocks(a);
 	if (entries == SIZE_MAX)
 		return NMTAN_ERROR_TOO_LARGE;
+	a->entry_count = entries;
 	a->entries = nt_room_alloc(room, entries + 1, sizeof *a->entries);
 	return a->entries ? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }

@@ -12,6 +12,7 @@
 
 #include "base/room.h"
 #include "nmtan.h"
+#include "topology/triangles.h"
 
 enum { NT_FAN_LANES = 16, NT_FAN_DEPTH = 12 };
 
@@ -32,26 +33,21 @@ typedef struct nt_adjacency {
 	uint32_t *cursors;     /* [ranges][vertex_count] */
 	uint32_t *block_begin; /* [blocks + 1] index of a block's first entry */
 	size_t *shared_counts; /* [ranges] corners whose cursor is SHARED */
-	nt_fan_entry *entries;
+	nt_fan_entry *entries; /* [entry_count] */
+	size_t entry_count;
 } nt_adjacency;
 
 /* Corners for which places can be numbered whatever the mesh looks like. */
 #define NT_ADJACENCY_LIMIT ((size_t)1 << 28)
 
-/* First triangle of each range: range r holds [bounds[r], bounds[r + 1]). */
-typedef struct nt_triangle_ranges {
-	unsigned count;
-	const size_t *bounds; /* [count + 1] */
-} nt_triangle_ranges;
-
 /*
  * Counts the corners of each vertex and makes the places. Entries are not written.
  *
- *   ids     [3 * triangle count] vertices of the triangles
+ *   cursor_room, room   the memory of cursors and of entries; may be the same
  *
  * Returns NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_TOO_LARGE.
  */
-nmtan_status nt_adjacency_make(const uint32_t *ids, const nt_triangle_ranges *ranges,
-	size_t vertex_count, nt_room *room, nt_adjacency *adjacency);
+nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_ranges *ranges,
+	size_t vertex_count, nt_room *cursor_room, nt_room *room, nt_adjacency *adjacency);
 
 #endif

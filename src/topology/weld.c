@@ -1,23 +1,22 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Welding by hash: each row of eight floats is hashed into a table (weld_parts.h). This is the way of one
- * thread; several share a table in weld_threads.c.
+ * Welding by hash. An indexed mesh is welded by its vertices (weld_sieve.c), others by their corners: here, where
+ * each row of eight floats is hashed into a table (weld_parts.h). This is the way of one thread; several
+ * share a table in weld_threads.c.
  *
  * Rows go in batches: first all hashes of the batch and a prefetch of their entries, then the probes. On a
  * mesh of a million vertices the table is larger than the second-level cache, and a probe without the
  * prefetch waits for each entry in turn.
  *
- * An indexed mesh hashes its vertices, others their corners. NaN equals nothing: each corner of a row
- * with a NaN is a vertex of its own.
+ * NaN equals nothing: each corner of a row with a NaN is a vertex of its own.
  */
-#include "base/parallel.h"
 #include "topology/weld_parts.h"
 
 typedef struct batch {
 	nt_weld_row *rows; /* where they were loaded */
 	size_t begin, count;
 	uint64_t hashes[NT_WELD_BATCH];
-	bool ordered[NT_WELD_BATCH];
+	bool ordered; /* no row holds a NaN */
 } batch;
 
 bool nt_weld_make_table(nt_welder *w, unsigned table_bits, unsigned index_bits)
@@ -44,8 +43,7 @@ static bool grow_table(nt_welder *w)
 	const size_t mask = ((size_t)1 << w->table_bits) - 1;
 	for (size_t i = 0; i < w->row_count; i++) {
 		const nt_weld_row *row = &w->rows[i];
-		nt_weld_row copy = *row;
-		if (!nt_weld_canonise(&copy))
+		if (!nt_weld_row_ordered(row))
 			continue;
 		const uint64_t hash = nt_weld_hash(row);
 		size_t at = nt_weld_slot(w, hash);
@@ -58,8 +56,8 @@ static bool grow_table(nt_welder *w)
 
 bool nt_weld_grow_rows(nt_welder *w, size_t capacity)
 {
-	const bool in_room = nt_room_has(w->room, capacity, sizeof *w->rows);
-	nt_weld_row *rows = nt_room_alloc(w->room, capacity, sizeof *rows);
+	const bool in_room = nt_room_has(w->row_room, capacity, sizeof *w->rows);
+	nt_weld_row *rows = nt_room_alloc(w->row_room, capacity, sizeof *rows);
 	if (!rows)
 		return false;
 	if (w->rows)
@@ -73,37 +71,59 @@ bool nt_weld_grow_rows(nt_welder *w, size_t capacity)
 /* Room for rows that are loaded but not yet numbered: see next_place(). */
 enum { AHEAD = 5 * NT_WELD_BATCH };
 
+/* Rows for which there must be room, and twice as many entries, before the next batches. */
+static size_t rows_soon(const nt_welder *w, size_t row_count)
+{
+	return row_count + AHEAD < w->item_count ? row_count + AHEAD : w->item_count;
+}
+
 static bool is_tight(const nt_welder *w)
 {
-	return w->row_count + AHEAD > w->row_capacity ||
-	       (w->row_count + AHEAD) * 2 >= (size_t)1 << w->table_bits;
+	const size_t rows = rows_soon(w, w->row_count);
+	return rows > w->row_capacity || rows * 2 >= (size_t)1 << w->table_bits;
 }
 
 static bool reserve(nt_welder *w)
 {
-	if (w->row_count + AHEAD > w->row_capacity && !nt_weld_grow_rows(w, w->item_count + AHEAD))
+	const size_t rows = rows_soon(w, w->row_count);
+	if (rows > w->row_capacity && !nt_weld_grow_rows(w, w->item_count))
 		return false;
-	return (w->row_count + AHEAD) * 2 < (size_t)1 << w->table_bits || grow_table(w);
+	return rows * 2 < (size_t)1 << w->table_bits || grow_table(w);
+}
+
+/* A row, its hash, and its entry on the way. Returns the flags of nt_weld_load(). */
+static inline nt_weld_flags load_item(const nt_welder *w, const nmtan_mesh *mesh, size_t vertex, nt_weld_row *row,
+	uint64_t *hash)
+{
+	const nt_weld_flags unordered = nt_weld_load(mesh, vertex, row);
+	*hash = nt_weld_hash(row);
+	__builtin_prefetch(&w->table[nt_weld_slot(w, *hash)], 1);
+	return unordered;
 }
 
 /* Loads and hashes the rows of a batch to `rows`, and asks for their entries. */
 static void load_batch(const nt_welder *w, size_t begin, nt_weld_row *rows, batch *b)
 {
 	const size_t left = w->item_count - begin;
+	const size_t count = left < NT_WELD_BATCH ? left : NT_WELD_BATCH;
+	/* copies, which no store changes */
+	const nt_welder local = *w;
+	const nmtan_mesh mesh = *w->mesh;
+	nt_weld_flags unordered = {0};
+	if (local.items)
+		for (size_t i = 0; i < count; i++)
+			unordered |= load_item(&local, &mesh, local.items[begin + i], &rows[i], &b->hashes[i]);
+	else
+		for (size_t i = 0; i < count; i++)
+			unordered |= load_item(&local, &mesh, begin + i, &rows[i], &b->hashes[i]);
 	b->rows = rows;
 	b->begin = begin;
-	b->count = left < NT_WELD_BATCH ? left : NT_WELD_BATCH;
-	for (size_t i = 0; i < b->count; i++)
-		nt_weld_load(w->mesh, nt_weld_vertex(w, begin + i), &rows[i]);
-	for (size_t i = 0; i < b->count; i++) {
-		b->ordered[i] = nt_weld_canonise(&rows[i]);
-		b->hashes[i] = nt_weld_hash(&rows[i]);
-		__builtin_prefetch(&w->table[nt_weld_slot(w, b->hashes[i])], 1);
-	}
+	b->count = count;
+	b->ordered = nt_weld_ordered(unordered);
 }
 
 /* Keeps a row that is at its place or behind it. */
-static uint32_t keep_row(nt_welder *w, const nt_weld_row *row)
+static inline uint32_t keep_row(nt_welder *w, const nt_weld_row *row)
 {
 	nt_weld_row *place = &w->rows[w->row_count];
 	if (place != row)
@@ -125,44 +145,21 @@ static inline uint32_t find_or_add(nt_welder *w, const nt_weld_row *row, uint64_
 			return number;
 		}
 		if ((entry & ~number_mask) == tag &&
-			memcmp(&w->rows[entry & number_mask], row, sizeof *row) == 0)
+			nt_weld_same(&w->rows[entry & number_mask], row))
 			return entry & number_mask;
 	}
 }
 
-uint32_t *nt_weld_alloc_numbers(nt_welder *w)
+static void number_batch(nt_welder *w, const batch *b)
 {
-	return w->by_corner ? nt_scratch_alloc(w->room->scratch, w->item_count, sizeof *w->numbers)
-			    : nt_room_alloc(w->room, w->item_count, sizeof *w->numbers);
-}
-
-/* From the first item whose number is not its own, numbers are written down. */
-static bool begin_numbers(nt_welder *w, size_t item)
-{
-	w->numbers = nt_weld_alloc_numbers(w);
-	if (!w->numbers)
-		return false;
-	for (size_t i = 0; i < item; i++)
-		w->numbers[i] = (uint32_t)i;
-	return true;
-}
-
-static bool number_batch(nt_welder *w, const batch *b)
-{
-	for (size_t i = 0; i < b->count; i++) {
-		uint32_t number = NT_WELD_UNORDERED;
-		if (b->ordered[i])
-			number = find_or_add(w, &b->rows[i], b->hashes[i]);
-		else if (w->by_corner)
-			number = keep_row(w, &b->rows[i]);
-		else
-			w->unordered_count++;
-		if (!w->numbers && number != b->begin + i && !begin_numbers(w, b->begin + i))
-			return false;
-		if (w->numbers)
-			w->numbers[b->begin + i] = number;
-	}
-	return true;
+	nt_welder local = *w; /* a copy, which no store changes */
+	uint32_t *const numbers = local.numbers + b->begin;
+	for (size_t i = 0; i < b->count; i++)
+		numbers[i] = b->ordered || nt_weld_row_ordered(&b->rows[i])
+			? find_or_add(&local, &b->rows[i], b->hashes[i])
+			: keep_row(&local, &b->rows[i]);
+	w->row_count = local.row_count;
+	w->unordered = local.unordered || !b->ordered;
 }
 
 /* Where the batch after `now` is loaded: right behind, so that rows of a mesh without doubles are
@@ -174,100 +171,60 @@ static nt_weld_row *next_place(const nt_welder *w, const batch *now)
 	return now->rows - end >= 2 * NT_WELD_BATCH ? end + NT_WELD_BATCH : now->rows + NT_WELD_BATCH;
 }
 
-/* While one batch is numbered, the entries of the next are on their way. */
-static bool weld_items(nt_welder *w)
+/* Numbers the items on one thread. While one batch is numbered, the entries of the next are on their way. */
+static bool weld_alone(nt_welder *w)
 {
-	batch batches[2];
-	if (!reserve(w))
+	const size_t rows = rows_soon(w, w->row_guess);
+	if (!nt_weld_grow_rows(w, rows + 1) || !make_table(w, nt_weld_bits_for(2 * rows + 1)))
 		return false;
+	batch batches[2];
 	load_batch(w, 0, w->rows, &batches[0]);
 	for (size_t begin = 0, i = 0; begin < w->item_count; begin += NT_WELD_BATCH, i ^= 1) {
 		batch *now = &batches[i], *later = &batches[i ^ 1];
-		if (begin + NT_WELD_BATCH < w->item_count)
-			load_batch(w, begin + NT_WELD_BATCH, next_place(w, now), later);
-		if (!number_batch(w, now))
-			return false;
-		if (begin + NT_WELD_BATCH < w->item_count && is_tight(w)) {
+		const size_t next = begin + NT_WELD_BATCH;
+		if (next < w->item_count)
+			load_batch(w, next, next_place(w, now), later);
+		number_batch(w, now);
+		if (next < w->item_count && is_tight(w)) {
 			/* everything moves: the next batch is loaded again */
 			if (!reserve(w))
 				return false;
-			load_batch(w, begin + NT_WELD_BATCH, w->rows + w->row_count, later);
+			load_batch(w, next, w->rows + w->row_count, later);
 		}
 	}
 	return true;
 }
 
-typedef struct copying {
-	const uint32_t *numbers, *indices;
-	uint32_t *ids;
-} copying;
-
-static void copy_numbers(void *context, size_t begin, size_t end, unsigned slot)
+bool nt_weld_items(nt_welder *w, unsigned ranges)
 {
-	const copying *job = context;
-	(void)slot;
-	for (size_t c = begin; c < end; c++)
-		job->ids[c] = job->numbers[job->indices[c]];
+	/* threads compare items by way of the mesh, not of few rows at hand: two of them do not pay */
+	return ranges > 2 ? nt_weld_items_threads(w, ranges) : weld_alone(w);
 }
 
-/* Numbers of corners from numbers of vertices; corners with a NaN get rows of their own. */
-static const uint32_t *number_corners(nt_welder *w, size_t corner_count, unsigned ranges)
+nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_room *row_room,
+	nt_room *room, nt_weld *weld)
 {
-	const uint32_t *indices = w->mesh->indices;
-	uint32_t *ids = nt_scratch_alloc(w->room->scratch, corner_count, sizeof *ids);
-	if (!ids)
-		return NULL;
-	if (w->unordered_count == 0) {
-		nt_parallel_ranges(ranges, corner_count, 1, copy_numbers, &(copying){w->numbers, indices, ids});
-		return ids;
-	}
-	size_t unordered = 0;
-	for (size_t c = 0; c < corner_count; c++)
-		unordered += w->numbers[indices[c]] == NT_WELD_UNORDERED;
-	if (w->row_count + unordered > w->row_capacity && !nt_weld_grow_rows(w, w->row_count + unordered))
-		return NULL;
-	for (size_t c = 0; c < corner_count; c++) {
-		ids[c] = w->numbers[indices[c]];
-		if (ids[c] == NT_WELD_UNORDERED) {
-			ids[c] = (uint32_t)w->row_count++;
-			nt_weld_load(w->mesh, indices[c], &w->rows[ids[c]]);
-		}
-	}
-	return ids;
-}
-
-/* Numbers the items on one thread. */
-static bool weld_alone(nt_welder *w)
-{
-	/* corners share vertices, usually six to one: begin small */
-	const size_t expected = w->by_corner ? w->item_count / 4 : w->item_count;
-	if (!nt_weld_grow_rows(w, expected + AHEAD) ||
-		!make_table(w, nt_weld_bits_for(2 * (expected + AHEAD) + 1)) || !weld_items(w))
-		return false;
-	/* where each corner is its own vertex there is still no index */
-	return !w->by_corner || w->numbers || begin_numbers(w, w->item_count);
-}
-
-nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_room *room,
-	nt_weld *weld)
-{
-	/* few of many vertices used: corner by corner, so that time follows the corners */
-	const bool by_corner = !mesh->indices || mesh->vertex_count / 2 > corner_count;
-	nt_welder w = {.mesh = mesh, .room = room, .by_corner = by_corner};
-	w.items = by_corner ? mesh->indices : NULL;
-	w.item_count = by_corner ? corner_count : mesh->vertex_count;
-
+	nt_welder w = {.mesh = mesh, .row_room = row_room, .room = room};
 	char *const begin = room->begin;
-	/* threads compare corners by way of the mesh, not of few rows at hand: two of them do not pay */
-	if (ranges > (by_corner ? 2 : 1) ? !nt_weld_items_threads(&w, ranges) : !weld_alone(&w))
+	/* few of many vertices used: corner by corner, so that time follows the corners */
+	if (!mesh->indices || mesh->vertex_count / 2 > corner_count) {
+		w.items = mesh->indices;
+		w.item_count = corner_count;
+		w.row_guess = corner_count / 4; /* corners share vertices, usually six to one */
+		w.numbers = nt_scratch_alloc(room->scratch, corner_count, sizeof *w.numbers);
+		weld->ids = w.numbers && nt_weld_items(&w, ranges) ? w.numbers : NULL;
+	} else {
+		w.item_count = mesh->vertex_count;
+		weld->ids = nt_weld_vertices(&w, corner_count, ranges);
+	}
+	if (!weld->ids)
 		return NMTAN_ERROR_MEMORY;
-	weld->ids = by_corner ? w.numbers : !w.numbers ? mesh->indices : number_corners(&w, corner_count, ranges);
 	/* tables and numbers of vertices are not needed any more */
-	if (w.rows_in_room)
-		nt_room_trim(room, w.rows, w.row_count * sizeof *w.rows);
-	else
+	if (row_room != room || !w.rows_in_room)
 		room->begin = begin;
+	if (w.rows_in_room)
+		nt_room_trim(row_room, w.rows, w.row_count * sizeof *w.rows);
 	weld->rows = w.rows;
 	weld->count = w.row_count;
-	return weld->ids ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+	return NMTAN_OK;
 }

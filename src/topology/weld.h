@@ -27,15 +27,16 @@ typedef struct nt_weld {
 #define NT_WELD_LIMIT ((size_t)1 << 28)
 
 /*
- * Welds the corners of a mesh whose strides are filled in and whose indices are checked. Memory comes
- * from the room. Linear time.
+ * Welds the corners of a mesh whose strides are filled in and whose indices are checked. Linear time.
  *
+ *   row_room the rows' memory
+ *   room     that of everything else, given back but for ids; may be the same
  *   ranges   threads to use, at least 1; they pay from about 65536 triangles each. The result does not
  *            depend on them.
  *
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */
-nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_room *room,
-	nt_weld *weld);
+nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_room *row_room,
+	nt_room *room, nt_weld *weld);
 
 #endif

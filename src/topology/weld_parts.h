@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the weld on one thread (weld.c) and on several (weld_threads.c) share: rows, their hash, entries of the
- * table. For these two files only.
+ * What the weld by a table on one thread (weld.c), that on several (weld_threads.c) and the sieve of vertices
+ * (weld_sieve.c) share: rows, their hash, entries of the table. For these files only.
  *
  * An entry of 4 bytes holds a number and, in the bits that the number leaves free, a tag of the hash, so that
  * a foreign row is read about once in 2^tag probes. Tables are open-addressing and at most half full.
@@ -17,59 +17,90 @@
 enum { NT_WELD_BATCH = 32 };
 
 #define NT_WELD_EMPTY UINT32_MAX
-#define NT_WELD_UNORDERED UINT32_MAX /* in `numbers`: the row holds a NaN */
+#define NT_WELD_TAKEN UINT32_MAX /* in place of the number of a vertex with a NaN: it was given to a corner */
 
 typedef struct nt_welder {
 	const nmtan_mesh *mesh;
-	nt_room *room;
+	nt_room *row_room, *room; /* for the rows, for everything else */
 	const uint32_t *items; /* vertex of item i; NULL: i */
 	size_t item_count;
-	bool by_corner;        /* items are corners, not vertices */
+	size_t row_guess;      /* rows for which there is room at first */
 	nt_weld_row *rows;
 	bool rows_in_room;
 	size_t row_capacity, row_count;
 	uint32_t *table;
 	unsigned table_bits, index_bits; /* log2 of the entries; bits of an entry's number */
-	uint32_t *numbers; /* [item_count] row of each item; NULL while number i is i */
-	size_t unordered_count; /* vertices of an indexed mesh that hold a NaN: they have no row yet */
+	uint32_t *numbers; /* [item_count] row of each item */
+	bool unordered;    /* an item holds a NaN */
 } nt_welder;
 
-/* Both halves of a 64 by 64 bit product, folded: every input bit reaches every output bit. */
-static inline uint64_t nt_weld_fold(uint64_t a, uint64_t b)
+/* Eight bytes of a row, read by themselves: gcc takes an array of four by way of the stack. */
+static inline uint64_t nt_weld_word(const nt_weld_row *row, size_t index)
 {
-	const unsigned __int128 product = (unsigned __int128)a * b;
-	return (uint64_t)product ^ (uint64_t)(product >> 64);
+	uint64_t word;
+	memcpy(&word, (const char *)row + index * sizeof word, sizeof word);
+	return word;
 }
 
+/* Two products of 128 bits are added and the halves of the sum folded, so that every input bit has reached
+ * others above and below it; the last factor carries what is in the low bits to the top, where slots come from.
+ * Without it grids of whole numbers need up to 11 probes for a row instead of 1.5 (test_weld_hash.c). */
 static inline uint64_t nt_weld_hash(const nt_weld_row *row)
 {
-	/* digits of pi: numbers of no structure */
-	uint64_t words[4];
-	memcpy(words, row, sizeof words);
-	const uint64_t a = nt_weld_fold(words[0] ^ 0x243f6a8885a308d3u, words[1] ^ 0x13198a2e03707344u);
-	const uint64_t b = nt_weld_fold(words[2] ^ 0xa4093822299f31d0u, words[3] ^ 0x082efa98ec4e6c89u);
-	return nt_weld_fold(a ^ 0x452821e638d01377u, b ^ 0xbe5466cf34e90c6cu);
+	/* digits of pi and of the golden ratio: numbers of no structure */
+	const uint64_t a = nt_weld_word(row, 0) ^ 0x243f6a8885a308d3u;
+	const uint64_t b = nt_weld_word(row, 1) ^ 0x13198a2e03707344u;
+	const uint64_t c = nt_weld_word(row, 2) ^ 0xa4093822299f31d0u;
+	const uint64_t d = nt_weld_word(row, 3) ^ 0x082efa98ec4e6c89u;
+	const unsigned __int128 sum = (unsigned __int128)a * b + (unsigned __int128)c * d;
+	return ((uint64_t)sum ^ (uint64_t)(sum >> 64)) * 0x9e3779b97f4a7c15u;
 }
 
-static inline void nt_weld_load(const nmtan_mesh *mesh, size_t vertex, nt_weld_row *row)
+typedef float nt_weld_floats __attribute__((vector_size(16)));
+typedef int64_t nt_weld_flags __attribute__((vector_size(16)));
+
+/* Two floats, of any alignment, as one that is only moved. */
+static inline double nt_weld_pair(const float *floats)
 {
-	memcpy(row->position, nt_position(mesh, vertex), sizeof row->position);
-	memcpy(row->normal, nt_normal(mesh, vertex), sizeof row->normal);
-	memcpy(row->texcoord, nt_texcoord(mesh, vertex), sizeof row->texcoord);
+	double pair;
+	memcpy(&pair, floats, sizeof pair);
+	return pair;
 }
 
-/* -0 becomes +0, so that equal rows have equal bits; true where no value is NaN. */
-static inline bool nt_weld_canonise(nt_weld_row *row)
+/* Loads a row. -0 becomes +0, so that equal rows have equal bits. Two registers hold it and are stored once: a
+ * row that is stored in pieces and read back has to wait for its stores. Returns flags that are all 0 where no
+ * value is NaN. */
+static inline nt_weld_flags nt_weld_load(const nmtan_mesh *mesh, size_t vertex, nt_weld_row *row)
 {
-	typedef float float4 __attribute__((vector_size(16)));
-	typedef int64_t long2 __attribute__((vector_size(16)));
-	float4 values[2];
-	memcpy(values, row, sizeof values);
-	values[0] += 0.0f;
-	values[1] += 0.0f;
-	const long2 unordered = (long2)((values[0] != values[0]) | (values[1] != values[1]));
-	memcpy(row, values, sizeof values);
+	typedef double double2 __attribute__((vector_size(16)));
+	const float *p = nt_position(mesh, vertex), *n = nt_normal(mesh, vertex), *t = nt_texcoord(mesh, vertex);
+	const double2 joint = (double2)(nt_weld_floats){p[2], n[0], 0.0f, 0.0f};
+	const nt_weld_floats low = (nt_weld_floats)(double2){nt_weld_pair(p), joint[0]} + 0.0f;
+	const nt_weld_floats high = (nt_weld_floats)(double2){nt_weld_pair(n + 1), nt_weld_pair(t)} + 0.0f;
+	memcpy(row, &low, sizeof low);
+	memcpy((char *)row + sizeof low, &high, sizeof high);
+	return (nt_weld_flags)(low != low) | (nt_weld_flags)(high != high);
+}
+
+static inline bool nt_weld_ordered(nt_weld_flags unordered)
+{
 	return (unordered[0] | unordered[1]) == 0;
+}
+
+/* Whether no value of a loaded row is NaN. */
+static inline bool nt_weld_row_ordered(const nt_weld_row *row)
+{
+	nt_weld_floats values[2];
+	memcpy(values, row, sizeof values);
+	return nt_weld_ordered((nt_weld_flags)(values[0] != values[0]) | (nt_weld_flags)(values[1] != values[1]));
+}
+
+static inline bool nt_weld_same(const nt_weld_row *a, const nt_weld_row *b)
+{
+	uint64_t difference = 0;
+	for (size_t i = 0; i < 4; i++)
+		difference |= nt_weld_word(a, i) ^ nt_weld_word(b, i);
+	return difference == 0;
 }
 
 static inline size_t nt_weld_vertex(const nt_welder *w, size_t item)
@@ -82,15 +113,16 @@ static inline size_t nt_weld_slot(const nt_welder *w, uint64_t hash)
 	return (size_t)(hash >> (64 - w->table_bits));
 }
 
-/* The entry of a number with that hash: tag above, number below. */
+/* The entry of a number with that hash: tag above, number below. Slots are made of the bits of the hash above
+ * the tag's. */
 static inline uint32_t nt_weld_entry(const nt_welder *w, uint64_t hash, uint32_t number)
 {
-	return (uint32_t)(hash >> 4) << w->index_bits | number;
+	return (uint32_t)(hash >> 20) << w->index_bits | number;
 }
 
 static inline unsigned nt_weld_bits_for(size_t entries)
 {
-	unsigned bits = 8;
+	unsigned bits = 4;
 	while ((size_t)1 << bits < entries)
 		bits++;
 	return bits;
@@ -99,15 +131,16 @@ static inline unsigned nt_weld_bits_for(size_t entries)
 /* A table that is not cleared. */
 bool nt_weld_make_table(nt_welder *w, unsigned table_bits, unsigned index_bits);
 
-/* Memory for a number for each item: for good where items are corners; else in the room, until the corners are
- * numbered. */
-uint32_t *nt_weld_alloc_numbers(nt_welder *w);
-
 /* A larger place for the rows, which move. */
 bool nt_weld_grow_rows(nt_welder *w, size_t capacity);
 
-/* Numbers the items on `ranges` threads (at least 2): rows, row_count, numbers and unordered_count become what
- * one thread makes them. False when out of memory. */
+/* Numbers the items in order of first appearance, by a table: rows, row_count and what lies at `numbers` come to be.
+ * An item with a NaN has a row of its own. The second is for at least two threads. False when out of memory. */
+bool nt_weld_items(nt_welder *w, unsigned ranges);
 bool nt_weld_items_threads(nt_welder *w, unsigned ranges);
+
+/* Welds the vertices, which are the items, of a mesh with indices; rows and row_count come to be. Returns the number of
+ * each corner, which may be the mesh's indices; NULL when out of memory. */
+const uint32_t *nt_weld_vertices(nt_welder *w, size_t corner_count, unsigned ranges);
 
 #endif

@@ -9,12 +9,8 @@
  *   number   owners, from the sum of the counts before a range; their numbers replace them in the table
  *   resolve  the others read their slot
  *
- * On an indexed mesh without doubles every vertex owns its slot, rows lie where they were loaded, and
- * everything after the first pass is left out. Where corners are welded rows are read from the mesh
- * again to be compared; equal ones are usually near.
- *
- * All threads together take 1.3 times as long as one does alone on a clean mesh of a million triangles, 2.3
- * times on corners (Xeon, 2 processors): a compare-and-swap is dearer than a store.
+ * Rows are read from the mesh again to be compared; equal ones are usually near. All threads together take 2.3
+ * times as long as one does alone (Xeon, 2 processors): a compare-and-swap is dearer than a store.
  */
 #include "base/parallel.h"
 #include "topology/weld_parts.h"
@@ -25,23 +21,19 @@ enum { SLOT_AHEAD = 16 };
 /* In `numbers` between the passes: a slot, the slot of the item that owns it, a final number. */
 #define OWNER ((uint32_t)1 << 30)
 #define FINAL ((uint32_t)1 << 31)
-
-typedef struct tally {
-	size_t owners, unordered;
-	bool doubles;
-} tally;
+#define UNORDERED UINT32_MAX /* the item holds a NaN */
 
 typedef struct weld_job {
 	nt_welder *w;
 	unsigned ranges;
-	tally *tallies;    /* [ranges] */
+	size_t *owners;     /* [ranges] */
 	size_t entry_limit; /* entries that the table may take */
 	size_t entry_count; /* atomic */
+	bool unordered;     /* atomic: an item holds a NaN */
 } weld_job;
 
 typedef struct batch {
-	nt_weld_row own[NT_WELD_BATCH]; /* where the rows of corners are loaded */
-	nt_weld_row *rows;
+	nt_weld_row rows[NT_WELD_BATCH];
 	size_t begin, count;
 	uint64_t hashes[NT_WELD_BATCH];
 	bool ordered[NT_WELD_BATCH];
@@ -66,11 +58,8 @@ static void load_batch(const nt_welder *w, size_t begin, size_t end, batch *b)
 {
 	b->begin = begin;
 	b->count = end - begin < NT_WELD_BATCH ? end - begin : NT_WELD_BATCH;
-	b->rows = w->by_corner ? b->own : w->rows + begin;
-	for (size_t i = 0; i < b->count; i++)
-		nt_weld_load(w->mesh, nt_weld_vertex(w, begin + i), &b->rows[i]);
 	for (size_t i = 0; i < b->count; i++) {
-		b->ordered[i] = nt_weld_canonise(&b->rows[i]);
+		b->ordered[i] = nt_weld_ordered(nt_weld_load(w->mesh, nt_weld_vertex(w, begin + i), &b->rows[i]));
 		b->hashes[i] = nt_weld_hash(&b->rows[i]);
 		__builtin_prefetch(&w->table[nt_weld_slot(w, b->hashes[i])], 1);
 	}
@@ -78,21 +67,12 @@ static void load_batch(const nt_welder *w, size_t begin, size_t end, batch *b)
 
 static bool has_row(const nt_welder *w, size_t item, const nt_weld_row *row)
 {
-	if (!w->by_corner)
-		return memcmp(&w->rows[item], row, sizeof *row) == 0;
-	const size_t vertex = nt_weld_vertex(w, item);
-	if (memcmp(nt_position(w->mesh, vertex), row->position, sizeof row->position) == 0 &&
-		memcmp(nt_normal(w->mesh, vertex), row->normal, sizeof row->normal) == 0 &&
-		memcmp(nt_texcoord(w->mesh, vertex), row->texcoord, sizeof row->texcoord) == 0)
-		return true;
-	/* 0 and -0 */
 	nt_weld_row other;
-	nt_weld_load(w->mesh, vertex, &other);
-	nt_weld_canonise(&other);
-	return memcmp(&other, row, sizeof *row) == 0;
+	nt_weld_load(w->mesh, nt_weld_vertex(w, item), &other);
+	return nt_weld_same(&other, row);
 }
 
-/* Asks for the rows that the batch's corners are going to be compared with. */
+/* Asks for the rows that the batch's items are going to be compared with. */
 static void ask_rows(const nt_welder *w, const batch *b)
 {
 	const uint32_t number_mask = ((uint32_t)1 << w->index_bits) - 1;
@@ -116,10 +96,9 @@ static void lower_owner(uint32_t *slot, uint32_t entry, uint32_t mine)
 		continue;
 }
 
-/* The slot of a row; adds to *added and sets *doubles. A row is written before its entry is released, and read
- * after the entry is acquired. */
+/* The slot of a row; adds to *added. */
 static uint32_t enter_item(const nt_welder *w, const nt_weld_row *row, uint64_t hash, uint32_t item,
-	size_t *added, bool *doubles)
+	size_t *added)
 {
 	const size_t mask = ((size_t)1 << w->table_bits) - 1;
 	const uint32_t number_mask = ((uint32_t)1 << w->index_bits) - 1;
@@ -133,21 +112,20 @@ static uint32_t enter_item(const nt_welder *w, const nt_weld_row *row, uint64_t 
 		}
 		if (((entry ^ mine) & ~number_mask) == 0 && has_row(w, entry & number_mask, row)) {
 			lower_owner(&w->table[at], entry, mine);
-			*doubles = true;
 			return (uint32_t)at;
 		}
 	}
 }
 
-static void enter_batch(const nt_welder *w, const batch *b, size_t *added, tally *t)
+static void enter_batch(weld_job *job, const batch *b, size_t *added)
 {
+	const nt_welder *w = job->w;
 	for (size_t i = 0; i < b->count; i++) {
-		uint32_t slot = NT_WELD_UNORDERED;
+		uint32_t slot = UNORDERED;
 		if (b->ordered[i])
-			slot = enter_item(w, &b->rows[i], b->hashes[i], (uint32_t)(b->begin + i), added,
-				&t->doubles);
+			slot = enter_item(w, &b->rows[i], b->hashes[i], (uint32_t)(b->begin + i), added);
 		else
-			t->unordered++;
+			__atomic_store_n(&job->unordered, true, __ATOMIC_RELAXED);
 		w->numbers[b->begin + i] = slot;
 	}
 }
@@ -157,21 +135,19 @@ static void enter_range(void *context, size_t begin, size_t end, unsigned slot)
 {
 	weld_job *job = context;
 	const nt_welder *w = job->w;
-	tally t = {0};
 	batch batches[2];
+	(void)slot;
 	if (begin < end)
 		load_batch(w, begin, end, &batches[0]);
 	for (size_t first = begin, i = 0; first < end; first += NT_WELD_BATCH, i ^= 1) {
 		size_t added = 0;
 		if (first + NT_WELD_BATCH < end)
 			load_batch(w, first + NT_WELD_BATCH, end, &batches[i ^ 1]);
-		if (w->by_corner)
-			ask_rows(w, &batches[i]);
-		enter_batch(w, &batches[i], &added, &t);
+		ask_rows(w, &batches[i]);
+		enter_batch(job, &batches[i], &added);
 		if (__atomic_add_fetch(&job->entry_count, added, __ATOMIC_RELAXED) > job->entry_limit)
 			break;
 	}
-	job->tallies[slot] = t;
 }
 
 /* Enters all items into a table for `expected` rows; false when out of memory. */
@@ -199,15 +175,15 @@ static void mark_range(void *context, size_t begin, size_t end, unsigned slot)
 	size_t owners = 0;
 	for (size_t i = begin; i < end; i++) {
 		const uint32_t at = w->numbers[i], ahead = w->numbers[i + SLOT_AHEAD < end ? i + SLOT_AHEAD : i];
-		__builtin_prefetch(&w->table[ahead == NT_WELD_UNORDERED ? 0 : ahead]);
-		if (at == NT_WELD_UNORDERED) {
-			owners += w->by_corner;
+		__builtin_prefetch(&w->table[ahead == UNORDERED ? 0 : ahead]);
+		if (at == UNORDERED) {
+			owners++;
 		} else if ((w->table[at] & number_mask) == i) {
 			w->numbers[i] = at | OWNER;
 			owners++;
 		}
 	}
-	job->tallies[slot].owners = owners;
+	job->owners[slot] = owners;
 }
 
 /* Number */
@@ -218,18 +194,14 @@ static void number_range(void *context, size_t begin, size_t end, unsigned slot)
 	const nt_welder *w = job->w;
 	uint32_t number = 0;
 	for (unsigned s = 0; s < slot; s++)
-		number += (uint32_t)job->tallies[s].owners;
+		number += (uint32_t)job->owners[s];
 	for (size_t i = begin; i < end; i++) {
 		const uint32_t at = w->numbers[i];
-		if (at == NT_WELD_UNORDERED ? !w->by_corner : !(at & OWNER))
+		if (!(at & OWNER)) /* a NaN has all bits */
 			continue;
-		if (at != NT_WELD_UNORDERED)
+		if (at != UNORDERED)
 			w->table[at & ~OWNER] = number;
-		/* from the mesh, because another range's row may have come here already */
-		if (w->by_corner || number != i) {
-			nt_weld_load(w->mesh, nt_weld_vertex(w, i), &w->rows[number]);
-			nt_weld_canonise(&w->rows[number]);
-		}
+		nt_weld_load(w->mesh, nt_weld_vertex(w, i), &w->rows[number]);
 		w->numbers[i] = number++ | FINAL;
 	}
 }
@@ -243,8 +215,6 @@ static void resolve_range(void *context, size_t begin, size_t end, unsigned slot
 	for (size_t i = begin; i < end; i++) {
 		const uint32_t at = w->numbers[i], ahead = w->numbers[i + SLOT_AHEAD < end ? i + SLOT_AHEAD : i];
 		__builtin_prefetch(&w->table[ahead & FINAL ? 0 : ahead]);
-		if (at == NT_WELD_UNORDERED)
-			continue;
 		w->numbers[i] = at & FINAL ? at & ~FINAL : w->table[at];
 	}
 }
@@ -255,7 +225,7 @@ static bool number_items(weld_job *job)
 	size_t rows = 0;
 	run_pass(job, w->item_count, mark_range);
 	for (unsigned r = 0; r < job->ranges; r++)
-		rows += job->tallies[r].owners;
+		rows += job->owners[r];
 	if (rows > w->row_capacity && !nt_weld_grow_rows(w, rows))
 		return false;
 	w->row_count = rows;
@@ -281,23 +251,11 @@ static bool enter_all(weld_job *job, size_t usual)
 
 bool nt_weld_items_threads(nt_welder *w, unsigned ranges)
 {
-	/* corners share vertices, usually six to one: begin small */
-	const size_t usual = w->by_corner ? w->item_count / 4 : w->item_count;
 	weld_job job = {.w = w, .ranges = nt_parallel_slots(ranges, w->item_count, 1)};
-	job.tallies = nt_scratch_alloc(w->room->scratch, job.ranges, sizeof *job.tallies);
-	if (!job.tallies || !nt_weld_grow_rows(w, usual))
+	job.owners = nt_scratch_alloc(w->room->scratch, job.ranges, sizeof *job.owners);
+	if (!job.owners || !nt_weld_grow_rows(w, w->row_guess + 1) || !enter_all(&job, w->row_guess) ||
+		!number_items(&job))
 		return false;
-	w->numbers = nt_weld_alloc_numbers(w);
-	if (!w->numbers || !enter_all(&job, usual))
-		return false;
-	bool doubles = false;
-	for (unsigned r = 0; r < job.ranges; r++) {
-		w->unordered_count += w->by_corner ? 0 : job.tallies[r].unordered;
-		doubles = doubles || job.tallies[r].doubles;
-	}
-	if (w->by_corner || doubles || w->unordered_count > 0)
-		return number_items(&job);
-	w->row_count = w->item_count;
-	w->numbers = NULL;
+	w->unordered = job.unordered;
 	return true;
 }

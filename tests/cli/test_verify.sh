@@ -16,6 +16,12 @@ for input in "$WORK"/layouts/*.gl*; do
 	exits 0
 done
 
+scene "tangents of morph targets are read back too"
+for options in --morph=bake --morph=keep --precision=byte --draco=sequential; do
+	run --verify "$options" "$ROOT/data/morph.gltf" out.glb
+	exits 0
+done
+
 # tinygltf wants inverseBindMatrices in skins, glTF does not.
 spoiled() {
 	node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1]));
@@ -40,16 +46,14 @@ run --verify "$WORK/layouts/plain.gltf" out.gltf
 exits 0
 says_not NOT_VERIFIED
 
-scene "compressed views cannot be verified, which is said"
+scene "a buffer that stands for packed views needs no bytes"
 node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1]));
 	g.extensionsUsed = ["EXT_meshopt_compression"];
 	g.buffers.push({ byteLength: 4, extensions: { EXT_meshopt_compression: { fallback: true } } });
 	fs.writeFileSync("views.gltf", JSON.stringify(g))' "$WORK/layouts/plain.gltf"
 cp "$WORK"/layouts/plain*.bin .
 run --verify views.gltf out.gltf
-exits 5
-says "tinygltf cannot read documents with EXT_meshopt_compression back"
-run views.gltf out.gltf
 exits 0
+says_not NOT_VERIFIED
 
 done_testing

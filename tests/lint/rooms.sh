@@ -23,7 +23,7 @@ declare -A may=(
 	[cli]="cli pipeline report base"
 )
 
-for file in src/*/*.[ch] src/*/*.cpp; do
+for file in src/*/*.[ch] src/*/*.[ch]pp; do
 	[ -f "$file" ] || continue
 	room=${file#src/} room=${room%%/*}
 	if [ -z "${may[$room]-}" ]; then
@@ -37,7 +37,7 @@ for file in src/*/*.[ch] src/*/*.cpp; do
 		esac
 	done < <(sed -nE 's/^[[:space:]]*#[[:space:]]*include "([a-z]+)\/.*/\1/p' "$file" | sort -u)
 	case $room/$file in
-	ext/*.cpp | */*.[ch]) ;;
+	ext/*.[ch]pp | */*.[ch]) ;;
 	*) fault "$file: C++ outside src/ext" ;;
 	esac
 	if [ "$room" != cli ]; then

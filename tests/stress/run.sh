@@ -11,12 +11,6 @@ if command -v python3 >/dev/null; then
 else
 	echo "stress: no python3, fractions skipped"
 fi
-if command -v rsvg-convert >/dev/null; then
-	for chart in "$folder"/*.svg; do
-		rsvg-convert -o "${chart%.svg}.png" "$chart"
-	done
-else
-	echo "stress: no rsvg-convert (librsvg2-bin), charts as SVG alone"
-fi
+sh tests/support/charts.sh "$folder" stress
 echo "stress: tables and charts are in $folder"
 exit $status

@@ -54,11 +54,11 @@ static void make_grid(grid *g, nt_draco_method method, int bits)
 	(*to)[0] = (*to)[1] = 5;
 	g->mesh = (nt_draco_mesh){.method = method, .point_count = POINTS, .face_count = FACES,
 		.indices = &g->indices[0][0], .attributes = g->attributes};
-	add_attribute(g, NT_DRACO_POSITION, 0, 5126, 3, bits, g->positions);
-	add_attribute(g, NT_DRACO_NORMAL, 1, 5126, 3, bits, g->normals);
-	add_attribute(g, NT_DRACO_TEXCOORD, 2, 5126, 2, bits, g->texcoords);
-	add_attribute(g, NT_DRACO_GENERIC, 7, 5126, 4, bits, g->tangents);
-	add_attribute(g, NT_DRACO_GENERIC, 9, 5123, 4, 0, g->joints);
+	add_attribute(g, NT_DRACO_POSITION, 0, NT_GLTF_FLOAT, 3, bits, g->positions);
+	add_attribute(g, NT_DRACO_NORMAL, 1, NT_GLTF_FLOAT, 3, bits, g->normals);
+	add_attribute(g, NT_DRACO_TEXCOORD, 2, NT_GLTF_FLOAT, 2, bits, g->texcoords);
+	add_attribute(g, NT_DRACO_GENERIC, 7, NT_GLTF_FLOAT, 4, bits, g->tangents);
+	add_attribute(g, NT_DRACO_GENERIC, 9, NT_GLTF_USHORT, 4, 0, g->joints);
 }
 
 static nt_draco_block encoded(const nt_draco_mesh *mesh)
@@ -99,7 +99,7 @@ static void sequential_without_quantization_is_exact(void **state)
 	assert_memory_equal(nt_draco_find(mesh, 2)->data, g.texcoords, sizeof g.texcoords - 8);
 	assert_memory_equal(nt_draco_find(mesh, 7)->data, g.tangents, sizeof g.tangents - 16);
 	assert_memory_equal(nt_draco_find(mesh, 9)->data, g.joints, sizeof g.joints - 8);
-	assert_int_equal(nt_draco_find(mesh, 9)->component_type, 5123);
+	assert_int_equal(nt_draco_find(mesh, 9)->component_type, NT_GLTF_USHORT);
 	assert_int_equal(nt_draco_find(mesh, 9)->components, 4);
 	assert_null(nt_draco_find(mesh, 3));
 	nt_draco_free(result);
@@ -135,7 +135,7 @@ static void twelve_bits_keep_tangents_and_their_sign(void **state)
 	const nt_draco_attribute *normals = nt_draco_find(nt_draco_get(result), 1);
 	assert_true(normals->quantization.octahedral);
 	assert_int_equal(normals->quantization.bits, 12);
-	assert_int_equal(normals->component_type, 5126);
+	assert_int_equal(normals->component_type, NT_GLTF_FLOAT);
 	assert_int_equal(normals->components, 3);
 	nt_draco_free(result);
 	nt_draco_block_free(&block);
@@ -200,7 +200,7 @@ static void non_manifold_meshes_survive_edgebreaker(void **state)
 		{9, 8, 9}, {8, 9, 9}};
 	/* three faces on one edge, one of them twice, and one apart */
 	static const uint32_t indices[] = {0, 1, 2, 0, 1, 3, 1, 0, 4, 0, 1, 2, 5, 6, 7};
-	const nt_draco_attribute position = {.component_type = 5126, .components = 3, .data = positions};
+	const nt_draco_attribute position = {.component_type = NT_GLTF_FLOAT, .components = 3, .data = positions};
 	const nt_draco_mesh mesh = {.method = NT_DRACO_EDGEBREAKER, .point_count = 8, .face_count = 5,
 		.indices = indices, .attributes = &position, .attribute_count = 1};
 	nt_draco_block block = encoded(&mesh);
@@ -249,7 +249,7 @@ static void what_cannot_be_encoded_is_refused(void **state)
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
 	/* the coder's table would have 2^32 rows, and has none */
 	uint32_t large[4 * POINTS] = {0};
-	g.attributes[4].component_type = 5125;
+	g.attributes[4].component_type = NT_GLTF_UINT;
 	g.attributes[4].data = large;
 	large[5] = 1u << 24;
 	assert_int_equal(encode_status(&g, &error), NMTAN_OK);
@@ -258,7 +258,7 @@ static void what_cannot_be_encoded_is_refused(void **state)
 	large[5] = UINT32_MAX;
 	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
 	assert_non_null(strstr(error.message, "24 bits"));
-	g.attributes[4].component_type = 5124; /* -1 */
+	g.attributes[4].component_type = NT_GLTF_INT; /* -1 */
 	assert_int_equal(encode_status(&g, &error), NMTAN_OK);
 	large[5] = (uint32_t)-(1 << 24) - 1;
 	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);

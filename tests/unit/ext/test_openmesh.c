@@ -45,53 +45,43 @@ static void assert_sound(const nt_walks *walks, const uint32_t (*triangles)[3])
  * 0-1-2 */
 static const uint32_t strip[][3] = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}};
 
+static uint32_t side_between(const uint32_t (*triangles)[3], size_t count, uint32_t a, uint32_t b)
+{
+	for (uint32_t s = 0; s < 3 * count; s++)
+		if (triangles[s / 3][s % 3] == a && triangles[s / 3][(s + 1) % 3] == b)
+			return s;
+	return NT_OPEN;
+}
+
+/* The walks along sides that no other is opposite to. */
+static nt_walks boundary_of(const nt_halfedges *mesh, const uint32_t (*triangles)[3], size_t count)
+{
+	uint8_t marked[64] = {0};
+	assert_true(3 * count <= sizeof marked);
+	for (size_t s = 0; s < 3 * count; s++)
+		marked[s] = side_between(triangles, count, triangles[s / 3][(s + 1) % 3], triangles[s / 3][s % 3]) ==
+			NT_OPEN;
+	nt_walks walks;
+	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NMTAN_OK);
+	assert_sound(&walks, triangles);
+	return walks;
+}
+
 static void strip_has_one_boundary_loop_in_order(void **state)
 {
 	(void)state;
 	nt_halfedges *mesh = built(6, strip, COUNT(strip));
 	const uint32_t *left_out;
 	assert_int_equal(nt_halfedges_left_out(mesh, &left_out), 0);
-	assert_int_equal(nt_halfedges_opposite(mesh, 2), 3);  /* 4-0 of triangle 0, 0-4 of 1 */
-	assert_int_equal(nt_halfedges_opposite(mesh, 1), 11); /* 1-4, 4-1 of triangle 3 */
-	assert_int_equal(nt_halfedges_opposite(mesh, 0), NT_OPEN);
-
-	nt_walks loops;
-	assert_int_equal(nt_halfedges_outlines(mesh, NULL, &loops, NULL), NMTAN_OK);
-	assert_sound(&loops, strip);
+	nt_walks loops = boundary_of(mesh, strip, COUNT(strip));
 	assert_int_equal(loops.count, 1);
 	assert_true(loops.closed[0]);
 	static const uint32_t expected[] = {0, 1, 2, 5, 4, 3};
 	assert_int_equal(loops.first[1], 6);
 	assert_memory_equal(loops.from, expected, sizeof expected);
+	for (size_t step = 0; step < 6; step++)
+		assert_int_equal(loops.right[step], NT_OPEN);
 	nt_walks_free(&loops);
-	nt_halfedges_free(mesh);
-}
-
-static void cut_makes_two_islands_with_an_outline_each(void **state)
-{
-	(void)state;
-	nt_halfedges *mesh = built(6, strip, COUNT(strip));
-	uint8_t cut[12] = {0};
-	uint32_t islands[4];
-	size_t count;
-	assert_int_equal(nt_halfedges_islands(mesh, cut, islands, &count, NULL), NMTAN_OK);
-	assert_int_equal(count, 1);
-	cut[11] = 1; /* from one side is enough */
-	assert_int_equal(nt_halfedges_islands(mesh, cut, islands, &count, NULL), NMTAN_OK);
-	assert_int_equal(count, 2);
-	assert_int_equal(islands[0], 0);
-	assert_int_equal(islands[1], 0);
-	assert_int_equal(islands[2], 1);
-	assert_int_equal(islands[3], 1);
-
-	nt_walks outlines;
-	assert_int_equal(nt_halfedges_outlines(mesh, cut, &outlines, NULL), NMTAN_OK);
-	assert_sound(&outlines, strip);
-	assert_int_equal(outlines.count, 2);
-	static const uint32_t expected[] = {0, 1, 4, 3, 1, 2, 5, 4};
-	assert_int_equal(outlines.first[2], 8);
-	assert_memory_equal(outlines.from, expected, sizeof expected);
-	nt_walks_free(&outlines);
 	nt_halfedges_free(mesh);
 }
 
@@ -105,23 +95,11 @@ static const uint32_t cube[][3] = {
 	{1, 3, 7}, {1, 7, 5}, /* x = 1 */
 };
 
-static uint32_t side_between(const uint32_t (*triangles)[3], size_t count, uint32_t a, uint32_t b)
-{
-	for (uint32_t s = 0; s < 3 * count; s++)
-		if (triangles[s / 3][s % 3] == a && triangles[s / 3][(s + 1) % 3] == b)
-			return s;
-	fail_msg("no side %u-%u", a, b);
-	return NT_OPEN;
-}
-
-static void closed_mesh_has_no_boundary_and_a_closed_seam(void **state)
+static void closed_seams_are_walked_round(void **state)
 {
 	(void)state;
 	nt_halfedges *mesh = built(8, cube, COUNT(cube));
 	nt_walks walks;
-	assert_int_equal(nt_halfedges_outlines(mesh, NULL, &walks, NULL), NMTAN_OK);
-	assert_int_equal(walks.count, 0);
-	nt_walks_free(&walks);
 
 	/* the rim of z = 1: 4-5-7-6, marked in no particular order and from either side */
 	uint8_t marked[36] = {0};
@@ -174,7 +152,7 @@ static void open_chain_is_ordered_from_end_to_end(void **state)
 	nt_halfedges_free(mesh);
 }
 
-static void moebius_strip_loses_nothing_and_has_one_loop(void **state)
+static void moebius_strip_loses_nothing(void **state)
 {
 	(void)state;
 	/* Five triangles (i, i+1, i+2) mod 5, every other one turned: the strip closes with a twist, and
@@ -184,15 +162,6 @@ static void moebius_strip_loses_nothing_and_has_one_loop(void **state)
 	const uint32_t *left_out;
 	assert_int_equal(nt_halfedges_left_out(mesh, &left_out), 1);
 	assert_int_equal(left_out[0], 4); /* uses 0-1 again, as triangle 0 does */
-	assert_int_equal(nt_halfedges_opposite(mesh, 12), NT_OPEN);
-
-	uint32_t islands[5];
-	size_t count;
-	assert_int_equal(nt_halfedges_islands(mesh, NULL, islands, &count, NULL), NMTAN_OK);
-	assert_int_equal(count, 2);
-	assert_int_equal(islands[3], 0);
-	assert_int_equal(islands[4], 1);
-
 	uint8_t marked[15] = {0};
 	marked[14] = 1; /* a side of the triangle left out is not lost */
 	nt_walks walks;
@@ -222,9 +191,7 @@ static void fans_that_touch_in_a_vertex_have_loops_of_their_own(void **state)
 	(void)state;
 	static const uint32_t bowtie[][3] = {{0, 1, 2}, {0, 3, 4}};
 	nt_halfedges *mesh = built(5, bowtie, COUNT(bowtie));
-	nt_walks loops;
-	assert_int_equal(nt_halfedges_outlines(mesh, NULL, &loops, NULL), NMTAN_OK);
-	assert_sound(&loops, bowtie);
+	nt_walks loops = boundary_of(mesh, bowtie, COUNT(bowtie));
 	assert_int_equal(loops.count, 2);
 	assert_int_equal(loops.first[1], 3);
 	assert_int_equal(loops.first[2], 6);
@@ -236,12 +203,7 @@ static void empty_mesh_and_bad_index_are_handled(void **state)
 {
 	(void)state;
 	nt_halfedges *mesh = built(0, strip, 0);
-	size_t count;
-	nt_walks walks;
-	uint32_t none;
-	assert_int_equal(nt_halfedges_islands(mesh, NULL, &none, &count, NULL), NMTAN_OK);
-	assert_int_equal(count, 0);
-	assert_int_equal(nt_halfedges_outlines(mesh, NULL, &walks, NULL), NMTAN_OK);
+	nt_walks walks = boundary_of(mesh, strip, 0);
 	assert_int_equal(walks.count, 0);
 	nt_walks_free(&walks);
 	nt_halfedges_free(mesh);
@@ -261,16 +223,18 @@ static void hub_is_not_quadratic(void **state)
 	(void)state;
 	enum { SPOKES = 60000 };
 	uint32_t(*triangles)[3] = malloc(sizeof *triangles * SPOKES);
+	uint8_t *rim = calloc(SPOKES, 3);
 	for (uint32_t i = 0; i < SPOKES; i++) {
 		const uint32_t at = (uint32_t)((uint64_t)i * 30011 % SPOKES); /* 30011 is prime */
 		triangles[i][0] = 1 + at;
 		triangles[i][1] = 1 + (at + 1) % SPOKES;
 		triangles[i][2] = 0;
+		rim[3 * i] = 1;
 	}
 	const clock_t begin = clock();
 	nt_halfedges *mesh = built(SPOKES + 1, (const uint32_t(*)[3])triangles, SPOKES);
 	nt_walks loops;
-	assert_int_equal(nt_halfedges_outlines(mesh, NULL, &loops, NULL), NMTAN_OK);
+	assert_int_equal(nt_halfedges_chains(mesh, rim, &loops, NULL), NMTAN_OK);
 	const double seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
 	assert_int_equal(loops.count, 1);
 	assert_int_equal(loops.first[1], SPOKES);
@@ -279,16 +243,16 @@ static void hub_is_not_quadratic(void **state)
 	nt_walks_free(&loops);
 	nt_halfedges_free(mesh);
 	free(triangles);
+	free(rim);
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(strip_has_one_boundary_loop_in_order),
-		cmocka_unit_test(cut_makes_two_islands_with_an_outline_each),
-		cmocka_unit_test(closed_mesh_has_no_boundary_and_a_closed_seam),
+		cmocka_unit_test(closed_seams_are_walked_round),
 		cmocka_unit_test(open_chain_is_ordered_from_end_to_end),
-		cmocka_unit_test(moebius_strip_loses_nothing_and_has_one_loop),
+		cmocka_unit_test(moebius_strip_loses_nothing),
 		cmocka_unit_test(degenerate_and_third_triangles_are_left_out),
 		cmocka_unit_test(fans_that_touch_in_a_vertex_have_loops_of_their_own),
 		cmocka_unit_test(empty_mesh_and_bad_index_are_handled),

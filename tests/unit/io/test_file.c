@@ -3,9 +3,9 @@
  * Inputs and output sets, in a folder of our own that is removed afterwards.
  */
 #include "test.h"
+#include "folder.h"
 #include "io/file.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -14,65 +14,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static char folder[64];
-
-static const char *at(const char *name)
-{
-	static char paths[4][512];
-	static unsigned turn;
-	char *path = paths[turn++ % 4];
-	snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-	return path;
-}
-
-static void put(const char *name, const char *text)
-{
-	FILE *stream = fopen(at(name), "wb");
-	assert_non_null(stream);
-	fputs(text, stream);
-	assert_int_equal(fclose(stream), 0);
-}
-
 static void assert_content(const char *name, const char *text)
 {
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, at(name), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder(name), &error), NMTAN_OK);
 	assert_int_equal(file.size, strlen(text));
 	assert_memory_equal(file.data, text, file.size);
 	nt_file_close(&file);
-}
-
-/* Entries of the folder, "." and ".." not counted. */
-static unsigned entry_count(void)
-{
-	DIR *stream = opendir(folder);
-	assert_non_null(stream);
-	unsigned count = 0;
-	for (const struct dirent *entry; (entry = readdir(stream));)
-		count += strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
-	closedir(stream);
-	return count;
-}
-
-static int make_folder(void **state)
-{
-	(void)state;
-	strcpy(folder, "/tmp/nmtan-test-XXXXXX");
-	return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-	(void)state;
-	DIR *stream = opendir(folder);
-	if (!stream)
-		return -1;
-	for (const struct dirent *entry; (entry = readdir(stream));)
-		if (unlink(at(entry->d_name)) != 0)
-			rmdir(at(entry->d_name));
-	closedir(stream);
-	return rmdir(folder);
 }
 
 static nt_output *start(const nt_output_options *options)
@@ -103,19 +52,19 @@ static void assert_refused(nt_output *output, const char *path, const char *mess
 static void input_is_mapped_and_knows_which_file_it_is(void **state)
 {
 	(void)state;
-	put("a", "some bytes");
-	assert_int_equal(link(at("a"), at("b")), 0);
-	put("c", "some bytes");
+	put_text_file("a", "some bytes");
+	assert_int_equal(link(in_folder("a"), in_folder("b")), 0);
+	put_text_file("c", "some bytes");
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, at("a"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("a"), &error), NMTAN_OK);
 	assert_true(file.mapped);
 	assert_int_equal(file.size, 10);
 	assert_memory_equal(file.data, "some bytes", 10);
-	assert_true(nt_file_is(&file, at("a")));
-	assert_true(nt_file_is(&file, at("b")));
-	assert_false(nt_file_is(&file, at("c")));
-	assert_false(nt_file_is(&file, at("missing")));
+	assert_true(nt_file_is(&file, in_folder("a")));
+	assert_true(nt_file_is(&file, in_folder("b")));
+	assert_false(nt_file_is(&file, in_folder("c")));
+	assert_false(nt_file_is(&file, in_folder("missing")));
 	assert_false(nt_file_is(&file, "-"));
 	nt_file_close(&file);
 }
@@ -141,13 +90,13 @@ static void input_pages_that_are_forgotten_go_and_come_back(void **state)
 	(void)state;
 	enum { PAGES = 8 };
 	const size_t page = (size_t)sysconf(_SC_PAGESIZE);
-	FILE *stream = fopen(at("in"), "wb");
+	FILE *stream = fopen(in_folder("in"), "wb");
 	for (size_t i = 0; i < PAGES * page; i++)
 		fputc((int)(i / page * 7 + i % 251), stream);
 	fclose(stream);
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, at("in"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("in"), &error), NMTAN_OK);
 	unsigned sum = 0;
 	for (size_t i = 0; i < file.size; i++)
 		sum += file.data[i];
@@ -177,10 +126,10 @@ static void input_pages_that_are_forgotten_go_and_come_back(void **state)
 static void input_empty_is_no_error(void **state)
 {
 	(void)state;
-	put("a", "");
+	put_text_file("a", "");
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, at("a"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("a"), &error), NMTAN_OK);
 	assert_int_equal(file.size, 0);
 	assert_non_null(file.data);
 	nt_file_close(&file);
@@ -194,11 +143,11 @@ static void input_missing_or_a_folder_is_named(void **state)
 	(void)state;
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, at("missing"), &error), NMTAN_ERROR_IO);
+	assert_int_equal(nt_file_open(&file, in_folder("missing"), &error), NMTAN_ERROR_IO);
 	assert_string_equal(error.message, "no such file");
-	assert_string_equal(error.place.file, at("missing"));
+	assert_string_equal(error.place.file, in_folder("missing"));
 	nt_file_close(&file);
-	assert_int_equal(nt_file_open(&file, folder, &error), NMTAN_ERROR_IO);
+	assert_int_equal(nt_file_open(&file, in_folder(""), &error), NMTAN_ERROR_IO);
 	assert_string_equal(error.message, "cannot read: Is a directory");
 	nt_file_close(&file);
 }
@@ -206,11 +155,11 @@ static void input_missing_or_a_folder_is_named(void **state)
 static void input_without_permission_is_named(void **state)
 {
 	(void)state;
-	put("a", "secret");
-	assert_int_equal(chmod(at("a"), 0), 0);
+	put_text_file("a", "secret");
+	assert_int_equal(chmod(in_folder("a"), 0), 0);
 	nt_error error;
 	nt_file file;
-	const nmtan_status status = nt_file_open(&file, at("a"), &error);
+	const nmtan_status status = nt_file_open(&file, in_folder("a"), &error);
 	if (geteuid() == 0) { /* root reads everything */
 		assert_int_equal(status, NMTAN_OK);
 	} else {
@@ -223,10 +172,10 @@ static void input_without_permission_is_named(void **state)
 static void input_pipe_is_read_to_its_end(void **state)
 {
 	(void)state;
-	assert_int_equal(mkfifo(at("pipe"), 0600), 0);
+	assert_int_equal(mkfifo(in_folder("pipe"), 0600), 0);
 	const pid_t child = fork();
 	if (child == 0) {
-		const int fd = open(at("pipe"), O_WRONLY);
+		const int fd = open(in_folder("pipe"), O_WRONLY);
 		for (int i = 0; i < 50000; i++)
 			if (write(fd, "0123456789", 10) != 10)
 				_exit(1);
@@ -234,7 +183,7 @@ static void input_pipe_is_read_to_its_end(void **state)
 	}
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, at("pipe"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("pipe"), &error), NMTAN_OK);
 	assert_false(file.mapped);
 	assert_int_equal(file.size, 500000);
 	for (size_t i = 0; i < file.size; i++)
@@ -246,34 +195,34 @@ static void input_pipe_is_read_to_its_end(void **state)
 static void output_appears_at_commit_only(void **state)
 {
 	(void)state;
-	put("out.gltf", "old");
+	put_text_file("out.gltf", "old");
 	nt_error error;
 	nt_output *output = start(NULL);
-	nt_sink *main = add(output, at("out.gltf"), true);
-	nt_sink *companion = add(output, at("out.bin"), false);
+	nt_sink *main = add(output, in_folder("out.gltf"), true);
+	nt_sink *companion = add(output, in_folder("out.bin"), false);
 	assert_int_equal(nt_sink_write(main, "new document", 12, &error), NMTAN_OK);
 	assert_int_equal(nt_sink_write(companion, "bytes", 5, &error), NMTAN_OK);
-	assert_int_equal(nt_sink_size(main), 12);
+	assert_int_equal(nt_output_size(output), 17);
 	assert_content("out.gltf", "old");
-	assert_int_equal(access(at("out.bin"), F_OK), -1);
-	assert_int_equal(entry_count(), 3);
+	assert_int_equal(access(in_folder("out.bin"), F_OK), -1);
+	assert_int_equal(count_in_folder(), 3);
 	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
 	assert_content("out.gltf", "new document");
 	assert_content("out.bin", "bytes");
-	assert_int_equal(entry_count(), 2);
+	assert_int_equal(count_in_folder(), 2);
 }
 
 static void output_abort_leaves_nothing(void **state)
 {
 	(void)state;
-	put("out", "old");
+	put_text_file("out", "old");
 	nt_error error;
 	nt_output *output = start(NULL);
-	nt_sink *sink = add(output, at("out"), true);
+	nt_sink *sink = add(output, in_folder("out"), true);
 	assert_int_equal(nt_sink_write(sink, "new", 3, &error), NMTAN_OK);
 	nt_output_abort(output);
 	assert_content("out", "old");
-	assert_int_equal(entry_count(), 1);
+	assert_int_equal(count_in_folder(), 1);
 	nt_output_abort(NULL);
 }
 
@@ -287,17 +236,17 @@ static void output_bytes_are_the_same_for_small_and_large_writes(void **state)
 		bytes[i] = (unsigned char)(i * 2654435761u >> 13);
 	nt_error error;
 	nt_output *output = start(NULL);
-	nt_sink *sink = add(output, at("out"), true);
+	nt_sink *sink = add(output, in_folder("out"), true);
 	size_t done = 0;
 	for (size_t step = 0; done < SIZE; step = step * 2 + 1) { /* 0, 1, 3 ... 2^21 - 1 */
 		const size_t size = step < SIZE - done ? step : SIZE - done;
 		assert_int_equal(nt_sink_write(sink, bytes + done, size, &error), NMTAN_OK);
 		done += size;
 	}
-	assert_int_equal(nt_sink_size(sink), SIZE);
+	assert_int_equal(nt_output_size(output), SIZE);
 	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, at("out"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("out"), &error), NMTAN_OK);
 	assert_int_equal(file.size, SIZE);
 	assert_memory_equal(file.data, bytes, SIZE);
 
@@ -305,16 +254,16 @@ static void output_bytes_are_the_same_for_small_and_large_writes(void **state)
 	 * files meet behind "head", from 1 on they do not; what was let go of is read again */
 	for (size_t first = 1; first <= 4; first += 3) {
 		output = start(NULL);
-		sink = add(output, at("copy"), true);
+		sink = add(output, in_folder("copy"), true);
 		assert_int_equal(nt_sink_write(sink, "head", 4, &error), NMTAN_OK);
 		assert_int_equal(nt_sink_copy(sink, &file, first, 2000000, &error), NMTAN_OK);
 		assert_int_equal(nt_sink_copy(sink, &file, first + 2000000, 100, &error), NMTAN_OK);
 		assert_int_equal(nt_sink_copy(sink, &file, 0, 0, &error), NMTAN_OK);
 		assert_int_equal(nt_sink_copy(sink, &file, SIZE - 1, 2, &error), NMTAN_ERROR_INTERNAL);
-		assert_int_equal(nt_sink_size(sink), 2000104);
+		assert_int_equal(nt_output_size(output), 2000104);
 		assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
 		nt_file copy;
-		assert_int_equal(nt_file_open(&copy, at("copy"), &error), NMTAN_OK);
+		assert_int_equal(nt_file_open(&copy, in_folder("copy"), &error), NMTAN_OK);
 		assert_int_equal(copy.size, 2000104);
 		assert_memory_equal(copy.data, "head", 4);
 		assert_memory_equal(copy.data + 4, bytes + first, 2000100);
@@ -330,11 +279,12 @@ static void output_can_be_read_back_before_it_has_its_name(void **state)
 	(void)state;
 	nt_error error;
 	nt_output *output = start(&(nt_output_options){.sync = true});
-	nt_sink *sink = add(output, at("out"), true);
+	nt_sink *sink = add(output, in_folder("out"), true);
 	assert_int_equal(nt_sink_write(sink, "text", 4, &error), NMTAN_OK);
-	assert_int_equal(nt_sink_flush(sink, &error), NMTAN_OK);
+	const char *temporary;
+	assert_int_equal(nt_output_written(output, in_folder("out"), &temporary, &error), NMTAN_OK);
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, nt_sink_temporary(sink), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, temporary, &error), NMTAN_OK);
 	assert_int_equal(file.size, 4);
 	nt_file_close(&file);
 	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
@@ -344,33 +294,33 @@ static void output_can_be_read_back_before_it_has_its_name(void **state)
 static void output_that_is_an_input_is_refused_by_name(void **state)
 {
 	(void)state;
-	put("in.ply", "input");
-	assert_int_equal(link(at("in.ply"), at("hard")), 0);
-	assert_int_equal(symlink("in.ply", at("soft")), 0);
+	put_text_file("in.ply", "input");
+	assert_int_equal(link(in_folder("in.ply"), in_folder("hard")), 0);
+	assert_int_equal(symlink("in.ply", in_folder("soft")), 0);
 	nt_error error;
 	nt_output *output = start(NULL);
-	assert_int_equal(nt_output_protect(output, at("in.ply"), &error), NMTAN_OK);
-	assert_int_equal(nt_output_protect(output, at("missing.png"), &error), NMTAN_OK);
+	assert_int_equal(nt_output_protect(output, in_folder("in.ply"), &error), NMTAN_OK);
+	assert_int_equal(nt_output_protect(output, in_folder("missing.png"), &error), NMTAN_OK);
 	char message[256];
 	snprintf(message, sizeof message, "refusing to write: it is the same file as the input %s",
-		at("in.ply"));
-	assert_refused(output, at("in.ply"), message);
-	assert_refused(output, at("hard"), message);
-	assert_refused(output, at("soft"), message);
+		in_folder("in.ply"));
+	assert_refused(output, in_folder("in.ply"), message);
+	assert_refused(output, in_folder("hard"), message);
+	assert_refused(output, in_folder("soft"), message);
 	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
 	assert_content("in.ply", "input");
-	assert_int_equal(entry_count(), 3);
+	assert_int_equal(count_in_folder(), 3);
 }
 
 static void output_in_place_replaces_what_is_mapped(void **state)
 {
 	(void)state;
-	put("a.ply", "0123456789");
+	put_text_file("a.ply", "0123456789");
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, at("a.ply"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("a.ply"), &error), NMTAN_OK);
 	nt_output *output = start(NULL);
-	nt_sink *sink = add(output, at("a.ply"), true);
+	nt_sink *sink = add(output, in_folder("a.ply"), true);
 	assert_int_equal(nt_sink_copy(sink, &file, 5, 5, &error), NMTAN_OK);
 	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
 	assert_memory_equal(file.data, "0123456789", 10);
@@ -381,33 +331,33 @@ static void output_in_place_replaces_what_is_mapped(void **state)
 static void output_through_a_link_keeps_the_link(void **state)
 {
 	(void)state;
-	put("file", "old");
-	assert_int_equal(symlink("file", at("soft")), 0);
+	put_text_file("file", "old");
+	assert_int_equal(symlink("file", in_folder("soft")), 0);
 	nt_error error;
 	nt_output *output = start(NULL);
-	assert_int_equal(nt_sink_write(add(output, at("soft"), true), "new", 3, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_write(add(output, in_folder("soft"), true), "new", 3, &error), NMTAN_OK);
 	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
 	assert_content("file", "new");
 	struct stat status;
-	assert_int_equal(lstat(at("soft"), &status), 0);
+	assert_int_equal(lstat(in_folder("soft"), &status), 0);
 	assert_true(S_ISLNK(status.st_mode));
 }
 
 static void output_places_that_cannot_be_are_refused(void **state)
 {
 	(void)state;
-	put("file", "x");
+	put_text_file("file", "x");
 	nt_output *output = start(NULL);
-	assert_refused(output, folder, "cannot write: it is a directory");
+	assert_refused(output, in_folder(""), "cannot write: it is a directory");
 	char path[128], message[256];
-	snprintf(path, sizeof path, "%s/none/out", folder);
-	snprintf(message, sizeof message, "cannot write: there is no folder \"%s/none\"", folder);
+	snprintf(path, sizeof path, "%s", in_folder("none/out"));
+	snprintf(message, sizeof message, "cannot write: there is no folder \"%s\"", in_folder("none"));
 	assert_refused(output, path, message);
-	snprintf(path, sizeof path, "%s/file/out", folder);
-	snprintf(message, sizeof message, "cannot write: there is no folder \"%s/file\"", folder);
+	snprintf(path, sizeof path, "%s", in_folder("file/out"));
+	snprintf(message, sizeof message, "cannot write: there is no folder \"%s\"", in_folder("file"));
 	assert_refused(output, path, message);
-	add(output, at("twice"), true);
-	assert_refused(output, at("twice"),
+	add(output, in_folder("twice"), true);
+	assert_refused(output, in_folder("twice"),
 		"refusing to write: another file of this output has the same name");
 	nt_output_abort(output);
 }
@@ -415,20 +365,20 @@ static void output_places_that_cannot_be_are_refused(void **state)
 static void output_no_clobber_keeps_what_exists(void **state)
 {
 	(void)state;
-	put("out", "old");
+	put_text_file("out", "old");
 	nt_error error;
 	nt_output *output = start(&(nt_output_options){.no_clobber = true});
-	assert_refused(output, at("out"), "refusing to write: the file exists already");
+	assert_refused(output, in_folder("out"), "refusing to write: the file exists already");
 	/* and what came to exist meanwhile; the companion that was placed before is taken back */
-	add(output, at("late"), true);
-	add(output, at("companion"), false);
-	put("late", "somebody else's");
+	add(output, in_folder("late"), true);
+	add(output, in_folder("companion"), false);
+	put_text_file("late", "somebody else's");
 	assert_int_equal(nt_output_commit(output, &error), NMTAN_ERROR_IO);
 	assert_string_equal(error.message, "refusing to write: the file exists already");
-	assert_string_equal(error.place.file, at("late"));
+	assert_string_equal(error.place.file, in_folder("late"));
 	assert_content("late", "somebody else's");
 	assert_content("out", "old");
-	assert_int_equal(entry_count(), 2);
+	assert_int_equal(count_in_folder(), 2);
 }
 
 static void output_mode_follows_the_umask(void **state)
@@ -437,11 +387,11 @@ static void output_mode_follows_the_umask(void **state)
 	nt_error error;
 	const mode_t before = umask(027);
 	nt_output *output = start(NULL);
-	add(output, at("out"), true);
+	add(output, in_folder("out"), true);
 	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
 	umask(before);
 	struct stat status;
-	assert_int_equal(stat(at("out"), &status), 0);
+	assert_int_equal(stat(in_folder("out"), &status), 0);
 	assert_int_equal(status.st_mode & 0777, 0640);
 }
 
@@ -452,31 +402,33 @@ static void output_dry_run_counts_and_refuses_but_writes_nothing(void **state)
 	nt_error error;
 	nt_output *output;
 	nt_sink *sink, *stream;
-	put("dry", "old");
-	const unsigned before = entry_count();
+	put_text_file("dry", "old");
+	const size_t before = count_in_folder();
 	assert_int_equal(nt_output_create(&output, &options, &error), NMTAN_OK);
-	assert_int_equal(nt_output_add(output, at("dry"), true, &sink, &error), NMTAN_OK);
+	assert_int_equal(nt_output_add(output, in_folder("dry"), true, &sink, &error), NMTAN_OK);
 	assert_int_equal(nt_output_add(output, "-", false, &stream, &error), NMTAN_OK);
 	assert_int_equal(nt_sink_write(sink, "new!", 4, &error), NMTAN_OK);
 	assert_int_equal(nt_sink_write(stream, "noise", 5, &error), NMTAN_OK);
-	assert_int_equal(nt_sink_size(sink), 4);
-	assert_null(nt_sink_temporary(sink));
-	assert_int_equal(entry_count(), before);
+	assert_int_equal(nt_output_size(output), 9);
+	const char *temporary;
+	assert_int_equal(nt_output_written(output, in_folder("dry"), &temporary, &error), NMTAN_OK);
+	assert_null(temporary);
+	assert_int_equal(count_in_folder(), before);
 	nt_sink *refused;
-	assert_int_equal(nt_output_add(output, folder, false, &refused, &error), NMTAN_ERROR_IO);
+	assert_int_equal(nt_output_add(output, in_folder(""), false, &refused, &error), NMTAN_ERROR_IO);
 	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
-	assert_int_equal(entry_count(), before);
+	assert_int_equal(count_in_folder(), before);
 	assert_content("dry", "old");
 }
 
 static void output_pipe_is_written_through(void **state)
 {
 	(void)state;
-	assert_int_equal(mkfifo(at("pipe"), 0600), 0);
+	assert_int_equal(mkfifo(in_folder("pipe"), 0600), 0);
 	const pid_t child = fork();
 	if (child == 0) {
 		char text[16] = {0};
-		const int fd = open(at("pipe"), O_RDONLY);
+		const int fd = open(in_folder("pipe"), O_RDONLY);
 		size_t size = 0;
 		for (ssize_t count; (count = read(fd, text + size, 15 - size)) > 0;)
 			size += (size_t)count;
@@ -484,15 +436,17 @@ static void output_pipe_is_written_through(void **state)
 	}
 	nt_error error;
 	nt_output *output = start(&(nt_output_options){.no_clobber = true, .sync = true});
-	nt_sink *sink = add(output, at("pipe"), true);
-	assert_null(nt_sink_temporary(sink));
+	nt_sink *sink = add(output, in_folder("pipe"), true);
+	const char *temporary;
+	assert_int_equal(nt_output_written(output, in_folder("pipe"), &temporary, &error), NMTAN_OK);
+	assert_null(temporary);
 	assert_int_equal(nt_sink_write(sink, "through", 7, &error), NMTAN_OK);
 	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
 	int code;
 	assert_int_equal(waitpid(child, &code, 0), child);
 	assert_int_equal(code, 0);
 	struct stat status;
-	assert_int_equal(stat(at("pipe"), &status), 0);
+	assert_int_equal(stat(in_folder("pipe"), &status), 0);
 	assert_true(S_ISFIFO(status.st_mode));
 }
 
@@ -518,8 +472,8 @@ static void wait_for_signal(int ready)
 	nt_output *output;
 	nt_sink *sink;
 	if (nt_output_create(&output, NULL, &error) ||
-		nt_output_add(output, at("a"), true, &sink, &error) ||
-		nt_output_add(output, at("b"), false, &sink, &error) || write(ready, "!", 1) != 1)
+		nt_output_add(output, in_folder("a"), true, &sink, &error) ||
+		nt_output_add(output, in_folder("b"), false, &sink, &error) || write(ready, "!", 1) != 1)
 		_exit(1);
 	for (;;)
 		pause();
@@ -539,13 +493,13 @@ static void signals_remove_temporaries_and_end_the_process(void **state)
 		}
 		char byte;
 		assert_int_equal(read(ready[0], &byte, 1), 1);
-		assert_int_equal(entry_count(), 2);
+		assert_int_equal(count_in_folder(), 2);
 		assert_int_equal(kill(child, numbers[i]), 0);
 		int code;
 		assert_int_equal(waitpid(child, &code, 0), child);
 		assert_true(WIFSIGNALED(code));
 		assert_int_equal(WTERMSIG(code), numbers[i]);
-		assert_int_equal(entry_count(), 0);
+		assert_int_equal(count_in_folder(), 0);
 		close(ready[0]);
 		close(ready[1]);
 	}

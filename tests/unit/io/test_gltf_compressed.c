@@ -4,10 +4,10 @@
  * so that vertices have to be split.
  */
 #include "test.h"
+#include "folder.h"
 #include <math.h>
 #include <meshoptimizer.h>
 #include <stdio.h>
-#include <unistd.h>
 #include "base/buffer.h"
 #include "ext/draco.h"
 #include "io/gltf_draco.h"
@@ -43,20 +43,6 @@ static void make_sheet(sheet *s)
 			memcpy(at, quad, sizeof quad);
 			at += 6;
 		}
-}
-
-/* A GLB of these parts in a file; the folder is the caller's. */
-static void write_glb(const char *path, const char *json, const nt_buffer *bin)
-{
-	nt_error error;
-	nt_output *output;
-	nt_sink *sink;
-	assert_int_equal(nt_output_create(&output, &(nt_output_options){0}, &error), NMTAN_OK);
-	assert_int_equal(nt_output_add(output, path, true, &sink, &error), NMTAN_OK);
-	assert_int_equal(nt_glb_begin(sink, json, strlen(json), true, bin->size, 0, &error), NMTAN_OK);
-	assert_int_equal(nt_sink_write(sink, bin->data, bin->size, &error), NMTAN_OK);
-	assert_int_equal(nt_glb_end_bin(sink, bin->size, &error), NMTAN_OK);
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
 }
 
 static void pad(nt_buffer *buffer)
@@ -95,7 +81,7 @@ static const char *const accessors_without = "\"accessors\":["
 	"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2," \
 	"\"COLOR_0\":3},\"indices\":4,\"material\":0"
 
-static void write_plain(const sheet *s, const char *path)
+static void write_plain(const sheet *s, const char *name)
 {
 	nt_buffer bin = {0}, json = {0};
 	const size_t at[5] = {add_part(&bin, s->positions, sizeof s->positions),
@@ -110,12 +96,12 @@ static void write_plain(const sheet *s, const char *path)
 			i ? "," : "", at[i], sizes[i]);
 	nt_buffer_format(&json, "],%s" PRIMITIVE "}]}],\"buffers\":[{\"byteLength\":%zu}]}",
 		accessors_with_views, bin.size);
-	write_glb(path, json.data, &bin);
+	put_glb_file(name, json.data, bin.data, bin.size);
 	nt_buffer_free(&bin);
 	nt_buffer_free(&json);
 }
 
-static void write_meshopt(const sheet *s, const char *path)
+static void write_meshopt(const sheet *s, const char *name)
 {
 	const struct {
 		const void *bytes;
@@ -145,12 +131,12 @@ static void write_meshopt(const sheet *s, const char *path)
 	nt_buffer_format(&json, "],%s" PRIMITIVE "}]}],\"buffers\":[{\"byteLength\":%zu},{\"byteLength\":%zu,"
 		"\"extensions\":{\"EXT_meshopt_compression\":{\"fallback\":true}}}]}",
 		accessors_with_views, bin.size, fallback);
-	write_glb(path, json.data, &bin);
+	put_glb_file(name, json.data, bin.data, bin.size);
 	nt_buffer_free(&bin);
 	nt_buffer_free(&json);
 }
 
-static void write_draco(const sheet *s, nt_draco_method method, const char *path)
+static void write_draco(const sheet *s, nt_draco_method method, const char *name)
 {
 	const nt_draco_attribute attributes[] = {
 		{.unique_id = 0, .kind = NT_DRACO_POSITION, .component_type = 5126, .components = 3,
@@ -174,7 +160,7 @@ static void write_draco(const sheet *s, nt_draco_method method, const char *path
 		"\"byteLength\":%zu}],%s" PRIMITIVE ",\"extensions\":{\"KHR_draco_mesh_compression\":{"
 		"\"bufferView\":0,\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2,\"COLOR_0\":3}}}}"
 		"]}],\"buffers\":[{\"byteLength\":%zu}]}", block.size, accessors_without, block.size);
-	write_glb(path, json.data, &bin);
+	put_glb_file(name, json.data, bin.data, bin.size);
 	nt_draco_block_free(&block);
 	nt_buffer_free(&bin);
 	nt_buffer_free(&json);
@@ -216,7 +202,7 @@ static bool lists_extension(const loaded *l, const char *list)
 
 static void solve(const char *input, const char *output, nt_draco_choice draco)
 {
-	const nt_settings settings = {.texcoord_set = -1, .draco = draco};
+	const nt_settings settings = {.texcoord_set = -1, .draco = draco, .verify = true};
 	nt_summary summary;
 	nt_error error;
 	if (nt_run(input, output, &settings, &summary, &error))
@@ -256,29 +242,19 @@ static void check_tangents(const nt_mesh *a, const nt_mesh *b, double degrees)
 	}
 }
 
-static char folder[] = "/tmp/nmtan-test-compressed-XXXXXX";
 static sheet source;
-
-static const char *file(const char *name)
-{
-	static char paths[4][200];
-	static unsigned turn;
-	char *path = paths[turn++ % 4];
-	snprintf(path, 200, "%s/%s", folder, name);
-	return path;
-}
 
 static void meshopt_gives_what_plain_gives(void **state)
 {
 	(void)state;
-	write_plain(&source, file("plain.glb"));
-	write_meshopt(&source, file("packed.glb"));
-	solve(file("plain.glb"), file("plain_out.glb"), NT_DRACO_KEEP);
-	solve(file("packed.glb"), file("packed_out.glb"), NT_DRACO_KEEP);
+	write_plain(&source, "plain.glb");
+	write_meshopt(&source, "packed.glb");
+	solve(in_folder("plain.glb"), in_folder("plain_out.glb"), NT_DRACO_KEEP);
+	solve(in_folder("packed.glb"), in_folder("packed_out.glb"), NT_DRACO_KEEP);
 	loaded in, plain, packed;
-	load(&in, file("packed.glb"));
-	load(&plain, file("plain_out.glb"));
-	load(&packed, file("packed_out.glb"));
+	load(&in, in_folder("packed.glb"));
+	load(&plain, in_folder("plain_out.glb"));
+	load(&packed, in_folder("packed_out.glb"));
 	check_same_corners(in.mesh, packed.mesh);
 	check_same_corners(plain.mesh, packed.mesh);
 	check_tangents(plain.mesh, packed.mesh, 0);
@@ -296,15 +272,32 @@ static void meshopt_gives_what_plain_gives(void **state)
 	unload(&packed);
 }
 
+/* Nothing is split, so that nothing has to be unpacked; --verify does. */
+static void meshopt_views_that_do_not_change_stay_packed(void **state)
+{
+	(void)state;
+	sheet even = source;
+	for (int v = 0; v < VERTICES; v++)
+		even.texcoords[v][0] = (float)(v % (N + 1)) * 0.125f;
+	write_meshopt(&even, "packed.glb");
+	solve(in_folder("packed.glb"), in_folder("packed_out.glb"), NT_DRACO_KEEP);
+	loaded out;
+	load(&out, in_folder("packed_out.glb"));
+	assert_int_equal(out.mesh->vertex_count, VERTICES);
+	assert_memory_equal(out.mesh->positions, even.positions, sizeof even.positions);
+	assert_true(lists_extension(&out, "extensionsRequired"));
+	unload(&out);
+}
+
 static void check_draco(nt_draco_method method)
 {
-	write_draco(&source, method, file("in.glb"));
-	solve(file("in.glb"), file("plain.glb"), NT_DRACO_OFF);
-	solve(file("in.glb"), file("out.glb"), NT_DRACO_KEEP);
+	write_draco(&source, method, "in.glb");
+	solve(in_folder("in.glb"), in_folder("plain.glb"), NT_DRACO_OFF);
+	solve(in_folder("in.glb"), in_folder("out.glb"), NT_DRACO_KEEP);
 	loaded in, plain, out;
-	load(&in, file("in.glb"));
-	load(&plain, file("plain.glb"));
-	load(&out, file("out.glb"));
+	load(&in, in_folder("in.glb"));
+	load(&plain, in_folder("plain.glb"));
+	load(&out, in_folder("out.glb"));
 	check_same_corners(in.mesh, plain.mesh);
 	assert_false(lists_extension(&plain, "extensionsUsed"));
 	assert_true(lists_extension(&out, "extensionsRequired"));
@@ -353,12 +346,12 @@ static double half_step(double range, int bits)
 static void explicit_methods_compress_plain_primitives(void **state)
 {
 	(void)state;
-	write_plain(&source, file("in.glb"));
-	solve(file("in.glb"), file("plain.glb"), NT_DRACO_OFF);
-	solve(file("in.glb"), file("out.glb"), NT_DRACO_AS_SEQUENTIAL);
+	write_plain(&source, "in.glb");
+	solve(in_folder("in.glb"), in_folder("plain.glb"), NT_DRACO_OFF);
+	solve(in_folder("in.glb"), in_folder("out.glb"), NT_DRACO_AS_SEQUENTIAL);
 	loaded plain, out;
-	load(&plain, file("plain.glb"));
-	load(&out, file("out.glb"));
+	load(&plain, in_folder("plain.glb"));
+	load(&out, in_folder("out.glb"));
 	assert_int_equal(block_of(&out)->method, NT_DRACO_SEQUENTIAL);
 	assert_true(lists_extension(&out, "extensionsUsed"));
 	assert_true(lists_extension(&out, "extensionsRequired"));
@@ -393,11 +386,11 @@ static void explicit_methods_replace_the_one_of_the_source(void **state)
 		{NT_DRACO_EDGEBREAKER, NT_DRACO_SEQUENTIAL, NT_DRACO_AS_SEQUENTIAL},
 	};
 	for (size_t i = 0; i < 2; i++) {
-		write_draco(&source, cases[i].before, file("in.glb"));
-		solve(file("in.glb"), file("out.glb"), cases[i].choice);
+		write_draco(&source, cases[i].before, "in.glb");
+		solve(in_folder("in.glb"), in_folder("out.glb"), cases[i].choice);
 		loaded in, out;
-		load(&in, file("in.glb"));
-		load(&out, file("out.glb"));
+		load(&in, in_folder("in.glb"));
+		load(&out, in_folder("out.glb"));
 		assert_int_equal(block_of(&in)->method, cases[i].before);
 		assert_int_equal(block_of(&out)->method, cases[i].after);
 		assert_non_null(out.mesh->tangents);
@@ -409,10 +402,10 @@ static void explicit_methods_replace_the_one_of_the_source(void **state)
 		unload(&out);
 	}
 	/* a plain one by edgebreaker */
-	write_plain(&source, file("in.glb"));
-	solve(file("in.glb"), file("out.glb"), NT_DRACO_AS_EDGEBREAKER);
+	write_plain(&source, "in.glb");
+	solve(in_folder("in.glb"), in_folder("out.glb"), NT_DRACO_AS_EDGEBREAKER);
 	loaded out;
-	load(&out, file("out.glb"));
+	load(&out, in_folder("out.glb"));
 	assert_int_equal(block_of(&out)->method, NT_DRACO_EDGEBREAKER);
 	assert_int_equal(out.mesh->corner_count, CORNERS);
 	unload(&out);
@@ -423,10 +416,10 @@ static void faces_without_area_are_kept_by_the_sequential_method(void **state)
 	(void)state;
 	sheet folded = source;
 	folded.indices[0] = folded.indices[1];
-	write_plain(&folded, file("in.glb"));
-	solve(file("in.glb"), file("out.glb"), NT_DRACO_AS_EDGEBREAKER);
+	write_plain(&folded, "in.glb");
+	solve(in_folder("in.glb"), in_folder("out.glb"), NT_DRACO_AS_EDGEBREAKER);
 	loaded out;
-	load(&out, file("out.glb"));
+	load(&out, in_folder("out.glb"));
 	assert_int_equal(block_of(&out)->method, NT_DRACO_SEQUENTIAL);
 	assert_int_equal(out.mesh->corner_count, CORNERS);
 	unload(&out);
@@ -443,8 +436,8 @@ static void draco_edgebreaker_keeps_every_value(void **state)
 	(void)state;
 	check_draco(NT_DRACO_EDGEBREAKER);
 	loaded in, out;
-	load(&in, file("in.glb"));
-	load(&out, file("out.glb"));
+	load(&in, in_folder("in.glb"));
+	load(&out, in_folder("out.glb"));
 	static float a[CORNERS][3], b[CORNERS][3];
 	for (size_t c = 0; c < CORNERS; c++) {
 		memcpy(a[c], row(in.mesh->positions, in.mesh, c, 3), sizeof a[c]);
@@ -463,23 +456,21 @@ static void damaged_blocks_are_harmless(void **state)
 	(void)state;
 	for (int kind = 0; kind < 2; kind++) {
 		if (kind)
-			write_meshopt(&source, file("good.glb"));
+			write_meshopt(&source, "good.glb");
 		else
-			write_draco(&source, NT_DRACO_EDGEBREAKER, file("good.glb"));
+			write_draco(&source, NT_DRACO_EDGEBREAKER, "good.glb");
 		nt_file good;
 		nt_error error;
-		assert_int_equal(nt_file_open(&good, file("good.glb"), &error), NMTAN_OK);
+		assert_int_equal(nt_file_open(&good, in_folder("good.glb"), &error), NMTAN_OK);
 		unsigned char *bytes = malloc(good.size);
 		for (size_t i = 0; i < 150; i++) {
 			memcpy(bytes, good.data, good.size);
 			bytes[good.size - 1 - i * 13 % good.size] ^= (unsigned char)(1u << i % 8);
-			FILE *stream = fopen(file("bad.glb"), "wb");
-			assert_int_equal(fwrite(bytes, 1, good.size, stream), good.size);
-			fclose(stream);
+			put_file("bad.glb", bytes, good.size);
 			const nt_settings settings = {.texcoord_set = -1, .dry_run = true};
 			nt_summary summary;
 			const nmtan_status status =
-				nt_run(file("bad.glb"), file("never.glb"), &settings, &summary, &error);
+				nt_run(in_folder("bad.glb"), in_folder("never.glb"), &settings, &summary, &error);
 			assert_int_not_equal(status, NMTAN_ERROR_INTERNAL);
 			nt_summary_free(&summary);
 		}
@@ -490,23 +481,15 @@ static void damaged_blocks_are_harmless(void **state)
 
 static int set_up(void **state)
 {
-	(void)state;
 	make_sheet(&source);
-	return mkdtemp(folder) ? 0 : -1;
-}
-
-static int tear_down(void **state)
-{
-	(void)state;
-	char command[200];
-	snprintf(command, sizeof command, "rm -rf '%s'", folder);
-	return system(command);
+	return make_folder(state);
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(meshopt_gives_what_plain_gives),
+		cmocka_unit_test(meshopt_views_that_do_not_change_stay_packed),
 		cmocka_unit_test(draco_sequential_keeps_every_value),
 		cmocka_unit_test(draco_edgebreaker_keeps_every_value),
 		cmocka_unit_test(explicit_methods_compress_plain_primitives),
@@ -514,5 +497,5 @@ int main(void)
 		cmocka_unit_test(faces_without_area_are_kept_by_the_sequential_method),
 		cmocka_unit_test(damaged_blocks_are_harmless),
 	};
-	return cmocka_run_group_tests_name("io/gltf compressed", tests, set_up, tear_down);
+	return cmocka_run_group_tests_name("io/gltf compressed", tests, set_up, remove_folder);
 }

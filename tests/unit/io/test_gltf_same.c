@@ -4,7 +4,7 @@
  * over it; the expected answer is written beside each: the number of the earlier primitive, or -1.
  */
 #include "test.h"
-#include "io/uri.h"
+#include "io/base64_write.h"
 #include "pipeline/run.h"
 
 /* Positions, normals, texture coordinates, indices of one triangle; accessor 4 is 0 once more, 5 are other

@@ -3,9 +3,9 @@
  * Material libraries, from strings and from a folder that the test makes and removes.
  */
 #include "test.h"
+#include "folder.h"
 #include <stdio.h>
 #include <sys/stat.h>
-#include <unistd.h>
 #include "io/mtl.h"
 #include "io/mtl_map.h"
 
@@ -230,57 +230,21 @@ static void every_prefix_is_survived(void **state)
 
 /* ---- files ---- */
 
-static char folder[] = "/tmp/nmtan_mtl_XXXXXX";
-
-static void put(const char *name, const char *text)
+static int make_libraries(void **state)
 {
-	char path[200];
-	snprintf(path, sizeof path, "%s/%s", folder, name);
-	FILE *file = fopen(path, "w");
-	assert_non_null(file);
-	fputs(text, file);
-	fclose(file);
-}
-
-static int make_folder(void **state)
-{
-	(void)state;
-	char path[200];
-	if (!mkdtemp(folder))
+	if (make_folder(state) || mkdir(in_folder("in"), 0700) || mkdir(in_folder("in/sub"), 0700))
 		return -1;
-	const char *const folders[] = {"in", "in/sub"};
-	for (int i = 0; i < 2; i++) {
-		snprintf(path, sizeof path, "%s/%s", folder, folders[i]);
-		mkdir(path, 0700);
-	}
-	put("in/a.mtl", "newmtl a\nKd 0.5 0.5 0.5\nbump b.png\nnewmtl unused\nmap_Bump c.png\n");
-	put("in/b c.mtl", "newmtl b c\nnewmtl a\n");
-	put("in/sub/d.mtl", "newmtl d\nnorm d.png\n");
-	put("outside.mtl", "newmtl secret\n");
-	return 0;
-}
-
-static int remove_folder(void **state)
-{
-	(void)state;
-	char path[200];
-	const char *const names[] = {"in/a.mtl", "in/b c.mtl", "in/sub/d.mtl", "outside.mtl"};
-	for (int i = 0; i < 4; i++) {
-		snprintf(path, sizeof path, "%s/%s", folder, names[i]);
-		unlink(path);
-	}
-	const char *const folders[] = {"in/sub", "in", ""};
-	for (int i = 0; i < 3; i++) {
-		snprintf(path, sizeof path, "%s/%s", folder, folders[i]);
-		rmdir(path);
-	}
+	put_text_file("in/a.mtl", "newmtl a\nKd 0.5 0.5 0.5\nbump b.png\nnewmtl unused\nmap_Bump c.png\n");
+	put_text_file("in/b c.mtl", "newmtl b c\nnewmtl a\n");
+	put_text_file("in/sub/d.mtl", "newmtl d\nnorm d.png\n");
+	put_text_file("outside.mtl", "newmtl secret\n");
 	return 0;
 }
 
 static void open_obj(reading *r, char path[200], const char *text, bool allow_outside)
 {
 	*r = (reading){0};
-	snprintf(path, 200, "%s/in/x.obj", folder);
+	snprintf(path, 200, "%s", in_folder("in/x.obj"));
 	nt_scene_init(&r->scene, path);
 	r->scene.bytes = (const unsigned char *)text;
 	r->scene.byte_count = strlen(text);
@@ -294,7 +258,7 @@ static void libraries_are_found_beside_the_obj(void **state)
 {
 	(void)state;
 	reading r;
-	char path[200], library[300];
+	char path[200];
 	open_obj(&r, path,
 		"usemtl d\n" FACE "usemtl a\nf 1 1 1\nusemtl b c\nf 1 1 1\n"
 		"mtllib a.mtl b c.mtl\nmtllib sub\\d.mtl\nmtllib \"a.mtl\"\n", false);
@@ -302,8 +266,7 @@ static void libraries_are_found_beside_the_obj(void **state)
 	const nt_material *materials = r.scene.materials;
 	assert_string_equal(materials[0].name, "d");
 	assert_string_equal(materials[0].normal_map, "d.png");
-	snprintf(library, sizeof library, "%s/in/sub/d.mtl", folder);
-	assert_string_equal(materials[0].library, library);
+	assert_string_equal(materials[0].library, in_folder("in/sub/d.mtl"));
 	assert_int_equal(r.scene.meshes[0].slots, NT_SLOT_NORMAL);
 	assert_string_equal(materials[1].name, "a");
 	assert_true(materials[1].base_color[0] == 0.5f);
@@ -345,7 +308,8 @@ static void nothing_outside_the_folder_is_read(void **state)
 		if (i < 3)
 			snprintf(text, sizeof text, "mtllib %s\nusemtl secret\n" FACE, names[i]);
 		else
-			snprintf(text, sizeof text, "mtllib %s/outside.mtl\nusemtl secret\n" FACE, folder);
+			snprintf(text, sizeof text, "mtllib %s\nusemtl secret\n" FACE,
+				in_folder("outside.mtl"));
 		open_obj(&r, path, text, false);
 		assert_int_equal(r.scene.findings.count, 1);
 		assert_int_equal(r.scene.findings.items[0].code, NT_CODE_MTL_MISSING);
@@ -381,5 +345,5 @@ int main(void)
 		cmocka_unit_test(name_with_blanks_is_tried_whole_first),
 		cmocka_unit_test(nothing_outside_the_folder_is_read),
 	};
-	return cmocka_run_group_tests_name("io/mtl", tests, make_folder, remove_folder);
+	return cmocka_run_group_tests_name("io/mtl", tests, make_libraries, remove_folder);
 }

@@ -4,8 +4,8 @@
  * sanitizers to see.
  */
 #include "test.h"
+#include "folder.h"
 #include <stdio.h>
-#include <unistd.h>
 #include "fail_alloc.h"
 #include "io/format.h"
 #include "scene/polygon.h"
@@ -27,14 +27,9 @@ static nmtan_status open_text(const char *path, const char *text, nt_error *erro
 static void every_allocation_of_the_reader_may_fail(void **state)
 {
 	(void)state;
-	char folder[] = "/tmp/nmtan_memory_XXXXXX", library[100], path[100], text[4000], *p = text;
-	assert_non_null(mkdtemp(folder));
-	snprintf(library, sizeof library, "%s/a.mtl", folder);
-	snprintf(path, sizeof path, "%s/a.obj", folder);
-	FILE *file = fopen(library, "w");
-	assert_non_null(file);
-	fputs("newmtl a\nKd 1 1 1\nmap_Kd a.png\nbump b.png\nmap_Pr c.png\n", file);
-	fclose(file);
+	char path[200], text[4000], *p = text;
+	snprintf(path, sizeof path, "%s", in_folder("a.obj"));
+	put_text_file("a.mtl", "newmtl a\nKd 1 1 1\nmap_Kd a.png\nbump b.png\nmap_Pr c.png\n");
 	p += sprintf(p, "mtllib a.mtl\nmtllib none.mtl\no first\nusemtl a\ns 1\n");
 	for (int i = 0; i < 60; i++)
 		p += sprintf(p, "v %d %d 0 1 0 0\nvt 0 %d\nvn 0 0 1\n", i, i * i, i);
@@ -59,8 +54,6 @@ static void every_allocation_of_the_reader_may_fail(void **state)
 		assert_string_equal(error.place.file, path);
 	}
 	assert_true(count > 40); /* at least one of each kind */
-	unlink(library);
-	rmdir(folder);
 }
 
 static void allocations_of_large_polygons_may_fail(void **state)
@@ -91,5 +84,5 @@ int main(void)
 		cmocka_unit_test(every_allocation_of_the_reader_may_fail),
 		cmocka_unit_test(allocations_of_large_polygons_may_fail),
 	};
-	return cmocka_run_group_tests_name("io/obj, out of memory", tests, NULL, NULL);
+	return cmocka_run_group_tests_name("io/obj, out of memory", tests, make_folder, remove_folder);
 }

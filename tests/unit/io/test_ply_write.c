@@ -4,35 +4,16 @@
  */
 #include "test.h"
 #include "fail_alloc.h"
+#include "folder.h"
 #include "ext/number.h"
 #include "io/format.h"
 
 #include <math.h>
 #include <stdio.h>
-#include <unistd.h>
-
-static char folder[64], path[80];
-
-static int make_folder(void **state)
-{
-	(void)state;
-	strcpy(folder, "/tmp/nmtan-test-XXXXXX");
-	if (!mkdtemp(folder))
-		return -1;
-	snprintf(path, sizeof path, "%s/out.ply", folder);
-	return 0;
-}
-
-static int remove_folder(void **state)
-{
-	(void)state;
-	unlink(path);
-	return rmdir(folder);
-}
 
 static nmtan_status try_write(nt_scene *scene, bool bitangents, nt_error *error)
 {
-	const nt_write_options options = {.format = NT_FORMAT_PLY, .path = path, .bitangents = bitangents};
+	const nt_write_options options = {.format = NT_FORMAT_PLY, .path = in_folder("out.ply"), .bitangents = bitangents};
 	nt_output *output = NULL;
 	nt_error_clear(error);
 	nmtan_status status = nt_output_create(&output, NULL, error);
@@ -49,7 +30,7 @@ static nt_file write_scene(nt_scene *scene, bool bitangents)
 	nt_error error;
 	nt_file file;
 	assert_int_equal(try_write(scene, bitangents, &error), NMTAN_OK);
-	assert_int_equal(nt_file_open(&file, path, &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("out.ply"), &error), NMTAN_OK);
 	return file;
 }
 

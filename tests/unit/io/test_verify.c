@@ -1,58 +1,13 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
-#include <stdio.h>
-#include <unistd.h>
+#include "hand_gltf.h"
 #include "io/verify.h"
 
-static char folder[] = "/tmp/nmtan-verify-XXXXXX";
+#include <math.h>
 
-static int make_folder(void **state)
+/* Nothing is committed, so nothing may be left. */
+static int remove_empty_folder(void **state)
 {
-	(void)state;
-	return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-	(void)state;
-	return rmdir(folder); /* nothing was committed, so nothing may be left */
-}
-
-/* A quad and a triangle of two materials, the triangle first in the document; vertex 2 is split. */
-static float positions[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 1, 0};
-static float normals[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
-static uint32_t corners[] = {0, 1, 2, 3, 1, 4, 2};
-static uint32_t split_corners[] = {0, 1, 2, 3, 1, 4, 5};
-static uint32_t sources[] = {2};
-static uint8_t sizes[] = {4, 3}, diagonals[] = {1, 0};
-static uint32_t face_primitive[] = {1, 0};
-
-typedef struct hand_scene {
-	nt_scene scene;
-	nt_mesh mesh;
-	nt_primitive primitives[2];
-	nt_instance instance;
-	float tangents[24];
-} hand_scene;
-
-static void make_scene(hand_scene *hand)
-{
-	*hand = (hand_scene){
-		.mesh = {.name = "hand", .vertex_count = 5, .positions = positions, .normals = normals,
-			.face_count = 2, .corner_count = 7, .face_sizes = sizes, .face_diagonals = diagonals,
-			.indices = corners, .primitive_count = 2, .face_primitive = face_primitive,
-			.split = {split_corners, sources, 1, hand->tangents}},
-		.primitives = {{.material = NT_NONE}, {.material = NT_NONE}},
-		.instance = {.matrix = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}},
-	};
-	for (int v = 0; v < 6; v++)
-		hand->tangents[4 * v] = hand->tangents[4 * v + 3] = v == 5 ? -1 : 1;
-	nt_scene_init(&hand->scene, "hand.obj");
-	hand->mesh.primitives = hand->primitives;
-	hand->scene.meshes = &hand->mesh;
-	hand->scene.mesh_count = 1;
-	hand->scene.instances = &hand->instance;
-	hand->scene.instance_count = 1;
+	return count_in_folder() ? -1 : remove_folder(state);
 }
 
 /* Writes the scene, lets `spoil` change what the writer should have written, and verifies. */
@@ -60,8 +15,8 @@ static nmtan_status verify_after(const char *name, void (*spoil)(hand_scene *), 
 {
 	hand_scene hand;
 	make_scene(&hand);
-	char path[100];
-	snprintf(path, sizeof path, "%s/%s", folder, name);
+	divide(&hand);
+	const char *path = in_folder(name);
 	const nt_write_options options = {.path = path,
 		.format = strstr(name, ".glb") ? NT_FORMAT_GLB : NT_FORMAT_GLTF};
 	nt_output *output;
@@ -112,11 +67,79 @@ static void every_difference_is_told(void **state)
 	assert_non_null(strstr(error.place.file, "a.glb"));
 }
 
+/* ---- a document that is patched ---- */
+
+/* data/morph.gltf is a quad with one target that moves its positions. */
+typedef struct patched {
+	nt_file file;
+	nt_scene scene;
+	nt_output *output;
+	float tangents[4][4], moved[4][3];
+} patched;
+
+static void patch(patched *p, const nt_write_options *options)
+{
+	static const nt_read_options reading = {.texcoord_set = -1, .morphs = NT_MORPH_BAKE};
+	static const char input[] = NT_DATA_DIR "/morph.gltf";
+	nt_error error;
+	assert_int_equal(nt_file_open(&p->file, input, &error), NMTAN_OK);
+	nt_scene_init(&p->scene, input);
+	p->scene.bytes = p->file.data;
+	p->scene.byte_count = p->file.size;
+	p->scene.format = NT_FORMAT_GLTF;
+	assert_int_equal(nt_gltf_open(&p->scene, &reading, &error), NMTAN_OK);
+	nt_mesh *mesh = p->scene.meshes;
+	assert_int_equal(nt_gltf_load(&p->scene, mesh, &reading, &error), NMTAN_OK);
+	assert_int_equal(mesh->vertex_count, 4);
+	assert_int_equal(mesh->morph_count, 1);
+	for (int v = 0; v < 4; v++) {
+		const float tangent[] = {0.6f, 0.8f, 0, 1}, moved[] = {-0.8f, 0.6f, 0};
+		memcpy(p->tangents[v], tangent, sizeof tangent);
+		memcpy(p->moved[v], moved, sizeof moved);
+	}
+	mesh->split.vertex_tangents = p->tangents[0];
+	mesh->morphs[0].vertex_tangents = p->moved[0];
+	assert_int_equal(nt_output_create(&p->output, NULL, &error), NMTAN_OK);
+	assert_int_equal(nt_gltf_patch(&p->scene, options, p->output, &error), NMTAN_OK);
+}
+
+static void close_patched(patched *p)
+{
+	nt_output_abort(p->output);
+	nt_scene_free(&p->scene);
+	nt_file_close(&p->file);
+}
+
+static void tangents_of_targets_are_compared(void **state)
+{
+	(void)state;
+	static const struct {
+		nt_precision precision;
+		nt_draco_choice draco;
+	} ways[] = {{NT_PRECISION_FLOAT, NT_DRACO_KEEP}, {NT_PRECISION_SHORT, NT_DRACO_KEEP},
+		{NT_PRECISION_BYTE, NT_DRACO_KEEP}, {NT_PRECISION_FLOAT, NT_DRACO_AS_SEQUENTIAL}};
+	for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+		const char *path = in_folder("a.glb");
+		const nt_write_options options = {.path = path, .format = NT_FORMAT_GLB,
+			.precision = ways[i].precision, .draco = ways[i].draco};
+		patched p;
+		nt_error error;
+		patch(&p, &options);
+		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &error), NMTAN_OK);
+		/* one bit of one number: 0.6 again, but for its last one */
+		p.moved[2][1] = nextafterf(p.moved[2][1], 1);
+		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &error), NMTAN_ERROR_INTERNAL);
+		assert_non_null(strstr(error.message, "corner 2 "));
+		close_patched(&p);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(good_output_is_good),
 		cmocka_unit_test(every_difference_is_told),
+		cmocka_unit_test(tangents_of_targets_are_compared),
 	};
-	return cmocka_run_group_tests_name("io/verify", tests, make_folder, remove_folder);
+	return cmocka_run_group_tests_name("io/verify", tests, make_folder, remove_empty_folder);
 }

@@ -1,35 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
+#include "folder.h"
 #include "pipeline/batch.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
 
-
-/* A fresh folder to work in; its name is in `folder`. */
-static char folder[64];
-
+/* Works in a fresh folder. */
 static int enter(void **state)
 {
-	(void)state;
-	snprintf(folder, sizeof folder, "/tmp/nmtan-batch-XXXXXX");
-	return mkdtemp(folder) && chdir(folder) == 0 ? 0 : -1;
+	return make_folder(state) || chdir(in_folder(""));
 }
 
 static int leave(void **state)
 {
-	(void)state;
-	char command[96];
-	snprintf(command, sizeof command, "rm -rf '%s'", folder);
-	return chdir("/") || system(command);
-}
-
-static void put(const char *path, const char *text)
-{
-	FILE *file = fopen(path, "w");
-	assert_non_null(file);
-	fputs(text, file);
-	fclose(file);
+	return chdir("/") || remove_folder(state);
 }
 
 #define INPUTS(...) ((const char *const[]){__VA_ARGS__}), \
@@ -41,7 +26,7 @@ static void outputs_have_the_name_of_the_input_and_the_ending_of_the_format(void
 	nt_settings settings = {0};
 	nt_batch batch;
 	nt_error error;
-	put("noname", "ply\nformat ascii 1.0\nend_header\n");
+	put_text_file("noname", "ply\nformat ascii 1.0\nend_header\n");
 	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "b.PLY", "c.d/e.gltf", "f.glb", "head.v2",
 					       ".glb", "h.drc"),
 				 "out", &settings, &error),
@@ -87,7 +72,7 @@ static void an_output_that_is_another_input_is_refused(void **state)
 	const nt_settings settings = {0};
 	nt_batch batch;
 	nt_error error;
-	put("a.glb", "glTF");
+	put_text_file("a.glb", "glTF");
 	assert_int_equal(link("a.glb", "other.ply"), 0);
 	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj", "other.ply"), ".", &settings, &error),
 		NMTAN_ERROR_USAGE);
@@ -105,7 +90,7 @@ static void a_dry_run_makes_no_folder_and_a_file_is_none(void **state)
 	nt_batch_free(&batch);
 	assert_int_equal(access("out3", F_OK), -1);
 	settings.dry_run = false;
-	put("file", "");
+	put_text_file("file", "");
 	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj"), "file", &settings, &error),
 		NMTAN_ERROR_IO);
 	assert_string_equal(error.place.file, "file");

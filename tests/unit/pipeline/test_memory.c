@@ -5,6 +5,7 @@
  * process of its own, whose peak the system tells.
  */
 #include "test.h"
+#include "folder.h"
 #include <math.h>
 #include <stdio.h>
 #include <sys/resource.h>
@@ -14,17 +15,6 @@
 #include "pipeline/run.h"
 
 enum { SIDE = 420 }; /* quads along an edge */
-
-static char folder[64];
-
-static const char *at(const char *name)
-{
-	static char paths[4][128];
-	static unsigned turn;
-	char *path = paths[turn++ % 4];
-	snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-	return path;
-}
 
 static size_t size_of(const char *path)
 {
@@ -128,7 +118,7 @@ static size_t peak_of(const char *input, const char *output)
 	const pid_t child = fork();
 	assert_true(child >= 0);
 	if (child == 0) {
-		const nt_settings settings = {.texcoord_set = -1, .output_format = NT_FORMAT_GLB, .threads = 2};
+		const nt_settings settings = {.texcoord_set = -1, .embed = strstr(output, ".gltf"), .threads = 2};
 		nt_summary summary;
 		nt_error error;
 		const nmtan_status status = nt_run(input, output, &settings, &summary, &error);
@@ -148,10 +138,10 @@ static size_t peak_of(const char *input, const char *output)
 #define SANITIZED 0
 #endif
 
-static void assert_peak(const char *small, const char *large)
+static void assert_peak(const char *small, const char *large, const char *output)
 {
-	const size_t base = peak_of(small, at("out.glb")), peak = peak_of(large, at("out.glb"));
-	const size_t in = size_of(large), out = size_of(at("out.glb"));
+	const size_t base = peak_of(small, output), peak = peak_of(large, output);
+	const size_t in = size_of(large), out = size_of(output);
 	print_message("%zu bytes to %zu: peak %zu, %zu of them for a triangle or two\n", in, out, peak, base);
 	assert_true(SANITIZED || peak - base <= in + out + out / 2);
 }
@@ -159,39 +149,34 @@ static void assert_peak(const char *small, const char *large)
 static void a_glb_takes_little_more_than_its_output(void **state)
 {
 	(void)state;
-	make_glb(at("small.glb"), 1);
-	make_glb(at("large.glb"), SIDE);
-	assert_peak(at("small.glb"), at("large.glb"));
+	make_glb(in_folder("small.glb"), 1);
+	make_glb(in_folder("large.glb"), SIDE);
+	assert_peak(in_folder("small.glb"), in_folder("large.glb"), in_folder("out.glb"));
+}
+
+/* The base64 of a buffer is not held. */
+static void a_gltf_with_its_buffer_inside_takes_little_more_than_its_output(void **state)
+{
+	(void)state;
+	make_glb(in_folder("small.glb"), 1);
+	make_glb(in_folder("large.glb"), SIDE);
+	assert_peak(in_folder("small.glb"), in_folder("large.glb"), in_folder("out.gltf"));
 }
 
 static void an_obj_takes_little_more_than_its_output(void **state)
 {
 	(void)state;
-	make_obj(at("small.obj"), 1);
-	make_obj(at("large.obj"), SIDE);
-	assert_peak(at("small.obj"), at("large.obj"));
-}
-
-static int make_folder(void **state)
-{
-	(void)state;
-	strcpy(folder, "/tmp/nmtan-test-memory-XXXXXX");
-	return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state)
-{
-	(void)state;
-	static const char *const names[] = {"small.glb", "large.glb", "small.obj", "large.obj", "out.glb"};
-	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-		unlink(at(names[i]));
-	return rmdir(folder);
+	make_obj(in_folder("small.obj"), 1);
+	make_obj(in_folder("large.obj"), SIDE);
+	assert_peak(in_folder("small.obj"), in_folder("large.obj"), in_folder("out.glb"));
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(a_glb_takes_little_more_than_its_output, make_folder, remove_folder),
+		cmocka_unit_test_setup_teardown(a_gltf_with_its_buffer_inside_takes_little_more_than_its_output,
+			make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(an_obj_takes_little_more_than_its_output, make_folder, remove_folder),
 	};
 	return cmocka_run_group_tests_name("pipeline/memory", tests, NULL, NULL);

@@ -7,15 +7,13 @@
  * which is nonsense. Target 1 moves x to -x: T = (-1, 0, 0), and both triangles are seen from behind.
  */
 #include "test.h"
+#include "folder.h"
 #include <math.h>
 #include <stdio.h>
 #include <time.h>
-#include <unistd.h>
 #include "base/buffer.h"
 #include "io/gltf_document.h"
 #include "pipeline/run.h"
-
-static char folder[] = "/tmp/nmtan-test-morphs-XXXXXX";
 
 static const float rows[6][4][3] = {
 	{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},     /* 0: positions */
@@ -27,15 +25,6 @@ static const float rows[6][4][3] = {
 };
 static const float texcoords[4][2] = {{0, 0}, {1, 0}, {1, -1}, {0, -1}};
 static const uint16_t indices[6] = {0, 1, 2, 0, 2, 3};
-
-static const char *file(const char *name)
-{
-	static char paths[2][200];
-	static unsigned turn;
-	char *path = paths[turn++ % 2];
-	snprintf(path, 200, "%s/%s", folder, name);
-	return path;
-}
 
 static void write_input(void)
 {
@@ -56,15 +45,7 @@ static void write_input(void)
 		"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":6},"
 		"\"indices\":7,\"material\":0,\"targets\":[{\"POSITION\":2,\"NORMAL\":3,\"TANGENT\":4},"
 		"{\"POSITION\":5}]}]}],\"buffers\":[{\"byteLength\":%zu}]}", bin.size);
-	nt_error error;
-	nt_output *output;
-	nt_sink *sink;
-	assert_int_equal(nt_output_create(&output, &(nt_output_options){0}, &error), NMTAN_OK);
-	assert_int_equal(nt_output_add(output, file("in.glb"), true, &sink, &error), NMTAN_OK);
-	assert_int_equal(nt_glb_begin(sink, json.data, json.size, true, bin.size, 0, &error), NMTAN_OK);
-	assert_int_equal(nt_sink_write(sink, bin.data, bin.size, &error), NMTAN_OK);
-	assert_int_equal(nt_glb_end_bin(sink, bin.size, &error), NMTAN_OK);
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	put_glb_file("in.glb", json.data, bin.data, bin.size);
 	nt_buffer_free(&bin);
 	nt_buffer_free(&json);
 }
@@ -81,7 +62,7 @@ static void convert(result *r, nt_morph_choice morphs)
 	const nt_settings settings = {.texcoord_set = -1, .morphs = morphs};
 	nt_summary summary;
 	nt_error error;
-	if (nt_run(file("in.glb"), file("out.glb"), &settings, &summary, &error))
+	if (nt_run(in_folder("in.glb"), in_folder("out.glb"), &settings, &summary, &error))
 		fail_msg("%s: %s", error.place.pointer, error.message);
 	assert_int_equal(summary.solved_count, 1);
 	assert_int_equal(summary.appended_tangents, 0);
@@ -91,7 +72,7 @@ static void convert(result *r, nt_morph_choice morphs)
 			r->turned += summary.findings.items[i].count;
 	nt_summary_free(&summary);
 
-	assert_int_equal(nt_file_open(&r->file, file("out.glb"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&r->file, in_folder("out.glb"), &error), NMTAN_OK);
 	nt_scene_init(&r->scene, "out.glb");
 	r->scene.bytes = r->file.data;
 	r->scene.byte_count = r->file.size;
@@ -180,7 +161,7 @@ static void triangles_seen_from_behind_are_counted(void **state)
  * (1, 0), (0, 1) at the hub, at the angle a and at a + 90 degrees, so that T = (cos a, sin a, 0). */
 enum { HUB = 100000, HUB_VERTICES = 1 + 2 * HUB };
 
-static void write_hub(const char *path)
+static void write_hub(void)
 {
 	float (*positions)[3] = calloc(HUB_VERTICES, sizeof *positions);
 	float (*normals)[3] = calloc(HUB_VERTICES, sizeof *normals);
@@ -221,15 +202,7 @@ static void write_hub(const char *path)
 		"\"type\":\"SCALAR\"}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,"
 		"\"TEXCOORD_0\":2},\"indices\":3,\"material\":0,\"targets\":[{\"POSITION\":1}]}]}],"
 		"\"buffers\":[{\"byteLength\":%zu}]}", 32 * HUB_VERTICES, 3 * HUB, bin.size);
-	nt_error error;
-	nt_output *output;
-	nt_sink *sink;
-	assert_int_equal(nt_output_create(&output, &(nt_output_options){0}, &error), NMTAN_OK);
-	assert_int_equal(nt_output_add(output, path, true, &sink, &error), NMTAN_OK);
-	assert_int_equal(nt_glb_begin(sink, json.data, json.size, true, bin.size, 0, &error), NMTAN_OK);
-	assert_int_equal(nt_sink_write(sink, bin.data, bin.size, &error), NMTAN_OK);
-	assert_int_equal(nt_glb_end_bin(sink, bin.size, &error), NMTAN_OK);
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	put_glb_file("hub.glb", json.data, bin.data, bin.size);
 	nt_buffer_free(&bin);
 	nt_buffer_free(&json);
 }
@@ -239,14 +212,12 @@ static void write_hub(const char *path)
 static void a_hub_of_a_hundred_thousand_tangents_is_no_burden(void **state)
 {
 	(void)state;
-	char path[200];
-	snprintf(path, sizeof path, "%s/hub.glb", folder);
-	write_hub(path);
+	write_hub();
 	const nt_settings settings = {.texcoord_set = -1, .threads = 1};
 	nt_summary summary;
 	nt_error error;
 	const clock_t begin = clock();
-	if (nt_run(path, file("out.glb"), &settings, &summary, &error))
+	if (nt_run(in_folder("hub.glb"), in_folder("out.glb"), &settings, &summary, &error))
 		fail_msg("%s: %s", error.place.pointer, error.message);
 	assert_true(clock() - begin < 20 * CLOCKS_PER_SEC);
 	/* neighbours differ by 6e-5 in a float of 24 bits: no two tangents are the same */
@@ -256,19 +227,10 @@ static void a_hub_of_a_hundred_thousand_tangents_is_no_burden(void **state)
 
 static int set_up(void **state)
 {
-	(void)state;
-	if (!mkdtemp(folder))
+	if (make_folder(state))
 		return -1;
 	write_input();
 	return 0;
-}
-
-static int tear_down(void **state)
-{
-	(void)state;
-	char command[200];
-	snprintf(command, sizeof command, "rm -rf '%s'", folder);
-	return system(command);
 }
 
 int main(void)
@@ -280,5 +242,5 @@ int main(void)
 		cmocka_unit_test(dropped_targets_have_none),
 		cmocka_unit_test(triangles_seen_from_behind_are_counted),
 	};
-	return cmocka_run_group_tests(tests, set_up, tear_down);
+	return cmocka_run_group_tests(tests, set_up, remove_folder);
 }

@@ -49,9 +49,9 @@ static uint32_t index_at(const nt_reread_array *indices, size_t i)
 	uint16_t two;
 	uint32_t four;
 	switch (indices->component_type) {
-	case NT_GLTF_UNSIGNED_BYTE:
+	case NT_GLTF_UBYTE:
 		return *at;
-	case NT_GLTF_UNSIGNED_SHORT:
+	case NT_GLTF_USHORT:
 		memcpy(&two, at, 2);
 		return two;
 	default:

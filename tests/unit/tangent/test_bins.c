@@ -16,6 +16,12 @@ static nt_record contribution(size_t corner, uint32_t state)
 	return (nt_record){(float)corner, 1.0f, -2.0f * (float)corner, state};
 }
 
+/* Differs from all others, up to the last bit that an entry holds. */
+static nt_fan_entry entry_of(size_t corner, uint32_t vertex)
+{
+	return (nt_fan_entry){(uint32_t)corner << 16 | (uint32_t)corner % 2, ((uint32_t)1 << 28) - 1 - vertex};
+}
+
 static uint32_t state_of(size_t triangle)
 {
 	const uint32_t bits = NT_STATE_BASE | (NT_STATE_ALL & ~NT_STATE_EMPTY);
@@ -40,7 +46,8 @@ static void fill(const nt_bins *bins, unsigned range, const uint32_t *ids, size_
 			const uint32_t at = cursors[v >> BITS]++;
 			bins->sums[at] = contribution(3 * t + k, state_of(t) |
 				(v % (1u << BITS)) << NT_BINNED_SHIFT | orient << 31);
-			bins->entries[at] = (nt_fan_entry){(uint32_t)(3 * t + k), v};
+			const nt_fan_entry entry = entry_of(3 * t + k, v);
+			nt_binned_store(bins->entries + NT_BINNED_ENTRY * at, entry.next, entry.previous);
 		}
 	}
 }
@@ -57,24 +64,28 @@ static void expect(expected *e, const uint32_t *ids, bool both)
 			const nt_record add = contribution(3 * t + k, state_of(t));
 			r->x += add.x, r->y += add.y, r->z += add.z;
 			r->state &= both && t % 7 == 0 ? add.state & ~(uint32_t)NT_STATE_LOCAL : add.state;
-			e->entries[v][e->degrees[v]++] = (nt_fan_entry){(uint32_t)(3 * t + k), v};
+			nt_fan_entry entry = entry_of(3 * t + k, v);
+			entry.next |= (uint32_t)(t % 3 == 0) << 31;
+			entry.previous |= (uint32_t)(t % 3 == 0) << 31;
+			e->entries[v][e->degrees[v]++] = entry;
 		}
 }
 
-static void compare(const nt_bins *bins, nt_record *const records[2], const expected *e, bool both)
+static void compare(const nt_bins *bins, const expected *e, bool both)
 {
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
-	nt_adjacency a;
+	nt_bin bin;
 	size_t hubs = 0;
-	assert_int_equal(nt_bins_adjacency(bins, &scratch, &a), NMTAN_OK);
-	for (size_t bin = 0; bin < bins->count; bin++) {
-		nt_bins_add(bins, bin, records, &a);
-		assert_int_equal(a.first_vertex, bin << BITS);
+	assert_int_equal(nt_bin_make(bins, (bool[2]){true, both}, &scratch, &bin), NMTAN_OK);
+	for (size_t index = 0; index < bins->count; index++) {
+		nt_bin_add_up(bins, index, &bin);
+		const nt_adjacency a = bin.adjacency;
+		assert_int_equal(a.first_vertex, index << BITS);
 		for (size_t lane = 0; lane < a.vertex_count; lane++) {
 			const size_t v = a.first_vertex + lane;
 			for (int o = 0; o <= both; o++)
-				assert_memory_equal(&records[o][v], &e->records[o][v], sizeof **records);
+				assert_memory_equal(&bin.sums[o][lane], &e->records[o][v], sizeof(nt_record));
 			if (e->degrees[v] > NT_FAN_DEPTH) {
 				assert_true(a.cursors[lane] & NT_CURSOR_HUB);
 				hubs++;
@@ -94,9 +105,7 @@ static void compare(const nt_bins *bins, nt_record *const records[2], const expe
 static void check(unsigned ranges, bool both)
 {
 	static const size_t bounds[4][5] = {{0}, {0, TRIANGLES}, {0}, {0, 100, 100, TRIANGLES}};
-	static nt_record negative[VERTICES], positive[VERTICES];
 	static expected e;
-	nt_record *records[2] = {negative, both ? positive : NULL};
 	uint32_t ids[3 * TRIANGLES], random = 1;
 	/* the squares of small numbers come more often: some vertices are hubs */
 	for (size_t i = 0; i < 3 * TRIANGLES; i++) {
@@ -107,12 +116,13 @@ static void check(unsigned ranges, bool both)
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
 	const nt_triangle_ranges cut = {ranges, bounds[ranges]};
+	nt_room room = nt_room_over(NULL, 0, &scratch);
 	nt_bins bins;
-	assert_int_equal(nt_bins_make(ids, &cut, VERTICES, BITS, NULL, &scratch, &bins), NMTAN_OK);
+	assert_int_equal(nt_bins_make(ids, &cut, VERTICES, BITS, NULL, &room, &bins), NMTAN_OK);
 	assert_int_equal(bins.count, 4);
 	for (unsigned r = ranges; r-- > 0;)
 		fill(&bins, r, ids, cut.bounds[r], cut.bounds[r + 1]);
-	compare(&bins, records, &e, both);
+	compare(&bins, &e, both);
 	nt_scratch_free(&scratch);
 }
 

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+//
+// Whether what Draco encoded comes back. Expected are the values after quantization, as Draco's own transforms
+// compute them. Sequential encoding keeps the order of points and faces, so that bytes are compared; edgebreaker
+// reorders both and joins and splits points, so that a sum of hashes over faces stands for the set of them.
+#include "ext/draco_parts.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include <draco/attributes/attribute_octahedron_transform.h>
+#include <draco/attributes/attribute_quantization_transform.h>
+
+namespace {
+
+using draco::PointAttribute;
+using nt::is_octahedral;
+using nt::stride_of;
+using nt::value_of;
+
+// Undoes an attribute's transform, as a decoder would.
+std::vector<unsigned char> restore(const PointAttribute &portable,
+	draco::AttributeTransform &transform, const nt_draco_attribute &a, size_t point_count)
+{
+	PointAttribute result;
+	result.Init(nt::draco_kind_of(a.kind), static_cast<int8_t>(a.components), draco::DT_FLOAT32, false,
+		point_count);
+	return transform.InverseTransformAttribute(portable, &result) ? nt::copy_values(result, point_count)
+								      : std::vector<unsigned char>();
+}
+
+// What a decoder should return for an attribute, point by point: the values after quantization, as Draco
+// itself computes it.
+std::vector<unsigned char> expected_values(const PointAttribute &attribute,
+	const nt_draco_attribute &a, size_t point_count)
+{
+	const nt_draco_quantization &q = a.quantization;
+	if (!q.bits)
+		return nt::copy_values(attribute, point_count);
+	draco::AttributeOctahedronTransform octahedron;
+	draco::AttributeQuantizationTransform box;
+	draco::AttributeTransform *transform = &box;
+	if (is_octahedral(a)) {
+		octahedron.SetParameters(q.bits);
+		transform = &octahedron;
+	} else if (q.explicit_box) {
+		box.SetParameters(q.bits, q.origin, a.components, q.range);
+	} else {
+		box.ComputeParameters(attribute, q.bits);
+	}
+	const auto portable =
+		transform->InitTransformedAttribute(attribute, static_cast<int>(point_count));
+	if (!transform->TransformAttribute(attribute, {}, portable.get()))
+		return {};
+	return restore(*portable, *transform, a, point_count);
+}
+
+// A number for a corner's values, the same for -0 and +0, which Draco may merge.
+uint64_t hash_point(const nt_draco_mesh &mesh, uint32_t point)
+{
+	uint64_t hash = 0x9e3779b97f4a7c15;
+	for (size_t i = 0; i < mesh.attribute_count; i++) {
+		const nt_draco_attribute &a = mesh.attributes[i];
+		const size_t size = nt_draco_component_size(a.component_type);
+		for (int c = 0; c < a.components; c++) {
+			uint32_t bits = 0;
+			std::memcpy(&bits, value_of(a, point) + size * static_cast<size_t>(c), size);
+			if (a.component_type == NT_GLTF_FLOAT && bits == 0x80000000)
+				bits = 0;
+			hash = (hash ^ bits) * 0xff51afd7ed558ccd;
+			hash ^= hash >> 32;
+		}
+	}
+	return hash;
+}
+
+// A number for a set of faces, in any order, each beginning at any of its corners.
+uint64_t hash_faces(const nt_draco_mesh &mesh)
+{
+	std::vector<uint64_t> points(mesh.point_count);
+	for (size_t p = 0; p < points.size(); p++)
+		points[p] = hash_point(mesh, static_cast<uint32_t>(p));
+	uint64_t sum = 0;
+	for (size_t f = 0; f < mesh.face_count; f++) {
+		uint64_t best = ~uint64_t(0);
+		for (size_t k = 0; k < 3; k++) {
+			uint64_t hash = 0;
+			for (size_t i = 0; i < 3; i++) {
+				hash = (hash ^ points[mesh.indices[3 * f + (k + i) % 3]]) * 0xc4ceb9fe1a85ec53;
+				hash ^= hash >> 29;
+			}
+			best = std::min(best, hash);
+		}
+		sum += best;
+	}
+	return sum;
+}
+
+// Two corners at one point or one position.
+bool is_degenerate(const nt_draco_mesh &mesh, const uint32_t *face)
+{
+	bool equal = face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
+	for (size_t i = 0; i < mesh.attribute_count && !equal; i++) {
+		const nt_draco_attribute &a = mesh.attributes[i];
+		if (a.kind != NT_DRACO_POSITION)
+			continue;
+		const size_t width =
+			nt_draco_component_size(a.component_type) * static_cast<size_t>(a.components);
+		for (size_t k = 0; k < 3; k++)
+			equal |= std::memcmp(value_of(a, face[k]), value_of(a, face[(k + 1) % 3]), width) == 0;
+		break;
+	}
+	return equal;
+}
+
+bool same_attributes(const nt_draco_mesh &a, const nt_draco_mesh &b)
+{
+	if (a.attribute_count != b.attribute_count)
+		return false;
+	for (size_t i = 0; i < a.attribute_count; i++)
+		if (a.attributes[i].unique_id != b.attributes[i].unique_id ||
+			a.attributes[i].component_type != b.attributes[i].component_type ||
+			a.attributes[i].components != b.attributes[i].components)
+			return false;
+	return true;
+}
+
+// Attributes in the order of their ids: Draco groups them as it likes.
+void sort_attributes(std::vector<nt_draco_attribute> &attributes)
+{
+	std::sort(attributes.begin(), attributes.end(),
+		[](const nt_draco_attribute &a, const nt_draco_attribute &b) {
+			return a.unique_id < b.unique_id;
+		});
+}
+
+} // namespace
+
+void nt::expect_back(nt_draco &expected, const nt_draco_mesh &from, const draco::Mesh &made,
+	const std::vector<uint32_t> &numbers)
+{
+	const size_t point_count = made.num_points();
+	for (size_t i = 0; i < from.attribute_count; i++) {
+		nt_draco_attribute a = from.attributes[i];
+		expected.data.push_back(
+			expected_values(*made.attribute(static_cast<int>(i)), a, point_count));
+		a.data = expected.data.back().data();
+		a.stride_bytes = 0;
+		expected.attributes.push_back(a);
+	}
+	const bool drop = from.method == NT_DRACO_EDGEBREAKER;
+	for (size_t f = 0; f < from.face_count; f++)
+		if (!drop || !is_degenerate(from, from.indices + 3 * f))
+			for (size_t k = 0; k < 3; k++)
+				expected.indices.push_back(numbers[from.indices[3 * f + k]]);
+	expected.mesh = {from.method, point_count, expected.indices.size() / 3, expected.indices.data(),
+		expected.attributes.data(), expected.attributes.size()};
+}
+
+bool nt::came_back(nt_draco &expected, nt_draco &decoded)
+{
+	sort_attributes(expected.attributes);
+	sort_attributes(decoded.attributes);
+	const nt_draco_mesh &a = expected.mesh, &b = decoded.mesh;
+	if (a.face_count != b.face_count || !same_attributes(a, b))
+		return false;
+	if (a.method == NT_DRACO_EDGEBREAKER)
+		return hash_faces(a) == hash_faces(b);
+	if (a.point_count != b.point_count ||
+		std::memcmp(a.indices, b.indices, 12 * a.face_count) != 0)
+		return false;
+	for (size_t i = 0; i < a.attribute_count; i++)
+		if (std::memcmp(a.attributes[i].data, b.attributes[i].data,
+			    stride_of(a.attributes[i]) * a.point_count) != 0)
+			return false;
+	return true;
+}

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT
+//
+// Encoding with Draco. What would kill the encoder (values that are not finite), take it beyond memory, or could
+// not be decoded again (more than three points per face) is refused before; and its result is decoded and
+// compared with the input after quantization (draco_compare.cpp), since what it cannot keep it does not tell.
+#include "ext/draco.h"
+#include "ext/draco_parts.hpp"
+#include "ext/guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <string>
+
+#include <draco/compression/expert_encode.h>
+
+namespace {
+
+using nt::is_octahedral;
+using nt::value_of;
+
+// ---- what Draco must not get ----
+
+// Draco's entropy coder takes a table of four bytes for every number up to the largest it meets, whose sign costs a
+// bit: 30 bits take 4 GB and half a minute for one triangle, 32 its life. 24 take 130 MB at most.
+enum { MOST_BITS = 24 };
+
+// Whether integers of four bytes are small enough for the entropy coder.
+bool fits_coder(const nt_draco_mesh &mesh, const nt_draco_attribute &a)
+{
+	const int64_t limit = int64_t(1) << MOST_BITS;
+	for (size_t p = 0; p < mesh.point_count; p++)
+		for (int i = 0; i < a.components; i++) {
+			uint32_t bits;
+			std::memcpy(&bits, value_of(a, p) + 4 * i, sizeof bits);
+			const int64_t value = a.component_type == NT_GLTF_INT ? int64_t(int32_t(bits)) : int64_t(bits);
+			if (value > limit || value < -limit)
+				return false;
+		}
+	return true;
+}
+
+// Whether Draco can lay its grid over the values: it counts cells by their range in float, so that a range beyond
+// float, or so small that the cells in one unit are, gives integers out of nothing.
+bool can_lay_grid(const nt_draco_mesh &mesh, const nt_draco_attribute &a)
+{
+	float range = a.quantization.explicit_box ? a.quantization.range : 0;
+	for (int i = 0; i < a.components && !a.quantization.explicit_box; i++) {
+		float least = std::numeric_limits<float>::max(), most = -least;
+		for (size_t p = 0; p < mesh.point_count; p++) {
+			float value;
+			std::memcpy(&value, value_of(a, p) + 4 * i, sizeof value);
+			least = std::min(least, value);
+			most = std::max(most, value);
+		}
+		range = std::max(range, most - least);
+	}
+	const float cells = static_cast<float>((1u << a.quantization.bits) - 1);
+	if (range == 0) // Draco takes 1 then, but leaves a given range alone
+		return !a.quantization.explicit_box;
+	return std::isfinite(range) && range > 0 && std::isfinite(cells / range);
+}
+
+nmtan_status check_attribute(const nt_draco_mesh &mesh, const nt_draco_attribute &a, nt_error *error)
+{
+	const nt_draco_quantization &q = a.quantization;
+	const bool is_float = a.component_type == NT_GLTF_FLOAT;
+	if (nt::draco_type_of(a.component_type) == draco::DT_INVALID || a.components < 1 || a.components > 4 ||
+		q.bits < 0 || q.bits > MOST_BITS || (q.bits == 1 && is_octahedral(a)) || (q.bits && !is_float))
+		return nt_fail(error, NMTAN_ERROR_ARGUMENT,
+			"Draco cannot encode attribute %u with type %d, %d components and %d bits",
+			a.unique_id, a.component_type, a.components, q.bits);
+	if ((a.component_type == NT_GLTF_INT || a.component_type == NT_GLTF_UINT) && !fits_coder(mesh, a))
+		return nt_fail(error, NMTAN_ERROR_ARGUMENT,
+			"attribute %u has integers of more than %d bits, which Draco cannot encode in reasonable "
+			"memory", a.unique_id, int(MOST_BITS));
+	if (!q.bits)
+		return NMTAN_OK;
+	const bool box = q.explicit_box && !is_octahedral(a);
+	// quantized values at the upper end may have rounded past it
+	const float slack = box ? q.range * 1e-5f : 0;
+	for (size_t p = 0; p < mesh.point_count; p++)
+		for (int i = 0; i < a.components; i++) {
+			float value;
+			std::memcpy(&value, value_of(a, p) + 4 * i, sizeof value);
+			if (!std::isfinite(value) || (box && (value < q.origin[i] - slack ||
+							     value > q.origin[i] + q.range + slack)))
+				return nt_fail(error, NMTAN_ERROR_ARGUMENT,
+					"Draco cannot quantize value %g of point %zu in attribute %u",
+					static_cast<double>(value), p, a.unique_id);
+		}
+	if (!is_octahedral(a) && !can_lay_grid(mesh, a))
+		return nt_fail(error, NMTAN_ERROR_ARGUMENT,
+			"Draco cannot quantize attribute %u: its values span more than a float holds, or next to "
+			"nothing", a.unique_id);
+	return NMTAN_OK;
+}
+
+nmtan_status check_mesh(const nt_draco_mesh &mesh, nt_error *error)
+{
+	if (mesh.face_count > 0x7fffffff / 6 || mesh.point_count > 0x7fffffff)
+		return nt_fail(error, NMTAN_ERROR_TOO_LARGE, "%zu faces are too many for Draco",
+			mesh.face_count);
+	if (mesh.face_count == 0)
+		return nt_fail(error, NMTAN_ERROR_INPUT, "there is no face to encode");
+	for (size_t i = 0; i < 3 * mesh.face_count; i++)
+		if (mesh.indices[i] >= mesh.point_count)
+			return nt_fail(error, NMTAN_ERROR_INDEX, "face %zu refers to point %u of %zu", i / 3,
+				mesh.indices[i], mesh.point_count);
+	for (size_t i = 0; i < mesh.attribute_count; i++) {
+		const nmtan_status status = check_attribute(mesh, mesh.attributes[i], error);
+		if (status != NMTAN_OK)
+			return status;
+	}
+	return NMTAN_OK;
+}
+
+// ---- the mesh as Draco wants it ----
+
+// The points that faces use, in their order, and their new numbers.
+std::vector<uint32_t> compact(const nt_draco_mesh &mesh, std::vector<uint32_t> &numbers)
+{
+	std::vector<uint32_t> sources;
+	numbers.assign(mesh.point_count, 0);
+	for (size_t i = 0; i < 3 * mesh.face_count; i++)
+		numbers[mesh.indices[i]] = 1;
+	for (size_t p = 0; p < mesh.point_count; p++)
+		if (numbers[p]) {
+			numbers[p] = static_cast<uint32_t>(sources.size());
+			sources.push_back(static_cast<uint32_t>(p));
+		}
+	return sources;
+}
+
+void add_attribute(draco::Mesh &to, const nt_draco_attribute &a, const std::vector<uint32_t> &sources)
+{
+	const size_t width = nt_draco_component_size(a.component_type) * static_cast<size_t>(a.components);
+	draco::GeometryAttribute layout;
+	layout.Init(nt::draco_kind_of(a.kind), nullptr, static_cast<uint8_t>(a.components),
+		nt::draco_type_of(a.component_type), a.normalized, static_cast<int64_t>(width), 0);
+	const int id = to.AddAttribute(layout, true, static_cast<uint32_t>(sources.size()));
+	draco::PointAttribute *attribute = to.attribute(id);
+	attribute->set_unique_id(a.unique_id);
+	for (size_t p = 0; p < sources.size(); p++)
+		attribute->SetAttributeValue(draco::AttributeValueIndex(static_cast<uint32_t>(p)),
+			value_of(a, sources[p]));
+}
+
+std::unique_ptr<draco::Mesh> make_mesh(const nt_draco_mesh &mesh,
+	const std::vector<uint32_t> &sources, const std::vector<uint32_t> &numbers)
+{
+	auto made = std::make_unique<draco::Mesh>();
+	made->set_num_points(static_cast<uint32_t>(sources.size()));
+	made->SetNumFaces(mesh.face_count);
+	for (uint32_t f = 0; f < mesh.face_count; f++) {
+		draco::Mesh::Face face;
+		for (size_t k = 0; k < 3; k++)
+			face[k] = draco::PointIndex(numbers[mesh.indices[3 * size_t(f) + k]]);
+		made->SetFace(draco::FaceIndex(f), face);
+	}
+	for (size_t i = 0; i < mesh.attribute_count; i++)
+		add_attribute(*made, mesh.attributes[i], sources);
+	return made;
+}
+
+// ---- encoding ----
+
+// A float as text that gives it back.
+std::string exact_text(float value)
+{
+	char text[32];
+	std::snprintf(text, sizeof text, "%.9g", static_cast<double>(value));
+	return text;
+}
+
+// Draco keeps options as text, and its own setters write six decimals: an explicit box set through them is not the
+// one that was meant, and values move. So the texts are ours.
+draco::Options box_options(const nt_draco_attribute &a)
+{
+	const nt_draco_quantization &q = a.quantization;
+	draco::Options options;
+	options.SetInt("quantization_bits", q.bits);
+	if (!q.explicit_box || is_octahedral(a))
+		return options;
+	std::string origin;
+	for (int i = 0; i < a.components; i++)
+		origin += (i ? " " : "") + exact_text(q.origin[i]);
+	options.SetString("quantization_origin", origin);
+	options.SetString("quantization_range", exact_text(q.range));
+	return options;
+}
+
+void set_options(draco::ExpertEncoder &encoder, const nt_draco_mesh &mesh)
+{
+	draco::EncoderOptions options = draco::EncoderOptions::CreateDefaultOptions();
+	for (size_t i = 0; i < mesh.attribute_count; i++)
+		if (mesh.attributes[i].quantization.bits)
+			options.SetAttributeOptions(static_cast<int>(i), box_options(mesh.attributes[i]));
+	encoder.Reset(options);
+	encoder.SetEncodingMethod(mesh.method == NT_DRACO_SEQUENTIAL ? draco::MESH_SEQUENTIAL_ENCODING
+								     : draco::MESH_EDGEBREAKER_ENCODING);
+	encoder.SetSpeedOptions(5, 5);
+}
+
+nmtan_status hand_over(const draco::EncoderBuffer &buffer, const nt_draco &decoded,
+	const std::vector<uint32_t> &sources, nt_draco_block *block, nt_error *error)
+{
+	block->bytes = static_cast<unsigned char *>(std::malloc(buffer.size()));
+	if (decoded.mesh.method == NT_DRACO_SEQUENTIAL)
+		block->sources = static_cast<uint32_t *>(std::malloc(4 * sources.size()));
+	if (!block->bytes || (decoded.mesh.method == NT_DRACO_SEQUENTIAL && !block->sources)) {
+		nt_draco_block_free(block);
+		return nt_fail_memory(error);
+	}
+	std::memcpy(block->bytes, buffer.data(), buffer.size());
+	if (block->sources)
+		std::memcpy(block->sources, sources.data(), 4 * sources.size());
+	block->size = buffer.size();
+	block->point_count = decoded.mesh.point_count;
+	block->face_count = decoded.mesh.face_count;
+	return NMTAN_OK;
+}
+
+nmtan_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *error)
+{
+	nmtan_status status = check_mesh(mesh, error);
+	if (status != NMTAN_OK)
+		return status;
+	std::vector<uint32_t> numbers;
+	const std::vector<uint32_t> sources = compact(mesh, numbers);
+	const auto made = make_mesh(mesh, sources, numbers);
+	nt_draco expected;
+	nt::expect_back(expected, mesh, *made, numbers);
+	if (expected.mesh.face_count == 0)
+		return nt_fail(error, NMTAN_ERROR_INPUT, "every face is degenerate: nothing to encode");
+	if (mesh.method == NT_DRACO_EDGEBREAKER) {
+		// joins what split vertices separate, so that one surface is encoded as one
+		made->DeduplicateAttributeValues();
+		made->DeduplicatePointIds();
+	}
+
+	draco::ExpertEncoder encoder(*made);
+	set_options(encoder, mesh);
+	draco::EncoderBuffer buffer;
+	const draco::Status encoded = encoder.EncodeToBuffer(&buffer);
+	if (!encoded.ok())
+		return nt_fail(error, NMTAN_ERROR_INTERNAL, "Draco cannot encode the mesh: %s",
+			encoded.error_msg());
+
+	nt_draco decoded;
+	status = nt::decode_draco(decoded, reinterpret_cast<const unsigned char *>(buffer.data()), buffer.size(),
+		mesh.face_count, error);
+	if (status != NMTAN_OK || !nt::came_back(expected, decoded))
+		return nt_fail(error, NMTAN_ERROR_INTERNAL,
+			"what Draco encoded does not decode to what it was given");
+	return hand_over(buffer, decoded, sources, block, error);
+}
+
+} // namespace
+
+draco::GeometryAttribute::Type nt::draco_kind_of(nt_draco_kind kind)
+{
+	switch (kind) {
+	case NT_DRACO_POSITION:
+		return draco::GeometryAttribute::POSITION;
+	case NT_DRACO_NORMAL:
+		return draco::GeometryAttribute::NORMAL;
+	case NT_DRACO_COLOR:
+		return draco::GeometryAttribute::COLOR;
+	case NT_DRACO_TEXCOORD:
+		return draco::GeometryAttribute::TEX_COORD;
+	default:
+		return draco::GeometryAttribute::GENERIC;
+	}
+}
+
+nmtan_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error)
+{
+	*block = {};
+	return nt::guard(error, "Draco", [&] { return encode(*mesh, block, error); });
+}
+
+void nt_draco_block_free(nt_draco_block *block)
+{
+	std::free(block->bytes);
+	std::free(block->sources);
+	*block = {};
+}

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+//
+// What the three files around Draco share: draco.cpp decodes, draco_encode.cpp encodes, draco_compare.cpp tells
+// whether what was encoded comes back.
+#ifndef NT_EXT_DRACO_PARTS_HPP
+#define NT_EXT_DRACO_PARTS_HPP
+
+#include "ext/draco.h"
+
+#include <vector>
+
+#include <draco/mesh/mesh.h>
+
+struct nt_draco {
+	nt_draco_mesh mesh = {};
+	std::vector<uint32_t> indices;
+	std::vector<nt_draco_attribute> attributes;
+	std::vector<std::vector<unsigned char>> data; // of each attribute
+};
+
+namespace nt {
+
+// ---- draco.cpp ----
+
+// What Draco calls a component type of glTF; DT_INVALID: not one.
+draco::DataType draco_type_of(int component_type);
+
+// The values of an attribute, point by point, which must have one for each.
+std::vector<unsigned char> copy_values(const draco::PointAttribute &attribute, size_t point_count);
+
+// Decodes a mesh of at most `face_limit` faces into plain arrays; quantization is left out.
+nmtan_status decode_draco(nt_draco &result, const unsigned char *bytes, size_t size, size_t face_limit,
+	nt_error *error);
+
+// ---- draco_encode.cpp ----
+
+draco::GeometryAttribute::Type draco_kind_of(nt_draco_kind kind);
+
+// ---- draco_compare.cpp ----
+
+// What a decoder should return for a mesh: without points that no face uses, values as quantization leaves them.
+// made: the mesh as the encoder gets it; numbers: of each point of `from` in it.
+void expect_back(nt_draco &expected, const nt_draco_mesh &from, const draco::Mesh &made,
+	const std::vector<uint32_t> &numbers);
+
+// Whether it is what came back. Sorts attributes by their ids on both sides.
+bool came_back(nt_draco &expected, nt_draco &decoded);
+
+// ---- attributes ----
+
+// Draco encodes such normals by their direction.
+inline bool is_octahedral(const nt_draco_attribute &a)
+{
+	return a.kind == NT_DRACO_NORMAL && a.components == 3;
+}
+
+inline size_t stride_of(const nt_draco_attribute &a)
+{
+	return a.stride_bytes ? a.stride_bytes
+			      : nt_draco_component_size(a.component_type) * static_cast<size_t>(a.components);
+}
+
+inline const unsigned char *value_of(const nt_draco_attribute &a, size_t point)
+{
+	return static_cast<const unsigned char *>(a.data) + stride_of(a) * point;
+}
+
+} // namespace nt
+
+#endif

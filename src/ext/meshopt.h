@@ -1,0 +1,50 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * meshoptimizer's decoders for compressed views of glTF. They are safe on any bytes; what they give is garbage
+ * then, which is checked like any other data. Sizes are judged before anything is allocated: no mode packs more
+ * than 64 bytes of data into one.
+ *
+ * meshoptimizer 0.18 knows version 0 of the vertex codec and no colour filter.
+ */
+#ifndef NT_EXT_MESHOPT_H
+#define NT_EXT_MESHOPT_H
+
+#include "base/error.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A view as EXT_meshopt_compression describes it. */
+typedef struct nt_meshopt_view {
+	const char *mode;   /* ATTRIBUTES, TRIANGLES or INDICES */
+	const char *filter; /* NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL */
+	uint64_t stride, count;
+	uint64_t packed_size; /* bytes that are packed */
+} nt_meshopt_view;
+
+/*
+ * Whether a view is one that the decoders take: `size` bytes when it is unpacked.
+ *
+ *   pointer  where the description stands, for the error
+ *
+ * Returns NMTAN_OK or NMTAN_ERROR_INPUT.
+ */
+nmtan_status nt_meshopt_check(const nt_meshopt_view *view, uint64_t size, const char *pointer, nt_error *error);
+
+/*
+ * Unpacks a view that was checked.
+ *
+ *   packed  [packed_size]
+ *   bytes   [count * stride], aligned as malloc does
+ *
+ * Returns NMTAN_OK; NMTAN_ERROR_INPUT for what meshoptimizer cannot decode; NMTAN_ERROR_UNSUPPORTED for codecs
+ * and filters that it does not know.
+ */
+nmtan_status nt_meshopt_unpack(const nt_meshopt_view *view, const unsigned char *packed, unsigned char *bytes,
+	const char *pointer, nt_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+//
+// tinygltf does not know that a decoder brings what compressed documents leave out. It refuses primitives whose
+// indices have no buffer view, which is how Draco has them, and buffers without bytes, which is what views packed by
+// meshoptimizer are said to lie in. It gets a text without the former and with a byte for the latter; who wants
+// their values unpacks them.
+#include "ext/tinygltf_text.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+namespace {
+
+using json = nlohmann::ordered_json;
+
+const char *const packings[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
+
+uint32_t little_endian(const unsigned char *bytes)
+{
+	return static_cast<uint32_t>(bytes[0]) | static_cast<uint32_t>(bytes[1]) << 8 |
+		static_cast<uint32_t>(bytes[2]) << 16 | static_cast<uint32_t>(bytes[3]) << 24;
+}
+
+void put_little_endian(std::string &out, uint32_t value)
+{
+	for (int shift = 0; shift < 32; shift += 8)
+		out += static_cast<char>(value >> shift & 0xff);
+}
+
+// A member of an object; null where there is none.
+const json *member(const json &object, const char *name)
+{
+	const auto found = object.is_object() ? object.find(name) : object.end();
+	return found == object.end() ? nullptr : &*found;
+}
+
+uint64_t number(const json &object, const char *name)
+{
+	const json *value = member(object, name);
+	return value && value->is_number_unsigned() ? value->get<uint64_t>() : 0;
+}
+
+std::string word(const json &object, const char *name, const char *otherwise)
+{
+	const json *value = member(object, name);
+	return value && value->is_string() ? value->get<std::string>() : otherwise;
+}
+
+// meshoptimizer's extension of a view or a buffer; null where there is none.
+const json *packing_of(const json &object)
+{
+	const json *extensions = member(object, "extensions");
+	for (const char *name : packings)
+		if (const json *found = extensions ? member(*extensions, name) : nullptr)
+			return found;
+	return nullptr;
+}
+
+void drop_compressed_indices(json &document)
+{
+	if (!member(document, "meshes"))
+		return;
+	for (json &mesh : document["meshes"]) {
+		if (!member(mesh, "primitives"))
+			continue;
+		for (json &primitive : mesh["primitives"]) {
+			const json *extensions = member(primitive, "extensions");
+			if (extensions && member(*extensions, nt::draco_extension))
+				primitive.erase("indices");
+		}
+	}
+}
+
+void note_packed_views(const json &document, nt::packed_views &packed)
+{
+	const json *views = member(document, "bufferViews");
+	for (size_t i = 0; views && views->is_array() && i < views->size(); i++)
+		if (const json *p = packing_of((*views)[i]))
+			packed[i] = {number(*p, "buffer"), number(*p, "byteOffset"), number(*p, "byteLength"),
+				number(*p, "byteStride"), number(*p, "count"), word(*p, "mode", ""),
+				word(*p, "filter", "NONE")};
+}
+
+void fill_fallback_buffers(json &document, bool binary)
+{
+	if (!member(document, "buffers"))
+		return;
+	size_t index = 0;
+	for (json &buffer : document["buffers"])
+		if (!(index++ == 0 && binary) && packing_of(buffer) && !member(buffer, "uri"))
+			buffer = {{"byteLength", 1}, {"uri", "data:application/octet-stream;base64,AA=="}};
+}
+
+} // namespace
+
+nt::gltf_text::gltf_text(const unsigned char *file, size_t file_size)
+	: bytes(reinterpret_cast<const char *>(file)), text(bytes), size(file_size), text_size(file_size),
+	  binary(file_size >= 20 && std::memcmp(file, "glTF", 4) == 0)
+{
+	if (binary) {
+		text += 20;
+		text_size = std::min<size_t>(little_endian(file + 12), size - 20);
+	}
+}
+
+bool nt::gltf_text::is_too_deep() const
+{
+	int depth = 0;
+	bool in_string = false;
+	for (size_t i = 0; i < text_size; i++) {
+		const char c = text[i];
+		if (in_string) {
+			if (c == '\\')
+				i++;
+			else if (c == '"')
+				in_string = false;
+		} else if (c == '"') {
+			in_string = true;
+		} else if (c == '[' || c == '{') {
+			if (++depth > max_depth)
+				return true;
+		} else if (c == ']' || c == '}') {
+			depth--;
+		}
+	}
+	return false;
+}
+
+std::string nt::gltf_text::eased(packed_views &packed) const
+{
+	const auto has = [&](const char *word) { return memmem(text, text_size, word, std::strlen(word)) != nullptr; };
+	if (!has(draco_extension) && !has(packings[0]) && !has(packings[1]))
+		return {};
+	json document = json::parse(text, text + text_size, nullptr, false);
+	if (!document.is_object()) // tinygltf says what it is
+		return {};
+	drop_compressed_indices(document);
+	note_packed_views(document, packed);
+	fill_fallback_buffers(document, binary);
+	std::string eased = document.dump();
+	if (!binary)
+		return eased;
+	eased.append(-eased.size() & 3, ' ');
+	const size_t rest = size - 20 - text_size;
+	std::string out(bytes, 8);
+	put_little_endian(out, static_cast<uint32_t>(20 + eased.size() + rest));
+	put_little_endian(out, static_cast<uint32_t>(eased.size()));
+	out.append(bytes + 16, 4);
+	out += eased;
+	return out.append(bytes + 20 + text_size, rest);
+}

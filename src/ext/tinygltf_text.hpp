@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+//
+// The text of a document as tinygltf can read it.
+#ifndef NT_EXT_TINYGLTF_TEXT_HPP
+#define NT_EXT_TINYGLTF_TEXT_HPP
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace nt {
+
+constexpr char draco_extension[] = "KHR_draco_mesh_compression";
+
+// What EXT_meshopt_compression or KHR_meshopt_compression says of a view.
+struct packed_view {
+	uint64_t buffer, offset, size, stride, count;
+	std::string mode, filter;
+};
+using packed_views = std::map<size_t, packed_view>; // by the number of the view
+
+class gltf_text {
+public:
+	static constexpr int max_depth = 512;
+
+	// A .glb or .gltf, which must stay.
+	gltf_text(const unsigned char *bytes, size_t size);
+
+	bool is_binary() const { return binary; }
+
+	// Whether arrays and objects are nested deeper than max_depth, counted outside of strings. Whether the text
+	// is JSON at all is not decided here.
+	bool is_too_deep() const;
+
+	// The file without what tinygltf refuses although compression makes it legal; empty where it can stay as it
+	// is. Fills the views that are packed.
+	std::string eased(packed_views &packed) const;
+
+private:
+	const char *bytes, *text; // the text is all of a .gltf, and the JSON chunk of a .glb
+	size_t size, text_size;
+	bool binary;
+};
+
+} // namespace nt
+
+#endif

@@ -1,0 +1,309 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The weld of an indexed mesh. Nearly always no vertex is equal to another, and the whole weld is to find that
+ * out: a sieve does so without a table of the vertices.
+ *
+ *   load    each vertex's row; its hash marks two bits of a word in a bitmap (a Bloom filter of one word). Who
+ *           finds both marked already may be the second of two equal ones: the bits are marked again elsewhere
+ *   list    the vertices whose bits have been marked again: all that are equal to another, those with a NaN,
+ *           and about one in a hundred by chance
+ *   weld    the listed ones, by the table (weld.c)
+ *   number  the vertices, where some are equal or hold a NaN; then the corners
+ *
+ * A bitmap is a quarter of the table at most and stays in the second-level cache where the table does not: half
+ * the time of the table on a million triangles (Xeon). A mesh that turns out to have many equal vertices is left
+ * to the table. Threads have bitmaps of their own for their ranges of vertices; what two of them have marked
+ * counts as marked again. Numbers do not depend on threads, nor on whether a vertex is listed by chance.
+ */
+#include "base/parallel.h"
+#include "topology/weld_parts.h"
+
+/* Threads that sieve: each takes up to 8 bytes a vertex for its bitmaps. */
+enum { MOST_RANGES = 8 };
+
+/* Listed vertices that one thread welds alone: a table of all threads takes as long. */
+enum { FEW = 1 << 16 };
+
+/* Vertices found equal, beside an eighth of those met, with which the sieve gives up: from there it would only be
+ * work beside that of the table. */
+enum { MANY = 4096 };
+
+/* A place has 32 bits: the word of a bitmap above, two of its bits below. Beyond 8 million vertices words are shared
+ * by more of them than two, and more are listed. */
+enum { BIT_BITS = 5, MOST_WORD_BITS = 32 - 2 * BIT_BITS };
+
+typedef struct sieve {
+	nt_welder *w;
+	unsigned ranges;
+	unsigned word_bits; /* log2 of the words of a bitmap */
+	uint32_t *places;   /* [vertex_count]; then, from where a range begins, its listed vertices */
+	uint32_t *marked[MOST_RANGES], *again[MOST_RANGES]; /* bitmaps; the second of range 0 becomes that of all */
+	size_t begins[MOST_RANGES], listed[MOST_RANGES];    /* first vertex of a range, how many it listed */
+	bool many;                                          /* atomic: it is left to the table */
+} sieve;
+
+static inline size_t word_of(uint32_t place)
+{
+	return place >> 2 * BIT_BITS;
+}
+
+static inline uint32_t bits_of(uint32_t place)
+{
+	return (uint32_t)1 << (place & 31) | (uint32_t)1 << (place >> BIT_BITS & 31);
+}
+
+/* Load */
+
+/* Rows and places of a batch, and its words on the way. Returns the flags of nt_weld_load(). */
+static inline nt_weld_flags load_batch(const sieve *s, size_t begin, size_t end, const uint32_t *marked)
+{
+	const nmtan_mesh mesh = *s->w->mesh; /* copies, which no store changes */
+	nt_weld_row *const rows = s->w->rows;
+	uint32_t *const places = s->places;
+	const unsigned shift = 64 - s->word_bits - 2 * BIT_BITS;
+	nt_weld_flags unordered = {0};
+	for (size_t v = begin; v < end; v++) {
+		unordered |= nt_weld_load(&mesh, v, &rows[v]);
+		places[v] = (uint32_t)(nt_weld_hash(&rows[v]) >> shift);
+		__builtin_prefetch(&marked[word_of(places[v])], 1);
+	}
+	return unordered;
+}
+
+/* Whoever holds a NaN gets place 0, which is listed. */
+static void list_unordered(const sieve *s, size_t begin, size_t end, uint32_t *again)
+{
+	again[0] |= bits_of(0);
+	for (size_t v = begin; v < end; v++)
+		if (!nt_weld_row_ordered(&s->w->rows[v]))
+			s->places[v] = 0;
+}
+
+/* Marks the places of a batch. Returns how many were marked already. */
+static size_t mark_batch(const uint32_t *places, size_t count, uint32_t *marked, uint32_t *again)
+{
+	size_t found = 0;
+	for (size_t i = 0; i < count; i++) {
+		const size_t at = word_of(places[i]);
+		const uint32_t bits = bits_of(places[i]), word = marked[at];
+		marked[at] = word | bits;
+		if ((word & bits) == bits) {
+			again[at] |= bits;
+			found++;
+		}
+	}
+	return found;
+}
+
+static void load_range(void *context, size_t begin, size_t end, unsigned slot)
+{
+	sieve *s = context;
+	uint32_t *const marked = s->marked[slot], *const again = s->again[slot];
+	memset(marked, 0, sizeof *marked << s->word_bits);
+	memset(again, 0, sizeof *again << s->word_bits);
+	s->begins[slot] = begin;
+	size_t found = 0;
+	for (size_t first = begin, last; first < end; first = last) {
+		last = end - first < NT_WELD_BATCH ? end : first + NT_WELD_BATCH;
+		if (!nt_weld_ordered(load_batch(s, first, last, marked)))
+			list_unordered(s, first, last, again);
+		found += mark_batch(s->places + first, last - first, marked, again);
+		if (found > MANY + (last - begin) / 8)
+			__atomic_store_n(&s->many, true, __ATOMIC_RELAXED);
+		if (__atomic_load_n(&s->many, __ATOMIC_RELAXED))
+			break;
+	}
+}
+
+/* List */
+
+/* What two ranges have marked, or one again. */
+static void join_range(void *context, size_t begin, size_t end, unsigned slot)
+{
+	const sieve *s = context;
+	(void)slot;
+	for (size_t i = begin; i < end; i++) {
+		uint32_t marked = 0, again = 0;
+		for (unsigned r = 0; r < s->ranges; r++) {
+			again |= s->again[r][i] | (marked & s->marked[r][i]);
+			marked |= s->marked[r][i];
+		}
+		s->again[0][i] = again;
+	}
+}
+
+static void list_range(void *context, size_t begin, size_t end, unsigned slot)
+{
+	sieve *s = context;
+	const uint32_t *const again = s->again[0];
+	uint32_t *const places = s->places, *list = places + begin;
+	for (size_t v = begin; v < end; v++) {
+		const uint32_t place = places[v], bits = bits_of(place);
+		*list = (uint32_t)v;
+		list += (again[word_of(place)] & bits) == bits;
+	}
+	s->listed[slot] = (size_t)(list - (places + begin));
+}
+
+/* Lists the vertices that may be equal to another, ascending, and those with a NaN. Returns how many. */
+static size_t list_vertices(sieve *s)
+{
+	if (s->ranges > 1)
+		nt_parallel_ranges(s->ranges, (size_t)1 << s->word_bits, 1, join_range, s);
+	nt_parallel_ranges(s->ranges, s->w->item_count, 1, list_range, s);
+	size_t count = s->listed[0];
+	for (unsigned r = 1; r < s->ranges; r++) {
+		memmove(s->places + count, s->places + s->begins[r], s->listed[r] * sizeof *s->places);
+		count += s->listed[r];
+	}
+	return count;
+}
+
+/* Number */
+
+/* Numbers of all vertices, in order of first appearance, from those of the listed ones among themselves; rows move
+ * to their numbers. */
+static void number_vertices(nt_welder *w, const nt_welder *listed)
+{
+	uint32_t *const firsts = listed->numbers; /* takes the place of what has been read */
+	size_t next = 0, classes = 0, l = 0;
+	for (size_t v = 0; v < w->item_count; v++) {
+		if (l < listed->item_count && listed->items[l] == v) {
+			const uint32_t class = listed->numbers[l++];
+			if (class < classes) {
+				w->numbers[v] = firsts[class];
+				continue;
+			}
+			firsts[classes++] = (uint32_t)next;
+		}
+		w->numbers[v] = (uint32_t)next;
+		w->rows[next++] = w->rows[v];
+	}
+	w->row_count = next;
+}
+
+typedef struct copying {
+	const uint32_t *numbers, *indices;
+	uint32_t *ids;
+} copying;
+
+static void copy_numbers(void *context, size_t begin, size_t end, unsigned slot)
+{
+	const copying *job = context;
+	(void)slot;
+	for (size_t c = begin; c < end; c++)
+		job->ids[c] = job->numbers[job->indices[c]];
+}
+
+/* A row as it is in the mesh. */
+static void copy_row(const nmtan_mesh *mesh, size_t vertex, nt_weld_row *row)
+{
+	memcpy(row->position, nt_position(mesh, vertex), sizeof row->position);
+	memcpy(row->normal, nt_normal(mesh, vertex), sizeof row->normal);
+	memcpy(row->texcoord, nt_texcoord(mesh, vertex), sizeof row->texcoord);
+}
+
+/* Gives each corner of a vertex with a NaN a row of its own: the first takes that of the vertex. */
+static bool number_unordered(nt_welder *w, size_t corner_count, uint32_t *ids)
+{
+	size_t unordered = 0;
+	for (size_t c = 0; c < corner_count; c++)
+		unordered += !nt_weld_row_ordered(&w->rows[ids[c]]);
+	if (w->row_count + unordered > w->row_capacity && !nt_weld_grow_rows(w, w->row_count + unordered))
+		return false;
+	for (size_t c = 0; c < corner_count; c++) {
+		if (nt_weld_row_ordered(&w->rows[ids[c]]))
+			continue;
+		const uint32_t vertex = w->mesh->indices[c];
+		if (w->numbers[vertex] == NT_WELD_TAKEN)
+			ids[c] = (uint32_t)w->row_count++;
+		w->numbers[vertex] = NT_WELD_TAKEN;
+		copy_row(w->mesh, vertex, &w->rows[ids[c]]);
+	}
+	return true;
+}
+
+/* Numbers of corners from numbers of vertices. */
+static const uint32_t *number_corners(nt_welder *w, size_t corner_count, unsigned ranges)
+{
+	uint32_t *ids = nt_scratch_alloc(w->room->scratch, corner_count, sizeof *ids);
+	if (!ids)
+		return NULL;
+	nt_parallel_ranges(ranges, corner_count, 1, copy_numbers, &(copying){w->numbers, w->mesh->indices, ids});
+	return !w->unordered || number_unordered(w, corner_count, ids) ? ids : NULL;
+}
+
+/* The whole */
+
+/* Memory for rows, places and bitmaps of at least 16 bits a vertex; few vertices get more, so that they are hardly
+ * ever listed by chance. */
+static bool make_sieve(sieve *s)
+{
+	nt_welder *w = s->w;
+	const size_t count = w->item_count, words = count < 128 ? 2 * count : 256;
+	s->word_bits = nt_weld_bits_for(count / 2 > words ? count / 2 : words);
+	if (s->word_bits > MOST_WORD_BITS)
+		s->word_bits = MOST_WORD_BITS;
+	if (!nt_weld_grow_rows(w, count + 1))
+		return false;
+	s->places = nt_room_alloc(w->room, count + 1, sizeof *s->places);
+	uint32_t *bitmaps = nt_room_alloc(w->room, (size_t)2 * s->ranges << s->word_bits, sizeof *bitmaps);
+	for (unsigned r = 0; r < s->ranges && bitmaps; r++) {
+		s->marked[r] = bitmaps + ((size_t)2 * r << s->word_bits);
+		s->again[r] = s->marked[r] + ((size_t)1 << s->word_bits);
+	}
+	return s->places && bitmaps;
+}
+
+/* Welds the listed vertices alone, and numbers all; false when out of memory. Where no number is another than the
+ * vertex's own, `numbers` stays NULL. */
+static bool weld_listed(sieve *s, unsigned ranges)
+{
+	nt_welder *w = s->w;
+	nt_welder listed = {.mesh = w->mesh, .row_room = w->room, .room = w->room, .items = s->places,
+		.item_count = list_vertices(s)};
+	w->row_count = w->item_count;
+	if (listed.item_count == 0)
+		return true;
+	listed.row_guess = listed.item_count;
+	listed.numbers = nt_room_alloc(w->room, listed.item_count, sizeof *listed.numbers);
+	if (!listed.numbers || !nt_weld_items(&listed, listed.item_count < FEW ? 1 : ranges))
+		return false;
+	w->unordered = listed.unordered;
+	if (listed.row_count == listed.item_count && !w->unordered)
+		return true;
+	w->numbers = nt_room_alloc(w->room, w->item_count, sizeof *w->numbers);
+	if (w->numbers)
+		number_vertices(w, &listed);
+	return w->numbers;
+}
+
+/* Welds all vertices by the table, in the room that the sieve had. */
+static bool weld_all(nt_welder *w, unsigned ranges)
+{
+	w->row_guess = w->item_count / 2;
+	w->numbers = nt_room_alloc(w->room, w->item_count, sizeof *w->numbers);
+	return w->numbers && nt_weld_items(w, ranges);
+}
+
+const uint32_t *nt_weld_vertices(nt_welder *w, size_t corner_count, unsigned ranges)
+{
+	char *const begin = w->room->begin, *const row_begin = w->row_room->begin;
+	const nt_scratch_mark mark = nt_scratch_here(w->room->scratch);
+	sieve s = {.w = w};
+	s.ranges = nt_parallel_slots(ranges < MOST_RANGES ? ranges : MOST_RANGES, w->item_count, 1);
+	if (!make_sieve(&s))
+		return NULL;
+	nt_parallel_ranges(s.ranges, w->item_count, 1, load_range, &s);
+	if (s.many) {
+		w->room->begin = begin;
+		w->row_room->begin = row_begin;
+		nt_scratch_back(w->room->scratch, mark);
+		w->rows = NULL;
+		if (!weld_all(w, ranges))
+			return NULL;
+	} else if (!weld_listed(&s, ranges)) {
+		return NULL;
+	}
+	return w->numbers ? number_corners(w, corner_count, ranges) : w->mesh->indices;
+}

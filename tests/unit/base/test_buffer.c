@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include "base/buffer.h"
+#include "fail_alloc.h"
+
+static void pieces_follow_one_another(void **state)
+{
+	(void)state;
+	nt_buffer buffer = {0};
+	nt_buffer_text(&buffer, "");
+	nt_buffer_text(&buffer, "a");
+	nt_buffer_format(&buffer, "%d %s", 42, "b");
+	nt_buffer_append(&buffer, "\0c", 2);
+	memcpy(nt_buffer_extend(&buffer, 3), "def", 3);
+	assert_int_equal(buffer.size, 10);
+	assert_memory_equal(buffer.data, "a42 b\0cdef", 11);
+	nt_buffer_free(&buffer);
+	assert_null(buffer.data);
+}
+
+/* ESC would speak to the terminal; bytes of UTF-8 are above all controls. */
+static void control_characters_are_shown_as_numbers(void **state)
+{
+	(void)state;
+	nt_buffer buffer = {0};
+	nt_buffer_clean(&buffer, "\x1b[31m\t\x7f\xc3\xa4 \n");
+	assert_string_equal(buffer.data, "\\x1b[31m\\x09\\x7f\xc3\xa4 \\x0a");
+	nt_buffer_free(&buffer);
+}
+
+static void exhausted_memory_is_remembered_and_keeps_what_came_before(void **state)
+{
+	(void)state;
+	nt_buffer buffer = {0};
+	nt_buffer_text(&buffer, "kept");
+	fail_allocations_from(0);
+	assert_null(nt_buffer_extend(&buffer, 100000));
+	assert_true(stop_failing_allocations());
+	nt_buffer_text(&buffer, "more");
+	assert_true(buffer.failed);
+	assert_string_equal(buffer.data, "kept");
+	assert_null(nt_buffer_extend(&buffer, SIZE_MAX));
+	nt_buffer_free(&buffer);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(pieces_follow_one_another),
+		cmocka_unit_test(control_characters_are_shown_as_numbers),
+		cmocka_unit_test(exhausted_memory_is_remembered_and_keeps_what_came_before),
+	};
+	return cmocka_run_group_tests_name("base/buffer", tests, NULL, NULL);
+}

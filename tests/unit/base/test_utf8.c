@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Every pair of first bytes and the borders of RFC 3629's table; mbrtoc32 of the C library, in a UTF-8 locale,
+ * judges every sequence of up to three bytes.
+ */
+#include "test.h"
+#include "base/utf8.h"
+
+#include <locale.h>
+#include <uchar.h>
+
+static void every_sequence_of_three_bytes_is_judged_as_the_c_library_does(void **state)
+{
+	(void)state;
+	if (!setlocale(LC_CTYPE, "C.UTF-8"))
+		skip();
+	for (unsigned bits = 1; bits < 1u << 24; bits++) {
+		const char text[4] = {(char)(bits & 0xff), (char)(bits >> 8 & 0xff), (char)(bits >> 16), 0};
+		if (!text[0])
+			continue;
+		mbstate_t shift = {0};
+		char32_t code;
+		const size_t expected = mbrtoc32(&code, text, 3, &shift);
+		const size_t found = nt_utf8_length(text, 3);
+		/* (size_t)-1: none, -2: the beginning of one that is longer */
+		assert_int_equal(found, expected > 3 ? 0 : expected);
+	}
+	setlocale(LC_CTYPE, "C");
+}
+
+static void four_bytes_end_at_10ffff(void **state)
+{
+	(void)state;
+	assert_int_equal(nt_utf8_length("\xf0\x90\x80\x80", SIZE_MAX), 4); /* U+10000 */
+	assert_int_equal(nt_utf8_length("\xf0\x8f\xbf\xbf", SIZE_MAX), 0); /* overlong */
+	assert_int_equal(nt_utf8_length("\xf4\x8f\xbf\xbf", SIZE_MAX), 4); /* U+10FFFF */
+	assert_int_equal(nt_utf8_length("\xf4\x90\x80\x80", SIZE_MAX), 0);
+	assert_int_equal(nt_utf8_length("\xf5\x80\x80\x80", SIZE_MAX), 0);
+}
+
+static void a_cut_sequence_is_none(void **state)
+{
+	(void)state;
+	char *bytes = malloc(3); /* of its exact size, for the sanitizers */
+	memcpy(bytes, "\xf0\x9f\x98", 3);
+	assert_int_equal(nt_utf8_length(bytes, 3), 0);
+	free(bytes);
+	assert_int_equal(nt_utf8_length("\xc3", SIZE_MAX), 0);
+	assert_int_equal(nt_utf8_length("\xe2\x82", SIZE_MAX), 0);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(every_sequence_of_three_bytes_is_judged_as_the_c_library_does),
+		cmocka_unit_test(four_bytes_end_at_10ffff),
+		cmocka_unit_test(a_cut_sequence_is_none),
+	};
+	return cmocka_run_group_tests_name("base/utf8", tests, NULL, NULL);
+}
