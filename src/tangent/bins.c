@@ -103,7 +103,8 @@ nmtan_status nt_bin_make(const nt_bins *bins, const bool needed[2], nt_scratch *
 	nt_adjacency *a = &bin->adjacency;
 	a->cursors = nt_scratch_alloc(scratch, vertices, sizeof *a->cursors);
 	a->block_begin = nt_scratch_alloc(scratch, vertices / NT_FAN_LANES + 1, sizeof *a->block_begin);
-	a->entries = nt_scratch_alloc(scratch, vertices * NT_FAN_DEPTH, sizeof *a->entries);
+	a->entry_count = vertices * NT_FAN_DEPTH;
+	a->entries = nt_scratch_alloc(scratch, a->entry_count, sizeof *a->entries);
 	if (!a->cursors || !a->block_begin || !a->entries)
 		return NMTAN_ERROR_MEMORY;
 	for (size_t block = 0; block <= vertices / NT_FAN_LANES; block++)

@@ -48,7 +48,7 @@ static void __attribute__((noinline)) add_unusual(nt_fast *fast, unsigned range,
 	uint32_t cursor, int orient, nt_fan_entry entry, const addition *add)
 {
 	if (!(cursor & NT_CURSOR_HUB))
-		fast->adjacency.entries[cursor & NT_CURSOR_PLACE] = entry;
+		*nt_adjacency_entry(&fast->adjacency, cursor) = entry;
 	if (cursor & NT_CURSOR_SHARED) {
 		nt_deferred *deferred = &fast->deferred[range][fast->deferred_count[range]++];
 		deferred->vertex = vertex;
@@ -95,7 +95,7 @@ static void add_corner(nt_fast *fast, unsigned range, uint32_t vertex, int orien
 	uint32_t *cursor = &a->cursors[range * a->vertex_count + vertex];
 	const uint32_t place = *cursor;
 	*cursor = place + (place & NT_CURSOR_HUB ? 0 : NT_FAN_LANES);
-	if (place >= NT_CURSOR_SHARED) {
+	if (place >= NT_CURSOR_FLAGGED) {
 		add_unusual(fast, range, vertex, place, orient, entry, &add);
 		return;
 	}
@@ -128,7 +128,7 @@ static void __attribute__((noinline)) add_ordinary(nt_fast *fast, unsigned range
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
 		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
 		const unsigned orient = flags[i] & NT_TRIANGLE_ORIENT;
-		if (__builtin_expect((pa | pb | pc) >= NT_CURSOR_SHARED, 0) || fast->wants_more) {
+		if (__builtin_expect((pa | pb | pc) >= NT_CURSOR_FLAGGED, 0) || fast->wants_more) {
 			add_triangle(fast, range, first + i, ids, (int)i, out);
 			continue;
 		}
@@ -197,7 +197,7 @@ static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range,
 			if (place & NT_CURSOR_HUB)
 				continue;
 			cursors[v[k]] = place + NT_FAN_LANES;
-			fast->adjacency.entries[number] = (nt_fan_entry){NT_ENTRY_VOID | number,
+			*nt_adjacency_entry(&fast->adjacency, place) = (nt_fan_entry){NT_ENTRY_VOID | number,
 				NT_ENTRY_VOID | NT_ENTRY_VOID >> 1 | number};
 		}
 		return;

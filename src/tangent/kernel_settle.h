@@ -210,7 +210,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 {
 	const size_t first = block * NT_LANES, left = fast->vertex_count - first;
 	const size_t count = left < NT_LANES ? left : NT_LANES;
-	const nt_fan_entry *entries = a->entries + a->block_begin[block - a->first_vertex / NT_FAN_LANES];
+	const nt_fan_entry *entries = nt_adjacency_block(a, block - a->first_vertex / NT_FAN_LANES);
 	uint32_t degree[NT_LANES], mask[NT_LANES], fan_count[NT_LANES], complex[NT_LANES];
 	record_lanes r[2];
 	const uint32_t depth = load_degrees(a, first, count, degree);

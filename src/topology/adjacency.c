@@ -11,6 +11,9 @@
 /* Corners by which a count is asked for before it is needed: costs nothing where neighbours are near. */
 enum { COUNT_AHEAD = 48 };
 
+/* Entries are parted where all but one of so many fit the room. */
+enum { PART_ELSEWHERE = 2 };
+
 /* Triangles whose vertices are looked up at a time. */
 enum { BATCH = 16 };
 
@@ -106,6 +109,36 @@ static size_t place_blocks(nt_adjacency *a)
 	return place;
 }
 
+/* Entries from a block on lie elsewhere. */
+static void move_blocks(nt_adjacency *a, size_t block)
+{
+	for (unsigned r = 0; r < a->ranges; r++)
+		for (size_t v = block * NT_FAN_LANES; v < a->vertex_count; v++)
+			a->cursors[r * a->vertex_count + v] |= NT_CURSOR_ELSEWHERE;
+}
+
+/* Memory for `count` entries. If the room is just too small for them the last blocks go to the scratch: that makes
+ * their corners dearer, but where rows and most entries fill an output, an uneven mesh would take a third more of
+ * it for all of them. */
+static bool alloc_entries(nt_adjacency *a, size_t count, nt_room *room)
+{
+	size_t fit = (size_t)(room->end - room->begin) / sizeof *a->entries;
+	fit -= fit > 0; /* one more is asked for, so that there is always something to point to */
+	size_t block = (a->vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES;
+	a->entry_count = count;
+	if (count > fit && count - fit < count / PART_ELSEWHERE) {
+		while (a->block_begin[block] > fit)
+			block--;
+		a->entry_count = a->block_begin[block];
+		a->rest = nt_scratch_alloc(room->scratch, count - a->entry_count, sizeof *a->rest);
+		if (!a->rest)
+			return false;
+		move_blocks(a, block);
+	}
+	a->entries = nt_room_alloc(room, a->entry_count + 1, sizeof *a->entries);
+	return a->entries;
+}
+
 nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_ranges *ranges,
 	size_t vertex_count, nt_room *cursor_room, nt_room *room, nt_adjacency *adjacency)
 {
@@ -124,7 +157,5 @@ nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_
 	const size_t entries = place_blocks(a);
 	if (entries == SIZE_MAX)
 		return NMTAN_ERROR_TOO_LARGE;
-	a->entry_count = entries;
-	a->entries = nt_room_alloc(room, entries + 1, sizeof *a->entries);
-	return a->entries ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+	return alloc_entries(a, entries, room) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }

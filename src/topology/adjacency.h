@@ -22,10 +22,14 @@ typedef struct nt_fan_entry {
 } nt_fan_entry;
 
 /* A cursor: where the vertex's next entry of this range goes (each corner moves it by NT_FAN_LANES), and
- * two flags above. */
-#define NT_CURSOR_HUB ((uint32_t)1 << 31)    /* too many corners: there is no place */
-#define NT_CURSOR_SHARED ((uint32_t)1 << 30) /* an earlier range has corners of this vertex too */
+ * flags above. */
+#define NT_CURSOR_HUB ((uint32_t)1 << 31)       /* too many corners: there is no place */
+#define NT_CURSOR_SHARED ((uint32_t)1 << 30)    /* an earlier range has corners of this vertex too */
+#define NT_CURSOR_ELSEWHERE ((uint32_t)1 << 29) /* the place is in `rest` */
 #define NT_CURSOR_PLACE (((uint32_t)1 << 28) - 1)
+
+/* Cursors from here on have a flag. */
+#define NT_CURSOR_FLAGGED NT_CURSOR_ELSEWHERE
 
 typedef struct nt_adjacency {
 	size_t first_vertex, vertex_count; /* the first is a multiple of NT_FAN_LANES */
@@ -33,12 +37,27 @@ typedef struct nt_adjacency {
 	uint32_t *cursors;     /* [ranges][vertex_count] */
 	uint32_t *block_begin; /* [blocks + 1] index of a block's first entry */
 	size_t *shared_counts; /* [ranges] corners whose cursor is SHARED */
-	nt_fan_entry *entries; /* [entry_count] */
+	nt_fan_entry *entries; /* places below entry_count */
+	nt_fan_entry *rest;    /* those above: what the room did not hold */
 	size_t entry_count;
 } nt_adjacency;
 
 /* Corners for which places can be numbered whatever the mesh looks like. */
 #define NT_ADJACENCY_LIMIT ((size_t)1 << 28)
+
+/* A place, which may have the flag ELSEWHERE. */
+static inline nt_fan_entry *nt_adjacency_entry(const nt_adjacency *a, uint32_t place)
+{
+	const size_t number = place & NT_CURSOR_PLACE;
+	return place & NT_CURSOR_ELSEWHERE ? &a->rest[number - a->entry_count] : &a->entries[number];
+}
+
+/* The first entry of a block. */
+static inline const nt_fan_entry *nt_adjacency_block(const nt_adjacency *a, size_t block)
+{
+	const size_t number = a->block_begin[block];
+	return a->rest && number >= a->entry_count ? &a->rest[number - a->entry_count] : &a->entries[number];
+}
 
 /*
  * Counts the corners of each vertex and makes the places. Entries are not written.

@@ -1,0 +1,107 @@
+/* SPDX-License-Identifier: MIT */
+/* Places of corners: filled as accumulate fills them, then read as settle reads them, from rooms of every size. */
+#include "test.h"
+#include <string.h>
+#include "topology/adjacency.h"
+
+enum { VERTICES = 200, TRIANGLES = 400, BLOCKS = (VERTICES + NT_FAN_LANES - 1) / NT_FAN_LANES };
+
+static uint32_t ids[3 * TRIANGLES];
+
+/* Squares of small numbers come more often: some vertices are hubs, and depths differ. */
+static void make_ids(void)
+{
+	uint32_t random = 1;
+	for (size_t i = 0; i < 3 * TRIANGLES; i++) {
+		random = random * 1664525u + 1013904223u;
+		const uint32_t r = random >> 20;
+		ids[i] = VERTICES - 1 - r * r / (4096 * 4096 / VERTICES) % VERTICES;
+	}
+}
+
+/* The corner is its own entry: numbers that no other has. */
+static void fill(const nt_adjacency *a, unsigned range, size_t begin, size_t end)
+{
+	for (size_t i = 3 * begin; i < 3 * end; i++) {
+		uint32_t *cursor = &a->cursors[range * a->vertex_count + ids[i]];
+		if (*cursor & NT_CURSOR_HUB)
+			continue;
+		*nt_adjacency_entry(a, *cursor) = (nt_fan_entry){(uint32_t)i, ids[i]};
+		*cursor += NT_FAN_LANES;
+	}
+}
+
+/* Each vertex has its corners in order, in its lane. */
+static void check_entries(const nt_adjacency *a)
+{
+	size_t hubs = 0;
+	for (uint32_t v = 0; v < VERTICES; v++) {
+		const nt_fan_entry *entry = nt_adjacency_block(a, v / NT_FAN_LANES) + v % NT_FAN_LANES;
+		const uint32_t cursor = a->cursors[(a->ranges - 1) * a->vertex_count + v];
+		uint32_t degree = 0;
+		for (uint32_t i = 0; i < 3 * TRIANGLES; i++)
+			degree += ids[i] == v;
+		assert_int_equal((cursor & NT_CURSOR_HUB) != 0, degree > NT_FAN_DEPTH);
+		hubs += degree > NT_FAN_DEPTH;
+		if (degree > NT_FAN_DEPTH)
+			continue;
+		assert_int_equal((cursor & NT_CURSOR_PLACE) - a->block_begin[v / NT_FAN_LANES] - v % NT_FAN_LANES,
+			degree * NT_FAN_LANES);
+		for (uint32_t i = 0; i < 3 * TRIANGLES; i++)
+			if (ids[i] == v) {
+				assert_int_equal(entry->next, i);
+				assert_int_equal(entry->previous, v);
+				entry += NT_FAN_LANES;
+			}
+	}
+	assert_in_range(hubs, 1, VERTICES - 1);
+}
+
+/* Makes places with `bytes` lent; returns how many of the entries were parted from the rest. */
+static size_t check(unsigned ranges, size_t bytes, size_t *scratch_bytes)
+{
+	static const size_t bounds[4][5] = {{0}, {0, TRIANGLES}, {0}, {0, 100, 100, TRIANGLES}};
+	static char lent[1 << 16];
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	nt_room room = nt_room_over(lent, bytes, &scratch), none = nt_room_over(lent, 0, &scratch);
+	const nt_triangles triangles = {.ids = ids};
+	const nt_triangle_ranges cut = {ranges, bounds[ranges]};
+	nt_adjacency a;
+	assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, &none, &room, &a), NMTAN_OK);
+	for (unsigned r = 0; r < ranges; r++)
+		fill(&a, r, cut.bounds[r], cut.bounds[r + 1]);
+	check_entries(&a);
+	const size_t rest = a.rest ? a.block_begin[BLOCKS] - a.entry_count : 0;
+	const bool in_room = (char *)a.entries >= lent && (char *)a.entries < lent + sizeof lent;
+	*scratch_bytes = 8 * (in_room ? rest : a.block_begin[BLOCKS]);
+	nt_scratch_free(&scratch);
+	return rest;
+}
+
+static void a_room_of_any_size_gives_the_same_places(void **state)
+{
+	(void)state;
+	make_ids();
+	for (unsigned ranges = 1; ranges <= 3; ranges += 2) {
+		size_t all, parted = 0, before = SIZE_MAX;
+		check(ranges, 0, &all);
+		assert_true(all < 1 << 16);
+		for (size_t bytes = 0; bytes <= all + 256; bytes += 128) {
+			size_t taken;
+			parted += check(ranges, bytes, &taken) > 0;
+			assert_true(taken <= before); /* what is lent saves scratch */
+			before = taken;
+		}
+		assert_int_equal(before, 0);
+		assert_true(parted > 2);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(a_room_of_any_size_gives_the_same_places),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
