@@ -95,11 +95,11 @@ static void add_corner(nt_fast *fast, unsigned range, uint32_t vertex, int orien
 	uint32_t *cursor = &a->cursors[range * a->vertex_count + vertex];
 	const uint32_t place = *cursor;
 	*cursor = place + (place & NT_CURSOR_HUB ? 0 : NT_FAN_LANES);
-	if (place >= NT_CURSOR_FLAGGED) {
+	if (place >= NT_CURSOR_SHARED) {
 		add_unusual(fast, range, vertex, place, orient, entry, &add);
 		return;
 	}
-	a->entries[place] = entry;
+	*nt_adjacency_entry(a, place) = entry;
 	add_record(&fast->records[orient][vertex], add.sum);
 	if (fast->wants_more)
 		add_more(&fast->more[orient][vertex], &add);
