@@ -155,23 +155,23 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	const nt_summary *s = &job->summary;
 	const nmtan_counts *c = &s->counts;
 	nt_buffer_text(out, "nmtan: ");
-	nt_buffer_clean(out, job->input);
+	nt_buffer_clean(out, strcmp(job->input, "-") == 0 ? "standard input" : job->input);
 	if (job->output) {
 		nt_buffer_text(out, " -> ");
-		nt_buffer_clean(out, job->output);
+		nt_buffer_clean(out, strcmp(job->output, "-") == 0 ? "standard output" : job->output);
 	}
 	nt_buffer_format(out, ": %s", settings->check ? "checked, "
 				      : settings->dry_run ? "dry run, nothing written, "
 							  : "");
 	if (s->copied)
 		nt_buffer_text(out, "copied as it is, ");
-	if (s->solved_count == s->mesh_count)
+	if (settings->check || s->solved_count == s->mesh_count)
 		append_count(out, s->mesh_count, "primitive");
 	else
 		nt_buffer_format(out, "%zu of %zu primitives", s->solved_count, s->mesh_count);
 	if (s->same_count)
 		nt_buffer_format(out, " (%zu the same as others)", s->same_count);
-	if (s->solved_count) {
+	if (s->solved_count && !settings->check) {
 		nt_buffer_text(out, ", ");
 		append_count(out, s->triangle_count, "triangle");
 		append_vertices(out, s);
@@ -179,14 +179,16 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	const size_t repaired = c->repaired_zero + c->repaired_not_finite + c->repaired_parallel +
 				c->repaired_sign;
 	if (repaired)
-		nt_buffer_format(out, ", repaired %zu of the tangents", repaired);
+		nt_buffer_format(out, settings->check ? ", %zu tangents would be repaired"
+						      : ", repaired %zu of the tangents", repaired);
 	if (s->rounding.count)
 		nt_buffer_format(out, ", rounded tangents by %.2g degrees at most, %.2g on average",
 			s->rounding.worst_radians * DEGREES,
 			s->rounding.sum_radians / (double)s->rounding.count * DEGREES);
-	append_skipped(out, s);
 	if (settings->check)
 		append_findings_count(out, s);
+	else
+		append_skipped(out, s);
 	nt_buffer_format(out, ", %.3g s\n", s->total_seconds);
 }
 

@@ -5,8 +5,10 @@
 scene "a sound mesh passes and nothing is written"
 run --check "$data/quad.obj" "$data/quad_le.ply"
 exits 0
-says "quad.obj: checked, 1 primitive"
+says "quad.obj: checked, 1 primitive, no findings"
 only
+run --check "$data/plates.gltf"
+says "plates.gltf: checked, 3 primitives, 1 error, 1 warning"
 
 scene "findings at or above --fail-on make the exit code 6"
 cp "$data/mirrored_cube.obj" .

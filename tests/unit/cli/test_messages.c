@@ -99,13 +99,19 @@ static void success_is_one_line_that_accounts_for_everything(void **state)
 		nt_decision_text(NT_SKIP_NO_TEXCOORDS));
 	says(&out, expected);
 
-	job.summary = (nt_summary){.mesh_count = 1, .solved_count = 1, .triangle_count = 1,
-		.vertex_count = 3, .counts = {.repaired_zero = 2, .repaired_sign = 1}};
-	settings.check = true;
-	job.output = NULL;
+	char stream[] = "-";
+	job = (nt_job){.input = "-", .output = stream,
+		.summary = {.mesh_count = 1, .solved_count = 1, .triangle_count = 1, .vertex_count = 3}};
 	nt_message_success(&out, &job, &settings);
-	says(&out, "nmtan: a.obj: checked, 1 primitive, 1 triangle, 3 vertices, repaired 3 of the "
-		   "tangents, no findings, 0 s\n");
+	says(&out, "nmtan: standard input -> standard output: 1 primitive, 1 triangle, 3 vertices, 0 s\n");
+
+	/* every primitive is judged, whichever would get tangents */
+	job = (nt_job){.input = "a.obj", .summary = {.mesh_count = 3, .solved_count = 1, .triangle_count = 1,
+		.vertex_count = 3, .counts = {.repaired_zero = 2, .repaired_sign = 1}}};
+	job.summary.skipped[NT_SKIP_NO_TEXCOORDS] = 2;
+	settings.check = true;
+	nt_message_success(&out, &job, &settings);
+	says(&out, "nmtan: a.obj: checked, 3 primitives, 3 tangents would be repaired, no findings, 0 s\n");
 }
 
 static void a_list_has_a_line_for_each_mesh(void **state)
