@@ -52,8 +52,8 @@ typedef struct nt_output_options {
 nmtan_status nt_output_create(nt_output **output, const nt_output_options *options, nt_error *error);
 
 /* Names a file that must not be written: the input ("-" too) and every file the input refers to. Files that do
- * not exist are ignored. To write in place, do not name the input. */
-nmtan_status nt_output_protect(nt_output *output, const char *path, nt_error *error);
+ * not exist are ignored. To write in place, do not name the input. way_out: what the refusal advises; NULL: nothing. */
+nmtan_status nt_output_protect(nt_output *output, const char *path, const char *way_out, nt_error *error);
 
 /* Adds a file to the set; "-" is standard output. The first file added with main = true gets its name last. A
  * directory, a missing folder, a protected file, the same name twice and, with no_clobber, an existing file are

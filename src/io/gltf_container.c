@@ -174,7 +174,7 @@ static nmtan_status protect_inputs(nt_gltf_container *c)
 			const char *file, *uri = nt_gltf_external_uri(nt_json_at(elements, i), &length);
 			if (uri && nt_uri_resolve(&c->arena, c->document->path, uri, length, true, &file,
 					   NULL) == NMTAN_OK)
-				status = nt_output_protect(c->output, file, c->error);
+				status = nt_output_protect(c->output, file, NULL, c->error);
 		}
 	}
 	return status;

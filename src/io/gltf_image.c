@@ -192,7 +192,7 @@ static size_t look_up(nt_image_set *set, const nt_material *material, const char
 	*entry = (image_entry){.path = path.data, .texture = NT_MODEL_NONE};
 	entry->exists = inspect(entry);
 	if (entry->exists) {
-		nt_output_protect(output, entry->path, error);
+		nt_output_protect(output, entry->path, NULL, error);
 		if (entry->type == NT_IMAGE_OTHER)
 			report(set, NT_CODE_IMAGE_TYPE, material, name, "");
 	} else {

@@ -44,6 +44,7 @@ typedef struct protected_file {
 	dev_t device;
 	ino_t inode;
 	char *path;
+	const char *way_out; /* a constant; NULL: none */
 } protected_file;
 
 struct nt_output {
@@ -77,7 +78,7 @@ nmtan_status nt_output_create(nt_output **output, const nt_output_options *optio
 	return NMTAN_OK;
 }
 
-nmtan_status nt_output_protect(nt_output *output, const char *path, nt_error *error)
+nmtan_status nt_output_protect(nt_output *output, const char *path, const char *way_out, nt_error *error)
 {
 	struct stat status;
 	const bool known = strcmp(path, "-") == 0 ? fstat(STDIN_FILENO, &status) == 0
@@ -92,7 +93,7 @@ nmtan_status nt_output_protect(nt_output *output, const char *path, nt_error *er
 		return nt_fail_memory(error);
 	}
 	output->guarded[output->guarded_count++] =
-		(protected_file){status.st_dev, status.st_ino, copy};
+		(protected_file){status.st_dev, status.st_ino, copy, way_out};
 	return NMTAN_OK;
 }
 
@@ -108,8 +109,9 @@ static nmtan_status check_existing(const nt_output *output, const char *path,
 		const protected_file *file = &output->guarded[i];
 		if (file->device != status->st_dev || file->inode != status->st_ino)
 			continue;
-		nt_fail(error, NMTAN_ERROR_IO, "refusing to write: it is the same file as the input %s",
-			strcmp(file->path, "-") == 0 ? "(standard input)" : file->path);
+		nt_fail(error, NMTAN_ERROR_IO, "refusing to write: it is the same file as the input %s%s%s",
+			strcmp(file->path, "-") == 0 ? "(standard input)" : file->path,
+			file->way_out ? "; " : "", file->way_out ? file->way_out : "");
 		return fail_at(error, path);
 	}
 	if (output->options.no_clobber && S_ISREG(status->st_mode)) {

@@ -27,7 +27,7 @@ static nmtan_status write_set(const nt_report *const *reports, size_t count,
 	if (status)
 		return status;
 	for (size_t i = 0; i < target->input_count && !status; i++)
-		status = nt_output_protect(output, target->inputs[i], error);
+		status = nt_output_protect(output, target->inputs[i], NULL, error);
 	if (!status)
 		status = nt_output_add(output, target->path, true, &sink, error);
 	if (!status)
@@ -92,7 +92,7 @@ nmtan_status nt_report_uv_images(nt_report *const *reports, size_t count, const 
 	nt_output *output = NULL;
 	nmtan_status status = nt_output_create(&output, &options, error);
 	for (size_t i = 0; i < target->input_count && !status; i++)
-		status = nt_output_protect(output, target->inputs[i], error);
+		status = nt_output_protect(output, target->inputs[i], NULL, error);
 	for (size_t i = 0; i < count && !status; i++)
 		for (size_t m = 0; reports[i] && m < reports[i]->mesh_count && !status; m++)
 			status = write_image(output, reports[i], (uint32_t)m, directory, error);

@@ -50,6 +50,14 @@ static bool is_stream(const char *path)
 	       (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode));
 }
 
+/* What cp would write into. */
+static bool is_folder(const char *path)
+{
+	struct stat info;
+	const size_t length = strlen(path);
+	return (length && path[length - 1] == '/') || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
+}
+
 /* Before anything is read, by the name; a stream without one gets PLY for PLY, else GLB. */
 static nmtan_status choose_writer(run *r)
 {
@@ -64,6 +72,9 @@ static nmtan_status choose_writer(run *r)
 		r->writer = nt_format_find(r->settings->output_format);
 	else
 		r->writer = nt_format_of_path(r->output_path);
+	if (!r->writer && is_folder(r->output_path))
+		return nt_fail(r->error, NMTAN_ERROR_USAGE, "\"%s\" is a folder: to write into it use -d",
+			r->output_path);
 	if (!r->writer)
 		return nt_fail(r->error, NMTAN_ERROR_USAGE,
 			"cannot tell the output format from the name \"%s\": expected .gltf, .glb or .ply, "
@@ -96,7 +107,7 @@ static nmtan_status open_scene(run *r)
 	r->reader = nt_format_of_input(r->input.data, r->input.size, r->input_path);
 	if (!r->reader)
 		return nt_fail(r->error, NMTAN_ERROR_INPUT,
-			"not recognised: expected OBJ, PLY, glTF or GLB");
+			"not recognised: expected OBJ, PLY, glTF, GLB or Draco");
 	r->scene.format = r->reader->format;
 	status = r->reader->open(&r->scene, &r->read_options, r->error);
 	end_stage(r);
@@ -247,7 +258,7 @@ static nmtan_status write_scene(run *r)
 	if (!status && r->writer->format != NT_FORMAT_PLY)
 		status = nt_stage_quads(&r->scene, r->error);
 	if (!status && !s->in_place)
-		status = nt_output_protect(output, r->input_path, r->error);
+		status = nt_output_protect(output, r->input_path, "--in-place allows that", r->error);
 	if (!status)
 		status = r->writer->write(&r->scene, &options, output, r->error);
 	/* the input may still be read here, and its faults are its own */

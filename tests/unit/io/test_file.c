@@ -299,8 +299,8 @@ static void output_that_is_an_input_is_refused_by_name(void **state)
 	assert_int_equal(symlink("in.ply", in_folder("soft")), 0);
 	nt_error error;
 	nt_output *output = start(NULL);
-	assert_int_equal(nt_output_protect(output, in_folder("in.ply"), &error), NMTAN_OK);
-	assert_int_equal(nt_output_protect(output, in_folder("missing.png"), &error), NMTAN_OK);
+	assert_int_equal(nt_output_protect(output, in_folder("in.ply"), NULL, &error), NMTAN_OK);
+	assert_int_equal(nt_output_protect(output, in_folder("missing.png"), NULL, &error), NMTAN_OK);
 	char message[256];
 	snprintf(message, sizeof message, "refusing to write: it is the same file as the input %s",
 		in_folder("in.ply"));
