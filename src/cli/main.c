@@ -173,7 +173,6 @@ static void tell_end(session *s, size_t count)
 	nt_buffer_free(&s->failures);
 }
 
-/* --in-place takes one file, or the same one twice. */
 static bool same_file(const char *a, const char *b)
 {
 	struct stat first, second;
@@ -188,11 +187,11 @@ static nmtan_status prepare(nt_batch *batch, const nt_command *c, nt_error *erro
 	if (c->directory)
 		return nt_batch_into(batch, c->operands, c->operand_count, c->directory, &c->settings,
 			error);
-	const char *input = c->operands[0];
-	const char *output = c->operand_count > 1 ? c->operands[1] : input;
-	if (c->settings.in_place && !same_file(input, output))
-		return nt_fail(error, NMTAN_ERROR_USAGE, "--in-place replaces '%s'; '%s' is another file",
-			input, output);
+	const char *input = c->operands[0], *output = c->operands[c->operand_count - 1];
+	/* the same file twice says the same thing */
+	const bool twice = c->operand_count == 2 && same_file(input, output);
+	if (c->settings.in_place && !twice)
+		return nt_batch_in_place(batch, c->operands, c->operand_count, error);
 	if (strcmp(output, "-") == 0 && !c->settings.dry_run && isatty(STDOUT_FILENO))
 		return nt_fail(error, NMTAN_ERROR_USAGE,
 			"'-' is a terminal here: send the output to a file or a pipe");

@@ -61,7 +61,7 @@ void nt_options_help(nt_buffer *out)
 		"nmtan puts tangents on meshes: OBJ, PLY, glTF, GLB and DRC in, glTF, GLB and PLY out.\n\n"
 		"  nmtan [options] INPUT OUTPUT\n"
 		"  nmtan [options] -d DIR INPUT...    many files, several at once\n"
-		"  nmtan [options] --in-place INPUT\n"
+		"  nmtan [options] --in-place INPUT...\n"
 		"  nmtan --check [options] INPUT...   reads and judges, writes no mesh\n\n"
 		"- is standard input or output (GLB or PLY). -- ends the options.\n");
 	for (size_t i = 0; i < nt_option_row_count; i++) {

@@ -47,7 +47,7 @@ const nt_option_row nt_option_rows[] = {
 		"format of the output", SETTING(output_format), true},
 	{"directory", 'd', NT_OPTION_TEXT, "DIR", 0, 0, NULL,
 		"many inputs: write each into DIR under its own name", FIELD(directory), true},
-	{"in-place", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "the output may replace the input",
+	{"in-place", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "replace each input by its output; with -d: outputs may replace inputs",
 		SETTING(in_place), true},
 	{"embed", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, ".gltf: buffers inside, as data URIs",
 		SETTING(embed), true},
@@ -368,15 +368,14 @@ static nmtan_status check_operands(parser *p)
 {
 	const nt_command *c = p->command;
 	const size_t count = c->operand_count;
-	const bool many = c->settings.check || c->directory;
-	const bool alone = c->settings.in_place && !many && count == 1;
+	const bool many = c->settings.check || c->directory || c->settings.in_place;
 	if (count == 0)
 		return nt_fail(p->error, NMTAN_ERROR_USAGE, "no input is named");
-	if (!many && !alone && count == 1)
+	if (!many && count == 1)
 		return nt_fail(p->error, NMTAN_ERROR_USAGE, "no output is named after '%s'", c->operands[0]);
 	if (!many && count > 2)
 		return nt_fail(p->error, NMTAN_ERROR_USAGE,
-			"'%s' is one name too many; for many inputs use -d DIR", c->operands[2]);
+			"'%s' is one name too many; for many inputs use -d DIR or --in-place", c->operands[2]);
 	size_t dashes = 0;
 	const size_t inputs = many ? count : 1;
 	for (size_t i = 0; i < inputs; i++)

@@ -72,9 +72,11 @@ static nmtan_status choose_target(nt_report_plan *plan, const nt_command *c, boo
 	nt_report_target *target = &plan->target;
 	target->no_clobber = c->settings.no_clobber;
 	target->inputs = c->operands;
-	target->input_count = c->settings.check || c->directory ? c->operand_count : 1;
+	target->input_count =
+		c->settings.check || c->directory || c->settings.in_place ? c->operand_count : 1;
 	target->path = c->report;
-	if (!target->path && c->settings.check && c->verbosity >= 0)
+	/* who names a format wants to see it */
+	if (!target->path && c->settings.check && (c->verbosity >= 0 || c->report_format))
 		target->path = "-";
 	if (!target->path)
 		return NMTAN_OK;

@@ -184,6 +184,18 @@ nmtan_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t co
 	return status ? status : make_folder(directory, settings->dry_run, error);
 }
 
+nmtan_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
+{
+	nmtan_status status = make_jobs(batch, inputs, count, error);
+	for (size_t i = 0; i < count && !status; i++) {
+		batch->jobs[i].output = strdup(inputs[i]);
+		status = batch->jobs[i].output ? NMTAN_OK : nt_fail_memory(error);
+	}
+	if (!status)
+		status = refuse_equal_outputs(batch, error);
+	return status ? status : refuse_foreign_inputs(batch, error);
+}
+
 /* Shared by the threads of one batch. */
 typedef struct progress {
 	nt_batch *batch;

@@ -45,6 +45,10 @@ nmtan_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t c
 nmtan_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count,
 	const char *directory, const nt_settings *settings, nt_error *error);
 
+/* Prepares inputs that are replaced by their outputs. Nothing runs when one of them is there twice, also by another
+ * name: NMTAN_ERROR_USAGE. Else NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error);
+
 /* What runs a job: nt_run, or something else in tests. */
 typedef nmtan_status (*nt_runner)(const char *input, const char *output, const nt_settings *settings,
 	nt_summary *summary, nt_error *error);

@@ -62,15 +62,37 @@ cp "$data/plates.glb" a.glb
 run --in-place a.glb a.glb
 exits 0
 same a.glb expected.glb
+cp "$data/plates.glb" a.glb
 cp "$data/plates.glb" b.glb
 run --in-place a.glb b.glb
+exits 0
+says "2 of 2 done"
+same a.glb expected.glb
+same b.glb expected.glb
+run --in-place --report=b.glb --report-format=text a.glb b.glb
+exits 2
+same b.glb expected.glb
+run --in-place a.glb b.glb a.glb
 exits 1
-says "b.glb"
-same b.glb "$data/plates.glb"
+says "'a.glb' and 'a.glb' would both be written"
 cp "$data/quad.obj" .
 run --in-place quad.obj
 exits 1
 same quad.obj "$data/quad.obj"
+
+scene "what stands in the way of an output is said with the way out"
+cp "$data/plates.glb" a.glb
+run a.glb a.glb
+exits 2
+says "the same file as the input a.glb; --in-place allows that"
+mkdir out
+for folder in out out/ new/; do
+	run a.glb $folder
+	exits 1
+	says "\"$folder\" is a folder: to write into it use -d"
+done
+only a.glb out
+rmdir out || wrong "something was written"
 
 scene "a link to the output stays a link"
 ln -s real.glb link.glb

@@ -52,6 +52,13 @@ else
 	skip_case "../shared is not here"
 fi
 
+scene "a quiet run prints the report whose format was asked for, and nothing else"
+"$NMTAN" --check -q --report-format=json "$data/quad.obj" >r.json 2>err || wrong "exit code $?"
+is "$(cat err)" ""
+validates r.json
+"$NMTAN" --check -q "$data/quad.obj" >out 2>&1 || wrong "exit code $?"
+is "$(cat out)" ""
+
 scene "the known traps are caught"
 if [ -d "$ROOT/../shared/models" ]; then
 	models=$ROOT/../shared/models

@@ -80,6 +80,26 @@ static void an_output_that_is_another_input_is_refused(void **state)
 	nt_batch_free(&batch);
 }
 
+static void in_place_the_output_is_the_input(void **state)
+{
+	(void)state;
+	nt_batch batch;
+	nt_error error;
+	put_text_file("p.glb", "glTF");
+	put_text_file("q.glb", "glTF");
+	assert_int_equal(nt_batch_in_place(&batch, INPUTS("p.glb", "q.glb"), &error), NMTAN_OK);
+	assert_int_equal(batch.count, 2);
+	assert_string_equal(batch.jobs[0].output, "p.glb");
+	assert_string_equal(batch.jobs[1].output, "q.glb");
+	nt_batch_free(&batch);
+	/* one file under two names: by which of them would it be read, and when? */
+	assert_int_equal(symlink("p.glb", "link.glb"), 0);
+	assert_int_equal(nt_batch_in_place(&batch, INPUTS("p.glb", "p.glb"), &error), NMTAN_ERROR_USAGE);
+	nt_batch_free(&batch);
+	assert_int_equal(nt_batch_in_place(&batch, INPUTS("p.glb", "link.glb"), &error), NMTAN_ERROR_USAGE);
+	nt_batch_free(&batch);
+}
+
 static void a_dry_run_makes_no_folder_and_a_file_is_none(void **state)
 {
 	(void)state;
@@ -179,6 +199,7 @@ int main(void)
 		cmocka_unit_test(outputs_have_the_name_of_the_input_and_the_ending_of_the_format),
 		cmocka_unit_test(two_inputs_of_one_output_are_refused_before_anything_is_made),
 		cmocka_unit_test(an_output_that_is_another_input_is_refused),
+		cmocka_unit_test(in_place_the_output_is_the_input),
 		cmocka_unit_test(a_dry_run_makes_no_folder_and_a_file_is_none),
 		cmocka_unit_test(every_input_runs_and_is_told_about_in_order),
 		cmocka_unit_test(one_input_has_all_threads),
