@@ -125,10 +125,10 @@ demo: need-build
 	@echo "Building build/release/nmtan"
 	@$(MAKE) --no-print-directory -s $(JOBS) config=release all
 	@mkdir -p build/demo
-	@echo "nmtan --timing $(DEMO) build/demo/mirrored_cube.glb"
-	@build/release/nmtan --timing $(DEMO) build/demo/mirrored_cube.glb
-	@echo "nmtan --check build/demo/mirrored_cube.glb"
-	@build/release/nmtan --check build/demo/mirrored_cube.glb
+	@echo "nmtan $(DEMO) build/demo/mirrored_cube.glb"
+	@build/release/nmtan $(DEMO) build/demo/mirrored_cube.glb
+	@echo "nmtan --check --max-issues=1 build/demo/mirrored_cube.glb"
+	@build/release/nmtan --check --max-issues=1 build/demo/mirrored_cube.glb
 
 check: need-check
 	@$(MAKE) --no-print-directory -s check-built
