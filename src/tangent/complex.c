@@ -278,24 +278,25 @@ static nmtan_status adopt(complex *c)
 
 /* Averages */
 
-static bool is_second_half(const complex *c, uint32_t triangle, uint32_t first)
-{
-	return triangle == first + 1 && (c->fast->flags[triangle] & NT_TRIANGLE_SECOND);
-}
-
 static float dot3(const float *a, const float *b)
 {
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/* Whether triangle t is the second half of a quad whose first half is s. */
+static bool is_second_half(const complex *c, uint32_t t, uint32_t s)
+{
+	return t == s + 1 && (c->fast->flags[t] & NT_TRIANGLE_SECOND);
 }
 
 /* Whether two members of a group are averaged together: step 7 with the default threshold. */
 static bool belong_together(const complex *c, const batch *b, uint32_t i, uint32_t j)
 {
 	const nt_corner *f = &b->solved[i], *t = &b->solved[j];
-	const uint32_t ft = c->corners[b->first + i] >> 2, tt = c->corners[b->first + j] >> 2;
-	if (f->kind == NT_CORNER_ANY || t->kind == NT_CORNER_ANY || ft == tt || is_second_half(c, ft, tt) || is_second_half(c, tt, ft))
+	if (dot3(f->u, t->u) > -1.0f && dot3(f->v, t->v) > -1.0f)
 		return true;
-	return dot3(f->u, t->u) > -1.0f && dot3(f->v, t->v) > -1.0f;
+	const uint32_t ft = c->corners[b->first + i] >> 2, tt = c->corners[b->first + j] >> 2;
+	return f->kind == NT_CORNER_ANY || t->kind == NT_CORNER_ANY || ft == tt || is_second_half(c, ft, tt) || is_second_half(c, tt, ft);
 }
 
 static void normalise_safe(float v[3])
@@ -359,10 +360,20 @@ static bool no_split(const batch *b, uint32_t group, const nt_corner *sum)
 	return true;
 }
 
-static bool whole_group_belongs(const complex *c, const batch *b, uint32_t group, uint32_t f)
+/* Whether all members from i on belong together with f. */
+static bool all_belong(const complex *c, const batch *b, uint32_t i, uint32_t f)
+{
+	for (; i != NONE; i = b->later[i])
+		if (!belong_together(c, b, i, f))
+			return false;
+	return true;
+}
+
+/* The same by all pairs. */
+static bool no_pair_splits(const complex *c, const batch *b, uint32_t group)
 {
 	for (uint32_t i = b->head[group]; i != NONE; i = b->later[i])
-		if (!belong_together(c, b, f, i))
+		if (!all_belong(c, b, b->later[i], i))
 			return false;
 	return true;
 }
@@ -395,12 +406,12 @@ static float group_sign(const complex *c, const batch *b, uint32_t i)
 static void solve_group(const complex *c, const batch *b, uint32_t group, nt_corner *results)
 {
 	nt_corner whole = add_members(c, b, group, NONE);
-	const bool one = no_split(b, group, &whole);
+	const bool one = no_split(b, group, &whole) || no_pair_splits(c, b, group);
 	finish(c, &whole);
 	const float sign = group_sign(c, b, b->head[group]);
 	for (uint32_t i = b->head[group]; i != NONE; i = b->later[i]) {
 		nt_corner r = whole;
-		if (!one && !whole_group_belongs(c, b, group, i)) {
+		if (!one && !all_belong(c, b, b->head[group], i)) {
 			r = add_members(c, b, group, i);
 			finish(c, &r);
 		}
