@@ -79,7 +79,8 @@ typedef struct nt_corner {
 	uint32_t kind;
 } nt_corner;
 
-/* nt_corner.kind: u and v have length 1 up to 1e-5; they may not; there is no frame, and all values are 0. */
+/* nt_corner.kind: u and v have length 1 up to 1e-5; they may not; there is no frame,
+ * and no value means anything. */
 enum { NT_CORNER_UNIT, NT_CORNER_EXTREME, NT_CORNER_ANY };
 
 /* The passes of one instruction set. */

@@ -88,18 +88,16 @@ static void solve_single_frames(single_lanes *restrict s)
 		project3(n, os);
 		project3(n, ot);
 
-		/* a triangle without a frame adds nothing */
-		const int any = s->any[i];
 #pragma GCC unroll 3
 		for (int c = 0; c < 3; c++) {
-			s->u[c][i] = any ? 0.0f : os[c];
-			s->v[c][i] = any ? 0.0f : ot[c];
+			s->u[c][i] = os[c];
+			s->v[c][i] = ot[c];
 		}
-		s->u[3][i] = any ? 0.0f : ls / size;
-		s->v[3][i] = any ? 0.0f : lt / size;
+		s->u[3][i] = ls / size;
+		s->v[3][i] = lt / size;
 		const float least = 1.0f - 1e-5f, most = 1.0f + 1e-5f, uu = dot3(os, os), vv = dot3(ot, ot);
 		const int unit = (uu > least) & (uu < most) & (vv > least) & (vv < most);
-		s->kind[i] = any ? NT_CORNER_ANY : unit ? NT_CORNER_UNIT : NT_CORNER_EXTREME;
+		s->kind[i] = s->any[i] ? NT_CORNER_ANY : unit ? NT_CORNER_UNIT : NT_CORNER_EXTREME;
 	}
 }
 
@@ -125,7 +123,7 @@ static void solve_single_angles(single_lanes *restrict s)
 		s->angle[i] = cosine;
 	}
 	for (int i = 0; i < NT_LANES; i++)
-		s->angle[i] = s->any[i] ? 0.0f : nt_acos(s->angle[i]);
+		s->angle[i] = nt_acos(s->angle[i]);
 }
 
 static void corners(const nt_fast *fast, const uint32_t *list, size_t count, nt_corner *solved)

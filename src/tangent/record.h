@@ -41,6 +41,7 @@ enum {
 #define NT_RESULT_MINUS 0xbf800000u   /* -1.0f */
 #define NT_RESULT_NONE 0u             /* no corner has this orientation */
 #define NT_RESULT_COMPLEX 0x40000000u /* ask complex.c */
+#define NT_RESULT_NUMBERED 0x40000001u /* complex.c has been there */
 
 typedef float nt_float4 __attribute__((vector_size(16)));
 typedef int nt_int4 __attribute__((vector_size(16)));
