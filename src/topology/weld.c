@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Welding by hash. An indexed mesh is welded by its vertices (weld_sieve.c), others by their corners: here, where
- * each row of eight floats is hashed into a table (weld_parts.h). This is the way of one thread; several
- * share a table in weld_threads.c.
+ * each row of eight floats is hashed into a table (weld_parts.h). Several threads do so for a range of items each
+ * (weld_threads.c).
  *
  * Rows go in batches: first all hashes of the batch and a prefetch of their entries, then the probes. On a
  * mesh of a million vertices the table is larger than the second-level cache, and a probe without the
@@ -19,37 +19,37 @@ typedef struct batch {
 	bool ordered; /* no row holds a NaN */
 } batch;
 
-bool nt_weld_make_table(nt_welder *w, unsigned table_bits, unsigned index_bits)
+/* An empty table. */
+static bool make_table(nt_welder *w, unsigned bits)
 {
-	w->table = nt_room_alloc(w->room, (size_t)1 << table_bits, sizeof *w->table);
-	w->table_bits = table_bits;
-	w->index_bits = index_bits;
+	w->table = nt_room_alloc(w->room, (size_t)1 << bits, sizeof *w->table);
+	w->table_bits = bits;
+	if (w->table)
+		memset(w->table, 0xff, sizeof *w->table << bits);
 	return w->table;
 }
 
-static bool make_table(nt_welder *w, unsigned bits)
+/* A larger table with the same content. */
+static bool grow_table(nt_welder *w, unsigned bits)
 {
-	if (!nt_weld_make_table(w, bits, bits - 1))
+	if (!make_table(w, bits))
 		return false;
-	memset(w->table, 0xff, ((size_t)1 << bits) * sizeof *w->table);
-	return true;
-}
-
-/* A table of four times the size with the same content. */
-static bool grow_table(nt_welder *w)
-{
-	if (!make_table(w, w->table_bits + 2))
-		return false;
-	const size_t mask = ((size_t)1 << w->table_bits) - 1;
-	for (size_t i = 0; i < w->row_count; i++) {
-		const nt_weld_row *row = &w->rows[i];
-		if (!nt_weld_row_ordered(row))
-			continue;
-		const uint64_t hash = nt_weld_hash(row);
-		size_t at = nt_weld_slot(w, hash);
-		while (w->table[at] != NT_WELD_EMPTY)
-			at = (at + 1) & mask;
-		w->table[at] = nt_weld_entry(w, hash, (uint32_t)i);
+	const size_t mask = ((size_t)1 << bits) - 1;
+	uint64_t hashes[NT_WELD_BATCH];
+	for (size_t begin = 0; begin < w->row_count; begin += NT_WELD_BATCH) {
+		const size_t left = w->row_count - begin, count = left < NT_WELD_BATCH ? left : NT_WELD_BATCH;
+		for (size_t i = 0; i < count; i++) {
+			hashes[i] = nt_weld_hash(&w->rows[begin + i]);
+			__builtin_prefetch(&w->table[nt_weld_slot(w, hashes[i])], 1);
+		}
+		for (size_t i = 0; i < count; i++) {
+			if (w->unordered && !nt_weld_row_ordered(&w->rows[begin + i]))
+				continue;
+			size_t at = nt_weld_slot(w, hashes[i]);
+			while (w->table[at] != NT_WELD_EMPTY)
+				at = (at + 1) & mask;
+			w->table[at] = nt_weld_entry(w, hashes[i], (uint32_t)(begin + i));
+		}
 	}
 	return true;
 }
@@ -83,12 +83,22 @@ static bool is_tight(const nt_welder *w)
 	return rows > w->row_capacity || rows * 2 >= (size_t)1 << w->table_bits;
 }
 
-static bool reserve(nt_welder *w)
+bool nt_weld_start(nt_welder *w, size_t capacity)
 {
-	const size_t rows = rows_soon(w, w->row_count);
-	if (rows > w->row_capacity && !nt_weld_grow_rows(w, w->item_count))
+	const size_t rows = rows_soon(w, w->row_guess);
+	return nt_weld_grow_rows(w, (rows > capacity ? rows : capacity) + 1) &&
+	       make_table(w, nt_weld_bits_for(2 * rows + 1));
+}
+
+bool nt_weld_reserve(nt_welder *w, size_t done)
+{
+	/* as many rows an item as so far and a sixteenth more, but at least half as many again */
+	const double more = (double)w->row_count / (double)done * (double)(w->item_count - done) * 1.0625;
+	const size_t least = w->row_count / 2, expected = more < (double)least ? least : (size_t)more;
+	const size_t soon = rows_soon(w, w->row_count), rows = rows_soon(w, w->row_count + expected);
+	if (soon > w->row_capacity && !nt_weld_grow_rows(w, rows + 1))
 		return false;
-	return rows * 2 < (size_t)1 << w->table_bits || grow_table(w);
+	return soon * 2 < (size_t)1 << w->table_bits || grow_table(w, nt_weld_bits_for(2 * rows + 1));
 }
 
 /* A row, its hash, and its entry on the way. Returns the flags of nt_weld_load(). */
@@ -115,7 +125,7 @@ static void load_batch(const nt_welder *w, size_t begin, nt_weld_row *rows, batc
 			unordered |= load_item(&local, &mesh, local.items[begin + i], &rows[i], &b->hashes[i]);
 	else
 		for (size_t i = 0; i < count; i++)
-			unordered |= load_item(&local, &mesh, begin + i, &rows[i], &b->hashes[i]);
+			unordered |= load_item(&local, &mesh, local.first_vertex + begin + i, &rows[i], &b->hashes[i]);
 	b->rows = rows;
 	b->begin = begin;
 	b->count = count;
@@ -134,20 +144,11 @@ static inline uint32_t keep_row(nt_welder *w, const nt_weld_row *row)
 /* The number of a row: that of an equal one, or the next. */
 static inline uint32_t find_or_add(nt_welder *w, const nt_weld_row *row, uint64_t hash)
 {
-	const size_t mask = ((size_t)1 << w->table_bits) - 1;
-	const uint32_t number_mask = ((uint32_t)1 << w->index_bits) - 1;
-	const uint32_t tag = nt_weld_entry(w, hash, 0);
-	for (size_t at = nt_weld_slot(w, hash);; at = (at + 1) & mask) {
-		const uint32_t entry = w->table[at];
-		if (entry == NT_WELD_EMPTY) {
-			const uint32_t number = keep_row(w, row);
-			w->table[at] = tag | number;
-			return number;
-		}
-		if ((entry & ~number_mask) == tag &&
-			nt_weld_same(&w->rows[entry & number_mask], row))
-			return entry & number_mask;
-	}
+	const uint32_t number_mask = ((uint32_t)1 << (w->table_bits - 1)) - 1;
+	uint32_t *entry = &w->table[nt_weld_probe(w, row, hash)];
+	if (*entry == NT_WELD_EMPTY)
+		*entry = nt_weld_entry(w, hash, keep_row(w, row));
+	return *entry & number_mask;
 }
 
 static void number_batch(nt_welder *w, const batch *b)
@@ -171,34 +172,33 @@ static nt_weld_row *next_place(const nt_welder *w, const batch *now)
 	return now->rows - end >= 2 * NT_WELD_BATCH ? end + NT_WELD_BATCH : now->rows + NT_WELD_BATCH;
 }
 
-/* Numbers the items on one thread. While one batch is numbered, the entries of the next are on their way. */
-static bool weld_alone(nt_welder *w)
+/* While one batch is numbered, the entries of the next are on their way. */
+size_t nt_weld_some(nt_welder *w, size_t item)
 {
-	const size_t rows = rows_soon(w, w->row_guess);
-	if (!nt_weld_grow_rows(w, rows + 1) || !make_table(w, nt_weld_bits_for(2 * rows + 1)))
-		return false;
 	batch batches[2];
-	load_batch(w, 0, w->rows, &batches[0]);
-	for (size_t begin = 0, i = 0; begin < w->item_count; begin += NT_WELD_BATCH, i ^= 1) {
-		batch *now = &batches[i], *later = &batches[i ^ 1];
-		const size_t next = begin + NT_WELD_BATCH;
-		if (next < w->item_count)
-			load_batch(w, next, next_place(w, now), later);
+	load_batch(w, item, w->rows + w->row_count, &batches[0]);
+	for (size_t i = 0; item < w->item_count; i ^= 1) {
+		batch *now = &batches[i];
+		item += now->count;
+		if (item < w->item_count)
+			load_batch(w, item, next_place(w, now), &batches[i ^ 1]);
 		number_batch(w, now);
-		if (next < w->item_count && is_tight(w)) {
-			/* everything moves: the next batch is loaded again */
-			if (!reserve(w))
-				return false;
-			load_batch(w, next, w->rows + w->row_count, later);
-		}
+		if (item < w->item_count && is_tight(w))
+			break; /* everything moves: the next batch will be loaded again */
 	}
-	return true;
+	return item;
 }
 
 bool nt_weld_items(nt_welder *w, unsigned ranges)
 {
-	/* threads compare items by way of the mesh, not of few rows at hand: two of them do not pay */
-	return ranges > 2 ? nt_weld_items_threads(w, ranges) : weld_alone(w);
+	if (ranges > 1)
+		return nt_weld_items_threads(w, ranges);
+	if (!nt_weld_start(w, 0))
+		return false;
+	for (size_t done = 0; (done = nt_weld_some(w, done)) < w->item_count;)
+		if (!nt_weld_reserve(w, done))
+			return false;
+	return true;
 }
 
 nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_room *row_room,

@@ -22,14 +22,14 @@ enum { NT_WELD_BATCH = 32 };
 typedef struct nt_welder {
 	const nmtan_mesh *mesh;
 	nt_room *row_room, *room; /* for the rows, for everything else */
-	const uint32_t *items; /* vertex of item i; NULL: i */
-	size_t item_count;
+	const uint32_t *items; /* vertex of item i; NULL: first_vertex + i */
+	size_t first_vertex, item_count;
 	size_t row_guess;      /* rows for which there is room at first */
 	nt_weld_row *rows;
 	bool rows_in_room;
 	size_t row_capacity, row_count;
 	uint32_t *table;
-	unsigned table_bits, index_bits; /* log2 of the entries; bits of an entry's number */
+	unsigned table_bits; /* log2 of the entries; a number has one bit less */
 	uint32_t *numbers; /* [item_count] row of each item */
 	bool unordered;    /* an item holds a NaN */
 } nt_welder;
@@ -103,11 +103,6 @@ static inline bool nt_weld_same(const nt_weld_row *a, const nt_weld_row *b)
 	return difference == 0;
 }
 
-static inline size_t nt_weld_vertex(const nt_welder *w, size_t item)
-{
-	return w->items ? w->items[item] : item;
-}
-
 static inline size_t nt_weld_slot(const nt_welder *w, uint64_t hash)
 {
 	return (size_t)(hash >> (64 - w->table_bits));
@@ -117,7 +112,7 @@ static inline size_t nt_weld_slot(const nt_welder *w, uint64_t hash)
  * the tag's. */
 static inline uint32_t nt_weld_entry(const nt_welder *w, uint64_t hash, uint32_t number)
 {
-	return (uint32_t)(hash >> 20) << w->index_bits | number;
+	return (uint32_t)(hash >> 20) << (w->table_bits - 1) | number;
 }
 
 static inline unsigned nt_weld_bits_for(size_t entries)
@@ -128,19 +123,40 @@ static inline unsigned nt_weld_bits_for(size_t entries)
 	return bits;
 }
 
-/* A table that is not cleared. */
-bool nt_weld_make_table(nt_welder *w, unsigned table_bits, unsigned index_bits);
+/* The slot of a row: where the entry of an equal one is, or none. */
+static inline size_t nt_weld_probe(const nt_welder *w, const nt_weld_row *row, uint64_t hash)
+{
+	const size_t mask = ((size_t)1 << w->table_bits) - 1;
+	const uint32_t number_mask = (uint32_t)(mask >> 1);
+	const uint32_t tag = nt_weld_entry(w, hash, 0);
+	for (size_t at = nt_weld_slot(w, hash);; at = (at + 1) & mask) {
+		const uint32_t entry = w->table[at];
+		if (entry == NT_WELD_EMPTY ||
+			((entry & ~number_mask) == tag && nt_weld_same(&w->rows[entry & number_mask], row)))
+			return at;
+	}
+}
+
+/* Numbers items in order of first appearance, by a table: rows, row_count and what lies at `numbers` come to be. An
+ * item with a NaN has a row of its own.
+ *
+ *   start     table as row_guess says, and room for as many rows or for `capacity`, whichever is more; false when
+ *             out of memory
+ *   some      items from `item` on, until all have numbers or memory runs short; returns the first without
+ *   reserve   more memory, for as many rows as the items before `done` lead to expect; false when out of memory */
+bool nt_weld_start(nt_welder *w, size_t capacity);
+size_t nt_weld_some(nt_welder *w, size_t item);
+bool nt_weld_reserve(nt_welder *w, size_t done);
 
 /* A larger place for the rows, which move. */
 bool nt_weld_grow_rows(nt_welder *w, size_t capacity);
 
-/* Numbers the items in order of first appearance, by a table: rows, row_count and what lies at `numbers` come to be.
- * An item with a NaN has a row of its own. The second is for at least two threads. False when out of memory. */
+/* All items, on one thread or several; the second is for at least two. False when out of memory. */
 bool nt_weld_items(nt_welder *w, unsigned ranges);
 bool nt_weld_items_threads(nt_welder *w, unsigned ranges);
 
-/* Welds the vertices, which are the items, of a mesh with indices; rows and row_count come to be. Returns the number of
- * each corner, which may be the mesh's indices; NULL when out of memory. */
+/* Welds the vertices, which are the items, of a mesh with indices; rows and row_count come to be. Returns the number
+ * of each corner, which may be the mesh's indices; NULL when out of memory. */
 const uint32_t *nt_weld_vertices(nt_welder *w, size_t corner_count, unsigned ranges);
 
 #endif

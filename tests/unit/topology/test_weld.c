@@ -119,6 +119,19 @@ static void corners_weld_alike_on_all_threads(void **state)
 		}
 }
 
+static void few_corners_weld_alike_on_all_threads(void **state)
+{
+	(void)state;
+	for (size_t corners = 3; corners < 900; corners += corners / 3)
+		for (uint32_t kinds = 1; kinds < 1000; kinds *= 9) {
+			vertex_row *rows = random_rows(corners, kinds, NAN);
+			const nmtan_mesh mesh = mesh_of(rows, corners, NULL, corners);
+			check(&mesh, corners, 0);
+			check(&mesh, corners, corners * 16);
+			free(rows);
+		}
+}
+
 static void vertices_weld_alike_on_all_threads(void **state)
 {
 	(void)state;
@@ -276,6 +289,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(corners_weld_alike_on_all_threads),
+		cmocka_unit_test(few_corners_weld_alike_on_all_threads),
 		cmocka_unit_test(vertices_weld_alike_on_all_threads),
 		cmocka_unit_test(few_of_many_vertices_weld_alike),
 		cmocka_unit_test(some_equal_vertices_of_many_weld_alike),

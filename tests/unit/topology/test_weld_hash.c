@@ -144,9 +144,9 @@ static double tag_matches(make_row *make)
 {
 	size_t *counts = calloc((size_t)1 << TAG_BITS, sizeof *counts);
 	double pairs = 0;
-	const nt_welder w = {.index_bits = 32 - TAG_BITS};
+	const nt_welder w = {.table_bits = 33 - TAG_BITS};
 	for (unsigned i = 0; i < COUNT; i++)
-		pairs += (double)counts[nt_weld_entry(&w, hash_of(make, i), 0) >> w.index_bits]++;
+		pairs += (double)counts[nt_weld_entry(&w, hash_of(make, i), 0) >> (32 - TAG_BITS)]++;
 	free(counts);
 	return pairs * (1 << TAG_BITS) / (0.5 * COUNT * (COUNT - 1.0));
 }
