@@ -36,11 +36,22 @@ typedef struct sieve {
 	nt_welder *w;
 	unsigned ranges;
 	unsigned word_bits; /* log2 of the words of a bitmap */
+	uint32_t *bitmaps;  /* marked and again of each range; the second of range 0 becomes that of all */
 	uint32_t *places;   /* [vertex_count]; then, from where a range begins, its listed vertices */
-	uint32_t *marked[MOST_RANGES], *again[MOST_RANGES]; /* bitmaps; the second of range 0 becomes that of all */
-	size_t begins[MOST_RANGES], listed[MOST_RANGES];    /* first vertex of a range, how many it listed */
-	bool many;                                          /* atomic: it is left to the table */
+	size_t begins[MOST_RANGES], found[MOST_RANGES], listed[MOST_RANGES]; /* of a range: its first vertex, how many
+	                                                                       it found marked, how many it lists */
+	bool many; /* atomic: it is left to the table */
 } sieve;
+
+static inline uint32_t *marked_of(const sieve *s, unsigned range)
+{
+	return s->bitmaps + ((size_t)2 * range << s->word_bits);
+}
+
+static inline uint32_t *again_of(const sieve *s, unsigned range)
+{
+	return marked_of(s, range) + ((size_t)1 << s->word_bits);
+}
 
 static inline size_t word_of(uint32_t place)
 {
@@ -70,10 +81,10 @@ static inline nt_weld_flags load_batch(const sieve *s, size_t begin, size_t end,
 	return unordered;
 }
 
-/* Whoever holds a NaN gets place 0, which is listed. */
-static void list_unordered(const sieve *s, size_t begin, size_t end, uint32_t *again)
+/* Whoever holds a NaN gets place 0, as if it had been found. */
+static void find_unordered(const sieve *s, size_t begin, size_t end, uint32_t *marked)
 {
-	again[0] |= bits_of(0);
+	marked[0] |= bits_of(0);
 	for (size_t v = begin; v < end; v++)
 		if (!nt_weld_row_ordered(&s->w->rows[v]))
 			s->places[v] = 0;
@@ -98,21 +109,21 @@ static size_t mark_batch(const uint32_t *places, size_t count, uint32_t *marked,
 static void load_range(void *context, size_t begin, size_t end, unsigned slot)
 {
 	sieve *s = context;
-	uint32_t *const marked = s->marked[slot], *const again = s->again[slot];
-	memset(marked, 0, sizeof *marked << s->word_bits);
-	memset(again, 0, sizeof *again << s->word_bits);
-	s->begins[slot] = begin;
+	uint32_t *const marked = marked_of(s, slot), *const again = again_of(s, slot);
+	memset(marked, 0, 2 * sizeof *marked << s->word_bits);
 	size_t found = 0;
 	for (size_t first = begin, last; first < end; first = last) {
 		last = end - first < NT_WELD_BATCH ? end : first + NT_WELD_BATCH;
 		if (!nt_weld_ordered(load_batch(s, first, last, marked)))
-			list_unordered(s, first, last, again);
+			find_unordered(s, first, last, marked);
 		found += mark_batch(s->places + first, last - first, marked, again);
 		if (found > MANY + (last - begin) / 8)
 			__atomic_store_n(&s->many, true, __ATOMIC_RELAXED);
 		if (__atomic_load_n(&s->many, __ATOMIC_RELAXED))
 			break;
 	}
+	s->begins[slot] = begin;
+	s->found[slot] = found;
 }
 
 /* List */
@@ -125,17 +136,17 @@ static void join_range(void *context, size_t begin, size_t end, unsigned slot)
 	for (size_t i = begin; i < end; i++) {
 		uint32_t marked = 0, again = 0;
 		for (unsigned r = 0; r < s->ranges; r++) {
-			again |= s->again[r][i] | (marked & s->marked[r][i]);
-			marked |= s->marked[r][i];
+			again |= again_of(s, r)[i] | (marked & marked_of(s, r)[i]);
+			marked |= marked_of(s, r)[i];
 		}
-		s->again[0][i] = again;
+		again_of(s, 0)[i] = again;
 	}
 }
 
 static void list_range(void *context, size_t begin, size_t end, unsigned slot)
 {
 	sieve *s = context;
-	const uint32_t *const again = s->again[0];
+	const uint32_t *const again = again_of(s, 0);
 	uint32_t *const places = s->places, *list = places + begin;
 	for (size_t v = begin; v < end; v++) {
 		const uint32_t place = places[v], bits = bits_of(place);
@@ -148,6 +159,8 @@ static void list_range(void *context, size_t begin, size_t end, unsigned slot)
 /* Lists the vertices that may be equal to another, ascending, and those with a NaN. Returns how many. */
 static size_t list_vertices(sieve *s)
 {
+	if (s->ranges == 1 && s->found[0] == 0)
+		return 0; /* usual in small meshes */
 	if (s->ranges > 1)
 		nt_parallel_ranges(s->ranges, (size_t)1 << s->word_bits, 1, join_range, s);
 	nt_parallel_ranges(s->ranges, s->w->item_count, 1, list_range, s);
@@ -247,12 +260,8 @@ static bool make_sieve(sieve *s)
 	if (!nt_weld_grow_rows(w, count + 1))
 		return false;
 	s->places = nt_room_alloc(w->room, count + 1, sizeof *s->places);
-	uint32_t *bitmaps = nt_room_alloc(w->room, (size_t)2 * s->ranges << s->word_bits, sizeof *bitmaps);
-	for (unsigned r = 0; r < s->ranges && bitmaps; r++) {
-		s->marked[r] = bitmaps + ((size_t)2 * r << s->word_bits);
-		s->again[r] = s->marked[r] + ((size_t)1 << s->word_bits);
-	}
-	return s->places && bitmaps;
+	s->bitmaps = nt_room_alloc(w->room, (size_t)2 * s->ranges << s->word_bits, sizeof *s->bitmaps);
+	return s->places && s->bitmaps;
 }
 
 /* Welds the listed vertices alone, and numbers all; false when out of memory. Where no number is another than the
@@ -290,7 +299,9 @@ const uint32_t *nt_weld_vertices(nt_welder *w, size_t corner_count, unsigned ran
 {
 	char *const begin = w->room->begin, *const row_begin = w->row_room->begin;
 	const nt_scratch_mark mark = nt_scratch_here(w->room->scratch);
-	sieve s = {.w = w};
+	sieve s;
+	s.w = w;
+	s.many = false;
 	s.ranges = nt_parallel_slots(ranges < MOST_RANGES ? ranges : MOST_RANGES, w->item_count, 1);
 	if (!make_sieve(&s))
 		return NULL;
