@@ -85,22 +85,42 @@ static void mark_hub(nt_adjacency *a, size_t vertex)
 	}
 }
 
+/* Turns the counts of a block's vertices into cursors that begin at `place`; returns how deep the block is. */
+static uint32_t place_block(nt_adjacency *a, size_t first, size_t count, uint32_t place)
+{
+	uint32_t depth = 0;
+	for (size_t lane = 0; lane < count; lane++) {
+		const uint32_t degree = total_count(a, first + lane);
+		place_vertex(a, first + lane, place + (uint32_t)lane);
+		if (degree > NT_FAN_DEPTH)
+			mark_hub(a, first + lane);
+		else
+			depth = degree > depth ? degree : depth;
+	}
+	return depth;
+}
+
+/* The same for one range: nobody's corners come before its own. */
+static uint32_t place_block_alone(uint32_t *cursors, size_t count, uint32_t place)
+{
+	uint32_t depth = 0;
+	for (size_t lane = 0; lane < count; lane++) {
+		const uint32_t degree = cursors[lane], known = degree > NT_FAN_DEPTH ? 0 : degree;
+		cursors[lane] = degree > NT_FAN_DEPTH ? NT_CURSOR_HUB : place + (uint32_t)lane;
+		depth = known > depth ? known : depth;
+	}
+	return depth;
+}
+
 /* Returns the number of entries, padding included. */
 static size_t place_blocks(nt_adjacency *a)
 {
 	size_t place = 0;
 	for (size_t first = 0; first < a->vertex_count; first += NT_FAN_LANES) {
 		const size_t left = a->vertex_count - first, count = left < NT_FAN_LANES ? left : NT_FAN_LANES;
-		uint32_t depth = 0;
 		a->block_begin[first / NT_FAN_LANES] = (uint32_t)place;
-		for (size_t lane = 0; lane < count; lane++) {
-			const uint32_t degree = total_count(a, first + lane);
-			place_vertex(a, first + lane, (uint32_t)(place + lane));
-			if (degree > NT_FAN_DEPTH)
-				mark_hub(a, first + lane);
-			else
-				depth = degree > depth ? degree : depth;
-		}
+		const uint32_t depth = a->ranges == 1 ? place_block_alone(a->cursors + first, count, (uint32_t)place)
+						      : place_block(a, first, count, (uint32_t)place);
 		place += (size_t)depth * NT_FAN_LANES;
 		if (place > NT_CURSOR_PLACE - NT_FAN_LANES * NT_FAN_DEPTH)
 			return SIZE_MAX;
