@@ -155,7 +155,7 @@ void nt_bin_add_up(const nt_bins *bins, size_t index, nt_bin *bin)
 	nt_record *to[2];
 	for (int o = 0; o < 2; o++) {
 		to[o] = bin->sums[o] ? bin->sums[o] : bin->sums[!o];
-		for (size_t v = 0; v < a->vertex_count; v++)
+		for (size_t v = 0; v < (a->vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES * NT_FAN_LANES; v++)
 			to[o][v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
 	}
 	for (unsigned range = 0; range < bins->ranges; range++)

@@ -123,10 +123,11 @@ static void clear_records(void *context, size_t begin, size_t end, unsigned slot
 
 static bool make_record(nt_fast *fast, int orient, unsigned threads)
 {
-	nt_record *records = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *records);
+	const size_t count = (fast->vertex_count + NT_LANES - 1) / NT_LANES * NT_LANES; /* settle loads blocks */
+	nt_record *records = nt_scratch_alloc(fast->solve->scratch, count, sizeof *records);
 	if (!records)
 		return false;
-	nt_parallel_ranges(threads, fast->vertex_count, RECORD_GRAIN, clear_records, records);
+	nt_parallel_ranges(threads, count, RECORD_GRAIN, clear_records, records);
 	if (fast->wants_more) {
 		nt_record_more *more = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *more);
 		if (!more)

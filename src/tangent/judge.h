@@ -38,8 +38,9 @@ static inline bool nt_is_parallel(const float *t, const float *n)
 		    z = n[0] * t[1] - n[1] * t[0];
 	const float sine_squared = x * x + y * y + z * z;
 	const float normal_squared = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-	return normal_squared > 0.0f && normal_squared <= 3.4028235e38f &&
-	       sine_squared < NT_PARALLEL_SINE_SQUARED * normal_squared;
+	/* no branches, for loops over lanes */
+	return (normal_squared > 0.0f) & (normal_squared <= 3.4028235e38f) &
+	       (sine_squared < NT_PARALLEL_SINE_SQUARED * normal_squared);
 }
 
 /* Walks over the faces that have to be looked at. */

@@ -219,7 +219,7 @@ static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *re
 static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *in, lanes_out *out, float offset,
 	float slack, size_t count)
 {
-	solve_lanes(in, out, offset, slack, false, WIDTH == NT_LANES ? NT_LANES : (int)lanes_of(count));
+	solve_lanes(in, out, offset, slack, false, (int)whole_lanes(count));
 	for (int k = 0; k < 3; k++)
 		interleave(out->sum[k], out->add[k]);
 }

@@ -75,7 +75,9 @@ static lanes count_fans(const nt_fan_entry *entries, uint32_t depth, lanes degre
 	}
 }
 
-/* The records of a block by component, in turned places: lane i has the record of vertex turned_place(i). */
+/* The records of a block by component, in turned places: lane i has the record of vertex turned_place(i). All loops
+ * over them run up to `used`, whole vectors that hold the block's vertices; lanes behind these have neither records
+ * nor corners. */
 typedef struct record_lanes {
 	float x[NT_LANES], y[NT_LANES], z[NT_LANES];
 	uint32_t state[NT_LANES]; /* then the result's */
@@ -83,41 +85,34 @@ typedef struct record_lanes {
 	uint32_t sound[NT_LANES];
 } record_lanes;
 
-static void load_records(const nt_record *restrict records, size_t count, record_lanes *restrict r)
+static void load_records(const nt_record *restrict records, size_t used, record_lanes *restrict r)
 {
-	nt_record copy[NT_LANES];
 	if (!records) {
-		memset(r, 0, sizeof *r);
-		for (int i = 0; i < NT_LANES; i++)
+		for (size_t i = 0; i < used; i++) {
 			r->state[i] = NT_STATE_BASE | NT_STATE_ALL;
+			r->present[i] = r->sound[i] = 0;
+		}
 		return;
 	}
-	if (count < NT_LANES) {
-		for (int i = 0; i < NT_LANES; i++)
-			copy[i] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
-		memcpy(copy, records, count * sizeof *copy);
-		records = copy;
-	}
-	for (size_t i = 0; i < NT_LANES; i += WIDTH) {
+	for (size_t i = 0; i < used; i += WIDTH) {
 		lanes four[4];
-		for (size_t j = 0; j < 4; j++)
-			four[j] = load_lanes((const char *)(records + i) + sizeof *four * j);
+		memcpy(four, records + i, sizeof four);
 		turn(four);
 		memcpy(r->x + i, &four[0], sizeof *four);
 		memcpy(r->y + i, &four[1], sizeof *four);
 		memcpy(r->z + i, &four[2], sizeof *four);
 		memcpy(r->state + i, &four[3], sizeof *four);
 	}
-	for (int i = 0; i < NT_LANES; i++) {
+	for (size_t i = 0; i < used; i++) {
 		const uint32_t s = r->state[i];
 		r->present[i] = (s & NT_STATE_EMPTY) == 0;
 		r->sound[i] = (s & NT_STATE_U) != 0 && (s & NT_STATE_V) != 0 && (s & NT_STATE_SOUND) != 0;
 	}
 }
 
-static void normalise_records(record_lanes *restrict r)
+static void normalise_records(size_t used, record_lanes *restrict r)
 {
-	for (int i = 0; i < NT_LANES; i++) {
+	for (size_t i = 0; i < used; i++) {
 		const float x = r->x[i], y = r->y[i], z = r->z[i];
 		const float scale = 1.0f / sqrtf(x * x + y * y + z * z);
 		const int not_zero = (fabsf(x) > FLT_MIN) | (fabsf(y) > FLT_MIN) | (fabsf(z) > FLT_MIN);
@@ -127,15 +122,31 @@ static void normalise_records(record_lanes *restrict r)
 	}
 }
 
+/* Normals of `count` vertices in turned places; lanes behind repeat the last one. */
+static void load_normals(const nt_weld_row *rows, size_t count, size_t used, float normals[3][NT_LANES])
+{
+	for (size_t first = 0; first < used; first += WIDTH) {
+		nt_float4 parts[WIDTH]; /* of a row, from its third float on */
+		for (size_t i = 0; i < WIDTH; i++) {
+			const size_t row = first + i < count ? first + i : count - 1;
+			memcpy(&parts[i], (const float *)&rows[row] + 2, sizeof parts[i]);
+		}
+		lanes four[4];
+		memcpy(four, parts, sizeof four);
+		turn(four);
+		for (size_t c = 0; c < 3; c++)
+			memcpy(normals[c] + first, &four[c + 1], sizeof *four);
+	}
+}
+
 /* Settled results that judge.c would not accept. */
-static size_t count_unusable(const nt_weld_row *rows, size_t count, const record_lanes *restrict r,
-	const uint32_t *restrict complex)
+static uint32_t count_unusable(const float (*restrict normals)[NT_LANES], const record_lanes *restrict r,
+	const uint32_t *restrict complex, size_t used)
 {
 	uint32_t unusable = 0;
-	for (size_t i = 0; i < NT_LANES; i++) {
-		const size_t vertex = turned_place(i);
+	for (size_t i = 0; i < used; i++) {
 		const float t[3] = {r->x[i], r->y[i], r->z[i]};
-		const float *n = (const float *)&rows[vertex < count ? vertex : 0] + 3;
+		const float n[3] = {normals[0][i], normals[1][i], normals[2][i]};
 		const float squared = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
 		const int good = (fabsf(squared - 1.0f) <= NT_UNIT_TOLERANCE) & !nt_is_parallel(t, n);
 		unusable += r->present[i] & !complex[i] & !good;
@@ -144,19 +155,16 @@ static size_t count_unusable(const nt_weld_row *rows, size_t count, const record
 }
 
 /* Stores `count` records, `step` apart. */
-static void store_records(nt_record *restrict records, size_t step, size_t count, const record_lanes *restrict r)
+static void store_records(nt_record *restrict records, size_t step, size_t count, size_t used,
+	const record_lanes *restrict r)
 {
 	nt_record copy[NT_LANES];
-	nt_record *to = count == NT_LANES && step == 1 ? records : copy;
-	for (size_t i = 0; i < NT_LANES; i += WIDTH) {
-		lanes four[4];
-		four[0] = load_lanes(r->x + i);
-		four[1] = load_lanes(r->y + i);
-		four[2] = load_lanes(r->z + i);
-		four[3] = load_lanes(r->state + i);
+	nt_record *to = count == used && step == 1 ? records : copy;
+	for (size_t i = 0; i < used; i += WIDTH) {
+		lanes four[4] = {load_lanes(r->x + i), load_lanes(r->y + i), load_lanes(r->z + i),
+			load_lanes(r->state + i)};
 		turn(four);
-		for (size_t j = 0; j < 4; j++)
-			memcpy((char *)(to + i) + sizeof *four * j, &four[j], sizeof *four);
+		memcpy(to + i, four, sizeof four);
 	}
 	for (size_t i = 0; to == copy && i < count; i++)
 		records[step * i] = copy[i];
@@ -189,20 +197,21 @@ static void settle_more(nt_record_more *more, size_t count, const uint32_t *pres
 }
 
 /* Corners of the block's vertices, HUB for a hub. Returns the most corners. */
-static uint32_t load_degrees(const nt_adjacency *a, size_t first, size_t count, uint32_t *restrict degree)
+static uint32_t load_degrees(const nt_adjacency *a, size_t first, size_t count, size_t used,
+	uint32_t *restrict degree)
 {
 	const size_t place = first - a->first_vertex;
 	const uint32_t *cursors = a->cursors + (a->ranges - 1) * a->vertex_count + place;
 	const uint32_t begin = a->block_begin[place / NT_FAN_LANES];
-	uint32_t most = 0;
-	for (size_t i = 0; i < NT_LANES; i++) {
-		const uint32_t cursor = i < count ? cursors[i] : begin;
-		const uint32_t corners = ((cursor & NT_CURSOR_PLACE) - begin) / NT_FAN_LANES;
-		const uint32_t known = cursor & NT_CURSOR_HUB ? 0 : corners;
+	int most = 0;
+	for (uint32_t i = 0; i < used; i++) {
+		const uint32_t cursor = cursors[i], corners = ((cursor & NT_CURSOR_PLACE) - begin) / NT_FAN_LANES;
+		const uint32_t there = i < (uint32_t)count ? UINT32_MAX : 0, hub = cursor & NT_CURSOR_HUB ? UINT32_MAX : 0;
+		const int known = (int)(corners & there & ~hub);
 		most = known > most ? known : most;
-		degree[i] = cursor & NT_CURSOR_HUB ? HUB : corners;
+		degree[i] = (uint32_t)known | (hub & there);
 	}
-	return most;
+	return (uint32_t)most;
 }
 
 static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const sums[2], size_t block,
@@ -211,16 +220,17 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	const size_t first = block * NT_LANES, left = fast->vertex_count - first;
 	const size_t count = left < NT_LANES ? left : NT_LANES;
 	const nt_fan_entry *entries = nt_adjacency_block(a, block - a->first_vertex / NT_FAN_LANES);
+	const size_t used = whole_lanes(count);
 	uint32_t degree[NT_LANES], mask[NT_LANES], fan_count[NT_LANES], complex[NT_LANES];
 	record_lanes r[2];
-	const uint32_t depth = load_degrees(a, first, count, degree);
+	const uint32_t depth = load_degrees(a, first, count, used, degree);
 	for (int o = 0; o < 2; o++)
-		load_records(sums[o] ? sums[o] + first - a->first_vertex : NULL, count, &r[o]);
+		load_records(sums[o] ? sums[o] + first - a->first_vertex : NULL, used, &r[o]);
 
 	/* "any" corners join whatever orientation there is: with one only, it need not be compared */
-	for (int i = 0; i < NT_LANES; i++)
+	for (size_t i = 0; i < used; i++)
 		mask[i] = r[0].present[i] & r[1].present[i] ? UINT32_MAX : NT_ENTRY_VERTEX;
-	for (size_t i = 0; i < NT_LANES; i += WIDTH) {
+	for (size_t i = 0; i < used; i += WIDTH) {
 		const lanes degrees = load_lanes(degree + i), masks = load_lanes(mask + i);
 		const lanes counted = count_fans(entries + i, depth, degrees,
 			__builtin_shufflevector(masks, masks, UNTURNED)) | ((lanes)(degrees == HUB) & DOUBTFUL);
@@ -228,7 +238,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		memcpy(fan_count + i, &turned, sizeof turned);
 	}
 
-	for (int i = 0; i < NT_LANES; i++) {
+	for (size_t i = 0; i < used; i++) {
 		const uint32_t both = r[0].state[i] & r[1].state[i];
 		const uint32_t present = r[0].present[i] + r[1].present[i];
 		const uint32_t unsound = (r[0].present[i] & !r[0].sound[i]) | (r[1].present[i] & !r[1].sound[i]);
@@ -236,30 +246,33 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		complex[i] = present != 0 && 0 != (unsound | mixed | !(both & NT_STATE_LOCAL) |
 						     (fan_count[i] != present));
 	}
-	for (int o = 0; o < 2; o++) {
-		if (!sums[o])
-			continue;
-		normalise_records(&r[o]);
-		if (fast->solve->vouched)
-			settled->unusable_count += count_unusable(fast->rows + first, count, &r[o], complex);
+	for (int o = 0; o < 2; o++)
+		if (sums[o])
+			normalise_records(used, &r[o]);
+	if (fast->solve->vouched) {
+		float normals[3][NT_LANES];
+		load_normals(fast->rows + first, count, used, normals);
+		for (int o = 0; o < 2; o++)
+			if (sums[o])
+				settled->unusable_count += count_unusable(normals, &r[o], complex, used);
 	}
 	/* from here on the rows may be overwritten */
 	for (int o = 0; o < 2; o++) {
 		if (!sums[o])
 			continue;
 		const uint32_t sign = o ? NT_RESULT_PLUS : NT_RESULT_MINUS;
-		for (int i = 0; i < NT_LANES; i++) {
+		for (size_t i = 0; i < used; i++) {
 			const uint32_t none = r[0].present[i] | r[1].present[i];
 			/* no group at all: the default of step 10 */
 			r[o].x[i] = none ? r[o].x[i] : 1.0f;
 			r[o].state[i] = complex[i] ? NT_RESULT_COMPLEX
 				: r[o].present[i] ? sign : none ? NT_RESULT_NONE : NT_RESULT_MINUS;
 		}
-		store_records(nt_fast_record(fast, o, (uint32_t)first), fast->record_step, count, &r[o]);
+		store_records(nt_fast_record(fast, o, (uint32_t)first), fast->record_step, count, used, &r[o]);
 		if (fast->wants_more)
 			settle_more(fast->more[o] + first, count, r[o].present);
 	}
-	for (size_t i = 0; i < NT_LANES; i++)
+	for (size_t i = 0; i < used; i++)
 		settled->complex_count += complex[i];
 }
 

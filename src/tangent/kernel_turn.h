@@ -91,10 +91,16 @@ static inline size_t turned_place(size_t lane)
 	return lane - in_vector + in_vector % 4 * (WIDTH / 4) + in_vector / 4;
 }
 
+/* Lanes of the whole vectors that hold `count` of 1 to 16. */
+static inline size_t whole_lanes(size_t count)
+{
+	return WIDTH == NT_LANES ? NT_LANES : (count + WIDTH - 1) / WIDTH * WIDTH;
+}
+
 /* Lanes that `count` triangles take: whole vectors, or four in vectors of four where the set has them. */
 static inline size_t lanes_of(size_t count)
 {
-	return count <= 4 ? 4 : (count + WIDTH - 1) / WIDTH * WIDTH;
+	return count <= 4 ? 4 : whole_lanes(count);
 }
 
 /* Four components of 16 lanes become rows in turned places. */

@@ -165,7 +165,8 @@ nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_
 	const size_t blocks = (vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES;
 	*adjacency = (nt_adjacency){.vertex_count = vertex_count, .ranges = ranges->count};
 	nt_adjacency *a = adjacency;
-	a->cursors = nt_room_alloc(cursor_room, vertex_count, ranges->count * sizeof *a->cursors);
+	/* readers load whole vectors of cursors */
+	a->cursors = nt_room_alloc(cursor_room, vertex_count * ranges->count + NT_FAN_LANES, sizeof *a->cursors);
 	a->block_begin = nt_room_alloc(cursor_room, blocks + 1, sizeof *a->block_begin);
 	a->shared_counts = nt_scratch_alloc(room->scratch, ranges->count, sizeof *a->shared_counts);
 	if (!a->cursors || !a->block_begin || !a->shared_counts)
