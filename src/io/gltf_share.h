@@ -59,6 +59,10 @@ typedef struct nt_gltf_rows {
 	bool borrowed;        /* sources, tangents and indices are the scene's: do not write to them */
 } nt_gltf_rows;
 
+/* Fills group_count, group_of, group_first and next_of, which have room for all members. False: out of memory. */
+bool nt_gltf_find_groups(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
+	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count);
+
 /* Merges the splits of a component's meshes: a vertex gets one row for each tangent (and made normal)
  * that any of them wants. members are mesh numbers. Everything is in the arena,
  * or borrowed from the scene. */
