@@ -10,7 +10,12 @@
 #include <string.h>
 #include <sys/mman.h>
 
-enum { HUGE_PAGE_BYTES = 2 * 1024 * 1024, SMALL_BLOCK_BYTES = 64 * 1024, SMALL_REQUEST_BYTES = 8 * 1024, ALIGNMENT = 16 };
+enum {
+	HUGE_PAGE_BYTES = 2 * 1024 * 1024,
+	SMALL_BLOCK_BYTES = 64 * 1024,
+	SMALL_REQUEST_BYTES = 8 * 1024,
+	ALIGNMENT = 16
+};
 
 struct nt_arena_block {
 	struct nt_arena_block *next;

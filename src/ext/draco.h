@@ -102,9 +102,9 @@ void nt_draco_block_free(nt_draco_block *block);
  * at one position.
  *
  * Returns NMTAN_OK; NMTAN_ERROR_ARGUMENT for types, counts and bits out of range (24 at most, of integers of four
- * bytes too) and quantized values that are not finite or outside of their explicit box; NMTAN_ERROR_INDEX; NMTAN_ERROR_TOO_LARGE; NMTAN_ERROR_INPUT when
- * no face is left to encode; NMTAN_ERROR_INTERNAL when Draco fails or does not give back what it got;
- * NMTAN_ERROR_MEMORY.
+ * bytes too) and quantized values that are not finite or outside of their explicit box; NMTAN_ERROR_INDEX;
+ * NMTAN_ERROR_TOO_LARGE; NMTAN_ERROR_INPUT when no face is left to encode; NMTAN_ERROR_INTERNAL when Draco fails or
+ * does not give back what it got; NMTAN_ERROR_MEMORY.
  */
 nmtan_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error);
 

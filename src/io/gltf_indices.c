@@ -153,9 +153,9 @@ static bool equal_indices(const nt_gltf_patcher *p, const nt_gltf_cluster *compo
 {
 	const nt_mesh *x = &p->scene->meshes[component->members[a]];
 	const nt_mesh *y = &p->scene->meshes[component->members[b]];
+	const uint32_t *of_x = component->rows.indices[a], *of_y = component->rows.indices[b];
 	return x->corner_count == y->corner_count &&
-		(component->rows.indices[a] == component->rows.indices[b] || memcmp(component->rows.indices[a], component->rows.indices[b],
-			x->corner_count * sizeof(uint32_t)) == 0);
+		(of_x == of_y || memcmp(of_x, of_y, x->corner_count * sizeof *of_x) == 0);
 }
 
 /* Whether everybody who uses a member's indices will have the same new ones. */

@@ -4,8 +4,9 @@
  *
  * A mirrored island that shares its texture with an unmirrored one is how symmetric models are made. To
  * tell it from a lone one, centroids of its triangles are looked up among the unmirrored triangles of
- * the whole mesh. The points (about SAMPLE_COUNT of them, at least one of each island) go into a grid and the triangles stream over
- * it; a point that is found leaves its cell, so that many stacked layers cost no more than one.
+ * the whole mesh. The points (about SAMPLE_COUNT of them, at least one of each island) go into a grid and the
+ * triangles stream over it; a point that is found leaves its cell, so that many stacked layers cost no more than
+ * one.
  *
  * An island with both windings is a fold, unless its mirrored part lies point by point on its own
  * unmirrored part: then it is a symmetric model whose halves share the coordinates of the middle line.
