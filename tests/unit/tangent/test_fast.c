@@ -141,6 +141,46 @@ static size_t compare_nasty(uint64_t seed)
 	return differences;
 }
 
+/* Around a vertex three triangles of a square, from (-1, -1) counterclockwise, with u = x and directions of u
+ * (1 - k, 1 + k), (1, 0) and (1 - k, -1 - k), k = 1 - 2^-bits. Those of v are (0, 1). The product of the first and
+ * the last is 2^(-2 bits - 1) above -1: step 7 parts them from 12 bits on, where that is 2^-25, half the
+ * distance of floats below 1, or less. `turn` exchanges axes. Returns whether the vertex has two results at least. */
+static bool compare_wide_fan(int bits, int turn, bool middle_first, size_t *differences)
+{
+	const float k = 1.0f - ldexpf(1.0f, -bits);
+	const float x[5] = {0, -1, 1, 1, -1}, y[5] = {0, -1, -1, 1, 1}, v[5] = {0, k, -1, 1, -k};
+	float p[5][3] = {{0}}, n[5][3] = {{0}}, t[5][2];
+	for (int i = 0; i < 5; i++) {
+		p[i][turn] = x[i], p[i][(turn + 1) % 3] = y[i], n[i][(turn + 2) % 3] = 1.0f;
+		t[i][0] = x[i], t[i][1] = v[i];
+	}
+	const unsigned in_order[9] = {0, 1, 2, 0, 2, 3, 0, 3, 4}, other[9] = {0, 2, 3, 0, 1, 2, 0, 3, 4};
+	const nmtan_mesh loose = {.face_count = 3, .vertex_count = 5, .positions = p[0], .normals = n[0],
+		.texcoords = t[0], .indices = middle_first ? other : in_order};
+	const nmtan_mesh mesh = filled(&loose);
+	result expected = result_make(9);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	const nt_solve solve = make_solve(&mesh, 9, &scratch, &expected, false);
+	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
+	nt_scratch_free(&scratch);
+	*differences += compare_variants("wide fan", &mesh, 9, &expected, false);
+	const bool two = memcmp(expected.tangents + 4 * (middle_first ? 3 : 0), expected.tangents + 4 * 6, 16) != 0;
+	result_free(&expected);
+	return two;
+}
+
+static void antiparallel_directions_are_byte_identical(void **state)
+{
+	(void)state;
+	size_t differences = 0;
+	for (int bits = 1; bits <= 24; bits++)
+		for (int turn = 0; turn < 3; turn++)
+			for (int first = 0; first < 2; first++)
+				assert_int_equal(compare_wide_fan(bits, turn, first, &differences), bits >= 12);
+	assert_int_equal(differences, 0);
+}
+
 /* A fan of three triangles around a vertex, whose directions are nearly its normal: what is left in its plane is so
  * short that its square is a denormal, and a "unit" vector is up to a fifth too long or too short. */
 static size_t compare_short_fan(uint32_t random)
@@ -338,6 +378,7 @@ int main(int count, char **arguments)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(goldens_are_byte_identical),
 		cmocka_unit_test(nasty_meshes_are_byte_identical),
+		cmocka_unit_test(antiparallel_directions_are_byte_identical),
 		cmocka_unit_test(short_directions_are_byte_identical),
 		cmocka_unit_test(scattered_meshes_are_byte_identical),
 		cmocka_unit_test(every_failed_allocation_is_told),
