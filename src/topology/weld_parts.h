@@ -26,12 +26,12 @@ typedef struct nt_welder {
 	size_t first_vertex, item_count;
 	size_t row_guess;      /* rows for which there is room at first */
 	nt_weld_row *rows;
-	bool rows_in_room;
 	size_t row_capacity, row_count;
 	uint32_t *table;
+	uint32_t *numbers;   /* [item_count] row of each item */
 	unsigned table_bits; /* log2 of the entries; a number has one bit less */
-	uint32_t *numbers; /* [item_count] row of each item */
-	bool unordered;    /* an item holds a NaN */
+	bool rows_in_room;
+	bool unordered; /* an item holds a NaN */
 } nt_welder;
 
 /* Eight bytes of a row, read by themselves: gcc takes an array of four by way of the stack. */

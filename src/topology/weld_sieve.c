@@ -24,12 +24,12 @@ enum { MOST_RANGES = 8 };
 /* Listed vertices that one thread welds alone: a table of all threads takes as long. */
 enum { FEW = 1 << 16 };
 
-/* Vertices found equal, beside an eighth of those met, with which the sieve gives up: from there it would only be
- * work beside that of the table. */
+/* Vertices found marked, beside an eighth of those met, with which the sieve gives up: it would only be work beside
+ * that of the table. */
 enum { MANY = 4096 };
 
-/* A place has 32 bits: the word of a bitmap above, two of its bits below. Beyond 8 million vertices words are shared
- * by more of them than two, and more are listed. */
+/* A place has 32 bits: the word of a bitmap above, two of its bits below. Beyond 8 million vertices more than two
+ * share a word, and more are listed by chance. */
 enum { BIT_BITS = 5, MOST_WORD_BITS = 32 - 2 * BIT_BITS };
 
 typedef struct sieve {
@@ -38,9 +38,9 @@ typedef struct sieve {
 	unsigned word_bits; /* log2 of the words of a bitmap */
 	uint32_t *bitmaps;  /* marked and again of each range; the second of range 0 becomes that of all */
 	uint32_t *places;   /* [vertex_count]; then, from where a range begins, its listed vertices */
-	size_t begins[MOST_RANGES], found[MOST_RANGES], listed[MOST_RANGES]; /* of a range: its first vertex, how many
-	                                                                       it found marked, how many it lists */
-	bool many; /* atomic: it is left to the table */
+	bool many;          /* atomic: it is left to the table */
+	/* of a range: its first vertex, how many it found marked, how many it lists */
+	size_t begins[MOST_RANGES], found[MOST_RANGES], listed[MOST_RANGES];
 } sieve;
 
 static inline uint32_t *marked_of(const sieve *s, unsigned range)
@@ -259,9 +259,10 @@ static bool make_sieve(sieve *s)
 		s->word_bits = MOST_WORD_BITS;
 	if (!nt_weld_grow_rows(w, count + 1))
 		return false;
-	s->places = nt_room_alloc(w->room, count + 1, sizeof *s->places);
-	s->bitmaps = nt_room_alloc(w->room, (size_t)2 * s->ranges << s->word_bits, sizeof *s->bitmaps);
-	return s->places && s->bitmaps;
+	const size_t bitmap_words = (size_t)2 * s->ranges << s->word_bits;
+	s->bitmaps = nt_room_alloc(w->room, bitmap_words + count, sizeof *s->bitmaps);
+	s->places = s->bitmaps + bitmap_words;
+	return s->bitmaps;
 }
 
 /* Welds the listed vertices alone, and numbers all; false when out of memory. Where no number is another than the
@@ -269,17 +270,17 @@ static bool make_sieve(sieve *s)
 static bool weld_listed(sieve *s, unsigned ranges)
 {
 	nt_welder *w = s->w;
-	nt_welder listed = {.mesh = w->mesh, .row_room = w->room, .room = w->room, .items = s->places,
-		.item_count = list_vertices(s)};
+	const size_t count = list_vertices(s);
 	w->row_count = w->item_count;
-	if (listed.item_count == 0)
+	if (count == 0)
 		return true;
-	listed.row_guess = listed.item_count;
-	listed.numbers = nt_room_alloc(w->room, listed.item_count, sizeof *listed.numbers);
-	if (!listed.numbers || !nt_weld_items(&listed, listed.item_count < FEW ? 1 : ranges))
+	nt_welder listed = {.mesh = w->mesh, .row_room = w->room, .room = w->room, .items = s->places,
+		.item_count = count, .row_guess = count};
+	listed.numbers = nt_room_alloc(w->room, count, sizeof *listed.numbers);
+	if (!listed.numbers || !nt_weld_items(&listed, count < FEW ? 1 : ranges))
 		return false;
 	w->unordered = listed.unordered;
-	if (listed.row_count == listed.item_count && !w->unordered)
+	if (listed.row_count == count && !w->unordered)
 		return true;
 	w->numbers = nt_room_alloc(w->room, w->item_count, sizeof *w->numbers);
 	if (w->numbers)

@@ -7,8 +7,8 @@
  *   number   the rows that no range before has: after all rows of the ranges before, in their order
  *   resolve  the other rows have the number of the row that was found; then items have that of their row
  *
- * The first range's rows keep their numbers. An item's row is first met in the first range that has it, so numbers are
- * in order of first appearance, whatever the ranges: what one thread makes.
+ * The first range's rows keep their numbers. A row is met first in the first range that has it, so numbers are in
+ * order of first appearance, whatever the ranges: what one thread makes.
  *
  * Two threads together do 1.2 times the work of one on a de-indexed torus of a million triangles, whose ranges have
  * few rows in common (Xeon; 2.3 times when they shared a table by compare-and-swap), 1.15 on a shuffled one, where
@@ -93,7 +93,8 @@ static bool weld_ranges(joint *j)
 /* Seek */
 
 /* The places of a batch of rows in the range `in`, for those that are NEW so far. */
-static void seek_batch(const range *in, const nt_weld_row *rows, const uint64_t *hashes, size_t count, uint32_t *places)
+static void seek_batch(const range *in, const nt_weld_row *rows, const uint64_t *hashes, size_t count,
+	uint32_t *places)
 {
 	const nt_welder *w = &in->welder;
 	const uint32_t number_mask = ((uint32_t)1 << (w->table_bits - 1)) - 1;
