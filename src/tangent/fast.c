@@ -37,6 +37,9 @@
 /* Starting a thread costs more than it saves with fewer triangles. */
 static const nt_fast_plan usual = {.grain = 65536};
 
+/* What a scratch's first block holds anyway. */
+enum { LEAST_LENT_BYTES = 65536 };
+
 /* Vertices of a range whose records are only cleared. */
 enum { RECORD_GRAIN = 65536 };
 
@@ -102,7 +105,9 @@ static nmtan_status make_ranges(nt_fast *fast, unsigned count)
 	size_t *bounds = nt_scratch_alloc(fast->solve->scratch, count + 1, sizeof *bounds);
 	if (!bounds)
 		return NMTAN_ERROR_MEMORY;
-	for (unsigned r = 0; r <= count; r++) {
+	bounds[0] = 0;
+	bounds[count] = fast->triangle_count;
+	for (unsigned r = 1; r < count; r++) {
 		bounds[r] = fast->triangle_count / count * r + fast->triangle_count % count * r / count;
 		while (bounds[r] < fast->triangle_count && fast->flags[bounds[r]] & NT_TRIANGLE_SECOND)
 			bounds[r]++;
@@ -474,11 +479,13 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ra
 {
 	const nt_solve *solve = fast->solve;
 	const bool binned = is_binned(fast, bin_bits);
-	/* the output lends its bytes. A sparse one is not filled, so that its pages need not exist: there the
-	 * caller lends what it fills from the records. */
+	/* the output lends its bytes, if it has some to speak of: entries that lie in two places take longer. A
+	 * sparse one is not filled, so that its pages need not exist: there the caller lends what it fills from
+	 * the records. */
+	const size_t output_bytes = solve->corner_count * 4 * sizeof(float);
 	nt_room room = fast->sparse
 		? nt_room_over(solve->lent, solve->lent_bytes, solve->scratch)
-		: nt_room_over(solve->tangents, solve->corner_count * 4 * sizeof(float), solve->scratch);
+		: nt_room_over(solve->tangents, output_bytes < LEAST_LENT_BYTES ? 0 : output_bytes, solve->scratch);
 	nt_room none = nt_room_over(solve->tangents, 0, solve->scratch);
 	/* rows at random are better off in the large pages of the scratch, and records will replace them */
 	nt_room *const row_room = !binned && has_room_for_rows(fast, &room) ? &room : &none;
