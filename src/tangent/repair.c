@@ -20,55 +20,57 @@
 typedef struct patient {
 	const nt_solve *solve;
 	uint8_t *faults;           /* [corner_count] enum nt_fault */
-	uint32_t *ids;             /* [corner_count] number of a welded vertex with a fault, or NT_NO_ID */
+	const uint32_t *welded;    /* [corner_count] */
+	size_t welded_count;
+	uint32_t *ids;             /* [welded_count] number of a welded vertex with a fault, or NT_NO_ID */
 	size_t id_count;
 	nt_frame_sum (*sums)[2];   /* [id_count] */
 	uint32_t (*usable)[2];     /* [id_count] first usable corner with w = -1 and +1, or NT_NO_ID */
 } patient;
 
 /* The welded vertices of all corners: the method's, if it tells. */
-static nmtan_status weld(const nt_solve *solve, const uint32_t **ids, size_t *count)
+static nmtan_status weld(patient *p)
 {
+	const nt_solve *solve = p->solve;
 	if (solve->vouched && solve->vouched->welded) {
-		*ids = solve->vouched->welded;
-		*count = solve->vouched->welded_count;
+		p->welded = solve->vouched->welded;
+		p->welded_count = solve->vouched->welded_count;
 		return NMTAN_OK;
 	}
 	uint32_t *own = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *own);
-	*ids = own;
-	return own ? nt_weld_corners(solve->mesh, solve->corner_count, solve->scratch, own, count)
+	p->welded = own;
+	return own ? nt_weld_corners(solve->mesh, solve->corner_count, solve->scratch, own, &p->welded_count)
 		   : NMTAN_ERROR_MEMORY;
 }
 
 /* Numbers the welded vertices that have a faulty corner; all others become NT_NO_ID. */
 static nmtan_status number_vertices(patient *p)
 {
-	const size_t corner_count = p->solve->corner_count;
-	const uint32_t *welded;
-	size_t welded_count;
-	const nmtan_status status = weld(p->solve, &welded, &welded_count);
+	const nmtan_status status = weld(p);
 	if (status)
 		return status;
-	p->ids = nt_scratch_alloc(p->solve->scratch, corner_count, sizeof *p->ids);
-	uint32_t *number = nt_scratch_alloc(p->solve->scratch, welded_count, sizeof *number);
-	if (!p->ids || !number)
+	p->ids = nt_scratch_alloc(p->solve->scratch, p->welded_count, sizeof *p->ids);
+	if (!p->ids)
 		return NMTAN_ERROR_MEMORY;
-	memset(number, 0xff, welded_count * sizeof *number);
-	for (size_t c = 0; c < corner_count; c++)
-		if (p->faults[c] != NT_FAULT_NONE && number[welded[c]] == NT_NO_ID)
-			number[welded[c]] = (uint32_t)p->id_count++;
-	for (size_t c = 0; c < corner_count; c++)
-		p->ids[c] = number[welded[c]];
+	memset(p->ids, 0xff, p->welded_count * sizeof *p->ids);
+	for (size_t c = 0; c < p->solve->corner_count; c++)
+		if (p->faults[c] != NT_FAULT_NONE && p->ids[p->welded[c]] == NT_NO_ID)
+			p->ids[p->welded[c]] = (uint32_t)p->id_count++;
 	return NMTAN_OK;
+}
+
+static uint32_t id_of(const patient *p, size_t corner)
+{
+	return p->ids[p->welded[corner]];
 }
 
 static void find_usable(patient *p)
 {
 	memset(p->usable, 0xff, p->id_count * sizeof *p->usable);
 	for (size_t c = 0; c < p->solve->corner_count; c++) {
-		if (p->faults[c] != NT_FAULT_NONE || p->ids[c] == NT_NO_ID)
+		if (p->faults[c] != NT_FAULT_NONE || id_of(p, c) == NT_NO_ID)
 			continue;
-		uint32_t *slot = &p->usable[p->ids[c]][p->solve->tangents[4 * c + 3] > 0.0f];
+		uint32_t *slot = &p->usable[id_of(p, c)][p->solve->tangents[4 * c + 3] > 0.0f];
 		if (*slot == NT_NO_ID)
 			*slot = (uint32_t)c;
 	}
@@ -95,7 +97,7 @@ static nmtan_status examine(patient *p)
 	if (!p->sums || !p->usable)
 		return NMTAN_ERROR_MEMORY;
 	memset(p->sums, 0, p->id_count * sizeof *p->sums);
-	nt_sum_frames(solve->mesh, NT_WEIGHT_ANGLE, p->ids, p->sums);
+	nt_sum_frames(solve->mesh, NT_WEIGHT_ANGLE, p->welded, p->ids, p->sums);
 	find_usable(p);
 	return NMTAN_OK;
 }
@@ -114,8 +116,8 @@ static nt_dvec3 best_tangent(const patient *p, size_t first, size_t size, size_t
 {
 	const nt_solve *solve = p->solve;
 	const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
-	const nt_frame_sum *sums = p->sums[p->ids[c]];
-	const uint32_t *usable = p->usable[p->ids[c]];
+	const nt_frame_sum *sums = p->sums[id_of(p, c)];
+	const uint32_t *usable = p->usable[id_of(p, c)];
 	nt_dvec3 t;
 	if (orientation && nt_sum_tangent(&sums[side], n, &t))
 		return t;
