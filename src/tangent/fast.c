@@ -6,8 +6,8 @@
  *   1 weld       hash every vertex's row, find equal ones                  topology/weld.c
  *   2 cut        quads become triangles
  *   3 adjacency  count the corners of each vertex, make places for them    topology/adjacency.c
- *   4 accumulate frames and weights of 16 triangles at a time, added to
- *                the records of their vertices in triangle order           kernel_accumulate.h
+ *   4 accumulate frames and weights of 16 triangles at a time, added to     kernel_accumulate.h
+ *                the records of their vertices in triangle order           fast_records.c
  *   5 settle     16 vertices at a time: is the record the result?          kernel_settle.h
  *   6 write      every corner gets its vertex's result                     fast_write.c
  *   7 complex    the other vertices: pairs, groups, averages               complex.c
@@ -19,15 +19,12 @@
  * Groups are not looked at before step 5, because nearly every vertex has one for each orientation;
  * what that saves is the point of this file.
  *
- * Threads own ranges of triangles. A vertex belongs to the first range that touches it; later ranges
- * put their contributions aside and these are added afterwards in order, so that every sum is in triangle
- * order whatever the number of threads.
+ * Threads own ranges of triangles, and every sum is in triangle order whatever their number.
  *
  * Scratch lives in the output until step 6 where it fits.
  */
 #include "tangent/fast.h"
 
-#include <pthread.h>
 #include <string.h>
 #include "base/clock.h"
 #include "base/cpu.h"
@@ -39,9 +36,6 @@ static const nt_fast_plan usual = {.grain = 65536};
 
 /* What a scratch's first block holds anyway. */
 enum { LEAST_LENT_BYTES = 65536 };
-
-/* Vertices of a range whose records are only cleared. */
-enum { RECORD_GRAIN = 65536 };
 
 static const nt_kernels *kernels_for(nmtan_isa isa)
 {
@@ -118,57 +112,11 @@ static nmtan_status make_ranges(nt_fast *fast, unsigned count)
 
 /* 4 */
 
-static void clear_records(void *context, size_t begin, size_t end, unsigned slot)
-{
-	(void)slot;
-	nt_record *records = context;
-	for (size_t v = begin; v < end; v++)
-		records[v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
-}
-
-static bool make_record(nt_fast *fast, int orient, unsigned threads)
-{
-	const size_t count = (fast->vertex_count + NT_LANES - 1) / NT_LANES * NT_LANES; /* settle loads blocks */
-	nt_record *records = nt_scratch_alloc(fast->solve->scratch, count, sizeof *records);
-	if (!records)
-		return false;
-	nt_parallel_ranges(threads, count, RECORD_GRAIN, clear_records, records);
-	if (fast->wants_more) {
-		nt_record_more *more = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *more);
-		if (!more)
-			return false;
-		memset(more, 0, fast->vertex_count * sizeof *more);
-		fast->more[orient] = more;
-	}
-	fast->records[orient] = records;
-	return true;
-}
-
-static bool make_deferred(nt_fast *fast)
-{
-	const unsigned ranges = fast->ranges.count;
-	fast->deferred = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *fast->deferred);
-	fast->deferred_count = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *fast->deferred_count);
-	if (!fast->deferred || !fast->deferred_count)
-		return false;
-	for (unsigned r = 0; r < ranges; r++) {
-		fast->deferred_count[r] = 0;
-		fast->deferred[r] = nt_scratch_alloc(fast->solve->scratch, fast->adjacency.shared_counts[r],
-			sizeof **fast->deferred);
-		if (!fast->deferred[r])
-			return false;
-	}
-	return true;
-}
-
 typedef struct run {
 	nt_fast *fast;
 	const nt_kernels *kernels;
 	nt_settled *settled;       /* [ranges] */
 	nt_bin *bins;              /* [ranges] each for one after the other */
-	size_t begun;              /* triangles that the first range has behind it */
-	pthread_mutex_t *lock;     /* of fast->records, while triangles are added */
-	bool failed;
 } run;
 
 static void fill_ranges(void *context, size_t begin, size_t end, unsigned slot)
@@ -178,76 +126,6 @@ static void fill_ranges(void *context, size_t begin, size_t end, unsigned slot)
 	const size_t *bounds = r->fast->ranges.bounds;
 	for (size_t range = begin; range < end; range++)
 		r->kernels->accumulate(r->fast, bounds[range], bounds[range + 1], (unsigned)range, NULL, NULL);
-}
-
-/* What all ranges share, as it is now; first with the record array that this one misses (-1: none). False: out
- * of memory. */
-static bool look_at_records(run *r, int missing, nt_fast *view)
-{
-	pthread_mutex_lock(r->lock);
-	if (missing >= 0 && !r->failed && !r->fast->records[missing])
-		r->failed = !make_record(r->fast, missing, 1);
-	*view = *r->fast;
-	const bool failed = r->failed;
-	pthread_mutex_unlock(r->lock);
-	return !failed;
-}
-
-/* Records of an orientation exist from the first triangle on that has it: most meshes have one only. Three ways to
- * make them: one thread alone; a thread that stops, so that all can clear them; one of several, for all. */
-static bool make_alone(nt_fast *fast, int orient, void *context)
-{
-	(void)context;
-	return make_record(fast, orient, 1);
-}
-
-static bool stop_for_record(nt_fast *fast, int orient, void *context)
-{
-	(void)fast;
-	*(int *)context = orient;
-	return false;
-}
-
-static bool make_shared(nt_fast *view, int orient, void *context)
-{
-	return look_at_records(context, orient, view);
-}
-
-static void accumulate_ranges(void *context, size_t begin, size_t end, unsigned slot)
-{
-	(void)slot;
-	run *r = context;
-	const size_t *bounds = r->fast->ranges.bounds;
-	for (size_t range = begin; range < end; range++) {
-		nt_fast view;
-		if (look_at_records(r, -1, &view))
-			r->kernels->accumulate(&view, range ? bounds[range] : r->begun, bounds[range + 1],
-				(unsigned)range, make_shared, r);
-	}
-}
-
-/* Contributions that later ranges put aside, in order. */
-static void add_deferred(nt_fast *fast)
-{
-	for (unsigned r = 1; r < fast->ranges.count; r++) {
-		for (size_t i = 0; i < fast->deferred_count[r]; i++) {
-			const nt_deferred *d = &fast->deferred[r][i];
-			nt_record *record = &fast->records[d->orient][d->vertex];
-			record->x += d->add.x;
-			record->y += d->add.y;
-			record->z += d->add.z;
-			record->state &= d->add.state;
-			if (!fast->wants_more)
-				continue;
-			nt_record_more *more = &fast->more[d->orient][d->vertex];
-			more->x += d->more.x;
-			more->y += d->more.y;
-			more->z += d->more.z;
-			more->angle += d->more.angle;
-			more->mag_s += d->more.mag_s;
-			more->mag_t += d->more.mag_t;
-		}
-	}
 }
 
 /* Orientations that came up, as a set of NT_SEEN(); without a frame anywhere, one whose records can take notes. */
@@ -298,25 +176,7 @@ static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, nt_
 	if (status)
 		return status;
 	fast->scattered = nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
-	fast->record_step = 1;
-	const unsigned ranges = fast->ranges.count;
-	const size_t end = fast->ranges.bounds[1];
-	if (ranges == 1)
-		return kernels->accumulate(fast, 0, end, 0, make_alone, NULL) == end ? NMTAN_OK
-										     : NMTAN_ERROR_MEMORY;
-	/* the first range runs up to the first record array it needs, which all threads clear */
-	int orient = 0;
-	const size_t t = kernels->accumulate(fast, 0, end, 0, stop_for_record, &orient);
-	if (t < end && !make_record(fast, orient, ranges))
-		return NMTAN_ERROR_MEMORY;
-	if (!make_deferred(fast))
-		return NMTAN_ERROR_MEMORY;
-	pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
-	run r = {.fast = fast, .kernels = kernels, .begun = t, .lock = &lock};
-	nt_parallel_ranges(ranges, ranges, 1, accumulate_ranges, &r);
-	pthread_mutex_destroy(&lock);
-	add_deferred(fast);
-	return r.failed ? NMTAN_ERROR_MEMORY : NMTAN_OK;
+	return nt_fast_add(fast, kernels);
 }
 
 /* 5 */

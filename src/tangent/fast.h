@@ -37,12 +37,12 @@ enum {
 #define NT_ENTRY_VOID ((uint32_t)1 << 30)
 #define NT_ENTRY_VERTEX (NT_ENTRY_ORIENT - 1)
 
-/* A contribution that has to wait for an earlier range's. */
+/* Contributions of a range that have to wait for earlier ranges'. */
 typedef struct nt_deferred {
-	uint32_t vertex;
-	uint32_t orient;
-	nt_record add;
-	nt_record_more more;
+	uint32_t *to; /* vertices, with NT_ENTRY_ORIENT */
+	nt_record *add;
+	nt_record_more *more; /* or NULL */
+	size_t count;
 } nt_deferred;
 
 typedef struct nt_fast {
@@ -61,8 +61,7 @@ typedef struct nt_fast {
 	bool scattered;          /* neighbouring triangles have vertices far apart: ask for them early */
 	nt_bins bins;            /* of a scattered mesh: its corners on their way to the records */
 	nt_triangle_ranges ranges;
-	nt_deferred **deferred;      /* [ranges] */
-	size_t *deferred_count;      /* [ranges] */
+	nt_deferred *deferred;       /* [ranges] */
 } nt_fast;
 
 typedef struct nt_settled {
@@ -87,8 +86,8 @@ enum { NT_CORNER_UNIT, NT_CORNER_EXTREME, NT_CORNER_ANY };
 typedef struct nt_kernels {
 	/* Solves triangles [begin, end) of a range and adds them to their vertices, or to the bins where
 	 * there are bins. Without them it asks for record arrays that do not exist, and stops where it does not
-	 * get one. Returns the triangle up to which it came. */
-	size_t (*accumulate)(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
+	 * get one. */
+	void (*accumulate)(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
 		void *context);
 	/* Turns the sums of blocks [begin, end) of vertices, all of them in the adjacency, into results, which go
 	 * to the records; counts the vertices that are complex, and the settled ones whose tangent is not
@@ -153,6 +152,10 @@ enum { NT_TRIANGLE_SUSPECT = NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE | NT_TRIAN
  * Returns NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_TOO_LARGE (beyond the limits of the fast path).
  */
 nmtan_status nt_fast_solve(nt_fast *fast, const nt_solve *solve, bool sparse);
+
+/* Step 4 without bins: adds all triangles to the records of their vertices. The adjacency is made. Returns NMTAN_OK
+ * or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_fast_add(nt_fast *fast, const nt_kernels *kernels);
 
 /* Every corner gets the result of its vertex; with fast->sparse those of suspects only. Marks triangles COMPLEX
  * and LATE. */

@@ -28,19 +28,18 @@ static inline addition addition_of(const lanes_out *out, size_t k, size_t place)
 	return (addition){out->add[k] + 4 * place, {out->more[k][0] + 4 * place, out->more[k][1] + 4 * place}};
 }
 
-static inline void load_more(const addition *add, nt_float4 more[2])
+static inline nt_record_more more_of(const addition *add)
 {
-	memcpy(&more[0], add->more[0], sizeof *more);
-	memcpy(&more[1], add->more[1], sizeof *more);
+	nt_record_more more;
+	memcpy(&more, add->more[0], sizeof more / 2);
+	memcpy((char *)&more + sizeof more / 2, add->more[1], sizeof more / 2);
+	return more;
 }
 
 static inline void add_more(nt_record_more *record, const addition *add)
 {
-	nt_float4 old[2], new[2];
-	memcpy(old, record, sizeof old);
-	load_more(add, new);
-	old[0] += new[0], old[1] += new[1];
-	memcpy(record, old, sizeof old);
+	const nt_record_more more = more_of(add);
+	nt_record_more_add(record, &more);
 }
 
 /* A corner of a hub, or of a vertex that an earlier range adds to. */
@@ -50,15 +49,12 @@ static void __attribute__((noinline)) add_unusual(nt_fast *fast, unsigned range,
 	if (!(cursor & NT_CURSOR_HUB))
 		*nt_adjacency_entry(&fast->adjacency, cursor) = entry;
 	if (cursor & NT_CURSOR_SHARED) {
-		nt_deferred *deferred = &fast->deferred[range][fast->deferred_count[range]++];
-		deferred->vertex = vertex;
-		deferred->orient = (uint32_t)orient;
-		memcpy(&deferred->add, add->sum, sizeof deferred->add);
-		if (fast->wants_more) {
-			nt_float4 more[2];
-			load_more(add, more);
-			memcpy(&deferred->more, more, sizeof deferred->more);
-		}
+		nt_deferred *d = &fast->deferred[range];
+		const size_t i = d->count++;
+		d->to[i] = vertex | (uint32_t)orient << 31;
+		memcpy(&d->add[i], add->sum, sizeof *d->add);
+		if (d->more)
+			d->more[i] = more_of(add);
 		return;
 	}
 	add_record(&fast->records[orient][vertex], add->sum);
@@ -237,7 +233,30 @@ static inline __attribute__((always_inline)) void ask_ahead(const nt_fast *fast,
 		__builtin_prefetch(&fast->rows[ids[3 * i]]);
 }
 
-static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
+/* Without bins: entries and records of a batch whose cursors were asked for a batch ago. */
+static inline __attribute__((always_inline)) void ask_places(const nt_fast *fast, const uint32_t *cursors,
+	const uint32_t *ids, size_t count)
+{
+	for (size_t i = 0; i < 3 * count; i++) {
+		__builtin_prefetch(nt_adjacency_entry(&fast->adjacency, cursors[ids[i]]), 1);
+		for (int o = 0; o < 2; o++)
+			if (fast->records[o])
+				__builtin_prefetch(&fast->records[o][ids[i]], 1);
+	}
+}
+
+/* The cursors of a batch. */
+static inline __attribute__((always_inline)) void ask_cursors(const nt_fast *fast, const uint32_t *cursors, size_t first,
+	size_t end)
+{
+	const size_t count = end - first < NT_LANES ? end - first : NT_LANES;
+	uint32_t copy[3 * NT_LANES];
+	const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
+	for (size_t i = 0; i < 3 * count; i++)
+		__builtin_prefetch(&cursors[ids[i]], 1);
+}
+
+static void accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
 	void *context)
 {
 	lanes_in in;
@@ -253,6 +272,8 @@ static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range
 		uint32_t copy[3 * NT_LANES];
 		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
 		gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : lanes_of(count), in.row);
+		if (fast->scattered && !fast->bins.cursors)
+			ask_places(fast, fast->adjacency.cursors + range * fast->adjacency.vertex_count, ids, count);
 		if (fast->scattered)
 			ask_ahead(fast, first, end, 1);
 		if (fast->wants_more)
@@ -265,10 +286,12 @@ static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range
 			solve_lanes_plain(&in, &out, offset, slack, count);
 		if (fast->scattered)
 			ask_ahead(fast, first, end, 2);
+		if (fast->scattered && !fast->bins.cursors)
+			ask_cursors(fast, fast->adjacency.cursors + range * fast->adjacency.vertex_count, first + count, end);
 		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
 		for (int missing; (missing = missing_record(fast, first, count)) >= 0;)
 			if (!make(fast, missing, context))
-				return first;
+				return;
 		if (ordinary && fast->bins.cursors)
 			bin_ordinary(fast, range, first, count, ids, &out);
 		else if (ordinary)
@@ -277,7 +300,6 @@ static size_t accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range
 			for (size_t i = 0; i < count; i++)
 				add_special(fast, range, first + i, ids + 3 * i, (int)i, &out);
 	}
-	return end;
 }
 
 #endif

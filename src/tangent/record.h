@@ -57,4 +57,13 @@ static inline void nt_record_add(nt_record *record, nt_int4 add)
 	memcpy(record, &result, sizeof result);
 }
 
+static inline void nt_record_more_add(nt_record_more *record, const nt_record_more *add)
+{
+	nt_float4 old[2], new[2];
+	memcpy(old, record, sizeof old);
+	memcpy(new, add, sizeof new);
+	old[0] += new[0], old[1] += new[1];
+	memcpy(record, old, sizeof old);
+}
+
 #endif

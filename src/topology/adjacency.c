@@ -11,7 +11,7 @@
 /* Corners by which a count is asked for before it is needed: costs nothing where neighbours are near. */
 enum { COUNT_AHEAD = 48 };
 
-/* Entries are parted where all but one of so many fit the room. */
+/* Of entries that do not fit a room, less than one in so many may lie elsewhere. */
 enum { PART_ELSEWHERE = 2 };
 
 /* Triangles whose vertices are looked up at a time. */
