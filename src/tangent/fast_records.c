@@ -22,7 +22,7 @@ enum { CHUNK = 65536 };
 typedef struct array {
 	nt_record *records;
 	nt_record_more *more;   /* NULL: not wanted */
-	size_t chunks_begun, chunks_cleared; /* atomic */
+	size_t chunks_begun, chunks_cleared; /* atomic, once the array is there */
 } array;
 
 typedef struct job {
@@ -34,8 +34,18 @@ typedef struct job {
 	bool failed;
 } job;
 
-/* False: out of memory. */
-static bool allocate_array(job *j, array *a)
+static void clear_chunk(const job *j, array *a, size_t chunk)
+{
+	const size_t begin = chunk * CHUNK, left = j->record_count - begin, count = left < CHUNK ? left : CHUNK;
+	for (size_t v = begin; v < begin + count; v++)
+		a->records[v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+	if (a->more)
+		memset(a->more + begin, 0, count * sizeof *a->more);
+	__atomic_fetch_add(&a->chunks_cleared, 1, __ATOMIC_RELEASE);
+}
+
+/* Allocates the array if nobody has, and clears its first chunk. False: out of memory. */
+static bool begin_array(job *j, array *a)
 {
 	const nt_fast *fast = j->fast;
 	pthread_mutex_lock(&j->lock);
@@ -44,6 +54,9 @@ static bool allocate_array(job *j, array *a)
 		if (fast->wants_more)
 			a->more = nt_scratch_alloc(fast->solve->scratch, j->record_count, sizeof *a->more);
 		j->failed = !a->records || (fast->wants_more && !a->more);
+		a->chunks_begun = 1;
+		if (!j->failed)
+			clear_chunk(j, a, 0);
 	}
 	const bool failed = j->failed;
 	pthread_mutex_unlock(&j->lock);
@@ -51,17 +64,11 @@ static bool allocate_array(job *j, array *a)
 }
 
 /* Clears what no other range has begun to clear, and waits for those that have. */
-static void clear_array(array *a, size_t record_count)
+static void clear_array(const job *j, array *a)
 {
-	const size_t chunks = (record_count + CHUNK - 1) / CHUNK;
-	for (size_t chunk; (chunk = __atomic_fetch_add(&a->chunks_begun, 1, __ATOMIC_RELAXED)) < chunks;) {
-		const size_t begin = chunk * CHUNK, left = record_count - begin, count = left < CHUNK ? left : CHUNK;
-		for (size_t v = begin; v < begin + count; v++)
-			a->records[v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
-		if (a->more)
-			memset(a->more + begin, 0, count * sizeof *a->more);
-		__atomic_fetch_add(&a->chunks_cleared, 1, __ATOMIC_RELEASE);
-	}
+	const size_t chunks = (j->record_count + CHUNK - 1) / CHUNK;
+	for (size_t chunk; chunks > 1 && (chunk = __atomic_fetch_add(&a->chunks_begun, 1, __ATOMIC_RELAXED)) < chunks;)
+		clear_chunk(j, a, chunk);
 	while (__atomic_load_n(&a->chunks_cleared, __ATOMIC_ACQUIRE) < chunks)
 		sched_yield();
 }
@@ -71,9 +78,9 @@ static bool get_array(nt_fast *view, int orient, void *context)
 {
 	job *j = context;
 	array *a = &j->arrays[orient];
-	if (!allocate_array(j, a))
+	if (!begin_array(j, a))
 		return false;
-	clear_array(a, j->record_count);
+	clear_array(j, a);
 	view->records[orient] = a->records;
 	view->more[orient] = a->more;
 	return true;
