@@ -238,6 +238,10 @@ static nmtan_status apply(parser *p, const nt_option_row *row, const char *word)
 		if (!*word)
 			return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s: '' is no %s", row->name,
 				row->values);
+		/* of two choices the last one counts, but a name or a list would be lost */
+		if (*(const char **)(void *)field)
+			return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s is there twice: '%s' and '%s'", row->name,
+				*(const char **)(void *)field, word);
 		*(const char **)(void *)field = word;
 		break;
 	}

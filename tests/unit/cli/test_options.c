@@ -223,6 +223,19 @@ static void options_that_contradict_each_other_are_refused(void **state)
 	refuses("--draco=off", WORDS("--draco=off", "--draco-bits=14,12,12,12", "a", "b"));
 }
 
+static void of_choices_the_last_counts_but_names_and_lists_stand_once(void **state)
+{
+	(void)state;
+	nt_command c;
+	accepts(&c, WORDS("--method=area", "--method=lengyel", "-j2", "-j3", "a", "b"));
+	assert_int_equal(c.settings.method, NMTAN_METHOD_LENGYEL);
+	assert_int_equal(c.settings.threads, 3);
+	refuses("--report is there twice: 'r.xml' and 'r.sarif'",
+		WORDS("--check", "--report=r.xml", "--report=r.sarif", "a"));
+	refuses("--ignore is there twice", WORDS("--check", "--ignore=A", "--ignore", "B", "a"));
+	refuses("--directory is there twice", WORDS("-d", "x", "-dy", "a"));
+}
+
 static void names_must_be_as_many_as_the_form_takes(void **state)
 {
 	(void)state;
@@ -302,6 +315,7 @@ int main(void)
 		cmocka_unit_test(bad_values_are_refused_whole),
 		cmocka_unit_test(missing_and_superfluous_values_are_refused),
 		cmocka_unit_test(options_that_contradict_each_other_are_refused),
+		cmocka_unit_test(of_choices_the_last_counts_but_names_and_lists_stand_once),
 		cmocka_unit_test(names_must_be_as_many_as_the_form_takes),
 		cmocka_unit_test(help_and_version_ask_for_no_names),
 		cmocka_unit_test(texts_name_every_option_that_is_not_hidden),
