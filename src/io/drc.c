@@ -10,43 +10,11 @@
 #include <stdio.h>
 #include <string.h>
 #include "ext/draco.h"
+#include "io/gltf_component.h"
 
 bool nt_drc_recognise(const unsigned char *bytes, size_t size)
 {
 	return size >= 5 && memcmp(bytes, "DRACO", 5) == 0;
-}
-
-/* Component k of a value as a float: normalised integers in [0, 1] or [-1, 1]. */
-static float component(const nt_draco_attribute *a, const unsigned char *value, int k)
-{
-	int8_t i8;
-	int16_t i16;
-	uint16_t u16;
-	int32_t i32;
-	uint32_t u32;
-	float f32;
-	switch (a->component_type) {
-	case NT_GLTF_BYTE:
-		memcpy(&i8, value + k, sizeof i8);
-		return a->normalized ? (i8 < -127 ? -1.0f : (float)i8 / 127.0f) : (float)i8;
-	case NT_GLTF_UBYTE:
-		return a->normalized ? (float)value[k] / 255.0f : (float)value[k];
-	case NT_GLTF_SHORT:
-		memcpy(&i16, value + 2 * k, sizeof i16);
-		return a->normalized ? (i16 < -32767 ? -1.0f : (float)i16 / 32767.0f) : (float)i16;
-	case NT_GLTF_USHORT:
-		memcpy(&u16, value + 2 * k, sizeof u16);
-		return a->normalized ? (float)u16 / 65535.0f : (float)u16;
-	case NT_GLTF_INT:
-		memcpy(&i32, value + 4 * k, sizeof i32);
-		return (float)i32;
-	case NT_GLTF_UINT:
-		memcpy(&u32, value + 4 * k, sizeof u32);
-		return (float)u32;
-	default:
-		memcpy(&f32, value + 4 * k, sizeof f32);
-		return f32;
-	}
 }
 
 /* An attribute as rows of `width` floats; components that it does not have are `missing`. */
@@ -56,15 +24,18 @@ static float *read_rows(nt_scene *scene, const nt_draco_attribute *a, size_t cou
 	float *rows = nt_arena_alloc(&scene->arena, count, (size_t)width * sizeof *rows);
 	if (!rows)
 		return NULL;
-	const size_t size = nt_draco_component_size(a->component_type) * (size_t)a->components;
+	const size_t step = nt_draco_component_size(a->component_type), size = step * (size_t)a->components;
 	if (a->component_type == NT_GLTF_FLOAT && a->components == width) {
 		memcpy(rows, a->data, count * size);
 		return rows;
 	}
-	for (size_t p = 0; p < count; p++)
+	for (size_t p = 0; p < count; p++) {
+		const unsigned char *value = (const unsigned char *)a->data + p * size;
 		for (int k = 0; k < width; k++)
 			rows[(size_t)width * p + (size_t)k] = k < a->components
-				? component(a, (const unsigned char *)a->data + p * size, k) : missing;
+				? nt_component_value(value + step * (size_t)k, a->component_type, a->normalized)
+				: missing;
+	}
 	return rows;
 }
 

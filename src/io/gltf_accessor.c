@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "base/largest.h"
+#include "io/gltf_component.h"
 
 /* Indices that an accessor without a bufferView may have: nothing in the file backs their number. */
 enum { UNBACKED_INDICES = 65536 };
@@ -274,39 +275,13 @@ nmtan_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor,
 
 /* ---- decoding ---- */
 
-/* One component as a float, as the specification maps normalized integers. */
-static float read_component(const unsigned char *bytes, uint32_t type, bool normalized)
-{
-	float real;
-	switch (type) {
-	case NT_GLTF_BYTE:
-		real = (float)(int8_t)bytes[0];
-		return normalized ? (real < -127.0f ? -1.0f : real / 127.0f) : real;
-	case NT_GLTF_SHORT:
-		real = (float)(int16_t)read_unsigned(bytes, NT_GLTF_USHORT);
-		return normalized ? (real < -32767.0f ? -1.0f : real / 32767.0f) : real;
-	case NT_GLTF_UBYTE:
-		real = (float)bytes[0];
-		return normalized ? real / 255.0f : real;
-	case NT_GLTF_USHORT:
-		real = (float)read_unsigned(bytes, NT_GLTF_USHORT);
-		return normalized ? real / 65535.0f : real;
-	case NT_GLTF_UINT:
-		return normalized ? (float)(read_unsigned(bytes, NT_GLTF_UINT) / 4294967295.0) :
-				    (float)read_unsigned(bytes, NT_GLTF_UINT);
-	default:
-		memcpy(&real, bytes, 4);
-		return real;
-	}
-}
-
 static void decode_row(const nt_gltf_accessor *accessor, const unsigned char *row, uint32_t width,
 	float fill, float *out)
 {
 	for (uint32_t k = 0; k < width; k++)
 		out[k] = k < accessor->components ?
-			read_component(row + k * accessor->component_bytes, accessor->component_type,
-				accessor->normalized) :
+			nt_component_value(row + k * accessor->component_bytes,
+				(int)accessor->component_type, accessor->normalized) :
 			fill;
 }
 

@@ -10,6 +10,7 @@
 #include <string.h>
 #include "ext/draco.h"
 #include "ext/tinygltf.h"
+#include "io/gltf_component.h"
 #include "io/gltf_precision.h"
 #include "io/link.h"
 #include "io/verify_faces.h"
@@ -328,31 +329,6 @@ static nt_verify_corner wanted_corner(const nt_mesh *mesh, size_t corner)
 	return result;
 }
 
-/* One component: what it says, as glTF maps integers. */
-static float component_at(const nt_reread_array *array, const unsigned char *row, size_t k)
-{
-	float real;
-	int8_t byte;
-	int16_t half;
-	uint16_t natural;
-	switch (array->component_type) {
-	case NT_GLTF_BYTE:
-		memcpy(&byte, row + k, sizeof byte);
-		return array->normalized ? fmaxf((float)byte / 127.0f, -1.0f) : (float)byte;
-	case NT_GLTF_UBYTE:
-		return array->normalized ? (float)row[k] / 255.0f : (float)row[k];
-	case NT_GLTF_SHORT:
-		memcpy(&half, row + k * sizeof half, sizeof half);
-		return array->normalized ? fmaxf((float)half / 32767.0f, -1.0f) : (float)half;
-	case NT_GLTF_USHORT:
-		memcpy(&natural, row + k * sizeof natural, sizeof natural);
-		return array->normalized ? (float)natural / 65535.0f : (float)natural;
-	default:
-		memcpy(&real, row + k * sizeof real, sizeof real);
-		return real;
-	}
-}
-
 /* The same as the document has it. */
 static bool found_corner(const primitive_view *view, size_t corner, nt_verify_corner *found)
 {
@@ -362,8 +338,10 @@ static bool found_corner(const primitive_view *view, size_t corner, nt_verify_co
 	if (!position || !tangent || view->positions.components != 3 ||
 		view->tangents.component_type != NT_GLTF_FLOAT || view->tangents.components != 4)
 		return false;
+	const nt_reread_array *array = &view->positions;
+	const size_t step = nt_draco_component_size(array->component_type);
 	for (size_t k = 0; k < 3; k++)
-		found->position[k] = component_at(&view->positions, position, k);
+		found->position[k] = nt_component_value(position + k * step, array->component_type, array->normalized);
 	memcpy(found->tangent, tangent, sizeof found->tangent);
 	return true;
 }
