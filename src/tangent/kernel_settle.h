@@ -126,13 +126,15 @@ static void normalise_records(size_t used, record_lanes *restrict r)
 static void load_normals(const nt_weld_row *rows, size_t count, size_t used, float normals[3][NT_LANES])
 {
 	for (size_t first = 0; first < used; first += WIDTH) {
-		nt_float4 parts[WIDTH]; /* of a row, from its third float on */
-		for (size_t i = 0; i < WIDTH; i++) {
-			const size_t row = first + i < count ? first + i : count - 1;
-			memcpy(&parts[i], (const float *)&rows[row] + 2, sizeof parts[i]);
-		}
 		lanes four[4];
-		memcpy(four, parts, sizeof four);
+		for (size_t j = 0; j < 4; j++) {
+			const float *parts[WIDTH / 4]; /* of rows, from the third float on */
+			for (size_t i = 0; i < WIDTH / 4; i++) {
+				const size_t row = first + j * (WIDTH / 4) + i;
+				parts[i] = (const float *)&rows[row < count ? row : count - 1] + 2;
+			}
+			four[j] = load_parts(parts);
+		}
 		turn(four);
 		for (size_t c = 0; c < 3; c++)
 			memcpy(normals[c] + first, &four[c + 1], sizeof *four);

@@ -56,6 +56,25 @@ static inline __attribute__((always_inline)) lanes load_lanes(const void *from)
 	return result;
 }
 
+/* One vector of four floats from each place. */
+static inline __attribute__((always_inline)) lanes load_parts(const float *const from[WIDTH / 4])
+{
+#if WIDTH == 4
+	return load_lanes(from[0]);
+#else
+	nt_float4 parts[WIDTH / 4];
+	for (size_t i = 0; i < WIDTH / 4; i++)
+		memcpy(&parts[i], from[i], sizeof parts[i]);
+#if WIDTH == 8
+	return (lanes)__builtin_shufflevector(parts[0], parts[1], 0, 1, 2, 3, 4, 5, 6, 7);
+#else
+	return (lanes)__builtin_shufflevector(__builtin_shufflevector(parts[0], parts[1], 0, 1, 2, 3, 4, 5, 6, 7),
+		__builtin_shufflevector(parts[2], parts[3], 0, 1, 2, 3, 4, 5, 6, 7),
+		0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+#endif
+#endif
+}
+
 /* Four rows of four floats, turned, in each part. */
 static inline __attribute__((always_inline)) void turn(lanes rows[4])
 {
