@@ -191,7 +191,7 @@ size_t nt_weld_some(nt_welder *w, size_t item)
 
 bool nt_weld_items(nt_welder *w, unsigned ranges)
 {
-	if (ranges > 1)
+	if (ranges > 1 && w->item_count > 1)
 		return nt_weld_items_threads(w, ranges);
 	if (!nt_weld_start(w, 0))
 		return false;

@@ -119,6 +119,24 @@ static void corners_weld_alike_on_all_threads(void **state)
 		}
 }
 
+static void no_corners_weld_to_nothing(void **state)
+{
+	(void)state;
+	vertex_row rows[2] = {{0}};
+	for (size_t vertices = 0; vertices < 3; vertices++)
+		for (int indexed = 0; indexed < 2; indexed++) {
+			nt_scratch scratch;
+			nt_scratch_init(&scratch, NULL);
+			nt_room room = nt_room_over(NULL, 0, &scratch);
+			const nmtan_mesh mesh = mesh_of(rows, vertices, indexed ? (uint32_t[1]){0} : NULL, 0);
+			nt_weld weld;
+			for (int i = 0; i < THREAD_COUNTS; i++)
+				assert_int_equal(nt_weld_mesh(&mesh, 0, thread_counts[i], &room, &room, &weld), NMTAN_OK);
+			assert_in_range(weld.count, 0, vertices);
+			nt_scratch_free(&scratch);
+		}
+}
+
 static void few_corners_weld_alike_on_all_threads(void **state)
 {
 	(void)state;
@@ -289,6 +307,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(corners_weld_alike_on_all_threads),
+		cmocka_unit_test(no_corners_weld_to_nothing),
 		cmocka_unit_test(few_corners_weld_alike_on_all_threads),
 		cmocka_unit_test(vertices_weld_alike_on_all_threads),
 		cmocka_unit_test(few_of_many_vertices_weld_alike),
