@@ -32,10 +32,7 @@
 #include "topology/corners.h"
 
 /* Starting a thread costs more than it saves with fewer triangles. */
-static const nt_fast_plan usual = {.grain = 65536};
-
-/* What a scratch's first block holds anyway. */
-enum { LEAST_LENT_BYTES = 65536 };
+static const nt_fast_plan usual = {.grain = 65536, .least_lent_bytes = 65536};
 
 static const nt_kernels *kernels_for(nmtan_isa isa)
 {
@@ -334,18 +331,24 @@ static bool has_room_for_rows(const nt_fast *fast, const nt_room *room)
 	return rows + entries <= free || entries > free || rows > entries;
 }
 
-/* 1 to 4 */
-static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ranges, unsigned bin_bits)
+/* The output lends its bytes, if it has some to speak of: entries that lie in two places take longer. A sparse one is
+ * not filled, so that its pages need not exist: there the caller lends what it fills from the records. */
+static nt_room lent_room(const nt_fast *fast, const nt_fast_plan *plan)
 {
 	const nt_solve *solve = fast->solve;
-	const bool binned = is_binned(fast, bin_bits);
-	/* the output lends its bytes, if it has some to speak of: entries that lie in two places take longer. A
-	 * sparse one is not filled, so that its pages need not exist: there the caller lends what it fills from
-	 * the records. */
 	const size_t output_bytes = solve->corner_count * 4 * sizeof(float);
-	nt_room room = fast->sparse
-		? nt_room_over(solve->lent, solve->lent_bytes, solve->scratch)
-		: nt_room_over(solve->tangents, output_bytes < LEAST_LENT_BYTES ? 0 : output_bytes, solve->scratch);
+	if (fast->sparse)
+		return nt_room_over(solve->lent, solve->lent_bytes, solve->scratch);
+	return nt_room_over(solve->tangents, output_bytes < plan->least_lent_bytes ? 0 : output_bytes, solve->scratch);
+}
+
+/* 1 to 4 */
+static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, const nt_fast_plan *plan)
+{
+	const nt_solve *solve = fast->solve;
+	const unsigned ranges = nt_parallel_slots(solve->threads, fast->triangle_count, plan->grain);
+	const bool binned = is_binned(fast, plan->bin_bits);
+	nt_room room = lent_room(fast, plan);
 	nt_room none = nt_room_over(solve->tangents, 0, solve->scratch);
 	/* rows at random are better off in the large pages of the scratch, and records will replace them */
 	nt_room *const row_room = !binned && has_room_for_rows(fast, &room) ? &room : &none;
@@ -361,7 +364,7 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, unsigned ra
 	if (!status)
 		status = make_ranges(fast, ranges);
 	if (!status)
-		status = binned ? fill_bins(fast, kernels, bin_bits, &room)
+		status = binned ? fill_bins(fast, kernels, plan->bin_bits, &room)
 				: add_to_records(fast, kernels, row_room, &room);
 	return status;
 }
@@ -377,8 +380,7 @@ static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, bool sparse, 
 		solve->mesh->vertex_count >= NT_WELD_LIMIT)
 		return NMTAN_ERROR_TOO_LARGE;
 
-	const unsigned ranges = nt_parallel_slots(solve->threads, fast->triangle_count, plan->grain);
-	nmtan_status status = sum_up(fast, kernels, ranges, plan->bin_bits);
+	nmtan_status status = sum_up(fast, kernels, plan);
 	if (status)
 		return status;
 	if (!fast->records[0] && !fast->records[1]) {

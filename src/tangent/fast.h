@@ -134,6 +134,7 @@ size_t nt_fast_next_flagged(const nt_fast *fast, size_t t, unsigned flags);
 typedef struct nt_fast_plan {
 	size_t grain;      /* least triangles for a thread */
 	unsigned bin_bits; /* log2 of the vertices of a bin, from 4 on; 0: bins where the mesh is scattered */
+	size_t least_lent_bytes; /* smaller outputs do not serve as scratch */
 } nt_fast_plan;
 
 /* nt_mikktspace_fast() by another plan. */

@@ -244,46 +244,93 @@ static void nasty_meshes_are_byte_identical(void **state)
 	assert_int_equal(wrong, 0);
 }
 
-/* Large enough for the plan to choose bins by itself; vertices and triangles are numbered by a stride that is
- * prime to their count. */
-static void scattered_meshes_are_byte_identical(void **state)
+/* A grid large enough for the plan to choose bins by itself; vertices and faces are numbered by a stride that is
+ * prime to their count. In the flat part some normals, not of unit length, lie along their tangents. */
+enum { GRID_SIDE = 300, STRIDE = 39119, GRID_VERTICES = GRID_SIDE * GRID_SIDE,
+	CELLS = (GRID_SIDE - 1) * (GRID_SIDE - 1) };
+
+static void fill_vertices(float *p, float *n, float *t)
 {
-	(void)state;
-	enum { SIDE = 300, VERTICES = SIDE * SIDE, FACES = 2 * (SIDE - 1) * (SIDE - 1) };
-	float *p = malloc(VERTICES * 12), *n = malloc(VERTICES * 12), *t = malloc(VERTICES * 8);
-	unsigned *indices = malloc(FACES * 12);
-	assert_in_range(VERTICES, NT_BINS_LEAST, SIZE_MAX);
-	for (size_t i = 0; i < VERTICES; i++) {
-		const size_t v = i * 39119 % VERTICES;
-		const float x = (float)(i % SIDE), y = (float)(i / SIDE);
-		memcpy(p + 3 * v, (float[3]){x, y, 0.3f * sinf(x) * cosf(2 * y)}, 12);
-		memcpy(n + 3 * v, (float[3]){0, 0, 1}, 12);
+	assert_in_range(GRID_VERTICES, NT_BINS_LEAST, SIZE_MAX);
+	for (size_t i = 0; i < GRID_VERTICES; i++) {
+		const size_t v = i * STRIDE % GRID_VERTICES;
+		const float x = (float)(i % GRID_SIDE), y = (float)(i / GRID_SIDE);
+		memcpy(p + 3 * v, (float[3]){x, y, x > 200.0f ? 0.0f : 0.3f * sinf(x) * cosf(2 * y)}, 12);
+		memcpy(n + 3 * v, i % 1009 == 5 ? (float[3]){0.5f, 0, 0} : (float[3]){0, 0, 1}, 12);
 		memcpy(t + 2 * v, (float[2]){fabsf(x - 150.0f), i % 97 == 0 ? 0.0f : y}, 8);
 	}
-	for (size_t i = 0; i < FACES; i++) {
-		static const size_t at[2][3] = {{0, 1, SIDE + 1}, {0, SIDE + 1, SIDE}};
-		const size_t cell = i / 2 + i / 2 / (SIDE - 1), face = i * 39119 % FACES;
-		for (size_t k = 0; k < 3; k++)
-			indices[3 * face + k] = (unsigned)((cell + at[i % 2][k]) * 39119 % VERTICES);
+}
+
+/* Two triangles for each cell, or a quad; returns the number of corners. */
+static size_t fill_faces(bool quads, unsigned *indices)
+{
+	static const size_t triangles[6] = {0, 1, GRID_SIDE + 1, 0, GRID_SIDE + 1, GRID_SIDE},
+			    quad[4] = {0, 1, GRID_SIDE + 1, GRID_SIDE};
+	const size_t size = quads ? 4 : 3, faces = quads ? CELLS : 2 * CELLS;
+	for (size_t i = 0; i < faces; i++) {
+		const size_t number = quads ? i : i / 2, cell = number + number / (GRID_SIDE - 1),
+			     face = i * STRIDE % faces;
+		for (size_t k = 0; k < size; k++) {
+			const size_t corner = quads ? quad[k] : triangles[3 * (i % 2) + k];
+			indices[size * face + k] = (unsigned)((cell + corner) * STRIDE % GRID_VERTICES);
+		}
 	}
-	const nmtan_mesh loose = {.face_count = FACES, .vertex_count = VERTICES, .positions = p, .normals = n,
-		.texcoords = t, .indices = indices};
+	return size * faces;
+}
+
+/* With repair, which relies on what the fast path vouches for. */
+static void compare_repaired(const nmtan_mesh *mesh, size_t corners)
+{
+	result expected = result_make(corners);
+	nmtan_output wanted = {.tangents = expected.tangents};
+	assert_int_equal(nmtan_tangents(mesh, &(nmtan_options){.path = NMTAN_PATH_SCALAR}, &wanted), NMTAN_OK);
+	assert_true(wanted.counts.repaired_parallel + wanted.counts.repaired_zero > 0);
+	for (unsigned threads = 1; threads <= 2; threads++) {
+		result got = result_make(corners);
+		nmtan_output output = {.tangents = got.tangents};
+		assert_int_equal(nmtan_tangents(mesh, &(nmtan_options){.threads = threads}, &output), NMTAN_OK);
+		assert_memory_equal(got.tangents, expected.tangents, corners * 16);
+		assert_memory_equal(&output.counts, &wanted.counts, sizeof wanted.counts);
+		result_free(&got);
+	}
+	result_free(&expected);
+}
+
+static void compare_scattered(bool quads)
+{
+	float *p = malloc(GRID_VERTICES * 12), *n = malloc(GRID_VERTICES * 12), *t = malloc(GRID_VERTICES * 8);
+	unsigned *indices = malloc(2 * CELLS * 12);
+	uint8_t *sizes = malloc(CELLS);
+	fill_vertices(p, n, t);
+	memset(sizes, 4, CELLS);
+	const size_t corners = fill_faces(quads, indices);
+	const nmtan_mesh loose = {.face_count = quads ? CELLS : 2 * CELLS, .vertex_count = GRID_VERTICES, .positions = p,
+		.normals = n, .texcoords = t, .indices = indices, .face_sizes = quads ? sizes : NULL};
 	const nmtan_mesh mesh = filled(&loose);
-	result expected = result_make(3 * FACES);
+	result expected = result_make(corners);
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
-	const nt_solve solve = make_solve(&mesh, 3 * FACES, &scratch, &expected, true);
+	const nt_solve solve = make_solve(&mesh, corners, &scratch, &expected, true);
 	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
 	nt_scratch_free(&scratch);
 	for (unsigned threads = 1; threads <= 2; threads++)
 		for (int more = 0; more < 2; more++)
-			assert_int_equal(compare_run("scattered", &mesh, 3 * FACES, &expected, more, nt_cpu_best(),
-				threads, 0), 0);
+			assert_int_equal(compare_run("scattered", &mesh, corners, &expected, more, nt_cpu_best(), threads, 0),
+				0);
+	compare_repaired(&mesh, corners);
 	result_free(&expected);
+	free(sizes);
 	free(p);
 	free(n);
 	free(t);
 	free(indices);
+}
+
+static void scattered_meshes_are_byte_identical(void **state)
+{
+	(void)state;
+	compare_scattered(false);
+	compare_scattered(true);
 }
 
 /* An allocator that fails from the n-th request on. */
