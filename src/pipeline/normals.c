@@ -152,9 +152,10 @@ static nmtan_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job, size_
 	job->indices = job->sources = NULL;
 	job->normals = NULL;
 	nt_finding_add(&scene->findings, NT_CODE_NORMALS_MADE, &mesh->place, made, NULL);
-	const bool kept = nt_arena_adopt(&scene->arena, indices) &
-			  nt_arena_adopt(&scene->arena, sources) &
-			  nt_arena_adopt(&scene->arena, normals);
+	/* each, whatever became of the others: the arena frees what it cannot keep */
+	bool kept = nt_arena_adopt(&scene->arena, indices);
+	kept &= nt_arena_adopt(&scene->arena, sources);
+	kept &= nt_arena_adopt(&scene->arena, normals);
 	return kept ? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }
 

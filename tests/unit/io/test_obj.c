@@ -412,7 +412,7 @@ static void content_is_recognised(void **state)
 	static const char *const yes[] = {"v 0 0 0\n", "# x\n\n  o a\n", "\xEF\xBB\xBF# x\r\nmtllib a.mtl\r\n",
 		"f 1 2 3\n", "g\n", "s off\n"};
 	static const char *const no[] = {"", "# only comments\n", "ply\nformat ascii 1.0\n", "{\"asset\": 1}",
-		"newmtl a\n", "glTF", "v", "vertex 1 2 3\n", "\x7F" "ELF", "v\x01 0\n"};
+		"newmtl a\n", "glTF", "v", "vertex 1 2 3\n", "\177ELF", "v\x01 0\n"};
 	for (size_t i = 0; i < sizeof yes / sizeof yes[0]; i++)
 		assert_true(nt_obj_recognise((const unsigned char *)yes[i], strlen(yes[i])));
 	for (size_t i = 0; i < sizeof no / sizeof no[0]; i++)
