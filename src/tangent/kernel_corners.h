@@ -134,8 +134,8 @@ static void corners(const nt_fast *fast, const uint32_t *list, size_t count, nt_
 		load_singles(fast, list + first, count - first, &s);
 		solve_single_frames(&s);
 		solve_single_angles(&s);
-		interleave(s.u, u);
-		interleave(s.v, v);
+		interleave(s.u, NT_LANES, u);
+		interleave(s.v, NT_LANES, v);
 		for (size_t i = 0; i < NT_LANES; i++) {
 			memcpy(solved[i].u, u + 4 * turned_place(i), 4 * sizeof *u);
 			memcpy(solved[i].v, v + 4 * turned_place(i), 4 * sizeof *v);

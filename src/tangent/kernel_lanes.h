@@ -219,9 +219,10 @@ static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *re
 static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *in, lanes_out *out, float offset,
 	float slack, size_t count)
 {
-	solve_lanes(in, out, offset, slack, false, (int)whole_lanes(count));
+	const size_t lane_count = whole_lanes(count);
+	solve_lanes(in, out, offset, slack, false, (int)lane_count);
 	for (int k = 0; k < 3; k++)
-		interleave(out->sum[k], out->add[k]);
+		interleave(out->sum[k], lane_count, out->add[k]);
 }
 
 #if WIDTH > 4
@@ -245,9 +246,9 @@ static void __attribute__((noinline)) solve_lanes_more(const lanes_in *in, lanes
 {
 	solve_lanes(in, out, offset, slack, true, NT_LANES);
 	for (int k = 0; k < 3; k++) {
-		interleave(out->sum[k], out->add[k]);
-		interleave(out->extra[k], out->more[k][0]);
-		interleave(out->extra[k] + 4, out->more[k][1]);
+		interleave(out->sum[k], NT_LANES, out->add[k]);
+		interleave(out->extra[k], NT_LANES, out->more[k][0]);
+		interleave(out->extra[k] + 4, NT_LANES, out->more[k][1]);
 	}
 }
 

@@ -122,10 +122,10 @@ static inline size_t lanes_of(size_t count)
 	return count <= 4 ? 4 : whole_lanes(count);
 }
 
-/* Four components of 16 lanes become rows in turned places. */
-static inline __attribute__((always_inline)) void interleave(const float in[4][NT_LANES], float *out)
+/* Four components of whole vectors of lanes become rows in turned places. */
+static inline __attribute__((always_inline)) void interleave(const float in[4][NT_LANES], size_t lane_count, float *out)
 {
-	for (size_t i = 0; i < NT_LANES; i += WIDTH) {
+	for (size_t i = 0; i < lane_count; i += WIDTH) {
 		lanes four[4];
 		for (size_t j = 0; j < 4; j++)
 			four[j] = load_lanes(in[j] + i);

@@ -503,7 +503,7 @@ static void sum_finish(const nt_sums *s, size_t begin, size_t end, nt_sums_finis
 			finish_load(s, side, first, count, &l);
 			finish_solve(&l, side ? 1.0f : -1.0f);
 			float tangents[4 * NT_SUM_LANES];
-			interleave(l.tangent, tangents);
+			interleave(l.tangent, NT_LANES, tangents);
 			for (size_t i = 0; i < count; i++) {
 				const unsigned found = (unsigned)l.flags[i];
 				memcpy(&s->results[side][first + i], tangents + 4 * turned_place(i), 4 * sizeof(float));
