@@ -32,7 +32,7 @@ void *nt_scratch_alloc(nt_scratch *scratch, size_t count, size_t size);
 nt_scratch_mark nt_scratch_here(const nt_scratch *scratch);
 void nt_scratch_back(nt_scratch *scratch, nt_scratch_mark mark);
 
-/* Bytes that the blocks hold, used or not. */
+/* Bytes that the blocks hold, used or not: for tests and tests/bench. */
 size_t nt_scratch_bytes(const nt_scratch *scratch);
 
 /* Returns all blocks to the allocator. */

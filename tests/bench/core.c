@@ -2,7 +2,8 @@
 /*
  * core [FOLDER]: how many million triangles a second the core does on each family of meshes, as a table for
  * people. Runs of all columns are interleaved, so that a busy machine hurts all of them; best and median.
- * Repair is on, output and workspace are warm. One thread is timed by the processor's clock for the thread, more by the wall's.
+ * Repair is on, output and workspace are warm. Before the rates stands what one thread takes besides the output, in
+ * bytes a triangle. One thread is timed by the processor's clock for the thread, more by the wall's.
  *
  * The scalar definition is there to be compared, takes some 20 times as long, and on hubs its time grows
  * with the square of their size. Its column is measured once, on smaller meshes of the family, whose number of
@@ -18,6 +19,7 @@
 #include <time.h>
 #include "base/cpu.h"
 #include "base/parallel.h"
+#include "base/scratch.h"
 #include "measure.h"
 
 enum { RUNS = 3, MOST_COLUMNS = 16, SMALL_COUNT = 2000 };
@@ -101,6 +103,18 @@ static double time_run(const column *c, const workload *w, nmtan_output *output,
 	return (seconds(clock) - begin) / (double)repeat;
 }
 
+/* Bytes for each triangle that one thread takes besides the output; 0 for many meshes, which share a block. */
+static double scratch_bytes(const workload *w, nmtan_output *output)
+{
+	nmtan_workspace *workspace = nmtan_workspace_create(NULL);
+	const nmtan_options options = {.threads = 1, .workspace = workspace};
+	if (!workspace || nmtan_tangents(&w->meshes[0].mesh, &options, output))
+		exit(1);
+	const double bytes = (double)nt_scratch_bytes(&workspace->scratch);
+	nmtan_workspace_destroy(workspace);
+	return w->count == 1 ? bytes / (double)w->triangles : 0;
+}
+
 /* One row of the table; `smaller` is what the definition gets. */
 static void time_row(const char *name, const workload *w, const workload *smaller, const column *columns,
 	size_t count)
@@ -116,7 +130,7 @@ static void time_row(const char *name, const workload *w, const workload *smalle
 			if (run < columns[c].runs)
 				times[c][run] = time_run(&columns[c],
 					columns[c].path == NMTAN_PATH_SCALAR ? smaller : w, &output, workspace);
-	printf("%-22s %8zu", name, w->triangles);
+	printf("%-22s %8zu %5.1f", name, w->triangles, scratch_bytes(w, &output));
 	for (size_t c = 0; c < count; c++) {
 		qsort(times[c], (size_t)columns[c].runs, sizeof(double), measure_compare);
 		if (columns[c].path == NMTAN_PATH_SCALAR) {
@@ -198,7 +212,7 @@ int main(int argument_count, char **arguments)
 	const size_t n = list_columns(columns);
 
 	print_machine();
-	printf("million triangles a second, best and median\n%-22s %8s", "", "");
+	printf("million triangles a second, best and median\n%-22s %8s %5s", "", "", "bytes");
 	for (size_t c = 0; c < n; c++)
 		printf(" %*s", columns[c].path == NMTAN_PATH_SCALAR ? 16 : 13, columns[c].name);
 	printf("\n");
