@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Averages of groups at complex vertices: steps 7 to 10 of the spec page. Corners are solved NT_BATCH at a time in the
- * order of groups. Most groups do not split: their members' directions lie within a half-space. Of the others all
- * pairs are looked at, and a member that belongs to a part of its group has a sum of its own.
+ * order of groups. Most groups do not split: their members' directions lie within a half-space, or at least no one
+ * is antiparallel to the few outside of it. Otherwise a member that belongs to a part of its group has a sum of its own.
  */
 #include "tangent/complex.h"
 
@@ -35,18 +35,29 @@ static float dot3(const float *a, const float *b)
 	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Whether two members of a group are averaged together: step 7 with the default threshold. */
-static bool belong_together(const nt_complex *c, const nt_batch *b, const part *p, size_t i, size_t j)
+static uint32_t triangle_of(const nt_batch *b, const part *p, size_t i)
 {
-	const nt_corner *f = &p->solved[i], *t = &p->solved[j];
-	if (dot3(f->u, t->u) > -1.0f && dot3(f->v, t->v) > -1.0f)
+	return b->corners[p->members[i]] >> 2;
+}
+
+/* Whether two members belong together whatever their directions are: without a frame, or of one face. */
+static bool always_belong(const nt_complex *c, const nt_batch *b, const part *p, size_t i, const part *q, size_t j)
+{
+	if (p->solved[i].kind == NT_CORNER_ANY || q->solved[j].kind == NT_CORNER_ANY)
 		return true;
-	if (f->kind == NT_CORNER_ANY || t->kind == NT_CORNER_ANY)
-		return true;
-	/* members ascend, so that of two halves of a quad the second is the later one */
-	const size_t low = i < j ? i : j, high = i < j ? j : i;
-	const uint32_t first = b->corners[p->members[low]] >> 2, second = b->corners[p->members[high]] >> 2;
+	const uint32_t pt = triangle_of(b, p, i), qt = triangle_of(b, q, j);
+	const uint32_t first = pt < qt ? pt : qt, second = pt < qt ? qt : pt;
 	return first == second || (second == first + 1 && (c->fast->flags[second] & NT_TRIANGLE_SECOND));
+}
+
+/* Whether two members of a group, one of part p and one of part q, are averaged together: step 7 with the default
+ * threshold. */
+static inline bool belong_together(const nt_complex *c, const nt_batch *b, const part *p, size_t i, const part *q,
+	size_t j)
+{
+	const nt_corner *f = &p->solved[i], *t = &q->solved[j];
+	const bool parted = !(dot3(f->u, t->u) > -1.0f) || !(dot3(f->v, t->v) > -1.0f);
+	return !parted || always_belong(c, b, p, i, q, j);
 }
 
 /* Adds members, or those of them that belong together with member f; NT_NONE: all. The angles of their weights
@@ -58,7 +69,7 @@ static void add_members(const nt_complex *c, const nt_batch *b, const part *p, s
 	memcpy(&v, sum->v, sizeof v);
 	for (size_t i = 0; i < p->count; i++) {
 		const nt_corner *m = &p->solved[i];
-		if (m->kind == NT_CORNER_ANY || (f != NT_NONE && !belong_together(c, b, p, f, i)))
+		if (m->kind == NT_CORNER_ANY || (f != NT_NONE && !belong_together(c, b, p, f, p, i)))
 			continue;
 		nt_float4 mu, mv;
 		memcpy(&mu, m->u, sizeof mu);
@@ -99,33 +110,29 @@ static const nt_corner *first_with_frame(const part *p)
 	return &p->solved[i];
 }
 
-/* Whether no two members can split, by one look at each: two unit vectors less than 89.4 degrees from a third one, the
- * axis, have a dot product of at least 2 * 0.01^2 - 1, well above the -1 at which step 7 parts them. */
-static bool are_near(const part *p, const nt_corner *axis)
+/* Two unit vectors less than 89.4 degrees from a third one, the axis, have a dot product of at least
+ * 2 * 0.01^2 - 1, well above the -1 at which step 7 parts them. */
+static bool is_near(const nt_corner *m, const nt_corner *axis)
 {
-	for (size_t i = 0; i < p->count; i++) {
-		const nt_corner *m = &p->solved[i];
-		if (m->kind == NT_CORNER_ANY)
-			continue;
-		if (m->kind != NT_CORNER_UNIT || !(dot3(m->u, axis->u) > 0.01f) || !(dot3(m->v, axis->v) > 0.01f))
-			return false;
-	}
-	return true;
+	return m->kind == NT_CORNER_ANY ||
+	       (m->kind == NT_CORNER_UNIT && dot3(m->u, axis->u) > 0.01f && dot3(m->v, axis->v) > 0.01f);
 }
 
-/* Whether all members from `first` on belong together with member f. */
-static bool all_belong(const nt_complex *c, const nt_batch *b, const part *p, size_t first, size_t f)
-{
-	for (size_t i = first; i < p->count; i++)
-		if (!belong_together(c, b, p, i, f))
-			return false;
-	return true;
-}
-
-static bool no_pair_splits(const nt_complex *c, const nt_batch *b, const part *p)
+/* Whether member f belongs together with all. */
+static bool belongs_to_all(const nt_complex *c, const nt_batch *b, const part *p, size_t f)
 {
 	for (size_t i = 0; i < p->count; i++)
-		if (!all_belong(c, b, p, i + 1, i))
+		if (!belong_together(c, b, p, i, p, f))
+			return false;
+	return true;
+}
+
+/* Whether a group does not split. Of two members that do one is not near the axis. */
+static bool is_one(const nt_complex *c, const nt_batch *b, const part *p)
+{
+	const nt_corner *axis = first_with_frame(p);
+	for (size_t i = 0; i < p->count; i++)
+		if (!is_near(&p->solved[i], axis) && !belongs_to_all(c, b, p, i))
 			return false;
 	return true;
 }
@@ -222,9 +229,9 @@ static void average_group(const nt_complex *c, const nt_batch *b, const part *p,
 	nt_corner whole = {.kind = NT_CORNER_EXTREME};
 	add_members(c, b, p, NT_NONE, &whole);
 	finish(c, &whole);
-	const bool one = are_near(p, first_with_frame(p)) || no_pair_splits(c, b, p);
+	const bool one = is_one(c, b, p);
 	for (size_t i = 0; i < p->count; i++) {
-		if (one || all_belong(c, b, p, 0, i)) {
+		if (one || belongs_to_all(c, b, p, i)) {
 			put_result(c, b, p->members[i], &whole, results);
 			continue;
 		}
@@ -248,23 +255,69 @@ static void solve_groups(const nt_complex *c, const nt_batch *b, uint32_t first,
 	}
 }
 
-/* A group of more members: they are kept only if it may split. */
+/* The same for a group of more members, of which few at a time are solved: those that are not near the axis are kept. */
+typedef struct outliers {
+	uint32_t members[NT_BATCH];
+	nt_corner solved[NT_BATCH];
+	size_t count;
+} outliers;
+
+/* False: they are too many. */
+static bool add_outliers(const part *p, const nt_corner *axis, outliers *o)
+{
+	for (size_t i = 0; i < p->count; i++) {
+		if (is_near(&p->solved[i], axis))
+			continue;
+		if (o->count == NT_BATCH)
+			return false;
+		o->members[o->count] = p->members[i];
+		o->solved[o->count++] = p->solved[i];
+	}
+	return true;
+}
+
+/* Whether no member splits from an outlier. Where that holds for all members no two of them split. */
+static bool no_outlier_splits(const nt_complex *c, const nt_batch *b, const part *p, const outliers *o)
+{
+	const part others = {o->members, o->solved, o->count};
+	for (size_t j = 0; j < o->count; j++)
+		for (size_t i = 0; i < p->count; i++)
+			if (!belong_together(c, b, p, i, &others, j))
+				return false;
+	return true;
+}
+
+/* Whether a large group does not split, and if so its sum. */
+static bool add_large_group(const nt_complex *c, const nt_batch *b, const uint32_t *members, size_t count,
+	nt_corner *sum)
+{
+	nt_corner solved[NT_BATCH + NT_LANES], axis = {.kind = NT_CORNER_ANY};
+	outliers o;
+	o.count = 0;
+	for (int round = 0; round < 2; round++) {
+		for (size_t first = 0; first < count; first += NT_BATCH) {
+			const part p = {members + first, solved, count - first < NT_BATCH ? count - first : NT_BATCH};
+			solve_members(c, b, p.members, p.count, solved);
+			if (axis.kind == NT_CORNER_ANY)
+				axis = *first_with_frame(&p);
+			if (round == 0 ? !add_outliers(&p, &axis, &o) : !no_outlier_splits(c, b, &p, &o))
+				return false;
+			if (round == 0)
+				add_members(c, b, &p, NT_NONE, sum);
+		}
+		if (o.count == 0)
+			break;
+	}
+	return true;
+}
+
+/* All members are kept only if they may split. */
 static nmtan_status solve_large_group(const nt_complex *c, const nt_batch *b, uint32_t group, nt_corner *results)
 {
-	nt_corner solved[NT_BATCH + NT_LANES];
 	const uint32_t *members = b->members + b->bounds[group];
 	const size_t count = b->bounds[group + 1] - b->bounds[group];
-	nt_corner whole = {.kind = NT_CORNER_EXTREME}, axis = {.kind = NT_CORNER_ANY};
-	bool near = true;
-	for (size_t first = 0; first < count && near; first += NT_BATCH) {
-		const part p = {members + first, solved, count - first < NT_BATCH ? count - first : NT_BATCH};
-		solve_members(c, b, p.members, p.count, solved);
-		add_members(c, b, &p, NT_NONE, &whole);
-		if (axis.kind == NT_CORNER_ANY)
-			axis = *first_with_frame(&p);
-		near = are_near(&p, &axis);
-	}
-	if (near) {
+	nt_corner whole = {.kind = NT_CORNER_EXTREME};
+	if (add_large_group(c, b, members, count, &whole)) {
 		finish(c, &whole);
 		for (size_t i = 0; i < count; i++)
 			put_result(c, b, members[i], &whole, results);
@@ -272,11 +325,11 @@ static nmtan_status solve_large_group(const nt_complex *c, const nt_batch *b, ui
 	}
 	const nt_scratch_mark mark = nt_scratch_here(c->room->scratch);
 	const nt_room room = *c->room;
-	nt_corner *all = nt_room_alloc(c->room, count + NT_LANES, sizeof *all);
-	if (!all)
+	nt_corner *solved = nt_room_alloc(c->room, count + NT_LANES, sizeof *solved);
+	if (!solved)
 		return NMTAN_ERROR_MEMORY;
-	solve_members(c, b, members, count, all);
-	const part p = {members, all, count};
+	solve_members(c, b, members, count, solved);
+	const part p = {members, solved, count};
 	average_group(c, b, &p, results);
 	nt_scratch_back(c->room->scratch, mark);
 	*c->room = room;

@@ -289,21 +289,28 @@ static void vouch(const nt_fast *fast, bool usable)
 	vouched->welded_count = fast->vertex_count;
 }
 
-/* What step 7 may use: the larger of two arrays that are done with, unless it lies in the output. */
+/* What step 7 may use: the largest array that is done with and does not lie in the output. */
 static nt_room dead_room(const nt_fast *fast)
 {
 	const nt_solve *solve = fast->solve;
+	const nt_adjacency *a = &fast->adjacency;
 	/* records have taken the place of the rows of a binned mesh */
 	const bool binned = fast->bins.cursors;
-	char *const arrays[2] = {binned ? (char *)fast->bins.entries : (char *)fast->adjacency.entries, (char *)fast->rows};
-	const size_t bytes[2] = {binned ? 3 * fast->triangle_count * NT_BINNED_ENTRY
-					: fast->adjacency.entry_count * sizeof(nt_fan_entry),
-		binned ? 0 : fast->vertex_count * sizeof(nt_weld_row)};
+	const struct {
+		const void *memory;
+		size_t bytes;
+	} arrays[3] = {
+		{fast->rows, binned ? 0 : fast->vertex_count * sizeof *fast->rows},
+		{binned ? (const void *)fast->bins.entries : a->entries,
+			binned ? 3 * fast->triangle_count * NT_BINNED_ENTRY : a->entry_count * sizeof *a->entries},
+		{a->rest, a->rest_count * sizeof *a->rest},
+	};
 	nt_room largest = nt_room_over(NULL, 0, solve->scratch);
-	for (int i = 0; i < 2; i++) {
-		const bool in_output = (uintptr_t)arrays[i] - (uintptr_t)solve->tangents < solve->corner_count * 16;
-		if (!in_output && bytes[i] > (size_t)(largest.end - largest.begin))
-			largest = nt_room_over(arrays[i], bytes[i], solve->scratch);
+	for (int i = 0; i < 3; i++) {
+		const uintptr_t at = (uintptr_t)arrays[i].memory - (uintptr_t)solve->tangents;
+		const bool in_output = at < solve->corner_count * 4 * sizeof(float);
+		if (!in_output && arrays[i].bytes > (size_t)(largest.end - largest.begin))
+			largest = nt_room_over((void *)arrays[i].memory, arrays[i].bytes, solve->scratch);
 	}
 	return largest;
 }

@@ -150,7 +150,8 @@ static bool alloc_entries(nt_adjacency *a, size_t count, nt_room *room)
 		while (a->block_begin[block] > fit)
 			block--;
 		a->entry_count = a->block_begin[block];
-		a->rest = nt_scratch_alloc(room->scratch, count - a->entry_count, sizeof *a->rest);
+		a->rest_count = count - a->entry_count;
+		a->rest = nt_scratch_alloc(room->scratch, a->rest_count, sizeof *a->rest);
 		if (!a->rest)
 			return false;
 		move_blocks(a, block);

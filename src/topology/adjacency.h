@@ -38,7 +38,8 @@ typedef struct nt_adjacency {
 	uint32_t *block_begin; /* [blocks + 1] index of a block's first entry */
 	size_t *shared_counts; /* [ranges] corners whose cursor is SHARED */
 	nt_fan_entry *entries; /* places below entry_count */
-	nt_fan_entry *rest;    /* those above: what the room did not hold */
+	nt_fan_entry *rest;    /* [rest_count] those above: what the room did not hold */
+	size_t rest_count;
 	size_t entry_count;
 } nt_adjacency;
 
