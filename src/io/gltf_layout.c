@@ -327,7 +327,7 @@ static void move_accessors(nt_gltf_layout *layout, const moved_view *moved, size
 
 /* ---- writing ---- */
 
-/* Where the bytes of a buffer go: a sink or memory. */
+/* Where the bytes of a buffer go: a sink as they are or as base64, or memory. */
 typedef struct target {
 	nt_sink *sink;
 	nt_base64 *base64;

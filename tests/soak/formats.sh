@@ -4,7 +4,8 @@
 # tests/soak/formats.sh BUILD_DIR...: every public model of ../shared to every output format, with the
 # options that change what is written. No crash, no hang; what is written as glTF has no error in the
 # Khronos validator that the input did not have; what is written as PLY is read again. Documents with a
-# buffer that is nowhere are left out: a GLB shows zeros where they have nothing to judge. --images=none over OBJ and PLY, because a glTF made from a glTF keeps its images.
+# buffer that is nowhere are left out: a GLB shows zeros where they have nothing to judge. --images=none over
+# OBJ and PLY, because a glTF made from a glTF keeps its images.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 ROOT=$PWD
