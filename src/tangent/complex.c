@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The vertices that are not settled by their sums: pinches, edges with three triangles, triangles without a
- * frame between orientations, directions more than a quarter turn apart, hubs. The steps are those of the scalar
- * definition, but at these vertices only:
+ * frame between orientations, directions that are on one side of no axis, hubs. The steps are those of the
+ * scalar definition, but at these vertices only:
  *
  *   collect   corners of complex vertices, sorted by vertex and then by triangle
  *   adopt     which orientation each triangle without a frame takes: that of the first group that reaches it,
