@@ -112,15 +112,16 @@ static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t
 			addition_of(out, k, turned_place((size_t)lane)));
 }
 
-/* Triangles with frames: add_triangle() with everything that does not change kept at hand. */
-static void __attribute__((noinline)) add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t count,
-	const uint32_t *ids, const lanes_out *out)
+/* Triangles with frames, lanes [begin, end): add_triangle() with everything that does not change kept at hand. */
+static void __attribute__((noinline)) add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t begin,
+	size_t end, const uint32_t *ids, const lanes_out *out)
 {
 	uint32_t *const cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
 	nt_fan_entry *const entries = fast->adjacency.entries;
 	nt_record *const records[2] = {fast->records[0], fast->records[1]};
 	const uint8_t *flags = fast->flags + first;
-	for (size_t i = 0; i < count; i++, ids += 3) {
+	ids += 3 * begin;
+	for (size_t i = begin; i < end; i++, ids += 3) {
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
 		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
 		const unsigned orient = flags[i] & NT_TRIANGLE_ORIENT;
@@ -144,13 +145,14 @@ static void __attribute__((noinline)) add_ordinary(nt_fast *fast, unsigned range
 }
 
 /* The same into bins. */
-static void __attribute__((noinline)) bin_ordinary(const nt_fast *fast, unsigned range, size_t first, size_t count,
-	const uint32_t *v, const lanes_out *out)
+static void __attribute__((noinline)) bin_ordinary(const nt_fast *fast, unsigned range, size_t first, size_t begin,
+	size_t end, const uint32_t *ids, const lanes_out *out)
 {
 	const nt_bins bins = fast->bins;
 	uint32_t *const cursors = bins.cursors + range * bins.count;
 	unsigned seen = 0;
-	for (size_t i = 0; i < count; i++, v += 3) {
+	for (size_t i = begin; i < end; i++) {
+		const uint32_t *v = ids + 3 * i;
 		const uint32_t orient = fast->flags[first + i] & NT_TRIANGLE_ORIENT;
 		const size_t place = 4 * turned_place(i);
 		bin_corner(&bins, cursors, v[0], orient, v[1], v[2], out->add[0] + place);
@@ -178,7 +180,7 @@ static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range,
 	if (fast->bins.cursors && !(flags & NT_TRIANGLE_DEGENERATE))
 		fast->bins.seen[range] |= flags & NT_TRIANGLE_ANY ? NT_SEEN_ANY : NT_SEEN(flags & NT_TRIANGLE_ORIENT);
 	if (!(flags & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY))) {
-		for (int k = 0; k < 3 && !out->sound[lane]; k++)
+		for (int k = 0; k < 3; k++)
 			out->add[k][4 * turned_place((size_t)lane) + 3] = 2.0f + STATE_BIT(NT_STATE_NO_ANY + NT_STATE_LOCAL);
 		add_triangle(fast, range, t, v, lane, out);
 		return;
@@ -201,6 +203,15 @@ static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range,
 	for (int k = 0; k < 3; k++)
 		add_corner(fast, range, v[k], orient, (nt_fan_entry){v[(k + 1) % 3], v[(k + 2) % 3]},
 			(addition){note, {zero, zero}});
+}
+
+/* The next lane from i on whose triangle is one for add_special(). */
+static size_t next_special(const nt_fast *fast, size_t first, size_t i, size_t count, const lanes_out *out)
+{
+	const uint8_t *flags = fast->flags + first;
+	while (i < count && out->sound[i] && !(flags[i] & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY)))
+		i++;
+	return i;
 }
 
 /* The orientation of a record array that these triangles need and that does not exist; -1: none. */
@@ -296,13 +307,16 @@ static void accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, 
 		for (int missing; (missing = missing_record(fast, first, count)) >= 0;)
 			if (!make(fast, missing, context))
 				return;
-		if (ordinary && fast->bins.cursors)
-			bin_ordinary(fast, range, first, count, ids, &out);
-		else if (ordinary)
-			add_ordinary(fast, range, first, count, ids, &out);
-		else
-			for (size_t i = 0; i < count; i++)
+		for (size_t i = 0; i < count; i++) {
+			const size_t from = i;
+			i = ordinary ? count : next_special(fast, first, i, count, &out);
+			if (fast->bins.cursors)
+				bin_ordinary(fast, range, first, from, i, ids, &out);
+			else
+				add_ordinary(fast, range, first, from, i, ids, &out);
+			if (i < count)
 				add_special(fast, range, first + i, ids + 3 * i, (int)i, &out);
+		}
 	}
 }
 
