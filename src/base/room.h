@@ -45,14 +45,13 @@ static inline void *nt_room_alloc(nt_room *room, size_t count, size_t size)
 	return result;
 }
 
-/* Gives back what lies behind `used` bytes of the block that was allocated last. A block from the scratch
- * stays as it is. */
+/* Gives back what lies behind `used` bytes of the block that was allocated last, which must be in the room itself:
+ * see nt_room_has(). */
 static inline void nt_room_trim(nt_room *room, void *block, size_t used)
 {
-	const uintptr_t at = (uintptr_t)block, begin = (uintptr_t)room->begin;
 	const size_t padded = used + (NT_ROOM_ALIGNMENT - used % NT_ROOM_ALIGNMENT) % NT_ROOM_ALIGNMENT;
-	if (at < begin && begin <= (uintptr_t)room->end && padded <= begin - at)
-		room->begin -= begin - at - padded;
+	if (padded <= (size_t)(room->begin - (char *)block))
+		room->begin = (char *)block + padded;
 }
 
 #endif

@@ -37,6 +37,7 @@ typedef struct sieve {
 	unsigned ranges;
 	unsigned word_bits; /* log2 of the words of a bitmap */
 	uint32_t *bitmaps;  /* marked and again of each range; the second of range 0 becomes that of all */
+	bool in_room;       /* the bitmaps and places are, not in the scratch */
 	uint32_t *places;   /* [vertex_count]; then, from where a range begins, its listed vertices */
 	bool many;          /* atomic: it is left to the table */
 	/* of a range: its first vertex, how many it found marked, how many it lists */
@@ -260,6 +261,7 @@ static bool make_sieve(sieve *s)
 	if (!nt_weld_grow_rows(w, count + 1))
 		return false;
 	const size_t bitmap_words = (size_t)2 * s->ranges << s->word_bits;
+	s->in_room = nt_room_has(w->room, bitmap_words + count, sizeof *s->bitmaps);
 	s->bitmaps = nt_room_alloc(w->room, bitmap_words + count, sizeof *s->bitmaps);
 	s->places = s->bitmaps + bitmap_words;
 	return s->bitmaps;
@@ -274,6 +276,9 @@ static bool weld_listed(sieve *s, unsigned ranges)
 	w->row_count = w->item_count;
 	if (count == 0)
 		return true;
+	/* a table in fresh pages would be 2 MB more of an output that is hardly begun */
+	if (s->in_room)
+		nt_room_trim(w->room, s->bitmaps, ((size_t)(s->places - s->bitmaps) + count) * sizeof *s->places);
 	nt_welder listed = {.mesh = w->mesh, .row_room = w->room, .room = w->room, .items = s->places,
 		.item_count = count, .row_guess = count};
 	listed.numbers = nt_room_alloc(w->room, count, sizeof *listed.numbers);
