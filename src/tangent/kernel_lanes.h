@@ -203,7 +203,7 @@ static inline __attribute__((always_inline)) void weigh_corners(lanes_out *restr
 }
 
 /* Lanes [0, count). One loop for each idea: in a single one there are more values under way than
- * registers, and square roots wait for each other (a third slower in all three instruction sets). */
+ * registers, and square roots wait for each other (a third slower with AVX-512). */
 static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *restrict in,
 	lanes_out *restrict out, float offset, float slack, bool more, int count)
 {
