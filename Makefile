@@ -43,8 +43,9 @@ TOOL_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lm
 # The compute library: no files, no C++.
 core_src := src/base/status.c src/base/memory.c src/base/parallel.c src/base/cpu.c src/base/scratch.c \
 	src/base/largest.c \
-	$(wildcard src/topology/*.c src/tangent/*.c)
-tool_src := $(filter-out $(core_src) src/cli/main.c,$(wildcard src/*/*.c)) $(wildcard src/ext/*.cpp)
+	$(foreach room,topology tangent tangent/fast tangent/sums api,$(wildcard src/$(room)/*.c))
+tool_src := $(filter-out $(core_src) src/cli/main.c src/bindings/%,$(wildcard src/*/*.c src/*/*/*.c)) \
+	$(wildcard src/ext/*.cpp)
 objects = $(patsubst src/%,$(B)/%.o,$(1))
 core_obj := $(call objects,$(core_src))
 tool_obj := $(call objects,$(tool_src))
@@ -57,14 +58,14 @@ $(B)/nmtan: $(main_obj) $(tool_obj) $(B)/libnmtan.a
 	$(CXX) $(NT_LDFLAGS) -o $@ $^ $(TOOL_LIBS)
 
 $(B)/libnmtan.a: $(core_obj)
-	rm -f $@ && $(AR) rcs $@ $^
+	rm -f $@ && $(AR) qcs $@ $^
 
 $(B)/libnmtan.so: $(core_obj)
 	$(CC) $(NT_LDFLAGS) -shared -Wl,-soname,libnmtan.so.0 -o $@ $^ -lm
 
-# Everything but main, for unit tests.
+# Everything but main, for unit tests. Members of several rooms share a name, so none replaces another (q).
 $(B)/libtool.a: $(tool_obj)
-	rm -f $@ && $(AR) rcs $@ $^
+	rm -f $@ && $(AR) qcs $@ $^
 
 $(B)/%.c.o: src/%.c
 	@mkdir -p $(@D)
@@ -175,4 +176,4 @@ clean:
 	rm -rf build
 
 format:
-	clang-format -i $(wildcard src/*/*.[ch] src/*/*.[ch]pp include/*.h tests/*/*.[ch] tests/*/*/*.[ch])
+	clang-format -i $(shell find src include tests -name '*.[ch]' -o -name '*.[ch]pp')

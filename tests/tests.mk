@@ -3,7 +3,7 @@
 # Tests. tests/unit/<room>/test_<file>.c tests src/<room>/<file>.c and may use every room;
 # tests/api/test_*.c links libnmtan.a alone; tests/cli/test_*.sh runs the tool as its users do.
 
-unit_src := $(wildcard tests/unit/*/test_*.c)
+unit_src := $(wildcard tests/unit/*/test_*.c tests/unit/*/*/test_*.c)
 api_src := $(wildcard tests/api/test_*.c)
 unit_bin := $(patsubst tests/%.c,$(B)/tests/%,$(unit_src))
 api_bin := $(patsubst tests/%.c,$(B)/tests/%,$(api_src))
@@ -122,7 +122,7 @@ check-aarch64:
 		OMP_WAIT_POLICY=passive qemu-aarch64 -L /usr/aarch64-linux-gnu build/aarch64/run_fast data/golden 300; \
 	else echo "no aarch64-linux-gnu-gcc or qemu-aarch64 (gcc-aarch64-linux-gnu, qemu-user): skipped"; fi
 
-build/aarch64/run_fast: $(aarch64_src) $(wildcard src/*/*.h)
+build/aarch64/run_fast: $(aarch64_src) $(wildcard src/*/*.h src/*/*/*.h)
 	@mkdir -p $(@D)
 	aarch64-linux-gnu-gcc -std=c11 -D_GNU_SOURCE -O2 -ffp-contract=off -fno-math-errno -fno-trapping-math \
 		-fopenmp -Iinclude -Isrc -Itests/support -Wall -Wextra -o $@ $(aarch64_src) -lm
