@@ -126,3 +126,8 @@ build/aarch64/run_fast: $(aarch64_src) $(wildcard src/*/*.h src/*/*/*.h)
 	@mkdir -p $(@D)
 	aarch64-linux-gnu-gcc -std=c11 -D_GNU_SOURCE -O2 -ffp-contract=off -fno-math-errno -fno-trapping-math \
 		-fopenmp -Iinclude -Isrc -Itests/support -Wall -Wextra -o $@ $(aarch64_src) -lm
+
+# make picture: data/signs.png, the picture at the top of the README, rendered anew.
+.PHONY: picture
+picture: $(B)/nmtan build/node/node_modules/gltf-validator/package.json
+	@sh tests/picture/run.sh $< build/picture
