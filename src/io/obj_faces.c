@@ -7,7 +7,7 @@
  * recent ones recognises nearly all that neighbouring faces share, in the cache; obj_vertices.c does the
  * rest for the file.
  */
-#include "io/obj_reader.h"
+#include "io/obj_line.h"
 
 #include "io/decimal.h"
 

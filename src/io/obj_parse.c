@@ -8,16 +8,11 @@
  * comments behind a statement, trailing slashes ("3/"), statements of OBJ that say nothing about
  * polygons. Strict where a guess could be wrong: numbers, their count, their finiteness, index 0.
  */
-#include "io/obj_reader.h"
+#include "io/obj_line.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include "io/decimal.h"
-
-/* A chunk's arrays begin with room for one element per this many bytes of text, which is about what
- * dense files hold; memory that is not used is never touched. */
-enum { BYTES_PER_ELEMENT = 24 };
 
 const char *const obj_ignored_names[OBJ_IGNORED_COUNT] = {
 	[OBJ_SMALL_FACE] = "f with fewer than 3 corners",
@@ -26,62 +21,6 @@ const char *const obj_ignored_names[OBJ_IGNORED_COUNT] = {
 	"trace_obj", "ctech", "stech", "usemap", "maplib", "call", "csh", "bsp", "bzp", "cdc", "cdp",
 	[OBJ_UNKNOWN] = "unknown statement",
 };
-
-void obj_skip_joined_lines(obj_reader *r)
-{
-	while (is_blank(*r->p) || joins_lines(r->p)) {
-		if (!is_blank(*r->p)) {
-			r->p = behind_line_end(r->p + 1) - 1;
-			r->line++;
-		}
-		r->p++;
-	}
-}
-
-void obj_ignore(obj_reader *r, size_t which)
-{
-	obj_ignored *ignored = &r->chunk->ignored[which];
-	if (ignored->count++ == 0)
-		ignored->line = r->statement_line;
-}
-
-/* ---- errors ---- */
-
-/* The word at p as it may be shown: cut at 32 characters, bytes that are no ASCII as \xHH. */
-static void quote_word(char text[160], const char *p)
-{
-	if (is_line_end(*p) || *p == '#') {
-		snprintf(text, 160, "the end of the line");
-		return;
-	}
-	size_t used = (size_t)snprintf(text, 160, "\"");
-	for (int i = 0; i < 32 && !is_word_end(p); i++, p++) {
-		const unsigned char c = (unsigned char)*p;
-		used += (size_t)snprintf(text + used, 160 - used, c >= 0x20 && c < 0x7F ? "%c" : "\\x%02x", c);
-	}
-	snprintf(text + used, 160 - used, is_word_end(p) ? "\"" : "...\"");
-}
-
-nmtan_status obj_fail_expected(obj_reader *r, const char *expected)
-{
-	char found[160];
-	quote_word(found, r->p);
-	return nt_fail_line(&r->chunk->error, NMTAN_ERROR_INPUT, r->line + 1, "found %s, expected %s", found,
-		expected);
-}
-
-nmtan_status obj_fail_memory(obj_reader *r)
-{
-	return nt_fail_memory(&r->chunk->error);
-}
-
-/* A chunk never has 2^30 elements, which OBJ_BIAS relies on. */
-bool obj_grow(obj_chunk *chunk, void **block, size_t *capacity, size_t count, size_t row_size)
-{
-	const size_t guess = (size_t)(chunk->end - chunk->begin) / BYTES_PER_ELEMENT + 1;
-	const size_t needed = *capacity ? count + 1 : guess;
-	return count + 1 < OBJ_BIAS && nt_grow(block, capacity, needed, row_size);
-}
 
 /* ---- v, vt, vn ---- */
 

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Where reading a chunk of an OBJ stands, and the small steps that every statement takes. Between
- * obj_parse.c and obj_faces.c, for nobody else.
+ * Where reading a chunk of an OBJ stands, and the small steps that every statement takes: obj_parse.c
+ * and obj_faces.c stand on it.
  *
  * Every chunk ends behind a line feed and has 8 readable bytes behind it (obj.c copies the last lines
  * of the file to make it so). Numbers and blanks therefore stop by themselves, and nothing here asks
  * for the end of the input within a line.
  */
-#ifndef NT_IO_OBJ_READER_H
-#define NT_IO_OBJ_READER_H
+#ifndef NT_IO_OBJ_LINE_H
+#define NT_IO_OBJ_LINE_H
 
 #include "io/obj_parts.h"
 
@@ -42,7 +42,7 @@ bool obj_grow(obj_chunk *chunk, void **block, size_t *capacity, size_t count, si
 /* Counts a statement that is not used. */
 void obj_ignore(obj_reader *r, size_t which);
 
-/* Reads what follows "f". */
+/* Reads what follows "f": obj_faces.c. */
 nmtan_status obj_read_face(obj_reader *r);
 
 /* Room for one more row. */
