@@ -9,11 +9,12 @@
  * anything is allocated, each list before it is read, each index before it is used. An error in an
  * ASCII body has its line, in a binary body its byte offset.
  */
-#include "io/ply.h"
+#include "io/format.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include "io/format.h"
+#include "io/ply_faces.h"
+#include "io/ply_vertices.h"
 
 bool nt_ply_recognise(const unsigned char *bytes, size_t size)
 {

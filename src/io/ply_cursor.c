@@ -4,7 +4,7 @@
  * what is left, errors get their place. A row of an ASCII body is a line; blank lines between rows do
  * not count.
  */
-#include "io/ply.h"
+#include "io/ply_cursor.h"
 
 #include <stdarg.h>
 #include <stdio.h>

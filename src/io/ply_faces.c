@@ -5,8 +5,11 @@
  * become triangles. Lists are measured against the file before room is made for them, so that memory
  * stays in proportion to the file whatever its counts say.
  */
+#include "io/ply_faces.h"
+
 #include <math.h>
 #include <stdlib.h>
+#include "io/ply_runs.h"
 #include "io/ply_wedges.h"
 #include "scene/polygon.h"
 

@@ -4,9 +4,10 @@
  * in proportion to its own size; what it promises about the rest of the file is checked where the rest
  * is read.
  */
-#include "io/ply.h"
+#include "io/ply_header.h"
 
 #include <stdlib.h>
+#include "base/memory.h"
 
 static const struct {
 	const char *name, *alias;

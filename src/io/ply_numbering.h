@@ -6,7 +6,8 @@
 #ifndef NT_IO_PLY_NUMBERING_H
 #define NT_IO_PLY_NUMBERING_H
 
-#include "io/ply.h"
+#include "io/ply_source.h"
+#include "scene/scene.h"
 
 typedef struct ply_numbering {
 	const nt_mesh *mesh;

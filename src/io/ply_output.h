@@ -7,7 +7,7 @@
 
 #include "base/buffer.h"
 #include "io/format.h"
-#include "io/ply.h"
+#include "io/ply_value.h"
 
 typedef struct ply_output {
 	nt_buffer buffer; /* what has not been written yet */

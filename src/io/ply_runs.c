@@ -4,8 +4,7 @@
  * little else. They are read here in tight loops that stop at the first row that is anything else, be
  * it wrong or only unusual, and leave it to ply_faces.c.
  */
-#include "io/decimal.h"
-#include "io/ply.h"
+#include "io/ply_runs.h"
 
 /* Bytes that a short row of text and the eight-byte steps of decimal.h may touch. */
 enum { TEXT_MARGIN = 64 };

@@ -7,7 +7,7 @@
  * A mesh must be finite, as in OBJ: there is no tangent at NaN and glTF cannot store it. Points are
  * passed through as they are, and so are tangents, which the caller may want to judge.
  */
-#include "io/ply.h"
+#include "io/ply_vertices.h"
 
 #include <float.h>
 #include <math.h>

@@ -7,7 +7,8 @@
 #ifndef NT_IO_PLY_WEDGES_H
 #define NT_IO_PLY_WEDGES_H
 
-#include "io/ply.h"
+#include "io/ply_source.h"
+#include "scene/scene.h"
 
 typedef struct ply_wedges {
 	size_t row_count;

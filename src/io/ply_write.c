@@ -10,6 +10,7 @@
  * their tangents are equal.
  */
 #include <stdlib.h>
+#include "io/ply_cursor.h"
 #include "io/ply_numbering.h"
 #include "io/ply_output.h"
 

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The rows of the vertex element of a PLY become the attributes of a mesh.
+ */
+#ifndef NT_IO_PLY_VERTICES_H
+#define NT_IO_PLY_VERTICES_H
+
+#include "io/ply_cursor.h"
+#include "io/ply_source.h"
+#include "scene/scene.h"
+
+/* Reads the rows of the vertex element at the cursor into the mesh. */
+nmtan_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *source,
+	ply_cursor *cursor, nt_error *error);
+
+#endif
