@@ -8,9 +8,10 @@
  *
  * v points up in PLY: the scene has it so, but what came from glTF is -v there and becomes 1 - v.
  */
+#include "io/ply_export.h"
+
 #include <math.h>
 #include "base/dvec.h"
-#include "io/ply_output.h"
 
 /* What the vertices of the file have. */
 typedef struct layout {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Writing PLY begins and ends here: see ply_output.h.
+ * Values become bytes or text, and go to the sink: see ply_output.h.
  */
 #include "io/ply_output.h"
 
@@ -70,19 +70,4 @@ void ply_bitangent(const float n[3], const float t[4], float b[3])
 	b[0] = (n[1] * t[2] - n[2] * t[1]) * t[3];
 	b[1] = (n[2] * t[0] - n[0] * t[2]) * t[3];
 	b[2] = (n[0] * t[1] - n[1] * t[0]) * t[3];
-}
-
-nmtan_status nt_ply_write(nt_scene *scene, const nt_write_options *options, nt_output *output,
-	nt_error *error)
-{
-	ply_output out = {.encoding = PLY_LITTLE};
-	nmtan_status status = nt_output_add(output, options->path, true, &out.sink, error);
-	if (status)
-		return status;
-	status = scene->format == NT_FORMAT_PLY ? ply_write_source(scene, options, &out, error)
-						: ply_write_scene(scene, options, &out, error);
-	if (!status)
-		status = ply_put_bytes(&out, NULL, 0, error);
-	nt_buffer_free(&out.buffer);
-	return status;
 }

@@ -6,7 +6,7 @@
 #define NT_IO_PLY_OUTPUT_H
 
 #include "base/buffer.h"
-#include "io/format.h"
+#include "io/file.h"
 #include "io/ply_value.h"
 
 typedef struct ply_output {
@@ -32,11 +32,5 @@ nmtan_status ply_put_bytes(ply_output *out, const void *bytes, size_t size, nt_e
 
 /* cross(n, t) * w. */
 void ply_bitangent(const float n[3], const float t[4], float b[3]);
-
-/* PLY from a PLY, and from any other scene. */
-nmtan_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply_output *out,
-	nt_error *error);
-nmtan_status ply_write_scene(nt_scene *scene, const nt_write_options *options, ply_output *out,
-	nt_error *error);
 
 #endif

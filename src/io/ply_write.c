@@ -9,10 +9,11 @@
  * coordinates stay where they are: vertices that were told apart only by them become one again where
  * their tangents are equal.
  */
+#include "io/ply_write.h"
+
 #include <stdlib.h>
 #include "io/ply_cursor.h"
 #include "io/ply_numbering.h"
-#include "io/ply_output.h"
 
 /* Where the values of a row lie. */
 typedef struct span {

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * PLY from a scene of any other format.
+ */
+#ifndef NT_IO_PLY_EXPORT_H
+#define NT_IO_PLY_EXPORT_H
+
+#include "io/format.h"
+#include "io/ply_output.h"
+
+/* Binary, little endian, in world space. */
+nmtan_status ply_write_scene(nt_scene *scene, const nt_write_options *options, ply_output *out,
+	nt_error *error);
+
+#endif

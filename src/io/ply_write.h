@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * PLY from a PLY: the file as it was, with the tangents added.
+ */
+#ifndef NT_IO_PLY_WRITE_H
+#define NT_IO_PLY_WRITE_H
+
+#include "io/format.h"
+#include "io/ply_output.h"
+
+/* The scene was read from a PLY. Sets out->encoding. */
+nmtan_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply_output *out,
+	nt_error *error);
+
+#endif
