@@ -338,6 +338,22 @@ draco::DataType nt::draco_type_of(int component_type)
 	return row ? row->draco_type : draco::DT_INVALID;
 }
 
+draco::GeometryAttribute::Type nt::draco_kind_of(nt_draco_kind kind)
+{
+	switch (kind) {
+	case NT_DRACO_POSITION:
+		return draco::GeometryAttribute::POSITION;
+	case NT_DRACO_NORMAL:
+		return draco::GeometryAttribute::NORMAL;
+	case NT_DRACO_COLOR:
+		return draco::GeometryAttribute::COLOR;
+	case NT_DRACO_TEXCOORD:
+		return draco::GeometryAttribute::TEX_COORD;
+	default:
+		return draco::GeometryAttribute::GENERIC;
+	}
+}
+
 std::vector<unsigned char> nt::copy_values(const PointAttribute &attribute, size_t point_count)
 {
 	const size_t width = static_cast<size_t>(attribute.byte_stride());

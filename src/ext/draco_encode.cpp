@@ -262,22 +262,6 @@ nmtan_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *
 
 } // namespace
 
-draco::GeometryAttribute::Type nt::draco_kind_of(nt_draco_kind kind)
-{
-	switch (kind) {
-	case NT_DRACO_POSITION:
-		return draco::GeometryAttribute::POSITION;
-	case NT_DRACO_NORMAL:
-		return draco::GeometryAttribute::NORMAL;
-	case NT_DRACO_COLOR:
-		return draco::GeometryAttribute::COLOR;
-	case NT_DRACO_TEXCOORD:
-		return draco::GeometryAttribute::TEX_COORD;
-	default:
-		return draco::GeometryAttribute::GENERIC;
-	}
-}
-
 nmtan_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error)
 {
 	*block = {};

@@ -25,16 +25,14 @@ namespace nt {
 // What Draco calls a component type of glTF; DT_INVALID: not one.
 draco::DataType draco_type_of(int component_type);
 
+draco::GeometryAttribute::Type draco_kind_of(nt_draco_kind kind);
+
 // The values of an attribute, point by point, which must have one for each.
 std::vector<unsigned char> copy_values(const draco::PointAttribute &attribute, size_t point_count);
 
 // Decodes a mesh of at most `face_limit` faces into plain arrays; quantization is left out.
 nmtan_status decode_draco(nt_draco &result, const unsigned char *bytes, size_t size, size_t face_limit,
 	nt_error *error);
-
-// ---- draco_encode.cpp ----
-
-draco::GeometryAttribute::Type draco_kind_of(nt_draco_kind kind);
 
 // ---- draco_compare.cpp ----
 
