@@ -6,7 +6,7 @@
 #ifndef NT_REPORT_WRITE_H
 #define NT_REPORT_WRITE_H
 
-#include "report/report.h"
+#include "report/words.h"
 
 typedef enum nt_report_format {
 	NT_REPORT_TEXT,     /* for people */
@@ -21,11 +21,6 @@ typedef enum nt_report_format {
 
 /* The format that a file name's extension means; false when it is none of them. */
 bool nt_report_format_of_path(const char *path, nt_report_format *format);
-
-typedef struct nt_report_style {
-	bool colour;       /* text: for a terminal */
-	int least_failure; /* JUnit: the nt_severity from which on a finding is a failure; 3: none */
-} nt_report_style;
 
 /* Takes a piece of the output. */
 typedef nmtan_status (*nt_report_sink)(void *user, const void *bytes, size_t size, nt_error *error);
