@@ -33,8 +33,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Convert the image to PNG and name that in the material.",
 		"an MTL with \"map_Kd wood.tga\""),
 	ROW(BUMP_AS_NORMAL, WARNING, "bump map was taken as a normal map",
-		"map_Bump and bump are height maps by definition, but most files put a normal map there. nmtan "
-		"takes it as one.",
+		"map_Bump and bump are height maps by definition, but most files put a normal map there, so "
+		"nmtan uses the image as a normal map.",
 		"If it is a normal map, write norm instead; if it is a height map, bake it to a normal map.",
 		"an MTL with \"map_Bump n.png\""),
 	ROW(STATEMENT_IGNORED, INFO, "{count} {statement was|statements were} not used",
@@ -47,14 +47,14 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Cut the polygon in the modelling tool.",
 		"an OBJ face of five corners in the order of a star"),
 	ROW(POLYGON_CUT, INFO, "{count} {polygon was|polygons were} written as triangles",
-		"A vertex has one tangent, but the triangles of these polygons (or strips) need different "
-		"ones at the same corner. PLY keeps its polygons where it can; here it could not.",
+		"The triangles of these polygons (or strips) need different tangents at one corner, but a vertex has "
+		"only one. PLY output keeps polygons where it can; these became triangles.",
 		"Nothing, unless the polygons matter: then cut or unwrap them differently.",
 		"a PLY pentagon with one corner's texture coordinates mirrored"),
 	ROW(NORMALS_MADE, INFO, "normals were missing and have been made",
-		"Tangents need normals. OBJ gets them by its smoothing groups, PLY smooth ones, glTF only when "
-		"--normals asks for them.",
-		"Export normals if the made ones are not what you want.",
+		"Tangents need normals, which the input lacks. For OBJ they are made by its smoothing groups, for PLY "
+		"smooth, for glTF only if --normals asks for them.",
+		"Export normals if these are not what you want.",
 		"a PLY triangle with s and t but no nx, ny, nz"),
 	ROW(REFERENCE_LOST, WARNING, "{count} {reference is|references are} not in the output",
 		"Something the input refers to has no place in the output's format.",
@@ -62,22 +62,21 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a glTF with animations that is written as PLY"),
 
 	ROW(DRACO_PLAIN, WARNING, "the primitive is written without Draco compression",
-		"--draco asks for compression, or the primitive came compressed, but a block could not give back "
-		"what it has: vertices that are shared with other primitives, strips and fans, sparse accessors, "
-		"or vertices whose order matters and that no face uses. The detail says which.",
-		"Nothing, if the size does not matter; --draco=off says that it does not. Else give the primitive "
-		"accessors of its own, and triangles.",
+		"--draco asks for compression, or the input's primitive is compressed, but a Draco block cannot hold "
+		"what it has now: vertices shared with other primitives, strips or fans, sparse accessors, or "
+		"vertices that no face uses and whose order matters. The detail says which.",
+		"Nothing if the size does not matter; --draco=off then avoids the warning. Else give the primitive "
+		"accessors of its own, and separate triangles.",
 		"converting two normal-mapped primitives with one POSITION accessor, --draco=sequential"),
 	ROW(DRACO_PRECISION, WARNING, "--precision does not reach tangents that Draco compresses",
-		"Inside of a Draco block tangents are floats, which Draco quantizes itself. They have its "
-		"precision, not the one that --precision names.",
-		"Use --draco-bits for them, or --draco=off.",
+		"Tangents in a Draco block are floats that Draco quantizes itself, so that --precision does not apply "
+		"to them.",
+		"Set their precision with --draco-bits, or use --draco=off.",
 		"converting any glTF with --draco=sequential --precision=byte"),
 	ROW(NOT_VERIFIED, WARNING, "the output could not be verified, since the input has a fault",
-		"--verify reads the output with tinygltf, which refuses it. It refuses the input too, in the words "
-		"of the detail, so that the fault is not nmtan's, and was kept like everything that has nothing to do "
-		"with tangents.",
-		"Mend the input, if it is to be read by tinygltf.",
+		"--verify reads the output with tinygltf, which refuses it. It refuses the input too, so the fault was "
+		"there before; nmtan keeps what has nothing to do with tangents. The detail has tinygltf's message.",
+		"Correct the input if programs that use tinygltf are to read it.",
 		"a glTF with a skin without inverseBindMatrices, --verify"),
 
 	ROW(UV_MIRROR_SEAM, INFO,
@@ -284,10 +283,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"converting two triangles that share two vertices and mirror their UVs"),
 	ROW(TAN_QUANTIZED, INFO, "{count} {tangent was|tangents were} stored as integers",
 		"--precision=short or byte rounds tangents to the nearest direction that normalized integers can "
-		"say. The detail is what that costs: the largest and the mean angle between what was computed and "
-		"what is stored.",
-		"Nothing, if the angle is small against what the normal map's texels resolve; else "
-		"--precision=float.",
+		"represent. The detail has the largest and the mean angle between what was computed and what is "
+		"stored.",
+		"Nothing if the angle is too small to be seen; else --precision=float.",
 		"converting any quad with --precision=byte"),
 	ROW(TAN_REPAIRED, INFO, "{count} {corner|corners} got a tangent that MikkTSpace could not give",
 		"MikkTSpace leaves zero vectors, defaults or mixed signs at degenerate triangles. nmtan "
