@@ -22,6 +22,8 @@
 #include "tangent/complex.h"
 
 #include <string.h>
+#include "tangent/complex_groups.h"
+#include "tangent/complex_solve.h"
 
 /* Numbers the vertices as they come up and counts their corners. */
 static void count_corners(nt_complex *c, uint32_t *counts)

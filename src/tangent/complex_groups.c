@@ -3,7 +3,7 @@
  * Groups at complex vertices: steps 5 and 6 of the spec page. Edges are paired at each vertex by itself, in order,
  * through a table over all vertices, so that a hub costs as much for each of its corners as any other vertex does.
  */
-#include "tangent/complex.h"
+#include "tangent/complex_groups.h"
 
 #include <string.h>
 

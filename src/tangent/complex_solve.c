@@ -4,7 +4,7 @@
  * order of groups. Most groups do not split: their members' directions lie within a half-space, or at least no one
  * is antiparallel to the few outside of it. Otherwise a member that belongs to a part of its group has a sum of its own.
  */
-#include "tangent/complex.h"
+#include "tangent/complex_solve.h"
 
 #include <string.h>
 #include "base/vec.h"

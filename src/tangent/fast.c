@@ -29,6 +29,9 @@
 #include "base/clock.h"
 #include "base/cpu.h"
 #include "base/parallel.h"
+#include "tangent/complex.h"
+#include "tangent/fast_records.h"
+#include "tangent/fast_write.h"
 #include "topology/corners.h"
 
 /* Starting a thread costs more than it saves with fewer triangles. */
@@ -178,26 +181,6 @@ static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, nt_
 
 /* 5 */
 
-/* The next triangle from t on that has one of these flags; triangle_count: none. */
-size_t nt_fast_next_flagged(const nt_fast *fast, size_t t, unsigned flags)
-{
-	const uint64_t pattern = 0x0101010101010101u * flags;
-	while (t < fast->triangle_count) {
-		uint64_t eight;
-		if (fast->triangle_count - t >= sizeof eight) {
-			memcpy(&eight, fast->flags + t, sizeof eight);
-			if (!(eight & pattern)) {
-				t += sizeof eight;
-				continue;
-			}
-		}
-		for (const size_t stop = t + sizeof eight; t < stop && t < fast->triangle_count; t++)
-			if (fast->flags[t] & flags)
-				return t;
-	}
-	return t;
-}
-
 /* An "any" triangle that groups of both orientations can reach takes the one that is seeded first. At its
  * vertices order matters, so they are not settled. */
 static void mark_contested(nt_fast *fast)
@@ -289,6 +272,16 @@ static void vouch(const nt_fast *fast, bool usable)
 	vouched->welded_count = fast->vertex_count;
 }
 
+/* The rows that a sparse solve stands for: a record is x, y, z and, as state, the sign. */
+static void vouch_rows(const nt_fast *fast)
+{
+	nt_vouched *vouched = fast->solve->vouched;
+	vouched->ids = fast->triangles.ids;
+	vouched->row_step = fast->record_step * sizeof(nt_record) / sizeof(float);
+	for (int orient = 0; orient < 2; orient++)
+		vouched->rows[orient] = fast->records[orient] ? &fast->records[orient]->x : NULL;
+}
+
 /* What step 7 may use: the largest array that is done with and does not lie in the output. */
 static nt_room dead_room(const nt_fast *fast)
 {
@@ -376,10 +369,11 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, const nt_fa
 	return status;
 }
 
-static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, bool sparse, const nt_fast_plan *plan)
+/* With `sparse` the corners of triangles that are not suspect are not written, unless that is not enough. */
+static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, const nt_fast_plan *plan)
 {
 	const nt_kernels *kernels = kernels_for(solve->isa);
-	*fast = (nt_fast){.solve = solve, .sparse = sparse, .triangle_count = count_triangles(solve->mesh)};
+	*fast = (nt_fast){.solve = solve, .sparse = solve->sparse, .triangle_count = count_triangles(solve->mesh)};
 	fast->wants_more = solve->bitangents || solve->magnitudes;
 	/* what the lanes have no place for goes by the definition: other thresholds split most groups, and
 	 * beyond the limits numbers do not fit the entries */
@@ -409,18 +403,15 @@ static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, bool sparse, 
 	/* late triangles copy corners, which must have been written */
 	if (fast->sparse && nt_fast_next_flagged(fast, 0, NT_TRIANGLE_LATE) < fast->triangle_count)
 		nt_fast_write_rest(fast);
+	if (fast->sparse)
+		vouch_rows(fast);
 	return nt_fast_write_late(fast);
-}
-
-nmtan_status nt_fast_solve(nt_fast *fast, const nt_solve *solve, bool sparse)
-{
-	return solve_as(fast, solve, sparse, &usual);
 }
 
 nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *plan)
 {
 	nt_fast fast;
-	const nmtan_status status = solve_as(&fast, solve, false, plan);
+	const nmtan_status status = solve_as(&fast, solve, plan);
 	return status == NMTAN_ERROR_TOO_LARGE ? nt_mikktspace_scalar(solve) : status;
 }
 

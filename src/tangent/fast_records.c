@@ -9,11 +9,12 @@
  * A vertex belongs to the first range that touches it. Later ranges put their contributions aside, and these are
  * added in the end in the order of ranges: every sum is in triangle order, whatever the number of threads.
  */
+#include "tangent/fast_records.h"
+
 #include <pthread.h>
 #include <sched.h>
 #include <string.h>
 #include "base/parallel.h"
-#include "tangent/fast.h"
 
 /* Records that are cleared at a time: a megabyte. */
 enum { CHUNK = 65536 };

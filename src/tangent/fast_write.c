@@ -2,9 +2,10 @@
 /*
  * Steps 6 and 8 of the fast path: results go from vertices to corners.
  */
+#include "tangent/fast_write.h"
+
 #include <string.h>
 #include "base/parallel.h"
-#include "tangent/fast.h"
 #include "topology/corners.h"
 
 /* Triangles by which the records of a scattered mesh are asked for before they are written. */

@@ -12,7 +12,7 @@
 #include <stdbool.h>
 #include <string.h>
 #include "tangent/acos.h"
-#include "tangent/fast.h"
+#include "tangent/fast_parts.h"
 #include "tangent/judge.h"
 #include "tangent/kernel_turn.h"
 

@@ -11,7 +11,7 @@
 
 #include <stdint.h>
 #include <string.h>
-#include "tangent/fast.h"
+#include "tangent/fast_parts.h"
 
 /* Elements of two vectors, one after the other, for shuffles: every other 16-byte part; every other element; one
  * vector's elements in turned places, and out of them. */

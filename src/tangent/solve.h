@@ -40,7 +40,7 @@ typedef struct nt_solve {
 	nt_scratch *scratch;
 	nmtan_timing *timing;    /* to be added to, or NULL */
 	nt_vouched *vouched;     /* for the method to fill; empty before; may be NULL */
-	bool sparse;             /* sums: rows that vouched.ids stands for need not be written */
+	bool sparse;             /* rows that vouched.ids stands for need not be written; not with quads */
 	/* Memory that is filled after the method is done: it may serve as scratch. */
 	void *lent;
 	size_t lent_bytes;
@@ -54,9 +54,6 @@ typedef struct nt_solve {
 
 /* The definition: one step after the other, as the specification has them, for any mesh. */
 nmtan_status nt_mikktspace_scalar(const nt_solve *solve);
-
-/* The same bytes, faster. */
-nmtan_status nt_mikktspace_fast(const nt_solve *solve);
 
 nmtan_status nt_lengyel(const nt_solve *solve);
 nmtan_status nt_area(const nt_solve *solve);

@@ -9,6 +9,7 @@
 #include "base/clock.h"
 #include "base/cpu.h"
 #include "base/parallel.h"
+#include "tangent/fast.h"
 #include "tangent/repair.h"
 #include "tangent/solve.h"
 #include "tangent/vertices.h"
@@ -153,14 +154,11 @@ nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options
 
 static nmtan_status solve_vertices(request *r, nt_splitter *splitter, nmtan_counts *counts)
 {
-	const bool repair = r->options.repair == NMTAN_REPAIR_ON;
-	if (r->options.method == NMTAN_METHOD_MIKKTSPACE && r->options.path != NMTAN_PATH_SCALAR)
-		return nt_mikktspace_vertices(&r->solve, repair, counts, splitter);
 	size_t ill_conditioned = 0;
 	r->solve.sparse = r->solve.vouched && !r->mesh.face_sizes;
 	nmtan_status status = run_method(&r->solve, &r->options, &ill_conditioned);
 	if (!status)
-		status = nt_repair_and_split(&r->solve, repair, counts, splitter);
+		status = nt_repair_and_split(&r->solve, r->options.repair == NMTAN_REPAIR_ON, counts, splitter);
 	counts->ill_conditioned = ill_conditioned;
 	return status;
 }

@@ -9,7 +9,6 @@
 #include "tangent/vertices.h"
 
 #include "base/clock.h"
-#include "tangent/fast.h"
 #include "tangent/judge.h"
 #include "tangent/repair.h"
 #include "topology/corners.h"
@@ -55,21 +54,4 @@ nmtan_status nt_repair_and_split(const nt_solve *solve, bool repair, nmtan_count
 	if (!status)
 		status = nt_repair(solve, repair, counts);
 	return status ? status : split_rows(solve, splitter);
-}
-
-nmtan_status nt_mikktspace_vertices(const nt_solve *solve, bool repair, nmtan_counts *counts,
-	nt_splitter *splitter)
-{
-	nt_fast fast;
-	nmtan_status status = nt_fast_solve(&fast, solve, !solve->mesh->face_sizes && solve->vouched);
-	if (status == NMTAN_ERROR_TOO_LARGE)
-		status = nt_mikktspace_scalar(solve);
-	else if (!status && fast.sparse) {
-		/* a record is x, y, z and, as state, the sign */
-		solve->vouched->ids = fast.triangles.ids;
-		solve->vouched->row_step = fast.record_step * sizeof(nt_record) / sizeof(float);
-		for (int orient = 0; orient < 2; orient++)
-			solve->vouched->rows[orient] = fast.records[orient] ? &fast.records[orient]->x : NULL;
-	}
-	return status ? status : nt_repair_and_split(solve, repair, counts, splitter);
 }

@@ -19,12 +19,8 @@ typedef struct nt_vertex_request {
 nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_vertex_request *request, nmtan_split_output *output, nmtan_counts *counts);
 
-/* MikkTSpace for vertices. solve->tangents is scratch and may or may not be filled. Returns what
+/* From a method's result, which may be sparse, to vertices: judges or repairs it, and splits. Returns what
  * nmtan_vertex_tangents() does. */
-nmtan_status nt_mikktspace_vertices(const nt_solve *solve, bool repair, nmtan_counts *counts,
-	nt_splitter *splitter);
-
-/* The same from a method's result: judges or repairs it, and splits. */
 nmtan_status nt_repair_and_split(const nt_solve *solve, bool repair, nmtan_counts *counts, nt_splitter *splitter);
 
 /* Takes the tangents of all corners of triangles from solve->vouched, which has ids, and from solve->tangents where

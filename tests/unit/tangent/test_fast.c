@@ -12,6 +12,7 @@
 #include "base/cpu.h"
 #include "golden.h"
 #include "nasty.h"
+#include "tangent/bins.h"
 #include "tangent/fast.h"
 
 /* Floats with different bits that are not both NaN. */

@@ -9,7 +9,7 @@
 #include <string.h>
 #include "base/cpu.h"
 #include "base/scratch.h"
-#include "tangent/solve.h"
+#include "tangent/fast.h"
 
 typedef struct shape {
 	float *p, *n, *t;
