@@ -76,16 +76,16 @@ $(B)/%.cpp.o: src/%.cpp
 	$(CXX) $(NT_CXXFLAGS) $(FILE_FLAGS) -c -o $@ $<
 
 # The passes that need lanes, once for each instruction set. Exceptions are never looked at, so that
-# comparisons may be made for all lanes; contraction stays off and FMA is not among the sets.
+# comparisons may be made for all lanes; contraction stays off: FMA is used where fma() stands in the source.
 lanes := -O3 -fno-trapping-math
 ifeq ($(config),debug)
 lanes :=
 endif
-$(B)/tangent/kernel_baseline.c.o: FILE_FLAGS := $(lanes)
+$(B)/tangent/kernel_baseline.c.o $(B)/tangent/sums_kernel_baseline.c.o: FILE_FLAGS := $(lanes)
 ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
-$(B)/tangent/kernel_avx2.c.o: FILE_FLAGS := $(lanes) -mavx2 -mfma
-$(B)/tangent/kernel_avx512.c.o: FILE_FLAGS := $(lanes) -mavx512f -mavx512bw -mavx512dq -mavx512vl -mfma \
-	-mprefer-vector-width=512
+$(B)/tangent/kernel_avx2.c.o $(B)/tangent/sums_kernel_avx2.c.o: FILE_FLAGS := $(lanes) -mavx2 -mfma
+$(B)/tangent/kernel_avx512.c.o $(B)/tangent/sums_kernel_avx512.c.o: FILE_FLAGS := $(lanes) \
+	-mavx512f -mavx512bw -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
 endif
 $(B)/topology/weld.c.o $(B)/topology/weld_sieve.c.o $(B)/topology/weld_threads.c.o: FILE_FLAGS := $(lanes)
 $(B)/base/largest.c.o: FILE_FLAGS := $(lanes)

@@ -55,10 +55,4 @@ typedef struct nt_solve {
 /* The definition: one step after the other, as the specification has them, for any mesh. */
 nmtan_status nt_mikktspace_scalar(const nt_solve *solve);
 
-nmtan_status nt_lengyel(const nt_solve *solve);
-nmtan_status nt_area(const nt_solve *solve);
-
-/* ill_conditioned receives how many corners have lost more than 24 bits, see nmtan_counts. */
-nmtan_status nt_robust(const nt_solve *solve, size_t *ill_conditioned);
-
 #endif

@@ -28,6 +28,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "tangent/bins.h"
+#include "tangent/sums_parts.h"
 #include "topology/corners.h"
 
 /* Below that, starting a thread costs more than it saves. */
@@ -35,11 +36,6 @@ enum { TRIANGLE_GRAIN = 32768, WELD_GRAIN = 3 * 65536, BLOCK_GRAIN = 2048, MOST_
 
 /* Triangles by which the results of a scattered mesh are asked for before they are written. */
 enum { WRITE_AHEAD = 16 };
-
-static size_t corner_of(const nt_sums *s, size_t i)
-{
-	return s->corners ? s->corners[i] : i;
-}
 
 /* The first triangle of a range; halves of a quad stay together. */
 static size_t range_begin(const nt_sums *s, unsigned range)
@@ -167,38 +163,6 @@ static bool make_sums(nt_sums *s, int side, nt_room *room)
 	return true;
 }
 
-void nt_sums_do_hard(const nt_sums *s, size_t t, int lane, nt_sum_block *block)
-{
-	const nmtan_mesh *mesh = s->solve->mesh;
-	nt_frame_sum parts[3] = {{.weights = 0}, {.weights = 0}, {.weights = 0}};
-	nt_frame_sum *const to[3] = {&parts[0], &parts[1], &parts[2]};
-	uint32_t corners[3];
-	for (size_t k = 0; k < 3; k++)
-		corners[k] = (uint32_t)corner_of(s, 3 * t + k);
-	nt_add_triangle(mesh, s->weight, corners, to);
-	for (int k = 0; k < 3; k++) {
-		block->add[k][0][lane] = parts[k].u.x;
-		block->add[k][1][lane] = parts[k].u.y;
-		block->add[k][2][lane] = parts[k].u.z;
-		block->add[k][3][lane] = parts[k].sensitivity;
-	}
-	block->sign[lane] = nt_triangle_orientation(mesh, corners, false);
-	block->plain[lane] = 0;
-	block->certain[lane] = !nt_has_stored(mesh);
-}
-
-void nt_sums_orient(const nt_sums *s, size_t t)
-{
-	const unsigned count = t + 1 < s->triangle_count && s->corners && (s->flags[t + 1] & NT_SUM_SECOND) ? 2 : 1;
-	uint32_t cut[2][3];
-	for (size_t i = 0; i < 3 * count; i++)
-		cut[i / 3][i % 3] = (uint32_t)corner_of(s, 3 * t + i);
-	const int sign = nt_cut_orientation(s->solve->mesh, cut, count, true, NULL);
-	for (unsigned i = 0; i < count; i++)
-		s->flags[t + i] = (uint8_t)((s->flags[t + i] & NT_SUM_SECOND) | NT_SUM_SUSPECT |
-			(sign > 0 ? NT_SUM_POSITIVE : 0) | (sign == 0 ? NT_SUM_NONE : 0));
-}
-
 typedef struct run {
 	nt_sums *s;
 	const nt_sum_kernels *kernels;
@@ -320,7 +284,7 @@ static size_t write_triangle(const nt_sums *s, size_t t)
 		if (vertex & NT_VERTEX_LOST << side)
 			s->flags[t] |= NT_SUM_SUSPECT;
 		ill += (!s->results[side] || (vertex & NT_VERTEX_ILL << side)) && !is_counted(s, t, i);
-		write_corner(s, corner_of(s, i), id, side);
+		write_corner(s, nt_sums_corner(s, i), id, side);
 	}
 	return ill;
 }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The passes of sums.c that need lanes, as plain loops over 16 of them that the compiler makes vectors of.
- * kernel_*.c include this file once for each instruction set, behind kernel.h, whose gather_rows() it uses,
- * with NT_SUM_KERNEL giving the name.
+ * sums_kernel_*.c include this file once for each instruction set, with NT_SUM_KERNEL naming the table of its
+ * passes. Rows are gathered and turned by kernel_turn.h of the fast path.
  *
  * accumulate: 16 triangles at a time. The arithmetic is that of frames.c, operation by operation, in steps
  * that each fit the registers: directions, their second look where products cancel, lengths, corners.
@@ -12,7 +12,8 @@
  * finish: 16 vertices at a time, sums become tangents.
  */
 #include <math.h>
-#include "tangent/sums.h"
+#include "tangent/kernel_turn.h"
+#include "tangent/sums_hard.h"
 #include "tangent/weigh.h"
 
 #define LANE_INLINE static inline __attribute__((always_inline))

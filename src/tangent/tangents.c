@@ -12,6 +12,7 @@
 #include "tangent/fast.h"
 #include "tangent/repair.h"
 #include "tangent/solve.h"
+#include "tangent/sums.h"
 #include "tangent/vertices.h"
 #include "topology/corners.h"
 
