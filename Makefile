@@ -87,7 +87,7 @@ $(B)/tangent/kernel_avx2.c.o $(B)/tangent/sums_kernel_avx2.c.o: FILE_FLAGS := $(
 $(B)/tangent/kernel_avx512.c.o $(B)/tangent/sums_kernel_avx512.c.o: FILE_FLAGS := $(lanes) \
 	-mavx512f -mavx512bw -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
 endif
-$(B)/topology/weld.c.o $(B)/topology/weld_sieve.c.o $(B)/topology/weld_threads.c.o: FILE_FLAGS := $(lanes)
+$(B)/topology/weld_table.c.o $(B)/topology/weld_sieve.c.o $(B)/topology/weld_threads.c.o: FILE_FLAGS := $(lanes)
 $(B)/base/largest.c.o: FILE_FLAGS := $(lanes)
 
 # The page of HTML reports is assembled into the binary: see page_assets.c.

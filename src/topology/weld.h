@@ -10,12 +10,7 @@
 #define NT_TOPOLOGY_WELD_H
 
 #include "base/room.h"
-#include "nmtan.h"
-
-/* Attributes of a welded vertex, -0 made +0. */
-typedef struct nt_weld_row {
-	float position[3], normal[3], texcoord[2];
-} nt_weld_row;
+#include "topology/weld_row.h"
 
 typedef struct nt_weld {
 	const uint32_t *ids;     /* [corner_count] welded vertex of each corner; may be mesh->indices */

@@ -7,7 +7,7 @@
  *           finds both marked already may be the second of two equal ones: the bits are marked again elsewhere
  *   list    the vertices whose bits have been marked again: all that are equal to another, those with a NaN,
  *           and about one in a hundred by chance
- *   weld    the listed ones, by the table (weld.c)
+ *   weld    the listed ones, by the table (weld_table.c)
  *   number  the vertices, where some are equal or hold a NaN; then the corners
  *
  * A bitmap is a quarter of the table at most and stays in the second-level cache where the table does not: half
@@ -196,6 +196,9 @@ static void number_vertices(nt_welder *w, const nt_welder *listed)
 	w->row_count = next;
 }
 
+/* In place of the number of a vertex with a NaN: its row was given to a corner. */
+#define ROW_GIVEN UINT32_MAX
+
 typedef struct copying {
 	const uint32_t *numbers, *indices;
 	uint32_t *ids;
@@ -229,9 +232,9 @@ static bool number_unordered(nt_welder *w, size_t corner_count, uint32_t *ids)
 		if (nt_weld_row_ordered(&w->rows[ids[c]]))
 			continue;
 		const uint32_t vertex = w->mesh->indices[c];
-		if (w->numbers[vertex] == NT_WELD_TAKEN)
+		if (w->numbers[vertex] == ROW_GIVEN)
 			ids[c] = (uint32_t)w->row_count++;
-		w->numbers[vertex] = NT_WELD_TAKEN;
+		w->numbers[vertex] = ROW_GIVEN;
 		copy_row(w->mesh, vertex, &w->rows[ids[c]]);
 	}
 	return true;

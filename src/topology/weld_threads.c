@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The weld by tables on several threads.
+ * The weld by tables (weld_table.c), on one thread or several.
  *
- *   weld     each thread its range of items, by a table of its own, as one does alone (weld.c)
+ *   weld     each thread its range of items, by a table of its own, as one does alone
  *   seek     each row of a range in the tables of the ranges before it, which nobody changes any more
  *   number   the rows that no range before has: after all rows of the ranges before, in their order
  *   resolve  the other rows have the number of the row that was found; then items have that of their row
@@ -217,7 +217,7 @@ static void resolve_items(void *context, size_t begin, size_t end, unsigned slot
 	}
 }
 
-bool nt_weld_items_threads(nt_welder *w, unsigned ranges)
+static bool weld_items_threads(nt_welder *w, unsigned ranges)
 {
 	joint j = {.w = w, .count = nt_parallel_slots(ranges, w->item_count, 1)};
 	if (!make_ranges(&j) || !weld_ranges(&j) || !seek_all(&j) || !number_rows(&j))
@@ -226,5 +226,17 @@ bool nt_weld_items_threads(nt_welder *w, unsigned ranges)
 	const range *last = &j.ranges[j.count - 1];
 	nt_parallel_ranges(j.count, last->place + last->welder.row_count - first_count, 1, resolve_rows, &j);
 	nt_parallel_ranges(j.count, w->item_count - first_end, 1, resolve_items, &j);
+	return true;
+}
+
+bool nt_weld_items(nt_welder *w, unsigned ranges)
+{
+	if (ranges > 1 && w->item_count > 1)
+		return weld_items_threads(w, ranges);
+	if (!nt_weld_start(w, 0))
+		return false;
+	for (size_t done = 0; (done = nt_weld_some(w, done)) < w->item_count;)
+		if (!nt_weld_reserve(w, done))
+			return false;
 	return true;
 }

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The hash of the weld's rows (topology/weld_parts.h): vertices of structured meshes spread over a table as
+ * The hash of the weld's rows (topology/weld_row.h): vertices of structured meshes spread over a table as
  * random ones would.
  */
 #include "test.h"
