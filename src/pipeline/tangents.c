@@ -15,7 +15,7 @@
 #include <string.h>
 #include "base/parallel.h"
 #include "io/gltf_document.h"
-#include "tangent/vertices.h"
+#include "tangent/tangents.h"
 
 /* Corners from which one mesh is worth all threads. */
 enum { LARGE_CORNERS = 3 * 128 * 1024 };

@@ -45,9 +45,6 @@ typedef struct nt_frame_sum {
 /* The condition up to which `robust` promises 2^-23 in each component. */
 #define NT_WELL_CONDITIONED 16777216.0
 
-/* Sine of the angle between u and the normal below which the projected direction would be noise. */
-#define NT_PARALLEL 1e-15
-
 /* Unit normal of a vertex; zero where it has none. */
 nt_dvec3 nt_unit_normal(const nmtan_mesh *mesh, size_t vertex);
 

@@ -4,6 +4,8 @@
  *
  * Checking costs one pass over indices and face sizes, so that no later stage has to doubt them.
  */
+#include "tangent/tangents.h"
+
 #include <math.h>
 #include <string.h>
 #include "base/clock.h"

@@ -7,11 +7,12 @@
  * On a clean mesh this reads each row once, where going by corners reads it six times, and writes no index.
  * All passes but the one over open corners go by ranges of vertices or triangles.
  */
+#include "tangent/vertex_split.h"
+
 #include <string.h>
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "tangent/judge.h"
-#include "tangent/vertices.h"
 #include "topology/corners.h"
 
 /* The tangent of corner i of the triangles. */

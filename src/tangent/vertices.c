@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "tangent/judge.h"
 #include "tangent/repair.h"
+#include "tangent/vertex_split.h"
 #include "topology/corners.h"
 
 /* Writes the rows that a sparse solve left out. */

@@ -12,7 +12,9 @@
 #include "base/angle.h"
 #include "base/dvec.h"
 #include "base/rsqrt.h"
-#include "tangent/frames.h"
+
+/* Sine of the angle between u and the normal below which the projected direction would be noise. */
+#define NT_PARALLEL 1e-15
 
 /* A triangle: its direction of growing u and the cross product of its edges. Lengths but `squared` are good to
  * five digits, which conditions need; with area weights those of edges are good to the last. */
