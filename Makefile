@@ -75,26 +75,31 @@ $(B)/%.cpp.o: src/%.cpp
 	@mkdir -p $(@D)
 	$(CXX) $(NT_CXXFLAGS) $(FILE_FLAGS) -c -o $@ $<
 
+# Objects of the sources under src that a rule for single files names. A name that matches nothing stops make: the
+# rule would be without effect, and silently so.
+existing = $(or $(wildcard $(1)),$(error Makefile has a rule for $(1), which is not there))
+objects_of = $(call objects,$(foreach source,$(1),$(call existing,src/$(source))))
+
 # The passes that need lanes, once for each instruction set. Exceptions are never looked at, so that
 # comparisons may be made for all lanes; contraction stays off: FMA is used where fma() stands in the source.
 lanes := -O3 -fno-trapping-math
 ifeq ($(config),debug)
 lanes :=
 endif
-$(B)/tangent/kernel_baseline.c.o $(B)/tangent/sums_kernel_baseline.c.o: FILE_FLAGS := $(lanes)
+$(call objects_of,tangent/kernel_baseline.c tangent/sums_kernel_baseline.c): FILE_FLAGS := $(lanes)
 ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
-$(B)/tangent/kernel_avx2.c.o $(B)/tangent/sums_kernel_avx2.c.o: FILE_FLAGS := $(lanes) -mavx2 -mfma
-$(B)/tangent/kernel_avx512.c.o $(B)/tangent/sums_kernel_avx512.c.o: FILE_FLAGS := $(lanes) \
+$(call objects_of,tangent/kernel_avx2.c tangent/sums_kernel_avx2.c): FILE_FLAGS := $(lanes) -mavx2 -mfma
+$(call objects_of,tangent/kernel_avx512.c tangent/sums_kernel_avx512.c): FILE_FLAGS := $(lanes) \
 	-mavx512f -mavx512bw -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
 endif
-$(B)/topology/weld_table.c.o $(B)/topology/weld_sieve.c.o $(B)/topology/weld_threads.c.o: FILE_FLAGS := $(lanes)
-$(B)/base/largest.c.o: FILE_FLAGS := $(lanes)
+$(call objects_of,topology/weld_table.c topology/weld_sieve.c topology/weld_threads.c): FILE_FLAGS := $(lanes)
+$(call objects_of,base/largest.c): FILE_FLAGS := $(lanes)
 
 # The page of HTML reports is assembled into the binary: see page_assets.c.
-$(B)/report/page_assets.c.o: $(wildcard src/report/page/*)
+$(call objects_of,report/page_assets.c): $(call existing,src/report/page/*)
 
 # Foreign headers whose warnings are not ours.
-$(B)/ext/openmesh.cpp.o: FILE_FLAGS := -Wno-maybe-uninitialized -Wno-class-memaccess
+$(call objects_of,ext/openmesh.cpp): FILE_FLAGS := -Wno-maybe-uninitialized -Wno-class-memaccess
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 

@@ -26,7 +26,7 @@ $(api_bin): $(B)/tests/%: $(B)/tests/%.o $(support_obj) $(B)/libnmtan.a
 	$(CC) $(NT_LDFLAGS) $(WRAP) -o $@ $^ -lcmocka -lm $(QUADMATH)
 
 # What is read of a mapped file is watched.
-$(B)/tests/unit/pipeline/test_needed: WRAP += -Wl,--wrap=mmap
+$(patsubst tests/%.c,$(B)/tests/%,$(call existing,tests/unit/pipeline/test_needed.c)): WRAP += -Wl,--wrap=mmap
 
 .PRECIOUS: $(B)/tests/%.o
 
