@@ -2,7 +2,7 @@
 /*
  * The words for a status, and the version: the part of nmtan.h that computes nothing.
  */
-#include "nmtan.h"
+#include "base/status.h"
 
 const char *nmtan_status_text(nmtan_status status)
 {
@@ -20,17 +20,31 @@ const char *nmtan_status_text(nmtan_status status)
 	case NMTAN_ERROR_MEMORY:
 		return "out of memory";
 	case NMTAN_ERROR_USAGE:
-		return "wrong usage";
 	case NMTAN_ERROR_IO:
-		return "cannot read or write";
 	case NMTAN_ERROR_INPUT:
-		return "invalid input";
 	case NMTAN_ERROR_UNSUPPORTED:
-		return "unsupported input";
 	case NMTAN_ERROR_INTERNAL:
-		return "internal error";
+		break;
 	}
 	return "unknown status";
+}
+
+const char *nt_status_text(nt_status status)
+{
+	switch (status) {
+	case NT_ERROR_USAGE:
+		return "wrong usage";
+	case NT_ERROR_IO:
+		return "cannot read or write";
+	case NT_ERROR_INPUT:
+		return "invalid input";
+	case NT_ERROR_UNSUPPORTED:
+		return "unsupported input";
+	case NT_ERROR_INTERNAL:
+		return "internal error";
+	default:
+		return nmtan_status_text((nmtan_status)status);
+	}
 }
 
 const char *nmtan_version(void)
