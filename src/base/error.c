@@ -17,19 +17,19 @@ void nt_place_clear(nt_place *place)
 
 void nt_error_clear(nt_error *error)
 {
-	error->status = NMTAN_OK;
+	error->status = NT_OK;
 	error->message[0] = '\0';
 	nt_place_clear(&error->place);
 }
 
-static void fill(nt_error *error, nmtan_status status, const char *format, va_list arguments)
+static void fill(nt_error *error, nt_status status, const char *format, va_list arguments)
 {
 	nt_error_clear(error);
 	error->status = status;
 	vsnprintf(error->message, sizeof error->message, format, arguments);
 }
 
-nmtan_status nt_fail(nt_error *error, nmtan_status status, const char *format, ...)
+nt_status nt_fail(nt_error *error, nt_status status, const char *format, ...)
 {
 	if (error) {
 		va_list arguments;
@@ -40,7 +40,7 @@ nmtan_status nt_fail(nt_error *error, nmtan_status status, const char *format, .
 	return status;
 }
 
-nmtan_status nt_fail_line(nt_error *error, nmtan_status status, size_t line, const char *format, ...)
+nt_status nt_fail_line(nt_error *error, nt_status status, size_t line, const char *format, ...)
 {
 	if (error) {
 		va_list arguments;
@@ -52,7 +52,7 @@ nmtan_status nt_fail_line(nt_error *error, nmtan_status status, size_t line, con
 	return status;
 }
 
-nmtan_status nt_fail_offset(nt_error *error, nmtan_status status, uint64_t offset, const char *format,
+nt_status nt_fail_offset(nt_error *error, nt_status status, uint64_t offset, const char *format,
 	...)
 {
 	if (error) {
@@ -65,7 +65,7 @@ nmtan_status nt_fail_offset(nt_error *error, nmtan_status status, uint64_t offse
 	return status;
 }
 
-nmtan_status nt_fail_pointer(nt_error *error, nmtan_status status, const char *pointer,
+nt_status nt_fail_pointer(nt_error *error, nt_status status, const char *pointer,
 	const char *format, ...)
 {
 	if (error) {
@@ -78,12 +78,12 @@ nmtan_status nt_fail_pointer(nt_error *error, nmtan_status status, const char *p
 	return status;
 }
 
-nmtan_status nt_fail_memory(nt_error *error)
+nt_status nt_fail_memory(nt_error *error)
 {
-	return nt_fail(error, NMTAN_ERROR_MEMORY, "out of memory");
+	return nt_fail(error, NT_ERROR_MEMORY, "out of memory");
 }
 
-nmtan_status nt_error_in_file(nt_error *error, const char *file)
+nt_status nt_error_in_file(nt_error *error, const char *file)
 {
 	if (!error->place.file[0])
 		snprintf(error->place.file, sizeof error->place.file, "%s", file);

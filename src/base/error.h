@@ -9,7 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
-#include "nmtan.h"
+#include "base/status.h"
 
 #ifdef __cplusplus
 extern "C" { /* for src/ext */
@@ -27,7 +27,7 @@ typedef struct nt_place {
 #define NT_NO_OFFSET UINT64_MAX
 
 typedef struct nt_error {
-	nmtan_status status;
+	nt_status status;
 	char message[768]; /* one sentence without a full stop: what was found, what was expected */
 	nt_place place;
 } nt_error;
@@ -44,22 +44,22 @@ void nt_place_clear(nt_place *place);
 
 /* Fills an error: status and message. The place is cleared. Returns status, so that a caller can write
  * `return nt_fail(error, ...)`. error may be NULL. */
-nmtan_status nt_fail(nt_error *error, nmtan_status status, const char *format, ...) NT_PRINTF(3, 4);
+nt_status nt_fail(nt_error *error, nt_status status, const char *format, ...) NT_PRINTF(3, 4);
 
 /* The same with a line, a byte offset or a JSON pointer. The name of the file is set by whoever knows
  * it (nt_error_in_file). */
-nmtan_status nt_fail_line(nt_error *error, nmtan_status status, size_t line, const char *format, ...)
+nt_status nt_fail_line(nt_error *error, nt_status status, size_t line, const char *format, ...)
 	NT_PRINTF(4, 5);
-nmtan_status nt_fail_offset(nt_error *error, nmtan_status status, uint64_t offset, const char *format,
+nt_status nt_fail_offset(nt_error *error, nt_status status, uint64_t offset, const char *format,
 	...) NT_PRINTF(4, 5);
-nmtan_status nt_fail_pointer(nt_error *error, nmtan_status status, const char *pointer,
+nt_status nt_fail_pointer(nt_error *error, nt_status status, const char *pointer,
 	const char *format, ...) NT_PRINTF(4, 5);
 
-/* Status NMTAN_ERROR_MEMORY with the usual sentence. */
-nmtan_status nt_fail_memory(nt_error *error);
+/* Status NT_ERROR_MEMORY with the usual sentence. */
+nt_status nt_fail_memory(nt_error *error);
 
 /* Names the file of an error, unless a deeper place already did. Returns error->status. */
-nmtan_status nt_error_in_file(nt_error *error, const char *file);
+nt_status nt_error_in_file(nt_error *error, const char *file);
 
 #ifdef __cplusplus
 }

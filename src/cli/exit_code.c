@@ -4,19 +4,19 @@
  */
 #include "cli/exit_code.h"
 
-int nt_exit_code(nmtan_status status)
+int nt_exit_code(nt_status status)
 {
 	switch (status) {
-	case NMTAN_OK:
+	case NT_OK:
 		return NT_EXIT_DONE;
-	case NMTAN_ERROR_USAGE:
+	case NT_ERROR_USAGE:
 		return NT_EXIT_USAGE;
-	case NMTAN_ERROR_IO:
+	case NT_ERROR_IO:
 		return NT_EXIT_IO;
-	case NMTAN_ERROR_INPUT:
+	case NT_ERROR_INPUT:
 		return NT_EXIT_INPUT;
-	case NMTAN_ERROR_UNSUPPORTED:
-	case NMTAN_ERROR_TOO_LARGE:
+	case NT_ERROR_UNSUPPORTED:
+	case NT_ERROR_TOO_LARGE:
 		return NT_EXIT_UNSUPPORTED;
 	default:
 		/* What the compute API refuses, a reader should have refused before: our mistake. */

@@ -5,7 +5,7 @@
 #ifndef NT_CLI_EXIT_CODE_H
 #define NT_CLI_EXIT_CODE_H
 
-#include "nmtan.h"
+#include "base/status.h"
 
 enum nt_exit {
 	NT_EXIT_DONE = 0,
@@ -18,7 +18,7 @@ enum nt_exit {
 };
 
 /* The exit code of a status. */
-int nt_exit_code(nmtan_status status);
+int nt_exit_code(nt_status status);
 
 /* Of two exit codes the worse one, in the order 4, 2, 3, 5, 1, 6, 0. */
 int nt_exit_worse(int a, int b);

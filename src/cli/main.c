@@ -55,7 +55,7 @@ static int print_text(void (*make)(nt_buffer *out), nt_style style)
 	nt_buffer_free(&text);
 	if (written)
 		return NT_EXIT_DONE;
-	nt_fail(&error, NMTAN_ERROR_IO, "cannot write to standard output: %s", strerror(errno));
+	nt_fail(&error, NT_ERROR_IO, "cannot write to standard output: %s", strerror(errno));
 	print_error(&error, style, false);
 	return NT_EXIT_IO;
 }
@@ -113,7 +113,7 @@ static void tell_job(void *user, nt_job *job)
 		nt_message_error(&text, &job->error, s->style);
 		nt_buffer_format(&s->failures, "%s", s->failed++ ? ", " : "");
 		nt_buffer_clean(&s->failures, job->input);
-		nt_buffer_format(&s->failures, " (%s)", nmtan_status_text(job->status));
+		nt_buffer_format(&s->failures, " (%s)", nt_status_text(job->status));
 	} else {
 		if (s->style.verbosity >= 0)
 			nt_message_success(&text, job, &c->settings);
@@ -180,7 +180,7 @@ static bool same_file(const char *a, const char *b)
 					    first.st_dev == second.st_dev && first.st_ino == second.st_ino);
 }
 
-static nmtan_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
+static nt_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
 {
 	if (c->settings.check)
 		return nt_batch_check(batch, c->operands, c->operand_count, error);
@@ -193,7 +193,7 @@ static nmtan_status prepare(nt_batch *batch, const nt_command *c, nt_error *erro
 	if (c->settings.in_place && !twice)
 		return nt_batch_in_place(batch, c->operands, c->operand_count, error);
 	if (strcmp(output, "-") == 0 && !c->settings.dry_run && isatty(STDOUT_FILENO))
-		return nt_fail(error, NMTAN_ERROR_USAGE,
+		return nt_fail(error, NT_ERROR_USAGE,
 			"'-' is a terminal here: send the output to a file or a pipe");
 	return nt_batch_pair(batch, input, output, error);
 }
@@ -230,12 +230,12 @@ static int run(const nt_command *command, nt_style style, bool colour_on_stdout)
 	nt_batch batch = {0};
 	nt_report_plan plan;
 	nt_error error;
-	nmtan_status status = nt_report_plan_make(&plan, command, colour_on_stdout, &error);
+	nt_status status = nt_report_plan_make(&plan, command, colour_on_stdout, &error);
 	if (!status)
 		status = prepare(&batch, command, &error);
 	int code = nt_exit_code(status);
 	if (status)
-		print_error(&error, style, status == NMTAN_ERROR_USAGE);
+		print_error(&error, style, status == NT_ERROR_USAGE);
 	else
 		code = run_batch(command, style, &plan, &batch);
 	nt_batch_free(&batch);

@@ -45,7 +45,7 @@ void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style)
 {
 	nt_buffer_format(out, "%snmtan:%s ", colour(style, "\033[1;31m"), colour(style, "\033[0m"));
 	append_place(out, &error->place, NULL);
-	nt_buffer_clean(out, error->message[0] ? error->message : nmtan_status_text(error->status));
+	nt_buffer_clean(out, error->message[0] ? error->message : nt_status_text(error->status));
 	nt_buffer_text(out, "\n");
 }
 

@@ -191,22 +191,22 @@ static int number_of(const char *word, int most)
 	return number;
 }
 
-static nmtan_status refuse_value(parser *p, const nt_option_row *row, const char *word)
+static nt_status refuse_value(parser *p, const nt_option_row *row, const char *word)
 {
 	if (row->kind == NT_OPTION_CHOICE) {
 		char list[128];
 		snprintf(list, sizeof list, "%s", row->values);
 		for (char *c = list; *c; c++)
 			*c = *c == '|' ? ' ' : *c;
-		return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s: '%s' is none of: %s", row->name, word,
+		return nt_fail(p->error, NT_ERROR_USAGE, "--%s: '%s' is none of: %s", row->name, word,
 			list);
 	}
-	return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s: '%s' is not %sa number from 0 to %d",
+	return nt_fail(p->error, NT_ERROR_USAGE, "--%s: '%s' is not %sa number from 0 to %d",
 		row->name, word, row->kind == NT_OPTION_AUTO_NUMBER ? "auto or " : "", row->most);
 }
 
 /* Stores what one option says; word is NULL where it takes none. */
-static nmtan_status apply(parser *p, const nt_option_row *row, const char *word)
+static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 {
 	char *field = (char *)p->command + row->offset;
 	int value = row->first;
@@ -236,36 +236,36 @@ static nmtan_status apply(parser *p, const nt_option_row *row, const char *word)
 		break;
 	case NT_OPTION_TEXT:
 		if (!*word)
-			return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s: '' is no %s", row->name,
+			return nt_fail(p->error, NT_ERROR_USAGE, "--%s: '' is no %s", row->name,
 				row->values);
 		/* of two choices the last one counts, but a name or a list would be lost */
 		if (*(const char **)(void *)field)
-			return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s is there twice: '%s' and '%s'", row->name,
+			return nt_fail(p->error, NT_ERROR_USAGE, "--%s is there twice: '%s' and '%s'", row->name,
 				*(const char **)(void *)field, word);
 		*(const char **)(void *)field = word;
 		break;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* --name, --name=value, --name value. *used becomes 2 where the next word belongs to it. */
-static nmtan_status parse_long(parser *p, const char *word, const char *next, int *used)
+static nt_status parse_long(parser *p, const char *word, const char *next, int *used)
 {
 	const char *name = word + 2;
 	const size_t length = strcspn(name, "=");
 	const nt_option_row *row = find_long(name, length);
 	if (!row)
-		return nt_fail(p->error, NMTAN_ERROR_USAGE, "unknown option '%.*s'", (int)length + 2, word);
+		return nt_fail(p->error, NT_ERROR_USAGE, "unknown option '%.*s'", (int)length + 2, word);
 	const char *value = name[length] ? name + length + 1 : NULL;
 	if (!takes_value(row)) {
 		if (value)
-			return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s takes no value, here it has '%s'",
+			return nt_fail(p->error, NT_ERROR_USAGE, "--%s takes no value, here it has '%s'",
 				row->name, value);
 		return apply(p, row, NULL);
 	}
 	if (!value) {
 		if (!next)
-			return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s needs a value: %s", row->name,
+			return nt_fail(p->error, NT_ERROR_USAGE, "--%s needs a value: %s", row->name,
 				row->values);
 		value = next;
 		*used = 2;
@@ -274,7 +274,7 @@ static nmtan_status parse_long(parser *p, const char *word, const char *next, in
 }
 
 /* -q, -qv, -j8, -j 8. */
-static nmtan_status parse_short(parser *p, const char *word, const char *next, int *used)
+static nt_status parse_short(parser *p, const char *word, const char *next, int *used)
 {
 	for (const char *letter = word + 1; *letter; letter++) {
 		const nt_option_row *row = find_letter(*letter);
@@ -283,7 +283,7 @@ static nmtan_status parse_short(parser *p, const char *word, const char *next, i
 			int bytes = 1;
 			while (((unsigned char)letter[bytes] & 0xc0) == 0x80)
 				bytes++;
-			return nt_fail(p->error, NMTAN_ERROR_USAGE, "unknown option '-%.*s'%s%s%s", bytes, letter,
+			return nt_fail(p->error, NT_ERROR_USAGE, "unknown option '-%.*s'%s%s%s", bytes, letter,
 				word[2] ? " in '" : "", word[2] ? word : "", word[2] ? "'" : "");
 		}
 		if (!takes_value(row)) {
@@ -294,12 +294,12 @@ static nmtan_status parse_short(parser *p, const char *word, const char *next, i
 		if (letter[1])
 			return apply(p, row, letter + 1);
 		if (!next)
-			return nt_fail(p->error, NMTAN_ERROR_USAGE, "-%c needs a value: %s", *letter,
+			return nt_fail(p->error, NT_ERROR_USAGE, "-%c needs a value: %s", *letter,
 				row->values);
 		*used = 2;
 		return apply(p, row, next);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static bool given(const parser *p, const char *name)
@@ -309,7 +309,7 @@ static bool given(const parser *p, const char *name)
 }
 
 /* "14,12,12,12": four whole numbers. Tangents of less than 12 bits can be seen; more than 24 a float does not have. */
-static nmtan_status parse_draco_bits(parser *p)
+static nt_status parse_draco_bits(parser *p)
 {
 	static const struct {
 		const char *what;
@@ -323,25 +323,25 @@ static nmtan_status parse_draco_bits(parser *p)
 		const size_t length = strcspn(word, ",");
 		const bool last = i + 1 == NT_DRACO_BITS_COUNT;
 		if (last != !word[length])
-			return nt_fail(p->error, NMTAN_ERROR_USAGE,
+			return nt_fail(p->error, NT_ERROR_USAGE,
 				"--draco-bits: '%s' is not four numbers", p->command->draco_bits);
 		if (length < sizeof number)
 			memcpy(number, word, length);
 		const int bits = number_of(number, MOST);
 		if (bits < parts[i].least)
-			return nt_fail(p->error, NMTAN_ERROR_USAGE,
+			return nt_fail(p->error, NT_ERROR_USAGE,
 				"--draco-bits: '%.*s' for %s is not a number from %d to %d", (int)length, word,
 				parts[i].what, parts[i].least, MOST);
 		p->command->settings.draco_bits[i] = bits;
 		word += length + 1;
 	}
 	if (p->command->draco_bits && p->command->settings.draco == NT_DRACO_OFF)
-		return nt_fail(p->error, NMTAN_ERROR_USAGE, "--draco=off leaves nothing for --draco-bits");
-	return NMTAN_OK;
+		return nt_fail(p->error, NT_ERROR_USAGE, "--draco=off leaves nothing for --draco-bits");
+	return NT_OK;
 }
 
 /* Options that contradict each other. */
-static nmtan_status check_clashes(parser *p)
+static nt_status check_clashes(parser *p)
 {
 	static const char *const pairs[][3] = {
 		{"quiet", "verbose", "say opposite things"},
@@ -349,59 +349,59 @@ static nmtan_status check_clashes(parser *p)
 	};
 	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
 		if (given(p, pairs[i][0]) && given(p, pairs[i][1]))
-			return nt_fail(p->error, NMTAN_ERROR_USAGE, "--%s and --%s %s", pairs[i][0], pairs[i][1],
+			return nt_fail(p->error, NT_ERROR_USAGE, "--%s and --%s %s", pairs[i][0], pairs[i][1],
 				pairs[i][2]);
 	for (size_t i = 0; i < nt_option_row_count; i++)
 		if (p->command->settings.check && nt_option_rows[i].writes && p->given >> i & 1)
-			return nt_fail(p->error, NMTAN_ERROR_USAGE,
+			return nt_fail(p->error, NT_ERROR_USAGE,
 				"--check writes no mesh, so --%s has no meaning", nt_option_rows[i].name);
 	nt_settings *s = &p->command->settings;
 	if (s->embed && given(p, "buffers") && s->buffers != NT_BUFFERS_EMBED)
-		return nt_fail(p->error, NMTAN_ERROR_USAGE,
+		return nt_fail(p->error, NT_ERROR_USAGE,
 			"--embed and --buffers=%s contradict each other",
 			s->buffers == NT_BUFFERS_COPY ? "copy" : "link");
 	if (s->embed && s->output_format != NT_FORMAT_UNKNOWN && s->output_format != NT_FORMAT_GLTF)
-		return nt_fail(p->error, NMTAN_ERROR_USAGE,
+		return nt_fail(p->error, NT_ERROR_USAGE,
 			"--embed is about .gltf, --output-format says '%s'",
 			s->output_format == NT_FORMAT_GLB ? "glb" : "ply");
 	s->embed |= s->buffers == NT_BUFFERS_EMBED;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Too few or too many names, and "-" where a name is needed. */
-static nmtan_status check_operands(parser *p)
+static nt_status check_operands(parser *p)
 {
 	const nt_command *c = p->command;
 	const size_t count = c->operand_count;
 	const bool many = c->settings.check || c->directory || c->settings.in_place;
 	if (count == 0)
-		return nt_fail(p->error, NMTAN_ERROR_USAGE, "no input is named");
+		return nt_fail(p->error, NT_ERROR_USAGE, "no input is named");
 	if (!many && count == 1)
-		return nt_fail(p->error, NMTAN_ERROR_USAGE, "no output is named after '%s'", c->operands[0]);
+		return nt_fail(p->error, NT_ERROR_USAGE, "no output is named after '%s'", c->operands[0]);
 	if (!many && count > 2)
-		return nt_fail(p->error, NMTAN_ERROR_USAGE,
+		return nt_fail(p->error, NT_ERROR_USAGE,
 			"'%s' is one name too many; for many inputs use -d DIR or --in-place", c->operands[2]);
 	size_t dashes = 0;
 	const size_t inputs = many ? count : 1;
 	for (size_t i = 0; i < inputs; i++)
 		dashes += strcmp(c->operands[i], "-") == 0;
 	if (dashes && (c->directory || c->settings.in_place))
-		return nt_fail(p->error, NMTAN_ERROR_USAGE, "'-' has no name to write under: not with --%s",
+		return nt_fail(p->error, NT_ERROR_USAGE, "'-' has no name to write under: not with --%s",
 			c->directory ? "directory" : "in-place");
 	if (dashes > 1)
-		return nt_fail(p->error, NMTAN_ERROR_USAGE, "'-' can be read once only");
+		return nt_fail(p->error, NT_ERROR_USAGE, "'-' can be read once only");
 	if (!many && count == 2 && strcmp(c->operands[1], "-") == 0) {
 		if (c->settings.output_format == NT_FORMAT_GLTF && !c->settings.embed)
-			return nt_fail(p->error, NMTAN_ERROR_USAGE,
+			return nt_fail(p->error, NT_ERROR_USAGE,
 				"'-' has no place for the .bin of --output-format=gltf: add --embed");
 		if (c->settings.verify)
-			return nt_fail(p->error, NMTAN_ERROR_USAGE,
+			return nt_fail(p->error, NT_ERROR_USAGE,
 				"--verify reads the output back, which '-' does not allow");
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error *error)
+nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error *error)
 {
 	parser p = {command, error, 0};
 	memset(command, 0, sizeof *command);
@@ -415,7 +415,7 @@ nmtan_status nt_options_parse(int argc, char **argv, nt_command *command, nt_err
 		char *word = argv[i];
 		const char *next = i + 1 < argc ? argv[i + 1] : NULL;
 		int used = 1;
-		nmtan_status status = NMTAN_OK;
+		nt_status status = NT_OK;
 		if (!options || word[0] != '-' || !word[1])
 			argv[kept++] = word;
 		else if (strcmp(word, "--") == 0)
@@ -434,8 +434,8 @@ nmtan_status nt_options_parse(int argc, char **argv, nt_command *command, nt_err
 	if (command->settings.check && !given(&p, "fail-on"))
 		command->fail_on = NT_FAIL_ON_ERROR;
 	if (command->action != NT_ACTION_RUN)
-		return NMTAN_OK;
-	nmtan_status status = parse_draco_bits(&p);
+		return NT_OK;
+	nt_status status = parse_draco_bits(&p);
 	if (!status)
 		status = check_clashes(&p);
 	return status ? status : check_operands(&p);

@@ -53,9 +53,9 @@ typedef struct nt_command {
  *   command     required
  *   error       names the word that is wrong
  *
- * Returns NMTAN_OK or NMTAN_ERROR_USAGE.
+ * Returns NT_OK or NT_ERROR_USAGE.
  */
-nmtan_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error *error);
+nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error *error);
 
 /* What --help prints, and the two lines that follow a mistake. */
 void nt_options_help(nt_buffer *out);

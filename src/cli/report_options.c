@@ -19,13 +19,13 @@ static bool next_word(const char **list, char *word, size_t size)
 	return true;
 }
 
-static nmtan_status unknown_code(const char *option, const char *word, nt_error *error)
+static nt_status unknown_code(const char *option, const char *word, nt_error *error)
 {
-	return nt_fail(error, NMTAN_ERROR_USAGE,
+	return nt_fail(error, NT_ERROR_USAGE,
 		"--%s: '%s' is no code of a finding; --list-codes shows them all", option, word);
 }
 
-static nmtan_status read_ignored(nt_report_options *options, const char *list, nt_error *error)
+static nt_status read_ignored(nt_report_options *options, const char *list, nt_error *error)
 {
 	char word[128];
 	while (next_word(&list, word, sizeof word)) {
@@ -34,10 +34,10 @@ static nmtan_status read_ignored(nt_report_options *options, const char *list, n
 			return unknown_code("ignore", word, error);
 		options->ignore[code] = true;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status read_severities(nt_report_options *options, const char *list, nt_error *error)
+static nt_status read_severities(nt_report_options *options, const char *list, nt_error *error)
 {
 	char word[128];
 	while (next_word(&list, word, sizeof word)) {
@@ -45,16 +45,16 @@ static nmtan_status read_severities(nt_report_options *options, const char *list
 		nt_code code;
 		nt_severity severity;
 		if (!level)
-			return nt_fail(error, NMTAN_ERROR_USAGE, "--severity: '%s' is not CODE=LEVEL", word);
+			return nt_fail(error, NT_ERROR_USAGE, "--severity: '%s' is not CODE=LEVEL", word);
 		*level++ = '\0';
 		if (!nt_code_find(word, &code))
 			return unknown_code("severity", word, error);
 		if (!nt_severity_find(level, &severity))
-			return nt_fail(error, NMTAN_ERROR_USAGE,
+			return nt_fail(error, NT_ERROR_USAGE,
 				"--severity: '%s' is none of: error warning info", level);
 		options->severity[code] = (uint8_t)(1 + severity);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* What fails a run fails its tests. */
@@ -66,7 +66,7 @@ static int least_failure(const nt_command *c)
 	return least[c->fail_on];
 }
 
-static nmtan_status choose_target(nt_report_plan *plan, const nt_command *c, bool colour,
+static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool colour,
 	nt_error *error)
 {
 	nt_report_target *target = &plan->target;
@@ -79,43 +79,43 @@ static nmtan_status choose_target(nt_report_plan *plan, const nt_command *c, boo
 	if (!target->path && c->settings.check && (c->verbosity >= 0 || c->report_format))
 		target->path = "-";
 	if (!target->path)
-		return NMTAN_OK;
+		return NT_OK;
 	const bool dash = strcmp(target->path, "-") == 0;
 	if (c->report_format)
 		target->format = (nt_report_format)(c->report_format - 1);
 	else if (dash || !c->report)
 		target->format = NT_REPORT_TEXT;
 	else if (!nt_report_format_of_path(target->path, &target->format))
-		return nt_fail(error, NMTAN_ERROR_USAGE,
+		return nt_fail(error, NT_ERROR_USAGE,
 			"cannot tell the report's format from the name '%s': use --report-format",
 			target->path);
 	target->style.colour = dash && colour;
 	target->style.least_failure = least_failure(c);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Standard output holds one thing only. */
-static nmtan_status check_outputs(const nt_command *c, nt_error *error)
+static nt_status check_outputs(const nt_command *c, nt_error *error)
 {
 	const bool mesh_on_stdout = !c->settings.check && !c->directory && c->operand_count == 2 &&
 		strcmp(c->operands[1], "-") == 0;
 	if (mesh_on_stdout && c->report && strcmp(c->report, "-") == 0)
-		return nt_fail(error, NMTAN_ERROR_USAGE,
+		return nt_fail(error, NT_ERROR_USAGE,
 			"the mesh and the report cannot both go to standard output");
 	if (!c->report && !c->settings.check && (c->report_format || c->baseline || c->max_issues))
-		return nt_fail(error, NMTAN_ERROR_USAGE, "--%s needs --report or --check",
+		return nt_fail(error, NT_ERROR_USAGE, "--%s needs --report or --check",
 			c->report_format ? "report-format" : c->baseline ? "baseline" : "max-issues");
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, bool colour,
+nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, bool colour,
 	nt_error *error)
 {
 	*plan = (nt_report_plan){
 		.wanted = command->settings.check || command->report || command->ignore || command->severity ||
 			command->uv_image};
 	plan->options.max_issues = (size_t)command->max_issues;
-	nmtan_status status = check_outputs(command, error);
+	nt_status status = check_outputs(command, error);
 	if (!status)
 		status = read_ignored(&plan->options, command->ignore, error);
 	if (!status)

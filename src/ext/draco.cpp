@@ -173,9 +173,9 @@ size_t plausible_faces(size_t size)
 // ---- decoding ----
 
 // `offset`: how far the decoder came.
-nmtan_status damaged(nt_error *error, size_t offset, const char *what)
+nt_status damaged(nt_error *error, size_t offset, const char *what)
 {
-	return nt_fail_offset(error, NMTAN_ERROR_INPUT, offset, "damaged Draco data: %s", what);
+	return nt_fail_offset(error, NT_ERROR_INPUT, offset, "damaged Draco data: %s", what);
 }
 
 nt_draco_kind kind_of(const PointAttribute &attribute)
@@ -237,7 +237,7 @@ bool is_sound(const PointAttribute &attribute, size_t point_count)
 	return true;
 }
 
-nmtan_status take_attribute(nt_draco &result, const PointAttribute &decoded, nt_error *error)
+nt_status take_attribute(nt_draco &result, const PointAttribute &decoded, nt_error *error)
 {
 	const size_t point_count = result.mesh.point_count;
 	nt_draco_attribute attribute = {};
@@ -245,12 +245,12 @@ nmtan_status take_attribute(nt_draco &result, const PointAttribute &decoded, nt_
 	attribute.kind = kind_of(decoded);
 	const component_row *row = row_of_draco(decoded.data_type());
 	if (!row || decoded.num_components() < 1 || decoded.num_components() > 4)
-		return nt_fail(error, NMTAN_ERROR_UNSUPPORTED,
+		return nt_fail(error, NT_ERROR_UNSUPPORTED,
 			"Draco attribute %u has a type that glTF cannot have (type %d, %d components)",
 			decoded.unique_id(), static_cast<int>(decoded.data_type()),
 			static_cast<int>(decoded.num_components()));
 	if (!is_sound(decoded, point_count))
-		return nt_fail(error, NMTAN_ERROR_INPUT,
+		return nt_fail(error, NT_ERROR_INPUT,
 			"damaged Draco data: attribute %u has fewer values than its points refer to",
 			decoded.unique_id());
 	attribute.component_type = row->type;
@@ -259,10 +259,10 @@ nmtan_status take_attribute(nt_draco &result, const PointAttribute &decoded, nt_
 	result.data.push_back(nt::copy_values(decoded, point_count));
 	attribute.data = result.data.back().data();
 	result.attributes.push_back(attribute);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status take_mesh(nt_draco &result, const draco::Mesh &mesh, nt_error *error)
+nt_status take_mesh(nt_draco &result, const draco::Mesh &mesh, nt_error *error)
 {
 	result.mesh.face_count = mesh.num_faces();
 	result.mesh.point_count = mesh.num_points();
@@ -270,37 +270,37 @@ nmtan_status take_mesh(nt_draco &result, const draco::Mesh &mesh, nt_error *erro
 	for (uint32_t f = 0; f < mesh.num_faces(); f++)
 		for (const PointIndex &corner : mesh.face(draco::FaceIndex(f))) {
 			if (corner.value() >= mesh.num_points())
-				return nt_fail(error, NMTAN_ERROR_INPUT,
+				return nt_fail(error, NT_ERROR_INPUT,
 					"damaged Draco data: face %u refers to point %u of %u", f,
 					corner.value(), mesh.num_points());
 			result.indices.push_back(corner.value());
 		}
 	for (int i = 0; i < mesh.num_attributes(); i++) {
-		const nmtan_status status = take_attribute(result, *mesh.attribute(i), error);
-		if (status != NMTAN_OK)
+		const nt_status status = take_attribute(result, *mesh.attribute(i), error);
+		if (status != NT_OK)
 			return status;
 	}
 	result.mesh.indices = result.indices.data();
 	result.mesh.attributes = result.attributes.data();
 	result.mesh.attribute_count = result.attributes.size();
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 // Whether the stream's head is that of a mesh of at most `limit` faces.
-nmtan_status judge_head(const unsigned char *bytes, size_t size, size_t limit, stream_head *head,
+nt_status judge_head(const unsigned char *bytes, size_t size, size_t limit, stream_head *head,
 	nt_error *error)
 {
 	if (!read_head(bytes, size, head))
-		return nt_fail_offset(error, NMTAN_ERROR_INPUT, 0, "not Draco data, or its head is cut off");
+		return nt_fail_offset(error, NT_ERROR_INPUT, 0, "not Draco data, or its head is cut off");
 	if (!head->is_mesh)
-		return nt_fail_offset(error, NMTAN_ERROR_UNSUPPORTED, 0,
+		return nt_fail_offset(error, NT_ERROR_UNSUPPORTED, 0,
 			"Draco point cloud: it has no faces, expected a mesh");
 	if (head->faces > limit || head->points > 3 * static_cast<uint64_t>(limit))
-		return nt_fail_offset(error, NMTAN_ERROR_TOO_LARGE, 0,
+		return nt_fail_offset(error, NT_ERROR_TOO_LARGE, 0,
 			"Draco data of %zu bytes declares %llu faces and %llu points, at most %zu faces are "
 			"expected", size, static_cast<unsigned long long>(head->faces),
 			static_cast<unsigned long long>(head->points), limit);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 draco::StatusOr<std::unique_ptr<draco::Mesh>> run_decoder(const unsigned char *bytes, size_t size,
@@ -317,7 +317,7 @@ draco::StatusOr<std::unique_ptr<draco::Mesh>> run_decoder(const unsigned char *b
 }
 
 // The second decoding, for the parameters alone.
-nmtan_status add_quantization(nt_draco &result, const unsigned char *bytes, size_t size,
+nt_status add_quantization(nt_draco &result, const unsigned char *bytes, size_t size,
 	nt_error *error)
 {
 	size_t reached = 0;
@@ -327,7 +327,7 @@ nmtan_status add_quantization(nt_draco &result, const unsigned char *bytes, size
 	for (size_t i = 0; i < result.attributes.size(); i++)
 		result.attributes[i].quantization =
 			quantization_of(*decoded.value()->attribute(static_cast<int>(i)));
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 } // namespace
@@ -368,12 +368,12 @@ std::vector<unsigned char> nt::copy_values(const PointAttribute &attribute, size
 	return values;
 }
 
-nmtan_status nt::decode_draco(nt_draco &result, const unsigned char *bytes, size_t size, size_t face_limit,
+nt_status nt::decode_draco(nt_draco &result, const unsigned char *bytes, size_t size, size_t face_limit,
 	nt_error *error)
 {
 	stream_head head = {};
-	const nmtan_status status = judge_head(bytes, size, face_limit, &head, error);
-	if (status != NMTAN_OK)
+	const nt_status status = judge_head(bytes, size, face_limit, &head, error);
+	if (status != NT_OK)
 		return status;
 	size_t reached = 0;
 	const auto decoded = run_decoder(bytes, size, false, &reached);
@@ -389,20 +389,20 @@ size_t nt_draco_component_size(int component_type)
 	return row ? row->size : 0;
 }
 
-nmtan_status nt_draco_decode(nt_draco **result, const unsigned char *bytes, size_t size,
+nt_status nt_draco_decode(nt_draco **result, const unsigned char *bytes, size_t size,
 	size_t max_faces, bool with_quantization, nt_error *error)
 {
 	*result = nullptr;
 	nt_draco *made = nullptr;
 	const size_t plausible = plausible_faces(size);
 	const size_t limit = max_faces && max_faces < plausible ? max_faces : plausible;
-	const nmtan_status status = nt::guard(error, "Draco", [&] {
+	const nt_status status = nt::guard(error, "Draco", [&] {
 		made = new nt_draco;
-		const nmtan_status decoded = nt::decode_draco(*made, bytes, size, limit, error);
-		return decoded == NMTAN_OK && with_quantization
+		const nt_status decoded = nt::decode_draco(*made, bytes, size, limit, error);
+		return decoded == NT_OK && with_quantization
 			? add_quantization(*made, bytes, size, error) : decoded;
 	});
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		*result = made;
 	else
 		delete made;

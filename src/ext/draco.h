@@ -68,11 +68,11 @@ typedef struct nt_draco nt_draco;
  *   max_faces  the context's limit; 0: none but what so many bytes can plausibly hold
  *   with_quantization  fills the attributes' quantization, for encoding them again; takes about as long again
  *
- * Returns NMTAN_OK; NMTAN_ERROR_INPUT for what is not Draco or damaged, with Draco's words;
- * NMTAN_ERROR_UNSUPPORTED for point clouds and attributes that glTF cannot have; NMTAN_ERROR_TOO_LARGE when it
- * declares more faces than allowed; NMTAN_ERROR_MEMORY.
+ * Returns NT_OK; NT_ERROR_INPUT for what is not Draco or damaged, with Draco's words;
+ * NT_ERROR_UNSUPPORTED for point clouds and attributes that glTF cannot have; NT_ERROR_TOO_LARGE when it
+ * declares more faces than allowed; NT_ERROR_MEMORY.
  */
-nmtan_status nt_draco_decode(nt_draco **result, const unsigned char *bytes, size_t size,
+nt_status nt_draco_decode(nt_draco **result, const unsigned char *bytes, size_t size,
 	size_t max_faces, bool with_quantization, nt_error *error);
 
 /* NULL is allowed. */
@@ -101,12 +101,12 @@ void nt_draco_block_free(nt_draco_block *block);
  * remaining points, and degenerate faces; edgebreaker is smaller, reorders, and drops faces with two corners
  * at one position.
  *
- * Returns NMTAN_OK; NMTAN_ERROR_ARGUMENT for types, counts and bits out of range (24 at most, of integers of four
- * bytes too) and quantized values that are not finite or outside of their explicit box; NMTAN_ERROR_INDEX;
- * NMTAN_ERROR_TOO_LARGE; NMTAN_ERROR_INPUT when no face is left to encode; NMTAN_ERROR_INTERNAL when Draco fails or
- * does not give back what it got; NMTAN_ERROR_MEMORY.
+ * Returns NT_OK; NT_ERROR_ARGUMENT for types, counts and bits out of range (24 at most, of integers of four
+ * bytes too) and quantized values that are not finite or outside of their explicit box; NT_ERROR_INDEX;
+ * NT_ERROR_TOO_LARGE; NT_ERROR_INPUT when no face is left to encode; NT_ERROR_INTERNAL when Draco fails or
+ * does not give back what it got; NT_ERROR_MEMORY.
  */
-nmtan_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error);
+nt_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error);
 
 #ifdef __cplusplus
 }

@@ -65,21 +65,21 @@ bool can_lay_grid(const nt_draco_mesh &mesh, const nt_draco_attribute &a)
 	return std::isfinite(range) && range > 0 && std::isfinite(cells / range);
 }
 
-nmtan_status check_attribute(const nt_draco_mesh &mesh, const nt_draco_attribute &a, nt_error *error)
+nt_status check_attribute(const nt_draco_mesh &mesh, const nt_draco_attribute &a, nt_error *error)
 {
 	const nt_draco_quantization &q = a.quantization;
 	const bool is_float = a.component_type == NT_GLTF_FLOAT;
 	if (nt::draco_type_of(a.component_type) == draco::DT_INVALID || a.components < 1 || a.components > 4 ||
 		q.bits < 0 || q.bits > MOST_BITS || (q.bits == 1 && is_octahedral(a)) || (q.bits && !is_float))
-		return nt_fail(error, NMTAN_ERROR_ARGUMENT,
+		return nt_fail(error, NT_ERROR_ARGUMENT,
 			"Draco cannot encode attribute %u with type %d, %d components and %d bits",
 			a.unique_id, a.component_type, a.components, q.bits);
 	if ((a.component_type == NT_GLTF_INT || a.component_type == NT_GLTF_UINT) && !fits_coder(mesh, a))
-		return nt_fail(error, NMTAN_ERROR_ARGUMENT,
+		return nt_fail(error, NT_ERROR_ARGUMENT,
 			"attribute %u has integers of more than %d bits, which Draco cannot encode in reasonable "
 			"memory", a.unique_id, int(MOST_BITS));
 	if (!q.bits)
-		return NMTAN_OK;
+		return NT_OK;
 	const bool box = q.explicit_box && !is_octahedral(a);
 	// quantized values at the upper end may have rounded past it
 	const float slack = box ? q.range * 1e-5f : 0;
@@ -89,34 +89,34 @@ nmtan_status check_attribute(const nt_draco_mesh &mesh, const nt_draco_attribute
 			std::memcpy(&value, value_of(a, p) + 4 * i, sizeof value);
 			if (!std::isfinite(value) || (box && (value < q.origin[i] - slack ||
 							     value > q.origin[i] + q.range + slack)))
-				return nt_fail(error, NMTAN_ERROR_ARGUMENT,
+				return nt_fail(error, NT_ERROR_ARGUMENT,
 					"Draco cannot quantize value %g of point %zu in attribute %u",
 					static_cast<double>(value), p, a.unique_id);
 		}
 	if (!is_octahedral(a) && !can_lay_grid(mesh, a))
-		return nt_fail(error, NMTAN_ERROR_ARGUMENT,
+		return nt_fail(error, NT_ERROR_ARGUMENT,
 			"Draco cannot quantize attribute %u: its values span more than a float holds, or next to "
 			"nothing", a.unique_id);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status check_mesh(const nt_draco_mesh &mesh, nt_error *error)
+nt_status check_mesh(const nt_draco_mesh &mesh, nt_error *error)
 {
 	if (mesh.face_count > 0x7fffffff / 6 || mesh.point_count > 0x7fffffff)
-		return nt_fail(error, NMTAN_ERROR_TOO_LARGE, "%zu faces are too many for Draco",
+		return nt_fail(error, NT_ERROR_TOO_LARGE, "%zu faces are too many for Draco",
 			mesh.face_count);
 	if (mesh.face_count == 0)
-		return nt_fail(error, NMTAN_ERROR_INPUT, "there is no face to encode");
+		return nt_fail(error, NT_ERROR_INPUT, "there is no face to encode");
 	for (size_t i = 0; i < 3 * mesh.face_count; i++)
 		if (mesh.indices[i] >= mesh.point_count)
-			return nt_fail(error, NMTAN_ERROR_INDEX, "face %zu refers to point %u of %zu", i / 3,
+			return nt_fail(error, NT_ERROR_INDEX, "face %zu refers to point %u of %zu", i / 3,
 				mesh.indices[i], mesh.point_count);
 	for (size_t i = 0; i < mesh.attribute_count; i++) {
-		const nmtan_status status = check_attribute(mesh, mesh.attributes[i], error);
-		if (status != NMTAN_OK)
+		const nt_status status = check_attribute(mesh, mesh.attributes[i], error);
+		if (status != NT_OK)
 			return status;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 // ---- the mesh as Draco wants it ----
@@ -206,7 +206,7 @@ void set_options(draco::ExpertEncoder &encoder, const nt_draco_mesh &mesh)
 	encoder.SetSpeedOptions(5, 5);
 }
 
-nmtan_status hand_over(const draco::EncoderBuffer &buffer, const nt_draco &decoded,
+nt_status hand_over(const draco::EncoderBuffer &buffer, const nt_draco &decoded,
 	const std::vector<uint32_t> &sources, nt_draco_block *block, nt_error *error)
 {
 	block->bytes = static_cast<unsigned char *>(std::malloc(buffer.size()));
@@ -222,13 +222,13 @@ nmtan_status hand_over(const draco::EncoderBuffer &buffer, const nt_draco &decod
 	block->size = buffer.size();
 	block->point_count = decoded.mesh.point_count;
 	block->face_count = decoded.mesh.face_count;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *error)
+nt_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *error)
 {
-	nmtan_status status = check_mesh(mesh, error);
-	if (status != NMTAN_OK)
+	nt_status status = check_mesh(mesh, error);
+	if (status != NT_OK)
 		return status;
 	std::vector<uint32_t> numbers;
 	const std::vector<uint32_t> sources = compact(mesh, numbers);
@@ -236,7 +236,7 @@ nmtan_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *
 	nt_draco expected;
 	nt::expect_back(expected, mesh, *made, numbers);
 	if (expected.mesh.face_count == 0)
-		return nt_fail(error, NMTAN_ERROR_INPUT, "every face is degenerate: nothing to encode");
+		return nt_fail(error, NT_ERROR_INPUT, "every face is degenerate: nothing to encode");
 	if (mesh.method == NT_DRACO_EDGEBREAKER) {
 		// joins what split vertices separate, so that one surface is encoded as one
 		made->DeduplicateAttributeValues();
@@ -248,21 +248,21 @@ nmtan_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *
 	draco::EncoderBuffer buffer;
 	const draco::Status encoded = encoder.EncodeToBuffer(&buffer);
 	if (!encoded.ok())
-		return nt_fail(error, NMTAN_ERROR_INTERNAL, "Draco cannot encode the mesh: %s",
+		return nt_fail(error, NT_ERROR_INTERNAL, "Draco cannot encode the mesh: %s",
 			encoded.error_msg());
 
 	nt_draco decoded;
 	status = nt::decode_draco(decoded, reinterpret_cast<const unsigned char *>(buffer.data()), buffer.size(),
 		mesh.face_count, error);
-	if (status != NMTAN_OK || !nt::came_back(expected, decoded))
-		return nt_fail(error, NMTAN_ERROR_INTERNAL,
+	if (status != NT_OK || !nt::came_back(expected, decoded))
+		return nt_fail(error, NT_ERROR_INTERNAL,
 			"what Draco encoded does not decode to what it was given");
 	return hand_over(buffer, decoded, sources, block, error);
 }
 
 } // namespace
 
-nmtan_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error)
+nt_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error)
 {
 	*block = {};
 	return nt::guard(error, "Draco", [&] { return encode(*mesh, block, error); });

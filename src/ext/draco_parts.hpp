@@ -31,7 +31,7 @@ draco::GeometryAttribute::Type draco_kind_of(nt_draco_kind kind);
 std::vector<unsigned char> copy_values(const draco::PointAttribute &attribute, size_t point_count);
 
 // Decodes a mesh of at most `face_limit` faces into plain arrays; quantization is left out.
-nmtan_status decode_draco(nt_draco &result, const unsigned char *bytes, size_t size, size_t face_limit,
+nt_status decode_draco(nt_draco &result, const unsigned char *bytes, size_t size, size_t face_limit,
 	nt_error *error);
 
 // ---- draco_compare.cpp ----

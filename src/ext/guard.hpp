@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The door of every C++ wrapper. A wrapper's entry runs its body inside guard(), so that nothing is
-// thrown past it: exhausted memory becomes NMTAN_ERROR_MEMORY, everything else, which would be a
-// mistake of ours or of the library behind the door, NMTAN_ERROR_INTERNAL with the exception's words.
+// thrown past it: exhausted memory becomes NT_ERROR_MEMORY, everything else, which would be a
+// mistake of ours or of the library behind the door, NT_ERROR_INTERNAL with the exception's words.
 #ifndef NT_EXT_GUARD_HPP
 #define NT_EXT_GUARD_HPP
 
@@ -16,16 +16,16 @@ namespace nt {
 // Runs body(), which returns a status, and returns that or the status of what it threw. error may be
 // NULL; body fills it itself for the statuses it returns.
 template <typename Body>
-nmtan_status guard(nt_error *error, const char *library, Body &&body) noexcept
+nt_status guard(nt_error *error, const char *library, Body &&body) noexcept
 {
 	try {
 		return std::forward<Body>(body)();
 	} catch (const std::bad_alloc &) {
 		return nt_fail_memory(error);
 	} catch (const std::exception &thrown) {
-		return nt_fail(error, NMTAN_ERROR_INTERNAL, "%s: %s", library, thrown.what());
+		return nt_fail(error, NT_ERROR_INTERNAL, "%s: %s", library, thrown.what());
 	} catch (...) {
-		return nt_fail(error, NMTAN_ERROR_INTERNAL, "%s: unknown exception", library);
+		return nt_fail(error, NT_ERROR_INTERNAL, "%s: unknown exception", library);
 	}
 }
 

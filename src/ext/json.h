@@ -46,9 +46,9 @@ typedef enum nt_json_type {
  *   text      [size] bytes, no final NUL needed; not kept
  *   document  receives the document; free it with nt_json_free()
  *
- * Returns NMTAN_OK, NMTAN_ERROR_INPUT with the byte offset in `error`, or NMTAN_ERROR_MEMORY.
+ * Returns NT_OK, NT_ERROR_INPUT with the byte offset in `error`, or NT_ERROR_MEMORY.
  */
-nmtan_status nt_json_parse(nt_json **document, const char *text, size_t size, nt_error *error);
+nt_status nt_json_parse(nt_json **document, const char *text, size_t size, nt_error *error);
 
 /* NULL is allowed. */
 void nt_json_free(nt_json *document);
@@ -116,9 +116,9 @@ void nt_json_set_copy(nt_json *document, nt_json_value *value, const nt_json_val
  * Appends the document's text to a buffer, compact where the source was one line, else indented with
  * the source's own indentation. The same document gives the same bytes.
  *
- * Returns NMTAN_OK, or NMTAN_ERROR_MEMORY, also where a change before ran out of memory.
+ * Returns NT_OK, or NT_ERROR_MEMORY, also where a change before ran out of memory.
  */
-nmtan_status nt_json_dump(const nt_json *document, nt_buffer *text, nt_error *error);
+nt_status nt_json_dump(const nt_json *document, nt_buffer *text, nt_error *error);
 
 #ifdef __cplusplus
 }

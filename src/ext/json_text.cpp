@@ -152,7 +152,7 @@ public:
 			words = bracket + 2;
 		if (const char *colon = std::strstr(words, ": "))
 			words = std::strncmp(words, "parse error", 11) == 0 ? colon + 2 : words;
-		nt_fail_offset(error, NMTAN_ERROR_INPUT, position ? position - 1 : 0, "JSON: %s", words);
+		nt_fail_offset(error, NT_ERROR_INPUT, position ? position - 1 : 0, "JSON: %s", words);
 		return false;
 	}
 
@@ -178,7 +178,7 @@ private:
 	bool open()
 	{
 		if (starts.size() == NT_JSON_MAX_DEPTH) {
-			nt_fail_offset(error, NMTAN_ERROR_INPUT, offset() - 1,
+			nt_fail_offset(error, NT_ERROR_INPUT, offset() - 1,
 				"JSON is nested deeper than %d arrays and objects", int(NT_JSON_MAX_DEPTH));
 			return false;
 		}
@@ -222,7 +222,7 @@ private:
 
 	bool duplicate(const member &second)
 	{
-		nt_fail_offset(error, NMTAN_ERROR_INPUT, second.key_offset,
+		nt_fail_offset(error, NT_ERROR_INPUT, second.key_offset,
 			"JSON: the key \"%.200s\" occurs twice in one object", second.key.c_str());
 		return false;
 	}
@@ -295,33 +295,33 @@ private:
 
 } // namespace
 
-nmtan_status nt_json_parse(nt_json **document, const char *text, size_t size, nt_error *error)
+nt_status nt_json_parse(nt_json **document, const char *text, size_t size, nt_error *error)
 {
 	*document = nullptr;
 	nt_json *parsed = nullptr;
-	const nmtan_status status = nt::guard(error, "JSON", [&] {
+	const nt_status status = nt::guard(error, "JSON", [&] {
 		if (size >= 3 && std::memcmp(text, "\xEF\xBB\xBF", 3) == 0)
-			return nt_fail_offset(error, NMTAN_ERROR_INPUT, 0,
+			return nt_fail_offset(error, NT_ERROR_INPUT, 0,
 				"JSON begins with a byte order mark, which glTF does not allow");
 		const char *reached = text;
 		builder sink(text, &reached, error);
 		const text_iterator begin{text, &reached}, end{text + size, &reached};
 		if (!json::sax_parse(begin, end, &sink))
-			return NMTAN_ERROR_INPUT;
+			return NT_ERROR_INPUT;
 		parsed = new nt_json;
 		parsed->root = sink.take();
 		find_style(parsed, text, size);
-		return NMTAN_OK;
+		return NT_OK;
 	});
 	if (status) {
 		delete parsed;
 		return status;
 	}
 	*document = parsed;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_json_dump(const nt_json *document, nt_buffer *text, nt_error *error)
+nt_status nt_json_dump(const nt_json *document, nt_buffer *text, nt_error *error)
 {
 	return nt::guard(error, "JSON", [&] {
 		if (document->failed)
@@ -331,6 +331,6 @@ nmtan_status nt_json_dump(const nt_json *document, nt_buffer *text, nt_error *er
 		if (document->indent > 0)
 			out << std::setw(document->indent) << std::setfill(document->indent_character);
 		out << document->root << std::flush;
-		return text->failed ? nt_fail_memory(error) : NMTAN_OK;
+		return text->failed ? nt_fail_memory(error) : NT_OK;
 	});
 }

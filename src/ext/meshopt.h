@@ -28,9 +28,9 @@ typedef struct nt_meshopt_view {
  *
  *   pointer  where the description stands, for the error
  *
- * Returns NMTAN_OK or NMTAN_ERROR_INPUT.
+ * Returns NT_OK or NT_ERROR_INPUT.
  */
-nmtan_status nt_meshopt_check(const nt_meshopt_view *view, uint64_t size, const char *pointer, nt_error *error);
+nt_status nt_meshopt_check(const nt_meshopt_view *view, uint64_t size, const char *pointer, nt_error *error);
 
 /*
  * Unpacks a view that was checked.
@@ -38,10 +38,10 @@ nmtan_status nt_meshopt_check(const nt_meshopt_view *view, uint64_t size, const 
  *   packed  [packed_size]
  *   bytes   [count * stride], aligned as malloc does
  *
- * Returns NMTAN_OK; NMTAN_ERROR_INPUT for what meshoptimizer cannot decode; NMTAN_ERROR_UNSUPPORTED for codecs
+ * Returns NT_OK; NT_ERROR_INPUT for what meshoptimizer cannot decode; NT_ERROR_UNSUPPORTED for codecs
  * and filters that it does not know.
  */
-nmtan_status nt_meshopt_unpack(const nt_meshopt_view *view, const unsigned char *packed, unsigned char *bytes,
+nt_status nt_meshopt_unpack(const nt_meshopt_view *view, const unsigned char *packed, unsigned char *bytes,
 	const char *pointer, nt_error *error);
 
 #ifdef __cplusplus

@@ -289,7 +289,7 @@ struct walk_list {
 		closed.push_back(is_closed);
 	}
 
-	nmtan_status move_to(nt_walks *walks, nt_error *error) const;
+	nt_status move_to(nt_walks *walks, nt_error *error) const;
 };
 
 template <typename To, typename From>
@@ -301,7 +301,7 @@ To *copy_out(const std::vector<From> &from)
 	return to;
 }
 
-nmtan_status walk_list::move_to(nt_walks *walks, nt_error *error) const
+nt_status walk_list::move_to(nt_walks *walks, nt_error *error) const
 {
 	walks->count = closed.size();
 	walks->first = copy_out<size_t>(first);
@@ -311,7 +311,7 @@ nmtan_status walk_list::move_to(nt_walks *walks, nt_error *error) const
 	walks->from = copy_out<uint32_t>(from);
 	walks->to = copy_out<uint32_t>(to);
 	if (walks->first && walks->closed && walks->left && walks->right && walks->from && walks->to)
-		return NMTAN_OK;
+		return NT_OK;
 	nt_walks_free(walks);
 	return nt_fail_memory(error);
 }
@@ -381,28 +381,28 @@ struct marked_edges {
 
 } // namespace
 
-nmtan_status nt_halfedges_build(nt_halfedges **result, size_t vertex_count, const uint32_t *triangles,
+nt_status nt_halfedges_build(nt_halfedges **result, size_t vertex_count, const uint32_t *triangles,
 	size_t triangle_count, nt_error *error)
 {
 	*result = nullptr;
 	if (triangle_count > max_triangles || vertex_count > NT_OPEN)
-		return nt_fail(error, NMTAN_ERROR_TOO_LARGE,
+		return nt_fail(error, NT_ERROR_TOO_LARGE,
 			"%zu triangles are too many for the seam report, which takes %zu",
 			triangle_count, max_triangles);
 	for (size_t s = 0; s < 3 * triangle_count; s++)
 		if (triangles[s] >= vertex_count)
-			return nt_fail(error, NMTAN_ERROR_INDEX,
+			return nt_fail(error, NT_ERROR_INDEX,
 				"triangle %zu refers to vertex %u of %zu", s / 3, triangles[s],
 				vertex_count);
 	nt_halfedges *mesh = nullptr;
-	const nmtan_status status = nt::guard(error, "OpenMesh", [&] {
+	const nt_status status = nt::guard(error, "OpenMesh", [&] {
 		silence();
 		mesh = new nt_halfedges;
 		mesh->triangle_count = triangle_count;
 		build(*mesh, vertex_count, triangles);
-		return NMTAN_OK;
+		return NT_OK;
 	});
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		*result = mesh;
 	else
 		delete mesh;
@@ -420,7 +420,7 @@ size_t nt_halfedges_left_out(const nt_halfedges *mesh, const uint32_t **triangle
 	return mesh->left_out.size();
 }
 
-nmtan_status nt_halfedges_chains(const nt_halfedges *mesh, const uint8_t *marked, nt_walks *walks,
+nt_status nt_halfedges_chains(const nt_halfedges *mesh, const uint8_t *marked, nt_walks *walks,
 	nt_error *error)
 {
 	std::memset(walks, 0, sizeof *walks);

@@ -33,9 +33,9 @@ typedef struct nt_halfedges nt_halfedges;
  *   triangles       [triangle_count][3] vertices, each below vertex_count; not kept
  *   triangle_count  at most 2^31 / 6: OpenMesh numbers half-edges by int
  *
- * Returns NMTAN_OK, NMTAN_ERROR_INDEX, NMTAN_ERROR_TOO_LARGE or NMTAN_ERROR_MEMORY.
+ * Returns NT_OK, NT_ERROR_INDEX, NT_ERROR_TOO_LARGE or NT_ERROR_MEMORY.
  */
-nmtan_status nt_halfedges_build(nt_halfedges **mesh, size_t vertex_count, const uint32_t *triangles,
+nt_status nt_halfedges_build(nt_halfedges **mesh, size_t vertex_count, const uint32_t *triangles,
 	size_t triangle_count, nt_error *error);
 
 /* NULL is allowed. */
@@ -66,9 +66,9 @@ void nt_walks_free(nt_walks *walks);
  *
  *   marked  [3 * triangle_count]
  *
- * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ * Returns NT_OK or NT_ERROR_MEMORY.
  */
-nmtan_status nt_halfedges_chains(const nt_halfedges *mesh, const uint8_t *marked, nt_walks *walks,
+nt_status nt_halfedges_chains(const nt_halfedges *mesh, const uint8_t *marked, nt_walks *walks,
 	nt_error *error);
 
 #ifdef __cplusplus

@@ -28,8 +28,8 @@ extern "C" {
  */
 typedef struct nt_model nt_model;
 
-/* An empty document with that asset.generator. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
-nmtan_status nt_model_create(nt_model **model, const char *generator, nt_error *error);
+/* An empty document with that asset.generator. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_model_create(nt_model **model, const char *generator, nt_error *error);
 
 /* NULL is allowed. */
 void nt_model_free(nt_model *model);
@@ -105,9 +105,9 @@ typedef enum nt_model_buffer {
  *   buffer_length  bytes; 0: the document has no buffer
  *   uri            of the buffer, percent-encoded; NT_MODEL_FILE only
  *
- * Returns NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_INTERNAL; also for an addition that failed.
+ * Returns NT_OK, NT_ERROR_MEMORY or NT_ERROR_INTERNAL; also for an addition that failed.
  */
-nmtan_status nt_model_json(nt_model *model, uint64_t buffer_length, nt_model_buffer buffer,
+nt_status nt_model_json(nt_model *model, uint64_t buffer_length, nt_model_buffer buffer,
 	const char *uri, nt_model_text *text, nt_error *error);
 void nt_model_text_free(nt_model_text *text);
 
@@ -125,10 +125,10 @@ typedef bool (*nt_reread_find)(void *user, const char *uri, const unsigned char 
  *   bytes  [size] the file
  *   find   called for buffers and images in other files; NULL: there are none
  *
- * Returns NMTAN_OK; NMTAN_ERROR_INPUT with tinygltf's words when it refuses the file, or JSON is nested
- * deeper than 512; NMTAN_ERROR_UNSUPPORTED from 4 GB on, which its interface cannot take; NMTAN_ERROR_MEMORY.
+ * Returns NT_OK; NT_ERROR_INPUT with tinygltf's words when it refuses the file, or JSON is nested
+ * deeper than 512; NT_ERROR_UNSUPPORTED from 4 GB on, which its interface cannot take; NT_ERROR_MEMORY.
  */
-nmtan_status nt_reread_open(nt_reread **model, const unsigned char *bytes, size_t size,
+nt_status nt_reread_open(nt_reread **model, const unsigned char *bytes, size_t size,
 	nt_reread_find find, void *user, nt_error *error);
 
 /* NULL is allowed. */
@@ -148,15 +148,15 @@ typedef struct nt_reread_array {
 /*
  * An attribute of a primitive by its name; its indices for a NULL name.
  *
- * Returns NMTAN_OK (with data NULL and count 0 when the primitive has none), NMTAN_ERROR_INPUT when the
- * accessor is not inside its view and buffer, or NMTAN_ERROR_MEMORY. Views that meshoptimizer packed are unpacked.
+ * Returns NT_OK (with data NULL and count 0 when the primitive has none), NT_ERROR_INPUT when the
+ * accessor is not inside its view and buffer, or NT_ERROR_MEMORY. Views that meshoptimizer packed are unpacked.
  * What Draco has in the primitive's block is zeros here, and its indices are none: see nt_reread_block().
  */
-nmtan_status nt_reread_attribute(nt_reread *model, size_t mesh, size_t primitive,
+nt_status nt_reread_attribute(nt_reread *model, size_t mesh, size_t primitive,
 	const char *name, nt_reread_array *array, nt_error *error);
 
 /* The same of a morph target of the primitive. */
-nmtan_status nt_reread_target(nt_reread *model, size_t mesh, size_t primitive, size_t target,
+nt_status nt_reread_target(nt_reread *model, size_t mesh, size_t primitive, size_t target,
 	const char *name, nt_reread_array *array, nt_error *error);
 
 /* The KHR_draco_mesh_compression block of a primitive; false: it has none. *bytes NULL: it is not inside of a

@@ -21,7 +21,7 @@
 
 struct nt_model {
 	tinygltf::Model document;
-	nmtan_status status = NMTAN_OK; // of the first addition that failed
+	nt_status status = NT_OK; // of the first addition that failed
 	nt_error error;
 };
 
@@ -61,14 +61,14 @@ double shortest(float value)
 // Runs an addition, unless an earlier one failed, and remembers its failure.
 template <typename Body> uint32_t add(nt_model *model, Body &&body)
 {
-	if (model->status != NMTAN_OK)
+	if (model->status != NT_OK)
 		return NT_MODEL_NONE;
 	uint32_t index = NT_MODEL_NONE;
 	model->status = nt::guard(&model->error, library, [&] {
 		index = static_cast<uint32_t>(body());
-		return NMTAN_OK;
+		return NT_OK;
 	});
-	return model->status == NMTAN_OK ? index : NT_MODEL_NONE;
+	return model->status == NT_OK ? index : NT_MODEL_NONE;
 }
 
 template <typename Item> size_t append(std::vector<Item> &items, Item &&item)
@@ -138,14 +138,14 @@ std::string buffers_member(uint64_t length, nt_model_buffer kind, const char *ur
 
 } // namespace
 
-nmtan_status nt_model_create(nt_model **model, const char *generator, nt_error *error)
+nt_status nt_model_create(nt_model **model, const char *generator, nt_error *error)
 {
 	*model = nullptr;
 	return nt::guard(error, library, [&] {
 		std::string name = utf8(generator);
 		*model = new nt_model;
 		(*model)->document.asset.generator = std::move(name);
-		return NMTAN_OK;
+		return NT_OK;
 	});
 }
 
@@ -295,11 +295,11 @@ uint32_t nt_model_node(nt_model *model, const char *name, uint32_t mesh, const d
 	});
 }
 
-nmtan_status nt_model_json(nt_model *model, uint64_t buffer_length, nt_model_buffer buffer,
+nt_status nt_model_json(nt_model *model, uint64_t buffer_length, nt_model_buffer buffer,
 	const char *uri, nt_model_text *text, nt_error *error)
 {
 	*text = {nullptr, 0, 0};
-	if (model->status != NMTAN_OK) {
+	if (model->status != NT_OK) {
 		if (error)
 			*error = model->error;
 		return model->status;
@@ -324,7 +324,7 @@ nmtan_status nt_model_json(nt_model *model, uint64_t buffer_length, nt_model_buf
 		std::memcpy(text->data, json.data(), json.size());
 		text->size = json.size();
 		text->cut = cut == std::string::npos ? json.size() : before + cut;
-		return NMTAN_OK;
+		return NT_OK;
 	});
 }
 

@@ -78,14 +78,14 @@ bool decode_nothing(tinygltf::Image *, int, std::string *, std::string *, int, i
 	return true;
 }
 
-nmtan_status load(nt_reread &model, const unsigned char *bytes, size_t size, finder files, nt_error *error)
+nt_status load(nt_reread &model, const unsigned char *bytes, size_t size, finder files, nt_error *error)
 {
 	const nt::gltf_text text(bytes, size);
 	if (text.is_too_deep())
-		return nt_fail(error, NMTAN_ERROR_INPUT, "JSON is nested deeper than %d levels",
+		return nt_fail(error, NT_ERROR_INPUT, "JSON is nested deeper than %d levels",
 			nt::gltf_text::max_depth);
 	if (size > 0xffffffffu)
-		return nt_fail(error, NMTAN_ERROR_UNSUPPORTED,
+		return nt_fail(error, NT_ERROR_UNSUPPORTED,
 			"tinygltf cannot read a file of %zu bytes back, the limit is 4294967295", size);
 
 	tinygltf::TinyGLTF loader;
@@ -100,10 +100,10 @@ nmtan_status load(nt_reread &model, const unsigned char *bytes, size_t size, fin
 			reinterpret_cast<const unsigned char *>(begin), length)
 		: loader.LoadASCIIFromString(&model.document, &message, &warning, begin, length, "");
 	if (loaded && message.empty())
-		return NMTAN_OK;
+		return NT_OK;
 	for (char &c : message)
 		c = c == '\n' ? ' ' : c;
-	return nt_fail(error, NMTAN_ERROR_INPUT, "tinygltf refuses the document: %s", message.c_str());
+	return nt_fail(error, NT_ERROR_INPUT, "tinygltf refuses the document: %s", message.c_str());
 }
 
 // ---- accessors ----
@@ -127,10 +127,10 @@ const char *unpack(nt_reread &model, size_t index, size_t size, const unsigned c
 			packed.size};
 		const unsigned char *from =
 			buffer_bytes(model.document, packed.buffer, packed.offset, packed.size);
-		if (!from || nt_meshopt_check(&view, size, "", nullptr) != NMTAN_OK)
+		if (!from || nt_meshopt_check(&view, size, "", nullptr) != NT_OK)
 			return "the buffer view is packed, and its packed bytes are not as it says";
 		std::vector<unsigned char> made(size + 1); // never empty
-		if (nt_meshopt_unpack(&view, from, made.data(), "", nullptr) != NMTAN_OK)
+		if (nt_meshopt_unpack(&view, from, made.data(), "", nullptr) != NT_OK)
 			return "meshoptimizer cannot unpack the buffer view";
 		unpacked = std::move(made);
 	}
@@ -248,21 +248,21 @@ constexpr size_t place_size = 200;
 
 // The array of the accessor that find() gives, -1 for none; it also says where in the primitive that stands.
 template <typename Find>
-nmtan_status read_array(nt_reread *model, size_t mesh, size_t primitive, nt_reread_array *array, nt_error *error,
+nt_status read_array(nt_reread *model, size_t mesh, size_t primitive, nt_reread_array *array, nt_error *error,
 	Find &&find)
 {
 	*array = {};
 	if (primitive >= nt_reread_primitive_count(model, mesh))
-		return nt_fail(error, NMTAN_ERROR_INPUT, "mesh %zu has no primitive %zu", mesh, primitive);
-	return nt::guard(error, library, [&]() -> nmtan_status {
+		return nt_fail(error, NT_ERROR_INPUT, "mesh %zu has no primitive %zu", mesh, primitive);
+	return nt::guard(error, library, [&]() -> nt_status {
 		char place[place_size], pointer[place_size + 100];
 		const int index = find(model->document.meshes[mesh].primitives[primitive], place);
 		const char *fault =
 			index < 0 ? nullptr : resolve(*model, index, array);
 		if (!fault)
-			return NMTAN_OK;
+			return NT_OK;
 		std::snprintf(pointer, sizeof pointer, "/meshes/%zu/primitives/%zu/%s", mesh, primitive, place);
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "%s", fault);
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s", fault);
 	});
 }
 
@@ -278,16 +278,16 @@ const tinygltf::Value *block_of(const nt_reread *model, size_t mesh, size_t prim
 
 } // namespace
 
-nmtan_status nt_reread_open(nt_reread **model, const unsigned char *bytes, size_t size,
+nt_status nt_reread_open(nt_reread **model, const unsigned char *bytes, size_t size,
 	nt_reread_find find, void *user, nt_error *error)
 {
 	*model = nullptr;
 	nt_reread *made = nullptr;
-	const nmtan_status status = nt::guard(error, library, [&] {
+	const nt_status status = nt::guard(error, library, [&] {
 		made = new nt_reread;
 		return load(*made, bytes, size, {find, user}, error);
 	});
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		*model = made;
 	else
 		delete made;
@@ -309,7 +309,7 @@ size_t nt_reread_primitive_count(const nt_reread *model, size_t mesh)
 	return mesh < model->document.meshes.size() ? model->document.meshes[mesh].primitives.size() : 0;
 }
 
-nmtan_status nt_reread_attribute(nt_reread *model, size_t mesh, size_t primitive,
+nt_status nt_reread_attribute(nt_reread *model, size_t mesh, size_t primitive,
 	const char *name, nt_reread_array *array, nt_error *error)
 {
 	return read_array(model, mesh, primitive, array, error, [&](const tinygltf::Primitive &item, char *place) {
@@ -318,7 +318,7 @@ nmtan_status nt_reread_attribute(nt_reread *model, size_t mesh, size_t primitive
 	});
 }
 
-nmtan_status nt_reread_target(nt_reread *model, size_t mesh, size_t primitive, size_t target,
+nt_status nt_reread_target(nt_reread *model, size_t mesh, size_t primitive, size_t target,
 	const char *name, nt_reread_array *array, nt_error *error)
 {
 	return read_array(model, mesh, primitive, array, error, [&](const tinygltf::Primitive &item, char *place) {

@@ -17,7 +17,7 @@ static void encode_group(const unsigned char *in, char *out)
 		out[i] = digits[bits >> (18 - 6 * i) & 63];
 }
 
-nmtan_status nt_base64_write(nt_base64 *base64, const void *bytes, size_t size, nt_error *error)
+nt_status nt_base64_write(nt_base64 *base64, const void *bytes, size_t size, nt_error *error)
 {
 	const unsigned char *in = bytes;
 	char out[4 * BUFFER_GROUPS];
@@ -33,8 +33,8 @@ nmtan_status nt_base64_write(nt_base64 *base64, const void *bytes, size_t size, 
 	}
 	for (; size >= 3; in += 3, size -= 3) {
 		if (used == sizeof out) {
-			const nmtan_status status = nt_sink_write(base64->sink, out, used, error);
-			if (status != NMTAN_OK)
+			const nt_status status = nt_sink_write(base64->sink, out, used, error);
+			if (status != NT_OK)
 				return status;
 			used = 0;
 		}
@@ -43,7 +43,7 @@ nmtan_status nt_base64_write(nt_base64 *base64, const void *bytes, size_t size, 
 	}
 	while (size-- > 0)
 		base64->rest[base64->rest_count++] = *in++;
-	return used ? nt_sink_write(base64->sink, out, used, error) : NMTAN_OK;
+	return used ? nt_sink_write(base64->sink, out, used, error) : NT_OK;
 }
 
 /* Less than three bytes, with what stands for those that lack. */
@@ -55,10 +55,10 @@ static void encode_last(const unsigned char *in, size_t count, char out[4])
 	memset(out + count + 1, '=', 3 - count);
 }
 
-nmtan_status nt_base64_end(nt_base64 *base64, nt_error *error)
+nt_status nt_base64_end(nt_base64 *base64, nt_error *error)
 {
 	if (base64->rest_count == 0)
-		return NMTAN_OK;
+		return NT_OK;
 	char out[4];
 	encode_last(base64->rest, base64->rest_count, out);
 	base64->rest_count = 0;

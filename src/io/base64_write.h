@@ -16,10 +16,10 @@ typedef struct nt_base64 {
 	unsigned rest_count;
 } nt_base64;
 
-nmtan_status nt_base64_write(nt_base64 *base64, const void *bytes, size_t size, nt_error *error);
+nt_status nt_base64_write(nt_base64 *base64, const void *bytes, size_t size, nt_error *error);
 
 /* Writes the last group with its padding. */
-nmtan_status nt_base64_end(nt_base64 *base64, nt_error *error);
+nt_status nt_base64_end(nt_base64 *base64, nt_error *error);
 
 /* How many characters that many bytes become; bytes below 2^62. */
 static inline uint64_t nt_base64_length(uint64_t bytes)

@@ -61,7 +61,7 @@ static target target_of(nt_mesh *mesh, nt_draco_kind kind)
 	}
 }
 
-static nmtan_status take_attributes(nt_scene *scene, nt_mesh *mesh, const nt_draco_mesh *from,
+static nt_status take_attributes(nt_scene *scene, nt_mesh *mesh, const nt_draco_mesh *from,
 	nt_error *error)
 {
 	for (size_t i = 0; i < from->attribute_count; i++) {
@@ -76,11 +76,11 @@ static nmtan_status take_attributes(nt_scene *scene, nt_mesh *mesh, const nt_dra
 		if (!*to.rows)
 			return nt_fail_memory(error);
 	}
-	return mesh->positions ? NMTAN_OK
-			       : nt_fail(error, NMTAN_ERROR_INPUT, "the Draco mesh has no positions");
+	return mesh->positions ? NT_OK
+			       : nt_fail(error, NT_ERROR_INPUT, "the Draco mesh has no positions");
 }
 
-static nmtan_status fill_scene(nt_scene *scene, const nt_draco_mesh *from, nt_error *error)
+static nt_status fill_scene(nt_scene *scene, const nt_draco_mesh *from, nt_error *error)
 {
 	nt_mesh *mesh = nt_arena_alloc(&scene->arena, 1, sizeof *mesh);
 	nt_instance *instance = nt_arena_alloc(&scene->arena, 1, sizeof *instance);
@@ -101,20 +101,20 @@ static nmtan_status fill_scene(nt_scene *scene, const nt_draco_mesh *from, nt_er
 	scene->meshes = mesh;
 	scene->instances = instance;
 	scene->mesh_count = scene->instance_count = 1;
-	const nmtan_status status = take_attributes(scene, mesh, from, error);
+	const nt_status status = take_attributes(scene, mesh, from, error);
 	mesh->has_normals = mesh->normals != NULL;
 	mesh->has_texcoords = mesh->texcoords != NULL;
 	return status;
 }
 
-nmtan_status nt_drc_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
+nt_status nt_drc_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
 	(void)options;
 	nt_draco *decoded;
 	scene->format = NT_FORMAT_DRC;
-	nmtan_status status =
+	nt_status status =
 		nt_draco_decode(&decoded, scene->bytes, scene->byte_count, 0, false, error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = fill_scene(scene, nt_draco_get(decoded), error);
 	nt_draco_free(decoded);
 	return status;

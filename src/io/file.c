@@ -22,17 +22,17 @@ enum { FIRST_READ_BYTES = 64 * 1024 };
 
 static const unsigned char no_bytes[1]; /* where the data of an empty input points */
 
-static nmtan_status fail_read(nt_error *error, const char *path, int number)
+static nt_status fail_read(nt_error *error, const char *path, int number)
 {
 	if (number == ENOENT)
-		nt_fail(error, NMTAN_ERROR_IO, "no such file");
+		nt_fail(error, NT_ERROR_IO, "no such file");
 	else
-		nt_fail(error, NMTAN_ERROR_IO, "cannot read: %s", strerror(number));
+		nt_fail(error, NT_ERROR_IO, "cannot read: %s", strerror(number));
 	return nt_error_in_file(error, path);
 }
 
 /* Reads a descriptor to its end. */
-static nmtan_status read_all(nt_file *file, int fd, const char *path, nt_error *error)
+static nt_status read_all(nt_file *file, int fd, const char *path, nt_error *error)
 {
 	unsigned char *data = NULL;
 	size_t size = 0, capacity = 0;
@@ -62,7 +62,7 @@ static nmtan_status read_all(nt_file *file, int fd, const char *path, nt_error *
 	} else {
 		free(data);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Maps what can be mapped; false: it has to be read. */
@@ -82,7 +82,7 @@ static bool map_all(nt_file *file, int fd, const struct stat *status)
 	return true;
 }
 
-nmtan_status nt_file_open(nt_file *file, const char *path, nt_error *error)
+nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
 {
 	*file = (nt_file){.data = no_bytes, .fd = -1};
 	const bool standard = strcmp(path, "-") == 0;
@@ -100,8 +100,8 @@ nmtan_status nt_file_open(nt_file *file, const char *path, nt_error *error)
 		file->inode = (uint64_t)status.st_ino;
 	}
 	if (map_all(file, fd, &status))
-		return NMTAN_OK;
-	const nmtan_status result = S_ISDIR(status.st_mode) ? fail_read(error, path, EISDIR)
+		return NT_OK;
+	const nt_status result = S_ISDIR(status.st_mode) ? fail_read(error, path, EISDIR)
 							    : read_all(file, fd, path, error);
 	close(fd);
 	return result;

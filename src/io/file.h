@@ -22,8 +22,8 @@ typedef struct nt_file {
 } nt_file;
 
 /* Maps a file, or reads standard input when path is "-" or the file is a pipe. The error carries the
- * name. Returns NMTAN_OK, NMTAN_ERROR_IO or NMTAN_ERROR_MEMORY. */
-nmtan_status nt_file_open(nt_file *file, const char *path, nt_error *error);
+ * name. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
+nt_status nt_file_open(nt_file *file, const char *path, nt_error *error);
 void nt_file_close(nt_file *file);
 
 /* Says that bytes of a mapped file will hardly be read again: their pages no longer count as memory of this
@@ -48,30 +48,30 @@ typedef struct nt_output_options {
 	bool dry_run;    /* refuse what would be refused, count what would be written, write nothing */
 } nt_output_options;
 
-/* Starts an output set. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
-nmtan_status nt_output_create(nt_output **output, const nt_output_options *options, nt_error *error);
+/* Starts an output set. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_output_create(nt_output **output, const nt_output_options *options, nt_error *error);
 
 /* Names a file that must not be written: the input ("-" too) and every file the input refers to. Files that do
  * not exist are ignored. To write in place, do not name the input. way_out: what the refusal advises; NULL: nothing. */
-nmtan_status nt_output_protect(nt_output *output, const char *path, const char *way_out, nt_error *error);
+nt_status nt_output_protect(nt_output *output, const char *path, const char *way_out, nt_error *error);
 
 /* Adds a file to the set; "-" is standard output. The first file added with main = true gets its name last. A
  * directory, a missing folder, a protected file, the same name twice and, with no_clobber, an existing file are
  * errors. The sink belongs to the set. */
-nmtan_status nt_output_add(nt_output *output, const char *path, bool main, nt_sink **sink,
+nt_status nt_output_add(nt_output *output, const char *path, bool main, nt_sink **sink,
 	nt_error *error);
 
 /* Appends bytes. Small writes are buffered, large ones go straight to the file. */
-nmtan_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error *error);
+nt_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error *error);
 
 /* Appends a range of an input: by copy_file_range where the kernel can and the pages of both
  * files meet, else like nt_sink_write. */
-nmtan_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
+nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
 	nt_error *error);
 
 /* Flushes the file of the set that was added under `path` and says where it is for the time being; NULL when
  * the set has no such file or writes it through. */
-nmtan_status nt_output_written(nt_output *output, const char *path, const char **temporary,
+nt_status nt_output_written(nt_output *output, const char *path, const char **temporary,
 	nt_error *error);
 
 /* Bytes written to all files of the set so far. */
@@ -82,7 +82,7 @@ uint64_t nt_output_copied(const nt_output *output);
 
 /* Gives every file its name, in order; on failure everything is removed as by nt_output_abort. The set is freed
  * either way. */
-nmtan_status nt_output_commit(nt_output *output, nt_error *error);
+nt_status nt_output_commit(nt_output *output, nt_error *error);
 
 /* Removes the temporary files and frees the set; NULL is allowed. */
 void nt_output_abort(nt_output *output);

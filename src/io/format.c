@@ -8,7 +8,7 @@
 #include <string.h>
 #include <strings.h>
 
-static nmtan_status write_gltf(nt_scene *scene, const nt_write_options *options,
+static nt_status write_gltf(nt_scene *scene, const nt_write_options *options,
 	nt_output *output, nt_error *error)
 {
 	if (scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB)

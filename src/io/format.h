@@ -84,16 +84,16 @@ typedef struct nt_format_entry {
 	/* Whether these bytes are this format; called with the whole input. */
 	bool (*recognise)(const unsigned char *bytes, size_t size);
 	/* Describes the meshes of scene->bytes (and loads them, where that is one step). */
-	nmtan_status (*open)(nt_scene *scene, const nt_read_options *options, nt_error *error);
+	nt_status (*open)(nt_scene *scene, const nt_read_options *options, nt_error *error);
 	/* After the decisions: sets same_as of meshes that will be solved and have the geometry of an earlier one;
 	 * NULL: no two have the same. */
-	nmtan_status (*find_same)(nt_scene *scene, const nt_read_options *options, nt_error *error);
+	nt_status (*find_same)(nt_scene *scene, const nt_read_options *options, nt_error *error);
 	/* Brings the geometry of one mesh; NULL: open did. */
-	nmtan_status (*load)(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
+	nt_status (*load)(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 		nt_error *error);
 	/* Stores the annotated scene. Any scene may come; a scene of the same format carries its
 	 * source document. */
-	nmtan_status (*write)(nt_scene *scene, const nt_write_options *options, nt_output *output,
+	nt_status (*write)(nt_scene *scene, const nt_write_options *options, nt_output *output,
 		nt_error *error);
 } nt_format_entry;
 
@@ -108,27 +108,27 @@ const nt_format_entry *nt_format_of_path(const char *path);
 
 /* The formats' own functions, for the table. */
 bool nt_obj_recognise(const unsigned char *bytes, size_t size);
-nmtan_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
+nt_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
 
 bool nt_ply_recognise(const unsigned char *bytes, size_t size);
-nmtan_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
-nmtan_status nt_ply_write(nt_scene *scene, const nt_write_options *options, nt_output *output,
+nt_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
+nt_status nt_ply_write(nt_scene *scene, const nt_write_options *options, nt_output *output,
 	nt_error *error);
 
 bool nt_drc_recognise(const unsigned char *bytes, size_t size);
-nmtan_status nt_drc_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
+nt_status nt_drc_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
 
 bool nt_gltf_recognise(const unsigned char *bytes, size_t size);
 bool nt_glb_recognise(const unsigned char *bytes, size_t size);
-nmtan_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
-nmtan_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_error *error);
-nmtan_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
+nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error *error);
+nt_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_error *error);
+nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 	nt_error *error);
 /* glTF from glTF: a patch of the document. */
-nmtan_status nt_gltf_patch(nt_scene *scene, const nt_write_options *options, nt_output *output,
+nt_status nt_gltf_patch(nt_scene *scene, const nt_write_options *options, nt_output *output,
 	nt_error *error);
 /* glTF from anything else: a new document. */
-nmtan_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_output *output,
+nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_output *output,
 	nt_error *error);
 
 #endif

@@ -24,39 +24,39 @@ bool nt_glb_has_magic(const unsigned char *bytes, size_t size)
 }
 
 /* The header; *end receives where the container ends. */
-static nmtan_status read_header(const unsigned char *bytes, size_t size, size_t *end, nt_error *error)
+static nt_status read_header(const unsigned char *bytes, size_t size, size_t *end, nt_error *error)
 {
 	if (size < HEADER_BYTES)
-		return nt_fail_offset(error, NMTAN_ERROR_INPUT, size,
+		return nt_fail_offset(error, NT_ERROR_INPUT, size,
 			"the file ends within the 12-byte GLB header");
 	if (!nt_glb_has_magic(bytes, size))
-		return nt_fail_offset(error, NMTAN_ERROR_INPUT, 0, "not a GLB: no \"glTF\" at its begin");
+		return nt_fail_offset(error, NT_ERROR_INPUT, 0, "not a GLB: no \"glTF\" at its begin");
 	const uint32_t version = read_u32(bytes + 4), length = read_u32(bytes + 8);
 	if (version != 2)
-		return nt_fail_offset(error, NMTAN_ERROR_UNSUPPORTED, 4,
+		return nt_fail_offset(error, NT_ERROR_UNSUPPORTED, 4,
 			"GLB version %u, expected 2", version);
 	if (length < HEADER_BYTES + CHUNK_HEAD_BYTES)
-		return nt_fail_offset(error, NMTAN_ERROR_INPUT, 8,
+		return nt_fail_offset(error, NT_ERROR_INPUT, 8,
 			"the GLB header declares %u bytes, too few for a JSON chunk", length);
 	if (length > size)
-		return nt_fail_offset(error, NMTAN_ERROR_INPUT, 8,
+		return nt_fail_offset(error, NT_ERROR_INPUT, 8,
 			"the GLB header declares %u bytes, the file has %zu", length, size);
 	*end = length;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status read_chunk(const unsigned char *bytes, size_t at, size_t end, nt_glb_chunk *chunk,
+static nt_status read_chunk(const unsigned char *bytes, size_t at, size_t end, nt_glb_chunk *chunk,
 	nt_error *error)
 {
 	if (end - at < CHUNK_HEAD_BYTES)
-		return nt_fail_offset(error, NMTAN_ERROR_INPUT, at,
+		return nt_fail_offset(error, NT_ERROR_INPUT, at,
 			"%zu bytes left, a GLB chunk begins with 8", end - at);
 	const uint32_t length = read_u32(bytes + at);
 	*chunk = (nt_glb_chunk){read_u32(bytes + at + 4), at + CHUNK_HEAD_BYTES, length};
 	if (length > end - chunk->offset)
-		return nt_fail_offset(error, NMTAN_ERROR_INPUT, at,
+		return nt_fail_offset(error, NT_ERROR_INPUT, at,
 			"a GLB chunk declares %u bytes, %zu are left", length, end - chunk->offset);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static bool keep_other(nt_glb *glb, nt_arena *arena, size_t *capacity, const nt_glb_chunk *chunk)
@@ -86,12 +86,12 @@ static bool only_padding(const unsigned char *bytes, size_t at, size_t end)
 	return true;
 }
 
-nmtan_status nt_glb_parse(nt_glb *glb, nt_arena *arena, const unsigned char *bytes, size_t size,
+nt_status nt_glb_parse(nt_glb *glb, nt_arena *arena, const unsigned char *bytes, size_t size,
 	nt_error *error)
 {
 	*glb = (nt_glb){0};
 	size_t end = 0;
-	nmtan_status status = read_header(bytes, size, &end, error);
+	nt_status status = read_header(bytes, size, &end, error);
 	if (status)
 		return status;
 
@@ -100,13 +100,13 @@ nmtan_status nt_glb_parse(nt_glb *glb, nt_arena *arena, const unsigned char *byt
 	if (status)
 		return status;
 	if (glb->json.type != type_json)
-		return nt_fail_offset(error, NMTAN_ERROR_INPUT, HEADER_BYTES + 4,
+		return nt_fail_offset(error, NT_ERROR_INPUT, HEADER_BYTES + 4,
 			"the first GLB chunk has type 0x%08x, expected JSON (0x4e4f534a)", glb->json.type);
 	size_t at = glb->json.offset + glb->json.size;
 	while (glb->json.size > 0 && bytes[glb->json.offset + glb->json.size - 1] == 0)
 		glb->json.size--;
 	if (glb->json.size == 0)
-		return nt_fail_offset(error, NMTAN_ERROR_INPUT, HEADER_BYTES,
+		return nt_fail_offset(error, NT_ERROR_INPUT, HEADER_BYTES,
 			"the JSON chunk of the GLB is empty");
 
 	/* BIN must be second to count; whatever else there is stays as it is. */
@@ -124,5 +124,5 @@ nmtan_status nt_glb_parse(nt_glb *glb, nt_arena *arena, const unsigned char *byt
 		}
 		at = chunk.offset + chunk.size;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }

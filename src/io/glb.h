@@ -30,10 +30,10 @@ bool nt_glb_has_magic(const unsigned char *bytes, size_t size);
  * Finds the chunks of a GLB. Data behind the declared length is ignored, as viewers do; everything else
  * that is wrong is an error with its byte offset.
  *
- * Returns NMTAN_OK, NMTAN_ERROR_INPUT, NMTAN_ERROR_UNSUPPORTED (another version of the container) or
- * NMTAN_ERROR_MEMORY.
+ * Returns NT_OK, NT_ERROR_INPUT, NT_ERROR_UNSUPPORTED (another version of the container) or
+ * NT_ERROR_MEMORY.
  */
-nmtan_status nt_glb_parse(nt_glb *glb, nt_arena *arena, const unsigned char *bytes, size_t size,
+nt_status nt_glb_parse(nt_glb *glb, nt_arena *arena, const unsigned char *bytes, size_t size,
 	nt_error *error);
 
 /*
@@ -46,24 +46,24 @@ nmtan_status nt_glb_parse(nt_glb *glb, nt_arena *arena, const unsigned char *byt
  *   bin_size         size of its data; padding is added
  *   other_bytes      sum of nt_glb_chunk_bytes() over the chunks that follow
  *
- * Returns NMTAN_OK, NMTAN_ERROR_IO, or NMTAN_ERROR_UNSUPPORTED where the file would reach 4 GiB, which
+ * Returns NT_OK, NT_ERROR_IO, or NT_ERROR_UNSUPPORTED where the file would reach 4 GiB, which
  * the container cannot say.
  */
-nmtan_status nt_glb_begin(nt_sink *sink, uint64_t json_size, bool has_bin, uint64_t bin_size,
+nt_status nt_glb_begin(nt_sink *sink, uint64_t json_size, bool has_bin, uint64_t bin_size,
 	uint64_t other_bytes, nt_error *error);
 
 /* Pads the JSON chunk with spaces and writes the head of the BIN chunk, if there is one. */
-nmtan_status nt_glb_end_json(nt_sink *sink, uint64_t json_size, bool has_bin, uint64_t bin_size,
+nt_status nt_glb_end_json(nt_sink *sink, uint64_t json_size, bool has_bin, uint64_t bin_size,
 	nt_error *error);
 
 /* Pads the BIN chunk. */
-nmtan_status nt_glb_end_bin(nt_sink *sink, uint64_t bin_size, nt_error *error);
+nt_status nt_glb_end_bin(nt_sink *sink, uint64_t bin_size, nt_error *error);
 
 /* Bytes that a chunk with `size` bytes of data takes in the file. */
 uint64_t nt_glb_chunk_bytes(uint64_t size);
 
 /* Writes a whole chunk, padded with zeros. */
-nmtan_status nt_glb_write_chunk(nt_sink *sink, uint32_t type, const void *data, size_t size,
+nt_status nt_glb_write_chunk(nt_sink *sink, uint32_t type, const void *data, size_t size,
 	nt_error *error);
 
 #endif

@@ -26,7 +26,7 @@ uint64_t nt_glb_chunk_bytes(uint64_t size)
 	return CHUNK_HEAD_BYTES + size + padding(size);
 }
 
-static nmtan_status write_chunk_head(nt_sink *sink, uint32_t type, uint64_t size, nt_error *error)
+static nt_status write_chunk_head(nt_sink *sink, uint32_t type, uint64_t size, nt_error *error)
 {
 	unsigned char head[CHUNK_HEAD_BYTES];
 	store_u32(head, (uint32_t)(size + padding(size)));
@@ -34,14 +34,14 @@ static nmtan_status write_chunk_head(nt_sink *sink, uint32_t type, uint64_t size
 	return nt_sink_write(sink, head, sizeof head, error);
 }
 
-static nmtan_status write_padding(nt_sink *sink, uint64_t size, char with, nt_error *error)
+static nt_status write_padding(nt_sink *sink, uint64_t size, char with, nt_error *error)
 {
 	char bytes[4];
 	memset(bytes, with, sizeof bytes);
 	return nt_sink_write(sink, bytes, (size_t)padding(size), error);
 }
 
-nmtan_status nt_glb_begin(nt_sink *sink, uint64_t json_size, bool has_bin, uint64_t bin_size,
+nt_status nt_glb_begin(nt_sink *sink, uint64_t json_size, bool has_bin, uint64_t bin_size,
 	uint64_t other_bytes, nt_error *error)
 {
 	/* Each part is below 2^62, so that their sum cannot wrap. */
@@ -51,34 +51,34 @@ nmtan_status nt_glb_begin(nt_sink *sink, uint64_t json_size, bool has_bin, uint6
 		total = HEADER_BYTES + nt_glb_chunk_bytes(json_size) +
 			(has_bin ? nt_glb_chunk_bytes(bin_size) : 0) + other_bytes;
 	if (total > UINT32_MAX)
-		return nt_fail(error, NMTAN_ERROR_UNSUPPORTED,
+		return nt_fail(error, NT_ERROR_UNSUPPORTED,
 			"the output would take 4 GiB or more, which GLB cannot hold; write .gltf");
 
 	unsigned char header[HEADER_BYTES];
 	memcpy(header, "glTF", 4);
 	store_u32(header + 4, 2);
 	store_u32(header + 8, (uint32_t)total);
-	const nmtan_status status = nt_sink_write(sink, header, sizeof header, error);
+	const nt_status status = nt_sink_write(sink, header, sizeof header, error);
 	return status ? status : write_chunk_head(sink, type_json, json_size, error);
 }
 
-nmtan_status nt_glb_end_json(nt_sink *sink, uint64_t json_size, bool has_bin, uint64_t bin_size, nt_error *error)
+nt_status nt_glb_end_json(nt_sink *sink, uint64_t json_size, bool has_bin, uint64_t bin_size, nt_error *error)
 {
-	nmtan_status status = write_padding(sink, json_size, ' ', error);
+	nt_status status = write_padding(sink, json_size, ' ', error);
 	if (!status && has_bin)
 		status = write_chunk_head(sink, type_bin, bin_size, error);
 	return status;
 }
 
-nmtan_status nt_glb_end_bin(nt_sink *sink, uint64_t bin_size, nt_error *error)
+nt_status nt_glb_end_bin(nt_sink *sink, uint64_t bin_size, nt_error *error)
 {
 	return write_padding(sink, bin_size, 0, error);
 }
 
-nmtan_status nt_glb_write_chunk(nt_sink *sink, uint32_t type, const void *data, size_t size,
+nt_status nt_glb_write_chunk(nt_sink *sink, uint32_t type, const void *data, size_t size,
 	nt_error *error)
 {
-	nmtan_status status = write_chunk_head(sink, type, size, error);
+	nt_status status = write_chunk_head(sink, type, size, error);
 	if (!status)
 		status = nt_sink_write(sink, data, size, error);
 	if (!status)

@@ -55,11 +55,11 @@ static bool find_type(const char *name, uint32_t component_bytes, uint32_t *comp
 	return false;
 }
 
-static nmtan_status read_format(const nt_json_value *json, const char *pointer,
+static nt_status read_format(const nt_json_value *json, const char *pointer,
 	nt_gltf_accessor *accessor, nt_error *error)
 {
 	uint64_t type = 0;
-	nmtan_status status = nt_gltf_uint(json, pointer, "componentType", UINT32_MAX, NT_GLTF_REQUIRED,
+	nt_status status = nt_gltf_uint(json, pointer, "componentType", UINT32_MAX, NT_GLTF_REQUIRED,
 		&type, error);
 	if (status)
 		return status;
@@ -68,14 +68,14 @@ static nmtan_status read_format(const nt_json_value *json, const char *pointer,
 	accessor->component_bytes = nt_gltf_component_bytes(type);
 	if (!accessor->component_bytes) {
 		snprintf(place, sizeof place, "%s/componentType", pointer);
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, place,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, place,
 			"%llu, expected 5120 to 5123, 5125 or 5126", (unsigned long long)type);
 	}
 	const char *name = nt_json_get_string(nt_json_find(json, "type"), NULL);
 	if (!find_type(name, accessor->component_bytes, &accessor->components,
 		&accessor->element_bytes)) {
 		snprintf(place, sizeof place, "%s/type", pointer);
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, place,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, place,
 			"%s%.30s%s, expected SCALAR, VEC2 to VEC4 or MAT2 to MAT4", name ? "\"" : "",
 			name ? name : nt_json_type_text(nt_json_find(json, "type")), name ? "\"" : "");
 	}
@@ -85,31 +85,31 @@ static nmtan_status read_format(const nt_json_value *json, const char *pointer,
 }
 
 /* `count` elements of `bytes` each, `stride` apart, from `offset` on in a view. */
-static nmtan_status check_range(const nt_gltf_view *view, uint64_t offset, uint64_t count,
+static nt_status check_range(const nt_gltf_view *view, uint64_t offset, uint64_t count,
 	uint64_t bytes, uint64_t stride, const char *pointer, nt_error *error)
 {
 	/* count < 2^32 and stride < 2^16, offset <= 2^53: no overflow */
 	const uint64_t end = count ? offset + (count - 1) * stride + bytes : offset;
 	if (end > view->length)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"%llu elements end at byte %llu of bufferView %u, which has %llu",
 			(unsigned long long)count, (unsigned long long)end, view->index,
 			(unsigned long long)view->length);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status check_dense(nt_gltf *document, const nt_json_value *json, const char *pointer,
+static nt_status check_dense(nt_gltf *document, const nt_json_value *json, const char *pointer,
 	nt_gltf_accessor *accessor, nt_error *error)
 {
 	uint64_t index;
-	nmtan_status status =
+	nt_status status =
 		nt_gltf_uint(json, pointer, "bufferView", UINT32_MAX - 1, NT_NONE, &index, error);
 	if (status)
 		return status;
 	accessor->view = (uint32_t)index;
 	accessor->stride = accessor->element_bytes;
 	if (accessor->view == NT_NONE)
-		return NMTAN_OK;
+		return NT_OK;
 	status = nt_gltf_uint(json, pointer, "byteOffset", (uint64_t)1 << 53, 0, &accessor->offset, error);
 	nt_gltf_view view;
 	if (!status)
@@ -118,7 +118,7 @@ static nmtan_status check_dense(nt_gltf *document, const nt_json_value *json, co
 		return status;
 	if (view.stride) {
 		if (view.stride < accessor->element_bytes)
-			return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 				"elements of %u bytes, but bufferView %u has a byteStride of %u",
 				accessor->element_bytes, view.index, view.stride);
 		accessor->stride = view.stride;
@@ -128,7 +128,7 @@ static nmtan_status check_dense(nt_gltf *document, const nt_json_value *json, co
 }
 
 /* One of the two halves of a sparse object. */
-static nmtan_status check_sparse_part(nt_gltf *document, const nt_json_value *sparse, const char *name,
+static nt_status check_sparse_part(nt_gltf *document, const nt_json_value *sparse, const char *name,
 	const char *pointer, uint64_t count, uint64_t element_bytes, uint32_t *view_index,
 	uint64_t *offset, nt_error *error)
 {
@@ -136,7 +136,7 @@ static nmtan_status check_sparse_part(nt_gltf *document, const nt_json_value *sp
 	snprintf(place, sizeof place, "%s/%s", pointer, name);
 	const nt_json_value *part = nt_json_find(sparse, name);
 	uint64_t index;
-	nmtan_status status = nt_gltf_uint(part, place, "bufferView", UINT32_MAX - 1, NT_GLTF_REQUIRED,
+	nt_status status = nt_gltf_uint(part, place, "bufferView", UINT32_MAX - 1, NT_GLTF_REQUIRED,
 		&index, error);
 	if (!status)
 		status = nt_gltf_uint(part, place, "byteOffset", (uint64_t)1 << 53, 0, offset, error);
@@ -149,12 +149,12 @@ static nmtan_status check_sparse_part(nt_gltf *document, const nt_json_value *sp
 	return check_range(&view, *offset, count, element_bytes, element_bytes, place, error);
 }
 
-static nmtan_status check_sparse(nt_gltf *document, const nt_json_value *sparse, const char *accessor_pointer,
+static nt_status check_sparse(nt_gltf *document, const nt_json_value *sparse, const char *accessor_pointer,
 	nt_gltf_accessor *accessor, nt_error *error)
 {
 	char pointer[NT_GLTF_POINTER], place[NT_GLTF_POINTER * 2];
 	snprintf(pointer, sizeof pointer, "%.100s/sparse", accessor_pointer);
-	nmtan_status status = nt_gltf_uint(sparse, pointer, "count", accessor->count, NT_GLTF_REQUIRED,
+	nt_status status = nt_gltf_uint(sparse, pointer, "count", accessor->count, NT_GLTF_REQUIRED,
 		&accessor->sparse_count, error);
 	if (status || accessor->sparse_count == 0)
 		return status;
@@ -165,7 +165,7 @@ static nmtan_status check_sparse(nt_gltf *document, const nt_json_value *sparse,
 	if (status)
 		return status;
 	if (type != NT_GLTF_UBYTE && type != NT_GLTF_USHORT && type != NT_GLTF_UINT)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, place,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, place,
 			"componentType %llu, expected 5121, 5123 or 5125", (unsigned long long)type);
 	accessor->sparse_index_type = (uint32_t)type;
 	status = check_sparse_part(document, sparse, "indices", pointer, accessor->sparse_count,
@@ -194,12 +194,12 @@ static void use_decoded(const nt_gltf_decoded *decoded, nt_gltf_accessor *access
 	accessor->sparse_count = 0;
 }
 
-nmtan_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
+nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_accessor *accessor, nt_error *error)
 {
 	*accessor = (nt_gltf_accessor){.view = NT_NONE};
 	const nt_json_value *json;
-	nmtan_status status = nt_gltf_element(document, "accessors", index, from, &json, error);
+	nt_status status = nt_gltf_element(document, "accessors", index, from, &json, error);
 	if (status)
 		return status;
 	char pointer[NT_GLTF_POINTER];
@@ -218,14 +218,14 @@ nmtan_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char 
 
 /* ---- bytes ---- */
 
-nmtan_status nt_gltf_accessor_rows(nt_gltf *document, const nt_gltf_accessor *accessor,
+nt_status nt_gltf_accessor_rows(nt_gltf *document, const nt_gltf_accessor *accessor,
 	const unsigned char **rows, nt_error *error)
 {
 	*rows = accessor->decoded;
 	if (accessor->decoded)
-		return NMTAN_OK;
+		return NT_OK;
 	if (accessor->view == NT_NONE || accessor->count == 0)
-		return NMTAN_OK;
+		return NT_OK;
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "/accessors/%u", accessor->index);
 	const uint64_t length = (accessor->count - 1) * accessor->stride + accessor->element_bytes;
@@ -244,7 +244,7 @@ static uint32_t read_unsigned(const unsigned char *bytes, uint32_t component_typ
 		(uint32_t)bytes[3] << 24;
 }
 
-nmtan_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt_arena *arena,
+nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt_arena *arena,
 	const uint32_t **rows, const unsigned char **values, nt_error *error)
 {
 	const uint64_t count = accessor->sparse_count;
@@ -252,7 +252,7 @@ nmtan_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor,
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "/accessors/%u/sparse/indices", accessor->index);
 	const unsigned char *numbers;
-	nmtan_status status = nt_gltf_view_bytes(document, accessor->sparse_index_view,
+	nt_status status = nt_gltf_view_bytes(document, accessor->sparse_index_view,
 		accessor->sparse_index_offset, count * width, pointer, &numbers, error);
 	if (status)
 		return status;
@@ -262,7 +262,7 @@ nmtan_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor,
 	for (size_t i = 0; i < count; i++) {
 		list[i] = read_unsigned(numbers + i * width, accessor->sparse_index_type);
 		if (list[i] >= accessor->count || (i > 0 && list[i] <= list[i - 1]))
-			return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 				"index %zu is %u, expected %s", i, list[i],
 				list[i] >= accessor->count ? "less than the accessor's count" :
 							     "more than the one before");
@@ -301,11 +301,11 @@ static void decode_rows(const nt_gltf_accessor *accessor, const unsigned char *r
 	}
 }
 
-nmtan_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width,
+nt_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width,
 	float fill, nt_arena *arena, float **floats, nt_error *error)
 {
 	const unsigned char *rows;
-	nmtan_status status = nt_gltf_accessor_rows(document, accessor, &rows, error);
+	nt_status status = nt_gltf_accessor_rows(document, accessor, &rows, error);
 	if (status)
 		return status;
 	const bool as_wanted = rows && accessor->component_type == NT_GLTF_FLOAT &&
@@ -313,7 +313,7 @@ nmtan_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor,
 		(uintptr_t)rows % sizeof(float) == 0 && !accessor->sparse_count;
 	if (as_wanted) {
 		memcpy(floats, &(const unsigned char *){rows}, sizeof *floats);
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	float *out = nt_arena_alloc(arena, (size_t)accessor->count, width * sizeof *out);
 	if (!out)
@@ -330,10 +330,10 @@ nmtan_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor,
 				out + (size_t)replaced[i] * width);
 	}
 	*floats = out;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, size_t vertex_count,
+nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, size_t vertex_count,
 	unsigned threads, nt_arena *arena, uint32_t **indices, nt_error *error)
 {
 	char pointer[NT_GLTF_POINTER];
@@ -341,15 +341,15 @@ nmtan_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor
 	const uint32_t type = accessor->component_type;
 	if (accessor->components != 1 ||
 		(type != NT_GLTF_UBYTE && type != NT_GLTF_USHORT && type != NT_GLTF_UINT))
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"the indices of a primitive are %u components of type %u, expected an unsigned "
 			"SCALAR", accessor->components, type);
 	const size_t count = (size_t)accessor->count;
 	if (accessor->view == NT_NONE && !accessor->decoded && count > UNBACKED_INDICES)
-		return nt_fail_pointer(error, NMTAN_ERROR_UNSUPPORTED, pointer,
+		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
 			"%zu indices without a bufferView", count);
 	const unsigned char *rows = NULL;
-	nmtan_status status = nt_gltf_accessor_rows(document, accessor, &rows, error);
+	nt_status status = nt_gltf_accessor_rows(document, accessor, &rows, error);
 	if (status)
 		return status;
 	const bool as_wanted = type == NT_GLTF_UINT && accessor->stride == 4 && rows &&
@@ -375,9 +375,9 @@ nmtan_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor
 	const bool sound = count == 0 || (most < vertex_count && most < reserved);
 	for (size_t i = 0; !sound && i < count; i++)
 		if (out[i] >= vertex_count || out[i] == reserved)
-			return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 				"index %zu is %u%s, there are %zu vertices", i, out[i],
 				out[i] == reserved ? " (reserved)" : "", vertex_count);
 	*indices = out;
-	return NMTAN_OK;
+	return NT_OK;
 }

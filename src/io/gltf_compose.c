@@ -60,7 +60,7 @@ typedef struct byte_stream {
 
 /* ---- planning ---- */
 
-static nmtan_status plan_parts(composition *c, nt_error *error)
+static nt_status plan_parts(composition *c, nt_error *error)
 {
 	nt_scene *scene = c->scene;
 	c->parts = nt_arena_alloc(&c->arena, scene->mesh_count, sizeof *c->parts);
@@ -71,8 +71,8 @@ static nmtan_status plan_parts(composition *c, nt_error *error)
 	memset(c->materials, 0xff, scene->material_count * sizeof *c->materials);
 	size_t count = 0;
 	for (size_t m = 0; m < scene->mesh_count; m++) {
-		const nmtan_status status = nt_parts_make(&scene->meshes[m], &c->arena, &c->parts[m], error);
-		if (status != NMTAN_OK)
+		const nt_status status = nt_parts_make(&scene->meshes[m], &c->arena, &c->parts[m], error);
+		if (status != NT_OK)
 			return status;
 		c->records[m] = nt_arena_alloc(&c->arena, c->parts[m].count, sizeof **c->records);
 		if (!c->records[m])
@@ -80,7 +80,7 @@ static nmtan_status plan_parts(composition *c, nt_error *error)
 		count += c->parts[m].count;
 	}
 	c->blocks = nt_arena_alloc(&c->arena, count * (NT_STREAM_COUNT + 1), sizeof *c->blocks);
-	return c->blocks ? NMTAN_OK : nt_fail_memory(error);
+	return c->blocks ? NT_OK : nt_fail_memory(error);
 }
 
 /* Reserves a range of the buffer and gives it a view. */
@@ -156,12 +156,12 @@ static bool is_textured(const composition *c, const nt_part *part)
 }
 
 /* Calls body for the material of every part. */
-static nmtan_status each_material(composition *c, nt_error *error,
-	nmtan_status (*body)(composition *, uint32_t material, bool textured, nt_error *))
+static nt_status each_material(composition *c, nt_error *error,
+	nt_status (*body)(composition *, uint32_t material, bool textured, nt_error *))
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t m = 0; m < c->scene->mesh_count; m++)
-		for (size_t p = 0; p < c->parts[m].count && status == NMTAN_OK; p++) {
+		for (size_t p = 0; p < c->parts[m].count && status == NT_OK; p++) {
 			const nt_part *part = &c->parts[m].items[p];
 			if (part->material != NT_NONE)
 				status = body(c, part->material, is_textured(c, part), error);
@@ -169,10 +169,10 @@ static nmtan_status each_material(composition *c, nt_error *error,
 	return status;
 }
 
-static nmtan_status find_images(composition *c, uint32_t material, bool textured, nt_error *error)
+static nt_status find_images(composition *c, uint32_t material, bool textured, nt_error *error)
 {
 	if (!textured)
-		return NMTAN_OK;
+		return NT_OK;
 	return nt_image_set_find(c->images, &c->scene->materials[material], c->output, error);
 }
 
@@ -181,13 +181,13 @@ static float clamp01(float value)
 	return value > 0 ? (value < 1 ? value : 1) : 0;
 }
 
-static nmtan_status add_material(composition *c, uint32_t index, bool textured, nt_error *error)
+static nt_status add_material(composition *c, uint32_t index, bool textured, nt_error *error)
 {
 	(void)error;
 	const nt_material *from = &c->scene->materials[index];
 	uint32_t *known = &c->materials[index][textured];
 	if (*known != NT_MODEL_NONE)
-		return NMTAN_OK;
+		return NT_OK;
 	nt_model_material material = {
 		.name = from->name,
 		.emissive = {from->emissive[0], from->emissive[1], from->emissive[2]},
@@ -207,21 +207,21 @@ static nmtan_status add_material(composition *c, uint32_t index, bool textured, 
 		material.normal_texture = nt_image_set_texture(c->images, from, from->normal_map);
 	}
 	*known = nt_model_add_material(c->model, &material);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status plan_materials(composition *c, nt_error *error)
+static nt_status plan_materials(composition *c, nt_error *error)
 {
-	nmtan_status status = nt_image_set_create(&c->images, c->scene, &c->options, error);
-	if (status == NMTAN_OK)
+	nt_status status = nt_image_set_create(&c->images, c->scene, &c->options, error);
+	if (status == NT_OK)
 		status = each_material(c, error, find_images);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = nt_image_set_add(c->images, c->model, &c->buffer_size, c->output, error);
-	return status == NMTAN_OK ? each_material(c, error, add_material) : status;
+	return status == NT_OK ? each_material(c, error, add_material) : status;
 }
 
 /* Meshes, their primitives, and a node for each of their instances. */
-static nmtan_status plan_scene(composition *c, nt_error *error)
+static nt_status plan_scene(composition *c, nt_error *error)
 {
 	const nt_scene *scene = c->scene;
 	uint32_t *numbers = nt_arena_alloc(&c->arena, scene->mesh_count, sizeof *numbers);
@@ -252,12 +252,12 @@ static nmtan_status plan_scene(composition *c, nt_error *error)
 			nt_model_node(c->model, scene->meshes[instance->mesh].name,
 				numbers[instance->mesh], instance->matrix);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- writing ---- */
 
-static nmtan_status stream_bytes(void *user, const void *bytes, size_t size, nt_error *error)
+static nt_status stream_bytes(void *user, const void *bytes, size_t size, nt_error *error)
 {
 	byte_stream *stream = user;
 	stream->position += size;
@@ -272,15 +272,15 @@ typedef struct rounding_stream {
 	nt_rounding cost;
 } rounding_stream;
 
-static nmtan_status stream_rounded(void *user, const void *bytes, size_t size, nt_error *error)
+static nt_status stream_rounded(void *user, const void *bytes, size_t size, nt_error *error)
 {
 	enum { BLOCK_ROWS = 256 };
 	rounding_stream *rounding = user;
 	const float *rows = bytes;
 	float chunk[BLOCK_ROWS][4];
 	unsigned char out[sizeof chunk];
-	nmtan_status status = NMTAN_OK;
-	for (size_t left = size / sizeof *chunk, count; left && status == NMTAN_OK; left -= count) {
+	nt_status status = NT_OK;
+	for (size_t left = size / sizeof *chunk, count; left && status == NT_OK; left -= count) {
 		count = left < BLOCK_ROWS ? left : BLOCK_ROWS;
 		memcpy(chunk, rows, count * sizeof *chunk);
 		rows += 4 * count;
@@ -293,26 +293,26 @@ static nmtan_status stream_rounded(void *user, const void *bytes, size_t size, n
 }
 
 /* One stream of a part. */
-static nmtan_status write_block(const composition *c, const block *b, byte_stream *stream, nt_error *error)
+static nt_status write_block(const composition *c, const block *b, byte_stream *stream, nt_error *error)
 {
 	if (b->stream == NT_STREAM_COUNT)
 		return nt_part_write_indices(b->part, stream_bytes, stream, error);
 	if (b->stream != NT_STREAM_TANGENT || c->options.precision == NT_PRECISION_FLOAT)
 		return nt_part_write_stream(b->part, b->stream, stream_bytes, stream, error);
 	rounding_stream rounding = {.stream = stream, .precision = c->options.precision};
-	const nmtan_status status =
+	const nt_status status =
 		nt_part_write_stream(b->part, b->stream, stream_rounded, &rounding, error);
 	nt_precision_report(c->scene, c->options.precision, &rounding.cost, &b->part->mesh->place);
 	return status;
 }
 
-static nmtan_status pad_to(byte_stream *stream, uint64_t offset, nt_error *error)
+static nt_status pad_to(byte_stream *stream, uint64_t offset, nt_error *error)
 {
 	static const char zeros[4];
 	return stream_bytes(stream, zeros, (size_t)(offset - stream->position), error);
 }
 
-static nmtan_status write_image(byte_stream *stream, const nt_file *file, nt_error *error)
+static nt_status write_image(byte_stream *stream, const nt_file *file, nt_error *error)
 {
 	if (stream->base64)
 		return stream_bytes(stream, file->data, file->size, error);
@@ -321,65 +321,65 @@ static nmtan_status write_image(byte_stream *stream, const nt_file *file, nt_err
 }
 
 /* The whole buffer. */
-static nmtan_status write_buffer(const composition *c, byte_stream *stream, nt_error *error)
+static nt_status write_buffer(const composition *c, byte_stream *stream, nt_error *error)
 {
-	nmtan_status status = NMTAN_OK;
-	for (size_t i = 0; i < c->block_count && status == NMTAN_OK; i++) {
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < c->block_count && status == NT_OK; i++) {
 		const block *b = &c->blocks[i];
 		status = pad_to(stream, b->offset, error);
-		if (status != NMTAN_OK)
+		if (status != NT_OK)
 			break;
 		status = write_block(c, b, stream, error);
 	}
 	const size_t images = nt_image_set_embedded_count(c->images);
-	for (size_t i = 0; i < images && status == NMTAN_OK; i++) {
+	for (size_t i = 0; i < images && status == NT_OK; i++) {
 		nt_file file;
 		uint64_t offset;
 		status = nt_image_set_open(c->images, i, &file, &offset, error);
-		if (status != NMTAN_OK)
+		if (status != NT_OK)
 			break;
 		status = pad_to(stream, offset, error);
-		if (status == NMTAN_OK)
+		if (status == NT_OK)
 			status = write_image(stream, &file, error);
 		nt_file_close(&file);
 	}
 	return status;
 }
 
-static nmtan_status write_glb(const composition *c, nt_sink *sink, nt_error *error)
+static nt_status write_glb(const composition *c, nt_sink *sink, nt_error *error)
 {
 	nt_model_text text;
 	const bool has_bin = c->buffer_size > 0;
 	byte_stream stream = {.sink = sink};
-	nmtan_status status = nt_model_json(c->model, c->buffer_size, NT_MODEL_CHUNK, NULL, &text, error);
-	if (status == NMTAN_OK)
+	nt_status status = nt_model_json(c->model, c->buffer_size, NT_MODEL_CHUNK, NULL, &text, error);
+	if (status == NT_OK)
 		status = nt_glb_begin(sink, text.size, has_bin, c->buffer_size, 0, error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = nt_sink_write(sink, text.data, text.size, error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = nt_glb_end_json(sink, text.size, has_bin, c->buffer_size, error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = write_buffer(c, &stream, error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = nt_glb_end_bin(sink, c->buffer_size, error);
 	nt_model_text_free(&text);
 	return status;
 }
 
-static nmtan_status write_embedded(const composition *c, nt_sink *sink, nt_error *error)
+static nt_status write_embedded(const composition *c, nt_sink *sink, nt_error *error)
 {
 	nt_model_text text;
 	nt_base64 base64 = {.sink = sink};
 	byte_stream stream = {.sink = sink, .base64 = &base64};
-	nmtan_status status =
+	nt_status status =
 		nt_model_json(c->model, c->buffer_size, NT_MODEL_EMBEDDED, NULL, &text, error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = nt_sink_write(sink, text.data, text.cut, error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = write_buffer(c, &stream, error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = nt_base64_end(&base64, error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = nt_sink_write(sink, text.data + text.cut, text.size - text.cut, error);
 	nt_model_text_free(&text);
 	return status;
@@ -395,12 +395,12 @@ static void bin_path(nt_buffer *path, const char *output)
 	nt_buffer_text(path, ".bin");
 }
 
-static nmtan_status write_with_bin(const composition *c, nt_sink *sink, nt_error *error)
+static nt_status write_with_bin(const composition *c, nt_sink *sink, nt_error *error)
 {
 	nt_buffer path = {0}, uri = {0};
 	nt_model_text text = {0};
 	nt_sink *bin = NULL;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	bin_path(&path, c->options.path);
 	if (!path.failed) {
 		const char *slash = strrchr(path.data, '/');
@@ -409,15 +409,15 @@ static nmtan_status write_with_bin(const composition *c, nt_sink *sink, nt_error
 	}
 	if (path.failed || uri.failed)
 		status = nt_fail_memory(error);
-	if (status == NMTAN_OK && c->buffer_size > 0)
+	if (status == NT_OK && c->buffer_size > 0)
 		status = nt_output_add(c->output, path.data, false, &bin, error);
-	if (status == NMTAN_OK && bin) {
+	if (status == NT_OK && bin) {
 		byte_stream stream = {.sink = bin};
 		status = write_buffer(c, &stream, error);
 	}
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = nt_model_json(c->model, c->buffer_size, NT_MODEL_FILE, uri.data, &text, error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = nt_sink_write(sink, text.data, text.size, error);
 	nt_model_text_free(&text);
 	nt_buffer_free(&path);
@@ -425,18 +425,18 @@ static nmtan_status write_with_bin(const composition *c, nt_sink *sink, nt_error
 	return status;
 }
 
-static nmtan_status write_output(const composition *c, nt_error *error)
+static nt_status write_output(const composition *c, nt_error *error)
 {
 	nt_sink *sink;
-	const nmtan_status status = nt_output_add(c->output, c->options.path, true, &sink, error);
-	if (status != NMTAN_OK)
+	const nt_status status = nt_output_add(c->output, c->options.path, true, &sink, error);
+	if (status != NT_OK)
 		return status;
 	if (c->options.format == NT_FORMAT_GLB)
 		return write_glb(c, sink, error);
 	return c->options.embed ? write_embedded(c, sink, error) : write_with_bin(c, sink, error);
 }
 
-nmtan_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_output *output,
+nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_output *output,
 	nt_error *error)
 {
 	composition c = {.scene = scene, .options = *options, .output = output};
@@ -444,21 +444,21 @@ nmtan_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, n
 	if (c.options.images == NT_IMAGES_DEFAULT)
 		c.options.images = alone ? NT_IMAGES_EMBED : NT_IMAGES_LINK;
 	if (!alone && strcmp(options->path, "-") == 0)
-		return nt_fail(error, NMTAN_ERROR_USAGE,
+		return nt_fail(error, NT_ERROR_USAGE,
 			"glTF with a .bin cannot go to standard output; write glb, or use --embed");
 
-	nmtan_status status = nt_model_create(&c.model, "nmtan " NMTAN_VERSION_STRING, error);
+	nt_status status = nt_model_create(&c.model, "nmtan " NMTAN_VERSION_STRING, error);
 	/* What becomes of each mesh. */
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = plan_parts(&c, error);
 	/* Where everything lies in the buffer. */
-	if (status == NMTAN_OK) {
+	if (status == NT_OK) {
 		plan_geometry(&c);
 		status = plan_materials(&c, error);
 	}
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = plan_scene(&c, error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = write_output(&c, error);
 	nt_image_set_free(c.images);
 	nt_model_free(c.model);

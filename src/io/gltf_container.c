@@ -49,7 +49,7 @@ static bool has_external(const nt_gltf *document, const char *array)
 	return false;
 }
 
-nmtan_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *options,
+nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *options,
 	nt_output *output, bool *written, nt_error *error)
 {
 	const nt_gltf *document = scene->source;
@@ -58,7 +58,7 @@ nmtan_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *opt
 	const nt_images choice = nt_gltf_images_choice(options, same_container);
 	nt_arena arena = {0};
 	const char *prefix = "";
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	*written = false;
 	if (buffers || images)
 		status = nt_gltf_link_prefix(&arena, options->path, scene->path, &prefix, error);
@@ -122,14 +122,14 @@ static fate choose_fate(const nt_gltf_container *c, uint32_t index)
 
 /* In a .glb a buffer 0 without a uri is the BIN chunk. Bytes that nobody ever had cannot be put there: zeros would
  * be other data, and faulty where bounds or matrices are asked for. */
-static nmtan_status check_first_buffer(nt_gltf_container *c)
+static nt_status check_first_buffer(nt_gltf_container *c)
 {
 	const nt_gltf_buffer *first = c->document->buffers;
 	if (!c->to_glb || c->same_container || !c->document->buffer_count || !first->described ||
 		first->home != NT_GLTF_HOME_NOWHERE ||
 		nt_layout_users(&c->patcher->layout, 0, 0, first->length) == 0)
-		return NMTAN_OK;
-	return nt_fail_pointer(c->error, NMTAN_ERROR_UNSUPPORTED, "/buffers/0",
+		return NT_OK;
+	return nt_fail_pointer(c->error, NT_ERROR_UNSUPPORTED, "/buffers/0",
 		"no uri, so that a .glb would need its bytes as BIN chunk, which are not there; "
 		"write .gltf");
 }
@@ -147,7 +147,7 @@ static bool is_input(nt_gltf_container *c, const char *path)
 			size_t length;
 			const char *file, *uri = nt_gltf_external_uri(nt_json_at(elements, i), &length);
 			if (uri && nt_uri_resolve(&c->arena, c->document->path, uri, length, true, &file,
-					   NULL) == NMTAN_OK &&
+					   NULL) == NT_OK &&
 				stat(file, &known) == 0 && known.st_dev == candidate.st_dev &&
 				known.st_ino == candidate.st_ino)
 				return true;
@@ -163,17 +163,17 @@ static bool same_file(const char *a, const char *b)
 }
 
 /* Names that the output must not take: everything the document refers to. */
-static nmtan_status protect_inputs(nt_gltf_container *c)
+static nt_status protect_inputs(nt_gltf_container *c)
 {
 	const char *const arrays[] = {"buffers", "images"};
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t k = 0; k < 2; k++) {
 		const nt_json_value *elements = nt_gltf_root_member(c->document, arrays[k]);
 		for (size_t i = 0; !status && i < nt_json_count(elements); i++) {
 			size_t length;
 			const char *file, *uri = nt_gltf_external_uri(nt_json_at(elements, i), &length);
 			if (uri && nt_uri_resolve(&c->arena, c->document->path, uri, length, true, &file,
-					   NULL) == NMTAN_OK)
+					   NULL) == NT_OK)
 				status = nt_output_protect(c->output, file, NULL, c->error);
 		}
 	}
@@ -182,7 +182,7 @@ static nmtan_status protect_inputs(nt_gltf_container *c)
 
 /* "out.bin", "out-1.bin" for the others; when a file is rewritten in place, a name that none of its own
  * files has. */
-static nmtan_status name_companion(nt_gltf_container *c, uint32_t index, bool first, const char **path)
+static nt_status name_companion(nt_gltf_container *c, uint32_t index, bool first, const char **path)
 {
 	const char *out = c->options->path;
 	const char *slash = strrchr(out, '/'), *dot = strrchr(out, '.');
@@ -200,14 +200,14 @@ static nmtan_status name_companion(nt_gltf_container *c, uint32_t index, bool fi
 	for (unsigned number = 1; in_place && is_input(c, name) && number < 1000; number++)
 		snprintf(name + stem, 40, "-%u-tangents%u.bin", index, number);
 	*path = name;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status write_companion(nt_gltf_container *c, uint32_t index, bool first,
+static nt_status write_companion(nt_gltf_container *c, uint32_t index, bool first,
 	nt_json_value *json, const nt_file *input)
 {
 	const char *path = NULL;
-	nmtan_status status = name_companion(c, index, first, &path);
+	nt_status status = name_companion(c, index, first, &path);
 	if (status)
 		return status;
 	const char *slash = strrchr(path, '/');
@@ -215,7 +215,7 @@ static nmtan_status write_companion(nt_gltf_container *c, uint32_t index, bool f
 	nt_uri_append_path(&uri, slash ? slash + 1 : path);
 	if (!uri.failed)
 		nt_json_set_string(c->json, nt_json_put(c->json, json, "uri"), uri.data, uri.size);
-	status = uri.failed ? nt_fail_memory(c->error) : NMTAN_OK;
+	status = uri.failed ? nt_fail_memory(c->error) : NT_OK;
 	nt_buffer_free(&uri);
 	nt_sink *sink;
 	if (!status)
@@ -226,7 +226,7 @@ static nmtan_status write_companion(nt_gltf_container *c, uint32_t index, bool f
 
 /* A .glb ends at 4 GiB. Said before data URIs are made of buffers that cannot fit, and before a file is begun; the
  * JSON's own length is added when it is known. */
-static nmtan_status check_room(nt_gltf_container *c)
+static nt_status check_room(nt_gltf_container *c)
 {
 	uint64_t sum = 0;
 	for (uint32_t i = 0; c->to_glb && i < c->patcher->layout.buffer_count; i++) {
@@ -241,28 +241,28 @@ static nmtan_status check_room(nt_gltf_container *c)
 			continue;
 		char pointer[NT_GLTF_POINTER];
 		snprintf(pointer, sizeof pointer, "/buffers/%u", i);
-		return nt_fail_pointer(c->error, NMTAN_ERROR_UNSUPPORTED, pointer,
+		return nt_fail_pointer(c->error, NT_ERROR_UNSUPPORTED, pointer,
 			"with this buffer of %llu bytes the output would take 4 GiB or more, which GLB cannot "
 			"hold; write .gltf", (unsigned long long)length);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* What will be written must be open before its uri changes. */
-static nmtan_status open_source(nt_gltf_container *c, uint32_t index, fate what)
+static nt_status open_source(nt_gltf_container *c, uint32_t index, fate what)
 {
 	if (what == FATE_KEEP || what == FATE_LINK || index >= c->document->buffer_count ||
 		c->document->buffers[index].home == NT_GLTF_HOME_NOWHERE)
-		return NMTAN_OK;
+		return NT_OK;
 	nt_gltf_buffer *buffer;
 	return nt_gltf_open_buffer(c->document, index, "/buffers", &buffer, c->error);
 }
 
 /* Settles every buffer but the BIN chunk; *bin receives whether there is one. */
-static nmtan_status settle_buffers(nt_gltf_container *c, const nt_file *input, bool *bin)
+static nt_status settle_buffers(nt_gltf_container *c, const nt_file *input, bool *bin)
 {
 	bool first = true;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	*bin = false;
 	for (uint32_t i = 0; !status && i < c->patcher->layout.buffer_count; i++) {
 		nt_json_value *json = nt_json_at(nt_gltf_root_member(c->document, "buffers"), i);
@@ -302,7 +302,7 @@ static uint64_t other_bytes(const nt_gltf *document)
 	return sum;
 }
 
-static nmtan_status write_glb(nt_gltf_container *c, const nt_buffer *text, uint64_t length, const nt_file *input,
+static nt_status write_glb(nt_gltf_container *c, const nt_buffer *text, uint64_t length, const nt_file *input,
 	bool bin, nt_sink *sink)
 {
 	const nt_gltf *document = c->document;
@@ -310,7 +310,7 @@ static nmtan_status write_glb(nt_gltf_container *c, const nt_buffer *text, uint6
 	const bool raw = !bin && document->is_glb && document->glb.has_bin;
 	const uint64_t size = bin ? c->patcher->layout.buffers[0].new_length :
 			      raw ? document->glb.bin.size : 0;
-	nmtan_status status =
+	nt_status status =
 		nt_glb_begin(sink, length, bin || raw, size, other_bytes(document), c->error);
 	if (!status)
 		status = nt_gltf_write_text(c, text, sink);
@@ -331,12 +331,12 @@ static nmtan_status write_glb(nt_gltf_container *c, const nt_buffer *text, uint6
 	return status;
 }
 
-static nmtan_status write_main(nt_gltf_container *c, const nt_file *input, bool bin)
+static nt_status write_main(nt_gltf_container *c, const nt_file *input, bool bin)
 {
 	nt_buffer text = {0};
 	uint64_t length;
 	nt_sink *sink;
-	nmtan_status status = nt_gltf_embedding_text(c, &text, &length);
+	nt_status status = nt_gltf_embedding_text(c, &text, &length);
 	if (!status)
 		status = nt_output_add(c->output, c->options->path, true, &sink, c->error);
 	if (!status)
@@ -346,7 +346,7 @@ static nmtan_status write_main(nt_gltf_container *c, const nt_file *input, bool 
 	return status;
 }
 
-nmtan_status nt_gltf_write_container(nt_gltf_patcher *patcher, nt_output *output)
+nt_status nt_gltf_write_container(nt_gltf_patcher *patcher, nt_output *output)
 {
 	const nt_write_options *options = patcher->options;
 	nt_gltf_container c = {.patcher = patcher, .document = patcher->document,
@@ -358,7 +358,7 @@ nmtan_status nt_gltf_write_container(nt_gltf_patcher *patcher, nt_output *output
 
 	const nt_file input = input_file(patcher->scene);
 	bool bin;
-	nmtan_status status = nt_gltf_link_prefix(&c.arena, options->path, c.document->path,
+	nt_status status = nt_gltf_link_prefix(&c.arena, options->path, c.document->path,
 		&c.link_prefix, c.error);
 	if (!status)
 		status = check_first_buffer(&c);

@@ -31,79 +31,79 @@ nt_json_value *nt_gltf_root_member(const nt_gltf *document, const char *name)
 	return nt_json_find(nt_json_root(document->json), name);
 }
 
-nmtan_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t index,
+nt_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t index,
 	const char *from, const nt_json_value **element, nt_error *error)
 {
 	const nt_json_value *elements = nt_gltf_root_member(document, array);
 	if (elements && nt_json_type_of(elements) != NT_JSON_ARRAY) {
 		char pointer[NT_GLTF_POINTER];
 		snprintf(pointer, sizeof pointer, "/%s", array);
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "%s, expected an array",
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an array",
 			nt_json_type_text(elements));
 	}
 	if (index >= nt_json_count(elements))
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, from,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, from,
 			"refers to %s[%llu], there are %zu", array, (unsigned long long)index,
 			nt_json_count(elements));
 	*element = nt_json_at(elements, (size_t)index);
 	if (nt_json_type_of(*element) != NT_JSON_OBJECT) {
 		char pointer[NT_GLTF_POINTER];
 		snprintf(pointer, sizeof pointer, "/%s/%llu", array, (unsigned long long)index);
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "%s, expected an object",
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an object",
 			nt_json_type_text(*element));
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_gltf_uint(const nt_json_value *object, const char *pointer, const char *key,
+nt_status nt_gltf_uint(const nt_json_value *object, const char *pointer, const char *key,
 	uint64_t limit, uint64_t otherwise, uint64_t *value, nt_error *error)
 {
 	const nt_json_value *member = nt_json_find(object, key);
 	if (!member && otherwise != NT_GLTF_REQUIRED) {
 		*value = otherwise;
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	if (!member)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "\"%s\" is missing", key);
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "\"%s\" is missing", key);
 	const bool whole = nt_json_get_uint64(member, value);
 	if (whole && *value <= limit)
-		return NMTAN_OK;
+		return NT_OK;
 	/* made for faults alone: a document asks for millions of numbers */
 	char place[NT_GLTF_POINTER * 2];
 	snprintf(place, sizeof place, "%s/%s", pointer, key);
 	if (!whole)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, place,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, place,
 			"%s, expected a whole number of at least 0", nt_json_type_text(member));
-	return nt_fail_pointer(error, NMTAN_ERROR_INPUT, place, "%llu, expected at most %llu",
+	return nt_fail_pointer(error, NT_ERROR_INPUT, place, "%llu, expected at most %llu",
 		(unsigned long long)*value, (unsigned long long)limit);
 }
 
 /* ---- documents ---- */
 
 /* "2.1" is version 2 of glTF; a minVersion beyond 2.0 asks for what we do not know. */
-static nmtan_status check_version(const nt_gltf *document, nt_error *error)
+static nt_status check_version(const nt_gltf *document, nt_error *error)
 {
 	const nt_json_value *root = nt_json_root(document->json);
 	if (nt_json_type_of(root) != NT_JSON_OBJECT)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, "", "%s, expected an object",
+		return nt_fail_pointer(error, NT_ERROR_INPUT, "", "%s, expected an object",
 			nt_json_type_text(root));
 	const nt_json_value *asset = nt_json_find(root, "asset");
 	const char *version = nt_json_get_string(nt_json_find(asset, "version"), NULL);
 	if (!version)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, "/asset/version",
+		return nt_fail_pointer(error, NT_ERROR_INPUT, "/asset/version",
 			"%s, expected the version of glTF as a string",
 			nt_json_type_text(nt_json_find(asset, "version")));
 	if (strncmp(version, "2.", 2) != 0)
-		return nt_fail_pointer(error, NMTAN_ERROR_UNSUPPORTED, "/asset/version",
+		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, "/asset/version",
 			"glTF version \"%.20s\", expected 2.0", version);
 	const char *minimum = nt_json_get_string(nt_json_find(asset, "minVersion"), NULL);
 	if (minimum && strcmp(minimum, "2.0") != 0)
-		return nt_fail_pointer(error, NMTAN_ERROR_UNSUPPORTED, "/asset/minVersion",
+		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, "/asset/minVersion",
 			"needs glTF %.20s, expected 2.0", minimum);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status parse_json(nt_gltf *document, nt_error *error)
+static nt_status parse_json(nt_gltf *document, nt_error *error)
 {
 	const char *text = (const char *)document->bytes;
 	size_t size = document->byte_count, begin = 0;
@@ -111,13 +111,13 @@ static nmtan_status parse_json(nt_gltf *document, nt_error *error)
 		begin = document->glb.json.offset;
 		size = document->glb.json.size;
 	}
-	const nmtan_status status = nt_json_parse(&document->json, text + begin, size, error);
+	const nt_status status = nt_json_parse(&document->json, text + begin, size, error);
 	if (status && error && error->place.offset != NT_NO_OFFSET)
 		error->place.offset += begin;
 	return status;
 }
 
-nmtan_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_outside,
+nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_outside,
 	nt_error *error)
 {
 	*result = NULL;
@@ -130,7 +130,7 @@ nmtan_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_
 	document->allow_outside = allow_outside;
 	document->is_glb = nt_glb_has_magic(scene->bytes, scene->byte_count) ||
 		scene->format == NT_FORMAT_GLB;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (document->is_glb)
 		status = nt_glb_parse(&document->glb, &document->arena, document->bytes,
 			document->byte_count, error);
@@ -154,7 +154,7 @@ nmtan_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_
 		return status;
 	}
 	*result = document;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 void nt_gltf_forget(const nt_scene *scene, const void *bytes, size_t size)
@@ -197,21 +197,21 @@ void nt_gltf_free(void *source)
 
 /* ---- buffers ---- */
 
-nmtan_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char *from,
+nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_buffer **result, nt_error *error)
 {
 	if (index >= NT_GLTF_VIRTUAL && index - NT_GLTF_VIRTUAL < document->virtual_count) {
 		*result = &document->virtuals[index - NT_GLTF_VIRTUAL];
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	const nt_json_value *json;
-	nmtan_status status = nt_gltf_element(document, "buffers", index, from, &json, error);
+	nt_status status = nt_gltf_element(document, "buffers", index, from, &json, error);
 	if (status)
 		return status;
 	nt_gltf_buffer *buffer = &document->buffers[index];
 	*result = buffer;
 	if (buffer->described)
-		return NMTAN_OK;
+		return NT_OK;
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "/buffers/%llu", (unsigned long long)index);
 	status = nt_gltf_uint(json, pointer, "byteLength", (uint64_t)1 << 53, NT_GLTF_REQUIRED,
@@ -223,7 +223,7 @@ nmtan_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const ch
 	const char *text = nt_json_get_string(uri, &length);
 	if (uri && !text) {
 		strcat(pointer, "/uri");
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "%s, expected a string",
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected a string",
 			nt_json_type_text(uri));
 	}
 	if (text)
@@ -233,22 +233,22 @@ nmtan_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const ch
 	else
 		buffer->home = NT_GLTF_HOME_NOWHERE;
 	buffer->described = true;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Names the buffer in an error of a lower room that knows no document. */
-static nmtan_status place_error(nt_error *error, nmtan_status status, const char *pointer)
+static nt_status place_error(nt_error *error, nt_status status, const char *pointer)
 {
-	if (error && status != NMTAN_ERROR_MEMORY)
+	if (error && status != NT_ERROR_MEMORY)
 		snprintf(error->place.pointer, sizeof error->place.pointer, "%s", pointer);
 	return status;
 }
 
-static nmtan_status open_file(nt_gltf *document, nt_gltf_buffer *buffer, const char *uri, size_t length,
+static nt_status open_file(nt_gltf *document, nt_gltf_buffer *buffer, const char *uri, size_t length,
 	nt_error *error)
 {
 	const char *path;
-	nmtan_status status = nt_uri_resolve(&document->arena, document->path, uri, length,
+	nt_status status = nt_uri_resolve(&document->arena, document->path, uri, length,
 		document->allow_outside, &path, error);
 	if (!status)
 		status = nt_file_open(&buffer->file, path, error);
@@ -257,15 +257,15 @@ static nmtan_status open_file(nt_gltf *document, nt_gltf_buffer *buffer, const c
 	buffer->path = path;
 	buffer->bytes = buffer->file.data;
 	buffer->size = buffer->file.size;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status open_bytes(nt_gltf *document, nt_gltf_buffer *buffer, const nt_json_value *json,
+static nt_status open_bytes(nt_gltf *document, nt_gltf_buffer *buffer, const nt_json_value *json,
 	nt_error *error)
 {
 	size_t length = 0;
 	const char *uri = nt_json_get_string(nt_json_find(json, "uri"), &length);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	switch (buffer->home) {
 	case NT_GLTF_HOME_BIN:
 		buffer->bytes = document->bytes + document->glb.bin.offset;
@@ -279,7 +279,7 @@ static nmtan_status open_bytes(nt_gltf *document, nt_gltf_buffer *buffer, const 
 		status = open_file(document, buffer, uri, length, error);
 		break;
 	case NT_GLTF_HOME_NOWHERE:
-		return nt_fail(error, NMTAN_ERROR_INPUT, document->is_glb ?
+		return nt_fail(error, NT_ERROR_INPUT, document->is_glb ?
 			"the buffer has no uri and there is no BIN chunk for it" :
 			"the buffer has no uri");
 	}
@@ -288,16 +288,16 @@ static nmtan_status open_bytes(nt_gltf *document, nt_gltf_buffer *buffer, const 
 	return status;
 }
 
-nmtan_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *from,
+nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_buffer **result, nt_error *error)
 {
 	nt_gltf_buffer *buffer;
-	nmtan_status status = nt_gltf_describe_buffer(document, index, from, &buffer, error);
+	nt_status status = nt_gltf_describe_buffer(document, index, from, &buffer, error);
 	if (status)
 		return status;
 	*result = buffer;
 	if (buffer->opened)
-		return NMTAN_OK;
+		return NT_OK;
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "/buffers/%llu", (unsigned long long)index);
 	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "buffers"), (size_t)index);
@@ -307,16 +307,16 @@ nmtan_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *
 	if (buffer->size > buffer->length)
 		buffer->size = (size_t)buffer->length;
 	buffer->opened = true;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- views ---- */
 
-nmtan_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
+nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
 	nt_error *error)
 {
 	const nt_json_value *json;
-	nmtan_status status = nt_gltf_element(document, "bufferViews", index, from, &json, error);
+	nt_status status = nt_gltf_element(document, "bufferViews", index, from, &json, error);
 	if (status)
 		return status;
 	char pointer[NT_GLTF_POINTER];
@@ -338,7 +338,7 @@ nmtan_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *fro
 	if (status)
 		return status;
 	if (view->offset > buffer->length || view->length > buffer->length - view->offset)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"bytes %llu to %llu, but buffer %llu has %llu", (unsigned long long)view->offset,
 			(unsigned long long)(view->offset + view->length),
 			(unsigned long long)buffer_index, (unsigned long long)buffer->length);
@@ -352,7 +352,7 @@ nmtan_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *fro
 		view->offset = 0;
 		view->compression = NULL;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin, uint64_t length)
@@ -382,11 +382,11 @@ uint64_t nt_gltf_bytes_read(const nt_gltf *document)
 		document->bytes_read;
 }
 
-nmtan_status nt_gltf_view_bytes(nt_gltf *document, uint32_t index, uint64_t offset, uint64_t length,
+nt_status nt_gltf_view_bytes(nt_gltf *document, uint32_t index, uint64_t offset, uint64_t length,
 	const char *what, const unsigned char **bytes, nt_error *error)
 {
 	nt_gltf_view view;
-	nmtan_status status = nt_gltf_get_view(document, index, what, &view, error);
+	nt_status status = nt_gltf_get_view(document, index, what, &view, error);
 	if (status)
 		return status;
 	char pointer[NT_GLTF_POINTER];
@@ -399,7 +399,7 @@ nmtan_status nt_gltf_view_bytes(nt_gltf *document, uint32_t index, uint64_t offs
 			return status;
 	}
 	if (offset > view.length || length > view.length - offset)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, what,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, what,
 			"takes bytes %llu to %llu of bufferView %u, which has %llu",
 			(unsigned long long)offset, (unsigned long long)(offset + length), index,
 			(unsigned long long)view.length);
@@ -409,12 +409,12 @@ nmtan_status nt_gltf_view_bytes(nt_gltf *document, uint32_t index, uint64_t offs
 		return status;
 	if (view.offset + offset > buffer->size || length > buffer->size - (view.offset + offset)) {
 		snprintf(pointer, sizeof pointer, "/buffers/%u", view.buffer);
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"byteLength is %llu, but only %zu bytes are there",
 			(unsigned long long)buffer->length, buffer->size);
 	}
 	*bytes = buffer->bytes + view.offset + offset;
 	if (view.buffer < NT_GLTF_VIRTUAL)
 		nt_gltf_note_read(document, buffer, view.offset + offset, length);
-	return NMTAN_OK;
+	return NT_OK;
 }

@@ -93,9 +93,9 @@ typedef struct nt_gltf {
 	uint64_t bytes_opened;   /* of external files and data URIs */
 } nt_gltf;
 
-/* Parses a document over the scene's bytes. Returns NMTAN_OK, NMTAN_ERROR_INPUT,
- * NMTAN_ERROR_UNSUPPORTED (another version of glTF) or NMTAN_ERROR_MEMORY. */
-nmtan_status nt_gltf_create(nt_gltf **document, const nt_scene *scene, bool allow_outside,
+/* Parses a document over the scene's bytes. Returns NT_OK, NT_ERROR_INPUT,
+ * NT_ERROR_UNSUPPORTED (another version of glTF) or NT_ERROR_MEMORY. */
+nt_status nt_gltf_create(nt_gltf **document, const nt_scene *scene, bool allow_outside,
 	nt_error *error);
 
 /* For nt_scene.free_source. */
@@ -109,25 +109,25 @@ void nt_gltf_forget(const nt_scene *scene, const void *bytes, size_t size);
 nt_json_value *nt_gltf_root_member(const nt_gltf *document, const char *name);
 
 /* Element of a root array, which must be an object. `from` is the JSON pointer of the reference. */
-nmtan_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t index,
+nt_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t index,
 	const char *from, const nt_json_value **element, nt_error *error);
 
 /* An unsigned member of an object: value at most `limit`. Where the member is missing *value gets
  * `otherwise`; NT_GLTF_REQUIRED there makes that an error. */
 #define NT_GLTF_REQUIRED UINT64_MAX
-nmtan_status nt_gltf_uint(const nt_json_value *object, const char *pointer, const char *key,
+nt_status nt_gltf_uint(const nt_json_value *object, const char *pointer, const char *key,
 	uint64_t limit, uint64_t otherwise, uint64_t *value, nt_error *error);
 
 /* Length and home of a buffer; nothing is opened. */
-nmtan_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char *from,
+nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_buffer **buffer, nt_error *error);
 
 /* The same with its bytes. */
-nmtan_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *from,
+nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_buffer **buffer, nt_error *error);
 
 /* A bufferView, checked against its buffer's byteLength. */
-nmtan_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
+nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
 	nt_error *error);
 
 /* Books bytes of a buffer as read: whole pages, each once. What a data URI holds was read with the JSON. */
@@ -139,20 +139,20 @@ uint64_t nt_gltf_bytes_read(const nt_gltf *document);
 
 /* Bytes of a view, `length` of them from `offset` on; compressed views are refused. `what` is the JSON
  * pointer of who wants them. */
-nmtan_status nt_gltf_view_bytes(nt_gltf *document, uint32_t view, uint64_t offset, uint64_t length,
+nt_status nt_gltf_view_bytes(nt_gltf *document, uint32_t view, uint64_t offset, uint64_t length,
 	const char *what, const unsigned char **bytes, nt_error *error);
 
 /* An accessor, checked against its views. */
-nmtan_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
+nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_accessor *accessor, nt_error *error);
 
 /* The bytes of an accessor's rows, `stride` apart; NULL where it has no view. */
-nmtan_status nt_gltf_accessor_rows(nt_gltf *document, const nt_gltf_accessor *accessor,
+nt_status nt_gltf_accessor_rows(nt_gltf *document, const nt_gltf_accessor *accessor,
 	const unsigned char **rows, nt_error *error);
 
 /* The rows a sparse accessor replaces: their numbers, and their elements, tightly packed. Numbers are
  * checked: increasing and below the count. The array is in the arena. */
-nmtan_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt_arena *arena,
+nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt_arena *arena,
 	const uint32_t **rows, const unsigned char **values, nt_error *error);
 
 /*
@@ -160,12 +160,12 @@ nmtan_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor,
  * integers by value. Components beyond those of the accessor get `fill`. Points into the input where it
  * already is that.
  */
-nmtan_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width,
+nt_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width,
 	float fill, nt_arena *arena, float **floats, nt_error *error);
 
 /* An accessor of unsigned scalars as 32-bit indices, each below `vertex_count` and not the value that
  * is reserved for restarts. Points into the input where it already is that. */
-nmtan_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, size_t vertex_count,
+nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, size_t vertex_count,
 	unsigned threads, nt_arena *arena, uint32_t **indices, nt_error *error);
 
 /* Size of a component; 0 for an unknown type. */
@@ -175,7 +175,7 @@ uint32_t nt_gltf_component_bytes(uint64_t component_type);
 
 /* Decompresses a view of EXT_meshopt_compression or KHR_meshopt_compression: from then on it lies in a
  * virtual buffer. */
-nmtan_status nt_gltf_decompress_view(nt_gltf *document, uint32_t view, nt_error *error);
+nt_status nt_gltf_decompress_view(nt_gltf *document, uint32_t view, nt_error *error);
 
 /* The extension object of a compressed view; NULL: none. *name (may be NULL) receives the extension. */
 nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **name);
@@ -184,7 +184,7 @@ nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **na
 
 /* Decodes a primitive's KHR_draco_mesh_compression, where it has one: from then on its accessors have
  * their rows. */
-nmtan_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive,
+nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive,
 	const char *pointer, nt_error *error);
 
 void nt_gltf_free_draco(nt_gltf *document);
@@ -212,18 +212,18 @@ typedef struct nt_gltf_shading {
 } nt_gltf_shading;
 
 /* Judges the materials of a primitive, variants included. */
-nmtan_status nt_gltf_judge_materials(nt_gltf *document, const nt_json_value *primitive,
+nt_status nt_gltf_judge_materials(nt_gltf *document, const nt_json_value *primitive,
 	const char *pointer, nt_gltf_shading *shading, nt_error *error);
 
 /* ---- gltf_nodes.c ---- */
 
 /* Marks the meshes that a scene shows: reached[mesh]. Faulty nodes are passed over. */
-nmtan_status nt_gltf_reach(const nt_gltf *document, bool *reached, size_t mesh_count, nt_error *error);
+nt_status nt_gltf_reach(const nt_gltf *document, bool *reached, size_t mesh_count, nt_error *error);
 
 /* Calls place(context, mesh, matrix) for every mesh in the world of the default scene (of all roots,
  * where there is no scene). */
-nmtan_status nt_gltf_walk_world(const nt_gltf *document,
-	nmtan_status (*place)(void *context, uint64_t mesh, const double matrix[16]), void *context,
+nt_status nt_gltf_walk_world(const nt_gltf *document,
+	nt_status (*place)(void *context, uint64_t mesh, const double matrix[16]), void *context,
 	nt_error *error);
 
 #endif

@@ -36,12 +36,12 @@ const nt_draco_mesh *nt_gltf_draco_block(const nt_gltf *document, uint64_t view)
 	return NULL;
 }
 
-static nmtan_status decode_block(nt_gltf *document, uint64_t index, const char *pointer,
+static nt_status decode_block(nt_gltf *document, uint64_t index, const char *pointer,
 	nt_error *error)
 {
 	nt_gltf_view view;
 	const unsigned char *bytes = NULL;
-	nmtan_status status = nt_gltf_get_view(document, index, pointer, &view, error);
+	nt_status status = nt_gltf_get_view(document, index, pointer, &view, error);
 	if (!status)
 		status = nt_gltf_view_bytes(document, (uint32_t)index, 0, view.length, pointer, &bytes,
 			error);
@@ -54,7 +54,7 @@ static nmtan_status decode_block(nt_gltf *document, uint64_t index, const char *
 	status = nt_draco_decode(&block->mesh, bytes, (size_t)view.length, 0, true, error);
 	if (status) {
 		free(block);
-		if (error && status != NMTAN_ERROR_MEMORY) {
+		if (error && status != NT_ERROR_MEMORY) {
 			snprintf(error->place.pointer, sizeof error->place.pointer, "/bufferViews/%llu",
 				(unsigned long long)index);
 			error->place.offset = NT_NO_OFFSET;
@@ -63,34 +63,34 @@ static nmtan_status decode_block(nt_gltf *document, uint64_t index, const char *
 	}
 	block->next = document->draco_blocks;
 	document->draco_blocks = block;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* An accessor gets rows, if its type is that of the decoded attribute. */
-static nmtan_status give_attribute(nt_gltf *document, uint64_t index, const char *name,
+static nt_status give_attribute(nt_gltf *document, uint64_t index, const char *name,
 	const nt_draco_mesh *mesh, const nt_draco_attribute *from, const char *pointer, nt_error *error)
 {
 	nt_gltf_accessor accessor;
-	nmtan_status status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
+	nt_status status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
 	if (status)
 		return status;
 	if (accessor.component_type != (uint32_t)from->component_type ||
 		accessor.components != (uint32_t)from->components)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"%.40s: accessor %llu has %u components of type %u, the compressed attribute %d of "
 			"type %d", name, (unsigned long long)index, accessor.components,
 			accessor.component_type, from->components, from->component_type);
 	document->decoded[index] = (nt_gltf_decoded){from->data, mesh->point_count,
 		(uint32_t)from->component_type};
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status give_attributes(nt_gltf *document, const nt_json_value *primitive,
+static nt_status give_attributes(nt_gltf *document, const nt_json_value *primitive,
 	const nt_json_value *extension, const nt_draco_mesh *mesh, const char *pointer, nt_error *error)
 {
 	const nt_json_value *ids = nt_json_find(extension, "attributes");
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < nt_json_count(ids); i++) {
 		const char *name = nt_json_key(ids, i, NULL);
 		uint64_t id, index;
@@ -104,7 +104,7 @@ static nmtan_status give_attributes(nt_gltf *document, const nt_json_value *prim
 			return status;
 		const nt_draco_attribute *found = nt_draco_find(mesh, (uint32_t)id);
 		if (!found)
-			return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 				"%.40s has the id %llu, which the compressed data does not", name,
 				(unsigned long long)id);
 		status = give_attribute(document, index, name, mesh, found, pointer, error);
@@ -112,21 +112,21 @@ static nmtan_status give_attributes(nt_gltf *document, const nt_json_value *prim
 	return status;
 }
 
-nmtan_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive,
+nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive,
 	const char *primitive_pointer, nt_error *error)
 {
 	const nt_json_value *extension = nt_gltf_draco_of(primitive);
 	if (!extension)
-		return NMTAN_OK;
+		return NT_OK;
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "%.80s/extensions/KHR_draco_mesh_compression",
 		primitive_pointer);
 	uint64_t view, mode = 4, index;
-	nmtan_status status = nt_gltf_uint(extension, pointer, "bufferView", UINT32_MAX - 1,
+	nt_status status = nt_gltf_uint(extension, pointer, "bufferView", UINT32_MAX - 1,
 		NT_GLTF_REQUIRED, &view, error);
 	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
 	if (!status && mode != 4)
-		status = nt_fail_pointer(error, NMTAN_ERROR_UNSUPPORTED, pointer,
+		status = nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
 			"compressed primitive of mode %llu, expected 4", (unsigned long long)mode);
 	if (!status && !document->decoded) {
 		document->accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));

@@ -47,9 +47,9 @@ void nt_gltf_draco_add(nt_gltf_recoding *recoding, const char *name, nt_draco_at
 /* ---- gltf_draco_plain.c ---- */
 
 /* The attributes of a plain primitive; recoding->obstacle where it cannot be compressed. */
-nmtan_status nt_gltf_draco_gather_plain(nt_gltf_recoding *recoding);
+nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *recoding);
 
 /* Takes what the block holds out of the buffers, and gives the primitive its extension. */
-nmtan_status nt_gltf_draco_take_out(nt_gltf_recoding *recoding, const nt_draco_block *block);
+nt_status nt_gltf_draco_take_out(nt_gltf_recoding *recoding, const nt_draco_block *block);
 
 #endif

@@ -53,9 +53,9 @@ static bool lies_plain(const nt_gltf_recoding *r, uint64_t index, nt_gltf_access
 	const nt_gltf_patcher *p = r->patcher;
 	nt_gltf_view view;
 	return index < p->sharing.accessor_count &&
-		nt_gltf_get_accessor(p->document, index, "", accessor, NULL) == NMTAN_OK &&
+		nt_gltf_get_accessor(p->document, index, "", accessor, NULL) == NT_OK &&
 		accessor->view != NT_NONE && !accessor->sparse_count && !accessor->decoded &&
-		nt_gltf_get_view(p->document, accessor->view, "", &view, NULL) == NMTAN_OK &&
+		nt_gltf_get_view(p->document, accessor->view, "", &view, NULL) == NT_OK &&
 		!view.compression && view.buffer < NT_GLTF_VIRTUAL;
 }
 
@@ -79,7 +79,7 @@ static bool indices_are_own(const nt_gltf_recoding *r)
 
 /* ---- gathering ---- */
 
-static nmtan_status tight_rows(nt_gltf_recoding *r, const nt_gltf_accessor *accessor, size_t width,
+static nt_status tight_rows(nt_gltf_recoding *r, const nt_gltf_accessor *accessor, size_t width,
 	const void **result)
 {
 	nt_gltf_patcher *p = r->patcher;
@@ -88,7 +88,7 @@ static nmtan_status tight_rows(nt_gltf_recoding *r, const nt_gltf_accessor *acce
 	unsigned char *out = nt_arena_alloc(p->arena, all->new_count, width);
 	if (!out)
 		return nt_fail_memory(p->error);
-	const nmtan_status status = nt_gltf_accessor_rows(p->document, accessor, &from, p->error);
+	const nt_status status = nt_gltf_accessor_rows(p->document, accessor, &from, p->error);
 	for (size_t row = 0; !status && row < all->new_count; row++) {
 		const size_t source = row < all->old_count ? row : all->sources[row - all->old_count];
 		memcpy(out + row * width, from + source * accessor->stride, width);
@@ -107,7 +107,7 @@ static bool is_in_block(const nt_gltf_recoding *r, const nt_json_value *attribut
 	return false;
 }
 
-static nmtan_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_t index)
+static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_t index)
 {
 	nt_gltf_accessor accessor;
 	if (!lies_plain(r, index, &accessor) || accessor.count != r->component->rows.old_count)
@@ -115,10 +115,10 @@ static nmtan_status gather_attribute(nt_gltf_recoding *r, const char *name, uint
 	else if (r->patcher->sharing.foreign[r->patcher->sharing.canonical[index]])
 		r->obstacle = "something else uses its attributes";
 	if (r->obstacle)
-		return NMTAN_OK;
+		return NT_OK;
 	if (!is_vector(r, accessor.index)) {
 		r->outside = true;
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	const bool is_float = accessor.component_type == NT_GLTF_FLOAT;
 	/* ours takes its place */
@@ -129,7 +129,7 @@ static nmtan_status gather_attribute(nt_gltf_recoding *r, const char *name, uint
 		.components = (int)accessor.components, .normalized = accessor.normalized,
 		.quantization = {.bits = is_float ? bits_of(r->patcher->options, name) : 0}};
 	const size_t width = (size_t)accessor.components * accessor.component_bytes;
-	const nmtan_status status = tight_rows(r, &accessor, width, &attribute.data);
+	const nt_status status = tight_rows(r, &accessor, width, &attribute.data);
 	if (!status)
 		nt_gltf_draco_add(r, name, attribute);
 	return status;
@@ -142,27 +142,27 @@ typedef struct doubles {
 	size_t inside, outside;
 } doubles;
 
-static nmtan_status count_use(void *context, nt_json_value *attributes, const char *name,
+static nt_status count_use(void *context, nt_json_value *attributes, const char *name,
 	uint32_t accessor)
 {
 	doubles *d = context;
 	if (d->recoding->patcher->sharing.canonical[accessor] != d->canonical)
-		return NMTAN_OK;
+		return NT_OK;
 	if (is_in_block(d->recoding, attributes, name))
 		d->inside++;
 	else
 		d->outside++;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status note_use(void *context, nt_json_value *attributes, const char *name,
+static nt_status note_use(void *context, nt_json_value *attributes, const char *name,
 	uint32_t accessor)
 {
 	(void)accessor;
 	nt_gltf_recoding *r = context;
 	if (!is_in_block(r, attributes, name))
 		r->outside = true;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static bool has_doubles(const nt_gltf_recoding *r)
@@ -181,7 +181,7 @@ static bool has_doubles(const nt_gltf_recoding *r)
 	return false;
 }
 
-nmtan_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r)
+nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r)
 {
 	nt_gltf_patcher *p = r->patcher;
 	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
@@ -193,12 +193,12 @@ nmtan_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r)
 	else if (!indices_are_own(r))
 		r->obstacle = "its indices are shared, sparse or compressed";
 	if (r->obstacle)
-		return NMTAN_OK;
+		return NT_OK;
 	r->attributes = nt_arena_alloc(p->arena, count + NT_GLTF_OWN_ATTRIBUTES, sizeof *r->attributes);
 	r->names = nt_arena_alloc(p->arena, count + NT_GLTF_OWN_ATTRIBUTES, sizeof *r->names);
 	if (!r->attributes || !r->names)
 		return nt_fail_memory(p->error);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; !status && !r->obstacle && i < count; i++) {
 		/* names outlive the members that are put in behind them */
 		const char *key = nt_json_key(attributes, i, NULL);
@@ -219,7 +219,7 @@ nmtan_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r)
 		for (size_t i = 0; i < nt_json_count(extensions); i++)
 			r->outside |= strcmp(nt_json_key(extensions, i, NULL), "KHR_materials_variants") != 0;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- taking out ---- */
@@ -254,9 +254,9 @@ static run detach(nt_gltf_patcher *p, uint64_t index)
 }
 
 /* Views that only runs lie in go as a whole. */
-static nmtan_status remove_views(nt_gltf_patcher *p, const run *runs, size_t count)
+static nt_status remove_views(nt_gltf_patcher *p, const run *runs, size_t count)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < count; i++) {
 		size_t users = 0;
 		for (size_t k = 0; k < count; k++)
@@ -277,11 +277,11 @@ static bool can_go(const nt_gltf_patcher *p, const run *runs, size_t count, uint
 	return nt_layout_users(&p->layout, runs->buffer, begin, end) == count;
 }
 
-static nmtan_status remove_runs(nt_gltf_patcher *p, run *runs, size_t count)
+static nt_status remove_runs(nt_gltf_patcher *p, run *runs, size_t count)
 {
 	if (count)
 		qsort(runs, count, sizeof *runs, compare_runs);
-	nmtan_status status = remove_views(p, runs, count);
+	nt_status status = remove_views(p, runs, count);
 	for (size_t first = 0, next; !status && first < count; first = next) {
 		const uint64_t begin = runs[first].begin;
 		uint64_t end = runs[first].end;
@@ -315,12 +315,12 @@ static void bound_accessor(nt_gltf_patcher *p, uint64_t index, const nt_draco_at
 		}
 }
 
-static nmtan_status set_bounds(nt_gltf_recoding *r, const nt_draco_block *block)
+static nt_status set_bounds(nt_gltf_recoding *r, const nt_draco_block *block)
 {
 	nt_gltf_patcher *p = r->patcher;
 	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
 	nt_draco *decoded;
-	nmtan_status status =
+	nt_status status =
 		nt_draco_decode(&decoded, block->bytes, block->size, 0, false, p->error);
 	if (status)
 		return status;
@@ -359,13 +359,13 @@ static void put_extension(nt_gltf_recoding *r)
 	list_extension(r->patcher, "extensionsRequired");
 }
 
-nmtan_status nt_gltf_draco_take_out(nt_gltf_recoding *r, const nt_draco_block *block)
+nt_status nt_gltf_draco_take_out(nt_gltf_recoding *r, const nt_draco_block *block)
 {
 	nt_gltf_patcher *p = r->patcher;
 	run *runs = nt_arena_alloc(p->arena, r->attribute_count + 1, sizeof *runs);
 	if (!runs)
 		return nt_fail_memory(p->error);
-	nmtan_status status = set_bounds(r, block);
+	nt_status status = set_bounds(r, block);
 	if (status)
 		return status;
 	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");

@@ -46,16 +46,16 @@ static bool release_block(nt_gltf_patcher *p, uint64_t view, size_t count)
 /* ---- plain ---- */
 
 /* Takes the extension off a primitive, and its block out of the buffer. The view takes some of the rows. */
-static nmtan_status make_plain(nt_gltf_patcher *p, nt_gltf_cluster *component, size_t member)
+static nt_status make_plain(nt_gltf_patcher *p, nt_gltf_cluster *component, size_t member)
 {
 	nt_json_value *primitive = nt_gltf_primitive_of(p->document,
 		&p->scene->meshes[component->members[member]]);
 	nt_json_value *extensions = nt_json_find(primitive, "extensions");
 	uint64_t index;
 	nt_gltf_view view;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(primitive), "bufferView"), &index) &&
-		nt_gltf_get_view(p->document, index, "", &view, NULL) == NMTAN_OK &&
+		nt_gltf_get_view(p->document, index, "", &view, NULL) == NT_OK &&
 		release_block(p, index, 1))
 		status = nt_layout_vacate(&p->layout, (uint32_t)index, 0, view.length, p->error);
 	nt_json_remove(p->json, extensions, "KHR_draco_mesh_compression");
@@ -65,9 +65,9 @@ static nmtan_status make_plain(nt_gltf_patcher *p, nt_gltf_cluster *component, s
 	return status;
 }
 
-static nmtan_status make_all_plain(nt_gltf_patcher *p, nt_gltf_cluster *component)
+static nt_status make_all_plain(nt_gltf_patcher *p, nt_gltf_cluster *component)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < component->member_count; i++)
 		if (component->rows.group_of[i] != NT_NONE &&
 			nt_gltf_draco_of(nt_gltf_primitive_of(p->document,
@@ -78,7 +78,7 @@ static nmtan_status make_all_plain(nt_gltf_patcher *p, nt_gltf_cluster *componen
 
 /* ---- compressed again ---- */
 
-static nmtan_status note_outside(void *context, nt_json_value *attributes, const char *name,
+static nt_status note_outside(void *context, nt_json_value *attributes, const char *name,
 	uint32_t accessor)
 {
 	nt_gltf_recoding *r = context;
@@ -86,7 +86,7 @@ static nmtan_status note_outside(void *context, nt_json_value *attributes, const
 	const bool base = attributes == nt_json_find(r->primitive, "attributes");
 	if (!base || !nt_json_find(nt_json_find(r->extension, "attributes"), name))
 		r->outside = true;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Whether every compressed accessor is used by the component alone and has no uncompressed twin. */
@@ -110,7 +110,7 @@ static bool accessors_are_own(const nt_gltf_recoding *r)
 }
 
 /* Rows of a decoded attribute with their copies. */
-static nmtan_status copy_attribute(nt_gltf_recoding *r, const nt_draco_attribute *from, const void **rows)
+static nt_status copy_attribute(nt_gltf_recoding *r, const nt_draco_attribute *from, const void **rows)
 {
 	nt_gltf_patcher *p = r->patcher;
 	const nt_gltf_rows *all = &r->component->rows;
@@ -123,7 +123,7 @@ static nmtan_status copy_attribute(nt_gltf_recoding *r, const nt_draco_attribute
 		memcpy(out + row * width,
 			(const unsigned char *)from->data + all->sources[row - all->old_count] * width, width);
 	*rows = out;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 int nt_gltf_draco_bits(const nt_write_options *options, nt_draco_bits which)
@@ -165,7 +165,7 @@ static void put_floats(nt_gltf_recoding *r, const char *name, nt_draco_kind kind
 }
 
 /* What the source's block has, as it is. */
-static nmtan_status gather_block(nt_gltf_recoding *r)
+static nt_status gather_block(nt_gltf_recoding *r)
 {
 	nt_gltf_patcher *p = r->patcher;
 	const nt_json_value *ids = nt_json_find(r->extension, "attributes");
@@ -175,7 +175,7 @@ static nmtan_status gather_block(nt_gltf_recoding *r)
 		sizeof *r->names);
 	if (!r->attributes || !r->names)
 		return nt_fail_memory(p->error);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < nt_json_count(ids); i++) {
 		uint64_t id = 0;
 		nt_json_get_uint64(nt_json_at(ids, i), &id);
@@ -189,12 +189,12 @@ static nmtan_status gather_block(nt_gltf_recoding *r)
 }
 
 /* What nmtan made. */
-static nmtan_status add_own_attributes(nt_gltf_recoding *r)
+static nt_status add_own_attributes(nt_gltf_recoding *r)
 {
 	nt_gltf_patcher *p = r->patcher;
 	const nt_gltf_rows *rows = &r->component->rows;
 	const int bits = nt_gltf_draco_bits(p->options, NT_DRACO_BITS_TANGENT);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (rows->normals[0])
 		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, rows->normals[0],
 			nt_gltf_draco_bits(p->options, NT_DRACO_BITS_NORMAL));
@@ -280,7 +280,7 @@ static void describe_block(nt_gltf_recoding *r, const nt_draco_block *block)
 	nt_json_remove(json, accessor, "max");
 }
 
-static nmtan_status store_block(nt_gltf_recoding *r, const nt_draco_block *block)
+static nt_status store_block(nt_gltf_recoding *r, const nt_draco_block *block)
 {
 	nt_gltf_patcher *p = r->patcher;
 	unsigned char *bytes = nt_arena_alloc(p->arena, block->size, 1);
@@ -288,8 +288,8 @@ static nmtan_status store_block(nt_gltf_recoding *r, const nt_draco_block *block
 		return nt_fail_memory(p->error);
 	memcpy(bytes, block->bytes, block->size);
 	nt_gltf_view view;
-	nmtan_status status = r->source ?
-		nt_gltf_get_view(p->document, r->view, "", &view, p->error) : NMTAN_OK;
+	nt_status status = r->source ?
+		nt_gltf_get_view(p->document, r->view, "", &view, p->error) : NT_OK;
 	if (status)
 		return status;
 	if (r->source && release_block(p, r->view, r->component->member_count) &&
@@ -303,7 +303,7 @@ static nmtan_status store_block(nt_gltf_recoding *r, const nt_draco_block *block
 	return status;
 }
 
-static nmtan_status encode(const nt_gltf_recoding *r, nt_draco_method method, nt_draco_block *block)
+static nt_status encode(const nt_gltf_recoding *r, nt_draco_method method, nt_draco_block *block)
 {
 	const nt_draco_mesh mesh = {
 		.method = method,
@@ -326,10 +326,10 @@ static nt_draco_method wanted_method(const nt_gltf_recoding *r)
 }
 
 /* Encodes; *done false where the result would not do. */
-static nmtan_status recode(nt_gltf_recoding *r, bool *done)
+static nt_status recode(nt_gltf_recoding *r, bool *done)
 {
 	nt_gltf_patcher *p = r->patcher;
-	nmtan_status status = r->source ? gather_block(r) : NMTAN_OK;
+	nt_status status = r->source ? gather_block(r) : NT_OK;
 	if (!status)
 		status = add_own_attributes(r);
 	if (status)
@@ -338,18 +338,18 @@ static nmtan_status recode(nt_gltf_recoding *r, bool *done)
 	const nt_draco_method method = wanted_method(r);
 	nt_draco_block block = {0};
 	status = encode(r, method, &block);
-	if (status && status != NMTAN_ERROR_MEMORY && method != NT_DRACO_SEQUENTIAL)
+	if (status && status != NT_ERROR_MEMORY && method != NT_DRACO_SEQUENTIAL)
 		status = encode(r, NT_DRACO_SEQUENTIAL, &block);
-	if (status == NMTAN_ERROR_MEMORY)
+	if (status == NT_ERROR_MEMORY)
 		return nt_fail_memory(p->error);
 	if (status || (r->outside && !order_is_kept(r, &block))) {
 		r->obstacle = status ? "Draco does not give it back"
 				     : "no face uses some of its vertices, whose order matters";
 		nt_draco_block_free(&block);
-		return NMTAN_OK; /* plain, then */
+		return NT_OK; /* plain, then */
 	}
 	*done = true;
-	status = r->source ? NMTAN_OK : nt_gltf_draco_take_out(r, &block);
+	status = r->source ? NT_OK : nt_gltf_draco_take_out(r, &block);
 	if (!status && r->outside && r->component->rows.new_count > r->component->rows.old_count)
 		status = nt_gltf_grow_attributes(p, r->component, NULL, 0, false);
 	if (!status) {
@@ -422,7 +422,7 @@ static void report_members(const nt_gltf_recoding *r, bool compressed)
 	}
 }
 
-nmtan_status nt_gltf_patch_draco(nt_gltf_patcher *p, nt_gltf_cluster *component, bool *done)
+nt_status nt_gltf_patch_draco(nt_gltf_patcher *p, nt_gltf_cluster *component, bool *done)
 {
 	*done = false;
 	if (p->options->draco == NT_DRACO_OFF)
@@ -431,7 +431,7 @@ nmtan_status nt_gltf_patch_draco(nt_gltf_patcher *p, nt_gltf_cluster *component,
 		.mesh = &p->scene->meshes[component->members[0]]};
 	r.primitive = nt_gltf_primitive_of(p->document, r.mesh);
 	r.extension = nt_gltf_draco_of(r.primitive);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (!is_one_primitive(p, component)) {
 		r.obstacle = "it shares vertices with other primitives";
 	} else if (!r.extension) {
@@ -450,5 +450,5 @@ nmtan_status nt_gltf_patch_draco(nt_gltf_patcher *p, nt_gltf_cluster *component,
 	if (*done)
 		share_block(&r);
 	report_members(&r, *done);
-	return *done ? NMTAN_OK : make_all_plain(p, component);
+	return *done ? NT_OK : make_all_plain(p, component);
 }

@@ -33,7 +33,7 @@ static size_t head_length(const char *uri, size_t length)
 }
 
 /* Puts the mark behind the head of the buffer's uri, in place of what is there. */
-static nmtan_status set_mark(nt_gltf_container *c, uint32_t buffer)
+static nt_status set_mark(nt_gltf_container *c, uint32_t buffer)
 {
 	nt_json_value *json = nt_json_at(nt_gltf_root_member(c->document, "buffers"), buffer);
 	char mark[MARK_BYTES];
@@ -46,12 +46,12 @@ static nmtan_status set_mark(nt_gltf_container *c, uint32_t buffer)
 	nt_buffer_append(&text, mark, mark_length);
 	if (!text.failed)
 		nt_json_set_string(c->json, nt_json_put(c->json, json, "uri"), text.data, text.size);
-	const nmtan_status status = text.failed ? nt_fail_memory(c->error) : NMTAN_OK;
+	const nt_status status = text.failed ? nt_fail_memory(c->error) : NT_OK;
 	nt_buffer_free(&text);
 	return status;
 }
 
-nmtan_status nt_gltf_embed(nt_gltf_container *c, uint32_t buffer)
+nt_status nt_gltf_embed(nt_gltf_container *c, uint32_t buffer)
 {
 	if (!c->embedded)
 		c->embedded = nt_arena_alloc(&c->arena, c->patcher->layout.buffer_count, sizeof *c->embedded);
@@ -75,9 +75,9 @@ static bool marks_are_clear(const nt_gltf_container *c, const nt_buffer *text)
 	return true;
 }
 
-nmtan_status nt_gltf_embedding_text(nt_gltf_container *c, nt_buffer *text, uint64_t *length)
+nt_status nt_gltf_embedding_text(nt_gltf_container *c, nt_buffer *text, uint64_t *length)
 {
-	nmtan_status status = nt_json_dump(c->json, text, c->error);
+	nt_status status = nt_json_dump(c->json, text, c->error);
 	while (!status && !marks_are_clear(c, text)) {
 		c->mark_number = nt_hash_bytes(c->mark_number + 1, text->data, text->size);
 		for (size_t i = 0; !status && i < c->embedded_count; i++)
@@ -95,10 +95,10 @@ nmtan_status nt_gltf_embedding_text(nt_gltf_container *c, nt_buffer *text, uint6
 	return status;
 }
 
-nmtan_status nt_gltf_write_text(nt_gltf_container *c, const nt_buffer *text, nt_sink *sink)
+nt_status nt_gltf_write_text(nt_gltf_container *c, const nt_buffer *text, nt_sink *sink)
 {
 	const char *at = text->data, *const end = text->data + text->size;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	/* buffers come in their order, wherever the array stands */
 	for (size_t i = 0; !status && i < c->embedded_count; i++) {
 		char mark[MARK_BYTES];

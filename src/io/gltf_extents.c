@@ -25,7 +25,7 @@ static bool add_view_extent(nt_gltf_layout *layout, uint32_t index, uint64_t off
 	uint32_t accessor, bool *view_used)
 {
 	nt_gltf_view view;
-	if (nt_gltf_get_view(layout->document, index, "", &view, NULL) != NMTAN_OK)
+	if (nt_gltf_get_view(layout->document, index, "", &view, NULL) != NT_OK)
 		return true;
 	view_used[index] = true;
 	return add_extent(layout, view.buffer, view.offset + offset, view.offset + offset + length,
@@ -35,7 +35,7 @@ static bool add_view_extent(nt_gltf_layout *layout, uint32_t index, uint64_t off
 static bool add_accessor_extents(nt_gltf_layout *layout, uint32_t index, bool *view_used)
 {
 	nt_gltf_accessor a;
-	if (nt_gltf_get_accessor(layout->document, index, "", &a, NULL) != NMTAN_OK || a.count == 0)
+	if (nt_gltf_get_accessor(layout->document, index, "", &a, NULL) != NT_OK || a.count == 0)
 		return true;
 	bool added = true;
 	if (a.view != NT_NONE)
@@ -88,7 +88,7 @@ static bool add_whole_views(nt_gltf_layout *layout, bool *view_used, size_t view
 	for (size_t i = 0; added && i < view_count; i++) {
 		nt_gltf_view view;
 		if (!view_used[i] &&
-			nt_gltf_get_view(layout->document, i, "", &view, NULL) == NMTAN_OK) {
+			nt_gltf_get_view(layout->document, i, "", &view, NULL) == NT_OK) {
 			added = add_extent(layout, view.buffer, view.offset, view.offset + view.length,
 				NT_NONE);
 			if (!known[i])

@@ -24,21 +24,21 @@ bool nt_gltf_note_edit(nt_gltf_growing *g, uint32_t buffer, uint64_t begin, uint
 
 /* ---- which accessors ---- */
 
-static nmtan_status add_item(nt_gltf_growing *g, uint32_t index)
+static nt_status add_item(nt_gltf_growing *g, uint32_t index)
 {
 	nt_gltf_patcher *p = g->patcher;
 	if (!nt_grow((void **)&g->items, &g->item_capacity, g->item_count + 1, sizeof *g->items))
 		return nt_fail_memory(p->error);
 	nt_gltf_item *added = &g->items[g->item_count];
 	*added = (nt_gltf_item){.clone = NT_NONE};
-	nmtan_status status =
+	nt_status status =
 		nt_gltf_get_accessor(p->document, index, "/accessors", &added->accessor, p->error);
 	if (status)
 		return status;
 	if (added->accessor.count != g->component->rows.old_count) {
 		char pointer[NT_GLTF_POINTER];
 		snprintf(pointer, sizeof pointer, "/accessors/%u", index);
-		return nt_fail_pointer(p->error, NMTAN_ERROR_INPUT, pointer,
+		return nt_fail_pointer(p->error, NT_ERROR_INPUT, pointer,
 			"%llu elements, but other attributes of the same primitives have %zu",
 			(unsigned long long)added->accessor.count, g->component->rows.old_count);
 	}
@@ -52,10 +52,10 @@ static nmtan_status add_item(nt_gltf_growing *g, uint32_t index)
 	}
 	g->item_count++;
 	p->own[p->sharing.canonical[index]] = g->component->number + 1;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status collect_attribute(void *context, nt_json_value *attributes, const char *name,
+static nt_status collect_attribute(void *context, nt_json_value *attributes, const char *name,
 	uint32_t accessor)
 {
 	(void)attributes;
@@ -64,7 +64,7 @@ static nmtan_status collect_attribute(void *context, nt_json_value *attributes, 
 	if (g->collecting_unsolved)
 		g->pinned[accessor] = true;
 	if (g->seen[accessor])
-		return NMTAN_OK;
+		return NT_OK;
 	g->seen[accessor] = true;
 	return add_item(g, accessor);
 }
@@ -76,10 +76,10 @@ static int compare_overrides(const void *a, const void *b)
 }
 
 /* All accessors of all members. When nothing is appended, only those with new values. */
-static nmtan_status collect_items(nt_gltf_growing *g, const nt_gltf_override *overrides, size_t override_count)
+static nt_status collect_items(nt_gltf_growing *g, const nt_gltf_override *overrides, size_t override_count)
 {
 	const nt_gltf_patcher *p = g->patcher;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; i < override_count; i++)
 		if (!overrides[i].values)
 			g->seen[overrides[i].accessor] = true;
@@ -121,7 +121,7 @@ static bool must_pin(const nt_gltf_growing *g)
 }
 
 /* The elements of an accessor after growing, `stride` apart; sparse values put in where `bake`. */
-static nmtan_status copy_rows(nt_gltf_growing *g, const nt_gltf_item *from, uint32_t stride, bool bake,
+static nt_status copy_rows(nt_gltf_growing *g, const nt_gltf_item *from, uint32_t stride, bool bake,
 	unsigned char **result)
 {
 	nt_gltf_patcher *p = g->patcher;
@@ -136,10 +136,10 @@ static nmtan_status copy_rows(nt_gltf_growing *g, const nt_gltf_item *from, uint
 		for (size_t row = 0; row < count; row++)
 			memcpy(out + row * stride, from->override->values + row * from->override->width,
 				from->override->width);
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	const unsigned char *rows;
-	nmtan_status status = nt_gltf_accessor_rows(p->document, a, &rows, p->error);
+	nt_status status = nt_gltf_accessor_rows(p->document, a, &rows, p->error);
 	for (size_t row = 0; !status && rows && row < a->count; row++)
 		memcpy(out + row * stride, rows + row * a->stride, a->element_bytes);
 	if (!status && bake && a->sparse_count) {
@@ -156,12 +156,12 @@ static nmtan_status copy_rows(nt_gltf_growing *g, const nt_gltf_item *from, uint
 }
 
 /* A new view with all rows of an accessor. */
-static nmtan_status add_rows_view(nt_gltf_growing *g, const nt_gltf_item *from, bool bake, uint32_t *view)
+static nt_status add_rows_view(nt_gltf_growing *g, const nt_gltf_item *from, bool bake, uint32_t *view)
 {
 	const uint32_t element = from->override ? from->override->width : from->accessor.element_bytes;
 	const uint32_t stride = (element + 3) / 4 * 4;
 	unsigned char *rows = NULL;
-	const nmtan_status status = copy_rows(g, from, stride, bake, &rows);
+	const nt_status status = copy_rows(g, from, stride, bake, &rows);
 	if (status)
 		return status;
 	const size_t size = g->component->rows.new_count * stride;
@@ -169,11 +169,11 @@ static nmtan_status add_rows_view(nt_gltf_growing *g, const nt_gltf_item *from, 
 		NT_GLTF_ARRAY_BUFFER, stride != element ? stride : 0, view, g->patcher->error);
 }
 
-static nmtan_status clone_accessor(nt_gltf_growing *g, nt_gltf_item *from)
+static nt_status clone_accessor(nt_gltf_growing *g, nt_gltf_item *from)
 {
 	nt_gltf_patcher *p = g->patcher;
 	uint32_t view;
-	const nmtan_status status = add_rows_view(g, from, true, &view);
+	const nt_status status = add_rows_view(g, from, true, &view);
 	if (status)
 		return status;
 	nt_json_value *accessors = nt_gltf_root_member(p->document, "accessors");
@@ -184,10 +184,10 @@ static nmtan_status clone_accessor(nt_gltf_growing *g, nt_gltf_item *from)
 	nt_json_remove(p->json, clone, "byteOffset");
 	nt_json_remove(p->json, clone, "sparse");
 	nt_json_set_uint64(p->json, nt_json_put(p->json, clone, "count"), g->component->rows.new_count);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status use_clone(void *context, nt_json_value *attributes, const char *name,
+static nt_status use_clone(void *context, nt_json_value *attributes, const char *name,
 	uint32_t accessor)
 {
 	nt_gltf_growing *g = context;
@@ -195,14 +195,14 @@ static nmtan_status use_clone(void *context, nt_json_value *attributes, const ch
 		if (g->items[i].accessor.index == accessor && g->items[i].clone != NT_NONE)
 			nt_json_set_uint64(g->patcher->json,
 				nt_json_put(g->patcher->json, attributes, name), g->items[i].clone);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Copies the pinned accessors, points solved members to the copies and takes them off the list. */
-static nmtan_status clone_pinned(nt_gltf_growing *g)
+static nt_status clone_pinned(nt_gltf_growing *g)
 {
 	const nt_gltf_patcher *p = g->patcher;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < g->item_count; i++) {
 		const uint32_t index = g->items[i].accessor.index;
 		if (g->pinned[index] || p->sharing.foreign[p->sharing.canonical[index]])
@@ -267,26 +267,26 @@ static block find_block(const nt_gltf_growing *g, nt_gltf_item *items, size_t le
 }
 
 /* Moves an accessor to a view of its own. */
-static nmtan_status move_away(nt_gltf_growing *g, const nt_gltf_item *moved)
+static nt_status move_away(nt_gltf_growing *g, const nt_gltf_item *moved)
 {
 	nt_gltf_patcher *p = g->patcher;
 	uint32_t view;
-	const nmtan_status status = add_rows_view(g, moved, false, &view);
+	const nt_status status = add_rows_view(g, moved, false, &view);
 	if (status)
 		return status;
 	nt_json_value *json =
 		nt_json_at(nt_gltf_root_member(p->document, "accessors"), moved->accessor.index);
 	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "bufferView"), view);
 	nt_json_remove(p->json, json, "byteOffset");
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status block_bytes(nt_gltf_growing *g, const block *b, const unsigned char **bytes)
+static nt_status block_bytes(nt_gltf_growing *g, const block *b, const unsigned char **bytes)
 {
 	nt_gltf_patcher *p = g->patcher;
 	const nt_gltf_accessor *first = &b->items->accessor;
 	nt_gltf_view view;
-	nmtan_status status =
+	nt_status status =
 		nt_gltf_get_view(p->document, first->view, "/accessors", &view, p->error);
 	/* each item has been checked against its own view; the block is their union */
 	for (size_t i = 0; !status && i < b->count; i++) {
@@ -299,7 +299,7 @@ static nmtan_status block_bytes(nt_gltf_growing *g, const block *b, const unsign
 }
 
 /* Inserts the copied rows behind the block. */
-static nmtan_status insert_rows(nt_gltf_growing *g, const block *b, const unsigned char *rows)
+static nt_status insert_rows(nt_gltf_growing *g, const block *b, const unsigned char *rows)
 {
 	nt_gltf_patcher *p = g->patcher;
 	const size_t added = nt_gltf_added_rows(g), old_count = g->component->rows.old_count;
@@ -317,7 +317,7 @@ static nmtan_status insert_rows(nt_gltf_growing *g, const block *b, const unsign
 }
 
 /* Replaces the whole block: some of its values are new. */
-static nmtan_status replace_rows(nt_gltf_growing *g, const block *b, const unsigned char *rows)
+static nt_status replace_rows(nt_gltf_growing *g, const block *b, const unsigned char *rows)
 {
 	nt_gltf_patcher *p = g->patcher;
 	const size_t count = g->component->rows.new_count, old_size = (size_t)(b->end - b->begin);
@@ -341,10 +341,10 @@ static nmtan_status replace_rows(nt_gltf_growing *g, const block *b, const unsig
 	return nt_layout_edit(&p->layout, b->buffer, b->begin, old_size, out, size, p->error);
 }
 
-static nmtan_status grow_block(nt_gltf_growing *g, const block *b, uint64_t previous_end)
+static nt_status grow_block(nt_gltf_growing *g, const block *b, uint64_t previous_end)
 {
 	nt_gltf_patcher *p = g->patcher;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (b->begin < previous_end || nt_layout_is_foreign(&p->layout, b->buffer, b->begin, b->end,
 					       p->own, g->component->number + 1)) {
 		for (size_t i = 0; !status && i < b->count; i++)
@@ -401,12 +401,12 @@ static void set_bound(nt_gltf_patcher *p, const nt_gltf_growing *g, const nt_glt
 	}
 }
 
-static nmtan_status grow_items(nt_gltf_growing *g)
+static nt_status grow_items(nt_gltf_growing *g)
 {
 	nt_gltf_patcher *p = g->patcher;
 	if (g->item_count)
 		qsort(g->items, g->item_count, sizeof *g->items, compare_items);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	uint64_t previous_end = 0;
 	uint32_t previous_buffer = NT_NONE;
 	for (size_t i = 0; !status && i < g->item_count && g->items[i].accessor.view != NT_NONE;) {
@@ -438,13 +438,13 @@ static nmtan_status grow_items(nt_gltf_growing *g)
 	return status;
 }
 
-nmtan_status nt_gltf_grow_attributes(nt_gltf_patcher *p, const nt_gltf_cluster *component,
+nt_status nt_gltf_grow_attributes(nt_gltf_patcher *p, const nt_gltf_cluster *component,
 	nt_gltf_override *overrides, size_t override_count, bool decoded_too)
 {
 	nt_gltf_growing g = {.patcher = p, .component = component, .decoded_too = decoded_too,
 		.seen = nt_calloc(p->sharing.accessor_count, sizeof(bool)),
 		.pinned = nt_calloc(p->sharing.accessor_count, sizeof(bool))};
-	nmtan_status status = g.seen && g.pinned ? NMTAN_OK : nt_fail_memory(p->error);
+	nt_status status = g.seen && g.pinned ? NT_OK : nt_fail_memory(p->error);
 	if (override_count)
 		qsort(overrides, override_count, sizeof *overrides, compare_overrides);
 	if (!status)

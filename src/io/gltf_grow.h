@@ -52,6 +52,6 @@ static inline uint32_t nt_gltf_row_source(const nt_gltf_growing *g, size_t row)
 bool nt_gltf_note_edit(nt_gltf_growing *growing, uint32_t buffer, uint64_t begin, uint64_t end);
 
 /* Appends the rows that are copies of replaced ones to what a sparse accessor replaces. */
-nmtan_status nt_gltf_grow_sparse(nt_gltf_growing *growing, const nt_gltf_item *item);
+nt_status nt_gltf_grow_sparse(nt_gltf_growing *growing, const nt_gltf_item *item);
 
 #endif

@@ -47,7 +47,7 @@ struct nt_image_set {
 	size_t name_count, name_capacity;
 };
 
-nmtan_status nt_image_set_create(nt_image_set **set, nt_scene *scene,
+nt_status nt_image_set_create(nt_image_set **set, nt_scene *scene,
 	const nt_write_options *options, nt_error *error)
 {
 	nt_buffer folder = {0};
@@ -55,7 +55,7 @@ nmtan_status nt_image_set_create(nt_image_set **set, nt_scene *scene,
 	const bool found = nt_link_folder(&folder, options->path);
 	if (*set && found && !folder.failed) {
 		**set = (nt_image_set){.scene = scene, .options = *options, .folder = folder.data};
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	const bool out_of_memory = !*set || folder.failed;
 	nt_buffer_free(&folder);
@@ -63,7 +63,7 @@ nmtan_status nt_image_set_create(nt_image_set **set, nt_scene *scene,
 	*set = NULL;
 	if (out_of_memory)
 		return nt_fail_memory(error);
-	nt_fail(error, NMTAN_ERROR_IO, "cannot write: the folder does not exist");
+	nt_fail(error, NT_ERROR_IO, "cannot write: the folder does not exist");
 	return nt_error_in_file(error, options->path);
 }
 
@@ -142,7 +142,7 @@ static bool inspect(image_entry *entry)
 {
 	nt_file file;
 	nt_error ignored;
-	if (!is_file(entry->path) || nt_file_open(&file, entry->path, &ignored) != NMTAN_OK)
+	if (!is_file(entry->path) || nt_file_open(&file, entry->path, &ignored) != NT_OK)
 		return false;
 	entry->type = nt_image_type_of_bytes(file.data, file.size);
 	entry->identity = (nt_file){.size = file.size, .fd = -1, .device = file.device,
@@ -217,7 +217,7 @@ static const image_name *known_name(const nt_image_set *set, const nt_material *
 	return NULL;
 }
 
-nmtan_status nt_image_set_find(nt_image_set *set, const nt_material *material, nt_output *output,
+nt_status nt_image_set_find(nt_image_set *set, const nt_material *material, nt_output *output,
 	nt_error *error)
 {
 	const char *const names[] = {material->base_color_map, material->emissive_map,
@@ -227,14 +227,14 @@ nmtan_status nt_image_set_find(nt_image_set *set, const nt_material *material, n
 		if (!name || !*name || set->options.images == NT_IMAGES_NONE ||
 			known_name(set, material, name))
 			continue;
-		nt_error failure = {.status = NMTAN_OK};
+		nt_error failure = {.status = NT_OK};
 		const size_t entry = look_up(set, material, name, output, &failure);
-		if (failure.status != NMTAN_OK || !nt_grow((void **)&set->names, &set->name_capacity,
+		if (failure.status != NT_OK || !nt_grow((void **)&set->names, &set->name_capacity,
 							  set->name_count + 1, sizeof *set->names))
 			return nt_fail_memory(error);
 		set->names[set->name_count++] = (image_name){material->library, name, entry};
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- adding ---- */
@@ -269,7 +269,7 @@ static bool choose_target(const nt_image_set *set, const image_entry *entry, nt_
 	return false;
 }
 
-static nmtan_status copy_image(nt_image_set *set, image_entry *entry, nt_output *output,
+static nt_status copy_image(nt_image_set *set, image_entry *entry, nt_output *output,
 	nt_error *error)
 {
 	nt_buffer own = {0}, target = {0};
@@ -281,7 +281,7 @@ static nmtan_status copy_image(nt_image_set *set, image_entry *entry, nt_output 
 	const bool is_there = nt_file_is(&entry->identity, own.data);
 	nt_buffer_free(&own);
 	if (is_there) /* a link does */
-		return NMTAN_OK;
+		return NT_OK;
 	if (!choose_target(set, entry, &target)) {
 		nt_buffer_free(&target);
 		return nt_fail_memory(error);
@@ -289,10 +289,10 @@ static nmtan_status copy_image(nt_image_set *set, image_entry *entry, nt_output 
 	entry->target = target.data;
 	nt_sink *sink;
 	nt_file file;
-	nmtan_status status = nt_output_add(output, entry->target, false, &sink, error);
-	if (status == NMTAN_OK)
+	nt_status status = nt_output_add(output, entry->target, false, &sink, error);
+	if (status == NT_OK)
 		status = nt_file_open(&file, entry->path, error);
-	if (status != NMTAN_OK)
+	if (status != NT_OK)
 		return status;
 	status = nt_sink_copy(sink, &file, 0, file.size, error);
 	nt_file_close(&file);
@@ -306,15 +306,15 @@ static char *image_title(const image_entry *entry)
 	return strndup(name, dot ? (size_t)(dot - name) : strlen(name));
 }
 
-static nmtan_status add_entry(nt_image_set *set, image_entry *entry, nt_model *model,
+static nt_status add_entry(nt_image_set *set, image_entry *entry, nt_model *model,
 	uint64_t *buffer_size, nt_output *output, nt_error *error)
 {
 	entry->embedded = set->options.images == NT_IMAGES_EMBED;
 	if ((entry->embedded || set->options.images == NT_IMAGES_COPY) && !entry->exists)
-		return NMTAN_OK;
+		return NT_OK;
 	if (set->options.images == NT_IMAGES_COPY) {
-		const nmtan_status status = copy_image(set, entry, output, error);
-		if (status != NMTAN_OK)
+		const nt_status status = copy_image(set, entry, output, error);
+		if (status != NT_OK)
 			return status;
 	}
 	nt_buffer uri = {0};
@@ -335,14 +335,14 @@ static nmtan_status add_entry(nt_image_set *set, image_entry *entry, nt_model *m
 	const bool failed = uri.failed || !title;
 	nt_buffer_free(&uri);
 	free(title);
-	return failed ? nt_fail_memory(error) : NMTAN_OK;
+	return failed ? nt_fail_memory(error) : NT_OK;
 }
 
-nmtan_status nt_image_set_add(nt_image_set *set, nt_model *model, uint64_t *buffer_size,
+nt_status nt_image_set_add(nt_image_set *set, nt_model *model, uint64_t *buffer_size,
 	nt_output *output, nt_error *error)
 {
-	nmtan_status status = NMTAN_OK;
-	for (size_t i = 0; i < set->entry_count && status == NMTAN_OK; i++)
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < set->entry_count && status == NT_OK; i++)
 		if (set->entries[i].type != NT_IMAGE_OTHER)
 			status = add_entry(set, &set->entries[i], model, buffer_size, output, error);
 	return status;
@@ -370,19 +370,19 @@ size_t nt_image_set_embedded_count(const nt_image_set *set)
 	return count;
 }
 
-nmtan_status nt_image_set_open(const nt_image_set *set, size_t index, nt_file *file,
+nt_status nt_image_set_open(const nt_image_set *set, size_t index, nt_file *file,
 	uint64_t *offset, nt_error *error)
 {
 	const image_entry *entry = set->entries;
 	while (!is_written(entry) || index-- > 0)
 		entry++;
-	const nmtan_status status = nt_file_open(file, entry->path, error);
-	if (status != NMTAN_OK)
+	const nt_status status = nt_file_open(file, entry->path, error);
+	if (status != NT_OK)
 		return status;
 	*offset = entry->offset;
 	if (file->size == entry->identity.size)
-		return NMTAN_OK;
+		return NT_OK;
 	nt_file_close(file);
-	nt_fail(error, NMTAN_ERROR_IO, "the image changed while it was read");
+	nt_fail(error, NT_ERROR_IO, "the image changed while it was read");
 	return nt_error_in_file(error, entry->path);
 }

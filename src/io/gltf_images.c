@@ -62,7 +62,7 @@ static void append_way(nt_buffer *way, const char *from, const char *to)
 	}
 }
 
-nmtan_status nt_gltf_link_prefix(nt_arena *arena, const char *from, const char *to, const char **prefix,
+nt_status nt_gltf_link_prefix(nt_arena *arena, const char *from, const char *to, const char **prefix,
 	nt_error *error)
 {
 	bool exhausted = false;
@@ -76,7 +76,7 @@ nmtan_status nt_gltf_link_prefix(nt_arena *arena, const char *from, const char *
 	nt_buffer_free(&way);
 	free(from_folder);
 	free(to_folder);
-	return exhausted ? nt_fail_memory(error) : NMTAN_OK;
+	return exhausted ? nt_fail_memory(error) : NT_OK;
 }
 
 /* Whether a URI is taken from the document's folder: not "/x", nor anything with a colon in its first
@@ -89,12 +89,12 @@ static bool is_relative(const char *uri, size_t length)
 	return length > 0 && uri[0] != '/' && !memchr(uri, ':', first);
 }
 
-nmtan_status nt_gltf_link(nt_gltf_container *c, nt_json_value *object)
+nt_status nt_gltf_link(nt_gltf_container *c, nt_json_value *object)
 {
 	size_t length;
 	const char *uri = nt_gltf_external_uri(object, &length);
 	if (!uri || !*c->link_prefix || !is_relative(uri, length))
-		return NMTAN_OK;
+		return NT_OK;
 	nt_buffer text = {0};
 	nt_buffer_text(&text, c->link_prefix);
 	nt_buffer_append(&text, uri, length);
@@ -102,7 +102,7 @@ nmtan_status nt_gltf_link(nt_gltf_container *c, nt_json_value *object)
 		nt_json_set_string(c->json, nt_json_put(c->json, object, "uri"), text.data, text.size);
 	const bool failed = text.failed;
 	nt_buffer_free(&text);
-	return failed ? nt_fail_memory(c->error) : NMTAN_OK;
+	return failed ? nt_fail_memory(c->error) : NT_OK;
 }
 
 /* ---- reading ---- */
@@ -130,7 +130,7 @@ static const char *media_type(const nt_file *file)
 }
 
 /* Opens the file of an image; a finding and *file NULL where that is not possible. */
-static nmtan_status open_image(nt_gltf_container *c, size_t index, const char *uri, size_t length,
+static nt_status open_image(nt_gltf_container *c, size_t index, const char *uri, size_t length,
 	const nt_file **file)
 {
 	*file = NULL;
@@ -138,11 +138,11 @@ static nmtan_status open_image(nt_gltf_container *c, size_t index, const char *u
 	nt_file opened;
 	nt_error error;
 	nt_error_clear(&error);
-	nmtan_status status = nt_uri_resolve(&c->arena, c->document->path, uri, length,
+	nt_status status = nt_uri_resolve(&c->arena, c->document->path, uri, length,
 		c->document->allow_outside, &path, &error);
 	if (!status)
 		status = nt_file_open(&opened, path, &error);
-	if (status == NMTAN_ERROR_MEMORY)
+	if (status == NT_ERROR_MEMORY)
 		return nt_fail_memory(c->error);
 	if (status) {
 		nt_place place;
@@ -150,7 +150,7 @@ static nmtan_status open_image(nt_gltf_container *c, size_t index, const char *u
 		snprintf(place.pointer, sizeof place.pointer, "/images/%zu", index);
 		nt_finding_add(&c->patcher->scene->findings, NT_CODE_IMAGE_MISSING, &place, 1, "%s",
 			error.message);
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	if (!nt_grow((void **)&c->images, &c->image_capacity, c->image_count + 1, sizeof *c->images)) {
 		nt_file_close(&opened);
@@ -158,16 +158,16 @@ static nmtan_status open_image(nt_gltf_container *c, size_t index, const char *u
 	}
 	c->images[c->image_count] = opened;
 	*file = &c->images[c->image_count++];
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- moving ---- */
 
-static nmtan_status embed_in_view(nt_gltf_container *c, nt_json_value *image, const nt_file *file,
+static nt_status embed_in_view(nt_gltf_container *c, nt_json_value *image, const nt_file *file,
 	const char *type)
 {
 	uint32_t buffer, view;
-	nmtan_status status =
+	nt_status status =
 		nt_layout_choose_buffer(&c->patcher->layout, 0, &buffer, c->error);
 	if (!status)
 		status = nt_layout_add_view(&c->patcher->layout, buffer, file->data, file->size, 0, 0,
@@ -177,10 +177,10 @@ static nmtan_status embed_in_view(nt_gltf_container *c, nt_json_value *image, co
 	nt_json_remove(c->json, image, "uri");
 	nt_json_set_string(c->json, nt_json_put(c->json, image, "mimeType"), type, strlen(type));
 	nt_json_set_uint64(c->json, nt_json_put(c->json, image, "bufferView"), view);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status embed_as_data(nt_gltf_container *c, nt_json_value *image, const nt_file *file,
+static nt_status embed_as_data(nt_gltf_container *c, nt_json_value *image, const nt_file *file,
 	const char *type)
 {
 	nt_buffer uri = {0};
@@ -189,15 +189,15 @@ static nmtan_status embed_as_data(nt_gltf_container *c, nt_json_value *image, co
 		nt_json_set_string(c->json, nt_json_put(c->json, image, "uri"), uri.data, uri.size);
 	const bool failed = uri.failed;
 	nt_buffer_free(&uri);
-	return failed ? nt_fail_memory(c->error) : NMTAN_OK;
+	return failed ? nt_fail_memory(c->error) : NT_OK;
 }
 
-static nmtan_status embed_image(nt_gltf_container *c, size_t index, nt_json_value *image)
+static nt_status embed_image(nt_gltf_container *c, size_t index, nt_json_value *image)
 {
 	size_t length;
 	const char *uri = nt_gltf_external_uri(image, &length);
 	const nt_file *file;
-	const nmtan_status status = open_image(c, index, uri, length, &file);
+	const nt_status status = open_image(c, index, uri, length, &file);
 	if (status)
 		return status;
 	const char *type = file ? media_type(file) : NULL;
@@ -207,14 +207,14 @@ static nmtan_status embed_image(nt_gltf_container *c, size_t index, nt_json_valu
 }
 
 /* Copies an image beside the output, under its own name. */
-static nmtan_status copy_image(nt_gltf_container *c, size_t index, nt_json_value *image)
+static nt_status copy_image(nt_gltf_container *c, size_t index, nt_json_value *image)
 {
 	size_t length;
 	const char *uri = nt_gltf_external_uri(image, &length);
 	if (!*c->link_prefix)
-		return NMTAN_OK; /* it is there already */
+		return NT_OK; /* it is there already */
 	const nt_file *file;
-	nmtan_status status = open_image(c, index, uri, length, &file);
+	nt_status status = open_image(c, index, uri, length, &file);
 	if (status || !file)
 		return status ? status : nt_gltf_link(c, image);
 	const char *source;
@@ -243,11 +243,11 @@ static nmtan_status copy_image(nt_gltf_container *c, size_t index, nt_json_value
 	return status;
 }
 
-nmtan_status nt_gltf_move_images(nt_gltf_container *c)
+nt_status nt_gltf_move_images(nt_gltf_container *c)
 {
 	const nt_images choice = nt_gltf_images_choice(c->options, c->same_container);
 	const size_t count = nt_json_count(nt_gltf_root_member(c->document, "images"));
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < count; i++) {
 		/* embedding may give the root its first view, which moves the root's members */
 		nt_json_value *image = nt_json_at(nt_gltf_root_member(c->document, "images"), i);

@@ -39,7 +39,7 @@ static size_t tail_of(const nt_mesh *mesh, uint64_t mode, uint64_t old_count)
 			mesh->indices ? tail : 0;
 }
 
-static nmtan_status encode(nt_gltf_patcher *p, const nt_mesh *mesh, const uint32_t *indices, size_t tail,
+static nt_status encode(nt_gltf_patcher *p, const nt_mesh *mesh, const uint32_t *indices, size_t tail,
 	uint32_t least, encoded *out)
 {
 	uint32_t highest = nt_largest(indices, mesh->corner_count, 1);
@@ -52,7 +52,7 @@ static nmtan_status encode(nt_gltf_patcher *p, const nt_mesh *mesh, const uint32
 	/* they live as long as the scene: nothing to be encoded */
 	if (out->width == sizeof *indices && tail == 0 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__) {
 		out->bytes = (const unsigned char *)indices;
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	unsigned char *bytes = nt_arena_alloc(p->arena, out->count, out->width);
 	if (!bytes)
@@ -61,15 +61,15 @@ static nmtan_status encode(nt_gltf_patcher *p, const nt_mesh *mesh, const uint32
 		store_index(bytes + c * out->width,
 			c < mesh->corner_count ? indices[c] : mesh->indices[c], out->width);
 	out->bytes = bytes;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* A new accessor over a new view. */
-static nmtan_status add_indices(nt_gltf_patcher *p, uint32_t buffer, const encoded *new,
+static nt_status add_indices(nt_gltf_patcher *p, uint32_t buffer, const encoded *new,
 	uint32_t *accessor)
 {
 	uint32_t view;
-	const nmtan_status status = nt_layout_add_view(&p->layout, buffer, new->bytes, new->size,
+	const nt_status status = nt_layout_add_view(&p->layout, buffer, new->bytes, new->size,
 		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, p->error);
 	if (!status)
 		*accessor = nt_gltf_new_accessor(p, view, new->type, "SCALAR", new->count, false);
@@ -77,23 +77,23 @@ static nmtan_status add_indices(nt_gltf_patcher *p, uint32_t buffer, const encod
 }
 
 /* Rewrites the accessor, all of whose users agree, where its bytes are its own; *done tells. */
-static nmtan_status replace_indices(nt_gltf_patcher *p, const nt_gltf_accessor *old, const encoded *new,
+static nt_status replace_indices(nt_gltf_patcher *p, const nt_gltf_accessor *old, const encoded *new,
 	bool *done)
 {
 	*done = false;
 	const uint32_t canonical = p->sharing.canonical[old->index];
 	const uint32_t old_width = nt_gltf_component_bytes(old->component_type);
 	if (old->view == NT_NONE || old->sparse_count || old->stride != old_width)
-		return NMTAN_OK;
+		return NT_OK;
 	nt_gltf_view view;
-	nmtan_status status = nt_gltf_get_view(p->document, old->view, "", &view, p->error);
+	nt_status status = nt_gltf_get_view(p->document, old->view, "", &view, p->error);
 	if (status)
 		return status;
 	/* A wider type wants its own alignment: zeros before it, if the view allows. */
 	const uint64_t begin = view.offset + old->offset, size = old->count * old_width;
 	const size_t pad = (size_t)((new->width - begin % new->width) % new->width);
 	if (view.offset % new->width || pad >= size || view.compression)
-		return NMTAN_OK;
+		return NT_OK;
 	const uint32_t mark = NT_NONE;
 	const uint32_t kept = p->own[canonical];
 	p->own[canonical] = mark;
@@ -101,7 +101,7 @@ static nmtan_status replace_indices(nt_gltf_patcher *p, const nt_gltf_accessor *
 		nt_layout_is_foreign(&p->layout, view.buffer, begin, begin + size, p->own, mark);
 	p->own[canonical] = kept;
 	if (foreign)
-		return NMTAN_OK;
+		return NT_OK;
 	const unsigned char *bytes = new->bytes;
 	if (pad) {
 		unsigned char *padded = nt_arena_alloc(p->arena, new->size + pad, 1);
@@ -125,12 +125,12 @@ static nmtan_status replace_indices(nt_gltf_patcher *p, const nt_gltf_accessor *
 }
 
 /* Indices that were compressed get a view; the accessor stays. */
-static nmtan_status give_view(nt_gltf_patcher *p, uint32_t buffer, const nt_gltf_accessor *old,
+static nt_status give_view(nt_gltf_patcher *p, uint32_t buffer, const nt_gltf_accessor *old,
 	const encoded *new, bool *done)
 {
 	*done = true;
 	uint32_t view;
-	const nmtan_status status = nt_layout_add_view(&p->layout, buffer, new->bytes, new->size,
+	const nt_status status = nt_layout_add_view(&p->layout, buffer, new->bytes, new->size,
 		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, p->error);
 	nt_json_value *json = nt_json_at(nt_gltf_root_member(p->document, "accessors"), old->index);
 	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "bufferView"), view);
@@ -172,7 +172,7 @@ static bool all_users_agree(const nt_gltf_patcher *p, const nt_gltf_cluster *com
 	return agreeing == users;
 }
 
-static nmtan_status patch_member(nt_gltf_patcher *p, const nt_gltf_cluster *component, size_t member,
+static nt_status patch_member(nt_gltf_patcher *p, const nt_gltf_cluster *component, size_t member,
 	written *log)
 {
 	const nt_mesh *mesh = &p->scene->meshes[component->members[member]];
@@ -181,7 +181,7 @@ static nmtan_status patch_member(nt_gltf_patcher *p, const nt_gltf_cluster *comp
 	uint64_t mode = NT_GLTF_TRIANGLES, type;
 	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
 	nt_gltf_accessor old = {.count = mesh->source_vertex_count, .component_type = NT_GLTF_UBYTE};
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (index != NT_NONE)
 		status = nt_gltf_get_accessor(p->document, index, mesh->place.pointer, &old, p->error);
 	if (status)
@@ -220,15 +220,15 @@ static nmtan_status patch_member(nt_gltf_patcher *p, const nt_gltf_cluster *comp
 		nt_json_set_uint64(p->json, nt_json_put(p->json, primitive, "indices"), accessor);
 	if (mode != NT_GLTF_TRIANGLES)
 		nt_json_set_uint64(p->json, nt_json_put(p->json, primitive, "mode"), NT_GLTF_TRIANGLES);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_gltf_patch_indices(nt_gltf_patcher *p, const nt_gltf_cluster *component)
+nt_status nt_gltf_patch_indices(nt_gltf_patcher *p, const nt_gltf_cluster *component)
 {
 	written *log = nt_arena_alloc(p->arena, component->member_count, sizeof *log);
 	if (!log)
 		return nt_fail_memory(p->error);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; i < component->member_count; i++) {
 		const nt_json_value *primitive = nt_gltf_primitive_of(p->document,
 			&p->scene->meshes[component->members[i]]);

@@ -27,7 +27,7 @@ static nt_gltf_buffer_layout *plan_of(nt_gltf_layout *layout, uint32_t buffer)
 	return &layout->virtuals[number];
 }
 
-nmtan_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_error *error)
+nt_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_error *error)
 {
 	*layout = (nt_gltf_layout){.document = document, .alignment = ALIGNMENT};
 	layout->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
@@ -43,11 +43,11 @@ nmtan_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_erro
 	}
 	for (size_t i = 0; i < document->buffer_count; i++) {
 		nt_gltf_buffer *buffer;
-		if (nt_gltf_describe_buffer(document, i, "", &buffer, NULL) == NMTAN_OK)
+		if (nt_gltf_describe_buffer(document, i, "", &buffer, NULL) == NT_OK)
 			layout->buffers[i].old_length = buffer->length;
 		layout->buffers[i].new_length = layout->buffers[i].old_length;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 void nt_layout_free(nt_gltf_layout *layout)
@@ -69,7 +69,7 @@ void nt_layout_free(nt_gltf_layout *layout)
 	*layout = (nt_gltf_layout){0};
 }
 
-nmtan_status nt_layout_edit(nt_gltf_layout *layout, uint32_t index, uint64_t at, uint64_t removed,
+nt_status nt_layout_edit(nt_gltf_layout *layout, uint32_t index, uint64_t at, uint64_t removed,
 	const unsigned char *bytes, size_t size, nt_error *error)
 {
 	nt_gltf_buffer_layout *buffer = plan_of(layout, index);
@@ -91,11 +91,11 @@ nmtan_status nt_layout_edit(nt_gltf_layout *layout, uint32_t index, uint64_t at,
 		return nt_fail_memory(error);
 	buffer->edits[buffer->edit_count++] = (nt_gltf_edit){at, removed, bytes, size, 0};
 	buffer->touched = true;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Bytes of a view behind the end of a buffer. */
-static nmtan_status add_bytes(nt_gltf_layout *layout, uint32_t index, uint32_t view, const void *bytes,
+static nt_status add_bytes(nt_gltf_layout *layout, uint32_t index, uint32_t view, const void *bytes,
 	size_t size, nt_error *error)
 {
 	nt_gltf_buffer_layout *buffer = &layout->buffers[index];
@@ -104,7 +104,7 @@ static nmtan_status add_bytes(nt_gltf_layout *layout, uint32_t index, uint32_t v
 		return nt_fail_memory(error);
 	buffer->additions[buffer->addition_count++] = (nt_gltf_addition){view, 0, bytes, size};
 	buffer->touched = true;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* The object of a new view: of a vacant one, with what else it says, or appended. */
@@ -123,7 +123,7 @@ static nt_json_value *take_view(nt_gltf_layout *layout, uint32_t *view)
 	return object;
 }
 
-nmtan_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t index, const void *bytes, size_t size,
+nt_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t index, const void *bytes, size_t size,
 	uint32_t target, uint32_t stride, uint32_t *view, nt_error *error)
 {
 	nt_json *json = layout->document->json;
@@ -145,21 +145,21 @@ static bool can_extend(const nt_gltf *document, uint32_t index)
 		document->buffers[index].home != NT_GLTF_HOME_NOWHERE;
 }
 
-nmtan_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint32_t *buffer,
+nt_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint32_t *buffer,
 	nt_error *error)
 {
 	const nt_gltf *document = layout->document;
 	*buffer = near;
 	if (near != NT_NONE && can_extend(document, near))
-		return NMTAN_OK;
+		return NT_OK;
 	if (layout->buffer_count > document->buffer_count) {
 		*buffer = (uint32_t)document->buffer_count;
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	for (uint32_t i = 0; i < document->buffer_count; i++)
 		if (can_extend(document, i)) {
 			*buffer = i;
-			return NMTAN_OK;
+			return NT_OK;
 		}
 	/* layout->buffers has room for one more */
 	nt_json *json = document->json;
@@ -168,7 +168,7 @@ nmtan_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint
 	nt_json_value *object = nt_json_append(json, buffers);
 	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), 0);
 	layout->buffer_count++;
-	return nt_json_failed(json) ? nt_fail_memory(error) : NMTAN_OK;
+	return nt_json_failed(json) ? nt_fail_memory(error) : NT_OK;
 }
 
 /* ---- moving offsets ---- */
@@ -233,10 +233,10 @@ static void set_offset(nt_json *json, nt_json_value *object, const char *key, ui
 }
 
 /* A buffer must not be empty. */
-static nmtan_status fill_empty_buffers(nt_gltf_layout *layout, nt_error *error)
+static nt_status fill_empty_buffers(nt_gltf_layout *layout, nt_error *error)
 {
 	static const unsigned char zeros[VACANT_BYTES];
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (uint32_t i = 0; !status && i < layout->buffer_count; i++) {
 		const nt_gltf_buffer_layout *buffer = &layout->buffers[i];
 		if (buffer->touched && !buffer->addition_count && buffer->old_length &&
@@ -284,7 +284,7 @@ static void move_views(nt_gltf_layout *layout, moved_view *moved, size_t view_co
 				map_position(&layout->buffers[buffer], offset));
 		}
 		if (moved[i].buffer || layout->vacant[i] ||
-			nt_gltf_get_view(layout->document, i, "", &view, NULL) != NMTAN_OK ||
+			nt_gltf_get_view(layout->document, i, "", &view, NULL) != NT_OK ||
 			view.buffer >= NT_GLTF_VIRTUAL || layout->buffers[view.buffer].edit_count == 0)
 			continue;
 		moved[i].buffer = &layout->buffers[view.buffer];
@@ -335,20 +335,20 @@ typedef struct target {
 	const nt_file *input; /* the document's own file */
 } target;
 
-static nmtan_status put_bytes(const target *to, const void *bytes, size_t size, nt_error *error)
+static nt_status put_bytes(const target *to, const void *bytes, size_t size, nt_error *error)
 {
 	if (to->sink)
 		return nt_sink_write(to->sink, bytes, size, error);
 	if (to->base64)
 		return nt_base64_write(to->base64, bytes, size, error);
 	nt_buffer_append(to->memory, bytes, size);
-	return to->memory->failed ? nt_fail_memory(error) : NMTAN_OK;
+	return to->memory->failed ? nt_fail_memory(error) : NT_OK;
 }
 
-static nmtan_status put_zeros(const target *to, uint64_t size, nt_error *error)
+static nt_status put_zeros(const target *to, uint64_t size, nt_error *error)
 {
 	static const unsigned char zeros[4096];
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	while (size && !status) {
 		const size_t part = size < sizeof zeros ? (size_t)size : sizeof zeros;
 		status = put_bytes(to, zeros, part, error);
@@ -358,14 +358,14 @@ static nmtan_status put_zeros(const target *to, uint64_t size, nt_error *error)
 }
 
 /* A range of a source buffer: from file to file where that is possible. */
-static nmtan_status put_source(const nt_gltf_layout *layout, nt_gltf_buffer *buffer,
+static nt_status put_source(const nt_gltf_layout *layout, nt_gltf_buffer *buffer,
 	const target *to, uint64_t begin, uint64_t end, nt_error *error)
 {
 	if (begin >= end)
-		return NMTAN_OK;
+		return NT_OK;
 	const uint64_t there = buffer->size < begin ? begin : buffer->size < end ? buffer->size : end;
 	const size_t size = (size_t)(there - begin);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (size && to->sink && buffer->home == NT_GLTF_HOME_FILE)
 		status = nt_sink_copy(to->sink, &buffer->file, (size_t)begin, size, error);
 	else if (size && to->sink && buffer->home == NT_GLTF_HOME_BIN && to->input)
@@ -378,11 +378,11 @@ static nmtan_status put_source(const nt_gltf_layout *layout, nt_gltf_buffer *buf
 	return status ? status : put_zeros(to, end - there, error);
 }
 
-static nmtan_status put_buffer(nt_gltf_layout *layout, uint32_t index, const target *to, nt_error *error)
+static nt_status put_buffer(nt_gltf_layout *layout, uint32_t index, const target *to, nt_error *error)
 {
 	const nt_gltf_buffer_layout *plan = plan_of(layout, index);
 	nt_gltf_buffer *source = NULL;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	uint64_t at = 0, written = map_position(plan, plan->old_length);
 	if (plan->old_length && index < NT_GLTF_VIRTUAL &&
 		layout->document->buffers[index].home == NT_GLTF_HOME_NOWHERE)
@@ -393,7 +393,7 @@ static nmtan_status put_buffer(nt_gltf_layout *layout, uint32_t index, const tar
 	if (!status && source && plan->old_length - source->size >= ALIGNMENT) {
 		char pointer[NT_GLTF_POINTER];
 		snprintf(pointer, sizeof pointer, "/buffers/%u", index);
-		status = nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+		status = nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"byteLength is %llu, but only %zu bytes are there",
 			(unsigned long long)plan->old_length, source->size);
 	}
@@ -419,29 +419,29 @@ static nmtan_status put_buffer(nt_gltf_layout *layout, uint32_t index, const tar
 /* ---- views that were decompressed ---- */
 
 /* Takes the compressed bytes of a view out, if nobody else refers to them. */
-static nmtan_status remove_compressed(nt_gltf_layout *layout, const nt_json_value *part, nt_error *error)
+static nt_status remove_compressed(nt_gltf_layout *layout, const nt_json_value *part, nt_error *error)
 {
 	uint64_t buffer, offset = 0, length;
 	if (!nt_json_get_uint64(nt_json_find(part, "buffer"), &buffer) ||
 		!nt_json_get_uint64(nt_json_find(part, "byteLength"), &length) ||
 		buffer >= layout->document->buffer_count)
-		return NMTAN_OK;
+		return NT_OK;
 	nt_json_get_uint64(nt_json_find(part, "byteOffset"), &offset);
 	const size_t users = nt_layout_users(layout, (uint32_t)buffer, offset, offset + length);
 	return users == 1 ? nt_layout_edit(layout, (uint32_t)buffer, offset, length,
 				    (const unsigned char *)"", 0, error) :
-			    NMTAN_OK;
+			    NT_OK;
 }
 
 /* A decompressed view whose bytes have changed is written plain. */
-static nmtan_status settle_virtual(nt_gltf_layout *layout, uint32_t index, moved_view *moved,
+static nt_status settle_virtual(nt_gltf_layout *layout, uint32_t index, moved_view *moved,
 	nt_error *error)
 {
 	nt_gltf *document = layout->document;
 	nt_gltf_buffer_layout *plan = plan_of(layout, document->virtual_of[index]);
 	sort_edits(plan);
 	nt_buffer bytes = {0};
-	nmtan_status status =
+	nt_status status =
 		put_buffer(layout, document->virtual_of[index], &(target){.memory = &bytes}, error);
 	const size_t size = bytes.size;
 	if (status || !nt_arena_adopt(&layout->arena, bytes.data)) {
@@ -470,7 +470,7 @@ static nmtan_status settle_virtual(nt_gltf_layout *layout, uint32_t index, moved
 	if (nt_json_count(extensions) == 0)
 		nt_json_remove(json, view, "extensions");
 	*moved = (moved_view){plan, 0, 0};
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 void nt_gltf_list_extension(nt_gltf *document, const char *list, const char *name)
@@ -517,14 +517,14 @@ static void drop_unneeded_compression(nt_gltf *document)
 
 /* ---- the whole ---- */
 
-nmtan_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error)
+nt_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error)
 {
 	nt_gltf *document = layout->document;
 	const size_t view_count = layout->view_count;
 	moved_view *moved = nt_calloc(view_count, sizeof *moved);
 	if (!moved)
 		return nt_fail_memory(error);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	bool shifted = false;
 	for (uint32_t i = 0; !status && i < view_count; i++)
 		if (document->virtual_of[i] != NT_NONE && plan_of(layout, document->virtual_of[i])->touched) {
@@ -560,16 +560,16 @@ nmtan_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error)
 	}
 	settle_vacancies(layout);
 	drop_unneeded_compression(document);
-	return nt_json_failed(json) ? nt_fail_memory(error) : NMTAN_OK;
+	return nt_json_failed(json) ? nt_fail_memory(error) : NT_OK;
 }
 
-nmtan_status nt_layout_write(nt_gltf_layout *layout, uint32_t buffer, const nt_file *input,
+nt_status nt_layout_write(nt_gltf_layout *layout, uint32_t buffer, const nt_file *input,
 	nt_sink *sink, nt_error *error)
 {
 	return put_buffer(layout, buffer, &(target){.sink = sink, .input = input}, error);
 }
 
-nmtan_status nt_layout_encode(nt_gltf_layout *layout, uint32_t buffer, nt_base64 *base64, nt_error *error)
+nt_status nt_layout_encode(nt_gltf_layout *layout, uint32_t buffer, nt_base64 *base64, nt_error *error)
 {
 	return put_buffer(layout, buffer, &(target){.base64 = base64}, error);
 }

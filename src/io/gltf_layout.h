@@ -62,7 +62,7 @@ typedef struct nt_gltf_layout {
 } nt_gltf_layout;
 
 /* Starts with no changes. Faulty parts of the document that nothing needs are passed over. */
-nmtan_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_error *error);
+nt_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_error *error);
 void nt_layout_free(nt_gltf_layout *layout);
 
 /* Fills extents; for nt_layout_create(). False: out of memory. */
@@ -77,7 +77,7 @@ size_t nt_layout_users(const nt_gltf_layout *layout, uint32_t buffer, uint64_t b
 
 /* Replaces `removed` bytes of a source buffer by others, which must live as long as the layout. The
  * difference is padded with zeros to the layout's alignment. Edits must not overlap. */
-nmtan_status nt_layout_edit(nt_gltf_layout *layout, uint32_t buffer, uint64_t at, uint64_t removed,
+nt_status nt_layout_edit(nt_gltf_layout *layout, uint32_t buffer, uint64_t at, uint64_t removed,
 	const unsigned char *bytes, size_t size, nt_error *error);
 
 /*
@@ -86,19 +86,19 @@ nmtan_status nt_layout_edit(nt_gltf_layout *layout, uint32_t buffer, uint64_t at
  * becomes vacant, and the next new view takes its number. If there is none it shares bytes with others, since a
  * view may not be empty.
  */
-nmtan_status nt_layout_vacate_view(nt_gltf_layout *layout, uint32_t view, size_t users, nt_error *error);
+nt_status nt_layout_vacate_view(nt_gltf_layout *layout, uint32_t view, size_t users, nt_error *error);
 
 /* The same for bytes of a view that one thing alone refers to; the view stays for what else is in it. */
-nmtan_status nt_layout_vacate(nt_gltf_layout *layout, uint32_t view, uint64_t offset, uint64_t length,
+nt_status nt_layout_vacate(nt_gltf_layout *layout, uint32_t view, uint64_t offset, uint64_t length,
 	nt_error *error);
 
 /* Adds a view with these bytes behind the end of a buffer. target and stride: 0 for none. */
-nmtan_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t buffer, const void *bytes, size_t size,
+nt_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t buffer, const void *bytes, size_t size,
 	uint32_t target, uint32_t stride, uint32_t *view, nt_error *error);
 
 /* The buffer that takes new views of who uses source buffer `near` (NT_NONE: nobody in particular);
  * a new buffer where no other can. */
-nmtan_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint32_t *buffer,
+nt_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint32_t *buffer,
 	nt_error *error);
 
 /* Adds an extension to extensionsUsed or extensionsRequired, where it is not there yet. */
@@ -108,13 +108,13 @@ void nt_gltf_list_extension(nt_gltf *document, const char *list, const char *nam
 void nt_gltf_remove_extension(nt_gltf *document, const char *list, const char *name);
 
 /* Moves all offsets in the JSON and sets all lengths. Call once, after the last change. */
-nmtan_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error);
+nt_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error);
 
 /* Writes the bytes of a buffer as they are after the changes. `input` is the document's own file. */
-nmtan_status nt_layout_write(nt_gltf_layout *layout, uint32_t buffer, const nt_file *input,
+nt_status nt_layout_write(nt_gltf_layout *layout, uint32_t buffer, const nt_file *input,
 	nt_sink *sink, nt_error *error);
 
 /* The same as base64, without the last group's padding. */
-nmtan_status nt_layout_encode(nt_gltf_layout *layout, uint32_t buffer, nt_base64 *base64, nt_error *error);
+nt_status nt_layout_encode(nt_gltf_layout *layout, uint32_t buffer, nt_base64 *base64, nt_error *error);
 
 #endif

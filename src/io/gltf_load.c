@@ -17,7 +17,7 @@
 /* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
 enum { UNBACKED_ELEMENTS = 65536 };
 
-static nmtan_status find_primitive(nt_gltf *document, const nt_mesh *mesh,
+static nt_status find_primitive(nt_gltf *document, const nt_mesh *mesh,
 	const nt_json_value **primitive, nt_error *error)
 {
 	const nt_json_value *json =
@@ -32,18 +32,18 @@ typedef struct attribute {
 	nt_gltf_accessor accessor;
 } attribute;
 
-static nmtan_status find_attribute(nt_gltf *document, const nt_mesh *mesh,
+static nt_status find_attribute(nt_gltf *document, const nt_mesh *mesh,
 	const nt_json_value *attributes, const char *name, uint32_t least, uint32_t most,
 	attribute *found, nt_error *error)
 {
 	found->exists = false;
 	const nt_json_value *reference = nt_json_find(attributes, name);
 	if (!reference)
-		return NMTAN_OK;
+		return NT_OK;
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "%.100s/attributes", mesh->place.pointer);
 	uint64_t index;
-	nmtan_status status =
+	nt_status status =
 		nt_gltf_uint(attributes, pointer, name, UINT32_MAX - 1, NT_GLTF_REQUIRED, &index, error);
 	if (!status) {
 		snprintf(pointer, sizeof pointer, "%.100s/attributes/%.20s", mesh->place.pointer, name);
@@ -52,21 +52,21 @@ static nmtan_status find_attribute(nt_gltf *document, const nt_mesh *mesh,
 	if (status)
 		return status;
 	if (found->accessor.components < least || found->accessor.components > most)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"accessor %llu has %u components, expected %u", (unsigned long long)index,
 			found->accessor.components, least);
 	found->exists = true;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status check_count(const nt_mesh *mesh, const attribute *found, const char *name,
+static nt_status check_count(const nt_mesh *mesh, const attribute *found, const char *name,
 	nt_error *error)
 {
 	if (!found->exists || found->accessor.count == mesh->vertex_count)
-		return NMTAN_OK;
+		return NT_OK;
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "%.100s/attributes/%.20s", mesh->place.pointer, name);
-	return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+	return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 		"accessor %u has %llu elements, POSITION has %zu", found->accessor.index,
 		(unsigned long long)found->accessor.count, mesh->vertex_count);
 }
@@ -77,16 +77,16 @@ typedef struct inputs {
 	char texcoord_name[32];
 } inputs;
 
-static nmtan_status find_inputs(nt_gltf *document, const nt_mesh *mesh, const nt_json_value *primitive,
+static nt_status find_inputs(nt_gltf *document, const nt_mesh *mesh, const nt_json_value *primitive,
 	const nt_read_options *options, inputs *in, nt_error *error)
 {
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
 	snprintf(in->texcoord_name, sizeof in->texcoord_name, "TEXCOORD_%u", mesh->texcoord_set);
 	in->colors.exists = false;
-	nmtan_status status =
+	nt_status status =
 		find_attribute(document, mesh, attributes, "POSITION", 3, 3, &in->positions, error);
 	if (!status && !in->positions.exists)
-		status = nt_fail_pointer(error, NMTAN_ERROR_INPUT, mesh->place.pointer,
+		status = nt_fail_pointer(error, NT_ERROR_INPUT, mesh->place.pointer,
 			"the primitive has no POSITION");
 	if (!status)
 		status = find_attribute(document, mesh, attributes, "NORMAL", 3, 3, &in->normals, error);
@@ -106,9 +106,9 @@ static bool is_backed(const attribute *found)
 }
 
 /* Counts must agree, and something in the file must stand behind them. */
-static nmtan_status check_inputs(const nt_mesh *mesh, const inputs *in, nt_error *error)
+static nt_status check_inputs(const nt_mesh *mesh, const inputs *in, nt_error *error)
 {
-	nmtan_status status = check_count(mesh, &in->normals, "NORMAL", error);
+	nt_status status = check_count(mesh, &in->normals, "NORMAL", error);
 	if (!status)
 		status = check_count(mesh, &in->texcoords, in->texcoord_name, error);
 	if (!status)
@@ -118,7 +118,7 @@ static nmtan_status check_inputs(const nt_mesh *mesh, const inputs *in, nt_error
 	const bool backed = is_backed(&in->positions) || is_backed(&in->normals) ||
 		is_backed(&in->texcoords);
 	if (!status && !backed && mesh->vertex_count > UNBACKED_ELEMENTS)
-		status = nt_fail_pointer(error, NMTAN_ERROR_UNSUPPORTED, mesh->place.pointer,
+		status = nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, mesh->place.pointer,
 			"%zu vertices, but neither positions nor normals nor texture coordinates have a "
 			"bufferView", mesh->vertex_count);
 	return status;
@@ -157,7 +157,7 @@ static void flip_rows(void *context, size_t begin, size_t end, unsigned slot)
 }
 
 /* v points down in glTF. The copy is needed: the input stays as it is. */
-static nmtan_status flip_texcoords(nt_scene *scene, nt_mesh *mesh, const float *stored, unsigned threads,
+static nt_status flip_texcoords(nt_scene *scene, nt_mesh *mesh, const float *stored, unsigned threads,
 	nt_error *error)
 {
 	enum { GRAIN = 1 << 16 };
@@ -168,14 +168,14 @@ static nmtan_status flip_texcoords(nt_scene *scene, nt_mesh *mesh, const float *
 	flipping f = {stored, mesh->texcoords};
 	nt_parallel_ranges(count < 2 * GRAIN ? 1 : nt_thread_count(threads), count, GRAIN, flip_rows, &f);
 	nt_gltf_forget(scene, stored, count * 2 * sizeof(float));
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status load_vertices(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const inputs *in,
+static nt_status load_vertices(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const inputs *in,
 	unsigned threads, nt_error *error)
 {
 	nt_arena *arena = &scene->arena;
-	nmtan_status status = nt_gltf_floats(document, &in->positions.accessor, 3, 0, arena,
+	nt_status status = nt_gltf_floats(document, &in->positions.accessor, 3, 0, arena,
 		&mesh->positions, error);
 	if (!status && in->normals.exists) {
 		status = nt_gltf_floats(document, &in->normals.accessor, 3, 0, arena, &mesh->normals, error);
@@ -201,7 +201,7 @@ static nmtan_status load_vertices(nt_scene *scene, nt_gltf *document, nt_mesh *m
  * says, and with v up that is the usual rotation: (u, v) is scaled, then turned by the angle. The offset moves
  * all triangles alike.
  */
-static nmtan_status transform_texcoords(nt_scene *scene, nt_mesh *mesh, const nt_gltf_transform *t,
+static nt_status transform_texcoords(nt_scene *scene, nt_mesh *mesh, const nt_gltf_transform *t,
 	nt_error *error)
 {
 	mesh->solve_texcoords = nt_arena_alloc(&scene->arena, mesh->vertex_count, 2 * sizeof(float));
@@ -219,16 +219,16 @@ static nmtan_status transform_texcoords(nt_scene *scene, nt_mesh *mesh, const nt
 		mesh->solve_texcoords[2 * i] = (float)(t->rotation != 0 ? c * u - s * v : u);
 		mesh->solve_texcoords[2 * i + 1] = (float)(t->rotation != 0 ? s * u + c * v : v);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* The transform of the texture that tangents serve; what cannot be served is a finding. A mesh that shares
  * its geometry has the same one applied already. */
-static nmtan_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
+static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 	const nt_json_value *primitive, nt_error *error)
 {
 	nt_gltf_shading shading;
-	const nmtan_status status = nt_gltf_judge_materials(document, primitive, mesh->place.pointer,
+	const nt_status status = nt_gltf_judge_materials(document, primitive, mesh->place.pointer,
 		&shading, error);
 	if (status || !shading.has_set || shading.set != mesh->texcoord_set || !mesh->texcoords)
 		return status;
@@ -238,7 +238,7 @@ static nmtan_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh 
 	if (shading.transform.animated)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED, &mesh->place, 1, NULL);
 	return shading.transform.exists && !mesh->same_as ?
-		transform_texcoords(scene, mesh, &shading.transform, error) : NMTAN_OK;
+		transform_texcoords(scene, mesh, &shading.transform, error) : NT_OK;
 }
 
 /* Triangles of a strip or fan, in the order and with the first corners that the specification gives. */
@@ -260,24 +260,24 @@ static void list_triangles(uint64_t mode, const uint32_t *chain, size_t face_cou
 /* ---- morph targets ---- */
 
 /* Base and delta; NULL where the target does not move it. */
-static nmtan_status add_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *mesh,
+static nt_status add_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *mesh,
 	const nt_json_value *target, const char *name, const char *pointer, const float *base,
 	float **moved, nt_error *error)
 {
 	*moved = NULL;
 	const nt_json_value *reference = nt_json_find(target, name);
 	if (!reference || !base)
-		return NMTAN_OK;
+		return NT_OK;
 	uint64_t index;
 	nt_gltf_accessor accessor;
-	nmtan_status status =
+	nt_status status =
 		nt_gltf_uint(target, pointer, name, UINT32_MAX - 1, NT_GLTF_REQUIRED, &index, error);
 	if (!status)
 		status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
 	if (status)
 		return status;
 	if (accessor.components != 3 || accessor.count != mesh->vertex_count)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"%s: accessor %llu has %llu elements of %u components, expected %zu of 3", name,
 			(unsigned long long)index, (unsigned long long)accessor.count,
 			accessor.components, mesh->vertex_count);
@@ -303,14 +303,14 @@ static void normalise_rows(float *rows, size_t count)
 }
 
 /* The mesh as each target moves it: their tangents differ from the base's. */
-static nmtan_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
+static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 	const nt_json_value *primitive, nt_error *error)
 {
 	const nt_json_value *targets = nt_json_find(primitive, "targets");
 	const size_t count = nt_json_count(targets);
 	mesh->morph_count = 0;
 	if (count == 0)
-		return NMTAN_OK;
+		return NT_OK;
 	mesh->morphs = nt_arena_alloc(&scene->arena, count, sizeof *mesh->morphs);
 	if (!mesh->morphs)
 		return nt_fail_memory(error);
@@ -319,7 +319,7 @@ static nmtan_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mes
 		snprintf(pointer, sizeof pointer, "%.100s/targets/%zu", mesh->place.pointer, i);
 		nt_morph morph = {.target = (uint32_t)i};
 		const nt_json_value *target = nt_json_at(targets, i);
-		nmtan_status status = add_delta(scene, document, mesh, target, "POSITION", pointer,
+		nt_status status = add_delta(scene, document, mesh, target, "POSITION", pointer,
 			mesh->positions, &morph.positions, error);
 		if (!status)
 			status = add_delta(scene, document, mesh, target, "NORMAL", pointer, mesh->normals,
@@ -331,15 +331,15 @@ static nmtan_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mes
 		if (morph.positions || morph.normals)
 			mesh->morphs[mesh->morph_count++] = morph;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
+static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 	const nt_json_value *primitive, unsigned threads, nt_error *error)
 {
 	uint64_t mode = NT_GLTF_TRIANGLES, index;
 	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
-	nmtan_status status = nt_gltf_uint(primitive, mesh->place.pointer, "indices", UINT32_MAX - 1,
+	nt_status status = nt_gltf_uint(primitive, mesh->place.pointer, "indices", UINT32_MAX - 1,
 		NT_NONE, &index, error);
 	if (status)
 		return status;
@@ -362,15 +362,15 @@ static nmtan_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh
 	mesh->primitives[0].face_count = mesh->face_count;
 	mesh->indices = chain;
 	if (mode == NT_GLTF_TRIANGLES)
-		return NMTAN_OK;
+		return NT_OK;
 	mesh->indices = nt_arena_alloc(&scene->arena, mesh->corner_count, sizeof *mesh->indices);
 	if (!mesh->indices)
 		return nt_fail_memory(error);
 	list_triangles(mode, chain, mesh->face_count, mesh->indices);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
+nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 	nt_error *error)
 {
 	nt_gltf *document = scene->source;
@@ -379,7 +379,7 @@ nmtan_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options 
 		nt_mesh_share(mesh);
 		return apply_transform(scene, document, mesh, nt_gltf_primitive_of(document, mesh), error);
 	}
-	nmtan_status status = find_primitive(document, mesh, &primitive, error);
+	nt_status status = find_primitive(document, mesh, &primitive, error);
 	inputs in;
 	if (!status)
 		status = find_inputs(document, mesh, primitive, options, &in, error);

@@ -22,14 +22,14 @@ typedef struct wishes {
 	size_t material_count, unlit_count;
 } wishes;
 
-static nmtan_status read_number(const nt_json_value *value, const char *pointer, const char *key,
+static nt_status read_number(const nt_json_value *value, const char *pointer, const char *key,
 	double *number, nt_error *error)
 {
 	if (!value || nt_json_get_double(value, number))
-		return NMTAN_OK;
+		return NT_OK;
 	char place[NT_GLTF_POINTER * 2];
 	snprintf(place, sizeof place, "%.250s/%s", pointer, key);
-	return nt_fail_pointer(error, NMTAN_ERROR_INPUT, place, "%s, expected a number",
+	return nt_fail_pointer(error, NT_ERROR_INPUT, place, "%s, expected a number",
 		nt_json_type_text(value));
 }
 
@@ -55,7 +55,7 @@ static bool is_animated(const nt_gltf *document, const char *pointer)
 }
 
 /* The transform of a textureInfo, and the texture coordinate set, which it may override. */
-static nmtan_status read_transform(const nt_gltf *document, const nt_json_value *texture,
+static nt_status read_transform(const nt_gltf *document, const nt_json_value *texture,
 	const char *pointer, nt_gltf_transform *transform, uint64_t *set, nt_error *error)
 {
 	char place[NT_GLTF_POINTER * 2];
@@ -63,9 +63,9 @@ static nmtan_status read_transform(const nt_gltf *document, const nt_json_value 
 	const nt_json_value *json =
 		nt_json_find(nt_json_find(texture, "extensions"), "KHR_texture_transform");
 	if (!json)
-		return NMTAN_OK;
+		return NT_OK;
 	snprintf(place, sizeof place, "%s/extensions/KHR_texture_transform", pointer);
-	nmtan_status status = nt_gltf_uint(json, place, "texCoord", 1000, *set, set, error);
+	nt_status status = nt_gltf_uint(json, place, "texCoord", 1000, *set, set, error);
 	const nt_json_value *scale = nt_json_find(json, "scale");
 	if (!status)
 		status = read_number(nt_json_find(json, "rotation"), place, "rotation",
@@ -84,17 +84,17 @@ static bool same_transform(const nt_gltf_transform *a, const nt_gltf_transform *
 	return a->rotation == b->rotation && a->scale[0] == b->scale[0] && a->scale[1] == b->scale[1];
 }
 
-static nmtan_status note_texture(const nt_gltf *document, wishes *all, int slot,
+static nt_status note_texture(const nt_gltf *document, wishes *all, int slot,
 	const nt_json_value *texture, const char *material, const char *path, nt_error *error)
 {
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "%s/%s", material, path);
 	if (nt_json_type_of(texture) != NT_JSON_OBJECT)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "%s, expected an object",
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an object",
 			nt_json_type_text(texture));
 	uint64_t set;
 	nt_gltf_transform transform;
-	nmtan_status status = nt_gltf_uint(texture, pointer, "texCoord", 1000, 0, &set, error);
+	nt_status status = nt_gltf_uint(texture, pointer, "texCoord", 1000, 0, &set, error);
 	if (!status)
 		status = read_transform(document, texture, pointer, &transform, &set, error);
 	if (status)
@@ -104,7 +104,7 @@ static nmtan_status note_texture(const nt_gltf *document, wishes *all, int slot,
 		all->wants[slot] = true;
 		all->set[slot] = (uint32_t)set;
 		all->transform[slot] = transform;
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	if (all->set[slot] != set) {
 		all->mixed[slot] = true;
@@ -112,23 +112,23 @@ static nmtan_status note_texture(const nt_gltf *document, wishes *all, int slot,
 	}
 	all->mixed_transform[slot] |= !same_transform(&all->transform[slot], &transform);
 	all->transform[slot].animated |= transform.animated;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status note_slots(const nt_gltf *document, wishes *all, const nt_json_value *material, const char *pointer,
+static nt_status note_slots(const nt_gltf *document, wishes *all, const nt_json_value *material, const char *pointer,
 	nt_error *error)
 {
 	const nt_json_value *extensions = nt_json_find(material, "extensions");
 	if (nt_json_find(extensions, "KHR_materials_unlit")) {
 		all->unlit_count++;
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	const nt_json_value *normal = nt_json_find(material, "normalTexture");
 	const nt_json_value *clearcoat = nt_json_find(
 		nt_json_find(extensions, "KHR_materials_clearcoat"), "clearcoatNormalTexture");
 	const nt_json_value *anisotropy = nt_json_find(extensions, "KHR_materials_anisotropy");
 	const nt_json_value *direction = nt_json_find(anisotropy, "anisotropyTexture");
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (normal)
 		status = note_texture(document, all, 0, normal, pointer, "normalTexture", error);
 	if (!status && clearcoat)
@@ -142,11 +142,11 @@ static nmtan_status note_slots(const nt_gltf *document, wishes *all, const nt_js
 	return status;
 }
 
-static nmtan_status note_material(nt_gltf *document, wishes *all, uint64_t index, const char *from,
+static nt_status note_material(nt_gltf *document, wishes *all, uint64_t index, const char *from,
 	bool levels, nt_error *error)
 {
 	const nt_json_value *material;
-	nmtan_status status = nt_gltf_element(document, "materials", index, from, &material, error);
+	nt_status status = nt_gltf_element(document, "materials", index, from, &material, error);
 	if (status)
 		return status;
 	char pointer[NT_GLTF_POINTER];
@@ -163,7 +163,7 @@ static nmtan_status note_material(nt_gltf *document, wishes *all, uint64_t index
 	return status;
 }
 
-static nmtan_status note_variants(nt_gltf *document, wishes *all, const nt_json_value *primitive,
+static nt_status note_variants(nt_gltf *document, wishes *all, const nt_json_value *primitive,
 	const char *pointer, nt_error *error)
 {
 	const nt_json_value *mappings = nt_json_find(
@@ -173,14 +173,14 @@ static nmtan_status note_variants(nt_gltf *document, wishes *all, const nt_json_
 		snprintf(place, sizeof place, "%.90s/extensions/KHR_materials_variants/mappings/%zu",
 			pointer, i);
 		uint64_t index;
-		nmtan_status status = nt_gltf_uint(nt_json_at(mappings, i), place, "material",
+		nt_status status = nt_gltf_uint(nt_json_at(mappings, i), place, "material",
 			UINT32_MAX - 1, NT_GLTF_REQUIRED, &index, error);
 		if (!status)
 			status = note_material(document, all, index, place, true, error);
 		if (status)
 			return status;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* One set must serve all: the first slot that names a texture wins, what differs is a conflict. */
@@ -209,13 +209,13 @@ static void choose_set(const wishes *all, nt_gltf_shading *shading)
 	}
 }
 
-nmtan_status nt_gltf_judge_materials(nt_gltf *document, const nt_json_value *primitive,
+nt_status nt_gltf_judge_materials(nt_gltf *document, const nt_json_value *primitive,
 	const char *pointer, nt_gltf_shading *shading, nt_error *error)
 {
 	*shading = (nt_gltf_shading){.material = NT_NONE};
 	wishes all = {0};
 	uint64_t index;
-	nmtan_status status = nt_gltf_uint(primitive, pointer, "material", UINT32_MAX, NT_NONE, &index,
+	nt_status status = nt_gltf_uint(primitive, pointer, "material", UINT32_MAX, NT_NONE, &index,
 		error);
 	if (!status && index != NT_NONE) {
 		shading->material = (uint32_t)index;
@@ -228,5 +228,5 @@ nmtan_status nt_gltf_judge_materials(nt_gltf *document, const nt_json_value *pri
 	shading->slots = all.slots;
 	shading->unlit = all.material_count > 0 && all.unlit_count == all.material_count;
 	choose_set(&all, shading);
-	return NMTAN_OK;
+	return NT_OK;
 }

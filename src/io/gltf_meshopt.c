@@ -31,12 +31,12 @@ nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **na
 	return NULL;
 }
 
-static nmtan_status read_packed(const nt_json_value *view, const char *pointer, packed *p,
+static nt_status read_packed(const nt_json_value *view, const char *pointer, packed *p,
 	nt_error *error)
 {
 	const nt_json_value *json = nt_gltf_compression_of(view, &p->extension);
 	const uint64_t limit = (uint64_t)1 << 53;
-	nmtan_status status = nt_gltf_uint(json, pointer, "buffer", UINT32_MAX - 1, NT_GLTF_REQUIRED,
+	nt_status status = nt_gltf_uint(json, pointer, "buffer", UINT32_MAX - 1, NT_GLTF_REQUIRED,
 		&p->buffer, error);
 	if (!status)
 		status = nt_gltf_uint(json, pointer, "byteOffset", limit, 0, &p->offset, error);
@@ -56,7 +56,7 @@ static nmtan_status read_packed(const nt_json_value *view, const char *pointer, 
 	return status;
 }
 
-nmtan_status nt_gltf_decompress_view(nt_gltf *document, uint32_t index, nt_error *error)
+nt_status nt_gltf_decompress_view(nt_gltf *document, uint32_t index, nt_error *error)
 {
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "/bufferViews/%u", index);
@@ -64,7 +64,7 @@ nmtan_status nt_gltf_decompress_view(nt_gltf *document, uint32_t index, nt_error
 	const nt_json_value *json;
 	packed p = {0};
 	nt_gltf_buffer *buffer;
-	nmtan_status status = nt_gltf_get_view(document, index, pointer, &view, error);
+	nt_status status = nt_gltf_get_view(document, index, pointer, &view, error);
 	if (!status)
 		status = nt_gltf_element(document, "bufferViews", index, pointer, &json, error);
 	if (status || !view.compression)
@@ -78,7 +78,7 @@ nmtan_status nt_gltf_decompress_view(nt_gltf *document, uint32_t index, nt_error
 	if (status)
 		return status;
 	if (p.offset > buffer->size || p.view.packed_size > buffer->size - p.offset)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"bytes %llu to %llu, but buffer %llu has %zu", (unsigned long long)p.offset,
 			(unsigned long long)(p.offset + p.view.packed_size), (unsigned long long)p.buffer,
 			buffer->size);
@@ -99,5 +99,5 @@ nmtan_status nt_gltf_decompress_view(nt_gltf *document, uint32_t index, nt_error
 		.length = view.length, .described = true, .opened = true, .bytes = bytes,
 		.size = (size_t)view.length, .decoded = bytes};
 	document->virtual_of[index] = NT_GLTF_VIRTUAL + (uint32_t)document->virtual_count++;
-	return NMTAN_OK;
+	return NT_OK;
 }

@@ -84,13 +84,13 @@ static void push_extension_nodes(node_walk *walk, const nt_json_value *object)
 	}
 }
 
-nmtan_status nt_gltf_reach(const nt_gltf *document, bool *reached, size_t mesh_count, nt_error *error)
+nt_status nt_gltf_reach(const nt_gltf *document, bool *reached, size_t mesh_count, nt_error *error)
 {
 	const nt_json_value *scenes = nt_gltf_root_member(document, "scenes");
 	if (!scenes) {
 		for (size_t i = 0; i < mesh_count; i++)
 			reached[i] = true;
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	node_walk walk;
 	if (!start_walk(&walk, document))
@@ -111,7 +111,7 @@ nmtan_status nt_gltf_reach(const nt_gltf *document, bool *reached, size_t mesh_c
 	}
 	const bool failed = walk.failed;
 	end_walk(&walk);
-	return failed ? nt_fail_memory(error) : NMTAN_OK;
+	return failed ? nt_fail_memory(error) : NT_OK;
 }
 
 /* ---- the world ---- */
@@ -196,8 +196,8 @@ static void push_roots(node_walk *walk)
 	free(child);
 }
 
-nmtan_status nt_gltf_walk_world(const nt_gltf *document,
-	nmtan_status (*place)(void *context, uint64_t mesh, const double matrix[16]), void *context,
+nt_status nt_gltf_walk_world(const nt_gltf *document,
+	nt_status (*place)(void *context, uint64_t mesh, const double matrix[16]), void *context,
 	nt_error *error)
 {
 	node_walk walk;
@@ -210,7 +210,7 @@ nmtan_status nt_gltf_walk_world(const nt_gltf *document,
 		push_roots(&walk);
 	else
 		push_nodes(&walk, nt_json_find(nt_json_at(scenes, (size_t)scene), "nodes"), identity);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	while (!status && walk.stack_count && !walk.failed) {
 		const visit here = walk.stack[--walk.stack_count];
 		const nt_json_value *node = nt_json_at(walk.nodes, here.node);

@@ -128,17 +128,17 @@ static bool divide(const nt_mesh *mesh, nt_arena *arena, nt_parts *parts, const 
 	return done;
 }
 
-nmtan_status nt_parts_make(const nt_mesh *mesh, nt_arena *arena, nt_parts *parts, nt_error *error)
+nt_status nt_parts_make(const nt_mesh *mesh, nt_arena *arena, nt_parts *parts, nt_error *error)
 {
 	*parts = (nt_parts){0};
 	if (mesh->face_count == 0)
-		return NMTAN_OK;
+		return NT_OK;
 	if (vertex_count_after_split(mesh) > UINT32_MAX)
-		return nt_fail(error, NMTAN_ERROR_TOO_LARGE,
+		return nt_fail(error, NT_ERROR_TOO_LARGE,
 			"the mesh has %zu vertices, glTF can number 4294967295",
 			vertex_count_after_split(mesh));
 	if (mesh->face_sizes && mesh->split.vertex_tangents && !mesh->face_diagonals)
-		return nt_fail(error, NMTAN_ERROR_INTERNAL, "solved quads come without their diagonals");
+		return nt_fail(error, NT_ERROR_INTERNAL, "solved quads come without their diagonals");
 
 	const size_t primitives = mesh->primitive_count ? mesh->primitive_count : 1;
 	parts->items = nt_arena_alloc(arena, primitives, sizeof *parts->items);
@@ -148,7 +148,7 @@ nmtan_status nt_parts_make(const nt_mesh *mesh, nt_arena *arena, nt_parts *parts
 		parts->items[0] = whole_part(mesh);
 		parts->count = 1;
 		if (!mesh->face_sizes)
-			return NMTAN_OK;
+			return NT_OK;
 	}
 	size_t *first = nt_arena_alloc(arena, primitives + 1, sizeof *first);
 	uint32_t *sorted = first ? sort_triangles(mesh, arena, first) : NULL;
@@ -158,9 +158,9 @@ nmtan_status nt_parts_make(const nt_mesh *mesh, nt_arena *arena, nt_parts *parts
 		parts->items[0].vertex_count = vertex_count_after_split(mesh);
 		parts->items[0].indices = sorted;
 		parts->items[0].index_count = first[1];
-		return NMTAN_OK;
+		return NT_OK;
 	}
-	return divide(mesh, arena, parts, first, sorted) ? NMTAN_OK : nt_fail_memory(error);
+	return divide(mesh, arena, parts, first, sorted) ? NT_OK : nt_fail_memory(error);
 }
 
 /* ---- what a part has ---- */
@@ -322,7 +322,7 @@ static void make_bitangents(const float *normals, float *tangents, size_t count)
 	}
 }
 
-nmtan_status nt_part_write_stream(const nt_part *part, nt_stream stream, nt_part_write write,
+nt_status nt_part_write_stream(const nt_part *part, nt_stream stream, nt_part_write write,
 	void *user, nt_error *error)
 {
 	const nt_mesh *mesh = part->mesh;
@@ -335,9 +335,9 @@ nmtan_status nt_part_write_stream(const nt_part *part, nt_stream stream, nt_part
 		const size_t stored = stream == NT_STREAM_TANGENT ? vertex_count_after_split(mesh)
 								  : mesh->vertex_count;
 		begin = part->vertex_count < stored ? part->vertex_count : stored;
-		const nmtan_status status =
+		const nt_status status =
 			write(user, stream_rows(mesh, stream), begin * row_bytes, error);
-		if (status != NMTAN_OK)
+		if (status != NT_OK)
 			return status;
 	}
 	float block[4 * BLOCK_ROWS], normals[3 * BLOCK_ROWS];
@@ -354,15 +354,15 @@ nmtan_status nt_part_write_stream(const nt_part *part, nt_stream stream, nt_part
 			make_units(normals, count);
 			make_bitangents(normals, block, count);
 		}
-		const nmtan_status status = write(user, block, count * row_bytes, error);
-		if (status != NMTAN_OK)
+		const nt_status status = write(user, block, count * row_bytes, error);
+		if (status != NT_OK)
 			return status;
 		begin += count;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_part_write_indices(const nt_part *part, nt_part_write write, void *user,
+nt_status nt_part_write_indices(const nt_part *part, nt_part_write write, void *user,
 	nt_error *error)
 {
 	if (nt_part_index_size(part) == sizeof(uint32_t))
@@ -374,10 +374,10 @@ nmtan_status nt_part_write_indices(const nt_part *part, nt_part_write write, voi
 		const size_t count = left < 4 * BLOCK_ROWS ? left : 4 * BLOCK_ROWS;
 		for (size_t i = 0; i < count; i++)
 			block[i] = (uint16_t)part->indices[begin + i];
-		const nmtan_status status = write(user, block, count * sizeof *block, error);
-		if (status != NMTAN_OK)
+		const nt_status status = write(user, block, count * sizeof *block, error);
+		if (status != NT_OK)
 			return status;
 		begin += count;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }

@@ -24,8 +24,8 @@ typedef struct nt_parts {
 } nt_parts;
 
 /* The parts of a mesh that have faces, in the order of its primitives. What has to be made lives in the
- * arena. Returns NMTAN_OK, NMTAN_ERROR_MEMORY, NMTAN_ERROR_TOO_LARGE or NMTAN_ERROR_INTERNAL. */
-nmtan_status nt_parts_make(const nt_mesh *mesh, nt_arena *arena, nt_parts *parts, nt_error *error);
+ * arena. Returns NT_OK, NT_ERROR_MEMORY, NT_ERROR_TOO_LARGE or NT_ERROR_INTERNAL. */
+nt_status nt_parts_make(const nt_mesh *mesh, nt_arena *arena, nt_parts *parts, nt_error *error);
 
 /* What can be written of a part. */
 typedef enum nt_stream {
@@ -52,13 +52,13 @@ void nt_part_bounds(const nt_part *part, float min[3], float max[3]);
 size_t nt_part_index_size(const nt_part *part);
 
 /* Where the bytes of a part go. */
-typedef nmtan_status (*nt_part_write)(void *user, const void *bytes, size_t size, nt_error *error);
+typedef nt_status (*nt_part_write)(void *user, const void *bytes, size_t size, nt_error *error);
 
 /* Writes one stream, or the indices, in blocks: straight from the mesh where it has them as they are
  * written. */
-nmtan_status nt_part_write_stream(const nt_part *part, nt_stream stream, nt_part_write write,
+nt_status nt_part_write_stream(const nt_part *part, nt_stream stream, nt_part_write write,
 	void *user, nt_error *error);
-nmtan_status nt_part_write_indices(const nt_part *part, nt_part_write write, void *user,
+nt_status nt_part_write_indices(const nt_part *part, nt_part_write write, void *user,
 	nt_error *error);
 
 #endif

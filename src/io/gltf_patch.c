@@ -32,11 +32,11 @@ uint32_t nt_gltf_new_accessor(nt_gltf_patcher *p, uint32_t view, uint32_t compon
 }
 
 /* An attribute's accessor over a new view. */
-static nmtan_status add_attribute(nt_gltf_patcher *p, uint32_t buffer, const void *rows, size_t count,
+static nt_status add_attribute(nt_gltf_patcher *p, uint32_t buffer, const void *rows, size_t count,
 	size_t row_bytes, uint32_t component_type, const char *type, uint32_t *accessor)
 {
 	uint32_t view;
-	const nmtan_status status = nt_layout_add_view(&p->layout, buffer, rows, count * row_bytes,
+	const nt_status status = nt_layout_add_view(&p->layout, buffer, rows, count * row_bytes,
 		NT_GLTF_ARRAY_BUFFER, 0, &view, p->error);
 	if (!status)
 		*accessor = nt_gltf_new_accessor(p, view, component_type, type, count,
@@ -45,7 +45,7 @@ static nmtan_status add_attribute(nt_gltf_patcher *p, uint32_t buffer, const voi
 }
 
 /* A VEC3 or VEC4 of floats. */
-static nmtan_status add_floats(nt_gltf_patcher *p, uint32_t buffer, const float *rows, size_t count,
+static nt_status add_floats(nt_gltf_patcher *p, uint32_t buffer, const float *rows, size_t count,
 	uint32_t width, uint32_t *accessor)
 {
 	return add_attribute(p, buffer, rows, count, width * sizeof(float), NT_GLTF_FLOAT,
@@ -71,7 +71,7 @@ static const nt_mesh *first_of_group(const nt_gltf_patcher *p, const nt_gltf_clu
 	return &p->scene->meshes[component->members[component->rows.group_first[group]]];
 }
 
-nmtan_status nt_gltf_bitangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
+nt_status nt_gltf_bitangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
 	float **result)
 {
 	const nt_gltf_rows *rows = &component->rows;
@@ -90,7 +90,7 @@ nmtan_status nt_gltf_bitangents(nt_gltf_patcher *p, const nt_gltf_cluster *compo
 			(nt_vec3){t[0], t[1], t[2]}));
 		memcpy(out + 3 * row, &b, 3 * sizeof *out);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* A target of every mesh of the group gets an attribute. */
@@ -105,11 +105,11 @@ static void set_target(nt_gltf_patcher *p, const nt_gltf_cluster *component, uin
 	}
 }
 
-nmtan_status nt_gltf_add_morphs(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group)
+nt_status nt_gltf_add_morphs(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group)
 {
 	const nt_gltf_rows *rows = &component->rows;
 	const nt_mesh *mesh = first_of_group(p, component, group);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t m = 0; !status && m < mesh->morph_count; m++) {
 		float *delta = nt_arena_alloc(p->arena, rows->new_count, 3 * sizeof *delta);
 		uint32_t accessor = 0;
@@ -127,23 +127,23 @@ nmtan_status nt_gltf_add_morphs(nt_gltf_patcher *p, const nt_gltf_cluster *compo
 }
 
 /* Tangents as they are stored. */
-static nmtan_status stored_tangents(nt_gltf_patcher *p, const nt_gltf_rows *rows, uint32_t group,
+static nt_status stored_tangents(nt_gltf_patcher *p, const nt_gltf_rows *rows, uint32_t group,
 	const unsigned char **bytes)
 {
 	const nt_precision precision = p->options->precision;
 	*bytes = (const unsigned char *)rows->tangents[group];
 	if (precision == NT_PRECISION_FLOAT)
-		return NMTAN_OK;
+		return NT_OK;
 	unsigned char *out = nt_arena_alloc(p->arena, rows->new_count, nt_precision_bytes(precision));
 	if (!out)
 		return nt_fail_memory(p->error);
 	nt_precision_encode(precision, rows->tangents[group], rows->new_count, out);
 	*bytes = out;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Rounds the tangents of all groups, so that what is derived from them fits what readers will see. */
-static nmtan_status round_tangents(nt_gltf_patcher *p, nt_gltf_cluster *component)
+static nt_status round_tangents(nt_gltf_patcher *p, nt_gltf_cluster *component)
 {
 	nt_gltf_rows *rows = &component->rows;
 	for (uint32_t group = 0; p->options->precision != NT_PRECISION_FLOAT && group < rows->group_count;
@@ -161,11 +161,11 @@ static nmtan_status round_tangents(nt_gltf_patcher *p, nt_gltf_cluster *componen
 			&first_of_group(p, component, group)->place);
 		p->quantized = true;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Tangents in new bytes: for the accessors that the group's meshes had, or for a new one. */
-static nmtan_status add_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
+static nt_status add_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
 	const nt_gltf_old_tangents *old)
 {
 	const nt_gltf_rows *rows = &component->rows;
@@ -173,7 +173,7 @@ static nmtan_status add_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *comp
 	const size_t row_bytes = nt_precision_bytes(precision);
 	const unsigned char *bytes;
 	uint32_t view, accessor;
-	nmtan_status status = stored_tangents(p, rows, group, &bytes);
+	nt_status status = stored_tangents(p, rows, group, &bytes);
 	if (!status && old->count) {
 		status = nt_layout_add_view(&p->layout, component->buffer, bytes,
 			rows->new_count * row_bytes, NT_GLTF_ARRAY_BUFFER, 0, &view, p->error);
@@ -201,11 +201,11 @@ static void complete_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *compone
 }
 
 /* NORMAL where it was made, TANGENT where it is not already in place, _BITANGENT where asked for. */
-static nmtan_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
+static nt_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
 	const nt_gltf_old_tangents *old)
 {
 	const nt_gltf_rows *rows = &component->rows;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	uint32_t accessor;
 	if (rows->normals[group]) {
 		status = add_floats(p, component->buffer, rows->normals[group], rows->new_count, 3,
@@ -234,7 +234,7 @@ static nmtan_status add_group(nt_gltf_patcher *p, const nt_gltf_cluster *compone
 }
 
 /* New views of the component go where its positions are. */
-static nmtan_status choose_buffer(nt_gltf_patcher *p, nt_gltf_cluster *component)
+static nt_status choose_buffer(nt_gltf_patcher *p, nt_gltf_cluster *component)
 {
 	const nt_mesh *mesh = first_of_group(p, component, 0);
 	const nt_json_value *attributes =
@@ -243,18 +243,18 @@ static nmtan_status choose_buffer(nt_gltf_patcher *p, nt_gltf_cluster *component
 	nt_gltf_accessor accessor;
 	nt_gltf_view view = {.buffer = NT_NONE};
 	if (nt_json_get_uint64(nt_json_find(attributes, "POSITION"), &index) &&
-		nt_gltf_get_accessor(p->document, index, "", &accessor, NULL) == NMTAN_OK &&
+		nt_gltf_get_accessor(p->document, index, "", &accessor, NULL) == NT_OK &&
 		accessor.view != NT_NONE)
 		nt_gltf_get_view(p->document, accessor.view, "", &view, NULL);
 	return nt_layout_choose_buffer(&p->layout, view.buffer, &component->buffer, p->error);
 }
 
 /* New values for accessors that stay in place; the others lose their bytes. */
-static nmtan_status override_tangents(nt_gltf_patcher *p, const nt_gltf_rows *rows, uint32_t group,
+static nt_status override_tangents(nt_gltf_patcher *p, const nt_gltf_rows *rows, uint32_t group,
 	const nt_gltf_old_tangents *old, nt_gltf_override *overrides, size_t *count)
 {
 	const unsigned char *values = NULL;
-	nmtan_status status = old->in_place ? stored_tangents(p, rows, group, &values)
+	nt_status status = old->in_place ? stored_tangents(p, rows, group, &values)
 					    : nt_gltf_vacate_tangents(p, old);
 	for (size_t i = 0; !status && i < old->count; i++)
 		overrides[(*count)++] = (nt_gltf_override){.accessor = old->accessors[i], .values = values,
@@ -262,13 +262,13 @@ static nmtan_status override_tangents(nt_gltf_patcher *p, const nt_gltf_rows *ro
 	return status;
 }
 
-static nmtan_status patch_component(nt_gltf_patcher *p, nt_gltf_cluster *component)
+static nt_status patch_component(nt_gltf_patcher *p, nt_gltf_cluster *component)
 {
 	/* One row for each tangent that a vertex has. */
-	nmtan_status status = nt_gltf_merge_rows(&component->rows, p->document, p->scene, &p->sharing,
+	nt_status status = nt_gltf_merge_rows(&component->rows, p->document, p->scene, &p->sharing,
 		component->members, component->member_count, p->arena, p->error);
 	if (!status && component->rows.group_count == 0)
-		return NMTAN_OK;
+		return NT_OK;
 	if (!status)
 		status = choose_buffer(p, component);
 	if (status)
@@ -342,9 +342,9 @@ static void canonise_extents(nt_gltf_patcher *p)
 	}
 }
 
-static nmtan_status patch_components(nt_gltf_patcher *p)
+static nt_status patch_components(nt_gltf_patcher *p)
 {
-	nmtan_status status = nt_gltf_find_sharing(&p->sharing, p->document, p->scene, p->arena, p->error);
+	nt_status status = nt_gltf_find_sharing(&p->sharing, p->document, p->scene, p->arena, p->error);
 	if (status)
 		return status;
 	p->own = nt_arena_alloc(p->arena, p->sharing.accessor_count, sizeof *p->own);
@@ -366,7 +366,7 @@ static nmtan_status patch_components(nt_gltf_patcher *p)
 	return status;
 }
 
-static nmtan_status decompress_attribute(void *context, nt_json_value *attributes, const char *name,
+static nt_status decompress_attribute(void *context, nt_json_value *attributes, const char *name,
 	uint32_t accessor)
 {
 	(void)attributes;
@@ -374,7 +374,7 @@ static nmtan_status decompress_attribute(void *context, nt_json_value *attribute
 	nt_gltf_patcher *p = context;
 	nt_gltf_accessor found;
 	nt_gltf_view view = {.compression = NULL};
-	const nmtan_status status =
+	const nt_status status =
 		nt_gltf_get_accessor(p->document, accessor, "/accessors", &found, p->error);
 	if (!status && found.view != NT_NONE)
 		nt_gltf_get_view(p->document, found.view, "", &view, NULL);
@@ -383,9 +383,9 @@ static nmtan_status decompress_attribute(void *context, nt_json_value *attribute
 }
 
 /* Compressed views of attributes that will grow. The layout has to know them before it begins. */
-static nmtan_status decompress_views(nt_gltf_patcher *p)
+static nt_status decompress_views(nt_gltf_patcher *p)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < p->scene->mesh_count; i++) {
 		const nt_mesh *mesh = &p->scene->meshes[i];
 		if (nt_gltf_is_solved(mesh) &&
@@ -397,13 +397,13 @@ static nmtan_status decompress_views(nt_gltf_patcher *p)
 	return status;
 }
 
-nmtan_status nt_gltf_patch(nt_scene *scene, const nt_write_options *options, nt_output *output,
+nt_status nt_gltf_patch(nt_scene *scene, const nt_write_options *options, nt_output *output,
 	nt_error *error)
 {
 	/* Nothing to be done: the input as it is. */
 	bool written = false;
 	const bool solved = anything_solved(scene);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (!solved)
 		status = nt_gltf_copy_unchanged(scene, options, output, &written, error);
 	if (status || written)

@@ -51,11 +51,11 @@ typedef struct nt_gltf_old_tangents {
 /* The TANGENT accessor of a member; NT_NONE: none. */
 uint32_t nt_gltf_tangent_of(const nt_gltf_patcher *patcher, const nt_gltf_cluster *component, size_t member);
 
-nmtan_status nt_gltf_find_tangents(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
+nt_status nt_gltf_find_tangents(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
 	uint32_t group, nt_gltf_old_tangents *old);
 
 /* Takes their bytes out of the buffers, where nobody else refers to them. */
-nmtan_status nt_gltf_vacate_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents *old);
+nt_status nt_gltf_vacate_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents *old);
 
 /* Gives them the type that is stored. */
 void nt_gltf_retype_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents *old);
@@ -72,7 +72,7 @@ uint32_t nt_gltf_new_accessor(nt_gltf_patcher *patcher, uint32_t view, uint32_t 
 
 /* Gives every accessor of the component its copied rows, and overridden accessors their new values;
  * `overrides` is sorted for that. decoded_too: what was decompressed by Draco goes into plain views. */
-nmtan_status nt_gltf_grow_attributes(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
+nt_status nt_gltf_grow_attributes(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
 	nt_gltf_override *overrides, size_t override_count, bool decoded_too);
 
 /* Whether a solved member of the component is compressed by Draco. */
@@ -80,27 +80,27 @@ bool nt_gltf_has_draco(const nt_gltf_patcher *patcher, const nt_gltf_cluster *co
 
 /* Writes a component with compressed members: compressed again where that is possible, else plain.
  * *done false: plain, and what plain components need is still to be done. */
-nmtan_status nt_gltf_patch_draco(nt_gltf_patcher *patcher, nt_gltf_cluster *component, bool *done);
+nt_status nt_gltf_patch_draco(nt_gltf_patcher *patcher, nt_gltf_cluster *component, bool *done);
 
 /* cross(N, T) w of every row of a group, glTF's own definition of the bitangent. */
-nmtan_status nt_gltf_bitangents(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
+nt_status nt_gltf_bitangents(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
 	uint32_t group, float **rows);
 
 /* TANGENT of the morph targets of a group's meshes: what to add to the base's. */
-nmtan_status nt_gltf_add_morphs(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
+nt_status nt_gltf_add_morphs(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
 	uint32_t group);
 
 /* Takes KHR_draco_mesh_compression off the lists where no primitive has it any more. */
 void nt_gltf_drop_draco(nt_gltf_patcher *patcher);
 
 /* Writes the indices of the component's solved meshes where they changed. */
-nmtan_status nt_gltf_patch_indices(nt_gltf_patcher *patcher, const nt_gltf_cluster *component);
+nt_status nt_gltf_patch_indices(nt_gltf_patcher *patcher, const nt_gltf_cluster *component);
 
 /* Writes the document with its buffers and images: gltf_container.c. */
-nmtan_status nt_gltf_write_container(nt_gltf_patcher *patcher, nt_output *output);
+nt_status nt_gltf_write_container(nt_gltf_patcher *patcher, nt_output *output);
 
 /* Writes the input as it is where that is what the output should be; *written tells. */
-nmtan_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *options,
+nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *options,
 	nt_output *output, bool *written, nt_error *error);
 
 #endif

@@ -83,19 +83,19 @@ static uint32_t targets_without_tangents(const nt_json_value *primitive)
 	return count;
 }
 
-static nmtan_status describe_primitive(nt_scene *scene, nt_gltf *document,
+static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	const nt_json_value *primitive, nt_mesh *mesh, const nt_read_options *options, nt_error *error)
 {
 	const char *pointer = mesh->place.pointer;
 	if (nt_json_type_of(primitive) != NT_JSON_OBJECT)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer, "%s, expected an object",
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an object",
 			nt_json_type_text(primitive));
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
 	if (attributes && nt_json_type_of(attributes) != NT_JSON_OBJECT)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"\"attributes\" is %s, expected an object", nt_json_type_text(attributes));
 	uint64_t mode;
-	nmtan_status status = nt_gltf_uint(primitive, pointer, "mode", 6, NT_GLTF_TRIANGLES, &mode, error);
+	nt_status status = nt_gltf_uint(primitive, pointer, "mode", 6, NT_GLTF_TRIANGLES, &mode, error);
 	nt_gltf_shading shading;
 	if (!status)
 		status = nt_gltf_judge_materials(document, primitive, pointer, &shading, error);
@@ -119,15 +119,15 @@ static nmtan_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	if (!mesh->primitives)
 		return nt_fail_memory(error);
 	mesh->primitives[0] = (nt_primitive){NT_NONE, mesh->face_count};
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* All primitives of all meshes. */
-static nmtan_status count_primitives(const nt_gltf *document, size_t *count, nt_error *error)
+static nt_status count_primitives(const nt_gltf *document, size_t *count, nt_error *error)
 {
 	const nt_json_value *meshes = nt_gltf_root_member(document, "meshes");
 	if (meshes && nt_json_type_of(meshes) != NT_JSON_ARRAY)
-		return nt_fail_pointer(error, NMTAN_ERROR_INPUT, "/meshes", "%s, expected an array",
+		return nt_fail_pointer(error, NT_ERROR_INPUT, "/meshes", "%s, expected an array",
 			nt_json_type_text(meshes));
 	*count = 0;
 	for (size_t i = 0; i < nt_json_count(meshes); i++) {
@@ -135,15 +135,15 @@ static nmtan_status count_primitives(const nt_gltf *document, size_t *count, nt_
 		if (nt_json_type_of(primitives) != NT_JSON_ARRAY) {
 			char pointer[NT_GLTF_POINTER];
 			snprintf(pointer, sizeof pointer, "/meshes/%zu", i);
-			return nt_fail_pointer(error, NMTAN_ERROR_INPUT, pointer,
+			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 				"\"primitives\" is %s, expected an array", nt_json_type_text(primitives));
 		}
 		*count += nt_json_count(primitives);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status describe_meshes(nt_scene *scene, nt_gltf *document, const nt_read_options *options,
+static nt_status describe_meshes(nt_scene *scene, nt_gltf *document, const nt_read_options *options,
 	const bool *reached, nt_error *error)
 {
 	const nt_json_value *meshes = nt_gltf_root_member(document, "meshes");
@@ -163,13 +163,13 @@ static nmtan_status describe_meshes(nt_scene *scene, nt_gltf *document, const nt
 			mesh->gltf_mesh = (uint32_t)i;
 			mesh->gltf_primitive = (uint32_t)k;
 			mesh->reachable = reached[i];
-			const nmtan_status status = describe_primitive(scene, document,
+			const nt_status status = describe_primitive(scene, document,
 				nt_json_at(primitives, k), mesh, options, error);
 			if (status)
 				return status;
 		}
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Where the primitives of a mesh begin in scene->meshes. */
@@ -180,11 +180,11 @@ typedef struct placing {
 	nt_error *error;
 } placing;
 
-static nmtan_status place_mesh(void *context, uint64_t mesh, const double matrix[16])
+static nt_status place_mesh(void *context, uint64_t mesh, const double matrix[16])
 {
 	placing *world = context;
 	if (mesh >= world->mesh_count)
-		return NMTAN_OK;
+		return NT_OK;
 	nt_scene *scene = world->scene;
 	for (uint32_t i = world->first[mesh]; i < world->first[mesh + 1]; i++) {
 		if (scene->instance_count == world->capacity) {
@@ -201,10 +201,10 @@ static nmtan_status place_mesh(void *context, uint64_t mesh, const double matrix
 		instance->mesh = i;
 		memcpy(instance->matrix, matrix, sizeof instance->matrix);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status place_meshes(nt_scene *scene, const nt_gltf *document, nt_error *error)
+static nt_status place_meshes(nt_scene *scene, const nt_gltf *document, nt_error *error)
 {
 	const size_t mesh_count = nt_json_count(nt_gltf_root_member(document, "meshes"));
 	uint32_t *first = nt_arena_alloc(&scene->arena, mesh_count + 1, sizeof *first);
@@ -224,10 +224,10 @@ static uint64_t count_read(const void *source)
 	return nt_gltf_bytes_read(source);
 }
 
-nmtan_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
+nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
 	nt_gltf *document;
-	nmtan_status status = nt_gltf_create(&document, scene, options->allow_outside, error);
+	nt_status status = nt_gltf_create(&document, scene, options->allow_outside, error);
 	if (status)
 		return status;
 	scene->source = document;

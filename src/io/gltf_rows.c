@@ -437,7 +437,7 @@ static bool borrow_rows(nt_gltf_rows *rows, const nt_mesh *mesh, size_t member_c
 }
 
 /* All meshes of a component have the same number of vertices in a sound document. */
-static nmtan_status check_counts(nt_gltf_rows *rows, const nt_scene *scene, const uint32_t *members,
+static nt_status check_counts(nt_gltf_rows *rows, const nt_scene *scene, const uint32_t *members,
 	size_t member_count, nt_error *error)
 {
 	bool first = true;
@@ -446,16 +446,16 @@ static nmtan_status check_counts(nt_gltf_rows *rows, const nt_scene *scene, cons
 		if (rows->group_of[i] == NT_NONE)
 			continue;
 		if (!first && mesh->source_vertex_count != rows->old_count)
-			return nt_fail_pointer(error, NMTAN_ERROR_INPUT, mesh->place.pointer,
+			return nt_fail_pointer(error, NT_ERROR_INPUT, mesh->place.pointer,
 				"%zu vertices, but a primitive that shares attributes with it has %zu",
 				mesh->source_vertex_count, rows->old_count);
 		rows->old_count = mesh->source_vertex_count;
 		first = false;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_gltf_merge_rows(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
+nt_status nt_gltf_merge_rows(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
 	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count, nt_arena *arena,
 	nt_error *error)
 {
@@ -469,15 +469,15 @@ nmtan_status nt_gltf_merge_rows(nt_gltf_rows *rows, const nt_gltf *document, con
 	if (!rows->group_of || !rows->group_first || !rows->next_of || !rows->indices || !rows->changed ||
 		!nt_gltf_find_groups(rows, document, scene, sharing, members, member_count))
 		return nt_fail_memory(error);
-	nmtan_status status = check_counts(rows, scene, members, member_count, error);
+	nt_status status = check_counts(rows, scene, members, member_count, error);
 	if (status)
 		return status;
 	const nt_mesh *lone = lone_mesh(rows, scene, members, member_count);
 	if (lone)
-		return borrow_rows(rows, lone, member_count, arena) ? NMTAN_OK : nt_fail_memory(error);
+		return borrow_rows(rows, lone, member_count, arena) ? NT_OK : nt_fail_memory(error);
 	merging m;
 	const bool merged = start_merging(&m, rows, scene, members, member_count) &&
 		merge_members(&m, scene, members, member_count, arena) && keep_rows(&m, arena);
 	end_merging(&m);
-	return merged ? NMTAN_OK : nt_fail_memory(error);
+	return merged ? NT_OK : nt_fail_memory(error);
 }

@@ -93,12 +93,12 @@ static void put_targets(same_job *job, const nt_mesh *mesh, const nt_json_value 
 	}
 }
 
-static nmtan_status put_key(same_job *job, const nt_mesh *mesh, nt_error *error)
+static nt_status put_key(same_job *job, const nt_mesh *mesh, nt_error *error)
 {
 	const nt_json_value *primitive = nt_gltf_primitive_of(job->document, mesh);
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
 	nt_gltf_shading shading;
-	const nmtan_status status = nt_gltf_judge_materials(job->document, primitive, mesh->place.pointer,
+	const nt_status status = nt_gltf_judge_materials(job->document, primitive, mesh->place.pointer,
 		&shading, error);
 	if (status)
 		return status;
@@ -117,7 +117,7 @@ static nmtan_status put_key(same_job *job, const nt_mesh *mesh, nt_error *error)
 	put_transform(job, mesh, &shading);
 	if (!job->options->world && job->options->morphs == NT_MORPH_BAKE)
 		put_targets(job, mesh, primitive);
-	return job->keys.failed ? nt_fail_memory(error) : NMTAN_OK;
+	return job->keys.failed ? nt_fail_memory(error) : NT_OK;
 }
 
 /* ---- finding equal ones ---- */
@@ -152,9 +152,9 @@ static uint32_t find_first(same_job *job, uint32_t mesh)
 	return job->table[at];
 }
 
-static nmtan_status find_all(same_job *job, nt_scene *scene, nt_error *error)
+static nt_status find_all(same_job *job, nt_scene *scene, nt_error *error)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (uint32_t i = 0; !status && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
 		job->begin[i] = job->begin[i + 1] = job->keys.size;
@@ -169,13 +169,13 @@ static nmtan_status find_all(same_job *job, nt_scene *scene, nt_error *error)
 	return status;
 }
 
-nmtan_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_error *error)
+nt_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
 	size_t wanted = 0;
 	for (size_t i = 0; i < scene->mesh_count; i++)
 		wanted += is_wanted(&scene->meshes[i]);
 	if (wanted < 2)
-		return NMTAN_OK;
+		return NT_OK;
 	same_job job = {.scene = scene, .document = scene->source, .options = options, .table_size = 4};
 	job.accessor_count = nt_json_count(nt_gltf_root_member(job.document, "accessors"));
 	while (job.table_size < 2 * wanted)
@@ -183,7 +183,7 @@ nmtan_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, 
 	job.canonical = nt_alloc(job.accessor_count, sizeof *job.canonical);
 	job.begin = nt_alloc(scene->mesh_count + 1, sizeof *job.begin);
 	job.table = nt_alloc(job.table_size, sizeof *job.table);
-	nmtan_status status = NMTAN_ERROR_MEMORY;
+	nt_status status = NT_ERROR_MEMORY;
 	if (!job.canonical || !job.begin || !job.table ||
 		!nt_gltf_find_canonical(job.document, job.canonical, job.accessor_count)) {
 		nt_fail_memory(error);

@@ -22,10 +22,10 @@ nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh
 	return nt_json_at(nt_json_find(json, "primitives"), mesh->gltf_primitive);
 }
 
-static nmtan_status visit_object(nt_json_value *attributes, size_t accessor_count, nt_gltf_visit visit,
+static nt_status visit_object(nt_json_value *attributes, size_t accessor_count, nt_gltf_visit visit,
 	void *context)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < nt_json_count(attributes); i++) {
 		uint64_t accessor;
 		const char *name = nt_json_key(attributes, i, NULL);
@@ -36,10 +36,10 @@ static nmtan_status visit_object(nt_json_value *attributes, size_t accessor_coun
 	return status;
 }
 
-nmtan_status nt_gltf_visit_attributes(const nt_json_value *primitive, size_t accessor_count,
+nt_status nt_gltf_visit_attributes(const nt_json_value *primitive, size_t accessor_count,
 	nt_gltf_visit visit, void *context)
 {
-	nmtan_status status =
+	nt_status status =
 		visit_object(nt_json_find(primitive, "attributes"), accessor_count, visit, context);
 	const nt_json_value *targets = nt_json_find(primitive, "targets");
 	for (size_t i = 0; !status && i < nt_json_count(targets); i++)
@@ -77,7 +77,7 @@ bool nt_gltf_find_canonical(nt_gltf *document, uint32_t *canonical, size_t acces
 	for (uint32_t i = 0; i < accessor_count; i++) {
 		canonical[i] = i;
 		nt_gltf_accessor accessor;
-		if (nt_gltf_get_accessor(document, i, "", &accessor, NULL) == NMTAN_OK &&
+		if (nt_gltf_get_accessor(document, i, "", &accessor, NULL) == NT_OK &&
 			accessor.view != NT_NONE && !accessor.sparse_count)
 			list[count++] = accessor;
 	}
@@ -140,7 +140,7 @@ static uint32_t find_root(uint32_t *parent, uint32_t mesh)
 	return mesh;
 }
 
-static nmtan_status join_user(void *context, nt_json_value *attributes, const char *name,
+static nt_status join_user(void *context, nt_json_value *attributes, const char *name,
 	uint32_t accessor)
 {
 	(void)attributes;
@@ -150,12 +150,12 @@ static nmtan_status join_user(void *context, nt_json_value *attributes, const ch
 	uint32_t *user = &j->first_user[j->sharing->canonical[accessor]];
 	if (*user == NT_NONE) {
 		*user = j->mesh;
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	const uint32_t a = find_root(j->parent, *user), b = find_root(j->parent, j->mesh);
 	/* the smaller number is the root, so that components come in the order of their first mesh */
 	j->parent[a < b ? b : a] = a < b ? a : b;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Numbers components in the order of their first mesh and lists their meshes. */
@@ -180,7 +180,7 @@ static void list_components(nt_gltf_sharing *sharing, uint32_t *parent, size_t m
 	}
 }
 
-nmtan_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, const nt_scene *scene,
+nt_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, const nt_scene *scene,
 	nt_arena *arena, nt_error *error)
 {
 	const size_t accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
@@ -230,5 +230,5 @@ nmtan_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, c
 	list_components(sharing, j.parent, scene->mesh_count);
 	free(j.parent);
 	free(j.first_user);
-	return NMTAN_OK;
+	return NT_OK;
 }

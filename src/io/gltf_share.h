@@ -12,9 +12,9 @@
 #include "io/gltf_document.h"
 
 /* Calls visit() for the accessors of a primitive: its attributes and those of its morph targets. */
-typedef nmtan_status (*nt_gltf_visit)(void *context, nt_json_value *attributes, const char *name,
+typedef nt_status (*nt_gltf_visit)(void *context, nt_json_value *attributes, const char *name,
 	uint32_t accessor);
-nmtan_status nt_gltf_visit_attributes(const nt_json_value *primitive, size_t accessor_count,
+nt_status nt_gltf_visit_attributes(const nt_json_value *primitive, size_t accessor_count,
 	nt_gltf_visit visit, void *context);
 
 /* Fills canonical [accessor_count]: the first accessor over the same bytes, for each. False: out of memory. */
@@ -36,7 +36,7 @@ typedef struct nt_gltf_sharing {
 	uint32_t *first;          /* [component_count + 1] where each begins in order */
 } nt_gltf_sharing;
 
-nmtan_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, const nt_scene *scene,
+nt_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, const nt_scene *scene,
 	nt_arena *arena, nt_error *error);
 
 /* Whether a mesh has tangents to be written. */
@@ -66,7 +66,7 @@ bool nt_gltf_find_groups(nt_gltf_rows *rows, const nt_gltf *document, const nt_s
 /* Merges the splits of a component's meshes: a vertex gets one row for each tangent (and made normal)
  * that any of them wants. members are mesh numbers. Everything is in the arena,
  * or borrowed from the scene. */
-nmtan_status nt_gltf_merge_rows(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
+nt_status nt_gltf_merge_rows(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
 	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count, nt_arena *arena,
 	nt_error *error);
 

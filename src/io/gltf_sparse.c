@@ -19,11 +19,11 @@ typedef struct part {
 	bool extended;              /* the new array begins with the old one */
 } part;
 
-static nmtan_status move_part(nt_gltf_growing *g, const part *moved, nt_json_value *json)
+static nt_status move_part(nt_gltf_growing *g, const part *moved, nt_json_value *json)
 {
 	nt_gltf_patcher *p = g->patcher;
 	uint32_t view;
-	const nmtan_status status = nt_layout_add_view(&p->layout, g->component->buffer, moved->bytes,
+	const nt_status status = nt_layout_add_view(&p->layout, g->component->buffer, moved->bytes,
 		moved->size, 0, 0, &view, p->error);
 	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "bufferView"), view);
 	nt_json_remove(p->json, json, "byteOffset");
@@ -48,14 +48,14 @@ static void find_edited(const nt_gltf_growing *g, uint32_t buffer, uint64_t begi
 
 /* Puts the new array where the old one is; where others use its bytes, into a new view. Morph targets often
  * share one array of indices: they replace the same rows, so it grows once for all of them. */
-static nmtan_status grow_part(nt_gltf_growing *g, const nt_gltf_item *from, const part *grown)
+static nt_status grow_part(nt_gltf_growing *g, const nt_gltf_item *from, const part *grown)
 {
 	nt_gltf_patcher *p = g->patcher;
 	nt_json_value *json = nt_json_find(nt_json_find(nt_json_at(
 		nt_gltf_root_member(p->document, "accessors"), from->accessor.index), "sparse"),
 		grown->name);
 	nt_gltf_view view;
-	const nmtan_status status = nt_gltf_get_view(p->document, grown->view, "", &view, p->error);
+	const nt_status status = nt_gltf_get_view(p->document, grown->view, "", &view, p->error);
 	if (status)
 		return status;
 	const uint64_t begin = view.offset + grown->offset, end = begin + grown->old_size;
@@ -66,7 +66,7 @@ static nmtan_status grow_part(nt_gltf_growing *g, const nt_gltf_item *from, cons
 			g->component->number + 1))
 		return move_part(g, grown, json);
 	if (same)
-		return NMTAN_OK;
+		return NT_OK;
 	if (!nt_gltf_note_edit(g, view.buffer, begin, end))
 		return nt_fail_memory(p->error);
 	if (!grown->extended)
@@ -83,12 +83,12 @@ typedef struct replacement {
 	size_t old_count, count;
 } replacement;
 
-static nmtan_status find_replacements(nt_gltf_growing *g, const nt_gltf_accessor *a, replacement *out)
+static nt_status find_replacements(nt_gltf_growing *g, const nt_gltf_accessor *a, replacement *out)
 {
 	nt_gltf_patcher *p = g->patcher;
 	const uint32_t *replaced;
 	const unsigned char *values;
-	const nmtan_status status =
+	const nt_status status =
 		nt_gltf_sparse(p->document, a, p->arena, &replaced, &values, p->error);
 	if (status)
 		return status;
@@ -117,16 +117,16 @@ static nmtan_status find_replacements(nt_gltf_growing *g, const nt_gltf_accessor
 		out->count++;
 	}
 	free(position);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Copies of rows that a sparse accessor replaces are replaced too. */
-nmtan_status nt_gltf_grow_sparse(nt_gltf_growing *g, const nt_gltf_item *from)
+nt_status nt_gltf_grow_sparse(nt_gltf_growing *g, const nt_gltf_item *from)
 {
 	nt_gltf_patcher *p = g->patcher;
 	const nt_gltf_accessor *a = &from->accessor;
 	replacement r = {0};
-	nmtan_status status = find_replacements(g, a, &r);
+	nt_status status = find_replacements(g, a, &r);
 	if (status || r.count == r.old_count)
 		return status;
 	const uint32_t highest = r.rows[r.count - 1];

@@ -32,7 +32,7 @@ static bool is_own(const nt_gltf_patcher *p, uint32_t index, size_t known)
 	const uint32_t canonical = p->sharing.canonical[index];
 	nt_gltf_accessor accessor;
 	return !p->sharing.foreign[canonical] && p->sharing.attribute_users[canonical] == known &&
-		nt_gltf_get_accessor(p->document, index, "", &accessor, NULL) == NMTAN_OK &&
+		nt_gltf_get_accessor(p->document, index, "", &accessor, NULL) == NT_OK &&
 		accessor.components == 4;
 }
 
@@ -42,8 +42,8 @@ static bool fits_in_place(const nt_gltf_patcher *p, uint32_t index)
 	const nt_precision precision = p->options->precision;
 	nt_gltf_accessor a;
 	nt_gltf_view view;
-	if (nt_gltf_get_accessor(p->document, index, "", &a, NULL) != NMTAN_OK || a.view == NT_NONE ||
-		a.sparse_count || nt_gltf_get_view(p->document, a.view, "", &view, NULL) != NMTAN_OK)
+	if (nt_gltf_get_accessor(p->document, index, "", &a, NULL) != NT_OK || a.view == NT_NONE ||
+		a.sparse_count || nt_gltf_get_view(p->document, a.view, "", &view, NULL) != NT_OK)
 		return false;
 	if (a.component_type == nt_precision_component_type(precision) &&
 		(a.component_type == NT_GLTF_FLOAT || a.normalized))
@@ -60,7 +60,7 @@ static int compare_indices(const void *a, const void *b)
 }
 
 /* The TANGENT accessors of a group's meshes, in ascending order, each as often as it is used. */
-static nmtan_status list_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
+static nt_status list_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
 	uint32_t **list, size_t *count)
 {
 	const nt_gltf_rows *rows = &component->rows;
@@ -77,16 +77,16 @@ static nmtan_status list_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *com
 			(*list)[(*count)++] = index;
 	}
 	qsort(*list, *count, sizeof **list, compare_indices);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_gltf_find_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
+nt_status nt_gltf_find_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *component, uint32_t group,
 	nt_gltf_old_tangents *old)
 {
 	uint32_t *list;
 	size_t count = 0;
 	*old = (nt_gltf_old_tangents){.in_place = true};
-	const nmtan_status status = list_tangents(p, component, group, &list, &count);
+	const nt_status status = list_tangents(p, component, group, &list, &count);
 	if (status)
 		return status;
 	old->accessors = list; /* what is kept overtakes nothing that is still to be read */
@@ -101,12 +101,12 @@ nmtan_status nt_gltf_find_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *co
 		old->accessors[old->count++] = list[i];
 	}
 	old->in_place &= old->count > 0;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_gltf_vacate_tangents(nt_gltf_patcher *p, const nt_gltf_old_tangents *old)
+nt_status nt_gltf_vacate_tangents(nt_gltf_patcher *p, const nt_gltf_old_tangents *old)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < old->count; i++) {
 		nt_gltf_accessor a;
 		status = nt_gltf_get_accessor(p->document, old->accessors[i], "", &a, p->error);

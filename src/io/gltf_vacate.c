@@ -9,18 +9,18 @@
 static bool is_plain(const nt_gltf_layout *layout, uint32_t index, nt_gltf_view *view)
 {
 	const nt_json_value *json = nt_json_at(nt_gltf_root_member(layout->document, "bufferViews"), index);
-	return nt_gltf_get_view(layout->document, index, "", view, NULL) == NMTAN_OK &&
+	return nt_gltf_get_view(layout->document, index, "", view, NULL) == NT_OK &&
 		view->buffer < NT_GLTF_VIRTUAL && !nt_json_find(json, "extensions");
 }
 
-nmtan_status nt_layout_vacate_view(nt_gltf_layout *layout, uint32_t index, size_t users, nt_error *error)
+nt_status nt_layout_vacate_view(nt_gltf_layout *layout, uint32_t index, size_t users, nt_error *error)
 {
 	nt_gltf_view view;
 	if (!is_plain(layout, index, &view) || layout->vacant[index])
-		return NMTAN_OK;
+		return NT_OK;
 	const uint64_t begin = view.offset, end = begin + view.length, alignment = layout->alignment;
 	if (nt_layout_users(layout, view.buffer, begin, end) != users)
-		return NMTAN_OK;
+		return NT_OK;
 	/* padding behind it has no purpose any more */
 	const uint64_t padded = begin + (view.length + alignment - 1) / alignment * alignment;
 	const bool pads = padded <= layout->buffers[view.buffer].old_length &&
@@ -31,15 +31,15 @@ nmtan_status nt_layout_vacate_view(nt_gltf_layout *layout, uint32_t index, size_
 		(const unsigned char *)"", 0, error);
 }
 
-nmtan_status nt_layout_vacate(nt_gltf_layout *layout, uint32_t index, uint64_t offset, uint64_t length,
+nt_status nt_layout_vacate(nt_gltf_layout *layout, uint32_t index, uint64_t offset, uint64_t length,
 	nt_error *error)
 {
 	nt_gltf_view view;
-	const nmtan_status status = nt_layout_vacate_view(layout, index, 1, error);
+	const nt_status status = nt_layout_vacate_view(layout, index, 1, error);
 	if (status || layout->vacant[index] || !is_plain(layout, index, &view))
 		return status;
 	const uint64_t begin = view.offset + offset;
 	if (length == view.length || nt_layout_users(layout, view.buffer, begin, begin + length) != 1)
-		return NMTAN_OK;
+		return NT_OK;
 	return nt_layout_edit(layout, view.buffer, begin, length, (const unsigned char *)"", 0, error);
 }

@@ -55,22 +55,22 @@ static void ignore(const reader *r)
 }
 
 /* Fails with "found WORD, expected EXPECTED" at a line of the MTL. */
-static nmtan_status fail_expected(const reader *r, const char *found, const char *expected)
+static nt_status fail_expected(const reader *r, const char *found, const char *expected)
 {
 	size_t length = 0;
 	while (found + length < r->end && !is_blank(found[length]) && length < 64)
 		length++;
 	if (length)
-		nt_fail_line(r->error, NMTAN_ERROR_INPUT, r->line, "found \"%.*s\", expected %s", (int)length,
+		nt_fail_line(r->error, NT_ERROR_INPUT, r->line, "found \"%.*s\", expected %s", (int)length,
 			found, expected);
 	else
-		nt_fail_line(r->error, NMTAN_ERROR_INPUT, r->line, "found the end of the line, expected %s",
+		nt_fail_line(r->error, NT_ERROR_INPUT, r->line, "found the end of the line, expected %s",
 			expected);
 	return nt_error_in_file(r->error, r->path);
 }
 
 /* Numbers up to the end of the text, at most `most`; *count receives how many. */
-static nmtan_status read_numbers(const reader *r, float *numbers, int most, int *count)
+static nt_status read_numbers(const reader *r, float *numbers, int most, int *count)
 {
 	const char *p = r->text;
 	for (*count = 0; *count < most && p < r->end; ++*count) {
@@ -81,7 +81,7 @@ static nmtan_status read_numbers(const reader *r, float *numbers, int most, int 
 		while (p < r->end && is_blank(*p))
 			p++;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static float clamp_unit(float value)
@@ -97,15 +97,15 @@ static bool begins_with(const reader *r, const char *word)
 }
 
 /* r g b, or one number for all three. "spectral" and "xyz" are not RGB and not carried over. */
-static nmtan_status read_color(const reader *r, float color[3], bool unit)
+static nt_status read_color(const reader *r, float color[3], bool unit)
 {
 	if (begins_with(r, "spectral") || begins_with(r, "xyz")) {
 		ignore(r);
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	float numbers[3];
 	int count;
-	const nmtan_status status = read_numbers(r, numbers, 3, &count);
+	const nt_status status = read_numbers(r, numbers, 3, &count);
 	if (status)
 		return status;
 	if (count != 1 && count != 3)
@@ -114,10 +114,10 @@ static nmtan_status read_color(const reader *r, float color[3], bool unit)
 		const float value = fmaxf(numbers[count == 3 ? k : 0], 0);
 		color[k] = unit ? clamp_unit(value) : value;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status read_factor(const reader *r, float *factor, bool inverse)
+static nt_status read_factor(const reader *r, float *factor, bool inverse)
 {
 	reader at = *r;
 	if (begins_with(r, "-halo"))
@@ -125,22 +125,22 @@ static nmtan_status read_factor(const reader *r, float *factor, bool inverse)
 			at.text++;
 	float value;
 	int count;
-	const nmtan_status status = read_numbers(&at, &value, 1, &count);
+	const nt_status status = read_numbers(&at, &value, 1, &count);
 	if (status)
 		return status;
 	if (count != 1)
 		return fail_expected(&at, at.end, "a number");
 	*factor = clamp_unit(inverse ? 1 - value : value);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* A map: its options, then its file name. */
-static nmtan_status read_map(reader *r, const char **map, float *scale)
+static nt_status read_map(reader *r, const char **map, float *scale)
 {
 	nt_mtl_map read;
 	nt_mtl_map_read(r->text, r->end, &read);
 	if (read.name_begin == read.name_end)
-		return NMTAN_OK; /* "map_Kd" alone: exporters write it for "none" */
+		return NT_OK; /* "map_Kd" alone: exporters write it for "none" */
 	if (read.transformed)
 		add_finding(r, "MTL: -o, -s or -t of ", r->word);
 	if (scale)
@@ -149,7 +149,7 @@ static nmtan_status read_map(reader *r, const char **map, float *scale)
 	if (!name)
 		return nt_fail_memory(r->error);
 	*map = name;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- statements ---- */
@@ -172,7 +172,7 @@ static const struct {
 };
 enum { STATEMENT_COUNT = sizeof statements / sizeof statements[0] };
 
-static nmtan_status read_property(reader *r, nt_mtl_definition *d, enum action action)
+static nt_status read_property(reader *r, nt_mtl_definition *d, enum action action)
 {
 	nt_material *m = &d->material;
 	switch (action) {
@@ -205,7 +205,7 @@ static nmtan_status read_property(reader *r, nt_mtl_definition *d, enum action a
 	case PASS_OVER:
 		break;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 nt_material nt_mtl_default(const char *name)
@@ -218,7 +218,7 @@ nt_material nt_mtl_default(const char *name)
 	};
 }
 
-static nmtan_status begin_material(reader *r)
+static nt_status begin_material(reader *r)
 {
 	nt_mtl *mtl = r->mtl;
 	const size_t length = (size_t)(r->end - r->text);
@@ -232,11 +232,11 @@ static nmtan_status begin_material(reader *r)
 	*d = (nt_mtl_definition){nt_mtl_default(name), raw_name, length, NULL, 0};
 	d->material.library = r->path;
 	d->material.line = r->line;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* first: definitions before it are of other files. */
-static nmtan_status read_statement(reader *r, size_t first)
+static nt_status read_statement(reader *r, size_t first)
 {
 	if (r->word_length == 6 && strncasecmp(r->word, "newmtl", 6) == 0)
 		return begin_material(r);
@@ -249,17 +249,17 @@ static nmtan_status read_statement(reader *r, size_t first)
 				statements[i].action);
 		}
 	ignore(r);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *bytes, size_t size,
+nt_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *bytes, size_t size,
 	nt_mtl *mtl, nt_error *error)
 {
 	const size_t first = mtl->count;
 	reader r = {.scene = scene, .path = path, .mtl = mtl, .line = 1, .error = error};
 	const char *p = (const char *)bytes, *const end = p + size;
 	if (memchr(bytes, '\0', size)) {
-		nt_fail(error, NMTAN_ERROR_INPUT, "a byte 0 in it, expected a material library in text");
+		nt_fail(error, NT_ERROR_INPUT, "a byte 0 in it, expected a material library in text");
 		return nt_error_in_file(error, path);
 	}
 	if (size >= 3 && memcmp(p, "\xEF\xBB\xBF", 3) == 0)
@@ -281,7 +281,7 @@ nmtan_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char
 		while (r.end > r.text && is_blank(r.end[-1]))
 			r.end--;
 		if (r.word_length && r.word[0] != '#') {
-			const nmtan_status status = read_statement(&r, first);
+			const nt_status status = read_statement(&r, first);
 			if (status)
 				return status;
 		}
@@ -290,7 +290,7 @@ nmtan_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char
 			p++;
 		r.line++;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- files ---- */
@@ -359,7 +359,7 @@ static char *file_name(nt_scene *scene, const char *text, size_t length)
 }
 
 /* Reads one library; what cannot be read is reported unless `quiet`. *found says whether it was. */
-static nmtan_status read_library(const request *q, const char *text, size_t length, bool quiet,
+static nt_status read_library(const request *q, const char *text, size_t length, bool quiet,
 	bool *found)
 {
 	*found = false;
@@ -373,17 +373,17 @@ static nmtan_status read_library(const request *q, const char *text, size_t leng
 	nt_file file;
 	nt_error open_error;
 	if (!reason && nt_file_open(&file, path, &open_error)) {
-		if (open_error.status == NMTAN_ERROR_MEMORY)
+		if (open_error.status == NT_ERROR_MEMORY)
 			return nt_fail_memory(q->error);
 		reason = open_error.message;
 	}
 	if (reason) {
 		if (!quiet)
 			report_missing(q, name, reason);
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	*found = true;
-	const nmtan_status status = nt_mtl_parse(q->scene, path, file.data, file.size, q->mtl, q->error);
+	const nt_status status = nt_mtl_parse(q->scene, path, file.data, file.size, q->mtl, q->error);
 	nt_file_close(&file);
 	return status;
 }
@@ -397,14 +397,14 @@ static size_t first_name_length(const char *text, size_t length)
 	return length;
 }
 
-nmtan_status nt_mtl_read(nt_scene *scene, const char *names, size_t length, size_t line,
+nt_status nt_mtl_read(nt_scene *scene, const char *names, size_t length, size_t line,
 	const nt_read_options *options, nt_mtl *mtl, nt_error *error)
 {
 	const request q = {scene, options, line, mtl, error};
 	/* The format allows several names, exporters write single names with blanks: one is tried first. */
 	const bool several = first_name_length(names, length) < length;
 	bool found;
-	nmtan_status status = read_library(&q, names, length, several, &found);
+	nt_status status = read_library(&q, names, length, several, &found);
 	if (!several || found)
 		return status;
 	while (!status && length) {

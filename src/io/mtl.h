@@ -34,15 +34,15 @@ nt_material nt_mtl_default(const char *name);
  *   names, length   what follows "mtllib"
  *   line            of the statement
  *
- * Returns NMTAN_OK, NMTAN_ERROR_INPUT (a number that is none, with the library's line) or
- * NMTAN_ERROR_MEMORY.
+ * Returns NT_OK, NT_ERROR_INPUT (a number that is none, with the library's line) or
+ * NT_ERROR_MEMORY.
  */
-nmtan_status nt_mtl_read(nt_scene *scene, const char *names, size_t length, size_t line,
+nt_status nt_mtl_read(nt_scene *scene, const char *names, size_t length, size_t line,
 	const nt_read_options *options, nt_mtl *mtl, nt_error *error);
 
 /* Reads definitions from bytes; `path` names them in findings and materials and has to live as long as
  * the scene. The same statuses. */
-nmtan_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *bytes, size_t size,
+nt_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *bytes, size_t size,
 	nt_mtl *mtl, nt_error *error);
 
 void nt_mtl_free(nt_mtl *mtl);

@@ -80,7 +80,7 @@ static bool open_uri(nt_normal_map *map, nt_gltf *document, const char *uri, siz
 		return true;
 	}
 	const char *path;
-	return nt_uri_resolve(&document->arena, document->path, uri, length, false, &path, &ignored) == NMTAN_OK &&
+	return nt_uri_resolve(&document->arena, document->path, uri, length, false, &path, &ignored) == NT_OK &&
 		open_file(map, path);
 }
 

@@ -112,7 +112,7 @@ static bool add_tail(obj_file *file, size_t *capacity, const char *begin, const 
 	return add_chunk(file, capacity, file->tail, file->tail + size + !ended);
 }
 
-static nmtan_status split(obj_file *file, nt_error *error)
+static nt_status split(obj_file *file, nt_error *error)
 {
 	const char *p = (const char *)file->scene->bytes;
 	const char *const end = p + file->scene->byte_count;
@@ -138,7 +138,7 @@ static nmtan_status split(obj_file *file, nt_error *error)
 	}
 	if (!add_tail(file, &capacity, tail, end))
 		return nt_fail_memory(error);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- parse ---- */
@@ -168,7 +168,7 @@ static void parse_chunks(void *context, size_t begin, size_t end, unsigned slot)
 	}
 }
 
-static nmtan_status parse(obj_file *file, nt_error *error)
+static nt_status parse(obj_file *file, nt_error *error)
 {
 	parse_job job = {.file = file};
 	nt_parallel_ranges(file->threads, file->chunk_count, 1, parse_chunks, &job);
@@ -177,14 +177,14 @@ static nmtan_status parse(obj_file *file, nt_error *error)
 		obj_chunk *chunk = &file->chunks[c];
 		if (chunk->error.status) {
 			*error = chunk->error;
-			if (error->status == NMTAN_ERROR_INPUT)
+			if (error->status == NT_ERROR_INPUT)
 				error->place.line += line;
 			return error->status;
 		}
 		chunk->first_line = line;
 		line += chunk->line_count;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- join ---- */
@@ -235,14 +235,14 @@ static void join_polygons(obj_file *file)
 	}
 }
 
-static nmtan_status join(obj_file *file, nt_error *error)
+static nt_status join(obj_file *file, nt_error *error)
 {
 	count_all(file);
 	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
 		if (file->row_counts[kind] > INT32_MAX)
-			return nt_fail(error, NMTAN_ERROR_TOO_LARGE, "more than 2^31 - 1 vertices in one file");
+			return nt_fail(error, NT_ERROR_TOO_LARGE, "more than 2^31 - 1 vertices in one file");
 	if (file->corner_count >= NT_NONE)
-		return nt_fail(error, NMTAN_ERROR_TOO_LARGE, "more than 2^32 - 1 face corners in one file");
+		return nt_fail(error, NT_ERROR_TOO_LARGE, "more than 2^32 - 1 face corners in one file");
 	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
 		if (!make_guide(file, kind))
 			return nt_fail_memory(error);
@@ -255,7 +255,7 @@ static nmtan_status join(obj_file *file, nt_error *error)
 		if (file->chunks[c].face_count)
 			memcpy(file->face_sizes + file->chunks[c].first_face, file->chunks[c].face_sizes,
 				file->chunks[c].face_count);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- the whole ---- */
@@ -278,13 +278,13 @@ static void free_file(obj_file *file)
 	free(file->vertices);
 }
 
-nmtan_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
+nt_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
 	/* a file of a chunk or two is read before a second thread has begun */
 	const bool small = scene->byte_count <= 2 * CHUNK_BYTES;
 	obj_file file = {.scene = scene, .threads = small ? 1 : nt_thread_count(options->threads)};
 	scene->format = NT_FORMAT_OBJ;
-	nmtan_status status = split(&file, error);
+	nt_status status = split(&file, error);
 	if (!status)
 		status = parse(&file, error);
 	if (!status)
@@ -300,5 +300,5 @@ nmtan_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_err
 	if (!status && scene->findings.failed)
 		status = nt_fail_memory(error);
 	free_file(&file);
-	return status ? nt_error_in_file(error, scene->path) : NMTAN_OK;
+	return status ? nt_error_in_file(error, scene->path) : NT_OK;
 }

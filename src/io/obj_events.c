@@ -153,11 +153,11 @@ static nt_place line_place(const nt_scene *scene, size_t line)
 }
 
 /* Reads every library once. */
-static nmtan_status read_libraries(state *s, const nt_read_options *options, nt_mtl *mtl)
+static nt_status read_libraries(state *s, const nt_read_options *options, nt_mtl *mtl)
 {
 	obj_file *file = s->file;
 	nt_name_table seen = {0};
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t c = 0; c < file->chunk_count && !status; c++) {
 		const obj_chunk *chunk = &file->chunks[c];
 		for (size_t i = 0; i < chunk->event_count && !status; i++) {
@@ -197,7 +197,7 @@ static void define(nt_scene *scene, uint32_t number, const nt_mtl_definition *d)
 	}
 }
 
-static nmtan_status make_materials(state *s, const nt_mtl *mtl)
+static nt_status make_materials(state *s, const nt_mtl *mtl)
 {
 	nt_scene *scene = s->file->scene;
 	scene->materials = nt_arena_alloc(&scene->arena, s->names.count, sizeof *scene->materials);
@@ -225,7 +225,7 @@ static nmtan_status make_materials(state *s, const nt_mtl *mtl)
 			nt_finding_add(&scene->findings, NT_CODE_MATERIAL_UNKNOWN, &place, 1, "%.200s",
 				unknown++ < NAMED_UNKNOWN_MOST ? scene->materials[i].name : "and others");
 		}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- what was ignored ---- */
@@ -268,24 +268,24 @@ static void report_ignored(const obj_file *file)
 }
 
 /* A file without faces has nothing to put tangents on. */
-static nmtan_status fail_empty(const obj_file *file, nt_error *error)
+static nt_status fail_empty(const obj_file *file, nt_error *error)
 {
 	size_t count;
 	const obj_chunk *small = find_ignored(file, OBJ_SMALL_FACE, &count);
 	if (small)
-		return nt_fail_line(error, NMTAN_ERROR_INPUT, ignored_line(small, OBJ_SMALL_FACE),
+		return nt_fail_line(error, NT_ERROR_INPUT, ignored_line(small, OBJ_SMALL_FACE),
 			"found a face of %zu corners and no larger one in the file, expected at least 3",
 			small->small_size);
-	return nt_fail(error, NMTAN_ERROR_INPUT, "found no faces, expected a mesh");
+	return nt_fail(error, NT_ERROR_INPUT, "found no faces, expected a mesh");
 }
 
-nmtan_status obj_read_events(obj_file *file, const nt_read_options *options, nt_error *error)
+nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_error *error)
 {
 	state s = {.file = file, .error = error, .object_is_new = true};
 	nt_mtl mtl = {0};
 	if (file->face_count == 0)
 		return fail_empty(file, error);
-	nmtan_status status = read_stretches(&s) ? NMTAN_OK : nt_fail_memory(error);
+	nt_status status = read_stretches(&s) ? NT_OK : nt_fail_memory(error);
 	if (!status)
 		status = read_libraries(&s, options, &mtl);
 	if (!status)

@@ -12,7 +12,7 @@
 #include "io/decimal.h"
 
 /* An index of nine and more digits, one that counts back, or none. */
-static nmtan_status read_unusual_index(obj_reader *r, size_t count, uint32_t *index)
+static nt_status read_unusual_index(obj_reader *r, size_t count, uint32_t *index)
 {
 	const char *p = r->p;
 	const bool back = *p == '-';
@@ -29,11 +29,11 @@ static nmtan_status read_unusual_index(obj_reader *r, size_t count, uint32_t *in
 		return obj_fail_expected(r, "an index that a file can hold");
 	*index = back ? OBJ_RELATIVE | (uint32_t)(OBJ_BIAS + count - value) : (uint32_t)value - 1;
 	r->p = p;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* `count` elements of that kind precede the face in its chunk. */
-static nmtan_status read_index(obj_reader *r, size_t count, uint32_t *index)
+static nt_status read_index(obj_reader *r, size_t count, uint32_t *index)
 {
 	uint32_t value;
 	const unsigned digits = nt_read_digits(r->p, &value);
@@ -41,7 +41,7 @@ static nmtan_status read_index(obj_reader *r, size_t count, uint32_t *index)
 		return read_unusual_index(r, count, index);
 	r->p += digits;
 	*index = value - 1;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* The quick way for v, v//n and v/t/n of short positive numbers before a blank or the line's end. NULL:
@@ -70,10 +70,10 @@ static inline const char *read_plain_corner(const char *p, obj_corner *corner)
 }
 
 /* v, v/t, v//n or v/t/n. */
-static nmtan_status read_corner(obj_reader *r, obj_corner *corner)
+static nt_status read_corner(obj_reader *r, obj_corner *corner)
 {
 	const obj_chunk *chunk = r->chunk;
-	nmtan_status status = read_index(r, chunk->rows[OBJ_V].count, &corner->v);
+	nt_status status = read_index(r, chunk->rows[OBJ_V].count, &corner->v);
 	corner->t = corner->n = OBJ_ABSENT;
 	if (!status && *r->p == '/') {
 		r->p++;
@@ -90,14 +90,14 @@ static nmtan_status read_corner(obj_reader *r, obj_corner *corner)
 	return status;
 }
 
-static nmtan_status store_polygon(obj_reader *r, size_t size)
+static nt_status store_polygon(obj_reader *r, size_t size)
 {
 	obj_chunk *chunk = r->chunk;
 	if (!nt_grow((void **)&chunk->polygons, &chunk->polygon_capacity, chunk->polygon_count + 1,
 			sizeof *chunk->polygons))
 		return obj_fail_memory(r);
 	chunk->polygons[chunk->polygon_count++] = (obj_polygon){chunk->face_count, size, r->statement_line};
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* The number of a corner among the distinct ones of this object that were seen lately; where it is not
@@ -116,7 +116,7 @@ static inline uint32_t number_corner(const obj_reader *r, const obj_corner *dist
 	return (uint32_t)next;
 }
 
-static nmtan_status store_corner(obj_reader *r, obj_corner corner)
+static nt_status store_corner(obj_reader *r, obj_corner corner)
 {
 	obj_chunk *chunk = r->chunk;
 	if (!obj_reserve(chunk, (void **)&chunk->corners, &chunk->corner_capacity, chunk->corner_count,
@@ -128,7 +128,7 @@ static nmtan_status store_corner(obj_reader *r, obj_corner corner)
 	if (number == chunk->distinct_count)
 		chunk->distinct[chunk->distinct_count++] = corner;
 	chunk->corners[chunk->corner_count++] = number;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Takes corners the quick way as long as they are plain and there is room. */
@@ -157,7 +157,7 @@ static void read_plain_corners(obj_reader *r)
 }
 
 /* Closes the face that began at these counts, or takes it back where it is none. */
-static nmtan_status end_face(obj_reader *r, size_t first_corner, size_t first_distinct)
+static nt_status end_face(obj_reader *r, size_t first_corner, size_t first_distinct)
 {
 	obj_chunk *chunk = r->chunk;
 	const size_t size = chunk->corner_count - first_corner;
@@ -167,22 +167,22 @@ static nmtan_status end_face(obj_reader *r, size_t first_corner, size_t first_di
 		chunk->corner_count = first_corner;
 		chunk->distinct_count = first_distinct;
 		obj_ignore(r, OBJ_SMALL_FACE);
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	if (!obj_reserve(chunk, (void **)&chunk->face_sizes, &chunk->face_capacity, chunk->face_count, 1))
 		return obj_fail_memory(r);
 	if (size >= OBJ_POLYGON) {
-		const nmtan_status status = store_polygon(r, size);
+		const nt_status status = store_polygon(r, size);
 		if (status)
 			return status;
 	}
 	if (chunk->face_count == chunk->wanted_face)
 		chunk->wanted_line = r->statement_line;
 	chunk->face_sizes[chunk->face_count++] = (uint8_t)(size < OBJ_POLYGON ? size : OBJ_POLYGON);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status obj_read_face(obj_reader *r)
+nt_status obj_read_face(obj_reader *r)
 {
 	const obj_chunk *chunk = r->chunk;
 	const size_t first_corner = chunk->corner_count, first_distinct = chunk->distinct_count;
@@ -192,7 +192,7 @@ nmtan_status obj_read_face(obj_reader *r)
 		if (is_line_end(*r->p) || *r->p == '#')
 			return end_face(r, first_corner, first_distinct);
 		obj_corner corner;
-		nmtan_status status = read_corner(r, &corner);
+		nt_status status = read_corner(r, &corner);
 		if (!status)
 			status = store_corner(r, corner);
 		if (status)

@@ -45,15 +45,15 @@ static void quote_word(char text[160], const char *p)
 	snprintf(text + used, 160 - used, is_word_end(p) ? "\"" : "...\"");
 }
 
-nmtan_status obj_fail_expected(obj_reader *r, const char *expected)
+nt_status obj_fail_expected(obj_reader *r, const char *expected)
 {
 	char found[160];
 	quote_word(found, r->p);
-	return nt_fail_line(&r->chunk->error, NMTAN_ERROR_INPUT, r->line + 1, "found %s, expected %s", found,
+	return nt_fail_line(&r->chunk->error, NT_ERROR_INPUT, r->line + 1, "found %s, expected %s", found,
 		expected);
 }
 
-nmtan_status obj_fail_memory(obj_reader *r)
+nt_status obj_fail_memory(obj_reader *r)
 {
 	return nt_fail_memory(&r->chunk->error);
 }

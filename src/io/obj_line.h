@@ -33,8 +33,8 @@ typedef struct obj_reader {
 void obj_skip_joined_lines(obj_reader *r);
 
 /* Fails with "found WORD, expected EXPECTED" at the reader's line; and for want of memory. */
-nmtan_status obj_fail_expected(obj_reader *r, const char *expected);
-nmtan_status obj_fail_memory(obj_reader *r);
+nt_status obj_fail_expected(obj_reader *r, const char *expected);
+nt_status obj_fail_memory(obj_reader *r);
 
 /* Grows an array of the chunk that has `count` rows; false: out of memory. */
 bool obj_grow(obj_chunk *chunk, void **block, size_t *capacity, size_t count, size_t row_size);
@@ -43,7 +43,7 @@ bool obj_grow(obj_chunk *chunk, void **block, size_t *capacity, size_t count, si
 void obj_ignore(obj_reader *r, size_t which);
 
 /* Reads what follows "f": obj_faces.c. */
-nmtan_status obj_read_face(obj_reader *r);
+nt_status obj_read_face(obj_reader *r);
 
 /* Room for one more row. */
 static inline bool obj_reserve(obj_chunk *chunk, void **block, size_t *capacity, size_t count,

@@ -81,7 +81,7 @@ static void gather(void *context, size_t begin, size_t end, unsigned slot)
 	}
 }
 
-static nmtan_status gather_vertices(builder *b)
+static nt_status gather_vertices(builder *b)
 {
 	obj_file *file = b->file;
 	nt_arena *arena = &file->scene->arena;
@@ -97,7 +97,7 @@ static nmtan_status gather_vertices(builder *b)
 	if (file->has_colors && !(b->colors = nt_arena_alloc(arena, count, 4 * sizeof(float))))
 		return nt_fail_memory(b->error);
 	nt_parallel_ranges(file->threads, count, GRAIN, gather, b);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Gives the mesh its part of the arrays that it has anything in. */
@@ -184,7 +184,7 @@ static bool grow_polygon(builder *b, size_t size)
 }
 
 /* Replaces a polygon of the file by triangles: writes 3 * (size - 2) vertices. */
-static nmtan_status triangulate(builder *b, nt_mesh *mesh, const obj_polygon *polygon,
+static nt_status triangulate(builder *b, nt_mesh *mesh, const obj_polygon *polygon,
 	const uint32_t *corners, uint32_t *to)
 {
 	const size_t size = polygon->size;
@@ -203,7 +203,7 @@ static nmtan_status triangulate(builder *b, nt_mesh *mesh, const obj_polygon *po
 		place.line = polygon->line;
 		nt_finding_add(findings, NT_CODE_POLYGON_DEGENERATE, &place, 1, NULL);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Where the next face of a mesh is written. */
@@ -213,7 +213,7 @@ typedef struct face_writer {
 } face_writer;
 
 /* Copies the faces [begin, end) of the file, which share a span, one by one. */
-static nmtan_status write_faces(builder *b, nt_mesh *mesh, size_t begin, size_t end, size_t mesh_begin,
+static nt_status write_faces(builder *b, nt_mesh *mesh, size_t begin, size_t end, size_t mesh_begin,
 	face_writer *w)
 {
 	const obj_file *file = b->file;
@@ -222,7 +222,7 @@ static nmtan_status write_faces(builder *b, nt_mesh *mesh, size_t begin, size_t 
 		uint32_t *to = mesh->indices + w->corner;
 		if (size == OBJ_POLYGON) {
 			const obj_polygon *polygon = &file->polygons[b->polygon++];
-			const nmtan_status status = triangulate(b, mesh, polygon, w->source, to);
+			const nt_status status = triangulate(b, mesh, polygon, w->source, to);
 			if (status)
 				return status;
 			size = polygon->size;
@@ -239,7 +239,7 @@ static nmtan_status write_faces(builder *b, nt_mesh *mesh, size_t begin, size_t 
 		}
 		w->source += size;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static void fill(uint32_t *to, size_t count, uint32_t value)
@@ -250,7 +250,7 @@ static void fill(uint32_t *to, size_t count, uint32_t value)
 
 /* Walks through the spans of the mesh: primitives, smoothing groups, and the faces where polygons have
  * to be replaced. */
-static nmtan_status write_spans(builder *b, nt_mesh *mesh, size_t begin, size_t end, bool replace,
+static nt_status write_spans(builder *b, nt_mesh *mesh, size_t begin, size_t end, bool replace,
 	const uint32_t *source)
 {
 	const obj_file *file = b->file;
@@ -261,7 +261,7 @@ static nmtan_status write_spans(builder *b, nt_mesh *mesh, size_t begin, size_t 
 		const size_t stop = last ? end : file->spans[b->span + 1].face;
 		const size_t first = w.face;
 		if (replace) {
-			const nmtan_status status = write_faces(b, mesh, f, stop, begin, &w);
+			const nt_status status = write_faces(b, mesh, f, stop, begin, &w);
 			if (status)
 				return status;
 		} else {
@@ -276,7 +276,7 @@ static nmtan_status write_spans(builder *b, nt_mesh *mesh, size_t begin, size_t 
 		f = stop;
 		b->span++;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static size_t count_spans(const builder *b, size_t end)
@@ -288,7 +288,7 @@ static size_t count_spans(const builder *b, size_t end)
 }
 
 /* Indices, sizes, polygons, primitives and smoothing groups. */
-static nmtan_status set_faces(builder *b, nt_mesh *mesh, size_t m)
+static nt_status set_faces(builder *b, nt_mesh *mesh, size_t m)
 {
 	obj_file *file = b->file;
 	nt_arena *arena = &file->scene->arena;
@@ -297,7 +297,7 @@ static nmtan_status set_faces(builder *b, nt_mesh *mesh, size_t m)
 	const face_counts n =
 		count_faces(b, begin, end, file->mesh_corners[m + 1] - file->mesh_corners[m]);
 	if (n.faces > NMTAN_MAX_FACES)
-		return nt_fail_line(b->error, NMTAN_ERROR_TOO_LARGE, mesh->place.line,
+		return nt_fail_line(b->error, NT_ERROR_TOO_LARGE, mesh->place.line,
 			"object of %zu faces, at most %zu can be solved together", n.faces, NMTAN_MAX_FACES);
 	mesh->face_count = n.faces;
 	mesh->corner_count = n.corners;
@@ -323,7 +323,7 @@ static nmtan_status set_faces(builder *b, nt_mesh *mesh, size_t m)
 	}
 	if (!mesh->primitives || (spans > 1 && !mesh->face_primitive))
 		return nt_fail_memory(b->error);
-	const nmtan_status status = write_spans(b, mesh, begin, end, replace, source);
+	const nt_status status = write_spans(b, mesh, begin, end, replace, source);
 	if (mesh->primitive_count == 1)
 		mesh->face_primitive = NULL;
 	return status;
@@ -331,7 +331,7 @@ static nmtan_status set_faces(builder *b, nt_mesh *mesh, size_t m)
 
 /* ---- meshes ---- */
 
-static nmtan_status set_name(builder *b, nt_mesh *mesh, size_t m)
+static nt_status set_name(builder *b, nt_mesh *mesh, size_t m)
 {
 	const obj_file *file = b->file;
 	const obj_event *object = file->mesh_objects[m];
@@ -343,7 +343,7 @@ static nmtan_status set_name(builder *b, nt_mesh *mesh, size_t m)
 	mesh->place.line = file->mesh_lines[m];
 	if (*mesh->name)
 		snprintf(mesh->place.object, sizeof mesh->place.object, "object \"%.200s\"", mesh->name);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* The slots that its materials ask for. */
@@ -356,7 +356,7 @@ static void set_slots(const nt_scene *scene, nt_mesh *mesh)
 	}
 }
 
-static nmtan_status make_mesh(builder *b, size_t m)
+static nt_status make_mesh(builder *b, size_t m)
 {
 	obj_file *file = b->file;
 	nt_mesh *mesh = &file->scene->meshes[m];
@@ -368,11 +368,11 @@ static nmtan_status make_mesh(builder *b, size_t m)
 		.vertex_count = file->mesh_vertices[m + 1] - file->mesh_vertices[m],
 	};
 	mesh->source_vertex_count = mesh->vertex_count;
-	const nmtan_status status = set_name(b, mesh, m);
+	const nt_status status = set_name(b, mesh, m);
 	if (status)
 		return status;
 	set_vertices(b, mesh, file->mesh_vertices[m]);
-	const nmtan_status face_status = set_faces(b, mesh, m);
+	const nt_status face_status = set_faces(b, mesh, m);
 	if (face_status)
 		return face_status;
 	set_slots(file->scene, mesh);
@@ -380,17 +380,17 @@ static nmtan_status make_mesh(builder *b, size_t m)
 	*instance = (nt_instance){.mesh = (uint32_t)m};
 	for (int k = 0; k < 4; k++)
 		instance->matrix[5 * k] = 1;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status obj_make_meshes(obj_file *file, nt_error *error)
+nt_status obj_make_meshes(obj_file *file, nt_error *error)
 {
 	nt_scene *scene = file->scene;
 	builder b = {.file = file, .error = error};
 	scene->meshes = nt_arena_alloc(&scene->arena, file->mesh_count, sizeof *scene->meshes);
 	scene->instances = nt_arena_alloc(&scene->arena, file->mesh_count, sizeof *scene->instances);
 	b.material_slots = nt_calloc(scene->material_count + 1, sizeof *b.material_slots);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (!scene->meshes || !scene->instances || !b.material_slots)
 		status = nt_fail_memory(error);
 	if (!status)

@@ -72,18 +72,18 @@ static inline int read_line(obj_reader *r, float *numbers, int usual, int most, 
 }
 
 /* Appends a row of a kind: as many of the numbers as are kept. */
-static inline nmtan_status store_row(obj_reader *r, int kind, const float *numbers)
+static inline nt_status store_row(obj_reader *r, int kind, const float *numbers)
 {
 	obj_rows *rows = &r->chunk->rows[kind];
 	const size_t bytes = obj_widths[kind] * sizeof(float);
 	if (!obj_reserve(r->chunk, (void **)&rows->data, &rows->capacity, rows->count, bytes))
 		return obj_fail_memory(r);
 	memcpy(&rows->data[obj_widths[kind] * rows->count++], numbers, bytes);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Keeps the colour of the last position; positions before the first that has one are white. */
-static nmtan_status store_color(obj_reader *r, const float *numbers, int count)
+static nt_status store_color(obj_reader *r, const float *numbers, int count)
 {
 	obj_chunk *chunk = r->chunk;
 	const size_t last = chunk->rows[OBJ_V].count - 1;
@@ -95,11 +95,11 @@ static nmtan_status store_color(obj_reader *r, const float *numbers, int count)
 		chunk->colors[i] = 1;
 	if (count >= 6)
 		memcpy(&chunk->colors[4 * last], numbers + 3, (size_t)(count - 3) * sizeof *numbers);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* v x y z [w] or v x y z r g b [a]. The weight w belongs to curves: polygons do not use it. */
-static nmtan_status read_position(obj_reader *r)
+static nt_status read_position(obj_reader *r)
 {
 	static const char expected[] = "3 coordinates, with a weight or a colour of 3 or 4 numbers";
 	obj_chunk *chunk = r->chunk;
@@ -109,12 +109,12 @@ static nmtan_status read_position(obj_reader *r)
 		return chunk->error.status;
 	if (count < 3 || count == 5)
 		return obj_fail_expected(r, count < 3 ? "3 coordinates" : expected);
-	const nmtan_status status = store_row(r, OBJ_V, numbers);
+	const nt_status status = store_row(r, OBJ_V, numbers);
 	return status || (count < 6 && !chunk->colors) ? status : store_color(r, numbers, count);
 }
 
 /* vt u [v [w]] */
-static nmtan_status read_texcoord(obj_reader *r)
+static nt_status read_texcoord(obj_reader *r)
 {
 	obj_chunk *chunk = r->chunk;
 	float numbers[3] = {0, 0, 0};
@@ -127,7 +127,7 @@ static nmtan_status read_texcoord(obj_reader *r)
 }
 
 /* vn x y z */
-static nmtan_status read_normal(obj_reader *r)
+static nt_status read_normal(obj_reader *r)
 {
 	obj_chunk *chunk = r->chunk;
 	float numbers[3];
@@ -141,7 +141,7 @@ static nmtan_status read_normal(obj_reader *r)
 
 /* ---- o, usemtl, mtllib, s ---- */
 
-static nmtan_status store_event(obj_reader *r, obj_event event)
+static nt_status store_event(obj_reader *r, obj_event event)
 {
 	obj_chunk *chunk = r->chunk;
 	if (!nt_grow((void **)&chunk->events, &chunk->event_capacity, chunk->event_count + 1,
@@ -153,12 +153,12 @@ static nmtan_status store_event(obj_reader *r, obj_event event)
 	if (event.kind == OBJ_EVENT_OBJECT)
 		r->object_begin = chunk->distinct_count;
 	chunk->events[chunk->event_count++] = event;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* A name is what is left of the line, blanks inside included; `\` and `#` belong to it, because paths
  * and names have them. */
-static nmtan_status read_name(obj_reader *r, obj_event_kind kind)
+static nt_status read_name(obj_reader *r, obj_event_kind kind)
 {
 	while (is_blank(*r->p))
 		r->p++;
@@ -177,7 +177,7 @@ static nmtan_status read_name(obj_reader *r, obj_event_kind kind)
 }
 
 /* s off, s on or s N: a group of faces that are shaded as one; 0 and off mean flat. */
-static nmtan_status read_smoothing(obj_reader *r)
+static nt_status read_smoothing(obj_reader *r)
 {
 	skip_blanks(r);
 	const char *p = r->p;
@@ -214,7 +214,7 @@ static void skip_statement(obj_reader *r, bool comment)
 
 /* A statement that is not used: one that OBJ defines, or any word. Bytes that no text has are an error,
  * so that a file of another kind is not taken for an OBJ without faces. */
-static nmtan_status read_other(obj_reader *r, const char *word, size_t length)
+static nt_status read_other(obj_reader *r, const char *word, size_t length)
 {
 	for (size_t i = 0; i < length; i++)
 		if ((unsigned char)word[i] < 0x20 || (unsigned char)word[i] >= 0x7F) {
@@ -231,7 +231,7 @@ static nmtan_status read_other(obj_reader *r, const char *word, size_t length)
 	}
 	obj_ignore(r, which);
 	skip_statement(r, false);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static bool is_word(const char *word, size_t length, const char *expected)
@@ -240,7 +240,7 @@ static bool is_word(const char *word, size_t length, const char *expected)
 }
 
 /* A statement whose first letters are not v or f. */
-static nmtan_status read_rare(obj_reader *r)
+static nt_status read_rare(obj_reader *r)
 {
 	const char *word = r->p;
 	while (!is_word_end(r->p))
@@ -264,13 +264,13 @@ static nmtan_status read_rare(obj_reader *r)
 		return read_smoothing(r);
 	if (is_word(word, length, "g")) {
 		skip_statement(r, false);
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	return read_other(r, word, length);
 }
 
 /* One statement, up to its line end or comment. The four that files consist of come first. */
-static inline nmtan_status read_statement(obj_reader *r)
+static inline nt_status read_statement(obj_reader *r)
 {
 	const char *p = r->p;
 	if (p[0] == 'v' && is_blank(p[1])) {
@@ -290,17 +290,17 @@ static inline nmtan_status read_statement(obj_reader *r)
 		return read_texcoord(r);
 	}
 	if (is_line_end(*p) || *p == '#')
-		return NMTAN_OK;
+		return NT_OK;
 	return read_rare(r);
 }
 
-static nmtan_status read_lines(obj_reader *r)
+static nt_status read_lines(obj_reader *r)
 {
 	obj_chunk *chunk = r->chunk;
 	while (r->p < chunk->end) {
 		skip_blanks(r);
 		r->statement_line = r->line;
-		const nmtan_status status = read_statement(r);
+		const nt_status status = read_statement(r);
 		if (status)
 			return status;
 		if (*r->p == '#')
@@ -311,14 +311,14 @@ static nmtan_status read_lines(obj_reader *r)
 			break;
 	}
 	chunk->line_count = r->line;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status obj_parse_chunk(obj_chunk *chunk)
+nt_status obj_parse_chunk(obj_chunk *chunk)
 {
 	obj_reader r = {.chunk = chunk, .p = chunk->begin};
 	r.recent = nt_calloc(RECENT_COUNT, sizeof *r.recent);
-	const nmtan_status status = r.recent ? read_lines(&r) : obj_fail_memory(&r);
+	const nt_status status = r.recent ? read_lines(&r) : obj_fail_memory(&r);
 	free(r.recent);
 	return status;
 }

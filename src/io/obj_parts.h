@@ -166,7 +166,7 @@ typedef struct obj_vertex {
 
 /* Reads the lines of a chunk, which ends behind a line feed, with 8 readable bytes behind it. On failure
  * chunk->error is set. */
-nmtan_status obj_parse_chunk(obj_chunk *chunk);
+nt_status obj_parse_chunk(obj_chunk *chunk);
 void obj_chunk_free(obj_chunk *chunk);
 
 /* Line of a face of the file, by reading its chunk again. before: how many v, vt and vn of its chunk
@@ -174,12 +174,12 @@ void obj_chunk_free(obj_chunk *chunk);
 size_t obj_face_line(const obj_file *file, size_t face, obj_corner *before);
 
 /* Fills corner_vertices, vertices and mesh_vertices. */
-nmtan_status obj_make_vertices(obj_file *file, nt_error *error);
+nt_status obj_make_vertices(obj_file *file, nt_error *error);
 
 /* Meshes, spans and materials from the events; findings for what was ignored. */
-nmtan_status obj_read_events(obj_file *file, const nt_read_options *options, nt_error *error);
+nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_error *error);
 
 /* Fills scene->meshes from all of it. */
-nmtan_status obj_make_meshes(obj_file *file, nt_error *error);
+nt_status obj_make_meshes(obj_file *file, nt_error *error);
 
 #endif

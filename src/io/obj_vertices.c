@@ -159,7 +159,7 @@ static size_t face_of_corner(const obj_file *file, const obj_chunk *chunk, size_
 }
 
 /* Says which index of the corner is out of range, as the file spells it. */
-static nmtan_status fail_index(const obj_file *file, const obj_chunk *chunk, size_t distinct,
+static nt_status fail_index(const obj_file *file, const obj_chunk *chunk, size_t distinct,
 	nt_error *error)
 {
 	size_t bad_corner = chunk->first_corner;
@@ -184,18 +184,18 @@ static nmtan_status fail_index(const obj_file *file, const obj_chunk *chunk, siz
 		row = parts[++k].index;
 	const uint32_t index = parts[k].index;
 	if (index & OBJ_RELATIVE)
-		return nt_fail_line(error, NMTAN_ERROR_INPUT, line,
+		return nt_fail_line(error, NT_ERROR_INPUT, line,
 			"face refers to \"%s\" number -%zu, but %zu precede it", parts[k].word,
 			(size_t)(parts[k].before + OBJ_BIAS - (index & ~OBJ_RELATIVE)),
 			parts[k].first + parts[k].before);
-	return nt_fail_line(error, NMTAN_ERROR_INPUT, line,
+	return nt_fail_line(error, NT_ERROR_INPUT, line,
 		"face refers to \"%s\" number %zu, but the file has %zu", parts[k].word, (size_t)index + 1,
 		parts[k].count);
 }
 
 /* Gives distinct corners [begin, end) of a chunk their vertices in the mesh whose vertices begin at
  * `base`: the number takes the place of v. */
-static nmtan_status number_distinct(obj_file *file, obj_chunk *chunk, size_t begin, size_t end,
+static nt_status number_distinct(obj_file *file, obj_chunk *chunk, size_t begin, size_t end,
 	table *vertices, size_t base, nt_error *error)
 {
 	for (size_t i = begin; i < end; i++) {
@@ -208,11 +208,11 @@ static nmtan_status number_distinct(obj_file *file, obj_chunk *chunk, size_t beg
 		if (chunk->distinct[i].v == NT_NONE)
 			return nt_fail_memory(error);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* One chunk, whose first corner belongs to *mesh or begins the next one. */
-static nmtan_status number_chunk(obj_file *file, obj_chunk *chunk, table *vertices, size_t *mesh,
+static nt_status number_chunk(obj_file *file, obj_chunk *chunk, table *vertices, size_t *mesh,
 	nt_error *error)
 {
 	const size_t end_corner = chunk->first_corner + chunk->corner_count;
@@ -220,7 +220,7 @@ static nmtan_status number_chunk(obj_file *file, obj_chunk *chunk, table *vertic
 	while (*mesh + 1 < file->mesh_count && file->mesh_corners[*mesh + 1] < end_corner) {
 		/* The first corner of a mesh is a distinct one of its own. */
 		const size_t end = chunk->corners[file->mesh_corners[*mesh + 1] - chunk->first_corner];
-		const nmtan_status status = number_distinct(file, chunk, begin, end, vertices,
+		const nt_status status = number_distinct(file, chunk, begin, end, vertices,
 			file->mesh_vertices[*mesh], error);
 		if (status)
 			return status;
@@ -231,19 +231,19 @@ static nmtan_status number_chunk(obj_file *file, obj_chunk *chunk, table *vertic
 		file->mesh_vertices[*mesh], error);
 }
 
-static nmtan_status number_all(obj_file *file, table *vertices, nt_error *error)
+static nt_status number_all(obj_file *file, table *vertices, nt_error *error)
 {
 	vertices->heads = nt_calloc(file->row_counts[OBJ_V], sizeof *vertices->heads);
 	if (!vertices->heads)
 		return nt_fail_memory(error);
 	size_t mesh = 0;
 	for (size_t c = 0; c < file->chunk_count; c++) {
-		const nmtan_status status = number_chunk(file, &file->chunks[c], vertices, &mesh, error);
+		const nt_status status = number_chunk(file, &file->chunks[c], vertices, &mesh, error);
 		if (status)
 			return status;
 	}
 	file->mesh_vertices[file->mesh_count] = vertices->count;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- corners ---- */
@@ -288,10 +288,10 @@ static void write_corners(void *context, size_t begin, size_t end, unsigned slot
 	}
 }
 
-nmtan_status obj_make_vertices(obj_file *file, nt_error *error)
+nt_status obj_make_vertices(obj_file *file, nt_error *error)
 {
 	table vertices = {0};
-	nmtan_status status = number_all(file, &vertices, error);
+	nt_status status = number_all(file, &vertices, error);
 	file->corner_vertices = status ? NULL :
 		nt_arena_alloc(&file->scene->arena, file->corner_count, sizeof *file->corner_vertices);
 	if (!status && !file->corner_vertices)

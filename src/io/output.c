@@ -54,38 +54,38 @@ struct nt_output {
 	size_t guarded_count, guarded_capacity;
 };
 
-static nmtan_status fail_at(nt_error *error, const char *path)
+static nt_status fail_at(nt_error *error, const char *path)
 {
 	return nt_error_in_file(error, path);
 }
 
-static nmtan_status fail_write(nt_error *error, const char *path, int number)
+static nt_status fail_write(nt_error *error, const char *path, int number)
 {
 	if (number == ENOMEM)
 		nt_fail_memory(error);
 	else
-		nt_fail(error, NMTAN_ERROR_IO, "cannot write: %s", strerror(number));
+		nt_fail(error, NT_ERROR_IO, "cannot write: %s", strerror(number));
 	return fail_at(error, path);
 }
 
-nmtan_status nt_output_create(nt_output **output, const nt_output_options *options, nt_error *error)
+nt_status nt_output_create(nt_output **output, const nt_output_options *options, nt_error *error)
 {
 	*output = nt_calloc(1, sizeof **output);
 	if (!*output)
 		return nt_fail_memory(error);
 	if (options)
 		(*output)->options = *options;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_output_protect(nt_output *output, const char *path, const char *way_out, nt_error *error)
+nt_status nt_output_protect(nt_output *output, const char *path, const char *way_out, nt_error *error)
 {
 	struct stat status;
 	const bool known = strcmp(path, "-") == 0 ? fstat(STDIN_FILENO, &status) == 0
 						  : stat(path, &status) == 0;
 	/* what is not there cannot be overwritten, what is no regular file is not replaced */
 	if (!known || !S_ISREG(status.st_mode))
-		return NMTAN_OK;
+		return NT_OK;
 	char *copy = strdup(path);
 	if (!copy || !nt_grow((void **)&output->guarded, &output->guarded_capacity,
 			     output->guarded_count + 1, sizeof *output->guarded)) {
@@ -94,91 +94,91 @@ nmtan_status nt_output_protect(nt_output *output, const char *path, const char *
 	}
 	output->guarded[output->guarded_count++] =
 		(protected_file){status.st_dev, status.st_ino, copy, way_out};
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Refuses a target that exists and has to stay. */
-static nmtan_status check_existing(const nt_output *output, const char *path,
+static nt_status check_existing(const nt_output *output, const char *path,
 	const struct stat *status, nt_error *error)
 {
 	if (S_ISDIR(status->st_mode)) {
-		nt_fail(error, NMTAN_ERROR_IO, "cannot write: it is a directory");
+		nt_fail(error, NT_ERROR_IO, "cannot write: it is a directory");
 		return fail_at(error, path);
 	}
 	for (size_t i = 0; i < output->guarded_count; i++) {
 		const protected_file *file = &output->guarded[i];
 		if (file->device != status->st_dev || file->inode != status->st_ino)
 			continue;
-		nt_fail(error, NMTAN_ERROR_IO, "refusing to write: it is the same file as the input %s%s%s",
+		nt_fail(error, NT_ERROR_IO, "refusing to write: it is the same file as the input %s%s%s",
 			strcmp(file->path, "-") == 0 ? "(standard input)" : file->path,
 			file->way_out ? "; " : "", file->way_out ? file->way_out : "");
 		return fail_at(error, path);
 	}
 	if (output->options.no_clobber && S_ISREG(status->st_mode)) {
-		nt_fail(error, NMTAN_ERROR_IO, "refusing to write: the file exists already");
+		nt_fail(error, NT_ERROR_IO, "refusing to write: the file exists already");
 		return fail_at(error, path);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Two files of one set must not end at one place. */
-static nmtan_status check_twins(const nt_output *output, const nt_sink *sink, nt_error *error)
+static nt_status check_twins(const nt_output *output, const nt_sink *sink, nt_error *error)
 {
 	for (const nt_sink *other = output->first; other; other = other->next) {
 		if (!other->target || strcmp(other->target, sink->target) != 0)
 			continue;
-		nt_fail(error, NMTAN_ERROR_IO,
+		nt_fail(error, NT_ERROR_IO,
 			"refusing to write: another file of this output has the same name");
 		return fail_at(error, sink->path);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Creates the temporary beside the target and explains why it cannot. */
-static nmtan_status open_temporary(nt_sink *sink, nt_error *error)
+static nt_status open_temporary(nt_sink *sink, nt_error *error)
 {
 	sink->fd = nt_temporary_create(sink->target, &sink->temporary);
 	if (sink->fd >= 0)
-		return NMTAN_OK;
+		return NT_OK;
 	const int number = errno;
 	const char *slash = strrchr(sink->target, '/');
 	const int length = slash ? (int)(slash - sink->target) + (slash == sink->target) : 1;
 	const char *folder = slash ? sink->target : ".";
 	if (number == ENOENT || number == ENOTDIR)
-		nt_fail(error, NMTAN_ERROR_IO, "cannot write: there is no folder \"%.*s\"", length, folder);
+		nt_fail(error, NT_ERROR_IO, "cannot write: there is no folder \"%.*s\"", length, folder);
 	else if (number == ENOMEM)
 		nt_fail_memory(error);
 	else
-		nt_fail(error, NMTAN_ERROR_IO, "cannot create a file in the folder \"%.*s\": %s", length,
+		nt_fail(error, NT_ERROR_IO, "cannot create a file in the folder \"%.*s\": %s", length,
 			folder, strerror(number));
 	return fail_at(error, sink->path);
 }
 
-static nmtan_status open_sink(const nt_output *output, nt_sink *sink, nt_error *error)
+static nt_status open_sink(const nt_output *output, nt_sink *sink, nt_error *error)
 {
 	sink->dry = output->options.dry_run;
 	if (strcmp(sink->path, "-") == 0) {
 		sink->fd = STDOUT_FILENO;
 		sink->shared_fd = true;
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	struct stat status;
 	const bool exists = stat(sink->path, &status) == 0;
 	if (exists) {
-		const nmtan_status checked = check_existing(output, sink->path, &status, error);
+		const nt_status checked = check_existing(output, sink->path, &status, error);
 		if (checked)
 			return checked;
 		if (sink->dry && !S_ISREG(status.st_mode))
-			return NMTAN_OK;
+			return NT_OK;
 		if (!S_ISREG(status.st_mode)) {
 			sink->fd = open(sink->path, O_WRONLY | O_CLOEXEC);
-			return sink->fd < 0 ? fail_write(error, sink->path, errno) : NMTAN_OK;
+			return sink->fd < 0 ? fail_write(error, sink->path, errno) : NT_OK;
 		}
 	}
 	sink->target = exists ? realpath(sink->path, NULL) : strdup(sink->path);
 	if (!sink->target)
 		return fail_write(error, sink->path, errno);
-	const nmtan_status checked = check_twins(output, sink, error);
+	const nt_status checked = check_twins(output, sink, error);
 	return checked || sink->dry ? checked : open_temporary(sink, error);
 }
 
@@ -193,7 +193,7 @@ static void free_sink(nt_sink *sink)
 	free(sink);
 }
 
-nmtan_status nt_output_add(nt_output *output, const char *path, bool main, nt_sink **sink,
+nt_status nt_output_add(nt_output *output, const char *path, bool main, nt_sink **sink,
 	nt_error *error)
 {
 	nt_sink *added = nt_calloc(1, sizeof *added);
@@ -202,7 +202,7 @@ nmtan_status nt_output_add(nt_output *output, const char *path, bool main, nt_si
 	added->fd = -1;
 	added->path = strdup(path);
 	added->buffer = nt_alloc(SINK_BUFFER_BYTES, 1);
-	const nmtan_status status = added->path && added->buffer ? open_sink(output, added, error)
+	const nt_status status = added->path && added->buffer ? open_sink(output, added, error)
 								 : nt_fail_memory(error);
 	if (status) {
 		free_sink(added);
@@ -218,7 +218,7 @@ nmtan_status nt_output_add(nt_output *output, const char *path, bool main, nt_si
 		output->main = added;
 	}
 	*sink = added;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Takes `count` written bytes off the front of two parts. */
@@ -233,7 +233,7 @@ static void advance(struct iovec parts[2], size_t count)
 }
 
 /* Writes both parts to the end, whatever the kernel takes at a time. */
-static nmtan_status write_parts(nt_sink *sink, struct iovec parts[2], nt_error *error)
+static nt_status write_parts(nt_sink *sink, struct iovec parts[2], nt_error *error)
 {
 	while (parts[0].iov_len || parts[1].iov_len) {
 		const ssize_t count = parts[0].iov_len ? writev(sink->fd, parts, 2)
@@ -245,11 +245,11 @@ static nmtan_status write_parts(nt_sink *sink, struct iovec parts[2], nt_error *
 		else if (errno != EINTR)
 			return fail_write(error, sink->path, errno);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* The buffer, then `size` bytes that do not go through it. */
-static nmtan_status flush_with(nt_sink *sink, const void *bytes, size_t size, nt_error *error)
+static nt_status flush_with(nt_sink *sink, const void *bytes, size_t size, nt_error *error)
 {
 	struct iovec parts[2] = {{.iov_base = sink->buffer, .iov_len = sink->used},
 		{.iov_base = (void *)(uintptr_t)bytes, .iov_len = size}};
@@ -257,22 +257,22 @@ static nmtan_status flush_with(nt_sink *sink, const void *bytes, size_t size, nt
 	return write_parts(sink, parts, error);
 }
 
-nmtan_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error *error)
+nt_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error *error)
 {
 	sink->size += size;
 	if (sink->dry)
-		return NMTAN_OK;
+		return NT_OK;
 	if (size > SINK_BUFFER_BYTES - sink->used) {
 		if (size >= SINK_BUFFER_BYTES / 2)
 			return flush_with(sink, bytes, size, error);
-		const nmtan_status status = flush_with(sink, NULL, 0, error);
+		const nt_status status = flush_with(sink, NULL, 0, error);
 		if (status)
 			return status;
 	}
 	if (size)
 		memcpy(sink->buffer + sink->used, bytes, size);
 	sink->used += size;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Lets the kernel copy what it can; *done receives how much that was. Falling short is no error: the
@@ -302,10 +302,10 @@ static bool pages_meet(const nt_sink *sink, size_t offset)
 }
 
 /* From the map, some of it at a time, which is let go of again. */
-static nmtan_status copy_mapped(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
+static nt_status copy_mapped(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
 	nt_error *error)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t left = size, part; left && !status; left -= part, offset += part) {
 		part = left < MAPPED_COPY_BYTES ? left : MAPPED_COPY_BYTES;
 		nt_file_fetch(from, offset, part);
@@ -315,17 +315,17 @@ static nmtan_status copy_mapped(nt_sink *sink, const nt_file *from, size_t offse
 	return status;
 }
 
-nmtan_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
+nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
 	nt_error *error)
 {
 	if (offset > from->size || size > from->size - offset)
-		return nt_fail(error, NMTAN_ERROR_INTERNAL, "a range to copy is outside of its file");
+		return nt_fail(error, NT_ERROR_INTERNAL, "a range to copy is outside of its file");
 	sink->copied += size;
 	if (size < KERNEL_COPY_BYTES || !from->mapped || !sink->temporary || sink->no_kernel_copy)
 		return nt_sink_write(sink, from->data + offset, size, error);
 	if (!pages_meet(sink, offset))
 		return copy_mapped(sink, from, offset, size, error);
-	const nmtan_status status = flush_with(sink, NULL, 0, error);
+	const nt_status status = flush_with(sink, NULL, 0, error);
 	if (status)
 		return status;
 	size_t done;
@@ -334,7 +334,7 @@ nmtan_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, siz
 	return nt_sink_write(sink, from->data + offset + done, size - done, error);
 }
 
-nmtan_status nt_output_written(nt_output *output, const char *path, const char **temporary,
+nt_status nt_output_written(nt_output *output, const char *path, const char **temporary,
 	nt_error *error)
 {
 	*temporary = NULL;
@@ -343,7 +343,7 @@ nmtan_status nt_output_written(nt_output *output, const char *path, const char *
 			*temporary = nt_temporary_path(sink->temporary);
 			return flush_with(sink, NULL, 0, error);
 		}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 uint64_t nt_output_size(const nt_output *output)
@@ -363,38 +363,38 @@ uint64_t nt_output_copied(const nt_output *output)
 }
 
 /* Everything onto the disk and closed. */
-static nmtan_status finish_sink(const nt_output *output, nt_sink *sink, nt_error *error)
+static nt_status finish_sink(const nt_output *output, nt_sink *sink, nt_error *error)
 {
-	const nmtan_status status = flush_with(sink, NULL, 0, error);
+	const nt_status status = flush_with(sink, NULL, 0, error);
 	if (status)
 		return status;
 	if (output->options.sync && sink->temporary && fsync(sink->fd) != 0)
 		return fail_write(error, sink->path, errno);
 	if (sink->shared_fd || sink->fd < 0)
-		return NMTAN_OK;
+		return NT_OK;
 	const int fd = sink->fd;
 	sink->fd = -1;
-	return close(fd) != 0 && errno != EINTR ? fail_write(error, sink->path, errno) : NMTAN_OK;
+	return close(fd) != 0 && errno != EINTR ? fail_write(error, sink->path, errno) : NT_OK;
 }
 
-static nmtan_status place_sink(const nt_output *output, nt_sink *sink, nt_error *error)
+static nt_status place_sink(const nt_output *output, nt_sink *sink, nt_error *error)
 {
 	if (!sink->temporary)
-		return NMTAN_OK;
+		return NT_OK;
 	sink->placed = nt_temporary_rename(sink->temporary, sink->target, !output->options.no_clobber);
 	if (sink->placed)
-		return NMTAN_OK;
+		return NT_OK;
 	if (errno == EEXIST && output->options.no_clobber) {
-		nt_fail(error, NMTAN_ERROR_IO, "refusing to write: the file exists already");
+		nt_fail(error, NT_ERROR_IO, "refusing to write: the file exists already");
 		return fail_at(error, sink->path);
 	}
 	return fail_write(error, sink->path, errno);
 }
 
 /* Companions in order, the main file last; what is in place is removed again when one fails. */
-static nmtan_status place_all(nt_output *output, nt_error *error)
+static nt_status place_all(nt_output *output, nt_error *error)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	nt_temporaries_hold();
 	for (nt_sink *sink = output->first; sink && !status; sink = sink->next)
 		if (sink != output->main)
@@ -422,9 +422,9 @@ static void sync_folder(const char *target)
 	free(folder);
 }
 
-nmtan_status nt_output_commit(nt_output *output, nt_error *error)
+nt_status nt_output_commit(nt_output *output, nt_error *error)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (nt_sink *sink = output->first; sink && !status; sink = sink->next)
 		status = finish_sink(output, sink, error);
 	if (!status)

@@ -47,7 +47,7 @@ static bool find_set(const ply_element *element, const char *const *names, size_
 	return false;
 }
 
-static nmtan_status find_roles(ply_source *source, nt_error *error)
+static nt_status find_roles(ply_source *source, nt_error *error)
 {
 	static const char *const positions[] = {"x", "y", "z"};
 	static const char *const normals[] = {"nx", "ny", "nz"};
@@ -59,7 +59,7 @@ static nmtan_status find_roles(ply_source *source, nt_error *error)
 	ply_roles *roles = &source->roles;
 	const ply_element *vertex = source->vertex;
 	if (!find_set(vertex, positions, 3, roles->position))
-		return nt_fail_line(error, NMTAN_ERROR_INPUT, vertex->line,
+		return nt_fail_line(error, NT_ERROR_INPUT, vertex->line,
 			"element \"vertex\" has no properties x, y and z");
 	find_set(vertex, normals, 3, roles->normal);
 	find_set(vertex, tangents, 4, roles->tangent);
@@ -67,41 +67,41 @@ static nmtan_status find_roles(ply_source *source, nt_error *error)
 		;
 	for (size_t i = 0; i < 4 && !find_set(vertex, texcoords[i], 2, roles->texcoord); i++)
 		;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* The list of vertex numbers of faces or strips. */
-static nmtan_status find_indices(ply_source *source, const ply_element *element, nt_error *error)
+static nt_status find_indices(ply_source *source, const ply_element *element, nt_error *error)
 {
 	int found = ply_find_property(element, "vertex_indices");
 	if (found == PLY_NO_PROPERTY)
 		found = ply_find_property(element, "vertex_index");
 	if (found == PLY_NO_PROPERTY)
-		return nt_fail_line(error, NMTAN_ERROR_INPUT, element->line,
+		return nt_fail_line(error, NT_ERROR_INPUT, element->line,
 			"element \"%s\" has no list vertex_indices or vertex_index", element->name);
 	const ply_property *property = &element->properties[found];
 	if (!property->list || property->type >= PLY_FLOAT32)
-		return nt_fail_line(error, NMTAN_ERROR_INPUT, property->line,
+		return nt_fail_line(error, NT_ERROR_INPUT, property->line,
 			"property \"%s\" is not a list of integers", property->name);
 	source->face_indices = found;
 	source->face_texcoords = ply_find_property(element, "texcoord");
 	if (source->face_texcoords >= 0 && !element->properties[source->face_texcoords].list)
 		source->face_texcoords = PLY_NO_PROPERTY;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status find_elements(ply_source *source, nt_error *error)
+static nt_status find_elements(ply_source *source, nt_error *error)
 {
 	const ply_header *header = &source->header;
 	source->vertex = ply_find_element(header, "vertex");
 	source->face_indices = source->face_texcoords = PLY_NO_PROPERTY;
 	if (!source->vertex)
-		return nt_fail_line(error, NMTAN_ERROR_INPUT, header->body_line - 1,
+		return nt_fail_line(error, NT_ERROR_INPUT, header->body_line - 1,
 			"the header has no element \"vertex\"");
 	if (source->vertex->count >= NT_NONE)
-		return nt_fail_line(error, NMTAN_ERROR_INPUT, source->vertex->line,
+		return nt_fail_line(error, NT_ERROR_INPUT, source->vertex->line,
 			"%zu vertices, expected fewer than %u", source->vertex->count, NT_NONE);
-	nmtan_status status = find_roles(source, error);
+	nt_status status = find_roles(source, error);
 	const ply_element *face = ply_find_element(header, "face");
 	const ply_element *strips = ply_find_element(header, "tristrips");
 	if (!status && face && face->count) {
@@ -130,7 +130,7 @@ static void report_unused(nt_scene *scene, const ply_source *source)
 	}
 }
 
-static nmtan_status read_element(nt_scene *scene, nt_mesh *mesh, ply_source *source,
+static nt_status read_element(nt_scene *scene, nt_mesh *mesh, ply_source *source,
 	const ply_element *element, ply_cursor *cursor, bool *have_vertices, nt_error *error)
 {
 	if (element == source->vertex) {
@@ -140,7 +140,7 @@ static nmtan_status read_element(nt_scene *scene, nt_mesh *mesh, ply_source *sou
 	if (element != source->face && element != source->strips)
 		return ply_skip_element(cursor, element, error);
 	source->face_begin = (size_t)(cursor->at - cursor->begin);
-	const nmtan_status status = *have_vertices
+	const nt_status status = *have_vertices
 					    ? ply_read_faces(scene, mesh, source, cursor, error)
 					    : ply_skip_element(cursor, element, error);
 	source->face_end = (size_t)(cursor->at - cursor->begin);
@@ -148,7 +148,7 @@ static nmtan_status read_element(nt_scene *scene, nt_mesh *mesh, ply_source *sou
 }
 
 /* All elements in the order of the file; faces that come before the vertices at the end. */
-static nmtan_status read_body(nt_scene *scene, nt_mesh *mesh, ply_source *source, nt_error *error)
+static nt_status read_body(nt_scene *scene, nt_mesh *mesh, ply_source *source, nt_error *error)
 {
 	const ply_header *header = &source->header;
 	const unsigned char *body = scene->bytes + header->body;
@@ -158,7 +158,7 @@ static nmtan_status read_body(nt_scene *scene, nt_mesh *mesh, ply_source *source
 	for (size_t i = 0; i < header->element_count; i++) {
 		const ply_element *element = &header->elements[i];
 		faces_first |= !have_vertices && (element == source->face || element == source->strips);
-		const nmtan_status status =
+		const nt_status status =
 			read_element(scene, mesh, source, element, &cursor, &have_vertices, error);
 		if (status)
 			return status;
@@ -173,16 +173,16 @@ static nmtan_status read_body(nt_scene *scene, nt_mesh *mesh, ply_source *source
 			"%zu bytes after the last element", (size_t)(cursor.end - cursor.at));
 	}
 	if (!faces_first)
-		return NMTAN_OK;
+		return NT_OK;
 	cursor.at = scene->bytes + source->face_begin;
 	return ply_read_faces(scene, mesh, source, &cursor, error);
 }
 
 /* The image that MeshLab names in a comment becomes the base colour of a material. */
-static nmtan_status make_materials(nt_scene *scene, const ply_header *header, nt_error *error)
+static nt_status make_materials(nt_scene *scene, const ply_header *header, nt_error *error)
 {
 	if (header->texture_count == 0)
-		return NMTAN_OK;
+		return NT_OK;
 	scene->materials = nt_arena_alloc(&scene->arena, header->texture_count,
 		sizeof *scene->materials);
 	if (!scene->materials)
@@ -192,10 +192,10 @@ static nmtan_status make_materials(nt_scene *scene, const ply_header *header, nt
 			.base_color = {1.0f, 1.0f, 1.0f, 1.0f}, .roughness = 1.0f,
 			.normal_scale = 1.0f, .base_color_map = header->textures[i]};
 	scene->material_count = header->texture_count;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status make_scene(nt_scene *scene, nt_error *error)
+static nt_status make_scene(nt_scene *scene, nt_error *error)
 {
 	scene->meshes = nt_arena_alloc(&scene->arena, 1, sizeof *scene->meshes);
 	scene->instances = nt_arena_alloc(&scene->arena, 1, sizeof *scene->instances);
@@ -207,7 +207,7 @@ static nmtan_status make_scene(nt_scene *scene, nt_error *error)
 	nt_place_clear(&scene->meshes->place);
 	snprintf(scene->meshes->place.object, sizeof scene->meshes->place.object, "mesh");
 	scene->instance_count = scene->mesh_count = 1;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static void describe_mesh(nt_mesh *mesh, const ply_source *source)
@@ -220,7 +220,7 @@ static void describe_mesh(nt_mesh *mesh, const ply_source *source)
 	mesh->source_vertex_count = mesh->vertex_count;
 }
 
-nmtan_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
+nt_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
 	(void)options;
 	scene->format = NT_FORMAT_PLY;
@@ -230,7 +230,7 @@ nmtan_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_err
 	scene->source = source;
 	scene->free_source = free_source;
 
-	nmtan_status status =
+	nt_status status =
 		ply_parse_header(&source->header, scene->bytes, scene->byte_count, error);
 	if (!status)
 		status = find_elements(source, error);
@@ -244,5 +244,5 @@ nmtan_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_err
 	}
 	if (!status)
 		describe_mesh(scene->meshes, source);
-	return status ? nt_error_in_file(error, scene->path) : NMTAN_OK;
+	return status ? nt_error_in_file(error, scene->path) : NT_OK;
 }

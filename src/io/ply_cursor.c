@@ -17,7 +17,7 @@ size_t ply_line_of(const ply_cursor *cursor, const unsigned char *at)
 	return line;
 }
 
-nmtan_status ply_fail_at(const ply_cursor *cursor, const unsigned char *at, nt_error *error,
+nt_status ply_fail_at(const ply_cursor *cursor, const unsigned char *at, nt_error *error,
 	const char *format, ...)
 {
 	char message[sizeof error->message];
@@ -26,8 +26,8 @@ nmtan_status ply_fail_at(const ply_cursor *cursor, const unsigned char *at, nt_e
 	vsnprintf(message, sizeof message, format, arguments);
 	va_end(arguments);
 	if (cursor->encoding == PLY_ASCII)
-		return nt_fail_line(error, NMTAN_ERROR_INPUT, ply_line_of(cursor, at), "%s", message);
-	return nt_fail_offset(error, NMTAN_ERROR_INPUT, (uint64_t)(at - cursor->begin), "%s", message);
+		return nt_fail_line(error, NT_ERROR_INPUT, ply_line_of(cursor, at), "%s", message);
+	return nt_fail_offset(error, NT_ERROR_INPUT, (uint64_t)(at - cursor->begin), "%s", message);
 }
 
 const char *ply_show(const ply_cursor *cursor, const unsigned char *at, char text[40])
@@ -53,17 +53,17 @@ void ply_next_row(ply_cursor *cursor)
 		cursor->at++;
 }
 
-nmtan_status ply_check_row_end(const ply_cursor *cursor, const ply_element *element, size_t row,
+nt_status ply_check_row_end(const ply_cursor *cursor, const ply_element *element, size_t row,
 	nt_error *error)
 {
 	if (cursor->at == cursor->end || ply_is_line_end(*cursor->at))
-		return NMTAN_OK;
+		return NT_OK;
 	char found[40];
 	return ply_fail_at(cursor, cursor->at, error, "%s %zu: found %s, expected the end of the line",
 		element->name, row, ply_show(cursor, cursor->at, found));
 }
 
-nmtan_status ply_check_count(const ply_cursor *cursor, const ply_element *element, nt_error *error)
+nt_status ply_check_count(const ply_cursor *cursor, const ply_element *element, nt_error *error)
 {
 	/* the shortest ASCII row: one character and one separator per property */
 	const size_t left = (size_t)(cursor->end - cursor->at);
@@ -71,13 +71,13 @@ nmtan_status ply_check_count(const ply_cursor *cursor, const ply_element *elemen
 	const size_t row = ascii ? 2 * element->property_count : element->row_bytes;
 	const size_t room = left + ascii; /* the last line may lack its end */
 	if (row == 0 || element->count <= room / row)
-		return NMTAN_OK;
+		return NT_OK;
 	return ply_fail_at(cursor, cursor->at, error,
 		"%zu rows of element \"%s\" need at least %zu bytes each, the file has %zu bytes left",
 		element->count, element->name, row, left);
 }
 
-nmtan_status ply_skip_binary_row(ply_cursor *cursor, const ply_element *element, size_t row,
+nt_status ply_skip_binary_row(ply_cursor *cursor, const ply_element *element, size_t row,
 	nt_error *error)
 {
 	const bool swap = ply_swaps(cursor->encoding);
@@ -99,10 +99,10 @@ nmtan_status ply_skip_binary_row(ply_cursor *cursor, const ply_element *element,
 				bytes, (size_t)(cursor->end - cursor->at));
 		cursor->at += bytes;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status skip_lines(ply_cursor *cursor, const ply_element *element, nt_error *error)
+static nt_status skip_lines(ply_cursor *cursor, const ply_element *element, nt_error *error)
 {
 	for (size_t row = 0; row < element->count; row++) {
 		ply_next_row(cursor);
@@ -113,19 +113,19 @@ static nmtan_status skip_lines(ply_cursor *cursor, const ply_element *element, n
 		while (cursor->at < cursor->end && !ply_is_line_end(*cursor->at))
 			cursor->at++;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status ply_skip_element(ply_cursor *cursor, const ply_element *element, nt_error *error)
+nt_status ply_skip_element(ply_cursor *cursor, const ply_element *element, nt_error *error)
 {
-	nmtan_status status = ply_check_count(cursor, element, error);
+	nt_status status = ply_check_count(cursor, element, error);
 	if (status || element->property_count == 0)
 		return status;
 	if (cursor->encoding == PLY_ASCII)
 		return skip_lines(cursor, element, error);
 	if (!element->has_list) {
 		cursor->at += element->count * element->row_bytes;
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	for (size_t row = 0; !status && row < element->count; row++)
 		status = ply_skip_binary_row(cursor, element, row, error);

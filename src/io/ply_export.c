@@ -204,10 +204,10 @@ static void put_vertex(ply_output *out, const layout *l, const placement *p, con
 		ply_put_floats(out, bitangent, 3);
 }
 
-static nmtan_status put_vertices(nt_scene *scene, ply_output *out, const layout *l, nt_error *error)
+static nt_status put_vertices(nt_scene *scene, ply_output *out, const layout *l, nt_error *error)
 {
 	const bool flip_v = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; i < scene->instance_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
 		const placement p = find_placement(&scene->instances[i]);
@@ -232,9 +232,9 @@ static void put_face(ply_output *out, const nt_mesh *mesh, size_t corner, size_t
 	}
 }
 
-static nmtan_status put_faces(nt_scene *scene, ply_output *out, nt_error *error)
+static nt_status put_faces(nt_scene *scene, ply_output *out, nt_error *error)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	size_t base = 0;
 	for (size_t i = 0; i < scene->instance_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
@@ -252,17 +252,17 @@ static nmtan_status put_faces(nt_scene *scene, ply_output *out, nt_error *error)
 	return status;
 }
 
-nmtan_status ply_write_scene(nt_scene *scene, const nt_write_options *options, ply_output *out,
+nt_status ply_write_scene(nt_scene *scene, const nt_write_options *options, ply_output *out,
 	nt_error *error)
 {
 	const layout l = find_layout(scene, options->bitangents);
 	if (l.vertex_count > UINT32_MAX || l.face_count > UINT32_MAX)
-		return nt_fail(error, NMTAN_ERROR_TOO_LARGE,
+		return nt_fail(error, NT_ERROR_TOO_LARGE,
 			"the instances have %zu vertices and %zu faces together, more than PLY can number",
 			l.vertex_count, l.face_count);
 	out->encoding = PLY_LITTLE;
 	write_header(out, &l);
-	const nmtan_status status = put_vertices(scene, out, &l, error);
+	const nt_status status = put_vertices(scene, out, &l, error);
 	if (scene->material_count > 0)
 		nt_finding_add(&scene->findings, NT_CODE_REFERENCE_LOST, NULL, scene->material_count,
 			"materials");

@@ -9,7 +9,7 @@
 #include "io/ply_output.h"
 
 /* Binary, little endian, in world space. */
-nmtan_status ply_write_scene(nt_scene *scene, const nt_write_options *options, ply_output *out,
+nt_status ply_write_scene(nt_scene *scene, const nt_write_options *options, ply_output *out,
 	nt_error *error);
 
 #endif

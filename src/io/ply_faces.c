@@ -46,13 +46,13 @@ typedef struct builder {
 	nt_place first_skipped;
 } builder;
 
-static nmtan_status fail_row(const builder *b, const unsigned char *at, const char *text, long long found)
+static nt_status fail_row(const builder *b, const unsigned char *at, const char *text, long long found)
 {
 	return ply_fail_at(b->cursor, at, b->error, "%s %zu: %s %lld", b->element->name, b->row, text,
 		found);
 }
 
-static nmtan_status fail_index(const builder *b, const unsigned char *at, long long index)
+static nt_status fail_index(const builder *b, const unsigned char *at, long long index)
 {
 	return ply_fail_at(b->cursor, at, b->error,
 		"%s %zu: vertex index %lld is out of range, the file has %zu vertices", b->element->name,
@@ -108,10 +108,10 @@ static bool start_polygons(builder *b)
 	return true;
 }
 
-static nmtan_status add_face(builder *b, const uint32_t *vertices, size_t size)
+static nt_status add_face(builder *b, const uint32_t *vertices, size_t size)
 {
 	if (b->face_count == NMTAN_MAX_FACES)
-		return nt_fail(b->error, NMTAN_ERROR_TOO_LARGE, "more than %zu faces", NMTAN_MAX_FACES);
+		return nt_fail(b->error, NT_ERROR_TOO_LARGE, "more than %zu faces", NMTAN_MAX_FACES);
 	if (!make_room(b, 1, 4))
 		return nt_fail_memory(b->error);
 	memcpy(b->indices + b->index_count, vertices, size * sizeof *vertices);
@@ -123,11 +123,11 @@ static nmtan_status add_face(builder *b, const uint32_t *vertices, size_t size)
 	if (b->primitives)
 		b->primitives[b->face_count] = b->texture;
 	b->face_count++;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Cuts the polygon at hand; the corner numbers of its triangles go to source->cuts. */
-static nmtan_status cut_polygon(builder *b, const uint32_t **cut)
+static nt_status cut_polygon(builder *b, const uint32_t **cut)
 {
 	const size_t count = b->corner_count;
 	ply_cuts *cuts = &b->source->cuts;
@@ -150,13 +150,13 @@ static nmtan_status cut_polygon(builder *b, const uint32_t **cut)
 		nt_finding_add(&b->scene->findings, NT_CODE_POLYGON_DEGENERATE, &place, 1, NULL);
 	}
 	*cut = corners;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status add_large_polygon(builder *b)
+static nt_status add_large_polygon(builder *b)
 {
 	const uint32_t *cut = NULL;
-	nmtan_status status = start_polygons(b) ? cut_polygon(b, &cut) : nt_fail_memory(b->error);
+	nt_status status = start_polygons(b) ? cut_polygon(b, &cut) : nt_fail_memory(b->error);
 	for (size_t t = 0; !status && t < b->corner_count - 2; t++) {
 		const uint32_t vertices[3] = {b->corners[cut[3 * t]], b->corners[cut[3 * t + 1]],
 			b->corners[cut[3 * t + 2]]};
@@ -165,7 +165,7 @@ static nmtan_status add_large_polygon(builder *b)
 	return status;
 }
 
-static nmtan_status apply_wedges(builder *b)
+static nt_status apply_wedges(builder *b)
 {
 	if (b->uv_count != 0 && b->uv_count != 2 * b->corner_count)
 		return ply_fail_at(b->cursor, b->row_begin, b->error,
@@ -177,18 +177,18 @@ static nmtan_status apply_wedges(builder *b)
 		if (b->corners[k] == NT_NONE)
 			return nt_fail_memory(b->error);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* The polygon at hand becomes faces. */
-static nmtan_status add_polygon(builder *b)
+static nt_status add_polygon(builder *b)
 {
 	if (b->corner_count < 3) {
 		if (b->skipped++ == 0)
 			b->first_skipped = place_of_row(b);
-		return NMTAN_OK;
+		return NT_OK;
 	}
-	nmtan_status status = b->has_wedges ? apply_wedges(b) : NMTAN_OK;
+	nt_status status = b->has_wedges ? apply_wedges(b) : NT_OK;
 	if (status)
 		return status;
 	if (b->corner_count > 4)
@@ -202,9 +202,9 @@ static nmtan_status add_polygon(builder *b)
 }
 
 /* The list at hand is a run of strips. Triangles with a doubled corner join strips and are no faces. */
-static nmtan_status add_strips(builder *b)
+static nt_status add_strips(builder *b)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	size_t begin = 0;
 	for (size_t i = 0; !status && i < b->corner_count; i++) {
 		const uint32_t *c = b->corners + i;
@@ -232,30 +232,30 @@ static bool room_for_uvs(builder *b, size_t count)
 }
 
 /* Checks a vertex index; -1 restarts strips. */
-static nmtan_status take_index(builder *b, size_t k, int64_t index, const unsigned char *at)
+static nt_status take_index(builder *b, size_t k, int64_t index, const unsigned char *at)
 {
 	const bool restart = b->element == b->source->strips && (index == -1 || index == UINT32_MAX);
 	if (!restart && (uint64_t)index >= b->source->vertex->count)
 		return fail_index(b, at, index);
 	b->corners[k] = restart ? NT_NONE : (uint32_t)index;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status load_corners(builder *b, const unsigned char *at, size_t count, ply_type type)
+static nt_status load_corners(builder *b, const unsigned char *at, size_t count, ply_type type)
 {
 	if (!room_for_corners(b, count))
 		return nt_fail_memory(b->error);
 	b->corner_count = count;
 	const size_t size = ply_size(type);
 	for (size_t k = 0; k < count; k++, at += size) {
-		const nmtan_status status = take_index(b, k, ply_load_integer(at, type, b->swap), at);
+		const nt_status status = take_index(b, k, ply_load_integer(at, type, b->swap), at);
 		if (status)
 			return status;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status load_uvs(builder *b, const unsigned char *at, size_t count, ply_type type)
+static nt_status load_uvs(builder *b, const unsigned char *at, size_t count, ply_type type)
 {
 	if (!room_for_uvs(b, count))
 		return nt_fail_memory(b->error);
@@ -268,7 +268,7 @@ static nmtan_status load_uvs(builder *b, const unsigned char *at, size_t count, 
 				"%s %zu: a value of list \"texcoord\" is not finite, expected a finite number",
 				b->element->name, b->row);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static void take_texture(builder *b, int64_t texture)
@@ -277,25 +277,25 @@ static void take_texture(builder *b, int64_t texture)
 	b->texture = (uint32_t)(texture >= 0 && (uint64_t)texture < count ? (size_t)texture : count);
 }
 
-static nmtan_status load_property(builder *b, int number, const unsigned char *at)
+static nt_status load_property(builder *b, int number, const unsigned char *at)
 {
 	const ply_property *property = &b->element->properties[number];
 	if (number == b->texture_property)
 		take_texture(b, property->type < PLY_FLOAT32
 					? ply_load_integer(at, property->type, b->swap) : -1);
 	if (!property->list)
-		return NMTAN_OK;
+		return NT_OK;
 	const size_t count = (size_t)ply_load_integer(at, property->count_type, b->swap);
 	const unsigned char *values = at + ply_size(property->count_type);
 	if (number == b->indices_property)
 		return load_corners(b, values, count, property->type);
-	return number == b->texcoords_property ? load_uvs(b, values, count, property->type) : NMTAN_OK;
+	return number == b->texcoords_property ? load_uvs(b, values, count, property->type) : NT_OK;
 }
 
 /* A row is measured, then read. */
-static nmtan_status load_row(builder *b)
+static nt_status load_row(builder *b)
 {
-	nmtan_status status = ply_skip_binary_row(b->cursor, b->element, b->row, b->error);
+	nt_status status = ply_skip_binary_row(b->cursor, b->element, b->row, b->error);
 	const unsigned char *at = b->row_begin;
 	for (size_t i = 0; !status && i < b->element->property_count; i++) {
 		const ply_property *property = &b->element->properties[i];
@@ -308,7 +308,7 @@ static nmtan_status load_row(builder *b)
 	return status;
 }
 
-static nmtan_status fail_text(const builder *b, const unsigned char *at, const char *expected,
+static nt_status fail_text(const builder *b, const unsigned char *at, const char *expected,
 	const ply_property *property)
 {
 	char found[40];
@@ -317,12 +317,12 @@ static nmtan_status fail_text(const builder *b, const unsigned char *at, const c
 }
 
 /* One value of a list or a scalar property at *at, which is moved behind it. */
-static nmtan_status read_value(builder *b, int number, size_t k, const unsigned char **at)
+static nt_status read_value(builder *b, int number, size_t k, const unsigned char **at)
 {
 	const ply_property *property = &b->element->properties[number];
 	const unsigned char *const end = b->cursor->end;
 	const unsigned char *begin = ply_skip_blanks(*at, end), *after;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	int64_t integer;
 	if (number == b->indices_property) {
 		after = ply_read_integer(begin, end, &integer);
@@ -346,7 +346,7 @@ static nmtan_status read_value(builder *b, int number, size_t k, const unsigned 
 	return status;
 }
 
-static nmtan_status read_list(builder *b, int number, const unsigned char **at)
+static nt_status read_list(builder *b, int number, const unsigned char **at)
 {
 	const ply_property *property = &b->element->properties[number];
 	const unsigned char *begin = ply_skip_blanks(*at, b->cursor->end);
@@ -367,16 +367,16 @@ static nmtan_status read_list(builder *b, int number, const unsigned char **at)
 			return nt_fail_memory(b->error);
 	}
 	*at = after;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t k = 0; !status && k < length; k++)
 		status = read_value(b, number, k, at);
 	return status;
 }
 
-static nmtan_status read_row(builder *b)
+static nt_status read_row(builder *b)
 {
 	const unsigned char *at = b->row_begin;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < b->element->property_count; i++)
 		status = b->element->properties[i].list ? read_list(b, (int)i, &at)
 							: read_value(b, (int)i, 0, &at);
@@ -387,11 +387,11 @@ static nmtan_status read_row(builder *b)
 }
 
 /* Reads as many plain faces as there are at the cursor: b->row moves behind them. */
-static nmtan_status take_run(builder *b)
+static nt_status take_run(builder *b)
 {
 	const size_t size = ply_run_size(&b->runs, b->cursor);
 	if (size == 0)
-		return NMTAN_OK;
+		return NT_OK;
 	const size_t left = b->element->count - b->row, room = NMTAN_MAX_FACES - b->face_count;
 	const size_t rows = left < room ? left : room;
 	if ((size == 4 && !start_sizes(b)) || !make_room(b, rows, size * rows + 4))
@@ -406,10 +406,10 @@ static nmtan_status take_run(builder *b)
 	b->face_count += taken;
 	b->polygon_count += taken;
 	b->row += taken;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status read_any_row(builder *b)
+static nt_status read_any_row(builder *b)
 {
 	const bool ascii = b->cursor->encoding == PLY_ASCII;
 	b->row_begin = b->cursor->at;
@@ -417,16 +417,16 @@ static nmtan_status read_any_row(builder *b)
 		return ply_fail_at(b->cursor, b->cursor->at, b->error,
 			"the file ends where %s %zu of %zu was expected", b->element->name, b->row,
 			b->element->count);
-	nmtan_status status = ascii ? read_row(b) : load_row(b);
+	nt_status status = ascii ? read_row(b) : load_row(b);
 	if (!status)
 		status = b->element == b->source->strips ? add_strips(b) : add_polygon(b);
 	b->row++;
 	return status;
 }
 
-static nmtan_status read_rows(builder *b)
+static nt_status read_rows(builder *b)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	while (!status && b->row < b->element->count) {
 		if (b->cursor->encoding == PLY_ASCII)
 			ply_next_row(b->cursor);
@@ -441,7 +441,7 @@ static nmtan_status read_rows(builder *b)
 /* Results. */
 
 /* Primitives of textures that no face uses are left out. */
-static nmtan_status make_primitives(builder *b)
+static nt_status make_primitives(builder *b)
 {
 	nt_mesh *mesh = b->mesh;
 	const size_t textures = b->source->header.texture_count;
@@ -468,13 +468,13 @@ static nmtan_status make_primitives(builder *b)
 	for (size_t f = 0; b->primitives && f < b->face_count; f++)
 		b->primitives[f] = numbers[b->primitives[f]];
 	free(numbers);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status finish(builder *b)
+static nt_status finish(builder *b)
 {
 	nt_mesh *mesh = b->mesh;
-	nmtan_status status = make_primitives(b);
+	nt_status status = make_primitives(b);
 	if (!status && b->has_wedges && !ply_wedges_apply(&b->wedges, b->scene, mesh, b->source))
 		status = nt_fail_memory(b->error);
 	mesh->face_count = b->face_count;
@@ -500,10 +500,10 @@ static bool hand_over(builder *b)
 	return kept;
 }
 
-static nmtan_status prepare(builder *b)
+static nt_status prepare(builder *b)
 {
 	const ply_element *element = b->element;
-	const nmtan_status status = ply_check_count(b->cursor, element, b->error);
+	const nt_status status = ply_check_count(b->cursor, element, b->error);
 	if (status)
 		return status;
 	b->has_wedges = b->texcoords_property != PLY_NO_PROPERTY;
@@ -514,11 +514,11 @@ static nmtan_status prepare(builder *b)
 	/* most files are triangles; the count has been checked against the file */
 	return nt_grow((void **)&b->indices, &b->index_capacity, 3 * element->count + 4,
 		       sizeof *b->indices)
-		       ? NMTAN_OK
+		       ? NT_OK
 		       : nt_fail_memory(b->error);
 }
 
-nmtan_status ply_read_faces(nt_scene *scene, nt_mesh *mesh, ply_source *source, ply_cursor *cursor,
+nt_status ply_read_faces(nt_scene *scene, nt_mesh *mesh, ply_source *source, ply_cursor *cursor,
 	nt_error *error)
 {
 	const bool strips = source->strips != NULL;
@@ -533,7 +533,7 @@ nmtan_status ply_read_faces(nt_scene *scene, nt_mesh *mesh, ply_source *source, 
 	if (b.texture_property >= 0 && b.element->properties[b.texture_property].list)
 		b.texture_property = PLY_NO_PROPERTY;
 
-	nmtan_status status = prepare(&b);
+	nt_status status = prepare(&b);
 	if (!status)
 		status = read_rows(&b);
 	if (!status)

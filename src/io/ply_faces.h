@@ -10,7 +10,7 @@
 #include "scene/scene.h"
 
 /* Reads the faces (or strips) at the cursor into the mesh, whose positions are there. */
-nmtan_status ply_read_faces(nt_scene *scene, nt_mesh *mesh, ply_source *source, ply_cursor *cursor,
+nt_status ply_read_faces(nt_scene *scene, nt_mesh *mesh, ply_source *source, ply_cursor *cursor,
 	nt_error *error);
 
 #endif

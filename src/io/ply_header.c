@@ -95,19 +95,19 @@ static int shown(word w)
 	return w.length < 40 ? (int)w.length : 40;
 }
 
-static nmtan_status fail_word(parser *p, word found, const char *expected)
+static nt_status fail_word(parser *p, word found, const char *expected)
 {
 	if (found.length == 0)
-		return nt_fail_line(p->error, NMTAN_ERROR_INPUT, p->line,
+		return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
 			"the line ends where %s was expected", expected);
-	return nt_fail_line(p->error, NMTAN_ERROR_INPUT, p->line, "found \"%.*s\", expected %s",
+	return nt_fail_line(p->error, NT_ERROR_INPUT, p->line, "found \"%.*s\", expected %s",
 		shown(found), found.text, expected);
 }
 
-static nmtan_status expect_end(parser *p)
+static nt_status expect_end(parser *p)
 {
 	const word w = next_word(p);
-	return w.length ? fail_word(p, w, "the end of the line") : NMTAN_OK;
+	return w.length ? fail_word(p, w, "the end of the line") : NT_OK;
 }
 
 static char *copy_text(const char *text, size_t length)
@@ -115,11 +115,11 @@ static char *copy_text(const char *text, size_t length)
 	return strndup(text, length);
 }
 
-static nmtan_status parse_format(parser *p)
+static nt_status parse_format(parser *p)
 {
 	static const char *const names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
 	if (p->has_format)
-		return nt_fail_line(p->error, NMTAN_ERROR_INPUT, p->line, "a second format line");
+		return nt_fail_line(p->error, NT_ERROR_INPUT, p->line, "a second format line");
 	const word name = next_word(p);
 	int encoding = 0;
 	while (encoding < 3 && !is(name, names[encoding]))
@@ -128,7 +128,7 @@ static nmtan_status parse_format(parser *p)
 		return fail_word(p, name, "ascii, binary_little_endian or binary_big_endian");
 	const word version = next_word(p);
 	if (version.length && !is(version, "1.0"))
-		return nt_fail_line(p->error, NMTAN_ERROR_UNSUPPORTED, p->line,
+		return nt_fail_line(p->error, NT_ERROR_UNSUPPORTED, p->line,
 			"PLY version \"%.*s\": only 1.0 is known", shown(version), version.text);
 	if (version.length == 0)
 		return fail_word(p, version, "the version, 1.0,");
@@ -138,16 +138,16 @@ static nmtan_status parse_format(parser *p)
 }
 
 /* "TextureFile wood grain.png": the rest of the line is the name. */
-static nmtan_status parse_comment(parser *p)
+static nt_status parse_comment(parser *p)
 {
 	if (!is(next_word(p), "TextureFile"))
-		return NMTAN_OK;
+		return NT_OK;
 	word name = next_word(p);
 	const char *end = p->end;
 	while (end > name.text && ply_is_blank((unsigned char)end[-1]))
 		end--;
 	if (name.length == 0)
-		return NMTAN_OK;
+		return NT_OK;
 	ply_header *header = p->header;
 	char *copy = copy_text(name.text, (size_t)(end - name.text));
 	if (!copy || !nt_grow((void **)&header->textures, &header->texture_capacity,
@@ -156,7 +156,7 @@ static nmtan_status parse_comment(parser *p)
 		return nt_fail_memory(p->error);
 	}
 	header->textures[header->texture_count++] = copy;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static bool read_count(word w, size_t *count)
@@ -170,7 +170,7 @@ static bool read_count(word w, size_t *count)
 	return w.length > 0;
 }
 
-static nmtan_status parse_element(parser *p)
+static nt_status parse_element(parser *p)
 {
 	ply_header *header = p->header;
 	const word name = next_word(p);
@@ -182,7 +182,7 @@ static nmtan_status parse_element(parser *p)
 		return fail_word(p, number, "the number of rows");
 	for (size_t i = 0; i < header->element_count; i++)
 		if (is(name, header->elements[i].name))
-			return nt_fail_line(p->error, NMTAN_ERROR_INPUT, p->line,
+			return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
 				"a second element \"%.*s\": the first is on line %zu", shown(name),
 				name.text, header->elements[i].line);
 	element.name = copy_text(name.text, name.length);
@@ -195,25 +195,25 @@ static nmtan_status parse_element(parser *p)
 	return expect_end(p);
 }
 
-static nmtan_status parse_type(parser *p, word name, ply_type *type)
+static nt_status parse_type(parser *p, word name, ply_type *type)
 {
 	for (int i = 0; i < TYPE_COUNT; i++) {
 		if (is(name, type_names[i].name) || is(name, type_names[i].alias)) {
 			*type = (ply_type)i;
-			return NMTAN_OK;
+			return NT_OK;
 		}
 	}
 	return fail_word(p, name, "a type (char, uchar, short, ushort, int, uint, float or double)");
 }
 
 /* "list <type> <type>" or "<type>". */
-static nmtan_status parse_property_type(parser *p, ply_property *property)
+static nt_status parse_property_type(parser *p, ply_property *property)
 {
 	word name = next_word(p);
 	property->list = is(name, "list");
 	if (property->list) {
 		name = next_word(p);
-		const nmtan_status status = parse_type(p, name, &property->count_type);
+		const nt_status status = parse_type(p, name, &property->count_type);
 		if (status)
 			return status;
 		if (property->count_type >= PLY_FLOAT32)
@@ -223,15 +223,15 @@ static nmtan_status parse_property_type(parser *p, ply_property *property)
 	return parse_type(p, name, &property->type);
 }
 
-static nmtan_status parse_property(parser *p)
+static nt_status parse_property(parser *p)
 {
 	ply_header *header = p->header;
 	if (header->element_count == 0)
-		return nt_fail_line(p->error, NMTAN_ERROR_INPUT, p->line,
+		return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
 			"a property before the first element");
 	ply_element *element = &header->elements[header->element_count - 1];
 	ply_property property = {.line = p->line, .offset = element->row_bytes};
-	const nmtan_status status = parse_property_type(p, &property);
+	const nt_status status = parse_property_type(p, &property);
 	if (status)
 		return status;
 	const word name = next_word(p);
@@ -249,13 +249,13 @@ static nmtan_status parse_property(parser *p)
 	return expect_end(p);
 }
 
-static nmtan_status parse_line(parser *p, bool *finished)
+static nt_status parse_line(parser *p, bool *finished)
 {
 	const word keyword = next_word(p);
 	if (is(keyword, "comment"))
 		return parse_comment(p);
 	if (keyword.length == 0 || is(keyword, "obj_info"))
-		return NMTAN_OK;
+		return NT_OK;
 	if (is(keyword, "format"))
 		return parse_format(p);
 	if (is(keyword, "element"))
@@ -269,7 +269,7 @@ static nmtan_status parse_line(parser *p, bool *finished)
 	return expect_end(p);
 }
 
-nmtan_status ply_parse_header(ply_header *header, const unsigned char *bytes, size_t size,
+nt_status ply_parse_header(ply_header *header, const unsigned char *bytes, size_t size,
 	nt_error *error)
 {
 	parser p = {.header = header, .error = error, .line = 1};
@@ -277,13 +277,13 @@ nmtan_status ply_parse_header(ply_header *header, const unsigned char *bytes, si
 	p.at = line.text;
 	p.end = line.text + line.length;
 	if (!is(next_word(&p), "ply"))
-		return nt_fail_line(error, NMTAN_ERROR_INPUT, 1, "not a PLY file: it does not begin with \"ply\"");
+		return nt_fail_line(error, NT_ERROR_INPUT, 1, "not a PLY file: it does not begin with \"ply\"");
 	/* the first line tells whether '\r' comes alone: a '\n' after it may then be data */
 	header->newline = line.newline;
-	nmtan_status status = expect_end(&p);
+	nt_status status = expect_end(&p);
 	for (bool finished = false; !status && !finished;) {
 		if (!line.newline)
-			return nt_fail_line(error, NMTAN_ERROR_INPUT, p.line,
+			return nt_fail_line(error, NT_ERROR_INPUT, p.line,
 				"the file ends within the header, end_header was expected");
 		line = ply_header_line(header, bytes, size, line.next);
 		p.line++;
@@ -292,7 +292,7 @@ nmtan_status ply_parse_header(ply_header *header, const unsigned char *bytes, si
 		status = parse_line(&p, &finished);
 	}
 	if (!status && !p.has_format)
-		status = nt_fail_line(error, NMTAN_ERROR_INPUT, p.line, "the header has no format line");
+		status = nt_fail_line(error, NT_ERROR_INPUT, p.line, "the header has no format line");
 	header->body = line.next;
 	header->body_line = p.line + 1;
 	return status;

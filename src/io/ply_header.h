@@ -41,7 +41,7 @@ typedef struct ply_header {
 } ply_header;
 
 /* Reads the header of scene->bytes. */
-nmtan_status ply_parse_header(ply_header *header, const unsigned char *bytes, size_t size,
+nt_status ply_parse_header(ply_header *header, const unsigned char *bytes, size_t size,
 	nt_error *error);
 void ply_free_header(ply_header *header);
 

@@ -49,18 +49,18 @@ void ply_put_integer(ply_output *out, uint32_t value, ply_type type)
 	nt_buffer_append(&out->buffer, text + begin, sizeof text - begin);
 }
 
-nmtan_status ply_drain(ply_output *out, nt_error *error)
+nt_status ply_drain(ply_output *out, nt_error *error)
 {
 	if (out->buffer.failed)
 		return nt_fail_memory(error);
-	return out->buffer.size < DRAIN_BYTES ? NMTAN_OK : ply_put_bytes(out, NULL, 0, error);
+	return out->buffer.size < DRAIN_BYTES ? NT_OK : ply_put_bytes(out, NULL, 0, error);
 }
 
-nmtan_status ply_put_bytes(ply_output *out, const void *bytes, size_t size, nt_error *error)
+nt_status ply_put_bytes(ply_output *out, const void *bytes, size_t size, nt_error *error)
 {
 	if (out->buffer.failed)
 		return nt_fail_memory(error);
-	const nmtan_status status = nt_sink_write(out->sink, out->buffer.data, out->buffer.size, error);
+	const nt_status status = nt_sink_write(out->sink, out->buffer.data, out->buffer.size, error);
 	out->buffer.size = 0;
 	return status || size == 0 ? status : nt_sink_write(out->sink, bytes, size, error);
 }

@@ -25,10 +25,10 @@ void ply_put_floats(ply_output *out, const float *values, size_t count);
 void ply_put_integer(ply_output *out, uint32_t value, ply_type type);
 
 /* Writes the buffer when it has become long; reports what failed since the last call. */
-nmtan_status ply_drain(ply_output *out, nt_error *error);
+nt_status ply_drain(ply_output *out, nt_error *error);
 
 /* Writes the buffer and then these bytes. */
-nmtan_status ply_put_bytes(ply_output *out, const void *bytes, size_t size, nt_error *error);
+nt_status ply_put_bytes(ply_output *out, const void *bytes, size_t size, nt_error *error);
 
 /* cross(n, t) * w. */
 void ply_bitangent(const float n[3], const float t[4], float b[3]);

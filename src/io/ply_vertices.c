@@ -94,7 +94,7 @@ static void decode_column(const reader *r, const target *t, const unsigned char 
 			ply_load_float(from + i * row_bytes, property->type, swap) / t->divisor;
 }
 
-static nmtan_status fail_not_finite(const reader *r, size_t row, const ply_property *property,
+static nt_status fail_not_finite(const reader *r, size_t row, const ply_property *property,
 	const unsigned char *at)
 {
 	return ply_fail_at(r->cursor, at, r->error,
@@ -103,14 +103,14 @@ static nmtan_status fail_not_finite(const reader *r, size_t row, const ply_prope
 }
 
 /* Looks over what a block has become, while it is in the cache. */
-static nmtan_status check_column(const reader *r, const target *t, size_t first, size_t count)
+static nt_status check_column(const reader *r, const target *t, size_t first, size_t count)
 {
 	const float *values = t->values + first * t->stride;
 	unsigned bad = 0;
 	for (size_t i = 0; i < count; i++)
 		bad |= !is_finite(values[i * t->stride]);
 	if (!bad)
-		return NMTAN_OK;
+		return NT_OK;
 	size_t row = 0;
 	while (is_finite(values[row * t->stride]))
 		row++;
@@ -120,10 +120,10 @@ static nmtan_status check_column(const reader *r, const target *t, size_t first,
 		r->cursor->at + row * r->element->row_bytes + property->offset);
 }
 
-static nmtan_status decode_fixed(const reader *r)
+static nt_status decode_fixed(const reader *r)
 {
 	const size_t count = r->element->count;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t first = 0; !status && first < count; first += BLOCK_ROWS) {
 		const size_t rows = count - first < BLOCK_ROWS ? count - first : BLOCK_ROWS;
 		for (size_t i = 0; !status && i < r->target_count; i++) {
@@ -138,7 +138,7 @@ static nmtan_status decode_fixed(const reader *r)
 }
 
 /* The value of property `number` at `at` to the targets that want it. */
-static nmtan_status decode_value(const reader *r, size_t row, size_t number, const unsigned char *at)
+static nt_status decode_value(const reader *r, size_t row, size_t number, const unsigned char *at)
 {
 	const ply_property *property = &r->element->properties[number];
 	const bool swap = ply_swaps(r->cursor->encoding);
@@ -151,15 +151,15 @@ static nmtan_status decode_value(const reader *r, size_t row, size_t number, con
 			return fail_not_finite(r, row, property, at);
 		t->values[row * t->stride] = value;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Binary rows with lists: each is measured first, then its values are taken. */
-static nmtan_status decode_listed(const reader *r)
+static nt_status decode_listed(const reader *r)
 {
 	const ply_element *element = r->element;
 	const bool swap = ply_swaps(r->cursor->encoding);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t row = 0; !status && row < element->count; row++) {
 		const unsigned char *at = r->cursor->at;
 		status = ply_skip_binary_row(r->cursor, element, row, r->error);
@@ -177,7 +177,7 @@ static nmtan_status decode_listed(const reader *r)
 	return status;
 }
 
-static nmtan_status fail_value(const reader *r, size_t row, const ply_property *property,
+static nt_status fail_value(const reader *r, size_t row, const ply_property *property,
 	const unsigned char *at, const char *expected)
 {
 	char found[40];
@@ -186,7 +186,7 @@ static nmtan_status fail_value(const reader *r, size_t row, const ply_property *
 }
 
 /* Passes over the list at *at. */
-static nmtan_status skip_list(const reader *r, size_t row, const ply_property *property,
+static nt_status skip_list(const reader *r, size_t row, const ply_property *property,
 	const unsigned char **at)
 {
 	int64_t count;
@@ -201,11 +201,11 @@ static nmtan_status skip_list(const reader *r, size_t row, const ply_property *p
 		p = after;
 	}
 	*at = p;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* One line. `by_property` has the target of each property or NULL. */
-static nmtan_status read_line(const reader *r, size_t row, const target *const *by_property)
+static nt_status read_line(const reader *r, size_t row, const target *const *by_property)
 {
 	const unsigned char *at = r->cursor->at;
 	const unsigned char *const end = r->cursor->end;
@@ -214,7 +214,7 @@ static nmtan_status read_line(const reader *r, size_t row, const target *const *
 		const target *t = by_property[i];
 		at = ply_skip_blanks(at, end);
 		if (property->list) {
-			const nmtan_status status = skip_list(r, row, property, &at);
+			const nt_status status = skip_list(r, row, property, &at);
 			if (status)
 				return status;
 			continue;
@@ -230,7 +230,7 @@ static nmtan_status read_line(const reader *r, size_t row, const target *const *
 		at = after;
 	}
 	r->cursor->at = ply_skip_blanks(at, end);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Where the number of a column goes. */
@@ -278,26 +278,26 @@ static void read_plain_lines(const reader *r, size_t *row, const column *columns
 	r->cursor->at = (const unsigned char *)at;
 }
 
-static nmtan_status read_any_line(const reader *r, size_t row, const target *const *by_property)
+static nt_status read_any_line(const reader *r, size_t row, const target *const *by_property)
 {
 	ply_next_row(r->cursor);
 	if (r->cursor->at == r->cursor->end)
 		return ply_fail_at(r->cursor, r->cursor->at, r->error,
 			"the file ends where %s %zu of %zu was expected", r->element->name, row,
 			r->element->count);
-	const nmtan_status status = read_line(r, row, by_property);
+	const nt_status status = read_line(r, row, by_property);
 	return status ? status : ply_check_row_end(r->cursor, r->element, row, r->error);
 }
 
 /* Plain lines as long as there are any, then one in the general way, and so on. */
-static nmtan_status read_lines_into(const reader *r, const target **by_property, column *columns)
+static nt_status read_lines_into(const reader *r, const target **by_property, column *columns)
 {
 	for (size_t i = 0; i < r->target_count; i++) {
 		const target *t = &r->targets[i];
 		by_property[t->property] = t;
 		columns[t->property] = (column){t->values, t->stride, t->divisor, t->finite};
 	}
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t row = 0; !status && row < r->element->count;) {
 		if (!r->element->has_list) {
 			ply_next_row(r->cursor);
@@ -309,24 +309,24 @@ static nmtan_status read_lines_into(const reader *r, const target **by_property,
 	return status;
 }
 
-static nmtan_status read_lines(const reader *r)
+static nt_status read_lines(const reader *r)
 {
 	const size_t count = r->element->property_count;
 	const target **by_property = nt_calloc(count, sizeof *by_property);
 	column *columns = nt_calloc(count, sizeof *columns);
-	const nmtan_status status = by_property && columns ? read_lines_into(r, by_property, columns)
+	const nt_status status = by_property && columns ? read_lines_into(r, by_property, columns)
 							   : nt_fail_memory(r->error);
 	free((void *)by_property);
 	free(columns);
 	return status;
 }
 
-nmtan_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *source,
+nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *source,
 	ply_cursor *cursor, nt_error *error)
 {
 	const ply_element *element = source->vertex;
 	const ply_roles *roles = &source->roles;
-	nmtan_status status = ply_check_count(cursor, element, error);
+	nt_status status = ply_check_count(cursor, element, error);
 	if (status)
 		return status;
 	reader r = {.element = element, .cursor = cursor, .error = error};

@@ -10,7 +10,7 @@
 #include "scene/scene.h"
 
 /* Reads the rows of the vertex element at the cursor into the mesh. */
-nmtan_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *source,
+nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *source,
 	ply_cursor *cursor, nt_error *error);
 
 #endif

@@ -54,7 +54,7 @@ static void add_extras(plan *p, const char *const *names, size_t count)
 	}
 }
 
-static nmtan_status plan_properties(plan *p, bool bitangents)
+static nt_status plan_properties(plan *p, bool bitangents)
 {
 	static const char *const normals[] = {"nx", "ny", "nz"};
 	static const char *const tangents[] = {"tx", "ty", "tz", "tw"};
@@ -79,7 +79,7 @@ static nmtan_status plan_properties(plan *p, bool bitangents)
 		add_extras(p, tangents, 4);
 	if (p->new_bitangents)
 		add_extras(p, bitangent_names, 3);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static bool faces_change(const plan *p)
@@ -185,9 +185,9 @@ static void write_header(const plan *p)
 
 /* Rows. The reader has checked them; checked again is that the mapped file has not shrunk or changed. */
 
-static nmtan_status fail_changed(const plan *p)
+static nt_status fail_changed(const plan *p)
 {
-	return nt_fail(p->error, NMTAN_ERROR_IO, "the file changed while it was read");
+	return nt_fail(p->error, NT_ERROR_IO, "the file changed while it was read");
 }
 
 static bool span_binary_row(plan *p, const ply_element *element)
@@ -304,7 +304,7 @@ static const unsigned char *find_line_end(const unsigned char *at, const unsigne
 	return at;
 }
 
-static nmtan_status write_vertex(plan *p, size_t vertex)
+static nt_status write_vertex(plan *p, size_t vertex)
 {
 	const ply_element *element = p->source->vertex;
 	const bool ascii = p->cursor.encoding == PLY_ASCII;
@@ -328,9 +328,9 @@ static nmtan_status write_vertex(plan *p, size_t vertex)
 	return ply_drain(p->out, p->error);
 }
 
-static nmtan_status write_vertices(plan *p)
+static nt_status write_vertices(plan *p)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t row = 0; !status && row < p->n.row_count; row++) {
 		p->row_offsets[row] = (size_t)(p->cursor.at - p->cursor.begin);
 		status = write_vertex(p, row);
@@ -389,7 +389,7 @@ static size_t list_length(const plan *p, const ply_property *property, span all)
 }
 
 /* The row at hand with other vertices; corners: which corners of the polygon they are, NULL: all. */
-static nmtan_status write_face(const plan *p, const uint32_t *vertices, size_t count, const uint32_t *corners)
+static nt_status write_face(const plan *p, const uint32_t *vertices, size_t count, const uint32_t *corners)
 {
 	const ply_element *element = p->source->face;
 	for (size_t i = 0; i < element->property_count; i++) {
@@ -414,9 +414,9 @@ typedef struct face_progress {
 	size_t capacity;
 } face_progress;
 
-static nmtan_status write_triangles(const plan *p, const face_progress *done, size_t size)
+static nt_status write_triangles(const plan *p, const face_progress *done, size_t size)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t t = 0; !status && t < size - 2; t++) {
 		uint32_t vertices[3];
 		for (size_t k = 0; k < 3; k++)
@@ -427,7 +427,7 @@ static nmtan_status write_triangles(const plan *p, const face_progress *done, si
 }
 
 /* A row of fewer than three corners is no face of the mesh: its vertices stay. */
-static nmtan_status write_short_face(const plan *p, span list, size_t size, uint32_t *vertices)
+static nt_status write_short_face(const plan *p, span list, size_t size, uint32_t *vertices)
 {
 	const ply_property *property = &p->source->face->properties[p->source->face_indices];
 	const unsigned char *at = list.begin + ply_size(property->count_type);
@@ -447,7 +447,7 @@ static nmtan_status write_short_face(const plan *p, span list, size_t size, uint
 }
 
 /* One polygon of the source. */
-static nmtan_status write_polygon(plan *p, face_progress *done)
+static nt_status write_polygon(plan *p, face_progress *done)
 {
 	const ply_element *element = p->source->face;
 	if (!span_row(p, element))
@@ -460,7 +460,7 @@ static nmtan_status write_polygon(plan *p, face_progress *done)
 	if (corners > p->mesh->corner_count - done->corner ||
 		(size > 4 && corners > p->source->cuts.count - done->cut))
 		return fail_changed(p);
-	nmtan_status status;
+	nt_status status;
 	if (size < 3) {
 		status = write_short_face(p, list, size, done->vertices);
 	} else if (size < 5) {
@@ -478,19 +478,19 @@ static nmtan_status write_polygon(plan *p, face_progress *done)
 	return status;
 }
 
-static nmtan_status write_faces(plan *p)
+static nt_status write_faces(plan *p)
 {
 	face_progress done = {0};
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t row = 0; !status && row < p->source->face->count; row++)
 		status = write_polygon(p, &done);
 	free(done.vertices);
 	return status;
 }
 
-static nmtan_status write_strip_faces(plan *p)
+static nt_status write_strip_faces(plan *p)
 {
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	p->cursor.at = p->cursor.begin + p->source->face_end;
 	for (size_t c = 0; !status && c < p->mesh->corner_count; c += 3) {
 		const uint32_t vertices[3] = {ply_output_vertex(&p->n, c), ply_output_vertex(&p->n, c + 1),
@@ -504,12 +504,12 @@ static nmtan_status write_strip_faces(plan *p)
 
 /* The file. */
 
-static nmtan_status copy_element(plan *p, const ply_element *element)
+static nt_status copy_element(plan *p, const ply_element *element)
 {
 	if (p->cursor.encoding == PLY_ASCII)
 		ply_next_row(&p->cursor);
 	const unsigned char *begin = p->cursor.at;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (element == p->source->face || element == p->source->strips)
 		p->cursor.at = p->cursor.begin + p->source->face_end;
 	else
@@ -525,10 +525,10 @@ static nmtan_status copy_element(plan *p, const ply_element *element)
 	return status;
 }
 
-static nmtan_status write_body(plan *p)
+static nt_status write_body(plan *p)
 {
 	const ply_header *header = &p->source->header;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < header->element_count; i++) {
 		const ply_element *element = &header->elements[i];
 		if (element == p->source->vertex)
@@ -557,9 +557,9 @@ static void report_cuts(const plan *p)
 			p->source->strips->count, "triangle strips");
 }
 
-static nmtan_status write_changed(plan *p, bool bitangents)
+static nt_status write_changed(plan *p, bool bitangents)
 {
-	const nmtan_status status = ply_number_vertices(&p->n, p->mesh, p->source)
+	const nt_status status = ply_number_vertices(&p->n, p->mesh, p->source)
 					    ? plan_properties(p, bitangents)
 					    : nt_fail_memory(p->error);
 	if (status)
@@ -572,7 +572,7 @@ static nmtan_status write_changed(plan *p, bool bitangents)
 	return write_body(p);
 }
 
-nmtan_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply_output *out,
+nt_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply_output *out,
 	nt_error *error)
 {
 	const ply_source *source = scene->source;
@@ -587,7 +587,7 @@ nmtan_status ply_write_source(nt_scene *scene, const nt_write_options *options, 
 	out->encoding = header->encoding;
 	if (!p.new_normals && !p.new_tangents)
 		return ply_put_bytes(out, scene->bytes, scene->byte_count, error);
-	const nmtan_status status = write_changed(&p, options->bitangents);
+	const nt_status status = write_changed(&p, options->bitangents);
 	ply_numbering_free(&p.n);
 	free(p.dropped);
 	free(p.spans);

@@ -9,7 +9,7 @@
 #include "io/ply_output.h"
 
 /* The scene was read from a PLY. Sets out->encoding. */
-nmtan_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply_output *out,
+nt_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply_output *out,
 	nt_error *error);
 
 #endif

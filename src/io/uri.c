@@ -77,7 +77,7 @@ static int base64_digit(char c)
 }
 
 /* Decodes base64 at uri[begin, length). Padding may be left out. */
-static nmtan_status base64_decode(const char *uri, size_t begin, size_t length, unsigned char *out,
+static nt_status base64_decode(const char *uri, size_t begin, size_t length, unsigned char *out,
 	size_t *size, nt_error *error)
 {
 	size_t end = length;
@@ -88,7 +88,7 @@ static nmtan_status base64_decode(const char *uri, size_t begin, size_t length, 
 	for (size_t i = begin; i < end; i++) {
 		const int digit = base64_digit(uri[i]);
 		if (digit < 0)
-			return nt_fail(error, NMTAN_ERROR_INPUT,
+			return nt_fail(error, NT_ERROR_INPUT,
 				"character %zu of the data URI is not base64", i + 1);
 		group = group << 6 | (uint32_t)digit;
 		if (++digits == 4) {
@@ -100,29 +100,29 @@ static nmtan_status base64_decode(const char *uri, size_t begin, size_t length, 
 		}
 	}
 	if (digits == 1)
-		return nt_fail(error, NMTAN_ERROR_INPUT,
+		return nt_fail(error, NT_ERROR_INPUT,
 			"the base64 text of the data URI ends in the middle of a byte");
 	if (digits >= 2)
 		out[count++] = (unsigned char)(group >> (digits == 2 ? 4 : 10));
 	if (digits == 3)
 		out[count++] = (unsigned char)(group >> 2);
 	*size = count;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_uri_decode_data(const char *uri, size_t length, unsigned char **bytes, size_t *size,
+nt_status nt_uri_decode_data(const char *uri, size_t length, unsigned char **bytes, size_t *size,
 	nt_error *error)
 {
 	*bytes = NULL;
 	const char *comma = memchr(uri, ',', length);
 	if (!comma)
-		return nt_fail(error, NMTAN_ERROR_INPUT, "the data URI has no comma before its data");
+		return nt_fail(error, NT_ERROR_INPUT, "the data URI has no comma before its data");
 	const size_t head = (size_t)(comma - uri), begin = head + 1;
 	const bool base64 = head >= 7 && strncasecmp(comma - 7, ";base64", 7) == 0;
 	unsigned char *block = nt_alloc(length - begin + 1, 1);
 	if (!block)
 		return nt_fail_memory(error);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (base64)
 		status = base64_decode(uri, begin, length, block, size, error);
 	else
@@ -194,23 +194,23 @@ static size_t folder_length(const char *document)
 }
 
 /* Whether the real path of `path` lies below the real path of the folder. */
-static nmtan_status check_links(const char *path, const char *folder, const char *uri, nt_error *error)
+static nt_status check_links(const char *path, const char *folder, const char *uri, nt_error *error)
 {
 	char *real = realpath(path, NULL);
 	if (!real)
-		return nt_fail(error, errno == ENOMEM ? NMTAN_ERROR_MEMORY : NMTAN_ERROR_IO,
+		return nt_fail(error, errno == ENOMEM ? NT_ERROR_MEMORY : NT_ERROR_IO,
 			"cannot open \"%.*s\": %s", SHOWN, uri, strerror(errno));
 	char *real_folder = realpath(*folder ? folder : ".", NULL);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (!real_folder) {
-		status = nt_fail(error, NMTAN_ERROR_IO, "cannot resolve the folder of the file: %s",
+		status = nt_fail(error, NT_ERROR_IO, "cannot resolve the folder of the file: %s",
 			strerror(errno));
 	} else {
 		size_t length = strlen(real_folder);
 		if (length && real_folder[length - 1] == '/')
 			length--; /* the root */
 		if (strncmp(real, real_folder, length) != 0 || real[length] != '/')
-			status = nt_fail(error, NMTAN_ERROR_INPUT,
+			status = nt_fail(error, NT_ERROR_INPUT,
 				"the URI \"%.*s\" leaves the folder of the file through a symbolic link "
 				"(refused unless --allow-outside)", SHOWN, uri);
 	}
@@ -219,7 +219,7 @@ static nmtan_status check_links(const char *path, const char *folder, const char
 	return status;
 }
 
-nmtan_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri, size_t length,
+nt_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri, size_t length,
 	bool allow_outside, const char **path, nt_error *error)
 {
 	char *name = nt_arena_text(arena, uri, length);
@@ -229,9 +229,9 @@ nmtan_status nt_uri_resolve(nt_arena *arena, const char *document, const char *u
 	name[name_length] = '\0';
 	const char *fault = judge_text(name, name_length, allow_outside);
 	if (fault)
-		return nt_fail(error, NMTAN_ERROR_INPUT, "the URI \"%.*s\" %s", SHOWN, uri, fault);
+		return nt_fail(error, NT_ERROR_INPUT, "the URI \"%.*s\" %s", SHOWN, uri, fault);
 	if (has_scheme(name))
-		return nt_fail(error, name[1] == ':' ? NMTAN_ERROR_INPUT : NMTAN_ERROR_UNSUPPORTED,
+		return nt_fail(error, name[1] == ':' ? NT_ERROR_INPUT : NT_ERROR_UNSUPPORTED,
 			name[1] == ':' ? "the URI \"%.*s\" names a drive" :
 					 "the URI \"%.*s\" has a scheme; only data: and relative names are read",
 			SHOWN, uri);
@@ -245,7 +245,7 @@ nmtan_status nt_uri_resolve(nt_arena *arena, const char *document, const char *u
 	memcpy(full, document, folder);
 	memcpy(full + folder, name, name_length + 1);
 	*path = full;
-	return allow_outside ? NMTAN_OK : check_links(full, folder_text, uri, error);
+	return allow_outside ? NT_OK : check_links(full, folder_text, uri, error);
 }
 
 void nt_uri_append_path(nt_buffer *buffer, const char *path)

@@ -17,10 +17,10 @@ bool nt_uri_is_data(const char *uri, size_t length);
  *   bytes  receives a malloc'ed block, never NULL on success
  *   size   receives its size
  *
- * Returns NMTAN_OK, NMTAN_ERROR_INPUT (the message names the position in the URI) or
- * NMTAN_ERROR_MEMORY.
+ * Returns NT_OK, NT_ERROR_INPUT (the message names the position in the URI) or
+ * NT_ERROR_MEMORY.
  */
-nmtan_status nt_uri_decode_data(const char *uri, size_t length, unsigned char **bytes, size_t *size,
+nt_status nt_uri_decode_data(const char *uri, size_t length, unsigned char **bytes, size_t *size,
 	nt_error *error);
 
 /*
@@ -32,11 +32,11 @@ nmtan_status nt_uri_decode_data(const char *uri, size_t length, unsigned char **
  *                  through a symbolic link; otherwise that is refused
  *   path           receives the path, in the arena
  *
- * Schemes, NULs and empty names are always refused. Returns NMTAN_OK, NMTAN_ERROR_INPUT,
- * NMTAN_ERROR_UNSUPPORTED (a scheme), NMTAN_ERROR_IO (no such file) or NMTAN_ERROR_MEMORY; the message
+ * Schemes, NULs and empty names are always refused. Returns NT_OK, NT_ERROR_INPUT,
+ * NT_ERROR_UNSUPPORTED (a scheme), NT_ERROR_IO (no such file) or NT_ERROR_MEMORY; the message
  * names the URI.
  */
-nmtan_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri, size_t length,
+nt_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri, size_t length,
 	bool allow_outside, const char **path, nt_error *error);
 
 /* Appends a path as a URI: everything but letters, digits and "-._~/" is percent-encoded. */

@@ -39,14 +39,14 @@ static bool open_companion(file_set *set, const char *uri, nt_file *file)
 	nt_buffer path = {0};
 	nt_buffer_append(&path, set->path, slash ? (size_t)(slash - set->path) + 1 : 0);
 	nt_buffer_text(&path, uri);
-	nmtan_status status = path.failed ? nt_fail_memory(set->error) : NMTAN_OK;
+	nt_status status = path.failed ? nt_fail_memory(set->error) : NT_OK;
 	const char *written = NULL;
-	if (status == NMTAN_OK && set->output)
+	if (status == NT_OK && set->output)
 		status = nt_output_written(set->output, path.data, &written, set->error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = nt_file_open(file, written ? written : path.data, set->error);
 	nt_buffer_free(&path);
-	return status == NMTAN_OK;
+	return status == NT_OK;
 }
 
 /* tinygltf asks for a file several times. Images are not its business. */
@@ -115,13 +115,13 @@ static float tolerance_of(const nt_draco_attribute *a, size_t count)
 }
 
 /* What a compressed primitive has in its block, decoded. */
-static nmtan_status open_block(nt_reread *model, size_t mesh, size_t primitive, const unsigned char *bytes,
+static nt_status open_block(nt_reread *model, size_t mesh, size_t primitive, const unsigned char *bytes,
 	size_t size, primitive_view *view, nt_error *error)
 {
 	if (!bytes)
-		return nt_fail(error, NMTAN_ERROR_INPUT, "the compressed block is not inside of a buffer");
-	const nmtan_status status = nt_draco_decode(&view->block, bytes, size, 0, true, error);
-	if (status != NMTAN_OK)
+		return nt_fail(error, NT_ERROR_INPUT, "the compressed block is not inside of a buffer");
+	const nt_status status = nt_draco_decode(&view->block, bytes, size, 0, true, error);
+	if (status != NT_OK)
 		return status;
 	const nt_draco_mesh *decoded = nt_draco_get(view->block);
 	const char *const names[] = {"POSITION", "TANGENT"};
@@ -138,7 +138,7 @@ static nmtan_status open_block(nt_reread *model, size_t mesh, size_t primitive, 
 	}
 	view->indices = (nt_reread_array){(const unsigned char *)decoded->indices, decoded->face_count * 3,
 		sizeof(uint32_t), NT_GLTF_UINT, 1, false};
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static void close_primitive(primitive_view *view)
@@ -148,31 +148,31 @@ static void close_primitive(primitive_view *view)
 	*view = (primitive_view){0};
 }
 
-static nmtan_status open_primitive(nt_reread *model, size_t mesh, size_t primitive,
+static nt_status open_primitive(nt_reread *model, size_t mesh, size_t primitive,
 	primitive_view *view, nt_error *error)
 {
 	*view = (primitive_view){.corner = 0};
 	const unsigned char *bytes;
 	size_t size;
-	nmtan_status status =
+	nt_status status =
 		nt_reread_attribute(model, mesh, primitive, "POSITION", &view->positions, error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = nt_reread_attribute(model, mesh, primitive, "TANGENT", &view->tangents, error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = nt_reread_attribute(model, mesh, primitive, NULL, &view->indices, error);
-	if (status == NMTAN_OK && nt_reread_block(model, mesh, primitive, &bytes, &size))
+	if (status == NT_OK && nt_reread_block(model, mesh, primitive, &bytes, &size))
 		status = open_block(model, mesh, primitive, bytes, size, view, error);
 	return status;
 }
 
 /* TANGENT of the targets that were solved. */
-static nmtan_status open_targets(nt_reread *model, const nt_mesh *mesh, primitive_view *view, nt_error *error)
+static nt_status open_targets(nt_reread *model, const nt_mesh *mesh, primitive_view *view, nt_error *error)
 {
 	if (mesh->morph_count == 0)
-		return NMTAN_OK;
+		return NT_OK;
 	view->target_tangents = nt_calloc(mesh->morph_count, sizeof *view->target_tangents);
-	nmtan_status status = view->target_tangents ? NMTAN_OK : nt_fail_memory(error);
-	for (size_t m = 0; m < mesh->morph_count && status == NMTAN_OK; m++)
+	nt_status status = view->target_tangents ? NT_OK : nt_fail_memory(error);
+	for (size_t m = 0; m < mesh->morph_count && status == NT_OK; m++)
 		status = nt_reread_target(model, mesh->gltf_mesh, mesh->gltf_primitive, mesh->morphs[m].target,
 			"TANGENT", &view->target_tangents[m], error);
 	return status;
@@ -268,17 +268,17 @@ static bool corner_matches(const nt_mesh *mesh, size_t corner, primitive_view *v
 		targets_match(mesh, view, vertex, split, stored);
 }
 
-static nmtan_status fail_corner(const nt_mesh *mesh, size_t corner, nt_error *error)
+static nt_status fail_corner(const nt_mesh *mesh, size_t corner, nt_error *error)
 {
-	nt_fail(error, NMTAN_ERROR_INTERNAL,
+	nt_fail(error, NT_ERROR_INTERNAL,
 		"the output, read back, differs from what was written at corner %zu of mesh \"%s\"",
 		corner, mesh->name ? mesh->name : "");
 	error->place = mesh->place;
-	return NMTAN_ERROR_INTERNAL;
+	return NT_ERROR_INTERNAL;
 }
 
 /* Faces of the scene's mesh against the primitives it became, views[p] for primitive p. */
-static nmtan_status compare_mesh(const nt_mesh *mesh, primitive_view *views, nt_error *error)
+static nt_status compare_mesh(const nt_mesh *mesh, primitive_view *views, nt_error *error)
 {
 	static const unsigned char cut[2][6] = {{0, 1, 2, 0, 2, 3}, {0, 1, 3, 1, 2, 3}};
 	size_t corner = 0;
@@ -292,24 +292,24 @@ static nmtan_status compare_mesh(const nt_mesh *mesh, primitive_view *views, nt_
 				return fail_corner(mesh, corner + cut[diagonal][k], error);
 		corner += size;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* A mesh of a composed document: its primitives are those that have faces, in order. */
-static nmtan_status verify_composed(nt_reread *model, const nt_mesh *mesh, size_t number,
+static nt_status verify_composed(nt_reread *model, const nt_mesh *mesh, size_t number,
 	nt_error *error)
 {
 	const size_t count = mesh->primitive_count ? mesh->primitive_count : 1;
 	primitive_view *views = nt_calloc(count, sizeof *views);
 	size_t *faces = nt_calloc(count, sizeof *faces);
-	nmtan_status status = views && faces ? NMTAN_OK : nt_fail_memory(error);
-	for (size_t f = 0; f < mesh->face_count && status == NMTAN_OK; f++)
+	nt_status status = views && faces ? NT_OK : nt_fail_memory(error);
+	for (size_t f = 0; f < mesh->face_count && status == NT_OK; f++)
 		faces[count > 1 && mesh->face_primitive ? mesh->face_primitive[f] : 0]++;
 	size_t primitive = 0;
-	for (size_t p = 0; p < count && status == NMTAN_OK; p++)
+	for (size_t p = 0; p < count && status == NT_OK; p++)
 		if (faces[p])
 			status = open_primitive(model, number, primitive++, &views[p], error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = compare_mesh(mesh, views, error);
 	free(views);
 	free(faces);
@@ -347,7 +347,7 @@ static bool found_corner(const primitive_view *view, size_t corner, nt_verify_co
 }
 
 /* What lies outside of a block goes by its vertices, so that they are in order. */
-static nmtan_status compare_block_targets(const nt_mesh *mesh, const primitive_view *view, nt_error *error)
+static nt_status compare_block_targets(const nt_mesh *mesh, const primitive_view *view, nt_error *error)
 {
 	for (size_t c = 0; c < mesh->corner_count; c++) {
 		size_t source;
@@ -355,19 +355,19 @@ static nmtan_status compare_block_targets(const nt_mesh *mesh, const primitive_v
 		if (!targets_match(mesh, view, vertex_at(view, c), split, mesh->split.vertex_tangents + 4 * split))
 			return fail_corner(mesh, c, error);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* The sequential method keeps corners where they are; if they are elsewhere, the surface has to be the same. */
-static nmtan_status compare_block(const nt_mesh *mesh, const primitive_view *view, nt_error *error)
+static nt_status compare_block(const nt_mesh *mesh, const primitive_view *view, nt_error *error)
 {
 	const size_t count = mesh->corner_count;
 	if (view->indices.count != count)
 		return fail_corner(mesh, 0, error);
 	nt_verify_corner *wanted = nt_alloc(count, sizeof *wanted), *found = nt_alloc(count, sizeof *found);
-	nmtan_status status = wanted && found ? NMTAN_OK : nt_fail_memory(error);
+	nt_status status = wanted && found ? NT_OK : nt_fail_memory(error);
 	bool ordered = true;
-	for (size_t c = 0; c < count && status == NMTAN_OK; c++) {
+	for (size_t c = 0; c < count && status == NT_OK; c++) {
 		wanted[c] = wanted_corner(mesh, c);
 		if (!found_corner(view, c, &found[c]))
 			status = fail_corner(mesh, c, error);
@@ -375,12 +375,12 @@ static nmtan_status compare_block(const nt_mesh *mesh, const primitive_view *vie
 			ordered &= nt_verify_close(&wanted[c], &found[c], &view->tolerance);
 	}
 	size_t first = SIZE_MAX;
-	if (status == NMTAN_OK && !ordered &&
-		nt_verify_faces(wanted, count / 3, found, count / 3, &view->tolerance, &first) != NMTAN_OK)
+	if (status == NT_OK && !ordered &&
+		nt_verify_faces(wanted, count / 3, found, count / 3, &view->tolerance, &first) != NT_OK)
 		status = nt_fail_memory(error);
-	if (status == NMTAN_OK && first != SIZE_MAX)
+	if (status == NT_OK && first != SIZE_MAX)
 		status = fail_corner(mesh, 3 * first, error);
-	if (status == NMTAN_OK && view->target_tangents)
+	if (status == NT_OK && view->target_tangents)
 		status = compare_block_targets(mesh, view, error);
 	free(wanted);
 	free(found);
@@ -397,85 +397,85 @@ static bool counts_match(const nt_mesh *mesh, const primitive_view *view)
 
 /* A mesh of a patched document stands where it stood. Strips and fans keep their own indices: there only the
  * number of tangents is checked. */
-static nmtan_status verify_patched(nt_reread *model, const nt_mesh *mesh, nt_error *error)
+static nt_status verify_patched(nt_reread *model, const nt_mesh *mesh, nt_error *error)
 {
 	primitive_view view;
-	nmtan_status status = open_primitive(model, mesh->gltf_mesh, mesh->gltf_primitive, &view, error);
-	if (status == NMTAN_OK)
+	nt_status status = open_primitive(model, mesh->gltf_mesh, mesh->gltf_primitive, &view, error);
+	if (status == NT_OK)
 		status = open_targets(model, mesh, &view, error);
-	if (status == NMTAN_OK && view.block)
+	if (status == NT_OK && view.block)
 		status = compare_block(mesh, &view, error);
-	else if (status == NMTAN_OK && corner_count(&view) == mesh->corner_count)
+	else if (status == NT_OK && corner_count(&view) == mesh->corner_count)
 		status = compare_mesh(mesh, &view, error);
-	else if (status == NMTAN_OK && !counts_match(mesh, &view))
+	else if (status == NT_OK && !counts_match(mesh, &view))
 		status = fail_corner(mesh, 0, error);
 	close_primitive(&view);
 	return status;
 }
 
-static nmtan_status compare_scene(const nt_scene *scene, nt_reread *model, nt_error *error)
+static nt_status compare_scene(const nt_scene *scene, nt_reread *model, nt_error *error)
 {
 	size_t number = 0;
 	for (size_t m = 0; m < scene->mesh_count; m++) {
 		const nt_mesh *mesh = &scene->meshes[m];
 		const bool patched = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
-		nmtan_status status = NMTAN_OK;
+		nt_status status = NT_OK;
 		if (patched)
-			status = mesh->split.vertex_tangents ? verify_patched(model, mesh, error) : NMTAN_OK;
+			status = mesh->split.vertex_tangents ? verify_patched(model, mesh, error) : NT_OK;
 		else if (mesh->face_count)
 			status = verify_composed(model, mesh, number++, error);
-		if (status != NMTAN_OK)
-			return status == NMTAN_ERROR_INPUT ? error->status = NMTAN_ERROR_INTERNAL : status;
+		if (status != NT_OK)
+			return status == NT_ERROR_INPUT ? error->status = NT_ERROR_INTERNAL : status;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Whether tinygltf refuses the input as well. Then nobody can say by it what became of the output, and a finding
  * says so. */
-static nmtan_status judge_input(nt_scene *scene, nt_error *error)
+static nt_status judge_input(nt_scene *scene, nt_error *error)
 {
 	if (scene->format != NT_FORMAT_GLTF && scene->format != NT_FORMAT_GLB)
-		return NMTAN_ERROR_INTERNAL;
+		return NT_ERROR_INTERNAL;
 	nt_error ignored, refusal;
 	nt_error_clear(&refusal);
 	nt_reread *model = NULL;
 	file_set set = {.path = scene->path, .error = &ignored};
-	const nmtan_status status =
+	const nt_status status =
 		nt_reread_open(&model, scene->bytes, scene->byte_count, find_companion, &set, &refusal);
 	nt_reread_free(model);
 	close_companions(&set);
-	if (status == NMTAN_ERROR_MEMORY)
+	if (status == NT_ERROR_MEMORY)
 		return nt_fail_memory(error);
-	if (status != NMTAN_ERROR_INPUT)
-		return NMTAN_ERROR_INTERNAL;
+	if (status != NT_ERROR_INPUT)
+		return NT_ERROR_INTERNAL;
 	nt_finding_add(&scene->findings, NT_CODE_NOT_VERIFIED, NULL, 1, "%s", refusal.message);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path,
+nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path,
 	nt_error *error)
 {
 	const char *written;
 	nt_file file;
 	nt_reread *model = NULL;
-	nmtan_status status = nt_output_written(output, path, &written, error);
-	if (status != NMTAN_OK || !written)
+	nt_status status = nt_output_written(output, path, &written, error);
+	if (status != NT_OK || !written)
 		return status;
 	status = nt_file_open(&file, written, error);
-	if (status != NMTAN_OK)
+	if (status != NT_OK)
 		return status;
 	nt_error ignored;
 	file_set set = {.output = output, .path = path, .error = &ignored};
 	status = nt_reread_open(&model, file.data, file.size, find_companion, &set, error);
-	const bool refused = status == NMTAN_ERROR_INPUT;
+	const bool refused = status == NT_ERROR_INPUT;
 	if (refused)
 		status = judge_input(scene, error);
-	if (status == NMTAN_ERROR_INTERNAL)
+	if (status == NT_ERROR_INTERNAL)
 		error->status = status;
-	if (status == NMTAN_OK && !refused)
+	if (status == NT_OK && !refused)
 		status = compare_scene(scene, model, error);
 	nt_reread_free(model);
 	close_companions(&set);
 	nt_file_close(&file);
-	return status == NMTAN_OK ? status : nt_error_in_file(error, path);
+	return status == NT_OK ? status : nt_error_in_file(error, path);
 }

@@ -16,11 +16,11 @@
  * is done then. Where tinygltf refuses an output that was made from a glTF and refuses the input too, the
  * fault is not ours: the scene gets the finding NOT_VERIFIED.
  *
- * Returns NMTAN_OK; NMTAN_ERROR_INTERNAL where the output is not what it should be, which says mesh and
- * corner; NMTAN_ERROR_IO, NMTAN_ERROR_MEMORY; NMTAN_ERROR_UNSUPPORTED for what tinygltf cannot take (4 GB and
+ * Returns NT_OK; NT_ERROR_INTERNAL where the output is not what it should be, which says mesh and
+ * corner; NT_ERROR_IO, NT_ERROR_MEMORY; NT_ERROR_UNSUPPORTED for what tinygltf cannot take (4 GB and
  * more).
  */
-nmtan_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path,
+nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path,
 	nt_error *error);
 
 #endif

@@ -67,34 +67,34 @@ static bool is_known(const nt_hash_index *index, const nt_verify_corner *others,
 }
 
 /* The first face of `a` that `b` does not have. */
-static nmtan_status find_missing(const nt_verify_corner *a, size_t a_faces, const nt_verify_corner *b,
+static nt_status find_missing(const nt_verify_corner *a, size_t a_faces, const nt_verify_corner *b,
 	size_t b_faces, const nt_verify_tolerance *tolerance, size_t *missing)
 {
 	const double size = 4.0 * tolerance->position + 1e-30;
 	nt_hash_index index = {0};
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	*missing = SIZE_MAX;
-	for (size_t f = 0; f < b_faces && status == NMTAN_OK; f++) {
+	for (size_t f = 0; f < b_faces && status == NT_OK; f++) {
 		int64_t cube[3];
 		cube_of(b + 3 * f, size, 0, cube);
 		if (!nt_hash_index_add(&index, nt_hash_bytes(0, cube, sizeof cube), (uint32_t)f))
-			status = NMTAN_ERROR_MEMORY;
+			status = NT_ERROR_MEMORY;
 	}
-	for (size_t f = 0; f < a_faces && status == NMTAN_OK && *missing == SIZE_MAX; f++)
+	for (size_t f = 0; f < a_faces && status == NT_OK && *missing == SIZE_MAX; f++)
 		if (!is_known(&index, b, a + 3 * f, size, tolerance))
 			*missing = f;
 	nt_hash_index_free(&index);
 	return status;
 }
 
-nmtan_status nt_verify_faces(const nt_verify_corner *a, size_t a_faces, const nt_verify_corner *b, size_t b_faces,
+nt_status nt_verify_faces(const nt_verify_corner *a, size_t a_faces, const nt_verify_corner *b, size_t b_faces,
 	const nt_verify_tolerance *tolerance, size_t *first)
 {
-	nmtan_status status = find_missing(a, a_faces, b, b_faces, tolerance, first);
+	nt_status status = find_missing(a, a_faces, b, b_faces, tolerance, first);
 	size_t extra = SIZE_MAX;
-	if (status == NMTAN_OK && *first == SIZE_MAX)
+	if (status == NT_OK && *first == SIZE_MAX)
 		status = find_missing(b, b_faces, a, a_faces, tolerance, &extra);
-	if (status == NMTAN_OK && *first == SIZE_MAX && (extra != SIZE_MAX || a_faces != b_faces))
+	if (status == NT_OK && *first == SIZE_MAX && (extra != SIZE_MAX || a_faces != b_faces))
 		*first = 0;
 	return status;
 }

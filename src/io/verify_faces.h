@@ -24,9 +24,9 @@ bool nt_verify_close(const nt_verify_corner *a, const nt_verify_corner *b, const
  * list that differs by no more than the tolerance, with the same winding. *first receives a triangle of `a` that
  * has none, or SIZE_MAX.
  *
- * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ * Returns NT_OK or NT_ERROR_MEMORY.
  */
-nmtan_status nt_verify_faces(const nt_verify_corner *a, size_t a_faces, const nt_verify_corner *b, size_t b_faces,
+nt_status nt_verify_faces(const nt_verify_corner *a, size_t a_faces, const nt_verify_corner *b, size_t b_faces,
 	const nt_verify_tolerance *tolerance, size_t *first);
 
 #endif

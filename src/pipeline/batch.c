@@ -13,7 +13,7 @@
 #include "base/buffer.h"
 #include "base/parallel.h"
 
-static nmtan_status make_jobs(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
+static nt_status make_jobs(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
 {
 	*batch = (nt_batch){.jobs = nt_calloc(count, sizeof *batch->jobs)};
 	if (!batch->jobs)
@@ -21,21 +21,21 @@ static nmtan_status make_jobs(nt_batch *batch, const char *const *inputs, size_t
 	batch->count = count;
 	for (size_t i = 0; i < count; i++)
 		batch->jobs[i].input = inputs[i];
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
+nt_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
 {
 	return make_jobs(batch, inputs, count, error);
 }
 
-nmtan_status nt_batch_pair(nt_batch *batch, const char *input, const char *output, nt_error *error)
+nt_status nt_batch_pair(nt_batch *batch, const char *input, const char *output, nt_error *error)
 {
-	const nmtan_status status = make_jobs(batch, &input, 1, error);
+	const nt_status status = make_jobs(batch, &input, 1, error);
 	if (status)
 		return status;
 	batch->jobs[0].output = strdup(output);
-	return batch->jobs[0].output ? NMTAN_OK : nt_fail_memory(error);
+	return batch->jobs[0].output ? NT_OK : nt_fail_memory(error);
 }
 
 /* By the name, which needs no look into the file; by content where the name says nothing. */
@@ -47,7 +47,7 @@ static nt_format input_format(const char *path)
 	struct stat info;
 	/* A pipe could be read once only. */
 	if (!entry && stat(path, &info) == 0 && S_ISREG(info.st_mode) &&
-		nt_file_open(&file, path, &ignored) == NMTAN_OK) {
+		nt_file_open(&file, path, &ignored) == NT_OK) {
 		entry = nt_format_of_input(file.data, file.size, path);
 		nt_file_close(&file);
 	}
@@ -93,7 +93,7 @@ static int compare_outputs(const void *a, const void *b)
 	return order ? order : (x > y) - (x < y);
 }
 
-static nmtan_status refuse_equal_outputs(const nt_batch *batch, nt_error *error)
+static nt_status refuse_equal_outputs(const nt_batch *batch, nt_error *error)
 {
 	const nt_job **sorted = nt_alloc(batch->count, sizeof(const nt_job *));
 	if (!sorted)
@@ -101,10 +101,10 @@ static nmtan_status refuse_equal_outputs(const nt_batch *batch, nt_error *error)
 	for (size_t i = 0; i < batch->count; i++)
 		sorted[i] = &batch->jobs[i];
 	qsort(sorted, batch->count, sizeof(const nt_job *), compare_outputs);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 1; i < batch->count && !status; i++)
 		if (strcmp(sorted[i - 1]->output, sorted[i]->output) == 0)
-			status = nt_fail(error, NMTAN_ERROR_USAGE, "'%s' and '%s' would both be written to '%s'",
+			status = nt_fail(error, NT_ERROR_USAGE, "'%s' and '%s' would both be written to '%s'",
 				sorted[i - 1]->input, sorted[i]->input, sorted[i]->output);
 	free(sorted);
 	return status;
@@ -126,7 +126,7 @@ static int compare_identities(const void *a, const void *b)
 
 /* An output that is a file already must not be the input of another job: who reads it when? Its own
  * input is nt_run's affair. */
-static nmtan_status refuse_foreign_inputs(const nt_batch *batch, nt_error *error)
+static nt_status refuse_foreign_inputs(const nt_batch *batch, nt_error *error)
 {
 	identity *inputs = nt_alloc(batch->count, sizeof *inputs);
 	if (!inputs)
@@ -137,14 +137,14 @@ static nmtan_status refuse_foreign_inputs(const nt_batch *batch, nt_error *error
 		if (stat(batch->jobs[i].input, &info) == 0)
 			inputs[count++] = (identity){info.st_dev, info.st_ino, i};
 	qsort(inputs, count, sizeof *inputs, compare_identities);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; i < batch->count && !status; i++) {
 		if (stat(batch->jobs[i].output, &info) != 0)
 			continue;
 		const identity key = {info.st_dev, info.st_ino, i};
 		const identity *found = bsearch(&key, inputs, count, sizeof *inputs, compare_identities);
 		if (found && found->job != i && strcmp(batch->jobs[found->job].input, batch->jobs[i].input))
-			status = nt_fail(error, NMTAN_ERROR_USAGE,
+			status = nt_fail(error, NT_ERROR_USAGE,
 				"'%s' would be written to '%s', which is the input '%s'", batch->jobs[i].input,
 				batch->jobs[i].output, batch->jobs[found->job].input);
 	}
@@ -152,25 +152,25 @@ static nmtan_status refuse_foreign_inputs(const nt_batch *batch, nt_error *error
 	return status;
 }
 
-static nmtan_status make_folder(const char *directory, bool dry_run, nt_error *error)
+static nt_status make_folder(const char *directory, bool dry_run, nt_error *error)
 {
 	struct stat info;
 	if (stat(directory, &info) == 0) {
 		if (S_ISDIR(info.st_mode))
-			return NMTAN_OK;
-		nt_fail(error, NMTAN_ERROR_IO, "is not a folder");
+			return NT_OK;
+		nt_fail(error, NT_ERROR_IO, "is not a folder");
 		return nt_error_in_file(error, directory);
 	}
 	if (dry_run || mkdir(directory, 0777) == 0)
-		return NMTAN_OK;
-	nt_fail(error, NMTAN_ERROR_IO, "cannot make the folder: %s", strerror(errno));
+		return NT_OK;
+	nt_fail(error, NT_ERROR_IO, "cannot make the folder: %s", strerror(errno));
 	return nt_error_in_file(error, directory);
 }
 
-nmtan_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count,
+nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count,
 	const char *directory, const nt_settings *settings, nt_error *error)
 {
-	nmtan_status status = make_jobs(batch, inputs, count, error);
+	nt_status status = make_jobs(batch, inputs, count, error);
 	if (status)
 		return status;
 	for (size_t i = 0; i < count; i++) {
@@ -184,12 +184,12 @@ nmtan_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t co
 	return status ? status : make_folder(directory, settings->dry_run, error);
 }
 
-nmtan_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
+nt_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
 {
-	nmtan_status status = make_jobs(batch, inputs, count, error);
+	nt_status status = make_jobs(batch, inputs, count, error);
 	for (size_t i = 0; i < count && !status; i++) {
 		batch->jobs[i].output = strdup(inputs[i]);
-		status = batch->jobs[i].output ? NMTAN_OK : nt_fail_memory(error);
+		status = batch->jobs[i].output ? NT_OK : nt_fail_memory(error);
 	}
 	if (!status)
 		status = refuse_equal_outputs(batch, error);

@@ -14,8 +14,8 @@
 typedef struct nt_job {
 	const char *input;
 	char *output; /* NULL: nothing is written */
-	nmtan_status status;
-	nt_error error;     /* when status is not NMTAN_OK */
+	nt_status status;
+	nt_error error;     /* when status is not NT_OK */
 	nt_summary summary; /* until the job has been told about */
 	bool finished;
 } nt_job;
@@ -29,10 +29,10 @@ typedef struct nt_batch {
  * Prepares one input and its output, or inputs that are judged only (output NULL). The names of inputs
  * must outlive the batch.
  *
- * Returns NMTAN_OK or NMTAN_ERROR_MEMORY. The batch is to be freed after failure too.
+ * Returns NT_OK or NT_ERROR_MEMORY. The batch is to be freed after failure too.
  */
-nmtan_status nt_batch_pair(nt_batch *batch, const char *input, const char *output, nt_error *error);
-nmtan_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error);
+nt_status nt_batch_pair(nt_batch *batch, const char *input, const char *output, nt_error *error);
+nt_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error);
 
 /*
  * Prepares inputs whose outputs get their names in a folder: the input's name with the ending of
@@ -40,17 +40,17 @@ nmtan_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t c
  * folder is made when it is missing (not its parents, and not in a dry run).
  *
  * Nothing runs when two inputs would have the same output, or when an output would replace another
- * input: NMTAN_ERROR_USAGE. Else NMTAN_OK, NMTAN_ERROR_IO or NMTAN_ERROR_MEMORY.
+ * input: NT_ERROR_USAGE. Else NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY.
  */
-nmtan_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count,
+nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count,
 	const char *directory, const nt_settings *settings, nt_error *error);
 
 /* Prepares inputs that are replaced by their outputs. Nothing runs when one of them is there twice, also by another
- * name: NMTAN_ERROR_USAGE. Else NMTAN_OK or NMTAN_ERROR_MEMORY. */
-nmtan_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error);
+ * name: NT_ERROR_USAGE. Else NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error);
 
 /* What runs a job: nt_run, or something else in tests. */
-typedef nmtan_status (*nt_runner)(const char *input, const char *output, const nt_settings *settings,
+typedef nt_status (*nt_runner)(const char *input, const char *output, const nt_settings *settings,
 	nt_summary *summary, nt_error *error);
 
 /* Runs all jobs. `done` is called once per job, in the order of the inputs, by one thread at a time, as

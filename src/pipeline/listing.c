@@ -14,7 +14,7 @@ static size_t triangles_of(const nt_mesh *mesh)
 	return mesh->face_count + quads;
 }
 
-nmtan_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error *error)
+nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error *error)
 {
 	summary->lines = nt_calloc(scene->mesh_count, sizeof *summary->lines);
 	if (!summary->lines)
@@ -31,5 +31,5 @@ nmtan_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_err
 			line->appended = solved->vertex_count - solved->source_vertex_count;
 		line->appended += solved->split.source_count;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }

@@ -44,7 +44,7 @@ static size_t count_turned(const nmtan_mesh *base, const nmtan_mesh *moved)
 	return count;
 }
 
-nmtan_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options)
+nt_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options)
 {
 	mesh->morph_turned = 0;
 	for (size_t m = 0; m < mesh->morph_count; m++) {
@@ -56,14 +56,14 @@ nmtan_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_
 			moved.normals = morph->normals;
 		morph->corner_tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float));
 		if (!morph->corner_tangents)
-			return NMTAN_ERROR_MEMORY;
+			return NT_ERROR_MEMORY;
 		mesh->morph_turned += count_turned(view, &moved);
 		nmtan_output output = {.tangents = morph->corner_tangents};
-		const nmtan_status status = nmtan_tangents(&moved, options, &output);
+		const nt_status status = nt_status_of(nmtan_tangents(&moved, options, &output));
 		if (status)
 			return status;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static bool same_corner(const nt_mesh *mesh, size_t a, size_t b)
@@ -89,7 +89,7 @@ static uint64_t hash_corner(const nt_mesh *mesh, uint32_t vertex, uint32_t corne
 }
 
 /* The first corner of its vertex with the same tangents, behind the very first; which may be itself. */
-static nmtan_status find_other(const nt_mesh *mesh, const nmtan_mesh *view, uint32_t corner,
+static nt_status find_other(const nt_mesh *mesh, const nmtan_mesh *view, uint32_t corner,
 	nt_hash_index *others, uint32_t *first)
 {
 	const uint32_t vertex = view->indices ? view->indices[corner] : corner;
@@ -97,19 +97,19 @@ static nmtan_status find_other(const nt_mesh *mesh, const nmtan_mesh *view, uint
 	for (size_t at = NT_HASH_BEGIN; (*first = nt_hash_index_next(others, hash, &at)) != UINT32_MAX;)
 		if ((view->indices ? view->indices[*first] : *first) == vertex &&
 			same_corner(mesh, *first, corner))
-			return NMTAN_OK;
+			return NT_OK;
 	*first = corner;
-	return nt_hash_index_add(others, hash, corner) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+	return nt_hash_index_add(others, hash, corner) ? NT_OK : NT_ERROR_MEMORY;
 }
 
-nmtan_status nt_morphs_keys(const nt_mesh *mesh, const nmtan_mesh *view, float *keys)
+nt_status nt_morphs_keys(const nt_mesh *mesh, const nmtan_mesh *view, float *keys)
 {
 	/* the first corner of each vertex; corners that differ from it by hash, one for each combination */
 	uint32_t *head = nt_alloc(mesh->vertex_count, sizeof *head);
 	if (!head)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	nt_hash_index others = {0};
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	memset(head, 0xFF, mesh->vertex_count * sizeof *head);
 	for (uint32_t c = 0; !status && c < mesh->corner_count; c++) {
 		const uint32_t vertex = view->indices ? view->indices[c] : c;
@@ -128,7 +128,7 @@ nmtan_status nt_morphs_keys(const nt_mesh *mesh, const nmtan_mesh *view, float *
 	return status;
 }
 
-nmtan_status nt_morphs_finish(nt_mesh *mesh)
+nt_status nt_morphs_finish(nt_mesh *mesh)
 {
 	nt_split *split = &mesh->split;
 	for (size_t c = 0; c < mesh->corner_count; c++)
@@ -139,7 +139,7 @@ nmtan_status nt_morphs_finish(nt_mesh *mesh)
 		nt_morph *morph = &mesh->morphs[m];
 		morph->vertex_tangents = nt_alloc(count, 3 * sizeof(float));
 		if (!morph->vertex_tangents)
-			return NMTAN_ERROR_MEMORY;
+			return NT_ERROR_MEMORY;
 		/* vertices without corners do not turn */
 		for (size_t v = 0; v < count; v++)
 			memcpy(morph->vertex_tangents + 3 * v, split->vertex_tangents + 4 * v,
@@ -150,7 +150,7 @@ nmtan_status nt_morphs_finish(nt_mesh *mesh)
 		free(morph->corner_tangents);
 		morph->corner_tangents = NULL;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 void nt_morphs_free(nt_mesh *mesh)

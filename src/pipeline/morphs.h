@@ -9,14 +9,14 @@
 
 /* Solves the mesh as each of its targets moves it: morph->corner_tangents, and
  * mesh->morph_turned. Blocks are malloc'ed. */
-nmtan_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options);
+nt_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options);
 
 /* Writes to keys [corner_count][4] numbers that are equal for two corners of a vertex exactly where
  * the base's and all targets' tangents are: what splitting goes by. */
-nmtan_status nt_morphs_keys(const nt_mesh *mesh, const nmtan_mesh *view, float *keys);
+nt_status nt_morphs_keys(const nt_mesh *mesh, const nmtan_mesh *view, float *keys);
 
 /* After a split by keys: vertex tangents of the base and of every target. Frees the corners' tangents. */
-nmtan_status nt_morphs_finish(nt_mesh *mesh);
+nt_status nt_morphs_finish(nt_mesh *mesh);
 
 /* Frees what is malloc'ed. */
 void nt_morphs_free(nt_mesh *mesh);

@@ -83,7 +83,7 @@ static bool grow_mesh(nt_arena *arena, nt_mesh *mesh, const uint32_t *sources, s
 	return true;
 }
 
-static nmtan_status make_corner_normals(const nt_mesh *mesh, nt_normals mode, normal_job *job)
+static nt_status make_corner_normals(const nt_mesh *mesh, nt_normals mode, normal_job *job)
 {
 	nmtan_mesh view = nt_mesh_view(mesh);
 	view.position_stride_bytes = 3 * sizeof(float);
@@ -91,11 +91,11 @@ static nmtan_status make_corner_normals(const nt_mesh *mesh, nt_normals mode, no
 	nt_scratch_init(&scratch, NULL);
 	uint32_t *flat = NULL;
 	if (mode == NT_NORMALS_FLAT && !(flat = nt_calloc(mesh->face_count, sizeof *flat)))
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	const uint32_t *smoothing = mode == NT_NORMALS_FLAT ? flat
 		: mode == NT_NORMALS_SMOOTH ? NULL : mesh->face_smoothing;
-	const nmtan_status status =
-		nt_corner_normals(&view, mesh->corner_count, smoothing, &scratch, job->corners);
+	const nt_status status =
+		nt_status_of(nt_corner_normals(&view, mesh->corner_count, smoothing, &scratch, job->corners));
 	nt_scratch_free(&scratch);
 	free(flat);
 	return status;
@@ -116,28 +116,28 @@ static size_t choose_normals(const nt_mesh *mesh, nt_normals mode, normal_job *j
 	return made;
 }
 
-static nmtan_status split_by_normal(nt_scene *scene, nt_mesh *mesh, normal_job *job)
+static nt_status split_by_normal(nt_scene *scene, nt_mesh *mesh, normal_job *job)
 {
 	const nmtan_mesh view = nt_mesh_view(mesh);
 	nmtan_split_output split = {.indices = job->indices, .sources = job->sources,
 		.source_capacity = mesh->corner_count};
-	const nmtan_status status = nmtan_split(&view, &job->rows[0][0], NULL, &split);
+	const nt_status status = nt_status_of(nmtan_split(&view, &job->rows[0][0], NULL, &split));
 	if (status)
 		return status;
 	const size_t vertex_count = mesh->vertex_count + split.source_count;
 	job->normals = nt_calloc(vertex_count, 3 * sizeof(float));
 	if (!job->normals || !grow_mesh(&scene->arena, mesh, job->sources, split.source_count))
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	for (size_t v = 0; v < vertex_count; v++)
 		job->normals[3 * v + 2] = 1.0f; /* for vertices that no face uses */
 	for (size_t c = 0; c < mesh->corner_count; c++)
 		memcpy(job->normals + 3 * (size_t)job->indices[c], job->rows[c], 3 * sizeof(float));
 	mesh->vertex_count = vertex_count;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* The new arrays become the mesh's. */
-static nmtan_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job, size_t made)
+static nt_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job, size_t made)
 {
 	mesh->indices = job->indices;
 	mesh->vertex_sources = job->sources;
@@ -156,20 +156,20 @@ static nmtan_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job, size_
 	bool kept = nt_arena_adopt(&scene->arena, indices);
 	kept &= nt_arena_adopt(&scene->arena, sources);
 	kept &= nt_arena_adopt(&scene->arena, normals);
-	return kept ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+	return kept ? NT_OK : NT_ERROR_MEMORY;
 }
 
-nmtan_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_error *error)
+nt_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_error *error)
 {
 	if (!any_lacks(mesh, mode) || mesh->corner_count == 0)
-		return NMTAN_OK;
+		return NT_OK;
 	normal_job job = {
 		.corners = nt_alloc(mesh->corner_count, sizeof *job.corners),
 		.rows = nt_alloc(mesh->corner_count, sizeof *job.rows),
 		.indices = nt_alloc(mesh->corner_count, sizeof *job.indices),
 		.sources = nt_alloc(mesh->corner_count, sizeof *job.sources),
 	};
-	nmtan_status status = NMTAN_ERROR_MEMORY;
+	nt_status status = NT_ERROR_MEMORY;
 	if (job.corners && job.rows && job.indices && job.sources)
 		status = make_corner_normals(mesh, mode, &job);
 	if (!status) {
@@ -179,6 +179,6 @@ nmtan_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, n
 			status = adopt(scene, mesh, &job, made);
 	}
 	free_job(&job);
-	return status ? nt_fail(error, status, "cannot make normals: %s", nmtan_status_text(status))
-		      : NMTAN_OK;
+	return status ? nt_fail(error, status, "cannot make normals: %s", nt_status_text(status))
+		      : NT_OK;
 }

@@ -28,7 +28,7 @@ static uint8_t *cut_quads(nt_scene *scene, const nt_mesh *mesh)
 	return diagonals;
 }
 
-nmtan_status nt_stage_quads(nt_scene *scene, nt_error *error)
+nt_status nt_stage_quads(nt_scene *scene, nt_error *error)
 {
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
@@ -38,5 +38,5 @@ nmtan_status nt_stage_quads(nt_scene *scene, nt_error *error)
 		if (!mesh->face_diagonals)
 			return nt_fail_memory(error);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }

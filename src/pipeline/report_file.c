@@ -12,18 +12,18 @@
 #include "base/buffer.h"
 #include "io/file.h"
 
-static nmtan_status to_sink(void *user, const void *bytes, size_t size, nt_error *error)
+static nt_status to_sink(void *user, const void *bytes, size_t size, nt_error *error)
 {
 	return nt_sink_write(user, bytes, size, error);
 }
 
-static nmtan_status write_set(const nt_report *const *reports, size_t count,
+static nt_status write_set(const nt_report *const *reports, size_t count,
 	const nt_report_target *target, nt_error *error)
 {
 	const nt_output_options options = {.no_clobber = target->no_clobber};
 	nt_output *output = NULL;
 	nt_sink *sink = NULL;
-	nmtan_status status = nt_output_create(&output, &options, error);
+	nt_status status = nt_output_create(&output, &options, error);
 	if (status)
 		return status;
 	for (size_t i = 0; i < target->input_count && !status; i++)
@@ -39,7 +39,7 @@ static nmtan_status write_set(const nt_report *const *reports, size_t count,
 	return nt_output_commit(output, error);
 }
 
-nmtan_status nt_report_to_file(nt_report *const *reports, size_t count, const nt_report_target *target,
+nt_status nt_report_to_file(nt_report *const *reports, size_t count, const nt_report_target *target,
 	nt_error *error)
 {
 	const nt_report **made = nt_alloc(count, sizeof(const nt_report *));
@@ -49,7 +49,7 @@ nmtan_status nt_report_to_file(nt_report *const *reports, size_t count, const nt
 	for (size_t i = 0; i < count; i++)
 		if (reports[i])
 			made[made_count++] = reports[i];
-	const nmtan_status status = write_set(made, made_count, target, error);
+	const nt_status status = write_set(made, made_count, target, error);
 	free(made);
 	return status;
 }
@@ -65,15 +65,15 @@ static bool image_name(nt_buffer *name, const char *directory, const char *input
 	return !name->failed;
 }
 
-static nmtan_status write_image(nt_output *output, const nt_report *report, uint32_t mesh,
+static nt_status write_image(nt_output *output, const nt_report *report, uint32_t mesh,
 	const char *directory, nt_error *error)
 {
 	if (!report->meshes[mesh].geometry || !report->meshes[mesh].geometry->texcoords)
-		return NMTAN_OK;
+		return NT_OK;
 	nt_buffer name = {0};
 	nt_sink *sink = NULL;
 	bool drawn;
-	nmtan_status status = image_name(&name, directory, report->path, mesh)
+	nt_status status = image_name(&name, directory, report->path, mesh)
 		? nt_output_add(output, name.data, true, &sink, error)
 		: nt_fail_memory(error);
 	if (!status)
@@ -82,15 +82,15 @@ static nmtan_status write_image(nt_output *output, const nt_report *report, uint
 	return status;
 }
 
-nmtan_status nt_report_uv_images(nt_report *const *reports, size_t count, const char *directory,
+nt_status nt_report_uv_images(nt_report *const *reports, size_t count, const char *directory,
 	const nt_report_target *target, nt_error *error)
 {
 	if (mkdir(directory, 0777) && errno != EEXIST)
-		return nt_fail(error, NMTAN_ERROR_IO, "cannot make the folder \"%s\": %s", directory,
+		return nt_fail(error, NT_ERROR_IO, "cannot make the folder \"%s\": %s", directory,
 			strerror(errno));
 	const nt_output_options options = {.no_clobber = target->no_clobber};
 	nt_output *output = NULL;
-	nmtan_status status = nt_output_create(&output, &options, error);
+	nt_status status = nt_output_create(&output, &options, error);
 	for (size_t i = 0; i < target->input_count && !status; i++)
 		status = nt_output_protect(output, target->inputs[i], NULL, error);
 	for (size_t i = 0; i < count && !status; i++)
@@ -103,13 +103,13 @@ nmtan_status nt_report_uv_images(nt_report *const *reports, size_t count, const 
 	return nt_output_commit(output, error);
 }
 
-nmtan_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_error *error)
+nt_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_error *error)
 {
 	nt_file file;
-	nmtan_status status = nt_file_open(&file, path, error);
+	nt_status status = nt_file_open(&file, path, error);
 	if (status)
 		return status;
 	status = nt_baseline_read(baseline, (const char *)file.data, file.size, error);
 	nt_file_close(&file);
-	return status ? nt_error_in_file(error, path) : NMTAN_OK;
+	return status ? nt_error_in_file(error, path) : NT_OK;
 }

@@ -18,16 +18,16 @@ typedef struct nt_report_target {
 } nt_report_target;
 
 /* Writes one document about all reports: whole or not at all. NULLs among the reports are passed over. Returns
- * NMTAN_OK, NMTAN_ERROR_IO or NMTAN_ERROR_MEMORY. */
-nmtan_status nt_report_to_file(nt_report *const *reports, size_t count, const nt_report_target *target,
+ * NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
+nt_status nt_report_to_file(nt_report *const *reports, size_t count, const nt_report_target *target,
 	nt_error *error);
 
 /* Writes the UV layout of every mesh that has one to directory/NAME-MESH.svg, NAME being the input's name without
  * its ending. The folder is made where it is missing. target->path is not used. Returns as above. */
-nmtan_status nt_report_uv_images(nt_report *const *reports, size_t count, const char *directory,
+nt_status nt_report_uv_images(nt_report *const *reports, size_t count, const char *directory,
 	const nt_report_target *target, nt_error *error);
 
 /* Reads the fingerprints of a JSON report. The error names the file. */
-nmtan_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_error *error);
+nt_status nt_baseline_open(nt_baseline *baseline, const char *path, nt_error *error);
 
 #endif

@@ -59,12 +59,12 @@ static bool is_folder(const char *path)
 }
 
 /* Before anything is read, by the name; a stream without one gets PLY for PLY, else GLB. */
-static nmtan_status choose_writer(run *r)
+static nt_status choose_writer(run *r)
 {
 	const bool unnamed = !r->settings->check && r->settings->output_format == NT_FORMAT_UNKNOWN &&
 			     is_stream(r->output_path) && !nt_format_of_path(r->output_path);
 	if (r->settings->check || (unnamed && !r->reader))
-		return NMTAN_OK;
+		return NT_OK;
 	if (unnamed)
 		r->writer = nt_format_find(
 			r->reader->format == NT_FORMAT_PLY ? NT_FORMAT_PLY : NT_FORMAT_GLB);
@@ -73,29 +73,29 @@ static nmtan_status choose_writer(run *r)
 	else
 		r->writer = nt_format_of_path(r->output_path);
 	if (!r->writer && is_folder(r->output_path))
-		return nt_fail(r->error, NMTAN_ERROR_USAGE, "\"%s\" is a folder: to write into it use -d",
+		return nt_fail(r->error, NT_ERROR_USAGE, "\"%s\" is a folder: to write into it use -d",
 			r->output_path);
 	if (!r->writer)
-		return nt_fail(r->error, NMTAN_ERROR_USAGE,
+		return nt_fail(r->error, NT_ERROR_USAGE,
 			"cannot tell the output format from the name \"%s\": expected .gltf, .glb or .ply, "
 			"or --output-format", r->output_path);
 	if (!r->writer->write)
-		return nt_fail(r->error, NMTAN_ERROR_USAGE, "\"%s\": %s cannot be written, only read",
+		return nt_fail(r->error, NT_ERROR_USAGE, "\"%s\": %s cannot be written, only read",
 			r->output_path, r->writer->name);
 	if (r->settings->verify && r->writer->format == NT_FORMAT_PLY)
-		return nt_fail(r->error, NMTAN_ERROR_USAGE,
+		return nt_fail(r->error, NT_ERROR_USAGE,
 			"--verify reads glTF back; \"%s\" will be PLY", r->output_path);
 	if (r->settings->precision != NT_PRECISION_FLOAT && r->writer->format == NT_FORMAT_PLY)
-		return nt_fail(r->error, NMTAN_ERROR_USAGE,
+		return nt_fail(r->error, NT_ERROR_USAGE,
 			"--precision is about glTF; \"%s\" will be PLY, whose tangents are floats",
 			r->output_path);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status open_scene(run *r)
+static nt_status open_scene(run *r)
 {
 	begin_stage(r, NT_STAGE_MAP);
-	nmtan_status status = nt_file_open(&r->input, r->input_path, r->error);
+	nt_status status = nt_file_open(&r->input, r->input_path, r->error);
 	if (status)
 		return status;
 	r->summary->bytes_read = r->input.size;
@@ -106,7 +106,7 @@ static nmtan_status open_scene(run *r)
 	begin_stage(r, NT_STAGE_PARSE);
 	r->reader = nt_format_of_input(r->input.data, r->input.size, r->input_path);
 	if (!r->reader)
-		return nt_fail(r->error, NMTAN_ERROR_INPUT,
+		return nt_fail(r->error, NT_ERROR_INPUT,
 			"not recognised: expected OBJ, PLY, glTF, GLB or Draco");
 	r->scene.format = r->reader->format;
 	status = r->reader->open(&r->scene, &r->read_options, r->error);
@@ -133,22 +133,22 @@ static bool needs_all(const run *r)
 
 /* For the report alone: a mesh that cannot be read fails a check, but no conversion that does not need
  * it. */
-static nmtan_status load_for_report(run *r, nt_mesh *mesh)
+static nt_status load_for_report(run *r, nt_mesh *mesh)
 {
-	const nmtan_status status = r->reader->load(&r->scene, mesh, &r->read_options, r->error);
-	if (!status || r->settings->check || status == NMTAN_ERROR_MEMORY)
+	const nt_status status = r->reader->load(&r->scene, mesh, &r->read_options, r->error);
+	if (!status || r->settings->check || status == NT_ERROR_MEMORY)
 		return status;
 	mesh->positions = NULL;
 	nt_error_clear(r->error);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status load_meshes(run *r)
+static nt_status load_meshes(run *r)
 {
 	begin_stage(r, NT_STAGE_DECODE);
 	const bool all = needs_all(r);
 	if (r->reader->find_same) {
-		const nmtan_status status = r->reader->find_same(&r->scene, &r->read_options, r->error);
+		const nt_status status = r->reader->find_same(&r->scene, &r->read_options, r->error);
 		if (status)
 			return status;
 	}
@@ -158,16 +158,16 @@ static nmtan_status load_meshes(run *r)
 		const bool needed = is_wanted(mesh) || (all && loadable);
 		if (!needed && !(r->settings->report && loadable))
 			continue;
-		const nmtan_status status = needed
+		const nt_status status = needed
 			? r->reader->load(&r->scene, mesh, &r->read_options, r->error)
 			: load_for_report(r, mesh);
 		if (status)
 			return status;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status make_normals(run *r)
+static nt_status make_normals(run *r)
 {
 	begin_stage(r, NT_STAGE_NORMALS);
 	for (size_t i = 0; i < r->scene.mesh_count; i++) {
@@ -181,12 +181,12 @@ static nmtan_status make_normals(run *r)
 					mesh->made_normal_corners, NULL);
 			continue;
 		}
-		const nmtan_status status =
+		const nt_status status =
 			nt_stage_normals(&r->scene, mesh, r->settings->normals, r->error);
 		if (status)
 			return status;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static void count_decisions(run *r)
@@ -198,25 +198,25 @@ static void count_decisions(run *r)
 }
 
 /* What only a glTF made from a glTF can have. */
-static nmtan_status check_document_options(const run *r)
+static nt_status check_document_options(const run *r)
 {
 	const bool patch = r->writer && r->writer->format != NT_FORMAT_PLY &&
 		(r->scene.format == NT_FORMAT_GLTF || r->scene.format == NT_FORMAT_GLB);
 	if (r->writer && !patch && r->settings->draco > NT_DRACO_OFF)
-		return nt_fail(r->error, NMTAN_ERROR_USAGE,
+		return nt_fail(r->error, NT_ERROR_USAGE,
 			"--draco=%s compresses only glTF that is made from glTF, not %s made from %s",
 			r->settings->draco == NT_DRACO_AS_SEQUENTIAL ? "sequential" : "edgebreaker",
 			r->writer->name, r->reader->name);
 	/* taking images away would renumber what refers to them */
 	if (patch && r->settings->images == NT_IMAGES_NONE)
-		return nt_fail(r->error, NMTAN_ERROR_USAGE,
+		return nt_fail(r->error, NT_ERROR_USAGE,
 			"--images=none: a glTF made from a glTF keeps its images; use link, embed or copy");
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status read_scene(run *r)
+static nt_status read_scene(run *r)
 {
-	nmtan_status status = open_scene(r);
+	nt_status status = open_scene(r);
 	if (status)
 		return nt_error_in_file(r->error, r->input_path);
 	status = choose_writer(r);
@@ -231,10 +231,10 @@ static nmtan_status read_scene(run *r)
 		!gltf || r->settings->normals != NT_NORMALS_AUTO);
 	count_decisions(r);
 	status = load_meshes(r);
-	return status ? nt_error_in_file(r->error, r->input_path) : NMTAN_OK;
+	return status ? nt_error_in_file(r->error, r->input_path) : NT_OK;
 }
 
-static nmtan_status write_scene(run *r)
+static nt_status write_scene(run *r)
 {
 	begin_stage(r, NT_STAGE_WRITE);
 	const nt_settings *s = r->settings;
@@ -254,7 +254,7 @@ static nmtan_status write_scene(run *r)
 		.allow_outside = s->allow_outside,
 	};
 	nt_output *output = NULL;
-	nmtan_status status = nt_output_create(&output, &output_options, r->error);
+	nt_status status = nt_output_create(&output, &output_options, r->error);
 	if (!status && r->writer->format != NT_FORMAT_PLY)
 		status = nt_stage_quads(&r->scene, r->error);
 	if (!status && !s->in_place)
@@ -279,9 +279,9 @@ static nmtan_status write_scene(run *r)
 	return nt_output_commit(output, r->error);
 }
 
-static nmtan_status run_stages(run *r)
+static nt_status run_stages(run *r)
 {
-	nmtan_status status = choose_writer(r);
+	nt_status status = choose_writer(r);
 	/* a PLY is one mesh in the world, so the reader has to say where the meshes stand */
 	r->read_options.world = r->writer && r->writer->format == NT_FORMAT_PLY;
 	if (!status)
@@ -316,7 +316,7 @@ static bool copy_normal_map(nt_arena *arena, const nt_scene *scene, const nt_mes
 }
 
 /* The report of the scene as it now is, or of what went wrong. */
-static nmtan_status make_report(run *r, nmtan_status status)
+static nt_status make_report(run *r, nt_status status)
 {
 	if (!r->settings->report)
 		return status;
@@ -333,7 +333,7 @@ static nmtan_status make_report(run *r, nmtan_status status)
 	return nt_report_build(&r->scene, &options, &r->summary->report, r->error);
 }
 
-nmtan_status nt_run(const char *input, const char *output, const nt_settings *settings,
+nt_status nt_run(const char *input, const char *output, const nt_settings *settings,
 	nt_summary *summary, nt_error *error)
 {
 	memset(summary, 0, sizeof *summary);
@@ -347,7 +347,7 @@ nmtan_status nt_run(const char *input, const char *output, const nt_settings *se
 	r.stage_begin = begin;
 	nt_scene_init(&r.scene, input);
 
-	nmtan_status status = run_stages(&r);
+	nt_status status = run_stages(&r);
 	status = make_report(&r, status);
 
 	/* what was found belongs to the caller, also after a failure */

@@ -110,7 +110,7 @@ typedef struct nt_summary {
  *
  * Returns any status.
  */
-nmtan_status nt_run(const char *input, const char *output, const nt_settings *settings,
+nt_status nt_run(const char *input, const char *output, const nt_settings *settings,
 	nt_summary *summary, nt_error *error);
 
 void nt_summary_free(nt_summary *summary);

@@ -9,17 +9,17 @@
 
 /* Makes the normals a mesh lacks (all of them when `mode` is not AUTO); vertices whose corners get
  * different normals are split, copies appended. Sets mesh->normals_made where something was made. */
-nmtan_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_error *error);
+nt_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_error *error);
 
 /* Solves and splits every mesh whose decision says so; counts and findings go to the summary. Large
  * meshes take all threads one after the other, small ones run side by side. */
-nmtan_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
+nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
 	nt_summary *summary, nt_error *error);
 
-/* Fills summary->lines. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
-nmtan_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error *error);
+/* Fills summary->lines. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error *error);
 
 /* Says of every mesh with quads where they are cut (face_diagonals). For writers of triangles. */
-nmtan_status nt_stage_quads(nt_scene *scene, nt_error *error);
+nt_status nt_stage_quads(nt_scene *scene, nt_error *error);
 
 #endif

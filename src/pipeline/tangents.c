@@ -26,7 +26,7 @@ typedef struct tangent_job {
 	bool round_trip;    /* the output stores 1 - v */
 	bool forgets;       /* the input is not read again after the solve */
 	nt_mesh **meshes;   /* the ones to solve */
-	nmtan_status *statuses;
+	nt_status *statuses;
 	size_t count;
 	nmtan_timing timing; /* of the large meshes */
 } tangent_job;
@@ -89,7 +89,7 @@ static void restore_valid(const nt_mesh *mesh, float *corner_tangents)
 }
 
 /* Room for the worst case; pages that are not needed are never touched. */
-static nmtan_status make_split(const nt_mesh *mesh, nt_split *split, nmtan_split_output *output)
+static nt_status make_split(const nt_mesh *mesh, nt_split *split, nmtan_split_output *output)
 {
 	const size_t capacity = mesh->corner_count;
 	*split = (nt_split){
@@ -99,19 +99,19 @@ static nmtan_status make_split(const nt_mesh *mesh, nt_split *split, nmtan_split
 	};
 	*output = (nmtan_split_output){.indices = split->indices, .sources = split->sources,
 		.source_capacity = capacity, .vertex_tangents = split->vertex_tangents};
-	return split->indices && split->sources && split->vertex_tangents ? NMTAN_OK
-									  : NMTAN_ERROR_MEMORY;
+	return split->indices && split->sources && split->vertex_tangents ? NT_OK
+									  : NT_ERROR_MEMORY;
 }
 
 /* Tangents of corners: for the report alone, or to be mixed with authored ones before they are split. */
-static nmtan_status solve_corners(const nt_mesh *mesh, const nmtan_mesh *view,
+static nt_status solve_corners(const nt_mesh *mesh, const nmtan_mesh *view,
 	const nmtan_options *options, float **tangents, nmtan_counts *counts)
 {
 	nmtan_output output = {.tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float))};
 	*tangents = output.tangents;
 	if (!output.tangents)
-		return NMTAN_ERROR_MEMORY;
-	const nmtan_status status = nmtan_tangents(view, options, &output);
+		return NT_ERROR_MEMORY;
+	const nt_status status = nt_status_of(nmtan_tangents(view, options, &output));
 	*counts = output.counts;
 	if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
 		restore_valid(mesh, output.tangents);
@@ -119,15 +119,15 @@ static nmtan_status solve_corners(const nt_mesh *mesh, const nmtan_mesh *view,
 }
 
 /* Splits with morph targets: wherever the base or a target needs it. */
-static nmtan_status split_morphs(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options,
+static nt_status split_morphs(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options,
 	nmtan_split_output *output)
 {
 	float *keys = nt_alloc(mesh->corner_count, 4 * sizeof *keys);
-	nmtan_status status = keys ? nt_morphs_solve(mesh, view, options) : NMTAN_ERROR_MEMORY;
+	nt_status status = keys ? nt_morphs_solve(mesh, view, options) : NT_ERROR_MEMORY;
 	if (!status)
 		status = nt_morphs_keys(mesh, view, keys);
 	if (!status)
-		status = nmtan_split(view, keys, options, output);
+		status = nt_status_of(nmtan_split(view, keys, options, output));
 	mesh->split.source_count = output->source_count;
 	if (!status)
 		status = nt_morphs_finish(mesh);
@@ -149,7 +149,7 @@ static void forget_part(void *user, nt_mesh_part part)
 	}
 }
 
-static nmtan_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned threads,
+static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned threads,
 	nmtan_workspace *workspace, nmtan_timing *timing)
 {
 	const nmtan_options options = {.method = job->settings->method,
@@ -161,20 +161,20 @@ static nmtan_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned t
 		return solve_corners(mesh, &view, &options, &mesh->corner_tangents, &mesh->counts);
 
 	nmtan_split_output output;
-	nmtan_status status = make_split(mesh, &mesh->split, &output);
+	nt_status status = make_split(mesh, &mesh->split, &output);
 	if (!status && (mesh->decision == NT_DECISION_REPAIR || mesh->morph_count)) {
 		status = solve_corners(mesh, &view, &options, &mesh->corner_tangents, &mesh->counts);
 		if (!status)
 			status = mesh->morph_count ?
 				split_morphs(mesh, &view, &options, &output) :
-				nmtan_split(&view, mesh->corner_tangents, &options, &output);
+				nt_status_of(nmtan_split(&view, mesh->corner_tangents, &options, &output));
 		free(mesh->corner_tangents);
 		mesh->corner_tangents = NULL;
 	} else if (!status) {
 		mesh_bytes bytes = {job->scene, mesh};
 		const nt_vertex_request request = {.lazy_indices = true,
 			.passed = job->forgets ? forget_part : NULL, .user = &bytes};
-		status = nt_vertex_tangents(&view, &options, &request, &output, &mesh->counts);
+		status = nt_status_of(nt_vertex_tangents(&view, &options, &request, &output, &mesh->counts));
 	}
 	mesh->split.source_count = output.source_count;
 	if (!status && output.source_count == 0) {
@@ -268,7 +268,7 @@ static bool is_wanted(const nt_mesh *mesh)
 }
 
 /* What was solved is kept, shared with the meshes that have the same geometry, and counted for each. */
-static nmtan_status finish(const tangent_job *job, nt_summary *summary, nt_error *error)
+static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *error)
 {
 	bool kept = true;
 	for (size_t i = 0; i < job->count; i++)
@@ -279,7 +279,7 @@ static nmtan_status finish(const tangent_job *job, nt_summary *summary, nt_error
 		const nt_mesh *mesh = job->meshes[i];
 		if (job->statuses[i]) {
 			nt_fail(error, job->statuses[i], "cannot compute tangents: %s",
-				nmtan_status_text(job->statuses[i]));
+				nt_status_text(job->statuses[i]));
 			error->place = mesh->place;
 			return job->statuses[i];
 		}
@@ -295,10 +295,10 @@ static nmtan_status finish(const tangent_job *job, nt_summary *summary, nt_error
 		add_findings(&job->scene->findings, mesh);
 		add_counts(summary, mesh);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
+nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
 	nt_summary *summary, nt_error *error)
 {
 	tangent_job job = {.scene = scene, .settings = settings,
@@ -307,7 +307,7 @@ nmtan_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_
 			!settings->verify,
 		.meshes = nt_alloc(scene->mesh_count, sizeof *job.meshes),
 		.statuses = nt_calloc(scene->mesh_count, sizeof *job.statuses)};
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (!job.meshes || !job.statuses) {
 		status = nt_fail_memory(error);
 	} else {

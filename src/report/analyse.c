@@ -114,7 +114,7 @@ static void *copy_block(nt_arena *arena, const void *block, size_t count, size_t
 	return copy ? memcpy(copy, block, count * size) : NULL;
 }
 
-static nmtan_status keep_geometry(nt_judge *judge)
+static nt_status keep_geometry(nt_judge *judge)
 {
 	const nt_mesh *mesh = judge->mesh;
 	const nt_surface *s = &judge->surface;
@@ -123,7 +123,7 @@ static nmtan_status keep_geometry(nt_judge *judge)
 	bool failed = false;
 	nt_report_geometry *g = nt_arena_alloc(arena, 1, sizeof *g);
 	if (!g)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	*g = (nt_report_geometry){.triangle_count = s->triangle_count,
 		.vertex_count = mesh->vertex_count + (split ? mesh->split.source_count : 0)};
 	g->positions = nt_arena_alloc(arena, 3 * g->vertex_count, sizeof(float));
@@ -137,7 +137,7 @@ static nmtan_status keep_geometry(nt_judge *judge)
 	g->islands = copy_block(arena, judge->islands, s->triangle_count, sizeof(uint32_t), &failed);
 	if (failed || !g->positions || !g->indices || (mesh->normals && !g->normals) ||
 		(mesh->texcoords && !g->texcoords))
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	for (size_t v = 0; v < g->vertex_count; v++) {
 		const size_t from = v < mesh->vertex_count ? v : mesh->split.sources[v - mesh->vertex_count];
 		memcpy(g->positions + 3 * v, mesh->positions + 3 * from, 3 * sizeof(float));
@@ -149,7 +149,7 @@ static nmtan_status keep_geometry(nt_judge *judge)
 	for (size_t c = 0; c < 3 * s->triangle_count; c++)
 		g->indices[c] = split && mesh->split.indices ? mesh->split.indices[s->corners[c]] : s->vertices[c];
 	judge->facts->geometry = g;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Larger ones have no place in a page of 20 MB. */
@@ -166,13 +166,13 @@ static void keep_normal_map(nt_judge *judge)
 
 /* ---- one mesh ---- */
 
-static nmtan_status judge_mesh(nt_judge *judge)
+static nt_status judge_mesh(nt_judge *judge)
 {
-	nmtan_status status = nt_surface_build(&judge->surface, judge->mesh, judge->scratch);
+	nt_status status = nt_surface_build(&judge->surface, judge->mesh, judge->scratch);
 	if (status || judge->surface.triangle_count == 0)
 		return status;
 	measure_surface(judge);
-	nmtan_status (*const checks[])(nt_judge *) = {nt_judge_edges, nt_judge_geometry,
+	nt_status (*const checks[])(nt_judge *) = {nt_judge_edges, nt_judge_geometry,
 		nt_judge_islands, nt_judge_seams, nt_judge_tangents, nt_judge_growth};
 	for (size_t i = 0; i < sizeof checks / sizeof checks[0] && !status; i++)
 		status = checks[i](judge);
@@ -180,7 +180,7 @@ static nmtan_status judge_mesh(nt_judge *judge)
 		status = keep_geometry(judge);
 	if (!status)
 		keep_normal_map(judge);
-	return status ? status : judge->failed ? NMTAN_ERROR_MEMORY : NMTAN_OK;
+	return status ? status : judge->failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
 /* Points and lines, empty meshes and ones that were never loaded have nothing to be judged. */
@@ -189,13 +189,13 @@ static bool is_judged(const nt_mesh *mesh)
 	return mesh->triangles && mesh->positions && mesh->face_count > 0;
 }
 
-static nmtan_status judge_scene(const nt_scene *scene, const nt_report_options *options,
+static nt_status judge_scene(const nt_scene *scene, const nt_report_options *options,
 	nt_report *report)
 {
 	size_t issue_capacity = 0;
 	nt_judge judge = {.scene = scene, .options = options, .report = report,
 		.issue_capacity = &issue_capacity};
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; i < scene->mesh_count && !status; i++) {
 		if (!is_judged(&scene->meshes[i]))
 			continue;
@@ -211,7 +211,7 @@ static nmtan_status judge_scene(const nt_scene *scene, const nt_report_options *
 	}
 	for (size_t i = 0; i < scene->findings.count && !status; i++)
 		nt_issues_add_finding(&judge, &scene->findings.items[i]);
-	return status ? status : judge.failed ? NMTAN_ERROR_MEMORY : NMTAN_OK;
+	return status ? status : judge.failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
 static nt_report *new_report(const char *path)
@@ -227,18 +227,18 @@ static nt_report *new_report(const char *path)
 	return report;
 }
 
-static nmtan_status build(const nt_scene *scene, const nt_report_options *options, nt_report *report)
+static nt_status build(const nt_scene *scene, const nt_report_options *options, nt_report *report)
 {
 	report->format = scene->format;
 	report->mesh_count = scene->mesh_count;
 	report->meshes = nt_arena_alloc(&report->arena, scene->mesh_count, sizeof *report->meshes);
 	if (!report->meshes)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	for (size_t i = 0; i < scene->mesh_count; i++)
 		if (!describe_mesh(report, &scene->meshes[i], options, &report->meshes[i]))
-			return NMTAN_ERROR_MEMORY;
+			return NT_ERROR_MEMORY;
 	count_instances(report, scene);
-	nmtan_status status = judge_scene(scene, options, report);
+	nt_status status = judge_scene(scene, options, report);
 	if (!status)
 		status = nt_issues_finish(report, options);
 	if (!status && scene->format == NT_FORMAT_OBJ)
@@ -246,21 +246,21 @@ static nmtan_status build(const nt_scene *scene, const nt_report_options *option
 	return status;
 }
 
-nmtan_status nt_report_build(const nt_scene *scene, const nt_report_options *options,
+nt_status nt_report_build(const nt_scene *scene, const nt_report_options *options,
 	nt_report **report, nt_error *error)
 {
 	static const nt_report_options defaults;
 	*report = new_report(scene->path);
 	if (!*report)
 		return nt_fail_memory(error);
-	const nmtan_status status = build(scene, options ? options : &defaults, *report);
-	if (status == NMTAN_OK)
-		return NMTAN_OK;
+	const nt_status status = build(scene, options ? options : &defaults, *report);
+	if (status == NT_OK)
+		return NT_OK;
 	nt_report_free(*report);
 	*report = NULL;
-	return status == NMTAN_ERROR_MEMORY
+	return status == NT_ERROR_MEMORY
 		? nt_fail_memory(error)
-		: nt_fail(error, status, "the report cannot be made: %s", nmtan_status_text(status));
+		: nt_fail(error, status, "the report cannot be made: %s", nt_status_text(status));
 }
 
 nt_report *nt_report_of_error(const char *path, const nt_error *failure)

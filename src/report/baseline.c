@@ -25,7 +25,7 @@ static bool read_fingerprint(const nt_json_value *finding, uint64_t *fingerprint
 	return true;
 }
 
-static nmtan_status read_findings(nt_baseline *baseline, size_t *capacity, const nt_json_value *findings,
+static nt_status read_findings(nt_baseline *baseline, size_t *capacity, const nt_json_value *findings,
 	nt_error *error)
 {
 	const size_t count = nt_json_count(findings);
@@ -34,32 +34,32 @@ static nmtan_status read_findings(nt_baseline *baseline, size_t *capacity, const
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < count; i++) {
 		if (!read_fingerprint(nt_json_at(findings, i), &baseline->fingerprints[baseline->count]))
-			return nt_fail(error, NMTAN_ERROR_INPUT,
+			return nt_fail(error, NT_ERROR_INPUT,
 				"finding %zu of the baseline has no fingerprint of 16 hexadecimal digits", i);
 		baseline->count++;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status read_files(nt_baseline *baseline, const nt_json_value *root, nt_error *error)
+static nt_status read_files(nt_baseline *baseline, const nt_json_value *root, nt_error *error)
 {
 	const char *report = nt_json_get_string(nt_json_find(root, "report"), NULL);
 	const nt_json_value *files = nt_json_find(root, "files");
 	if (!report || strcmp(report, "nmtan") != 0 || nt_json_type_of(files) != NT_JSON_ARRAY)
-		return nt_fail(error, NMTAN_ERROR_INPUT, "the baseline is not a JSON report of nmtan");
+		return nt_fail(error, NT_ERROR_INPUT, "the baseline is not a JSON report of nmtan");
 	size_t capacity = 0;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	for (size_t i = 0; i < nt_json_count(files) && !status; i++)
 		status = read_findings(baseline, &capacity,
 			nt_json_find(nt_json_at(files, i), "findings"), error);
 	return status;
 }
 
-nmtan_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, nt_error *error)
+nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, nt_error *error)
 {
 	*baseline = (nt_baseline){0};
 	nt_json *document = NULL;
-	nmtan_status status = nt_json_parse(&document, text, size, error);
+	nt_status status = nt_json_parse(&document, text, size, error);
 	if (status)
 		return status;
 	status = read_files(baseline, nt_json_root(document), error);

@@ -47,14 +47,14 @@ static bool is_near(const nt_surface *s, const uint8_t *touched, size_t t)
 	return has_edges && (touched[p[0]] || touched[p[1]] || touched[p[2]]);
 }
 
-static nmtan_status find_vicinity(const nt_surface *s, const uint8_t *marked, nt_scratch *scratch,
+static nt_status find_vicinity(const nt_surface *s, const uint8_t *marked, nt_scratch *scratch,
 	vicinity *v)
 {
 	*v = (vicinity){0};
 	uint32_t *number = nt_scratch_alloc(scratch, s->point_count, sizeof *number);
 	uint8_t *touched = nt_scratch_alloc(scratch, s->point_count, 1);
 	if (!number || !touched)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	memset(number, 0xff, s->point_count * sizeof *number);
 	memset(touched, 0, s->point_count);
 	for (size_t side = 0; side < 3 * s->triangle_count; side++)
@@ -67,7 +67,7 @@ static nmtan_status find_vicinity(const nt_surface *s, const uint8_t *marked, nt
 	v->points = nt_scratch_alloc(scratch, 3 * v->triangle_count, sizeof *v->points);
 	v->marked = nt_scratch_alloc(scratch, 3 * v->triangle_count, 1);
 	if (!v->triangles || !v->origin || !v->points || !v->marked)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	size_t n = 0;
 	for (size_t t = 0; t < s->triangle_count; t++) {
 		if (!is_near(s, touched, t))
@@ -83,7 +83,7 @@ static nmtan_status find_vicinity(const nt_surface *s, const uint8_t *marked, nt
 		}
 		v->origin[n++] = (uint32_t)t;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- OpenMesh's walks as runs ---- */
@@ -141,11 +141,11 @@ static void take_walk(const nt_surface *s, const vicinity *v, const nt_walks *wa
 	}
 }
 
-static nmtan_status take_walks(const nt_surface *s, const vicinity *v, const uint8_t *marked,
+static nt_status take_walks(const nt_surface *s, const vicinity *v, const uint8_t *marked,
 	uint8_t *taken, runs *r, size_t *left_out, nt_error *error)
 {
 	nt_halfedges *mesh = NULL;
-	nmtan_status status = nt_halfedges_build(&mesh, v->point_count, v->triangles,
+	nt_status status = nt_halfedges_build(&mesh, v->point_count, v->triangles,
 		v->triangle_count, error);
 	if (status)
 		return status;
@@ -168,12 +168,12 @@ typedef struct joints {
 	uint32_t *degree;
 } joints;
 
-static nmtan_status find_joints(const nt_surface *s, const runs *r, nt_scratch *scratch, joints *j)
+static nt_status find_joints(const nt_surface *s, const runs *r, nt_scratch *scratch, joints *j)
 {
 	j->ends = nt_scratch_alloc(scratch, 2 * s->point_count, sizeof *j->ends);
 	j->degree = nt_scratch_alloc(scratch, s->point_count, sizeof *j->degree);
 	if (!j->ends || !j->degree)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	memset(j->degree, 0, s->point_count * sizeof *j->degree);
 	for (size_t i = 0; i < r->side_count; i++) { /* inner points too: a run may pass another's end */
 		j->degree[s->points[r->sides[i]]]++;
@@ -186,7 +186,7 @@ static nmtan_status find_joints(const nt_surface *s, const runs *r, nt_scratch *
 			slots[slots[0] != NT_NONE] = (uint32_t)(2 * i + end);
 		}
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* The run end that meets this one at a joint; NT_NONE at an open end or a junction. */
@@ -243,13 +243,13 @@ static int by_lowest_side(const void *a, const void *b)
 }
 
 /* Joins runs, in the order of their lowest sides. */
-static nmtan_status join_runs(const nt_surface *s, runs *r, nt_scratch *scratch, nt_chains *chains)
+static nt_status join_runs(const nt_surface *s, runs *r, nt_scratch *scratch, nt_chains *chains)
 {
 	joints j;
 	uint64_t *order = nt_scratch_alloc(scratch, r->count, sizeof *order);
-	nmtan_status status = find_joints(s, r, scratch, &j);
+	nt_status status = find_joints(s, r, scratch, &j);
 	if (status || !order)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	for (size_t i = 0; i < r->count; i++) {
 		uint32_t lowest = NT_NONE;
 		for (size_t k = 0; k < r->items[i].count; k++)
@@ -265,10 +265,10 @@ static nmtan_status join_runs(const nt_surface *s, runs *r, nt_scratch *scratch,
 		if (!r->items[index].used)
 			join_from(r, &j, index, chains, &n);
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-static nmtan_status allocate(nt_scratch *scratch, size_t edges, runs *r, nt_chains *chains)
+static nt_status allocate(nt_scratch *scratch, size_t edges, runs *r, nt_chains *chains)
 {
 	*r = (runs){.items = nt_scratch_alloc(scratch, edges, sizeof *r->items),
 		.sides = nt_scratch_alloc(scratch, edges, sizeof *r->sides),
@@ -279,27 +279,27 @@ static nmtan_status allocate(nt_scratch *scratch, size_t edges, runs *r, nt_chai
 		.reversed = nt_scratch_alloc(scratch, edges, sizeof *chains->reversed)};
 	const bool complete = r->items && r->sides && r->reversed && chains->first && chains->closed &&
 		chains->sides && chains->reversed;
-	return complete ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+	return complete ? NT_OK : NT_ERROR_MEMORY;
 }
 
-nmtan_status nt_chains_trace(const nt_surface *surface, const uint8_t *marked, nt_scratch *scratch,
+nt_status nt_chains_trace(const nt_surface *surface, const uint8_t *marked, nt_scratch *scratch,
 	nt_chains *chains, nt_error *error)
 {
 	size_t edges = 0;
 	for (size_t side = 0; side < 3 * surface->triangle_count; side++)
 		edges += marked[side];
 	runs r;
-	nmtan_status status = allocate(scratch, edges, &r, chains);
+	nt_status status = allocate(scratch, edges, &r, chains);
 	if (status)
 		return status;
 	chains->first[0] = 0;
 	if (edges == 0)
-		return NMTAN_OK;
+		return NT_OK;
 
 	vicinity v;
 	uint8_t *taken = nt_scratch_alloc(scratch, 3 * surface->triangle_count, 1);
 	if (!taken)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	memset(taken, 0, 3 * surface->triangle_count);
 	status = find_vicinity(surface, marked, scratch, &v);
 	if (!status)

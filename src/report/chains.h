@@ -26,9 +26,9 @@ typedef struct nt_chains {
  *
  *   marked  [3 * triangle_count] at most one side of each edge
  *
- * Everything is in scratch. Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ * Everything is in scratch. Returns NT_OK or NT_ERROR_MEMORY.
  */
-nmtan_status nt_chains_trace(const nt_surface *surface, const uint8_t *marked, nt_scratch *scratch,
+nt_status nt_chains_trace(const nt_surface *surface, const uint8_t *marked, nt_scratch *scratch,
 	nt_chains *chains, nt_error *error);
 
 #endif

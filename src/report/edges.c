@@ -76,12 +76,12 @@ static bool same_coordinates(const side_key *a, const side_key *b)
 }
 
 /* Unites all triangles of an edge of three and more that have the same coordinates along it. */
-static nmtan_status unite_many(const nt_surface *s, const uint32_t *sides, size_t count,
+static nt_status unite_many(const nt_surface *s, const uint32_t *sides, size_t count,
 	uint32_t *parents)
 {
 	side_key *keys = nt_alloc(count, sizeof *keys);
 	if (!keys)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	for (size_t i = 0; i < count; i++)
 		keys[i] = key_of(s, sides[i]);
 	qsort(keys, count, sizeof *keys, by_key);
@@ -89,7 +89,7 @@ static nmtan_status unite_many(const nt_surface *s, const uint32_t *sides, size_
 		if (same_coordinates(&keys[i], &keys[i - 1]))
 			unite(parents, keys[i].side / 3, keys[i - 1].side / 3);
 	free(keys);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Remembers the first unmirrored and the first mirrored side of the edge, if it has both. */
@@ -108,7 +108,7 @@ static void find_mirror(nt_judge *judge, const uint32_t *sides, size_t count)
 	judge->seam_edge[found[0]] = judge->seam_edge[found[1]] = index;
 }
 
-static nmtan_status judge_edge(nt_judge *judge, const uint32_t *sides, size_t count, uint32_t *parents,
+static nt_status judge_edge(nt_judge *judge, const uint32_t *sides, size_t count, uint32_t *parents,
 	edge_tallies *tallies)
 {
 	nt_report_mesh *facts = judge->facts;
@@ -116,14 +116,14 @@ static nmtan_status judge_edge(nt_judge *judge, const uint32_t *sides, size_t co
 	if (count == 1) {
 		facts->boundary_edges++;
 		judge->boundary[sides[0]] = 1;
-		return NMTAN_OK;
+		return NT_OK;
 	}
 	if (count > 2)
 		nt_tally_side(judge, &tallies->non_manifold, sides[0], (double)count);
 	else if (same_way(s, sides[0], sides[1]))
 		nt_tally_side(judge, &tallies->inconsistent, sides[0], (double)count);
 	if (!judge->mesh->texcoords)
-		return NMTAN_OK;
+		return NT_OK;
 	find_mirror(judge, sides, count);
 	if (count > 2)
 		return unite_many(s, sides, count, parents);
@@ -131,7 +131,7 @@ static nmtan_status judge_edge(nt_judge *judge, const uint32_t *sides, size_t co
 		unite(parents, sides[0] / 3, sides[1] / 3);
 	else
 		facts->uv_seam_edges++;
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Numbers islands by their lowest triangle. */
@@ -150,7 +150,7 @@ static void number_islands(nt_judge *judge, uint32_t *parents)
 	judge->facts->island_count = count;
 }
 
-static nmtan_status allocate(nt_judge *judge)
+static nt_status allocate(nt_judge *judge)
 {
 	const size_t sides = 3 * judge->surface.triangle_count;
 	judge->boundary = nt_scratch_alloc(judge->scratch, sides, sizeof *judge->boundary);
@@ -159,22 +159,22 @@ static nmtan_status allocate(nt_judge *judge)
 		sizeof *judge->mirror_edges);
 	judge->islands = nt_scratch_alloc(judge->scratch, sides / 3, sizeof *judge->islands);
 	if (!judge->boundary || !judge->seam_edge || !judge->mirror_edges || !judge->islands)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	memset(judge->boundary, 0, sides * sizeof *judge->boundary);
 	memset(judge->seam_edge, 0xff, sides * sizeof *judge->seam_edge);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_judge_edges(nt_judge *judge)
+nt_status nt_judge_edges(nt_judge *judge)
 {
 	const nt_surface *s = &judge->surface;
-	nmtan_status status = allocate(judge);
+	nt_status status = allocate(judge);
 	if (status)
 		return status;
 	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
 	uint32_t *parents = nt_scratch_alloc(judge->scratch, s->triangle_count, sizeof *parents);
 	if (!parents)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	for (size_t t = 0; t < s->triangle_count; t++)
 		parents[t] = (uint32_t)t;
 
@@ -193,5 +193,5 @@ nmtan_status nt_judge_edges(nt_judge *judge)
 	judge->facts->inconsistent_edges = tallies.inconsistent.count;
 	nt_judge_report(judge, &tallies.non_manifold, NULL);
 	nt_judge_report(judge, &tallies.inconsistent, NULL);
-	return NMTAN_OK;
+	return NT_OK;
 }

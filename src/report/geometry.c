@@ -192,13 +192,13 @@ static void report_triangles(nt_judge *judge, triangle_tallies *tt)
 		tt->worst_bound);
 }
 
-static nmtan_status judge_triangles(nt_judge *judge)
+static nt_status judge_triangles(nt_judge *judge)
 {
 	const nt_surface *s = &judge->surface;
 	triangle_tallies *tt = nt_scratch_alloc(judge->scratch, 1, sizeof *tt);
 	uint8_t *sound_vertex = nt_scratch_alloc(judge->scratch, judge->mesh->vertex_count, 1);
 	if (!tt || !sound_vertex)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	*tt = (triangle_tallies){.flat = {.code = NT_CODE_POS_DEGENERATE_TRIANGLE},
 		.no_uv_area = {.code = NT_CODE_UV_DEGENERATE_TRIANGLE},
 		.near = {.code = NT_CODE_UV_NEAR_DEGENERATE},
@@ -206,7 +206,7 @@ static nmtan_status judge_triangles(nt_judge *judge)
 		.determinants = nt_scratch_alloc(judge->scratch, s->triangle_count, sizeof(float)),
 		.histogram = nt_scratch_alloc(judge->scratch, 65536, sizeof(size_t))};
 	if (!tt->determinants || !tt->histogram)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	memset(sound_vertex, 0, judge->mesh->vertex_count);
 	for (size_t c = 0; c < 3 * s->triangle_count; c++)
 		if (s->orientation[c / 3] && s->flatness[c / 3] != NT_COINCIDENT)
@@ -215,17 +215,17 @@ static nmtan_status judge_triangles(nt_judge *judge)
 		judge_triangle(judge, t, sound_vertex, tt);
 	find_determinants(judge->facts, tt);
 	report_triangles(judge, tt);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Each vertex that a triangle uses, once. */
-static nmtan_status judge_vertices(nt_judge *judge)
+static nt_status judge_vertices(nt_judge *judge)
 {
 	const nt_surface *s = &judge->surface;
 	const nt_mesh *mesh = judge->mesh;
 	uint8_t *seen = nt_scratch_alloc(judge->scratch, mesh->vertex_count, 1);
 	if (!seen)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	memset(seen, 0, mesh->vertex_count);
 	nt_tally position = {.code = NT_CODE_POS_NOT_FINITE};
 	nt_tally texcoord = {.code = NT_CODE_UV_NOT_FINITE};
@@ -258,7 +258,7 @@ static nmtan_status judge_vertices(nt_judge *judge)
 	nt_judge_report(judge, &texcoord, NULL);
 	nt_judge_report(judge, &zero, NULL);
 	nt_judge_report(judge, &non_unit, "the worst has length %.4g", worst);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* Triangles whose corner normals, summed, point to their back. */
@@ -287,10 +287,10 @@ static void judge_winding(nt_judge *judge)
 	nt_judge_report(judge, &against, NULL);
 }
 
-nmtan_status nt_judge_geometry(nt_judge *judge)
+nt_status nt_judge_geometry(nt_judge *judge)
 {
 	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
-	nmtan_status status = judge_triangles(judge);
+	nt_status status = judge_triangles(judge);
 	if (!status)
 		status = judge_vertices(judge);
 	if (!status)

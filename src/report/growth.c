@@ -11,14 +11,14 @@
 
 enum { UNMIRRORED = 1, MIRRORED = 2 };
 
-static nmtan_status judge_shared(nt_judge *judge)
+static nt_status judge_shared(nt_judge *judge)
 {
 	const nt_surface *s = &judge->surface;
 	const size_t vertex_count = judge->mesh->vertex_count;
 	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
 	uint8_t *sides = nt_scratch_alloc(judge->scratch, vertex_count, 1);
 	if (!sides)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	memset(sides, 0, vertex_count);
 	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
 		const int sign = s->orientation[c / 3];
@@ -33,7 +33,7 @@ static nmtan_status judge_shared(nt_judge *judge)
 	const bool split = judge->options->converted && judge->mesh->split.vertex_tangents;
 	nt_judge_report_as(judge, &shared, split ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING, "%s",
 		split ? "they were split" : "");
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static void judge_copies(nt_judge *judge)
@@ -62,9 +62,9 @@ static void judge_copies(nt_judge *judge)
 		facts->added_mirror, facts->added_direction, facts->added_normals);
 }
 
-nmtan_status nt_judge_growth(nt_judge *judge)
+nt_status nt_judge_growth(nt_judge *judge)
 {
-	const nmtan_status status = judge->mesh->texcoords ? judge_shared(judge) : NMTAN_OK;
+	const nt_status status = judge->mesh->texcoords ? judge_shared(judge) : NT_OK;
 	if (!status)
 		judge_copies(judge);
 	return status;

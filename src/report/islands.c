@@ -196,7 +196,7 @@ static void stream_triangles(const nt_judge *judge, grid *g)
 }
 
 /* Sets `covered` of every island with mirrored triangles. */
-static nmtan_status find_covered(nt_judge *judge, size_t mirrored_count)
+static nt_status find_covered(nt_judge *judge, size_t mirrored_count)
 {
 	const size_t islands = judge->facts->island_count;
 	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
@@ -205,7 +205,7 @@ static nmtan_status find_covered(nt_judge *judge, size_t mirrored_count)
 	uint8_t *met = nt_scratch_alloc(judge->scratch, islands, sizeof *met);
 	double *sums = nt_scratch_alloc(judge->scratch, 2 * islands, sizeof *sums);
 	if (!g || !samples || !sums || !met)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	memset(met, 0, islands * sizeof *met);
 	g->samples = samples;
 	g->sample_count = g->visits = 0;
@@ -222,7 +222,7 @@ static nmtan_status find_covered(nt_judge *judge, size_t mirrored_count)
 		if (sums[2 * i] > 0.0)
 			judge->facts->islands[i].covered = sums[2 * i + 1] / sums[2 * i];
 	nt_scratch_back(judge->scratch, mark);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- folds and twins ---- */
@@ -304,21 +304,21 @@ static size_t visit_vertices(nt_judge *judge, bool mirrored, uv_key *table, size
 
 /* Sets `twin` of mixed islands: mirrored corners lie on unmirrored corners of the same island, and the
  * triangles on its triangles. */
-static nmtan_status find_twins(nt_judge *judge)
+static nt_status find_twins(nt_judge *judge)
 {
 	const size_t islands = judge->facts->island_count;
 	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
 	uint32_t *last = nt_scratch_alloc(judge->scratch, judge->mesh->vertex_count, sizeof *last);
 	size_t *counts = nt_scratch_alloc(judge->scratch, 2 * islands, sizeof *counts);
 	if (!last || !counts)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	size_t capacity = 16;
 	const size_t unmirrored = visit_vertices(judge, false, NULL, 0, last, NULL);
 	while (capacity < 2 * unmirrored)
 		capacity *= 2;
 	uv_key *table = nt_scratch_alloc(judge->scratch, capacity, sizeof *table);
 	if (!table)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	memset(counts, 0, 2 * islands * sizeof *counts);
 	for (size_t i = 0; i < capacity; i++)
 		table[i].island = NT_NONE;
@@ -331,7 +331,7 @@ static nmtan_status find_twins(nt_judge *judge)
 			counts[2 * i + 1] > 0 && (double)counts[2 * i + 1] >= TWIN_SHARE * corners;
 	}
 	nt_scratch_back(judge->scratch, mark);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- findings ---- */
@@ -395,15 +395,15 @@ static void report_islands(nt_judge *judge)
 	}
 }
 
-nmtan_status nt_judge_islands(nt_judge *judge)
+nt_status nt_judge_islands(nt_judge *judge)
 {
 	nt_report_mesh *facts = judge->facts;
 	if (!judge->mesh->texcoords || facts->island_count == 0)
-		return NMTAN_OK;
+		return NT_OK;
 	facts->islands = nt_arena_alloc(&judge->report->arena, facts->island_count,
 		sizeof *facts->islands);
 	if (!facts->islands)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	measure_islands(judge);
 	size_t mirrored = 0;
 	for (size_t i = 0; i < facts->island_count; i++) {
@@ -412,7 +412,7 @@ nmtan_status nt_judge_islands(nt_judge *judge)
 		facts->island_kinds[island->kind]++;
 		mirrored += island->triangles[0];
 	}
-	nmtan_status status = mirrored ? find_covered(judge, mirrored) : NMTAN_OK;
+	nt_status status = mirrored ? find_covered(judge, mirrored) : NT_OK;
 	if (!status && facts->island_kinds[NT_ISLAND_MIXED])
 		status = find_twins(judge);
 	if (!status)

@@ -274,13 +274,13 @@ static bool apply_baseline(nt_report *report, const nt_baseline *baseline)
 	return true;
 }
 
-nmtan_status nt_issues_finish(nt_report *report, const nt_report_options *options)
+nt_status nt_issues_finish(nt_report *report, const nt_report_options *options)
 {
 	if (!sort_issues(report->issues, report->issue_count))
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	report->compared = options->baseline != NULL;
 	if (options->baseline && !apply_baseline(report, options->baseline))
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	for (size_t i = 0; i < report->issue_count; i++) {
 		if (report->issues[i].known)
 			report->known++;
@@ -291,7 +291,7 @@ nmtan_status nt_issues_finish(nt_report *report, const nt_report_options *option
 		report->dropped = report->issue_count - options->max_issues;
 		report->issue_count = options->max_issues;
 	}
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 bool nt_report_worst(const nt_report *report, nt_severity *worst)

@@ -134,20 +134,20 @@ static inline const float *nt_stored_tangent(const nt_judge *judge, uint32_t cor
 }
 
 /* The checks, in the order in which they run. */
-nmtan_status nt_judge_edges(nt_judge *judge);    /* edges.c: boundary, non-manifold, winding, islands' numbers */
-nmtan_status nt_judge_geometry(nt_judge *judge); /* geometry.c: positions, normals, UV triangles */
-nmtan_status nt_judge_islands(nt_judge *judge);  /* islands.c */
-nmtan_status nt_judge_seams(nt_judge *judge);    /* seams.c */
-nmtan_status nt_judge_tangents(nt_judge *judge); /* tangents.c */
-nmtan_status nt_judge_growth(nt_judge *judge);   /* growth.c: shared and copied vertices */
+nt_status nt_judge_edges(nt_judge *judge);    /* edges.c: boundary, non-manifold, winding, islands' numbers */
+nt_status nt_judge_geometry(nt_judge *judge); /* geometry.c: positions, normals, UV triangles */
+nt_status nt_judge_islands(nt_judge *judge);  /* islands.c */
+nt_status nt_judge_seams(nt_judge *judge);    /* seams.c */
+nt_status nt_judge_tangents(nt_judge *judge); /* tangents.c */
+nt_status nt_judge_growth(nt_judge *judge);   /* growth.c: shared and copied vertices */
 
 /* Ends: most severe first, limits, baseline. issues.c */
-nmtan_status nt_issues_finish(nt_report *report, const nt_report_options *options);
+nt_status nt_issues_finish(nt_report *report, const nt_report_options *options);
 
 /* Adds a finding that the scene's stages made. */
 void nt_issues_add_finding(nt_judge *judge, const nt_finding *finding);
 
 /* obj_lines.c: finds the lines of faces in the scene's OBJ text and completes the spots. */
-nmtan_status nt_obj_lines(nt_report *report, const nt_scene *scene);
+nt_status nt_obj_lines(nt_report *report, const nt_scene *scene);
 
 #endif

@@ -91,15 +91,15 @@ static bool goes_on(const char *line, const char *newline)
 	return last > line && last[-1] == '\\';
 }
 
-nmtan_status nt_obj_lines(nt_report *report, const nt_scene *scene)
+nt_status nt_obj_lines(nt_report *report, const nt_scene *scene)
 {
 	size_t count;
 	wanted *list = list_wanted(report, scene, &count);
 	if (!list)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	const char *p = (const char *)scene->bytes, *end = p ? p + scene->byte_count : p;
 	size_t next = 0, polygon = 0;
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	bool continued = false;
 	for (size_t line = 1; p < end && next < count && !status; line++) {
 		const char *newline = memchr(p, '\n', (size_t)(end - p));
@@ -115,7 +115,7 @@ nmtan_status nt_obj_lines(nt_report *report, const nt_scene *scene)
 				list[next].spot->line = line;
 				list[next].spot->source = words;
 				if (!words)
-					status = NMTAN_ERROR_MEMORY;
+					status = NT_ERROR_MEMORY;
 			}
 			polygon++;
 		}

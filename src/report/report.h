@@ -208,9 +208,9 @@ typedef struct nt_report {
  *   options  NULL: defaults
  *   report   receives the report, to be freed with nt_report_free()
  *
- * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ * Returns NT_OK or NT_ERROR_MEMORY.
  */
-nmtan_status nt_report_build(const nt_scene *scene, const nt_report_options *options,
+nt_status nt_report_build(const nt_scene *scene, const nt_report_options *options,
 	nt_report **report, nt_error *error);
 
 /* A report that says no more than that the input could not be read, or NULL when out of memory. */
@@ -223,10 +223,10 @@ void nt_report_free(nt_report *report);
 bool nt_report_worst(const nt_report *report, nt_severity *worst);
 
 /*
- * Reads the fingerprints of a JSON report. Returns NMTAN_OK, NMTAN_ERROR_INPUT when the text is no report of
- * nmtan, or NMTAN_ERROR_MEMORY.
+ * Reads the fingerprints of a JSON report. Returns NT_OK, NT_ERROR_INPUT when the text is no report of
+ * nmtan, or NT_ERROR_MEMORY.
  */
-nmtan_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, nt_error *error);
+nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, nt_error *error);
 void nt_baseline_free(nt_baseline *baseline);
 
 #endif

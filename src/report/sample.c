@@ -79,7 +79,7 @@ static bool grow_ring(growth *w)
 	return w->sample->triangle_count > before;
 }
 
-nmtan_status nt_sample_make(nt_sample *sample, const nt_report *report, uint32_t mesh,
+nt_status nt_sample_make(nt_sample *sample, const nt_report *report, uint32_t mesh,
 	size_t budget_bytes)
 {
 	const nt_report_geometry *g = report->meshes[mesh].geometry;
@@ -88,10 +88,10 @@ nmtan_status nt_sample_make(nt_sample *sample, const nt_report *report, uint32_t
 	growth w = {.geometry = g, .sample = sample, .budget = budget_bytes,
 		.number = nt_alloc(g->vertex_count, sizeof *w.number),
 		.taken = nt_calloc(g->triangle_count, 1)};
-	nmtan_status status = NMTAN_ERROR_MEMORY;
+	nt_status status = NT_ERROR_MEMORY;
 	if (sample->indices && sample->vertices && w.number && w.taken) {
 		memset(w.number, 0xff, g->vertex_count * sizeof *w.number);
-		status = NMTAN_OK;
+		status = NT_OK;
 		if (nt_sample_bytes(&report->meshes[mesh]) <= budget_bytes) {
 			for (size_t t = 0; t < g->triangle_count; t++)
 				take(&w, t);

@@ -18,8 +18,8 @@ typedef struct nt_sample {
 /* Bytes that a triangle and a vertex take on the page before they become text. */
 enum { NT_SAMPLE_TRIANGLE_BYTES = 12, NT_SAMPLE_VERTEX_BYTES = 48 };
 
-/* Returns NMTAN_OK or NMTAN_ERROR_MEMORY. The sample is to be freed with nt_sample_free(). */
-nmtan_status nt_sample_make(nt_sample *sample, const nt_report *report, uint32_t mesh,
+/* Returns NT_OK or NT_ERROR_MEMORY. The sample is to be freed with nt_sample_free(). */
+nt_status nt_sample_make(nt_sample *sample, const nt_report *report, uint32_t mesh,
 	size_t budget_bytes);
 void nt_sample_free(nt_sample *sample);
 

@@ -192,7 +192,7 @@ static void fit_plane(const nt_judge *judge, const nt_chains *chains, size_t cha
 
 /* ---- one seam ---- */
 
-static nmtan_status describe_seam(nt_judge *judge, const nt_chains *chains, size_t chain, nt_seam *seam)
+static nt_status describe_seam(nt_judge *judge, const nt_chains *chains, size_t chain, nt_seam *seam)
 {
 	const nt_surface *s = &judge->surface;
 	const size_t first = chains->first[chain];
@@ -202,7 +202,7 @@ static nmtan_status describe_seam(nt_judge *judge, const nt_chains *chains, size
 	const size_t kept = seam->edge_count < NT_SEAM_EDGES ? seam->edge_count : NT_SEAM_EDGES;
 	seam->edges = nt_arena_alloc(&judge->report->arena, kept, sizeof *seam->edges);
 	if (!seam->edges)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	plane_sums sums = {0};
 	for (size_t i = 0; i < seam->edge_count; i++) {
 		const uint32_t side = chains->sides[first + i];
@@ -226,7 +226,7 @@ static nmtan_status describe_seam(nt_judge *judge, const nt_chains *chains, size
 		}
 	}
 	fit_plane(judge, chains, chain, seam, &sums);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static void tally_seam(const nt_judge *judge, const nt_chains *chains, size_t chain, nt_tally *tally)
@@ -266,10 +266,10 @@ static void report_seams(nt_judge *judge, const nt_chains *chains)
 
 /* ---- entry ---- */
 
-static nmtan_status trace_boundary(nt_judge *judge)
+static nt_status trace_boundary(nt_judge *judge)
 {
 	nt_chains chains;
-	const nmtan_status status =
+	const nt_status status =
 		nt_chains_trace(&judge->surface, judge->boundary, judge->scratch, &chains, NULL);
 	for (size_t i = 0; !status && i < chains.count; i++) {
 		if (chains.closed[i])
@@ -282,23 +282,23 @@ static nmtan_status trace_boundary(nt_judge *judge)
 	return status;
 }
 
-static nmtan_status trace_seams(nt_judge *judge)
+static nt_status trace_seams(nt_judge *judge)
 {
 	nt_report_mesh *facts = judge->facts;
 	const size_t side_count = 3 * judge->surface.triangle_count;
 	uint8_t *marked = nt_scratch_alloc(judge->scratch, side_count, 1);
 	if (!marked)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	memset(marked, 0, side_count);
 	for (size_t i = 0; i < judge->mirror_edge_count; i++)
 		marked[judge->mirror_edges[i].sides[0]] = 1;
 	nt_chains chains;
-	nmtan_status status = nt_chains_trace(&judge->surface, marked, judge->scratch, &chains, NULL);
+	nt_status status = nt_chains_trace(&judge->surface, marked, judge->scratch, &chains, NULL);
 	if (status)
 		return status;
 	facts->seams = nt_arena_alloc(&judge->report->arena, chains.count, sizeof *facts->seams);
 	if (!facts->seams)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	for (size_t i = 0; i < chains.count; i++) {
 		status = describe_seam(judge, &chains, i, &facts->seams[i]);
 		if (status)
@@ -310,13 +310,13 @@ static nmtan_status trace_seams(nt_judge *judge)
 	if (chains.left_out > facts->left_out)
 		facts->left_out = chains.left_out;
 	report_seams(judge, &chains);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_judge_seams(nt_judge *judge)
+nt_status nt_judge_seams(nt_judge *judge)
 {
 	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
-	nmtan_status status = judge->facts->boundary_edges ? trace_boundary(judge) : NMTAN_OK;
+	nt_status status = judge->facts->boundary_edges ? trace_boundary(judge) : NT_OK;
 	nt_scratch_back(judge->scratch, mark);
 	if (!status && judge->mirror_edge_count)
 		status = trace_seams(judge);

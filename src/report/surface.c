@@ -13,7 +13,7 @@
 #include <string.h>
 #include "topology/orientation.h"
 
-static nmtan_status allocate_triangles(nt_surface *s, size_t count, nt_scratch *scratch)
+static nt_status allocate_triangles(nt_surface *s, size_t count, nt_scratch *scratch)
 {
 	s->corners = nt_scratch_alloc(scratch, 3 * count, sizeof *s->corners);
 	s->faces = nt_scratch_alloc(scratch, count, sizeof *s->faces);
@@ -24,7 +24,7 @@ static nmtan_status allocate_triangles(nt_surface *s, size_t count, nt_scratch *
 	s->areas = nt_scratch_alloc(scratch, count, sizeof *s->areas);
 	const bool complete = s->corners && s->faces && s->vertices && s->points && s->orientation &&
 		s->flatness && s->areas;
-	return complete ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+	return complete ? NT_OK : NT_ERROR_MEMORY;
 }
 
 static uint32_t vertex_of(const nt_mesh *mesh, size_t corner)
@@ -88,7 +88,7 @@ static uint32_t hash_position(const float *p)
 }
 
 /* Numbers positions in order of first use. */
-static nmtan_status weld_points(nt_surface *s, nt_scratch *scratch)
+static nt_status weld_points(nt_surface *s, nt_scratch *scratch)
 {
 	const nt_mesh *mesh = s->mesh;
 	const nt_scratch_mark mark = nt_scratch_here(scratch);
@@ -98,7 +98,7 @@ static nmtan_status weld_points(nt_surface *s, nt_scratch *scratch)
 	uint32_t *table = nt_scratch_alloc(scratch, capacity, sizeof *table); /* a vertex per point */
 	uint32_t *point_of = nt_scratch_alloc(scratch, mesh->vertex_count, sizeof *point_of);
 	if (!table || !point_of)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	memset(table, 0xff, capacity * sizeof *table);
 	memset(point_of, 0xff, mesh->vertex_count * sizeof *point_of);
 	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
@@ -123,7 +123,7 @@ static nmtan_status weld_points(nt_surface *s, nt_scratch *scratch)
 		s->points[c] = point_of[vertex];
 	}
 	nt_scratch_back(scratch, mark);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 static void measure_triangle(nt_surface *s, size_t t)
@@ -210,7 +210,7 @@ static void bucket_sides(const nt_surface *s, uint32_t *first, edge_end *ends)
 	}
 }
 
-static nmtan_status find_edges(nt_surface *s, nt_scratch *scratch)
+static nt_status find_edges(nt_surface *s, nt_scratch *scratch)
 {
 	const size_t side_count = 3 * s->triangle_count;
 	s->edge_first = nt_scratch_alloc(scratch, side_count + 1, sizeof *s->edge_first);
@@ -219,7 +219,7 @@ static nmtan_status find_edges(nt_surface *s, nt_scratch *scratch)
 	uint32_t *first = nt_scratch_alloc(scratch, s->point_count + 2, sizeof *first);
 	edge_end *ends = nt_scratch_alloc(scratch, side_count, sizeof *ends);
 	if (!s->edge_first || !s->sides || !first || !ends)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	bucket_sides(s, first, ends);
 	size_t total = 0;
 	for (size_t p = 0; p < s->point_count; p++) {
@@ -234,17 +234,17 @@ static nmtan_status find_edges(nt_surface *s, nt_scratch *scratch)
 	}
 	s->edge_first[s->edge_count] = (uint32_t)total;
 	nt_scratch_back(scratch, mark);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
-nmtan_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, nt_scratch *scratch)
+nt_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, nt_scratch *scratch)
 {
 	*surface = (nt_surface){.mesh = mesh,
 		.texcoords = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords};
 	size_t quads = 0;
 	for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
 		quads += mesh->face_sizes[f] == 4;
-	nmtan_status status = allocate_triangles(surface, mesh->face_count + quads, scratch);
+	nt_status status = allocate_triangles(surface, mesh->face_count + quads, scratch);
 	if (status)
 		return status;
 	cut_faces(surface);

@@ -41,9 +41,9 @@ typedef struct nt_surface {
 	uint32_t *sides;
 } nt_surface;
 
-/* Builds the surface of a loaded mesh. Everything is in scratch. Returns NMTAN_OK or
- * NMTAN_ERROR_MEMORY. */
-nmtan_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, nt_scratch *scratch);
+/* Builds the surface of a loaded mesh. Everything is in scratch. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
+nt_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, nt_scratch *scratch);
 
 /* The side after this one in its triangle; its first corner is where this one ends. */
 static inline uint32_t nt_side_next(uint32_t side)

@@ -112,13 +112,13 @@ static void report_kept(nt_judge *judge, const nt_tally *const *invalid, size_t 
 		nt_judge_report(judge, &kept, NULL);
 }
 
-static nmtan_status judge_each(nt_judge *judge)
+static nt_status judge_each(nt_judge *judge)
 {
 	const nt_surface *s = &judge->surface;
 	uint8_t *seen = nt_scratch_alloc(judge->scratch, tangent_count(judge), 1);
 	tangent_tallies *tt = nt_scratch_alloc(judge->scratch, 1, sizeof *tt);
 	if (!seen || !tt)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	memset(seen, 0, tangent_count(judge));
 	*tt = (tangent_tallies){.not_finite = {.code = NT_CODE_TAN_NOT_FINITE},
 		.zero = {.code = NT_CODE_TAN_ZERO}, .non_unit = {.code = NT_CODE_TAN_NON_UNIT},
@@ -139,7 +139,7 @@ static nmtan_status judge_each(nt_judge *judge)
 	report_kept(judge, all, sizeof all / sizeof all[0]);
 	nt_judge_report(judge, &tt->not_orthogonal, "the worst is %.3g degrees off",
 		judge->facts->worst_orthogonality);
-	return NMTAN_OK;
+	return NT_OK;
 }
 
 /* ---- signs ---- */
@@ -284,17 +284,17 @@ static void judge_directions(nt_judge *judge, const float *fresh)
 		"%.3g %% of the corners, the worst by %.4g degrees", 100.0 * share, worst);
 }
 
-static nmtan_status compare_with_fresh(nt_judge *judge)
+static nt_status compare_with_fresh(nt_judge *judge)
 {
 	const nt_mesh *mesh = judge->mesh;
 	float *fresh = nt_scratch_alloc(judge->scratch, 4 * mesh->corner_count, sizeof *fresh);
 	if (!fresh)
-		return NMTAN_ERROR_MEMORY;
+		return NT_ERROR_MEMORY;
 	const nmtan_mesh view = nt_mesh_view(mesh);
 	const nmtan_options options = {.threads = judge->options->threads};
 	nmtan_output output = {.tangents = fresh};
-	const nmtan_status status = nmtan_tangents(&view, &options, &output);
-	if (status == NMTAN_OK)
+	const nt_status status = nt_status_of(nmtan_tangents(&view, &options, &output));
+	if (status == NT_OK)
 		judge_directions(judge, fresh);
 	return status;
 }
@@ -328,12 +328,12 @@ static void judge_presence(nt_judge *judge)
 	}
 }
 
-nmtan_status nt_judge_tangents(nt_judge *judge)
+nt_status nt_judge_tangents(nt_judge *judge)
 {
 	const nt_mesh *mesh = judge->mesh;
 	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
 	judge_presence(judge);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (judge->facts->judged_tangents) {
 		status = judge_each(judge);
 		if (!status && mesh->texcoords)

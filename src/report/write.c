@@ -45,7 +45,7 @@ bool nt_report_format_of_path(const char *path, nt_report_format *format)
 	return false;
 }
 
-nmtan_status nt_report_write(const nt_report *const *reports, size_t count, nt_report_format format,
+nt_status nt_report_write(const nt_report *const *reports, size_t count, nt_report_format format,
 	const nt_report_style *style, nt_report_sink sink, void *user, nt_error *error)
 {
 	nt_report_list list = {.items = reports, .count = count};
@@ -53,18 +53,18 @@ nmtan_status nt_report_write(const nt_report *const *reports, size_t count, nt_r
 		list.style = *style;
 	nt_buffer out = {0};
 	formats[format].write(&list, &out);
-	const nmtan_status status = out.failed ? nt_fail_memory(error)
+	const nt_status status = out.failed ? nt_fail_memory(error)
 					       : sink(user, out.data ? out.data : "", out.size, error);
 	nt_buffer_free(&out);
 	return status;
 }
 
-nmtan_status nt_report_write_uv(const nt_report *report, uint32_t mesh, bool *drawn, nt_report_sink sink,
+nt_status nt_report_write_uv(const nt_report *report, uint32_t mesh, bool *drawn, nt_report_sink sink,
 	void *user, nt_error *error)
 {
 	nt_buffer out = {0};
 	*drawn = nt_write_uv_svg(report, mesh, &out);
-	nmtan_status status = NMTAN_OK;
+	nt_status status = NT_OK;
 	if (out.failed)
 		status = nt_fail_memory(error);
 	else if (*drawn)

@@ -23,19 +23,19 @@ typedef enum nt_report_format {
 bool nt_report_format_of_path(const char *path, nt_report_format *format);
 
 /* Takes a piece of the output. */
-typedef nmtan_status (*nt_report_sink)(void *user, const void *bytes, size_t size, nt_error *error);
+typedef nt_status (*nt_report_sink)(void *user, const void *bytes, size_t size, nt_error *error);
 
 /*
  * Writes reports, one for each input, as one document. style may be NULL.
  *
- * Returns NMTAN_OK, NMTAN_ERROR_MEMORY, or what the sink returned.
+ * Returns NT_OK, NT_ERROR_MEMORY, or what the sink returned.
  */
-nmtan_status nt_report_write(const nt_report *const *reports, size_t count, nt_report_format format,
+nt_status nt_report_write(const nt_report *const *reports, size_t count, nt_report_format format,
 	const nt_report_style *style, nt_report_sink sink, void *user, nt_error *error);
 
 /* Writes the UV layout of one mesh as SVG. *drawn receives false, and nothing is written, where it has no
  * texture coordinates; the report must have been built with keep_geometry. Statuses as above. */
-nmtan_status nt_report_write_uv(const nt_report *report, uint32_t mesh, bool *drawn, nt_report_sink sink,
+nt_status nt_report_write_uv(const nt_report *report, uint32_t mesh, bool *drawn, nt_report_sink sink,
 	void *user, nt_error *error);
 
 #endif

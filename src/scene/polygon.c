@@ -337,7 +337,7 @@ static void fan(size_t count, uint32_t *triangles)
 	}
 }
 
-nmtan_status nt_polygon_triangulate(const float (*points)[3], size_t count, uint32_t *triangles,
+nt_status nt_polygon_triangulate(const float (*points)[3], size_t count, uint32_t *triangles,
 	bool *sound)
 {
 	corner stack_corners[STACK_CORNERS];
@@ -346,7 +346,7 @@ nmtan_status nt_polygon_triangulate(const float (*points)[3], size_t count, uint
 	corner *corners = large ? nt_alloc(count, sizeof *corners) : stack_corners;
 	/* cell_begin, cell_end and members have count numbers each, the queue has 2 * count. */
 	uint32_t *numbers = large ? nt_alloc(count, 5 * sizeof *numbers) : stack_numbers;
-	nmtan_status status = NMTAN_ERROR_MEMORY;
+	nt_status status = NT_ERROR_MEMORY;
 	if (!corners || !numbers)
 		goto out;
 
@@ -369,7 +369,7 @@ nmtan_status nt_polygon_triangulate(const float (*points)[3], size_t count, uint
 		o.sound = false;
 	}
 	*sound = o.sound;
-	status = NMTAN_OK;
+	status = NT_OK;
 out:
 	if (large) {
 		free(corners);

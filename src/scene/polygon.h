@@ -16,9 +16,9 @@
  *   sound      receives false when no proper triangulation was found (self-intersecting, collinear,
  *              not finite): it is then finished somehow, still with count - 2 triangles
  *
- * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ * Returns NT_OK or NT_ERROR_MEMORY.
  */
-nmtan_status nt_polygon_triangulate(const float (*points)[3], size_t count, uint32_t *triangles,
+nt_status nt_polygon_triangulate(const float (*points)[3], size_t count, uint32_t *triangles,
 	bool *sound);
 
 #endif

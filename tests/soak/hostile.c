@@ -181,20 +181,20 @@ static bool run_input(uint32_t *chance)
 	nt_summary summary;
 	nt_error error;
 	nt_error_clear(&error);
-	const nmtan_status status = nt_run(input, check ? NULL : output, &settings, &summary, &error);
+	const nt_status status = nt_run(input, check ? NULL : output, &settings, &summary, &error);
 	const bool met = met_geometry(&summary, &error);
 	nt_summary_free(&summary);
 	const size_t made = empty_folder(output_folder);
-	if (status == NMTAN_ERROR_INTERNAL || (status && strlen(error.message) < 8))
+	if (status == NT_ERROR_INTERNAL || (status && strlen(error.message) < 8))
 		wrong("status %d, \"%s\"", (int)status, error.message);
-	if ((made == 0) != (status != NMTAN_OK || check))
+	if ((made == 0) != (status != NT_OK || check))
 		wrong("status %d and %zu files", (int)status, made);
 	if (status && getenv("NT_VERBOSE"))
 		fprintf(stderr, "%d %s:%zu:%lld %s: %s\n", (int)status, error.place.file, error.place.line,
 			(long long)error.place.offset, error.place.pointer, error.message);
-	shared->memory += status == NMTAN_ERROR_MEMORY;
-	shared->written += status == NMTAN_OK;
-	shared->refused += status != NMTAN_OK;
+	shared->memory += status == NT_ERROR_MEMORY;
+	shared->written += status == NT_OK;
+	shared->refused += status != NT_OK;
 	return met;
 }
 

@@ -81,22 +81,22 @@ static inline char *text_of(const char *name)
 {
 	nt_file file;
 	nt_error error;
-	assert_int_equal(nt_file_open(&file, in_folder(name), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder(name), &error), NT_OK);
 	char *text = calloc(file.size + 1, 1);
 	memcpy(text, file.data, file.size);
 	nt_file_close(&file);
 	return text;
 }
 
-static inline nmtan_status compose(nt_scene *scene, nt_write_options options, const char *name,
+static inline nt_status compose(nt_scene *scene, nt_write_options options, const char *name,
 	nt_error *error)
 {
 	nt_output *output;
 	options.path = in_folder(name);
 	options.format = strstr(name, ".glb") ? NT_FORMAT_GLB : NT_FORMAT_GLTF;
-	assert_int_equal(nt_output_create(&output, NULL, error), NMTAN_OK);
-	const nmtan_status status = nt_gltf_compose(scene, &options, output, error);
-	if (status == NMTAN_OK)
+	assert_int_equal(nt_output_create(&output, NULL, error), NT_OK);
+	const nt_status status = nt_gltf_compose(scene, &options, output, error);
+	if (status == NT_OK)
 		return nt_output_commit(output, error);
 	nt_output_abort(output);
 	return status;
@@ -105,8 +105,8 @@ static inline nmtan_status compose(nt_scene *scene, nt_write_options options, co
 static inline void compose_well(nt_scene *scene, nt_write_options options, const char *name)
 {
 	nt_error error;
-	const nmtan_status status = compose(scene, options, name, &error);
-	if (status != NMTAN_OK)
+	const nt_status status = compose(scene, options, name, &error);
+	if (status != NT_OK)
 		fail_msg("%s", error.message);
 }
 
@@ -120,7 +120,7 @@ static inline bool find_companion(void *user, const char *uri, const unsigned ch
 	opened *file = user;
 	nt_error error;
 	if (strstr(uri, ".bin") == NULL ||
-		nt_file_open(&file->companion, in_folder(uri), &error) != NMTAN_OK)
+		nt_file_open(&file->companion, in_folder(uri), &error) != NT_OK)
 		return false;
 	*bytes = file->companion.data;
 	*size = file->companion.size;
@@ -131,10 +131,10 @@ static inline opened open_back(const char *name)
 {
 	opened file = {.companion = {.fd = -1}};
 	nt_error error;
-	assert_int_equal(nt_file_open(&file.main, in_folder(name), &error), NMTAN_OK);
-	const nmtan_status status = nt_reread_open(&file.reread, file.main.data, file.main.size,
+	assert_int_equal(nt_file_open(&file.main, in_folder(name), &error), NT_OK);
+	const nt_status status = nt_reread_open(&file.reread, file.main.data, file.main.size,
 		find_companion, &file, &error);
-	if (status != NMTAN_OK)
+	if (status != NT_OK)
 		fail_msg("%s", error.message);
 	return file;
 }
@@ -151,9 +151,9 @@ static inline nt_reread_array array_of(const opened *file, size_t mesh, size_t p
 {
 	nt_reread_array array;
 	nt_error error;
-	const nmtan_status status =
+	const nt_status status =
 		nt_reread_attribute(file->reread, mesh, primitive, name, &array, &error);
-	if (status != NMTAN_OK)
+	if (status != NT_OK)
 		fail_msg("%s", error.message);
 	return array;
 }

@@ -89,7 +89,7 @@ static inline nt_report *hand_report(const hand_mesh *h, const nt_report_options
 {
 	nt_report *report = NULL;
 	nt_error error;
-	assert_int_equal(nt_report_build(&h->scene, options, &report, &error), NMTAN_OK);
+	assert_int_equal(nt_report_build(&h->scene, options, &report, &error), NT_OK);
 	return report;
 }
 

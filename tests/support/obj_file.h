@@ -14,7 +14,7 @@
 typedef struct reading {
 	nt_scene scene;
 	nt_error error;
-	nmtan_status status;
+	nt_status status;
 	unsigned char *bytes;
 } reading;
 
@@ -47,7 +47,7 @@ static inline const nt_mesh *only_mesh(reading *r, const char *text)
 	open_text(r, text);
 	if (r->status)
 		print_message("%zu: %s\n", r->error.place.line, r->error.message);
-	assert_int_equal(r->status, NMTAN_OK);
+	assert_int_equal(r->status, NT_OK);
 	assert_int_equal(r->scene.mesh_count, 1);
 	return &r->scene.meshes[0];
 }
@@ -56,10 +56,10 @@ static inline void assert_fails(const char *text, size_t line, const char *messa
 {
 	reading r;
 	open_text(&r, text);
-	if (r.status != NMTAN_ERROR_INPUT || r.error.place.line != line ||
+	if (r.status != NT_ERROR_INPUT || r.error.place.line != line ||
 		strcmp(r.error.message, message) != 0)
 		print_message("[%s] %d line %zu: %s\n", text, (int)r.status, r.error.place.line, r.error.message);
-	assert_int_equal(r.status, NMTAN_ERROR_INPUT);
+	assert_int_equal(r.status, NT_ERROR_INPUT);
 	assert_int_equal(r.error.place.line, line);
 	assert_string_equal(r.error.message, message);
 	assert_string_equal(r.error.place.file, "folder/test.obj");

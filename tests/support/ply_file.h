@@ -12,7 +12,7 @@
 typedef struct reading {
 	nt_scene scene;
 	nt_error error;
-	nmtan_status status;
+	nt_status status;
 	unsigned char *bytes;
 	const nt_mesh *mesh; /* NULL after an error */
 } reading;
@@ -42,7 +42,7 @@ static inline void open_sound(reading *r, const void *bytes, size_t size)
 	if (r->status)
 		print_message("line %zu, offset %lld: %s\n", r->error.place.line,
 			(long long)r->error.place.offset, r->error.message);
-	assert_int_equal(r->status, NMTAN_OK);
+	assert_int_equal(r->status, NT_OK);
 }
 
 static inline void open_text(reading *r, const char *text)
@@ -68,7 +68,7 @@ static inline void assert_numbers(const uint32_t *numbers, size_t count, const u
 #define NUMBERS(...) sizeof((uint32_t[]){__VA_ARGS__}) / sizeof(uint32_t), (uint32_t[]){__VA_ARGS__}
 
 /* Refused with this message at this line (ASCII, header) or offset (binary; line 0). */
-static inline void assert_refused_bytes(const void *bytes, size_t size, nmtan_status status, size_t line,
+static inline void assert_refused_bytes(const void *bytes, size_t size, nt_status status, size_t line,
 	uint64_t offset, const char *message)
 {
 	reading r;
@@ -83,7 +83,7 @@ static inline void assert_refused_bytes(const void *bytes, size_t size, nmtan_st
 
 static inline void assert_refused(const char *text, size_t line, const char *message)
 {
-	assert_refused_bytes(text, strlen(text), NMTAN_ERROR_INPUT, line, NT_NO_OFFSET, message);
+	assert_refused_bytes(text, strlen(text), NT_ERROR_INPUT, line, NT_NO_OFFSET, message);
 }
 
 static inline bool has_finding(const reading *r, nt_code code, size_t line, size_t count, const char *detail)

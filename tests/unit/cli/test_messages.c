@@ -17,17 +17,17 @@ static void an_error_stands_behind_its_line_offset_or_pointer(void **state)
 	(void)state;
 	nt_buffer out = {0};
 	nt_error error;
-	nt_fail_line(&error, NMTAN_ERROR_INPUT, 12, "vertex 9 of 8");
+	nt_fail_line(&error, NT_ERROR_INPUT, 12, "vertex 9 of 8");
 	nt_error_in_file(&error, "a.obj");
 	nt_message_error(&out, &error, plain);
 	says(&out, "nmtan: a.obj:12: vertex 9 of 8\n");
 
-	nt_fail_offset(&error, NMTAN_ERROR_INPUT, 0, "no magic");
+	nt_fail_offset(&error, NT_ERROR_INPUT, 0, "no magic");
 	nt_error_in_file(&error, "a.glb");
 	nt_message_error(&out, &error, plain);
 	says(&out, "nmtan: a.glb: at byte 0: no magic\n");
 
-	nt_fail_pointer(&error, NMTAN_ERROR_INPUT, "/accessors/3/count", "is -1");
+	nt_fail_pointer(&error, NT_ERROR_INPUT, "/accessors/3/count", "is -1");
 	nt_error_in_file(&error, "-");
 	nt_message_error(&out, &error, plain);
 	says(&out, "nmtan: standard input: /accessors/3/count: is -1\n");
@@ -36,7 +36,7 @@ static void an_error_stands_behind_its_line_offset_or_pointer(void **state)
 	nt_message_error(&out, &error, plain);
 	says(&out, "nmtan: out of memory\n");
 
-	nt_fail(&error, NMTAN_ERROR_USAGE, "bad");
+	nt_fail(&error, NT_ERROR_USAGE, "bad");
 	nt_message_error(&out, &error, coloured);
 	says(&out, "\033[1;31mnmtan:\033[0m bad\n");
 }
@@ -46,7 +46,7 @@ static void text_from_files_cannot_steer_the_terminal(void **state)
 	(void)state;
 	nt_buffer out = {0};
 	nt_error error;
-	nt_fail(&error, NMTAN_ERROR_INPUT, "found '%s'", "\033[2J\r\n\x7f\xc3\xa9");
+	nt_fail(&error, NT_ERROR_INPUT, "found '%s'", "\033[2J\r\n\x7f\xc3\xa9");
 	nt_error_in_file(&error, "a\tb");
 	nt_message_error(&out, &error, plain);
 	says(&out, "nmtan: a\\x09b: found '\\x1b[2J\\x0d\\x0a\\x7f\xc3\xa9'\n");
@@ -165,13 +165,13 @@ static void of_many_exit_codes_the_worst_counts(void **state)
 			assert_int_equal(nt_exit_worse(order[k], order[i]), order[i]);
 		}
 	assert_int_equal(nt_exit_worse(1, 0), 1);
-	assert_int_equal(nt_exit_code(NMTAN_OK), 0);
-	assert_int_equal(nt_exit_code(NMTAN_ERROR_USAGE), 1);
-	assert_int_equal(nt_exit_code(NMTAN_ERROR_IO), 2);
-	assert_int_equal(nt_exit_code(NMTAN_ERROR_INPUT), 3);
-	assert_int_equal(nt_exit_code(NMTAN_ERROR_MEMORY), 4);
-	assert_int_equal(nt_exit_code(NMTAN_ERROR_INTERNAL), 4);
-	assert_int_equal(nt_exit_code(NMTAN_ERROR_UNSUPPORTED), 5);
+	assert_int_equal(nt_exit_code(NT_OK), 0);
+	assert_int_equal(nt_exit_code(NT_ERROR_USAGE), 1);
+	assert_int_equal(nt_exit_code(NT_ERROR_IO), 2);
+	assert_int_equal(nt_exit_code(NT_ERROR_INPUT), 3);
+	assert_int_equal(nt_exit_code(NT_ERROR_MEMORY), 4);
+	assert_int_equal(nt_exit_code(NT_ERROR_INTERNAL), 4);
+	assert_int_equal(nt_exit_code(NT_ERROR_UNSUPPORTED), 5);
 }
 
 int main(void)

@@ -6,7 +6,7 @@
 enum { MOST_WORDS = 24 };
 
 /* Parses "nmtan" and these words, which end with NULL. */
-static nmtan_status parse(nt_command *command, nt_error *error, const char *const *words)
+static nt_status parse(nt_command *command, nt_error *error, const char *const *words)
 {
 	static char *argv[MOST_WORDS + 1];
 	static char name[] = "nmtan";
@@ -33,7 +33,7 @@ static void refuses(const char *text, const char *const *words)
 {
 	nt_command command;
 	nt_error error;
-	assert_int_equal(parse(&command, &error, words), NMTAN_ERROR_USAGE);
+	assert_int_equal(parse(&command, &error, words), NT_ERROR_USAGE);
 	if (!strstr(error.message, text))
 		fail_msg("'%s' does not say '%s'", error.message, text);
 }
@@ -241,7 +241,7 @@ static void names_must_be_as_many_as_the_form_takes(void **state)
 	(void)state;
 	nt_command c;
 	nt_error error;
-	assert_int_equal(parse(&c, &error, (const char *const[]){NULL}), NMTAN_ERROR_USAGE);
+	assert_int_equal(parse(&c, &error, (const char *const[]){NULL}), NT_ERROR_USAGE);
 	refuses("'a'", WORDS("a"));
 	refuses("'c'", WORDS("a", "b", "c"));
 	refuses("no input", WORDS("--check"));

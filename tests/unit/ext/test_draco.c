@@ -65,8 +65,8 @@ static nt_draco_block encoded(const nt_draco_mesh *mesh)
 {
 	nt_draco_block block;
 	nt_error error;
-	const nmtan_status status = nt_draco_encode(mesh, &block, &error);
-	if (status != NMTAN_OK)
+	const nt_status status = nt_draco_encode(mesh, &block, &error);
+	if (status != NT_OK)
 		fail_msg("%s", error.message);
 	return block;
 }
@@ -75,8 +75,8 @@ static nt_draco *decoded(const nt_draco_block *block)
 {
 	nt_draco *result;
 	nt_error error;
-	const nmtan_status status = nt_draco_decode(&result, block->bytes, block->size, 0, true, &error);
-	if (status != NMTAN_OK)
+	const nt_status status = nt_draco_decode(&result, block->bytes, block->size, 0, true, &error);
+	if (status != NT_OK)
 		fail_msg("%s", error.message);
 	return result;
 }
@@ -208,11 +208,11 @@ static void non_manifold_meshes_survive_edgebreaker(void **state)
 	nt_draco_block_free(&block);
 }
 
-static nmtan_status encode_status(const grid *g, nt_error *error)
+static nt_status encode_status(const grid *g, nt_error *error)
 {
 	nt_draco_block block;
-	const nmtan_status status = nt_draco_encode(&g->mesh, &block, error);
-	assert_true((status == NMTAN_OK) == (block.bytes != NULL));
+	const nt_status status = nt_draco_encode(&g->mesh, &block, error);
+	assert_true((status == NT_OK) == (block.bytes != NULL));
 	nt_draco_block_free(&block);
 	return status;
 }
@@ -224,64 +224,64 @@ static void what_cannot_be_encoded_is_refused(void **state)
 	nt_error error;
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
 	g.tangents[3][2] = NAN;
-	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(encode_status(&g, &error), NT_ERROR_ARGUMENT);
 	assert_non_null(strstr(error.message, "point 3 in attribute 7"));
 	g.attributes[3].quantization.bits = 0; /* as it is, it may be anything */
-	assert_int_equal(encode_status(&g, &error), NMTAN_OK);
+	assert_int_equal(encode_status(&g, &error), NT_OK);
 
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
 	g.indices[7][1] = POINTS;
-	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_INDEX);
+	assert_int_equal(encode_status(&g, &error), NT_ERROR_INDEX);
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 25);
-	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(encode_status(&g, &error), NT_ERROR_ARGUMENT);
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
 	g.positions[2][0] = 3e38f;
-	assert_int_equal(encode_status(&g, &error), NMTAN_OK);
+	assert_int_equal(encode_status(&g, &error), NT_OK);
 	g.positions[3][0] = -3e38f; /* the range is infinite */
-	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(encode_status(&g, &error), NT_ERROR_ARGUMENT);
 	assert_non_null(strstr(error.message, "attribute 0"));
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
 	for (int p = 0; p < POINTS; p++)
 		memset(g.texcoords[p], 0, sizeof g.texcoords[p]);
-	assert_int_equal(encode_status(&g, &error), NMTAN_OK);
+	assert_int_equal(encode_status(&g, &error), NT_OK);
 	g.texcoords[7][1] = 1e-40f; /* cells in one unit: more than a float holds */
-	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(encode_status(&g, &error), NT_ERROR_ARGUMENT);
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
 	/* the coder's table would have 2^32 rows, and has none */
 	uint32_t large[4 * POINTS] = {0};
 	g.attributes[4].component_type = NT_GLTF_UINT;
 	g.attributes[4].data = large;
 	large[5] = 1u << 24;
-	assert_int_equal(encode_status(&g, &error), NMTAN_OK);
+	assert_int_equal(encode_status(&g, &error), NT_OK);
 	large[5]++;
-	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(encode_status(&g, &error), NT_ERROR_ARGUMENT);
 	large[5] = UINT32_MAX;
-	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(encode_status(&g, &error), NT_ERROR_ARGUMENT);
 	assert_non_null(strstr(error.message, "24 bits"));
 	g.attributes[4].component_type = NT_GLTF_INT; /* -1 */
-	assert_int_equal(encode_status(&g, &error), NMTAN_OK);
+	assert_int_equal(encode_status(&g, &error), NT_OK);
 	large[5] = (uint32_t)-(1 << 24) - 1;
-	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(encode_status(&g, &error), NT_ERROR_ARGUMENT);
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
 	g.attributes[4].quantization.bits = 8; /* integers */
-	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(encode_status(&g, &error), NT_ERROR_ARGUMENT);
 	make_grid(&g, NT_DRACO_SEQUENTIAL, 12);
 	g.attributes[0].quantization.explicit_box = true;
 	g.attributes[0].quantization.range = 1; /* positions reach 4.4 */
-	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(encode_status(&g, &error), NT_ERROR_ARGUMENT);
 	g.mesh.face_count = 0;
-	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_INPUT);
+	assert_int_equal(encode_status(&g, &error), NT_ERROR_INPUT);
 	make_grid(&g, NT_DRACO_EDGEBREAKER, 12);
 	memset(g.indices, 0, sizeof g.indices); /* nothing but degenerate faces */
-	assert_int_equal(encode_status(&g, &error), NMTAN_ERROR_INPUT);
+	assert_int_equal(encode_status(&g, &error), NT_ERROR_INPUT);
 }
 
-static nmtan_status decode_status(const unsigned char *bytes, size_t size, size_t max_faces,
+static nt_status decode_status(const unsigned char *bytes, size_t size, size_t max_faces,
 	nt_error *error)
 {
 	nt_draco *result;
-	const nmtan_status status = nt_draco_decode(&result, bytes, size, max_faces, true, error);
-	assert_true((status == NMTAN_OK) == (result != NULL));
+	const nt_status status = nt_draco_decode(&result, bytes, size, max_faces, true, error);
+	assert_true((status == NT_OK) == (result != NULL));
 	nt_draco_free(result);
 	return status;
 }
@@ -290,24 +290,24 @@ static void damaged_streams_are_refused(void **state)
 {
 	(void)state;
 	nt_error error;
-	assert_int_equal(decode_status((const unsigned char *)"", 0, 0, &error), NMTAN_ERROR_INPUT);
+	assert_int_equal(decode_status((const unsigned char *)"", 0, 0, &error), NT_ERROR_INPUT);
 	assert_int_equal(decode_status((const unsigned char *)"DRACO\2\2\1\1\0\0", 11, 0, &error),
-		NMTAN_ERROR_INPUT);
+		NT_ERROR_INPUT);
 	assert_int_equal(decode_status((const unsigned char *)"DRACO\2\3\0\1\0\0", 11, 0, &error),
-		NMTAN_ERROR_UNSUPPORTED); /* a point cloud */
+		NT_ERROR_UNSUPPORTED); /* a point cloud */
 	/* 2^31 faces in a few bytes: sequential, faces and points as variable numbers */
 	assert_int_equal(decode_status((const unsigned char *)"DRACO\2\2\1\0\0\0\x80\x80\x80\x80\x08\x03\1", 18,
-				 0, &error), NMTAN_ERROR_TOO_LARGE);
+				 0, &error), NT_ERROR_TOO_LARGE);
 	assert_non_null(strstr(error.message, "2147483648 faces"));
 
 	grid g;
 	make_grid(&g, NT_DRACO_EDGEBREAKER, 12);
 	nt_draco_block block = encoded(&g.mesh);
-	assert_int_equal(decode_status(block.bytes, block.size, FACES - 1, &error), NMTAN_OK);
+	assert_int_equal(decode_status(block.bytes, block.size, FACES - 1, &error), NT_OK);
 	assert_int_equal(decode_status(block.bytes, block.size, FACES - 2, &error),
-		NMTAN_ERROR_TOO_LARGE);
+		NT_ERROR_TOO_LARGE);
 	for (size_t size = 0; size < block.size; size += 7) {
-		assert_int_equal(decode_status(block.bytes, size, 0, &error), NMTAN_ERROR_INPUT);
+		assert_int_equal(decode_status(block.bytes, size, 0, &error), NT_ERROR_INPUT);
 		assert_true(error.place.offset <= size); /* how far the decoder came */
 	}
 	nt_draco_block_free(&block);
@@ -348,7 +348,7 @@ static size_t mutate(const unsigned char *bytes, size_t size, unsigned count, ui
 			copy[11 + random_bits(seed) % (size - 11)] ^= (unsigned char)(1 << random_bits(seed) % 8);
 		nt_draco *result;
 		nt_error error;
-		if (nt_draco_decode(&result, copy, size, max_faces, i % 2, &error) == NMTAN_OK) {
+		if (nt_draco_decode(&result, copy, size, max_faces, i % 2, &error) == NT_OK) {
 			touch(nt_draco_get(result));
 			good++;
 		}

@@ -8,10 +8,10 @@ static nt_json *parse(const char *text)
 	nt_json *document;
 	nt_error error;
 	nt_error_clear(&error);
-	const nmtan_status status = nt_json_parse(&document, text, strlen(text), &error);
+	const nt_status status = nt_json_parse(&document, text, strlen(text), &error);
 	if (status)
 		print_error("%s: %s\n", text, error.message);
-	assert_int_equal(status, NMTAN_OK);
+	assert_int_equal(status, NT_OK);
 	return document;
 }
 
@@ -19,7 +19,7 @@ static void check_dump(const nt_json *document, const char *expected)
 {
 	nt_buffer text = {0};
 	nt_error error;
-	assert_int_equal(nt_json_dump(document, &text, &error), NMTAN_OK);
+	assert_int_equal(nt_json_dump(document, &text, &error), NT_OK);
 	assert_string_equal(text.data, expected);
 	nt_buffer_free(&text);
 }
@@ -30,9 +30,9 @@ static void check_refused(const char *text, size_t size, uint64_t offset)
 	nt_json *document;
 	nt_error error;
 	nt_error_clear(&error);
-	assert_int_equal(nt_json_parse(&document, text, size, &error), NMTAN_ERROR_INPUT);
+	assert_int_equal(nt_json_parse(&document, text, size, &error), NT_ERROR_INPUT);
 	assert_null(document);
-	assert_int_equal(error.status, NMTAN_ERROR_INPUT);
+	assert_int_equal(error.status, NT_ERROR_INPUT);
 	assert_true(strlen(error.message) > 10);
 	if (error.place.offset != offset)
 		print_error("%s: %s\n", text, error.message);
@@ -97,7 +97,7 @@ static void nesting_is_capped(void **state)
 	check_refused(text, sizeof text, NT_JSON_MAX_DEPTH);
 	nt_json *document;
 	nt_error error;
-	assert_int_equal(nt_json_parse(&document, text + 1, sizeof text - 2, &error), NMTAN_OK);
+	assert_int_equal(nt_json_parse(&document, text + 1, sizeof text - 2, &error), NT_OK);
 	nt_json_free(document);
 }
 

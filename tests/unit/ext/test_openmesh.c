@@ -10,7 +10,7 @@ static nt_halfedges *built(size_t vertex_count, const uint32_t (*triangles)[3], 
 	nt_halfedges *mesh;
 	nt_error error;
 	assert_int_equal(nt_halfedges_build(&mesh, vertex_count, &triangles[0][0], count, &error),
-		NMTAN_OK);
+		NT_OK);
 	return mesh;
 }
 
@@ -62,7 +62,7 @@ static nt_walks boundary_of(const nt_halfedges *mesh, const uint32_t (*triangles
 		marked[s] = side_between(triangles, count, triangles[s / 3][(s + 1) % 3], triangles[s / 3][s % 3]) ==
 			NT_OPEN;
 	nt_walks walks;
-	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NMTAN_OK);
+	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NT_OK);
 	assert_sound(&walks, triangles);
 	return walks;
 }
@@ -107,7 +107,7 @@ static void closed_seams_are_walked_round(void **state)
 	marked[side_between(cube, 12, 5, 4)] = 1;
 	marked[side_between(cube, 12, 5, 7)] = 1;
 	marked[side_between(cube, 12, 4, 6)] = 1;
-	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NMTAN_OK);
+	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NT_OK);
 	assert_sound(&walks, cube);
 	assert_int_equal(walks.count, 1);
 	assert_true(walks.closed[0]);
@@ -119,7 +119,7 @@ static void closed_seams_are_walked_round(void **state)
 
 	/* the rim and one upright edge: vertex 4 is a junction, so the rim begins there */
 	marked[side_between(cube, 12, 0, 4)] = 1;
-	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NMTAN_OK);
+	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NT_OK);
 	assert_sound(&walks, cube);
 	assert_int_equal(walks.count, 2);
 	assert_true(walks.closed[0]);
@@ -139,7 +139,7 @@ static void open_chain_is_ordered_from_end_to_end(void **state)
 	marked[side_between(cube, 12, 1, 5)] = 1;
 	marked[side_between(cube, 12, 5, 7)] = 1;
 	nt_walks walks;
-	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NMTAN_OK);
+	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NT_OK);
 	assert_sound(&walks, cube);
 	assert_int_equal(walks.count, 1);
 	assert_false(walks.closed[0]);
@@ -165,7 +165,7 @@ static void moebius_strip_loses_nothing(void **state)
 	uint8_t marked[15] = {0};
 	marked[14] = 1; /* a side of the triangle left out is not lost */
 	nt_walks walks;
-	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NMTAN_OK);
+	assert_int_equal(nt_halfedges_chains(mesh, marked, &walks, NULL), NT_OK);
 	assert_sound(&walks, band);
 	assert_int_equal(walks.count, 1);
 	assert_int_equal(walks.left[0], 14);
@@ -209,11 +209,11 @@ static void empty_mesh_and_bad_index_are_handled(void **state)
 	nt_halfedges_free(mesh);
 
 	nt_error error;
-	assert_int_equal(nt_halfedges_build(&mesh, 5, &strip[0][0], 4, &error), NMTAN_ERROR_INDEX);
+	assert_int_equal(nt_halfedges_build(&mesh, 5, &strip[0][0], 4, &error), NT_ERROR_INDEX);
 	assert_null(mesh);
 	assert_non_null(strstr(error.message, "vertex 5 of 5"));
 	assert_int_equal(nt_halfedges_build(&mesh, 5, &strip[0][0], SIZE_MAX / 3, &error),
-		NMTAN_ERROR_TOO_LARGE);
+		NT_ERROR_TOO_LARGE);
 }
 
 /* One vertex with 60 000 triangles, given in an order that hops around: without care each of them costs
@@ -234,7 +234,7 @@ static void hub_is_not_quadratic(void **state)
 	const clock_t begin = clock();
 	nt_halfedges *mesh = built(SPOKES + 1, (const uint32_t(*)[3])triangles, SPOKES);
 	nt_walks loops;
-	assert_int_equal(nt_halfedges_chains(mesh, rim, &loops, NULL), NMTAN_OK);
+	assert_int_equal(nt_halfedges_chains(mesh, rim, &loops, NULL), NT_OK);
 	const double seconds = (double)(clock() - begin) / CLOCKS_PER_SEC;
 	assert_int_equal(loops.count, 1);
 	assert_int_equal(loops.first[1], SPOKES);

@@ -7,7 +7,7 @@
 static nt_model *new_model(void)
 {
 	nt_model *model;
-	assert_int_equal(nt_model_create(&model, "nmtan test", NULL), NMTAN_OK);
+	assert_int_equal(nt_model_create(&model, "nmtan test", NULL), NT_OK);
 	return model;
 }
 
@@ -15,7 +15,7 @@ static nt_model *new_model(void)
 static char *text_of(nt_model *model, uint64_t length, nt_model_buffer buffer, const char *uri)
 {
 	nt_model_text text;
-	assert_int_equal(nt_model_json(model, length, buffer, uri, &text, NULL), NMTAN_OK);
+	assert_int_equal(nt_model_json(model, length, buffer, uri, &text, NULL), NT_OK);
 	assert_true(text.cut <= text.size);
 	char *copy = calloc(text.size + 1, 1);
 	memcpy(copy, text.data, text.size);
@@ -103,38 +103,38 @@ static void reread_finds_attributes_in_companions(void **state)
 	nt_reread *reread;
 	nt_error error;
 	assert_int_equal(nt_reread_open(&reread, (const unsigned char *)text, strlen(text), find_bytes,
-				 &file, &error), NMTAN_OK);
+				 &file, &error), NT_OK);
 	assert_int_equal(nt_reread_mesh_count(reread), 1);
 	assert_int_equal(nt_reread_primitive_count(reread, 0), 1);
 	assert_int_equal(nt_reread_primitive_count(reread, 1), 0);
 	nt_reread_array array;
-	assert_int_equal(nt_reread_attribute(reread, 0, 0, "POSITION", &array, &error), NMTAN_OK);
+	assert_int_equal(nt_reread_attribute(reread, 0, 0, "POSITION", &array, &error), NT_OK);
 	assert_int_equal(array.count, 3);
 	assert_int_equal(array.stride_bytes, 12);
 	assert_int_equal(array.components, 3);
 	assert_memory_equal(array.data, positions, sizeof positions);
-	assert_int_equal(nt_reread_attribute(reread, 0, 0, NULL, &array, &error), NMTAN_OK);
+	assert_int_equal(nt_reread_attribute(reread, 0, 0, NULL, &array, &error), NT_OK);
 	assert_int_equal(array.component_type, NT_GLTF_USHORT);
 	assert_memory_equal(array.data, indices, sizeof indices);
-	assert_int_equal(nt_reread_attribute(reread, 0, 0, "TANGENT", &array, &error), NMTAN_OK);
+	assert_int_equal(nt_reread_attribute(reread, 0, 0, "TANGENT", &array, &error), NT_OK);
 	assert_null(array.data);
-	assert_int_equal(nt_reread_attribute(reread, 0, 1, NULL, &array, &error), NMTAN_ERROR_INPUT);
+	assert_int_equal(nt_reread_attribute(reread, 0, 1, NULL, &array, &error), NT_ERROR_INPUT);
 	nt_reread_free(reread);
 
 	/* the buffer is not there, or shorter than the document says */
 	file.name = "other.bin";
 	assert_int_equal(nt_reread_open(&reread, (const unsigned char *)text, strlen(text), find_bytes,
-				 &file, &error), NMTAN_ERROR_INPUT);
+				 &file, &error), NT_ERROR_INPUT);
 	assert_null(reread);
 	assert_non_null(strstr(error.message, "a b.bin"));
 	assert_int_equal(nt_reread_open(&reread, (const unsigned char *)text, strlen(text), NULL, NULL,
-				 &error), NMTAN_ERROR_INPUT);
+				 &error), NT_ERROR_INPUT);
 	free(text);
 	nt_model_free(model);
 }
 
 /* What a document says after one piece of its text was replaced. */
-static nmtan_status status_after(const char *old, const char *new, nt_error *error)
+static nt_status status_after(const char *old, const char *new, nt_error *error)
 {
 	nt_model *model = triangle_model(NT_MODEL_NONE);
 	char *text = text_of(model, 42, NT_MODEL_FILE, "a%20b.bin"), changed[2000];
@@ -144,9 +144,9 @@ static nmtan_status status_after(const char *old, const char *new, nt_error *err
 	named_bytes file = triangle_bytes();
 	nt_reread *reread;
 	nt_reread_array array;
-	nmtan_status status = nt_reread_open(&reread, (const unsigned char *)changed, strlen(changed),
+	nt_status status = nt_reread_open(&reread, (const unsigned char *)changed, strlen(changed),
 		find_bytes, &file, error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		status = nt_reread_attribute(reread, 0, 0, "POSITION", &array, error);
 	nt_reread_free(reread);
 	free(text);
@@ -158,18 +158,18 @@ static void reread_checks_accessors_against_views_and_buffers(void **state)
 {
 	(void)state;
 	nt_error error;
-	assert_int_equal(status_after("\"count\":3", "\"count\":3", &error), NMTAN_OK);
-	assert_int_equal(status_after("\"count\":3", "\"count\":4", &error), NMTAN_ERROR_INPUT);
+	assert_int_equal(status_after("\"count\":3", "\"count\":3", &error), NT_OK);
+	assert_int_equal(status_after("\"count\":3", "\"count\":4", &error), NT_ERROR_INPUT);
 	assert_string_equal(error.place.pointer, "/meshes/0/primitives/0/attributes/POSITION");
 	assert_int_equal(status_after("\"count\":3", "\"count\":1000000000000000", &error),
-		NMTAN_ERROR_INPUT);
+		NT_ERROR_INPUT);
 	assert_int_equal(status_after("\"byteLength\":36", "\"byteLength\":43", &error),
-		NMTAN_ERROR_INPUT);
-	assert_int_equal(status_after("\"bufferView\":0", "\"bufferView\":7", &error), NMTAN_ERROR_INPUT);
-	assert_int_equal(status_after("\"POSITION\":0", "\"POSITION\":9", &error), NMTAN_ERROR_INPUT);
-	assert_int_equal(status_after("\"buffer\":0", "\"buffer\":3", &error), NMTAN_ERROR_INPUT);
+		NT_ERROR_INPUT);
+	assert_int_equal(status_after("\"bufferView\":0", "\"bufferView\":7", &error), NT_ERROR_INPUT);
+	assert_int_equal(status_after("\"POSITION\":0", "\"POSITION\":9", &error), NT_ERROR_INPUT);
+	assert_int_equal(status_after("\"buffer\":0", "\"buffer\":3", &error), NT_ERROR_INPUT);
 	assert_int_equal(status_after("\"byteLength\":36", "\"byteLength\":36,\"byteStride\":4", &error),
-		NMTAN_ERROR_INPUT);
+		NT_ERROR_INPUT);
 }
 
 /* Positions packed by meshoptimizer: the view lies in a buffer that has no bytes. The JSON says how many bytes are
@@ -204,7 +204,7 @@ static void packed_views_are_unpacked(void **state)
 	nt_reread_array array;
 	nt_error error;
 	for (int twice = 0; twice < 2; twice++) {
-		assert_int_equal(nt_reread_attribute(reread, 0, 0, "POSITION", &array, &error), NMTAN_OK);
+		assert_int_equal(nt_reread_attribute(reread, 0, 0, "POSITION", &array, &error), NT_OK);
 		assert_int_equal(array.count, 3);
 		assert_memory_equal(array.data, positions, sizeof positions);
 	}
@@ -218,7 +218,7 @@ static void packed_views_are_unpacked(void **state)
 		{size, sizeof file.bytes, "ATTRIBUTES", "packed bytes"}, {size, 0, "CHAOS", "packed bytes"}};
 	for (size_t i = 0; i < sizeof faults / sizeof *faults; i++) {
 		reread = open_packed(&file, faults[i].size, faults[i].offset, faults[i].mode);
-		assert_int_equal(nt_reread_attribute(reread, 0, 0, "POSITION", &array, &error), NMTAN_ERROR_INPUT);
+		assert_int_equal(nt_reread_attribute(reread, 0, 0, "POSITION", &array, &error), NT_ERROR_INPUT);
 		assert_non_null(strstr(error.message, faults[i].message));
 		nt_reread_free(reread);
 	}
@@ -233,14 +233,14 @@ static void deep_json_is_refused_before_it_is_parsed(void **state)
 	nt_reread *reread;
 	nt_error error;
 	assert_int_equal(nt_reread_open(&reread, (unsigned char *)text, DEPTH, NULL, NULL, &error),
-		NMTAN_ERROR_INPUT);
+		NT_ERROR_INPUT);
 	assert_non_null(strstr(error.message, "512"));
 	assert_null(reread);
 	free(text);
 	/* brackets in strings do not count */
 	const char fine[] = "{\"asset\":{\"version\":\"2.0\",\"generator\":\"[[\\\"{{\"}}";
 	assert_int_equal(nt_reread_open(&reread, (const unsigned char *)fine, sizeof fine - 1, NULL,
-				 NULL, &error), NMTAN_OK);
+				 NULL, &error), NT_OK);
 	nt_reread_free(reread);
 }
 
@@ -294,7 +294,7 @@ static void embedded_text_is_cut_where_the_base64_goes(void **state)
 	(void)state;
 	nt_model *model = triangle_model(NT_MODEL_NONE);
 	nt_model_text text;
-	assert_int_equal(nt_model_json(model, 42, NT_MODEL_EMBEDDED, NULL, &text, NULL), NMTAN_OK);
+	assert_int_equal(nt_model_json(model, 42, NT_MODEL_EMBEDDED, NULL, &text, NULL), NT_OK);
 	static const char before[] = "base64,", after[] = "\"}]}";
 	assert_memory_equal(text.data + text.cut - strlen(before), before, strlen(before));
 	assert_int_equal(text.size - text.cut, strlen(after));
@@ -312,7 +312,7 @@ static void failed_addition_is_reported_at_the_end(void **state)
 	nt_model_text text;
 	nt_error error;
 	assert_int_equal(nt_model_json(model, 0, NT_MODEL_CHUNK, NULL, &text, &error),
-		NMTAN_ERROR_INTERNAL);
+		NT_ERROR_INTERNAL);
 	assert_non_null(strstr(error.message, "tinygltf"));
 	assert_null(text.data);
 	nt_model_free(model);

@@ -14,16 +14,16 @@ static char *encoded(const unsigned char *bytes, size_t size, size_t piece)
 	nt_output *output;
 	nt_sink *sink;
 	nt_error error;
-	assert_int_equal(nt_output_create(&output, NULL, &error), NMTAN_OK);
-	assert_int_equal(nt_output_add(output, path, true, &sink, &error), NMTAN_OK);
+	assert_int_equal(nt_output_create(&output, NULL, &error), NT_OK);
+	assert_int_equal(nt_output_add(output, path, true, &sink, &error), NT_OK);
 	nt_base64 base64 = {.sink = sink};
 	for (size_t at = 0; at < size; at += piece)
 		assert_int_equal(nt_base64_write(&base64, bytes + at, size - at < piece ? size - at : piece,
-					 &error), NMTAN_OK);
-	assert_int_equal(nt_base64_end(&base64, &error), NMTAN_OK);
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+					 &error), NT_OK);
+	assert_int_equal(nt_base64_end(&base64, &error), NT_OK);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, path, &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, path, &error), NT_OK);
 	char *text = calloc(file.size + 1, 1);
 	memcpy(text, file.data, file.size);
 	nt_file_close(&file);

@@ -23,7 +23,7 @@ static const nt_draco_attribute attributes[] = {
 static const nt_draco_mesh quad = {.method = NT_DRACO_SEQUENTIAL, .point_count = 4, .face_count = 2,
 	.indices = indices, .attributes = attributes, .attribute_count = 5};
 
-static nmtan_status open_bytes(nt_scene *scene, const unsigned char *bytes, size_t size,
+static nt_status open_bytes(nt_scene *scene, const unsigned char *bytes, size_t size,
 	nt_error *error)
 {
 	const nt_read_options options = {.texcoord_set = -1};
@@ -40,8 +40,8 @@ static nt_draco_block encoded(const nt_draco_mesh *mesh)
 {
 	nt_draco_block block;
 	nt_error error;
-	const nmtan_status status = nt_draco_encode(mesh, &block, &error);
-	if (status != NMTAN_OK)
+	const nt_status status = nt_draco_encode(mesh, &block, &error);
+	if (status != NT_OK)
 		fail_msg("%s", error.message);
 	return block;
 }
@@ -52,7 +52,7 @@ static void quad_becomes_a_mesh_of_two_triangles(void **state)
 	nt_draco_block block = encoded(&quad);
 	nt_scene scene;
 	nt_error error;
-	assert_int_equal(open_bytes(&scene, block.bytes, block.size, &error), NMTAN_OK);
+	assert_int_equal(open_bytes(&scene, block.bytes, block.size, &error), NT_OK);
 	assert_int_equal(scene.mesh_count, 1);
 	assert_int_equal(scene.instance_count, 1);
 	const nt_mesh *mesh = scene.meshes;
@@ -82,7 +82,7 @@ static void mesh_without_positions_is_refused(void **state)
 	nt_draco_block block = encoded(&bare);
 	nt_scene scene;
 	nt_error error;
-	assert_int_equal(open_bytes(&scene, block.bytes, block.size, &error), NMTAN_ERROR_INPUT);
+	assert_int_equal(open_bytes(&scene, block.bytes, block.size, &error), NT_ERROR_INPUT);
 	assert_non_null(strstr(error.message, "no positions"));
 	nt_scene_free(&scene);
 	nt_draco_block_free(&block);
@@ -97,7 +97,7 @@ static void truncated_files_are_refused(void **state)
 		nt_scene scene;
 		unsigned char *copy = malloc(size);
 		memcpy(copy, block.bytes, size);
-		assert_int_equal(open_bytes(&scene, copy, size, &error), NMTAN_ERROR_INPUT);
+		assert_int_equal(open_bytes(&scene, copy, size, &error), NT_ERROR_INPUT);
 		nt_scene_free(&scene);
 		free(copy);
 	}

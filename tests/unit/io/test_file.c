@@ -18,7 +18,7 @@ static void assert_content(const char *name, const char *text)
 {
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder(name), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder(name), &error), NT_OK);
 	assert_int_equal(file.size, strlen(text));
 	assert_memory_equal(file.data, text, file.size);
 	nt_file_close(&file);
@@ -28,7 +28,7 @@ static nt_output *start(const nt_output_options *options)
 {
 	nt_output *output = NULL;
 	nt_error error;
-	assert_int_equal(nt_output_create(&output, options, &error), NMTAN_OK);
+	assert_int_equal(nt_output_create(&output, options, &error), NT_OK);
 	return output;
 }
 
@@ -36,7 +36,7 @@ static nt_sink *add(nt_output *output, const char *path, bool main)
 {
 	nt_error error;
 	nt_sink *sink = NULL;
-	assert_int_equal(nt_output_add(output, path, main, &sink, &error), NMTAN_OK);
+	assert_int_equal(nt_output_add(output, path, main, &sink, &error), NT_OK);
 	return sink;
 }
 
@@ -44,7 +44,7 @@ static void assert_refused(nt_output *output, const char *path, const char *mess
 {
 	nt_error error;
 	nt_sink *sink = NULL;
-	assert_int_equal(nt_output_add(output, path, true, &sink, &error), NMTAN_ERROR_IO);
+	assert_int_equal(nt_output_add(output, path, true, &sink, &error), NT_ERROR_IO);
 	assert_string_equal(error.message, message);
 	assert_string_equal(error.place.file, path);
 }
@@ -57,7 +57,7 @@ static void input_is_mapped_and_knows_which_file_it_is(void **state)
 	put_text_file("c", "some bytes");
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("a"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("a"), &error), NT_OK);
 	assert_true(file.mapped);
 	assert_int_equal(file.size, 10);
 	assert_memory_equal(file.data, "some bytes", 10);
@@ -96,7 +96,7 @@ static void input_pages_that_are_forgotten_go_and_come_back(void **state)
 	fclose(stream);
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("in"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("in"), &error), NT_OK);
 	unsigned sum = 0;
 	for (size_t i = 0; i < file.size; i++)
 		sum += file.data[i];
@@ -129,11 +129,11 @@ static void input_empty_is_no_error(void **state)
 	put_text_file("a", "");
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("a"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("a"), &error), NT_OK);
 	assert_int_equal(file.size, 0);
 	assert_non_null(file.data);
 	nt_file_close(&file);
-	assert_int_equal(nt_file_open(&file, "/dev/null", &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, "/dev/null", &error), NT_OK);
 	assert_int_equal(file.size, 0);
 	nt_file_close(&file);
 }
@@ -143,11 +143,11 @@ static void input_missing_or_a_folder_is_named(void **state)
 	(void)state;
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("missing"), &error), NMTAN_ERROR_IO);
+	assert_int_equal(nt_file_open(&file, in_folder("missing"), &error), NT_ERROR_IO);
 	assert_string_equal(error.message, "no such file");
 	assert_string_equal(error.place.file, in_folder("missing"));
 	nt_file_close(&file);
-	assert_int_equal(nt_file_open(&file, in_folder(""), &error), NMTAN_ERROR_IO);
+	assert_int_equal(nt_file_open(&file, in_folder(""), &error), NT_ERROR_IO);
 	assert_string_equal(error.message, "cannot read: Is a directory");
 	nt_file_close(&file);
 }
@@ -159,11 +159,11 @@ static void input_without_permission_is_named(void **state)
 	assert_int_equal(chmod(in_folder("a"), 0), 0);
 	nt_error error;
 	nt_file file;
-	const nmtan_status status = nt_file_open(&file, in_folder("a"), &error);
+	const nt_status status = nt_file_open(&file, in_folder("a"), &error);
 	if (geteuid() == 0) { /* root reads everything */
-		assert_int_equal(status, NMTAN_OK);
+		assert_int_equal(status, NT_OK);
 	} else {
-		assert_int_equal(status, NMTAN_ERROR_IO);
+		assert_int_equal(status, NT_ERROR_IO);
 		assert_string_equal(error.message, "cannot read: Permission denied");
 	}
 	nt_file_close(&file);
@@ -183,7 +183,7 @@ static void input_pipe_is_read_to_its_end(void **state)
 	}
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("pipe"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("pipe"), &error), NT_OK);
 	assert_false(file.mapped);
 	assert_int_equal(file.size, 500000);
 	for (size_t i = 0; i < file.size; i++)
@@ -200,13 +200,13 @@ static void output_appears_at_commit_only(void **state)
 	nt_output *output = start(NULL);
 	nt_sink *main = add(output, in_folder("out.gltf"), true);
 	nt_sink *companion = add(output, in_folder("out.bin"), false);
-	assert_int_equal(nt_sink_write(main, "new document", 12, &error), NMTAN_OK);
-	assert_int_equal(nt_sink_write(companion, "bytes", 5, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_write(main, "new document", 12, &error), NT_OK);
+	assert_int_equal(nt_sink_write(companion, "bytes", 5, &error), NT_OK);
 	assert_int_equal(nt_output_size(output), 17);
 	assert_content("out.gltf", "old");
 	assert_int_equal(access(in_folder("out.bin"), F_OK), -1);
 	assert_int_equal(count_in_folder(), 3);
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	assert_content("out.gltf", "new document");
 	assert_content("out.bin", "bytes");
 	assert_int_equal(count_in_folder(), 2);
@@ -219,7 +219,7 @@ static void output_abort_leaves_nothing(void **state)
 	nt_error error;
 	nt_output *output = start(NULL);
 	nt_sink *sink = add(output, in_folder("out"), true);
-	assert_int_equal(nt_sink_write(sink, "new", 3, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_write(sink, "new", 3, &error), NT_OK);
 	nt_output_abort(output);
 	assert_content("out", "old");
 	assert_int_equal(count_in_folder(), 1);
@@ -240,13 +240,13 @@ static void output_bytes_are_the_same_for_small_and_large_writes(void **state)
 	size_t done = 0;
 	for (size_t step = 0; done < SIZE; step = step * 2 + 1) { /* 0, 1, 3 ... 2^21 - 1 */
 		const size_t size = step < SIZE - done ? step : SIZE - done;
-		assert_int_equal(nt_sink_write(sink, bytes + done, size, &error), NMTAN_OK);
+		assert_int_equal(nt_sink_write(sink, bytes + done, size, &error), NT_OK);
 		done += size;
 	}
 	assert_int_equal(nt_output_size(output), SIZE);
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("out"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("out"), &error), NT_OK);
 	assert_int_equal(file.size, SIZE);
 	assert_memory_equal(file.data, bytes, SIZE);
 
@@ -255,15 +255,15 @@ static void output_bytes_are_the_same_for_small_and_large_writes(void **state)
 	for (size_t first = 1; first <= 4; first += 3) {
 		output = start(NULL);
 		sink = add(output, in_folder("copy"), true);
-		assert_int_equal(nt_sink_write(sink, "head", 4, &error), NMTAN_OK);
-		assert_int_equal(nt_sink_copy(sink, &file, first, 2000000, &error), NMTAN_OK);
-		assert_int_equal(nt_sink_copy(sink, &file, first + 2000000, 100, &error), NMTAN_OK);
-		assert_int_equal(nt_sink_copy(sink, &file, 0, 0, &error), NMTAN_OK);
-		assert_int_equal(nt_sink_copy(sink, &file, SIZE - 1, 2, &error), NMTAN_ERROR_INTERNAL);
+		assert_int_equal(nt_sink_write(sink, "head", 4, &error), NT_OK);
+		assert_int_equal(nt_sink_copy(sink, &file, first, 2000000, &error), NT_OK);
+		assert_int_equal(nt_sink_copy(sink, &file, first + 2000000, 100, &error), NT_OK);
+		assert_int_equal(nt_sink_copy(sink, &file, 0, 0, &error), NT_OK);
+		assert_int_equal(nt_sink_copy(sink, &file, SIZE - 1, 2, &error), NT_ERROR_INTERNAL);
 		assert_int_equal(nt_output_size(output), 2000104);
-		assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+		assert_int_equal(nt_output_commit(output, &error), NT_OK);
 		nt_file copy;
-		assert_int_equal(nt_file_open(&copy, in_folder("copy"), &error), NMTAN_OK);
+		assert_int_equal(nt_file_open(&copy, in_folder("copy"), &error), NT_OK);
 		assert_int_equal(copy.size, 2000104);
 		assert_memory_equal(copy.data, "head", 4);
 		assert_memory_equal(copy.data + 4, bytes + first, 2000100);
@@ -280,14 +280,14 @@ static void output_can_be_read_back_before_it_has_its_name(void **state)
 	nt_error error;
 	nt_output *output = start(&(nt_output_options){.sync = true});
 	nt_sink *sink = add(output, in_folder("out"), true);
-	assert_int_equal(nt_sink_write(sink, "text", 4, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_write(sink, "text", 4, &error), NT_OK);
 	const char *temporary;
-	assert_int_equal(nt_output_written(output, in_folder("out"), &temporary, &error), NMTAN_OK);
+	assert_int_equal(nt_output_written(output, in_folder("out"), &temporary, &error), NT_OK);
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, temporary, &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, temporary, &error), NT_OK);
 	assert_int_equal(file.size, 4);
 	nt_file_close(&file);
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	assert_content("out", "text");
 }
 
@@ -299,15 +299,15 @@ static void output_that_is_an_input_is_refused_by_name(void **state)
 	assert_int_equal(symlink("in.ply", in_folder("soft")), 0);
 	nt_error error;
 	nt_output *output = start(NULL);
-	assert_int_equal(nt_output_protect(output, in_folder("in.ply"), NULL, &error), NMTAN_OK);
-	assert_int_equal(nt_output_protect(output, in_folder("missing.png"), NULL, &error), NMTAN_OK);
+	assert_int_equal(nt_output_protect(output, in_folder("in.ply"), NULL, &error), NT_OK);
+	assert_int_equal(nt_output_protect(output, in_folder("missing.png"), NULL, &error), NT_OK);
 	char message[256];
 	snprintf(message, sizeof message, "refusing to write: it is the same file as the input %s",
 		in_folder("in.ply"));
 	assert_refused(output, in_folder("in.ply"), message);
 	assert_refused(output, in_folder("hard"), message);
 	assert_refused(output, in_folder("soft"), message);
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	assert_content("in.ply", "input");
 	assert_int_equal(count_in_folder(), 3);
 }
@@ -318,11 +318,11 @@ static void output_in_place_replaces_what_is_mapped(void **state)
 	put_text_file("a.ply", "0123456789");
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("a.ply"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("a.ply"), &error), NT_OK);
 	nt_output *output = start(NULL);
 	nt_sink *sink = add(output, in_folder("a.ply"), true);
-	assert_int_equal(nt_sink_copy(sink, &file, 5, 5, &error), NMTAN_OK);
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_copy(sink, &file, 5, 5, &error), NT_OK);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	assert_memory_equal(file.data, "0123456789", 10);
 	nt_file_close(&file);
 	assert_content("a.ply", "56789");
@@ -335,8 +335,8 @@ static void output_through_a_link_keeps_the_link(void **state)
 	assert_int_equal(symlink("file", in_folder("soft")), 0);
 	nt_error error;
 	nt_output *output = start(NULL);
-	assert_int_equal(nt_sink_write(add(output, in_folder("soft"), true), "new", 3, &error), NMTAN_OK);
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_write(add(output, in_folder("soft"), true), "new", 3, &error), NT_OK);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	assert_content("file", "new");
 	struct stat status;
 	assert_int_equal(lstat(in_folder("soft"), &status), 0);
@@ -373,7 +373,7 @@ static void output_no_clobber_keeps_what_exists(void **state)
 	add(output, in_folder("late"), true);
 	add(output, in_folder("companion"), false);
 	put_text_file("late", "somebody else's");
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_ERROR_IO);
+	assert_int_equal(nt_output_commit(output, &error), NT_ERROR_IO);
 	assert_string_equal(error.message, "refusing to write: the file exists already");
 	assert_string_equal(error.place.file, in_folder("late"));
 	assert_content("late", "somebody else's");
@@ -388,7 +388,7 @@ static void output_mode_follows_the_umask(void **state)
 	const mode_t before = umask(027);
 	nt_output *output = start(NULL);
 	add(output, in_folder("out"), true);
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	umask(before);
 	struct stat status;
 	assert_int_equal(stat(in_folder("out"), &status), 0);
@@ -404,19 +404,19 @@ static void output_dry_run_counts_and_refuses_but_writes_nothing(void **state)
 	nt_sink *sink, *stream;
 	put_text_file("dry", "old");
 	const size_t before = count_in_folder();
-	assert_int_equal(nt_output_create(&output, &options, &error), NMTAN_OK);
-	assert_int_equal(nt_output_add(output, in_folder("dry"), true, &sink, &error), NMTAN_OK);
-	assert_int_equal(nt_output_add(output, "-", false, &stream, &error), NMTAN_OK);
-	assert_int_equal(nt_sink_write(sink, "new!", 4, &error), NMTAN_OK);
-	assert_int_equal(nt_sink_write(stream, "noise", 5, &error), NMTAN_OK);
+	assert_int_equal(nt_output_create(&output, &options, &error), NT_OK);
+	assert_int_equal(nt_output_add(output, in_folder("dry"), true, &sink, &error), NT_OK);
+	assert_int_equal(nt_output_add(output, "-", false, &stream, &error), NT_OK);
+	assert_int_equal(nt_sink_write(sink, "new!", 4, &error), NT_OK);
+	assert_int_equal(nt_sink_write(stream, "noise", 5, &error), NT_OK);
 	assert_int_equal(nt_output_size(output), 9);
 	const char *temporary;
-	assert_int_equal(nt_output_written(output, in_folder("dry"), &temporary, &error), NMTAN_OK);
+	assert_int_equal(nt_output_written(output, in_folder("dry"), &temporary, &error), NT_OK);
 	assert_null(temporary);
 	assert_int_equal(count_in_folder(), before);
 	nt_sink *refused;
-	assert_int_equal(nt_output_add(output, in_folder(""), false, &refused, &error), NMTAN_ERROR_IO);
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_int_equal(nt_output_add(output, in_folder(""), false, &refused, &error), NT_ERROR_IO);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	assert_int_equal(count_in_folder(), before);
 	assert_content("dry", "old");
 }
@@ -438,10 +438,10 @@ static void output_pipe_is_written_through(void **state)
 	nt_output *output = start(&(nt_output_options){.no_clobber = true, .sync = true});
 	nt_sink *sink = add(output, in_folder("pipe"), true);
 	const char *temporary;
-	assert_int_equal(nt_output_written(output, in_folder("pipe"), &temporary, &error), NMTAN_OK);
+	assert_int_equal(nt_output_written(output, in_folder("pipe"), &temporary, &error), NT_OK);
 	assert_null(temporary);
-	assert_int_equal(nt_sink_write(sink, "through", 7, &error), NMTAN_OK);
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_OK);
+	assert_int_equal(nt_sink_write(sink, "through", 7, &error), NT_OK);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	int code;
 	assert_int_equal(waitpid(child, &code, 0), child);
 	assert_int_equal(code, 0);
@@ -458,8 +458,8 @@ static void output_full_disk_is_an_error(void **state)
 	nt_error error;
 	nt_output *output = start(NULL);
 	nt_sink *sink = add(output, "/dev/full", true);
-	assert_int_equal(nt_sink_write(sink, "x", 1, &error), NMTAN_OK);
-	assert_int_equal(nt_output_commit(output, &error), NMTAN_ERROR_IO);
+	assert_int_equal(nt_sink_write(sink, "x", 1, &error), NT_OK);
+	assert_int_equal(nt_output_commit(output, &error), NT_ERROR_IO);
 	assert_string_equal(error.message, "cannot write: No space left on device");
 	assert_string_equal(error.place.file, "/dev/full");
 }

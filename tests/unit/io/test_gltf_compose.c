@@ -95,7 +95,7 @@ static void mesh_without_tangents_is_written_without(void **state)
 	make_scene(&hand);
 	hand.mesh.face_diagonals = NULL;
 	nt_error error;
-	assert_int_equal(compose(scene, (nt_write_options){0}, "bare.glb", &error), NMTAN_ERROR_INTERNAL);
+	assert_int_equal(compose(scene, (nt_write_options){0}, "bare.glb", &error), NT_ERROR_INTERNAL);
 	nt_scene_free(scene);
 }
 
@@ -186,7 +186,7 @@ static void gltf_with_a_bin_cannot_go_to_standard_output(void **state)
 	nt_scene *scene = make_scene(&hand);
 	const nt_write_options options = {.format = NT_FORMAT_GLTF, .path = "-"};
 	nt_error error;
-	assert_int_equal(nt_gltf_compose(scene, &options, NULL, &error), NMTAN_ERROR_USAGE);
+	assert_int_equal(nt_gltf_compose(scene, &options, NULL, &error), NT_ERROR_USAGE);
 	nt_scene_free(scene);
 }
 

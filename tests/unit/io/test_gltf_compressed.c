@@ -152,7 +152,7 @@ static void write_draco(const sheet *s, nt_draco_method method, const char *name
 		.indices = s->indices, .attributes = attributes, .attribute_count = 4};
 	nt_draco_block block;
 	nt_error error;
-	assert_int_equal(nt_draco_encode(&mesh, &block, &error), NMTAN_OK);
+	assert_int_equal(nt_draco_encode(&mesh, &block, &error), NT_OK);
 	nt_buffer bin = {0}, json = {0};
 	nt_buffer_append(&bin, block.bytes, block.size);
 	nt_buffer_format(&json, HEAD "\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],"
@@ -178,7 +178,7 @@ static void load(loaded *l, const char *path)
 	static const nt_read_options options = {.texcoord_set = -1, .world = true};
 	nt_error error;
 	nt_error_clear(&error);
-	assert_int_equal(nt_file_open(&l->file, path, &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&l->file, path, &error), NT_OK);
 	nt_scene_init(&l->scene, path);
 	l->scene.bytes = l->file.data;
 	l->scene.byte_count = l->file.size;
@@ -461,7 +461,7 @@ static void damaged_blocks_are_harmless(void **state)
 			write_draco(&source, NT_DRACO_EDGEBREAKER, "good.glb");
 		nt_file good;
 		nt_error error;
-		assert_int_equal(nt_file_open(&good, in_folder("good.glb"), &error), NMTAN_OK);
+		assert_int_equal(nt_file_open(&good, in_folder("good.glb"), &error), NT_OK);
 		unsigned char *bytes = malloc(good.size);
 		for (size_t i = 0; i < 150; i++) {
 			memcpy(bytes, good.data, good.size);
@@ -469,9 +469,9 @@ static void damaged_blocks_are_harmless(void **state)
 			put_file("bad.glb", bytes, good.size);
 			const nt_settings settings = {.texcoord_set = -1, .dry_run = true};
 			nt_summary summary;
-			const nmtan_status status =
+			const nt_status status =
 				nt_run(in_folder("bad.glb"), in_folder("never.glb"), &settings, &summary, &error);
-			assert_int_not_equal(status, NMTAN_ERROR_INTERNAL);
+			assert_int_not_equal(status, NT_ERROR_INTERNAL);
 			nt_summary_free(&summary);
 		}
 		free(bytes);

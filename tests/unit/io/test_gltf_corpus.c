@@ -23,7 +23,7 @@ static bool ends_with(const char *text, const char *end)
 	return length >= end_length && strcasecmp(text + length - end_length, end) == 0;
 }
 
-static void check_error(const char *path, const nt_error *error, nmtan_status status)
+static void check_error(const char *path, const nt_error *error, nt_status status)
 {
 	assert_int_equal(error->status, status);
 	if (strlen(error->message) < 10 ||
@@ -37,7 +37,7 @@ static void read_file(const char *path, counts *tally)
 	nt_file file;
 	nt_error error;
 	nt_error_clear(&error);
-	assert_int_equal(nt_file_open(&file, path, &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, path, &error), NT_OK);
 	nt_scene scene;
 	nt_scene_init(&scene, path);
 	scene.bytes = file.data;
@@ -45,7 +45,7 @@ static void read_file(const char *path, counts *tally)
 	scene.format = ends_with(path, ".glb") ? NT_FORMAT_GLB : NT_FORMAT_GLTF;
 	const nt_read_options options = {.texcoord_set = -1, .world = true};
 	tally->files++;
-	nmtan_status status = nt_gltf_open(&scene, &options, &error);
+	nt_status status = nt_gltf_open(&scene, &options, &error);
 	if (status) {
 		check_error(path, &error, status);
 		if (tally->verbose)

@@ -43,7 +43,7 @@ static nt_file open_file(const char *name)
 {
 	nt_file file;
 	nt_error error;
-	assert_int_equal(nt_file_open(&file, in_folder(name), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder(name), &error), NT_OK);
 	return file;
 }
 

@@ -37,16 +37,16 @@ static void run_one(const char *path, uint32_t *chance, counts *tally)
 		.output_format = mutate_random(chance, 4) ? NT_FORMAT_GLB : NT_FORMAT_GLTF};
 	nt_summary summary;
 	nt_error error;
-	const nmtan_status status = nt_run(path, "/tmp/nmtan-hostile-output", &settings, &summary, &error);
+	const nt_status status = nt_run(path, "/tmp/nmtan-hostile-output", &settings, &summary, &error);
 	tally->runs++;
-	tally->solved += status == NMTAN_OK;
+	tally->solved += status == NT_OK;
 	tally->geometry += summary.solved_count > 0 || strstr(error.place.pointer, "/accessors/") ||
 		strstr(error.place.pointer, "/bufferViews/") || strstr(error.place.pointer, "/primitives/");
 	if (status) {
 		tally->refused++;
 		if (getenv("NT_VERBOSE"))
 			print_message("%s: %s\n", error.place.pointer, error.message);
-		if (status == NMTAN_ERROR_INTERNAL || strlen(error.message) < 8)
+		if (status == NT_ERROR_INTERNAL || strlen(error.message) < 8)
 			fail_msg("%s: status %d, \"%s\"", path, status, error.message);
 	}
 	nt_summary_free(&summary);
@@ -73,7 +73,7 @@ static void damaged_files_end_with_a_status(void **state)
 	for (size_t s = 0; s < SEED_COUNT; s++) {
 		nt_file file;
 		nt_error error;
-		if (nt_file_open(&file, seeds[s], &error) != NMTAN_OK)
+		if (nt_file_open(&file, seeds[s], &error) != NT_OK)
 			continue; /* ../shared is not there */
 		link_companions(seeds[s], folder);
 		snprintf(path, sizeof path, "%s/x%s", folder, strrchr(seeds[s], '.'));

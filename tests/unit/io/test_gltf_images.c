@@ -67,7 +67,7 @@ static void embedded_images_lie_behind_the_geometry(void **state)
 	compose_well(scene, (nt_write_options){0}, "images.glb");
 	nt_file file;
 	nt_error error;
-	assert_int_equal(nt_file_open(&file, in_folder("images.glb"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("images.glb"), &error), NT_OK);
 	assert_non_null(memmem(file.data, file.size, "\"mimeType\":\"image/png\"", 22));
 	/* the last one ends the chunk, which is padded to 4 */
 	const size_t padding = (4 - sizeof jpeg % 4) % 4;
@@ -195,7 +195,7 @@ static void images_are_safe_from_the_output(void **state)
 	put_file("mtl/n.bin", png, sizeof png);
 	hand.material.normal_map = "n.bin"; /* a PNG by content, and where the buffer would go */
 	nt_error error;
-	assert_int_equal(compose(scene, (nt_write_options){0}, "mtl/n.gltf", &error), NMTAN_ERROR_IO);
+	assert_int_equal(compose(scene, (nt_write_options){0}, "mtl/n.gltf", &error), NT_ERROR_IO);
 	assert_false(exists("mtl/n.gltf"));
 	char *kept = text_of("mtl/n.bin");
 	assert_memory_equal(kept, png, sizeof png);

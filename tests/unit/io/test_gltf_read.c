@@ -15,7 +15,7 @@ typedef struct fixture {
 
 static const nt_read_options plain_options = {.texcoord_set = -1};
 
-static nmtan_status open_text(fixture *f, const char *before, const void *bytes, size_t size,
+static nt_status open_text(fixture *f, const char *before, const void *bytes, size_t size,
 	const nt_read_options *options)
 {
 	memset(f, 0, sizeof *f);
@@ -69,7 +69,7 @@ static const quad_bytes quad = {
 	"{\"bufferView\":5,\"componentType\":5125,\"count\":6,\"type\":\"SCALAR\"}]"
 #define QUAD_ATTRIBUTES "\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2}"
 
-static nmtan_status open_quad(fixture *f, const char *primitive, const char *more)
+static nt_status open_quad(fixture *f, const char *primitive, const char *more)
 {
 	char json[6000];
 	snprintf(json, sizeof json, QUAD_VIEWS "," QUAD_ACCESSORS ",\"meshes\":[{\"name\":\"q\","
@@ -80,9 +80,9 @@ static nmtan_status open_quad(fixture *f, const char *primitive, const char *mor
 static void check_triangles(const char *primitive, const uint32_t *expected, size_t corner_count)
 {
 	fixture f;
-	assert_int_equal(open_quad(&f, primitive, ""), NMTAN_OK);
+	assert_int_equal(open_quad(&f, primitive, ""), NT_OK);
 	nt_mesh *mesh = &f.scene.meshes[0];
-	assert_int_equal(nt_gltf_load(&f.scene, mesh, &plain_options, &f.error), NMTAN_OK);
+	assert_int_equal(nt_gltf_load(&f.scene, mesh, &plain_options, &f.error), NT_OK);
 	assert_int_equal(mesh->corner_count, corner_count);
 	assert_int_equal(mesh->face_count, corner_count / 3);
 	for (size_t c = 0; c < corner_count; c++)
@@ -117,9 +117,9 @@ static void texcoords_have_v_up(void **state)
 {
 	(void)state;
 	fixture f;
-	assert_int_equal(open_quad(&f, QUAD_ATTRIBUTES, ""), NMTAN_OK);
+	assert_int_equal(open_quad(&f, QUAD_ATTRIBUTES, ""), NT_OK);
 	nt_mesh *mesh = &f.scene.meshes[0];
-	assert_int_equal(nt_gltf_load(&f.scene, mesh, &plain_options, &f.error), NMTAN_OK);
+	assert_int_equal(nt_gltf_load(&f.scene, mesh, &plain_options, &f.error), NT_OK);
 	assert_int_equal(mesh->vertex_count, 4);
 	for (size_t i = 0; i < 4; i++) {
 		assert_true(mesh->texcoords[2 * i] == quad.texcoords[i][0]);
@@ -132,10 +132,10 @@ static void texcoords_have_v_up(void **state)
 	close_text(&f);
 }
 
-static void check_load_fails(const char *primitive, nmtan_status status, const char *pointer)
+static void check_load_fails(const char *primitive, nt_status status, const char *pointer)
 {
 	fixture f;
-	assert_int_equal(open_quad(&f, primitive, ""), NMTAN_OK);
+	assert_int_equal(open_quad(&f, primitive, ""), NT_OK);
 	assert_int_equal(nt_gltf_load(&f.scene, &f.scene.meshes[0], &plain_options, &f.error), status);
 	assert_string_equal(f.error.place.pointer, pointer);
 	close_text(&f);
@@ -144,30 +144,30 @@ static void check_load_fails(const char *primitive, nmtan_status status, const c
 static void faults_have_their_pointer(void **state)
 {
 	(void)state;
-	check_load_fails("\"attributes\":{\"NORMAL\":1}", NMTAN_ERROR_INPUT, "/meshes/0/primitives/0");
-	check_load_fails("\"attributes\":{\"POSITION\":9}", NMTAN_ERROR_INPUT,
+	check_load_fails("\"attributes\":{\"NORMAL\":1}", NT_ERROR_INPUT, "/meshes/0/primitives/0");
+	check_load_fails("\"attributes\":{\"POSITION\":9}", NT_ERROR_INPUT,
 		"/meshes/0/primitives/0/attributes/POSITION");
-	check_load_fails("\"attributes\":{\"POSITION\":-1}", NMTAN_ERROR_INPUT,
+	check_load_fails("\"attributes\":{\"POSITION\":-1}", NT_ERROR_INPUT,
 		"/meshes/0/primitives/0/attributes/POSITION");
-	check_load_fails("\"attributes\":{\"POSITION\":2}", NMTAN_ERROR_INPUT,
+	check_load_fails("\"attributes\":{\"POSITION\":2}", NT_ERROR_INPUT,
 		"/meshes/0/primitives/0/attributes/POSITION");
-	check_load_fails("\"attributes\":{\"POSITION\":0},\"indices\":0", NMTAN_ERROR_INPUT,
+	check_load_fails("\"attributes\":{\"POSITION\":0},\"indices\":0", NT_ERROR_INPUT,
 		"/accessors/0");
-	check_load_fails("\"attributes\":{\"POSITION\":0},\"indices\":\"x\"", NMTAN_ERROR_INPUT,
+	check_load_fails("\"attributes\":{\"POSITION\":0},\"indices\":\"x\"", NT_ERROR_INPUT,
 		"/meshes/0/primitives/0/indices");
 	check_load_fails("\"attributes\":{\"POSITION\":0},\"extensions\":"
-		"{\"KHR_draco_mesh_compression\":{}}", NMTAN_ERROR_INPUT,
+		"{\"KHR_draco_mesh_compression\":{}}", NT_ERROR_INPUT,
 		"/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression");
 }
 
 /* One accessor of three elements, with anything about it. */
-static nmtan_status load_positions(fixture *f, const char *view, const char *accessor, const void *bytes,
+static nt_status load_positions(fixture *f, const char *view, const char *accessor, const void *bytes,
 	size_t size)
 {
 	char json[2048];
 	snprintf(json, sizeof json, "\"bufferViews\":[{%s}],\"accessors\":[{%s}],\"meshes\":[{"
 		"\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]", view, accessor);
-	const nmtan_status status = open_text(f, json, bytes, size, &plain_options);
+	const nt_status status = open_text(f, json, bytes, size, &plain_options);
 	if (status)
 		return status;
 	return nt_gltf_load(&f->scene, &f->scene.meshes[0], &plain_options, &f->error);
@@ -177,7 +177,7 @@ static void check_positions_fail(const char *view, const char *accessor, const c
 {
 	static const unsigned char bytes[36];
 	fixture f;
-	assert_int_equal(load_positions(&f, view, accessor, bytes, sizeof bytes), NMTAN_ERROR_INPUT);
+	assert_int_equal(load_positions(&f, view, accessor, bytes, sizeof bytes), NT_ERROR_INPUT);
 	assert_string_equal(f.error.place.pointer, pointer);
 	close_text(&f);
 }
@@ -189,9 +189,9 @@ static void counts_offsets_and_strides_are_checked(void **state)
 	const char *vec3 = "\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":3";
 	fixture f;
 	static const unsigned char bytes[36];
-	assert_int_equal(load_positions(&f, view, vec3, bytes, sizeof bytes), NMTAN_OK);
+	assert_int_equal(load_positions(&f, view, vec3, bytes, sizeof bytes), NT_OK);
 	close_text(&f);
-	assert_int_equal(load_positions(&f, view, vec3, bytes, 35), NMTAN_ERROR_INPUT);
+	assert_int_equal(load_positions(&f, view, vec3, bytes, 35), NT_ERROR_INPUT);
 	assert_string_equal(f.error.place.pointer, "/bufferViews/0");
 	close_text(&f);
 	check_positions_fail(view, "\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":4",
@@ -220,7 +220,7 @@ static void check_positions(const char *view, const char *accessor, const void *
 	const float *expected)
 {
 	fixture f;
-	assert_int_equal(load_positions(&f, view, accessor, bytes, size), NMTAN_OK);
+	assert_int_equal(load_positions(&f, view, accessor, bytes, size), NT_OK);
 	for (size_t i = 0; i < 9; i++)
 		assert_true(f.scene.meshes[0].positions[i] == expected[i]);
 	close_text(&f);
@@ -264,7 +264,7 @@ static void sparse_rows_are_checked(void **state)
 		unsigned char bytes[28] = {rows[i][0], rows[i][1]};
 		fixture f;
 		assert_int_equal(load_positions(&f, "\"buffer\":0,\"byteLength\":28", accessor, bytes, 28),
-			NMTAN_ERROR_INPUT);
+			NT_ERROR_INPUT);
 		assert_string_equal(f.error.place.pointer, "/accessors/0/sparse/indices");
 		close_text(&f);
 	}
@@ -275,7 +275,7 @@ static void zeros_without_backing_are_limited(void **state)
 	(void)state;
 	fixture f;
 	assert_int_equal(load_positions(&f, "\"buffer\":0,\"byteLength\":4", "\"componentType\":5126,"
-		"\"type\":\"VEC3\",\"count\":4000000000", "abcd", 4), NMTAN_ERROR_UNSUPPORTED);
+		"\"type\":\"VEC3\",\"count\":4000000000", "abcd", 4), NT_ERROR_UNSUPPORTED);
 	close_text(&f);
 }
 
@@ -287,7 +287,7 @@ static void check_material(const char *materials, const char *primitive, unsigne
 	snprintf(more, sizeof more, ",\"materials\":[%s]", materials);
 	snprintf(json, sizeof json, QUAD_ATTRIBUTES ",%s", primitive);
 	fixture f;
-	assert_int_equal(open_quad(&f, json, more), NMTAN_OK);
+	assert_int_equal(open_quad(&f, json, more), NT_OK);
 	assert_int_equal(f.scene.meshes[0].slots, slots);
 	assert_int_equal(f.scene.meshes[0].texcoord_set, set);
 	assert_int_equal(f.scene.meshes[0].texcoord_conflict, conflict);
@@ -324,8 +324,8 @@ static void load_transformed(fixture *f, const char *transform, const char *more
 	char materials[1024];
 	snprintf(materials, sizeof materials, ",\"materials\":[{\"normalTexture\":{\"index\":0,"
 		"\"extensions\":{\"KHR_texture_transform\":{%s}}}}]%s", transform, more);
-	assert_int_equal(open_quad(f, QUAD_ATTRIBUTES ",\"material\":0", materials), NMTAN_OK);
-	assert_int_equal(nt_gltf_load(&f->scene, &f->scene.meshes[0], &plain_options, &f->error), NMTAN_OK);
+	assert_int_equal(open_quad(f, QUAD_ATTRIBUTES ",\"material\":0", materials), NT_OK);
+	assert_int_equal(nt_gltf_load(&f->scene, &f->scene.meshes[0], &plain_options, &f->error), NT_OK);
 }
 
 static void texture_transforms_turn_and_scale(void **state)
@@ -399,7 +399,7 @@ static void scenes_decide_what_is_reached(void **state)
 	};
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		fixture f;
-		assert_int_equal(open_quad(&f, QUAD_ATTRIBUTES, cases[i].more), NMTAN_OK);
+		assert_int_equal(open_quad(&f, QUAD_ATTRIBUTES, cases[i].more), NT_OK);
 		assert_int_equal(f.scene.meshes[0].reachable, cases[i].reached);
 		close_text(&f);
 	}
@@ -415,7 +415,7 @@ static void instances_have_world_matrices(void **state)
 	assert_int_equal(open_text(&f, "\"meshes\":[{\"primitives\":[{},{}]}],\"scenes\":[{\"nodes\":[0]}],"
 		"\"nodes\":[{\"rotation\":[0,0,0.7071067811865476,0.7071067811865476],"
 		"\"translation\":[10,0,0],\"children\":[1]},{\"mesh\":0,\"matrix\":"
-		"[2,0,0,0,0,2,0,0,0,0,2,0,1,0,0,1]}]", "", 0, &options), NMTAN_OK);
+		"[2,0,0,0,0,2,0,0,0,0,2,0,1,0,0,1]}]", "", 0, &options), NT_OK);
 	assert_int_equal(f.scene.instance_count, 2);
 	assert_int_equal(f.scene.instances[1].mesh, 1);
 	const double expected[16] = {0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 10, 1, 0, 1};
@@ -430,8 +430,8 @@ static void what_is_not_read_is_not_judged(void **state)
 	fixture f;
 	assert_int_equal(open_quad(&f, QUAD_ATTRIBUTES, ",\"cameras\":[7],\"skins\":{},\"images\":"
 		"[{\"uri\":\"../../etc/passwd\"}],\"animations\":[{\"channels\":9}],\"materials\":[3]"),
-		NMTAN_OK);
-	assert_int_equal(nt_gltf_load(&f.scene, &f.scene.meshes[0], &plain_options, &f.error), NMTAN_OK);
+		NT_OK);
+	assert_int_equal(nt_gltf_load(&f.scene, &f.scene.meshes[0], &plain_options, &f.error), NT_OK);
 	close_text(&f);
 }
 
@@ -439,10 +439,10 @@ static void buffers_are_opened_only_when_wanted(void **state)
 {
 	(void)state;
 	fixture f;
-	assert_int_equal(open_quad(&f, QUAD_ATTRIBUTES, ""), NMTAN_OK);
+	assert_int_equal(open_quad(&f, QUAD_ATTRIBUTES, ""), NT_OK);
 	const nt_gltf *document = f.scene.source;
 	assert_int_equal(document->bytes_opened, 0);
-	assert_int_equal(nt_gltf_load(&f.scene, &f.scene.meshes[0], &plain_options, &f.error), NMTAN_OK);
+	assert_int_equal(nt_gltf_load(&f.scene, &f.scene.meshes[0], &plain_options, &f.error), NT_OK);
 	assert_int_equal(document->bytes_opened, sizeof quad);
 	close_text(&f);
 }
@@ -461,8 +461,8 @@ static void a_buffer_that_nobody_wants_may_be_missing(void **state)
 	nt_scene_init(&f.scene, "test.gltf");
 	f.scene.bytes = (const unsigned char *)f.text.data;
 	f.scene.byte_count = f.text.size;
-	assert_int_equal(nt_gltf_open(&f.scene, &plain_options, &f.error), NMTAN_OK);
-	assert_int_equal(nt_gltf_load(&f.scene, &f.scene.meshes[0], &plain_options, &f.error), NMTAN_OK);
+	assert_int_equal(nt_gltf_open(&f.scene, &plain_options, &f.error), NT_OK);
+	assert_int_equal(nt_gltf_load(&f.scene, &f.scene.meshes[0], &plain_options, &f.error), NT_OK);
 	assert_int_equal(((const nt_gltf *)f.scene.source)->bytes_opened, sizeof quad);
 	close_text(&f);
 }

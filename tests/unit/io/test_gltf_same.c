@@ -125,7 +125,7 @@ static void what_is_loaded_is_shared_and_not_copied(void **state)
 	nt_error error;
 	open_with(P(ALL, ",\"material\":0,\"indices\":3") "," P(ALL, ",\"material\":1,\"indices\":3"), &defaults);
 	for (size_t i = 0; i < 2; i++)
-		assert_int_equal(nt_gltf_load(&scene, &scene.meshes[i], &defaults, &error), NMTAN_OK);
+		assert_int_equal(nt_gltf_load(&scene, &scene.meshes[i], &defaults, &error), NT_OK);
 	const nt_mesh *a = &scene.meshes[0], *b = &scene.meshes[1];
 	assert_ptr_equal(a->positions, b->positions);
 	assert_ptr_equal(a->texcoords, b->texcoords);

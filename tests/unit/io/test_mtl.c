@@ -13,7 +13,7 @@ typedef struct reading {
 	nt_scene scene;
 	nt_mtl mtl;
 	nt_error error;
-	nmtan_status status;
+	nt_status status;
 } reading;
 
 static void parse(reading *r, const char *text)
@@ -31,7 +31,7 @@ static void parse(reading *r, const char *text)
 static const nt_mtl_definition *parse_one(reading *r, const char *text)
 {
 	parse(r, text);
-	assert_int_equal(r->status, NMTAN_OK);
+	assert_int_equal(r->status, NT_OK);
 	assert_int_equal(r->mtl.count, 1);
 	return &r->mtl.definitions[0];
 }
@@ -172,7 +172,7 @@ static void lost_statements_are_findings(void **state)
 	(void)state;
 	reading r;
 	parse(&r, "Kd 1 1 1\nnewmtl a\nmap_Pr r.png\nmap_Pr r.png\nrubbish\nmap_Kd -s 2 2 a.png\n");
-	assert_int_equal(r.status, NMTAN_OK);
+	assert_int_equal(r.status, NT_OK);
 	assert_int_equal(r.scene.findings.count, 4);
 	const struct {
 		const char *detail;
@@ -204,7 +204,7 @@ static void damaged_numbers_are_named(void **state)
 	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
 		reading r;
 		parse(&r, cases[i].text);
-		assert_int_equal(r.status, NMTAN_ERROR_INPUT);
+		assert_int_equal(r.status, NT_ERROR_INPUT);
 		assert_string_equal(r.error.message, cases[i].message);
 		assert_string_equal(r.error.place.file, "lib/a.mtl");
 		assert_int_equal(r.error.place.line, cases[i].line);
@@ -223,7 +223,7 @@ static void every_prefix_is_survived(void **state)
 		cut[size] = '\0';
 		reading r;
 		parse(&r, cut);
-		assert_true(r.status == NMTAN_OK || r.status == NMTAN_ERROR_INPUT);
+		assert_true(r.status == NT_OK || r.status == NT_ERROR_INPUT);
 		close_reading(&r);
 	}
 }
@@ -249,7 +249,7 @@ static void open_obj(reading *r, char path[200], const char *text, bool allow_ou
 	r->scene.bytes = (const unsigned char *)text;
 	r->scene.byte_count = strlen(text);
 	const nt_read_options options = {.texcoord_set = -1, .allow_outside = allow_outside, .threads = 1};
-	assert_int_equal(nt_obj_open(&r->scene, &options, &r->error), NMTAN_OK);
+	assert_int_equal(nt_obj_open(&r->scene, &options, &r->error), NT_OK);
 }
 
 #define FACE "v 0 0 0\nf 1 1 1\n"

@@ -217,7 +217,7 @@ static void objects_become_meshes_and_groups_do_not(void **state)
 	reading r;
 	open_text(&r,
 		TRIANGLE "f 1 2 3\no empty\no first\ng a b\nf 1 2 3\ng c\nf 3 2 1\no second one\nf 2 1 3\n");
-	assert_int_equal(r.status, NMTAN_OK);
+	assert_int_equal(r.status, NT_OK);
 	assert_int_equal(r.scene.mesh_count, 3);
 	assert_int_equal(r.scene.instance_count, 3);
 	const nt_mesh *mesh = r.scene.meshes;
@@ -247,7 +247,7 @@ static void materials_become_primitives_in_order_of_first_use(void **state)
 	open_text(&r,
 		TRIANGLE "f 1 2 3\nusemtl b\nusemtl  a name \nf 1 2 3\nf 1 2 3\nusemtl\nf 3 2 1\n"
 			 "usemtl a name\nf 1 2 3\no two\nf 1 2 3\nusemtl b\nf 1 2 3 1 2\nf 1 2 3\n");
-	assert_int_equal(r.status, NMTAN_OK);
+	assert_int_equal(r.status, NT_OK);
 	assert_int_equal(r.scene.material_count, 2);
 	assert_string_equal(r.scene.materials[0].name, "a name");
 	assert_string_equal(r.scene.materials[1].name, "b");

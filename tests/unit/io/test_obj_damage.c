@@ -96,17 +96,17 @@ static void bytes_that_are_no_text_are_refused(void **state)
 	(void)state;
 	reading r;
 	open_bytes(&r, "v 0 0 0\n\0\0\0\n", 12, 1);
-	assert_int_equal(r.status, NMTAN_ERROR_INPUT);
+	assert_int_equal(r.status, NT_ERROR_INPUT);
 	assert_int_equal(r.error.place.line, 2);
 	assert_string_equal(r.error.message,
 		"found \"\\x00\\x00\\x00\", expected a statement of an OBJ file");
 	close_reading(&r);
 	open_bytes(&r, "v 0 0\0000\n", 9, 1);
-	assert_int_equal(r.status, NMTAN_ERROR_INPUT);
+	assert_int_equal(r.status, NT_ERROR_INPUT);
 	assert_string_equal(r.error.message, "found \"0\\x000\", expected a number");
 	close_reading(&r);
 	open_bytes(&r, "o a\0b\n", 6, 1);
-	assert_int_equal(r.status, NMTAN_ERROR_INPUT);
+	assert_int_equal(r.status, NT_ERROR_INPUT);
 	assert_string_equal(r.error.message, "found \"\\x00b\", expected a name in text");
 	close_reading(&r);
 	assert_fails("\xFF\xFEv\n", 1, "found \"\\xff\\xfev\", expected a statement of an OBJ file");
@@ -124,12 +124,12 @@ static void every_prefix_is_survived(void **state)
 	for (size_t size = 0; size < sizeof text; size++) {
 		reading r;
 		open_bytes(&r, text, size, 1);
-		assert_true(r.status == NMTAN_OK || r.status == NMTAN_ERROR_INPUT);
+		assert_true(r.status == NT_OK || r.status == NT_ERROR_INPUT);
 		close_reading(&r);
 	}
 	reading r;
 	open_bytes(&r, text, sizeof text - 1, 1);
-	assert_int_equal(r.status, NMTAN_OK);
+	assert_int_equal(r.status, NT_OK);
 	close_reading(&r);
 }
 
@@ -145,7 +145,7 @@ static void every_changed_byte_is_survived(void **state)
 			text[at] = (char)c;
 			reading r;
 			open_bytes(&r, text, sizeof good - 1, 1);
-			assert_true(r.status == NMTAN_OK || r.status == NMTAN_ERROR_INPUT);
+			assert_true(r.status == NT_OK || r.status == NT_ERROR_INPUT);
 			close_reading(&r);
 		}
 }

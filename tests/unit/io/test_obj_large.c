@@ -195,7 +195,7 @@ static size_t count_distinct(const naive *x)
 	return total;
 }
 
-static nmtan_status open_scene(nt_scene *scene, const char *bytes, size_t size, unsigned threads,
+static nt_status open_scene(nt_scene *scene, const char *bytes, size_t size, unsigned threads,
 	nt_error *error)
 {
 	nt_scene_init(scene, "large.obj");
@@ -213,7 +213,7 @@ static void assert_agrees(const char *bytes, size_t size, unsigned threads)
 	naive x;
 	if (open_scene(&scene, bytes, size, threads, &error))
 		print_message("line %zu: %s\n", error.place.line, error.message);
-	assert_int_equal(error.status, NMTAN_OK);
+	assert_int_equal(error.status, NT_OK);
 	naive_read(&x, bytes, size);
 	assert_same(&scene, &x);
 	size_t vertices = 0;
@@ -351,11 +351,11 @@ static void threads_do_not_show(void **state)
 	char *text = generate(&size);
 	nt_scene one;
 	nt_error error;
-	assert_int_equal(open_scene(&one, text, size, 1, &error), NMTAN_OK);
+	assert_int_equal(open_scene(&one, text, size, 1, &error), NT_OK);
 	const unsigned threads[] = {2, 3, 8};
 	for (int i = 0; i < 3; i++) {
 		nt_scene many;
-		assert_int_equal(open_scene(&many, text, size, threads[i], &error), NMTAN_OK);
+		assert_int_equal(open_scene(&many, text, size, threads[i], &error), NT_OK);
 		assert_same_scene(&one, &many);
 		nt_scene_free(&many);
 	}
@@ -381,7 +381,7 @@ static void the_first_fault_is_named_whatever_the_threads(void **state)
 	for (unsigned threads = 1; threads <= 8; threads += threads) {
 		nt_scene scene;
 		nt_error error;
-		assert_int_equal(open_scene(&scene, text, size, threads, &error), NMTAN_ERROR_INPUT);
+		assert_int_equal(open_scene(&scene, text, size, threads, &error), NT_ERROR_INPUT);
 		assert_int_equal(error.place.line, expected);
 		nt_scene_free(&scene);
 	}
@@ -401,7 +401,7 @@ static void hub_of_different_corners_is_not_quadratic(void **state)
 			used += (size_t)sprintf(text + used, "f 1/%d 2/1 3/1\n", i);
 	nt_scene scene;
 	nt_error error;
-	assert_int_equal(open_scene(&scene, text, used, 2, &error), NMTAN_OK);
+	assert_int_equal(open_scene(&scene, text, used, 2, &error), NT_OK);
 	assert_int_equal(scene.meshes[0].vertex_count, 100002);
 	const uint32_t *indices = scene.meshes[0].indices;
 	for (uint32_t i = 0; i < 100000; i++) {
@@ -427,14 +427,14 @@ static void lines_longer_than_a_chunk(void **state)
 	for (unsigned threads = 1; threads <= 2; threads++) {
 		nt_scene scene;
 		nt_error error;
-		assert_int_equal(open_scene(&scene, text, used, threads, &error), NMTAN_OK);
+		assert_int_equal(open_scene(&scene, text, used, threads, &error), NT_OK);
 		assert_int_equal(scene.meshes[0].face_count, 2);
 		nt_scene_free(&scene);
 	}
 	used += (size_t)sprintf(text + used, " x");
 	nt_scene scene;
 	nt_error error;
-	assert_int_equal(open_scene(&scene, text, used, 2, &error), NMTAN_ERROR_INPUT);
+	assert_int_equal(open_scene(&scene, text, used, 2, &error), NT_ERROR_INPUT);
 	assert_int_equal(error.place.line, 4 + 1 + 400000 + 1);
 	nt_scene_free(&scene);
 	free(text);
@@ -484,7 +484,7 @@ static void public_models_agree_with_the_naive_reader(void **state)
 		if (is_refused(entry->d_name)) {
 			nt_scene scene;
 			nt_error error;
-			assert_int_equal(open_scene(&scene, bytes, size, 2, &error), NMTAN_ERROR_INPUT);
+			assert_int_equal(open_scene(&scene, bytes, size, 2, &error), NT_ERROR_INPUT);
 			nt_scene_free(&scene);
 		} else {
 			assert_agrees(bytes, size, 2);

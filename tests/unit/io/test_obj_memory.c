@@ -10,7 +10,7 @@
 #include "io/format.h"
 #include "scene/polygon.h"
 
-static nmtan_status open_text(const char *path, const char *text, nt_error *error)
+static nt_status open_text(const char *path, const char *text, nt_error *error)
 {
 	nt_scene scene;
 	nt_scene_init(&scene, path);
@@ -18,7 +18,7 @@ static nmtan_status open_text(const char *path, const char *text, nt_error *erro
 	scene.byte_count = strlen(text);
 	nt_error_clear(error);
 	const nt_read_options options = {.texcoord_set = -1, .threads = 1};
-	const nmtan_status status = nt_obj_open(&scene, &options, error);
+	const nt_status status = nt_obj_open(&scene, &options, error);
 	stop_failing_allocations();
 	nt_scene_free(&scene);
 	return status;
@@ -42,14 +42,14 @@ static void every_allocation_of_the_reader_may_fail(void **state)
 	sprintf(p, "\nl 1 2\n");
 
 	nt_error error;
-	assert_int_equal(open_text(path, text, &error), NMTAN_OK);
+	assert_int_equal(open_text(path, text, &error), NT_OK);
 	size_t count = 0;
 	for (;; count++) {
 		fail_allocations_from(count);
-		const nmtan_status status = open_text(path, text, &error);
-		if (status == NMTAN_OK)
+		const nt_status status = open_text(path, text, &error);
+		if (status == NT_OK)
 			break;
-		assert_int_equal(status, NMTAN_ERROR_MEMORY);
+		assert_int_equal(status, NT_ERROR_MEMORY);
 		assert_string_equal(error.message, "out of memory");
 		assert_string_equal(error.place.file, path);
 	}
@@ -68,13 +68,13 @@ static void allocations_of_large_polygons_may_fail(void **state)
 	bool sound;
 	for (size_t n = 0; n < 2; n++) {
 		fail_allocations_from(n);
-		const nmtan_status status =
+		const nt_status status =
 			nt_polygon_triangulate((const float(*)[3])points, 100, triangles, &sound);
 		assert_true(stop_failing_allocations());
-		assert_int_equal(status, NMTAN_ERROR_MEMORY);
+		assert_int_equal(status, NT_ERROR_MEMORY);
 	}
 	assert_int_equal(nt_polygon_triangulate((const float(*)[3])points, 100, triangles, &sound),
-		NMTAN_OK);
+		NT_OK);
 	assert_true(sound);
 }
 

@@ -49,7 +49,7 @@ static void header_mistakes_have_their_line(void **state)
 	assert_refused(HEAD("1") "element face 1\nproperty list uchar float vertex_index\nend_header\n", 8,
 		"property \"vertex_index\" is not a list of integers");
 	static const char newer[] = "ply\nformat ascii 2.0\n";
-	assert_refused_bytes(newer, sizeof newer - 1, NMTAN_ERROR_UNSUPPORTED, 2, NT_NO_OFFSET,
+	assert_refused_bytes(newer, sizeof newer - 1, NT_ERROR_UNSUPPORTED, 2, NT_NO_OFFSET,
 		"PLY version \"2.0\": only 1.0 is known");
 }
 
@@ -105,7 +105,7 @@ static void meshes_must_be_finite(void **state)
 		const size_t at = m.size + 555 * 13 + 8;
 		bytes[at + 2] = 0x80; /* 7f 80 00 00: infinity */
 		bytes[at + 3] = 0x7f;
-		assert_refused_bytes(bytes, m.size + 600 * 13 + 1, NMTAN_ERROR_INPUT, 0, at,
+		assert_refused_bytes(bytes, m.size + 600 * 13 + 1, NT_ERROR_INPUT, 0, at,
 			"vertex 555: property \"z\" is not finite, expected a finite number");
 		free(bytes);
 	}
@@ -151,7 +151,7 @@ static void assert_binary_refused(const char *head, const char *body, size_t siz
 	image m = {0};
 	put_text(&m, head);
 	memcpy(m.bytes + m.size, body, size);
-	assert_refused_bytes(m.bytes, m.size + size, NMTAN_ERROR_INPUT, 0, m.size + at, message);
+	assert_refused_bytes(m.bytes, m.size + size, NT_ERROR_INPUT, 0, m.size + at, message);
 }
 
 static void binary_mistakes_have_their_offset(void **state)
@@ -188,8 +188,8 @@ static void every_prefix_is_read_or_refused(void **state)
 			open_bytes(&r, m.bytes, size);
 			if (r.status) {
 				/* "format ascii 1." is another version */
-				assert_true(r.status == NMTAN_ERROR_INPUT ||
-					    (r.status == NMTAN_ERROR_UNSUPPORTED &&
+				assert_true(r.status == NT_ERROR_INPUT ||
+					    (r.status == NT_ERROR_UNSUPPORTED &&
 						    r.error.place.line == 2));
 				assert_true(r.error.place.line > 0 || r.error.place.offset <= size);
 			} else {
@@ -237,9 +237,9 @@ static void every_allocation_may_fail(void **state)
 		scene.byte_count = m.size;
 		const nt_read_options options = {.texcoord_set = -1, .threads = 1};
 		fail_allocations_from(n);
-		const nmtan_status status = nt_ply_open(&scene, &options, &error);
+		const nt_status status = nt_ply_open(&scene, &options, &error);
 		failed = stop_failing_allocations();
-		assert_true(failed ? status == NMTAN_ERROR_MEMORY || scene.findings.failed : !status);
+		assert_true(failed ? status == NT_ERROR_MEMORY || scene.findings.failed : !status);
 		nt_scene_free(&scene);
 	}
 	assert_true(n > 20);

@@ -281,7 +281,7 @@ static void runs_end_at_an_index_out_of_range(void **state)
 			snprintf(message, sizeof message,
 				"face %d: vertex index 9 is out of range, the file has 9 vertices", face);
 			const bool ascii = encoding == ENCODING_ASCII;
-			assert_refused_bytes(bytes, size, NMTAN_ERROR_INPUT, ascii ? place : 0,
+			assert_refused_bytes(bytes, size, NT_ERROR_INPUT, ascii ? place : 0,
 				ascii ? NT_NO_OFFSET : place, message);
 		}
 	}

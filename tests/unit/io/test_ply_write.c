@@ -11,12 +11,12 @@
 #include <math.h>
 #include <stdio.h>
 
-static nmtan_status try_write(nt_scene *scene, bool bitangents, nt_error *error)
+static nt_status try_write(nt_scene *scene, bool bitangents, nt_error *error)
 {
 	const nt_write_options options = {.format = NT_FORMAT_PLY, .path = in_folder("out.ply"), .bitangents = bitangents};
 	nt_output *output = NULL;
 	nt_error_clear(error);
-	nmtan_status status = nt_output_create(&output, NULL, error);
+	nt_status status = nt_output_create(&output, NULL, error);
 	if (!status)
 		status = nt_ply_write(scene, &options, output, error);
 	if (!status)
@@ -29,8 +29,8 @@ static nt_file write_scene(nt_scene *scene, bool bitangents)
 {
 	nt_error error;
 	nt_file file;
-	assert_int_equal(try_write(scene, bitangents, &error), NMTAN_OK);
-	assert_int_equal(nt_file_open(&file, in_folder("out.ply"), &error), NMTAN_OK);
+	assert_int_equal(try_write(scene, bitangents, &error), NT_OK);
+	assert_int_equal(nt_file_open(&file, in_folder("out.ply"), &error), NT_OK);
 	return file;
 }
 
@@ -41,7 +41,7 @@ static void open_bytes(nt_scene *scene, const void *bytes, size_t size)
 	nt_scene_init(scene, "in.ply");
 	scene->bytes = bytes;
 	scene->byte_count = size;
-	assert_int_equal(nt_ply_open(scene, &options, &error), NMTAN_OK);
+	assert_int_equal(nt_ply_open(scene, &options, &error), NT_OK);
 }
 
 static void open_text(nt_scene *scene, const char *text)
@@ -570,9 +570,9 @@ static void every_allocation_may_fail(void **state)
 		indices[6] = 8;
 		set_split(&scene, indices, &source, 1);
 		fail_allocations_from(n);
-		const nmtan_status status = try_write(&scene, false, &error);
+		const nt_status status = try_write(&scene, false, &error);
 		failed = stop_failing_allocations();
-		assert_true(failed ? status == NMTAN_ERROR_MEMORY || scene.findings.failed : !status);
+		assert_true(failed ? status == NT_ERROR_MEMORY || scene.findings.failed : !status);
 		nt_scene_free(&scene);
 	}
 	assert_true(n > 10);

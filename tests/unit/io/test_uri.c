@@ -11,7 +11,7 @@ static void check_data(const char *uri, const char *expected, size_t expected_si
 	size_t size;
 	nt_error error;
 	assert_true(nt_uri_is_data(uri, strlen(uri)));
-	assert_int_equal(nt_uri_decode_data(uri, strlen(uri), &bytes, &size, &error), NMTAN_OK);
+	assert_int_equal(nt_uri_decode_data(uri, strlen(uri), &bytes, &size, &error), NT_OK);
 	assert_int_equal(size, expected_size);
 	assert_memory_equal(bytes, expected, expected_size);
 	free(bytes);
@@ -38,7 +38,7 @@ static void broken_data_uris_are_refused(void **state)
 		size_t size;
 		nt_error error;
 		assert_int_equal(nt_uri_decode_data(broken[i], strlen(broken[i]), &bytes, &size, &error),
-			NMTAN_ERROR_INPUT);
+			NT_ERROR_INPUT);
 		assert_null(bytes);
 	}
 }
@@ -57,16 +57,16 @@ static void base64_comes_back(void **state)
 	}
 }
 
-static nmtan_status resolve(const char *document, const char *uri, size_t length, bool allow,
+static nt_status resolve(const char *document, const char *uri, size_t length, bool allow,
 	char *path)
 {
 	nt_arena arena = {0};
 	nt_error error;
 	const char *found = NULL;
 	nt_error_clear(&error);
-	const nmtan_status status =
+	const nt_status status =
 		nt_uri_resolve(&arena, document, uri, length, allow, &found, &error);
-	if (status == NMTAN_OK)
+	if (status == NT_OK)
 		strcpy(path, found);
 	else if (length && uri[0])
 		assert_non_null(strstr(error.message, uri));
@@ -74,7 +74,7 @@ static nmtan_status resolve(const char *document, const char *uri, size_t length
 	return status;
 }
 
-static void check_resolve(const char *document, const char *uri, bool allow, nmtan_status expected)
+static void check_resolve(const char *document, const char *uri, bool allow, nt_status expected)
 {
 	char path[512];
 	assert_int_equal(resolve(document, uri, strlen(uri), allow, path), expected);
@@ -86,15 +86,15 @@ static void names_outside_are_refused(void **state)
 	static const char *const outside[] = {"../x.bin", "a/../../x.bin", "%2e%2e/x.bin", "..\\x.bin",
 		"/etc/passwd", "%2Fetc/passwd", "\\\\host\\share", "C:\\x.bin", "c:/x.bin", "..", ""};
 	for (size_t i = 0; i < sizeof outside / sizeof *outside; i++)
-		check_resolve("dir/a.gltf", outside[i], false, NMTAN_ERROR_INPUT);
-	check_resolve("dir/a.gltf", "http://host/x.bin", false, NMTAN_ERROR_UNSUPPORTED);
-	check_resolve("dir/a.gltf", "file:///x.bin", true, NMTAN_ERROR_UNSUPPORTED);
-	check_resolve("dir/a.gltf", "x%00.bin", true, NMTAN_ERROR_INPUT);
+		check_resolve("dir/a.gltf", outside[i], false, NT_ERROR_INPUT);
+	check_resolve("dir/a.gltf", "http://host/x.bin", false, NT_ERROR_UNSUPPORTED);
+	check_resolve("dir/a.gltf", "file:///x.bin", true, NT_ERROR_UNSUPPORTED);
+	check_resolve("dir/a.gltf", "x%00.bin", true, NT_ERROR_INPUT);
 	char path[512];
-	assert_int_equal(resolve("a.gltf", "x\0y", 3, true, path), NMTAN_ERROR_INPUT);
-	assert_int_equal(resolve("dir/a.gltf", "../x%20y.bin", 12, true, path), NMTAN_OK);
+	assert_int_equal(resolve("a.gltf", "x\0y", 3, true, path), NT_ERROR_INPUT);
+	assert_int_equal(resolve("dir/a.gltf", "../x%20y.bin", 12, true, path), NT_OK);
 	assert_string_equal(path, "dir/../x y.bin");
-	assert_int_equal(resolve("dir/a.gltf", "/x.bin", 6, true, path), NMTAN_OK);
+	assert_int_equal(resolve("dir/a.gltf", "/x.bin", 6, true, path), NT_OK);
 	assert_string_equal(path, "/x.bin");
 }
 
@@ -114,12 +114,12 @@ static void links_are_followed_only_within_the_folder(void **state)
 	fclose(stream);
 	assert_int_equal(symlink("a b.bin", good), 0);
 	assert_int_equal(symlink("/etc", bad), 0);
-	assert_int_equal(resolve(document, "a%20b.bin", 9, false, path), NMTAN_OK);
+	assert_int_equal(resolve(document, "a%20b.bin", 9, false, path), NT_OK);
 	assert_string_equal(path, file);
-	check_resolve(document, "good", false, NMTAN_OK);
-	check_resolve(document, "bad/passwd", false, NMTAN_ERROR_INPUT);
-	check_resolve(document, "bad/passwd", true, NMTAN_OK);
-	check_resolve(document, "absent.bin", false, NMTAN_ERROR_IO);
+	check_resolve(document, "good", false, NT_OK);
+	check_resolve(document, "bad/passwd", false, NT_ERROR_INPUT);
+	check_resolve(document, "bad/passwd", true, NT_OK);
+	check_resolve(document, "absent.bin", false, NT_ERROR_IO);
 	unlink(bad);
 	unlink(good);
 	unlink(file);

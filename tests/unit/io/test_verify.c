@@ -11,7 +11,7 @@ static int remove_empty_folder(void **state)
 }
 
 /* Writes the scene, lets `spoil` change what the writer should have written, and verifies. */
-static nmtan_status verify_after(const char *name, void (*spoil)(hand_scene *), nt_error *error)
+static nt_status verify_after(const char *name, void (*spoil)(hand_scene *), nt_error *error)
 {
 	hand_scene hand;
 	make_scene(&hand);
@@ -20,11 +20,11 @@ static nmtan_status verify_after(const char *name, void (*spoil)(hand_scene *), 
 	const nt_write_options options = {.path = path,
 		.format = strstr(name, ".glb") ? NT_FORMAT_GLB : NT_FORMAT_GLTF};
 	nt_output *output;
-	assert_int_equal(nt_output_create(&output, NULL, error), NMTAN_OK);
-	assert_int_equal(nt_gltf_compose(&hand.scene, &options, output, error), NMTAN_OK);
+	assert_int_equal(nt_output_create(&output, NULL, error), NT_OK);
+	assert_int_equal(nt_gltf_compose(&hand.scene, &options, output, error), NT_OK);
 	if (spoil)
 		spoil(&hand);
-	const nmtan_status status = nt_verify_gltf(&hand.scene, output, path, error);
+	const nt_status status = nt_verify_gltf(&hand.scene, output, path, error);
 	nt_output_abort(output);
 	return status;
 }
@@ -33,8 +33,8 @@ static void good_output_is_good(void **state)
 {
 	(void)state;
 	nt_error error;
-	assert_int_equal(verify_after("a b.glb", NULL, &error), NMTAN_OK);
-	assert_int_equal(verify_after("a b.gltf", NULL, &error), NMTAN_OK); /* its .bin has no name yet */
+	assert_int_equal(verify_after("a b.glb", NULL, &error), NT_OK);
+	assert_int_equal(verify_after("a b.gltf", NULL, &error), NT_OK); /* its .bin has no name yet */
 }
 
 static void change_last_tangent(hand_scene *hand)
@@ -60,10 +60,10 @@ static void every_difference_is_told(void **state)
 {
 	(void)state;
 	nt_error error;
-	assert_int_equal(verify_after("a.glb", change_last_tangent, &error), NMTAN_ERROR_INTERNAL);
+	assert_int_equal(verify_after("a.glb", change_last_tangent, &error), NT_ERROR_INTERNAL);
 	assert_non_null(strstr(error.message, "corner 6 of mesh \"hand\""));
-	assert_int_equal(verify_after("a.gltf", turn_the_diagonal, &error), NMTAN_ERROR_INTERNAL);
-	assert_int_equal(verify_after("a.glb", add_a_mesh, &error), NMTAN_ERROR_INTERNAL);
+	assert_int_equal(verify_after("a.gltf", turn_the_diagonal, &error), NT_ERROR_INTERNAL);
+	assert_int_equal(verify_after("a.glb", add_a_mesh, &error), NT_ERROR_INTERNAL);
 	assert_non_null(strstr(error.place.file, "a.glb"));
 }
 
@@ -82,14 +82,14 @@ static void patch(patched *p, const nt_write_options *options)
 	static const nt_read_options reading = {.texcoord_set = -1, .morphs = NT_MORPH_BAKE};
 	static const char input[] = NT_DATA_DIR "/morph.gltf";
 	nt_error error;
-	assert_int_equal(nt_file_open(&p->file, input, &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&p->file, input, &error), NT_OK);
 	nt_scene_init(&p->scene, input);
 	p->scene.bytes = p->file.data;
 	p->scene.byte_count = p->file.size;
 	p->scene.format = NT_FORMAT_GLTF;
-	assert_int_equal(nt_gltf_open(&p->scene, &reading, &error), NMTAN_OK);
+	assert_int_equal(nt_gltf_open(&p->scene, &reading, &error), NT_OK);
 	nt_mesh *mesh = p->scene.meshes;
-	assert_int_equal(nt_gltf_load(&p->scene, mesh, &reading, &error), NMTAN_OK);
+	assert_int_equal(nt_gltf_load(&p->scene, mesh, &reading, &error), NT_OK);
 	assert_int_equal(mesh->vertex_count, 4);
 	assert_int_equal(mesh->morph_count, 1);
 	for (int v = 0; v < 4; v++) {
@@ -99,8 +99,8 @@ static void patch(patched *p, const nt_write_options *options)
 	}
 	mesh->split.vertex_tangents = p->tangents[0];
 	mesh->morphs[0].vertex_tangents = p->moved[0];
-	assert_int_equal(nt_output_create(&p->output, NULL, &error), NMTAN_OK);
-	assert_int_equal(nt_gltf_patch(&p->scene, options, p->output, &error), NMTAN_OK);
+	assert_int_equal(nt_output_create(&p->output, NULL, &error), NT_OK);
+	assert_int_equal(nt_gltf_patch(&p->scene, options, p->output, &error), NT_OK);
 }
 
 static void close_patched(patched *p)
@@ -125,10 +125,10 @@ static void tangents_of_targets_are_compared(void **state)
 		patched p;
 		nt_error error;
 		patch(&p, &options);
-		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &error), NMTAN_OK);
+		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &error), NT_OK);
 		/* one bit of one number: 0.6 again, but for its last one */
 		p.moved[2][1] = nextafterf(p.moved[2][1], 1);
-		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &error), NMTAN_ERROR_INTERNAL);
+		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &error), NT_ERROR_INTERNAL);
 		assert_non_null(strstr(error.message, "corner 2 "));
 		close_patched(&p);
 	}

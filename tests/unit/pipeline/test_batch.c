@@ -30,7 +30,7 @@ static void outputs_have_the_name_of_the_input_and_the_ending_of_the_format(void
 	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "b.PLY", "c.d/e.gltf", "f.glb", "head.v2",
 					       ".glb", "h.drc"),
 				 "out", &settings, &error),
-		NMTAN_OK);
+		NT_OK);
 	assert_string_equal(batch.jobs[0].output, "out/a.glb");
 	assert_string_equal(batch.jobs[1].output, "out/b.ply");
 	assert_string_equal(batch.jobs[2].output, "out/e.gltf");
@@ -45,7 +45,7 @@ static void outputs_have_the_name_of_the_input_and_the_ending_of_the_format(void
 
 	settings.output_format = NT_FORMAT_PLY;
 	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "b.glb"), "out/", &settings, &error),
-		NMTAN_OK);
+		NT_OK);
 	assert_string_equal(batch.jobs[0].output, "out/a.ply");
 	assert_string_equal(batch.jobs[1].output, "out/b.ply");
 	nt_batch_free(&batch);
@@ -59,7 +59,7 @@ static void two_inputs_of_one_output_are_refused_before_anything_is_made(void **
 	nt_error error;
 	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "b.obj", "y/a.glb"), "out2", &settings,
 				 &error),
-		NMTAN_ERROR_USAGE);
+		NT_ERROR_USAGE);
 	assert_non_null(strstr(error.message, "x/a.obj"));
 	assert_non_null(strstr(error.message, "y/a.glb"));
 	nt_batch_free(&batch);
@@ -75,7 +75,7 @@ static void an_output_that_is_another_input_is_refused(void **state)
 	put_text_file("a.glb", "glTF");
 	assert_int_equal(link("a.glb", "other.ply"), 0);
 	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj", "other.ply"), ".", &settings, &error),
-		NMTAN_ERROR_USAGE);
+		NT_ERROR_USAGE);
 	assert_non_null(strstr(error.message, "other.ply"));
 	nt_batch_free(&batch);
 }
@@ -87,16 +87,16 @@ static void in_place_the_output_is_the_input(void **state)
 	nt_error error;
 	put_text_file("p.glb", "glTF");
 	put_text_file("q.glb", "glTF");
-	assert_int_equal(nt_batch_in_place(&batch, INPUTS("p.glb", "q.glb"), &error), NMTAN_OK);
+	assert_int_equal(nt_batch_in_place(&batch, INPUTS("p.glb", "q.glb"), &error), NT_OK);
 	assert_int_equal(batch.count, 2);
 	assert_string_equal(batch.jobs[0].output, "p.glb");
 	assert_string_equal(batch.jobs[1].output, "q.glb");
 	nt_batch_free(&batch);
 	/* one file under two names: by which of them would it be read, and when? */
 	assert_int_equal(symlink("p.glb", "link.glb"), 0);
-	assert_int_equal(nt_batch_in_place(&batch, INPUTS("p.glb", "p.glb"), &error), NMTAN_ERROR_USAGE);
+	assert_int_equal(nt_batch_in_place(&batch, INPUTS("p.glb", "p.glb"), &error), NT_ERROR_USAGE);
 	nt_batch_free(&batch);
-	assert_int_equal(nt_batch_in_place(&batch, INPUTS("p.glb", "link.glb"), &error), NMTAN_ERROR_USAGE);
+	assert_int_equal(nt_batch_in_place(&batch, INPUTS("p.glb", "link.glb"), &error), NT_ERROR_USAGE);
 	nt_batch_free(&batch);
 }
 
@@ -106,17 +106,17 @@ static void a_dry_run_makes_no_folder_and_a_file_is_none(void **state)
 	nt_settings settings = {.dry_run = true};
 	nt_batch batch;
 	nt_error error;
-	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj"), "out3", &settings, &error), NMTAN_OK);
+	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj"), "out3", &settings, &error), NT_OK);
 	nt_batch_free(&batch);
 	assert_int_equal(access("out3", F_OK), -1);
 	settings.dry_run = false;
 	put_text_file("file", "");
 	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj"), "file", &settings, &error),
-		NMTAN_ERROR_IO);
+		NT_ERROR_IO);
 	assert_string_equal(error.place.file, "file");
 	nt_batch_free(&batch);
 	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj"), "no/where", &settings, &error),
-		NMTAN_ERROR_IO);
+		NT_ERROR_IO);
 	nt_batch_free(&batch);
 }
 
@@ -129,7 +129,7 @@ void nt_summary_free(nt_summary *summary)
 /* Stands for nt_run: the input's first letter says how long it takes, "x" in it that it fails. */
 static unsigned threads_seen;
 
-static nmtan_status fake_run(const char *input, const char *output, const nt_settings *settings,
+static nt_status fake_run(const char *input, const char *output, const nt_settings *settings,
 	nt_summary *summary, nt_error *error)
 {
 	(void)output;
@@ -138,8 +138,8 @@ static nmtan_status fake_run(const char *input, const char *output, const nt_set
 	usleep((useconds_t)(input[0] - 'a') * 2000);
 	summary->mesh_count = (size_t)(input[0] - 'a');
 	if (strchr(input, 'x'))
-		return nt_fail(error, NMTAN_ERROR_INPUT, "%s is bad", input);
-	return NMTAN_OK;
+		return nt_fail(error, NT_ERROR_INPUT, "%s is bad", input);
+	return NT_OK;
 }
 
 typedef struct log {
@@ -168,13 +168,13 @@ static void every_input_runs_and_is_told_about_in_order(void **state)
 		log l = {0};
 		assert_int_equal(nt_batch_check(&batch, INPUTS("h1 ", "ax ", "c ", "gx ", "b ", "d ", "a "),
 					 &error),
-			NMTAN_OK);
+			NT_OK);
 		nt_batch_run(&batch, &settings, fake_run, note, &l);
 		assert_string_equal(l.names, "h1 ax c gx b d a ");
 		assert_int_equal(l.meshes, 7 + 0 + 2 + 6 + 1 + 3 + 0);
 		assert_int_equal(l.failures, 2);
 		assert_int_equal(threads_seen, 1);
-		assert_int_equal(batch.jobs[1].status, NMTAN_ERROR_INPUT);
+		assert_int_equal(batch.jobs[1].status, NT_ERROR_INPUT);
 		nt_batch_free(&batch);
 	}
 }
@@ -186,7 +186,7 @@ static void one_input_has_all_threads(void **state)
 	nt_error error;
 	log l = {0};
 	const nt_settings settings = {.threads = 5};
-	assert_int_equal(nt_batch_pair(&batch, "a", "b", &error), NMTAN_OK);
+	assert_int_equal(nt_batch_pair(&batch, "a", "b", &error), NT_OK);
 	assert_string_equal(batch.jobs[0].output, "b");
 	nt_batch_run(&batch, &settings, fake_run, note, &l);
 	assert_int_equal(threads_seen, 5);

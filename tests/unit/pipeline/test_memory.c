@@ -121,7 +121,7 @@ static size_t peak_of(const char *input, const char *output)
 		const nt_settings settings = {.texcoord_set = -1, .embed = strstr(output, ".gltf"), .threads = 2};
 		nt_summary summary;
 		nt_error error;
-		const nmtan_status status = nt_run(input, output, &settings, &summary, &error);
+		const nt_status status = nt_run(input, output, &settings, &summary, &error);
 		_exit(status || summary.solved_count != 1);
 	}
 	int status;

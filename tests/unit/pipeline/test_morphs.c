@@ -72,12 +72,12 @@ static void convert(result *r, nt_morph_choice morphs)
 			r->turned += summary.findings.items[i].count;
 	nt_summary_free(&summary);
 
-	assert_int_equal(nt_file_open(&r->file, in_folder("out.glb"), &error), NMTAN_OK);
+	assert_int_equal(nt_file_open(&r->file, in_folder("out.glb"), &error), NT_OK);
 	nt_scene_init(&r->scene, "out.glb");
 	r->scene.bytes = r->file.data;
 	r->scene.byte_count = r->file.size;
 	r->scene.format = NT_FORMAT_GLB;
-	assert_int_equal(nt_gltf_open(&r->scene, &(nt_read_options){.texcoord_set = -1}, &error), NMTAN_OK);
+	assert_int_equal(nt_gltf_open(&r->scene, &(nt_read_options){.texcoord_set = -1}, &error), NT_OK);
 }
 
 static void close_result(result *r)
@@ -103,9 +103,9 @@ static void rows_are(const result *r, uint32_t index, uint32_t width, const floa
 	nt_gltf_accessor accessor;
 	nt_error error;
 	float *found;
-	assert_int_equal(nt_gltf_get_accessor(r->scene.source, index, "", &accessor, &error), NMTAN_OK);
+	assert_int_equal(nt_gltf_get_accessor(r->scene.source, index, "", &accessor, &error), NT_OK);
 	assert_int_equal(nt_gltf_floats(r->scene.source, &accessor, width, 0, (nt_arena *)&r->scene.arena, &found,
-		&error), NMTAN_OK);
+		&error), NT_OK);
 	assert_int_equal(accessor.count, 4);
 	for (size_t i = 0; i < 4 * width; i++)
 		assert_true(fabsf(found[i] - expected[i % width]) <= 1.2e-7f);

@@ -75,7 +75,7 @@ static void run(const char *which, size_t *begin, size_t *end, size_t expected_s
 	nt_error error;
 	map = NULL;
 	memset((void *)(uintptr_t)touched, 0, sizeof touched);
-	assert_int_equal(nt_run(path, "/tmp/nmtan-test-needed-output.glb", &settings, &summary, &error), NMTAN_OK);
+	assert_int_equal(nt_run(path, "/tmp/nmtan-test-needed-output.glb", &settings, &summary, &error), NT_OK);
 	sigaction(SIGSEGV, &before, NULL);
 	assert_non_null(map);
 	assert_true(map_size / PAGE < MOST_PAGES);

@@ -125,14 +125,14 @@ static bool judge_file(const char *path, rule_count *count)
 		return false;
 	folder f = {.path = path};
 	nt_reread *model = NULL;
-	const bool read = nt_reread_open(&model, file.data, file.size, find_file, &f, &error) == NMTAN_OK;
+	const bool read = nt_reread_open(&model, file.data, file.size, find_file, &f, &error) == NT_OK;
 	for (size_t m = 0; read && m < nt_reread_mesh_count(model); m++) {
 		for (size_t p = 0; p < nt_reread_primitive_count(model, m); p++) {
 			static const char *const names[4] = {"POSITION", "NORMAL", "TEXCOORD_0", "TANGENT"};
 			nt_reread_array a[4], indices;
-			bool whole = nt_reread_attribute(model, m, p, NULL, &indices, &error) == NMTAN_OK;
+			bool whole = nt_reread_attribute(model, m, p, NULL, &indices, &error) == NT_OK;
 			for (int i = 0; i < 4; i++)
-				whole = nt_reread_attribute(model, m, p, names[i], &a[i], &error) == NMTAN_OK &&
+				whole = nt_reread_attribute(model, m, p, names[i], &a[i], &error) == NT_OK &&
 					a[i].data && a[i].component_type == NT_GLTF_FLOAT && whole;
 			if (!whole)
 				continue;
@@ -162,10 +162,10 @@ static void judge_conversion(const char *input, rule_count *count)
 		.images = NT_IMAGES_LINK, .verify = true};
 	nt_summary summary;
 	nt_error error;
-	const nmtan_status status = nt_run(input, output, &settings, &summary, &error);
+	const nt_status status = nt_run(input, output, &settings, &summary, &error);
 	if (status)
 		print_error("%s: %s\n", input, error.message);
-	assert_int_equal(status, NMTAN_OK);
+	assert_int_equal(status, NT_OK);
 	const size_t folded = summary.counts.folded_quads;
 	nt_summary_free(&summary);
 	rule_count own = {0};

@@ -333,7 +333,7 @@ static void baseline_knows_old_findings_each_as_often_as_it_has_them(void **stat
 	nt_report_free(report);
 	nt_baseline baseline;
 	nt_error error;
-	assert_int_equal(nt_baseline_read(&baseline, text, strlen(text), &error), NMTAN_OK);
+	assert_int_equal(nt_baseline_read(&baseline, text, strlen(text), &error), NT_OK);
 	set_tangent(h, 3, 0, 0, 1, 1); /* new */
 	const nt_report_options options = {.baseline = &baseline};
 	report = hand_report(h, &options);
@@ -341,8 +341,8 @@ static void baseline_knows_old_findings_each_as_often_as_it_has_them(void **stat
 	assert_false(hand_finding(report, NT_CODE_TAN_PARALLEL_NORMAL)->known);
 	assert_int_equal(report->known, 1);
 	nt_baseline_free(&baseline);
-	assert_int_equal(nt_baseline_read(&baseline, "{}", 2, &error), NMTAN_ERROR_INPUT);
-	assert_int_equal(nt_baseline_read(&baseline, "{", 1, &error), NMTAN_ERROR_INPUT);
+	assert_int_equal(nt_baseline_read(&baseline, "{}", 2, &error), NT_ERROR_INPUT);
+	assert_int_equal(nt_baseline_read(&baseline, "{", 1, &error), NT_ERROR_INPUT);
 	hand_free(h, report);
 }
 

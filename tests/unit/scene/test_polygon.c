@@ -21,7 +21,7 @@ static void assert_proper(const double (*plane)[2], const float (*points)[3], si
 	uint32_t *triangles = malloc(3 * (count - 2) * sizeof *triangles);
 	unsigned char *edge_used = calloc(count, 1);
 	bool sound = false;
-	assert_int_equal(nt_polygon_triangulate(points, count, triangles, &sound), NMTAN_OK);
+	assert_int_equal(nt_polygon_triangulate(points, count, triangles, &sound), NT_OK);
 	assert_true(sound);
 	double area = 0, sum = 0;
 	for (size_t i = 1; i + 1 < count; i++)
@@ -77,7 +77,7 @@ static void convex_polygon_becomes_a_fan_in_order(void **state)
 	const uint32_t expected[12] = {0, 1, 2, 0, 2, 3, 0, 3, 4, 0, 4, 5};
 	uint32_t triangles[12];
 	bool sound = false;
-	assert_int_equal(nt_polygon_triangulate(points, 6, triangles, &sound), NMTAN_OK);
+	assert_int_equal(nt_polygon_triangulate(points, 6, triangles, &sound), NT_OK);
 	assert_true(sound);
 	assert_memory_equal(triangles, expected, sizeof expected);
 }
@@ -184,7 +184,7 @@ static bool finish(const float (*points)[3], size_t count)
 	uint32_t triangles[3 * 64];
 	memset(triangles, 255, sizeof triangles);
 	bool sound = true;
-	assert_int_equal(nt_polygon_triangulate(points, count, triangles, &sound), NMTAN_OK);
+	assert_int_equal(nt_polygon_triangulate(points, count, triangles, &sound), NT_OK);
 	for (size_t c = 0; c < 3 * (count - 2); c++)
 		assert_true(triangles[c] < count);
 	assert_int_equal(triangles[3 * (count - 2)], UINT32_MAX);
@@ -219,7 +219,7 @@ static void repeated_point_leaves_the_rest_proper(void **state)
 	const float points[5][3] = {{0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
 	uint32_t triangles[9];
 	bool sound = true;
-	assert_int_equal(nt_polygon_triangulate(points, 5, triangles, &sound), NMTAN_OK);
+	assert_int_equal(nt_polygon_triangulate(points, 5, triangles, &sound), NT_OK);
 	double area = 0;
 	for (int t = 0; t < 3; t++) {
 		double p[3][2];
@@ -274,7 +274,7 @@ static void sound_results_have_no_turned_triangle(void **state)
 		uint32_t triangles[3 * 10];
 		bool sound = false;
 		assert_int_equal(nt_polygon_triangulate((const float(*)[3])points, count, triangles, &sound),
-			NMTAN_OK);
+			NT_OK);
 		if (!sound)
 			continue;
 		sound_count++;
