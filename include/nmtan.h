@@ -49,19 +49,14 @@ extern "C" {
 #define NMTAN_API
 #endif
 
-/* What a call reports. The functions of this header return the first six only. */
+/* What a call reports. */
 typedef enum nmtan_status {
 	NMTAN_OK = 0,
 	NMTAN_ERROR_ARGUMENT,    /* a required pointer is NULL, a stride or an enum is out of range */
 	NMTAN_ERROR_INDEX,       /* an index is not below vertex_count */
 	NMTAN_ERROR_FACE_SIZE,   /* a face has neither 3 nor 4 corners */
 	NMTAN_ERROR_TOO_LARGE,   /* more than NMTAN_MAX_FACES faces, or a size overflows size_t */
-	NMTAN_ERROR_MEMORY,      /* the allocator returned NULL */
-	NMTAN_ERROR_USAGE,       /* command line: wrong or contradictory words */
-	NMTAN_ERROR_IO,          /* a file cannot be read or written */
-	NMTAN_ERROR_INPUT,       /* a file breaks the rules of its format */
-	NMTAN_ERROR_UNSUPPORTED, /* a file is sound but uses something that nmtan does not do */
-	NMTAN_ERROR_INTERNAL     /* our mistake */
+	NMTAN_ERROR_MEMORY       /* the allocator returned NULL */
 } nmtan_status;
 
 /* Static English text for a status, "unknown status" for any other number. Never NULL. */

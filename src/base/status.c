@@ -19,12 +19,6 @@ const char *nmtan_status_text(nmtan_status status)
 		return "mesh too large";
 	case NMTAN_ERROR_MEMORY:
 		return "out of memory";
-	case NMTAN_ERROR_USAGE:
-	case NMTAN_ERROR_IO:
-	case NMTAN_ERROR_INPUT:
-	case NMTAN_ERROR_UNSUPPORTED:
-	case NMTAN_ERROR_INTERNAL:
-		break;
 	}
 	return "unknown status";
 }

@@ -178,9 +178,10 @@ static void workspace_is_reused_and_returned(void **state)
 static void statuses_have_texts(void **state)
 {
 	(void)state;
-	for (int status = NMTAN_OK; status <= NMTAN_ERROR_INTERNAL; status++)
+	for (int status = NMTAN_OK; status <= NMTAN_ERROR_MEMORY; status++)
 		assert_string_not_equal(nmtan_status_text((nmtan_status)status), "unknown status");
 	assert_string_equal(nmtan_status_text((nmtan_status)1000), "unknown status");
+	assert_string_equal(nmtan_status_text((nmtan_status)(NMTAN_ERROR_MEMORY + 1)), "unknown status");
 	assert_string_equal(nmtan_version(), NMTAN_VERSION_STRING);
 }
 
