@@ -32,16 +32,16 @@ $(error config=$(config) is not one of release, debug, sanitize, tsan)
 endif
 
 # No contraction anywhere: the bytes of the result depend on it (see README, "Reproducible").
-COMMON := $(flags_$(config)) -g1 -ffp-contract=off -fno-math-errno -fopenmp -fPIC -fvisibility=hidden \
+COMMON := $(flags_$(config)) -g1 -ffp-contract=off -fno-math-errno -pthread -fPIC -fvisibility=hidden \
 	-Iinclude -Isrc -Wall -Wextra -MMD -MP
 NT_CFLAGS := -std=c11 -D_GNU_SOURCE $(COMMON) -Wshadow -Wstrict-prototypes -Wmissing-prototypes \
 	-Wvla $(CFLAGS)
 NT_CXXFLAGS := -std=c++17 -fvisibility-inlines-hidden $(COMMON) $(CXXFLAGS)
-NT_LDFLAGS := $(flags_$(config)) -fopenmp $(LDFLAGS)
+NT_LDFLAGS := $(flags_$(config)) -pthread $(LDFLAGS)
 TOOL_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lm
 
 # The compute library: no files, no C++.
-core_src := src/base/status.c src/base/memory.c src/base/parallel.c src/base/cpu.c src/base/scratch.c \
+core_src := src/base/status.c src/base/memory.c src/base/parallel.c src/base/pool.c src/base/cpu.c src/base/scratch.c \
 	src/base/largest.c \
 	$(foreach room,topology tangent tangent/fast tangent/sums api,$(wildcard src/$(room)/*.c))
 tool_src := $(filter-out $(core_src) src/cli/main.c src/bindings/%,$(wildcard src/*/*.c src/*/*/*.c)) \
@@ -61,7 +61,7 @@ $(B)/libnmtan.a: $(core_obj)
 	rm -f $@ && $(AR) qcs $@ $^
 
 $(B)/libnmtan.so: $(core_obj)
-	$(CC) $(NT_LDFLAGS) -shared -Wl,-soname,libnmtan.so.0 -o $@ $^ -lm
+	$(CC) $(NT_LDFLAGS) -shared -Wl,-soname,libnmtan.so.0,-z,nodelete -o $@ $^ -lm
 
 # Everything but main, for unit tests. Members of several rooms share a name, so none replaces another (q).
 $(B)/libtool.a: $(tool_obj)
@@ -114,7 +114,7 @@ $(B)/nmtan.pc: include/nmtan.h Makefile
 	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$${prefix}/lib' 'includedir=$${prefix}/include' '' \
 		'Name: nmtan' 'Description: MikkTSpace-exact tangent frames for meshes' \
 		'Version: $(VERSION)' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lnmtan' \
-		'Libs.private: -fopenmp -lm' > $@
+		'Libs.private: -pthread -lm' > $@
 
 # As many jobs as processors, unless the caller has said how many.
 JOBS = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(shell nproc))

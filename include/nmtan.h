@@ -22,7 +22,10 @@
  * keeps it warm.
  *
  * Threads: every function may be called from several threads at once, as long as they do not share
- * outputs or a workspace. There is no global state.
+ * outputs or a workspace. There is no global state but a pool of threads: the first call that is large enough
+ * for options->threads > 1 makes them, later calls in any thread share them, and they sleep in between, with
+ * signals blocked. Where none can be made the caller's thread does all. Processes made by fork() may go on
+ * calling, whatever their parent was doing.
  *
  * Errors: a status, never an exit, never a message on a stream. After an error the contents of the
  * outputs are unspecified.

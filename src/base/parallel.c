@@ -5,18 +5,12 @@
  */
 #include "base/parallel.h"
 
-#include <omp.h>
-#include <stdbool.h>
-#if defined(__SANITIZE_THREAD__)
-#include <pthread.h>
-#endif
+#include <stdatomic.h>
+#include "base/pool.h"
 
 unsigned nt_thread_count(unsigned requested)
 {
-	if (requested)
-		return requested;
-	const int processors = omp_get_num_procs();
-	return processors > 0 ? (unsigned)processors : 1;
+	return requested ? requested : nt_pool_processors();
 }
 
 unsigned nt_parallel_slots(unsigned threads, size_t count, size_t grain)
@@ -34,54 +28,19 @@ static size_t range_begin(size_t count, unsigned r, unsigned n)
 	return count / n * r + count % n * r / n;
 }
 
-#if defined(__SANITIZE_THREAD__)
-/* config=tsan: libgomp's barriers are invisible to the sanitiser, which then reports every hand-over between
- * two regions as a race. With threads that it knows it reports real ones only. */
 typedef struct range_job {
 	void (*body)(void *context, size_t begin, size_t end, unsigned slot);
 	void *context;
-	size_t begin, end;
-	unsigned slot;
+	size_t count;
+	unsigned slots;
 } range_job;
 
-static void *run_job(void *argument)
+static void run_range(void *context, unsigned slot)
 {
-	const range_job *job = argument;
-	job->body(job->context, job->begin, job->end, job->slot);
-	return NULL;
+	const range_job *job = context;
+	job->body(job->context, range_begin(job->count, slot, job->slots),
+		range_begin(job->count, slot + 1, job->slots), slot);
 }
-
-static void run_ranges(unsigned slots, size_t count,
-	void (*body)(void *context, size_t begin, size_t end, unsigned slot), void *context)
-{
-	enum { MOST = 64 };
-	pthread_t threads[MOST];
-	range_job jobs[MOST];
-	for (unsigned first = 0; first < slots; first += MOST) {
-		const unsigned here = slots - first < MOST ? slots - first : MOST;
-		bool started[MOST] = {false};
-		for (unsigned i = 0; i < here; i++) {
-			const unsigned slot = first + i;
-			jobs[i] = (range_job){body, context, range_begin(count, slot, slots),
-				range_begin(count, slot + 1, slots), slot};
-			started[i] = pthread_create(&threads[i], NULL, run_job, &jobs[i]) == 0;
-			if (!started[i])
-				run_job(&jobs[i]);
-		}
-		for (unsigned i = 0; i < here; i++)
-			if (started[i])
-				pthread_join(threads[i], NULL);
-	}
-}
-#else
-static void run_ranges(unsigned slots, size_t count,
-	void (*body)(void *context, size_t begin, size_t end, unsigned slot), void *context)
-{
-#pragma omp parallel for num_threads(slots) schedule(static, 1)
-	for (unsigned slot = 0; slot < slots; slot++)
-		body(context, range_begin(count, slot, slots), range_begin(count, slot + 1, slots), slot);
-}
-#endif
 
 void nt_parallel_ranges(unsigned threads, size_t count, size_t grain,
 	void (*body)(void *context, size_t begin, size_t end, unsigned slot), void *context)
@@ -91,5 +50,27 @@ void nt_parallel_ranges(unsigned threads, size_t count, size_t grain,
 		body(context, 0, count, 0);
 		return;
 	}
-	run_ranges(slots, count, body, context);
+	range_job job = {body, context, count, slots};
+	nt_pool_run(slots, run_range, &job);
+}
+
+typedef struct item_job {
+	void (*body)(void *context, size_t item, unsigned slot);
+	void *context;
+	size_t count;
+	atomic_size_t next;
+} item_job;
+
+static void run_items(void *context, unsigned slot)
+{
+	item_job *job = context;
+	for (size_t i; (i = atomic_fetch_add_explicit(&job->next, 1, memory_order_relaxed)) < job->count;)
+		job->body(job->context, i, slot);
+}
+
+void nt_parallel_items(unsigned threads, size_t count,
+	void (*body)(void *context, size_t item, unsigned slot), void *context)
+{
+	item_job job = {.body = body, .context = context, .count = count};
+	nt_pool_run(threads < count ? threads : (unsigned)count, run_items, &job);
 }

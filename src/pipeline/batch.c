@@ -6,6 +6,7 @@
 #include "pipeline/batch.h"
 
 #include <errno.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -199,7 +200,10 @@ nt_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t c
 /* Shared by the threads of one batch. */
 typedef struct progress {
 	nt_batch *batch;
-	size_t told; /* jobs before this one have been told about */
+	const nt_settings *settings;
+	nt_runner run;
+	pthread_mutex_t lock; /* of what follows */
+	size_t told;          /* jobs before this one have been told about */
 	void (*done)(void *user, nt_job *job);
 	void *user;
 } progress;
@@ -210,36 +214,37 @@ static void run_job(nt_job *job, const nt_settings *settings, nt_runner run)
 	job->status = run(job->input, job->output, settings, &job->summary, &job->error);
 }
 
-/* Called by one thread at a time. */
 static void tell(progress *p, nt_job *ended)
 {
+	pthread_mutex_lock(&p->lock);
 	ended->finished = true;
 	for (; p->told < p->batch->count && p->batch->jobs[p->told].finished; p->told++) {
 		nt_job *job = &p->batch->jobs[p->told];
 		p->done(p->user, job);
 		nt_summary_free(&job->summary);
 	}
+	pthread_mutex_unlock(&p->lock);
+}
+
+static void run_one(void *context, size_t item, unsigned slot)
+{
+	(void)slot;
+	progress *p = context;
+	nt_job *job = &p->batch->jobs[item];
+	run_job(job, p->settings, p->run);
+	tell(p, job);
 }
 
 void nt_batch_run(nt_batch *batch, const nt_settings *settings, nt_runner run,
 	void (*done)(void *user, nt_job *job), void *user)
 {
-	progress p = {batch, 0, done, user};
-	if (batch->count == 1) {
-		run_job(&batch->jobs[0], settings, run);
-		tell(&p, &batch->jobs[0]);
-		return;
-	}
 	nt_settings each = *settings;
-	each.threads = 1;
-	const unsigned threads = nt_thread_count(settings->threads);
-	const int slots = (int)(threads < batch->count ? threads : batch->count);
-#pragma omp parallel for num_threads(slots) schedule(dynamic, 1)
-	for (size_t i = 0; i < batch->count; i++) {
-		run_job(&batch->jobs[i], &each, run);
-#pragma omp critical(nt_batch_tell)
-		tell(&p, &batch->jobs[i]);
-	}
+	if (batch->count > 1)
+		each.threads = 1;
+	progress p = {.batch = batch, .settings = &each, .run = run, .lock = PTHREAD_MUTEX_INITIALIZER,
+		.done = done, .user = user};
+	nt_parallel_items(nt_thread_count(settings->threads), batch->count, run_one, &p);
+	pthread_mutex_destroy(&p.lock);
 }
 
 void nt_batch_free(nt_batch *batch)

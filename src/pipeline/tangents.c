@@ -10,15 +10,15 @@
 #include "pipeline/morphs.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
 #include "io/gltf_document.h"
 #include "tangent/tangents.h"
 
-/* Corners from which one mesh is worth all threads. */
-enum { LARGE_CORNERS = 3 * 128 * 1024 };
+/* Corners from which one mesh is worth all threads, and those that small ones must have together for threads
+ * to be made at all, which costs as much as solving some hundred triangles. */
+enum { LARGE_CORNERS = 3 * 128 * 1024, LEAST_SHARED_CORNERS = 3 * 4096 };
 
 typedef struct tangent_job {
 	nt_scene *scene;
@@ -28,7 +28,8 @@ typedef struct tangent_job {
 	nt_mesh **meshes;   /* the ones to solve */
 	nt_status *statuses;
 	size_t count;
-	nmtan_timing timing; /* of the large meshes */
+	nmtan_workspace **workspaces; /* of each slot that solves small meshes */
+	nmtan_timing timing;          /* of the large meshes */
 } tangent_job;
 
 typedef struct mesh_bytes {
@@ -192,19 +193,32 @@ static void solve_large(tangent_job *job)
 				&job->timing);
 }
 
+static void solve_one_small(void *context, size_t item, unsigned slot)
+{
+	tangent_job *job = context;
+	nt_mesh *mesh = job->meshes[item];
+	if (mesh->corner_count >= LARGE_CORNERS)
+		return;
+	/* without a workspace it is only slower */
+	nmtan_workspace **workspace = job->workspaces ? &job->workspaces[slot] : NULL;
+	if (workspace && !*workspace)
+		*workspace = nmtan_workspace_create(NULL);
+	job->statuses[item] = solve_mesh(job, mesh, 1, workspace ? *workspace : NULL, NULL);
+}
+
 static void solve_small(tangent_job *job)
 {
-	const unsigned threads = nt_thread_count(job->settings->threads);
-#pragma omp parallel num_threads(threads) if (threads > 1 && job->count > 1)
-	{
-		nmtan_workspace *workspace = nmtan_workspace_create(NULL);
-#pragma omp for schedule(dynamic)
-		for (size_t i = 0; i < job->count; i++)
-			if (job->meshes[i]->corner_count < LARGE_CORNERS)
-				job->statuses[i] = solve_mesh(job, job->meshes[i], 1, workspace,
-					NULL);
-		nmtan_workspace_destroy(workspace);
-	}
+	size_t corners = 0;
+	for (size_t i = 0; i < job->count; i++)
+		if (job->meshes[i]->corner_count < LARGE_CORNERS)
+			corners += job->meshes[i]->corner_count;
+	const unsigned threads = corners < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(job->settings->threads);
+	const size_t slots = threads < job->count ? threads : job->count;
+	job->workspaces = nt_calloc(slots, sizeof(nmtan_workspace *));
+	nt_parallel_items(threads, job->count, solve_one_small, job);
+	for (size_t i = 0; job->workspaces && i < slots; i++)
+		nmtan_workspace_destroy(job->workspaces[i]);
+	free(job->workspaces);
 }
 
 /* Results live as long as the scene. */

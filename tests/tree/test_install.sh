@@ -39,7 +39,7 @@ cc -o shared program.c $(pkg-config "$where" --cflags --libs nmtan) || wrong "do
 is "$(LD_LIBRARY_PATH=root/opt/nmtan/lib ./shared)" "$version"
 # shellcheck disable=SC2046
 cc -o static program.c $(pkg-config "$where" --cflags nmtan) root/opt/nmtan/lib/libnmtan.a \
-	-fopenmp -lm || wrong "does not link static"
+	-pthread -lm || wrong "does not link static"
 is "$(./static)" "$version"
 ! ldd shared static | grep -q 'libstdc++' || wrong "C++ came along"
 

@@ -17,7 +17,7 @@ block c 1 >program.c
 block text 1 >expected
 exists program.c expected
 cc -std=c11 -Wall -Wextra -Werror -pedantic -I"$ROOT/include" -o program program.c \
-	"$ROOT/build/release/libnmtan.a" -fopenmp -lm || wrong "does not compile"
+	"$ROOT/build/release/libnmtan.a" -pthread -lm || wrong "does not compile"
 ./program >printed || wrong "exit code $?"
 diff expected printed || wrong "prints something else"
 

@@ -3,6 +3,7 @@
 #include "folder.h"
 #include "pipeline/batch.h"
 
+#include <stdatomic.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -127,13 +128,12 @@ void nt_summary_free(nt_summary *summary)
 }
 
 /* Stands for nt_run: the input's first letter says how long it takes, "x" in it that it fails. */
-static unsigned threads_seen;
+static atomic_uint threads_seen;
 
 static nt_status fake_run(const char *input, const char *output, const nt_settings *settings,
 	nt_summary *summary, nt_error *error)
 {
 	(void)output;
-#pragma omp atomic write
 	threads_seen = settings->threads;
 	usleep((useconds_t)(input[0] - 'a') * 2000);
 	summary->mesh_count = (size_t)(input[0] - 'a');

@@ -438,20 +438,8 @@ static void every_failed_allocation_is_told(void **state)
 	free(t);
 }
 
-/* Eight threads on two processors must not spin while they wait: on a busy machine that takes 30 times as long.
- * libgomp reads the policy before main. */
-static void wait_passively(char **arguments)
+int main(void)
 {
-	if (getenv("OMP_WAIT_POLICY"))
-		return;
-	setenv("OMP_WAIT_POLICY", "passive", 1);
-	execv("/proc/self/exe", arguments);
-}
-
-int main(int count, char **arguments)
-{
-	(void)count;
-	wait_passively(arguments);
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(goldens_are_byte_identical),
 		cmocka_unit_test(nasty_meshes_are_byte_identical),

@@ -1,0 +1,275 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Threads that wait for work: see pool.h.
+ *
+ * A region lives on its caller's stack and is linked into the pool's list while slots of it may be free. Caller
+ * and helpers take slots from one counter. The lock covers the list and the counts, never a body; a region is
+ * entered by two short critical sections and, if a thread sleeps, one wake-up.
+ *
+ * Who waits looks first and sleeps later. The regions of a solve follow one another within microseconds, and
+ * waking a thread takes some 50 in a virtual machine. Looking pays while there is a processor for each thread;
+ * with more threads than processors nobody looks.
+ */
+#include "base/pool.h"
+
+#ifdef NT_NO_THREADS
+
+unsigned nt_pool_processors(void)
+{
+	return 1;
+}
+
+void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), void *context)
+{
+	for (unsigned slot = 0; slot < slots; slot++)
+		body(context, slot);
+}
+
+#else
+
+#include <pthread.h>
+#include <sched.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <unistd.h>
+
+/* Looks before sleeping: 20 microseconds at the 40 to 140 cycles of a pause. After a thread could not be made,
+ * the regions that do without before one is tried again. */
+enum { MOST_LOOKS = 1000, REGIONS_WITHOUT = 100 };
+
+typedef struct region {
+	void (*body)(void *context, unsigned slot);
+	void *context;
+	unsigned slots;
+	atomic_uint next;    /* the first slot that nobody has taken; beyond `slots` when all are */
+	atomic_uint helpers; /* threads of the pool that are in it */
+	struct region *older;
+} region;
+
+static struct {
+	pthread_mutex_t lock;
+	pthread_cond_t posted; /* a region was linked */
+	pthread_cond_t left;   /* the last helper left a region */
+	region *newest;
+	unsigned threads;      /* made, or about to be */
+	unsigned sleeping;     /* of them, waiting for `posted` */
+	unsigned without;      /* regions to go before a thread is tried again */
+	unsigned long posts;   /* regions linked so far */
+	unsigned processors;   /* 0: not yet asked for */
+	bool watches_forks;
+	unsigned looks;        /* before sleeping, as the newest region wanted it */
+	atomic_ulong bell;     /* rung after each post: threads that look see it without the lock */
+	atomic_uint waiting;   /* callers that sleep until helpers leave */
+} pool = {.lock = PTHREAD_MUTEX_INITIALIZER, .posted = PTHREAD_COND_INITIALIZER,
+	.left = PTHREAD_COND_INITIALIZER};
+
+unsigned nt_pool_processors(void)
+{
+#ifdef __linux__
+	cpu_set_t set;
+	if (sched_getaffinity(0, sizeof set, &set) == 0)
+		return (unsigned)CPU_COUNT(&set);
+#endif
+	const long online = sysconf(_SC_NPROCESSORS_ONLN);
+	return online > 0 ? (unsigned)online : 1;
+}
+
+/* Leaves the processor's other thread, if it has one, the units. */
+static inline void pause_shortly(void)
+{
+#if defined(__x86_64__) || defined(__i386__)
+	__builtin_ia32_pause();
+#elif defined(__aarch64__)
+	__asm__ volatile("yield");
+#endif
+}
+
+static void work(region *r)
+{
+	for (unsigned slot; (slot = atomic_fetch_add_explicit(&r->next, 1, memory_order_relaxed)) < r->slots;)
+		r->body(r->context, slot);
+}
+
+/* ---- the threads ---- */
+
+/* With the lock: the newest region with a slot to take. It stays until its helpers have left. */
+static region *enter_region(void)
+{
+	region *r = pool.newest;
+	while (r && atomic_load_explicit(&r->next, memory_order_relaxed) >= r->slots)
+		r = r->older;
+	if (r)
+		atomic_fetch_add_explicit(&r->helpers, 1, memory_order_relaxed);
+	return r;
+}
+
+/* The region may be gone as soon as it is left, so who waits for that is known to the pool. Either the caller
+ * sees this helper gone or the helper sees the caller wait: both orders are sequentially consistent. */
+static void leave_region(region *r)
+{
+	if (atomic_fetch_sub(&r->helpers, 1) != 1 || atomic_load(&pool.waiting) == 0)
+		return;
+	pthread_mutex_lock(&pool.lock);
+	pthread_cond_broadcast(&pool.left);
+	pthread_mutex_unlock(&pool.lock);
+}
+
+static void await_post(unsigned long bell, unsigned looks)
+{
+	while (looks-- > 0 && atomic_load_explicit(&pool.bell, memory_order_relaxed) == bell)
+		pause_shortly();
+}
+
+static void *run_thread(void *unused)
+{
+	(void)unused;
+	for (;;) {
+		const unsigned long bell = atomic_load(&pool.bell);
+		pthread_mutex_lock(&pool.lock);
+		region *r = enter_region();
+		const unsigned long posts = pool.posts;
+		const bool alone = !r || !r->older;
+		const unsigned looks = pool.looks;
+		pthread_mutex_unlock(&pool.lock);
+		if (r) {
+			work(r);
+			leave_region(r);
+		}
+		if (alone)
+			await_post(bell, looks);
+		if (r || atomic_load_explicit(&pool.bell, memory_order_relaxed) != bell)
+			continue;
+		pthread_mutex_lock(&pool.lock);
+		pool.sleeping++;
+		while (pool.posts == posts)
+			pthread_cond_wait(&pool.posted, &pool.lock);
+		pool.sleeping--;
+		pthread_mutex_unlock(&pool.lock);
+	}
+	return NULL;
+}
+
+/* Signals are for the user's threads, but for those that an instruction raises. */
+static bool make_thread(void)
+{
+	pthread_attr_t attributes;
+	if (pthread_attr_init(&attributes) != 0)
+		return false;
+	sigset_t all, before;
+	sigfillset(&all);
+	sigdelset(&all, SIGBUS);
+	sigdelset(&all, SIGFPE);
+	sigdelset(&all, SIGILL);
+	sigdelset(&all, SIGSEGV);
+	sigdelset(&all, SIGTRAP);
+	pthread_sigmask(SIG_SETMASK, &all, &before);
+	pthread_t thread;
+	pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
+	const bool made = pthread_create(&thread, &attributes, run_thread, NULL) == 0;
+	pthread_sigmask(SIG_SETMASK, &before, NULL);
+	pthread_attr_destroy(&attributes);
+	return made;
+}
+
+/* In the child none of the pool's threads exists, and nobody holds the lock. */
+static void start_anew(void)
+{
+	pool.lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
+	pool.posted = pool.left = (pthread_cond_t)PTHREAD_COND_INITIALIZER;
+	pool.newest = NULL;
+	pool.threads = pool.sleeping = pool.without = 0;
+	atomic_store(&pool.waiting, 0);
+}
+
+/* With the lock: how many threads the pool lacks for a region, which the caller must then make. */
+static unsigned reserve_threads(unsigned slots)
+{
+	const unsigned wanted = slots - 1 < NT_POOL_MOST ? slots - 1 : NT_POOL_MOST;
+	if (wanted <= pool.threads)
+		return 0;
+	if (pool.without > 0) {
+		pool.without--;
+		return 0;
+	}
+	if (!pool.watches_forks && pthread_atfork(NULL, NULL, start_anew) != 0)
+		return 0;
+	pool.watches_forks = true;
+	const unsigned lacking = wanted - pool.threads;
+	pool.threads = wanted;
+	pool.processors = nt_pool_processors();
+	return lacking;
+}
+
+static void make_threads(unsigned count)
+{
+	while (count > 0 && make_thread())
+		count--;
+	if (count == 0)
+		return;
+	pthread_mutex_lock(&pool.lock);
+	pool.threads -= count;
+	pool.without = REGIONS_WITHOUT;
+	pthread_mutex_unlock(&pool.lock);
+}
+
+/* ---- the callers ---- */
+
+/* Returns how long the caller may look for its helpers to leave. */
+static unsigned post(region *r)
+{
+	pthread_mutex_lock(&pool.lock);
+	const unsigned lacking = reserve_threads(r->slots);
+	r->older = pool.newest;
+	pool.newest = r;
+	pool.posts++;
+	const unsigned looks = pool.looks = r->slots <= pool.processors ? MOST_LOOKS : 0;
+	const unsigned wakes = pool.sleeping < r->slots - 1 ? pool.sleeping : r->slots - 1;
+	for (unsigned i = 0; i < wakes; i++)
+		pthread_cond_signal(&pool.posted);
+	pthread_mutex_unlock(&pool.lock);
+	/* after the lock: who looks for it would only run into it */
+	atomic_fetch_add(&pool.bell, 1);
+	make_threads(lacking);
+	return looks;
+}
+
+static void unlink_region(const region *r)
+{
+	region **link = &pool.newest;
+	while (*link != r)
+		link = &(*link)->older;
+	*link = r->older;
+}
+
+static void close_region(region *r, unsigned looks)
+{
+	pthread_mutex_lock(&pool.lock);
+	unlink_region(r);
+	pthread_mutex_unlock(&pool.lock);
+	while (looks-- > 0 && atomic_load(&r->helpers) != 0)
+		pause_shortly();
+	if (atomic_load(&r->helpers) == 0)
+		return;
+	pthread_mutex_lock(&pool.lock);
+	atomic_fetch_add(&pool.waiting, 1);
+	while (atomic_load(&r->helpers) != 0)
+		pthread_cond_wait(&pool.left, &pool.lock);
+	atomic_fetch_sub(&pool.waiting, 1);
+	pthread_mutex_unlock(&pool.lock);
+}
+
+void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), void *context)
+{
+	region r = {.body = body, .context = context, .slots = slots};
+	if (slots <= 1) {
+		work(&r);
+		return;
+	}
+	const unsigned looks = post(&r);
+	work(&r);
+	close_region(&r, looks);
+}
+
+#endif

@@ -1,0 +1,26 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Threads that wait for work, one pool for the process. Not for general use: base/parallel hands out ranges
+ * and items on it.
+ *
+ * The pool is made by the first region that needs it and grows to the largest region's need, up to
+ * NT_POOL_MOST. Its threads belong to nobody: any number of user threads may run regions at once, and a body
+ * may run a region of its own. Idle threads look for work for some 20 microseconds, then sleep; they never
+ * keep the process from ending. What no thread takes, the caller does, so a region ends wherever a thread cannot
+ * be made: under a limit, in a build with NT_NO_THREADS, or with none left after fork(). A child of fork() makes
+ * threads of its own.
+ */
+#ifndef NT_BASE_POOL_H
+#define NT_BASE_POOL_H
+
+/* Threads of the pool beside those of its users. */
+enum { NT_POOL_MOST = 255 };
+
+/* Processors that this process may use, at least 1; 1 without threads. A system call. */
+unsigned nt_pool_processors(void);
+
+/* Calls body once for each slot below `slots` and returns when all have returned. Several at a time where
+ * threads are free, in no promised order: a slot must not wait for another. */
+void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), void *context);
+
+#endif

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The pool of a build without threads, as WebAssembly has it: the caller does all, in order.
+ */
+#include "test.h"
+
+#define NT_NO_THREADS
+#define nt_pool_processors processors_alone
+#define nt_pool_run run_alone
+#include "base/pool.c"
+
+static void note(void *context, unsigned slot)
+{
+	char digit[2] = {(char)('0' + slot), 0};
+	strcat(context, digit);
+}
+
+static void the_caller_does_all_in_order(void **state)
+{
+	(void)state;
+	char order[16] = "";
+	assert_int_equal(processors_alone(), 1);
+	run_alone(0, note, order);
+	assert_string_equal(order, "");
+	run_alone(1, note, order);
+	run_alone(4, note, order);
+	assert_string_equal(order, "00123");
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {cmocka_unit_test(the_caller_does_all_in_order)};
+	return cmocka_run_group_tests_name("base/pool without threads", tests, NULL, NULL);
+}

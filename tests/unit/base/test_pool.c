@@ -1,0 +1,329 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The pool of threads: regions from several threads, inside one another, after fork(), and where threads cannot
+ * be made. The linker hands us pthread_create, which counts and can be told to fail.
+ */
+#include "test.h"
+#include <errno.h>
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+#include "base/pool.h"
+#include "nmtan.h"
+
+static atomic_uint threads_made;
+static atomic_bool creation_fails;
+
+int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*run)(void *), void *argument);
+int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*run)(void *), void *argument);
+
+int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*run)(void *), void *argument)
+{
+	if (creation_fails)
+		return EAGAIN;
+	threads_made++;
+	return __real_pthread_create(thread, attributes, run, argument);
+}
+
+/* Runs f in a child, which must end well within a minute. The thread sanitizer allows no threads there. */
+static void in_a_child(void (*f)(void))
+{
+#ifdef __SANITIZE_THREAD__
+	(void)f;
+	return;
+#endif
+	const pid_t child = fork();
+	assert_true(child >= 0);
+	if (child == 0) {
+		alarm(60);
+		f();
+		_exit(0);
+	}
+	int status;
+	assert_int_equal(waitpid(child, &status, 0), child);
+	assert_true(WIFEXITED(status));
+	assert_int_equal(WEXITSTATUS(status), 0);
+}
+
+/* In a child that has no cmocka around it. */
+static void expect(bool holds)
+{
+	if (!holds)
+		_exit(1);
+}
+
+/* ---- bodies ---- */
+
+static void count_call(void *context, unsigned slot)
+{
+	atomic_uint *calls = context;
+	calls[slot]++;
+}
+
+static bool each_slot_once(unsigned slots)
+{
+	atomic_uint calls[40] = {0};
+	nt_pool_run(slots, count_call, calls);
+	for (unsigned i = 0; i < 40; i++)
+		if (calls[i] != (i < slots))
+			return false;
+	return true;
+}
+
+/* Two slots that meet: true where they ran beside one another, given half a minute. */
+typedef struct meeting {
+	atomic_uint here;
+	atomic_bool met;
+} meeting;
+
+static void meet(void *context, unsigned slot)
+{
+	(void)slot;
+	meeting *m = context;
+	m->here++;
+	for (int i = 0; i < 30000 && m->here < 2; i++)
+		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
+	if (m->here >= 2)
+		m->met = true;
+}
+
+static bool two_slots_meet(void)
+{
+	meeting m = {0};
+	nt_pool_run(2, meet, &m);
+	return m.met;
+}
+
+/* ---- cases ---- */
+
+static void no_slot_and_one_slot_take_no_thread(void **state)
+{
+	(void)state;
+	assert_true(each_slot_once(0));
+	assert_true(each_slot_once(1));
+	assert_int_equal(threads_made, 0);
+}
+
+/* A strip of unit squares in the plane z = 0, which nothing is wrong with. */
+static void solve_strip(size_t squares, unsigned threads, float *tangents)
+{
+	const size_t columns = squares + 1;
+	float *values = calloc(2 * columns, 8 * sizeof *values);
+	uint32_t *corners = calloc(6 * squares, sizeof *corners);
+	if (!values || !corners)
+		abort();
+	for (size_t i = 0; i < 2 * columns; i++) {
+		float *row = values + 8 * i;
+		row[0] = row[6] = (float)(i / 2 % 1000);
+		row[1] = row[7] = (float)(i % 2) + (float)(i / 2000) * 2;
+		row[5] = 1;
+	}
+	for (size_t i = 0; i < squares; i++) {
+		const uint32_t a = (uint32_t)(2 * i), square[6] = {a, a + 2, a + 3, a, a + 3, a + 1};
+		memcpy(corners + 6 * i, square, sizeof square);
+	}
+	const nmtan_mesh mesh = {.face_count = 2 * squares, .vertex_count = 2 * columns, .indices = corners,
+		.positions = values, .position_stride_bytes = 32, .normals = values + 3, .normal_stride_bytes = 32,
+		.texcoords = values + 6, .texcoord_stride_bytes = 32};
+	const nmtan_options options = {.threads = threads};
+	nmtan_output output = {.tangents = tangents};
+	if (nmtan_tangents(&mesh, &options, &output))
+		abort();
+	free(values);
+	free(corners);
+}
+
+static void small_meshes_make_no_thread(void **state)
+{
+	(void)state;
+	static float tangents[4 * 6 * 500];
+	solve_strip(500, 8, tangents);
+	solve_strip(500, 0, tangents);
+	assert_int_equal(threads_made, 0);
+}
+
+static void slots_run_beside_one_another_and_threads_are_kept(void **state)
+{
+	(void)state;
+	assert_true(two_slots_meet());
+	assert_int_equal(threads_made, 1);
+	for (unsigned i = 0; i < 3000; i++) {
+		assert_true(each_slot_once(2));
+		if (i % 1000 == 0) /* and after they have gone to sleep */
+			usleep(2000);
+	}
+	assert_true(two_slots_meet());
+	assert_int_equal(threads_made, 1);
+	assert_true(each_slot_once(5));
+	assert_int_equal(threads_made, 4);
+	for (unsigned slots = 2; slots < 40; slots++)
+		assert_true(each_slot_once(slots));
+	assert_int_equal(threads_made, 38);
+}
+
+static void *run_regions(void *fault)
+{
+	for (unsigned i = 0; i < 2000; i++)
+		if (!each_slot_once(2 + i % 7))
+			*(bool *)fault = true;
+	return NULL;
+}
+
+static void callers_may_be_many(void **state)
+{
+	(void)state;
+	enum { CALLERS = 6 };
+	pthread_t callers[CALLERS];
+	bool faults[CALLERS] = {false};
+	for (unsigned i = 0; i < CALLERS; i++)
+		assert_int_equal(__real_pthread_create(&callers[i], NULL, run_regions, &faults[i]), 0);
+	for (unsigned i = 0; i < CALLERS; i++) {
+		pthread_join(callers[i], NULL);
+		assert_false(faults[i]);
+	}
+}
+
+static void count_nested(void *context, unsigned slot)
+{
+	(void)slot;
+	atomic_uint *sum = context;
+	atomic_uint calls[3] = {0};
+	nt_pool_run(3, count_call, calls);
+	*sum += calls[0] + calls[1] + calls[2];
+}
+
+static void nest_twice(void *context, unsigned slot)
+{
+	(void)slot;
+	nt_pool_run(4, count_nested, context);
+}
+
+static void regions_nest(void **state)
+{
+	(void)state;
+	for (unsigned i = 0; i < 200; i++) {
+		atomic_uint sum = 0;
+		nt_pool_run(5, nest_twice, &sum);
+		assert_int_equal(sum, 5 * 4 * 3);
+	}
+}
+
+static void work_in_a_child(void)
+{
+	threads_made = 0;
+	expect(each_slot_once(1));
+	expect(threads_made == 0);
+	expect(two_slots_meet());
+	expect(threads_made == 1);
+	for (unsigned slots = 2; slots < 10; slots++)
+		expect(each_slot_once(slots));
+}
+
+static void work_in_children(void)
+{
+	work_in_a_child();
+	const pid_t child = fork();
+	if (child == 0) {
+		work_in_a_child();
+		_exit(0);
+	}
+	int status;
+	expect(waitpid(child, &status, 0) == child && status == 0);
+	expect(two_slots_meet());
+}
+
+static void a_child_makes_threads_of_its_own(void **state)
+{
+	(void)state;
+	assert_true(each_slot_once(8));
+	in_a_child(work_in_children);
+	assert_true(two_slots_meet());
+}
+
+static atomic_bool ends;
+
+static void *run_until_the_end(void *unused)
+{
+	(void)unused;
+	while (!ends)
+		each_slot_once(4);
+	return NULL;
+}
+
+static void work_shortly(void)
+{
+	expect(two_slots_meet());
+	expect(each_slot_once(6));
+}
+
+/* Whatever the other threads are doing, with the lock or without. */
+static void fork_in_the_midst_of_regions(void **state)
+{
+	(void)state;
+	pthread_t callers[2];
+	ends = false;
+	for (unsigned i = 0; i < 2; i++)
+		assert_int_equal(__real_pthread_create(&callers[i], NULL, run_until_the_end, NULL), 0);
+	for (unsigned i = 0; i < 100; i++)
+		in_a_child(work_shortly);
+	ends = true;
+	for (unsigned i = 0; i < 2; i++)
+		pthread_join(callers[i], NULL);
+}
+
+typedef struct witnesses {
+	pthread_t thread[40];
+} witnesses;
+
+static void note_thread(void *context, unsigned slot)
+{
+	((witnesses *)context)->thread[slot] = pthread_self();
+}
+
+static void work_alone(void)
+{
+	static float alone[4 * 6 * 30000], helped[4 * 6 * 30000];
+	creation_fails = true;
+	for (unsigned i = 0; i < 150; i++) {
+		witnesses w;
+		nt_pool_run(40, note_thread, &w);
+		for (unsigned slot = 0; slot < 40; slot++)
+			expect(pthread_equal(w.thread[slot], pthread_self()));
+	}
+	solve_strip(30000, 4, alone);
+	creation_fails = false;
+	/* it tries again, though not at once */
+	for (unsigned i = 0; i < 200; i++)
+		expect(each_slot_once(4));
+	expect(threads_made > 0);
+	expect(two_slots_meet());
+	solve_strip(30000, 4, helped);
+	expect(memcmp(alone, helped, sizeof alone) == 0);
+	expect(helped[0] == 1 && helped[1] == 0 && helped[2] == 0 && helped[3] == 1);
+}
+
+static void without_threads_the_caller_does_all(void **state)
+{
+	(void)state;
+	threads_made = 0;
+	in_a_child(work_alone);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		/* first, while no thread is made yet */
+		cmocka_unit_test(no_slot_and_one_slot_take_no_thread),
+		cmocka_unit_test(small_meshes_make_no_thread),
+		cmocka_unit_test(slots_run_beside_one_another_and_threads_are_kept),
+		cmocka_unit_test(callers_may_be_many),
+		cmocka_unit_test(regions_nest),
+		cmocka_unit_test(a_child_makes_threads_of_its_own),
+		cmocka_unit_test(fork_in_the_midst_of_regions),
+		cmocka_unit_test(without_threads_the_caller_does_all),
+	};
+	return cmocka_run_group_tests_name("base/pool", tests, NULL, NULL);
+}
