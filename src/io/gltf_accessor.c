@@ -10,6 +10,7 @@
 #include <string.h>
 #include "base/largest.h"
 #include "io/gltf_component.h"
+#include "io/gltf_view.h"
 
 /* Indices that an accessor without a bufferView may have: nothing in the file backs their number. */
 enum { UNBACKED_INDICES = 65536 };

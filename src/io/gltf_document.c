@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Documents, buffers and bufferViews. Buffers are opened when the first byte of them is wanted: an
- * external file is mapped, a data URI decoded, the BIN chunk pointed at.
+ * Documents and buffers. Buffers are opened when the first byte of them is wanted: an external file is
+ * mapped, a data URI decoded, the BIN chunk pointed at.
  */
 #include "io/gltf_document.h"
 
@@ -310,51 +310,6 @@ nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *fro
 	return NT_OK;
 }
 
-/* ---- views ---- */
-
-nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
-	nt_error *error)
-{
-	const nt_json_value *json;
-	nt_status status = nt_gltf_element(document, "bufferViews", index, from, &json, error);
-	if (status)
-		return status;
-	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "/bufferViews/%llu", (unsigned long long)index);
-	const uint64_t limit = (uint64_t)1 << 53;
-	uint64_t buffer_index = 0, stride = 0;
-	status = nt_gltf_uint(json, pointer, "buffer", UINT32_MAX - 1, NT_GLTF_REQUIRED, &buffer_index,
-		error);
-	if (!status)
-		status = nt_gltf_uint(json, pointer, "byteOffset", limit, 0, &view->offset, error);
-	if (!status)
-		status = nt_gltf_uint(json, pointer, "byteLength", limit, NT_GLTF_REQUIRED,
-			&view->length, error);
-	if (!status)
-		status = nt_gltf_uint(json, pointer, "byteStride", 65535, 0, &stride, error);
-	nt_gltf_buffer *buffer = NULL;
-	if (!status)
-		status = nt_gltf_describe_buffer(document, buffer_index, pointer, &buffer, error);
-	if (status)
-		return status;
-	if (view->offset > buffer->length || view->length > buffer->length - view->offset)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
-			"bytes %llu to %llu, but buffer %llu has %llu", (unsigned long long)view->offset,
-			(unsigned long long)(view->offset + view->length),
-			(unsigned long long)buffer_index, (unsigned long long)buffer->length);
-	view->index = (uint32_t)index;
-	view->buffer = (uint32_t)buffer_index;
-	view->stride = (uint32_t)stride;
-	view->compression = NULL;
-	nt_gltf_compression_of(json, &view->compression);
-	if (index < document->view_count && document->virtual_of[index] != NT_NONE) {
-		view->buffer = document->virtual_of[index];
-		view->offset = 0;
-		view->compression = NULL;
-	}
-	return NT_OK;
-}
-
 void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin, uint64_t length)
 {
 	if (length == 0 || (buffer->home != NT_GLTF_HOME_BIN && buffer->home != NT_GLTF_HOME_FILE))
@@ -380,41 +335,4 @@ uint64_t nt_gltf_bytes_read(const nt_gltf *document)
 {
 	return (document->is_glb ? document->glb.json.offset + document->glb.json.size : document->byte_count) +
 		document->bytes_read;
-}
-
-nt_status nt_gltf_view_bytes(nt_gltf *document, uint32_t index, uint64_t offset, uint64_t length,
-	const char *what, const unsigned char **bytes, nt_error *error)
-{
-	nt_gltf_view view;
-	nt_status status = nt_gltf_get_view(document, index, what, &view, error);
-	if (status)
-		return status;
-	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "/bufferViews/%u", index);
-	if (view.compression) {
-		status = nt_gltf_decompress_view(document, index, error);
-		if (!status)
-			status = nt_gltf_get_view(document, index, what, &view, error);
-		if (status)
-			return status;
-	}
-	if (offset > view.length || length > view.length - offset)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, what,
-			"takes bytes %llu to %llu of bufferView %u, which has %llu",
-			(unsigned long long)offset, (unsigned long long)(offset + length), index,
-			(unsigned long long)view.length);
-	nt_gltf_buffer *buffer;
-	status = nt_gltf_open_buffer(document, view.buffer, pointer, &buffer, error);
-	if (status)
-		return status;
-	if (view.offset + offset > buffer->size || length > buffer->size - (view.offset + offset)) {
-		snprintf(pointer, sizeof pointer, "/buffers/%u", view.buffer);
-		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
-			"byteLength is %llu, but only %zu bytes are there",
-			(unsigned long long)buffer->length, buffer->size);
-	}
-	*bytes = buffer->bytes + view.offset + offset;
-	if (view.buffer < NT_GLTF_VIRTUAL)
-		nt_gltf_note_read(document, buffer, view.offset + offset, length);
-	return NT_OK;
 }

@@ -36,14 +36,6 @@ typedef struct nt_gltf_buffer {
 	const char *path;           /* of an external file */
 } nt_gltf_buffer;
 
-typedef struct nt_gltf_view {
-	uint32_t index;
-	uint32_t buffer;
-	uint64_t offset, length;
-	uint32_t stride; /* 0: none given */
-	const char *compression; /* the extension that compresses it; NULL: none, or already undone */
-} nt_gltf_view;
-
 typedef struct nt_gltf_accessor {
 	uint32_t index;
 	uint32_t component_type; /* enum nt_gltf_component */
@@ -126,21 +118,12 @@ nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char 
 nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_buffer **buffer, nt_error *error);
 
-/* A bufferView, checked against its buffer's byteLength. */
-nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
-	nt_error *error);
-
 /* Books bytes of a buffer as read: whole pages, each once. What a data URI holds was read with the JSON. */
 enum { NT_GLTF_PAGE = 4096 };
 void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin, uint64_t length);
 
 /* Bytes that were read: the JSON and what was booked. */
 uint64_t nt_gltf_bytes_read(const nt_gltf *document);
-
-/* Bytes of a view, `length` of them from `offset` on; compressed views are refused. `what` is the JSON
- * pointer of who wants them. */
-nt_status nt_gltf_view_bytes(nt_gltf *document, uint32_t view, uint64_t offset, uint64_t length,
-	const char *what, const unsigned char **bytes, nt_error *error);
 
 /* An accessor, checked against its views. */
 nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
@@ -170,15 +153,6 @@ nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, s
 
 /* Size of a component; 0 for an unknown type. */
 uint32_t nt_gltf_component_bytes(uint64_t component_type);
-
-/* ---- gltf_meshopt.c ---- */
-
-/* Decompresses a view of EXT_meshopt_compression or KHR_meshopt_compression: from then on it lies in a
- * virtual buffer. */
-nt_status nt_gltf_decompress_view(nt_gltf *document, uint32_t view, nt_error *error);
-
-/* The extension object of a compressed view; NULL: none. *name (may be NULL) receives the extension. */
-nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **name);
 
 /* ---- gltf_draco.c ---- */
 

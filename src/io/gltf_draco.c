@@ -11,6 +11,7 @@
 #include <string.h>
 #include "ext/draco.h"
 #include "io/gltf_draco.h"
+#include "io/gltf_view.h"
 
 nt_json_value *nt_gltf_draco_of(const nt_json_value *primitive)
 {

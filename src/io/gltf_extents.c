@@ -7,6 +7,7 @@
 #include "io/gltf_layout.h"
 
 #include <stdlib.h>
+#include "io/gltf_view.h"
 
 /* Of insertions, where a view's user is unknown. */
 enum { CAREFUL_ALIGNMENT = 8 };

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "io/gltf_view.h"
 
 enum { ALIGNMENT = 4 };
 /* Of a vacant view that nothing new came for. */

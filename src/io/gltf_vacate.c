@@ -5,6 +5,7 @@
  * taken out, and the number waits for a new view: see take_view() of gltf_layout.c.
  */
 #include "io/gltf_layout.h"
+#include "io/gltf_view.h"
 
 static bool is_plain(const nt_gltf_layout *layout, uint32_t index, nt_gltf_view *view)
 {

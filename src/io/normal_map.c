@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "io/gltf_document.h"
+#include "io/gltf_view.h"
 #include "io/image.h"
 #include "io/link.h"
 #include "io/uri.h"
