@@ -185,7 +185,8 @@ void nt_gltf_free(void *source)
 	}
 	for (size_t i = 0; i < document->virtual_count; i++)
 		free(document->virtuals[i].decoded);
-	nt_gltf_free_draco(document);
+	if (document->free_blocks)
+		document->free_blocks(document->draco_blocks);
 	free(document->virtuals);
 	free(document->virtual_of);
 	free(document->decoded);

@@ -80,7 +80,8 @@ typedef struct nt_gltf {
 	size_t view_count;
 	nt_gltf_decoded *decoded;  /* [accessor_count] what Draco gave; NULL until there is something */
 	size_t accessor_count;
-	struct nt_gltf_draco *draco_blocks; /* gltf_draco.c */
+	struct nt_gltf_draco *draco_blocks; /* decoded blocks: gltf_draco.c */
+	void (*free_blocks)(struct nt_gltf_draco *blocks); /* set with the first of them */
 	uint64_t bytes_read;     /* of buffers */
 	uint64_t bytes_opened;   /* of external files and data URIs */
 } nt_gltf;
@@ -153,15 +154,6 @@ nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, s
 
 /* Size of a component; 0 for an unknown type. */
 uint32_t nt_gltf_component_bytes(uint64_t component_type);
-
-/* ---- gltf_draco.c ---- */
-
-/* Decodes a primitive's KHR_draco_mesh_compression, where it has one: from then on its accessors have
- * their rows. */
-nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive,
-	const char *pointer, nt_error *error);
-
-void nt_gltf_free_draco(nt_gltf *document);
 
 /* ---- gltf_material.c ---- */
 

@@ -4,29 +4,31 @@
  * block is decoded when the primitive is loaded, and the accessors that it fills get their rows from
  * it: their own count gives way to what was decoded, as the extension says.
  */
-#include "io/gltf_document.h"
+#include "io/gltf_draco.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
-#include "ext/draco.h"
-#include "io/gltf_draco.h"
 #include "io/gltf_view.h"
+
+typedef struct nt_gltf_draco {
+	struct nt_gltf_draco *next;
+	uint64_t view; /* that holds the block */
+	nt_draco *mesh;
+} nt_gltf_draco;
 
 nt_json_value *nt_gltf_draco_of(const nt_json_value *primitive)
 {
 	return nt_json_find(nt_json_find(primitive, "extensions"), "KHR_draco_mesh_compression");
 }
 
-void nt_gltf_free_draco(nt_gltf *document)
+static void free_blocks(nt_gltf_draco *block)
 {
-	for (nt_gltf_draco *block = document->draco_blocks; block;) {
+	while (block) {
 		nt_gltf_draco *next = block->next;
 		nt_draco_free(block->mesh);
 		free(block);
 		block = next;
 	}
-	document->draco_blocks = NULL;
 }
 
 const nt_draco_mesh *nt_gltf_draco_block(const nt_gltf *document, uint64_t view)
@@ -64,6 +66,7 @@ static nt_status decode_block(nt_gltf *document, uint64_t index, const char *poi
 	}
 	block->next = document->draco_blocks;
 	document->draco_blocks = block;
+	document->free_blocks = free_blocks;
 	return NT_OK;
 }
 

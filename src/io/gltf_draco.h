@@ -1,55 +1,23 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Decoded Draco blocks of a document, kept for encoding them again, and what encoding takes.
+ * KHR_draco_mesh_compression: compressed primitives of a document. Decoded blocks are kept: several primitives may
+ * share one, and it may be encoded again.
  */
 #ifndef NT_IO_GLTF_DRACO_H
 #define NT_IO_GLTF_DRACO_H
 
 #include "ext/draco.h"
-#include "io/gltf_patch.h"
-
-typedef struct nt_gltf_draco {
-	struct nt_gltf_draco *next;
-	uint64_t view; /* that holds the block */
-	nt_draco *mesh;
-} nt_gltf_draco;
+#include "io/gltf_document.h"
 
 /* A primitive's KHR_draco_mesh_compression; NULL: none. */
 nt_json_value *nt_gltf_draco_of(const nt_json_value *primitive);
 
+/* Decodes a primitive's KHR_draco_mesh_compression, where it has one: from then on its accessors have
+ * their rows. */
+nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive,
+	const char *pointer, nt_error *error);
+
 /* The block of a view; NULL: not decoded. */
 const nt_draco_mesh *nt_gltf_draco_block(const nt_gltf *document, uint64_t view);
-
-/* A primitive that is to be compressed. */
-typedef struct nt_gltf_recoding {
-	nt_gltf_patcher *patcher;
-	const nt_gltf_cluster *component;
-	const nt_mesh *mesh;
-	nt_json_value *primitive, *extension;
-	uint64_t view;
-	const nt_draco_mesh *source; /* NULL: the primitive is plain */
-	nt_draco_attribute *attributes;
-	size_t attribute_count;
-	const char **names;
-	bool outside; /* something of the primitive is not in the block */
-	const char *obstacle; /* why it cannot be compressed; NULL: nothing is known to stand in the way */
-} nt_gltf_recoding;
-
-/* Attributes that nmtan may add to those of the source: NORMAL, TANGENT, _BITANGENT. */
-enum { NT_GLTF_OWN_ATTRIBUTES = 3 };
-
-/* Quantization as the options have it, or the default. */
-int nt_gltf_draco_bits(const nt_write_options *options, nt_draco_bits which);
-
-/* There is room for what the primitive has and NT_GLTF_OWN_ATTRIBUTES. */
-void nt_gltf_draco_add(nt_gltf_recoding *recoding, const char *name, nt_draco_attribute attribute);
-
-/* ---- gltf_draco_plain.c ---- */
-
-/* The attributes of a plain primitive; recoding->obstacle where it cannot be compressed. */
-nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *recoding);
-
-/* Takes what the block holds out of the buffers, and gives the primitive its extension. */
-nt_status nt_gltf_draco_take_out(nt_gltf_recoding *recoding, const nt_draco_block *block);
 
 #endif

@@ -10,7 +10,7 @@
  * The rows leave the buffers. Views keep their numbers: one takes the block, others that are empty then share bytes
  * with it.
  */
-#include "io/gltf_draco.h"
+#include "io/gltf_draco_block.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -9,7 +9,7 @@
  * vertices that no face uses, and rows outside of the block would no longer fit), where primitives share
  * accessors but not all else, or where it is not wanted, the primitive is written plain.
  */
-#include "io/gltf_draco.h"
+#include "io/gltf_draco_block.h"
 
 #include <stdio.h>
 #include <stdlib.h>

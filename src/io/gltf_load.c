@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "base/parallel.h"
+#include "io/gltf_draco.h"
 #include "io/gltf_share.h"
 
 /* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
