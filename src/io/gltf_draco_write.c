@@ -14,6 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "io/gltf_new_accessors.h"
 #include "io/gltf_view.h"
 
 bool nt_gltf_has_draco(const nt_gltf_patcher *p, const nt_gltf_cluster *component)

@@ -66,10 +66,6 @@ void nt_gltf_move_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents 
 
 /* ---- the other parts ---- */
 
-/* Appends the JSON of an accessor; view NT_NONE: without one. Returns its number. */
-uint32_t nt_gltf_new_accessor(nt_gltf_patcher *patcher, uint32_t view, uint32_t component_type,
-	const char *type, size_t count, bool normalized);
-
 /* Gives every accessor of the component its copied rows, and overridden accessors their new values;
  * `overrides` is sorted for that. decoded_too: what was decompressed by Draco goes into plain views. */
 nt_status nt_gltf_grow_attributes(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
@@ -81,14 +77,6 @@ bool nt_gltf_has_draco(const nt_gltf_patcher *patcher, const nt_gltf_cluster *co
 /* Writes a component with compressed members: compressed again where that is possible, else plain.
  * *done false: plain, and what plain components need is still to be done. */
 nt_status nt_gltf_patch_draco(nt_gltf_patcher *patcher, nt_gltf_cluster *component, bool *done);
-
-/* cross(N, T) w of every row of a group, glTF's own definition of the bitangent. */
-nt_status nt_gltf_bitangents(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
-	uint32_t group, float **rows);
-
-/* TANGENT of the morph targets of a group's meshes: what to add to the base's. */
-nt_status nt_gltf_add_morphs(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
-	uint32_t group);
 
 /* Takes KHR_draco_mesh_compression off the lists where no primitive has it any more. */
 void nt_gltf_drop_draco(nt_gltf_patcher *patcher);
