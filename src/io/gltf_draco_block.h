@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A primitive on its way into a Draco block.
+ * A primitive on its way into a Draco block: see gltf_draco_block.c.
  */
 #ifndef NT_IO_GLTF_DRACO_BLOCK_H
 #define NT_IO_GLTF_DRACO_BLOCK_H
@@ -32,12 +32,23 @@ int nt_gltf_draco_bits(const nt_write_options *options, nt_draco_bits which);
 /* There is room for what the primitive has and NT_GLTF_OWN_ATTRIBUTES. */
 void nt_gltf_draco_add(nt_gltf_recoding *recoding, const char *name, nt_draco_attribute attribute);
 
-/* ---- gltf_draco_plain.c ---- */
+/* The attributes of the primitive's block, as they are, with copies of their rows. */
+nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *recoding);
 
-/* The attributes of a plain primitive; recoding->obstacle where it cannot be compressed. */
-nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *recoding);
+/* What nmtan made: NORMAL where it did, TANGENT, _BITANGENT where asked for. */
+nt_status nt_gltf_draco_add_own(nt_gltf_recoding *recoding);
 
-/* Takes what the block holds out of the buffers, and gives the primitive its extension. */
-nt_status nt_gltf_draco_take_out(nt_gltf_recoding *recoding, const nt_draco_block *block);
+/* Compresses what was gathered; the status says whether Draco gives it back. */
+nt_status nt_gltf_draco_encode(const nt_gltf_recoding *recoding, nt_draco_method method, nt_draco_block *block);
+
+/* The JSON of the primitive follows what a decoder will see; new accessors have no view, their rows are in the
+ * block. */
+void nt_gltf_draco_describe(nt_gltf_recoding *recoding, const nt_draco_block *block);
+
+/* So many primitives do not refer to a block any more. Whether nobody does. */
+bool nt_gltf_draco_release(nt_gltf_patcher *patcher, uint64_t view, size_t count);
+
+/* Puts the block where the primitive's was, else into a new view. */
+nt_status nt_gltf_draco_store(nt_gltf_recoding *recoding, const nt_draco_block *block);
 
 #endif

@@ -10,7 +10,7 @@
  * The rows leave the buffers. Views keep their numbers: one takes the block, others that are empty then share bytes
  * with it.
  */
-#include "io/gltf_draco_block.h"
+#include "io/gltf_draco_plain.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -337,18 +337,6 @@ static nt_status set_bounds(nt_gltf_recoding *r, const nt_draco_block *block)
 	return status;
 }
 
-static void list_extension(nt_gltf_patcher *p, const char *list)
-{
-	static const char name[] = "KHR_draco_mesh_compression";
-	nt_json_value *names = nt_json_put(p->json, nt_json_root(p->json), list);
-	for (size_t i = 0; i < nt_json_count(names); i++) {
-		const char *text = nt_json_get_string(nt_json_at(names, i), NULL);
-		if (text && strcmp(text, name) == 0)
-			return;
-	}
-	nt_json_set_string(p->json, nt_json_append(p->json, names), name, strlen(name));
-}
-
 static void put_extension(nt_gltf_recoding *r)
 {
 	nt_json *json = r->patcher->json;
@@ -356,8 +344,8 @@ static void put_extension(nt_gltf_recoding *r)
 	r->extension = nt_json_put(json, extensions, "KHR_draco_mesh_compression");
 	nt_json_set_uint64(json, nt_json_put(json, r->extension, "bufferView"), 0);
 	nt_json_set_object(json, nt_json_put(json, r->extension, "attributes"));
-	list_extension(r->patcher, "extensionsUsed");
-	list_extension(r->patcher, "extensionsRequired");
+	nt_gltf_list_extension(r->patcher->document, "extensionsUsed", "KHR_draco_mesh_compression");
+	nt_gltf_list_extension(r->patcher->document, "extensionsRequired", "KHR_draco_mesh_compression");
 }
 
 nt_status nt_gltf_draco_take_out(nt_gltf_recoding *r, const nt_draco_block *block)

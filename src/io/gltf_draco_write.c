@@ -9,10 +9,8 @@
  * vertices that no face uses, and rows outside of the block would no longer fit), where primitives share
  * accessors but not all else, or where it is not wanted, the primitive is written plain.
  */
-#include "io/gltf_draco_block.h"
+#include "io/gltf_draco_plain.h"
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include "io/gltf_new_accessors.h"
 #include "io/gltf_view.h"
@@ -38,13 +36,6 @@ void nt_gltf_drop_draco(nt_gltf_patcher *p)
 	nt_gltf_remove_extension(p->document, "extensionsUsed", "KHR_draco_mesh_compression");
 }
 
-/* So many primitives do not refer to a block any more. Whether nobody does. */
-static bool release_block(nt_gltf_patcher *p, uint64_t view, size_t count)
-{
-	p->sharing.block_users[view] -= (uint32_t)count;
-	return p->sharing.block_users[view] == 0;
-}
-
 /* ---- plain ---- */
 
 /* Takes the extension off a primitive, and its block out of the buffer. The view takes some of the rows. */
@@ -58,7 +49,7 @@ static nt_status make_plain(nt_gltf_patcher *p, nt_gltf_cluster *component, size
 	nt_status status = NT_OK;
 	if (nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(primitive), "bufferView"), &index) &&
 		nt_gltf_get_view(p->document, index, "", &view, NULL) == NT_OK &&
-		release_block(p, index, 1))
+		nt_gltf_draco_release(p, index, 1))
 		status = nt_layout_vacate(&p->layout, (uint32_t)index, 0, view.length, p->error);
 	nt_json_remove(p->json, extensions, "KHR_draco_mesh_compression");
 	if (nt_json_count(extensions) == 0)
@@ -111,105 +102,6 @@ static bool accessors_are_own(const nt_gltf_recoding *r)
 		!nt_json_find(nt_json_at(accessors, (size_t)indices), "bufferView");
 }
 
-/* Rows of a decoded attribute with their copies. */
-static nt_status copy_attribute(nt_gltf_recoding *r, const nt_draco_attribute *from, const void **rows)
-{
-	nt_gltf_patcher *p = r->patcher;
-	const nt_gltf_rows *all = &r->component->rows;
-	const size_t width = nt_draco_component_size(from->component_type) * (size_t)from->components;
-	unsigned char *out = nt_arena_alloc(p->arena, all->new_count, width);
-	if (!out)
-		return nt_fail_memory(p->error);
-	memcpy(out, from->data, all->old_count * width);
-	for (size_t row = all->old_count; row < all->new_count; row++)
-		memcpy(out + row * width,
-			(const unsigned char *)from->data + all->sources[row - all->old_count] * width, width);
-	*rows = out;
-	return NT_OK;
-}
-
-int nt_gltf_draco_bits(const nt_write_options *options, nt_draco_bits which)
-{
-	static const int defaults[NT_DRACO_BITS_COUNT] = {14, 12, 12, 12};
-	return options->draco_bits[which] ? options->draco_bits[which] : defaults[which];
-}
-
-void nt_gltf_draco_add(nt_gltf_recoding *r, const char *name, nt_draco_attribute attribute)
-{
-	r->names[r->attribute_count] = name;
-	r->attributes[r->attribute_count++] = attribute;
-}
-
-static uint32_t free_id(const nt_gltf_recoding *r)
-{
-	uint32_t id = 0;
-	for (size_t i = 0; i < r->attribute_count; i++)
-		if (r->attributes[i].unique_id >= id)
-			id = r->attributes[i].unique_id + 1;
-	return id;
-}
-
-/* An attribute of ours: takes the place of one of that name. */
-static void put_floats(nt_gltf_recoding *r, const char *name, nt_draco_kind kind, int components,
-	const float *rows, int bits)
-{
-	const nt_draco_attribute attribute = {.unique_id = free_id(r), .kind = kind,
-		.component_type = NT_GLTF_FLOAT, .components = components,
-		.quantization = {.bits = bits}, .data = rows};
-	for (size_t i = 0; i < r->attribute_count; i++)
-		if (strcmp(r->names[i], name) == 0) {
-			const uint32_t id = r->attributes[i].unique_id;
-			r->attributes[i] = attribute;
-			r->attributes[i].unique_id = id;
-			return;
-		}
-	nt_gltf_draco_add(r, name, attribute);
-}
-
-/* What the source's block has, as it is. */
-static nt_status gather_block(nt_gltf_recoding *r)
-{
-	nt_gltf_patcher *p = r->patcher;
-	const nt_json_value *ids = nt_json_find(r->extension, "attributes");
-	r->attributes = nt_arena_alloc(p->arena, nt_json_count(ids) + NT_GLTF_OWN_ATTRIBUTES,
-		sizeof *r->attributes);
-	r->names = nt_arena_alloc(p->arena, nt_json_count(ids) + NT_GLTF_OWN_ATTRIBUTES,
-		sizeof *r->names);
-	if (!r->attributes || !r->names)
-		return nt_fail_memory(p->error);
-	nt_status status = NT_OK;
-	for (size_t i = 0; !status && i < nt_json_count(ids); i++) {
-		uint64_t id = 0;
-		nt_json_get_uint64(nt_json_at(ids, i), &id);
-		nt_draco_attribute copy = *nt_draco_find(r->source, (uint32_t)id);
-		copy.quantization.explicit_box = copy.quantization.bits > 0;
-		copy.stride_bytes = 0;
-		status = copy_attribute(r, nt_draco_find(r->source, (uint32_t)id), &copy.data);
-		nt_gltf_draco_add(r, nt_json_key(ids, i, NULL), copy);
-	}
-	return status;
-}
-
-/* What nmtan made. */
-static nt_status add_own_attributes(nt_gltf_recoding *r)
-{
-	nt_gltf_patcher *p = r->patcher;
-	const nt_gltf_rows *rows = &r->component->rows;
-	const int bits = nt_gltf_draco_bits(p->options, NT_DRACO_BITS_TANGENT);
-	nt_status status = NT_OK;
-	if (rows->normals[0])
-		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, rows->normals[0],
-			nt_gltf_draco_bits(p->options, NT_DRACO_BITS_NORMAL));
-	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, rows->tangents[0], bits);
-	if (p->options->bitangents) {
-		float *bitangents;
-		status = nt_gltf_bitangents(p, r->component, 0, &bitangents);
-		if (!status)
-			put_floats(r, "_BITANGENT", NT_DRACO_GENERIC, 3, bitangents, bits);
-	}
-	return status;
-}
-
 /* Whether edgebreaker would drop a face: two corners at one position. */
 static bool has_degenerate_face(const nt_gltf_recoding *r)
 {
@@ -238,87 +130,6 @@ static bool order_is_kept(const nt_gltf_recoding *r, const nt_draco_block *block
 	return true;
 }
 
-static void set_count(nt_gltf_patcher *p, uint64_t accessor, size_t count)
-{
-	nt_json_value *json =
-		nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)accessor);
-	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "count"), count);
-}
-
-/* The JSON of the primitive follows what a decoder will see; new accessors have no view, their rows are in the
- * block. */
-static void describe_block(nt_gltf_recoding *r, const nt_draco_block *block)
-{
-	nt_gltf_patcher *p = r->patcher;
-	nt_json *json = p->json;
-	nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
-	for (size_t i = 0; i < r->attribute_count; i++) {
-		const nt_draco_attribute *a = &r->attributes[i];
-		uint64_t accessor;
-		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &accessor))
-			set_count(p, accessor, block->point_count);
-		else
-			nt_json_set_uint64(json, nt_json_put(json, attributes, r->names[i]),
-				nt_gltf_new_accessor(p, NT_NONE, NT_GLTF_FLOAT,
-					a->components == 3 ? "VEC3" : "VEC4", block->point_count, false));
-		nt_json_set_uint64(json, nt_json_put(json, nt_json_put(json, r->extension, "attributes"),
-			r->names[i]), a->unique_id);
-	}
-	uint64_t indices, type = 0;
-	if (!nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &indices)) {
-		indices = nt_gltf_new_accessor(p, NT_NONE, NT_GLTF_UINT, "SCALAR", 0, false);
-		nt_json_set_uint64(json, nt_json_put(json, r->primitive, "indices"), indices);
-		r->extension = nt_gltf_draco_of(r->primitive); /* members have moved */
-	}
-	set_count(p, indices, block->face_count * 3);
-	nt_json_value *accessor =
-		nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)indices);
-	nt_json_get_uint64(nt_json_find(accessor, "componentType"), &type);
-	const size_t limit = type == NT_GLTF_UBYTE ? 0xFF : type == NT_GLTF_USHORT ? 0xFFFF : SIZE_MAX;
-	if (block->point_count > limit)
-		nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"),
-			block->point_count > 0xFFFF ? NT_GLTF_UINT : NT_GLTF_USHORT);
-	nt_json_remove(json, accessor, "min");
-	nt_json_remove(json, accessor, "max");
-}
-
-static nt_status store_block(nt_gltf_recoding *r, const nt_draco_block *block)
-{
-	nt_gltf_patcher *p = r->patcher;
-	unsigned char *bytes = nt_arena_alloc(p->arena, block->size, 1);
-	if (!bytes)
-		return nt_fail_memory(p->error);
-	memcpy(bytes, block->bytes, block->size);
-	nt_gltf_view view;
-	nt_status status = r->source ?
-		nt_gltf_get_view(p->document, r->view, "", &view, p->error) : NT_OK;
-	if (status)
-		return status;
-	if (r->source && release_block(p, r->view, r->component->member_count) &&
-		nt_layout_users(&p->layout, view.buffer, view.offset, view.offset + view.length) == 1)
-		return nt_layout_edit(&p->layout, view.buffer, view.offset, view.length, bytes,
-			block->size, p->error);
-	uint32_t number;
-	status = nt_layout_add_view(&p->layout, r->component->buffer, bytes, block->size, 0, 0, &number,
-		p->error);
-	nt_json_set_uint64(p->json, nt_json_put(p->json, r->extension, "bufferView"), number);
-	return status;
-}
-
-static nt_status encode(const nt_gltf_recoding *r, nt_draco_method method, nt_draco_block *block)
-{
-	const nt_draco_mesh mesh = {
-		.method = method,
-		.point_count = r->component->rows.new_count,
-		.face_count = r->mesh->corner_count / 3,
-		.indices = r->component->rows.indices[0],
-		.attributes = r->attributes,
-		.attribute_count = r->attribute_count,
-	};
-	nt_error ignored;
-	return nt_draco_encode(&mesh, block, &ignored);
-}
-
 static nt_draco_method wanted_method(const nt_gltf_recoding *r)
 {
 	if (r->outside || has_degenerate_face(r) || r->patcher->options->draco == NT_DRACO_AS_SEQUENTIAL)
@@ -331,17 +142,17 @@ static nt_draco_method wanted_method(const nt_gltf_recoding *r)
 static nt_status recode(nt_gltf_recoding *r, bool *done)
 {
 	nt_gltf_patcher *p = r->patcher;
-	nt_status status = r->source ? gather_block(r) : NT_OK;
+	nt_status status = r->source ? nt_gltf_draco_gather_block(r) : NT_OK;
 	if (!status)
-		status = add_own_attributes(r);
+		status = nt_gltf_draco_add_own(r);
 	if (status)
 		return status;
 	/* Edgebreaker does not give every mesh back; the other method has nothing to lose. */
 	const nt_draco_method method = wanted_method(r);
 	nt_draco_block block = {0};
-	status = encode(r, method, &block);
+	status = nt_gltf_draco_encode(r, method, &block);
 	if (status && status != NT_ERROR_MEMORY && method != NT_DRACO_SEQUENTIAL)
-		status = encode(r, NT_DRACO_SEQUENTIAL, &block);
+		status = nt_gltf_draco_encode(r, NT_DRACO_SEQUENTIAL, &block);
 	if (status == NT_ERROR_MEMORY)
 		return nt_fail_memory(p->error);
 	if (status || (r->outside && !order_is_kept(r, &block))) {
@@ -355,8 +166,8 @@ static nt_status recode(nt_gltf_recoding *r, bool *done)
 	if (!status && r->outside && r->component->rows.new_count > r->component->rows.old_count)
 		status = nt_gltf_grow_attributes(p, r->component, NULL, 0, false);
 	if (!status) {
-		describe_block(r, &block);
-		status = store_block(r, &block);
+		nt_gltf_draco_describe(r, &block);
+		status = nt_gltf_draco_store(r, &block);
 	}
 	if (!status)
 		status = nt_gltf_add_morphs(p, r->component, 0);
