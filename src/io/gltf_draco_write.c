@@ -12,6 +12,7 @@
 #include "io/gltf_draco_plain.h"
 
 #include <string.h>
+#include "io/gltf_extensions.h"
 #include "io/gltf_new_accessors.h"
 #include "io/gltf_view.h"
 

@@ -101,12 +101,6 @@ nt_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t buffer, const void
 nt_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint32_t *buffer,
 	nt_error *error);
 
-/* Adds an extension to extensionsUsed or extensionsRequired, where it is not there yet. */
-void nt_gltf_list_extension(nt_gltf *document, const char *list, const char *name);
-
-/* Takes an extension off "extensionsUsed" or "extensionsRequired". */
-void nt_gltf_remove_extension(nt_gltf *document, const char *list, const char *name);
-
 /* Moves all offsets in the JSON and sets all lengths. Call once, after the last change. */
 nt_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error);
 
