@@ -13,6 +13,7 @@
 
 #include <string.h>
 #include "io/gltf_extensions.h"
+#include "io/gltf_grow.h"
 #include "io/gltf_new_accessors.h"
 #include "io/gltf_view.h"
 

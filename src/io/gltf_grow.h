@@ -1,57 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What growing the accessors of a component takes: shared by gltf_grow.c and gltf_sparse.c.
+ * Vertices that splitting appended: see gltf_grow.c.
  */
 #ifndef NT_IO_GLTF_GROW_H
 #define NT_IO_GLTF_GROW_H
 
-#include "io/gltf_patch.h"
+#include "io/gltf_append_items.h"
 
-/* An accessor that grows. */
-typedef struct nt_gltf_item {
-	nt_gltf_accessor accessor;
-	uint32_t buffer;
-	uint64_t begin; /* in the buffer */
-	const nt_gltf_override *override;
-	uint32_t clone; /* accessor that takes its place in solved primitives; NT_NONE: it grows itself */
-} nt_gltf_item;
-
-/* Bytes of the source that have been edited for this component. */
-typedef struct nt_gltf_edited {
-	uint32_t buffer;
-	uint64_t begin, end;
-} nt_gltf_edited;
-
-typedef struct nt_gltf_growing {
-	nt_gltf_patcher *patcher;
-	const nt_gltf_cluster *component;
-	nt_gltf_item *items;
-	size_t item_count, item_capacity;
-	bool *seen;    /* [accessor_count] */
-	bool *pinned;  /* [accessor_count] used by an unsolved member */
-	bool collecting_unsolved;
-	bool decoded_too; /* decompressed accessors get plain views */
-	nt_gltf_edited *edited;
-	size_t edited_count, edited_capacity;
-} nt_gltf_growing;
-
-/* Rows that are appended to every accessor. */
-static inline size_t nt_gltf_added_rows(const nt_gltf_growing *g)
-{
-	return g->component->rows.new_count - g->component->rows.old_count;
-}
-
-/* Row of the source that a new row copies. */
-static inline uint32_t nt_gltf_row_source(const nt_gltf_growing *g, size_t row)
-{
-	const nt_gltf_rows *rows = &g->component->rows;
-	return row < rows->old_count ? (uint32_t)row : rows->sources[row - rows->old_count];
-}
-
-/* Notes that bytes of a source buffer have been edited. False: out of memory. */
-bool nt_gltf_note_edit(nt_gltf_growing *growing, uint32_t buffer, uint64_t begin, uint64_t end);
-
-/* Appends the rows that are copies of replaced ones to what a sparse accessor replaces. */
-nt_status nt_gltf_grow_sparse(nt_gltf_growing *growing, const nt_gltf_item *item);
+/* Gives every accessor of the component its copied rows, and overridden accessors their new values;
+ * `overrides` is sorted for that. decoded_too: what was decompressed by Draco goes into plain views. */
+nt_status nt_gltf_grow_attributes(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
+	nt_gltf_override *overrides, size_t override_count, bool decoded_too);
 
 #endif

@@ -22,14 +22,6 @@ typedef struct nt_gltf_patcher {
 	nt_error *error;
 } nt_gltf_patcher;
 
-/* An accessor whose values are replaced in place: rows of `width` bytes for every new row. Without values it does not
- * grow: it will get a view of its own. */
-typedef struct nt_gltf_override {
-	uint32_t accessor;
-	const unsigned char *values;
-	uint32_t width;
-} nt_gltf_override;
-
 /* The meshes of one component. */
 typedef struct nt_gltf_cluster {
 	uint32_t number;
@@ -65,11 +57,6 @@ void nt_gltf_move_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents 
 	size_t count);
 
 /* ---- the other parts ---- */
-
-/* Gives every accessor of the component its copied rows, and overridden accessors their new values;
- * `overrides` is sorted for that. decoded_too: what was decompressed by Draco goes into plain views. */
-nt_status nt_gltf_grow_attributes(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
-	nt_gltf_override *overrides, size_t override_count, bool decoded_too);
 
 /* Whether a solved member of the component is compressed by Draco. */
 bool nt_gltf_has_draco(const nt_gltf_patcher *patcher, const nt_gltf_cluster *component);

@@ -4,7 +4,7 @@
  * replaced as well: its number goes to the end of the indices, which stay in order since new rows have
  * the highest numbers, and its element to the end of the values.
  */
-#include "io/gltf_grow.h"
+#include "io/gltf_sparse.h"
 
 #include <stdlib.h>
 #include <string.h>
