@@ -6,6 +6,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include "io/gltf_primitive.h"
 #include "io/gltf_view.h"
 
 bool nt_gltf_note_edit(nt_gltf_growing *g, uint32_t buffer, uint64_t begin, uint64_t end)

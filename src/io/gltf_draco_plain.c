@@ -16,6 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "io/gltf_extensions.h"
+#include "io/gltf_primitive.h"
 #include "io/gltf_view.h"
 
 /* ---- what can be compressed ---- */

@@ -15,6 +15,7 @@
 #include "io/gltf_extensions.h"
 #include "io/gltf_grow.h"
 #include "io/gltf_new_accessors.h"
+#include "io/gltf_primitive.h"
 #include "io/gltf_view.h"
 
 bool nt_gltf_has_draco(const nt_gltf_patcher *p, const nt_gltf_cluster *component)

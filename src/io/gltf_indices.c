@@ -10,6 +10,7 @@
 #include <string.h>
 #include "base/largest.h"
 #include "io/gltf_new_accessors.h"
+#include "io/gltf_primitive.h"
 #include "io/gltf_view.h"
 
 /* New indices of one primitive, encoded. */

@@ -13,7 +13,7 @@
 #include <string.h>
 #include "base/parallel.h"
 #include "io/gltf_draco.h"
-#include "io/gltf_share.h"
+#include "io/gltf_primitive.h"
 
 /* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
 enum { UNBACKED_ELEMENTS = 65536 };

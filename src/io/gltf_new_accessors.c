@@ -7,6 +7,7 @@
 
 #include <string.h>
 #include "base/vec.h"
+#include "io/gltf_primitive.h"
 
 uint32_t nt_gltf_new_accessor(nt_gltf_patcher *p, uint32_t view, uint32_t component_type, const char *type,
 	size_t count, bool normalized)

@@ -13,6 +13,8 @@
 #include "io/gltf_grow.h"
 #include "io/gltf_new_accessors.h"
 #include "io/gltf_precision.h"
+#include "io/gltf_primitive.h"
+#include "io/gltf_rows.h"
 #include "io/gltf_view.h"
 
 /* ---- one component ---- */

@@ -7,7 +7,7 @@
 #define NT_IO_GLTF_PATCH_H
 
 #include "io/gltf_layout.h"
-#include "io/gltf_share.h"
+#include "io/gltf_vertex_pools.h"
 
 typedef struct nt_gltf_patcher {
 	nt_scene *scene;

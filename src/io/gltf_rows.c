@@ -8,7 +8,7 @@
  * appends a row where all have one; by hash, since a hub may have any number of rows. For a mesh that shares nothing
  * this is exactly its own split, which is taken as it is.
  */
-#include "io/gltf_share.h"
+#include "io/gltf_rows.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "io/gltf_share.h"
+#include "io/gltf_primitive.h"
 
 /* Numbers that are no accessors. */
 #define MISSING UINT64_MAX

@@ -14,6 +14,7 @@
 
 #include <stdlib.h>
 #include "io/gltf_precision.h"
+#include "io/gltf_primitive.h"
 #include "io/gltf_view.h"
 
 uint32_t nt_gltf_tangent_of(const nt_gltf_patcher *p, const nt_gltf_cluster *component, size_t member)

@@ -1,94 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Components of primitives that share attribute accessors, found with a union-find over the accessors.
- * Exporters also write several accessors over the same bytes; those count as one.
+ * Components of primitives that share attribute accessors, found with a union-find over the accessors; and groups of
+ * a component: primitives whose tangents are the same, because all that decides them is. Exporters also write several
+ * accessors over the same bytes; those count as one.
  */
-#include "io/gltf_share.h"
+#include "io/gltf_vertex_pools.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/hash_index.h"
 #include "io/gltf_draco.h"
-
-bool nt_gltf_is_solved(const nt_mesh *mesh)
-{
-	return mesh->split.vertex_tangents != NULL;
-}
-
-nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh)
-{
-	const nt_json_value *json =
-		nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh);
-	return nt_json_at(nt_json_find(json, "primitives"), mesh->gltf_primitive);
-}
-
-static nt_status visit_object(nt_json_value *attributes, size_t accessor_count, nt_gltf_visit visit,
-	void *context)
-{
-	nt_status status = NT_OK;
-	for (size_t i = 0; !status && i < nt_json_count(attributes); i++) {
-		uint64_t accessor;
-		const char *name = nt_json_key(attributes, i, NULL);
-		if (name && nt_json_get_uint64(nt_json_at(attributes, i), &accessor) &&
-			accessor < accessor_count)
-			status = visit(context, attributes, name, (uint32_t)accessor);
-	}
-	return status;
-}
-
-nt_status nt_gltf_visit_attributes(const nt_json_value *primitive, size_t accessor_count,
-	nt_gltf_visit visit, void *context)
-{
-	nt_status status =
-		visit_object(nt_json_find(primitive, "attributes"), accessor_count, visit, context);
-	const nt_json_value *targets = nt_json_find(primitive, "targets");
-	for (size_t i = 0; !status && i < nt_json_count(targets); i++)
-		status = visit_object(nt_json_at(targets, i), accessor_count, visit, context);
-	return status;
-}
-
-/* ---- accessors over the same bytes ---- */
-
-static int compare_accessors(const void *a, const void *b)
-{
-	const nt_gltf_accessor *x = a, *y = b;
-	const uint64_t xs[] = {x->view, x->offset, x->component_type, x->components, x->count,
-		x->normalized, x->index};
-	const uint64_t ys[] = {y->view, y->offset, y->component_type, y->components, y->count,
-		y->normalized, y->index};
-	for (size_t i = 0; i < sizeof xs / sizeof *xs; i++)
-		if (xs[i] != ys[i])
-			return xs[i] < ys[i] ? -1 : 1;
-	return 0;
-}
-
-static bool same_bytes(nt_gltf_accessor a, nt_gltf_accessor b)
-{
-	a.index = b.index = 0;
-	return compare_accessors(&a, &b) == 0;
-}
-
-bool nt_gltf_find_canonical(nt_gltf *document, uint32_t *canonical, size_t accessor_count)
-{
-	nt_gltf_accessor *list = nt_alloc(accessor_count, sizeof *list);
-	if (!list)
-		return false;
-	size_t count = 0;
-	for (uint32_t i = 0; i < accessor_count; i++) {
-		canonical[i] = i;
-		nt_gltf_accessor accessor;
-		if (nt_gltf_get_accessor(document, i, "", &accessor, NULL) == NT_OK &&
-			accessor.view != NT_NONE && !accessor.sparse_count)
-			list[count++] = accessor;
-	}
-	if (count)
-		qsort(list, count, sizeof *list, compare_accessors);
-	for (size_t i = 1; i < count; i++)
-		if (same_bytes(list[i], list[i - 1]))
-			canonical[list[i].index] = canonical[list[i - 1].index];
-	free(list);
-	return true;
-}
+#include "io/gltf_primitive.h"
 
 /* ---- other users ---- */
 
@@ -231,4 +154,119 @@ nt_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, cons
 	free(j.parent);
 	free(j.first_user);
 	return NT_OK;
+}
+
+/* ---- groups of a component ---- */
+
+/* The three accessors that decide a tangent; meshes with the same ones form a group, if texture
+ * transforms are the same too. */
+typedef struct group_key {
+	uint32_t positions, normals, texcoords;
+	uint32_t targets;    /* a hash of what the morph targets move */
+	uint64_t directions; /* a hash of what a texture transform makes of the texture coordinates; 0: there is none */
+} group_key;
+
+static uint32_t canonical_of(const nt_gltf_sharing *sharing, const nt_json_value *attributes,
+	const char *name)
+{
+	uint64_t accessor;
+	if (!nt_json_get_uint64(nt_json_find(attributes, name), &accessor) ||
+		accessor >= sharing->accessor_count)
+		return NT_NONE;
+	return sharing->canonical[accessor];
+}
+
+static group_key key_of(const nt_gltf *document, const nt_gltf_sharing *sharing, const nt_mesh *mesh)
+{
+	char name[32];
+	snprintf(name, sizeof name, "TEXCOORD_%u", mesh->texcoord_set);
+	const nt_json_value *primitive = nt_gltf_primitive_of(document, mesh);
+	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
+	const nt_json_value *targets = nt_json_find(primitive, "targets");
+	uint32_t hash = (uint32_t)mesh->morph_count;
+	for (size_t i = 0; i < nt_json_count(targets); i++) {
+		const nt_json_value *target = nt_json_at(targets, i);
+		hash = (hash ^ canonical_of(sharing, target, "POSITION")) * 16777619u;
+		hash = (hash ^ canonical_of(sharing, target, "NORMAL")) * 16777619u;
+	}
+	const uint64_t directions = !mesh->solve_texcoords ? 0 :
+		nt_hash_bytes(1, mesh->solve_texcoords, mesh->vertex_count * 2 * sizeof *mesh->solve_texcoords);
+	return (group_key){canonical_of(sharing, attributes, "POSITION"),
+		canonical_of(sharing, attributes, "NORMAL"), canonical_of(sharing, attributes, name),
+		hash, directions};
+}
+
+/* Whether texture transforms do the same to two meshes over the same texture coordinates. Where they do not, hardly a
+ * tangent agrees: a TANGENT for each is less than a copy of every row. */
+static bool same_directions(const nt_mesh *a, const nt_mesh *b)
+{
+	const float *x = a->solve_texcoords, *y = b->solve_texcoords;
+	if (x == y)
+		return true;
+	return x && y && a->vertex_count == b->vertex_count &&
+		memcmp(x, y, a->vertex_count * 2 * sizeof *x) == 0;
+}
+
+/* What is known of the groups while they are found: thousands may share one accessor of positions, so they
+ * stand in a table by the hash of their key. */
+typedef struct grouping {
+	group_key *keys;    /* [group] */
+	uint32_t *last;     /* [group] its last member yet */
+	uint32_t *table;    /* [table_size] groups or NT_NONE; at most half full */
+	size_t table_size;  /* a power of two */
+} grouping;
+
+static size_t slot_of(const group_key *key, size_t table_size)
+{
+	return (size_t)(nt_hash_bytes(0, key, sizeof *key) >> 32) & (table_size - 1);
+}
+
+/* Appends a member to its group, which may be a new one. */
+static void join_group(grouping *g, nt_gltf_rows *rows, const nt_scene *scene, const uint32_t *members,
+	uint32_t member, const group_key *key)
+{
+	const nt_mesh *mesh = &scene->meshes[members[member]];
+	size_t slot = slot_of(key, g->table_size);
+	for (; g->table[slot] != NT_NONE; slot = (slot + 1) & (g->table_size - 1)) {
+		const uint32_t group = g->table[slot];
+		if (memcmp(&g->keys[group], key, sizeof *key) != 0 ||
+			!same_directions(&scene->meshes[members[rows->group_first[group]]], mesh))
+			continue;
+		rows->next_of[g->last[group]] = member;
+		g->last[group] = member;
+		rows->group_of[member] = group;
+		return;
+	}
+	const uint32_t group = (uint32_t)rows->group_count++;
+	g->table[slot] = group;
+	g->keys[group] = *key;
+	g->last[group] = rows->group_first[group] = member;
+	rows->group_of[member] = group;
+}
+
+bool nt_gltf_find_groups(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
+	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count)
+{
+	grouping g = {.table_size = 2};
+	while (g.table_size < 2 * member_count)
+		g.table_size *= 2;
+	g.keys = nt_alloc(member_count, sizeof *g.keys);
+	g.last = nt_alloc(member_count, sizeof *g.last);
+	g.table = nt_alloc(g.table_size, sizeof *g.table);
+	const bool room = g.keys && g.last && g.table;
+	if (room)
+		memset(g.table, 0xff, g.table_size * sizeof *g.table);
+	rows->group_count = 0;
+	for (uint32_t i = 0; room && i < member_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[members[i]];
+		rows->group_of[i] = rows->next_of[i] = NT_NONE;
+		if (!nt_gltf_is_solved(mesh))
+			continue;
+		const group_key key = key_of(document, sharing, mesh);
+		join_group(&g, rows, scene, members, i, &key);
+	}
+	free(g.keys);
+	free(g.last);
+	free(g.table);
+	return room;
 }

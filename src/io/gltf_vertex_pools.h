@@ -6,22 +6,10 @@
  * together: they form a component. Primitives of a component with the same positions, normals and texture
  * coordinates (as texture transforms turn them) form a group and share one TANGENT accessor.
  */
-#ifndef NT_IO_GLTF_SHARE_H
-#define NT_IO_GLTF_SHARE_H
+#ifndef NT_IO_GLTF_VERTEX_POOLS_H
+#define NT_IO_GLTF_VERTEX_POOLS_H
 
 #include "io/gltf_document.h"
-
-/* Calls visit() for the accessors of a primitive: its attributes and those of its morph targets. */
-typedef nt_status (*nt_gltf_visit)(void *context, nt_json_value *attributes, const char *name,
-	uint32_t accessor);
-nt_status nt_gltf_visit_attributes(const nt_json_value *primitive, size_t accessor_count,
-	nt_gltf_visit visit, void *context);
-
-/* Fills canonical [accessor_count]: the first accessor over the same bytes, for each. False: out of memory. */
-bool nt_gltf_find_canonical(nt_gltf *document, uint32_t *canonical, size_t accessor_count);
-
-/* The primitive of a mesh in the document. */
-nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh);
 
 typedef struct nt_gltf_sharing {
 	size_t accessor_count;
@@ -38,9 +26,6 @@ typedef struct nt_gltf_sharing {
 
 nt_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, const nt_scene *scene,
 	nt_arena *arena, nt_error *error);
-
-/* Whether a mesh has tangents to be written. */
-bool nt_gltf_is_solved(const nt_mesh *mesh);
 
 /* Rows of one component after splitting. */
 typedef struct nt_gltf_rows {
@@ -62,12 +47,5 @@ typedef struct nt_gltf_rows {
 /* Fills group_count, group_of, group_first and next_of, which have room for all members. False: out of memory. */
 bool nt_gltf_find_groups(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
 	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count);
-
-/* Merges the splits of a component's meshes: a vertex gets one row for each tangent (and made normal)
- * that any of them wants. members are mesh numbers. Everything is in the arena,
- * or borrowed from the scene. */
-nt_status nt_gltf_merge_rows(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
-	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count, nt_arena *arena,
-	nt_error *error);
 
 #endif
