@@ -15,6 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include "io/gltf_relocate.h"
 #include "io/uri.h"
 
 /* What happens to a buffer. */
@@ -127,7 +128,7 @@ static nt_status check_first_buffer(nt_gltf_container *c)
 	const nt_gltf_buffer *first = c->document->buffers;
 	if (!c->to_glb || c->same_container || !c->document->buffer_count || !first->described ||
 		first->home != NT_GLTF_HOME_NOWHERE ||
-		nt_layout_users(&c->patcher->layout, 0, 0, first->length) == 0)
+		nt_byte_users_count(&c->patcher->layout.users, 0, 0, first->length) == 0)
 		return NT_OK;
 	return nt_fail_pointer(c->error, NT_ERROR_UNSUPPORTED, "/buffers/0",
 		"no uri, so that a .glb would need its bytes as BIN chunk, which are not there; "

@@ -6,6 +6,7 @@
 #define NT_IO_GLTF_CONTAINER_H
 
 #include "io/gltf_patch.h"
+#include "io/gltf_relocate.h"
 
 typedef struct nt_gltf_container {
 	nt_gltf_patcher *patcher;

@@ -186,7 +186,7 @@ nt_status nt_gltf_draco_store(nt_gltf_recoding *r, const nt_draco_block *block)
 	if (status)
 		return status;
 	if (r->source && nt_gltf_draco_release(p, r->view, r->component->member_count) &&
-		nt_layout_users(&p->layout, view.buffer, view.offset, view.offset + view.length) == 1)
+		nt_byte_users_count(&p->layout.users, view.buffer, view.offset, view.offset + view.length) == 1)
 		return nt_layout_edit(&p->layout, view.buffer, view.offset, view.length, bytes,
 			block->size, p->error);
 	uint32_t number;

@@ -277,7 +277,7 @@ static bool can_go(const nt_gltf_patcher *p, const run *runs, size_t count, uint
 		if (runs[i].view_begin > begin || runs[i].view_end < end ||
 			(runs[i].view_begin == begin && runs[i].view_end == end))
 			return false;
-	return nt_layout_users(&p->layout, runs->buffer, begin, end) == count;
+	return nt_byte_users_count(&p->layout.users, runs->buffer, begin, end) == count;
 }
 
 static nt_status remove_runs(nt_gltf_patcher *p, run *runs, size_t count)

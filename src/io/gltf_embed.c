@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "base/hash_index.h"
+#include "io/gltf_relocate.h"
 #include "io/uri.h"
 
 enum { MARK_BYTES = 32 };

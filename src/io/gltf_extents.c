@@ -4,55 +4,51 @@
  * data, and views whose user is unknown. Sorted by buffer and begin, with the largest end so far beside each,
  * so that a question about a range looks at few of them.
  */
-#include "io/gltf_layout.h"
+#include "io/gltf_extents.h"
 
 #include <stdlib.h>
 #include "io/gltf_view.h"
 
-/* Of insertions, where a view's user is unknown. */
-enum { CAREFUL_ALIGNMENT = 8 };
-
-static bool add_extent(nt_gltf_layout *layout, uint32_t buffer, uint64_t begin, uint64_t end,
+static bool add_user(nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
 	uint32_t accessor)
 {
-	if (!nt_grow((void **)&layout->extents, &layout->extent_capacity, layout->extent_count + 1,
-		sizeof *layout->extents))
+	if (!nt_grow((void **)&users->list, &users->capacity, users->count + 1, sizeof *users->list))
 		return false;
-	layout->extents[layout->extent_count++] = (nt_gltf_extent){begin, end, 0, buffer, accessor};
+	users->list[users->count++] = (nt_byte_user){begin, end, 0, buffer, accessor};
 	return true;
 }
 
-static bool add_view_extent(nt_gltf_layout *layout, uint32_t index, uint64_t offset, uint64_t length,
-	uint32_t accessor, bool *view_used)
+static bool add_view_user(nt_byte_users *users, nt_gltf *document, uint32_t index, uint64_t offset,
+	uint64_t length, uint32_t accessor, bool *view_used)
 {
 	nt_gltf_view view;
-	if (nt_gltf_get_view(layout->document, index, "", &view, NULL) != NT_OK)
+	if (nt_gltf_get_view(document, index, "", &view, NULL) != NT_OK)
 		return true;
 	view_used[index] = true;
-	return add_extent(layout, view.buffer, view.offset + offset, view.offset + offset + length,
+	return add_user(users, view.buffer, view.offset + offset, view.offset + offset + length,
 		accessor);
 }
 
-static bool add_accessor_extents(nt_gltf_layout *layout, uint32_t index, bool *view_used)
+static bool add_accessor(nt_byte_users *users, nt_gltf *document, uint32_t index, bool *view_used)
 {
 	nt_gltf_accessor a;
-	if (nt_gltf_get_accessor(layout->document, index, "", &a, NULL) != NT_OK || a.count == 0)
+	if (nt_gltf_get_accessor(document, index, "", &a, NULL) != NT_OK || a.count == 0)
 		return true;
 	bool added = true;
 	if (a.view != NT_NONE)
-		added = add_view_extent(layout, a.view, a.offset,
+		added = add_view_user(users, document, a.view, a.offset,
 			(a.count - 1) * a.stride + a.element_bytes, index, view_used);
 	if (a.sparse_count) {
-		added = added && add_view_extent(layout, a.sparse_index_view, a.sparse_index_offset,
+		added = added && add_view_user(users, document, a.sparse_index_view, a.sparse_index_offset,
 			a.sparse_count * nt_gltf_component_bytes(a.sparse_index_type), index, view_used);
-		added = added && add_view_extent(layout, a.sparse_value_view, a.sparse_value_offset,
+		added = added && add_view_user(users, document, a.sparse_value_view, a.sparse_value_offset,
 			a.sparse_count * a.element_bytes, index, view_used);
 	}
 	return added;
 }
 
 /* The bytes behind a compressed view lie in another place than the view. */
-static bool add_compressed_extent(nt_gltf_layout *layout, const nt_json_value *view)
+static bool add_compressed(nt_byte_users *users, const nt_json_value *view)
 {
 	const nt_json_value *part = nt_gltf_compression_of(view, NULL);
 	uint64_t buffer, offset = 0, length;
@@ -62,7 +58,7 @@ static bool add_compressed_extent(nt_gltf_layout *layout, const nt_json_value *v
 	nt_json_get_uint64(nt_json_find(part, "byteOffset"), &offset);
 	if (length > UINT64_MAX - offset)
 		return true;
-	return add_extent(layout, (uint32_t)buffer, offset, offset + length, NT_NONE);
+	return add_user(users, (uint32_t)buffer, offset, offset + length, NT_NONE);
 }
 
 static void mark_image_views(const nt_gltf *document, bool *view_known, size_t view_count)
@@ -76,34 +72,33 @@ static void mark_image_views(const nt_gltf *document, bool *view_known, size_t v
 	}
 }
 
-/* Views without an accessor are used as a whole. Where nobody we know uses one, it may be data of an
- * extension that wants 8-byte alignment (EXT_structural_metadata does). */
-static bool add_whole_views(nt_gltf_layout *layout, bool *view_used, size_t view_count)
+/* Views without an accessor are used as a whole. */
+static bool add_whole_views(nt_byte_users *users, nt_gltf *document, bool *view_used, size_t view_count)
 {
-	const nt_json_value *views = nt_gltf_root_member(layout->document, "bufferViews");
+	const nt_json_value *views = nt_gltf_root_member(document, "bufferViews");
 	bool *known = nt_calloc(view_count, sizeof *known);
 	if (!known)
 		return false;
-	mark_image_views(layout->document, known, view_count);
+	mark_image_views(document, known, view_count);
 	bool added = true;
 	for (size_t i = 0; added && i < view_count; i++) {
 		nt_gltf_view view;
 		if (!view_used[i] &&
-			nt_gltf_get_view(layout->document, i, "", &view, NULL) == NT_OK) {
-			added = add_extent(layout, view.buffer, view.offset, view.offset + view.length,
+			nt_gltf_get_view(document, i, "", &view, NULL) == NT_OK) {
+			added = add_user(users, view.buffer, view.offset, view.offset + view.length,
 				NT_NONE);
 			if (!known[i])
-				layout->alignment = CAREFUL_ALIGNMENT;
+				users->unknown = true;
 		}
-		added = added && add_compressed_extent(layout, nt_json_at(views, i));
+		added = added && add_compressed(users, nt_json_at(views, i));
 	}
 	free(known);
 	return added;
 }
 
-static int compare_extents(const void *a, const void *b)
+static int compare_users(const void *a, const void *b)
 {
-	const nt_gltf_extent *x = a, *y = b;
+	const nt_byte_user *x = a, *y = b;
 	if (x->buffer != y->buffer)
 		return x->buffer < y->buffer ? -1 : 1;
 	if (x->begin != y->begin)
@@ -113,37 +108,36 @@ static int compare_extents(const void *a, const void *b)
 	return (x->accessor > y->accessor) - (x->accessor < y->accessor);
 }
 
-bool nt_layout_find_extents(nt_gltf_layout *layout)
+bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document)
 {
-	const nt_gltf *document = layout->document;
 	const size_t view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
 	const size_t accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
 	bool *view_used = nt_calloc(view_count, sizeof *view_used);
 	bool added = view_used != NULL;
 	for (size_t i = 0; added && i < accessor_count; i++)
-		added = add_accessor_extents(layout, (uint32_t)i, view_used);
-	added = added && add_whole_views(layout, view_used, view_count);
+		added = add_accessor(users, document, (uint32_t)i, view_used);
+	added = added && add_whole_views(users, document, view_used, view_count);
 	free(view_used);
 	if (!added)
 		return false;
-	if (layout->extent_count)
-		qsort(layout->extents, layout->extent_count, sizeof *layout->extents, compare_extents);
-	for (size_t i = 0; i < layout->extent_count; i++) {
-		nt_gltf_extent *extent = &layout->extents[i];
-		const bool first = i == 0 || extent[-1].buffer != extent->buffer;
-		extent->reach = first || extent[-1].reach < extent->end ? extent->end : extent[-1].reach;
+	if (users->count)
+		qsort(users->list, users->count, sizeof *users->list, compare_users);
+	for (size_t i = 0; i < users->count; i++) {
+		nt_byte_user *user = &users->list[i];
+		const bool first = i == 0 || user[-1].buffer != user->buffer;
+		user->reach = first || user[-1].reach < user->end ? user->end : user[-1].reach;
 	}
 	return true;
 }
 
-/* Number of extents before the first one of `buffer` that begins at or behind `position`. */
-static size_t extents_before(const nt_gltf_layout *layout, uint32_t buffer, uint64_t position)
+/* Number of users before the first one of `buffer` that begins at or behind `position`. */
+static size_t users_before(const nt_byte_users *users, uint32_t buffer, uint64_t position)
 {
-	size_t low = 0, high = layout->extent_count;
+	size_t low = 0, high = users->count;
 	while (low < high) {
 		const size_t middle = low + (high - low) / 2;
-		const nt_gltf_extent *extent = &layout->extents[middle];
-		if (extent->buffer < buffer || (extent->buffer == buffer && extent->begin < position))
+		const nt_byte_user *user = &users->list[middle];
+		if (user->buffer < buffer || (user->buffer == buffer && user->begin < position))
 			low = middle + 1;
 		else
 			high = middle;
@@ -151,27 +145,27 @@ static size_t extents_before(const nt_gltf_layout *layout, uint32_t buffer, uint
 	return low;
 }
 
-bool nt_layout_is_foreign(const nt_gltf_layout *layout, uint32_t buffer, uint64_t begin, uint64_t end,
+bool nt_byte_users_foreign(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
 	const uint32_t *own, uint32_t mark)
 {
-	for (size_t i = extents_before(layout, buffer, end); i-- > 0;) {
-		const nt_gltf_extent *extent = &layout->extents[i];
-		if (extent->buffer != buffer || extent->reach <= begin)
+	for (size_t i = users_before(users, buffer, end); i-- > 0;) {
+		const nt_byte_user *user = &users->list[i];
+		if (user->buffer != buffer || user->reach <= begin)
 			break;
-		if (extent->end > begin && (extent->accessor == NT_NONE || own[extent->accessor] != mark))
+		if (user->end > begin && (user->accessor == NT_NONE || own[user->accessor] != mark))
 			return true;
 	}
 	return false;
 }
 
-size_t nt_layout_users(const nt_gltf_layout *layout, uint32_t buffer, uint64_t begin, uint64_t end)
+size_t nt_byte_users_count(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end)
 {
-	size_t users = 0;
-	for (size_t i = extents_before(layout, buffer, end); i-- > 0;) {
-		const nt_gltf_extent *extent = &layout->extents[i];
-		if (extent->buffer != buffer || extent->reach <= begin)
+	size_t found = 0;
+	for (size_t i = users_before(users, buffer, end); i-- > 0;) {
+		const nt_byte_user *user = &users->list[i];
+		if (user->buffer != buffer || user->reach <= begin)
 			break;
-		users += extent->end > begin;
+		found += user->end > begin;
 	}
-	return users;
+	return found;
 }

@@ -259,7 +259,7 @@ static nt_status grow_block(nt_gltf_growing *g, const block *b, uint64_t previou
 {
 	nt_gltf_patcher *p = g->patcher;
 	nt_status status = NT_OK;
-	if (b->begin < previous_end || nt_layout_is_foreign(&p->layout, b->buffer, b->begin, b->end,
+	if (b->begin < previous_end || nt_byte_users_foreign(&p->layout.users, b->buffer, b->begin, b->end,
 					       p->own, g->component->number + 1)) {
 		for (size_t i = 0; !status && i < b->count; i++)
 			status = move_away(g, &b->items[i]);

@@ -101,7 +101,7 @@ static nt_status replace_indices(nt_gltf_patcher *p, const nt_gltf_accessor *old
 	const uint32_t kept = p->own[canonical];
 	p->own[canonical] = mark;
 	const bool foreign =
-		nt_layout_is_foreign(&p->layout, view.buffer, begin, begin + size, p->own, mark);
+		nt_byte_users_foreign(&p->layout.users, view.buffer, begin, begin + size, p->own, mark);
 	p->own[canonical] = kept;
 	if (foreign)
 		return NT_OK;

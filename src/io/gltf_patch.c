@@ -226,12 +226,12 @@ static bool anything_solved(const nt_scene *scene)
 }
 
 /* Accessors over the same bytes count as one when it is asked who else uses them. */
-static void canonise_extents(nt_gltf_patcher *p)
+static void canonise_users(nt_gltf_patcher *p)
 {
-	for (size_t i = 0; i < p->layout.extent_count; i++) {
-		nt_gltf_extent *extent = &p->layout.extents[i];
-		if (extent->accessor != NT_NONE)
-			extent->accessor = p->sharing.canonical[extent->accessor];
+	for (size_t i = 0; i < p->layout.users.count; i++) {
+		nt_byte_user *user = &p->layout.users.list[i];
+		if (user->accessor != NT_NONE)
+			user->accessor = p->sharing.canonical[user->accessor];
 	}
 }
 
@@ -244,7 +244,7 @@ static nt_status patch_components(nt_gltf_patcher *p)
 	if (!p->own)
 		return nt_fail_memory(p->error);
 	memset(p->own, 0, p->sharing.accessor_count * sizeof *p->own);
-	canonise_extents(p);
+	canonise_users(p);
 	for (uint32_t i = 0; !status && i < p->sharing.component_count; i++) {
 		nt_gltf_cluster component = {.number = i,
 			.members = p->sharing.order + p->sharing.first[i],

@@ -6,7 +6,7 @@
 #ifndef NT_IO_GLTF_PATCH_H
 #define NT_IO_GLTF_PATCH_H
 
-#include "io/gltf_layout.h"
+#include "io/gltf_buffer_edits.h"
 #include "io/gltf_vertex_pools.h"
 
 typedef struct nt_gltf_patcher {

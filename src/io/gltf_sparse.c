@@ -63,7 +63,7 @@ static nt_status grow_part(nt_gltf_growing *g, const nt_gltf_item *from, const p
 	bool same, some;
 	find_edited(g, view.buffer, begin, end, &same, &some);
 	if (some || (!grown->extended && begin % grown->width) ||
-		nt_layout_is_foreign(&p->layout, view.buffer, begin, end, p->own,
+		nt_byte_users_foreign(&p->layout.users, view.buffer, begin, end, p->own,
 			g->component->number + 1))
 		return move_part(g, grown, json);
 	if (same)

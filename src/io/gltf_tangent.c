@@ -52,7 +52,7 @@ static bool fits_in_place(const nt_gltf_patcher *p, uint32_t index)
 		return true;
 	const uint64_t begin = view.offset + a.offset, end = begin + (a.count - 1) * a.stride + a.element_bytes;
 	return a.stride > a.element_bytes && nt_precision_bytes(precision) <= a.element_bytes &&
-		nt_layout_users(&p->layout, view.buffer, begin, end) > 1;
+		nt_byte_users_count(&p->layout.users, view.buffer, begin, end) > 1;
 }
 
 static int compare_indices(const void *a, const void *b)

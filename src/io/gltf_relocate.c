@@ -1,11 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The layout of changed buffers. A source buffer is a string of bytes; an edit replaces some of them;
- * a position of the source moves by the sum of what edits that end at or before it have added. Views and
- * accessors are intervals of that string, so both ends are mapped and the rest follows. Nothing is
- * reordered and no byte is left behind: a view whose content is gone takes what is new.
+ * Relocation: where bytes of a source buffer lie after its edits, and writing them. A position moves by the sum of what
+ * edits that end at or before it have added. Views and accessors are intervals of the buffer, so both ends are mapped
+ * and the rest follows. Nothing is reordered.
  */
-#include "io/gltf_layout.h"
+#include "io/gltf_relocate.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -13,165 +12,8 @@
 #include "io/gltf_extensions.h"
 #include "io/gltf_view.h"
 
-enum { ALIGNMENT = 4 };
 /* Of a vacant view that nothing new came for. */
 enum { VACANT_BYTES = 4 };
-
-/* ---- changes ---- */
-
-static nt_gltf_buffer_layout *plan_of(nt_gltf_layout *layout, uint32_t buffer)
-{
-	if (buffer < NT_GLTF_VIRTUAL)
-		return &layout->buffers[buffer];
-	/* views may be decompressed at any time; there is room for all of them */
-	const uint32_t number = buffer - NT_GLTF_VIRTUAL;
-	layout->virtuals[number].old_length = layout->document->virtuals[number].length;
-	return &layout->virtuals[number];
-}
-
-nt_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_error *error)
-{
-	*layout = (nt_gltf_layout){.document = document, .alignment = ALIGNMENT};
-	layout->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
-	layout->buffer_count = document->buffer_count;
-	layout->buffers = nt_calloc(document->buffer_count + 1, sizeof *layout->buffers);
-	layout->virtuals = nt_calloc(layout->view_count, sizeof *layout->virtuals);
-	layout->vacant = nt_calloc(layout->view_count, sizeof *layout->vacant);
-	layout->vacancies = nt_alloc(layout->view_count, sizeof *layout->vacancies);
-	if (!layout->buffers || !layout->virtuals || !layout->vacant || !layout->vacancies ||
-		!nt_layout_find_extents(layout)) {
-		nt_layout_free(layout);
-		return nt_fail_memory(error);
-	}
-	for (size_t i = 0; i < document->buffer_count; i++) {
-		nt_gltf_buffer *buffer;
-		if (nt_gltf_describe_buffer(document, i, "", &buffer, NULL) == NT_OK)
-			layout->buffers[i].old_length = buffer->length;
-		layout->buffers[i].new_length = layout->buffers[i].old_length;
-	}
-	return NT_OK;
-}
-
-void nt_layout_free(nt_gltf_layout *layout)
-{
-	for (size_t i = 0; layout->buffers && i < layout->buffer_count; i++) {
-		free(layout->buffers[i].edits);
-		free(layout->buffers[i].additions);
-	}
-	for (size_t i = 0; layout->virtuals && i < layout->view_count; i++) {
-		free(layout->virtuals[i].edits);
-		free(layout->virtuals[i].additions);
-	}
-	free(layout->vacant);
-	free(layout->vacancies);
-	free(layout->virtuals);
-	free(layout->buffers);
-	free(layout->extents);
-	nt_arena_free(&layout->arena);
-	*layout = (nt_gltf_layout){0};
-}
-
-nt_status nt_layout_edit(nt_gltf_layout *layout, uint32_t index, uint64_t at, uint64_t removed,
-	const unsigned char *bytes, size_t size, nt_error *error)
-{
-	nt_gltf_buffer_layout *buffer = plan_of(layout, index);
-	/* What is behind keeps its alignment. */
-	const size_t excess =
-		at + removed < buffer->old_length ? (size_t)((size - removed) % layout->alignment) : 0;
-	if (excess) {
-		const size_t padded = size + layout->alignment - excess;
-		unsigned char *copy = nt_arena_alloc(&layout->arena, padded, 1);
-		if (!copy)
-			return nt_fail_memory(error);
-		memcpy(copy, bytes, size);
-		memset(copy + size, 0, padded - size);
-		bytes = copy;
-		size = padded;
-	}
-	if (!nt_grow((void **)&buffer->edits, &buffer->edit_capacity, buffer->edit_count + 1,
-		sizeof *buffer->edits))
-		return nt_fail_memory(error);
-	buffer->edits[buffer->edit_count++] = (nt_gltf_edit){at, removed, bytes, size, 0};
-	buffer->touched = true;
-	return NT_OK;
-}
-
-/* Bytes of a view behind the end of a buffer. */
-static nt_status add_bytes(nt_gltf_layout *layout, uint32_t index, uint32_t view, const void *bytes,
-	size_t size, nt_error *error)
-{
-	nt_gltf_buffer_layout *buffer = &layout->buffers[index];
-	if (!nt_grow((void **)&buffer->additions, &buffer->addition_capacity,
-		buffer->addition_count + 1, sizeof *buffer->additions))
-		return nt_fail_memory(error);
-	buffer->additions[buffer->addition_count++] = (nt_gltf_addition){view, 0, bytes, size};
-	buffer->touched = true;
-	return NT_OK;
-}
-
-/* The object of a new view: of a vacant one, with what else it says, or appended. */
-static nt_json_value *take_view(nt_gltf_layout *layout, uint32_t *view)
-{
-	nt_json *json = layout->document->json;
-	nt_json_value *views = nt_json_put(json, nt_json_root(json), "bufferViews");
-	if (!layout->vacancy_count) {
-		*view = (uint32_t)nt_json_count(views);
-		return nt_json_append(json, views);
-	}
-	*view = layout->vacancies[--layout->vacancy_count];
-	nt_json_value *object = nt_json_at(views, *view);
-	nt_json_remove(json, object, "byteStride");
-	nt_json_remove(json, object, "target");
-	return object;
-}
-
-nt_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t index, const void *bytes, size_t size,
-	uint32_t target, uint32_t stride, uint32_t *view, nt_error *error)
-{
-	nt_json *json = layout->document->json;
-	nt_json_value *object = take_view(layout, view);
-	nt_json_set_uint64(json, nt_json_put(json, object, "buffer"), index);
-	nt_json_set_uint64(json, nt_json_put(json, object, "byteOffset"), 0);
-	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), size);
-	if (stride)
-		nt_json_set_uint64(json, nt_json_put(json, object, "byteStride"), stride);
-	if (target)
-		nt_json_set_uint64(json, nt_json_put(json, object, "target"), target);
-	return add_bytes(layout, index, *view, bytes, size, error);
-}
-
-/* Whether a buffer has bytes that can be extended. */
-static bool can_extend(const nt_gltf *document, uint32_t index)
-{
-	return index < document->buffer_count && document->buffers[index].described &&
-		document->buffers[index].home != NT_GLTF_HOME_NOWHERE;
-}
-
-nt_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint32_t *buffer,
-	nt_error *error)
-{
-	const nt_gltf *document = layout->document;
-	*buffer = near;
-	if (near != NT_NONE && can_extend(document, near))
-		return NT_OK;
-	if (layout->buffer_count > document->buffer_count) {
-		*buffer = (uint32_t)document->buffer_count;
-		return NT_OK;
-	}
-	for (uint32_t i = 0; i < document->buffer_count; i++)
-		if (can_extend(document, i)) {
-			*buffer = i;
-			return NT_OK;
-		}
-	/* layout->buffers has room for one more */
-	nt_json *json = document->json;
-	nt_json_value *buffers = nt_json_put(json, nt_json_root(json), "buffers");
-	*buffer = (uint32_t)nt_json_count(buffers);
-	nt_json_value *object = nt_json_append(json, buffers);
-	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), 0);
-	layout->buffer_count++;
-	return nt_json_failed(json) ? nt_fail_memory(error) : NT_OK;
-}
 
 /* ---- moving offsets ---- */
 
@@ -243,7 +85,7 @@ static nt_status fill_empty_buffers(nt_gltf_layout *layout, nt_error *error)
 		const nt_gltf_buffer_layout *buffer = &layout->buffers[i];
 		if (buffer->touched && !buffer->addition_count && buffer->old_length &&
 			map_position(buffer, buffer->old_length) == 0)
-			status = add_bytes(layout, i, NT_NONE, zeros, sizeof zeros, error);
+			status = nt_layout_add_bytes(layout, i, NT_NONE, zeros, sizeof zeros, error);
 	}
 	return status;
 }
@@ -382,7 +224,7 @@ static nt_status put_source(const nt_gltf_layout *layout, nt_gltf_buffer *buffer
 
 static nt_status put_buffer(nt_gltf_layout *layout, uint32_t index, const target *to, nt_error *error)
 {
-	const nt_gltf_buffer_layout *plan = plan_of(layout, index);
+	const nt_gltf_buffer_layout *plan = nt_layout_plan_of(layout, index);
 	nt_gltf_buffer *source = NULL;
 	nt_status status = NT_OK;
 	uint64_t at = 0, written = map_position(plan, plan->old_length);
@@ -392,7 +234,7 @@ static nt_status put_buffer(nt_gltf_layout *layout, uint32_t index, const target
 	if (plan->old_length)
 		status = nt_gltf_open_buffer(layout->document, index, "/buffers", &source, error);
 	/* A length that lies must not become that many zeros; padding may lack. */
-	if (!status && source && plan->old_length - source->size >= ALIGNMENT) {
+	if (!status && source && plan->old_length - source->size >= NT_LAYOUT_ALIGNMENT) {
 		char pointer[NT_GLTF_POINTER];
 		snprintf(pointer, sizeof pointer, "/buffers/%u", index);
 		status = nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
@@ -429,7 +271,7 @@ static nt_status remove_compressed(nt_gltf_layout *layout, const nt_json_value *
 		buffer >= layout->document->buffer_count)
 		return NT_OK;
 	nt_json_get_uint64(nt_json_find(part, "byteOffset"), &offset);
-	const size_t users = nt_layout_users(layout, (uint32_t)buffer, offset, offset + length);
+	const size_t users = nt_byte_users_count(&layout->users, (uint32_t)buffer, offset, offset + length);
 	return users == 1 ? nt_layout_edit(layout, (uint32_t)buffer, offset, length,
 				    (const unsigned char *)"", 0, error) :
 			    NT_OK;
@@ -440,7 +282,7 @@ static nt_status settle_virtual(nt_gltf_layout *layout, uint32_t index, moved_vi
 	nt_error *error)
 {
 	nt_gltf *document = layout->document;
-	nt_gltf_buffer_layout *plan = plan_of(layout, document->virtual_of[index]);
+	nt_gltf_buffer_layout *plan = nt_layout_plan_of(layout, document->virtual_of[index]);
 	sort_edits(plan);
 	nt_buffer bytes = {0};
 	nt_status status =
@@ -461,7 +303,7 @@ static nt_status settle_virtual(nt_gltf_layout *layout, uint32_t index, moved_vi
 	if (!status)
 		status = nt_layout_choose_buffer(layout, (uint32_t)near, &buffer, error);
 	if (!status)
-		status = add_bytes(layout, buffer, index, bytes.data, size, error);
+		status = nt_layout_add_bytes(layout, buffer, index, bytes.data, size, error);
 	if (status)
 		return status;
 	nt_json *json = document->json;
@@ -504,7 +346,7 @@ nt_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error)
 	nt_status status = NT_OK;
 	bool shifted = false;
 	for (uint32_t i = 0; !status && i < view_count; i++)
-		if (document->virtual_of[i] != NT_NONE && plan_of(layout, document->virtual_of[i])->touched) {
+		if (document->virtual_of[i] != NT_NONE && nt_layout_plan_of(layout, document->virtual_of[i])->touched) {
 			status = settle_virtual(layout, i, &moved[i], error);
 			shifted = true;
 		}

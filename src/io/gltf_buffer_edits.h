@@ -4,11 +4,13 @@
  * source, and new views behind the end. Everything else is streamed from the source as it is, and every
  * offset in the JSON is moved by what was inserted before it.
  */
-#ifndef NT_IO_GLTF_LAYOUT_H
-#define NT_IO_GLTF_LAYOUT_H
+#ifndef NT_IO_GLTF_BUFFER_EDITS_H
+#define NT_IO_GLTF_BUFFER_EDITS_H
 
-#include "io/base64_write.h"
-#include "io/gltf_document.h"
+#include "io/gltf_extents.h"
+
+/* What glTF itself has in buffers needs no more. */
+enum { NT_LAYOUT_ALIGNMENT = 4 };
 
 /* New bytes at a place of a source buffer. */
 typedef struct nt_gltf_edit {
@@ -16,7 +18,7 @@ typedef struct nt_gltf_edit {
 	uint64_t removed; /* bytes from there on that go */
 	const unsigned char *bytes;
 	size_t size;
-	int64_t shift;    /* of everything behind this edit: set by nt_layout_finish() */
+	int64_t shift;    /* of everything behind this edit: set by nt_layout_finish() (gltf_relocate.c) */
 } nt_gltf_edit;
 
 /* A new view behind the end of a buffer. */
@@ -37,15 +39,6 @@ typedef struct nt_gltf_buffer_layout {
 	bool touched;
 } nt_gltf_buffer_layout;
 
-/* Bytes of a source buffer that something in the document refers to. */
-typedef struct nt_gltf_extent {
-	uint64_t begin, end;
-	uint64_t reach;    /* largest end of this and all extents before it in the buffer */
-	uint32_t buffer;
-	uint32_t accessor; /* NT_NONE: an image, an extension, or an unknown user. Accessors over the same
-	                      bytes count as one: gltf_share.c puts the first of them here */
-} nt_gltf_extent;
-
 typedef struct nt_gltf_layout {
 	nt_gltf *document;
 	nt_arena arena;                 /* owns the new bytes */
@@ -56,24 +49,13 @@ typedef struct nt_gltf_layout {
 	uint32_t *vacancies;            /* [vacancy_count] those that nothing new has taken over */
 	size_t vacancy_count;
 	nt_gltf_buffer_layout *virtuals; /* [view_count] of decompressed views */
-	nt_gltf_extent *extents;        /* sorted by buffer and begin */
-	size_t extent_count, extent_capacity;
+	nt_byte_users users;            /* of the source */
 	uint32_t alignment;             /* insertions are multiples of this */
 } nt_gltf_layout;
 
 /* Starts with no changes. Faulty parts of the document that nothing needs are passed over. */
 nt_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_error *error);
 void nt_layout_free(nt_gltf_layout *layout);
-
-/* Fills extents; for nt_layout_create(). False: out of memory. */
-bool nt_layout_find_extents(nt_gltf_layout *layout);
-
-/* Whether something other than the accessors marked in own[] refers to bytes of [begin, end). */
-bool nt_layout_is_foreign(const nt_gltf_layout *layout, uint32_t buffer, uint64_t begin, uint64_t end,
-	const uint32_t *own, uint32_t mark);
-
-/* How many things refer to bytes of [begin, end). */
-size_t nt_layout_users(const nt_gltf_layout *layout, uint32_t buffer, uint64_t begin, uint64_t end);
 
 /* Replaces `removed` bytes of a source buffer by others, which must live as long as the layout. The
  * difference is padded with zeros to the layout's alignment. Edits must not overlap. */
@@ -92,6 +74,13 @@ nt_status nt_layout_vacate_view(nt_gltf_layout *layout, uint32_t view, size_t us
 nt_status nt_layout_vacate(nt_gltf_layout *layout, uint32_t view, uint64_t offset, uint64_t length,
 	nt_error *error);
 
+/* The changes of a buffer, a decompressed view's among them. */
+nt_gltf_buffer_layout *nt_layout_plan_of(nt_gltf_layout *layout, uint32_t buffer);
+
+/* Adds bytes behind the end of a buffer: of a view, whose byteOffset will be set, or NT_NONE. */
+nt_status nt_layout_add_bytes(nt_gltf_layout *layout, uint32_t buffer, uint32_t view, const void *bytes, size_t size,
+	nt_error *error);
+
 /* Adds a view with these bytes behind the end of a buffer. target and stride: 0 for none. */
 nt_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t buffer, const void *bytes, size_t size,
 	uint32_t target, uint32_t stride, uint32_t *view, nt_error *error);
@@ -100,15 +89,5 @@ nt_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t buffer, const void
  * a new buffer where no other can. */
 nt_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint32_t *buffer,
 	nt_error *error);
-
-/* Moves all offsets in the JSON and sets all lengths. Call once, after the last change. */
-nt_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error);
-
-/* Writes the bytes of a buffer as they are after the changes. `input` is the document's own file. */
-nt_status nt_layout_write(nt_gltf_layout *layout, uint32_t buffer, const nt_file *input,
-	nt_sink *sink, nt_error *error);
-
-/* The same as base64, without the last group's padding. */
-nt_status nt_layout_encode(nt_gltf_layout *layout, uint32_t buffer, nt_base64 *base64, nt_error *error);
 
 #endif
