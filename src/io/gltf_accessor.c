@@ -4,7 +4,7 @@
  * taken: any component type, normalized or not, interleaved, sparse, without a view. Where the file
  * already holds what is wanted, nothing is copied.
  */
-#include "io/gltf_document.h"
+#include "io/gltf_accessor.h"
 
 #include <stdio.h>
 #include <string.h>

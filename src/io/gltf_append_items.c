@@ -6,6 +6,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include "io/gltf_accessor.h"
 #include "io/gltf_primitive.h"
 #include "io/gltf_view.h"
 

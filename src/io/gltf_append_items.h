@@ -5,6 +5,7 @@
 #ifndef NT_IO_GLTF_APPEND_ITEMS_H
 #define NT_IO_GLTF_APPEND_ITEMS_H
 
+#include "io/gltf_accessor.h"
 #include "io/gltf_patch.h"
 
 /* An accessor whose values are replaced in place: rows of `width` bytes for every new row. Without values it does not

@@ -36,23 +36,6 @@ typedef struct nt_gltf_buffer {
 	const char *path;           /* of an external file */
 } nt_gltf_buffer;
 
-typedef struct nt_gltf_accessor {
-	uint32_t index;
-	uint32_t component_type; /* enum nt_gltf_component */
-	uint32_t component_bytes;
-	uint32_t components;     /* of an element: 1 to 4, matrices 4, 9, 16 */
-	uint32_t element_bytes;  /* with the padding of matrix columns */
-	bool normalized;
-	uint64_t count;
-	uint32_t view;           /* NT_NONE: all zeros, or decoded */
-	const unsigned char *decoded; /* rows from a compressed primitive; NULL: none */
-	uint64_t offset;         /* in the view */
-	uint32_t stride;         /* as it applies, never 0 */
-	uint64_t sparse_count;   /* 0: not sparse */
-	uint32_t sparse_index_type, sparse_index_view, sparse_value_view;
-	uint64_t sparse_index_offset, sparse_value_offset;
-} nt_gltf_accessor;
-
 /* Rows of an accessor that come from a compressed primitive. */
 typedef struct nt_gltf_decoded {
 	const unsigned char *rows; /* NULL: none */
@@ -125,71 +108,5 @@ void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin
 
 /* Bytes that were read: the JSON and what was booked. */
 uint64_t nt_gltf_bytes_read(const nt_gltf *document);
-
-/* An accessor, checked against its views. */
-nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
-	nt_gltf_accessor *accessor, nt_error *error);
-
-/* The bytes of an accessor's rows, `stride` apart; NULL where it has no view. */
-nt_status nt_gltf_accessor_rows(nt_gltf *document, const nt_gltf_accessor *accessor,
-	const unsigned char **rows, nt_error *error);
-
-/* The rows a sparse accessor replaces: their numbers, and their elements, tightly packed. Numbers are
- * checked: increasing and below the count. The array is in the arena. */
-nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt_arena *arena,
-	const uint32_t **rows, const unsigned char **values, nt_error *error);
-
-/*
- * An accessor as floats, `width` per element: normalized integers as the specification maps them, other
- * integers by value. Components beyond those of the accessor get `fill`. Points into the input where it
- * already is that.
- */
-nt_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width,
-	float fill, nt_arena *arena, float **floats, nt_error *error);
-
-/* An accessor of unsigned scalars as 32-bit indices, each below `vertex_count` and not the value that
- * is reserved for restarts. Points into the input where it already is that. */
-nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, size_t vertex_count,
-	unsigned threads, nt_arena *arena, uint32_t **indices, nt_error *error);
-
-/* Size of a component; 0 for an unknown type. */
-uint32_t nt_gltf_component_bytes(uint64_t component_type);
-
-/* ---- gltf_material.c ---- */
-
-/* What KHR_texture_transform does to directions; its offset does nothing to them. */
-typedef struct nt_gltf_transform {
-	bool exists, animated;
-	double rotation, scale[2];
-} nt_gltf_transform;
-
-/* What a primitive's materials ask for. */
-typedef struct nt_gltf_shading {
-	unsigned slots; /* enum nt_slot */
-	bool unlit;     /* all of its materials are */
-	bool has_set;
-	uint32_t set;   /* texture coordinates of the first slot in the order of enum nt_slot */
-	unsigned set_slot;
-	bool conflict;  /* another slot wants other_set */
-	uint32_t other_set;
-	uint32_t material; /* the primitive's own; NT_NONE: none */
-	nt_gltf_transform transform; /* of the texture that gives the set */
-	bool transforms_differ;      /* another material or slot transforms that set otherwise */
-} nt_gltf_shading;
-
-/* Judges the materials of a primitive, variants included. */
-nt_status nt_gltf_judge_materials(nt_gltf *document, const nt_json_value *primitive,
-	const char *pointer, nt_gltf_shading *shading, nt_error *error);
-
-/* ---- gltf_nodes.c ---- */
-
-/* Marks the meshes that a scene shows: reached[mesh]. Faulty nodes are passed over. */
-nt_status nt_gltf_reach(const nt_gltf *document, bool *reached, size_t mesh_count, nt_error *error);
-
-/* Calls place(context, mesh, matrix) for every mesh in the world of the default scene (of all roots,
- * where there is no scene). */
-nt_status nt_gltf_walk_world(const nt_gltf *document,
-	nt_status (*place)(void *context, uint64_t mesh, const double matrix[16]), void *context,
-	nt_error *error);
 
 #endif

@@ -8,6 +8,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include "io/gltf_accessor.h"
 #include "io/gltf_view.h"
 
 typedef struct nt_gltf_draco {

@@ -15,6 +15,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "io/gltf_accessor.h"
 #include "io/gltf_extensions.h"
 #include "io/gltf_primitive.h"
 #include "io/gltf_view.h"

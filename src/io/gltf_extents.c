@@ -7,6 +7,7 @@
 #include "io/gltf_extents.h"
 
 #include <stdlib.h>
+#include "io/gltf_accessor.h"
 #include "io/gltf_view.h"
 
 static bool add_user(nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,

@@ -12,6 +12,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "io/gltf_accessor.h"
 #include "io/gltf_primitive.h"
 #include "io/gltf_sparse.h"
 #include "io/gltf_view.h"

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "base/largest.h"
+#include "io/gltf_accessor.h"
 #include "io/gltf_new_accessors.h"
 #include "io/gltf_primitive.h"
 #include "io/gltf_view.h"

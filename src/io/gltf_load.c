@@ -12,7 +12,9 @@
 #include <stdio.h>
 #include <string.h>
 #include "base/parallel.h"
+#include "io/gltf_accessor.h"
 #include "io/gltf_draco.h"
+#include "io/gltf_material.h"
 #include "io/gltf_primitive.h"
 
 /* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */

@@ -5,7 +5,7 @@
  * them all, so slots are united. Texture coordinates come from the first slot that names a texture:
  * normalTexture, then the clearcoat normal, then anisotropy.
  */
-#include "io/gltf_document.h"
+#include "io/gltf_material.h"
 
 #include <stdio.h>
 #include <string.h>

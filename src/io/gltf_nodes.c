@@ -5,7 +5,7 @@
  * and depth costs no call stack. Faulty nodes and references are passed over: whether they matter is for
  * viewers to say, not for a tool that writes tangents.
  */
-#include "io/gltf_document.h"
+#include "io/gltf_nodes.h"
 
 #include <math.h>
 #include <stdlib.h>

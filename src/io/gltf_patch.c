@@ -9,6 +9,7 @@
 #include "io/gltf_patch.h"
 
 #include <string.h>
+#include "io/gltf_accessor.h"
 #include "io/gltf_extensions.h"
 #include "io/gltf_grow.h"
 #include "io/gltf_new_accessors.h"

@@ -5,6 +5,7 @@
 #include "io/gltf_primitive.h"
 
 #include <stdlib.h>
+#include "io/gltf_accessor.h"
 
 bool nt_gltf_is_solved(const nt_mesh *mesh)
 {

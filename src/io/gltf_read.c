@@ -11,6 +11,8 @@
 
 #include <stdio.h>
 #include <string.h>
+#include "io/gltf_material.h"
+#include "io/gltf_nodes.h"
 
 static const char *copy_name(nt_arena *arena, const nt_json_value *object)
 {

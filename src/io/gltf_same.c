@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "io/gltf_material.h"
 #include "io/gltf_primitive.h"
 
 /* Numbers that are no accessors. */

@@ -8,6 +8,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "io/gltf_accessor.h"
 #include "io/gltf_view.h"
 
 /* One of the two arrays of a sparse accessor, as it is and as it will be. */

@@ -13,6 +13,7 @@
 #include "io/gltf_patch.h"
 
 #include <stdlib.h>
+#include "io/gltf_accessor.h"
 #include "io/gltf_precision.h"
 #include "io/gltf_primitive.h"
 #include "io/gltf_view.h"

@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <time.h>
 #include "base/buffer.h"
+#include "io/gltf_accessor.h"
 #include "io/gltf_document.h"
 #include "pipeline/run.h"
 
