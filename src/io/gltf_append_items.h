@@ -6,7 +6,7 @@
 #define NT_IO_GLTF_APPEND_ITEMS_H
 
 #include "io/gltf_accessor.h"
-#include "io/gltf_patch.h"
+#include "io/gltf_editor.h"
 
 /* An accessor whose values are replaced in place: rows of `width` bytes for every new row. Without values it does not
  * grow: it will get a view of its own. */

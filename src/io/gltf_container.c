@@ -15,6 +15,8 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include "io/gltf_embed.h"
+#include "io/gltf_images.h"
 #include "io/gltf_relocate.h"
 #include "io/uri.h"
 

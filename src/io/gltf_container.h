@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What writing the buffers and moving the images of a patched document share.
+ * Writing a patched document: see gltf_container.c; what its buffers and its images share.
  */
 #ifndef NT_IO_GLTF_CONTAINER_H
 #define NT_IO_GLTF_CONTAINER_H
 
-#include "io/gltf_patch.h"
+#include "io/gltf_editor.h"
 #include "io/gltf_relocate.h"
 
 typedef struct nt_gltf_container {
@@ -25,30 +25,11 @@ typedef struct nt_gltf_container {
 	size_t image_count, image_capacity;
 } nt_gltf_container;
 
-/* The way from the folder of one file to the folder of another as a URI: "../other/"; "" where they are
- * the same or cannot be found. "-" is a file of the current folder. */
-nt_status nt_gltf_link_prefix(nt_arena *arena, const char *from, const char *to, const char **prefix,
-	nt_error *error);
+/* Writes the input as it is where that is what the output should be; *written tells. */
+nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *options,
+	nt_output *output, bool *written, nt_error *error);
 
-/* The text of an external reference: neither a data URI nor anything else than a string. NULL: none. */
-const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length);
-
-/* Puts the prefix before the uri of a buffer or an image. */
-nt_status nt_gltf_link(nt_gltf_container *container, nt_json_value *object);
-
-/* Links, embeds or copies the document's images, as the options say. Before nt_layout_finish(). */
-nt_status nt_gltf_move_images(nt_gltf_container *container);
-
-/*
- * Buffers in the text: nt_gltf_embed() gives a buffer a uri without its data; nt_gltf_embedding_text() is the whole
- * document's text then, whose length with all the data is *length; nt_gltf_write_text() writes it and encodes the
- * buffers where they belong, so that no more of them than a few thousand bytes is in memory.
- */
-nt_status nt_gltf_embed(nt_gltf_container *container, uint32_t buffer);
-nt_status nt_gltf_embedding_text(nt_gltf_container *container, nt_buffer *text, uint64_t *length);
-nt_status nt_gltf_write_text(nt_gltf_container *container, const nt_buffer *text, nt_sink *sink);
-
-/* What the images option means for this output. */
-nt_images nt_gltf_images_choice(const nt_write_options *options, bool same_container);
+/* Writes the document with its buffers and images. */
+nt_status nt_gltf_write_container(nt_gltf_patcher *patcher, nt_output *output);
 
 #endif

@@ -6,7 +6,7 @@
 #define NT_IO_GLTF_DRACO_BLOCK_H
 
 #include "io/gltf_draco.h"
-#include "io/gltf_patch.h"
+#include "io/gltf_editor.h"
 
 /* A primitive that is to be compressed. */
 typedef struct nt_gltf_recoding {

@@ -9,9 +9,10 @@
  * vertices that no face uses, and rows outside of the block would no longer fit), where primitives share
  * accessors but not all else, or where it is not wanted, the primitive is written plain.
  */
-#include "io/gltf_draco_plain.h"
+#include "io/gltf_draco_write.h"
 
 #include <string.h>
+#include "io/gltf_draco_plain.h"
 #include "io/gltf_extensions.h"
 #include "io/gltf_grow.h"
 #include "io/gltf_new_accessors.h"

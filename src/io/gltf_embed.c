@@ -8,7 +8,7 @@
  * number where there are more of them than buffers. That number is a hash of the text: nobody can write a text with
  * many of those to come.
  */
-#include "io/gltf_container.h"
+#include "io/gltf_embed.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -3,7 +3,7 @@
  * Images of a patched document. They are linked where they are, so that none is opened, unless they have
  * to move into the output or beside it. An image that cannot be read is a finding and stays a link.
  */
-#include "io/gltf_container.h"
+#include "io/gltf_images.h"
 
 #include <errno.h>
 #include <stdio.h>

@@ -5,7 +5,7 @@
 #ifndef NT_IO_GLTF_NEW_ACCESSORS_H
 #define NT_IO_GLTF_NEW_ACCESSORS_H
 
-#include "io/gltf_patch.h"
+#include "io/gltf_editor.h"
 
 /* Appends the JSON of an accessor; view NT_NONE: without one. Returns its number. */
 uint32_t nt_gltf_new_accessor(nt_gltf_patcher *patcher, uint32_t view, uint32_t component_type,

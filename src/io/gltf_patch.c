@@ -6,16 +6,20 @@
  *
  * The solve is made on (u, -v), so its w is glTF's as it stands.
  */
-#include "io/gltf_patch.h"
+#include "io/gltf_editor.h"
 
 #include <string.h>
 #include "io/gltf_accessor.h"
+#include "io/gltf_container.h"
+#include "io/gltf_draco_write.h"
 #include "io/gltf_extensions.h"
 #include "io/gltf_grow.h"
+#include "io/gltf_indices.h"
 #include "io/gltf_new_accessors.h"
 #include "io/gltf_precision.h"
 #include "io/gltf_primitive.h"
 #include "io/gltf_rows.h"
+#include "io/gltf_tangent.h"
 #include "io/gltf_view.h"
 
 /* ---- one component ---- */

@@ -10,7 +10,7 @@
  * interleaved tangents that become larger, whose slots could not go without another stride for attributes
  * that are to stay as they are.
  */
-#include "io/gltf_patch.h"
+#include "io/gltf_tangent.h"
 
 #include <stdlib.h>
 #include "io/gltf_accessor.h"
