@@ -5,7 +5,7 @@
  * up, as in the OBJ and PLY files that Draco's own tools encode. Generic attributes have no meaning that a .drc
  * tells, so they are passed over, with a finding.
  */
-#include "io/format.h"
+#include "io/drc.h"
 
 #include <stdio.h>
 #include <string.h>

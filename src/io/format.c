@@ -7,6 +7,16 @@
 
 #include <string.h>
 #include <strings.h>
+#include "io/drc.h"
+#include "io/gltf_compose.h"
+#include "io/gltf_document.h"
+#include "io/gltf_load.h"
+#include "io/gltf_patch.h"
+#include "io/gltf_read.h"
+#include "io/gltf_same.h"
+#include "io/obj.h"
+#include "io/ply.h"
+#include "io/ply_writer.h"
 
 static nt_status write_gltf(nt_scene *scene, const nt_write_options *options,
 	nt_output *output, nt_error *error)

@@ -8,7 +8,7 @@
  * buffer is streamed: geometry as gltf_part.h has it, embedded images behind. Only materials and images that
  * something uses are written; a primitive without texture coordinates gets its material without textures.
  */
-#include "io/format.h"
+#include "io/gltf_compose.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -10,8 +10,9 @@
 
 #include "ext/gltf_numbers.h"
 #include "ext/json.h"
-#include "io/format.h"
+#include "io/file.h"
 #include "io/glb.h"
+#include "scene/scene.h"
 
 /* Room for the JSON pointers we make ourselves. */
 enum { NT_GLTF_POINTER = 160 };
@@ -73,6 +74,9 @@ typedef struct nt_gltf {
  * NT_ERROR_UNSUPPORTED (another version of glTF) or NT_ERROR_MEMORY. */
 nt_status nt_gltf_create(nt_gltf **document, const nt_scene *scene, bool allow_outside,
 	nt_error *error);
+
+bool nt_gltf_recognise(const unsigned char *bytes, size_t size);
+bool nt_glb_recognise(const unsigned char *bytes, size_t size);
 
 /* For nt_scene.free_source. */
 void nt_gltf_free(void *document);

@@ -7,7 +7,8 @@
 #define NT_IO_GLTF_IMAGE_H
 
 #include "ext/tinygltf.h"
-#include "io/format.h"
+#include "io/file.h"
+#include "scene/scene.h"
 
 typedef struct nt_image_set nt_image_set;
 

@@ -6,7 +6,7 @@
  * Texture coordinates are handed on as (u, -v): v up, exactly. Where the texture that tangents serve has a
  * transform, they go through it.
  */
-#include "io/gltf_document.h"
+#include "io/gltf_load.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -6,12 +6,13 @@
  *
  * The solve is made on (u, -v), so its w is glTF's as it stands.
  */
-#include "io/gltf_editor.h"
+#include "io/gltf_patch.h"
 
 #include <string.h>
 #include "io/gltf_accessor.h"
 #include "io/gltf_container.h"
 #include "io/gltf_draco_write.h"
+#include "io/gltf_editor.h"
 #include "io/gltf_extensions.h"
 #include "io/gltf_grow.h"
 #include "io/gltf_indices.h"

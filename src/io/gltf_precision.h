@@ -5,7 +5,7 @@
 #ifndef NT_IO_GLTF_PRECISION_H
 #define NT_IO_GLTF_PRECISION_H
 
-#include "io/format.h"
+#include "scene/scene.h"
 
 #define NT_GLTF_QUANTIZATION "KHR_mesh_quantization"
 

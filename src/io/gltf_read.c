@@ -7,7 +7,7 @@
  * primitive's accessors are checked when it is loaded; cameras, skins, animations and images are not
  * looked at.
  */
-#include "io/gltf_document.h"
+#include "io/gltf_read.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -7,7 +7,7 @@
  * texture transform. Primitives with equal numbers have equal geometry; a hash table finds them in linear
  * time. What is not known to be equal is not.
  */
-#include "io/gltf_document.h"
+#include "io/gltf_same.h"
 
 #include <stdio.h>
 #include <stdlib.h>

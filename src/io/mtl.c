@@ -15,6 +15,7 @@
 #include <string.h>
 #include <strings.h>
 #include "ext/number.h"
+#include "io/file.h"
 #include "io/mtl_map.h"
 #include "io/name_table.h"
 

@@ -5,7 +5,7 @@
 #ifndef NT_IO_MTL_H
 #define NT_IO_MTL_H
 
-#include "io/format.h"
+#include "scene/scene.h"
 
 /* One newmtl. */
 typedef struct nt_mtl_definition {

@@ -15,7 +15,7 @@
  * Numbers that are not finite are an error wherever they stand: no output format can hold them. So is a
  * file without faces: there is nothing to put tangents on.
  */
-#include "io/obj_parts.h"
+#include "io/obj.h"
 
 #include <limits.h>
 #include <stdatomic.h>
@@ -23,6 +23,8 @@
 #include <string.h>
 #include "base/clock.h"
 #include "base/parallel.h"
+#include "io/file.h"
+#include "io/obj_parts.h"
 
 enum {
 	CHUNK_BYTES = 1 << 20,

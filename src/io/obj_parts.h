@@ -7,7 +7,7 @@
 #ifndef NT_IO_OBJ_PARTS_H
 #define NT_IO_OBJ_PARTS_H
 
-#include "io/format.h"
+#include "scene/scene.h"
 
 /* The numbers of a face corner, as they are kept until the file has been read. Bit 31 clear: counted
  * from 0. Bit 31 set: counted back, the low bits are OBJ_BIAS plus the number relative to the chunk's

@@ -5,8 +5,8 @@
 #ifndef NT_IO_PLY_EXPORT_H
 #define NT_IO_PLY_EXPORT_H
 
-#include "io/format.h"
 #include "io/ply_output.h"
+#include "scene/scene.h"
 
 /* Binary, little endian, in world space. */
 nt_status ply_write_scene(nt_scene *scene, const nt_write_options *options, ply_output *out,

@@ -5,8 +5,8 @@
 #ifndef NT_IO_PLY_WRITE_H
 #define NT_IO_PLY_WRITE_H
 
-#include "io/format.h"
 #include "io/ply_output.h"
+#include "scene/scene.h"
 
 /* The scene was read from a PLY. Sets out->encoding. */
 nt_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply_output *out,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Writing PLY begins and ends here: a PLY is rewritten, any other scene exported.
+ * Writing PLY begins and ends here: see ply_writer.h.
  */
-#include "io/format.h"
+#include "io/ply_writer.h"
 
 #include "io/ply_export.h"
 #include "io/ply_write.h"

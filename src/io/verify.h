@@ -6,7 +6,8 @@
 #ifndef NT_IO_VERIFY_H
 #define NT_IO_VERIFY_H
 
-#include "io/format.h"
+#include "io/file.h"
+#include "scene/scene.h"
 
 /*
  * Reads back the glTF or GLB `path` of an output set that is complete but not committed, and compares it

@@ -16,17 +16,9 @@
 #include "base/error.h"
 #include "base/memory.h"
 #include "scene/finding.h"
+#include "scene/format.h"
 
 #define NT_NONE UINT32_MAX
-
-typedef enum nt_format {
-	NT_FORMAT_UNKNOWN,
-	NT_FORMAT_OBJ,
-	NT_FORMAT_PLY,
-	NT_FORMAT_GLTF,
-	NT_FORMAT_GLB,
-	NT_FORMAT_DRC
-} nt_format;
 
 /* What a material or its glTF extensions ask of tangents: docs in scene/select.c. */
 enum nt_slot {

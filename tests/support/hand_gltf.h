@@ -8,7 +8,8 @@
 #include "test.h"
 #include "folder.h"
 #include "ext/tinygltf.h"
-#include "io/format.h"
+#include "io/file.h"
+#include "io/gltf_compose.h"
 
 #include <unistd.h>
 

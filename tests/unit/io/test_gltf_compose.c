@@ -3,6 +3,7 @@
  * New glTF documents: their geometry in every container. Their images are in test_gltf_images.c.
  */
 #include "hand_gltf.h"
+#include "io/gltf_compose.h"
 
 #include <math.h>
 

@@ -11,6 +11,8 @@
 #include "base/buffer.h"
 #include "ext/draco.h"
 #include "io/gltf_draco.h"
+#include "io/gltf_load.h"
+#include "io/gltf_read.h"
 #include "pipeline/run.h"
 
 enum { N = 12, VERTICES = (N + 1) * (N + 1), CORNERS = N * N * 6 };

@@ -9,6 +9,8 @@
 #include <strings.h>
 #include <sys/stat.h>
 #include "io/gltf_document.h"
+#include "io/gltf_load.h"
+#include "io/gltf_read.h"
 
 static const char *const roots[] = {"../shared/models/gltf", "../shared/corpus"};
 

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include "io/gltf_document.h"
 #include "io/uri.h"
+#include "io/gltf_load.h"
+#include "io/gltf_read.h"
 #include "scene/select.h"
 
 /* A document in memory over one data URI buffer. */

@@ -6,6 +6,9 @@
 #include "test.h"
 #include "io/base64_write.h"
 #include "pipeline/run.h"
+#include "io/gltf_load.h"
+#include "io/gltf_read.h"
+#include "io/gltf_same.h"
 
 /* Positions, normals, texture coordinates, indices of one triangle; accessor 4 is 0 once more, 5 are other
  * positions, 6 is a delta. */

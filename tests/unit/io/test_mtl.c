@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 #include "io/mtl.h"
 #include "io/mtl_map.h"
+#include "io/obj.h"
 
 typedef struct reading {
 	nt_scene scene;

@@ -4,6 +4,7 @@
  * the first use of their v/vt/vn. Files that are wrong are in test_obj_damage.c.
  */
 #include "obj_file.h"
+#include "io/obj.h"
 
 static void assert_floats(const float *floats, const float *expected, size_t count)
 {

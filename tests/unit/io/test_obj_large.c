@@ -8,7 +8,7 @@
 #include <dirent.h>
 #include <math.h>
 #include <stdio.h>
-#include "io/format.h"
+#include "io/obj.h"
 
 /* ---- the naive reader ---- */
 

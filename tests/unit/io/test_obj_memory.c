@@ -7,7 +7,7 @@
 #include "folder.h"
 #include <stdio.h>
 #include "fail_alloc.h"
-#include "io/format.h"
+#include "io/obj.h"
 #include "scene/polygon.h"
 
 static nt_status open_text(const char *path, const char *text, nt_error *error)

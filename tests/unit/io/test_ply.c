@@ -4,6 +4,8 @@
  * Faces are in test_ply_faces.c, files that are wrong in test_ply_damage.c.
  */
 #include "ply_file.h"
+#include "io/file.h"
+#include "io/ply.h"
 
 #include <dirent.h>
 #include <math.h>

@@ -5,6 +5,7 @@
  */
 #include "ply_file.h"
 #include "fail_alloc.h"
+#include "io/ply.h"
 
 #include <math.h>
 

@@ -6,7 +6,9 @@
 #include "fail_alloc.h"
 #include "folder.h"
 #include "ext/number.h"
-#include "io/format.h"
+#include "io/file.h"
+#include "io/ply.h"
+#include "io/ply_writer.h"
 
 #include <math.h>
 #include <stdio.h>

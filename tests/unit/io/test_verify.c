@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "hand_gltf.h"
 #include "io/verify.h"
+#include "io/gltf_compose.h"
+#include "io/gltf_load.h"
+#include "io/gltf_patch.h"
+#include "io/gltf_read.h"
 
 #include <math.h>
 

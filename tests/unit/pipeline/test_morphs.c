@@ -14,6 +14,7 @@
 #include "base/buffer.h"
 #include "io/gltf_accessor.h"
 #include "io/gltf_document.h"
+#include "io/gltf_read.h"
 #include "pipeline/run.h"
 
 static const float rows[6][4][3] = {
