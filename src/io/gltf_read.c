@@ -235,6 +235,7 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 	scene->source = document;
 	scene->free_source = nt_gltf_free;
 	scene->read_of_source = count_read;
+	scene->forget = nt_gltf_forget;
 	scene->format = document->is_glb ? NT_FORMAT_GLB : NT_FORMAT_GLTF;
 
 	/* The meshes, and which of them a scene shows. */

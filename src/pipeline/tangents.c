@@ -13,7 +13,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
-#include "io/gltf_document.h"
 #include "tangent/tangents.h"
 
 /* Corners from which one mesh is worth all threads, and those that small ones must have together for threads
@@ -143,10 +142,10 @@ static void forget_part(void *user, nt_mesh_part part)
 	const mesh_bytes *bytes = user;
 	const nt_mesh *mesh = bytes->mesh;
 	if (part == NT_PART_ATTRIBUTES) {
-		nt_gltf_forget(bytes->scene, mesh->positions, 3 * sizeof(float) * mesh->vertex_count);
-		nt_gltf_forget(bytes->scene, mesh->normals, 3 * sizeof(float) * mesh->vertex_count);
+		bytes->scene->forget(bytes->scene, mesh->positions, 3 * sizeof(float) * mesh->vertex_count);
+		bytes->scene->forget(bytes->scene, mesh->normals, 3 * sizeof(float) * mesh->vertex_count);
 	} else {
-		nt_gltf_forget(bytes->scene, mesh->indices, sizeof(uint32_t) * mesh->corner_count);
+		bytes->scene->forget(bytes->scene, mesh->indices, sizeof(uint32_t) * mesh->corner_count);
 	}
 }
 
@@ -317,8 +316,7 @@ nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_for
 {
 	tangent_job job = {.scene = scene, .settings = settings,
 		.round_trip = output != NT_FORMAT_UNKNOWN && is_gltf(scene->format) != is_gltf(output),
-		.forgets = is_gltf(scene->format) && is_gltf(output) && !settings->report &&
-			!settings->verify,
+		.forgets = scene->forget && is_gltf(output) && !settings->report && !settings->verify,
 		.meshes = nt_alloc(scene->mesh_count, sizeof *job.meshes),
 		.statuses = nt_calloc(scene->mesh_count, sizeof *job.statuses)};
 	nt_status status = NT_OK;

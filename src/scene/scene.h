@@ -176,6 +176,8 @@ typedef struct nt_scene {
 	void (*free_source)(void *source);
 	uint64_t (*read_of_source)(const void *source); /* bytes of the input and its files that were read, as far as
 	                                                   the reader knows; NULL: all of the input */
+	void (*forget)(const struct nt_scene *scene, const void *bytes, size_t size); /* these bytes of the input or its
+	                                                   files will hardly be read again; NULL: nobody cares */
 	void (*unmap)(struct nt_scene *scene); /* releases the mapped input; NULL: none */
 	double index_seconds; /* of open(), spent on making vertices of corners; --timing shows them apart */
 	const unsigned char *bytes;
