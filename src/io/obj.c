@@ -10,6 +10,8 @@
  *   vertices  obj_vertices.c: equal v/vt/vn of one object become one vertex
  *   meshes    obj_meshes.c: faces, quads kept, larger polygons triangulated
  *
+ * Where a face stands in the text is asked of few: obj_locate.c reads their lines again.
+ *
  * An `o` makes a mesh; `g` does not. Of texture coordinates u and v are kept as they stand (v up).
  * Colours behind positions are sRGB, as Blender and three.js write them, and become linear.
  * Numbers that are not finite are an error wherever they stand: no output format can hold them. So is a
@@ -24,7 +26,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "io/file.h"
-#include "io/obj_parts.h"
+#include "io/obj_line.h"
 
 enum {
 	CHUNK_BYTES = 1 << 20,
@@ -97,21 +99,16 @@ static bool add_chunk(obj_file *file, size_t *capacity, const char *begin, const
 	memset(chunk, 0, sizeof *chunk);
 	chunk->begin = begin;
 	chunk->end = end;
-	chunk->wanted_face = SIZE_MAX;
 	return true;
 }
 
-/* A copy of the last lines with line feeds and readable bytes behind it. */
+/* The last lines, from a copy with line feeds and readable bytes behind it. */
 static bool add_tail(obj_file *file, size_t *capacity, const char *begin, const char *end)
 {
-	const size_t size = (size_t)(end - begin);
-	file->tail = nt_calloc(size + 16, 1);
-	if (!file->tail)
-		return false;
-	memcpy(file->tail, begin, size);
-	memset(file->tail + size, '\n', 4);
-	const bool ended = size && begin[size - 1] == '\n';
-	return add_chunk(file, capacity, file->tail, file->tail + size + !ended);
+	const char *padded_end;
+	file->tail_begin = begin;
+	file->tail = obj_copy_padded(begin, end, &padded_end);
+	return file->tail && add_chunk(file, capacity, file->tail, padded_end);
 }
 
 static nt_status split(obj_file *file, nt_error *error)
@@ -299,7 +296,7 @@ nt_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error 
 	scene->index_seconds = nt_seconds() - begin;
 	if (!status)
 		status = obj_make_meshes(&file, error);
-	if (!status && scene->findings.failed)
+	if (!status && (scene->findings.failed || !obj_keep_places(&file)))
 		status = nt_fail_memory(error);
 	free_file(&file);
 	return status ? nt_error_in_file(error, scene->path) : NT_OK;

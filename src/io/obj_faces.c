@@ -176,8 +176,6 @@ static nt_status end_face(obj_reader *r, size_t first_corner, size_t first_disti
 		if (status)
 			return status;
 	}
-	if (chunk->face_count == chunk->wanted_face)
-		chunk->wanted_line = r->statement_line;
 	chunk->face_sizes[chunk->face_count++] = (uint8_t)(size < OBJ_POLYGON ? size : OBJ_POLYGON);
 	return NT_OK;
 }

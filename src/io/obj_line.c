@@ -5,10 +5,37 @@
 #include "io/obj_line.h"
 
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 /* A chunk's arrays begin with room for one element per this many bytes of text, which is about what
  * dense files hold; memory that is not used is never touched. */
 enum { BYTES_PER_ELEMENT = 24 };
+
+char *obj_copy_padded(const char *begin, const char *end, const char **padded_end)
+{
+	const size_t size = (size_t)(end - begin);
+	char *copy = nt_calloc(size + 16, 1);
+	if (!copy)
+		return NULL;
+	memcpy(copy, begin, size);
+	memset(copy + size, '\n', 4);
+	const bool ended = size && begin[size - 1] == '\n';
+	*padded_end = copy + size + !ended;
+	return copy;
+}
+
+nt_status obj_reader_init(obj_reader *r, obj_chunk *chunk)
+{
+	*r = (obj_reader){.chunk = chunk, .p = chunk->begin};
+	r->recent = nt_calloc(RECENT_COUNT, sizeof *r->recent);
+	return r->recent ? NT_OK : obj_fail_memory(r);
+}
+
+void obj_reader_free(obj_reader *r)
+{
+	free(r->recent);
+}
 
 void obj_skip_joined_lines(obj_reader *r)
 {

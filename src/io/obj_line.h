@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Where reading a chunk of an OBJ stands, and the small steps that every statement takes: obj_parse.c
- * and obj_faces.c stand on it.
+ * Where reading a chunk of an OBJ stands, and the small steps that every statement takes: obj_parse.c,
+ * obj_faces.c and obj_locate.c stand on it.
  *
- * Every chunk ends behind a line feed and has 8 readable bytes behind it (obj.c copies the last lines
- * of the file to make it so). Numbers and blanks therefore stop by themselves, and nothing here asks
+ * Every chunk ends behind a line feed and has 8 readable bytes behind it (the last lines of the file are
+ * copied to make it so). Numbers and blanks therefore stop by themselves, and nothing here asks
  * for the end of the input within a line.
  */
 #ifndef NT_IO_OBJ_LINE_H
@@ -21,13 +21,21 @@ typedef struct obj_reader {
 	obj_chunk *chunk;
 	const char *p;
 	size_t line;           /* of p, within the chunk, from 0 */
-	size_t statement_line; /* of the statement's first word */
+	const char *statement; /* its first word, and the line of that */
+	size_t statement_line;
 
 	/* Number + 1 of the distinct corner that last had a v, by the low bits of v. Valid are those of
 	 * this object that still exist. */
 	uint32_t *recent;
 	size_t object_begin;   /* distinct corners of the chunk before the object */
 } obj_reader;
+
+/* A copy of lines that may stand at the end of a file, ended and padded as chunks are; NULL: out of memory. */
+char *obj_copy_padded(const char *begin, const char *end, const char **padded_end);
+
+/* Begins a chunk; the reader is freed after failure, too. */
+nt_status obj_reader_init(obj_reader *r, obj_chunk *chunk);
+void obj_reader_free(obj_reader *r);
 
 /* Steps over blanks and joined lines. */
 void obj_skip_joined_lines(obj_reader *r);
@@ -44,6 +52,9 @@ void obj_ignore(obj_reader *r, size_t which);
 
 /* Reads what follows "f": obj_faces.c. */
 nt_status obj_read_face(obj_reader *r);
+
+/* Reads the lines up to that of face number `last` of the chunk, or all: obj_parse.c. */
+nt_status obj_read_lines(obj_reader *r, size_t last);
 
 /* Room for one more row. */
 static inline bool obj_reserve(obj_chunk *chunk, void **block, size_t *capacity, size_t count,

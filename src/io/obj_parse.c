@@ -294,11 +294,12 @@ static inline nt_status read_statement(obj_reader *r)
 	return read_rare(r);
 }
 
-static nt_status read_lines(obj_reader *r)
+nt_status obj_read_lines(obj_reader *r, size_t last)
 {
 	obj_chunk *chunk = r->chunk;
 	while (r->p < chunk->end) {
 		skip_blanks(r);
+		r->statement = r->p;
 		r->statement_line = r->line;
 		const nt_status status = read_statement(r);
 		if (status)
@@ -307,7 +308,7 @@ static nt_status read_lines(obj_reader *r)
 			skip_statement(r, true);
 		r->p = behind_line_end(r->p);
 		r->line++;
-		if (chunk->face_count > chunk->wanted_face)
+		if (chunk->face_count > last)
 			break;
 	}
 	chunk->line_count = r->line;
@@ -316,10 +317,11 @@ static nt_status read_lines(obj_reader *r)
 
 nt_status obj_parse_chunk(obj_chunk *chunk)
 {
-	obj_reader r = {.chunk = chunk, .p = chunk->begin};
-	r.recent = nt_calloc(RECENT_COUNT, sizeof *r.recent);
-	const nt_status status = r.recent ? read_lines(&r) : obj_fail_memory(&r);
-	free(r.recent);
+	obj_reader r;
+	nt_status status = obj_reader_init(&r, chunk);
+	if (!status)
+		status = obj_read_lines(&r, SIZE_MAX);
+	obj_reader_free(&r);
 	return status;
 }
 
@@ -333,21 +335,4 @@ void obj_chunk_free(obj_chunk *chunk)
 	free(chunk->face_sizes);
 	free(chunk->polygons);
 	free(chunk->events);
-}
-
-size_t obj_face_line(const obj_file *file, size_t face, obj_corner *before)
-{
-	size_t c = 0;
-	while (c + 1 < file->chunk_count && file->chunks[c + 1].first_face <= face)
-		c++;
-	const obj_chunk *chunk = &file->chunks[c];
-	obj_chunk again = {.begin = chunk->begin, .end = chunk->end};
-	again.wanted_face = face - chunk->first_face;
-	obj_parse_chunk(&again);
-	if (before)
-		*before = (obj_corner){(uint32_t)again.rows[OBJ_V].count, (uint32_t)again.rows[OBJ_VT].count,
-			(uint32_t)again.rows[OBJ_VN].count};
-	const size_t line = chunk->first_line + again.wanted_line + 1;
-	obj_chunk_free(&again);
-	return line;
 }

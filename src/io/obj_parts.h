@@ -70,7 +70,7 @@ typedef struct obj_rows {
 
 /* Whole lines of the file and what was in them. */
 typedef struct obj_chunk {
-	const char *begin, *end;
+	const char *begin, *end; /* of the last chunk: in obj_file.tail */
 
 	obj_rows rows[OBJ_KIND_COUNT];
 	float *colors; /* rows of 4 as written, as many as positions; NULL while no `v` has one */
@@ -98,9 +98,6 @@ typedef struct obj_chunk {
 	/* How much comes before this chunk in the file; known after all have been read. */
 	size_t first_corner, first_face, first_line;
 
-	/* To find a line again: parsing stops behind this face and leaves its line. */
-	size_t wanted_face, wanted_line;
-
 	nt_error error; /* its line is within the chunk, from 1 */
 } obj_chunk;
 
@@ -111,6 +108,7 @@ typedef struct obj_file {
 	obj_chunk *chunks;
 	size_t chunk_count;
 	char *tail; /* the last lines, padded */
+	const char *tail_begin; /* where they stand in the input */
 
 	/* Of each kind: how many there are, and the chunk that has number i << OBJ_GUIDE_SHIFT. */
 	size_t row_counts[OBJ_KIND_COUNT];
@@ -169,9 +167,12 @@ typedef struct obj_vertex {
 nt_status obj_parse_chunk(obj_chunk *chunk);
 void obj_chunk_free(obj_chunk *chunk);
 
-/* Line of a face of the file, by reading its chunk again. before: how many v, vt and vn of its chunk
- * stand before it; NULL is allowed. */
+/* Line of a face of the file, by reading its chunk again; 0: out of memory. before: how many v, vt and vn of
+ * its chunk stand before it. */
 size_t obj_face_line(const obj_file *file, size_t face, obj_corner *before);
+
+/* Leaves in the scene what its locate_faces needs; false: out of memory. */
+bool obj_keep_places(const obj_file *file);
 
 /* Fills corner_vertices, vertices and mesh_vertices. */
 nt_status obj_make_vertices(obj_file *file, nt_error *error);

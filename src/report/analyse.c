@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * One report from one scene: see report.h. Each mesh is judged by itself, in one order of checks; the
- * scene's own findings are added, everything is sorted, and OBJ lines are looked up for what is left.
+ * scene's own findings are added, everything is sorted, and the reader is asked for the lines of what is left.
  *
  * Time is linear in the size of the mesh; a million triangles take a fraction of a second beside the
  * solve that authored tangents are compared with.
@@ -214,6 +214,47 @@ static nt_status judge_scene(const nt_scene *scene, const nt_report_options *opt
 	return status ? status : judge.failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
+/* ---- lines ---- */
+
+static int compare_faces(const void *a, const void *b)
+{
+	const nt_face_place *x = a, *y = b;
+	if (x->mesh != y->mesh)
+		return x->mesh < y->mesh ? -1 : 1;
+	return x->face < y->face ? -1 : x->face > y->face;
+}
+
+/* Asks the reader where the faces of all spots stand. */
+static nt_status locate_spots(nt_report *report, const nt_scene *scene)
+{
+	nt_face_place *faces = nt_alloc(report->issue_count * NT_SPOT_COUNT, sizeof *faces);
+	if (!faces)
+		return NT_ERROR_MEMORY;
+	size_t count = 0;
+	for (size_t i = 0; i < report->issue_count; i++) {
+		const nt_issue *issue = &report->issues[i];
+		for (unsigned k = 0; k < issue->spot_count && issue->mesh != NT_NONE; k++)
+			if (issue->spots[k].face != NT_NONE)
+				faces[count++] = (nt_face_place){issue->mesh, issue->spots[k].face, 0, NULL};
+	}
+	qsort(faces, count, sizeof *faces, compare_faces);
+	const nt_status status = scene->locate_faces(scene, faces, count, &report->arena);
+	for (size_t i = 0; i < report->issue_count && !status; i++) {
+		nt_issue *issue = &report->issues[i];
+		for (unsigned k = 0; k < issue->spot_count; k++) {
+			nt_spot *spot = &issue->spots[k];
+			const nt_face_place wanted = {issue->mesh, spot->face, 0, NULL};
+			const nt_face_place *found = bsearch(&wanted, faces, count, sizeof *faces, compare_faces);
+			spot->line = found ? found->line : 0;
+			spot->source = found ? found->corners : NULL;
+		}
+	}
+	free(faces);
+	return status;
+}
+
+/* ---- the whole ---- */
+
 static nt_report *new_report(const char *path)
 {
 	nt_report *report = nt_calloc(1, sizeof *report);
@@ -241,8 +282,8 @@ static nt_status build(const nt_scene *scene, const nt_report_options *options, 
 	nt_status status = judge_scene(scene, options, report);
 	if (!status)
 		status = nt_issues_finish(report, options);
-	if (!status && scene->format == NT_FORMAT_OBJ)
-		status = nt_obj_lines(report, scene);
+	if (!status && scene->locate_faces)
+		status = locate_spots(report, scene);
 	return status;
 }
 

@@ -147,7 +147,4 @@ nt_status nt_issues_finish(nt_report *report, const nt_report_options *options);
 /* Adds a finding that the scene's stages made. */
 void nt_issues_add_finding(nt_judge *judge, const nt_finding *finding);
 
-/* obj_lines.c: finds the lines of faces in the scene's OBJ text and completes the spots. */
-nt_status nt_obj_lines(nt_report *report, const nt_scene *scene);
-
 #endif

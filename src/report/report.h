@@ -65,8 +65,8 @@ typedef struct nt_spot {
 	float texcoords[3][2];    /* as the source has them */
 	bool has_texcoords;
 	double value;             /* the number that was judged; NaN: none */
-	size_t line;              /* OBJ: of the face; 0: unknown */
-	const char *source;       /* OBJ: the face's corners as written, "1/1/1 2/2/1 3/3/1"; NULL: none */
+	size_t line;              /* of the face in a text that has lines; 0: unknown */
+	const char *source;       /* the face's corners as written, "1/1/1 2/2/1 3/3/1"; NULL: none */
 } nt_spot;
 
 typedef struct nt_number {

@@ -158,6 +158,13 @@ typedef struct nt_rounding {
 	double worst_radians, sum_radians;
 } nt_rounding;
 
+/* Where a face stands in a text. */
+typedef struct nt_face_place {
+	uint32_t mesh, face; /* face: number in the source, as face_polygon has it */
+	size_t line;         /* of its statement, from 1 */
+	const char *corners; /* as written, one blank between two */
+} nt_face_place;
+
 typedef struct nt_scene {
 	nt_arena arena;
 	nt_format format;
@@ -178,6 +185,10 @@ typedef struct nt_scene {
 	                                                   the reader knows; NULL: all of the input */
 	void (*forget)(const struct nt_scene *scene, const void *bytes, size_t size); /* these bytes of the input or its
 	                                                   files will hardly be read again; NULL: nobody cares */
+	/* Finds faces, which come sorted by mesh and face, in the text: fills line and corners, these in an arena.
+	 * The text is read again for it. NULL: there are no lines. */
+	nt_status (*locate_faces)(const struct nt_scene *scene, nt_face_place *faces, size_t count,
+		nt_arena *arena);
 	void (*unmap)(struct nt_scene *scene); /* releases the mapped input; NULL: none */
 	double index_seconds; /* of open(), spent on making vertices of corners; --timing shows them apart */
 	const unsigned char *bytes;

@@ -97,6 +97,13 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 2 0\n\n# f\nf 1/1 \\\n 2/2
 run --check --report=r.json d.obj
 is "$(value r.json '[(s["line"], s["source"]) for f in r["files"][0]["findings"]
 	for s in f["spots"] if f["code"] == "UV_DEGENERATE_TRIANGLE"]')" "[(9, '1/1 2/2 3/3')]"
+text='v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 2 0\nf 1/1 2/2\nf 1/1 2/2 3/3\n' # two corners are no face
+for end in '\n' '\r' '\r\n'; do
+	printf "${text//'\n'/$end}" >d.obj
+	run --check --report=r.json d.obj
+	is "$(value r.json '[s["line"] for f in r["files"][0]["findings"]
+		for s in f["spots"] if f["code"] == "UV_DEGENERATE_TRIANGLE"]')" "[8]"
+done
 
 scene "exit codes follow the report, what is ignored and what is reweighed"
 cp "$data/head.obj" .
