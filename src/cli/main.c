@@ -260,7 +260,7 @@ int main(int argc, char **argv)
 	 * which temporary files are removed. */
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN);
-	nt_output_catch_signals();
+	nt_run_catch_signals();
 
 	nt_command command;
 	nt_error error;

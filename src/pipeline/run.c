@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include "io/format.h"
 #include "io/normal_map.h"
 #include "io/verify.h"
 #include "base/clock.h"
@@ -372,4 +373,9 @@ void nt_summary_free(nt_summary *summary)
 	free(summary->lines);
 	summary->lines = NULL;
 	summary->report = NULL;
+}
+
+void nt_run_catch_signals(void)
+{
+	nt_output_catch_signals();
 }

@@ -6,98 +6,7 @@
 #ifndef NT_PIPELINE_RUN_H
 #define NT_PIPELINE_RUN_H
 
-#include "io/format.h"
-#include "report/report.h"
-#include "scene/select.h"
-
-typedef enum nt_normals { NT_NORMALS_AUTO, NT_NORMALS_FLAT, NT_NORMALS_SMOOTH } nt_normals;
-
-/* Stages as --timing prints them. */
-typedef enum nt_stage {
-	NT_STAGE_MAP,
-	NT_STAGE_PARSE,
-	NT_STAGE_INDEX,    /* corners with indices of their own become vertices: OBJ */
-	NT_STAGE_DECODE,
-	NT_STAGE_NORMALS,
-	NT_STAGE_WELD,     /* weld and split of large meshes; small ones count as tangents */
-	NT_STAGE_TANGENTS,
-	NT_STAGE_SPLIT,
-	NT_STAGE_WRITE,
-	NT_STAGE_VERIFY,
-	NT_STAGE_REPORT,
-	NT_STAGE_COUNT
-} nt_stage;
-
-/* Everything a run can be told. Zero-initialised means the defaults of the command line, but for
- * texcoord_set, whose default is -1. */
-typedef struct nt_settings {
-	nmtan_method method;
-	nmtan_repair repair;
-	nt_only only;
-	nt_existing existing;
-	nt_normals normals;
-	nt_images images;
-	nt_buffers buffers;
-	nt_draco_choice draco;
-	nt_morph_choice morphs;
-	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
-	nt_precision precision;
-	nt_format output_format; /* NT_FORMAT_UNKNOWN: by name */
-	int texcoord_set;        /* -1: auto */
-	unsigned threads;        /* 0: all */
-	bool bitangents;
-	bool embed;
-	bool verify;   /* read the output back with tinygltf before it takes its name */
-	bool dry_run;  /* do everything but write */
-	bool check;    /* judge only: no output */
-	bool sync;
-	bool no_clobber;
-	bool list_meshes; /* summary->lines is wanted */
-	bool in_place;
-	bool allow_outside;
-
-	/* What a report is to hold; NULL: none is made. `converted` is set by the run. */
-	const nt_report_options *report;
-
-	/* Called when a stage begins, from the thread that called nt_run; NULL: nobody looks. */
-	void (*on_stage)(void *user, nt_stage stage);
-	void *on_stage_user;
-} nt_settings;
-
-/* What became of one mesh (glTF: primitive). */
-typedef struct nt_mesh_line {
-	nt_place place;
-	nt_decision decision;
-	bool same;             /* the geometry of an earlier one, whose tangents it shares */
-	size_t triangle_count; /* of skipped ones: as the source claims */
-	size_t vertex_count;   /* before; 0 where nothing was loaded */
-	size_t appended;       /* vertices added */
-} nt_mesh_line;
-
-/* What a run did. */
-typedef struct nt_summary {
-	size_t mesh_count;       /* meshes (glTF: primitives) in the input */
-	size_t solved_count;     /* of them, those that got tangents */
-	size_t same_count;       /* of the solved ones, those that took the result of another: they have the
-	                            same geometry */
-	size_t skipped[NT_DECISION_COUNT]; /* of them, by reason */
-	size_t triangle_count;   /* of the solved ones, after triangulation */
-	size_t vertex_count;     /* of the solved ones, before */
-	size_t appended_normals; /* vertices added because normals were made */
-	size_t appended_tangents;/* vertices added because tangents differ */
-	nmtan_counts counts;     /* of all solves */
-	nt_rounding rounding;    /* of tangents that were stored as integers */
-	nt_finding_list findings;
-	uint64_t bytes_read;     /* of the inputs, as far as known; what is only copied is not */
-	uint64_t bytes_copied;   /* from an input to the output as they are */
-	uint64_t bytes_written;  /* those too */
-	double seconds[NT_STAGE_COUNT];
-	double total_seconds;
-	nt_report *report; /* NULL unless asked for; of a failed run it says why */
-	nt_mesh_line *lines; /* [line_count] in the order of the input; NULL unless asked for */
-	size_t line_count;
-	bool copied; /* nothing was to be done and the output is a copy of the input */
-} nt_summary;
+#include "pipeline/settings.h"
 
 /*
  * Runs one input.
@@ -114,5 +23,9 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	nt_summary *summary, nt_error *error);
 
 void nt_summary_free(nt_summary *summary);
+
+/* Makes SIGINT, SIGTERM and SIGHUP remove the temporary files of all runs before they end the process, and turns
+ * SIGPIPE into a write error. Called once, before the first run, by a front end that is the whole process. */
+void nt_run_catch_signals(void);
 
 #endif

@@ -5,7 +5,7 @@
 #ifndef NT_PIPELINE_STAGES_H
 #define NT_PIPELINE_STAGES_H
 
-#include "pipeline/run.h"
+#include "pipeline/settings.h"
 
 /* Makes the normals a mesh lacks (all of them when `mode` is not AUTO); vertices whose corners get
  * different normals are split, copies appended. Sets mesh->normals_made where something was made. */
