@@ -39,6 +39,16 @@ static inline nt_vec3 nt_vec3_cross(nt_vec3 a, nt_vec3 b)
 	return (nt_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
+/* The third axis of a frame: cross(n, t) * w. b may lie over t. */
+static inline void nt_bitangent(const float n[3], const float t[4], float b[3])
+{
+	const nt_vec3 cross = nt_vec3_cross((nt_vec3){n[0], n[1], n[2]}, (nt_vec3){t[0], t[1], t[2]});
+	const float w = t[3];
+	b[0] = cross.x * w;
+	b[1] = cross.y * w;
+	b[2] = cross.z * w;
+}
+
 static inline float nt_vec3_length(nt_vec3 v)
 {
 	return sqrtf(nt_vec3_dot(v, v));

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/vec.h"
 
 enum { BLOCK_ROWS = 4096 };
 
@@ -313,13 +314,8 @@ static void make_units(float *normals, size_t count)
 /* B = cross(N, T) * w, in place of the tangents: row i of the result ends before row i of them. */
 static void make_bitangents(const float *normals, float *tangents, size_t count)
 {
-	for (size_t i = 0; i < count; i++) {
-		const float *n = normals + 3 * i, *t = tangents + 4 * i;
-		const float w = t[3];
-		const float b[3] = {(n[1] * t[2] - n[2] * t[1]) * w, (n[2] * t[0] - n[0] * t[2]) * w,
-			(n[0] * t[1] - n[1] * t[0]) * w};
-		memcpy(tangents + 3 * i, b, sizeof b);
-	}
+	for (size_t i = 0; i < count; i++)
+		nt_bitangent(normals + 3 * i, tangents + 4 * i, tangents + 3 * i);
 }
 
 nt_status nt_part_write_stream(const nt_part *part, nt_stream stream, nt_part_write write,

@@ -12,6 +12,7 @@
 
 #include <math.h>
 #include "base/dvec.h"
+#include "base/vec.h"
 
 /* What the vertices of the file have. */
 typedef struct layout {
@@ -199,7 +200,7 @@ static void put_vertex(ply_output *out, const layout *l, const placement *p, con
 		place_tangent(p, mesh->normals ? normal : NULL, own, tangent);
 	if (l->tangents)
 		ply_put_floats(out, tangent, 4);
-	ply_bitangent(normal, tangent, bitangent);
+	nt_bitangent(normal, tangent, bitangent);
 	if (l->bitangents)
 		ply_put_floats(out, bitangent, 3);
 }

@@ -64,10 +64,3 @@ nt_status ply_put_bytes(ply_output *out, const void *bytes, size_t size, nt_erro
 	out->buffer.size = 0;
 	return status || size == 0 ? status : nt_sink_write(out->sink, bytes, size, error);
 }
-
-void ply_bitangent(const float n[3], const float t[4], float b[3])
-{
-	b[0] = (n[1] * t[2] - n[2] * t[1]) * t[3];
-	b[1] = (n[2] * t[0] - n[0] * t[2]) * t[3];
-	b[2] = (n[0] * t[1] - n[1] * t[0]) * t[3];
-}

@@ -30,7 +30,4 @@ nt_status ply_drain(ply_output *out, nt_error *error);
 /* Writes the buffer and then these bytes. */
 nt_status ply_put_bytes(ply_output *out, const void *bytes, size_t size, nt_error *error);
 
-/* cross(n, t) * w. */
-void ply_bitangent(const float n[3], const float t[4], float b[3]);
-
 #endif

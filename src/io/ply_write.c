@@ -12,6 +12,7 @@
 #include "io/ply_write.h"
 
 #include <stdlib.h>
+#include "base/vec.h"
 #include "io/ply_cursor.h"
 #include "io/ply_numbering.h"
 
@@ -274,7 +275,7 @@ static void write_extras(const plan *p, size_t vertex)
 		memcpy(values + count, t, 4 * sizeof *values);
 		count += 4;
 		if (p->new_bitangents)
-			ply_bitangent(n, t, values + count);
+			nt_bitangent(n, t, values + count);
 		count += p->new_bitangents ? 3 : 0;
 	}
 	ply_put_floats(p->out, values, count);
