@@ -121,9 +121,10 @@ typedef enum nmtan_method {
 
 /* What happens to results that a renderer cannot use. */
 typedef enum nmtan_repair {
-	NMTAN_REPAIR_ON = 0, /* zero, non-unit, non-finite tangents, tangents parallel to the normal and
-	                        w that differs within a triangle or from the exact orientation are
-	                        replaced by the nearest usable answer, and counted */
+	NMTAN_REPAIR_ON = 0, /* tangents that no triangle gave, that are zero, not unit, not finite, more than
+	                        2^-10 off perpendicular to a normal of unit length (|n|^2 within 2^-11 of 1)
+	                        or parallel to any other, and w that differs within a triangle or from the
+	                        exact orientation are replaced by the nearest usable answer, and counted */
 	NMTAN_REPAIR_OFF     /* the method's raw result */
 } nmtan_repair;
 
@@ -189,6 +190,9 @@ typedef struct nmtan_counts {
 	size_t repaired_not_finite;
 	size_t repaired_parallel;    /* tangents that were parallel to their normal */
 	size_t repaired_sign;        /* w changed to the exact orientation or to agree in its triangle */
+	size_t repaired_unassigned;  /* corners to which no triangle gave a tangent: MikkTSpace leaves (1, 0, 0)
+	                                there */
+	size_t repaired_leaning;     /* tangents more than 2^-10 off perpendicular to a normal of unit length */
 	size_t ill_conditioned;      /* robust: tangents for which more than 24 bits cancel, in the sum or
 	                                because dP/du runs along the normal. They are unit and
 	                                perpendicular like all others, their direction is as good as
