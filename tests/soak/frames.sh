@@ -30,7 +30,9 @@ while IFS= read -r file; do
 		print(*sorted({i["code"] for i in found if i["severity"] in ("warning", "error") and re.fullmatch(sys.argv[2], i["code"])}))
 	PYTHON
 	)
-	[ -z "$found" ] || fault "$file" "--check of the output: $found"
+	# MikkTSpace of quads is not that of their triangles, which is what the output is
+	! grep -qE '^f( +[^ ]+){4}' "$file" || found=${found//TAN_DIRECTION_MISMATCH/}
+	[ -z "${found// /}" ] || fault "$file" "--check of the output: $found"
 	for existing in keep repair; do
 		"$nmtan" -q --existing=$existing --only=all "$t/o.glb" "$t/again.glb" >/dev/null 2>&1
 		cmp -s "$t/o.glb" "$t/again.glb" || fault "$file" "--existing=$existing changes the output"
