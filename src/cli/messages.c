@@ -7,6 +7,7 @@
 #include <inttypes.h>
 #include <string.h>
 
+#include "base/counts.h"
 #include "report/codes.h"
 
 /* Of one code so many places are shown without -v; the rest is counted. */
@@ -153,7 +154,6 @@ static void append_findings_count(nt_buffer *out, const nt_summary *s)
 void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *settings)
 {
 	const nt_summary *s = &job->summary;
-	const nmtan_counts *c = &s->counts;
 	nt_buffer_text(out, "nmtan: ");
 	nt_buffer_clean(out, strcmp(job->input, "-") == 0 ? "standard input" : job->input);
 	if (job->output) {
@@ -176,8 +176,7 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		append_count(out, s->triangle_count, "triangle");
 		append_vertices(out, s);
 	}
-	const size_t repaired = c->repaired_zero + c->repaired_not_finite + c->repaired_parallel +
-				c->repaired_sign;
+	const size_t repaired = nt_counts_repaired(&s->counts);
 	if (repaired)
 		nt_buffer_format(out, settings->check ? ", %zu tangents would be repaired"
 						      : ", repaired %zu of the tangents", repaired);

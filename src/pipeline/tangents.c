@@ -12,6 +12,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/counts.h"
 #include "base/parallel.h"
 #include "tangent/tangents.h"
 
@@ -246,8 +247,7 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 		{NT_CODE_UV_FOLDED_QUAD, c->folded_quads},
 		{NT_CODE_UV_ROUNDED_AWAY, c->stored_differently},
 		{NT_CODE_TAN_MORPH_TURNED, mesh->morph_turned},
-		{NT_CODE_TAN_REPAIRED, c->repaired_zero + c->repaired_not_finite +
-						c->repaired_parallel + c->repaired_sign},
+		{NT_CODE_TAN_REPAIRED, nt_counts_repaired(c)},
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
 		if (rows[i].count)
@@ -256,23 +256,13 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 
 static void add_counts(nt_summary *summary, const nt_mesh *mesh)
 {
-	const nmtan_counts *c = &mesh->counts;
-	nmtan_counts *sum = &summary->counts;
-	size_t quads = mesh->corner_count - 3 * mesh->face_count;
+	const size_t quads = mesh->corner_count - 3 * mesh->face_count;
 	summary->solved_count++;
 	summary->triangle_count += mesh->face_count + quads;
 	summary->vertex_count += mesh->source_vertex_count;
 	summary->appended_normals += mesh->vertex_count - mesh->source_vertex_count;
 	summary->appended_tangents += mesh->split.source_count;
-	sum->degenerate_positions += c->degenerate_positions;
-	sum->degenerate_texcoords += c->degenerate_texcoords;
-	sum->mirrored += c->mirrored;
-	sum->stored_differently += c->stored_differently;
-	sum->folded_quads += c->folded_quads;
-	sum->repaired_zero += c->repaired_zero;
-	sum->repaired_not_finite += c->repaired_not_finite;
-	sum->repaired_parallel += c->repaired_parallel;
-	sum->repaired_sign += c->repaired_sign;
+	nt_counts_add(&summary->counts, &mesh->counts);
 }
 
 static bool is_wanted(const nt_mesh *mesh)

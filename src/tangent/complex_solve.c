@@ -176,7 +176,7 @@ static void write_untouched(const nt_complex *c, const nt_batch *b)
 {
 	for (uint32_t i = 0; i < b->count; i++)
 		if (b->group[i] == NT_NONE)
-			write_corner(c, mesh_corner(c, b, i), &untouched, -1.0f);
+			write_corner(c, mesh_corner(c, b, i), &untouched, nt_unassigned_sign(c->fast->solve));
 }
 
 /* The corner of a quad's diagonal gets two results, one from each half: they are averaged. */
@@ -208,7 +208,7 @@ static void write_halves(const nt_complex *c, const nt_batch *b, uint32_t i, uin
 	} else if (first || second) {
 		write_corner(c, corner, &results[first ? i : j], sign_of(c, b, first ? i : j));
 	} else {
-		write_corner(c, corner, &untouched, -1.0f);
+		write_corner(c, corner, &untouched, nt_unassigned_sign(c->fast->solve));
 	}
 }
 

@@ -254,22 +254,17 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 			&r);
 	}
 	*sum = (nt_settled){0};
-	for (unsigned i = 0; i < ranges; i++) {
+	for (unsigned i = 0; i < ranges; i++)
 		sum->complex_count += r.settled[i].complex_count;
-		sum->unusable_count += r.settled[i].unusable_count;
-	}
 	return NMTAN_OK;
 }
 
-/* Tells judge.c which triangles need no look, where all settled results are usable, and repair.c what is welded. */
-static void vouch(const nt_fast *fast, bool usable)
+/* Tells judge.c which triangles need no look, and repair.c what is welded. */
+static void vouch(const nt_fast *fast)
 {
-	nt_vouched *vouched = fast->solve->vouched;
-	if (usable)
-		*vouched = (nt_vouched){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT,
-			.suspect = NT_TRIANGLE_SUSPECT};
-	vouched->welded = fast->triangles.ids;
-	vouched->welded_count = fast->vertex_count;
+	*fast->solve->vouched = (nt_vouched){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT,
+		.suspect = NT_TRIANGLE_SUSPECT, .doubtful = NT_TRIANGLE_SUSPECT & ~NT_TRIANGLE_COMPLEX,
+		.welded = fast->triangles.ids, .welded_count = fast->vertex_count};
 }
 
 /* The rows that a sparse solve stands for: a record is x, y, z and, as state, the sign. */
@@ -393,13 +388,12 @@ static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, const nt_fast
 	nt_settled settled;
 	if ((status = settle(fast, kernels, &settled)))
 		return status;
-	fast->sparse = fast->sparse && settled.unusable_count == 0;
 	nt_fast_write(fast);
 	nt_room room = dead_room(fast);
 	if (settled.complex_count > 0 && (status = nt_fast_complex(fast, kernels, settled.complex_count, &room)))
 		return status;
 	if (solve->vouched)
-		vouch(fast, settled.unusable_count == 0);
+		vouch(fast);
 	/* late triangles copy corners, which must have been written */
 	if (fast->sparse && nt_fast_next_flagged(fast, 0, NT_TRIANGLE_LATE) < fast->triangle_count)
 		nt_fast_write_rest(fast);

@@ -66,7 +66,7 @@ typedef struct nt_fast {
 } nt_fast;
 
 typedef struct nt_settled {
-	size_t complex_count, unusable_count;
+	size_t complex_count;
 } nt_settled;
 
 /* Makes fast->records[orient], which a triangle needs and which does not exist; false: it cannot be had now. */
@@ -91,8 +91,7 @@ typedef struct nt_kernels {
 	void (*accumulate)(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
 		void *context);
 	/* Turns the sums of blocks [begin, end) of vertices, all of them in the adjacency, into results, which go
-	 * to the records; counts the vertices that are complex, and the settled ones whose tangent is not
-	 * usable. Sums are counted from the adjacency's first vertex. Results may
+	 * to the records; counts the vertices that are complex, those too whose tangent is not usable. Sums are counted from the adjacency's first vertex. Results may
 	 * replace the rows of their block and of those before. */
 	void (*settle)(nt_fast *fast, const nt_adjacency *adjacency, nt_record *const sums[2], size_t begin,
 		size_t end, nt_settled *settled);

@@ -42,6 +42,16 @@ static bool has_sound_half(const nt_fast *fast, size_t t)
 	return nt_fast_quad_begins(fast, t) && !(fast->flags[t + 1] & NT_TRIANGLE_DEGENERATE);
 }
 
+/* A corner that no group reached (step 10). */
+static void write_unassigned(const nt_fast *fast, size_t corner)
+{
+	nt_record record = {.x = 1.0f};
+	const float w = nt_unassigned_sign(fast->solve);
+	const nt_record_more more = {.y = 1.0f, .mag_s = 1.0f, .mag_t = 1.0f};
+	memcpy(&record.state, &w, sizeof w);
+	write_corner(fast, corner, &record, &more);
+}
+
 static void write_special(nt_fast *fast, size_t t)
 {
 	uint8_t *flags = &fast->flags[t];
@@ -60,7 +70,10 @@ static void write_special(nt_fast *fast, size_t t)
 			*flags |= degenerate ? NT_TRIANGLE_LATE : NT_TRIANGLE_COMPLEX;
 		else if (degenerate && two)
 			*flags |= NT_TRIANGLE_LATE;
-		write_vertex(fast, nt_fast_corner(fast, i), o, v);
+		if (state == NT_RESULT_NONE)
+			write_unassigned(fast, nt_fast_corner(fast, i));
+		else
+			write_vertex(fast, nt_fast_corner(fast, i), o, v);
 	}
 }
 
@@ -153,10 +166,8 @@ void nt_fast_write_rest(nt_fast *fast)
 /* Without a sound triangle there is nothing but the default (step 10). */
 void nt_fast_write_defaults(const nt_fast *fast)
 {
-	const nt_record record = {1.0f, 0.0f, 0.0f, NT_RESULT_MINUS};
-	const nt_record_more more = {.y = 1.0f, .mag_s = 1.0f, .mag_t = 1.0f};
 	for (size_t c = 0; c < fast->solve->corner_count; c++)
-		write_corner(fast, c, &record, &more);
+		write_unassigned(fast, c);
 }
 
 static void copy_corner(const nt_solve *solve, size_t to, size_t from)

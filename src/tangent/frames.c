@@ -230,31 +230,6 @@ void nt_add_triangle(const nmtan_mesh *mesh, nt_weight weight, const uint32_t co
 				sums[k]);
 }
 
-void nt_sum_frames(const nmtan_mesh *mesh, nt_weight weight, const uint32_t *vertices, const uint32_t *ids,
-	nt_frame_sum (*sums)[2])
-{
-	size_t first = 0;
-	for (size_t face = 0; face < mesh->face_count; first += nt_face_size(mesh, face++)) {
-		const unsigned size = nt_face_size(mesh, face);
-		bool wanted = false;
-		for (size_t k = 0; k < size; k++)
-			wanted = wanted || ids[vertices[first + k]] != NT_NO_ID;
-		if (!wanted)
-			continue;
-		const int side = nt_face_orientation(mesh, face, first, true, NULL) > 0;
-		uint32_t corners[2][3];
-		const unsigned count = nt_face_triangles(mesh, face, first, corners);
-		for (unsigned i = 0; i < count; i++) {
-			nt_frame_sum *to[3];
-			for (int k = 0; k < 3; k++) {
-				const uint32_t id = ids[vertices[corners[i][k]]];
-				to[k] = id == NT_NO_ID ? NULL : &sums[id][side];
-			}
-			nt_add_triangle(mesh, weight, corners[i], to);
-		}
-	}
-}
-
 bool nt_sum_tangent(const nt_frame_sum *sum, nt_dvec3 n, nt_dvec3 *tangent)
 {
 	if (!(nt_dvec3_length(sum->u) > NT_CANCELLED * sum->weights))

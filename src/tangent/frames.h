@@ -65,17 +65,6 @@ int nt_cut_orientation(const nmtan_mesh *mesh, uint32_t corners[2][3], unsigned 
 void nt_add_triangle(const nmtan_mesh *mesh, nt_weight weight, const uint32_t corners[3],
 	nt_frame_sum *const sums[3]);
 
-/*
- * Adds every triangle's frame to sums[id][0] (orientation -1) or sums[id][1] (+1) of its vertices' ids,
- * in face order.
- *
- *   vertices  [corner_count] welded vertices
- *   ids       [welded vertices] index into sums; NT_NO_ID: the vertex is left out
- *   sums      [id count][2], zeroed by the caller
- */
-void nt_sum_frames(const nmtan_mesh *mesh, nt_weight weight, const uint32_t *vertices, const uint32_t *ids,
-	nt_frame_sum (*sums)[2]);
-
 /* The unit tangent of a sum, perpendicular to the unit (or zero) normal n; false where the sum has no
  * direction. */
 bool nt_sum_tangent(const nt_frame_sum *sum, nt_dvec3 n, nt_dvec3 *tangent);

@@ -1,202 +1,262 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Judging: see judge.h. Most faces need no look: a method that has bounded the error of its determinants
- * and checked the vectors it shared out vouches for them (nt_solve.vouched), eight a step.
+ * and checked the vectors it shared out vouches for them (nt_solve.vouched). The others are suspects. Of triangles,
+ * those among 64 are listed and asked for first and then judged without a branch on what is found: where suspects are
+ * many they lie anywhere, and cache misses and wrong guesses took twice the time of the rest.
  */
 #include "tangent/judge.h"
 
-#include <math.h>
 #include <string.h>
+#include "base/counts.h"
 #include "base/parallel.h"
 #include "tangent/frames.h"
 #include "topology/corners.h"
 
-enum { JUDGE_GRAIN = 1 << 15 }; /* faces per thread below which threads do not pay */
+/* Faces that share a word of faulty bits, and the words per thread below which threads do not pay. */
+enum { WORD = 64, JUDGE_GRAIN = (1 << 15) / WORD };
 
-nt_suspects nt_suspects_among(const nt_solve *solve, size_t begin, size_t end)
+typedef struct judge_job {
+	const nt_solve *solve;
+	nmtan_counts *counts; /* [ranges] */
+	uint64_t *faulty;     /* [words] */
+} judge_job;
+
+/* What is wrong with a row */
+
+/* Counts why a corner is not usable, and marks it. */
+static void mark_fault(float *t, const float *n, nmtan_counts *counts)
 {
-	const size_t corner = nt_first_corner(solve->mesh, begin);
-	return (nt_suspects){.solve = solve, .face = begin, .end = end, .corner = corner,
-		.triangle = corner - 2 * begin}; /* a triangle has 3 corners, a quad 4 and two triangles */
+	const float squared = nt_squared(t);
+	if (t[3] == 0.0f)
+		counts->repaired_unassigned++;
+	else if (!isfinite(squared))
+		counts->repaired_not_finite++;
+	else if (!(fabsf(squared - 1.0f) <= NT_UNIT_TOLERANCE))
+		counts->repaired_zero++;
+	else if (nt_is_parallel(t, n))
+		counts->repaired_parallel++;
+	else if (!nt_is_frame(t, n))
+		counts->repaired_leaning++;
+	else
+		counts->repaired_sign++;
+	t[3] = 0.0f;
 }
 
-void nt_suspects_step(nt_suspects *s)
-{
-	const unsigned size = nt_face_size(s->solve->mesh, s->face++);
-	s->corner += size;
-	s->triangle += size - 2;
-}
-
-/* The same for eight triangles at once, while none of them is suspect. */
-static void skip_triangles(nt_suspects *s, size_t *mirrored)
-{
-	const nt_vouched *vouched = s->solve->vouched;
-	const uint64_t ones = 0x0101010101010101u;
-	size_t positive = 0;
-	const size_t begin = s->face;
-	for (uint64_t eight; s->face + 8 <= s->end; s->face += 8) {
-		memcpy(&eight, vouched->flags + s->face, sizeof eight);
-		if (eight & ones * vouched->suspect)
-			break;
-		positive += (size_t)__builtin_popcountll(eight & ones * vouched->positive);
-	}
-	*mirrored += s->face - begin - positive;
-	s->triangle = s->face;
-	s->corner = 3 * s->face;
-}
-
-bool nt_suspects_find(nt_suspects *s, size_t *mirrored)
-{
-	const nmtan_mesh *mesh = s->solve->mesh;
-	const nt_vouched *vouched = s->solve->vouched;
-	size_t ignored = 0;
-	mirrored = mirrored ? mirrored : &ignored;
-	if (!vouched || !vouched->flags)
-		return s->face < s->end;
-	while (s->face < s->end) {
-		if (!mesh->face_sizes && s->face % 8 == 0) {
-			skip_triangles(s, mirrored);
-			if (s->face == s->end)
-				break;
-		}
-		const uint8_t *flags = vouched->flags + s->triangle;
-		const bool quad = nt_face_size(mesh, s->face) == 4;
-		if ((flags[0] | (quad ? flags[1] : 0)) & vouched->suspect)
-			return true;
-		*mirrored += !(flags[0] & vouched->positive) + (quad && !(flags[1] & vouched->positive));
-		nt_suspects_step(s);
-	}
-	return false;
-}
-
-static nt_fault judge_vector(const float *t, const float *n)
-{
-	const float squared = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
-	if (!isfinite(squared))
-		return NT_FAULT_NOT_FINITE;
-	if (!(fabsf(squared - 1.0f) <= NT_UNIT_TOLERANCE))
-		return NT_FAULT_LENGTH;
-	return nt_is_parallel(t, n) ? NT_FAULT_PARALLEL : NT_FAULT_NONE;
-}
-
-/* The w of most corners of a face; of its first one when there are two of each. */
+/* The w of most corners of a face that have one; of the first of these when there are two of each; 0: none has. */
 static float majority_sign(const float *tangents, size_t size)
 {
-	float sum = 0.0f;
-	for (size_t k = 0; k < size; k++)
+	float sum = 0.0f, first = 0.0f;
+	for (size_t k = 0; k < size; k++) {
 		sum += tangents[4 * k + 3];
-	return sum > 0.0f ? 1.0f : sum < 0.0f ? -1.0f : tangents[3];
+		first = first != 0.0f ? first : tangents[4 * k + 3];
+	}
+	return sum > 0.0f ? 1.0f : sum < 0.0f ? -1.0f : first;
 }
 
-nt_verdict nt_judge_face(const nt_solve *solve, size_t face, size_t first, bool *folded)
+/* Judges the rows of a face of a known orientation; true: some are unusable. */
+static bool judge_rows(const nt_solve *solve, size_t first, size_t size, int orientation, nmtan_counts *counts)
 {
 	const nmtan_mesh *mesh = solve->mesh;
-	const size_t size = nt_face_size(mesh, face);
-	const float *tangents = solve->tangents + 4 * first;
-	nt_verdict v = {.orientation = nt_face_orientation(mesh, face, first, true, folded)};
-	v.w = v.orientation ? (float)v.orientation : majority_sign(tangents, size);
+	float *t = solve->tangents + 4 * first;
+	const float w = orientation ? (float)orientation : majority_sign(t, size);
+	bool good = true;
+	for (size_t k = 0; k < size; k++)
+		good &= nt_is_frame(t + 4 * k, nt_normal(mesh, nt_vertex_of(mesh, first + k))) & (t[4 * k + 3] == w);
+	if (__builtin_expect(good && w != 0.0f, 1))
+		return false;
 	for (size_t k = 0; k < size; k++) {
-		const float *t = tangents + 4 * k;
-		v.faults[k] = judge_vector(t, nt_normal(mesh, nt_vertex_of(mesh, first + k)));
-		if (v.faults[k] == NT_FAULT_NONE && t[3] != v.w)
-			v.faults[k] = NT_FAULT_SIGN;
+		const float *n = nt_normal(mesh, nt_vertex_of(mesh, first + k));
+		if (!nt_is_frame(t + 4 * k, n) || t[4 * k + 3] != w || w == 0.0f)
+			mark_fault(t + 4 * k, n, counts);
 	}
-	return v;
+	return true;
 }
+
+/* What a face is like */
 
 static bool equal_positions(const nmtan_mesh *mesh, uint32_t a, uint32_t b)
 {
 	const float *p = nt_position(mesh, nt_vertex_of(mesh, a));
 	const float *q = nt_position(mesh, nt_vertex_of(mesh, b));
-	return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+	return (p[0] == q[0]) & (p[1] == q[1]) & (p[2] == q[2]);
 }
 
-/* Adds what a face is like to the counts. */
-static void count_face(const nmtan_mesh *mesh, size_t face, size_t first, nmtan_counts *counts)
+static bool is_degenerate(const nmtan_mesh *mesh, const uint32_t c[3])
+{
+	return equal_positions(mesh, c[0], c[1]) | equal_positions(mesh, c[1], c[2]) |
+	       equal_positions(mesh, c[2], c[0]);
+}
+
+/* Adds what a triangle is like to the counts; returns its exact orientation, as stored if it has one there. */
+static int count_triangle(const nmtan_mesh *mesh, const uint32_t corners[3], nmtan_counts *counts)
+{
+	const int sign = nt_triangle_orientation(mesh, corners, false);
+	const int stored = nt_has_stored(mesh) ? nt_triangle_orientation(mesh, corners, true) : sign;
+	counts->degenerate_texcoords += sign == 0;
+	counts->mirrored += sign < 0;
+	counts->stored_differently += mesh->stored_v_offset != 0.0f && sign != stored;
+	return stored ? stored : sign;
+}
+
+/* The same for a quad. */
+static int count_quad(const nmtan_mesh *mesh, size_t face, size_t first, nmtan_counts *counts)
 {
 	uint32_t corners[2][3];
-	const unsigned count = nt_face_triangles(mesh, face, first, corners);
-	bool degenerate = true;
-	for (unsigned i = 0; i < count; i++) {
-		const uint32_t *c = corners[i];
-		degenerate = degenerate && (equal_positions(mesh, c[0], c[1]) ||
-						   equal_positions(mesh, c[1], c[2]) ||
-						   equal_positions(mesh, c[2], c[0]));
-		const int sign = nt_triangle_orientation(mesh, c, false);
-		counts->degenerate_texcoords += sign == 0;
-		counts->mirrored += sign < 0;
-		counts->stored_differently += mesh->stored_v_offset != 0.0f &&
-					      sign != nt_triangle_orientation(mesh, c, true);
-	}
-	counts->degenerate_positions += degenerate;
+	bool folded;
+	nt_face_triangles(mesh, face, first, corners);
+	count_triangle(mesh, corners[0], counts);
+	count_triangle(mesh, corners[1], counts);
+	counts->degenerate_positions += is_degenerate(mesh, corners[0]) && is_degenerate(mesh, corners[1]);
+	const int orientation = nt_cut_orientation(mesh, corners, 2, true, &folded);
+	counts->folded_quads += folded;
+	return orientation;
 }
 
-static void count_faults(const nt_verdict *v, size_t size, nmtan_counts *counts)
+/* Suspects */
+
+/* Whether a whole word of triangles has no suspect; then those that are mirrored are counted. Each byte of `positive`
+ * counts one of eight columns of flags, at most eight, and the product has the sum of the bytes in its highest one. */
+static bool is_plain_word(const nt_vouched *vouched, const uint8_t *flags, size_t *mirrored)
 {
-	for (size_t k = 0; k < size; k++) {
-		counts->repaired_not_finite += v->faults[k] == NT_FAULT_NOT_FINITE;
-		counts->repaired_zero += v->faults[k] == NT_FAULT_LENGTH;
-		counts->repaired_parallel += v->faults[k] == NT_FAULT_PARALLEL;
-		counts->repaired_sign += v->faults[k] == NT_FAULT_SIGN;
+	const uint64_t ones = 0x0101010101010101u;
+	const int shift = __builtin_ctz(vouched->positive);
+	uint64_t suspect = 0, positive = 0;
+	for (size_t i = 0; i < WORD; i += sizeof suspect) {
+		uint64_t eight;
+		memcpy(&eight, flags + i, sizeof eight);
+		suspect |= eight;
+		positive += eight >> shift & ones;
+	}
+	if (suspect & ones * vouched->suspect)
+		return false;
+	*mirrored += WORD - (positive * ones >> 56);
+	return true;
+}
+
+/* The suspects among `count` triangles, at most a word of them, by their place. The others are counted where they are
+ * mirrored. Returns how many suspects there are. */
+static size_t list_suspects(const nt_vouched *vouched, const uint8_t *flags, size_t count, uint8_t *list,
+	size_t *mirrored)
+{
+	size_t found = 0, plain = 0;
+	if (count == WORD && is_plain_word(vouched, flags, mirrored))
+		return 0;
+	for (size_t i = 0; i < count; i++) {
+		const bool is = flags[i] & vouched->suspect;
+		list[found] = (uint8_t)i;
+		found += is;
+		plain += !is & !(flags[i] & vouched->positive);
+	}
+	*mirrored += plain;
+	return found;
+}
+
+static size_t list_all(size_t count, uint8_t *list)
+{
+	for (size_t i = 0; i < count; i++)
+		list[i] = (uint8_t)i;
+	return count;
+}
+
+static void ask_for_triangle(const nt_solve *solve, size_t t)
+{
+	for (size_t c = 3 * t; c < 3 * t + 3; c++) {
+		const size_t v = nt_vertex_of(solve->mesh, c);
+		__builtin_prefetch(solve->tangents + 4 * c);
+		__builtin_prefetch(nt_normal(solve->mesh, v));
+		__builtin_prefetch(nt_position(solve->mesh, v));
+		__builtin_prefetch(nt_texcoord(solve->mesh, v));
 	}
 }
 
-typedef struct judge_job {
-	const nt_solve *solve;
-	nmtan_counts *counts; /* [ranges] */
-} judge_job;
+/* Judges a suspect; true: it is faulty. */
+static bool judge_triangle(const nt_solve *solve, size_t t, nmtan_counts *counts)
+{
+	const nmtan_mesh *mesh = solve->mesh;
+	int orientation = nt_known_orientation(solve->vouched, t);
+	if (orientation) {
+		counts->mirrored += orientation < 0;
+	} else {
+		const uint32_t c = (uint32_t)(3 * t), corners[3] = {c, c + 1, c + 2};
+		orientation = count_triangle(mesh, corners, counts);
+		counts->degenerate_positions += is_degenerate(mesh, corners);
+	}
+	return solve->repair && judge_rows(solve, 3 * t, 3, orientation, counts);
+}
 
-static void judge_range(void *context, size_t begin, size_t end, unsigned slot)
+static void judge_triangles(const judge_job *job, size_t begin, size_t end, nmtan_counts *counts)
+{
+	const nt_solve *solve = job->solve;
+	const bool vouched = solve->vouched && solve->vouched->flags;
+	uint8_t list[WORD];
+	for (size_t word = begin; word < end; word++) {
+		const size_t first = WORD * word, left = solve->mesh->face_count - first;
+		const size_t count = left < WORD ? left : WORD;
+		const size_t found = vouched
+			? list_suspects(solve->vouched, solve->vouched->flags + first, count, list, &counts->mirrored)
+			: list_all(count, list);
+		uint64_t faulty = 0;
+		for (size_t i = 0; i < found; i++)
+			ask_for_triangle(solve, first + list[i]);
+		for (size_t i = 0; i < found; i++)
+			faulty |= (uint64_t)judge_triangle(solve, first + list[i], counts) << list[i];
+		job->faulty[word] = faulty;
+	}
+}
+
+/* Meshes with quads; flags are those of their triangles. */
+static void judge_quads(const judge_job *job, size_t begin, size_t end, nmtan_counts *counts)
+{
+	const nt_solve *solve = job->solve;
+	const nmtan_mesh *mesh = solve->mesh;
+	const nt_vouched *vouched = solve->vouched && solve->vouched->flags ? solve->vouched : NULL;
+	const size_t faces = WORD * end < mesh->face_count ? WORD * end : mesh->face_count;
+	size_t first = nt_first_corner(mesh, WORD * begin);
+	memset(job->faulty + begin, 0, (end - begin) * sizeof *job->faulty);
+	for (size_t face = WORD * begin; face < faces; first += nt_face_size(mesh, face++)) {
+		const bool quad = nt_face_size(mesh, face) == 4;
+		const uint8_t *flags = vouched ? vouched->flags + (first - 2 * face) : NULL;
+		if (flags && !((flags[0] | (quad ? flags[1] : 0)) & vouched->suspect)) {
+			counts->mirrored += !(flags[0] & vouched->positive) + (quad && !(flags[1] & vouched->positive));
+			continue;
+		}
+		int orientation;
+		if (quad) {
+			orientation = count_quad(mesh, face, first, counts);
+		} else {
+			const uint32_t c = (uint32_t)first, corners[3] = {c, c + 1, c + 2};
+			orientation = count_triangle(mesh, corners, counts);
+			counts->degenerate_positions += is_degenerate(mesh, corners);
+		}
+		if (solve->repair && judge_rows(solve, first, nt_face_size(mesh, face), orientation, counts))
+			job->faulty[face / WORD] |= (uint64_t)1 << face % WORD;
+	}
+}
+
+static void judge_words(void *context, size_t begin, size_t end, unsigned slot)
 {
 	const judge_job *job = context;
-	const nmtan_mesh *mesh = job->solve->mesh;
 	nmtan_counts counts = {0};
-	nt_suspects s = nt_suspects_among(job->solve, begin, end);
-	for (; nt_suspects_find(&s, &counts.mirrored); nt_suspects_step(&s)) {
-		bool folded;
-		const nt_verdict v = nt_judge_face(job->solve, s.face, s.corner, &folded);
-		counts.folded_quads += folded;
-		count_face(mesh, s.face, s.corner, &counts);
-		count_faults(&v, nt_face_size(mesh, s.face), &counts);
-	}
+	if (job->solve->mesh->face_sizes)
+		judge_quads(job, begin, end, &counts);
+	else
+		judge_triangles(job, begin, end, &counts);
 	job->counts[slot] = counts;
 }
 
-static void add_counts(nmtan_counts *sum, const nmtan_counts *part)
+nmtan_status nt_judge(const nt_solve *solve, nmtan_counts *counts, const uint64_t **faulty)
 {
-	sum->degenerate_positions += part->degenerate_positions;
-	sum->degenerate_texcoords += part->degenerate_texcoords;
-	sum->mirrored += part->mirrored;
-	sum->stored_differently += part->stored_differently;
-	sum->folded_quads += part->folded_quads;
-	sum->repaired_zero += part->repaired_zero;
-	sum->repaired_not_finite += part->repaired_not_finite;
-	sum->repaired_parallel += part->repaired_parallel;
-	sum->repaired_sign += part->repaired_sign;
-}
-
-nmtan_status nt_judge(const nt_solve *solve, nmtan_counts *counts)
-{
-	const size_t faces = solve->mesh->face_count;
-	const unsigned slots = nt_parallel_slots(solve->threads, faces, JUDGE_GRAIN);
-	judge_job job = {solve, nt_scratch_alloc(solve->scratch, slots, sizeof *job.counts)};
-	if (!job.counts)
+	const size_t words = (solve->mesh->face_count + WORD - 1) / WORD;
+	const unsigned slots = nt_parallel_slots(solve->threads, words, JUDGE_GRAIN);
+	judge_job job = {solve, nt_scratch_alloc(solve->scratch, slots, sizeof *job.counts),
+		nt_scratch_alloc(solve->scratch, words, sizeof *job.faulty)};
+	if (!job.counts || !job.faulty)
 		return NMTAN_ERROR_MEMORY;
-	nt_parallel_ranges(solve->threads, faces, JUDGE_GRAIN, judge_range, &job);
+	nt_parallel_ranges(solve->threads, words, JUDGE_GRAIN, judge_words, &job);
 	memset(counts, 0, sizeof *counts);
 	for (unsigned slot = 0; slot < slots; slot++)
-		add_counts(counts, &job.counts[slot]);
+		nt_counts_add(counts, &job.counts[slot]);
+	*faulty = nt_counts_repaired(counts) ? job.faulty : NULL;
 	return NMTAN_OK;
-}
-
-size_t nt_fault_count(const nmtan_counts *counts)
-{
-	return counts->repaired_zero + counts->repaired_not_finite + counts->repaired_parallel +
-	       counts->repaired_sign;
-}
-
-void nt_forget_faults(nmtan_counts *counts)
-{
-	counts->repaired_zero = counts->repaired_not_finite = 0;
-	counts->repaired_parallel = counts->repaired_sign = 0;
 }

@@ -141,19 +141,16 @@ static void load_normals(const nt_weld_row *rows, size_t count, size_t used, flo
 	}
 }
 
-/* Settled results that judge.c would not accept. */
-static uint32_t count_unusable(const float (*restrict normals)[NT_LANES], const record_lanes *restrict r,
-	const uint32_t *restrict complex, size_t used)
+/* A vertex whose result judge.c would not accept is left to complex.c, too: then the triangles at all other vertices
+ * still need no look. */
+static void leave_unusable(const float (*restrict normals)[NT_LANES], const record_lanes *restrict r,
+	uint32_t *restrict complex, size_t used)
 {
-	uint32_t unusable = 0;
 	for (size_t i = 0; i < used; i++) {
 		const float t[3] = {r->x[i], r->y[i], r->z[i]};
 		const float n[3] = {normals[0][i], normals[1][i], normals[2][i]};
-		const float squared = t[0] * t[0] + t[1] * t[1] + t[2] * t[2];
-		const int good = (fabsf(squared - 1.0f) <= NT_UNIT_TOLERANCE) & !nt_is_parallel(t, n);
-		unusable += r->present[i] & !complex[i] & !good;
+		complex[i] |= r->present[i] & !nt_is_frame(t, n);
 	}
-	return unusable;
 }
 
 /* Stores `count` records, `step` apart. */
@@ -256,7 +253,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		load_normals(fast->rows + first, count, used, normals);
 		for (int o = 0; o < 2; o++)
 			if (sums[o])
-				settled->unusable_count += count_unusable(normals, &r[o], complex, used);
+				leave_unusable(normals, &r[o], complex, used);
 	}
 	/* from here on the rows may be overwritten */
 	for (int o = 0; o < 2; o++) {
@@ -264,11 +261,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 			continue;
 		const uint32_t sign = o ? NT_RESULT_PLUS : NT_RESULT_MINUS;
 		for (size_t i = 0; i < used; i++) {
-			const uint32_t none = r[0].present[i] | r[1].present[i];
-			/* no group at all: the default of step 10 */
-			r[o].x[i] = none ? r[o].x[i] : 1.0f;
-			r[o].state[i] = complex[i] ? NT_RESULT_COMPLEX
-				: r[o].present[i] ? sign : none ? NT_RESULT_NONE : NT_RESULT_MINUS;
+			r[o].state[i] = complex[i] ? NT_RESULT_COMPLEX : r[o].present[i] ? sign : NT_RESULT_NONE;
 		}
 		store_records(nt_fast_record(fast, o, (uint32_t)first), fast->record_step, count, used, &r[o]);
 		if (fast->wants_more)

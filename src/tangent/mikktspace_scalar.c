@@ -516,7 +516,7 @@ static void write_output(const state *s)
 	const nt_solve *solve = s->solve;
 	for (size_t c = 0; c < solve->corner_count; c++) {
 		const slot *from = &s->slots[c];
-		const float w = from->orient ? 1.0f : -1.0f;
+		const float w = !from->writes ? nt_unassigned_sign(solve) : from->orient ? 1.0f : -1.0f;
 		memcpy(solve->tangents + 4 * c, (float[4]){from->os.x, from->os.y, from->os.z, w},
 			4 * sizeof(float));
 		if (solve->bitangents)

@@ -2,11 +2,22 @@
 /*
  * Repair: see repair.h.
  *
- * Judging (judge.c) finds nothing on most meshes. Where it finds something, the corners
- * concerned are collected by welded vertex and each gets, in this order: the robust average of the
- * triangles of its own orientation around its vertex (the exact value of what the method approximates);
- * a usable tangent at the same vertex; one of the same face; any vector perpendicular to the normal. What
- * is usable keeps its bytes.
+ * Judging (judge.c) finds nothing on most meshes, and then nothing is done here. Where it finds something it has
+ * marked the corners concerned with w = 0. They are collected by welded vertex, the triangles around these vertices
+ * are visited once, and each corner gets, in this order:
+ *
+ *   1 the robust average of the triangles of its face's orientation around its vertex: the exact value of what the
+ *     methods approximate
+ *   2 a usable tangent at the same vertex, in a face of the same orientation
+ *   3 one of the same face
+ *   4 where its face has no orientation of its own, 1 or 2 of the other orientation
+ *   5 a unit vector perpendicular to the normal
+ *
+ * A face without orientation takes that of its usable corners, or of what is around its vertices. What is usable
+ * keeps its bytes.
+ *
+ * Apart from what is faulty this costs one look at the vertices of each triangle, in a set of bits that stays in the
+ * first-level cache.
  */
 #include "tangent/repair.h"
 
@@ -16,17 +27,72 @@
 #include "tangent/judge.h"
 #include "topology/corners.h"
 
-/* What repairing needs: faults by corner, and the welded vertices that have one. */
+/* What is around a vertex with an unusable corner, for orientation -1 and +1. */
+typedef struct surroundings {
+	nt_frame_sum sums[2];
+	uint32_t usable[2]; /* the first usable corner, or NT_NO_ID */
+} surroundings;
+
 typedef struct patient {
 	const nt_solve *solve;
-	uint8_t *faults;           /* [corner_count] enum nt_fault */
-	const uint32_t *welded;    /* [corner_count] */
+	const uint64_t *faulty; /* a bit for each face */
+	const uint32_t *welded; /* [corner_count] */
 	size_t welded_count;
-	uint32_t *ids;             /* [welded_count] number of a welded vertex with a fault, or NT_NO_ID */
+	uint64_t *touched;      /* a bit for each welded vertex: it has an unusable corner */
+	uint32_t *ids;          /* [welded_count] numbers of the touched ones; the others have no meaning */
 	size_t id_count;
-	nt_frame_sum (*sums)[2];   /* [id_count] */
-	uint32_t (*usable)[2];     /* [id_count] first usable corner with w = -1 and +1, or NT_NO_ID */
+	surroundings *around;   /* [id_count] */
 } patient;
+
+static bool has_bit(const uint64_t *bits, size_t i)
+{
+	return bits[i / 64] >> i % 64 & 1;
+}
+
+static const surroundings *around_corner(const patient *p, size_t c)
+{
+	return &p->around[p->ids[p->welded[c]]];
+}
+
+static bool is_usable(const nt_solve *solve, size_t c)
+{
+	return nt_corner_tangent(solve, c)[3] != 0.0f;
+}
+
+/* Faults */
+
+/* A faulty face. */
+typedef struct place {
+	size_t face, first; /* its first corner */
+} place;
+
+/* The next faulty face from at->face on; false: there is none. */
+static bool find_faulty(const patient *p, place *at)
+{
+	const nmtan_mesh *mesh = p->solve->mesh;
+	size_t face = at->face;
+	while (face < mesh->face_count) {
+		const uint64_t left = p->faulty[face / 64] >> face % 64;
+		if (left) {
+			face += (size_t)__builtin_ctzll(left);
+			break;
+		}
+		face = (face / 64 + 1) * 64;
+	}
+	if (face >= mesh->face_count)
+		return false;
+	if (!mesh->face_sizes)
+		at->first = 3 * face;
+	for (; mesh->face_sizes && at->face < face; at->face++)
+		at->first += mesh->face_sizes[at->face];
+	at->face = face;
+	return true;
+}
+
+static void step_over(const patient *p, place *at)
+{
+	at->first += nt_face_size(p->solve->mesh, at->face++);
+}
 
 /* The welded vertices of all corners: the method's, if it tells. */
 static nmtan_status weld(patient *p)
@@ -43,113 +109,143 @@ static nmtan_status weld(patient *p)
 		   : NMTAN_ERROR_MEMORY;
 }
 
-/* Numbers the welded vertices that have a faulty corner; all others become NT_NO_ID. */
+/* Numbers the welded vertices that have an unusable corner. */
 static nmtan_status number_vertices(patient *p)
 {
-	const nmtan_status status = weld(p);
-	if (status)
-		return status;
-	p->ids = nt_scratch_alloc(p->solve->scratch, p->welded_count, sizeof *p->ids);
-	if (!p->ids)
+	const nt_solve *solve = p->solve;
+	const size_t words = p->welded_count / 64 + 1;
+	p->touched = nt_scratch_alloc(solve->scratch, words, sizeof *p->touched);
+	p->ids = nt_scratch_alloc(solve->scratch, p->welded_count, sizeof *p->ids);
+	if (!p->touched || !p->ids)
 		return NMTAN_ERROR_MEMORY;
-	memset(p->ids, 0xff, p->welded_count * sizeof *p->ids);
-	for (size_t c = 0; c < p->solve->corner_count; c++)
-		if (p->faults[c] != NT_FAULT_NONE && p->ids[p->welded[c]] == NT_NO_ID)
-			p->ids[p->welded[c]] = (uint32_t)p->id_count++;
+	memset(p->touched, 0, words * sizeof *p->touched);
+	for (place at = {0, 0}; find_faulty(p, &at); step_over(p, &at)) {
+		for (size_t c = at.first; c < at.first + nt_face_size(solve->mesh, at.face); c++) {
+			const uint32_t v = p->welded[c];
+			if (is_usable(solve, c) || has_bit(p->touched, v))
+				continue;
+			p->touched[v / 64] |= (uint64_t)1 << v % 64;
+			p->ids[v] = (uint32_t)p->id_count++;
+		}
+	}
 	return NMTAN_OK;
 }
 
-static uint32_t id_of(const patient *p, size_t corner)
-{
-	return p->ids[p->welded[corner]];
-}
+/* What is around */
 
-static void find_usable(patient *p)
-{
-	memset(p->usable, 0xff, p->id_count * sizeof *p->usable);
-	for (size_t c = 0; c < p->solve->corner_count; c++) {
-		if (p->faults[c] != NT_FAULT_NONE || id_of(p, c) == NT_NO_ID)
-			continue;
-		uint32_t *slot = &p->usable[id_of(p, c)][p->solve->tangents[4 * c + 3] > 0.0f];
-		if (*slot == NT_NO_ID)
-			*slot = (uint32_t)c;
-	}
-}
-
-static nmtan_status examine(patient *p)
+/* Adds a face with a touched vertex to what is around these. */
+static void visit_face(const patient *p, size_t face, size_t first)
 {
 	const nt_solve *solve = p->solve;
-	p->faults = nt_scratch_alloc(solve->scratch, solve->corner_count, 1);
-	if (!p->faults)
-		return NMTAN_ERROR_MEMORY;
-	memset(p->faults, NT_FAULT_NONE, solve->corner_count);
-	nt_suspects s = nt_suspects_among(solve, 0, solve->mesh->face_count);
-	for (; nt_suspects_find(&s, NULL); nt_suspects_step(&s)) {
-		const nt_verdict v = nt_judge_face(solve, s.face, s.corner, NULL);
-		for (size_t k = 0; k < nt_face_size(solve->mesh, s.face); k++)
-			p->faults[s.corner + k] = (uint8_t)v.faults[k];
+	const nmtan_mesh *mesh = solve->mesh;
+	uint32_t corners[2][3];
+	const unsigned count = nt_face_triangles(mesh, face, first, corners);
+	int orientation = mesh->face_sizes ? 0 : nt_known_orientation(solve->vouched, face);
+	if (!orientation)
+		orientation = nt_cut_orientation(mesh, corners, count, true, NULL);
+	for (size_t c = first; c < first + nt_face_size(mesh, face); c++) {
+		if (!has_bit(p->touched, p->welded[c]) || !is_usable(solve, c))
+			continue;
+		uint32_t *slot = &p->around[p->ids[p->welded[c]]].usable[nt_corner_tangent(solve, c)[3] > 0.0f];
+		*slot = *slot == NT_NO_ID ? (uint32_t)c : *slot;
 	}
-	const nmtan_status status = number_vertices(p);
-	if (status)
-		return status;
-	p->sums = nt_scratch_alloc(solve->scratch, p->id_count, sizeof *p->sums);
-	p->usable = nt_scratch_alloc(solve->scratch, p->id_count, sizeof *p->usable);
-	if (!p->sums || !p->usable)
+	for (unsigned i = 0; i < count; i++) {
+		nt_frame_sum *to[3];
+		for (int k = 0; k < 3; k++) {
+			const uint32_t v = p->welded[corners[i][k]];
+			to[k] = has_bit(p->touched, v) ? &p->around[p->ids[v]].sums[orientation > 0] : NULL;
+		}
+		nt_add_triangle(mesh, NT_WEIGHT_ANGLE, corners[i], to);
+	}
+}
+
+static nmtan_status look_around(patient *p)
+{
+	const nmtan_mesh *mesh = p->solve->mesh;
+	p->around = nt_scratch_alloc(p->solve->scratch, p->id_count, sizeof *p->around);
+	if (!p->around)
 		return NMTAN_ERROR_MEMORY;
-	memset(p->sums, 0, p->id_count * sizeof *p->sums);
-	nt_sum_frames(solve->mesh, NT_WEIGHT_ANGLE, p->welded, p->ids, p->sums);
-	find_usable(p);
+	for (size_t i = 0; i < p->id_count; i++)
+		p->around[i] = (surroundings){.usable = {NT_NO_ID, NT_NO_ID}};
+	for (size_t face = 0, first = 0; face < mesh->face_count; face++) {
+		const unsigned size = nt_face_size(mesh, face);
+		const uint32_t *v = p->welded + first;
+		bool near = has_bit(p->touched, v[0]) | has_bit(p->touched, v[1]) | has_bit(p->touched, v[2]);
+		near |= size == 4 && has_bit(p->touched, v[3]);
+		if (near)
+			visit_face(p, face, first);
+		first += size;
+	}
 	return NMTAN_OK;
 }
 
-/* The tangent of corner c, perpendicular to n; false where it has no such part. */
-static bool borrow(const nt_solve *solve, size_t c, nt_dvec3 n, nt_dvec3 *tangent)
+/* Mending */
+
+/* A usable corner's tangent, perpendicular to n; false where it has no such part. */
+static bool borrow(const nt_solve *solve, uint32_t c, nt_dvec3 n, nt_dvec3 *tangent)
 {
-	*tangent = nt_dvec3_reject(n, nt_dvec3_load(solve->tangents + 4 * c));
+	if (c == NT_NO_ID)
+		return false;
+	*tangent = nt_dvec3_reject(n, nt_dvec3_load(nt_corner_tangent(solve, c)));
 	return nt_dvec3_dot(*tangent, *tangent) > NT_PARALLEL_SINE_SQUARED && nt_dvec3_normalise(tangent);
 }
 
-/* The best tangent that can be had at corner c of a face that begins at `first`. `side` is 1 where w is to
- * be +1. */
-static nt_dvec3 best_tangent(const patient *p, size_t first, size_t size, size_t c, int orientation,
-	int side)
+/* 1 or 2 of the list above. */
+static bool find_around(const patient *p, size_t c, int side, nt_dvec3 n, nt_dvec3 *t)
+{
+	const surroundings *around = around_corner(p, c);
+	return nt_sum_tangent(&around->sums[side], n, t) || borrow(p->solve, around->usable[side], n, t);
+}
+
+/* The best tangent that can be had at corner c of a face with corners [first, end). */
+static nt_dvec3 best_tangent(const patient *p, size_t first, size_t end, size_t c, int orientation, int side)
 {
 	const nt_solve *solve = p->solve;
 	const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
-	const nt_frame_sum *sums = p->sums[id_of(p, c)];
-	const uint32_t *usable = p->usable[id_of(p, c)];
 	nt_dvec3 t;
-	if (orientation && nt_sum_tangent(&sums[side], n, &t))
+	if (find_around(p, c, side, n, &t))
 		return t;
-	for (int i = 0; i < 2; i++) {
-		const int s = i ? !side : side;
-		if (usable[s] != NT_NO_ID && borrow(solve, usable[s], n, &t))
+	for (size_t k = first; k < end; k++)
+		if (is_usable(solve, k) && borrow(solve, (uint32_t)k, n, &t))
 			return t;
-	}
-	for (int i = 0; i < 2; i++)
-		if (nt_sum_tangent(&sums[i ? !side : side], n, &t))
-			return t;
-	for (size_t k = first; k < first + size; k++)
-		if (p->faults[k] == NT_FAULT_NONE && borrow(solve, k, n, &t))
-			return t;
+	if (!orientation && find_around(p, c, !side, n, &t))
+		return t;
 	return nt_dvec3_perpendicular(n);
 }
 
-/* Writes a repaired corner; a wrong sign alone on a face without orientation leaves the vector. */
-static void mend_corner(const patient *p, size_t c, const nt_dvec3 *t, float w)
+/* The side of a face without orientation: that of a usable corner, all of which agree; else what most of its vertices
+ * have around them; of the first usable corner around where that is even; +1 where there is nothing. */
+static int choose_side(const patient *p, size_t first, size_t end)
 {
-	const nt_solve *solve = p->solve;
-	float *tangent = solve->tangents + 4 * c;
-	if (t) {
-		tangent[0] = (float)t->x;
-		tangent[1] = (float)t->y;
-		tangent[2] = (float)t->z;
+	int votes = 0, nearest = 1;
+	uint32_t least = NT_NO_ID;
+	for (size_t c = first; c < end; c++)
+		if (is_usable(p->solve, c))
+			return nt_corner_tangent(p->solve, c)[3] > 0.0f;
+	for (size_t c = first; c < end; c++) {
+		const surroundings *around = around_corner(p, c);
+		for (int side = 0; side < 2; side++) {
+			const bool there = around->usable[side] != NT_NO_ID || around->sums[side].weights > 0.0;
+			votes += there ? 2 * side - 1 : 0;
+			if (around->usable[side] < least) {
+				least = around->usable[side];
+				nearest = side;
+			}
+		}
 	}
+	return votes ? votes > 0 : nearest;
+}
+
+static void write_corner(const nt_solve *solve, size_t c, nt_dvec3 t, float w)
+{
+	float *tangent = solve->tangents + 4 * c;
+	tangent[0] = (float)t.x;
+	tangent[1] = (float)t.y;
+	tangent[2] = (float)t.z;
 	tangent[3] = w;
 	if (solve->bitangents) {
 		const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
-		const nt_dvec3 b =
-			nt_dvec3_scale(w, nt_dvec3_cross(n, nt_dvec3_load(tangent)));
+		const nt_dvec3 b = nt_dvec3_scale(w, nt_dvec3_cross(n, nt_dvec3_load(tangent)));
 		const float bitangent[3] = {(float)b.x, (float)b.y, (float)b.z};
 		memcpy(solve->bitangents + 3 * c, bitangent, sizeof bitangent);
 	}
@@ -157,47 +253,35 @@ static void mend_corner(const patient *p, size_t c, const nt_dvec3 *t, float w)
 		solve->magnitudes[2 * c] = solve->magnitudes[2 * c + 1] = 1.0f;
 }
 
-/* Repairs one face; usable corners are read as the method left them, so the order of faces does not
- * matter. */
+/* Repairs one face. Its own corners are read before any is written, and those around are usable ones, which are never
+ * written: the order of faces does not matter. */
 static void mend_face(const patient *p, size_t face, size_t first)
 {
-	const size_t size = nt_face_size(p->solve->mesh, face);
-	bool faulty = false;
-	for (size_t k = 0; k < size; k++)
-		faulty = faulty || p->faults[first + k] != NT_FAULT_NONE;
-	if (!faulty)
-		return;
-	const nt_verdict v = nt_judge_face(p->solve, face, first, NULL);
+	const nmtan_mesh *mesh = p->solve->mesh;
+	const size_t size = nt_face_size(mesh, face), end = first + size;
+	const int orientation = nt_face_orientation(mesh, face, first, true, NULL);
+	const int side = orientation ? orientation > 0 : choose_side(p, first, end);
 	nt_dvec3 tangents[4];
-	for (size_t k = 0; k < size; k++)
-		if (p->faults[first + k] != NT_FAULT_NONE)
-			tangents[k] = best_tangent(p, first, size, first + k, v.orientation, v.w > 0.0f);
+	bool mended[4];
 	for (size_t k = 0; k < size; k++) {
-		const nt_fault f = (nt_fault)p->faults[first + k];
-		const bool keep_vector = f == NT_FAULT_SIGN && !v.orientation;
-		if (f != NT_FAULT_NONE)
-			mend_corner(p, first + k, keep_vector ? NULL : &tangents[k], v.w);
+		mended[k] = !is_usable(p->solve, first + k);
+		if (mended[k])
+			tangents[k] = best_tangent(p, first, end, first + k, orientation, side);
 	}
+	for (size_t k = 0; k < size; k++)
+		if (mended[k])
+			write_corner(p->solve, first + k, tangents[k], side ? 1.0f : -1.0f);
 }
 
-nmtan_status nt_repair(const nt_solve *solve, bool repair, nmtan_counts *counts)
+nmtan_status nt_repair(const nt_solve *solve, nmtan_counts *counts)
 {
-	nmtan_status status = nt_judge(solve, counts);
-	if (status)
-		return status;
-	if (!repair) {
-		nt_forget_faults(counts);
-		return NMTAN_OK;
-	}
-	if (nt_fault_count(counts) == 0)
-		return NMTAN_OK;
-
 	patient p = {.solve = solve};
-	status = examine(&p);
-	if (status)
+	nmtan_status status = nt_judge(solve, counts, &p.faulty);
+	if (status || !p.faulty)
 		return status;
-	nt_suspects s = nt_suspects_among(solve, 0, solve->mesh->face_count);
-	for (; nt_suspects_find(&s, NULL); nt_suspects_step(&s))
-		mend_face(&p, s.face, s.corner);
+	if ((status = weld(&p)) || (status = number_vertices(&p)) || (status = look_around(&p)))
+		return status;
+	for (place at = {0, 0}; find_faulty(&p, &at); step_over(&p, &at))
+		mend_face(&p, at.face, at.first);
 	return NMTAN_OK;
 }

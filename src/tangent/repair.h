@@ -8,11 +8,11 @@
 #include "tangent/solve.h"
 
 /*
- * Judges every corner tangent of a solve (judge.h) and counts what the mesh is like; with `repair` replaces
- * the unusable ones.
+ * Judges every corner tangent of a solve (judge.h) and counts what the mesh is like; replaces the unusable ones where
+ * the solve repairs. Rows that the solve left out (nt_vouched.ids) stay out.
  *
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */
-nmtan_status nt_repair(const nt_solve *solve, bool repair, nmtan_counts *counts);
+nmtan_status nt_repair(const nt_solve *solve, nmtan_counts *counts);
 
 #endif

@@ -6,6 +6,7 @@
 #ifndef NT_TANGENT_SOLVE_H
 #define NT_TANGENT_SOLVE_H
 
+#include <stdbool.h>
 #include "base/scratch.h"
 #include "nmtan.h"
 
@@ -18,6 +19,8 @@
 typedef struct nt_vouched {
 	const uint8_t *flags; /* [triangle_count], quads count as two; NULL: nothing is known */
 	uint8_t suspect, positive;
+	uint8_t doubtful;     /* bits of `suspect` without which the orientation is known all the same, and that the
+	                         triangle is not degenerate */
 	const uint32_t *ids;  /* [corner_count] welded vertices, or NULL */
 	const float *rows[2]; /* [vertex count][4] by orientation, w = 0 where no triangle at the vertex
 	                         has it; NULL: none at all */
@@ -26,6 +29,14 @@ typedef struct nt_vouched {
 	                           known; NULL: ask nt_weld_corners() */
 	size_t welded_count;
 } nt_vouched;
+
+/* The exact orientation of triangle t, where its flags tell it; 0: they do not. */
+static inline int nt_known_orientation(const nt_vouched *vouched, size_t t)
+{
+	if (!vouched || !vouched->flags || vouched->flags[t] & vouched->doubtful)
+		return 0;
+	return vouched->flags[t] & vouched->positive ? 1 : -1;
+}
 
 /* Parts of a mesh in the order in which a solve is done with them. */
 typedef enum nt_mesh_part { NT_PART_ATTRIBUTES, NT_PART_INDICES } nt_mesh_part;
@@ -40,6 +51,8 @@ typedef struct nt_solve {
 	nt_scratch *scratch;
 	nmtan_timing *timing;    /* to be added to, or NULL */
 	nt_vouched *vouched;     /* for the method to fill; empty before; may be NULL */
+	bool repair;             /* a corner that no triangle gives a tangent gets w = 0 for judge.c to find; else
+	                            MikkTSpace's placeholder (1, 0, 0) with w = -1 */
 	bool sparse;             /* rows that vouched.ids stands for need not be written; not with quads */
 	/* Memory that is filled after the method is done: it may serve as scratch. */
 	void *lent;
@@ -51,6 +64,21 @@ typedef struct nt_solve {
 	float *bitangents;       /* [corner_count][3] or NULL */
 	float *magnitudes;       /* [corner_count][2] or NULL */
 } nt_solve;
+
+/* The w of a corner that no triangle gave a tangent. */
+static inline float nt_unassigned_sign(const nt_solve *solve)
+{
+	return solve->repair ? 0.0f : -1.0f;
+}
+
+/* The tangent of corner c of triangle c / 3, in its row or shared; of quads in its row. */
+static inline const float *nt_corner_tangent(const nt_solve *solve, size_t c)
+{
+	const nt_vouched *v = solve->vouched;
+	if (!v || !v->ids || v->flags[c / 3] & v->suspect)
+		return solve->tangents + 4 * c;
+	return v->rows[(v->flags[c / 3] & v->positive) != 0] + v->row_step * v->ids[c];
+}
 
 /* The definition: one step after the other, as the specification has them, for any mesh. */
 nmtan_status nt_mikktspace_scalar(const nt_solve *solve);

@@ -244,13 +244,26 @@ static nmtan_status finish(const run *given, nt_sums_finished *sum)
 	return NMTAN_OK;
 }
 
+/* Of a corner whose vertex does not tell it: repair looks at the whole face. */
+enum { NO_SIDE = -1 };
+
+/* The orientation whose sum a corner gets. */
+static int side_of(const nt_sums *s, uint8_t flags, uint8_t vertex)
+{
+	if (!(flags & NT_SUM_NONE))
+		return flags & NT_SUM_POSITIVE;
+	const bool negative = vertex & NT_VERTEX_MET, positive = vertex & NT_VERTEX_MET << 1;
+	return s->solve->repair && negative == positive ? NO_SIDE : positive;
+}
+
 static void write_corner(const nt_sums *s, size_t corner, uint32_t id, int side)
 {
 	const nt_solve *solve = s->solve;
 	nt_vertex_tangent r = {0, 0, 0, 0};
-	if (s->results[side])
+	if (side != NO_SIDE && s->results[side])
 		r = s->results[side][id];
-	r.w = side ? 1.0f : -1.0f;
+	if (r.w == 0.0f && !solve->repair)
+		r.w = side ? 1.0f : -1.0f;
 	memcpy(solve->tangents + 4 * corner, &r, sizeof r);
 	if (solve->bitangents) {
 		const nt_dvec3 t = {r.x, r.y, r.z};
@@ -273,17 +286,18 @@ static bool is_counted(const nt_sums *s, size_t t, size_t i)
 }
 
 /* Writes any triangle, and returns how many of its corners are ill-conditioned. A face without orientation
- * takes the orientation that has a sum at its corners. What judging has to see becomes suspect. */
+ * takes that of the sums at its corners. What judging has to see becomes suspect. */
 static size_t write_triangle(const nt_sums *s, size_t t)
 {
 	size_t ill = 0;
 	for (size_t i = 3 * t; i < 3 * t + 3; i++) {
 		const uint32_t id = s->ids[i];
 		const uint8_t flags = s->flags[t], vertex = s->vertex_flags[id];
-		const int side = flags & NT_SUM_NONE ? (vertex & NT_VERTEX_MET << 1) != 0 : flags & NT_SUM_POSITIVE;
-		if (vertex & NT_VERTEX_LOST << side)
+		const int side = side_of(s, flags, vertex);
+		const bool none = side == NO_SIDE || !s->results[side];
+		if (!none && (vertex & NT_VERTEX_LOST << side))
 			s->flags[t] |= NT_SUM_SUSPECT;
-		ill += (!s->results[side] || (vertex & NT_VERTEX_ILL << side)) && !is_counted(s, t, i);
+		ill += (none || (vertex & NT_VERTEX_ILL << side)) && !is_counted(s, t, i);
 		write_corner(s, nt_sums_corner(s, i), id, side);
 	}
 	return ill;
@@ -348,7 +362,7 @@ static void vouch(const nt_sums *s, bool sparse)
 	if (!vouched)
 		return;
 	*vouched = (nt_vouched){.flags = s->flags, .positive = NT_SUM_POSITIVE, .suspect = NT_SUM_SUSPECT,
-		.welded = s->weld.ids, .welded_count = s->weld.count};
+		.doubtful = NT_SUM_SUSPECT, .welded = s->weld.ids, .welded_count = s->weld.count};
 	if (!sparse)
 		return;
 	vouched->ids = s->ids;

@@ -114,6 +114,7 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 		? threshold_cos(r->options.angular_threshold_degrees) : -1.0f;
 	/* asking how many processors there are is a system call */
 	solve->threads = solve->corner_count < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(r->options.threads);
+	solve->repair = r->options.repair == NMTAN_REPAIR_ON;
 	solve->one_by_one = r->options.path == NMTAN_PATH_SCALAR;
 	solve->isa = r->options.isa == NMTAN_ISA_AUTO ? nt_cpu_best() : r->options.isa;
 	r->mark = nt_scratch_here(solve->scratch);
@@ -149,7 +150,7 @@ nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options
 	size_t ill_conditioned = 0;
 	status = run_method(&r.solve, &r.options, &ill_conditioned);
 	if (!status)
-		status = nt_repair(&r.solve, r.options.repair == NMTAN_REPAIR_ON, &output->counts);
+		status = nt_repair(&r.solve, &output->counts);
 	output->counts.ill_conditioned = ill_conditioned;
 	end_request(&r);
 	return status;
@@ -161,7 +162,7 @@ static nmtan_status solve_vertices(request *r, nt_splitter *splitter, nmtan_coun
 	r->solve.sparse = r->solve.vouched && !r->mesh.face_sizes;
 	nmtan_status status = run_method(&r->solve, &r->options, &ill_conditioned);
 	if (!status)
-		status = nt_repair_and_split(&r->solve, r->options.repair == NMTAN_REPAIR_ON, counts, splitter);
+		status = nt_repair_and_split(&r->solve, counts, splitter);
 	counts->ill_conditioned = ill_conditioned;
 	return status;
 }

@@ -15,27 +15,13 @@
 #include "tangent/judge.h"
 #include "topology/corners.h"
 
-/* The tangent of corner i of the triangles. */
-static const float *corner_tangent(const nt_solve *solve, size_t t, size_t i)
-{
-	const nt_vouched *v = solve->vouched;
-	if (v->flags[t] & v->suspect)
-		return solve->tangents + 4 * i;
-	return v->rows[(v->flags[t] & v->positive) != 0] + v->row_step * v->ids[i];
-}
-
-typedef struct vertex_tally {
-	size_t open, doubtful;
-} vertex_tally;
-
 typedef struct vertex_split {
 	const nt_solve *solve;
 	nt_splitter *splitter;
 	const uint32_t *numbers; /* [vertex_count] welded vertex of each; NULL: v is v */
 	uint32_t *found;         /* numbers, while they are being found */
-	uint8_t *used;           /* [vertex_count] has corners */
 	uint8_t *touched;        /* [triangle_count] has a corner at an open vertex */
-	vertex_tally *tallies;   /* [ranges] */
+	size_t *open;            /* [ranges] open vertices */
 } vertex_split;
 
 /* Values of nt_splitter.seen before the corners are taken. */
@@ -90,17 +76,21 @@ static nmtan_status number_vertices(vertex_split *job)
 /* Corners of suspect triangles have rows of their own. */
 static void open_suspects(const vertex_split *job)
 {
-	const nt_solve *solve = job->solve;
-	nt_suspects s = nt_suspects_among(solve, 0, solve->mesh->face_count);
-	for (; nt_suspects_find(&s, NULL); nt_suspects_step(&s))
-		for (size_t i = s.corner; i < s.corner + 3; i++)
-			job->splitter->seen[nt_vertex_of(solve->mesh, i)] = SEEN_OPEN;
-}
-
-/* What a vertex gets that no sound triangle touches: perhaps because none does at all. */
-static bool is_default(const float *row)
-{
-	return row[0] == 1.0f && row[1] == 0.0f && row[2] == 0.0f && row[3] == -1.0f;
+	const nmtan_mesh *mesh = job->solve->mesh;
+	const nt_vouched *vouched = job->solve->vouched;
+	const uint64_t suspect = 0x0101010101010101u * vouched->suspect;
+	uint64_t eight;
+	for (size_t t = 0; t < mesh->face_count; t++) {
+		const bool full = t + sizeof eight <= mesh->face_count;
+		if (full)
+			memcpy(&eight, vouched->flags + t, sizeof eight);
+		if (full && !(eight & suspect)) {
+			t += sizeof eight - 1;
+			continue;
+		}
+		for (size_t i = 3 * t; (vouched->flags[t] & vouched->suspect) && i < 3 * t + 3; i++)
+			job->splitter->seen[nt_vertex_of(mesh, i)] = SEEN_OPEN;
+	}
 }
 
 static bool has_result(const nt_vouched *vouched, int side, uint32_t number)
@@ -113,7 +103,7 @@ static void take_vertices(void *context, size_t begin, size_t end, unsigned slot
 {
 	const vertex_split *job = context;
 	const nt_vouched *vouched = job->solve->vouched;
-	vertex_tally tally = {0};
+	size_t open = 0;
 	for (size_t v = begin; v < end; v++) {
 		const uint32_t number = job->numbers ? job->numbers[v] : (uint32_t)v;
 		uint8_t *seen = &job->splitter->seen[v];
@@ -122,39 +112,14 @@ static void take_vertices(void *context, size_t begin, size_t end, unsigned slot
 		const bool positive = has_result(vouched, 1, number);
 		if (*seen == SEEN_OPEN || (positive && has_result(vouched, 0, number))) {
 			*seen = SEEN_NOT;
-			tally.open++;
+			open++;
 		} else if (positive || has_result(vouched, 0, number)) {
 			const float *row = vouched->rows[positive] + vouched->row_step * number;
 			*seen = SEEN_ONE;
-			tally.doubtful += !job->numbers && is_default(row);
 			memcpy(job->splitter->tangents + 4 * v, row, 4 * sizeof(float));
 		}
 	}
-	job->tallies[slot] = tally;
-}
-
-static void mark_used(void *context, size_t begin, size_t end, unsigned slot)
-{
-	(void)slot;
-	const vertex_split *job = context;
-	const uint32_t *indices = job->solve->mesh->indices;
-	for (size_t c = 3 * begin; c < 3 * end; c++)
-		__atomic_store_n(&job->used[indices[c]], 1, __ATOMIC_RELAXED);
-}
-
-/* A vertex without corners has not been seen. */
-static nmtan_status forget_unused(vertex_split *job)
-{
-	const nt_solve *solve = job->solve;
-	const size_t vertex_count = solve->mesh->vertex_count;
-	job->used = nt_scratch_alloc(solve->scratch, vertex_count, 1);
-	if (!job->used)
-		return NMTAN_ERROR_MEMORY;
-	memset(job->used, 0, vertex_count);
-	nt_parallel_ranges(solve->threads, solve->mesh->face_count, VERTEX_GRAIN, mark_used, job);
-	for (size_t v = 0; v < vertex_count; v++)
-		job->splitter->seen[v] &= job->used[v];
-	return NMTAN_OK;
+	job->open[slot] = open;
 }
 
 static void touch_triangles(void *context, size_t begin, size_t end, unsigned slot)
@@ -194,7 +159,7 @@ static nmtan_status split_open(vertex_split *job)
 	for (size_t t = next_touched(job, 0); !status && t < solve->mesh->face_count; t = next_touched(job, t + 1))
 		for (size_t i = 3 * t; !status && i < 3 * t + 3; i++)
 			status = nt_splitter_take(job->splitter,
-				(uint32_t)nt_vertex_of(solve->mesh, i), corner_tangent(solve, t, i), i);
+				(uint32_t)nt_vertex_of(solve->mesh, i), nt_corner_tangent(solve, i), i);
 	return status;
 }
 
@@ -205,20 +170,16 @@ nmtan_status nt_split_shared(const nt_solve *solve, nt_splitter *splitter)
 	const double begin = nt_seconds();
 	const unsigned slots = nt_parallel_slots(solve->threads, vertex_count, VERTEX_GRAIN);
 	vertex_split job = {.solve = solve, .splitter = splitter,
-		.tallies = nt_scratch_alloc(solve->scratch, slots, sizeof *job.tallies)};
-	nmtan_status status = job.tallies ? number_vertices(&job) : NMTAN_ERROR_MEMORY;
+		.open = nt_scratch_alloc(solve->scratch, slots, sizeof *job.open)};
+	nmtan_status status = job.open ? number_vertices(&job) : NMTAN_ERROR_MEMORY;
 	if (status)
 		return status;
 	open_suspects(&job);
 	nt_parallel_ranges(solve->threads, vertex_count, VERTEX_GRAIN, take_vertices, &job);
-	vertex_tally sum = {0};
-	for (unsigned slot = 0; slot < slots; slot++) {
-		sum.open += job.tallies[slot].open;
-		sum.doubtful += job.tallies[slot].doubtful;
-	}
-	if (sum.doubtful)
-		status = forget_unused(&job);
-	if (!status && sum.open)
+	size_t open = 0;
+	for (unsigned slot = 0; slot < slots; slot++)
+		open += job.open[slot];
+	if (open)
 		status = split_open(&job);
 	if (solve->timing)
 		solve->timing->split += nt_seconds() - begin;

@@ -10,6 +10,6 @@
 
 /* From a method's result, which may be sparse: judges or repairs it, and splits. Returns what
  * nmtan_vertex_tangents() does. */
-nmtan_status nt_repair_and_split(const nt_solve *solve, bool repair, nmtan_counts *counts, nt_splitter *splitter);
+nmtan_status nt_repair_and_split(const nt_solve *solve, nmtan_counts *counts, nt_splitter *splitter);
 
 #endif

@@ -124,8 +124,8 @@ static void score_vectors(const nmtan_mesh *mesh, const oracle_corner *exact, bo
 	s->high_degrees = angles[(size_t)((double)(s->judged - 1) * 0.999)];
 }
 
-/* MikkTSpace's bytes stay where they are usable: a finite unit vector, not along N, in a face whose signs
- * agree and are the exact one. */
+/* MikkTSpace's bytes stay where they are usable: a finite unit vector across N, not the placeholder, in a face whose
+ * signs agree and are the exact one. */
 static size_t count_altered(const nmtan_mesh *mesh, const oracle_corner *exact, const float *raw,
 	const float *repaired)
 {
@@ -137,7 +137,8 @@ static size_t count_altered(const nmtan_mesh *mesh, const oracle_corner *exact, 
 			agree = agree && raw[4 * c + 3] == (float)exact[first].sign;
 		for (size_t c = first; agree && c < first + size; c++)
 			altered += is_unit(raw + 4 * c) &&
-				   fabs(along_normal(raw + 4 * c, normal_of(mesh, c))) < 1 - 6e-7 &&
+				   fabs(along_normal(raw + 4 * c, normal_of(mesh, c))) < 1.0 / 1024 - 1e-9 &&
+				   !(raw[4 * c] == 1 && raw[4 * c + 3] == -1) &&
 				   memcmp(raw + 4 * c, repaired + 4 * c, 16) != 0;
 		first += size;
 	}
