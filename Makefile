@@ -86,17 +86,17 @@ lanes := -O3 -fno-trapping-math
 ifeq ($(config),debug)
 lanes :=
 endif
-$(call objects_of,tangent/kernel_baseline.c tangent/sums_kernel_baseline.c): FILE_FLAGS := $(lanes)
+$(call objects_of,tangent/fast/kernel_baseline.c tangent/sums/kernel_baseline.c): FILE_FLAGS := $(lanes)
 ifneq ($(filter x86_64%,$(shell $(CC) -dumpmachine)),)
-$(call objects_of,tangent/kernel_avx2.c tangent/sums_kernel_avx2.c): FILE_FLAGS := $(lanes) -mavx2 -mfma
-$(call objects_of,tangent/kernel_avx512.c tangent/sums_kernel_avx512.c): FILE_FLAGS := $(lanes) \
+$(call objects_of,tangent/fast/kernel_avx2.c tangent/sums/kernel_avx2.c): FILE_FLAGS := $(lanes) -mavx2 -mfma
+$(call objects_of,tangent/fast/kernel_avx512.c tangent/sums/kernel_avx512.c): FILE_FLAGS := $(lanes) \
 	-mavx512f -mavx512bw -mavx512dq -mavx512vl -mfma -mprefer-vector-width=512
 endif
 $(call objects_of,topology/weld_table.c topology/weld_sieve.c topology/weld_threads.c): FILE_FLAGS := $(lanes)
 $(call objects_of,base/largest.c): FILE_FLAGS := $(lanes)
 
 # The page of HTML reports is assembled into the binary: see page_assets.c.
-$(call objects_of,report/page_assets.c): $(call existing,src/report/page/*)
+$(call objects_of,report/render/page_assets.c): $(call existing,src/report/render/page/*)
 
 # Foreign headers whose warnings are not ours.
 $(call objects_of,ext/openmesh.cpp): FILE_FLAGS := -Wno-maybe-uninitialized -Wno-class-memaccess

@@ -13,7 +13,7 @@
 
 #include "base/buffer.h"
 #include "base/parallel.h"
-#include "io/format.h"
+#include "format/format.h"
 
 static nt_status make_jobs(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
 {

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include "base/buffer.h"
-#include "io/file.h"
+#include "file/input.h"
 
 static nt_status to_sink(void *user, const void *bytes, size_t size, nt_error *error)
 {

@@ -5,7 +5,7 @@
 #ifndef NT_PIPELINE_REPORT_FILE_H
 #define NT_PIPELINE_REPORT_FILE_H
 
-#include "report/write.h"
+#include "report/render/render.h"
 
 /* Where a report goes. */
 typedef struct nt_report_target {

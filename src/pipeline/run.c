@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include "io/format.h"
-#include "io/normal_map.h"
-#include "io/verify.h"
+#include "format/format.h"
+#include "format/normal_map.h"
+#include "gltf/verify.h"
 #include "base/clock.h"
 #include "pipeline/stages.h"
 

@@ -14,7 +14,7 @@
 #include <string.h>
 #include "base/counts.h"
 #include "base/parallel.h"
-#include "tangent/tangents.h"
+#include "api/tangents.h"
 
 /* Corners from which one mesh is worth all threads, and those that small ones must have together for threads
  * to be made at all, which costs as much as solving some hundred triangles. */

@@ -6,7 +6,7 @@
  * Time is linear in the size of the mesh; a million triangles take a fraction of a second beside the
  * solve that authored tangents are compared with.
  */
-#include "report/judge.h"
+#include "report/check.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -7,7 +7,7 @@
  * Two triangles of an edge continue each other in UV space when both ends have equal texture
  * coordinates on both. On an edge of many triangles all that have the same coordinates do.
  */
-#include "report/judge.h"
+#include "report/check.h"
 
 #include <stdlib.h>
 #include <string.h>

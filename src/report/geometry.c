@@ -9,7 +9,7 @@
  * two such errors). To first order the tangent changes by |M^-1| |D| |X|, |M^-1| = s1 / |det M| with
  * s1 the larger singular value, and turns by at most the arc sine of that over the tangent's length.
  */
-#include "report/judge.h"
+#include "report/check.h"
 
 #include <math.h>
 #include <string.h>

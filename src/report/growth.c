@@ -4,7 +4,7 @@
  * a copy whose w differs from its source's stands on the other side of a mirror, any other one has
  * another direction.
  */
-#include "report/judge.h"
+#include "report/check.h"
 
 #include <math.h>
 #include <string.h>

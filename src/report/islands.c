@@ -11,7 +11,7 @@
  * An island with both windings is a fold, unless its mirrored part lies point by point on its own
  * unmirrored part: then it is a symmetric model whose halves share the coordinates of the middle line.
  */
-#include "report/judge.h"
+#include "report/check.h"
 
 #include <math.h>
 #include <stdlib.h>

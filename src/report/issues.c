@@ -4,7 +4,7 @@
  * tally gets its sentence, its severity and its fingerprint. At the end findings are sorted, compared
  * with the baseline and cut to the number asked for.
  */
-#include "report/judge.h"
+#include "report/check.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -3,7 +3,7 @@
  * The validation report of one input: what was found, where, and the numbers behind it.
  *
  * nt_report_build() judges a scene whose meshes are loaded and, on conversion, solved and split; the
- * report owns all it holds, so the scene may go. nt_report_write() (write.h) turns one or many reports
+ * report owns all it holds, so the scene may go. nt_report_write() (report/render/render.h) turns one or many reports
  * into text, JSON and so on. Nothing here prints.
  *
  * What is found is data: one finding per seam, island or group of equal occurrences, with a fingerprint

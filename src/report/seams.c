@@ -7,7 +7,7 @@
  *
  * Sides of one edge may share their vertices or have vertices of their own; both count.
  */
-#include "report/judge.h"
+#include "report/check.h"
 
 #include <math.h>
 #include <stdio.h>

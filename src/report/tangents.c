@@ -6,7 +6,7 @@
  * three corners, and the one that the exact orientation of the texture coordinates asks for. By corner:
  * the angle to a fresh MikkTSpace solve, where there is one to compare with.
  */
-#include "report/judge.h"
+#include "report/check.h"
 
 #include <math.h>
 #include <string.h>

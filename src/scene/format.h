@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The formats by number, and what a user can ask of their readers and writers. Who reads and writes them is in
- * the table of io/format.h, which stands above them all.
+ * the table of format/format.h, which stands above them all.
  */
 #ifndef NT_SCENE_FORMAT_H
 #define NT_SCENE_FORMAT_H

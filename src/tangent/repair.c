@@ -2,7 +2,7 @@
 /*
  * Repair: see repair.h.
  *
- * Judging (judge.c) finds nothing on most meshes, and then nothing is done here. Where it finds something it has
+ * Judging (usable.c) finds nothing on most meshes, and then nothing is done here. Where it finds something it has
  * marked the corners concerned with w = 0. They are collected by welded vertex, the triangles around these vertices
  * are visited once, and each corner gets, in this order:
  *
@@ -24,7 +24,7 @@
 #include <math.h>
 #include <string.h>
 #include "tangent/frames.h"
-#include "tangent/judge.h"
+#include "tangent/usable.h"
 #include "topology/corners.h"
 
 /* What is around a vertex with an unusable corner, for orientation -1 and +1. */

@@ -10,7 +10,7 @@
 #include "base/scratch.h"
 #include "nmtan.h"
 
-/* What a method knows of its result, for judge.c. Of a triangle without a bit of `suspect` all corners are
+/* What a method knows of its result, for usable.c. Of a triangle without a bit of `suspect` all corners are
  * usable, it is not degenerate, no half of a folded quad, and its orientation, positive where a bit of
  * `positive` is set, is exact and survives storing.
  *
@@ -51,7 +51,7 @@ typedef struct nt_solve {
 	nt_scratch *scratch;
 	nmtan_timing *timing;    /* to be added to, or NULL */
 	nt_vouched *vouched;     /* for the method to fill; empty before; may be NULL */
-	bool repair;             /* a corner that no triangle gives a tangent gets w = 0 for judge.c to find; else
+	bool repair;             /* a corner that no triangle gives a tangent gets w = 0 for usable.c to find; else
 	                            MikkTSpace's placeholder (1, 0, 0) with w = -1 */
 	bool sparse;             /* rows that vouched.ids stands for need not be written; not with quads */
 	/* Memory that is filled after the method is done: it may serve as scratch. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What a triangle adds to the sum at one of its corners, without a branch: the one formula behind
- * frames.c, which does one triangle after the other, and sums_kernel.h, which does many at a time.
+ * frames.c, which does one triangle after the other, and tangent/sums/kernel.h, which does many at a time.
  *
  * Nothing here has unit length but the normal: scales cancel in the direction, in the angle and in the
  * conditions, so that a corner needs two reciprocal square roots and no division.

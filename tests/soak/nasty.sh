@@ -6,7 +6,7 @@ each=$((100000 / $(nproc)))
 pids=()
 for ((i = 0; i < $(nproc); i++)); do
 	NT_NASTY_FROM=$((i * each + 1000000)) NT_NASTY_COUNT=$each \
-		"$build/tests/unit/tangent/test_fast" >"$build/nasty.$i.log" 2>&1 &
+		"$build/tests/unit/tangent/fast/test_fast" >"$build/nasty.$i.log" 2>&1 &
 	pids+=($!)
 done
 failed=0

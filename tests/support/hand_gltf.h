@@ -8,8 +8,8 @@
 #include "test.h"
 #include "folder.h"
 #include "ext/tinygltf.h"
-#include "io/file.h"
-#include "io/gltf_compose.h"
+#include "file/input.h"
+#include "gltf/create/create.h"
 
 #include <unistd.h>
 

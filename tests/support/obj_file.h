@@ -7,7 +7,7 @@
 #define NT_TEST_OBJ_FILE_H
 
 #include "test.h"
-#include "io/obj.h"
+#include "obj/read.h"
 
 #define TRIANGLE "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 

@@ -7,7 +7,7 @@
 #define NT_TEST_PLY_FILE_H
 
 #include "test.h"
-#include "io/ply.h"
+#include "ply/read.h"
 
 typedef struct reading {
 	nt_scene scene;

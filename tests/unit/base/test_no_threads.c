@@ -30,5 +30,5 @@ static void the_caller_does_all_in_order(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {cmocka_unit_test(the_caller_does_all_in_order)};
-	return cmocka_run_group_tests_name("base/pool without threads", tests, NULL, NULL);
+	return cmocka_run_group_tests_name("base/no_threads", tests, NULL, NULL);
 }

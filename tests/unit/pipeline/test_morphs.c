@@ -12,9 +12,9 @@
 #include <stdio.h>
 #include <time.h>
 #include "base/buffer.h"
-#include "io/gltf_accessor.h"
-#include "io/gltf_document.h"
-#include "io/gltf_read.h"
+#include "gltf/accessor.h"
+#include "gltf/document.h"
+#include "gltf/open.h"
 #include "pipeline/run.h"
 
 static const float rows[6][4][3] = {

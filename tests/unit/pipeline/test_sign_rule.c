@@ -12,7 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include "ext/tinygltf.h"
-#include "io/file.h"
+#include "file/input.h"
 #include "pipeline/run.h"
 
 typedef struct rule_count {

@@ -1,0 +1,208 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The entry point of the compute library: checks what the caller gave, runs the method, repairs.
+ *
+ * Checking costs one pass over indices and face sizes, so that no later stage has to doubt them.
+ */
+#include "api/tangents.h"
+
+#include <math.h>
+#include <string.h>
+#include "base/clock.h"
+#include "base/cpu.h"
+#include "base/parallel.h"
+#include "tangent/fast/fast.h"
+#include "tangent/repair.h"
+#include "tangent/solve.h"
+#include "tangent/sums/sums.h"
+#include "api/vertices.h"
+#include "topology/corners.h"
+
+/* No stage shares fewer corners among threads. */
+enum { LEAST_SHARED_CORNERS = 1 << 14 };
+
+/* A row stride: 0 becomes the row's size; false where the stride cannot be. */
+static bool fill_stride(size_t *stride_bytes, size_t row_bytes)
+{
+	if (*stride_bytes == 0)
+		*stride_bytes = row_bytes;
+	return *stride_bytes >= row_bytes && *stride_bytes % sizeof(float) == 0;
+}
+
+static nmtan_status check_attributes(nmtan_mesh *mesh)
+{
+	if (!mesh->positions || !mesh->normals || !mesh->texcoords)
+		return NMTAN_ERROR_ARGUMENT;
+	if (!fill_stride(&mesh->position_stride_bytes, 3 * sizeof(float)) ||
+		!fill_stride(&mesh->normal_stride_bytes, 3 * sizeof(float)) ||
+		!fill_stride(&mesh->texcoord_stride_bytes, 2 * sizeof(float)) ||
+		!isfinite(mesh->stored_v_offset))
+		return NMTAN_ERROR_ARGUMENT;
+	return NMTAN_OK;
+}
+
+static nmtan_status check_options(const nmtan_options *options)
+{
+	const float degrees = options->angular_threshold_degrees;
+	if ((unsigned)options->method > NMTAN_METHOD_ROBUST ||
+		(unsigned)options->repair > NMTAN_REPAIR_OFF ||
+		(unsigned)options->path > NMTAN_PATH_FAST || (unsigned)options->isa > NMTAN_ISA_AVX512)
+		return NMTAN_ERROR_ARGUMENT;
+	if (!(degrees >= 0.0f && degrees <= 180.0f) || !nt_cpu_has(options->isa))
+		return NMTAN_ERROR_ARGUMENT;
+	return NMTAN_OK;
+}
+
+/* Spec page, step 7: float degrees to radians, double cosine, rounded once. */
+static float threshold_cos(float degrees)
+{
+	return (float)cos((double)((degrees * (float)M_PI) / 180.0f));
+}
+
+static nmtan_status run_method(const nt_solve *solve, const nmtan_options *options,
+	size_t *ill_conditioned)
+{
+	switch (options->method) {
+	case NMTAN_METHOD_MIKKTSPACE:
+		return options->path == NMTAN_PATH_SCALAR ? nt_mikktspace_scalar(solve)
+							  : nt_mikktspace_fast(solve);
+	case NMTAN_METHOD_AREA:
+		return nt_area(solve);
+	case NMTAN_METHOD_LENGYEL:
+		return nt_lengyel(solve);
+	case NMTAN_METHOD_ROBUST:
+		return nt_robust(solve, ill_conditioned);
+	}
+	return NMTAN_ERROR_ARGUMENT;
+}
+
+/* One call: the checked input, and the scratch where the caller gave none. */
+typedef struct request {
+	nmtan_options options;
+	nmtan_mesh mesh;
+	nt_vouched vouched;
+	nt_solve solve;
+	nt_scratch own;
+	nt_scratch_mark mark;
+	nmtan_timing timing; /* of this call */
+	double begin;
+} request;
+
+/* Checks everything before anything is computed, and fills in what was left to defaults. */
+static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmtan_options *options)
+{
+	*r = (request){.mesh = *mesh};
+	if (options)
+		r->options = *options;
+	if (r->options.timing)
+		r->begin = nt_seconds();
+	nmtan_status status = check_options(&r->options);
+	if (!status)
+		status = check_attributes(&r->mesh);
+	if (!status)
+		status = nt_check_faces(&r->mesh, r->options.threads, &r->solve.corner_count);
+	if (status)
+		return status;
+	nt_scratch_init(&r->own, r->options.allocator);
+	nt_solve *solve = &r->solve;
+	solve->mesh = &r->mesh;
+	/* bounds on the error of the determinants of `texcoords` say nothing about those of others */
+	solve->vouched = r->mesh.exact_texcoords ? NULL : &r->vouched;
+	solve->timing = r->options.timing ? &r->timing : NULL;
+	solve->scratch = r->options.workspace ? &r->options.workspace->scratch : &r->own;
+	solve->threshold_cos = r->options.angular_threshold_degrees > 0.0f
+		? threshold_cos(r->options.angular_threshold_degrees) : -1.0f;
+	/* asking how many processors there are is a system call */
+	solve->threads = solve->corner_count < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(r->options.threads);
+	solve->repair = r->options.repair == NMTAN_REPAIR_ON;
+	solve->one_by_one = r->options.path == NMTAN_PATH_SCALAR;
+	solve->isa = r->options.isa == NMTAN_ISA_AUTO ? nt_cpu_best() : r->options.isa;
+	r->mark = nt_scratch_here(solve->scratch);
+	return NMTAN_OK;
+}
+
+static void end_request(request *r)
+{
+	nmtan_timing *sum = r->options.timing;
+	if (sum) {
+		sum->weld += r->timing.weld;
+		sum->split += r->timing.split;
+		sum->solve += nt_seconds() - r->begin - r->timing.weld - r->timing.split;
+	}
+	nt_scratch_back(r->solve.scratch, r->mark);
+	nt_scratch_free(&r->own);
+}
+
+nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options, nmtan_output *output)
+{
+	if (!mesh || !output || !output->tangents)
+		return NMTAN_ERROR_ARGUMENT;
+	memset(&output->counts, 0, sizeof output->counts);
+	request r;
+	nmtan_status status = begin_request(&r, mesh, options);
+	if (status || r.solve.corner_count == 0)
+		return status;
+	r.solve.tangents = output->tangents;
+	r.solve.bitangents = output->bitangents;
+	r.solve.magnitudes = output->magnitudes;
+
+	/* the method's own answer, then what a renderer can use */
+	size_t ill_conditioned = 0;
+	status = run_method(&r.solve, &r.options, &ill_conditioned);
+	if (!status)
+		status = nt_repair(&r.solve, &output->counts);
+	output->counts.ill_conditioned = ill_conditioned;
+	end_request(&r);
+	return status;
+}
+
+static nmtan_status solve_vertices(request *r, nt_splitter *splitter, nmtan_counts *counts)
+{
+	size_t ill_conditioned = 0;
+	r->solve.sparse = r->solve.vouched && !r->mesh.face_sizes;
+	nmtan_status status = run_method(&r->solve, &r->options, &ill_conditioned);
+	if (!status)
+		status = nt_repair_and_split(&r->solve, counts, splitter);
+	counts->ill_conditioned = ill_conditioned;
+	return status;
+}
+
+nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
+	const nt_vertex_request *wanted, nmtan_split_output *output, nmtan_counts *counts)
+{
+	nmtan_counts own_counts;
+	counts = counts ? counts : &own_counts;
+	if (!mesh || !output || !output->indices || !output->vertex_tangents ||
+		(output->source_capacity && !output->sources))
+		return NMTAN_ERROR_ARGUMENT;
+	memset(counts, 0, sizeof *counts);
+	output->source_count = 0;
+	request r;
+	nmtan_status status = begin_request(&r, mesh, options);
+	if (status)
+		return status;
+	nt_splitter splitter;
+	r.solve.passed = wanted->passed;
+	r.solve.user = wanted->user;
+	r.solve.lent = output->vertex_tangents; /* the split fills it at the end */
+	r.solve.lent_bytes = r.mesh.vertex_count * 4 * sizeof(float);
+	r.solve.tangents = nt_scratch_alloc(r.solve.scratch, r.solve.corner_count, 4 * sizeof(float));
+	status = r.solve.tangents ? nt_splitter_begin(&splitter, &r.mesh, r.solve.corner_count,
+					    output, r.solve.scratch)
+				  : NMTAN_ERROR_MEMORY;
+	splitter.lazy = wanted->lazy_indices;
+	splitter.threads = r.solve.threads;
+	if (!status && r.solve.corner_count > 0)
+		status = solve_vertices(&r, &splitter, counts);
+	if (!status)
+		nt_splitter_end(&splitter);
+	end_request(&r);
+	return status;
+}
+
+nmtan_status nmtan_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
+	nmtan_split_output *output, nmtan_counts *counts)
+{
+	const nt_vertex_request nothing = {.lazy_indices = false};
+	return nt_vertex_tangents(mesh, options, &nothing, output, counts);
+}

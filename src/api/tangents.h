@@ -1,0 +1,20 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The entry point beyond nmtan.h: what the tool asks of nmtan_vertex_tangents().
+ */
+#ifndef NT_API_TANGENTS_H
+#define NT_API_TANGENTS_H
+
+#include "tangent/solve.h"
+
+typedef struct nt_vertex_request {
+	bool lazy_indices; /* with source_count 0 output->indices is not written: they are the mesh's own */
+	void (*passed)(void *user, nt_mesh_part part); /* see nt_solve */
+	void *user;
+} nt_vertex_request;
+
+/* nmtan_vertex_tangents() with a request. */
+nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
+	const nt_vertex_request *request, nmtan_split_output *output, nmtan_counts *counts);
+
+#endif

@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Inputs: a regular file is mapped, anything else (pipe, terminal, device, a file without a size as
+ * /proc has them) is read to its end. The descriptor of a mapped file stays open, so that the writer
+ * can let the kernel copy ranges of it.
+ *
+ * A file that another process shortens while it is mapped ends the process with SIGBUS, as for every
+ * program that maps files; nothing here can prevent that.
+ */
+#include "file/input.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include "base/memory.h"
+
+enum { FIRST_READ_BYTES = 64 * 1024 };
+
+static const unsigned char no_bytes[1]; /* where the data of an empty input points */
+
+static nt_status fail_read(nt_error *error, const char *path, int number)
+{
+	if (number == ENOENT)
+		nt_fail(error, NT_ERROR_IO, "no such file");
+	else
+		nt_fail(error, NT_ERROR_IO, "cannot read: %s", strerror(number));
+	return nt_error_in_file(error, path);
+}
+
+/* Reads a descriptor to its end. */
+static nt_status read_all(nt_file *file, int fd, const char *path, nt_error *error)
+{
+	unsigned char *data = NULL;
+	size_t size = 0, capacity = 0;
+	for (;;) {
+		size_t needed;
+		if (!nt_size_add(size, size ? 1 : FIRST_READ_BYTES, &needed) ||
+			!nt_grow((void **)&data, &capacity, needed, 1)) {
+			free(data);
+			nt_fail_memory(error);
+			return nt_error_in_file(error, path);
+		}
+		const ssize_t count = read(fd, data + size, capacity - size);
+		if (count < 0 && errno == EINTR)
+			continue;
+		if (count < 0) {
+			const int number = errno;
+			free(data);
+			return fail_read(error, path, number);
+		}
+		if (count == 0)
+			break;
+		size += (size_t)count;
+	}
+	if (size) {
+		file->data = data;
+		file->size = size;
+	} else {
+		free(data);
+	}
+	return NT_OK;
+}
+
+/* Maps what can be mapped; false: it has to be read. */
+static bool map_all(nt_file *file, int fd, const struct stat *status)
+{
+	if (!S_ISREG(status->st_mode) || status->st_size <= 0 ||
+		(uintmax_t)status->st_size > SIZE_MAX / 2 || lseek(fd, 0, SEEK_CUR) != 0)
+		return false;
+	const size_t size = (size_t)status->st_size;
+	void *data = mmap(NULL, size, PROT_READ, MAP_PRIVATE, fd, 0);
+	if (data == MAP_FAILED)
+		return false;
+	file->data = data;
+	file->size = size;
+	file->mapped = true;
+	file->fd = fd;
+	return true;
+}
+
+nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
+{
+	*file = (nt_file){.data = no_bytes, .fd = -1};
+	const bool standard = strcmp(path, "-") == 0;
+	const int fd = standard ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
+				: open(path, O_RDONLY | O_CLOEXEC);
+	struct stat status;
+	if (fd < 0 || fstat(fd, &status) != 0) {
+		const int number = errno;
+		if (fd >= 0)
+			close(fd);
+		return fail_read(error, path, number);
+	}
+	if (!standard) {
+		file->device = (uint64_t)status.st_dev;
+		file->inode = (uint64_t)status.st_ino;
+	}
+	if (map_all(file, fd, &status))
+		return NT_OK;
+	const nt_status result = S_ISDIR(status.st_mode) ? fail_read(error, path, EISDIR)
+							    : read_all(file, fd, path, error);
+	close(fd);
+	return result;
+}
+
+void nt_file_close(nt_file *file)
+{
+	if (file->mapped)
+		munmap((void *)(uintptr_t)file->data, file->size);
+	else if (file->data != no_bytes)
+		free((void *)(uintptr_t)file->data);
+	if (file->mapped)
+		close(file->fd);
+	*file = (nt_file){.data = no_bytes, .fd = -1};
+}
+
+void nt_file_forget(const nt_file *file, const void *bytes, size_t size)
+{
+	const uintptr_t map = (uintptr_t)file->data, at = (uintptr_t)bytes;
+	if (!file->mapped || at < map || at - map > file->size || size > file->size - (at - map))
+		return;
+	/* whole pages only: the others hold something else too */
+	const size_t page = (size_t)sysconf(_SC_PAGESIZE);
+	const size_t begin = (at - map + page - 1) / page * page, end = (at - map + size) / page * page;
+	if (begin < end)
+		madvise((void *)(map + begin), end - begin, MADV_DONTNEED); /* a refusal changes nothing */
+}
+
+/* Advice on the whole pages that hold a range. */
+static void advise(const nt_file *file, size_t offset, size_t size, int advice)
+{
+	const size_t page = (size_t)sysconf(_SC_PAGESIZE), begin = offset / page * page;
+	if (file->mapped && size)
+		madvise((void *)(uintptr_t)(file->data + begin), offset + size - begin, advice);
+}
+
+void nt_file_fetch(const nt_file *file, size_t offset, size_t size)
+{
+#ifdef MADV_POPULATE_READ
+	advise(file, offset, size, MADV_POPULATE_READ);
+#else
+	advise(file, offset, size, MADV_WILLNEED);
+#endif
+}
+
+void nt_file_release(const nt_file *file, size_t offset, size_t size)
+{
+	advise(file, offset, size, MADV_DONTNEED);
+}
+
+bool nt_file_is(const nt_file *file, const char *path)
+{
+	struct stat status;
+	return file->inode && strcmp(path, "-") != 0 && stat(path, &status) == 0 &&
+	       (uint64_t)status.st_dev == file->device && (uint64_t)status.st_ino == file->inode;
+}

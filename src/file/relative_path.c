@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Names of files: see relative_path.h. Resolving is lexical, so that a name keeps the symbolic links it goes
+ * through; who must know where a file really is asks realpath().
+ */
+#include "file/relative_path.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+#include "file/uri.h"
+
+bool nt_link_folder(nt_buffer *text, const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	char *folder = slash ? strndup(path, (size_t)(slash - path) + (slash == path)) : strdup(".");
+	char *resolved = folder ? realpath(folder, NULL) : NULL;
+	bool known = resolved != NULL;
+	if (resolved) {
+		nt_buffer_text(text, resolved);
+	} else if (folder && slash && errno == ENOENT) {
+		/* not there (yet, in a dry run): its own folder, and its name as it is spelled */
+		const char *name = strrchr(folder, '/');
+		known = nt_link_folder(text, folder);
+		nt_buffer_format(text, "/%s", name ? name + 1 : folder);
+	}
+	free(folder);
+	free(resolved);
+	return known;
+}
+
+static bool is_separator(char c)
+{
+	return c == '/' || c == '\\';
+}
+
+bool nt_link_is_absolute(const char *name)
+{
+	const size_t scheme = strspn(name,
+		"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+-.");
+	return is_separator(name[0]) || (scheme > 0 && name[scheme] == ':' &&
+		(scheme == 1 || (is_separator(name[scheme + 1]) && is_separator(name[scheme + 2]))));
+}
+
+/* Appends the components of a name to a path, one by one. `begin`: where the path begins in text. */
+static void append_components(nt_buffer *text, size_t begin, const char *name)
+{
+	while (*name && !text->failed) {
+		size_t length = 0;
+		while (name[length] && !is_separator(name[length]))
+			length++;
+		if (length == 2 && memcmp(name, "..", 2) == 0) {
+			while (text->size > begin && text->data[--text->size] != '/')
+				;
+			if (text->data)
+				text->data[text->size] = '\0';
+		} else if (length > 0 && !(length == 1 && *name == '.')) {
+			nt_buffer_text(text, "/");
+			nt_buffer_append(text, name, length);
+		}
+		name += length;
+		name += is_separator(*name);
+	}
+}
+
+void nt_link_join(nt_buffer *text, const char *folder, const char *name)
+{
+	const size_t begin = text->size;
+	if (!nt_link_is_absolute(name))
+		append_components(text, begin, folder);
+	append_components(text, begin, name);
+	if (text->size == begin)
+		nt_buffer_text(text, "/");
+}
+
+bool nt_link_is_inside(const char *path, const char *folder)
+{
+	const size_t length = strcmp(folder, "/") == 0 ? 0 : strlen(folder);
+	return strncmp(path, folder, length) == 0 && path[length] == '/';
+}
+
+void nt_link_uri(nt_buffer *text, const char *folder, const char *path)
+{
+	if (strcmp(folder, "/") == 0)
+		folder = "";
+	/* where the last common component ends */
+	size_t common = 0;
+	for (size_t i = 0;; i++) {
+		const bool folder_ends = folder[i] == '/' || folder[i] == '\0';
+		if (folder_ends && path[i] == '/')
+			common = i;
+		if (folder[i] == '\0' || folder[i] != path[i])
+			break;
+	}
+	for (const char *rest = folder + common; *rest; rest++)
+		if (*rest == '/')
+			nt_buffer_text(text, "../");
+	const char *name = path + common + 1;
+	nt_uri_append_path(text, name);
+}

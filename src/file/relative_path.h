@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Names of files as documents spell them: from a source that refers to a file, and as a relative,
+ * percent-encoded URI in an output. Everything works on text, but for nt_link_folder().
+ */
+#ifndef NT_FILE_RELATIVE_PATH_H
+#define NT_FILE_RELATIVE_PATH_H
+
+#include <stdbool.h>
+#include "base/buffer.h"
+
+/* Appends the absolute path of the folder that contains `path` (links resolved, no final slash but for
+ * the root). Folders that are not there are named as they are spelled. False when the place of `path` cannot
+ * be found out. */
+bool nt_link_folder(nt_buffer *text, const char *path);
+
+/* Appends `name` taken from `folder` (absolute), with "\" as "/", and "." and ".." resolved. */
+void nt_link_join(nt_buffer *text, const char *folder, const char *name);
+
+/* Whether a name is a path of its own or a URL: "/x", "\\host\x", "C:\x", "http://x". */
+bool nt_link_is_absolute(const char *name);
+
+/* Whether an absolute, resolved path is below an absolute folder. */
+bool nt_link_is_inside(const char *path, const char *folder);
+
+/* Appends the URI by which a document in `folder` reaches `path`; both absolute and resolved. */
+void nt_link_uri(nt_buffer *text, const char *folder, const char *path);
+
+#endif

@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * URIs in glTF documents, and why some of them are not followed. A document comes from anywhere; a URI
+ * in it must not make us read a file outside the document's folder, neither by its text ("..", an
+ * absolute path, a drive letter, a scheme) nor through a symbolic link. The text is judged after percent
+ * decoding and with both kinds of slash, the link by comparing real paths.
+ */
+#include "file/uri.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include "file/base64.h"
+
+enum { SHOWN = 200 }; /* characters of a URI that a message shows */
+
+static bool is_letter(char c)
+{
+	return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+static bool is_digit(char c)
+{
+	return c >= '0' && c <= '9';
+}
+
+static int hex_digit(char c)
+{
+	if (is_digit(c))
+		return c - '0';
+	if (c >= 'a' && c <= 'f')
+		return c - 'a' + 10;
+	if (c >= 'A' && c <= 'F')
+		return c - 'A' + 10;
+	return -1;
+}
+
+/* Decodes %xx; a percent sign that begins no such group stands for itself, as in names that nobody
+ * encoded. Returns the decoded length; out may be in. */
+static size_t percent_decode(const char *in, size_t length, char *out)
+{
+	size_t count = 0;
+	for (size_t i = 0; i < length; i++) {
+		const int high = in[i] == '%' && i + 2 < length ? hex_digit(in[i + 1]) : -1;
+		const int low = high >= 0 ? hex_digit(in[i + 2]) : -1;
+		if (low >= 0) {
+			out[count++] = (char)(high * 16 + low);
+			i += 2;
+		} else {
+			out[count++] = in[i];
+		}
+	}
+	return count;
+}
+
+/* ---- data URIs ---- */
+
+bool nt_uri_is_data(const char *uri, size_t length)
+{
+	return length >= 5 && strncasecmp(uri, "data:", 5) == 0;
+}
+
+static int base64_digit(char c)
+{
+	if (c >= 'A' && c <= 'Z')
+		return c - 'A';
+	if (c >= 'a' && c <= 'z')
+		return c - 'a' + 26;
+	if (is_digit(c))
+		return c - '0' + 52;
+	if (c == '+' || c == '-')
+		return 62;
+	if (c == '/' || c == '_')
+		return 63;
+	return -1;
+}
+
+/* Decodes base64 at uri[begin, length). Padding may be left out. */
+static nt_status base64_decode(const char *uri, size_t begin, size_t length, unsigned char *out,
+	size_t *size, nt_error *error)
+{
+	size_t end = length;
+	while (end > begin && length - end < 2 && uri[end - 1] == '=')
+		end--;
+	uint32_t group = 0;
+	size_t count = 0, digits = 0;
+	for (size_t i = begin; i < end; i++) {
+		const int digit = base64_digit(uri[i]);
+		if (digit < 0)
+			return nt_fail(error, NT_ERROR_INPUT,
+				"character %zu of the data URI is not base64", i + 1);
+		group = group << 6 | (uint32_t)digit;
+		if (++digits == 4) {
+			out[count++] = (unsigned char)(group >> 16);
+			out[count++] = (unsigned char)(group >> 8);
+			out[count++] = (unsigned char)group;
+			digits = 0;
+			group = 0;
+		}
+	}
+	if (digits == 1)
+		return nt_fail(error, NT_ERROR_INPUT,
+			"the base64 text of the data URI ends in the middle of a byte");
+	if (digits >= 2)
+		out[count++] = (unsigned char)(group >> (digits == 2 ? 4 : 10));
+	if (digits == 3)
+		out[count++] = (unsigned char)(group >> 2);
+	*size = count;
+	return NT_OK;
+}
+
+nt_status nt_uri_decode_data(const char *uri, size_t length, unsigned char **bytes, size_t *size,
+	nt_error *error)
+{
+	*bytes = NULL;
+	const char *comma = memchr(uri, ',', length);
+	if (!comma)
+		return nt_fail(error, NT_ERROR_INPUT, "the data URI has no comma before its data");
+	const size_t head = (size_t)(comma - uri), begin = head + 1;
+	const bool base64 = head >= 7 && strncasecmp(comma - 7, ";base64", 7) == 0;
+	unsigned char *block = nt_alloc(length - begin + 1, 1);
+	if (!block)
+		return nt_fail_memory(error);
+	nt_status status = NT_OK;
+	if (base64)
+		status = base64_decode(uri, begin, length, block, size, error);
+	else
+		*size = percent_decode(uri + begin, length - begin, (char *)block);
+	if (status)
+		free(block);
+	else
+		*bytes = block;
+	return status;
+}
+
+void nt_uri_append_data(nt_buffer *buffer, const char *media_type, const void *bytes, size_t size)
+{
+	nt_buffer_format(buffer, "data:%s;base64,", media_type);
+	nt_base64_append(buffer, bytes, size);
+}
+
+/* ---- files ---- */
+
+static bool is_slash(char c)
+{
+	return c == '/' || c == '\\';
+}
+
+/* "http:", "file:", and with one letter a drive. */
+static bool has_scheme(const char *name)
+{
+	size_t i = 0;
+	if (!is_letter(name[0]))
+		return false;
+	while (is_letter(name[i]) || is_digit(name[i]) || name[i] == '+' || name[i] == '-' ||
+		name[i] == '.')
+		i++;
+	return name[i] == ':';
+}
+
+static bool has_parent_step(const char *name)
+{
+	for (const char *part = name; *part;) {
+		const size_t length = strcspn(part, "/\\");
+		if (length == 2 && part[0] == '.' && part[1] == '.')
+			return true;
+		part += length + (part[length] != '\0');
+	}
+	return false;
+}
+
+/* What is wrong with the text of a decoded name; NULL: nothing. */
+static const char *judge_text(const char *name, size_t length, bool allow_outside)
+{
+	if (length == 0)
+		return "is empty";
+	if (memchr(name, '\0', length))
+		return "contains a NUL";
+	if (allow_outside)
+		return NULL;
+	if (is_slash(name[0]))
+		return "is an absolute path (refused unless --allow-outside)";
+	if (has_parent_step(name))
+		return "leaves the folder of the file (refused unless --allow-outside)";
+	return NULL;
+}
+
+/* Folder of the document with its final slash; empty for the current folder. */
+static size_t folder_length(const char *document)
+{
+	const char *slash = strrchr(document, '/');
+	return slash ? (size_t)(slash - document) + 1 : 0;
+}
+
+/* Whether the real path of `path` lies below the real path of the folder. */
+static nt_status check_links(const char *path, const char *folder, const char *uri, nt_error *error)
+{
+	char *real = realpath(path, NULL);
+	if (!real)
+		return nt_fail(error, errno == ENOMEM ? NT_ERROR_MEMORY : NT_ERROR_IO,
+			"cannot open \"%.*s\": %s", SHOWN, uri, strerror(errno));
+	char *real_folder = realpath(*folder ? folder : ".", NULL);
+	nt_status status = NT_OK;
+	if (!real_folder) {
+		status = nt_fail(error, NT_ERROR_IO, "cannot resolve the folder of the file: %s",
+			strerror(errno));
+	} else {
+		size_t length = strlen(real_folder);
+		if (length && real_folder[length - 1] == '/')
+			length--; /* the root */
+		if (strncmp(real, real_folder, length) != 0 || real[length] != '/')
+			status = nt_fail(error, NT_ERROR_INPUT,
+				"the URI \"%.*s\" leaves the folder of the file through a symbolic link "
+				"(refused unless --allow-outside)", SHOWN, uri);
+	}
+	free(real_folder);
+	free(real);
+	return status;
+}
+
+nt_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri, size_t length,
+	bool allow_outside, const char **path, nt_error *error)
+{
+	char *name = nt_arena_text(arena, uri, length);
+	if (!name)
+		return nt_fail_memory(error);
+	const size_t name_length = percent_decode(uri, length, name);
+	name[name_length] = '\0';
+	const char *fault = judge_text(name, name_length, allow_outside);
+	if (fault)
+		return nt_fail(error, NT_ERROR_INPUT, "the URI \"%.*s\" %s", SHOWN, uri, fault);
+	if (has_scheme(name))
+		return nt_fail(error, name[1] == ':' ? NT_ERROR_INPUT : NT_ERROR_UNSUPPORTED,
+			name[1] == ':' ? "the URI \"%.*s\" names a drive" :
+					 "the URI \"%.*s\" has a scheme; only data: and relative names are read",
+			SHOWN, uri);
+
+	/* An absolute name, allowed here, stands for itself. */
+	const size_t folder = name[0] == '/' ? 0 : folder_length(document);
+	char *full = nt_arena_alloc(arena, folder + name_length + 1, 1);
+	char *folder_text = nt_arena_text(arena, document, folder_length(document));
+	if (!full || !folder_text)
+		return nt_fail_memory(error);
+	memcpy(full, document, folder);
+	memcpy(full + folder, name, name_length + 1);
+	*path = full;
+	return allow_outside ? NT_OK : check_links(full, folder_text, uri, error);
+}
+
+void nt_uri_append_path(nt_buffer *buffer, const char *path)
+{
+	for (const char *c = path; *c; c++) {
+		if (is_letter(*c) || is_digit(*c) || strchr("-._~/", *c))
+			nt_buffer_append(buffer, c, 1);
+		else
+			nt_buffer_format(buffer, "%%%02X", (unsigned char)*c);
+	}
+}

@@ -1,0 +1,43 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The table of formats: who reads and who writes what. A format is found by content first, then by the
+ * name's extension.
+ */
+#ifndef NT_FORMAT_FORMAT_H
+#define NT_FORMAT_FORMAT_H
+
+#include "file/input.h"
+#include "scene/format.h"
+#include "scene/scene.h"
+
+/* One row of the table. Functions that a format does not have are NULL. */
+typedef struct nt_format_entry {
+	nt_format format;
+	const char *name;       /* as --output-format spells it */
+	const char *extensions; /* ".gltf"; several separated by spaces */
+	/* Whether these bytes are this format; called with the whole input. */
+	bool (*recognise)(const unsigned char *bytes, size_t size);
+	/* Describes the meshes of scene->bytes (and loads them, where that is one step). */
+	nt_status (*open)(nt_scene *scene, const nt_read_options *options, nt_error *error);
+	/* After the decisions: sets same_as of meshes that will be solved and have the geometry of an earlier one;
+	 * NULL: no two have the same. */
+	nt_status (*find_same)(nt_scene *scene, const nt_read_options *options, nt_error *error);
+	/* Brings the geometry of one mesh; NULL: open did. */
+	nt_status (*load)(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
+		nt_error *error);
+	/* Stores the annotated scene. Any scene may come; a scene of the same format carries its
+	 * source document. */
+	nt_status (*write)(nt_scene *scene, const nt_write_options *options, nt_output *output,
+		nt_error *error);
+} nt_format_entry;
+
+/* The entry of a format; NULL for NT_FORMAT_UNKNOWN. */
+const nt_format_entry *nt_format_find(nt_format format);
+
+/* The entry for an input: by content, then by name. NULL when nothing fits. */
+const nt_format_entry *nt_format_of_input(const unsigned char *bytes, size_t size, const char *path);
+
+/* The entry whose extension the path ends in, in any case; NULL: none. */
+const nt_format_entry *nt_format_of_path(const char *path);
+
+#endif

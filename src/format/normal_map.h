@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The image file of a mesh's normal map, for the report's picture of the lit mesh. Nothing else needs it, so
+ * nothing that is wrong with it is an error: such a mesh has no picture of its own.
+ */
+#ifndef NT_FORMAT_NORMAL_MAP_H
+#define NT_FORMAT_NORMAL_MAP_H
+
+#include "file/input.h"
+#include "scene/scene.h"
+
+typedef struct nt_normal_map {
+	const unsigned char *bytes;
+	size_t size;
+	const char *type;       /* "image/png" or "image/jpeg" */
+	nt_file file;           /* owned, where it is a file */
+	unsigned char *decoded; /* owned, where it is a data URI */
+} nt_normal_map;
+
+/* Finds and opens it: the first material with one, files inside the document's folder only, PNG and JPEG.
+ * False when there is none. */
+bool nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh);
+void nt_normal_map_close(nt_normal_map *map);
+
+#endif

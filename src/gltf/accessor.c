@@ -1,0 +1,384 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Accessors: checked against their views, and decoded to floats or indices. Every legal combination is
+ * taken: any component type, normalized or not, interleaved, sparse, without a view. Where the file
+ * already holds what is wanted, nothing is copied.
+ */
+#include "gltf/accessor.h"
+
+#include <stdio.h>
+#include <string.h>
+#include "base/largest.h"
+#include "gltf/normalized.h"
+#include "gltf/view.h"
+
+/* Indices that an accessor without a bufferView may have: nothing in the file backs their number. */
+enum { UNBACKED_INDICES = 65536 };
+
+uint32_t nt_gltf_component_bytes(uint64_t component_type)
+{
+	switch (component_type) {
+	case NT_GLTF_BYTE:
+	case NT_GLTF_UBYTE:
+		return 1;
+	case NT_GLTF_SHORT:
+	case NT_GLTF_USHORT:
+		return 2;
+	case NT_GLTF_UINT:
+	case NT_GLTF_FLOAT:
+		return 4;
+	default:
+		return 0;
+	}
+}
+
+/* ---- checking ---- */
+
+/* Type names; matrices have columns, which begin at multiples of 4 bytes. */
+static bool find_type(const char *name, uint32_t component_bytes, uint32_t *components,
+	uint32_t *element_bytes)
+{
+	static const struct {
+		const char *name;
+		uint32_t rows, columns;
+	} types[] = {{"SCALAR", 1, 1}, {"VEC2", 2, 1}, {"VEC3", 3, 1}, {"VEC4", 4, 1}, {"MAT2", 2, 2},
+		{"MAT3", 3, 3}, {"MAT4", 4, 4}};
+	for (size_t i = 0; name && i < sizeof types / sizeof *types; i++) {
+		if (strcmp(name, types[i].name) != 0)
+			continue;
+		uint32_t column = types[i].rows * component_bytes;
+		if (types[i].columns > 1)
+			column = (column + 3) / 4 * 4;
+		*components = types[i].rows * types[i].columns;
+		*element_bytes = column * types[i].columns;
+		return true;
+	}
+	return false;
+}
+
+static nt_status read_format(const nt_json_value *json, const char *pointer,
+	nt_gltf_accessor *accessor, nt_error *error)
+{
+	uint64_t type = 0;
+	nt_status status = nt_gltf_uint(json, pointer, "componentType", UINT32_MAX, NT_GLTF_REQUIRED,
+		&type, error);
+	if (status)
+		return status;
+	char place[NT_GLTF_POINTER * 2];
+	accessor->component_type = (uint32_t)type;
+	accessor->component_bytes = nt_gltf_component_bytes(type);
+	if (!accessor->component_bytes) {
+		snprintf(place, sizeof place, "%s/componentType", pointer);
+		return nt_fail_pointer(error, NT_ERROR_INPUT, place,
+			"%llu, expected 5120 to 5123, 5125 or 5126", (unsigned long long)type);
+	}
+	const char *name = nt_json_get_string(nt_json_find(json, "type"), NULL);
+	if (!find_type(name, accessor->component_bytes, &accessor->components,
+		&accessor->element_bytes)) {
+		snprintf(place, sizeof place, "%s/type", pointer);
+		return nt_fail_pointer(error, NT_ERROR_INPUT, place,
+			"%s%.30s%s, expected SCALAR, VEC2 to VEC4 or MAT2 to MAT4", name ? "\"" : "",
+			name ? name : nt_json_type_text(nt_json_find(json, "type")), name ? "\"" : "");
+	}
+	nt_json_get_bool(nt_json_find(json, "normalized"), &accessor->normalized);
+	return nt_gltf_uint(json, pointer, "count", UINT32_MAX - 1, NT_GLTF_REQUIRED, &accessor->count,
+		error);
+}
+
+/* `count` elements of `bytes` each, `stride` apart, from `offset` on in a view. */
+static nt_status check_range(const nt_gltf_view *view, uint64_t offset, uint64_t count,
+	uint64_t bytes, uint64_t stride, const char *pointer, nt_error *error)
+{
+	/* count < 2^32 and stride < 2^16, offset <= 2^53: no overflow */
+	const uint64_t end = count ? offset + (count - 1) * stride + bytes : offset;
+	if (end > view->length)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+			"%llu elements end at byte %llu of bufferView %u, which has %llu",
+			(unsigned long long)count, (unsigned long long)end, view->index,
+			(unsigned long long)view->length);
+	return NT_OK;
+}
+
+static nt_status check_dense(nt_gltf *document, const nt_json_value *json, const char *pointer,
+	nt_gltf_accessor *accessor, nt_error *error)
+{
+	uint64_t index;
+	nt_status status =
+		nt_gltf_uint(json, pointer, "bufferView", UINT32_MAX - 1, NT_NONE, &index, error);
+	if (status)
+		return status;
+	accessor->view = (uint32_t)index;
+	accessor->stride = accessor->element_bytes;
+	if (accessor->view == NT_NONE)
+		return NT_OK;
+	status = nt_gltf_uint(json, pointer, "byteOffset", (uint64_t)1 << 53, 0, &accessor->offset, error);
+	nt_gltf_view view;
+	if (!status)
+		status = nt_gltf_get_view(document, index, pointer, &view, error);
+	if (status)
+		return status;
+	if (view.stride) {
+		if (view.stride < accessor->element_bytes)
+			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+				"elements of %u bytes, but bufferView %u has a byteStride of %u",
+				accessor->element_bytes, view.index, view.stride);
+		accessor->stride = view.stride;
+	}
+	return check_range(&view, accessor->offset, accessor->count, accessor->element_bytes,
+		accessor->stride, pointer, error);
+}
+
+/* One of the two halves of a sparse object. */
+static nt_status check_sparse_part(nt_gltf *document, const nt_json_value *sparse, const char *name,
+	const char *pointer, uint64_t count, uint64_t element_bytes, uint32_t *view_index,
+	uint64_t *offset, nt_error *error)
+{
+	char place[NT_GLTF_POINTER * 2];
+	snprintf(place, sizeof place, "%s/%s", pointer, name);
+	const nt_json_value *part = nt_json_find(sparse, name);
+	uint64_t index;
+	nt_status status = nt_gltf_uint(part, place, "bufferView", UINT32_MAX - 1, NT_GLTF_REQUIRED,
+		&index, error);
+	if (!status)
+		status = nt_gltf_uint(part, place, "byteOffset", (uint64_t)1 << 53, 0, offset, error);
+	nt_gltf_view view;
+	if (!status)
+		status = nt_gltf_get_view(document, index, place, &view, error);
+	if (status)
+		return status;
+	*view_index = (uint32_t)index;
+	return check_range(&view, *offset, count, element_bytes, element_bytes, place, error);
+}
+
+static nt_status check_sparse(nt_gltf *document, const nt_json_value *sparse, const char *accessor_pointer,
+	nt_gltf_accessor *accessor, nt_error *error)
+{
+	char pointer[NT_GLTF_POINTER], place[NT_GLTF_POINTER * 2];
+	snprintf(pointer, sizeof pointer, "%.100s/sparse", accessor_pointer);
+	nt_status status = nt_gltf_uint(sparse, pointer, "count", accessor->count, NT_GLTF_REQUIRED,
+		&accessor->sparse_count, error);
+	if (status || accessor->sparse_count == 0)
+		return status;
+	snprintf(place, sizeof place, "%s/indices", pointer);
+	uint64_t type;
+	status = nt_gltf_uint(nt_json_find(sparse, "indices"), place, "componentType", UINT32_MAX,
+		NT_GLTF_REQUIRED, &type, error);
+	if (status)
+		return status;
+	if (type != NT_GLTF_UBYTE && type != NT_GLTF_USHORT && type != NT_GLTF_UINT)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, place,
+			"componentType %llu, expected 5121, 5123 or 5125", (unsigned long long)type);
+	accessor->sparse_index_type = (uint32_t)type;
+	status = check_sparse_part(document, sparse, "indices", pointer, accessor->sparse_count,
+		nt_gltf_component_bytes(type), &accessor->sparse_index_view,
+		&accessor->sparse_index_offset, error);
+	if (status)
+		return status;
+	return check_sparse_part(document, sparse, "values", pointer, accessor->sparse_count,
+		accessor->element_bytes, &accessor->sparse_value_view, &accessor->sparse_value_offset,
+		error);
+}
+
+/* The accessor of a compressed primitive is what the decoder gave, tightly packed. */
+static void use_decoded(const nt_gltf_decoded *decoded, nt_gltf_accessor *accessor)
+{
+	if (!decoded->rows)
+		return;
+	accessor->decoded = decoded->rows;
+	accessor->count = decoded->count;
+	accessor->component_type = decoded->component_type;
+	accessor->component_bytes = nt_gltf_component_bytes(decoded->component_type);
+	accessor->element_bytes = accessor->component_bytes * accessor->components;
+	accessor->stride = accessor->element_bytes;
+	accessor->view = NT_NONE;
+	accessor->offset = 0;
+	accessor->sparse_count = 0;
+}
+
+nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
+	nt_gltf_accessor *accessor, nt_error *error)
+{
+	*accessor = (nt_gltf_accessor){.view = NT_NONE};
+	const nt_json_value *json;
+	nt_status status = nt_gltf_element(document, "accessors", index, from, &json, error);
+	if (status)
+		return status;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/accessors/%llu", (unsigned long long)index);
+	accessor->index = (uint32_t)index;
+	status = read_format(json, pointer, accessor, error);
+	if (!status)
+		status = check_dense(document, json, pointer, accessor, error);
+	const nt_json_value *sparse = nt_json_find(json, "sparse");
+	if (!status && sparse)
+		status = check_sparse(document, sparse, pointer, accessor, error);
+	if (!status && document->decoded && index < document->accessor_count)
+		use_decoded(&document->decoded[index], accessor);
+	return status;
+}
+
+/* ---- bytes ---- */
+
+nt_status nt_gltf_accessor_rows(nt_gltf *document, const nt_gltf_accessor *accessor,
+	const unsigned char **rows, nt_error *error)
+{
+	*rows = accessor->decoded;
+	if (accessor->decoded)
+		return NT_OK;
+	if (accessor->view == NT_NONE || accessor->count == 0)
+		return NT_OK;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/accessors/%u", accessor->index);
+	const uint64_t length = (accessor->count - 1) * accessor->stride + accessor->element_bytes;
+	return nt_gltf_view_bytes(document, accessor->view, accessor->offset, length, pointer, rows,
+		error);
+}
+
+/* An unsigned number of 1, 2 or 4 bytes. */
+static uint32_t read_unsigned(const unsigned char *bytes, uint32_t component_type)
+{
+	if (component_type == NT_GLTF_UBYTE)
+		return bytes[0];
+	if (component_type == NT_GLTF_USHORT)
+		return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8;
+	return (uint32_t)bytes[0] | (uint32_t)bytes[1] << 8 | (uint32_t)bytes[2] << 16 |
+		(uint32_t)bytes[3] << 24;
+}
+
+nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt_arena *arena,
+	const uint32_t **rows, const unsigned char **values, nt_error *error)
+{
+	const uint64_t count = accessor->sparse_count;
+	const uint32_t width = nt_gltf_component_bytes(accessor->sparse_index_type);
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/accessors/%u/sparse/indices", accessor->index);
+	const unsigned char *numbers;
+	nt_status status = nt_gltf_view_bytes(document, accessor->sparse_index_view,
+		accessor->sparse_index_offset, count * width, pointer, &numbers, error);
+	if (status)
+		return status;
+	uint32_t *list = nt_arena_alloc(arena, (size_t)count, sizeof *list);
+	if (!list)
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < count; i++) {
+		list[i] = read_unsigned(numbers + i * width, accessor->sparse_index_type);
+		if (list[i] >= accessor->count || (i > 0 && list[i] <= list[i - 1]))
+			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+				"index %zu is %u, expected %s", i, list[i],
+				list[i] >= accessor->count ? "less than the accessor's count" :
+							     "more than the one before");
+	}
+	*rows = list;
+	snprintf(pointer, sizeof pointer, "/accessors/%u/sparse/values", accessor->index);
+	return nt_gltf_view_bytes(document, accessor->sparse_value_view, accessor->sparse_value_offset,
+		count * accessor->element_bytes, pointer, values, error);
+}
+
+/* ---- decoding ---- */
+
+static void decode_row(const nt_gltf_accessor *accessor, const unsigned char *row, uint32_t width,
+	float fill, float *out)
+{
+	for (uint32_t k = 0; k < width; k++)
+		out[k] = k < accessor->components ?
+			nt_component_value(row + k * accessor->component_bytes,
+				(int)accessor->component_type, accessor->normalized) :
+			fill;
+}
+
+static void decode_rows(const nt_gltf_accessor *accessor, const unsigned char *rows, uint32_t width,
+	float fill, float *out)
+{
+	const bool plain = accessor->component_type == NT_GLTF_FLOAT && accessor->components >= width;
+	for (size_t i = 0; i < accessor->count; i++) {
+		if (!rows) {
+			for (uint32_t k = 0; k < width; k++)
+				out[i * width + k] = k < accessor->components ? 0 : fill;
+		} else if (plain) {
+			memcpy(out + i * width, rows + i * accessor->stride, width * sizeof *out);
+		} else {
+			decode_row(accessor, rows + i * accessor->stride, width, fill, out + i * width);
+		}
+	}
+}
+
+nt_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width,
+	float fill, nt_arena *arena, float **floats, nt_error *error)
+{
+	const unsigned char *rows;
+	nt_status status = nt_gltf_accessor_rows(document, accessor, &rows, error);
+	if (status)
+		return status;
+	const bool as_wanted = rows && accessor->component_type == NT_GLTF_FLOAT &&
+		accessor->components == width && accessor->stride == width * sizeof(float) &&
+		(uintptr_t)rows % sizeof(float) == 0 && !accessor->sparse_count;
+	if (as_wanted) {
+		memcpy(floats, &(const unsigned char *){rows}, sizeof *floats);
+		return NT_OK;
+	}
+	float *out = nt_arena_alloc(arena, (size_t)accessor->count, width * sizeof *out);
+	if (!out)
+		return nt_fail_memory(error);
+	decode_rows(accessor, rows, width, fill, out);
+	if (accessor->sparse_count) {
+		const uint32_t *replaced;
+		const unsigned char *values;
+		status = nt_gltf_sparse(document, accessor, arena, &replaced, &values, error);
+		if (status)
+			return status;
+		for (size_t i = 0; i < accessor->sparse_count; i++)
+			decode_row(accessor, values + i * accessor->element_bytes, width, fill,
+				out + (size_t)replaced[i] * width);
+	}
+	*floats = out;
+	return NT_OK;
+}
+
+nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, size_t vertex_count,
+	unsigned threads, nt_arena *arena, uint32_t **indices, nt_error *error)
+{
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/accessors/%u", accessor->index);
+	const uint32_t type = accessor->component_type;
+	if (accessor->components != 1 ||
+		(type != NT_GLTF_UBYTE && type != NT_GLTF_USHORT && type != NT_GLTF_UINT))
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+			"the indices of a primitive are %u components of type %u, expected an unsigned "
+			"SCALAR", accessor->components, type);
+	const size_t count = (size_t)accessor->count;
+	if (accessor->view == NT_NONE && !accessor->decoded && count > UNBACKED_INDICES)
+		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
+			"%zu indices without a bufferView", count);
+	const unsigned char *rows = NULL;
+	nt_status status = nt_gltf_accessor_rows(document, accessor, &rows, error);
+	if (status)
+		return status;
+	const bool as_wanted = type == NT_GLTF_UINT && accessor->stride == 4 && rows &&
+		(uintptr_t)rows % 4 == 0 && !accessor->sparse_count;
+	uint32_t *out = NULL;
+	if (as_wanted)
+		memcpy(&out, &rows, sizeof out);
+	else if (!(out = nt_arena_alloc(arena, count, sizeof *out)))
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < count && !as_wanted; i++)
+		out[i] = rows ? read_unsigned(rows + i * accessor->stride, type) : 0;
+	if (accessor->sparse_count) {
+		const uint32_t *replaced;
+		const unsigned char *values;
+		status = nt_gltf_sparse(document, accessor, arena, &replaced, &values, error);
+		if (status)
+			return status;
+		for (size_t i = 0; i < accessor->sparse_count; i++)
+			out[replaced[i]] = read_unsigned(values + i * accessor->element_bytes, type);
+	}
+	const uint32_t reserved = type == NT_GLTF_UBYTE ? 0xFF : type == NT_GLTF_USHORT ? 0xFFFF : NT_NONE;
+	const uint32_t most = nt_largest(out, count, threads);
+	const bool sound = count == 0 || (most < vertex_count && most < reserved);
+	for (size_t i = 0; !sound && i < count; i++)
+		if (out[i] >= vertex_count || out[i] == reserved)
+			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+				"index %zu is %u%s, there are %zu vertices", i, out[i],
+				out[i] == reserved ? " (reserved)" : "", vertex_count);
+	*indices = out;
+	return NT_OK;
+}

@@ -1,0 +1,56 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Accessors of a document: see accessor.c.
+ */
+#ifndef NT_GLTF_ACCESSOR_H
+#define NT_GLTF_ACCESSOR_H
+
+#include "gltf/document.h"
+
+typedef struct nt_gltf_accessor {
+	uint32_t index;
+	uint32_t component_type; /* enum nt_gltf_component */
+	uint32_t component_bytes;
+	uint32_t components;     /* of an element: 1 to 4, matrices 4, 9, 16 */
+	uint32_t element_bytes;  /* with the padding of matrix columns */
+	bool normalized;
+	uint64_t count;
+	uint32_t view;           /* NT_NONE: all zeros, or decoded */
+	const unsigned char *decoded; /* rows from a compressed primitive; NULL: none */
+	uint64_t offset;         /* in the view */
+	uint32_t stride;         /* as it applies, never 0 */
+	uint64_t sparse_count;   /* 0: not sparse */
+	uint32_t sparse_index_type, sparse_index_view, sparse_value_view;
+	uint64_t sparse_index_offset, sparse_value_offset;
+} nt_gltf_accessor;
+
+/* An accessor, checked against its views. */
+nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
+	nt_gltf_accessor *accessor, nt_error *error);
+
+/* The bytes of an accessor's rows, `stride` apart; NULL where it has no view. */
+nt_status nt_gltf_accessor_rows(nt_gltf *document, const nt_gltf_accessor *accessor,
+	const unsigned char **rows, nt_error *error);
+
+/* The rows a sparse accessor replaces: their numbers, and their elements, tightly packed. Numbers are
+ * checked: increasing and below the count. The array is in the arena. */
+nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt_arena *arena,
+	const uint32_t **rows, const unsigned char **values, nt_error *error);
+
+/*
+ * An accessor as floats, `width` per element: normalized integers as the specification maps them, other
+ * integers by value. Components beyond those of the accessor get `fill`. Points into the input where it
+ * already is that.
+ */
+nt_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width,
+	float fill, nt_arena *arena, float **floats, nt_error *error);
+
+/* An accessor of unsigned scalars as 32-bit indices, each below `vertex_count` and not the value that
+ * is reserved for restarts. Points into the input where it already is that. */
+nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, size_t vertex_count,
+	unsigned threads, nt_arena *arena, uint32_t **indices, nt_error *error);
+
+/* Size of a component; 0 for an unknown type. */
+uint32_t nt_gltf_component_bytes(uint64_t component_type);
+
+#endif

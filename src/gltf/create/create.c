@@ -1,0 +1,467 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A new glTF document for a scene from another format (OBJ, PLY, Draco): .gltf with a .bin, .gltf with
+ * everything inside, or .glb.
+ *
+ * One glTF mesh per mesh, one node per instance, one primitive per material of a mesh. The document is
+ * planned first, so that all sizes and places are known, then its JSON is made by tinygltf, then the
+ * buffer is streamed: geometry as primitive.h has it, embedded images behind. Only materials and images that
+ * something uses are written; a primitive without texture coordinates gets its material without textures.
+ */
+#include "gltf/create/create.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "ext/tinygltf.h"
+#include "file/base64.h"
+#include "gltf/glb.h"
+#include "gltf/create/images.h"
+#include "gltf/create/primitive.h"
+#include "gltf/quantize.h"
+#include "file/relative_path.h"
+#include "file/uri.h"
+
+/* One range of the buffer that holds geometry. */
+typedef struct block {
+	const nt_part *part;
+	nt_stream stream; /* NT_STREAM_COUNT: the indices */
+	uint64_t offset, size;
+} block;
+
+/* The accessors of a part. */
+typedef struct part_record {
+	uint32_t streams[NT_STREAM_COUNT];
+	uint32_t indices;
+} part_record;
+
+typedef struct composition {
+	nt_scene *scene;
+	nt_write_options options;
+	nt_output *output;
+	nt_arena arena;
+	nt_model *model;
+	nt_image_set *images;
+
+	nt_parts *parts;           /* [mesh_count] */
+	part_record **records;     /* [mesh_count][parts] */
+	uint32_t (*materials)[2];  /* [material_count] in the document, without and with textures */
+	block *blocks;
+	size_t block_count;
+	uint64_t buffer_size;
+} composition;
+
+/* Where the buffer's bytes go. */
+typedef struct byte_stream {
+	nt_sink *sink;
+	nt_base64 *base64; /* NULL: as they are */
+	uint64_t position;
+} byte_stream;
+
+/* ---- planning ---- */
+
+static nt_status plan_parts(composition *c, nt_error *error)
+{
+	nt_scene *scene = c->scene;
+	c->parts = nt_arena_alloc(&c->arena, scene->mesh_count, sizeof *c->parts);
+	c->records = nt_arena_alloc(&c->arena, scene->mesh_count, sizeof *c->records);
+	c->materials = nt_arena_alloc(&c->arena, scene->material_count, sizeof *c->materials);
+	if (!c->parts || !c->records || !c->materials)
+		return nt_fail_memory(error);
+	memset(c->materials, 0xff, scene->material_count * sizeof *c->materials);
+	size_t count = 0;
+	for (size_t m = 0; m < scene->mesh_count; m++) {
+		const nt_status status = nt_parts_make(&scene->meshes[m], &c->arena, &c->parts[m], error);
+		if (status != NT_OK)
+			return status;
+		c->records[m] = nt_arena_alloc(&c->arena, c->parts[m].count, sizeof **c->records);
+		if (!c->records[m])
+			return nt_fail_memory(error);
+		count += c->parts[m].count;
+	}
+	c->blocks = nt_arena_alloc(&c->arena, count * (NT_STREAM_COUNT + 1), sizeof *c->blocks);
+	return c->blocks ? NT_OK : nt_fail_memory(error);
+}
+
+/* Reserves a range of the buffer and gives it a view. */
+static uint32_t add_block(composition *c, const nt_part *part, nt_stream stream, uint64_t size)
+{
+	const uint64_t offset = (c->buffer_size + 3) & ~(uint64_t)3;
+	c->blocks[c->block_count++] = (block){part, stream, offset, size};
+	c->buffer_size = offset + size;
+	return nt_model_view(c->model, offset, size,
+		stream == NT_STREAM_COUNT ? NT_GLTF_ELEMENT_ARRAY_BUFFER : NT_GLTF_ARRAY_BUFFER);
+}
+
+static uint32_t plan_stream(composition *c, const nt_part *part, nt_stream stream)
+{
+	if (!nt_part_has(part, stream) || (stream == NT_STREAM_BITANGENT && !c->options.bitangents))
+		return NT_MODEL_NONE;
+	const int width = nt_stream_width(stream);
+	const nt_precision precision =
+		stream == NT_STREAM_TANGENT ? c->options.precision : NT_PRECISION_FLOAT;
+	const bool integers = precision != NT_PRECISION_FLOAT;
+	const size_t row_bytes = integers ? nt_precision_bytes(precision) : (size_t)width * sizeof(float);
+	nt_model_accessor accessor = {
+		.view = add_block(c, part, stream, (uint64_t)part->vertex_count * row_bytes),
+		.component_type = (int)nt_precision_component_type(precision),
+		.components = width,
+		.count = part->vertex_count,
+		.normalized = integers,
+	};
+	if (integers)
+		nt_model_require(c->model, NT_GLTF_QUANTIZATION);
+	float min[3], max[3];
+	if (stream == NT_STREAM_POSITION) {
+		nt_part_bounds(part, min, max);
+		accessor.min = min;
+		accessor.max = max;
+	}
+	return nt_model_add_accessor(c->model, &accessor);
+}
+
+static uint32_t plan_indices(composition *c, const nt_part *part)
+{
+	if (!part->indices)
+		return NT_MODEL_NONE;
+	const size_t size = nt_part_index_size(part);
+	const nt_model_accessor accessor = {
+		.view = add_block(c, part, NT_STREAM_COUNT, (uint64_t)part->index_count * size),
+		.component_type = size == 2 ? NT_GLTF_USHORT : NT_GLTF_UINT,
+		.components = 1,
+		.count = part->index_count,
+	};
+	return nt_model_add_accessor(c->model, &accessor);
+}
+
+static void plan_geometry(composition *c)
+{
+	for (size_t m = 0; m < c->scene->mesh_count; m++)
+		for (size_t p = 0; p < c->parts[m].count; p++) {
+			const nt_part *part = &c->parts[m].items[p];
+			part_record *record = &c->records[m][p];
+			for (int s = 0; s < NT_STREAM_COUNT; s++)
+				record->streams[s] = plan_stream(c, part, (nt_stream)s);
+			record->indices = plan_indices(c, part);
+		}
+}
+
+/* Which of a material's two versions a part gets: with textures, where both have something to do with
+ * them. */
+static bool is_textured(const composition *c, const nt_part *part)
+{
+	const nt_material *material = &c->scene->materials[part->material];
+	return nt_part_has(part, NT_STREAM_TEXCOORD) &&
+		(material->base_color_map || material->emissive_map || material->normal_map);
+}
+
+/* Calls body for the material of every part. */
+static nt_status each_material(composition *c, nt_error *error,
+	nt_status (*body)(composition *, uint32_t material, bool textured, nt_error *))
+{
+	nt_status status = NT_OK;
+	for (size_t m = 0; m < c->scene->mesh_count; m++)
+		for (size_t p = 0; p < c->parts[m].count && status == NT_OK; p++) {
+			const nt_part *part = &c->parts[m].items[p];
+			if (part->material != NT_NONE)
+				status = body(c, part->material, is_textured(c, part), error);
+		}
+	return status;
+}
+
+static nt_status find_images(composition *c, uint32_t material, bool textured, nt_error *error)
+{
+	if (!textured)
+		return NT_OK;
+	return nt_image_set_find(c->images, &c->scene->materials[material], c->output, error);
+}
+
+static float clamp01(float value)
+{
+	return value > 0 ? (value < 1 ? value : 1) : 0;
+}
+
+static nt_status add_material(composition *c, uint32_t index, bool textured, nt_error *error)
+{
+	(void)error;
+	const nt_material *from = &c->scene->materials[index];
+	uint32_t *known = &c->materials[index][textured];
+	if (*known != NT_MODEL_NONE)
+		return NT_OK;
+	nt_model_material material = {
+		.name = from->name,
+		.emissive = {from->emissive[0], from->emissive[1], from->emissive[2]},
+		.metallic = clamp01(from->metallic),
+		.roughness = clamp01(from->roughness),
+		.blend = from->base_color[3] < 1,
+		.base_color_texture = NT_MODEL_NONE,
+		.emissive_texture = NT_MODEL_NONE,
+		.normal_texture = NT_MODEL_NONE,
+		.normal_scale = from->normal_scale,
+	};
+	for (int i = 0; i < 4; i++)
+		material.base_color[i] = clamp01(from->base_color[i]);
+	if (textured) {
+		material.base_color_texture = nt_image_set_texture(c->images, from, from->base_color_map);
+		material.emissive_texture = nt_image_set_texture(c->images, from, from->emissive_map);
+		material.normal_texture = nt_image_set_texture(c->images, from, from->normal_map);
+	}
+	*known = nt_model_add_material(c->model, &material);
+	return NT_OK;
+}
+
+static nt_status plan_materials(composition *c, nt_error *error)
+{
+	nt_status status = nt_image_set_create(&c->images, c->scene, &c->options, error);
+	if (status == NT_OK)
+		status = each_material(c, error, find_images);
+	if (status == NT_OK)
+		status = nt_image_set_add(c->images, c->model, &c->buffer_size, c->output, error);
+	return status == NT_OK ? each_material(c, error, add_material) : status;
+}
+
+/* Meshes, their primitives, and a node for each of their instances. */
+static nt_status plan_scene(composition *c, nt_error *error)
+{
+	const nt_scene *scene = c->scene;
+	uint32_t *numbers = nt_arena_alloc(&c->arena, scene->mesh_count, sizeof *numbers);
+	if (!numbers)
+		return nt_fail_memory(error);
+	for (size_t m = 0; m < scene->mesh_count; m++) {
+		if (c->parts[m].count == 0)
+			continue;
+		numbers[m] = nt_model_mesh(c->model, scene->meshes[m].name);
+		for (size_t p = 0; p < c->parts[m].count; p++) {
+			const nt_part *part = &c->parts[m].items[p];
+			const part_record *record = &c->records[m][p];
+			nt_model_attribute attributes[NT_STREAM_COUNT];
+			size_t count = 0;
+			for (int s = 0; s < NT_STREAM_COUNT; s++)
+				if (record->streams[s] != NT_MODEL_NONE)
+					attributes[count++] = (nt_model_attribute){
+						nt_stream_name((nt_stream)s), record->streams[s]};
+			const uint32_t material = part->material == NT_NONE ? NT_MODEL_NONE
+				: c->materials[part->material][is_textured(c, part)];
+			nt_model_primitive(c->model, numbers[m], attributes, count, record->indices,
+				material);
+		}
+	}
+	for (size_t i = 0; i < scene->instance_count; i++) {
+		const nt_instance *instance = &scene->instances[i];
+		if (c->parts[instance->mesh].count > 0)
+			nt_model_node(c->model, scene->meshes[instance->mesh].name,
+				numbers[instance->mesh], instance->matrix);
+	}
+	return NT_OK;
+}
+
+/* ---- writing ---- */
+
+static nt_status stream_bytes(void *user, const void *bytes, size_t size, nt_error *error)
+{
+	byte_stream *stream = user;
+	stream->position += size;
+	return stream->base64 ? nt_base64_write(stream->base64, bytes, size, error)
+			      : nt_sink_write(stream->sink, bytes, size, error);
+}
+
+/* Tangents on their way to integers. */
+typedef struct rounding_stream {
+	byte_stream *stream;
+	nt_precision precision;
+	nt_rounding cost;
+} rounding_stream;
+
+static nt_status stream_rounded(void *user, const void *bytes, size_t size, nt_error *error)
+{
+	enum { BLOCK_ROWS = 256 };
+	rounding_stream *rounding = user;
+	const float *rows = bytes;
+	float chunk[BLOCK_ROWS][4];
+	unsigned char out[sizeof chunk];
+	nt_status status = NT_OK;
+	for (size_t left = size / sizeof *chunk, count; left && status == NT_OK; left -= count) {
+		count = left < BLOCK_ROWS ? left : BLOCK_ROWS;
+		memcpy(chunk, rows, count * sizeof *chunk);
+		rows += 4 * count;
+		nt_precision_round(rounding->precision, chunk[0], count, &rounding->cost);
+		nt_precision_encode(rounding->precision, chunk[0], count, out);
+		status = stream_bytes(rounding->stream, out,
+			count * nt_precision_bytes(rounding->precision), error);
+	}
+	return status;
+}
+
+/* One stream of a part. */
+static nt_status write_block(const composition *c, const block *b, byte_stream *stream, nt_error *error)
+{
+	if (b->stream == NT_STREAM_COUNT)
+		return nt_part_write_indices(b->part, stream_bytes, stream, error);
+	if (b->stream != NT_STREAM_TANGENT || c->options.precision == NT_PRECISION_FLOAT)
+		return nt_part_write_stream(b->part, b->stream, stream_bytes, stream, error);
+	rounding_stream rounding = {.stream = stream, .precision = c->options.precision};
+	const nt_status status =
+		nt_part_write_stream(b->part, b->stream, stream_rounded, &rounding, error);
+	nt_precision_report(c->scene, c->options.precision, &rounding.cost, &b->part->mesh->place);
+	return status;
+}
+
+static nt_status pad_to(byte_stream *stream, uint64_t offset, nt_error *error)
+{
+	static const char zeros[4];
+	return stream_bytes(stream, zeros, (size_t)(offset - stream->position), error);
+}
+
+static nt_status write_image(byte_stream *stream, const nt_file *file, nt_error *error)
+{
+	if (stream->base64)
+		return stream_bytes(stream, file->data, file->size, error);
+	stream->position += file->size;
+	return nt_sink_copy(stream->sink, file, 0, file->size, error);
+}
+
+/* The whole buffer. */
+static nt_status write_buffer(const composition *c, byte_stream *stream, nt_error *error)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < c->block_count && status == NT_OK; i++) {
+		const block *b = &c->blocks[i];
+		status = pad_to(stream, b->offset, error);
+		if (status != NT_OK)
+			break;
+		status = write_block(c, b, stream, error);
+	}
+	const size_t images = nt_image_set_embedded_count(c->images);
+	for (size_t i = 0; i < images && status == NT_OK; i++) {
+		nt_file file;
+		uint64_t offset;
+		status = nt_image_set_open(c->images, i, &file, &offset, error);
+		if (status != NT_OK)
+			break;
+		status = pad_to(stream, offset, error);
+		if (status == NT_OK)
+			status = write_image(stream, &file, error);
+		nt_file_close(&file);
+	}
+	return status;
+}
+
+static nt_status write_glb(const composition *c, nt_sink *sink, nt_error *error)
+{
+	nt_model_text text;
+	const bool has_bin = c->buffer_size > 0;
+	byte_stream stream = {.sink = sink};
+	nt_status status = nt_model_json(c->model, c->buffer_size, NT_MODEL_CHUNK, NULL, &text, error);
+	if (status == NT_OK)
+		status = nt_glb_begin(sink, text.size, has_bin, c->buffer_size, 0, error);
+	if (status == NT_OK)
+		status = nt_sink_write(sink, text.data, text.size, error);
+	if (status == NT_OK)
+		status = nt_glb_end_json(sink, text.size, has_bin, c->buffer_size, error);
+	if (status == NT_OK)
+		status = write_buffer(c, &stream, error);
+	if (status == NT_OK)
+		status = nt_glb_end_bin(sink, c->buffer_size, error);
+	nt_model_text_free(&text);
+	return status;
+}
+
+static nt_status write_embedded(const composition *c, nt_sink *sink, nt_error *error)
+{
+	nt_model_text text;
+	nt_base64 base64 = {.sink = sink};
+	byte_stream stream = {.sink = sink, .base64 = &base64};
+	nt_status status =
+		nt_model_json(c->model, c->buffer_size, NT_MODEL_EMBEDDED, NULL, &text, error);
+	if (status == NT_OK)
+		status = nt_sink_write(sink, text.data, text.cut, error);
+	if (status == NT_OK)
+		status = write_buffer(c, &stream, error);
+	if (status == NT_OK)
+		status = nt_base64_end(&base64, error);
+	if (status == NT_OK)
+		status = nt_sink_write(sink, text.data + text.cut, text.size - text.cut, error);
+	nt_model_text_free(&text);
+	return status;
+}
+
+/* Path of the .bin: the output's with another ending. */
+static void bin_path(nt_buffer *path, const char *output)
+{
+	const char *slash = strrchr(output, '/');
+	const char *dot = strrchr(slash ? slash + 1 : output, '.');
+	const bool has_ending = dot && dot != (slash ? slash + 1 : output);
+	nt_buffer_append(path, output, has_ending ? (size_t)(dot - output) : strlen(output));
+	nt_buffer_text(path, ".bin");
+}
+
+static nt_status write_with_bin(const composition *c, nt_sink *sink, nt_error *error)
+{
+	nt_buffer path = {0}, uri = {0};
+	nt_model_text text = {0};
+	nt_sink *bin = NULL;
+	nt_status status = NT_OK;
+	bin_path(&path, c->options.path);
+	if (!path.failed) {
+		const char *slash = strrchr(path.data, '/');
+		const char *name = slash ? slash + 1 : path.data;
+		nt_uri_append_path(&uri, name);
+	}
+	if (path.failed || uri.failed)
+		status = nt_fail_memory(error);
+	if (status == NT_OK && c->buffer_size > 0)
+		status = nt_output_add(c->output, path.data, false, &bin, error);
+	if (status == NT_OK && bin) {
+		byte_stream stream = {.sink = bin};
+		status = write_buffer(c, &stream, error);
+	}
+	if (status == NT_OK)
+		status = nt_model_json(c->model, c->buffer_size, NT_MODEL_FILE, uri.data, &text, error);
+	if (status == NT_OK)
+		status = nt_sink_write(sink, text.data, text.size, error);
+	nt_model_text_free(&text);
+	nt_buffer_free(&path);
+	nt_buffer_free(&uri);
+	return status;
+}
+
+static nt_status write_output(const composition *c, nt_error *error)
+{
+	nt_sink *sink;
+	const nt_status status = nt_output_add(c->output, c->options.path, true, &sink, error);
+	if (status != NT_OK)
+		return status;
+	if (c->options.format == NT_FORMAT_GLB)
+		return write_glb(c, sink, error);
+	return c->options.embed ? write_embedded(c, sink, error) : write_with_bin(c, sink, error);
+}
+
+nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_output *output,
+	nt_error *error)
+{
+	composition c = {.scene = scene, .options = *options, .output = output};
+	const bool alone = options->format == NT_FORMAT_GLB || options->embed;
+	if (c.options.images == NT_IMAGES_DEFAULT)
+		c.options.images = alone ? NT_IMAGES_EMBED : NT_IMAGES_LINK;
+	if (!alone && strcmp(options->path, "-") == 0)
+		return nt_fail(error, NT_ERROR_USAGE,
+			"glTF with a .bin cannot go to standard output; write glb, or use --embed");
+
+	nt_status status = nt_model_create(&c.model, "nmtan " NMTAN_VERSION_STRING, error);
+	/* What becomes of each mesh. */
+	if (status == NT_OK)
+		status = plan_parts(&c, error);
+	/* Where everything lies in the buffer. */
+	if (status == NT_OK) {
+		plan_geometry(&c);
+		status = plan_materials(&c, error);
+	}
+	if (status == NT_OK)
+		status = plan_scene(&c, error);
+	if (status == NT_OK)
+		status = write_output(&c, error);
+	nt_image_set_free(c.images);
+	nt_model_free(c.model);
+	nt_arena_free(&c.arena);
+	return status;
+}

@@ -1,0 +1,388 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Images of new documents: see images.h. Names in an MTL are somebody else's text, so they are
+ * confined: no file outside the MTL's folder is looked at, also not through a symbolic link, unless the
+ * user allows it. Absolute names that lead to nothing here, which MTLs from other machines are full of, are
+ * looked for by their last part in the MTL's folder.
+ *
+ * Files are opened to see their type and closed again, so that a thousand images do not need a thousand
+ * descriptors; who reads them later checks that they are still the same.
+ */
+#include "gltf/create/images.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include "file/image_type.h"
+#include "file/relative_path.h"
+
+/* One file, or one name that leads to none. */
+typedef struct image_entry {
+	char *path;         /* absolute */
+	nt_image_type type; /* NT_IMAGE_OTHER: not used */
+	bool exists;
+	bool embedded;
+	nt_file identity;   /* closed: size, device and inode */
+	uint64_t offset;    /* in the buffer */
+	char *target;       /* absolute path of the copy; NULL: none */
+	uint32_t texture;
+} image_entry;
+
+/* What a name in a material led to, so that it is looked for once. */
+typedef struct image_name {
+	const char *library, *name; /* of the scene */
+	size_t entry;               /* NO_ENTRY: to nothing */
+} image_name;
+
+#define NO_ENTRY SIZE_MAX
+
+struct nt_image_set {
+	nt_scene *scene;
+	nt_write_options options;
+	char *folder; /* of the output, absolute */
+	image_entry *entries;
+	size_t entry_count, entry_capacity;
+	image_name *names;
+	size_t name_count, name_capacity;
+};
+
+nt_status nt_image_set_create(nt_image_set **set, nt_scene *scene,
+	const nt_write_options *options, nt_error *error)
+{
+	nt_buffer folder = {0};
+	*set = nt_calloc(1, sizeof **set);
+	const bool found = nt_link_folder(&folder, options->path);
+	if (*set && found && !folder.failed) {
+		**set = (nt_image_set){.scene = scene, .options = *options, .folder = folder.data};
+		return NT_OK;
+	}
+	const bool out_of_memory = !*set || folder.failed;
+	nt_buffer_free(&folder);
+	free(*set);
+	*set = NULL;
+	if (out_of_memory)
+		return nt_fail_memory(error);
+	nt_fail(error, NT_ERROR_IO, "cannot write: the folder does not exist");
+	return nt_error_in_file(error, options->path);
+}
+
+void nt_image_set_free(nt_image_set *set)
+{
+	if (!set)
+		return;
+	for (size_t i = 0; i < set->entry_count; i++) {
+		free(set->entries[i].path);
+		free(set->entries[i].target);
+	}
+	free(set->entries);
+	free(set->names);
+	free(set->folder);
+	free(set);
+}
+
+/* ---- finding ---- */
+
+static const char *last_part(const char *name)
+{
+	const char *part = name;
+	for (; *name; name++)
+		if (*name == '/' || *name == '\\')
+			part = name + 1;
+	return part;
+}
+
+static bool is_file(const char *path)
+{
+	struct stat status;
+	return stat(path, &status) == 0 && S_ISREG(status.st_mode);
+}
+
+static void report(nt_image_set *set, nt_code code, const nt_material *material, const char *name,
+	const char *why)
+{
+	nt_place place;
+	nt_place_clear(&place);
+	snprintf(place.file, sizeof place.file, "%s",
+		material->library ? material->library : set->scene->path);
+	place.line = material->line;
+	snprintf(place.object, sizeof place.object, "material \"%s\"",
+		material->name ? material->name : "");
+	nt_finding_add(&set->scene->findings, code, &place, 1, "%s%s", name, why);
+}
+
+/* The absolute path that a name leads to, in `path`; false, with a reason, when it may not be looked
+ * at. */
+static bool confine(const nt_image_set *set, const nt_material *material, const char *name,
+	nt_buffer *path, const char **why)
+{
+	nt_buffer folder = {0};
+	const bool allowed = set->options.allow_outside;
+	bool inside = false;
+	*why = " (the folder of its MTL file does not exist)";
+	if (nt_link_folder(&folder, material->library ? material->library : set->scene->path) &&
+		!folder.failed) {
+		const bool absolute = nt_link_is_absolute(name);
+		const bool by_last_part = absolute && !(allowed && is_file(name));
+		nt_link_join(path, folder.data, by_last_part ? last_part(name) : name);
+		char *real = path->failed ? NULL : realpath(path->data, NULL);
+		inside = allowed || (!path->failed && nt_link_is_inside(path->data, folder.data) &&
+			(real ? nt_link_is_inside(real, folder.data) : !absolute));
+		free(real);
+		*why = " (it is outside of the folder of its MTL file, see --allow-outside)";
+	}
+	if (folder.failed)
+		path->failed = true;
+	nt_buffer_free(&folder);
+	return inside;
+}
+
+/* Opens the file for its type and identity. False: it cannot be read. */
+static bool inspect(image_entry *entry)
+{
+	nt_file file;
+	nt_error ignored;
+	if (!is_file(entry->path) || nt_file_open(&file, entry->path, &ignored) != NT_OK)
+		return false;
+	entry->type = nt_image_type_of_bytes(file.data, file.size);
+	entry->identity = (nt_file){.size = file.size, .fd = -1, .device = file.device,
+		.inode = file.inode};
+	nt_file_close(&file);
+	return true;
+}
+
+static size_t entry_of_path(const nt_image_set *set, const char *path)
+{
+	for (size_t i = 0; i < set->entry_count; i++)
+		if (strcmp(set->entries[i].path, path) == 0)
+			return i;
+	return NO_ENTRY;
+}
+
+/* The entry for a name, new or known; NO_ENTRY, with a finding, when the document goes without. A link may
+ * lead to a file that is not there yet. */
+static size_t look_up(nt_image_set *set, const nt_material *material, const char *name,
+	nt_output *output, nt_error *error)
+{
+	nt_buffer path = {0};
+	const char *why;
+	const bool inside = confine(set, material, name, &path, &why);
+	size_t index = NO_ENTRY;
+	if (path.failed || !inside) {
+		if (!path.failed)
+			report(set, NT_CODE_IMAGE_MISSING, material, name, why);
+		else
+			nt_fail_memory(error);
+		nt_buffer_free(&path);
+		return NO_ENTRY;
+	}
+	index = entry_of_path(set, path.data);
+	if (index != NO_ENTRY) {
+		nt_buffer_free(&path);
+		return index;
+	}
+	if (!nt_grow((void **)&set->entries, &set->entry_capacity, set->entry_count + 1,
+		    sizeof *set->entries)) {
+		nt_fail_memory(error);
+		nt_buffer_free(&path);
+		return NO_ENTRY;
+	}
+	index = set->entry_count++;
+	image_entry *entry = &set->entries[index];
+	*entry = (image_entry){.path = path.data, .texture = NT_MODEL_NONE};
+	entry->exists = inspect(entry);
+	if (entry->exists) {
+		nt_output_protect(output, entry->path, NULL, error);
+		if (entry->type == NT_IMAGE_OTHER)
+			report(set, NT_CODE_IMAGE_TYPE, material, name, "");
+	} else {
+		report(set, NT_CODE_IMAGE_MISSING, material, name, "");
+		if (set->options.images == NT_IMAGES_LINK)
+			entry->type = nt_image_type_of_name(entry->path);
+	}
+	return index;
+}
+
+static const image_name *known_name(const nt_image_set *set, const nt_material *material,
+	const char *name)
+{
+	for (size_t i = 0; i < set->name_count; i++) {
+		const image_name *known = &set->names[i];
+		const bool same_library = known->library == material->library ||
+			(known->library && material->library &&
+				strcmp(known->library, material->library) == 0);
+		if (same_library && strcmp(known->name, name) == 0)
+			return known;
+	}
+	return NULL;
+}
+
+nt_status nt_image_set_find(nt_image_set *set, const nt_material *material, nt_output *output,
+	nt_error *error)
+{
+	const char *const names[] = {material->base_color_map, material->emissive_map,
+		material->normal_map};
+	for (size_t i = 0; i < 3; i++) {
+		const char *name = names[i];
+		if (!name || !*name || set->options.images == NT_IMAGES_NONE ||
+			known_name(set, material, name))
+			continue;
+		nt_error failure = {.status = NT_OK};
+		const size_t entry = look_up(set, material, name, output, &failure);
+		if (failure.status != NT_OK || !nt_grow((void **)&set->names, &set->name_capacity,
+							  set->name_count + 1, sizeof *set->names))
+			return nt_fail_memory(error);
+		set->names[set->name_count++] = (image_name){material->library, name, entry};
+	}
+	return NT_OK;
+}
+
+/* ---- adding ---- */
+
+/* Whether an image, or another copy, has this path. */
+static bool is_taken(const nt_image_set *set, const char *path)
+{
+	for (size_t i = 0; i < set->entry_count; i++) {
+		const image_entry *entry = &set->entries[i];
+		if ((entry->target && strcmp(entry->target, path) == 0) ||
+			(entry->exists && nt_file_is(&entry->identity, path)))
+			return true;
+	}
+	return false;
+}
+
+/* A name for the copy in the output's folder: the image's own, or that with a number. */
+static bool choose_target(const nt_image_set *set, const image_entry *entry, nt_buffer *target)
+{
+	const char *name = last_part(entry->path);
+	const char *dot = strrchr(name, '.');
+	const int stem = dot ? (int)(dot - name) : (int)strlen(name);
+	for (unsigned number = 0; !target->failed; number++) {
+		target->size = 0;
+		nt_buffer_format(target, "%s/%.*s", set->folder, stem, name);
+		if (number)
+			nt_buffer_format(target, "-%u", number);
+		nt_buffer_text(target, dot ? dot : "");
+		if (!target->failed && !is_taken(set, target->data))
+			return true;
+	}
+	return false;
+}
+
+static nt_status copy_image(nt_image_set *set, image_entry *entry, nt_output *output,
+	nt_error *error)
+{
+	nt_buffer own = {0}, target = {0};
+	nt_buffer_format(&own, "%s/%s", set->folder, last_part(entry->path));
+	if (own.failed) {
+		nt_buffer_free(&own);
+		return nt_fail_memory(error);
+	}
+	const bool is_there = nt_file_is(&entry->identity, own.data);
+	nt_buffer_free(&own);
+	if (is_there) /* a link does */
+		return NT_OK;
+	if (!choose_target(set, entry, &target)) {
+		nt_buffer_free(&target);
+		return nt_fail_memory(error);
+	}
+	entry->target = target.data;
+	nt_sink *sink;
+	nt_file file;
+	nt_status status = nt_output_add(output, entry->target, false, &sink, error);
+	if (status == NT_OK)
+		status = nt_file_open(&file, entry->path, error);
+	if (status != NT_OK)
+		return status;
+	status = nt_sink_copy(sink, &file, 0, file.size, error);
+	nt_file_close(&file);
+	return status;
+}
+
+/* Name of an image in the document: the file's, without its ending. */
+static char *image_title(const image_entry *entry)
+{
+	const char *name = last_part(entry->path), *dot = strrchr(name, '.');
+	return strndup(name, dot ? (size_t)(dot - name) : strlen(name));
+}
+
+static nt_status add_entry(nt_image_set *set, image_entry *entry, nt_model *model,
+	uint64_t *buffer_size, nt_output *output, nt_error *error)
+{
+	entry->embedded = set->options.images == NT_IMAGES_EMBED;
+	if ((entry->embedded || set->options.images == NT_IMAGES_COPY) && !entry->exists)
+		return NT_OK;
+	if (set->options.images == NT_IMAGES_COPY) {
+		const nt_status status = copy_image(set, entry, output, error);
+		if (status != NT_OK)
+			return status;
+	}
+	nt_buffer uri = {0};
+	char *title = image_title(entry);
+	uint32_t image = NT_MODEL_NONE;
+	if (entry->embedded) {
+		entry->offset = (*buffer_size + 3) & ~(uint64_t)3;
+		*buffer_size = entry->offset + entry->identity.size;
+		const uint32_t view = nt_model_view(model, entry->offset, entry->identity.size,
+			NT_GLTF_NO_TARGET);
+		image = nt_model_image_view(model, title, view, nt_image_media_type(entry->type));
+	} else {
+		nt_link_uri(&uri, set->folder, entry->target ? entry->target : entry->path);
+		if (!uri.failed)
+			image = nt_model_image_uri(model, title, uri.data);
+	}
+	entry->texture = nt_model_texture(model, image, nt_image_extension(entry->type));
+	const bool failed = uri.failed || !title;
+	nt_buffer_free(&uri);
+	free(title);
+	return failed ? nt_fail_memory(error) : NT_OK;
+}
+
+nt_status nt_image_set_add(nt_image_set *set, nt_model *model, uint64_t *buffer_size,
+	nt_output *output, nt_error *error)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < set->entry_count && status == NT_OK; i++)
+		if (set->entries[i].type != NT_IMAGE_OTHER)
+			status = add_entry(set, &set->entries[i], model, buffer_size, output, error);
+	return status;
+}
+
+uint32_t nt_image_set_texture(const nt_image_set *set, const nt_material *material,
+	const char *name)
+{
+	const image_name *known = name ? known_name(set, material, name) : NULL;
+	return known && known->entry != NO_ENTRY ? set->entries[known->entry].texture : NT_MODEL_NONE;
+}
+
+/* ---- writing ---- */
+
+static bool is_written(const image_entry *entry)
+{
+	return entry->embedded && entry->texture != NT_MODEL_NONE;
+}
+
+size_t nt_image_set_embedded_count(const nt_image_set *set)
+{
+	size_t count = 0;
+	for (size_t i = 0; i < set->entry_count; i++)
+		count += is_written(&set->entries[i]);
+	return count;
+}
+
+nt_status nt_image_set_open(const nt_image_set *set, size_t index, nt_file *file,
+	uint64_t *offset, nt_error *error)
+{
+	const image_entry *entry = set->entries;
+	while (!is_written(entry) || index-- > 0)
+		entry++;
+	const nt_status status = nt_file_open(file, entry->path, error);
+	if (status != NT_OK)
+		return status;
+	*offset = entry->offset;
+	if (file->size == entry->identity.size)
+		return NT_OK;
+	nt_file_close(file);
+	nt_fail(error, NT_ERROR_IO, "the image changed while it was read");
+	return nt_error_in_file(error, entry->path);
+}

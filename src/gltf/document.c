@@ -1,0 +1,339 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Documents and buffers. Buffers are opened when the first byte of them is wanted: an external file is
+ * mapped, a data URI decoded, the BIN chunk pointed at.
+ */
+#include "gltf/document.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "file/uri.h"
+
+bool nt_gltf_recognise(const unsigned char *bytes, size_t size)
+{
+	size_t at = size >= 3 && memcmp(bytes, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+	while (at < size && at < 4096 &&
+		(bytes[at] == ' ' || bytes[at] == '\t' || bytes[at] == '\n' || bytes[at] == '\r'))
+		at++;
+	return at < size && bytes[at] == '{';
+}
+
+bool nt_glb_recognise(const unsigned char *bytes, size_t size)
+{
+	return nt_glb_has_magic(bytes, size);
+}
+
+/* ---- members ---- */
+
+nt_json_value *nt_gltf_root_member(const nt_gltf *document, const char *name)
+{
+	return nt_json_find(nt_json_root(document->json), name);
+}
+
+nt_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t index,
+	const char *from, const nt_json_value **element, nt_error *error)
+{
+	const nt_json_value *elements = nt_gltf_root_member(document, array);
+	if (elements && nt_json_type_of(elements) != NT_JSON_ARRAY) {
+		char pointer[NT_GLTF_POINTER];
+		snprintf(pointer, sizeof pointer, "/%s", array);
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an array",
+			nt_json_type_text(elements));
+	}
+	if (index >= nt_json_count(elements))
+		return nt_fail_pointer(error, NT_ERROR_INPUT, from,
+			"refers to %s[%llu], there are %zu", array, (unsigned long long)index,
+			nt_json_count(elements));
+	*element = nt_json_at(elements, (size_t)index);
+	if (nt_json_type_of(*element) != NT_JSON_OBJECT) {
+		char pointer[NT_GLTF_POINTER];
+		snprintf(pointer, sizeof pointer, "/%s/%llu", array, (unsigned long long)index);
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an object",
+			nt_json_type_text(*element));
+	}
+	return NT_OK;
+}
+
+nt_status nt_gltf_uint(const nt_json_value *object, const char *pointer, const char *key,
+	uint64_t limit, uint64_t otherwise, uint64_t *value, nt_error *error)
+{
+	const nt_json_value *member = nt_json_find(object, key);
+	if (!member && otherwise != NT_GLTF_REQUIRED) {
+		*value = otherwise;
+		return NT_OK;
+	}
+	if (!member)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "\"%s\" is missing", key);
+	const bool whole = nt_json_get_uint64(member, value);
+	if (whole && *value <= limit)
+		return NT_OK;
+	/* made for faults alone: a document asks for millions of numbers */
+	char place[NT_GLTF_POINTER * 2];
+	snprintf(place, sizeof place, "%s/%s", pointer, key);
+	if (!whole)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, place,
+			"%s, expected a whole number of at least 0", nt_json_type_text(member));
+	return nt_fail_pointer(error, NT_ERROR_INPUT, place, "%llu, expected at most %llu",
+		(unsigned long long)*value, (unsigned long long)limit);
+}
+
+/* ---- documents ---- */
+
+/* "2.1" is version 2 of glTF; a minVersion beyond 2.0 asks for what we do not know. */
+static nt_status check_version(const nt_gltf *document, nt_error *error)
+{
+	const nt_json_value *root = nt_json_root(document->json);
+	if (nt_json_type_of(root) != NT_JSON_OBJECT)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, "", "%s, expected an object",
+			nt_json_type_text(root));
+	const nt_json_value *asset = nt_json_find(root, "asset");
+	const char *version = nt_json_get_string(nt_json_find(asset, "version"), NULL);
+	if (!version)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, "/asset/version",
+			"%s, expected the version of glTF as a string",
+			nt_json_type_text(nt_json_find(asset, "version")));
+	if (strncmp(version, "2.", 2) != 0)
+		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, "/asset/version",
+			"glTF version \"%.20s\", expected 2.0", version);
+	const char *minimum = nt_json_get_string(nt_json_find(asset, "minVersion"), NULL);
+	if (minimum && strcmp(minimum, "2.0") != 0)
+		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, "/asset/minVersion",
+			"needs glTF %.20s, expected 2.0", minimum);
+	return NT_OK;
+}
+
+static nt_status parse_json(nt_gltf *document, nt_error *error)
+{
+	const char *text = (const char *)document->bytes;
+	size_t size = document->byte_count, begin = 0;
+	if (document->is_glb) {
+		begin = document->glb.json.offset;
+		size = document->glb.json.size;
+	}
+	const nt_status status = nt_json_parse(&document->json, text + begin, size, error);
+	if (status && error && error->place.offset != NT_NO_OFFSET)
+		error->place.offset += begin;
+	return status;
+}
+
+nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_outside,
+	nt_error *error)
+{
+	*result = NULL;
+	nt_gltf *document = nt_calloc(1, sizeof *document);
+	if (!document)
+		return nt_fail_memory(error);
+	document->path = scene->path;
+	document->bytes = scene->bytes;
+	document->byte_count = scene->byte_count;
+	document->allow_outside = allow_outside;
+	document->is_glb = nt_glb_has_magic(scene->bytes, scene->byte_count) ||
+		scene->format == NT_FORMAT_GLB;
+	nt_status status = NT_OK;
+	if (document->is_glb)
+		status = nt_glb_parse(&document->glb, &document->arena, document->bytes,
+			document->byte_count, error);
+	if (!status)
+		status = parse_json(document, error);
+	if (!status)
+		status = check_version(document, error);
+	if (!status) {
+		document->buffer_count = nt_json_count(nt_gltf_root_member(document, "buffers"));
+		document->buffers = nt_calloc(document->buffer_count, sizeof *document->buffers);
+		document->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
+		document->virtual_of = nt_alloc(document->view_count, sizeof *document->virtual_of);
+		if (!document->buffers || !document->virtual_of)
+			status = nt_fail_memory(error);
+		else
+			memset(document->virtual_of, 0xFF,
+				document->view_count * sizeof *document->virtual_of);
+	}
+	if (status) {
+		nt_gltf_free(document);
+		return status;
+	}
+	*result = document;
+	return NT_OK;
+}
+
+void nt_gltf_forget(const nt_scene *scene, const void *bytes, size_t size)
+{
+	enum { WORTH_BYTES = 256 * 1024 }; /* a system call, and a look at all buffers */
+	const nt_gltf *document = scene->source;
+	if (size < WORTH_BYTES)
+		return;
+	if (scene->file)
+		nt_file_forget(scene->file, bytes, size);
+	for (size_t i = 0; i < document->buffer_count; i++) {
+		const nt_gltf_buffer *buffer = &document->buffers[i];
+		if (buffer->opened && buffer->home == NT_GLTF_HOME_FILE)
+			nt_file_forget(&buffer->file, bytes, size);
+	}
+}
+
+void nt_gltf_free(void *source)
+{
+	nt_gltf *document = source;
+	if (!document)
+		return;
+	for (size_t i = 0; document->buffers && i < document->buffer_count; i++) {
+		nt_gltf_buffer *buffer = &document->buffers[i];
+		free(buffer->decoded);
+		if (buffer->opened && buffer->home == NT_GLTF_HOME_FILE)
+			nt_file_close(&buffer->file);
+	}
+	for (size_t i = 0; i < document->virtual_count; i++)
+		free(document->virtuals[i].decoded);
+	if (document->free_blocks)
+		document->free_blocks(document->draco_blocks);
+	free(document->virtuals);
+	free(document->virtual_of);
+	free(document->decoded);
+	free(document->buffers);
+	nt_json_free(document->json);
+	nt_arena_free(&document->arena);
+	free(document);
+}
+
+/* ---- buffers ---- */
+
+nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char *from,
+	nt_gltf_buffer **result, nt_error *error)
+{
+	if (index >= NT_GLTF_VIRTUAL && index - NT_GLTF_VIRTUAL < document->virtual_count) {
+		*result = &document->virtuals[index - NT_GLTF_VIRTUAL];
+		return NT_OK;
+	}
+	const nt_json_value *json;
+	nt_status status = nt_gltf_element(document, "buffers", index, from, &json, error);
+	if (status)
+		return status;
+	nt_gltf_buffer *buffer = &document->buffers[index];
+	*result = buffer;
+	if (buffer->described)
+		return NT_OK;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/buffers/%llu", (unsigned long long)index);
+	status = nt_gltf_uint(json, pointer, "byteLength", (uint64_t)1 << 53, NT_GLTF_REQUIRED,
+		&buffer->length, error);
+	if (status)
+		return status;
+	const nt_json_value *uri = nt_json_find(json, "uri");
+	size_t length = 0;
+	const char *text = nt_json_get_string(uri, &length);
+	if (uri && !text) {
+		strcat(pointer, "/uri");
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected a string",
+			nt_json_type_text(uri));
+	}
+	if (text)
+		buffer->home = nt_uri_is_data(text, length) ? NT_GLTF_HOME_DATA : NT_GLTF_HOME_FILE;
+	else if (index == 0 && document->is_glb && document->glb.has_bin)
+		buffer->home = NT_GLTF_HOME_BIN;
+	else
+		buffer->home = NT_GLTF_HOME_NOWHERE;
+	buffer->described = true;
+	return NT_OK;
+}
+
+/* Names the buffer in an error of a lower room that knows no document. */
+static nt_status place_error(nt_error *error, nt_status status, const char *pointer)
+{
+	if (error && status != NT_ERROR_MEMORY)
+		snprintf(error->place.pointer, sizeof error->place.pointer, "%s", pointer);
+	return status;
+}
+
+static nt_status open_file(nt_gltf *document, nt_gltf_buffer *buffer, const char *uri, size_t length,
+	nt_error *error)
+{
+	const char *path;
+	nt_status status = nt_uri_resolve(&document->arena, document->path, uri, length,
+		document->allow_outside, &path, error);
+	if (!status)
+		status = nt_file_open(&buffer->file, path, error);
+	if (status)
+		return status;
+	buffer->path = path;
+	buffer->bytes = buffer->file.data;
+	buffer->size = buffer->file.size;
+	return NT_OK;
+}
+
+static nt_status open_bytes(nt_gltf *document, nt_gltf_buffer *buffer, const nt_json_value *json,
+	nt_error *error)
+{
+	size_t length = 0;
+	const char *uri = nt_json_get_string(nt_json_find(json, "uri"), &length);
+	nt_status status = NT_OK;
+	switch (buffer->home) {
+	case NT_GLTF_HOME_BIN:
+		buffer->bytes = document->bytes + document->glb.bin.offset;
+		buffer->size = document->glb.bin.size;
+		break;
+	case NT_GLTF_HOME_DATA:
+		status = nt_uri_decode_data(uri, length, &buffer->decoded, &buffer->size, error);
+		buffer->bytes = buffer->decoded;
+		break;
+	case NT_GLTF_HOME_FILE:
+		status = open_file(document, buffer, uri, length, error);
+		break;
+	case NT_GLTF_HOME_NOWHERE:
+		return nt_fail(error, NT_ERROR_INPUT, document->is_glb ?
+			"the buffer has no uri and there is no BIN chunk for it" :
+			"the buffer has no uri");
+	}
+	if (!status && buffer->home != NT_GLTF_HOME_BIN)
+		document->bytes_opened += buffer->size;
+	return status;
+}
+
+nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *from,
+	nt_gltf_buffer **result, nt_error *error)
+{
+	nt_gltf_buffer *buffer;
+	nt_status status = nt_gltf_describe_buffer(document, index, from, &buffer, error);
+	if (status)
+		return status;
+	*result = buffer;
+	if (buffer->opened)
+		return NT_OK;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/buffers/%llu", (unsigned long long)index);
+	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "buffers"), (size_t)index);
+	status = open_bytes(document, buffer, json, error);
+	if (status)
+		return place_error(error, status, pointer);
+	if (buffer->size > buffer->length)
+		buffer->size = (size_t)buffer->length;
+	buffer->opened = true;
+	return NT_OK;
+}
+
+void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin, uint64_t length)
+{
+	if (length == 0 || (buffer->home != NT_GLTF_HOME_BIN && buffer->home != NT_GLTF_HOME_FILE))
+		return;
+	if (!buffer->pages) {
+		const size_t words = buffer->size / NT_GLTF_PAGE / 64 + 1;
+		buffer->pages = nt_arena_alloc(&document->arena, words, sizeof *buffer->pages);
+		if (!buffer->pages)
+			return; /* a figure is missing, nothing else */
+		memset(buffer->pages, 0, words * sizeof *buffer->pages);
+	}
+	for (uint64_t page = begin / NT_GLTF_PAGE; page <= (begin + length - 1) / NT_GLTF_PAGE; page++) {
+		const uint64_t bit = (uint64_t)1 << page % 64;
+		if (buffer->pages[page / 64] & bit)
+			continue;
+		buffer->pages[page / 64] |= bit;
+		const uint64_t left = buffer->size - page * NT_GLTF_PAGE;
+		document->bytes_read += left < NT_GLTF_PAGE ? left : NT_GLTF_PAGE;
+	}
+}
+
+uint64_t nt_gltf_bytes_read(const nt_gltf *document)
+{
+	return (document->is_glb ? document->glb.json.offset + document->glb.json.size : document->byte_count) +
+		document->bytes_read;
+}

@@ -1,0 +1,116 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A glTF document as nmtan sees it: the JSON as parsed, and views of it that are checked when they are
+ * asked for and not before. What nobody asks for is never judged, opened or decoded.
+ *
+ * Every function that reads from the document reports faults with the JSON pointer of what is wrong.
+ */
+#ifndef NT_GLTF_DOCUMENT_H
+#define NT_GLTF_DOCUMENT_H
+
+#include "ext/gltf_numbers.h"
+#include "ext/json.h"
+#include "file/input.h"
+#include "gltf/glb.h"
+#include "scene/scene.h"
+
+/* Room for the JSON pointers we make ourselves. */
+enum { NT_GLTF_POINTER = 160 };
+
+/* Where a buffer's bytes come from. */
+typedef enum nt_gltf_home {
+	NT_GLTF_HOME_NOWHERE, /* no uri and no BIN chunk: extensions may give it a meaning */
+	NT_GLTF_HOME_BIN,     /* the BIN chunk of the GLB */
+	NT_GLTF_HOME_DATA,    /* a data URI */
+	NT_GLTF_HOME_FILE     /* an external file */
+} nt_gltf_home;
+
+typedef struct nt_gltf_buffer {
+	nt_gltf_home home;
+	uint64_t length;            /* byteLength */
+	bool described, opened;     /* the fields above and below are valid */
+	const unsigned char *bytes; /* NULL until opened */
+	size_t size;                /* bytes that are there: byteLength or less */
+	unsigned char *decoded;     /* of a data URI: owned */
+	nt_file file;               /* of an external file: owned */
+	uint64_t *pages;            /* one bit for each NT_GLTF_PAGE bytes that were read; NULL: none yet */
+	const char *path;           /* of an external file */
+} nt_gltf_buffer;
+
+/* Rows of an accessor that come from a compressed primitive. */
+typedef struct nt_gltf_decoded {
+	const unsigned char *rows; /* NULL: none */
+	size_t count;
+	uint32_t component_type;
+} nt_gltf_decoded;
+
+/* Numbers of buffers that are no buffers of the document: each holds one decompressed view. */
+#define NT_GLTF_VIRTUAL ((uint32_t)1 << 30)
+
+typedef struct nt_gltf {
+	nt_arena arena;
+	nt_json *json;
+	const char *path;        /* of the document; "-" for standard input */
+	const unsigned char *bytes;
+	size_t byte_count;
+	bool is_glb;
+	nt_glb glb;
+	bool allow_outside;
+	nt_gltf_buffer *buffers; /* [buffer_count] */
+	size_t buffer_count;
+	nt_gltf_buffer *virtuals;  /* [virtual_count] decompressed views; buffer NT_GLTF_VIRTUAL + i */
+	size_t virtual_count, virtual_capacity;
+	uint32_t *virtual_of;      /* [view_count] the buffer a view was decompressed to; NT_NONE */
+	size_t view_count;
+	nt_gltf_decoded *decoded;  /* [accessor_count] what Draco gave; NULL until there is something */
+	size_t accessor_count;
+	struct nt_gltf_draco *draco_blocks; /* decoded blocks: draco.c */
+	void (*free_blocks)(struct nt_gltf_draco *blocks); /* set with the first of them */
+	uint64_t bytes_read;     /* of buffers */
+	uint64_t bytes_opened;   /* of external files and data URIs */
+} nt_gltf;
+
+/* Parses a document over the scene's bytes. Returns NT_OK, NT_ERROR_INPUT,
+ * NT_ERROR_UNSUPPORTED (another version of glTF) or NT_ERROR_MEMORY. */
+nt_status nt_gltf_create(nt_gltf **document, const nt_scene *scene, bool allow_outside,
+	nt_error *error);
+
+bool nt_gltf_recognise(const unsigned char *bytes, size_t size);
+bool nt_glb_recognise(const unsigned char *bytes, size_t size);
+
+/* For nt_scene.free_source. */
+void nt_gltf_free(void *document);
+
+/* nt_file_forget() for the file that has the bytes: the scene's own or one of its .bin files. The scene is a
+ * glTF. */
+void nt_gltf_forget(const nt_scene *scene, const void *bytes, size_t size);
+
+/* A member of the root: NULL where there is none. */
+nt_json_value *nt_gltf_root_member(const nt_gltf *document, const char *name);
+
+/* Element of a root array, which must be an object. `from` is the JSON pointer of the reference. */
+nt_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t index,
+	const char *from, const nt_json_value **element, nt_error *error);
+
+/* An unsigned member of an object: value at most `limit`. Where the member is missing *value gets
+ * `otherwise`; NT_GLTF_REQUIRED there makes that an error. */
+#define NT_GLTF_REQUIRED UINT64_MAX
+nt_status nt_gltf_uint(const nt_json_value *object, const char *pointer, const char *key,
+	uint64_t limit, uint64_t otherwise, uint64_t *value, nt_error *error);
+
+/* Length and home of a buffer; nothing is opened. */
+nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char *from,
+	nt_gltf_buffer **buffer, nt_error *error);
+
+/* The same with its bytes. */
+nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *from,
+	nt_gltf_buffer **buffer, nt_error *error);
+
+/* Books bytes of a buffer as read: whole pages, each once. What a data URI holds was read with the JSON. */
+enum { NT_GLTF_PAGE = 4096 };
+void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin, uint64_t length);
+
+/* Bytes that were read: the JSON and what was booked. */
+uint64_t nt_gltf_bytes_read(const nt_gltf *document);
+
+#endif

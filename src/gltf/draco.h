@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * KHR_draco_mesh_compression: compressed primitives of a document. Decoded blocks are kept: several primitives may
+ * share one, and it may be encoded again.
+ */
+#ifndef NT_GLTF_DRACO_H
+#define NT_GLTF_DRACO_H
+
+#include "ext/draco.h"
+#include "gltf/document.h"
+
+/* A primitive's KHR_draco_mesh_compression; NULL: none. */
+nt_json_value *nt_gltf_draco_of(const nt_json_value *primitive);
+
+/* Decodes a primitive's KHR_draco_mesh_compression, where it has one: from then on its accessors have
+ * their rows. */
+nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive,
+	const char *pointer, nt_error *error);
+
+/* The block of a view; NULL: not decoded. */
+const nt_draco_mesh *nt_gltf_draco_block(const nt_gltf *document, uint64_t view);
+
+#endif

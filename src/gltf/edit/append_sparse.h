@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Vertices that splitting appended, in sparse accessors: see append_sparse.c.
+ */
+#ifndef NT_GLTF_EDIT_APPEND_SPARSE_H
+#define NT_GLTF_EDIT_APPEND_SPARSE_H
+
+#include "gltf/edit/append_items.h"
+
+/* Appends the rows that are copies of replaced ones to what a sparse accessor replaces. */
+nt_status nt_gltf_grow_sparse(nt_gltf_growing *growing, const nt_gltf_item *item);
+
+#endif

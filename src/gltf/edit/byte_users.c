@@ -1,0 +1,172 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Who refers to which bytes of a document's buffers: accessors, their sparse parts, images, compressed
+ * data, and views whose user is unknown. Sorted by buffer and begin, with the largest end so far beside each,
+ * so that a question about a range looks at few of them.
+ */
+#include "gltf/edit/byte_users.h"
+
+#include <stdlib.h>
+#include "gltf/accessor.h"
+#include "gltf/view.h"
+
+static bool add_user(nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
+	uint32_t accessor)
+{
+	if (!nt_grow((void **)&users->list, &users->capacity, users->count + 1, sizeof *users->list))
+		return false;
+	users->list[users->count++] = (nt_byte_user){begin, end, 0, buffer, accessor};
+	return true;
+}
+
+static bool add_view_user(nt_byte_users *users, nt_gltf *document, uint32_t index, uint64_t offset,
+	uint64_t length, uint32_t accessor, bool *view_used)
+{
+	nt_gltf_view view;
+	if (nt_gltf_get_view(document, index, "", &view, NULL) != NT_OK)
+		return true;
+	view_used[index] = true;
+	return add_user(users, view.buffer, view.offset + offset, view.offset + offset + length,
+		accessor);
+}
+
+static bool add_accessor(nt_byte_users *users, nt_gltf *document, uint32_t index, bool *view_used)
+{
+	nt_gltf_accessor a;
+	if (nt_gltf_get_accessor(document, index, "", &a, NULL) != NT_OK || a.count == 0)
+		return true;
+	bool added = true;
+	if (a.view != NT_NONE)
+		added = add_view_user(users, document, a.view, a.offset,
+			(a.count - 1) * a.stride + a.element_bytes, index, view_used);
+	if (a.sparse_count) {
+		added = added && add_view_user(users, document, a.sparse_index_view, a.sparse_index_offset,
+			a.sparse_count * nt_gltf_component_bytes(a.sparse_index_type), index, view_used);
+		added = added && add_view_user(users, document, a.sparse_value_view, a.sparse_value_offset,
+			a.sparse_count * a.element_bytes, index, view_used);
+	}
+	return added;
+}
+
+/* The bytes behind a compressed view lie in another place than the view. */
+static bool add_compressed(nt_byte_users *users, const nt_json_value *view)
+{
+	const nt_json_value *part = nt_gltf_compression_of(view, NULL);
+	uint64_t buffer, offset = 0, length;
+	if (!nt_json_get_uint64(nt_json_find(part, "buffer"), &buffer) || buffer >= UINT32_MAX ||
+		!nt_json_get_uint64(nt_json_find(part, "byteLength"), &length))
+		return true;
+	nt_json_get_uint64(nt_json_find(part, "byteOffset"), &offset);
+	if (length > UINT64_MAX - offset)
+		return true;
+	return add_user(users, (uint32_t)buffer, offset, offset + length, NT_NONE);
+}
+
+static void mark_image_views(const nt_gltf *document, bool *view_known, size_t view_count)
+{
+	const nt_json_value *images = nt_gltf_root_member(document, "images");
+	for (size_t i = 0; i < nt_json_count(images); i++) {
+		uint64_t view;
+		if (nt_json_get_uint64(nt_json_find(nt_json_at(images, i), "bufferView"), &view) &&
+			view < view_count)
+			view_known[view] = true;
+	}
+}
+
+/* Views without an accessor are used as a whole. */
+static bool add_whole_views(nt_byte_users *users, nt_gltf *document, bool *view_used, size_t view_count)
+{
+	const nt_json_value *views = nt_gltf_root_member(document, "bufferViews");
+	bool *known = nt_calloc(view_count, sizeof *known);
+	if (!known)
+		return false;
+	mark_image_views(document, known, view_count);
+	bool added = true;
+	for (size_t i = 0; added && i < view_count; i++) {
+		nt_gltf_view view;
+		if (!view_used[i] &&
+			nt_gltf_get_view(document, i, "", &view, NULL) == NT_OK) {
+			added = add_user(users, view.buffer, view.offset, view.offset + view.length,
+				NT_NONE);
+			if (!known[i])
+				users->unknown = true;
+		}
+		added = added && add_compressed(users, nt_json_at(views, i));
+	}
+	free(known);
+	return added;
+}
+
+static int compare_users(const void *a, const void *b)
+{
+	const nt_byte_user *x = a, *y = b;
+	if (x->buffer != y->buffer)
+		return x->buffer < y->buffer ? -1 : 1;
+	if (x->begin != y->begin)
+		return x->begin < y->begin ? -1 : 1;
+	if (x->end != y->end)
+		return x->end < y->end ? -1 : 1;
+	return (x->accessor > y->accessor) - (x->accessor < y->accessor);
+}
+
+bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document)
+{
+	const size_t view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
+	const size_t accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
+	bool *view_used = nt_calloc(view_count, sizeof *view_used);
+	bool added = view_used != NULL;
+	for (size_t i = 0; added && i < accessor_count; i++)
+		added = add_accessor(users, document, (uint32_t)i, view_used);
+	added = added && add_whole_views(users, document, view_used, view_count);
+	free(view_used);
+	if (!added)
+		return false;
+	if (users->count)
+		qsort(users->list, users->count, sizeof *users->list, compare_users);
+	for (size_t i = 0; i < users->count; i++) {
+		nt_byte_user *user = &users->list[i];
+		const bool first = i == 0 || user[-1].buffer != user->buffer;
+		user->reach = first || user[-1].reach < user->end ? user->end : user[-1].reach;
+	}
+	return true;
+}
+
+/* Number of users before the first one of `buffer` that begins at or behind `position`. */
+static size_t users_before(const nt_byte_users *users, uint32_t buffer, uint64_t position)
+{
+	size_t low = 0, high = users->count;
+	while (low < high) {
+		const size_t middle = low + (high - low) / 2;
+		const nt_byte_user *user = &users->list[middle];
+		if (user->buffer < buffer || (user->buffer == buffer && user->begin < position))
+			low = middle + 1;
+		else
+			high = middle;
+	}
+	return low;
+}
+
+bool nt_byte_users_foreign(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
+	const uint32_t *own, uint32_t mark)
+{
+	for (size_t i = users_before(users, buffer, end); i-- > 0;) {
+		const nt_byte_user *user = &users->list[i];
+		if (user->buffer != buffer || user->reach <= begin)
+			break;
+		if (user->end > begin && (user->accessor == NT_NONE || own[user->accessor] != mark))
+			return true;
+	}
+	return false;
+}
+
+size_t nt_byte_users_count(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end)
+{
+	size_t found = 0;
+	for (size_t i = users_before(users, buffer, end); i-- > 0;) {
+		const nt_byte_user *user = &users->list[i];
+		if (user->buffer != buffer || user->reach <= begin)
+			break;
+		found += user->end > begin;
+	}
+	return found;
+}

@@ -1,0 +1,35 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Who refers to which bytes: see byte_users.c.
+ */
+#ifndef NT_GLTF_EDIT_BYTE_USERS_H
+#define NT_GLTF_EDIT_BYTE_USERS_H
+
+#include "gltf/document.h"
+
+/* Bytes of a source buffer that something in the document refers to. */
+typedef struct nt_byte_user {
+	uint64_t begin, end;
+	uint64_t reach;    /* largest end of this and all users before it in the buffer */
+	uint32_t buffer;
+	uint32_t accessor; /* NT_NONE: an image, an extension, or an unknown user. Accessors over the same
+	                      bytes count as one: edit.c puts the first of them here */
+} nt_byte_user;
+
+typedef struct nt_byte_users {
+	nt_byte_user *list; /* sorted by buffer and begin; malloc'ed */
+	size_t count, capacity;
+	bool unknown;       /* nothing that we know uses one of the views */
+} nt_byte_users;
+
+/* Faulty parts of the document are passed over. False: out of memory. */
+bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document);
+
+/* Whether something other than the accessors marked in own[] refers to bytes of [begin, end). */
+bool nt_byte_users_foreign(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
+	const uint32_t *own, uint32_t mark);
+
+/* How many things refer to bytes of [begin, end). */
+size_t nt_byte_users_count(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end);
+
+#endif

@@ -1,0 +1,197 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A Draco block: what goes into it, encoding, and the view and JSON that it gets.
+ */
+#include "gltf/edit/draco_block.h"
+
+#include <string.h>
+#include "gltf/edit/new_accessors.h"
+#include "gltf/view.h"
+
+/* ---- what goes into it ---- */
+
+int nt_gltf_draco_bits(const nt_write_options *options, nt_draco_bits which)
+{
+	static const int defaults[NT_DRACO_BITS_COUNT] = {14, 12, 12, 12};
+	return options->draco_bits[which] ? options->draco_bits[which] : defaults[which];
+}
+
+void nt_gltf_draco_add(nt_gltf_recoding *r, const char *name, nt_draco_attribute attribute)
+{
+	r->names[r->attribute_count] = name;
+	r->attributes[r->attribute_count++] = attribute;
+}
+
+static uint32_t free_id(const nt_gltf_recoding *r)
+{
+	uint32_t id = 0;
+	for (size_t i = 0; i < r->attribute_count; i++)
+		if (r->attributes[i].unique_id >= id)
+			id = r->attributes[i].unique_id + 1;
+	return id;
+}
+
+/* An attribute of ours: takes the place of one of that name. */
+static void put_floats(nt_gltf_recoding *r, const char *name, nt_draco_kind kind, int components,
+	const float *rows, int bits)
+{
+	const nt_draco_attribute attribute = {.unique_id = free_id(r), .kind = kind,
+		.component_type = NT_GLTF_FLOAT, .components = components,
+		.quantization = {.bits = bits}, .data = rows};
+	for (size_t i = 0; i < r->attribute_count; i++)
+		if (strcmp(r->names[i], name) == 0) {
+			const uint32_t id = r->attributes[i].unique_id;
+			r->attributes[i] = attribute;
+			r->attributes[i].unique_id = id;
+			return;
+		}
+	nt_gltf_draco_add(r, name, attribute);
+}
+
+/* Rows of a decoded attribute with their copies. */
+static nt_status copy_attribute(nt_gltf_recoding *r, const nt_draco_attribute *from, const void **rows)
+{
+	nt_gltf_patcher *p = r->patcher;
+	const nt_gltf_rows *all = &r->component->rows;
+	const size_t width = nt_draco_component_size(from->component_type) * (size_t)from->components;
+	unsigned char *out = nt_arena_alloc(p->arena, all->new_count, width);
+	if (!out)
+		return nt_fail_memory(p->error);
+	memcpy(out, from->data, all->old_count * width);
+	for (size_t row = all->old_count; row < all->new_count; row++)
+		memcpy(out + row * width,
+			(const unsigned char *)from->data + all->sources[row - all->old_count] * width, width);
+	*rows = out;
+	return NT_OK;
+}
+
+nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *r)
+{
+	nt_gltf_patcher *p = r->patcher;
+	const nt_json_value *ids = nt_json_find(r->extension, "attributes");
+	r->attributes = nt_arena_alloc(p->arena, nt_json_count(ids) + NT_GLTF_OWN_ATTRIBUTES,
+		sizeof *r->attributes);
+	r->names = nt_arena_alloc(p->arena, nt_json_count(ids) + NT_GLTF_OWN_ATTRIBUTES,
+		sizeof *r->names);
+	if (!r->attributes || !r->names)
+		return nt_fail_memory(p->error);
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < nt_json_count(ids); i++) {
+		uint64_t id = 0;
+		nt_json_get_uint64(nt_json_at(ids, i), &id);
+		nt_draco_attribute copy = *nt_draco_find(r->source, (uint32_t)id);
+		copy.quantization.explicit_box = copy.quantization.bits > 0;
+		copy.stride_bytes = 0;
+		status = copy_attribute(r, nt_draco_find(r->source, (uint32_t)id), &copy.data);
+		nt_gltf_draco_add(r, nt_json_key(ids, i, NULL), copy);
+	}
+	return status;
+}
+
+nt_status nt_gltf_draco_add_own(nt_gltf_recoding *r)
+{
+	nt_gltf_patcher *p = r->patcher;
+	const nt_gltf_rows *rows = &r->component->rows;
+	const int bits = nt_gltf_draco_bits(p->options, NT_DRACO_BITS_TANGENT);
+	nt_status status = NT_OK;
+	if (rows->normals[0])
+		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, rows->normals[0],
+			nt_gltf_draco_bits(p->options, NT_DRACO_BITS_NORMAL));
+	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, rows->tangents[0], bits);
+	if (p->options->bitangents) {
+		float *bitangents;
+		status = nt_gltf_bitangents(p, r->component, 0, &bitangents);
+		if (!status)
+			put_floats(r, "_BITANGENT", NT_DRACO_GENERIC, 3, bitangents, bits);
+	}
+	return status;
+}
+
+/* ---- encoding ---- */
+
+nt_status nt_gltf_draco_encode(const nt_gltf_recoding *r, nt_draco_method method, nt_draco_block *block)
+{
+	const nt_draco_mesh mesh = {
+		.method = method,
+		.point_count = r->component->rows.new_count,
+		.face_count = r->mesh->corner_count / 3,
+		.indices = r->component->rows.indices[0],
+		.attributes = r->attributes,
+		.attribute_count = r->attribute_count,
+	};
+	nt_error ignored;
+	return nt_draco_encode(&mesh, block, &ignored);
+}
+
+/* ---- in the document ---- */
+
+static void set_count(nt_gltf_patcher *p, uint64_t accessor, size_t count)
+{
+	nt_json_value *json =
+		nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)accessor);
+	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "count"), count);
+}
+
+void nt_gltf_draco_describe(nt_gltf_recoding *r, const nt_draco_block *block)
+{
+	nt_gltf_patcher *p = r->patcher;
+	nt_json *json = p->json;
+	nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
+	for (size_t i = 0; i < r->attribute_count; i++) {
+		const nt_draco_attribute *a = &r->attributes[i];
+		uint64_t accessor;
+		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &accessor))
+			set_count(p, accessor, block->point_count);
+		else
+			nt_json_set_uint64(json, nt_json_put(json, attributes, r->names[i]),
+				nt_gltf_new_accessor(p, NT_NONE, NT_GLTF_FLOAT,
+					a->components == 3 ? "VEC3" : "VEC4", block->point_count, false));
+		nt_json_set_uint64(json, nt_json_put(json, nt_json_put(json, r->extension, "attributes"),
+			r->names[i]), a->unique_id);
+	}
+	uint64_t indices, type = 0;
+	if (!nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &indices)) {
+		indices = nt_gltf_new_accessor(p, NT_NONE, NT_GLTF_UINT, "SCALAR", 0, false);
+		nt_json_set_uint64(json, nt_json_put(json, r->primitive, "indices"), indices);
+		r->extension = nt_gltf_draco_of(r->primitive); /* members have moved */
+	}
+	set_count(p, indices, block->face_count * 3);
+	nt_json_value *accessor =
+		nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)indices);
+	nt_json_get_uint64(nt_json_find(accessor, "componentType"), &type);
+	const size_t limit = type == NT_GLTF_UBYTE ? 0xFF : type == NT_GLTF_USHORT ? 0xFFFF : SIZE_MAX;
+	if (block->point_count > limit)
+		nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"),
+			block->point_count > 0xFFFF ? NT_GLTF_UINT : NT_GLTF_USHORT);
+	nt_json_remove(json, accessor, "min");
+	nt_json_remove(json, accessor, "max");
+}
+
+bool nt_gltf_draco_release(nt_gltf_patcher *p, uint64_t view, size_t count)
+{
+	p->sharing.block_users[view] -= (uint32_t)count;
+	return p->sharing.block_users[view] == 0;
+}
+
+nt_status nt_gltf_draco_store(nt_gltf_recoding *r, const nt_draco_block *block)
+{
+	nt_gltf_patcher *p = r->patcher;
+	unsigned char *bytes = nt_arena_alloc(p->arena, block->size, 1);
+	if (!bytes)
+		return nt_fail_memory(p->error);
+	memcpy(bytes, block->bytes, block->size);
+	nt_gltf_view view;
+	nt_status status = r->source ?
+		nt_gltf_get_view(p->document, r->view, "", &view, p->error) : NT_OK;
+	if (status)
+		return status;
+	if (r->source && nt_gltf_draco_release(p, r->view, r->component->member_count) &&
+		nt_byte_users_count(&p->layout.users, view.buffer, view.offset, view.offset + view.length) == 1)
+		return nt_layout_edit(&p->layout, view.buffer, view.offset, view.length, bytes,
+			block->size, p->error);
+	uint32_t number;
+	status = nt_layout_add_view(&p->layout, r->component->buffer, bytes, block->size, 0, 0, &number,
+		p->error);
+	nt_json_set_uint64(p->json, nt_json_put(p->json, r->extension, "bufferView"), number);
+	return status;
+}

@@ -1,0 +1,54 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A primitive on its way into a Draco block: see draco_block.c.
+ */
+#ifndef NT_GLTF_EDIT_DRACO_BLOCK_H
+#define NT_GLTF_EDIT_DRACO_BLOCK_H
+
+#include "gltf/draco.h"
+#include "gltf/edit/editor.h"
+
+/* A primitive that is to be compressed. */
+typedef struct nt_gltf_recoding {
+	nt_gltf_patcher *patcher;
+	const nt_gltf_cluster *component;
+	const nt_mesh *mesh;
+	nt_json_value *primitive, *extension;
+	uint64_t view;
+	const nt_draco_mesh *source; /* NULL: the primitive is plain */
+	nt_draco_attribute *attributes;
+	size_t attribute_count;
+	const char **names;
+	bool outside; /* something of the primitive is not in the block */
+	const char *obstacle; /* why it cannot be compressed; NULL: nothing is known to stand in the way */
+} nt_gltf_recoding;
+
+/* Attributes that nmtan may add to those of the source: NORMAL, TANGENT, _BITANGENT. */
+enum { NT_GLTF_OWN_ATTRIBUTES = 3 };
+
+/* Quantization as the options have it, or the default. */
+int nt_gltf_draco_bits(const nt_write_options *options, nt_draco_bits which);
+
+/* There is room for what the primitive has and NT_GLTF_OWN_ATTRIBUTES. */
+void nt_gltf_draco_add(nt_gltf_recoding *recoding, const char *name, nt_draco_attribute attribute);
+
+/* The attributes of the primitive's block, as they are, with copies of their rows. */
+nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *recoding);
+
+/* What nmtan made: NORMAL where it did, TANGENT, _BITANGENT where asked for. */
+nt_status nt_gltf_draco_add_own(nt_gltf_recoding *recoding);
+
+/* Compresses what was gathered; the status says whether Draco gives it back. */
+nt_status nt_gltf_draco_encode(const nt_gltf_recoding *recoding, nt_draco_method method, nt_draco_block *block);
+
+/* The JSON of the primitive follows what a decoder will see; new accessors have no view, their rows are in the
+ * block. */
+void nt_gltf_draco_describe(nt_gltf_recoding *recoding, const nt_draco_block *block);
+
+/* So many primitives do not refer to a block any more. Whether nobody does. */
+bool nt_gltf_draco_release(nt_gltf_patcher *patcher, uint64_t view, size_t count);
+
+/* Puts the block where the primitive's was, else into a new view. */
+nt_status nt_gltf_draco_store(nt_gltf_recoding *recoding, const nt_draco_block *block);
+
+#endif

@@ -1,0 +1,374 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Plain primitives that an explicit --draco asks to compress.
+ *
+ * All attributes go into the block; floats that have a meaning we know are quantized, all other values
+ * stay exact. Where the order of vertices matters to somebody (morph targets, attributes that Draco
+ * cannot have, extensions of the primitive), the sequential method keeps it. A primitive is left plain
+ * where that would not do: accessors that somebody else uses too, sparse or compressed ones, strips.
+ *
+ * The rows leave the buffers. Views keep their numbers: one takes the block, others that are empty then share bytes
+ * with it.
+ */
+#include "gltf/edit/draco_gather.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "gltf/accessor.h"
+#include "gltf/edit/extensions.h"
+#include "gltf/primitive.h"
+#include "gltf/view.h"
+
+/* ---- what can be compressed ---- */
+
+static bool begins_with(const char *text, const char *start)
+{
+	return strncmp(text, start, strlen(start)) == 0;
+}
+
+static nt_draco_kind kind_of(const char *name)
+{
+	return strcmp(name, "POSITION") == 0 ? NT_DRACO_POSITION :
+	       strcmp(name, "NORMAL") == 0 ? NT_DRACO_NORMAL :
+	       begins_with(name, "COLOR_") ? NT_DRACO_COLOR :
+	       begins_with(name, "TEXCOORD_") ? NT_DRACO_TEXCOORD : NT_DRACO_GENERIC;
+}
+
+/* 0 for what must come back as it was. */
+static int bits_of(const nt_write_options *options, const char *name)
+{
+	switch (kind_of(name)) {
+	case NT_DRACO_POSITION:
+		return nt_gltf_draco_bits(options, NT_DRACO_BITS_POSITION);
+	case NT_DRACO_NORMAL:
+		return nt_gltf_draco_bits(options, NT_DRACO_BITS_NORMAL);
+	case NT_DRACO_TEXCOORD:
+		return nt_gltf_draco_bits(options, NT_DRACO_BITS_TEXCOORD);
+	default:
+		return strcmp(name, "TANGENT") == 0 ?
+			nt_gltf_draco_bits(options, NT_DRACO_BITS_TANGENT) : 0;
+	}
+}
+
+/* Whether the rows of an accessor lie in the file as they are. */
+static bool lies_plain(const nt_gltf_recoding *r, uint64_t index, nt_gltf_accessor *accessor)
+{
+	const nt_gltf_patcher *p = r->patcher;
+	nt_gltf_view view;
+	return index < p->sharing.accessor_count &&
+		nt_gltf_get_accessor(p->document, index, "", accessor, NULL) == NT_OK &&
+		accessor->view != NT_NONE && !accessor->sparse_count && !accessor->decoded &&
+		nt_gltf_get_view(p->document, accessor->view, "", &view, NULL) == NT_OK &&
+		!view.compression && view.buffer < NT_GLTF_VIRTUAL;
+}
+
+/* Matrices are no attributes of Draco's. */
+static bool is_vector(const nt_gltf_recoding *r, uint32_t accessor)
+{
+	const char *type = nt_json_get_string(nt_json_find(nt_json_at(
+		nt_gltf_root_member(r->patcher->document, "accessors"), accessor), "type"), NULL);
+	return type && !begins_with(type, "MAT");
+}
+
+static bool indices_are_own(const nt_gltf_recoding *r)
+{
+	const nt_gltf_patcher *p = r->patcher;
+	const nt_json_value *indices = nt_json_find(r->primitive, "indices");
+	nt_gltf_accessor accessor;
+	uint64_t index;
+	return !indices || (nt_json_get_uint64(indices, &index) && lies_plain(r, index, &accessor) &&
+		p->sharing.index_users[p->sharing.canonical[index]] == r->component->member_count);
+}
+
+/* ---- gathering ---- */
+
+static nt_status tight_rows(nt_gltf_recoding *r, const nt_gltf_accessor *accessor, size_t width,
+	const void **result)
+{
+	nt_gltf_patcher *p = r->patcher;
+	const nt_gltf_rows *all = &r->component->rows;
+	const unsigned char *from;
+	unsigned char *out = nt_arena_alloc(p->arena, all->new_count, width);
+	if (!out)
+		return nt_fail_memory(p->error);
+	const nt_status status = nt_gltf_accessor_rows(p->document, accessor, &from, p->error);
+	for (size_t row = 0; !status && row < all->new_count; row++) {
+		const size_t source = row < all->old_count ? row : all->sources[row - all->old_count];
+		memcpy(out + row * width, from + source * accessor->stride, width);
+	}
+	*result = out;
+	return status;
+}
+
+static bool is_in_block(const nt_gltf_recoding *r, const nt_json_value *attributes, const char *name)
+{
+	if (attributes != nt_json_find(r->primitive, "attributes"))
+		return false;
+	for (size_t i = 0; i < r->attribute_count; i++)
+		if (strcmp(r->names[i], name) == 0)
+			return true;
+	return false;
+}
+
+static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_t index)
+{
+	nt_gltf_accessor accessor;
+	if (!lies_plain(r, index, &accessor) || accessor.count != r->component->rows.old_count)
+		r->obstacle = "an attribute is sparse or compressed";
+	else if (r->patcher->sharing.foreign[r->patcher->sharing.canonical[index]])
+		r->obstacle = "something else uses its attributes";
+	if (r->obstacle)
+		return NT_OK;
+	if (!is_vector(r, accessor.index)) {
+		r->outside = true;
+		return NT_OK;
+	}
+	const bool is_float = accessor.component_type == NT_GLTF_FLOAT;
+	/* ours takes its place */
+	if (strcmp(name, "TANGENT") == 0 && !(is_float && accessor.components == 4))
+		r->obstacle = "it has tangents that are no floats";
+	nt_draco_attribute attribute = {.unique_id = (uint32_t)r->attribute_count,
+		.kind = kind_of(name), .component_type = (int)accessor.component_type,
+		.components = (int)accessor.components, .normalized = accessor.normalized,
+		.quantization = {.bits = is_float ? bits_of(r->patcher->options, name) : 0}};
+	const size_t width = (size_t)accessor.components * accessor.component_bytes;
+	const nt_status status = tight_rows(r, &accessor, width, &attribute.data);
+	if (!status)
+		nt_gltf_draco_add(r, name, attribute);
+	return status;
+}
+
+/* How often an accessor is used inside of the block and outside of it. */
+typedef struct doubles {
+	const nt_gltf_recoding *recoding;
+	uint32_t canonical;
+	size_t inside, outside;
+} doubles;
+
+static nt_status count_use(void *context, nt_json_value *attributes, const char *name,
+	uint32_t accessor)
+{
+	doubles *d = context;
+	if (d->recoding->patcher->sharing.canonical[accessor] != d->canonical)
+		return NT_OK;
+	if (is_in_block(d->recoding, attributes, name))
+		d->inside++;
+	else
+		d->outside++;
+	return NT_OK;
+}
+
+static nt_status note_use(void *context, nt_json_value *attributes, const char *name,
+	uint32_t accessor)
+{
+	(void)accessor;
+	nt_gltf_recoding *r = context;
+	if (!is_in_block(r, attributes, name))
+		r->outside = true;
+	return NT_OK;
+}
+
+static bool has_doubles(const nt_gltf_recoding *r)
+{
+	const nt_gltf_patcher *p = r->patcher;
+	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
+	for (size_t i = 0; i < r->attribute_count; i++) {
+		uint64_t index;
+		if (!nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index))
+			return true;
+		doubles d = {.recoding = r, .canonical = p->sharing.canonical[index]};
+		nt_gltf_visit_attributes(r->primitive, p->sharing.accessor_count, count_use, &d);
+		if (d.inside != 1 || d.outside)
+			return true;
+	}
+	return false;
+}
+
+nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r)
+{
+	nt_gltf_patcher *p = r->patcher;
+	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
+	const size_t count = nt_json_count(attributes);
+	uint64_t mode = 4;
+	nt_json_get_uint64(nt_json_find(r->primitive, "mode"), &mode);
+	if (mode != 4)
+		r->obstacle = "it is a strip or a fan";
+	else if (!indices_are_own(r))
+		r->obstacle = "its indices are shared, sparse or compressed";
+	if (r->obstacle)
+		return NT_OK;
+	r->attributes = nt_arena_alloc(p->arena, count + NT_GLTF_OWN_ATTRIBUTES, sizeof *r->attributes);
+	r->names = nt_arena_alloc(p->arena, count + NT_GLTF_OWN_ATTRIBUTES, sizeof *r->names);
+	if (!r->attributes || !r->names)
+		return nt_fail_memory(p->error);
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && !r->obstacle && i < count; i++) {
+		/* names outlive the members that are put in behind them */
+		const char *key = nt_json_key(attributes, i, NULL);
+		const char *name = nt_arena_text(p->arena, key, strlen(key));
+		uint64_t index = UINT64_MAX;
+		nt_json_get_uint64(nt_json_at(attributes, i), &index);
+		status = name ? gather_attribute(r, name, index) : nt_fail_memory(p->error);
+	}
+	if (status || r->obstacle)
+		return status;
+	if (has_doubles(r))
+		r->obstacle = "two of its attributes are one accessor";
+	nt_gltf_visit_attributes(r->primitive, p->sharing.accessor_count, note_use, r);
+	/* an extension that we do not know may number the vertices */
+	for (size_t m = 0; m < r->component->member_count; m++) {
+		const nt_json_value *extensions = nt_json_find(nt_gltf_primitive_of(p->document,
+			&p->scene->meshes[r->component->members[m]]), "extensions");
+		for (size_t i = 0; i < nt_json_count(extensions); i++)
+			r->outside |= strcmp(nt_json_key(extensions, i, NULL), "KHR_materials_variants") != 0;
+	}
+	return NT_OK;
+}
+
+/* ---- taking out ---- */
+
+/* Bytes of a buffer that accessors of the primitive fill. */
+typedef struct run {
+	uint64_t begin, end, view_begin, view_end;
+	uint32_t buffer, view;
+} run;
+
+static int compare_runs(const void *a, const void *b)
+{
+	const run *x = a, *y = b;
+	if (x->buffer != y->buffer)
+		return x->buffer < y->buffer ? -1 : 1;
+	return (x->begin > y->begin) - (x->begin < y->begin);
+}
+
+/* The bytes of an accessor, which loses its view. */
+static run detach(nt_gltf_patcher *p, uint64_t index)
+{
+	nt_gltf_accessor a = {0};
+	nt_gltf_view view = {0};
+	nt_gltf_get_accessor(p->document, index, "", &a, NULL);
+	nt_gltf_get_view(p->document, a.view, "", &view, NULL);
+	nt_json_value *json = nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)index);
+	nt_json_remove(p->json, json, "bufferView");
+	nt_json_remove(p->json, json, "byteOffset");
+	const uint64_t begin = view.offset + a.offset;
+	return (run){begin, begin + (a.count - 1) * a.stride + a.element_bytes, view.offset,
+		view.offset + view.length, view.buffer, a.view};
+}
+
+/* Views that only runs lie in go as a whole. */
+static nt_status remove_views(nt_gltf_patcher *p, const run *runs, size_t count)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < count; i++) {
+		size_t users = 0;
+		for (size_t k = 0; k < count; k++)
+			users += runs[k].view == runs[i].view;
+		status = nt_layout_vacate_view(&p->layout, runs[i].view, users, p->error);
+	}
+	return status;
+}
+
+/* Bytes that somebody else has a use for stay, those in which another view begins or ends, and those that are all of
+ * some view. */
+static bool can_go(const nt_gltf_patcher *p, const run *runs, size_t count, uint64_t begin, uint64_t end)
+{
+	for (size_t i = 0; i < count; i++)
+		if (runs[i].view_begin > begin || runs[i].view_end < end ||
+			(runs[i].view_begin == begin && runs[i].view_end == end))
+			return false;
+	return nt_byte_users_count(&p->layout.users, runs->buffer, begin, end) == count;
+}
+
+static nt_status remove_runs(nt_gltf_patcher *p, run *runs, size_t count)
+{
+	if (count)
+		qsort(runs, count, sizeof *runs, compare_runs);
+	nt_status status = remove_views(p, runs, count);
+	for (size_t first = 0, next; !status && first < count; first = next) {
+		const uint64_t begin = runs[first].begin;
+		uint64_t end = runs[first].end;
+		for (next = first + 1; next < count && runs[next].buffer == runs[first].buffer &&
+			runs[next].begin < end; next++)
+			end = runs[next].end > end ? runs[next].end : end;
+		if (!p->layout.vacant[runs[first].view] && can_go(p, runs + first, next - first, begin, end))
+			status = nt_layout_edit(&p->layout, runs[first].buffer, begin, end - begin,
+				(const unsigned char *)"", 0, p->error);
+	}
+	return status;
+}
+
+/* Bounds of what a decoder will see; quantization moves values. */
+static void bound_accessor(nt_gltf_patcher *p, uint64_t index, const nt_draco_attribute *decoded,
+	size_t count)
+{
+	nt_json_value *json = nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)index);
+	nt_json_value *bounds[2] = {nt_json_find(json, "min"), nt_json_find(json, "max")};
+	const float *rows = decoded->data;
+	const size_t width = (size_t)decoded->components;
+	for (size_t b = 0; b < 2; b++)
+		for (size_t k = 0; k < width && nt_json_count(bounds[b]) == width; k++) {
+			float extreme = rows[k];
+			for (size_t row = 1; row < count; row++) {
+				const float value = rows[row * width + k];
+				if (b ? value > extreme : value < extreme)
+					extreme = value;
+			}
+			nt_json_set_double(p->json, nt_json_at(bounds[b], k), (double)extreme);
+		}
+}
+
+static nt_status set_bounds(nt_gltf_recoding *r, const nt_draco_block *block)
+{
+	nt_gltf_patcher *p = r->patcher;
+	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
+	nt_draco *decoded;
+	nt_status status =
+		nt_draco_decode(&decoded, block->bytes, block->size, 0, false, p->error);
+	if (status)
+		return status;
+	const nt_draco_mesh *mesh = nt_draco_get(decoded);
+	for (size_t i = 0; i < r->attribute_count; i++) {
+		uint64_t index;
+		const nt_draco_attribute *found = nt_draco_find(mesh, r->attributes[i].unique_id);
+		if (found && r->attributes[i].quantization.bits &&
+			nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index))
+			bound_accessor(p, index, found, mesh->point_count);
+	}
+	nt_draco_free(decoded);
+	return status;
+}
+
+static void put_extension(nt_gltf_recoding *r)
+{
+	nt_json *json = r->patcher->json;
+	nt_json_value *extensions = nt_json_put(json, r->primitive, "extensions");
+	r->extension = nt_json_put(json, extensions, "KHR_draco_mesh_compression");
+	nt_json_set_uint64(json, nt_json_put(json, r->extension, "bufferView"), 0);
+	nt_json_set_object(json, nt_json_put(json, r->extension, "attributes"));
+	nt_gltf_list_extension(r->patcher->document, "extensionsUsed", "KHR_draco_mesh_compression");
+	nt_gltf_list_extension(r->patcher->document, "extensionsRequired", "KHR_draco_mesh_compression");
+}
+
+nt_status nt_gltf_draco_take_out(nt_gltf_recoding *r, const nt_draco_block *block)
+{
+	nt_gltf_patcher *p = r->patcher;
+	run *runs = nt_arena_alloc(p->arena, r->attribute_count + 1, sizeof *runs);
+	if (!runs)
+		return nt_fail_memory(p->error);
+	nt_status status = set_bounds(r, block);
+	if (status)
+		return status;
+	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
+	size_t count = 0;
+	uint64_t index;
+	for (size_t i = 0; i < r->attribute_count; i++)
+		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index))
+			runs[count++] = detach(p, index);
+	if (nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &index))
+		runs[count++] = detach(p, index);
+	status = remove_runs(p, runs, count);
+	put_extension(r);
+	return status;
+}

@@ -1,0 +1,385 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The patched document as files: .gltf with its buffers, .gltf with everything in it, or .glb.
+ *
+ * A buffer stays what it was where it can: a data URI remains one, an external file that nothing
+ * changed is linked to, several buffers remain several. A changed external buffer becomes a companion of
+ * the output, so that no file of the input is ever written. A .glb from a .gltf is one file unless files
+ * are asked for: buffer 0 is the BIN chunk and the others are data URIs. Their bytes could be one chunk, as
+ * other tools have it, but only with other buffer numbers and offsets, to which extensions that we do not
+ * know may refer.
+ */
+#include "gltf/edit/write.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include "gltf/edit/data_uris.h"
+#include "gltf/edit/images.h"
+#include "gltf/edit/relocate.h"
+#include "file/uri.h"
+
+/* What happens to a buffer. */
+typedef enum fate {
+	FATE_KEEP,     /* its JSON stays as it is */
+	FATE_LINK,     /* the same file, seen from the output's folder */
+	FATE_DATA,     /* a data URI */
+	FATE_BIN,      /* the BIN chunk */
+	FATE_COMPANION /* a file beside the output */
+} fate;
+
+/* Zeros that a .glb may begin with because the source's first buffer has no data. */
+enum { EMPTY_BYTES = 1 << 24 };
+
+/* ---- the input as it is ---- */
+
+/* The document's own file, to stream from. */
+static nt_file input_file(const nt_scene *scene)
+{
+	if (scene->file)
+		return *scene->file;
+	return (nt_file){.data = scene->bytes, .size = scene->byte_count, .fd = -1};
+}
+
+static bool has_external(const nt_gltf *document, const char *array)
+{
+	const nt_json_value *elements = nt_gltf_root_member(document, array);
+	size_t length;
+	for (size_t i = 0; i < nt_json_count(elements); i++)
+		if (nt_gltf_external_uri(nt_json_at(elements, i), &length))
+			return true;
+	return false;
+}
+
+nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *options,
+	nt_output *output, bool *written, nt_error *error)
+{
+	const nt_gltf *document = scene->source;
+	const bool same_container = (options->format == NT_FORMAT_GLB) == document->is_glb;
+	const bool buffers = has_external(document, "buffers"), images = has_external(document, "images");
+	const nt_images choice = nt_gltf_images_choice(options, same_container);
+	nt_arena arena = {0};
+	const char *prefix = "";
+	nt_status status = NT_OK;
+	*written = false;
+	if (buffers || images)
+		status = nt_gltf_link_prefix(&arena, options->path, scene->path, &prefix, error);
+	const bool moves = *prefix && (buffers || images);
+	const bool embeds = (options->embed && buffers) || (choice == NT_IMAGES_EMBED && images);
+	nt_arena_free(&arena);
+	if (status || !same_container || moves || embeds)
+		return status;
+	*written = true;
+	const nt_file file = input_file(scene);
+	nt_sink *sink;
+	status = nt_output_add(output, options->path, true, &sink, error);
+	return status ? status : nt_sink_copy(sink, &file, 0, file.size, error);
+}
+
+/* ---- what happens to each buffer ---- */
+
+/* Whether the user wants the output to have files beside it; standard output has none. */
+static bool keeps_files(const nt_gltf_container *c)
+{
+	const nt_buffers wish = c->options->buffers;
+	if (strcmp(c->options->path, "-") == 0)
+		return false;
+	return wish == NT_BUFFERS_LINK || wish == NT_BUFFERS_COPY;
+}
+
+static fate choose_fate(const nt_gltf_container *c, uint32_t index)
+{
+	const nt_gltf *document = c->document;
+	const nt_gltf_buffer_layout *plan = &c->patcher->layout.buffers[index];
+	/* The BIN chunk can be buffer 0 only, and only when the source's own chunk is not something else. */
+	const bool chunk_is_other = document->is_glb && document->glb.has_bin &&
+		document->buffer_count && document->buffers[0].home != NT_GLTF_HOME_BIN;
+	const bool files = keeps_files(c);
+	const fate in_glb = index == 0 && !chunk_is_other ? FATE_BIN : files ? FATE_COMPANION : FATE_DATA;
+	const fate moved = c->to_glb ? in_glb : c->embed ? FATE_DATA : FATE_COMPANION;
+	if (index >= document->buffer_count)
+		return moved;
+	const nt_gltf_buffer *buffer = &document->buffers[index];
+	const bool into_glb = c->to_glb && !c->same_container;
+	if (!buffer->described)
+		return FATE_KEEP;
+	switch (buffer->home) {
+	case NT_GLTF_HOME_BIN:
+		return moved;
+	case NT_GLTF_HOME_DATA:
+		if (into_glb && index == 0)
+			return FATE_BIN;
+		return plan->touched ? FATE_DATA : FATE_KEEP;
+	case NT_GLTF_HOME_FILE:
+		if (plan->touched || c->embed || (into_glb && !files))
+			return moved;
+		/* where the folder stays the same it is there already, as with images */
+		return c->options->buffers == NT_BUFFERS_COPY && *c->link_prefix && files ? FATE_COMPANION
+											  : FATE_LINK;
+	default:
+		/* Buffer 0 of a .glb without a uri is the BIN chunk, so there has to be one. */
+		return into_glb && index == 0 && buffer->length <= EMPTY_BYTES ? FATE_BIN : FATE_KEEP;
+	}
+}
+
+/* In a .glb a buffer 0 without a uri is the BIN chunk. Bytes that nobody ever had cannot be put there: zeros would
+ * be other data, and faulty where bounds or matrices are asked for. */
+static nt_status check_first_buffer(nt_gltf_container *c)
+{
+	const nt_gltf_buffer *first = c->document->buffers;
+	if (!c->to_glb || c->same_container || !c->document->buffer_count || !first->described ||
+		first->home != NT_GLTF_HOME_NOWHERE ||
+		nt_byte_users_count(&c->patcher->layout.users, 0, 0, first->length) == 0)
+		return NT_OK;
+	return nt_fail_pointer(c->error, NT_ERROR_UNSUPPORTED, "/buffers/0",
+		"no uri, so that a .glb would need its bytes as BIN chunk, which are not there; "
+		"write .gltf");
+}
+
+/* Whether a path names the input or a file it refers to. */
+static bool is_input(nt_gltf_container *c, const char *path)
+{
+	struct stat candidate, known;
+	if (stat(path, &candidate) != 0)
+		return false;
+	const char *const arrays[] = {"buffers", "images"};
+	for (size_t k = 0; k < 2; k++) {
+		const nt_json_value *elements = nt_gltf_root_member(c->document, arrays[k]);
+		for (size_t i = 0; i < nt_json_count(elements); i++) {
+			size_t length;
+			const char *file, *uri = nt_gltf_external_uri(nt_json_at(elements, i), &length);
+			if (uri && nt_uri_resolve(&c->arena, c->document->path, uri, length, true, &file,
+					   NULL) == NT_OK &&
+				stat(file, &known) == 0 && known.st_dev == candidate.st_dev &&
+				known.st_ino == candidate.st_ino)
+				return true;
+		}
+	}
+	return false;
+}
+
+static bool same_file(const char *a, const char *b)
+{
+	struct stat x, y;
+	return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+}
+
+/* Names that the output must not take: everything the document refers to. */
+static nt_status protect_inputs(nt_gltf_container *c)
+{
+	const char *const arrays[] = {"buffers", "images"};
+	nt_status status = NT_OK;
+	for (size_t k = 0; k < 2; k++) {
+		const nt_json_value *elements = nt_gltf_root_member(c->document, arrays[k]);
+		for (size_t i = 0; !status && i < nt_json_count(elements); i++) {
+			size_t length;
+			const char *file, *uri = nt_gltf_external_uri(nt_json_at(elements, i), &length);
+			if (uri && nt_uri_resolve(&c->arena, c->document->path, uri, length, true, &file,
+					   NULL) == NT_OK)
+				status = nt_output_protect(c->output, file, NULL, c->error);
+		}
+	}
+	return status;
+}
+
+/* "out.bin", "out-1.bin" for the others; when a file is rewritten in place, a name that none of its own
+ * files has. */
+static nt_status name_companion(nt_gltf_container *c, uint32_t index, bool first, const char **path)
+{
+	const char *out = c->options->path;
+	const char *slash = strrchr(out, '/'), *dot = strrchr(out, '.');
+	const size_t stem = dot && (!slash || dot > slash + 1) && dot != out ? (size_t)(dot - out) :
+									       strlen(out);
+	const bool in_place = same_file(out, c->document->path);
+	char *name = nt_arena_alloc(&c->arena, stem + 40, 1);
+	if (!name)
+		return nt_fail_memory(c->error);
+	memcpy(name, out, stem);
+	if (first)
+		strcpy(name + stem, ".bin");
+	else
+		snprintf(name + stem, 40, "-%u.bin", index);
+	for (unsigned number = 1; in_place && is_input(c, name) && number < 1000; number++)
+		snprintf(name + stem, 40, "-%u-tangents%u.bin", index, number);
+	*path = name;
+	return NT_OK;
+}
+
+static nt_status write_companion(nt_gltf_container *c, uint32_t index, bool first,
+	nt_json_value *json, const nt_file *input)
+{
+	const char *path = NULL;
+	nt_status status = name_companion(c, index, first, &path);
+	if (status)
+		return status;
+	const char *slash = strrchr(path, '/');
+	nt_buffer uri = {0};
+	nt_uri_append_path(&uri, slash ? slash + 1 : path);
+	if (!uri.failed)
+		nt_json_set_string(c->json, nt_json_put(c->json, json, "uri"), uri.data, uri.size);
+	status = uri.failed ? nt_fail_memory(c->error) : NT_OK;
+	nt_buffer_free(&uri);
+	nt_sink *sink;
+	if (!status)
+		status = nt_output_add(c->output, path, false, &sink, c->error);
+	return status ? status :
+			nt_layout_write(&c->patcher->layout, index, input, sink, c->error);
+}
+
+/* A .glb ends at 4 GiB. Said before data URIs are made of buffers that cannot fit, and before a file is begun; the
+ * JSON's own length is added when it is known. */
+static nt_status check_room(nt_gltf_container *c)
+{
+	uint64_t sum = 0;
+	for (uint32_t i = 0; c->to_glb && i < c->patcher->layout.buffer_count; i++) {
+		const uint64_t length = c->patcher->layout.buffers[i].new_length;
+		const fate what = choose_fate(c, i);
+		if (what != FATE_BIN && what != FATE_DATA)
+			continue;
+		/* no sum of lengths below 2^32 wraps */
+		if (length <= UINT32_MAX)
+			sum += what == FATE_DATA ? nt_base64_length(length) : length;
+		if (length <= UINT32_MAX && sum <= UINT32_MAX)
+			continue;
+		char pointer[NT_GLTF_POINTER];
+		snprintf(pointer, sizeof pointer, "/buffers/%u", i);
+		return nt_fail_pointer(c->error, NT_ERROR_UNSUPPORTED, pointer,
+			"with this buffer of %llu bytes the output would take 4 GiB or more, which GLB cannot "
+			"hold; write .gltf", (unsigned long long)length);
+	}
+	return NT_OK;
+}
+
+/* What will be written must be open before its uri changes. */
+static nt_status open_source(nt_gltf_container *c, uint32_t index, fate what)
+{
+	if (what == FATE_KEEP || what == FATE_LINK || index >= c->document->buffer_count ||
+		c->document->buffers[index].home == NT_GLTF_HOME_NOWHERE)
+		return NT_OK;
+	nt_gltf_buffer *buffer;
+	return nt_gltf_open_buffer(c->document, index, "/buffers", &buffer, c->error);
+}
+
+/* Settles every buffer but the BIN chunk; *bin receives whether there is one. */
+static nt_status settle_buffers(nt_gltf_container *c, const nt_file *input, bool *bin)
+{
+	bool first = true;
+	nt_status status = NT_OK;
+	*bin = false;
+	for (uint32_t i = 0; !status && i < c->patcher->layout.buffer_count; i++) {
+		nt_json_value *json = nt_json_at(nt_gltf_root_member(c->document, "buffers"), i);
+		const fate what = choose_fate(c, i);
+		status = open_source(c, i, what);
+		if (status)
+			break;
+		switch (what) {
+		case FATE_KEEP:
+			break;
+		case FATE_LINK:
+			status = nt_gltf_link(c, json);
+			break;
+		case FATE_DATA:
+			status = nt_gltf_embed(c, i);
+			break;
+		case FATE_BIN:
+			nt_json_remove(c->json, json, "uri");
+			*bin = true;
+			break;
+		case FATE_COMPANION:
+			status = write_companion(c, i, first, json, input);
+			first = false;
+			break;
+		}
+	}
+	return status;
+}
+
+/* ---- the main file ---- */
+
+static uint64_t other_bytes(const nt_gltf *document)
+{
+	uint64_t sum = 0;
+	for (size_t i = 0; document->is_glb && i < document->glb.other_count; i++)
+		sum += nt_glb_chunk_bytes(document->glb.others[i].size);
+	return sum;
+}
+
+static nt_status write_glb(nt_gltf_container *c, const nt_buffer *text, uint64_t length, const nt_file *input,
+	bool bin, nt_sink *sink)
+{
+	const nt_gltf *document = c->document;
+	/* A BIN chunk that is no buffer stays what it is. */
+	const bool raw = !bin && document->is_glb && document->glb.has_bin;
+	const uint64_t size = bin ? c->patcher->layout.buffers[0].new_length :
+			      raw ? document->glb.bin.size : 0;
+	nt_status status =
+		nt_glb_begin(sink, length, bin || raw, size, other_bytes(document), c->error);
+	if (!status)
+		status = nt_gltf_write_text(c, text, sink);
+	if (!status)
+		status = nt_glb_end_json(sink, length, bin || raw, size, c->error);
+	if (!status && bin)
+		status = nt_layout_write(&c->patcher->layout, 0, input, sink, c->error);
+	if (!status && raw)
+		status = nt_sink_copy(sink, input, document->glb.bin.offset, document->glb.bin.size,
+			c->error);
+	if (!status && (bin || raw))
+		status = nt_glb_end_bin(sink, size, c->error);
+	for (size_t i = 0; !status && document->is_glb && i < document->glb.other_count; i++) {
+		const nt_glb_chunk *chunk = &document->glb.others[i];
+		status = nt_glb_write_chunk(sink, chunk->type, document->bytes + chunk->offset,
+			chunk->size, c->error);
+	}
+	return status;
+}
+
+static nt_status write_main(nt_gltf_container *c, const nt_file *input, bool bin)
+{
+	nt_buffer text = {0};
+	uint64_t length;
+	nt_sink *sink;
+	nt_status status = nt_gltf_embedding_text(c, &text, &length);
+	if (!status)
+		status = nt_output_add(c->output, c->options->path, true, &sink, c->error);
+	if (!status)
+		status = c->to_glb ? write_glb(c, &text, length, input, bin, sink) :
+				     nt_gltf_write_text(c, &text, sink);
+	nt_buffer_free(&text);
+	return status;
+}
+
+nt_status nt_gltf_write_container(nt_gltf_patcher *patcher, nt_output *output)
+{
+	const nt_write_options *options = patcher->options;
+	nt_gltf_container c = {.patcher = patcher, .document = patcher->document,
+		.json = patcher->json, .options = options, .output = output, .error = patcher->error,
+		.to_glb = options->format == NT_FORMAT_GLB};
+	c.same_container = c.to_glb == c.document->is_glb;
+	/* Standard output has no companions. */
+	c.embed = options->embed || (!c.to_glb && strcmp(options->path, "-") == 0);
+
+	const nt_file input = input_file(patcher->scene);
+	bool bin;
+	nt_status status = nt_gltf_link_prefix(&c.arena, options->path, c.document->path,
+		&c.link_prefix, c.error);
+	if (!status)
+		status = check_first_buffer(&c);
+	if (!status)
+		status = protect_inputs(&c);
+	if (!status)
+		status = nt_gltf_move_images(&c);
+	if (!status)
+		status = nt_layout_finish(&patcher->layout, c.error);
+	if (!status)
+		status = check_room(&c);
+	if (!status)
+		status = settle_buffers(&c, &input, &bin);
+	if (!status)
+		status = write_main(&c, &input, bin);
+	for (size_t i = 0; i < c.image_count; i++)
+		nt_file_close(&c.images[i]);
+	free(c.images);
+	nt_arena_free(&c.arena);
+	return status;
+}

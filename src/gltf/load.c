@@ -1,0 +1,405 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The geometry of one glTF primitive, with the buffers that this one needs: vertices, faces, and where it is
+ * asked for the mesh as each morph target moves it. Everything that is read is checked here.
+ *
+ * Texture coordinates are handed on as (u, -v): v up, exactly. Where the texture that tangents serve has a
+ * transform, they go through it.
+ */
+#include "gltf/load.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+#include "base/parallel.h"
+#include "gltf/accessor.h"
+#include "gltf/draco.h"
+#include "gltf/materials.h"
+#include "gltf/primitive.h"
+
+/* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
+enum { UNBACKED_ELEMENTS = 65536 };
+
+static nt_status find_primitive(nt_gltf *document, const nt_mesh *mesh,
+	const nt_json_value **primitive, nt_error *error)
+{
+	const nt_json_value *json =
+		nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh);
+	*primitive = nt_json_at(nt_json_find(json, "primitives"), mesh->gltf_primitive);
+	return nt_gltf_decode_draco(document, *primitive, mesh->place.pointer, error);
+}
+
+/* An attribute of a primitive. *accessor has count 0 and no view where there is none. */
+typedef struct attribute {
+	bool exists;
+	nt_gltf_accessor accessor;
+} attribute;
+
+static nt_status find_attribute(nt_gltf *document, const nt_mesh *mesh,
+	const nt_json_value *attributes, const char *name, uint32_t least, uint32_t most,
+	attribute *found, nt_error *error)
+{
+	found->exists = false;
+	const nt_json_value *reference = nt_json_find(attributes, name);
+	if (!reference)
+		return NT_OK;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "%.100s/attributes", mesh->place.pointer);
+	uint64_t index;
+	nt_status status =
+		nt_gltf_uint(attributes, pointer, name, UINT32_MAX - 1, NT_GLTF_REQUIRED, &index, error);
+	if (!status) {
+		snprintf(pointer, sizeof pointer, "%.100s/attributes/%.20s", mesh->place.pointer, name);
+		status = nt_gltf_get_accessor(document, index, pointer, &found->accessor, error);
+	}
+	if (status)
+		return status;
+	if (found->accessor.components < least || found->accessor.components > most)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+			"accessor %llu has %u components, expected %u", (unsigned long long)index,
+			found->accessor.components, least);
+	found->exists = true;
+	return NT_OK;
+}
+
+static nt_status check_count(const nt_mesh *mesh, const attribute *found, const char *name,
+	nt_error *error)
+{
+	if (!found->exists || found->accessor.count == mesh->vertex_count)
+		return NT_OK;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "%.100s/attributes/%.20s", mesh->place.pointer, name);
+	return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+		"accessor %u has %llu elements, POSITION has %zu", found->accessor.index,
+		(unsigned long long)found->accessor.count, mesh->vertex_count);
+}
+
+/* What a load takes from a primitive. */
+typedef struct inputs {
+	attribute positions, normals, texcoords, tangents, colors;
+	char texcoord_name[32];
+} inputs;
+
+static nt_status find_inputs(nt_gltf *document, const nt_mesh *mesh, const nt_json_value *primitive,
+	const nt_read_options *options, inputs *in, nt_error *error)
+{
+	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
+	snprintf(in->texcoord_name, sizeof in->texcoord_name, "TEXCOORD_%u", mesh->texcoord_set);
+	in->colors.exists = false;
+	nt_status status =
+		find_attribute(document, mesh, attributes, "POSITION", 3, 3, &in->positions, error);
+	if (!status && !in->positions.exists)
+		status = nt_fail_pointer(error, NT_ERROR_INPUT, mesh->place.pointer,
+			"the primitive has no POSITION");
+	if (!status)
+		status = find_attribute(document, mesh, attributes, "NORMAL", 3, 3, &in->normals, error);
+	if (!status)
+		status = find_attribute(document, mesh, attributes, in->texcoord_name, 2, 2,
+			&in->texcoords, error);
+	if (!status)
+		status = find_attribute(document, mesh, attributes, "TANGENT", 4, 4, &in->tangents, error);
+	if (!status && options->world)
+		status = find_attribute(document, mesh, attributes, "COLOR_0", 3, 4, &in->colors, error);
+	return status;
+}
+
+static bool is_backed(const attribute *found)
+{
+	return found->exists && (found->accessor.view != NT_NONE || found->accessor.decoded);
+}
+
+/* Counts must agree, and something in the file must stand behind them. */
+static nt_status check_inputs(const nt_mesh *mesh, const inputs *in, nt_error *error)
+{
+	nt_status status = check_count(mesh, &in->normals, "NORMAL", error);
+	if (!status)
+		status = check_count(mesh, &in->texcoords, in->texcoord_name, error);
+	if (!status)
+		status = check_count(mesh, &in->tangents, "TANGENT", error);
+	if (!status)
+		status = check_count(mesh, &in->colors, "COLOR_0", error);
+	const bool backed = is_backed(&in->positions) || is_backed(&in->normals) ||
+		is_backed(&in->texcoords);
+	if (!status && !backed && mesh->vertex_count > UNBACKED_ELEMENTS)
+		status = nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, mesh->place.pointer,
+			"%zu vertices, but neither positions nor normals nor texture coordinates have a "
+			"bufferView", mesh->vertex_count);
+	return status;
+}
+
+/* Integer normals are normalised; float ones are taken as they are. */
+static void normalise_quantized(const nt_gltf_accessor *accessor, float *normals)
+{
+	if (accessor->component_type == NT_GLTF_FLOAT)
+		return;
+	for (size_t i = 0; i < accessor->count; i++) {
+		float *n = normals + i * 3;
+		const double x = n[0], y = n[1], z = n[2], length = x * x + y * y + z * z;
+		if (!(length > 0))
+			continue;
+		const double scale = 1 / __builtin_sqrt(length);
+		n[0] = (float)(x * scale);
+		n[1] = (float)(y * scale);
+		n[2] = (float)(z * scale);
+	}
+}
+
+typedef struct flipping {
+	const float *from;
+	float *to;
+} flipping;
+
+static void flip_rows(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	const flipping *f = context;
+	for (size_t i = begin; i < end; i++) {
+		f->to[2 * i] = f->from[2 * i];
+		f->to[2 * i + 1] = -f->from[2 * i + 1];
+	}
+}
+
+/* v points down in glTF. The copy is needed: the input stays as it is. */
+static nt_status flip_texcoords(nt_scene *scene, nt_mesh *mesh, const float *stored, unsigned threads,
+	nt_error *error)
+{
+	enum { GRAIN = 1 << 16 };
+	const size_t count = mesh->vertex_count;
+	mesh->texcoords = nt_arena_alloc(&scene->arena, count, 2 * sizeof(float));
+	if (!mesh->texcoords)
+		return nt_fail_memory(error);
+	flipping f = {stored, mesh->texcoords};
+	nt_parallel_ranges(count < 2 * GRAIN ? 1 : nt_thread_count(threads), count, GRAIN, flip_rows, &f);
+	nt_gltf_forget(scene, stored, count * 2 * sizeof(float));
+	return NT_OK;
+}
+
+static nt_status load_vertices(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const inputs *in,
+	unsigned threads, nt_error *error)
+{
+	nt_arena *arena = &scene->arena;
+	nt_status status = nt_gltf_floats(document, &in->positions.accessor, 3, 0, arena,
+		&mesh->positions, error);
+	if (!status && in->normals.exists) {
+		status = nt_gltf_floats(document, &in->normals.accessor, 3, 0, arena, &mesh->normals, error);
+		if (!status)
+			normalise_quantized(&in->normals.accessor, mesh->normals);
+	}
+	if (!status && in->tangents.exists)
+		status = nt_gltf_floats(document, &in->tangents.accessor, 4, 0, arena, &mesh->tangents,
+			error);
+	if (!status && in->colors.exists)
+		status = nt_gltf_floats(document, &in->colors.accessor, 4, 1, arena, &mesh->colors, error);
+	if (status || !in->texcoords.exists)
+		return status;
+
+	float *stored;
+	status = nt_gltf_floats(document, &in->texcoords.accessor, 2, 0, arena, &stored, error);
+	return status ? status : flip_texcoords(scene, mesh, stored, threads, error);
+}
+
+/*
+ * Texture coordinates as KHR_texture_transform turns and scales them, rounded to float once. Its text says
+ * counterclockwise and its code clockwise (v points down); viewers and the sample model do what the text
+ * says, and with v up that is the usual rotation: (u, v) is scaled, then turned by the angle. The offset moves
+ * all triangles alike.
+ */
+static nt_status transform_texcoords(nt_scene *scene, nt_mesh *mesh, const nt_gltf_transform *t,
+	nt_error *error)
+{
+	mesh->solve_texcoords = nt_arena_alloc(&scene->arena, mesh->vertex_count, 2 * sizeof(float));
+	if (!mesh->solve_texcoords)
+		return nt_fail_memory(error);
+	/* turning keeps the orientation; only scales can reverse it */
+	for (int k = 0; k < 2; k++) {
+		const int sign = (t->scale[k] > 0) - (t->scale[k] < 0);
+		mesh->solve_sign = k ? mesh->solve_sign * sign : sign;
+	}
+	const double c = cos(t->rotation), s = sin(t->rotation);
+	for (size_t i = 0; i < mesh->vertex_count; i++) {
+		const double u = t->scale[0] * mesh->texcoords[2 * i];
+		const double v = t->scale[1] * mesh->texcoords[2 * i + 1];
+		mesh->solve_texcoords[2 * i] = (float)(t->rotation != 0 ? c * u - s * v : u);
+		mesh->solve_texcoords[2 * i + 1] = (float)(t->rotation != 0 ? s * u + c * v : v);
+	}
+	return NT_OK;
+}
+
+/* The transform of the texture that tangents serve; what cannot be served is a finding. A mesh that shares
+ * its geometry has the same one applied already. */
+static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
+	const nt_json_value *primitive, nt_error *error)
+{
+	nt_gltf_shading shading;
+	const nt_status status = nt_gltf_judge_materials(document, primitive, mesh->place.pointer,
+		&shading, error);
+	if (status || !shading.has_set || shading.set != mesh->texcoord_set || !mesh->texcoords)
+		return status;
+	if (shading.transforms_differ)
+		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, &mesh->place, 1,
+			"set %u with different texture transforms", mesh->texcoord_set);
+	if (shading.transform.animated)
+		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED, &mesh->place, 1, NULL);
+	return shading.transform.exists && !mesh->same_as ?
+		transform_texcoords(scene, mesh, &shading.transform, error) : NT_OK;
+}
+
+/* Triangles of a strip or fan, in the order and with the first corners that the specification gives. */
+static void list_triangles(uint64_t mode, const uint32_t *chain, size_t face_count, uint32_t *corners)
+{
+	for (size_t i = 0; i < face_count; i++) {
+		size_t a = i, b = i + 1 + i % 2, c = i + 2 - i % 2;
+		if (mode == NT_GLTF_FAN) {
+			a = i + 1;
+			b = i + 2;
+			c = 0;
+		}
+		const size_t from[3] = {a, b, c};
+		for (int k = 0; k < 3; k++)
+			corners[3 * i + (size_t)k] = chain ? chain[from[k]] : (uint32_t)from[k];
+	}
+}
+
+/* ---- morph targets ---- */
+
+/* Base and delta; NULL where the target does not move it. */
+static nt_status add_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *mesh,
+	const nt_json_value *target, const char *name, const char *pointer, const float *base,
+	float **moved, nt_error *error)
+{
+	*moved = NULL;
+	const nt_json_value *reference = nt_json_find(target, name);
+	if (!reference || !base)
+		return NT_OK;
+	uint64_t index;
+	nt_gltf_accessor accessor;
+	nt_status status =
+		nt_gltf_uint(target, pointer, name, UINT32_MAX - 1, NT_GLTF_REQUIRED, &index, error);
+	if (!status)
+		status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
+	if (status)
+		return status;
+	if (accessor.components != 3 || accessor.count != mesh->vertex_count)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+			"%s: accessor %llu has %llu elements of %u components, expected %zu of 3", name,
+			(unsigned long long)index, (unsigned long long)accessor.count,
+			accessor.components, mesh->vertex_count);
+	float *delta, *sum = nt_arena_alloc(&scene->arena, mesh->vertex_count, 3 * sizeof *sum);
+	if (!sum)
+		return nt_fail_memory(error);
+	status = nt_gltf_floats(document, &accessor, 3, 0, &scene->arena, &delta, error);
+	for (size_t i = 0; !status && i < 3 * mesh->vertex_count; i++)
+		sum[i] = base[i] + delta[i];
+	*moved = sum;
+	return status;
+}
+
+/* Sums of unit normals are not unit. */
+static void normalise_rows(float *rows, size_t count)
+{
+	for (size_t i = 0; i < count; i++) {
+		float *n = rows + 3 * i;
+		const double x = n[0], y = n[1], z = n[2], length = sqrt(x * x + y * y + z * z);
+		for (int k = 0; k < 3 && length > 0; k++)
+			n[k] = (float)(n[k] / length);
+	}
+}
+
+/* The mesh as each target moves it: their tangents differ from the base's. */
+static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
+	const nt_json_value *primitive, nt_error *error)
+{
+	const nt_json_value *targets = nt_json_find(primitive, "targets");
+	const size_t count = nt_json_count(targets);
+	mesh->morph_count = 0;
+	if (count == 0)
+		return NT_OK;
+	mesh->morphs = nt_arena_alloc(&scene->arena, count, sizeof *mesh->morphs);
+	if (!mesh->morphs)
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < count; i++) {
+		char pointer[NT_GLTF_POINTER];
+		snprintf(pointer, sizeof pointer, "%.100s/targets/%zu", mesh->place.pointer, i);
+		nt_morph morph = {.target = (uint32_t)i};
+		const nt_json_value *target = nt_json_at(targets, i);
+		nt_status status = add_delta(scene, document, mesh, target, "POSITION", pointer,
+			mesh->positions, &morph.positions, error);
+		if (!status)
+			status = add_delta(scene, document, mesh, target, "NORMAL", pointer, mesh->normals,
+				&morph.normals, error);
+		if (status)
+			return status;
+		if (morph.normals)
+			normalise_rows(morph.normals, mesh->vertex_count);
+		if (morph.positions || morph.normals)
+			mesh->morphs[mesh->morph_count++] = morph;
+	}
+	return NT_OK;
+}
+
+static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
+	const nt_json_value *primitive, unsigned threads, nt_error *error)
+{
+	uint64_t mode = NT_GLTF_TRIANGLES, index;
+	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
+	nt_status status = nt_gltf_uint(primitive, mesh->place.pointer, "indices", UINT32_MAX - 1,
+		NT_NONE, &index, error);
+	if (status)
+		return status;
+	uint32_t *chain = NULL;
+	uint64_t count = mesh->vertex_count;
+	if (index != NT_NONE) {
+		char pointer[NT_GLTF_POINTER];
+		snprintf(pointer, sizeof pointer, "%.100s/indices", mesh->place.pointer);
+		nt_gltf_accessor accessor;
+		status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
+		if (!status)
+			status = nt_gltf_indices(document, &accessor, mesh->vertex_count, threads,
+				&scene->arena, &chain, error);
+		if (status)
+			return status;
+		count = accessor.count;
+	}
+	mesh->face_count = mode == NT_GLTF_TRIANGLES ? (size_t)count / 3 : count < 3 ? 0 : (size_t)count - 2;
+	mesh->corner_count = mesh->face_count * 3;
+	mesh->primitives[0].face_count = mesh->face_count;
+	mesh->indices = chain;
+	if (mode == NT_GLTF_TRIANGLES)
+		return NT_OK;
+	mesh->indices = nt_arena_alloc(&scene->arena, mesh->corner_count, sizeof *mesh->indices);
+	if (!mesh->indices)
+		return nt_fail_memory(error);
+	list_triangles(mode, chain, mesh->face_count, mesh->indices);
+	return NT_OK;
+}
+
+nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
+	nt_error *error)
+{
+	nt_gltf *document = scene->source;
+	const nt_json_value *primitive;
+	if (mesh->same_as) {
+		nt_mesh_share(mesh);
+		return apply_transform(scene, document, mesh, nt_gltf_primitive_of(document, mesh), error);
+	}
+	nt_status status = find_primitive(document, mesh, &primitive, error);
+	inputs in;
+	if (!status)
+		status = find_inputs(document, mesh, primitive, options, &in, error);
+	if (!status) {
+		mesh->vertex_count = mesh->source_vertex_count = (size_t)in.positions.accessor.count;
+		status = check_inputs(mesh, &in, error);
+	}
+	if (!status)
+		status = load_vertices(scene, document, mesh, &in, options->threads, error);
+	if (!status)
+		status = apply_transform(scene, document, mesh, primitive, error);
+	if (!status)
+		status = load_faces(scene, document, mesh, primitive, options->threads, error);
+	/* a mesh in the world is written without its targets */
+	if (!status && !options->world && options->morphs == NT_MORPH_BAKE)
+		status = load_morphs(scene, document, mesh, primitive, error);
+	if (status && error && !error->place.object[0])
+		memcpy(error->place.object, mesh->place.object, sizeof error->place.object);
+	return status;
+}

@@ -1,0 +1,232 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the materials of a primitive ask of tangents. A primitive has its own material, one per variant
+ * (KHR_materials_variants) and one per level of detail (MSFT_lod on a material); tangents must serve
+ * them all, so slots are united. Texture coordinates come from the first slot that names a texture:
+ * normalTexture, then the clearcoat normal, then anisotropy.
+ */
+#include "gltf/materials.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* What all materials together want, per slot. */
+typedef struct wishes {
+	bool wants[3]; /* in the order of enum nt_slot: the slot names a texture */
+	uint32_t set[3];
+	bool mixed[3]; /* materials differ in the set of that slot */
+	uint32_t mixed_set[3];
+	nt_gltf_transform transform[3];
+	bool mixed_transform[3];
+	unsigned slots;
+	size_t material_count, unlit_count;
+} wishes;
+
+static nt_status read_number(const nt_json_value *value, const char *pointer, const char *key,
+	double *number, nt_error *error)
+{
+	if (!value || nt_json_get_double(value, number))
+		return NT_OK;
+	char place[NT_GLTF_POINTER * 2];
+	snprintf(place, sizeof place, "%.250s/%s", pointer, key);
+	return nt_fail_pointer(error, NT_ERROR_INPUT, place, "%s, expected a number",
+		nt_json_type_text(value));
+}
+
+/* Whether an animation turns or scales this transform (KHR_animation_pointer). */
+static bool is_animated(const nt_gltf *document, const char *pointer)
+{
+	const nt_json_value *animations = nt_gltf_root_member(document, "animations");
+	const size_t length = strlen(pointer);
+	for (size_t i = 0; i < nt_json_count(animations); i++) {
+		const nt_json_value *channels = nt_json_find(nt_json_at(animations, i), "channels");
+		for (size_t k = 0; k < nt_json_count(channels); k++) {
+			const nt_json_value *extensions = nt_json_find(
+				nt_json_find(nt_json_at(channels, k), "target"), "extensions");
+			const char *target = nt_json_get_string(nt_json_find(
+				nt_json_find(extensions, "KHR_animation_pointer"), "pointer"), NULL);
+			if (target && strncmp(target, pointer, length) == 0 &&
+				(strcmp(target + length, "/rotation") == 0 ||
+					strcmp(target + length, "/scale") == 0))
+				return true;
+		}
+	}
+	return false;
+}
+
+/* The transform of a textureInfo, and the texture coordinate set, which it may override. */
+static nt_status read_transform(const nt_gltf *document, const nt_json_value *texture,
+	const char *pointer, nt_gltf_transform *transform, uint64_t *set, nt_error *error)
+{
+	char place[NT_GLTF_POINTER * 2];
+	*transform = (nt_gltf_transform){.scale = {1, 1}};
+	const nt_json_value *json =
+		nt_json_find(nt_json_find(texture, "extensions"), "KHR_texture_transform");
+	if (!json)
+		return NT_OK;
+	snprintf(place, sizeof place, "%s/extensions/KHR_texture_transform", pointer);
+	nt_status status = nt_gltf_uint(json, place, "texCoord", 1000, *set, set, error);
+	const nt_json_value *scale = nt_json_find(json, "scale");
+	if (!status)
+		status = read_number(nt_json_find(json, "rotation"), place, "rotation",
+			&transform->rotation, error);
+	for (size_t k = 0; !status && k < 2 && scale; k++)
+		status = read_number(nt_json_count(scale) == 2 ? nt_json_at(scale, k) : scale, place,
+			"scale", &transform->scale[k], error);
+	transform->animated = is_animated(document, place);
+	transform->exists = transform->animated || transform->rotation != 0 ||
+		transform->scale[0] != 1 || transform->scale[1] != 1;
+	return status;
+}
+
+static bool same_transform(const nt_gltf_transform *a, const nt_gltf_transform *b)
+{
+	return a->rotation == b->rotation && a->scale[0] == b->scale[0] && a->scale[1] == b->scale[1];
+}
+
+static nt_status note_texture(const nt_gltf *document, wishes *all, int slot,
+	const nt_json_value *texture, const char *material, const char *path, nt_error *error)
+{
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "%s/%s", material, path);
+	if (nt_json_type_of(texture) != NT_JSON_OBJECT)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an object",
+			nt_json_type_text(texture));
+	uint64_t set;
+	nt_gltf_transform transform;
+	nt_status status = nt_gltf_uint(texture, pointer, "texCoord", 1000, 0, &set, error);
+	if (!status)
+		status = read_transform(document, texture, pointer, &transform, &set, error);
+	if (status)
+		return status;
+	all->slots |= 1u << slot;
+	if (!all->wants[slot]) {
+		all->wants[slot] = true;
+		all->set[slot] = (uint32_t)set;
+		all->transform[slot] = transform;
+		return NT_OK;
+	}
+	if (all->set[slot] != set) {
+		all->mixed[slot] = true;
+		all->mixed_set[slot] = (uint32_t)set;
+	}
+	all->mixed_transform[slot] |= !same_transform(&all->transform[slot], &transform);
+	all->transform[slot].animated |= transform.animated;
+	return NT_OK;
+}
+
+static nt_status note_slots(const nt_gltf *document, wishes *all, const nt_json_value *material, const char *pointer,
+	nt_error *error)
+{
+	const nt_json_value *extensions = nt_json_find(material, "extensions");
+	if (nt_json_find(extensions, "KHR_materials_unlit")) {
+		all->unlit_count++;
+		return NT_OK;
+	}
+	const nt_json_value *normal = nt_json_find(material, "normalTexture");
+	const nt_json_value *clearcoat = nt_json_find(
+		nt_json_find(extensions, "KHR_materials_clearcoat"), "clearcoatNormalTexture");
+	const nt_json_value *anisotropy = nt_json_find(extensions, "KHR_materials_anisotropy");
+	const nt_json_value *direction = nt_json_find(anisotropy, "anisotropyTexture");
+	nt_status status = NT_OK;
+	if (normal)
+		status = note_texture(document, all, 0, normal, pointer, "normalTexture", error);
+	if (!status && clearcoat)
+		status = note_texture(document, all, 1, clearcoat, pointer,
+			"extensions/KHR_materials_clearcoat/clearcoatNormalTexture", error);
+	if (!status && anisotropy)
+		all->slots |= NT_SLOT_ANISOTROPY;
+	if (!status && direction)
+		status = note_texture(document, all, 2, direction, pointer,
+			"extensions/KHR_materials_anisotropy/anisotropyTexture", error);
+	return status;
+}
+
+static nt_status note_material(nt_gltf *document, wishes *all, uint64_t index, const char *from,
+	bool levels, nt_error *error)
+{
+	const nt_json_value *material;
+	nt_status status = nt_gltf_element(document, "materials", index, from, &material, error);
+	if (status)
+		return status;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/materials/%llu", (unsigned long long)index);
+	all->material_count++;
+	status = note_slots(document, all, material, pointer, error);
+	const nt_json_value *ids = nt_json_find(
+		nt_json_find(nt_json_find(material, "extensions"), "MSFT_lod"), "ids");
+	for (size_t i = 0; !status && levels && i < nt_json_count(ids); i++) {
+		uint64_t id;
+		if (nt_json_get_uint64(nt_json_at(ids, i), &id))
+			status = note_material(document, all, id, pointer, false, error);
+	}
+	return status;
+}
+
+static nt_status note_variants(nt_gltf *document, wishes *all, const nt_json_value *primitive,
+	const char *pointer, nt_error *error)
+{
+	const nt_json_value *mappings = nt_json_find(
+		nt_json_find(nt_json_find(primitive, "extensions"), "KHR_materials_variants"), "mappings");
+	for (size_t i = 0; i < nt_json_count(mappings); i++) {
+		char place[NT_GLTF_POINTER];
+		snprintf(place, sizeof place, "%.90s/extensions/KHR_materials_variants/mappings/%zu",
+			pointer, i);
+		uint64_t index;
+		nt_status status = nt_gltf_uint(nt_json_at(mappings, i), place, "material",
+			UINT32_MAX - 1, NT_GLTF_REQUIRED, &index, error);
+		if (!status)
+			status = note_material(document, all, index, place, true, error);
+		if (status)
+			return status;
+	}
+	return NT_OK;
+}
+
+/* One set must serve all: the first slot that names a texture wins, what differs is a conflict. */
+static void choose_set(const wishes *all, nt_gltf_shading *shading)
+{
+	for (int slot = 0; slot < 3; slot++) {
+		if (!all->wants[slot])
+			continue;
+		if (!shading->has_set) {
+			shading->has_set = true;
+			shading->set = all->set[slot];
+			shading->set_slot = 1u << slot;
+			shading->transform = all->transform[slot];
+			shading->transforms_differ = all->mixed_transform[slot];
+		}
+		if (all->set[slot] == shading->set &&
+			!same_transform(&all->transform[slot], &shading->transform))
+			shading->transforms_differ = true;
+		if (!shading->conflict && all->set[slot] != shading->set) {
+			shading->conflict = true;
+			shading->other_set = all->set[slot];
+		} else if (!shading->conflict && all->mixed[slot]) {
+			shading->conflict = true;
+			shading->other_set = all->mixed_set[slot];
+		}
+	}
+}
+
+nt_status nt_gltf_judge_materials(nt_gltf *document, const nt_json_value *primitive,
+	const char *pointer, nt_gltf_shading *shading, nt_error *error)
+{
+	*shading = (nt_gltf_shading){.material = NT_NONE};
+	wishes all = {0};
+	uint64_t index;
+	nt_status status = nt_gltf_uint(primitive, pointer, "material", UINT32_MAX, NT_NONE, &index,
+		error);
+	if (!status && index != NT_NONE) {
+		shading->material = (uint32_t)index;
+		status = note_material(document, &all, index, pointer, true, error);
+	}
+	if (!status)
+		status = note_variants(document, &all, primitive, pointer, error);
+	if (status)
+		return status;
+	shading->slots = all.slots;
+	shading->unlit = all.material_count > 0 && all.unlit_count == all.material_count;
+	choose_set(&all, shading);
+	return NT_OK;
+}

@@ -1,0 +1,34 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What materials ask of the primitives they cover: see materials.c.
+ */
+#ifndef NT_GLTF_MATERIALS_H
+#define NT_GLTF_MATERIALS_H
+
+#include "gltf/document.h"
+
+/* What KHR_texture_transform does to directions; its offset does nothing to them. */
+typedef struct nt_gltf_transform {
+	bool exists, animated;
+	double rotation, scale[2];
+} nt_gltf_transform;
+
+/* What a primitive's materials ask for. */
+typedef struct nt_gltf_shading {
+	unsigned slots; /* enum nt_slot */
+	bool unlit;     /* all of its materials are */
+	bool has_set;
+	uint32_t set;   /* texture coordinates of the first slot in the order of enum nt_slot */
+	unsigned set_slot;
+	bool conflict;  /* another slot wants other_set */
+	uint32_t other_set;
+	uint32_t material; /* the primitive's own; NT_NONE: none */
+	nt_gltf_transform transform; /* of the texture that gives the set */
+	bool transforms_differ;      /* another material or slot transforms that set otherwise */
+} nt_gltf_shading;
+
+/* Judges the materials of a primitive, variants included. */
+nt_status nt_gltf_judge_materials(nt_gltf *document, const nt_json_value *primitive,
+	const char *pointer, nt_gltf_shading *shading, nt_error *error);
+
+#endif

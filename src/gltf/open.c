@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * glTF and GLB as a scene: every primitive is a mesh of its own, since glTF defines tangents per
+ * primitive. Opening describes the meshes from the JSON alone; load.c brings the geometry of one.
+ *
+ * Only what must be read is judged. Opening looks at meshes, their materials and who shows them; a
+ * primitive's accessors are checked when it is loaded; cameras, skins, animations and images are not
+ * looked at.
+ */
+#include "gltf/open.h"
+
+#include <stdio.h>
+#include <string.h>
+#include "gltf/materials.h"
+#include "gltf/nodes.h"
+
+static const char *copy_name(nt_arena *arena, const nt_json_value *object)
+{
+	size_t length = 0;
+	const char *name = nt_json_get_string(nt_json_find(object, "name"), &length);
+	return nt_arena_text(arena, name ? name : "", name ? length : 0);
+}
+
+/* `mesh "head", primitive 2, material "skin"`. */
+static void name_place(nt_gltf *document, nt_mesh *mesh, uint32_t material)
+{
+	char *words = mesh->place.object;
+	const size_t room = sizeof mesh->place.object;
+	int used = mesh->name[0] ? snprintf(words, room, "mesh \"%.80s\"", mesh->name) :
+				   snprintf(words, room, "mesh %u", mesh->gltf_mesh);
+	used += snprintf(words + used, room - (size_t)used, ", primitive %u", mesh->gltf_primitive);
+	if (material == NT_NONE)
+		return;
+	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "materials"), material);
+	const char *name = nt_json_get_string(nt_json_find(json, "name"), NULL);
+	if (name)
+		snprintf(words + used, room - (size_t)used, ", material \"%.80s\"", name);
+	else
+		snprintf(words + used, room - (size_t)used, ", material %u", material);
+}
+
+/* How many elements an accessor claims; where that cannot be said, enough for a triangle, so that loading
+ * meets the fault and says it. */
+static uint64_t claimed_count(const nt_gltf *document, const nt_json_value *reference)
+{
+	uint64_t index, count = 3;
+	if (nt_json_get_uint64(reference, &index) && index < UINT32_MAX)
+		nt_json_get_uint64(nt_json_find(
+			nt_json_at(nt_gltf_root_member(document, "accessors"), (size_t)index), "count"),
+			&count);
+	return count;
+}
+
+/* Triangles a primitive claims to have, to tell empty ones; loading counts again. */
+static size_t claimed_faces(const nt_gltf *document, const nt_json_value *primitive,
+	const nt_json_value *attributes, uint64_t mode)
+{
+	const nt_json_value *indices = nt_json_find(primitive, "indices");
+	const nt_json_value *positions = nt_json_find(attributes, "POSITION");
+	if (!positions)
+		return 0;
+	const uint64_t corners = claimed_count(document, indices ? indices : positions);
+	if (corners < 3)
+		return 0;
+	return (size_t)(mode == NT_GLTF_TRIANGLES ? corners / 3 : corners - 2);
+}
+
+static bool has_texcoords(const nt_json_value *attributes, uint32_t set)
+{
+	char name[32];
+	snprintf(name, sizeof name, "TEXCOORD_%u", set);
+	return nt_json_find(attributes, name) != NULL;
+}
+
+/* Morph targets that move positions or normals and leave tangents as they are. */
+static uint32_t targets_without_tangents(const nt_json_value *primitive)
+{
+	const nt_json_value *targets = nt_json_find(primitive, "targets");
+	uint32_t count = 0;
+	for (size_t i = 0; i < nt_json_count(targets); i++) {
+		const nt_json_value *target = nt_json_at(targets, i);
+		const bool moves = nt_json_find(target, "POSITION") || nt_json_find(target, "NORMAL");
+		count += moves && !nt_json_find(target, "TANGENT");
+	}
+	return count;
+}
+
+static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
+	const nt_json_value *primitive, nt_mesh *mesh, const nt_read_options *options, nt_error *error)
+{
+	const char *pointer = mesh->place.pointer;
+	if (nt_json_type_of(primitive) != NT_JSON_OBJECT)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an object",
+			nt_json_type_text(primitive));
+	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
+	if (attributes && nt_json_type_of(attributes) != NT_JSON_OBJECT)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+			"\"attributes\" is %s, expected an object", nt_json_type_text(attributes));
+	uint64_t mode;
+	nt_status status = nt_gltf_uint(primitive, pointer, "mode", 6, NT_GLTF_TRIANGLES, &mode, error);
+	nt_gltf_shading shading;
+	if (!status)
+		status = nt_gltf_judge_materials(document, primitive, pointer, &shading, error);
+	if (status)
+		return status;
+	name_place(document, mesh, shading.material);
+	mesh->triangles = mode >= NT_GLTF_TRIANGLES;
+	mesh->slots = shading.slots;
+	mesh->unlit = shading.unlit;
+	mesh->texcoord_set = options->texcoord_set >= 0 ? (uint32_t)options->texcoord_set : shading.set;
+	mesh->texcoord_conflict = shading.conflict && options->texcoord_set < 0;
+	mesh->texcoord_other_set = shading.other_set;
+	mesh->has_positions = nt_json_find(attributes, "POSITION") != NULL;
+	mesh->has_normals = nt_json_find(attributes, "NORMAL") != NULL;
+	mesh->has_tangents = nt_json_find(attributes, "TANGENT") != NULL;
+	mesh->has_texcoords = has_texcoords(attributes, mesh->texcoord_set);
+	mesh->targets_without_tangents = targets_without_tangents(primitive);
+	mesh->face_count = claimed_faces(document, primitive, attributes, mode);
+	mesh->primitive_count = 1;
+	mesh->primitives = nt_arena_alloc(&scene->arena, 1, sizeof *mesh->primitives);
+	if (!mesh->primitives)
+		return nt_fail_memory(error);
+	mesh->primitives[0] = (nt_primitive){NT_NONE, mesh->face_count};
+	return NT_OK;
+}
+
+/* All primitives of all meshes. */
+static nt_status count_primitives(const nt_gltf *document, size_t *count, nt_error *error)
+{
+	const nt_json_value *meshes = nt_gltf_root_member(document, "meshes");
+	if (meshes && nt_json_type_of(meshes) != NT_JSON_ARRAY)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, "/meshes", "%s, expected an array",
+			nt_json_type_text(meshes));
+	*count = 0;
+	for (size_t i = 0; i < nt_json_count(meshes); i++) {
+		const nt_json_value *primitives = nt_json_find(nt_json_at(meshes, i), "primitives");
+		if (nt_json_type_of(primitives) != NT_JSON_ARRAY) {
+			char pointer[NT_GLTF_POINTER];
+			snprintf(pointer, sizeof pointer, "/meshes/%zu", i);
+			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+				"\"primitives\" is %s, expected an array", nt_json_type_text(primitives));
+		}
+		*count += nt_json_count(primitives);
+	}
+	return NT_OK;
+}
+
+static nt_status describe_meshes(nt_scene *scene, nt_gltf *document, const nt_read_options *options,
+	const bool *reached, nt_error *error)
+{
+	const nt_json_value *meshes = nt_gltf_root_member(document, "meshes");
+	nt_mesh *mesh = scene->meshes;
+	for (size_t i = 0; i < nt_json_count(meshes); i++) {
+		const nt_json_value *json = nt_json_at(meshes, i);
+		const nt_json_value *primitives = nt_json_find(json, "primitives");
+		const char *name = copy_name(&scene->arena, json);
+		if (!name)
+			return nt_fail_memory(error);
+		for (size_t k = 0; k < nt_json_count(primitives); k++, mesh++) {
+			memset(mesh, 0, sizeof *mesh);
+			nt_place_clear(&mesh->place);
+			snprintf(mesh->place.pointer, sizeof mesh->place.pointer,
+				"/meshes/%zu/primitives/%zu", i, k);
+			mesh->name = name;
+			mesh->gltf_mesh = (uint32_t)i;
+			mesh->gltf_primitive = (uint32_t)k;
+			mesh->reachable = reached[i];
+			const nt_status status = describe_primitive(scene, document,
+				nt_json_at(primitives, k), mesh, options, error);
+			if (status)
+				return status;
+		}
+	}
+	return NT_OK;
+}
+
+/* Where the primitives of a mesh begin in scene->meshes. */
+typedef struct placing {
+	nt_scene *scene;
+	const uint32_t *first; /* [mesh count + 1] */
+	size_t mesh_count, capacity;
+	nt_error *error;
+} placing;
+
+static nt_status place_mesh(void *context, uint64_t mesh, const double matrix[16])
+{
+	placing *world = context;
+	if (mesh >= world->mesh_count)
+		return NT_OK;
+	nt_scene *scene = world->scene;
+	for (uint32_t i = world->first[mesh]; i < world->first[mesh + 1]; i++) {
+		if (scene->instance_count == world->capacity) {
+			const size_t wanted = world->capacity ? world->capacity * 2 : 16;
+			nt_instance *grown = nt_arena_alloc(&scene->arena, wanted, sizeof *grown);
+			if (!grown)
+				return nt_fail_memory(world->error);
+			if (scene->instance_count)
+				memcpy(grown, scene->instances, scene->instance_count * sizeof *grown);
+			scene->instances = grown;
+			world->capacity = wanted;
+		}
+		nt_instance *instance = &scene->instances[scene->instance_count++];
+		instance->mesh = i;
+		memcpy(instance->matrix, matrix, sizeof instance->matrix);
+	}
+	return NT_OK;
+}
+
+static nt_status place_meshes(nt_scene *scene, const nt_gltf *document, nt_error *error)
+{
+	const size_t mesh_count = nt_json_count(nt_gltf_root_member(document, "meshes"));
+	uint32_t *first = nt_arena_alloc(&scene->arena, mesh_count + 1, sizeof *first);
+	if (!first)
+		return nt_fail_memory(error);
+	memset(first, 0, (mesh_count + 1) * sizeof *first);
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		first[scene->meshes[i].gltf_mesh + 1]++;
+	for (size_t i = 0; i < mesh_count; i++)
+		first[i + 1] += first[i];
+	placing world = {scene, first, mesh_count, 0, error};
+	return nt_gltf_walk_world(document, place_mesh, &world, error);
+}
+
+static uint64_t count_read(const void *source)
+{
+	return nt_gltf_bytes_read(source);
+}
+
+nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
+{
+	nt_gltf *document;
+	nt_status status = nt_gltf_create(&document, scene, options->allow_outside, error);
+	if (status)
+		return status;
+	scene->source = document;
+	scene->free_source = nt_gltf_free;
+	scene->read_of_source = count_read;
+	scene->forget = nt_gltf_forget;
+	scene->format = document->is_glb ? NT_FORMAT_GLB : NT_FORMAT_GLTF;
+
+	/* The meshes, and which of them a scene shows. */
+	size_t count = 0;
+	status = count_primitives(document, &count, error);
+	if (status)
+		return status;
+	const size_t mesh_count = nt_json_count(nt_gltf_root_member(document, "meshes"));
+	bool *reached = nt_arena_alloc(&scene->arena, mesh_count, sizeof *reached);
+	scene->meshes = nt_arena_alloc(&scene->arena, count, sizeof *scene->meshes);
+	if (!reached || !scene->meshes)
+		return nt_fail_memory(error);
+	memset(reached, 0, mesh_count * sizeof *reached);
+	scene->mesh_count = count;
+	status = nt_gltf_reach(document, reached, mesh_count, error);
+	if (!status)
+		status = describe_meshes(scene, document, options, reached, error);
+
+	/* Their places, where the output is one mesh in the world. */
+	if (!status && options->world)
+		status = place_meshes(scene, document, error);
+	return status;
+}

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Primitives and the accessors they name, those over the same bytes known as one.
+ */
+#include "gltf/primitive.h"
+
+#include <stdlib.h>
+#include "gltf/accessor.h"
+
+bool nt_gltf_is_solved(const nt_mesh *mesh)
+{
+	return mesh->split.vertex_tangents != NULL;
+}
+
+nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh)
+{
+	const nt_json_value *json =
+		nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh);
+	return nt_json_at(nt_json_find(json, "primitives"), mesh->gltf_primitive);
+}
+
+static nt_status visit_object(nt_json_value *attributes, size_t accessor_count, nt_gltf_visit visit,
+	void *context)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < nt_json_count(attributes); i++) {
+		uint64_t accessor;
+		const char *name = nt_json_key(attributes, i, NULL);
+		if (name && nt_json_get_uint64(nt_json_at(attributes, i), &accessor) &&
+			accessor < accessor_count)
+			status = visit(context, attributes, name, (uint32_t)accessor);
+	}
+	return status;
+}
+
+nt_status nt_gltf_visit_attributes(const nt_json_value *primitive, size_t accessor_count,
+	nt_gltf_visit visit, void *context)
+{
+	nt_status status =
+		visit_object(nt_json_find(primitive, "attributes"), accessor_count, visit, context);
+	const nt_json_value *targets = nt_json_find(primitive, "targets");
+	for (size_t i = 0; !status && i < nt_json_count(targets); i++)
+		status = visit_object(nt_json_at(targets, i), accessor_count, visit, context);
+	return status;
+}
+
+/* ---- accessors over the same bytes ---- */
+
+static int compare_accessors(const void *a, const void *b)
+{
+	const nt_gltf_accessor *x = a, *y = b;
+	const uint64_t xs[] = {x->view, x->offset, x->component_type, x->components, x->count,
+		x->normalized, x->index};
+	const uint64_t ys[] = {y->view, y->offset, y->component_type, y->components, y->count,
+		y->normalized, y->index};
+	for (size_t i = 0; i < sizeof xs / sizeof *xs; i++)
+		if (xs[i] != ys[i])
+			return xs[i] < ys[i] ? -1 : 1;
+	return 0;
+}
+
+static bool same_bytes(nt_gltf_accessor a, nt_gltf_accessor b)
+{
+	a.index = b.index = 0;
+	return compare_accessors(&a, &b) == 0;
+}
+
+bool nt_gltf_find_canonical(nt_gltf *document, uint32_t *canonical, size_t accessor_count)
+{
+	nt_gltf_accessor *list = nt_alloc(accessor_count, sizeof *list);
+	if (!list)
+		return false;
+	size_t count = 0;
+	for (uint32_t i = 0; i < accessor_count; i++) {
+		canonical[i] = i;
+		nt_gltf_accessor accessor;
+		if (nt_gltf_get_accessor(document, i, "", &accessor, NULL) == NT_OK &&
+			accessor.view != NT_NONE && !accessor.sparse_count)
+			list[count++] = accessor;
+	}
+	if (count)
+		qsort(list, count, sizeof *list, compare_accessors);
+	for (size_t i = 1; i < count; i++)
+		if (same_bytes(list[i], list[i - 1]))
+			canonical[list[i].index] = canonical[list[i - 1].index];
+	free(list);
+	return true;
+}

@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Primitives of a document and the accessors they name: see primitive.c.
+ */
+#ifndef NT_GLTF_PRIMITIVE_H
+#define NT_GLTF_PRIMITIVE_H
+
+#include "gltf/document.h"
+
+/* Whether a mesh has tangents to be written. */
+bool nt_gltf_is_solved(const nt_mesh *mesh);
+
+/* The primitive of a mesh in the document. */
+nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh);
+
+/* Calls visit() for the accessors of a primitive: its attributes and those of its morph targets. */
+typedef nt_status (*nt_gltf_visit)(void *context, nt_json_value *attributes, const char *name,
+	uint32_t accessor);
+nt_status nt_gltf_visit_attributes(const nt_json_value *primitive, size_t accessor_count,
+	nt_gltf_visit visit, void *context);
+
+/* Fills canonical [accessor_count]: the first accessor over the same bytes, for each. False: out of memory. */
+bool nt_gltf_find_canonical(nt_gltf *document, uint32_t *canonical, size_t accessor_count);
+
+#endif

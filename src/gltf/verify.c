@@ -1,0 +1,481 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Reading back: see verify.h. Corners are compared, not vertices, so it does not matter how a writer
+ * numbers its vertices, or shares them.
+ */
+#include "gltf/verify.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "ext/draco.h"
+#include "ext/tinygltf.h"
+#include "gltf/normalized.h"
+#include "gltf/quantize.h"
+#include "file/relative_path.h"
+#include "gltf/verify_faces.h"
+
+/* ---- finding the files ---- */
+
+enum { COMPANION_LIMIT = 64 };
+
+typedef struct companion {
+	char *uri;
+	nt_file file;
+} companion;
+
+typedef struct file_set {
+	nt_output *output; /* NULL: the files of an input */
+	const char *path; /* of the document */
+	companion items[COMPANION_LIMIT];
+	size_t count;
+	nt_error *error;
+} file_set;
+
+/* The file that a URI names: one of the output set, or one that was there before. */
+static bool open_companion(file_set *set, const char *uri, nt_file *file)
+{
+	const char *slash = strrchr(set->path, '/');
+	nt_buffer path = {0};
+	nt_buffer_append(&path, set->path, slash ? (size_t)(slash - set->path) + 1 : 0);
+	nt_buffer_text(&path, uri);
+	nt_status status = path.failed ? nt_fail_memory(set->error) : NT_OK;
+	const char *written = NULL;
+	if (status == NT_OK && set->output)
+		status = nt_output_written(set->output, path.data, &written, set->error);
+	if (status == NT_OK)
+		status = nt_file_open(file, written ? written : path.data, set->error);
+	nt_buffer_free(&path);
+	return status == NT_OK;
+}
+
+/* tinygltf asks for a file several times. Images are not its business. */
+static bool find_companion(void *user, const char *uri, const unsigned char **bytes, size_t *size)
+{
+	file_set *set = user;
+	for (size_t i = 0; i < set->count; i++)
+		if (strcmp(set->items[i].uri, uri) == 0) {
+			*bytes = set->items[i].file.data;
+			*size = set->items[i].file.size;
+			return true;
+		}
+	if (set->count == COMPANION_LIMIT)
+		return false;
+	companion *item = &set->items[set->count];
+	item->uri = strdup(uri);
+	if (!item->uri || !open_companion(set, uri, &item->file)) {
+		free(item->uri);
+		return false;
+	}
+	set->count++;
+	*bytes = item->file.data;
+	*size = item->file.size;
+	return true;
+}
+
+static void close_companions(file_set *set)
+{
+	for (size_t i = 0; i < set->count; i++) {
+		nt_file_close(&set->items[i].file);
+		free(set->items[i].uri);
+	}
+}
+
+/* ---- comparing ---- */
+
+/* What is compared of one primitive. */
+typedef struct primitive_view {
+	nt_reread_array positions, tangents, indices;
+	nt_reread_array *target_tangents; /* [morph_count] of the scene's mesh; NULL: none are compared */
+	size_t corner; /* the next one */
+	nt_draco *block; /* of a compressed primitive */
+	nt_verify_tolerance tolerance;
+} primitive_view;
+
+static nt_reread_array block_array(const nt_draco_attribute *attribute, size_t count)
+{
+	const size_t size = nt_draco_component_size(attribute->component_type);
+	return (nt_reread_array){attribute->data, count, size * (size_t)attribute->components,
+		attribute->component_type, attribute->components, attribute->normalized};
+}
+
+/* Half a step of the quantization, and what float arithmetic adds. */
+static float tolerance_of(const nt_draco_attribute *a, size_t count)
+{
+	if (a->component_type != NT_GLTF_FLOAT)
+		return 1e-6f; /* of what integers are mapped to */
+	if (!a->quantization.bits)
+		return 0;
+	float largest = 0;
+	const float *values = a->data;
+	for (size_t i = 0; i < count * (size_t)a->components; i++)
+		largest = fmaxf(largest, fabsf(values[i]));
+	const double steps = (double)(((uint64_t)1 << a->quantization.bits) - 1);
+	return (float)(0.501 * a->quantization.range / steps + 1e-6 * largest);
+}
+
+/* What a compressed primitive has in its block, decoded. */
+static nt_status open_block(nt_reread *model, size_t mesh, size_t primitive, const unsigned char *bytes,
+	size_t size, primitive_view *view, nt_error *error)
+{
+	if (!bytes)
+		return nt_fail(error, NT_ERROR_INPUT, "the compressed block is not inside of a buffer");
+	const nt_status status = nt_draco_decode(&view->block, bytes, size, 0, true, error);
+	if (status != NT_OK)
+		return status;
+	const nt_draco_mesh *decoded = nt_draco_get(view->block);
+	const char *const names[] = {"POSITION", "TANGENT"};
+	nt_reread_array *const arrays[] = {&view->positions, &view->tangents};
+	float *const tolerances[] = {&view->tolerance.position, &view->tolerance.tangent};
+	for (size_t i = 0; i < 2; i++) {
+		uint32_t id;
+		const nt_draco_attribute *found = nt_reread_block_id(model, mesh, primitive, names[i], &id)
+			? nt_draco_find(decoded, id) : NULL;
+		if (!found)
+			continue; /* outside of the block */
+		*arrays[i] = block_array(found, decoded->point_count);
+		*tolerances[i] = tolerance_of(found, decoded->point_count);
+	}
+	view->indices = (nt_reread_array){(const unsigned char *)decoded->indices, decoded->face_count * 3,
+		sizeof(uint32_t), NT_GLTF_UINT, 1, false};
+	return NT_OK;
+}
+
+static void close_primitive(primitive_view *view)
+{
+	nt_draco_free(view->block);
+	free(view->target_tangents);
+	*view = (primitive_view){0};
+}
+
+static nt_status open_primitive(nt_reread *model, size_t mesh, size_t primitive,
+	primitive_view *view, nt_error *error)
+{
+	*view = (primitive_view){.corner = 0};
+	const unsigned char *bytes;
+	size_t size;
+	nt_status status =
+		nt_reread_attribute(model, mesh, primitive, "POSITION", &view->positions, error);
+	if (status == NT_OK)
+		status = nt_reread_attribute(model, mesh, primitive, "TANGENT", &view->tangents, error);
+	if (status == NT_OK)
+		status = nt_reread_attribute(model, mesh, primitive, NULL, &view->indices, error);
+	if (status == NT_OK && nt_reread_block(model, mesh, primitive, &bytes, &size))
+		status = open_block(model, mesh, primitive, bytes, size, view, error);
+	return status;
+}
+
+/* TANGENT of the targets that were solved. */
+static nt_status open_targets(nt_reread *model, const nt_mesh *mesh, primitive_view *view, nt_error *error)
+{
+	if (mesh->morph_count == 0)
+		return NT_OK;
+	view->target_tangents = nt_calloc(mesh->morph_count, sizeof *view->target_tangents);
+	nt_status status = view->target_tangents ? NT_OK : nt_fail_memory(error);
+	for (size_t m = 0; m < mesh->morph_count && status == NT_OK; m++)
+		status = nt_reread_target(model, mesh->gltf_mesh, mesh->gltf_primitive, mesh->morphs[m].target,
+			"TANGENT", &view->target_tangents[m], error);
+	return status;
+}
+
+static size_t corner_count(const primitive_view *view)
+{
+	return view->indices.data ? view->indices.count : view->positions.count;
+}
+
+static size_t vertex_at(const primitive_view *view, size_t corner)
+{
+	const nt_reread_array *array = &view->indices;
+	if (!array->data)
+		return corner;
+	const unsigned char *at = array->data + corner * array->stride_bytes;
+	uint16_t half;
+	uint32_t word;
+	switch (array->component_type) {
+	case NT_GLTF_UBYTE:
+		return *at;
+	case NT_GLTF_USHORT:
+		memcpy(&half, at, sizeof half);
+		return half;
+	default:
+		memcpy(&word, at, sizeof word);
+		return word;
+	}
+}
+
+/* Row of a float array; NULL when there is none. */
+static const unsigned char *row_at(const nt_reread_array *array, size_t vertex)
+{
+	return vertex < array->count ? array->data + vertex * array->stride_bytes : NULL;
+}
+
+/* Whether a row holds a tangent: as it is, or rounded to the integers that it is stored as. */
+static bool tangent_matches(const nt_reread_array *array, const unsigned char *row, const float *tangent,
+	float rounded[4])
+{
+	const nt_precision precision = array->component_type == NT_GLTF_SHORT ? NT_PRECISION_SHORT
+		: array->component_type == NT_GLTF_BYTE ? NT_PRECISION_BYTE : NT_PRECISION_FLOAT;
+	unsigned char bytes[4 * sizeof *rounded];
+	memcpy(rounded, tangent, 4 * sizeof *rounded);
+	nt_precision_round(precision, rounded, 1, NULL);
+	nt_precision_encode(precision, rounded, 1, bytes);
+	return memcmp(row, bytes, nt_precision_bytes(precision)) == 0;
+}
+
+/* Whether a vertex's targets say what leads from its stored tangent to theirs. */
+static bool targets_match(const nt_mesh *mesh, const primitive_view *view, size_t vertex, size_t split,
+	const float *stored)
+{
+	for (size_t m = 0; view->target_tangents && m < mesh->morph_count; m++) {
+		const nt_reread_array *array = &view->target_tangents[m];
+		const unsigned char *row = row_at(array, vertex);
+		const float *moved = mesh->morphs[m].vertex_tangents + 3 * split;
+		const float delta[3] = {moved[0] - stored[0], moved[1] - stored[1], moved[2] - stored[2]};
+		if (!row || array->component_type != NT_GLTF_FLOAT || array->components != 3 ||
+			memcmp(row, delta, sizeof delta) != 0)
+			return false;
+	}
+	return true;
+}
+
+/* The scene's vertex of a corner, copies behind the others; *source: the one it is a copy of, or itself. */
+static size_t split_vertex(const nt_mesh *mesh, size_t corner, size_t *source)
+{
+	const uint32_t *vertices = mesh->split.indices ? mesh->split.indices : mesh->indices;
+	const size_t split = vertices ? vertices[corner] : corner;
+	*source = split < mesh->vertex_count ? split : mesh->split.sources[split - mesh->vertex_count];
+	return split;
+}
+
+/* The document's next corner of the primitive against the scene's. Arrays that are not float are decoded by the
+ * reader of the source, so that positions of other types are not compared. */
+static bool corner_matches(const nt_mesh *mesh, size_t corner, primitive_view *view)
+{
+	if (view->corner >= corner_count(view))
+		return false;
+	size_t source;
+	const size_t split = split_vertex(mesh, corner, &source);
+	const size_t vertex = vertex_at(view, view->corner++);
+	const unsigned char *position = row_at(&view->positions, vertex);
+	const unsigned char *tangent = row_at(&view->tangents, vertex);
+	if (!position || (view->positions.component_type == NT_GLTF_FLOAT &&
+				 memcmp(position, mesh->positions + 3 * source, 12) != 0))
+		return false;
+	if (!mesh->split.vertex_tangents || !mesh->normals)
+		return true;
+	float stored[4];
+	return tangent && tangent_matches(&view->tangents, tangent, mesh->split.vertex_tangents + 4 * split, stored) &&
+		targets_match(mesh, view, vertex, split, stored);
+}
+
+static nt_status fail_corner(const nt_mesh *mesh, size_t corner, nt_error *error)
+{
+	nt_fail(error, NT_ERROR_INTERNAL,
+		"the output, read back, differs from what was written at corner %zu of mesh \"%s\"",
+		corner, mesh->name ? mesh->name : "");
+	error->place = mesh->place;
+	return NT_ERROR_INTERNAL;
+}
+
+/* Faces of the scene's mesh against the primitives it became, views[p] for primitive p. */
+static nt_status compare_mesh(const nt_mesh *mesh, primitive_view *views, nt_error *error)
+{
+	static const unsigned char cut[2][6] = {{0, 1, 2, 0, 2, 3}, {0, 1, 3, 1, 2, 3}};
+	size_t corner = 0;
+	for (size_t f = 0; f < mesh->face_count; f++) {
+		const size_t size = mesh->face_sizes ? mesh->face_sizes[f] : 3;
+		const int diagonal = size == 4 && mesh->face_diagonals ? mesh->face_diagonals[f] : 0;
+		const bool several = mesh->primitive_count > 1 && mesh->face_primitive;
+		primitive_view *view = &views[several ? mesh->face_primitive[f] : 0];
+		for (size_t k = 0; k < (size == 4 ? 6u : 3u); k++)
+			if (!corner_matches(mesh, corner + cut[diagonal][k], view))
+				return fail_corner(mesh, corner + cut[diagonal][k], error);
+		corner += size;
+	}
+	return NT_OK;
+}
+
+/* A mesh of a composed document: its primitives are those that have faces, in order. */
+static nt_status verify_composed(nt_reread *model, const nt_mesh *mesh, size_t number,
+	nt_error *error)
+{
+	const size_t count = mesh->primitive_count ? mesh->primitive_count : 1;
+	primitive_view *views = nt_calloc(count, sizeof *views);
+	size_t *faces = nt_calloc(count, sizeof *faces);
+	nt_status status = views && faces ? NT_OK : nt_fail_memory(error);
+	for (size_t f = 0; f < mesh->face_count && status == NT_OK; f++)
+		faces[count > 1 && mesh->face_primitive ? mesh->face_primitive[f] : 0]++;
+	size_t primitive = 0;
+	for (size_t p = 0; p < count && status == NT_OK; p++)
+		if (faces[p])
+			status = open_primitive(model, number, primitive++, &views[p], error);
+	if (status == NT_OK)
+		status = compare_mesh(mesh, views, error);
+	free(views);
+	free(faces);
+	return status;
+}
+
+/* ---- compressed primitives ---- */
+
+/* A corner as the scene has it. */
+static nt_verify_corner wanted_corner(const nt_mesh *mesh, size_t corner)
+{
+	size_t source;
+	const size_t split = split_vertex(mesh, corner, &source);
+	nt_verify_corner result;
+	memcpy(result.position, mesh->positions + 3 * source, sizeof result.position);
+	memcpy(result.tangent, mesh->split.vertex_tangents + 4 * split, sizeof result.tangent);
+	return result;
+}
+
+/* The same as the document has it. */
+static bool found_corner(const primitive_view *view, size_t corner, nt_verify_corner *found)
+{
+	const size_t vertex = vertex_at(view, corner);
+	const unsigned char *position = row_at(&view->positions, vertex);
+	const unsigned char *tangent = row_at(&view->tangents, vertex);
+	if (!position || !tangent || view->positions.components != 3 ||
+		view->tangents.component_type != NT_GLTF_FLOAT || view->tangents.components != 4)
+		return false;
+	const nt_reread_array *array = &view->positions;
+	const size_t step = nt_draco_component_size(array->component_type);
+	for (size_t k = 0; k < 3; k++)
+		found->position[k] = nt_component_value(position + k * step, array->component_type, array->normalized);
+	memcpy(found->tangent, tangent, sizeof found->tangent);
+	return true;
+}
+
+/* What lies outside of a block goes by its vertices, so that they are in order. */
+static nt_status compare_block_targets(const nt_mesh *mesh, const primitive_view *view, nt_error *error)
+{
+	for (size_t c = 0; c < mesh->corner_count; c++) {
+		size_t source;
+		const size_t split = split_vertex(mesh, c, &source);
+		if (!targets_match(mesh, view, vertex_at(view, c), split, mesh->split.vertex_tangents + 4 * split))
+			return fail_corner(mesh, c, error);
+	}
+	return NT_OK;
+}
+
+/* The sequential method keeps corners where they are; if they are elsewhere, the surface has to be the same. */
+static nt_status compare_block(const nt_mesh *mesh, const primitive_view *view, nt_error *error)
+{
+	const size_t count = mesh->corner_count;
+	if (view->indices.count != count)
+		return fail_corner(mesh, 0, error);
+	nt_verify_corner *wanted = nt_alloc(count, sizeof *wanted), *found = nt_alloc(count, sizeof *found);
+	nt_status status = wanted && found ? NT_OK : nt_fail_memory(error);
+	bool ordered = true;
+	for (size_t c = 0; c < count && status == NT_OK; c++) {
+		wanted[c] = wanted_corner(mesh, c);
+		if (!found_corner(view, c, &found[c]))
+			status = fail_corner(mesh, c, error);
+		else
+			ordered &= nt_verify_close(&wanted[c], &found[c], &view->tolerance);
+	}
+	size_t first = SIZE_MAX;
+	if (status == NT_OK && !ordered &&
+		nt_verify_faces(wanted, count / 3, found, count / 3, &view->tolerance, &first) != NT_OK)
+		status = nt_fail_memory(error);
+	if (status == NT_OK && first != SIZE_MAX)
+		status = fail_corner(mesh, 3 * first, error);
+	if (status == NT_OK && view->target_tangents)
+		status = compare_block_targets(mesh, view, error);
+	free(wanted);
+	free(found);
+	return status;
+}
+
+static bool counts_match(const nt_mesh *mesh, const primitive_view *view)
+{
+	bool match = view->tangents.count == view->positions.count;
+	for (size_t m = 0; view->target_tangents && m < mesh->morph_count; m++)
+		match &= view->target_tangents[m].count == view->positions.count;
+	return match;
+}
+
+/* A mesh of a patched document stands where it stood. Strips and fans keep their own indices: there only the
+ * number of tangents is checked. */
+static nt_status verify_patched(nt_reread *model, const nt_mesh *mesh, nt_error *error)
+{
+	primitive_view view;
+	nt_status status = open_primitive(model, mesh->gltf_mesh, mesh->gltf_primitive, &view, error);
+	if (status == NT_OK)
+		status = open_targets(model, mesh, &view, error);
+	if (status == NT_OK && view.block)
+		status = compare_block(mesh, &view, error);
+	else if (status == NT_OK && corner_count(&view) == mesh->corner_count)
+		status = compare_mesh(mesh, &view, error);
+	else if (status == NT_OK && !counts_match(mesh, &view))
+		status = fail_corner(mesh, 0, error);
+	close_primitive(&view);
+	return status;
+}
+
+static nt_status compare_scene(const nt_scene *scene, nt_reread *model, nt_error *error)
+{
+	size_t number = 0;
+	for (size_t m = 0; m < scene->mesh_count; m++) {
+		const nt_mesh *mesh = &scene->meshes[m];
+		const bool patched = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
+		nt_status status = NT_OK;
+		if (patched)
+			status = mesh->split.vertex_tangents ? verify_patched(model, mesh, error) : NT_OK;
+		else if (mesh->face_count)
+			status = verify_composed(model, mesh, number++, error);
+		if (status != NT_OK)
+			return status == NT_ERROR_INPUT ? error->status = NT_ERROR_INTERNAL : status;
+	}
+	return NT_OK;
+}
+
+/* Whether tinygltf refuses the input as well. Then nobody can say by it what became of the output, and a finding
+ * says so. */
+static nt_status judge_input(nt_scene *scene, nt_error *error)
+{
+	if (scene->format != NT_FORMAT_GLTF && scene->format != NT_FORMAT_GLB)
+		return NT_ERROR_INTERNAL;
+	nt_error ignored, refusal;
+	nt_error_clear(&refusal);
+	nt_reread *model = NULL;
+	file_set set = {.path = scene->path, .error = &ignored};
+	const nt_status status =
+		nt_reread_open(&model, scene->bytes, scene->byte_count, find_companion, &set, &refusal);
+	nt_reread_free(model);
+	close_companions(&set);
+	if (status == NT_ERROR_MEMORY)
+		return nt_fail_memory(error);
+	if (status != NT_ERROR_INPUT)
+		return NT_ERROR_INTERNAL;
+	nt_finding_add(&scene->findings, NT_CODE_NOT_VERIFIED, NULL, 1, "%s", refusal.message);
+	return NT_OK;
+}
+
+nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path,
+	nt_error *error)
+{
+	const char *written;
+	nt_file file;
+	nt_reread *model = NULL;
+	nt_status status = nt_output_written(output, path, &written, error);
+	if (status != NT_OK || !written)
+		return status;
+	status = nt_file_open(&file, written, error);
+	if (status != NT_OK)
+		return status;
+	nt_error ignored;
+	file_set set = {.output = output, .path = path, .error = &ignored};
+	status = nt_reread_open(&model, file.data, file.size, find_companion, &set, error);
+	const bool refused = status == NT_ERROR_INPUT;
+	if (refused)
+		status = judge_input(scene, error);
+	if (status == NT_ERROR_INTERNAL)
+		error->status = status;
+	if (status == NT_OK && !refused)
+		status = compare_scene(scene, model, error);
+	nt_reread_free(model);
+	close_companions(&set);
+	nt_file_close(&file);
+	return status == NT_OK ? status : nt_error_in_file(error, path);
+}

@@ -1,0 +1,187 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * bufferViews, plain ones and those of EXT_meshopt_compression and KHR_meshopt_compression, whose bytes
+ * meshoptimizer packed. A view is decompressed when somebody reads it.
+ */
+#include "gltf/view.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include "ext/meshopt.h"
+
+nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **name)
+{
+	static const char *const names[] = {"EXT_meshopt_compression", "KHR_meshopt_compression"};
+	const nt_json_value *extensions = nt_json_find(view, "extensions");
+	for (size_t i = 0; i < 2; i++) {
+		nt_json_value *found = nt_json_find(extensions, names[i]);
+		if (found && name)
+			*name = names[i];
+		if (found)
+			return found;
+	}
+	return NULL;
+}
+
+nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
+	nt_error *error)
+{
+	const nt_json_value *json;
+	nt_status status = nt_gltf_element(document, "bufferViews", index, from, &json, error);
+	if (status)
+		return status;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/bufferViews/%llu", (unsigned long long)index);
+	const uint64_t limit = (uint64_t)1 << 53;
+	uint64_t buffer_index = 0, stride = 0;
+	status = nt_gltf_uint(json, pointer, "buffer", UINT32_MAX - 1, NT_GLTF_REQUIRED, &buffer_index,
+		error);
+	if (!status)
+		status = nt_gltf_uint(json, pointer, "byteOffset", limit, 0, &view->offset, error);
+	if (!status)
+		status = nt_gltf_uint(json, pointer, "byteLength", limit, NT_GLTF_REQUIRED,
+			&view->length, error);
+	if (!status)
+		status = nt_gltf_uint(json, pointer, "byteStride", 65535, 0, &stride, error);
+	nt_gltf_buffer *buffer = NULL;
+	if (!status)
+		status = nt_gltf_describe_buffer(document, buffer_index, pointer, &buffer, error);
+	if (status)
+		return status;
+	if (view->offset > buffer->length || view->length > buffer->length - view->offset)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+			"bytes %llu to %llu, but buffer %llu has %llu", (unsigned long long)view->offset,
+			(unsigned long long)(view->offset + view->length),
+			(unsigned long long)buffer_index, (unsigned long long)buffer->length);
+	view->index = (uint32_t)index;
+	view->buffer = (uint32_t)buffer_index;
+	view->stride = (uint32_t)stride;
+	view->compression = NULL;
+	nt_gltf_compression_of(json, &view->compression);
+	if (index < document->view_count && document->virtual_of[index] != NT_NONE) {
+		view->buffer = document->virtual_of[index];
+		view->offset = 0;
+		view->compression = NULL;
+	}
+	return NT_OK;
+}
+
+/* ---- decompression ---- */
+
+enum { MAX_STRIDE = 256 };
+
+typedef struct packed {
+	const char *extension;
+	uint64_t buffer, offset;
+	nt_meshopt_view view;
+} packed;
+
+static nt_status read_packed(const nt_json_value *view, const char *pointer, packed *p,
+	nt_error *error)
+{
+	const nt_json_value *json = nt_gltf_compression_of(view, &p->extension);
+	const uint64_t limit = (uint64_t)1 << 53;
+	nt_status status = nt_gltf_uint(json, pointer, "buffer", UINT32_MAX - 1, NT_GLTF_REQUIRED,
+		&p->buffer, error);
+	if (!status)
+		status = nt_gltf_uint(json, pointer, "byteOffset", limit, 0, &p->offset, error);
+	if (!status)
+		status = nt_gltf_uint(json, pointer, "byteLength", limit, NT_GLTF_REQUIRED, &p->view.packed_size,
+			error);
+	if (!status)
+		status = nt_gltf_uint(json, pointer, "byteStride", MAX_STRIDE, NT_GLTF_REQUIRED,
+			&p->view.stride, error);
+	if (!status)
+		status = nt_gltf_uint(json, pointer, "count", UINT32_MAX, NT_GLTF_REQUIRED, &p->view.count,
+			error);
+	const char *mode = nt_json_get_string(nt_json_find(json, "mode"), NULL);
+	const char *filter = nt_json_get_string(nt_json_find(json, "filter"), NULL);
+	p->view.mode = mode ? mode : "";
+	p->view.filter = filter ? filter : "NONE";
+	return status;
+}
+
+nt_status nt_gltf_decompress_view(nt_gltf *document, uint32_t index, nt_error *error)
+{
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/bufferViews/%u", index);
+	nt_gltf_view view;
+	const nt_json_value *json;
+	packed p = {0};
+	nt_gltf_buffer *buffer;
+	nt_status status = nt_gltf_get_view(document, index, pointer, &view, error);
+	if (!status)
+		status = nt_gltf_element(document, "bufferViews", index, pointer, &json, error);
+	if (status || !view.compression)
+		return status;
+	snprintf(pointer, sizeof pointer, "/bufferViews/%u/extensions/%s", index, view.compression);
+	status = read_packed(json, pointer, &p, error);
+	if (!status)
+		status = nt_meshopt_check(&p.view, view.length, pointer, error);
+	if (!status)
+		status = nt_gltf_open_buffer(document, p.buffer, pointer, &buffer, error);
+	if (status)
+		return status;
+	if (p.offset > buffer->size || p.view.packed_size > buffer->size - p.offset)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+			"bytes %llu to %llu, but buffer %llu has %zu", (unsigned long long)p.offset,
+			(unsigned long long)(p.offset + p.view.packed_size), (unsigned long long)p.buffer,
+			buffer->size);
+
+	unsigned char *bytes = nt_alloc((size_t)view.length, 1);
+	if (!bytes || !nt_grow((void **)&document->virtuals, &document->virtual_capacity,
+			      document->virtual_count + 1, sizeof *document->virtuals)) {
+		free(bytes);
+		return nt_fail_memory(error);
+	}
+	nt_gltf_note_read(document, buffer, p.offset, p.view.packed_size);
+	status = nt_meshopt_unpack(&p.view, buffer->bytes + p.offset, bytes, pointer, error);
+	if (status) {
+		free(bytes);
+		return status;
+	}
+	document->virtuals[document->virtual_count] = (nt_gltf_buffer){.home = NT_GLTF_HOME_NOWHERE,
+		.length = view.length, .described = true, .opened = true, .bytes = bytes,
+		.size = (size_t)view.length, .decoded = bytes};
+	document->virtual_of[index] = NT_GLTF_VIRTUAL + (uint32_t)document->virtual_count++;
+	return NT_OK;
+}
+
+/* ---- bytes ---- */
+
+nt_status nt_gltf_view_bytes(nt_gltf *document, uint32_t index, uint64_t offset, uint64_t length,
+	const char *what, const unsigned char **bytes, nt_error *error)
+{
+	nt_gltf_view view;
+	nt_status status = nt_gltf_get_view(document, index, what, &view, error);
+	if (status)
+		return status;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/bufferViews/%u", index);
+	if (view.compression) {
+		status = nt_gltf_decompress_view(document, index, error);
+		if (!status)
+			status = nt_gltf_get_view(document, index, what, &view, error);
+		if (status)
+			return status;
+	}
+	if (offset > view.length || length > view.length - offset)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, what,
+			"takes bytes %llu to %llu of bufferView %u, which has %llu",
+			(unsigned long long)offset, (unsigned long long)(offset + length), index,
+			(unsigned long long)view.length);
+	nt_gltf_buffer *buffer;
+	status = nt_gltf_open_buffer(document, view.buffer, pointer, &buffer, error);
+	if (status)
+		return status;
+	if (view.offset + offset > buffer->size || length > buffer->size - (view.offset + offset)) {
+		snprintf(pointer, sizeof pointer, "/buffers/%u", view.buffer);
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
+			"byteLength is %llu, but only %zu bytes are there",
+			(unsigned long long)buffer->length, buffer->size);
+	}
+	*bytes = buffer->bytes + view.offset + offset;
+	if (view.buffer < NT_GLTF_VIRTUAL)
+		nt_gltf_note_read(document, buffer, view.offset + offset, length);
+	return NT_OK;
+}

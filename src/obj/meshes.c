@@ -1,0 +1,407 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Meshes from faces, vertices and spans. Triangles and quads are handed on as they stand: a mesh
+ * without larger polygons points into the arrays of the whole file. Larger ones become triangles; all
+ * faces made of one polygon carry its number.
+ */
+#include "obj/parts.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "base/parallel.h"
+#include "obj/name_table.h"
+#include "scene/polygon.h"
+
+enum { GRAIN = 1 << 14 }; /* rows per thread that are worth one */
+
+/* What making the meshes shares. Attribute arrays are for the vertices of all meshes. */
+typedef struct builder {
+	obj_file *file;
+	nt_error *error;
+	float *positions, *normals, *texcoords, *colors;
+	uint8_t *lacks;
+	size_t span;              /* of the next face */
+	size_t polygon;           /* the next one of five corners and more */
+	uint32_t *material_slots; /* [material_count + 1] primitive of a material in the current mesh */
+
+	/* of one polygon */
+	float (*points)[3];
+	uint32_t *triangles;
+	size_t polygon_capacity;
+} builder;
+
+/* ---- vertices ---- */
+
+static void copy_row(const obj_file *file, int kind, uint32_t row, float *to)
+{
+	const size_t width = obj_widths[kind];
+	if (row == OBJ_ABSENT) {
+		memset(to, 0, width * sizeof *to);
+	} else {
+		const obj_rows *rows = &obj_find_row(file, kind, row)->rows[kind];
+		memcpy(to, rows->data + (row - rows->first) * width, width * sizeof *to);
+	}
+}
+
+static float linear_from_srgb(float value)
+{
+	const double c = value < 0 ? 0 : value > 1 ? 1 : value;
+	return (float)(c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4));
+}
+
+static void copy_color(const obj_file *file, uint32_t row, float *to)
+{
+	const obj_chunk *chunk = obj_find_row(file, OBJ_V, row);
+	static const float white[4] = {1, 1, 1, 1};
+	const float *from =
+		chunk->colors ? chunk->colors + 4 * (row - chunk->rows[OBJ_V].first) : white;
+	for (int k = 0; k < 3; k++)
+		to[k] = linear_from_srgb(from[k]);
+	to[3] = fminf(fmaxf(from[3], 0), 1);
+}
+
+static void gather(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	const builder *b = context;
+	const obj_file *file = b->file;
+	for (size_t i = begin; i < end; i++) {
+		const obj_vertex *x = &file->vertices[i];
+		copy_row(file, OBJ_V, x->v, b->positions + 3 * i);
+		if (b->texcoords)
+			copy_row(file, OBJ_VT, x->t, b->texcoords + 2 * i);
+		if (b->normals)
+			copy_row(file, OBJ_VN, x->n, b->normals + 3 * i);
+		if (b->colors)
+			copy_color(file, x->v, b->colors + 4 * i);
+		b->lacks[i] = (uint8_t)((x->n == OBJ_ABSENT ? NT_LACKS_NORMAL : 0) |
+			(x->t == OBJ_ABSENT ? NT_LACKS_TEXCOORD : 0));
+	}
+}
+
+static nt_status gather_vertices(builder *b)
+{
+	obj_file *file = b->file;
+	nt_arena *arena = &file->scene->arena;
+	const size_t count = file->vertex_count;
+	b->positions = nt_arena_alloc(arena, count, 3 * sizeof(float));
+	b->lacks = nt_arena_alloc(arena, count, 1);
+	if (!b->positions || !b->lacks)
+		return nt_fail_memory(b->error);
+	if (file->row_counts[OBJ_VT] && !(b->texcoords = nt_arena_alloc(arena, count, 2 * sizeof(float))))
+		return nt_fail_memory(b->error);
+	if (file->row_counts[OBJ_VN] && !(b->normals = nt_arena_alloc(arena, count, 3 * sizeof(float))))
+		return nt_fail_memory(b->error);
+	if (file->has_colors && !(b->colors = nt_arena_alloc(arena, count, 4 * sizeof(float))))
+		return nt_fail_memory(b->error);
+	nt_parallel_ranges(file->threads, count, GRAIN, gather, b);
+	return NT_OK;
+}
+
+/* Gives the mesh its part of the arrays that it has anything in. */
+static void set_vertices(const builder *b, nt_mesh *mesh, size_t first)
+{
+	unsigned any = 0, all = ~0u; /* of what lacks */
+	for (size_t i = first; i < first + mesh->vertex_count; i++) {
+		any |= b->lacks[i];
+		all &= b->lacks[i];
+	}
+	mesh->has_positions = true;
+	mesh->has_normals = !(all & NT_LACKS_NORMAL);
+	mesh->has_texcoords = !(all & NT_LACKS_TEXCOORD);
+	mesh->positions = b->positions + 3 * first;
+	mesh->normals = mesh->has_normals ? b->normals + 3 * first : NULL;
+	mesh->texcoords = mesh->has_texcoords ? b->texcoords + 2 * first : NULL;
+	mesh->colors = b->colors ? b->colors + 4 * first : NULL;
+	/* What the whole mesh does not have, no vertex of it lacks. */
+	const unsigned partly = any & ~all;
+	if (!partly)
+		return;
+	mesh->vertex_lacks = b->lacks + first;
+	for (size_t i = first; i < first + mesh->vertex_count; i++)
+		b->lacks[i] &= (uint8_t)partly;
+}
+
+static bool normals_lack(const nt_mesh *mesh)
+{
+	if (!mesh->normals)
+		return true;
+	for (size_t i = 0; mesh->vertex_lacks && i < mesh->vertex_count; i++)
+		if (mesh->vertex_lacks[i] & NT_LACKS_NORMAL)
+			return true;
+	return false;
+}
+
+/* ---- faces ---- */
+
+/* What a mesh's faces are, counted. */
+typedef struct face_counts {
+	size_t quads, polygons;     /* polygons: of five corners and more */
+	size_t faces, corners;      /* when polygons have become triangles */
+} face_counts;
+
+static face_counts count_faces(const builder *b, size_t begin, size_t end, size_t corner_count)
+{
+	const uint8_t *sizes = b->file->face_sizes;
+	face_counts n = {0, 0, end - begin, corner_count};
+	for (size_t f = begin; f < end; f++) {
+		n.quads += sizes[f] == 4;
+		n.polygons += sizes[f] == OBJ_POLYGON;
+	}
+	for (size_t i = 0; i < n.polygons; i++) {
+		const size_t size = b->file->polygons[b->polygon + i].size;
+		n.faces += size - 3;
+		n.corners += 3 * (size - 2) - size;
+	}
+	return n;
+}
+
+/* The primitive of a span's material; it is added to the mesh where it is new. The array has room for
+ * as many as there are spans in the mesh. */
+static uint32_t primitive_of(builder *b, nt_mesh *mesh, uint32_t material)
+{
+	const size_t slot = material == NT_NONE ? b->file->scene->material_count : material;
+	const uint32_t known = b->material_slots[slot];
+	if (known < mesh->primitive_count && mesh->primitives[known].material == material)
+		return known;
+	mesh->primitives[mesh->primitive_count] = (nt_primitive){material, 0};
+	b->material_slots[slot] = (uint32_t)mesh->primitive_count;
+	return (uint32_t)mesh->primitive_count++;
+}
+
+static bool grow_polygon(builder *b, size_t size)
+{
+	if (size <= b->polygon_capacity)
+		return true;
+	size_t points = b->polygon_capacity, triangles = b->polygon_capacity;
+	if (!nt_grow((void **)&b->points, &points, size, sizeof *b->points) ||
+		!nt_grow((void **)&b->triangles, &triangles, size, 3 * sizeof *b->triangles))
+		return false;
+	b->polygon_capacity = points;
+	return true;
+}
+
+/* Replaces a polygon of the file by triangles: writes 3 * (size - 2) vertices. */
+static nt_status triangulate(builder *b, nt_mesh *mesh, const obj_polygon *polygon,
+	const uint32_t *corners, uint32_t *to)
+{
+	const size_t size = polygon->size;
+	if (!grow_polygon(b, size))
+		return nt_fail_memory(b->error);
+	for (size_t i = 0; i < size; i++)
+		memcpy(b->points[i], mesh->positions + 3 * (size_t)corners[i], sizeof b->points[i]);
+	bool sound;
+	if (nt_polygon_triangulate((const float(*)[3])b->points, size, b->triangles, &sound))
+		return nt_fail_memory(b->error);
+	for (size_t i = 0; i < 3 * (size - 2); i++)
+		to[i] = corners[b->triangles[i]];
+	if (!sound) {
+		nt_finding_list *findings = &b->file->scene->findings;
+		nt_place place = mesh->place;
+		place.line = polygon->line;
+		nt_finding_add(findings, NT_CODE_POLYGON_DEGENERATE, &place, 1, NULL);
+	}
+	return NT_OK;
+}
+
+/* Where the next face of a mesh is written. */
+typedef struct face_writer {
+	size_t face, corner;   /* of the mesh, after triangulation */
+	const uint32_t *source; /* its corners in the file */
+} face_writer;
+
+/* Copies the faces [begin, end) of the file, which share a span, one by one. */
+static nt_status write_faces(builder *b, nt_mesh *mesh, size_t begin, size_t end, size_t mesh_begin,
+	face_writer *w)
+{
+	const obj_file *file = b->file;
+	for (size_t f = begin; f < end; f++) {
+		size_t size = file->face_sizes[f], count = 1;
+		uint32_t *to = mesh->indices + w->corner;
+		if (size == OBJ_POLYGON) {
+			const obj_polygon *polygon = &file->polygons[b->polygon++];
+			const nt_status status = triangulate(b, mesh, polygon, w->source, to);
+			if (status)
+				return status;
+			size = polygon->size;
+			count = size - 2;
+			w->corner += 3 * count;
+		} else {
+			memcpy(to, w->source, size * sizeof *to);
+			w->corner += size;
+		}
+		for (size_t i = 0; i < count; i++, w->face++) {
+			mesh->face_polygon[w->face] = (uint32_t)(f - mesh_begin);
+			if (mesh->face_sizes)
+				mesh->face_sizes[w->face] = size == 4 ? 4 : 3;
+		}
+		w->source += size;
+	}
+	return NT_OK;
+}
+
+static void fill(uint32_t *to, size_t count, uint32_t value)
+{
+	for (size_t i = 0; i < count; i++)
+		to[i] = value;
+}
+
+/* Walks through the spans of the mesh: primitives, smoothing groups, and the faces where polygons have
+ * to be replaced. */
+static nt_status write_spans(builder *b, nt_mesh *mesh, size_t begin, size_t end, bool replace,
+	const uint32_t *source)
+{
+	const obj_file *file = b->file;
+	face_writer w = {0, 0, source};
+	for (size_t f = begin; f < end;) {
+		const obj_span *span = &file->spans[b->span];
+		const bool last = b->span + 1 == file->span_count || file->spans[b->span + 1].face >= end;
+		const size_t stop = last ? end : file->spans[b->span + 1].face;
+		const size_t first = w.face;
+		if (replace) {
+			const nt_status status = write_faces(b, mesh, f, stop, begin, &w);
+			if (status)
+				return status;
+		} else {
+			w.face += stop - f;
+		}
+		const uint32_t primitive = primitive_of(b, mesh, span->material);
+		mesh->primitives[primitive].face_count += w.face - first;
+		if (mesh->face_primitive)
+			fill(mesh->face_primitive + first, w.face - first, primitive);
+		if (mesh->face_smoothing)
+			fill(mesh->face_smoothing + first, w.face - first, span->smoothing);
+		f = stop;
+		b->span++;
+	}
+	return NT_OK;
+}
+
+static size_t count_spans(const builder *b, size_t end)
+{
+	size_t span = b->span;
+	while (span < b->file->span_count && b->file->spans[span].face < end)
+		span++;
+	return span - b->span;
+}
+
+/* Indices, sizes, polygons, primitives and smoothing groups. */
+static nt_status set_faces(builder *b, nt_mesh *mesh, size_t m)
+{
+	obj_file *file = b->file;
+	nt_arena *arena = &file->scene->arena;
+	const size_t begin = file->mesh_faces[m], end = file->mesh_faces[m + 1];
+	uint32_t *const source = file->corner_vertices + file->mesh_corners[m];
+	const face_counts n =
+		count_faces(b, begin, end, file->mesh_corners[m + 1] - file->mesh_corners[m]);
+	if (n.faces > NMTAN_MAX_FACES)
+		return nt_fail_line(b->error, NT_ERROR_TOO_LARGE, mesh->place.line,
+			"object of %zu faces, at most %zu can be solved together", n.faces, NMTAN_MAX_FACES);
+	mesh->face_count = n.faces;
+	mesh->corner_count = n.corners;
+	mesh->indices = source;
+	mesh->face_sizes = n.quads ? file->face_sizes + begin : NULL;
+	const bool replace = n.polygons != 0;
+	if (replace) {
+		mesh->indices = nt_arena_alloc(arena, n.corners, sizeof *mesh->indices);
+		mesh->face_polygon = nt_arena_alloc(arena, n.faces, sizeof *mesh->face_polygon);
+		if (n.quads)
+			mesh->face_sizes = nt_arena_alloc(arena, n.faces, 1);
+		if (!mesh->indices || !mesh->face_polygon || (n.quads && !mesh->face_sizes))
+			return nt_fail_memory(b->error);
+	}
+	const size_t spans = count_spans(b, end);
+	mesh->primitives = nt_arena_alloc(arena, spans, sizeof *mesh->primitives);
+	if (spans > 1)
+		mesh->face_primitive = nt_arena_alloc(arena, n.faces, sizeof *mesh->face_primitive);
+	if (file->uses_smoothing && normals_lack(mesh)) {
+		mesh->face_smoothing = nt_arena_alloc(arena, n.faces, sizeof *mesh->face_smoothing);
+		if (!mesh->face_smoothing)
+			return nt_fail_memory(b->error);
+	}
+	if (!mesh->primitives || (spans > 1 && !mesh->face_primitive))
+		return nt_fail_memory(b->error);
+	const nt_status status = write_spans(b, mesh, begin, end, replace, source);
+	if (mesh->primitive_count == 1)
+		mesh->face_primitive = NULL;
+	return status;
+}
+
+/* ---- meshes ---- */
+
+static nt_status set_name(builder *b, nt_mesh *mesh, size_t m)
+{
+	const obj_file *file = b->file;
+	const obj_event *object = file->mesh_objects[m];
+	mesh->name = object ? nt_utf8_text(&file->scene->arena, object->text, object->length) : "";
+	if (!mesh->name)
+		return nt_fail_memory(b->error);
+	nt_place_clear(&mesh->place);
+	strncpy(mesh->place.file, file->scene->path, sizeof mesh->place.file - 1);
+	mesh->place.line = file->mesh_lines[m];
+	if (*mesh->name)
+		snprintf(mesh->place.object, sizeof mesh->place.object, "object \"%.200s\"", mesh->name);
+	return NT_OK;
+}
+
+/* The slots that its materials ask for. */
+static void set_slots(const nt_scene *scene, nt_mesh *mesh)
+{
+	for (size_t i = 0; i < mesh->primitive_count; i++) {
+		const uint32_t material = mesh->primitives[i].material;
+		if (material != NT_NONE && scene->materials[material].normal_map)
+			mesh->slots |= NT_SLOT_NORMAL;
+	}
+}
+
+static nt_status make_mesh(builder *b, size_t m)
+{
+	obj_file *file = b->file;
+	nt_mesh *mesh = &file->scene->meshes[m];
+	*mesh = (nt_mesh){
+		.gltf_mesh = NT_NONE,
+		.gltf_primitive = NT_NONE,
+		.triangles = true,
+		.reachable = true,
+		.vertex_count = file->mesh_vertices[m + 1] - file->mesh_vertices[m],
+	};
+	mesh->source_vertex_count = mesh->vertex_count;
+	const nt_status status = set_name(b, mesh, m);
+	if (status)
+		return status;
+	set_vertices(b, mesh, file->mesh_vertices[m]);
+	const nt_status face_status = set_faces(b, mesh, m);
+	if (face_status)
+		return face_status;
+	set_slots(file->scene, mesh);
+	nt_instance *instance = &file->scene->instances[m];
+	*instance = (nt_instance){.mesh = (uint32_t)m};
+	for (int k = 0; k < 4; k++)
+		instance->matrix[5 * k] = 1;
+	return NT_OK;
+}
+
+nt_status obj_make_meshes(obj_file *file, nt_error *error)
+{
+	nt_scene *scene = file->scene;
+	builder b = {.file = file, .error = error};
+	scene->meshes = nt_arena_alloc(&scene->arena, file->mesh_count, sizeof *scene->meshes);
+	scene->instances = nt_arena_alloc(&scene->arena, file->mesh_count, sizeof *scene->instances);
+	b.material_slots = nt_calloc(scene->material_count + 1, sizeof *b.material_slots);
+	nt_status status = NT_OK;
+	if (!scene->meshes || !scene->instances || !b.material_slots)
+		status = nt_fail_memory(error);
+	if (!status)
+		status = gather_vertices(&b);
+	for (size_t m = 0; m < file->mesh_count && !status; m++) {
+		status = make_mesh(&b, m);
+		if (!status)
+			scene->mesh_count = scene->instance_count = m + 1;
+	}
+	free(b.material_slots);
+	free(b.points);
+	free(b.triangles);
+	return status;
+}

@@ -1,0 +1,428 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * MTL: finding the files and reading their lines. A library that is not there is a finding, since its
+ * meshes can do without; one that is there and damaged is an error with its line, as in the OBJ itself.
+ *
+ * Words are taken in any case, as exporters write map_Bump, map_bump and Map_Bump. Of several
+ * normal maps `norm` and `map_Kn` come before the bump maps, whatever their order. What the older
+ * lighting model has and glTF has not (Ka, Ks, Ns, Ni, illum ...) is passed over without a word: every
+ * file has it. Maps that are lost are named.
+ */
+#include "obj/mtl.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include "ext/number.h"
+#include "file/input.h"
+#include "obj/mtl_map.h"
+#include "obj/name_table.h"
+
+typedef struct reader {
+	nt_scene *scene;
+	const char *path;
+	nt_mtl *mtl;
+	size_t line;
+	const char *word;      /* the statement's first word */
+	size_t word_length;
+	const char *text, *end; /* what follows it, without blanks around it */
+	nt_error *error;
+} reader;
+
+static bool is_blank(char c)
+{
+	return c == ' ' || c == '\t';
+}
+
+/* Files of nonsense have as many different words as lines: beyond this many findings they are one. */
+enum { NAMED_FINDINGS_MOST = 1000 };
+
+static void add_finding(const reader *r, const char *detail, const char *what)
+{
+	if (r->scene->findings.count > NAMED_FINDINGS_MOST)
+		what = "";
+	nt_place place;
+	nt_place_clear(&place);
+	strncpy(place.file, r->path, sizeof place.file - 1);
+	place.line = r->line;
+	nt_finding_add(&r->scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1, "%s%.*s", detail,
+		(int)(*what ? r->word_length < 64 ? r->word_length : 64 : 0), what);
+}
+
+static void ignore(const reader *r)
+{
+	add_finding(r, "MTL: ", r->word);
+}
+
+/* Fails with "found WORD, expected EXPECTED" at a line of the MTL. */
+static nt_status fail_expected(const reader *r, const char *found, const char *expected)
+{
+	size_t length = 0;
+	while (found + length < r->end && !is_blank(found[length]) && length < 64)
+		length++;
+	if (length)
+		nt_fail_line(r->error, NT_ERROR_INPUT, r->line, "found \"%.*s\", expected %s", (int)length,
+			found, expected);
+	else
+		nt_fail_line(r->error, NT_ERROR_INPUT, r->line, "found the end of the line, expected %s",
+			expected);
+	return nt_error_in_file(r->error, r->path);
+}
+
+/* Numbers up to the end of the text, at most `most`; *count receives how many. */
+static nt_status read_numbers(const reader *r, float *numbers, int most, int *count)
+{
+	const char *p = r->text;
+	for (*count = 0; *count < most && p < r->end; ++*count) {
+		const char *begin = p;
+		p = nt_read_float(p, r->end, &numbers[*count]);
+		if (!p || (p < r->end && !is_blank(*p)) || !isfinite(numbers[*count]))
+			return fail_expected(r, begin, "a finite number");
+		while (p < r->end && is_blank(*p))
+			p++;
+	}
+	return NT_OK;
+}
+
+static float clamp_unit(float value)
+{
+	return value < 0 ? 0 : value > 1 ? 1 : value;
+}
+
+static bool begins_with(const reader *r, const char *word)
+{
+	const size_t length = strlen(word);
+	return (size_t)(r->end - r->text) > length && strncmp(r->text, word, length) == 0 &&
+		is_blank(r->text[length]);
+}
+
+/* r g b, or one number for all three. "spectral" and "xyz" are not RGB and not carried over. */
+static nt_status read_color(const reader *r, float color[3], bool unit)
+{
+	if (begins_with(r, "spectral") || begins_with(r, "xyz")) {
+		ignore(r);
+		return NT_OK;
+	}
+	float numbers[3];
+	int count;
+	const nt_status status = read_numbers(r, numbers, 3, &count);
+	if (status)
+		return status;
+	if (count != 1 && count != 3)
+		return fail_expected(r, r->end, "3 numbers, or one for all");
+	for (int k = 0; k < 3; k++) {
+		const float value = fmaxf(numbers[count == 3 ? k : 0], 0);
+		color[k] = unit ? clamp_unit(value) : value;
+	}
+	return NT_OK;
+}
+
+static nt_status read_factor(const reader *r, float *factor, bool inverse)
+{
+	reader at = *r;
+	if (begins_with(r, "-halo"))
+		for (at.text += strlen("-halo"); is_blank(*at.text);)
+			at.text++;
+	float value;
+	int count;
+	const nt_status status = read_numbers(&at, &value, 1, &count);
+	if (status)
+		return status;
+	if (count != 1)
+		return fail_expected(&at, at.end, "a number");
+	*factor = clamp_unit(inverse ? 1 - value : value);
+	return NT_OK;
+}
+
+/* A map: its options, then its file name. */
+static nt_status read_map(reader *r, const char **map, float *scale)
+{
+	nt_mtl_map read;
+	nt_mtl_map_read(r->text, r->end, &read);
+	if (read.name_begin == read.name_end)
+		return NT_OK; /* "map_Kd" alone: exporters write it for "none" */
+	if (read.transformed)
+		add_finding(r, "MTL: -o, -s or -t of ", r->word);
+	if (scale)
+		*scale = read.bump_scale;
+	char *name = nt_mtl_map_name(&r->scene->arena, &read);
+	if (!name)
+		return nt_fail_memory(r->error);
+	*map = name;
+	return NT_OK;
+}
+
+/* ---- statements ---- */
+
+enum action {
+	BASE_COLOR, EMISSIVE, OPACITY, TRANSPARENCY, ROUGHNESS, METALLIC, BASE_COLOR_MAP, EMISSIVE_MAP,
+	NORMAL_MAP, BUMP_MAP, PASS_OVER
+};
+
+static const struct {
+	const char *word;
+	enum action action;
+} statements[] = {
+	{"Kd", BASE_COLOR}, {"Ke", EMISSIVE}, {"d", OPACITY}, {"Tr", TRANSPARENCY}, {"Pr", ROUGHNESS},
+	{"Pm", METALLIC}, {"map_Kd", BASE_COLOR_MAP}, {"map_Ke", EMISSIVE_MAP}, {"norm", NORMAL_MAP},
+	{"map_Kn", NORMAL_MAP}, {"map_Bump", BUMP_MAP}, {"bump", BUMP_MAP}, {"Ka", PASS_OVER},
+	{"Ks", PASS_OVER}, {"Ns", PASS_OVER}, {"Ni", PASS_OVER}, {"Tf", PASS_OVER}, {"Km", PASS_OVER},
+	{"illum", PASS_OVER}, {"sharpness", PASS_OVER}, {"Ps", PASS_OVER}, {"Pc", PASS_OVER},
+	{"Pcr", PASS_OVER}, {"aniso", PASS_OVER}, {"anisor", PASS_OVER}, {"map_aat", PASS_OVER},
+};
+enum { STATEMENT_COUNT = sizeof statements / sizeof statements[0] };
+
+static nt_status read_property(reader *r, nt_mtl_definition *d, enum action action)
+{
+	nt_material *m = &d->material;
+	switch (action) {
+	case BASE_COLOR:
+		return read_color(r, m->base_color, true);
+	case EMISSIVE:
+		return read_color(r, m->emissive, false);
+	case OPACITY:
+	case TRANSPARENCY:
+		return read_factor(r, &m->base_color[3], action == TRANSPARENCY);
+	case ROUGHNESS:
+		return read_factor(r, &m->roughness, false);
+	case METALLIC:
+		return read_factor(r, &m->metallic, false);
+	case BASE_COLOR_MAP:
+		return read_map(r, &m->base_color_map, NULL);
+	case EMISSIVE_MAP:
+		return read_map(r, &m->emissive_map, NULL);
+	case NORMAL_MAP:
+		d->bump = NULL;
+		return read_map(r, &m->normal_map, &m->normal_scale);
+	case BUMP_MAP:
+		if (m->normal_map && !d->bump)
+			break;
+		d->bump_line = r->line;
+		d->bump = nt_arena_text(&r->scene->arena, r->word, r->word_length);
+		if (!d->bump)
+			return nt_fail_memory(r->error);
+		return read_map(r, &m->normal_map, &m->normal_scale);
+	case PASS_OVER:
+		break;
+	}
+	return NT_OK;
+}
+
+nt_material nt_mtl_default(const char *name)
+{
+	return (nt_material){
+		.name = name,
+		.base_color = {1, 1, 1, 1},
+		.roughness = 1,
+		.normal_scale = 1,
+	};
+}
+
+static nt_status begin_material(reader *r)
+{
+	nt_mtl *mtl = r->mtl;
+	const size_t length = (size_t)(r->end - r->text);
+	const char *raw_name = nt_arena_text(&r->scene->arena, r->text, length);
+	const char *name = nt_utf8_text(&r->scene->arena, r->text, length);
+	if (!raw_name || !name ||
+		!nt_grow((void **)&mtl->definitions, &mtl->capacity, mtl->count + 1,
+			sizeof *mtl->definitions))
+		return nt_fail_memory(r->error);
+	nt_mtl_definition *d = &mtl->definitions[mtl->count++];
+	*d = (nt_mtl_definition){nt_mtl_default(name), raw_name, length, NULL, 0};
+	d->material.library = r->path;
+	d->material.line = r->line;
+	return NT_OK;
+}
+
+/* first: definitions before it are of other files. */
+static nt_status read_statement(reader *r, size_t first)
+{
+	if (r->word_length == 6 && strncasecmp(r->word, "newmtl", 6) == 0)
+		return begin_material(r);
+	for (size_t i = 0; i < STATEMENT_COUNT; i++)
+		if (strlen(statements[i].word) == r->word_length &&
+			strncasecmp(statements[i].word, r->word, r->word_length) == 0) {
+			if (r->mtl->count == first)
+				break;
+			return read_property(r, &r->mtl->definitions[r->mtl->count - 1],
+				statements[i].action);
+		}
+	ignore(r);
+	return NT_OK;
+}
+
+nt_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *bytes, size_t size,
+	nt_mtl *mtl, nt_error *error)
+{
+	const size_t first = mtl->count;
+	reader r = {.scene = scene, .path = path, .mtl = mtl, .line = 1, .error = error};
+	const char *p = (const char *)bytes, *const end = p + size;
+	if (memchr(bytes, '\0', size)) {
+		nt_fail(error, NT_ERROR_INPUT, "a byte 0 in it, expected a material library in text");
+		return nt_error_in_file(error, path);
+	}
+	if (size >= 3 && memcmp(p, "\xEF\xBB\xBF", 3) == 0)
+		p += 3;
+	while (p < end) {
+		const char *line_end = p;
+		while (line_end < end && *line_end != '\n' && *line_end != '\r')
+			line_end++;
+		while (p < line_end && is_blank(*p))
+			p++;
+		r.word = p;
+		while (p < line_end && !is_blank(*p))
+			p++;
+		r.word_length = (size_t)(p - r.word);
+		while (p < line_end && is_blank(*p))
+			p++;
+		r.text = p;
+		r.end = line_end;
+		while (r.end > r.text && is_blank(r.end[-1]))
+			r.end--;
+		if (r.word_length && r.word[0] != '#') {
+			const nt_status status = read_statement(&r, first);
+			if (status)
+				return status;
+		}
+		p = line_end + 1;
+		if (line_end < end && *line_end == '\r' && p < end && *p == '\n')
+			p++;
+		r.line++;
+	}
+	return NT_OK;
+}
+
+/* ---- files ---- */
+
+/* What mtllib statements are read for. */
+typedef struct request {
+	nt_scene *scene;
+	const nt_read_options *options;
+	size_t line;
+	nt_mtl *mtl;
+	nt_error *error;
+} request;
+
+static void report_missing(const request *q, const char *name, const char *reason)
+{
+	nt_place place;
+	nt_place_clear(&place);
+	strncpy(place.file, q->scene->path, sizeof place.file - 1);
+	place.line = q->line;
+	nt_finding_add(&q->scene->findings, NT_CODE_MTL_MISSING, &place, 1, "%.120s: %.120s", name, reason);
+	q->mtl->incomplete = true;
+}
+
+/* Why a file name may not be followed, NULL where it may. */
+static const char *outside_reason(const char *name)
+{
+	if (name[0] == '/')
+		return "an absolute path, which is followed only with --allow-outside";
+	if (((name[0] | 0x20) >= 'a' && (name[0] | 0x20) <= 'z') && name[1] == ':')
+		return "a path with a drive letter";
+	for (const char *part = name; part;) {
+		if (strncmp(part, "..", 2) == 0 && (part[2] == '/' || part[2] == '\0'))
+			return "leaves the folder of the OBJ, which is followed only with --allow-outside";
+		part = strchr(part, '/');
+		if (part)
+			part++;
+	}
+	return NULL;
+}
+
+/* The path of a name that the OBJ refers to. */
+static char *path_beside(nt_scene *scene, const char *name)
+{
+	const char *slash = name[0] == '/' ? NULL : strrchr(scene->path, '/');
+	const size_t folder = slash ? (size_t)(slash - scene->path) + 1 : 0;
+	char *path = nt_arena_alloc(&scene->arena, folder + strlen(name) + 1, 1);
+	if (path) {
+		memcpy(path, scene->path, folder);
+		strcpy(path + folder, name);
+	}
+	return path;
+}
+
+/* A file name as this system spells it: without quotes around it, `\` as `/`. */
+static char *file_name(nt_scene *scene, const char *text, size_t length)
+{
+	if (length >= 2 && text[0] == '"' && text[length - 1] == '"') {
+		text++;
+		length -= 2;
+	}
+	char *name = nt_arena_text(&scene->arena, text, length);
+	for (char *p = name; p && *p; p++)
+		if (*p == '\\')
+			*p = '/';
+	return name;
+}
+
+/* Reads one library; what cannot be read is reported unless `quiet`. *found says whether it was. */
+static nt_status read_library(const request *q, const char *text, size_t length, bool quiet,
+	bool *found)
+{
+	*found = false;
+	const char *name = file_name(q->scene, text, length);
+	char *path = name ? path_beside(q->scene, name) : NULL;
+	if (!path)
+		return nt_fail_memory(q->error);
+	const char *reason = q->options->allow_outside ? NULL : outside_reason(name);
+	if (!*name)
+		reason = "no file name";
+	nt_file file;
+	nt_error open_error;
+	if (!reason && nt_file_open(&file, path, &open_error)) {
+		if (open_error.status == NT_ERROR_MEMORY)
+			return nt_fail_memory(q->error);
+		reason = open_error.message;
+	}
+	if (reason) {
+		if (!quiet)
+			report_missing(q, name, reason);
+		return NT_OK;
+	}
+	*found = true;
+	const nt_status status = nt_mtl_parse(q->scene, path, file.data, file.size, q->mtl, q->error);
+	nt_file_close(&file);
+	return status;
+}
+
+/* Where the first of several names ends: behind ".mtl" before a blank. */
+static size_t first_name_length(const char *text, size_t length)
+{
+	for (size_t i = 0; i + 4 < length; i++)
+		if (strncasecmp(text + i, ".mtl", 4) == 0 && is_blank(text[i + 4]))
+			return i + 4;
+	return length;
+}
+
+nt_status nt_mtl_read(nt_scene *scene, const char *names, size_t length, size_t line,
+	const nt_read_options *options, nt_mtl *mtl, nt_error *error)
+{
+	const request q = {scene, options, line, mtl, error};
+	/* The format allows several names, exporters write single names with blanks: one is tried first. */
+	const bool several = first_name_length(names, length) < length;
+	bool found;
+	nt_status status = read_library(&q, names, length, several, &found);
+	if (!several || found)
+		return status;
+	while (!status && length) {
+		const size_t first = first_name_length(names, length);
+		status = read_library(&q, names, first, false, &found);
+		names += first;
+		length -= first;
+		while (length && is_blank(*names)) {
+			names++;
+			length--;
+		}
+	}
+	return status;
+}
+
+void nt_mtl_free(nt_mtl *mtl)
+{
+	free(mtl->definitions);
+	*mtl = (nt_mtl){0};
+}

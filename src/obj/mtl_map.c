@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Options come first by the format, "-bm 0.5 name.png"; some exporters put -bm behind the name. An
+ * option that is not known begins the file name: names may begin with a dash.
+ */
+#include "obj/mtl_map.h"
+
+#include <math.h>
+#include <string.h>
+#include "ext/number.h"
+
+static const struct {
+	const char *name;
+	int least, most; /* arguments */
+	bool transforms;
+} options[] = {
+	{"-blendu", 1, 1, false}, {"-blendv", 1, 1, false}, {"-boost", 1, 1, false}, {"-bm", 1, 1, false},
+	{"-cc", 1, 1, false}, {"-clamp", 1, 1, false}, {"-colorspace", 1, 1, false},
+	{"-imfchan", 1, 1, false}, {"-mm", 2, 2, false}, {"-o", 1, 3, true}, {"-s", 1, 3, true},
+	{"-t", 1, 3, true}, {"-texres", 1, 1, false}, {"-type", 1, 1, false},
+};
+enum { OPTION_COUNT = sizeof options / sizeof options[0] };
+
+typedef struct word {
+	const char *begin, *end;
+} word;
+
+static bool is_blank(char c)
+{
+	return c == ' ' || c == '\t';
+}
+
+/* The word at or behind p; empty at the end. */
+static word next_word(const char *p, const char *end)
+{
+	while (p < end && is_blank(*p))
+		p++;
+	word w = {p, p};
+	while (w.end < end && !is_blank(*w.end))
+		w.end++;
+	return w;
+}
+
+static bool is_number(word w, float *value)
+{
+	return w.begin < w.end && nt_read_float(w.begin, w.end, value) == w.end && isfinite(*value);
+}
+
+static size_t find_option(word w)
+{
+	size_t i = 0;
+	const size_t length = (size_t)(w.end - w.begin);
+	while (i < OPTION_COUNT &&
+		(strlen(options[i].name) != length || memcmp(options[i].name, w.begin, length) != 0))
+		i++;
+	return i;
+}
+
+/* Takes an option's arguments. Those beyond the least have to be numbers and must leave a word, which
+ * is the file name. Returns where the next word may begin. */
+static const char *take_arguments(size_t option, const char *p, const char *end, nt_mtl_map *map)
+{
+	for (int i = 0; i < options[option].most; i++) {
+		const word argument = next_word(p, end);
+		const word behind = next_word(argument.end, end);
+		float value = 0;
+		const bool number = is_number(argument, &value);
+		if (i >= options[option].least && (!number || behind.begin == behind.end))
+			break;
+		if (strcmp(options[option].name, "-bm") == 0 && number)
+			map->bump_scale = value;
+		p = argument.end;
+	}
+	map->transformed = map->transformed || options[option].transforms;
+	return p;
+}
+
+/* Cuts "-bm 0.5" off the end of the name. */
+static void take_trailing_scale(nt_mtl_map *map)
+{
+	const char *p = map->name_end;
+	while (p > map->name_begin && !is_blank(p[-1]))
+		p--;
+	const word last = {p, map->name_end};
+	while (p > map->name_begin && is_blank(p[-1]))
+		p--;
+	if (p - map->name_begin < 5 || memcmp(p - 3, "-bm", 3) != 0 || !is_blank(p[-4]))
+		return;
+	float value;
+	if (!is_number(last, &value))
+		return;
+	map->bump_scale = value;
+	for (p -= 3; p > map->name_begin && is_blank(p[-1]); p--)
+		;
+	map->name_end = p;
+}
+
+void nt_mtl_map_read(const char *text, const char *end, nt_mtl_map *map)
+{
+	*map = (nt_mtl_map){.bump_scale = 1};
+	word w = next_word(text, end);
+	for (size_t option; (option = find_option(w)) < OPTION_COUNT;)
+		w = next_word(take_arguments(option, w.end, end, map), end);
+	map->name_begin = w.begin;
+	map->name_end = end;
+	take_trailing_scale(map);
+}
+
+char *nt_mtl_map_name(nt_arena *arena, const nt_mtl_map *map)
+{
+	const char *begin = map->name_begin, *end = map->name_end;
+	if (end - begin >= 2 && begin[0] == '"' && end[-1] == '"') {
+		begin++;
+		end--;
+	}
+	char *name = nt_arena_text(arena, begin, (size_t)(end - begin));
+	for (char *p = name; p && *p; p++)
+		if (*p == '\\')
+			*p = '/';
+	return name;
+}

@@ -1,0 +1,186 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the parts of the OBJ reader hand to each other: statements.c and faces.c turn lines into the
+ * arrays of a chunk, vertices.c turns corners into vertices, meshes.c makes meshes of them. read.c
+ * says in which order. Nothing here is for other files.
+ */
+#ifndef NT_OBJ_PARTS_H
+#define NT_OBJ_PARTS_H
+
+#include "scene/scene.h"
+
+/* The numbers of a face corner, as they are kept until the file has been read. Bit 31 clear: counted
+ * from 0. Bit 31 set: counted back, the low bits are OBJ_BIAS plus the number relative to the chunk's
+ * first element, which may lie in an earlier chunk. */
+#define OBJ_ABSENT   UINT32_MAX
+#define OBJ_RELATIVE 0x80000000u
+#define OBJ_BIAS     0x40000000u
+
+typedef struct obj_corner {
+	uint32_t v, t, n;
+} obj_corner;
+
+typedef enum obj_event_kind {
+	OBJ_EVENT_OBJECT,    /* o */
+	OBJ_EVENT_MATERIAL,  /* usemtl */
+	OBJ_EVENT_SMOOTHING, /* s */
+	OBJ_EVENT_LIBRARY    /* mtllib */
+} obj_event_kind;
+
+/* A statement between faces. */
+typedef struct obj_event {
+	obj_event_kind kind;
+	uint32_t group;      /* SMOOTHING: its group, 0 off */
+	const char *text;    /* the others: the name, in the input */
+	size_t length;
+	size_t line;         /* within the chunk, from 0 */
+	size_t face, corner; /* faces and corners of the chunk before it */
+} obj_event;
+
+/* A face of five corners or more: face_sizes has OBJ_POLYGON for it. */
+enum { OBJ_POLYGON = 5 };
+
+typedef struct obj_polygon {
+	size_t face; /* within the chunk, within the file after joining; its line, from 0 and 1, likewise */
+	size_t size;
+	size_t line;
+} obj_polygon;
+
+/* Statements that are not used, by number; obj_ignored_names has their words. The last one stands for
+ * all that OBJ does not define. */
+enum { OBJ_IGNORED_COUNT = 36, OBJ_UNKNOWN = OBJ_IGNORED_COUNT - 1, OBJ_SMALL_FACE = 0 };
+extern const char *const obj_ignored_names[OBJ_IGNORED_COUNT];
+
+typedef struct obj_ignored {
+	size_t count;
+	size_t line; /* of the first, within the chunk */
+} obj_ignored;
+
+/* What corners refer to, and how many numbers of it are kept. */
+enum { OBJ_V, OBJ_VT, OBJ_VN, OBJ_KIND_COUNT };
+static const unsigned obj_widths[OBJ_KIND_COUNT] = {3, 2, 3};
+
+/* The elements of one kind in a chunk. They stay there: making one array of them would touch as much
+ * memory again. */
+typedef struct obj_rows {
+	float *data;
+	size_t count, capacity;
+	size_t first; /* of that kind in the file before this chunk; known after all have been read */
+} obj_rows;
+
+/* Whole lines of the file and what was in them. */
+typedef struct obj_chunk {
+	const char *begin, *end; /* of the last chunk: in obj_file.tail */
+
+	obj_rows rows[OBJ_KIND_COUNT];
+	float *colors; /* rows of 4 as written, as many as positions; NULL while no `v` has one */
+	size_t color_capacity;
+
+	/* Corners by number of their distinct v/t/n. Those are in order of first use; some come more than
+	 * once, and again in every object. */
+	obj_corner *distinct;
+	size_t distinct_count, distinct_capacity;
+	uint32_t *corners;
+	size_t corner_count, corner_capacity;
+	uint8_t *face_sizes; /* 3, 4 or OBJ_POLYGON */
+	size_t face_count, face_capacity;
+	obj_polygon *polygons;
+	size_t polygon_count, polygon_capacity;
+	obj_event *events;
+	size_t event_count, event_capacity;
+
+	obj_ignored ignored[OBJ_IGNORED_COUNT];
+	const char *unknown; /* the first unknown statement's word */
+	size_t unknown_length;
+	size_t small_size;   /* corners of the first face with fewer than 3 */
+	size_t line_count;
+
+	/* How much comes before this chunk in the file; known after all have been read. */
+	size_t first_corner, first_face, first_line;
+
+	nt_error error; /* its line is within the chunk, from 1 */
+} obj_chunk;
+
+/* The whole file. */
+typedef struct obj_file {
+	nt_scene *scene;
+	unsigned threads;
+	obj_chunk *chunks;
+	size_t chunk_count;
+	char *tail; /* the last lines, padded */
+	const char *tail_begin; /* where they stand in the input */
+
+	/* Of each kind: how many there are, and the chunk that has number i << OBJ_GUIDE_SHIFT. */
+	size_t row_counts[OBJ_KIND_COUNT];
+	uint32_t *guides[OBJ_KIND_COUNT];
+	bool has_colors;
+
+	/* Joined arrays. */
+	uint8_t *face_sizes;
+	size_t face_count, corner_count;
+	obj_polygon *polygons;
+	size_t polygon_count;
+	bool uses_smoothing;
+
+	/* Mesh m has the faces [mesh_faces[m], mesh_faces[m + 1]) of the file, and corners and vertices
+	 * likewise; mesh_count + 1 entries each. */
+	size_t mesh_count;
+	const obj_event **mesh_objects; /* the `o` of each; NULL: none */
+	size_t *mesh_lines;             /* its line */
+	size_t *mesh_faces, *mesh_corners, *mesh_vertices;
+
+	/* Stretches of faces of one material and smoothing group, in order. */
+	struct obj_span *spans;
+	size_t span_count, span_capacity;
+
+	uint32_t *corner_vertices;          /* [corner_count], relative to the mesh's first vertex */
+	struct obj_vertex *vertices;        /* of all meshes, in order */
+	size_t vertex_count;
+} obj_file;
+
+/* A guide has an entry for so many rows. */
+enum { OBJ_GUIDE_SHIFT = 12 };
+
+/* The chunk of row number `row` of the file, which has to be there. */
+static inline const obj_chunk *obj_find_row(const obj_file *file, int kind, uint32_t row)
+{
+	const obj_chunk *chunk = &file->chunks[file->guides[kind][row >> OBJ_GUIDE_SHIFT]];
+	while (row - chunk->rows[kind].first >= chunk->rows[kind].count)
+		chunk++;
+	return chunk;
+}
+
+typedef struct obj_span {
+	size_t face; /* the first one; the span ends where the next begins */
+	uint32_t material;
+	uint32_t smoothing;
+} obj_span;
+
+/* A distinct corner of a mesh: rows of the joined arrays, OBJ_ABSENT where it has none. */
+typedef struct obj_vertex {
+	uint32_t v, t, n;
+	uint32_t next; /* for finding it: another vertex of the same v, plus 1; 0 none */
+} obj_vertex;
+
+/* Reads the lines of a chunk, which ends behind a line feed, with 8 readable bytes behind it. On failure
+ * chunk->error is set. */
+nt_status obj_parse_chunk(obj_chunk *chunk);
+void obj_chunk_free(obj_chunk *chunk);
+
+/* Line of a face of the file, by reading its chunk again; 0: out of memory. before: how many v, vt and vn of
+ * its chunk stand before it. */
+size_t obj_face_line(const obj_file *file, size_t face, obj_corner *before);
+
+/* Leaves in the scene what its locate_faces needs; false: out of memory. */
+bool obj_keep_places(const obj_file *file);
+
+/* Fills corner_vertices, vertices and mesh_vertices. */
+nt_status obj_make_vertices(obj_file *file, nt_error *error);
+
+/* Meshes, spans and materials from the events; findings for what was ignored. */
+nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_error *error);
+
+/* Fills scene->meshes from all of it. */
+nt_status obj_make_meshes(obj_file *file, nt_error *error);
+
+#endif

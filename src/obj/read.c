@@ -1,0 +1,303 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The OBJ reader: Wavefront's object files as they are found in the wild. One pass over the mapped
+ * bytes, in chunks of whole lines that threads take one after the other; then the chunks are joined.
+ *
+ *   split     the file into chunks of 1 MiB, whatever the number of threads, so that it cannot show
+ *   parse     statements.c, faces.c: numbers, corners, and the statements between faces
+ *   join      what was counted; rows of numbers stay in their chunks and are found there
+ *   events    spans.c: objects, materials and smoothing groups, in order
+ *   vertices  vertices.c: equal v/vt/vn of one object become one vertex
+ *   meshes    meshes.c: faces, quads kept, larger polygons triangulated
+ *
+ * Where a face stands in the text is asked of few: locate.c reads their lines again.
+ *
+ * An `o` makes a mesh; `g` does not. Of texture coordinates u and v are kept as they stand (v up).
+ * Colours behind positions are sRGB, as Blender and three.js write them, and become linear.
+ * Numbers that are not finite are an error wherever they stand: no output format can hold them. So is a
+ * file without faces: there is nothing to put tangents on.
+ */
+#include "obj/read.h"
+
+#include <limits.h>
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include "base/clock.h"
+#include "base/parallel.h"
+#include "file/input.h"
+#include "obj/line.h"
+
+enum {
+	CHUNK_BYTES = 1 << 20,
+	TAIL_BYTES = 16,      /* at least so many bytes of the file go through the padded copy */
+	RECOGNISE_BYTES = 1 << 16
+};
+
+/* ---- recognising ---- */
+
+/* What an OBJ may begin with. Words that other formats share are no proof. */
+static bool is_obj_statement(const char *word, size_t length)
+{
+	static const char *const words[] = {"v", "vt", "vn", "vp", "f", "o", "g", "s", "l", "p", "mtllib",
+		"usemtl", "cstype", "deg", "mg", "lod"};
+	for (size_t i = 0; i < sizeof words / sizeof words[0]; i++)
+		if (strlen(words[i]) == length && memcmp(words[i], word, length) == 0)
+			return true;
+	return false;
+}
+
+bool nt_obj_recognise(const unsigned char *bytes, size_t size)
+{
+	const char *p = (const char *)bytes;
+	const char *end = p + (size < RECOGNISE_BYTES ? size : RECOGNISE_BYTES);
+	if (end - p >= 3 && memcmp(p, "\xEF\xBB\xBF", 3) == 0)
+		p += 3;
+	/* The first line that is neither blank nor a comment has to be a statement of OBJ. */
+	while (p < end) {
+		while (p < end && strchr(" \t\r\n", *p) && *p)
+			p++;
+		if (p < end && *p != '#')
+			break;
+		while (p < end && *p != '\n' && *p != '\r')
+			p++;
+	}
+	const char *word = p;
+	while (p < end && *p > ' ' && *p < 0x7F)
+		p++;
+	return p < end && *p && strchr(" \t\r\n", *p) && is_obj_statement(word, (size_t)(p - word));
+}
+
+/* ---- split ---- */
+
+/* Whether a chunk may end before `at`: it stands behind a line feed that no `\` takes back. */
+static bool is_line_begin(const char *begin, const char *at)
+{
+	if (at == begin)
+		return true;
+	if (at[-1] != '\n')
+		return false;
+	const char *last = at - 1;
+	if (last > begin && last[-1] == '\r')
+		last--;
+	return last == begin || last[-1] != '\\';
+}
+
+/* The last line begin at or before `at`. */
+static const char *line_begin_before(const char *begin, const char *at)
+{
+	while (!is_line_begin(begin, at))
+		at--;
+	return at;
+}
+
+static bool add_chunk(obj_file *file, size_t *capacity, const char *begin, const char *end)
+{
+	if (!nt_grow((void **)&file->chunks, capacity, file->chunk_count + 1, sizeof *file->chunks))
+		return false;
+	obj_chunk *chunk = &file->chunks[file->chunk_count++];
+	memset(chunk, 0, sizeof *chunk);
+	chunk->begin = begin;
+	chunk->end = end;
+	return true;
+}
+
+/* The last lines, from a copy with line feeds and readable bytes behind it. */
+static bool add_tail(obj_file *file, size_t *capacity, const char *begin, const char *end)
+{
+	const char *padded_end;
+	file->tail_begin = begin;
+	file->tail = obj_copy_padded(begin, end, &padded_end);
+	return file->tail && add_chunk(file, capacity, file->tail, padded_end);
+}
+
+static nt_status split(obj_file *file, nt_error *error)
+{
+	const char *p = (const char *)file->scene->bytes;
+	const char *const end = p + file->scene->byte_count;
+	if (end - p >= 3 && memcmp(p, "\xEF\xBB\xBF", 3) == 0)
+		p += 3;
+	const char *const begin = p;
+	const char *const tail =
+		end - p > TAIL_BYTES ? line_begin_before(begin, end - TAIL_BYTES) : begin;
+	size_t capacity = 0;
+	while (p < tail) {
+		const char *next = tail;
+		if (tail - p > CHUNK_BYTES) {
+			next = line_begin_before(p, p + CHUNK_BYTES);
+			if (next == p) { /* a line longer than a chunk */
+				next = p + CHUNK_BYTES;
+				while (!is_line_begin(begin, next))
+					next++;
+			}
+		}
+		if (!add_chunk(file, &capacity, p, next))
+			return nt_fail_memory(error);
+		p = next;
+	}
+	if (!add_tail(file, &capacity, tail, end))
+		return nt_fail_memory(error);
+	return NT_OK;
+}
+
+/* ---- parse ---- */
+
+typedef struct parse_job {
+	obj_file *file;
+	atomic_size_t next;   /* the chunk to take */
+	atomic_bool failed;   /* no later chunk matters any more */
+} parse_job;
+
+/* Chunks are taken in order, so all before one that fails have been taken and will be finished: which
+ * error is the first in the file does not depend on the threads. */
+static void parse_chunks(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)begin, (void)end, (void)slot;
+	parse_job *job = context;
+	while (!atomic_load(&job->failed)) {
+		const size_t c = atomic_fetch_add(&job->next, 1);
+		if (c >= job->file->chunk_count)
+			return;
+		const obj_chunk *chunk = &job->file->chunks[c];
+		if (obj_parse_chunk(&job->file->chunks[c]))
+			atomic_store(&job->failed, true);
+		/* text is half of what a conversion would hold, and only names are read again */
+		if (job->file->scene->file)
+			nt_file_forget(job->file->scene->file, chunk->begin, (size_t)(chunk->end - chunk->begin));
+	}
+}
+
+static nt_status parse(obj_file *file, nt_error *error)
+{
+	parse_job job = {.file = file};
+	nt_parallel_ranges(file->threads, file->chunk_count, 1, parse_chunks, &job);
+	size_t line = 0;
+	for (size_t c = 0; c < file->chunk_count; c++) {
+		obj_chunk *chunk = &file->chunks[c];
+		if (chunk->error.status) {
+			*error = chunk->error;
+			if (error->status == NT_ERROR_INPUT)
+				error->place.line += line;
+			return error->status;
+		}
+		chunk->first_line = line;
+		line += chunk->line_count;
+	}
+	return NT_OK;
+}
+
+/* ---- join ---- */
+
+static void count_all(obj_file *file)
+{
+	for (size_t c = 0; c < file->chunk_count; c++) {
+		obj_chunk *chunk = &file->chunks[c];
+		for (int kind = 0; kind < OBJ_KIND_COUNT; kind++) {
+			chunk->rows[kind].first = file->row_counts[kind];
+			file->row_counts[kind] += chunk->rows[kind].count;
+		}
+		chunk->first_face = file->face_count;
+		chunk->first_corner = file->corner_count;
+		file->face_count += chunk->face_count;
+		file->corner_count += chunk->corner_count;
+		file->polygon_count += chunk->polygon_count;
+		file->has_colors = file->has_colors || chunk->colors;
+	}
+}
+
+/* For every so many rows of a kind, the chunk that has the first of them. */
+static bool make_guide(obj_file *file, int kind)
+{
+	const size_t count = (file->row_counts[kind] >> OBJ_GUIDE_SHIFT) + 1;
+	uint32_t *guide = nt_alloc(count, sizeof *guide);
+	file->guides[kind] = guide;
+	size_t c = 0;
+	for (size_t i = 0; guide && i < count; i++) {
+		const size_t row = i << OBJ_GUIDE_SHIFT;
+		while (c + 1 < file->chunk_count && file->chunks[c + 1].rows[kind].first <= row)
+			c++;
+		guide[i] = (uint32_t)c;
+	}
+	return guide;
+}
+
+static void join_polygons(obj_file *file)
+{
+	obj_polygon *to = file->polygons;
+	for (size_t c = 0; c < file->chunk_count; c++) {
+		const obj_chunk *chunk = &file->chunks[c];
+		for (size_t i = 0; i < chunk->polygon_count; i++) {
+			const obj_polygon *polygon = &chunk->polygons[i];
+			*to++ = (obj_polygon){chunk->first_face + polygon->face, polygon->size,
+				chunk->first_line + polygon->line + 1};
+		}
+	}
+}
+
+static nt_status join(obj_file *file, nt_error *error)
+{
+	count_all(file);
+	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
+		if (file->row_counts[kind] > INT32_MAX)
+			return nt_fail(error, NT_ERROR_TOO_LARGE, "more than 2^31 - 1 vertices in one file");
+	if (file->corner_count >= NT_NONE)
+		return nt_fail(error, NT_ERROR_TOO_LARGE, "more than 2^32 - 1 face corners in one file");
+	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
+		if (!make_guide(file, kind))
+			return nt_fail_memory(error);
+	file->face_sizes = nt_arena_alloc(&file->scene->arena, file->face_count, 1);
+	file->polygons = nt_alloc(file->polygon_count, sizeof *file->polygons);
+	if (!file->face_sizes || !file->polygons)
+		return nt_fail_memory(error);
+	join_polygons(file);
+	for (size_t c = 0; c < file->chunk_count; c++)
+		if (file->chunks[c].face_count)
+			memcpy(file->face_sizes + file->chunks[c].first_face, file->chunks[c].face_sizes,
+				file->chunks[c].face_count);
+	return NT_OK;
+}
+
+/* ---- the whole ---- */
+
+static void free_file(obj_file *file)
+{
+	for (size_t c = 0; c < file->chunk_count; c++)
+		obj_chunk_free(&file->chunks[c]);
+	free(file->chunks);
+	free(file->tail);
+	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
+		free(file->guides[kind]);
+	free(file->polygons);
+	free(file->mesh_objects);
+	free(file->mesh_lines);
+	free(file->mesh_faces);
+	free(file->mesh_corners);
+	free(file->mesh_vertices);
+	free(file->spans);
+	free(file->vertices);
+}
+
+nt_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
+{
+	/* a file of a chunk or two is read before a second thread has begun */
+	const bool small = scene->byte_count <= 2 * CHUNK_BYTES;
+	obj_file file = {.scene = scene, .threads = small ? 1 : nt_thread_count(options->threads)};
+	scene->format = NT_FORMAT_OBJ;
+	nt_status status = split(&file, error);
+	if (!status)
+		status = parse(&file, error);
+	if (!status)
+		status = join(&file, error);
+	if (!status)
+		status = obj_read_events(&file, options, error);
+	const double begin = nt_seconds();
+	if (!status)
+		status = obj_make_vertices(&file, error);
+	scene->index_seconds = nt_seconds() - begin;
+	if (!status)
+		status = obj_make_meshes(&file, error);
+	if (!status && (scene->findings.failed || !obj_keep_places(&file)))
+		status = nt_fail_memory(error);
+	free_file(&file);
+	return status ? nt_error_in_file(error, scene->path) : NT_OK;
+}

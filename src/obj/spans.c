@@ -1,0 +1,299 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The statements between faces, in the order of the file: where meshes begin, which material and
+ * smoothing group a stretch of faces has; then the materials themselves, and what was ignored.
+ *
+ * Materials get their numbers by the first face that has them, and become part of the scene then;
+ * those that no face has do not. A name that no library defines still becomes a material of that
+ * name, so that its faces stay apart and can be given one later.
+ */
+#include "obj/parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "obj/mtl.h"
+#include "obj/name_table.h"
+
+/* Materials that no library defines are named one by one up to this many. */
+enum { NAMED_UNKNOWN_MOST = 100 };
+
+typedef struct state {
+	obj_file *file;
+	nt_error *error;
+	nt_name_table names;     /* of materials that faces have, in order */
+	size_t *name_lines;      /* of their first usemtl */
+	size_t name_line_capacity;
+
+	/* What faces at this point have. */
+	const obj_event *object; /* NULL: none yet */
+	size_t object_line;
+	const obj_event *material;
+	size_t material_line;
+	uint32_t smoothing;
+	bool object_is_new;      /* the next face begins a mesh */
+	size_t mesh_capacity;
+	size_t face, corner;     /* where the stretch that is under way began */
+} state;
+
+/* ---- meshes and spans ---- */
+
+/* Room for one more mesh and the end of the last. */
+static bool reserve_mesh(obj_file *file, size_t *capacity)
+{
+	if (file->mesh_count + 2 <= *capacity)
+		return true;
+	size_t capacities[5] = {*capacity, *capacity, *capacity, *capacity, *capacity};
+	const size_t needed = file->mesh_count + 2;
+	if (!nt_grow((void **)&file->mesh_objects, &capacities[0], needed, sizeof *file->mesh_objects) ||
+		!nt_grow((void **)&file->mesh_lines, &capacities[1], needed, sizeof *file->mesh_lines) ||
+		!nt_grow((void **)&file->mesh_faces, &capacities[2], needed, sizeof *file->mesh_faces) ||
+		!nt_grow((void **)&file->mesh_corners, &capacities[3], needed, sizeof *file->mesh_corners) ||
+		!nt_grow((void **)&file->mesh_vertices, &capacities[4], needed, sizeof *file->mesh_vertices))
+		return false;
+	*capacity = capacities[0]; /* all grew alike */
+	return true;
+}
+
+static bool begin_mesh(state *s)
+{
+	obj_file *file = s->file;
+	if (!reserve_mesh(file, &s->mesh_capacity))
+		return false;
+	const size_t m = file->mesh_count++;
+	file->mesh_objects[m] = s->object;
+	file->mesh_lines[m] = s->object ? s->object_line : 0;
+	file->mesh_faces[m] = s->face;
+	file->mesh_corners[m] = s->corner;
+	file->mesh_vertices[m] = 0;
+	s->object_is_new = false;
+	return true;
+}
+
+/* The number of the current material; *number is NT_NONE where there is none. */
+static bool number_material(state *s, uint32_t *number)
+{
+	*number = NT_NONE;
+	if (!s->material || s->material->length == 0)
+		return true;
+	const size_t before = s->names.count;
+	*number = nt_name_add(&s->names, s->material->text, s->material->length);
+	if (*number == UINT32_MAX ||
+		!nt_grow((void **)&s->name_lines, &s->name_line_capacity, s->names.count,
+			sizeof *s->name_lines))
+		return false;
+	if (s->names.count > before)
+		s->name_lines[*number] = s->material_line;
+	return true;
+}
+
+/* The faces up to here have what was said before them. */
+static bool end_stretch(state *s, size_t face, size_t corner)
+{
+	obj_file *file = s->file;
+	if (face > s->face) {
+		uint32_t material;
+		if ((s->object_is_new && !begin_mesh(s)) || !number_material(s, &material) ||
+			!nt_grow((void **)&file->spans, &file->span_capacity, file->span_count + 1,
+				sizeof *file->spans))
+			return false;
+		file->spans[file->span_count++] = (obj_span){s->face, material, s->smoothing};
+	}
+	s->face = face;
+	s->corner = corner;
+	return true;
+}
+
+static bool read_event(state *s, const obj_chunk *chunk, const obj_event *event)
+{
+	if (event->kind == OBJ_EVENT_LIBRARY)
+		return true;
+	if (!end_stretch(s, chunk->first_face + event->face, chunk->first_corner + event->corner))
+		return false;
+	const size_t line = chunk->first_line + event->line + 1;
+	if (event->kind == OBJ_EVENT_OBJECT) {
+		s->object = event;
+		s->object_line = line;
+		s->object_is_new = true;
+	} else if (event->kind == OBJ_EVENT_MATERIAL) {
+		s->material = event;
+		s->material_line = line;
+	} else {
+		s->smoothing = event->group;
+		s->file->uses_smoothing = true;
+	}
+	return true;
+}
+
+static bool read_stretches(state *s)
+{
+	obj_file *file = s->file;
+	if (!reserve_mesh(file, &s->mesh_capacity))
+		return false;
+	for (size_t c = 0; c < file->chunk_count; c++)
+		for (size_t i = 0; i < file->chunks[c].event_count; i++)
+			if (!read_event(s, &file->chunks[c], &file->chunks[c].events[i]))
+				return false;
+	if (!end_stretch(s, file->face_count, file->corner_count))
+		return false;
+	file->mesh_faces[file->mesh_count] = file->face_count;
+	file->mesh_corners[file->mesh_count] = file->corner_count;
+	file->mesh_vertices[file->mesh_count] = 0;
+	return true;
+}
+
+/* ---- materials ---- */
+
+static nt_place line_place(const nt_scene *scene, size_t line)
+{
+	nt_place place;
+	nt_place_clear(&place);
+	strncpy(place.file, scene->path, sizeof place.file - 1);
+	place.line = line;
+	return place;
+}
+
+/* Reads every library once. */
+static nt_status read_libraries(state *s, const nt_read_options *options, nt_mtl *mtl)
+{
+	obj_file *file = s->file;
+	nt_name_table seen = {0};
+	nt_status status = NT_OK;
+	for (size_t c = 0; c < file->chunk_count && !status; c++) {
+		const obj_chunk *chunk = &file->chunks[c];
+		for (size_t i = 0; i < chunk->event_count && !status; i++) {
+			const obj_event *event = &chunk->events[i];
+			const size_t before = seen.count;
+			if (event->kind != OBJ_EVENT_LIBRARY)
+				continue;
+			if (nt_name_add(&seen, event->text, event->length) == UINT32_MAX)
+				status = nt_fail_memory(s->error);
+			else if (seen.count > before)
+				status = nt_mtl_read(file->scene, event->text, event->length,
+					chunk->first_line + event->line + 1, options, mtl, s->error);
+		}
+	}
+	nt_name_table_free(&seen);
+	return status;
+}
+
+/* Gives a material of the scene its definition; the first one counts. */
+static void define(nt_scene *scene, uint32_t number, const nt_mtl_definition *d)
+{
+	nt_material *material = &scene->materials[number];
+	nt_place place;
+	nt_place_clear(&place);
+	strncpy(place.file, d->material.library, sizeof place.file - 1);
+	place.line = d->material.line;
+	if (material->library) {
+		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1,
+			"MTL: newmtl of a name that was defined before: %.120s", d->material.name);
+		return;
+	}
+	*material = d->material;
+	if (d->bump) {
+		place.line = d->bump_line;
+		nt_finding_add(&scene->findings, NT_CODE_BUMP_AS_NORMAL, &place, 1, "%s of %.120s", d->bump,
+			material->name);
+	}
+}
+
+static nt_status make_materials(state *s, const nt_mtl *mtl)
+{
+	nt_scene *scene = s->file->scene;
+	scene->materials = nt_arena_alloc(&scene->arena, s->names.count, sizeof *scene->materials);
+	if (!scene->materials)
+		return nt_fail_memory(s->error);
+	for (size_t i = 0; i < s->names.count; i++) {
+		const nt_name *name = &s->names.names[i];
+		scene->materials[i] =
+			nt_mtl_default(nt_utf8_text(&scene->arena, name->text, name->length));
+		if (!scene->materials[i].name)
+			return nt_fail_memory(s->error);
+	}
+	scene->material_count = s->names.count;
+	for (size_t i = 0; i < mtl->count; i++) {
+		const nt_mtl_definition *d = &mtl->definitions[i];
+		const uint32_t number = nt_name_find(&s->names, d->raw_name, d->raw_length);
+		if (number != UINT32_MAX)
+			define(scene, number, d);
+	}
+	/* Where a library is missing that is already said, and why these are unknown. */
+	size_t unknown = 0;
+	for (size_t i = 0; i < s->names.count && !mtl->incomplete; i++)
+		if (!scene->materials[i].library) {
+			const nt_place place = line_place(scene, s->name_lines[i]);
+			nt_finding_add(&scene->findings, NT_CODE_MATERIAL_UNKNOWN, &place, 1, "%.200s",
+				unknown++ < NAMED_UNKNOWN_MOST ? scene->materials[i].name : "and others");
+		}
+	return NT_OK;
+}
+
+/* ---- what was ignored ---- */
+
+/* The first chunk that has a statement of that kind, NULL for none, and how often the file has it. */
+static const obj_chunk *find_ignored(const obj_file *file, size_t which, size_t *count)
+{
+	const obj_chunk *first = NULL;
+	*count = 0;
+	for (size_t c = 0; c < file->chunk_count; c++) {
+		if (!first && file->chunks[c].ignored[which].count)
+			first = &file->chunks[c];
+		*count += file->chunks[c].ignored[which].count;
+	}
+	return first;
+}
+
+static size_t ignored_line(const obj_chunk *chunk, size_t which)
+{
+	return chunk->first_line + chunk->ignored[which].line + 1;
+}
+
+static void report_ignored(const obj_file *file)
+{
+	nt_scene *scene = file->scene;
+	for (size_t which = 0; which < OBJ_IGNORED_COUNT; which++) {
+		size_t count;
+		const obj_chunk *first = find_ignored(file, which, &count);
+		if (!first)
+			continue;
+		const nt_place place = line_place(scene, ignored_line(first, which));
+		if (which == OBJ_UNKNOWN)
+			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, count,
+				"OBJ: %s, the first is %.*s", obj_ignored_names[which],
+				(int)(first->unknown_length < 64 ? first->unknown_length : 64), first->unknown);
+		else
+			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, count, "OBJ: %s",
+				obj_ignored_names[which]);
+	}
+}
+
+/* A file without faces has nothing to put tangents on. */
+static nt_status fail_empty(const obj_file *file, nt_error *error)
+{
+	size_t count;
+	const obj_chunk *small = find_ignored(file, OBJ_SMALL_FACE, &count);
+	if (small)
+		return nt_fail_line(error, NT_ERROR_INPUT, ignored_line(small, OBJ_SMALL_FACE),
+			"found a face of %zu corners and no larger one in the file, expected at least 3",
+			small->small_size);
+	return nt_fail(error, NT_ERROR_INPUT, "found no faces, expected a mesh");
+}
+
+nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_error *error)
+{
+	state s = {.file = file, .error = error, .object_is_new = true};
+	nt_mtl mtl = {0};
+	if (file->face_count == 0)
+		return fail_empty(file, error);
+	nt_status status = read_stretches(&s) ? NT_OK : nt_fail_memory(error);
+	if (!status)
+		status = read_libraries(&s, options, &mtl);
+	if (!status)
+		status = make_materials(&s, &mtl);
+	if (!status)
+		report_ignored(file);
+	nt_mtl_free(&mtl);
+	nt_name_table_free(&s.names);
+	free(s.name_lines);
+	return status;
+}

@@ -1,0 +1,338 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * OBJ lines become arrays. A chunk is a run of whole lines, so several can be read at once; what a
+ * line means does not depend on the lines before it, but for faces that count back ("-1") and for the
+ * statements between faces, which are kept in order for later.
+ *
+ * Forgiving where exporters differ: blanks and tabs anywhere, CRLF and lone CR, `\` before a line end,
+ * comments behind a statement, trailing slashes ("3/"), statements of OBJ that say nothing about
+ * polygons. Strict where a guess could be wrong: numbers, their count, their finiteness, index 0.
+ */
+#include "obj/line.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include "file/decimal.h"
+
+const char *const obj_ignored_names[OBJ_IGNORED_COUNT] = {
+	[OBJ_SMALL_FACE] = "f with fewer than 3 corners",
+	"l", "p", "vp", "deg", "bmat", "step", "cstype", "curv", "curv2", "surf", "parm", "trim", "hole",
+	"scrv", "sp", "end", "con", "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj",
+	"trace_obj", "ctech", "stech", "usemap", "maplib", "call", "csh", "bsp", "bzp", "cdc", "cdp",
+	[OBJ_UNKNOWN] = "unknown statement",
+};
+
+/* ---- v, vt, vn ---- */
+
+/* The quick way for a line of `count` short decimals and nothing else; NULL: something else. */
+static inline const char *read_plain_numbers(const char *p, float *numbers, int count)
+{
+	for (int i = 0; i < count; i++) {
+		while (*p == ' ')
+			p++;
+		p = nt_read_plain_decimal(p, &numbers[i]);
+		if (!p || (unsigned char)*p > ' ')
+			return NULL;
+	}
+	return is_line_end(*p) ? p : NULL;
+}
+
+/* Reads numbers up to the end of the line, at most `most`; -1 after an error, else how many. */
+static int read_numbers(obj_reader *r, float *numbers, int most, const char *expected)
+{
+	for (int count = 0;; count++) {
+		skip_blanks(r);
+		if (is_line_end(*r->p) || *r->p == '#')
+			return count;
+		if (count == most) {
+			obj_fail_expected(r, expected);
+			return -1;
+		}
+		const char *p = nt_read_decimal(r->p, r->chunk->end, &numbers[count]);
+		if (!p || !is_word_end(p)) {
+			obj_fail_expected(r, "a number");
+			return -1;
+		}
+		if (!isfinite(numbers[count])) {
+			obj_fail_expected(r, "a finite number");
+			return -1;
+		}
+		r->p = p;
+	}
+}
+
+/* The same, with the quick way for the usual number of them tried first. */
+static inline int read_line(obj_reader *r, float *numbers, int usual, int most, const char *expected)
+{
+	const char *p = read_plain_numbers(r->p, numbers, usual);
+	if (!p)
+		return read_numbers(r, numbers, most, expected);
+	r->p = p;
+	return usual;
+}
+
+/* Appends a row of a kind: as many of the numbers as are kept. */
+static inline nt_status store_row(obj_reader *r, int kind, const float *numbers)
+{
+	obj_rows *rows = &r->chunk->rows[kind];
+	const size_t bytes = obj_widths[kind] * sizeof(float);
+	if (!obj_reserve(r->chunk, (void **)&rows->data, &rows->capacity, rows->count, bytes))
+		return obj_fail_memory(r);
+	memcpy(&rows->data[obj_widths[kind] * rows->count++], numbers, bytes);
+	return NT_OK;
+}
+
+/* Keeps the colour of the last position; positions before the first that has one are white. */
+static nt_status store_color(obj_reader *r, const float *numbers, int count)
+{
+	obj_chunk *chunk = r->chunk;
+	const size_t last = chunk->rows[OBJ_V].count - 1;
+	const size_t first = chunk->colors ? last : 0;
+	if (last >= chunk->color_capacity && !nt_grow((void **)&chunk->colors, &chunk->color_capacity,
+							 chunk->rows[OBJ_V].capacity, 4 * sizeof(float)))
+		return obj_fail_memory(r);
+	for (size_t i = 4 * first; i < 4 * last + 4; i++)
+		chunk->colors[i] = 1;
+	if (count >= 6)
+		memcpy(&chunk->colors[4 * last], numbers + 3, (size_t)(count - 3) * sizeof *numbers);
+	return NT_OK;
+}
+
+/* v x y z [w] or v x y z r g b [a]. The weight w belongs to curves: polygons do not use it. */
+static nt_status read_position(obj_reader *r)
+{
+	static const char expected[] = "3 coordinates, with a weight or a colour of 3 or 4 numbers";
+	obj_chunk *chunk = r->chunk;
+	float numbers[7];
+	const int count = read_line(r, numbers, 3, 7, expected);
+	if (count < 0)
+		return chunk->error.status;
+	if (count < 3 || count == 5)
+		return obj_fail_expected(r, count < 3 ? "3 coordinates" : expected);
+	const nt_status status = store_row(r, OBJ_V, numbers);
+	return status || (count < 6 && !chunk->colors) ? status : store_color(r, numbers, count);
+}
+
+/* vt u [v [w]] */
+static nt_status read_texcoord(obj_reader *r)
+{
+	obj_chunk *chunk = r->chunk;
+	float numbers[3] = {0, 0, 0};
+	const int count = read_line(r, numbers, 2, 3, "at most 3 texture coordinates");
+	if (count < 0)
+		return chunk->error.status;
+	if (count == 0)
+		return obj_fail_expected(r, "a texture coordinate");
+	return store_row(r, OBJ_VT, numbers);
+}
+
+/* vn x y z */
+static nt_status read_normal(obj_reader *r)
+{
+	obj_chunk *chunk = r->chunk;
+	float numbers[3];
+	const int count = read_line(r, numbers, 3, 3, "3 components of a normal and no more");
+	if (count < 0)
+		return chunk->error.status;
+	if (count < 3)
+		return obj_fail_expected(r, "3 components of a normal");
+	return store_row(r, OBJ_VN, numbers);
+}
+
+/* ---- o, usemtl, mtllib, s ---- */
+
+static nt_status store_event(obj_reader *r, obj_event event)
+{
+	obj_chunk *chunk = r->chunk;
+	if (!nt_grow((void **)&chunk->events, &chunk->event_capacity, chunk->event_count + 1,
+			sizeof *chunk->events))
+		return obj_fail_memory(r);
+	event.line = r->statement_line;
+	event.face = chunk->face_count;
+	event.corner = chunk->corner_count;
+	if (event.kind == OBJ_EVENT_OBJECT)
+		r->object_begin = chunk->distinct_count;
+	chunk->events[chunk->event_count++] = event;
+	return NT_OK;
+}
+
+/* A name is what is left of the line, blanks inside included; `\` and `#` belong to it, because paths
+ * and names have them. */
+static nt_status read_name(obj_reader *r, obj_event_kind kind)
+{
+	while (is_blank(*r->p))
+		r->p++;
+	const char *begin = r->p, *p = begin;
+	while (!is_line_end(*p)) {
+		if (*p == '\0') {
+			r->p = p;
+			return obj_fail_expected(r, "a name in text");
+		}
+		p++;
+	}
+	r->p = p;
+	while (p > begin && is_blank(p[-1]))
+		p--;
+	return store_event(r, (obj_event){.kind = kind, .text = begin, .length = (size_t)(p - begin)});
+}
+
+/* s off, s on or s N: a group of faces that are shaded as one; 0 and off mean flat. */
+static nt_status read_smoothing(obj_reader *r)
+{
+	skip_blanks(r);
+	const char *p = r->p;
+	uint32_t group = 0;
+	unsigned length = nt_read_digits(p, &group);
+	if (strncmp(p, "off", 3) == 0) {
+		length = 3;
+	} else if (strncmp(p, "on", 2) == 0) {
+		length = 2;
+		group = 1;
+	}
+	if (length == 0 || length == 8 || !is_word_end(p + length))
+		return obj_fail_expected(r, "a smoothing group, on or off");
+	r->p = p + length;
+	return store_event(r, (obj_event){.kind = OBJ_EVENT_SMOOTHING, .group = group});
+}
+
+/* ---- lines ---- */
+
+/* To the end of the line; `\` joins the next one unless it is a comment. */
+static void skip_statement(obj_reader *r, bool comment)
+{
+	const char *p = r->p;
+	while (!is_line_end(*p)) {
+		if (!comment && joins_lines(p)) {
+			p = behind_line_end(p + 1);
+			r->line++;
+		} else {
+			p++;
+		}
+	}
+	r->p = p;
+}
+
+/* A statement that is not used: one that OBJ defines, or any word. Bytes that no text has are an error,
+ * so that a file of another kind is not taken for an OBJ without faces. */
+static nt_status read_other(obj_reader *r, const char *word, size_t length)
+{
+	for (size_t i = 0; i < length; i++)
+		if ((unsigned char)word[i] < 0x20 || (unsigned char)word[i] >= 0x7F) {
+			r->p = word;
+			return obj_fail_expected(r, "a statement of an OBJ file");
+		}
+	size_t which = OBJ_SMALL_FACE + 1;
+	while (which < OBJ_UNKNOWN && (strlen(obj_ignored_names[which]) != length ||
+					      memcmp(obj_ignored_names[which], word, length) != 0))
+		which++;
+	if (which == OBJ_UNKNOWN && !r->chunk->unknown) {
+		r->chunk->unknown = word;
+		r->chunk->unknown_length = length;
+	}
+	obj_ignore(r, which);
+	skip_statement(r, false);
+	return NT_OK;
+}
+
+static bool is_word(const char *word, size_t length, const char *expected)
+{
+	return strlen(expected) == length && memcmp(word, expected, length) == 0;
+}
+
+/* A statement whose first letters are not v or f. */
+static nt_status read_rare(obj_reader *r)
+{
+	const char *word = r->p;
+	while (!is_word_end(r->p))
+		r->p++;
+	const size_t length = (size_t)(r->p - word);
+	if (is_word(word, length, "v"))
+		return read_position(r);
+	if (is_word(word, length, "vt"))
+		return read_texcoord(r);
+	if (is_word(word, length, "vn"))
+		return read_normal(r);
+	if (is_word(word, length, "f") || is_word(word, length, "fo"))
+		return obj_read_face(r);
+	if (is_word(word, length, "o"))
+		return read_name(r, OBJ_EVENT_OBJECT);
+	if (is_word(word, length, "usemtl"))
+		return read_name(r, OBJ_EVENT_MATERIAL);
+	if (is_word(word, length, "mtllib"))
+		return read_name(r, OBJ_EVENT_LIBRARY);
+	if (is_word(word, length, "s"))
+		return read_smoothing(r);
+	if (is_word(word, length, "g")) {
+		skip_statement(r, false);
+		return NT_OK;
+	}
+	return read_other(r, word, length);
+}
+
+/* One statement, up to its line end or comment. The four that files consist of come first. */
+static inline nt_status read_statement(obj_reader *r)
+{
+	const char *p = r->p;
+	if (p[0] == 'v' && is_blank(p[1])) {
+		r->p = p + 2;
+		return read_position(r);
+	}
+	if (p[0] == 'f' && is_blank(p[1])) {
+		r->p = p + 2;
+		return obj_read_face(r);
+	}
+	if (p[0] == 'v' && p[1] == 'n' && is_blank(p[2])) {
+		r->p = p + 3;
+		return read_normal(r);
+	}
+	if (p[0] == 'v' && p[1] == 't' && is_blank(p[2])) {
+		r->p = p + 3;
+		return read_texcoord(r);
+	}
+	if (is_line_end(*p) || *p == '#')
+		return NT_OK;
+	return read_rare(r);
+}
+
+nt_status obj_read_lines(obj_reader *r, size_t last)
+{
+	obj_chunk *chunk = r->chunk;
+	while (r->p < chunk->end) {
+		skip_blanks(r);
+		r->statement = r->p;
+		r->statement_line = r->line;
+		const nt_status status = read_statement(r);
+		if (status)
+			return status;
+		if (*r->p == '#')
+			skip_statement(r, true);
+		r->p = behind_line_end(r->p);
+		r->line++;
+		if (chunk->face_count > last)
+			break;
+	}
+	chunk->line_count = r->line;
+	return NT_OK;
+}
+
+nt_status obj_parse_chunk(obj_chunk *chunk)
+{
+	obj_reader r;
+	nt_status status = obj_reader_init(&r, chunk);
+	if (!status)
+		status = obj_read_lines(&r, SIZE_MAX);
+	obj_reader_free(&r);
+	return status;
+}
+
+void obj_chunk_free(obj_chunk *chunk)
+{
+	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
+		free(chunk->rows[kind].data);
+	free(chunk->colors);
+	free(chunk->distinct);
+	free(chunk->corners);
+	free(chunk->face_sizes);
+	free(chunk->polygons);
+	free(chunk->events);
+}

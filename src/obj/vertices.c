@@ -1,0 +1,306 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Corners become vertices: corners of one mesh with the same v, vt and vn share one, numbered in the
+ * order of first use.
+ *
+ * The table is found by v itself: most positions have one or two combinations of vt and vn, and
+ * neighbouring corners touch neighbouring entries, which a hash would scatter. heads[v] is the first
+ * vertex of v, the others are linked. A link longer than LINK_MOST (the hub of a fan whose every corner
+ * has its own vt) goes on in a hash table, so that no input makes this quadratic.
+ *
+ * The parser has already found most corners that neighbouring faces share: only the distinct ones of
+ * each chunk come here, in the order of the file, about a fifth of all. That is one thread's work; the
+ * corners then take their vertices' numbers in parallel.
+ */
+#include "obj/parts.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "base/parallel.h"
+
+enum { LINK_MOST = 8 };
+
+typedef struct table {
+	uint32_t *heads;      /* [position_count] vertex + 1; 0 or of an earlier mesh: none */
+	obj_vertex *vertices;
+	size_t count, capacity;
+	uint32_t *slots;      /* hash table of vertices + 1 that are not linked */
+	size_t slot_count, slot_used; /* slot_count is a power of two or 0 */
+} table;
+
+static size_t hash_vertex(const obj_vertex *x)
+{
+	uint64_t h = x->v * UINT64_C(0x9E3779B97F4A7C15);
+	h = (h ^ h >> 32 ^ x->t) * UINT64_C(0xD6E8FEB86659FD93);
+	h = (h ^ h >> 32 ^ x->n) * UINT64_C(0x9E3779B97F4A7C15);
+	return (size_t)(h ^ h >> 32);
+}
+
+static bool same_corner(const obj_vertex *a, uint32_t v, uint32_t t, uint32_t n)
+{
+	return a->v == v && a->t == t && a->n == n;
+}
+
+/* The slot of a vertex, or the free one where it belongs. Vertices before `base` are of other meshes. */
+static size_t find_slot(const table *s, const obj_vertex *wanted, size_t base)
+{
+	size_t slot = hash_vertex(wanted) & (s->slot_count - 1);
+	while (s->slots[slot]) {
+		const size_t vertex = s->slots[slot] - 1;
+		if (vertex >= base && same_corner(&s->vertices[vertex], wanted->v, wanted->t, wanted->n))
+			break;
+		slot = (slot + 1) & (s->slot_count - 1);
+	}
+	return slot;
+}
+
+static bool grow_slots(table *s)
+{
+	if (2 * (s->slot_used + 1) <= s->slot_count)
+		return true;
+	table larger = *s;
+	larger.slot_count = s->slot_count ? 2 * s->slot_count : 1024;
+	larger.slots = nt_calloc(larger.slot_count, sizeof *larger.slots);
+	if (!larger.slots)
+		return false;
+	for (size_t i = 0; i < s->slot_count; i++)
+		if (s->slots[i]) {
+			size_t slot = hash_vertex(&s->vertices[s->slots[i] - 1]) & (larger.slot_count - 1);
+			while (larger.slots[slot])
+				slot = (slot + 1) & (larger.slot_count - 1);
+			larger.slots[slot] = s->slots[i];
+		}
+	free(s->slots);
+	*s = larger;
+	return true;
+}
+
+static uint32_t append(table *s, uint32_t v, uint32_t t, uint32_t n)
+{
+	if (s->count >= NT_NONE - 1 ||
+		!nt_grow((void **)&s->vertices, &s->capacity, s->count + 1, sizeof *s->vertices))
+		return NT_NONE;
+	s->vertices[s->count] = (obj_vertex){v, t, n, 0};
+	return (uint32_t)s->count++;
+}
+
+/* Behind the last link. */
+static uint32_t find_in_slots(table *s, uint32_t v, uint32_t t, uint32_t n, size_t base)
+{
+	if (!grow_slots(s))
+		return NT_NONE;
+	const obj_vertex wanted = {v, t, n, 0};
+	const size_t slot = find_slot(s, &wanted, base);
+	if (s->slots[slot])
+		return s->slots[slot] - 1;
+	const uint32_t vertex = append(s, v, t, n);
+	if (vertex != NT_NONE) {
+		s->slots[slot] = vertex + 1;
+		s->slot_used++;
+	}
+	return vertex;
+}
+
+/* The vertex of a corner in the mesh whose vertices begin at base; it is made where there is none.
+ * NT_NONE: out of memory. */
+static uint32_t find_vertex(table *s, uint32_t v, uint32_t t, uint32_t n, size_t base)
+{
+	const uint32_t head = s->heads[v];
+	if (head <= base) {
+		const uint32_t vertex = append(s, v, t, n);
+		if (vertex != NT_NONE)
+			s->heads[v] = vertex + 1;
+		return vertex;
+	}
+	uint32_t at = head - 1;
+	for (int links = 0;; links++) {
+		if (same_corner(&s->vertices[at], v, t, n))
+			return at;
+		if (links == LINK_MOST)
+			return find_in_slots(s, v, t, n, base);
+		if (!s->vertices[at].next)
+			break;
+		at = s->vertices[at].next - 1;
+	}
+	const uint32_t vertex = append(s, v, t, n);
+	if (vertex != NT_NONE)
+		s->vertices[at].next = vertex + 1;
+	return vertex;
+}
+
+/* ---- distinct corners ---- */
+
+/* An index as a row number; false where there is no such row. */
+static inline bool resolve(uint32_t *index, size_t first, size_t count)
+{
+	if (*index & OBJ_RELATIVE) {
+		if (*index == OBJ_ABSENT)
+			return true;
+		const int64_t row = (int64_t)(*index & ~OBJ_RELATIVE) - OBJ_BIAS + (int64_t)first;
+		if (row < 0)
+			return false;
+		*index = (uint32_t)row;
+	}
+	return *index < count;
+}
+
+/* The face of a corner of the file. */
+static size_t face_of_corner(const obj_file *file, const obj_chunk *chunk, size_t wanted)
+{
+	size_t face = chunk->first_face, corner = chunk->first_corner, polygon = 0;
+	while (polygon < file->polygon_count && file->polygons[polygon].face < face)
+		polygon++;
+	for (;; face++) {
+		const uint8_t size = file->face_sizes[face];
+		corner += size == OBJ_POLYGON ? file->polygons[polygon++].size : size;
+		if (wanted < corner)
+			return face;
+	}
+}
+
+/* Says which index of the corner is out of range, as the file spells it. */
+static nt_status fail_index(const obj_file *file, const obj_chunk *chunk, size_t distinct,
+	nt_error *error)
+{
+	size_t bad_corner = chunk->first_corner;
+	while (chunk->corners[bad_corner - chunk->first_corner] != distinct)
+		bad_corner++;
+	const obj_corner corner = chunk->distinct[distinct];
+	obj_corner before;
+	const size_t line = obj_face_line(file, face_of_corner(file, chunk, bad_corner), &before);
+	const struct {
+		const char *word;
+		uint32_t index;
+		uint32_t before;      /* elements of the chunk before the face */
+		size_t first, count;
+	} parts[3] = {
+		{"v", corner.v, before.v, chunk->rows[OBJ_V].first, file->row_counts[OBJ_V]},
+		{"vt", corner.t, before.t, chunk->rows[OBJ_VT].first, file->row_counts[OBJ_VT]},
+		{"vn", corner.n, before.n, chunk->rows[OBJ_VN].first, file->row_counts[OBJ_VN]},
+	};
+	int k = 0;
+	uint32_t row = parts[0].index;
+	while (k < 2 && resolve(&row, parts[k].first, parts[k].count))
+		row = parts[++k].index;
+	const uint32_t index = parts[k].index;
+	if (index & OBJ_RELATIVE)
+		return nt_fail_line(error, NT_ERROR_INPUT, line,
+			"face refers to \"%s\" number -%zu, but %zu precede it", parts[k].word,
+			(size_t)(parts[k].before + OBJ_BIAS - (index & ~OBJ_RELATIVE)),
+			parts[k].first + parts[k].before);
+	return nt_fail_line(error, NT_ERROR_INPUT, line,
+		"face refers to \"%s\" number %zu, but the file has %zu", parts[k].word, (size_t)index + 1,
+		parts[k].count);
+}
+
+/* Gives distinct corners [begin, end) of a chunk their vertices in the mesh whose vertices begin at
+ * `base`: the number takes the place of v. */
+static nt_status number_distinct(obj_file *file, obj_chunk *chunk, size_t begin, size_t end,
+	table *vertices, size_t base, nt_error *error)
+{
+	for (size_t i = begin; i < end; i++) {
+		obj_corner c = chunk->distinct[i];
+		if (!resolve(&c.v, chunk->rows[OBJ_V].first, file->row_counts[OBJ_V]) ||
+			!resolve(&c.t, chunk->rows[OBJ_VT].first, file->row_counts[OBJ_VT]) ||
+			!resolve(&c.n, chunk->rows[OBJ_VN].first, file->row_counts[OBJ_VN]))
+			return fail_index(file, chunk, i, error);
+		chunk->distinct[i].v = find_vertex(vertices, c.v, c.t, c.n, base);
+		if (chunk->distinct[i].v == NT_NONE)
+			return nt_fail_memory(error);
+	}
+	return NT_OK;
+}
+
+/* One chunk, whose first corner belongs to *mesh or begins the next one. */
+static nt_status number_chunk(obj_file *file, obj_chunk *chunk, table *vertices, size_t *mesh,
+	nt_error *error)
+{
+	const size_t end_corner = chunk->first_corner + chunk->corner_count;
+	size_t begin = 0;
+	while (*mesh + 1 < file->mesh_count && file->mesh_corners[*mesh + 1] < end_corner) {
+		/* The first corner of a mesh is a distinct one of its own. */
+		const size_t end = chunk->corners[file->mesh_corners[*mesh + 1] - chunk->first_corner];
+		const nt_status status = number_distinct(file, chunk, begin, end, vertices,
+			file->mesh_vertices[*mesh], error);
+		if (status)
+			return status;
+		file->mesh_vertices[++*mesh] = vertices->count;
+		begin = end;
+	}
+	return number_distinct(file, chunk, begin, chunk->distinct_count, vertices,
+		file->mesh_vertices[*mesh], error);
+}
+
+static nt_status number_all(obj_file *file, table *vertices, nt_error *error)
+{
+	vertices->heads = nt_calloc(file->row_counts[OBJ_V], sizeof *vertices->heads);
+	if (!vertices->heads)
+		return nt_fail_memory(error);
+	size_t mesh = 0;
+	for (size_t c = 0; c < file->chunk_count; c++) {
+		const nt_status status = number_chunk(file, &file->chunks[c], vertices, &mesh, error);
+		if (status)
+			return status;
+	}
+	file->mesh_vertices[file->mesh_count] = vertices->count;
+	return NT_OK;
+}
+
+/* ---- corners ---- */
+
+/* The mesh of a corner of the file. */
+static size_t mesh_of_corner(const obj_file *file, size_t corner)
+{
+	size_t low = 0, high = file->mesh_count;
+	while (high - low > 1) {
+		const size_t middle = low + (high - low) / 2;
+		if (file->mesh_corners[middle] <= corner)
+			low = middle;
+		else
+			high = middle;
+	}
+	return low;
+}
+
+/* Writes the vertices of the corners of chunks [begin, end), relative to their meshes; the chunks' own
+ * corners have done their work. */
+static void write_corners(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	const obj_file *file = context;
+	size_t mesh = mesh_of_corner(file, file->chunks[begin].first_corner);
+	for (size_t k = begin; k < end; k++) {
+		obj_chunk *chunk = &file->chunks[k];
+		uint32_t *to = file->corner_vertices + chunk->first_corner;
+		for (size_t i = 0; i < chunk->corner_count;) {
+			while (file->mesh_corners[mesh + 1] <= chunk->first_corner + i)
+				mesh++;
+			const size_t left = file->mesh_corners[mesh + 1] - chunk->first_corner;
+			const size_t stop = left < chunk->corner_count ? left : chunk->corner_count;
+			const uint32_t base = (uint32_t)file->mesh_vertices[mesh];
+			for (; i < stop; i++)
+				to[i] = chunk->distinct[chunk->corners[i]].v - base;
+		}
+		free(chunk->distinct);
+		free(chunk->corners);
+		chunk->distinct = NULL;
+		chunk->corners = NULL;
+	}
+}
+
+nt_status obj_make_vertices(obj_file *file, nt_error *error)
+{
+	table vertices = {0};
+	nt_status status = number_all(file, &vertices, error);
+	file->corner_vertices = status ? NULL :
+		nt_arena_alloc(&file->scene->arena, file->corner_count, sizeof *file->corner_vertices);
+	if (!status && !file->corner_vertices)
+		status = nt_fail_memory(error);
+	if (!status)
+		nt_parallel_ranges(file->threads, file->chunk_count, 1, write_corners, file);
+	file->vertices = vertices.vertices;
+	file->vertex_count = vertices.count;
+	free(vertices.heads);
+	free(vertices.slots);
+	return status;
+}

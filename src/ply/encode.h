@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Values on their way into a PLY file, in any of the three encodings.
+ */
+#ifndef NT_PLY_ENCODE_H
+#define NT_PLY_ENCODE_H
+
+#include "base/buffer.h"
+#include "file/input.h"
+#include "ply/value.h"
+
+typedef struct ply_output {
+	nt_buffer buffer; /* what has not been written yet */
+	nt_sink *sink;
+	ply_encoding encoding;
+} ply_output;
+
+/* Most values of one ply_put_floats: normal, tangent, bitangent. */
+enum { PLY_MOST_FLOATS = 3 + 4 + 3 };
+
+/* Append floats; ASCII: a blank and the text of each. */
+void ply_put_floats(ply_output *out, const float *values, size_t count);
+
+/* Appends an integer that fits its type; ASCII: its text alone. */
+void ply_put_integer(ply_output *out, uint32_t value, ply_type type);
+
+/* Writes the buffer when it has become long; reports what failed since the last call. */
+nt_status ply_drain(ply_output *out, nt_error *error);
+
+/* Writes the buffer and then these bytes. */
+nt_status ply_put_bytes(ply_output *out, const void *bytes, size_t size, nt_error *error);
+
+#endif

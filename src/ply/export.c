@@ -1,0 +1,271 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * PLY from a scene of another format: one binary little endian mesh in world space. PLY has no nodes,
+ * so every instance is written with its matrix applied: positions by the matrix, normals by its inverse
+ * transpose, tangents by its upper 3x3 and made perpendicular to the normal again. Where the
+ * determinant is negative, faces are wound the other way round and w changes its sign, so that the
+ * bitangent stays the image of the bitangent. Instances with the identity keep their bits.
+ *
+ * v points up in PLY: the scene has it so, but what came from glTF is -v there and becomes 1 - v.
+ */
+#include "ply/export.h"
+
+#include <math.h>
+#include "base/dvec.h"
+#include "base/vec.h"
+
+/* What the vertices of the file have. */
+typedef struct layout {
+	bool normals, colors, byte_colors, texcoords, tangents, bitangents;
+	size_t vertex_count, face_count;
+} layout;
+
+/* How one instance is brought into the world. */
+typedef struct placement {
+	bool identity, mirrored;
+	nt_dvec3 columns[4];   /* of the matrix */
+	nt_dvec3 cofactors[3]; /* columns of the inverse transpose times |determinant| */
+} placement;
+
+static bool is_written(const nt_mesh *mesh)
+{
+	return mesh->triangles && mesh->positions && mesh->face_count > 0;
+}
+
+static size_t vertices_of(const nt_mesh *mesh)
+{
+	return mesh->vertex_count + mesh->split.source_count;
+}
+
+static size_t mesh_vertex(const nt_mesh *mesh, size_t vertex)
+{
+	return vertex < mesh->vertex_count ? vertex : mesh->split.sources[vertex - mesh->vertex_count];
+}
+
+/* The tangents of the vertices: computed, else authored, else NULL. */
+static const float *tangent_of(const nt_mesh *mesh, size_t vertex)
+{
+	if (mesh->split.vertex_tangents)
+		return mesh->split.vertex_tangents + 4 * vertex;
+	return mesh->tangents ? mesh->tangents + 4 * mesh_vertex(mesh, vertex) : NULL;
+}
+
+/* Whether all colours are bytes divided by 255. */
+static bool are_bytes(const nt_mesh *mesh)
+{
+	for (size_t i = 0; i < 4 * mesh->vertex_count; i++) {
+		const float scaled = mesh->colors[i] * 255.0f;
+		if (!(scaled >= 0.0f && scaled <= 255.5f) || rintf(scaled) / 255.0f != mesh->colors[i])
+			return false;
+	}
+	return true;
+}
+
+static layout find_layout(const nt_scene *scene, bool bitangents)
+{
+	layout l = {.byte_colors = true};
+	for (size_t i = 0; i < scene->instance_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+		if (!is_written(mesh))
+			continue;
+		l.normals |= mesh->normals != NULL;
+		l.texcoords |= mesh->texcoords != NULL;
+		l.tangents |= mesh->split.vertex_tangents || mesh->tangents;
+		l.colors |= mesh->colors != NULL;
+		l.byte_colors = l.byte_colors && (!mesh->colors || are_bytes(mesh));
+		l.vertex_count += vertices_of(mesh);
+		l.face_count += mesh->face_count;
+	}
+	l.bitangents = bitangents && l.tangents && l.normals;
+	return l;
+}
+
+static void write_header(ply_output *out, const layout *l)
+{
+	nt_buffer *b = &out->buffer;
+	nt_buffer_text(b, "ply\nformat binary_little_endian 1.0\ncomment nmtan " NMTAN_VERSION_STRING "\n");
+	nt_buffer_format(b, "element vertex %zu\n", l->vertex_count);
+	nt_buffer_text(b, "property float x\nproperty float y\nproperty float z\n");
+	if (l->normals)
+		nt_buffer_text(b, "property float nx\nproperty float ny\nproperty float nz\n");
+	if (l->colors) {
+		const char *type = l->byte_colors ? "uchar" : "float";
+		nt_buffer_format(b, "property %s red\nproperty %s green\nproperty %s blue\n"
+			"property %s alpha\n", type, type, type, type);
+	}
+	if (l->texcoords)
+		nt_buffer_text(b, "property float u\nproperty float v\n");
+	if (l->tangents)
+		nt_buffer_text(b, "property float tx\nproperty float ty\nproperty float tz\n"
+			"property float tw\n");
+	if (l->bitangents)
+		nt_buffer_text(b, "property float bx\nproperty float by\nproperty float bz\n");
+	nt_buffer_format(b, "element face %zu\nproperty list uchar %s vertex_indices\nend_header\n",
+		l->face_count, l->vertex_count > INT32_MAX ? "uint" : "int");
+}
+
+static placement find_placement(const nt_instance *instance)
+{
+	static const double identity[16] = {[0] = 1.0, [5] = 1.0, [10] = 1.0, [15] = 1.0};
+	const double *m = instance->matrix;
+	placement p = {.identity = memcmp(m, identity, sizeof identity) == 0};
+	for (size_t i = 0; i < 4; i++)
+		p.columns[i] = (nt_dvec3){m[4 * i], m[4 * i + 1], m[4 * i + 2]};
+	for (size_t i = 0; i < 3; i++)
+		p.cofactors[i] = nt_dvec3_cross(p.columns[(i + 1) % 3], p.columns[(i + 2) % 3]);
+	p.mirrored = nt_dvec3_dot(p.columns[0], p.cofactors[0]) < 0.0;
+	for (size_t i = 0; p.mirrored && i < 3; i++)
+		p.cofactors[i] = nt_dvec3_scale(-1.0, p.cofactors[i]);
+	return p;
+}
+
+static nt_dvec3 combine(const nt_dvec3 *columns, const float *v)
+{
+	return nt_dvec3_add(nt_dvec3_add(nt_dvec3_scale(v[0], columns[0]), nt_dvec3_scale(v[1], columns[1])),
+		nt_dvec3_scale(v[2], columns[2]));
+}
+
+static void store(nt_dvec3 v, float *to)
+{
+	to[0] = (float)v.x;
+	to[1] = (float)v.y;
+	to[2] = (float)v.z;
+}
+
+static void place_position(const placement *p, const float *from, float *to)
+{
+	if (p->identity)
+		memcpy(to, from, 3 * sizeof *to);
+	else
+		store(nt_dvec3_add(combine(p->columns, from), p->columns[3]), to);
+}
+
+/* A matrix that flattens leaves some normals without a direction: they stay what they are. */
+static void place_normal(const placement *p, const float *from, float *to)
+{
+	nt_dvec3 n = combine(p->cofactors, from);
+	if (p->identity || !nt_dvec3_normalise(&n))
+		memcpy(to, from, 3 * sizeof *to);
+	else
+		store(n, to);
+}
+
+/* n: the normal as written, NULL: none. */
+static void place_tangent(const placement *p, const float *n, const float *from, float *to)
+{
+	memcpy(to, from, 4 * sizeof *to);
+	if (p->identity)
+		return;
+	nt_dvec3 t = combine(p->columns, from);
+	if (n)
+		t = nt_dvec3_reject(nt_dvec3_load(n), t);
+	if (!nt_dvec3_normalise(&t) && n)
+		t = nt_dvec3_perpendicular(nt_dvec3_load(n));
+	store(t, to);
+	to[3] = p->mirrored ? -from[3] : from[3];
+}
+
+static void put_color(ply_output *out, const layout *l, const float *color)
+{
+	static const float white[4] = {1.0f, 1.0f, 1.0f, 1.0f};
+	const float *c = color ? color : white;
+	if (!l->byte_colors)
+		ply_put_floats(out, c, 4);
+	for (size_t i = 0; l->byte_colors && i < 4; i++)
+		ply_put_integer(out, (uint32_t)rintf(c[i] * 255.0f), PLY_UINT8);
+}
+
+/* What a mesh does not have although others do is zero, a colour white. */
+static void put_vertex(ply_output *out, const layout *l, const placement *p, const nt_mesh *mesh,
+	size_t vertex, bool flip_v)
+{
+	const size_t v = mesh_vertex(mesh, vertex);
+	float position[3], normal[3] = {0}, uv[2] = {0}, tangent[4] = {0}, bitangent[3];
+	place_position(p, mesh->positions + 3 * v, position);
+	ply_put_floats(out, position, 3);
+	if (mesh->normals)
+		place_normal(p, mesh->normals + 3 * v, normal);
+	if (l->normals)
+		ply_put_floats(out, normal, 3);
+	if (l->colors)
+		put_color(out, l, mesh->colors ? mesh->colors + 4 * v : NULL);
+	if (mesh->texcoords) {
+		uv[0] = mesh->texcoords[2 * v];
+		uv[1] = flip_v ? 1.0f + mesh->texcoords[2 * v + 1] : mesh->texcoords[2 * v + 1];
+	}
+	if (l->texcoords)
+		ply_put_floats(out, uv, 2);
+	const float *own = tangent_of(mesh, vertex);
+	if (own)
+		place_tangent(p, mesh->normals ? normal : NULL, own, tangent);
+	if (l->tangents)
+		ply_put_floats(out, tangent, 4);
+	nt_bitangent(normal, tangent, bitangent);
+	if (l->bitangents)
+		ply_put_floats(out, bitangent, 3);
+}
+
+static nt_status put_vertices(nt_scene *scene, ply_output *out, const layout *l, nt_error *error)
+{
+	const bool flip_v = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < scene->instance_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+		const placement p = find_placement(&scene->instances[i]);
+		const size_t count = is_written(mesh) ? vertices_of(mesh) : 0;
+		for (size_t v = 0; !status && v < count; v++) {
+			put_vertex(out, l, &p, mesh, v, flip_v);
+			status = ply_drain(out, error);
+		}
+	}
+	return status;
+}
+
+/* The first corner stays the first when a face is turned round. */
+static void put_face(ply_output *out, const nt_mesh *mesh, size_t corner, size_t size, bool mirrored,
+	size_t base)
+{
+	const uint32_t *indices = mesh->split.indices ? mesh->split.indices : mesh->indices;
+	ply_put_integer(out, (uint32_t)size, PLY_UINT8);
+	for (size_t k = 0; k < size; k++) {
+		const size_t c = corner + (mirrored && k > 0 ? size - k : k);
+		ply_put_integer(out, (uint32_t)(base + (indices ? indices[c] : c)), PLY_UINT32);
+	}
+}
+
+static nt_status put_faces(nt_scene *scene, ply_output *out, nt_error *error)
+{
+	nt_status status = NT_OK;
+	size_t base = 0;
+	for (size_t i = 0; i < scene->instance_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
+		if (!is_written(mesh))
+			continue;
+		const bool mirrored = find_placement(&scene->instances[i]).mirrored;
+		for (size_t f = 0, corner = 0; !status && f < mesh->face_count; f++) {
+			const size_t size = mesh->face_sizes ? mesh->face_sizes[f] : 3;
+			put_face(out, mesh, corner, size, mirrored, base);
+			status = ply_drain(out, error);
+			corner += size;
+		}
+		base += vertices_of(mesh);
+	}
+	return status;
+}
+
+nt_status ply_write_scene(nt_scene *scene, const nt_write_options *options, ply_output *out,
+	nt_error *error)
+{
+	const layout l = find_layout(scene, options->bitangents);
+	if (l.vertex_count > UINT32_MAX || l.face_count > UINT32_MAX)
+		return nt_fail(error, NT_ERROR_TOO_LARGE,
+			"the instances have %zu vertices and %zu faces together, more than PLY can number",
+			l.vertex_count, l.face_count);
+	out->encoding = PLY_LITTLE;
+	write_header(out, &l);
+	const nt_status status = put_vertices(scene, out, &l, error);
+	if (scene->material_count > 0)
+		nt_finding_add(&scene->findings, NT_CODE_REFERENCE_LOST, NULL, scene->material_count,
+			"materials");
+	return status ? status : put_faces(scene, out, error);
+}

@@ -1,0 +1,331 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The header of a PLY file: lines of words up to end_header, whatever ends the lines. It costs memory
+ * in proportion to its own size; what it promises about the rest of the file is checked where the rest
+ * is read.
+ */
+#include "ply/header.h"
+
+#include <stdlib.h>
+#include "base/memory.h"
+
+static const struct {
+	const char *name, *alias;
+} type_names[] = {
+	[PLY_INT8] = {"char", "int8"},
+	[PLY_UINT8] = {"uchar", "uint8"},
+	[PLY_INT16] = {"short", "int16"},
+	[PLY_UINT16] = {"ushort", "uint16"},
+	[PLY_INT32] = {"int", "int32"},
+	[PLY_UINT32] = {"uint", "uint32"},
+	[PLY_FLOAT32] = {"float", "float32"},
+	[PLY_FLOAT64] = {"double", "float64"},
+};
+enum { TYPE_COUNT = sizeof type_names / sizeof type_names[0] };
+
+/* A header that is being read. */
+typedef struct parser {
+	ply_header *header;
+	nt_error *error;
+	const char *at, *end; /* what is left of the line */
+	size_t line;
+	bool has_format;
+} parser;
+
+typedef struct word {
+	const char *text;
+	size_t length;
+} word;
+
+const char *ply_type_name(ply_type type)
+{
+	return type_names[type].name;
+}
+
+/* The line that begins there, which may end in any way. */
+static ply_line read_line(const unsigned char *bytes, size_t size, size_t begin)
+{
+	size_t end = begin;
+	while (end < size && bytes[end] != '\n' && bytes[end] != '\r')
+		end++;
+	ply_line line = {.text = (const char *)bytes + begin, .length = end - begin, .next = end};
+	if (end == size)
+		return line;
+	const bool pair = bytes[end] == '\r' && end + 1 < size && bytes[end + 1] == '\n';
+	line.newline = pair ? "\r\n" : bytes[end] == '\r' ? "\r" : "\n";
+	line.next += pair ? 2 : 1;
+	return line;
+}
+
+ply_line ply_header_line(const ply_header *header, const unsigned char *bytes, size_t size, size_t begin)
+{
+	ply_line line = read_line(bytes, size, begin);
+	if (line.newline && line.newline[0] == '\r' && strcmp(header->newline, "\r") == 0)
+		line.next = begin + line.length + 1;
+	return line;
+}
+
+size_t ply_next_word(const char **at, const char *end, const char **text)
+{
+	const char *p = *at;
+	while (p < end && ply_is_blank((unsigned char)*p))
+		p++;
+	*text = p;
+	while (p < end && !ply_is_blank((unsigned char)*p))
+		p++;
+	*at = p;
+	return (size_t)(p - *text);
+}
+
+static word next_word(parser *p)
+{
+	word w;
+	w.length = ply_next_word(&p->at, p->end, &w.text);
+	return w;
+}
+
+static bool is(word w, const char *text)
+{
+	return strlen(text) == w.length && memcmp(w.text, text, w.length) == 0;
+}
+
+/* Length and text for "%.*s", shortened to what a message can take. */
+static int shown(word w)
+{
+	return w.length < 40 ? (int)w.length : 40;
+}
+
+static nt_status fail_word(parser *p, word found, const char *expected)
+{
+	if (found.length == 0)
+		return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
+			"the line ends where %s was expected", expected);
+	return nt_fail_line(p->error, NT_ERROR_INPUT, p->line, "found \"%.*s\", expected %s",
+		shown(found), found.text, expected);
+}
+
+static nt_status expect_end(parser *p)
+{
+	const word w = next_word(p);
+	return w.length ? fail_word(p, w, "the end of the line") : NT_OK;
+}
+
+static char *copy_text(const char *text, size_t length)
+{
+	return strndup(text, length);
+}
+
+static nt_status parse_format(parser *p)
+{
+	static const char *const names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
+	if (p->has_format)
+		return nt_fail_line(p->error, NT_ERROR_INPUT, p->line, "a second format line");
+	const word name = next_word(p);
+	int encoding = 0;
+	while (encoding < 3 && !is(name, names[encoding]))
+		encoding++;
+	if (encoding == 3)
+		return fail_word(p, name, "ascii, binary_little_endian or binary_big_endian");
+	const word version = next_word(p);
+	if (version.length && !is(version, "1.0"))
+		return nt_fail_line(p->error, NT_ERROR_UNSUPPORTED, p->line,
+			"PLY version \"%.*s\": only 1.0 is known", shown(version), version.text);
+	if (version.length == 0)
+		return fail_word(p, version, "the version, 1.0,");
+	p->header->encoding = (ply_encoding)encoding;
+	p->has_format = true;
+	return expect_end(p);
+}
+
+/* "TextureFile wood grain.png": the rest of the line is the name. */
+static nt_status parse_comment(parser *p)
+{
+	if (!is(next_word(p), "TextureFile"))
+		return NT_OK;
+	word name = next_word(p);
+	const char *end = p->end;
+	while (end > name.text && ply_is_blank((unsigned char)end[-1]))
+		end--;
+	if (name.length == 0)
+		return NT_OK;
+	ply_header *header = p->header;
+	char *copy = copy_text(name.text, (size_t)(end - name.text));
+	if (!copy || !nt_grow((void **)&header->textures, &header->texture_capacity,
+			     header->texture_count + 1, sizeof *header->textures)) {
+		free(copy);
+		return nt_fail_memory(p->error);
+	}
+	header->textures[header->texture_count++] = copy;
+	return NT_OK;
+}
+
+static bool read_count(word w, size_t *count)
+{
+	*count = 0;
+	for (size_t i = 0; i < w.length; i++) {
+		if (w.text[i] < '0' || w.text[i] > '9' || !nt_size_mul(*count, 10, count) ||
+			!nt_size_add(*count, (size_t)(w.text[i] - '0'), count))
+			return false;
+	}
+	return w.length > 0;
+}
+
+static nt_status parse_element(parser *p)
+{
+	ply_header *header = p->header;
+	const word name = next_word(p);
+	if (name.length == 0)
+		return fail_word(p, name, "the element's name");
+	ply_element element = {.line = p->line};
+	const word number = next_word(p);
+	if (!read_count(number, &element.count))
+		return fail_word(p, number, "the number of rows");
+	for (size_t i = 0; i < header->element_count; i++)
+		if (is(name, header->elements[i].name))
+			return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
+				"a second element \"%.*s\": the first is on line %zu", shown(name),
+				name.text, header->elements[i].line);
+	element.name = copy_text(name.text, name.length);
+	if (!element.name || !nt_grow((void **)&header->elements, &header->element_capacity,
+				     header->element_count + 1, sizeof element)) {
+		free((void *)(uintptr_t)element.name);
+		return nt_fail_memory(p->error);
+	}
+	header->elements[header->element_count++] = element;
+	return expect_end(p);
+}
+
+static nt_status parse_type(parser *p, word name, ply_type *type)
+{
+	for (int i = 0; i < TYPE_COUNT; i++) {
+		if (is(name, type_names[i].name) || is(name, type_names[i].alias)) {
+			*type = (ply_type)i;
+			return NT_OK;
+		}
+	}
+	return fail_word(p, name, "a type (char, uchar, short, ushort, int, uint, float or double)");
+}
+
+/* "list <type> <type>" or "<type>". */
+static nt_status parse_property_type(parser *p, ply_property *property)
+{
+	word name = next_word(p);
+	property->list = is(name, "list");
+	if (property->list) {
+		name = next_word(p);
+		const nt_status status = parse_type(p, name, &property->count_type);
+		if (status)
+			return status;
+		if (property->count_type >= PLY_FLOAT32)
+			return fail_word(p, name, "an integer type for the length of the list");
+		name = next_word(p);
+	}
+	return parse_type(p, name, &property->type);
+}
+
+static nt_status parse_property(parser *p)
+{
+	ply_header *header = p->header;
+	if (header->element_count == 0)
+		return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
+			"a property before the first element");
+	ply_element *element = &header->elements[header->element_count - 1];
+	ply_property property = {.line = p->line, .offset = element->row_bytes};
+	const nt_status status = parse_property_type(p, &property);
+	if (status)
+		return status;
+	const word name = next_word(p);
+	if (name.length == 0)
+		return fail_word(p, name, "the property's name");
+	property.name = copy_text(name.text, name.length);
+	if (!property.name || !nt_grow((void **)&element->properties, &element->property_capacity,
+				      element->property_count + 1, sizeof property)) {
+		free((void *)(uintptr_t)property.name);
+		return nt_fail_memory(p->error);
+	}
+	element->properties[element->property_count++] = property;
+	element->has_list |= property.list;
+	element->row_bytes += ply_size(property.list ? property.count_type : property.type);
+	return expect_end(p);
+}
+
+static nt_status parse_line(parser *p, bool *finished)
+{
+	const word keyword = next_word(p);
+	if (is(keyword, "comment"))
+		return parse_comment(p);
+	if (keyword.length == 0 || is(keyword, "obj_info"))
+		return NT_OK;
+	if (is(keyword, "format"))
+		return parse_format(p);
+	if (is(keyword, "element"))
+		return parse_element(p);
+	if (is(keyword, "property"))
+		return parse_property(p);
+	if (!is(keyword, "end_header"))
+		return fail_word(p, keyword,
+			"comment, obj_info, element, property or end_header");
+	*finished = true;
+	return expect_end(p);
+}
+
+nt_status ply_parse_header(ply_header *header, const unsigned char *bytes, size_t size,
+	nt_error *error)
+{
+	parser p = {.header = header, .error = error, .line = 1};
+	ply_line line = read_line(bytes, size, 0);
+	p.at = line.text;
+	p.end = line.text + line.length;
+	if (!is(next_word(&p), "ply"))
+		return nt_fail_line(error, NT_ERROR_INPUT, 1, "not a PLY file: it does not begin with \"ply\"");
+	/* the first line tells whether '\r' comes alone: a '\n' after it may then be data */
+	header->newline = line.newline;
+	nt_status status = expect_end(&p);
+	for (bool finished = false; !status && !finished;) {
+		if (!line.newline)
+			return nt_fail_line(error, NT_ERROR_INPUT, p.line,
+				"the file ends within the header, end_header was expected");
+		line = ply_header_line(header, bytes, size, line.next);
+		p.line++;
+		p.at = line.text;
+		p.end = line.text + line.length;
+		status = parse_line(&p, &finished);
+	}
+	if (!status && !p.has_format)
+		status = nt_fail_line(error, NT_ERROR_INPUT, p.line, "the header has no format line");
+	header->body = line.next;
+	header->body_line = p.line + 1;
+	return status;
+}
+
+void ply_free_header(ply_header *header)
+{
+	for (size_t i = 0; i < header->element_count; i++) {
+		ply_element *element = &header->elements[i];
+		for (size_t k = 0; k < element->property_count; k++)
+			free((void *)(uintptr_t)element->properties[k].name);
+		free(element->properties);
+		free((void *)(uintptr_t)element->name);
+	}
+	free(header->elements);
+	for (size_t i = 0; i < header->texture_count; i++)
+		free(header->textures[i]);
+	free(header->textures);
+	*header = (ply_header){0};
+}
+
+const ply_element *ply_find_element(const ply_header *header, const char *name)
+{
+	for (size_t i = 0; i < header->element_count; i++)
+		if (strcmp(header->elements[i].name, name) == 0)
+			return &header->elements[i];
+	return NULL;
+}
+
+int ply_find_property(const ply_element *element, const char *name)
+{
+	for (size_t i = 0; i < element->property_count; i++)
+		if (strcmp(element->properties[i].name, name) == 0)
+			return (int)i;
+	return PLY_NO_PROPERTY;
+}

@@ -1,0 +1,597 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * PLY from a PLY: the file as it was, with the tangents added. Encoding, comments, elements, properties
+ * and their order stay; rows are copied as bytes, so that what nmtan does not know goes along.
+ *
+ * New vertices are appended with the whole row of the vertex they are copies of. Faces are rewritten
+ * only when there are new vertices, and keep their corner count and order; a larger polygon whose
+ * triangles disagree about the vertex of a corner is replaced by those triangles. Per-face texture
+ * coordinates stay where they are: vertices that were told apart only by them become one again where
+ * their tangents are equal.
+ */
+#include "ply/rewrite.h"
+
+#include <stdlib.h>
+#include "base/vec.h"
+#include "ply/cursor.h"
+#include "ply/vertex_map.h"
+
+/* Where the values of a row lie. */
+typedef struct span {
+	const unsigned char *begin, *end;
+} span;
+
+typedef struct plan {
+	nt_scene *scene;
+	const nt_mesh *mesh;
+	const ply_source *source;
+	ply_output *out;
+	nt_error *error;
+	ply_cursor cursor;
+
+	ply_numbering n;
+
+	bool new_normals, new_tangents, new_bitangents;
+	bool *dropped;           /* [properties of vertex] replaced by new values */
+	bool drops_any;
+	const char *extra_names[PLY_MOST_FLOATS];
+	size_t extra_count;
+
+	ply_type index_type;     /* of the faces written */
+	span *spans;             /* of the element with most properties */
+	size_t *row_offsets;     /* [row_count] where the row of a vertex begins */
+} plan;
+
+/* What changes in the header. */
+
+static void add_extras(plan *p, const char *const *names, size_t count)
+{
+	const ply_element *vertex = p->source->vertex;
+	for (size_t i = 0; i < count; i++) {
+		p->extra_names[p->extra_count++] = names[i];
+		const int old = ply_find_property(vertex, names[i]);
+		if (old != PLY_NO_PROPERTY)
+			p->drops_any = p->dropped[old] = true;
+	}
+}
+
+static nt_status plan_properties(plan *p, bool bitangents)
+{
+	static const char *const normals[] = {"nx", "ny", "nz"};
+	static const char *const tangents[] = {"tx", "ty", "tz", "tw"};
+	static const char *const bitangent_names[] = {"bx", "by", "bz"};
+	const ply_element *vertex = p->source->vertex;
+	size_t most = 0;
+	for (size_t i = 0; i < p->source->header.element_count; i++) {
+		const size_t count = p->source->header.elements[i].property_count;
+		most = count > most ? count : most;
+	}
+	p->dropped = nt_calloc(vertex->property_count, sizeof *p->dropped);
+	p->spans = nt_alloc(most, sizeof *p->spans);
+	p->row_offsets = nt_alloc(p->n.row_count, sizeof *p->row_offsets);
+	if (!p->dropped || !p->spans || !p->row_offsets)
+		return nt_fail_memory(p->error);
+	/* bitangents of other tangents must not stay */
+	p->new_bitangents = p->new_tangents && p->mesh->normals &&
+		(bitangents || ply_find_property(vertex, "bx") != PLY_NO_PROPERTY);
+	if (p->new_normals)
+		add_extras(p, normals, 3);
+	if (p->new_tangents)
+		add_extras(p, tangents, 4);
+	if (p->new_bitangents)
+		add_extras(p, bitangent_names, 3);
+	return NT_OK;
+}
+
+static bool faces_change(const plan *p)
+{
+	return p->n.appended_count > 0 || p->n.cut_polygons > 0;
+}
+
+/* The type of indices, wider where the vertices have become too many for the source's. */
+static void plan_index_type(plan *p, const ply_element *element)
+{
+	static const size_t largest[] = {[PLY_INT8] = INT8_MAX, [PLY_UINT8] = UINT8_MAX,
+		[PLY_INT16] = INT16_MAX, [PLY_UINT16] = UINT16_MAX, [PLY_INT32] = INT32_MAX,
+		[PLY_UINT32] = UINT32_MAX};
+	p->index_type = element->properties[p->source->face_indices].type;
+	const size_t count = p->n.row_count + p->n.appended_count;
+	if (count > 0 && count - 1 > largest[p->index_type])
+		p->index_type = count - 1 > INT32_MAX ? PLY_UINT32 : PLY_INT32;
+}
+
+static bool replaces_strips(const plan *p)
+{
+	return p->source->strips && faces_change(p);
+}
+
+/* The header. */
+
+static void write_element_line(const plan *p, const char *name, size_t count)
+{
+	nt_buffer_format(&p->out->buffer, "element %s %zu%s", name, count, p->source->header.newline);
+}
+
+static void write_extra_lines(const plan *p)
+{
+	for (size_t i = 0; i < p->extra_count; i++)
+		nt_buffer_format(&p->out->buffer, "property float %s%s", p->extra_names[i],
+			p->source->header.newline);
+}
+
+/* An element line: true when its properties are to be left out. */
+static bool write_changed_element(const plan *p, const ply_element *element, const char *line, size_t size)
+{
+	const ply_source *source = p->source;
+	if (replaces_strips(p) && element == source->strips) {
+		write_element_line(p, "face", p->mesh->face_count);
+		nt_buffer_format(&p->out->buffer, "property list uchar %s vertex_indices%s",
+			ply_type_name(p->index_type), source->header.newline);
+		return true;
+	}
+	/* an empty element "face" beside strips would come twice */
+	if (replaces_strips(p) && strcmp(element->name, "face") == 0)
+		return true;
+	if (element == source->vertex && p->n.appended_count > 0)
+		write_element_line(p, element->name, p->n.row_count + p->n.appended_count);
+	else if (element == source->face && p->n.added_faces > 0)
+		write_element_line(p, element->name, element->count + p->n.added_faces);
+	else
+		nt_buffer_append(&p->out->buffer, line, size);
+	return false;
+}
+
+static void write_property(const plan *p, const ply_element *element, size_t number, const char *line,
+	size_t size)
+{
+	const ply_property *property = &element->properties[number];
+	const bool widened = element == p->source->face && (int)number == p->source->face_indices &&
+		p->index_type != property->type;
+	if (widened)
+		nt_buffer_format(&p->out->buffer, "property list %s %s %s%s",
+			ply_type_name(property->count_type), ply_type_name(p->index_type),
+			property->name, p->source->header.newline);
+	else if (element != p->source->vertex || !p->dropped[number])
+		nt_buffer_append(&p->out->buffer, line, size);
+	if (element == p->source->vertex && number + 1 == element->property_count)
+		write_extra_lines(p);
+}
+
+/* Walks the lines of the source's header once more. */
+static void write_header(const plan *p)
+{
+	const ply_header *header = &p->source->header;
+	const unsigned char *bytes = p->scene->bytes;
+	size_t element = 0, property = 0;
+	bool leave_out = false;
+	for (size_t begin = 0; begin < header->body;) {
+		const ply_line line = ply_header_line(header, bytes, header->body, begin);
+		const char *at = line.text, *word;
+		const size_t length = ply_next_word(&at, line.text + line.length, &word);
+		const size_t size = line.next - begin;
+		if (length == 7 && memcmp(word, "element", 7) == 0) {
+			leave_out = write_changed_element(p, &header->elements[element], line.text, size);
+			element++;
+			property = 0;
+		} else if (length == 8 && memcmp(word, "property", 8) == 0) {
+			if (!leave_out)
+				write_property(p, &header->elements[element - 1], property, line.text, size);
+			property++;
+		} else {
+			nt_buffer_append(&p->out->buffer, line.text, size);
+		}
+		begin = line.next;
+	}
+}
+
+/* Rows. The reader has checked them; checked again is that the mapped file has not shrunk or changed. */
+
+static nt_status fail_changed(const plan *p)
+{
+	return nt_fail(p->error, NT_ERROR_IO, "the file changed while it was read");
+}
+
+static bool span_binary_row(plan *p, const ply_element *element)
+{
+	const bool swap = ply_swaps(p->cursor.encoding);
+	const unsigned char *at = p->cursor.at;
+	for (size_t i = 0; i < element->property_count; i++) {
+		const ply_property *property = &element->properties[i];
+		size_t bytes = ply_size(property->list ? property->count_type : property->type);
+		if (bytes > (size_t)(p->cursor.end - at))
+			return false;
+		if (property->list) {
+			const int64_t count = ply_load_integer(at, property->count_type, swap);
+			bytes += (size_t)count * ply_size(property->type);
+			if (count < 0 || bytes > (size_t)(p->cursor.end - at))
+				return false;
+		}
+		p->spans[i] = (span){at, at + bytes};
+		at += bytes;
+	}
+	p->cursor.at = at;
+	return true;
+}
+
+static bool span_text_row(plan *p, const ply_element *element)
+{
+	const unsigned char *const end = p->cursor.end;
+	ply_next_row(&p->cursor);
+	const unsigned char *at = p->cursor.at;
+	for (size_t i = 0; i < element->property_count; i++) {
+		at = ply_skip_blanks(at, end);
+		const unsigned char *begin = at;
+		int64_t values = 0;
+		if (element->properties[i].list && !ply_read_integer(at, end, &values))
+			return false;
+		at = ply_skip_value(at, end);
+		for (int64_t k = 0; k < values && at < end; k++)
+			at = ply_skip_value(ply_skip_blanks(at, end), end);
+		if (at == begin)
+			return false;
+		p->spans[i] = (span){begin, at};
+	}
+	p->cursor.at = at;
+	return true;
+}
+
+static bool span_row(plan *p, const ply_element *element)
+{
+	return p->cursor.encoding == PLY_ASCII ? span_text_row(p, element) : span_binary_row(p, element);
+}
+
+static void write_span(const plan *p, const unsigned char *begin, const unsigned char *end)
+{
+	nt_buffer_append(&p->out->buffer, begin, (size_t)(end - begin));
+}
+
+/* Between the values of an ASCII row. */
+static void write_gap(const plan *p, bool first)
+{
+	if (p->cursor.encoding == PLY_ASCII && !first)
+		nt_buffer_append(&p->out->buffer, " ", 1);
+}
+
+static void end_row(const plan *p)
+{
+	if (p->cursor.encoding == PLY_ASCII)
+		nt_buffer_text(&p->out->buffer, p->source->header.newline);
+}
+
+/* Vertices. */
+
+static void write_extras(const plan *p, size_t vertex)
+{
+	const float *normals = p->mesh->normals;
+	const float *n = normals ? normals + 3 * ply_mesh_vertex(&p->n, vertex) : NULL;
+	float values[PLY_MOST_FLOATS];
+	size_t count = 0;
+	if (p->new_normals) {
+		memcpy(values, n, 3 * sizeof *values);
+		count += 3;
+	}
+	if (p->new_tangents) {
+		const float *t = p->mesh->split.vertex_tangents + 4 * vertex;
+		memcpy(values + count, t, 4 * sizeof *values);
+		count += 4;
+		if (p->new_bitangents)
+			nt_bitangent(n, t, values + count);
+		count += p->new_bitangents ? 3 : 0;
+	}
+	ply_put_floats(p->out, values, count);
+}
+
+/* The row at the cursor without what is dropped; spans are set when something is. */
+static void write_kept(const plan *p, const unsigned char *begin, const unsigned char *end)
+{
+	if (!p->drops_any) {
+		write_span(p, begin, end);
+		return;
+	}
+	bool first = true;
+	for (size_t i = 0; i < p->source->vertex->property_count; i++) {
+		if (p->dropped[i])
+			continue;
+		write_gap(p, first);
+		write_span(p, p->spans[i].begin, p->spans[i].end);
+		first = false;
+	}
+}
+
+static const unsigned char *find_line_end(const unsigned char *at, const unsigned char *end)
+{
+	while (at < end && !ply_is_line_end(*at))
+		at++;
+	return at;
+}
+
+static nt_status write_vertex(plan *p, size_t vertex)
+{
+	const ply_element *element = p->source->vertex;
+	const bool ascii = p->cursor.encoding == PLY_ASCII;
+	if (ascii)
+		ply_next_row(&p->cursor);
+	const unsigned char *begin = p->cursor.at, *end;
+	if (ascii && !p->drops_any) {
+		p->cursor.at = end = find_line_end(begin, p->cursor.end);
+		while (end > begin && ply_is_blank(end[-1]))
+			end--;
+	} else if (!ascii && !element->has_list && !p->drops_any) {
+		p->cursor.at = end = begin + element->row_bytes;
+	} else {
+		if (!span_row(p, element))
+			return fail_changed(p);
+		end = p->cursor.at;
+	}
+	write_kept(p, begin, end);
+	write_extras(p, vertex);
+	end_row(p);
+	return ply_drain(p->out, p->error);
+}
+
+static nt_status write_vertices(plan *p)
+{
+	nt_status status = NT_OK;
+	for (size_t row = 0; !status && row < p->n.row_count; row++) {
+		p->row_offsets[row] = (size_t)(p->cursor.at - p->cursor.begin);
+		status = write_vertex(p, row);
+	}
+	const unsigned char *after = p->cursor.at;
+	for (size_t i = 0; !status && i < p->n.appended_count; i++) {
+		const size_t vertex = p->n.appended[i];
+		p->cursor.at = p->cursor.begin + p->row_offsets[ply_source_row(&p->n, vertex)];
+		status = write_vertex(p, vertex);
+	}
+	p->cursor.at = after;
+	return status;
+}
+
+/* Faces. */
+
+static void write_indices(const plan *p, const uint32_t *vertices, size_t count, ply_type count_type)
+{
+	ply_put_integer(p->out, (uint32_t)count, count_type);
+	for (size_t k = 0; k < count; k++) {
+		write_gap(p, false);
+		ply_put_integer(p->out, vertices[k], p->index_type);
+	}
+}
+
+/* A per-face list of texture coordinates, of which a triangle takes its corners' pairs. */
+static void write_uv_part(const plan *p, const ply_property *property, span all,
+	const uint32_t *corners)
+{
+	const bool ascii = p->cursor.encoding == PLY_ASCII;
+	const size_t value = ply_size(property->type);
+	ply_put_integer(p->out, 6, property->count_type);
+	for (size_t k = 0; k < 6; k++) {
+		const size_t number = 2 * corners[k / 2] + k % 2;
+		const unsigned char *at = all.begin + ply_size(property->count_type) + number * value;
+		const unsigned char *end = at + value;
+		if (ascii) {
+			at = ply_skip_blanks(ply_skip_value(all.begin, all.end), all.end);
+			for (size_t skip = 0; skip < number; skip++)
+				at = ply_skip_blanks(ply_skip_value(at, all.end), all.end);
+			end = ply_skip_value(at, all.end);
+		}
+		write_gap(p, false);
+		write_span(p, at, end);
+	}
+}
+
+static size_t list_length(const plan *p, const ply_property *property, span all)
+{
+	int64_t count = 0;
+	if (p->cursor.encoding == PLY_ASCII)
+		ply_read_integer(all.begin, all.end, &count);
+	else
+		count = ply_load_integer(all.begin, property->count_type, ply_swaps(p->cursor.encoding));
+	return count > 0 ? (size_t)count : 0;
+}
+
+/* The row at hand with other vertices; corners: which corners of the polygon they are, NULL: all. */
+static nt_status write_face(const plan *p, const uint32_t *vertices, size_t count, const uint32_t *corners)
+{
+	const ply_element *element = p->source->face;
+	for (size_t i = 0; i < element->property_count; i++) {
+		const ply_property *property = &element->properties[i];
+		const span all = p->spans[i];
+		write_gap(p, i == 0);
+		if ((int)i == p->source->face_indices)
+			write_indices(p, vertices, count, property->count_type);
+		else if (corners && (int)i == p->source->face_texcoords && list_length(p, property, all))
+			write_uv_part(p, property, all, corners);
+		else
+			write_span(p, all.begin, all.end);
+	}
+	end_row(p);
+	return ply_drain(p->out, p->error);
+}
+
+/* How far the mesh has been written. */
+typedef struct face_progress {
+	size_t corner, cut;
+	uint32_t *vertices;
+	size_t capacity;
+} face_progress;
+
+static nt_status write_triangles(const plan *p, const face_progress *done, size_t size)
+{
+	nt_status status = NT_OK;
+	for (size_t t = 0; !status && t < size - 2; t++) {
+		uint32_t vertices[3];
+		for (size_t k = 0; k < 3; k++)
+			vertices[k] = ply_output_vertex(&p->n, done->corner + 3 * t + k);
+		status = write_face(p, vertices, 3, p->source->cuts.corners + done->cut + 3 * t);
+	}
+	return status;
+}
+
+/* A row of fewer than three corners is no face of the mesh: its vertices stay. */
+static nt_status write_short_face(const plan *p, span list, size_t size, uint32_t *vertices)
+{
+	const ply_property *property = &p->source->face->properties[p->source->face_indices];
+	const unsigned char *at = list.begin + ply_size(property->count_type);
+	for (size_t k = 0; k < size; k++) {
+		int64_t vertex = 0;
+		if (p->cursor.encoding == PLY_ASCII) {
+			at = ply_skip_value(k ? at : list.begin, list.end);
+			at = ply_skip_blanks(at, list.end);
+			ply_read_integer(at, list.end, &vertex);
+		} else {
+			vertex = ply_load_integer(at + k * ply_size(property->type), property->type,
+				ply_swaps(p->cursor.encoding));
+		}
+		vertices[k] = (uint32_t)vertex;
+	}
+	return write_face(p, vertices, size, NULL);
+}
+
+/* One polygon of the source. */
+static nt_status write_polygon(plan *p, face_progress *done)
+{
+	const ply_element *element = p->source->face;
+	if (!span_row(p, element))
+		return fail_changed(p);
+	const span list = p->spans[p->source->face_indices];
+	const size_t size = list_length(p, &element->properties[p->source->face_indices], list);
+	if (!nt_grow((void **)&done->vertices, &done->capacity, size, sizeof *done->vertices))
+		return nt_fail_memory(p->error);
+	const size_t corners = size < 3 ? 0 : size < 5 ? size : 3 * (size - 2);
+	if (corners > p->mesh->corner_count - done->corner ||
+		(size > 4 && corners > p->source->cuts.count - done->cut))
+		return fail_changed(p);
+	nt_status status;
+	if (size < 3) {
+		status = write_short_face(p, list, size, done->vertices);
+	} else if (size < 5) {
+		for (size_t k = 0; k < size; k++)
+			done->vertices[k] = ply_output_vertex(&p->n, done->corner + k);
+		status = write_face(p, done->vertices, size, NULL);
+	} else {
+		const uint32_t *cut = p->source->cuts.corners + done->cut;
+		status = ply_resolve_polygon(&p->n, done->corner, size, cut, done->vertices)
+				 ? write_face(p, done->vertices, size, NULL)
+				 : write_triangles(p, done, size);
+		done->cut += corners;
+	}
+	done->corner += corners;
+	return status;
+}
+
+static nt_status write_faces(plan *p)
+{
+	face_progress done = {0};
+	nt_status status = NT_OK;
+	for (size_t row = 0; !status && row < p->source->face->count; row++)
+		status = write_polygon(p, &done);
+	free(done.vertices);
+	return status;
+}
+
+static nt_status write_strip_faces(plan *p)
+{
+	nt_status status = NT_OK;
+	p->cursor.at = p->cursor.begin + p->source->face_end;
+	for (size_t c = 0; !status && c < p->mesh->corner_count; c += 3) {
+		const uint32_t vertices[3] = {ply_output_vertex(&p->n, c), ply_output_vertex(&p->n, c + 1),
+			ply_output_vertex(&p->n, c + 2)};
+		write_indices(p, vertices, 3, PLY_UINT8);
+		end_row(p);
+		status = ply_drain(p->out, p->error);
+	}
+	return status;
+}
+
+/* The file. */
+
+static nt_status copy_element(plan *p, const ply_element *element)
+{
+	if (p->cursor.encoding == PLY_ASCII)
+		ply_next_row(&p->cursor);
+	const unsigned char *begin = p->cursor.at;
+	nt_status status = NT_OK;
+	if (element == p->source->face || element == p->source->strips)
+		p->cursor.at = p->cursor.begin + p->source->face_end;
+	else
+		status = ply_skip_element(&p->cursor, element, p->error);
+	if (status || begin >= p->cursor.at)
+		return status;
+	/* the reader may have stopped before or behind the end of the last line */
+	const unsigned char *end = p->cursor.at;
+	while (p->cursor.encoding == PLY_ASCII && ply_is_space(end[-1]))
+		end--;
+	status = ply_put_bytes(p->out, begin, (size_t)(end - begin), p->error);
+	end_row(p);
+	return status;
+}
+
+static nt_status write_body(plan *p)
+{
+	const ply_header *header = &p->source->header;
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < header->element_count; i++) {
+		const ply_element *element = &header->elements[i];
+		if (element == p->source->vertex)
+			status = write_vertices(p);
+		else if (element == p->source->face && faces_change(p))
+			status = write_faces(p);
+		else if (element == p->source->strips && faces_change(p))
+			status = write_strip_faces(p);
+		else
+			status = copy_element(p, element);
+	}
+	if (p->cursor.encoding == PLY_ASCII)
+		ply_next_row(&p->cursor);
+	if (!status)
+		status = ply_put_bytes(p->out, p->cursor.at, (size_t)(p->cursor.end - p->cursor.at), p->error);
+	return status;
+}
+
+static void report_cuts(const plan *p)
+{
+	const nt_mesh *mesh = p->mesh;
+	if (p->n.cut_polygons > 0)
+		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, &mesh->place, p->n.cut_polygons, NULL);
+	if (replaces_strips(p))
+		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, &mesh->place,
+			p->source->strips->count, "triangle strips");
+}
+
+static nt_status write_changed(plan *p, bool bitangents)
+{
+	const nt_status status = ply_number_vertices(&p->n, p->mesh, p->source)
+					    ? plan_properties(p, bitangents)
+					    : nt_fail_memory(p->error);
+	if (status)
+		return status;
+	const ply_element *faces = p->source->face ? p->source->face : p->source->strips;
+	if (faces)
+		plan_index_type(p, faces);
+	report_cuts(p);
+	write_header(p);
+	return write_body(p);
+}
+
+nt_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply_output *out,
+	nt_error *error)
+{
+	const ply_source *source = scene->source;
+	const nt_mesh *mesh = scene->meshes;
+	const ply_header *header = &source->header;
+	const unsigned char *body = scene->bytes + header->body;
+	plan p = {.scene = scene, .mesh = mesh, .source = source, .out = out, .error = error,
+		.new_normals = mesh->normals_made,
+		.new_tangents = mesh->split.vertex_tangents != NULL,
+		.cursor = {.begin = scene->bytes, .at = body, .end = scene->bytes + scene->byte_count,
+			.body = body, .body_line = header->body_line, .encoding = header->encoding}};
+	out->encoding = header->encoding;
+	if (!p.new_normals && !p.new_tangents)
+		return ply_put_bytes(out, scene->bytes, scene->byte_count, error);
+	const nt_status status = write_changed(&p, options->bitangents);
+	ply_numbering_free(&p.n);
+	free(p.dropped);
+	free(p.spans);
+	free(p.row_offsets);
+	return status;
+}

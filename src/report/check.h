@@ -1,0 +1,150 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the checks of one mesh share: the surface, what is known so far, and how occurrences are tallied
+ * into findings. A check goes over its elements, tallies what it finds and reports the tally once.
+ */
+#ifndef NT_REPORT_CHECK_H
+#define NT_REPORT_CHECK_H
+
+#include <float.h>
+#include "report/report.h"
+#include "report/surface.h"
+
+/* Two sides of one edge whose triangles are wound differently in UV space. */
+typedef struct nt_mirror_edge {
+	uint32_t sides[2]; /* unmirrored, mirrored */
+	bool non_manifold;
+} nt_mirror_edge;
+
+/* Whose tangents are judged: the input's, or, on conversion, the result. */
+typedef enum nt_stored {
+	NT_STORED_NONE,
+	NT_STORED_AUTHORED, /* mesh->tangents */
+	NT_STORED_CORNERS,  /* mesh->corner_tangents */
+	NT_STORED_SPLIT     /* mesh->split.vertex_tangents */
+} nt_stored;
+
+typedef struct nt_judge {
+	const nt_scene *scene;
+	const nt_report_options *options;
+	nt_report *report;
+	size_t *issue_capacity;
+	nt_scratch *scratch; /* of this mesh */
+
+	uint32_t mesh_index;
+	const nt_mesh *mesh;
+	nt_report_mesh *facts;
+	nt_surface surface;
+	double total_area;
+	nt_stored stored;
+
+	/* by edges.c */
+	uint8_t *boundary;        /* [3 * triangle_count] side without a neighbour */
+	uint32_t *seam_edge;      /* [3 * triangle_count] index into mirror_edges, NT_NONE */
+	nt_mirror_edge *mirror_edges;
+	size_t mirror_edge_count;
+	uint32_t *islands;        /* [triangle_count] NT_NONE: has no edges */
+	bool failed;              /* out of memory while reporting */
+} nt_judge;
+
+/* Occurrences of one finding. Start with {.code = ...}. */
+typedef struct nt_tally {
+	nt_code code;
+	size_t count;
+	unsigned spot_count;
+	nt_spot spots[NT_SPOT_COUNT];
+	nt_box box;
+	nt_number numbers[NT_NUMBER_COUNT];
+	unsigned number_count;
+	uint32_t seam, island; /* one more than the index; 0: none */
+} nt_tally;
+
+/* Each counts one occurrence. value is the number that was judged, or NAN. */
+void nt_tally_triangle(const nt_judge *judge, nt_tally *tally, size_t triangle, double value);
+void nt_tally_side(const nt_judge *judge, nt_tally *tally, uint32_t side, double value);
+void nt_tally_vertex(const nt_judge *judge, nt_tally *tally, uint32_t vertex, double value);
+
+/* A number behind the finding. */
+void nt_tally_number(nt_tally *tally, const char *name, double value);
+
+/* Makes a finding of the tally unless it is empty or ignored. The severity is that of the table;
+ * nt_judge_report_as() takes another one. detail_format may be NULL. */
+void nt_judge_report(nt_judge *judge, const nt_tally *tally, const char *detail_format, ...)
+	NT_PRINTF(3, 4);
+void nt_judge_report_as(nt_judge *judge, const nt_tally *tally, nt_severity severity,
+	const char *detail_format, ...) NT_PRINTF(4, 5);
+
+/* Boxes. */
+nt_box nt_box_empty(void);
+static inline void nt_box_add(nt_box *box, const float *position)
+{
+	for (int i = 0; i < 3; i++) {
+		const float x = position[i];
+		if (x < box->minimum[i] && x >= -FLT_MAX)
+			box->minimum[i] = x;
+		if (x > box->maximum[i] && x <= FLT_MAX)
+			box->maximum[i] = x;
+	}
+}
+
+void nt_box_join(nt_box *box, const nt_box *other);
+
+/* The vertex as the source numbers it: copies that making normals appended are mapped back. */
+static inline uint32_t nt_source_vertex(const nt_mesh *mesh, uint32_t vertex)
+{
+	return mesh->vertex_sources && vertex >= mesh->source_vertex_count
+		? mesh->vertex_sources[vertex - mesh->source_vertex_count]
+		: vertex;
+}
+
+/* Texture coordinates as the source has them: v down in glTF. */
+static inline void nt_source_texcoord(const nt_scene *scene, const float *texcoord, float out[2])
+{
+	const bool v_down = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
+	out[0] = texcoord[0];
+	out[1] = v_down ? 0.0f - texcoord[1] : texcoord[1];
+}
+
+/* The same of where a side begins. */
+static inline void nt_side_source_texcoord(const nt_judge *judge, uint32_t side, float out[2])
+{
+	nt_source_texcoord(judge->scene,
+		judge->mesh->texcoords + 2 * (size_t)judge->surface.vertices[side], out);
+}
+
+/* Which of the stored tangents a corner has; the judge has some. */
+static inline size_t nt_tangent_index(const nt_judge *judge, uint32_t corner)
+{
+	const nt_mesh *mesh = judge->mesh;
+	if (judge->stored == NT_STORED_SPLIT && mesh->split.indices)
+		return mesh->split.indices[corner];
+	if (judge->stored == NT_STORED_CORNERS)
+		return corner;
+	return mesh->indices ? mesh->indices[corner] : corner;
+}
+
+/* The tangent that is, or will be, stored for a corner. */
+static inline const float *nt_stored_tangent(const nt_judge *judge, uint32_t corner)
+{
+	const nt_mesh *mesh = judge->mesh;
+	const float *tangents = judge->stored == NT_STORED_SPLIT ? mesh->split.vertex_tangents
+		: judge->stored == NT_STORED_CORNERS	    ? mesh->corner_tangents
+							    : mesh->tangents;
+	return tangents + 4 * nt_tangent_index(judge, corner);
+}
+
+/* The checks, in the order in which they run. */
+nt_status nt_judge_edges(nt_judge *judge);    /* edges.c: boundary, non-manifold, winding, islands' numbers */
+nt_status nt_judge_geometry(nt_judge *judge); /* geometry.c: positions, normals, UV triangles */
+nt_status nt_judge_islands(nt_judge *judge);  /* islands.c */
+nt_status nt_judge_seams(nt_judge *judge);    /* seams.c */
+nt_status nt_judge_tangents(nt_judge *judge); /* tangents.c */
+nt_status nt_judge_growth(nt_judge *judge);   /* growth.c: shared and copied vertices */
+
+/* Ends: most severe first, limits, baseline. issues.c */
+nt_status nt_issues_finish(nt_report *report, const nt_report_options *options);
+
+/* Adds a finding that the scene's stages made. */
+void nt_issues_add_finding(nt_judge *judge, const nt_finding *finding);
+
+#endif

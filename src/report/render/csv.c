@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * CSV (RFC 4180): a row per finding, for spreadsheets. Names come from files, so a cell that a spreadsheet
+ * would take for a formula gets an apostrophe in front.
+ */
+#include "report/render/writers.h"
+
+#include <string.h>
+
+static void put_cell(const char *text, nt_buffer *out)
+{
+	nt_buffer_text(out, "\"");
+	if (*text && strchr("=+-@\t\r", *text))
+		nt_buffer_text(out, "'");
+	for (; *text; text++)
+		nt_buffer_append(out, *text == '"' ? "\"\"" : text, *text == '"' ? 2 : 1);
+	nt_buffer_text(out, "\",");
+}
+
+/* Nothing, or numbers of the first place: line, triangle, x, y, z, u, v. */
+static void put_spot(const nt_issue *issue, nt_buffer *out)
+{
+	if (issue->spot_count == 0) {
+		nt_buffer_text(out, ",,,,,,,");
+		return;
+	}
+	const nt_spot *spot = &issue->spots[0];
+	if (spot->line)
+		nt_buffer_format(out, "%zu", spot->line);
+	nt_buffer_text(out, ",");
+	if (spot->triangle != NT_NONE)
+		nt_buffer_format(out, "%u", spot->triangle);
+	for (int i = 0; i < 3; i++)
+		nt_buffer_format(out, ",%.9g", (double)spot->positions[0][i]);
+	if (spot->has_texcoords)
+		nt_buffer_format(out, ",%.9g,%.9g,", (double)spot->texcoords[0][0],
+			(double)spot->texcoords[0][1]);
+	else
+		nt_buffer_text(out, ",,,");
+}
+
+static void put_row(const nt_report *report, const nt_issue *issue, nt_buffer *out)
+{
+	nt_buffer label = {0};
+	if (issue->mesh != NT_NONE)
+		nt_mesh_label(report, issue->mesh, &label);
+	put_cell(nt_shown_path(report->path), out);
+	put_cell(label.data ? label.data : "", out);
+	nt_buffer_format(out, "%s,%s,%zu,", nt_code_info(issue->code)->name,
+		nt_severity_name(issue->severity), issue->count);
+	put_cell(issue->message, out);
+	put_spot(issue, out);
+	nt_buffer_format(out, "%016llx,%s\r\n", (unsigned long long)issue->fingerprint,
+		issue->known ? "known" : "new");
+	nt_buffer_free(&label);
+}
+
+void nt_write_csv(const nt_report_list *reports, nt_buffer *out)
+{
+	nt_buffer_text(out, "file,mesh,code,severity,count,message,line,triangle,x,y,z,u,v,fingerprint,"
+		"state\r\n");
+	for (size_t i = 0; i < reports->count; i++) {
+		const nt_report *report = reports->items[i];
+		if (report->failure) {
+			put_cell(nt_shown_path(report->path), out);
+			nt_buffer_text(out, ",,error,1,");
+			put_cell(report->failure, out);
+			nt_buffer_text(out, ",,,,,,,,\r\n");
+		}
+		for (size_t k = 0; k < report->issue_count; k++)
+			put_row(report, &report->issues[k], out);
+	}
+}

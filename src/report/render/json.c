@@ -1,0 +1,475 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The report as JSON: everything that was found, for programs. data/nmtan-report.schema.json describes it.
+ * Objects of the same kind always have the same members; what is unknown is null or an empty array.
+ * Each mesh, island, seam and finding is on a line of its own, so that two reports can be compared by
+ * diff.
+ */
+#include "report/render/writers.h"
+
+#include <math.h>
+
+enum { SAME_LINE = -1, SHOWN_SEAMS = 1000, SHOWN_ISLANDS = 1000 };
+
+/* A comma where one is due, and a new line with `indent` tabs unless that is SAME_LINE. */
+static void separate(nt_buffer *out, int indent)
+{
+	const char last = out->size ? out->data[out->size - 1] : '{';
+	if (last != '{' && last != '[')
+		nt_buffer_text(out, ",");
+	if (indent == SAME_LINE)
+		return;
+	nt_buffer_text(out, "\n");
+	for (int i = 0; i < indent; i++)
+		nt_buffer_text(out, "\t");
+}
+
+static void key(nt_buffer *out, int indent, const char *name)
+{
+	separate(out, indent);
+	nt_buffer_format(out, "\"%s\":", name);
+}
+
+static void close_with(nt_buffer *out, int indent, const char *bracket)
+{
+	nt_buffer_text(out, "\n");
+	for (int i = 0; i < indent; i++)
+		nt_buffer_text(out, "\t");
+	nt_buffer_text(out, bracket);
+}
+
+static void put_text(nt_buffer *out, const char *name, const char *text)
+{
+	key(out, SAME_LINE, name);
+	if (text)
+		nt_json_string(text, out);
+	else
+		nt_buffer_text(out, "null");
+}
+
+static void put_count(nt_buffer *out, const char *name, size_t count)
+{
+	key(out, SAME_LINE, name);
+	nt_buffer_format(out, "%zu", count);
+}
+
+/* An index, null for NT_NONE. */
+static void put_index(nt_buffer *out, const char *name, uint32_t index)
+{
+	key(out, SAME_LINE, name);
+	if (index == NT_NONE)
+		nt_buffer_text(out, "null");
+	else
+		nt_buffer_format(out, "%u", index);
+}
+
+static void put_bool(nt_buffer *out, const char *name, bool value)
+{
+	key(out, SAME_LINE, name);
+	nt_buffer_text(out, value ? "true" : "false");
+}
+
+static void put_float(nt_buffer *out, const char *name, double value)
+{
+	key(out, SAME_LINE, name);
+	nt_json_float(value, out);
+}
+
+static void floats(nt_buffer *out, const float *values, size_t count)
+{
+	nt_buffer_text(out, "[");
+	for (size_t i = 0; i < count; i++) {
+		separate(out, SAME_LINE);
+		nt_json_float(values[i], out);
+	}
+	nt_buffer_text(out, "]");
+}
+
+static void put_doubles(nt_buffer *out, const char *name, const double *values, size_t count)
+{
+	key(out, SAME_LINE, name);
+	nt_buffer_text(out, "[");
+	for (size_t i = 0; i < count; i++) {
+		separate(out, SAME_LINE);
+		nt_json_float(values[i], out);
+	}
+	nt_buffer_text(out, "]");
+}
+
+static void put_box(nt_buffer *out, const nt_box *box)
+{
+	key(out, SAME_LINE, "box");
+	if (!(box->minimum[0] <= box->maximum[0])) {
+		nt_buffer_text(out, "null");
+		return;
+	}
+	nt_buffer_text(out, "[");
+	floats(out, box->minimum, 3);
+	separate(out, SAME_LINE);
+	floats(out, box->maximum, 3);
+	nt_buffer_text(out, "]");
+}
+
+static void put_place(nt_buffer *out, const char *name, const nt_place *place)
+{
+	key(out, SAME_LINE, name);
+	nt_buffer_text(out, "{");
+	put_text(out, "file", place->file[0] ? nt_shown_path(place->file) : NULL);
+	key(out, SAME_LINE, "line");
+	nt_buffer_format(out, place->line ? "%zu" : "null", place->line);
+	key(out, SAME_LINE, "offset");
+	if (place->offset == NT_NO_OFFSET)
+		nt_buffer_text(out, "null");
+	else
+		nt_buffer_format(out, "%llu", (unsigned long long)place->offset);
+	put_text(out, "pointer", place->pointer[0] ? place->pointer : NULL);
+	put_text(out, "object", place->object[0] ? place->object : NULL);
+	nt_buffer_text(out, "}");
+}
+
+static void put_totals(nt_buffer *out, int indent, const nt_totals *totals)
+{
+	key(out, indent, "totals");
+	nt_buffer_text(out, "{");
+	put_count(out, "errors", totals->by_severity[NT_SEVERITY_ERROR]);
+	put_count(out, "warnings", totals->by_severity[NT_SEVERITY_WARNING]);
+	put_count(out, "infos", totals->by_severity[NT_SEVERITY_INFO]);
+	put_count(out, "known", totals->known);
+	put_count(out, "dropped", totals->dropped);
+	nt_buffer_text(out, "}");
+	key(out, indent, "truncated");
+	nt_buffer_text(out, totals->dropped ? "true" : "false");
+}
+
+/* ---- meshes ---- */
+
+static void by_orientation(nt_buffer *out, const char *name, const size_t counts[3])
+{
+	key(out, SAME_LINE, name);
+	nt_buffer_format(out, "{\"normal\":%zu,\"mirrored\":%zu,\"degenerate\":%zu}", counts[2], counts[0],
+		counts[1]);
+}
+
+static void area_shares(nt_buffer *out, const double areas[3])
+{
+	const double total = areas[0] + areas[1] + areas[2];
+	const double scale = total > 0.0 ? 1.0 / total : 0.0;
+	key(out, SAME_LINE, "area_share");
+	nt_buffer_text(out, "{");
+	put_float(out, "normal", areas[2] * scale);
+	put_float(out, "mirrored", areas[0] * scale);
+	put_float(out, "degenerate", areas[1] * scale);
+	nt_buffer_text(out, "}");
+}
+
+static void put_island(nt_buffer *out, const nt_island *island)
+{
+	nt_buffer_text(out, "{");
+	put_text(out, "kind", nt_island_kind_name(island->kind));
+	by_orientation(out, "triangles", island->triangles);
+	put_float(out, "area", island->area);
+	put_float(out, "covered_share", island->covered);
+	put_bool(out, "twin", island->twin);
+	key(out, SAME_LINE, "uv_box");
+	nt_buffer_text(out, "[");
+	floats(out, island->minimum, 2);
+	separate(out, SAME_LINE);
+	floats(out, island->maximum, 2);
+	nt_buffer_text(out, "]");
+	nt_buffer_text(out, "}");
+}
+
+static void put_pairs(nt_buffer *out, const char *name, const uint32_t pairs[2][2])
+{
+	key(out, SAME_LINE, name);
+	nt_buffer_format(out, "[[%u,%u],[%u,%u]]", pairs[0][0], pairs[0][1], pairs[1][0], pairs[1][1]);
+}
+
+static void put_edge(nt_buffer *out, const nt_seam_edge *edge)
+{
+	nt_buffer_text(out, "{");
+	key(out, SAME_LINE, "triangles");
+	nt_buffer_format(out, "[%u,%u]", edge->triangles[0], edge->triangles[1]);
+	put_pairs(out, "vertices", edge->vertices);
+	put_pairs(out, "output_vertices", edge->output);
+	key(out, SAME_LINE, "positions");
+	nt_buffer_text(out, "[");
+	floats(out, edge->positions[0], 3);
+	separate(out, SAME_LINE);
+	floats(out, edge->positions[1], 3);
+	nt_buffer_text(out, "]");
+	key(out, SAME_LINE, "texcoords");
+	nt_buffer_text(out, "[");
+	for (int side = 0; side < 2; side++) {
+		separate(out, SAME_LINE);
+		nt_buffer_text(out, "[");
+		floats(out, edge->texcoords[side][0], 2);
+		separate(out, SAME_LINE);
+		floats(out, edge->texcoords[side][1], 2);
+		nt_buffer_text(out, "]");
+	}
+	nt_buffer_text(out, "]");
+	put_float(out, "dihedral_degrees", edge->dihedral);
+	put_float(out, "tangent_angle_degrees", edge->tangent_angle);
+	nt_buffer_text(out, "}");
+}
+
+static void put_seam(nt_buffer *out, const nt_seam *seam)
+{
+	nt_buffer_text(out, "{");
+	put_bool(out, "closed", seam->closed);
+	put_count(out, "edge_count", seam->edge_count);
+	put_float(out, "length", seam->length);
+	put_doubles(out, "dihedral_degrees", seam->dihedral, 2);
+	put_doubles(out, "tangent_angle_degrees", seam->tangent_angle, 2);
+	key(out, SAME_LINE, "islands");
+	nt_buffer_text(out, "{");
+	put_index(out, "normal", seam->islands[0]);
+	put_index(out, "mirrored", seam->islands[1]);
+	nt_buffer_text(out, "}");
+	put_count(out, "edges_sharing_vertices", seam->shared_count);
+	put_count(out, "non_manifold_edges", seam->non_manifold_count);
+	key(out, SAME_LINE, "plane");
+	if (seam->has_plane) {
+		nt_buffer_text(out, "{");
+		put_text(out, "text", seam->plane_text);
+		put_doubles(out, "normal", seam->plane, 3);
+		put_float(out, "distance", seam->plane[3]);
+		nt_buffer_text(out, "}");
+	} else {
+		nt_buffer_text(out, "null");
+	}
+	put_box(out, &seam->box);
+	put_bool(out, "edges_truncated", seam->edge_count > NT_SEAM_EDGES);
+	key(out, SAME_LINE, "edges");
+	nt_buffer_text(out, "[");
+	for (size_t i = 0; i < seam->edge_count && i < NT_SEAM_EDGES; i++) {
+		separate(out, SAME_LINE);
+		put_edge(out, &seam->edges[i]);
+	}
+	nt_buffer_text(out, "]}");
+}
+
+static void put_slots(nt_buffer *out, unsigned slots)
+{
+	static const char *const names[3] = {"normal", "clearcoat_normal", "anisotropy"};
+	key(out, SAME_LINE, "slots");
+	nt_buffer_text(out, "[");
+	for (unsigned i = 0; i < 3; i++) {
+		if (slots >> i & 1u) {
+			separate(out, SAME_LINE);
+			nt_buffer_format(out, "\"%s\"", names[i]);
+		}
+	}
+	nt_buffer_text(out, "]");
+}
+
+static void put_histogram(nt_buffer *out, const nt_report_mesh *mesh)
+{
+	key(out, SAME_LINE, "direction_histogram");
+	nt_buffer_text(out, "[");
+	for (int i = 0; i < NT_ANGLE_BINS; i++) {
+		separate(out, SAME_LINE);
+		nt_buffer_format(out, "{\"up_to_degrees\":%g,\"corners\":%zu}", nt_angle_bins[i],
+			mesh->angle_histogram[i]);
+	}
+	nt_buffer_text(out, "]");
+}
+
+static void put_counts(nt_buffer *out, const nt_report_mesh *mesh)
+{
+	put_count(out, "faces", mesh->face_count);
+	by_orientation(out, "triangles", mesh->triangles);
+	area_shares(out, mesh->areas);
+	key(out, SAME_LINE, "vertices");
+	nt_buffer_text(out, "{");
+	put_count(out, "before", mesh->vertices_before);
+	put_count(out, "added_normals", mesh->added_normals);
+	put_count(out, "added_mirror", mesh->added_mirror);
+	put_count(out, "added_direction", mesh->added_direction);
+	put_count(out, "after", mesh->vertices_after);
+	nt_buffer_text(out, "}");
+	key(out, SAME_LINE, "edges");
+	nt_buffer_text(out, "{");
+	put_count(out, "all", mesh->edge_count);
+	put_count(out, "boundary", mesh->boundary_edges);
+	put_count(out, "boundary_loops", mesh->boundary_loops);
+	put_count(out, "boundary_chains", mesh->boundary_chains);
+	put_count(out, "non_manifold", mesh->non_manifold_edges);
+	put_count(out, "inconsistent_winding", mesh->inconsistent_edges);
+	put_count(out, "uv_cut", mesh->uv_seam_edges);
+	put_count(out, "mirror", mesh->seam_edges);
+	nt_buffer_text(out, "}");
+	put_count(out, "triangles_left_out", mesh->left_out);
+	key(out, SAME_LINE, "islands_by_kind");
+	nt_buffer_text(out, "{");
+	for (unsigned kind = 0; kind < 4; kind++)
+		put_count(out, nt_island_kind_name((nt_island_kind)kind), mesh->island_kinds[kind]);
+	nt_buffer_text(out, "}");
+	put_count(out, "seam_count", mesh->seam_count);
+	put_float(out, "seam_length", mesh->seam_length);
+}
+
+static void put_mesh(nt_buffer *out, const nt_report_mesh *mesh)
+{
+	nt_buffer_text(out, "{");
+	put_text(out, "name", mesh->name);
+	put_place(out, "place", &mesh->place);
+	put_index(out, "gltf_mesh", mesh->gltf_mesh);
+	put_index(out, "gltf_primitive", mesh->gltf_primitive);
+	put_text(out, "why", mesh->why);
+	put_slots(out, mesh->slots);
+	put_count(out, "texcoord_set", mesh->texcoord_set);
+	put_bool(out, "has_normals", mesh->has_normals);
+	put_bool(out, "has_texcoords", mesh->has_texcoords);
+	put_bool(out, "has_tangents", mesh->judged_tangents);
+	put_bool(out, "analysed", mesh->analysed);
+	put_counts(out, mesh);
+	put_float(out, "worst_orthogonality_degrees", mesh->worst_orthogonality);
+	put_doubles(out, "relative_determinant", mesh->relative_determinant, 3);
+	put_histogram(out, mesh);
+	put_count(out, "instances", mesh->instance_count);
+	put_count(out, "negative_instances", mesh->negative_instances);
+	put_box(out, &mesh->box);
+	put_bool(out, "islands_truncated", mesh->island_count > SHOWN_ISLANDS);
+	key(out, SAME_LINE, "islands");
+	nt_buffer_text(out, "[");
+	for (size_t i = 0; mesh->islands && i < mesh->island_count && i < SHOWN_ISLANDS; i++) {
+		separate(out, 4);
+		put_island(out, &mesh->islands[i]);
+	}
+	nt_buffer_text(out, "]");
+	put_bool(out, "seams_truncated", mesh->seam_count > SHOWN_SEAMS);
+	key(out, SAME_LINE, "seams");
+	nt_buffer_text(out, "[");
+	for (size_t i = 0; i < mesh->seam_count && i < SHOWN_SEAMS; i++) {
+		separate(out, 4);
+		put_seam(out, &mesh->seams[i]);
+	}
+	nt_buffer_text(out, "]}");
+}
+
+/* ---- findings ---- */
+
+static void put_spot(nt_buffer *out, const nt_spot *spot)
+{
+	nt_buffer_text(out, "{");
+	put_index(out, "triangle", spot->triangle);
+	put_index(out, "face", spot->face);
+	key(out, SAME_LINE, "line");
+	nt_buffer_format(out, spot->line ? "%zu" : "null", spot->line);
+	put_text(out, "source", spot->source);
+	put_float(out, "value", spot->value);
+	key(out, SAME_LINE, "vertices");
+	nt_buffer_text(out, "[");
+	for (unsigned k = 0; k < spot->corner_count; k++) {
+		separate(out, SAME_LINE);
+		nt_buffer_format(out, "%u", spot->vertices[k]);
+	}
+	nt_buffer_text(out, "]");
+	key(out, SAME_LINE, "positions");
+	nt_buffer_text(out, "[");
+	for (unsigned k = 0; k < spot->corner_count; k++) {
+		separate(out, SAME_LINE);
+		floats(out, spot->positions[k], 3);
+	}
+	nt_buffer_text(out, "]");
+	key(out, SAME_LINE, "texcoords");
+	nt_buffer_text(out, "[");
+	for (unsigned k = 0; spot->has_texcoords && k < spot->corner_count; k++) {
+		separate(out, SAME_LINE);
+		floats(out, spot->texcoords[k], 2);
+	}
+	nt_buffer_text(out, "]}");
+}
+
+static void put_issue(nt_buffer *out, const nt_issue *issue)
+{
+	nt_buffer_text(out, "{");
+	put_text(out, "code", nt_code_info(issue->code)->name);
+	put_text(out, "severity", nt_severity_name(issue->severity));
+	put_text(out, "message", issue->message);
+	put_count(out, "count", issue->count);
+	key(out, SAME_LINE, "fingerprint");
+	nt_buffer_format(out, "\"%016llx\"", (unsigned long long)issue->fingerprint);
+	put_bool(out, "known", issue->known);
+	put_index(out, "mesh", issue->mesh);
+	put_index(out, "seam", issue->seam);
+	put_index(out, "island", issue->island);
+	put_place(out, "place", &issue->place);
+	put_box(out, &issue->box);
+	key(out, SAME_LINE, "numbers");
+	nt_buffer_text(out, "{");
+	for (unsigned i = 0; i < issue->number_count; i++)
+		put_float(out, issue->numbers[i].name, issue->numbers[i].value);
+	nt_buffer_text(out, "}");
+	key(out, SAME_LINE, "spots");
+	nt_buffer_text(out, "[");
+	for (unsigned i = 0; i < issue->spot_count; i++) {
+		separate(out, 5);
+		put_spot(out, &issue->spots[i]);
+	}
+	nt_buffer_text(out, "]}");
+}
+
+static void put_failure(nt_buffer *out, const nt_report *report)
+{
+	key(out, 3, "failure");
+	if (!report->failure) {
+		nt_buffer_text(out, "null");
+		return;
+	}
+	nt_buffer_text(out, "{");
+	put_text(out, "message", report->failure);
+	put_place(out, "place", &report->failure_place);
+	nt_buffer_text(out, "}");
+}
+
+static void put_report(nt_buffer *out, const nt_report *report)
+{
+	const nt_report_list one = {.items = &report, .count = 1};
+	const nt_totals totals = nt_report_totals(&one);
+	nt_buffer_text(out, "{");
+	key(out, 3, "file");
+	nt_json_string(nt_shown_path(report->path), out);
+	key(out, 3, "format");
+	nt_buffer_format(out, "\"%s\"", nt_input_format_name(report->format));
+	put_failure(out, report);
+	put_totals(out, 3, &totals);
+	key(out, 3, "meshes");
+	nt_buffer_text(out, "[");
+	for (size_t i = 0; i < report->mesh_count; i++) {
+		separate(out, 4);
+		put_mesh(out, &report->meshes[i]);
+	}
+	nt_buffer_text(out, "]");
+	key(out, 3, "findings");
+	nt_buffer_text(out, "[");
+	for (size_t i = 0; i < report->issue_count; i++) {
+		separate(out, 4);
+		put_issue(out, &report->issues[i]);
+	}
+	nt_buffer_text(out, "]");
+	close_with(out, 2, "}");
+}
+
+void nt_write_json(const nt_report_list *reports, nt_buffer *out)
+{
+	const nt_totals totals = nt_report_totals(reports);
+	nt_buffer_text(out, "{");
+	key(out, 1, "report");
+	nt_buffer_text(out, "\"nmtan\"");
+	key(out, 1, "report_version");
+	nt_buffer_text(out, "1");
+	key(out, 1, "generator");
+	nt_buffer_format(out, "\"nmtan %s\"", NMTAN_VERSION_STRING);
+	put_totals(out, 1, &totals);
+	key(out, 1, "files");
+	nt_buffer_text(out, "[");
+	for (size_t i = 0; i < reports->count; i++) {
+		separate(out, 2);
+		put_report(out, reports->items[i]);
+	}
+	nt_buffer_text(out, "]");
+	close_with(out, 0, "}\n");
+}

@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The table of report formats: see render.h.
+ */
+#include "report/render/render.h"
+
+#include <string.h>
+#include <strings.h>
+#include "report/render/writers.h"
+
+static const struct {
+	const char *name, *extensions;
+	void (*write)(const nt_report_list *, nt_buffer *);
+} formats[NT_REPORT_FORMAT_COUNT] = {
+	[NT_REPORT_TEXT] = {"text", ".txt", nt_write_text},
+	[NT_REPORT_JSON] = {"json", ".json", nt_write_json},
+	[NT_REPORT_SARIF] = {"sarif", ".sarif", nt_write_sarif},
+	[NT_REPORT_JUNIT] = {"junit", ".xml", nt_write_junit},
+	[NT_REPORT_CSV] = {"csv", ".csv", nt_write_csv},
+	[NT_REPORT_MARKDOWN] = {"markdown", ".md", nt_write_markdown},
+	[NT_REPORT_HTML] = {"html", ".html .htm", nt_write_html},
+};
+
+/* Whether a list of extensions separated by spaces has the one that the path ends in. */
+static bool ends_in(const char *path, const char *extensions)
+{
+	const char *dot = strrchr(path, '.');
+	while (dot && *extensions) {
+		const size_t length = strcspn(extensions, " ");
+		if (strlen(dot) == length && strncasecmp(dot, extensions, length) == 0)
+			return true;
+		extensions += length + (extensions[length] == ' ');
+	}
+	return false;
+}
+
+bool nt_report_format_of_path(const char *path, nt_report_format *format)
+{
+	for (unsigned i = 0; i < NT_REPORT_FORMAT_COUNT; i++) {
+		if (formats[i].extensions && ends_in(path, formats[i].extensions)) {
+			*format = (nt_report_format)i;
+			return true;
+		}
+	}
+	return false;
+}
+
+nt_status nt_report_write(const nt_report *const *reports, size_t count, nt_report_format format,
+	const nt_report_style *style, nt_report_sink sink, void *user, nt_error *error)
+{
+	nt_report_list list = {.items = reports, .count = count};
+	if (style)
+		list.style = *style;
+	nt_buffer out = {0};
+	formats[format].write(&list, &out);
+	const nt_status status = out.failed ? nt_fail_memory(error)
+					       : sink(user, out.data ? out.data : "", out.size, error);
+	nt_buffer_free(&out);
+	return status;
+}
+
+nt_status nt_report_write_uv(const nt_report *report, uint32_t mesh, bool *drawn, nt_report_sink sink,
+	void *user, nt_error *error)
+{
+	nt_buffer out = {0};
+	*drawn = nt_write_uv_svg(report, mesh, &out);
+	nt_status status = NT_OK;
+	if (out.failed)
+		status = nt_fail_memory(error);
+	else if (*drawn)
+		status = sink(user, out.data, out.size, error);
+	nt_buffer_free(&out);
+	return status;
+}

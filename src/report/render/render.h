@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Reports as text and files. All formats come from the same data; each is deterministic: no time, no
+ * absolute path, no order that depends on threads.
+ */
+#ifndef NT_REPORT_RENDER_RENDER_H
+#define NT_REPORT_RENDER_RENDER_H
+
+#include "report/render/words.h"
+
+typedef enum nt_report_format {
+	NT_REPORT_TEXT,     /* for people */
+	NT_REPORT_JSON,     /* everything; data/nmtan-report.schema.json */
+	NT_REPORT_SARIF,    /* 2.1.0, for code scanning */
+	NT_REPORT_JUNIT,    /* XML, for test dashboards */
+	NT_REPORT_CSV,      /* a row per finding */
+	NT_REPORT_MARKDOWN, /* for comments on pull requests */
+	NT_REPORT_HTML,     /* one page with UV layouts and a 3D view */
+	NT_REPORT_FORMAT_COUNT
+} nt_report_format;
+
+/* The format that a file name's extension means; false when it is none of them. */
+bool nt_report_format_of_path(const char *path, nt_report_format *format);
+
+/* Takes a piece of the output. */
+typedef nt_status (*nt_report_sink)(void *user, const void *bytes, size_t size, nt_error *error);
+
+/*
+ * Writes reports, one for each input, as one document. style may be NULL.
+ *
+ * Returns NT_OK, NT_ERROR_MEMORY, or what the sink returned.
+ */
+nt_status nt_report_write(const nt_report *const *reports, size_t count, nt_report_format format,
+	const nt_report_style *style, nt_report_sink sink, void *user, nt_error *error);
+
+/* Writes the UV layout of one mesh as SVG. *drawn receives false, and nothing is written, where it has no
+ * texture coordinates; the report must have been built with keep_geometry. Statuses as above. */
+nt_status nt_report_write_uv(const nt_report *report, uint32_t mesh, bool *drawn, nt_report_sink sink,
+	void *user, nt_error *error);
+
+#endif

@@ -1,0 +1,174 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * SARIF 2.1.0, for code scanning: one result per finding. Binary files have no lines, so their results
+ * stand at line 1; in an OBJ it is the line of the first face. The JSON pointer of a glTF primitive is the
+ * logical location.
+ *
+ * GitHub takes 25 000 results of a run and shows 5000; more than that are cut, with a notification. A
+ * result keeps its fingerprint, so that alerts follow a finding through edits.
+ */
+#include "report/render/writers.h"
+
+#include <string.h>
+
+enum { MOST_RESULTS = 5000 };
+
+static const char *level_of(nt_severity severity)
+{
+	static const char *const levels[] = {"note", "warning", "error"};
+	return levels[severity];
+}
+
+static void put_text(const char *name, const char *text, nt_buffer *out)
+{
+	nt_buffer_format(out, "\"%s\": ", name);
+	nt_json_string(text, out);
+}
+
+/* A relative URI reference: everything but unreserved characters and slashes is percent-encoded. */
+static void put_uri(const char *path, nt_buffer *out)
+{
+	static const char plain[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-._~/";
+	nt_buffer_text(out, "\"uri\": \"");
+	for (const char *p = nt_shown_path(path); *p; p++) {
+		if (strchr(plain, *p))
+			nt_buffer_append(out, p, 1);
+		else
+			nt_buffer_format(out, "%%%02X", (unsigned char)*p);
+	}
+	nt_buffer_text(out, "\"");
+}
+
+static void put_rules(nt_buffer *out)
+{
+	nt_buffer_text(out, "\t\t\t\t\"rules\": [");
+	for (unsigned i = 0; i < NT_CODE_COUNT; i++) {
+		const nt_code_row *row = nt_code_info((nt_code)i);
+		nt_buffer_format(out, "%s\n\t\t\t\t\t{", i ? "," : "");
+		put_text("id", row->name, out);
+		nt_buffer_text(out, ", \"shortDescription\": {");
+		put_text("text", row->name, out);
+		nt_buffer_text(out, "}, \"fullDescription\": {");
+		put_text("text", row->meaning, out);
+		nt_buffer_text(out, "}, \"help\": {");
+		put_text("text", row->remedy, out);
+		nt_buffer_format(out, "}, \"defaultConfiguration\": {\"level\": \"%s\"}}",
+			level_of(row->severity));
+	}
+	nt_buffer_text(out, "\n\t\t\t\t]\n");
+}
+
+static size_t line_of(const nt_issue *issue)
+{
+	for (unsigned i = 0; i < issue->spot_count; i++)
+		if (issue->spots[i].line)
+			return issue->spots[i].line;
+	return issue->place.line ? issue->place.line : 1;
+}
+
+static void put_physical(const char *path, size_t line, nt_buffer *out)
+{
+	nt_buffer_text(out, "\"physicalLocation\": {\"artifactLocation\": {");
+	put_uri(path, out);
+	nt_buffer_format(out, "}, \"region\": {\"startLine\": %zu}}", line);
+}
+
+static void put_location(const nt_report *report, const nt_issue *issue, nt_buffer *out)
+{
+	nt_buffer_text(out, "\"locations\": [{");
+	put_physical(report->path, line_of(issue), out);
+	if (issue->mesh != NT_NONE || issue->place.pointer[0]) {
+		nt_buffer label = {0};
+		if (issue->mesh != NT_NONE)
+			nt_mesh_label(report, issue->mesh, &label);
+		nt_buffer_text(out, ", \"logicalLocations\": [{");
+		if (label.size)
+			put_text("name", label.data, out);
+		if (issue->place.pointer[0]) {
+			nt_buffer_text(out, label.size ? ", " : "");
+			put_text("fullyQualifiedName", issue->place.pointer, out);
+		}
+		nt_buffer_text(out, ", \"kind\": \"object\"}]");
+		nt_buffer_free(&label);
+	}
+	nt_buffer_text(out, "}]");
+}
+
+static void put_result(const nt_report *report, const nt_issue *issue, bool has_baseline, nt_buffer *out)
+{
+	nt_buffer_text(out, "{");
+	put_text("ruleId", nt_code_info(issue->code)->name, out);
+	nt_buffer_format(out, ", \"ruleIndex\": %u, \"level\": \"%s\", \"message\": {", (unsigned)issue->code,
+		level_of(issue->severity));
+	put_text("text", issue->message, out);
+	nt_buffer_text(out, "},\n\t\t\t\t");
+	put_location(report, issue, out);
+	nt_buffer_format(out, ",\n\t\t\t\t\"partialFingerprints\": {\"nmtan/v1\": \"%016llx\"}",
+		(unsigned long long)issue->fingerprint);
+	if (has_baseline)
+		nt_buffer_format(out, ", \"baselineState\": \"%s\"", issue->known ? "unchanged" : "new");
+	nt_buffer_format(out, ", \"occurrenceCount\": %zu, \"properties\": {", issue->count);
+	for (unsigned i = 0; i < issue->number_count; i++) {
+		nt_buffer_format(out, "%s\"%s\": ", i ? ", " : "", issue->numbers[i].name);
+		nt_json_float(issue->numbers[i].value, out);
+	}
+	nt_buffer_text(out, "}}");
+}
+
+static void put_results(const nt_report_list *reports, bool has_baseline, nt_buffer *out)
+{
+	size_t count = 0;
+	nt_buffer_text(out, "\t\t\"results\": [");
+	for (size_t i = 0; i < reports->count; i++) {
+		const nt_report *report = reports->items[i];
+		for (size_t k = 0; k < report->issue_count && count < MOST_RESULTS; k++) {
+			nt_buffer_text(out, count++ ? ",\n\t\t\t" : "\n\t\t\t");
+			put_result(report, &report->issues[k], has_baseline, out);
+		}
+	}
+	nt_buffer_text(out, "\n\t\t],\n");
+}
+
+/* Inputs that could not be read, and findings that are not here. */
+static void put_invocation(const nt_report_list *reports, nt_buffer *out)
+{
+	size_t count = 0, results = 0, failures = 0;
+	for (size_t i = 0; i < reports->count; i++) {
+		results += reports->items[i]->issue_count;
+		failures += reports->items[i]->failure != NULL;
+	}
+	const size_t cut = results > MOST_RESULTS ? results - MOST_RESULTS : 0;
+	const size_t missing = nt_report_totals(reports).dropped + cut;
+	nt_buffer_format(out, "\t\t\"invocations\": [{\"executionSuccessful\": %s, "
+		"\"toolExecutionNotifications\": [", failures ? "false" : "true");
+	for (size_t i = 0; i < reports->count; i++) {
+		const nt_report *report = reports->items[i];
+		if (!report->failure)
+			continue;
+		nt_buffer_format(out, "%s\n\t\t\t{\"level\": \"error\", \"message\": {", count++ ? "," : "");
+		put_text("text", report->failure, out);
+		nt_buffer_text(out, "}, \"locations\": [{");
+		put_physical(report->path, report->failure_place.line ? report->failure_place.line : 1, out);
+		nt_buffer_text(out, "}]}");
+	}
+	if (missing)
+		nt_buffer_format(out, "%s\n\t\t\t{\"level\": \"warning\", \"message\": {\"text\": "
+			"\"%zu findings are not in this file\"}}", count ? "," : "", missing);
+	nt_buffer_text(out, "]}]\n");
+}
+
+void nt_write_sarif(const nt_report_list *reports, nt_buffer *out)
+{
+	bool has_baseline = false;
+	for (size_t i = 0; i < reports->count; i++)
+		has_baseline |= reports->items[i]->compared;
+	nt_buffer_text(out, "{\n\t\"$schema\": \"https://json.schemastore.org/sarif-2.1.0.json\",\n"
+		"\t\"version\": \"2.1.0\",\n\t\"runs\": [{\n\t\t\"tool\": {\n\t\t\t\"driver\": {\n");
+	nt_buffer_format(out, "\t\t\t\t\"name\": \"nmtan\",\n\t\t\t\t\"version\": \"%s\",\n",
+		NMTAN_VERSION_STRING);
+	put_rules(out);
+	nt_buffer_text(out, "\t\t\t}\n\t\t},\n\t\t\"columnKind\": \"utf16CodeUnits\",\n");
+	put_results(reports, has_baseline, out);
+	put_invocation(reports, out);
+	nt_buffer_text(out, "\t}]\n}\n");
+}

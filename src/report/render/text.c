@@ -1,0 +1,176 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The report for people: per file what it is made of, then its findings, the most severe first, each with
+ * the places where it occurs and, once per code, what to do.
+ */
+#include "report/render/writers.h"
+
+#include <math.h>
+
+enum { SHOWN_SPOTS = 3 };
+
+static void paint(const nt_report_list *reports, const char *code, nt_buffer *out)
+{
+	if (reports->style.colour)
+		nt_buffer_text(out, code);
+}
+
+static const char *const bold = "\x1b[1m", *const dim = "\x1b[2m", *const plain = "\x1b[0m";
+
+static void write_severity(const nt_report_list *reports, nt_severity severity, nt_buffer *out)
+{
+	static const char *const colours[] = {"\x1b[36m", "\x1b[33m", "\x1b[31;1m"};
+	paint(reports, colours[severity], out);
+	nt_buffer_format(out, "%-7s", nt_severity_name(severity));
+	paint(reports, plain, out);
+}
+
+/* ---- meshes ---- */
+
+static double share(const double areas[3], int which)
+{
+	const double total = areas[0] + areas[1] + areas[2];
+	return total > 0.0 ? 100.0 * areas[which] / total : 0.0;
+}
+
+static void write_islands(const nt_report_mesh *mesh, nt_buffer *out)
+{
+	nt_buffer_format(out, "%zu UV island%s", mesh->island_count, mesh->island_count == 1 ? "" : "s");
+	for (unsigned kind = NT_ISLAND_MIRRORED; kind <= NT_ISLAND_DEGENERATE; kind++)
+		if (mesh->island_kinds[kind])
+			nt_buffer_format(out, ", %zu %s", mesh->island_kinds[kind],
+				nt_island_kind_name((nt_island_kind)kind));
+	nt_buffer_format(out, "; %zu mirror seam%s", mesh->seam_count, mesh->seam_count == 1 ? "" : "s");
+	if (mesh->seam_count)
+		nt_buffer_format(out, " of length %.4g", mesh->seam_length);
+}
+
+static void write_mesh(const nt_report *report, uint32_t index, nt_buffer *out)
+{
+	const nt_report_mesh *mesh = &report->meshes[index];
+	nt_buffer label = {0};
+	nt_mesh_label(report, index, &label);
+	nt_buffer_text(out, "  ");
+	nt_buffer_clean(out, label.data ? label.data : "");
+	nt_buffer_free(&label);
+	if (!mesh->analysed) {
+		nt_buffer_format(out, ": %s\n", mesh->why);
+		return;
+	}
+	nt_buffer_format(out, ": %zu triangle%s", mesh->triangle_count, mesh->triangle_count == 1 ? "" : "s");
+	if (!mesh->has_texcoords) {
+		nt_buffer_text(out, ", no texture coordinates\n");
+		return;
+	}
+	nt_buffer_format(out, ", %zu mirrored (%.3g %% of the area), %zu degenerate (%.3g %%)\n    ",
+		mesh->triangles[0], share(mesh->areas, 0), mesh->triangles[1], share(mesh->areas, 1));
+	write_islands(mesh, out);
+	if (mesh->vertices_after != mesh->vertices_before)
+		nt_buffer_format(out, "; %zu vertices became %zu", mesh->vertices_before,
+			mesh->vertices_after);
+	nt_buffer_text(out, "\n");
+}
+
+/* ---- findings ---- */
+
+static void write_vector(const float *values, unsigned count, nt_buffer *out)
+{
+	for (unsigned i = 0; i < count; i++)
+		nt_buffer_format(out, "%s%.6g", i ? " " : "(", (double)values[i]);
+	nt_buffer_text(out, ")");
+}
+
+static void write_spot(const nt_spot *spot, nt_buffer *out)
+{
+	static const char *const kinds[] = {"vertex", "edge", "corners"};
+	nt_buffer_text(out, "            ");
+	if (spot->line)
+		nt_buffer_format(out, "line %zu, ", spot->line);
+	if (spot->triangle != NT_NONE)
+		nt_buffer_format(out, "triangle %u, ", spot->triangle);
+	if (spot->source) {
+		nt_buffer_text(out, "f ");
+		nt_buffer_clean(out, spot->source);
+	} else {
+		nt_buffer_text(out, kinds[spot->corner_count - 1]);
+		for (unsigned k = 0; k < spot->corner_count; k++)
+			nt_buffer_format(out, " %u", spot->vertices[k]);
+	}
+	nt_buffer_text(out, " at ");
+	write_vector(spot->positions[0], 3, out);
+	if (spot->has_texcoords) {
+		nt_buffer_text(out, " uv ");
+		for (unsigned k = 0; k < spot->corner_count; k++)
+			write_vector(spot->texcoords[k], 2, out);
+	}
+	nt_buffer_text(out, "\n");
+}
+
+static void write_issue(const nt_report_list *reports, const nt_report *report, const nt_issue *issue,
+	bool remedy, nt_buffer *out)
+{
+	nt_buffer_text(out, "  ");
+	write_severity(reports, issue->severity, out);
+	nt_buffer_text(out, "   ");
+	paint(reports, bold, out);
+	nt_buffer_text(out, nt_code_info(issue->code)->name);
+	paint(reports, plain, out);
+	nt_buffer_text(out, "  ");
+	nt_buffer_clean(out, issue->message);
+	nt_buffer_text(out, issue->known ? " (known)\n" : "\n");
+	if (issue->mesh != NT_NONE && report->mesh_count > 1) {
+		nt_buffer label = {0};
+		nt_mesh_label(report, issue->mesh, &label);
+		nt_buffer_text(out, "            in ");
+		nt_buffer_clean(out, label.data ? label.data : "");
+		nt_buffer_text(out, "\n");
+		nt_buffer_free(&label);
+	}
+	for (unsigned i = 0; i < issue->spot_count && i < SHOWN_SPOTS; i++)
+		write_spot(&issue->spots[i], out);
+	if (issue->spot_count > SHOWN_SPOTS)
+		nt_buffer_text(out, "            and others\n");
+	if (remedy) {
+		paint(reports, dim, out);
+		nt_buffer_format(out, "            %s\n", nt_code_info(issue->code)->remedy);
+		paint(reports, plain, out);
+	}
+}
+
+static void write_report(const nt_report_list *reports, const nt_report *report, nt_buffer *out)
+{
+	const nt_report_list one = {.items = &report, .count = 1};
+	const nt_totals totals = nt_report_totals(&one);
+	paint(reports, bold, out);
+	nt_buffer_clean(out, nt_shown_path(report->path));
+	paint(reports, plain, out);
+	nt_buffer_text(out, ": ");
+	if (report->failure) {
+		nt_buffer_text(out, "not judged: ");
+		nt_buffer_clean(out, report->failure);
+		nt_buffer_text(out, "\n");
+		return;
+	}
+	nt_totals_text(&totals, out);
+	nt_buffer_text(out, "\n");
+	for (size_t i = 0; i < report->mesh_count; i++)
+		write_mesh(report, (uint32_t)i, out);
+	bool told[NT_CODE_COUNT] = {false};
+	for (size_t i = 0; i < report->issue_count; i++) {
+		const nt_issue *issue = &report->issues[i];
+		write_issue(reports, report, issue, !told[issue->code], out);
+		told[issue->code] = true;
+	}
+}
+
+void nt_write_text(const nt_report_list *reports, nt_buffer *out)
+{
+	for (size_t i = 0; i < reports->count; i++)
+		write_report(reports, reports->items[i], out);
+	if (reports->count > 1) {
+		const nt_totals totals = nt_report_totals(reports);
+		nt_buffer_format(out, "%zu files: ", reports->count);
+		nt_totals_text(&totals, out);
+		nt_buffer_text(out, "\n");
+	}
+}

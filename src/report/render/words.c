@@ -1,0 +1,121 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Names, sums and escaped text for reports: see words.h.
+ */
+#include "report/render/words.h"
+
+#include <math.h>
+#include <string.h>
+#include "base/utf8.h"
+
+const char *nt_shown_path(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	return path[0] == '/' && slash ? slash + 1 : path;
+}
+
+nt_totals nt_report_totals(const nt_report_list *reports)
+{
+	nt_totals totals = {0};
+	for (size_t i = 0; i < reports->count; i++) {
+		const nt_report *report = reports->items[i];
+		for (int severity = 0; severity < 3; severity++)
+			totals.by_severity[severity] += report->by_severity[severity];
+		totals.known += report->known;
+		totals.dropped += report->dropped;
+	}
+	return totals;
+}
+
+static void counted(size_t count, const char *noun, nt_buffer *out)
+{
+	nt_buffer_format(out, "%zu %s%s", count, noun, count == 1 ? "" : "s");
+}
+
+void nt_totals_text(const nt_totals *totals, nt_buffer *out)
+{
+	counted(totals->by_severity[NT_SEVERITY_ERROR], "error", out);
+	nt_buffer_text(out, ", ");
+	counted(totals->by_severity[NT_SEVERITY_WARNING], "warning", out);
+	nt_buffer_text(out, ", ");
+	counted(totals->by_severity[NT_SEVERITY_INFO], "info", out);
+	if (totals->known)
+		nt_buffer_format(out, ", %zu known from the baseline", totals->known);
+	if (totals->dropped)
+		nt_buffer_format(out, ", %zu not shown", totals->dropped);
+}
+
+const char *nt_island_kind_name(nt_island_kind kind)
+{
+	static const char *const names[] = {"normal", "mirrored", "mixed", "degenerate"};
+	return names[kind];
+}
+
+const char *nt_input_format_name(nt_format format)
+{
+	static const char *const names[] = {"unknown", "obj", "ply", "gltf", "glb", "drc"};
+	return names[format];
+}
+
+void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out)
+{
+	const nt_report_mesh *m = &report->meshes[mesh];
+	if (m->place.object[0])
+		nt_buffer_text(out, m->place.object);
+	else if (m->name[0])
+		nt_buffer_format(out, "mesh \"%s\"", m->name);
+	else
+		nt_buffer_format(out, "mesh %u", mesh);
+}
+
+void nt_json_string(const char *text, nt_buffer *out)
+{
+	nt_buffer_text(out, "\"");
+	while (*text) {
+		const unsigned char c = (unsigned char)*text;
+		const size_t length = nt_utf8_length(text, SIZE_MAX);
+		if (c == '"' || c == '\\')
+			nt_buffer_format(out, "\\%c", c);
+		else if (c == '\n')
+			nt_buffer_text(out, "\\n");
+		else if (c < 0x20 || c == 0x7f)
+			nt_buffer_format(out, "\\u%04x", c);
+		else if (length)
+			nt_buffer_append(out, text, length);
+		else
+			nt_buffer_text(out, "\\ufffd");
+		text += length ? length : 1;
+	}
+	nt_buffer_text(out, "\"");
+}
+
+void nt_json_float(double value, nt_buffer *out)
+{
+	if (isfinite(value))
+		nt_buffer_format(out, "%.9g", value == 0.0 ? 0.0 : value);
+	else
+		nt_buffer_text(out, "null");
+}
+
+void nt_xml_text(const char *text, nt_buffer *out)
+{
+	while (*text) {
+		const unsigned char c = (unsigned char)*text;
+		const size_t length = nt_utf8_length(text, SIZE_MAX);
+		if (c == '<')
+			nt_buffer_text(out, "&lt;");
+		else if (c == '>')
+			nt_buffer_text(out, "&gt;");
+		else if (c == '&')
+			nt_buffer_text(out, "&amp;");
+		else if (c == '"')
+			nt_buffer_text(out, "&quot;");
+		else if (c == '\'')
+			nt_buffer_text(out, "&#39;");
+		else if ((c < 0x20 && c != '\n' && c != '\t') || c == 0x7f || length == 0)
+			nt_buffer_text(out, "\xef\xbf\xbd");
+		else
+			nt_buffer_append(out, text, length);
+		text += length ? length : 1;
+	}
+}

@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the writers of reports share: the reports they write, names and sums in words, and text escaped for
+ * JSON, XML and HTML.
+ */
+#ifndef NT_REPORT_RENDER_WORDS_H
+#define NT_REPORT_RENDER_WORDS_H
+
+#include "report/report.h"
+
+typedef struct nt_report_style {
+	bool colour;       /* text: for a terminal */
+	int least_failure; /* JUnit: the nt_severity from which on a finding is a failure; 3: none */
+} nt_report_style;
+
+typedef struct nt_report_list {
+	const nt_report *const *items;
+	size_t count;
+	nt_report_style style;
+} nt_report_list;
+
+/* A path as reports show it: without its folders where it is absolute. */
+const char *nt_shown_path(const char *path);
+
+/* New findings of all reports, by severity; known and dropped ones. */
+typedef struct nt_totals {
+	size_t by_severity[3], known, dropped;
+} nt_totals;
+nt_totals nt_report_totals(const nt_report_list *reports);
+
+const char *nt_island_kind_name(nt_island_kind kind);
+const char *nt_input_format_name(nt_format format);
+
+/* "1 error, 2 warnings, 0 infos", with the known ones where there are any. */
+void nt_totals_text(const nt_totals *totals, nt_buffer *out);
+
+/* The name a mesh is shown with: its object in words, its name or its number. Never empty. */
+void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out);
+
+/* A JSON string with its quotes; bytes that are no UTF-8 become U+FFFD. */
+void nt_json_string(const char *text, nt_buffer *out);
+
+/* A JSON number that reads back as the same float; null for NaN and infinities. */
+void nt_json_float(double value, nt_buffer *out);
+
+/* Text for XML and HTML: markup escaped, control characters and bytes that are no UTF-8 replaced. */
+void nt_xml_text(const char *text, nt_buffer *out);
+
+#endif

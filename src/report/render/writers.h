@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The writers of reports, for the table in render.c. Each appends its document to a buffer, whose failed flag
+ * tells of exhausted memory.
+ */
+#ifndef NT_REPORT_RENDER_WRITERS_H
+#define NT_REPORT_RENDER_WRITERS_H
+
+#include "report/render/words.h"
+
+void nt_write_text(const nt_report_list *reports, nt_buffer *out);
+void nt_write_json(const nt_report_list *reports, nt_buffer *out);
+void nt_write_sarif(const nt_report_list *reports, nt_buffer *out);
+void nt_write_junit(const nt_report_list *reports, nt_buffer *out);
+void nt_write_csv(const nt_report_list *reports, nt_buffer *out);
+void nt_write_markdown(const nt_report_list *reports, nt_buffer *out);
+void nt_write_html(const nt_report_list *reports, nt_buffer *out);
+
+/* The UV layout of a mesh. False, and nothing appended, where it has no texture coordinates or its geometry
+ * was not kept. */
+bool nt_write_uv_svg(const nt_report *report, uint32_t mesh, nt_buffer *out);
+
+#endif

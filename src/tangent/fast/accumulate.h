@@ -1,0 +1,323 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The first pass: frames and weights of 16 triangles (lanes.h), then, one triangle after the other, the
+ * addition to the records of the vertices and the entry in each vertex's fan. Included by kernel.h.
+ */
+#ifndef NT_TANGENT_FAST_ACCUMULATE_H
+#define NT_TANGENT_FAST_ACCUMULATE_H
+
+#include "tangent/fast/lanes.h"
+
+/* Corners by which a bin's place is asked for before it is written: some lines. */
+enum { BIN_AHEAD = 12 };
+
+static inline void add_record(nt_record *record, const float *add)
+{
+	nt_int4 sum;
+	memcpy(&sum, add, sizeof sum);
+	nt_record_add(record, sum);
+}
+
+/* What a corner adds: that of corner k of the triangle whose rows lie at `place`. */
+typedef struct addition {
+	const float *sum, *more[2];
+} addition;
+
+static inline addition addition_of(const lanes_out *out, size_t k, size_t place)
+{
+	return (addition){out->add[k] + 4 * place, {out->more[k][0] + 4 * place, out->more[k][1] + 4 * place}};
+}
+
+static inline nt_record_more more_of(const addition *add)
+{
+	nt_record_more more;
+	memcpy(&more, add->more[0], sizeof more / 2);
+	memcpy((char *)&more + sizeof more / 2, add->more[1], sizeof more / 2);
+	return more;
+}
+
+static inline void add_more(nt_record_more *record, const addition *add)
+{
+	const nt_record_more more = more_of(add);
+	nt_record_more_add(record, &more);
+}
+
+/* A corner of a hub, or of a vertex that an earlier range adds to. */
+static void __attribute__((noinline)) add_unusual(nt_fast *fast, unsigned range, uint32_t vertex,
+	uint32_t cursor, int orient, nt_fan_entry entry, const addition *add)
+{
+	if (!(cursor & NT_CURSOR_HUB))
+		*nt_adjacency_entry(&fast->adjacency, cursor) = entry;
+	if (cursor & NT_CURSOR_SHARED) {
+		nt_deferred *d = &fast->deferred[range];
+		const size_t i = d->count++;
+		d->to[i] = vertex | (uint32_t)orient << 31;
+		memcpy(&d->add[i], add->sum, sizeof *d->add);
+		if (d->more)
+			d->more[i] = more_of(add);
+		return;
+	}
+	add_record(&fast->records[orient][vertex], add->sum);
+	if (fast->wants_more)
+		add_more(&fast->more[orient][vertex], add);
+}
+
+/* Writes a corner down in its vertex's bin. */
+static inline void bin_corner(const nt_bins *bins, uint32_t *cursors, uint32_t vertex, uint32_t orient,
+	uint32_t next, uint32_t previous, const float *add)
+{
+	const uint32_t lane = vertex & (((uint32_t)1 << bins->vertex_bits) - 1);
+	const size_t at = cursors[vertex >> bins->vertex_bits]++;
+	const nt_int4 tag = {0, 0, 0, (int)(orient << 31 | lane << NT_BINNED_SHIFT)};
+	nt_int4 sum;
+	memcpy(&sum, add, sizeof sum);
+	sum |= tag;
+	__builtin_prefetch(&bins->sums[at + BIN_AHEAD], 1);
+	__builtin_prefetch(&bins->entries[NT_BINNED_ENTRY * (at + 2 * BIN_AHEAD)], 1);
+	memcpy(&bins->sums[at], &sum, sizeof sum);
+	nt_binned_store(bins->entries + NT_BINNED_ENTRY * at, next, previous);
+}
+
+/* One corner, whatever its vertex is. */
+static void add_corner(nt_fast *fast, unsigned range, uint32_t vertex, int orient, nt_fan_entry entry,
+	addition add)
+{
+	const nt_adjacency *a = &fast->adjacency;
+	if (fast->bins.cursors) {
+		bin_corner(&fast->bins, fast->bins.cursors + range * fast->bins.count, vertex, (uint32_t)orient,
+			entry.next & NT_ENTRY_VERTEX, entry.previous & NT_ENTRY_VERTEX, add.sum);
+		return;
+	}
+	uint32_t *cursor = &a->cursors[range * a->vertex_count + vertex];
+	const uint32_t place = *cursor;
+	*cursor = place + (place & NT_CURSOR_HUB ? 0 : NT_FAN_LANES);
+	if (place >= NT_CURSOR_SHARED) {
+		add_unusual(fast, range, vertex, place, orient, entry, &add);
+		return;
+	}
+	*nt_adjacency_entry(a, place) = entry;
+	add_record(&fast->records[orient][vertex], add.sum);
+	if (fast->wants_more)
+		add_more(&fast->more[orient][vertex], &add);
+}
+
+/* Triangle t, of vertices v, with a frame. */
+static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t *v, int lane, const lanes_out *out)
+{
+	const int orient = fast->flags[t] & NT_TRIANGLE_ORIENT;
+	const uint32_t bit = (uint32_t)orient << 31;
+	for (size_t k = 0; k < 3; k++)
+		add_corner(fast, range, v[k], orient,
+			(nt_fan_entry){v[(k + 1) % 3] | bit, v[(k + 2) % 3] | bit},
+			addition_of(out, k, turned_place((size_t)lane)));
+}
+
+/* Triangles with frames, lanes [begin, end): add_triangle() with everything that does not change kept at hand. */
+static void __attribute__((noinline)) add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t begin,
+	size_t end, const uint32_t *ids, const lanes_out *out)
+{
+	uint32_t *const cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
+	nt_fan_entry *const entries = fast->adjacency.entries;
+	nt_record *const records[2] = {fast->records[0], fast->records[1]};
+	const uint8_t *flags = fast->flags + first;
+	ids += 3 * begin;
+	for (size_t i = begin; i < end; i++, ids += 3) {
+		const uint32_t a = ids[0], b = ids[1], c = ids[2];
+		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
+		const unsigned orient = flags[i] & NT_TRIANGLE_ORIENT;
+		if (__builtin_expect((pa | pb | pc) >= NT_CURSOR_FLAGGED, 0) || fast->wants_more) {
+			add_triangle(fast, range, first + i, ids, (int)i, out);
+			continue;
+		}
+		const uint32_t bit = orient << 31;
+		const size_t place = 4 * turned_place(i);
+		cursors[a] = pa + NT_FAN_LANES;
+		cursors[b] = pb + NT_FAN_LANES;
+		cursors[c] = pc + NT_FAN_LANES;
+		entries[pa] = (nt_fan_entry){b | bit, c | bit};
+		entries[pb] = (nt_fan_entry){c | bit, a | bit};
+		entries[pc] = (nt_fan_entry){a | bit, b | bit};
+		nt_record *const to = records[orient];
+		add_record(to + a, out->add[0] + place);
+		add_record(to + b, out->add[1] + place);
+		add_record(to + c, out->add[2] + place);
+	}
+}
+
+/* The same into bins. */
+static void __attribute__((noinline)) bin_ordinary(const nt_fast *fast, unsigned range, size_t first, size_t begin,
+	size_t end, const uint32_t *ids, const lanes_out *out)
+{
+	const nt_bins bins = fast->bins;
+	uint32_t *const cursors = bins.cursors + range * bins.count;
+	unsigned seen = 0;
+	for (size_t i = begin; i < end; i++) {
+		const uint32_t *v = ids + 3 * i;
+		const uint32_t orient = fast->flags[first + i] & NT_TRIANGLE_ORIENT;
+		const size_t place = 4 * turned_place(i);
+		bin_corner(&bins, cursors, v[0], orient, v[1], v[2], out->add[0] + place);
+		bin_corner(&bins, cursors, v[1], orient, v[2], v[0], out->add[1] + place);
+		bin_corner(&bins, cursors, v[2], orient, v[0], v[1], out->add[2] + place);
+		seen |= NT_SEEN(orient);
+	}
+	bins.seen[range] |= (uint8_t)seen;
+}
+
+/* Orientation of the record that takes note of an "any" triangle: any that exists. */
+static int any_record(const nt_fast *fast, int orient)
+{
+	return fast->records[orient] || !fast->records[!orient] ? orient : !orient;
+}
+
+/* Adds a triangle that is degenerate (voids in the fans) or has no frame (a corner in the fans, a note in the
+ * records), or is ordinary but has values that the lanes do not vouch for. */
+static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range, size_t t, const uint32_t *v,
+	int lane, lanes_out *out)
+{
+	static const float zero[4] = {0};
+	const float note[4] = {0.0f, 0.0f, 0.0f, 2.0f + STATE_BIT(NT_STATE_ALL - NT_STATE_NO_ANY)};
+	const uint8_t flags = fast->flags[t];
+	if (fast->bins.cursors && !(flags & NT_TRIANGLE_DEGENERATE))
+		fast->bins.seen[range] |= flags & NT_TRIANGLE_ANY ? NT_SEEN_ANY : NT_SEEN(flags & NT_TRIANGLE_ORIENT);
+	if (!(flags & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY))) {
+		for (int k = 0; k < 3; k++)
+			out->add[k][4 * turned_place((size_t)lane) + 3] = 2.0f + STATE_BIT(NT_STATE_NO_ANY + NT_STATE_LOCAL);
+		add_triangle(fast, range, t, v, lane, out);
+		return;
+	}
+	const int orient = any_record(fast, flags & NT_TRIANGLE_ORIENT);
+	if ((flags & NT_TRIANGLE_DEGENERATE) && fast->bins.cursors)
+		return;
+	if (flags & NT_TRIANGLE_DEGENERATE) {
+		uint32_t *cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
+		for (int k = 0; k < 3; k++) {
+			const uint32_t place = cursors[v[k]], number = place & NT_CURSOR_PLACE;
+			if (place & NT_CURSOR_HUB)
+				continue;
+			cursors[v[k]] = place + NT_FAN_LANES;
+			*nt_adjacency_entry(&fast->adjacency, place) = (nt_fan_entry){NT_ENTRY_VOID | number,
+				NT_ENTRY_VOID | NT_ENTRY_VOID >> 1 | number};
+		}
+		return;
+	}
+	for (int k = 0; k < 3; k++)
+		add_corner(fast, range, v[k], orient, (nt_fan_entry){v[(k + 1) % 3], v[(k + 2) % 3]},
+			(addition){note, {zero, zero}});
+}
+
+/* The next lane from i on whose triangle is one for add_special(). */
+static size_t next_special(const nt_fast *fast, size_t first, size_t i, size_t count, const lanes_out *out)
+{
+	const uint8_t *flags = fast->flags + first;
+	while (i < count && out->sound[i] && !(flags[i] & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY)))
+		i++;
+	return i;
+}
+
+/* The orientation of a record array that these triangles need and that does not exist; -1: none. */
+static int missing_record(const nt_fast *fast, size_t first, size_t count)
+{
+	if (fast->bins.cursors || (fast->records[0] && fast->records[1]))
+		return -1;
+	for (size_t i = 0; i < count; i++) {
+		const uint8_t flags = fast->flags[first + i];
+		int orient = flags & NT_TRIANGLE_ORIENT;
+		if (flags & NT_TRIANGLE_DEGENERATE)
+			continue;
+		if (flags & NT_TRIANGLE_ANY)
+			orient = any_record(fast, orient);
+		if (!fast->records[orient])
+			return orient;
+	}
+	return -1;
+}
+
+/* Scattered vertices: the rows of corner k of the batch after the next. A third at a time, since no more misses
+ * than that can be under way. Always inline: to gcc 12 a function of prefetches alone has no effect, and goes. */
+static inline __attribute__((always_inline)) void ask_ahead(const nt_fast *fast, size_t first, size_t end, size_t k)
+{
+	const size_t far = first + 2 * NT_LANES < end ? first + 2 * NT_LANES : end;
+	const size_t count = end - far < NT_LANES ? end - far : NT_LANES;
+	uint32_t copy[3 * NT_LANES];
+	const uint32_t *ids = nt_triangle_vertices(&fast->triangles, far, count, copy) + k;
+	for (size_t i = 0; i < count; i++)
+		__builtin_prefetch(&fast->rows[ids[3 * i]]);
+}
+
+/* Without bins (quads scattered: 205 to 160 ns a triangle): entries and records of a batch whose cursors were asked
+ * for a batch ago. */
+static inline __attribute__((always_inline)) void ask_places(const nt_fast *fast, const uint32_t *cursors,
+	const uint32_t *ids, size_t count)
+{
+	for (size_t i = 0; i < 3 * count; i++) {
+		if (!(cursors[ids[i]] & NT_CURSOR_HUB))
+			__builtin_prefetch(nt_adjacency_entry(&fast->adjacency, cursors[ids[i]]), 1);
+		for (int o = 0; o < 2; o++)
+			if (fast->records[o])
+				__builtin_prefetch(&fast->records[o][ids[i]], 1);
+	}
+}
+
+/* The cursors of a batch. */
+static inline __attribute__((always_inline)) void ask_cursors(const nt_fast *fast, const uint32_t *cursors, size_t first,
+	size_t end)
+{
+	const size_t count = end - first < NT_LANES ? end - first : NT_LANES;
+	uint32_t copy[3 * NT_LANES];
+	const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
+	for (size_t i = 0; i < 3 * count; i++)
+		__builtin_prefetch(&cursors[ids[i]], 1);
+}
+
+static void accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
+	void *context)
+{
+	lanes_in in;
+	lanes_out out;
+	const float offset = fast->solve->mesh->stored_v_offset;
+	const float slack = offset != 0.0f ? 3 * HALF_ULP : 0.0f;
+	const bool scattered = fast->scattered, direct = !fast->bins.cursors;
+	const uint32_t *cursors = direct ? fast->adjacency.cursors + range * fast->adjacency.vertex_count : NULL;
+	for (size_t first = begin, count; first < end; first += count) {
+		count = end - first < NT_LANES ? end - first : NT_LANES;
+		if (first + count < end && (fast->flags[first + count] & NT_TRIANGLE_SECOND))
+			count--; /* halves of a quad stay together */
+		if (scattered)
+			ask_ahead(fast, first, end, 0);
+		uint32_t copy[3 * NT_LANES];
+		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
+		gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : lanes_of(count), in.row);
+		if (scattered && direct)
+			ask_places(fast, cursors, ids, count);
+		if (scattered)
+			ask_ahead(fast, first, end, 1);
+		if (fast->wants_more)
+			solve_lanes_more(&in, &out, offset, slack);
+#if WIDTH > 4
+		else if (count <= 4)
+			solve_four(&in, &out, offset, slack);
+#endif
+		else
+			solve_lanes_plain(&in, &out, offset, slack, count);
+		if (scattered)
+			ask_ahead(fast, first, end, 2);
+		if (scattered && direct)
+			ask_cursors(fast, cursors, first + count, end);
+		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
+		for (int missing; (missing = missing_record(fast, first, count)) >= 0;)
+			if (!make(fast, missing, context))
+				return;
+		for (size_t i = 0; i < count; i++) {
+			const size_t from = i;
+			i = ordinary ? count : next_special(fast, first, i, count, &out);
+			if (fast->bins.cursors)
+				bin_ordinary(fast, range, first, from, i, ids, &out);
+			else
+				add_ordinary(fast, range, first, from, i, ids, &out);
+			if (i < count)
+				add_special(fast, range, first + i, ids + 3 * i, (int)i, &out);
+		}
+	}
+}
+
+#endif

@@ -1,0 +1,101 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Corners sorted by where their vertex lies, for meshes whose neighbouring triangles have vertices far
+ * apart. There each corner would wait for a cursor, an entry and a record, none of them in a cache.
+ * Instead the first pass writes corners down in bins, one for every few thousand vertices, each of them
+ * a stream; then one bin after the other is added up with all its vertices at hand. (This is one pass of a
+ * radix sort.)
+ *
+ * The corners of a bin lie in triangle order whatever the number of ranges, so the sums are those of the
+ * direct way, and no range has to wait for another.
+ *
+ * A corner takes 16 bytes, which the output lends, and 7 more for its entry.
+ */
+#ifndef NT_TANGENT_FAST_BINS_H
+#define NT_TANGENT_FAST_BINS_H
+
+#include <stdbool.h>
+#include "tangent/fast/record.h"
+#include "topology/adjacency.h"
+
+/* In nt_record.state of a binned corner, above the bits of a sum: its vertex, counted from the bin's first, and
+ * its orientation. */
+enum { NT_BINNED_SHIFT = 16, NT_BINNED_BITS = 14 };
+#define NT_BINNED_ORIENT ((uint32_t)1 << 31)
+
+/* Fewest vertices for which bins are worth their traffic: the records of fewer stay in the second-level
+ * cache. */
+enum { NT_BINS_LEAST = 1 << 16 };
+
+/* Bits of nt_bins.seen: triangles with a frame of one orientation; triangles without a frame. */
+#define NT_SEEN(orient) (1u << (orient))
+#define NT_SEEN_ANY 4u
+
+/* An entry in a bin: two vertices of 28 bits. Its orientation is the sum's. */
+enum { NT_BINNED_VERTEX_BITS = 28, NT_BINNED_ENTRY = 7 };
+
+/* In two steps that overlap, because the byte behind may be another thread's. */
+static inline void nt_binned_store(uint8_t *to, uint32_t next, uint32_t previous)
+{
+	const uint64_t entry = (uint64_t)previous << NT_BINNED_VERTEX_BITS | next;
+	const uint32_t low = (uint32_t)entry, high = (uint32_t)(entry >> 24);
+	memcpy(to, &low, sizeof low);
+	memcpy(to + 3, &high, sizeof high);
+}
+
+/* Reads the byte behind, too. */
+static inline nt_fan_entry nt_binned_load(const uint8_t *from, uint32_t orient_bit)
+{
+	const uint32_t mask = ((uint32_t)1 << NT_BINNED_VERTEX_BITS) - 1;
+	uint64_t entry;
+	memcpy(&entry, from, sizeof entry);
+	return (nt_fan_entry){((uint32_t)entry & mask) | orient_bit,
+		((uint32_t)(entry >> NT_BINNED_VERTEX_BITS) & mask) | orient_bit};
+}
+
+typedef struct nt_bins {
+	unsigned vertex_bits, ranges;
+	size_t count, vertex_count;
+	uint32_t *cursors; /* [ranges][count] where the next corner of a range goes; NULL: no bins */
+	uint32_t *begins;  /* [count][ranges] its first corner */
+	nt_record *sums;   /* [3 * triangle count] */
+	uint8_t *entries;  /* [3 * triangle count] of NT_BINNED_ENTRY bytes, and one byte more */
+	uint8_t *seen;     /* [ranges] */
+} nt_bins;
+
+/* What one bin after the other is added up in. */
+typedef struct nt_bin {
+	nt_adjacency adjacency;
+	nt_record *sums[2]; /* [2^vertex_bits] by orientation, counted from the first vertex; NULL: not needed */
+} nt_bin;
+
+/* Whether faces that follow each other tend to have vertices that lie far apart, by a sample of corners. */
+bool nt_is_scattered(const uint32_t *vertices, size_t corner_count, size_t vertex_count);
+
+/* log2 of the vertices of a bin that suit a mesh. */
+unsigned nt_bins_bits(size_t vertex_count);
+
+/*
+ * Makes places for the corners of all triangles.
+ *
+ *   ids           [3 * triangle count] vertices of the triangles
+ *   vertex_bits   log2 of the vertices of a bin: 4, a block of the adjacency, to NT_BINNED_BITS
+ *   sums          [3 * triangle count] lent until the bins are added up; NULL: taken from the room
+ *
+ * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
+ */
+nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges, size_t vertex_count,
+	unsigned vertex_bits, nt_record *sums, nt_room *room, nt_bins *bins);
+
+/* Memory for one bin, whichever it is, with sums of the orientations that are needed. Returns NMTAN_OK or
+ * NMTAN_ERROR_MEMORY. */
+nmtan_status nt_bin_make(const nt_bins *bins, const bool needed[2], nt_scratch *scratch, nt_bin *bin);
+
+/*
+ * Adds up the corners of bin number `index`, and enters them in the adjacency; what was in `bin` is lost. A corner
+ * without a frame goes to either orientation, and where both are needed its vertex loses NT_STATE_LOCAL: which
+ * group it joins may depend on the order of seeds.
+ */
+void nt_bin_add_up(const nt_bins *bins, size_t index, nt_bin *bin);
+
+#endif

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Step 7 of the fast path: see complex.c.
+ */
+#ifndef NT_TANGENT_FAST_COMPLEX_H
+#define NT_TANGENT_FAST_COMPLEX_H
+
+#include "tangent/fast/parts.h"
+
+/* Solves the vertices whose records are NT_RESULT_COMPLEX and writes their corners. `room` lends what the passes
+ * before have left. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_fast_complex(nt_fast *fast, const nt_kernels *kernels, size_t complex_count, nt_room *room);
+
+#endif

@@ -1,0 +1,415 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * MikkTSpace, fast: the bytes of mikktspace.c at the speed of memory. The passes in order, with their
+ * shares of the time on a clean mesh of a million triangles in 512-bit vectors (43 ns a triangle, Xeon):
+ *
+ *   1 weld       14 %  hash every vertex's row, find equal ones            topology/weld.c
+ *   2 cut              quads become triangles
+ *   3 adjacency   6 %  count the corners of each vertex, make their places topology/adjacency.c
+ *   4 accumulate 55 %  frames and weights of 16 triangles at a time, added accumulate.h
+ *                      to the records of vertices in triangle order        records.c
+ *   5 settle     10 %  16 vertices at a time: is the record the result?    settle.h
+ *   6 write      13 %  every corner gets its vertex's result               write.c
+ *   7 complex          the other vertices: pairs, groups, averages         complex.c
+ *   8 late             degenerate triangles copy a neighbour's corner      write.c
+ *
+ * Where neighbouring triangles have vertices far apart there is no step 3, step 4 writes corners down in bins
+ * of vertices, and step 5 adds up and settles one bin after the other (bins.h).
+ *
+ * Groups are not looked at before step 5, because nearly every vertex has one for each orientation;
+ * what that saves is the point of this file.
+ *
+ * Threads own ranges of triangles, and every sum is in triangle order whatever their number.
+ *
+ * Scratch lives in the output until step 6 where it fits.
+ */
+#include "tangent/fast/fast.h"
+
+#include <string.h>
+#include "base/clock.h"
+#include "base/cpu.h"
+#include "base/parallel.h"
+#include "tangent/fast/complex.h"
+#include "tangent/fast/records.h"
+#include "tangent/fast/write.h"
+#include "topology/corners.h"
+
+/* Starting a thread costs more than it saves with fewer triangles. */
+static const nt_fast_plan usual = {.grain = 65536, .least_lent_bytes = 65536};
+
+static const nt_kernels *kernels_for(nmtan_isa isa)
+{
+#if defined(__x86_64__)
+	if (isa == NMTAN_ISA_AVX512)
+		return &nt_kernels_avx512;
+	if (isa == NMTAN_ISA_AVX2)
+		return &nt_kernels_avx2;
+#endif
+	(void)isa;
+	return &nt_kernels_baseline;
+}
+
+/* 2 */
+
+static size_t count_triangles(const nmtan_mesh *mesh)
+{
+	size_t count = mesh->face_count;
+	for (size_t face = 0; mesh->face_sizes && face < mesh->face_count; face++)
+		count += mesh->face_sizes[face] == 4;
+	return count;
+}
+
+/* Triangles of a mesh with quads: how they are cut, and which are second halves. */
+static nmtan_status cut_faces(nt_fast *fast)
+{
+	const nmtan_mesh *mesh = fast->solve->mesh;
+	uint32_t *cuts = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, sizeof *cuts);
+	if (!cuts)
+		return NMTAN_ERROR_MEMORY;
+	size_t first = 0, t = 0;
+	for (size_t face = 0; face < mesh->face_count; first += mesh->face_sizes[face++]) {
+		uint32_t corners[2][3];
+		const unsigned count = nt_face_triangles(mesh, face, first, corners);
+		for (unsigned half = 0; half < count; half++, t++) {
+			fast->flags[t] = half ? NT_TRIANGLE_SECOND : 0;
+			cuts[t] = nt_cut_of((uint32_t)first, corners[half]);
+		}
+	}
+	fast->triangles.cuts = cuts;
+	return NMTAN_OK;
+}
+
+static nmtan_status make_triangles(nt_fast *fast, const nt_weld *weld)
+{
+	fast->rows = weld->rows;
+	fast->vertex_count = weld->count;
+	fast->flags = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 1);
+	if (!fast->flags)
+		return NMTAN_ERROR_MEMORY;
+	fast->triangles.ids = weld->ids;
+	if (fast->triangle_count != fast->solve->mesh->face_count)
+		return cut_faces(fast);
+	memset(fast->flags, 0, fast->triangle_count);
+	return NMTAN_OK;
+}
+
+/* Contiguous ranges of triangles; halves of a quad stay together. */
+static nmtan_status make_ranges(nt_fast *fast, unsigned count)
+{
+	size_t *bounds = nt_scratch_alloc(fast->solve->scratch, count + 1, sizeof *bounds);
+	if (!bounds)
+		return NMTAN_ERROR_MEMORY;
+	bounds[0] = 0;
+	bounds[count] = fast->triangle_count;
+	for (unsigned r = 1; r < count; r++) {
+		bounds[r] = fast->triangle_count / count * r + fast->triangle_count % count * r / count;
+		while (bounds[r] < fast->triangle_count && fast->flags[bounds[r]] & NT_TRIANGLE_SECOND)
+			bounds[r]++;
+	}
+	fast->ranges = (nt_triangle_ranges){count, bounds};
+	return NMTAN_OK;
+}
+
+/* 4 */
+
+typedef struct run {
+	nt_fast *fast;
+	const nt_kernels *kernels;
+	nt_settled *settled;       /* [ranges] */
+	nt_bin *bins;              /* [ranges] each for one after the other */
+} run;
+
+static void fill_ranges(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	const run *r = context;
+	const size_t *bounds = r->fast->ranges.bounds;
+	for (size_t range = begin; range < end; range++)
+		r->kernels->accumulate(r->fast, bounds[range], bounds[range + 1], (unsigned)range, NULL, NULL);
+}
+
+/* Orientations that came up, as a set of NT_SEEN(); without a frame anywhere, one whose records can take notes. */
+static unsigned seen_orientations(const nt_fast *fast)
+{
+	unsigned seen = 0;
+	for (unsigned r = 0; r < fast->ranges.count; r++)
+		seen |= fast->bins.seen[r];
+	return seen == NT_SEEN_ANY ? NT_SEEN(0) : seen & ~NT_SEEN_ANY;
+}
+
+/* Records of a binned mesh take the rows' place: settle looks at the normals of a block before it writes its
+ * records. Those of both orientations lie in pairs. Those of one are packed, or write would take a third longer;
+ * but only one thread alone has passed all the rows that it then overwrites. */
+static bool place_records(nt_fast *fast)
+{
+	_Static_assert(sizeof(nt_weld_row) == 2 * sizeof(nt_record), "a pair of records is as large as a row");
+	const unsigned seen = seen_orientations(fast);
+	const bool both = seen == (NT_SEEN(0) | NT_SEEN(1));
+	nt_record *records = both || fast->ranges.count == 1
+		? (nt_record *)fast->rows
+		: nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *records);
+	for (int o = 0; o < 2; o++)
+		fast->records[o] = seen & NT_SEEN(o) ? records + (both ? o : 0) : NULL;
+	fast->record_step = both ? 2 : 1;
+	return records;
+}
+
+/* 3 and 4 by way of bins. */
+static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned bin_bits, nt_room *room)
+{
+	nt_record *lent = fast->sparse ? NULL : (nt_record *)fast->solve->tangents;
+	const nmtan_status status = nt_bins_make(fast->triangles.ids, &fast->ranges, fast->vertex_count,
+		bin_bits ? bin_bits : nt_bins_bits(fast->vertex_count), lent, room, &fast->bins);
+	if (status)
+		return status;
+	fast->scattered = true;
+	run r = {.fast = fast, .kernels = kernels};
+	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, fill_ranges, &r);
+	return place_records(fast) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+}
+
+/* 3 and 4 directly. */
+static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, nt_room *row_room, nt_room *room)
+{
+	const nmtan_status status = nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count, row_room,
+		room, &fast->adjacency);
+	if (status)
+		return status;
+	fast->scattered = nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
+	return nt_fast_add(fast, kernels);
+}
+
+/* 5 */
+
+/* An "any" triangle that groups of both orientations can reach takes the one that is seeded first. At its
+ * vertices order matters, so they are not settled. */
+static void mark_contested(nt_fast *fast)
+{
+	if (!fast->records[0] || !fast->records[1])
+		return;
+	size_t t = nt_fast_next_flagged(fast, 0, NT_TRIANGLE_ANY);
+	for (; t < fast->triangle_count; t = nt_fast_next_flagged(fast, t + 1, NT_TRIANGLE_ANY)) {
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
+		if (fast->flags[t] & NT_TRIANGLE_DEGENERATE)
+			continue;
+		uint32_t empty[2] = {NT_STATE_EMPTY, NT_STATE_EMPTY};
+		for (int k = 0; k < 3; k++)
+			for (int o = 0; o < 2; o++)
+				empty[o] &= fast->records[o][v[k]].state;
+		for (int k = 0; !empty[0] && !empty[1] && k < 3; k++)
+			fast->records[0][v[k]].state &= ~(uint32_t)NT_STATE_LOCAL;
+	}
+}
+
+static void settle_blocks(void *context, size_t begin, size_t end, unsigned slot)
+{
+	const run *r = context;
+	nt_settled settled = {0};
+	r->kernels->settle(r->fast, &r->fast->adjacency, r->fast->records, begin, end, &settled);
+	r->settled[slot] = settled;
+}
+
+/* Adds up bins and settles their vertices while they are at hand. */
+static void settle_bins(void *context, size_t begin, size_t end, unsigned slot)
+{
+	const run *r = context;
+	nt_settled settled = {0};
+	nt_bin *bin = &r->bins[slot];
+	for (size_t index = begin; index < end; index++) {
+		nt_bin_add_up(&r->fast->bins, index, bin);
+		const size_t first = bin->adjacency.first_vertex / NT_LANES;
+		r->kernels->settle(r->fast, &bin->adjacency, bin->sums, first,
+			first + (bin->adjacency.vertex_count + NT_LANES - 1) / NT_LANES, &settled);
+	}
+	r->settled[slot] = settled;
+}
+
+static bool make_bins_at_hand(run *r, unsigned ranges)
+{
+	const nt_fast *fast = r->fast;
+	const bool needed[2] = {fast->records[0], fast->records[1]};
+	r->bins = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *r->bins);
+	for (unsigned i = 0; r->bins && i < ranges; i++)
+		if (nt_bin_make(&fast->bins, needed, fast->solve->scratch, &r->bins[i]))
+			return false;
+	return r->bins;
+}
+
+static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled *sum)
+{
+	const unsigned ranges = fast->ranges.count;
+	run r = {.fast = fast, .kernels = kernels};
+	r.settled = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *r.settled);
+	if (!r.settled)
+		return NMTAN_ERROR_MEMORY;
+	memset(r.settled, 0, ranges * sizeof *r.settled);
+	if (fast->bins.cursors) {
+		if (!make_bins_at_hand(&r, ranges))
+			return NMTAN_ERROR_MEMORY;
+		nt_parallel_ranges(ranges, fast->bins.count, 1, settle_bins, &r);
+	} else {
+		mark_contested(fast);
+		nt_parallel_ranges(ranges, (fast->vertex_count + NT_LANES - 1) / NT_LANES, 1, settle_blocks,
+			&r);
+	}
+	*sum = (nt_settled){0};
+	for (unsigned i = 0; i < ranges; i++)
+		sum->complex_count += r.settled[i].complex_count;
+	return NMTAN_OK;
+}
+
+/* Tells tangent/usable.c which triangles need no look, and repair.c what is welded. */
+static void vouch(const nt_fast *fast)
+{
+	*fast->solve->vouched = (nt_vouched){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT,
+		.suspect = NT_TRIANGLE_SUSPECT, .doubtful = NT_TRIANGLE_SUSPECT & ~NT_TRIANGLE_COMPLEX,
+		.welded = fast->triangles.ids, .welded_count = fast->vertex_count};
+}
+
+/* The rows that a sparse solve stands for: a record is x, y, z and, as state, the sign. */
+static void vouch_rows(const nt_fast *fast)
+{
+	nt_vouched *vouched = fast->solve->vouched;
+	vouched->ids = fast->triangles.ids;
+	vouched->row_step = fast->record_step * sizeof(nt_record) / sizeof(float);
+	for (int orient = 0; orient < 2; orient++)
+		vouched->rows[orient] = fast->records[orient] ? &fast->records[orient]->x : NULL;
+}
+
+/* What step 7 may use: the largest array that is done with and does not lie in the output. */
+static nt_room dead_room(const nt_fast *fast)
+{
+	const nt_solve *solve = fast->solve;
+	const nt_adjacency *a = &fast->adjacency;
+	/* records have taken the place of the rows of a binned mesh */
+	const bool binned = fast->bins.cursors;
+	const struct {
+		const void *memory;
+		size_t bytes;
+	} arrays[3] = {
+		{fast->rows, binned ? 0 : fast->vertex_count * sizeof *fast->rows},
+		{binned ? (const void *)fast->bins.entries : a->entries,
+			binned ? 3 * fast->triangle_count * NT_BINNED_ENTRY : a->entry_count * sizeof *a->entries},
+		{a->rest, a->rest_count * sizeof *a->rest},
+	};
+	nt_room largest = nt_room_over(NULL, 0, solve->scratch);
+	for (int i = 0; i < 3; i++) {
+		const uintptr_t at = (uintptr_t)arrays[i].memory - (uintptr_t)solve->tangents;
+		const bool in_output = at < solve->corner_count * 4 * sizeof(float);
+		if (!in_output && arrays[i].bytes > (size_t)(largest.end - largest.begin))
+			largest = nt_room_over((void *)arrays[i].memory, arrays[i].bytes, solve->scratch);
+	}
+	return largest;
+}
+
+/* Whether corners go by way of bins: the sums of all of them need as much room as the output of triangles. A sparse
+ * solve, which does not fill it, has them in the scratch. */
+static bool is_binned(const nt_fast *fast, unsigned bin_bits)
+{
+	const nmtan_mesh *mesh = fast->solve->mesh;
+	if (fast->wants_more || fast->triangle_count != mesh->face_count)
+		return false;
+	return bin_bits || (mesh->indices &&
+		nt_is_scattered(mesh->indices, fast->solve->corner_count, mesh->vertex_count));
+}
+
+/* Whether there is room for the rows beside the entries. If not, the larger of them should have it. */
+static bool has_room_for_rows(const nt_fast *fast, const nt_room *room)
+{
+	const nmtan_mesh *mesh = fast->solve->mesh;
+	const size_t free = (size_t)(room->end - room->begin);
+	/* without indices: two triangles for a vertex */
+	const size_t vertices = mesh->indices ? mesh->vertex_count : fast->triangle_count / 2;
+	const size_t entries = 3 * fast->triangle_count * sizeof(nt_fan_entry);
+	const size_t rows = vertices * (sizeof(nt_weld_row) + sizeof(uint32_t));
+	return rows + entries <= free || entries > free || rows > entries;
+}
+
+/* The output lends its bytes, if it has some to speak of: entries that lie in two places take longer. A sparse one is
+ * not filled, so that its pages need not exist: there the caller lends what it fills from the records. */
+static nt_room lent_room(const nt_fast *fast, const nt_fast_plan *plan)
+{
+	const nt_solve *solve = fast->solve;
+	const size_t output_bytes = solve->corner_count * 4 * sizeof(float);
+	if (fast->sparse)
+		return nt_room_over(solve->lent, solve->lent_bytes, solve->scratch);
+	return nt_room_over(solve->tangents, output_bytes < plan->least_lent_bytes ? 0 : output_bytes, solve->scratch);
+}
+
+/* 1 to 4 */
+static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, const nt_fast_plan *plan)
+{
+	const nt_solve *solve = fast->solve;
+	const unsigned ranges = nt_parallel_slots(solve->threads, fast->triangle_count, plan->grain);
+	const bool binned = is_binned(fast, plan->bin_bits);
+	nt_room room = lent_room(fast, plan);
+	nt_room none = nt_room_over(solve->tangents, 0, solve->scratch);
+	/* rows at random are better off in the large pages of the scratch, and records will replace them */
+	nt_room *const row_room = !binned && has_room_for_rows(fast, &room) ? &room : &none;
+	nt_weld weld;
+	const double begin = solve->timing ? nt_seconds() : 0;
+	nmtan_status status = nt_weld_mesh(solve->mesh, solve->corner_count, ranges, row_room, &room, &weld);
+	if (solve->passed)
+		solve->passed(solve->user, NT_PART_ATTRIBUTES);
+	if (solve->timing)
+		solve->timing->weld += nt_seconds() - begin;
+	if (!status)
+		status = make_triangles(fast, &weld);
+	if (!status)
+		status = make_ranges(fast, ranges);
+	if (!status)
+		status = binned ? fill_bins(fast, kernels, plan->bin_bits, &room)
+				: add_to_records(fast, kernels, row_room, &room);
+	return status;
+}
+
+/* With `sparse` the corners of triangles that are not suspect are not written, unless that is not enough. */
+static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, const nt_fast_plan *plan)
+{
+	const nt_kernels *kernels = kernels_for(solve->isa);
+	*fast = (nt_fast){.solve = solve, .sparse = solve->sparse, .triangle_count = count_triangles(solve->mesh)};
+	fast->wants_more = solve->bitangents || solve->magnitudes;
+	/* what the lanes have no place for goes by the definition: other thresholds split most groups, and
+	 * beyond the limits numbers do not fit the entries */
+	if (solve->threshold_cos != -1.0f || 3 * fast->triangle_count >= NT_ADJACENCY_LIMIT ||
+		solve->mesh->vertex_count >= NT_WELD_LIMIT)
+		return NMTAN_ERROR_TOO_LARGE;
+
+	nmtan_status status = sum_up(fast, kernels, plan);
+	if (status)
+		return status;
+	if (!fast->records[0] && !fast->records[1]) {
+		fast->sparse = false;
+		nt_fast_write_defaults(fast);
+		return NMTAN_OK;
+	}
+
+	nt_settled settled;
+	if ((status = settle(fast, kernels, &settled)))
+		return status;
+	nt_fast_write(fast);
+	nt_room room = dead_room(fast);
+	if (settled.complex_count > 0 && (status = nt_fast_complex(fast, kernels, settled.complex_count, &room)))
+		return status;
+	if (solve->vouched)
+		vouch(fast);
+	/* late triangles copy corners, which must have been written */
+	if (fast->sparse && nt_fast_next_flagged(fast, 0, NT_TRIANGLE_LATE) < fast->triangle_count)
+		nt_fast_write_rest(fast);
+	if (fast->sparse)
+		vouch_rows(fast);
+	return nt_fast_write_late(fast);
+}
+
+nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *plan)
+{
+	nt_fast fast;
+	const nmtan_status status = solve_as(&fast, solve, plan);
+	return status == NMTAN_ERROR_TOO_LARGE ? nt_mikktspace_scalar(solve) : status;
+}
+
+nmtan_status nt_mikktspace_fast(const nt_solve *solve)
+{
+	return nt_mikktspace_fast_as(solve, &usual);
+}

@@ -1,0 +1,23 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * MikkTSpace, fast: the bytes of mikktspace.c at the speed of memory. See fast.c.
+ */
+#ifndef NT_TANGENT_FAST_FAST_H
+#define NT_TANGENT_FAST_FAST_H
+
+#include "tangent/solve.h"
+
+/* What depends on a mesh's size and order; tests choose it themselves, so that small meshes go every way. */
+typedef struct nt_fast_plan {
+	size_t grain;      /* least triangles for a thread */
+	unsigned bin_bits; /* log2 of the vertices of a bin, from 4 on; 0: bins where the mesh is scattered */
+	size_t least_lent_bytes; /* smaller outputs do not serve as scratch */
+} nt_fast_plan;
+
+/* The bytes of nt_mikktspace_scalar(). Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+nmtan_status nt_mikktspace_fast(const nt_solve *solve);
+
+/* The same by another plan. */
+nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *plan);
+
+#endif

@@ -1,0 +1,310 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * 16 triangles at a time, as plain loops of which the compiler makes vectors: frame (spec page, step 4) and the
+ * three corners' weighted u directions (step 8). The arithmetic is that of the scalar definition,
+ * operation by operation, wherever a value reaches the output. Included by kernel.h.
+ */
+#ifndef NT_TANGENT_FAST_LANES_H
+#define NT_TANGENT_FAST_LANES_H
+
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+#include "tangent/acos.h"
+#include "tangent/fast/parts.h"
+#include "tangent/usable.h"
+#include "tangent/fast/turn.h"
+
+/* Two unit vectors whose components along one axis are both above H, or both below -H, have a dot product
+ * of at least 2 H^2 - 1 = -0.9998, well away from the -1 at which step 7 parts them: rounding moves it by 1e-6.
+ * The smaller H is, the fewer vertices fail the test: on a noisy mesh of 200 triangles 23 % with 0.1, 5 % with
+ * 0.01. */
+#define HALF_SPACE 0.01f
+
+/* Lengths in here are normalised without loss: their squares neither overflow nor lose bits. */
+#define LEAST_SQUARE 1e-30f
+#define MOST_SQUARE 1e30f
+
+/* Half a unit in the last place of 1: the relative error of a rounded float operation. */
+#define HALF_ULP 0x1p-24f
+
+/* Ratios that a float quotient can hold with room to spare. */
+#define LEAST_RATIO 1e-30f
+#define MOST_RATIO 1e30f
+
+/* A bit of nt_record.state as the float that sets it: NT_STATE_BASE is 2.0f, whose last place is 2^-22. */
+#define STATE_BIT(bit) ((float)(bit) * 0x1p-22f)
+
+/* 16 triangles by component. */
+typedef struct lanes_in {
+	_Alignas(64) float row[3][8][NT_LANES]; /* corner, float of its nt_weld_row */
+} lanes_in;
+
+typedef struct lanes_out {
+	_Alignas(64) float edge[3][3][NT_LANES];     /* of edge k, from corner k to the next */
+	float u[3][NT_LANES], v[3][NT_LANES]; /* the frame's directions */
+	float mag_u[NT_LANES], mag_v[NT_LANES];
+	float sum[3][4][NT_LANES];      /* corner, float of its nt_record */
+	float extra[3][8][NT_LANES];    /* corner, float of its nt_record_more */
+	float cosine[3][NT_LANES];      /* of a corner's angle */
+	float add[3][4 * NT_LANES];     /* corner, one nt_record after the other, in turned places */
+	float more[3][2][4 * NT_LANES]; /* the same, halves of nt_record_more */
+	float area[NT_LANES];
+	int orient[NT_LANES];     /* area > 0 */
+	int frameless[NT_LANES];  /* no UV area at all: certainly "any" */
+	int certain[NT_LANES];    /* the area's sign is exact, and stays when v is stored */
+	int sound[NT_LANES];      /* every length and ratio is well inside float's range: certainly not "any" */
+	int degenerate[NT_LANES];
+} lanes_out;
+
+/* A unit vector's bits of NT_STATE_U, as what they add to the state. */
+static inline __attribute__((always_inline)) float half_spaces(float x, float y, float z, float h)
+{
+	float state = (x > h ? STATE_BIT(1) : 0.0f) + (x < -h ? STATE_BIT(2) : 0.0f);
+	state += (y > h ? STATE_BIT(4) : 0.0f) + (y < -h ? STATE_BIT(8) : 0.0f);
+	state += (z > h ? STATE_BIT(16) : 0.0f) + (z < -h ? STATE_BIT(32) : 0.0f);
+	return state;
+}
+
+/* The frames of lanes [0, count), and what is known of the triangles. */
+static inline __attribute__((always_inline)) void solve_frames(const lanes_in *restrict in,
+	lanes_out *restrict out, float offset, float slack, bool more, int count)
+{
+	for (int i = 0; i < count; i++) {
+		float p[3][3], t[3][2];
+#pragma GCC unroll 3
+		for (int k = 0; k < 3; k++) {
+			p[k][0] = in->row[k][0][i], p[k][1] = in->row[k][1][i], p[k][2] = in->row[k][2][i];
+			t[k][0] = in->row[k][6][i], t[k][1] = in->row[k][7][i];
+		}
+		float d1[3], d2[3];
+#pragma GCC unroll 3
+		for (int c = 0; c < 3; c++) {
+			d1[c] = p[1][c] - p[0][c], d2[c] = p[2][c] - p[0][c];
+			out->edge[0][c][i] = d1[c];
+			out->edge[1][c][i] = p[2][c] - p[1][c];
+			out->edge[2][c][i] = p[0][c] - p[2][c];
+		}
+		const int same01 = (p[0][0] == p[1][0]) & (p[0][1] == p[1][1]) & (p[0][2] == p[1][2]);
+		const int same12 = (p[1][0] == p[2][0]) & (p[1][1] == p[2][1]) & (p[1][2] == p[2][2]);
+		const int same20 = (p[2][0] == p[0][0]) & (p[2][1] == p[0][1]) & (p[2][2] == p[0][2]);
+
+		const float t21x = t[1][0] - t[0][0], t21y = t[1][1] - t[0][1];
+		const float t31x = t[2][0] - t[0][0], t31y = t[2][1] - t[0][1];
+		const float area = t21x * t31y - t21y * t31x;
+		float os[3], ot[3];
+#pragma GCC unroll 3
+		for (int c = 0; c < 3; c++) {
+			os[c] = t31y * d1[c] - t21y * d2[c];
+			ot[c] = -t31x * d1[c] + t21x * d2[c];
+		}
+		const float ls = sqrtf(os[0] * os[0] + os[1] * os[1] + os[2] * os[2]);
+		const float lt = sqrtf(ot[0] * ot[0] + ot[1] * ot[1] + ot[2] * ot[2]);
+		const float size = fabsf(area), sign = area > 0.0f ? 1.0f : -1.0f;
+		const float rs = sign / ls, rt = sign / lt;
+#pragma GCC unroll 3
+		for (int c = 0; c < 3; c++)
+			out->u[c][i] = rs * os[c], out->v[c][i] = rt * ot[c];
+		if (more)
+			out->mag_u[i] = ls / size, out->mag_v[i] = lt / size;
+		/* 3 u (|p| + |r|) bounds the rounding of the area, u = 2^-24, and the difference is rounded once
+		 * more; storing moves each v by u |v + offset| at most, an edge by twice that */
+		const float bound = 8 * HALF_ULP * (fabsf(t21x * t31y) + fabsf(t21y * t31x)) +
+				    slack * (fabsf(t[0][1]) + fabsf(t[1][1]) + fabsf(t[2][1]) + fabsf(offset)) *
+					    (fabsf(t21x) + fabsf(t31x));
+		out->certain[i] = size > bound;
+		out->area[i] = area;
+		out->orient[i] = area > 0.0f;
+		out->degenerate[i] = same01 | same12 | same20;
+		out->frameless[i] = !(size > FLT_MIN);
+		out->sound[i] = (size > FLT_MIN) & (ls > FLT_MIN) & (lt > FLT_MIN) &
+				(ls > LEAST_RATIO * size) & (lt > LEAST_RATIO * size) &
+				(ls < MOST_RATIO * size) & (lt < MOST_RATIO * size);
+	}
+}
+
+/* Corner k: its unit directions, the cosine of its angle, and the bits of what holds for it. */
+static inline __attribute__((always_inline)) void solve_corners(const lanes_in *restrict in,
+	lanes_out *restrict out, int k, bool more, int count)
+{
+	const int before = (k + 2) % 3;
+	for (int i = 0; i < count; i++) {
+		const float n[3] = {in->row[k][3][i], in->row[k][4][i], in->row[k][5][i]};
+		const float os[3] = {out->u[0][i], out->u[1][i], out->u[2][i]};
+		const float ot[3] = {out->v[0][i], out->v[1][i], out->v[2][i]};
+		/* u and v: the directions without their part along n */
+		const float nu = n[0] * os[0] + n[1] * os[1] + n[2] * os[2];
+		const float nv = n[0] * ot[0] + n[1] * ot[1] + n[2] * ot[2];
+		float ux = os[0] - nu * n[0], uy = os[1] - nu * n[1], uz = os[2] - nu * n[2];
+		const float vx = ot[0] - nv * n[0], vy = ot[1] - nv * n[1], vz = ot[2] - nv * n[2];
+		const float uu = ux * ux + uy * uy + uz * uz, vv = vx * vx + vy * vy + vz * vz;
+		const float ur = 1.0f / sqrtf(uu);
+		ux = ur * ux, uy = ur * uy, uz = ur * uz;
+
+		/* the angle between the edges, seen along n; e runs towards the corner, which its length mends */
+		const float e[3] = {out->edge[before][0][i], out->edge[before][1][i], out->edge[before][2][i]};
+		const float f[3] = {out->edge[k][0][i], out->edge[k][1][i], out->edge[k][2][i]};
+		const float ne = n[0] * e[0] + n[1] * e[1] + n[2] * e[2];
+		const float nf = n[0] * f[0] + n[1] * f[1] + n[2] * f[2];
+		float ex = e[0] - ne * n[0], ey = e[1] - ne * n[1], ez = e[2] - ne * n[2];
+		float fx = f[0] - nf * n[0], fy = f[1] - nf * n[1], fz = f[2] - nf * n[2];
+		const float er = -1.0f / sqrtf(ex * ex + ey * ey + ez * ez);
+		const float fr = 1.0f / sqrtf(fx * fx + fy * fy + fz * fz);
+		ex = er * ex, ey = er * ey, ez = er * ez;
+		fx = fr * fx, fy = fr * fy, fz = fr * fz;
+		const float dot = ex * fx + ey * fy + ez * fz;
+		const float c = dot > 1.0f ? 1.0f : dot;
+
+		/* with these squares the definition normalises as well; NaN in either of them is kept; the
+		 * product of an edge without length is NaN */
+		const float least = uu < vv ? uu : vv, most = vv > uu ? vv : uu;
+		const int sound = (least > LEAST_SQUARE) & (most < MOST_SQUARE) & (fabsf(dot) < 2.0f);
+		float state = 2.0f + STATE_BIT(NT_STATE_NO_ANY + NT_STATE_LOCAL);
+		state += half_spaces(ux, uy, uz, HALF_SPACE);
+		/* x |x| > h^2 is x > h */
+		state += 64 * half_spaces(vx * fabsf(vx), vy * fabsf(vy), vz * fabsf(vz), HALF_SPACE * HALF_SPACE * vv);
+		state += sound ? STATE_BIT(NT_STATE_SOUND) : 0.0f;
+
+		out->sum[k][0][i] = ux;
+		out->sum[k][1][i] = uy;
+		out->sum[k][2][i] = uz;
+		out->sum[k][3][i] = state;
+		out->cosine[k][i] = c < -1.0f ? -1.0f : c;
+		if (more) {
+			const float vr = 1.0f / sqrtf(vv);
+			out->extra[k][0][i] = vr * vx;
+			out->extra[k][1][i] = vr * vy;
+			out->extra[k][2][i] = vr * vz;
+		}
+	}
+}
+
+/* Directions are weighted by the angle of corner k. */
+static inline __attribute__((always_inline)) void weigh_corners(lanes_out *restrict out, int k, bool more,
+	int count)
+{
+	for (int i = 0; i < count; i++) {
+		const float w = nt_acos(out->cosine[k][i]);
+		out->sum[k][0][i] *= w;
+		out->sum[k][1][i] *= w;
+		out->sum[k][2][i] *= w;
+		if (more) {
+			out->extra[k][0][i] *= w;
+			out->extra[k][1][i] *= w;
+			out->extra[k][2][i] *= w;
+			out->extra[k][3][i] = w;
+			out->extra[k][4][i] = w * out->mag_u[i];
+			out->extra[k][5][i] = w * out->mag_v[i];
+			out->extra[k][6][i] = 0.0f;
+			out->extra[k][7][i] = 0.0f;
+		}
+	}
+}
+
+/* Lanes [0, count). One loop for each idea: in a single one there are more values under way than
+ * registers, and square roots wait for each other (a third slower with AVX-512). */
+static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *restrict in,
+	lanes_out *restrict out, float offset, float slack, bool more, int count)
+{
+	solve_frames(in, out, offset, slack, more, count);
+#pragma GCC unroll 3
+	for (int k = 0; k < 3; k++)
+		solve_corners(in, out, k, more, count);
+#pragma GCC unroll 3
+	for (int k = 0; k < 3; k++)
+		weigh_corners(out, k, more, count);
+}
+
+static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *in, lanes_out *out, float offset,
+	float slack, size_t count)
+{
+	const size_t lane_count = whole_lanes(count);
+	solve_lanes(in, out, offset, slack, false, (int)lane_count);
+	for (int k = 0; k < 3; k++)
+		interleave(out->sum[k], lane_count, out->add[k]);
+}
+
+#if WIDTH > 4
+/* Four triangles in vectors of four: those of wider ones take longer. */
+static void __attribute__((noinline)) solve_four(const lanes_in *in, lanes_out *out, float offset, float slack)
+{
+	solve_lanes(in, out, offset, slack, false, 4);
+	for (size_t k = 0; k < 3; k++) {
+		nt_float4 four[4];
+		for (size_t j = 0; j < 4; j++)
+			memcpy(&four[j], out->sum[k][j], sizeof four[j]);
+		turn_four(four);
+		for (size_t j = 0; j < 4; j++)
+			memcpy(out->add[k] + 4 * turned_place(j), &four[j], sizeof four[j]);
+	}
+}
+#endif
+
+static void __attribute__((noinline)) solve_lanes_more(const lanes_in *in, lanes_out *out, float offset,
+	float slack)
+{
+	solve_lanes(in, out, offset, slack, true, NT_LANES);
+	for (int k = 0; k < 3; k++) {
+		interleave(out->sum[k], NT_LANES, out->add[k]);
+		interleave(out->extra[k], NT_LANES, out->more[k][0]);
+		interleave(out->extra[k] + 4, NT_LANES, out->more[k][1]);
+	}
+}
+
+/* Whether a triangle whose values are out of the ordinary has a frame: the definition's own test. */
+static bool has_frame(const lanes_in *in, int i, float area)
+{
+	const float t21x = in->row[1][6][i] - in->row[0][6][i], t21y = in->row[1][7][i] - in->row[0][7][i];
+	const float t31x = in->row[2][6][i] - in->row[0][6][i], t31y = in->row[2][7][i] - in->row[0][7][i];
+	float s[3], t[3];
+	for (int c = 0; c < 3; c++) {
+		const float d1 = in->row[1][c][i] - in->row[0][c][i], d2 = in->row[2][c][i] - in->row[0][c][i];
+		s[c] = t31y * d1 - t21y * d2;
+		t[c] = -t31x * d1 + t21x * d2;
+	}
+	const float ls = sqrtf(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+	const float lt = sqrtf(t[0] * t[0] + t[1] * t[1] + t[2] * t[2]);
+	return fabsf(ls / fabsf(area)) > FLT_MIN && fabsf(lt / fabsf(area)) > FLT_MIN;
+}
+
+/* Both halves of a quad take the orientation of one of them: step 4. */
+static void orient_quads(uint8_t *flags, size_t count, const float *area)
+{
+	for (size_t i = 0; i + 1 < count; i++) {
+		uint8_t *a = &flags[i], *b = &flags[i + 1];
+		if (!(*b & NT_TRIANGLE_SECOND) || ((*a | *b) & NT_TRIANGLE_DEGENERATE) ||
+			!((*a ^ *b) & NT_TRIANGLE_ORIENT))
+			continue;
+		*a |= NT_TRIANGLE_UNCERTAIN, *b |= NT_TRIANGLE_UNCERTAIN; /* folded */
+		if ((*b & NT_TRIANGLE_ANY) || fabsf(area[i]) >= fabsf(area[i + 1]))
+			*b ^= NT_TRIANGLE_ORIENT;
+		else
+			*a ^= NT_TRIANGLE_ORIENT;
+	}
+}
+
+/* Flags of the lanes; true where all of them are ordinary triangles with a frame. */
+static bool __attribute__((noinline)) classify_lanes(const nt_fast *fast, size_t first, size_t count, const lanes_in *in,
+	const lanes_out *out)
+{
+	uint8_t *flags = fast->flags + first;
+	int odd = 0, special = 0;
+	for (size_t i = 0; i < count; i++) {
+		odd |= !(out->sound[i] | out->frameless[i]);
+		special |= out->degenerate[i] | !out->sound[i];
+	}
+	for (size_t i = 0; i < count; i++)
+		flags[i] = (uint8_t)((flags[i] & NT_TRIANGLE_SECOND) | (out->orient[i] ? NT_TRIANGLE_ORIENT : 0) |
+				     (out->frameless[i] ? NT_TRIANGLE_ANY : 0) |
+				     (out->degenerate[i] ? NT_TRIANGLE_DEGENERATE : 0) |
+				     (out->certain[i] ? 0 : NT_TRIANGLE_UNCERTAIN));
+	for (size_t i = 0; odd && i < count; i++)
+		if (!out->sound[i] && !out->frameless[i] && !has_frame(in, (int)i, out->area[i]))
+			flags[i] |= NT_TRIANGLE_ANY;
+	if (fast->triangles.cuts)
+		orient_quads(flags, count, out->area);
+	return !special;
+}
+
+#endif

@@ -1,0 +1,155 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the passes of the fast path share, and no one else. fast.c is the recipe; kernel.h holds the passes that are
+ * compiled once for each instruction set; complex.c solves the vertices that need groups.
+ *
+ * A vertex here is a welded vertex. At most vertices all corners belong to one group, or to one group of
+ * either orientation, and the group's result is a sum over the vertex's corners in triangle order. So the
+ * first pass adds every triangle to one record for each (vertex, orientation), without looking at groups.
+ * The second looks at the corners of each vertex and either settles it, which makes the record
+ * the result, or leaves it to complex.c.
+ */
+#ifndef NT_TANGENT_FAST_PARTS_H
+#define NT_TANGENT_FAST_PARTS_H
+
+#include <string.h>
+#include "tangent/fast/bins.h"
+#include "tangent/solve.h"
+#include "topology/adjacency.h"
+#include "topology/weld.h"
+
+enum { NT_LANES = 16 };
+
+/* Bits of nt_fast.flags */
+enum {
+	NT_TRIANGLE_ORIENT = 1,     /* UV determinant positive (after a quad's halves agreed) */
+	NT_TRIANGLE_ANY = 2,        /* no frame: joins groups of any orientation */
+	NT_TRIANGLE_DEGENERATE = 4, /* two corners at one position: takes no part */
+	NT_TRIANGLE_SECOND = 8,     /* second half of a quad: the first is the triangle before */
+	NT_TRIANGLE_COMPLEX = 16,   /* has a corner at a complex vertex */
+	NT_TRIANGLE_LATE = 32,      /* degenerate, and copies a corner that is not known yet */
+	NT_TRIANGLE_TAKEN = 64,     /* "any", and a group has a corner of it */
+	NT_TRIANGLE_UNCERTAIN = 128 /* the exact orientation, as stored too, may differ */
+};
+
+/* Entries of fans: orientation in bit 31; bit 30 marks a place without a corner, whose numbers differ
+ * from all others of its vertex. */
+#define NT_ENTRY_ORIENT ((uint32_t)1 << 31)
+#define NT_ENTRY_VOID ((uint32_t)1 << 30)
+#define NT_ENTRY_VERTEX (NT_ENTRY_ORIENT - 1)
+
+/* Contributions of a range that have to wait for earlier ranges'. */
+typedef struct nt_deferred {
+	uint32_t *to; /* vertices, with NT_ENTRY_ORIENT */
+	nt_record *add;
+	nt_record_more *more; /* or NULL */
+	size_t count;
+} nt_deferred;
+
+typedef struct nt_fast {
+	const nt_solve *solve;
+	nt_triangles triangles;  /* of welded vertices */
+	size_t triangle_count;
+	const nt_weld_row *rows; /* [vertex_count] */
+	size_t vertex_count;
+	uint8_t *flags;          /* [triangle_count] */
+	nt_adjacency adjacency;
+	nt_record *records[2];       /* for orientation false and true, see nt_fast_record(); NULL: not needed */
+	size_t record_step;          /* from one vertex to the next */
+	nt_record_more *more[2];     /* [vertex_count] the same for the optional outputs */
+	bool wants_more;
+	bool sparse;             /* step 6 leaves out corners whose result is their record */
+	bool scattered;          /* neighbouring triangles have vertices far apart: ask for them early */
+	nt_bins bins;            /* of a scattered mesh: its corners on their way to the records */
+	nt_triangle_ranges ranges;
+	nt_deferred *deferred;       /* [ranges] */
+} nt_fast;
+
+typedef struct nt_settled {
+	size_t complex_count;
+} nt_settled;
+
+/* Makes fast->records[orient], which a triangle needs and which does not exist; false: it cannot be had now. */
+typedef bool nt_record_maker(nt_fast *fast, int orient, void *context);
+
+/* What a corner adds to its group, solved by itself. */
+typedef struct nt_corner {
+	float u[3], mag_s, v[3], mag_t; /* unit directions perpendicular to the normal, magnitudes */
+	float angle;                    /* the weight */
+	uint32_t kind;
+} nt_corner;
+
+/* nt_corner.kind: u and v have length 1 up to 1e-5; they may not; there is no frame,
+ * and no value means anything. */
+enum { NT_CORNER_UNIT, NT_CORNER_EXTREME, NT_CORNER_ANY };
+
+/* The passes of one instruction set. */
+typedef struct nt_kernels {
+	/* Solves triangles [begin, end) of a range and adds them to their vertices, or to the bins where
+	 * there are bins. Without them it asks for record arrays that do not exist, and stops where it does not
+	 * get one. */
+	void (*accumulate)(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
+		void *context);
+	/* Turns the sums of blocks [begin, end) of vertices, all of them in the adjacency, into results, which go
+	 * to the records; counts the vertices that are complex, those too whose tangent is not usable. Sums are counted from the adjacency's first vertex. Results may
+	 * replace the rows of their block and of those before. */
+	void (*settle)(nt_fast *fast, const nt_adjacency *adjacency, nt_record *const sums[2], size_t begin,
+		size_t end, nt_settled *settled);
+	/* Solves corners, given as 4 * triangle + k. `solved` has room for a multiple of NT_LANES. */
+	void (*corners)(const nt_fast *fast, const uint32_t *corners, size_t count, nt_corner *solved);
+} nt_kernels;
+
+extern const nt_kernels nt_kernels_baseline;
+#if defined(__x86_64__)
+extern const nt_kernels nt_kernels_avx2, nt_kernels_avx512;
+#endif
+
+/* Whether triangle t and t + 1 are halves of one quad. Not read from the flags, which belong to another thread
+ * where a range ends. */
+static inline bool nt_fast_quad_begins(const nt_fast *fast, size_t t)
+{
+	return t + 1 < fast->triangle_count && nt_is_cut_between(&fast->triangles, t);
+}
+
+/* Corner i % 3 of triangle i / 3: the mesh's number of it, and its vertex. */
+static inline size_t nt_fast_corner(const nt_fast *fast, size_t i)
+{
+	return fast->triangles.cuts ? nt_triangle_corner(&fast->triangles, i / 3, i % 3) : i;
+}
+
+static inline uint32_t nt_fast_vertex(const nt_fast *fast, size_t i)
+{
+	return fast->triangles.ids[nt_fast_corner(fast, i)];
+}
+
+static inline nt_record *nt_fast_record(const nt_fast *fast, int orient, uint32_t vertex)
+{
+	return &fast->records[orient][fast->record_step * vertex];
+}
+
+/* The next triangle from t on that has one of these flags; triangle_count: none. Most have none, eight a step. */
+static inline size_t nt_fast_next_flagged(const nt_fast *fast, size_t t, unsigned flags)
+{
+	const uint64_t pattern = 0x0101010101010101u * flags;
+	while (t < fast->triangle_count) {
+		uint64_t eight;
+		if (fast->triangle_count - t >= sizeof eight) {
+			memcpy(&eight, fast->flags + t, sizeof eight);
+			if (!(eight & pattern)) {
+				t += sizeof eight;
+				continue;
+			}
+		}
+		for (const size_t stop = t + sizeof eight; t < stop && t < fast->triangle_count; t++)
+			if (fast->flags[t] & flags)
+				return t;
+	}
+	return t;
+}
+
+/* The triangles whose corners have to be looked at one by one: those that do not have three settled
+ * corners, all of them usable, and a determinant whose sign is beyond doubt. */
+enum { NT_TRIANGLE_SUSPECT = NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_COMPLEX |
+			     NT_TRIANGLE_UNCERTAIN };
+
+#endif

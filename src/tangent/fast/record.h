@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the fast path keeps of a welded vertex: the sum over its corners of one orientation, and bits that say
+ * whether that sum is what the groups of the definition would give.
+ */
+#ifndef NT_TANGENT_FAST_RECORD_H
+#define NT_TANGENT_FAST_RECORD_H
+
+#include <stdint.h>
+#include <string.h>
+
+/* Sum over the corners of one orientation at a vertex; later its result. `state` is a set of bits that
+ * each corner may only clear: what is left holds for all of them. */
+typedef struct nt_record {
+	float x, y, z;
+	uint32_t state;
+} nt_record;
+
+/* The sums behind the optional outputs. */
+typedef struct nt_record_more {
+	float x, y, z, angle; /* bitangent; sum of the weights */
+	float mag_s, mag_t;
+	float unused[2];
+} nt_record_more;
+
+/* Bits of nt_record.state while it is a sum. All states carry NT_STATE_BASE, which makes them normal
+ * floats: the lane takes part in the addition of its record, and a denormal may cost 100 cycles. */
+enum {
+	NT_STATE_U = 0x3f,          /* one bit for each half-space that all u directions lie in */
+	NT_STATE_V = 0x3f << 6,     /* the same for v */
+	NT_STATE_SOUND = 1 << 12,   /* every value met was well inside float's range */
+	NT_STATE_EMPTY = 1 << 13,   /* no corner was added */
+	NT_STATE_NO_ANY = 1 << 14,  /* no triangle without a frame touches the vertex */
+	NT_STATE_LOCAL = 1 << 15,   /* the order in which groups are seeded does not matter */
+	NT_STATE_ALL = 0xffff,
+	NT_STATE_BASE = 0x40000000
+};
+
+/* nt_record.state when settled: the sign as a float, or one of these. */
+#define NT_RESULT_PLUS 0x3f800000u    /* 1.0f */
+#define NT_RESULT_MINUS 0xbf800000u   /* -1.0f */
+#define NT_RESULT_NONE 0u             /* no corner has this orientation */
+#define NT_RESULT_COMPLEX 0x40000000u /* ask complex.c */
+#define NT_RESULT_NUMBERED 0x40000001u /* complex.c has been there */
+
+typedef float nt_float4 __attribute__((vector_size(16)));
+typedef int nt_int4 __attribute__((vector_size(16)));
+
+/* Adds the sum, and keeps the bits of the state that both have. */
+static inline void nt_record_add(nt_record *record, nt_int4 add)
+{
+	static const nt_int4 state_lane = {0, 0, 0, -1};
+	nt_float4 old;
+	memcpy(&old, record, sizeof old);
+	const nt_int4 sum = (nt_int4)(old + (nt_float4)add), both = (nt_int4)old & add;
+	const nt_int4 result = (both & state_lane) | (sum & ~state_lane);
+	memcpy(record, &result, sizeof result);
+}
+
+static inline void nt_record_more_add(nt_record_more *record, const nt_record_more *add)
+{
+	nt_float4 old[2], new[2];
+	memcpy(old, record, sizeof old);
+	memcpy(new, add, sizeof new);
+	old[0] += new[0], old[1] += new[1];
+	memcpy(record, old, sizeof old);
+}
+
+#endif

@@ -1,0 +1,152 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Step 4 of the fast path where vertices are near: corners are added to the records of their vertices at once.
+ *
+ * Most meshes need records of one orientation only, and which one is known when its first triangle is solved. So
+ * a range that needs an array asks for it in the middle of its work: the first that asks allocates it, and all that
+ * ask help to clear it.
+ *
+ * A vertex belongs to the first range that touches it. Later ranges put their contributions aside, and these are
+ * added in the end in the order of ranges: every sum is in triangle order, whatever the number of threads.
+ */
+#include "tangent/fast/records.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <string.h>
+#include "base/parallel.h"
+
+/* Records that are cleared at a time: a megabyte. */
+enum { CHUNK = 65536 };
+
+/* The records of one orientation. */
+typedef struct array {
+	nt_record *records;
+	nt_record_more *more;   /* NULL: not wanted */
+	size_t chunks_begun, chunks_cleared; /* atomic, once the array is there */
+} array;
+
+typedef struct job {
+	nt_fast *fast; /* does not change while triangles are added */
+	const nt_kernels *kernels;
+	size_t record_count;  /* vertices, in whole blocks: settle reads these */
+	pthread_mutex_t lock; /* of the scratch, and of who allocates */
+	array arrays[2];
+	bool failed;
+} job;
+
+static void clear_chunk(const job *j, array *a, size_t chunk)
+{
+	const size_t begin = chunk * CHUNK, left = j->record_count - begin, count = left < CHUNK ? left : CHUNK;
+	for (size_t v = begin; v < begin + count; v++)
+		a->records[v] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+	if (a->more)
+		memset(a->more + begin, 0, count * sizeof *a->more);
+	__atomic_fetch_add(&a->chunks_cleared, 1, __ATOMIC_RELEASE);
+}
+
+/* Allocates the array if nobody has, and clears its first chunk. False: out of memory. */
+static bool begin_array(job *j, array *a)
+{
+	const nt_fast *fast = j->fast;
+	pthread_mutex_lock(&j->lock);
+	if (!a->records && !j->failed) {
+		a->records = nt_scratch_alloc(fast->solve->scratch, j->record_count, sizeof *a->records);
+		if (fast->wants_more)
+			a->more = nt_scratch_alloc(fast->solve->scratch, j->record_count, sizeof *a->more);
+		j->failed = !a->records || (fast->wants_more && !a->more);
+		a->chunks_begun = 1;
+		if (!j->failed)
+			clear_chunk(j, a, 0);
+	}
+	const bool failed = j->failed;
+	pthread_mutex_unlock(&j->lock);
+	return !failed;
+}
+
+/* Clears what no other range has begun to clear, and waits for those that have. */
+static void clear_array(const job *j, array *a)
+{
+	const size_t chunks = (j->record_count + CHUNK - 1) / CHUNK;
+	for (size_t chunk; chunks > 1 && (chunk = __atomic_fetch_add(&a->chunks_begun, 1, __ATOMIC_RELAXED)) < chunks;)
+		clear_chunk(j, a, chunk);
+	while (__atomic_load_n(&a->chunks_cleared, __ATOMIC_ACQUIRE) < chunks)
+		sched_yield();
+}
+
+/* The nt_record_maker of all ranges. */
+static bool get_array(nt_fast *view, int orient, void *context)
+{
+	job *j = context;
+	array *a = &j->arrays[orient];
+	if (!begin_array(j, a))
+		return false;
+	clear_array(j, a);
+	view->records[orient] = a->records;
+	view->more[orient] = a->more;
+	return true;
+}
+
+static void add_ranges(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	job *j = context;
+	const size_t *bounds = j->fast->ranges.bounds;
+	for (size_t range = begin; range < end; range++) {
+		nt_fast view = *j->fast;
+		j->kernels->accumulate(&view, bounds[range], bounds[range + 1], (unsigned)range, get_array, j);
+	}
+}
+
+static bool make_deferred(nt_fast *fast)
+{
+	const unsigned ranges = fast->ranges.count;
+	fast->deferred = nt_scratch_alloc(fast->solve->scratch, ranges, sizeof *fast->deferred);
+	if (!fast->deferred)
+		return false;
+	for (unsigned r = 0; r < ranges; r++) {
+		const size_t most = fast->adjacency.shared_counts[r];
+		nt_deferred *d = &fast->deferred[r];
+		*d = (nt_deferred){.to = nt_scratch_alloc(fast->solve->scratch, most, sizeof *d->to)};
+		d->add = nt_scratch_alloc(fast->solve->scratch, most, sizeof *d->add);
+		if (fast->wants_more)
+			d->more = nt_scratch_alloc(fast->solve->scratch, most, sizeof *d->more);
+		if (!d->to || !d->add || (fast->wants_more && !d->more))
+			return false;
+	}
+	return true;
+}
+
+static void add_deferred(const nt_fast *fast, const nt_deferred *d)
+{
+	for (size_t i = 0; i < d->count; i++) {
+		const int orient = (d->to[i] & NT_ENTRY_ORIENT) != 0;
+		const uint32_t vertex = d->to[i] & NT_ENTRY_VERTEX;
+		nt_int4 sum;
+		memcpy(&sum, &d->add[i], sizeof sum);
+		nt_record_add(&fast->records[orient][vertex], sum);
+		if (d->more)
+			nt_record_more_add(&fast->more[orient][vertex], &d->more[i]);
+	}
+}
+
+nmtan_status nt_fast_add(nt_fast *fast, const nt_kernels *kernels)
+{
+	const unsigned ranges = fast->ranges.count;
+	if (ranges > 1 && !make_deferred(fast))
+		return NMTAN_ERROR_MEMORY;
+	job j = {.fast = fast, .kernels = kernels, .lock = PTHREAD_MUTEX_INITIALIZER,
+		.record_count = (fast->vertex_count + NT_LANES - 1) / NT_LANES * NT_LANES};
+	nt_parallel_ranges(ranges, ranges, 1, add_ranges, &j);
+	pthread_mutex_destroy(&j.lock);
+	if (j.failed)
+		return NMTAN_ERROR_MEMORY;
+	for (int o = 0; o < 2; o++) {
+		fast->records[o] = j.arrays[o].records;
+		fast->more[o] = j.arrays[o].more;
+	}
+	fast->record_step = 1;
+	for (unsigned r = 1; r < ranges; r++)
+		add_deferred(fast, &fast->deferred[r]);
+	return NMTAN_OK;
+}

@@ -1,0 +1,281 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The second pass: 16 vertices at a time. A vertex is settled when the corners of each orientation make one fan
+ * (step 6 would flood them in one go) and no two directions can be antiparallel (step 7 would not
+ * split them). Then its sums are its results. Included by kernel.h.
+ */
+#ifndef NT_TANGENT_FAST_SETTLE_H
+#define NT_TANGENT_FAST_SETTLE_H
+
+#include "tangent/fast/lanes.h"
+
+/* Degree of a hub, whose fans are not looked at; a number of fans that no vertex has. */
+#define HUB UINT32_MAX
+#define DOUBTFUL ((uint32_t)1 << 16)
+
+/*
+ * The fans of WIDTH vertices with at most `depth` corners: how many there are, DOUBTFUL added where a directed edge
+ * occurs twice, because there pairs depend on order.
+ *
+ *   degree   corners of each vertex
+ *   mask     the bits of entries that count
+ */
+static inline __attribute__((always_inline)) lanes count_fans_of(const nt_fan_entry *entries, const uint32_t depth,
+	lanes degree, lanes mask)
+{
+	lanes next[NT_FAN_DEPTH], previous[NT_FAN_DEPTH];
+	lanes linked[NT_FAN_DEPTH]; /* corner i: bit j for each neighbour j of its orientation */
+	lanes doubtful = {0}, count = {0};
+	/* voids where a vertex has fewer corners, above all numbers that accumulate gives to voids */
+#pragma GCC unroll 8
+	for (uint32_t k = 0; k < depth; k++, entries += NT_FAN_LANES) {
+		const lanes low = load_lanes(entries), high = load_lanes(entries + WIDTH / 2);
+		const lanes there = (lanes)(degree > k);
+		next[k] = __builtin_shufflevector(low, high, EVEN) & mask;
+		previous[k] = __builtin_shufflevector(low, high, ODD) & mask;
+		next[k] = (next[k] & there) | ((NT_ENTRY_VOID | 1u << 28 | k) & ~there);
+		previous[k] = (previous[k] & there) | ((NT_ENTRY_VOID | 3u << 28 | k) & ~there);
+		linked[k] = there & 0;
+	}
+	/* links across shared edges; edges are compared without the orientation in bit 31 */
+#pragma GCC unroll 8
+	for (uint32_t a = 0; a < depth; a++) {
+		const lanes bare_next = next[a] << 1, bare_previous = previous[a] << 1;
+#pragma GCC unroll 8
+		for (uint32_t b = a + 1; b < depth; b++) {
+			const lanes link = (lanes)(next[a] == previous[b]) | (lanes)(next[b] == previous[a]);
+			doubtful |= (lanes)(bare_next == next[b] << 1) | (lanes)(bare_previous == previous[b] << 1);
+			linked[a] |= link & 1u << b;
+			linked[b] |= link & 1u << a;
+		}
+	}
+	/* components by elimination: a corner hands its links to the later ones it is linked with; one that
+	 * has none when its turn comes is the last of its component */
+#pragma GCC unroll 8
+	for (uint32_t a = 0; a < depth; a++) {
+		const lanes mine = linked[a];
+#pragma GCC unroll 8
+		for (uint32_t b = a + 1; b < depth; b++)
+			linked[b] |= (lanes)((mine & 1u << b) != 0) & mine;
+		count -= (lanes)(mine >> a >> 1 == 0) & (lanes)((next[a] & NT_ENTRY_VOID) == 0);
+	}
+	return count | (doubtful & DOUBTFUL);
+}
+
+/* The usual depths are worth a loop without branches each. */
+static lanes count_fans(const nt_fan_entry *entries, uint32_t depth, lanes degree, lanes mask)
+{
+	switch (depth) {
+	case 4: return count_fans_of(entries, 4, degree, mask);
+	case 5: return count_fans_of(entries, 5, degree, mask);
+	case 6: return count_fans_of(entries, 6, degree, mask);
+	case 7: return count_fans_of(entries, 7, degree, mask);
+	case 8: return count_fans_of(entries, 8, degree, mask);
+	default: return count_fans_of(entries, depth, degree, mask);
+	}
+}
+
+/* The records of a block by component, in turned places: lane i has the record of vertex turned_place(i). All loops
+ * over them run up to `used`, whole vectors that hold the block's vertices; lanes behind these have neither records
+ * nor corners. */
+typedef struct record_lanes {
+	float x[NT_LANES], y[NT_LANES], z[NT_LANES];
+	uint32_t state[NT_LANES]; /* then the result's */
+	uint32_t present[NT_LANES];
+	uint32_t sound[NT_LANES];
+} record_lanes;
+
+static void load_records(const nt_record *restrict records, size_t used, record_lanes *restrict r)
+{
+	if (!records) {
+		for (size_t i = 0; i < used; i++) {
+			r->state[i] = NT_STATE_BASE | NT_STATE_ALL;
+			r->present[i] = r->sound[i] = 0;
+		}
+		return;
+	}
+	for (size_t i = 0; i < used; i += WIDTH) {
+		lanes four[4];
+		memcpy(four, records + i, sizeof four);
+		turn(four);
+		memcpy(r->x + i, &four[0], sizeof *four);
+		memcpy(r->y + i, &four[1], sizeof *four);
+		memcpy(r->z + i, &four[2], sizeof *four);
+		memcpy(r->state + i, &four[3], sizeof *four);
+	}
+	for (size_t i = 0; i < used; i++) {
+		const uint32_t s = r->state[i];
+		r->present[i] = (s & NT_STATE_EMPTY) == 0;
+		r->sound[i] = (s & NT_STATE_U) != 0 && (s & NT_STATE_V) != 0 && (s & NT_STATE_SOUND) != 0;
+	}
+}
+
+static void normalise_records(size_t used, record_lanes *restrict r)
+{
+	for (size_t i = 0; i < used; i++) {
+		const float x = r->x[i], y = r->y[i], z = r->z[i];
+		const float scale = 1.0f / sqrtf(x * x + y * y + z * z);
+		const int not_zero = (fabsf(x) > FLT_MIN) | (fabsf(y) > FLT_MIN) | (fabsf(z) > FLT_MIN);
+		r->x[i] = not_zero ? scale * x : x;
+		r->y[i] = not_zero ? scale * y : y;
+		r->z[i] = not_zero ? scale * z : z;
+	}
+}
+
+/* Normals of `count` vertices in turned places; lanes behind repeat the last one. */
+static void load_normals(const nt_weld_row *rows, size_t count, size_t used, float normals[3][NT_LANES])
+{
+	for (size_t first = 0; first < used; first += WIDTH) {
+		lanes four[4];
+		for (size_t j = 0; j < 4; j++) {
+			const float *parts[WIDTH / 4]; /* of rows, from the third float on */
+			for (size_t i = 0; i < WIDTH / 4; i++) {
+				const size_t row = first + j * (WIDTH / 4) + i;
+				parts[i] = (const float *)&rows[row < count ? row : count - 1] + 2;
+			}
+			four[j] = load_parts(parts);
+		}
+		turn(four);
+		for (size_t c = 0; c < 3; c++)
+			memcpy(normals[c] + first, &four[c + 1], sizeof *four);
+	}
+}
+
+/* A vertex whose result tangent/usable.c would not accept is left to complex.c, too: then the triangles at all other vertices
+ * still need no look. */
+static void leave_unusable(const float (*restrict normals)[NT_LANES], const record_lanes *restrict r,
+	uint32_t *restrict complex, size_t used)
+{
+	for (size_t i = 0; i < used; i++) {
+		const float t[3] = {r->x[i], r->y[i], r->z[i]};
+		const float n[3] = {normals[0][i], normals[1][i], normals[2][i]};
+		complex[i] |= r->present[i] & !nt_is_frame(t, n);
+	}
+}
+
+/* Stores `count` records, `step` apart. */
+static void store_records(nt_record *restrict records, size_t step, size_t count, size_t used,
+	const record_lanes *restrict r)
+{
+	nt_record copy[NT_LANES];
+	nt_record *to = count == used && step == 1 ? records : copy;
+	for (size_t i = 0; i < used; i += WIDTH) {
+		lanes four[4] = {load_lanes(r->x + i), load_lanes(r->y + i), load_lanes(r->z + i),
+			load_lanes(r->state + i)};
+		turn(four);
+		memcpy(to + i, four, sizeof four);
+	}
+	for (size_t i = 0; to == copy && i < count; i++)
+		records[step * i] = copy[i];
+}
+
+static void normalise3(float *x, float *y, float *z)
+{
+	if (!(fabsf(*x) > FLT_MIN || fabsf(*y) > FLT_MIN || fabsf(*z) > FLT_MIN))
+		return;
+	const float scale = 1.0f / sqrtf(*x * *x + *y * *y + *z * *z);
+	*x = scale * *x, *y = scale * *y, *z = scale * *z;
+}
+
+static void settle_more(nt_record_more *more, size_t count, const uint32_t *present)
+{
+	for (size_t i = 0; i < NT_LANES; i++) {
+		nt_record_more *m = &more[turned_place(i)];
+		if (turned_place(i) >= count)
+			continue;
+		if (!present[i]) {
+			*m = (nt_record_more){.y = 1.0f, .mag_s = 1.0f, .mag_t = 1.0f};
+			continue;
+		}
+		normalise3(&m->x, &m->y, &m->z);
+		if (m->angle > 0.0f) {
+			m->mag_s /= m->angle;
+			m->mag_t /= m->angle;
+		}
+	}
+}
+
+/* Corners of the block's vertices, HUB for a hub. Returns the most corners. */
+static uint32_t load_degrees(const nt_adjacency *a, size_t first, size_t count, size_t used,
+	uint32_t *restrict degree)
+{
+	const size_t place = first - a->first_vertex;
+	const uint32_t *cursors = a->cursors + (a->ranges - 1) * a->vertex_count + place;
+	const uint32_t begin = a->block_begin[place / NT_FAN_LANES];
+	int most = 0;
+	for (uint32_t i = 0; i < used; i++) {
+		const uint32_t cursor = cursors[i], corners = ((cursor & NT_CURSOR_PLACE) - begin) / NT_FAN_LANES;
+		const uint32_t there = i < (uint32_t)count ? UINT32_MAX : 0, hub = cursor & NT_CURSOR_HUB ? UINT32_MAX : 0;
+		const int known = (int)(corners & there & ~hub);
+		most = known > most ? known : most;
+		degree[i] = (uint32_t)known | (hub & there);
+	}
+	return (uint32_t)most;
+}
+
+static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const sums[2], size_t block,
+	nt_settled *settled)
+{
+	const size_t first = block * NT_LANES, left = fast->vertex_count - first;
+	const size_t count = left < NT_LANES ? left : NT_LANES;
+	const nt_fan_entry *entries = nt_adjacency_block(a, block - a->first_vertex / NT_FAN_LANES);
+	const size_t used = whole_lanes(count);
+	uint32_t degree[NT_LANES], mask[NT_LANES], fan_count[NT_LANES], complex[NT_LANES];
+	record_lanes r[2];
+	const uint32_t depth = load_degrees(a, first, count, used, degree);
+	for (int o = 0; o < 2; o++)
+		load_records(sums[o] ? sums[o] + first - a->first_vertex : NULL, used, &r[o]);
+
+	/* "any" corners join whatever orientation there is: with one only, it need not be compared */
+	for (size_t i = 0; i < used; i++)
+		mask[i] = r[0].present[i] & r[1].present[i] ? UINT32_MAX : NT_ENTRY_VERTEX;
+	for (size_t i = 0; i < used; i += WIDTH) {
+		const lanes degrees = load_lanes(degree + i), masks = load_lanes(mask + i);
+		const lanes counted = count_fans(entries + i, depth, degrees,
+			__builtin_shufflevector(masks, masks, UNTURNED)) | ((lanes)(degrees == HUB) & DOUBTFUL);
+		const lanes turned = __builtin_shufflevector(counted, counted, TURNED);
+		memcpy(fan_count + i, &turned, sizeof turned);
+	}
+
+	for (size_t i = 0; i < used; i++) {
+		const uint32_t both = r[0].state[i] & r[1].state[i];
+		const uint32_t present = r[0].present[i] + r[1].present[i];
+		const uint32_t unsound = (r[0].present[i] & !r[0].sound[i]) | (r[1].present[i] & !r[1].sound[i]);
+		const uint32_t mixed = present == 2 && !(both & NT_STATE_NO_ANY);
+		complex[i] = present != 0 && 0 != (unsound | mixed | !(both & NT_STATE_LOCAL) |
+						     (fan_count[i] != present));
+	}
+	for (int o = 0; o < 2; o++)
+		if (sums[o])
+			normalise_records(used, &r[o]);
+	if (fast->solve->vouched) {
+		float normals[3][NT_LANES];
+		load_normals(fast->rows + first, count, used, normals);
+		for (int o = 0; o < 2; o++)
+			if (sums[o])
+				leave_unusable(normals, &r[o], complex, used);
+	}
+	/* from here on the rows may be overwritten */
+	for (int o = 0; o < 2; o++) {
+		if (!sums[o])
+			continue;
+		const uint32_t sign = o ? NT_RESULT_PLUS : NT_RESULT_MINUS;
+		for (size_t i = 0; i < used; i++) {
+			r[o].state[i] = complex[i] ? NT_RESULT_COMPLEX : r[o].present[i] ? sign : NT_RESULT_NONE;
+		}
+		store_records(nt_fast_record(fast, o, (uint32_t)first), fast->record_step, count, used, &r[o]);
+		if (fast->wants_more)
+			settle_more(fast->more[o] + first, count, r[o].present);
+	}
+	for (size_t i = 0; i < used; i++)
+		settled->complex_count += complex[i];
+}
+
+static void settle(nt_fast *fast, const nt_adjacency *adjacency, nt_record *const sums[2], size_t begin, size_t end,
+	nt_settled *settled)
+{
+	for (size_t block = begin; block < end; block++)
+		settle_block(fast, adjacency, sums, block, settled);
+}
+
+#endif

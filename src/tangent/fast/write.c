@@ -1,0 +1,240 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Steps 6 and 8 of the fast path: results go from vertices to corners.
+ */
+#include "tangent/fast/write.h"
+
+#include <string.h>
+#include "base/parallel.h"
+#include "topology/corners.h"
+
+/* Triangles by which the records of a scattered mesh are asked for before they are written. */
+enum { WRITE_AHEAD = 16 };
+
+static void write_corner(const nt_fast *fast, size_t corner, const nt_record *record,
+	const nt_record_more *more)
+{
+	const nt_solve *solve = fast->solve;
+	memcpy(solve->tangents + 4 * corner, record, sizeof *record);
+	if (solve->bitangents)
+		memcpy(solve->bitangents + 3 * corner, &more->x, 3 * sizeof(float));
+	if (solve->magnitudes)
+		memcpy(solve->magnitudes + 2 * corner, &more->mag_s, 2 * sizeof(float));
+}
+
+/* The orientation whose records stand for a vertex that has one only. */
+static int single_record(const nt_fast *fast, uint32_t vertex)
+{
+	return !fast->records[0] || (fast->records[1] && nt_fast_record(fast, 0, vertex)->state == NT_RESULT_NONE);
+}
+
+static void write_vertex(const nt_fast *fast, size_t corner, int orient, uint32_t vertex)
+{
+	write_corner(fast, corner, nt_fast_record(fast, orient, vertex),
+		fast->wants_more ? &fast->more[orient][vertex] : NULL);
+}
+
+/* Whether the other half of a triangle's quad is sound. */
+static bool has_sound_half(const nt_fast *fast, size_t t)
+{
+	if (fast->flags[t] & NT_TRIANGLE_SECOND)
+		return !(fast->flags[t - 1] & NT_TRIANGLE_DEGENERATE);
+	return nt_fast_quad_begins(fast, t) && !(fast->flags[t + 1] & NT_TRIANGLE_DEGENERATE);
+}
+
+/* A corner that no group reached (step 10). */
+static void write_unassigned(const nt_fast *fast, size_t corner)
+{
+	nt_record record = {.x = 1.0f};
+	const float w = nt_unassigned_sign(fast->solve);
+	const nt_record_more more = {.y = 1.0f, .mag_s = 1.0f, .mag_t = 1.0f};
+	memcpy(&record.state, &w, sizeof w);
+	write_corner(fast, corner, &record, &more);
+}
+
+static void write_special(nt_fast *fast, size_t t)
+{
+	uint8_t *flags = &fast->flags[t];
+	const bool degenerate = *flags & NT_TRIANGLE_DEGENERATE;
+	if (degenerate && has_sound_half(fast, t)) {
+		*flags |= NT_TRIANGLE_LATE;
+		return;
+	}
+	for (size_t i = 3 * t; i < 3 * t + 3; i++) {
+		const uint32_t v = nt_fast_vertex(fast, i);
+		const int o = single_record(fast, v);
+		const uint32_t state = nt_fast_record(fast, o, v)->state;
+		const bool two = fast->records[!o] && state != NT_RESULT_NONE &&
+				 nt_fast_record(fast, !o, v)->state != NT_RESULT_NONE;
+		if (state == NT_RESULT_COMPLEX)
+			*flags |= degenerate ? NT_TRIANGLE_LATE : NT_TRIANGLE_COMPLEX;
+		else if (degenerate && two)
+			*flags |= NT_TRIANGLE_LATE;
+		if (state == NT_RESULT_NONE)
+			write_unassigned(fast, nt_fast_corner(fast, i));
+		else
+			write_vertex(fast, nt_fast_corner(fast, i), o, v);
+	}
+}
+
+/* The records of a later triangle of a scattered mesh; the last ones of the range ask twice. */
+static inline void ask_records(const nt_fast *fast, size_t t, size_t end)
+{
+	const size_t later = t + WRITE_AHEAD < end ? t + WRITE_AHEAD : end - 1;
+	const int orient = fast->flags[later] & NT_TRIANGLE_ORIENT;
+	uint32_t copy[3];
+	const uint32_t *v = nt_triangle_vertices(&fast->triangles, later, 1, copy);
+	for (int k = 0; fast->records[orient] && k < 3; k++)
+		__builtin_prefetch(nt_fast_record(fast, orient, v[k]));
+}
+
+/* Every corner of [begin, end) gets its vertex's result; in a sparse solve those of suspects only. */
+static void write_triangles(nt_fast *fast, size_t begin, size_t end)
+{
+	for (size_t t = begin; t < end; t++) {
+		uint8_t *flags = &fast->flags[t];
+		if (fast->scattered)
+			ask_records(fast, t, end);
+		if (*flags & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
+			write_special(fast, t);
+			continue;
+		}
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
+		const int orient = *flags & NT_TRIANGLE_ORIENT;
+		for (int k = 0; k < 3; k++)
+			if (nt_fast_record(fast, orient, v[k])->state == NT_RESULT_COMPLEX)
+				*flags |= NT_TRIANGLE_COMPLEX;
+		if (fast->sparse && !(*flags & NT_TRIANGLE_SUSPECT))
+			continue;
+		for (unsigned k = 0; k < 3; k++)
+			write_vertex(fast, nt_triangle_corner(&fast->triangles, t, k), orient, v[k]);
+	}
+}
+
+/* The same for the usual case, tangents only. This loop is a fifth of the whole time. */
+static void write_plain_triangles(nt_fast *fast, size_t begin, size_t end)
+{
+	const nt_triangles triangles = fast->triangles;
+	uint8_t *flags = fast->flags;
+	const nt_record *records[2] = {fast->records[0], fast->records[1]};
+	float *out = fast->solve->tangents;
+	const size_t step = fast->record_step;
+	const bool scattered = fast->scattered;
+	for (size_t t = begin; t < end; t++) {
+		if (scattered)
+			ask_records(fast, t, end);
+		if (flags[t] & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
+			write_special(fast, t);
+			continue;
+		}
+		const nt_record *from = records[flags[t] & NT_TRIANGLE_ORIENT];
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&triangles, t, 1, copy);
+		const nt_record a = from[step * v[0]], b = from[step * v[1]], c = from[step * v[2]];
+		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 0), &a, sizeof a);
+		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 1), &b, sizeof b);
+		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 2), &c, sizeof c);
+		if (a.state == NT_RESULT_COMPLEX || b.state == NT_RESULT_COMPLEX || c.state == NT_RESULT_COMPLEX)
+			flags[t] |= NT_TRIANGLE_COMPLEX;
+	}
+}
+
+static void write_ranges(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	nt_fast *fast = context;
+	void (*write)(nt_fast *, size_t, size_t) = fast->wants_more || fast->sparse
+		? write_triangles : write_plain_triangles;
+	for (size_t range = begin; range < end; range++)
+		write(fast, fast->ranges.bounds[range], fast->ranges.bounds[range + 1]);
+}
+
+void nt_fast_write(nt_fast *fast)
+{
+	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, write_ranges, fast);
+}
+
+void nt_fast_write_rest(nt_fast *fast)
+{
+	fast->sparse = false;
+	for (size_t t = 0; t < fast->triangle_count; t++)
+		if (!(fast->flags[t] & NT_TRIANGLE_SUSPECT))
+			write_triangles(fast, t, t + 1);
+}
+
+/* Without a sound triangle there is nothing but the default (step 10). */
+void nt_fast_write_defaults(const nt_fast *fast)
+{
+	for (size_t c = 0; c < fast->solve->corner_count; c++)
+		write_unassigned(fast, c);
+}
+
+static void copy_corner(const nt_solve *solve, size_t to, size_t from)
+{
+	memcpy(solve->tangents + 4 * to, solve->tangents + 4 * from, 4 * sizeof(float));
+	if (solve->bitangents)
+		memcpy(solve->bitangents + 3 * to, solve->bitangents + 3 * from, 3 * sizeof(float));
+	if (solve->magnitudes)
+		memcpy(solve->magnitudes + 2 * to, solve->magnitudes + 2 * from, 2 * sizeof(float));
+}
+
+/* The first corner of each vertex among the sound triangles. */
+static uint32_t *find_first_corners(const nt_fast *fast)
+{
+	uint32_t *first = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *first);
+	if (!first)
+		return NULL;
+	memset(first, 0xff, fast->vertex_count * sizeof *first);
+	for (size_t t = fast->triangle_count; t-- > 0;)
+		for (size_t i = 3 * t + 3; !(fast->flags[t] & NT_TRIANGLE_DEGENERATE) && i-- > 3 * t;)
+			first[nt_fast_vertex(fast, i)] = (uint32_t)nt_fast_corner(fast, i);
+	return first;
+}
+
+static bool same_position(const nt_fast *fast, size_t i, size_t j)
+{
+	const nmtan_mesh *mesh = fast->solve->mesh;
+	const float *a = nt_position(mesh, nt_vertex_of(mesh, nt_fast_corner(fast, i)));
+	const float *b = nt_position(mesh, nt_vertex_of(mesh, nt_fast_corner(fast, j)));
+	return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+/* The vertex outside the sound half of a quad takes the result at its position. */
+static void copy_from_half(const nt_fast *fast, size_t t)
+{
+	const size_t sound = fast->flags[t] & NT_TRIANGLE_SECOND ? t - 1 : t + 1;
+	for (size_t i = 3 * t; i < 3 * t + 3; i++) {
+		const size_t corner = nt_fast_corner(fast, i);
+		size_t j = 3 * sound;
+		while (j < 3 * sound + 3 && nt_fast_corner(fast, j) != corner)
+			j++;
+		if (j < 3 * sound + 3)
+			continue;
+		for (j = 3 * sound; j < 3 * sound + 3; j++)
+			if (same_position(fast, i, j)) {
+				copy_corner(fast->solve, corner, nt_fast_corner(fast, j));
+				break;
+			}
+	}
+}
+
+/* Degenerate triangles whose answer depends on a corner. Sources are corners of sound triangles, so the
+ * order of copying does not matter. */
+nmtan_status nt_fast_write_late(nt_fast *fast)
+{
+	const uint32_t *first = NULL;
+	size_t t = nt_fast_next_flagged(fast, 0, NT_TRIANGLE_LATE);
+	for (; t < fast->triangle_count; t = nt_fast_next_flagged(fast, t + 1, NT_TRIANGLE_LATE)) {
+		if (has_sound_half(fast, t)) {
+			copy_from_half(fast, t);
+			continue;
+		}
+		if (!first && !(first = find_first_corners(fast)))
+			return NMTAN_ERROR_MEMORY;
+		for (size_t i = 3 * t; i < 3 * t + 3; i++)
+			if (first[nt_fast_vertex(fast, i)] != UINT32_MAX)
+				copy_corner(fast->solve, nt_fast_corner(fast, i), first[nt_fast_vertex(fast, i)]);
+	}
+	return NMTAN_OK;
+}

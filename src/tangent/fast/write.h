@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Steps 6 and 8 of the fast path: see write.c.
+ */
+#ifndef NT_TANGENT_FAST_WRITE_H
+#define NT_TANGENT_FAST_WRITE_H
+
+#include "tangent/fast/parts.h"
+
+/* Every corner gets the result of its vertex; with fast->sparse those of suspects only. Marks triangles COMPLEX
+ * and LATE. */
+void nt_fast_write(nt_fast *fast);
+
+/* Writes what a sparse solve left out. */
+void nt_fast_write_rest(nt_fast *fast);
+
+/* Writes the default to every corner, for a mesh without a sound triangle (step 10 of the spec page). */
+void nt_fast_write_defaults(const nt_fast *fast);
+
+/* Corners of triangles that are LATE copy those of others, which must have been written. Returns NMTAN_OK or
+ * NMTAN_ERROR_MEMORY. */
+nmtan_status nt_fast_write_late(nt_fast *fast);
+
+#endif

@@ -1,0 +1,98 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What sums.c, its passes for one instruction set (kernel.h) and hard.c share.
+ */
+#ifndef NT_TANGENT_SUMS_PARTS_H
+#define NT_TANGENT_SUMS_PARTS_H
+
+#include "tangent/frames.h"
+#include "topology/weld.h"
+
+enum { NT_SUM_LANES = 16 };
+
+/* The sum at a welded vertex over the triangles of one orientation: nt_frame_sum as far as it is needed. */
+typedef struct nt_vertex_sum {
+	double x, y, z, sensitivity;
+} nt_vertex_sum;
+
+/* What becomes of it: the tangent as it is written, or zero for repair to fill; w is 0 where no triangle of the
+ * orientation has weight. */
+typedef struct nt_vertex_tangent {
+	float x, y, z, w;
+} nt_vertex_tangent;
+
+/* Bits of nt_sums.flags, by triangle */
+enum {
+	NT_SUM_POSITIVE = 1, /* its face's orientation is +1 */
+	NT_SUM_NONE = 2,     /* its face has no orientation */
+	NT_SUM_SUSPECT = 4,  /* judging has to look at it */
+	NT_SUM_SECOND = 8    /* second half of a quad: the first is the triangle before */
+};
+
+/* Bits of nt_sums.vertex_flags; shifted by one for orientation +1 */
+enum {
+	NT_VERTEX_MET = 1,  /* some triangle has weight here */
+	NT_VERTEX_LOST = 4, /* and yet the result is zero */
+	NT_VERTEX_ILL = 16  /* more than 24 bits cancel */
+};
+
+/* A contribution that has to wait for an earlier range's. */
+typedef struct nt_later {
+	nt_vertex_sum *to;
+	nt_vertex_sum add;
+} nt_later;
+
+/* What 16 triangles add, and what they are. */
+typedef struct nt_sum_block {
+	_Alignas(64) double add[3][4][NT_SUM_LANES]; /* corner, double of its nt_vertex_sum */
+	double sign[NT_SUM_LANES];      /* exact orientation; only where not hard */
+	/* flags, 0 or not */
+	double plain[NT_SUM_LANES];     /* has area in space and UV, and weight at each corner */
+	double hard[NT_SUM_LANES];      /* nothing is known: frames.c must do it */
+	double certain[NT_SUM_LANES];   /* the sign is that of the stored coordinates too */
+} nt_sum_block;
+
+typedef struct nt_sums {
+	const nt_solve *solve;
+	nt_weight weight;
+	bool one_by_one;               /* all triangles are hard */
+	nt_weld weld;
+	size_t triangle_count;
+	const uint32_t *corners;       /* [3 * triangle_count] of the mesh; NULL: i is i */
+	const uint32_t *ids;           /* [3 * triangle_count] of the welded vertices */
+	uint8_t *flags;                /* [triangle_count] */
+	nt_vertex_sum *sums[2];        /* [weld.count] for orientation -1 and +1; NULL: not needed */
+	nt_vertex_tangent *results[2]; /* the same */
+	uint8_t *vertex_flags;         /* [weld.count] */
+	bool scattered;                /* neighbouring triangles have vertices far apart: ask early */
+	unsigned ranges;
+	uint16_t *owners;              /* [weld.count] the first range that touches the vertex */
+	nt_later **later;              /* [ranges] */
+	size_t *later_counts;          /* [ranges] */
+} nt_sums;
+
+typedef struct nt_sums_finished {
+	size_t lost, ill; /* vertices */
+} nt_sums_finished;
+
+/* The passes of one instruction set. */
+typedef struct nt_sum_kernels {
+	/* Adds triangles [begin, end) of a range to the sums of their vertices, in order. Stops before triangles
+	 * that need sums that do not exist, and returns the first of them and in *side which; otherwise end. */
+	size_t (*accumulate)(nt_sums *s, size_t begin, size_t end, unsigned range, int *side);
+	/* Turns the sums of blocks [begin, end) of 16 vertices into results. */
+	void (*finish)(const nt_sums *s, size_t begin, size_t end, nt_sums_finished *finished);
+} nt_sum_kernels;
+
+extern const nt_sum_kernels nt_sum_kernels_baseline;
+#if defined(__x86_64__)
+extern const nt_sum_kernels nt_sum_kernels_avx2, nt_sum_kernels_avx512;
+#endif
+
+/* Corner i % 3 of triangle i / 3: the mesh's number of it. */
+static inline size_t nt_sums_corner(const nt_sums *s, size_t i)
+{
+	return s->corners ? s->corners[i] : i;
+}
+
+#endif

@@ -1,9 +1,0 @@
-/* SPDX-License-Identifier: MIT */
-/*
- * The passes of sums_kernel.h for AVX-512 F, BW, DQ and VL, in 512-bit vectors.
- * The Makefile has this file's flags.
- */
-#if defined(__x86_64__)
-#define NT_SUM_KERNEL nt_sum_kernels_avx512
-#include "tangent/sums_kernel.h"
-#endif

@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Judging: see judge.h. Most faces need no look: a method that has bounded the error of its determinants
+ * and checked the vectors it shared out vouches for them (nt_solve.vouched). The others are suspects. Of triangles,
+ * those among 64 are listed and asked for first and then judged without a branch on what is found: where suspects are
+ * many they lie anywhere, and cache misses and wrong guesses took twice the time of the rest.
+ */
+#include "tangent/usable.h"
+
+#include <string.h>
+#include "base/counts.h"
+#include "base/parallel.h"
+#include "tangent/frames.h"
+#include "topology/corners.h"
+
+/* Faces that share a word of faulty bits, and the words per thread below which threads do not pay. */
+enum { WORD = 64, JUDGE_GRAIN = (1 << 15) / WORD };
+
+typedef struct judge_job {
+	const nt_solve *solve;
+	nmtan_counts *counts; /* [ranges] */
+	uint64_t *faulty;     /* [words] */
+} judge_job;
+
+/* What is wrong with a row */
+
+/* Counts why a corner is not usable, and marks it. */
+static void mark_fault(float *t, const float *n, nmtan_counts *counts)
+{
+	const float squared = nt_squared(t);
+	if (t[3] == 0.0f)
+		counts->repaired_unassigned++;
+	else if (!isfinite(squared))
+		counts->repaired_not_finite++;
+	else if (!(fabsf(squared - 1.0f) <= NT_UNIT_TOLERANCE))
+		counts->repaired_zero++;
+	else if (nt_is_parallel(t, n))
+		counts->repaired_parallel++;
+	else if (!nt_is_frame(t, n))
+		counts->repaired_leaning++;
+	else
+		counts->repaired_sign++;
+	t[3] = 0.0f;
+}
+
+/* The w of most corners of a face that have one; of the first of these when there are two of each; 0: none has. */
+static float majority_sign(const float *tangents, size_t size)
+{
+	float sum = 0.0f, first = 0.0f;
+	for (size_t k = 0; k < size; k++) {
+		sum += tangents[4 * k + 3];
+		first = first != 0.0f ? first : tangents[4 * k + 3];
+	}
+	return sum > 0.0f ? 1.0f : sum < 0.0f ? -1.0f : first;
+}
+
+/* Judges the rows of a face of a known orientation; true: some are unusable. */
+static bool judge_rows(const nt_solve *solve, size_t first, size_t size, int orientation, nmtan_counts *counts)
+{
+	const nmtan_mesh *mesh = solve->mesh;
+	float *t = solve->tangents + 4 * first;
+	const float w = orientation ? (float)orientation : majority_sign(t, size);
+	bool good = true;
+	for (size_t k = 0; k < size; k++)
+		good &= nt_is_frame(t + 4 * k, nt_normal(mesh, nt_vertex_of(mesh, first + k))) & (t[4 * k + 3] == w);
+	if (__builtin_expect(good && w != 0.0f, 1))
+		return false;
+	for (size_t k = 0; k < size; k++) {
+		const float *n = nt_normal(mesh, nt_vertex_of(mesh, first + k));
+		if (!nt_is_frame(t + 4 * k, n) || t[4 * k + 3] != w || w == 0.0f)
+			mark_fault(t + 4 * k, n, counts);
+	}
+	return true;
+}
+
+/* What a face is like */
+
+static bool equal_positions(const nmtan_mesh *mesh, uint32_t a, uint32_t b)
+{
+	const float *p = nt_position(mesh, nt_vertex_of(mesh, a));
+	const float *q = nt_position(mesh, nt_vertex_of(mesh, b));
+	return (p[0] == q[0]) & (p[1] == q[1]) & (p[2] == q[2]);
+}
+
+static bool is_degenerate(const nmtan_mesh *mesh, const uint32_t c[3])
+{
+	return equal_positions(mesh, c[0], c[1]) | equal_positions(mesh, c[1], c[2]) |
+	       equal_positions(mesh, c[2], c[0]);
+}
+
+/* Adds what a triangle is like to the counts; returns its exact orientation, as stored if it has one there. */
+static int count_triangle(const nmtan_mesh *mesh, const uint32_t corners[3], nmtan_counts *counts)
+{
+	const int sign = nt_triangle_orientation(mesh, corners, false);
+	const int stored = nt_has_stored(mesh) ? nt_triangle_orientation(mesh, corners, true) : sign;
+	counts->degenerate_texcoords += sign == 0;
+	counts->mirrored += sign < 0;
+	counts->stored_differently += mesh->stored_v_offset != 0.0f && sign != stored;
+	return stored ? stored : sign;
+}
+
+/* The same for a quad. */
+static int count_quad(const nmtan_mesh *mesh, size_t face, size_t first, nmtan_counts *counts)
+{
+	uint32_t corners[2][3];
+	bool folded;
+	nt_face_triangles(mesh, face, first, corners);
+	count_triangle(mesh, corners[0], counts);
+	count_triangle(mesh, corners[1], counts);
+	counts->degenerate_positions += is_degenerate(mesh, corners[0]) && is_degenerate(mesh, corners[1]);
+	const int orientation = nt_cut_orientation(mesh, corners, 2, true, &folded);
+	counts->folded_quads += folded;
+	return orientation;
+}
+
+/* Suspects */
+
+/* Whether a whole word of triangles has no suspect; then those that are mirrored are counted. Each byte of `positive`
+ * counts one of eight columns of flags, at most eight, and the product has the sum of the bytes in its highest one. */
+static bool is_plain_word(const nt_vouched *vouched, const uint8_t *flags, size_t *mirrored)
+{
+	const uint64_t ones = 0x0101010101010101u;
+	const int shift = __builtin_ctz(vouched->positive);
+	uint64_t suspect = 0, positive = 0;
+	for (size_t i = 0; i < WORD; i += sizeof suspect) {
+		uint64_t eight;
+		memcpy(&eight, flags + i, sizeof eight);
+		suspect |= eight;
+		positive += eight >> shift & ones;
+	}
+	if (suspect & ones * vouched->suspect)
+		return false;
+	*mirrored += WORD - (positive * ones >> 56);
+	return true;
+}
+
+/* The suspects among `count` triangles, at most a word of them, by their place. The others are counted where they are
+ * mirrored. Returns how many suspects there are. */
+static size_t list_suspects(const nt_vouched *vouched, const uint8_t *flags, size_t count, uint8_t *list,
+	size_t *mirrored)
+{
+	size_t found = 0, plain = 0;
+	if (count == WORD && is_plain_word(vouched, flags, mirrored))
+		return 0;
+	for (size_t i = 0; i < count; i++) {
+		const bool is = flags[i] & vouched->suspect;
+		list[found] = (uint8_t)i;
+		found += is;
+		plain += !is & !(flags[i] & vouched->positive);
+	}
+	*mirrored += plain;
+	return found;
+}
+
+static size_t list_all(size_t count, uint8_t *list)
+{
+	for (size_t i = 0; i < count; i++)
+		list[i] = (uint8_t)i;
+	return count;
+}
+
+static void ask_for_triangle(const nt_solve *solve, size_t t)
+{
+	for (size_t c = 3 * t; c < 3 * t + 3; c++) {
+		const size_t v = nt_vertex_of(solve->mesh, c);
+		__builtin_prefetch(solve->tangents + 4 * c);
+		__builtin_prefetch(nt_normal(solve->mesh, v));
+		__builtin_prefetch(nt_position(solve->mesh, v));
+		__builtin_prefetch(nt_texcoord(solve->mesh, v));
+	}
+}
+
+/* Judges a suspect; true: it is faulty. */
+static bool judge_triangle(const nt_solve *solve, size_t t, nmtan_counts *counts)
+{
+	const nmtan_mesh *mesh = solve->mesh;
+	int orientation = nt_known_orientation(solve->vouched, t);
+	if (orientation) {
+		counts->mirrored += orientation < 0;
+	} else {
+		const uint32_t c = (uint32_t)(3 * t), corners[3] = {c, c + 1, c + 2};
+		orientation = count_triangle(mesh, corners, counts);
+		counts->degenerate_positions += is_degenerate(mesh, corners);
+	}
+	return solve->repair && judge_rows(solve, 3 * t, 3, orientation, counts);
+}
+
+static void judge_triangles(const judge_job *job, size_t begin, size_t end, nmtan_counts *counts)
+{
+	const nt_solve *solve = job->solve;
+	const bool vouched = solve->vouched && solve->vouched->flags;
+	uint8_t list[WORD];
+	for (size_t word = begin; word < end; word++) {
+		const size_t first = WORD * word, left = solve->mesh->face_count - first;
+		const size_t count = left < WORD ? left : WORD;
+		const size_t found = vouched
+			? list_suspects(solve->vouched, solve->vouched->flags + first, count, list, &counts->mirrored)
+			: list_all(count, list);
+		uint64_t faulty = 0;
+		for (size_t i = 0; i < found; i++)
+			ask_for_triangle(solve, first + list[i]);
+		for (size_t i = 0; i < found; i++)
+			faulty |= (uint64_t)judge_triangle(solve, first + list[i], counts) << list[i];
+		job->faulty[word] = faulty;
+	}
+}
+
+/* Meshes with quads; flags are those of their triangles. */
+static void judge_quads(const judge_job *job, size_t begin, size_t end, nmtan_counts *counts)
+{
+	const nt_solve *solve = job->solve;
+	const nmtan_mesh *mesh = solve->mesh;
+	const nt_vouched *vouched = solve->vouched && solve->vouched->flags ? solve->vouched : NULL;
+	const size_t faces = WORD * end < mesh->face_count ? WORD * end : mesh->face_count;
+	size_t first = nt_first_corner(mesh, WORD * begin);
+	memset(job->faulty + begin, 0, (end - begin) * sizeof *job->faulty);
+	for (size_t face = WORD * begin; face < faces; first += nt_face_size(mesh, face++)) {
+		const bool quad = nt_face_size(mesh, face) == 4;
+		const uint8_t *flags = vouched ? vouched->flags + (first - 2 * face) : NULL;
+		if (flags && !((flags[0] | (quad ? flags[1] : 0)) & vouched->suspect)) {
+			counts->mirrored += !(flags[0] & vouched->positive) + (quad && !(flags[1] & vouched->positive));
+			continue;
+		}
+		int orientation;
+		if (quad) {
+			orientation = count_quad(mesh, face, first, counts);
+		} else {
+			const uint32_t c = (uint32_t)first, corners[3] = {c, c + 1, c + 2};
+			orientation = count_triangle(mesh, corners, counts);
+			counts->degenerate_positions += is_degenerate(mesh, corners);
+		}
+		if (solve->repair && judge_rows(solve, first, nt_face_size(mesh, face), orientation, counts))
+			job->faulty[face / WORD] |= (uint64_t)1 << face % WORD;
+	}
+}
+
+static void judge_words(void *context, size_t begin, size_t end, unsigned slot)
+{
+	const judge_job *job = context;
+	nmtan_counts counts = {0};
+	if (job->solve->mesh->face_sizes)
+		judge_quads(job, begin, end, &counts);
+	else
+		judge_triangles(job, begin, end, &counts);
+	job->counts[slot] = counts;
+}
+
+nmtan_status nt_judge(const nt_solve *solve, nmtan_counts *counts, const uint64_t **faulty)
+{
+	const size_t words = (solve->mesh->face_count + WORD - 1) / WORD;
+	const unsigned slots = nt_parallel_slots(solve->threads, words, JUDGE_GRAIN);
+	judge_job job = {solve, nt_scratch_alloc(solve->scratch, slots, sizeof *job.counts),
+		nt_scratch_alloc(solve->scratch, words, sizeof *job.faulty)};
+	if (!job.counts || !job.faulty)
+		return NMTAN_ERROR_MEMORY;
+	nt_parallel_ranges(solve->threads, words, JUDGE_GRAIN, judge_words, &job);
+	memset(counts, 0, sizeof *counts);
+	for (unsigned slot = 0; slot < slots; slot++)
+		nt_counts_add(counts, &job.counts[slot]);
+	*faulty = nt_counts_repaired(counts) ? job.faulty : NULL;
+	return NMTAN_OK;
+}

@@ -1,0 +1,57 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include "file/image_type.h"
+
+static nt_image_type type_of(const char *bytes, size_t size)
+{
+	return nt_image_type_of_bytes((const unsigned char *)bytes, size);
+}
+
+static void type_is_told_by_signature(void **state)
+{
+	(void)state;
+	assert_int_equal(type_of("\x89PNG\r\n\x1a\n", 8), NT_IMAGE_PNG);
+	assert_int_equal(type_of("\x89PNG\r\n\x1a\n", 7), NT_IMAGE_OTHER);
+	assert_int_equal(type_of("\xff\xd8\xff\xe0", 4), NT_IMAGE_JPEG);
+	assert_int_equal(type_of("\xabKTX 20\xbb\r\n\x1a\n", 12), NT_IMAGE_KTX2);
+	assert_int_equal(type_of("\xabKTX 11\xbb\r\n\x1a\n", 12), NT_IMAGE_OTHER);
+	assert_int_equal(type_of("RIFF\0\0\0\0WEBP", 12), NT_IMAGE_WEBP);
+	assert_int_equal(type_of("RIFF\0\0\0\0WAVE", 12), NT_IMAGE_OTHER);
+	assert_int_equal(type_of("BM\0\0", 4), NT_IMAGE_OTHER);
+	assert_int_equal(type_of("", 0), NT_IMAGE_OTHER);
+}
+
+static void type_of_a_name_is_its_ending_in_any_case(void **state)
+{
+	(void)state;
+	assert_int_equal(nt_image_type_of_name("a.b/c.PNG"), NT_IMAGE_PNG);
+	assert_int_equal(nt_image_type_of_name("c.jpg"), NT_IMAGE_JPEG);
+	assert_int_equal(nt_image_type_of_name("c.Jpeg"), NT_IMAGE_JPEG);
+	assert_int_equal(nt_image_type_of_name("c.ktx2"), NT_IMAGE_KTX2);
+	assert_int_equal(nt_image_type_of_name("c.ktx"), NT_IMAGE_OTHER);
+	assert_int_equal(nt_image_type_of_name("c.webp"), NT_IMAGE_WEBP);
+	assert_int_equal(nt_image_type_of_name("c.tga"), NT_IMAGE_OTHER);
+	assert_int_equal(nt_image_type_of_name("png"), NT_IMAGE_OTHER);
+	assert_int_equal(nt_image_type_of_name("c."), NT_IMAGE_OTHER);
+}
+
+static void core_types_need_no_extension(void **state)
+{
+	(void)state;
+	assert_null(nt_image_extension(NT_IMAGE_PNG));
+	assert_null(nt_image_extension(NT_IMAGE_JPEG));
+	assert_string_equal(nt_image_extension(NT_IMAGE_KTX2), "KHR_texture_basisu");
+	assert_string_equal(nt_image_extension(NT_IMAGE_WEBP), "EXT_texture_webp");
+	assert_string_equal(nt_image_media_type(NT_IMAGE_JPEG), "image/jpeg");
+	assert_null(nt_image_media_type(NT_IMAGE_OTHER));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(type_is_told_by_signature),
+		cmocka_unit_test(type_of_a_name_is_its_ending_in_any_case),
+		cmocka_unit_test(core_types_need_no_extension),
+	};
+	return cmocka_run_group_tests_name("file/image_type", tests, NULL, NULL);
+}

@@ -1,0 +1,106 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include <stdio.h>
+#include "file/relative_path.h"
+
+/* What a function appends, as a string that lives until the next call. */
+static const char *taken(nt_buffer *text)
+{
+	static char kept[300];
+	assert_false(text->failed);
+	snprintf(kept, sizeof kept, "%s", text->data ? text->data : "");
+	nt_buffer_free(text);
+	return kept;
+}
+
+static const char *uri(const char *folder, const char *path)
+{
+	nt_buffer text = {0};
+	nt_link_uri(&text, folder, path);
+	return taken(&text);
+}
+
+static const char *join(const char *folder, const char *name)
+{
+	nt_buffer text = {0};
+	nt_link_join(&text, folder, name);
+	return taken(&text);
+}
+
+static void uri_leads_from_folder_to_file(void **state)
+{
+	(void)state;
+	assert_string_equal(uri("/a/b", "/a/b/c.png"), "c.png");
+	assert_string_equal(uri("/a/b", "/a/b/c/d.png"), "c/d.png");
+	assert_string_equal(uri("/a/b", "/a/c.png"), "../c.png");
+	assert_string_equal(uri("/a/bc", "/a/b/x.png"), "../b/x.png"); /* b is no folder of bc */
+	assert_string_equal(uri("/a", "/ab/x.png"), "../ab/x.png");
+	assert_string_equal(uri("/a/b/c", "/x/y.png"), "../../../x/y.png");
+	assert_string_equal(uri("/", "/x/y.png"), "x/y.png");
+}
+
+static void uri_encodes_what_may_not_stand_in_a_path(void **state)
+{
+	(void)state;
+	assert_string_equal(uri("/a", "/a/b c%#?:.png"), "b%20c%25%23%3F%3A.png");
+	assert_string_equal(uri("/a", "/a/\xc3\xa9-_~1.png"), "%C3%A9-_~1.png");
+}
+
+static void join_resolves_dots_and_backslashes(void **state)
+{
+	(void)state;
+	assert_string_equal(join("/a/b", "c.png"), "/a/b/c.png");
+	assert_string_equal(join("/a/b", "t\\./u//c.png"), "/a/b/t/u/c.png");
+	assert_string_equal(join("/a/b", "../c.png"), "/a/c.png");
+	assert_string_equal(join("/a/b", "../../../../c.png"), "/c.png");
+	assert_string_equal(join("/a/b", "/x/./y.png"), "/x/y.png");
+	assert_string_equal(join("/", ".."), "/");
+}
+
+static void absolute_names_are_told(void **state)
+{
+	(void)state;
+	static const char *const absolute[] = {"/x", "\\\\host\\x", "C:\\x", "C:x", "c:/x", "http://x",
+		"file:///x"};
+	static const char *const relative[] = {"x", "a b/c", "../x", "a:b", ".x", "", "tex:1.png"};
+	for (size_t i = 0; i < sizeof absolute / sizeof *absolute; i++)
+		assert_true(nt_link_is_absolute(absolute[i]));
+	for (size_t i = 0; i < sizeof relative / sizeof *relative; i++)
+		assert_int_equal(nt_link_is_absolute(relative[i]), strcmp(relative[i], "a:b") == 0);
+}
+
+static void inside_means_below(void **state)
+{
+	(void)state;
+	assert_true(nt_link_is_inside("/a/b", "/a"));
+	assert_true(nt_link_is_inside("/a", "/"));
+	assert_false(nt_link_is_inside("/ab", "/a"));
+	assert_false(nt_link_is_inside("/a", "/a"));
+}
+
+static void folder_of_a_name_may_be_missing_but_not_below_a_file(void **state)
+{
+	(void)state;
+	nt_buffer text = {0};
+	assert_true(nt_link_folder(&text, "/x.obj"));
+	assert_string_equal(taken(&text), "/");
+	assert_false(nt_link_folder(&text, "/dev/null/y/x.obj"));
+	nt_buffer_free(&text);
+	assert_true(nt_link_folder(&text, "/dev/nowhere/x.obj")); /* it may come to be */
+	assert_string_equal(taken(&text), "/dev/nowhere");
+	assert_true(nt_link_folder(&text, "x.obj"));
+	assert_int_equal(taken(&text)[0], '/');
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(uri_leads_from_folder_to_file),
+		cmocka_unit_test(uri_encodes_what_may_not_stand_in_a_path),
+		cmocka_unit_test(join_resolves_dots_and_backslashes),
+		cmocka_unit_test(absolute_names_are_told),
+		cmocka_unit_test(inside_means_below),
+		cmocka_unit_test(folder_of_a_name_may_be_missing_but_not_below_a_file),
+	};
+	return cmocka_run_group_tests_name("file/relative_path", tests, NULL, NULL);
+}

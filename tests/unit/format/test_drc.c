@@ -1,0 +1,115 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include "ext/draco.h"
+#include "format/format.h"
+
+static const float positions[][3] = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}};
+static const float texcoords[][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 0.25f}};
+static const int8_t normals[][3] = {{0, 0, 127}, {0, 127, 0}, {-128, 0, 0}, {0, -127, 0}};
+static const uint8_t colors[][3] = {{255, 0, 51}, {0, 0, 0}, {0, 0, 0}, {0, 255, 0}};
+static const float tangents[4][4];
+static const uint32_t indices[] = {0, 1, 2, 0, 2, 3};
+static const nt_draco_attribute attributes[] = {
+	{.unique_id = 0, .kind = NT_DRACO_POSITION, .component_type = 5126, .components = 3, .data = positions},
+	{.unique_id = 1, .kind = NT_DRACO_NORMAL, .component_type = 5120, .components = 3,
+		.normalized = true, .data = normals},
+	{.unique_id = 2, .kind = NT_DRACO_TEXCOORD, .component_type = 5126, .components = 2,
+		.data = texcoords},
+	{.unique_id = 3, .kind = NT_DRACO_COLOR, .component_type = 5121, .components = 3,
+		.normalized = true, .data = colors},
+	{.unique_id = 4, .kind = NT_DRACO_GENERIC, .component_type = 5126, .components = 4,
+		.data = tangents},
+};
+static const nt_draco_mesh quad = {.method = NT_DRACO_SEQUENTIAL, .point_count = 4, .face_count = 2,
+	.indices = indices, .attributes = attributes, .attribute_count = 5};
+
+static nt_status open_bytes(nt_scene *scene, const unsigned char *bytes, size_t size,
+	nt_error *error)
+{
+	const nt_read_options options = {.texcoord_set = -1};
+	nt_scene_init(scene, "mesh.drc");
+	scene->bytes = bytes;
+	scene->byte_count = size;
+	const nt_format_entry *entry = nt_format_of_input(bytes, size, "no name");
+	assert_non_null(entry);
+	assert_int_equal(entry->format, NT_FORMAT_DRC);
+	return entry->open(scene, &options, error);
+}
+
+static nt_draco_block encoded(const nt_draco_mesh *mesh)
+{
+	nt_draco_block block;
+	nt_error error;
+	const nt_status status = nt_draco_encode(mesh, &block, &error);
+	if (status != NT_OK)
+		fail_msg("%s", error.message);
+	return block;
+}
+
+static void quad_becomes_a_mesh_of_two_triangles(void **state)
+{
+	(void)state;
+	nt_draco_block block = encoded(&quad);
+	nt_scene scene;
+	nt_error error;
+	assert_int_equal(open_bytes(&scene, block.bytes, block.size, &error), NT_OK);
+	assert_int_equal(scene.mesh_count, 1);
+	assert_int_equal(scene.instance_count, 1);
+	const nt_mesh *mesh = scene.meshes;
+	assert_int_equal(mesh->vertex_count, 4);
+	assert_int_equal(mesh->face_count, 2);
+	assert_true(mesh->triangles && mesh->reachable && mesh->has_normals && mesh->has_texcoords);
+	assert_memory_equal(mesh->indices, indices, sizeof indices);
+	assert_memory_equal(mesh->positions, positions, sizeof positions);
+	assert_memory_equal(mesh->texcoords, texcoords, sizeof texcoords);
+	/* n / 127, and -128 is -1 too; c / 255, and alpha 1 */
+	static const float unit[] = {0, 0, 1, 0, 1, 0, -1, 0, 0, 0, -1, 0};
+	assert_memory_equal(mesh->normals, unit, sizeof unit);
+	static const float rgba[] = {1, 0, 51 / 255.0f, 1};
+	assert_memory_equal(mesh->colors, rgba, sizeof rgba);
+	assert_int_equal(scene.findings.count, 1); /* the generic one */
+	assert_string_equal(scene.findings.items[0].detail, "Draco attribute 4 with 4 components");
+	nt_scene_free(&scene);
+	nt_draco_block_free(&block);
+}
+
+static void mesh_without_positions_is_refused(void **state)
+{
+	(void)state;
+	nt_draco_mesh bare = quad;
+	bare.attributes++;
+	bare.attribute_count--;
+	nt_draco_block block = encoded(&bare);
+	nt_scene scene;
+	nt_error error;
+	assert_int_equal(open_bytes(&scene, block.bytes, block.size, &error), NT_ERROR_INPUT);
+	assert_non_null(strstr(error.message, "no positions"));
+	nt_scene_free(&scene);
+	nt_draco_block_free(&block);
+}
+
+static void truncated_files_are_refused(void **state)
+{
+	(void)state;
+	nt_draco_block block = encoded(&quad);
+	nt_error error;
+	for (size_t size = 5; size < block.size; size++) {
+		nt_scene scene;
+		unsigned char *copy = malloc(size);
+		memcpy(copy, block.bytes, size);
+		assert_int_equal(open_bytes(&scene, copy, size, &error), NT_ERROR_INPUT);
+		nt_scene_free(&scene);
+		free(copy);
+	}
+	nt_draco_block_free(&block);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(quad_becomes_a_mesh_of_two_triangles),
+		cmocka_unit_test(mesh_without_positions_is_refused),
+		cmocka_unit_test(truncated_files_are_refused),
+	};
+	return cmocka_run_group_tests_name("format/drc", tests, NULL, NULL);
+}

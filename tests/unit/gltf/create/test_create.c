@@ -1,0 +1,207 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * New glTF documents: their geometry in every container. Their images are in tests/unit/gltf/edit/test_images.c.
+ */
+#include "hand_gltf.h"
+#include "gltf/create/create.h"
+
+#include <math.h>
+
+#define COUNT(array) (sizeof(array) / sizeof *(array))
+
+/* cross((0, 0, 1), (x, 0, 0)) * w = (0, x, 0) * w; the last has w = -1, which signs its zeros */
+static const float out_bitangents[] = {
+	0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, -0.0f, 1, -0.0f};
+
+static void one_primitive_is_the_same_in_every_container(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_scene(&hand);
+	static const char *const names[] = {"one.gltf", "one embedded.gltf", "one.glb"};
+	for (size_t i = 0; i < COUNT(names); i++) {
+		compose_well(scene, (nt_write_options){.embed = i == 1, .bitangents = true}, names[i]);
+		opened file = open_back(names[i]);
+		assert_whole(&file, hand.tangents);
+		assert_floats(&file, 0, "_BITANGENT", out_bitangents, 6, 3);
+		close_back(&file);
+	}
+	assert_true(exists("one.bin"));
+	assert_false(exists("one embedded.bin"));
+	char *text = text_of("one.gltf");
+	assert_non_null(strstr(text, "\"uri\":\"one.bin\""));
+	assert_non_null(strstr(text, "\"min\":[0.0,0.0,0.0]"));
+	assert_non_null(strstr(text, "\"max\":[2.0,1.0,0.0]"));
+	assert_non_null(strstr(text, "\"generator\":\"nmtan " NMTAN_VERSION_STRING "\""));
+	free(text);
+	nt_scene_free(scene);
+}
+
+static void several_primitives_get_their_own_vertices_in_order_of_use(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_scene(&hand);
+	divide(&hand);
+	compose_well(scene, (nt_write_options){.bitangents = true}, "two.gltf");
+	opened file = open_back("two.gltf");
+	assert_int_equal(nt_reread_primitive_count(file.reread, 0), 2);
+
+	/* triangle 1 4 5 */
+	static const uint16_t triangle[] = {0, 1, 2};
+	static const float triangle_positions[] = {1, 0, 0, 2, 1, 0, 1, 1, 0};
+	static const float triangle_normals[] = {0, 0, 1, 0, 0, 1, 0, 0, 1};
+	static const float triangle_tangents[] = {1, 0, 0, 1, 1, 0, 0, 1, -1, 0, 0, -1};
+	assert_indices(&file, 0, triangle, 3);
+	assert_floats(&file, 0, "POSITION", triangle_positions, 3, 3);
+	assert_floats(&file, 0, "TANGENT", triangle_tangents, 3, 4);
+	assert_floats(&file, 0, "NORMAL", triangle_normals, 3, 3);
+	assert_floats(&file, 0, "_BITANGENT", out_bitangents + 9, 3, 3);
+
+	/* quad 0 1 3, 1 2 3: vertices 0 1 3 2 */
+	static const uint16_t quad[] = {0, 1, 2, 1, 3, 2};
+	static const float quad_positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+	static const float quad_texcoords[] = {0, 1, 1, 1 - 0.1f, 0, 1 - 0.7f, 1, 0};
+	assert_indices(&file, 1, quad, 6);
+	assert_floats(&file, 1, "POSITION", quad_positions, 4, 3);
+	assert_floats(&file, 1, "TEXCOORD_0", quad_texcoords, 4, 2);
+	close_back(&file);
+	nt_scene_free(scene);
+}
+
+static void mesh_without_tangents_is_written_without(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_scene(&hand);
+	hand.mesh.split = (nt_split){0};
+	hand.mesh.face_diagonals = NULL; /* unsolved quads: either diagonal will do */
+	compose_well(scene, (nt_write_options){.bitangents = true}, "bare.glb");
+	opened file = open_back("bare.glb");
+	assert_null(array_of(&file, 0, 0, "TANGENT").data);
+	assert_null(array_of(&file, 0, 0, "_BITANGENT").data);
+	static const uint16_t indices[] = {0, 1, 2, 0, 2, 3, 1, 4, 2};
+	assert_indices(&file, 0, indices, 9);
+	close_back(&file);
+
+	/* no NORMAL, no TANGENT */
+	make_scene(&hand);
+	hand.mesh.normals = NULL;
+	compose_well(scene, (nt_write_options){0}, "bare.glb");
+	file = open_back("bare.glb");
+	assert_null(array_of(&file, 0, 0, "TANGENT").data);
+	close_back(&file);
+
+	/* solved quads must say where they were cut */
+	make_scene(&hand);
+	hand.mesh.face_diagonals = NULL;
+	nt_error error;
+	assert_int_equal(compose(scene, (nt_write_options){0}, "bare.glb", &error), NT_ERROR_INTERNAL);
+	nt_scene_free(scene);
+}
+
+static void triangles_without_indices_stay_without(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_scene(&hand);
+	float *const positions = hand.mesh.positions;
+	hand.mesh = (nt_mesh){.name = "", .vertex_count = 5, .positions = positions,
+		.colors = hand.tangents, .face_count = 1, .corner_count = 3};
+	compose_well(scene, (nt_write_options){0}, "soup.gltf");
+	opened file = open_back("soup.gltf");
+	assert_null(array_of(&file, 0, 0, NULL).data);
+	assert_floats(&file, 0, "POSITION", positions, 3, 3); /* the other two are not used */
+	assert_floats(&file, 0, "COLOR_0", hand.tangents, 3, 4);
+	assert_null(array_of(&file, 0, 0, "TEXCOORD_0").data);
+	close_back(&file);
+	nt_scene_free(scene);
+}
+
+static void index_65535_is_reserved(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_scene(&hand);
+	enum { MOST = 65536 };
+	float *many = calloc(MOST, 3 * sizeof *many);
+	many[3 * (MOST - 1)] = 7;
+	uint32_t triangle[] = {0, 1, MOST - 2};
+	hand.mesh = (nt_mesh){.name = "", .positions = many, .face_count = 1, .corner_count = 3,
+		.indices = triangle};
+	for (size_t count = MOST - 1; count <= MOST; count++) {
+		triangle[2] = (uint32_t)count - 1;
+		hand.mesh.vertex_count = count;
+		compose_well(scene, (nt_write_options){0}, "many.glb");
+		opened file = open_back("many.glb");
+		const nt_reread_array indices = array_of(&file, 0, 0, NULL);
+		const int type = count < MOST ? NT_GLTF_USHORT : NT_GLTF_UINT;
+		assert_int_equal(indices.component_type, type);
+		assert_int_equal(array_of(&file, 0, 0, "POSITION").count, count);
+		close_back(&file);
+	}
+	free(many);
+	nt_scene_free(scene);
+}
+
+static void bounds_are_finite_whatever_the_positions_are(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_scene(&hand);
+	float wild[] = {NAN, -INFINITY, NAN, NAN, 2, INFINITY, NAN, 3, INFINITY};
+	hand.mesh = (nt_mesh){.name = "", .vertex_count = 3, .positions = wild, .face_count = 1,
+		.corner_count = 3};
+	compose_well(scene, (nt_write_options){0}, "wild.gltf");
+	char *text = text_of("wild.gltf");
+	assert_null(strstr(text, "null"));
+	assert_non_null(strstr(text, "\"max\":[0.0,3.0,3.4028234663852886e+38]"));
+	assert_non_null(strstr(text, "\"min\":[0.0,-3.4028234663852886e+38,3.4028234663852886e+38]"));
+	free(text);
+	nt_scene_free(scene);
+}
+
+static void empty_scene_is_a_valid_document(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_scene(&hand);
+	hand.mesh.face_count = hand.mesh.corner_count = 0;
+	compose_well(scene, (nt_write_options){0}, "empty.gltf");
+	char *text = text_of("empty.gltf");
+	assert_string_equal(text,
+		"{\"asset\":{\"generator\":\"nmtan " NMTAN_VERSION_STRING "\",\"version\":\"2.0\"}}");
+	free(text);
+	assert_false(exists("empty.bin"));
+	compose_well(scene, (nt_write_options){0}, "empty.glb");
+	opened file = open_back("empty.glb");
+	assert_int_equal(nt_reread_mesh_count(file.reread), 0);
+	close_back(&file);
+	nt_scene_free(scene);
+}
+
+static void gltf_with_a_bin_cannot_go_to_standard_output(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_scene(&hand);
+	const nt_write_options options = {.format = NT_FORMAT_GLTF, .path = "-"};
+	nt_error error;
+	assert_int_equal(nt_gltf_compose(scene, &options, NULL, &error), NT_ERROR_USAGE);
+	nt_scene_free(scene);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(one_primitive_is_the_same_in_every_container),
+		cmocka_unit_test(several_primitives_get_their_own_vertices_in_order_of_use),
+		cmocka_unit_test(mesh_without_tangents_is_written_without),
+		cmocka_unit_test(triangles_without_indices_stay_without),
+		cmocka_unit_test(index_65535_is_reserved),
+		cmocka_unit_test(bounds_are_finite_whatever_the_positions_are),
+		cmocka_unit_test(empty_scene_is_a_valid_document),
+		cmocka_unit_test(gltf_with_a_bin_cannot_go_to_standard_output),
+	};
+	return cmocka_run_group_tests_name("gltf/create/create", tests, make_folder, remove_folder);
+}

@@ -1,0 +1,219 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Images of new glTF documents: linked, embedded, copied or left out.
+ */
+#include "hand_gltf.h"
+
+#include <sys/stat.h>
+
+static const unsigned char png[] = "\x89PNG\r\n\x1a\n and then some";
+static const unsigned char jpeg[] = "\xff\xd8\xff\xe0 and then some more";
+
+/* mtl/m.mtl with images beside it, one of them under a name that needs encoding. */
+static nt_scene *make_textured(hand_scene *hand)
+{
+	nt_scene *scene = make_scene(hand);
+	mkdir(in_folder("mtl"), 0777);
+	mkdir(in_folder("mtl/tex"), 0777);
+	put_file("mtl/m.mtl", "", 0);
+	put_file("mtl/tex/a b.png", png, sizeof png);
+	put_file("mtl/n.jpg", jpeg, sizeof jpeg);
+	put_file("mtl/t.tga", "\0\0\2", 3);
+	put_file("outside.png", png, sizeof png);
+	static char library[200];
+	snprintf(library, sizeof library, "%s", in_folder("mtl/m.mtl"));
+	hand->material.library = library;
+	hand->material.line = 3;
+	hand->material.base_color_map = "tex\\a b.png";
+	hand->material.emissive_map = "./tex/../tex/a b.png";
+	hand->material.normal_map = "n.jpg";
+	hand->primitives[0].material = 0;
+	return scene;
+}
+
+static const nt_finding *finding_of(const nt_scene *scene, nt_code code)
+{
+	for (size_t i = 0; i < scene->findings.count; i++)
+		if (scene->findings.items[i].code == code)
+			return &scene->findings.items[i];
+	return NULL;
+}
+
+static void linked_images_are_relative_to_the_output(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_textured(&hand);
+	mkdir(in_folder("out"), 0777);
+	compose_well(scene, (nt_write_options){0}, "out/linked.gltf");
+	char *text = text_of("out/linked.gltf");
+	assert_non_null(strstr(text, "\"uri\":\"../mtl/tex/a%20b.png\""));
+	assert_non_null(strstr(text, "\"uri\":\"../mtl/n.jpg\""));
+	/* one image, used twice */
+	assert_non_null(strstr(text, "\"baseColorTexture\":{\"index\":0}"));
+	assert_non_null(strstr(text, "\"emissiveTexture\":{\"index\":0}"));
+	assert_non_null(strstr(text, "\"normalTexture\":{\"index\":1}"));
+	assert_non_null(strstr(text, "\"textures\":[{\"source\":0},{\"source\":1}]"));
+	assert_int_equal(scene->findings.count, 0);
+	free(text);
+	nt_scene_free(scene);
+}
+
+static void embedded_images_lie_behind_the_geometry(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_textured(&hand);
+	compose_well(scene, (nt_write_options){0}, "images.glb");
+	nt_file file;
+	nt_error error;
+	assert_int_equal(nt_file_open(&file, in_folder("images.glb"), &error), NT_OK);
+	assert_non_null(memmem(file.data, file.size, "\"mimeType\":\"image/png\"", 22));
+	/* the last one ends the chunk, which is padded to 4 */
+	const size_t padding = (4 - sizeof jpeg % 4) % 4;
+	assert_memory_equal(file.data + file.size - padding - sizeof jpeg, jpeg, sizeof jpeg);
+	assert_non_null(memmem(file.data, file.size, png, sizeof png));
+	nt_file_close(&file);
+	opened back = open_back("images.glb");
+	assert_whole(&back, hand.tangents);
+	close_back(&back);
+	nt_scene_free(scene);
+}
+
+static void copied_images_stand_beside_the_output(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_textured(&hand);
+	mkdir(in_folder("copies"), 0777);
+	compose_well(scene, (nt_write_options){.images = NT_IMAGES_COPY}, "copies/c.gltf");
+	char *text = text_of("copies/c.gltf"), *copy = text_of("copies/n.jpg");
+	assert_non_null(strstr(text, "\"uri\":\"n.jpg\""));
+	assert_non_null(strstr(text, "\"uri\":\"a%20b.png\""));
+	assert_memory_equal(copy, jpeg, sizeof jpeg);
+	assert_true(exists("copies/a b.png"));
+	free(text);
+	free(copy);
+
+	/* two of one name, and one that is there already */
+	put_file("mtl/a b.png", png, sizeof png);
+	hand.material.normal_map = "a b.png";
+	compose_well(scene, (nt_write_options){.images = NT_IMAGES_COPY}, "mtl/c.gltf");
+	text = text_of("mtl/c.gltf");
+	assert_non_null(strstr(text, "\"uri\":\"a%20b.png\""));
+	assert_non_null(strstr(text, "\"uri\":\"a%20b-1.png\""));
+	assert_true(exists("mtl/a b-1.png"));
+	free(text);
+	nt_scene_free(scene);
+}
+
+static void no_images_means_no_textures(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_textured(&hand);
+	compose_well(scene, (nt_write_options){.images = NT_IMAGES_NONE}, "none.gltf");
+	char *text = text_of("none.gltf");
+	assert_null(strstr(text, "exture"));
+	assert_non_null(strstr(text, "\"material\":0"));
+	free(text);
+	nt_scene_free(scene);
+}
+
+static void missing_and_foreign_images_are_findings(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_textured(&hand);
+	hand.material.base_color_map = "gone.png";
+	hand.material.emissive_map = "t.tga";
+	hand.material.normal_map = NULL;
+	compose_well(scene, (nt_write_options){0}, "gone.gltf");
+	const nt_finding *missing = finding_of(scene, NT_CODE_IMAGE_MISSING);
+	assert_non_null(missing);
+	assert_string_equal(missing->detail, "gone.png");
+	assert_string_equal(missing->place.file, hand.material.library);
+	assert_int_equal(missing->place.line, 3);
+	const nt_finding *type = finding_of(scene, NT_CODE_IMAGE_TYPE);
+	assert_non_null(type);
+	assert_string_equal(type->detail, "t.tga");
+	char *text = text_of("gone.gltf");
+	assert_non_null(strstr(text, "\"uri\":\"mtl/gone.png\"")); /* the link stays */
+	assert_null(strstr(text, "tga"));
+	assert_null(strstr(text, "emissiveTexture"));
+	free(text);
+	compose_well(scene, (nt_write_options){0}, "gone.glb"); /* there is nothing to embed */
+	opened file = open_back("gone.glb");
+	close_back(&file);
+	nt_scene_free(scene);
+}
+
+static void images_outside_of_the_mtl_folder_need_leave(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_textured(&hand);
+	assert_int_equal(symlink("../outside.png", in_folder("mtl/link.png")), 0);
+	hand.material.base_color_map = "../outside.png";
+	hand.material.emissive_map = "link.png";
+	hand.material.normal_map = "C:\\work\\n.jpg"; /* found by its last part */
+	compose_well(scene, (nt_write_options){0}, "confined.gltf");
+	char *text = text_of("confined.gltf");
+	assert_null(strstr(text, "outside"));
+	assert_null(strstr(text, "link.png"));
+	assert_non_null(strstr(text, "\"uri\":\"mtl/n.jpg\""));
+	assert_non_null(strstr(finding_of(scene, NT_CODE_IMAGE_MISSING)->detail, "../outside.png"));
+	free(text);
+	compose_well(scene, (nt_write_options){.allow_outside = true}, "confined.gltf");
+	text = text_of("confined.gltf");
+	assert_non_null(strstr(text, "\"uri\":\"outside.png\""));
+	assert_non_null(strstr(text, "\"uri\":\"mtl/link.png\""));
+	assert_non_null(strstr(text, "\"uri\":\"mtl/n.jpg\""));
+	free(text);
+	nt_scene_free(scene);
+}
+
+static void primitive_without_texcoords_gets_no_textures(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_textured(&hand);
+	hand.mesh.texcoords = NULL;
+	compose_well(scene, (nt_write_options){0}, "plain.gltf");
+	char *text = text_of("plain.gltf");
+	assert_null(strstr(text, "exture"));
+	assert_null(strstr(text, "images"));
+	free(text);
+	nt_scene_free(scene);
+}
+
+static void images_are_safe_from_the_output(void **state)
+{
+	(void)state;
+	hand_scene hand;
+	nt_scene *scene = make_textured(&hand);
+	put_file("mtl/n.bin", png, sizeof png);
+	hand.material.normal_map = "n.bin"; /* a PNG by content, and where the buffer would go */
+	nt_error error;
+	assert_int_equal(compose(scene, (nt_write_options){0}, "mtl/n.gltf", &error), NT_ERROR_IO);
+	assert_false(exists("mtl/n.gltf"));
+	char *kept = text_of("mtl/n.bin");
+	assert_memory_equal(kept, png, sizeof png);
+	free(kept);
+	nt_scene_free(scene);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(linked_images_are_relative_to_the_output),
+		cmocka_unit_test(embedded_images_lie_behind_the_geometry),
+		cmocka_unit_test(copied_images_stand_beside_the_output),
+		cmocka_unit_test(no_images_means_no_textures),
+		cmocka_unit_test(missing_and_foreign_images_are_findings),
+		cmocka_unit_test(images_outside_of_the_mtl_folder_need_leave),
+		cmocka_unit_test(primitive_without_texcoords_gets_no_textures),
+		cmocka_unit_test(images_are_safe_from_the_output),
+	};
+	return cmocka_run_group_tests_name("gltf/edit/images", tests, make_folder, remove_folder);
+}

@@ -1,0 +1,493 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include <math.h>
+#include <stdio.h>
+#include "gltf/document.h"
+#include "file/uri.h"
+#include "gltf/load.h"
+#include "gltf/open.h"
+#include "scene/select.h"
+
+/* A document in memory over one data URI buffer. */
+typedef struct fixture {
+	nt_scene scene;
+	nt_buffer text;
+	nt_error error;
+} fixture;
+
+static const nt_read_options plain_options = {.texcoord_set = -1};
+
+static nt_status open_text(fixture *f, const char *before, const void *bytes, size_t size,
+	const nt_read_options *options)
+{
+	memset(f, 0, sizeof *f);
+	nt_error_clear(&f->error);
+	nt_buffer_format(&f->text, "{\"asset\":{\"version\":\"2.0\"},%s,\"buffers\":[{\"byteLength\":%zu,"
+		"\"uri\":\"", before, size);
+	nt_uri_append_data(&f->text, "application/octet-stream", bytes, size);
+	nt_buffer_text(&f->text, "\"}]}");
+	nt_scene_init(&f->scene, "test.gltf");
+	f->scene.bytes = (const unsigned char *)f->text.data;
+	f->scene.byte_count = f->text.size;
+	return nt_gltf_open(&f->scene, options, &f->error);
+}
+
+static void close_text(fixture *f)
+{
+	nt_scene_free(&f->scene);
+	nt_buffer_free(&f->text);
+}
+
+/* Four vertices: positions, normals, texture coordinates, and indices as bytes, shorts and ints. */
+typedef struct quad_bytes {
+	float positions[4][3];
+	float normals[4][3];
+	float texcoords[4][2];
+	uint8_t indices8[8];
+	uint16_t indices16[8];
+	uint32_t indices32[6];
+} quad_bytes;
+
+static const quad_bytes quad = {
+	{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
+	{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}},
+	{{0, 1}, {1, 1}, {1, 0}, {0, 0.25f}},
+	{0, 1, 2, 0, 2, 3, 0, 0},
+	{0, 1, 2, 0, 2, 3, 0, 0},
+	{0, 1, 2, 0, 2, 3},
+};
+
+#define QUAD_VIEWS                                                                                 \
+	"\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},{\"buffer\":0,\"byteOffset\":48,"       \
+	"\"byteLength\":48},{\"buffer\":0,\"byteOffset\":96,\"byteLength\":32},{\"buffer\":0,"     \
+	"\"byteOffset\":128,\"byteLength\":8},{\"buffer\":0,\"byteOffset\":136,\"byteLength\":16}," \
+	"{\"buffer\":0,\"byteOffset\":152,\"byteLength\":24}]"
+#define QUAD_ACCESSORS                                                                             \
+	"\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"   \
+	"{\"bufferView\":1,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"                  \
+	"{\"bufferView\":2,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"},"                  \
+	"{\"bufferView\":3,\"componentType\":5121,\"count\":6,\"type\":\"SCALAR\"},"                \
+	"{\"bufferView\":4,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"},"                \
+	"{\"bufferView\":5,\"componentType\":5125,\"count\":6,\"type\":\"SCALAR\"}]"
+#define QUAD_ATTRIBUTES "\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2}"
+
+static nt_status open_quad(fixture *f, const char *primitive, const char *more)
+{
+	char json[6000];
+	snprintf(json, sizeof json, QUAD_VIEWS "," QUAD_ACCESSORS ",\"meshes\":[{\"name\":\"q\","
+		"\"primitives\":[{%s}]}]%s", primitive, more);
+	return open_text(f, json, &quad, sizeof quad, &plain_options);
+}
+
+static void check_triangles(const char *primitive, const uint32_t *expected, size_t corner_count)
+{
+	fixture f;
+	assert_int_equal(open_quad(&f, primitive, ""), NT_OK);
+	nt_mesh *mesh = &f.scene.meshes[0];
+	assert_int_equal(nt_gltf_load(&f.scene, mesh, &plain_options, &f.error), NT_OK);
+	assert_int_equal(mesh->corner_count, corner_count);
+	assert_int_equal(mesh->face_count, corner_count / 3);
+	for (size_t c = 0; c < corner_count; c++)
+		assert_int_equal(mesh->indices ? mesh->indices[c] : c, expected[c]);
+	close_text(&f);
+}
+
+static void all_kinds_of_indices_are_read(void **state)
+{
+	(void)state;
+	const uint32_t expected[] = {0, 1, 2, 0, 2, 3};
+	for (int accessor = 3; accessor <= 5; accessor++) {
+		char primitive[256];
+		snprintf(primitive, sizeof primitive, QUAD_ATTRIBUTES ",\"indices\":%d", accessor);
+		check_triangles(primitive, expected, 6);
+	}
+	check_triangles(QUAD_ATTRIBUTES, (const uint32_t[]){0, 1, 2}, 3);
+}
+
+/* glTF 2.0, 3.7.2.1: strip triangle i is (i, i+1+i%2, i+2-i%2), fan triangle i is (i+1, i+2, 0). */
+static void strips_and_fans_become_triangles(void **state)
+{
+	(void)state;
+	check_triangles(QUAD_ATTRIBUTES ",\"mode\":5", (const uint32_t[]){0, 1, 2, 1, 3, 2}, 6);
+	check_triangles(QUAD_ATTRIBUTES ",\"mode\":6", (const uint32_t[]){1, 2, 0, 2, 3, 0}, 6);
+	/* the chain 0 1 2 0 2 3 */
+	check_triangles(QUAD_ATTRIBUTES ",\"mode\":5,\"indices\":4",
+		(const uint32_t[]){0, 1, 2, 1, 0, 2, 2, 0, 2, 0, 3, 2}, 12);
+}
+
+static void texcoords_have_v_up(void **state)
+{
+	(void)state;
+	fixture f;
+	assert_int_equal(open_quad(&f, QUAD_ATTRIBUTES, ""), NT_OK);
+	nt_mesh *mesh = &f.scene.meshes[0];
+	assert_int_equal(nt_gltf_load(&f.scene, mesh, &plain_options, &f.error), NT_OK);
+	assert_int_equal(mesh->vertex_count, 4);
+	for (size_t i = 0; i < 4; i++) {
+		assert_true(mesh->texcoords[2 * i] == quad.texcoords[i][0]);
+		assert_true(mesh->texcoords[2 * i + 1] == -quad.texcoords[i][1]);
+	}
+	assert_memory_equal(mesh->positions, quad.positions, sizeof quad.positions);
+	assert_memory_equal(mesh->normals, quad.normals, sizeof quad.normals);
+	assert_null(mesh->tangents);
+	assert_string_equal(mesh->place.object, "mesh \"q\", primitive 0");
+	close_text(&f);
+}
+
+static void check_load_fails(const char *primitive, nt_status status, const char *pointer)
+{
+	fixture f;
+	assert_int_equal(open_quad(&f, primitive, ""), NT_OK);
+	assert_int_equal(nt_gltf_load(&f.scene, &f.scene.meshes[0], &plain_options, &f.error), status);
+	assert_string_equal(f.error.place.pointer, pointer);
+	close_text(&f);
+}
+
+static void faults_have_their_pointer(void **state)
+{
+	(void)state;
+	check_load_fails("\"attributes\":{\"NORMAL\":1}", NT_ERROR_INPUT, "/meshes/0/primitives/0");
+	check_load_fails("\"attributes\":{\"POSITION\":9}", NT_ERROR_INPUT,
+		"/meshes/0/primitives/0/attributes/POSITION");
+	check_load_fails("\"attributes\":{\"POSITION\":-1}", NT_ERROR_INPUT,
+		"/meshes/0/primitives/0/attributes/POSITION");
+	check_load_fails("\"attributes\":{\"POSITION\":2}", NT_ERROR_INPUT,
+		"/meshes/0/primitives/0/attributes/POSITION");
+	check_load_fails("\"attributes\":{\"POSITION\":0},\"indices\":0", NT_ERROR_INPUT,
+		"/accessors/0");
+	check_load_fails("\"attributes\":{\"POSITION\":0},\"indices\":\"x\"", NT_ERROR_INPUT,
+		"/meshes/0/primitives/0/indices");
+	check_load_fails("\"attributes\":{\"POSITION\":0},\"extensions\":"
+		"{\"KHR_draco_mesh_compression\":{}}", NT_ERROR_INPUT,
+		"/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression");
+}
+
+/* One accessor of three elements, with anything about it. */
+static nt_status load_positions(fixture *f, const char *view, const char *accessor, const void *bytes,
+	size_t size)
+{
+	char json[2048];
+	snprintf(json, sizeof json, "\"bufferViews\":[{%s}],\"accessors\":[{%s}],\"meshes\":[{"
+		"\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]", view, accessor);
+	const nt_status status = open_text(f, json, bytes, size, &plain_options);
+	if (status)
+		return status;
+	return nt_gltf_load(&f->scene, &f->scene.meshes[0], &plain_options, &f->error);
+}
+
+static void check_positions_fail(const char *view, const char *accessor, const char *pointer)
+{
+	static const unsigned char bytes[36];
+	fixture f;
+	assert_int_equal(load_positions(&f, view, accessor, bytes, sizeof bytes), NT_ERROR_INPUT);
+	assert_string_equal(f.error.place.pointer, pointer);
+	close_text(&f);
+}
+
+static void counts_offsets_and_strides_are_checked(void **state)
+{
+	(void)state;
+	const char *view = "\"buffer\":0,\"byteLength\":36";
+	const char *vec3 = "\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":3";
+	fixture f;
+	static const unsigned char bytes[36];
+	assert_int_equal(load_positions(&f, view, vec3, bytes, sizeof bytes), NT_OK);
+	close_text(&f);
+	assert_int_equal(load_positions(&f, view, vec3, bytes, 35), NT_ERROR_INPUT);
+	assert_string_equal(f.error.place.pointer, "/bufferViews/0");
+	close_text(&f);
+	check_positions_fail(view, "\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":4",
+		"/accessors/0");
+	check_positions_fail(view, "\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\","
+		"\"count\":4294967294", "/accessors/0");
+	check_positions_fail(view, "\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\","
+		"\"count\":99999999999999999999", "/accessors/0/count");
+	check_positions_fail(view, "\"bufferView\":0,\"byteOffset\":1,\"componentType\":5126,"
+		"\"type\":\"VEC3\",\"count\":3", "/accessors/0");
+	check_positions_fail(view, "\"bufferView\":0,\"componentType\":5124,\"type\":\"VEC3\",\"count\":3",
+		"/accessors/0/componentType");
+	check_positions_fail(view, "\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC5\",\"count\":3",
+		"/accessors/0/type");
+	check_positions_fail(view, "\"bufferView\":1,\"componentType\":5126,\"type\":\"VEC3\",\"count\":3",
+		"/accessors/0");
+	check_positions_fail("\"buffer\":0,\"byteLength\":36,\"byteStride\":8", vec3, "/accessors/0");
+	check_positions_fail("\"buffer\":0,\"byteLength\":36,\"byteStride\":16", vec3, "/accessors/0");
+	check_positions_fail("\"buffer\":0,\"byteLength\":36,\"byteOffset\":9007199254740992", vec3,
+		"/bufferViews/0");
+	check_positions_fail("\"buffer\":1,\"byteLength\":36", vec3, "/bufferViews/0");
+	check_positions_fail("\"buffer\":0", vec3, "/bufferViews/0");
+}
+
+static void check_positions(const char *view, const char *accessor, const void *bytes, size_t size,
+	const float *expected)
+{
+	fixture f;
+	assert_int_equal(load_positions(&f, view, accessor, bytes, size), NT_OK);
+	for (size_t i = 0; i < 9; i++)
+		assert_true(f.scene.meshes[0].positions[i] == expected[i]);
+	close_text(&f);
+}
+
+static void quantized_interleaved_and_sparse_values_are_decoded(void **state)
+{
+	(void)state;
+	/* KHR_mesh_quantization: max(c / 127, -1) and so on */
+	const int8_t bytes[12] = {127, -127, -128, 99, 0, 1, 2, 99, 64, -64, 3, 99};
+	check_positions("\"buffer\":0,\"byteLength\":12,\"byteStride\":4", "\"bufferView\":0,"
+		"\"componentType\":5120,\"normalized\":true,\"type\":\"VEC3\",\"count\":3", bytes, 12,
+		(const float[]){1, -1, -1, 0, 1 / 127.0f, 2 / 127.0f, 64 / 127.0f, -64 / 127.0f, 3 / 127.0f});
+	check_positions("\"buffer\":0,\"byteLength\":12,\"byteStride\":4", "\"bufferView\":0,"
+		"\"componentType\":5121,\"type\":\"VEC3\",\"count\":3", bytes, 12,
+		(const float[]){127, 129, 128, 0, 1, 2, 64, 192, 3});
+	const uint16_t shorts[10] = {65535, 0, 32768, 7, 1, 2, 3, 7, 4, 5};
+	check_positions("\"buffer\":0,\"byteLength\":20,\"byteStride\":6", "\"bufferView\":0,"
+		"\"componentType\":5123,\"normalized\":true,\"type\":\"VEC3\",\"count\":3", shorts, 20,
+		(const float[]){1, 0, 32768 / 65535.0f, 7 / 65535.0f, 1 / 65535.0f, 2 / 65535.0f,
+			3 / 65535.0f, 7 / 65535.0f, 4 / 65535.0f});
+	/* zeros but for row 1 */
+	const struct {
+		float value[3];
+		uint8_t row[4];
+	} sparse = {{1.5f, 2.5f, 3.5f}, {1}};
+	check_positions("\"buffer\":0,\"byteLength\":16", "\"componentType\":5126,\"type\":\"VEC3\","
+		"\"count\":3,\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":0,\"byteOffset\":12,"
+		"\"componentType\":5121},\"values\":{\"bufferView\":0}}", &sparse, sizeof sparse,
+		(const float[]){0, 0, 0, 1.5f, 2.5f, 3.5f, 0, 0, 0});
+}
+
+static void sparse_rows_are_checked(void **state)
+{
+	(void)state;
+	const char *accessor = "\"componentType\":5126,\"type\":\"VEC3\",\"count\":3,\"sparse\":{"
+		"\"count\":2,\"indices\":{\"bufferView\":0,\"componentType\":5121},"
+		"\"values\":{\"bufferView\":0,\"byteOffset\":4}}";
+	static const uint8_t rows[][2] = {{0, 3}, {1, 1}, {2, 1}};
+	for (size_t i = 0; i < 3; i++) {
+		unsigned char bytes[28] = {rows[i][0], rows[i][1]};
+		fixture f;
+		assert_int_equal(load_positions(&f, "\"buffer\":0,\"byteLength\":28", accessor, bytes, 28),
+			NT_ERROR_INPUT);
+		assert_string_equal(f.error.place.pointer, "/accessors/0/sparse/indices");
+		close_text(&f);
+	}
+}
+
+static void zeros_without_backing_are_limited(void **state)
+{
+	(void)state;
+	fixture f;
+	assert_int_equal(load_positions(&f, "\"buffer\":0,\"byteLength\":4", "\"componentType\":5126,"
+		"\"type\":\"VEC3\",\"count\":4000000000", "abcd", 4), NT_ERROR_UNSUPPORTED);
+	close_text(&f);
+}
+
+/* Materials: what each asks for, and of which texture coordinates. */
+static void check_material(const char *materials, const char *primitive, unsigned slots, uint32_t set,
+	bool conflict)
+{
+	char more[2048], json[2048];
+	snprintf(more, sizeof more, ",\"materials\":[%s]", materials);
+	snprintf(json, sizeof json, QUAD_ATTRIBUTES ",%s", primitive);
+	fixture f;
+	assert_int_equal(open_quad(&f, json, more), NT_OK);
+	assert_int_equal(f.scene.meshes[0].slots, slots);
+	assert_int_equal(f.scene.meshes[0].texcoord_set, set);
+	assert_int_equal(f.scene.meshes[0].texcoord_conflict, conflict);
+	assert_int_equal(f.scene.meshes[0].has_texcoords, set == 0);
+	close_text(&f);
+}
+
+static void materials_become_slots(void **state)
+{
+	(void)state;
+	const char *const mine = "\"material\":0";
+	check_material("{}", mine, 0, 0, false);
+	check_material("{\"normalTexture\":{\"index\":0}}", mine, NT_SLOT_NORMAL, 0, false);
+	check_material("{\"normalTexture\":{\"index\":0,\"texCoord\":1}}", mine, NT_SLOT_NORMAL, 1, false);
+	check_material("{\"normalTexture\":{\"index\":0,\"texCoord\":1,\"extensions\":{"
+		"\"KHR_texture_transform\":{\"texCoord\":0}}}}", mine, NT_SLOT_NORMAL, 0, false);
+	check_material("{\"extensions\":{\"KHR_materials_anisotropy\":{}}}", mine, NT_SLOT_ANISOTROPY, 0,
+		false);
+	check_material("{\"extensions\":{\"KHR_materials_clearcoat\":{}}}", mine, 0, 0, false);
+	check_material("{\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatNormalTexture\":"
+		"{\"index\":0,\"texCoord\":1}},\"KHR_materials_anisotropy\":{\"anisotropyTexture\":"
+		"{\"index\":0}}}}", mine, NT_SLOT_CLEARCOAT_NORMAL | NT_SLOT_ANISOTROPY, 1, true);
+	check_material("{\"normalTexture\":{\"index\":0},\"extensions\":{\"KHR_materials_unlit\":{}}}",
+		mine, 0, 0, false);
+	check_material("{},{\"normalTexture\":{\"index\":0}}", "\"material\":0,\"extensions\":{"
+		"\"KHR_materials_variants\":{\"mappings\":[{\"material\":0},{\"material\":1}]}}",
+		NT_SLOT_NORMAL, 0, false);
+	check_material("{\"extensions\":{\"MSFT_lod\":{\"ids\":[1]}}},{\"normalTexture\":{\"index\":0}}",
+		mine, NT_SLOT_NORMAL, 0, false);
+}
+
+static void load_transformed(fixture *f, const char *transform, const char *more)
+{
+	char materials[1024];
+	snprintf(materials, sizeof materials, ",\"materials\":[{\"normalTexture\":{\"index\":0,"
+		"\"extensions\":{\"KHR_texture_transform\":{%s}}}}]%s", transform, more);
+	assert_int_equal(open_quad(f, QUAD_ATTRIBUTES ",\"material\":0", materials), NT_OK);
+	assert_int_equal(nt_gltf_load(&f->scene, &f->scene.meshes[0], &plain_options, &f->error), NT_OK);
+}
+
+static void texture_transforms_turn_and_scale(void **state)
+{
+	(void)state;
+	fixture f;
+	load_transformed(&f, "\"offset\":[0.5,0.25]", "");
+	assert_null(f.scene.meshes[0].solve_texcoords);
+	assert_int_equal(f.scene.meshes[0].solve_sign, 0);
+	close_text(&f);
+
+	/* scale first, exactly */
+	load_transformed(&f, "\"scale\":[-2,0.5]", "");
+	for (size_t i = 0; i < 4; i++) {
+		const nt_mesh *mesh = &f.scene.meshes[0];
+		assert_true(mesh->solve_texcoords[2 * i] == -2 * quad.texcoords[i][0]);
+		assert_true(mesh->solve_texcoords[2 * i + 1] == -0.5f * quad.texcoords[i][1]);
+		assert_true(mesh->texcoords[2 * i] == quad.texcoords[i][0]);
+	}
+	assert_int_equal(f.scene.meshes[0].solve_sign, -1);
+	close_text(&f);
+
+	/* a quarter turn, counterclockwise where v points up: (u, v) goes to (-v, u). glTF issue 1563: viewers
+	 * and TextureTransformTest take it so */
+	load_transformed(&f, "\"rotation\":1.5707963267948966", "");
+	for (size_t i = 0; i < 4; i++) {
+		const nt_mesh *mesh = &f.scene.meshes[0];
+		assert_true(fabsf(mesh->solve_texcoords[2 * i] - quad.texcoords[i][1]) < 1e-6f);
+		assert_true(fabsf(mesh->solve_texcoords[2 * i + 1] - quad.texcoords[i][0]) < 1e-6f);
+	}
+	assert_int_equal(f.scene.findings.count, 0);
+	close_text(&f);
+}
+
+static void animated_transforms_are_a_finding(void **state)
+{
+	(void)state;
+	fixture f;
+	const char *animation = ",\"animations\":[{\"channels\":[{\"target\":{\"extensions\":{"
+		"\"KHR_animation_pointer\":{\"pointer\":\"/materials/0/normalTexture/extensions/"
+		"KHR_texture_transform/%s\"}}}}]}]";
+	char text[512];
+	snprintf(text, sizeof text, animation, "rotation");
+	load_transformed(&f, "\"scale\":[1,1]", text);
+	assert_int_equal(f.scene.findings.count, 1);
+	assert_int_equal(f.scene.findings.items[0].code, NT_CODE_TAN_UV_TRANSFORM_ANIMATED);
+	close_text(&f);
+	snprintf(text, sizeof text, animation, "offset");
+	load_transformed(&f, "\"scale\":[1,1]", text);
+	assert_int_equal(f.scene.findings.count, 0);
+	close_text(&f);
+}
+
+static void scenes_decide_what_is_reached(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *more;
+		bool reached;
+	} cases[] = {
+		{"", true},
+		{",\"scenes\":[]", false},
+		{",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[1]},{\"mesh\":0}]", true},
+		{",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{},{\"mesh\":0}]", false},
+		{",\"scenes\":[{},{\"nodes\":[1]}],\"nodes\":[{},{\"mesh\":0}]", true},
+		{",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[0,77,\"x\",1]},{\"children\":[0]}]",
+			false},
+		{",\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"extensions\":{\"MSFT_lod\":{\"ids\":[1]}}},"
+			"{\"mesh\":0}]", true},
+		{",\"scenes\":7,\"nodes\":8", false},
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		fixture f;
+		assert_int_equal(open_quad(&f, QUAD_ATTRIBUTES, cases[i].more), NT_OK);
+		assert_int_equal(f.scene.meshes[0].reachable, cases[i].reached);
+		close_text(&f);
+	}
+}
+
+static void instances_have_world_matrices(void **state)
+{
+	(void)state;
+	const nt_read_options options = {.texcoord_set = -1, .world = true};
+	fixture f;
+	/* parent: turned by 90 degrees about z (x to y), then moved by (10, 0, 0); child: scaled by 2 and moved
+	 * by (1, 0, 0): the child's origin goes to (10, 1, 0), its x axis to 2 y */
+	assert_int_equal(open_text(&f, "\"meshes\":[{\"primitives\":[{},{}]}],\"scenes\":[{\"nodes\":[0]}],"
+		"\"nodes\":[{\"rotation\":[0,0,0.7071067811865476,0.7071067811865476],"
+		"\"translation\":[10,0,0],\"children\":[1]},{\"mesh\":0,\"matrix\":"
+		"[2,0,0,0,0,2,0,0,0,0,2,0,1,0,0,1]}]", "", 0, &options), NT_OK);
+	assert_int_equal(f.scene.instance_count, 2);
+	assert_int_equal(f.scene.instances[1].mesh, 1);
+	const double expected[16] = {0, 2, 0, 0, -2, 0, 0, 0, 0, 0, 2, 0, 10, 1, 0, 1};
+	for (int i = 0; i < 16; i++)
+		assert_true(fabs(f.scene.instances[0].matrix[i] - expected[i]) < 1e-12);
+	close_text(&f);
+}
+
+static void what_is_not_read_is_not_judged(void **state)
+{
+	(void)state;
+	fixture f;
+	assert_int_equal(open_quad(&f, QUAD_ATTRIBUTES, ",\"cameras\":[7],\"skins\":{},\"images\":"
+		"[{\"uri\":\"../../etc/passwd\"}],\"animations\":[{\"channels\":9}],\"materials\":[3]"),
+		NT_OK);
+	assert_int_equal(nt_gltf_load(&f.scene, &f.scene.meshes[0], &plain_options, &f.error), NT_OK);
+	close_text(&f);
+}
+
+static void buffers_are_opened_only_when_wanted(void **state)
+{
+	(void)state;
+	fixture f;
+	assert_int_equal(open_quad(&f, QUAD_ATTRIBUTES, ""), NT_OK);
+	const nt_gltf *document = f.scene.source;
+	assert_int_equal(document->bytes_opened, 0);
+	assert_int_equal(nt_gltf_load(&f.scene, &f.scene.meshes[0], &plain_options, &f.error), NT_OK);
+	assert_int_equal(document->bytes_opened, sizeof quad);
+	close_text(&f);
+}
+
+/* The other buffer does not exist; nobody asks for it. */
+static void a_buffer_that_nobody_wants_may_be_missing(void **state)
+{
+	(void)state;
+	fixture f;
+	memset(&f, 0, sizeof f);
+	nt_buffer_format(&f.text, "{\"asset\":{\"version\":\"2.0\"}," QUAD_ACCESSORS ",%s,\"meshes\":[{"
+		"\"primitives\":[{" QUAD_ATTRIBUTES "}]}],\"buffers\":[{\"byteLength\":%zu,\"uri\":\"",
+		QUAD_VIEWS, sizeof quad);
+	nt_uri_append_data(&f.text, "a/b", &quad, sizeof quad);
+	nt_buffer_text(&f.text, "\"},{\"byteLength\":100,\"uri\":\"../absent.bin\"},{\"uri\":7}]}");
+	nt_scene_init(&f.scene, "test.gltf");
+	f.scene.bytes = (const unsigned char *)f.text.data;
+	f.scene.byte_count = f.text.size;
+	assert_int_equal(nt_gltf_open(&f.scene, &plain_options, &f.error), NT_OK);
+	assert_int_equal(nt_gltf_load(&f.scene, &f.scene.meshes[0], &plain_options, &f.error), NT_OK);
+	assert_int_equal(((const nt_gltf *)f.scene.source)->bytes_opened, sizeof quad);
+	close_text(&f);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(all_kinds_of_indices_are_read),
+		cmocka_unit_test(strips_and_fans_become_triangles),
+		cmocka_unit_test(texcoords_have_v_up),
+		cmocka_unit_test(faults_have_their_pointer),
+		cmocka_unit_test(counts_offsets_and_strides_are_checked),
+		cmocka_unit_test(quantized_interleaved_and_sparse_values_are_decoded),
+		cmocka_unit_test(sparse_rows_are_checked),
+		cmocka_unit_test(zeros_without_backing_are_limited),
+		cmocka_unit_test(materials_become_slots),
+		cmocka_unit_test(texture_transforms_turn_and_scale),
+		cmocka_unit_test(animated_transforms_are_a_finding),
+		cmocka_unit_test(scenes_decide_what_is_reached),
+		cmocka_unit_test(instances_have_world_matrices),
+		cmocka_unit_test(what_is_not_read_is_not_judged),
+		cmocka_unit_test(buffers_are_opened_only_when_wanted),
+		cmocka_unit_test(a_buffer_that_nobody_wants_may_be_missing),
+	};
+	return cmocka_run_group_tests_name("gltf/open", tests, NULL, NULL);
+}

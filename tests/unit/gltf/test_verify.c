@@ -1,0 +1,149 @@
+/* SPDX-License-Identifier: MIT */
+#include "hand_gltf.h"
+#include "gltf/verify.h"
+#include "gltf/create/create.h"
+#include "gltf/load.h"
+#include "gltf/edit/edit.h"
+#include "gltf/open.h"
+
+#include <math.h>
+
+/* Nothing is committed, so nothing may be left. */
+static int remove_empty_folder(void **state)
+{
+	return count_in_folder() ? -1 : remove_folder(state);
+}
+
+/* Writes the scene, lets `spoil` change what the writer should have written, and verifies. */
+static nt_status verify_after(const char *name, void (*spoil)(hand_scene *), nt_error *error)
+{
+	hand_scene hand;
+	make_scene(&hand);
+	divide(&hand);
+	const char *path = in_folder(name);
+	const nt_write_options options = {.path = path,
+		.format = strstr(name, ".glb") ? NT_FORMAT_GLB : NT_FORMAT_GLTF};
+	nt_output *output;
+	assert_int_equal(nt_output_create(&output, NULL, error), NT_OK);
+	assert_int_equal(nt_gltf_compose(&hand.scene, &options, output, error), NT_OK);
+	if (spoil)
+		spoil(&hand);
+	const nt_status status = nt_verify_gltf(&hand.scene, output, path, error);
+	nt_output_abort(output);
+	return status;
+}
+
+static void good_output_is_good(void **state)
+{
+	(void)state;
+	nt_error error;
+	assert_int_equal(verify_after("a b.glb", NULL, &error), NT_OK);
+	assert_int_equal(verify_after("a b.gltf", NULL, &error), NT_OK); /* its .bin has no name yet */
+}
+
+static void change_last_tangent(hand_scene *hand)
+{
+	hand->tangents[23] = 1;
+}
+
+static void add_a_mesh(hand_scene *hand)
+{
+	static nt_mesh twice[2];
+	twice[0] = twice[1] = hand->mesh;
+	hand->scene.meshes = twice;
+	hand->scene.mesh_count = 2;
+}
+
+static void turn_the_diagonal(hand_scene *hand)
+{
+	static uint8_t other[] = {0, 0};
+	hand->mesh.face_diagonals = other;
+}
+
+static void every_difference_is_told(void **state)
+{
+	(void)state;
+	nt_error error;
+	assert_int_equal(verify_after("a.glb", change_last_tangent, &error), NT_ERROR_INTERNAL);
+	assert_non_null(strstr(error.message, "corner 6 of mesh \"hand\""));
+	assert_int_equal(verify_after("a.gltf", turn_the_diagonal, &error), NT_ERROR_INTERNAL);
+	assert_int_equal(verify_after("a.glb", add_a_mesh, &error), NT_ERROR_INTERNAL);
+	assert_non_null(strstr(error.place.file, "a.glb"));
+}
+
+/* ---- a document that is patched ---- */
+
+/* data/morph.gltf is a quad with one target that moves its positions. */
+typedef struct patched {
+	nt_file file;
+	nt_scene scene;
+	nt_output *output;
+	float tangents[4][4], moved[4][3];
+} patched;
+
+static void patch(patched *p, const nt_write_options *options)
+{
+	static const nt_read_options reading = {.texcoord_set = -1, .morphs = NT_MORPH_BAKE};
+	static const char input[] = NT_DATA_DIR "/morph.gltf";
+	nt_error error;
+	assert_int_equal(nt_file_open(&p->file, input, &error), NT_OK);
+	nt_scene_init(&p->scene, input);
+	p->scene.bytes = p->file.data;
+	p->scene.byte_count = p->file.size;
+	p->scene.format = NT_FORMAT_GLTF;
+	assert_int_equal(nt_gltf_open(&p->scene, &reading, &error), NT_OK);
+	nt_mesh *mesh = p->scene.meshes;
+	assert_int_equal(nt_gltf_load(&p->scene, mesh, &reading, &error), NT_OK);
+	assert_int_equal(mesh->vertex_count, 4);
+	assert_int_equal(mesh->morph_count, 1);
+	for (int v = 0; v < 4; v++) {
+		const float tangent[] = {0.6f, 0.8f, 0, 1}, moved[] = {-0.8f, 0.6f, 0};
+		memcpy(p->tangents[v], tangent, sizeof tangent);
+		memcpy(p->moved[v], moved, sizeof moved);
+	}
+	mesh->split.vertex_tangents = p->tangents[0];
+	mesh->morphs[0].vertex_tangents = p->moved[0];
+	assert_int_equal(nt_output_create(&p->output, NULL, &error), NT_OK);
+	assert_int_equal(nt_gltf_patch(&p->scene, options, p->output, &error), NT_OK);
+}
+
+static void close_patched(patched *p)
+{
+	nt_output_abort(p->output);
+	nt_scene_free(&p->scene);
+	nt_file_close(&p->file);
+}
+
+static void tangents_of_targets_are_compared(void **state)
+{
+	(void)state;
+	static const struct {
+		nt_precision precision;
+		nt_draco_choice draco;
+	} ways[] = {{NT_PRECISION_FLOAT, NT_DRACO_KEEP}, {NT_PRECISION_SHORT, NT_DRACO_KEEP},
+		{NT_PRECISION_BYTE, NT_DRACO_KEEP}, {NT_PRECISION_FLOAT, NT_DRACO_AS_SEQUENTIAL}};
+	for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+		const char *path = in_folder("a.glb");
+		const nt_write_options options = {.path = path, .format = NT_FORMAT_GLB,
+			.precision = ways[i].precision, .draco = ways[i].draco};
+		patched p;
+		nt_error error;
+		patch(&p, &options);
+		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &error), NT_OK);
+		/* one bit of one number: 0.6 again, but for its last one */
+		p.moved[2][1] = nextafterf(p.moved[2][1], 1);
+		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &error), NT_ERROR_INTERNAL);
+		assert_non_null(strstr(error.message, "corner 2 "));
+		close_patched(&p);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(good_output_is_good),
+		cmocka_unit_test(every_difference_is_told),
+		cmocka_unit_test(tangents_of_targets_are_compared),
+	};
+	return cmocka_run_group_tests_name("gltf/verify", tests, make_folder, remove_empty_folder);
+}

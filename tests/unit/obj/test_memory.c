@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Every allocation of the OBJ and MTL readers and of the triangulation fails once; leaks are for the
+ * sanitizers to see.
+ */
+#include "test.h"
+#include "folder.h"
+#include <stdio.h>
+#include "fail_alloc.h"
+#include "obj/read.h"
+#include "scene/polygon.h"
+
+static nt_status open_text(const char *path, const char *text, nt_error *error)
+{
+	nt_scene scene;
+	nt_scene_init(&scene, path);
+	scene.bytes = (const unsigned char *)text;
+	scene.byte_count = strlen(text);
+	nt_error_clear(error);
+	const nt_read_options options = {.texcoord_set = -1, .threads = 1};
+	const nt_status status = nt_obj_open(&scene, &options, error);
+	stop_failing_allocations();
+	nt_scene_free(&scene);
+	return status;
+}
+
+static void every_allocation_of_the_reader_may_fail(void **state)
+{
+	(void)state;
+	char path[200], text[4000], *p = text;
+	snprintf(path, sizeof path, "%s", in_folder("a.obj"));
+	put_text_file("a.mtl", "newmtl a\nKd 1 1 1\nmap_Kd a.png\nbump b.png\nmap_Pr c.png\n");
+	p += sprintf(p, "mtllib a.mtl\nmtllib none.mtl\no first\nusemtl a\ns 1\n");
+	for (int i = 0; i < 60; i++)
+		p += sprintf(p, "v %d %d 0 1 0 0\nvt 0 %d\nvn 0 0 1\n", i, i * i, i);
+	p += sprintf(p, "f 1/1/1 2 3//3 4\no \xFC\nusemtl b\nf");
+	for (int i = 1; i <= 60; i++)
+		p += sprintf(p, " %d", i);
+	p += sprintf(p, "\nf 1 1 1 1 1\nf");
+	for (int i = 1; i <= 60; i++)
+		p += sprintf(p, " 1/%d", i);
+	sprintf(p, "\nl 1 2\n");
+
+	nt_error error;
+	assert_int_equal(open_text(path, text, &error), NT_OK);
+	size_t count = 0;
+	for (;; count++) {
+		fail_allocations_from(count);
+		const nt_status status = open_text(path, text, &error);
+		if (status == NT_OK)
+			break;
+		assert_int_equal(status, NT_ERROR_MEMORY);
+		assert_string_equal(error.message, "out of memory");
+		assert_string_equal(error.place.file, path);
+	}
+	assert_true(count > 40); /* at least one of each kind */
+}
+
+static void allocations_of_large_polygons_may_fail(void **state)
+{
+	(void)state;
+	static float points[100][3];
+	static uint32_t triangles[3 * 98];
+	for (int i = 0; i < 100; i++) {
+		points[i][0] = (float)i;
+		points[i][1] = (float)(i * i);
+	}
+	bool sound;
+	for (size_t n = 0; n < 2; n++) {
+		fail_allocations_from(n);
+		const nt_status status =
+			nt_polygon_triangulate((const float(*)[3])points, 100, triangles, &sound);
+		assert_true(stop_failing_allocations());
+		assert_int_equal(status, NT_ERROR_MEMORY);
+	}
+	assert_int_equal(nt_polygon_triangulate((const float(*)[3])points, 100, triangles, &sound),
+		NT_OK);
+	assert_true(sound);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(every_allocation_of_the_reader_may_fail),
+		cmocka_unit_test(allocations_of_large_polygons_may_fail),
+	};
+	return cmocka_run_group_tests_name("obj/memory", tests, make_folder, remove_folder);
+}

@@ -1,0 +1,350 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Material libraries, from strings and from a folder that the test makes and removes.
+ */
+#include "test.h"
+#include "folder.h"
+#include <stdio.h>
+#include <sys/stat.h>
+#include "obj/mtl.h"
+#include "obj/mtl_map.h"
+#include "obj/read.h"
+
+typedef struct reading {
+	nt_scene scene;
+	nt_mtl mtl;
+	nt_error error;
+	nt_status status;
+} reading;
+
+static void parse(reading *r, const char *text)
+{
+	*r = (reading){0};
+	nt_scene_init(&r->scene, "a.obj");
+	nt_error_clear(&r->error);
+	const size_t size = strlen(text);
+	unsigned char *bytes = malloc(size ? size : 1);
+	memcpy(bytes, text, size);
+	r->status = nt_mtl_parse(&r->scene, "lib/a.mtl", bytes, size, &r->mtl, &r->error);
+	free(bytes);
+}
+
+static const nt_mtl_definition *parse_one(reading *r, const char *text)
+{
+	parse(r, text);
+	assert_int_equal(r->status, NT_OK);
+	assert_int_equal(r->mtl.count, 1);
+	return &r->mtl.definitions[0];
+}
+
+static void close_reading(reading *r)
+{
+	nt_mtl_free(&r->mtl);
+	nt_scene_free(&r->scene);
+}
+
+static void every_property_is_read(void **state)
+{
+	(void)state;
+	reading r;
+	const nt_mtl_definition *d = parse_one(&r,
+		"# c\r\nnewmtl  old  stone \r\n\tKa 1 1 1\r\nKd 0.5 0.25 1\r\nd 0.75\r\nKe 0 2 0.5\r\nPr 0.125\r\n"
+		"Pm 1\r\nmap_Kd stone.png\r\nmap_Ke glow.jpg\r\nnorm bumps.png\r\nillum 2\r\nNs 10\r\n");
+	assert_string_equal(d->material.name, "old  stone");
+	assert_string_equal(d->material.library, "lib/a.mtl");
+	assert_int_equal(d->material.line, 2);
+	const float color[4] = {0.5f, 0.25f, 1, 0.75f}, emissive[3] = {0, 2, 0.5f};
+	assert_memory_equal(d->material.base_color, color, sizeof color);
+	assert_memory_equal(d->material.emissive, emissive, sizeof emissive);
+	assert_true(d->material.roughness == 0.125f);
+	assert_true(d->material.metallic == 1);
+	assert_true(d->material.normal_scale == 1);
+	assert_string_equal(d->material.base_color_map, "stone.png");
+	assert_string_equal(d->material.emissive_map, "glow.jpg");
+	assert_string_equal(d->material.normal_map, "bumps.png");
+	assert_null(d->bump);
+	assert_int_equal(r.scene.findings.count, 0);
+	close_reading(&r);
+}
+
+static void defaults_are_those_of_a_plain_material(void **state)
+{
+	(void)state;
+	reading r;
+	const nt_mtl_definition *d = parse_one(&r, "newmtl a");
+	const float color[4] = {1, 1, 1, 1}, emissive[3] = {0, 0, 0};
+	assert_memory_equal(d->material.base_color, color, sizeof color);
+	assert_memory_equal(d->material.emissive, emissive, sizeof emissive);
+	assert_true(d->material.roughness == 1);
+	assert_true(d->material.metallic == 0);
+	assert_null(d->material.base_color_map);
+	assert_null(d->material.normal_map);
+	close_reading(&r);
+}
+
+static void other_spellings_of_values(void **state)
+{
+	(void)state;
+	reading r;
+	const nt_mtl_definition *d =
+		parse_one(&r, "newmtl a\nkd 0.5\nTr 0.25\nPR 7\nPm -1\nmap_kd  a b.png \nmap_Ke\n");
+	const float color[4] = {0.5f, 0.5f, 0.5f, 0.75f};
+	assert_memory_equal(d->material.base_color, color, sizeof color);
+	assert_true(d->material.roughness == 1);
+	assert_true(d->material.metallic == 0);
+	assert_string_equal(d->material.base_color_map, "a b.png");
+	assert_null(d->material.emissive_map);
+	close_reading(&r);
+	d = parse_one(&r, "newmtl a\nd -halo 0.5\nKd spectral a.rfl 1\n");
+	assert_true(d->material.base_color[3] == 0.5f);
+	assert_true(d->material.base_color[0] == 1);
+	close_reading(&r);
+}
+
+static void bump_is_kept_apart_and_yields_to_normal_maps(void **state)
+{
+	(void)state;
+	static const char *const words[] = {"map_Bump", "map_bump", "bump"};
+	for (int i = 0; i < 3; i++) {
+		char text[100];
+		reading r;
+		snprintf(text, sizeof text, "newmtl a\n%s -bm 0.5 b.png\n", words[i]);
+		const nt_mtl_definition *d = parse_one(&r, text);
+		assert_string_equal(d->material.normal_map, "b.png");
+		assert_true(d->material.normal_scale == 0.5f);
+		assert_string_equal(d->bump, words[i]);
+		assert_int_equal(d->bump_line, 2);
+		close_reading(&r);
+	}
+	static const char *const both[] = {"newmtl a\nbump -bm 3 b.png\nmap_Kn n.png\n",
+		"newmtl a\nmap_Kn n.png\nbump -bm 3 b.png\n", "newmtl a\nnorm n.png\nmap_Bump b.png\n"};
+	for (int i = 0; i < 3; i++) {
+		reading r;
+		const nt_mtl_definition *d = parse_one(&r, both[i]);
+		assert_string_equal(d->material.normal_map, "n.png");
+		assert_true(d->material.normal_scale == 1);
+		assert_null(d->bump);
+		close_reading(&r);
+	}
+}
+
+static void map_options_are_skipped_by_their_arguments(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *text, *name;
+		float scale;
+		bool transformed;
+	} cases[] = {
+		{"a.png", "a.png", 1, false},
+		{"a file.png", "a file.png", 1, false},
+		{"-bm 0.5 a.png", "a.png", 0.5f, false},
+		{"a b.png -bm 0.25", "a b.png", 0.25f, false},
+		{"-clamp on -blendu off -blendv on -mm 0 1 -texres 512 -boost 2 -imfchan r a.png", "a.png", 1, false},
+		{"-o 1 a.png", "a.png", 1, true},
+		{"-s 1 2 3 a.png", "a.png", 1, true},
+		{"-t 0.5 0.5 a.png", "a.png", 1, true},
+		{"-s 1 2 3 4.png", "4.png", 1, true},
+		{"-s 1 2 3", "3", 1, true},
+		{"-type sphere -cc on a.png", "a.png", 1, false},
+		{"-unknown.png", "-unknown.png", 1, false},
+		{"C:\\maps\\a.png", "C:/maps/a.png", 1, false},
+		{"..\\a.png", "../a.png", 1, false},
+		{"\"a b.png\"", "a b.png", 1, false},
+		{"-bm 1", "", 1, false},
+		{"-bm", "", 1, false},
+		{"-bm 0.5", "", 0.5f, false},
+		{"", "", 1, false},
+		{"a-bm 1", "a-bm 1", 1, false},
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		nt_arena arena = {0};
+		nt_mtl_map map;
+		nt_mtl_map_read(cases[i].text, cases[i].text + strlen(cases[i].text), &map);
+		assert_string_equal(nt_mtl_map_name(&arena, &map), cases[i].name);
+		assert_true(map.bump_scale == cases[i].scale);
+		assert_int_equal(map.transformed, cases[i].transformed);
+		nt_arena_free(&arena);
+	}
+}
+
+static void lost_statements_are_findings(void **state)
+{
+	(void)state;
+	reading r;
+	parse(&r, "Kd 1 1 1\nnewmtl a\nmap_Pr r.png\nmap_Pr r.png\nrubbish\nmap_Kd -s 2 2 a.png\n");
+	assert_int_equal(r.status, NT_OK);
+	assert_int_equal(r.scene.findings.count, 4);
+	const struct {
+		const char *detail;
+		size_t line, count;
+	} expected[] = {{"MTL: Kd", 1, 1}, {"MTL: map_Pr", 3, 2}, {"MTL: rubbish", 5, 1},
+		{"MTL: -o, -s or -t of map_Kd", 6, 1}};
+	for (int i = 0; i < 4; i++) {
+		assert_string_equal(r.scene.findings.items[i].detail, expected[i].detail);
+		assert_string_equal(r.scene.findings.items[i].place.file, "lib/a.mtl");
+		assert_int_equal(r.scene.findings.items[i].place.line, expected[i].line);
+		assert_int_equal(r.scene.findings.items[i].count, expected[i].count);
+	}
+	close_reading(&r);
+}
+
+static void damaged_numbers_are_named(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *text, *message;
+		size_t line;
+	} cases[] = {
+		{"newmtl a\nPr rough\n", "found \"rough\", expected a finite number", 2},
+		{"newmtl a\n\rKd 1 1\r", "found the end of the line, expected 3 numbers, or one for all", 3},
+		{"newmtl a\nd\n", "found the end of the line, expected a number", 2},
+		{"newmtl a\nKe 1 nan 1\n", "found \"nan\", expected a finite number", 2},
+		{"newmtl a\nKd 1 1x 1\n", "found \"1x\", expected a finite number", 2},
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		reading r;
+		parse(&r, cases[i].text);
+		assert_int_equal(r.status, NT_ERROR_INPUT);
+		assert_string_equal(r.error.message, cases[i].message);
+		assert_string_equal(r.error.place.file, "lib/a.mtl");
+		assert_int_equal(r.error.place.line, cases[i].line);
+		close_reading(&r);
+	}
+}
+
+static void every_prefix_is_survived(void **state)
+{
+	(void)state;
+	static const char text[] = "\xEF\xBB\xBFnewmtl a\r\nKd 1 1 1\nd -halo 0.5\nmap_Kd -bm 1 -s 1 1 a b.png\n"
+		"bump \"b.png\" -bm 0.5\nxyz\nnewmtl b\nKe 1";
+	for (size_t size = 0; size < sizeof text; size++) {
+		char cut[sizeof text];
+		memcpy(cut, text, size);
+		cut[size] = '\0';
+		reading r;
+		parse(&r, cut);
+		assert_true(r.status == NT_OK || r.status == NT_ERROR_INPUT);
+		close_reading(&r);
+	}
+}
+
+/* ---- files ---- */
+
+static int make_libraries(void **state)
+{
+	if (make_folder(state) || mkdir(in_folder("in"), 0700) || mkdir(in_folder("in/sub"), 0700))
+		return -1;
+	put_text_file("in/a.mtl", "newmtl a\nKd 0.5 0.5 0.5\nbump b.png\nnewmtl unused\nmap_Bump c.png\n");
+	put_text_file("in/b c.mtl", "newmtl b c\nnewmtl a\n");
+	put_text_file("in/sub/d.mtl", "newmtl d\nnorm d.png\n");
+	put_text_file("outside.mtl", "newmtl secret\n");
+	return 0;
+}
+
+static void open_obj(reading *r, char path[200], const char *text, bool allow_outside)
+{
+	*r = (reading){0};
+	snprintf(path, 200, "%s", in_folder("in/x.obj"));
+	nt_scene_init(&r->scene, path);
+	r->scene.bytes = (const unsigned char *)text;
+	r->scene.byte_count = strlen(text);
+	const nt_read_options options = {.texcoord_set = -1, .allow_outside = allow_outside, .threads = 1};
+	assert_int_equal(nt_obj_open(&r->scene, &options, &r->error), NT_OK);
+}
+
+#define FACE "v 0 0 0\nf 1 1 1\n"
+
+static void libraries_are_found_beside_the_obj(void **state)
+{
+	(void)state;
+	reading r;
+	char path[200];
+	open_obj(&r, path,
+		"usemtl d\n" FACE "usemtl a\nf 1 1 1\nusemtl b c\nf 1 1 1\n"
+		"mtllib a.mtl b c.mtl\nmtllib sub\\d.mtl\nmtllib \"a.mtl\"\n", false);
+	assert_int_equal(r.scene.material_count, 3);
+	const nt_material *materials = r.scene.materials;
+	assert_string_equal(materials[0].name, "d");
+	assert_string_equal(materials[0].normal_map, "d.png");
+	assert_string_equal(materials[0].library, in_folder("in/sub/d.mtl"));
+	assert_int_equal(r.scene.meshes[0].slots, NT_SLOT_NORMAL);
+	assert_string_equal(materials[1].name, "a");
+	assert_true(materials[1].base_color[0] == 0.5f);
+	assert_string_equal(materials[2].name, "b c");
+	/* the bump map of a, not that of a material without faces; a twice more (in b c.mtl and by "a.mtl") */
+	assert_int_equal(r.scene.findings.count, 2);
+	assert_int_equal(r.scene.findings.items[0].code, NT_CODE_BUMP_AS_NORMAL);
+	assert_string_equal(r.scene.findings.items[0].detail, "bump of a");
+	assert_int_equal(r.scene.findings.items[0].place.line, 3);
+	assert_int_equal(r.scene.findings.items[1].code, NT_CODE_STATEMENT_IGNORED);
+	assert_int_equal(r.scene.findings.items[1].count, 2);
+	close_reading(&r);
+}
+
+static void name_with_blanks_is_tried_whole_first(void **state)
+{
+	(void)state;
+	reading r;
+	char path[200];
+	open_obj(&r, path, "mtllib b c.mtl\nusemtl b c\n" FACE, false);
+	assert_int_equal(r.scene.findings.count, 0);
+	assert_non_null(r.scene.materials[0].library);
+	assert_int_equal(r.scene.meshes[0].slots, 0);
+	close_reading(&r);
+	open_obj(&r, path, "mtllib a.mtl none.mtl\nusemtl a\n" FACE, false);
+	assert_int_equal(r.scene.findings.items[0].code, NT_CODE_MTL_MISSING);
+	assert_string_equal(r.scene.findings.items[0].detail, "none.mtl: no such file");
+	assert_non_null(r.scene.materials[0].library);
+	close_reading(&r);
+}
+
+static void nothing_outside_the_folder_is_read(void **state)
+{
+	(void)state;
+	char text[400], path[200];
+	const char *const names[] = {"../outside.mtl", "..\\outside.mtl", "sub/../../outside.mtl"};
+	for (int i = 0; i < 4; i++) {
+		reading r;
+		if (i < 3)
+			snprintf(text, sizeof text, "mtllib %s\nusemtl secret\n" FACE, names[i]);
+		else
+			snprintf(text, sizeof text, "mtllib %s\nusemtl secret\n" FACE,
+				in_folder("outside.mtl"));
+		open_obj(&r, path, text, false);
+		assert_int_equal(r.scene.findings.count, 1);
+		assert_int_equal(r.scene.findings.items[0].code, NT_CODE_MTL_MISSING);
+		assert_non_null(strstr(r.scene.findings.items[0].detail, "--allow-outside"));
+		assert_null(r.scene.materials[0].library);
+		close_reading(&r);
+		open_obj(&r, path, text, true);
+		assert_int_equal(r.scene.findings.count, 0);
+		assert_non_null(r.scene.materials[0].library);
+		close_reading(&r);
+	}
+	reading r;
+	open_obj(&r, path, "mtllib C:\\a.mtl\nmtllib sub\nmtllib\n" FACE, false);
+	assert_int_equal(r.scene.findings.count, 3);
+	assert_string_equal(r.scene.findings.items[0].detail, "C:/a.mtl: a path with a drive letter");
+	assert_non_null(strstr(r.scene.findings.items[1].detail, "sub: cannot read"));
+	assert_string_equal(r.scene.findings.items[2].detail, ": no file name");
+	close_reading(&r);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(every_property_is_read),
+		cmocka_unit_test(defaults_are_those_of_a_plain_material),
+		cmocka_unit_test(other_spellings_of_values),
+		cmocka_unit_test(bump_is_kept_apart_and_yields_to_normal_maps),
+		cmocka_unit_test(map_options_are_skipped_by_their_arguments),
+		cmocka_unit_test(lost_statements_are_findings),
+		cmocka_unit_test(damaged_numbers_are_named),
+		cmocka_unit_test(every_prefix_is_survived),
+		cmocka_unit_test(libraries_are_found_beside_the_obj),
+		cmocka_unit_test(name_with_blanks_is_tried_whole_first),
+		cmocka_unit_test(nothing_outside_the_folder_is_read),
+	};
+	return cmocka_run_group_tests_name("obj/mtl", tests, make_libraries, remove_folder);
+}

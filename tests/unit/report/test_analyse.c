@@ -1,0 +1,398 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Stored tangents, normals and degenerate triangles: each code on the smallest mesh that shows it, and what
+ * options do to findings.
+ */
+#include "hand_mesh.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* An upright unit quad in the xy plane: u along x, v along y, T = (1,0,0), w = 1 is right. glTF, so that
+ * slots matter. */
+static hand_mesh *sound_quad(void)
+{
+	hand_mesh *h = hand_new();
+	h->scene.format = NT_FORMAT_GLTF;
+	h->mesh.slots = NT_SLOT_NORMAL;
+	hand_vertex(h, 0, 0, 0, 0, 0);
+	hand_vertex(h, 1, 0, 0, 1, 0);
+	hand_vertex(h, 1, 1, 0, 1, 1);
+	hand_vertex(h, 0, 1, 0, 0, 1);
+	hand_quad(h, 0, 1, 2, 3);
+	hand_give_tangents(h);
+	return h;
+}
+
+static void set_tangent(hand_mesh *h, size_t vertex, float x, float y, float z, float w)
+{
+	memcpy(h->tangents[vertex], (float[4]){x, y, z, w}, sizeof h->tangents[vertex]);
+}
+
+static void sound_tangents_give_no_findings(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(report->issue_count, 0);
+	assert_true(report->meshes[0].worst_orthogonality < 1e-6);
+	assert_int_equal(report->meshes[0].angle_histogram[0], 6);
+	nt_severity worst;
+	assert_false(nt_report_worst(report, &worst));
+	hand_free(h, report);
+}
+
+static void inverted_w_is_one_finding_with_its_share(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	for (size_t v = 0; v < 4; v++)
+		h->tangents[v][3] = -1.0f;
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(report->issue_count, 1);
+	const nt_issue *issue = hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH);
+	assert_int_equal(issue->count, 2);
+	assert_int_equal(issue->severity, NT_SEVERITY_ERROR);
+	assert_true(issue->numbers[0].value == 1.0);
+	assert_non_null(strstr(issue->message, "100 % of 2, the convention is inverted"));
+	hand_free(h, report);
+}
+
+static void unused_tangents_are_told_and_cannot_be_errors(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	h->mesh.slots = 0;
+	for (size_t v = 0; v < 4; v++)
+		h->tangents[v][3] = -1.0f;
+	nt_report *report = hand_report(h, NULL);
+	hand_finding(report, NT_CODE_TAN_UNUSED);
+	assert_int_equal(hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH)->severity, NT_SEVERITY_WARNING);
+	hand_free(h, report);
+}
+
+static void each_kind_of_bad_tangent_has_its_code(void **state)
+{
+	(void)state;
+	const struct {
+		float t[4];
+		nt_code code;
+	} cases[] = {
+		{{0, 0, 0, 1}, NT_CODE_TAN_ZERO},
+		{{NAN, 0, 0, 1}, NT_CODE_TAN_NOT_FINITE},
+		{{1, 0, 0, INFINITY}, NT_CODE_TAN_NOT_FINITE},
+		{{2, 0, 0, 1}, NT_CODE_TAN_NON_UNIT},
+		{{1.007f, 0, 0, 1}, NT_CODE_TAN_NON_UNIT},
+		{{1, 0, 0, 0}, NT_CODE_TAN_BAD_W},
+		{{1, 0, 0, 0.5f}, NT_CODE_TAN_BAD_W},
+		{{0, 0, 1, 1}, NT_CODE_TAN_PARALLEL_NORMAL},
+		{{0, 0, -1, 1}, NT_CODE_TAN_PARALLEL_NORMAL},
+		{{0.8f, 0, 0.6f, 1}, NT_CODE_TAN_NOT_ORTHOGONAL},
+		{{0, 1, 0, 1}, NT_CODE_TAN_DIRECTION_MISMATCH},
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		hand_mesh *h = sound_quad();
+		memcpy(h->tangents[1], cases[i].t, sizeof cases[i].t); /* vertex 1 has one corner */
+		nt_report *report = hand_report(h, NULL);
+		assert_int_equal(hand_finding(report, cases[i].code)->count, 1);
+		assert_int_equal(hand_finding(report, cases[i].code)->spots[0].vertices[0], 1);
+		hand_free(h, report);
+	}
+}
+
+static void length_within_the_validators_tolerance_is_unit(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	set_tangent(h, 1, 1.0067f, 0, 0, 1);
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(report->issue_count, 0);
+	hand_free(h, report);
+}
+
+static void mixed_w_is_counted_by_triangle(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	h->tangents[1][3] = -1.0f; /* in the first triangle only */
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(hand_finding(report, NT_CODE_TAN_MIXED_W_TRIANGLE)->count, 1);
+	assert_int_equal(hand_findings(report, NT_CODE_TAN_SIGN_MISMATCH), 0);
+	hand_free(h, report);
+}
+
+static void directions_off_by_90_degrees_fill_one_bin(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	for (size_t v = 0; v < 4; v++)
+		set_tangent(h, v, 0, 1, 0, 1);
+	nt_report *report = hand_report(h, NULL);
+	const nt_issue *issue = hand_finding(report, NT_CODE_TAN_DIRECTION_MISMATCH);
+	assert_int_equal(issue->count, 6);
+	assert_int_equal(issue->severity, NT_SEVERITY_WARNING);
+	assert_int_equal(report->meshes[0].angle_histogram[5], 6);
+	hand_free(h, report);
+}
+
+static void required_tangents_are_missed(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	h->mesh.tangents = NULL;
+	h->mesh.has_tangents = false;
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(hand_finding(report, NT_CODE_TAN_MISSING_REQUIRED)->severity, NT_SEVERITY_INFO);
+	nt_report_free(report);
+	h->mesh.slots = NT_SLOT_ANISOTROPY;
+	report = hand_report(h, NULL);
+	assert_int_equal(hand_finding(report, NT_CODE_TAN_MISSING_REQUIRED)->severity, NT_SEVERITY_ERROR);
+	hand_free(h, report);
+}
+
+static void kept_tangents_that_are_bad_are_told_on_conversion(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	set_tangent(h, 1, 0, 0, 0, 1);
+	const nt_report_options options = {.converted = true};
+	nt_report *report = hand_report(h, &options);
+	assert_int_equal(hand_finding(report, NT_CODE_TAN_EXISTING_BAD)->count, 1);
+	nt_report_free(report);
+	report = hand_report(h, NULL);
+	assert_int_equal(hand_findings(report, NT_CODE_TAN_EXISTING_BAD), 0);
+	hand_free(h, report);
+}
+
+static void morph_targets_without_tangents_are_told(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	h->mesh.targets_without_tangents = 2;
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(hand_finding(report, NT_CODE_TAN_MORPH_MISSING)->count, 2);
+	hand_free(h, report);
+}
+
+/* A texture transform that turns u over: what is mirrored is judged as it is looked up, what is shown are the
+ * file's own coordinates. */
+static void texture_transform_that_mirrors_counts(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	float solved[4][2];
+	for (size_t v = 0; v < 4; v++) {
+		solved[v][0] = -h->texcoords[v][0];
+		solved[v][1] = h->texcoords[v][1];
+	}
+	h->mesh.solve_texcoords = solved[0];
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(report->meshes[0].triangles[0], 2);
+	const nt_issue *sign = hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH);
+	assert_int_equal(sign->count, 2);
+	assert_int_equal(sign->severity, NT_SEVERITY_WARNING); /* right for the coordinates as stored */
+	assert_non_null(strstr(sign->message, "without the texture transform"));
+	assert_true(report->meshes[0].islands[0].maximum[0] == 1.0f);
+	hand_free(h, report);
+}
+
+static void degenerate_triangles_are_counted_and_weighed(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	/* no UV area, half the area of the sound quad, so a third of all; one corner is the quad's */
+	hand_vertex(h, 2, 1, 0, 2, 1);
+	hand_vertex(h, 1, 2, 0, 5, 1);
+	hand_triangle(h, 2, 4, 5);
+	/* two corners at one position */
+	hand_triangle(h, 0, 1, hand_vertex(h, 1, 0, 0, 1, 1));
+	/* three on a line */
+	hand_vertex(h, 0, 5, 0, 0, 0);
+	hand_vertex(h, 1, 5, 0, 1, 0);
+	hand_vertex(h, 2, 5, 0, 0, 1);
+	hand_triangle(h, 7, 8, 9);
+	nt_report *report = hand_report(h, NULL);
+	const nt_issue *uv = hand_finding(report, NT_CODE_UV_DEGENERATE_TRIANGLE);
+	assert_int_equal(uv->count, 1);
+	assert_int_equal(uv->severity, NT_SEVERITY_WARNING);
+	assert_true(fabs(uv->numbers[0].value - 1.0 / 3.0) < 1e-12);
+	assert_true(uv->numbers[1].value == 1.0 && uv->numbers[2].value == 2.0);
+	const nt_issue *flat = hand_finding(report, NT_CODE_POS_DEGENERATE_TRIANGLE);
+	assert_int_equal(flat->count, 2);
+	assert_true(flat->numbers[0].value == 1.0 && flat->numbers[1].value == 1.0);
+	hand_free(h, report);
+}
+
+/* A float near 1000 is known to 2^-15: a height of 1e-4 is then uncertain by a third. */
+static void nearly_collinear_coordinates_far_from_the_origin(void **state)
+{
+	(void)state;
+	hand_mesh *h = hand_new();
+	hand_vertex(h, 0, 0, 0, 1000, 0);
+	hand_vertex(h, 1, 0, 0, 1001, 0);
+	hand_vertex(h, 0, 1, 0, 1000, 0.0001f);
+	hand_triangle(h, 0, 1, 2);
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(hand_finding(report, NT_CODE_UV_NEAR_DEGENERATE)->count, 1);
+	nt_report_free(report);
+	/* the limit is one degree: 2 sqrt(2) 1001 2^-24 / h^2 is 1.2 degrees for h = 0.09, 0.8 for 0.11 */
+	h->texcoords[2][1] = 0.09f;
+	report = hand_report(h, NULL);
+	assert_int_equal(hand_finding(report, NT_CODE_UV_NEAR_DEGENERATE)->count, 1);
+	nt_report_free(report);
+	h->texcoords[2][1] = 0.11f;
+	report = hand_report(h, NULL);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_NEAR_DEGENERATE), 0);
+	hand_free(h, report);
+}
+
+/* Right triangles but one with an angle of 30 degrees: the relative determinant is the sine of the angle. */
+static void relative_determinants_are_sines(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	hand_vertex(h, 5, 0, 0, 0, 0);
+	hand_vertex(h, 6, 0, 0, 1, 0);
+	hand_vertex(h, 5, 1, 0, 0.8660254f, 0.5f);
+	hand_triangle(h, 4, 5, 6);
+	nt_report *report = hand_report(h, NULL);
+	const double *d = report->meshes[0].relative_determinant;
+	/* the quad's halves: corner 0 at (0,0) between (1,0) and (1,1), and between (1,1) and (0,1): sin 45 */
+	assert_true(fabs(d[0] - 0.5) < 1e-6);
+	assert_true(fabs(d[1] - sqrt(0.5)) < 1e-6);
+	assert_true(fabs(d[2] - sqrt(0.5)) < 1e-6);
+	hand_free(h, report);
+}
+
+static void normals_are_judged(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	h->mesh.tangents = NULL;
+	h->normals[0][2] = 2.0f;
+	h->normals[1][2] = 0.0f;
+	h->normals[3][2] = -1.0f; /* triangle 1: 2 + 1 - 1 > 0 */
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(hand_finding(report, NT_CODE_MESH_NORMAL_NON_UNIT)->count, 1);
+	assert_int_equal(hand_finding(report, NT_CODE_MESH_NORMAL_ZERO)->count, 1);
+	assert_int_equal(hand_findings(report, NT_CODE_MESH_NORMAL_AGAINST_FACE), 0);
+	nt_report_free(report);
+	h->normals[0][2] = h->normals[2][2] = -1.0f; /* triangle 1: all three; triangle 0: two and a zero */
+	report = hand_report(h, NULL);
+	assert_int_equal(hand_finding(report, NT_CODE_MESH_NORMAL_AGAINST_FACE)->count, 2);
+	hand_free(h, report);
+}
+
+static void values_that_are_not_finite_are_told_and_harmless(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	h->positions[1][0] = NAN;
+	h->texcoords[2][1] = INFINITY;
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(hand_finding(report, NT_CODE_POS_NOT_FINITE)->count, 1);
+	assert_int_equal(hand_finding(report, NT_CODE_UV_NOT_FINITE)->count, 1);
+	hand_free(h, report);
+}
+
+static void options_ignore_reweigh_and_limit(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	set_tangent(h, 1, 0, 0, 0, 1);    /* TAN_ZERO, error */
+	set_tangent(h, 3, 0.8f, 0, 0.6f, 1); /* TAN_NOT_ORTHOGONAL, warning */
+	nt_report_options options = {.max_issues = 1};
+	nt_report *report = hand_report(h, &options);
+	assert_int_equal(report->issue_count, 1);
+	assert_int_equal(report->dropped, report->by_severity[0] + report->by_severity[1]);
+	assert_int_equal(report->issues[0].code, NT_CODE_TAN_ZERO); /* the most severe stays */
+	nt_report_free(report);
+
+	options = (nt_report_options){0};
+	options.ignore[NT_CODE_TAN_ZERO] = true;
+	options.severity[NT_CODE_TAN_NOT_ORTHOGONAL] = 1 + NT_SEVERITY_ERROR;
+	report = hand_report(h, &options);
+	assert_int_equal(hand_findings(report, NT_CODE_TAN_ZERO), 0);
+	assert_int_equal(report->issues[0].code, NT_CODE_TAN_NOT_ORTHOGONAL);
+	nt_severity worst;
+	assert_true(nt_report_worst(report, &worst));
+	assert_int_equal(worst, NT_SEVERITY_ERROR);
+	hand_free(h, report);
+}
+
+static void baseline_knows_old_findings_each_as_often_as_it_has_them(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	set_tangent(h, 1, 0, 0, 0, 1);
+	nt_report *report = hand_report(h, NULL);
+	char text[256];
+	snprintf(text, sizeof text,
+		"{\"report\":\"nmtan\",\"files\":[{\"findings\":[{\"fingerprint\":\"%016llx\"}]}]}",
+		(unsigned long long)hand_finding(report, NT_CODE_TAN_ZERO)->fingerprint);
+	nt_report_free(report);
+	nt_baseline baseline;
+	nt_error error;
+	assert_int_equal(nt_baseline_read(&baseline, text, strlen(text), &error), NT_OK);
+	set_tangent(h, 3, 0, 0, 1, 1); /* new */
+	const nt_report_options options = {.baseline = &baseline};
+	report = hand_report(h, &options);
+	assert_true(hand_finding(report, NT_CODE_TAN_ZERO)->known);
+	assert_false(hand_finding(report, NT_CODE_TAN_PARALLEL_NORMAL)->known);
+	assert_int_equal(report->known, 1);
+	nt_baseline_free(&baseline);
+	assert_int_equal(nt_baseline_read(&baseline, "{}", 2, &error), NT_ERROR_INPUT);
+	assert_int_equal(nt_baseline_read(&baseline, "{", 1, &error), NT_ERROR_INPUT);
+	hand_free(h, report);
+}
+
+/* Two lone mirrored islands at one place have one fingerprint; a baseline with it once knows one of them. */
+static void baseline_entries_count_once_each(void **state)
+{
+	(void)state;
+	hand_mesh *h = hand_new();
+	for (uint32_t i = 0; i < 2; i++) {
+		hand_vertex(h, 0, 0, 0, 1 + 2 * (float)i, 0);
+		hand_vertex(h, 1, 0, 0, 2 * (float)i, 0);
+		hand_vertex(h, 0, 1, 0, 1 + 2 * (float)i, 1);
+		hand_triangle(h, 3 * i, 3 * i + 1, 3 * i + 2);
+	}
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_LONE), 2);
+	uint64_t fingerprint = 0;
+	for (size_t i = 0; i < report->issue_count; i++)
+		if (report->issues[i].code == NT_CODE_UV_MIRROR_LONE)
+			fingerprint = report->issues[i].fingerprint;
+	nt_report_free(report);
+	const nt_baseline baseline = {&fingerprint, 1};
+	const nt_report_options options = {.baseline = &baseline};
+	report = hand_report(h, &options);
+	assert_int_equal(report->known, 1);
+	hand_free(h, report);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(sound_tangents_give_no_findings),
+		cmocka_unit_test(inverted_w_is_one_finding_with_its_share),
+		cmocka_unit_test(unused_tangents_are_told_and_cannot_be_errors),
+		cmocka_unit_test(each_kind_of_bad_tangent_has_its_code),
+		cmocka_unit_test(length_within_the_validators_tolerance_is_unit),
+		cmocka_unit_test(mixed_w_is_counted_by_triangle),
+		cmocka_unit_test(directions_off_by_90_degrees_fill_one_bin),
+		cmocka_unit_test(required_tangents_are_missed),
+		cmocka_unit_test(kept_tangents_that_are_bad_are_told_on_conversion),
+		cmocka_unit_test(morph_targets_without_tangents_are_told),
+		cmocka_unit_test(texture_transform_that_mirrors_counts),
+		cmocka_unit_test(degenerate_triangles_are_counted_and_weighed),
+		cmocka_unit_test(nearly_collinear_coordinates_far_from_the_origin),
+		cmocka_unit_test(relative_determinants_are_sines),
+		cmocka_unit_test(normals_are_judged),
+		cmocka_unit_test(values_that_are_not_finite_are_told_and_harmless),
+		cmocka_unit_test(options_ignore_reweigh_and_limit),
+		cmocka_unit_test(baseline_entries_count_once_each),
+		cmocka_unit_test(baseline_knows_old_findings_each_as_often_as_it_has_them),
+	};
+	return cmocka_run_group_tests_name("report/analyse", tests, NULL, NULL);
+}

@@ -1,0 +1,452 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The fast path against the definition, byte by byte: goldens and nasty meshes, for every instruction set
+ * of this machine and several thread counts, with all outputs.
+ *
+ * NT_NASTY_FROM and NT_NASTY_COUNT in the environment choose other seeds (make soak tries 100 000).
+ */
+#include "test.h"
+#include <math.h>
+#include <stdio.h>
+#include <unistd.h>
+#include "base/cpu.h"
+#include "golden.h"
+#include "nasty.h"
+#include "tangent/fast/bins.h"
+#include "tangent/fast/fast.h"
+
+/* Floats with different bits that are not both NaN. */
+static size_t count_differences(const float *a, const float *b, size_t count)
+{
+	size_t differences = 0;
+	for (size_t i = 0; i < count; i++)
+		differences += memcmp(&a[i], &b[i], sizeof *a) != 0 && !(isnan(a[i]) && isnan(b[i]));
+	return differences;
+}
+
+typedef struct result {
+	float *tangents, *bitangents, *magnitudes;
+} result;
+
+static result result_make(size_t corners)
+{
+	return (result){malloc(corners * 16 + 1), malloc(corners * 12 + 1), malloc(corners * 8 + 1)};
+}
+
+static void result_free(result *r)
+{
+	free(r->tangents);
+	free(r->bitangents);
+	free(r->magnitudes);
+}
+
+static size_t result_differences(const result *a, const result *b, size_t corners, bool more)
+{
+	size_t differences = count_differences(a->tangents, b->tangents, 4 * corners);
+	if (more)
+		differences += count_differences(a->bitangents, b->bitangents, 3 * corners) +
+			       count_differences(a->magnitudes, b->magnitudes, 2 * corners);
+	return differences;
+}
+
+static nmtan_mesh filled(const nmtan_mesh *mesh)
+{
+	nmtan_mesh m = *mesh;
+	m.position_stride_bytes = m.position_stride_bytes ? m.position_stride_bytes : 12;
+	m.normal_stride_bytes = m.normal_stride_bytes ? m.normal_stride_bytes : 12;
+	m.texcoord_stride_bytes = m.texcoord_stride_bytes ? m.texcoord_stride_bytes : 8;
+	return m;
+}
+
+static nt_solve make_solve(const nmtan_mesh *mesh, size_t corners, nt_scratch *scratch, const result *r,
+	bool more)
+{
+	return (nt_solve){.mesh = mesh, .corner_count = corners, .threshold_cos = -1.0f, .threads = 1,
+		.isa = NMTAN_ISA_BASELINE, .scratch = scratch, .tangents = r->tangents,
+		.bitangents = more ? r->bitangents : NULL, .magnitudes = more ? r->magnitudes : NULL};
+}
+
+/* One run of the fast path against `expected`; prints what differs. */
+static size_t compare_run(const char *name, const nmtan_mesh *mesh, size_t corners, const result *expected,
+	bool more, nmtan_isa isa, unsigned threads, unsigned bin_bits)
+{
+	const nt_fast_plan plan = {.grain = 1, .bin_bits = bin_bits};
+	result got = result_make(corners);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	nt_solve solve = make_solve(mesh, corners, &scratch, &got, more);
+	solve.isa = isa;
+	solve.threads = threads;
+	memset(got.tangents, 0xab, corners * 16);
+	assert_int_equal(nt_mikktspace_fast_as(&solve, &plan), NMTAN_OK);
+	const size_t differences = result_differences(expected, &got, corners, more);
+	if (differences)
+		print_error("%s, set %d, %u threads, bins of 2^%u: %zu of %zu floats differ\n", name, (int)isa, threads,
+			bin_bits, differences, corners * (more ? 9 : 4));
+	nt_scratch_free(&scratch);
+	result_free(&got);
+	return differences;
+}
+
+/* One thread with every instruction set, then more threads; the same by bins where there is a choice. */
+static size_t compare_variants(const char *name, const nmtan_mesh *mesh, size_t corners,
+	const result *expected, bool more)
+{
+	static const unsigned threads[] = {2, 3, 8};
+	size_t differences = 0;
+	for (nmtan_isa isa = NMTAN_ISA_BASELINE; isa <= NMTAN_ISA_AVX512; isa++)
+		if (nt_cpu_has(isa))
+			differences += compare_run(name, mesh, corners, expected, more, isa, 1, 0);
+	for (int i = 0; i < 3; i++)
+		differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), threads[i], 0);
+	if (more)
+		return differences;
+	for (nmtan_isa isa = NMTAN_ISA_BASELINE; isa <= NMTAN_ISA_AVX512; isa++)
+		if (nt_cpu_has(isa))
+			differences += compare_run(name, mesh, corners, expected, false, isa, 1, 4);
+	return differences + compare_run(name, mesh, corners, expected, false, nt_cpu_best(), 3, 5);
+}
+
+static void compare_golden(const char *path, const nt_golden *golden, void *context)
+{
+	const nmtan_mesh loose = nt_golden_mesh(golden), mesh = filled(&loose);
+	const result expected = {golden->tangents, NULL, NULL};
+	*(size_t *)context += compare_variants(path, &mesh, golden->corner_count, &expected, false);
+}
+
+static void goldens_are_byte_identical(void **state)
+{
+	(void)state;
+	size_t differences = 0;
+	assert_int_equal(nt_golden_each(NT_DATA_DIR "/golden", compare_golden, &differences), 46);
+	assert_int_equal(differences, 0);
+}
+
+static size_t compare_nasty(uint64_t seed)
+{
+	char name[64];
+	nt_nasty nasty;
+	nt_nasty_make(seed, &nasty);
+	const nmtan_mesh mesh = filled(&nasty.mesh);
+	const bool more = seed % 2;
+	result expected = result_make(nasty.corner_count);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	const nt_solve solve = make_solve(&mesh, nasty.corner_count, &scratch, &expected, more);
+	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
+	nt_scratch_free(&scratch);
+	snprintf(name, sizeof name, "seed %llu", (unsigned long long)seed);
+	const size_t differences = compare_variants(name, &mesh, nasty.corner_count, &expected, more);
+	result_free(&expected);
+	nt_nasty_free(&nasty);
+	return differences;
+}
+
+/* Around a vertex three triangles of a square, from (-1, -1) counterclockwise, with u = x and directions of u
+ * (1 - k, 1 + k), (1, 0) and (1 - k, -1 - k), k = 1 - 2^-bits. Those of v are (0, 1). The product of the first and
+ * the last is 2^(-2 bits - 1) above -1: step 7 parts them from 12 bits on, where that is 2^-25, half the
+ * distance of floats below 1, or less. `turn` exchanges axes. Returns whether the vertex has two results at least. */
+static bool compare_wide_fan(int bits, int turn, bool middle_first, size_t *differences)
+{
+	const float k = 1.0f - ldexpf(1.0f, -bits);
+	const float x[5] = {0, -1, 1, 1, -1}, y[5] = {0, -1, -1, 1, 1}, v[5] = {0, k, -1, 1, -k};
+	float p[5][3] = {{0}}, n[5][3] = {{0}}, t[5][2];
+	for (int i = 0; i < 5; i++) {
+		p[i][turn] = x[i], p[i][(turn + 1) % 3] = y[i], n[i][(turn + 2) % 3] = 1.0f;
+		t[i][0] = x[i], t[i][1] = v[i];
+	}
+	const unsigned in_order[9] = {0, 1, 2, 0, 2, 3, 0, 3, 4}, other[9] = {0, 2, 3, 0, 1, 2, 0, 3, 4};
+	const nmtan_mesh loose = {.face_count = 3, .vertex_count = 5, .positions = p[0], .normals = n[0],
+		.texcoords = t[0], .indices = middle_first ? other : in_order};
+	const nmtan_mesh mesh = filled(&loose);
+	result expected = result_make(9);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	const nt_solve solve = make_solve(&mesh, 9, &scratch, &expected, false);
+	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
+	nt_scratch_free(&scratch);
+	*differences += compare_variants("wide fan", &mesh, 9, &expected, false);
+	const bool two = memcmp(expected.tangents + 4 * (middle_first ? 3 : 0), expected.tangents + 4 * 6, 16) != 0;
+	result_free(&expected);
+	return two;
+}
+
+static void antiparallel_directions_are_byte_identical(void **state)
+{
+	(void)state;
+	size_t differences = 0;
+	for (int bits = 1; bits <= 24; bits++)
+		for (int turn = 0; turn < 3; turn++)
+			for (int first = 0; first < 2; first++)
+				assert_int_equal(compare_wide_fan(bits, turn, first, &differences), bits >= 12);
+	assert_int_equal(differences, 0);
+}
+
+/* A fan of three triangles around a vertex, whose directions are nearly its normal: what is left in its plane is so
+ * short that its square is a denormal, and a "unit" vector is up to a fifth too long or too short. */
+static size_t compare_short_fan(uint32_t random)
+{
+	enum { RIM = 4, FACES = RIM - 1 };
+	static const float normal[3] = {1, 0, 0};
+	float p[RIM + 1][3] = {{0}}, n[RIM + 1][3], t[RIM + 1][2] = {{0}};
+	unsigned indices[FACES][3];
+	memcpy(n[0], normal, sizeof normal);
+	for (int i = 1; i <= RIM; i++) {
+		memcpy(n[i], normal, sizeof normal);
+		p[i][0] = 1.0f;
+		for (int c = 1; c < 3; c++) {
+			random = random * 1664525 + 1013904223;
+			p[i][c] = ((float)(random >> 8) - 0x1p23f) * 0x1p-23f * 1e-22f;
+		}
+		t[i][0] = (float)(RIM - i), t[i][1] = (float)i;
+	}
+	for (unsigned i = 0; i < FACES; i++)
+		memcpy(indices[i], (unsigned[3]){0, i + 1, i + 2}, sizeof indices[i]);
+	const nmtan_mesh loose = {.face_count = FACES, .vertex_count = RIM + 1, .positions = p[0], .normals = n[0],
+		.texcoords = t[0], .indices = indices[0]};
+	const nmtan_mesh mesh = filled(&loose);
+	result expected = result_make(3 * FACES);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	const nt_solve solve = make_solve(&mesh, 3 * FACES, &scratch, &expected, true);
+	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
+	nt_scratch_free(&scratch);
+	const size_t differences = compare_variants("short fan", &mesh, 3 * FACES, &expected, true);
+	result_free(&expected);
+	return differences;
+}
+
+/* Of such directions angles do not tell whether their product is -1. These fans, eight of 70 000, would be solved
+ * wrongly if they did. */
+static void short_directions_are_byte_identical(void **state)
+{
+	(void)state;
+	static const uint32_t seeds[] = {2098508433, 921525665, 2118292457, 4254900097, 1290134337, 3088173105,
+		3896388217, 3648777353};
+	size_t differences = 0;
+	for (size_t i = 0; i < sizeof seeds / sizeof *seeds; i++)
+		differences += compare_short_fan(seeds[i]);
+	assert_int_equal(differences, 0);
+}
+
+static uint64_t environment(const char *name, uint64_t otherwise)
+{
+	const char *text = getenv(name);
+	return text ? strtoull(text, NULL, 10) : otherwise;
+}
+
+static void nasty_meshes_are_byte_identical(void **state)
+{
+	(void)state;
+	const uint64_t from = environment("NT_NASTY_FROM", 0), count = environment("NT_NASTY_COUNT", 2000);
+	size_t wrong = 0;
+	for (uint64_t seed = from; seed < from + count && wrong < 10; seed++)
+		wrong += compare_nasty(seed) > 0;
+	assert_int_equal(wrong, 0);
+}
+
+/* A grid large enough for the plan to choose bins by itself; vertices and faces are numbered by a stride that is
+ * prime to their count. */
+enum { GRID_SIDE = 300, STRIDE = 39119, GRID_VERTICES = GRID_SIDE * GRID_SIDE,
+	CELLS = (GRID_SIDE - 1) * (GRID_SIDE - 1) };
+
+typedef struct grid {
+	bool quads;
+	bool mixed; /* both orientations, and triangles without UV area; otherwise one orientation */
+	bool lost;  /* in the flat part some normals, not of unit length, lie along their tangents */
+} grid;
+
+static void fill_vertices(grid g, float *p, float *n, float *t)
+{
+	assert_in_range(GRID_VERTICES, NT_BINS_LEAST, SIZE_MAX);
+	for (size_t i = 0; i < GRID_VERTICES; i++) {
+		const size_t v = i * STRIDE % GRID_VERTICES;
+		const float x = (float)(i % GRID_SIDE), y = (float)(i / GRID_SIDE);
+		memcpy(p + 3 * v, (float[3]){x, y, x > 200.0f ? 0.0f : 0.3f * sinf(x) * cosf(2 * y)}, 12);
+		memcpy(n + 3 * v, g.lost && i % 1009 == 5 ? (float[3]){0.5f, 0, 0} : (float[3]){0, 0, 1}, 12);
+		memcpy(t + 2 * v, g.mixed ? (float[2]){fabsf(x - 150.0f), i % 97 == 0 ? 0.0f : y} : (float[2]){x, y}, 8);
+	}
+}
+
+/* Two triangles for each cell, or a quad; returns the number of corners. */
+static size_t fill_faces(bool quads, unsigned *indices)
+{
+	static const size_t triangles[6] = {0, 1, GRID_SIDE + 1, 0, GRID_SIDE + 1, GRID_SIDE},
+			    quad[4] = {0, 1, GRID_SIDE + 1, GRID_SIDE};
+	const size_t size = quads ? 4 : 3, faces = quads ? CELLS : 2 * CELLS;
+	for (size_t i = 0; i < faces; i++) {
+		const size_t number = quads ? i : i / 2, cell = number + number / (GRID_SIDE - 1),
+			     face = i * STRIDE % faces;
+		for (size_t k = 0; k < size; k++) {
+			const size_t corner = quads ? quad[k] : triangles[3 * (i % 2) + k];
+			indices[size * face + k] = (unsigned)((cell + corner) * STRIDE % GRID_VERTICES);
+		}
+	}
+	return size * faces;
+}
+
+/* Tangents by vertex, which the split of a sparse solve reads from the records. */
+static void compare_vertices(const nmtan_mesh *mesh, size_t corners, const nmtan_options *options, const float *expected)
+{
+	nmtan_split_output split = {.indices = malloc(corners * 4), .sources = malloc(corners * 4),
+		.source_capacity = corners, .vertex_tangents = malloc((mesh->vertex_count + corners) * 16)};
+	assert_int_equal(nmtan_vertex_tangents(mesh, options, &split, NULL), NMTAN_OK);
+	size_t differences = 0;
+	for (size_t i = 0; i < 4 * corners; i++)
+		differences += split.vertex_tangents[4 * (size_t)split.indices[i / 4] + i % 4] != expected[i];
+	assert_int_equal(differences, 0);
+	free(split.indices);
+	free(split.sources);
+	free(split.vertex_tangents);
+}
+
+/* With repair, which relies on what the fast path vouches for. */
+static void compare_repaired(const nmtan_mesh *mesh, size_t corners, bool lost)
+{
+	result expected = result_make(corners);
+	nmtan_output wanted = {.tangents = expected.tangents};
+	assert_int_equal(nmtan_tangents(mesh, &(nmtan_options){.path = NMTAN_PATH_SCALAR}, &wanted), NMTAN_OK);
+	assert_int_equal(wanted.counts.repaired_parallel > 0, lost);
+	for (unsigned threads = 1; threads <= 2; threads++) {
+		result got = result_make(corners);
+		nmtan_output output = {.tangents = got.tangents};
+		const nmtan_options options = {.threads = threads};
+		assert_int_equal(nmtan_tangents(mesh, &options, &output), NMTAN_OK);
+		assert_memory_equal(got.tangents, expected.tangents, corners * 16);
+		assert_memory_equal(&output.counts, &wanted.counts, sizeof wanted.counts);
+		compare_vertices(mesh, corners, &options, expected.tangents);
+		result_free(&got);
+	}
+	result_free(&expected);
+}
+
+static void compare_scattered(grid g)
+{
+	const bool quads = g.quads;
+	float *p = malloc(GRID_VERTICES * 12), *n = malloc(GRID_VERTICES * 12), *t = malloc(GRID_VERTICES * 8);
+	unsigned *indices = malloc(2 * CELLS * 12);
+	uint8_t *sizes = malloc(CELLS);
+	fill_vertices(g, p, n, t);
+	memset(sizes, 4, CELLS);
+	const size_t corners = fill_faces(quads, indices);
+	const nmtan_mesh loose = {.face_count = quads ? CELLS : 2 * CELLS, .vertex_count = GRID_VERTICES, .positions = p,
+		.normals = n, .texcoords = t, .indices = indices, .face_sizes = quads ? sizes : NULL};
+	const nmtan_mesh mesh = filled(&loose);
+	result expected = result_make(corners);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	const nt_solve solve = make_solve(&mesh, corners, &scratch, &expected, true);
+	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
+	nt_scratch_free(&scratch);
+	for (unsigned threads = 1; threads <= 2; threads++)
+		for (int more = 0; more < 2; more++)
+			assert_int_equal(compare_run("scattered", &mesh, corners, &expected, more, nt_cpu_best(), threads, 0),
+				0);
+	compare_repaired(&mesh, corners, g.lost);
+	result_free(&expected);
+	free(sizes);
+	free(p);
+	free(n);
+	free(t);
+	free(indices);
+}
+
+static void scattered_meshes_are_byte_identical(void **state)
+{
+	(void)state;
+	compare_scattered((grid){.mixed = true, .lost = true});
+	compare_scattered((grid){.quads = true, .mixed = true, .lost = true});
+	compare_scattered((grid){.lost = true});
+	compare_scattered((grid){.mixed = true});
+	compare_scattered((grid){0});
+}
+
+/* An allocator that fails from the n-th request on. */
+typedef struct budget {
+	size_t left, live;
+} budget;
+
+/* Lines begin where the scratch wants them to, so that what fits a block does not depend on the addresses of
+ * threads. */
+static void *spend(void *user, size_t size)
+{
+	budget *b = user;
+	if (b->left == 0)
+		return NULL;
+	b->left--;
+	b->live++;
+	return aligned_alloc(64, (size + 63) / 64 * 64);
+}
+
+static void give_back(void *user, void *block, size_t size)
+{
+	(void)size;
+	((budget *)user)->live--;
+	free(block);
+}
+
+static nmtan_status solve_within(const nmtan_mesh *mesh, size_t corners, const result *r, size_t allowed,
+	unsigned threads, unsigned bin_bits)
+{
+	const nt_fast_plan plan = {.grain = 1, .bin_bits = bin_bits};
+	budget b = {allowed, 0};
+	const nmtan_allocator allocator = {spend, give_back, &b};
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, &allocator);
+	nt_solve solve = make_solve(mesh, corners, &scratch, r, bin_bits == 0);
+	solve.threads = threads;
+	const nmtan_status status = nt_mikktspace_fast_as(&solve, &plan);
+	nt_scratch_free(&scratch);
+	assert_int_equal(b.live, 0);
+	return status;
+}
+
+/* Scratch comes in blocks of 64 KiB, so the meshes are made large enough for many of them: a grid beside
+ * which every nasty mesh is placed. */
+static void every_failed_allocation_is_told(void **state)
+{
+	(void)state;
+	enum { SIDE = 150 };
+	const size_t corners = 6 * SIDE * SIDE;
+	float *p = malloc(corners * 12), *n = malloc(corners * 12), *t = malloc(corners * 8);
+	for (size_t c = 0; c < corners; c++) {
+		static const unsigned char at[6][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}};
+		const size_t cell = c / 6;
+		const float x = (float)(cell % SIDE + at[c % 6][0]), y = (float)(cell / SIDE + at[c % 6][1]);
+		/* folds, so that there are both orientations, contested and complex vertices, collapsed faces */
+		memcpy(p + 3 * c, (float[3]){x, y, cell % 7 == 0 ? 0.0f : 0.1f * x}, 12);
+		memcpy(n + 3 * c, (float[3]){0, 0, 1}, 12);
+		memcpy(t + 2 * c, (float[2]){cell % 11 == 0 ? 0.0f : fabsf(x - 40.0f), cell % 13 == 0 ? x : y}, 8);
+	}
+	memcpy(p + 3 * 300, p, 12 * 2);
+	memcpy(p, p + 3, 12);
+	const nmtan_mesh loose = {.face_count = corners / 3, .vertex_count = corners, .positions = p, .normals = n,
+		.texcoords = t};
+	const nmtan_mesh mesh = filled(&loose);
+	result r = result_make(corners);
+	for (unsigned i = 0; i < 4; i++) {
+		const unsigned threads = i % 2 ? 3 : 1, bin_bits = i < 2 ? 0 : 9;
+		size_t allowed = 0;
+		while (solve_within(&mesh, corners, &r, allowed, threads, bin_bits) == NMTAN_ERROR_MEMORY)
+			allowed++;
+		assert_int_equal(solve_within(&mesh, corners, &r, allowed, threads, bin_bits), NMTAN_OK);
+		assert_in_range(allowed, 8, 100);
+	}
+	result_free(&r);
+	free(p);
+	free(n);
+	free(t);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(goldens_are_byte_identical),
+		cmocka_unit_test(nasty_meshes_are_byte_identical),
+		cmocka_unit_test(antiparallel_directions_are_byte_identical),
+		cmocka_unit_test(short_directions_are_byte_identical),
+		cmocka_unit_test(scattered_meshes_are_byte_identical),
+		cmocka_unit_test(every_failed_allocation_is_told),
+	};
+	return cmocka_run_group_tests_name("tangent/fast/fast", tests, NULL, NULL);
+}

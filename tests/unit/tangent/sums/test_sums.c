@@ -1,0 +1,131 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The passes over many triangles against the definition for one: the same bytes and counts, repaired, on every
+ * instruction set and thread count, for meshes with and without lanes that the passes cannot do.
+ */
+#include "test.h"
+#include <math.h>
+#include "base/cpu.h"
+#include "golden.h"
+#include "surfaces.h"
+
+static void solve(const nmtan_mesh *mesh, nmtan_options options, float *tangents, float *bitangents,
+	nmtan_counts *counts)
+{
+	nmtan_output output = {.tangents = tangents, .bitangents = bitangents};
+	assert_int_equal(nmtan_tangents(mesh, &options, &output), NMTAN_OK);
+	*counts = output.counts;
+}
+
+static void compare_paths(const nmtan_mesh *mesh, size_t corners)
+{
+	float *expected = malloc(16 * corners), *got = malloc(16 * corners);
+	float *expected_b = malloc(12 * corners), *got_b = malloc(12 * corners);
+	for (int method = NMTAN_METHOD_AREA; method <= NMTAN_METHOD_ROBUST; method++) {
+		const nmtan_options scalar = {.method = (nmtan_method)method, .path = NMTAN_PATH_SCALAR,
+			.threads = 1};
+		nmtan_counts a, b;
+		solve(mesh, scalar, expected, expected_b, &a);
+		for (int isa = NMTAN_ISA_AUTO; isa <= NMTAN_ISA_AVX512; isa++) {
+			for (unsigned threads = 1; threads < 6 && nt_cpu_has((nmtan_isa)isa); threads += 2) {
+				const nmtan_options fast = {.method = (nmtan_method)method,
+					.isa = (nmtan_isa)isa, .threads = threads};
+				solve(mesh, fast, got, got_b, &b);
+				assert_memory_equal(got, expected, 16 * corners);
+				assert_memory_equal(got_b, expected_b, 12 * corners);
+				assert_memory_equal(&a, &b, sizeof a);
+			}
+		}
+	}
+	free(expected);
+	free(got);
+	free(expected_b);
+	free(got_b);
+}
+
+static void compare_golden(const char *path, const nt_golden *golden, void *context)
+{
+	(void)path;
+	(void)context;
+	const nmtan_mesh mesh = nt_golden_mesh(golden);
+	compare_paths(&mesh, golden->corner_count);
+}
+
+static void all_paths_give_the_same_bytes_on_goldens(void **state)
+{
+	(void)state;
+	assert_int_equal(nt_golden_each(NT_DATA_DIR "/golden", compare_golden, NULL), 46);
+}
+
+/* Large enough for several threads; every seventh vertex has a denormal, an infinity or a far exponent, so
+ * that lanes are hard here and there, and every fifth column is mirrored. */
+static void all_paths_give_the_same_bytes_on_a_large_mesh(void **state)
+{
+	(void)state;
+	static const float odd[4] = {1e-44f, 1e30f, -1e-30f, INFINITY};
+	nt_owned grid = nt_surface_grid(NT_TORUS, 210, 200, 0.3, 3);
+	compare_paths(&grid.mesh, grid.corner_count);
+	for (size_t v = 0; v < grid.mesh.vertex_count; v++) {
+		if (v % 5 == 0)
+			grid.texcoords[v][0] = 1 - grid.texcoords[v][0];
+		if (v % 7 == 0)
+			grid.positions[v][v % 3] = odd[v % 4];
+		if (v % 11 == 0)
+			grid.texcoords[v][v % 2] = odd[v % 4];
+	}
+	compare_paths(&grid.mesh, grid.corner_count);
+	grid.mesh.stored_v_offset = 1;
+	compare_paths(&grid.mesh, grid.corner_count);
+	nt_owned_free(&grid);
+}
+
+/* A plane grid of quads: some cells have their texture turned over in one half (folded), some have a corner of
+ * theirs collapsed, some normals are zero or not numbers, and every third row is mirrored. */
+static void all_paths_give_the_same_bytes_on_quads(void **state)
+{
+	(void)state;
+	enum { N = 190 };
+	nt_owned grid = nt_surface_grid(NT_TORUS, N, N, 0.2, 5);
+	uint8_t *sizes = malloc(grid.corner_count);
+	uint32_t *indices = malloc(4 * grid.corner_count);
+	size_t faces = 0, corners = 0;
+	for (uint32_t y = 0; y < N; y++) {
+		for (uint32_t x = 0; x < N; x++) {
+			const uint32_t a = y * (N + 1) + x, odd = x * 7 + y * 13;
+			const uint32_t quad[4] = {a, a + 1, odd % 29 == 0 ? a + 1 : a + N + 2, a + N + 1};
+			const size_t size = odd % 5 == 0 ? 3 : 4;
+			memcpy(indices + corners, quad, size * sizeof *quad);
+			sizes[faces++] = (uint8_t)size;
+			corners += size;
+		}
+	}
+	for (size_t v = 0; v < grid.mesh.vertex_count; v++) {
+		if (v % 31 == 0)
+			grid.texcoords[v][0] += 0.02f;
+		if (v / (N + 1) % 3 == 0)
+			grid.texcoords[v][0] = -grid.texcoords[v][0];
+		if (v % 97 == 0)
+			memset(grid.normals[v], 0, sizeof grid.normals[v]);
+		if (v % 101 == 0)
+			grid.normals[v][1] = NAN;
+	}
+	grid.mesh.face_sizes = sizes;
+	grid.mesh.indices = indices;
+	grid.mesh.face_count = faces;
+	compare_paths(&grid.mesh, corners);
+	grid.mesh.stored_v_offset = -1;
+	compare_paths(&grid.mesh, corners);
+	nt_owned_free(&grid);
+	free(indices);
+	free(sizes);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(all_paths_give_the_same_bytes_on_goldens),
+		cmocka_unit_test(all_paths_give_the_same_bytes_on_a_large_mesh),
+		cmocka_unit_test(all_paths_give_the_same_bytes_on_quads),
+	};
+	return cmocka_run_group_tests_name("tangent/sums/sums", tests, NULL, NULL);
+}

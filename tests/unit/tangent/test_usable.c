@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Judging with and without a method that vouches: the fast path leaves out most faces, the definition
+ * none, and both must come to the same counts and the same repaired bytes.
+ */
+#include "test.h"
+#include <math.h>
+#include "golden.h"
+#include "nasty.h"
+#include "nmtan.h"
+
+static size_t count_differences(const float *a, const float *b, size_t count)
+{
+	size_t differences = 0;
+	for (size_t i = 0; i < count; i++)
+		differences += memcmp(&a[i], &b[i], sizeof *a) != 0 && !(isnan(a[i]) && isnan(b[i]));
+	return differences;
+}
+
+static void compare_paths(const nmtan_mesh *given, size_t corner_count, float offset, nmtan_repair repair)
+{
+	nmtan_mesh mesh = *given;
+	mesh.stored_v_offset = offset;
+	nmtan_output scalar = {.tangents = malloc(16 * corner_count + 1)};
+	nmtan_output fast = {.tangents = malloc(16 * corner_count + 1)};
+	const nmtan_options by_scalar = {.path = NMTAN_PATH_SCALAR, .repair = repair, .threads = 1};
+	const nmtan_options by_fast = {.path = NMTAN_PATH_FAST, .repair = repair, .threads = 1};
+	assert_int_equal(nmtan_tangents(&mesh, &by_scalar, &scalar), NMTAN_OK);
+	assert_int_equal(nmtan_tangents(&mesh, &by_fast, &fast), NMTAN_OK);
+	assert_int_equal(count_differences(scalar.tangents, fast.tangents, 4 * corner_count), 0);
+	assert_memory_equal(&scalar.counts, &fast.counts, sizeof scalar.counts);
+	free(scalar.tangents);
+	free(fast.tangents);
+}
+
+static void compare_golden(const char *path, const nt_golden *golden, void *context)
+{
+	(void)path;
+	(void)context;
+	const nmtan_mesh mesh = nt_golden_mesh(golden);
+	for (int offset = -1; offset <= 1; offset++)
+		compare_paths(&mesh, golden->corner_count, (float)offset, NMTAN_REPAIR_ON);
+}
+
+static void vouched_faces_need_no_look_on_goldens(void **state)
+{
+	(void)state;
+	assert_int_equal(nt_golden_each(NT_DATA_DIR "/golden", compare_golden, NULL), 46);
+}
+
+static void vouched_faces_need_no_look_on_nasty_meshes(void **state)
+{
+	(void)state;
+	for (uint64_t seed = 0; seed < 3000; seed++) {
+		nt_nasty nasty;
+		nt_nasty_make(seed, &nasty);
+		compare_paths(&nasty.mesh, nasty.corner_count, (float)(seed % 3) - 1.0f,
+			seed % 4 == 3 ? NMTAN_REPAIR_OFF : NMTAN_REPAIR_ON);
+		nt_nasty_free(&nasty);
+	}
+}
+
+/* Triangles so thin in v that storing it turns some of them: around the bound, on both sides. */
+static void slivers_around_the_bound_are_judged_exactly(void **state)
+{
+	(void)state;
+	enum { COUNT = 4096 };
+	float (*positions)[3] = malloc(3 * COUNT * sizeof *positions);
+	float (*normals)[3] = malloc(3 * COUNT * sizeof *normals);
+	float (*texcoords)[2] = malloc(3 * COUNT * sizeof *texcoords);
+	uint32_t seed = 7;
+	size_t differently = 0;
+	for (int t = 0; t < COUNT; t++) {
+		for (int k = 0; k < 3; k++) {
+			seed = seed * 1664525u + 1013904223u;
+			const float r = (float)(seed >> 8) * 0x1p-24f;
+			const float height = ldexpf(r, -(t % 30));
+			memcpy(positions[3 * t + k], (float[3]){(float)(k == 1), (float)(k == 2), (float)t}, 12);
+			memcpy(normals[3 * t + k], (float[3]){0, 0, 1}, 12);
+			memcpy(texcoords[3 * t + k], (float[2]){(float)k + r, height}, 8);
+		}
+	}
+	const nmtan_mesh mesh = {.face_count = COUNT, .vertex_count = 3 * COUNT,
+		.positions = &positions[0][0], .normals = &normals[0][0], .texcoords = &texcoords[0][0]};
+	for (int offset = -1; offset <= 1; offset++)
+		compare_paths(&mesh, 3 * COUNT, (float)offset, NMTAN_REPAIR_ON);
+	nmtan_mesh stored = mesh;
+	stored.stored_v_offset = -1;
+	nmtan_output output = {.tangents = malloc(48 * COUNT)};
+	assert_int_equal(nmtan_tangents(&stored, NULL, &output), NMTAN_OK);
+	for (int t = 0; t < COUNT; t++) {
+		float s[3][2];
+		for (int k = 0; k < 3; k++) {
+			s[k][0] = texcoords[3 * t + k][0];
+			s[k][1] = texcoords[3 * t + k][1] - 1.0f;
+		}
+		const int sign = nmtan_orientation(s[0], s[1], s[2]);
+		differently += sign != nmtan_orientation(texcoords[3 * t], texcoords[3 * t + 1],
+					       texcoords[3 * t + 2]);
+		for (int k = 0; sign && k < 3; k++)
+			assert_true(output.tangents[12 * t + 4 * k + 3] == (float)sign);
+	}
+	assert_true(differently > 100);
+	assert_int_equal(output.counts.stored_differently, differently);
+	free(output.tangents);
+	free(positions);
+	free(normals);
+	free(texcoords);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(vouched_faces_need_no_look_on_goldens),
+		cmocka_unit_test(vouched_faces_need_no_look_on_nasty_meshes),
+		cmocka_unit_test(slivers_around_the_bound_are_judged_exactly),
+	};
+	return cmocka_run_group_tests_name("tangent/usable", tests, NULL, NULL);
+}
