@@ -1,8 +1,9 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# make lint: who may include whom, SPDX lines, nothing that prints or exits outside src/cli, C++ in
-# src/ext alone, no addresses of package registries or paths of one machine. Prints one line per fault.
+# rooms.sh [BUILD_DIR]: make lint. Who may use whom (rooms.py), SPDX lines, nothing that prints or exits outside
+# src/cli, C++ in src/ext alone, no addresses of package registries or paths of one machine, and with BUILD_DIR
+# what the libraries show and need. Prints one line per fault.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 faults=0
@@ -11,49 +12,29 @@ fault() {
 	faults=$((faults + 1))
 }
 
-declare -A may=(
-	[base]="base"
-	[ext]="ext base"
-	[topology]="topology base"
-	[tangent]="tangent topology base"
-	[scene]="scene base"
-	[io]="io scene ext base"
-	[report]="report scene topology ext base"
-	[pipeline]="pipeline io report tangent topology scene ext base"
-	[cli]="cli pipeline report base"
-)
-
-for file in src/*/*.[ch] src/*/*.[ch]pp; do
-	[ -f "$file" ] || continue
-	room=${file#src/} room=${room%%/*}
-	if [ -z "${may[$room]-}" ]; then
-		fault "$file: no such room in design.md"
-		continue
-	fi
-	while IFS= read -r target; do
-		case " ${may[$room]} " in
-		*" $target "*) ;;
-		*) fault "$file: $room may not include $target" ;;
-		esac
-	done < <(sed -nE 's/^[[:space:]]*#[[:space:]]*include "([a-z]+)\/.*/\1/p' "$file" | sort -u)
-	case $room/$file in
-	ext/*.[ch]pp | */*.[ch]) ;;
-	*) fault "$file: C++ outside src/ext" ;;
-	esac
-	if [ "$room" != cli ]; then
-		# Comments may speak of printf; code may not call it.
-		sed -E 's,/\*.*\*/,,; s,^[[:space:]]*\*.*,,; s,//.*,,' "$file" |
-			grep -nE '(^|[^a-zA-Z0-9_.>])(abort|exit|_exit|_Exit|quick_exit|printf|puts|putchar|perror|vprintf)[[:space:]]*\(|fprintf[[:space:]]*\([[:space:]]*std|std::(cout|cerr)' |
-			# The handler of a deadly signal may end what the signal would have ended.
-			{ [ "$file" = src/io/temporary.c ] && grep -v '_exit(128 + ' || cat; } |
-			while IFS= read -r line; do echo "lint: $file:${line%%:*}: prints or exits: ${line#*:}"; done |
-			grep . && faults=$((faults + 1))
-	fi
-done
+# Who may use whom: includes, and symbols where there is a build.
+python3 tests/lint/rooms.py ${1+"$1"} || faults=$((faults + 1))
 
 while IFS= read -r file; do
 	case $file in
-	LICENSE | .gitignore | .clang-format | README.md | man/* | data/*) continue ;;
+	src/ext/* | *.[ch]) ;;
+	*) fault "$file: C++ outside src/ext" ;;
+	esac
+	case $file in
+	src/cli/*) continue ;;
+	esac
+	# Comments may speak of printf; code may not call it.
+	sed -E 's,/\*.*\*/,,; s,^[[:space:]]*\*.*,,; s,//.*,,' "$file" |
+		grep -nE '(^|[^a-zA-Z0-9_.>])(abort|exit|_exit|_Exit|quick_exit|printf|puts|putchar|perror|vprintf)[[:space:]]*\(|fprintf[[:space:]]*\([[:space:]]*std|std::(cout|cerr)' |
+		# The handler of a deadly signal may end what the signal would have ended.
+		{ [ "$file" = src/file/temporary.c ] && grep -v '_exit(128 + ' || cat; } |
+		while IFS= read -r line; do echo "lint: $file:${line%%:*}: prints or exits: ${line#*:}"; done |
+		grep . && faults=$((faults + 1))
+done < <(find src -name '*.[ch]' -o -name '*.[ch]pp' | sort)
+
+while IFS= read -r file; do
+	case $file in
+	LICENSE | .gitignore | .clang-format | *README.md | man/* | data/*) continue ;;
 	*.json | *.tsv | *.png | *.bin | *.glb | *.gltf) continue ;;
 	esac
 	head -3 "$file" | grep -q 'SPDX-License-Identifier: MIT' || fault "$file: no SPDX line at its top"

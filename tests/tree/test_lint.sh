@@ -6,35 +6,117 @@ scene "the tree keeps its rules"
 make -s -C "$ROOT" MAKEFLAGS= config=release lint >found 2>&1 || wrong "make lint fails"
 sed 's/^/# /' found
 
-# A tree of its own with one fault.
-faulty() {
-	mkdir -p tree/src/base tree/src/cli tree/src/tangent tree/tests/lint
-	cp "$ROOT/tests/lint/rooms.sh" tree/tests/lint/
-	printf '/* SPDX-License-Identifier: MIT */\n%s\n' "$2" >"tree/$1"
-	(cd tree && git init -q . && git add -A && bash tests/lint/rooms.sh) >"$WORK/out.txt" 2>&1
-	status=$?
-	exits "$3"
+# table ROOM:USES...: the table of a tree of its own.
+table() {
+	mkdir -p tree/src
+	printf '| room | what it is | may use |\n|---|---|---|\n' >tree/src/README.md
+	for row in "$@"; do
+		mkdir -p "tree/src/${row%%:*}"
+		printf '| %s | - | %s |\n' "${row%%:*}" "${row#*:}" >>tree/src/README.md
+		printf '/* SPDX-License-Identifier: MIT */\n' >"tree/src/${row%%:*}/first.h"
+	done
 }
 
-scene "an arrow that the design does not have is found"
-faulty src/base/a.c '#include "io/file.h"' 1
-prints "src/base/a.c: base may not include io"
+# holds FILE TEXT: a file of that tree.
+holds() {
+	printf '/* SPDX-License-Identifier: MIT */\n%b\n' "$2" >"tree/src/$1"
+}
+
+# lint STATUS [BUILD_DIR]: what the checks say of that tree.
+lint() {
+	mkdir -p tree/tests/lint
+	cp "$ROOT"/tests/lint/rooms.* tree/tests/lint/
+	(cd tree && git init -q . && git add -A && bash tests/lint/rooms.sh ${2+"$2"}) >"$WORK/out.txt" 2>&1
+	status=$?
+	exits "$1"
+}
+
+scene "an arrow that the table does not have is found, in nested rooms too"
+table base:- file:- gltf:file gltf/edit:gltf
+holds gltf/edit/a.c '#include "gltf/first.h"\n#include "base/first.h"'
+lint 0
+holds gltf/edit/a.c '#include "file/first.h"'
+lint 1
+prints "src/gltf/edit/a.c: gltf/edit may not use file; it includes src/file/first.h"
+holds gltf/edit/a.c ''
+holds gltf/b.h '#include "gltf/edit/first.h"'
+lint 1
+prints "src/gltf/b.h: gltf may not use gltf/edit"
+
+scene "an arrow that only symbols show is found"
+table base:- report:- api:-
+holds report/a.c 'void nt_solve(void);\nvoid nt_report(void);\nvoid nt_report(void) { nt_solve(); }'
+holds api/b.c 'void nt_solve(void);\nvoid nt_solve(void) {}'
+mkdir -p tree/build/report tree/build/api
+${CC:-cc} -c -o tree/build/report/a.c.o tree/src/report/a.c && ${CC:-cc} -c -o tree/build/api/b.c.o tree/src/api/b.c
+(cd tree && python3 "$ROOT/tests/lint/rooms.py" build) >"$WORK/out.txt"
+is $? 1
+prints "src/report/a.c: report may not use api; it calls nt_solve of src/api/b.c"
+
+scene "circles of headers, of files and of rooms are found"
+table base:- file:ply ply:file
+holds file/a.h '#include "file/b.h"'
+holds file/b.h '#include "file/a.h"'
+holds file/c.c '#include "ply/first.h"'
+holds ply/d.c '#include "file/first.h"'
+lint 1
+prints "headers in a circle: src/file/a.h src/file/b.h"
+prints "folders in a circle: file ply"
+table base:-
+holds base/a.c 'void a(void);\nvoid b(void);\nvoid a(void) { b(); }'
+holds base/b.c 'void a(void);\nvoid b(void);\nvoid b(void) { a(); }'
+mkdir -p tree/build/base
+for c in a b; do ${CC:-cc} -c -o tree/build/base/$c.c.o tree/src/base/$c.c; done
+(cd tree && python3 "$ROOT/tests/lint/rooms.py" build) >"$WORK/out.txt"
+is $? 1
+prints "files in a circle: src/base/a.c src/base/b.c"
+
+scene "the table and the folders are the same"
+table base:- file:gone
+lint 1
+prints "src/README.md: the table names gone, and src has no such folder"
+table base:-
+lint 1
+prints "src/file: not in the table of src/README.md"
+rm tree/src/README.md
+lint 1
+prints "src/README.md: is missing"
+
+scene "a room that is too large is found"
+table base:-
+for i in $(seq 25); do holds base/f$i.c ''; done
+lint 1
+prints "src/base: 25 source files, 51 lines; at most 24 and 6500"
+rm tree/src/base/*.c
+yes '/* x */' | head -6500 >>tree/src/base/first.h
+lint 1
+prints "src/base: 0 source files, 6501 lines; at most 24 and 6500"
 
 scene "printing and exiting outside cli are found"
-faulty src/tangent/a.c '	printf("x");' 1
-prints "src/tangent/a.c:2: prints or exits"
-rm -rf tree
-faulty src/tangent/a.c '	exit(1);' 1
-rm -rf tree
-faulty src/tangent/a.c ' * it may exit(1) in a comment' 0
-rm -rf tree
-faulty src/cli/a.c '	printf("x");' 0
+table base:- cli:- tangent/fast:-
+holds tangent/fast/a.c '\tprintf("x");'
+lint 1
+prints "src/tangent/fast/a.c:2: prints or exits"
+holds tangent/fast/a.c '\texit(1);'
+lint 1
+holds tangent/fast/a.c ' * it may exit(1) in a comment'
+lint 0
+holds cli/a.c '\tprintf("x");'
+lint 0
+
+scene "C++ outside ext is found"
+table base:- ext:-
+holds ext/a.cpp ''
+lint 0
+holds base/a.cpp ''
+lint 1
+prints "src/base/a.cpp: C++ outside src/ext"
 
 scene "a file without licence line is found"
-faulty src/base/a.c '' 0
+table base:-
+lint 0
 echo 'int x;' >tree/src/base/b.c
-(cd tree && git add -A && bash tests/lint/rooms.sh) >"$WORK/out.txt"
-is $? 1
+lint 1
 prints "src/base/b.c: no SPDX line"
 
 done_testing
