@@ -207,7 +207,6 @@ typedef struct nmtan_output {
 	                      corners */
 	float *magnitudes; /* [corner count][2], may be NULL: lengths of dP/du and dP/dv as MikkTSpace
 	                      reports them; 1 with the other methods and at repaired corners */
-	nmtan_counts counts; /* written by the call */
 } nmtan_output;
 
 /*
@@ -216,6 +215,7 @@ typedef struct nmtan_output {
  *   mesh     required
  *   options  NULL for defaults
  *   output   required; tangents must have room for 4 floats per corner
+ *   counts   may be NULL; written by the call
  *
  * Time is linear in the number of corners, whatever the mesh looks like.
  *
@@ -223,7 +223,7 @@ typedef struct nmtan_output {
  * NMTAN_ERROR_TOO_LARGE or NMTAN_ERROR_MEMORY.
  */
 NMTAN_API nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
-	nmtan_output *output);
+	const nmtan_output *output, nmtan_counts *counts);
 
 /* Where a split goes. */
 typedef struct nmtan_split_output {
@@ -261,7 +261,7 @@ NMTAN_API nmtan_status nmtan_split(const nmtan_mesh *mesh, const float *tangents
  *   mesh     required
  *   options  NULL for defaults
  *   output   required; vertex_tangents too. indices may not be the array that mesh->indices points to
- *   counts   may be NULL
+ *   counts   may be NULL; written by the call
  *
  * Returns the statuses of nmtan_split().
  */

@@ -133,11 +133,14 @@ static void end_request(request *r)
 	nt_scratch_free(&r->own);
 }
 
-nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options, nmtan_output *output)
+nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options, const nmtan_output *output,
+	nmtan_counts *counts)
 {
+	nmtan_counts own_counts;
+	counts = counts ? counts : &own_counts;
 	if (!mesh || !output || !output->tangents)
 		return NMTAN_ERROR_ARGUMENT;
-	memset(&output->counts, 0, sizeof output->counts);
+	memset(counts, 0, sizeof *counts);
 	request r;
 	nmtan_status status = begin_request(&r, mesh, options);
 	if (status || r.solve.corner_count == 0)
@@ -150,8 +153,8 @@ nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options
 	size_t ill_conditioned = 0;
 	status = run_method(&r.solve, &r.options, &ill_conditioned);
 	if (!status)
-		status = nt_repair(&r.solve, &output->counts);
-	output->counts.ill_conditioned = ill_conditioned;
+		status = nt_repair(&r.solve, counts);
+	counts->ill_conditioned = ill_conditioned;
 	end_request(&r);
 	return status;
 }

@@ -108,12 +108,11 @@ static nt_status make_split(const nt_mesh *mesh, nt_split *split, nmtan_split_ou
 static nt_status solve_corners(const nt_mesh *mesh, const nmtan_mesh *view,
 	const nmtan_options *options, float **tangents, nmtan_counts *counts)
 {
-	nmtan_output output = {.tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float))};
+	const nmtan_output output = {.tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float))};
 	*tangents = output.tangents;
 	if (!output.tangents)
 		return NT_ERROR_MEMORY;
-	const nt_status status = nt_status_of(nmtan_tangents(view, options, &output));
-	*counts = output.counts;
+	const nt_status status = nt_status_of(nmtan_tangents(view, options, &output, counts));
 	if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
 		restore_valid(mesh, output.tangents);
 	return status;

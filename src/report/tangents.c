@@ -292,8 +292,8 @@ static nt_status compare_with_fresh(nt_judge *judge)
 		return NT_ERROR_MEMORY;
 	const nmtan_mesh view = nt_mesh_view(mesh);
 	const nmtan_options options = {.threads = judge->options->threads};
-	nmtan_output output = {.tangents = fresh};
-	const nt_status status = nt_status_of(nmtan_tangents(&view, &options, &output));
+	const nmtan_output output = {.tangents = fresh};
+	const nt_status status = nt_status_of(nmtan_tangents(&view, &options, &output, NULL));
 	if (status == NT_OK)
 		judge_directions(judge, fresh);
 	return status;

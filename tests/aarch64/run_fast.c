@@ -24,8 +24,8 @@ static size_t count_differences(const float *a, const float *b, size_t count)
 static void solve(const nmtan_mesh *mesh, nmtan_path path, float *tangents)
 {
 	const nmtan_options options = {.repair = NMTAN_REPAIR_OFF, .path = path, .threads = 1};
-	nmtan_output output = {.tangents = tangents};
-	if (nmtan_tangents(mesh, &options, &output)) {
+	const nmtan_output output = {.tangents = tangents};
+	if (nmtan_tangents(mesh, &options, &output, NULL)) {
 		printf("solving failed\n");
 		exit(1);
 	}

@@ -21,8 +21,8 @@ static nmtan_mesh square(void)
 static nmtan_status solve(const nmtan_mesh *mesh, const nmtan_options *options)
 {
 	float tangents[8][4];
-	nmtan_output output = {.tangents = &tangents[0][0]};
-	return nmtan_tangents(mesh, options, &output);
+	const nmtan_output output = {.tangents = &tangents[0][0]};
+	return nmtan_tangents(mesh, options, &output, NULL);
 }
 
 static void missing_arrays_are_argument_errors(void **state)
@@ -31,10 +31,10 @@ static void missing_arrays_are_argument_errors(void **state)
 	float tangents[8][4];
 	nmtan_output output = {0};
 	nmtan_mesh mesh = square();
-	assert_int_equal(nmtan_tangents(&mesh, NULL, &output), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(nmtan_tangents(&mesh, NULL, &output, NULL), NMTAN_ERROR_ARGUMENT);
 	output.tangents = &tangents[0][0];
-	assert_int_equal(nmtan_tangents(NULL, NULL, &output), NMTAN_ERROR_ARGUMENT);
-	assert_int_equal(nmtan_tangents(&mesh, NULL, NULL), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(nmtan_tangents(NULL, NULL, &output, NULL), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(nmtan_tangents(&mesh, NULL, NULL, NULL), NMTAN_ERROR_ARGUMENT);
 	mesh.positions = NULL;
 	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
 	mesh = square();

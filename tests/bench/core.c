@@ -88,7 +88,7 @@ static void free_workload(workload *w)
 }
 
 /* Seconds for solving every mesh once; what is small is repeated until it takes a while. */
-static double time_run(const column *c, const workload *w, nmtan_output *output, nmtan_workspace *workspace)
+static double time_run(const column *c, const workload *w, const nmtan_output *output, nmtan_workspace *workspace)
 {
 	const nmtan_options options = {.method = c->method, .threads = c->threads, .path = c->path, .isa = c->isa,
 		.workspace = workspace};
@@ -96,7 +96,7 @@ static double time_run(const column *c, const workload *w, nmtan_output *output,
 	const clockid_t clock = c->threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC;
 	const double begin = seconds(clock);
 	for (size_t i = 0; i < repeat * w->count; i++)
-		if (nmtan_tangents(&w->meshes[i % w->count].mesh, &options, output)) {
+		if (nmtan_tangents(&w->meshes[i % w->count].mesh, &options, output, NULL)) {
 			fprintf(stderr, "core: solving failed\n");
 			exit(1);
 		}
@@ -104,11 +104,11 @@ static double time_run(const column *c, const workload *w, nmtan_output *output,
 }
 
 /* Bytes for each triangle that one thread takes besides the output; 0 for many meshes, which share a block. */
-static double scratch_bytes(const workload *w, nmtan_output *output)
+static double scratch_bytes(const workload *w, const nmtan_output *output)
 {
 	nmtan_workspace *workspace = nmtan_workspace_create(NULL);
 	const nmtan_options options = {.threads = 1, .workspace = workspace};
-	if (!workspace || nmtan_tangents(&w->meshes[0].mesh, &options, output))
+	if (!workspace || nmtan_tangents(&w->meshes[0].mesh, &options, output, NULL))
 		exit(1);
 	const double bytes = (double)nt_scratch_bytes(&workspace->scratch);
 	nmtan_workspace_destroy(workspace);
@@ -121,7 +121,7 @@ static void time_row(const char *name, const workload *w, const workload *smalle
 {
 	double times[MOST_COLUMNS][RUNS];
 	const size_t corners = w->most_corners > smaller->most_corners ? w->most_corners : smaller->most_corners;
-	nmtan_output output = {.tangents = calloc(corners, 4 * sizeof(float))};
+	const nmtan_output output = {.tangents = calloc(corners, 4 * sizeof(float))};
 	nmtan_workspace *workspace = nmtan_workspace_create(NULL);
 	if (!output.tangents || !workspace)
 		exit(1);

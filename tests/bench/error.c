@@ -123,11 +123,11 @@ static double run_ours(const run *r, const nt_owned *mesh, float (*tangents)[4])
 {
 	nmtan_options options = r->options;
 	options.workspace = nmtan_workspace_create(NULL);
-	nmtan_output output = {.tangents = &tangents[0][0]};
+	const nmtan_output output = {.tangents = &tangents[0][0]};
 	double best = INFINITY, total = 0;
 	for (int i = 0; i < 100 && (i < 2 || total < 0.04); i++) {
 		const double start = measure_seconds();
-		const nmtan_status status = nmtan_tangents(&mesh->mesh, &options, &output);
+		const nmtan_status status = nmtan_tangents(&mesh->mesh, &options, &output, NULL);
 		const double took = measure_seconds() - start;
 		if (status) {
 			fprintf(stderr, "error: %s: %s\n", r->name, nmtan_status_text(status));
@@ -207,8 +207,8 @@ static void time_runs(bench *b)
 /* Our tangents once more; false on failure. */
 static bool solve_ours(const run *r, const nt_owned *mesh, float (*tangents)[4])
 {
-	nmtan_output output = {.tangents = &tangents[0][0]};
-	return nmtan_tangents(&mesh->mesh, &r->options, &output) == NMTAN_OK;
+	const nmtan_output output = {.tangents = &tangents[0][0]};
+	return nmtan_tangents(&mesh->mesh, &r->options, &output, NULL) == NMTAN_OK;
 }
 
 static void judge_run(bench *b, size_t index)
@@ -249,8 +249,8 @@ static void make_bakers(bench *b)
 			continue;
 		b->baker[i] = measure_room(b->meshes[i].mesh.corner_count, sizeof *b->baker[i]);
 		const nmtan_options options = {.repair = NMTAN_REPAIR_OFF};
-		nmtan_output output = {.tangents = &b->baker[i][0][0]};
-		if (nmtan_tangents(&b->meshes[i].mesh.mesh, &options, &output))
+		const nmtan_output output = {.tangents = &b->baker[i][0][0]};
+		if (nmtan_tangents(&b->meshes[i].mesh.mesh, &options, &output, NULL))
 			exit(3);
 	}
 }

@@ -25,8 +25,8 @@ static void judge_level(uint32_t cells, double median[SUMMED], double worst[SUMM
 		float (*tangents)[4] = measure_room(mesh.corner_count, sizeof *tangents);
 		for (int m = 0; m < SUMMED; m++) {
 			const nmtan_options options = {.method = summed_methods[m]};
-			nmtan_output output = {.tangents = &tangents[0][0]};
-			if (nmtan_tangents(&mesh.mesh, &options, &output))
+			const nmtan_output output = {.tangents = &tangents[0][0]};
+			if (nmtan_tangents(&mesh.mesh, &options, &output, NULL))
 				exit(3);
 			/* large meshes by a sample */
 			const size_t step = mesh.corner_count / 100000 * 2 + 1;
@@ -96,8 +96,8 @@ static double bevel_tilt(double width, uint32_t cells, uint32_t vertex, nmtan_me
 	nt_owned mesh = bench_bevel(width, cells);
 	float (*tangents)[4] = measure_room(mesh.corner_count, sizeof *tangents);
 	const nmtan_options options = {.method = method};
-	nmtan_output output = {.tangents = &tangents[0][0]};
-	if (nmtan_tangents(&mesh.mesh, &options, &output))
+	const nmtan_output output = {.tangents = &tangents[0][0]};
+	if (nmtan_tangents(&mesh.mesh, &options, &output, NULL))
 		exit(3);
 	const uint32_t at = vertex * (2 * cells + 2) + cells;
 	double tilt = NAN;

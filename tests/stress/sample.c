@@ -29,8 +29,8 @@ void sample_triangles(const nt_owned *mesh, FILE *to)
 		const nmtan_mesh one = {.face_count = 1, .vertex_count = 3, .positions = &p[0][0],
 			.normals = &n[0][0], .texcoords = &t[0][0]};
 		const nmtan_options options = {.method = NMTAN_METHOD_ROBUST};
-		nmtan_output output = {.tangents = &tangents[0][0]};
-		if (nmtan_tangents(&one, &options, &output))
+		const nmtan_output output = {.tangents = &tangents[0][0]};
+		if (nmtan_tangents(&one, &options, &output, NULL))
 			continue;
 		for (int k = 0; k < 3; k++) {
 			print_floats(to, p[k], 3);

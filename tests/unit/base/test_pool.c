@@ -129,8 +129,8 @@ static void solve_strip(size_t squares, unsigned threads, float *tangents)
 		.positions = values, .position_stride_bytes = 32, .normals = values + 3, .normal_stride_bytes = 32,
 		.texcoords = values + 6, .texcoord_stride_bytes = 32};
 	const nmtan_options options = {.threads = threads};
-	nmtan_output output = {.tangents = tangents};
-	if (nmtan_tangents(&mesh, &options, &output))
+	const nmtan_output output = {.tangents = tangents};
+	if (nmtan_tangents(&mesh, &options, &output, NULL))
 		abort();
 	free(values);
 	free(corners);
