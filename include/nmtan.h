@@ -128,17 +128,6 @@ typedef enum nmtan_repair {
 	NMTAN_REPAIR_OFF     /* the method's raw result */
 } nmtan_repair;
 
-/* Which implementation runs. All give the same bytes; the choice exists for tests and timing. */
-typedef enum nmtan_path { NMTAN_PATH_AUTO = 0, NMTAN_PATH_SCALAR, NMTAN_PATH_FAST } nmtan_path;
-
-/* Which instruction set the fast path uses. One that the processor lacks is an argument error. */
-typedef enum nmtan_isa {
-	NMTAN_ISA_AUTO = 0,
-	NMTAN_ISA_BASELINE, /* what the compiler assumes: SSE2 on x86-64, NEON on aarch64 */
-	NMTAN_ISA_AVX2,
-	NMTAN_ISA_AVX512
-} nmtan_isa;
-
 /* The caller's allocator. Blocks are aligned for any C type, as malloc's are. */
 typedef struct nmtan_allocator {
 	void *(*allocate)(void *user, size_t size_bytes);           /* NULL result: out of memory */
@@ -170,8 +159,6 @@ typedef struct nmtan_options {
 	float angular_threshold_degrees;  /* MikkTSpace's, in (0, 180]; 0: 180, its default. The other
 	                                     methods ignore it */
 	unsigned threads;                 /* 0: one per processor. Small meshes use one thread anyway */
-	nmtan_path path;                  /* for tests */
-	nmtan_isa isa;                    /* for tests */
 	const nmtan_allocator *allocator; /* NULL: malloc and free. Ignored when a workspace is given */
 	nmtan_timing *timing;             /* NULL, or where nmtan_tangents() and nmtan_vertex_tangents()
 	                                     add what their steps took */

@@ -45,10 +45,7 @@ static nmtan_status check_options(const nmtan_options *options)
 {
 	const float degrees = options->angular_threshold_degrees;
 	if ((unsigned)options->method > NMTAN_METHOD_ROBUST ||
-		(unsigned)options->repair > NMTAN_REPAIR_OFF ||
-		(unsigned)options->path > NMTAN_PATH_FAST || (unsigned)options->isa > NMTAN_ISA_AVX512)
-		return NMTAN_ERROR_ARGUMENT;
-	if (!(degrees >= 0.0f && degrees <= 180.0f) || !nt_cpu_has(options->isa))
+		(unsigned)options->repair > NMTAN_REPAIR_OFF || !(degrees >= 0.0f && degrees <= 180.0f))
 		return NMTAN_ERROR_ARGUMENT;
 	return NMTAN_OK;
 }
@@ -59,13 +56,11 @@ static float threshold_cos(float degrees)
 	return (float)cos((double)((degrees * (float)M_PI) / 180.0f));
 }
 
-static nmtan_status run_method(const nt_solve *solve, const nmtan_options *options,
-	size_t *ill_conditioned)
+static nmtan_status run_method(const nt_solve *solve, nmtan_method method, size_t *ill_conditioned)
 {
-	switch (options->method) {
+	switch (method) {
 	case NMTAN_METHOD_MIKKTSPACE:
-		return options->path == NMTAN_PATH_SCALAR ? nt_mikktspace_scalar(solve)
-							  : nt_mikktspace_fast(solve);
+		return solve->one_by_one ? nt_mikktspace_scalar(solve) : nt_mikktspace_fast(solve);
 	case NMTAN_METHOD_AREA:
 		return nt_area(solve);
 	case NMTAN_METHOD_LENGYEL:
@@ -89,7 +84,8 @@ typedef struct request {
 } request;
 
 /* Checks everything before anything is computed, and fills in what was left to defaults. */
-static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmtan_options *options)
+static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmtan_options *options,
+	const nt_implementation *implementation)
 {
 	*r = (request){.mesh = *mesh};
 	if (options)
@@ -115,8 +111,8 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 	/* asking how many processors there are is a system call */
 	solve->threads = solve->corner_count < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(r->options.threads);
 	solve->repair = r->options.repair == NMTAN_REPAIR_ON;
-	solve->one_by_one = r->options.path == NMTAN_PATH_SCALAR;
-	solve->isa = r->options.isa == NMTAN_ISA_AUTO ? nt_cpu_best() : r->options.isa;
+	solve->one_by_one = implementation->scalar;
+	solve->isa = implementation->isa == NT_ISA_AUTO ? nt_cpu_best() : implementation->isa;
 	r->mark = nt_scratch_here(solve->scratch);
 	return NMTAN_OK;
 }
@@ -133,16 +129,16 @@ static void end_request(request *r)
 	nt_scratch_free(&r->own);
 }
 
-nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options, const nmtan_output *output,
-	nmtan_counts *counts)
+nmtan_status nt_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
+	const nt_implementation *implementation, const nmtan_output *output, nmtan_counts *counts)
 {
 	nmtan_counts own_counts;
 	counts = counts ? counts : &own_counts;
-	if (!mesh || !output || !output->tangents)
+	if (!mesh || !output || !output->tangents || !nt_cpu_has(implementation->isa))
 		return NMTAN_ERROR_ARGUMENT;
 	memset(counts, 0, sizeof *counts);
 	request r;
-	nmtan_status status = begin_request(&r, mesh, options);
+	nmtan_status status = begin_request(&r, mesh, options, implementation);
 	if (status || r.solve.corner_count == 0)
 		return status;
 	r.solve.tangents = output->tangents;
@@ -151,7 +147,7 @@ nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options
 
 	/* the method's own answer, then what a renderer can use */
 	size_t ill_conditioned = 0;
-	status = run_method(&r.solve, &r.options, &ill_conditioned);
+	status = run_method(&r.solve, r.options.method, &ill_conditioned);
 	if (!status)
 		status = nt_repair(&r.solve, counts);
 	counts->ill_conditioned = ill_conditioned;
@@ -159,11 +155,18 @@ nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options
 	return status;
 }
 
+nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options, const nmtan_output *output,
+	nmtan_counts *counts)
+{
+	const nt_implementation best = {.isa = NT_ISA_AUTO};
+	return nt_tangents(mesh, options, &best, output, counts);
+}
+
 static nmtan_status solve_vertices(request *r, nt_splitter *splitter, nmtan_counts *counts)
 {
 	size_t ill_conditioned = 0;
 	r->solve.sparse = r->solve.vouched && !r->mesh.face_sizes;
-	nmtan_status status = run_method(&r->solve, &r->options, &ill_conditioned);
+	nmtan_status status = run_method(&r->solve, r->options.method, &ill_conditioned);
 	if (!status)
 		status = nt_repair_and_split(&r->solve, counts, splitter);
 	counts->ill_conditioned = ill_conditioned;
@@ -181,7 +184,8 @@ nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *opt
 	memset(counts, 0, sizeof *counts);
 	output->source_count = 0;
 	request r;
-	nmtan_status status = begin_request(&r, mesh, options);
+	const nt_implementation best = {.isa = NT_ISA_AUTO};
+	nmtan_status status = begin_request(&r, mesh, options, &best);
 	if (status)
 		return status;
 	nt_splitter splitter;

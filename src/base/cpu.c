@@ -6,30 +6,30 @@
  */
 #include "base/cpu.h"
 
-bool nt_cpu_has(nmtan_isa isa)
+bool nt_cpu_has(nt_isa isa)
 {
 	switch (isa) {
-	case NMTAN_ISA_AUTO:
-	case NMTAN_ISA_BASELINE:
+	case NT_ISA_AUTO:
+	case NT_ISA_BASELINE:
 		return true;
 #if defined(__x86_64__)
-	case NMTAN_ISA_AVX2:
+	case NT_ISA_AVX2:
 		return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-	case NMTAN_ISA_AVX512:
+	case NT_ISA_AVX512:
 		return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("avx512bw") &&
 		       __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
 #else
-	case NMTAN_ISA_AVX2:
-	case NMTAN_ISA_AVX512:
+	case NT_ISA_AVX2:
+	case NT_ISA_AVX512:
 		return false;
 #endif
 	}
 	return false;
 }
 
-nmtan_isa nt_cpu_best(void)
+nt_isa nt_cpu_best(void)
 {
-	if (nt_cpu_has(NMTAN_ISA_AVX512))
-		return NMTAN_ISA_AVX512;
-	return nt_cpu_has(NMTAN_ISA_AVX2) ? NMTAN_ISA_AVX2 : NMTAN_ISA_BASELINE;
+	if (nt_cpu_has(NT_ISA_AVX512))
+		return NT_ISA_AVX512;
+	return nt_cpu_has(NT_ISA_AVX2) ? NT_ISA_AVX2 : NT_ISA_BASELINE;
 }

@@ -7,6 +7,7 @@
 #define NT_TANGENT_SOLVE_H
 
 #include <stdbool.h>
+#include "base/cpu.h"
 #include "base/scratch.h"
 #include "nmtan.h"
 
@@ -46,7 +47,7 @@ typedef struct nt_solve {
 	size_t corner_count;
 	float threshold_cos;     /* (float)cos of the angular threshold; -1 for 180 degrees */
 	unsigned threads;        /* at least 1 */
-	nmtan_isa isa;           /* never AUTO */
+	nt_isa isa;           /* never AUTO */
 	bool one_by_one;         /* sums: each triangle by the definition in frames.c */
 	nt_scratch *scratch;
 	nmtan_timing *timing;    /* to be added to, or NULL */

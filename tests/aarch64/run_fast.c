@@ -9,6 +9,7 @@
 #include <string.h>
 #include "golden.h"
 #include "nasty.h"
+#include "api/tangents.h"
 
 static size_t passed, failed;
 
@@ -21,11 +22,12 @@ static size_t count_differences(const float *a, const float *b, size_t count)
 	return differences;
 }
 
-static void solve(const nmtan_mesh *mesh, nmtan_path path, float *tangents)
+static void solve(const nmtan_mesh *mesh, bool scalar, float *tangents)
 {
-	const nmtan_options options = {.repair = NMTAN_REPAIR_OFF, .path = path, .threads = 1};
+	const nmtan_options options = {.repair = NMTAN_REPAIR_OFF, .threads = 1};
+	const nt_implementation implementation = {.scalar = scalar};
 	const nmtan_output output = {.tangents = tangents};
-	if (nmtan_tangents(mesh, &options, &output, NULL)) {
+	if (nt_tangents(mesh, &options, &implementation, &output, NULL)) {
 		printf("solving failed\n");
 		exit(1);
 	}
@@ -44,7 +46,7 @@ static void check_golden(const char *path, const nt_golden *golden, void *contex
 	(void)context;
 	const nmtan_mesh mesh = nt_golden_mesh(golden);
 	float *tangents = malloc(16 * (size_t)golden->corner_count);
-	solve(&mesh, NMTAN_PATH_FAST, tangents);
+	solve(&mesh, false, tangents);
 	judge(path, count_differences(tangents, golden->tangents, 4 * (size_t)golden->corner_count));
 	free(tangents);
 }
@@ -55,8 +57,8 @@ static void check_nasty(unsigned seed)
 	nt_nasty nasty;
 	nt_nasty_make(seed, &nasty);
 	float *fast = malloc(16 * nasty.corner_count + 1), *scalar = malloc(16 * nasty.corner_count + 1);
-	solve(&nasty.mesh, NMTAN_PATH_FAST, fast);
-	solve(&nasty.mesh, NMTAN_PATH_SCALAR, scalar);
+	solve(&nasty.mesh, false, fast);
+	solve(&nasty.mesh, true, scalar);
 	snprintf(name, sizeof name, "seed %u", seed);
 	judge(name, count_differences(fast, scalar, 4 * nasty.corner_count));
 	free(fast);

@@ -64,8 +64,6 @@ static void options_out_of_range_are_argument_errors(void **state)
 	const nmtan_options wrong[] = {
 		{.method = (nmtan_method)99},
 		{.repair = (nmtan_repair)2},
-		{.path = (nmtan_path)3},
-		{.isa = (nmtan_isa)9},
 		{.angular_threshold_degrees = -1},
 		{.angular_threshold_degrees = 181},
 		{.angular_threshold_degrees = NAN},

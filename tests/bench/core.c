@@ -21,6 +21,7 @@
 #include "base/parallel.h"
 #include "base/scratch.h"
 #include "measure.h"
+#include "api/tangents.h"
 
 enum { RUNS = 3, MOST_COLUMNS = 16, SMALL_COUNT = 2000 };
 
@@ -30,8 +31,7 @@ enum { DEFINITION_SIZE = 100000, DEFINITION_HUB = 2000 };
 typedef struct column {
 	const char *name;
 	nmtan_method method;
-	nmtan_path path;
-	nmtan_isa isa;
+	nt_implementation implementation;
 	unsigned threads;
 	int runs;
 } column;
@@ -90,13 +90,13 @@ static void free_workload(workload *w)
 /* Seconds for solving every mesh once; what is small is repeated until it takes a while. */
 static double time_run(const column *c, const workload *w, const nmtan_output *output, nmtan_workspace *workspace)
 {
-	const nmtan_options options = {.method = c->method, .threads = c->threads, .path = c->path, .isa = c->isa,
+	const nmtan_options options = {.method = c->method, .threads = c->threads,
 		.workspace = workspace};
-	const size_t repeat = c->path != NMTAN_PATH_SCALAR && w->triangles < 100000 ? 400000 / w->triangles : 1;
+	const size_t repeat = !c->implementation.scalar && w->triangles < 100000 ? 400000 / w->triangles : 1;
 	const clockid_t clock = c->threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC;
 	const double begin = seconds(clock);
 	for (size_t i = 0; i < repeat * w->count; i++)
-		if (nmtan_tangents(&w->meshes[i % w->count].mesh, &options, output, NULL)) {
+		if (nt_tangents(&w->meshes[i % w->count].mesh, &options, &c->implementation, output, NULL)) {
 			fprintf(stderr, "core: solving failed\n");
 			exit(1);
 		}
@@ -129,11 +129,11 @@ static void time_row(const char *name, const workload *w, const workload *smalle
 		for (size_t c = 0; c < count; c++)
 			if (run < columns[c].runs)
 				times[c][run] = time_run(&columns[c],
-					columns[c].path == NMTAN_PATH_SCALAR ? smaller : w, &output, workspace);
+					columns[c].implementation.scalar ? smaller : w, &output, workspace);
 	printf("%-22s %8zu %5.1f", name, w->triangles, scratch_bytes(w, &output));
 	for (size_t c = 0; c < count; c++) {
 		qsort(times[c], (size_t)columns[c].runs, sizeof(double), measure_compare);
-		if (columns[c].path == NMTAN_PATH_SCALAR) {
+		if (columns[c].implementation.scalar) {
 			printf(" %6.2f (%7zu)", 1e-6 * (double)smaller->triangles / times[c][0], smaller->triangles);
 			continue;
 		}
@@ -178,15 +178,15 @@ static size_t list_columns(column columns[MOST_COLUMNS])
 {
 	static const char *const sets[] = {"", "baseline", "AVX2", "AVX-512"};
 	size_t n = 0;
-	columns[n++] = (column){"definition (size)", NMTAN_METHOD_MIKKTSPACE, NMTAN_PATH_SCALAR, NMTAN_ISA_AUTO, 1, 1};
-	for (nmtan_isa isa = NMTAN_ISA_BASELINE; isa <= NMTAN_ISA_AVX512; isa++)
+	columns[n++] = (column){"definition (size)", NMTAN_METHOD_MIKKTSPACE, {.scalar = true}, 1, 1};
+	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++)
 		if (nt_cpu_has(isa))
-			columns[n++] = (column){sets[isa], NMTAN_METHOD_MIKKTSPACE, NMTAN_PATH_FAST, isa, 1, RUNS};
-	columns[n++] = (column){"all threads", NMTAN_METHOD_MIKKTSPACE, NMTAN_PATH_FAST, NMTAN_ISA_AUTO,
+			columns[n++] = (column){sets[isa], NMTAN_METHOD_MIKKTSPACE, {.isa = isa}, 1, RUNS};
+	columns[n++] = (column){"all threads", NMTAN_METHOD_MIKKTSPACE, {.isa = NT_ISA_AUTO},
 		nt_thread_count(0), RUNS};
-	columns[n++] = (column){"area", NMTAN_METHOD_AREA, NMTAN_PATH_AUTO, NMTAN_ISA_AUTO, 1, RUNS};
-	columns[n++] = (column){"lengyel", NMTAN_METHOD_LENGYEL, NMTAN_PATH_AUTO, NMTAN_ISA_AUTO, 1, RUNS};
-	columns[n++] = (column){"robust", NMTAN_METHOD_ROBUST, NMTAN_PATH_AUTO, NMTAN_ISA_AUTO, 1, RUNS};
+	columns[n++] = (column){"area", NMTAN_METHOD_AREA, {.isa = NT_ISA_AUTO}, 1, RUNS};
+	columns[n++] = (column){"lengyel", NMTAN_METHOD_LENGYEL, {.isa = NT_ISA_AUTO}, 1, RUNS};
+	columns[n++] = (column){"robust", NMTAN_METHOD_ROBUST, {.isa = NT_ISA_AUTO}, 1, RUNS};
 	return n;
 }
 
@@ -214,7 +214,7 @@ int main(int argument_count, char **arguments)
 	print_machine();
 	printf("million triangles a second, best and median\n%-22s %8s %5s", "", "", "bytes");
 	for (size_t c = 0; c < n; c++)
-		printf(" %*s", columns[c].path == NMTAN_PATH_SCALAR ? 16 : 13, columns[c].name);
+		printf(" %*s", columns[c].implementation.scalar ? 16 : 13, columns[c].name);
 	printf("\n");
 	for (size_t i = 0; i < NT_FAMILY_COUNT; i++) {
 		workload w = make_workload((nt_family)i, 1, sizes[i]);

@@ -22,6 +22,7 @@
 #include "error_sweeps.h"
 #include "measure.h"
 #include "oracle128.h"
+#include "api/tangents.h"
 
 enum { MOST_RUNS = 24, WEIGHTS = 3, NO_WEIGHT = -1, ROUNDS = 4 };
 
@@ -31,6 +32,7 @@ typedef struct run {
 	nmtan_options options; /* ours */
 	bool is_peer;
 	int weight; /* enum oracle_weight of its formula; NO_WEIGHT: another formula */
+	nt_implementation implementation; /* ours */
 } run;
 
 typedef struct result {
@@ -72,7 +74,7 @@ static void export_mesh(const char *folder, const bench_mesh *m)
 static void add_run(bench *b, const char *name, const char *precision, nmtan_options options, bool is_peer,
 	int weight)
 {
-	b->runs[b->run_count++] = (run){name, precision, options, is_peer, weight};
+	b->runs[b->run_count++] = (run){name, precision, options, is_peer, weight, {.isa = NT_ISA_AUTO}};
 }
 
 static void list_runs(bench *b)
@@ -88,15 +90,14 @@ static void list_runs(bench *b)
 		add_run(b, "mikktspace, all threads", "float", o, false, ORACLE_ANGLE);
 	static const char *const sets[3] = {"mikktspace, baseline set", "mikktspace, AVX2",
 		"mikktspace, AVX-512"};
-	for (int isa = NMTAN_ISA_BASELINE; isa <= NMTAN_ISA_AVX512; isa++) {
-		o = one;
-		o.isa = (nmtan_isa)isa;
-		if (nt_cpu_has(o.isa))
-			add_run(b, sets[isa - NMTAN_ISA_BASELINE], "float", o, false, ORACLE_ANGLE);
+	for (int isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++) {
+		if (!nt_cpu_has((nt_isa)isa))
+			continue;
+		add_run(b, sets[isa - NT_ISA_BASELINE], "float", one, false, ORACLE_ANGLE);
+		b->runs[b->run_count - 1].implementation.isa = (nt_isa)isa;
 	}
-	o = one;
-	o.path = NMTAN_PATH_SCALAR;
-	add_run(b, "mikktspace, scalar definition", "float", o, false, ORACLE_ANGLE);
+	add_run(b, "mikktspace, scalar definition", "float", one, false, ORACLE_ANGLE);
+	b->runs[b->run_count - 1].implementation.scalar = true;
 	static const struct {
 		const char *name, *threaded;
 		nmtan_method method;
@@ -127,7 +128,7 @@ static double run_ours(const run *r, const nt_owned *mesh, float (*tangents)[4])
 	double best = INFINITY, total = 0;
 	for (int i = 0; i < 100 && (i < 2 || total < 0.04); i++) {
 		const double start = measure_seconds();
-		const nmtan_status status = nmtan_tangents(&mesh->mesh, &options, &output, NULL);
+		const nmtan_status status = nt_tangents(&mesh->mesh, &options, &r->implementation, &output, NULL);
 		const double took = measure_seconds() - start;
 		if (status) {
 			fprintf(stderr, "error: %s: %s\n", r->name, nmtan_status_text(status));
@@ -208,7 +209,7 @@ static void time_runs(bench *b)
 static bool solve_ours(const run *r, const nt_owned *mesh, float (*tangents)[4])
 {
 	const nmtan_output output = {.tangents = &tangents[0][0]};
-	return nmtan_tangents(&mesh->mesh, &r->options, &output, NULL) == NMTAN_OK;
+	return nt_tangents(&mesh->mesh, &r->options, &r->implementation, &output, NULL) == NMTAN_OK;
 }
 
 static void judge_run(bench *b, size_t index)

@@ -37,12 +37,12 @@
 /* Starting a thread costs more than it saves with fewer triangles. */
 static const nt_fast_plan usual = {.grain = 65536, .least_lent_bytes = 65536};
 
-static const nt_kernels *kernels_for(nmtan_isa isa)
+static const nt_kernels *kernels_for(nt_isa isa)
 {
 #if defined(__x86_64__)
-	if (isa == NMTAN_ISA_AVX512)
+	if (isa == NT_ISA_AVX512)
 		return &nt_kernels_avx512;
-	if (isa == NMTAN_ISA_AVX2)
+	if (isa == NT_ISA_AVX2)
 		return &nt_kernels_avx2;
 #endif
 	(void)isa;

@@ -388,12 +388,12 @@ static nmtan_status write_results(run *r, const nt_sums_finished *finished, size
 	return NMTAN_OK;
 }
 
-static const nt_sum_kernels *kernels_for(nmtan_isa isa)
+static const nt_sum_kernels *kernels_for(nt_isa isa)
 {
 #if defined(__x86_64__)
-	if (isa == NMTAN_ISA_AVX512)
+	if (isa == NT_ISA_AVX512)
 		return &nt_sum_kernels_avx512;
-	if (isa == NMTAN_ISA_AVX2)
+	if (isa == NT_ISA_AVX2)
 		return &nt_sum_kernels_avx2;
 #endif
 	(void)isa;

@@ -8,6 +8,7 @@
 #include "golden.h"
 #include "nasty.h"
 #include "nmtan.h"
+#include "api/tangents.h"
 
 static size_t count_differences(const float *a, const float *b, size_t count)
 {
@@ -25,10 +26,10 @@ static void compare_paths(const nmtan_mesh *given, size_t corner_count, float of
 	nmtan_counts scalar_counts;
 	const nmtan_output fast = {.tangents = malloc(16 * corner_count + 1)};
 	nmtan_counts fast_counts;
-	const nmtan_options by_scalar = {.path = NMTAN_PATH_SCALAR, .repair = repair, .threads = 1};
-	const nmtan_options by_fast = {.path = NMTAN_PATH_FAST, .repair = repair, .threads = 1};
-	assert_int_equal(nmtan_tangents(&mesh, &by_scalar, &scalar, &scalar_counts), NMTAN_OK);
-	assert_int_equal(nmtan_tangents(&mesh, &by_fast, &fast, &fast_counts), NMTAN_OK);
+	const nmtan_options options = {.repair = repair, .threads = 1};
+	const nt_implementation one_by_one = {.scalar = true};
+	assert_int_equal(nt_tangents(&mesh, &options, &one_by_one, &scalar, &scalar_counts), NMTAN_OK);
+	assert_int_equal(nmtan_tangents(&mesh, &options, &fast, &fast_counts), NMTAN_OK);
 	assert_int_equal(count_differences(scalar.tangents, fast.tangents, 4 * corner_count), 0);
 	assert_memory_equal(&scalar_counts, &fast_counts, sizeof scalar_counts);
 	free(scalar.tangents);

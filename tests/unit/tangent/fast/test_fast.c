@@ -12,6 +12,7 @@
 #include "base/cpu.h"
 #include "golden.h"
 #include "nasty.h"
+#include "api/tangents.h"
 #include "tangent/fast/bins.h"
 #include "tangent/fast/fast.h"
 
@@ -62,13 +63,13 @@ static nt_solve make_solve(const nmtan_mesh *mesh, size_t corners, nt_scratch *s
 	bool more)
 {
 	return (nt_solve){.mesh = mesh, .corner_count = corners, .threshold_cos = -1.0f, .threads = 1,
-		.isa = NMTAN_ISA_BASELINE, .scratch = scratch, .tangents = r->tangents,
+		.isa = NT_ISA_BASELINE, .scratch = scratch, .tangents = r->tangents,
 		.bitangents = more ? r->bitangents : NULL, .magnitudes = more ? r->magnitudes : NULL};
 }
 
 /* One run of the fast path against `expected`; prints what differs. */
 static size_t compare_run(const char *name, const nmtan_mesh *mesh, size_t corners, const result *expected,
-	bool more, nmtan_isa isa, unsigned threads, unsigned bin_bits)
+	bool more, nt_isa isa, unsigned threads, unsigned bin_bits)
 {
 	const nt_fast_plan plan = {.grain = 1, .bin_bits = bin_bits};
 	result got = result_make(corners);
@@ -94,14 +95,14 @@ static size_t compare_variants(const char *name, const nmtan_mesh *mesh, size_t 
 {
 	static const unsigned threads[] = {2, 3, 8};
 	size_t differences = 0;
-	for (nmtan_isa isa = NMTAN_ISA_BASELINE; isa <= NMTAN_ISA_AVX512; isa++)
+	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++)
 		if (nt_cpu_has(isa))
 			differences += compare_run(name, mesh, corners, expected, more, isa, 1, 0);
 	for (int i = 0; i < 3; i++)
 		differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), threads[i], 0);
 	if (more)
 		return differences;
-	for (nmtan_isa isa = NMTAN_ISA_BASELINE; isa <= NMTAN_ISA_AVX512; isa++)
+	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++)
 		if (nt_cpu_has(isa))
 			differences += compare_run(name, mesh, corners, expected, false, isa, 1, 4);
 	return differences + compare_run(name, mesh, corners, expected, false, nt_cpu_best(), 3, 5);
@@ -306,7 +307,8 @@ static void compare_repaired(const nmtan_mesh *mesh, size_t corners, bool lost)
 	result expected = result_make(corners);
 	const nmtan_output wanted = {.tangents = expected.tangents};
 	nmtan_counts wanted_counts;
-	assert_int_equal(nmtan_tangents(mesh, &(nmtan_options){.path = NMTAN_PATH_SCALAR}, &wanted, &wanted_counts), NMTAN_OK);
+	const nt_implementation scalar = {.scalar = true};
+	assert_int_equal(nt_tangents(mesh, NULL, &scalar, &wanted, &wanted_counts), NMTAN_OK);
 	assert_int_equal(wanted_counts.repaired_parallel > 0, lost);
 	for (unsigned threads = 1; threads <= 2; threads++) {
 		result got = result_make(corners);

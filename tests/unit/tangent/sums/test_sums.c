@@ -8,12 +8,14 @@
 #include "base/cpu.h"
 #include "golden.h"
 #include "surfaces.h"
+#include "api/tangents.h"
 
-static void solve(const nmtan_mesh *mesh, nmtan_options options, float *tangents, float *bitangents,
+static void solve(const nmtan_mesh *mesh, nmtan_options options, nt_implementation implementation,
+	float *tangents, float *bitangents,
 	nmtan_counts *counts)
 {
 	const nmtan_output output = {.tangents = tangents, .bitangents = bitangents};
-	assert_int_equal(nmtan_tangents(mesh, &options, &output, counts), NMTAN_OK);
+	assert_int_equal(nt_tangents(mesh, &options, &implementation, &output, counts), NMTAN_OK);
 }
 
 static void compare_paths(const nmtan_mesh *mesh, size_t corners)
@@ -21,15 +23,13 @@ static void compare_paths(const nmtan_mesh *mesh, size_t corners)
 	float *expected = malloc(16 * corners), *got = malloc(16 * corners);
 	float *expected_b = malloc(12 * corners), *got_b = malloc(12 * corners);
 	for (int method = NMTAN_METHOD_AREA; method <= NMTAN_METHOD_ROBUST; method++) {
-		const nmtan_options scalar = {.method = (nmtan_method)method, .path = NMTAN_PATH_SCALAR,
-			.threads = 1};
+		const nmtan_options scalar = {.method = (nmtan_method)method, .threads = 1};
 		nmtan_counts a, b;
-		solve(mesh, scalar, expected, expected_b, &a);
-		for (int isa = NMTAN_ISA_AUTO; isa <= NMTAN_ISA_AVX512; isa++) {
-			for (unsigned threads = 1; threads < 6 && nt_cpu_has((nmtan_isa)isa); threads += 2) {
-				const nmtan_options fast = {.method = (nmtan_method)method,
-					.isa = (nmtan_isa)isa, .threads = threads};
-				solve(mesh, fast, got, got_b, &b);
+		solve(mesh, scalar, (nt_implementation){.scalar = true}, expected, expected_b, &a);
+		for (int isa = NT_ISA_AUTO; isa <= NT_ISA_AVX512; isa++) {
+			for (unsigned threads = 1; threads < 6 && nt_cpu_has((nt_isa)isa); threads += 2) {
+				const nmtan_options fast = {.method = (nmtan_method)method, .threads = threads};
+				solve(mesh, fast, (nt_implementation){.isa = (nt_isa)isa}, got, got_b, &b);
 				assert_memory_equal(got, expected, 16 * corners);
 				assert_memory_equal(got_b, expected_b, 12 * corners);
 				assert_memory_equal(&a, &b, sizeof a);
