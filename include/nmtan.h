@@ -72,6 +72,22 @@ NMTAN_API const char *nmtan_version(void);
 #define NMTAN_MAX_FACES ((size_t)536870911)
 
 /*
+ * For callers that store other texture coordinates than they pass in. What a renderer reads from the file
+ * decides which way a triangle is wound; where rounding or a transform lies between that and
+ * nmtan_mesh.texcoords, a very thin triangle may be wound differently. Repair then takes the sign of w from
+ * the coordinates described here. Nothing else uses them.
+ */
+typedef struct nmtan_stored_uv {
+	/* The float v + v_offset is stored. OBJ's v becomes 1 - v in glTF, which is -(v - 1): -1. The v that was
+	 * negated for glTF becomes 1 + v in PLY: 1. 0: v as it stands. Finite. */
+	float v_offset;
+	/* For texcoords that a transform has scaled and turned (KHR_texture_transform): the coordinates before it, which
+	 * the file holds; v_offset applies to these. NULL: nmtan_mesh.texcoords. */
+	const float *texcoords; /* [vertex_count][2], v up, tightly packed */
+	int mirrored;           /* not 0: the transform reverses the orientation of `texcoords` */
+} nmtan_stored_uv;
+
+/*
  * A mesh: faces of 3 or 4 corners over vertices. Corner c of the mesh is corner c - first(f) of its
  * face f, where first(f) is the sum of the sizes of the faces before f; without face_sizes corner
  * 3 * f + k is corner k of triangle f.
@@ -93,16 +109,7 @@ typedef struct nmtan_mesh {
 	const float *texcoords; /* [vertex_count][2], v up, required */
 	size_t texcoord_stride_bytes;
 
-	/* Where v is rounded when it is stored: it will be stored as the float v + stored_v_offset. OBJ's v
-	 * becomes 1 - v in glTF, which is -(v - 1): -1; the v that was negated for glTF becomes 1 + v in PLY: 1.
-	 * Repair judges the sign of w by the v that is stored, nothing else uses it. 0: v is stored as it is. */
-	float stored_v_offset; /* finite */
-
-	/* What `texcoords` were rounded from, when a renderer scales and turns them: the sign of w is then
-	 * the exact orientation of these, reversed where the scale mirrors. stored_v_offset applies to these.
-	 * As with stored_v_offset, only repair looks. NULL: texcoords are the original. */
-	const float *exact_texcoords; /* [vertex_count][2], tightly packed */
-	int exact_mirrored;           /* not 0: the transform reverses their orientation */
+	const nmtan_stored_uv *stored; /* NULL: texture coordinates are stored as they stand here */
 } nmtan_mesh;
 
 /* How the triangles around a vertex are averaged. */
@@ -171,7 +178,7 @@ typedef struct nmtan_counts {
 	size_t degenerate_texcoords; /* triangles whose exact UV determinant is zero */
 	size_t mirrored;             /* triangles whose exact UV determinant is negative (v up) */
 	size_t stored_differently;   /* triangles whose orientation changes when v is stored (see
-	                                stored_v_offset) */
+	                                nmtan_stored_uv) */
 	size_t folded_quads;         /* quads whose two halves are wound differently in UV space */
 	size_t repaired_zero;        /* tangents that were zero or not of unit length */
 	size_t repaired_not_finite;

@@ -36,7 +36,7 @@ static nmtan_status check_attributes(nmtan_mesh *mesh)
 	if (!fill_stride(&mesh->position_stride_bytes, 3 * sizeof(float)) ||
 		!fill_stride(&mesh->normal_stride_bytes, 3 * sizeof(float)) ||
 		!fill_stride(&mesh->texcoord_stride_bytes, 2 * sizeof(float)) ||
-		!isfinite(mesh->stored_v_offset))
+		!isfinite(nt_stored_v_offset(mesh)))
 		return NMTAN_ERROR_ARGUMENT;
 	return NMTAN_OK;
 }
@@ -103,7 +103,7 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 	nt_solve *solve = &r->solve;
 	solve->mesh = &r->mesh;
 	/* bounds on the error of the determinants of `texcoords` say nothing about those of others */
-	solve->vouched = r->mesh.exact_texcoords ? NULL : &r->vouched;
+	solve->vouched = nt_has_stored_texcoords(&r->mesh) ? NULL : &r->vouched;
 	solve->timing = r->options.timing ? &r->timing : NULL;
 	solve->scratch = r->options.workspace ? &r->options.workspace->scratch : &r->own;
 	solve->threshold_cos = r->options.angular_threshold_degrees > 0.0f

@@ -85,7 +85,8 @@ static bool grow_mesh(nt_arena *arena, nt_mesh *mesh, const uint32_t *sources, s
 
 static nt_status make_corner_normals(const nt_mesh *mesh, nt_normals mode, normal_job *job)
 {
-	nmtan_mesh view = nt_mesh_view(mesh);
+	nmtan_stored_uv stored;
+	nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	view.position_stride_bytes = 3 * sizeof(float);
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
@@ -118,7 +119,8 @@ static size_t choose_normals(const nt_mesh *mesh, nt_normals mode, normal_job *j
 
 static nt_status split_by_normal(nt_scene *scene, nt_mesh *mesh, normal_job *job)
 {
-	const nmtan_mesh view = nt_mesh_view(mesh);
+	nmtan_stored_uv stored;
+	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	nmtan_split_output split = {.indices = job->indices, .sources = job->sources,
 		.source_capacity = mesh->corner_count};
 	const nt_status status = nt_status_of(nmtan_split(&view, &job->rows[0][0], NULL, &split));

@@ -42,7 +42,7 @@ static bool is_gltf(nt_format format)
 	return format == NT_FORMAT_GLTF || format == NT_FORMAT_GLB;
 }
 
-/* What v is added to when it is stored: nothing where the format stays, else see stored_v_offset. */
+/* What v is added to when it is stored: nothing where the format stays, else see nmtan_stored_uv. */
 static float stored_v_offset(const tangent_job *job)
 {
 	if (!job->round_trip)
@@ -155,8 +155,9 @@ static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned thre
 	const nmtan_options options = {.method = job->settings->method,
 		.repair = job->settings->repair, .threads = threads, .workspace = workspace,
 		.timing = timing};
-	nmtan_mesh view = nt_mesh_view(mesh);
-	view.stored_v_offset = stored_v_offset(job);
+	nmtan_stored_uv stored;
+	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
+	stored.v_offset = stored_v_offset(job);
 	if (job->settings->check)
 		return solve_corners(mesh, &view, &options, &mesh->corner_tangents, &mesh->counts);
 

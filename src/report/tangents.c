@@ -290,7 +290,8 @@ static nt_status compare_with_fresh(nt_judge *judge)
 	float *fresh = nt_scratch_alloc(judge->scratch, 4 * mesh->corner_count, sizeof *fresh);
 	if (!fresh)
 		return NT_ERROR_MEMORY;
-	const nmtan_mesh view = nt_mesh_view(mesh);
+	nmtan_stored_uv stored;
+	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	const nmtan_options options = {.threads = judge->options->threads};
 	const nmtan_output output = {.tangents = fresh};
 	const nt_status status = nt_status_of(nmtan_tangents(&view, &options, &output, NULL));

@@ -47,8 +47,13 @@ void nt_mesh_share(nt_mesh *mesh)
 		mesh->primitives[0].face_count = mesh->face_count;
 }
 
-nmtan_mesh nt_mesh_view(const nt_mesh *mesh)
+nmtan_mesh nt_mesh_view(const nt_mesh *mesh, nmtan_stored_uv *stored)
 {
+	const bool transformed = mesh->solve_texcoords && mesh->solve_sign;
+	*stored = (nmtan_stored_uv){
+		.texcoords = transformed ? mesh->texcoords : NULL,
+		.mirrored = mesh->solve_sign < 0,
+	};
 	return (nmtan_mesh){
 		.face_count = mesh->face_count,
 		.vertex_count = mesh->vertex_count,
@@ -57,7 +62,6 @@ nmtan_mesh nt_mesh_view(const nt_mesh *mesh)
 		.positions = mesh->positions,
 		.normals = mesh->normals,
 		.texcoords = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords,
-		.exact_texcoords = mesh->solve_texcoords && mesh->solve_sign ? mesh->texcoords : NULL,
-		.exact_mirrored = mesh->solve_sign < 0,
+		.stored = stored,
 	};
 }

@@ -206,7 +206,8 @@ void nt_scene_free(nt_scene *scene);
  * copied. */
 void nt_mesh_share(nt_mesh *mesh);
 
-/* The public view of a loaded mesh, for nmtan_tangents() and nmtan_split(). */
-nmtan_mesh nt_mesh_view(const nt_mesh *mesh);
+/* The public view of a loaded mesh, for nmtan_tangents() and nmtan_split(). It refers to `stored`, which is
+ * filled; v_offset is left to the caller. */
+nmtan_mesh nt_mesh_view(const nt_mesh *mesh, nmtan_stored_uv *stored);
 
 #endif

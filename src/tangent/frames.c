@@ -34,7 +34,7 @@ int nt_triangle_orientation(const nmtan_mesh *mesh, const uint32_t corners[3], b
 	float t[3][2];
 	load_texcoords(mesh, corners, stored, t);
 	const int sign = nt_orientation(t[0], t[1], t[2]);
-	return stored && mesh->exact_texcoords && mesh->exact_mirrored ? -sign : sign;
+	return stored && nt_has_stored_texcoords(mesh) && mesh->stored->mirrored ? -sign : sign;
 }
 
 /* The sign of a quad whose halves have the given, different, non-zero signs. */

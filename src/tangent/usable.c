@@ -95,7 +95,7 @@ static int count_triangle(const nmtan_mesh *mesh, const uint32_t corners[3], nmt
 	const int stored = nt_has_stored(mesh) ? nt_triangle_orientation(mesh, corners, true) : sign;
 	counts->degenerate_texcoords += sign == 0;
 	counts->mirrored += sign < 0;
-	counts->stored_differently += mesh->stored_v_offset != 0.0f && sign != stored;
+	counts->stored_differently += nt_stored_v_offset(mesh) != 0.0f && sign != stored;
 	return stored ? stored : sign;
 }
 

@@ -52,18 +52,31 @@ static inline size_t nt_first_corner(const nmtan_mesh *mesh, size_t face)
 	return 3 * face + quads;
 }
 
+/* What is added to v when it is stored. */
+static inline float nt_stored_v_offset(const nmtan_mesh *mesh)
+{
+	return mesh->stored ? mesh->stored->v_offset : 0.0f;
+}
+
+/* Whether a transform lies between what is stored and the texture coordinates of the solve. */
+static inline bool nt_has_stored_texcoords(const nmtan_mesh *mesh)
+{
+	return mesh->stored && mesh->stored->texcoords;
+}
+
 /* Whether other texture coordinates than those of the solve decide the sign. */
 static inline bool nt_has_stored(const nmtan_mesh *mesh)
 {
-	return mesh->stored_v_offset != 0.0f || mesh->exact_texcoords;
+	return nt_stored_v_offset(mesh) != 0.0f || nt_has_stored_texcoords(mesh);
 }
 
 /* Texture coordinates as they will be stored. */
 static inline void nt_stored_texcoord(const nmtan_mesh *mesh, size_t vertex, float stored[2])
 {
-	const float *t = mesh->exact_texcoords ? mesh->exact_texcoords + 2 * vertex : nt_texcoord(mesh, vertex);
+	const float *t = nt_has_stored_texcoords(mesh) ? mesh->stored->texcoords + 2 * vertex
+						       : nt_texcoord(mesh, vertex);
 	stored[0] = t[0];
-	stored[1] = t[1] + mesh->stored_v_offset;
+	stored[1] = t[1] + nt_stored_v_offset(mesh);
 }
 
 /* The one or two triangles of the face whose first corner is `first`, as corners of the mesh; quads are

@@ -7,6 +7,7 @@
 #define NT_TANGENT_FAST_ACCUMULATE_H
 
 #include "tangent/fast/lanes.h"
+#include "topology/corners.h"
 
 /* Corners by which a bin's place is asked for before it is written: some lines. */
 enum { BIN_AHEAD = 12 };
@@ -274,7 +275,7 @@ static void accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, 
 {
 	lanes_in in;
 	lanes_out out;
-	const float offset = fast->solve->mesh->stored_v_offset;
+	const float offset = nt_stored_v_offset(fast->solve->mesh);
 	const float slack = offset != 0.0f ? 3 * HALF_ULP : 0.0f;
 	const bool scattered = fast->scattered, direct = !fast->bins.cursors;
 	const uint32_t *cursors = direct ? fast->adjacency.cursors + range * fast->adjacency.vertex_count : NULL;

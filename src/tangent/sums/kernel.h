@@ -247,7 +247,7 @@ static void __attribute__((noinline)) sum_corners_unweighted(sum_lanes *l, nt_su
 
 static void sum_solve(const nt_sums *s, size_t first, size_t count, sum_lanes *l, nt_sum_block *block)
 {
-	const double offset = s->solve->mesh->stored_v_offset;
+	const double offset = nt_stored_v_offset(s->solve->mesh);
 	gather_rows(s->weld.rows, s->ids + 3 * first, count, l->row);
 	sum_frames(l, block, fabs(offset), offset != 0.0 ? 3 * 0x1p-24 : 0.0);
 	const double asked = FLAG(s->weight == NT_WEIGHT_NONE);
@@ -276,7 +276,7 @@ LANE_INLINE uint8_t sum_flags(const nt_sum_block *block, size_t i)
 static void sum_classify(const nt_sums *s, size_t first, size_t count, nt_sum_block *block)
 {
 	uint8_t *flags = s->flags + first;
-	const bool ask = s->solve->mesh->exact_texcoords;
+	const bool ask = nt_has_stored_texcoords(s->solve->mesh);
 	double odd = s->one_by_one;
 	LANES(i)
 		odd += block->hard[i] + (1.0 - block->certain[i]);

@@ -305,8 +305,9 @@ static void stored_texture_coordinates_decide_the_sign(void **state)
 	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
 	const float unit = 5.9604645e-8f;
 	const float texcoords[3][2] = {{0, 0}, {1, 2.75f * unit}, {0.5f, 1.45f * unit}};
+	const nmtan_stored_uv stored = {.v_offset = -1};
 	nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3, .positions = &positions[0][0],
-		.normals = &normals[0][0], .texcoords = &texcoords[0][0], .stored_v_offset = -1};
+		.normals = &normals[0][0], .texcoords = &texcoords[0][0], .stored = &stored};
 	float tangents[3][4];
 	const nmtan_output output = {.tangents = &tangents[0][0]};
 	nmtan_counts counts;
@@ -314,7 +315,7 @@ static void stored_texture_coordinates_decide_the_sign(void **state)
 	for (int c = 0; c < 3; c++)
 		assert_true(tangents[c][3] == -1.0f);
 	assert_int_equal(counts.stored_differently, 1);
-	mesh.stored_v_offset = 0;
+	mesh.stored = NULL;
 	assert_int_equal(nmtan_tangents(&mesh, NULL, &output, &counts), NMTAN_OK);
 	assert_true(tangents[0][3] == 1.0f);
 	assert_int_equal(counts.stored_differently, 0);
@@ -339,9 +340,9 @@ static void coordinates_before_a_transform_decide_the_sign(void **state)
 	assert_int_equal(nmtan_orientation(scaled[0], scaled[1], scaled[2]), -1);
 	for (int method = NMTAN_METHOD_MIKKTSPACE; method <= NMTAN_METHOD_ROBUST; method++)
 		for (int mirrored = 0; mirrored < 2; mirrored++) {
+			const nmtan_stored_uv stored = {.texcoords = &exact[0][0], .mirrored = mirrored};
 			nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3, .positions = &positions[0][0],
-				.normals = &normals[0][0], .texcoords = &scaled[0][0],
-				.exact_texcoords = &exact[0][0], .exact_mirrored = mirrored};
+				.normals = &normals[0][0], .texcoords = &scaled[0][0], .stored = &stored};
 			const nmtan_options options = {.method = (nmtan_method)method};
 			float tangents[3][4], split[6][4];
 			uint32_t indices[3], sources[3];

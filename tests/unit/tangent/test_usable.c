@@ -21,7 +21,8 @@ static size_t count_differences(const float *a, const float *b, size_t count)
 static void compare_paths(const nmtan_mesh *given, size_t corner_count, float offset, nmtan_repair repair)
 {
 	nmtan_mesh mesh = *given;
-	mesh.stored_v_offset = offset;
+	const nmtan_stored_uv stored = {.v_offset = offset};
+	mesh.stored = &stored;
 	const nmtan_output scalar = {.tangents = malloc(16 * corner_count + 1)};
 	nmtan_counts scalar_counts;
 	const nmtan_output fast = {.tangents = malloc(16 * corner_count + 1)};
@@ -87,8 +88,9 @@ static void slivers_around_the_bound_are_judged_exactly(void **state)
 		.positions = &positions[0][0], .normals = &normals[0][0], .texcoords = &texcoords[0][0]};
 	for (int offset = -1; offset <= 1; offset++)
 		compare_paths(&mesh, 3 * COUNT, (float)offset, NMTAN_REPAIR_ON);
+	const nmtan_stored_uv minus_one = {.v_offset = -1};
 	nmtan_mesh stored = mesh;
-	stored.stored_v_offset = -1;
+	stored.stored = &minus_one;
 	const nmtan_output output = {.tangents = malloc(48 * COUNT)};
 	nmtan_counts counts;
 	assert_int_equal(nmtan_tangents(&stored, NULL, &output, &counts), NMTAN_OK);

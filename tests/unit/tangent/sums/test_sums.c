@@ -73,7 +73,7 @@ static void all_paths_give_the_same_bytes_on_a_large_mesh(void **state)
 			grid.texcoords[v][v % 2] = odd[v % 4];
 	}
 	compare_paths(&grid.mesh, grid.corner_count);
-	grid.mesh.stored_v_offset = 1;
+	grid.mesh.stored = &(nmtan_stored_uv){.v_offset = 1};
 	compare_paths(&grid.mesh, grid.corner_count);
 	nt_owned_free(&grid);
 }
@@ -112,7 +112,7 @@ static void all_paths_give_the_same_bytes_on_quads(void **state)
 	grid.mesh.indices = indices;
 	grid.mesh.face_count = faces;
 	compare_paths(&grid.mesh, corners);
-	grid.mesh.stored_v_offset = -1;
+	grid.mesh.stored = &(nmtan_stored_uv){.v_offset = -1};
 	compare_paths(&grid.mesh, corners);
 	nt_owned_free(&grid);
 	free(indices);
