@@ -42,7 +42,7 @@ TOOL_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lm
 
 # The compute library: no files, no C++.
 core_src := src/base/status.c src/base/memory.c src/base/parallel.c src/base/pool.c src/base/cpu.c src/base/scratch.c \
-	src/base/largest.c src/base/counts.c \
+	src/base/struct_bytes.c src/base/largest.c src/base/counts.c \
 	$(foreach room,topology tangent tangent/fast tangent/sums api,$(wildcard src/$(room)/*.c))
 tool_src := $(filter-out $(core_src) src/cli/main.c src/bindings/%,$(wildcard src/*/*.c src/*/*/*.c)) \
 	$(wildcard src/ext/*.cpp)

@@ -1,10 +1,30 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * nmtan.h - tangent frames for normal-mapped meshes: arrays in, arrays out, no files.
+ * nmtan.h - tangent frames for normal-mapped meshes: arrays in, arrays out, no files. C11 and C++17.
  *
  * nmtan_tangents() computes one tangent per face corner, nmtan_split() says which vertices must be
  * duplicated so that every vertex has one tangent, nmtan_vertex_tangents() does both at once, and
  * nmtan_orientation() tells how a triangle's texture coordinates are wound, exactly.
+ *
+ * Two quads side by side, cut into triangles; the texture of the right one is mirrored:
+ *
+ *     static const float positions[] = {0,0,0, 1,0,0, 1,1,0, 0,1,0, 2,0,0, 2,1,0};
+ *     static const float normals[] = {0,0,1, 0,0,1, 0,0,1, 0,0,1, 0,0,1, 0,0,1};
+ *     static const float texcoords[] = {0,0, 1,0, 1,1, 0,1, 0,0, 0,1};
+ *     static const uint32_t triangles[] = {0,1,2, 0,2,3, 1,4,5, 1,5,2};
+ *     uint32_t indices[12], sources[12];
+ *     float tangents[6 + 12][4];
+ *     nmtan_mesh mesh = NMTAN_MESH_INIT;
+ *     mesh.face_count = 4; mesh.vertex_count = 6; mesh.indices = triangles;
+ *     mesh.positions = positions; mesh.normals = normals; mesh.texcoords = texcoords;
+ *     nmtan_split_output output = NMTAN_SPLIT_OUTPUT_INIT;
+ *     output.indices = indices; output.sources = sources; output.source_capacity = 12;
+ *     output.vertex_tangents = tangents[0];
+ *     nmtan_status status = nmtan_vertex_tangents(&mesh, NULL, &output, NULL);
+ *
+ * Now output.source_count is 2: vertices 6 and 7 are copies of sources[0] = 1 and sources[1] = 2, the
+ * right quad uses them in `indices`, and their tangent is (-1, 0, 0) with w = -1. On the left it is (1, 0, 0)
+ * with w = 1.
  *
  * The frame: T is a unit vector along which the texture's u grows, N the corner's normal, and the
  * bitangent is B = cross(N, T) * w with w = +1 or -1. Where the normal agrees with the winding, B
@@ -14,21 +34,33 @@
  * Results: the default method is byte-identical to MikkTSpace (M. Mikkelsen, "Simulation of Wrinkled
  * Surfaces Revisited", 2008, and the reference implementation, with its edge sort completed) wherever
  * MikkTSpace's answer is usable; where it is not, it is repaired (see nmtan_repair). The same input
- * gives the same bytes on every machine, thread count and instruction set. Not promised: the bits of
- * a NaN, with repair off.
+ * gives the same bytes on every machine, thread count and instruction set.
  *
- * Memory: nothing is kept after a call except in a workspace. Outputs belong to the caller. Scratch
- * comes from options->allocator, or malloc; it is released before the call returns unless a workspace
- * keeps it warm.
+ * Structs: one that begins with struct_bytes may gain members at its end in a later version. Initialise it
+ * with its macro (NMTAN_MESH_INIT and so on), or set struct_bytes to its sizeof and all else to zero: zero is
+ * the default of every member. A program compiled with an older header passes a smaller struct: the members
+ * it lacks have their defaults, and nothing behind struct_bytes is read or written. A program compiled
+ * with a newer header passes a larger struct: this works while the bytes that the library does not know are
+ * zero; otherwise it asks for what this library cannot do, which is NMTAN_ERROR_ARGUMENT. So is a struct_bytes
+ * that is 0, no multiple of sizeof(size_t) or above 4096.
+ *
+ * Memory: a call keeps no pointer to the caller's data. Inputs are only read. Outputs belong to the
+ * caller and have the room that their comments state; they may not overlap inputs or each other unless a
+ * comment allows it. Scratch comes from options->allocator, or malloc; it is released before the call
+ * returns, unless a workspace keeps it warm.
  *
  * Threads: every function may be called from several threads at once, as long as they do not share
- * outputs or a workspace. There is no global state but a pool of threads: the first call that is large enough
- * for options->threads > 1 makes them, later calls in any thread share them, and they sleep in between, with
- * signals blocked. Where none can be made the caller's thread does all. Processes made by fork() may go on
- * calling, whatever their parent was doing.
+ * outputs, counts, timing or a workspace. There is no global state but a pool of threads: the first call that
+ * is large enough for options->threads > 1 makes them, later calls in any thread share them, and they sleep in
+ * between, with signals blocked. They never call the caller's allocator. Where none can be made the
+ * caller's thread does all. Processes made by fork() may go on calling, whatever their parent was doing.
  *
- * Errors: a status, never an exit, never a message on a stream. After an error the contents of the
- * outputs are unspecified.
+ * Errors: a status, never an exit, never a message on a stream. Arguments, faces and indices are checked
+ * before anything is computed. After an error the contents of outputs and counts are unspecified, scratch
+ * is released, and a workspace can be used again.
+ *
+ * Not promised: the bits of a NaN, with repair off; the bytes of a later version, but for what MikkTSpace
+ * determines; anything after an allocator has thrown or jumped.
  */
 #ifndef NMTAN_H
 #define NMTAN_H
@@ -52,14 +84,17 @@ extern "C" {
 #define NMTAN_API
 #endif
 
-/* What a call reports. */
+/* What a call reports. Later versions may add values. */
 typedef enum nmtan_status {
 	NMTAN_OK = 0,
-	NMTAN_ERROR_ARGUMENT,    /* a required pointer is NULL, a stride or an enum is out of range */
-	NMTAN_ERROR_INDEX,       /* an index is not below vertex_count */
-	NMTAN_ERROR_FACE_SIZE,   /* a face has neither 3 nor 4 corners */
-	NMTAN_ERROR_TOO_LARGE,   /* more than NMTAN_MAX_FACES faces, or a size overflows size_t */
-	NMTAN_ERROR_MEMORY       /* the allocator returned NULL */
+	NMTAN_ERROR_ARGUMENT,  /* a required pointer is NULL; a struct_bytes, a stride, an enum or a number
+	                          is out of range */
+	NMTAN_ERROR_INDEX,     /* an index is not below vertex_count, or without indices there are more corners
+	                          than vertices */
+	NMTAN_ERROR_FACE_SIZE, /* a face has neither 3 nor 4 corners */
+	NMTAN_ERROR_TOO_LARGE, /* more than NMTAN_MAX_FACES faces or 2^32 - 1 vertices, or copies of vertices for
+	                          which source_capacity is too small */
+	NMTAN_ERROR_MEMORY     /* the allocator returned NULL, or a size overflows size_t */
 } nmtan_status;
 
 /* Static English text for a status, "unknown status" for any other number. Never NULL. */
@@ -78,14 +113,20 @@ NMTAN_API const char *nmtan_version(void);
  * the coordinates described here. Nothing else uses them.
  */
 typedef struct nmtan_stored_uv {
-	/* The float v + v_offset is stored. OBJ's v becomes 1 - v in glTF, which is -(v - 1): -1. The v that was
-	 * negated for glTF becomes 1 + v in PLY: 1. 0: v as it stands. Finite. */
+	size_t struct_bytes; /* sizeof(nmtan_stored_uv): see "Structs" */
+
+	/* The float v + v_offset is stored; finite. -1: OBJ's v becomes 1 - v in glTF, which is -(v - 1).
+	 * 1: the v that was negated for glTF becomes 1 + v in PLY. 0: v as it stands. */
 	float v_offset;
-	/* For texcoords that a transform has scaled and turned (KHR_texture_transform): the coordinates before it, which
-	 * the file holds; v_offset applies to these. NULL: nmtan_mesh.texcoords. */
-	const float *texcoords; /* [vertex_count][2], v up, tightly packed */
-	int mirrored;           /* not 0: the transform reverses the orientation of `texcoords` */
+
+	/* For nmtan_mesh.texcoords that a transform has scaled and turned (KHR_texture_transform): the coordinates
+	 * before it, to which v_offset applies, and whether the transform reverses their orientation (not 0). */
+	int mirrored;
+	const float *texcoords; /* [vertex_count][2], v up, tightly packed; NULL: no transform, and
+	                           `mirrored` is not looked at */
 } nmtan_stored_uv;
+
+#define NMTAN_STORED_UV_INIT {sizeof(nmtan_stored_uv), 0.0f, 0, NULL}
 
 /*
  * A mesh: faces of 3 or 4 corners over vertices. Corner c of the mesh is corner c - first(f) of its
@@ -97,6 +138,7 @@ typedef struct nmtan_stored_uv {
  * infinities too. Normals are used as given and should have unit length.
  */
 typedef struct nmtan_mesh {
+	size_t struct_bytes;       /* sizeof(nmtan_mesh): see "Structs" */
 	size_t face_count;         /* 0 is allowed */
 	size_t vertex_count;       /* at most 2^32 - 1 */
 	const uint8_t *face_sizes; /* [face_count], each 3 or 4; NULL: all faces are triangles */
@@ -109,8 +151,10 @@ typedef struct nmtan_mesh {
 	const float *texcoords; /* [vertex_count][2], v up, required */
 	size_t texcoord_stride_bytes;
 
-	const nmtan_stored_uv *stored; /* NULL: texture coordinates are stored as they stand here */
+	const nmtan_stored_uv *stored; /* NULL, for nearly all callers: texcoords are stored as they stand */
 } nmtan_mesh;
+
+#define NMTAN_MESH_INIT {sizeof(nmtan_mesh), 0, 0, NULL, NULL, NULL, 0, NULL, 0, NULL, 0, NULL}
 
 /* How the triangles around a vertex are averaged. */
 typedef enum nmtan_method {
@@ -135,7 +179,8 @@ typedef enum nmtan_repair {
 	NMTAN_REPAIR_OFF     /* the method's raw result */
 } nmtan_repair;
 
-/* The caller's allocator. Blocks are aligned for any C type, as malloc's are. */
+/* The caller's allocator. Both functions are required; blocks are aligned for any C type, as malloc's are.
+ * Only the thread that makes the call calls them. This struct does not grow. */
 typedef struct nmtan_allocator {
 	void *(*allocate)(void *user, size_t size_bytes);           /* NULL result: out of memory */
 	void (*release)(void *user, void *block, size_t size_bytes); /* block is never NULL */
@@ -145,22 +190,26 @@ typedef struct nmtan_allocator {
 /* Scratch memory that stays warm between calls. One call at a time may use a workspace. */
 typedef struct nmtan_workspace nmtan_workspace;
 
-/* A new, empty workspace that grows on use. allocator may be NULL (malloc) and is copied.
- * Returns NULL when memory is exhausted. */
+/* A new, empty workspace that grows on use. allocator may be NULL (malloc) and is copied; what its `user`
+ * points to must outlive the workspace. Returns NULL when memory is exhausted. */
 NMTAN_API nmtan_workspace *nmtan_workspace_create(const nmtan_allocator *allocator);
 
-/* Frees a workspace; NULL is allowed. */
+/* Frees a workspace and all it holds; NULL is allowed. */
 NMTAN_API void nmtan_workspace_destroy(nmtan_workspace *workspace);
 
-/* Where the time of a call went, in seconds of the wall clock. */
+/* Where the time of calls went, in seconds of the wall clock. Calls add to it; the caller sets it to zero. */
 typedef struct nmtan_timing {
-	double weld;  /* finding equal vertices; 0 where the method does not tell */
-	double solve; /* the rest of the method, and repair */
-	double split; /* nmtan_vertex_tangents() only */
+	size_t struct_bytes; /* sizeof(nmtan_timing): see "Structs" */
+	double weld;         /* finding equal vertices; 0 where the method does not tell */
+	double solve;        /* the rest of the method, and repair */
+	double split;        /* nmtan_vertex_tangents() only */
 } nmtan_timing;
 
-/* Options. All zero means the defaults; a NULL pointer to options means the same. */
+#define NMTAN_TIMING_INIT {sizeof(nmtan_timing), 0.0, 0.0, 0.0}
+
+/* Options. Where a function takes a pointer to them, NULL means the defaults, which are all zero. */
 typedef struct nmtan_options {
+	size_t struct_bytes;              /* sizeof(nmtan_options): see "Structs" */
 	nmtan_method method;
 	nmtan_repair repair;
 	float angular_threshold_degrees;  /* MikkTSpace's, in (0, 180]; 0: 180, its default. The other
@@ -172,8 +221,12 @@ typedef struct nmtan_options {
 	nmtan_workspace *workspace;       /* NULL: scratch is allocated and released by the call */
 } nmtan_options;
 
-/* What a solve met and what repair did, in corners unless it says faces. */
+#define NMTAN_OPTIONS_INIT \
+	{sizeof(nmtan_options), NMTAN_METHOD_MIKKTSPACE, NMTAN_REPAIR_ON, 0.0f, 0, NULL, NULL, NULL}
+
+/* What a solve met and what repair did, in corners unless it says otherwise. Each call writes it anew. */
 typedef struct nmtan_counts {
+	size_t struct_bytes;         /* sizeof(nmtan_counts): see "Structs" */
 	size_t degenerate_positions; /* faces with two corners at one position in each half */
 	size_t degenerate_texcoords; /* triangles whose exact UV determinant is zero */
 	size_t mirrored;             /* triangles whose exact UV determinant is negative (v up) */
@@ -193,23 +246,28 @@ typedef struct nmtan_counts {
 	                                double arithmetic makes it */
 } nmtan_counts;
 
+#define NMTAN_COUNTS_INIT {sizeof(nmtan_counts), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+
 /* Where results go. Each array has one row per corner, tightly packed. */
 typedef struct nmtan_output {
-	float *tangents;   /* [corner count][4], required: T and w */
-	float *bitangents; /* [corner count][3], may be NULL: MikkTSpace's own bitangent (unit dP/dv,
-	                      not cross(N, T) * w); cross(N, T) * w with the other methods and at repaired
-	                      corners */
-	float *magnitudes; /* [corner count][2], may be NULL: lengths of dP/du and dP/dv as MikkTSpace
-	                      reports them; 1 with the other methods and at repaired corners */
+	size_t struct_bytes; /* sizeof(nmtan_output): see "Structs" */
+	float *tangents;     /* [corner count][4], required: T and w */
+	float *bitangents;   /* [corner count][3], may be NULL: MikkTSpace's own bitangent (unit dP/dv,
+	                        not cross(N, T) * w); cross(N, T) * w with the other methods and at repaired
+	                        corners */
+	float *magnitudes;   /* [corner count][2], may be NULL: lengths of dP/du and dP/dv as MikkTSpace
+	                        reports them; 1 with the other methods and at repaired corners */
 } nmtan_output;
+
+#define NMTAN_OUTPUT_INIT {sizeof(nmtan_output), NULL, NULL, NULL}
 
 /*
  * Computes a tangent for every corner of the mesh.
  *
  *   mesh     required
  *   options  NULL for defaults
- *   output   required; tangents must have room for 4 floats per corner
- *   counts   may be NULL; written by the call
+ *   output   required; output->tangents too
+ *   counts   may be NULL
  *
  * Time is linear in the number of corners, whatever the mesh looks like.
  *
@@ -219,18 +277,21 @@ typedef struct nmtan_output {
 NMTAN_API nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	const nmtan_output *output, nmtan_counts *counts);
 
-/* Where a split goes. */
+/* Where a split goes. Nothing is appended past source_capacity; the corner count is always enough. */
 typedef struct nmtan_split_output {
+	size_t struct_bytes;  /* sizeof(nmtan_split_output): see "Structs" */
 	uint32_t *indices;    /* [corner count], required: the vertex of each corner after the split. May
 	                         be the array that mesh->indices points to */
 	uint32_t *sources;    /* [source_capacity]: sources[i] is the vertex of which vertex
-	                         vertex_count + i is a copy. Never more than the corner count */
+	                         vertex_count + i is a copy. May be NULL where source_capacity is 0 */
 	size_t source_capacity;
 	size_t source_count;  /* written by the call: how many vertices were appended */
-	float *vertex_tangents; /* [(vertex_count + source_capacity)][4], may be NULL: the tangent of each
+	float *vertex_tangents; /* [vertex_count + source_capacity][4], may be NULL: the tangent of each
 	                           vertex after the split. A vertex without corners gets a unit vector
 	                           perpendicular to its normal and w = 1 */
 } nmtan_split_output;
+
+#define NMTAN_SPLIT_OUTPUT_INIT {sizeof(nmtan_split_output), NULL, NULL, 0, 0, NULL}
 
 /*
  * Finds the vertices whose corners have different tangents and gives each further tangent a copy of
@@ -239,11 +300,13 @@ typedef struct nmtan_split_output {
  *
  *   mesh      required; texcoords may be NULL, normals too where vertex_tangents is NULL
  *   tangents  [corner count][4], required
- *   options   NULL for defaults; allocator and workspace are used
+ *   options   NULL for defaults; threads, allocator and workspace are used
  *   output    required
  *
- * Returns the statuses of nmtan_tangents(), and NMTAN_ERROR_TOO_LARGE when the copies exceed
- * source_capacity or 2^32 - 1 vertices.
+ * Time is linear in the number of corners and copies.
+ *
+ * Returns the statuses of nmtan_tangents(); NMTAN_ERROR_TOO_LARGE also when there are more copies than
+ * source_capacity or more than 2^32 - 1 vertices with them.
  */
 NMTAN_API nmtan_status nmtan_split(const nmtan_mesh *mesh, const float *tangents,
 	const nmtan_options *options, nmtan_split_output *output);
@@ -254,8 +317,9 @@ NMTAN_API nmtan_status nmtan_split(const nmtan_mesh *mesh, const float *tangents
  *
  *   mesh     required
  *   options  NULL for defaults
- *   output   required; vertex_tangents too. indices may not be the array that mesh->indices points to
- *   counts   may be NULL; written by the call
+ *   output   required; output->vertex_tangents too. output->indices may not be the array that mesh->indices
+ *            points to
+ *   counts   may be NULL
  *
  * Returns the statuses of nmtan_split().
  */

@@ -11,6 +11,7 @@
 #include "base/clock.h"
 #include "base/cpu.h"
 #include "base/parallel.h"
+#include "base/struct_bytes.h"
 #include "tangent/fast/fast.h"
 #include "tangent/repair.h"
 #include "tangent/solve.h"
@@ -21,21 +22,13 @@
 /* No stage shares fewer corners among threads. */
 enum { LEAST_SHARED_CORNERS = 1 << 14 };
 
-/* A row stride: 0 becomes the row's size; false where the stride cannot be. */
-static bool fill_stride(size_t *stride_bytes, size_t row_bytes)
-{
-	if (*stride_bytes == 0)
-		*stride_bytes = row_bytes;
-	return *stride_bytes >= row_bytes && *stride_bytes % sizeof(float) == 0;
-}
-
 static nmtan_status check_attributes(nmtan_mesh *mesh)
 {
 	if (!mesh->positions || !mesh->normals || !mesh->texcoords)
 		return NMTAN_ERROR_ARGUMENT;
-	if (!fill_stride(&mesh->position_stride_bytes, 3 * sizeof(float)) ||
-		!fill_stride(&mesh->normal_stride_bytes, 3 * sizeof(float)) ||
-		!fill_stride(&mesh->texcoord_stride_bytes, 2 * sizeof(float)) ||
+	if (!nt_fill_stride(&mesh->position_stride_bytes, 3 * sizeof(float)) ||
+		!nt_fill_stride(&mesh->normal_stride_bytes, 3 * sizeof(float)) ||
+		!nt_fill_stride(&mesh->texcoord_stride_bytes, 2 * sizeof(float)) ||
 		!isfinite(nt_stored_v_offset(mesh)))
 		return NMTAN_ERROR_ARGUMENT;
 	return NMTAN_OK;
@@ -75,6 +68,7 @@ static nmtan_status run_method(const nt_solve *solve, nmtan_method method, size_
 typedef struct request {
 	nmtan_options options;
 	nmtan_mesh mesh;
+	nmtan_stored_uv stored; /* of mesh */
 	nt_vouched vouched;
 	nt_solve solve;
 	nt_scratch own;
@@ -83,13 +77,28 @@ typedef struct request {
 	double begin;
 } request;
 
+/* Copies of what the caller gave, of whatever version; false where a size is none. */
+static bool read_arguments(request *r, const nmtan_mesh *mesh, const nmtan_options *options)
+{
+	if (!nt_struct_read(&r->mesh, sizeof r->mesh, mesh) ||
+		(options && !nt_struct_read(&r->options, sizeof r->options, options)) ||
+		(r->options.timing && !nt_struct_read(&r->timing, sizeof r->timing, r->options.timing)))
+		return false;
+	if (!r->mesh.stored)
+		return true;
+	const bool read = nt_struct_read(&r->stored, sizeof r->stored, r->mesh.stored);
+	r->mesh.stored = &r->stored;
+	return read;
+}
+
 /* Checks everything before anything is computed, and fills in what was left to defaults. */
 static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_implementation *implementation)
 {
-	*r = (request){.mesh = *mesh};
-	if (options)
-		r->options = *options;
+	memset(r, 0, sizeof *r);
+	if (!read_arguments(r, mesh, options))
+		return NMTAN_ERROR_ARGUMENT;
+	r->timing = (nmtan_timing)NMTAN_TIMING_INIT;
 	if (r->options.timing)
 		r->begin = nt_seconds();
 	nmtan_status status = check_options(&r->options);
@@ -119,39 +128,56 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 
 static void end_request(request *r)
 {
-	nmtan_timing *sum = r->options.timing;
-	if (sum) {
-		sum->weld += r->timing.weld;
-		sum->split += r->timing.split;
-		sum->solve += nt_seconds() - r->begin - r->timing.weld - r->timing.split;
+	nmtan_timing sum;
+	if (r->options.timing && nt_struct_read(&sum, sizeof sum, r->options.timing)) {
+		sum.weld += r->timing.weld;
+		sum.split += r->timing.split;
+		sum.solve += nt_seconds() - r->begin - r->timing.weld - r->timing.split;
+		nt_struct_write(r->options.timing, &sum, sizeof sum);
 	}
 	nt_scratch_back(r->solve.scratch, r->mark);
 	nt_scratch_free(&r->own);
 }
 
+/* Counts of this call, all zero; false where the caller's struct has no size. */
+static bool begin_counts(nmtan_counts *own, const nmtan_counts *given)
+{
+	const bool sound = !given || nt_struct_read(own, sizeof *own, given);
+	*own = (nmtan_counts)NMTAN_COUNTS_INIT;
+	return sound;
+}
+
+static void end_counts(const nmtan_counts *own, nmtan_counts *given)
+{
+	if (given)
+		nt_struct_write(given, own, sizeof *own);
+}
+
 nmtan_status nt_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_implementation *implementation, const nmtan_output *output, nmtan_counts *counts)
 {
-	nmtan_counts own_counts;
-	counts = counts ? counts : &own_counts;
-	if (!mesh || !output || !output->tangents || !nt_cpu_has(implementation->isa))
+	nmtan_output to;
+	nmtan_counts met;
+	if (!mesh || !output || !nt_struct_read(&to, sizeof to, output) || !to.tangents ||
+		!begin_counts(&met, counts) || !nt_cpu_has(implementation->isa))
 		return NMTAN_ERROR_ARGUMENT;
-	memset(counts, 0, sizeof *counts);
 	request r;
 	nmtan_status status = begin_request(&r, mesh, options, implementation);
-	if (status || r.solve.corner_count == 0)
+	if (status)
 		return status;
-	r.solve.tangents = output->tangents;
-	r.solve.bitangents = output->bitangents;
-	r.solve.magnitudes = output->magnitudes;
+	r.solve.tangents = to.tangents;
+	r.solve.bitangents = to.bitangents;
+	r.solve.magnitudes = to.magnitudes;
 
 	/* the method's own answer, then what a renderer can use */
 	size_t ill_conditioned = 0;
-	status = run_method(&r.solve, r.options.method, &ill_conditioned);
-	if (!status)
-		status = nt_repair(&r.solve, counts);
-	counts->ill_conditioned = ill_conditioned;
+	if (r.solve.corner_count > 0)
+		status = run_method(&r.solve, r.options.method, &ill_conditioned);
+	if (!status && r.solve.corner_count > 0)
+		status = nt_repair(&r.solve, &met);
+	met.ill_conditioned = ill_conditioned;
 	end_request(&r);
+	end_counts(&met, counts);
 	return status;
 }
 
@@ -176,13 +202,12 @@ static nmtan_status solve_vertices(request *r, nt_splitter *splitter, nmtan_coun
 nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_vertex_request *wanted, nmtan_split_output *output, nmtan_counts *counts)
 {
-	nmtan_counts own_counts;
-	counts = counts ? counts : &own_counts;
-	if (!mesh || !output || !output->indices || !output->vertex_tangents ||
-		(output->source_capacity && !output->sources))
+	nmtan_split_output to;
+	nmtan_counts met;
+	if (!mesh || !output || !nt_struct_read(&to, sizeof to, output) || !to.indices || !to.vertex_tangents ||
+		(to.source_capacity && !to.sources) || !begin_counts(&met, counts))
 		return NMTAN_ERROR_ARGUMENT;
-	memset(counts, 0, sizeof *counts);
-	output->source_count = 0;
+	to.source_count = 0;
 	request r;
 	const nt_implementation best = {.isa = NT_ISA_AUTO};
 	nmtan_status status = begin_request(&r, mesh, options, &best);
@@ -191,19 +216,21 @@ nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *opt
 	nt_splitter splitter;
 	r.solve.passed = wanted->passed;
 	r.solve.user = wanted->user;
-	r.solve.lent = output->vertex_tangents; /* the split fills it at the end */
+	r.solve.lent = to.vertex_tangents; /* the split fills it at the end */
 	r.solve.lent_bytes = r.mesh.vertex_count * 4 * sizeof(float);
 	r.solve.tangents = nt_scratch_alloc(r.solve.scratch, r.solve.corner_count, 4 * sizeof(float));
-	status = r.solve.tangents ? nt_splitter_begin(&splitter, &r.mesh, r.solve.corner_count,
-					    output, r.solve.scratch)
+	status = r.solve.tangents ? nt_splitter_begin(&splitter, &r.mesh, r.solve.corner_count, &to,
+					    r.solve.scratch)
 				  : NMTAN_ERROR_MEMORY;
 	splitter.lazy = wanted->lazy_indices;
 	splitter.threads = r.solve.threads;
 	if (!status && r.solve.corner_count > 0)
-		status = solve_vertices(&r, &splitter, counts);
+		status = solve_vertices(&r, &splitter, &met);
 	if (!status)
 		nt_splitter_end(&splitter);
 	end_request(&r);
+	nt_struct_write(output, &to, sizeof to);
+	end_counts(&met, counts);
 	return status;
 }
 

@@ -121,7 +121,8 @@ static nt_status split_by_normal(nt_scene *scene, nt_mesh *mesh, normal_job *job
 {
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
-	nmtan_split_output split = {.indices = job->indices, .sources = job->sources,
+	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = job->indices,
+		.sources = job->sources,
 		.source_capacity = mesh->corner_count};
 	const nt_status status = nt_status_of(nmtan_split(&view, &job->rows[0][0], NULL, &split));
 	if (status)

@@ -98,7 +98,8 @@ static nt_status make_split(const nt_mesh *mesh, nt_split *split, nmtan_split_ou
 		.sources = nt_alloc(capacity, sizeof *split->sources),
 		.vertex_tangents = nt_alloc(mesh->vertex_count + capacity, 4 * sizeof(float)),
 	};
-	*output = (nmtan_split_output){.indices = split->indices, .sources = split->sources,
+	*output = (nmtan_split_output){.struct_bytes = sizeof(nmtan_split_output), .indices = split->indices,
+		.sources = split->sources,
 		.source_capacity = capacity, .vertex_tangents = split->vertex_tangents};
 	return split->indices && split->sources && split->vertex_tangents ? NT_OK
 									  : NT_ERROR_MEMORY;
@@ -108,7 +109,8 @@ static nt_status make_split(const nt_mesh *mesh, nt_split *split, nmtan_split_ou
 static nt_status solve_corners(const nt_mesh *mesh, const nmtan_mesh *view,
 	const nmtan_options *options, float **tangents, nmtan_counts *counts)
 {
-	const nmtan_output output = {.tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float))};
+	const nmtan_output output = {.struct_bytes = sizeof output,
+		.tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float))};
 	*tangents = output.tangents;
 	if (!output.tangents)
 		return NT_ERROR_MEMORY;
@@ -152,12 +154,13 @@ static void forget_part(void *user, nt_mesh_part part)
 static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned threads,
 	nmtan_workspace *workspace, nmtan_timing *timing)
 {
-	const nmtan_options options = {.method = job->settings->method,
+	const nmtan_options options = {.struct_bytes = sizeof options, .method = job->settings->method,
 		.repair = job->settings->repair, .threads = threads, .workspace = workspace,
 		.timing = timing};
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	stored.v_offset = stored_v_offset(job);
+	mesh->counts = (nmtan_counts)NMTAN_COUNTS_INIT;
 	if (job->settings->check)
 		return solve_corners(mesh, &view, &options, &mesh->corner_tangents, &mesh->counts);
 
@@ -308,7 +311,8 @@ nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_for
 		.round_trip = output != NT_FORMAT_UNKNOWN && is_gltf(scene->format) != is_gltf(output),
 		.forgets = scene->forget && is_gltf(output) && !settings->report && !settings->verify,
 		.meshes = nt_alloc(scene->mesh_count, sizeof *job.meshes),
-		.statuses = nt_calloc(scene->mesh_count, sizeof *job.statuses)};
+		.statuses = nt_calloc(scene->mesh_count, sizeof *job.statuses),
+		.timing = NMTAN_TIMING_INIT};
 	nt_status status = NT_OK;
 	if (!job.meshes || !job.statuses) {
 		status = nt_fail_memory(error);

@@ -292,8 +292,8 @@ static nt_status compare_with_fresh(nt_judge *judge)
 		return NT_ERROR_MEMORY;
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
-	const nmtan_options options = {.threads = judge->options->threads};
-	const nmtan_output output = {.tangents = fresh};
+	const nmtan_options options = {.struct_bytes = sizeof options, .threads = judge->options->threads};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = fresh};
 	const nt_status status = nt_status_of(nmtan_tangents(&view, &options, &output, NULL));
 	if (status == NT_OK)
 		judge_directions(judge, fresh);

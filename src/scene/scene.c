@@ -51,10 +51,12 @@ nmtan_mesh nt_mesh_view(const nt_mesh *mesh, nmtan_stored_uv *stored)
 {
 	const bool transformed = mesh->solve_texcoords && mesh->solve_sign;
 	*stored = (nmtan_stored_uv){
+		.struct_bytes = sizeof(nmtan_stored_uv),
 		.texcoords = transformed ? mesh->texcoords : NULL,
 		.mirrored = mesh->solve_sign < 0,
 	};
 	return (nmtan_mesh){
+		.struct_bytes = sizeof(nmtan_mesh),
 		.face_count = mesh->face_count,
 		.vertex_count = mesh->vertex_count,
 		.face_sizes = mesh->face_sizes,

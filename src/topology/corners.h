@@ -37,6 +37,14 @@ static inline const float *nt_texcoord(const nmtan_mesh *mesh, size_t vertex)
 	return nt_row(mesh->texcoords, mesh->texcoord_stride_bytes, vertex);
 }
 
+/* A row stride: 0 becomes the row's size; false where the stride cannot be. */
+static inline bool nt_fill_stride(size_t *stride_bytes, size_t row_bytes)
+{
+	if (*stride_bytes == 0)
+		*stride_bytes = row_bytes;
+	return *stride_bytes >= row_bytes && *stride_bytes % sizeof(float) == 0;
+}
+
 /* Corners of a face: 3 or 4. */
 static inline unsigned nt_face_size(const nmtan_mesh *mesh, size_t face)
 {

@@ -12,6 +12,7 @@
 #include <string.h>
 #include "base/dvec.h"
 #include "base/parallel.h"
+#include "base/struct_bytes.h"
 #include "topology/corners.h"
 
 #define NO_COPY UINT32_MAX
@@ -178,30 +179,46 @@ static nmtan_status split_mesh(nt_splitter *s, const float *tangents)
 	return NMTAN_OK;
 }
 
+/* What the caller gave, of whatever version: see base/struct_bytes.h. */
+typedef struct split_arguments {
+	nmtan_mesh mesh;
+	nmtan_options options;
+	nmtan_split_output output;
+} split_arguments;
+
+static bool read_arguments(split_arguments *a, const nmtan_mesh *mesh, const nmtan_options *options,
+	const nmtan_split_output *output)
+{
+	a->options = (nmtan_options)NMTAN_OPTIONS_INIT;
+	return nt_struct_read(&a->mesh, sizeof a->mesh, mesh) &&
+	       (!options || nt_struct_read(&a->options, sizeof a->options, options)) &&
+	       nt_struct_read(&a->output, sizeof a->output, output) && a->output.indices &&
+	       (a->output.sources || a->output.source_capacity == 0) &&
+	       (a->mesh.normals || !a->output.vertex_tangents) &&
+	       nt_fill_stride(&a->mesh.normal_stride_bytes, 3 * sizeof(float));
+}
+
 nmtan_status nmtan_split(const nmtan_mesh *mesh, const float *tangents, const nmtan_options *options,
 	nmtan_split_output *output)
 {
-	if (!mesh || !tangents || !output || !output->indices ||
-		(output->source_capacity && !output->sources) ||
-		(output->vertex_tangents && !mesh->normals))
+	split_arguments a;
+	if (!mesh || !tangents || !output || !read_arguments(&a, mesh, options, output))
 		return NMTAN_ERROR_ARGUMENT;
-	nmtan_mesh checked = *mesh;
-	if (checked.normal_stride_bytes == 0)
-		checked.normal_stride_bytes = 3 * sizeof(float);
 	size_t corner_count;
-	nmtan_status status = nt_check_faces(&checked, options ? options->threads : 0, &corner_count);
+	nmtan_status status = nt_check_faces(&a.mesh, a.options.threads, &corner_count);
 	if (status)
 		return status;
 
 	nt_scratch own;
-	nt_scratch_init(&own, options ? options->allocator : NULL);
-	nt_scratch *scratch = options && options->workspace ? &options->workspace->scratch : &own;
+	nt_scratch_init(&own, a.options.allocator);
+	nt_scratch *scratch = a.options.workspace ? &a.options.workspace->scratch : &own;
 	const nt_scratch_mark mark = nt_scratch_here(scratch);
 	nt_splitter s;
-	status = nt_splitter_begin(&s, &checked, corner_count, output, scratch);
+	status = nt_splitter_begin(&s, &a.mesh, corner_count, &a.output, scratch);
 	if (!status)
 		status = split_mesh(&s, tangents);
 	nt_scratch_back(scratch, mark);
 	nt_scratch_free(&own);
+	nt_struct_write(output, &a.output, sizeof a.output);
 	return status;
 }

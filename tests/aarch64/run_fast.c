@@ -24,9 +24,10 @@ static size_t count_differences(const float *a, const float *b, size_t count)
 
 static void solve(const nmtan_mesh *mesh, bool scalar, float *tangents)
 {
-	const nmtan_options options = {.repair = NMTAN_REPAIR_OFF, .threads = 1};
+	const nmtan_options options = {.struct_bytes = sizeof options, .repair = NMTAN_REPAIR_OFF,
+		.threads = 1};
 	const nt_implementation implementation = {.scalar = scalar};
-	const nmtan_output output = {.tangents = tangents};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = tangents};
 	if (nt_tangents(mesh, &options, &implementation, &output, NULL)) {
 		printf("solving failed\n");
 		exit(1);

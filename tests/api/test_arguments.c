@@ -4,6 +4,8 @@
  */
 #include "test.h"
 #include <math.h>
+#include <pthread.h>
+#include <stdatomic.h>
 #include "nmtan.h"
 
 static const float rows[4][8] = {{0, 0, 0, 0, 0, 1, 0, 0}, {1, 0, 0, 0, 0, 1, 1, 0},
@@ -13,7 +15,8 @@ static const uint32_t indices[6] = {0, 1, 2, 0, 2, 3};
 /* The same square as interleaved rows of position, normal and texture coordinates. */
 static nmtan_mesh square(void)
 {
-	return (nmtan_mesh){.face_count = 2, .vertex_count = 4, .indices = indices,
+	return (nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = 2, .vertex_count = 4,
+		.indices = indices,
 		.positions = rows[0], .position_stride_bytes = 32, .normals = rows[0] + 3,
 		.normal_stride_bytes = 32, .texcoords = rows[0] + 6, .texcoord_stride_bytes = 32};
 }
@@ -21,7 +24,7 @@ static nmtan_mesh square(void)
 static nmtan_status solve(const nmtan_mesh *mesh, const nmtan_options *options)
 {
 	float tangents[8][4];
-	const nmtan_output output = {.tangents = &tangents[0][0]};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
 	return nmtan_tangents(mesh, options, &output, NULL);
 }
 
@@ -29,7 +32,7 @@ static void missing_arrays_are_argument_errors(void **state)
 {
 	(void)state;
 	float tangents[8][4];
-	nmtan_output output = {0};
+	nmtan_output output = NMTAN_OUTPUT_INIT;
 	nmtan_mesh mesh = square();
 	assert_int_equal(nmtan_tangents(&mesh, NULL, &output, NULL), NMTAN_ERROR_ARGUMENT);
 	output.tangents = &tangents[0][0];
@@ -61,15 +64,34 @@ static void options_out_of_range_are_argument_errors(void **state)
 {
 	(void)state;
 	const nmtan_mesh mesh = square();
-	const nmtan_options wrong[] = {
-		{.method = (nmtan_method)99},
-		{.repair = (nmtan_repair)2},
-		{.angular_threshold_degrees = -1},
-		{.angular_threshold_degrees = 181},
-		{.angular_threshold_degrees = NAN},
-	};
-	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
-		assert_int_equal(solve(&mesh, &wrong[i]), NMTAN_ERROR_ARGUMENT);
+	nmtan_options wrong = NMTAN_OPTIONS_INIT;
+	assert_int_equal(solve(&mesh, &wrong), NMTAN_OK);
+	wrong.method = (nmtan_method)99;
+	assert_int_equal(solve(&mesh, &wrong), NMTAN_ERROR_ARGUMENT);
+	wrong.method = NMTAN_METHOD_MIKKTSPACE;
+	wrong.repair = (nmtan_repair)2;
+	assert_int_equal(solve(&mesh, &wrong), NMTAN_ERROR_ARGUMENT);
+	wrong.repair = NMTAN_REPAIR_ON;
+	const float degrees[] = {-1, 181, NAN, INFINITY};
+	for (size_t i = 0; i < sizeof degrees / sizeof *degrees; i++) {
+		wrong.angular_threshold_degrees = degrees[i];
+		assert_int_equal(solve(&mesh, &wrong), NMTAN_ERROR_ARGUMENT);
+	}
+	wrong.angular_threshold_degrees = 180;
+	assert_int_equal(solve(&mesh, &wrong), NMTAN_OK);
+}
+
+static void stored_offset_must_be_finite(void **state)
+{
+	(void)state;
+	nmtan_stored_uv stored = NMTAN_STORED_UV_INIT;
+	nmtan_mesh mesh = square();
+	mesh.stored = &stored;
+	assert_int_equal(solve(&mesh, NULL), NMTAN_OK);
+	stored.v_offset = NAN;
+	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
+	stored.v_offset = -INFINITY;
+	assert_int_equal(solve(&mesh, NULL), NMTAN_ERROR_ARGUMENT);
 }
 
 static void faces_and_indices_are_checked(void **state)
@@ -101,7 +123,7 @@ static void split_checks_its_arguments_too(void **state)
 	float tangents[6][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {-1, 0, 0, 1}, {1, 0, 0, 1},
 		{1, 0, 0, 1}};
 	uint32_t out[6], sources[1];
-	nmtan_split_output split = {.indices = out};
+	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = out};
 	assert_int_equal(nmtan_split(&mesh, NULL, NULL, &split), NMTAN_ERROR_ARGUMENT);
 	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], NULL, &split), NMTAN_ERROR_TOO_LARGE);
 	split.source_capacity = 1;
@@ -111,6 +133,52 @@ static void split_checks_its_arguments_too(void **state)
 	assert_int_equal(split.source_count, 1);
 	assert_int_equal(sources[0], 0);
 	assert_int_equal(out[3], 4);
+}
+
+static void vertex_tangents_check_their_arguments_too(void **state)
+{
+	(void)state;
+	const nmtan_mesh mesh = square();
+	float tangents[4][4];
+	uint32_t out[6], sources[1];
+	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = out,
+		.vertex_tangents = tangents[0]};
+	assert_int_equal(nmtan_vertex_tangents(&mesh, NULL, &split, NULL), NMTAN_OK);
+	assert_int_equal(nmtan_vertex_tangents(NULL, NULL, &split, NULL), NMTAN_ERROR_ARGUMENT);
+	assert_int_equal(nmtan_vertex_tangents(&mesh, NULL, NULL, NULL), NMTAN_ERROR_ARGUMENT);
+	split.indices = NULL;
+	assert_int_equal(nmtan_vertex_tangents(&mesh, NULL, &split, NULL), NMTAN_ERROR_ARGUMENT);
+	split.indices = out;
+	split.vertex_tangents = NULL;
+	assert_int_equal(nmtan_vertex_tangents(&mesh, NULL, &split, NULL), NMTAN_ERROR_ARGUMENT);
+	split.vertex_tangents = tangents[0];
+	split.source_capacity = 1;
+	assert_int_equal(nmtan_vertex_tangents(&mesh, NULL, &split, NULL), NMTAN_ERROR_ARGUMENT);
+	split.sources = sources;
+	assert_int_equal(nmtan_vertex_tangents(&mesh, NULL, &split, NULL), NMTAN_OK);
+	nmtan_mesh without = square();
+	without.texcoords = NULL;
+	assert_int_equal(nmtan_vertex_tangents(&without, NULL, &split, NULL), NMTAN_ERROR_ARGUMENT);
+}
+
+/* Rows that nmtan_split() reads only for vertices without corners have to be sound all the same. */
+static void split_checks_the_stride_of_normals(void **state)
+{
+	(void)state;
+	const float tangents[6][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}};
+	float vertex_tangents[4][4];
+	uint32_t out[6];
+	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = out,
+		.vertex_tangents = &vertex_tangents[0][0]};
+	nmtan_mesh mesh = square();
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], NULL, &split), NMTAN_OK);
+	mesh.normal_stride_bytes = 8;
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], NULL, &split), NMTAN_ERROR_ARGUMENT);
+	mesh.normals = NULL;
+	mesh.normal_stride_bytes = 0;
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], NULL, &split), NMTAN_ERROR_ARGUMENT);
+	split.vertex_tangents = NULL;
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], NULL, &split), NMTAN_OK);
 }
 
 /* An allocator that gives out `left` blocks and then none; it knows how much is out. */
@@ -143,7 +211,8 @@ static void exhausted_memory_is_told_and_nothing_leaks(void **state)
 		for (size_t blocks = 0; status != NMTAN_OK; blocks++) {
 			limited l = {.left = blocks};
 			const nmtan_allocator allocator = {limited_allocate, limited_release, &l};
-			const nmtan_options options = {.method = (nmtan_method)method,
+			const nmtan_options options = {.struct_bytes = sizeof options,
+				.method = (nmtan_method)method,
 				.allocator = &allocator};
 			status = solve(&mesh, &options);
 			assert_int_equal(l.bytes_out, 0);
@@ -151,6 +220,65 @@ static void exhausted_memory_is_told_and_nothing_leaks(void **state)
 			assert_true(blocks > 0 || status == NMTAN_ERROR_MEMORY);
 		}
 	}
+}
+
+/* An allocator that knows the thread it belongs to. */
+typedef struct owned {
+	pthread_t thread;
+	size_t calls;
+	atomic_size_t by_others;
+} owned;
+
+static void *owned_allocate(void *user, size_t size)
+{
+	owned *o = user;
+	if (pthread_equal(o->thread, pthread_self()))
+		o->calls++;
+	else
+		o->by_others++;
+	return malloc(size);
+}
+
+static void owned_release(void *user, void *block, size_t size)
+{
+	(void)size;
+	owned *o = user;
+	o->by_others += !pthread_equal(o->thread, pthread_self());
+	free(block);
+}
+
+/* A mesh that is large enough for several threads: 20 000 triangles, every third one mirrored. */
+static void allocator_is_called_by_the_calling_thread_alone(void **state)
+{
+	(void)state;
+	enum { TRIANGLES = 20000, CORNERS = 3 * TRIANGLES };
+	float (*p)[8] = calloc(CORNERS, sizeof *p), (*tangents)[4] = malloc(2 * CORNERS * sizeof *tangents);
+	uint32_t *out = malloc(CORNERS * sizeof *out), *sources = malloc(CORNERS * sizeof *sources);
+	for (size_t c = 0; c < CORNERS; c++) {
+		const float x = c % 3 == 1, y = c % 3 == 2;
+		const float row[8] = {(float)(c / 30) + x, y, 0, 0, 0, 1, c / 3 % 3 ? x : -x, y};
+		memcpy(p[c], row, sizeof row);
+	}
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = TRIANGLES, .vertex_count = CORNERS,
+		.positions = p[0], .position_stride_bytes = 32, .normals = p[0] + 3, .normal_stride_bytes = 32,
+		.texcoords = p[0] + 6, .texcoord_stride_bytes = 32};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = tangents[0]};
+	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = out, .sources = sources,
+		.source_capacity = CORNERS, .vertex_tangents = tangents[0]};
+	owned o = {.thread = pthread_self()};
+	const nmtan_allocator allocator = {owned_allocate, owned_release, &o};
+	for (int method = NMTAN_METHOD_MIKKTSPACE; method <= NMTAN_METHOD_ROBUST; method++) {
+		const nmtan_options options = {.struct_bytes = sizeof options, .method = (nmtan_method)method,
+			.threads = 4, .allocator = &allocator};
+		assert_int_equal(nmtan_tangents(&mesh, &options, &output, NULL), NMTAN_OK);
+		assert_int_equal(nmtan_vertex_tangents(&mesh, &options, &split, NULL), NMTAN_OK);
+	}
+	assert_true(o.calls > 0);
+	assert_int_equal(o.by_others, 0);
+	free(p);
+	free(tangents);
+	free(out);
+	free(sources);
 }
 
 /* A workspace keeps its memory from call to call and gives it back at its end. */
@@ -162,7 +290,7 @@ static void workspace_is_reused_and_returned(void **state)
 	const nmtan_allocator allocator = {limited_allocate, limited_release, &l};
 	nmtan_workspace *workspace = nmtan_workspace_create(&allocator);
 	assert_non_null(workspace);
-	const nmtan_options options = {.workspace = workspace};
+	const nmtan_options options = {.struct_bytes = sizeof options, .workspace = workspace};
 	assert_int_equal(solve(&mesh, &options), NMTAN_OK);
 	const size_t left = l.left;
 	for (int i = 0; i < 5; i++)
@@ -189,9 +317,13 @@ int main(void)
 		cmocka_unit_test(missing_arrays_are_argument_errors),
 		cmocka_unit_test(strides_must_hold_a_row_and_keep_alignment),
 		cmocka_unit_test(options_out_of_range_are_argument_errors),
+		cmocka_unit_test(stored_offset_must_be_finite),
 		cmocka_unit_test(faces_and_indices_are_checked),
 		cmocka_unit_test(split_checks_its_arguments_too),
+		cmocka_unit_test(vertex_tangents_check_their_arguments_too),
+		cmocka_unit_test(split_checks_the_stride_of_normals),
 		cmocka_unit_test(exhausted_memory_is_told_and_nothing_leaks),
+		cmocka_unit_test(allocator_is_called_by_the_calling_thread_alone),
 		cmocka_unit_test(workspace_is_reused_and_returned),
 		cmocka_unit_test(statuses_have_texts),
 	};

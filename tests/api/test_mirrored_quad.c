@@ -18,6 +18,7 @@ static const float texcoords[6][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}, {0
 static const uint32_t triangles[12] = {0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2};
 
 static const nmtan_mesh mesh = {
+	.struct_bytes = sizeof mesh,
 	.face_count = 4,
 	.vertex_count = 6,
 	.indices = triangles,
@@ -32,8 +33,8 @@ static void tangents_follow_u_and_w_tells_the_mirrored_side(void **state)
 {
 	const nmtan_options *options = *state;
 	float tangents[12][4];
-	const nmtan_output output = {.tangents = &tangents[0][0]};
-	nmtan_counts counts;
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
+	nmtan_counts counts = NMTAN_COUNTS_INIT;
 	assert_int_equal(nmtan_tangents(&mesh, options, &output, &counts), NMTAN_OK);
 	for (int c = 0; c < 12; c++) {
 		const float left[4] = {1, 0, 0, 1}, right[4] = {-1, 0, 0, -1};
@@ -52,9 +53,10 @@ static void seam_vertices_are_split_and_the_rest_stays(void **state)
 	const nmtan_options *options = *state;
 	float tangents[12][4], vertex_tangents[18][4];
 	uint32_t indices[12], sources[12];
-	const nmtan_output output = {.tangents = &tangents[0][0]};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
 	assert_int_equal(nmtan_tangents(&mesh, options, &output, NULL), NMTAN_OK);
-	nmtan_split_output split = {.indices = indices, .sources = sources, .source_capacity = 12,
+	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = indices, .sources = sources,
+		.source_capacity = 12,
 		.vertex_tangents = &vertex_tangents[0][0]};
 	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], options, &split), NMTAN_OK);
 	const uint32_t expected[12] = {0, 1, 2, 0, 2, 3, 6, 4, 5, 6, 5, 7};
@@ -68,10 +70,10 @@ static void seam_vertices_are_split_and_the_rest_stays(void **state)
 
 int main(void)
 {
-	static nmtan_options mikktspace = {0};
-	static nmtan_options raw = {.repair = NMTAN_REPAIR_OFF};
-	static nmtan_options area = {.method = NMTAN_METHOD_AREA};
-	static nmtan_options lengyel = {.method = NMTAN_METHOD_LENGYEL};
+	static nmtan_options mikktspace = NMTAN_OPTIONS_INIT;
+	static nmtan_options raw = {.struct_bytes = sizeof raw, .repair = NMTAN_REPAIR_OFF};
+	static nmtan_options area = {.struct_bytes = sizeof area, .method = NMTAN_METHOD_AREA};
+	static nmtan_options lengyel = {.struct_bytes = sizeof lengyel, .method = NMTAN_METHOD_LENGYEL};
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_prestate(tangents_follow_u_and_w_tells_the_mirrored_side, &mikktspace),
 		cmocka_unit_test_prestate(tangents_follow_u_and_w_tells_the_mirrored_side, &raw),

@@ -90,7 +90,8 @@ static void free_workload(workload *w)
 /* Seconds for solving every mesh once; what is small is repeated until it takes a while. */
 static double time_run(const column *c, const workload *w, const nmtan_output *output, nmtan_workspace *workspace)
 {
-	const nmtan_options options = {.method = c->method, .threads = c->threads,
+	const nmtan_options options = {.struct_bytes = sizeof options, .method = c->method,
+		.threads = c->threads,
 		.workspace = workspace};
 	const size_t repeat = !c->implementation.scalar && w->triangles < 100000 ? 400000 / w->triangles : 1;
 	const clockid_t clock = c->threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC;
@@ -107,7 +108,7 @@ static double time_run(const column *c, const workload *w, const nmtan_output *o
 static double scratch_bytes(const workload *w, const nmtan_output *output)
 {
 	nmtan_workspace *workspace = nmtan_workspace_create(NULL);
-	const nmtan_options options = {.threads = 1, .workspace = workspace};
+	const nmtan_options options = {.struct_bytes = sizeof options, .threads = 1, .workspace = workspace};
 	if (!workspace || nmtan_tangents(&w->meshes[0].mesh, &options, output, NULL))
 		exit(1);
 	const double bytes = (double)nt_scratch_bytes(&workspace->scratch);
@@ -121,7 +122,8 @@ static void time_row(const char *name, const workload *w, const workload *smalle
 {
 	double times[MOST_COLUMNS][RUNS];
 	const size_t corners = w->most_corners > smaller->most_corners ? w->most_corners : smaller->most_corners;
-	const nmtan_output output = {.tangents = calloc(corners, 4 * sizeof(float))};
+	const nmtan_output output = {.struct_bytes = sizeof output,
+		.tangents = calloc(corners, 4 * sizeof(float))};
 	nmtan_workspace *workspace = nmtan_workspace_create(NULL);
 	if (!output.tangents || !workspace)
 		exit(1);

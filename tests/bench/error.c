@@ -79,7 +79,7 @@ static void add_run(bench *b, const char *name, const char *precision, nmtan_opt
 
 static void list_runs(bench *b)
 {
-	const nmtan_options one = {.threads = 1};
+	const nmtan_options one = {.struct_bytes = sizeof one, .threads = 1};
 	nmtan_options o = one;
 	add_run(b, "mikktspace", "float", o, false, ORACLE_ANGLE);
 	o.repair = NMTAN_REPAIR_OFF;
@@ -124,7 +124,7 @@ static double run_ours(const run *r, const nt_owned *mesh, float (*tangents)[4])
 {
 	nmtan_options options = r->options;
 	options.workspace = nmtan_workspace_create(NULL);
-	const nmtan_output output = {.tangents = &tangents[0][0]};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
 	double best = INFINITY, total = 0;
 	for (int i = 0; i < 100 && (i < 2 || total < 0.04); i++) {
 		const double start = measure_seconds();
@@ -208,7 +208,7 @@ static void time_runs(bench *b)
 /* Our tangents once more; false on failure. */
 static bool solve_ours(const run *r, const nt_owned *mesh, float (*tangents)[4])
 {
-	const nmtan_output output = {.tangents = &tangents[0][0]};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
 	return nt_tangents(&mesh->mesh, &r->options, &r->implementation, &output, NULL) == NMTAN_OK;
 }
 
@@ -249,8 +249,8 @@ static void make_bakers(bench *b)
 		if (!b->meshes[i].is_eye)
 			continue;
 		b->baker[i] = measure_room(b->meshes[i].mesh.corner_count, sizeof *b->baker[i]);
-		const nmtan_options options = {.repair = NMTAN_REPAIR_OFF};
-		const nmtan_output output = {.tangents = &b->baker[i][0][0]};
+		const nmtan_options options = {.struct_bytes = sizeof options, .repair = NMTAN_REPAIR_OFF};
+		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &b->baker[i][0][0]};
 		if (nmtan_tangents(&b->meshes[i].mesh.mesh, &options, &output, NULL))
 			exit(3);
 	}

@@ -24,8 +24,10 @@ static void judge_level(uint32_t cells, double median[SUMMED], double worst[SUMM
 		nt_owned mesh = nt_surface_grid((nt_surface)s, cells, cells, 0.25, cells);
 		float (*tangents)[4] = measure_room(mesh.corner_count, sizeof *tangents);
 		for (int m = 0; m < SUMMED; m++) {
-			const nmtan_options options = {.method = summed_methods[m]};
-			const nmtan_output output = {.tangents = &tangents[0][0]};
+			const nmtan_options options = {.struct_bytes = sizeof options,
+				.method = summed_methods[m]};
+			const nmtan_output output = {.struct_bytes = sizeof output,
+				.tangents = &tangents[0][0]};
 			if (nmtan_tangents(&mesh.mesh, &options, &output, NULL))
 				exit(3);
 			/* large meshes by a sample */
@@ -95,8 +97,8 @@ static double bevel_tilt(double width, uint32_t cells, uint32_t vertex, nmtan_me
 {
 	nt_owned mesh = bench_bevel(width, cells);
 	float (*tangents)[4] = measure_room(mesh.corner_count, sizeof *tangents);
-	const nmtan_options options = {.method = method};
-	const nmtan_output output = {.tangents = &tangents[0][0]};
+	const nmtan_options options = {.struct_bytes = sizeof options, .method = method};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
 	if (nmtan_tangents(&mesh.mesh, &options, &output, NULL))
 		exit(3);
 	const uint32_t at = vertex * (2 * cells + 2) + cells;

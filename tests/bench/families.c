@@ -32,6 +32,7 @@ static float random_float(void)
 static int allocate(nt_family_mesh *m, size_t vertices, size_t corners)
 {
 	m->corner_count = corners;
+	m->mesh.struct_bytes = sizeof m->mesh;
 	m->mesh.vertex_count = vertices;
 	m->positions = malloc(vertices * 12);
 	m->normals = malloc(vertices * 12);

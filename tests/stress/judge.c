@@ -41,10 +41,11 @@ static size_t triangle_count(const nmtan_mesh *mesh)
 static bool run(const nmtan_mesh *mesh, const column *c, nmtan_workspace *workspace, float *tangents,
 	score *s)
 {
-	const nmtan_options options = {.method = c->method, .repair = c->repair, .threads = 1,
+	const nmtan_options options = {.struct_bytes = sizeof options, .method = c->method,
+		.repair = c->repair, .threads = 1,
 		.workspace = workspace};
-	const nmtan_output output = {.tangents = tangents};
-	nmtan_counts counts;
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = tangents};
+	nmtan_counts counts = NMTAN_COUNTS_INIT;
 	double total = 0, best = INFINITY;
 	for (int i = 0; i < 50 && (i < 3 || total < 0.004) && (i < 1 || total < 2); i++) {
 		const double start = measure_thread_seconds();

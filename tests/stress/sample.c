@@ -26,10 +26,11 @@ void sample_triangles(const nt_owned *mesh, FILE *to)
 			memcpy(n[k], mesh->normals[v], sizeof n[k]);
 			memcpy(t[k], mesh->texcoords[v], sizeof t[k]);
 		}
-		const nmtan_mesh one = {.face_count = 1, .vertex_count = 3, .positions = &p[0][0],
+		const nmtan_mesh one = {.struct_bytes = sizeof one, .face_count = 1, .vertex_count = 3,
+			.positions = &p[0][0],
 			.normals = &n[0][0], .texcoords = &t[0][0]};
-		const nmtan_options options = {.method = NMTAN_METHOD_ROBUST};
-		const nmtan_output output = {.tangents = &tangents[0][0]};
+		const nmtan_options options = {.struct_bytes = sizeof options, .method = NMTAN_METHOD_ROBUST};
+		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
 		if (nmtan_tangents(&one, &options, &output, NULL))
 			continue;
 		for (int k = 0; k < 3; k++) {

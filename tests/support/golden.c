@@ -47,6 +47,7 @@ void nt_golden_free(nt_golden *golden)
 nmtan_mesh nt_golden_mesh(const nt_golden *golden)
 {
 	return (nmtan_mesh){
+		.struct_bytes = sizeof(nmtan_mesh),
 		.face_count = golden->face_count,
 		.vertex_count = golden->corner_count,
 		.face_sizes = golden->face_sizes,

@@ -328,6 +328,7 @@ static float *lay_out(const maker *m, nt_nasty *nasty, int block, size_t offset,
 static void build(maker *m, nt_nasty *nasty)
 {
 	nmtan_mesh *mesh = &nasty->mesh;
+	mesh->struct_bytes = sizeof *mesh;
 	uint8_t *sizes = malloc(m->face_count + 1);
 	uint32_t *indices = malloc((4 * m->face_count + 1) * sizeof *indices), *source = NULL;
 	bool quads = false;

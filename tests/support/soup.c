@@ -80,7 +80,8 @@ soup soup_from_mesh(const nmtan_mesh *mesh, size_t most_faces)
 
 nmtan_mesh soup_mesh(const soup *s)
 {
-	return (nmtan_mesh){.face_count = s->face_count, .vertex_count = s->corner_count,
+	return (nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = s->face_count,
+		.vertex_count = s->corner_count,
 		.face_sizes = s->sizes, .positions = &s->positions[0][0], .normals = &s->normals[0][0],
 		.texcoords = &s->texcoords[0][0]};
 }
@@ -263,7 +264,8 @@ soup_indexed soup_index(const soup *s)
 		r.indices[c] = (uint32_t)v;
 	}
 	free(first);
-	r.mesh = (nmtan_mesh){.face_count = s->face_count, .face_sizes = s->sizes, .vertex_count = count,
+	r.mesh = (nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = s->face_count,
+		.face_sizes = s->sizes, .vertex_count = count,
 		.indices = r.indices, .positions = &r.positions[0][0], .normals = &r.normals[0][0],
 		.texcoords = &r.texcoords[0][0]};
 	return r;

@@ -34,7 +34,8 @@ static nt_owned make(size_t vertex_count, size_t face_count, size_t face_size)
 		o.face_sizes = zeroed(face_count, 1);
 		memset(o.face_sizes, 4, face_count);
 	}
-	o.mesh = (nmtan_mesh){.face_count = face_count, .face_sizes = o.face_sizes, .vertex_count = vertex_count,
+	o.mesh = (nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = face_count,
+		.face_sizes = o.face_sizes, .vertex_count = vertex_count,
 		.indices = o.indices, .positions = &o.positions[0][0], .normals = &o.normals[0][0],
 		.texcoords = &o.texcoords[0][0]};
 	return o;

@@ -12,10 +12,11 @@ static const float texcoords[3][2] = {{0, 0}, {1, 0}, {0, 1}};
 
 static nmtan_status solve(nt_isa isa)
 {
-	const nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3, .positions = &positions[0][0],
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 1, .vertex_count = 3,
+		.positions = &positions[0][0],
 		.normals = &normals[0][0], .texcoords = &texcoords[0][0]};
 	float tangents[3][4];
-	const nmtan_output output = {.tangents = &tangents[0][0]};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
 	const nt_implementation implementation = {.isa = isa};
 	return nt_tangents(&mesh, NULL, &implementation, &output, NULL);
 }

@@ -15,8 +15,11 @@ typedef struct split {
 static split split_make(const nmtan_mesh *mesh, size_t corners)
 {
 	const size_t rows = mesh->vertex_count + corners + 1;
-	return (split){.out = {.indices = calloc(corners + 1, 4), .sources = calloc(corners + 1, 4),
-			       .source_capacity = corners, .vertex_tangents = calloc(rows, 16)}};
+	return (split){
+		.out = {.struct_bytes = sizeof(nmtan_split_output), .indices = calloc(corners + 1, 4),
+			.sources = calloc(corners + 1, 4), .source_capacity = corners,
+			.vertex_tangents = calloc(rows, 16)},
+		.counts = NMTAN_COUNTS_INIT};
 }
 
 static void split_free(split *s)
@@ -29,8 +32,8 @@ static void split_free(split *s)
 static void compare(const nmtan_mesh *mesh, size_t corners, const nmtan_options *options)
 {
 	split two = split_make(mesh, corners), one = split_make(mesh, corners);
-	const nmtan_output output = {.tangents = malloc(16 * corners + 1)};
-	nmtan_counts counts;
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = malloc(16 * corners + 1)};
+	nmtan_counts counts = NMTAN_COUNTS_INIT;
 	assert_int_equal(nmtan_tangents(mesh, options, &output, &counts), NMTAN_OK);
 	assert_int_equal(nmtan_split(mesh, output.tangents, options, &two.out), NMTAN_OK);
 	assert_int_equal(nmtan_vertex_tangents(mesh, options, &one.out, &one.counts), NMTAN_OK);
@@ -68,7 +71,7 @@ static void nasty_meshes_split_the_same(void **state)
 	for (uint64_t seed = 0; seed < 3000; seed++) {
 		nt_nasty nasty;
 		nt_nasty_make(seed, &nasty);
-		const nmtan_options options = {.threads = 1,
+		const nmtan_options options = {.struct_bytes = sizeof options, .threads = 1,
 			.repair = seed % 2 ? NMTAN_REPAIR_OFF : NMTAN_REPAIR_ON,
 			.method = (nmtan_method)(seed / 2 % 6 % 4)};
 		compare(&nasty.mesh, nasty.corner_count, &options);
@@ -98,11 +101,13 @@ static void clean_grid_with_a_mirror_splits_the_same(void **state)
 			}
 		}
 	}
-	const nmtan_mesh mesh = {.face_count = 2 * N * N, .vertex_count = (N + 1) * (N + 1),
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 2 * N * N,
+		.vertex_count = (N + 1) * (N + 1),
 		.indices = indices, .positions = &positions[0][0], .normals = &normals[0][0],
 		.texcoords = &texcoords[0][0]};
 	for (int method = NMTAN_METHOD_MIKKTSPACE; method <= NMTAN_METHOD_ROBUST; method++)
-		compare(&mesh, 6 * N * N, &(nmtan_options){.method = (nmtan_method)method});
+		compare(&mesh, 6 * N * N, &(nmtan_options){.struct_bytes = sizeof(nmtan_options),
+			.method = (nmtan_method)method});
 	split s = split_make(&mesh, 6 * N * N);
 	assert_int_equal(nmtan_vertex_tangents(&mesh, NULL, &s.out, &s.counts), NMTAN_OK);
 	assert_int_equal(s.out.source_count, N + 1); /* the column of the mirror */
@@ -115,10 +120,12 @@ static void arguments_are_checked(void **state)
 	float rows[3][8] = {{0}, {1}, {0, 1}};
 	uint32_t indices[3], sources[3];
 	float tangents[6][4];
-	const nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3, .positions = rows[0],
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 1, .vertex_count = 3,
+		.positions = rows[0],
 		.position_stride_bytes = 32, .normals = rows[0] + 3, .normal_stride_bytes = 32,
 		.texcoords = rows[0] + 6, .texcoord_stride_bytes = 32};
-	nmtan_split_output out = {.indices = indices, .sources = sources, .source_capacity = 3};
+	nmtan_split_output out = {.struct_bytes = sizeof out, .indices = indices, .sources = sources,
+		.source_capacity = 3};
 	assert_int_equal(nmtan_vertex_tangents(&mesh, NULL, &out, NULL), NMTAN_ERROR_ARGUMENT);
 	out.vertex_tangents = &tangents[0][0];
 	assert_int_equal(nmtan_vertex_tangents(&mesh, NULL, &out, NULL), NMTAN_OK);

@@ -125,11 +125,12 @@ static void solve_strip(size_t squares, unsigned threads, float *tangents)
 		const uint32_t a = (uint32_t)(2 * i), square[6] = {a, a + 2, a + 3, a, a + 3, a + 1};
 		memcpy(corners + 6 * i, square, sizeof square);
 	}
-	const nmtan_mesh mesh = {.face_count = 2 * squares, .vertex_count = 2 * columns, .indices = corners,
-		.positions = values, .position_stride_bytes = 32, .normals = values + 3, .normal_stride_bytes = 32,
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 2 * squares,
+		.vertex_count = 2 * columns,
+		.indices = corners, .positions = values, .position_stride_bytes = 32, .normals = values + 3, .normal_stride_bytes = 32,
 		.texcoords = values + 6, .texcoord_stride_bytes = 32};
-	const nmtan_options options = {.threads = threads};
-	const nmtan_output output = {.tangents = tangents};
+	const nmtan_options options = {.struct_bytes = sizeof options, .threads = threads};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = tangents};
 	if (nmtan_tangents(&mesh, &options, &output, NULL))
 		abort();
 	free(values);

@@ -23,12 +23,13 @@ static void solve(nmtan_method method, float length, float s, float tangent[4])
 	const float normals[6][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
 	/* left: u = x, v = y; right: u = y / s, v = -x */
 	const float texcoords[6][2] = {{0, 0}, {0, 1}, {-1, 0}, {0, 0}, {0, -length}, {length / s, 0}};
-	const nmtan_mesh mesh = {.face_count = 2, .vertex_count = 6, .positions = &positions[0][0],
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 2, .vertex_count = 6,
+		.positions = &positions[0][0],
 		.normals = &normals[0][0], .texcoords = &texcoords[0][0]};
-	const nmtan_options options = {.method = method};
+	const nmtan_options options = {.struct_bytes = sizeof options, .method = method};
 	float tangents[6][4];
-	const nmtan_output output = {.tangents = &tangents[0][0]};
-	nmtan_counts counts;
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
+	nmtan_counts counts = NMTAN_COUNTS_INIT;
 	assert_int_equal(nmtan_tangents(&mesh, &options, &output, &counts), NMTAN_OK);
 	assert_memory_equal(tangents[0], tangents[3], 16);
 	assert_int_equal(counts.mirrored, 0);
@@ -86,12 +87,13 @@ static void robust_keeps_what_is_left_of_a_needle(void **state)
 	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
 	const float texcoords[3][2] = {{0, 0}, {1, d}, {2, 2 * d + h}};
 	assert_true(texcoords[2][1] - 2 * d == h);
-	const nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3, .positions = &positions[0][0],
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 1, .vertex_count = 3,
+		.positions = &positions[0][0],
 		.normals = &normals[0][0], .texcoords = &texcoords[0][0]};
-	const nmtan_options options = {.method = NMTAN_METHOD_ROBUST};
+	const nmtan_options options = {.struct_bytes = sizeof options, .method = NMTAN_METHOD_ROBUST};
 	float tangents[3][4];
-	const nmtan_output output = {.tangents = &tangents[0][0]};
-	nmtan_counts counts;
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
+	nmtan_counts counts = NMTAN_COUNTS_INIT;
 	assert_int_equal(nmtan_tangents(&mesh, &options, &output, &counts), NMTAN_OK);
 	assert_int_equal(counts.ill_conditioned, 0);
 	for (int c = 0; c < 3; c++) {
@@ -109,11 +111,12 @@ static void robust_takes_differences_that_no_double_holds(void **state)
 	const float positions[3][3] = {{small, 0, 0}, {big, 0, 0}, {small, big, 0}};
 	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
 	const float texcoords[3][2] = {{small, -small}, {big, -small}, {small, big}};
-	const nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3, .positions = &positions[0][0],
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 1, .vertex_count = 3,
+		.positions = &positions[0][0],
 		.normals = &normals[0][0], .texcoords = &texcoords[0][0]};
-	const nmtan_options options = {.method = NMTAN_METHOD_ROBUST};
+	const nmtan_options options = {.struct_bytes = sizeof options, .method = NMTAN_METHOD_ROBUST};
 	float tangents[3][4];
-	const nmtan_output output = {.tangents = &tangents[0][0]};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
 	assert_int_equal(nmtan_tangents(&mesh, &options, &output, NULL), NMTAN_OK);
 	for (int c = 0; c < 3; c++)
 		assert_true(tangents[c][0] == 1.0f && tangents[c][1] == 0.0f && tangents[c][3] == 1.0f);
@@ -127,12 +130,13 @@ static void robust_counts_what_is_lost(void **state)
 	const float positions[3][3] = {{0, 0, 0}, {d, 0, 1}, {0, 1, 0}};
 	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
 	const float texcoords[3][2] = {{0, 0}, {1, 0}, {0, 1}};
-	const nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3, .positions = &positions[0][0],
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 1, .vertex_count = 3,
+		.positions = &positions[0][0],
 		.normals = &normals[0][0], .texcoords = &texcoords[0][0]};
-	const nmtan_options options = {.method = NMTAN_METHOD_ROBUST};
+	const nmtan_options options = {.struct_bytes = sizeof options, .method = NMTAN_METHOD_ROBUST};
 	float tangents[3][4];
-	const nmtan_output output = {.tangents = &tangents[0][0]};
-	nmtan_counts counts;
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
+	nmtan_counts counts = NMTAN_COUNTS_INIT;
 	assert_int_equal(nmtan_tangents(&mesh, &options, &output, &counts), NMTAN_OK);
 	assert_int_equal(counts.ill_conditioned, 3);
 	for (int c = 0; c < 3; c++)

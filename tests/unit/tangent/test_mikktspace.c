@@ -21,9 +21,10 @@ static void compare_file(const char *path, const nt_golden *golden, void *contex
 {
 	size_t *total = context;
 	const nmtan_mesh mesh = nt_golden_mesh(golden);
-	const nmtan_options options = {.repair = NMTAN_REPAIR_OFF};
+	const nmtan_options options = {.struct_bytes = sizeof options, .repair = NMTAN_REPAIR_OFF};
 	const nt_implementation scalar = {.scalar = true};
-	const nmtan_output output = {.tangents = malloc(16 * (size_t)golden->corner_count)};
+	const nmtan_output output = {.struct_bytes = sizeof output,
+		.tangents = malloc(16 * (size_t)golden->corner_count)};
 	assert_int_equal(nt_tangents(&mesh, &options, &scalar, &output, NULL), NMTAN_OK);
 	const size_t differences =
 		count_differences(output.tangents, golden->tangents, 4 * (size_t)golden->corner_count);

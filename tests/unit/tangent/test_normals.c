@@ -8,7 +8,8 @@
 static const float positions[8][3] = {{-1, 0, 0}, {0, 0, 0}, {0, 1, 0}, {-1, 1, 0}, {0, 0, 0}, {0, 0, -1},
 	{0, 1, -1}, {0, 1, 0}};
 static const uint8_t quads[2] = {4, 4};
-static const nmtan_mesh mesh = {.face_count = 2, .vertex_count = 8, .face_sizes = quads,
+static const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 2, .vertex_count = 8,
+	.face_sizes = quads,
 	.positions = &positions[0][0], .position_stride_bytes = 12};
 
 static void make(const uint32_t *smoothing, float (*normals)[3])
@@ -62,7 +63,8 @@ static void angle_weights_do_not_depend_on_the_cut(void **state)
 	const float p[12][3] = {{0, 0, 0}, {0, -1, 0}, {-1, 0, 0}, /* z = 0, first half would be 45 */
 		{0, 0, 0}, {0, 0, -1}, {0, -1, -1}, {0, 0, 0}, {0, -1, -1}, {0, -1, 0}, /* x = 0, cut */
 		{0, 0, 0}, {-1, 0, 0}, {0, 0, -1}};                                    /* y = 0 */
-	const nmtan_mesh cube = {.face_count = 4, .vertex_count = 12, .positions = &p[0][0],
+	const nmtan_mesh cube = {.struct_bytes = sizeof cube, .face_count = 4, .vertex_count = 12,
+		.positions = &p[0][0],
 		.position_stride_bytes = 12};
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
@@ -79,7 +81,8 @@ static void faces_without_area_give_a_unit_vector(void **state)
 {
 	(void)state;
 	const float p[3][3] = {{1, 1, 1}, {1, 1, 1}, {2, 2, 2}};
-	const nmtan_mesh sliver = {.face_count = 1, .vertex_count = 3, .positions = &p[0][0],
+	const nmtan_mesh sliver = {.struct_bytes = sizeof sliver, .face_count = 1, .vertex_count = 3,
+		.positions = &p[0][0],
 		.position_stride_bytes = 12};
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);

@@ -38,9 +38,11 @@ static oracle_weight weight_of(nmtan_method method)
 static solution solve_mesh(const nmtan_mesh *mesh, size_t corners, nmtan_method method)
 {
 	solution s = {room(corners, 16), room(corners, 16), room(corners, 12)};
-	nmtan_options options = {.method = method, .repair = NMTAN_REPAIR_OFF, .threads = 1};
-	const nmtan_output raw = {.tangents = &s.raw[0][0], .bitangents = &s.b[0][0]};
-	const nmtan_output mended = {.tangents = &s.t[0][0]};
+	nmtan_options options = {.struct_bytes = sizeof options, .method = method,
+		.repair = NMTAN_REPAIR_OFF, .threads = 1};
+	const nmtan_output raw = {.struct_bytes = sizeof raw, .tangents = &s.raw[0][0],
+		.bitangents = &s.b[0][0]};
+	const nmtan_output mended = {.struct_bytes = sizeof mended, .tangents = &s.t[0][0]};
 	assert_int_equal(nmtan_tangents(mesh, &options, &raw, NULL), NMTAN_OK);
 	options.repair = NMTAN_REPAIR_ON;
 	assert_int_equal(nmtan_tangents(mesh, &options, &mended, NULL), NMTAN_OK);

@@ -53,11 +53,11 @@ static void check_promises(const nmtan_mesh *given, size_t corner_count, nmtan_m
 	nmtan_mesh mesh = *given;
 	mesh.position_stride_bytes = mesh.normal_stride_bytes = 12;
 	mesh.texcoord_stride_bytes = 8;
-	const nmtan_output raw = {.tangents = malloc(16 * corner_count)};
-	const nmtan_output mended = {.tangents = malloc(16 * corner_count)};
-	nmtan_counts counts;
-	const nmtan_options off = {.method = method, .repair = NMTAN_REPAIR_OFF};
-	const nmtan_options on = {.method = method};
+	const nmtan_output raw = {.struct_bytes = sizeof raw, .tangents = malloc(16 * corner_count)};
+	const nmtan_output mended = {.struct_bytes = sizeof mended, .tangents = malloc(16 * corner_count)};
+	nmtan_counts counts = NMTAN_COUNTS_INIT;
+	const nmtan_options off = {.struct_bytes = sizeof off, .method = method, .repair = NMTAN_REPAIR_OFF};
+	const nmtan_options on = {.struct_bytes = sizeof on, .method = method};
 	assert_int_equal(nmtan_tangents(&mesh, &off, &raw, NULL), NMTAN_OK);
 	assert_int_equal(nmtan_tangents(&mesh, &on, &mended, &counts), NMTAN_OK);
 	size_t first = 0, changed = 0;
@@ -109,8 +109,9 @@ static void leaning_answers_of_the_reference_are_counted(const char *path, const
 {
 	(void)path;
 	const nmtan_mesh mesh = nt_golden_mesh(golden);
-	const nmtan_output output = {.tangents = malloc(16 * (size_t)golden->corner_count)};
-	nmtan_counts counts;
+	const nmtan_output output = {.struct_bytes = sizeof output,
+		.tangents = malloc(16 * (size_t)golden->corner_count)};
+	nmtan_counts counts = NMTAN_COUNTS_INIT;
 	assert_int_equal(nmtan_tangents(&mesh, NULL, &output, &counts), NMTAN_OK);
 	size_t *sums = context;
 	sums[0] += counts.repaired_leaning;
@@ -159,10 +160,11 @@ static void check_scaled_grid(float uv_scale, float scale)
 			n += 6;
 		}
 	}
-	const nmtan_mesh mesh = {.face_count = 8, .vertex_count = 9, .indices = indices,
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 8, .vertex_count = 9,
+		.indices = indices,
 		.positions = &positions[0][0], .normals = &normals[0][0], .texcoords = &texcoords[0][0]};
 	float tangents[24][4];
-	const nmtan_output output = {.tangents = &tangents[0][0]};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
 	assert_int_equal(nmtan_tangents(&mesh, NULL, &output, NULL), NMTAN_OK);
 	for (int c = 0; c < 24; c++) {
 		assert_true(fabsf(tangents[c][0] - 1.0f) < 1e-6f);
@@ -193,14 +195,14 @@ static void missing_texture_space_gives_a_perpendicular(void **state)
 		float texcoords[3][2] = {{0.5f, 0.5f}, {0.5f, 0.5f}, {0.5f, 0.5f}};
 		for (int v = 0; v < 3; v++)
 			memcpy(normals[v], (float[3]){r * cosf(a), r * sinf(a), z}, 12);
-		const nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3,
+		const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 1, .vertex_count = 3,
 			.positions = &positions[0][0], .normals = &normals[0][0],
 			.texcoords = &texcoords[0][0]};
 		tally sum = {0};
 		check_promises(&mesh, 3, NMTAN_METHOD_MIKKTSPACE, &sum);
 		float tangents[3][4];
-		const nmtan_output output = {.tangents = &tangents[0][0]};
-		nmtan_counts counts;
+		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
+		nmtan_counts counts = NMTAN_COUNTS_INIT;
 		assert_int_equal(nmtan_tangents(&mesh, NULL, &output, &counts), NMTAN_OK);
 		assert_int_equal(counts.repaired_unassigned, 3);
 	}
@@ -212,7 +214,8 @@ typedef struct three {
 
 static nmtan_mesh three_mesh(const three *t)
 {
-	return (nmtan_mesh){.face_count = 1, .vertex_count = 3, .positions = &t->positions[0][0],
+	return (nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = 1, .vertex_count = 3,
+		.positions = &t->positions[0][0],
 		.normals = &t->normals[0][0], .texcoords = &t->texcoords[0][0]};
 }
 
@@ -237,9 +240,11 @@ static void a_triangle_without_a_float_determinant_is_repaired(void **state)
 		for (int method = NMTAN_METHOD_MIKKTSPACE; method <= NMTAN_METHOD_ROBUST; method++) {
 			tally sum = {0};
 			float tangents[3][4];
-			const nmtan_output output = {.tangents = &tangents[0][0]};
-			nmtan_counts counts;
-			const nmtan_options options = {.method = (nmtan_method)method};
+			const nmtan_output output = {.struct_bytes = sizeof output,
+				.tangents = &tangents[0][0]};
+			nmtan_counts counts = NMTAN_COUNTS_INIT;
+			const nmtan_options options = {.struct_bytes = sizeof options,
+				.method = (nmtan_method)method};
 			check_promises(&mesh, 3, (nmtan_method)method, &sum);
 			assert_int_equal(nmtan_tangents(&mesh, &options, &output, &counts), NMTAN_OK);
 			oracle_corner exact[3];
@@ -273,8 +278,9 @@ static void twins_at_tiny_scales_are_repaired_alike(void **state)
 					torus.positions[v][k] *= scales[i][1];
 				torus.texcoords[v][0] *= mirrored ? -1 : 1;
 			}
-			const nmtan_output output = {.tangents = &tangents[mirrored][0][0]};
-			nmtan_counts counts;
+			const nmtan_output output = {.struct_bytes = sizeof output,
+				.tangents = &tangents[mirrored][0][0]};
+			nmtan_counts counts = NMTAN_COUNTS_INIT;
 			assert_int_equal(nmtan_tangents(&torus.mesh, NULL, &output, &counts), NMTAN_OK);
 			const nmtan_counts *n = &counts;
 			repaired[mirrored] = n->repaired_zero + n->repaired_not_finite + n->repaired_parallel +
@@ -305,12 +311,13 @@ static void stored_texture_coordinates_decide_the_sign(void **state)
 	const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
 	const float unit = 5.9604645e-8f;
 	const float texcoords[3][2] = {{0, 0}, {1, 2.75f * unit}, {0.5f, 1.45f * unit}};
-	const nmtan_stored_uv stored = {.v_offset = -1};
-	nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3, .positions = &positions[0][0],
+	const nmtan_stored_uv stored = {.struct_bytes = sizeof stored, .v_offset = -1};
+	nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 1, .vertex_count = 3,
+		.positions = &positions[0][0],
 		.normals = &normals[0][0], .texcoords = &texcoords[0][0], .stored = &stored};
 	float tangents[3][4];
-	const nmtan_output output = {.tangents = &tangents[0][0]};
-	nmtan_counts counts;
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
+	nmtan_counts counts = NMTAN_COUNTS_INIT;
 	assert_int_equal(nmtan_tangents(&mesh, NULL, &output, &counts), NMTAN_OK);
 	for (int c = 0; c < 3; c++)
 		assert_true(tangents[c][3] == -1.0f);
@@ -340,14 +347,19 @@ static void coordinates_before_a_transform_decide_the_sign(void **state)
 	assert_int_equal(nmtan_orientation(scaled[0], scaled[1], scaled[2]), -1);
 	for (int method = NMTAN_METHOD_MIKKTSPACE; method <= NMTAN_METHOD_ROBUST; method++)
 		for (int mirrored = 0; mirrored < 2; mirrored++) {
-			const nmtan_stored_uv stored = {.texcoords = &exact[0][0], .mirrored = mirrored};
-			nmtan_mesh mesh = {.face_count = 1, .vertex_count = 3, .positions = &positions[0][0],
+			const nmtan_stored_uv stored = {.struct_bytes = sizeof stored,
+				.texcoords = &exact[0][0], .mirrored = mirrored};
+			nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 1, .vertex_count = 3,
+				.positions = &positions[0][0],
 				.normals = &normals[0][0], .texcoords = &scaled[0][0], .stored = &stored};
-			const nmtan_options options = {.method = (nmtan_method)method};
+			const nmtan_options options = {.struct_bytes = sizeof options,
+				.method = (nmtan_method)method};
 			float tangents[3][4], split[6][4];
 			uint32_t indices[3], sources[3];
-			const nmtan_output output = {.tangents = &tangents[0][0]};
-			nmtan_split_output vertices = {.indices = indices, .sources = sources,
+			const nmtan_output output = {.struct_bytes = sizeof output,
+				.tangents = &tangents[0][0]};
+			nmtan_split_output vertices = {.struct_bytes = sizeof vertices, .indices = indices,
+				.sources = sources,
 				.source_capacity = 3, .vertex_tangents = &split[0][0]};
 			assert_int_equal(nmtan_tangents(&mesh, &options, &output, NULL), NMTAN_OK);
 			assert_int_equal(nmtan_vertex_tangents(&mesh, &options, &vertices, NULL), NMTAN_OK);
@@ -368,12 +380,13 @@ static void folded_quad_takes_the_sign_of_its_larger_half(void **state)
 	const float normals[4][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
 	float texcoords[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0.75f, 0.5f}};
 	const uint8_t four = 4;
-	const nmtan_mesh mesh = {.face_count = 1, .vertex_count = 4, .face_sizes = &four,
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 1, .vertex_count = 4,
+		.face_sizes = &four,
 		.positions = &positions[0][0], .normals = &normals[0][0],
 		.texcoords = &texcoords[0][0]};
 	float tangents[4][4];
-	const nmtan_output output = {.tangents = &tangents[0][0]};
-	nmtan_counts counts;
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
+	nmtan_counts counts = NMTAN_COUNTS_INIT;
 	assert_int_equal(nmtan_tangents(&mesh, NULL, &output, &counts), NMTAN_OK);
 	assert_int_equal(counts.folded_quads, 0);
 	texcoords[3][0] = 1.25f;

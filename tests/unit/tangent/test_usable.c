@@ -21,13 +21,13 @@ static size_t count_differences(const float *a, const float *b, size_t count)
 static void compare_paths(const nmtan_mesh *given, size_t corner_count, float offset, nmtan_repair repair)
 {
 	nmtan_mesh mesh = *given;
-	const nmtan_stored_uv stored = {.v_offset = offset};
+	const nmtan_stored_uv stored = {.struct_bytes = sizeof stored, .v_offset = offset};
 	mesh.stored = &stored;
-	const nmtan_output scalar = {.tangents = malloc(16 * corner_count + 1)};
-	nmtan_counts scalar_counts;
-	const nmtan_output fast = {.tangents = malloc(16 * corner_count + 1)};
-	nmtan_counts fast_counts;
-	const nmtan_options options = {.repair = repair, .threads = 1};
+	const nmtan_output scalar = {.struct_bytes = sizeof scalar, .tangents = malloc(16 * corner_count + 1)};
+	nmtan_counts scalar_counts = NMTAN_COUNTS_INIT;
+	const nmtan_output fast = {.struct_bytes = sizeof fast, .tangents = malloc(16 * corner_count + 1)};
+	nmtan_counts fast_counts = NMTAN_COUNTS_INIT;
+	const nmtan_options options = {.struct_bytes = sizeof options, .repair = repair, .threads = 1};
 	const nt_implementation one_by_one = {.scalar = true};
 	assert_int_equal(nt_tangents(&mesh, &options, &one_by_one, &scalar, &scalar_counts), NMTAN_OK);
 	assert_int_equal(nmtan_tangents(&mesh, &options, &fast, &fast_counts), NMTAN_OK);
@@ -84,15 +84,15 @@ static void slivers_around_the_bound_are_judged_exactly(void **state)
 			memcpy(texcoords[3 * t + k], (float[2]){(float)k + r, height}, 8);
 		}
 	}
-	const nmtan_mesh mesh = {.face_count = COUNT, .vertex_count = 3 * COUNT,
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = COUNT, .vertex_count = 3 * COUNT,
 		.positions = &positions[0][0], .normals = &normals[0][0], .texcoords = &texcoords[0][0]};
 	for (int offset = -1; offset <= 1; offset++)
 		compare_paths(&mesh, 3 * COUNT, (float)offset, NMTAN_REPAIR_ON);
-	const nmtan_stored_uv minus_one = {.v_offset = -1};
+	const nmtan_stored_uv minus_one = {.struct_bytes = sizeof minus_one, .v_offset = -1};
 	nmtan_mesh stored = mesh;
 	stored.stored = &minus_one;
-	const nmtan_output output = {.tangents = malloc(48 * COUNT)};
-	nmtan_counts counts;
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = malloc(48 * COUNT)};
+	nmtan_counts counts = NMTAN_COUNTS_INIT;
 	assert_int_equal(nmtan_tangents(&stored, NULL, &output, &counts), NMTAN_OK);
 	for (int t = 0; t < COUNT; t++) {
 		float s[3][2];

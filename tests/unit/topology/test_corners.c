@@ -6,7 +6,7 @@
 /* Rows of position, normal, texture coordinates; corner c is vertex c. */
 static void weld(const float (*rows)[8], size_t count, uint32_t *ids, size_t *welded)
 {
-	const nmtan_mesh mesh = {.face_count = count / 3, .vertex_count = count,
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = count / 3, .vertex_count = count,
 		.positions = rows[0], .position_stride_bytes = 32, .normals = rows[0] + 3,
 		.normal_stride_bytes = 32, .texcoords = rows[0] + 6, .texcoord_stride_bytes = 32};
 	nt_scratch scratch;
@@ -45,7 +45,8 @@ static void indexed_corners_take_their_vertex(void **state)
 	(void)state;
 	const float rows[3][8] = {{1}, {2}, {NAN}};
 	const uint32_t indices[6] = {0, 1, 2, 1, 0, 2};
-	const nmtan_mesh mesh = {.face_count = 2, .vertex_count = 3, .indices = indices,
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 2, .vertex_count = 3,
+		.indices = indices,
 		.positions = rows[0], .position_stride_bytes = 32, .normals = rows[0] + 3,
 		.normal_stride_bytes = 32, .texcoords = rows[0] + 6, .texcoord_stride_bytes = 32};
 	nt_scratch scratch;

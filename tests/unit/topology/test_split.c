@@ -14,8 +14,10 @@ static void split_hub(size_t n, const float (*hub_tangents)[4], uint32_t *hub_in
 		memcpy(indices + 3 * t, corners, sizeof corners);
 		memcpy(tangents[3 * t], hub_tangents[t], 16);
 	}
-	const nmtan_mesh mesh = {.face_count = n, .vertex_count = n + 2, .indices = indices};
-	nmtan_split_output split = {.indices = out, .sources = sources, .source_capacity = 3 * n};
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = n, .vertex_count = n + 2,
+		.indices = indices};
+	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = out, .sources = sources,
+		.source_capacity = 3 * n};
 	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], NULL, &split), NMTAN_OK);
 	for (size_t t = 0; t < n; t++)
 		hub_indices[t] = out[3 * t];
@@ -82,9 +84,11 @@ static void unused_vertices_get_a_unit_tangent(void **state)
 	const float tangents[3][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}};
 	float vertex_tangents[8][4];
 	uint32_t out[3], sources[3];
-	const nmtan_mesh mesh = {.face_count = 1, .vertex_count = 5, .indices = indices,
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 1, .vertex_count = 5,
+		.indices = indices,
 		.normals = &normals[0][0]};
-	nmtan_split_output split = {.indices = out, .sources = sources, .source_capacity = 3,
+	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = out, .sources = sources,
+		.source_capacity = 3,
 		.vertex_tangents = &vertex_tangents[0][0]};
 	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], NULL, &split), NMTAN_OK);
 	const float *t = vertex_tangents[3];

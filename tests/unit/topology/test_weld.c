@@ -17,7 +17,8 @@ typedef float vertex_row[8];
 
 static nmtan_mesh mesh_of(const vertex_row *rows, size_t vertices, const uint32_t *indices, size_t corners)
 {
-	return (nmtan_mesh){.face_count = corners / 3, .vertex_count = vertices, .indices = indices,
+	return (nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = corners / 3,
+		.vertex_count = vertices, .indices = indices,
 		.positions = rows[0], .position_stride_bytes = 32, .normals = rows[0] + 3,
 		.normal_stride_bytes = 32, .texcoords = rows[0] + 6, .texcoord_stride_bytes = 32};
 }

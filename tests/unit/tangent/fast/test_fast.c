@@ -157,7 +157,8 @@ static bool compare_wide_fan(int bits, int turn, bool middle_first, size_t *diff
 		t[i][0] = x[i], t[i][1] = v[i];
 	}
 	const unsigned in_order[9] = {0, 1, 2, 0, 2, 3, 0, 3, 4}, other[9] = {0, 2, 3, 0, 1, 2, 0, 3, 4};
-	const nmtan_mesh loose = {.face_count = 3, .vertex_count = 5, .positions = p[0], .normals = n[0],
+	const nmtan_mesh loose = {.struct_bytes = sizeof loose, .face_count = 3, .vertex_count = 5,
+		.positions = p[0], .normals = n[0],
 		.texcoords = t[0], .indices = middle_first ? other : in_order};
 	const nmtan_mesh mesh = filled(&loose);
 	result expected = result_make(9);
@@ -203,7 +204,8 @@ static size_t compare_short_fan(uint32_t random)
 	}
 	for (unsigned i = 0; i < FACES; i++)
 		memcpy(indices[i], (unsigned[3]){0, i + 1, i + 2}, sizeof indices[i]);
-	const nmtan_mesh loose = {.face_count = FACES, .vertex_count = RIM + 1, .positions = p[0], .normals = n[0],
+	const nmtan_mesh loose = {.struct_bytes = sizeof loose, .face_count = FACES, .vertex_count = RIM + 1,
+		.positions = p[0], .normals = n[0],
 		.texcoords = t[0], .indices = indices[0]};
 	const nmtan_mesh mesh = filled(&loose);
 	result expected = result_make(3 * FACES);
@@ -289,7 +291,8 @@ static size_t fill_faces(bool quads, unsigned *indices)
 /* Tangents by vertex, which the split of a sparse solve reads from the records. */
 static void compare_vertices(const nmtan_mesh *mesh, size_t corners, const nmtan_options *options, const float *expected)
 {
-	nmtan_split_output split = {.indices = malloc(corners * 4), .sources = malloc(corners * 4),
+	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = malloc(corners * 4),
+		.sources = malloc(corners * 4),
 		.source_capacity = corners, .vertex_tangents = malloc((mesh->vertex_count + corners) * 16)};
 	assert_int_equal(nmtan_vertex_tangents(mesh, options, &split, NULL), NMTAN_OK);
 	size_t differences = 0;
@@ -305,16 +308,16 @@ static void compare_vertices(const nmtan_mesh *mesh, size_t corners, const nmtan
 static void compare_repaired(const nmtan_mesh *mesh, size_t corners, bool lost)
 {
 	result expected = result_make(corners);
-	const nmtan_output wanted = {.tangents = expected.tangents};
-	nmtan_counts wanted_counts;
+	const nmtan_output wanted = {.struct_bytes = sizeof wanted, .tangents = expected.tangents};
+	nmtan_counts wanted_counts = NMTAN_COUNTS_INIT;
 	const nt_implementation scalar = {.scalar = true};
 	assert_int_equal(nt_tangents(mesh, NULL, &scalar, &wanted, &wanted_counts), NMTAN_OK);
 	assert_int_equal(wanted_counts.repaired_parallel > 0, lost);
 	for (unsigned threads = 1; threads <= 2; threads++) {
 		result got = result_make(corners);
-		const nmtan_output output = {.tangents = got.tangents};
-		nmtan_counts counts;
-		const nmtan_options options = {.threads = threads};
+		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = got.tangents};
+		nmtan_counts counts = NMTAN_COUNTS_INIT;
+		const nmtan_options options = {.struct_bytes = sizeof options, .threads = threads};
 		assert_int_equal(nmtan_tangents(mesh, &options, &output, &counts), NMTAN_OK);
 		assert_memory_equal(got.tangents, expected.tangents, corners * 16);
 		assert_memory_equal(&counts, &wanted_counts, sizeof wanted_counts);
@@ -333,7 +336,8 @@ static void compare_scattered(grid g)
 	fill_vertices(g, p, n, t);
 	memset(sizes, 4, CELLS);
 	const size_t corners = fill_faces(quads, indices);
-	const nmtan_mesh loose = {.face_count = quads ? CELLS : 2 * CELLS, .vertex_count = GRID_VERTICES, .positions = p,
+	const nmtan_mesh loose = {.struct_bytes = sizeof loose, .face_count = quads ? CELLS : 2 * CELLS,
+		.vertex_count = GRID_VERTICES, .positions = p,
 		.normals = n, .texcoords = t, .indices = indices, .face_sizes = quads ? sizes : NULL};
 	const nmtan_mesh mesh = filled(&loose);
 	result expected = result_make(corners);
@@ -424,7 +428,8 @@ static void every_failed_allocation_is_told(void **state)
 	}
 	memcpy(p + 3 * 300, p, 12 * 2);
 	memcpy(p, p + 3, 12);
-	const nmtan_mesh loose = {.face_count = corners / 3, .vertex_count = corners, .positions = p, .normals = n,
+	const nmtan_mesh loose = {.struct_bytes = sizeof loose, .face_count = corners / 3,
+		.vertex_count = corners, .positions = p, .normals = n,
 		.texcoords = t};
 	const nmtan_mesh mesh = filled(&loose);
 	result r = result_make(corners);

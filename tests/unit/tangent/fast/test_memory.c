@@ -33,7 +33,8 @@ static void put_vertex(shape *s, size_t v, float x, float y, float u, float v_up
 /* Bytes a triangle; frees the shape. */
 static double solve_bytes(shape *s)
 {
-	const nmtan_mesh mesh = {.face_count = s->triangle_count, .vertex_count = s->vertex_count, .positions = s->p,
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = s->triangle_count,
+		.vertex_count = s->vertex_count, .positions = s->p,
 		.normals = s->n, .texcoords = s->t, .indices = s->indices, .position_stride_bytes = 12,
 		.normal_stride_bytes = 12, .texcoord_stride_bytes = 8};
 	float *tangents = malloc(s->triangle_count * 48);

@@ -14,7 +14,8 @@ static void solve(const nmtan_mesh *mesh, nmtan_options options, nt_implementati
 	float *tangents, float *bitangents,
 	nmtan_counts *counts)
 {
-	const nmtan_output output = {.tangents = tangents, .bitangents = bitangents};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = tangents,
+		.bitangents = bitangents};
 	assert_int_equal(nt_tangents(mesh, &options, &implementation, &output, counts), NMTAN_OK);
 }
 
@@ -23,12 +24,14 @@ static void compare_paths(const nmtan_mesh *mesh, size_t corners)
 	float *expected = malloc(16 * corners), *got = malloc(16 * corners);
 	float *expected_b = malloc(12 * corners), *got_b = malloc(12 * corners);
 	for (int method = NMTAN_METHOD_AREA; method <= NMTAN_METHOD_ROBUST; method++) {
-		const nmtan_options scalar = {.method = (nmtan_method)method, .threads = 1};
-		nmtan_counts a, b;
+		const nmtan_options scalar = {.struct_bytes = sizeof scalar, .method = (nmtan_method)method,
+			.threads = 1};
+		nmtan_counts a = NMTAN_COUNTS_INIT, b = NMTAN_COUNTS_INIT;
 		solve(mesh, scalar, (nt_implementation){.scalar = true}, expected, expected_b, &a);
 		for (int isa = NT_ISA_AUTO; isa <= NT_ISA_AVX512; isa++) {
 			for (unsigned threads = 1; threads < 6 && nt_cpu_has((nt_isa)isa); threads += 2) {
-				const nmtan_options fast = {.method = (nmtan_method)method, .threads = threads};
+				const nmtan_options fast = {.struct_bytes = sizeof fast,
+					.method = (nmtan_method)method, .threads = threads};
 				solve(mesh, fast, (nt_implementation){.isa = (nt_isa)isa}, got, got_b, &b);
 				assert_memory_equal(got, expected, 16 * corners);
 				assert_memory_equal(got_b, expected_b, 12 * corners);
@@ -73,7 +76,7 @@ static void all_paths_give_the_same_bytes_on_a_large_mesh(void **state)
 			grid.texcoords[v][v % 2] = odd[v % 4];
 	}
 	compare_paths(&grid.mesh, grid.corner_count);
-	grid.mesh.stored = &(nmtan_stored_uv){.v_offset = 1};
+	grid.mesh.stored = &(nmtan_stored_uv){.struct_bytes = sizeof(nmtan_stored_uv), .v_offset = 1};
 	compare_paths(&grid.mesh, grid.corner_count);
 	nt_owned_free(&grid);
 }
@@ -112,7 +115,7 @@ static void all_paths_give_the_same_bytes_on_quads(void **state)
 	grid.mesh.indices = indices;
 	grid.mesh.face_count = faces;
 	compare_paths(&grid.mesh, corners);
-	grid.mesh.stored = &(nmtan_stored_uv){.v_offset = -1};
+	grid.mesh.stored = &(nmtan_stored_uv){.struct_bytes = sizeof(nmtan_stored_uv), .v_offset = -1};
 	compare_paths(&grid.mesh, corners);
 	nt_owned_free(&grid);
 	free(indices);
