@@ -21,6 +21,10 @@ cc -std=c11 -Wall -Wextra -Werror -pedantic -I"$ROOT/include" -o program program
 ./program >printed || wrong "exit code $?"
 diff expected printed || wrong "prints something else"
 
+scene "the C program of the README compiles as C++17 too"
+block c 1 >program.cpp
+c++ -std=c++17 -Wall -Wextra -Werror -pedantic -I"$ROOT/include" -fsyntax-only program.cpp || wrong "does not compile"
+
 scene "the README's demo is what make demo prints"
 # Times differ from run to run; numbers before "s" and the table of --timing are left out.
 clean() {

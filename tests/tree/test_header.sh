@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: MIT
+# The example at the top of include/nmtan.h compiles as it stands, in C11 and in C++17, without a warning, and
+# gives what the header says; so do the macros that initialise structs.
+. "$ROOT/tests/support/cli.sh"
+header=$ROOT/include/nmtan.h
+
+# What is set in by five spaces in the first comment.
+cd "$WORK" || exit 1
+sed -n '1,/^#ifndef/s/^ \*     //p' "$header" >example
+
+cat >program.c <<'END'
+#include <nmtan.h>
+#include <stdio.h>
+
+int main(void)
+{
+#include "example"
+	printf("%s, %u copies of %u and %u\n", nmtan_status_text(status), (unsigned)output.source_count,
+		(unsigned)sources[0], (unsigned)sources[1]);
+	for (int c = 0; c < 12; c++)
+		printf("%u: %g %g %g %g\n", (unsigned)indices[c], tangents[indices[c]][0], tangents[indices[c]][1],
+			tangents[indices[c]][2], tangents[indices[c]][3]);
+	const nmtan_options options = NMTAN_OPTIONS_INIT;
+	const nmtan_output corners = NMTAN_OUTPUT_INIT;
+	const nmtan_counts counts = NMTAN_COUNTS_INIT;
+	const nmtan_timing timing = NMTAN_TIMING_INIT;
+	const nmtan_stored_uv stored = NMTAN_STORED_UV_INIT;
+	return options.struct_bytes == sizeof options && corners.struct_bytes == sizeof corners &&
+		counts.struct_bytes == sizeof counts && timing.struct_bytes == sizeof timing &&
+		stored.struct_bytes == sizeof stored ? 0 : 1;
+}
+END
+cp program.c program.cpp
+
+# Derived by hand: u grows along +x on the left and along -x on the right, v along +y on both.
+cat >expected <<'END'
+ok, 2 copies of 1 and 2
+0: 1 0 0 1
+1: 1 0 0 1
+2: 1 0 0 1
+0: 1 0 0 1
+2: 1 0 0 1
+3: 1 0 0 1
+6: -1 0 0 -1
+4: -1 0 0 -1
+5: -1 0 0 -1
+6: -1 0 0 -1
+5: -1 0 0 -1
+7: -1 0 0 -1
+END
+strict="-Wall -Wextra -Werror -pedantic"
+
+scene "the example of nmtan.h has at most thirteen lines and runs as C11"
+is "$(($(wc -l <../example) <= 13))" 1
+cc -std=c11 $strict -I"$ROOT/include" -o program ../program.c "$BUILD/libnmtan.a" -pthread -lm ||
+	wrong "does not compile"
+./program >printed || wrong "exit code $?"
+diff ../expected printed || wrong "prints something else"
+
+scene "the example of nmtan.h runs as C++17"
+c++ -std=c++17 $strict -I"$ROOT/include" -o program ../program.cpp "$BUILD/libnmtan.a" -pthread -lm ||
+	wrong "does not compile"
+./program >printed || wrong "exit code $?"
+diff ../expected printed || wrong "prints something else"
+
+done_testing
