@@ -7,7 +7,7 @@
 set -eu
 
 build="pkg-config libopenmesh-dev libtinygltf-dev nlohmann-json3-dev libdraco-dev
-	libmeshoptimizer-dev libfast-float-dev"
+	libmeshoptimizer-dev libfast-float-dev libxxhash-dev"
 check="libcmocka-dev chromium"
 
 # Programs are looked for by name, since they often come from elsewhere than Debian.
