@@ -163,8 +163,8 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	nt_buffer_format(out, ": %s", settings->check ? "checked, "
 				      : settings->dry_run ? "dry run, nothing written, "
 							  : "");
-	if (s->copied)
-		nt_buffer_text(out, "copied as it is, ");
+	if (s->left)
+		nt_buffer_text(out, "left as it is, ");
 	if (settings->check || s->solved_count == s->mesh_count)
 		append_count(out, s->mesh_count, "primitive");
 	else
@@ -188,7 +188,10 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 		append_findings_count(out, s);
 	else
 		append_skipped(out, s);
-	nt_buffer_format(out, ", %.3g s\n", s->total_seconds);
+	nt_buffer_format(out, ", %.3g s", s->total_seconds);
+	if (s->note)
+		nt_buffer_clean(out, s->note);
+	nt_buffer_text(out, "\n");
 }
 
 void nt_message_meshes(nt_buffer *out, const nt_job *job)

@@ -76,7 +76,7 @@ const nt_option_row nt_option_rows[] = {
 		"write bitangents too: bx by bz in PLY, _BITANGENT in glTF", SETTING(bitangents), true},
 	{"no-clobber", 'n', NT_OPTION_FLAG, NULL, 0, 0, NULL, "never replace a file",
 		SETTING(no_clobber), true},
-	{"sync", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "fsync before an output takes its name",
+	{"sync", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "fsync files and folders, so that a power cut leaves the old or the new output",
 		SETTING(sync), true},
 	{"verify", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"read a glTF output back with tinygltf before it takes its name", SETTING(verify), true},

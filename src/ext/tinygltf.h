@@ -95,20 +95,26 @@ typedef struct nt_model_text {
 /* How the document refers to its buffer. */
 typedef enum nt_model_buffer {
 	NT_MODEL_CHUNK,  /* the BIN chunk of the .glb */
-	NT_MODEL_FILE,   /* a URI */
+	NT_MODEL_FILE,   /* an nt_model_file */
 	NT_MODEL_EMBEDDED /* a data URI */
 } nt_model_buffer;
+
+/* A buffer in a file of its own. */
+typedef struct nt_model_file {
+	const char *uri;    /* percent-encoded, written as it is */
+	const char *extras; /* JSON; NULL: none */
+} nt_model_file;
 
 /*
  * The document as compact JSON.
  *
  *   buffer_length  bytes; 0: the document has no buffer
- *   uri            of the buffer, percent-encoded; NT_MODEL_FILE only
+ *   file           of the buffer; NT_MODEL_FILE only
  *
  * Returns NT_OK, NT_ERROR_MEMORY or NT_ERROR_INTERNAL; also for an addition that failed.
  */
 nt_status nt_model_json(nt_model *model, uint64_t buffer_length, nt_model_buffer buffer,
-	const char *uri, nt_model_text *text, nt_error *error);
+	const nt_model_file *file, nt_model_text *text, nt_error *error);
 void nt_model_text_free(nt_model_text *text);
 
 /* ---- reading back ---- */

@@ -122,12 +122,15 @@ bool keep_image(const std::string *, const std::string *, const tinygltf::Image 
 }
 
 // The buffers' member of the root, with the place for the base64 after `cut` bytes.
-std::string buffers_member(uint64_t length, nt_model_buffer kind, const char *uri, size_t &cut)
+std::string buffers_member(uint64_t length, nt_model_buffer kind, const nt_model_file *file, size_t &cut)
 {
 	std::string member = ",\"buffers\":[{\"byteLength\":" + std::to_string(length);
 	cut = std::string::npos;
-	if (kind == NT_MODEL_FILE)
-		member += ",\"uri\":\"" + std::string(uri) + "\"";
+	if (kind == NT_MODEL_FILE) {
+		member += ",\"uri\":\"" + std::string(file->uri) + "\"";
+		if (file->extras)
+			member += ",\"extras\":" + std::string(file->extras);
+	}
 	if (kind == NT_MODEL_EMBEDDED) {
 		member += ",\"uri\":\"data:application/octet-stream;base64,";
 		cut = member.size();
@@ -296,7 +299,7 @@ uint32_t nt_model_node(nt_model *model, const char *name, uint32_t mesh, const d
 }
 
 nt_status nt_model_json(nt_model *model, uint64_t buffer_length, nt_model_buffer buffer,
-	const char *uri, nt_model_text *text, nt_error *error)
+	const nt_model_file *file, nt_model_text *text, nt_error *error)
 {
 	*text = {nullptr, 0, 0};
 	if (model->status != NT_OK) {
@@ -316,7 +319,7 @@ nt_status nt_model_json(nt_model *model, uint64_t buffer_length, nt_model_buffer
 		size_t cut = std::string::npos;
 		const size_t before = json.size();
 		if (buffer_length)
-			json += buffers_member(buffer_length, buffer, uri, cut);
+			json += buffers_member(buffer_length, buffer, file, cut);
 		json += "}";
 		text->data = static_cast<char *>(std::malloc(json.size()));
 		if (!text->data)

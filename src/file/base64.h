@@ -7,7 +7,7 @@
 #define NT_FILE_BASE64_H
 
 #include "base/buffer.h"
-#include "file/input.h"
+#include "file/output.h"
 
 /* Zeroed but for the sink. */
 typedef struct nt_base64 {

@@ -3,9 +3,9 @@
  * Temporary files that a signal removes: see temporary.h.
  *
  * The list is plain and guarded by a spin lock. Who takes the lock blocks the signals in its own thread
- * first, so the handler never waits for the thread it interrupted; it may wait for another one, which
- * goes on. The handler keeps the lock: from then on nobody creates or renames anything. Only unlink,
- * poll, signal calls and lock-free atomics run in the handler; all of them are async-signal-safe.
+ * first, so the handler never waits for the thread it interrupted; it may wait for others: for those that hold, and
+ * for the lock, which it keeps: from then on nobody creates, renames or holds anything. Only unlink, poll, signal
+ * calls and lock-free atomics run in the handler; all of them are async-signal-safe.
  */
 #include "file/temporary.h"
 
@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
-#include "file/input.h"
+#include "file/maker.h"
 
 /* What is tried before giving up on a free name: names of dead processes with our number are rare. */
 enum { MOST_ATTEMPTS = 1000 };
@@ -32,63 +32,116 @@ struct nt_temporary {
 static const int caught_signals[] = {SIGINT, SIGTERM, SIGHUP};
 enum { CAUGHT_COUNT = sizeof caught_signals / sizeof caught_signals[0] };
 
+static const char name_head[] = ".nmtan-", name_tail[] = ".tmp";
+
 static atomic_flag list_lock = ATOMIC_FLAG_INIT;
 static nt_temporary *list;
-static sigset_t mask_before_hold; /* of the thread that holds the lock */
+static atomic_uint holders;
+static atomic_bool ending; /* a signal has come */
 
-static void take_lock(void)
+static void block_signals(sigset_t *before)
+{
+	sigset_t blocked;
+	sigemptyset(&blocked);
+	for (int i = 0; i < CAUGHT_COUNT; i++)
+		sigaddset(&blocked, caught_signals[i]);
+	pthread_sigmask(SIG_BLOCK, &blocked, before);
+}
+
+static void restore_signals(const sigset_t *before)
+{
+	const int kept = errno;
+	pthread_sigmask(SIG_SETMASK, before, NULL);
+	errno = kept;
+}
+
+static void spin(void)
 {
 	while (atomic_flag_test_and_set_explicit(&list_lock, memory_order_acquire))
 		poll(NULL, 0, 1);
 }
 
-void nt_temporaries_hold(void)
+static void lock_list(sigset_t *before)
 {
-	sigset_t blocked, before;
-	sigemptyset(&blocked);
-	for (int i = 0; i < CAUGHT_COUNT; i++)
-		sigaddset(&blocked, caught_signals[i]);
-	pthread_sigmask(SIG_BLOCK, &blocked, &before);
-	take_lock();
-	mask_before_hold = before;
+	block_signals(before);
+	spin();
 }
 
-void nt_temporaries_release(void)
+static void unlock_list(const sigset_t *before)
 {
-	const int kept = errno;
-	const sigset_t before = mask_before_hold;
 	atomic_flag_clear_explicit(&list_lock, memory_order_release);
-	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	errno = kept;
+	restore_signals(before);
 }
 
-/* Name `attempt` beside target: hidden, short enough for any file system, the extension left out. */
+void nt_temporaries_hold(sigset_t *before)
+{
+	block_signals(before);
+	/* either the handler sees that we hold, or we see that it has come */
+	atomic_fetch_add(&holders, 1);
+	if (!atomic_load(&ending))
+		return;
+	atomic_fetch_sub(&holders, 1);
+	for (;;)
+		poll(NULL, 0, -1);
+}
+
+void nt_temporaries_release(const sigset_t *before)
+{
+	atomic_fetch_sub(&holders, 1);
+	restore_signals(before);
+}
+
+/* ---- names ---- */
+
+/* Name `attempt` beside target: hidden, of a length that any file system has, the target's own name left out. */
 static void name_beside(char *path, size_t capacity, const char *target, unsigned attempt)
 {
 	static atomic_uint counter;
+	char maker[NT_MAKER_TEXT];
 	const char *slash = strrchr(target, '/');
 	const int folder_length = slash ? (int)(slash - target) + 1 : 0;
-	snprintf(path, capacity, "%.*s.nmtan-%ld-%u-%u.tmp", folder_length, target, (long)getpid(),
-		atomic_fetch_add(&counter, 1), attempt);
+	nt_maker_text(maker);
+	snprintf(path, capacity, "%.*s%s%s-%u.%u%s", folder_length, target, name_head, maker,
+		atomic_fetch_add(&counter, 1), attempt, name_tail);
 }
 
-static int create_listed(nt_temporary *entry)
+const char *nt_temporary_maker(const char *name, size_t *length)
 {
-	nt_temporaries_hold();
-	const int fd = open(entry->path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+	const size_t head = strlen(name_head), tail = strlen(name_tail), whole = strlen(name);
+	if (whole < head + tail || strncmp(name, name_head, head) != 0 ||
+		strcmp(name + whole - tail, name_tail) != 0)
+		return NULL;
+	size_t end = whole - tail;
+	while (end > head && name[end - 1] != '-')
+		end--;
+	if (end <= head + 1)
+		return NULL;
+	*length = end - 1 - head;
+	return name + head;
+}
+
+/* ---- files ---- */
+
+/* Makes the file, or the link to `from`, and lists it. Returns the file's descriptor, 0 for a link; -1 with errno. */
+static int make_listed(nt_temporary *entry, const char *from, unsigned mode)
+{
+	sigset_t before;
+	lock_list(&before);
+	const int fd = from ? link(from, entry->path)
+			    : open(entry->path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, (mode_t)mode);
 	if (fd >= 0) {
 		entry->next = list;
 		if (list)
 			list->previous = entry;
 		list = entry;
 	}
-	nt_temporaries_release();
+	unlock_list(&before);
 	return fd;
 }
 
-int nt_temporary_create(const char *target, nt_temporary **temporary)
+static int make(const char *target, const char *from, unsigned mode, nt_temporary **temporary)
 {
-	const size_t capacity = strlen(target) + 80;
+	const size_t capacity = strlen(target) + NT_MAKER_TEXT + 48;
 	nt_temporary *entry = calloc(1, sizeof *entry + capacity);
 	if (!entry) {
 		errno = ENOMEM;
@@ -97,7 +150,7 @@ int nt_temporary_create(const char *target, nt_temporary **temporary)
 	int fd = -1;
 	for (unsigned attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
 		name_beside(entry->path, capacity, target, attempt);
-		fd = create_listed(entry);
+		fd = make_listed(entry, from, mode);
 		if (fd >= 0 || errno != EEXIST)
 			break;
 	}
@@ -111,22 +164,48 @@ int nt_temporary_create(const char *target, nt_temporary **temporary)
 	return fd;
 }
 
+int nt_temporary_create(const char *target, unsigned mode, nt_temporary **temporary)
+{
+	return make(target, NULL, mode, temporary);
+}
+
+bool nt_temporary_link(const char *from, const char *target, nt_temporary **temporary)
+{
+	return make(target, from, 0, temporary) >= 0;
+}
+
 const char *nt_temporary_path(const nt_temporary *temporary)
 {
 	return temporary->path;
 }
 
-/* Rename that fails with EEXIST; by a second link where the file system has no such rename. */
+/* Where there is neither such a rename nor a second link: an empty file takes the name, and is ours to replace. */
+static bool rename_to_reserved_name(const char *from, const char *to)
+{
+	const int fd = open(to, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+	if (fd < 0)
+		return false;
+	close(fd);
+	if (rename(from, to) == 0)
+		return true;
+	const int kept = errno;
+	unlink(to);
+	errno = kept;
+	return false;
+}
+
+/* Rename that fails with EEXIST; by other means where the file system has no such rename. */
 static bool rename_to_free_name(const char *from, const char *to)
 {
 	if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0)
 		return true;
 	if (errno != EINVAL && errno != ENOSYS)
 		return false;
-	if (link(from, to) != 0)
-		return false;
-	unlink(from);
-	return true;
+	if (link(from, to) == 0) {
+		unlink(from);
+		return true;
+	}
+	return errno != EEXIST && rename_to_reserved_name(from, to);
 }
 
 bool nt_temporary_rename(nt_temporary *temporary, const char *target, bool replace)
@@ -140,7 +219,8 @@ void nt_temporary_discard(nt_temporary *temporary)
 {
 	if (!temporary)
 		return;
-	nt_temporaries_hold();
+	sigset_t before;
+	lock_list(&before);
 	if (!temporary->renamed)
 		unlink(temporary->path);
 	if (temporary->previous)
@@ -149,13 +229,16 @@ void nt_temporary_discard(nt_temporary *temporary)
 		list = temporary->next;
 	if (temporary->next)
 		temporary->next->previous = temporary->previous;
-	nt_temporaries_release();
+	unlock_list(&before);
 	free(temporary);
 }
 
 static void remove_and_end(int signal_number)
 {
-	take_lock();
+	atomic_store(&ending, true);
+	while (atomic_load(&holders))
+		poll(NULL, 0, 1);
+	spin();
 	for (const nt_temporary *entry = list; entry; entry = entry->next)
 		if (!entry->renamed)
 			unlink(entry->path);
@@ -169,7 +252,7 @@ static void remove_and_end(int signal_number)
 	_exit(128 + signal_number);
 }
 
-void nt_output_catch_signals(void)
+void nt_temporaries_catch_signals(void)
 {
 	struct sigaction action = {.sa_handler = remove_and_end};
 	sigemptyset(&action.sa_mask);

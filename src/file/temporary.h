@@ -1,32 +1,44 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Temporary files that a signal removes. A file is on the list from the moment it exists until it has
- * its name or is gone, without a gap in between.
+ * Temporary files that a signal removes, or, where nothing could (SIGKILL, a power cut), a later run: their names
+ * say who made them (maker.h). A file is on the list from the moment it exists until it has its name or is gone,
+ * without a gap in between.
  */
 #ifndef NT_FILE_TEMPORARY_H
 #define NT_FILE_TEMPORARY_H
 
+#include <signal.h>
 #include <stdbool.h>
+#include <stddef.h>
 
 typedef struct nt_temporary nt_temporary;
 
-/* Creates a new file beside `target` (mode 0666 less the umask), open for writing. Returns its
- * descriptor; -1 with errno set otherwise (ENOMEM included). */
-int nt_temporary_create(const char *target, nt_temporary **temporary);
+/* Creates a new file beside `target`, open for writing; its mode is less the umask. Returns its descriptor; -1 with
+ * errno set otherwise (ENOMEM included). */
+int nt_temporary_create(const char *target, unsigned mode, nt_temporary **temporary);
+
+/* A second name beside `target` for the file `from`. False, with errno, where the file system has no links. */
+bool nt_temporary_link(const char *from, const char *target, nt_temporary **temporary);
 
 /* Where it is. */
 const char *nt_temporary_path(const nt_temporary *temporary);
 
-/* Between hold and release no signal ends the process, so that the renames of a set happen all or not
- * at all. The calling thread must not create temporaries meanwhile. */
-void nt_temporaries_hold(void);
-void nt_temporaries_release(void);
+/* The text of the maker in the name of a temporary file; NULL: it is not the name of one. */
+const char *nt_temporary_maker(const char *name, size_t *length);
 
-/* Gives the file its name; while held. `replace`: an existing file may go. On failure errno is set and
- * the file stays what it was. */
+/* Between hold and release no signal ends the process, so that the steps of a set happen all or not at all. Several
+ * threads may hold. `before` keeps the thread's signals. */
+void nt_temporaries_hold(sigset_t *before);
+void nt_temporaries_release(const sigset_t *before);
+
+/* Gives the file its name; while held. `replace`: an existing file may go; otherwise that is EEXIST. On failure errno
+ * is set and the file stays what it was. */
 bool nt_temporary_rename(nt_temporary *temporary, const char *target, bool replace);
 
 /* Frees the entry and removes the file, where it has not been renamed. NULL is allowed. */
 void nt_temporary_discard(nt_temporary *temporary);
+
+/* See nt_output_catch_signals(). */
+void nt_temporaries_catch_signals(void);
 
 #endif

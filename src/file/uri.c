@@ -248,6 +248,17 @@ nt_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri,
 	return allow_outside ? NT_OK : check_links(full, folder_text, uri, error);
 }
 
+bool nt_uri_append_name(nt_buffer *name, const char *uri, size_t length)
+{
+	char *decoded = nt_buffer_extend(name, length);
+	if (!decoded)
+		return false;
+	name->size = name->size - length + percent_decode(uri, length, decoded);
+	decoded[name->size] = '\0';
+	return name->size > 0 && strlen(decoded) == name->size && !strpbrk(decoded, "/\\") && !has_scheme(decoded) &&
+	       strcmp(decoded, ".") != 0 && strcmp(decoded, "..") != 0;
+}
+
 void nt_uri_append_path(nt_buffer *buffer, const char *path)
 {
 	for (const char *c = path; *c; c++) {

@@ -6,7 +6,7 @@
 #ifndef NT_FORMAT_FORMAT_H
 #define NT_FORMAT_FORMAT_H
 
-#include "file/input.h"
+#include "file/output.h"
 #include "scene/format.h"
 #include "scene/scene.h"
 

@@ -7,7 +7,7 @@
 #define NT_GLTF_GLB_H
 
 #include "base/memory.h"
-#include "file/input.h"
+#include "file/output.h"
 
 /* Where a chunk's data lies in the file. */
 typedef struct nt_glb_chunk {

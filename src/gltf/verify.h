@@ -6,7 +6,7 @@
 #ifndef NT_GLTF_VERIFY_H
 #define NT_GLTF_VERIFY_H
 
-#include "file/input.h"
+#include "file/output.h"
 #include "scene/scene.h"
 
 /*

@@ -10,7 +10,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include "base/buffer.h"
-#include "file/input.h"
+#include "file/output.h"
 
 static nt_status to_sink(void *user, const void *bytes, size_t size, nt_error *error)
 {
@@ -29,7 +29,7 @@ static nt_status write_set(const nt_report *const *reports, size_t count,
 	for (size_t i = 0; i < target->input_count && !status; i++)
 		status = nt_output_protect(output, target->inputs[i], NULL, error);
 	if (!status)
-		status = nt_output_add(output, target->path, true, &sink, error);
+		status = nt_output_add(output, target->path, NT_ROLE_MAIN, &sink, error);
 	if (!status)
 		status = nt_report_write(reports, count, target->format, &target->style, to_sink, sink, error);
 	if (status) {
@@ -74,7 +74,7 @@ static nt_status write_image(nt_output *output, const nt_report *report, uint32_
 	nt_sink *sink = NULL;
 	bool drawn;
 	nt_status status = image_name(&name, directory, report->path, mesh)
-		? nt_output_add(output, name.data, true, &sink, error)
+		? nt_output_add(output, name.data, NT_ROLE_MAIN, &sink, error)
 		: nt_fail_memory(error);
 	if (!status)
 		status = nt_report_write_uv(report, mesh, &drawn, to_sink, sink, error);

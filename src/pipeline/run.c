@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include "format/format.h"
+#include "gltf/companion.h"
 #include "format/normal_map.h"
 #include "gltf/verify.h"
 #include "base/clock.h"
@@ -25,7 +26,12 @@ typedef struct run {
 	nt_read_options read_options;
 	double stage_begin;
 	nt_stage stage;
+	bool input_is_open;
+	nt_output_result result;
 } run;
+
+/* A name of an output can be taken by another run between its choice and its use; how often that may happen. */
+enum { MOST_ATTEMPTS = 20 };
 
 /* Books the time since the last call on the stage that ends. */
 static void end_stage(run *r)
@@ -96,9 +102,12 @@ static nt_status choose_writer(run *r)
 static nt_status open_scene(run *r)
 {
 	begin_stage(r, NT_STAGE_MAP);
-	nt_status status = nt_file_open(&r->input, r->input_path, r->error);
+	nt_status status = NT_OK;
+	if (!r->input_is_open)
+		status = nt_file_open(&r->input, r->input_path, r->error);
 	if (status)
 		return status;
+	r->input_is_open = true;
 	r->summary->bytes_read = r->input.size;
 	r->scene.bytes = r->input.data;
 	r->scene.file = &r->input;
@@ -240,7 +249,8 @@ static nt_status write_scene(run *r)
 	begin_stage(r, NT_STAGE_WRITE);
 	const nt_settings *s = r->settings;
 	const nt_output_options output_options = {.no_clobber = s->no_clobber, .sync = s->sync,
-		.dry_run = s->dry_run};
+		.dry_run = s->dry_run, .in_place = s->in_place ? r->input_path : NULL, .result = &r->result,
+		.find_claims = r->writer->format != NT_FORMAT_PLY ? nt_gltf_find_claims : NULL};
 	const nt_write_options options = {
 		.format = r->writer->format,
 		.path = r->output_path,
@@ -334,6 +344,22 @@ static nt_status make_report(run *r, nt_status status)
 	return nt_report_build(&r->scene, &options, &r->summary->report, r->error);
 }
 
+/* What a run that is to be done again has found and made so far; the times it took stay. */
+static void forget_attempt(run *r)
+{
+	nt_summary *s = r->summary;
+	double seconds[NT_STAGE_COUNT];
+	memcpy(seconds, s->seconds, sizeof seconds);
+	nt_scene_free(&r->scene);
+	nt_summary_free(s);
+	memset(s, 0, sizeof *s);
+	memcpy(s->seconds, seconds, sizeof seconds);
+	nt_buffer_free(&r->result.note);
+	r->result = (nt_output_result){0};
+	nt_error_clear(r->error);
+	nt_scene_init(&r->scene, r->input_path);
+}
+
 nt_status nt_run(const char *input, const char *output, const nt_settings *settings,
 	nt_summary *summary, nt_error *error)
 {
@@ -349,6 +375,14 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	nt_scene_init(&r.scene, input);
 
 	nt_status status = run_stages(&r);
+	for (unsigned attempt = 1; r.result.again && attempt < MOST_ATTEMPTS; attempt++) {
+		forget_attempt(&r);
+		status = run_stages(&r);
+	}
+	summary->left = r.result.left;
+	if (!status && r.result.note.failed)
+		status = nt_fail_memory(error);
+	summary->note = r.result.note.data;
 	status = make_report(&r, status);
 
 	/* what was found belongs to the caller, also after a failure */
@@ -371,7 +405,9 @@ void nt_summary_free(nt_summary *summary)
 	nt_finding_list_free(&summary->findings);
 	nt_report_free(summary->report);
 	free(summary->lines);
+	free(summary->note);
 	summary->lines = NULL;
+	summary->note = NULL;
 	summary->report = NULL;
 }
 

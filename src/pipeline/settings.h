@@ -95,7 +95,8 @@ typedef struct nt_summary {
 	nt_report *report; /* NULL unless asked for; of a failed run it says why */
 	nt_mesh_line *lines; /* [line_count] in the order of the input; NULL unless asked for */
 	size_t line_count;
-	bool copied; /* nothing was to be done and the output is a copy of the input */
+	bool left;       /* in place: the file has what it would get, and was left as it is */
+	char *note;      /* which files of the output have other names than they would, and why: "; ..."; NULL: none */
 } nt_summary;
 
 #endif

@@ -11,7 +11,7 @@ nt_status nt_ply_write(nt_scene *scene, const nt_write_options *options, nt_outp
 	nt_error *error)
 {
 	ply_output out = {.encoding = PLY_LITTLE};
-	nt_status status = nt_output_add(output, options->path, true, &out.sink, error);
+	nt_status status = nt_output_add(output, options->path, NT_ROLE_MAIN, &out.sink, error);
 	if (status)
 		return status;
 	status = scene->format == NT_FORMAT_PLY ? ply_write_source(scene, options, &out, error)

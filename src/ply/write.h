@@ -5,7 +5,7 @@
 #ifndef NT_PLY_WRITE_H
 #define NT_PLY_WRITE_H
 
-#include "file/input.h"
+#include "file/output.h"
 #include "scene/scene.h"
 
 nt_status nt_ply_write(nt_scene *scene, const nt_write_options *options, nt_output *output,

@@ -90,6 +90,9 @@ int __wrap_open(const char *path, int flags, ...)
 	va_start(arguments, flags);
 	const mode_t mode = flags & O_CREAT ? va_arg(arguments, mode_t) : 0;
 	va_end(arguments);
+	/* what the system says of this process: maker.c */
+	if ((flags & O_ACCMODE) == O_RDONLY && strncmp(path, "/proc/", 6) == 0)
+		return __real_open(path, flags, mode);
 	shared->opened++;
 	if (!is_inside(path, "out") && ((flags & O_ACCMODE) != O_RDONLY || !is_inside(path, "in")))
 		wrong("opens %s", path);

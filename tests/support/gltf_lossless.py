@@ -47,6 +47,16 @@ class File:
             text = data
         self.g = json.loads(text)
         self.cache = {}
+        for buffer in self.g.get('buffers', []):
+            self.forget_record(buffer)
+
+    def forget_record(self, buffer):
+        """The digest that nmtan notes of a .bin that it wrote."""
+        extras = buffer.get('extras')
+        if isinstance(extras, dict) and 'nmtan:xxh128' in extras:
+            del extras['nmtan:xxh128']
+            if not extras:
+                del buffer['extras']
 
     def buffer(self, i):
         if i not in self.cache:

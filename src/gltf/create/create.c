@@ -16,11 +16,10 @@
 #include "ext/tinygltf.h"
 #include "file/base64.h"
 #include "gltf/glb.h"
+#include "gltf/companion.h"
 #include "gltf/create/images.h"
 #include "gltf/create/primitive.h"
 #include "gltf/quantize.h"
-#include "file/relative_path.h"
-#include "file/uri.h"
 
 /* One range of the buffer that holds geometry. */
 typedef struct block {
@@ -39,6 +38,7 @@ typedef struct composition {
 	nt_scene *scene;
 	nt_write_options options;
 	nt_output *output;
+	nt_sink *main;
 	nt_arena arena;
 	nt_model *model;
 	nt_image_set *images;
@@ -215,6 +215,9 @@ static nt_status plan_materials(composition *c, nt_error *error)
 	nt_status status = nt_image_set_create(&c->images, c->scene, &c->options, error);
 	if (status == NT_OK)
 		status = each_material(c, error, find_images);
+	/* The main file comes before its companions, and is none of the images that it refers to. */
+	if (status == NT_OK)
+		status = nt_output_add(c->output, c->options.path, NT_ROLE_MAIN, &c->main, error);
 	if (status == NT_OK)
 		status = nt_image_set_add(c->images, c->model, &c->buffer_size, c->output, error);
 	return status == NT_OK ? each_material(c, error, add_material) : status;
@@ -395,45 +398,61 @@ static void bin_path(nt_buffer *path, const char *output)
 	nt_buffer_text(path, ".bin");
 }
 
-static nt_status write_with_bin(const composition *c, nt_sink *sink, nt_error *error)
+/* The .bin of the document, if it has a buffer. */
+static nt_status write_bin(const composition *c, nt_sink **bin, nt_error *error)
 {
-	nt_buffer path = {0}, uri = {0};
-	nt_model_text text = {0};
-	nt_sink *bin = NULL;
-	nt_status status = NT_OK;
+	nt_buffer path = {0};
+	*bin = NULL;
 	bin_path(&path, c->options.path);
-	if (!path.failed) {
-		const char *slash = strrchr(path.data, '/');
-		const char *name = slash ? slash + 1 : path.data;
-		nt_uri_append_path(&uri, name);
-	}
-	if (path.failed || uri.failed)
-		status = nt_fail_memory(error);
+	nt_status status = path.failed ? nt_fail_memory(error) : NT_OK;
 	if (status == NT_OK && c->buffer_size > 0)
-		status = nt_output_add(c->output, path.data, false, &bin, error);
-	if (status == NT_OK && bin) {
-		byte_stream stream = {.sink = bin};
-		status = write_buffer(c, &stream, error);
+		status = nt_output_add(c->output, path.data, NT_ROLE_BUFFER, bin, error);
+	nt_buffer_free(&path);
+	if (status != NT_OK || !*bin)
+		return status;
+	byte_stream stream = {.sink = *bin};
+	status = write_buffer(c, &stream, error);
+	return status == NT_OK ? nt_output_settle(c->output, *bin, error) : status;
+}
+
+static nt_status write_document(const composition *c, const nt_sink *bin, bool interim, nt_sink *sink,
+	nt_error *error)
+{
+	nt_buffer uri = {0}, extras = {0};
+	nt_model_text text = {0};
+	if (bin) {
+		nt_gltf_record_uri(&uri, bin, interim);
+		nt_gltf_record_extras(&extras, bin, interim);
 	}
+	nt_status status = uri.failed || extras.failed ? nt_fail_memory(error) : NT_OK;
+	const nt_model_file file = {uri.data, extras.data};
 	if (status == NT_OK)
-		status = nt_model_json(c->model, c->buffer_size, NT_MODEL_FILE, uri.data, &text, error);
+		status = nt_model_json(c->model, c->buffer_size, NT_MODEL_FILE, &file, &text, error);
 	if (status == NT_OK)
 		status = nt_sink_write(sink, text.data, text.size, error);
 	nt_model_text_free(&text);
-	nt_buffer_free(&path);
 	nt_buffer_free(&uri);
+	nt_buffer_free(&extras);
 	return status;
+}
+
+static nt_status write_with_bin(const composition *c, nt_sink *sink, nt_error *error)
+{
+	nt_sink *bin, *interim;
+	nt_status status = write_bin(c, &bin, error);
+	if (status == NT_OK && nt_output_has_interim(c->output)) {
+		status = nt_output_add(c->output, c->options.path, NT_ROLE_INTERIM, &interim, error);
+		if (status == NT_OK)
+			status = write_document(c, bin, true, interim, error);
+	}
+	return status == NT_OK ? write_document(c, bin, false, sink, error) : status;
 }
 
 static nt_status write_output(const composition *c, nt_error *error)
 {
-	nt_sink *sink;
-	const nt_status status = nt_output_add(c->output, c->options.path, true, &sink, error);
-	if (status != NT_OK)
-		return status;
 	if (c->options.format == NT_FORMAT_GLB)
-		return write_glb(c, sink, error);
-	return c->options.embed ? write_embedded(c, sink, error) : write_with_bin(c, sink, error);
+		return write_glb(c, c->main, error);
+	return c->options.embed ? write_embedded(c, c->main, error) : write_with_bin(c, c->main, error);
 }
 
 nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_output *output,

@@ -5,7 +5,7 @@
 #ifndef NT_GLTF_CREATE_CREATE_H
 #define NT_GLTF_CREATE_CREATE_H
 
-#include "file/input.h"
+#include "file/output.h"
 #include "scene/scene.h"
 
 nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_output *output,

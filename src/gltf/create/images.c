@@ -16,6 +16,7 @@
 #include <sys/stat.h>
 #include "file/image_type.h"
 #include "file/relative_path.h"
+#include "file/uri.h"
 
 /* One file, or one name that leads to none. */
 typedef struct image_entry {
@@ -25,7 +26,7 @@ typedef struct image_entry {
 	bool embedded;
 	nt_file identity;   /* closed: size, device and inode */
 	uint64_t offset;    /* in the buffer */
-	char *target;       /* absolute path of the copy; NULL: none */
+	const nt_sink *copy; /* NULL: none */
 	uint32_t texture;
 } image_entry;
 
@@ -73,7 +74,6 @@ void nt_image_set_free(nt_image_set *set)
 		return;
 	for (size_t i = 0; i < set->entry_count; i++) {
 		free(set->entries[i].path);
-		free(set->entries[i].target);
 	}
 	free(set->entries);
 	free(set->names);
@@ -239,63 +239,29 @@ nt_status nt_image_set_find(nt_image_set *set, const nt_material *material, nt_o
 
 /* ---- adding ---- */
 
-/* Whether an image, or another copy, has this path. */
-static bool is_taken(const nt_image_set *set, const char *path)
-{
-	for (size_t i = 0; i < set->entry_count; i++) {
-		const image_entry *entry = &set->entries[i];
-		if ((entry->target && strcmp(entry->target, path) == 0) ||
-			(entry->exists && nt_file_is(&entry->identity, path)))
-			return true;
-	}
-	return false;
-}
-
-/* A name for the copy in the output's folder: the image's own, or that with a number. */
-static bool choose_target(const nt_image_set *set, const image_entry *entry, nt_buffer *target)
-{
-	const char *name = last_part(entry->path);
-	const char *dot = strrchr(name, '.');
-	const int stem = dot ? (int)(dot - name) : (int)strlen(name);
-	for (unsigned number = 0; !target->failed; number++) {
-		target->size = 0;
-		nt_buffer_format(target, "%s/%.*s", set->folder, stem, name);
-		if (number)
-			nt_buffer_format(target, "-%u", number);
-		nt_buffer_text(target, dot ? dot : "");
-		if (!target->failed && !is_taken(set, target->data))
-			return true;
-	}
-	return false;
-}
-
 static nt_status copy_image(nt_image_set *set, image_entry *entry, nt_output *output,
 	nt_error *error)
 {
-	nt_buffer own = {0}, target = {0};
-	nt_buffer_format(&own, "%s/%s", set->folder, last_part(entry->path));
-	if (own.failed) {
-		nt_buffer_free(&own);
-		return nt_fail_memory(error);
-	}
-	const bool is_there = nt_file_is(&entry->identity, own.data);
-	nt_buffer_free(&own);
-	if (is_there) /* a link does */
-		return NT_OK;
-	if (!choose_target(set, entry, &target)) {
-		nt_buffer_free(&target);
-		return nt_fail_memory(error);
-	}
-	entry->target = target.data;
+	nt_buffer path = {0};
+	nt_buffer_format(&path, "%s/%s", set->folder, last_part(entry->path));
 	nt_sink *sink;
 	nt_file file;
-	nt_status status = nt_output_add(output, entry->target, false, &sink, error);
+	nt_status status = path.failed ? nt_fail_memory(error) : NT_OK;
+	if (status || nt_file_is(&entry->identity, path.data)) { /* where it is there, a link does */
+		nt_buffer_free(&path);
+		return status;
+	}
+	status = nt_output_add(output, path.data, NT_ROLE_IMAGE, &sink, error);
+	nt_buffer_free(&path);
 	if (status == NT_OK)
 		status = nt_file_open(&file, entry->path, error);
 	if (status != NT_OK)
 		return status;
 	status = nt_sink_copy(sink, &file, 0, file.size, error);
 	nt_file_close(&file);
+	if (status == NT_OK)
+		status = nt_output_settle(output, sink, error);
+	entry->copy = sink;
 	return status;
 }
 
@@ -327,7 +293,10 @@ static nt_status add_entry(nt_image_set *set, image_entry *entry, nt_model *mode
 			NT_GLTF_NO_TARGET);
 		image = nt_model_image_view(model, title, view, nt_image_media_type(entry->type));
 	} else {
-		nt_link_uri(&uri, set->folder, entry->target ? entry->target : entry->path);
+		if (entry->copy)
+			nt_uri_append_path(&uri, nt_sink_name(entry->copy, false));
+		else
+			nt_link_uri(&uri, set->folder, entry->path);
 		if (!uri.failed)
 			image = nt_model_image_uri(model, title, uri.data);
 	}

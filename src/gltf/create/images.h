@@ -7,7 +7,7 @@
 #define NT_GLTF_CREATE_IMAGES_H
 
 #include "ext/tinygltf.h"
-#include "file/input.h"
+#include "file/output.h"
 #include "scene/scene.h"
 
 typedef struct nt_image_set nt_image_set;

@@ -5,7 +5,7 @@
 #ifndef NT_GLTF_EDIT_EDIT_H
 #define NT_GLTF_EDIT_EDIT_H
 
-#include "file/input.h"
+#include "file/output.h"
 #include "scene/scene.h"
 
 /* Writes the source document with tangents put in, and nothing else changed. */

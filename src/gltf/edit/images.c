@@ -206,7 +206,7 @@ static nt_status embed_image(nt_gltf_container *c, size_t index, nt_json_value *
 	return c->to_glb ? embed_in_view(c, image, file, type) : embed_as_data(c, image, file, type);
 }
 
-/* Copies an image beside the output, under its own name. */
+/* Copies an image beside the output, under its own name where that is to be had. */
 static nt_status copy_image(nt_gltf_container *c, size_t index, nt_json_value *image)
 {
 	size_t length;
@@ -226,21 +226,25 @@ static nt_status copy_image(nt_gltf_container *c, size_t index, nt_json_value *i
 	const char *folder_end = strrchr(c->options->path, '/');
 	const size_t folder = folder_end ? (size_t)(folder_end - c->options->path) + 1 : 0;
 	char *path = nt_arena_alloc(&c->arena, folder + strlen(name) + 1, 1);
-	nt_buffer new_uri = {0};
-	nt_uri_append_path(&new_uri, name);
-	if (!path || new_uri.failed) {
-		nt_buffer_free(&new_uri);
+	if (!path)
 		return nt_fail_memory(c->error);
-	}
 	memcpy(path, c->options->path, folder);
 	strcpy(path + folder, name);
-	nt_json_set_string(c->json, nt_json_put(c->json, image, "uri"), new_uri.data, new_uri.size);
-	nt_buffer_free(&new_uri);
 	nt_sink *sink;
-	status = nt_output_add(c->output, path, false, &sink, c->error);
+	status = nt_output_add(c->output, path, NT_ROLE_IMAGE, &sink, c->error);
 	if (!status)
 		status = nt_sink_copy(sink, file, 0, file->size, c->error);
-	return status;
+	if (!status)
+		status = nt_output_settle(c->output, sink, c->error);
+	if (status)
+		return status;
+	nt_buffer new_uri = {0};
+	nt_uri_append_path(&new_uri, nt_sink_name(sink, false));
+	const bool failed = new_uri.failed;
+	if (!failed)
+		nt_json_set_string(c->json, nt_json_put(c->json, image, "uri"), new_uri.data, new_uri.size);
+	nt_buffer_free(&new_uri);
+	return failed ? nt_fail_memory(c->error) : NT_OK;
 }
 
 nt_status nt_gltf_move_images(nt_gltf_container *c)

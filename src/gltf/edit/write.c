@@ -14,7 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
+#include "gltf/companion.h"
 #include "gltf/edit/data_uris.h"
 #include "gltf/edit/images.h"
 #include "gltf/edit/relocate.h"
@@ -71,9 +71,13 @@ nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *option
 	if (status || !same_container || moves || embeds)
 		return status;
 	*written = true;
+	if (nt_output_is_in_place(output, options->path)) {
+		nt_output_leave(output);
+		return NT_OK;
+	}
 	const nt_file file = input_file(scene);
 	nt_sink *sink;
-	status = nt_output_add(output, options->path, true, &sink, error);
+	status = nt_output_add(output, options->path, NT_ROLE_MAIN, &sink, error);
 	return status ? status : nt_sink_copy(sink, &file, 0, file.size, error);
 }
 
@@ -137,34 +141,6 @@ static nt_status check_first_buffer(nt_gltf_container *c)
 		"write .gltf");
 }
 
-/* Whether a path names the input or a file it refers to. */
-static bool is_input(nt_gltf_container *c, const char *path)
-{
-	struct stat candidate, known;
-	if (stat(path, &candidate) != 0)
-		return false;
-	const char *const arrays[] = {"buffers", "images"};
-	for (size_t k = 0; k < 2; k++) {
-		const nt_json_value *elements = nt_gltf_root_member(c->document, arrays[k]);
-		for (size_t i = 0; i < nt_json_count(elements); i++) {
-			size_t length;
-			const char *file, *uri = nt_gltf_external_uri(nt_json_at(elements, i), &length);
-			if (uri && nt_uri_resolve(&c->arena, c->document->path, uri, length, true, &file,
-					   NULL) == NT_OK &&
-				stat(file, &known) == 0 && known.st_dev == candidate.st_dev &&
-				known.st_ino == candidate.st_ino)
-				return true;
-		}
-	}
-	return false;
-}
-
-static bool same_file(const char *a, const char *b)
-{
-	struct stat x, y;
-	return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
-}
-
 /* Names that the output must not take: everything the document refers to. */
 static nt_status protect_inputs(nt_gltf_container *c)
 {
@@ -183,15 +159,13 @@ static nt_status protect_inputs(nt_gltf_container *c)
 	return status;
 }
 
-/* "out.bin", "out-1.bin" for the others; when a file is rewritten in place, a name that none of its own
- * files has. */
+/* "out.bin", "out-1.bin" for the others, where those names are to be had. */
 static nt_status name_companion(nt_gltf_container *c, uint32_t index, bool first, const char **path)
 {
 	const char *out = c->options->path;
 	const char *slash = strrchr(out, '/'), *dot = strrchr(out, '.');
 	const size_t stem = dot && (!slash || dot > slash + 1) && dot != out ? (size_t)(dot - out) :
 									       strlen(out);
-	const bool in_place = same_file(out, c->document->path);
 	char *name = nt_arena_alloc(&c->arena, stem + 40, 1);
 	if (!name)
 		return nt_fail_memory(c->error);
@@ -200,31 +174,23 @@ static nt_status name_companion(nt_gltf_container *c, uint32_t index, bool first
 		strcpy(name + stem, ".bin");
 	else
 		snprintf(name + stem, 40, "-%u.bin", index);
-	for (unsigned number = 1; in_place && is_input(c, name) && number < 1000; number++)
-		snprintf(name + stem, 40, "-%u-tangents%u.bin", index, number);
 	*path = name;
 	return NT_OK;
 }
 
-static nt_status write_companion(nt_gltf_container *c, uint32_t index, bool first,
-	nt_json_value *json, const nt_file *input)
+static nt_status write_companion(nt_gltf_container *c, uint32_t index, bool first, const nt_file *input)
 {
 	const char *path = NULL;
+	nt_sink *sink = NULL;
 	nt_status status = name_companion(c, index, first, &path);
-	if (status)
-		return status;
-	const char *slash = strrchr(path, '/');
-	nt_buffer uri = {0};
-	nt_uri_append_path(&uri, slash ? slash + 1 : path);
-	if (!uri.failed)
-		nt_json_set_string(c->json, nt_json_put(c->json, json, "uri"), uri.data, uri.size);
-	status = uri.failed ? nt_fail_memory(c->error) : NT_OK;
-	nt_buffer_free(&uri);
-	nt_sink *sink;
 	if (!status)
-		status = nt_output_add(c->output, path, false, &sink, c->error);
-	return status ? status :
-			nt_layout_write(&c->patcher->layout, index, input, sink, c->error);
+		status = nt_output_add(c->output, path, NT_ROLE_BUFFER, &sink, c->error);
+	if (!status)
+		status = nt_layout_write(&c->patcher->layout, index, input, sink, c->error);
+	if (!status)
+		status = nt_output_settle(c->output, sink, c->error);
+	c->companions[index] = sink;
+	return status;
 }
 
 /* A .glb ends at 4 GiB. Said before data URIs are made of buffers that cannot fit, and before a file is begun; the
@@ -273,6 +239,9 @@ static nt_status settle_buffers(nt_gltf_container *c, const nt_file *input, bool
 		status = open_source(c, i, what);
 		if (status)
 			break;
+		/* in place, what is linked to is what it was */
+		if (what != FATE_COMPANION && !(what == FATE_LINK && c->in_place))
+			nt_gltf_forget_record(c->json, json);
 		switch (what) {
 		case FATE_KEEP:
 			break;
@@ -287,7 +256,7 @@ static nt_status settle_buffers(nt_gltf_container *c, const nt_file *input, bool
 			*bin = true;
 			break;
 		case FATE_COMPANION:
-			status = write_companion(c, i, first, json, input);
+			status = write_companion(c, i, first, input);
 			first = false;
 			break;
 		}
@@ -334,19 +303,47 @@ static nt_status write_glb(nt_gltf_container *c, const nt_buffer *text, uint64_t
 	return status;
 }
 
-static nt_status write_main(nt_gltf_container *c, const nt_file *input, bool bin)
+/* The document with the names that its companions have in it. */
+static nt_status write_document(nt_gltf_container *c, const nt_file *input, bool bin, bool interim, nt_sink *sink)
 {
 	nt_buffer text = {0};
 	uint64_t length;
-	nt_sink *sink;
-	nt_status status = nt_gltf_embedding_text(c, &text, &length);
+	nt_status status = NT_OK;
+	for (uint32_t i = 0; !status && i < c->patcher->layout.buffer_count; i++) {
+		nt_json_value *json = nt_json_at(nt_gltf_root_member(c->document, "buffers"), i);
+		if (c->companions[i])
+			status = nt_gltf_record(c->json, json, c->companions[i], interim, c->error);
+	}
 	if (!status)
-		status = nt_output_add(c->output, c->options->path, true, &sink, c->error);
+		status = nt_gltf_embedding_text(c, &text, &length);
 	if (!status)
 		status = c->to_glb ? write_glb(c, &text, length, input, bin, sink) :
 				     nt_gltf_write_text(c, &text, sink);
 	nt_buffer_free(&text);
 	return status;
+}
+
+static nt_status write_main(nt_gltf_container *c, const nt_file *input, bool bin)
+{
+	nt_sink *sink;
+	nt_status status = NT_OK;
+	if (nt_output_has_interim(c->output)) {
+		status = nt_output_add(c->output, c->options->path, NT_ROLE_INTERIM, &sink, c->error);
+		if (!status)
+			status = write_document(c, input, bin, true, sink);
+	}
+	return status ? status : write_document(c, input, bin, false, c->main);
+}
+
+/* The main file comes first, so that it is refused before anything is written. */
+static nt_status begin_main(nt_gltf_container *c)
+{
+	c->companions = nt_arena_alloc(&c->arena, c->patcher->layout.buffer_count + 1, sizeof *c->companions);
+	if (!c->companions)
+		return nt_fail_memory(c->error);
+	memset(c->companions, 0, (c->patcher->layout.buffer_count + 1) * sizeof *c->companions);
+	c->in_place = nt_output_is_in_place(c->output, c->options->path);
+	return nt_output_add(c->output, c->options->path, NT_ROLE_MAIN, &c->main, c->error);
 }
 
 nt_status nt_gltf_write_container(nt_gltf_patcher *patcher, nt_output *output)
@@ -367,6 +364,8 @@ nt_status nt_gltf_write_container(nt_gltf_patcher *patcher, nt_output *output)
 		status = check_first_buffer(&c);
 	if (!status)
 		status = protect_inputs(&c);
+	if (!status)
+		status = begin_main(&c);
 	if (!status)
 		status = nt_gltf_move_images(&c);
 	if (!status)

@@ -16,11 +16,13 @@ typedef struct nt_gltf_container {
 	nt_output *output;
 	nt_error *error;
 	nt_arena arena;
-	bool to_glb, same_container, embed;
+	bool to_glb, same_container, embed, in_place;
 	const char *link_prefix; /* from the output's folder to the input's, percent-encoded; "" */
 	uint32_t *embedded;      /* [embedded_count] buffers whose data URIs are made when the text is written */
 	size_t embedded_count;
 	uint64_t mark_number;    /* data_uris.c */
+	nt_sink *main;
+	nt_sink **companions;    /* [buffer_count] the files that buffers are written to; NULL: another fate */
 	nt_file *images;         /* files that were read and are still to be written */
 	size_t image_count, image_capacity;
 } nt_gltf_container;

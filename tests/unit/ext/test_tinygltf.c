@@ -15,7 +15,8 @@ static nt_model *new_model(void)
 static char *text_of(nt_model *model, uint64_t length, nt_model_buffer buffer, const char *uri)
 {
 	nt_model_text text;
-	assert_int_equal(nt_model_json(model, length, buffer, uri, &text, NULL), NT_OK);
+	const nt_model_file file = {uri, NULL};
+	assert_int_equal(nt_model_json(model, length, buffer, &file, &text, NULL), NT_OK);
 	assert_true(text.cut <= text.size);
 	char *copy = calloc(text.size + 1, 1);
 	memcpy(copy, text.data, text.size);

@@ -15,7 +15,7 @@ static char *encoded(const unsigned char *bytes, size_t size, size_t piece)
 	nt_sink *sink;
 	nt_error error;
 	assert_int_equal(nt_output_create(&output, NULL, &error), NT_OK);
-	assert_int_equal(nt_output_add(output, path, true, &sink, &error), NT_OK);
+	assert_int_equal(nt_output_add(output, path, NT_ROLE_MAIN, &sink, &error), NT_OK);
 	nt_base64 base64 = {.sink = sink};
 	for (size_t at = 0; at < size; at += piece)
 		assert_int_equal(nt_base64_write(&base64, bytes + at, size - at < piece ? size - at : piece,

@@ -130,7 +130,7 @@ static void written_container_is_padded_and_sized(void **state)
 	nt_output *output;
 	nt_sink *sink;
 	assert_int_equal(nt_output_create(&output, &(nt_output_options){0}, &error), NT_OK);
-	assert_int_equal(nt_output_add(output, path, true, &sink, &error), NT_OK);
+	assert_int_equal(nt_output_add(output, path, NT_ROLE_MAIN, &sink, &error), NT_OK);
 	assert_int_equal(nt_glb_begin(sink, 7, true, 5, nt_glb_chunk_bytes(3), &error), NT_OK);
 	assert_int_equal(nt_sink_write(sink, "{\"a\":1}", 7, &error), NT_OK);
 	assert_int_equal(nt_glb_end_json(sink, 7, true, 5, &error), NT_OK);

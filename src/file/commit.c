@@ -1,0 +1,262 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Putting a set in place, so that one rename switches from the old set to the new one.
+ *
+ * After each step the process may be killed, and with options.sync the power may go; the folders are synchronised
+ * between the steps. "M" is the main file, "a.bin" a companion, "tmp" a temporary name (temporary.h).
+ *
+ *   step                                   who refers to what           reading M gives
+ *   0  all bytes under tmp names           M -> the old a.bin           old set, or nothing
+ *   1  new names are taken, never over     M -> the old a.bin           old, or nothing
+ *      a file that is there: a.bin where
+ *      it is free, else a.new-D.bin
+ *   2  rename tmp onto M: the switch       M -> a.bin, a.new-D.bin      new
+ *
+ * That is all where every companion's name was free or had its bytes (NT_NAMING_NEW, NT_NAMING_USED). Where a companion
+ * replaces one of ours (NT_NAMING_REPLACES), what step 2 places is the interim main file, and it goes on:
+ *
+ *   3  link a.new-D.bin to tmp, rename     M -> a.new-D.bin             new; a.bin has old
+ *      tmp onto a.bin, for each                                         or new bytes
+ *   4  rename the final tmp onto M         M -> a.bin                   new
+ *   5  unlink a.new-D.bin                  M -> a.bin                   new
+ *
+ * Until step 2 everything can be taken back, and is. From step 3 on a failure leaves a whole new set, under names
+ * that say what they are: where link(2) or a rename is refused, the interim main file stays and the result says so.
+ * A run that is killed in between leaves at most files that the next one knows: temporary ones by their maker, a.bin and
+ * a.new-D.bin by what the main file says of them or by their bytes. Buffers that step 1 named are taken back when step
+ * 2 fails; images are not, since another run may have found and used them meanwhile.
+ *
+ * Who may be replaced: M, because the user named it; a.bin in step 3, by the rules of companion.c. Names that were
+ * looked at while they were chosen are looked at again here, and a name that was taken meanwhile is never replaced:
+ * then nothing happens, and the caller is told to try again.
+ */
+#include "file/output_parts.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static nt_status taken_meanwhile(nt_output *output, const char *path, nt_error *error)
+{
+	if (output->options.result)
+		output->options.result->again = true;
+	nt_fail(error, NT_ERROR_IO, "refusing to write: the name was taken, or its file changed, meanwhile");
+	return nt_error_in_file(error, path);
+}
+
+/* ---- folders ---- */
+
+/* Not every file system lets a folder be synchronised, and not every user may open it. */
+static nt_status sync_folder_of(const char *path, nt_error *error)
+{
+	char *folder = nt_last_part(path) == path ? strdup(".") : strndup(path, (size_t)(nt_last_part(path) - path));
+	if (!folder)
+		return nt_fail_memory(error);
+	const int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+	const bool failed = fd >= 0 && fsync(fd) != 0 && errno != EINVAL && errno != EBADF && errno != ENOTSUP;
+	const int number = errno;
+	if (fd >= 0)
+		close(fd);
+	free(folder);
+	return failed ? nt_sink_fail(error, path, number) : NT_OK;
+}
+
+/* What was done so far onto the disk, before what comes next. */
+static nt_status sync_step(const nt_output *output, nt_error *error)
+{
+	nt_status status = NT_OK;
+	for (const nt_sink *sink = output->first; output->options.sync && sink && !status; sink = sink->next)
+		if (sink->target && sink != output->interim)
+			status = sync_folder_of(sink->target, error);
+	return status;
+}
+
+/* A file that is used as it is may be no more than promised to the disk. */
+static nt_status sync_used(const char *path, nt_error *error)
+{
+	const int fd = open(path, O_RDONLY | O_CLOEXEC);
+	const bool failed = fd >= 0 && fsync(fd) != 0;
+	const int number = errno;
+	if (fd >= 0)
+		close(fd);
+	return failed ? nt_sink_fail(error, path, number) : NT_OK;
+}
+
+/* ---- step 1 ---- */
+
+static nt_status take_name(nt_output *output, nt_sink *sink, const char *name, nt_error *error)
+{
+	sink->placed = nt_temporary_rename(sink->temporary, name, false);
+	if (sink->placed)
+		return NT_OK;
+	return errno == EEXIST ? taken_meanwhile(output, name, error) : nt_sink_fail(error, name, errno);
+}
+
+/* Whether the file that a sink uses is one of this very set. */
+static bool is_of_set(const nt_output *output, const nt_sink *sink)
+{
+	for (const nt_sink *other = output->first; other != sink; other = other->next)
+		if (nt_sink_is_companion(other) && strcmp(nt_sink_name(other, false), nt_sink_name(sink, false)) == 0)
+			return true;
+	return false;
+}
+
+static nt_status place_companion(nt_output *output, nt_sink *sink, nt_error *error)
+{
+	const bool sync = output->options.sync;
+	switch (sink->naming) {
+	case NT_NAMING_NEW:
+		return take_name(output, sink, sink->target, error);
+	case NT_NAMING_USED:
+		if (is_of_set(output, sink))
+			return NT_OK;
+		if (!nt_state_is(sink->target, &sink->there))
+			return taken_meanwhile(output, sink->target, error);
+		return sync ? sync_used(sink->target, error) : NT_OK;
+	default:
+		if (!nt_state_is(sink->target, &sink->there))
+			return taken_meanwhile(output, sink->target, error);
+		if (!sink->interim_is_there)
+			return take_name(output, sink, sink->interim, error);
+		return sync ? sync_used(sink->interim, error) : NT_OK;
+	}
+}
+
+/* Buffers that have a name go again; the main file that would refer to them is not there. */
+static void take_back(const nt_output *output)
+{
+	for (const nt_sink *sink = output->first; sink; sink = sink->next)
+		if (sink->role == NT_ROLE_BUFFER && sink->placed)
+			unlink(sink->interim ? sink->interim : sink->target);
+}
+
+/* ---- step 2, and 4 ---- */
+
+static nt_status place_main(const nt_output *output, nt_sink *sink, nt_error *error)
+{
+	if (!sink->temporary)
+		return NT_OK;
+	sink->placed = nt_temporary_rename(sink->temporary, sink->target, !output->options.no_clobber);
+	if (sink->placed)
+		return NT_OK;
+	if (errno == EEXIST && output->options.no_clobber) {
+		nt_fail(error, NT_ERROR_IO, "refusing to write: the file exists already");
+		return nt_error_in_file(error, sink->path);
+	}
+	return nt_sink_fail(error, sink->path, errno);
+}
+
+static nt_status place_all(nt_output *output, nt_error *error)
+{
+	nt_status status = NT_OK;
+	for (nt_sink *sink = output->first; sink && !status; sink = sink->next) {
+		if (nt_sink_is_companion(sink))
+			status = place_companion(output, sink, error);
+		else if (sink != output->main && sink != output->interim)
+			status = place_main(output, sink, error);
+	}
+	if (!status)
+		status = sync_step(output, error);
+	nt_sink *first = output->interim ? output->interim : output->main;
+	if (!status && first)
+		status = place_main(output, first, error);
+	if (status)
+		take_back(output);
+	return status ? status : sync_step(output, error);
+}
+
+/* ---- steps 3 to 5 ---- */
+
+/* The data of a companion under its own name too. */
+static bool link_stable(const nt_sink *sink)
+{
+	nt_temporary *second;
+	struct stat here, there;
+	if (stat(sink->interim, &here) == 0 && lstat(sink->target, &there) == 0 && here.st_dev == there.st_dev &&
+		here.st_ino == there.st_ino)
+		return true; /* of a run that was killed after this step; rename would do nothing */
+	if (!nt_temporary_link(sink->interim, sink->target, &second))
+		return false;
+	const bool renamed = nt_temporary_rename(second, sink->target, true);
+	const int number = errno;
+	nt_temporary_discard(second);
+	errno = number;
+	return renamed;
+}
+
+static void note_interim(const nt_output *output, int number)
+{
+	nt_buffer *note = output->options.result ? &output->options.result->note : NULL;
+	for (const nt_sink *sink = output->first; sink && note; sink = sink->next)
+		if (sink->interim)
+			nt_buffer_format(note, "; the data of %s stays in %s (%s)", nt_sink_name(sink, false),
+				nt_sink_name(sink, true), strerror(number));
+}
+
+/* False: the interim names stay. */
+static bool settle_names(const nt_output *output, nt_error *error)
+{
+	for (const nt_sink *sink = output->first; sink; sink = sink->next)
+		if (sink->interim && !link_stable(sink))
+			return false;
+	errno = EIO; /* of what fails in synchronising */
+	if (sync_step(output, error))
+		return false;
+	if (place_main(output, output->main, error))
+		return false;
+	return true;
+}
+
+static void unlink_interim(const nt_output *output)
+{
+	for (const nt_sink *sink = output->first; sink; sink = sink->next)
+		if (sink->interim)
+			unlink(sink->interim);
+}
+
+/* The interim name by which a run that was killed before step 5 left the file that has the name now, or had it. */
+static void unlink_second_name(const nt_sink *sink)
+{
+	nt_buffer path = {0};
+	struct stat status;
+	nt_buffer_append(&path, sink->path, (size_t)(nt_last_part(sink->path) - sink->path));
+	nt_output_interim_name(&path, nt_last_part(sink->path), sink->interim ? sink->before : sink->text);
+	if (!path.failed && lstat(path.data, &status) == 0 && status.st_dev == sink->there.device &&
+		status.st_ino == sink->there.inode)
+		unlink(path.data);
+	nt_buffer_free(&path);
+}
+
+/* What earlier runs left, and nothing refers to any more. What cannot be removed stays. */
+static void remove_superseded(const nt_output *output)
+{
+	nt_buffer path = {0};
+	for (size_t at = 0; nt_output_superseded(output, &at, &path); path.size = 0)
+		unlink(path.data);
+	nt_buffer_free(&path);
+	for (const nt_sink *sink = output->first; sink && !output->main->in_place; sink = sink->next)
+		if (nt_sink_digest(sink) && sink->naming != NT_NAMING_NEW && strcmp(sink->path, sink->target) == 0)
+			unlink_second_name(sink);
+}
+
+nt_status nt_output_place(nt_output *output, nt_error *error)
+{
+	sigset_t before;
+	nt_temporaries_hold(&before);
+	nt_status status = place_all(output, error);
+	if (!status && output->interim) {
+		nt_error ignored;
+		if (settle_names(output, &ignored)) {
+			status = sync_step(output, error);
+			unlink_interim(output);
+		} else {
+			note_interim(output, errno);
+		}
+	}
+	if (!status && output->main)
+		remove_superseded(output);
+	nt_temporaries_release(&before);
+	return status;
+}

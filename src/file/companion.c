@@ -1,0 +1,418 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What a companion is called, and whose file a file is.
+ *
+ * A companion wants the name that the writer gave it ("a.bin" of a.gltf, an image's own). Where the name is free it
+ * gets it. Where a file of the same bytes has it, that file is used as it is, so that a map that many documents share
+ * is there once. Where another file has it:
+ *
+ * - A buffer replaces it if the previous main file at that very path refers to it and it is provably ours: the main
+ *   file records the digest of the bytes that we wrote (nt_sink_digest), and the file still has that digest. An interim main
+ *   file (commit.c) refers to interim names; it speaks for the name that they were on the way to, too, and records the digest of
+ *   what was there.
+ * - Everything else is somebody else's and stays. The new file's name is made from its own bytes ("a-0123456789abcdef.bin"),
+ *   so that the same result has the same name in every run and nothing piles up.
+ *
+ * In place nothing but the document is replaced, so there the second rule is the only one. An image may serve
+ * documents that we know nothing of, so it is never replaced either. A buffer that was used as it is gets a digest in
+ * the main file only if the previous one had it: otherwise the next run would take somebody's file for ours.
+ */
+#include "file/output_parts.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include "base/memory.h"
+
+/* A name's length in any file system; the digits of a digest that a name has; names that are tried. */
+enum { MOST_NAME_BYTES = 255, NAME_DIGITS = 16, MOST_NUMBERS = 1000, COMPARED_BYTES = 2 * 1024 * 1024 };
+
+static const char of_content[] = "-", for_the_time_being[] = ".new-";
+
+/* ---- files ---- */
+
+const char *nt_last_part(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	return slash ? slash + 1 : path;
+}
+
+nt_file_state nt_state_of(const struct stat *status)
+{
+	return (nt_file_state){status->st_dev, status->st_ino, status->st_size, status->st_mtim};
+}
+
+bool nt_state_is(const char *path, const nt_file_state *state)
+{
+	struct stat status;
+	return stat(path, &status) == 0 && status.st_dev == state->device && status.st_ino == state->inode &&
+	       status.st_size == state->size && status.st_mtim.tv_sec == state->modified.tv_sec &&
+	       status.st_mtim.tv_nsec == state->modified.tv_nsec;
+}
+
+bool nt_output_is_protected(const nt_output *output, const struct stat *status, const nt_protected_file **file)
+{
+	for (size_t i = 0; i < output->guarded_count; i++)
+		if (output->guarded[i].device == status->st_dev && output->guarded[i].inode == status->st_ino) {
+			*file = &output->guarded[i];
+			return true;
+		}
+	return false;
+}
+
+/* Opens what may be somebody else's: *opened is false where we are not allowed to or it is gone. */
+static nt_status open_foreign(nt_file *file, const char *path, bool *opened, nt_error *error)
+{
+	*opened = false;
+	if (access(path, R_OK) != 0)
+		return NT_OK;
+	const nt_status status = nt_file_open(file, path, error);
+	*opened = status == NT_OK;
+	return status;
+}
+
+nt_status nt_same_bytes(const char *a, const char *b, bool *same, nt_error *error)
+{
+	nt_file x, y;
+	bool opened;
+	*same = false;
+	nt_status status = open_foreign(&x, a, &opened, error);
+	if (!opened)
+		return status;
+	status = open_foreign(&y, b, &opened, error);
+	if (opened) {
+		*same = x.size == y.size;
+		for (size_t at = 0, part; *same && at < x.size; at += part) {
+			part = x.size - at < COMPARED_BYTES ? x.size - at : COMPARED_BYTES;
+			nt_file_fetch(&x, at, part);
+			nt_file_fetch(&y, at, part);
+			*same = memcmp(x.data + at, y.data + at, part) == 0;
+			nt_file_release(&x, at, part);
+			nt_file_release(&y, at, part);
+		}
+		nt_file_close(&y);
+	}
+	nt_file_close(&x);
+	return status;
+}
+
+static nt_status digest_of(const char *path, char text[NT_DIGEST_TEXT], nt_error *error)
+{
+	nt_file file;
+	bool opened;
+	text[0] = '\0';
+	const nt_status status = open_foreign(&file, path, &opened, error);
+	if (!opened)
+		return status;
+	nt_digest *digest = nt_digest_create();
+	for (size_t at = 0, part; digest && at < file.size; at += part) {
+		part = file.size - at < COMPARED_BYTES ? file.size - at : COMPARED_BYTES;
+		nt_file_fetch(&file, at, part);
+		nt_digest_add(digest, file.data + at, part);
+		nt_file_release(&file, at, part);
+	}
+	nt_file_close(&file);
+	if (digest)
+		nt_digest_text(digest, text);
+	nt_digest_free(digest);
+	return digest ? NT_OK : nt_fail_memory(error);
+}
+
+/* ---- names ---- */
+
+/* Appends "STEM" + infix + the digest's first digits + "-number" + ".ENDING"; a long stem is cut between characters. */
+static void append_name(nt_buffer *text, const char *name, const char *infix, const char *digest, unsigned number)
+{
+	char inserted[48];
+	const char *dot = strrchr(name, '.');
+	const char *ending = dot && dot != name ? dot : name + strlen(name);
+	const int length = number ? snprintf(inserted, sizeof inserted, "%s%.*s-%u", infix, NAME_DIGITS, digest, number)
+				  : snprintf(inserted, sizeof inserted, "%s%.*s", infix, NAME_DIGITS, digest);
+	const size_t others = (size_t)length + strlen(ending);
+	size_t stem = (size_t)(ending - name);
+	if (others < MOST_NAME_BYTES && stem + others > MOST_NAME_BYTES) {
+		stem = MOST_NAME_BYTES - others;
+		while (stem > 1 && ((unsigned char)name[stem] & 0xC0) == 0x80)
+			stem--;
+	}
+	nt_buffer_append(text, name, stem);
+	nt_buffer_text(text, inserted);
+	nt_buffer_text(text, ending);
+}
+
+void nt_output_interim_name(nt_buffer *text, const char *name, const char *digest)
+{
+	append_name(text, name, for_the_time_being, digest, 0);
+}
+
+static bool is_name(const char *candidate, const char *name, const char *infix, const char *digest)
+{
+	nt_buffer text = {0};
+	append_name(&text, name, infix, digest, 0);
+	const bool same = !text.failed && strcmp(text.data, candidate) == 0;
+	nt_buffer_free(&text);
+	return same;
+}
+
+const char *nt_sink_name(const nt_sink *sink, bool interim)
+{
+	return nt_last_part(interim && sink->interim ? sink->interim : sink->target);
+}
+
+/* ---- whose file ---- */
+
+nt_status nt_output_claim(nt_output *output, const char *name, const char *digest, const char *before, nt_error *error)
+{
+	if (!nt_grow((void **)&output->claims, &output->claim_capacity, output->claim_count + 1, sizeof *output->claims))
+		return nt_fail_memory(error);
+	nt_output_claim_row *row = &output->claims[output->claim_count++];
+	*row = (nt_output_claim_row){strdup(name), strdup(digest), before ? strdup(before) : NULL};
+	return row->name && row->digest && (row->before || !before) ? NT_OK : nt_fail_memory(error);
+}
+
+/* Asks the previous main file, once. */
+static nt_status know_claims(nt_output *output, nt_error *error)
+{
+	if (output->claims_known || !output->options.find_claims || !output->main || !output->main->target)
+		return NT_OK;
+	output->claims_known = true;
+	struct stat status;
+	if (stat(output->main->path, &status) != 0 || !S_ISREG(status.st_mode))
+		return NT_OK;
+	return output->options.find_claims(output, output->main->path, error);
+}
+
+/* Whether the previous main file says that the file `name` is ours if it has this digest; for any digest where that is
+ * NULL. */
+static bool is_claimed(const nt_output *output, const char *name, const char *digest)
+{
+	for (size_t i = 0; i < output->claim_count; i++) {
+		const nt_output_claim_row *claim = &output->claims[i];
+		const bool itself = strcmp(claim->name, name) == 0;
+		const bool on_the_way = !itself && claim->before &&
+			is_name(claim->name, name, for_the_time_being, claim->digest);
+		if ((itself || on_the_way) && (!digest || strcmp(claim->digest, digest) == 0))
+			return true;
+		if (on_the_way && strcmp(claim->before, digest) == 0)
+			return true;
+	}
+	return false;
+}
+
+/* Whether the file that has a buffer's name may be replaced; its digest in sink->before then. */
+static nt_status may_replace(nt_output *output, nt_sink *sink, bool *may, nt_error *error)
+{
+	struct stat status;
+	const nt_protected_file *ignored;
+	*may = false;
+	if (sink->role != NT_ROLE_BUFFER || !output->main || output->main->in_place ||
+		lstat(sink->path, &status) != 0 || !S_ISREG(status.st_mode) ||
+		nt_output_is_protected(output, &status, &ignored))
+		return NT_OK;
+	const char *name = nt_last_part(sink->path);
+	nt_status result = know_claims(output, error);
+	if (result || !is_claimed(output, name, NULL))
+		return result;
+	sink->there = nt_state_of(&status);
+	result = digest_of(sink->path, sink->before, error);
+	*may = !result && sink->before[0] && is_claimed(output, name, sink->before);
+	return result;
+}
+
+bool nt_output_superseded(const nt_output *output, size_t *at, nt_buffer *path)
+{
+	if (!output->main || output->main->in_place)
+		return false;
+	for (size_t i; (i = (*at)++) < output->claim_count;) {
+		const nt_output_claim_row *claim = &output->claims[i];
+		bool made = false, used = false;
+		const char *folder = NULL;
+		for (const nt_sink *sink = output->first; sink; sink = sink->next) {
+			if (!nt_sink_is_companion(sink))
+				continue;
+			const char *name = nt_last_part(sink->path);
+			made |= sink->role == NT_ROLE_BUFFER &&
+				(is_name(claim->name, name, of_content, claim->digest) ||
+					is_name(claim->name, name, for_the_time_being, claim->digest));
+			used |= strcmp(nt_sink_name(sink, false), claim->name) == 0 ||
+				(sink->interim && strcmp(nt_sink_name(sink, true), claim->name) == 0);
+			folder = sink->path;
+		}
+		if (!made || used)
+			continue;
+		nt_buffer_append(path, folder, (size_t)(nt_last_part(folder) - folder));
+		nt_buffer_text(path, claim->name);
+		char digest[NT_DIGEST_TEXT];
+		struct stat status;
+		const nt_protected_file *ignored;
+		nt_error unused;
+		if (!path->failed && lstat(path->data, &status) == 0 && S_ISREG(status.st_mode) &&
+			!nt_output_is_protected(output, &status, &ignored) &&
+			digest_of(path->data, digest, &unused) == NT_OK && strcmp(digest, claim->digest) == 0)
+			return true;
+		path->size = 0;
+	}
+	return false;
+}
+
+/* ---- choosing ---- */
+
+typedef enum verdict { FREE, EQUAL, OTHER } verdict;
+
+/* Another file of the set with that name: the main file, or a companion that has chosen it. */
+static const nt_sink *find_in_set(const nt_output *output, const nt_sink *sink, const char *name)
+{
+	for (const nt_sink *other = output->first; other; other = other->next) {
+		const bool named = nt_sink_is_companion(other) ? other->settled && other != sink : other->target != NULL;
+		if (named && (strcmp(nt_last_part(nt_sink_is_companion(other) ? other->target : other->path), name) == 0 ||
+				     (other->interim && strcmp(nt_last_part(other->interim), name) == 0)))
+			return other;
+	}
+	return NULL;
+}
+
+/* What has a name now. `state` receives that of an EQUAL file. */
+static nt_status look(const nt_output *output, const nt_sink *sink, const char *path, verdict *found,
+	nt_file_state *state, nt_error *error)
+{
+	const char *mine = nt_temporary_path(sink->temporary), *theirs = path;
+	const nt_sink *other = find_in_set(output, sink, nt_last_part(path));
+	struct stat status;
+	*found = OTHER;
+	if (other && !nt_sink_is_companion(other))
+		return NT_OK;
+	if (other && other->temporary)
+		theirs = nt_temporary_path(other->temporary);
+	if (lstat(theirs, &status) != 0) {
+		*found = FREE;
+		return errno == ENOENT ? NT_OK : nt_sink_fail(error, path, errno);
+	}
+	/* a link to nowhere, or to what cannot be looked at, is somebody's all the same */
+	if (stat(theirs, &status) != 0 || !S_ISREG(status.st_mode) || (uint64_t)status.st_size != sink->size)
+		return NT_OK;
+	bool same;
+	const nt_status result = nt_same_bytes(mine, theirs, &same, error);
+	if (result)
+		return result;
+	*state = nt_state_of(&status);
+	*found = same ? EQUAL : OTHER;
+	return NT_OK;
+}
+
+/* The first name made of infix and digest that is free or has these bytes. */
+static nt_status find_name(const nt_output *output, const nt_sink *sink, const char *infix, char **path,
+	verdict *found, nt_file_state *state, nt_error *error)
+{
+	nt_buffer text = {0};
+	nt_status status = NT_OK;
+	*found = OTHER;
+	for (unsigned number = 0; !status && *found == OTHER && number < MOST_NUMBERS; number++) {
+		text.size = 0;
+		nt_buffer_append(&text, sink->path, (size_t)(nt_last_part(sink->path) - sink->path));
+		append_name(&text, nt_last_part(sink->path), infix, sink->text, number);
+		status = text.failed ? nt_fail_memory(error) : look(output, sink, text.data, found, state, error);
+	}
+	if (!status && *found == OTHER)
+		status = nt_sink_fail(error, sink->path, EEXIST);
+	*path = status ? NULL : text.data;
+	if (status)
+		nt_buffer_free(&text);
+	return status;
+}
+
+/* The name is somebody's who is not us, or ours to replace. */
+static nt_status choose_other(nt_output *output, nt_sink *sink, nt_error *error)
+{
+	bool may;
+	verdict found;
+	nt_file_state state;
+	nt_status status = may_replace(output, sink, &may, error);
+	if (status)
+		return status;
+	if (may) {
+		sink->naming = NT_NAMING_REPLACES;
+		status = find_name(output, sink, for_the_time_being, &sink->interim, &found, &state, error);
+		sink->interim_is_there = found == EQUAL;
+		sink->target = strdup(sink->path);
+		return status || sink->target ? status : nt_fail_memory(error);
+	}
+	status = find_name(output, sink, of_content, &sink->target, &found, &sink->there, error);
+	sink->naming = found == EQUAL ? NT_NAMING_USED : NT_NAMING_NEW;
+	return status;
+}
+
+static nt_status choose(nt_output *output, nt_sink *sink, nt_error *error)
+{
+	verdict found;
+	nt_status status = look(output, sink, sink->path, &found, &sink->there, error);
+	if (status)
+		return status;
+	if (found == OTHER)
+		return choose_other(output, sink, error);
+	sink->naming = found == EQUAL ? NT_NAMING_USED : NT_NAMING_NEW;
+	sink->target = strdup(sink->path);
+	return sink->target ? NT_OK : nt_fail_memory(error);
+}
+
+/* A file that is there is ours if the previous main file says so; one of this set, if that is. */
+static nt_status judge_used(nt_output *output, nt_sink *sink, nt_error *error)
+{
+	const char *name = nt_last_part(sink->target);
+	const nt_sink *other = find_in_set(output, sink, name);
+	if (other) {
+		sink->ours = other->ours;
+		return NT_OK;
+	}
+	if (sink->role != NT_ROLE_BUFFER)
+		return NT_OK;
+	const nt_status status = know_claims(output, error);
+	sink->ours = is_claimed(output, name, sink->text);
+	return status;
+}
+
+nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error)
+{
+	if (sink->settled)
+		return NT_OK;
+	nt_digest_text(sink->digest, sink->text);
+	if (sink->dry) {
+		sink->settled = sink->ours = true;
+		sink->target = strdup(sink->path);
+		return sink->target ? NT_OK : nt_fail_memory(error);
+	}
+	nt_status status = nt_sink_flush(sink, error);
+	if (!status)
+		status = choose(output, sink, error);
+	if (status)
+		return nt_error_in_file(error, sink->path);
+	sink->ours = true;
+	if (sink->naming == NT_NAMING_USED) {
+		status = judge_used(output, sink, error);
+		nt_temporary_discard(sink->temporary);
+		sink->temporary = NULL;
+		close(sink->fd);
+		sink->fd = -1;
+	}
+	sink->settled = true;
+	return status;
+}
+
+bool nt_output_has_interim(const nt_output *output)
+{
+	for (const nt_sink *sink = output->first; sink; sink = sink->next)
+		if (sink->interim)
+			return true;
+	return false;
+}
+
+const char *nt_sink_digest(const nt_sink *sink)
+{
+	return sink->ours && sink->role == NT_ROLE_BUFFER ? sink->text : NULL;
+}
+
+const char *nt_sink_digest_before(const nt_sink *sink)
+{
+	return sink->interim ? sink->before : NULL;
+}

@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What dead makers left in a folder: see litter.h.
+ */
+#include "file/litter.h"
+
+#include <dirent.h>
+#include <poll.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <sys/stat.h>
+#include <sys/vfs.h>
+#include <unistd.h>
+#include "file/maker.h"
+#include "file/temporary.h"
+
+/* File systems that one machine has to itself. */
+static bool is_local(int folder)
+{
+	static const uint32_t known[] = {0xEF53 /* ext2 to ext4 */, 0x58465342 /* XFS */, 0x9123683E /* Btrfs */,
+		0x01021994 /* tmpfs */, 0xF2F52010 /* F2FS */, 0x2FC12FC1 /* ZFS */, 0x4D44 /* FAT */,
+		0x2011BAB0 /* exFAT */, 0x5346544E /* NTFS */, 0x7366746E /* NTFS3 */};
+	struct statfs status;
+	if (fstatfs(folder, &status) != 0)
+		return false;
+	for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+		if ((uint32_t)status.f_type == known[i])
+			return true;
+	return false;
+}
+
+/* Whether this process looks into a folder for the first time. The latest folders are remembered. */
+static bool is_first_look(const struct stat *status)
+{
+	enum { REMEMBERED = 64 };
+	static struct {
+		dev_t device;
+		ino_t inode;
+	} folders[REMEMBERED];
+	static size_t count;
+	static atomic_flag lock = ATOMIC_FLAG_INIT;
+	bool known = false;
+	while (atomic_flag_test_and_set_explicit(&lock, memory_order_acquire))
+		poll(NULL, 0, 1);
+	for (size_t i = 0; i < count && i < REMEMBERED && !known; i++)
+		known = folders[i].device == status->st_dev && folders[i].inode == status->st_ino;
+	if (!known) {
+		folders[count % REMEMBERED].device = status->st_dev;
+		folders[count++ % REMEMBERED].inode = status->st_ino;
+	}
+	atomic_flag_clear_explicit(&lock, memory_order_release);
+	return !known;
+}
+
+void nt_litter_clean(const char *path)
+{
+	struct stat status;
+	if (stat(path, &status) != 0 || !is_first_look(&status))
+		return;
+	DIR *folder = opendir(path);
+	if (!folder)
+		return;
+	const bool local = is_local(dirfd(folder));
+	for (const struct dirent *entry; (entry = readdir(folder));) {
+		size_t length;
+		const char *text = nt_temporary_maker(entry->d_name, &length);
+		if (text && nt_maker_is_gone(text, length, local))
+			unlinkat(dirfd(folder), entry->d_name, 0);
+	}
+	closedir(folder);
+}

@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Output sets: one main file and its companions (the .bin of a .gltf, copied images), which appear together or not at
+ * all.
+ *
+ * All files are written to temporary files beside their targets. A companion gets its name when its bytes are known
+ * (nt_output_settle), then the main file is written, which holds those names, and nt_output_commit() puts everything in
+ * place; abort, or a signal, removes it. What a companion may be called, and what it may replace, is in companion.c;
+ * the order of the steps, and what a crash leaves after each, in commit.c. Outputs that are pipes or devices, and
+ * "-", are written through.
+ */
+#ifndef NT_FILE_OUTPUT_H
+#define NT_FILE_OUTPUT_H
+
+#include "base/buffer.h"
+#include "file/input.h"
+
+typedef struct nt_output nt_output;
+typedef struct nt_sink nt_sink;
+
+typedef enum nt_role {
+	NT_ROLE_MAIN,    /* named by the user. Further ones stand for themselves and are placed before the first */
+	NT_ROLE_INTERIM, /* the first main file once more, with the names that companions have until they can have theirs */
+	NT_ROLE_BUFFER,  /* a companion of this main file: it may replace one that an earlier run made for it */
+	NT_ROLE_IMAGE    /* a companion that other documents may share: never replaced, never removed */
+} nt_role;
+
+/* What became of a set, beyond its status. */
+typedef struct nt_output_result {
+	bool again;     /* the commit failed because a name was taken meanwhile: with the names chosen anew it would not */
+	bool left;      /* the main file had these bytes already and was left as it is; in place only */
+	nt_buffer note; /* which companions do not have their own names, and why: "; ..." */
+} nt_output_result;
+
+typedef struct nt_output_options {
+	bool no_clobber; /* refuse to replace an existing file */
+	bool sync;       /* whatever a power cut leaves, the main file is whole: files and folders are synchronised */
+	bool dry_run;    /* refuse what would be refused, count what would be written, write nothing */
+	const char *in_place; /* this file may be replaced by a main file, and keeps its mode, owner and attributes; NULL: none */
+	nt_output_result *result; /* NULL: not wanted */
+	/* Calls nt_output_claim() for what the main file at `path`, which is about to be replaced, says of its companions;
+	 * NULL: nothing is known. NT_OK, also when it says nothing or cannot be read, or NT_ERROR_MEMORY. */
+	nt_status (*find_claims)(nt_output *output, const char *path, nt_error *error);
+} nt_output_options;
+
+/* Starts an output set. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_output_create(nt_output **output, const nt_output_options *options, nt_error *error);
+
+/* Names a file that must not be written: the input ("-" too) and every file the input refers to. Files that do
+ * not exist are ignored. To write in place, do not name the input. way_out: what the refusal advises; NULL: nothing. */
+nt_status nt_output_protect(nt_output *output, const char *path, const char *way_out, nt_error *error);
+
+/*
+ * Adds a file to the set; "-" is standard output. The sink belongs to the set.
+ *
+ * A main file is refused where its path is a directory, a symbolic link that leads nowhere, a protected file, a
+ * main file of this set or, with no_clobber, an existing file; in place also one that is read-only or has further
+ * hard links. A missing folder is refused for any role. Companions come after their main file.
+ */
+nt_status nt_output_add(nt_output *output, const char *path, nt_role role, nt_sink **sink, nt_error *error);
+
+/* Whether this path is the file that is replaced in place; and that it needs no change, so that it is not even added. */
+bool nt_output_is_in_place(const nt_output *output, const char *path);
+void nt_output_leave(nt_output *output);
+
+/* Says of a companion of the main file that is about to be replaced (its name in the same folder) by which digest of its
+ * bytes we made it. `before`: of what the name `name` was to replace when the run that made it was cut short; NULL: of nothing. */
+nt_status nt_output_claim(nt_output *output, const char *name, const char *digest, const char *before,
+	nt_error *error);
+
+/* Ends the writing of a companion and chooses its name. */
+nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error);
+
+/* Whether a settled companion takes the place of another file. Then the main file is to be written twice: as
+ * NT_ROLE_INTERIM with interim names, and as NT_ROLE_MAIN. */
+bool nt_output_has_interim(const nt_output *output);
+
+/* By which name in its folder the main file refers to a settled companion. */
+const char *nt_sink_name(const nt_sink *sink, bool interim);
+
+/* The digest (ext/digest.h) that the main file is to record for a settled companion, so that a later run knows it for
+ * ours; NULL: it is not ours. And the digest of what it replaces; NULL: of nothing. */
+const char *nt_sink_digest(const nt_sink *sink);
+const char *nt_sink_digest_before(const nt_sink *sink);
+
+/* The name that data for `name` has while `name` is not to be had: "a.new-0123456789abcdef.bin" for "a.bin". Appended. */
+void nt_output_interim_name(nt_buffer *text, const char *name, const char *digest);
+
+/* Appends bytes. Small writes are buffered, large ones go straight to the file. */
+nt_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error *error);
+
+/* Appends a range of an input: by copy_file_range where the kernel can and the pages of both
+ * files meet, else like nt_sink_write. */
+nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
+	nt_error *error);
+
+/* Flushes the file of the set that will have the name `path` and says where it is for the time being; NULL when
+ * the set has no such file or writes it through. */
+nt_status nt_output_written(nt_output *output, const char *path, const char **temporary,
+	nt_error *error);
+
+/* Bytes written to all files of the set so far, the interim one aside. */
+uint64_t nt_output_size(const nt_output *output);
+
+/* Bytes of them that came from an input file as they are (nt_sink_copy). */
+uint64_t nt_output_copied(const nt_output *output);
+
+/* Puts every file in place; on failure the main file and what it refers to are what they were. The set is freed
+ * either way. */
+nt_status nt_output_commit(nt_output *output, nt_error *error);
+
+/* Removes the temporary files and frees the set; NULL is allowed. */
+void nt_output_abort(nt_output *output);
+
+/* Makes SIGINT, SIGTERM and SIGHUP remove the temporary files before they end the process, and turns SIGPIPE
+ * into a write error. Called once by the front end. */
+void nt_output_catch_signals(void);
+
+#endif

@@ -1,0 +1,124 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What the files of an output set's implementation share: sink.c writes bytes, companion.c chooses names, same_file.c
+ * keeps what a file in place has, commit.c puts things in place, output.c is above them.
+ */
+#ifndef NT_FILE_OUTPUT_PARTS_H
+#define NT_FILE_OUTPUT_PARTS_H
+
+#include <sys/stat.h>
+#include "ext/digest.h"
+#include "file/output.h"
+#include "file/temporary.h"
+
+/* What becomes of a settled companion. */
+typedef enum nt_naming {
+	NT_NAMING_NEW,     /* it takes a name that is free */
+	NT_NAMING_USED,    /* a file of these bytes has the name already, and stays */
+	NT_NAMING_REPLACES /* it takes the place of a file of ours, after a time under its interim name */
+} nt_naming;
+
+/* One state of one file; it has changed when any of it differs. */
+typedef struct nt_file_state {
+	dev_t device;
+	ino_t inode;
+	off_t size;
+	struct timespec modified;
+} nt_file_state;
+
+/* Buffer of a sink. */
+enum { NT_SINK_BUFFER_BYTES = 256 * 1024 };
+
+struct nt_sink {
+	nt_sink *next;            /* in the order of adding */
+	nt_temporary *temporary;  /* NULL: written through, or not needed any more */
+	int fd;
+	nt_role role;
+	bool shared_fd;           /* standard output: not ours to close */
+	bool no_kernel_copy;      /* it was tried in vain */
+	bool dry;                 /* counts bytes and drops them */
+	bool in_place;            /* the main file: it is the input's */
+	bool placed;              /* its temporary file has a name */
+	uint64_t size;
+	uint64_t copied; /* of them from an input file as they are */
+	size_t used;              /* bytes in buffer */
+	unsigned char *buffer;
+	nt_digest *digest;        /* of all bytes; companions only */
+	char *path;               /* as the caller named it */
+	char *target;             /* where it goes: where symbolic links lead, or a settled companion's name; NULL when
+	                             written through */
+	/* of a settled companion */
+	bool settled, ours;
+	nt_naming naming;
+	nt_file_state there;      /* what has the name: USED, REPLACES */
+	char *interim;            /* REPLACES: path of the interim name */
+	bool interim_is_there;    /* with these bytes */
+	char text[NT_DIGEST_TEXT], before[NT_DIGEST_TEXT];
+};
+
+typedef struct nt_protected_file {
+	dev_t device;
+	ino_t inode;
+	char *path;
+	const char *way_out; /* a constant; NULL: none */
+} nt_protected_file;
+
+typedef struct nt_output_claim_row {
+	char *name, *digest, *before; /* before: may be NULL */
+} nt_output_claim_row;
+
+struct nt_output {
+	nt_output_options options;
+	nt_sink *first, *last, *main, *interim;
+	nt_protected_file *guarded;
+	size_t guarded_count, guarded_capacity;
+	nt_output_claim_row *claims;
+	size_t claim_count, claim_capacity;
+	bool claims_known;
+};
+
+/* ---- sink.c ---- */
+
+nt_status nt_sink_fail(nt_error *error, const char *path, int number);
+nt_status nt_sink_flush(nt_sink *sink, nt_error *error);
+
+/* Flushes, synchronises where that is asked for, and closes. */
+nt_status nt_sink_finish(nt_sink *sink, bool sync, nt_error *error);
+
+/* ---- companion.c ---- */
+
+static inline bool nt_sink_is_companion(const nt_sink *sink)
+{
+	return sink->role == NT_ROLE_BUFFER || sink->role == NT_ROLE_IMAGE;
+}
+
+const char *nt_last_part(const char *path);
+
+nt_file_state nt_state_of(const struct stat *status);
+
+/* Whether a path, links followed, still is the file in that state. */
+bool nt_state_is(const char *path, const nt_file_state *state);
+
+/* Whether two files hold the same bytes. False too where one of them cannot be read; NT_ERROR_MEMORY or
+ * NT_ERROR_IO where that is the system's fault. */
+nt_status nt_same_bytes(const char *a, const char *b, bool *same, nt_error *error);
+
+bool nt_output_is_protected(const nt_output *output, const struct stat *status, const nt_protected_file **file);
+
+/* Appends the path of a file of ours that nothing refers to any more once the set is in place; one a call, *at begins
+ * with 0; false: no more. */
+bool nt_output_superseded(const nt_output *output, size_t *at, nt_buffer *path);
+
+/* ---- same_file.c ---- */
+
+/* Why a file may not be replaced in place; NULL: it may. */
+const char *nt_in_place_refusal(const char *path, const struct stat *status);
+
+/* Gives a new file mode, owner, attributes and access lists of the one it is going to replace. */
+nt_status nt_keep_attributes(int fd, const char *target, nt_error *error);
+
+/* ---- commit.c ---- */
+
+nt_status nt_output_place(nt_output *output, nt_error *error);
+
+#endif

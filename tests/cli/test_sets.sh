@@ -1,0 +1,426 @@
+# SPDX-License-Identifier: MIT
+# Output sets: nothing of anybody else's is touched, and whatever cuts a run short, the main file is whole.
+. "$ROOT/tests/support/cli.sh"
+calls=$BUILD/tests/preload/calls.so
+sets=$ROOT/tests/support/sets.py
+export PYTHONDONTWRITEBYTECODE=1
+
+# Under a sanitizer a run takes many times as long; there some of the calls do.
+case $BUILD in
+*release*) stride=1 ;;
+*) stride=5 ;;
+esac
+
+# sweep MODE BEFORE MAIN ARGUMENTS...: every state is good.
+sweep() {
+	local mode=$1
+	shift
+	python3 "$sets" $mode --stride=$stride ${also:+--also=$also} "$NMTAN" "$calls" "$@" >"$WORK/sweep.txt" 2>&1 ||
+		wrong "$mode: $(cat "$WORK/sweep.txt")"
+	grep -q ' 0 bad$' "$WORK/sweep.txt" || wrong "$mode was not tried"
+}
+
+state() {
+	python3 "$sets" state "$1"
+}
+
+as_nobody() {
+	setpriv --reuid=65534 --regid=65534 --clear-groups "$@"
+}
+
+# Goes into a new folder, $place, that users without rights can reach; false, and the case is skipped, where there is no other user.
+outsider() {
+	place=$(mktemp -d) && chmod 755 "$place" && cd "$place" || exit 1
+	[ "$(id -u)" = 0 ] && command -v setpriv >/dev/null && as_nobody test -x "$NMTAN" && return 0
+	cd "$WORK/here" && rm -rf "$place"
+	skip_case "needs root, setpriv and a tool that others may run"
+	return 1
+}
+
+# A document of three buffers, of which two change, and two images of one name.
+many_files() {
+	mkdir -p in/x in/y
+	python3 - "$data" in <<'END'
+import json, os, sys
+data, folder = sys.argv[1:]
+g = json.load(open(os.path.join(data, 'plates.gltf')))
+whole = open(os.path.join(data, 'plates.bin'), 'rb').read()
+for i in range(3):
+    open(os.path.join(folder, 'b%d.bin' % i), 'wb').write(whole)
+g['buffers'] = [dict(g['buffers'][0], uri='b%d.bin' % i) for i in range(3)]
+g['images'] = [{'uri': 'x/n.png'}, {'uri': 'y/n.png'}]
+for i in range(2):
+    open(os.path.join(folder, 'xy'[i], 'n.png'), 'wb').write(b'\x89PNG\r\n\x1a\n' + bytes([i]) * 40)
+# each primitive has four accessors, each accessor a view
+for v, view in enumerate(g['bufferViews']):
+    view['buffer'] = v // 4
+json.dump(g, open(os.path.join(folder, 'm.gltf'), 'w'), indent=1)
+END
+}
+
+# An OBJ with a normal map of these bytes.
+textured() {
+	mkdir -p "$1"
+	printf '\x89PNG\r\n\x1a\n%s' "$2" >"$1/n.png"
+	printf 'newmtl m\nnorm n.png\n' >"$1/m.mtl"
+	sed -e '/^mtllib/d' -e '/^usemtl/d' -e '1i mtllib m.mtl\nusemtl m' "$data/quad.obj" >"$1/$1.obj"
+}
+
+# The bytes of the normal map of a document.
+map_of() {
+	(cd "$(dirname "$1")" && tail -c +9 "$(gltf "$(basename "$1")" 'decodeURIComponent(g.images[0].uri)' | tr -d '"')")
+}
+
+scene "in place, a .bin that another document owns stays"
+cp "$data/bumps.png" "$data/plates.bin" "$data/plates.gltf" .
+cp plates.bin a.bin
+mv plates.gltf other.gltf
+sed 's/plates\.bin/a.bin/' other.gltf >plates.gltf
+before=$(state other.gltf)
+run --in-place plates.gltf
+exits 0
+same plates.bin "$data/plates.bin"
+same a.bin "$data/plates.bin"
+is "$(state other.gltf)" "$before"
+says "plates.bin is another file, so ours is plates-"
+is "$(ls | wc -l)" 6
+
+scene "in place, a second run with the same result adds nothing and replaces nothing"
+cp "$data/bumps.png" "$data/plates.bin" "$data/plates.gltf" .
+run --existing=replace --in-place plates.gltf
+exits 0
+sum=$(cat * | cksum) list=$(ls) stamp=$(stat -c %i.%y plates.gltf)
+run --existing=replace --in-place plates.gltf
+exits 0
+is "$(cat * | cksum)" "$sum"
+is "$(ls)" "$list"
+is "$(stat -c %i.%y plates.gltf)" "$stamp"
+says "left as it is"
+same plates.bin "$data/plates.bin"
+# another document that shares the .bin keeps it, whatever is done to this one
+cp plates.gltf second.gltf
+before=$(state second.gltf)
+run --existing=replace --bitangents --in-place plates.gltf
+exits 0
+is "$(state second.gltf)" "$before"
+
+scene "a file that stands in the way stays, and repeated runs pile up nothing"
+echo somebody >o.bin
+run "$data/plates.gltf" o.gltf
+exits 0
+says "o.bin is another file, so ours is o-"
+is "$(cat o.bin)" somebody
+first=$(state o.gltf) list=$(ls)
+run "$data/plates.gltf" o.gltf
+exits 0
+is "$(ls)" "$list"
+is "$(state o.gltf)" "$first"
+# with another result the file of the earlier one goes: this main file alone referred to it
+run --bitangents "$data/plates.gltf" o.gltf
+exits 0
+is "$(ls | wc -l)" 3
+is "$(cat o.bin)" somebody
+run "$data/plates.gltf" o.gltf
+is "$(ls)" "$list"
+is "$(state o.gltf)" "$first"
+
+scene "a .bin of ours is replaced under its own name, one that was changed since is not"
+run --bitangents "$data/plates.gltf" o.gltf
+run "$data/plates.gltf" o.gltf
+exits 0
+only o.gltf o.bin
+says_not "another file"
+is "$(xxhsum -H2 o.bin 2>/dev/null | cut -c1-32)" "$(command -v xxhsum >/dev/null && gltf o.gltf 'g.buffers[0].extras["nmtan:xxh128"]' | tr -d '"')"
+echo changed >>o.bin
+cp o.bin before
+run --bitangents "$data/plates.gltf" o.gltf
+exits 0
+same o.bin before
+says "o.bin is another file"
+
+scene "a file that is used as it is does not become ours"
+run "$data/plates.gltf" a.gltf
+mv a.gltf kept.gltf && mv a.bin o.bin && sed -i 's/"a\.bin"/"o.bin"/' kept.gltf
+before=$(state kept.gltf)
+run "$data/plates.gltf" o.gltf
+exits 0
+only kept.gltf o.gltf o.bin
+run --bitangents "$data/plates.gltf" o.gltf
+exits 0
+is "$(state kept.gltf)" "$before"
+says "o.bin is another file"
+
+scene "a main file that cannot be replaced keeps its companion"
+run --bitangents "$data/plates.gltf" o.gltf
+before=$(state o.gltf)
+list=$(ls)
+if chattr +i o.gltf 2>/dev/null; then
+	run "$data/plates.gltf" o.gltf
+	chattr -i o.gltf
+	exits 2
+	says "o.gltf: cannot write"
+	is "$(state o.gltf)" "$before"
+	is "$(ls -A)" "$list"
+	# and a companion that cannot: the new set is whole under other names
+	chattr +i o.bin
+	run "$data/plates.gltf" o.gltf
+	chattr -i o.bin
+	exits 0
+	says "the data of o.bin stays in o.new-"
+	run "$data/plates.gltf" fresh.gltf
+	is "$(state o.gltf)" "$(state fresh.gltf)"
+	run "$data/plates.gltf" o.gltf
+	exits 0
+	only o.gltf o.bin fresh.gltf fresh.bin
+else
+	skip_case "files cannot be made immutable here"
+fi
+
+scene "a sticky folder of somebody else's"
+if outsider; then
+	mkdir sticky
+	(cd sticky && "$NMTAN" -q --bitangents "$data/plates.gltf" o.gltf)
+	chmod 1777 sticky
+	before=$(state sticky/o.gltf)
+	cp "$data"/plates.* "$data/bumps.png" .
+	as_nobody "$NMTAN" plates.gltf sticky/o.gltf 2>"$WORK/err.txt"
+	is $? 2
+	says "o.gltf: cannot write"
+	is "$(state sticky/o.gltf)" "$before"
+	is "$(ls -A sticky | tr '\n' ' ')" "o.bin o.gltf "
+	cd "$WORK/here" && rm -rf "$place"
+fi
+
+scene "images of one name from several inputs are all kept"
+textured s1 one
+textured s2 two
+textured s3 one
+for threads in 1 4; do
+	rm -rf out
+	run -j$threads --output-format=gltf -d out --images=copy s1/s1.obj s2/s2.obj s3/s3.obj
+	exits 0
+	is "$(map_of out/s1.gltf)" one
+	is "$(map_of out/s2.gltf)" two
+	is "$(map_of out/s3.gltf)" one
+	is "$(ls out/*.png | wc -l)" 2
+	says "n.png is another file, so ours is n-"
+	list=$(ls out)
+	run -j$threads --output-format=gltf -d out --images=copy s1/s1.obj s2/s2.obj s3/s3.obj
+	exits 0
+	is "$(map_of out/s2.gltf)" two
+	is "$(ls out)" "$list"
+done
+
+scene "the same in runs of their own, one after the other and at once"
+inputs=
+for i in 1 2 3 4 5 6; do
+	textured s$i "map $i"
+done
+mkdir one after
+for i in 1 2; do
+	run --images=copy s$i/s$i.obj after/s$i.gltf
+	exits 0
+done
+is "$(map_of after/s1.gltf)" "map 1"
+is "$(map_of after/s2.gltf)" "map 2"
+for round in 1 2 3; do
+	rm -rf one && mkdir one
+	for i in 1 2 3 4 5 6; do
+		"$NMTAN" -q --images=copy s$i/s$i.obj one/s$i.gltf 2>>"$WORK/err.txt" &
+	done
+	wait
+	for i in 1 2 3 4 5 6; do
+		is "$(map_of one/s$i.gltf)" "map $i"
+	done
+	is "$(ls one/*.png | wc -l)" 6
+done
+
+scene "a run of many threads takes no name twice"
+for i in 1 2 3 4 5 6 7 8; do
+	textured s$i "map $i"
+	inputs="$inputs s$i/s$i.obj"
+done
+for round in 1 2 3; do
+	rm -rf out
+	run -q -j8 --output-format=gltf -d out --images=copy $inputs
+	exits 0
+	for i in 1 2 3 4 5 6 7 8; do
+		is "$(map_of out/s$i.gltf)" "map $i"
+	done
+done
+
+scene "killed anywhere, the first of its name"
+mkdir before && textured s1 one
+sweep kill before o.gltf -q -j1 --images=copy "$PWD/s1/s1.obj" o.gltf
+sweep fail before o.gltf -q -j1 --images=copy "$PWD/s1/s1.obj" o.gltf
+sweep power before o.gltf -q -j1 --sync --images=copy "$PWD/s1/s1.obj" o.gltf
+sweep kill before o.glb -q -j1 "$PWD/s1/s1.obj" o.glb
+sweep power before o.glb -q -j1 --sync "$PWD/s1/s1.obj" o.glb
+
+scene "killed anywhere, several files replaced and images copied"
+many_files
+mkdir before
+(cd before && "$NMTAN" -q --bitangents --buffers=copy --images=copy ../in/m.gltf o.gltf)
+is "$(ls before | wc -l)" 6
+for mode in kill fail power; do
+	sweep $mode before o.gltf -q -j1 --sync --buffers=copy --images=copy "$PWD/in/m.gltf" o.gltf
+done
+sweep kill before o.gltf -q -j1 --buffers=copy --images=copy "$PWD/in/m.gltf" o.gltf
+
+scene "killed anywhere, where files cannot be linked"
+many_files
+mkdir before
+(cd before && "$NMTAN" -q --bitangents --buffers=copy ../in/m.gltf o.gltf)
+for mode in kill fail power; do
+	also=link:1 sweep $mode before o.gltf -q -j1 --sync --buffers=copy "$PWD/in/m.gltf" o.gltf
+done
+cd before
+NT_CALLS_FAIL=link:1 LD_PRELOAD=$calls ASAN_OPTIONS=${ASAN_OPTIONS-}:verify_asan_link_order=0 \
+	"$NMTAN" --buffers=copy ../in/m.gltf o.gltf 2>"$WORK/err.txt"
+is $? 0
+says "the data of o.bin stays in o.new-"
+
+scene "killed anywhere, beside somebody else's file"
+mkdir before && echo somebody >before/o.bin
+sweep kill before o.gltf -q -j1 "$data/plates.gltf" o.gltf
+sweep power before o.gltf -q -j1 --sync "$data/plates.gltf" o.gltf
+
+scene "killed anywhere, in place"
+mkdir before && cp "$data/plates.gltf" "$data/plates.bin" "$data/bumps.png" before
+for mode in kill fail power; do
+	sweep $mode before plates.gltf -q -j1 --sync --in-place plates.gltf
+done
+
+scene "killed anywhere, a .glb with files"
+many_files
+mkdir before
+(cd before && "$NMTAN" -q --bitangents --buffers=copy ../in/m.gltf o.glb)
+sweep kill before o.glb -q -j1 --buffers=copy "$PWD/in/m.gltf" o.glb
+sweep power before o.glb -q -j1 --sync --buffers=copy "$PWD/in/m.gltf" o.glb
+
+# A temporary file as a killed run leaves it.
+litter() {
+	NT_CALLS_KILL=2 LD_PRELOAD=$calls ASAN_OPTIONS=${ASAN_OPTIONS-}:verify_asan_link_order=0 \
+		"$NMTAN" -q "$data/quad.obj" out.glb 2>/dev/null
+	ls -A | grep '^\.nmtan-' | head -1
+}
+
+scene "what a dead run left goes with the next run in that folder"
+name=$(litter)
+[ -n "$name" ] || wrong "nothing was left behind"
+run "$data/quad.obj" out.glb
+exits 0
+only out.glb
+
+scene "what others may still be writing stays"
+name=$(litter)
+rm -f "$name"
+# .nmtan-HOST-BOOT-SPACE-PID-START-NUMBER.tmp
+fields=${name#.nmtan-} number=${name##*-}
+fields=${fields%-*}
+start=${fields##*-} fields=${fields%-*}
+pid=${fields##*-} fields=${fields%-*}
+space=${fields##*-} fields=${fields%-*}
+boot=${fields##*-} host=${fields%-*}
+mine=$(sed 's/.*) //' /proc/$$/stat | cut -d' ' -f20)
+stay=".nmtan-$host-$boot-$space-$$-$mine-$number .nmtan-elsewhere-$boot-$space-$pid-$start-$number \
+	.nmtan-$host-$boot-1$space-$pid-$start-$number .nmtan-$pid-0-0.tmp .nmtan-$host-$boot-$space-$pid-0-$number .nmtan-x"
+go=".nmtan-$host-$boot-$space-$$-1$mine-$number .nmtan-$host-$boot-$space-$pid-$start-1$number"
+touch $stay $go
+run "$data/quad.obj" out.glb
+exits 0
+only $stay out.glb
+rm $stay
+# another boot of this machine: certain only where no other machine can write
+other=.nmtan-$host-$(echo $boot | tr 0-9a-f 1-9a-f0)-$space-$pid-$start-$number
+touch "$other"
+run "$data/quad.obj" out.glb
+case $(stat -f -c %T .) in
+ext2/ext3 | xfs | btrfs | tmpfs) only out.glb ;;
+*) only out.glb "$other" ;;
+esac
+
+scene "in place keeps mode, owner, attributes and access list, and takes lent rights"
+cp "$data/plates.glb" a.glb
+chmod 600 a.glb
+run --in-place a.glb
+exits 0
+is "$(stat -c %a a.glb)" 600
+cp "$data/plates.glb" b.glb
+[ "$(id -u)" != 0 ] || chown 12345:23456 b.glb
+chmod 6751 b.glb
+owner=$(stat -c %u:%g b.glb)
+python3 - b.glb <<'END' || skip_case "no extended attributes here"
+import os, struct, sys
+os.setxattr(sys.argv[1], 'user.note', b'mine')
+# version 2: user rw-, user 4242 r--, group ---, mask r--, others ---
+entries = [(1, 6, 0xffffffff), (2, 4, 4242), (4, 0, 0xffffffff), (16, 4, 0xffffffff), (32, 0, 0xffffffff)]
+acl = struct.pack('<I', 2) + b''.join(struct.pack('<HHI', *e) for e in entries)
+os.setxattr(sys.argv[1], 'system.posix_acl_access', acl)
+END
+chmod u+s b.glb
+attributes='import os, sys; print([(n, os.getxattr(sys.argv[1], n)) for n in sorted(os.listxattr(sys.argv[1]))])'
+kept=$(python3 -c "$attributes" b.glb)
+run --in-place b.glb
+exits 0
+is "$(stat -c %u:%g b.glb)" "$owner"
+is "$(stat -c %a b.glb)" 640
+is "$(python3 -c "$attributes" b.glb)" "$kept"
+case $kept in *user.note*posix_acl* | *posix_acl*user.note*) ;; *) wrong "nothing was there to be kept: $kept" ;; esac
+
+scene "in place, a group that cannot be kept gives its rights to no other"
+if outsider; then
+	chmod 777 .
+	cp "$data/plates.glb" a.glb
+	chown 65534:23456 a.glb && chmod 660 a.glb
+	as_nobody "$NMTAN" --in-place a.glb 2>"$WORK/err.txt"
+	is $? 0
+	is "$(stat -c %u:%g:%a a.glb)" 65534:65534:600
+	cd "$WORK/here" && rm -rf "$place"
+fi
+
+scene "in place, what is read-only or has further names is refused with the way out"
+cp "$data/plates.glb" a.glb
+chmod 444 a.glb
+run --in-place a.glb
+exits 2
+says "a.glb: refusing to write in place: the file is read-only; chmod u+w"
+same a.glb "$data/plates.glb"
+chmod 644 a.glb
+ln a.glb b.glb
+run --in-place a.glb
+exits 2
+says "a.glb: refusing to write in place: the file has further names (hard links)"
+says "name another output"
+same b.glb "$data/plates.glb"
+only a.glb b.glb
+
+scene "symbolic links that lead nowhere or round in a circle are refused"
+ln -s nowhere.glb dangling.glb
+ln -s loop.glb loop.glb
+for name in dangling loop; do
+	run "$data/quad.obj" $name.glb
+	exits 2
+	says "$name.glb: refusing to write: it is a symbolic link that leads"
+	[ -L $name.glb ] || wrong "$name.glb is no link any more"
+done
+only dangling.glb loop.glb
+# in place through a link, the file that it leads to is replaced
+cp "$data/plates.glb" a.glb && ln -s a.glb link.glb
+run --in-place link.glb
+exits 0
+[ -L link.glb ] || wrong "the link is gone"
+! cmp -s a.glb "$data/plates.glb" || wrong "nothing was written"
+
+scene "in place, a document that needs nothing is not replaced"
+run "$data/plates.glb" a.glb
+run "$data/plates.gltf" b.gltf
+run "$data/quad_le.ply" c.ply
+touch -d 2001-01-01 a.glb b.gltf b.bin c.ply
+before=$(stat -c '%n %i %y' *)
+run --in-place a.glb b.gltf c.ply
+exits 0
+is "$(stat -c '%n %i %y' *)" "$before"
+says "left as it is"
+
+done_testing

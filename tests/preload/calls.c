@@ -1,0 +1,226 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Stands between a program and the calls by which it changes files (LD_PRELOAD). By environment:
+ *
+ *   NT_CALLS_KILL=N             SIGKILL in place of the N-th call, from 1 on
+ *   NT_CALLS_FAIL=NAME:ERRNO    the calls of that name fail; with :N behind, the N-th of them alone
+ *   NT_CALLS_COUNT=FILE         the names of all calls in their order, at the end
+ *   NT_CALLS_TRACE=DIR          DIR/log has each call that changes names or makes something lasting, after it succeeded;
+ *                               what fsync makes lasting of a file is copied to DIR/NUMBER
+ *
+ * A rename is logged as it is; all paths are as the program gave them. Programs under test run with one thread.
+ */
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/types.h>
+#include <sys/uio.h>
+#include <sys/xattr.h>
+#include <unistd.h>
+
+static unsigned long calls, matches;
+static int log_fd = -1;
+static unsigned snapshots;
+
+enum { MOST_CALLS = 4096 };
+static const char *made[MOST_CALLS];
+
+static void *next(const char *name)
+{
+	void *function = dlsym(RTLD_NEXT, name);
+	if (!function)
+		_exit(97);
+	return function;
+}
+
+#define REAL(type, name, ...) ((type (*)(__VA_ARGS__))next(name))
+
+/* Before a call. False: it is to fail, errno is set. */
+static bool enter(const char *name)
+{
+	const char *kill_at = getenv("NT_CALLS_KILL"), *fail = getenv("NT_CALLS_FAIL");
+	if (calls < MOST_CALLS)
+		made[calls] = name;
+	calls++;
+	if (kill_at && strtoul(kill_at, NULL, 10) == calls)
+		kill(getpid(), SIGKILL);
+	const size_t length = strlen(name);
+	if (!fail || strncmp(fail, name, length) != 0 || fail[length] != ':')
+		return true;
+	char *end;
+	const long number = strtol(fail + length + 1, &end, 10);
+	matches++;
+	if (*end == ':' && strtoul(end + 1, NULL, 10) != matches)
+		return true;
+	errno = (int)number;
+	return false;
+}
+
+__attribute__((destructor)) static void end(void)
+{
+	const char *path = getenv("NT_CALLS_COUNT");
+	FILE *file = path ? fopen(path, "w") : NULL;
+	if (file) {
+		for (unsigned long i = 0; i < calls && i < MOST_CALLS; i++)
+			fprintf(file, "%s\n", made[i]);
+		fclose(file);
+	}
+}
+
+/* ---- the log ---- */
+
+static void note(const char *format, ...)
+{
+	const char *folder = getenv("NT_CALLS_TRACE");
+	char line[9000];
+	va_list arguments;
+	if (!folder)
+		return;
+	const int kept = errno;
+	if (log_fd < 0) {
+		snprintf(line, sizeof line, "%s/log", folder);
+		log_fd = REAL(int, "open", const char *, int, ...)(line, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+	}
+	va_start(arguments, format);
+	const int length = vsnprintf(line, sizeof line, format, arguments);
+	va_end(arguments);
+	if (REAL(ssize_t, "write", int, const void *, size_t)(log_fd, line, (size_t)length) != length)
+		_exit(98);
+	errno = kept;
+}
+
+/* What a descriptor stands for: a folder or a file, by its inode. */
+static void note_sync(int fd)
+{
+	const char *folder = getenv("NT_CALLS_TRACE");
+	struct stat status;
+	if (!folder || fstat(fd, &status) != 0)
+		return;
+	if (S_ISDIR(status.st_mode)) {
+		note("sync-folder\t%llu\n", (unsigned long long)status.st_ino);
+		return;
+	}
+	char path[9000], bytes[65536], self[64];
+	const unsigned number = snapshots++;
+	snprintf(path, sizeof path, "%s/%u", folder, number);
+	snprintf(self, sizeof self, "/proc/self/fd/%d", fd);
+	FILE *from = fopen(self, "rb"), *to = fopen(path, "wb");
+	if (!from || !to)
+		_exit(98);
+	for (size_t size; (size = fread(bytes, 1, sizeof bytes, from)) > 0;)
+		if (fwrite(bytes, 1, size, to) != size)
+			_exit(98);
+	fclose(from);
+	fclose(to);
+	note("sync-file\t%llu\t%u\n", (unsigned long long)status.st_ino, number);
+}
+
+static void note_name(const char *what, const char *path)
+{
+	struct stat status;
+	if (getenv("NT_CALLS_TRACE") && lstat(path, &status) == 0)
+		note("%s\t%s\t%llu\n", what, path, (unsigned long long)status.st_ino);
+}
+
+/* ---- the calls ---- */
+
+int open(const char *path, int flags, ...)
+{
+	va_list arguments;
+	va_start(arguments, flags);
+	const mode_t mode = flags & O_CREAT ? va_arg(arguments, mode_t) : 0;
+	va_end(arguments);
+	if (!(flags & O_CREAT))
+		return REAL(int, "open", const char *, int, ...)(path, flags);
+	if (!enter("open"))
+		return -1;
+	const int fd = REAL(int, "open", const char *, int, ...)(path, flags, mode);
+	if (fd >= 0)
+		note_name("create", path);
+	return fd;
+}
+
+ssize_t write(int fd, const void *bytes, size_t size)
+{
+	return enter("write") ? REAL(ssize_t, "write", int, const void *, size_t)(fd, bytes, size) : -1;
+}
+
+ssize_t writev(int fd, const struct iovec *parts, int count)
+{
+	return enter("writev") ? REAL(ssize_t, "writev", int, const struct iovec *, int)(fd, parts, count) : -1;
+}
+
+ssize_t copy_file_range(int from, off64_t *at, int to, off64_t *there, size_t size, unsigned flags)
+{
+	return enter("copy_file_range") ? REAL(ssize_t, "copy_file_range", int, off64_t *, int, off64_t *, size_t,
+		unsigned)(from, at, to, there, size, flags) : -1;
+}
+
+int fsync(int fd)
+{
+	const int result = enter("fsync") ? REAL(int, "fsync", int)(fd) : -1;
+	if (result == 0)
+		note_sync(fd);
+	return result;
+}
+
+int fchmod(int fd, mode_t mode)
+{
+	return enter("fchmod") ? REAL(int, "fchmod", int, mode_t)(fd, mode) : -1;
+}
+
+int fchown(int fd, uid_t user, gid_t group)
+{
+	return enter("fchown") ? REAL(int, "fchown", int, uid_t, gid_t)(fd, user, group) : -1;
+}
+
+int fsetxattr(int fd, const char *name, const void *value, size_t size, int flags)
+{
+	return enter("fsetxattr") ? REAL(int, "fsetxattr", int, const char *, const void *, size_t, int)(fd, name, value,
+		size, flags) : -1;
+}
+
+int rename(const char *from, const char *to)
+{
+	const int result = enter("rename") ? REAL(int, "rename", const char *, const char *)(from, to) : -1;
+	if (result == 0)
+		note("rename\t%s\t%s\n", from, to);
+	return result;
+}
+
+int renameat2(int from_folder, const char *from, int to_folder, const char *to, unsigned flags)
+{
+	const int result = enter("renameat2") ? REAL(int, "renameat2", int, const char *, int, const char *, unsigned)(
+		from_folder, from, to_folder, to, flags) : -1;
+	if (result == 0)
+		note("rename\t%s\t%s\n", from, to);
+	return result;
+}
+
+int link(const char *from, const char *to)
+{
+	const int result = enter("link") ? REAL(int, "link", const char *, const char *)(from, to) : -1;
+	if (result == 0)
+		note_name("link", to);
+	return result;
+}
+
+int unlink(const char *path)
+{
+	const int result = enter("unlink") ? REAL(int, "unlink", const char *)(path) : -1;
+	if (result == 0)
+		note("unlink\t%s\n", path);
+	return result;
+}
+
+int mkdir(const char *path, mode_t mode)
+{
+	return enter("mkdir") ? REAL(int, "mkdir", const char *, mode_t)(path, mode) : -1;
+}

@@ -1,0 +1,234 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Names of companions, and which files are ours, in a folder of our own. "somebody\n" has the digest that
+ * `xxhsum -H2` gives for it.
+ */
+#include "test.h"
+#include "fail_alloc.h"
+#include "folder.h"
+#include "file/output.h"
+
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define SOMEBODY "da44bf30a9ce9c985c29cf2b20168f87"
+
+static nt_status claim_old(nt_output *output, const char *path, nt_error *error)
+{
+	(void)path;
+	return nt_output_claim(output, "a.bin", SOMEBODY, NULL, error);
+}
+
+static nt_status claim_interim(nt_output *output, const char *path, nt_error *error)
+{
+	(void)path;
+	return nt_output_claim(output, "a.new-0123456789abcdef.bin", "0123456789abcdef0123456789abcdef", SOMEBODY, error);
+}
+
+static nt_output *start(const nt_output_options *options, nt_sink **main)
+{
+	nt_output *output;
+	nt_error error;
+	assert_int_equal(nt_output_create(&output, options, &error), NT_OK);
+	assert_int_equal(nt_output_add(output, in_folder("a.gltf"), NT_ROLE_MAIN, main, &error), NT_OK);
+	assert_int_equal(nt_sink_write(*main, "{}", 2, &error), NT_OK);
+	return output;
+}
+
+static nt_sink *companion(nt_output *output, const char *name, nt_role role, const char *text)
+{
+	nt_sink *sink;
+	nt_error error;
+	assert_int_equal(nt_output_add(output, in_folder(name), role, &sink, &error), NT_OK);
+	assert_int_equal(nt_sink_write(sink, text, strlen(text), &error), NT_OK);
+	assert_int_equal(nt_output_settle(output, sink, &error), NT_OK);
+	return sink;
+}
+
+/* The name, of a companion of a set that is dropped, that a text gets. */
+static void assert_named(const nt_output_options *options, const char *wanted, nt_role role, const char *text,
+	const char *expected)
+{
+	nt_sink *main;
+	nt_output *output = start(options, &main);
+	assert_string_equal(nt_sink_name(companion(output, wanted, role, text), false), expected);
+	nt_output_abort(output);
+}
+
+static void a_free_name_is_taken(void **state)
+{
+	(void)state;
+	assert_named(NULL, "a.bin", NT_ROLE_BUFFER, "new", "a.bin");
+	assert_named(NULL, "n.png", NT_ROLE_IMAGE, "new", "n.png");
+}
+
+static void equal_bytes_are_used(void **state)
+{
+	(void)state;
+	nt_error error;
+	nt_sink *main;
+	put_text_file("n.png", "somebody\n");
+	struct stat before, after;
+	stat(in_folder("n.png"), &before);
+	nt_output *output = start(NULL, &main);
+	assert_string_equal(nt_sink_name(companion(output, "n.png", NT_ROLE_IMAGE, "somebody\n"), false), "n.png");
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
+	stat(in_folder("n.png"), &after);
+	assert_int_equal(before.st_ino, after.st_ino);
+	assert_int_equal(count_in_folder(), 2);
+}
+
+static void another_file_stays_and_the_name_is_of_the_bytes(void **state)
+{
+	(void)state;
+	put_text_file("a.bin", "theirs");
+	put_text_file("n", "theirs");
+	put_text_file(".hidden", "theirs");
+	mkdir(in_folder("d.png"), 0777);
+	assert_int_equal(symlink("nowhere", in_folder("l.png")), 0);
+	assert_named(NULL, "a.bin", NT_ROLE_BUFFER, "somebody\n", "a-" "da44bf30a9ce9c98" ".bin");
+	assert_named(NULL, "n", NT_ROLE_IMAGE, "somebody\n", "n-" "da44bf30a9ce9c98");
+	assert_named(NULL, ".hidden", NT_ROLE_IMAGE, "somebody\n", ".hidden-" "da44bf30a9ce9c98");
+	assert_named(NULL, "d.png", NT_ROLE_IMAGE, "somebody\n", "d-" "da44bf30a9ce9c98" ".png");
+	assert_named(NULL, "l.png", NT_ROLE_IMAGE, "somebody\n", "l-" "da44bf30a9ce9c98" ".png");
+	/* the main file's own name, and that name taken by other bytes */
+	assert_named(NULL, "a.gltf", NT_ROLE_BUFFER, "somebody\n", "a-" "da44bf30a9ce9c98" ".gltf");
+	put_text_file("a-" "da44bf30a9ce9c98" ".bin", "forged");
+	assert_named(NULL, "a.bin", NT_ROLE_BUFFER, "somebody\n", "a-" "da44bf30a9ce9c98" "-1.bin");
+}
+
+static void a_long_name_is_cut_between_characters(void **state)
+{
+	(void)state;
+	char name[256], path[512];
+	/* 125 letters of two bytes and an ending make 254 */
+	for (int i = 0; i < 125; i++)
+		memcpy(name + 2 * i, "\xC3\xA9", 2);
+	strcpy(name + 250, ".bin");
+	put_text_file(name, "theirs");
+	nt_sink *main;
+	nt_output *output = start(NULL, &main);
+	snprintf(path, sizeof path, "%s", nt_sink_name(companion(output, name, NT_ROLE_BUFFER, "somebody\n"), false));
+	nt_output_abort(output);
+	/* 255 - 4 - 17 = 234 bytes are 117 letters */
+	assert_int_equal(strlen(path), 234 + 17 + 4);
+	assert_memory_equal(path, name, 234);
+	assert_string_equal(path + 234, "-" "da44bf30a9ce9c98" ".bin");
+}
+
+static void a_file_of_ours_is_replaced_by_way_of_an_interim_name(void **state)
+{
+	(void)state;
+	nt_status (*const claims[])(nt_output *, const char *, nt_error *) = {claim_old, claim_interim};
+	for (size_t i = 0; i < 2; i++) {
+		const nt_output_options options = {.find_claims = claims[i]};
+		nt_sink *main;
+		put_text_file("a.gltf", "old");
+		put_text_file("a.bin", "somebody\n");
+		nt_output *output = start(&options, &main);
+		nt_sink *sink = companion(output, "a.bin", NT_ROLE_BUFFER, "new");
+		assert_true(nt_output_has_interim(output));
+		assert_string_equal(nt_sink_name(sink, false), "a.bin");
+		assert_memory_equal(nt_sink_name(sink, true), "a.new-", 6);
+		assert_string_equal(nt_sink_digest_before(sink), SOMEBODY);
+		nt_output_abort(output);
+	}
+}
+
+static void a_file_that_is_not_provably_ours_is_not_replaced(void **state)
+{
+	(void)state;
+	nt_sink *main;
+	const nt_output_options claimed = {.find_claims = claim_old};
+	/* no main file that could say so */
+	put_text_file("a.bin", "somebody\n");
+	nt_output *output = start(&claimed, &main);
+	companion(output, "a.bin", NT_ROLE_BUFFER, "new");
+	assert_false(nt_output_has_interim(output));
+	nt_output_abort(output);
+	/* one that says nothing; an image; a file that was changed; one that the input refers to; in place */
+	put_text_file("a.gltf", "old");
+	static char path[512];
+	snprintf(path, sizeof path, "%s", in_folder("a.gltf"));
+	const nt_output_options silent = {0}, in_place = {.find_claims = claim_old, .in_place = path};
+	const nt_output_options *const all[] = {&silent, &claimed, &claimed, &claimed, &in_place};
+	for (size_t i = 0; i < 5; i++) {
+		nt_error error;
+		put_text_file("a.bin", i == 2 ? "changed\n" : "somebody\n");
+		output = start(all[i], &main);
+		if (i == 3)
+			assert_int_equal(nt_output_protect(output, in_folder("a.bin"), NULL, &error), NT_OK);
+		nt_sink *sink = companion(output, "a.bin", i == 1 ? NT_ROLE_IMAGE : NT_ROLE_BUFFER, "new");
+		assert_false(nt_output_has_interim(output));
+		assert_string_not_equal(nt_sink_name(sink, false), "a.bin");
+		nt_output_abort(output);
+	}
+}
+
+static void a_name_that_is_taken_meanwhile_is_not_replaced(void **state)
+{
+	(void)state;
+	nt_error error;
+	nt_sink *main;
+	nt_output_result result = {0};
+	const nt_output_options options = {.result = &result};
+	nt_output *output = start(&options, &main);
+	companion(output, "a.bin", NT_ROLE_BUFFER, "new");
+	put_text_file("a.bin", "theirs");
+	assert_int_equal(nt_output_commit(output, &error), NT_ERROR_IO);
+	assert_true(result.again);
+	assert_int_equal(access(in_folder("a.gltf"), F_OK), -1);
+	assert_int_equal(count_in_folder(), 1);
+	/* nor is what was to be used, or replaced, if it changed */
+	result = (nt_output_result){0};
+	put_text_file("n.png", "new");
+	output = start(&options, &main);
+	companion(output, "n.png", NT_ROLE_IMAGE, "new");
+	put_text_file("n.png", "changed");
+	assert_int_equal(nt_output_commit(output, &error), NT_ERROR_IO);
+	assert_true(result.again);
+	assert_int_equal(count_in_folder(), 2);
+	nt_buffer_free(&result.note);
+}
+
+static void every_failed_allocation_is_said(void **state)
+{
+	(void)state;
+	const nt_output_options options = {.find_claims = claim_old};
+	bool failed = true;
+	put_text_file("a.gltf", "old");
+	for (size_t n = 0; failed; n++) {
+		nt_sink *main, *sink;
+		nt_error error;
+		put_text_file("a.bin", n % 2 ? "somebody\n" : "theirs");
+		nt_output *output = start(&options, &main);
+		fail_allocations_from(n);
+		nt_status status = nt_output_add(output, in_folder("a.bin"), NT_ROLE_BUFFER, &sink, &error);
+		if (!status)
+			status = nt_sink_write(sink, "new", 3, &error);
+		if (!status)
+			status = nt_output_settle(output, sink, &error);
+		failed = stop_failing_allocations();
+		assert_int_equal(status, failed ? NT_ERROR_MEMORY : NT_OK);
+		nt_output_abort(output);
+		assert_int_equal(count_in_folder(), 2);
+	}
+}
+
+#define CASE(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		CASE(a_free_name_is_taken),
+		CASE(equal_bytes_are_used),
+		CASE(another_file_stays_and_the_name_is_of_the_bytes),
+		CASE(a_long_name_is_cut_between_characters),
+		CASE(a_file_of_ours_is_replaced_by_way_of_an_interim_name),
+		CASE(a_file_that_is_not_provably_ours_is_not_replaced),
+		CASE(a_name_that_is_taken_meanwhile_is_not_replaced),
+		CASE(every_failed_allocation_is_said),
+	};
+	return cmocka_run_group_tests_name("file/companion", tests, NULL, NULL);
+}

@@ -1,0 +1,386 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Output sets, in a folder of our own that is removed afterwards.
+ */
+#include "test.h"
+#include "folder.h"
+#include "file/output.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static void assert_content(const char *name, const char *text)
+{
+	nt_error error;
+	nt_file file;
+	assert_int_equal(nt_file_open(&file, in_folder(name), &error), NT_OK);
+	assert_int_equal(file.size, strlen(text));
+	assert_memory_equal(file.data, text, file.size);
+	nt_file_close(&file);
+}
+
+static nt_output *start(const nt_output_options *options)
+{
+	nt_output *output = NULL;
+	nt_error error;
+	assert_int_equal(nt_output_create(&output, options, &error), NT_OK);
+	return output;
+}
+
+static nt_sink *add(nt_output *output, const char *path, nt_role role)
+{
+	nt_error error;
+	nt_sink *sink = NULL;
+	assert_int_equal(nt_output_add(output, path, role, &sink, &error), NT_OK);
+	return sink;
+}
+
+static void assert_refused(nt_output *output, const char *path, const char *message)
+{
+	nt_error error;
+	nt_sink *sink = NULL;
+	assert_int_equal(nt_output_add(output, path, NT_ROLE_MAIN, &sink, &error), NT_ERROR_IO);
+	assert_string_equal(error.message, message);
+	assert_string_equal(error.place.file, path);
+}
+
+static void output_appears_at_commit_only(void **state)
+{
+	(void)state;
+	put_text_file("out.gltf", "old");
+	nt_error error;
+	nt_output *output = start(NULL);
+	nt_sink *main = add(output, in_folder("out.gltf"), NT_ROLE_MAIN);
+	nt_sink *companion = add(output, in_folder("out.bin"), NT_ROLE_BUFFER);
+	assert_int_equal(nt_sink_write(main, "new document", 12, &error), NT_OK);
+	assert_int_equal(nt_sink_write(companion, "bytes", 5, &error), NT_OK);
+	assert_int_equal(nt_output_size(output), 17);
+	assert_content("out.gltf", "old");
+	assert_int_equal(access(in_folder("out.bin"), F_OK), -1);
+	assert_int_equal(count_in_folder(), 3);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
+	assert_content("out.gltf", "new document");
+	assert_content("out.bin", "bytes");
+	assert_int_equal(count_in_folder(), 2);
+}
+
+static void output_abort_leaves_nothing(void **state)
+{
+	(void)state;
+	put_text_file("out", "old");
+	nt_error error;
+	nt_output *output = start(NULL);
+	nt_sink *sink = add(output, in_folder("out"), NT_ROLE_MAIN);
+	assert_int_equal(nt_sink_write(sink, "new", 3, &error), NT_OK);
+	nt_output_abort(output);
+	assert_content("out", "old");
+	assert_int_equal(count_in_folder(), 1);
+	nt_output_abort(NULL);
+}
+
+static void output_bytes_are_the_same_for_small_and_large_writes(void **state)
+{
+	(void)state;
+	enum { SIZE = 3000000 };
+	unsigned char *bytes = malloc(SIZE);
+	assert_non_null(bytes);
+	for (size_t i = 0; i < SIZE; i++)
+		bytes[i] = (unsigned char)(i * 2654435761u >> 13);
+	nt_error error;
+	nt_output *output = start(NULL);
+	nt_sink *sink = add(output, in_folder("out"), NT_ROLE_MAIN);
+	size_t done = 0;
+	for (size_t step = 0; done < SIZE; step = step * 2 + 1) { /* 0, 1, 3 ... 2^21 - 1 */
+		const size_t size = step < SIZE - done ? step : SIZE - done;
+		assert_int_equal(nt_sink_write(sink, bytes + done, size, &error), NT_OK);
+		done += size;
+	}
+	assert_int_equal(nt_output_size(output), SIZE);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
+	nt_file file;
+	assert_int_equal(nt_file_open(&file, in_folder("out"), &error), NT_OK);
+	assert_int_equal(file.size, SIZE);
+	assert_memory_equal(file.data, bytes, SIZE);
+
+	/* and copies of it, in ranges that the kernel copies and ranges that it does not: from 4 on the pages of both
+	 * files meet behind "head", from 1 on they do not; what was let go of is read again */
+	for (size_t first = 1; first <= 4; first += 3) {
+		output = start(NULL);
+		sink = add(output, in_folder("copy"), NT_ROLE_MAIN);
+		assert_int_equal(nt_sink_write(sink, "head", 4, &error), NT_OK);
+		assert_int_equal(nt_sink_copy(sink, &file, first, 2000000, &error), NT_OK);
+		assert_int_equal(nt_sink_copy(sink, &file, first + 2000000, 100, &error), NT_OK);
+		assert_int_equal(nt_sink_copy(sink, &file, 0, 0, &error), NT_OK);
+		assert_int_equal(nt_sink_copy(sink, &file, SIZE - 1, 2, &error), NT_ERROR_INTERNAL);
+		assert_int_equal(nt_output_size(output), 2000104);
+		assert_int_equal(nt_output_commit(output, &error), NT_OK);
+		nt_file copy;
+		assert_int_equal(nt_file_open(&copy, in_folder("copy"), &error), NT_OK);
+		assert_int_equal(copy.size, 2000104);
+		assert_memory_equal(copy.data, "head", 4);
+		assert_memory_equal(copy.data + 4, bytes + first, 2000100);
+		nt_file_close(&copy);
+	}
+	assert_memory_equal(file.data, bytes, SIZE);
+	nt_file_close(&file);
+	free(bytes);
+}
+
+static void output_can_be_read_back_before_it_has_its_name(void **state)
+{
+	(void)state;
+	nt_error error;
+	nt_output *output = start(&(nt_output_options){.sync = true});
+	nt_sink *sink = add(output, in_folder("out"), NT_ROLE_MAIN);
+	assert_int_equal(nt_sink_write(sink, "text", 4, &error), NT_OK);
+	const char *temporary;
+	assert_int_equal(nt_output_written(output, in_folder("out"), &temporary, &error), NT_OK);
+	nt_file file;
+	assert_int_equal(nt_file_open(&file, temporary, &error), NT_OK);
+	assert_int_equal(file.size, 4);
+	nt_file_close(&file);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
+	assert_content("out", "text");
+}
+
+static void output_that_is_an_input_is_refused_by_name(void **state)
+{
+	(void)state;
+	put_text_file("in.ply", "input");
+	assert_int_equal(link(in_folder("in.ply"), in_folder("hard")), 0);
+	assert_int_equal(symlink("in.ply", in_folder("soft")), 0);
+	nt_error error;
+	nt_output *output = start(NULL);
+	assert_int_equal(nt_output_protect(output, in_folder("in.ply"), NULL, &error), NT_OK);
+	assert_int_equal(nt_output_protect(output, in_folder("missing.png"), NULL, &error), NT_OK);
+	char message[256];
+	snprintf(message, sizeof message, "refusing to write: it is the same file as the input %s",
+		in_folder("in.ply"));
+	assert_refused(output, in_folder("in.ply"), message);
+	assert_refused(output, in_folder("hard"), message);
+	assert_refused(output, in_folder("soft"), message);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
+	assert_content("in.ply", "input");
+	assert_int_equal(count_in_folder(), 3);
+}
+
+static void output_in_place_replaces_what_is_mapped(void **state)
+{
+	(void)state;
+	put_text_file("a.ply", "0123456789");
+	nt_error error;
+	nt_file file;
+	assert_int_equal(nt_file_open(&file, in_folder("a.ply"), &error), NT_OK);
+	nt_output *output = start(NULL);
+	nt_sink *sink = add(output, in_folder("a.ply"), NT_ROLE_MAIN);
+	assert_int_equal(nt_sink_copy(sink, &file, 5, 5, &error), NT_OK);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
+	assert_memory_equal(file.data, "0123456789", 10);
+	nt_file_close(&file);
+	assert_content("a.ply", "56789");
+}
+
+static void output_through_a_link_keeps_the_link(void **state)
+{
+	(void)state;
+	put_text_file("file", "old");
+	assert_int_equal(symlink("file", in_folder("soft")), 0);
+	nt_error error;
+	nt_output *output = start(NULL);
+	assert_int_equal(nt_sink_write(add(output, in_folder("soft"), NT_ROLE_MAIN), "new", 3, &error), NT_OK);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
+	assert_content("file", "new");
+	struct stat status;
+	assert_int_equal(lstat(in_folder("soft"), &status), 0);
+	assert_true(S_ISLNK(status.st_mode));
+}
+
+static void output_places_that_cannot_be_are_refused(void **state)
+{
+	(void)state;
+	put_text_file("file", "x");
+	nt_output *output = start(NULL);
+	assert_refused(output, in_folder(""), "cannot write: it is a directory");
+	char path[128], message[256];
+	snprintf(path, sizeof path, "%s", in_folder("none/out"));
+	snprintf(message, sizeof message, "cannot write: there is no folder \"%s\"", in_folder("none"));
+	assert_refused(output, path, message);
+	snprintf(path, sizeof path, "%s", in_folder("file/out"));
+	snprintf(message, sizeof message, "cannot write: there is no folder \"%s\"", in_folder("file"));
+	assert_refused(output, path, message);
+	add(output, in_folder("twice"), NT_ROLE_MAIN);
+	assert_refused(output, in_folder("twice"),
+		"refusing to write: another file of this output has the same name");
+	nt_output_abort(output);
+}
+
+static void output_no_clobber_keeps_what_exists(void **state)
+{
+	(void)state;
+	put_text_file("out", "old");
+	nt_error error;
+	nt_output *output = start(&(nt_output_options){.no_clobber = true});
+	assert_refused(output, in_folder("out"), "refusing to write: the file exists already");
+	/* and what came to exist meanwhile; the companion that was placed before is taken back */
+	add(output, in_folder("late"), NT_ROLE_MAIN);
+	add(output, in_folder("companion"), NT_ROLE_BUFFER);
+	put_text_file("late", "somebody else's");
+	assert_int_equal(nt_output_commit(output, &error), NT_ERROR_IO);
+	assert_string_equal(error.message, "refusing to write: the file exists already");
+	assert_string_equal(error.place.file, in_folder("late"));
+	assert_content("late", "somebody else's");
+	assert_content("out", "old");
+	assert_int_equal(count_in_folder(), 2);
+}
+
+static void output_mode_follows_the_umask(void **state)
+{
+	(void)state;
+	nt_error error;
+	const mode_t before = umask(027);
+	nt_output *output = start(NULL);
+	add(output, in_folder("out"), NT_ROLE_MAIN);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
+	umask(before);
+	struct stat status;
+	assert_int_equal(stat(in_folder("out"), &status), 0);
+	assert_int_equal(status.st_mode & 0777, 0640);
+}
+
+static void output_dry_run_counts_and_refuses_but_writes_nothing(void **state)
+{
+	(void)state;
+	const nt_output_options options = {.dry_run = true};
+	nt_error error;
+	nt_output *output;
+	nt_sink *sink, *stream;
+	put_text_file("dry", "old");
+	const size_t before = count_in_folder();
+	assert_int_equal(nt_output_create(&output, &options, &error), NT_OK);
+	assert_int_equal(nt_output_add(output, in_folder("dry"), NT_ROLE_MAIN, &sink, &error), NT_OK);
+	assert_int_equal(nt_output_add(output, "-", false, &stream, &error), NT_OK);
+	assert_int_equal(nt_sink_write(sink, "new!", 4, &error), NT_OK);
+	assert_int_equal(nt_sink_write(stream, "noise", 5, &error), NT_OK);
+	assert_int_equal(nt_output_size(output), 9);
+	const char *temporary;
+	assert_int_equal(nt_output_written(output, in_folder("dry"), &temporary, &error), NT_OK);
+	assert_null(temporary);
+	assert_int_equal(count_in_folder(), before);
+	nt_sink *refused;
+	assert_int_equal(nt_output_add(output, in_folder(""), false, &refused, &error), NT_ERROR_IO);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
+	assert_int_equal(count_in_folder(), before);
+	assert_content("dry", "old");
+}
+
+static void output_pipe_is_written_through(void **state)
+{
+	(void)state;
+	assert_int_equal(mkfifo(in_folder("pipe"), 0600), 0);
+	const pid_t child = fork();
+	if (child == 0) {
+		char text[16] = {0};
+		const int fd = open(in_folder("pipe"), O_RDONLY);
+		size_t size = 0;
+		for (ssize_t count; (count = read(fd, text + size, 15 - size)) > 0;)
+			size += (size_t)count;
+		_exit(strcmp(text, "through") == 0 ? 0 : 1);
+	}
+	nt_error error;
+	nt_output *output = start(&(nt_output_options){.no_clobber = true, .sync = true});
+	nt_sink *sink = add(output, in_folder("pipe"), NT_ROLE_MAIN);
+	const char *temporary;
+	assert_int_equal(nt_output_written(output, in_folder("pipe"), &temporary, &error), NT_OK);
+	assert_null(temporary);
+	assert_int_equal(nt_sink_write(sink, "through", 7, &error), NT_OK);
+	assert_int_equal(nt_output_commit(output, &error), NT_OK);
+	int code;
+	assert_int_equal(waitpid(child, &code, 0), child);
+	assert_int_equal(code, 0);
+	struct stat status;
+	assert_int_equal(stat(in_folder("pipe"), &status), 0);
+	assert_true(S_ISFIFO(status.st_mode));
+}
+
+static void output_full_disk_is_an_error(void **state)
+{
+	(void)state;
+	if (access("/dev/full", W_OK) != 0)
+		skip();
+	nt_error error;
+	nt_output *output = start(NULL);
+	nt_sink *sink = add(output, "/dev/full", NT_ROLE_MAIN);
+	assert_int_equal(nt_sink_write(sink, "x", 1, &error), NT_OK);
+	assert_int_equal(nt_output_commit(output, &error), NT_ERROR_IO);
+	assert_string_equal(error.message, "cannot write: No space left on device");
+	assert_string_equal(error.place.file, "/dev/full");
+}
+
+/* In a child: adds two files, tells the parent, waits for the signal. */
+static void wait_for_signal(int ready)
+{
+	nt_error error;
+	nt_output_catch_signals();
+	nt_output *output;
+	nt_sink *sink;
+	if (nt_output_create(&output, NULL, &error) ||
+		nt_output_add(output, in_folder("a"), NT_ROLE_MAIN, &sink, &error) ||
+		nt_output_add(output, in_folder("b"), NT_ROLE_BUFFER, &sink, &error) || write(ready, "!", 1) != 1)
+		_exit(1);
+	for (;;)
+		pause();
+}
+
+static void signals_remove_temporaries_and_end_the_process(void **state)
+{
+	(void)state;
+	const int numbers[] = {SIGINT, SIGTERM, SIGHUP};
+	for (int i = 0; i < 3; i++) {
+		int ready[2];
+		assert_int_equal(pipe(ready), 0);
+		const pid_t child = fork();
+		if (child == 0) {
+			signal(numbers[i], SIG_DFL);
+			wait_for_signal(ready[1]);
+		}
+		char byte;
+		assert_int_equal(read(ready[0], &byte, 1), 1);
+		assert_int_equal(count_in_folder(), 2);
+		assert_int_equal(kill(child, numbers[i]), 0);
+		int code;
+		assert_int_equal(waitpid(child, &code, 0), child);
+		assert_true(WIFSIGNALED(code));
+		assert_int_equal(WTERMSIG(code), numbers[i]);
+		assert_int_equal(count_in_folder(), 0);
+		close(ready[0]);
+		close(ready[1]);
+	}
+}
+
+#define CASE(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		CASE(output_appears_at_commit_only),
+		CASE(output_abort_leaves_nothing),
+		CASE(output_bytes_are_the_same_for_small_and_large_writes),
+		CASE(output_can_be_read_back_before_it_has_its_name),
+		CASE(output_that_is_an_input_is_refused_by_name),
+		CASE(output_in_place_replaces_what_is_mapped),
+		CASE(output_through_a_link_keeps_the_link),
+		CASE(output_places_that_cannot_be_are_refused),
+		CASE(output_no_clobber_keeps_what_exists),
+		CASE(output_mode_follows_the_umask),
+		CASE(output_dry_run_counts_and_refuses_but_writes_nothing),
+		CASE(output_pipe_is_written_through),
+		CASE(output_full_disk_is_an_error),
+		CASE(signals_remove_temporaries_and_end_the_process),
+	};
+	return cmocka_run_group_tests_name("file/output", tests, NULL, NULL);
+}
