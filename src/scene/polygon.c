@@ -7,7 +7,10 @@
  * concave one gets its true interior. Cutting an ear changes only whether its two neighbours are ears,
  * so every corner is tested when it is first met and again when a neighbour goes: at most 3n tests.
  * A test looks only at corners that are not strictly convex (every corner in the way implies such a
- * one), and finds them in a uniform grid. Cost: about n for the polygons people draw, n^2 at worst.
+ * one), and finds them in a k-d tree (J. L. Bentley, "Multidimensional Binary Search Trees Used for
+ * Associative Searching", 1975) whose boxes are left out where they lie beyond an edge of the triangle.
+ * Cost: n log n for the polygons people draw, stars of long slivers included. A triangle that runs along
+ * many boxes without a corner in it visits them all; coordinates of 24 bits leave room for few of those.
  *
  * The walk goes on with the corner behind the ear it has cut, so a convex polygon becomes the fan
  * (0,1,2) (0,2,3) ... that every other tool makes of it.
@@ -20,11 +23,14 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <string.h>
 #include "base/memory.h"
 
 /* Polygons up to this size work in a block on the stack; larger ones are rare. */
 enum { STACK_CORNERS = 48 };
+
+/* Leaves of the tree hold 4 to 9 corners where there are more than 8, so that half a node for each corner is
+ * enough. */
+enum { LEAF_CORNERS = 8 };
 
 enum kind { CONVEX, BLOCKING, GONE };
 
@@ -34,21 +40,25 @@ enum verdict { NO_EAR, EAR, FLAT_EAR };
 typedef struct corner {
 	double x, y; /* in the plane, relative to corner 0 */
 	uint32_t previous, next;
-	uint32_t cell;
+	uint32_t leaf; /* of a blocking corner */
 	enum kind kind;
 } corner;
+
+/* A node of the tree over the blocking corners: a complete binary tree, the children of node i are 2i + 1 and
+ * 2i + 2. The members of a node are a range of `members`, halved for its children. */
+typedef struct node {
+	double low_x, low_y, high_x, high_y;
+	uint32_t blocking; /* members that still block */
+} node;
 
 typedef struct outline {
 	corner *corners;
 	size_t count, left;
 	double extent; /* the largest |x| or |y|, which bounds their error */
 
-	/* The blocking corners of cell c are members[cell_begin[c] .. cell_end[c]); entries that block no
-	 * more are dropped when they are met. */
-	size_t columns;
-	double low_x, low_y, cells_per_x, cells_per_y;
-	uint32_t *cell_begin, *cell_end, *members;
-	size_t blocking_count;
+	node *nodes;
+	uint32_t *members; /* [member_count] the corners that blocked at first */
+	size_t member_count, leaf_depth;
 
 	/* Corners to test, in order: all of them once, and one more for each that is cut off. */
 	uint32_t *queue;
@@ -136,54 +146,93 @@ static bool project(outline *o, const float (*points)[3])
 	return true;
 }
 
-static size_t cell_index(double value, double low, double cells_per_unit, size_t columns)
+static double coordinate(const outline *o, uint32_t member, bool along_y)
 {
-	const double cell = (value - low) * cells_per_unit;
-	return cell <= 0 ? 0 : cell >= (double)columns ? columns - 1 : (size_t)cell;
+	const corner *c = &o->corners[member];
+	return along_y ? c->y : c->x;
 }
 
-/* Marks the corners that are not strictly convex and sorts them into cells, about one to a cell. */
+/* Puts the members of a range in such an order that none of the first `left` lies behind one of the others
+ * (C. A. R. Hoare, "Find", 1961). */
+static void part_members(outline *o, uint32_t *members, size_t count, size_t left, bool along_y)
+{
+	while (count > 1) {
+		const double pivot = coordinate(o, members[count / 2], along_y);
+		size_t l = 0, r = count - 1;
+		for (;;) {
+			while (coordinate(o, members[l], along_y) < pivot)
+				l++;
+			while (coordinate(o, members[r], along_y) > pivot)
+				r--;
+			if (l >= r)
+				break;
+			const uint32_t swapped = members[l];
+			members[l++] = members[r];
+			members[r--] = swapped;
+		}
+		/* [0, l) is at most the pivot, [l, count) at least */
+		if (left == l)
+			return;
+		if (left < l) {
+			count = l;
+		} else {
+			members += l;
+			left -= l;
+			count -= l;
+		}
+	}
+}
+
+static node box_of(const outline *o, const uint32_t *members, size_t count)
+{
+	node box = {DBL_MAX, DBL_MAX, -DBL_MAX, -DBL_MAX, (uint32_t)count};
+	for (size_t i = 0; i < count; i++) {
+		const corner *c = &o->corners[members[i]];
+		box.low_x = fmin(box.low_x, c->x);
+		box.low_y = fmin(box.low_y, c->y);
+		box.high_x = fmax(box.high_x, c->x);
+		box.high_y = fmax(box.high_y, c->y);
+	}
+	return box;
+}
+
+/* Builds the node `at` over a range of the members. Depth: at most log2 of the corner count. */
+static void build_node(outline *o, size_t at, size_t depth, uint32_t *members, size_t count)
+{
+	o->nodes[at] = box_of(o, members, count);
+	if (depth == o->leaf_depth) {
+		for (size_t i = 0; i < count; i++)
+			o->corners[members[i]].leaf = (uint32_t)at;
+		return;
+	}
+	const node *box = &o->nodes[at];
+	part_members(o, members, count, count / 2, box->high_y - box->low_y > box->high_x - box->low_x);
+	build_node(o, 2 * at + 1, depth + 1, members, count / 2);
+	build_node(o, 2 * at + 2, depth + 1, members + count / 2, count - count / 2);
+}
+
+/* Marks the corners that are not strictly convex and builds the tree over them. */
 static void find_blocking(outline *o)
 {
-	double high_x = -DBL_MAX, high_y = -DBL_MAX;
-	o->low_x = o->low_y = DBL_MAX;
 	for (size_t i = 0; i < o->count; i++) {
 		corner *c = &o->corners[i];
 		const bool convex = turn(o, &o->corners[c->previous], c, &o->corners[c->next]) > 0;
 		c->kind = convex ? CONVEX : BLOCKING;
-		o->blocking_count += !convex;
-		o->low_x = fmin(o->low_x, c->x);
-		o->low_y = fmin(o->low_y, c->y);
-		high_x = fmax(high_x, c->x);
-		high_y = fmax(high_y, c->y);
+		if (!convex)
+			o->members[o->member_count++] = (uint32_t)i;
 	}
-	o->columns = (size_t)sqrt((double)o->blocking_count); /* columns^2 <= count, as allocated */
-	if (o->columns == 0)
-		o->columns = 1;
-	o->cells_per_x = high_x > o->low_x ? (double)o->columns / (high_x - o->low_x) : 0;
-	o->cells_per_y = high_y > o->low_y ? (double)o->columns / (high_y - o->low_y) : 0;
+	while (o->member_count >> o->leaf_depth > LEAF_CORNERS)
+		o->leaf_depth++;
+	build_node(o, 0, 0, o->members, o->member_count);
+}
 
-	/* Counting sort: count, running sum, place. */
-	const size_t cell_count = o->columns * o->columns;
-	memset(o->cell_end, 0, cell_count * sizeof *o->cell_end);
-	for (size_t i = 0; i < o->count; i++) {
-		corner *c = &o->corners[i];
-		if (c->kind != BLOCKING)
-			continue;
-		c->cell = (uint32_t)(cell_index(c->y, o->low_y, o->cells_per_y, o->columns) * o->columns +
-			cell_index(c->x, o->low_x, o->cells_per_x, o->columns));
-		o->cell_end[c->cell]++;
-	}
-	uint32_t begin = 0;
-	for (size_t cell = 0; cell < cell_count; cell++) {
-		const uint32_t size = o->cell_end[cell];
-		o->cell_begin[cell] = o->cell_end[cell] = begin;
-		begin += size;
-	}
-	for (size_t i = 0; i < o->count; i++) {
-		const corner *c = &o->corners[i];
-		if (c->kind == BLOCKING)
-			o->members[o->cell_end[c->cell]++] = (uint32_t)i;
+/* A corner blocks no more. */
+static void stop_blocking(outline *o, const corner *c)
+{
+	for (size_t at = c->leaf;; at = (at - 1) / 2) {
+		o->nodes[at].blocking--;
+		if (at == 0)
+			return;
 	}
 }
 
@@ -217,37 +266,49 @@ static bool blocks(const outline *o, const corner *w, const corner *a, const cor
 	return true;
 }
 
-static bool cell_blocks(outline *o, size_t cell, const corner *a, const corner *b, const corner *c)
+/* Whether every point of the box lies strictly to the right of the line from a to b: the corner of the box that
+ * lies farthest to its left does. */
+static bool box_is_beyond(const outline *o, const node *box, const corner *a, const corner *b)
 {
-	const uint32_t begin = o->cell_begin[cell];
-	uint32_t i = begin;
-	while (i < o->cell_end[cell]) {
-		const corner *w = &o->corners[o->members[i]];
-		if (w->kind != BLOCKING)
-			o->members[i] = o->members[--o->cell_end[cell]];
-		else if (blocks(o, w, a, b, c))
+	const corner farthest = {.x = b->y < a->y ? box->high_x : box->low_x,
+		.y = b->x > a->x ? box->high_y : box->low_y};
+	return turn(o, a, b, &farthest) < 0;
+}
+
+/* A triangle that may be cut off, and its box. */
+typedef struct ear {
+	const corner *a, *b, *c;
+	node box;
+} ear;
+
+/* Whether a blocking corner among `count` members of the node `at` lies in the triangle. */
+static bool node_blocks(outline *o, size_t at, size_t depth, const uint32_t *members, size_t count,
+	const ear *t)
+{
+	const node *box = &o->nodes[at];
+	if (box->blocking == 0)
+		return false;
+	if (t->box.high_x < box->low_x || t->box.low_x > box->high_x || t->box.high_y < box->low_y ||
+		t->box.low_y > box->high_y || box_is_beyond(o, box, t->a, t->b) ||
+		box_is_beyond(o, box, t->b, t->c) || box_is_beyond(o, box, t->c, t->a))
+		return false;
+	if (depth < o->leaf_depth)
+		return node_blocks(o, 2 * at + 1, depth + 1, members, count / 2, t) ||
+			node_blocks(o, 2 * at + 2, depth + 1, members + count / 2, count - count / 2, t);
+	for (size_t i = 0; i < count; i++) {
+		const corner *w = &o->corners[members[i]];
+		if (w->kind == BLOCKING && blocks(o, w, t->a, t->b, t->c))
 			return true;
-		else
-			i++;
 	}
 	return false;
 }
 
-static bool triangle_is_blocked(outline *o, const corner *a, const corner *b, const corner *c)
+static bool triangle_is_blocked(outline *o, uint32_t at)
 {
-	if (o->blocking_count == 0)
-		return false;
-	const double low_x = fmin(a->x, fmin(b->x, c->x)), high_x = fmax(a->x, fmax(b->x, c->x));
-	const double low_y = fmin(a->y, fmin(b->y, c->y)), high_y = fmax(a->y, fmax(b->y, c->y));
-	const size_t column_low = cell_index(low_x, o->low_x, o->cells_per_x, o->columns);
-	const size_t column_high = cell_index(high_x, o->low_x, o->cells_per_x, o->columns);
-	const size_t row_low = cell_index(low_y, o->low_y, o->cells_per_y, o->columns);
-	const size_t row_high = cell_index(high_y, o->low_y, o->cells_per_y, o->columns);
-	for (size_t row = row_low; row <= row_high; row++)
-		for (size_t column = column_low; column <= column_high; column++)
-			if (cell_blocks(o, row * o->columns + column, a, b, c))
-				return true;
-	return false;
+	const uint32_t corners[3] = {o->corners[at].previous, at, o->corners[at].next};
+	const ear t = {&o->corners[corners[0]], &o->corners[at], &o->corners[corners[2]],
+		box_of(o, corners, 3)};
+	return node_blocks(o, 0, 0, o->members, o->member_count, &t);
 }
 
 /* A spike or a repeated point is a flat ear: no later cut makes it better. A corner in the middle of a
@@ -258,7 +319,7 @@ static enum verdict judge(outline *o, uint32_t at)
 	const corner *a = &o->corners[b->previous], *c = &o->corners[b->next];
 	const double area = turn(o, a, b, c);
 	if (area > 0)
-		return triangle_is_blocked(o, a, b, c) ? NO_EAR : EAR;
+		return triangle_is_blocked(o, at) ? NO_EAR : EAR;
 	if (area < 0)
 		return NO_EAR;
 	const double along = (b->x - a->x) * (c->x - b->x) + (b->y - a->y) * (c->y - b->y);
@@ -271,7 +332,7 @@ static void update_kind(outline *o, corner *c)
 		return;
 	if (turn(o, &o->corners[c->previous], c, &o->corners[c->next]) > 0) {
 		c->kind = CONVEX;
-		o->blocking_count--;
+		stop_blocking(o, c);
 	}
 }
 
@@ -285,7 +346,7 @@ static uint32_t cut(outline *o, uint32_t at)
 	*o->triangles++ = b->next;
 	o->left--;
 	if (b->kind == BLOCKING)
-		o->blocking_count--;
+		stop_blocking(o, b);
 	b->kind = GONE;
 	a->next = b->next;
 	c->previous = b->previous;
@@ -341,23 +402,23 @@ nt_status nt_polygon_triangulate(const float (*points)[3], size_t count, uint32_
 	bool *sound)
 {
 	corner stack_corners[STACK_CORNERS];
-	uint32_t stack_numbers[5 * STACK_CORNERS];
+	uint32_t stack_numbers[3 * STACK_CORNERS];
+	node stack_nodes[STACK_CORNERS / 2];
 	const bool large = count > STACK_CORNERS;
 	corner *corners = large ? nt_alloc(count, sizeof *corners) : stack_corners;
-	/* cell_begin, cell_end and members have count numbers each, the queue has 2 * count. */
-	uint32_t *numbers = large ? nt_alloc(count, 5 * sizeof *numbers) : stack_numbers;
+	uint32_t *numbers = large ? nt_alloc(count, 3 * sizeof *numbers) : stack_numbers;
+	node *nodes = large ? nt_alloc(count / 2, sizeof *nodes) : stack_nodes;
 	nt_status status = NT_ERROR_MEMORY;
-	if (!corners || !numbers)
+	if (!corners || !numbers || !nodes)
 		goto out;
 
 	outline o = {
 		.corners = corners,
 		.count = count,
 		.left = count,
-		.cell_begin = numbers,
-		.cell_end = numbers + count,
-		.members = numbers + 2 * count,
-		.queue = numbers + 3 * count,
+		.nodes = nodes,
+		.members = numbers,
+		.queue = numbers + count, /* [2 * count] */
 		.triangles = triangles,
 		.sound = true,
 	};
@@ -374,6 +435,7 @@ out:
 	if (large) {
 		free(corners);
 		free(numbers);
+		free(nodes);
 	}
 	return status;
 }

@@ -178,6 +178,31 @@ static void gear_of_ten_thousand_corners(void **state)
 	assert_fast();
 }
 
+/* A hundred thousand corners with radii at random: triangles are long slivers, whose bounding boxes hold thousands
+ * of corners that are not in them. A second is what the spiral needed with a tenth of the corners. */
+static void random_star_of_a_hundred_thousand_corners(void **state)
+{
+	(void)state;
+	enum { COUNT = 100000 };
+	double(*plane)[2] = malloc(COUNT * sizeof *plane);
+	float(*points)[3] = malloc(COUNT * sizeof *points);
+	uint32_t seed = 1;
+	for (size_t i = 0; i < COUNT; i++) {
+		seed = seed * 1664525u + 1013904223u;
+		const double angle = 2 * 3.14159265358979 * (double)i / COUNT;
+		const double radius = 1000 + (double)(seed >> 8) / 1000;
+		points[i][0] = (float)(radius * cos(angle)), points[i][1] = (float)(radius * sin(angle));
+		points[i][2] = 0;
+	}
+	for (size_t i = 0; i < COUNT; i++)
+		plane[i][0] = points[i][0], plane[i][1] = points[i][1];
+	const clock_t begin = clock();
+	assert_proper((const double(*)[2])plane, (const float(*)[3])points, COUNT);
+	assert_true(clock() - begin < CLOCKS_PER_SEC);
+	free(plane);
+	free(points);
+}
+
 /* What must hold of every result: the right number of triangles, corners in range. */
 static bool finish(const float (*points)[3], size_t count)
 {
@@ -304,6 +329,7 @@ int main(void)
 		cmocka_unit_test(comb_of_ten_thousand_corners),
 		cmocka_unit_test(spiral_of_ten_thousand_corners),
 		cmocka_unit_test(gear_of_ten_thousand_corners),
+		cmocka_unit_test(random_star_of_a_hundred_thousand_corners),
 		cmocka_unit_test(degenerate_polygons_are_finished_and_not_sound),
 		cmocka_unit_test(repeated_point_leaves_the_rest_proper),
 		cmocka_unit_test(size_and_distance_do_not_matter),
