@@ -305,6 +305,16 @@ static void normalise_rows(float *rows, size_t count)
 	}
 }
 
+/* The name of a target, as most exporters write it: the specification suggests extras.targetNames. */
+static const char *name_of_target(nt_scene *scene, const nt_gltf *document, const nt_mesh *mesh, size_t target)
+{
+	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh);
+	size_t length = 0;
+	const char *name = nt_json_get_string(nt_json_at(nt_json_find(nt_json_find(json, "extras"),
+		"targetNames"), target), &length);
+	return nt_arena_text(&scene->arena, name ? name : "", name ? length : 0);
+}
+
 /* The mesh as each target moves it: their tangents differ from the base's. */
 static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 	const nt_json_value *primitive, nt_error *error)
@@ -320,7 +330,9 @@ static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 	for (size_t i = 0; i < count; i++) {
 		char pointer[NT_GLTF_POINTER];
 		snprintf(pointer, sizeof pointer, "%.100s/targets/%zu", mesh->place.pointer, i);
-		nt_morph morph = {.target = (uint32_t)i};
+		nt_morph morph = {.target = (uint32_t)i, .name = name_of_target(scene, document, mesh, i)};
+		if (!morph.name)
+			return nt_fail_memory(error);
 		const nt_json_value *target = nt_json_at(targets, i);
 		nt_status status = add_delta(scene, document, mesh, target, "POSITION", pointer,
 			mesh->positions, &morph.positions, error);

@@ -58,8 +58,10 @@ nt_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_opt
 		if (!morph->corner_tangents)
 			return NT_ERROR_MEMORY;
 		mesh->morph_turned += count_turned(view, &moved);
-		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = morph->corner_tangents};
-		const nt_status status = nt_status_of(nmtan_tangents(&moved, options, &output, NULL));
+const nmtan_output output = {.struct_bytes = sizeof output, .tangents = morph->corner_tangents};
+		nt_status status = nt_status_of(nmtan_tangents(&moved, options, &output, NULL));
+		if (!status)
+			status = nt_morphs_halfway(mesh, morph, view, options);
 		if (status)
 			return status;
 	}

@@ -11,6 +11,10 @@
  * mesh->morph_turned. Blocks are malloc'ed. */
 nt_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options);
 
+/* Fills halfway_triangles and halfway_degrees of a target, after the solves of the base and of the target: morph_halfway.c. */
+nt_status nt_morphs_halfway(const nt_mesh *mesh, nt_morph *morph, const nmtan_mesh *base,
+	const nmtan_options *options);
+
 /* Writes to keys [corner_count][4] numbers that are equal for two corners of a vertex exactly where
  * the base's and all targets' tangents are: what splitting goes by. */
 nt_status nt_morphs_keys(const nt_mesh *mesh, const nmtan_mesh *view, float *keys);

@@ -238,6 +238,15 @@ static bool keep_results(nt_scene *scene, nt_mesh *mesh)
 	return kept;
 }
 
+/* What half of a morph target's deltas does. */
+static void add_halfway(nt_finding_list *list, const nt_mesh *mesh, const nt_morph *morph)
+{
+	if (morph->halfway_triangles)
+		nt_finding_add(list, NT_CODE_TAN_MORPH_HALFWAY, &mesh->place, morph->halfway_triangles,
+			morph->name[0] ? "target %u \"%.80s\", %.1f degrees" : "target %u%s, %.1f degrees",
+			morph->target, morph->name, morph->halfway_degrees);
+}
+
 static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 {
 	const nmtan_counts *c = &mesh->counts;
@@ -255,6 +264,8 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
 		if (rows[i].count)
 			nt_finding_add(list, rows[i].code, &mesh->place, rows[i].count, NULL);
+	for (size_t m = 0; m < mesh->morph_count; m++)
+		add_halfway(list, mesh, &mesh->morphs[m]);
 }
 
 static void add_counts(nt_summary *summary, const nt_mesh *mesh)

@@ -276,6 +276,14 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"finding counts a triangle once for each target that turns it.",
 		"Let the target move the normals too, or leave the triangle on its side.",
 		"a flat triangle with normals along z and a target that moves x to -x"),
+	ROW(TAN_MORPH_HALFWAY, WARNING,
+		"{count} {triangle has|triangles have} wrong tangents when a morph target acts by half",
+		"Clients add the deltas of TANGENT times the weight. That is exact at weights 0 and 1; between them it is "
+		"not where a target stretches what it turns. At weight 0.5 it is more than 5 degrees from the tangents of "
+		"the mesh as it then is. The detail names the target and the largest angle; 90 degrees means that a "
+		"tangent and its delta cancel. Targets that turn no tangent by more than 5 degrees are not looked at.",
+		"Add a target for the pose in between, so that none turns the surface far.",
+		"a square whose target turns it by a quarter and doubles its width"),
 	ROW(TAN_VERTEX_GROWTH, INFO, "{count} {vertex was|vertices were} added",
 		"A vertex is copied where its corners need different tangents or normals. The finding counts "
 		"by cause: mirrored texture coordinates, different tangent directions, normals that were made.",

@@ -67,10 +67,13 @@ typedef struct nt_primitive {
 /* A mesh as one morph target moves it at weight 1. */
 typedef struct nt_morph {
 	uint32_t target;        /* its number in the source */
+	const char *name;       /* "" where it has none */
 	float *positions;       /* [vertex_count][3] moved; NULL: as the base */
 	float *normals;         /* [vertex_count][3] moved, unit; NULL: as the base */
 	float *corner_tangents; /* [corner_count][4] while it is being solved */
 	float *vertex_tangents; /* [vertex_count + split.source_count][3]; NULL until solved */
+	size_t halfway_triangles; /* where adding half of the deltas leads more than 5 degrees astray */
+	double halfway_degrees;   /* by how much at most */
 } nt_morph;
 
 /* What splitting found: copies to append behind the mesh's vertices. */

@@ -1,0 +1,175 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * How far a morph target's tangents are off at weight 0.5. A client adds the delta of TANGENT times the weight,
+ * which is exact at the ends. Between them dP/du of a triangle moves along a straight line from its old to its new
+ * value; the sum of two unit vectors follows the angle, so that the two part where a target stretches what it turns,
+ * and the sum has no direction where a target turns by 180 degrees. What is right is a solve of the mesh as the
+ * target moves it at weight 0.5.
+ *
+ * On one triangle what is right lies between the tangents of the two ends and the client's halfway, so the error is
+ * at most half of what the target turns. Averaging over triangles can exceed that a little. Targets that turn no
+ * tangent by more than the limit itself are therefore not solved again, which saves most of them the time.
+ */
+#include "pipeline/morphs.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "base/angle.h"
+#include "base/dvec.h"
+
+static const double DEGREES = 57.29577951308232;
+
+/* Of 5 degrees, from which on the finding speaks. */
+static const double LIMIT_COSINE = 0.99619469809174553;
+
+/* Half a sum of two unit vectors that is shorter has lost its direction. */
+static const double CANCELLED = 1.0 / 1024;
+
+/* Twice the area of a triangle over the square of its longest edge at either end: what is below has collapsed on
+ * its way (positions are rounded), and no direction is right there. */
+static const double COLLAPSED = 1e-4;
+
+/* The mesh at weight 0.5. Arrays are those of the base where the target does not move them. */
+typedef struct halfway {
+	nmtan_mesh view;
+	float *positions, *normals; /* [vertex_count][3] or NULL */
+	float *tangents;            /* [corner_count][4] */
+} halfway;
+
+/* The cosine of the angle between two vectors that are not zero. */
+static double cosine_between(nt_dvec3 a, nt_dvec3 b)
+{
+	return nt_dvec3_dot(a, b) / sqrt(nt_dvec3_dot(a, a) * nt_dvec3_dot(b, b));
+}
+
+static double degrees_of(double cosine)
+{
+	return nt_angle(sqrt(fmax(0, 1 - cosine * cosine)), cosine) * DEGREES;
+}
+
+/* Whether the target turns any tangent by more than the limit. */
+static bool turns(const nt_mesh *mesh, const nt_morph *morph)
+{
+	for (size_t c = 0; c < mesh->corner_count; c++)
+		if (cosine_between(nt_dvec3_load(mesh->corner_tangents + 4 * c),
+			nt_dvec3_load(morph->corner_tangents + 4 * c)) < LIMIT_COSINE)
+			return true;
+	return false;
+}
+
+static float *middle_of(const float *a, const float *b, size_t count)
+{
+	float *middle = nt_alloc(count, 3 * sizeof *middle);
+	for (size_t i = 0; middle && i < 3 * count; i++)
+		middle[i] = (float)(((double)a[i] + b[i]) * 0.5);
+	return middle;
+}
+
+static void normalise_rows(float *rows, size_t count)
+{
+	for (size_t i = 0; i < count; i++) {
+		nt_dvec3 n = nt_dvec3_load(rows + 3 * i);
+		nt_dvec3_normalise(&n);
+		rows[3 * i] = (float)n.x;
+		rows[3 * i + 1] = (float)n.y;
+		rows[3 * i + 2] = (float)n.z;
+	}
+}
+
+static nt_status solve_halfway(const nt_mesh *mesh, const nt_morph *morph, const nmtan_mesh *base,
+	const nmtan_options *options, halfway *h)
+{
+	h->view = *base;
+	if (morph->positions && !(h->positions = middle_of(base->positions, morph->positions, mesh->vertex_count)))
+		return NT_ERROR_MEMORY;
+	if (morph->normals && !(h->normals = middle_of(base->normals, morph->normals, mesh->vertex_count)))
+		return NT_ERROR_MEMORY;
+	if (h->positions)
+		h->view.positions = h->positions;
+	if (h->normals) {
+		normalise_rows(h->normals, mesh->vertex_count);
+		h->view.normals = h->normals;
+	}
+	h->tangents = nt_alloc(mesh->corner_count, 4 * sizeof *h->tangents);
+	if (!h->tangents)
+		return NT_ERROR_MEMORY;
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = h->tangents};
+	return nt_status_of(nmtan_tangents(&h->view, options, &output, NULL));
+}
+
+static size_t vertex_of(const nmtan_mesh *view, size_t corner)
+{
+	return view->indices ? view->indices[corner] : corner;
+}
+
+/* Twice the area of a triangle, and the square of its longest edge. */
+static double measure(const nmtan_mesh *view, const float *positions, size_t triangle, double *longest)
+{
+	nt_dvec3 p[3];
+	for (size_t k = 0; k < 3; k++)
+		p[k] = nt_dvec3_load(positions + 3 * vertex_of(view, 3 * triangle + k));
+	*longest = 0;
+	for (size_t k = 0; k < 3; k++) {
+		const nt_dvec3 edge = nt_dvec3_sub(p[(k + 1) % 3], p[k]);
+		*longest = fmax(*longest, nt_dvec3_dot(edge, edge));
+	}
+	return nt_dvec3_length(nt_dvec3_cross(nt_dvec3_sub(p[1], p[0]), nt_dvec3_sub(p[2], p[0])));
+}
+
+/* Whether the triangle itself has a direction at weight 0.5. */
+static bool has_direction(const nmtan_mesh *base, const nt_morph *morph, const halfway *h, size_t triangle)
+{
+	const float *uv[3];
+	for (size_t k = 0; k < 3; k++)
+		uv[k] = base->texcoords + 2 * vertex_of(base, 3 * triangle + k);
+	double before, after, now;
+	measure(base, base->positions, triangle, &before);
+	measure(base, morph->positions ? morph->positions : base->positions, triangle, &after);
+	const double area = measure(base, h->view.positions, triangle, &now);
+	return area > COLLAPSED * fmax(before, after) && nmtan_orientation(uv[0], uv[1], uv[2]) != 0;
+}
+
+/* How far the tangent that a client has at a corner is off, as a cosine. */
+static double cosine_at(const nt_mesh *mesh, const nt_morph *morph, const halfway *h, size_t corner, bool *cancelled)
+{
+	const nt_dvec3 client = nt_dvec3_scale(0.5, nt_dvec3_add(nt_dvec3_load(mesh->corner_tangents + 4 * corner),
+		nt_dvec3_load(morph->corner_tangents + 4 * corner)));
+	*cancelled = nt_dvec3_dot(client, client) < CANCELLED * CANCELLED;
+	return *cancelled ? 0 : cosine_between(client, nt_dvec3_load(h->tangents + 4 * corner));
+}
+
+static void compare(const nt_mesh *mesh, const nmtan_mesh *base, const halfway *h, nt_morph *morph)
+{
+	double least = 1;
+	for (size_t t = 0; t < mesh->face_count; t++) {
+		double worst = 1;
+		bool any_cancelled = false;
+		for (size_t k = 0; k < 3; k++) {
+			bool cancelled;
+			worst = fmin(worst, cosine_at(mesh, morph, h, 3 * t + k, &cancelled));
+			any_cancelled |= cancelled;
+		}
+		if (worst < LIMIT_COSINE && (any_cancelled || has_direction(base, morph, h, t))) {
+			morph->halfway_triangles++;
+			least = fmin(least, worst);
+		}
+	}
+	morph->halfway_degrees = degrees_of(least);
+}
+
+nt_status nt_morphs_halfway(const nt_mesh *mesh, nt_morph *morph, const nmtan_mesh *base,
+	const nmtan_options *options)
+{
+	morph->halfway_triangles = 0;
+	morph->halfway_degrees = 0;
+	if (!turns(mesh, morph))
+		return NT_OK;
+	halfway h = {0};
+	const nt_status status = solve_halfway(mesh, morph, base, options, &h);
+	if (!status)
+		compare(mesh, base, &h, morph);
+	free(h.positions);
+	free(h.normals);
+	free(h.tangents);
+	return status;
+}
