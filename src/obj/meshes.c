@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
-#include "obj/name_table.h"
+#include "base/name_table.h"
 #include "scene/polygon.h"
 
 enum { GRAIN = 1 << 14 }; /* rows per thread that are worth one */

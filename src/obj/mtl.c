@@ -17,7 +17,7 @@
 #include "ext/number.h"
 #include "file/input.h"
 #include "obj/mtl_map.h"
-#include "obj/name_table.h"
+#include "base/name_table.h"
 
 typedef struct reader {
 	nt_scene *scene;

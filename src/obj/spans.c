@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "obj/mtl.h"
-#include "obj/name_table.h"
+#include "base/name_table.h"
 
 /* Materials that no library defines are named one by one up to this many. */
 enum { NAMED_UNKNOWN_MOST = 100 };

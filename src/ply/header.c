@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The header of a PLY file: lines of words up to end_header, whatever ends the lines. It costs memory
- * in proportion to its own size; what it promises about the rest of the file is checked where the rest
+ * and time in proportion to its own size; what it promises about the rest of the file is checked where the rest
  * is read.
  */
 #include "ply/header.h"
 
 #include <stdlib.h>
 #include "base/memory.h"
+#include "base/name_table.h"
 
 static const struct {
 	const char *name, *alias;
@@ -30,6 +31,7 @@ typedef struct parser {
 	const char *at, *end; /* what is left of the line */
 	size_t line;
 	bool has_format;
+	nt_name_table names; /* of the elements; a name's number is its element's */
 } parser;
 
 typedef struct word {
@@ -180,11 +182,13 @@ static nt_status parse_element(parser *p)
 	const word number = next_word(p);
 	if (!read_count(number, &element.count))
 		return fail_word(p, number, "the number of rows");
-	for (size_t i = 0; i < header->element_count; i++)
-		if (is(name, header->elements[i].name))
-			return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
-				"a second element \"%.*s\": the first is on line %zu", shown(name),
-				name.text, header->elements[i].line);
+	const uint32_t first = nt_name_add(&p->names, name.text, name.length);
+	if (first == UINT32_MAX)
+		return nt_fail_memory(p->error);
+	if (first < header->element_count)
+		return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
+			"a second element \"%.*s\": the first is on line %zu", shown(name),
+			name.text, header->elements[first].line);
 	element.name = copy_text(name.text, name.length);
 	if (!element.name || !nt_grow((void **)&header->elements, &header->element_capacity,
 				     header->element_count + 1, sizeof element)) {
@@ -269,6 +273,25 @@ static nt_status parse_line(parser *p, bool *finished)
 	return expect_end(p);
 }
 
+/* All lines behind the first, up to end_header. */
+static nt_status parse_lines(parser *p, ply_line *line, const unsigned char *bytes, size_t size)
+{
+	nt_status status = NT_OK;
+	for (bool finished = false; !status && !finished;) {
+		if (!line->newline)
+			return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
+				"the file ends within the header, end_header was expected");
+		*line = ply_header_line(p->header, bytes, size, line->next);
+		p->line++;
+		p->at = line->text;
+		p->end = line->text + line->length;
+		status = parse_line(p, &finished);
+	}
+	if (!status && !p->has_format)
+		status = nt_fail_line(p->error, NT_ERROR_INPUT, p->line, "the header has no format line");
+	return status;
+}
+
 nt_status ply_parse_header(ply_header *header, const unsigned char *bytes, size_t size,
 	nt_error *error)
 {
@@ -281,20 +304,11 @@ nt_status ply_parse_header(ply_header *header, const unsigned char *bytes, size_
 	/* the first line tells whether '\r' comes alone: a '\n' after it may then be data */
 	header->newline = line.newline;
 	nt_status status = expect_end(&p);
-	for (bool finished = false; !status && !finished;) {
-		if (!line.newline)
-			return nt_fail_line(error, NT_ERROR_INPUT, p.line,
-				"the file ends within the header, end_header was expected");
-		line = ply_header_line(header, bytes, size, line.next);
-		p.line++;
-		p.at = line.text;
-		p.end = line.text + line.length;
-		status = parse_line(&p, &finished);
-	}
-	if (!status && !p.has_format)
-		status = nt_fail_line(error, NT_ERROR_INPUT, p.line, "the header has no format line");
+	if (!status)
+		status = parse_lines(&p, &line, bytes, size);
 	header->body = line.next;
 	header->body_line = p.line + 1;
+	nt_name_table_free(&p.names);
 	return status;
 }
 

@@ -2,7 +2,7 @@
 /*
  * Names by number: an open-addressing hash table (FNV-1a), at most half full.
  */
-#include "obj/name_table.h"
+#include "base/name_table.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
 #include <stdio.h>
-#include "obj/name_table.h"
+#include "base/name_table.h"
 
 static void equal_names_have_one_number(void **state)
 {
@@ -52,5 +52,5 @@ int main(void)
 		cmocka_unit_test(equal_names_have_one_number),
 		cmocka_unit_test(text_becomes_utf8),
 	};
-	return cmocka_run_group_tests_name("obj/name_table", tests, NULL, NULL);
+	return cmocka_run_group_tests_name("base/name_table", tests, NULL, NULL);
 }

@@ -2,8 +2,8 @@
 /*
  * Names by number: equal names get the same number, in the order in which they come.
  */
-#ifndef NT_OBJ_NAME_TABLE_H
-#define NT_OBJ_NAME_TABLE_H
+#ifndef NT_BASE_NAME_TABLE_H
+#define NT_BASE_NAME_TABLE_H
 
 #include <stdbool.h>
 #include <stddef.h>
