@@ -18,6 +18,8 @@ typedef struct growth {
 	nt_sample *sample;
 	uint32_t *number;  /* [vertex_count] in the sample, NT_NONE */
 	uint8_t *taken;    /* [triangle_count] */
+	size_t *first;     /* [vertex_count + 1] where a vertex's triangles begin in `around` */
+	uint32_t *around;  /* [3 * triangle_count] triangles by vertex */
 	size_t bytes, budget;
 } growth;
 
@@ -63,20 +65,43 @@ static void take_findings(growth *w, const nt_report *report, uint32_t mesh)
 		take(w, 0);
 }
 
-/* Takes every triangle that touches a vertex of the sample as it is now. */
-static bool grow_ring(growth *w)
+/* Lists the triangles of every vertex. */
+static void list_around(growth *w)
 {
 	const nt_report_geometry *g = w->geometry;
-	const size_t before = w->sample->triangle_count;
-	const uint32_t known = (uint32_t)w->sample->vertex_count;
-	for (size_t t = 0; t < g->triangle_count; t++) {
-		const uint32_t *corners = g->indices + 3 * t;
-		const bool touches = w->number[corners[0]] < known || w->number[corners[1]] < known ||
-			w->number[corners[2]] < known;
-		if (touches)
-			take(w, t);
+	memset(w->first, 0, (g->vertex_count + 1) * sizeof *w->first);
+	for (size_t c = 0; c < 3 * g->triangle_count; c++)
+		w->first[g->indices[c] + 1]++;
+	for (size_t v = 0; v < g->vertex_count; v++)
+		w->first[v + 1] += w->first[v];
+	for (size_t c = 0; c < 3 * g->triangle_count; c++)
+		w->around[w->first[g->indices[c]]++] = (uint32_t)(c / 3);
+	/* filling moved each beginning to its end, which is the next one's beginning */
+	memmove(w->first + 1, w->first, g->vertex_count * sizeof *w->first);
+	w->first[0] = 0;
+}
+
+/* Takes the triangles around each vertex of the sample, in the order in which the vertices came into it: ring
+ * after ring around the findings, every triangle looked at three times. */
+static void grow_rings(growth *w)
+{
+	for (size_t i = 0; i < w->sample->vertex_count; i++) {
+		const uint32_t vertex = w->sample->vertices[i];
+		for (size_t k = w->first[vertex]; k < w->first[vertex + 1]; k++)
+			take(w, w->around[k]);
 	}
-	return w->sample->triangle_count > before;
+}
+
+static void choose(growth *w, const nt_report *report, uint32_t mesh)
+{
+	if (nt_sample_bytes(&report->meshes[mesh]) <= w->budget) {
+		for (size_t t = 0; t < w->geometry->triangle_count; t++)
+			take(w, t);
+	} else {
+		list_around(w);
+		take_findings(w, report, mesh);
+		grow_rings(w);
+	}
 }
 
 nt_status nt_sample_make(nt_sample *sample, const nt_report *report, uint32_t mesh,
@@ -87,23 +112,20 @@ nt_status nt_sample_make(nt_sample *sample, const nt_report *report, uint32_t me
 		.vertices = nt_alloc(g->vertex_count, sizeof *sample->vertices)};
 	growth w = {.geometry = g, .sample = sample, .budget = budget_bytes,
 		.number = nt_alloc(g->vertex_count, sizeof *w.number),
-		.taken = nt_calloc(g->triangle_count, 1)};
+		.taken = nt_calloc(g->triangle_count, 1),
+		.first = nt_alloc(g->vertex_count + 1, sizeof *w.first),
+		.around = nt_alloc(3 * g->triangle_count, sizeof *w.around)};
 	nt_status status = NT_ERROR_MEMORY;
-	if (sample->indices && sample->vertices && w.number && w.taken) {
+	if (sample->indices && sample->vertices && w.number && w.taken && w.first && w.around) {
 		memset(w.number, 0xff, g->vertex_count * sizeof *w.number);
 		status = NT_OK;
-		if (nt_sample_bytes(&report->meshes[mesh]) <= budget_bytes) {
-			for (size_t t = 0; t < g->triangle_count; t++)
-				take(&w, t);
-		} else {
-			take_findings(&w, report, mesh);
-			while (grow_ring(&w))
-				;
-		}
+		choose(&w, report, mesh);
 		sample->whole = sample->triangle_count == g->triangle_count;
 	}
 	free(w.number);
 	free(w.taken);
+	free(w.first);
+	free(w.around);
 	if (status)
 		nt_sample_free(sample);
 	return status;
