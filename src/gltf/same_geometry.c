@@ -31,9 +31,11 @@ typedef struct same_job {
 	size_t table_size;
 } same_job;
 
-static bool is_wanted(const nt_mesh *mesh)
+/* Whether the mesh is going to be loaded: to be solved, or to be judged alone. */
+static bool is_wanted(const nt_mesh *mesh, const nt_read_options *options)
 {
-	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR;
+	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR ||
+		(options->report && mesh->triangles && mesh->has_positions);
 }
 
 /* ---- keys ---- */
@@ -159,7 +161,7 @@ static nt_status find_all(same_job *job, nt_scene *scene, nt_error *error)
 	for (uint32_t i = 0; !status && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
 		job->begin[i] = job->begin[i + 1] = job->keys.size;
-		if (!is_wanted(mesh))
+		if (!is_wanted(mesh, job->options))
 			continue;
 		status = put_key(job, mesh, error);
 		job->begin[i + 1] = job->keys.size;
@@ -174,7 +176,7 @@ nt_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_
 {
 	size_t wanted = 0;
 	for (size_t i = 0; i < scene->mesh_count; i++)
-		wanted += is_wanted(&scene->meshes[i]);
+		wanted += is_wanted(&scene->meshes[i], options);
 	if (wanted < 2)
 		return NT_OK;
 	same_job job = {.scene = scene, .document = scene->source, .options = options, .table_size = 4};

@@ -145,6 +145,8 @@ static bool needs_all(const run *r)
  * it. */
 static nt_status load_for_report(run *r, nt_mesh *mesh)
 {
+	if (mesh->same_as && !mesh->same_as->positions) /* that one could not be read */
+		return NT_OK;
 	const nt_status status = r->reader->load(&r->scene, mesh, &r->read_options, r->error);
 	if (!status || r->settings->check || status == NT_ERROR_MEMORY)
 		return status;
@@ -369,7 +371,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 		.error = error};
 	r.read_options = (nt_read_options){.texcoord_set = settings->texcoord_set,
 		.allow_outside = settings->allow_outside, .morphs = settings->morphs,
-		.threads = settings->threads};
+		.report = settings->report != NULL, .threads = settings->threads};
 	const double begin = nt_seconds();
 	r.stage_begin = begin;
 	nt_scene_init(&r.scene, input);

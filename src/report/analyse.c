@@ -64,7 +64,7 @@ static bool describe_mesh(nt_report *report, const nt_mesh *mesh, const nt_repor
 		.name = copy_text(&report->arena, mesh->name),
 		.why = describe_why(&report->arena, mesh,
 			solve ? "tangents would be computed" : nt_decision_text(mesh->decision)),
-		.gltf_mesh = mesh->gltf_mesh, .gltf_primitive = mesh->gltf_primitive,
+		.same_as = NT_NONE, .gltf_mesh = mesh->gltf_mesh, .gltf_primitive = mesh->gltf_primitive,
 		.slots = mesh->slots, .texcoord_set = mesh->texcoord_set,
 		.has_normals = mesh->normals != NULL, .has_texcoords = mesh->texcoords != NULL,
 		.worst_orthogonality = NAN, .relative_determinant = {NAN, NAN, NAN},
@@ -152,21 +152,24 @@ static nt_status keep_geometry(nt_judge *judge)
 	return NT_OK;
 }
 
-/* Larger ones have no place in a page of 20 MB. */
+/* Of all images together: more has no place in a page of 20 MB. */
 static const size_t MOST_IMAGE_BYTES = 2000000;
 
-static void keep_normal_map(nt_judge *judge)
+static void keep_normal_map(nt_judge *judge, size_t *most_bytes)
 {
 	const nt_report_options *options = judge->options;
 	nt_image image;
 	if (options->find_normal_map && options->find_normal_map(&judge->report->arena, judge->scene,
-						judge->mesh, MOST_IMAGE_BYTES, &image))
+						judge->mesh, *most_bytes, &image)) {
 		judge->facts->normal_map = image;
+		*most_bytes -= image.size;
+	}
 }
 
 /* ---- one mesh ---- */
 
-static nt_status judge_mesh(nt_judge *judge)
+/* most_image_bytes: how much of images may still be kept. */
+static nt_status judge_mesh(nt_judge *judge, size_t *most_image_bytes)
 {
 	nt_status status = nt_surface_build(&judge->surface, judge->mesh, judge->scratch);
 	if (status || judge->surface.triangle_count == 0)
@@ -179,7 +182,7 @@ static nt_status judge_mesh(nt_judge *judge)
 	if (!status && judge->options->keep_geometry)
 		status = keep_geometry(judge);
 	if (!status)
-		keep_normal_map(judge);
+		keep_normal_map(judge, most_image_bytes);
 	return status ? status : judge->failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
@@ -189,28 +192,113 @@ static bool is_judged(const nt_mesh *mesh)
 	return mesh->triangles && mesh->positions && mesh->face_count > 0;
 }
 
+/* Whether two meshes of one geometry are also used alike: all that checks ask besides the geometry. */
+static bool same_uses(const nt_mesh *a, const nt_mesh *b)
+{
+	return a->slots == b->slots && a->reachable == b->reachable && a->decision == b->decision &&
+		a->targets_without_tangents == b->targets_without_tangents;
+}
+
+/* Meshes that are judged together: of the same geometry and used alike. */
+typedef struct judged_meshes {
+	uint32_t *first; /* [mesh_count] the one that is judged for it; NT_NONE: nobody */
+	uint32_t *next;  /* [mesh_count] another first one of the same geometry, NT_NONE: none */
+	size_t *alike;   /* [mesh_count] of a first one: how many it is judged for */
+} judged_meshes;
+
+static uint32_t find_first(const nt_scene *scene, judged_meshes *judged, uint32_t mesh)
+{
+	const nt_mesh *same_as = scene->meshes[mesh].same_as;
+	if (!same_as)
+		return mesh;
+	uint32_t at = (uint32_t)(same_as - scene->meshes);
+	while (judged->first[at] == at && !same_uses(&scene->meshes[at], &scene->meshes[mesh])) {
+		if (judged->next[at] == NT_NONE) {
+			judged->next[at] = mesh;
+			return mesh;
+		}
+		at = judged->next[at];
+	}
+	return judged->first[at] == at ? at : mesh;
+}
+
+static void find_judged(const nt_scene *scene, judged_meshes *judged)
+{
+	for (uint32_t i = 0; i < scene->mesh_count; i++) {
+		judged->next[i] = NT_NONE;
+		judged->alike[i] = 0;
+		judged->first[i] = is_judged(&scene->meshes[i]) ? find_first(scene, judged, i) : NT_NONE;
+		if (judged->first[i] != NT_NONE)
+			judged->alike[judged->first[i]]++;
+	}
+}
+
+/* The facts of a mesh are those of the one that was judged for it; seams, islands and geometry stay there. */
+static void share_facts(nt_report *report, uint32_t mesh, uint32_t first)
+{
+	const nt_report_mesh own = report->meshes[mesh];
+	nt_report_mesh *facts = &report->meshes[mesh];
+	*facts = report->meshes[first];
+	facts->same_as = first;
+	facts->name = own.name;
+	facts->place = own.place;
+	facts->why = own.why;
+	facts->gltf_mesh = own.gltf_mesh;
+	facts->gltf_primitive = own.gltf_primitive;
+	facts->texcoord_set = own.texcoord_set;
+	facts->instance_count = own.instance_count;
+	facts->negative_instances = own.negative_instances;
+	facts->seams = NULL;
+	facts->islands = NULL;
+	facts->geometry = NULL;
+	facts->normal_map = (nt_image){0};
+}
+
+static nt_status judge_meshes(const nt_judge *judge, const judged_meshes *judged)
+{
+	const nt_scene *scene = judge->scene;
+	nt_status status = NT_OK;
+	size_t image_bytes = MOST_IMAGE_BYTES;
+	for (uint32_t i = 0; i < scene->mesh_count && !status; i++) {
+		if (judged->first[i] == NT_NONE)
+			continue;
+		if (judged->first[i] != i) {
+			share_facts(judge->report, i, judged->first[i]);
+			continue;
+		}
+		nt_scratch scratch;
+		nt_scratch_init(&scratch, NULL);
+		nt_judge one = *judge;
+		one.mesh_index = i;
+		one.alike = judged->alike[i];
+		one.mesh = &scene->meshes[i];
+		one.facts = &judge->report->meshes[i];
+		one.scratch = &scratch;
+		status = judge_mesh(&one, &image_bytes);
+		nt_scratch_free(&scratch);
+	}
+	return status;
+}
+
 static nt_status judge_scene(const nt_scene *scene, const nt_report_options *options,
 	nt_report *report)
 {
 	size_t issue_capacity = 0;
 	nt_judge judge = {.scene = scene, .options = options, .report = report,
 		.issue_capacity = &issue_capacity};
-	nt_status status = NT_OK;
-	for (size_t i = 0; i < scene->mesh_count && !status; i++) {
-		if (!is_judged(&scene->meshes[i]))
-			continue;
-		nt_scratch scratch;
-		nt_scratch_init(&scratch, NULL);
-		nt_judge one = judge;
-		one.mesh_index = (uint32_t)i;
-		one.mesh = &scene->meshes[i];
-		one.facts = &report->meshes[i];
-		one.scratch = &scratch;
-		status = judge_mesh(&one);
-		nt_scratch_free(&scratch);
+	judged_meshes judged = {.first = nt_alloc(scene->mesh_count, sizeof *judged.first),
+		.next = nt_alloc(scene->mesh_count, sizeof *judged.next),
+		.alike = nt_alloc(scene->mesh_count, sizeof *judged.alike)};
+	nt_status status = NT_ERROR_MEMORY;
+	if (judged.first && judged.next && judged.alike) {
+		find_judged(scene, &judged);
+		status = judge_meshes(&judge, &judged);
 	}
-	for (size_t i = 0; i < scene->findings.count && !status; i++)
-		nt_issues_add_finding(&judge, &scene->findings.items[i]);
+	free(judged.first);
+	free(judged.next);
+	free(judged.alike);
+	if (!status)
+		status = nt_issues_add_findings(&judge, &scene->findings);
 	return status ? status : judge.failed ? NT_ERROR_MEMORY : NT_OK;
 }
 

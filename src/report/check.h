@@ -32,6 +32,7 @@ typedef struct nt_judge {
 	nt_scratch *scratch; /* of this mesh */
 
 	uint32_t mesh_index;
+	size_t alike;             /* meshes that the findings of this one hold for, itself included */
 	const nt_mesh *mesh;
 	nt_report_mesh *facts;
 	nt_surface surface;
@@ -144,7 +145,7 @@ nt_status nt_judge_growth(nt_judge *judge);   /* growth.c: shared and copied ver
 /* Ends: most severe first, limits, baseline. issues.c */
 nt_status nt_issues_finish(nt_report *report, const nt_report_options *options);
 
-/* Adds a finding that the scene's stages made. */
-void nt_issues_add_finding(nt_judge *judge, const nt_finding *finding);
+/* Adds the findings that the scene's stages made. */
+nt_status nt_issues_add_findings(nt_judge *judge, const nt_finding_list *findings);
 
 #endif

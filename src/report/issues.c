@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/name_table.h"
 
 nt_box nt_box_empty(void)
 {
@@ -136,6 +137,8 @@ static void add_issue(nt_judge *judge, nt_issue *issue, nt_severity severity, co
 	issue->severity = wish ? (nt_severity)(wish - 1) : severity;
 	nt_buffer sentence = {0};
 	nt_code_sentence(issue->code, issue->count, detail, &sentence);
+	if (issue->alike > 1)
+		nt_buffer_format(&sentence, ", and in %zu more of the same geometry", issue->alike - 1);
 	issue->message = sentence.failed ? NULL
 					 : nt_arena_text(&report->arena, sentence.data, sentence.size);
 	nt_buffer_free(&sentence);
@@ -160,6 +163,7 @@ static void report_tally(nt_judge *judge, const nt_tally *tally, nt_severity sev
 	nt_issue issue = {.code = tally->code,
 		.mesh = judge->mesh_index,
 		.count = tally->count,
+		.alike = judge->alike,
 		.place = judge->facts->place,
 		.box = tally->box,
 		.seam = tally->seam ? tally->seam - 1 : NT_NONE,
@@ -188,30 +192,65 @@ void nt_judge_report_as(nt_judge *judge, const nt_tally *tally, nt_severity seve
 	va_end(arguments);
 }
 
-void nt_issues_add_finding(nt_judge *judge, const nt_finding *finding)
+/* What a place is known by: a JSON pointer, or an object of a text. */
+static const char *key_of(const nt_place *place)
+{
+	return place->pointer[0] ? place->pointer : place->object;
+}
+
+/* The meshes by the keys of their places, a key's number in the table being its place in `meshes`. */
+typedef struct mesh_table {
+	nt_name_table keys;
+	uint32_t *meshes;
+} mesh_table;
+
+static bool make_mesh_table(const nt_report *report, mesh_table *table)
+{
+	table->meshes = nt_alloc(report->mesh_count, sizeof *table->meshes);
+	for (size_t i = 0; table->meshes && i < report->mesh_count; i++) {
+		const char *key = key_of(&report->meshes[i].place);
+		const size_t before = table->keys.count;
+		if (*key && nt_name_add(&table->keys, key, strlen(key)) == UINT32_MAX)
+			return false;
+		if (table->keys.count > before)
+			table->meshes[before] = (uint32_t)i;
+	}
+	return table->meshes != NULL;
+}
+
+static uint32_t find_mesh(const mesh_table *table, const nt_place *place)
+{
+	const char *key = key_of(place);
+	const uint32_t number = nt_name_find(&table->keys, key, strlen(key));
+	return number == UINT32_MAX ? NT_NONE : table->meshes[number];
+}
+
+static void add_finding(nt_judge *judge, const mesh_table *table, const nt_finding *finding)
 {
 	/* the solve counts these too, but does not know where they are: geometry.c does */
 	if (finding->code == NT_CODE_UV_DEGENERATE_TRIANGLE ||
 		finding->code == NT_CODE_POS_DEGENERATE_TRIANGLE)
 		return;
 	nt_issue issue = {.code = finding->code,
-		.mesh = NT_NONE,
+		.mesh = find_mesh(table, &finding->place),
 		.count = finding->count,
 		.place = finding->place,
 		.box = nt_box_empty(),
 		.seam = NT_NONE,
 		.island = NT_NONE};
-	for (size_t i = 0; i < judge->report->mesh_count; i++) {
-		const nt_place *place = &judge->report->meshes[i].place;
-		const bool same = place->pointer[0] ? strcmp(place->pointer, finding->place.pointer) == 0
-						    : place->object[0] &&
-				strcmp(place->object, finding->place.object) == 0;
-		if (same) {
-			issue.mesh = (uint32_t)i;
-			break;
-		}
-	}
+	issue.alike = issue.mesh != NT_NONE;
 	add_issue(judge, &issue, nt_code_info(finding->code)->severity, finding->detail);
+}
+
+nt_status nt_issues_add_findings(nt_judge *judge, const nt_finding_list *findings)
+{
+	mesh_table table = {0};
+	const bool made = make_mesh_table(judge->report, &table);
+	for (size_t i = 0; made && i < findings->count; i++)
+		add_finding(judge, &table, &findings->items[i]);
+	nt_name_table_free(&table.keys);
+	free(table.meshes);
+	return made ? NT_OK : NT_ERROR_MEMORY;
 }
 
 static int by_severity(const void *a, const void *b)

@@ -84,6 +84,7 @@ typedef struct nt_issue {
 	nt_severity severity;
 	uint32_t mesh;        /* index into the report's meshes, NT_NONE: the file as a whole */
 	size_t count;         /* occurrences */
+	size_t alike;         /* meshes of this geometry that it holds for, the mesh itself included; 0: no mesh */
 	const char *message;  /* one sentence */
 	nt_place place;
 	nt_box box;           /* around all occurrences */
@@ -155,6 +156,8 @@ typedef struct nt_report_mesh {
 	const char *name;
 	nt_place place;
 	uint32_t gltf_mesh, gltf_primitive;
+	uint32_t same_as;         /* an earlier mesh with the same geometry and uses: what is found there holds
+	                             here, and is not said again. Seams, islands and geometry are there; NT_NONE */
 	const char *why;          /* why tangents were or were not made */
 	unsigned slots;           /* enum nt_slot */
 	uint32_t texcoord_set;

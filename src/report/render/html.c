@@ -17,6 +17,7 @@
 enum {
 	GEOMETRY_BYTES = 7 * 1000 * 1000,
 	PICTURE_BYTES = 3 * 1000 * 1000,
+	MOST_DRAWN_BYTES = 4 * PICTURE_BYTES,
 	IMAGE_BYTES = 2 * 1000 * 1000,
 	MOST_FINDINGS = 2000,
 	MOST_SEAM_POINTS = 20000,
@@ -248,12 +249,14 @@ static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_bu
 	nt_buffer_free(&label);
 	nt_buffer_text(out, ",\"why\":");
 	put_string(m->why, out);
+	if (m->same_as != NT_NONE)
+		nt_buffer_format(out, ",\"same_as\":%u", m->same_as);
 	nt_buffer_format(out, ",\"has_uv\":%s,\"box\":", m->has_texcoords ? "true" : "false");
 	put_box(&m->box, out);
 	put_facts(m, out);
 	put_image(m, left, out);
 	nt_buffer_text(out, ",\"seams\":[");
-	for (size_t i = 0; i < m->seam_count && left->seam_points > 0; i++) {
+	for (size_t i = 0; m->seams && i < m->seam_count && left->seam_points > 0; i++) {
 		nt_buffer_text(out, i ? "," : "");
 		put_seam(&m->seams[i], left, out);
 	}
@@ -375,16 +378,18 @@ static void put_data(const nt_report_list *reports, nt_buffer *out)
 	nt_buffer_text(out, "]}</script>\n");
 }
 
-/* The UV layouts, each in a template, while there is room. */
+/* The UV layouts, each in a template, while there is room. Ones that turn out not to fit are drawn in vain, but
+ * not without end. */
 static void put_pictures(const nt_report_list *reports, nt_buffer *out)
 {
-	size_t left = PICTURE_BYTES;
+	size_t left = PICTURE_BYTES, drawn_bytes = 0;
 	for (size_t i = 0; i < reports->count; i++) {
 		const nt_report *report = reports->items[i];
-		for (size_t m = 0; m < report->mesh_count && m < MOST_MESHES; m++) {
+		for (size_t m = 0; m < report->mesh_count && m < MOST_MESHES && drawn_bytes < MOST_DRAWN_BYTES; m++) {
 			nt_buffer picture = {0};
 			const bool drawn = nt_write_uv_svg(report, (uint32_t)m, &picture);
 			out->failed |= picture.failed;
+			drawn_bytes += picture.size;
 			if (drawn && picture.size <= left) {
 				nt_buffer_format(out, "<template id=\"uv-%zu-%zu\">", i, m);
 				nt_buffer_append(out, picture.data, picture.size);

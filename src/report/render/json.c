@@ -317,6 +317,7 @@ static void put_mesh(nt_buffer *out, const nt_report_mesh *mesh)
 	put_place(out, "place", &mesh->place);
 	put_index(out, "gltf_mesh", mesh->gltf_mesh);
 	put_index(out, "gltf_primitive", mesh->gltf_primitive);
+	put_index(out, "same_as", mesh->same_as);
 	put_text(out, "why", mesh->why);
 	put_slots(out, mesh->slots);
 	put_count(out, "texcoord_set", mesh->texcoord_set);
@@ -342,7 +343,7 @@ static void put_mesh(nt_buffer *out, const nt_report_mesh *mesh)
 	put_bool(out, "seams_truncated", mesh->seam_count > SHOWN_SEAMS);
 	key(out, SAME_LINE, "seams");
 	nt_buffer_text(out, "[");
-	for (size_t i = 0; i < mesh->seam_count && i < SHOWN_SEAMS; i++) {
+	for (size_t i = 0; mesh->seams && i < mesh->seam_count && i < SHOWN_SEAMS; i++) {
 		separate(out, 4);
 		put_seam(out, &mesh->seams[i]);
 	}
@@ -390,6 +391,7 @@ static void put_issue(nt_buffer *out, const nt_issue *issue)
 	put_text(out, "severity", nt_severity_name(issue->severity));
 	put_text(out, "message", issue->message);
 	put_count(out, "count", issue->count);
+	put_count(out, "alike", issue->alike);
 	key(out, SAME_LINE, "fingerprint");
 	nt_buffer_format(out, "\"%016llx\"", (unsigned long long)issue->fingerprint);
 	put_bool(out, "known", issue->known);

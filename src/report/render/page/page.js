@@ -22,7 +22,12 @@ function element(name, text, className) {
 
 const meshes = [], findings = [];
 data.files.forEach((file, f) => {
-	file.meshes.forEach((mesh, m) => meshes.push({...mesh, file: file.name, key: f + '-' + m}));
+	// a mesh of the same geometry as an earlier one shows that one's pictures
+	file.meshes.forEach((mesh, m) => {
+		const first = mesh.same_as ?? m, shown = file.meshes[first];
+		meshes.push({...mesh, seams: shown.seams, geometry: shown.geometry, image: shown.image,
+			file: file.name, key: f + '-' + first});
+	});
 	const first = meshes.length - file.meshes.length;
 	file.findings.forEach(finding => findings.push({...finding, file: file.name, number: findings.length,
 		where: finding.mesh === null ? -1 : first + finding.mesh}));

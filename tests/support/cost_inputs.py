@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""cost_inputs.py KIND COUNT FILE: small files that ask for much work, by test_cost.sh.
+
+elements  a PLY header of COUNT elements
+usemtl    an OBJ that changes its material COUNT times
+same      a GLB of COUNT primitives over one set of accessors, 43 218 triangles each
+windows   a GLB of COUNT primitives over one set of attributes, each with another window of the indices; the
+          texture coordinates turn back at every fourth column, so that vertices are split
+strip     an OBJ strip of COUNT quads
+"""
+import json
+import math
+import struct
+import sys
+
+
+def elements(count, out):
+    out.write(b'ply\nformat ascii 1.0\n')
+    for i in range(count):
+        out.write(b'element thing%06d 0\nproperty int x\n' % i)
+    out.write(b'element vertex 3\n' + b''.join(b'property float %c\n' % c for c in b'xyzst') +
+              b'element face 1\nproperty list uchar int vertex_indices\nend_header\n'
+              b'0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n')
+
+
+def usemtl(count, out):
+    out.write(b'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n')
+    for i in range(count):
+        out.write(b'usemtl m%d\nf 1/1/1 2/2/1 3/3/1\n' % i)
+
+
+def strip(count, out):
+    for i in range(count + 1):
+        out.write(b'v %d 0 0\nv %d 1 0\nvt %d 0\nvt %d 1\n' % (i, i, i, i))
+    for i in range(count):
+        a, b, c, d = 2 * i + 1, 2 * i + 3, 2 * i + 4, 2 * i + 2
+        out.write(b'f %d/%d %d/%d %d/%d %d/%d\n' % (a, a, b, b, c, c, d, d))
+
+
+def glb(count, out, side, windows):
+    width = side + 1
+    arrays = [b'', b'', b'', b'']
+    for y in range(width):
+        for x in range(width):
+            u = x % 8 if x % 8 < 4 else 8 - x % 8
+            arrays[0] += struct.pack('<3f', x, y, 0)
+            arrays[1] += struct.pack('<3f', 0, 0, 1)
+            arrays[2] += struct.pack('<2f', (u if windows else x) / side, y / side)
+    for y in range(side):
+        for x in range(side):
+            a = y * width + x
+            arrays[3] += struct.pack('<6I', a, a + 1, a + width, a + 1, a + width + 1, a + width)
+    views, offset = [], 0
+    for array in arrays:
+        views.append({'buffer': 0, 'byteOffset': offset, 'byteLength': len(array)})
+        offset += len(array)
+    vertices, triangles = width * width, 2 * side * side
+    accessors = [{'bufferView': 0, 'componentType': 5126, 'count': vertices, 'type': 'VEC3',
+                  'min': [0, 0, 0], 'max': [side, side, 0]},
+                 {'bufferView': 1, 'componentType': 5126, 'count': vertices, 'type': 'VEC3'},
+                 {'bufferView': 2, 'componentType': 5126, 'count': vertices, 'type': 'VEC2'}]
+    for i in range(count if windows else 1):
+        accessors.append({'bufferView': 3, 'byteOffset': 12 * i, 'componentType': 5125, 'type': 'SCALAR',
+                          'count': 3 * (triangles - (count if windows else 0))})
+    primitives = [{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}, 'material': 0,
+                   'indices': 3 + i if windows else 3} for i in range(count)]
+    document = {'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': [0]}], 'nodes': [{'mesh': 0}],
+                'meshes': [{'primitives': primitives}], 'materials': [{'normalTexture': {'index': 0}}],
+                'textures': [{'source': 0}], 'images': [{'uri': 'n.png'}], 'accessors': accessors,
+                'bufferViews': views, 'buffers': [{'byteLength': offset}]}
+    text = json.dumps(document, separators=(',', ':')).encode()
+    text += b' ' * (-len(text) % 4)
+    binary = b''.join(arrays)
+    out.write(struct.pack('<4sIIII', b'glTF', 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A))
+    out.write(text + struct.pack('<II', len(binary), 0x004E4942) + binary)
+
+
+kind, count = sys.argv[1], int(sys.argv[2])
+with open(sys.argv[3], 'wb') as out:
+    if kind == 'same':
+        glb(count, out, 147, False)
+    elif kind == 'windows':
+        glb(count, out, 118, True)
+    else:
+        {'elements': elements, 'usemtl': usemtl, 'strip': strip}[kind](count, out)
