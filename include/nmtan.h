@@ -135,7 +135,8 @@ typedef struct nmtan_stored_uv {
  *
  * Attribute arrays hold vertex_count rows; stride_bytes is the distance between rows, a multiple of
  * 4 and at least the row's size; 0 means tightly packed. Any float value is accepted, NaN and
- * infinities too. Normals are used as given and should have unit length.
+ * infinities too. Normals are used as given and should have unit length: T lies across them as they are, and
+ * repair asks for that only of normals with |n|^2 within 2^-11 of 1.
  */
 typedef struct nmtan_mesh {
 	size_t struct_bytes;       /* sizeof(nmtan_mesh): see "Structs" */

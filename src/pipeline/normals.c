@@ -162,7 +162,7 @@ static nt_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job, size_t m
 	return kept ? NT_OK : NT_ERROR_MEMORY;
 }
 
-nt_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_error *error)
+static nt_status make_lacking(nt_scene *scene, nt_mesh *mesh, nt_normals mode)
 {
 	if (!any_lacks(mesh, mode) || mesh->corner_count == 0)
 		return NT_OK;
@@ -182,6 +182,17 @@ nt_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_e
 			status = adopt(scene, mesh, &job, made);
 	}
 	free_job(&job);
-	return status ? nt_fail(error, status, "cannot make normals: %s", nt_status_text(status))
-		      : NT_OK;
+	return status;
+}
+
+nt_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_error *error)
+{
+	/* a glTF keeps the normals that it has, unless others are asked for */
+	const bool keeps = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
+	nt_status status = keeps ? NT_OK : nt_mark_directionless(scene, mesh);
+	if (!status)
+		status = make_lacking(scene, mesh, mode);
+	if (!status)
+		status = nt_make_unit_normals(scene, mesh);
+	return status ? nt_fail(error, status, "cannot make normals: %s", nt_status_text(status)) : NT_OK;
 }

@@ -8,7 +8,8 @@
 #include "pipeline/settings.h"
 
 /* Makes the normals a mesh lacks (all of them when `mode` is not AUTO); vertices whose corners get
- * different normals are split, copies appended. Sets mesh->normals_made where something was made. */
+ * different normals are split, copies appended. Sets mesh->normals_made where something was made. Then gives the mesh
+ * solve_normals where its normals are not of unit length. */
 nt_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_error *error);
 
 /* Solves and splits every mesh whose decision says so; counts and findings go to the summary. Large
@@ -21,5 +22,11 @@ nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error 
 
 /* Says of every mesh with quads where they are cut (face_diagonals). For writers of triangles. */
 nt_status nt_stage_quads(nt_scene *scene, nt_error *error);
+
+/* unit_normals.c, for normals.c. Vertices whose normal has no direction lack it. Both return NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_mark_directionless(nt_scene *scene, nt_mesh *mesh);
+
+/* Makes mesh->solve_normals where normals are not of unit length. */
+nt_status nt_make_unit_normals(nt_scene *scene, nt_mesh *mesh);
 
 #endif

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/counts.h"
+#include "base/dvec.h"
 #include "base/parallel.h"
 #include "api/tangents.h"
 
@@ -50,8 +51,16 @@ static float stored_v_offset(const tangent_job *job)
 	return is_gltf(job->scene->format) ? 1.0f : -1.0f;
 }
 
+/* Off perpendicular by no more than a degree, as --check has it: half a degree comes from rounding to 8 bits. */
+static bool is_across(const float *t, const float *n)
+{
+	static const double sine = 0.017452406437283512;
+	const nt_dvec3 tangent = nt_dvec3_load(t), normal = nt_dvec3_load(n);
+	return !(fabs(nt_dvec3_dot(tangent, normal)) > sine * nt_dvec3_length(tangent) * nt_dvec3_length(normal));
+}
+
 /* Whether authored tangents can stay on a face: finite, of unit length (to the Khronos validator's
- * tolerance), one w, and that of the exact orientation of every triangle of it. */
+ * tolerance), across their normals, one w, and that of the exact orientation of every triangle of it. */
 static bool face_is_valid(const nt_mesh *mesh, const size_t *vertices, size_t size)
 {
 	const float w = mesh->tangents[4 * vertices[0] + 3];
@@ -59,6 +68,8 @@ static bool face_is_valid(const nt_mesh *mesh, const size_t *vertices, size_t si
 		const float *t = mesh->tangents + 4 * vertices[k];
 		const double squared = (double)t[0] * t[0] + (double)t[1] * t[1] + (double)t[2] * t[2];
 		if (!(fabs(sqrt(squared) - 1.0) <= 0.00674) || t[3] != w || (w != 1.0f && w != -1.0f))
+			return false;
+		if (mesh->normals && !is_across(t, mesh->normals + 3 * vertices[k]))
 			return false;
 	}
 	for (size_t k = 0; k < size; k++) {
@@ -258,6 +269,8 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 		{NT_CODE_POS_DEGENERATE_TRIANGLE, c->degenerate_positions},
 		{NT_CODE_UV_FOLDED_QUAD, c->folded_quads},
 		{NT_CODE_UV_ROUNDED_AWAY, c->stored_differently},
+		{NT_CODE_NORMALS_SCALED, mesh->scaled_normals},
+		{NT_CODE_NORMALS_MADE, mesh->replaced_normals},
 		{NT_CODE_TAN_MORPH_TURNED, mesh->morph_turned},
 		{NT_CODE_TAN_REPAIRED, nt_counts_repaired(c)},
 	};

@@ -52,10 +52,17 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Nothing, unless the polygons matter: then cut or unwrap them differently.",
 		"a PLY pentagon with one corner's texture coordinates mirrored"),
 	ROW(NORMALS_MADE, INFO, "normals were missing and have been made",
-		"Tangents need normals, which the input lacks. For OBJ they are made by its smoothing groups, for PLY "
-		"smooth, for glTF only if --normals asks for them.",
+		"Tangents need normals, which the input lacks, or which have no direction: (0, 0, 0). For OBJ they are "
+		"made by its smoothing groups, for PLY smooth, for glTF only if --normals asks for them; a glTF keeps "
+		"normals that have no direction, and its tangents are made for smooth ones.",
 		"Export normals if these are not what you want.",
 		"a PLY triangle with s and t but no nx, ny, nz"),
+	ROW(NORMALS_SCALED, INFO, "{count} {normal was|normals were} made unit for the tangents",
+		"The length differs from 1 by more than 2^-12. Tangents lie across the unit normal, which is what "
+		"renderers make of it. An OBJ's or PLY's normals are stored unit in a new glTF, a glTF keeps those that "
+		"it has.",
+		"Nothing; normalise the normals on export to be rid of the finding.",
+		"an OBJ triangle with \"vn 0 0 .5\""),
 	ROW(REFERENCE_LOST, WARNING, "{count} {reference is|references are} not in the output",
 		"Something the input refers to has no place in the output's format.",
 		"Choose another output format, or add it again by hand.",
@@ -160,7 +167,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"triangles 0 1 2 and 0 1 3"),
 	ROW(MESH_NORMAL_NON_UNIT, WARNING, "{count} {normal is|normals are} not of unit length",
 		"The length differs from 1 by more than 0.00674, the tolerance of the Khronos validator. "
-		"Tangents are made perpendicular to the normal as it is given, so they are tilted too.",
+		"nmtan makes tangents for the normal made unit; programs that take it as it is tilt them.",
 		"Normalise the normals on export.",
 		"a vertex with the normal (0,0,2)"),
 	ROW(MESH_NORMAL_ZERO, ERROR, "{count} {normal is|normals are} zero or not finite",

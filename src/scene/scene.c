@@ -62,7 +62,7 @@ nmtan_mesh nt_mesh_view(const nt_mesh *mesh, nmtan_stored_uv *stored)
 		.face_sizes = mesh->face_sizes,
 		.indices = mesh->indices,
 		.positions = mesh->positions,
-		.normals = mesh->normals,
+		.normals = mesh->solve_normals ? mesh->solve_normals : mesh->normals,
 		.texcoords = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords,
 		.stored = stored,
 	};

@@ -49,15 +49,19 @@ static inline bool nt_is_parallel(const float *t, const float *n)
 	return along * along > nt_parallel_from(nt_squared(t), nt_squared(n));
 }
 
+/* Whether |N| counts as 1. */
+static inline bool nt_is_unit_normal(const float *n)
+{
+	return fabsf(nt_squared(n) - 1.0f) <= NT_UNIT_NORMAL_TOLERANCE;
+}
+
 /* Whether T is a unit vector across N. */
 static inline bool nt_is_frame(const float *t, const float *n)
 {
-	const float squared = nt_squared(t), normal_squared = nt_squared(n);
+	const float squared = nt_squared(t), from = nt_parallel_from(squared, nt_squared(n));
 	const float along = t[0] * n[0] + t[1] * n[1] + t[2] * n[2];
-	const bool unit_normal = fabsf(normal_squared - 1.0f) <= NT_UNIT_NORMAL_TOLERANCE;
-	const float from = nt_parallel_from(squared, normal_squared);
 	return (fabsf(squared - 1.0f) <= NT_UNIT_TOLERANCE) &
-	       !(along * along > (unit_normal ? NT_MOST_LEAN_SQUARED : from));
+	       !(along * along > (nt_is_unit_normal(n) ? NT_MOST_LEAN_SQUARED : from));
 }
 
 /*

@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Unit normals, for the stage that makes normals: the one normal of a vertex is what is written, made unit, and tangents
+ * have to lie across that. Most meshes have nothing but normals of unit length and are only looked at.
+ *
+ * A length is 1 where |n|^2 is within 2^-11 of it: such normals are used as they are, so that rounding them anew
+ * changes no tangent. Others are made unit for the solve, here and in the same way for every format; the writers of
+ * new documents store them unit, and a glTF that is made from a glTF keeps what it has. One without a
+ * direction counts as lacking where the output gets new normals; in a glTF it stays, and tangents are made
+ * for the smooth normal of the faces around it.
+ */
+#include "pipeline/stages.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "base/dvec.h"
+#include "tangent/normals.h"
+#include "tangent/usable.h"
+
+static size_t count_odd(const float *normals, size_t count)
+{
+	size_t odd = 0;
+	for (size_t v = 0; v < count; v++)
+		odd += !nt_is_unit_normal(normals + 3 * v);
+	return odd;
+}
+
+static bool has_direction(const float *n)
+{
+	nt_dvec3 d = nt_dvec3_load(n);
+	return nt_dvec3_normalise(&d);
+}
+
+/* Vertices whose normal has no direction lack it. */
+nt_status nt_mark_directionless(nt_scene *scene, nt_mesh *mesh)
+{
+	if (!mesh->normals || count_odd(mesh->normals, mesh->vertex_count) == 0)
+		return NT_OK;
+	for (size_t v = 0; v < mesh->vertex_count; v++) {
+		if (has_direction(mesh->normals + 3 * v))
+			continue;
+		if (!mesh->vertex_lacks) {
+			mesh->vertex_lacks = nt_arena_alloc(&scene->arena, mesh->vertex_count, 1);
+			if (!mesh->vertex_lacks)
+				return NT_ERROR_MEMORY;
+			memset(mesh->vertex_lacks, 0, mesh->vertex_count);
+		}
+		mesh->vertex_lacks[v] |= NT_LACKS_NORMAL;
+	}
+	return NT_OK;
+}
+
+/* Smooth normals of all corners; NULL when memory is exhausted. */
+static float (*make_smooth(const nt_mesh *mesh))[3]
+{
+	nmtan_stored_uv stored;
+	nmtan_mesh view = nt_mesh_view(mesh, &stored);
+	view.position_stride_bytes = 3 * sizeof(float);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	float (*corners)[3] = nt_alloc(mesh->corner_count, sizeof *corners);
+	if (corners && nt_corner_normals(&view, mesh->corner_count, NULL, &scratch, corners)) {
+		free(corners);
+		corners = NULL;
+	}
+	nt_scratch_free(&scratch);
+	return corners;
+}
+
+/* Vertices without a direction take the smooth normal of their first corner. */
+static nt_status replace_directionless(nt_mesh *mesh)
+{
+	float (*corners)[3] = make_smooth(mesh);
+	if (!corners)
+		return NT_ERROR_MEMORY;
+	for (size_t c = 0; c < mesh->corner_count; c++) {
+		float *n = mesh->solve_normals + 3 * (mesh->indices ? mesh->indices[c] : c);
+		if (has_direction(n))
+			continue;
+		memcpy(n, corners[c], sizeof corners[c]);
+		mesh->replaced_normals++;
+	}
+	free(corners);
+	return NT_OK;
+}
+
+nt_status nt_make_unit_normals(nt_scene *scene, nt_mesh *mesh)
+{
+	const size_t odd = mesh->normals ? count_odd(mesh->normals, mesh->vertex_count) : 0;
+	if (odd == 0)
+		return NT_OK;
+	mesh->solve_normals = nt_arena_alloc(&scene->arena, mesh->vertex_count, 3 * sizeof(float));
+	if (!mesh->solve_normals)
+		return NT_ERROR_MEMORY;
+	memcpy(mesh->solve_normals, mesh->normals, mesh->vertex_count * 3 * sizeof(float));
+	size_t directionless = 0;
+	for (size_t v = 0; v < mesh->vertex_count; v++) {
+		float *n = mesh->solve_normals + 3 * v;
+		nt_dvec3 d = nt_dvec3_load(n);
+		if (nt_is_unit_normal(n))
+			continue;
+		if (!nt_dvec3_normalise(&d)) {
+			directionless++;
+			continue;
+		}
+		n[0] = (float)d.x;
+		n[1] = (float)d.y;
+		n[2] = (float)d.z;
+		mesh->scaled_normals++;
+	}
+	return directionless ? replace_directionless(mesh) : NT_OK;
+}

@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+# The frame that is written: T of unit length across the unit normal, w the exact orientation of its triangle, on every
+# corner, whatever normals and texture coordinates are like. Numbers are derived beside each case; frames.mjs counts.
+. "$ROOT/tests/support/cli.sh"
+
+triangle() {
+	python3 "$ROOT/tests/support/gltf_triangle.py" "$@"
+}
+
+# T of every vertex, to a millionth, and NORMAL.
+tangents() {
+	gltf "$1" 'JSON.stringify(rows(g.meshes[0].primitives[0].attributes.TANGENT).map((r) => r.map((c) => Math.round(c * 1e6) / 1e6 + 0)))'
+}
+normals() {
+	gltf "$1" 'JSON.stringify(rows(g.meshes[0].primitives[0].attributes.NORMAL).map((r) => r.map((c) => Math.round(c * 1e6) / 1e6 + 0)))'
+}
+
+# No fault in a file, and it stays when it is converted again.
+sound() {
+	local counts existing
+	counts=$(node "$ROOT/tests/support/frames.mjs" "$1") || wrong "$1 cannot be read"
+	[[ $counts =~ ^corners\ [1-9] && ! $counts =~ \ (degree|lean|unit|w|mixed|wrong)\ [1-9] ]] || wrong "$1: $counts"
+	for existing in keep repair; do
+		"$NMTAN" -q --existing=$existing --only=all "$1" again.glb >/dev/null 2>&1
+		same "$1" again.glb
+	done
+}
+
+# How often a code was found by the conversion.
+found() {
+	python3 -c 'import json, sys
+print(sum(i["count"] for f in json.load(open(sys.argv[1]))["files"] for i in f["findings"] if i["code"] == sys.argv[2]))' r.json "$1"
+}
+
+normal_obj() {
+	printf '%s\n' 'v 0 0 0' 'v 1 0 1' 'v 0 1 0' 'vt 0 0' 'vt 1 0' 'vt 0 1' "vn $1" 'f 1/1/1 2/2/1 3/3/1'
+}
+
+# dP/du = (1, 0, 1). Across (0, 0, 1) that is (1, 0, 0), for a normal of any length.
+scene "tangents lie across the unit normal"
+for normal in '0 0 1' '0 0 .5' '0 0 1.1'; do
+	normal_obj "$normal" >n.obj
+	run --report=r.json n.obj n.glb
+	exits 0
+	is "$(tangents n.glb)" '[[1,0,0,1],[1,0,0,1],[1,0,0,1]]'
+	is "$(normals n.glb)" '[[0,0,1],[0,0,1],[0,0,1]]'
+	is "$(found NORMALS_SCALED)" "$([ "$normal" = '0 0 1' ] && echo 0 || echo 3)"
+	sound n.glb
+done
+
+# The face's own is (1, 0, 1) x (0, 1, 0) = (-1, 0, 1), and dP/du lies across it.
+scene "a zero normal is made anew"
+normal_obj '0 0 0' >n.obj
+run --report=r.json n.obj n.glb
+exits 0
+is "$(tangents n.glb)" '[[0.707107,0,0.707107,1],[0.707107,0,0.707107,1],[0.707107,0,0.707107,1]]'
+is "$(normals n.glb)" '[[-0.707107,0,0.707107],[-0.707107,0,0.707107],[-0.707107,0,0.707107]]'
+is "$(found NORMALS_MADE)" 3
+sound n.glb
+
+scene "so it is in a glTF, whose normals stay"
+for length in 1 0.5 1.1; do
+	triangle '[0,0,0, 1,0,1, 0,1,0]' "[0,0,$length, 0,0,$length, 0,0,$length]" '[0,1, 1,1, 0,0]' >n.gltf
+	run --report=r.json n.gltf n.glb
+	exits 0
+	is "$(tangents n.glb)" '[[1,0,0,1],[1,0,0,1],[1,0,0,1]]'
+	is "$(normals n.glb)" "[[0,0,$length],[0,0,$length],[0,0,$length]]"
+	is "$(found NORMALS_SCALED)" "$([ $length = 1 ] && echo 0 || echo 3)"
+	sound n.glb
+done
+triangle '[0,0,0, 1,0,1, 0,1,0]' '[0,0,0, 0,0,0, 0,0,0]' '[0,1, 1,1, 0,0]' >n.gltf
+run --report=r.json n.gltf n.glb
+exits 0
+is "$(tangents n.glb)" '[[0.707107,0,0.707107,1],[0.707107,0,0.707107,1],[0.707107,0,0.707107,1]]'
+is "$(normals n.glb)" '[[0,0,0],[0,0,0],[0,0,0]]'
+is "$(found NORMALS_MADE)" 3
+sound n.glb
+
+# Its UV determinant, v up, is (.35)(-.9) - (1.05)(-.3): 0 in float, exactly that of the floats next to these. MikkTSpace
+# leaves (1, 0, 0), which leans by .8.
+scene "what MikkTSpace does not compute is repaired, and so is its mirrored twin"
+triangle '[0,0,0, -0.6,0.8,0, 0,0,1]' '[0.8,0.6,0, 0.8,0.6,0, 0.8,0.6,0]' '[0,0, 1.05,0.9, 0.35,0.3]' >plain.gltf
+triangle '[0,0,0, -0.6,0.8,0, 0,0,1]' '[0.8,0.6,0, 0.8,0.6,0, 0.8,0.6,0]' '[0,0, 0.35,0.3, 1.05,0.9]' >twin.gltf
+triangle '[0,0,0, -0.6,0.8,0, 0,0,1]' '[0.8,0.6,0, 0.8,0.6,0, 0.8,0.6,0]' '[0,0, 0,0, 0,0]' >none.gltf
+for file in plain twin none; do
+	run --report=r.json $file.gltf $file.glb
+	exits 0
+	is "$(found TAN_REPAIRED)" 3
+	sound $file.glb
+done
+
+done_testing
