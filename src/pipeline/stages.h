@@ -23,6 +23,10 @@ nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error 
 /* Says of every mesh with quads where they are cut (face_diagonals). For writers of triangles. */
 nt_status nt_stage_quads(nt_scene *scene, nt_error *error);
 
+/* folded_quads.c, for tangents.c. Cuts the folded quads of a mesh with corner_tangents in two and gives each half its
+ * own sign; the mesh gets new faces and indices, and cut_arrays to free. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads);
+
 /* unit_normals.c, for normals.c. Vertices whose normal has no direction lack it. Both return NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_mark_directionless(nt_scene *scene, nt_mesh *mesh);
 

@@ -25,6 +25,7 @@ typedef struct tangent_job {
 	nt_scene *scene;
 	const nt_settings *settings;
 	bool round_trip;    /* the output stores 1 - v */
+	bool triangulates;  /* the output has triangles where the input has quads */
 	bool forgets;       /* the input is not read again after the solve */
 	nt_mesh **meshes;   /* the ones to solve */
 	nt_status *statuses;
@@ -149,6 +150,18 @@ static nt_status split_morphs(nt_mesh *mesh, const nmtan_mesh *view, const nmtan
 	return status;
 }
 
+/* From tangents of corners to vertices. */
+static nt_status split_corners(nt_mesh *mesh, const nmtan_options *options, nmtan_split_output *output)
+{
+	nmtan_stored_uv stored;
+	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
+	const nt_status status = make_split(mesh, &mesh->split, output);
+	if (status)
+		return status;
+	return mesh->morph_count ? split_morphs(mesh, &view, options, output)
+				 : nt_status_of(nmtan_split(&view, mesh->corner_tangents, options, output));
+}
+
 /* The input's pages that a solve is done with: glTF that is made from glTF is copied by the kernel. */
 static void forget_part(void *user, nt_mesh_part part)
 {
@@ -175,17 +188,17 @@ static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned thre
 	if (job->settings->check)
 		return solve_corners(mesh, &view, &options, &mesh->corner_tangents, &mesh->counts);
 
-	nmtan_split_output output;
-	nt_status status = make_split(mesh, &mesh->split, &output);
-	if (!status && (mesh->decision == NT_DECISION_REPAIR || mesh->morph_count)) {
+	nmtan_split_output output = {.source_count = 0};
+	nt_status status;
+	if (mesh->decision == NT_DECISION_REPAIR || mesh->morph_count || (job->triangulates && mesh->face_sizes)) {
 		status = solve_corners(mesh, &view, &options, &mesh->corner_tangents, &mesh->counts);
+		if (!status && job->triangulates && mesh->counts.folded_quads && options.repair == NMTAN_REPAIR_ON)
+			status = nt_cut_folded_quads(mesh, stored.v_offset, threads);
 		if (!status)
-			status = mesh->morph_count ?
-				split_morphs(mesh, &view, &options, &output) :
-				nt_status_of(nmtan_split(&view, mesh->corner_tangents, &options, &output));
+			status = split_corners(mesh, &options, &output);
 		free(mesh->corner_tangents);
 		mesh->corner_tangents = NULL;
-	} else if (!status) {
+	} else if (!(status = make_split(mesh, &mesh->split, &output))) {
 		mesh_bytes bytes = {job->scene, mesh};
 		const nt_vertex_request request = {.lazy_indices = true,
 			.passed = job->forgets ? forget_part : NULL, .user = &bytes};
@@ -242,6 +255,7 @@ static bool keep_results(nt_scene *scene, nt_mesh *mesh)
 	for (size_t m = 0; m < mesh->morph_count; m++)
 		kept &= nt_arena_adopt(&scene->arena, mesh->morphs[m].vertex_tangents);
 	/* all of them are tried: what is not kept is freed */
+	kept &= nt_arena_adopt(&scene->arena, mesh->cut_arrays);
 	kept &= nt_arena_adopt(&scene->arena, mesh->corner_tangents);
 	kept &= nt_arena_adopt(&scene->arena, mesh->split.indices);
 	kept &= nt_arena_adopt(&scene->arena, mesh->split.sources);
@@ -333,6 +347,7 @@ nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_for
 {
 	tangent_job job = {.scene = scene, .settings = settings,
 		.round_trip = output != NT_FORMAT_UNKNOWN && is_gltf(scene->format) != is_gltf(output),
+		.triangulates = is_gltf(output),
 		.forgets = scene->forget && is_gltf(output) && !settings->report && !settings->verify,
 		.meshes = nt_alloc(scene->mesh_count, sizeof *job.meshes),
 		.statuses = nt_calloc(scene->mesh_count, sizeof *job.statuses),

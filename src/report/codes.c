@@ -128,8 +128,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a triangle with UVs (1000,0), (1001,0), (1000,0.0001)"),
 	ROW(UV_FOLDED_QUAD, WARNING,
 		"{count} {quad has|quads have} halves that are wound differently in UV space",
-		"A quad whose outline crosses itself or is folded in UV space. Both halves take the sign of "
-		"the larger one, so the smaller one is lit from the wrong side.",
+		"A quad whose outline crosses itself or is folded in UV space. Written as two triangles, in a glTF, each "
+		"gets its own sign and vertices of its own. PLY keeps the quad: both halves take the sign of the larger "
+		"one, and the smaller one is lit from the wrong side.",
 		"Straighten the quad in the UV editor, or triangulate it.",
 		"a quad with UVs (0,0), (1,1), (1,0), (0,1): a bowtie"),
 	ROW(UV_ROUNDED_AWAY, INFO,

@@ -145,6 +145,7 @@ typedef struct nt_mesh {
 	                             serves them with and without it; counted once for each target */
 
 	/* results */
+	void *cut_arrays;         /* the block of indices and face arrays, where folded quads were cut; NULL: none were */
 	float *corner_tangents;   /* [corner_count][4]; NULL until solved or after split */
 	nmtan_counts counts;
 	nt_split split;

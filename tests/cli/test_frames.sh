@@ -89,4 +89,33 @@ for file in plain twin none; do
 	sound $file.glb
 done
 
+# Cut along its shorter UV diagonal, 1-3, the first quad has halves with determinants .5 and -.25. The second half has
+# d1 = (0, 1, 0) and d2 = (-1, 1, 0) over (0, 1) and (.25, .5): dP/du = (.5 d1 - d2) / -.25 = (-4, 2, 0).
+scene "each half of a folded quad has its own sign and its own vertices in a glTF"
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 1 1 0' 'v 0 1 0' 'v 2 0 0' 'v 2 1 0' 'vn 0 0 1' \
+	'vt 0 0' 'vt 1 0' 'vt 1 1' 'vt 1.25 .5' 'vt 2 0' 'vt 2 1' 'f 1/1/1 2/2/1 3/3/1 4/4/1' 'f 2/2/1 5/5/1 6/6/1 3/3/1' >q.obj
+run --report=r.json q.obj q.glb
+exits 0
+sound q.glb
+is "$(found UV_FOLDED_QUAD)" 1
+# T of the corners of triangles FIRST to END: of those at (x, y), as x,y:T
+corners='(first, end) => { const p = g.meshes[0].primitives[0], P = rows(p.attributes.POSITION), T = rows(p.attributes.TANGENT);
+	return rows(p.indices).flat().slice(3 * first, 3 * end).map((v) => `${P[v].slice(0, 2)}:${T[v].map((c) => Math.round(c * 1e6) / 1e6 + 0)}`).sort().join(" "); }'
+is "$(gltf q.glb "($corners)(1, 2)")" \
+	'0,1:-0.894427,0.447214,0,-1 1,0:-0.894427,0.447214,0,-1 1,1:-0.894427,0.447214,0,-1'
+is "$(gltf q.glb 'g.accessors[g.meshes[0].primitives[0].attributes.POSITION].count')" 9
+# everything else has the bytes that the quads have
+run --repair=off q.obj raw.glb
+for range in '0, 1' '2, 4'; do
+	is "$(gltf q.glb "($corners)($range)")" "$(gltf raw.glb "($corners)($range)")"
+done
+
+scene "in a PLY it stays a quad with one sign"
+printf '%s\n' 'v 0 0 0' 'v 1 0 0' 'v 1 1 0' 'v 0 1 0' 'vn 0 0 1' 'vt 0 0' 'vt 1 0' 'vt 1 1' 'vt 1.25 .5' \
+	'f 1/1/1 2/2/1 3/3/1 4/4/1' >q.obj
+run --report=r.json q.obj q.ply
+exits 0
+is "$(found UV_FOLDED_QUAD)" 1
+is "$(grep -ac 'element vertex 4' q.ply) $(grep -ac 'element face 1' q.ply)" '1 1'
+
 done_testing
