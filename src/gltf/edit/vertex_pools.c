@@ -158,8 +158,8 @@ nt_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, cons
 
 /* ---- groups of a component ---- */
 
-/* The three accessors that decide a tangent; meshes with the same ones form a group, if texture
- * transforms are the same too. */
+/* What decides a tangent: meshes with the same three accessors form a group, if morph targets and texture transforms are
+ * the same too, which is looked at where their hashes agree. */
 typedef struct group_key {
 	uint32_t positions, normals, texcoords;
 	uint32_t targets;    /* a hash of what the morph targets move */
@@ -196,6 +196,21 @@ static group_key key_of(const nt_gltf *document, const nt_gltf_sharing *sharing,
 		hash, directions};
 }
 
+/* Whether the morph targets of two meshes move the same accessors. */
+static bool same_targets(const nt_gltf *document, const nt_gltf_sharing *sharing, const nt_mesh *a, const nt_mesh *b)
+{
+	const nt_json_value *x = nt_json_find(nt_gltf_primitive_of(document, a), "targets");
+	const nt_json_value *y = nt_json_find(nt_gltf_primitive_of(document, b), "targets");
+	if (a->morph_count != b->morph_count || nt_json_count(x) != nt_json_count(y))
+		return false;
+	static const char *const names[] = {"POSITION", "NORMAL"};
+	for (size_t i = 0; i < 2 * nt_json_count(x); i++)
+		if (canonical_of(sharing, nt_json_at(x, i / 2), names[i % 2]) !=
+			canonical_of(sharing, nt_json_at(y, i / 2), names[i % 2]))
+			return false;
+	return true;
+}
+
 /* Whether texture transforms do the same to two meshes over the same texture coordinates. Where they do not, hardly a
  * tangent agrees: a TANGENT for each is less than a copy of every row. */
 static bool same_directions(const nt_mesh *a, const nt_mesh *b)
@@ -222,15 +237,16 @@ static size_t slot_of(const group_key *key, size_t table_size)
 }
 
 /* Appends a member to its group, which may be a new one. */
-static void join_group(grouping *g, nt_gltf_rows *rows, const nt_scene *scene, const uint32_t *members,
-	uint32_t member, const group_key *key)
+static void join_group(grouping *g, nt_gltf_rows *rows, const nt_gltf_sharing *sharing, const nt_scene *scene,
+	const uint32_t *members, uint32_t member, const group_key *key)
 {
 	const nt_mesh *mesh = &scene->meshes[members[member]];
 	size_t slot = slot_of(key, g->table_size);
 	for (; g->table[slot] != NT_NONE; slot = (slot + 1) & (g->table_size - 1)) {
 		const uint32_t group = g->table[slot];
-		if (memcmp(&g->keys[group], key, sizeof *key) != 0 ||
-			!same_directions(&scene->meshes[members[rows->group_first[group]]], mesh))
+		const nt_mesh *first = &scene->meshes[members[rows->group_first[group]]];
+		if (memcmp(&g->keys[group], key, sizeof *key) != 0 || !same_directions(first, mesh) ||
+			!same_targets(scene->source, sharing, first, mesh))
 			continue;
 		rows->next_of[g->last[group]] = member;
 		g->last[group] = member;
@@ -263,7 +279,7 @@ bool nt_gltf_find_groups(nt_gltf_rows *rows, const nt_gltf *document, const nt_s
 		if (!nt_gltf_is_solved(mesh))
 			continue;
 		const group_key key = key_of(document, sharing, mesh);
-		join_group(&g, rows, scene, members, i, &key);
+		join_group(&g, rows, sharing, scene, members, i, &key);
 	}
 	free(g.keys);
 	free(g.last);
