@@ -80,7 +80,7 @@ static nt_status add_rows_view(nt_gltf_growing *g, const nt_gltf_item *from, boo
 	if (status)
 		return status;
 	const size_t size = g->component->rows.new_count * stride;
-	return nt_layout_add_view(&g->patcher->layout, g->component->buffer, rows, size,
+	return nt_edits_add_view(&g->patcher->edits, g->component->buffer, rows, size,
 		NT_GLTF_ARRAY_BUFFER, stride != element ? stride : 0, view, g->patcher->error);
 }
 
@@ -228,7 +228,7 @@ static nt_status insert_rows(nt_gltf_growing *g, const block *b, const unsigned 
 		memcpy(out + i * b->stride + gap,
 			rows + (size_t)nt_gltf_row_source(g, old_count + i) * b->stride, b->width);
 	}
-	return nt_layout_edit(&p->layout, b->buffer, b->end, 0, out, added * b->stride, p->error);
+	return nt_edits_replace(&p->edits, b->buffer, b->end, 0, out, added * b->stride, p->error);
 }
 
 /* Replaces the whole block: some of its values are new. */
@@ -253,14 +253,14 @@ static nt_status replace_rows(nt_gltf_growing *g, const block *b, const unsigned
 				override->width);
 		}
 	}
-	return nt_layout_edit(&p->layout, b->buffer, b->begin, old_size, out, size, p->error);
+	return nt_edits_replace(&p->edits, b->buffer, b->begin, old_size, out, size, p->error);
 }
 
 static nt_status grow_block(nt_gltf_growing *g, const block *b, uint64_t previous_end)
 {
 	nt_gltf_patcher *p = g->patcher;
 	nt_status status = NT_OK;
-	if (b->begin < previous_end || nt_byte_users_foreign(&p->layout.users, b->buffer, b->begin, b->end,
+	if (b->begin < previous_end || nt_byte_users_foreign(&p->edits.users, b->buffer, b->begin, b->end,
 					       p->own, g->component->number + 1)) {
 		for (size_t i = 0; !status && i < b->count; i++)
 			status = move_away(g, &b->items[i]);

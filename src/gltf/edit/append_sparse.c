@@ -25,7 +25,7 @@ static nt_status move_part(nt_gltf_growing *g, const part *moved, nt_json_value 
 {
 	nt_gltf_patcher *p = g->patcher;
 	uint32_t view;
-	const nt_status status = nt_layout_add_view(&p->layout, g->component->buffer, moved->bytes,
+	const nt_status status = nt_edits_add_view(&p->edits, g->component->buffer, moved->bytes,
 		moved->size, 0, 0, &view, p->error);
 	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "bufferView"), view);
 	nt_json_remove(p->json, json, "byteOffset");
@@ -64,7 +64,7 @@ static nt_status grow_part(nt_gltf_growing *g, const nt_gltf_item *from, const p
 	bool same, some;
 	find_edited(g, view.buffer, begin, end, &same, &some);
 	if (some || (!grown->extended && begin % grown->width) ||
-		nt_byte_users_foreign(&p->layout.users, view.buffer, begin, end, p->own,
+		nt_byte_users_foreign(&p->edits.users, view.buffer, begin, end, p->own,
 			g->component->number + 1))
 		return move_part(g, grown, json);
 	if (same)
@@ -72,9 +72,9 @@ static nt_status grow_part(nt_gltf_growing *g, const nt_gltf_item *from, const p
 	if (!nt_gltf_note_edit(g, view.buffer, begin, end))
 		return nt_fail_memory(p->error);
 	if (!grown->extended)
-		return nt_layout_edit(&p->layout, view.buffer, begin, grown->old_size, grown->bytes,
+		return nt_edits_replace(&p->edits, view.buffer, begin, grown->old_size, grown->bytes,
 			grown->size, p->error);
-	return nt_layout_edit(&p->layout, view.buffer, end, 0, grown->bytes + grown->old_size,
+	return nt_edits_replace(&p->edits, view.buffer, end, 0, grown->bytes + grown->old_size,
 		grown->size - (size_t)grown->old_size, p->error);
 }
 

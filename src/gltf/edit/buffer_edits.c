@@ -17,70 +17,69 @@
  * (EXT_structural_metadata does). */
 enum { CAREFUL_ALIGNMENT = 8 };
 
-nt_gltf_buffer_layout *nt_layout_plan_of(nt_gltf_layout *layout, uint32_t buffer)
+nt_edited_buffer *nt_edits_of(nt_buffer_edits *edits, uint32_t buffer)
 {
 	if (buffer < NT_GLTF_VIRTUAL)
-		return &layout->buffers[buffer];
+		return &edits->buffers[buffer];
 	/* views may be decompressed at any time; there is room for all of them */
 	const uint32_t number = buffer - NT_GLTF_VIRTUAL;
-	layout->virtuals[number].old_length = layout->document->virtuals[number].length;
-	return &layout->virtuals[number];
+	edits->virtuals[number].old_length = edits->document->virtuals[number].length;
+	return &edits->virtuals[number];
 }
 
-nt_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_error *error)
+nt_status nt_edits_create(nt_buffer_edits *edits, nt_gltf *document, nt_error *error)
 {
-	*layout = (nt_gltf_layout){.document = document, .alignment = NT_LAYOUT_ALIGNMENT};
-	layout->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
-	layout->buffer_count = document->buffer_count;
-	layout->buffers = nt_calloc(document->buffer_count + 1, sizeof *layout->buffers);
-	layout->virtuals = nt_calloc(layout->view_count, sizeof *layout->virtuals);
-	layout->vacant = nt_calloc(layout->view_count, sizeof *layout->vacant);
-	layout->vacancies = nt_alloc(layout->view_count, sizeof *layout->vacancies);
-	if (!layout->buffers || !layout->virtuals || !layout->vacant || !layout->vacancies ||
-		!nt_byte_users_find(&layout->users, document)) {
-		nt_layout_free(layout);
+	*edits = (nt_buffer_edits){.document = document, .alignment = NT_EDITS_ALIGNMENT};
+	edits->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
+	edits->buffer_count = document->buffer_count;
+	edits->buffers = nt_calloc(document->buffer_count + 1, sizeof *edits->buffers);
+	edits->virtuals = nt_calloc(edits->view_count, sizeof *edits->virtuals);
+	edits->is_free = nt_calloc(edits->view_count, sizeof *edits->is_free);
+	edits->free_views = nt_alloc(edits->view_count, sizeof *edits->free_views);
+	if (!edits->buffers || !edits->virtuals || !edits->is_free || !edits->free_views ||
+		!nt_byte_users_find(&edits->users, document)) {
+		nt_edits_free(edits);
 		return nt_fail_memory(error);
 	}
-	if (layout->users.unknown)
-		layout->alignment = CAREFUL_ALIGNMENT;
+	if (edits->users.unknown)
+		edits->alignment = CAREFUL_ALIGNMENT;
 	for (size_t i = 0; i < document->buffer_count; i++) {
 		nt_gltf_buffer *buffer;
 		if (nt_gltf_describe_buffer(document, i, "", &buffer, NULL) == NT_OK)
-			layout->buffers[i].old_length = buffer->length;
-		layout->buffers[i].new_length = layout->buffers[i].old_length;
+			edits->buffers[i].old_length = buffer->length;
 	}
 	return NT_OK;
 }
 
-void nt_layout_free(nt_gltf_layout *layout)
+void nt_edits_free(nt_buffer_edits *edits)
 {
-	for (size_t i = 0; layout->buffers && i < layout->buffer_count; i++) {
-		free(layout->buffers[i].edits);
-		free(layout->buffers[i].additions);
+	for (size_t i = 0; edits->buffers && i < edits->buffer_count; i++) {
+		free(edits->buffers[i].edits);
+		free(edits->buffers[i].additions);
 	}
-	for (size_t i = 0; layout->virtuals && i < layout->view_count; i++) {
-		free(layout->virtuals[i].edits);
-		free(layout->virtuals[i].additions);
+	for (size_t i = 0; edits->virtuals && i < edits->view_count; i++) {
+		free(edits->virtuals[i].edits);
+		free(edits->virtuals[i].additions);
 	}
-	free(layout->vacant);
-	free(layout->vacancies);
-	free(layout->virtuals);
-	free(layout->buffers);
-	free(layout->users.list);
-	nt_arena_free(&layout->arena);
-	*layout = (nt_gltf_layout){0};
+	free(edits->is_free);
+	free(edits->free_views);
+	free(edits->virtuals);
+	free(edits->buffers);
+	free(edits->users.list);
+	nt_arena_free(&edits->arena);
+	*edits = (nt_buffer_edits){0};
 }
 
-nt_status nt_layout_edit(nt_gltf_layout *layout, uint32_t index, uint64_t at, uint64_t removed,
+nt_status nt_edits_replace(nt_buffer_edits *edits, uint32_t index, uint64_t at, uint64_t removed,
 	const unsigned char *bytes, size_t size, nt_error *error)
 {
-	nt_gltf_buffer_layout *buffer = nt_layout_plan_of(layout, index);
+	nt_edited_buffer *buffer = nt_edits_of(edits, index);
 	/* What is behind keeps its alignment. */
 	const size_t excess =
-		at + removed < buffer->old_length ? (size_t)((size - removed) % layout->alignment) : 0;
+		at + removed < buffer->old_length ? (size_t)((size - removed) % edits->alignment) : 0;
 	if (excess) {
-		const size_t padded = size + layout->alignment - excess;
-		unsigned char *copy = nt_arena_alloc(&layout->arena, padded, 1);
+		const size_t padded = size + edits->alignment - excess;
+		unsigned char *copy = nt_arena_alloc(&edits->arena, padded, 1);
 		if (!copy)
 			return nt_fail_memory(error);
 		memcpy(copy, bytes, size);
@@ -91,44 +90,42 @@ nt_status nt_layout_edit(nt_gltf_layout *layout, uint32_t index, uint64_t at, ui
 	if (!nt_grow((void **)&buffer->edits, &buffer->edit_capacity, buffer->edit_count + 1,
 		sizeof *buffer->edits))
 		return nt_fail_memory(error);
-	buffer->edits[buffer->edit_count++] = (nt_gltf_edit){at, removed, bytes, size, 0};
-	buffer->touched = true;
+	buffer->edits[buffer->edit_count++] = (nt_buffer_edit){at, removed, bytes, size};
 	return NT_OK;
 }
 
-nt_status nt_layout_add_bytes(nt_gltf_layout *layout, uint32_t index, uint32_t view, const void *bytes,
+nt_status nt_edits_add_bytes(nt_buffer_edits *edits, uint32_t index, uint32_t view, const void *bytes,
 	size_t size, nt_error *error)
 {
-	nt_gltf_buffer_layout *buffer = &layout->buffers[index];
+	nt_edited_buffer *buffer = &edits->buffers[index];
 	if (!nt_grow((void **)&buffer->additions, &buffer->addition_capacity,
 		buffer->addition_count + 1, sizeof *buffer->additions))
 		return nt_fail_memory(error);
-	buffer->additions[buffer->addition_count++] = (nt_gltf_addition){view, 0, bytes, size};
-	buffer->touched = true;
+	buffer->additions[buffer->addition_count++] = (nt_buffer_addition){view, bytes, size};
 	return NT_OK;
 }
 
-/* The object of a new view: of a vacant one, with what else it says, or appended. */
-static nt_json_value *take_view(nt_gltf_layout *layout, uint32_t *view)
+/* The object of a new view: of a free one, with what else it says, or appended. */
+static nt_json_value *take_view(nt_buffer_edits *edits, uint32_t *view)
 {
-	nt_json *json = layout->document->json;
+	nt_json *json = edits->document->json;
 	nt_json_value *views = nt_json_put(json, nt_json_root(json), "bufferViews");
-	if (!layout->vacancy_count) {
+	if (!edits->free_count) {
 		*view = (uint32_t)nt_json_count(views);
 		return nt_json_append(json, views);
 	}
-	*view = layout->vacancies[--layout->vacancy_count];
+	*view = edits->free_views[--edits->free_count];
 	nt_json_value *object = nt_json_at(views, *view);
 	nt_json_remove(json, object, "byteStride");
 	nt_json_remove(json, object, "target");
 	return object;
 }
 
-nt_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t index, const void *bytes, size_t size,
+nt_status nt_edits_add_view(nt_buffer_edits *edits, uint32_t index, const void *bytes, size_t size,
 	uint32_t target, uint32_t stride, uint32_t *view, nt_error *error)
 {
-	nt_json *json = layout->document->json;
-	nt_json_value *object = take_view(layout, view);
+	nt_json *json = edits->document->json;
+	nt_json_value *object = take_view(edits, view);
 	nt_json_set_uint64(json, nt_json_put(json, object, "buffer"), index);
 	nt_json_set_uint64(json, nt_json_put(json, object, "byteOffset"), 0);
 	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), size);
@@ -136,7 +133,7 @@ nt_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t index, const void 
 		nt_json_set_uint64(json, nt_json_put(json, object, "byteStride"), stride);
 	if (target)
 		nt_json_set_uint64(json, nt_json_put(json, object, "target"), target);
-	return nt_layout_add_bytes(layout, index, *view, bytes, size, error);
+	return nt_edits_add_bytes(edits, index, *view, bytes, size, error);
 }
 
 /* Whether a buffer has bytes that can be extended. */
@@ -146,14 +143,14 @@ static bool can_extend(const nt_gltf *document, uint32_t index)
 		document->buffers[index].home != NT_GLTF_HOME_NOWHERE;
 }
 
-nt_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint32_t *buffer,
+nt_status nt_edits_choose_buffer(nt_buffer_edits *edits, uint32_t near, uint32_t *buffer,
 	nt_error *error)
 {
-	const nt_gltf *document = layout->document;
+	const nt_gltf *document = edits->document;
 	*buffer = near;
 	if (near != NT_NONE && can_extend(document, near))
 		return NT_OK;
-	if (layout->buffer_count > document->buffer_count) {
+	if (edits->buffer_count > document->buffer_count) {
 		*buffer = (uint32_t)document->buffer_count;
 		return NT_OK;
 	}
@@ -162,52 +159,52 @@ nt_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint32_
 			*buffer = i;
 			return NT_OK;
 		}
-	/* layout->buffers has room for one more */
+	/* edits->buffers has room for one more */
 	nt_json *json = document->json;
 	nt_json_value *buffers = nt_json_put(json, nt_json_root(json), "buffers");
 	*buffer = (uint32_t)nt_json_count(buffers);
 	nt_json_value *object = nt_json_append(json, buffers);
 	nt_json_set_uint64(json, nt_json_put(json, object, "byteLength"), 0);
-	layout->buffer_count++;
+	edits->buffer_count++;
 	return nt_json_failed(json) ? nt_fail_memory(error) : NT_OK;
 }
 
 /* ---- views whose content is gone ---- */
 
-static bool is_plain(const nt_gltf_layout *layout, uint32_t index, nt_gltf_view *view)
+static bool is_plain(const nt_buffer_edits *edits, uint32_t index, nt_gltf_view *view)
 {
-	const nt_json_value *json = nt_json_at(nt_gltf_root_member(layout->document, "bufferViews"), index);
-	return nt_gltf_get_view(layout->document, index, "", view, NULL) == NT_OK &&
+	const nt_json_value *json = nt_json_at(nt_gltf_root_member(edits->document, "bufferViews"), index);
+	return nt_gltf_get_view(edits->document, index, "", view, NULL) == NT_OK &&
 		view->buffer < NT_GLTF_VIRTUAL && !nt_json_find(json, "extensions");
 }
 
-nt_status nt_layout_vacate_view(nt_gltf_layout *layout, uint32_t index, size_t users, nt_error *error)
+nt_status nt_edits_release_view(nt_buffer_edits *edits, uint32_t index, size_t users, nt_error *error)
 {
 	nt_gltf_view view;
-	if (!is_plain(layout, index, &view) || layout->vacant[index])
+	if (!is_plain(edits, index, &view) || edits->is_free[index])
 		return NT_OK;
-	const uint64_t begin = view.offset, end = begin + view.length, alignment = layout->alignment;
-	if (nt_byte_users_count(&layout->users, view.buffer, begin, end) != users)
+	const uint64_t begin = view.offset, end = begin + view.length, alignment = edits->alignment;
+	if (nt_byte_users_count(&edits->users, view.buffer, begin, end) != users)
 		return NT_OK;
 	/* padding behind it has no purpose any more */
 	const uint64_t padded = begin + (view.length + alignment - 1) / alignment * alignment;
-	const bool pads = padded <= layout->buffers[view.buffer].old_length &&
-		nt_byte_users_count(&layout->users, view.buffer, end, padded) == 0;
-	layout->vacant[index] = true;
-	layout->vacancies[layout->vacancy_count++] = index;
-	return nt_layout_edit(layout, view.buffer, begin, (pads ? padded : end) - begin,
+	const bool pads = padded <= edits->buffers[view.buffer].old_length &&
+		nt_byte_users_count(&edits->users, view.buffer, end, padded) == 0;
+	edits->is_free[index] = true;
+	edits->free_views[edits->free_count++] = index;
+	return nt_edits_replace(edits, view.buffer, begin, (pads ? padded : end) - begin,
 		(const unsigned char *)"", 0, error);
 }
 
-nt_status nt_layout_vacate(nt_gltf_layout *layout, uint32_t index, uint64_t offset, uint64_t length,
+nt_status nt_edits_release(nt_buffer_edits *edits, uint32_t index, uint64_t offset, uint64_t length,
 	nt_error *error)
 {
 	nt_gltf_view view;
-	const nt_status status = nt_layout_vacate_view(layout, index, 1, error);
-	if (status || layout->vacant[index] || !is_plain(layout, index, &view))
+	const nt_status status = nt_edits_release_view(edits, index, 1, error);
+	if (status || edits->is_free[index] || !is_plain(edits, index, &view))
 		return status;
 	const uint64_t begin = view.offset + offset;
-	if (length == view.length || nt_byte_users_count(&layout->users, view.buffer, begin, begin + length) != 1)
+	if (length == view.length || nt_byte_users_count(&edits->users, view.buffer, begin, begin + length) != 1)
 		return NT_OK;
-	return nt_layout_edit(layout, view.buffer, begin, length, (const unsigned char *)"", 0, error);
+	return nt_edits_replace(edits, view.buffer, begin, length, (const unsigned char *)"", 0, error);
 }

@@ -10,84 +10,85 @@
 #include "gltf/edit/byte_users.h"
 
 /* What glTF itself has in buffers needs no more. */
-enum { NT_LAYOUT_ALIGNMENT = 4 };
+enum { NT_EDITS_ALIGNMENT = 4 };
 
 /* New bytes at a place of a source buffer. */
-typedef struct nt_gltf_edit {
+typedef struct nt_buffer_edit {
 	uint64_t at;      /* byte of the source buffer */
 	uint64_t removed; /* bytes from there on that go */
 	const unsigned char *bytes;
 	size_t size;
-	int64_t shift;    /* of everything behind this edit: set by nt_layout_finish() (relocate.c) */
-} nt_gltf_edit;
+} nt_buffer_edit;
 
 /* A new view behind the end of a buffer. */
-typedef struct nt_gltf_addition {
-	uint32_t view;   /* NT_NONE: of no view */
-	uint64_t offset; /* in the new buffer: set by nt_layout_finish() */
+typedef struct nt_buffer_addition {
+	uint32_t view; /* NT_NONE: of no view */
 	const unsigned char *bytes;
 	size_t size;
-} nt_gltf_addition;
+} nt_buffer_addition;
 
-typedef struct nt_gltf_buffer_layout {
-	nt_gltf_edit *edits;
+typedef struct nt_edited_buffer {
+	nt_buffer_edit *edits;
 	size_t edit_count, edit_capacity;
-	nt_gltf_addition *additions;
+	nt_buffer_addition *additions;
 	size_t addition_count, addition_capacity;
 	uint64_t old_length; /* 0 for a new buffer */
-	uint64_t new_length; /* set by nt_layout_finish() */
-	bool touched;
-} nt_gltf_buffer_layout;
+} nt_edited_buffer;
 
-typedef struct nt_gltf_layout {
+static inline bool nt_is_edited(const nt_edited_buffer *buffer)
+{
+	return buffer->edit_count || buffer->addition_count;
+}
+
+typedef struct nt_buffer_edits {
 	nt_gltf *document;
 	nt_arena arena;                 /* owns the new bytes */
-	nt_gltf_buffer_layout *buffers; /* [buffer_count]: the document's, and at most one new one */
+	nt_edited_buffer *buffers; /* [buffer_count]: the document's, and at most one new one */
 	size_t buffer_count;
 	size_t view_count;              /* of the source */
-	bool *vacant;                   /* [view_count] what it held is gone: see nt_layout_vacate() */
-	uint32_t *vacancies;            /* [vacancy_count] those that nothing new has taken over */
-	size_t vacancy_count;
-	nt_gltf_buffer_layout *virtuals; /* [view_count] of decompressed views */
+	bool *is_free;              /* [view_count] what it held is gone: see nt_edits_release() */
+	uint32_t *free_views;       /* [free_count] those that nothing new has taken over */
+	size_t free_count;
+	nt_edited_buffer *virtuals; /* [view_count] of decompressed views */
 	nt_byte_users users;            /* of the source */
 	uint32_t alignment;             /* insertions are multiples of this */
-} nt_gltf_layout;
+} nt_buffer_edits;
 
 /* Starts with no changes. Faulty parts of the document that nothing needs are passed over. */
-nt_status nt_layout_create(nt_gltf_layout *layout, nt_gltf *document, nt_error *error);
-void nt_layout_free(nt_gltf_layout *layout);
+nt_status nt_edits_create(nt_buffer_edits *edits, nt_gltf *document, nt_error *error);
+void nt_edits_free(nt_buffer_edits *edits);
 
-/* Replaces `removed` bytes of a source buffer by others, which must live as long as the layout. The
- * difference is padded with zeros to the layout's alignment. Edits must not overlap. */
-nt_status nt_layout_edit(nt_gltf_layout *layout, uint32_t buffer, uint64_t at, uint64_t removed,
+/* Replaces `removed` bytes of a source buffer by others, which must live as long as the edits. The
+ * difference is padded with zeros to the edits's alignment. Edits must not overlap. */
+nt_status nt_edits_replace(nt_buffer_edits *edits, uint32_t buffer, uint64_t at, uint64_t removed,
 	const unsigned char *bytes, size_t size, nt_error *error);
 
 /*
  * Takes out a view to which so many things refer that will do so no more; nothing happens where anybody else
  * refers to its bytes, where it is compressed or has extensions. Views are never removed or renumbered: it
- * becomes vacant, and the next new view takes its number. If there is none it shares bytes with others, since a
+ * becomes free, and the next new view takes its number. If there is none it shares bytes with others, since a
  * view may not be empty.
  */
-nt_status nt_layout_vacate_view(nt_gltf_layout *layout, uint32_t view, size_t users, nt_error *error);
+nt_status nt_edits_release_view(nt_buffer_edits *edits, uint32_t view, size_t users, nt_error *error);
 
 /* The same for bytes of a view that one thing alone refers to; the view stays for what else is in it. */
-nt_status nt_layout_vacate(nt_gltf_layout *layout, uint32_t view, uint64_t offset, uint64_t length,
+nt_status nt_edits_release(nt_buffer_edits *edits, uint32_t view, uint64_t offset, uint64_t length,
 	nt_error *error);
 
 /* The changes of a buffer, a decompressed view's among them. */
-nt_gltf_buffer_layout *nt_layout_plan_of(nt_gltf_layout *layout, uint32_t buffer);
+nt_edited_buffer *nt_edits_of(nt_buffer_edits *edits, uint32_t buffer);
 
 /* Adds bytes behind the end of a buffer: of a view, whose byteOffset will be set, or NT_NONE. */
-nt_status nt_layout_add_bytes(nt_gltf_layout *layout, uint32_t buffer, uint32_t view, const void *bytes, size_t size,
+nt_status nt_edits_add_bytes(nt_buffer_edits *edits, uint32_t buffer, uint32_t view, const void *bytes, size_t size,
 	nt_error *error);
 
 /* Adds a view with these bytes behind the end of a buffer. target and stride: 0 for none. */
-nt_status nt_layout_add_view(nt_gltf_layout *layout, uint32_t buffer, const void *bytes, size_t size,
+nt_status nt_edits_add_view(nt_buffer_edits *edits, uint32_t buffer, const void *bytes, size_t size,
 	uint32_t target, uint32_t stride, uint32_t *view, nt_error *error);
 
 /* The buffer that takes new views of who uses source buffer `near` (NT_NONE: nobody in particular);
  * a new buffer where no other can. */
-nt_status nt_layout_choose_buffer(nt_gltf_layout *layout, uint32_t near, uint32_t *buffer,
+nt_status nt_edits_choose_buffer(nt_buffer_edits *edits, uint32_t near, uint32_t *buffer,
 	nt_error *error);
 
 #endif

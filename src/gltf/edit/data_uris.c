@@ -1,28 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Data URIs of a patched document, encoded while its text is written: in the text a mark stands where the data of
- * a buffer belongs. In the JSON, as it was before, a buffer took its size four times over: its bytes, their base64,
- * the string's copy, and the text.
+ * Data URIs of an edited document, encoded while its text is written: the JSON has their heads alone. In the JSON, as
+ * it was before, a buffer took its size four times over: its bytes, their base64, the string's copy, and the text.
  *
- * A string of the input may look like a mark. So the marks are counted in the text, and made anew with another
- * number where there are more of them than buffers. That number is a hash of the text: nobody can write a text with
- * many of those to come.
+ * Where a buffer's data belongs is found by making the text twice, once with a character in its place: where the
+ * texts differ.
  */
 #include "gltf/edit/data_uris.h"
 
-#include <stdio.h>
 #include <string.h>
-#include "base/hash_index.h"
-#include "gltf/edit/relocate.h"
 #include "file/uri.h"
 
-enum { MARK_BYTES = 32 };
 static const char plain_head[] = "data:application/octet-stream;base64,";
-
-static size_t make_mark(char mark[MARK_BYTES], uint64_t number, uint32_t buffer)
-{
-	return (size_t)snprintf(mark, MARK_BYTES, "<%016llx %u>", (unsigned long long)number, buffer);
-}
 
 /* The length of a data URI before its data; 0: it has none that could stay. */
 static size_t head_length(const char *uri, size_t length)
@@ -33,85 +22,68 @@ static size_t head_length(const char *uri, size_t length)
 	return head >= strlen(ending) && memcmp(uri + head - strlen(ending), ending, strlen(ending)) == 0 ? head : 0;
 }
 
-/* Puts the mark behind the head of the buffer's uri, in place of what is there. */
-static nt_status set_mark(nt_gltf_container *c, uint32_t buffer)
+/* Sets the data of the buffer's uri, and its head, where it has none. */
+static nt_status set_data(nt_gltf *document, uint32_t buffer, const char *data, nt_error *error)
 {
-	nt_json_value *json = nt_json_at(nt_gltf_root_member(c->document, "buffers"), buffer);
-	char mark[MARK_BYTES];
-	const size_t mark_length = make_mark(mark, c->mark_number, buffer);
+	nt_json *json = document->json;
+	nt_json_value *object = nt_json_at(nt_gltf_root_member(document, "buffers"), buffer);
 	size_t length = 0;
-	const char *uri = nt_json_get_string(nt_json_find(json, "uri"), &length);
+	const char *uri = nt_json_get_string(nt_json_find(object, "uri"), &length);
 	const size_t head = head_length(uri, length);
 	nt_buffer text = {0};
 	nt_buffer_append(&text, head ? uri : plain_head, head ? head : sizeof plain_head - 1);
-	nt_buffer_append(&text, mark, mark_length);
+	nt_buffer_text(&text, data);
 	if (!text.failed)
-		nt_json_set_string(c->json, nt_json_put(c->json, json, "uri"), text.data, text.size);
-	const nt_status status = text.failed ? nt_fail_memory(c->error) : NT_OK;
+		nt_json_set_string(json, nt_json_put(json, object, "uri"), text.data, text.size);
+	const nt_status status = text.failed ? nt_fail_memory(error) : NT_OK;
 	nt_buffer_free(&text);
 	return status;
 }
 
-nt_status nt_gltf_embed(nt_gltf_container *c, uint32_t buffer)
+nt_status nt_data_uris_add(nt_data_uris *uris, uint32_t buffer, nt_error *error)
 {
-	if (!c->embedded)
-		c->embedded = nt_arena_alloc(&c->arena, c->patcher->layout.buffer_count, sizeof *c->embedded);
-	if (!c->embedded)
-		return nt_fail_memory(c->error);
-	c->embedded[c->embedded_count++] = buffer;
-	return set_mark(c, buffer);
+	if (!nt_grow((void **)&uris->buffers, &uris->capacity, uris->count + 1, sizeof *uris->buffers))
+		return nt_fail_memory(error);
+	uris->buffers[uris->count++] = (nt_data_uri){.buffer = buffer};
+	return set_data(uris->relocated->document, buffer, "", error);
 }
 
-/* Whether each mark stands in the text once. */
-static bool marks_are_clear(const nt_gltf_container *c, const nt_buffer *text)
+nt_status nt_data_uris_text(nt_data_uris *uris, nt_buffer *text, uint64_t *length, nt_error *error)
 {
-	for (size_t i = 0; i < c->embedded_count; i++) {
-		char mark[MARK_BYTES];
-		const size_t length = make_mark(mark, c->mark_number, c->embedded[i]);
-		const char *end = text->data + text->size, *first = memmem(text->data, text->size, mark, length);
-		const char *behind = first ? first + length : end;
-		if (!first || memmem(behind, (size_t)(end - behind), mark, length))
-			return false;
-	}
-	return true;
-}
-
-nt_status nt_gltf_embedding_text(nt_gltf_container *c, nt_buffer *text, uint64_t *length)
-{
-	nt_status status = nt_json_dump(c->json, text, c->error);
-	while (!status && !marks_are_clear(c, text)) {
-		c->mark_number = nt_hash_bytes(c->mark_number + 1, text->data, text->size);
-		for (size_t i = 0; !status && i < c->embedded_count; i++)
-			status = set_mark(c, c->embedded[i]);
-		text->size = 0;
-		if (!status)
-			status = nt_json_dump(c->json, text, c->error);
-	}
+	nt_gltf *document = uris->relocated->document;
+	nt_buffer marked = {0};
+	nt_status status = nt_json_dump(document->json, text, error);
+	for (size_t i = 0; !status && i < uris->count; i++)
+		status = set_data(document, uris->buffers[i].buffer, "A", error);
+	if (!status && uris->count)
+		status = nt_json_dump(document->json, &marked, error);
 	*length = text->size;
-	for (size_t i = 0; i < c->embedded_count; i++) {
-		char mark[MARK_BYTES];
-		*length += nt_base64_length(c->patcher->layout.buffers[c->embedded[i]].new_length);
-		*length -= make_mark(mark, c->mark_number, c->embedded[i]);
+	/* buffers come in their order, wherever the array stands */
+	for (size_t i = 0, at = 0; !status && i < uris->count; i++) {
+		while (text->data[at] == marked.data[at + i])
+			at++;
+		uris->buffers[i].at = at;
+		*length += nt_base64_length(uris->relocated->buffers[uris->buffers[i].buffer].length);
 	}
+	for (size_t i = 0; !status && i < uris->count; i++)
+		status = set_data(document, uris->buffers[i].buffer, "", error);
+	nt_buffer_free(&marked);
 	return status;
 }
 
-nt_status nt_gltf_write_text(nt_gltf_container *c, const nt_buffer *text, nt_sink *sink)
+nt_status nt_data_uris_write(const nt_data_uris *uris, const nt_buffer *text, nt_sink *sink, nt_error *error)
 {
-	const char *at = text->data, *const end = text->data + text->size;
+	size_t written = 0;
 	nt_status status = NT_OK;
-	/* buffers come in their order, wherever the array stands */
-	for (size_t i = 0; !status && i < c->embedded_count; i++) {
-		char mark[MARK_BYTES];
-		const size_t mark_length = make_mark(mark, c->mark_number, c->embedded[i]);
-		const char *place = memmem(at, (size_t)(end - at), mark, mark_length);
+	for (size_t i = 0; !status && i < uris->count; i++) {
+		const nt_data_uri *uri = &uris->buffers[i];
 		nt_base64 base64 = {.sink = sink};
-		status = nt_sink_write(sink, at, (size_t)(place - at), c->error);
+		status = nt_sink_write(sink, text->data + written, uri->at - written, error);
 		if (!status)
-			status = nt_layout_encode(&c->patcher->layout, c->embedded[i], &base64, c->error);
+			status = nt_relocated_encode(uris->relocated, uri->buffer, &base64, error);
 		if (!status)
-			status = nt_base64_end(&base64, c->error);
-		at = place + mark_length;
+			status = nt_base64_end(&base64, error);
+		written = uri->at;
 	}
-	return status ? status : nt_sink_write(sink, at, (size_t)(end - at), c->error);
+	return status ? status : nt_sink_write(sink, text->data + written, text->size - written, error);
 }

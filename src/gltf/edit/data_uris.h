@@ -1,19 +1,31 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Data URIs that are encoded while the text is written: see data_uris.c.
+ * Buffers in the text of a document: see data_uris.c. No more of them than a few thousand bytes is in memory.
  */
 #ifndef NT_GLTF_EDIT_DATA_URIS_H
 #define NT_GLTF_EDIT_DATA_URIS_H
 
-#include "gltf/edit/write.h"
+#include "gltf/edit/relocate.h"
 
-/*
- * Buffers in the text: nt_gltf_embed() gives a buffer a uri without its data; nt_gltf_embedding_text() is the whole
- * document's text then, whose length with all the data is *length; nt_gltf_write_text() writes it and encodes the
- * buffers where they belong, so that no more of them than a few thousand bytes is in memory.
- */
-nt_status nt_gltf_embed(nt_gltf_container *container, uint32_t buffer);
-nt_status nt_gltf_embedding_text(nt_gltf_container *container, nt_buffer *text, uint64_t *length);
-nt_status nt_gltf_write_text(nt_gltf_container *container, const nt_buffer *text, nt_sink *sink);
+typedef struct nt_data_uri {
+	uint32_t buffer;
+	size_t at; /* where its data belongs in the text */
+} nt_data_uri;
+
+/* Zeroed but for the buffers they take their data from; the list is malloc'ed. */
+typedef struct nt_data_uris {
+	const nt_relocated *relocated;
+	nt_data_uri *buffers; /* [count] ascending */
+	size_t count, capacity;
+} nt_data_uris;
+
+/* Gives a buffer a uri, without its data; buffers come in their order. */
+nt_status nt_data_uris_add(nt_data_uris *uris, uint32_t buffer, nt_error *error);
+
+/* The document's text without the data, and its length with it. Anew after each change of the document. */
+nt_status nt_data_uris_text(nt_data_uris *uris, nt_buffer *text, uint64_t *length, nt_error *error);
+
+/* Writes that text with the data. */
+nt_status nt_data_uris_write(const nt_data_uris *uris, const nt_buffer *text, nt_sink *sink, nt_error *error);
 
 #endif

@@ -54,7 +54,7 @@ static nt_status make_plain(nt_gltf_patcher *p, nt_gltf_cluster *component, size
 	if (nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(primitive), "bufferView"), &index) &&
 		nt_gltf_get_view(p->document, index, "", &view, NULL) == NT_OK &&
 		nt_gltf_draco_release(p, index, 1))
-		status = nt_layout_vacate(&p->layout, (uint32_t)index, 0, view.length, p->error);
+		status = nt_edits_release(&p->edits, (uint32_t)index, 0, view.length, p->error);
 	nt_json_remove(p->json, extensions, "KHR_draco_mesh_compression");
 	if (nt_json_count(extensions) == 0)
 		nt_json_remove(p->json, primitive, "extensions");

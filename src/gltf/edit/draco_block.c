@@ -186,11 +186,11 @@ nt_status nt_gltf_draco_store(nt_gltf_recoding *r, const nt_draco_block *block)
 	if (status)
 		return status;
 	if (r->source && nt_gltf_draco_release(p, r->view, r->component->member_count) &&
-		nt_byte_users_count(&p->layout.users, view.buffer, view.offset, view.offset + view.length) == 1)
-		return nt_layout_edit(&p->layout, view.buffer, view.offset, view.length, bytes,
+		nt_byte_users_count(&p->edits.users, view.buffer, view.offset, view.offset + view.length) == 1)
+		return nt_edits_replace(&p->edits, view.buffer, view.offset, view.length, bytes,
 			block->size, p->error);
 	uint32_t number;
-	status = nt_layout_add_view(&p->layout, r->component->buffer, bytes, block->size, 0, 0, &number,
+	status = nt_edits_add_view(&p->edits, r->component->buffer, bytes, block->size, 0, 0, &number,
 		p->error);
 	nt_json_set_uint64(p->json, nt_json_put(p->json, r->extension, "bufferView"), number);
 	return status;

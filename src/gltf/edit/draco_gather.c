@@ -265,7 +265,7 @@ static nt_status remove_views(nt_gltf_patcher *p, const run *runs, size_t count)
 		size_t users = 0;
 		for (size_t k = 0; k < count; k++)
 			users += runs[k].view == runs[i].view;
-		status = nt_layout_vacate_view(&p->layout, runs[i].view, users, p->error);
+		status = nt_edits_release_view(&p->edits, runs[i].view, users, p->error);
 	}
 	return status;
 }
@@ -278,7 +278,7 @@ static bool can_go(const nt_gltf_patcher *p, const run *runs, size_t count, uint
 		if (runs[i].view_begin > begin || runs[i].view_end < end ||
 			(runs[i].view_begin == begin && runs[i].view_end == end))
 			return false;
-	return nt_byte_users_count(&p->layout.users, runs->buffer, begin, end) == count;
+	return nt_byte_users_count(&p->edits.users, runs->buffer, begin, end) == count;
 }
 
 static nt_status remove_runs(nt_gltf_patcher *p, run *runs, size_t count)
@@ -292,8 +292,8 @@ static nt_status remove_runs(nt_gltf_patcher *p, run *runs, size_t count)
 		for (next = first + 1; next < count && runs[next].buffer == runs[first].buffer &&
 			runs[next].begin < end; next++)
 			end = runs[next].end > end ? runs[next].end : end;
-		if (!p->layout.vacant[runs[first].view] && can_go(p, runs + first, next - first, begin, end))
-			status = nt_layout_edit(&p->layout, runs[first].buffer, begin, end - begin,
+		if (!p->edits.is_free[runs[first].view] && can_go(p, runs + first, next - first, begin, end))
+			status = nt_edits_replace(&p->edits, runs[first].buffer, begin, end - begin,
 				(const unsigned char *)"", 0, p->error);
 	}
 	return status;

@@ -74,7 +74,7 @@ static nt_status add_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *compone
 	uint32_t view, accessor;
 	nt_status status = stored_tangents(p, rows, group, &bytes);
 	if (!status && old->count) {
-		status = nt_layout_add_view(&p->layout, component->buffer, bytes,
+		status = nt_edits_add_view(&p->edits, component->buffer, bytes,
 			rows->new_count * row_bytes, NT_GLTF_ARRAY_BUFFER, 0, &view, p->error);
 		if (!status)
 			nt_gltf_move_tangents(p, old, view, rows->new_count);
@@ -145,7 +145,7 @@ static nt_status choose_buffer(nt_gltf_patcher *p, nt_gltf_cluster *component)
 		nt_gltf_get_accessor(p->document, index, "", &accessor, NULL) == NT_OK &&
 		accessor.view != NT_NONE)
 		nt_gltf_get_view(p->document, accessor.view, "", &view, NULL);
-	return nt_layout_choose_buffer(&p->layout, view.buffer, &component->buffer, p->error);
+	return nt_edits_choose_buffer(&p->edits, view.buffer, &component->buffer, p->error);
 }
 
 /* New values for accessors that stay in place; the others lose their bytes. */
@@ -154,7 +154,7 @@ static nt_status override_tangents(nt_gltf_patcher *p, const nt_gltf_rows *rows,
 {
 	const unsigned char *values = NULL;
 	nt_status status = old->in_place ? stored_tangents(p, rows, group, &values)
-					    : nt_gltf_vacate_tangents(p, old);
+					    : nt_gltf_release_tangents(p, old);
 	for (size_t i = 0; !status && i < old->count; i++)
 		overrides[(*count)++] = (nt_gltf_override){.accessor = old->accessors[i], .values = values,
 			.width = (uint32_t)nt_precision_bytes(p->options->precision)};
@@ -234,8 +234,8 @@ static bool anything_solved(const nt_scene *scene)
 /* Accessors over the same bytes count as one when it is asked who else uses them. */
 static void canonise_users(nt_gltf_patcher *p)
 {
-	for (size_t i = 0; i < p->layout.users.count; i++) {
-		nt_byte_user *user = &p->layout.users.list[i];
+	for (size_t i = 0; i < p->edits.users.count; i++) {
+		nt_byte_user *user = &p->edits.users.list[i];
 		if (user->accessor != NT_NONE)
 			user->accessor = p->sharing.canonical[user->accessor];
 	}
@@ -281,7 +281,7 @@ static nt_status decompress_attribute(void *context, nt_json_value *attributes, 
 					     nt_gltf_decompress_view(p->document, found.view, p->error);
 }
 
-/* Compressed views of attributes that will grow. The layout has to know them before it begins. */
+/* Compressed views of attributes that will grow. The edits has to know them before it begins. */
 static nt_status decompress_views(nt_gltf_patcher *p)
 {
 	nt_status status = NT_OK;
@@ -311,18 +311,18 @@ nt_status nt_gltf_patch(nt_scene *scene, const nt_write_options *options, nt_out
 	nt_gltf_patcher patcher = {.scene = scene, .document = scene->source, .options = options,
 		.error = error};
 	patcher.json = patcher.document->json;
-	patcher.arena = &patcher.layout.arena;
+	patcher.arena = &patcher.edits.arena;
 	if (options->morphs == NT_MORPH_DROP)
 		drop_target_tangents(&patcher);
 	status = decompress_views(&patcher);
 	if (!status)
-		status = nt_layout_create(&patcher.layout, patcher.document, error);
+		status = nt_edits_create(&patcher.edits, patcher.document, error);
 	if (status)
 		return status;
 	if (solved)
 		status = patch_components(&patcher);
 	if (!status)
-		status = nt_gltf_write_container(&patcher, output);
-	nt_layout_free(&patcher.layout);
+		status = nt_gltf_write_document(scene, &patcher.edits, options, output, error);
+	nt_edits_free(&patcher.edits);
 	return status;
 }

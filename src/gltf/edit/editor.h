@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the parts of the glTF patch share: the document, the layout of its new bytes, and who shares
+ * What the parts of the glTF patch share: the document, the edits of its new bytes, and who shares
  * accessors.
  */
 #ifndef NT_GLTF_EDIT_EDITOR_H
@@ -14,10 +14,10 @@ typedef struct nt_gltf_patcher {
 	nt_gltf *document;
 	nt_json *json;
 	const nt_write_options *options;
-	nt_gltf_layout layout;
+	nt_buffer_edits edits;
 	nt_gltf_sharing sharing;
 	uint32_t *own;      /* [accessor_count] by canonical accessor: 1 + component that grows it */
-	nt_arena *arena;    /* the layout's */
+	nt_arena *arena;    /* the edits's */
 	bool quantized;     /* TANGENT was written as integers */
 	nt_error *error;
 } nt_gltf_patcher;

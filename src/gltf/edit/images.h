@@ -1,27 +1,34 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Images of a patched document: see images.c.
+ * Images of an edited document: see images.c.
  */
 #ifndef NT_GLTF_EDIT_IMAGES_H
 #define NT_GLTF_EDIT_IMAGES_H
 
-#include "gltf/edit/write.h"
+#include "file/output.h"
+#include "gltf/edit/buffer_edits.h"
 
-/* What the images option means for this output. */
-nt_images nt_gltf_images_choice(const nt_write_options *options, bool same_container);
+/* Where an edited document goes. */
+typedef struct nt_gltf_destination {
+	const nt_write_options *options;
+	nt_output *output;
+	const char *link_prefix; /* from the output's folder to the input's, percent-encoded; "" */
+} nt_gltf_destination;
 
-/* The text of an external reference: neither a data URI nor anything else than a string. NULL: none. */
-const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length);
+/* Files that were read and are still to be written. */
+typedef struct nt_open_images {
+	nt_file *files; /* [count] */
+	size_t count, capacity;
+} nt_open_images;
 
-/* The way from the folder of one file to the folder of another as a URI: "../other/"; "" where they are
- * the same or cannot be found. "-" is a file of the current folder. */
-nt_status nt_gltf_link_prefix(nt_arena *arena, const char *from, const char *to, const char **prefix,
-	nt_error *error);
+/* What the images option means for this output of a document. */
+nt_images nt_gltf_images_choice(const nt_write_options *options, const nt_gltf *document);
 
-/* Puts the prefix before the uri of a buffer or an image. */
-nt_status nt_gltf_link(nt_gltf_container *container, nt_json_value *object);
+/* Links, embeds or copies the document's images, as the options say. images: empty; what is open in it must stay so
+ * while the edits live. */
+nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_gltf_destination *destination,
+	nt_open_images *images, nt_error *error);
 
-/* Links, embeds or copies the document's images, as the options say. Before nt_layout_finish(). */
-nt_status nt_gltf_move_images(nt_gltf_container *container);
+void nt_open_images_close(nt_open_images *images);
 
 #endif

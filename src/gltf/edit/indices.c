@@ -73,7 +73,7 @@ static nt_status add_indices(nt_gltf_patcher *p, uint32_t buffer, const encoded 
 	uint32_t *accessor)
 {
 	uint32_t view;
-	const nt_status status = nt_layout_add_view(&p->layout, buffer, new->bytes, new->size,
+	const nt_status status = nt_edits_add_view(&p->edits, buffer, new->bytes, new->size,
 		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, p->error);
 	if (!status)
 		*accessor = nt_gltf_new_accessor(p, view, new->type, "SCALAR", new->count, false);
@@ -102,7 +102,7 @@ static nt_status replace_indices(nt_gltf_patcher *p, const nt_gltf_accessor *old
 	const uint32_t kept = p->own[canonical];
 	p->own[canonical] = mark;
 	const bool foreign =
-		nt_byte_users_foreign(&p->layout.users, view.buffer, begin, begin + size, p->own, mark);
+		nt_byte_users_foreign(&p->edits.users, view.buffer, begin, begin + size, p->own, mark);
 	p->own[canonical] = kept;
 	if (foreign)
 		return NT_OK;
@@ -125,7 +125,7 @@ static nt_status replace_indices(nt_gltf_patcher *p, const nt_gltf_accessor *old
 	nt_json_remove(p->json, json, "min");
 	nt_json_remove(p->json, json, "max");
 	*done = true;
-	return nt_layout_edit(&p->layout, view.buffer, begin, size, bytes, new->size + pad, p->error);
+	return nt_edits_replace(&p->edits, view.buffer, begin, size, bytes, new->size + pad, p->error);
 }
 
 /* Indices that were compressed get a view; the accessor stays. */
@@ -134,7 +134,7 @@ static nt_status give_view(nt_gltf_patcher *p, uint32_t buffer, const nt_gltf_ac
 {
 	*done = true;
 	uint32_t view;
-	const nt_status status = nt_layout_add_view(&p->layout, buffer, new->bytes, new->size,
+	const nt_status status = nt_edits_add_view(&p->edits, buffer, new->bytes, new->size,
 		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, p->error);
 	nt_json_value *json = nt_json_at(nt_gltf_root_member(p->document, "accessors"), old->index);
 	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "bufferView"), view);

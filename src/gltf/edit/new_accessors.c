@@ -30,7 +30,7 @@ nt_status nt_gltf_add_attribute(nt_gltf_patcher *p, uint32_t buffer, const void 
 	size_t row_bytes, uint32_t component_type, const char *type, uint32_t *accessor)
 {
 	uint32_t view;
-	const nt_status status = nt_layout_add_view(&p->layout, buffer, rows, count * row_bytes,
+	const nt_status status = nt_edits_add_view(&p->edits, buffer, rows, count * row_bytes,
 		NT_GLTF_ARRAY_BUFFER, 0, &view, p->error);
 	if (!status)
 		*accessor = nt_gltf_new_accessor(p, view, component_type, type, count,

@@ -53,7 +53,7 @@ static bool fits_in_place(const nt_gltf_patcher *p, uint32_t index)
 		return true;
 	const uint64_t begin = view.offset + a.offset, end = begin + (a.count - 1) * a.stride + a.element_bytes;
 	return a.stride > a.element_bytes && nt_precision_bytes(precision) <= a.element_bytes &&
-		nt_byte_users_count(&p->layout.users, view.buffer, begin, end) > 1;
+		nt_byte_users_count(&p->edits.users, view.buffer, begin, end) > 1;
 }
 
 static int compare_indices(const void *a, const void *b)
@@ -107,20 +107,20 @@ nt_status nt_gltf_find_tangents(nt_gltf_patcher *p, const nt_gltf_cluster *compo
 	return NT_OK;
 }
 
-nt_status nt_gltf_vacate_tangents(nt_gltf_patcher *p, const nt_gltf_old_tangents *old)
+nt_status nt_gltf_release_tangents(nt_gltf_patcher *p, const nt_gltf_old_tangents *old)
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < old->count; i++) {
 		nt_gltf_accessor a;
 		status = nt_gltf_get_accessor(p->document, old->accessors[i], "", &a, p->error);
 		if (!status && a.view != NT_NONE)
-			status = nt_layout_vacate(&p->layout, a.view, a.offset,
+			status = nt_edits_release(&p->edits, a.view, a.offset,
 				(a.count - 1) * a.stride + a.element_bytes, p->error);
 		if (!status && a.sparse_count)
-			status = nt_layout_vacate(&p->layout, a.sparse_index_view, a.sparse_index_offset,
+			status = nt_edits_release(&p->edits, a.sparse_index_view, a.sparse_index_offset,
 				a.sparse_count * nt_gltf_component_bytes(a.sparse_index_type), p->error);
 		if (!status && a.sparse_count)
-			status = nt_layout_vacate(&p->layout, a.sparse_value_view, a.sparse_value_offset,
+			status = nt_edits_release(&p->edits, a.sparse_value_view, a.sparse_value_offset,
 				a.sparse_count * a.element_bytes, p->error);
 	}
 	return status;

@@ -21,7 +21,7 @@ nt_status nt_gltf_find_tangents(nt_gltf_patcher *patcher, const nt_gltf_cluster 
 	uint32_t group, nt_gltf_old_tangents *old);
 
 /* Takes their bytes out of the buffers, where nobody else refers to them. */
-nt_status nt_gltf_vacate_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents *old);
+nt_status nt_gltf_release_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents *old);
 
 /* Gives them the type that is stored. */
 void nt_gltf_retype_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents *old);

@@ -12,59 +12,69 @@
 #include "gltf/edit/extensions.h"
 #include "gltf/view.h"
 
-/* Of a vacant view that nothing new came for. */
-enum { VACANT_BYTES = 4 };
+/* Of a free view that nothing new came for. */
+enum { FREE_VIEW_BYTES = 4 };
 
 /* ---- moving offsets ---- */
 
 static int compare_edits(const void *a, const void *b)
 {
-	const nt_gltf_edit *x = a, *y = b;
+	const nt_buffer_edit *x = a, *y = b;
 	if (x->at != y->at)
 		return x->at < y->at ? -1 : 1;
 	return (x->removed > y->removed) - (x->removed < y->removed);
 }
 
 /* Where a position of a source buffer goes. */
-static uint64_t map_position(const nt_gltf_buffer_layout *buffer, uint64_t position)
+static uint64_t map_position(const nt_relocated_buffer *buffer, uint64_t position)
 {
-	size_t low = 0, high = buffer->edit_count;
+	const nt_buffer_edit *edits = buffer->from->edits;
+	size_t low = 0, high = buffer->from->edit_count;
 	while (low < high) {
 		const size_t middle = low + (high - low) / 2;
-		if (buffer->edits[middle].at + buffer->edits[middle].removed <= position)
+		if (edits[middle].at + edits[middle].removed <= position)
 			low = middle + 1;
 		else
 			high = middle;
 	}
-	return low ? position + (uint64_t)buffer->edits[low - 1].shift : position;
+	return low ? position + (uint64_t)buffer->shifts[low - 1] : position;
 }
 
-static void sort_edits(nt_gltf_buffer_layout *buffer)
+/* Puts the edits of a buffer in order; from then on positions can be mapped. */
+static nt_status order_edits(nt_buffer_edits *edits, uint32_t index, nt_relocated_buffer *result, nt_error *error)
 {
-	if (buffer->edit_count)
-		qsort(buffer->edits, buffer->edit_count, sizeof *buffer->edits, compare_edits);
+	nt_edited_buffer *from = nt_edits_of(edits, index);
+	*result = (nt_relocated_buffer){.from = from,
+		.shifts = nt_arena_alloc(&edits->arena, from->edit_count, sizeof *result->shifts)};
+	if (!result->shifts)
+		return nt_fail_memory(error);
+	if (from->edit_count)
+		qsort(from->edits, from->edit_count, sizeof *from->edits, compare_edits);
 	int64_t shift = 0;
-	for (size_t i = 0; i < buffer->edit_count; i++) {
-		nt_gltf_edit *edit = &buffer->edits[i];
-		shift += (int64_t)edit->size - (int64_t)edit->removed;
-		edit->shift = shift;
+	for (size_t i = 0; i < from->edit_count; i++) {
+		shift += (int64_t)from->edits[i].size - (int64_t)from->edits[i].removed;
+		result->shifts[i] = shift;
 	}
+	return NT_OK;
 }
 
-static void place_additions(nt_gltf_layout *layout, nt_gltf_buffer_layout *buffer)
+static nt_status place_additions(nt_buffer_edits *edits, nt_relocated_buffer *buffer, nt_error *error)
 {
-	nt_json *json = layout->document->json;
-	nt_json_value *views = nt_gltf_root_member(layout->document, "bufferViews");
-	uint64_t length = map_position(buffer, buffer->old_length);
-	for (size_t i = 0; i < buffer->addition_count; i++) {
-		nt_gltf_addition *addition = &buffer->additions[i];
-		addition->offset = (length + 3) / 4 * 4;
-		length = addition->offset + addition->size;
+	nt_json *json = edits->document->json;
+	nt_json_value *views = nt_gltf_root_member(edits->document, "bufferViews");
+	buffer->length = map_position(buffer, buffer->from->old_length);
+	buffer->offsets = nt_arena_alloc(&edits->arena, buffer->from->addition_count, sizeof *buffer->offsets);
+	if (!buffer->offsets)
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < buffer->from->addition_count; i++) {
+		const nt_buffer_addition *addition = &buffer->from->additions[i];
+		buffer->offsets[i] = (buffer->length + 3) / 4 * 4;
+		buffer->length = buffer->offsets[i] + addition->size;
 		if (addition->view != NT_NONE)
 			nt_json_set_uint64(json, nt_json_put(json, nt_json_at(views, addition->view),
-				"byteOffset"), addition->offset);
+				"byteOffset"), buffer->offsets[i]);
 	}
-	buffer->new_length = length;
+	return NT_OK;
 }
 
 /* Sets an offset; a zero that is not written stays so. */
@@ -77,61 +87,57 @@ static void set_offset(nt_json *json, nt_json_value *object, const char *key, ui
 }
 
 /* A buffer must not be empty. */
-static nt_status fill_empty_buffers(nt_gltf_layout *layout, nt_error *error)
+static nt_status fill_empty_buffer(nt_buffer_edits *edits, uint32_t index, const nt_relocated_buffer *buffer,
+	nt_error *error)
 {
-	static const unsigned char zeros[VACANT_BYTES];
-	nt_status status = NT_OK;
-	for (uint32_t i = 0; !status && i < layout->buffer_count; i++) {
-		const nt_gltf_buffer_layout *buffer = &layout->buffers[i];
-		if (buffer->touched && !buffer->addition_count && buffer->old_length &&
-			map_position(buffer, buffer->old_length) == 0)
-			status = nt_layout_add_bytes(layout, i, NT_NONE, zeros, sizeof zeros, error);
-	}
-	return status;
+	static const unsigned char zeros[FREE_VIEW_BYTES];
+	const bool emptied = !buffer->from->addition_count && buffer->from->old_length &&
+		map_position(buffer, buffer->from->old_length) == 0;
+	return emptied ? nt_edits_add_bytes(edits, index, NT_NONE, zeros, sizeof zeros, error) : NT_OK;
 }
 
-/* Vacant views that nothing came for share the first bytes of their buffer. */
-static void settle_vacancies(nt_gltf_layout *layout)
+/* Free views that nothing came for share the first bytes of their buffer. */
+static void settle_free_views(const nt_buffer_edits *edits, const nt_relocated *relocated)
 {
-	nt_json *json = layout->document->json;
-	const nt_json_value *views = nt_gltf_root_member(layout->document, "bufferViews");
-	for (size_t i = 0; i < layout->vacancy_count; i++) {
-		nt_json_value *object = nt_json_at(views, layout->vacancies[i]);
+	nt_json *json = edits->document->json;
+	const nt_json_value *views = nt_gltf_root_member(edits->document, "bufferViews");
+	for (size_t i = 0; i < edits->free_count; i++) {
+		nt_json_value *object = nt_json_at(views, edits->free_views[i]);
 		uint64_t buffer = 0;
 		nt_json_get_uint64(nt_json_find(object, "buffer"), &buffer);
-		const uint64_t length = layout->buffers[buffer].new_length;
+		const uint64_t length = relocated->buffers[buffer].length;
 		nt_json_remove(json, object, "byteStride");
 		set_offset(json, object, "byteOffset", 0);
-		set_offset(json, object, "byteLength", length < VACANT_BYTES ? length : VACANT_BYTES);
+		set_offset(json, object, "byteLength", length < FREE_VIEW_BYTES ? length : FREE_VIEW_BYTES);
 	}
 }
 
 /* How a view moves, kept while the offsets of accessors in it are moved. */
 typedef struct moved_view {
-	const nt_gltf_buffer_layout *buffer; /* NULL: does not move */
+	const nt_relocated_buffer *buffer; /* NULL: does not move */
 	uint64_t old_offset, new_offset;
 } moved_view;
 
-static void move_views(nt_gltf_layout *layout, moved_view *moved, size_t view_count)
+static void move_views(const nt_buffer_edits *edits, const nt_relocated_buffer *buffers, moved_view *moved)
 {
-	nt_json *json = layout->document->json;
-	nt_json_value *views = nt_gltf_root_member(layout->document, "bufferViews");
-	for (size_t i = 0; i < view_count; i++) {
+	nt_json *json = edits->document->json;
+	nt_json_value *views = nt_gltf_root_member(edits->document, "bufferViews");
+	for (size_t i = 0; i < edits->view_count; i++) {
 		nt_json_value *object = nt_json_at(views, i);
 		nt_gltf_view view;
 		nt_json_value *part = nt_gltf_compression_of(object, NULL);
 		uint64_t buffer, offset = 0;
 		if (part && nt_json_get_uint64(nt_json_find(part, "buffer"), &buffer) &&
-			buffer < layout->document->buffer_count) {
+			buffer < edits->document->buffer_count) {
 			nt_json_get_uint64(nt_json_find(part, "byteOffset"), &offset);
 			set_offset(json, part, "byteOffset",
-				map_position(&layout->buffers[buffer], offset));
+				map_position(&buffers[buffer], offset));
 		}
-		if (moved[i].buffer || layout->vacant[i] ||
-			nt_gltf_get_view(layout->document, i, "", &view, NULL) != NT_OK ||
-			view.buffer >= NT_GLTF_VIRTUAL || layout->buffers[view.buffer].edit_count == 0)
+		if (moved[i].buffer || edits->is_free[i] ||
+			nt_gltf_get_view(edits->document, i, "", &view, NULL) != NT_OK ||
+			view.buffer >= NT_GLTF_VIRTUAL || edits->buffers[view.buffer].edit_count == 0)
 			continue;
-		moved[i].buffer = &layout->buffers[view.buffer];
+		moved[i].buffer = &buffers[view.buffer];
 		moved[i].old_offset = view.offset;
 		moved[i].new_offset = map_position(moved[i].buffer, view.offset);
 		set_offset(json, object, "byteOffset", moved[i].new_offset);
@@ -154,10 +160,11 @@ static void move_in_view(nt_json *json, nt_json_value *object, const moved_view 
 			moved[view].new_offset);
 }
 
-static void move_accessors(nt_gltf_layout *layout, const moved_view *moved, size_t view_count)
+static void move_accessors(const nt_buffer_edits *edits, const moved_view *moved)
 {
-	nt_json *json = layout->document->json;
-	nt_json_value *accessors = nt_gltf_root_member(layout->document, "accessors");
+	const size_t view_count = edits->view_count;
+	nt_json *json = edits->document->json;
+	nt_json_value *accessors = nt_gltf_root_member(edits->document, "accessors");
 	for (size_t i = 0; i < nt_json_count(accessors); i++) {
 		nt_json_value *accessor = nt_json_at(accessors, i);
 		move_in_view(json, accessor, moved, view_count);
@@ -202,7 +209,7 @@ static nt_status put_zeros(const target *to, uint64_t size, nt_error *error)
 }
 
 /* A range of a source buffer: from file to file where that is possible. */
-static nt_status put_source(const nt_gltf_layout *layout, nt_gltf_buffer *buffer,
+static nt_status put_source(nt_gltf *document, nt_gltf_buffer *buffer,
 	const target *to, uint64_t begin, uint64_t end, nt_error *error)
 {
 	if (begin >= end)
@@ -214,48 +221,47 @@ static nt_status put_source(const nt_gltf_layout *layout, nt_gltf_buffer *buffer
 		status = nt_sink_copy(to->sink, &buffer->file, (size_t)begin, size, error);
 	else if (size && to->sink && buffer->home == NT_GLTF_HOME_BIN && to->input)
 		status = nt_sink_copy(to->sink, to->input,
-			layout->document->glb.bin.offset + (size_t)begin, size, error);
+			document->glb.bin.offset + (size_t)begin, size, error);
 	else if (size)
 		status = put_bytes(to, buffer->bytes + begin, size, error);
 	if (!to->sink)
-		nt_gltf_note_read(layout->document, buffer, begin, size);
+		nt_gltf_note_read(document, buffer, begin, size);
 	return status ? status : put_zeros(to, end - there, error);
 }
 
-static nt_status put_buffer(nt_gltf_layout *layout, uint32_t index, const target *to, nt_error *error)
+static nt_status put_buffer(nt_gltf *document, const nt_relocated_buffer *buffer, uint32_t index, const target *to,
+	nt_error *error)
 {
-	const nt_gltf_buffer_layout *plan = nt_layout_plan_of(layout, index);
+	const nt_edited_buffer *from = buffer->from;
 	nt_gltf_buffer *source = NULL;
 	nt_status status = NT_OK;
-	uint64_t at = 0, written = map_position(plan, plan->old_length);
-	if (plan->old_length && index < NT_GLTF_VIRTUAL &&
-		layout->document->buffers[index].home == NT_GLTF_HOME_NOWHERE)
-		return put_zeros(to, plan->old_length, error);
-	if (plan->old_length)
-		status = nt_gltf_open_buffer(layout->document, index, "/buffers", &source, error);
+	uint64_t at = 0, written = map_position(buffer, from->old_length);
+	if (from->old_length && index < NT_GLTF_VIRTUAL && document->buffers[index].home == NT_GLTF_HOME_NOWHERE)
+		return put_zeros(to, from->old_length, error);
+	if (from->old_length)
+		status = nt_gltf_open_buffer(document, index, "/buffers", &source, error);
 	/* A length that lies must not become that many zeros; padding may lack. */
-	if (!status && source && plan->old_length - source->size >= NT_LAYOUT_ALIGNMENT) {
+	if (!status && source && from->old_length - source->size >= NT_EDITS_ALIGNMENT) {
 		char pointer[NT_GLTF_POINTER];
 		snprintf(pointer, sizeof pointer, "/buffers/%u", index);
 		status = nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"byteLength is %llu, but only %zu bytes are there",
-			(unsigned long long)plan->old_length, source->size);
+			(unsigned long long)from->old_length, source->size);
 	}
-	for (size_t i = 0; !status && i < plan->edit_count; i++) {
-		const nt_gltf_edit *edit = &plan->edits[i];
-		status = put_source(layout, source, to, at, edit->at, error);
+	for (size_t i = 0; !status && i < from->edit_count; i++) {
+		const nt_buffer_edit *edit = &from->edits[i];
+		status = put_source(document, source, to, at, edit->at, error);
 		if (!status)
 			status = put_bytes(to, edit->bytes, edit->size, error);
 		at = edit->at + edit->removed;
 	}
 	if (!status && source)
-		status = put_source(layout, source, to, at, plan->old_length, error);
-	for (size_t i = 0; !status && i < plan->addition_count; i++) {
-		const nt_gltf_addition *addition = &plan->additions[i];
-		status = put_zeros(to, addition->offset - written, error);
+		status = put_source(document, source, to, at, from->old_length, error);
+	for (size_t i = 0; !status && i < from->addition_count; i++) {
+		status = put_zeros(to, buffer->offsets[i] - written, error);
 		if (!status)
-			status = put_bytes(to, addition->bytes, addition->size, error);
-		written = addition->offset + addition->size;
+			status = put_bytes(to, from->additions[i].bytes, from->additions[i].size, error);
+		written = buffer->offsets[i] + from->additions[i].size;
 	}
 	return status;
 }
@@ -263,32 +269,33 @@ static nt_status put_buffer(nt_gltf_layout *layout, uint32_t index, const target
 /* ---- views that were decompressed ---- */
 
 /* Takes the compressed bytes of a view out, if nobody else refers to them. */
-static nt_status remove_compressed(nt_gltf_layout *layout, const nt_json_value *part, nt_error *error)
+static nt_status remove_compressed(nt_buffer_edits *edits, const nt_json_value *part, nt_error *error)
 {
 	uint64_t buffer, offset = 0, length;
 	if (!nt_json_get_uint64(nt_json_find(part, "buffer"), &buffer) ||
 		!nt_json_get_uint64(nt_json_find(part, "byteLength"), &length) ||
-		buffer >= layout->document->buffer_count)
+		buffer >= edits->document->buffer_count)
 		return NT_OK;
 	nt_json_get_uint64(nt_json_find(part, "byteOffset"), &offset);
-	const size_t users = nt_byte_users_count(&layout->users, (uint32_t)buffer, offset, offset + length);
-	return users == 1 ? nt_layout_edit(layout, (uint32_t)buffer, offset, length,
+	const size_t users = nt_byte_users_count(&edits->users, (uint32_t)buffer, offset, offset + length);
+	return users == 1 ? nt_edits_replace(edits, (uint32_t)buffer, offset, length,
 				    (const unsigned char *)"", 0, error) :
 			    NT_OK;
 }
 
 /* A decompressed view whose bytes have changed is written plain. */
-static nt_status settle_virtual(nt_gltf_layout *layout, uint32_t index, moved_view *moved,
+static nt_status settle_virtual(nt_buffer_edits *edits, uint32_t index, moved_view *moved,
 	nt_error *error)
 {
-	nt_gltf *document = layout->document;
-	nt_gltf_buffer_layout *plan = nt_layout_plan_of(layout, document->virtual_of[index]);
-	sort_edits(plan);
+	nt_gltf *document = edits->document;
+	const uint32_t virtual = document->virtual_of[index];
+	nt_relocated_buffer *plain = nt_arena_alloc(&edits->arena, 1, sizeof *plain);
+	nt_status status = plain ? order_edits(edits, virtual, plain, error) : nt_fail_memory(error);
 	nt_buffer bytes = {0};
-	nt_status status =
-		put_buffer(layout, document->virtual_of[index], &(target){.memory = &bytes}, error);
+	if (!status)
+		status = put_buffer(document, plain, virtual, &(target){.memory = &bytes}, error);
 	const size_t size = bytes.size;
-	if (status || !nt_arena_adopt(&layout->arena, bytes.data)) {
+	if (status || !nt_arena_adopt(&edits->arena, bytes.data)) {
 		if (status)
 			nt_buffer_free(&bytes);
 		return status ? status : nt_fail_memory(error);
@@ -299,11 +306,11 @@ static nt_status settle_virtual(nt_gltf_layout *layout, uint32_t index, moved_vi
 	uint64_t near = NT_NONE;
 	nt_json_get_uint64(nt_json_find(part, "buffer"), &near);
 	uint32_t buffer = NT_NONE;
-	status = remove_compressed(layout, part, error);
+	status = remove_compressed(edits, part, error);
 	if (!status)
-		status = nt_layout_choose_buffer(layout, (uint32_t)near, &buffer, error);
+		status = nt_edits_choose_buffer(edits, (uint32_t)near, &buffer, error);
 	if (!status)
-		status = nt_layout_add_bytes(layout, buffer, index, bytes.data, size, error);
+		status = nt_edits_add_bytes(edits, buffer, index, bytes.data, size, error);
 	if (status)
 		return status;
 	nt_json *json = document->json;
@@ -313,7 +320,7 @@ static nt_status settle_virtual(nt_gltf_layout *layout, uint32_t index, moved_vi
 	nt_json_remove(json, extensions, name);
 	if (nt_json_count(extensions) == 0)
 		nt_json_remove(json, view, "extensions");
-	*moved = (moved_view){plan, 0, 0};
+	*moved = (moved_view){plain, 0, 0};
 	return NT_OK;
 }
 
@@ -336,59 +343,70 @@ static void drop_unneeded_compression(nt_gltf *document)
 
 /* ---- the whole ---- */
 
-nt_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error)
+/* Views that were decompressed and edited go into buffers; moved [view_count]. */
+static nt_status settle_virtuals(nt_buffer_edits *edits, moved_view *moved, nt_error *error)
 {
-	nt_gltf *document = layout->document;
-	const size_t view_count = layout->view_count;
-	moved_view *moved = nt_calloc(view_count, sizeof *moved);
-	if (!moved)
-		return nt_fail_memory(error);
+	const uint32_t *virtual_of = edits->document->virtual_of;
 	nt_status status = NT_OK;
-	bool shifted = false;
-	for (uint32_t i = 0; !status && i < view_count; i++)
-		if (document->virtual_of[i] != NT_NONE && nt_layout_plan_of(layout, document->virtual_of[i])->touched) {
-			status = settle_virtual(layout, i, &moved[i], error);
-			shifted = true;
-		}
-	if (status) {
-		free(moved);
+	for (uint32_t i = 0; !status && i < edits->view_count; i++)
+		if (virtual_of[i] != NT_NONE && nt_edits_of(edits, virtual_of[i])->edit_count)
+			status = settle_virtual(edits, i, &moved[i], error);
+	return status;
+}
+
+static nt_status relocate(nt_buffer_edits *edits, nt_relocated *result, moved_view *moved, nt_error *error)
+{
+	/* Edits come to an end: buffers that have lost all get a few bytes. */
+	nt_status status = settle_virtuals(edits, moved, error);
+	bool moves = edits->document->virtual_count > 0;
+	*result = (nt_relocated){.document = edits->document, .buffer_count = edits->buffer_count,
+		.buffers = nt_arena_alloc(&edits->arena, edits->buffer_count, sizeof *result->buffers)};
+	if (!status && !result->buffers)
+		status = nt_fail_memory(error);
+	for (uint32_t i = 0; !status && i < result->buffer_count; i++) {
+		status = order_edits(edits, i, &result->buffers[i], error);
+		moves |= edits->buffers[i].edit_count > 0;
+		if (!status)
+			status = fill_empty_buffer(edits, i, &result->buffers[i], error);
+	}
+	if (status)
 		return status;
+
+	/* What was there moves; what is new comes behind it. */
+	if (moves) {
+		move_views(edits, result->buffers, moved);
+		move_accessors(edits, moved);
 	}
-	for (size_t i = 0; i < layout->buffer_count; i++) {
-		sort_edits(&layout->buffers[i]);
-		shifted |= layout->buffers[i].edit_count > 0;
+	nt_json *json = edits->document->json;
+	nt_json_value *buffers = nt_gltf_root_member(edits->document, "buffers");
+	for (size_t i = 0; !status && i < result->buffer_count; i++) {
+		nt_relocated_buffer *buffer = &result->buffers[i];
+		status = place_additions(edits, buffer, error);
+		if (!status && nt_is_edited(buffer->from))
+			set_offset(json, nt_json_at(buffers, i), "byteLength", buffer->length);
 	}
-	status = fill_empty_buffers(layout, error);
-	if (status) {
-		free(moved);
-		return status;
-	}
-	if (shifted) {
-		move_views(layout, moved, view_count);
-		move_accessors(layout, moved, view_count);
-	}
+	settle_free_views(edits, result);
+	drop_unneeded_compression(edits->document);
+	return !status && nt_json_failed(json) ? nt_fail_memory(error) : status;
+}
+
+nt_status nt_gltf_relocate(nt_buffer_edits *edits, nt_relocated *result, nt_error *error)
+{
+	moved_view *moved = nt_calloc(edits->view_count, sizeof *moved);
+	const nt_status status = moved ? relocate(edits, result, moved, error) : nt_fail_memory(error);
 	free(moved);
-	nt_json *json = document->json;
-	for (size_t i = 0; i < layout->buffer_count; i++) {
-		nt_gltf_buffer_layout *buffer = &layout->buffers[i];
-		if (!buffer->touched)
-			continue;
-		place_additions(layout, buffer);
-		nt_json_value *buffers = nt_gltf_root_member(document, "buffers");
-		set_offset(json, nt_json_at(buffers, i), "byteLength", buffer->new_length);
-	}
-	settle_vacancies(layout);
-	drop_unneeded_compression(document);
-	return nt_json_failed(json) ? nt_fail_memory(error) : NT_OK;
+	return status;
 }
 
-nt_status nt_layout_write(nt_gltf_layout *layout, uint32_t buffer, const nt_file *input,
-	nt_sink *sink, nt_error *error)
+nt_status nt_relocated_write(const nt_relocated *relocated, uint32_t buffer, const nt_file *input, nt_sink *sink,
+	nt_error *error)
 {
-	return put_buffer(layout, buffer, &(target){.sink = sink, .input = input}, error);
+	return put_buffer(relocated->document, &relocated->buffers[buffer], buffer,
+		&(target){.sink = sink, .input = input}, error);
 }
 
-nt_status nt_layout_encode(nt_gltf_layout *layout, uint32_t buffer, nt_base64 *base64, nt_error *error)
+nt_status nt_relocated_encode(const nt_relocated *relocated, uint32_t buffer, nt_base64 *base64, nt_error *error)
 {
-	return put_buffer(layout, buffer, &(target){.base64 = base64}, error);
+	return put_buffer(relocated->document, &relocated->buffers[buffer], buffer, &(target){.base64 = base64},
+		error);
 }

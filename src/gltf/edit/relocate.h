@@ -8,14 +8,29 @@
 #include "file/base64.h"
 #include "gltf/edit/buffer_edits.h"
 
-/* Moves all offsets in the JSON and sets all lengths. Call once, after the last change. */
-nt_status nt_layout_finish(nt_gltf_layout *layout, nt_error *error);
+/* A buffer as it will be. */
+typedef struct nt_relocated_buffer {
+	const nt_edited_buffer *from; /* its edits are in order */
+	int64_t *shifts;              /* [edit_count] how far everything behind an edit moves */
+	uint64_t *offsets;            /* [addition_count] in the new buffer */
+	uint64_t length;
+} nt_relocated_buffer;
 
-/* Writes the bytes of a buffer as they are after the changes. `input` is the document's own file. */
-nt_status nt_layout_write(nt_gltf_layout *layout, uint32_t buffer, const nt_file *input,
-	nt_sink *sink, nt_error *error);
+/* The buffers of a document after all edits. It lives as long as those. */
+typedef struct nt_relocated {
+	nt_gltf *document;
+	nt_relocated_buffer *buffers; /* [buffer_count] */
+	size_t buffer_count;
+} nt_relocated;
+
+/* Moves all offsets in the JSON and sets all lengths. Afterwards nothing may be edited any more. */
+nt_status nt_gltf_relocate(nt_buffer_edits *edits, nt_relocated *result, nt_error *error);
+
+/* Writes the bytes of a buffer. `input` is the document's own file. */
+nt_status nt_relocated_write(const nt_relocated *relocated, uint32_t buffer, const nt_file *input, nt_sink *sink,
+	nt_error *error);
 
 /* The same as base64, without the last group's padding. */
-nt_status nt_layout_encode(nt_gltf_layout *layout, uint32_t buffer, nt_base64 *base64, nt_error *error);
+nt_status nt_relocated_encode(const nt_relocated *relocated, uint32_t buffer, nt_base64 *base64, nt_error *error);
 
 #endif

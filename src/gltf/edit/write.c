@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The patched document as files: .gltf with its buffers, .gltf with everything in it, or .glb.
+ * The edited document as files: .gltf with its buffers, .gltf with everything in it, or .glb.
  *
  * A buffer stays what it was where it can: a data URI remains one, an external file that nothing
  * changed is linked to, several buffers remain several. A changed external buffer becomes a companion of
@@ -17,8 +17,25 @@
 #include "gltf/companion.h"
 #include "gltf/edit/data_uris.h"
 #include "gltf/edit/images.h"
+#include "gltf/edit/links.h"
 #include "gltf/edit/relocate.h"
 #include "file/uri.h"
+
+/* An edited document on its way into files. */
+typedef struct writing {
+	nt_gltf *document;
+	nt_json *json;
+	nt_gltf_destination destination;
+	const nt_write_options *options; /* the destination's */
+	nt_file input;                   /* the document's own file, to stream from */
+	nt_relocated buffers;
+	nt_data_uris uris;
+	nt_sink *main;
+	nt_sink **companions;            /* [buffer count] the files that buffers are written to; NULL: another fate */
+	nt_arena *arena;
+	nt_error *error;
+	bool to_glb, same_container, embed, in_place;
+} writing;
 
 /* What happens to a buffer. */
 typedef enum fate {
@@ -58,7 +75,7 @@ nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *option
 	const nt_gltf *document = scene->source;
 	const bool same_container = (options->format == NT_FORMAT_GLB) == document->is_glb;
 	const bool buffers = has_external(document, "buffers"), images = has_external(document, "images");
-	const nt_images choice = nt_gltf_images_choice(options, same_container);
+	const nt_images choice = nt_gltf_images_choice(options, document);
 	nt_arena arena = {0};
 	const char *prefix = "";
 	nt_status status = NT_OK;
@@ -84,7 +101,7 @@ nt_status nt_gltf_copy_unchanged(nt_scene *scene, const nt_write_options *option
 /* ---- what happens to each buffer ---- */
 
 /* Whether the user wants the output to have files beside it; standard output has none. */
-static bool keeps_files(const nt_gltf_container *c)
+static bool keeps_files(const writing *c)
 {
 	const nt_buffers wish = c->options->buffers;
 	if (strcmp(c->options->path, "-") == 0)
@@ -92,10 +109,10 @@ static bool keeps_files(const nt_gltf_container *c)
 	return wish == NT_BUFFERS_LINK || wish == NT_BUFFERS_COPY;
 }
 
-static fate choose_fate(const nt_gltf_container *c, uint32_t index)
+static fate choose_fate(const writing *c, uint32_t index)
 {
 	const nt_gltf *document = c->document;
-	const nt_gltf_buffer_layout *plan = &c->patcher->layout.buffers[index];
+	const bool edited = nt_is_edited(c->buffers.buffers[index].from);
 	/* The BIN chunk can be buffer 0 only, and only when the source's own chunk is not something else. */
 	const bool chunk_is_other = document->is_glb && document->glb.has_bin &&
 		document->buffer_count && document->buffers[0].home != NT_GLTF_HOME_BIN;
@@ -114,12 +131,12 @@ static fate choose_fate(const nt_gltf_container *c, uint32_t index)
 	case NT_GLTF_HOME_DATA:
 		if (into_glb && index == 0)
 			return FATE_BIN;
-		return plan->touched ? FATE_DATA : FATE_KEEP;
+		return edited ? FATE_DATA : FATE_KEEP;
 	case NT_GLTF_HOME_FILE:
-		if (plan->touched || c->embed || (into_glb && !files))
+		if (edited || c->embed || (into_glb && !files))
 			return moved;
 		/* where the folder stays the same it is there already, as with images */
-		return c->options->buffers == NT_BUFFERS_COPY && *c->link_prefix && files ? FATE_COMPANION
+		return c->options->buffers == NT_BUFFERS_COPY && *c->destination.link_prefix && files ? FATE_COMPANION
 											  : FATE_LINK;
 	default:
 		/* Buffer 0 of a .glb without a uri is the BIN chunk, so there has to be one. */
@@ -129,12 +146,11 @@ static fate choose_fate(const nt_gltf_container *c, uint32_t index)
 
 /* In a .glb a buffer 0 without a uri is the BIN chunk. Bytes that nobody ever had cannot be put there: zeros would
  * be other data, and faulty where bounds or matrices are asked for. */
-static nt_status check_first_buffer(nt_gltf_container *c)
+static nt_status check_first_buffer(const writing *c, const nt_byte_users *users)
 {
 	const nt_gltf_buffer *first = c->document->buffers;
 	if (!c->to_glb || c->same_container || !c->document->buffer_count || !first->described ||
-		first->home != NT_GLTF_HOME_NOWHERE ||
-		nt_byte_users_count(&c->patcher->layout.users, 0, 0, first->length) == 0)
+		first->home != NT_GLTF_HOME_NOWHERE || nt_byte_users_count(users, 0, 0, first->length) == 0)
 		return NT_OK;
 	return nt_fail_pointer(c->error, NT_ERROR_UNSUPPORTED, "/buffers/0",
 		"no uri, so that a .glb would need its bytes as BIN chunk, which are not there; "
@@ -142,7 +158,7 @@ static nt_status check_first_buffer(nt_gltf_container *c)
 }
 
 /* Names that the output must not take: everything the document refers to. */
-static nt_status protect_inputs(nt_gltf_container *c)
+static nt_status protect_inputs(writing *c)
 {
 	const char *const arrays[] = {"buffers", "images"};
 	nt_status status = NT_OK;
@@ -151,22 +167,22 @@ static nt_status protect_inputs(nt_gltf_container *c)
 		for (size_t i = 0; !status && i < nt_json_count(elements); i++) {
 			size_t length;
 			const char *file, *uri = nt_gltf_external_uri(nt_json_at(elements, i), &length);
-			if (uri && nt_uri_resolve(&c->arena, c->document->path, uri, length, true, &file,
+			if (uri && nt_uri_resolve(c->arena, c->document->path, uri, length, true, &file,
 					   NULL) == NT_OK)
-				status = nt_output_protect(c->output, file, NULL, c->error);
+				status = nt_output_protect(c->destination.output, file, NULL, c->error);
 		}
 	}
 	return status;
 }
 
 /* "out.bin", "out-1.bin" for the others, where those names are to be had. */
-static nt_status name_companion(nt_gltf_container *c, uint32_t index, bool first, const char **path)
+static nt_status name_companion(writing *c, uint32_t index, bool first, const char **path)
 {
 	const char *out = c->options->path;
 	const char *slash = strrchr(out, '/'), *dot = strrchr(out, '.');
 	const size_t stem = dot && (!slash || dot > slash + 1) && dot != out ? (size_t)(dot - out) :
 									       strlen(out);
-	char *name = nt_arena_alloc(&c->arena, stem + 40, 1);
+	char *name = nt_arena_alloc(c->arena, stem + 40, 1);
 	if (!name)
 		return nt_fail_memory(c->error);
 	memcpy(name, out, stem);
@@ -178,28 +194,28 @@ static nt_status name_companion(nt_gltf_container *c, uint32_t index, bool first
 	return NT_OK;
 }
 
-static nt_status write_companion(nt_gltf_container *c, uint32_t index, bool first, const nt_file *input)
+static nt_status write_companion(writing *c, uint32_t index, bool first)
 {
 	const char *path = NULL;
 	nt_sink *sink = NULL;
 	nt_status status = name_companion(c, index, first, &path);
 	if (!status)
-		status = nt_output_add(c->output, path, NT_ROLE_BUFFER, &sink, c->error);
+		status = nt_output_add(c->destination.output, path, NT_ROLE_BUFFER, &sink, c->error);
 	if (!status)
-		status = nt_layout_write(&c->patcher->layout, index, input, sink, c->error);
+		status = nt_relocated_write(&c->buffers, index, &c->input, sink, c->error);
 	if (!status)
-		status = nt_output_settle(c->output, sink, c->error);
+		status = nt_output_settle(c->destination.output, sink, c->error);
 	c->companions[index] = sink;
 	return status;
 }
 
 /* A .glb ends at 4 GiB. Said before data URIs are made of buffers that cannot fit, and before a file is begun; the
  * JSON's own length is added when it is known. */
-static nt_status check_room(nt_gltf_container *c)
+static nt_status check_room(writing *c)
 {
 	uint64_t sum = 0;
-	for (uint32_t i = 0; c->to_glb && i < c->patcher->layout.buffer_count; i++) {
-		const uint64_t length = c->patcher->layout.buffers[i].new_length;
+	for (uint32_t i = 0; c->to_glb && i < c->buffers.buffer_count; i++) {
+		const uint64_t length = c->buffers.buffers[i].length;
 		const fate what = choose_fate(c, i);
 		if (what != FATE_BIN && what != FATE_DATA)
 			continue;
@@ -218,7 +234,7 @@ static nt_status check_room(nt_gltf_container *c)
 }
 
 /* What will be written must be open before its uri changes. */
-static nt_status open_source(nt_gltf_container *c, uint32_t index, fate what)
+static nt_status open_source(writing *c, uint32_t index, fate what)
 {
 	if (what == FATE_KEEP || what == FATE_LINK || index >= c->document->buffer_count ||
 		c->document->buffers[index].home == NT_GLTF_HOME_NOWHERE)
@@ -228,12 +244,12 @@ static nt_status open_source(nt_gltf_container *c, uint32_t index, fate what)
 }
 
 /* Settles every buffer but the BIN chunk; *bin receives whether there is one. */
-static nt_status settle_buffers(nt_gltf_container *c, const nt_file *input, bool *bin)
+static nt_status settle_buffers(writing *c, bool *bin)
 {
 	bool first = true;
 	nt_status status = NT_OK;
 	*bin = false;
-	for (uint32_t i = 0; !status && i < c->patcher->layout.buffer_count; i++) {
+	for (uint32_t i = 0; !status && i < c->buffers.buffer_count; i++) {
 		nt_json_value *json = nt_json_at(nt_gltf_root_member(c->document, "buffers"), i);
 		const fate what = choose_fate(c, i);
 		status = open_source(c, i, what);
@@ -246,17 +262,17 @@ static nt_status settle_buffers(nt_gltf_container *c, const nt_file *input, bool
 		case FATE_KEEP:
 			break;
 		case FATE_LINK:
-			status = nt_gltf_link(c, json);
+			status = nt_gltf_link(c->json, json, c->destination.link_prefix, c->error);
 			break;
 		case FATE_DATA:
-			status = nt_gltf_embed(c, i);
+			status = nt_data_uris_add(&c->uris, i, c->error);
 			break;
 		case FATE_BIN:
 			nt_json_remove(c->json, json, "uri");
 			*bin = true;
 			break;
 		case FATE_COMPANION:
-			status = write_companion(c, i, first, input);
+			status = write_companion(c, i, first);
 			first = false;
 			break;
 		}
@@ -274,24 +290,21 @@ static uint64_t other_bytes(const nt_gltf *document)
 	return sum;
 }
 
-static nt_status write_glb(nt_gltf_container *c, const nt_buffer *text, uint64_t length, const nt_file *input,
-	bool bin, nt_sink *sink)
+static nt_status write_glb(const writing *c, const nt_buffer *text, uint64_t length, bool bin, nt_sink *sink)
 {
 	const nt_gltf *document = c->document;
 	/* A BIN chunk that is no buffer stays what it is. */
 	const bool raw = !bin && document->is_glb && document->glb.has_bin;
-	const uint64_t size = bin ? c->patcher->layout.buffers[0].new_length :
-			      raw ? document->glb.bin.size : 0;
-	nt_status status =
-		nt_glb_begin(sink, length, bin || raw, size, other_bytes(document), c->error);
+	const uint64_t size = bin ? c->buffers.buffers[0].length : raw ? document->glb.bin.size : 0;
+	nt_status status = nt_glb_begin(sink, length, bin || raw, size, other_bytes(document), c->error);
 	if (!status)
-		status = nt_gltf_write_text(c, text, sink);
+		status = nt_data_uris_write(&c->uris, text, sink, c->error);
 	if (!status)
 		status = nt_glb_end_json(sink, length, bin || raw, size, c->error);
 	if (!status && bin)
-		status = nt_layout_write(&c->patcher->layout, 0, input, sink, c->error);
+		status = nt_relocated_write(&c->buffers, 0, &c->input, sink, c->error);
 	if (!status && raw)
-		status = nt_sink_copy(sink, input, document->glb.bin.offset, document->glb.bin.size,
+		status = nt_sink_copy(sink, &c->input, document->glb.bin.offset, document->glb.bin.size,
 			c->error);
 	if (!status && (bin || raw))
 		status = nt_glb_end_bin(sink, size, c->error);
@@ -304,81 +317,83 @@ static nt_status write_glb(nt_gltf_container *c, const nt_buffer *text, uint64_t
 }
 
 /* The document with the names that its companions have in it. */
-static nt_status write_document(nt_gltf_container *c, const nt_file *input, bool bin, bool interim, nt_sink *sink)
+static nt_status write_document(writing *c, bool bin, bool interim, nt_sink *sink)
 {
 	nt_buffer text = {0};
 	uint64_t length;
 	nt_status status = NT_OK;
-	for (uint32_t i = 0; !status && i < c->patcher->layout.buffer_count; i++) {
+	for (uint32_t i = 0; !status && i < c->buffers.buffer_count; i++) {
 		nt_json_value *json = nt_json_at(nt_gltf_root_member(c->document, "buffers"), i);
 		if (c->companions[i])
 			status = nt_gltf_record(c->json, json, c->companions[i], interim, c->error);
 	}
 	if (!status)
-		status = nt_gltf_embedding_text(c, &text, &length);
+		status = nt_data_uris_text(&c->uris, &text, &length, c->error);
 	if (!status)
-		status = c->to_glb ? write_glb(c, &text, length, input, bin, sink) :
-				     nt_gltf_write_text(c, &text, sink);
+		status = c->to_glb ? write_glb(c, &text, length, bin, sink) :
+				     nt_data_uris_write(&c->uris, &text, sink, c->error);
 	nt_buffer_free(&text);
 	return status;
 }
 
-static nt_status write_main(nt_gltf_container *c, const nt_file *input, bool bin)
+static nt_status write_main(writing *c, bool bin)
 {
 	nt_sink *sink;
 	nt_status status = NT_OK;
-	if (nt_output_has_interim(c->output)) {
-		status = nt_output_add(c->output, c->options->path, NT_ROLE_INTERIM, &sink, c->error);
+	if (nt_output_has_interim(c->destination.output)) {
+		status = nt_output_add(c->destination.output, c->options->path, NT_ROLE_INTERIM, &sink, c->error);
 		if (!status)
-			status = write_document(c, input, bin, true, sink);
+			status = write_document(c, bin, true, sink);
 	}
-	return status ? status : write_document(c, input, bin, false, c->main);
+	return status ? status : write_document(c, bin, false, c->main);
 }
 
-/* The main file comes first, so that it is refused before anything is written. */
-static nt_status begin_main(nt_gltf_container *c)
+/* The output's files, all edits done. */
+static nt_status write_files(writing *c)
 {
-	c->companions = nt_arena_alloc(&c->arena, c->patcher->layout.buffer_count + 1, sizeof *c->companions);
+	bool bin;
+	const size_t count = c->buffers.buffer_count;
+	c->companions = nt_arena_alloc(c->arena, count, sizeof *c->companions);
 	if (!c->companions)
 		return nt_fail_memory(c->error);
-	memset(c->companions, 0, (c->patcher->layout.buffer_count + 1) * sizeof *c->companions);
-	c->in_place = nt_output_is_in_place(c->output, c->options->path);
-	return nt_output_add(c->output, c->options->path, NT_ROLE_MAIN, &c->main, c->error);
+	memset(c->companions, 0, count * sizeof *c->companions);
+	nt_status status = check_room(c);
+	if (!status)
+		status = settle_buffers(c, &bin);
+	if (!status)
+		status = write_main(c, bin);
+	free(c->uris.buffers);
+	return status;
 }
 
-nt_status nt_gltf_write_container(nt_gltf_patcher *patcher, nt_output *output)
+nt_status nt_gltf_write_document(nt_scene *scene, nt_buffer_edits *edits, const nt_write_options *options,
+	nt_output *output, nt_error *error)
 {
-	const nt_write_options *options = patcher->options;
-	nt_gltf_container c = {.patcher = patcher, .document = patcher->document,
-		.json = patcher->json, .options = options, .output = output, .error = patcher->error,
-		.to_glb = options->format == NT_FORMAT_GLB};
-	c.same_container = c.to_glb == c.document->is_glb;
+	nt_gltf *document = edits->document;
+	writing c = {.document = document, .json = document->json, .destination = {options, output, ""},
+		.options = options, .input = input_file(scene), .uris = {.relocated = &c.buffers},
+		.arena = &edits->arena, .error = error, .to_glb = options->format == NT_FORMAT_GLB,
+		.in_place = nt_output_is_in_place(output, options->path)};
+	c.same_container = c.to_glb == document->is_glb;
 	/* Standard output has no companions. */
 	c.embed = options->embed || (!c.to_glb && strcmp(options->path, "-") == 0);
-
-	const nt_file input = input_file(patcher->scene);
-	bool bin;
-	nt_status status = nt_gltf_link_prefix(&c.arena, options->path, c.document->path,
-		&c.link_prefix, c.error);
+	nt_status status = nt_gltf_link_prefix(c.arena, options->path, document->path, &c.destination.link_prefix, error);
 	if (!status)
-		status = check_first_buffer(&c);
+		status = check_first_buffer(&c, &edits->users);
 	if (!status)
 		status = protect_inputs(&c);
+	/* The main file comes first, so that it is refused before anything is written. */
 	if (!status)
-		status = begin_main(&c);
+		status = nt_output_add(output, options->path, NT_ROLE_MAIN, &c.main, error);
+
+	/* The last edits: images move into the document. */
+	nt_open_images images = {0};
 	if (!status)
-		status = nt_gltf_move_images(&c);
+		status = nt_gltf_move_images(scene, edits, &c.destination, &images, error);
 	if (!status)
-		status = nt_layout_finish(&patcher->layout, c.error);
+		status = nt_gltf_relocate(edits, &c.buffers, error);
 	if (!status)
-		status = check_room(&c);
-	if (!status)
-		status = settle_buffers(&c, &input, &bin);
-	if (!status)
-		status = write_main(&c, &input, bin);
-	for (size_t i = 0; i < c.image_count; i++)
-		nt_file_close(&c.images[i]);
-	free(c.images);
-	nt_arena_free(&c.arena);
+		status = write_files(&c);
+	nt_open_images_close(&images);
 	return status;
 }

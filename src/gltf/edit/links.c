@@ -1,0 +1,60 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * External files of a document, named from another folder.
+ */
+#include "gltf/edit/links.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "file/relative_path.h"
+#include "file/uri.h"
+
+const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length)
+{
+	const char *uri = nt_json_get_string(nt_json_find(object, "uri"), length);
+	return uri && !nt_uri_is_data(uri, *length) ? uri : NULL;
+}
+
+nt_status nt_gltf_link_prefix(nt_arena *arena, const char *from, const char *to, const char **prefix,
+	nt_error *error)
+{
+	nt_buffer from_folder = {0}, to_folder = {0}, way = {0};
+	if (nt_link_folder(&from_folder, from) && nt_link_folder(&to_folder, to)) {
+		if (to_folder.size != 1) /* the root's path ends in a slash already */
+			nt_buffer_text(&to_folder, "/");
+		if (!from_folder.failed && !to_folder.failed)
+			nt_link_uri(&way, from_folder.data, to_folder.data);
+	}
+	*prefix = nt_arena_text(arena, way.data ? way.data : "", way.size);
+	const bool failed = from_folder.failed || to_folder.failed || way.failed || !*prefix;
+	nt_buffer_free(&from_folder);
+	nt_buffer_free(&to_folder);
+	nt_buffer_free(&way);
+	return failed ? nt_fail_memory(error) : NT_OK;
+}
+
+/* Whether a URI is taken from the document's folder: not "/x", nor anything with a colon in its first
+ * segment, which is a scheme, a drive, or no URI at all (":"), and means the same from everywhere. */
+static bool is_relative(const char *uri, size_t length)
+{
+	size_t first = 0;
+	while (first < length && !strchr("/?#", uri[first]))
+		first++;
+	return length > 0 && uri[0] != '/' && !memchr(uri, ':', first);
+}
+
+nt_status nt_gltf_link(nt_json *json, nt_json_value *object, const char *prefix, nt_error *error)
+{
+	size_t length;
+	const char *uri = nt_gltf_external_uri(object, &length);
+	if (!uri || !*prefix || !is_relative(uri, length))
+		return NT_OK;
+	nt_buffer text = {0};
+	nt_buffer_text(&text, prefix);
+	nt_buffer_append(&text, uri, length);
+	if (!text.failed)
+		nt_json_set_string(json, nt_json_put(json, object, "uri"), text.data, text.size);
+	const bool failed = text.failed;
+	nt_buffer_free(&text);
+	return failed ? nt_fail_memory(error) : NT_OK;
+}
