@@ -22,7 +22,7 @@ static nt_status write_gltf(nt_scene *scene, const nt_write_options *options,
 	nt_output *output, nt_error *error)
 {
 	if (scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB)
-		return nt_gltf_patch(scene, options, output, error);
+		return nt_gltf_edit(scene, options, output, error);
 	return nt_gltf_compose(scene, options, output, error);
 }
 

@@ -12,6 +12,14 @@ bool nt_gltf_is_solved(const nt_mesh *mesh)
 	return mesh->split.vertex_tangents != NULL;
 }
 
+bool nt_gltf_has_solved(const nt_scene *scene)
+{
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		if (nt_gltf_is_solved(&scene->meshes[i]))
+			return true;
+	return false;
+}
+
 nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh)
 {
 	const nt_json_value *json =
@@ -65,14 +73,14 @@ static bool same_bytes(nt_gltf_accessor a, nt_gltf_accessor b)
 	return compare_accessors(&a, &b) == 0;
 }
 
-bool nt_gltf_find_canonical(nt_gltf *document, uint32_t *canonical, size_t accessor_count)
+bool nt_gltf_find_first_aliases(nt_gltf *document, uint32_t *first_alias, size_t accessor_count)
 {
 	nt_gltf_accessor *list = nt_alloc(accessor_count, sizeof *list);
 	if (!list)
 		return false;
 	size_t count = 0;
 	for (uint32_t i = 0; i < accessor_count; i++) {
-		canonical[i] = i;
+		first_alias[i] = i;
 		nt_gltf_accessor accessor;
 		if (nt_gltf_get_accessor(document, i, "", &accessor, NULL) == NT_OK &&
 			accessor.view != NT_NONE && !accessor.sparse_count)
@@ -82,7 +90,7 @@ bool nt_gltf_find_canonical(nt_gltf *document, uint32_t *canonical, size_t acces
 		qsort(list, count, sizeof *list, compare_accessors);
 	for (size_t i = 1; i < count; i++)
 		if (same_bytes(list[i], list[i - 1]))
-			canonical[list[i].index] = canonical[list[i - 1].index];
+			first_alias[list[i].index] = first_alias[list[i - 1].index];
 	free(list);
 	return true;
 }

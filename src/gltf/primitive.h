@@ -10,6 +10,9 @@
 /* Whether a mesh has tangents to be written. */
 bool nt_gltf_is_solved(const nt_mesh *mesh);
 
+/* Whether any of a scene has. */
+bool nt_gltf_has_solved(const nt_scene *scene);
+
 /* The primitive of a mesh in the document. */
 nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh);
 
@@ -19,7 +22,7 @@ typedef nt_status (*nt_gltf_visit)(void *context, nt_json_value *attributes, con
 nt_status nt_gltf_visit_attributes(const nt_json_value *primitive, size_t accessor_count,
 	nt_gltf_visit visit, void *context);
 
-/* Fills canonical [accessor_count]: the first accessor over the same bytes, for each. False: out of memory. */
-bool nt_gltf_find_canonical(nt_gltf *document, uint32_t *canonical, size_t accessor_count);
+/* Fills first_alias [accessor_count]: for each accessor the first over the same bytes. False: out of memory. */
+bool nt_gltf_find_first_aliases(nt_gltf *document, uint32_t *first_alias, size_t accessor_count);
 
 #endif

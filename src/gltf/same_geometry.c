@@ -23,7 +23,7 @@ typedef struct same_job {
 	const nt_scene *scene;
 	nt_gltf *document;
 	const nt_read_options *options;
-	uint32_t *canonical; /* [accessor_count] */
+	uint32_t *first_alias; /* [accessor_count] */
 	size_t accessor_count;
 	nt_buffer keys;      /* of all meshes, one behind the other */
 	size_t *begin;       /* [mesh_count + 1] where a mesh's key begins */
@@ -53,7 +53,7 @@ static void put_accessor(same_job *job, const nt_mesh *mesh, const nt_json_value
 	if (!reference) {
 		put_number(job, MISSING);
 	} else if (nt_json_get_uint64(reference, &accessor) && accessor < job->accessor_count) {
-		put_number(job, job->canonical[accessor]);
+		put_number(job, job->first_alias[accessor]);
 	} else {
 		put_number(job, FAULTY);
 		put_number(job, (uint64_t)(mesh - job->scene->meshes));
@@ -183,19 +183,19 @@ nt_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_
 	job.accessor_count = nt_json_count(nt_gltf_root_member(job.document, "accessors"));
 	while (job.table_size < 2 * wanted)
 		job.table_size *= 2;
-	job.canonical = nt_alloc(job.accessor_count, sizeof *job.canonical);
+	job.first_alias = nt_alloc(job.accessor_count, sizeof *job.first_alias);
 	job.begin = nt_alloc(scene->mesh_count + 1, sizeof *job.begin);
 	job.table = nt_alloc(job.table_size, sizeof *job.table);
 	nt_status status = NT_ERROR_MEMORY;
-	if (!job.canonical || !job.begin || !job.table ||
-		!nt_gltf_find_canonical(job.document, job.canonical, job.accessor_count)) {
+	if (!job.first_alias || !job.begin || !job.table ||
+		!nt_gltf_find_first_aliases(job.document, job.first_alias, job.accessor_count)) {
 		nt_fail_memory(error);
 	} else {
 		memset(job.table, 0xFF, job.table_size * sizeof *job.table);
 		status = find_all(&job, scene, error);
 	}
 	nt_buffer_free(&job.keys);
-	free(job.canonical);
+	free(job.first_alias);
 	free(job.begin);
 	free(job.table);
 	return status;

@@ -7,9 +7,10 @@
 
 #include "gltf/edit/append_items.h"
 
-/* Gives every accessor of the component its copied rows, and overridden accessors their new values;
- * `overrides` is sorted for that. decoded_too: what was decompressed by Draco goes into plain views. */
-nt_status nt_gltf_grow_attributes(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
-	nt_gltf_override *overrides, size_t override_count, bool decoded_too);
+/* Gives every accessor of the pool its copied elements, and overridden accessors their new values; `overrides` is
+ * sorted for that. buffer: of new views. decoded_too: what was decompressed by Draco goes into plain views. */
+nt_status nt_append_vertices(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
+	const nt_pool_vertices *vertices, nt_gltf_override *overrides, size_t override_count, bool decoded_too,
+	nt_error *error);
 
 #endif

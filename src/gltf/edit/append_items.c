@@ -1,51 +1,49 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The accessors of a component to which vertices are appended, and a record of the bytes that were edited for them.
+ * The accessors of a pool to which vertices are appended, and a record of the bytes that were edited for them.
  */
 #include "gltf/edit/append_items.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include "gltf/accessor.h"
-#include "gltf/primitive.h"
 #include "gltf/view.h"
 
-bool nt_gltf_note_edit(nt_gltf_growing *g, uint32_t buffer, uint64_t begin, uint64_t end)
+bool nt_append_note_edit(nt_appending *job, uint32_t buffer, uint64_t begin, uint64_t end)
 {
-	if (!nt_grow((void **)&g->edited, &g->edited_capacity, g->edited_count + 1, sizeof *g->edited))
+	if (!nt_grow((void **)&job->edited, &job->edited_capacity, job->edited_count + 1, sizeof *job->edited))
 		return false;
-	g->edited[g->edited_count++] = (nt_gltf_edited){buffer, begin, end};
+	job->edited[job->edited_count++] = (nt_edited_range){buffer, begin, end};
 	return true;
 }
 
-static nt_status add_item(nt_gltf_growing *g, uint32_t index)
+static nt_status add_target(nt_appending *job, uint32_t index)
 {
-	nt_gltf_patcher *p = g->patcher;
-	if (!nt_grow((void **)&g->items, &g->item_capacity, g->item_count + 1, sizeof *g->items))
-		return nt_fail_memory(p->error);
-	nt_gltf_item *added = &g->items[g->item_count];
-	*added = (nt_gltf_item){.clone = NT_NONE};
+	if (!nt_grow((void **)&job->targets, &job->target_capacity, job->target_count + 1, sizeof *job->targets))
+		return nt_fail_memory(job->error);
+	nt_append_target *added = &job->targets[job->target_count];
+	*added = (nt_append_target){.clone = NT_NONE};
 	nt_status status =
-		nt_gltf_get_accessor(p->document, index, "/accessors", &added->accessor, p->error);
+		nt_gltf_get_accessor(job->document, index, "/accessors", &added->accessor, job->error);
 	if (status)
 		return status;
-	if (added->accessor.count != g->component->rows.old_count) {
+	if (added->accessor.count != job->vertices->old_count) {
 		char pointer[NT_GLTF_POINTER];
 		snprintf(pointer, sizeof pointer, "/accessors/%u", index);
-		return nt_fail_pointer(p->error, NT_ERROR_INPUT, pointer,
+		return nt_fail_pointer(job->error, NT_ERROR_INPUT, pointer,
 			"%llu elements, but other attributes of the same primitives have %zu",
-			(unsigned long long)added->accessor.count, g->component->rows.old_count);
+			(unsigned long long)added->accessor.count, job->vertices->old_count);
 	}
 	if (added->accessor.view != NT_NONE) {
 		nt_gltf_view view;
-		status = nt_gltf_get_view(p->document, added->accessor.view, "", &view, p->error);
+		status = nt_gltf_get_view(job->document, added->accessor.view, "", &view, job->error);
 		if (status)
 			return status;
 		added->buffer = view.buffer;
 		added->begin = view.offset + added->accessor.offset;
 	}
-	g->item_count++;
-	p->own[p->sharing.canonical[index]] = g->component->number + 1;
+	job->target_count++;
+	job->own[job->pools->first_alias[index]] = true;
 	return NT_OK;
 }
 
@@ -54,13 +52,13 @@ static nt_status collect_attribute(void *context, nt_json_value *attributes, con
 {
 	(void)attributes;
 	(void)name;
-	nt_gltf_growing *g = context;
-	if (g->collecting_unsolved)
-		g->pinned[accessor] = true;
-	if (g->seen[accessor])
+	nt_appending *job = context;
+	if (job->collecting_unsolved)
+		job->pinned[accessor] = true;
+	if (job->seen[accessor])
 		return NT_OK;
-	g->seen[accessor] = true;
-	return add_item(g, accessor);
+	job->seen[accessor] = true;
+	return add_target(job, accessor);
 }
 
 static int compare_overrides(const void *a, const void *b)
@@ -69,29 +67,28 @@ static int compare_overrides(const void *a, const void *b)
 	return (x > y) - (x < y);
 }
 
-nt_status nt_gltf_collect_items(nt_gltf_growing *g, nt_gltf_override *overrides, size_t override_count)
+nt_status nt_append_collect(nt_appending *job, nt_gltf_override *overrides, size_t override_count)
 {
-	const nt_gltf_patcher *p = g->patcher;
+	const nt_vertex_pool *pool = job->vertices->pool;
 	nt_status status = NT_OK;
 	if (override_count)
 		qsort(overrides, override_count, sizeof *overrides, compare_overrides);
 	for (size_t i = 0; i < override_count; i++)
 		if (!overrides[i].values)
-			g->seen[overrides[i].accessor] = true;
-	const bool all = nt_gltf_added_rows(g) || g->decoded_too;
-	for (size_t i = 0; !status && all && i < g->component->member_count; i++) {
-		const nt_mesh *mesh = &p->scene->meshes[g->component->members[i]];
-		g->collecting_unsolved = g->component->rows.group_of[i] == NT_NONE;
-		status = nt_gltf_visit_attributes(nt_gltf_primitive_of(p->document, mesh),
-			p->sharing.accessor_count, collect_attribute, g);
+			job->seen[overrides[i].accessor] = true;
+	const bool all = nt_appended_count(job) || job->decoded_too;
+	for (size_t i = 0; !status && all && i < pool->user_count; i++) {
+		job->collecting_unsolved = !nt_pool_is_solved(pool, i);
+		status = nt_gltf_visit_attributes(nt_pool_primitive(pool, i), job->pools->accessor_count,
+			collect_attribute, job);
 	}
 	for (size_t i = 0; !status && i < override_count; i++) {
-		g->collecting_unsolved = false;
-		status = collect_attribute(g, NULL, "TANGENT", overrides[i].accessor);
+		job->collecting_unsolved = false;
+		status = collect_attribute(job, NULL, "TANGENT", overrides[i].accessor);
 	}
-	for (size_t i = 0; !status && override_count && i < g->item_count; i++) {
-		const nt_gltf_override key = {.accessor = g->items[i].accessor.index};
-		g->items[i].override =
+	for (size_t i = 0; !status && override_count && i < job->target_count; i++) {
+		const nt_gltf_override key = {.accessor = job->targets[i].accessor.index};
+		job->targets[i].override =
 			bsearch(&key, overrides, override_count, sizeof key, compare_overrides);
 	}
 	return status;

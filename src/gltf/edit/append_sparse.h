@@ -8,6 +8,6 @@
 #include "gltf/edit/append_items.h"
 
 /* Appends the rows that are copies of replaced ones to what a sparse accessor replaces. */
-nt_status nt_gltf_grow_sparse(nt_gltf_growing *growing, const nt_gltf_item *item);
+nt_status nt_append_sparse(nt_appending *appending, const nt_append_target *target);
 
 #endif

@@ -11,25 +11,65 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "gltf/accessor.h"
 #include "gltf/view.h"
 
 /* Of insertions, where a view's user is unknown: it may be data of an extension that wants 8-byte alignment
  * (EXT_structural_metadata does). */
 enum { CAREFUL_ALIGNMENT = 8 };
 
-nt_edited_buffer *nt_edits_of(nt_buffer_edits *edits, uint32_t buffer)
+/* ---- beginning ---- */
+
+typedef struct decompressing {
+	nt_gltf *document;
+	nt_error *error;
+} decompressing;
+
+static nt_status decompress_attribute(void *context, nt_json_value *attributes, const char *name,
+	uint32_t accessor)
 {
-	if (buffer < NT_GLTF_VIRTUAL)
-		return &edits->buffers[buffer];
-	/* views may be decompressed at any time; there is room for all of them */
-	const uint32_t number = buffer - NT_GLTF_VIRTUAL;
-	edits->virtuals[number].old_length = edits->document->virtuals[number].length;
-	return &edits->virtuals[number];
+	(void)attributes;
+	(void)name;
+	const decompressing *d = context;
+	nt_gltf_accessor found;
+	nt_gltf_view view = {.compression = NULL};
+	const nt_status status = nt_gltf_get_accessor(d->document, accessor, "/accessors", &found, d->error);
+	if (!status && found.view != NT_NONE)
+		nt_gltf_get_view(d->document, found.view, "", &view, NULL);
+	return status || !view.compression ? status :
+					     nt_gltf_decompress_view(d->document, found.view, d->error);
 }
 
-nt_status nt_edits_create(nt_buffer_edits *edits, nt_gltf *document, nt_error *error)
+static bool has_new_vertices(const nt_mesh *mesh)
 {
+	return nt_gltf_is_solved(mesh) &&
+		(mesh->split.source_count || mesh->vertex_count > mesh->source_vertex_count);
+}
+
+/* Vertices are appended to all attributes of a pool, whoever of its users wants them. */
+static nt_status decompress_pools(nt_gltf *document, const nt_vertex_pools *pools, nt_error *error)
+{
+	decompressing d = {document, error};
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < pools->count; i++) {
+		bool wanted = false;
+		for (uint32_t k = pools->first[i]; !wanted && k < pools->first[i + 1]; k++)
+			wanted = has_new_vertices(&pools->scene->meshes[pools->order[k]]);
+		for (uint32_t k = pools->first[i]; !status && wanted && k < pools->first[i + 1]; k++)
+			status = nt_gltf_visit_attributes(nt_gltf_primitive_of(document,
+				&pools->scene->meshes[pools->order[k]]), pools->accessor_count,
+				decompress_attribute, &d);
+	}
+	return status;
+}
+
+nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, nt_error *error)
+{
+	nt_gltf *document = pools->scene->source;
 	*edits = (nt_buffer_edits){.document = document, .alignment = NT_EDITS_ALIGNMENT};
+	const nt_status status = decompress_pools(document, pools, error);
+	if (status)
+		return status;
 	edits->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
 	edits->buffer_count = document->buffer_count;
 	edits->buffers = nt_calloc(document->buffer_count + 1, sizeof *edits->buffers);
@@ -37,7 +77,7 @@ nt_status nt_edits_create(nt_buffer_edits *edits, nt_gltf *document, nt_error *e
 	edits->is_free = nt_calloc(edits->view_count, sizeof *edits->is_free);
 	edits->free_views = nt_alloc(edits->view_count, sizeof *edits->free_views);
 	if (!edits->buffers || !edits->virtuals || !edits->is_free || !edits->free_views ||
-		!nt_byte_users_find(&edits->users, document)) {
+		!nt_byte_users_find(&edits->users, document, pools)) {
 		nt_edits_free(edits);
 		return nt_fail_memory(error);
 	}
@@ -68,6 +108,18 @@ void nt_edits_free(nt_buffer_edits *edits)
 	free(edits->users.list);
 	nt_arena_free(&edits->arena);
 	*edits = (nt_buffer_edits){0};
+}
+
+/* ---- edits ---- */
+
+nt_edited_buffer *nt_edits_of(nt_buffer_edits *edits, uint32_t buffer)
+{
+	if (buffer < NT_GLTF_VIRTUAL)
+		return &edits->buffers[buffer];
+	/* views may be decompressed at any time; there is room for all of them */
+	const uint32_t number = buffer - NT_GLTF_VIRTUAL;
+	edits->virtuals[number].old_length = edits->document->virtuals[number].length;
+	return &edits->virtuals[number];
 }
 
 nt_status nt_edits_replace(nt_buffer_edits *edits, uint32_t index, uint64_t at, uint64_t removed,

@@ -42,24 +42,27 @@ static inline bool nt_is_edited(const nt_edited_buffer *buffer)
 
 typedef struct nt_buffer_edits {
 	nt_gltf *document;
-	nt_arena arena;                 /* owns the new bytes */
-	nt_edited_buffer *buffers; /* [buffer_count]: the document's, and at most one new one */
+	nt_arena arena;             /* owns the new bytes */
+	nt_edited_buffer *buffers;  /* [buffer_count]: the document's, and at most one new one */
 	size_t buffer_count;
-	size_t view_count;              /* of the source */
+	size_t view_count;          /* of the source */
 	bool *is_free;              /* [view_count] what it held is gone: see nt_edits_release() */
 	uint32_t *free_views;       /* [free_count] those that nothing new has taken over */
 	size_t free_count;
 	nt_edited_buffer *virtuals; /* [view_count] of decompressed views */
-	nt_byte_users users;            /* of the source */
-	uint32_t alignment;             /* insertions are multiples of this */
+	nt_byte_users users;        /* of the source */
+	uint32_t alignment;         /* insertions are multiples of this */
 } nt_buffer_edits;
 
-/* Starts with no changes. Faulty parts of the document that nothing needs are passed over. */
-nt_status nt_edits_create(nt_buffer_edits *edits, nt_gltf *document, nt_error *error);
+/*
+ * Starts with no edits. Compressed views that vertices will be appended to are decompressed first: edits have to know
+ * them from the beginning. Faulty parts of the document that nothing needs are passed over.
+ */
+nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, nt_error *error);
 void nt_edits_free(nt_buffer_edits *edits);
 
 /* Replaces `removed` bytes of a source buffer by others, which must live as long as the edits. The
- * difference is padded with zeros to the edits's alignment. Edits must not overlap. */
+ * difference is padded with zeros to their alignment. Edits must not overlap. */
 nt_status nt_edits_replace(nt_buffer_edits *edits, uint32_t buffer, uint64_t at, uint64_t removed,
 	const unsigned char *bytes, size_t size, nt_error *error);
 

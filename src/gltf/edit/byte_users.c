@@ -30,11 +30,14 @@ static bool add_view_user(nt_byte_users *users, nt_gltf *document, uint32_t inde
 		accessor);
 }
 
-static bool add_accessor(nt_byte_users *users, nt_gltf *document, uint32_t index, bool *view_used)
+static bool add_accessor(nt_byte_users *users, nt_gltf *document, const nt_vertex_pools *pools, uint32_t index,
+	bool *view_used)
 {
 	nt_gltf_accessor a;
 	if (nt_gltf_get_accessor(document, index, "", &a, NULL) != NT_OK || a.count == 0)
 		return true;
+	if (index < pools->accessor_count)
+		index = pools->first_alias[index];
 	bool added = true;
 	if (a.view != NT_NONE)
 		added = add_view_user(users, document, a.view, a.offset,
@@ -109,14 +112,14 @@ static int compare_users(const void *a, const void *b)
 	return (x->accessor > y->accessor) - (x->accessor < y->accessor);
 }
 
-bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document)
+bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document, const nt_vertex_pools *pools)
 {
 	const size_t view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
 	const size_t accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
 	bool *view_used = nt_calloc(view_count, sizeof *view_used);
 	bool added = view_used != NULL;
 	for (size_t i = 0; added && i < accessor_count; i++)
-		added = add_accessor(users, document, (uint32_t)i, view_used);
+		added = add_accessor(users, document, pools, (uint32_t)i, view_used);
 	added = added && add_whole_views(users, document, view_used, view_count);
 	free(view_used);
 	if (!added)
@@ -147,13 +150,26 @@ static size_t users_before(const nt_byte_users *users, uint32_t buffer, uint64_t
 }
 
 bool nt_byte_users_foreign(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
-	const uint32_t *own, uint32_t mark)
+	const bool *own)
 {
 	for (size_t i = users_before(users, buffer, end); i-- > 0;) {
 		const nt_byte_user *user = &users->list[i];
 		if (user->buffer != buffer || user->reach <= begin)
 			break;
-		if (user->end > begin && (user->accessor == NT_NONE || own[user->accessor] != mark))
+		if (user->end > begin && (user->accessor == NT_NONE || !own[user->accessor]))
+			return true;
+	}
+	return false;
+}
+
+bool nt_byte_users_other(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
+	uint32_t accessor)
+{
+	for (size_t i = users_before(users, buffer, end); i-- > 0;) {
+		const nt_byte_user *user = &users->list[i];
+		if (user->buffer != buffer || user->reach <= begin)
+			break;
+		if (user->end > begin && user->accessor != accessor)
 			return true;
 	}
 	return false;

@@ -5,15 +5,14 @@
 #ifndef NT_GLTF_EDIT_BYTE_USERS_H
 #define NT_GLTF_EDIT_BYTE_USERS_H
 
-#include "gltf/document.h"
+#include "gltf/edit/vertex_pools.h"
 
 /* Bytes of a source buffer that something in the document refers to. */
 typedef struct nt_byte_user {
 	uint64_t begin, end;
 	uint64_t reach;    /* largest end of this and all users before it in the buffer */
 	uint32_t buffer;
-	uint32_t accessor; /* NT_NONE: an image, an extension, or an unknown user. Accessors over the same
-	                      bytes count as one: edit.c puts the first of them here */
+	uint32_t accessor; /* first alias; NT_NONE: an image, an extension, or an unknown user */
 } nt_byte_user;
 
 typedef struct nt_byte_users {
@@ -23,11 +22,15 @@ typedef struct nt_byte_users {
 } nt_byte_users;
 
 /* Faulty parts of the document are passed over. False: out of memory. */
-bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document);
+bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document, const nt_vertex_pools *pools);
 
-/* Whether something other than the accessors marked in own[] refers to bytes of [begin, end). */
+/* Whether something other than the accessors in own[], by first alias, refers to bytes of [begin, end). */
 bool nt_byte_users_foreign(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
-	const uint32_t *own, uint32_t mark);
+	const bool *own);
+
+/* Whether something other than one accessor, a first alias, does. */
+bool nt_byte_users_other(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
+	uint32_t accessor);
 
 /* How many things refer to bytes of [begin, end). */
 size_t nt_byte_users_count(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end);

@@ -48,33 +48,31 @@ static void put_floats(nt_gltf_recoding *r, const char *name, nt_draco_kind kind
 	nt_gltf_draco_add(r, name, attribute);
 }
 
-/* Rows of a decoded attribute with their copies. */
-static nt_status copy_attribute(nt_gltf_recoding *r, const nt_draco_attribute *from, const void **rows)
+/* Elements of a decoded attribute with their copies. */
+static nt_status copy_attribute(nt_gltf_recoding *r, const nt_draco_attribute *from, const void **elements)
 {
-	nt_gltf_patcher *p = r->patcher;
-	const nt_gltf_rows *all = &r->component->rows;
+	const nt_pool_vertices *all = r->vertices;
 	const size_t width = nt_draco_component_size(from->component_type) * (size_t)from->components;
-	unsigned char *out = nt_arena_alloc(p->arena, all->new_count, width);
+	unsigned char *out = nt_arena_alloc(r->arena, all->new_count, width);
 	if (!out)
-		return nt_fail_memory(p->error);
+		return nt_fail_memory(r->error);
 	memcpy(out, from->data, all->old_count * width);
 	for (size_t row = all->old_count; row < all->new_count; row++)
 		memcpy(out + row * width,
 			(const unsigned char *)from->data + all->sources[row - all->old_count] * width, width);
-	*rows = out;
+	*elements = out;
 	return NT_OK;
 }
 
 nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *r)
 {
-	nt_gltf_patcher *p = r->patcher;
 	const nt_json_value *ids = nt_json_find(r->extension, "attributes");
-	r->attributes = nt_arena_alloc(p->arena, nt_json_count(ids) + NT_GLTF_OWN_ATTRIBUTES,
+	r->attributes = nt_arena_alloc(r->arena, nt_json_count(ids) + NT_GLTF_OWN_ATTRIBUTES,
 		sizeof *r->attributes);
-	r->names = nt_arena_alloc(p->arena, nt_json_count(ids) + NT_GLTF_OWN_ATTRIBUTES,
+	r->names = nt_arena_alloc(r->arena, nt_json_count(ids) + NT_GLTF_OWN_ATTRIBUTES,
 		sizeof *r->names);
 	if (!r->attributes || !r->names)
-		return nt_fail_memory(p->error);
+		return nt_fail_memory(r->error);
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < nt_json_count(ids); i++) {
 		uint64_t id = 0;
@@ -90,17 +88,16 @@ nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *r)
 
 nt_status nt_gltf_draco_add_own(nt_gltf_recoding *r)
 {
-	nt_gltf_patcher *p = r->patcher;
-	const nt_gltf_rows *rows = &r->component->rows;
-	const int bits = nt_gltf_draco_bits(p->options, NT_DRACO_BITS_TANGENT);
+	const nt_pool_vertices *rows = r->vertices;
+	const int bits = nt_gltf_draco_bits(r->options, NT_DRACO_BITS_TANGENT);
 	nt_status status = NT_OK;
 	if (rows->normals[0])
 		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, rows->normals[0],
-			nt_gltf_draco_bits(p->options, NT_DRACO_BITS_NORMAL));
+			nt_gltf_draco_bits(r->options, NT_DRACO_BITS_NORMAL));
 	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, rows->tangents[0], bits);
-	if (p->options->bitangents) {
+	if (r->options->bitangents) {
 		float *bitangents;
-		status = nt_gltf_bitangents(p, r->component, 0, &bitangents);
+		status = nt_gltf_bitangents(r->vertices, 0, r->arena, &bitangents, r->error);
 		if (!status)
 			put_floats(r, "_BITANGENT", NT_DRACO_GENERIC, 3, bitangents, bits);
 	}
@@ -113,9 +110,9 @@ nt_status nt_gltf_draco_encode(const nt_gltf_recoding *r, nt_draco_method method
 {
 	const nt_draco_mesh mesh = {
 		.method = method,
-		.point_count = r->component->rows.new_count,
+		.point_count = r->vertices->new_count,
 		.face_count = r->mesh->corner_count / 3,
-		.indices = r->component->rows.indices[0],
+		.indices = r->vertices->indices[0],
 		.attributes = r->attributes,
 		.attribute_count = r->attribute_count,
 	};
@@ -125,39 +122,38 @@ nt_status nt_gltf_draco_encode(const nt_gltf_recoding *r, nt_draco_method method
 
 /* ---- in the document ---- */
 
-static void set_count(nt_gltf_patcher *p, uint64_t accessor, size_t count)
+static void set_count(nt_gltf *document, uint64_t accessor, size_t count)
 {
 	nt_json_value *json =
-		nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)accessor);
-	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "count"), count);
+		nt_json_at(nt_gltf_root_member(document, "accessors"), (size_t)accessor);
+	nt_json_set_uint64(document->json, nt_json_put(document->json, json, "count"), count);
 }
 
 void nt_gltf_draco_describe(nt_gltf_recoding *r, const nt_draco_block *block)
 {
-	nt_gltf_patcher *p = r->patcher;
-	nt_json *json = p->json;
+	nt_json *json = r->json;
 	nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
 	for (size_t i = 0; i < r->attribute_count; i++) {
 		const nt_draco_attribute *a = &r->attributes[i];
 		uint64_t accessor;
 		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &accessor))
-			set_count(p, accessor, block->point_count);
+			set_count(r->document, accessor, block->point_count);
 		else
 			nt_json_set_uint64(json, nt_json_put(json, attributes, r->names[i]),
-				nt_gltf_new_accessor(p, NT_NONE, NT_GLTF_FLOAT,
+				nt_gltf_new_accessor(json, NT_NONE, NT_GLTF_FLOAT,
 					a->components == 3 ? "VEC3" : "VEC4", block->point_count, false));
 		nt_json_set_uint64(json, nt_json_put(json, nt_json_put(json, r->extension, "attributes"),
 			r->names[i]), a->unique_id);
 	}
 	uint64_t indices, type = 0;
 	if (!nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &indices)) {
-		indices = nt_gltf_new_accessor(p, NT_NONE, NT_GLTF_UINT, "SCALAR", 0, false);
+		indices = nt_gltf_new_accessor(json, NT_NONE, NT_GLTF_UINT, "SCALAR", 0, false);
 		nt_json_set_uint64(json, nt_json_put(json, r->primitive, "indices"), indices);
 		r->extension = nt_gltf_draco_of(r->primitive); /* members have moved */
 	}
-	set_count(p, indices, block->face_count * 3);
+	set_count(r->document, indices, block->face_count * 3);
 	nt_json_value *accessor =
-		nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)indices);
+		nt_json_at(nt_gltf_root_member(r->document, "accessors"), (size_t)indices);
 	nt_json_get_uint64(nt_json_find(accessor, "componentType"), &type);
 	const size_t limit = type == NT_GLTF_UBYTE ? 0xFF : type == NT_GLTF_USHORT ? 0xFFFF : SIZE_MAX;
 	if (block->point_count > limit)
@@ -167,31 +163,30 @@ void nt_gltf_draco_describe(nt_gltf_recoding *r, const nt_draco_block *block)
 	nt_json_remove(json, accessor, "max");
 }
 
-bool nt_gltf_draco_release(nt_gltf_patcher *p, uint64_t view, size_t count)
+bool nt_gltf_draco_release(nt_vertex_pools *pools, uint64_t view, size_t count)
 {
-	p->sharing.block_users[view] -= (uint32_t)count;
-	return p->sharing.block_users[view] == 0;
+	pools->block_users[view] -= (uint32_t)count;
+	return pools->block_users[view] == 0;
 }
 
 nt_status nt_gltf_draco_store(nt_gltf_recoding *r, const nt_draco_block *block)
 {
-	nt_gltf_patcher *p = r->patcher;
-	unsigned char *bytes = nt_arena_alloc(p->arena, block->size, 1);
+	unsigned char *bytes = nt_arena_alloc(r->arena, block->size, 1);
 	if (!bytes)
-		return nt_fail_memory(p->error);
+		return nt_fail_memory(r->error);
 	memcpy(bytes, block->bytes, block->size);
 	nt_gltf_view view;
 	nt_status status = r->source ?
-		nt_gltf_get_view(p->document, r->view, "", &view, p->error) : NT_OK;
+		nt_gltf_get_view(r->document, r->view, "", &view, r->error) : NT_OK;
 	if (status)
 		return status;
-	if (r->source && nt_gltf_draco_release(p, r->view, r->component->member_count) &&
-		nt_byte_users_count(&p->edits.users, view.buffer, view.offset, view.offset + view.length) == 1)
-		return nt_edits_replace(&p->edits, view.buffer, view.offset, view.length, bytes,
-			block->size, p->error);
+	if (r->source && nt_gltf_draco_release(r->pools, r->view, r->vertices->pool->user_count) &&
+		nt_byte_users_count(&r->edits->users, view.buffer, view.offset, view.offset + view.length) == 1)
+		return nt_edits_replace(r->edits, view.buffer, view.offset, view.length, bytes,
+			block->size, r->error);
 	uint32_t number;
-	status = nt_edits_add_view(&p->edits, r->component->buffer, bytes, block->size, 0, 0, &number,
-		p->error);
-	nt_json_set_uint64(p->json, nt_json_put(p->json, r->extension, "bufferView"), number);
+	status = nt_edits_add_view(r->edits, r->buffer, bytes, block->size, 0, 0, &number,
+		r->error);
+	nt_json_set_uint64(r->json, nt_json_put(r->json, r->extension, "bufferView"), number);
 	return status;
 }

@@ -7,7 +7,7 @@
  * cannot have, extensions of the primitive), the sequential method keeps it. A primitive is left plain
  * where that would not do: accessors that somebody else uses too, sparse or compressed ones, strips.
  *
- * The rows leave the buffers. Views keep their numbers: one takes the block, others that are empty then share bytes
+ * The elements leave the buffers. Views keep their numbers: one takes the block, others that are empty then share bytes
  * with it.
  */
 #include "gltf/edit/draco_gather.h"
@@ -51,15 +51,14 @@ static int bits_of(const nt_write_options *options, const char *name)
 	}
 }
 
-/* Whether the rows of an accessor lie in the file as they are. */
+/* Whether the elements of an accessor lie in the file as they are. */
 static bool lies_plain(const nt_gltf_recoding *r, uint64_t index, nt_gltf_accessor *accessor)
 {
-	const nt_gltf_patcher *p = r->patcher;
 	nt_gltf_view view;
-	return index < p->sharing.accessor_count &&
-		nt_gltf_get_accessor(p->document, index, "", accessor, NULL) == NT_OK &&
+	return index < r->pools->accessor_count &&
+		nt_gltf_get_accessor(r->document, index, "", accessor, NULL) == NT_OK &&
 		accessor->view != NT_NONE && !accessor->sparse_count && !accessor->decoded &&
-		nt_gltf_get_view(p->document, accessor->view, "", &view, NULL) == NT_OK &&
+		nt_gltf_get_view(r->document, accessor->view, "", &view, NULL) == NT_OK &&
 		!view.compression && view.buffer < NT_GLTF_VIRTUAL;
 }
 
@@ -67,36 +66,32 @@ static bool lies_plain(const nt_gltf_recoding *r, uint64_t index, nt_gltf_access
 static bool is_vector(const nt_gltf_recoding *r, uint32_t accessor)
 {
 	const char *type = nt_json_get_string(nt_json_find(nt_json_at(
-		nt_gltf_root_member(r->patcher->document, "accessors"), accessor), "type"), NULL);
+		nt_gltf_root_member(r->document, "accessors"), accessor), "type"), NULL);
 	return type && !begins_with(type, "MAT");
 }
 
 static bool indices_are_own(const nt_gltf_recoding *r)
 {
-	const nt_gltf_patcher *p = r->patcher;
 	const nt_json_value *indices = nt_json_find(r->primitive, "indices");
 	nt_gltf_accessor accessor;
 	uint64_t index;
 	return !indices || (nt_json_get_uint64(indices, &index) && lies_plain(r, index, &accessor) &&
-		p->sharing.index_users[p->sharing.canonical[index]] == r->component->member_count);
+		r->pools->index_users[r->pools->first_alias[index]] == r->vertices->pool->user_count);
 }
 
 /* ---- gathering ---- */
 
-static nt_status tight_rows(nt_gltf_recoding *r, const nt_gltf_accessor *accessor, size_t width,
+static nt_status tight_elements(nt_gltf_recoding *r, const nt_gltf_accessor *accessor, size_t width,
 	const void **result)
 {
-	nt_gltf_patcher *p = r->patcher;
-	const nt_gltf_rows *all = &r->component->rows;
+	const size_t count = r->vertices->new_count;
 	const unsigned char *from;
-	unsigned char *out = nt_arena_alloc(p->arena, all->new_count, width);
+	unsigned char *out = nt_arena_alloc(r->arena, count, width);
 	if (!out)
-		return nt_fail_memory(p->error);
-	const nt_status status = nt_gltf_accessor_rows(p->document, accessor, &from, p->error);
-	for (size_t row = 0; !status && row < all->new_count; row++) {
-		const size_t source = row < all->old_count ? row : all->sources[row - all->old_count];
-		memcpy(out + row * width, from + source * accessor->stride, width);
-	}
+		return nt_fail_memory(r->error);
+	const nt_status status = nt_gltf_accessor_rows(r->document, accessor, &from, r->error);
+	for (size_t v = 0; !status && v < count; v++)
+		memcpy(out + v * width, from + nt_vertex_source(r->vertices, v) * accessor->stride, width);
 	*result = out;
 	return status;
 }
@@ -114,9 +109,9 @@ static bool is_in_block(const nt_gltf_recoding *r, const nt_json_value *attribut
 static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_t index)
 {
 	nt_gltf_accessor accessor;
-	if (!lies_plain(r, index, &accessor) || accessor.count != r->component->rows.old_count)
+	if (!lies_plain(r, index, &accessor) || accessor.count != r->vertices->old_count)
 		r->obstacle = "an attribute is sparse or compressed";
-	else if (r->patcher->sharing.foreign[r->patcher->sharing.canonical[index]])
+	else if (r->pools->foreign[r->pools->first_alias[index]])
 		r->obstacle = "something else uses its attributes";
 	if (r->obstacle)
 		return NT_OK;
@@ -131,9 +126,9 @@ static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_
 	nt_draco_attribute attribute = {.unique_id = (uint32_t)r->attribute_count,
 		.kind = kind_of(name), .component_type = (int)accessor.component_type,
 		.components = (int)accessor.components, .normalized = accessor.normalized,
-		.quantization = {.bits = is_float ? bits_of(r->patcher->options, name) : 0}};
+		.quantization = {.bits = is_float ? bits_of(r->options, name) : 0}};
 	const size_t width = (size_t)accessor.components * accessor.component_bytes;
-	const nt_status status = tight_rows(r, &accessor, width, &attribute.data);
+	const nt_status status = tight_elements(r, &accessor, width, &attribute.data);
 	if (!status)
 		nt_gltf_draco_add(r, name, attribute);
 	return status;
@@ -142,7 +137,7 @@ static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_
 /* How often an accessor is used inside of the block and outside of it. */
 typedef struct doubles {
 	const nt_gltf_recoding *recoding;
-	uint32_t canonical;
+	uint32_t first_alias;
 	size_t inside, outside;
 } doubles;
 
@@ -150,7 +145,7 @@ static nt_status count_use(void *context, nt_json_value *attributes, const char 
 	uint32_t accessor)
 {
 	doubles *d = context;
-	if (d->recoding->patcher->sharing.canonical[accessor] != d->canonical)
+	if (d->recoding->pools->first_alias[accessor] != d->first_alias)
 		return NT_OK;
 	if (is_in_block(d->recoding, attributes, name))
 		d->inside++;
@@ -171,14 +166,13 @@ static nt_status note_use(void *context, nt_json_value *attributes, const char *
 
 static bool has_doubles(const nt_gltf_recoding *r)
 {
-	const nt_gltf_patcher *p = r->patcher;
 	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
 	for (size_t i = 0; i < r->attribute_count; i++) {
 		uint64_t index;
 		if (!nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index))
 			return true;
-		doubles d = {.recoding = r, .canonical = p->sharing.canonical[index]};
-		nt_gltf_visit_attributes(r->primitive, p->sharing.accessor_count, count_use, &d);
+		doubles d = {.recoding = r, .first_alias = r->pools->first_alias[index]};
+		nt_gltf_visit_attributes(r->primitive, r->pools->accessor_count, count_use, &d);
 		if (d.inside != 1 || d.outside)
 			return true;
 	}
@@ -187,7 +181,6 @@ static bool has_doubles(const nt_gltf_recoding *r)
 
 nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r)
 {
-	nt_gltf_patcher *p = r->patcher;
 	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
 	const size_t count = nt_json_count(attributes);
 	uint64_t mode = 4;
@@ -198,28 +191,28 @@ nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r)
 		r->obstacle = "its indices are shared, sparse or compressed";
 	if (r->obstacle)
 		return NT_OK;
-	r->attributes = nt_arena_alloc(p->arena, count + NT_GLTF_OWN_ATTRIBUTES, sizeof *r->attributes);
-	r->names = nt_arena_alloc(p->arena, count + NT_GLTF_OWN_ATTRIBUTES, sizeof *r->names);
+	r->attributes = nt_arena_alloc(r->arena, count + NT_GLTF_OWN_ATTRIBUTES, sizeof *r->attributes);
+	r->names = nt_arena_alloc(r->arena, count + NT_GLTF_OWN_ATTRIBUTES, sizeof *r->names);
 	if (!r->attributes || !r->names)
-		return nt_fail_memory(p->error);
+		return nt_fail_memory(r->error);
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && !r->obstacle && i < count; i++) {
 		/* names outlive the members that are put in behind them */
 		const char *key = nt_json_key(attributes, i, NULL);
-		const char *name = nt_arena_text(p->arena, key, strlen(key));
+		const char *name = nt_arena_text(r->arena, key, strlen(key));
 		uint64_t index = UINT64_MAX;
 		nt_json_get_uint64(nt_json_at(attributes, i), &index);
-		status = name ? gather_attribute(r, name, index) : nt_fail_memory(p->error);
+		status = name ? gather_attribute(r, name, index) : nt_fail_memory(r->error);
 	}
 	if (status || r->obstacle)
 		return status;
 	if (has_doubles(r))
 		r->obstacle = "two of its attributes are one accessor";
-	nt_gltf_visit_attributes(r->primitive, p->sharing.accessor_count, note_use, r);
+	nt_gltf_visit_attributes(r->primitive, r->pools->accessor_count, note_use, r);
 	/* an extension that we do not know may number the vertices */
-	for (size_t m = 0; m < r->component->member_count; m++) {
-		const nt_json_value *extensions = nt_json_find(nt_gltf_primitive_of(p->document,
-			&p->scene->meshes[r->component->members[m]]), "extensions");
+	for (size_t m = 0; m < r->vertices->pool->user_count; m++) {
+		const nt_json_value *extensions = nt_json_find(nt_pool_primitive(r->vertices->pool, m),
+			"extensions");
 		for (size_t i = 0; i < nt_json_count(extensions); i++)
 			r->outside |= strcmp(nt_json_key(extensions, i, NULL), "KHR_materials_variants") != 0;
 	}
@@ -243,67 +236,67 @@ static int compare_runs(const void *a, const void *b)
 }
 
 /* The bytes of an accessor, which loses its view. */
-static run detach(nt_gltf_patcher *p, uint64_t index)
+static run detach(const nt_gltf_recoding *r, uint64_t index)
 {
 	nt_gltf_accessor a = {0};
 	nt_gltf_view view = {0};
-	nt_gltf_get_accessor(p->document, index, "", &a, NULL);
-	nt_gltf_get_view(p->document, a.view, "", &view, NULL);
-	nt_json_value *json = nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)index);
-	nt_json_remove(p->json, json, "bufferView");
-	nt_json_remove(p->json, json, "byteOffset");
+	nt_gltf_get_accessor(r->document, index, "", &a, NULL);
+	nt_gltf_get_view(r->document, a.view, "", &view, NULL);
+	nt_json_value *json = nt_json_at(nt_gltf_root_member(r->document, "accessors"), (size_t)index);
+	nt_json_remove(r->json, json, "bufferView");
+	nt_json_remove(r->json, json, "byteOffset");
 	const uint64_t begin = view.offset + a.offset;
 	return (run){begin, begin + (a.count - 1) * a.stride + a.element_bytes, view.offset,
 		view.offset + view.length, view.buffer, a.view};
 }
 
 /* Views that only runs lie in go as a whole. */
-static nt_status remove_views(nt_gltf_patcher *p, const run *runs, size_t count)
+static nt_status remove_views(const nt_gltf_recoding *r, const run *runs, size_t count)
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < count; i++) {
 		size_t users = 0;
 		for (size_t k = 0; k < count; k++)
 			users += runs[k].view == runs[i].view;
-		status = nt_edits_release_view(&p->edits, runs[i].view, users, p->error);
+		status = nt_edits_release_view(r->edits, runs[i].view, users, r->error);
 	}
 	return status;
 }
 
 /* Bytes that somebody else has a use for stay, those in which another view begins or ends, and those that are all of
  * some view. */
-static bool can_go(const nt_gltf_patcher *p, const run *runs, size_t count, uint64_t begin, uint64_t end)
+static bool can_go(const nt_byte_users *users, const run *runs, size_t count, uint64_t begin, uint64_t end)
 {
 	for (size_t i = 0; i < count; i++)
 		if (runs[i].view_begin > begin || runs[i].view_end < end ||
 			(runs[i].view_begin == begin && runs[i].view_end == end))
 			return false;
-	return nt_byte_users_count(&p->edits.users, runs->buffer, begin, end) == count;
+	return nt_byte_users_count(users, runs->buffer, begin, end) == count;
 }
 
-static nt_status remove_runs(nt_gltf_patcher *p, run *runs, size_t count)
+static nt_status remove_runs(const nt_gltf_recoding *r, run *runs, size_t count)
 {
 	if (count)
 		qsort(runs, count, sizeof *runs, compare_runs);
-	nt_status status = remove_views(p, runs, count);
+	nt_status status = remove_views(r, runs, count);
 	for (size_t first = 0, next; !status && first < count; first = next) {
 		const uint64_t begin = runs[first].begin;
 		uint64_t end = runs[first].end;
 		for (next = first + 1; next < count && runs[next].buffer == runs[first].buffer &&
 			runs[next].begin < end; next++)
 			end = runs[next].end > end ? runs[next].end : end;
-		if (!p->edits.is_free[runs[first].view] && can_go(p, runs + first, next - first, begin, end))
-			status = nt_edits_replace(&p->edits, runs[first].buffer, begin, end - begin,
-				(const unsigned char *)"", 0, p->error);
+		if (!r->edits->is_free[runs[first].view] && can_go(&r->edits->users, runs + first, next - first, begin, end))
+			status = nt_edits_replace(r->edits, runs[first].buffer, begin, end - begin,
+				(const unsigned char *)"", 0, r->error);
 	}
 	return status;
 }
 
 /* Bounds of what a decoder will see; quantization moves values. */
-static void bound_accessor(nt_gltf_patcher *p, uint64_t index, const nt_draco_attribute *decoded,
+static void bound_accessor(nt_gltf *document, uint64_t index, const nt_draco_attribute *decoded,
 	size_t count)
 {
-	nt_json_value *json = nt_json_at(nt_gltf_root_member(p->document, "accessors"), (size_t)index);
+	nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "accessors"), (size_t)index);
 	nt_json_value *bounds[2] = {nt_json_find(json, "min"), nt_json_find(json, "max")};
 	const float *rows = decoded->data;
 	const size_t width = (size_t)decoded->components;
@@ -315,17 +308,16 @@ static void bound_accessor(nt_gltf_patcher *p, uint64_t index, const nt_draco_at
 				if (b ? value > extreme : value < extreme)
 					extreme = value;
 			}
-			nt_json_set_double(p->json, nt_json_at(bounds[b], k), (double)extreme);
+			nt_json_set_double(document->json, nt_json_at(bounds[b], k), (double)extreme);
 		}
 }
 
 static nt_status set_bounds(nt_gltf_recoding *r, const nt_draco_block *block)
 {
-	nt_gltf_patcher *p = r->patcher;
 	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
 	nt_draco *decoded;
 	nt_status status =
-		nt_draco_decode(&decoded, block->bytes, block->size, 0, false, p->error);
+		nt_draco_decode(&decoded, block->bytes, block->size, 0, false, r->error);
 	if (status)
 		return status;
 	const nt_draco_mesh *mesh = nt_draco_get(decoded);
@@ -334,7 +326,7 @@ static nt_status set_bounds(nt_gltf_recoding *r, const nt_draco_block *block)
 		const nt_draco_attribute *found = nt_draco_find(mesh, r->attributes[i].unique_id);
 		if (found && r->attributes[i].quantization.bits &&
 			nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index))
-			bound_accessor(p, index, found, mesh->point_count);
+			bound_accessor(r->document, index, found, mesh->point_count);
 	}
 	nt_draco_free(decoded);
 	return status;
@@ -342,21 +334,20 @@ static nt_status set_bounds(nt_gltf_recoding *r, const nt_draco_block *block)
 
 static void put_extension(nt_gltf_recoding *r)
 {
-	nt_json *json = r->patcher->json;
+	nt_json *json = r->json;
 	nt_json_value *extensions = nt_json_put(json, r->primitive, "extensions");
 	r->extension = nt_json_put(json, extensions, "KHR_draco_mesh_compression");
 	nt_json_set_uint64(json, nt_json_put(json, r->extension, "bufferView"), 0);
 	nt_json_set_object(json, nt_json_put(json, r->extension, "attributes"));
-	nt_gltf_list_extension(r->patcher->document, "extensionsUsed", "KHR_draco_mesh_compression");
-	nt_gltf_list_extension(r->patcher->document, "extensionsRequired", "KHR_draco_mesh_compression");
+	nt_gltf_list_extension(r->document, "extensionsUsed", "KHR_draco_mesh_compression");
+	nt_gltf_list_extension(r->document, "extensionsRequired", "KHR_draco_mesh_compression");
 }
 
 nt_status nt_gltf_draco_take_out(nt_gltf_recoding *r, const nt_draco_block *block)
 {
-	nt_gltf_patcher *p = r->patcher;
-	run *runs = nt_arena_alloc(p->arena, r->attribute_count + 1, sizeof *runs);
+	run *runs = nt_arena_alloc(r->arena, r->attribute_count + 1, sizeof *runs);
 	if (!runs)
-		return nt_fail_memory(p->error);
+		return nt_fail_memory(r->error);
 	nt_status status = set_bounds(r, block);
 	if (status)
 		return status;
@@ -365,10 +356,10 @@ nt_status nt_gltf_draco_take_out(nt_gltf_recoding *r, const nt_draco_block *bloc
 	uint64_t index;
 	for (size_t i = 0; i < r->attribute_count; i++)
 		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index))
-			runs[count++] = detach(p, index);
+			runs[count++] = detach(r, index);
 	if (nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &index))
-		runs[count++] = detach(p, index);
-	status = remove_runs(p, runs, count);
+		runs[count++] = detach(r, index);
+	status = remove_runs(r, runs, count);
 	put_extension(r);
 	return status;
 }

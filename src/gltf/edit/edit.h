@@ -9,7 +9,7 @@
 #include "scene/scene.h"
 
 /* Writes the source document with tangents put in, and nothing else changed. */
-nt_status nt_gltf_patch(nt_scene *scene, const nt_write_options *options, nt_output *output,
+nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_output *output,
 	nt_error *error);
 
 #endif

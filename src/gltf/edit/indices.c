@@ -11,7 +11,6 @@
 #include "base/largest.h"
 #include "gltf/accessor.h"
 #include "gltf/edit/new_accessors.h"
-#include "gltf/primitive.h"
 #include "gltf/view.h"
 
 /* New indices of one primitive, encoded. */
@@ -43,8 +42,8 @@ static size_t tail_of(const nt_mesh *mesh, uint64_t mode, uint64_t old_count)
 			mesh->indices ? tail : 0;
 }
 
-static nt_status encode(nt_gltf_patcher *p, const nt_mesh *mesh, const uint32_t *indices, size_t tail,
-	uint32_t least, encoded *out)
+static nt_status encode(nt_arena *arena, const nt_mesh *mesh, const uint32_t *indices, size_t tail,
+	uint32_t least, encoded *out, nt_error *error)
 {
 	uint32_t highest = nt_largest(indices, mesh->corner_count, 1);
 	out->count = mesh->corner_count + tail;
@@ -58,9 +57,9 @@ static nt_status encode(nt_gltf_patcher *p, const nt_mesh *mesh, const uint32_t 
 		out->bytes = (const unsigned char *)indices;
 		return NT_OK;
 	}
-	unsigned char *bytes = nt_arena_alloc(p->arena, out->count, out->width);
+	unsigned char *bytes = nt_arena_alloc(arena, out->count, out->width);
 	if (!bytes)
-		return nt_fail_memory(p->error);
+		return nt_fail_memory(error);
 	for (size_t c = 0; c < out->count; c++)
 		store_index(bytes + c * out->width,
 			c < mesh->corner_count ? indices[c] : mesh->indices[c], out->width);
@@ -69,28 +68,28 @@ static nt_status encode(nt_gltf_patcher *p, const nt_mesh *mesh, const uint32_t 
 }
 
 /* A new accessor over a new view. */
-static nt_status add_indices(nt_gltf_patcher *p, uint32_t buffer, const encoded *new,
-	uint32_t *accessor)
+static nt_status add_indices(nt_buffer_edits *edits, uint32_t buffer, const encoded *new, uint32_t *accessor,
+	nt_error *error)
 {
 	uint32_t view;
-	const nt_status status = nt_edits_add_view(&p->edits, buffer, new->bytes, new->size,
-		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, p->error);
+	const nt_status status = nt_edits_add_view(edits, buffer, new->bytes, new->size,
+		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, error);
 	if (!status)
-		*accessor = nt_gltf_new_accessor(p, view, new->type, "SCALAR", new->count, false);
+		*accessor = nt_gltf_new_accessor(edits->document->json, view, new->type, "SCALAR", new->count, false);
 	return status;
 }
 
 /* Rewrites the accessor, all of whose users agree, where its bytes are its own; *done tells. */
-static nt_status replace_indices(nt_gltf_patcher *p, const nt_gltf_accessor *old, const encoded *new,
-	bool *done)
+static nt_status replace_indices(nt_buffer_edits *edits, uint32_t first_alias, const nt_gltf_accessor *old,
+	const encoded *new, bool *done, nt_error *error)
 {
 	*done = false;
-	const uint32_t canonical = p->sharing.canonical[old->index];
+	nt_json *json = edits->document->json;
 	const uint32_t old_width = nt_gltf_component_bytes(old->component_type);
 	if (old->view == NT_NONE || old->sparse_count || old->stride != old_width)
 		return NT_OK;
 	nt_gltf_view view;
-	nt_status status = nt_gltf_get_view(p->document, old->view, "", &view, p->error);
+	nt_status status = nt_gltf_get_view(edits->document, old->view, "", &view, error);
 	if (status)
 		return status;
 	/* A wider type wants its own alignment: zeros before it, if the view allows. */
@@ -98,155 +97,165 @@ static nt_status replace_indices(nt_gltf_patcher *p, const nt_gltf_accessor *old
 	const size_t pad = (size_t)((new->width - begin % new->width) % new->width);
 	if (view.offset % new->width || pad >= size || view.compression)
 		return NT_OK;
-	const uint32_t mark = NT_NONE;
-	const uint32_t kept = p->own[canonical];
-	p->own[canonical] = mark;
-	const bool foreign =
-		nt_byte_users_foreign(&p->edits.users, view.buffer, begin, begin + size, p->own, mark);
-	p->own[canonical] = kept;
-	if (foreign)
+	if (nt_byte_users_other(&edits->users, view.buffer, begin, begin + size, first_alias))
 		return NT_OK;
 	const unsigned char *bytes = new->bytes;
 	if (pad) {
-		unsigned char *padded = nt_arena_alloc(p->arena, new->size + pad, 1);
+		unsigned char *padded = nt_arena_alloc(&edits->arena, new->size + pad, 1);
 		if (!padded)
-			return nt_fail_memory(p->error);
+			return nt_fail_memory(error);
 		memset(padded, 0, pad);
 		memcpy(padded + pad, new->bytes, new->size);
 		bytes = padded;
 	}
-	nt_json_value *json = nt_json_at(nt_gltf_root_member(p->document, "accessors"), old->index);
+	nt_json_value *accessor = nt_json_at(nt_gltf_root_member(edits->document, "accessors"), old->index);
 	if (pad)
-		nt_json_set_uint64(p->json, nt_json_put(p->json, json, "byteOffset"), old->offset + pad);
+		nt_json_set_uint64(json, nt_json_put(json, accessor, "byteOffset"), old->offset + pad);
 	if (new->type != old->component_type)
-		nt_json_set_uint64(p->json, nt_json_put(p->json, json, "componentType"), new->type);
+		nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"), new->type);
 	if (new->count != old->count)
-		nt_json_set_uint64(p->json, nt_json_put(p->json, json, "count"), new->count);
-	nt_json_remove(p->json, json, "min");
-	nt_json_remove(p->json, json, "max");
+		nt_json_set_uint64(json, nt_json_put(json, accessor, "count"), new->count);
+	nt_json_remove(json, accessor, "min");
+	nt_json_remove(json, accessor, "max");
 	*done = true;
-	return nt_edits_replace(&p->edits, view.buffer, begin, size, bytes, new->size + pad, p->error);
+	return nt_edits_replace(edits, view.buffer, begin, size, bytes, new->size + pad, error);
 }
 
 /* Indices that were compressed get a view; the accessor stays. */
-static nt_status give_view(nt_gltf_patcher *p, uint32_t buffer, const nt_gltf_accessor *old,
-	const encoded *new, bool *done)
+static nt_status give_view(nt_buffer_edits *edits, uint32_t buffer, const nt_gltf_accessor *old,
+	const encoded *new, nt_error *error)
 {
-	*done = true;
+	nt_json *json = edits->document->json;
 	uint32_t view;
-	const nt_status status = nt_edits_add_view(&p->edits, buffer, new->bytes, new->size,
-		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, p->error);
-	nt_json_value *json = nt_json_at(nt_gltf_root_member(p->document, "accessors"), old->index);
-	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "bufferView"), view);
-	nt_json_remove(p->json, json, "byteOffset");
-	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "componentType"), new->type);
-	nt_json_set_uint64(p->json, nt_json_put(p->json, json, "count"), new->count);
-	nt_json_remove(p->json, json, "min");
-	nt_json_remove(p->json, json, "max");
+	const nt_status status = nt_edits_add_view(edits, buffer, new->bytes, new->size,
+		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, error);
+	nt_json_value *accessor = nt_json_at(nt_gltf_root_member(edits->document, "accessors"), old->index);
+	nt_json_set_uint64(json, nt_json_put(json, accessor, "bufferView"), view);
+	nt_json_remove(json, accessor, "byteOffset");
+	nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"), new->type);
+	nt_json_set_uint64(json, nt_json_put(json, accessor, "count"), new->count);
+	nt_json_remove(json, accessor, "min");
+	nt_json_remove(json, accessor, "max");
 	return status;
 }
 
-/* A member's new indices, to be found by members with the same ones. */
+/* A user's new indices, to be found by users with the same ones. */
 typedef struct written {
-	uint32_t index;        /* the accessor of the source; NT_NONE: there was none */
-	uint32_t old_accessor; /* that, canonical */
-	uint32_t accessor;     /* the one in the output; NT_NONE: not yet */
+	uint32_t index;       /* the accessor of the source; NT_NONE: there was none */
+	uint32_t first_alias; /* of that */
+	uint32_t accessor;    /* the one in the output; NT_NONE: not yet */
 } written;
 
-static bool equal_indices(const nt_gltf_patcher *p, const nt_gltf_cluster *component, size_t a, size_t b)
+static bool equal_indices(const nt_pool_vertices *vertices, size_t a, size_t b)
 {
-	const nt_mesh *x = &p->scene->meshes[component->members[a]];
-	const nt_mesh *y = &p->scene->meshes[component->members[b]];
-	const uint32_t *of_x = component->rows.indices[a], *of_y = component->rows.indices[b];
-	return x->corner_count == y->corner_count &&
-		(of_x == of_y || memcmp(of_x, of_y, x->corner_count * sizeof *of_x) == 0);
+	const size_t count = nt_pool_mesh(vertices->pool, a)->corner_count;
+	const uint32_t *of_a = vertices->indices[a], *of_b = vertices->indices[b];
+	return count == nt_pool_mesh(vertices->pool, b)->corner_count &&
+		(of_a == of_b || memcmp(of_a, of_b, count * sizeof *of_a) == 0);
 }
 
-/* Whether everybody who uses a member's indices will have the same new ones. */
-static bool all_users_agree(const nt_gltf_patcher *p, const nt_gltf_cluster *component, size_t member,
+/* Whether everybody who uses a user's indices will have the same new ones. */
+static bool all_users_agree(const nt_vertex_pools *pools, const nt_pool_vertices *vertices, size_t user,
 	const written *log)
 {
-	if (log[member].index == NT_NONE)
+	if (log[user].index == NT_NONE)
 		return false;
-	const uint32_t users = p->sharing.index_users[log[member].old_accessor];
+	const uint32_t users = pools->index_users[log[user].first_alias];
 	uint32_t agreeing = 1;
-	for (size_t i = 0; users > 1 && i < component->member_count; i++)
-		agreeing += i != member && component->rows.changed[i] && log[i].index == log[member].index &&
-			equal_indices(p, component, i, member);
+	for (size_t i = 0; users > 1 && i < vertices->pool->user_count; i++)
+		agreeing += i != user && vertices->changed[i] && log[i].index == log[user].index &&
+			equal_indices(vertices, i, user);
 	return agreeing == users;
 }
 
-static nt_status patch_member(nt_gltf_patcher *p, const nt_gltf_cluster *component, size_t member,
-	written *log)
+/* The accessor that a user before this one got for the same indices; NT_NONE: none. */
+static uint32_t find_written(const nt_pool_vertices *vertices, size_t user, const written *log)
 {
-	const nt_mesh *mesh = &p->scene->meshes[component->members[member]];
-	nt_json_value *primitive = nt_gltf_primitive_of(p->document, mesh);
-	const uint32_t index = log[member].index;
-	uint64_t mode = NT_GLTF_TRIANGLES, type;
-	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
-	nt_gltf_accessor old = {.count = mesh->source_vertex_count, .component_type = NT_GLTF_UBYTE};
-	nt_status status = NT_OK;
-	if (index != NT_NONE)
-		status = nt_gltf_get_accessor(p->document, index, mesh->place.pointer, &old, p->error);
-	if (status)
-		return status;
-	/* What Draco gave has 32 bits; the accessor may say less. */
-	if (old.decoded && nt_json_get_uint64(nt_json_find(nt_json_at(
-		nt_gltf_root_member(p->document, "accessors"), index), "componentType"), &type))
-		old.component_type = (uint32_t)type;
-	if (index == NT_NONE)
-		old.component_type = NT_GLTF_USHORT; /* the narrowest that all hardware likes */
+	for (size_t i = 0; i < user; i++)
+		if (vertices->changed[i] && log[i].accessor != NT_NONE &&
+			log[i].first_alias == log[user].first_alias && equal_indices(vertices, i, user))
+			return log[i].accessor;
+	return NT_NONE;
+}
 
-	uint32_t accessor = NT_NONE;
-	for (size_t i = 0; i < member && accessor == NT_NONE; i++)
-		if (component->rows.changed[i] && log[i].accessor != NT_NONE &&
-			log[i].old_accessor == log[member].old_accessor &&
-			equal_indices(p, component, i, member))
-			accessor = log[i].accessor;
-	if (accessor == NT_NONE) {
-		encoded new = {0};
-		bool done = false;
-		const bool own = all_users_agree(p, component, member, log);
-		status = encode(p, mesh, component->rows.indices[member],
-			tail_of(mesh, mode, old.count), old.component_type, &new);
-		if (!status && own && old.decoded)
-			status = give_view(p, component->buffer, &old, &new, &done);
-		else if (!status && own)
-			status = replace_indices(p, &old, &new, &done);
-		accessor = index;
-		if (!status && !done)
-			status = add_indices(p, component->buffer, &new, &accessor);
+/* What a user's indices are in the source: of the narrowest type that all hardware likes, where there are none. */
+static nt_status find_old(nt_gltf *document, const nt_mesh *mesh, uint32_t index, nt_gltf_accessor *old,
+	nt_error *error)
+{
+	*old = (nt_gltf_accessor){.count = mesh->source_vertex_count, .component_type = NT_GLTF_USHORT};
+	if (index == NT_NONE)
+		return NT_OK;
+	const nt_status status = nt_gltf_get_accessor(document, index, mesh->place.pointer, old, error);
+	/* What Draco gave has 32 bits; the accessor may say less. */
+	uint64_t type;
+	if (!status && old->decoded && nt_json_get_uint64(nt_json_find(nt_json_at(
+		nt_gltf_root_member(document, "accessors"), index), "componentType"), &type))
+		old->component_type = (uint32_t)type;
+	return status;
+}
+
+/* Writes the indices of a user: in place where that will do, else behind the end. */
+static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
+	const nt_pool_vertices *vertices, size_t user, uint64_t mode, written *log, nt_error *error)
+{
+	const nt_mesh *mesh = nt_pool_mesh(vertices->pool, user);
+	nt_gltf_accessor old;
+	encoded new = {0};
+	bool done = false;
+	nt_status status = find_old(edits->document, mesh, log[user].index, &old, error);
+	if (!status)
+		status = encode(&edits->arena, mesh, vertices->indices[user], tail_of(mesh, mode, old.count),
+			old.component_type, &new, error);
+	if (!status && all_users_agree(pools, vertices, user, log)) {
+		if (old.decoded)
+			status = give_view(edits, buffer, &old, &new, error);
+		else
+			status = replace_indices(edits, log[user].first_alias, &old, &new, &done, error);
+		done |= old.decoded != NULL;
 	}
+	log[user].accessor = log[user].index;
+	return status || done ? status : add_indices(edits, buffer, &new, &log[user].accessor, error);
+}
+
+static nt_status edit_user(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
+	const nt_pool_vertices *vertices, size_t user, written *log, nt_error *error)
+{
+	nt_json *json = edits->document->json;
+	uint64_t mode = NT_GLTF_TRIANGLES;
+	nt_json_get_uint64(nt_json_find(nt_pool_primitive(vertices->pool, user), "mode"), &mode);
+	log[user].accessor = find_written(vertices, user, log);
+	const nt_status status = log[user].accessor != NT_NONE ? NT_OK :
+		write_user(edits, buffer, pools, vertices, user, mode, log, error);
 	if (status)
 		return status;
-	log[member].accessor = accessor;
-	if (accessor != index)
-		nt_json_set_uint64(p->json, nt_json_put(p->json, primitive, "indices"), accessor);
+	nt_json_value *primitive = nt_pool_primitive(vertices->pool, user);
+	if (log[user].accessor != log[user].index)
+		nt_json_set_uint64(json, nt_json_put(json, primitive, "indices"), log[user].accessor);
 	if (mode != NT_GLTF_TRIANGLES)
-		nt_json_set_uint64(p->json, nt_json_put(p->json, primitive, "mode"), NT_GLTF_TRIANGLES);
+		nt_json_set_uint64(json, nt_json_put(json, primitive, "mode"), NT_GLTF_TRIANGLES);
 	return NT_OK;
 }
 
-nt_status nt_gltf_patch_indices(nt_gltf_patcher *p, const nt_gltf_cluster *component)
+nt_status nt_gltf_write_indices(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
+	const nt_pool_vertices *vertices, nt_error *error)
 {
-	written *log = nt_arena_alloc(p->arena, component->member_count, sizeof *log);
+	const nt_vertex_pool *pool = vertices->pool;
+	written *log = nt_arena_alloc(&edits->arena, pool->user_count, sizeof *log);
 	if (!log)
-		return nt_fail_memory(p->error);
-	nt_status status = NT_OK;
-	for (size_t i = 0; i < component->member_count; i++) {
-		const nt_json_value *primitive = nt_gltf_primitive_of(p->document,
-			&p->scene->meshes[component->members[i]]);
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < pool->user_count; i++) {
 		uint64_t index;
 		log[i] = (written){NT_NONE, NT_NONE, NT_NONE};
-		if (component->rows.changed[i] &&
-			nt_json_get_uint64(nt_json_find(primitive, "indices"), &index) &&
-			index < p->sharing.accessor_count) {
+		if (vertices->changed[i] &&
+			nt_json_get_uint64(nt_json_find(nt_pool_primitive(pool, i), "indices"), &index) &&
+			index < pools->accessor_count) {
 			log[i].index = (uint32_t)index;
-			log[i].old_accessor = p->sharing.canonical[index];
+			log[i].first_alias = pools->first_alias[index];
 		}
 	}
-	for (size_t i = 0; !status && i < component->member_count; i++)
-		if (component->rows.changed[i])
-			status = patch_member(p, component, i, log);
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < pool->user_count; i++)
+		if (vertices->changed[i])
+			status = edit_user(edits, buffer, pools, vertices, i, log, error);
 	return status;
 }

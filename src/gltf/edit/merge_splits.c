@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Rows of a component: the vertices its accessors will have.
+ * The vertices that the accessors of a pool will have: rows, to tell them from the vertices of the meshes.
  *
  * Each mesh was solved and split by itself. Where several of them use the same vertex, their tangents
  * for it may agree or not. The rows of a vertex form a chain that begins with its own; a mesh takes the
- * row of the chain where its group has the same tangent, else the first one where it has none yet, and
+ * row of the chain where its set has the same tangent, else the first one where it has none yet, and
  * appends a row where all have one; by hash, since a hub may have any number of rows. For a mesh that shares nothing
  * this is exactly its own split, which is taken as it is.
  */
@@ -15,19 +15,19 @@
 #include "base/hash_index.h"
 
 typedef struct merging {
-	nt_gltf_rows *rows;
+	nt_pool_vertices *rows;
 	size_t capacity;      /* of the arrays below, in rows */
 	uint32_t *source;     /* row of the source it is a copy of */
 	uint32_t *next;       /* next row of the same vertex, NT_NONE */
 	uint32_t *last;       /* [old_count] last row of each vertex */
-	uint32_t **first_free; /* [group][old_count] before this row the group has a tangent for all of a vertex */
-	nt_hash_index known;  /* defined rows behind the first of their vertex, of all groups */
-	float **tangents;     /* [group] */
-	float **normals;      /* [group] or NULL */
-	float ***morphs;      /* [group][morph_counts[group]] */
-	size_t *morph_counts; /* [group] */
-	bool **defined;       /* [group][row] */
-	bool *has_normals;    /* [group] */
+	uint32_t **first_free; /* [set][old_count] before this row the set has a tangent for all of a vertex */
+	nt_hash_index known;  /* defined rows behind the first of their vertex, of all sets */
+	float **tangents;     /* [set] */
+	float **normals;      /* [set] or NULL */
+	float ***morphs;      /* [set][morph_counts[set]] */
+	size_t *morph_counts; /* [set] */
+	bool **defined;       /* [set][row] */
+	bool *has_normals;    /* [set] */
 } merging;
 
 static bool grow(void **block, size_t old_count, size_t new_count, size_t size)
@@ -50,7 +50,7 @@ static bool reserve_rows(merging *m, size_t needed)
 	const size_t old = m->capacity, wanted = needed + needed / 4 + 64;
 	bool grown = grow((void **)&m->source, old, wanted, sizeof *m->source) &&
 		grow((void **)&m->next, old, wanted, sizeof *m->next);
-	for (size_t g = 0; grown && g < m->rows->group_count; g++) {
+	for (size_t g = 0; grown && g < m->rows->pool->sets.count; g++) {
 		grown = grow((void **)&m->tangents[g], old, wanted, 4 * sizeof(float)) &&
 			grow((void **)&m->defined[g], old, wanted, sizeof(bool));
 		if (grown && m->has_normals[g])
@@ -63,41 +63,41 @@ static bool reserve_rows(merging *m, size_t needed)
 	return grown;
 }
 
-static bool start_merging(merging *m, nt_gltf_rows *rows, const nt_scene *scene,
-	const uint32_t *members, size_t member_count)
+static bool start_merging(merging *m, nt_pool_vertices *rows)
 {
+	const nt_vertex_pool *pool = rows->pool;
 	*m = (merging){.rows = rows,
-		.tangents = nt_calloc(rows->group_count, sizeof *m->tangents),
-		.normals = nt_calloc(rows->group_count, sizeof *m->normals),
-		.defined = nt_calloc(rows->group_count, sizeof *m->defined),
-		.has_normals = nt_calloc(rows->group_count, sizeof *m->has_normals),
-		.morphs = nt_calloc(rows->group_count, sizeof *m->morphs),
-		.morph_counts = nt_calloc(rows->group_count, sizeof *m->morph_counts)};
+		.tangents = nt_calloc(rows->pool->sets.count, sizeof *m->tangents),
+		.normals = nt_calloc(rows->pool->sets.count, sizeof *m->normals),
+		.defined = nt_calloc(rows->pool->sets.count, sizeof *m->defined),
+		.has_normals = nt_calloc(rows->pool->sets.count, sizeof *m->has_normals),
+		.morphs = nt_calloc(rows->pool->sets.count, sizeof *m->morphs),
+		.morph_counts = nt_calloc(rows->pool->sets.count, sizeof *m->morph_counts)};
 	if (!m->tangents || !m->normals || !m->defined || !m->has_normals || !m->morphs ||
 		!m->morph_counts)
 		return false;
-	for (size_t i = 0; i < member_count; i++) {
-		const nt_mesh *mesh = &scene->meshes[members[i]];
-		const uint32_t group = rows->group_of[i];
-		if (group == NT_NONE)
+	for (size_t i = 0; i < pool->user_count; i++) {
+		const nt_mesh *mesh = nt_pool_mesh(pool, i);
+		const uint32_t set = pool->sets.of[i];
+		if (set == NT_NONE)
 			continue;
-		m->has_normals[group] |= mesh->normals_made;
-		if (m->morphs[group])
+		m->has_normals[set] |= mesh->normals_made;
+		if (m->morphs[set])
 			continue;
-		m->morphs[group] = nt_calloc(mesh->morph_count, sizeof *m->morphs[group]);
-		if (!m->morphs[group])
+		m->morphs[set] = nt_calloc(mesh->morph_count, sizeof *m->morphs[set]);
+		if (!m->morphs[set])
 			return false;
-		m->morph_counts[group] = mesh->morph_count;
+		m->morph_counts[set] = mesh->morph_count;
 	}
 	m->last = nt_alloc(rows->old_count, sizeof *m->last);
-	m->first_free = nt_calloc(rows->group_count, sizeof *m->first_free);
+	m->first_free = nt_calloc(rows->pool->sets.count, sizeof *m->first_free);
 	if (!m->last || !m->first_free || !reserve_rows(m, rows->old_count))
 		return false;
 	for (size_t i = 0; i < rows->old_count; i++) {
 		m->source[i] = m->last[i] = (uint32_t)i;
 		m->next[i] = NT_NONE;
 	}
-	for (size_t g = 0; g < rows->group_count; g++) {
+	for (size_t g = 0; g < rows->pool->sets.count; g++) {
 		m->first_free[g] = nt_alloc(rows->old_count, sizeof **m->first_free);
 		if (!m->first_free[g])
 			return false;
@@ -109,7 +109,7 @@ static bool start_merging(merging *m, nt_gltf_rows *rows, const nt_scene *scene,
 
 static void end_merging(merging *m)
 {
-	for (size_t g = 0; g < m->rows->group_count; g++) {
+	for (size_t g = 0; g < m->rows->pool->sets.count; g++) {
 		if (m->tangents)
 			free(m->tangents[g]);
 		if (m->normals)
@@ -150,67 +150,67 @@ static uint32_t source_row(const nt_mesh *mesh, uint32_t vertex)
 	return vertex;
 }
 
-static bool same_morphs(const merging *m, uint32_t group, uint32_t row, const nt_mesh *mesh,
+static bool same_morphs(const merging *m, uint32_t set, uint32_t row, const nt_mesh *mesh,
 	uint32_t vertex)
 {
-	for (size_t k = 0; k < m->morph_counts[group]; k++)
-		if (memcmp(m->morphs[group][k] + 3 * (size_t)row,
+	for (size_t k = 0; k < m->morph_counts[set]; k++)
+		if (memcmp(m->morphs[set][k] + 3 * (size_t)row,
 			mesh->morphs[k].vertex_tangents + 3 * (size_t)vertex, 3 * sizeof(float)) != 0)
 			return false;
 	return true;
 }
 
-static void define_morphs(merging *m, uint32_t group, uint32_t row, const nt_mesh *mesh, uint32_t vertex)
+static void define_morphs(merging *m, uint32_t set, uint32_t row, const nt_mesh *mesh, uint32_t vertex)
 {
-	for (size_t k = 0; k < m->morph_counts[group]; k++)
-		memcpy(m->morphs[group][k] + 3 * (size_t)row,
+	for (size_t k = 0; k < m->morph_counts[set]; k++)
+		memcpy(m->morphs[set][k] + 3 * (size_t)row,
 			mesh->morphs[k].vertex_tangents + 3 * (size_t)vertex, 3 * sizeof(float));
 }
 
-static uint64_t hash_row(uint32_t group, uint32_t source, const float *tangent)
+static uint64_t hash_row(uint32_t set, uint32_t source, const float *tangent)
 {
-	const uint32_t place[2] = {group, source};
+	const uint32_t place[2] = {set, source};
 	return nt_hash_bytes(nt_hash_bytes(0, place, sizeof place), tangent, 4 * sizeof *tangent);
 }
 
-static bool row_fits(const merging *m, uint32_t group, uint32_t row, const float *tangent,
+static bool row_fits(const merging *m, uint32_t set, uint32_t row, const float *tangent,
 	const float *normal)
 {
-	return memcmp(m->tangents[group] + 4 * (size_t)row, tangent, 4 * sizeof(float)) == 0 &&
-		(!normal || memcmp(m->normals[group] + 3 * (size_t)row, normal, 3 * sizeof(float)) == 0);
+	return memcmp(m->tangents[set] + 4 * (size_t)row, tangent, 4 * sizeof(float)) == 0 &&
+		(!normal || memcmp(m->normals[set] + 3 * (size_t)row, normal, 3 * sizeof(float)) == 0);
 }
 
-static void define_row(merging *m, uint32_t group, uint32_t row, const float *tangent,
+static void define_row(merging *m, uint32_t set, uint32_t row, const float *tangent,
 	const float *normal)
 {
-	m->defined[group][row] = true;
-	memcpy(m->tangents[group] + 4 * (size_t)row, tangent, 4 * sizeof(float));
+	m->defined[set][row] = true;
+	memcpy(m->tangents[set] + 4 * (size_t)row, tangent, 4 * sizeof(float));
 	if (normal)
-		memcpy(m->normals[group] + 3 * (size_t)row, normal, 3 * sizeof(float));
+		memcpy(m->normals[set] + 3 * (size_t)row, normal, 3 * sizeof(float));
 }
 
 /* A row of the vertex `source` that has the mesh's tangent already; NT_NONE: none. */
-static uint32_t find_row(const merging *m, const nt_mesh *mesh, uint32_t group, uint32_t vertex, uint32_t source,
+static uint32_t find_row(const merging *m, const nt_mesh *mesh, uint32_t set, uint32_t vertex, uint32_t source,
 	uint64_t hash, const float *normal)
 {
 	const float *tangent = mesh->split.vertex_tangents + 4 * (size_t)vertex;
-	if (m->defined[group][source] && row_fits(m, group, source, tangent, normal) &&
-		same_morphs(m, group, source, mesh, vertex))
+	if (m->defined[set][source] && row_fits(m, set, source, tangent, normal) &&
+		same_morphs(m, set, source, mesh, vertex))
 		return source;
 	uint32_t row;
 	for (size_t at = NT_HASH_BEGIN; (row = nt_hash_index_next(&m->known, hash, &at)) != NT_NONE;)
-		if (m->source[row] == source && m->defined[group][row] &&
-			row_fits(m, group, row, tangent, normal) && same_morphs(m, group, row, mesh, vertex))
+		if (m->source[row] == source && m->defined[set][row] &&
+			row_fits(m, set, row, tangent, normal) && same_morphs(m, set, row, mesh, vertex))
 			return row;
 	return NT_NONE;
 }
 
-/* The first row of a vertex that the group has no tangent for, appended where it has all; NT_NONE when memory
+/* The first row of a vertex that the set has no tangent for, appended where it has all; NT_NONE when memory
  * is exhausted. */
-static uint32_t find_free_row(merging *m, uint32_t group, uint32_t source)
+static uint32_t find_free_row(merging *m, uint32_t set, uint32_t source)
 {
-	uint32_t row = m->first_free[group][source];
-	while (row != NT_NONE && m->defined[group][row])
+	uint32_t row = m->first_free[set][source];
+	while (row != NT_NONE && m->defined[set][row])
 		row = m->next[row];
 	if (row == NT_NONE) {
 		if (m->rows->new_count >= NT_NONE - 1 || !reserve_rows(m, m->rows->new_count + 1))
@@ -221,29 +221,29 @@ static uint32_t find_free_row(merging *m, uint32_t group, uint32_t source)
 		m->next[m->last[source]] = row;
 		m->last[source] = row;
 	}
-	m->first_free[group][source] = row;
+	m->first_free[set][source] = row;
 	return row;
 }
 
 /* The row for a vertex of a mesh; NT_NONE when memory is exhausted. */
-static uint32_t take_row(merging *m, const nt_mesh *mesh, uint32_t group, uint32_t vertex)
+static uint32_t take_row(merging *m, const nt_mesh *mesh, uint32_t set, uint32_t vertex)
 {
 	const float *tangent = mesh->split.vertex_tangents + 4 * (size_t)vertex;
 	const float *normal =
 		mesh->normals_made ? mesh->normals + 3 * (size_t)before_split(mesh, vertex) : NULL;
 	const uint32_t source = source_row(mesh, vertex);
-	uint64_t hash = hash_row(group, source, tangent);
-	for (size_t k = 0; k < m->morph_counts[group]; k++)
+	uint64_t hash = hash_row(set, source, tangent);
+	for (size_t k = 0; k < m->morph_counts[set]; k++)
 		hash = nt_hash_bytes(hash, mesh->morphs[k].vertex_tangents + 3 * (size_t)vertex,
 			3 * sizeof(float));
-	uint32_t row = find_row(m, mesh, group, vertex, source, hash, normal);
+	uint32_t row = find_row(m, mesh, set, vertex, source, hash, normal);
 	if (row != NT_NONE)
 		return row;
-	row = find_free_row(m, group, source);
+	row = find_free_row(m, set, source);
 	if (row == NT_NONE || (row != source && !nt_hash_index_add(&m->known, hash, row)))
 		return NT_NONE;
-	define_row(m, group, row, tangent, normal);
-	define_morphs(m, group, row, mesh, vertex);
+	define_row(m, set, row, tangent, normal);
+	define_morphs(m, set, row, mesh, vertex);
 	return row;
 }
 
@@ -254,7 +254,7 @@ static uint32_t split_vertex(const nt_mesh *mesh, size_t corner)
 	return indices ? indices[corner] : (uint32_t)corner;
 }
 
-static bool merge_mesh(merging *m, const nt_mesh *mesh, uint32_t group, uint32_t *indices)
+static bool merge_mesh(merging *m, const nt_mesh *mesh, uint32_t set, uint32_t *indices)
 {
 	const size_t vertex_count = mesh->vertex_count + mesh->split.source_count;
 	uint32_t *row_of = nt_alloc(vertex_count, sizeof *row_of);
@@ -268,7 +268,7 @@ static bool merge_mesh(merging *m, const nt_mesh *mesh, uint32_t group, uint32_t
 	for (uint32_t v = 0; merged && v < vertex_count; v++) {
 		if (row_of[v] != (uint32_t)USED)
 			continue;
-		row_of[v] = take_row(m, mesh, group, v);
+		row_of[v] = take_row(m, mesh, set, v);
 		merged = row_of[v] != NT_NONE;
 	}
 	for (size_t c = 0; merged && c < mesh->corner_count; c++)
@@ -277,43 +277,43 @@ static bool merge_mesh(merging *m, const nt_mesh *mesh, uint32_t group, uint32_t
 	return merged;
 }
 
-/* Rows that no corner of a group uses get the tangent that splitting gave them, copies that of the row
+/* Rows that no corner of a set uses get the tangent that splitting gave them, copies that of the row
  * they copy. */
-static void fill_unused(merging *m, const nt_mesh *mesh, uint32_t group)
+static void fill_unused(merging *m, const nt_mesh *mesh, uint32_t set)
 {
 	for (size_t row = 0; row < m->rows->new_count; row++) {
-		if (m->defined[group][row])
+		if (m->defined[set][row])
 			continue;
 		const uint32_t source = m->source[row];
-		const bool own = row < m->rows->old_count || !m->defined[group][source];
+		const bool own = row < m->rows->old_count || !m->defined[set][source];
 		const float *tangent = own ? mesh->split.vertex_tangents + 4 * (size_t)source :
-					     m->tangents[group] + 4 * (size_t)source;
+					     m->tangents[set] + 4 * (size_t)source;
 		const float *normal = NULL;
-		if (m->has_normals[group])
+		if (m->has_normals[set])
 			normal = own ? mesh->normals + 3 * (size_t)source :
-				       m->normals[group] + 3 * (size_t)source;
-		define_row(m, group, (uint32_t)row, tangent, normal);
-		for (size_t k = 0; k < m->morph_counts[group]; k++)
-			memcpy(m->morphs[group][k] + 3 * row,
+				       m->normals[set] + 3 * (size_t)source;
+		define_row(m, set, (uint32_t)row, tangent, normal);
+		for (size_t k = 0; k < m->morph_counts[set]; k++)
+			memcpy(m->morphs[set][k] + 3 * row,
 				own ? mesh->morphs[k].vertex_tangents + 3 * (size_t)source :
-				      m->morphs[group][k] + 3 * (size_t)source, 3 * sizeof(float));
+				      m->morphs[set][k] + 3 * (size_t)source, 3 * sizeof(float));
 	}
 }
 
 /* Hands the results to the arena. */
 static bool keep_rows(merging *m, nt_arena *arena)
 {
-	nt_gltf_rows *rows = m->rows;
+	nt_pool_vertices *rows = m->rows;
 	rows->sources = nt_arena_alloc(arena, rows->new_count - rows->old_count, sizeof(uint32_t));
-	rows->tangents = nt_arena_alloc(arena, rows->group_count, sizeof *rows->tangents);
-	rows->normals = nt_arena_alloc(arena, rows->group_count, sizeof *rows->normals);
-	rows->morphs = nt_arena_alloc(arena, rows->group_count, sizeof *rows->morphs);
+	rows->tangents = nt_arena_alloc(arena, rows->pool->sets.count, sizeof *rows->tangents);
+	rows->normals = nt_arena_alloc(arena, rows->pool->sets.count, sizeof *rows->normals);
+	rows->morphs = nt_arena_alloc(arena, rows->pool->sets.count, sizeof *rows->morphs);
 	if (!rows->sources || !rows->tangents || !rows->normals || !rows->morphs)
 		return false;
 	for (size_t i = rows->old_count; i < rows->new_count; i++)
 		rows->sources[i - rows->old_count] = m->source[i];
 	bool kept = true;
-	for (size_t g = 0; g < rows->group_count; g++) {
+	for (size_t g = 0; g < rows->pool->sets.count; g++) {
 		rows->tangents[g] = m->tangents[g];
 		rows->normals[g] = m->normals[g];
 		m->tangents[g] = m->normals[g] = NULL;
@@ -337,61 +337,59 @@ static bool same_triangles(const nt_mesh *mesh, const uint32_t *indices)
 	return true;
 }
 
-/* The member of the component that a mesh shares its geometry with: members are in the order of their
- * numbers. NT_NONE: none, or of another component. */
-static uint32_t find_same(const nt_scene *scene, const uint32_t *members, size_t member_count,
-	const nt_mesh *mesh)
+/* The user that a mesh shares its geometry with: users are in the order of their numbers. NT_NONE: none, or of another
+ * pool. */
+static uint32_t find_same(const nt_vertex_pool *pool, const nt_mesh *mesh)
 {
-	size_t low = 0, high = member_count;
-	const uint32_t wanted = mesh->same_as ? (uint32_t)(mesh->same_as - scene->meshes) : NT_NONE;
+	size_t low = 0, high = pool->user_count;
+	const uint32_t wanted = mesh->same_as ? (uint32_t)(mesh->same_as - pool->scene->meshes) : NT_NONE;
 	while (low < high) {
 		const size_t middle = low + (high - low) / 2;
-		if (members[middle] < wanted)
+		if (pool->users[middle] < wanted)
 			low = middle + 1;
 		else
 			high = middle;
 	}
-	return low < member_count && members[low] == wanted ? (uint32_t)low : NT_NONE;
+	return low < pool->user_count && pool->users[low] == wanted ? (uint32_t)low : NT_NONE;
 }
 
-static bool merge_members(merging *m, const nt_scene *scene, const uint32_t *members,
-	size_t member_count, nt_arena *arena)
+static bool merge_users(merging *m, nt_arena *arena)
 {
-	nt_gltf_rows *rows = m->rows;
-	for (size_t i = 0; i < member_count; i++) {
-		const nt_mesh *mesh = &scene->meshes[members[i]];
+	nt_pool_vertices *rows = m->rows;
+	const nt_vertex_pool *pool = rows->pool;
+	for (size_t i = 0; i < pool->user_count; i++) {
+		const nt_mesh *mesh = nt_pool_mesh(pool, i);
 		rows->indices[i] = NULL;
 		rows->changed[i] = false;
-		if (rows->group_of[i] == NT_NONE)
+		if (!nt_pool_is_solved(pool, i))
 			continue;
-		const uint32_t same = find_same(scene, members, member_count, mesh);
+		const uint32_t same = find_same(pool, mesh);
 		if (same != NT_NONE) {
 			rows->indices[i] = rows->indices[same];
 			rows->changed[i] = rows->changed[same];
 			continue;
 		}
 		rows->indices[i] = nt_arena_alloc(arena, mesh->corner_count, sizeof(uint32_t));
-		if (!rows->indices[i] || !merge_mesh(m, mesh, rows->group_of[i], rows->indices[i]))
+		if (!rows->indices[i] || !merge_mesh(m, mesh, pool->sets.of[i], rows->indices[i]))
 			return false;
 		/* normals that were made may have given the mesh indices of its own */
 		rows->changed[i] = mesh->vertex_count > mesh->source_vertex_count ||
 			!same_triangles(mesh, rows->indices[i]);
 	}
-	for (size_t i = 0; i < member_count; i++)
-		if (rows->group_of[i] != NT_NONE)
-			fill_unused(m, &scene->meshes[members[i]], rows->group_of[i]);
+	for (size_t i = 0; i < pool->user_count; i++)
+		if (nt_pool_is_solved(pool, i))
+			fill_unused(m, nt_pool_mesh(pool, i), pool->sets.of[i]);
 	return true;
 }
 
-/* A component's only solved mesh, which others may be the same as; NULL where there are several, or where rows
+/* A pool's only solved mesh, which others may be the same as; NULL where there are several, or where vertices
  * are more than its split. */
-static const nt_mesh *lone_mesh(const nt_gltf_rows *rows, const nt_scene *scene, const uint32_t *members,
-	size_t member_count)
+static const nt_mesh *lone_mesh(const nt_vertex_pool *pool)
 {
 	const nt_mesh *lone = NULL;
-	for (size_t i = 0; i < member_count; i++) {
-		const nt_mesh *mesh = &scene->meshes[members[i]];
-		if (rows->group_of[i] == NT_NONE || (lone && mesh->same_as == lone))
+	for (size_t i = 0; i < pool->user_count; i++) {
+		const nt_mesh *mesh = nt_pool_mesh(pool, i);
+		if (!nt_pool_is_solved(pool, i) || (lone && mesh->same_as == lone))
 			continue;
 		if (lone || mesh->normals_made || mesh->morph_count ||
 			mesh->vertex_count != mesh->source_vertex_count)
@@ -412,9 +410,9 @@ static uint32_t *split_triangles(const nt_mesh *mesh, nt_arena *arena)
 	return indices;
 }
 
-/* Rows of a mesh that shares nothing: its split as it stands, borrowed from the scene. Merging would come
+/* Vertices of a mesh that shares nothing: its split as it stands, borrowed from the scene. Merging would come
  * to the same in a fifth of the time that the whole conversion of a million triangles takes. */
-static bool borrow_rows(nt_gltf_rows *rows, const nt_mesh *mesh, size_t member_count, nt_arena *arena)
+static bool borrow_split(nt_pool_vertices *rows, const nt_mesh *mesh, nt_arena *arena)
 {
 	rows->new_count = rows->old_count + mesh->split.source_count;
 	rows->sources = mesh->split.sources;
@@ -428,22 +426,21 @@ static bool borrow_rows(nt_gltf_rows *rows, const nt_mesh *mesh, size_t member_c
 	rows->normals[0] = NULL;
 	rows->morphs[0] = NULL;
 	uint32_t *triangles = split_triangles(mesh, arena);
-	for (size_t i = 0; i < member_count; i++) {
-		const bool solved = rows->group_of[i] != NT_NONE;
+	for (size_t i = 0; i < rows->pool->user_count; i++) {
+		const bool solved = nt_pool_is_solved(rows->pool, i);
 		rows->indices[i] = solved ? triangles : NULL;
 		rows->changed[i] = solved && mesh->split.source_count > 0;
 	}
 	return triangles != NULL;
 }
 
-/* All meshes of a component have the same number of vertices in a sound document. */
-static nt_status check_counts(nt_gltf_rows *rows, const nt_scene *scene, const uint32_t *members,
-	size_t member_count, nt_error *error)
+/* All users of a pool have the same number of vertices in a sound document. */
+static nt_status check_counts(nt_pool_vertices *rows, nt_error *error)
 {
 	bool first = true;
-	for (size_t i = 0; i < member_count; i++) {
-		const nt_mesh *mesh = &scene->meshes[members[i]];
-		if (rows->group_of[i] == NT_NONE)
+	for (size_t i = 0; i < rows->pool->user_count; i++) {
+		const nt_mesh *mesh = nt_pool_mesh(rows->pool, i);
+		if (!nt_pool_is_solved(rows->pool, i))
 			continue;
 		if (!first && mesh->source_vertex_count != rows->old_count)
 			return nt_fail_pointer(error, NT_ERROR_INPUT, mesh->place.pointer,
@@ -455,29 +452,22 @@ static nt_status check_counts(nt_gltf_rows *rows, const nt_scene *scene, const u
 	return NT_OK;
 }
 
-nt_status nt_gltf_merge_rows(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
-	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count, nt_arena *arena,
+nt_status nt_merge_splits(nt_pool_vertices *rows, const nt_vertex_pool *pool, nt_arena *arena,
 	nt_error *error)
 {
-	*rows = (nt_gltf_rows){
-		.group_of = nt_arena_alloc(arena, member_count, sizeof *rows->group_of),
-		.group_first = nt_arena_alloc(arena, member_count, sizeof *rows->group_first),
-		.next_of = nt_arena_alloc(arena, member_count, sizeof *rows->next_of),
-		.indices = nt_arena_alloc(arena, member_count, sizeof *rows->indices),
-		.changed = nt_arena_alloc(arena, member_count, sizeof *rows->changed),
-	};
-	if (!rows->group_of || !rows->group_first || !rows->next_of || !rows->indices || !rows->changed ||
-		!nt_gltf_find_groups(rows, document, scene, sharing, members, member_count))
+	*rows = (nt_pool_vertices){.pool = pool,
+		.indices = nt_arena_alloc(arena, pool->user_count, sizeof *rows->indices),
+		.changed = nt_arena_alloc(arena, pool->user_count, sizeof *rows->changed)};
+	if (!rows->indices || !rows->changed)
 		return nt_fail_memory(error);
-	nt_status status = check_counts(rows, scene, members, member_count, error);
+	nt_status status = check_counts(rows, error);
 	if (status)
 		return status;
-	const nt_mesh *lone = lone_mesh(rows, scene, members, member_count);
+	const nt_mesh *lone = lone_mesh(pool);
 	if (lone)
-		return borrow_rows(rows, lone, member_count, arena) ? NT_OK : nt_fail_memory(error);
+		return borrow_split(rows, lone, arena) ? NT_OK : nt_fail_memory(error);
 	merging m;
-	const bool merged = start_merging(&m, rows, scene, members, member_count) &&
-		merge_members(&m, scene, members, member_count, arena) && keep_rows(&m, arena);
+	const bool merged = start_merging(&m, rows) && merge_users(&m, arena) && keep_rows(&m, arena);
 	end_merging(&m);
 	return merged ? NT_OK : nt_fail_memory(error);
 }

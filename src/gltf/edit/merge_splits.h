@@ -1,17 +1,34 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Rows of a component: see merge_splits.c.
+ * The vertices of a pool after all splits: see merge_splits.c.
  */
 #ifndef NT_GLTF_EDIT_MERGE_SPLITS_H
 #define NT_GLTF_EDIT_MERGE_SPLITS_H
 
 #include "gltf/edit/vertex_pools.h"
 
-/* Merges the splits of a component's meshes: a vertex gets one row for each tangent (and made normal)
- * that any of them wants. members are mesh numbers. Everything is in the arena,
- * or borrowed from the scene. */
-nt_status nt_gltf_merge_rows(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
-	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count, nt_arena *arena,
+typedef struct nt_pool_vertices {
+	const nt_vertex_pool *pool;
+	size_t old_count;   /* of the source */
+	size_t new_count;
+	uint32_t *sources;  /* [new_count - old_count] vertex of the source */
+	float **tangents;   /* [set][new_count][4] */
+	float **normals;    /* [set][new_count][3]: NULL where normals were not made */
+	float ***morphs;    /* [set][morph count of its meshes][new_count][3] */
+	uint32_t **indices; /* [user][corner count]; NULL: not solved */
+	bool *changed;      /* [user] indices differ from the source's triangles */
+	bool borrowed;      /* sources, tangents and indices are the scene's: do not write to them */
+} nt_pool_vertices;
+
+/* The vertex of the source whose attributes a vertex has. */
+static inline size_t nt_vertex_source(const nt_pool_vertices *vertices, size_t vertex)
+{
+	return vertex < vertices->old_count ? vertex : vertices->sources[vertex - vertices->old_count];
+}
+
+/* Merges the splits of a pool's users: a vertex of the source becomes one for each tangent (and made normal) that any of
+ * them wants. The pool has a set. Everything is in the arena, or borrowed from the scene. */
+nt_status nt_merge_splits(nt_pool_vertices *vertices, const nt_vertex_pool *pool, nt_arena *arena,
 	nt_error *error);
 
 #endif

@@ -5,29 +5,30 @@
 #ifndef NT_GLTF_EDIT_OLD_TANGENTS_H
 #define NT_GLTF_EDIT_OLD_TANGENTS_H
 
-#include "gltf/edit/editor.h"
+#include "gltf/edit/buffer_edits.h"
 
-/* TANGENT accessors that a group's meshes have and nobody else uses. */
+/* TANGENT accessors that a set's meshes have and nobody else uses. */
 typedef struct nt_gltf_old_tangents {
 	uint32_t *accessors; /* [count]; none: a new one is appended */
 	size_t count;
-	bool in_place;       /* the new rows go where the old ones are */
+	bool in_place;       /* the new elements go where the old ones are */
 } nt_gltf_old_tangents;
 
-/* The TANGENT accessor of a member; NT_NONE: none. */
-uint32_t nt_gltf_tangent_of(const nt_gltf_patcher *patcher, const nt_gltf_cluster *component, size_t member);
+/* The TANGENT accessor of a user; NT_NONE: none. */
+uint32_t nt_gltf_tangent_of(const nt_vertex_pools *pools, const nt_vertex_pool *pool, size_t user);
 
-nt_status nt_gltf_find_tangents(nt_gltf_patcher *patcher, const nt_gltf_cluster *component,
-	uint32_t group, nt_gltf_old_tangents *old);
+/* precision: of the new ones. What is found is in the edits' arena. */
+nt_status nt_gltf_find_tangents(nt_buffer_edits *edits, const nt_vertex_pools *pools, const nt_vertex_pool *pool,
+	uint32_t set, nt_precision precision, nt_gltf_old_tangents *old, nt_error *error);
 
 /* Takes their bytes out of the buffers, where nobody else refers to them. */
-nt_status nt_gltf_release_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents *old);
+nt_status nt_gltf_release_tangents(nt_buffer_edits *edits, const nt_gltf_old_tangents *old, nt_error *error);
 
 /* Gives them the type that is stored. */
-void nt_gltf_retype_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents *old);
+void nt_gltf_retype_tangents(nt_gltf *document, const nt_gltf_old_tangents *old, nt_precision precision);
 
-/* Lets them refer to `count` rows in a new view. */
-void nt_gltf_move_tangents(nt_gltf_patcher *patcher, const nt_gltf_old_tangents *old, uint32_t view,
-	size_t count);
+/* Lets them refer to `count` elements in a new view. */
+void nt_gltf_move_tangents(nt_gltf *document, const nt_gltf_old_tangents *old, nt_precision precision,
+	uint32_t view, size_t count);
 
 #endif

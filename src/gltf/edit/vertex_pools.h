@@ -1,51 +1,71 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Who shares what with whom, and the vertices that come out of it.
+ * Who shares what with whom: see vertex_pools.c.
  *
- * Primitives that share an attribute accessor share its rows, so their vertices can only be split
- * together: they form a component. Primitives of a component with the same positions, normals and texture
- * coordinates (as texture transforms turn them) form a group and share one TANGENT accessor.
+ * Primitives that share an attribute accessor share its elements, so their vertices can only be split together:
+ * they are the users of one pool of vertices. Users of a pool with the same positions, normals, texture coordinates
+ * (as texture transforms turn them) and morph targets form a tangent set: they have one TANGENT.
  */
 #ifndef NT_GLTF_EDIT_VERTEX_POOLS_H
 #define NT_GLTF_EDIT_VERTEX_POOLS_H
 
-#include "gltf/document.h"
+#include "gltf/primitive.h"
 
-typedef struct nt_gltf_sharing {
-	size_t accessor_count;
-	uint32_t *canonical;      /* [accessor_count] the first accessor over the same bytes */
-	bool *foreign;            /* [accessor_count] used by something else than attributes */
-	uint32_t *attribute_users; /* [accessor_count] uses as attribute, of morph targets too; by canonical accessor */
-	uint32_t *index_users;    /* [accessor_count] primitives that have it as indices */
-	uint32_t *block_users;    /* [view_count] primitives that are compressed in it */
-	uint32_t *order;          /* [mesh count] meshes, those of one component together */
-	uint32_t *component;      /* [mesh count] by mesh: number of the component */
-	size_t component_count;
-	uint32_t *first;          /* [component_count + 1] where each begins in order */
-} nt_gltf_sharing;
+/* All pools of a document. Accessors over the same bytes count as one: the first alias. */
+typedef struct nt_vertex_pools {
+	const nt_scene *scene;
+	size_t accessor_count;     /* 0 where nothing is solved: there are no pools then */
+	uint32_t *first_alias;     /* [accessor_count] the first accessor over the same bytes */
+	bool *foreign;             /* [accessor_count] by first alias: used by something else than attributes */
+	uint32_t *attribute_users; /* [accessor_count] by first alias: uses as attribute, of morph targets too */
+	uint32_t *index_users;     /* [accessor_count] by first alias: primitives that have it as indices */
+	uint32_t *block_users;     /* [view_count] primitives that are compressed in it */
+	size_t count;
+	uint32_t *order;           /* [mesh count] numbers of meshes, those of one pool together */
+	uint32_t *first;           /* [count + 1] where each pool begins in order */
+} nt_vertex_pools;
 
-nt_status nt_gltf_find_sharing(nt_gltf_sharing *sharing, nt_gltf *document, const nt_scene *scene,
-	nt_arena *arena, nt_error *error);
+/* Sets are lists of users, so that one is gone through without the others. */
+typedef struct nt_tangent_sets {
+	size_t count;
+	uint32_t *of;    /* [user_count] set of a user; NT_NONE: it is not solved */
+	uint32_t *first; /* [count] first user */
+	uint32_t *next;  /* [user_count] the next user of the same set; NT_NONE: none */
+} nt_tangent_sets;
 
-/* Rows of one component after splitting. */
-typedef struct nt_gltf_rows {
-	size_t old_count;     /* rows of the source */
-	size_t new_count;
-	uint32_t *sources;    /* [new_count - old_count] rows of the source */
-	size_t group_count;
-	float **tangents;     /* [group_count][new_count][4] */
-	float **normals;      /* [group_count][new_count][3]: NULL where normals were not made */
-	float ***morphs;      /* [group_count][morph count of its meshes][new_count][3] */
-	uint32_t *group_of;   /* [member count] NT_NONE: not solved */
-	uint32_t *group_first; /* [group_count] first member of each; what belongs to one is found without the others */
-	uint32_t *next_of;    /* [member count] the next member of the same group, NT_NONE: none */
-	uint32_t **indices;   /* [member count][corner count]; NULL: not solved */
-	bool *changed;        /* [member count] indices differ from the source's triangles */
-	bool borrowed;        /* sources, tangents and indices are the scene's: do not write to them */
-} nt_gltf_rows;
+typedef struct nt_vertex_pool {
+	const nt_scene *scene;
+	const uint32_t *users; /* [user_count] numbers of meshes, ascending */
+	size_t user_count;
+	nt_tangent_sets sets;
+} nt_vertex_pool;
 
-/* Fills group_count, group_of, group_first and next_of, which have room for all members. False: out of memory. */
-bool nt_gltf_find_groups(nt_gltf_rows *rows, const nt_gltf *document, const nt_scene *scene,
-	const nt_gltf_sharing *sharing, const uint32_t *members, size_t member_count);
+/* Everything is in the arena. */
+nt_status nt_vertex_pools_find(nt_vertex_pools *pools, const nt_scene *scene, nt_arena *arena, nt_error *error);
+
+/* One of them, with its sets. */
+nt_status nt_vertex_pools_get(const nt_vertex_pools *pools, size_t number, nt_arena *arena, nt_vertex_pool *pool,
+	nt_error *error);
+
+static inline const nt_mesh *nt_pool_mesh(const nt_vertex_pool *pool, size_t user)
+{
+	return &pool->scene->meshes[pool->users[user]];
+}
+
+/* The first mesh of a set: what sets have in common, it has. */
+static inline const nt_mesh *nt_pool_set_mesh(const nt_vertex_pool *pool, uint32_t set)
+{
+	return nt_pool_mesh(pool, pool->sets.first[set]);
+}
+
+static inline nt_json_value *nt_pool_primitive(const nt_vertex_pool *pool, size_t user)
+{
+	return nt_gltf_primitive_of(pool->scene->source, nt_pool_mesh(pool, user));
+}
+
+static inline bool nt_pool_is_solved(const nt_vertex_pool *pool, size_t user)
+{
+	return pool->sets.of[user] != NT_NONE;
+}
 
 #endif

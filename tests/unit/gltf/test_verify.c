@@ -104,7 +104,7 @@ static void patch(patched *p, const nt_write_options *options)
 	mesh->split.vertex_tangents = p->tangents[0];
 	mesh->morphs[0].vertex_tangents = p->moved[0];
 	assert_int_equal(nt_output_create(&p->output, NULL, &error), NT_OK);
-	assert_int_equal(nt_gltf_patch(&p->scene, options, p->output, &error), NT_OK);
+	assert_int_equal(nt_gltf_edit(&p->scene, options, p->output, &error), NT_OK);
 }
 
 static void close_patched(patched *p)
