@@ -82,6 +82,11 @@ static const char *const accessors_without = "\"accessors\":["
 #define PRIMITIVE                                                                                  \
 	"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2," \
 	"\"COLOR_0\":3},\"indices\":4,\"material\":0"
+/* The second has no material, and so no use for tangents; it alone has colours. */
+#define TWO_PRIMITIVES                                                                             \
+	"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2}," \
+	"\"indices\":4,\"material\":0},{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2," \
+	"\"COLOR_0\":3},\"indices\":4"
 
 static void write_plain(const sheet *s, const char *name)
 {
@@ -103,7 +108,7 @@ static void write_plain(const sheet *s, const char *name)
 	nt_buffer_free(&json);
 }
 
-static void write_meshopt(const sheet *s, const char *name)
+static void write_meshopt(const sheet *s, const char *meshes, const char *name)
 {
 	const struct {
 		const void *bytes;
@@ -130,9 +135,9 @@ static void write_meshopt(const sheet *s, const char *name)
 			i < 4 ? "ATTRIBUTES" : "INDICES");
 		fallback += parts[i].count * parts[i].stride;
 	}
-	nt_buffer_format(&json, "],%s" PRIMITIVE "}]}],\"buffers\":[{\"byteLength\":%zu},{\"byteLength\":%zu,"
+	nt_buffer_format(&json, "],%s%s}]}],\"buffers\":[{\"byteLength\":%zu},{\"byteLength\":%zu,"
 		"\"extensions\":{\"EXT_meshopt_compression\":{\"fallback\":true}}}]}",
-		accessors_with_views, bin.size, fallback);
+		accessors_with_views, meshes, bin.size, fallback);
 	put_glb_file(name, json.data, bin.data, bin.size);
 	nt_buffer_free(&bin);
 	nt_buffer_free(&json);
@@ -168,14 +173,14 @@ static void write_draco(const sheet *s, nt_draco_method method, const char *name
 	nt_buffer_free(&json);
 }
 
-/* A file's only mesh, loaded. */
+/* A file's mesh, loaded. */
 typedef struct loaded {
 	nt_file file;
 	nt_scene scene;
 	nt_mesh *mesh;
 } loaded;
 
-static void load(loaded *l, const char *path)
+static void load_mesh(loaded *l, const char *path, size_t mesh)
 {
 	static const nt_read_options options = {.texcoord_set = -1, .world = true};
 	nt_error error;
@@ -186,9 +191,14 @@ static void load(loaded *l, const char *path)
 	l->scene.byte_count = l->file.size;
 	l->scene.format = NT_FORMAT_GLB;
 	if (nt_gltf_open(&l->scene, &options, &error) ||
-		nt_gltf_load(&l->scene, &l->scene.meshes[0], &options, &error))
+		nt_gltf_load(&l->scene, &l->scene.meshes[mesh], &options, &error))
 		fail_msg("%s: %s: %s", path, error.place.pointer, error.message);
-	l->mesh = &l->scene.meshes[0];
+	l->mesh = &l->scene.meshes[mesh];
+}
+
+static void load(loaded *l, const char *path)
+{
+	load_mesh(l, path, 0);
 }
 
 static void unload(loaded *l)
@@ -250,7 +260,7 @@ static void meshopt_gives_what_plain_gives(void **state)
 {
 	(void)state;
 	write_plain(&source, "plain.glb");
-	write_meshopt(&source, "packed.glb");
+	write_meshopt(&source, PRIMITIVE, "packed.glb");
 	solve(in_folder("plain.glb"), in_folder("plain_out.glb"), NT_DRACO_KEEP);
 	solve(in_folder("packed.glb"), in_folder("packed_out.glb"), NT_DRACO_KEEP);
 	loaded in, plain, packed;
@@ -281,13 +291,28 @@ static void meshopt_views_that_do_not_change_stay_packed(void **state)
 	sheet even = source;
 	for (int v = 0; v < VERTICES; v++)
 		even.texcoords[v][0] = (float)(v % (N + 1)) * 0.125f;
-	write_meshopt(&even, "packed.glb");
+	write_meshopt(&even, PRIMITIVE, "packed.glb");
 	solve(in_folder("packed.glb"), in_folder("packed_out.glb"), NT_DRACO_KEEP);
 	loaded out;
 	load(&out, in_folder("packed_out.glb"));
 	assert_int_equal(out.mesh->vertex_count, VERTICES);
 	assert_memory_equal(out.mesh->positions, even.positions, sizeof even.positions);
 	assert_true(lists_extension(&out, "extensionsRequired"));
+	unload(&out);
+}
+
+/* Splitting the first primitive gives the second, which gets no tangents, new vertices too: in all of its attributes. */
+static void meshopt_views_of_others_in_the_pool_grow(void **state)
+{
+	(void)state;
+	write_meshopt(&source, TWO_PRIMITIVES, "packed.glb");
+	solve(in_folder("packed.glb"), in_folder("packed_out.glb"), NT_DRACO_KEEP);
+	loaded in, out;
+	load_mesh(&in, in_folder("packed.glb"), 1);
+	load_mesh(&out, in_folder("packed_out.glb"), 1);
+	assert_true(out.mesh->vertex_count > VERTICES);
+	check_same_corners(in.mesh, out.mesh);
+	unload(&in);
 	unload(&out);
 }
 
@@ -458,7 +483,7 @@ static void damaged_blocks_are_harmless(void **state)
 	(void)state;
 	for (int kind = 0; kind < 2; kind++) {
 		if (kind)
-			write_meshopt(&source, "good.glb");
+			write_meshopt(&source, PRIMITIVE, "good.glb");
 		else
 			write_draco(&source, NT_DRACO_EDGEBREAKER, "good.glb");
 		nt_file good;
@@ -492,6 +517,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(meshopt_gives_what_plain_gives),
 		cmocka_unit_test(meshopt_views_that_do_not_change_stay_packed),
+		cmocka_unit_test(meshopt_views_of_others_in_the_pool_grow),
 		cmocka_unit_test(draco_sequential_keeps_every_value),
 		cmocka_unit_test(draco_edgebreaker_keeps_every_value),
 		cmocka_unit_test(explicit_methods_compress_plain_primitives),

@@ -120,5 +120,5 @@ static void targets_of_equal_hash_are_told_apart(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {cmocka_unit_test(targets_of_equal_hash_are_told_apart)};
-	return cmocka_run_group_tests_name("io/gltf_vertex_pools", tests, make_folder, remove_folder);
+	return cmocka_run_group_tests_name("gltf/edit/vertex_pools", tests, make_folder, remove_folder);
 }
