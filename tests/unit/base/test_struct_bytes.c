@@ -20,7 +20,7 @@ typedef struct third {
 static void older_caller_has_zeros_for_what_it_lacks(void **state)
 {
 	(void)state;
-	const second given = {sizeof(first), 1, 2}; /* b lies behind the caller's struct */
+	const third given = {sizeof(first), 1, 2, 3}; /* b and c lie behind the caller's struct */
 	third ours = {9, 9, 9, 9};
 	assert_true(nt_struct_read(&ours, sizeof ours, &given));
 	assert_int_equal(ours.struct_bytes, sizeof ours);
@@ -46,7 +46,8 @@ static void sizes_that_no_struct_has_are_refused(void **state)
 	(void)state;
 	static const size_t none[] = {0, 1, sizeof(size_t) - 1, sizeof(size_t) + 1, 4096 + sizeof(size_t), SIZE_MAX};
 	for (size_t i = 0; i < sizeof none / sizeof *none; i++) {
-		first given = {none[i], 1}, ours = {5, 5};
+		const first given = {none[i], 1};
+		first ours = {5, 5};
 		assert_false(nt_struct_read(&ours, sizeof ours, &given));
 	}
 	static size_t largest[4096 / sizeof(size_t)] = {4096, 7};
