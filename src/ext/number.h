@@ -19,6 +19,12 @@ const char *nt_read_float(const char *begin, const char *end, float *value);
 #define NT_FLOAT_TEXT 24
 char *nt_write_float(char *text, float value);
 
+/* The same as JSON, of the shortest text of a float and of a double: with a point or an exponent always, 0.8,
+ * 1.0, 1e-05, 1.5e+20; and null where it is no number. text has room for NT_NUMBER_TEXT bytes. */
+#define NT_NUMBER_TEXT 32
+char *nt_write_json_float(char *text, float value);
+char *nt_write_json_double(char *text, double value);
+
 #ifdef __cplusplus
 }
 #endif

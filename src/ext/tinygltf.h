@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * tinygltf has two jobs here: the JSON of glTF documents that we make, and a second opinion on files that
- * we wrote, since its parser is not ours. In both the bytes of buffers and images stay with the caller:
- * nothing here opens a file.
+ * tinygltf is a second opinion on files that we wrote, since its parser is not ours. The bytes of buffers and
+ * images stay with the caller: nothing here opens a file.
  */
 #ifndef NT_EXT_TINYGLTF_H
 #define NT_EXT_TINYGLTF_H
@@ -16,108 +15,6 @@ extern "C" {
 
 /* No index: an optional reference that is absent, and the result of an addition that failed. */
 #define NT_MODEL_NONE UINT32_MAX
-
-/* ---- a new document ---- */
-
-/*
- * A document in the making: one buffer, one scene. Additions return the index of what they added. When one
- * fails, it and all later ones return NT_MODEL_NONE, and nt_model_json() says why.
- *
- * Texts may be any bytes: what is not UTF-8 is taken as Latin-1, which is what old files have. NULL and ""
- * mean no name. Floats are written with the fewest digits that give them back.
- */
-typedef struct nt_model nt_model;
-
-/* An empty document with that asset.generator. Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_model_create(nt_model **model, const char *generator, nt_error *error);
-
-/* NULL is allowed. */
-void nt_model_free(nt_model *model);
-
-/* A range of the buffer. offset is a multiple of 4, length not 0. */
-uint32_t nt_model_view(nt_model *model, uint64_t offset, uint64_t length, int target);
-
-/* An accessor over a whole view, tightly packed. */
-typedef struct nt_model_accessor {
-	uint32_t view;
-	int component_type;
-	int components;        /* 1 to 4: SCALAR, VEC2, VEC3, VEC4 */
-	size_t count;
-	const float *min, *max; /* [components], finite; NULL: none */
-	bool normalized;
-} nt_model_accessor;
-uint32_t nt_model_add_accessor(nt_model *model, const nt_model_accessor *accessor);
-
-/* An image by URI (percent-encoded already, written as it is), or in a view with its media type. */
-uint32_t nt_model_image_uri(nt_model *model, const char *name, const char *uri);
-uint32_t nt_model_image_view(nt_model *model, const char *name, uint32_t view,
-	const char *media_type);
-
-/* A texture of an image. extension: NULL, or the one through which the image is referred to and that the
- * document then requires: "KHR_texture_basisu" or "EXT_texture_webp". */
-uint32_t nt_model_texture(nt_model *model, uint32_t image, const char *extension);
-
-typedef struct nt_model_material {
-	const char *name;
-	float base_color[4];
-	float emissive[3];  /* above 1: KHR_materials_emissive_strength */
-	float metallic, roughness;
-	bool blend;         /* alphaMode BLEND */
-	uint32_t base_color_texture, emissive_texture, normal_texture; /* or NT_MODEL_NONE */
-	float normal_scale;
-} nt_model_material;
-uint32_t nt_model_add_material(nt_model *model, const nt_model_material *material);
-
-/* A mesh without primitives, which must get some. */
-uint32_t nt_model_mesh(nt_model *model, const char *name);
-
-/* Triangles of a mesh. */
-typedef struct nt_model_attribute {
-	const char *name; /* POSITION ... */
-	uint32_t accessor;
-} nt_model_attribute;
-void nt_model_primitive(nt_model *model, uint32_t mesh, const nt_model_attribute *attributes,
-	size_t attribute_count, uint32_t indices, uint32_t material);
-
-/* A root node of the scene that shows a mesh. matrix: column-major; the identity is not written. */
-uint32_t nt_model_node(nt_model *model, const char *name, uint32_t mesh, const double matrix[16]);
-
-/* Lists an extension as used and required. */
-void nt_model_require(nt_model *model, const char *extension);
-
-/* The document's text, in two pieces: where the buffer is embedded its base64 goes between them, else the
- * second is empty. Free with nt_model_text_free(). */
-typedef struct nt_model_text {
-	char *data;
-	size_t size, cut; /* all bytes; those of the first piece */
-} nt_model_text;
-
-/* How the document refers to its buffer. */
-typedef enum nt_model_buffer {
-	NT_MODEL_CHUNK,  /* the BIN chunk of the .glb */
-	NT_MODEL_FILE,   /* an nt_model_file */
-	NT_MODEL_EMBEDDED /* a data URI */
-} nt_model_buffer;
-
-/* A buffer in a file of its own. */
-typedef struct nt_model_file {
-	const char *uri;    /* percent-encoded, written as it is */
-	const char *extras; /* JSON; NULL: none */
-} nt_model_file;
-
-/*
- * The document as compact JSON.
- *
- *   buffer_length  bytes; 0: the document has no buffer
- *   file           of the buffer; NT_MODEL_FILE only
- *
- * Returns NT_OK, NT_ERROR_MEMORY or NT_ERROR_INTERNAL; also for an addition that failed.
- */
-nt_status nt_model_json(nt_model *model, uint64_t buffer_length, nt_model_buffer buffer,
-	const nt_model_file *file, nt_model_text *text, nt_error *error);
-void nt_model_text_free(nt_model_text *text);
-
-/* ---- reading back ---- */
 
 typedef struct nt_reread nt_reread;
 

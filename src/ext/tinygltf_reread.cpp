@@ -3,7 +3,7 @@
 // tinygltf behind a C header: its loader, as a second opinion on files that we wrote. It searches the current
 // directory, decodes images, overflows its stack on deep JSON, knows no compression and checks no accessor: so it
 // gets its files through callbacks, an image loader that does nothing and text made for it (tinygltf_text.cpp), and
-// its accessors are checked and unpacked here. New documents are in tinygltf_model.cpp.
+// its accessors are checked and unpacked here.
 #include "ext/tinygltf.h"
 #include "ext/guard.hpp"
 #include "ext/meshopt.h"

@@ -40,6 +40,14 @@ inputs elements 100000 e.ply
 within 15 300 e.ply out.ply
 exits 0
 
+scene "an OBJ of 100 000 materials makes a document of 100 000 primitives"
+inputs usemtl 100000 m.obj
+within 30 300 -q m.obj m.glb
+exits 0
+is "$(gltf m.glb 'g.meshes[0].primitives.length')" 100000
+# at most 36 times the input: the geometry and the JSON of five accessors for every line of 34 bytes
+[ $(($(stat -c %s m.glb) / $(stat -c %s m.obj))) -lt 36 ] || wrong "$(stat -c %s m.glb) bytes"
+
 scene "1 500 primitives over one set of accessors are judged and drawn once"
 inputs same 1500 s.glb
 within 15 300 --check --report=s.html --only=all --fail-on=never s.glb

@@ -4,7 +4,7 @@
  * everything inside, or .glb.
  *
  * One glTF mesh per mesh, one node per instance, one primitive per material of a mesh. The document is
- * planned first, so that all sizes and places are known, then its JSON is made by tinygltf, then the
+ * planned first, so that all sizes and places are known and its JSON (model.h) is complete, then the
  * buffer is streamed: geometry as primitive.h has it, embedded images behind. Only materials and images that
  * something uses are written; a primitive without texture coordinates gets its material without textures.
  */
@@ -13,11 +13,11 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "ext/tinygltf.h"
 #include "file/base64.h"
 #include "gltf/glb.h"
 #include "gltf/companion.h"
 #include "gltf/create/images.h"
+#include "gltf/create/model.h"
 #include "gltf/create/primitive.h"
 #include "gltf/quantize.h"
 
@@ -223,6 +223,18 @@ static nt_status plan_materials(composition *c, nt_error *error)
 	return status == NT_OK ? each_material(c, error, add_material) : status;
 }
 
+/* The attributes of a part, in the order of their names. */
+static size_t list_attributes(const part_record *record, nt_model_attribute *attributes)
+{
+	static const nt_stream order[NT_STREAM_COUNT] = {NT_STREAM_COLOR, NT_STREAM_NORMAL, NT_STREAM_POSITION,
+		NT_STREAM_TANGENT, NT_STREAM_TEXCOORD, NT_STREAM_BITANGENT};
+	size_t count = 0;
+	for (int i = 0; i < NT_STREAM_COUNT; i++)
+		if (record->streams[order[i]] != NT_MODEL_NONE)
+			attributes[count++] = (nt_model_attribute){nt_stream_name(order[i]), record->streams[order[i]]};
+	return count;
+}
+
 /* Meshes, their primitives, and a node for each of their instances. */
 static nt_status plan_scene(composition *c, nt_error *error)
 {
@@ -238,14 +250,10 @@ static nt_status plan_scene(composition *c, nt_error *error)
 			const nt_part *part = &c->parts[m].items[p];
 			const part_record *record = &c->records[m][p];
 			nt_model_attribute attributes[NT_STREAM_COUNT];
-			size_t count = 0;
-			for (int s = 0; s < NT_STREAM_COUNT; s++)
-				if (record->streams[s] != NT_MODEL_NONE)
-					attributes[count++] = (nt_model_attribute){
-						nt_stream_name((nt_stream)s), record->streams[s]};
+			const size_t count = list_attributes(record, attributes);
 			const uint32_t material = part->material == NT_NONE ? NT_MODEL_NONE
 				: c->materials[part->material][is_textured(c, part)];
-			nt_model_primitive(c->model, numbers[m], attributes, count, record->indices,
+			nt_model_primitive(c->model, attributes, count, record->indices,
 				material);
 		}
 	}
@@ -358,7 +366,9 @@ static nt_status write_glb(const composition *c, nt_sink *sink, nt_error *error)
 	if (status == NT_OK)
 		status = nt_glb_begin(sink, text.size, has_bin, c->buffer_size, 0, error);
 	if (status == NT_OK)
-		status = nt_sink_write(sink, text.data, text.size, error);
+		status = nt_model_text_begin(&text, sink, error);
+	if (status == NT_OK)
+		status = nt_model_text_end(&text, sink, error);
 	if (status == NT_OK)
 		status = nt_glb_end_json(sink, text.size, has_bin, c->buffer_size, error);
 	if (status == NT_OK)
@@ -377,13 +387,13 @@ static nt_status write_embedded(const composition *c, nt_sink *sink, nt_error *e
 	nt_status status =
 		nt_model_json(c->model, c->buffer_size, NT_MODEL_EMBEDDED, NULL, &text, error);
 	if (status == NT_OK)
-		status = nt_sink_write(sink, text.data, text.cut, error);
+		status = nt_model_text_begin(&text, sink, error);
 	if (status == NT_OK)
 		status = write_buffer(c, &stream, error);
 	if (status == NT_OK)
 		status = nt_base64_end(&base64, error);
 	if (status == NT_OK)
-		status = nt_sink_write(sink, text.data + text.cut, text.size - text.cut, error);
+		status = nt_model_text_end(&text, sink, error);
 	nt_model_text_free(&text);
 	return status;
 }
@@ -429,7 +439,9 @@ static nt_status write_document(const composition *c, const nt_sink *bin, bool i
 	if (status == NT_OK)
 		status = nt_model_json(c->model, c->buffer_size, NT_MODEL_FILE, &file, &text, error);
 	if (status == NT_OK)
-		status = nt_sink_write(sink, text.data, text.size, error);
+		status = nt_model_text_begin(&text, sink, error);
+	if (status == NT_OK)
+		status = nt_model_text_end(&text, sink, error);
 	nt_model_text_free(&text);
 	nt_buffer_free(&uri);
 	nt_buffer_free(&extras);
@@ -466,7 +478,8 @@ nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_o
 		return nt_fail(error, NT_ERROR_USAGE,
 			"glTF with a .bin cannot go to standard output; write glb, or use --embed");
 
-	nt_status status = nt_model_create(&c.model, "nmtan " NMTAN_VERSION_STRING, error);
+	c.model = nt_model_create("nmtan " NMTAN_VERSION_STRING);
+	nt_status status = c.model ? NT_OK : nt_fail_memory(error);
 	/* What becomes of each mesh. */
 	if (status == NT_OK)
 		status = plan_parts(&c, error);

@@ -6,8 +6,8 @@
 #ifndef NT_GLTF_CREATE_IMAGES_H
 #define NT_GLTF_CREATE_IMAGES_H
 
-#include "ext/tinygltf.h"
 #include "file/output.h"
+#include "gltf/create/model.h"
 #include "scene/scene.h"
 
 typedef struct nt_image_set nt_image_set;

@@ -1,0 +1,200 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include "gltf/create/model.h"
+
+static nt_model *new_model(void)
+{
+	nt_model *model = nt_model_create("nmtan test");
+	assert_non_null(model);
+	return model;
+}
+
+/* The whole text of a document as a string. */
+static char *text_of(nt_model *model, uint64_t length, nt_model_buffer buffer, const char *uri)
+{
+	nt_model_text text;
+	const nt_model_file file = {uri, NULL};
+	assert_int_equal(nt_model_json(model, length, buffer, &file, &text, NULL), NT_OK);
+	assert_true(text.cut <= text.count);
+	char *copy = calloc(text.size + 1, 1), *to = copy;
+	for (size_t i = 0; i < text.count; i++) {
+		memcpy(to, text.pieces[i].data, text.pieces[i].size);
+		to += text.pieces[i].size;
+	}
+	assert_int_equal(to - copy, text.size);
+	nt_model_text_free(&text);
+	return copy;
+}
+
+static const double identity[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+
+static nt_model *triangle_model(uint32_t material)
+{
+	nt_model *model = new_model();
+	const float min[] = {0, 0, -2.5f}, max[] = {0.1f, 1, 0};
+	const nt_model_accessor position = {
+		.view = nt_model_view(model, 0, 36, NT_GLTF_ARRAY_BUFFER),
+		.component_type = NT_GLTF_FLOAT, .components = 3, .count = 3, .min = min, .max = max};
+	const nt_model_attribute attribute = {"POSITION", nt_model_add_accessor(model, &position)};
+	const nt_model_accessor index = {
+		.view = nt_model_view(model, 36, 6, NT_GLTF_ELEMENT_ARRAY_BUFFER),
+		.component_type = NT_GLTF_USHORT, .components = 1, .count = 3};
+	const uint32_t index_accessor = nt_model_add_accessor(model, &index);
+	const uint32_t mesh = nt_model_mesh(model, "tri");
+	nt_model_primitive(model, &attribute, 1, index_accessor, material);
+	assert_int_equal(nt_model_node(model, "", mesh, identity), 0);
+	return model;
+}
+
+static void empty_document_is_an_asset_and_nothing_else(void **state)
+{
+	(void)state;
+	nt_model *model = new_model();
+	char *text = text_of(model, 0, NT_MODEL_FILE, NULL);
+	assert_string_equal(text, "{\"asset\":{\"generator\":\"nmtan test\",\"version\":\"2.0\"}}");
+	free(text);
+	nt_model_free(model);
+}
+
+static void document_has_exact_bounds_and_no_empty_objects(void **state)
+{
+	(void)state;
+	nt_model *model = triangle_model(NT_MODEL_NONE);
+	char *text = text_of(model, 42, NT_MODEL_FILE, "a%20b.bin");
+	assert_non_null(strstr(text, "\"buffers\":[{\"byteLength\":42,\"uri\":\"a%20b.bin\"}]}"));
+	assert_non_null(strstr(text, "\"min\":[0.0,0.0,-2.5]"));
+	/* 0.1 as a float is this double */
+	assert_non_null(strstr(text, "\"max\":[0.10000000149011612,1.0,0.0]"));
+	assert_null(strstr(text, "null"));
+	assert_null(strstr(text, "matrix"));
+	free(text);
+	nt_model_free(model);
+}
+
+static void names_in_latin_1_become_utf_8(void **state)
+{
+	(void)state;
+	nt_model *model = new_model();
+	/* 0xe9: Latin-1's e with acute; c3 a9 is the same in UTF-8; c0 80 is no UTF-8 */
+	const nt_model_material material = {.name = "\xe9 \xc3\xa9 \xc0\x80 \"\\",
+		.base_color = {0.8f, 0.1f, 1, 1}, .metallic = 0, .roughness = 1, .normal_scale = 1,
+		.base_color_texture = NT_MODEL_NONE, .emissive_texture = NT_MODEL_NONE,
+		.normal_texture = NT_MODEL_NONE};
+	assert_int_equal(nt_model_add_material(model, &material), 0);
+	char *text = text_of(model, 0, NT_MODEL_CHUNK, NULL);
+	assert_non_null(strstr(text, "\"name\":\"\xc3\xa9 \xc3\xa9 \xc3\x80\xc2\x80 \\\"\\\\\""));
+	assert_non_null(strstr(text, "\"baseColorFactor\":[0.8,0.1,1.0,1.0]"));
+	assert_non_null(strstr(text, "\"metallicFactor\":0.0"));
+	assert_null(strstr(text, "roughness")); /* glTF's default */
+	free(text);
+	nt_model_free(model);
+}
+
+static void control_characters_are_escaped(void **state)
+{
+	(void)state;
+	nt_model *model = new_model();
+	const nt_model_material material = {.name = "a\b\t\n\f\r\x01\x1f\x7f", .base_color = {1, 1, 1, 1}, .metallic = 1,
+		.roughness = 1, .normal_scale = 1, .base_color_texture = NT_MODEL_NONE,
+		.emissive_texture = NT_MODEL_NONE, .normal_texture = NT_MODEL_NONE};
+	nt_model_add_material(model, &material);
+	char *text = text_of(model, 0, NT_MODEL_CHUNK, NULL);
+	assert_non_null(strstr(text, "\"materials\":[{\"name\":\"a\\b\\t\\n\\f\\r\\u0001\\u001f\x7f\"}]"));
+	free(text);
+	nt_model_free(model);
+}
+
+static void primitives_follow_their_mesh(void **state)
+{
+	(void)state;
+	nt_model *model = new_model();
+	for (uint32_t m = 0; m < 2; m++) {
+		assert_int_equal(nt_model_mesh(model, m ? "b" : ""), m);
+		for (uint32_t p = 0; p < 2; p++) {
+			const nt_model_attribute attribute = {"POSITION", 2 * m + p};
+			nt_model_primitive(model, &attribute, 1, NT_MODEL_NONE, p ? 7 : NT_MODEL_NONE);
+		}
+	}
+	double moved[16];
+	memcpy(moved, identity, sizeof moved);
+	moved[12] = 1e-5;
+	nt_model_node(model, "", 0, identity);
+	nt_model_node(model, "n", 1, moved);
+	char *text = text_of(model, 0, NT_MODEL_CHUNK, NULL);
+	assert_non_null(strstr(text, "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":4},"
+		"{\"attributes\":{\"POSITION\":1},\"material\":7,\"mode\":4}]},{\"name\":\"b\",\"primitives\":["
+		"{\"attributes\":{\"POSITION\":2},\"mode\":4},{\"attributes\":{\"POSITION\":3},\"material\":7,"
+		"\"mode\":4}]}],\"nodes\":[{\"mesh\":0},{\"matrix\":[1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,"
+		"1e-05,0.0,0.0,1.0],\"mesh\":1,\"name\":\"n\"}],\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}]}"));
+	free(text);
+	nt_model_free(model);
+}
+
+static void bright_emission_needs_the_extension(void **state)
+{
+	(void)state;
+	nt_model *model = new_model();
+	nt_model_material material = {.base_color = {1, 1, 1, 0.5f}, .metallic = 1, .roughness = 1,
+		.emissive = {4, 2, 0}, .blend = true, .normal_scale = 0.5f};
+	const uint32_t image = nt_model_image_uri(model, "wood", "tex/wood%20.png");
+	material.base_color_texture = material.emissive_texture = nt_model_texture(model, image, NULL);
+	material.normal_texture = nt_model_texture(model,
+		nt_model_image_view(model, "n", 0, "image/ktx2"), "KHR_texture_basisu");
+	nt_model_add_material(model, &material);
+	char *text = text_of(model, 0, NT_MODEL_CHUNK, NULL);
+	assert_non_null(strstr(text, "\"emissiveFactor\":[1.0,0.5,0.0]"));
+	assert_non_null(strstr(text, "\"KHR_materials_emissive_strength\":{\"emissiveStrength\":4.0}"));
+	assert_non_null(strstr(text,
+		"\"extensionsUsed\":[\"KHR_texture_basisu\",\"KHR_materials_emissive_strength\"]"));
+	assert_non_null(strstr(text, "\"extensionsRequired\":[\"KHR_texture_basisu\"]"));
+	assert_non_null(strstr(text, "\"alphaMode\":\"BLEND\""));
+	assert_non_null(strstr(text, "\"normalTexture\":{\"index\":1,\"scale\":0.5}"));
+	assert_non_null(strstr(text, "{\"name\":\"wood\",\"uri\":\"tex/wood%20.png\"}"));
+	assert_non_null(strstr(text, "\"textures\":[{\"source\":0},"
+				     "{\"extensions\":{\"KHR_texture_basisu\":{\"source\":1}}}]"));
+	free(text);
+	nt_model_free(model);
+}
+
+static void embedded_text_is_cut_where_the_base64_goes(void **state)
+{
+	(void)state;
+	nt_model *model = triangle_model(NT_MODEL_NONE);
+	nt_model_text text;
+	assert_int_equal(nt_model_json(model, 42, NT_MODEL_EMBEDDED, NULL, &text, NULL), NT_OK);
+	static const char before[] = "base64,", after[] = "\"}]}";
+	const nt_model_piece last = text.pieces[text.cut - 1];
+	assert_memory_equal(last.data + last.size - strlen(before), before, strlen(before));
+	assert_int_equal(text.count, text.cut + 1);
+	assert_int_equal(text.pieces[text.cut].size, strlen(after));
+	assert_memory_equal(text.pieces[text.cut].data, after, strlen(after));
+	nt_model_text_free(&text);
+	nt_model_free(model);
+}
+
+static void misuse_is_reported_at_the_end(void **state)
+{
+	(void)state;
+	nt_model *model = new_model();
+	nt_model_primitive(model, NULL, 0, NT_MODEL_NONE, NT_MODEL_NONE); /* of no mesh */
+	nt_model_text text;
+	nt_error error;
+	assert_int_equal(nt_model_json(model, 0, NT_MODEL_CHUNK, NULL, &text, &error), NT_ERROR_INTERNAL);
+	nt_model_text_free(&text);
+	nt_model_free(model);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(empty_document_is_an_asset_and_nothing_else),
+		cmocka_unit_test(document_has_exact_bounds_and_no_empty_objects),
+		cmocka_unit_test(names_in_latin_1_become_utf_8),
+		cmocka_unit_test(control_characters_are_escaped),
+		cmocka_unit_test(primitives_follow_their_mesh),
+		cmocka_unit_test(bright_emission_needs_the_extension),
+		cmocka_unit_test(embedded_text_is_cut_where_the_base64_goes),
+		cmocka_unit_test(misuse_is_reported_at_the_end),
+	};
+	return cmocka_run_group_tests_name("gltf/create/model", tests, NULL, NULL);
+}
