@@ -36,6 +36,10 @@ const nt_option_row nt_option_rows[] = {
 		"how normals are made where they are missing; auto: OBJ by its smoothing groups, PLY "
 		"smooth, glTF not at all",
 		SETTING(normals), false},
+	{"across", 0, NT_OPTION_CHOICE, "primitive|mesh", NT_ACROSS_PRIMITIVE, 0, "primitive",
+		"glTF: each primitive is solved by itself, or those of a mesh that share texture coordinates as "
+		"one, as bakers do",
+		SETTING(across), false},
 	{"uv", 0, NT_OPTION_AUTO_NUMBER, "auto|N", 0, 999, "auto",
 		"which set of texture coordinates; auto: the one the material asks for",
 		SETTING(texcoord_set), false},

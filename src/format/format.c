@@ -10,6 +10,7 @@
 #include "format/drc.h"
 #include "gltf/create/create.h"
 #include "gltf/document.h"
+#include "gltf/joins.h"
 #include "gltf/load.h"
 #include "gltf/edit/edit.h"
 #include "gltf/open.h"
@@ -32,6 +33,7 @@ static const nt_format_entry table[] = {
 		.extensions = ".glb",
 		.recognise = nt_glb_recognise,
 		.open = nt_gltf_open,
+		.find_joins = nt_gltf_find_joins,
 		.find_same = nt_gltf_find_same,
 		.load = nt_gltf_load,
 		.write = write_gltf},
@@ -51,6 +53,7 @@ static const nt_format_entry table[] = {
 		.extensions = ".gltf",
 		.recognise = nt_gltf_recognise,
 		.open = nt_gltf_open,
+		.find_joins = nt_gltf_find_joins,
 		.find_same = nt_gltf_find_same,
 		.load = nt_gltf_load,
 		.write = write_gltf},

@@ -226,19 +226,21 @@ static nt_status transform_texcoords(nt_scene *scene, nt_mesh *mesh, const nt_gl
 }
 
 /* The transform of the texture that tangents serve; what cannot be served is a finding. A mesh that shares
- * its geometry has the same one applied already. */
-static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
-	const nt_json_value *primitive, nt_error *error)
+ * its geometry has the same one applied already, a copy in a join has that of another. */
+static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, nt_error *error)
 {
+	const nt_mesh *giver = mesh->transform_of ? mesh->transform_of : mesh;
+	const nt_json_value *primitive = nt_gltf_primitive_of(document, giver);
 	nt_gltf_shading shading;
-	const nt_status status = nt_gltf_judge_materials(document, primitive, mesh->place.pointer,
+	const nt_status status = nt_gltf_judge_materials(document, primitive, giver->place.pointer,
 		&shading, error);
 	if (status || !shading.has_set || shading.set != mesh->texcoord_set || !mesh->texcoords)
 		return status;
-	if (shading.transforms_differ)
+	const bool own = !mesh->transform_of;
+	if (own && shading.transforms_differ)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, &mesh->place, 1,
 			"set %u with different texture transforms", mesh->texcoord_set);
-	if (shading.transform.animated)
+	if (own && shading.transform.animated)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED, &mesh->place, 1, NULL);
 	return shading.transform.exists && !mesh->same_as ?
 		transform_texcoords(scene, mesh, &shading.transform, error) : NT_OK;
@@ -343,7 +345,9 @@ static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 			return status;
 		if (morph.normals)
 			normalise_rows(morph.normals, mesh->vertex_count);
-		if (morph.positions || morph.normals)
+		/* one that moves a neighbour turns tangents at the border */
+		const nt_join *join = mesh->join;
+		if (morph.positions || morph.normals || (join && i < join->target_count && join->moves[i]))
 			mesh->morphs[mesh->morph_count++] = morph;
 	}
 	return NT_OK;
@@ -392,7 +396,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	const nt_json_value *primitive;
 	if (mesh->same_as) {
 		nt_mesh_share(mesh);
-		return apply_transform(scene, document, mesh, nt_gltf_primitive_of(document, mesh), error);
+		return apply_transform(scene, document, mesh, error);
 	}
 	nt_status status = find_primitive(document, mesh, &primitive, error);
 	inputs in;
@@ -405,7 +409,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	if (!status)
 		status = load_vertices(scene, document, mesh, &in, options->threads, error);
 	if (!status)
-		status = apply_transform(scene, document, mesh, primitive, error);
+		status = apply_transform(scene, document, mesh, error);
 	if (!status)
 		status = load_faces(scene, document, mesh, primitive, options->threads, error);
 	/* a mesh in the world is written without its targets */

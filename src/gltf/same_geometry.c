@@ -161,7 +161,8 @@ static nt_status find_all(same_job *job, nt_scene *scene, nt_error *error)
 	for (uint32_t i = 0; !status && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
 		job->begin[i] = job->begin[i + 1] = job->keys.size;
-		if (!is_wanted(mesh, job->options))
+		/* what is solved with others has a result of its own */
+		if (!is_wanted(mesh, job->options) || mesh->join)
 			continue;
 		status = put_key(job, mesh, error);
 		job->begin[i + 1] = job->keys.size;

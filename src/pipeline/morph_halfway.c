@@ -29,13 +29,6 @@ static const double CANCELLED = 1.0 / 1024;
  * its way (positions are rounded), and no direction is right there. */
 static const double COLLAPSED = 1e-4;
 
-/* The mesh at weight 0.5. Arrays are those of the base where the target does not move them. */
-typedef struct halfway {
-	nmtan_mesh view;
-	float *positions, *normals; /* [vertex_count][3] or NULL */
-	float *tangents;            /* [corner_count][4] */
-} halfway;
-
 /* The cosine of the angle between two vectors that are not zero. */
 static double cosine_between(nt_dvec3 a, nt_dvec3 b)
 {
@@ -47,8 +40,7 @@ static double degrees_of(double cosine)
 	return nt_angle(sqrt(fmax(0, 1 - cosine * cosine)), cosine) * DEGREES;
 }
 
-/* Whether the target turns any tangent by more than the limit. */
-static bool turns(const nt_mesh *mesh, const nt_morph *morph)
+bool nt_morphs_turn(const nt_mesh *mesh, const nt_morph *morph)
 {
 	for (size_t c = 0; c < mesh->corner_count; c++)
 		if (cosine_between(nt_dvec3_load(mesh->corner_tangents + 4 * c),
@@ -76,25 +68,30 @@ static void normalise_rows(float *rows, size_t count)
 	}
 }
 
-static nt_status solve_halfway(const nt_mesh *mesh, const nt_morph *morph, const nmtan_mesh *base,
-	const nmtan_options *options, halfway *h)
+nt_status nt_morphs_solve_halfway(const nmtan_mesh *base, const float *positions, const float *normals,
+	const nmtan_options *options, float **tangents)
 {
-	h->view = *base;
-	if (morph->positions && !(h->positions = middle_of(base->positions, morph->positions, mesh->vertex_count)))
-		return NT_ERROR_MEMORY;
-	if (morph->normals && !(h->normals = middle_of(base->normals, morph->normals, mesh->vertex_count)))
-		return NT_ERROR_MEMORY;
-	if (h->positions)
-		h->view.positions = h->positions;
-	if (h->normals) {
-		normalise_rows(h->normals, mesh->vertex_count);
-		h->view.normals = h->normals;
+	nmtan_mesh view = *base;
+	const size_t corner_count = 3 * base->face_count;
+	float *p = positions ? middle_of(base->positions, positions, base->vertex_count) : NULL;
+	float *n = normals ? middle_of(base->normals, normals, base->vertex_count) : NULL;
+	*tangents = nt_alloc(corner_count, 4 * sizeof **tangents);
+	nt_status status = NT_ERROR_MEMORY;
+	if (*tangents && (p || !positions) && (n || !normals)) {
+		if (p)
+			view.positions = p;
+		if (n) {
+			normalise_rows(n, base->vertex_count);
+			view.normals = n;
+		}
+		nmtan_options untimed = *options;
+		untimed.timing = NULL;
+		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = *tangents};
+		status = nt_status_of(nmtan_tangents(&view, &untimed, &output, NULL));
 	}
-	h->tangents = nt_alloc(mesh->corner_count, 4 * sizeof *h->tangents);
-	if (!h->tangents)
-		return NT_ERROR_MEMORY;
-	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = h->tangents};
-	return nt_status_of(nmtan_tangents(&h->view, options, &output, NULL));
+	free(p);
+	free(n);
+	return status;
 }
 
 static size_t vertex_of(const nmtan_mesh *view, size_t corner)
@@ -102,12 +99,14 @@ static size_t vertex_of(const nmtan_mesh *view, size_t corner)
 	return view->indices ? view->indices[corner] : corner;
 }
 
-/* Twice the area of a triangle, and the square of its longest edge. */
-static double measure(const nmtan_mesh *view, const float *positions, size_t triangle, double *longest)
+/* Twice the area of a triangle between two places, and the square of its longest edge there. */
+static double measure(const nmtan_mesh *view, const float *from, const float *to, size_t triangle, double *longest)
 {
 	nt_dvec3 p[3];
-	for (size_t k = 0; k < 3; k++)
-		p[k] = nt_dvec3_load(positions + 3 * vertex_of(view, 3 * triangle + k));
+	for (size_t k = 0; k < 3; k++) {
+		const size_t v = vertex_of(view, 3 * triangle + k);
+		p[k] = nt_dvec3_scale(0.5, nt_dvec3_add(nt_dvec3_load(from + 3 * v), nt_dvec3_load(to + 3 * v)));
+	}
 	*longest = 0;
 	for (size_t k = 0; k < 3; k++) {
 		const nt_dvec3 edge = nt_dvec3_sub(p[(k + 1) % 3], p[k]);
@@ -117,59 +116,44 @@ static double measure(const nmtan_mesh *view, const float *positions, size_t tri
 }
 
 /* Whether the triangle itself has a direction at weight 0.5. */
-static bool has_direction(const nmtan_mesh *base, const nt_morph *morph, const halfway *h, size_t triangle)
+static bool has_direction(const nmtan_mesh *base, const nt_morph *morph, size_t triangle)
 {
-	const float *uv[3];
+	const float *uv[3], *from = base->positions, *to = morph->positions ? morph->positions : from;
 	for (size_t k = 0; k < 3; k++)
 		uv[k] = base->texcoords + 2 * vertex_of(base, 3 * triangle + k);
 	double before, after, now;
-	measure(base, base->positions, triangle, &before);
-	measure(base, morph->positions ? morph->positions : base->positions, triangle, &after);
-	const double area = measure(base, h->view.positions, triangle, &now);
+	measure(base, from, from, triangle, &before);
+	measure(base, to, to, triangle, &after);
+	const double area = measure(base, from, to, triangle, &now);
 	return area > COLLAPSED * fmax(before, after) && nmtan_orientation(uv[0], uv[1], uv[2]) != 0;
 }
 
 /* How far the tangent that a client has at a corner is off, as a cosine. */
-static double cosine_at(const nt_mesh *mesh, const nt_morph *morph, const halfway *h, size_t corner, bool *cancelled)
+static double cosine_at(const nt_mesh *mesh, const nt_morph *morph, const float *halfway, size_t corner,
+	bool *cancelled)
 {
 	const nt_dvec3 client = nt_dvec3_scale(0.5, nt_dvec3_add(nt_dvec3_load(mesh->corner_tangents + 4 * corner),
 		nt_dvec3_load(morph->corner_tangents + 4 * corner)));
 	*cancelled = nt_dvec3_dot(client, client) < CANCELLED * CANCELLED;
-	return *cancelled ? 0 : cosine_between(client, nt_dvec3_load(h->tangents + 4 * corner));
+	return *cancelled ? 0 : cosine_between(client, nt_dvec3_load(halfway + 4 * corner));
 }
 
-static void compare(const nt_mesh *mesh, const nmtan_mesh *base, const halfway *h, nt_morph *morph)
+void nt_morphs_compare_halfway(const nt_mesh *mesh, const nmtan_mesh *base, const float *halfway, nt_morph *morph)
 {
 	double least = 1;
+	morph->halfway_triangles = 0;
 	for (size_t t = 0; t < mesh->face_count; t++) {
 		double worst = 1;
 		bool any_cancelled = false;
 		for (size_t k = 0; k < 3; k++) {
 			bool cancelled;
-			worst = fmin(worst, cosine_at(mesh, morph, h, 3 * t + k, &cancelled));
+			worst = fmin(worst, cosine_at(mesh, morph, halfway, 3 * t + k, &cancelled));
 			any_cancelled |= cancelled;
 		}
-		if (worst < LIMIT_COSINE && (any_cancelled || has_direction(base, morph, h, t))) {
+		if (worst < LIMIT_COSINE && (any_cancelled || has_direction(base, morph, t))) {
 			morph->halfway_triangles++;
 			least = fmin(least, worst);
 		}
 	}
 	morph->halfway_degrees = degrees_of(least);
-}
-
-nt_status nt_morphs_halfway(const nt_mesh *mesh, nt_morph *morph, const nmtan_mesh *base,
-	const nmtan_options *options)
-{
-	morph->halfway_triangles = 0;
-	morph->halfway_degrees = 0;
-	if (!turns(mesh, morph))
-		return NT_OK;
-	halfway h = {0};
-	const nt_status status = solve_halfway(mesh, morph, base, options, &h);
-	if (!status)
-		compare(mesh, base, &h, morph);
-	free(h.positions);
-	free(h.normals);
-	free(h.tangents);
-	return status;
 }

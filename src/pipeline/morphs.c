@@ -36,12 +36,37 @@ static int side_of(const nmtan_mesh *view, size_t triangle)
 	return along > 0 ? 1 : along < 0 ? -1 : 0;
 }
 
-static size_t count_turned(const nmtan_mesh *base, const nmtan_mesh *moved)
+static nmtan_mesh move(const nmtan_mesh *base, const nt_morph *morph)
 {
+	nmtan_mesh moved = *base;
+	if (morph->positions)
+		moved.positions = morph->positions;
+	if (morph->normals)
+		moved.normals = morph->normals;
+	return moved;
+}
+
+size_t nt_morphs_count_turned(const nmtan_mesh *base, const nt_morph *morph)
+{
+	const nmtan_mesh moved = move(base, morph);
 	size_t count = 0;
 	for (size_t t = 0; t < base->face_count; t++)
-		count += side_of(base, t) * side_of(moved, t) < 0;
+		count += side_of(base, t) * side_of(&moved, t) < 0;
 	return count;
+}
+
+static nt_status judge_halfway(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_options *options,
+	nt_morph *morph)
+{
+	if (!nt_morphs_turn(mesh, morph))
+		return NT_OK;
+	float *halfway;
+	const nt_status status =
+		nt_morphs_solve_halfway(base, morph->positions, morph->normals, options, &halfway);
+	if (!status)
+		nt_morphs_compare_halfway(mesh, base, halfway, morph);
+	free(halfway);
+	return status;
 }
 
 nt_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_options *options)
@@ -49,19 +74,15 @@ nt_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_opt
 	mesh->morph_turned = 0;
 	for (size_t m = 0; m < mesh->morph_count; m++) {
 		nt_morph *morph = &mesh->morphs[m];
-		nmtan_mesh moved = *view;
-		if (morph->positions)
-			moved.positions = morph->positions;
-		if (morph->normals)
-			moved.normals = morph->normals;
+		const nmtan_mesh moved = move(view, morph);
 		morph->corner_tangents = nt_alloc(mesh->corner_count, 4 * sizeof(float));
 		if (!morph->corner_tangents)
 			return NT_ERROR_MEMORY;
-		mesh->morph_turned += count_turned(view, &moved);
-const nmtan_output output = {.struct_bytes = sizeof output, .tangents = morph->corner_tangents};
+		mesh->morph_turned += nt_morphs_count_turned(view, morph);
+		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = morph->corner_tangents};
 		nt_status status = nt_status_of(nmtan_tangents(&moved, options, &output, NULL));
 		if (!status)
-			status = nt_morphs_halfway(mesh, morph, view, options);
+			status = judge_halfway(mesh, view, options, morph);
 		if (status)
 			return status;
 	}

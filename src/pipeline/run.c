@@ -12,6 +12,7 @@
 #include "format/normal_map.h"
 #include "gltf/verify.h"
 #include "base/clock.h"
+#include "pipeline/joins.h"
 #include "pipeline/stages.h"
 
 /* What the stages of one run share. */
@@ -155,12 +156,48 @@ static nt_status load_for_report(run *r, nt_mesh *mesh)
 	return NT_OK;
 }
 
+/* Finds what is to be solved together, or, for a report, what could be. */
+static nt_status find_joins(run *r)
+{
+	nt_scene *scene = &r->scene;
+	const bool across = r->settings->across == NT_ACROSS_MESH;
+	if (!r->reader->find_joins || !(across || r->settings->report))
+		return NT_OK;
+	const nt_status status = r->reader->find_joins(scene, r->error);
+	for (size_t i = 0; !status && across && i < scene->join_count; i++)
+		for (size_t k = 0; k < scene->joins[i].part_count; k++)
+			scene->joins[i].parts[k]->join = &scene->joins[i];
+	return status;
+}
+
+/* Loads the copies in joins. For a report alone, what cannot be read is left out. */
+static nt_status load_copies(run *r)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < r->scene.join_count; i++)
+		for (size_t k = 0; !status && k < r->scene.joins[i].part_count; k++) {
+			nt_mesh *mesh = r->scene.joins[i].parts[k];
+			if (is_wanted(mesh))
+				continue;
+			status = r->reader->load(&r->scene, mesh, &r->read_options, r->error);
+			if (!status || mesh->join || status == NT_ERROR_MEMORY)
+				continue;
+			mesh->positions = NULL;
+			nt_error_clear(r->error);
+			status = NT_OK;
+		}
+	return status;
+}
+
 static nt_status load_meshes(run *r)
 {
 	begin_stage(r, NT_STAGE_DECODE);
 	const bool all = needs_all(r);
+	nt_status status = find_joins(r);
+	if (status)
+		return status;
 	if (r->reader->find_same) {
-		const nt_status status = r->reader->find_same(&r->scene, &r->read_options, r->error);
+		status = r->reader->find_same(&r->scene, &r->read_options, r->error);
 		if (status)
 			return status;
 	}
@@ -170,13 +207,26 @@ static nt_status load_meshes(run *r)
 		const bool needed = is_wanted(mesh) || (all && loadable);
 		if (!needed && !(r->settings->report && loadable))
 			continue;
-		const nt_status status = needed
+		status = needed
 			? r->reader->load(&r->scene, mesh, &r->read_options, r->error)
 			: load_for_report(r, mesh);
 		if (status)
 			return status;
 	}
-	return NT_OK;
+	return load_copies(r);
+}
+
+/* Copies in joins have their own normals, whatever the others get. */
+static nt_status make_normals_of_copies(run *r)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < r->scene.join_count; i++)
+		for (size_t k = 0; !status && k < r->scene.joins[i].part_count; k++) {
+			nt_mesh *mesh = r->scene.joins[i].parts[k];
+			if (!is_wanted(mesh) && mesh->positions)
+				status = nt_stage_normals(&r->scene, mesh, NT_NORMALS_AUTO, r->error);
+		}
+	return status;
 }
 
 static nt_status make_normals(run *r)
@@ -198,7 +248,7 @@ static nt_status make_normals(run *r)
 		if (status)
 			return status;
 	}
-	return NT_OK;
+	return make_normals_of_copies(r);
 }
 
 static void count_decisions(run *r)
@@ -334,6 +384,8 @@ static nt_status make_report(run *r, nt_status status)
 	if (!r->settings->report)
 		return status;
 	begin_stage(r, NT_STAGE_REPORT);
+	if (!status && r->settings->across == NT_ACROSS_PRIMITIVE)
+		status = nt_stage_borders(&r->scene, r->settings, r->error);
 	if (status) {
 		r->summary->report = nt_report_of_error(r->input_path, r->error);
 		return status;

@@ -35,6 +35,7 @@ typedef struct nt_settings {
 	nt_only only;
 	nt_existing existing;
 	nt_normals normals;
+	nt_across across;
 	nt_images images;
 	nt_buffers buffers;
 	nt_draco_choice draco;

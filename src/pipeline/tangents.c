@@ -7,6 +7,7 @@
  * not show. Meshes with the same geometry as an earlier one take its result.
  */
 #include "pipeline/stages.h"
+#include "pipeline/joins.h"
 #include "pipeline/morphs.h"
 
 #include <math.h>
@@ -33,6 +34,22 @@ typedef struct tangent_job {
 	nmtan_workspace **workspaces; /* of each slot that solves small meshes */
 	nmtan_timing timing;          /* of the large meshes */
 } tangent_job;
+
+static bool is_wanted(const nt_mesh *mesh)
+{
+	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR;
+}
+
+static bool is_solved(const nt_mesh *mesh)
+{
+	return is_wanted(mesh) && !mesh->same_as;
+}
+
+/* Whether a mesh is solved by itself, or stands for its join. */
+static bool is_item(const nt_mesh *mesh)
+{
+	return is_solved(mesh) && (!mesh->join || mesh->join->first == mesh);
+}
 
 typedef struct mesh_bytes {
 	const nt_scene *scene;
@@ -137,15 +154,12 @@ static nt_status split_morphs(nt_mesh *mesh, const nmtan_mesh *view, const nmtan
 	nmtan_split_output *output)
 {
 	float *keys = nt_alloc(mesh->corner_count, 4 * sizeof *keys);
-	nt_status status = keys ? nt_morphs_solve(mesh, view, options) : NT_ERROR_MEMORY;
-	if (!status)
-		status = nt_morphs_keys(mesh, view, keys);
+	nt_status status = keys ? nt_morphs_keys(mesh, view, keys) : NT_ERROR_MEMORY;
 	if (!status)
 		status = nt_status_of(nmtan_split(view, keys, options, output));
 	mesh->split.source_count = output->source_count;
 	if (!status)
 		status = nt_morphs_finish(mesh);
-	nt_morphs_free(mesh);
 	free(keys);
 	return status;
 }
@@ -162,6 +176,22 @@ static nt_status split_corners(nt_mesh *mesh, const nmtan_options *options, nmta
 				 : nt_status_of(nmtan_split(&view, mesh->corner_tangents, options, output));
 }
 
+static void free_corners(nt_mesh *mesh)
+{
+	nt_morphs_free(mesh);
+	free(mesh->corner_tangents);
+	mesh->corner_tangents = NULL;
+}
+
+static void end_split(nt_mesh *mesh, const nmtan_split_output *output)
+{
+	mesh->split.source_count = output->source_count;
+	if (output->source_count == 0) {
+		free(mesh->split.indices);
+		mesh->split.indices = NULL;
+	}
+}
+
 /* The input's pages that a solve is done with: glTF that is made from glTF is copied by the kernel. */
 static void forget_part(void *user, nt_mesh_part part)
 {
@@ -175,48 +205,81 @@ static void forget_part(void *user, nt_mesh_part part)
 	}
 }
 
-static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, unsigned threads,
-	nmtan_workspace *workspace, nmtan_timing *timing)
+static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, const nmtan_options *options)
 {
-	const nmtan_options options = {.struct_bytes = sizeof options, .method = job->settings->method,
-		.repair = job->settings->repair, .threads = threads, .workspace = workspace,
-		.timing = timing};
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	stored.v_offset = stored_v_offset(job);
 	mesh->counts = (nmtan_counts)NMTAN_COUNTS_INIT;
 	if (job->settings->check)
-		return solve_corners(mesh, &view, &options, &mesh->corner_tangents, &mesh->counts);
+		return solve_corners(mesh, &view, options, &mesh->corner_tangents, &mesh->counts);
 
 	nmtan_split_output output = {.source_count = 0};
 	nt_status status;
 	if (mesh->decision == NT_DECISION_REPAIR || mesh->morph_count || (job->triangulates && mesh->face_sizes)) {
-		status = solve_corners(mesh, &view, &options, &mesh->corner_tangents, &mesh->counts);
-		if (!status && job->triangulates && mesh->counts.folded_quads && options.repair == NMTAN_REPAIR_ON)
-			status = nt_cut_folded_quads(mesh, stored.v_offset, threads);
+		status = solve_corners(mesh, &view, options, &mesh->corner_tangents, &mesh->counts);
+		if (!status && job->triangulates && mesh->counts.folded_quads && options->repair == NMTAN_REPAIR_ON)
+			status = nt_cut_folded_quads(mesh, stored.v_offset, options->threads);
 		if (!status)
-			status = split_corners(mesh, &options, &output);
-		free(mesh->corner_tangents);
-		mesh->corner_tangents = NULL;
+			status = nt_morphs_solve(mesh, &view, options);
+		if (!status)
+			status = split_corners(mesh, options, &output);
+		free_corners(mesh);
 	} else if (!(status = make_split(mesh, &mesh->split, &output))) {
 		mesh_bytes bytes = {job->scene, mesh};
 		const nt_vertex_request request = {.lazy_indices = true,
 			.passed = job->forgets ? forget_part : NULL, .user = &bytes};
-		status = nt_status_of(nt_vertex_tangents(&view, &options, &request, &output, &mesh->counts));
+		status = nt_status_of(nt_vertex_tangents(&view, options, &request, &output, &mesh->counts));
 	}
-	mesh->split.source_count = output.source_count;
-	if (!status && output.source_count == 0) {
-		free(mesh->split.indices);
-		mesh->split.indices = NULL;
+	if (!status)
+		end_split(mesh, &output);
+	return status;
+}
+
+static nt_status solve_join(const tangent_job *job, const nt_join *join, const nmtan_options *options)
+{
+	nt_status status = nt_join_solve(join, stored_v_offset(job), !job->settings->check, options);
+	for (size_t i = 0; i < join->part_count; i++) {
+		nt_mesh *mesh = join->parts[i];
+		if (!is_wanted(mesh))
+			continue;
+		if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
+			restore_valid(mesh, mesh->corner_tangents);
+		if (!status && job->settings->check)
+			continue;
+		nmtan_split_output output;
+		if (!status && !(status = split_corners(mesh, options, &output)))
+			end_split(mesh, &output);
+		free_corners(mesh);
 	}
 	return status;
+}
+
+/* A mesh, or the join that it is the first of. */
+static nt_status solve_item(const tangent_job *job, nt_mesh *mesh, unsigned threads,
+	nmtan_workspace *workspace, nmtan_timing *timing)
+{
+	const nmtan_options options = {.struct_bytes = sizeof options, .method = job->settings->method,
+		.repair = job->settings->repair, .threads = threads, .workspace = workspace,
+		.timing = timing};
+	return mesh->join ? solve_join(job, mesh->join, &options) : solve_mesh(job, mesh, &options);
+}
+
+static size_t corners_of(const nt_mesh *mesh)
+{
+	if (!mesh->join)
+		return mesh->corner_count;
+	size_t corners = 0;
+	for (size_t i = 0; i < mesh->join->part_count; i++)
+		corners += mesh->join->parts[i]->corner_count;
+	return corners;
 }
 
 static void solve_large(tangent_job *job)
 {
 	for (size_t i = 0; i < job->count; i++)
-		if (job->meshes[i]->corner_count >= LARGE_CORNERS)
-			job->statuses[i] = solve_mesh(job, job->meshes[i], job->settings->threads, NULL,
+		if (corners_of(job->meshes[i]) >= LARGE_CORNERS)
+			job->statuses[i] = solve_item(job, job->meshes[i], job->settings->threads, NULL,
 				&job->timing);
 }
 
@@ -224,21 +287,21 @@ static void solve_one_small(void *context, size_t item, unsigned slot)
 {
 	tangent_job *job = context;
 	nt_mesh *mesh = job->meshes[item];
-	if (mesh->corner_count >= LARGE_CORNERS)
+	if (corners_of(mesh) >= LARGE_CORNERS)
 		return;
 	/* without a workspace it is only slower */
 	nmtan_workspace **workspace = job->workspaces ? &job->workspaces[slot] : NULL;
 	if (workspace && !*workspace)
 		*workspace = nmtan_workspace_create(NULL);
-	job->statuses[item] = solve_mesh(job, mesh, 1, workspace ? *workspace : NULL, NULL);
+	job->statuses[item] = solve_item(job, mesh, 1, workspace ? *workspace : NULL, NULL);
 }
 
 static void solve_small(tangent_job *job)
 {
 	size_t corners = 0;
 	for (size_t i = 0; i < job->count; i++)
-		if (job->meshes[i]->corner_count < LARGE_CORNERS)
-			corners += job->meshes[i]->corner_count;
+		if (corners_of(job->meshes[i]) < LARGE_CORNERS)
+			corners += corners_of(job->meshes[i]);
 	const unsigned threads = corners < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(job->settings->threads);
 	const size_t slots = threads < job->count ? threads : job->count;
 	job->workspaces = nt_calloc(slots, sizeof(nmtan_workspace *));
@@ -306,17 +369,13 @@ static void add_counts(nt_summary *summary, const nt_mesh *mesh)
 	nt_counts_add(&summary->counts, &mesh->counts);
 }
 
-static bool is_wanted(const nt_mesh *mesh)
-{
-	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR;
-}
-
 /* What was solved is kept, shared with the meshes that have the same geometry, and counted for each. */
 static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *error)
 {
 	bool kept = true;
-	for (size_t i = 0; i < job->count; i++)
-		kept = keep_results(job->scene, job->meshes[i]) && kept;
+	for (size_t i = 0; i < job->scene->mesh_count; i++)
+		if (is_solved(&job->scene->meshes[i]))
+			kept = keep_results(job->scene, &job->scene->meshes[i]) && kept;
 	if (!kept)
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < job->count; i++) {
@@ -357,7 +416,7 @@ nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_for
 		status = nt_fail_memory(error);
 	} else {
 		for (size_t i = 0; i < scene->mesh_count; i++)
-			if (is_wanted(&scene->meshes[i]) && !scene->meshes[i].same_as)
+			if (is_item(&scene->meshes[i]))
 				job.meshes[job.count++] = &scene->meshes[i];
 		solve_large(&job);
 		summary->seconds[NT_STAGE_WELD] += job.timing.weld;

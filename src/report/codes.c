@@ -292,6 +292,14 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"tangent and its delta cancel. Targets that turn no tangent by more than 5 degrees are not looked at.",
 		"Add a target for the pose in between, so that none turns the surface far.",
 		"a square whose target turns it by a quarter and doubles its width"),
+	ROW(TAN_PRIMITIVE_BORDER, INFO,
+		"{count} {tangent|tangents} at borders to other primitives would turn if the mesh were solved as one",
+		"glTF defines tangents per primitive. A baker computes them over the whole object, so that a mesh which is "
+		"divided by material shows a seam where the surface goes on with the same normals and texture "
+		"coordinates. The finding counts corners whose tangents differ by more than 5 degrees between the two, "
+		"and tells the largest angle.",
+		"If the normal map was baked for the whole mesh, use --across=mesh.",
+		"two squares of one mesh, of which the second's texture is sheared, with a material each"),
 	ROW(TAN_VERTEX_GROWTH, INFO, "{count} {vertex was|vertices were} added",
 		"A vertex is copied where its corners need different tangents or normals. The finding counts "
 		"by cause: mirrored texture coordinates, different tangent directions, normals that were made.",

@@ -17,6 +17,12 @@ typedef enum nt_format {
 	NT_FORMAT_DRC
 } nt_format;
 
+/* Which primitives of a glTF mesh are solved together. */
+typedef enum nt_across {
+	NT_ACROSS_PRIMITIVE, /* each by itself, as glTF defines tangents */
+	NT_ACROSS_MESH       /* those with the same texture coordinates and texture transform, as bakers do */
+} nt_across;
+
 /* TANGENT of the morph targets of primitives that get tangents. */
 typedef enum nt_morph_choice {
 	NT_MORPH_BAKE, /* what to add to the base's, by a solve of the mesh as the target moves it */

@@ -41,6 +41,7 @@ void nt_mesh_share(nt_mesh *mesh)
 	mesh->targets_without_tangents = own.targets_without_tangents;
 	mesh->decision = own.decision;
 	mesh->same_as = own.same_as;
+	mesh->join = own.join;
 	mesh->primitives = own.primitives;
 	mesh->primitive_count = own.primitive_count;
 	if (mesh->primitive_count == 1)

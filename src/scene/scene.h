@@ -84,6 +84,16 @@ typedef struct nt_split {
 	float *vertex_tangents; /* [vertex_count + source_count][4] */
 } nt_split;
 
+/* Primitives of one glTF mesh with the same texture coordinates and the same texture transform, in their order. */
+typedef struct nt_join {
+	struct nt_mesh **parts; /* [part_count] at least two: meshes of the scene that get tangents, and copies of others,
+	                           which are loaded for the join alone */
+	size_t part_count;
+	struct nt_mesh *first;  /* the first of them that gets tangents */
+	bool *moves;            /* [target_count] morph targets that move any of them */
+	size_t target_count;
+} nt_join;
+
 typedef struct nt_mesh {
 	/* what it is called and where it stands */
 	const char *name;     /* object or mesh name; "" where there is none */
@@ -104,6 +114,10 @@ typedef struct nt_mesh {
 	nt_decision decision;
 	const struct nt_mesh *same_as; /* an earlier mesh with the same geometry, which is loaded and solved once;
 	                                  NULL: none. That one has none */
+
+	const nt_join *join;     /* it is solved with the others of it; NULL: by itself */
+	const struct nt_mesh *transform_of; /* of a copy in a join: the mesh whose texture transform applies; NULL:
+	                                       its own */
 
 	/* geometry: filled by load(). Arrays belong to the scene's arena or point into the input. */
 	size_t vertex_count;
@@ -183,6 +197,8 @@ typedef struct nt_scene {
 	size_t material_count;
 	nt_instance *instances;
 	size_t instance_count;
+	nt_join *joins; /* of meshes that get tangents, whether they are solved so or could be */
+	size_t join_count;
 	nt_finding_list findings;
 	nt_rounding rounding; /* of all meshes that were written */
 

@@ -170,6 +170,7 @@ nt_status nt_vertex_pools_find(nt_vertex_pools *pools, const nt_scene *scene, nt
 typedef struct set_key {
 	uint32_t positions, normals, texcoords;
 	uint32_t targets;    /* a hash of what the morph targets move */
+	uint64_t join;       /* what is solved with others has other tangents than alone: 0, or the join's number + 1 */
 	uint64_t directions; /* a hash of what a texture transform makes of the texture coordinates; 0: there is none */
 } set_key;
 
@@ -196,11 +197,12 @@ static set_key key_of(const nt_vertex_pools *pools, const nt_mesh *mesh)
 		hash = (hash ^ alias_of(pools, target, "POSITION")) * 16777619u;
 		hash = (hash ^ alias_of(pools, target, "NORMAL")) * 16777619u;
 	}
+	const uint64_t join = mesh->join ? (uint64_t)(mesh->join - pools->scene->joins) + 1 : 0;
 	const uint64_t directions = !mesh->solve_texcoords ? 0 :
 		nt_hash_bytes(1, mesh->solve_texcoords, mesh->vertex_count * 2 * sizeof *mesh->solve_texcoords);
 	return (set_key){alias_of(pools, attributes, "POSITION"),
 		alias_of(pools, attributes, "NORMAL"), alias_of(pools, attributes, name),
-		hash, directions};
+		hash, join, directions};
 }
 
 /* Whether the morph targets of two meshes move the same accessors. */

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Primitives that are solved as one mesh: for the table of formats.
+ */
+#ifndef NT_GLTF_JOINS_H
+#define NT_GLTF_JOINS_H
+
+#include "scene/scene.h"
+
+/* Fills scene->joins, after the decisions. mesh->join is left to the caller. */
+nt_status nt_gltf_find_joins(nt_scene *scene, nt_error *error);
+
+#endif

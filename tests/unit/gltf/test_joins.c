@@ -1,0 +1,137 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Which primitives become a join, from the JSON alone.
+ */
+#include "test.h"
+#include <stdio.h>
+#include <string.h>
+#include <time.h>
+#include "base/buffer.h"
+#include "gltf/joins.h"
+#include "gltf/open.h"
+#include "scene/select.h"
+
+static void open_text(nt_scene *scene, const nt_buffer *json)
+{
+	nt_error error;
+	nt_scene_init(scene, "t.gltf");
+	scene->bytes = (const unsigned char *)json->data;
+	scene->byte_count = json->size;
+	scene->format = NT_FORMAT_GLTF;
+	if (nt_gltf_open(scene, &(nt_read_options){.texcoord_set = -1}, &error))
+		fail_msg("%s: %s", error.place.pointer, error.message);
+	nt_select(scene, NT_ONLY_AUTO, NT_EXISTING_KEEP, false);
+	assert_int_equal(nt_gltf_find_joins(scene, &error), NT_OK);
+}
+
+/* Primitives by letter: n normal map, N normal map and tangents, 1 normal map with set 1, t turned, . nothing,
+ * x nothing and no normals, l nothing and lines. Each has both sets. A blank begins another mesh. */
+static void open_primitives(nt_scene *scene, nt_buffer *json, const char *letters)
+{
+	static const char normal[] = "{\"normalTexture\":{\"index\":0%s}},";
+	*json = (nt_buffer){0};
+	nt_buffer_text(json, "{\"asset\":{\"version\":\"2.0\"},\"accessors\":[{\"componentType\":5126,\"count\":3,"
+		"\"type\":\"VEC3\"}],\"textures\":[{}],\"materials\":[{},");
+	nt_buffer_format(json, normal, "");
+	nt_buffer_format(json, normal, ",\"texCoord\":1");
+	nt_buffer_text(json, "{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":"
+		"{\"rotation\":1}}}}],\"meshes\":[{\"primitives\":[");
+	for (const char *l = letters; *l; l++) {
+		if (*l == ' ') {
+			nt_buffer_text(json, "]},{\"primitives\":[");
+			continue;
+		}
+		const int material = *l == 'n' || *l == 'N' ? 1 : *l == '1' ? 2 : *l == 't' ? 3 : 0;
+		nt_buffer_format(json, "%s{\"attributes\":{\"POSITION\":0,%s\"TEXCOORD_0\":0,\"TEXCOORD_1\":0%s},"
+			"\"material\":%d,\"mode\":%d}", l > letters && l[-1] != ' ' ? "," : "",
+			*l == 'x' ? "" : "\"NORMAL\":0,", *l == 'N' ? ",\"TANGENT\":0" : "", material,
+			*l == 'l' ? 1 : 4);
+	}
+	nt_buffer_text(json, "]}]}");
+	open_text(scene, json);
+}
+
+/* The joins as their parts' numbers: "0 2, 1 2". */
+static void joins_are(const char *letters, const char *expected)
+{
+	nt_scene scene;
+	nt_buffer json, found = {0};
+	open_primitives(&scene, &json, letters);
+	nt_buffer_text(&found, "");
+	for (size_t i = 0; i < scene.join_count; i++)
+		for (size_t k = 0; k < scene.joins[i].part_count; k++) {
+			const nt_mesh *part = scene.joins[i].parts[k];
+			size_t number = 0;
+			while (strcmp(scene.meshes[number].place.pointer, part->place.pointer) != 0)
+				number++;
+			/* those that get tangents stand for themselves */
+			assert_int_equal(part == &scene.meshes[number], part->decision == NT_DECISION_SOLVE);
+			assert_int_equal(part->texcoord_set, scene.joins[i].first->texcoord_set);
+			nt_buffer_format(&found, "%s%zu", k ? " " : i ? ", " : "", number);
+		}
+	assert_string_equal(found.data ? found.data : "", expected);
+	nt_buffer_free(&found);
+	nt_buffer_free(&json);
+	nt_scene_free(&scene);
+}
+
+static void kinds_are_sets_and_transforms(void **state)
+{
+	(void)state;
+	joins_are("nn", "0 1");
+	joins_are("n1", "");
+	joins_are("nt", "");
+	joins_are("nttn", "0 3, 1 2");
+	joins_are("n n", "");
+	joins_are("nn nn", "0 1, 2 3");
+}
+
+static void those_without_a_kind_are_in_all_of_them(void **state)
+{
+	(void)state;
+	joins_are("n.", "0 1");
+	joins_are(".nN", "0 1 2");
+	joins_are("n.1", "0 1, 1 2");
+	joins_are(".tn", "0 1, 0 2");
+	/* without normals or triangles they have nothing to give, and without one that gets tangents nobody takes */
+	joins_are("nx", "");
+	joins_are("nl", "");
+	joins_are("N.", "");
+	joins_are("..", "");
+}
+
+/* A mesh whose primitives all have transforms of their own, with as many that take part in every join: their square is
+ * 10^8. */
+static void many_kinds_cost_linear_time(void **state)
+{
+	(void)state;
+	enum { KINDS = 10000 };
+	nt_buffer json = {0};
+	nt_scene scene;
+	nt_buffer_text(&json, "{\"asset\":{\"version\":\"2.0\"},\"accessors\":[{\"componentType\":5126,\"count\":3,"
+		"\"type\":\"VEC3\"}],\"textures\":[{}],\"materials\":[{}");
+	for (int i = 0; i < KINDS; i++)
+		nt_buffer_format(&json, ",{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":"
+			"{\"rotation\":%d}}}}", i + 1);
+	nt_buffer_text(&json, "],\"meshes\":[{\"primitives\":[");
+	for (int i = 0; i < 2 * KINDS; i++)
+		nt_buffer_format(&json, "%s{\"attributes\":{\"POSITION\":0,\"NORMAL\":0,\"TEXCOORD_0\":0},\"material\":%d}",
+			i ? "," : "", i < KINDS ? i + 1 : 0);
+	nt_buffer_text(&json, "]}]}");
+	const clock_t begin = clock();
+	open_text(&scene, &json);
+	assert_true(clock() - begin < 10 * CLOCKS_PER_SEC);
+	assert_int_equal(scene.join_count, 8);
+	nt_scene_free(&scene);
+	nt_buffer_free(&json);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(kinds_are_sets_and_transforms),
+		cmocka_unit_test(those_without_a_kind_are_in_all_of_them),
+		cmocka_unit_test(many_kinds_cost_linear_time),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}

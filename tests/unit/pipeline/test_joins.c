@@ -1,0 +1,509 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * --across=mesh: primitives of one glTF mesh have the tangents, byte for byte, of one primitive with all their triangles.
+ * The surface is a wavy grid whose cells go to three primitives in turn; every primitive has vertices of its own, with
+ * the values of its neighbours. Texture coordinates are mirrored on the right half and the same for all corners of
+ * some cells, which repair has to fill.
+ */
+#include "test.h"
+#include "folder.h"
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "base/buffer.h"
+#include "gltf/accessor.h"
+#include "gltf/document.h"
+#include "gltf/load.h"
+#include "gltf/open.h"
+#include "pipeline/run.h"
+
+enum { SIDE = 24, CELLS = SIDE * SIDE, MOST_PARTS = 3 };
+
+/* One primitive: four vertices for each of its cells. */
+typedef struct part {
+	size_t cells;
+	float positions[4 * CELLS][3], normals[4 * CELLS][3], texcoords[4 * CELLS][2], moves[4 * CELLS][3];
+	uint32_t indices[6 * CELLS];
+} part;
+
+typedef struct surface {
+	part parts[MOST_PARTS];
+} surface;
+
+static void put_vertex(part *p, size_t i, int x, int y, bool flat_uv)
+{
+	const float height = 0.8f * sinf(0.7f * (float)x) * cosf(0.5f * (float)y);
+	const float normal[3] = {0.3f * sinf((float)x), 0.2f * cosf((float)(x + y)), 1};
+	const float length = sqrtf(normal[0] * normal[0] + normal[1] * normal[1] + 1);
+	for (int k = 0; k < 3; k++)
+		p->normals[i][k] = normal[k] / length;
+	memcpy(p->positions[i], (float[]){(float)x, (float)y, height}, sizeof p->positions[i]);
+	p->texcoords[i][0] = flat_uv ? 0.5f : fabsf((float)x - SIDE / 2 + 0.3f * sinf((float)y));
+	p->texcoords[i][1] = flat_uv ? 0.5f : -(float)y - 0.4f * sinf(0.9f * (float)x);
+	/* the target lifts the right end */
+	p->moves[i][2] = x > SIDE / 3 ? 0.3f * (float)(x - SIDE / 3) : 0;
+}
+
+static void make_surface(surface *s)
+{
+	memset(s, 0, sizeof *s);
+	for (int y = 0; y < SIDE; y++)
+		for (int x = 0; x < SIDE; x++) {
+			part *p = &s->parts[(x / 2 + 2 * (y / 3)) % MOST_PARTS];
+			const uint32_t a = (uint32_t)(4 * p->cells);
+			const bool flat_uv = (x * 7 + y * 5) % 31 == 0;
+			for (int k = 0; k < 4; k++)
+				put_vertex(p, a + (uint32_t)k, x + k % 2, y + k / 2, flat_uv);
+			const uint32_t corners[6] = {a, a + 1, a + 3, a, a + 3, a + 2};
+			memcpy(p->indices + 6 * p->cells++, corners, sizeof corners);
+		}
+}
+
+/* A part that has the triangles of all. */
+static void join_surface(const surface *s, part *joined)
+{
+	memset(joined, 0, sizeof *joined);
+	for (size_t i = 0; i < MOST_PARTS; i++) {
+		const part *p = &s->parts[i];
+		const size_t vertices = 4 * joined->cells;
+		memcpy(joined->positions[vertices], p->positions, 4 * p->cells * sizeof *p->positions);
+		memcpy(joined->normals[vertices], p->normals, 4 * p->cells * sizeof *p->normals);
+		memcpy(joined->texcoords[vertices], p->texcoords, 4 * p->cells * sizeof *p->texcoords);
+		memcpy(joined->moves[vertices], p->moves, 4 * p->cells * sizeof *p->moves);
+		for (size_t c = 0; c < 6 * p->cells; c++)
+			joined->indices[6 * joined->cells + c] = (uint32_t)vertices + p->indices[c];
+		joined->cells += p->cells;
+	}
+}
+
+/* ---- files ---- */
+
+/* A file is made of primitives, six accessors each: POSITION, NORMAL, TEXCOORD_0, indices, the target's POSITION, and
+ * TANGENT with a value that no solve gives. */
+typedef struct file {
+	nt_buffer bin, accessors;
+	size_t accessor_count;
+} file;
+
+static size_t put_accessor(file *f, const void *data, size_t count, size_t width, int type, const char *kind)
+{
+	nt_buffer_format(&f->accessors, "%s{\"bufferView\":0,\"byteOffset\":%zu,\"componentType\":%d,\"count\":%zu,"
+		"\"type\":\"%s\"}", f->accessor_count ? "," : "", f->bin.size, type, count, kind);
+	nt_buffer_append(&f->bin, data, count * width);
+	return f->accessor_count++;
+}
+
+/* Returns the first of its accessors. */
+static size_t put_part(file *f, const part *p)
+{
+	const size_t count = 4 * p->cells;
+	static float authored[4 * CELLS][4];
+	for (size_t i = 0; i < count; i++)
+		memcpy(authored[i], (float[]){0.6f, 0.8f, 0, 1}, sizeof authored[i]);
+	const size_t first = put_accessor(f, p->positions, count, 12, 5126, "VEC3");
+	put_accessor(f, p->normals, count, 12, 5126, "VEC3");
+	put_accessor(f, p->texcoords, count, 8, 5126, "VEC2");
+	put_accessor(f, p->indices, 6 * p->cells, 4, 5125, "SCALAR");
+	put_accessor(f, p->moves, count, 12, 5126, "VEC3");
+	put_accessor(f, authored, count, 16, 5126, "VEC4");
+	return first;
+}
+
+/* What stands in a primitive behind its attributes; a for attributes. */
+static void put_primitive(nt_buffer *json, size_t first, const char *attributes, const char *rest)
+{
+	nt_buffer_format(json, "{\"attributes\":{\"POSITION\":%zu,\"NORMAL\":%zu,\"TEXCOORD_0\":%zu%s},\"indices\":%zu%s}",
+		first, first + 1, first + 2, attributes, first + 3, rest);
+}
+
+/* Materials: 0 and 1 have a normal map, 2 has none, 3 to 5 have one that is turned and scaled, 5 another way round. */
+static const char materials[] =
+	"{\"normalTexture\":{\"index\":0}},{\"normalTexture\":{\"index\":0,\"scale\":2}},{\"name\":\"plain\"},"
+	"{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"rotation\":0.5,\"scale\":[2,1]}}}},"
+	"{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"scale\":[2,1],\"rotation\":0.5,"
+	"\"offset\":[3,4]}}}},"
+	"{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"rotation\":-0.5,\"scale\":[2,1]}}}}";
+
+static void put_glb(const char *name, file *f, const char *meshes)
+{
+	nt_buffer json = {0};
+	nt_buffer_format(&json, "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_texture_transform\"],"
+		"\"materials\":[%s],\"textures\":[{}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu}],"
+		"\"accessors\":[%s],\"meshes\":[%s],\"buffers\":[{\"byteLength\":%zu}]}", materials, f->bin.size,
+		f->accessors.data, meshes, f->bin.size);
+	put_glb_file(name, json.data, f->bin.data, f->bin.size);
+	nt_buffer_free(&json);
+	nt_buffer_free(&f->bin);
+	nt_buffer_free(&f->accessors);
+	*f = (file){0};
+}
+
+/* The surface as one mesh of three primitives with these materials; attributes and rest may be NULL. */
+static void put_three(const char *name, const surface *s, const int material[3], const char *const attributes[3],
+	const char *const rest[3])
+{
+	file f = {0};
+	nt_buffer meshes = {0};
+	nt_buffer_text(&meshes, "{\"primitives\":[");
+	for (size_t i = 0; i < MOST_PARTS; i++) {
+		char more[200];
+		snprintf(more, sizeof more, ",\"material\":%d%s", material[i], rest ? rest[i] : "");
+		if (i)
+			nt_buffer_text(&meshes, ",");
+		put_primitive(&meshes, put_part(&f, &s->parts[i]), attributes ? attributes[i] : "", more);
+	}
+	nt_buffer_text(&meshes, "]}");
+	put_glb(name, &f, meshes.data);
+	nt_buffer_free(&meshes);
+}
+
+static void put_joined(const char *name, const surface *s, int material, const char *rest)
+{
+	static part joined;
+	file f = {0};
+	nt_buffer mesh = {0};
+	char more[200];
+	join_surface(s, &joined);
+	nt_buffer_text(&mesh, "{\"primitives\":[");
+	snprintf(more, sizeof more, ",\"material\":%d%s", material, rest);
+	put_primitive(&mesh, put_part(&f, &joined), "", more);
+	nt_buffer_text(&mesh, "]}");
+	put_glb(name, &f, mesh.data);
+	nt_buffer_free(&mesh);
+}
+
+/* ---- results ---- */
+
+/* What came out: an output, opened, and the tangents of one mesh's corners after the other's. */
+typedef struct result {
+	nt_file file;
+	nt_scene scene;
+	size_t border_count, repaired;
+	double border_degrees;
+} result;
+
+static void convert(result *r, const char *name, nt_settings settings)
+{
+	settings.texcoord_set = -1;
+	nt_summary summary;
+	nt_error error;
+	if (nt_run(in_folder(name), settings.check ? NULL : in_folder("out.glb"), &settings, &summary, &error))
+		fail_msg("%s: %s", error.place.pointer, error.message);
+	*r = (result){0};
+	for (size_t i = 0; i < summary.findings.count; i++) {
+		const nt_finding *finding = &summary.findings.items[i];
+		if (finding->code == NT_CODE_TAN_REPAIRED)
+			r->repaired += finding->count;
+		if (finding->code != NT_CODE_TAN_PRIMITIVE_BORDER)
+			continue;
+		double degrees = 0;
+		assert_int_equal(sscanf(finding->detail, "by up to %lf degrees", &degrees), 1);
+		r->border_count += finding->count;
+		r->border_degrees = fmax(r->border_degrees, degrees);
+	}
+	nt_summary_free(&summary);
+	if (settings.check)
+		return;
+	assert_int_equal(nt_file_open(&r->file, in_folder("out.glb"), &error), NT_OK);
+	nt_scene_init(&r->scene, "out.glb");
+	r->scene.bytes = r->file.data;
+	r->scene.byte_count = r->file.size;
+	const nt_read_options options = {.texcoord_set = -1, .morphs = NT_MORPH_KEEP};
+	assert_int_equal(nt_gltf_open(&r->scene, &options, &error), NT_OK);
+	for (size_t i = 0; i < r->scene.mesh_count; i++)
+		assert_int_equal(nt_gltf_load(&r->scene, &r->scene.meshes[i], &options, &error), NT_OK);
+}
+
+static void close_result(result *r)
+{
+	nt_scene_free(&r->scene);
+	nt_file_close(&r->file);
+}
+
+static const float *tangent(const nt_mesh *mesh, size_t corner)
+{
+	return mesh->tangents + 4 * (size_t)(mesh->indices ? mesh->indices[corner] : corner);
+}
+
+/* Corners of primitive `part` whose tangents differ from those of the joined mesh's corners from `first` on. */
+static size_t differing(const nt_mesh *mesh, const nt_mesh *joined, size_t first)
+{
+	size_t count = 0;
+	assert_non_null(mesh->tangents);
+	for (size_t c = 0; c < mesh->corner_count; c++)
+		count += memcmp(tangent(mesh, c), tangent(joined, first + c), 4 * sizeof(float)) != 0;
+	return count;
+}
+
+static const int mapped[3] = {0, 1, 0};
+static const nt_settings across = {.across = NT_ACROSS_MESH, .threads = 1};
+
+/* ---- tests ---- */
+
+static surface sheet;
+
+static void bytes_are_those_of_one_primitive(void **state)
+{
+	(void)state;
+	result r, one;
+	put_joined("one.glb", &sheet, 0, "");
+	put_three("three.glb", &sheet, mapped, NULL, NULL);
+	for (int method = NMTAN_METHOD_MIKKTSPACE; method <= NMTAN_METHOD_ROBUST; method++) {
+		nt_settings settings = {.method = (nmtan_method)method, .threads = 1};
+		convert(&one, "one.glb", settings);
+		settings.across = NT_ACROSS_MESH;
+		for (unsigned threads = 1; threads < 4; threads++) {
+			settings.threads = threads;
+			convert(&r, "three.glb", settings);
+			for (size_t i = 0, corner = 0; i < 3; corner += r.scene.meshes[i++].corner_count)
+				assert_int_equal(differing(&r.scene.meshes[i], &one.scene.meshes[0], corner), 0);
+			/* what is counted for each is what is counted for all */
+			assert_true(one.repaired > 0);
+			assert_int_equal(r.repaired, one.repaired);
+			close_result(&r);
+		}
+		/* without it they differ: the test sees something */
+		settings.across = NT_ACROSS_PRIMITIVE;
+		convert(&r, "three.glb", settings);
+		assert_true(differing(&r.scene.meshes[0], &one.scene.meshes[0], 0) > 20);
+		close_result(&r);
+		close_result(&one);
+	}
+}
+
+static void those_without_need_contribute_and_stay_as_they_are(void **state)
+{
+	(void)state;
+	result r, one;
+	put_joined("one.glb", &sheet, 0, "");
+	convert(&one, "one.glb", across);
+	/* the second asks for nothing, the third has tangents of its own: six accessors each, the last is TANGENT */
+	put_three("three.glb", &sheet, (int[]){0, 2, 1}, (const char *[]){"", "", ",\"TANGENT\":17"}, NULL);
+	convert(&r, "three.glb", across);
+	const nt_mesh *meshes = r.scene.meshes;
+	assert_int_equal(differing(&meshes[0], &one.scene.meshes[0], 0), 0);
+	assert_null(meshes[1].tangents);
+	for (size_t i = 0; i < meshes[2].vertex_count; i++)
+		assert_memory_equal(meshes[2].tangents + 4 * i, ((float[]){0.6f, 0.8f, 0, 1}), 4 * sizeof(float));
+	close_result(&r);
+	close_result(&one);
+}
+
+static void texture_transforms_divide(void **state)
+{
+	(void)state;
+	result r, one;
+	/* 3 and 4 are the same but for the offset, which does nothing to directions; 2 has no say */
+	put_three("three.glb", &sheet, (int[]){3, 2, 4}, NULL, NULL);
+	put_joined("one.glb", &sheet, 3, "");
+	convert(&one, "one.glb", across);
+	convert(&r, "three.glb", across);
+	const nt_mesh *meshes = r.scene.meshes;
+	assert_int_equal(differing(&meshes[0], &one.scene.meshes[0], 0), 0);
+	assert_int_equal(differing(&meshes[2], &one.scene.meshes[0], meshes[0].corner_count + meshes[1].corner_count), 0);
+	close_result(&one);
+	close_result(&r);
+	/* 0 and 5 are not: each is alone */
+	for (int other = 0; other <= 5; other += 5) {
+		put_three("three.glb", &sheet, (int[]){other, 3, 3}, NULL, NULL);
+		convert(&one, "three.glb", (nt_settings){.threads = 1});
+		convert(&r, "three.glb", across);
+		assert_int_equal(differing(&r.scene.meshes[0], &one.scene.meshes[0], 0), 0);
+		assert_true(differing(&r.scene.meshes[1], &one.scene.meshes[1], 0) > 20);
+		close_result(&one);
+		close_result(&r);
+	}
+}
+
+/* The first primitive's accessors in a second mesh, alone, and in a third with the same neighbours. */
+static void shared_geometry_gets_tangents_of_its_own(void **state)
+{
+	(void)state;
+	result r, one, apart;
+	file f = {0};
+	nt_buffer meshes = {0};
+	size_t first[3];
+	for (size_t i = 0; i < 3; i++)
+		first[i] = put_part(&f, &sheet.parts[i]);
+	for (size_t mesh = 0; mesh < 3; mesh++) {
+		nt_buffer_text(&meshes, mesh ? ",{\"primitives\":[" : "{\"primitives\":[");
+		for (size_t i = 0; i < (mesh == 1 ? 1u : 3u); i++) {
+			if (i)
+				nt_buffer_text(&meshes, ",");
+			put_primitive(&meshes, first[i], "", ",\"material\":0");
+		}
+		nt_buffer_text(&meshes, "]}");
+	}
+	put_glb("shared.glb", &f, meshes.data);
+	nt_buffer_free(&meshes);
+	put_joined("one.glb", &sheet, 0, "");
+	put_three("three.glb", &sheet, mapped, NULL, NULL);
+	convert(&one, "one.glb", across);
+	convert(&apart, "three.glb", (nt_settings){.threads = 1});
+	convert(&r, "shared.glb", across);
+	const nt_mesh *m = r.scene.meshes;
+	assert_int_equal(r.scene.mesh_count, 7);
+	assert_int_equal(differing(&m[0], &one.scene.meshes[0], 0), 0);
+	assert_int_equal(differing(&m[2], &one.scene.meshes[0], m[0].corner_count + m[1].corner_count), 0);
+	assert_int_equal(differing(&m[3], &apart.scene.meshes[0], 0), 0);
+	assert_int_equal(differing(&m[4], &one.scene.meshes[0], 0), 0);
+	assert_int_equal(differing(&m[5], &one.scene.meshes[0], m[0].corner_count), 0);
+	/* no vertex was appended: TANGENT is another accessor for each mesh */
+	assert_int_equal(m[0].vertex_count, 4 * sheet.parts[0].cells);
+	close_result(&r);
+	close_result(&one);
+	close_result(&apart);
+}
+
+/* The deltas of a target's TANGENT. */
+static float *target_tangents(const result *r, size_t mesh)
+{
+	const nt_json_value *primitive = nt_json_at(nt_json_find(
+		nt_json_at(nt_gltf_root_member(r->scene.source, "meshes"), 0), "primitives"), mesh);
+	uint64_t index;
+	nt_gltf_accessor accessor;
+	nt_error error;
+	float *rows;
+	assert_true(nt_json_get_uint64(nt_json_find(nt_json_at(nt_json_find(primitive, "targets"), 0), "TANGENT"),
+		&index));
+	assert_int_equal(nt_gltf_get_accessor(r->scene.source, index, "", &accessor, &error), NT_OK);
+	assert_int_equal(nt_gltf_floats(r->scene.source, &accessor, 3, 0, (nt_arena *)&r->scene.arena, &rows, &error),
+		NT_OK);
+	return rows;
+}
+
+static void targets_are_solved_as_one_too(void **state)
+{
+	(void)state;
+	result r, one;
+	surface moved = sheet;
+	/* the first stays: in its target there is nothing */
+	memset(moved.parts[0].moves, 0, sizeof moved.parts[0].moves);
+	put_joined("one.glb", &moved, 0, ",\"targets\":[{\"POSITION\":4}]");
+	put_three("three.glb", &moved, mapped, NULL, (const char *[]){",\"targets\":[{}]",
+		",\"targets\":[{\"POSITION\":10}]", ",\"targets\":[{\"POSITION\":16}]"});
+	convert(&one, "one.glb", across);
+	convert(&r, "three.glb", across);
+	const float *joined = target_tangents(&one, 0);
+	size_t turned = 0;
+	for (size_t i = 0, corner = 0; i < 3; corner += r.scene.meshes[i++].corner_count) {
+		const nt_mesh *mesh = &r.scene.meshes[i];
+		const float *rows = target_tangents(&r, i);
+		assert_int_equal(differing(mesh, &one.scene.meshes[0], corner), 0);
+		for (size_t c = 0; c < mesh->corner_count; c++) {
+			const float *delta = rows + 3 * mesh->indices[c];
+			assert_memory_equal(delta, joined + 3 * one.scene.meshes[0].indices[corner + c], 12);
+			turned += i == 0 && (delta[0] != 0 || delta[1] != 0 || delta[2] != 0);
+		}
+	}
+	assert_true(turned > 0);
+	close_result(&r);
+	close_result(&one);
+}
+
+static void same_for_others_and_for_checks(void **state)
+{
+	(void)state;
+	result r;
+	/* nothing to join: the bytes are those of the default */
+	put_joined("one.glb", &sheet, 0, "");
+	convert(&r, "one.glb", (nt_settings){.threads = 1});
+	void *before = malloc(r.file.size);
+	const size_t size = r.file.size;
+	memcpy(before, r.file.data, size);
+	close_result(&r);
+	convert(&r, "one.glb", across);
+	assert_int_equal(r.file.size, size);
+	assert_memory_equal(r.file.data, before, size);
+	free(before);
+	close_result(&r);
+	put_three("three.glb", &sheet, mapped, NULL, NULL);
+	convert(&r, "three.glb", (nt_settings){.across = NT_ACROSS_MESH, .check = true, .threads = 1});
+}
+
+/*
+ * Two squares, the second with its texture sheared by a: dP/du is (1, 0) on the first and (cos a, sin a) on the second.
+ * At both vertices of the border each square's corners sum up to angles of the squares there. At (1, 0): 90 degrees and
+ * 90 - a, since the second is the parallelogram (1, 0), (1 + s, k), which keeps u and v; at (1, 1): 90 and 90 + a.
+ * Solved as one the tangent is turned by b from the first with tan b = w sin a / (90 + w cos a), w the second's angle.
+ */
+static void put_sheared(const char *name, double k)
+{
+	file f = {0};
+	nt_buffer mesh = {0};
+	static part p[2];
+	nt_buffer_text(&mesh, "{\"primitives\":[");
+	for (int i = 0; i < 2; i++) {
+		memset(&p[i], 0, sizeof p[i]);
+		p[i].cells = 1;
+		for (int c = 0; c < 4; c++) {
+			const int x = i + c % 2, y = c / 2;
+			p[i].positions[c][0] = (float)x;
+			p[i].positions[c][1] = (float)(y + (x == 2 ? k : 0));
+			p[i].normals[c][2] = 1;
+			p[i].texcoords[c][0] = (float)x;
+			p[i].texcoords[c][1] = (float)-y;
+		}
+		memcpy(p[i].indices, (uint32_t[]){0, 1, 3, 0, 3, 2}, 6 * sizeof(uint32_t));
+		if (i)
+			nt_buffer_text(&mesh, ",");
+		put_primitive(&mesh, put_part(&f, &p[i]), "", ",\"material\":0");
+	}
+	nt_buffer_text(&mesh, "]}");
+	put_glb(name, &f, mesh.data);
+	nt_buffer_free(&mesh);
+}
+
+static void a_report_tells_borders_that_would_change(void **state)
+{
+	(void)state;
+	const double pi = 3.14159265358979323846;
+	const nt_report_options report = {0};
+	for (double k = 0.01; k < 2; k *= 2) {
+		const double a = atan(k), degrees = a * 180 / pi;
+		/* largest: the first square's corner at (1, 1), where the second has most weight, or the second's own at
+		 * (1, 0), which turns by what is left of a */
+		const double above = 90 + degrees, below = 90 - degrees;
+		const double first = atan2(above * sin(a), 90 + above * cos(a)) * 180 / pi;
+		const double second = degrees - atan2(below * sin(a), 90 + below * cos(a)) * 180 / pi;
+		const double worst = fmax(first, second);
+		result r;
+		put_sheared("border.glb", k);
+		for (int check = 0; check < 2; check++) {
+			convert(&r, "border.glb", (nt_settings){.report = &report, .check = check, .threads = 1});
+			if (fabs(r.border_degrees - (worst > 5 ? worst : 0)) > 0.06)
+				fail_msg("k %g: %g degrees, expected %g", k, r.border_degrees, worst);
+			assert_int_equal(r.border_count > 0, worst > 5);
+			if (!check)
+				close_result(&r);
+		}
+		/* nothing is computed unless it is asked for, nor where it is done */
+		convert(&r, "border.glb", (nt_settings){.threads = 1});
+		assert_int_equal(r.border_count, 0);
+		close_result(&r);
+		convert(&r, "border.glb", (nt_settings){.report = &report, .across = NT_ACROSS_MESH, .threads = 1});
+		assert_int_equal(r.border_count, 0);
+		close_result(&r);
+	}
+}
+
+static int set_up(void **state)
+{
+	make_surface(&sheet);
+	return make_folder(state);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(bytes_are_those_of_one_primitive),
+		cmocka_unit_test(those_without_need_contribute_and_stay_as_they_are),
+		cmocka_unit_test(texture_transforms_divide),
+		cmocka_unit_test(shared_geometry_gets_tangents_of_its_own),
+		cmocka_unit_test(targets_are_solved_as_one_too),
+		cmocka_unit_test(same_for_others_and_for_checks),
+		cmocka_unit_test(a_report_tells_borders_that_would_change),
+	};
+	return cmocka_run_group_tests(tests, set_up, remove_folder);
+}
