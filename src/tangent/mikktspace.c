@@ -528,18 +528,11 @@ static void write_output(const state *s)
 	}
 }
 
-static size_t count_triangles(const nmtan_mesh *mesh)
-{
-	size_t count = mesh->face_count;
-	for (size_t face = 0; mesh->face_sizes && face < mesh->face_count; face++)
-		count += mesh->face_sizes[face] == 4;
-	return count;
-}
-
 nmtan_status nt_mikktspace_scalar(const nt_solve *solve)
 {
 	state s = {.solve = solve, .mesh = solve->mesh};
-	s.triangles = nt_scratch_alloc(solve->scratch, count_triangles(solve->mesh), sizeof *s.triangles);
+	s.triangles = nt_scratch_alloc(solve->scratch, nt_triangle_count(solve->mesh, solve->corner_count),
+		sizeof *s.triangles);
 	s.ids = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *s.ids);
 	s.slots = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *s.slots);
 	if (!s.triangles || !s.ids || !s.slots)

@@ -51,6 +51,12 @@ static inline unsigned nt_face_size(const nmtan_mesh *mesh, size_t face)
 	return mesh->face_sizes ? mesh->face_sizes[face] : 3;
 }
 
+/* Triangles of a mesh of that many corners, quads cut in two: a face of n corners has n - 2. */
+static inline size_t nt_triangle_count(const nmtan_mesh *mesh, size_t corner_count)
+{
+	return corner_count - 2 * mesh->face_count;
+}
+
 /* The first corner of a face, by counting the quads before it. */
 static inline size_t nt_first_corner(const nmtan_mesh *mesh, size_t face)
 {

@@ -51,14 +51,6 @@ static const nt_kernels *kernels_for(nt_isa isa)
 
 /* 2 */
 
-static size_t count_triangles(const nmtan_mesh *mesh)
-{
-	size_t count = mesh->face_count;
-	for (size_t face = 0; mesh->face_sizes && face < mesh->face_count; face++)
-		count += mesh->face_sizes[face] == 4;
-	return count;
-}
-
 /* Triangles of a mesh with quads: how they are cut, and which are second halves. */
 static nmtan_status cut_faces(nt_fast *fast)
 {
@@ -368,7 +360,8 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, const nt_fa
 static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, const nt_fast_plan *plan)
 {
 	const nt_kernels *kernels = kernels_for(solve->isa);
-	*fast = (nt_fast){.solve = solve, .sparse = solve->sparse, .triangle_count = count_triangles(solve->mesh)};
+	*fast = (nt_fast){.solve = solve, .sparse = solve->sparse, 
+		.triangle_count = nt_triangle_count(solve->mesh, solve->corner_count)};
 	fast->wants_more = solve->bitangents || solve->magnitudes;
 	/* what the lanes have no place for goes by the definition: other thresholds split most groups, and
 	 * beyond the limits numbers do not fit the entries */

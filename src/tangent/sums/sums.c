@@ -74,9 +74,7 @@ static nmtan_status cut_faces(nt_sums *s)
 static nmtan_status make_triangles(nt_sums *s)
 {
 	const nmtan_mesh *mesh = s->solve->mesh;
-	s->triangle_count = mesh->face_count;
-	for (size_t face = 0; mesh->face_sizes && face < mesh->face_count; face++)
-		s->triangle_count += mesh->face_sizes[face] == 4;
+	s->triangle_count = nt_triangle_count(mesh, s->solve->corner_count);
 	s->flags = nt_scratch_alloc(s->solve->scratch, s->triangle_count, 1);
 	if (!s->flags)
 		return NMTAN_ERROR_MEMORY;
