@@ -53,7 +53,7 @@ static nmtan_status run_method(const nt_solve *solve, nmtan_method method, size_
 {
 	switch (method) {
 	case NMTAN_METHOD_MIKKTSPACE:
-		return solve->one_by_one ? nt_mikktspace_scalar(solve) : nt_mikktspace_fast(solve);
+		return solve->one_by_one || !nt_fast_can(solve) ? nt_mikktspace_scalar(solve) : nt_mikktspace_fast(solve);
 	case NMTAN_METHOD_AREA:
 		return nt_area(solve);
 	case NMTAN_METHOD_LENGYEL:

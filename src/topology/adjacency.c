@@ -85,14 +85,15 @@ static void mark_hub(nt_adjacency *a, size_t vertex)
 	}
 }
 
-/* Turns the counts of a block's vertices into cursors that begin at `place`; returns how deep the block is. */
-static uint32_t place_block(nt_adjacency *a, size_t first, size_t count, uint32_t place)
+/* Turns the counts of a block's vertices into cursors that begin at `place`; vertices of more than `most` corners
+ * become hubs. Returns how deep the block is. */
+static uint32_t place_block(nt_adjacency *a, size_t first, size_t count, uint32_t place, uint32_t most)
 {
 	uint32_t depth = 0;
 	for (size_t lane = 0; lane < count; lane++) {
 		const uint32_t degree = total_count(a, first + lane);
 		place_vertex(a, first + lane, place + (uint32_t)lane);
-		if (degree > NT_FAN_DEPTH)
+		if (degree > most)
 			mark_hub(a, first + lane);
 		else
 			depth = degree > depth ? degree : depth;
@@ -101,29 +102,29 @@ static uint32_t place_block(nt_adjacency *a, size_t first, size_t count, uint32_
 }
 
 /* The same for one range: nobody's corners come before its own. */
-static uint32_t place_block_alone(uint32_t *cursors, size_t count, uint32_t place)
+static uint32_t place_block_alone(uint32_t *cursors, size_t count, uint32_t place, uint32_t most)
 {
 	uint32_t depth = 0;
 	for (size_t lane = 0; lane < count; lane++) {
-		const uint32_t degree = cursors[lane], known = degree > NT_FAN_DEPTH ? 0 : degree;
-		cursors[lane] = degree > NT_FAN_DEPTH ? NT_CURSOR_HUB : place + (uint32_t)lane;
+		const uint32_t degree = cursors[lane], known = degree > most ? 0 : degree;
+		cursors[lane] = degree > most ? NT_CURSOR_HUB : place + (uint32_t)lane;
 		depth = known > depth ? known : depth;
 	}
 	return depth;
 }
 
-/* Returns the number of entries, padding included. */
-static size_t place_blocks(nt_adjacency *a)
+/* Returns the number of entries, padding included: at most most_places. */
+static size_t place_blocks(nt_adjacency *a, size_t most_places)
 {
 	size_t place = 0;
 	for (size_t first = 0; first < a->vertex_count; first += NT_FAN_LANES) {
 		const size_t left = a->vertex_count - first, count = left < NT_FAN_LANES ? left : NT_FAN_LANES;
 		a->block_begin[first / NT_FAN_LANES] = (uint32_t)place;
-		const uint32_t depth = a->ranges == 1 ? place_block_alone(a->cursors + first, count, (uint32_t)place)
-						      : place_block(a, first, count, (uint32_t)place);
+		const uint32_t most = place + NT_FAN_LANES * NT_FAN_DEPTH <= most_places ? NT_FAN_DEPTH : 0;
+		const uint32_t depth = a->ranges == 1
+			? place_block_alone(a->cursors + first, count, (uint32_t)place, most)
+			: place_block(a, first, count, (uint32_t)place, most);
 		place += (size_t)depth * NT_FAN_LANES;
-		if (place > NT_CURSOR_PLACE - NT_FAN_LANES * NT_FAN_DEPTH)
-			return SIZE_MAX;
 	}
 	a->block_begin[(a->vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES] = (uint32_t)place;
 	return place;
@@ -161,7 +162,7 @@ static bool alloc_entries(nt_adjacency *a, size_t count, nt_room *room)
 }
 
 nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_ranges *ranges,
-	size_t vertex_count, nt_room *cursor_room, nt_room *room, nt_adjacency *adjacency)
+	size_t vertex_count, size_t most_places, nt_room *cursor_room, nt_room *room, nt_adjacency *adjacency)
 {
 	const size_t blocks = (vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES;
 	*adjacency = (nt_adjacency){.vertex_count = vertex_count, .ranges = ranges->count};
@@ -176,8 +177,5 @@ nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_
 
 	counting c = {triangles, ranges, a};
 	nt_parallel_ranges(ranges->count, ranges->count, 1, count_ranges, &c);
-	const size_t entries = place_blocks(a);
-	if (entries == SIZE_MAX)
-		return NMTAN_ERROR_TOO_LARGE;
-	return alloc_entries(a, entries, room) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+	return alloc_entries(a, place_blocks(a, most_places), room) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }

@@ -2,7 +2,8 @@
 /*
  * The corners around each welded vertex, laid out for lanes: vertices go in blocks of 16, and the k-th
  * corners of a block's vertices lie side by side. A block is as deep as its vertex of most corners;
- * vertices of more than NT_FAN_DEPTH corners have no entries here.
+ * hubs, which are the vertices of more than NT_FAN_DEPTH corners, have no entries here. Where places run out, because
+ * a very large mesh is also very uneven, all vertices are hubs from there on.
  *
  * Several ranges of triangles can be entered at the same time: each range has a cursor of its own for
  * each vertex.
@@ -23,7 +24,7 @@ typedef struct nt_fan_entry {
 
 /* A cursor: where the vertex's next entry of this range goes (each corner moves it by NT_FAN_LANES), and
  * flags above. */
-#define NT_CURSOR_HUB ((uint32_t)1 << 31)       /* too many corners: there is no place */
+#define NT_CURSOR_HUB ((uint32_t)1 << 31)       /* a hub: there is no place */
 #define NT_CURSOR_SHARED ((uint32_t)1 << 30)    /* an earlier range has corners of this vertex too */
 #define NT_CURSOR_ELSEWHERE ((uint32_t)1 << 29) /* the place is in `rest` */
 #define NT_CURSOR_PLACE (((uint32_t)1 << 28) - 1)
@@ -43,7 +44,8 @@ typedef struct nt_adjacency {
 	size_t entry_count;
 } nt_adjacency;
 
-/* Corners for which places can be numbered whatever the mesh looks like. */
+/* Places that can be numbered, those of corners and of padding, and fewer corners than that. */
+#define NT_ADJACENCY_PLACES ((size_t)NT_CURSOR_PLACE - NT_FAN_LANES)
 #define NT_ADJACENCY_LIMIT ((size_t)1 << 28)
 
 /* A place, which may have the flag ELSEWHERE. */
@@ -63,11 +65,12 @@ static inline const nt_fan_entry *nt_adjacency_block(const nt_adjacency *a, size
 /*
  * Counts the corners of each vertex and makes the places. Entries are not written.
  *
+ *   most_places         up to NT_ADJACENCY_PLACES
  *   cursor_room, room   the memory of cursors and of entries; may be the same
  *
- * Returns NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_TOO_LARGE.
+ * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */
 nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_ranges *ranges,
-	size_t vertex_count, nt_room *cursor_room, nt_room *room, nt_adjacency *adjacency);
+	size_t vertex_count, size_t most_places, nt_room *cursor_room, nt_room *room, nt_adjacency *adjacency);
 
 #endif

@@ -25,6 +25,7 @@
  */
 #include "tangent/fast/fast.h"
 
+#include <assert.h>
 #include <string.h>
 #include "base/clock.h"
 #include "base/cpu.h"
@@ -161,10 +162,11 @@ static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned
 }
 
 /* 3 and 4 directly. */
-static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, nt_room *row_room, nt_room *room)
+static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, size_t most_places, nt_room *row_room,
+	nt_room *room)
 {
-	const nmtan_status status = nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count, row_room,
-		room, &fast->adjacency);
+	const nmtan_status status = nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count,
+		most_places ? most_places : NT_ADJACENCY_PLACES, row_room, room, &fast->adjacency);
 	if (status)
 		return status;
 	fast->scattered = nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
@@ -352,23 +354,24 @@ static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, const nt_fa
 		status = make_ranges(fast, ranges);
 	if (!status)
 		status = binned ? fill_bins(fast, kernels, plan->bin_bits, &room)
-				: add_to_records(fast, kernels, row_room, &room);
+				: add_to_records(fast, kernels, plan->most_places, row_room, &room);
 	return status;
+}
+
+bool nt_fast_can(const nt_solve *solve)
+{
+	return solve->threshold_cos == -1.0f && solve->mesh->vertex_count < NT_WELD_LIMIT &&
+	       3 * nt_triangle_count(solve->mesh, solve->corner_count) < NT_ADJACENCY_LIMIT;
 }
 
 /* With `sparse` the corners of triangles that are not suspect are not written, unless that is not enough. */
 static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, const nt_fast_plan *plan)
 {
 	const nt_kernels *kernels = kernels_for(solve->isa);
+	assert(nt_fast_can(solve));
 	*fast = (nt_fast){.solve = solve, .sparse = solve->sparse, 
 		.triangle_count = nt_triangle_count(solve->mesh, solve->corner_count)};
 	fast->wants_more = solve->bitangents || solve->magnitudes;
-	/* what the lanes have no place for goes by the definition: other thresholds split most groups, and
-	 * beyond the limits numbers do not fit the entries */
-	if (solve->threshold_cos != -1.0f || 3 * fast->triangle_count >= NT_ADJACENCY_LIMIT ||
-		solve->mesh->vertex_count >= NT_WELD_LIMIT)
-		return NMTAN_ERROR_TOO_LARGE;
-
 	nmtan_status status = sum_up(fast, kernels, plan);
 	if (status)
 		return status;
@@ -398,8 +401,7 @@ static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, const nt_fast
 nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *plan)
 {
 	nt_fast fast;
-	const nmtan_status status = solve_as(&fast, solve, plan);
-	return status == NMTAN_ERROR_TOO_LARGE ? nt_mikktspace_scalar(solve) : status;
+	return solve_as(&fast, solve, plan);
 }
 
 nmtan_status nt_mikktspace_fast(const nt_solve *solve)

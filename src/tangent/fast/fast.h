@@ -12,9 +12,14 @@ typedef struct nt_fast_plan {
 	size_t grain;      /* least triangles for a thread */
 	unsigned bin_bits; /* log2 of the vertices of a bin, from 4 on; 0: bins where the mesh is scattered */
 	size_t least_lent_bytes; /* smaller outputs do not serve as scratch */
+	size_t most_places;      /* for corners and padding, see adjacency.h; 0: NT_ADJACENCY_PLACES */
 } nt_fast_plan;
 
-/* The bytes of nt_mikktspace_scalar(). Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
+/* Whether this file can: it knows the default angular threshold alone, since others split most groups, and less
+ * than 2^28 corners and vertices. What it cannot is done by nt_mikktspace_scalar(). */
+bool nt_fast_can(const nt_solve *solve);
+
+/* The bytes of nt_mikktspace_scalar(), where nt_fast_can(). Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
 nmtan_status nt_mikktspace_fast(const nt_solve *solve);
 
 /* The same by another plan. */

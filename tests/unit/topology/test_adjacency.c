@@ -31,8 +31,9 @@ static void fill(const nt_adjacency *a, unsigned range, size_t begin, size_t end
 	}
 }
 
-/* Each vertex has its corners in order, in its lane. */
-static void check_entries(const nt_adjacency *a)
+/* Each vertex has its corners in order, in its lane; a hub has none. Vertices of many corners are hubs; with less
+ * room than a block may need all those behind are. Returns the number of hubs. */
+static size_t check_entries(const nt_adjacency *a, size_t most_places)
 {
 	size_t hubs = 0;
 	for (uint32_t v = 0; v < VERTICES; v++) {
@@ -41,9 +42,11 @@ static void check_entries(const nt_adjacency *a)
 		uint32_t degree = 0;
 		for (uint32_t i = 0; i < 3 * TRIANGLES; i++)
 			degree += ids[i] == v;
-		assert_int_equal((cursor & NT_CURSOR_HUB) != 0, degree > NT_FAN_DEPTH);
-		hubs += degree > NT_FAN_DEPTH;
-		if (degree > NT_FAN_DEPTH)
+		const size_t left = most_places - a->block_begin[v / NT_FAN_LANES];
+		const bool hub = degree > (left < NT_FAN_LANES * NT_FAN_DEPTH ? 0 : NT_FAN_DEPTH);
+		assert_int_equal((cursor & NT_CURSOR_HUB) != 0, hub);
+		hubs += hub;
+		if (hub)
 			continue;
 		assert_int_equal((cursor & NT_CURSOR_PLACE) - a->block_begin[v / NT_FAN_LANES] - v % NT_FAN_LANES,
 			degree * NT_FAN_LANES);
@@ -54,7 +57,7 @@ static void check_entries(const nt_adjacency *a)
 				entry += NT_FAN_LANES;
 			}
 	}
-	assert_in_range(hubs, 1, VERTICES - 1);
+	return hubs;
 }
 
 /* Makes places with `bytes` lent; returns how many of the entries were parted from the rest. */
@@ -68,10 +71,10 @@ static size_t check(unsigned ranges, size_t bytes, size_t *scratch_bytes)
 	const nt_triangles triangles = {.ids = ids};
 	const nt_triangle_ranges cut = {ranges, bounds[ranges]};
 	nt_adjacency a;
-	assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, &none, &room, &a), NMTAN_OK);
+	assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, NT_ADJACENCY_PLACES, &none, &room, &a), NMTAN_OK);
 	for (unsigned r = 0; r < ranges; r++)
 		fill(&a, r, cut.bounds[r], cut.bounds[r + 1]);
-	check_entries(&a);
+	assert_in_range(check_entries(&a, NT_ADJACENCY_PLACES), 1, VERTICES - 1);
 	const size_t rest = a.rest ? a.block_begin[BLOCKS] - a.entry_count : 0;
 	const bool in_room = (char *)a.entries >= lent && (char *)a.entries < lent + sizeof lent;
 	*scratch_bytes = 8 * (in_room ? rest : a.block_begin[BLOCKS]);
@@ -98,10 +101,36 @@ static void a_room_of_any_size_gives_the_same_places(void **state)
 	}
 }
 
+static void places_that_do_not_suffice_leave_hubs(void **state)
+{
+	(void)state;
+	make_ids();
+	static const size_t bounds[4] = {0, 100, 100, TRIANGLES};
+	size_t hubs = SIZE_MAX;
+	for (size_t most = 0; most <= VERTICES * NT_FAN_DEPTH; most += 50) {
+		nt_scratch scratch;
+		nt_scratch_init(&scratch, NULL);
+		nt_room room = nt_room_over(NULL, 0, &scratch);
+		const nt_triangles triangles = {.ids = ids};
+		const nt_triangle_ranges cut = {3, bounds};
+		nt_adjacency a;
+		assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, most, &room, &room, &a), NMTAN_OK);
+		assert_in_range(a.block_begin[BLOCKS], 0, most);
+		for (unsigned r = 0; r < 3; r++)
+			fill(&a, r, bounds[r], bounds[r + 1]);
+		const size_t now = check_entries(&a, most);
+		assert_in_range(now, 1, hubs);
+		hubs = now;
+		nt_scratch_free(&scratch);
+	}
+	assert_in_range(hubs, 1, VERTICES - 1);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(a_room_of_any_size_gives_the_same_places),
+		cmocka_unit_test(places_that_do_not_suffice_leave_hubs),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }

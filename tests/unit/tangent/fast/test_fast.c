@@ -67,11 +67,13 @@ static nt_solve make_solve(const nmtan_mesh *mesh, size_t corners, nt_scratch *s
 		.bitangents = more ? r->bitangents : NULL, .magnitudes = more ? r->magnitudes : NULL};
 }
 
+/* As many threads as are asked for. */
+static const nt_fast_plan usual = {.grain = 1};
+
 /* One run of the fast path against `expected`; prints what differs. */
 static size_t compare_run(const char *name, const nmtan_mesh *mesh, size_t corners, const result *expected,
-	bool more, nt_isa isa, unsigned threads, unsigned bin_bits)
+	bool more, nt_isa isa, unsigned threads, const nt_fast_plan *plan)
 {
-	const nt_fast_plan plan = {.grain = 1, .bin_bits = bin_bits};
 	result got = result_make(corners);
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
@@ -79,33 +81,38 @@ static size_t compare_run(const char *name, const nmtan_mesh *mesh, size_t corne
 	solve.isa = isa;
 	solve.threads = threads;
 	memset(got.tangents, 0xab, corners * 16);
-	assert_int_equal(nt_mikktspace_fast_as(&solve, &plan), NMTAN_OK);
+	assert_int_equal(nt_mikktspace_fast_as(&solve, plan), NMTAN_OK);
 	const size_t differences = result_differences(expected, &got, corners, more);
 	if (differences)
-		print_error("%s, set %d, %u threads, bins of 2^%u: %zu of %zu floats differ\n", name, (int)isa, threads,
-			bin_bits, differences, corners * (more ? 9 : 4));
+		print_error("%s, set %d, %u threads, bins of 2^%u, %zu places: %zu of %zu floats differ\n", name,
+			(int)isa, threads, plan->bin_bits, plan->most_places, differences, corners * (more ? 9 : 4));
 	nt_scratch_free(&scratch);
 	result_free(&got);
 	return differences;
 }
 
-/* One thread with every instruction set, then more threads; the same by bins where there is a choice. */
+/* One thread with every instruction set, then more threads, and places that do not suffice; the same by bins where
+ * there is a choice. */
 static size_t compare_variants(const char *name, const nmtan_mesh *mesh, size_t corners,
 	const result *expected, bool more)
 {
 	static const unsigned threads[] = {2, 3, 8};
+	static const nt_fast_plan few_places = {.grain = 1, .most_places = 200},
+		bins = {.grain = 1, .bin_bits = 4}, larger_bins = {.grain = 1, .bin_bits = 5};
 	size_t differences = 0;
 	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++)
 		if (nt_cpu_has(isa))
-			differences += compare_run(name, mesh, corners, expected, more, isa, 1, 0);
+			differences += compare_run(name, mesh, corners, expected, more, isa, 1, &usual);
 	for (int i = 0; i < 3; i++)
-		differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), threads[i], 0);
+		differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), threads[i], &usual);
+	for (unsigned count = 1; count <= 3; count += 2)
+		differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), count, &few_places);
 	if (more)
 		return differences;
 	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++)
 		if (nt_cpu_has(isa))
-			differences += compare_run(name, mesh, corners, expected, false, isa, 1, 4);
-	return differences + compare_run(name, mesh, corners, expected, false, nt_cpu_best(), 3, 5);
+			differences += compare_run(name, mesh, corners, expected, false, isa, 1, &bins);
+	return differences + compare_run(name, mesh, corners, expected, false, nt_cpu_best(), 3, &larger_bins);
 }
 
 static void compare_golden(const char *path, const nt_golden *golden, void *context)
@@ -348,8 +355,8 @@ static void compare_scattered(grid g)
 	nt_scratch_free(&scratch);
 	for (unsigned threads = 1; threads <= 2; threads++)
 		for (int more = 0; more < 2; more++)
-			assert_int_equal(compare_run("scattered", &mesh, corners, &expected, more, nt_cpu_best(), threads, 0),
-				0);
+			assert_int_equal(compare_run("scattered", &mesh, corners, &expected, more, nt_cpu_best(), threads,
+					&usual), 0);
 	compare_repaired(&mesh, corners, g.lost);
 	result_free(&expected);
 	free(sizes);
