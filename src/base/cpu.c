@@ -1,8 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Instruction sets: see cpu.h. AVX2 here means AVX2 and FMA (every processor of x86-64-v3; used by name only,
- * contraction would change bytes);
- * AVX-512 means F, BW, DQ and VL, which every AVX-512 processor since 2017 has together.
+ * Instruction sets: see cpu.h.
  */
 #include "base/cpu.h"
 

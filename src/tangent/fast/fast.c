@@ -38,18 +38,6 @@
 /* Starting a thread costs more than it saves with fewer triangles. */
 static const nt_fast_plan usual = {.grain = 65536, .least_lent_bytes = 65536};
 
-static const nt_kernels *kernels_for(nt_isa isa)
-{
-#if defined(__x86_64__)
-	if (isa == NT_ISA_AVX512)
-		return &nt_kernels_avx512;
-	if (isa == NT_ISA_AVX2)
-		return &nt_kernels_avx2;
-#endif
-	(void)isa;
-	return &nt_kernels_baseline;
-}
-
 /* 2 */
 
 /* Triangles of a mesh with quads: how they are cut, and which are second halves. */
@@ -367,7 +355,7 @@ bool nt_fast_can(const nt_solve *solve)
 /* With `sparse` the corners of triangles that are not suspect are not written, unless that is not enough. */
 static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, const nt_fast_plan *plan)
 {
-	const nt_kernels *kernels = kernels_for(solve->isa);
+	const nt_kernels *kernels = NT_CPU_TABLE(solve->isa, nt_kernels);
 	assert(nt_fast_can(solve));
 	*fast = (nt_fast){.solve = solve, .sparse = solve->sparse, 
 		.triangle_count = nt_triangle_count(solve->mesh, solve->corner_count)};

@@ -26,6 +26,7 @@
 
 #include <string.h>
 #include "base/clock.h"
+#include "base/cpu.h"
 #include "base/parallel.h"
 #include "tangent/fast/bins.h"
 #include "tangent/sums/parts.h"
@@ -386,22 +387,10 @@ static nmtan_status write_results(run *r, const nt_sums_finished *finished, size
 	return NMTAN_OK;
 }
 
-static const nt_sum_kernels *kernels_for(nt_isa isa)
-{
-#if defined(__x86_64__)
-	if (isa == NT_ISA_AVX512)
-		return &nt_sum_kernels_avx512;
-	if (isa == NT_ISA_AVX2)
-		return &nt_sum_kernels_avx2;
-#endif
-	(void)isa;
-	return &nt_sum_kernels_baseline;
-}
-
 static nmtan_status solve_by_sums(const nt_solve *solve, nt_weight weight, size_t *ill_conditioned)
 {
 	nt_sums s = {.solve = solve, .weight = weight, .one_by_one = solve->one_by_one};
-	run r = {.s = &s, .kernels = kernels_for(solve->isa)};
+	run r = {.s = &s, .kernels = NT_CPU_TABLE(solve->isa, nt_sum_kernels)};
 	/* a sparse output is not filled, so that its pages need not exist */
 	nt_room room = nt_room_over(solve->tangents, solve->sparse ? 0 : solve->corner_count * 4 * sizeof(float),
 		solve->scratch);
