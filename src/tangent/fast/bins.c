@@ -96,6 +96,15 @@ nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges,
 	return NMTAN_OK;
 }
 
+void nt_bins_orientations(const nt_bins *bins, bool orientations[2])
+{
+	unsigned seen = 0;
+	for (unsigned r = 0; r < bins->ranges; r++)
+		seen |= bins->seen[r];
+	for (int o = 0; o < 2; o++)
+		orientations[o] = (seen == NT_SEEN_ANY ? NT_SEEN(0) : seen) & NT_SEEN(o);
+}
+
 nmtan_status nt_bin_make(const nt_bins *bins, const bool needed[2], nt_scratch *scratch, nt_bin *bin)
 {
 	const size_t vertices = (size_t)1 << bins->vertex_bits;

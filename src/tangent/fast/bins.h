@@ -87,6 +87,10 @@ unsigned nt_bins_bits(size_t vertex_count);
 nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges, size_t vertex_count,
 	unsigned vertex_bits, nt_record *sums, nt_room *room, nt_bins *bins);
 
+/* Orientations for which there have to be records: those that came up; without a frame anywhere, one whose records
+ * can take notes. */
+void nt_bins_orientations(const nt_bins *bins, bool orientations[2]);
+
 /* Memory for one bin, whichever it is, with sums of the orientations that are needed. Returns NMTAN_OK or
  * NMTAN_ERROR_MEMORY. */
 nmtan_status nt_bin_make(const nt_bins *bins, const bool needed[2], nt_scratch *scratch, nt_bin *bin);

@@ -20,8 +20,6 @@
  * what that saves is the point of this file.
  *
  * Threads own ranges of triangles, and every sum is in triangle order whatever their number.
- *
- * Scratch lives in the output until step 6 where it fits.
  */
 #include "tangent/fast/fast.h"
 
@@ -31,6 +29,7 @@
 #include "base/cpu.h"
 #include "base/parallel.h"
 #include "tangent/fast/complex.h"
+#include "tangent/fast/memory.h"
 #include "tangent/fast/records.h"
 #include "tangent/fast/write.h"
 #include "topology/corners.h"
@@ -38,7 +37,14 @@
 /* Starting a thread costs more than it saves with fewer triangles. */
 static const nt_fast_plan usual = {.grain = 65536, .least_lent_bytes = 65536};
 
-/* 2 */
+typedef struct run {
+	nt_fast *fast;
+	const nt_kernels *kernels;
+	nt_settled *settled;       /* [ranges] */
+	nt_bin *bins;              /* [ranges] each for one after the other */
+} run;
+
+/* 1 and 2: weld, cut */
 
 /* Triangles of a mesh with quads: how they are cut, and which are second halves. */
 static nmtan_status cut_faces(nt_fast *fast)
@@ -91,14 +97,52 @@ static nmtan_status make_ranges(nt_fast *fast, unsigned count)
 	return NMTAN_OK;
 }
 
-/* 4 */
+static nmtan_status weld(const nt_fast *fast, unsigned ranges, nt_fast_memory *memory, nt_weld *result)
+{
+	const nt_solve *solve = fast->solve;
+	const double begin = solve->timing ? nt_seconds() : 0;
+	const nmtan_status status = nt_weld_mesh(solve->mesh, solve->corner_count, ranges, memory->rows,
+		&memory->borrowed, result);
+	if (solve->passed)
+		solve->passed(solve->user, NT_PART_ATTRIBUTES);
+	if (solve->timing)
+		solve->timing->weld += nt_seconds() - begin;
+	return status;
+}
 
-typedef struct run {
-	nt_fast *fast;
-	const nt_kernels *kernels;
-	nt_settled *settled;       /* [ranges] */
-	nt_bin *bins;              /* [ranges] each for one after the other */
-} run;
+static nmtan_status prepare(nt_fast *fast, size_t grain, nt_fast_memory *memory)
+{
+	const unsigned ranges = nt_parallel_slots(fast->solve->threads, fast->triangle_count, grain);
+	nt_weld welded;
+	nmtan_status status = weld(fast, ranges, memory, &welded);
+	if (!status)
+		status = make_triangles(fast, &welded);
+	return status ? status : make_ranges(fast, ranges);
+}
+
+/* 3 and 4: adjacency, accumulate */
+
+/* Directly to the records. */
+static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, size_t most_places,
+	nt_fast_memory *memory)
+{
+	const nmtan_status status = nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count,
+		most_places ? most_places : NT_ADJACENCY_PLACES, memory->rows, &memory->borrowed, &fast->adjacency);
+	if (status)
+		return status;
+	fast->scattered = nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
+	return nt_fast_add(fast, kernels);
+}
+
+/* Whether corners go by way of bins: the sums of all of them are as large as the output of triangles. */
+static bool is_binned(const nt_fast *fast, unsigned bin_bits)
+{
+	const nmtan_mesh *mesh = fast->solve->mesh;
+	if (fast->wants_more || fast->triangle_count != mesh->face_count)
+		return false;
+	return bin_bits || (mesh->indices &&
+		nt_is_scattered(mesh->indices, fast->solve->corner_count, mesh->vertex_count));
+}
 
 static void fill_ranges(void *context, size_t begin, size_t end, unsigned slot)
 {
@@ -109,59 +153,22 @@ static void fill_ranges(void *context, size_t begin, size_t end, unsigned slot)
 		r->kernels->accumulate(r->fast, bounds[range], bounds[range + 1], (unsigned)range, NULL, NULL);
 }
 
-/* Orientations that came up, as a set of NT_SEEN(); without a frame anywhere, one whose records can take notes. */
-static unsigned seen_orientations(const nt_fast *fast)
+/* By way of bins, which take the place of the adjacency. */
+static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned bin_bits, nt_fast_memory *memory)
 {
-	unsigned seen = 0;
-	for (unsigned r = 0; r < fast->ranges.count; r++)
-		seen |= fast->bins.seen[r];
-	return seen == NT_SEEN_ANY ? NT_SEEN(0) : seen & ~NT_SEEN_ANY;
-}
-
-/* Records of a binned mesh take the rows' place: settle looks at the normals of a block before it writes its
- * records. Those of both orientations lie in pairs. Those of one are packed, or write would take a third longer;
- * but only one thread alone has passed all the rows that it then overwrites. */
-static bool place_records(nt_fast *fast)
-{
-	_Static_assert(sizeof(nt_weld_row) == 2 * sizeof(nt_record), "a pair of records is as large as a row");
-	const unsigned seen = seen_orientations(fast);
-	const bool both = seen == (NT_SEEN(0) | NT_SEEN(1));
-	nt_record *records = both || fast->ranges.count == 1
-		? (nt_record *)fast->rows
-		: nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *records);
-	for (int o = 0; o < 2; o++)
-		fast->records[o] = seen & NT_SEEN(o) ? records + (both ? o : 0) : NULL;
-	fast->record_step = both ? 2 : 1;
-	return records;
-}
-
-/* 3 and 4 by way of bins. */
-static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned bin_bits, nt_room *room)
-{
-	nt_record *lent = fast->sparse ? NULL : (nt_record *)fast->solve->tangents;
 	const nmtan_status status = nt_bins_make(fast->triangles.ids, &fast->ranges, fast->vertex_count,
-		bin_bits ? bin_bits : nt_bins_bits(fast->vertex_count), lent, room, &fast->bins);
+		bin_bits ? bin_bits : nt_bins_bits(fast->vertex_count), memory->bin_sums, &memory->borrowed, &fast->bins);
 	if (status)
 		return status;
 	fast->scattered = true;
 	run r = {.fast = fast, .kernels = kernels};
 	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, fill_ranges, &r);
-	return place_records(fast) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+	bool orientations[2];
+	nt_bins_orientations(&fast->bins, orientations);
+	return nt_fast_place_records(fast, orientations) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }
 
-/* 3 and 4 directly. */
-static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, size_t most_places, nt_room *row_room,
-	nt_room *room)
-{
-	const nmtan_status status = nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count,
-		most_places ? most_places : NT_ADJACENCY_PLACES, row_room, room, &fast->adjacency);
-	if (status)
-		return status;
-	fast->scattered = nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
-	return nt_fast_add(fast, kernels);
-}
-
-/* 5 */
+/* 5: settle */
 
 /* An "any" triangle that groups of both orientations can reach takes the one that is seeded first. At its
  * vertices order matters, so they are not settled. */
@@ -241,6 +248,8 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 	return NMTAN_OK;
 }
 
+/* 6 to 8: write, complex, late */
+
 /* Tells tangent/usable.c which triangles need no look, and repair.c what is welded. */
 static void vouch(const nt_fast *fast)
 {
@@ -259,124 +268,15 @@ static void vouch_rows(const nt_fast *fast)
 		vouched->rows[orient] = fast->records[orient] ? &fast->records[orient]->x : NULL;
 }
 
-/* What step 7 may use: the largest array that is done with and does not lie in the output. */
-static nt_room dead_room(const nt_fast *fast)
+static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, const nt_settled *settled)
 {
-	const nt_solve *solve = fast->solve;
-	const nt_adjacency *a = &fast->adjacency;
-	/* records have taken the place of the rows of a binned mesh */
-	const bool binned = fast->bins.cursors;
-	const struct {
-		const void *memory;
-		size_t bytes;
-	} arrays[3] = {
-		{fast->rows, binned ? 0 : fast->vertex_count * sizeof *fast->rows},
-		{binned ? (const void *)fast->bins.entries : a->entries,
-			binned ? 3 * fast->triangle_count * NT_BINNED_ENTRY : a->entry_count * sizeof *a->entries},
-		{a->rest, a->rest_count * sizeof *a->rest},
-	};
-	nt_room largest = nt_room_over(NULL, 0, solve->scratch);
-	for (int i = 0; i < 3; i++) {
-		const uintptr_t at = (uintptr_t)arrays[i].memory - (uintptr_t)solve->tangents;
-		const bool in_output = at < solve->corner_count * 4 * sizeof(float);
-		if (!in_output && arrays[i].bytes > (size_t)(largest.end - largest.begin))
-			largest = nt_room_over((void *)arrays[i].memory, arrays[i].bytes, solve->scratch);
-	}
-	return largest;
-}
-
-/* Whether corners go by way of bins: the sums of all of them need as much room as the output of triangles. A sparse
- * solve, which does not fill it, has them in the scratch. */
-static bool is_binned(const nt_fast *fast, unsigned bin_bits)
-{
-	const nmtan_mesh *mesh = fast->solve->mesh;
-	if (fast->wants_more || fast->triangle_count != mesh->face_count)
-		return false;
-	return bin_bits || (mesh->indices &&
-		nt_is_scattered(mesh->indices, fast->solve->corner_count, mesh->vertex_count));
-}
-
-/* Whether there is room for the rows beside the entries. If not, the larger of them should have it. */
-static bool has_room_for_rows(const nt_fast *fast, const nt_room *room)
-{
-	const nmtan_mesh *mesh = fast->solve->mesh;
-	const size_t free = (size_t)(room->end - room->begin);
-	/* without indices: two triangles for a vertex */
-	const size_t vertices = mesh->indices ? mesh->vertex_count : fast->triangle_count / 2;
-	const size_t entries = 3 * fast->triangle_count * sizeof(nt_fan_entry);
-	const size_t rows = vertices * (sizeof(nt_weld_row) + sizeof(uint32_t));
-	return rows + entries <= free || entries > free || rows > entries;
-}
-
-/* The output lends its bytes, if it has some to speak of: entries that lie in two places take longer. A sparse one is
- * not filled, so that its pages need not exist: there the caller lends what it fills from the records. */
-static nt_room lent_room(const nt_fast *fast, const nt_fast_plan *plan)
-{
-	const nt_solve *solve = fast->solve;
-	const size_t output_bytes = solve->corner_count * 4 * sizeof(float);
-	if (fast->sparse)
-		return nt_room_over(solve->lent, solve->lent_bytes, solve->scratch);
-	return nt_room_over(solve->tangents, output_bytes < plan->least_lent_bytes ? 0 : output_bytes, solve->scratch);
-}
-
-/* 1 to 4 */
-static nmtan_status sum_up(nt_fast *fast, const nt_kernels *kernels, const nt_fast_plan *plan)
-{
-	const nt_solve *solve = fast->solve;
-	const unsigned ranges = nt_parallel_slots(solve->threads, fast->triangle_count, plan->grain);
-	const bool binned = is_binned(fast, plan->bin_bits);
-	nt_room room = lent_room(fast, plan);
-	nt_room none = nt_room_over(solve->tangents, 0, solve->scratch);
-	/* rows at random are better off in the large pages of the scratch, and records will replace them */
-	nt_room *const row_room = !binned && has_room_for_rows(fast, &room) ? &room : &none;
-	nt_weld weld;
-	const double begin = solve->timing ? nt_seconds() : 0;
-	nmtan_status status = nt_weld_mesh(solve->mesh, solve->corner_count, ranges, row_room, &room, &weld);
-	if (solve->passed)
-		solve->passed(solve->user, NT_PART_ATTRIBUTES);
-	if (solve->timing)
-		solve->timing->weld += nt_seconds() - begin;
-	if (!status)
-		status = make_triangles(fast, &weld);
-	if (!status)
-		status = make_ranges(fast, ranges);
-	if (!status)
-		status = binned ? fill_bins(fast, kernels, plan->bin_bits, &room)
-				: add_to_records(fast, kernels, plan->most_places, row_room, &room);
-	return status;
-}
-
-bool nt_fast_can(const nt_solve *solve)
-{
-	return solve->threshold_cos == -1.0f && solve->mesh->vertex_count < NT_WELD_LIMIT &&
-	       3 * nt_triangle_count(solve->mesh, solve->corner_count) < NT_ADJACENCY_LIMIT;
-}
-
-/* With `sparse` the corners of triangles that are not suspect are not written, unless that is not enough. */
-static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, const nt_fast_plan *plan)
-{
-	const nt_kernels *kernels = NT_CPU_TABLE(solve->isa, nt_kernels);
-	assert(nt_fast_can(solve));
-	*fast = (nt_fast){.solve = solve, .sparse = solve->sparse, 
-		.triangle_count = nt_triangle_count(solve->mesh, solve->corner_count)};
-	fast->wants_more = solve->bitangents || solve->magnitudes;
-	nmtan_status status = sum_up(fast, kernels, plan);
+	nt_fast_write(fast);
+	nt_room left = nt_fast_left_memory(fast);
+	const nmtan_status status = settled->complex_count > 0
+		? nt_fast_complex(fast, kernels, settled->complex_count, &left) : NMTAN_OK;
 	if (status)
 		return status;
-	if (!fast->records[0] && !fast->records[1]) {
-		fast->sparse = false;
-		nt_fast_write_defaults(fast);
-		return NMTAN_OK;
-	}
-
-	nt_settled settled;
-	if ((status = settle(fast, kernels, &settled)))
-		return status;
-	nt_fast_write(fast);
-	nt_room room = dead_room(fast);
-	if (settled.complex_count > 0 && (status = nt_fast_complex(fast, kernels, settled.complex_count, &room)))
-		return status;
-	if (solve->vouched)
+	if (fast->solve->vouched)
 		vouch(fast);
 	/* late triangles copy corners, which must have been written */
 	if (fast->sparse && nt_fast_next_flagged(fast, 0, NT_TRIANGLE_LATE) < fast->triangle_count)
@@ -386,10 +286,41 @@ static nmtan_status solve_as(nt_fast *fast, const nt_solve *solve, const nt_fast
 	return nt_fast_write_late(fast);
 }
 
+/* The whole */
+
+bool nt_fast_can(const nt_solve *solve)
+{
+	return solve->threshold_cos == -1.0f && solve->mesh->vertex_count < NT_WELD_LIMIT &&
+	       3 * nt_triangle_count(solve->mesh, solve->corner_count) < NT_ADJACENCY_LIMIT;
+}
+
 nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *plan)
 {
-	nt_fast fast;
-	return solve_as(&fast, solve, plan);
+	assert(nt_fast_can(solve));
+	const nt_kernels *kernels = NT_CPU_TABLE(solve->isa, nt_kernels);
+	nt_fast fast = {.solve = solve, .sparse = solve->sparse,
+		.wants_more = solve->bitangents || solve->magnitudes,
+		.triangle_count = nt_triangle_count(solve->mesh, solve->corner_count)};
+	const bool binned = is_binned(&fast, plan->bin_bits);
+	nt_fast_memory memory;
+	nt_fast_plan_memory(&fast, binned, plan->least_lent_bytes, &memory);
+
+	/* which corners are one vertex, and which triangles each thread does */
+	nmtan_status status = prepare(&fast, plan->grain, &memory);
+	/* each vertex's sums over its corners, one for each orientation */
+	if (!status)
+		status = binned ? fill_bins(&fast, kernels, plan->bin_bits, &memory)
+				: add_to_records(&fast, kernels, plan->most_places, &memory);
+	if (status)
+		return status;
+	if (!fast.records[0] && !fast.records[1]) {
+		nt_fast_write_defaults(&fast);
+		return NMTAN_OK;
+	}
+	/* sums become results, where the definition would not have split or joined them otherwise */
+	nt_settled settled;
+	status = settle(&fast, kernels, &settled);
+	return status ? status : write_results(&fast, kernels, &settled);
 }
 
 nmtan_status nt_mikktspace_fast(const nt_solve *solve)
