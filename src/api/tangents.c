@@ -69,7 +69,7 @@ typedef struct request {
 	nmtan_options options;
 	nmtan_mesh mesh;
 	nmtan_stored_uv stored; /* of mesh */
-	nt_vouched vouched;
+	nt_known known;
 	nt_solve solve;
 	nt_scratch own;
 	nt_scratch_mark mark;
@@ -112,7 +112,7 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 	nt_solve *solve = &r->solve;
 	solve->mesh = &r->mesh;
 	/* bounds on the error of the determinants of `texcoords` say nothing about those of others */
-	solve->vouched = nt_has_stored_texcoords(&r->mesh) ? NULL : &r->vouched;
+	solve->known = nt_has_stored_texcoords(&r->mesh) ? NULL : &r->known;
 	solve->timing = r->options.timing ? &r->timing : NULL;
 	solve->scratch = r->options.workspace ? &r->options.workspace->scratch : &r->own;
 	solve->threshold_cos = r->options.angular_threshold_degrees > 0.0f
@@ -191,7 +191,7 @@ nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_options *options
 static nmtan_status solve_vertices(request *r, nt_splitter *splitter, nmtan_counts *counts)
 {
 	size_t ill_conditioned = 0;
-	r->solve.sparse = r->solve.vouched && !r->mesh.face_sizes;
+	r->solve.sparse = r->solve.known && !r->mesh.face_sizes;
 	nmtan_status status = run_method(&r->solve, r->options.method, &ill_conditioned);
 	if (!status)
 		status = nt_repair_and_split(&r->solve, counts, splitter);
@@ -216,8 +216,8 @@ nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *opt
 	nt_splitter splitter;
 	r.solve.passed = wanted->passed;
 	r.solve.user = wanted->user;
-	r.solve.lent = to.vertex_tangents; /* the split fills it at the end */
-	r.solve.lent_bytes = r.mesh.vertex_count * 4 * sizeof(float);
+	r.solve.spare = to.vertex_tangents; /* the split fills it at the end */
+	r.solve.spare_bytes = r.mesh.vertex_count * 4 * sizeof(float);
 	r.solve.tangents = nt_scratch_alloc(r.solve.scratch, r.solve.corner_count, 4 * sizeof(float));
 	status = r.solve.tangents ? nt_splitter_begin(&splitter, &r.mesh, r.solve.corner_count, &to,
 					    r.solve.scratch)

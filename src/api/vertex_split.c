@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The split of a sparse solve (nt_vouched.ids). A vertex whose corners all have one row needs no look at its
+ * The split of a sparse solve (nt_known.ids). A vertex whose corners all have one row needs no look at its
  * corners: its tangent is that row. Only vertices of both orientations and those of suspect triangles stay
  * open and are split corner by corner, in order.
  *
@@ -36,7 +36,7 @@ static void find_numbers(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
 	const vertex_split *job = context;
-	const uint32_t *indices = job->solve->mesh->indices, *ids = job->solve->vouched->ids;
+	const uint32_t *indices = job->solve->mesh->indices, *ids = job->solve->known->ids;
 	for (size_t c = 3 * begin; c < 3 * end; c++)
 		__atomic_store_n(&job->found[indices[c]], ids[c], __ATOMIC_RELAXED);
 }
@@ -46,7 +46,7 @@ static void check_numbers(void *context, size_t begin, size_t end, unsigned slot
 {
 	(void)slot;
 	const vertex_split *job = context;
-	const uint32_t *indices = job->solve->mesh->indices, *ids = job->solve->vouched->ids;
+	const uint32_t *indices = job->solve->mesh->indices, *ids = job->solve->known->ids;
 	for (size_t c = 3 * begin; c < 3 * end; c++)
 		if (job->numbers[indices[c]] != ids[c])
 			__atomic_store_n(&job->splitter->seen[indices[c]], SEEN_OPEN, __ATOMIC_RELAXED);
@@ -57,10 +57,10 @@ static nmtan_status number_vertices(vertex_split *job)
 {
 	const nt_solve *solve = job->solve;
 	const nmtan_mesh *mesh = solve->mesh;
-	if (solve->vouched->ids == mesh->indices)
+	if (solve->known->ids == mesh->indices)
 		return NMTAN_OK;
 	if (!mesh->indices) {
-		job->numbers = solve->vouched->ids;
+		job->numbers = solve->known->ids;
 		return NMTAN_OK;
 	}
 	job->found = nt_scratch_alloc(solve->scratch, mesh->vertex_count, sizeof *job->found);
@@ -77,44 +77,44 @@ static nmtan_status number_vertices(vertex_split *job)
 static void open_suspects(const vertex_split *job)
 {
 	const nmtan_mesh *mesh = job->solve->mesh;
-	const nt_vouched *vouched = job->solve->vouched;
-	const uint64_t suspect = 0x0101010101010101u * vouched->suspect;
+	const nt_known *known = job->solve->known;
+	const uint64_t suspect = 0x0101010101010101u * known->suspect;
 	uint64_t eight;
 	for (size_t t = 0; t < mesh->face_count; t++) {
 		const bool full = t + sizeof eight <= mesh->face_count;
 		if (full)
-			memcpy(&eight, vouched->flags + t, sizeof eight);
+			memcpy(&eight, known->flags + t, sizeof eight);
 		if (full && !(eight & suspect)) {
 			t += sizeof eight - 1;
 			continue;
 		}
-		for (size_t i = 3 * t; (vouched->flags[t] & vouched->suspect) && i < 3 * t + 3; i++)
+		for (size_t i = 3 * t; (known->flags[t] & known->suspect) && i < 3 * t + 3; i++)
 			job->splitter->seen[nt_vertex_of(mesh, i)] = SEEN_OPEN;
 	}
 }
 
-static bool has_result(const nt_vouched *vouched, int side, uint32_t number)
+static bool has_result(const nt_known *known, int side, uint32_t number)
 {
-	return vouched->rows[side] && vouched->rows[side][vouched->row_step * number + 3] != 0.0f;
+	return known->rows[side] && known->rows[side][known->row_step * number + 3] != 0.0f;
 }
 
 /* Gives vertices [begin, end) their one row; counts those that do not have one. */
 static void take_vertices(void *context, size_t begin, size_t end, unsigned slot)
 {
 	const vertex_split *job = context;
-	const nt_vouched *vouched = job->solve->vouched;
+	const nt_known *known = job->solve->known;
 	size_t open = 0;
 	for (size_t v = begin; v < end; v++) {
 		const uint32_t number = job->numbers ? job->numbers[v] : (uint32_t)v;
 		uint8_t *seen = &job->splitter->seen[v];
 		if (number == NO_NUMBER)
 			continue;
-		const bool positive = has_result(vouched, 1, number);
-		if (*seen == SEEN_OPEN || (positive && has_result(vouched, 0, number))) {
+		const bool positive = has_result(known, 1, number);
+		if (*seen == SEEN_OPEN || (positive && has_result(known, 0, number))) {
 			*seen = SEEN_NOT;
 			open++;
-		} else if (positive || has_result(vouched, 0, number)) {
-			const float *row = vouched->rows[positive] + vouched->row_step * number;
+		} else if (positive || has_result(known, 0, number)) {
+			const float *row = known->rows[positive] + known->row_step * number;
 			*seen = SEEN_ONE;
 			memcpy(job->splitter->tangents + 4 * v, row, 4 * sizeof(float));
 		}

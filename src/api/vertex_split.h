@@ -8,7 +8,7 @@
 #include "tangent/solve.h"
 #include "topology/split.h"
 
-/* Takes the tangents of all corners of triangles from solve->vouched, which has ids, and from solve->tangents where
+/* Takes the tangents of all corners of triangles from solve->known, which has ids, and from solve->tangents where
  * a triangle is suspect. Returns NMTAN_OK, NMTAN_ERROR_MEMORY or NMTAN_ERROR_TOO_LARGE. */
 nmtan_status nt_split_shared(const nt_solve *solve, nt_splitter *splitter);
 

@@ -2,7 +2,7 @@
 /*
  * Tangents of vertices: solve, repair and split in one, without a row for every corner.
  *
- * Nearly every corner's tangent is that of its welded vertex (nt_vouched.ids), so the split reads it there:
+ * Nearly every corner's tangent is that of its welded vertex (nt_known.ids), so the split reads it there:
  * vertex_split.c. For meshes with quads all rows are written and split one after the other.
  */
 #include "api/vertices.h"
@@ -31,7 +31,7 @@ nmtan_status nt_repair_and_split(const nt_solve *solve, nmtan_counts *counts, nt
 	const nmtan_status status = nt_repair(solve, counts);
 	if (status)
 		return status;
-	if (!solve->vouched || !solve->vouched->ids)
+	if (!solve->known || !solve->known->ids)
 		return split_rows(solve, splitter);
 	if (solve->passed)
 		solve->passed(solve->user, NT_PART_INDICES);

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The largest of many numbers: how indices are checked. A loop that stops at the first bad one takes three
- * times as long, because it cannot look at several at once.
+ * The largest of many numbers: how indices are checked. A loop that stops at the first bad one takes
+ * longer, because it cannot look at several at once.
  */
 #ifndef NT_BASE_LARGEST_H
 #define NT_BASE_LARGEST_H

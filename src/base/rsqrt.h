@@ -2,8 +2,7 @@
 /*
  * Reciprocal square roots by multiplication alone, the same on every machine and quick in vectors: halving
  * and negating the exponent (the bits as an integer) is right to 3.5 %, and each step of Newton's method
- * squares the error: 1.8e-3, 4.7e-6, 3.3e-11, then rounding. A square root and a division take four times
- * as long (AVX-512, gcc 12).
+ * squares the error: 1.8e-3, 4.7e-6, 3.3e-11, then rounding. A square root and a division take longer.
  *
  * For x in [2^-1000, 2^1000]. Of 0 and of denormals the result is finite and means nothing.
  */

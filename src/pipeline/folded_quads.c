@@ -18,7 +18,7 @@
 #include "tangent/repair.h"
 #include "topology/corners.h"
 
-/* Bits of nt_vouched.flags: the triangle is half of a cut quad. */
+/* Bits of nt_known.flags: the triangle is half of a cut quad. */
 enum { CUT = 1, POSITIVE = 2 };
 
 /* The arrays of a mesh whose folded quads are cut. */
@@ -118,9 +118,9 @@ static nt_status repair_halves(nt_mesh *mesh, const nmtan_mesh *view, unsigned t
 {
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
-	nt_vouched vouched = {.flags = flags, .suspect = CUT, .doubtful = CUT, .positive = POSITIVE};
+	nt_known known = {.flags = flags, .suspect = CUT, .doubtful = CUT, .positive = POSITIVE};
 	const nt_solve solve = {.mesh = view, .corner_count = mesh->corner_count, .threads = threads,
-		.repair = true, .scratch = &scratch, .vouched = &vouched, .tangents = mesh->corner_tangents};
+		.repair = true, .scratch = &scratch, .known = &known, .tangents = mesh->corner_tangents};
 	nmtan_counts counts = NMTAN_COUNTS_INIT;
 	const nt_status status = nt_status_of(nt_repair(&solve, &counts));
 	nt_scratch_free(&scratch);

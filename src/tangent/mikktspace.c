@@ -32,7 +32,7 @@ typedef struct triangle {
 	nt_vec3 os, ot;        /* unit directions of growing u and v */
 	float mag_s, mag_t;    /* lengths of dP/du and dP/dv */
 	bool any;              /* no usable frame: takes any group's orientation */
-	bool orient;           /* UV determinant positive; for "any" the orientation it adopted */
+	bool orient;           /* UV determinant positive; for "any" that of the first group that reaches it */
 	bool assigned[3];      /* corner k is in a group */
 } triangle;
 
@@ -307,7 +307,7 @@ static bool join_group(state *s, uint32_t neighbour, uint32_t vertex, bool orien
 	if (t->assigned[k])
 		return false;
 	if (t->any && !t->assigned[0] && !t->assigned[1] && !t->assigned[2])
-		t->orient = orient; /* adopts the orientation of the first group that reaches it */
+		t->orient = orient; /* the first group that reaches it */
 	if (t->orient != orient)
 		return false;
 	t->assigned[k] = true;

@@ -98,9 +98,9 @@ static void step_over(const patient *p, place *at)
 static nmtan_status weld(patient *p)
 {
 	const nt_solve *solve = p->solve;
-	if (solve->vouched && solve->vouched->welded) {
-		p->welded = solve->vouched->welded;
-		p->welded_count = solve->vouched->welded_count;
+	if (solve->known && solve->known->welded) {
+		p->welded = solve->known->welded;
+		p->welded_count = solve->known->welded_count;
 		return NMTAN_OK;
 	}
 	uint32_t *own = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *own);
@@ -140,7 +140,7 @@ static void visit_face(const patient *p, size_t face, size_t first)
 	const nmtan_mesh *mesh = solve->mesh;
 	uint32_t corners[2][3];
 	const unsigned count = nt_face_triangles(mesh, face, first, corners);
-	int orientation = mesh->face_sizes ? 0 : nt_known_orientation(solve->vouched, face);
+	int orientation = mesh->face_sizes ? 0 : nt_known_orientation(solve->known, face);
 	if (!orientation)
 		orientation = nt_cut_orientation(mesh, corners, count, true, NULL);
 	for (size_t c = first; c < first + nt_face_size(mesh, face); c++) {

@@ -9,7 +9,7 @@
 
 /*
  * Judges every corner tangent of a solve (judge.h) and counts what the mesh is like; replaces the unusable ones where
- * the solve repairs. Rows that the solve left out (nt_vouched.ids) stay out.
+ * the solve repairs. Rows that the solve left out (nt_known.ids) stay out.
  *
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */

@@ -11,13 +11,13 @@
 #include "base/scratch.h"
 #include "nmtan.h"
 
-/* What a method knows of its result, for usable.c. Of a triangle without a bit of `suspect` all corners are
- * usable, it is not degenerate, no half of a folded quad, and its orientation, positive where a bit of
- * `positive` is set, is exact and survives storing.
+/* What a method knows of its result, so that usable.c need not look at all of it. Of a triangle without a bit of
+ * `suspect` all corners are usable, it is not degenerate, no half of a folded quad, and its orientation, positive
+ * where a bit of `positive` is set, is exact and survives storing.
  *
  * With ids the rows of triangles without a bit of `suspect` may not have been written: the tangent of
  * such a corner is that of its vertex and its triangle's orientation. Meshes with quads have no ids. */
-typedef struct nt_vouched {
+typedef struct nt_known {
 	const uint8_t *flags; /* [triangle_count], quads count as two; NULL: nothing is known */
 	uint8_t suspect, positive;
 	uint8_t doubtful;     /* bits of `suspect` without which the orientation is known all the same, and that the
@@ -29,14 +29,14 @@ typedef struct nt_vouched {
 	const uint32_t *welded; /* [corner_count] welded vertices, below welded_count, whatever else is
 	                           known; NULL: ask nt_weld_corners() */
 	size_t welded_count;
-} nt_vouched;
+} nt_known;
 
 /* The exact orientation of triangle t, where its flags tell it; 0: they do not. */
-static inline int nt_known_orientation(const nt_vouched *vouched, size_t t)
+static inline int nt_known_orientation(const nt_known *known, size_t t)
 {
-	if (!vouched || !vouched->flags || vouched->flags[t] & vouched->doubtful)
+	if (!known || !known->flags || known->flags[t] & known->doubtful)
 		return 0;
-	return vouched->flags[t] & vouched->positive ? 1 : -1;
+	return known->flags[t] & known->positive ? 1 : -1;
 }
 
 /* Parts of a mesh in the order in which a solve is done with them. */
@@ -51,13 +51,13 @@ typedef struct nt_solve {
 	bool one_by_one;         /* sums: each triangle by the definition in frames.c */
 	nt_scratch *scratch;
 	nmtan_timing *timing;    /* to be added to, or NULL */
-	nt_vouched *vouched;     /* for the method to fill; empty before; may be NULL */
+	nt_known *known;         /* for the method to fill; empty before; may be NULL */
 	bool repair;             /* a corner that no triangle gives a tangent gets w = 0 for usable.c to find; else
 	                            MikkTSpace's placeholder (1, 0, 0) with w = -1 */
-	bool sparse;             /* rows that vouched.ids stands for need not be written; not with quads */
+	bool sparse;             /* rows that known.ids stands for need not be written; not with quads */
 	/* Memory that is filled after the method is done: it may serve as scratch. */
-	void *lent;
-	size_t lent_bytes;
+	void *spare;
+	size_t spare_bytes;
 	/* Called when a part of the mesh will hardly be read again; may be NULL. */
 	void (*passed)(void *user, nt_mesh_part part);
 	void *user;
@@ -75,7 +75,7 @@ static inline float nt_unassigned_sign(const nt_solve *solve)
 /* The tangent of corner c of triangle c / 3, in its row or shared; of quads in its row. */
 static inline const float *nt_corner_tangent(const nt_solve *solve, size_t c)
 {
-	const nt_vouched *v = solve->vouched;
+	const nt_known *v = solve->known;
 	if (!v || !v->ids || v->flags[c / 3] & v->suspect)
 		return solve->tangents + 4 * c;
 	return v->rows[(v->flags[c / 3] & v->positive) != 0] + v->row_step * v->ids[c];

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Judging: see judge.h. Most faces need no look: a method that has bounded the error of its determinants
- * and checked the vectors it shared out vouches for them (nt_solve.vouched). The others are suspects. Of triangles,
+ * and checked the vectors it shared out knows that they are usable (nt_solve.known). The others are suspects. Of triangles,
  * those among 64 are listed and asked for first and then judged without a branch on what is found: where suspects are
  * many they lie anywhere, and cache misses and wrong guesses took twice the time of the rest.
  */
@@ -117,10 +117,10 @@ static int count_quad(const nmtan_mesh *mesh, size_t face, size_t first, nmtan_c
 
 /* Whether a whole word of triangles has no suspect; then those that are mirrored are counted. Each byte of `positive`
  * counts one of eight columns of flags, at most eight, and the product has the sum of the bytes in its highest one. */
-static bool is_plain_word(const nt_vouched *vouched, const uint8_t *flags, size_t *mirrored)
+static bool is_plain_word(const nt_known *known, const uint8_t *flags, size_t *mirrored)
 {
 	const uint64_t ones = 0x0101010101010101u;
-	const int shift = __builtin_ctz(vouched->positive);
+	const int shift = __builtin_ctz(known->positive);
 	uint64_t suspect = 0, positive = 0;
 	for (size_t i = 0; i < WORD; i += sizeof suspect) {
 		uint64_t eight;
@@ -128,7 +128,7 @@ static bool is_plain_word(const nt_vouched *vouched, const uint8_t *flags, size_
 		suspect |= eight;
 		positive += eight >> shift & ones;
 	}
-	if (suspect & ones * vouched->suspect)
+	if (suspect & ones * known->suspect)
 		return false;
 	*mirrored += WORD - (positive * ones >> 56);
 	return true;
@@ -136,17 +136,17 @@ static bool is_plain_word(const nt_vouched *vouched, const uint8_t *flags, size_
 
 /* The suspects among `count` triangles, at most a word of them, by their place. The others are counted where they are
  * mirrored. Returns how many suspects there are. */
-static size_t list_suspects(const nt_vouched *vouched, const uint8_t *flags, size_t count, uint8_t *list,
+static size_t list_suspects(const nt_known *known, const uint8_t *flags, size_t count, uint8_t *list,
 	size_t *mirrored)
 {
 	size_t found = 0, plain = 0;
-	if (count == WORD && is_plain_word(vouched, flags, mirrored))
+	if (count == WORD && is_plain_word(known, flags, mirrored))
 		return 0;
 	for (size_t i = 0; i < count; i++) {
-		const bool is = flags[i] & vouched->suspect;
+		const bool is = flags[i] & known->suspect;
 		list[found] = (uint8_t)i;
 		found += is;
-		plain += !is & !(flags[i] & vouched->positive);
+		plain += !is & !(flags[i] & known->positive);
 	}
 	*mirrored += plain;
 	return found;
@@ -174,7 +174,7 @@ static void ask_for_triangle(const nt_solve *solve, size_t t)
 static bool judge_triangle(const nt_solve *solve, size_t t, nmtan_counts *counts)
 {
 	const nmtan_mesh *mesh = solve->mesh;
-	int orientation = nt_known_orientation(solve->vouched, t);
+	int orientation = nt_known_orientation(solve->known, t);
 	if (orientation) {
 		counts->mirrored += orientation < 0;
 	} else {
@@ -188,13 +188,13 @@ static bool judge_triangle(const nt_solve *solve, size_t t, nmtan_counts *counts
 static void judge_triangles(const judge_job *job, size_t begin, size_t end, nmtan_counts *counts)
 {
 	const nt_solve *solve = job->solve;
-	const bool vouched = solve->vouched && solve->vouched->flags;
+	const bool known = solve->known && solve->known->flags;
 	uint8_t list[WORD];
 	for (size_t word = begin; word < end; word++) {
 		const size_t first = WORD * word, left = solve->mesh->face_count - first;
 		const size_t count = left < WORD ? left : WORD;
-		const size_t found = vouched
-			? list_suspects(solve->vouched, solve->vouched->flags + first, count, list, &counts->mirrored)
+		const size_t found = known
+			? list_suspects(solve->known, solve->known->flags + first, count, list, &counts->mirrored)
 			: list_all(count, list);
 		uint64_t faulty = 0;
 		for (size_t i = 0; i < found; i++)
@@ -210,15 +210,15 @@ static void judge_quads(const judge_job *job, size_t begin, size_t end, nmtan_co
 {
 	const nt_solve *solve = job->solve;
 	const nmtan_mesh *mesh = solve->mesh;
-	const nt_vouched *vouched = solve->vouched && solve->vouched->flags ? solve->vouched : NULL;
+	const nt_known *known = solve->known && solve->known->flags ? solve->known : NULL;
 	const size_t faces = WORD * end < mesh->face_count ? WORD * end : mesh->face_count;
 	size_t first = nt_first_corner(mesh, WORD * begin);
 	memset(job->faulty + begin, 0, (end - begin) * sizeof *job->faulty);
 	for (size_t face = WORD * begin; face < faces; first += nt_face_size(mesh, face++)) {
 		const bool quad = nt_face_size(mesh, face) == 4;
-		const uint8_t *flags = vouched ? vouched->flags + (first - 2 * face) : NULL;
-		if (flags && !((flags[0] | (quad ? flags[1] : 0)) & vouched->suspect)) {
-			counts->mirrored += !(flags[0] & vouched->positive) + (quad && !(flags[1] & vouched->positive));
+		const uint8_t *flags = known ? known->flags + (first - 2 * face) : NULL;
+		if (flags && !((flags[0] | (quad ? flags[1] : 0)) & known->suspect)) {
+			counts->mirrored += !(flags[0] & known->positive) + (quad && !(flags[1] & known->positive));
 			continue;
 		}
 		int orientation;

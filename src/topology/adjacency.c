@@ -1,17 +1,17 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Adjacency: see adjacency.h. Two passes: count, then walk the blocks and turn counts into cursors. The
- * price of blocks is padding; on meshes from modelling programs it is 5 to 40 per cent of the entries.
+ * price of blocks is padding; the more the corners of a block's vertices differ in number, the more it is.
  */
 #include "topology/adjacency.h"
 
 #include <string.h>
 #include "base/parallel.h"
 
-/* Corners by which a count is asked for before it is needed: costs nothing where neighbours are near. */
+/* Corners by which a count is prefetched before it is needed: costs nothing where neighbours are near. */
 enum { COUNT_AHEAD = 48 };
 
-/* Of entries that do not fit a room, less than one in so many may lie elsewhere. */
+/* Of entries that do not fit the borrowed memory, less than one in so many may lie elsewhere. */
 enum { PART_ELSEWHERE = 2 };
 
 /* Triangles whose vertices are looked up at a time. */
@@ -138,13 +138,12 @@ static void move_blocks(nt_adjacency *a, size_t block)
 			a->cursors[r * a->vertex_count + v] |= NT_CURSOR_ELSEWHERE;
 }
 
-/* Memory for `count` entries. If the room is just too small for them the last blocks go to the scratch: that makes
- * their corners dearer, but where rows and most entries fill an output, an uneven mesh would take a third more of
- * it for all of them. */
-static bool alloc_entries(nt_adjacency *a, size_t count, nt_room *room)
+/* Memory for `count` entries. If the borrowed memory is just too small for them the last blocks go to the scratch:
+ * their corners take longer, but where rows and most entries fill an output, an uneven mesh needs no second one. */
+static bool alloc_entries(nt_adjacency *a, size_t count, nt_borrowed *memory)
 {
-	size_t fit = (size_t)(room->end - room->begin) / sizeof *a->entries;
-	fit -= fit > 0; /* one more is asked for, so that there is always something to point to */
+	size_t fit = (size_t)(memory->end - memory->begin) / sizeof *a->entries;
+	fit -= fit > 0; /* one more is allocated, so that there is always something to point to */
 	size_t block = (a->vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES;
 	a->entry_count = count;
 	if (count > fit && count - fit < count / PART_ELSEWHERE) {
@@ -152,30 +151,30 @@ static bool alloc_entries(nt_adjacency *a, size_t count, nt_room *room)
 			block--;
 		a->entry_count = a->block_begin[block];
 		a->rest_count = count - a->entry_count;
-		a->rest = nt_scratch_alloc(room->scratch, a->rest_count, sizeof *a->rest);
+		a->rest = nt_scratch_alloc(memory->scratch, a->rest_count, sizeof *a->rest);
 		if (!a->rest)
 			return false;
 		move_blocks(a, block);
 	}
-	a->entries = nt_room_alloc(room, a->entry_count + 1, sizeof *a->entries);
+	a->entries = nt_borrowed_alloc(memory, a->entry_count + 1, sizeof *a->entries);
 	return a->entries;
 }
 
 nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_ranges *ranges,
-	size_t vertex_count, size_t most_places, nt_room *cursor_room, nt_room *room, nt_adjacency *adjacency)
+	size_t vertex_count, size_t most_places, nt_borrowed *cursor_memory, nt_borrowed *memory, nt_adjacency *adjacency)
 {
 	const size_t blocks = (vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES;
 	*adjacency = (nt_adjacency){.vertex_count = vertex_count, .ranges = ranges->count};
 	nt_adjacency *a = adjacency;
 	/* readers load whole vectors of cursors */
-	a->cursors = nt_room_alloc(cursor_room, vertex_count * ranges->count + NT_FAN_LANES, sizeof *a->cursors);
-	a->block_begin = nt_room_alloc(cursor_room, blocks + 1, sizeof *a->block_begin);
-	a->shared_counts = nt_scratch_alloc(room->scratch, ranges->count, sizeof *a->shared_counts);
+	a->cursors = nt_borrowed_alloc(cursor_memory, vertex_count * ranges->count + NT_FAN_LANES, sizeof *a->cursors);
+	a->block_begin = nt_borrowed_alloc(cursor_memory, blocks + 1, sizeof *a->block_begin);
+	a->shared_counts = nt_scratch_alloc(memory->scratch, ranges->count, sizeof *a->shared_counts);
 	if (!a->cursors || !a->block_begin || !a->shared_counts)
 		return NMTAN_ERROR_MEMORY;
 	memset(a->shared_counts, 0, ranges->count * sizeof *a->shared_counts);
 
 	counting c = {triangles, ranges, a};
 	nt_parallel_ranges(ranges->count, ranges->count, 1, count_ranges, &c);
-	return alloc_entries(a, place_blocks(a, most_places), room) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
+	return alloc_entries(a, place_blocks(a, most_places), memory) ? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }

@@ -11,7 +11,7 @@
 #ifndef NT_TOPOLOGY_ADJACENCY_H
 #define NT_TOPOLOGY_ADJACENCY_H
 
-#include "base/room.h"
+#include "base/borrowed.h"
 #include "nmtan.h"
 #include "topology/triangles.h"
 
@@ -39,7 +39,7 @@ typedef struct nt_adjacency {
 	uint32_t *block_begin; /* [blocks + 1] index of a block's first entry */
 	size_t *shared_counts; /* [ranges] corners whose cursor is SHARED */
 	nt_fan_entry *entries; /* places below entry_count */
-	nt_fan_entry *rest;    /* [rest_count] those above: what the room did not hold */
+	nt_fan_entry *rest;    /* [rest_count] those above: what the memory of the others did not hold */
 	size_t rest_count;
 	size_t entry_count;
 } nt_adjacency;
@@ -65,12 +65,12 @@ static inline const nt_fan_entry *nt_adjacency_block(const nt_adjacency *a, size
 /*
  * Counts the corners of each vertex and makes the places. Entries are not written.
  *
- *   most_places         up to NT_ADJACENCY_PLACES
- *   cursor_room, room   the memory of cursors and of entries; may be the same
+ *   most_places             up to NT_ADJACENCY_PLACES
+ *   cursor_memory, memory   for the cursors, and for the entries; may be the same
  *
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */
 nmtan_status nt_adjacency_make(const nt_triangles *triangles, const nt_triangle_ranges *ranges,
-	size_t vertex_count, size_t most_places, nt_room *cursor_room, nt_room *room, nt_adjacency *adjacency);
+	size_t vertex_count, size_t most_places, nt_borrowed *cursor_memory, nt_borrowed *memory, nt_adjacency *adjacency);
 
 #endif

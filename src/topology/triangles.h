@@ -11,7 +11,7 @@
 #include <stdint.h>
 
 /* Corner k of a triangle is corner k of its face, or the one behind where bit k of its cut is set. Above these
- * bits is the first corner of the face, so that halves of one quad are told by it. */
+ * bits is the first corner of the face, which is the same for halves of one quad. */
 enum { NT_CUT_BITS = 3 };
 
 typedef struct nt_triangles {

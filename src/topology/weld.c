@@ -7,17 +7,17 @@
 
 #include "topology/weld_parts.h"
 
-nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_room *row_room,
-	nt_room *room, nt_weld *weld)
+nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_borrowed *row_memory,
+	nt_borrowed *memory, nt_weld *weld)
 {
-	nt_welder w = {.mesh = mesh, .row_room = row_room, .room = room};
-	char *const begin = room->begin;
+	nt_welder w = {.mesh = mesh, .row_memory = row_memory, .memory = memory};
+	char *const begin = memory->begin;
 	/* few of many vertices used: corner by corner, so that time follows the corners */
 	if (!mesh->indices || mesh->vertex_count / 2 > corner_count) {
 		w.items = mesh->indices;
 		w.item_count = corner_count;
 		w.row_guess = corner_count / 4; /* corners share vertices, usually six to one */
-		w.numbers = nt_scratch_alloc(room->scratch, corner_count, sizeof *w.numbers);
+		w.numbers = nt_scratch_alloc(memory->scratch, corner_count, sizeof *w.numbers);
 		weld->ids = w.numbers && nt_weld_items(&w, ranges) ? w.numbers : NULL;
 	} else {
 		w.item_count = mesh->vertex_count;
@@ -26,10 +26,10 @@ nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned 
 	if (!weld->ids)
 		return NMTAN_ERROR_MEMORY;
 	/* tables and numbers of vertices are not needed any more */
-	if (row_room != room || !w.rows_in_room)
-		room->begin = begin;
-	if (w.rows_in_room)
-		nt_room_trim(row_room, w.rows, w.row_count * sizeof *w.rows);
+	if (row_memory != memory || !w.rows_borrowed)
+		memory->begin = begin;
+	if (w.rows_borrowed)
+		nt_borrowed_trim(row_memory, w.rows, w.row_count * sizeof *w.rows);
 	weld->rows = w.rows;
 	weld->count = w.row_count;
 	return NMTAN_OK;

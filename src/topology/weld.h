@@ -9,7 +9,7 @@
 #ifndef NT_TOPOLOGY_WELD_H
 #define NT_TOPOLOGY_WELD_H
 
-#include "base/room.h"
+#include "base/borrowed.h"
 #include "topology/weld_row.h"
 
 typedef struct nt_weld {
@@ -24,14 +24,14 @@ typedef struct nt_weld {
 /*
  * Welds the corners of a mesh whose strides are filled in and whose indices are checked. Linear time.
  *
- *   row_room the rows' memory
- *   room     that of everything else, given back but for ids; may be the same
+ *   row_memory, memory
+ *            for the rows, and for everything else, which is given back but for ids; may be the same
  *   ranges   threads to use, at least 1; they pay from about 65536 triangles each. The result does not
  *            depend on them.
  *
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */
-nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_room *row_room,
-	nt_room *room, nt_weld *weld);
+nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_borrowed *row_memory,
+	nt_borrowed *memory, nt_weld *weld);
 
 #endif

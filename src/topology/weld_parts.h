@@ -9,17 +9,17 @@
 #ifndef NT_TOPOLOGY_WELD_PARTS_H
 #define NT_TOPOLOGY_WELD_PARTS_H
 
-#include "base/room.h"
+#include "base/borrowed.h"
 #include "topology/weld_row.h"
 
-/* Rows whose hashes are made, and whose entries are asked for, at a time. */
+/* Rows whose hashes are made, and whose entries are prefetched, at a time. */
 enum { NT_WELD_BATCH = 32 };
 
 #define NT_WELD_EMPTY UINT32_MAX
 
 typedef struct nt_welder {
 	const nmtan_mesh *mesh;
-	nt_room *row_room, *room; /* for the rows, for everything else */
+	nt_borrowed *row_memory, *memory; /* for the rows, for everything else */
 	const uint32_t *items; /* vertex of item i; NULL: first_vertex + i */
 	size_t first_vertex, item_count;
 	size_t row_guess;      /* rows for which there is room at first */
@@ -28,7 +28,7 @@ typedef struct nt_welder {
 	uint32_t *table;
 	uint32_t *numbers;   /* [item_count] row of each item */
 	unsigned table_bits; /* log2 of the entries; a number has one bit less */
-	bool rows_in_room;
+	bool rows_borrowed;
 	bool unordered; /* an item holds a NaN */
 } nt_welder;
 

@@ -3,15 +3,15 @@
  * The weld of an indexed mesh. Nearly always no vertex is equal to another, and the whole weld is to find that
  * out: a sieve does so without a table of the vertices.
  *
- *   load    each vertex's row; its hash marks two bits of a word in a bitmap (a Bloom filter of one word). Who
- *           finds both marked already may be the second of two equal ones: the bits are marked again elsewhere
- *   list    the vertices whose bits have been marked again: all that are equal to another, those with a NaN,
- *           and about one in a hundred by chance
+ *   load    each vertex's row; its hash marks two bits of a word in a bitmap (a Bloom filter of one word). A
+ *           vertex that finds both marked already may equal an earlier one: the bits are marked in a second bitmap
+ *   list    the vertices whose bits the second bitmap has: all that are equal to another, those with a NaN,
+ *           and some by chance
  *   weld    the listed ones, by the table (weld_table.c)
  *   number  the vertices, where some are equal or hold a NaN; then the corners
  *
- * A bitmap is a quarter of the table at most and stays in the second-level cache where the table does not: half
- * the time of the table on a million triangles (Xeon). A mesh that turns out to have many equal vertices is left
+ * A bitmap is a quarter of the table at most and stays in the second-level cache where the table does not.
+ * A mesh that turns out to have many equal vertices is left
  * to the table. Threads have bitmaps of their own for their ranges of vertices; what two of them have marked
  * counts as marked again. Numbers do not depend on threads, nor on whether a vertex is listed by chance.
  */
@@ -243,7 +243,7 @@ static bool number_unordered(nt_welder *w, size_t corner_count, uint32_t *ids)
 /* Numbers of corners from numbers of vertices. */
 static const uint32_t *number_corners(nt_welder *w, size_t corner_count, unsigned ranges)
 {
-	uint32_t *ids = nt_scratch_alloc(w->room->scratch, corner_count, sizeof *ids);
+	uint32_t *ids = nt_scratch_alloc(w->memory->scratch, corner_count, sizeof *ids);
 	if (!ids)
 		return NULL;
 	nt_parallel_ranges(ranges, corner_count, 1, copy_numbers, &(copying){w->numbers, w->mesh->indices, ids});
@@ -264,8 +264,8 @@ static bool make_sieve(sieve *s)
 	if (!nt_weld_grow_rows(w, count + 1))
 		return false;
 	const size_t bitmap_words = (size_t)2 * s->ranges << s->word_bits;
-	s->in_room = nt_room_has(w->room, bitmap_words + count, sizeof *s->bitmaps);
-	s->bitmaps = nt_room_alloc(w->room, bitmap_words + count, sizeof *s->bitmaps);
+	s->in_room = nt_borrowed_has(w->memory, bitmap_words + count, sizeof *s->bitmaps);
+	s->bitmaps = nt_borrowed_alloc(w->memory, bitmap_words + count, sizeof *s->bitmaps);
 	s->places = s->bitmaps + bitmap_words;
 	return s->bitmaps;
 }
@@ -281,33 +281,33 @@ static bool weld_listed(sieve *s, unsigned ranges)
 		return true;
 	/* a table in fresh pages would be 2 MB more of an output that is hardly begun */
 	if (s->in_room)
-		nt_room_trim(w->room, s->bitmaps, ((size_t)(s->places - s->bitmaps) + count) * sizeof *s->places);
-	nt_welder listed = {.mesh = w->mesh, .row_room = w->room, .room = w->room, .items = s->places,
+		nt_borrowed_trim(w->memory, s->bitmaps, ((size_t)(s->places - s->bitmaps) + count) * sizeof *s->places);
+	nt_welder listed = {.mesh = w->mesh, .row_memory = w->memory, .memory = w->memory, .items = s->places,
 		.item_count = count, .row_guess = count};
-	listed.numbers = nt_room_alloc(w->room, count, sizeof *listed.numbers);
+	listed.numbers = nt_borrowed_alloc(w->memory, count, sizeof *listed.numbers);
 	if (!listed.numbers || !nt_weld_items(&listed, count < FEW ? 1 : ranges))
 		return false;
 	w->unordered = listed.unordered;
 	if (listed.row_count == count && !w->unordered)
 		return true;
-	w->numbers = nt_room_alloc(w->room, w->item_count, sizeof *w->numbers);
+	w->numbers = nt_borrowed_alloc(w->memory, w->item_count, sizeof *w->numbers);
 	if (w->numbers)
 		number_vertices(w, &listed);
 	return w->numbers;
 }
 
-/* Welds all vertices by the table, in the room that the sieve had. */
+/* Welds all vertices by the table, in the memory that the sieve had. */
 static bool weld_all(nt_welder *w, unsigned ranges)
 {
 	w->row_guess = w->item_count / 2;
-	w->numbers = nt_room_alloc(w->room, w->item_count, sizeof *w->numbers);
+	w->numbers = nt_borrowed_alloc(w->memory, w->item_count, sizeof *w->numbers);
 	return w->numbers && nt_weld_items(w, ranges);
 }
 
 const uint32_t *nt_weld_vertices(nt_welder *w, size_t corner_count, unsigned ranges)
 {
-	char *const begin = w->room->begin, *const row_begin = w->row_room->begin;
-	const nt_scratch_mark mark = nt_scratch_here(w->room->scratch);
+	char *const begin = w->memory->begin, *const row_begin = w->row_memory->begin;
+	const nt_scratch_mark mark = nt_scratch_here(w->memory->scratch);
 	sieve s;
 	s.w = w;
 	s.many = false;
@@ -316,9 +316,9 @@ const uint32_t *nt_weld_vertices(nt_welder *w, size_t corner_count, unsigned ran
 		return NULL;
 	nt_parallel_ranges(s.ranges, w->item_count, 1, load_range, &s);
 	if (s.many) {
-		w->room->begin = begin;
-		w->row_room->begin = row_begin;
-		nt_scratch_back(w->room->scratch, mark);
+		w->memory->begin = begin;
+		w->row_memory->begin = row_begin;
+		nt_scratch_back(w->memory->scratch, mark);
 		w->rows = NULL;
 		if (!weld_all(w, ranges))
 			return NULL;

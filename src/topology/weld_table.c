@@ -20,7 +20,7 @@ typedef struct batch {
 /* An empty table. */
 static bool make_table(nt_welder *w, unsigned bits)
 {
-	w->table = nt_room_alloc(w->room, (size_t)1 << bits, sizeof *w->table);
+	w->table = nt_borrowed_alloc(w->memory, (size_t)1 << bits, sizeof *w->table);
 	w->table_bits = bits;
 	if (w->table)
 		memset(w->table, 0xff, sizeof *w->table << bits);
@@ -54,13 +54,13 @@ static bool grow_table(nt_welder *w, unsigned bits)
 
 bool nt_weld_grow_rows(nt_welder *w, size_t capacity)
 {
-	const bool in_room = nt_room_has(w->row_room, capacity, sizeof *w->rows);
-	nt_weld_row *rows = nt_room_alloc(w->row_room, capacity, sizeof *rows);
+	const bool in_room = nt_borrowed_has(w->row_memory, capacity, sizeof *w->rows);
+	nt_weld_row *rows = nt_borrowed_alloc(w->row_memory, capacity, sizeof *rows);
 	if (!rows)
 		return false;
 	if (w->rows)
 		memcpy(rows, w->rows, w->row_count * sizeof *rows);
-	w->rows_in_room = in_room;
+	w->rows_borrowed = in_room;
 	w->rows = rows;
 	w->row_capacity = capacity;
 	return true;
@@ -69,7 +69,7 @@ bool nt_weld_grow_rows(nt_welder *w, size_t capacity)
 /* Room for rows that are loaded but not yet numbered: see next_place(). */
 enum { AHEAD = 5 * NT_WELD_BATCH };
 
-/* Rows for which there must be room, and twice as many entries, before the next batches. */
+/* Rows for which there must be memory, and twice as many entries, before the next batches. */
 static size_t rows_soon(const nt_welder *w, size_t row_count)
 {
 	return row_count + AHEAD < w->item_count ? row_count + AHEAD : w->item_count;
@@ -109,7 +109,7 @@ static inline nt_weld_flags load_item(const nt_welder *w, const nmtan_mesh *mesh
 	return unordered;
 }
 
-/* Loads and hashes the rows of a batch to `rows`, and asks for their entries. */
+/* Loads and hashes the rows of a batch to `rows`, and prefetches their entries. */
 static void load_batch(const nt_welder *w, size_t begin, nt_weld_row *rows, batch *b)
 {
 	const size_t left = w->item_count - begin;

@@ -10,9 +10,7 @@
  * The first range's rows keep their numbers. A row is met first in the first range that has it, so numbers are in
  * order of first appearance, whatever the ranges: what one thread makes.
  *
- * Two threads together do 1.2 times the work of one on a de-indexed torus of a million triangles, whose ranges have
- * few rows in common (Xeon; 2.3 times when they shared a table by compare-and-swap), 1.15 on a shuffled one, where
- * each range has nearly all.
+ * The fewer rows the ranges have in common, the more threads gain.
  */
 #include "base/parallel.h"
 #include "topology/weld_parts.h"
@@ -49,7 +47,7 @@ static void weld_range(void *context, size_t begin, size_t end, unsigned slot)
 static bool make_ranges(joint *j)
 {
 	nt_welder *w = j->w;
-	j->ranges = nt_scratch_alloc(w->room->scratch, j->count, sizeof *j->ranges);
+	j->ranges = nt_scratch_alloc(w->memory->scratch, j->count, sizeof *j->ranges);
 	for (unsigned r = 0; r < j->count && j->ranges; r++) {
 		const size_t begin = w->item_count / j->count * r, end = w->item_count / j->count * (r + 1);
 		range *here = &j->ranges[r];
@@ -59,7 +57,7 @@ static bool make_ranges(joint *j)
 		here->welder.first_vertex = begin;
 		here->welder.row_guess = w->row_guess / j->count;
 		here->welder.numbers = w->numbers + begin;
-		here->welder.row_room = r ? w->room : w->row_room;
+		here->welder.row_memory = r ? w->memory : w->row_memory;
 		/* all rows come behind those of the first range */
 		if (!nt_weld_start(&here->welder, r ? 0 : w->row_guess))
 			return false;
@@ -139,7 +137,7 @@ static bool seek_all(joint *j)
 		j->ranges[r].place = rows;
 		rows += j->ranges[r].welder.row_count;
 	}
-	j->places = nt_room_alloc(j->w->room, rows, sizeof *j->places);
+	j->places = nt_borrowed_alloc(j->w->memory, rows, sizeof *j->places);
 	if (!j->places)
 		return false;
 	for (j->sought = 1; j->sought < j->count; j->sought++)
@@ -176,7 +174,7 @@ static bool number_rows(joint *j)
 	if (rows > first->row_capacity && !nt_weld_grow_rows(first, rows))
 		return false;
 	w->rows = first->rows;
-	w->rows_in_room = first->rows_in_room;
+	w->rows_borrowed = first->rows_borrowed;
 	w->row_capacity = first->row_capacity;
 	w->row_count = rows;
 	for (unsigned r = 0; r < j->count; r++)

@@ -9,7 +9,7 @@
 #include "tangent/fast/lanes.h"
 #include "topology/corners.h"
 
-/* Corners by which a bin's place is asked for before it is written: some lines. */
+/* Corners by which a place in a bin is prefetched before it is written: some cache lines. */
 enum { BIN_AHEAD = 12 };
 
 static inline void add_record(nt_record *record, const float *add)
@@ -113,7 +113,7 @@ static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t
 			addition_of(out, k, turned_place((size_t)lane)));
 }
 
-/* Triangles with frames, lanes [begin, end): add_triangle() with everything that does not change kept at hand. */
+/* Triangles with frames, lanes [begin, end): add_triangle() with everything that does not change in local variables. */
 static void __attribute__((noinline)) add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t begin,
 	size_t end, const uint32_t *ids, const lanes_out *out)
 {
@@ -171,7 +171,7 @@ static int any_record(const nt_fast *fast, int orient)
 }
 
 /* Adds a triangle that is degenerate (voids in the fans) or has no frame (a corner in the fans, a note in the
- * records), or is ordinary but has values that the lanes do not vouch for. */
+ * records), or is ordinary but has values for which the bounds of the lanes do not hold. */
 static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range, size_t t, const uint32_t *v,
 	int lane, lanes_out *out)
 {
@@ -235,7 +235,7 @@ static int missing_record(const nt_fast *fast, size_t first, size_t count)
 
 /* Scattered vertices: the rows of corner k of the batch after the next. A third at a time, since no more misses
  * than that can be under way. Always inline: to gcc 12 a function of prefetches alone has no effect, and goes. */
-static inline __attribute__((always_inline)) void ask_ahead(const nt_fast *fast, size_t first, size_t end, size_t k)
+static inline __attribute__((always_inline)) void prefetch_rows(const nt_fast *fast, size_t first, size_t end, size_t k)
 {
 	const size_t far = first + 2 * NT_LANES < end ? first + 2 * NT_LANES : end;
 	const size_t count = end - far < NT_LANES ? end - far : NT_LANES;
@@ -245,9 +245,9 @@ static inline __attribute__((always_inline)) void ask_ahead(const nt_fast *fast,
 		__builtin_prefetch(&fast->rows[ids[3 * i]]);
 }
 
-/* Without bins (quads scattered: 205 to 160 ns a triangle): entries and records of a batch whose cursors were asked
- * for a batch ago. */
-static inline __attribute__((always_inline)) void ask_places(const nt_fast *fast, const uint32_t *cursors,
+/* Without bins, as in scattered quads: entries and records of a batch whose cursors were
+ * prefetched a batch ago. */
+static inline __attribute__((always_inline)) void prefetch_places(const nt_fast *fast, const uint32_t *cursors,
 	const uint32_t *ids, size_t count)
 {
 	for (size_t i = 0; i < 3 * count; i++) {
@@ -260,7 +260,7 @@ static inline __attribute__((always_inline)) void ask_places(const nt_fast *fast
 }
 
 /* The cursors of a batch. */
-static inline __attribute__((always_inline)) void ask_cursors(const nt_fast *fast, const uint32_t *cursors, size_t first,
+static inline __attribute__((always_inline)) void prefetch_cursors(const nt_fast *fast, const uint32_t *cursors, size_t first,
 	size_t end)
 {
 	const size_t count = end - first < NT_LANES ? end - first : NT_LANES;
@@ -284,14 +284,14 @@ static void accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, 
 		if (first + count < end && (fast->flags[first + count] & NT_TRIANGLE_SECOND))
 			count--; /* halves of a quad stay together */
 		if (scattered)
-			ask_ahead(fast, first, end, 0);
+			prefetch_rows(fast, first, end, 0);
 		uint32_t copy[3 * NT_LANES];
 		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
 		gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : lanes_of(count), in.row);
 		if (scattered && direct)
-			ask_places(fast, cursors, ids, count);
+			prefetch_places(fast, cursors, ids, count);
 		if (scattered)
-			ask_ahead(fast, first, end, 1);
+			prefetch_rows(fast, first, end, 1);
 		if (fast->wants_more)
 			solve_lanes_more(&in, &out, offset, slack);
 #if WIDTH > 4
@@ -301,9 +301,9 @@ static void accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, 
 		else
 			solve_lanes_plain(&in, &out, offset, slack, count);
 		if (scattered)
-			ask_ahead(fast, first, end, 2);
+			prefetch_rows(fast, first, end, 2);
 		if (scattered && direct)
-			ask_cursors(fast, cursors, first + count, end);
+			prefetch_cursors(fast, cursors, first + count, end);
 		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
 		for (int missing; (missing = missing_record(fast, first, count)) >= 0;)
 			if (!make(fast, missing, context))

@@ -11,8 +11,8 @@
 
 enum { USUAL_BITS = 13, MOST_BINS = 512 };
 
-/* Fewer, smaller meshes have smaller bins: places for one at hand are as many as its vertices could need, which is
- * not to be more than half a byte for each triangle. */
+/* Fewer, smaller meshes have smaller bins: the memory that a bin is added up in has places for as many corners as its
+ * vertices could have, and should not be more than half a byte for each triangle. */
 enum { LEAST_BINS = 128 };
 
 /* Every block has the full depth: what is not used is not touched, and nothing has to be counted. */
@@ -75,13 +75,13 @@ unsigned nt_bins_bits(size_t vertex_count)
 }
 
 nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges, size_t vertex_count,
-	unsigned vertex_bits, nt_record *sums, nt_room *room, nt_bins *bins)
+	unsigned vertex_bits, nt_record *sums, nt_borrowed *memory, nt_bins *bins)
 {
 	const size_t count = (vertex_count + ((size_t)1 << vertex_bits) - 1) >> vertex_bits;
 	const size_t corners = 3 * ranges->bounds[ranges->count];
-	nt_scratch *scratch = room->scratch;
+	nt_scratch *scratch = memory->scratch;
 	nt_bins b = {.vertex_bits = vertex_bits, .ranges = ranges->count, .count = count, .vertex_count = vertex_count};
-	b.sums = sums ? sums : nt_room_alloc(room, corners, sizeof *b.sums);
+	b.sums = sums ? sums : nt_borrowed_alloc(memory, corners, sizeof *b.sums);
 	b.entries = nt_scratch_alloc(scratch, corners * NT_BINNED_ENTRY + 1, 1);
 	b.begins = nt_scratch_alloc(scratch, count, ranges->count * sizeof *b.begins);
 	b.seen = nt_scratch_alloc(scratch, ranges->count, sizeof *b.seen);
@@ -129,7 +129,7 @@ static uint32_t vertex_of(const nt_bins *b, uint32_t state)
 	return state >> NT_BINNED_SHIFT & (((uint32_t)1 << b->vertex_bits) - 1);
 }
 
-static void add_corners(const nt_bins *b, size_t begin, size_t end, nt_record *const to[2], bool contested,
+static void add_corners(const nt_bins *b, size_t begin, size_t end, nt_record *const to[2], bool both,
 	nt_adjacency *a)
 {
 	static const nt_int4 sum_bits = {-1, -1, -1, NT_STATE_BASE | NT_STATE_ALL};
@@ -144,7 +144,7 @@ static void add_corners(const nt_bins *b, size_t begin, size_t end, nt_record *c
 		nt_int4 sum;
 		memcpy(&sum, &b->sums[i], sizeof sum);
 		sum &= sum_bits;
-		if (contested && !(state & NT_STATE_NO_ANY))
+		if (both && !(state & NT_STATE_NO_ANY))
 			sum &= not_local;
 		nt_record_add(&to[state >> 31][vertex], sum);
 	}

@@ -3,13 +3,13 @@
  * Corners sorted by where their vertex lies, for meshes whose neighbouring triangles have vertices far
  * apart. There each corner would wait for a cursor, an entry and a record, none of them in a cache.
  * Instead the first pass writes corners down in bins, one for every few thousand vertices, each of them
- * a stream; then one bin after the other is added up with all its vertices at hand. (This is one pass of a
+ * a stream; then one bin after the other is added up with all its vertices in the cache. (This is one pass of a
  * radix sort.)
  *
  * The corners of a bin lie in triangle order whatever the number of ranges, so the sums are those of the
  * direct way, and no range has to wait for another.
  *
- * A corner takes 16 bytes, which the output lends, and 7 more for its entry.
+ * A corner takes 16 bytes, which lie in the output until it is written, and 7 more for its entry.
  */
 #ifndef NT_TANGENT_FAST_BINS_H
 #define NT_TANGENT_FAST_BINS_H
@@ -80,12 +80,12 @@ unsigned nt_bins_bits(size_t vertex_count);
  *
  *   ids           [3 * triangle count] vertices of the triangles
  *   vertex_bits   log2 of the vertices of a bin: 4, a block of the adjacency, to NT_BINNED_BITS
- *   sums          [3 * triangle count] lent until the bins are added up; NULL: taken from the room
+ *   sums          [3 * triangle count] needed until the bins are added up; NULL: taken from `memory`
  *
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */
 nmtan_status nt_bins_make(const uint32_t *ids, const nt_triangle_ranges *ranges, size_t vertex_count,
-	unsigned vertex_bits, nt_record *sums, nt_room *room, nt_bins *bins);
+	unsigned vertex_bits, nt_record *sums, nt_borrowed *memory, nt_bins *bins);
 
 /* Orientations for which there have to be records: those that came up; without a frame anywhere, one whose records
  * can take notes. */

@@ -5,7 +5,7 @@
  * scalar definition, but at these vertices only:
  *
  *   collect   corners of complex vertices, sorted by vertex and then by triangle
- *   adopt     which orientation each triangle without a frame takes: that of the first group that reaches it,
+ *   decide    which orientation each triangle without a frame takes: that of the first group that reaches it,
  *             wherever that is. Nothing else depends on the order of all corners    complex_groups.c
  *
  * and then for a few vertices at a time, so that all of it stays in the first-level cache:
@@ -15,9 +15,8 @@
  *   solve     corners, in lanes                                                     corners.h
  *   average   and write                                                             complex_solve.c
  *
- * A corner costs about 30 ns (AVX-512; a third each for collecting, lanes and the rest), its triangle's ordinary
- * way a tenth of that. Time is linear in corners but for directions that really are antiparallel:
- * there every member of a group may have a sum of its own.
+ * Time is linear in corners but for directions that really are antiparallel: there every member of a group may have
+ * a sum of its own.
  */
 #include "tangent/fast/complex.h"
 
@@ -51,7 +50,7 @@ static void count_corners(nt_complex *c, uint32_t *counts)
 static nmtan_status collect(nt_complex *c)
 {
 	const nt_fast *fast = c->fast;
-	c->begin = nt_room_alloc(c->room, c->vertex_count + 2, sizeof *c->begin);
+	c->begin = nt_borrowed_alloc(c->memory, c->vertex_count + 2, sizeof *c->begin);
 	if (!c->begin)
 		return NMTAN_ERROR_MEMORY;
 	/* counted two places ahead: filling then moves each begin to where it belongs */
@@ -63,7 +62,7 @@ static nmtan_status collect(nt_complex *c)
 		at[v] += at[v - 1];
 	}
 	c->corner_count = at[c->vertex_count];
-	c->corners = nt_room_alloc(c->room, c->corner_count, sizeof *c->corners);
+	c->corners = nt_borrowed_alloc(c->memory, c->corner_count, sizeof *c->corners);
 	if (!c->corners)
 		return NMTAN_ERROR_MEMORY;
 	for (size_t t = nt_next_complex(c, 0); t < fast->triangle_count; t = nt_next_complex(c, t + 1)) {
@@ -78,13 +77,13 @@ static nmtan_status collect(nt_complex *c)
 	return NMTAN_OK;
 }
 
-/* As many vertices at a time as have NT_BATCH corners together; one that has more goes by itself. */
+/* As many vertices at a time as have NT_BATCH corners together; one that has more is a batch of its own. */
 static nmtan_status solve_vertices(const nt_complex *c)
 {
 	const size_t capacity = c->most > NT_BATCH ? c->most : NT_BATCH;
 	const bool quads = c->fast->triangles.cuts;
 	nt_batch b;
-	nt_corner *results = quads ? nt_room_alloc(c->room, capacity, sizeof *results) : NULL;
+	nt_corner *results = quads ? nt_borrowed_alloc(c->memory, capacity, sizeof *results) : NULL;
 	if (!nt_batch_alloc(c, capacity, &b) || (quads && !results))
 		return NMTAN_ERROR_MEMORY;
 	nmtan_status status = NMTAN_OK;
@@ -102,18 +101,18 @@ static nmtan_status solve_vertices(const nt_complex *c)
 	return status;
 }
 
-nmtan_status nt_fast_complex(nt_fast *fast, const nt_kernels *kernels, size_t complex_count, nt_room *room)
+nmtan_status nt_fast_complex(nt_fast *fast, const nt_kernels *kernels, size_t complex_count, nt_borrowed *memory)
 {
-	nt_complex c = {.fast = fast, .kernels = kernels, .room = room, .vertex_count = complex_count};
+	nt_complex c = {.fast = fast, .kernels = kernels, .memory = memory, .vertex_count = complex_count};
 	c.orient = !fast->records[0];
 	c.more = fast->wants_more || fast->triangles.cuts;
-	c.waiting = nt_room_alloc(room, fast->vertex_count, sizeof *c.waiting);
+	c.waiting = nt_borrowed_alloc(memory, fast->vertex_count, sizeof *c.waiting);
 	if (!c.waiting)
 		return NMTAN_ERROR_MEMORY;
 	memset(c.waiting, 0, fast->vertex_count * sizeof *c.waiting);
 	nmtan_status status = collect(&c);
 	/* without a second orientation there is nothing to choose */
 	if (!status && c.any && fast->records[0] && fast->records[1])
-		status = nt_adopt(&c);
+		status = nt_decide_any(&c);
 	return status ? status : solve_vertices(&c);
 }

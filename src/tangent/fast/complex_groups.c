@@ -13,8 +13,8 @@
 bool nt_batch_alloc(const nt_complex *c, size_t capacity, nt_batch *batch)
 {
 	*batch = (nt_batch){0};
-	batch->across = nt_room_alloc(c->room, capacity + 1, 2 * sizeof *batch->across);
-	batch->group = nt_room_alloc(c->room, capacity, sizeof *batch->group);
+	batch->across = nt_borrowed_alloc(c->memory, capacity + 1, 2 * sizeof *batch->across);
+	batch->group = nt_borrowed_alloc(c->memory, capacity, sizeof *batch->group);
 	return batch->across && batch->group;
 }
 
@@ -24,7 +24,7 @@ bool nt_batch_alloc(const nt_complex *c, size_t capacity, nt_batch *batch)
  * Edge `e` meets the first edge in the other direction that waits at its far end; if there is none it waits
  * there itself. Those that wait at one vertex all run the same way. They stand in a ring, each with its
  * follower in `across`, and `waiting` knows the last. There edges are counted over all batches, from 1, so that what
- * has waited there since another vertex's turn is told by its number: it is not above `past`.
+ * has waited there since another vertex's turn has a number that is not above `past`.
  */
 static void pair_edge(nt_batch *b, uint32_t *waiting, uint32_t past, uint32_t e)
 {
@@ -71,8 +71,8 @@ static bool join_group(const nt_complex *c, nt_batch *b, uint32_t i, unsigned or
 	if (i >= NT_WAITS || b->group[i] != NT_NONE)
 		return false;
 	uint8_t *flags = &c->fast->flags[b->corners[i] >> 2];
-	if ((*flags & NT_TRIANGLE_ANY) && !(*flags & NT_TRIANGLE_TAKEN))
-		*flags = (uint8_t)((*flags & ~NT_TRIANGLE_ORIENT) | orient | NT_TRIANGLE_TAKEN);
+	if ((*flags & NT_TRIANGLE_ANY) && !(*flags & NT_TRIANGLE_DECIDED))
+		*flags = (uint8_t)((*flags & ~NT_TRIANGLE_ORIENT) | orient | NT_TRIANGLE_DECIDED);
 	if ((*flags & NT_TRIANGLE_ORIENT) != orient)
 		return false;
 	b->group[i] = b->group_count;
@@ -119,7 +119,7 @@ void nt_find_groups(const nt_complex *c, nt_batch *b)
 	list_members(b);
 }
 
-/* Adopting */
+/* Triangles without a frame */
 
 /* Pairs the corners of vertices that touch a triangle without a frame; these get their first place, others
  * NT_NONE. */
@@ -137,13 +137,13 @@ static void pair_undecided(const nt_complex *c, nt_batch *b, uint32_t *places)
 
 /* Floods in the order of triangles, for what that does to flags: afterwards the vertices do not depend on each
  * other. */
-nmtan_status nt_adopt(const nt_complex *c)
+nmtan_status nt_decide_any(const nt_complex *c)
 {
 	const nt_fast *fast = c->fast;
-	const nt_scratch_mark mark = nt_scratch_here(c->room->scratch);
-	const nt_room room = *c->room;
+	const nt_scratch_mark mark = nt_scratch_here(c->memory->scratch);
+	const nt_borrowed memory = *c->memory;
 	nt_batch b;
-	uint32_t *at = nt_room_alloc(c->room, c->vertex_count, sizeof *at);
+	uint32_t *at = nt_borrowed_alloc(c->memory, c->vertex_count, sizeof *at);
 	if (!at || !nt_batch_alloc(c, c->corner_count, &b))
 		return NMTAN_ERROR_MEMORY;
 	b.corners = c->corners;
@@ -158,8 +158,8 @@ nmtan_status nt_adopt(const nt_complex *c)
 				flood_group(c, &b, at[number]++);
 		}
 	}
-	nt_scratch_back(c->room->scratch, mark);
-	*c->room = room;
+	nt_scratch_back(c->memory->scratch, mark);
+	*c->memory = memory;
 	memset(c->waiting, 0, fast->vertex_count * sizeof *c->waiting);
 	return NMTAN_OK;
 }

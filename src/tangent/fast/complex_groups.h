@@ -19,7 +19,7 @@ enum { NT_BATCH = 128 };
 typedef struct nt_complex {
 	nt_fast *fast;
 	const nt_kernels *kernels;
-	nt_room *room;
+	nt_borrowed *memory;
 	int orient;          /* of the records in which x of a complex vertex is its number, bit by bit */
 	size_t vertex_count, corner_count;
 	size_t most;         /* corners of one vertex */
@@ -68,6 +68,6 @@ void nt_find_groups(const nt_complex *c, nt_batch *batch);
 
 /* Gives every triangle without a frame the orientation of the first group that reaches it. Returns NMTAN_OK or
  * NMTAN_ERROR_MEMORY. */
-nmtan_status nt_adopt(const nt_complex *c);
+nmtan_status nt_decide_any(const nt_complex *c);
 
 #endif

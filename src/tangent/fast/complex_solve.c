@@ -323,16 +323,16 @@ static nmtan_status solve_large_group(const nt_complex *c, const nt_batch *b, ui
 			put_result(c, b, members[i], &whole, results);
 		return NMTAN_OK;
 	}
-	const nt_scratch_mark mark = nt_scratch_here(c->room->scratch);
-	const nt_room room = *c->room;
-	nt_corner *solved = nt_room_alloc(c->room, count + NT_LANES, sizeof *solved);
+	const nt_scratch_mark mark = nt_scratch_here(c->memory->scratch);
+	const nt_borrowed memory = *c->memory;
+	nt_corner *solved = nt_borrowed_alloc(c->memory, count + NT_LANES, sizeof *solved);
 	if (!solved)
 		return NMTAN_ERROR_MEMORY;
 	solve_members(c, b, members, count, solved);
 	const part p = {members, solved, count};
 	average_group(c, b, &p, results);
-	nt_scratch_back(c->room->scratch, mark);
-	*c->room = room;
+	nt_scratch_back(c->memory->scratch, mark);
+	*c->memory = memory;
 	return NMTAN_OK;
 }
 

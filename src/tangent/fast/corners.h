@@ -2,8 +2,8 @@
 /*
  * The third pass: single corners for complex.c, 16 at a time. They are read from the mesh, because the welded
  * rows lay in the output, which is written by now. Here every value reaches the output, the extreme ones too:
- * all of steps 4 and 8 is done as the definition does it, and each corner has its triangle's frame made anew (a
- * fifth of the work in here, and nothing to keep). Included by kernel.h.
+ * all of steps 4 and 8 is done as the definition does it, and each corner has its triangle's frame made anew,
+ * so that there is nothing to keep. Included by kernel.h.
  */
 #ifndef NT_TANGENT_FAST_CORNERS_H
 #define NT_TANGENT_FAST_CORNERS_H

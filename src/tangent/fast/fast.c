@@ -1,25 +1,36 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * MikkTSpace, fast: the bytes of mikktspace.c at the speed of memory. The passes in order, with their
- * shares of the time on a clean mesh of a million triangles in 512-bit vectors (43 ns a triangle, Xeon):
+ * MikkTSpace, fast: the bytes of mikktspace.c at the speed of memory. At nearly every vertex all triangles of
+ * one orientation are one group. So their sum is made first, 16 triangles at a time, and only then is it checked
+ * whether the definition's groups would give the same; where they may not, they are found.
  *
- *   1 weld       14 %  hash every vertex's row, find equal ones            topology/weld.c
- *   2 cut              quads become triangles
- *   3 adjacency   6 %  count the corners of each vertex, make their places topology/adjacency.c
- *   4 accumulate 55 %  frames and weights of 16 triangles at a time, added accumulate.h
- *                      to the records of vertices in triangle order        records.c
- *   5 settle     10 %  16 vertices at a time: is the record the result?    settle.h
- *   6 write      13 %  every corner gets its vertex's result               write.c
- *   7 complex          the other vertices: pairs, groups, averages         complex.c
- *   8 late             degenerate triangles copy a neighbour's corner      write.c
+ *   1 weld        hash every vertex's row, find equal ones                 topology/weld.c
+ *   2 cut         quads become triangles
+ *   3 adjacency   count the corners of each vertex, make their places      topology/adjacency.c
+ *   4 accumulate  frames and weights of 16 triangles at a time, added to   accumulate.h
+ *                 the records of vertices in triangle order                records.c
+ *   5 settle      16 vertices at a time: is the record the result?         settle.h
+ *   6 write       every corner gets its vertex's result                    write.c
+ *   7 complex     the other vertices: pairs, groups, averages              complex.c
+ *   8 copies      degenerate triangles copy a neighbour's corner           write.c
  *
- * Where neighbouring triangles have vertices far apart there is no step 3, step 4 writes corners down in bins
- * of vertices, and step 5 adds up and settles one bin after the other (bins.h).
+ * Step 4 takes about half of the time on a clean mesh. Where neighbouring triangles have vertices far apart there is
+ * no step 3, step 4 writes corners down in bins of vertices, and step 5 adds up and settles one bin after the other
+ * (bins.h). Threads own ranges of triangles, and every sum is in triangle order whatever their number.
  *
- * Groups are not looked at before step 5, because nearly every vertex has one for each orientation;
- * what that saves is the point of this file.
+ * Words of these files:
  *
- * Threads own ranges of triangles, and every sum is in triangle order whatever their number.
+ *   record      the sum of a welded vertex over its corners of one orientation; from step 5 on its result
+ *   any         of a triangle, after MikkTSpace's flag: its UVs have no area, and it joins groups of either orientation
+ *   undecided   an "any" triangle that groups of both orientations can reach: it takes that of the first
+ *   fan         the corners of a vertex that hang together by shared edges
+ *   hub         a vertex of too many corners for step 3 to give them places
+ *   settled     a vertex whose records are its results: each is one fan, its directions cannot be antiparallel, and
+ *               a renderer can use the tangent
+ *   complex     a vertex that is not settled; hubs are complex
+ *   suspect     a triangle whose corners are not known to be good (nt_known): repair and split look at each
+ *   sparse      a solve that writes the corners of suspects only; the others' tangents are those of their records
+ *   scattered   a mesh whose neighbouring triangles have vertices far apart
  */
 #include "tangent/fast/fast.h"
 
@@ -35,7 +46,7 @@
 #include "topology/corners.h"
 
 /* Starting a thread costs more than it saves with fewer triangles. */
-static const nt_fast_plan usual = {.grain = 65536, .least_lent_bytes = 65536};
+static const nt_fast_plan usual = {.grain = 65536, .least_borrowed_bytes = 65536};
 
 typedef struct run {
 	nt_fast *fast;
@@ -172,7 +183,7 @@ static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned
 
 /* An "any" triangle that groups of both orientations can reach takes the one that is seeded first. At its
  * vertices order matters, so they are not settled. */
-static void mark_contested(nt_fast *fast)
+static void mark_undecided(nt_fast *fast)
 {
 	if (!fast->records[0] || !fast->records[1])
 		return;
@@ -199,7 +210,7 @@ static void settle_blocks(void *context, size_t begin, size_t end, unsigned slot
 	r->settled[slot] = settled;
 }
 
-/* Adds up bins and settles their vertices while they are at hand. */
+/* Adds up bins and settles their vertices while they are in the cache. */
 static void settle_bins(void *context, size_t begin, size_t end, unsigned slot)
 {
 	const run *r = context;
@@ -214,7 +225,7 @@ static void settle_bins(void *context, size_t begin, size_t end, unsigned slot)
 	r->settled[slot] = settled;
 }
 
-static bool make_bins_at_hand(run *r, unsigned ranges)
+static bool make_bins(run *r, unsigned ranges)
 {
 	const nt_fast *fast = r->fast;
 	const bool needed[2] = {fast->records[0], fast->records[1]};
@@ -234,11 +245,11 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 		return NMTAN_ERROR_MEMORY;
 	memset(r.settled, 0, ranges * sizeof *r.settled);
 	if (fast->bins.cursors) {
-		if (!make_bins_at_hand(&r, ranges))
+		if (!make_bins(&r, ranges))
 			return NMTAN_ERROR_MEMORY;
 		nt_parallel_ranges(ranges, fast->bins.count, 1, settle_bins, &r);
 	} else {
-		mark_contested(fast);
+		mark_undecided(fast);
 		nt_parallel_ranges(ranges, (fast->vertex_count + NT_LANES - 1) / NT_LANES, 1, settle_blocks,
 			&r);
 	}
@@ -248,42 +259,42 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 	return NMTAN_OK;
 }
 
-/* 6 to 8: write, complex, late */
+/* 6 to 8: write, complex, copies */
 
 /* Tells tangent/usable.c which triangles need no look, and repair.c what is welded. */
-static void vouch(const nt_fast *fast)
+static void tell_known(const nt_fast *fast)
 {
-	*fast->solve->vouched = (nt_vouched){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT,
+	*fast->solve->known = (nt_known){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT,
 		.suspect = NT_TRIANGLE_SUSPECT, .doubtful = NT_TRIANGLE_SUSPECT & ~NT_TRIANGLE_COMPLEX,
 		.welded = fast->triangles.ids, .welded_count = fast->vertex_count};
 }
 
 /* The rows that a sparse solve stands for: a record is x, y, z and, as state, the sign. */
-static void vouch_rows(const nt_fast *fast)
+static void tell_rows(const nt_fast *fast)
 {
-	nt_vouched *vouched = fast->solve->vouched;
-	vouched->ids = fast->triangles.ids;
-	vouched->row_step = fast->record_step * sizeof(nt_record) / sizeof(float);
+	nt_known *known = fast->solve->known;
+	known->ids = fast->triangles.ids;
+	known->row_step = fast->record_step * sizeof(nt_record) / sizeof(float);
 	for (int orient = 0; orient < 2; orient++)
-		vouched->rows[orient] = fast->records[orient] ? &fast->records[orient]->x : NULL;
+		known->rows[orient] = fast->records[orient] ? &fast->records[orient]->x : NULL;
 }
 
 static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, const nt_settled *settled)
 {
 	nt_fast_write(fast);
-	nt_room left = nt_fast_left_memory(fast);
+	nt_borrowed left = nt_fast_left_memory(fast);
 	const nmtan_status status = settled->complex_count > 0
 		? nt_fast_complex(fast, kernels, settled->complex_count, &left) : NMTAN_OK;
 	if (status)
 		return status;
-	if (fast->solve->vouched)
-		vouch(fast);
-	/* late triangles copy corners, which must have been written */
-	if (fast->sparse && nt_fast_next_flagged(fast, 0, NT_TRIANGLE_LATE) < fast->triangle_count)
+	if (fast->solve->known)
+		tell_known(fast);
+	/* these corners are copied from others, which must have been written */
+	if (fast->sparse && nt_fast_next_flagged(fast, 0, NT_TRIANGLE_COPY) < fast->triangle_count)
 		nt_fast_write_rest(fast);
 	if (fast->sparse)
-		vouch_rows(fast);
-	return nt_fast_write_late(fast);
+		tell_rows(fast);
+	return nt_fast_write_copies(fast);
 }
 
 /* The whole */
@@ -303,7 +314,7 @@ nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *pl
 		.triangle_count = nt_triangle_count(solve->mesh, solve->corner_count)};
 	const bool binned = is_binned(&fast, plan->bin_bits);
 	nt_fast_memory memory;
-	nt_fast_plan_memory(&fast, binned, plan->least_lent_bytes, &memory);
+	nt_fast_plan_memory(&fast, binned, plan->least_borrowed_bytes, &memory);
 
 	/* which corners are one vertex, and which triangles each thread does */
 	nmtan_status status = prepare(&fast, plan->grain, &memory);

@@ -7,7 +7,7 @@
  *   array              steps  memory
  *   tables of the weld 1      borrowed
  *   ids, flags, cuts   1-8    scratch
- *   rows               1-5    borrowed where there is room, see has_room_for_rows(); binned: scratch
+ *   rows               1-5    borrowed where there is memory, see has_room_for_rows(); binned: scratch
  *   cursors            3-5    as the rows
  *   entries            3-5    borrowed, and scratch for the rest
  *   sums of bins       4-5    the output: 16 bytes a corner, as many as it has
@@ -16,7 +16,7 @@
  *   complex vertices   7      the largest of rows and entries that does not lie in the output
  *
  * Borrowed is the output itself, or, in a sparse solve, whose output is not filled so that its pages need not exist,
- * what the caller fills afterwards (nt_solve.lent).
+ * what the caller fills afterwards (nt_solve.spare).
  */
 #include "tangent/fast/memory.h"
 
@@ -26,10 +26,10 @@ static size_t output_bytes(const nt_solve *solve)
 }
 
 /* Whether there is room for the rows beside the entries. If not, the larger of them should have it. */
-static bool has_room_for_rows(const nt_fast *fast, const nt_room *room)
+static bool has_room_for_rows(const nt_fast *fast, const nt_borrowed *memory)
 {
 	const nmtan_mesh *mesh = fast->solve->mesh;
-	const size_t free = (size_t)(room->end - room->begin);
+	const size_t free = (size_t)(memory->end - memory->begin);
 	/* without indices: two triangles for a vertex */
 	const size_t vertices = mesh->indices ? mesh->vertex_count : fast->triangle_count / 2;
 	const size_t entries = 3 * fast->triangle_count * sizeof(nt_fan_entry);
@@ -42,16 +42,16 @@ void nt_fast_plan_memory(const nt_fast *fast, bool binned, size_t least_bytes, n
 	const nt_solve *solve = fast->solve;
 	const size_t bytes = output_bytes(solve);
 	/* entries of a small mesh that lie in two places take longer */
-	memory->borrowed = fast->sparse ? nt_room_over(solve->lent, solve->lent_bytes, solve->scratch)
-		: nt_room_over(solve->tangents, bytes < least_bytes ? 0 : bytes, solve->scratch);
-	memory->none = nt_room_over(NULL, 0, solve->scratch);
+	memory->borrowed = fast->sparse ? nt_borrow(solve->spare, solve->spare_bytes, solve->scratch)
+		: nt_borrow(solve->tangents, bytes < least_bytes ? 0 : bytes, solve->scratch);
+	memory->none = nt_borrow(NULL, 0, solve->scratch);
 	/* rows of a binned mesh are read at random, which is quicker in the large pages of the scratch */
 	memory->rows = !binned && has_room_for_rows(fast, &memory->borrowed) ? &memory->borrowed : &memory->none;
 	memory->bin_sums = fast->sparse ? NULL : (nt_record *)solve->tangents;
 }
 
 /* Records take the rows' place: settle looks at the normals of a block before it writes its records. Those of both
- * orientations lie in pairs. Those of one are packed, or write would take a third longer; but only one thread alone
+ * orientations lie in pairs. Those of one are packed, so that write reads fewer lines; but only one thread alone
  * has passed all the rows that it then overwrites. */
 bool nt_fast_place_records(nt_fast *fast, const bool orientations[2])
 {
@@ -66,7 +66,7 @@ bool nt_fast_place_records(nt_fast *fast, const bool orientations[2])
 	return records;
 }
 
-nt_room nt_fast_left_memory(const nt_fast *fast)
+nt_borrowed nt_fast_left_memory(const nt_fast *fast)
 {
 	const nt_solve *solve = fast->solve;
 	const nt_adjacency *a = &fast->adjacency;
@@ -81,12 +81,12 @@ nt_room nt_fast_left_memory(const nt_fast *fast)
 			binned ? 3 * fast->triangle_count * NT_BINNED_ENTRY : a->entry_count * sizeof *a->entries},
 		{a->rest, a->rest_count * sizeof *a->rest},
 	};
-	nt_room largest = nt_room_over(NULL, 0, solve->scratch);
+	nt_borrowed largest = nt_borrow(NULL, 0, solve->scratch);
 	for (int i = 0; i < 3; i++) {
 		const uintptr_t at = (uintptr_t)arrays[i].memory - (uintptr_t)solve->tangents;
 		const bool in_output = at < output_bytes(solve);
 		if (!in_output && arrays[i].bytes > (size_t)(largest.end - largest.begin))
-			largest = nt_room_over((void *)arrays[i].memory, arrays[i].bytes, solve->scratch);
+			largest = nt_borrow((void *)arrays[i].memory, arrays[i].bytes, solve->scratch);
 	}
 	return largest;
 }

@@ -9,9 +9,9 @@
 
 /* For steps 1 to 5. */
 typedef struct nt_fast_memory {
-	nt_room borrowed;    /* where it is used up, and where it is empty, the scratch follows */
-	nt_room none;        /* empty from the beginning */
-	nt_room *rows;       /* for rows and cursors: one of these */
+	nt_borrowed borrowed;    /* where it is used up, and where it is empty, the scratch follows */
+	nt_borrowed none;        /* empty from the beginning */
+	nt_borrowed *rows;       /* for rows and cursors: one of these */
 	nt_record *bin_sums; /* [3 * triangle_count] for the sums of bins; NULL: take borrowed */
 } nt_fast_memory;
 
@@ -23,6 +23,6 @@ void nt_fast_plan_memory(const nt_fast *fast, bool binned, size_t least_bytes, n
 bool nt_fast_place_records(nt_fast *fast, const bool orientations[2]);
 
 /* For step 7: what steps 1 to 5 have left outside of the output. */
-nt_room nt_fast_left_memory(const nt_fast *fast);
+nt_borrowed nt_fast_left_memory(const nt_fast *fast);
 
 #endif

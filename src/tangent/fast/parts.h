@@ -1,13 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the passes of the fast path share, and no one else. fast.c is the recipe; kernel.h holds the passes that are
- * compiled once for each instruction set; complex.c solves the vertices that need groups.
+ * What the passes of the fast path share, and no one else. fast.c is the recipe and explains the words; kernel.h holds
+ * the passes that are compiled once for each instruction set; complex.c solves the vertices that need groups.
  *
- * A vertex here is a welded vertex. At most vertices all corners belong to one group, or to one group of
- * either orientation, and the group's result is a sum over the vertex's corners in triangle order. So the
- * first pass adds every triangle to one record for each (vertex, orientation), without looking at groups.
- * The second looks at the corners of each vertex and either settles it, which makes the record
- * the result, or leaves it to complex.c.
+ * A vertex here is a welded vertex.
  */
 #ifndef NT_TANGENT_FAST_PARTS_H
 #define NT_TANGENT_FAST_PARTS_H
@@ -27,8 +23,8 @@ enum {
 	NT_TRIANGLE_DEGENERATE = 4, /* two corners at one position: takes no part */
 	NT_TRIANGLE_SECOND = 8,     /* second half of a quad: the first is the triangle before */
 	NT_TRIANGLE_COMPLEX = 16,   /* has a corner at a complex vertex */
-	NT_TRIANGLE_LATE = 32,      /* degenerate, and copies a corner that is not known yet */
-	NT_TRIANGLE_TAKEN = 64,     /* "any", and a group has a corner of it */
+	NT_TRIANGLE_COPY = 32,      /* degenerate, and copies corners that are written later */
+	NT_TRIANGLE_DECIDED = 64,   /* "any", and a group has a corner of it: ORIENT is that group's */
 	NT_TRIANGLE_UNCERTAIN = 128 /* the exact orientation, as stored too, may differ */
 };
 
@@ -59,7 +55,7 @@ typedef struct nt_fast {
 	nt_record_more *more[2];     /* [vertex_count] the same for the optional outputs */
 	bool wants_more;
 	bool sparse;             /* step 6 leaves out corners whose result is their record */
-	bool scattered;          /* neighbouring triangles have vertices far apart: ask for them early */
+	bool scattered;          /* neighbouring triangles have vertices far apart: prefetch */
 	nt_bins bins;            /* of a scattered mesh: its corners on their way to the records */
 	nt_triangle_ranges ranges;
 	nt_deferred *deferred;       /* [ranges] */
@@ -72,7 +68,7 @@ typedef struct nt_settled {
 /* Makes fast->records[orient], which a triangle needs and which does not exist; false: it cannot be had now. */
 typedef bool nt_record_maker(nt_fast *fast, int orient, void *context);
 
-/* What a corner adds to its group, solved by itself. */
+/* What a corner adds to its group. */
 typedef struct nt_corner {
 	float u[3], mag_s, v[3], mag_t; /* unit directions perpendicular to the normal, magnitudes */
 	float angle;                    /* the weight */
@@ -86,13 +82,14 @@ enum { NT_CORNER_UNIT, NT_CORNER_EXTREME, NT_CORNER_ANY };
 /* The passes of one instruction set. */
 typedef struct nt_kernels {
 	/* Solves triangles [begin, end) of a range and adds them to their vertices, or to the bins where
-	 * there are bins. Without them it asks for record arrays that do not exist, and stops where it does not
-	 * get one. */
+	 * there are bins. Without them it calls `make` for record arrays that do not exist, and stops where that
+	 * fails. */
 	void (*accumulate)(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
 		void *context);
 	/* Turns the sums of blocks [begin, end) of vertices, all of them in the adjacency, into results, which go
-	 * to the records; counts the vertices that are complex, those too whose tangent is not usable. Sums are counted from the adjacency's first vertex. Results may
-	 * replace the rows of their block and of those before. */
+	 * to the records; counts the vertices that are complex, those too whose tangent is not usable. Sums are
+	 * counted from the adjacency's first vertex. Results may replace the rows of their block and of those
+	 * before. */
 	void (*settle)(nt_fast *fast, const nt_adjacency *adjacency, nt_record *const sums[2], size_t begin,
 		size_t end, nt_settled *settled);
 	/* Solves corners, given as 4 * triangle + k. `solved` has room for a multiple of NT_LANES. */

@@ -141,8 +141,8 @@ static void load_normals(const nt_weld_row *rows, size_t count, size_t used, flo
 	}
 }
 
-/* A vertex whose result tangent/usable.c would not accept is left to complex.c, too: then the triangles at all other vertices
- * still need no look. */
+/* A vertex whose result tangent/usable.c would not accept is left to complex.c, too: then the triangles at all other
+ * vertices still need no look. */
 static void leave_unusable(const float (*restrict normals)[NT_LANES], const record_lanes *restrict r,
 	uint32_t *restrict complex, size_t used)
 {
@@ -248,7 +248,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	for (int o = 0; o < 2; o++)
 		if (sums[o])
 			normalise_records(used, &r[o]);
-	if (fast->solve->vouched) {
+	if (fast->solve->known) {
 		float normals[3][NT_LANES];
 		load_normals(fast->rows + first, count, used, normals);
 		for (int o = 0; o < 2; o++)

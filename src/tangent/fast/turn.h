@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * From rows of floats to lanes by component and back, in vectors of the instruction set's own width. By hand, because
- * what the compiler makes of the plain loops takes a quarter of the whole first pass (gcc 12, AVX-512).
+ * what gcc 12 makes of the plain loops goes by single floats.
  *
  * Four rows of four floats are turned in each 16-byte part of four vectors alone, since a shuffle inside the parts
  * is the cheapest there is. So wider vectors have their rows in "turned places". Included by lanes.h.

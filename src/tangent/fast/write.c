@@ -8,7 +8,7 @@
 #include "base/parallel.h"
 #include "topology/corners.h"
 
-/* Triangles by which the records of a scattered mesh are asked for before they are written. */
+/* Triangles by which the records of a scattered mesh are prefetched before they are read. */
 enum { WRITE_AHEAD = 16 };
 
 static void write_corner(const nt_fast *fast, size_t corner, const nt_record *record,
@@ -57,7 +57,7 @@ static void write_special(nt_fast *fast, size_t t)
 	uint8_t *flags = &fast->flags[t];
 	const bool degenerate = *flags & NT_TRIANGLE_DEGENERATE;
 	if (degenerate && has_sound_half(fast, t)) {
-		*flags |= NT_TRIANGLE_LATE;
+		*flags |= NT_TRIANGLE_COPY;
 		return;
 	}
 	for (size_t i = 3 * t; i < 3 * t + 3; i++) {
@@ -67,9 +67,9 @@ static void write_special(nt_fast *fast, size_t t)
 		const bool two = fast->records[!o] && state != NT_RESULT_NONE &&
 				 nt_fast_record(fast, !o, v)->state != NT_RESULT_NONE;
 		if (state == NT_RESULT_COMPLEX)
-			*flags |= degenerate ? NT_TRIANGLE_LATE : NT_TRIANGLE_COMPLEX;
+			*flags |= degenerate ? NT_TRIANGLE_COPY : NT_TRIANGLE_COMPLEX;
 		else if (degenerate && two)
-			*flags |= NT_TRIANGLE_LATE;
+			*flags |= NT_TRIANGLE_COPY;
 		if (state == NT_RESULT_NONE)
 			write_unassigned(fast, nt_fast_corner(fast, i));
 		else
@@ -78,7 +78,7 @@ static void write_special(nt_fast *fast, size_t t)
 }
 
 /* The records of a later triangle of a scattered mesh; the last ones of the range ask twice. */
-static inline void ask_records(const nt_fast *fast, size_t t, size_t end)
+static inline void prefetch_records(const nt_fast *fast, size_t t, size_t end)
 {
 	const size_t later = t + WRITE_AHEAD < end ? t + WRITE_AHEAD : end - 1;
 	const int orient = fast->flags[later] & NT_TRIANGLE_ORIENT;
@@ -94,7 +94,7 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 	for (size_t t = begin; t < end; t++) {
 		uint8_t *flags = &fast->flags[t];
 		if (fast->scattered)
-			ask_records(fast, t, end);
+			prefetch_records(fast, t, end);
 		if (*flags & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
 			write_special(fast, t);
 			continue;
@@ -123,7 +123,7 @@ static void write_plain_triangles(nt_fast *fast, size_t begin, size_t end)
 	const bool scattered = fast->scattered;
 	for (size_t t = begin; t < end; t++) {
 		if (scattered)
-			ask_records(fast, t, end);
+			prefetch_records(fast, t, end);
 		if (flags[t] & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
 			write_special(fast, t);
 			continue;
@@ -221,11 +221,11 @@ static void copy_from_half(const nt_fast *fast, size_t t)
 
 /* Degenerate triangles whose answer depends on a corner. Sources are corners of sound triangles, so the
  * order of copying does not matter. */
-nmtan_status nt_fast_write_late(nt_fast *fast)
+nmtan_status nt_fast_write_copies(nt_fast *fast)
 {
 	const uint32_t *first = NULL;
-	size_t t = nt_fast_next_flagged(fast, 0, NT_TRIANGLE_LATE);
-	for (; t < fast->triangle_count; t = nt_fast_next_flagged(fast, t + 1, NT_TRIANGLE_LATE)) {
+	size_t t = nt_fast_next_flagged(fast, 0, NT_TRIANGLE_COPY);
+	for (; t < fast->triangle_count; t = nt_fast_next_flagged(fast, t + 1, NT_TRIANGLE_COPY)) {
 		if (has_sound_half(fast, t)) {
 			copy_from_half(fast, t);
 			continue;

@@ -8,7 +8,7 @@
 #include "tangent/fast/parts.h"
 
 /* Every corner gets the result of its vertex; with fast->sparse those of suspects only. Marks triangles COMPLEX
- * and LATE. */
+ * and COPY. */
 void nt_fast_write(nt_fast *fast);
 
 /* Writes what a sparse solve left out. */
@@ -17,8 +17,8 @@ void nt_fast_write_rest(nt_fast *fast);
 /* Writes the default to every corner, for a mesh without a sound triangle (step 10 of the spec page). */
 void nt_fast_write_defaults(const nt_fast *fast);
 
-/* Corners of triangles that are LATE copy those of others, which must have been written. Returns NMTAN_OK or
+/* Corners of triangles that are COPY take the values of others, which must have been written. Returns NMTAN_OK or
  * NMTAN_ERROR_MEMORY. */
-nmtan_status nt_fast_write_late(nt_fast *fast);
+nmtan_status nt_fast_write_copies(nt_fast *fast);
 
 #endif

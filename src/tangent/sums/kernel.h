@@ -388,7 +388,7 @@ static void __attribute__((noinline)) sum_add(nt_sums *s, size_t first, size_t c
 }
 
 /* Scattered vertices: what the batch after the next needs. */
-LANE_INLINE void sum_ask_ahead(const nt_sums *s, size_t first, size_t end)
+LANE_INLINE void sum_prefetch(const nt_sums *s, size_t first, size_t end)
 {
 	const nt_vertex_sum *sums = s->sums[1] ? s->sums[1] : s->sums[0];
 	const size_t far = first + 2 * NT_SUM_LANES;
@@ -408,7 +408,7 @@ static size_t sum_accumulate(nt_sums *s, size_t begin, size_t end, unsigned rang
 		if (first + count < end && (s->flags[first + count] & NT_SUM_SECOND))
 			count--; /* halves of a quad stay together */
 		if (s->scattered)
-			sum_ask_ahead(s, first, end);
+			sum_prefetch(s, first, end);
 		if (!s->one_by_one)
 			sum_solve(s, first, count, &l, &block);
 		sum_classify(s, first, count, &block);

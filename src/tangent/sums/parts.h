@@ -64,7 +64,7 @@ typedef struct nt_sums {
 	nt_vertex_sum *sums[2];        /* [weld.count] for orientation -1 and +1; NULL: not needed */
 	nt_vertex_tangent *results[2]; /* the same */
 	uint8_t *vertex_flags;         /* [weld.count] */
-	bool scattered;                /* neighbouring triangles have vertices far apart: ask early */
+	bool scattered;                /* neighbouring triangles have vertices far apart: prefetch */
 	unsigned ranges;
 	uint16_t *owners;              /* [weld.count] the first range that touches the vertex */
 	nt_later **later;              /* [ranges] */

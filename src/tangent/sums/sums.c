@@ -16,7 +16,7 @@
  *
  * The passes: weld; 16 triangles at a time, added to the sums of their vertices in triangle order; 16 sums
  * at a time become tangents (both kernel.h); corners are written, but for those that a caller would
- * rather look up (nt_vouched.rows). Threads own ranges of triangles; a vertex belongs to the first range
+ * rather look up (nt_known.rows). Threads own ranges of triangles; a vertex belongs to the first range
  * that touches it, and what later ranges have for it is put aside and added afterwards in order, so
  * that bytes do not depend on the number of threads.
  *
@@ -35,7 +35,7 @@
 /* Below that, starting a thread costs more than it saves. */
 enum { TRIANGLE_GRAIN = 32768, WELD_GRAIN = 3 * 65536, BLOCK_GRAIN = 2048, MOST_RANGES = UINT16_MAX };
 
-/* Triangles by which the results of a scattered mesh are asked for before they are written. */
+/* Triangles by which the results of a scattered mesh are prefetched before they are read. */
 enum { WRITE_AHEAD = 16 };
 
 /* The first triangle of a range; halves of a quad stay together. */
@@ -112,12 +112,12 @@ static nmtan_status make_owners(nt_sums *s)
 }
 
 /* nt_weld_mesh() but for its limit. */
-static nmtan_status weld_any_size(nt_sums *s, nt_room *room)
+static nmtan_status weld_any_size(nt_sums *s, nt_borrowed *memory)
 {
 	const nt_solve *solve = s->solve;
 	if (solve->corner_count < NT_WELD_LIMIT && solve->mesh->vertex_count < NT_WELD_LIMIT)
 		return nt_weld_mesh(solve->mesh, solve->corner_count,
-			nt_parallel_slots(solve->threads, solve->corner_count, WELD_GRAIN), room, room, &s->weld);
+			nt_parallel_slots(solve->threads, solve->corner_count, WELD_GRAIN), memory, memory, &s->weld);
 	uint32_t *ids = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *ids);
 	nt_weld_row *rows = nt_scratch_alloc(solve->scratch, solve->corner_count, sizeof *rows);
 	if (!ids || !rows)
@@ -135,10 +135,10 @@ static nmtan_status weld_any_size(nt_sums *s, nt_room *room)
 	return status;
 }
 
-static nmtan_status prepare(nt_sums *s, nt_room *room)
+static nmtan_status prepare(nt_sums *s, nt_borrowed *memory)
 {
 	const double begin = nt_seconds();
-	nmtan_status status = weld_any_size(s, room);
+	nmtan_status status = weld_any_size(s, memory);
 	if (s->solve->timing)
 		s->solve->timing->weld += nt_seconds() - begin;
 	if (status || (status = make_triangles(s)))
@@ -152,9 +152,9 @@ static nmtan_status prepare(nt_sums *s, nt_room *room)
 
 /* Summing */
 
-static bool make_sums(nt_sums *s, int side, nt_room *room)
+static bool make_sums(nt_sums *s, int side, nt_borrowed *memory)
 {
-	s->sums[side] = nt_room_alloc(room, s->weld.count, sizeof **s->sums);
+	s->sums[side] = nt_borrowed_alloc(memory, s->weld.count, sizeof **s->sums);
 	s->results[side] = nt_scratch_alloc(s->solve->scratch, s->weld.count, sizeof **s->results);
 	if (!s->sums[side] || !s->results[side])
 		return false;
@@ -193,11 +193,11 @@ static void add_later(const nt_sums *s)
 	}
 }
 
-static nmtan_status sum_up(const run *r, nt_room *room)
+static nmtan_status sum_up(const run *r, nt_borrowed *memory)
 {
 	nt_sums *s = r->s;
 	if (s->ranges > 1) {
-		if (!make_sums(s, 0, room) || !make_sums(s, 1, room))
+		if (!make_sums(s, 0, memory) || !make_sums(s, 1, memory))
 			return NMTAN_ERROR_MEMORY;
 		nt_parallel_ranges(s->ranges, s->ranges, 1, sum_ranges, (void *)r);
 		add_later(s);
@@ -209,7 +209,7 @@ static nmtan_status sum_up(const run *r, nt_room *room)
 		t = r->kernels->accumulate(s, t, s->triangle_count, 0, &side);
 		if (t == s->triangle_count)
 			return NMTAN_OK;
-		if (!make_sums(s, side, room))
+		if (!make_sums(s, side, memory))
 			return NMTAN_ERROR_MEMORY;
 	}
 }
@@ -313,7 +313,7 @@ static void write_plain(const nt_sums *s, size_t t, const nt_vertex_tangent *res
 	memcpy(out + 8, &c, sizeof c);
 }
 
-static void ask_results(const nt_sums *s, size_t t, size_t end)
+static void prefetch_results(const nt_sums *s, size_t t, size_t end)
 {
 	if (t >= end)
 		return;
@@ -334,7 +334,7 @@ static size_t write_range(const writing *w, size_t begin, size_t end)
 	size_t ill = 0;
 	for (size_t t = begin; t < end; t++) {
 		if (s->scattered)
-			ask_results(s, t + WRITE_AHEAD, end);
+			prefetch_results(s, t + WRITE_AHEAD, end);
 		const uint8_t flags = s->flags[t];
 		if (w->careful || (flags & NT_SUM_SUSPECT))
 			ill += write_triangle(s, t);
@@ -355,32 +355,32 @@ static void write_ranges(void *context, size_t begin, size_t end, unsigned slot)
 
 /* Tells judging what it need not look at: a plain triangle has weight at its corners, so that its results are unit
  * vectors perpendicular to N unless one was lost, and its sign is exact. */
-static void vouch(const nt_sums *s, bool sparse)
+static void tell_known(const nt_sums *s, bool sparse)
 {
-	nt_vouched *vouched = s->solve->vouched;
-	if (!vouched)
+	nt_known *known = s->solve->known;
+	if (!known)
 		return;
-	*vouched = (nt_vouched){.flags = s->flags, .positive = NT_SUM_POSITIVE, .suspect = NT_SUM_SUSPECT,
+	*known = (nt_known){.flags = s->flags, .positive = NT_SUM_POSITIVE, .suspect = NT_SUM_SUSPECT,
 		.doubtful = NT_SUM_SUSPECT, .welded = s->weld.ids, .welded_count = s->weld.count};
 	if (!sparse)
 		return;
-	vouched->ids = s->ids;
-	vouched->row_step = 4;
+	known->ids = s->ids;
+	known->row_step = 4;
 	for (int side = 0; side < 2; side++)
-		vouched->rows[side] = s->results[side] ? &s->results[side]->x : NULL;
+		known->rows[side] = s->results[side] ? &s->results[side]->x : NULL;
 }
 
 static nmtan_status write_results(run *r, const nt_sums_finished *finished, size_t *ill_conditioned)
 {
 	nt_sums *s = r->s;
 	const nt_solve *solve = s->solve;
-	const writing w = {.r = r, .sparse = solve->sparse && solve->vouched && !s->corners,
+	const writing w = {.r = r, .sparse = solve->sparse && solve->known && !s->corners,
 		.careful = finished->lost || finished->ill || s->corners || solve->bitangents || solve->magnitudes};
 	r->ill = nt_scratch_alloc(solve->scratch, s->ranges, sizeof *r->ill);
 	if (!r->ill)
 		return NMTAN_ERROR_MEMORY;
 	nt_parallel_ranges(s->ranges, s->ranges, 1, write_ranges, (void *)&w);
-	vouch(s, w.sparse);
+	tell_known(s, w.sparse);
 	*ill_conditioned = 0;
 	for (unsigned range = 0; range < s->ranges; range++)
 		*ill_conditioned += r->ill[range];
@@ -392,12 +392,12 @@ static nmtan_status solve_by_sums(const nt_solve *solve, nt_weight weight, size_
 	nt_sums s = {.solve = solve, .weight = weight, .one_by_one = solve->one_by_one};
 	run r = {.s = &s, .kernels = NT_CPU_TABLE(solve->isa, nt_sum_kernels)};
 	/* a sparse output is not filled, so that its pages need not exist */
-	nt_room room = nt_room_over(solve->tangents, solve->sparse ? 0 : solve->corner_count * 4 * sizeof(float),
+	nt_borrowed memory = nt_borrow(solve->tangents, solve->sparse ? 0 : solve->corner_count * 4 * sizeof(float),
 		solve->scratch);
 	nt_sums_finished finished = {0};
-	nmtan_status status = prepare(&s, &room);
+	nmtan_status status = prepare(&s, &memory);
 	if (!status)
-		status = sum_up(&r, &room);
+		status = sum_up(&r, &memory);
 	if (!status)
 		status = finish(&r, &finished);
 	return status ? status : write_results(&r, &finished, ill_conditioned);

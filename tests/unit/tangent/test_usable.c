@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Judging with and without a method that vouches: the fast path leaves out most faces, the definition
+ * Judging with and without a method that knows its result: the fast path leaves out most faces, the definition
  * none, and both must come to the same counts and the same repaired bytes.
  */
 #include "test.h"
@@ -46,13 +46,13 @@ static void compare_golden(const char *path, const nt_golden *golden, void *cont
 		compare_paths(&mesh, golden->corner_count, (float)offset, NMTAN_REPAIR_ON);
 }
 
-static void vouched_faces_need_no_look_on_goldens(void **state)
+static void known_faces_need_no_look_on_goldens(void **state)
 {
 	(void)state;
 	assert_int_equal(nt_golden_each(NT_DATA_DIR "/golden", compare_golden, NULL), 46);
 }
 
-static void vouched_faces_need_no_look_on_nasty_meshes(void **state)
+static void known_faces_need_no_look_on_nasty_meshes(void **state)
 {
 	(void)state;
 	for (uint64_t seed = 0; seed < 3000; seed++) {
@@ -117,8 +117,8 @@ static void slivers_around_the_bound_are_judged_exactly(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(vouched_faces_need_no_look_on_goldens),
-		cmocka_unit_test(vouched_faces_need_no_look_on_nasty_meshes),
+		cmocka_unit_test(known_faces_need_no_look_on_goldens),
+		cmocka_unit_test(known_faces_need_no_look_on_nasty_meshes),
 		cmocka_unit_test(slivers_around_the_bound_are_judged_exactly),
 	};
 	return cmocka_run_group_tests_name("tangent/usable", tests, NULL, NULL);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Places of corners: filled as accumulate fills them, then read as settle reads them, from rooms of every size. */
+/* Places of corners: filled as accumulate fills them, then read as settle reads them, in borrowed memory of every size. */
 #include "test.h"
 #include <string.h>
 #include "topology/adjacency.h"
@@ -31,8 +31,8 @@ static void fill(const nt_adjacency *a, unsigned range, size_t begin, size_t end
 	}
 }
 
-/* Each vertex has its corners in order, in its lane; a hub has none. Vertices of many corners are hubs; with less
- * room than a block may need all those behind are. Returns the number of hubs. */
+/* Each vertex has its corners in order, in its lane; a hub has none. Vertices of many corners are hubs; with fewer
+ * places left than a block may need all those behind are. Returns the number of hubs. */
 static size_t check_entries(const nt_adjacency *a, size_t most_places)
 {
 	size_t hubs = 0;
@@ -60,29 +60,29 @@ static size_t check_entries(const nt_adjacency *a, size_t most_places)
 	return hubs;
 }
 
-/* Makes places with `bytes` lent; returns how many of the entries were parted from the rest. */
+/* Makes places with that many bytes borrowed; returns how many of the entries were parted from the rest. */
 static size_t check(unsigned ranges, size_t bytes, size_t *scratch_bytes)
 {
 	static const size_t bounds[4][5] = {{0}, {0, TRIANGLES}, {0}, {0, 100, 100, TRIANGLES}};
-	static char lent[1 << 16];
+	static char borrowed[1 << 16];
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
-	nt_room room = nt_room_over(lent, bytes, &scratch), none = nt_room_over(lent, 0, &scratch);
+	nt_borrowed memory = nt_borrow(borrowed, bytes, &scratch), none = nt_borrow(borrowed, 0, &scratch);
 	const nt_triangles triangles = {.ids = ids};
 	const nt_triangle_ranges cut = {ranges, bounds[ranges]};
 	nt_adjacency a;
-	assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, NT_ADJACENCY_PLACES, &none, &room, &a), NMTAN_OK);
+	assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, NT_ADJACENCY_PLACES, &none, &memory, &a), NMTAN_OK);
 	for (unsigned r = 0; r < ranges; r++)
 		fill(&a, r, cut.bounds[r], cut.bounds[r + 1]);
 	assert_in_range(check_entries(&a, NT_ADJACENCY_PLACES), 1, VERTICES - 1);
 	const size_t rest = a.rest ? a.block_begin[BLOCKS] - a.entry_count : 0;
-	const bool in_room = (char *)a.entries >= lent && (char *)a.entries < lent + sizeof lent;
-	*scratch_bytes = 8 * (in_room ? rest : a.block_begin[BLOCKS]);
+	const bool in_borrowed = (char *)a.entries >= borrowed && (char *)a.entries < borrowed + sizeof borrowed;
+	*scratch_bytes = 8 * (in_borrowed ? rest : a.block_begin[BLOCKS]);
 	nt_scratch_free(&scratch);
 	return rest;
 }
 
-static void a_room_of_any_size_gives_the_same_places(void **state)
+static void borrowed_memory_of_any_size_gives_the_same_places(void **state)
 {
 	(void)state;
 	make_ids();
@@ -93,7 +93,7 @@ static void a_room_of_any_size_gives_the_same_places(void **state)
 		for (size_t bytes = 0; bytes <= all + 256; bytes += 128) {
 			size_t taken;
 			parted += check(ranges, bytes, &taken) > 0;
-			assert_true(taken <= before); /* what is lent saves scratch */
+			assert_true(taken <= before); /* what is borrowed saves scratch */
 			before = taken;
 		}
 		assert_int_equal(before, 0);
@@ -110,11 +110,11 @@ static void places_that_do_not_suffice_leave_hubs(void **state)
 	for (size_t most = 0; most <= VERTICES * NT_FAN_DEPTH; most += 50) {
 		nt_scratch scratch;
 		nt_scratch_init(&scratch, NULL);
-		nt_room room = nt_room_over(NULL, 0, &scratch);
+		nt_borrowed memory = nt_borrow(NULL, 0, &scratch);
 		const nt_triangles triangles = {.ids = ids};
 		const nt_triangle_ranges cut = {3, bounds};
 		nt_adjacency a;
-		assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, most, &room, &room, &a), NMTAN_OK);
+		assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, most, &memory, &memory, &a), NMTAN_OK);
 		assert_in_range(a.block_begin[BLOCKS], 0, most);
 		for (unsigned r = 0; r < 3; r++)
 			fill(&a, r, bounds[r], bounds[r + 1]);
@@ -129,7 +129,7 @@ static void places_that_do_not_suffice_leave_hubs(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(a_room_of_any_size_gives_the_same_places),
+		cmocka_unit_test(borrowed_memory_of_any_size_gives_the_same_places),
 		cmocka_unit_test(places_that_do_not_suffice_leave_hubs),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);

@@ -54,8 +54,8 @@ static void assert_rows(const nt_weld *weld, const nmtan_mesh *mesh, size_t corn
 	}
 }
 
-/* Welds on every number of threads; `room_bytes` are lent. */
-static void check(const nmtan_mesh *mesh, size_t corners, size_t room_bytes)
+/* Welds on every number of threads; that many bytes of memory are borrowed. */
+static void check(const nmtan_mesh *mesh, size_t corners, size_t borrowed_bytes)
 {
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
@@ -64,9 +64,9 @@ static void check(const nmtan_mesh *mesh, size_t corners, size_t room_bytes)
 	assert_int_equal(nt_weld_corners(mesh, corners, &scratch, expected, &count), NMTAN_OK);
 	nt_weld first = {0};
 	for (int i = 0; i < THREAD_COUNTS; i++) {
-		nt_room room = nt_room_over(nt_scratch_alloc(&scratch, room_bytes, 1), room_bytes, &scratch);
+		nt_borrowed memory = nt_borrow(nt_scratch_alloc(&scratch, borrowed_bytes, 1), borrowed_bytes, &scratch);
 		nt_weld weld;
-		assert_int_equal(nt_weld_mesh(mesh, corners, thread_counts[i], &room, &room, &weld), NMTAN_OK);
+		assert_int_equal(nt_weld_mesh(mesh, corners, thread_counts[i], &memory, &memory, &weld), NMTAN_OK);
 		assert_rows(&weld, mesh, corners);
 		if (i == 0) {
 			first = weld;
@@ -128,11 +128,11 @@ static void no_corners_weld_to_nothing(void **state)
 		for (int indexed = 0; indexed < 2; indexed++) {
 			nt_scratch scratch;
 			nt_scratch_init(&scratch, NULL);
-			nt_room room = nt_room_over(NULL, 0, &scratch);
+			nt_borrowed memory = nt_borrow(NULL, 0, &scratch);
 			const nmtan_mesh mesh = mesh_of(rows, vertices, indexed ? (uint32_t[1]){0} : NULL, 0);
 			nt_weld weld;
 			for (int i = 0; i < THREAD_COUNTS; i++)
-				assert_int_equal(nt_weld_mesh(&mesh, 0, thread_counts[i], &room, &room, &weld), NMTAN_OK);
+				assert_int_equal(nt_weld_mesh(&mesh, 0, thread_counts[i], &memory, &memory, &weld), NMTAN_OK);
 			assert_in_range(weld.count, 0, vertices);
 			nt_scratch_free(&scratch);
 		}
@@ -241,9 +241,9 @@ static void without_doubles_the_indices_of_the_mesh_are_the_numbers(void **state
 	for (int i = 0; i < THREAD_COUNTS; i++) {
 		nt_scratch scratch;
 		nt_scratch_init(&scratch, NULL);
-		nt_room room = nt_room_over(NULL, 0, &scratch);
+		nt_borrowed memory = nt_borrow(NULL, 0, &scratch);
 		nt_weld weld;
-		assert_int_equal(nt_weld_mesh(&mesh, VERTICES, thread_counts[i], &room, &room, &weld), NMTAN_OK);
+		assert_int_equal(nt_weld_mesh(&mesh, VERTICES, thread_counts[i], &memory, &memory, &weld), NMTAN_OK);
 		assert_ptr_equal(weld.ids, indices);
 		assert_int_equal(weld.count, VERTICES);
 		assert_memory_equal(weld.rows, rows, VERTICES * sizeof *rows);
@@ -290,9 +290,9 @@ static void every_failed_allocation_is_told(void **state)
 				budget b = {allowed};
 				nt_scratch scratch;
 				nt_scratch_init(&scratch, &(nmtan_allocator){take_budget, give_back, &b});
-				nt_room room = nt_room_over(NULL, 0, &scratch);
+				nt_borrowed memory = nt_borrow(NULL, 0, &scratch);
 				nt_weld weld;
-				status = nt_weld_mesh(&mesh, COUNT, i % 2 ? 3 : 1, &room, &room, &weld);
+				status = nt_weld_mesh(&mesh, COUNT, i % 2 ? 3 : 1, &memory, &memory, &weld);
 				assert_true(status == NMTAN_OK || status == NMTAN_ERROR_MEMORY);
 				nt_scratch_free(&scratch);
 				assert_in_range(allowed, 0, 40);

@@ -116,9 +116,9 @@ static void check(unsigned ranges, bool both)
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
 	const nt_triangle_ranges cut = {ranges, bounds[ranges]};
-	nt_room room = nt_room_over(NULL, 0, &scratch);
+	nt_borrowed memory = nt_borrow(NULL, 0, &scratch);
 	nt_bins bins;
-	assert_int_equal(nt_bins_make(ids, &cut, VERTICES, BITS, NULL, &room, &bins), NMTAN_OK);
+	assert_int_equal(nt_bins_make(ids, &cut, VERTICES, BITS, NULL, &memory, &bins), NMTAN_OK);
 	assert_int_equal(bins.count, 4);
 	for (unsigned r = ranges; r-- > 0;)
 		fill(&bins, r, ids, cut.bounds[r], cut.bounds[r + 1]);

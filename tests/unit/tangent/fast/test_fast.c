@@ -311,7 +311,7 @@ static void compare_vertices(const nmtan_mesh *mesh, size_t corners, const nmtan
 	free(split.vertex_tangents);
 }
 
-/* With repair, which relies on what the fast path vouches for. */
+/* With repair, which relies on what the fast path knows of its result. */
 static void compare_repaired(const nmtan_mesh *mesh, size_t corners, bool lost)
 {
 	result expected = result_make(corners);
@@ -428,7 +428,7 @@ static void every_failed_allocation_is_told(void **state)
 		static const unsigned char at[6][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 0}, {1, 1}, {0, 1}};
 		const size_t cell = c / 6;
 		const float x = (float)(cell % SIDE + at[c % 6][0]), y = (float)(cell / SIDE + at[c % 6][1]);
-		/* folds, so that there are both orientations, contested and complex vertices, collapsed faces */
+		/* folds, so that there are both orientations, undecided and complex vertices, collapsed faces */
 		memcpy(p + 3 * c, (float[3]){x, y, cell % 7 == 0 ? 0.0f : 0.1f * x}, 12);
 		memcpy(n + 3 * c, (float[3]){0, 0, 1}, 12);
 		memcpy(t + 2 * c, (float[2]){cell % 11 == 0 ? 0.0f : fabsf(x - 40.0f), cell % 13 == 0 ? x : y}, 8);
