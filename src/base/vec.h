@@ -34,6 +34,12 @@ static inline float nt_vec3_dot(nt_vec3 a, nt_vec3 b)
 	return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
+/* The same of plain arrays. */
+static inline float nt_dot3(const float a[3], const float b[3])
+{
+	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
 static inline nt_vec3 nt_vec3_cross(nt_vec3 a, nt_vec3 b)
 {
 	return (nt_vec3){a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

@@ -212,14 +212,6 @@ static void copy_numbers(void *context, size_t begin, size_t end, unsigned slot)
 		job->ids[c] = job->numbers[job->indices[c]];
 }
 
-/* A row as it is in the mesh. */
-static void copy_row(const nmtan_mesh *mesh, size_t vertex, nt_weld_row *row)
-{
-	memcpy(row->position, nt_position(mesh, vertex), sizeof row->position);
-	memcpy(row->normal, nt_normal(mesh, vertex), sizeof row->normal);
-	memcpy(row->texcoord, nt_texcoord(mesh, vertex), sizeof row->texcoord);
-}
-
 /* Gives each corner of a vertex with a NaN a row of its own: the first takes that of the vertex. */
 static bool number_unordered(nt_welder *w, size_t corner_count, uint32_t *ids)
 {
@@ -235,7 +227,7 @@ static bool number_unordered(nt_welder *w, size_t corner_count, uint32_t *ids)
 		if (w->numbers[vertex] == ROW_GIVEN)
 			ids[c] = (uint32_t)w->row_count++;
 		w->numbers[vertex] = ROW_GIVEN;
-		copy_row(w->mesh, vertex, &w->rows[ids[c]]);
+		nt_weld_load(w->mesh, vertex, &w->rows[ids[c]]);
 	}
 	return true;
 }

@@ -30,11 +30,6 @@ static void solve_members(const nt_complex *c, const nt_batch *b, const uint32_t
 	}
 }
 
-static float dot3(const float *a, const float *b)
-{
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 static uint32_t triangle_of(const nt_batch *b, const part *p, size_t i)
 {
 	return b->corners[p->members[i]] >> 2;
@@ -56,7 +51,7 @@ static inline bool belong_together(const nt_complex *c, const nt_batch *b, const
 	size_t j)
 {
 	const nt_corner *f = &p->solved[i], *t = &q->solved[j];
-	const bool parted = !(dot3(f->u, t->u) > -1.0f) || !(dot3(f->v, t->v) > -1.0f);
+	const bool parted = !(nt_dot3(f->u, t->u) > -1.0f) || !(nt_dot3(f->v, t->v) > -1.0f);
 	return !parted || always_belong(c, b, p, i, q, j);
 }
 
@@ -115,7 +110,7 @@ static const nt_corner *first_with_frame(const part *p)
 static bool is_near(const nt_corner *m, const nt_corner *axis)
 {
 	return m->kind == NT_CORNER_ANY ||
-	       (m->kind == NT_CORNER_UNIT && dot3(m->u, axis->u) > 0.01f && dot3(m->v, axis->v) > 0.01f);
+	       (m->kind == NT_CORNER_UNIT && nt_dot3(m->u, axis->u) > 0.01f && nt_dot3(m->v, axis->v) > 0.01f);
 }
 
 /* Whether member f belongs together with all. */

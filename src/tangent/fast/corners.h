@@ -8,6 +8,7 @@
 #ifndef NT_TANGENT_FAST_CORNERS_H
 #define NT_TANGENT_FAST_CORNERS_H
 
+#include "base/vec.h"
 #include "tangent/fast/lanes.h"
 #include "topology/corners.h"
 
@@ -44,20 +45,15 @@ static void load_singles(const nt_fast *fast, const uint32_t *corners, size_t co
 	}
 }
 
-static inline __attribute__((always_inline)) float dot3(const float a[3], const float b[3])
-{
-	return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* v without its part along the unit normal n, normalised where it is not zero. */
 static inline __attribute__((always_inline)) void project3(const float n[3], float v[3])
 {
-	const float along = dot3(n, v);
+	const float along = nt_dot3(n, v);
 #pragma GCC unroll 3
 	for (int c = 0; c < 3; c++)
 		v[c] = v[c] - along * n[c];
 	const int not_zero = (fabsf(v[0]) > FLT_MIN) | (fabsf(v[1]) > FLT_MIN) | (fabsf(v[2]) > FLT_MIN);
-	const float r = 1.0f / sqrtf(dot3(v, v));
+	const float r = 1.0f / sqrtf(nt_dot3(v, v));
 #pragma GCC unroll 3
 	for (int c = 0; c < 3; c++)
 		v[c] = not_zero ? r * v[c] : v[c];
@@ -77,7 +73,7 @@ static void solve_single_frames(single_lanes *restrict s)
 			os[c] = t31y * d1 - t21y * d2;
 			ot[c] = -t31x * d1 + t21x * d2;
 		}
-		const float ls = sqrtf(dot3(os, os)), lt = sqrtf(dot3(ot, ot));
+		const float ls = sqrtf(nt_dot3(os, os)), lt = sqrtf(nt_dot3(ot, ot));
 		const float rs = sign / ls, rt = sign / lt;
 		const float n[3] = {s->n[0][i], s->n[1][i], s->n[2][i]};
 #pragma GCC unroll 3
@@ -95,7 +91,7 @@ static void solve_single_frames(single_lanes *restrict s)
 		}
 		s->u[3][i] = ls / size;
 		s->v[3][i] = lt / size;
-		const float least = 1.0f - 1e-5f, most = 1.0f + 1e-5f, uu = dot3(os, os), vv = dot3(ot, ot);
+		const float least = 1.0f - 1e-5f, most = 1.0f + 1e-5f, uu = nt_dot3(os, os), vv = nt_dot3(ot, ot);
 		const int unit = (uu > least) & (uu < most) & (vv > least) & (vv < most);
 		s->kind[i] = s->any[i] ? NT_CORNER_ANY : unit ? NT_CORNER_UNIT : NT_CORNER_EXTREME;
 	}
@@ -117,7 +113,7 @@ static void solve_single_angles(single_lanes *restrict s)
 		}
 		project3(n, e);
 		project3(n, f);
-		float cosine = dot3(e, f);
+		float cosine = nt_dot3(e, f);
 		cosine = cosine > 1.0f ? 1.0f : cosine;
 		cosine = cosine < -1.0f ? -1.0f : cosine;
 		s->angle[i] = cosine;

@@ -7,6 +7,7 @@
 #ifndef NT_TANGENT_FAST_SETTLE_H
 #define NT_TANGENT_FAST_SETTLE_H
 
+#include "base/vec.h"
 #include "tangent/fast/lanes.h"
 
 /* Degree of a hub, whose fans are not looked at; a number of fans that no vertex has. */
@@ -169,14 +170,6 @@ static void store_records(nt_record *restrict records, size_t step, size_t count
 		records[step * i] = copy[i];
 }
 
-static void normalise3(float *x, float *y, float *z)
-{
-	if (!(fabsf(*x) > FLT_MIN || fabsf(*y) > FLT_MIN || fabsf(*z) > FLT_MIN))
-		return;
-	const float scale = 1.0f / sqrtf(*x * *x + *y * *y + *z * *z);
-	*x = scale * *x, *y = scale * *y, *z = scale * *z;
-}
-
 static void settle_more(nt_record_more *more, size_t count, const uint32_t *present)
 {
 	for (size_t i = 0; i < NT_LANES; i++) {
@@ -187,7 +180,8 @@ static void settle_more(nt_record_more *more, size_t count, const uint32_t *pres
 			*m = (nt_record_more){.y = 1.0f, .mag_s = 1.0f, .mag_t = 1.0f};
 			continue;
 		}
-		normalise3(&m->x, &m->y, &m->z);
+		const nt_vec3 bitangent = nt_vec3_normalise_safe((nt_vec3){m->x, m->y, m->z});
+		m->x = bitangent.x, m->y = bitangent.y, m->z = bitangent.z;
 		if (m->angle > 0.0f) {
 			m->mag_s /= m->angle;
 			m->mag_t /= m->angle;

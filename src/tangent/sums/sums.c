@@ -124,12 +124,8 @@ static nmtan_status weld_any_size(nt_sums *s, nt_borrowed *memory)
 		return NMTAN_ERROR_MEMORY;
 	const nmtan_status status = nt_weld_corners(solve->mesh, solve->corner_count, solve->scratch, ids,
 		&s->weld.count);
-	for (size_t c = 0; !status && c < solve->corner_count; c++) {
-		const size_t v = nt_vertex_of(solve->mesh, c);
-		memcpy(rows[ids[c]].position, nt_position(solve->mesh, v), sizeof rows->position);
-		memcpy(rows[ids[c]].normal, nt_normal(solve->mesh, v), sizeof rows->normal);
-		memcpy(rows[ids[c]].texcoord, nt_texcoord(solve->mesh, v), sizeof rows->texcoord);
-	}
+	for (size_t c = 0; !status && c < solve->corner_count; c++)
+		nt_weld_load(solve->mesh, nt_vertex_of(solve->mesh, c), &rows[ids[c]]);
 	s->weld.ids = ids;
 	s->weld.rows = rows;
 	return status;
