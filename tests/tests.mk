@@ -39,8 +39,21 @@ $(calls_so): tests/preload/calls.c
 	@mkdir -p $(@D)
 	$(CC) -std=c11 -D_GNU_SOURCE -O1 -fPIC -Wall -Wextra -shared -o $@ $< -ldl
 
+# The sweeps over faults of memory and the system: see tests/faults/sweep.c. Sanitizers have an allocator of their
+# own, so they sweep nothing.
+faults_bin := $(patsubst %,$(B)/tests/faults/%,faulty.so sweep make_meshopt)
+$(B)/tests/faults/faulty.so: tests/faults/faulty.c tests/faults/faulty.h
+	@mkdir -p $(@D)
+	$(CC) -std=gnu11 -D_GNU_SOURCE -O1 -g -Wall -Wextra -fno-builtin -fPIC -shared -o $@ $<
+
+$(B)/tests/faults/sweep: $(B)/tests/faults/sweep.o
+	$(CC) $(NT_LDFLAGS) -o $@ $^
+
+$(B)/tests/faults/make_meshopt: $(B)/tests/faults/make_meshopt.o
+	$(CXX) $(NT_LDFLAGS) -o $@ $^ -lmeshoptimizer
+
 .PHONY: tests
-tests: $(unit_bin) $(api_bin) $(calls_so)
+tests: $(unit_bin) $(api_bin) $(calls_so) $(if $(filter sanitize tsan,$(config)),,$(faults_bin))
 
 .PHONY: unit
 unit: tests

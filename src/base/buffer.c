@@ -25,6 +25,16 @@ void *nt_buffer_extend(nt_buffer *buffer, size_t size)
 	return begin;
 }
 
+bool nt_buffer_reserve(nt_buffer *buffer, size_t size)
+{
+	const size_t before = buffer->size;
+	const bool had_room = nt_buffer_extend(buffer, size) != NULL;
+	buffer->size = before;
+	if (buffer->data)
+		buffer->data[before] = '\0';
+	return had_room;
+}
+
 void nt_buffer_append(nt_buffer *buffer, const void *bytes, size_t size)
 {
 	void *begin = nt_buffer_extend(buffer, size);
@@ -59,6 +69,12 @@ void nt_buffer_clean(nt_buffer *buffer, const char *text)
 		else
 			nt_buffer_append(buffer, text, 1);
 	}
+}
+
+void nt_buffer_free_into(nt_buffer *buffer, nt_buffer *other)
+{
+	other->failed |= buffer->failed;
+	nt_buffer_free(buffer);
 }
 
 void nt_buffer_free(nt_buffer *buffer)

@@ -30,7 +30,13 @@ void nt_buffer_clean(nt_buffer *buffer, const char *text);
  * valid until the next append. */
 void *nt_buffer_extend(nt_buffer *buffer, size_t size);
 
+/* Room for `size` bytes more, so that appending them cannot fail. False when out of memory. */
+bool nt_buffer_reserve(nt_buffer *buffer, size_t size);
+
 void nt_buffer_free(nt_buffer *buffer);
+
+/* Frees a buffer whose bytes have gone into another one, which takes over that it failed. */
+void nt_buffer_free_into(nt_buffer *buffer, nt_buffer *other);
 
 #ifdef __cplusplus
 }

@@ -30,6 +30,8 @@ const char *nt_status_text(nt_status status)
 		return "wrong usage";
 	case NT_ERROR_IO:
 		return "cannot read or write";
+	case NT_ERROR_MISSING:
+		return "no such file";
 	case NT_ERROR_INPUT:
 		return "invalid input";
 	case NT_ERROR_UNSUPPORTED:

@@ -24,6 +24,7 @@ typedef enum nt_status {
 	/* far above, so that nmtan_status may grow */
 	NT_ERROR_USAGE = 64,  /* command line: wrong or contradictory words */
 	NT_ERROR_IO,          /* a file cannot be read or written */
+	NT_ERROR_MISSING,     /* a file is not there; to users the same as NT_ERROR_IO */
 	NT_ERROR_INPUT,       /* a file breaks the rules of its format */
 	NT_ERROR_UNSUPPORTED, /* a file is sound but uses something that nmtan does not do */
 	NT_ERROR_INTERNAL     /* our mistake */

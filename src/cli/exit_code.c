@@ -12,6 +12,7 @@ int nt_exit_code(nt_status status)
 	case NT_ERROR_USAGE:
 		return NT_EXIT_USAGE;
 	case NT_ERROR_IO:
+	case NT_ERROR_MISSING:
 		return NT_EXIT_IO;
 	case NT_ERROR_INPUT:
 		return NT_EXIT_INPUT;

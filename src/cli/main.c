@@ -17,6 +17,7 @@
 #include "cli/options.h"
 #include "cli/progress.h"
 #include "cli/report_options.h"
+#include "cli/say.h"
 #include "report/codes.h"
 
 /* What the jobs' ends add up to. */
@@ -27,20 +28,23 @@ typedef struct session {
 	size_t report_count;
 	nt_style style;
 	nt_progress *progress;
+	nt_buffer text;   /* what is being said */
 	nt_summary total; /* of the times and sizes alone */
 	nt_buffer failures;
 	size_t failed;
 	int exit_code;
 } session;
 
-static void print_error(const nt_error *error, nt_style style, bool usage)
+/* What a message of a run usually takes is there before the run: none fails because that took all memory. */
+enum { MESSAGE_BYTES = 16 * 1024 };
+
+static void say_usage(const nt_error *error, nt_style style)
 {
 	nt_buffer text = {0};
-	nt_message_error(&text, error, style);
-	if (usage)
-		nt_options_usage(&text);
-	if (text.data)
-		fwrite(text.data, 1, text.size, stderr);
+	nt_say_error(error, style);
+	nt_options_usage(&text);
+	if (!text.failed)
+		nt_say(&text);
 	nt_buffer_free(&text);
 }
 
@@ -50,14 +54,18 @@ static int print_text(void (*make)(nt_buffer *out), nt_style style)
 	nt_buffer text = {0};
 	nt_error error;
 	make(&text);
-	const bool written = text.data && !text.failed &&
-			     fwrite(text.data, 1, text.size, stdout) == text.size && fflush(stdout) == 0;
+	const bool made = !text.failed;
+	const bool written = made && fwrite(text.data, 1, text.size, stdout) == text.size && fflush(stdout) == 0;
+	const int number = errno;
 	nt_buffer_free(&text);
 	if (written)
 		return NT_EXIT_DONE;
-	nt_fail(&error, NT_ERROR_IO, "cannot write to standard output: %s", strerror(errno));
-	print_error(&error, style, false);
-	return NT_EXIT_IO;
+	if (made)
+		nt_fail(&error, NT_ERROR_IO, "cannot write to standard output: %s", strerror(number));
+	else
+		nt_fail_memory(&error);
+	nt_say_error(&error, style);
+	return nt_exit_code(error.status);
 }
 
 static void version_text(nt_buffer *out)
@@ -101,42 +109,46 @@ static void tell_job(void *user, nt_job *job)
 {
 	session *s = user;
 	const nt_command *c = s->command;
-	nt_buffer text = {0};
 	int code = nt_exit_code(job->status);
 	/* a report on standard output says it better */
 	const char *report = s->plan->target.path;
 	if (s->style.verbosity >= 0 && !(report && strcmp(report, "-") == 0))
-		nt_message_findings(&text, &job->summary.findings, job->input,
+		nt_message_findings(&s->text, &job->summary.findings, job->input,
 			c->settings.check || s->style.verbosity > 0, s->style);
-	nt_message_meshes(&text, job); /* none unless -v asked for them */
+	nt_message_meshes(&s->text, job); /* none unless -v asked for them */
 	if (job->status) {
-		nt_message_error(&text, &job->error, s->style);
+		nt_message_error(&s->text, &job->error, s->style);
 		nt_buffer_format(&s->failures, "%s", s->failed++ ? ", " : "");
 		nt_buffer_clean(&s->failures, job->input);
 		nt_buffer_format(&s->failures, " (%s)", nt_status_text(job->status));
 	} else {
 		if (s->style.verbosity >= 0)
-			nt_message_success(&text, job, &c->settings);
+			nt_message_success(&s->text, job, &c->settings);
 		if (findings_fail(&job->summary, c->fail_on))
 			code = NT_EXIT_FINDINGS;
 	}
-	s->exit_code = nt_exit_worse(s->exit_code, code);
 	add_times(&s->total, &job->summary);
 	nt_progress_file(s->progress);
 	nt_progress_hide(s->progress);
-	if (text.data)
-		fwrite(text.data, 1, text.size, stderr);
+	if (job->status && s->text.failed)
+		nt_say_error(&job->error, s->style);
+	else if (!nt_say(&s->text))
+		code = NT_EXIT_INTERNAL;
+	s->text.size = 0;
+	s->text.failed = false;
 	nt_progress_show(s->progress);
-	nt_buffer_free(&text);
+	s->exit_code = nt_exit_worse(s->exit_code, code);
 	s->reports[s->report_count++] = job->summary.report;
 	job->summary.report = NULL;
 }
 
-static void tell_report_error(session *s, nt_error *error, const char *path)
+/* Returns whether there is sense in writing more. */
+static bool tell_report_error(session *s, nt_error *error, const char *path)
 {
-	nt_error_in_file(error, path);
-	print_error(error, s->style, false);
+	nt_error_in_file(error, strcmp(path, "-") == 0 ? "standard output" : path);
+	nt_say_error(error, s->style);
 	s->exit_code = nt_exit_worse(s->exit_code, nt_exit_code(error->status));
+	return error->status != NT_ERROR_MEMORY;
 }
 
 /* Writes the report and the pictures of all inputs where they were asked for, and frees them. */
@@ -145,9 +157,13 @@ static void tell_report(session *s)
 	const nt_report_target *target = &s->plan->target;
 	const char *images = s->command->uv_image;
 	nt_error error;
-	if (target->path && nt_report_to_file(s->reports, s->report_count, target, &error))
-		tell_report_error(s, &error, target->path);
-	if (images && nt_report_uv_images(s->reports, s->report_count, images, target, &error))
+	/* what had no memory for its report has been told */
+	bool all = true;
+	for (size_t i = 0; i < s->report_count; i++)
+		all &= s->reports[i] || !s->plan->wanted;
+	if (all && target->path && nt_report_to_file(s->reports, s->report_count, target, &error))
+		all = tell_report_error(s, &error, target->path);
+	if (all && images && nt_report_uv_images(s->reports, s->report_count, images, target, &error))
 		tell_report_error(s, &error, images);
 	for (size_t i = 0; i < s->report_count; i++)
 		nt_report_free(s->reports[i]);
@@ -157,19 +173,20 @@ static void tell_report(session *s)
 /* After the last of many: how many failed, by name; and the times. */
 static void tell_end(session *s, size_t count)
 {
-	nt_buffer text = {0};
 	if (count > 1 && (s->failed || s->style.verbosity >= 0)) {
-		nt_buffer_format(&text, "nmtan: %zu of %zu done", count - s->failed, count);
+		nt_buffer_format(&s->text, "nmtan: %zu of %zu done", count - s->failed, count);
 		if (s->failed)
-			nt_buffer_format(&text, ", %zu failed: %s", s->failed,
-				s->failures.data ? s->failures.data : "");
-		nt_buffer_text(&text, "\n");
+			nt_buffer_format(&s->text, ", %zu failed", s->failed);
+		/* each has been told already */
+		if (s->failed && !s->failures.failed)
+			nt_buffer_format(&s->text, ": %s", s->failures.data);
+		nt_buffer_text(&s->text, "\n");
 	}
 	if (s->command->timing)
-		nt_message_timing(&text, &s->total);
-	if (text.data)
-		fwrite(text.data, 1, text.size, stderr);
-	nt_buffer_free(&text);
+		nt_message_timing(&s->text, &s->total);
+	if (!nt_say(&s->text))
+		s->exit_code = nt_exit_worse(s->exit_code, NT_EXIT_INTERNAL);
+	nt_buffer_free(&s->text);
 	nt_buffer_free(&s->failures);
 }
 
@@ -204,9 +221,10 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 	session s = {.command = command, .plan = plan, .style = style,
 		.reports = calloc(batch->count, sizeof(nt_report *))};
 	nt_error error;
-	if (!s.reports) {
+	if (!s.reports || !nt_buffer_reserve(&s.text, MESSAGE_BYTES)) {
+		free(s.reports);
 		nt_fail_memory(&error);
-		print_error(&error, style, false);
+		nt_say_error(&error, style);
 		return nt_exit_code(error.status);
 	}
 	nt_settings settings = command->settings;
@@ -234,8 +252,10 @@ static int run(const nt_command *command, nt_style style, bool colour_on_stdout)
 	if (!status)
 		status = prepare(&batch, command, &error);
 	int code = nt_exit_code(status);
-	if (status)
-		print_error(&error, style, status == NT_ERROR_USAGE);
+	if (status == NT_ERROR_USAGE)
+		say_usage(&error, style);
+	else if (status)
+		nt_say_error(&error, style);
 	else
 		code = run_batch(command, style, &plan, &batch);
 	nt_batch_free(&batch);
@@ -268,7 +288,7 @@ int main(int argc, char **argv)
 	const bool may_colour = !(no_color && *no_color);
 	nt_style style = {.colour = may_colour && isatty(STDERR_FILENO)};
 	if (nt_options_parse(argc, argv, &command, &error)) {
-		print_error(&error, style, true);
+		say_usage(&error, style);
 		return NT_EXIT_USAGE;
 	}
 	style.verbosity = command.verbosity;

@@ -64,7 +64,7 @@ static void append_finding(nt_buffer *out, const nt_finding *finding, const char
 		nt_severity_name(row->severity), colour(style, "\033[0m"));
 	nt_buffer_clean(out, sentence.data ? sentence.data : "");
 	nt_buffer_format(out, " [%s]\n", row->name);
-	nt_buffer_free(&sentence);
+	nt_buffer_free_into(&sentence, out);
 }
 
 /* All findings of one code, those beyond PLACES_SHOWN as a number. */

@@ -405,12 +405,13 @@ nt_status nt_draco_decode(nt_draco **result, const unsigned char *bytes, size_t 
 	if (status == NT_OK)
 		*result = made;
 	else
-		delete made;
+		nt_draco_free(made);
 	return status;
 }
 
 void nt_draco_free(nt_draco *result)
 {
+	const nt::reserve memory;
 	delete result;
 }
 

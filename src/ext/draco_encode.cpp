@@ -265,7 +265,10 @@ nt_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *err
 nt_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error)
 {
 	*block = {};
-	return nt::guard(error, "Draco", [&] { return encode(*mesh, block, error); });
+	const nt_status status = nt::guard(error, "Draco", [&] { return encode(*mesh, block, error); });
+	if (status != NT_OK)
+		nt_draco_block_free(block);
+	return status;
 }
 
 void nt_draco_block_free(nt_draco_block *block)

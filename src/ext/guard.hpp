@@ -3,6 +3,8 @@
 // The door of every C++ wrapper. A wrapper's entry runs its body inside guard(), so that nothing is
 // thrown past it: exhausted memory becomes NT_ERROR_MEMORY, everything else, which would be a
 // mistake of ours or of the library behind the door, NT_ERROR_INTERNAL with the exception's words.
+// Memory that runs out is not always thrown (see reserve.hpp), so the status may be NT_ERROR_MEMORY though the body
+// came to its end: what it has made by then is the caller's to free.
 #ifndef NT_EXT_GUARD_HPP
 #define NT_EXT_GUARD_HPP
 
@@ -10,6 +12,7 @@
 #include <new>
 #include <utility>
 #include "base/error.h"
+#include "ext/reserve.hpp"
 
 namespace nt {
 
@@ -18,12 +21,14 @@ namespace nt {
 template <typename Body>
 nt_status guard(nt_error *error, const char *library, Body &&body) noexcept
 {
+	const reserve memory;
 	try {
-		return std::forward<Body>(body)();
+		const nt_status status = std::forward<Body>(body)();
+		return memory.was_needed() ? nt_fail_memory(error) : status;
 	} catch (const std::bad_alloc &) {
 		return nt_fail_memory(error);
 	} catch (const std::exception &thrown) {
-		return nt_fail(error, NT_ERROR_INTERNAL, "%s: %s", library, thrown.what());
+		return memory.was_needed() ? nt_fail_memory(error) : nt_fail(error, NT_ERROR_INTERNAL, "%s: %s", library, thrown.what());
 	} catch (...) {
 		return nt_fail(error, NT_ERROR_INTERNAL, "%s: unknown exception", library);
 	}

@@ -5,6 +5,7 @@
 // An ordered_json object is a vector of pairs with a constant key: when such a vector grows, it copies its members
 // with all their descendants. So grow_object() moves them to a larger one instead.
 #include "ext/json_parts.hpp"
+#include "ext/reserve.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -33,8 +34,11 @@ nt_json_value *wrap(const json *value)
 // Runs a change that returns the value to hand out; remembers what goes wrong.
 template <typename Body> nt_json_value *change(nt_json *document, Body &&body) noexcept
 {
+	const nt::reserve memory;
 	try {
-		return wrap(body());
+		json *const value = body();
+		document->failed |= memory.was_needed();
+		return wrap(value);
 	} catch (...) {
 		document->failed = true;
 		return wrap(&document->scratch);
@@ -84,6 +88,7 @@ bool whole_number(const json *value, double *number)
 
 void nt_json_free(nt_json *document)
 {
+	const nt::reserve memory;
 	delete document;
 }
 

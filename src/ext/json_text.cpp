@@ -314,7 +314,7 @@ nt_status nt_json_parse(nt_json **document, const char *text, size_t size, nt_er
 		return NT_OK;
 	});
 	if (status) {
-		delete parsed;
+		nt_json_free(parsed);
 		return status;
 	}
 	*document = parsed;

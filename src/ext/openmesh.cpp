@@ -405,12 +405,13 @@ nt_status nt_halfedges_build(nt_halfedges **result, size_t vertex_count, const u
 	if (status == NT_OK)
 		*result = mesh;
 	else
-		delete mesh;
+		nt_halfedges_free(mesh);
 	return status;
 }
 
 void nt_halfedges_free(nt_halfedges *mesh)
 {
+	const nt::reserve memory;
 	delete mesh;
 }
 
@@ -424,7 +425,7 @@ nt_status nt_halfedges_chains(const nt_halfedges *mesh, const uint8_t *marked, n
 	nt_error *error)
 {
 	std::memset(walks, 0, sizeof *walks);
-	return nt::guard(error, "OpenMesh", [&] {
+	const nt_status status = nt::guard(error, "OpenMesh", [&] {
 		walk_list list;
 		marked_edges edges(*mesh, marked);
 		for (const uint32_t h : mesh->halfedge)
@@ -441,6 +442,9 @@ nt_status nt_halfedges_chains(const nt_halfedges *mesh, const uint8_t *marked, n
 			}
 		return list.move_to(walks, error);
 	});
+	if (status != NT_OK)
+		nt_walks_free(walks);
+	return status;
 }
 
 void nt_walks_free(nt_walks *walks)

@@ -62,10 +62,10 @@ nt_status nt_reread_attribute(nt_reread *model, size_t mesh, size_t primitive,
 nt_status nt_reread_target(nt_reread *model, size_t mesh, size_t primitive, size_t target,
 	const char *name, nt_reread_array *array, nt_error *error);
 
-/* The KHR_draco_mesh_compression block of a primitive; false: it has none. *bytes NULL: it is not inside of a
- * buffer. */
-bool nt_reread_block(nt_reread *model, size_t mesh, size_t primitive, const unsigned char **bytes,
-	size_t *size);
+/* The KHR_draco_mesh_compression block of a primitive, if it has one. *bytes NULL: it is not inside of a buffer.
+ * Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_reread_block(nt_reread *model, size_t mesh, size_t primitive, bool *has_block,
+	const unsigned char **bytes, size_t *size, nt_error *error);
 
 /* The id that an attribute has in the block; false: it is not in it. */
 bool nt_reread_block_id(const nt_reread *model, size_t mesh, size_t primitive, const char *name, uint32_t *id);

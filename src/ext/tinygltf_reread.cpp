@@ -271,9 +271,20 @@ const tinygltf::Value *block_of(const nt_reread *model, size_t mesh, size_t prim
 {
 	if (primitive >= nt_reread_primitive_count(model, mesh))
 		return nullptr;
-	const tinygltf::ExtensionMap &extensions = model->document.meshes[mesh].primitives[primitive].extensions;
-	const auto found = extensions.find(nt::draco_extension);
-	return found == extensions.end() || !found->second.IsObject() ? nullptr : &found->second;
+	for (const auto &extension : model->document.meshes[mesh].primitives[primitive].extensions)
+		if (extension.first == nt::draco_extension && extension.second.IsObject())
+			return &extension.second;
+	return nullptr;
+}
+
+// A member that is an integer, -1 for none. Without a key to look up, which would allocate.
+int integer_member(const tinygltf::Value &object, const char *name)
+{
+	if (object.IsObject())
+		for (const auto &member : object.Get<tinygltf::Value::Object>())
+			if (member.first == name && member.second.IsInt())
+				return member.second.GetNumberAsInt();
+	return -1;
 }
 
 } // namespace
@@ -290,12 +301,13 @@ nt_status nt_reread_open(nt_reread **model, const unsigned char *bytes, size_t s
 	if (status == NT_OK)
 		*model = made;
 	else
-		delete made;
+		nt_reread_free(made);
 	return status;
 }
 
 void nt_reread_free(nt_reread *model)
 {
+	const nt::reserve memory;
 	delete model;
 }
 
@@ -327,24 +339,34 @@ nt_status nt_reread_target(nt_reread *model, size_t mesh, size_t primitive, size
 	});
 }
 
-bool nt_reread_block(nt_reread *model, size_t mesh, size_t primitive, const unsigned char **bytes,
-	size_t *size)
+nt_status nt_reread_block(nt_reread *model, size_t mesh, size_t primitive, bool *has_block,
+	const unsigned char **bytes, size_t *size, nt_error *error)
 {
 	const tinygltf::Value *block = block_of(model, mesh, primitive);
+	*has_block = block != nullptr;
+	*bytes = nullptr;
+	*size = 0;
 	if (!block)
-		return false;
-	size_t stride;
-	const int view = block->Get("bufferView").IsInt() ? block->Get("bufferView").GetNumberAsInt() : -1;
-	if (view_bytes(*model, view, bytes, size, &stride))
-		*bytes = nullptr, *size = 0;
-	return true;
+		return NT_OK;
+	return nt::guard(error, library, [&] {
+		size_t stride;
+		if (view_bytes(*model, integer_member(*block, "bufferView"), bytes, size, &stride))
+			*bytes = nullptr, *size = 0;
+		return NT_OK;
+	});
 }
 
 bool nt_reread_block_id(const nt_reread *model, size_t mesh, size_t primitive, const char *name, uint32_t *id)
 {
 	const tinygltf::Value *block = block_of(model, mesh, primitive);
-	if (!block || !block->Get("attributes").IsObject() || !block->Get("attributes").Get(name).IsInt())
+	if (!block || !block->IsObject())
 		return false;
-	*id = static_cast<uint32_t>(block->Get("attributes").Get(name).GetNumberAsInt());
-	return true;
+	for (const auto &member : block->Get<tinygltf::Value::Object>()) {
+		const int found = member.first == "attributes" ? integer_member(member.second, name) : -1;
+		if (found < 0)
+			continue;
+		*id = static_cast<uint32_t>(found);
+		return true;
+	}
+	return false;
 }

@@ -17,19 +17,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include "base/memory.h"
+#include "file/lookup.h"
 
 enum { FIRST_READ_BYTES = 64 * 1024 };
 
 static const unsigned char no_bytes[1]; /* where the data of an empty input points */
-
-static nt_status fail_read(nt_error *error, const char *path, int number)
-{
-	if (number == ENOENT)
-		nt_fail(error, NT_ERROR_IO, "no such file");
-	else
-		nt_fail(error, NT_ERROR_IO, "cannot read: %s", strerror(number));
-	return nt_error_in_file(error, path);
-}
 
 /* Reads a descriptor to its end. */
 static nt_status read_all(nt_file *file, int fd, const char *path, nt_error *error)
@@ -50,7 +42,7 @@ static nt_status read_all(nt_file *file, int fd, const char *path, nt_error *err
 		if (count < 0) {
 			const int number = errno;
 			free(data);
-			return fail_read(error, path, number);
+			return nt_lookup_failed(path, number, error);
 		}
 		if (count == 0)
 			break;
@@ -82,18 +74,27 @@ static bool map_all(nt_file *file, int fd, const struct stat *status)
 	return true;
 }
 
+/* A file system over a network may be interrupted. */
+static int open_patiently(const char *path)
+{
+	int fd;
+	do
+		fd = open(path, O_RDONLY | O_CLOEXEC);
+	while (fd < 0 && errno == EINTR);
+	return fd;
+}
+
 nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
 {
 	*file = (nt_file){.data = no_bytes, .fd = -1};
 	const bool standard = strcmp(path, "-") == 0;
-	const int fd = standard ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0)
-				: open(path, O_RDONLY | O_CLOEXEC);
+	const int fd = standard ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0) : open_patiently(path);
 	struct stat status;
 	if (fd < 0 || fstat(fd, &status) != 0) {
 		const int number = errno;
 		if (fd >= 0)
 			close(fd);
-		return fail_read(error, path, number);
+		return nt_lookup_failed(path, number, error);
 	}
 	if (!standard) {
 		file->device = (uint64_t)status.st_dev;
@@ -101,7 +102,7 @@ nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
 	}
 	if (map_all(file, fd, &status))
 		return NT_OK;
-	const nt_status result = S_ISDIR(status.st_mode) ? fail_read(error, path, EISDIR)
+	const nt_status result = S_ISDIR(status.st_mode) ? nt_lookup_failed(path, EISDIR, error)
 							    : read_all(file, fd, path, error);
 	close(fd);
 	return result;

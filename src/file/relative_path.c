@@ -9,25 +9,30 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include "file/lookup.h"
 #include "file/uri.h"
 
-bool nt_link_folder(nt_buffer *text, const char *path)
+nt_status nt_link_folder(nt_buffer *text, const char *path, nt_error *error)
 {
 	const char *slash = strrchr(path, '/');
 	char *folder = slash ? strndup(path, (size_t)(slash - path) + (slash == path)) : strdup(".");
-	char *resolved = folder ? realpath(folder, NULL) : NULL;
-	bool known = resolved != NULL;
+	if (!folder)
+		return nt_fail_memory(error);
+	char *resolved = realpath(folder, NULL);
+	nt_status status = NT_OK;
 	if (resolved) {
 		nt_buffer_text(text, resolved);
-	} else if (folder && slash && errno == ENOENT) {
+	} else if (slash && errno == ENOENT) {
 		/* not there (yet, in a dry run): its own folder, and its name as it is spelled */
 		const char *name = strrchr(folder, '/');
-		known = nt_link_folder(text, folder);
+		status = nt_link_folder(text, folder, error);
 		nt_buffer_format(text, "/%s", name ? name + 1 : folder);
+	} else {
+		status = nt_lookup_failed(folder, errno, error);
 	}
 	free(folder);
 	free(resolved);
-	return known;
+	return status || !text->failed ? status : nt_fail_memory(error);
 }
 
 static bool is_separator(char c)

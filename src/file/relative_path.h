@@ -10,9 +10,9 @@
 #include "base/buffer.h"
 
 /* Appends the absolute path of the folder that contains `path` (links resolved, no final slash but for
- * the root). Folders that are not there are named as they are spelled. False when the place of `path` cannot
- * be found out. */
-bool nt_link_folder(nt_buffer *text, const char *path);
+ * the root). Folders that are not there are named as they are spelled. Returns NT_OK, NT_ERROR_MISSING where `path`
+ * cannot come to be, NT_ERROR_IO or NT_ERROR_MEMORY. */
+nt_status nt_link_folder(nt_buffer *text, const char *path, nt_error *error);
 
 /* Appends `name` taken from `folder` (absolute), with "\" as "/", and "." and ".." resolved. */
 void nt_link_join(nt_buffer *text, const char *folder, const char *name);

@@ -12,6 +12,7 @@
 #include <string.h>
 #include <strings.h>
 #include "file/base64.h"
+#include "file/lookup.h"
 
 enum { SHOWN = 200 }; /* characters of a URI that a message shows */
 
@@ -196,16 +197,13 @@ static size_t folder_length(const char *document)
 /* Whether the real path of `path` lies below the real path of the folder. */
 static nt_status check_links(const char *path, const char *folder, const char *uri, nt_error *error)
 {
-	char *real = realpath(path, NULL);
-	if (!real)
-		return nt_fail(error, errno == ENOMEM ? NT_ERROR_MEMORY : NT_ERROR_IO,
-			"cannot open \"%.*s\": %s", SHOWN, uri, strerror(errno));
-	char *real_folder = realpath(*folder ? folder : ".", NULL);
-	nt_status status = NT_OK;
-	if (!real_folder) {
-		status = nt_fail(error, NT_ERROR_IO, "cannot resolve the folder of the file: %s",
-			strerror(errno));
-	} else {
+	char *real, *real_folder = NULL;
+	nt_status status = nt_lookup_real(path, &real, error);
+	if (status == NT_ERROR_IO || status == NT_ERROR_MISSING)
+		return nt_fail(error, status, "cannot open \"%.*s\": %s", SHOWN, uri, strerror(errno));
+	if (!status)
+		status = nt_lookup_real(*folder ? folder : ".", &real_folder, error);
+	if (!status) {
 		size_t length = strlen(real_folder);
 		if (length && real_folder[length - 1] == '/')
 			length--; /* the root */

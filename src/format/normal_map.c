@@ -9,46 +9,57 @@
 #include "gltf/document.h"
 #include "gltf/view.h"
 #include "file/image_type.h"
+#include "file/lookup.h"
 #include "file/relative_path.h"
 #include "file/uri.h"
 
-static bool open_file(nt_normal_map *map, const char *path)
+/* What is wrong with a map takes it away, and no more; its bytes stay NULL. */
+static nt_status without_map(nt_status status)
 {
-	nt_error ignored;
-	if (nt_file_open(&map->file, path, &ignored))
-		return false;
+	return status == NT_ERROR_MEMORY || status == NT_ERROR_IO ? status : NT_OK;
+}
+
+static nt_status open_file(nt_normal_map *map, const char *path, nt_error *error)
+{
+	const nt_status status = nt_file_open(&map->file, path, error);
+	if (status)
+		return status;
 	map->bytes = map->file.data;
 	map->size = map->file.size;
-	return true;
+	return NT_OK;
 }
 
 /* ---- OBJ ---- */
 
 /* Inside the folder of the material library, links resolved. */
-static bool open_inside(nt_normal_map *map, const char *document, const char *name)
+static nt_status open_inside(nt_normal_map *map, const char *document, const char *name, nt_error *error)
 {
 	nt_buffer folder = {0}, path = {0};
-	bool opened = false;
-	if (!nt_link_is_absolute(name) && nt_link_folder(&folder, document) && !folder.failed) {
+	char *real = NULL;
+	nt_status status = nt_link_folder(&folder, document, error);
+	if (!status) {
 		nt_link_join(&path, folder.data, name);
-		char *real = path.failed ? NULL : realpath(path.data, NULL);
-		opened = real && nt_link_is_inside(real, folder.data) && open_file(map, real);
-		free(real);
+		status = path.failed ? nt_fail_memory(error) : nt_lookup_real(path.data, &real, error);
 	}
+	if (!status && nt_link_is_inside(real, folder.data))
+		status = open_file(map, real, error);
+	free(real);
 	nt_buffer_free(&folder);
 	nt_buffer_free(&path);
-	return opened;
+	return status;
 }
 
-static bool open_of_materials(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh)
+static nt_status open_of_materials(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh, nt_error *error)
 {
-	for (size_t i = 0; i < mesh->primitive_count; i++) {
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < mesh->primitive_count && !status && !map->bytes; i++) {
 		const uint32_t index = mesh->primitives[i].material;
 		const nt_material *m = index < scene->material_count ? &scene->materials[index] : NULL;
-		if (m && m->normal_map && open_inside(map, m->library ? m->library : scene->path, m->normal_map))
-			return true;
+		if (m && m->normal_map && !nt_link_is_absolute(m->normal_map))
+			status = without_map(open_inside(map, m->library ? m->library : scene->path, m->normal_map,
+				error));
 	}
-	return false;
+	return status;
 }
 
 /* ---- glTF ---- */
@@ -71,57 +82,59 @@ static const nt_json_value *image_of(const nt_gltf *document, const nt_mesh *mes
 	return element(nt_gltf_root_member(document, "images"), nt_json_find(texture, "source"));
 }
 
-static bool open_uri(nt_normal_map *map, nt_gltf *document, const char *uri, size_t length)
+static nt_status open_uri(nt_normal_map *map, nt_gltf *document, const char *uri, size_t length, nt_error *error)
 {
-	nt_error ignored;
 	if (nt_uri_is_data(uri, length)) {
-		if (nt_uri_decode_data(uri, length, &map->decoded, &map->size, &ignored))
-			return false;
-		map->bytes = map->decoded;
-		return true;
+		const nt_status status = nt_uri_decode_data(uri, length, &map->decoded, &map->size, error);
+		map->bytes = status ? NULL : map->decoded;
+		return status;
 	}
 	const char *path;
-	return nt_uri_resolve(&document->arena, document->path, uri, length, false, &path, &ignored) == NT_OK &&
-		open_file(map, path);
+	const nt_status status =
+		nt_uri_resolve(&document->arena, document->path, uri, length, false, &path, error);
+	return status ? status : open_file(map, path, error);
 }
 
-static bool open_view(nt_normal_map *map, nt_gltf *document, uint64_t index)
+static nt_status open_view(nt_normal_map *map, nt_gltf *document, uint64_t index, nt_error *error)
 {
-	nt_error ignored;
 	nt_gltf_view view;
-	if (nt_gltf_get_view(document, index, "", &view, &ignored) ||
-		nt_gltf_view_bytes(document, view.index, 0, view.length, "", &map->bytes, &ignored))
-		return false;
-	map->size = (size_t)view.length;
-	return true;
+	nt_status status = nt_gltf_get_view(document, index, "", &view, error);
+	if (!status)
+		status = nt_gltf_view_bytes(document, view.index, 0, view.length, "", &map->bytes, error);
+	map->size = status ? 0 : (size_t)view.length;
+	return status;
 }
 
-static bool open_of_document(nt_normal_map *map, nt_gltf *document, const nt_mesh *mesh)
+static nt_status open_of_document(nt_normal_map *map, nt_gltf *document, const nt_mesh *mesh, nt_error *error)
 {
 	const nt_json_value *image = image_of(document, mesh);
 	size_t length;
 	uint64_t view;
 	const char *uri = nt_json_get_string(nt_json_find(image, "uri"), &length);
 	if (uri)
-		return open_uri(map, document, uri, length);
-	return nt_json_get_uint64(nt_json_find(image, "bufferView"), &view) && open_view(map, document, view);
+		return without_map(open_uri(map, document, uri, length, error));
+	if (nt_json_get_uint64(nt_json_find(image, "bufferView"), &view))
+		return without_map(open_view(map, document, view, error));
+	return NT_OK;
 }
 
 /* ---- both ---- */
 
-bool nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh)
+nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh, nt_error *error)
 {
 	*map = (nt_normal_map){0};
 	const bool gltf = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
-	const bool opened = gltf ? scene->source && open_of_document(map, scene->source, mesh)
-				 : open_of_materials(map, scene, mesh);
-	const nt_image_type type = opened ? nt_image_type_of_bytes(map->bytes, map->size) : NT_IMAGE_OTHER;
-	if (type == NT_IMAGE_PNG || type == NT_IMAGE_JPEG) {
+	nt_status status = NT_OK;
+	if (!gltf)
+		status = open_of_materials(map, scene, mesh, error);
+	else if (scene->source)
+		status = open_of_document(map, scene->source, mesh, error);
+	const nt_image_type type = map->bytes ? nt_image_type_of_bytes(map->bytes, map->size) : NT_IMAGE_OTHER;
+	if (type == NT_IMAGE_PNG || type == NT_IMAGE_JPEG)
 		map->type = nt_image_media_type(type);
-		return true;
-	}
-	nt_normal_map_close(map);
-	return false;
+	else
+		nt_normal_map_close(map);
+	return status;
 }
 
 void nt_normal_map_close(nt_normal_map *map)

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The image file of a mesh's normal map, for the report's picture of the lit mesh. Nothing else needs it, so
- * nothing that is wrong with it is an error: such a mesh has no picture of its own.
+ * nothing that is wrong with it is an error: such a mesh has no picture of its own. Exhausted memory and faults of
+ * the system are errors all the same.
  */
 #ifndef NT_FORMAT_NORMAL_MAP_H
 #define NT_FORMAT_NORMAL_MAP_H
@@ -17,9 +18,9 @@ typedef struct nt_normal_map {
 	unsigned char *decoded; /* owned, where it is a data URI */
 } nt_normal_map;
 
-/* Finds and opens it: the first material with one, files inside the document's folder only, PNG and JPEG.
- * False when there is none. */
-bool nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh);
+/* Finds and opens it: the first material with one, files inside the document's folder only, PNG and JPEG. Returns
+ * NT_OK, with map->bytes NULL when there is none, NT_ERROR_IO or NT_ERROR_MEMORY. */
+nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh, nt_error *error);
 void nt_normal_map_close(nt_normal_map *map);
 
 #endif

@@ -160,7 +160,10 @@ static nt_status open_primitive(nt_reread *model, size_t mesh, size_t primitive,
 		status = nt_reread_attribute(model, mesh, primitive, "TANGENT", &view->tangents, error);
 	if (status == NT_OK)
 		status = nt_reread_attribute(model, mesh, primitive, NULL, &view->indices, error);
-	if (status == NT_OK && nt_reread_block(model, mesh, primitive, &bytes, &size))
+	bool has_block = false;
+	if (status == NT_OK)
+		status = nt_reread_block(model, mesh, primitive, &has_block, &bytes, &size, error);
+	if (status == NT_OK && has_block)
 		status = open_block(model, mesh, primitive, bytes, size, view, error);
 	return status;
 }

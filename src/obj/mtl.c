@@ -16,6 +16,8 @@
 #include <strings.h>
 #include "ext/number.h"
 #include "file/input.h"
+#include "file/lookup.h"
+#include "file/relative_path.h"
 #include "obj/mtl_map.h"
 #include "base/name_table.h"
 
@@ -359,6 +361,41 @@ static char *file_name(nt_scene *scene, const char *text, size_t length)
 	return name;
 }
 
+/* Whether a path that does not say so leaves the folder of the OBJ by a symbolic link. */
+static nt_status leaves_by_link(const request *q, const char *path, bool *leaves, nt_error *error)
+{
+	char *real;
+	nt_buffer folder = {0};
+	nt_status status = nt_lookup_real(path, &real, error);
+	if (!status)
+		status = nt_link_folder(&folder, q->scene->path, error);
+	*leaves = !status && !nt_link_is_inside(real, folder.data);
+	free(real);
+	nt_buffer_free(&folder);
+	return status;
+}
+
+/* Opens a library; *reason, which may be the error's message, says why it is done without. */
+static nt_status open_library(const request *q, const char *name, const char *path, nt_file *file,
+	const char **reason, nt_error *error)
+{
+	const bool confined = !q->options->allow_outside;
+	bool leaves = false;
+	*reason = !*name ? "no file name" : confined ? outside_reason(name) : NULL;
+	if (*reason)
+		return NT_OK;
+	nt_status status = confined ? leaves_by_link(q, path, &leaves, error) : NT_OK;
+	if (!status && leaves)
+		*reason = "leaves the folder of the OBJ by a symbolic link, which is followed only with "
+			"--allow-outside";
+	else if (!status)
+		status = nt_file_open(file, path, error);
+	if (status != NT_ERROR_MISSING)
+		return status;
+	*reason = error->message;
+	return NT_OK;
+}
+
 /* Reads one library; what cannot be read is reported unless `quiet`. *found says whether it was. */
 static nt_status read_library(const request *q, const char *text, size_t length, bool quiet,
 	bool *found)
@@ -368,23 +405,21 @@ static nt_status read_library(const request *q, const char *text, size_t length,
 	char *path = name ? path_beside(q->scene, name) : NULL;
 	if (!path)
 		return nt_fail_memory(q->error);
-	const char *reason = q->options->allow_outside ? NULL : outside_reason(name);
-	if (!*name)
-		reason = "no file name";
+	const char *reason;
 	nt_file file;
-	nt_error open_error;
-	if (!reason && nt_file_open(&file, path, &open_error)) {
-		if (open_error.status == NT_ERROR_MEMORY)
-			return nt_fail_memory(q->error);
-		reason = open_error.message;
-	}
+	nt_error failure;
+	nt_status status = open_library(q, name, path, &file, &reason, &failure);
+	if (status)
+		*q->error = failure;
+	if (status)
+		return status;
 	if (reason) {
 		if (!quiet)
 			report_missing(q, name, reason);
 		return NT_OK;
 	}
 	*found = true;
-	const nt_status status = nt_mtl_parse(q->scene, path, file.data, file.size, q->mtl, q->error);
+	status = nt_mtl_parse(q->scene, path, file.data, file.size, q->mtl, q->error);
 	nt_file_close(&file);
 	return status;
 }

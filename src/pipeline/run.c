@@ -365,17 +365,31 @@ static nt_status run_stages(run *r)
 }
 
 /* A copy of a mesh's normal map for the report. */
-static bool copy_normal_map(nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh, size_t most_bytes,
+static nt_status copy_normal_map(nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh, size_t most_bytes,
 	nt_image *image)
 {
 	nt_normal_map map;
-	if (!nt_normal_map_open(&map, scene, mesh))
-		return false;
-	void *copy = map.size <= most_bytes ? nt_arena_alloc(arena, map.size, 1) : NULL;
-	if (copy)
-		*image = (nt_image){memcpy(copy, map.bytes, map.size), map.size, map.type};
+	nt_error error;
+	nt_status status = nt_normal_map_open(&map, scene, mesh, &error);
+	*image = (nt_image){0};
+	if (!status && map.bytes && map.size <= most_bytes) {
+		void *copy = nt_arena_alloc(arena, map.size, 1);
+		if (copy)
+			*image = (nt_image){memcpy(copy, map.bytes, map.size), map.size, map.type};
+		else
+			status = NT_ERROR_MEMORY;
+	}
 	nt_normal_map_close(&map);
-	return copy != NULL;
+	return status;
+}
+
+/* A report that could not be made says why, if that much can be said. */
+static nt_status build_report(run *r, const nt_report_options *options)
+{
+	const nt_status status = nt_report_build(&r->scene, options, &r->summary->report, r->error);
+	if (status)
+		r->summary->report = nt_report_of_error(r->input_path, r->error);
+	return status;
 }
 
 /* The report of the scene as it now is, or of what went wrong. */
@@ -395,7 +409,7 @@ static nt_status make_report(run *r, nt_status status)
 	if (options.keep_geometry)
 		options.find_normal_map = copy_normal_map;
 	options.threads = r->settings->threads;
-	return nt_report_build(&r->scene, &options, &r->summary->report, r->error);
+	return build_report(r, &options);
 }
 
 /* What a run that is to be done again has found and made so far; the times it took stay. */
@@ -451,6 +465,8 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->total_seconds = nt_seconds() - begin;
 	if (!status && summary->findings.failed)
 		status = nt_fail_memory(error);
+	if (status && status != NT_ERROR_USAGE)
+		nt_error_in_file(error, input);
 	return status;
 }
 

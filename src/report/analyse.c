@@ -155,15 +155,15 @@ static nt_status keep_geometry(nt_judge *judge)
 /* Of all images together: more has no place in a page of 20 MB. */
 static const size_t MOST_IMAGE_BYTES = 2000000;
 
-static void keep_normal_map(nt_judge *judge, size_t *most_bytes)
+static nt_status keep_normal_map(nt_judge *judge, size_t *most_bytes)
 {
 	const nt_report_options *options = judge->options;
-	nt_image image;
-	if (options->find_normal_map && options->find_normal_map(&judge->report->arena, judge->scene,
-						judge->mesh, *most_bytes, &image)) {
-		judge->facts->normal_map = image;
-		*most_bytes -= image.size;
-	}
+	if (!options->find_normal_map)
+		return NT_OK;
+	const nt_status status = options->find_normal_map(&judge->report->arena, judge->scene, judge->mesh,
+		*most_bytes, &judge->facts->normal_map);
+	*most_bytes -= judge->facts->normal_map.size;
+	return status;
 }
 
 /* ---- one mesh ---- */
@@ -182,7 +182,7 @@ static nt_status judge_mesh(nt_judge *judge, size_t *most_image_bytes)
 	if (!status && judge->options->keep_geometry)
 		status = keep_geometry(judge);
 	if (!status)
-		keep_normal_map(judge, most_image_bytes);
+		status = keep_normal_map(judge, most_image_bytes);
 	return status ? status : judge->failed ? NT_ERROR_MEMORY : NT_OK;
 }
 

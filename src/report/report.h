@@ -48,9 +48,9 @@ typedef struct nt_report_options {
 	size_t max_issues;            /* findings kept; 0: all */
 	const nt_baseline *baseline;  /* NULL: none */
 	bool keep_geometry;           /* for pictures: SVG and HTML */
-	/* Gives a copy of a mesh's normal map, in the arena, for HTML: false where it has none or one of more
+	/* Gives a copy of a mesh's normal map, in the arena, for HTML: no bytes where it has none or one of more
 	 * than most_bytes. NULL: nobody can. */
-	bool (*find_normal_map)(nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh, size_t most_bytes,
+	nt_status (*find_normal_map)(nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh, size_t most_bytes,
 		nt_image *image);
 	unsigned threads;
 } nt_report_options;

@@ -15,6 +15,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include "file/image_type.h"
+#include "file/lookup.h"
 #include "file/relative_path.h"
 #include "file/uri.h"
 
@@ -53,17 +54,16 @@ nt_status nt_image_set_create(nt_image_set **set, nt_scene *scene,
 {
 	nt_buffer folder = {0};
 	*set = nt_calloc(1, sizeof **set);
-	const bool found = nt_link_folder(&folder, options->path);
-	if (*set && found && !folder.failed) {
+	const nt_status status = *set ? nt_link_folder(&folder, options->path, error) : nt_fail_memory(error);
+	if (!status) {
 		**set = (nt_image_set){.scene = scene, .options = *options, .folder = folder.data};
 		return NT_OK;
 	}
-	const bool out_of_memory = !*set || folder.failed;
 	nt_buffer_free(&folder);
 	free(*set);
 	*set = NULL;
-	if (out_of_memory)
-		return nt_fail_memory(error);
+	if (status != NT_ERROR_MISSING)
+		return status;
 	nt_fail(error, NT_ERROR_IO, "cannot write: the folder does not exist");
 	return nt_error_in_file(error, options->path);
 }
@@ -92,10 +92,12 @@ static const char *last_part(const char *name)
 	return part;
 }
 
-static bool is_file(const char *path)
+static nt_status is_file(const char *path, bool *is, nt_error *error)
 {
-	struct stat status;
-	return stat(path, &status) == 0 && S_ISREG(status.st_mode);
+	struct stat info;
+	const nt_status status = nt_lookup_found(path, &info, is, error);
+	*is = *is && S_ISREG(info.st_mode);
+	return status;
 }
 
 static void report(nt_image_set *set, nt_code code, const nt_material *material, const char *name,
@@ -111,44 +113,67 @@ static void report(nt_image_set *set, nt_code code, const nt_material *material,
 	nt_finding_add(&set->scene->findings, code, &place, 1, "%s%s", name, why);
 }
 
-/* The absolute path that a name leads to, in `path`; false, with a reason, when it may not be looked
- * at. */
-static bool confine(const nt_image_set *set, const nt_material *material, const char *name,
-	nt_buffer *path, const char **why)
+/* The same below a folder that is there. */
+static nt_status confine_to(const nt_image_set *set, const char *folder, const char *name, nt_buffer *path,
+	const char **why, nt_error *error)
 {
-	nt_buffer folder = {0};
-	const bool allowed = set->options.allow_outside;
-	bool inside = false;
-	*why = " (the folder of its MTL file does not exist)";
-	if (nt_link_folder(&folder, material->library ? material->library : set->scene->path) &&
-		!folder.failed) {
-		const bool absolute = nt_link_is_absolute(name);
-		const bool by_last_part = absolute && !(allowed && is_file(name));
-		nt_link_join(path, folder.data, by_last_part ? last_part(name) : name);
-		char *real = path->failed ? NULL : realpath(path->data, NULL);
-		inside = allowed || (!path->failed && nt_link_is_inside(path->data, folder.data) &&
-			(real ? nt_link_is_inside(real, folder.data) : !absolute));
-		free(real);
-		*why = " (it is outside of the folder of its MTL file, see --allow-outside)";
+	const bool absolute = nt_link_is_absolute(name), allowed = set->options.allow_outside;
+	bool as_it_is = !absolute;
+	if (absolute && allowed) {
+		const nt_status status = is_file(name, &as_it_is, error);
+		if (status)
+			return status;
 	}
-	if (folder.failed)
-		path->failed = true;
-	nt_buffer_free(&folder);
-	return inside;
+	nt_link_join(path, folder, as_it_is ? name : last_part(name));
+	if (path->failed)
+		return nt_fail_memory(error);
+	if (allowed)
+		return NT_OK;
+	char *real;
+	const nt_status status = nt_lookup_real_found(path->data, &real, error);
+	if (status)
+		return status;
+	if (!nt_link_is_inside(path->data, folder) || !(real ? nt_link_is_inside(real, folder) : !absolute))
+		*why = " (it is outside of the folder of its MTL file, see --allow-outside)";
+	free(real);
+	return NT_OK;
 }
 
-/* Opens the file for its type and identity. False: it cannot be read. */
-static bool inspect(image_entry *entry)
+/* The absolute path that a name leads to, in `path`; in *why the reason when it may not be looked at. */
+static nt_status confine(const nt_image_set *set, const nt_material *material, const char *name,
+	nt_buffer *path, const char **why, nt_error *error)
+{
+	nt_buffer folder = {0};
+	nt_error failure;
+	*why = NULL;
+	nt_status status =
+		nt_link_folder(&folder, material->library ? material->library : set->scene->path, &failure);
+	if (!status) {
+		status = confine_to(set, folder.data, name, path, why, error);
+	} else if (status == NT_ERROR_MISSING) {
+		*why = " (the folder of its MTL file does not exist)";
+		status = NT_OK;
+	} else {
+		*error = failure;
+	}
+	nt_buffer_free(&folder);
+	return status;
+}
+
+/* Looks into the file for its type and identity, if there is one. */
+static nt_status inspect(image_entry *entry, nt_error *error)
 {
 	nt_file file;
-	nt_error ignored;
-	if (!is_file(entry->path) || nt_file_open(&file, entry->path, &ignored) != NT_OK)
-		return false;
+	nt_status status = is_file(entry->path, &entry->exists, error);
+	if (!status && entry->exists)
+		status = nt_file_open(&file, entry->path, error);
+	if (status || !entry->exists)
+		return status;
 	entry->type = nt_image_type_of_bytes(file.data, file.size);
 	entry->identity = (nt_file){.size = file.size, .fd = -1, .device = file.device,
 		.inode = file.inode};
 	nt_file_close(&file);
-	return true;
+	return NT_OK;
 }
 
 static size_t entry_of_path(const nt_image_set *set, const char *path)
@@ -159,48 +184,46 @@ static size_t entry_of_path(const nt_image_set *set, const char *path)
 	return NO_ENTRY;
 }
 
+/* A new entry, which takes the path over. */
+static nt_status add_path(nt_image_set *set, nt_buffer *path, size_t *index, nt_error *error)
+{
+	if (!nt_grow((void **)&set->entries, &set->entry_capacity, set->entry_count + 1, sizeof *set->entries))
+		return nt_fail_memory(error);
+	*index = set->entry_count++;
+	set->entries[*index] = (image_entry){.path = path->data, .texture = NT_MODEL_NONE};
+	*path = (nt_buffer){0};
+	return inspect(&set->entries[*index], error);
+}
+
 /* The entry for a name, new or known; NO_ENTRY, with a finding, when the document goes without. A link may
  * lead to a file that is not there yet. */
-static size_t look_up(nt_image_set *set, const nt_material *material, const char *name,
-	nt_output *output, nt_error *error)
+static nt_status look_up(nt_image_set *set, const nt_material *material, const char *name,
+	nt_output *output, size_t *index, nt_error *error)
 {
 	nt_buffer path = {0};
 	const char *why;
-	const bool inside = confine(set, material, name, &path, &why);
-	size_t index = NO_ENTRY;
-	if (path.failed || !inside) {
-		if (!path.failed)
-			report(set, NT_CODE_IMAGE_MISSING, material, name, why);
-		else
-			nt_fail_memory(error);
-		nt_buffer_free(&path);
-		return NO_ENTRY;
-	}
-	index = entry_of_path(set, path.data);
-	if (index != NO_ENTRY) {
-		nt_buffer_free(&path);
-		return index;
-	}
-	if (!nt_grow((void **)&set->entries, &set->entry_capacity, set->entry_count + 1,
-		    sizeof *set->entries)) {
-		nt_fail_memory(error);
-		nt_buffer_free(&path);
-		return NO_ENTRY;
-	}
-	index = set->entry_count++;
-	image_entry *entry = &set->entries[index];
-	*entry = (image_entry){.path = path.data, .texture = NT_MODEL_NONE};
-	entry->exists = inspect(entry);
-	if (entry->exists) {
-		nt_output_protect(output, entry->path, NULL, error);
-		if (entry->type == NT_IMAGE_OTHER)
-			report(set, NT_CODE_IMAGE_TYPE, material, name, "");
-	} else {
+	*index = NO_ENTRY;
+	nt_status status = confine(set, material, name, &path, &why, error);
+	if (!status && !why)
+		*index = entry_of_path(set, path.data);
+	const bool known = *index != NO_ENTRY;
+	if (!status && why)
+		report(set, NT_CODE_IMAGE_MISSING, material, name, why);
+	else if (!status && !known)
+		status = add_path(set, &path, index, error);
+	nt_buffer_free(&path);
+	if (status || known || why)
+		return status;
+	image_entry *entry = &set->entries[*index];
+	if (!entry->exists) {
 		report(set, NT_CODE_IMAGE_MISSING, material, name, "");
 		if (set->options.images == NT_IMAGES_LINK)
 			entry->type = nt_image_type_of_name(entry->path);
+		return NT_OK;
 	}
-	return index;
+	if (entry->type == NT_IMAGE_OTHER)
+		report(set, NT_CODE_IMAGE_TYPE, material, name, "");
+	return nt_output_protect(output, entry->path, NULL, error);
 }
 
 static const image_name *known_name(const nt_image_set *set, const nt_material *material,
@@ -227,10 +250,11 @@ nt_status nt_image_set_find(nt_image_set *set, const nt_material *material, nt_o
 		if (!name || !*name || set->options.images == NT_IMAGES_NONE ||
 			known_name(set, material, name))
 			continue;
-		nt_error failure = {.status = NT_OK};
-		const size_t entry = look_up(set, material, name, output, &failure);
-		if (failure.status != NT_OK || !nt_grow((void **)&set->names, &set->name_capacity,
-							  set->name_count + 1, sizeof *set->names))
+		size_t entry;
+		const nt_status status = look_up(set, material, name, output, &entry, error);
+		if (status)
+			return status;
+		if (!nt_grow((void **)&set->names, &set->name_capacity, set->name_count + 1, sizeof *set->names))
 			return nt_fail_memory(error);
 		set->names[set->name_count++] = (image_name){material->library, name, entry};
 	}

@@ -58,8 +58,11 @@ static nt_status open_image(moving *m, size_t index, const char *uri, size_t len
 		m->edits->document->allow_outside, &path, &error);
 	if (!status)
 		status = nt_file_open(&opened, path, &error);
-	if (status == NT_ERROR_MEMORY)
-		return nt_fail_memory(m->error);
+	if (status == NT_ERROR_MEMORY || status == NT_ERROR_IO) {
+		*m->error = error;
+		snprintf(m->error->place.pointer, sizeof m->error->place.pointer, "/images/%zu", index);
+		return status;
+	}
 	if (status) {
 		nt_place place;
 		nt_place_clear(&place);

@@ -19,18 +19,27 @@ nt_status nt_gltf_link_prefix(nt_arena *arena, const char *from, const char *to,
 	nt_error *error)
 {
 	nt_buffer from_folder = {0}, to_folder = {0}, way = {0};
-	if (nt_link_folder(&from_folder, from) && nt_link_folder(&to_folder, to)) {
+	nt_error failure;
+	nt_status status = nt_link_folder(&from_folder, from, &failure);
+	if (!status)
+		status = nt_link_folder(&to_folder, to, &failure);
+	if (!status) {
 		if (to_folder.size != 1) /* the root's path ends in a slash already */
 			nt_buffer_text(&to_folder, "/");
-		if (!from_folder.failed && !to_folder.failed)
+		if (!to_folder.failed)
 			nt_link_uri(&way, from_folder.data, to_folder.data);
 	}
 	*prefix = nt_arena_text(arena, way.data ? way.data : "", way.size);
-	const bool failed = from_folder.failed || to_folder.failed || way.failed || !*prefix;
+	const bool failed = to_folder.failed || way.failed || !*prefix;
 	nt_buffer_free(&from_folder);
 	nt_buffer_free(&to_folder);
 	nt_buffer_free(&way);
-	return failed ? nt_fail_memory(error) : NT_OK;
+	if (failed)
+		return nt_fail_memory(error);
+	if (status == NT_OK || status == NT_ERROR_MISSING)
+		return NT_OK;
+	*error = failure;
+	return status;
 }
 
 /* Whether a URI is taken from the document's folder: not "/x", nor anything with a colon in its first

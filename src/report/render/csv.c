@@ -52,7 +52,7 @@ static void put_row(const nt_report *report, const nt_issue *issue, nt_buffer *o
 	put_spot(issue, out);
 	nt_buffer_format(out, "%016llx,%s\r\n", (unsigned long long)issue->fingerprint,
 		issue->known ? "known" : "new");
-	nt_buffer_free(&label);
+	nt_buffer_free_into(&label, out);
 }
 
 void nt_write_csv(const nt_report_list *reports, nt_buffer *out)

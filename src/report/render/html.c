@@ -61,8 +61,7 @@ static void put_string(const char *text, nt_buffer *out)
 		else
 			nt_buffer_append(out, plain.data + i, 1);
 	}
-	out->failed |= plain.failed;
-	nt_buffer_free(&plain);
+	nt_buffer_free_into(&plain, out);
 }
 
 static void put_floats(const float *values, size_t count, nt_buffer *out)
@@ -92,6 +91,12 @@ static bool has_v_down(const nt_report *report)
 	return report->format == NT_FORMAT_GLTF || report->format == NT_FORMAT_GLB;
 }
 
+/* Whether an element of an array stands before. */
+static bool ends_in_bracket(const nt_buffer *out)
+{
+	return out->size && out->data[out->size - 1] == ']';
+}
+
 /* ---- geometry ---- */
 
 /* Rows of `width` floats of the sample's vertices as base64, null without data. v_up turns v over. */
@@ -114,8 +119,7 @@ static void put_rows(const char *name, const float *rows, size_t width, const nt
 	nt_buffer_text(out, "\"");
 	put_base64(raw.data, raw.size, out);
 	nt_buffer_text(out, "\"");
-	out->failed |= raw.failed;
-	nt_buffer_free(&raw);
+	nt_buffer_free_into(&raw, out);
 }
 
 static void put_note(const nt_report_mesh *m, const nt_sample *sample, nt_buffer *out)
@@ -185,7 +189,7 @@ static void put_seam(const nt_seam *seam, budget *left, nt_buffer *out)
 
 static void begin_fact(const char *name, nt_buffer *out)
 {
-	if (out->data[out->size - 1] == ']')
+	if (ends_in_bracket(out))
 		nt_buffer_text(out, ",");
 	nt_buffer_format(out, "[\"%s\",\"", name);
 }
@@ -246,7 +250,7 @@ static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_bu
 	nt_mesh_label(report, mesh, &label);
 	nt_buffer_text(out, "{\"label\":");
 	put_string(label.data ? label.data : "", out);
-	nt_buffer_free(&label);
+	nt_buffer_free_into(&label, out);
 	nt_buffer_text(out, ",\"why\":");
 	put_string(m->why, out);
 	if (m->same_as != NT_NONE)
@@ -301,7 +305,7 @@ static void put_uvs(const nt_report *report, const nt_issue *issue, nt_buffer *o
 			continue;
 		if (!has_v_down(report))
 			uv[1] = 1.0f - uv[1];
-		nt_buffer_text(out, out->data[out->size - 1] == ']' ? ",[" : "[");
+		nt_buffer_text(out, ends_in_bracket(out) ? ",[" : "[");
 		put_floats(uv, 2, out);
 		nt_buffer_text(out, "]");
 	}
@@ -373,8 +377,7 @@ static void put_data(const nt_report_list *reports, nt_buffer *out)
 	}
 	nt_buffer_format(out, "],\"left_out\":%zu,\"images\":[", left.left_out);
 	nt_buffer_append(out, left.sources.data, left.sources.size);
-	out->failed |= left.sources.failed;
-	nt_buffer_free(&left.sources);
+	nt_buffer_free_into(&left.sources, out);
 	nt_buffer_text(out, "]}</script>\n");
 }
 
@@ -388,7 +391,6 @@ static void put_pictures(const nt_report_list *reports, nt_buffer *out)
 		for (size_t m = 0; m < report->mesh_count && m < MOST_MESHES && drawn_bytes < MOST_DRAWN_BYTES; m++) {
 			nt_buffer picture = {0};
 			const bool drawn = nt_write_uv_svg(report, (uint32_t)m, &picture);
-			out->failed |= picture.failed;
 			drawn_bytes += picture.size;
 			if (drawn && picture.size <= left) {
 				nt_buffer_format(out, "<template id=\"uv-%zu-%zu\">", i, m);
@@ -396,7 +398,7 @@ static void put_pictures(const nt_report_list *reports, nt_buffer *out)
 				nt_buffer_text(out, "</template>\n");
 				left -= picture.size;
 			}
-			nt_buffer_free(&picture);
+			nt_buffer_free_into(&picture, out);
 		}
 	}
 }
@@ -408,7 +410,7 @@ static void put_header(const nt_report_list *reports, nt_buffer *out)
 	nt_totals_text(&totals, &summary);
 	nt_buffer_text(out, "<header><h1>nmtan report</h1><span id=\"summary\">");
 	nt_xml_text(summary.data ? summary.data : "", out);
-	nt_buffer_free(&summary);
+	nt_buffer_free_into(&summary, out);
 	nt_buffer_text(out, "</span><span class=\"note\">");
 	for (size_t i = 0; i < reports->count; i++) {
 		nt_buffer_text(out, i ? ", " : "");

@@ -26,7 +26,7 @@ static void put_findings(const nt_report_list *reports, const nt_report *report,
 			nt_mesh_label(report, issue->mesh, &label);
 			nt_buffer_text(out, ", in ");
 			nt_xml_text(label.data ? label.data : "", out);
-			nt_buffer_free(&label);
+			nt_buffer_free_into(&label, out);
 		}
 		if (issue->spot_count && issue->spots[0].line)
 			nt_buffer_format(out, ", line %zu", issue->spots[0].line);

@@ -65,7 +65,7 @@ static void put_findings(const nt_report *report, nt_buffer *out)
 		nt_buffer_text(out, " | ");
 		put_escaped(issue->message, out);
 		nt_buffer_text(out, " |\n");
-		nt_buffer_free(&label);
+		nt_buffer_free_into(&label, out);
 	}
 	const size_t missing = report->dropped +
 		(report->issue_count > MOST_ROWS ? report->issue_count - MOST_ROWS : 0);

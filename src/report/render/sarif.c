@@ -89,7 +89,7 @@ static void put_location(const nt_report *report, const nt_issue *issue, nt_buff
 			put_text("fullyQualifiedName", issue->place.pointer, out);
 		}
 		nt_buffer_text(out, ", \"kind\": \"object\"}]");
-		nt_buffer_free(&label);
+		nt_buffer_free_into(&label, out);
 	}
 	nt_buffer_text(out, "}]");
 }

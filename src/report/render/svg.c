@@ -179,8 +179,7 @@ bool nt_write_uv_svg(const nt_report *report, uint32_t mesh, nt_buffer *out)
 		width, height, c.minimum[0], c.minimum[1], c.factor);
 	nt_xml_text(label.data ? label.data : "", out);
 	nt_buffer_text(out, "</title>\n");
-	out->failed |= label.failed;
-	nt_buffer_free(&label);
+	nt_buffer_free_into(&label, out);
 	nt_buffer_text(out, style);
 	draw_grid(&c);
 	draw_triangles(&c, 1, "normal");

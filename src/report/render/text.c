@@ -52,7 +52,7 @@ static void write_mesh(const nt_report *report, uint32_t index, nt_buffer *out)
 	nt_mesh_label(report, index, &label);
 	nt_buffer_text(out, "  ");
 	nt_buffer_clean(out, label.data ? label.data : "");
-	nt_buffer_free(&label);
+	nt_buffer_free_into(&label, out);
 	if (!mesh->analysed) {
 		nt_buffer_format(out, ": %s\n", mesh->why);
 		return;
@@ -124,7 +124,7 @@ static void write_issue(const nt_report_list *reports, const nt_report *report, 
 		nt_buffer_text(out, "            in ");
 		nt_buffer_clean(out, label.data ? label.data : "");
 		nt_buffer_text(out, "\n");
-		nt_buffer_free(&label);
+		nt_buffer_free_into(&label, out);
 	}
 	for (unsigned i = 0; i < issue->spot_count && i < SHOWN_SPOTS; i++)
 		write_spot(&issue->spots[i], out);

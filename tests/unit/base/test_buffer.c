@@ -43,12 +43,48 @@ static void exhausted_memory_is_remembered_and_keeps_what_came_before(void **sta
 	nt_buffer_free(&buffer);
 }
 
+static void reserved_room_needs_no_memory_later(void **state)
+{
+	(void)state;
+	nt_buffer buffer = {0};
+	assert_true(nt_buffer_reserve(&buffer, 100));
+	assert_int_equal(buffer.size, 0);
+	assert_string_equal(buffer.data, "");
+	fail_allocations_from(0);
+	for (int i = 0; i < 10; i++)
+		nt_buffer_text(&buffer, "0123456789");
+	assert_false(stop_failing_allocations());
+	assert_false(buffer.failed);
+	assert_int_equal(buffer.size, 100);
+	fail_allocations_from(0);
+	assert_false(nt_buffer_reserve(&buffer, 100000));
+	assert_true(stop_failing_allocations());
+	nt_buffer_free(&buffer);
+}
+
+static void a_failure_goes_over_to_the_other_buffer(void **state)
+{
+	(void)state;
+	nt_buffer inner = {0}, outer = {0};
+	nt_buffer_text(&inner, "x");
+	nt_buffer_free_into(&inner, &outer);
+	assert_null(inner.data);
+	assert_false(outer.failed);
+	fail_allocations_from(0);
+	nt_buffer_text(&inner, "x");
+	assert_true(stop_failing_allocations());
+	nt_buffer_free_into(&inner, &outer);
+	assert_true(outer.failed);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(pieces_follow_one_another),
 		cmocka_unit_test(control_characters_are_shown_as_numbers),
 		cmocka_unit_test(exhausted_memory_is_remembered_and_keeps_what_came_before),
+		cmocka_unit_test(reserved_room_needs_no_memory_later),
+		cmocka_unit_test(a_failure_goes_over_to_the_other_buffer),
 	};
 	return cmocka_run_group_tests_name("base/buffer", tests, NULL, NULL);
 }

@@ -107,11 +107,11 @@ static void input_missing_or_a_folder_is_named(void **state)
 	(void)state;
 	nt_error error;
 	nt_file file;
-	assert_int_equal(nt_file_open(&file, in_folder("missing"), &error), NT_ERROR_IO);
+	assert_int_equal(nt_file_open(&file, in_folder("missing"), &error), NT_ERROR_MISSING);
 	assert_string_equal(error.message, "no such file");
 	assert_string_equal(error.place.file, in_folder("missing"));
 	nt_file_close(&file);
-	assert_int_equal(nt_file_open(&file, in_folder(""), &error), NT_ERROR_IO);
+	assert_int_equal(nt_file_open(&file, in_folder(""), &error), NT_ERROR_MISSING);
 	assert_string_equal(error.message, "cannot read: Is a directory");
 	nt_file_close(&file);
 }

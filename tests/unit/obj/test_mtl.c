@@ -6,6 +6,7 @@
 #include "folder.h"
 #include <stdio.h>
 #include <sys/stat.h>
+#include <unistd.h>
 #include "obj/mtl.h"
 #include "obj/mtl_map.h"
 #include "obj/read.h"
@@ -239,7 +240,9 @@ static int make_libraries(void **state)
 	put_text_file("in/b c.mtl", "newmtl b c\nnewmtl a\n");
 	put_text_file("in/sub/d.mtl", "newmtl d\nnorm d.png\n");
 	put_text_file("outside.mtl", "newmtl secret\n");
-	return 0;
+	char outside[200];
+	snprintf(outside, sizeof outside, "%s", in_folder("outside.mtl"));
+	return symlink(outside, in_folder("in/link.mtl")) || symlink("a.mtl", in_folder("in/other name.mtl"));
 }
 
 static void open_obj(reading *r, char path[200], const char *text, bool allow_outside)
@@ -299,14 +302,24 @@ static void name_with_blanks_is_tried_whole_first(void **state)
 	close_reading(&r);
 }
 
+static void a_link_within_the_folder_is_followed(void **state)
+{
+	(void)state;
+	reading r;
+	char path[200];
+	open_obj(&r, path, "mtllib other name.mtl\nusemtl a\n" FACE, false);
+	assert_non_null(r.scene.materials[0].library);
+	close_reading(&r);
+}
+
 static void nothing_outside_the_folder_is_read(void **state)
 {
 	(void)state;
 	char text[400], path[200];
-	const char *const names[] = {"../outside.mtl", "..\\outside.mtl", "sub/../../outside.mtl"};
-	for (int i = 0; i < 4; i++) {
+	const char *const names[] = {"../outside.mtl", "..\\outside.mtl", "sub/../../outside.mtl", "link.mtl"};
+	for (int i = 0; i < 5; i++) {
 		reading r;
-		if (i < 3)
+		if (i < 4)
 			snprintf(text, sizeof text, "mtllib %s\nusemtl secret\n" FACE, names[i]);
 		else
 			snprintf(text, sizeof text, "mtllib %s\nusemtl secret\n" FACE,
@@ -344,6 +357,7 @@ int main(void)
 		cmocka_unit_test(every_prefix_is_survived),
 		cmocka_unit_test(libraries_are_found_beside_the_obj),
 		cmocka_unit_test(name_with_blanks_is_tried_whole_first),
+		cmocka_unit_test(a_link_within_the_folder_is_followed),
 		cmocka_unit_test(nothing_outside_the_folder_is_read),
 	};
 	return cmocka_run_group_tests_name("obj/mtl", tests, make_libraries, remove_folder);

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+//
+// The operators new and delete of the whole program: see reserve.hpp. The linker lets C++ libraries use them too.
+//
+// The block is a stack of pieces that is empty again when all of them are freed: what is taken from it is needed
+// shortly, by one call into a library that will be reported as failed.
+#include "ext/reserve.hpp"
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <exception>
+#include <new>
+
+namespace {
+
+// Documents of some 100 000 values come to their end in it. Pages that are not used are not there.
+constexpr size_t reserve_bytes = size_t(8) << 20, kept_for_unwinding = reserve_bytes / 4;
+constexpr size_t alignment = alignof(std::max_align_t);
+
+alignas(alignment) unsigned char block[reserve_bytes];
+size_t top;   // bytes in use, holes included
+size_t alive; // pieces
+std::atomic_flag busy = ATOMIC_FLAG_INIT;
+
+thread_local unsigned depth;
+thread_local bool needed;
+
+class lock {
+public:
+	lock()
+	{
+		while (busy.test_and_set(std::memory_order_acquire))
+			continue;
+	}
+	~lock()
+	{
+		busy.clear(std::memory_order_release);
+	}
+};
+
+bool is_inside(const void *memory)
+{
+	const auto at = reinterpret_cast<uintptr_t>(memory), begin = reinterpret_cast<uintptr_t>(block);
+	return at >= begin && at < begin + reserve_bytes;
+}
+
+void *take(size_t size) noexcept
+{
+	const size_t most = std::uncaught_exceptions() ? reserve_bytes : reserve_bytes - kept_for_unwinding;
+	if (size > most)
+		return nullptr;
+	size = size ? (size + alignment - 1) / alignment * alignment : alignment;
+	const lock held;
+	if (top > most || size > most - top)
+		return nullptr;
+	void *memory = block + top;
+	top += size;
+	alive++;
+	return memory;
+}
+
+void give_back() noexcept
+{
+	const lock held;
+	if (--alive == 0)
+		top = 0;
+}
+
+} // namespace
+
+nt::reserve::reserve() noexcept
+{
+	if (depth++ == 0)
+		needed = false;
+}
+
+nt::reserve::~reserve()
+{
+	depth--;
+}
+
+bool nt::reserve::was_needed() const noexcept
+{
+	return needed;
+}
+
+void *operator new(size_t size)
+{
+	void *memory = std::malloc(size ? size : 1);
+	if (!memory && depth) {
+		needed = true;
+		memory = take(size);
+	}
+	if (!memory)
+		throw std::bad_alloc();
+	return memory;
+}
+
+void *operator new[](size_t size)
+{
+	return operator new(size);
+}
+
+void operator delete(void *memory) noexcept
+{
+	if (is_inside(memory))
+		give_back();
+	else
+		std::free(memory);
+}
+
+void operator delete[](void *memory) noexcept
+{
+	operator delete(memory);
+}
+
+void operator delete(void *memory, size_t) noexcept
+{
+	operator delete(memory);
+}
+
+void operator delete[](void *memory, size_t) noexcept
+{
+	operator delete(memory);
+}

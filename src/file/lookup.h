@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Looking for files. That a file is missing is an answer, with which a reader may go on; that the system cannot
+ * tell is a fault, which must not pass for it.
+ */
+#ifndef NT_FILE_LOOKUP_H
+#define NT_FILE_LOOKUP_H
+
+#include <sys/stat.h>
+#include "base/error.h"
+
+/*
+ * What an errno of looking for a file means: NT_ERROR_MISSING for ENOENT and ENOTDIR, and for names that are longer
+ * than any file's, or are a folder's; NT_ERROR_MEMORY; else NT_ERROR_IO. The error names the path.
+ */
+nt_status nt_lookup_failed(const char *path, int number, nt_error *error);
+
+/* stat(). Returns NT_OK or what nt_lookup_failed() says. */
+nt_status nt_lookup(const char *path, struct stat *info, nt_error *error);
+
+/* The same, where a file that is missing is no fault and leaves the error alone: *found says which. */
+nt_status nt_lookup_found(const char *path, struct stat *info, bool *found, nt_error *error);
+
+/* realpath(); free(*real). */
+nt_status nt_lookup_real(const char *path, char **real, nt_error *error);
+
+/* The same, where a file that is missing is no fault and leaves the error alone: *real is NULL then. */
+nt_status nt_lookup_real_found(const char *path, char **real, nt_error *error);
+
+#endif

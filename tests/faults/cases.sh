@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: MIT
+#
+# What the sweeps run: every reader and writer, --verify, --in-place, many inputs, every report format, as lines
+# "name | files | what sweep.c is told | arguments". Sourced with $NMTAN, $BUILD, $ROOT and $WORK set.
+#
+#   sweep_all KIND... -- STRIDE    every case with faults of every kind, "memory", "memory onwards", "EIO" and so on;
+#                                  bad runs on standard output, then one line for each kind: tried and bad
+faults=$BUILD/tests/faults
+
+make_inputs() {
+	mkdir -p "$WORK/in" && cd "$WORK/in" || return 1
+	cp "$ROOT"/data/mirrored_cube.* "$ROOT"/data/bumps.png "$ROOT"/data/quad.obj "$ROOT"/data/quad_wedge.ply \
+		"$ROOT"/data/plates.* "$ROOT"/data/morph.gltf "$ROOT"/data/skin.gltf "$ROOT"/data/quantized.gltf \
+		"$ROOT"/data/sparse.gltf .
+	"$NMTAN" -q --draco=sequential plates.gltf draco.glb && "$NMTAN" -q --draco=edgebreaker morph.gltf edge.gltf &&
+		"$faults/make_meshopt" meshopt.glb
+}
+
+cube="mirrored_cube.obj mirrored_cube.mtl bumps.png"
+plates="plates.gltf plates.bin bumps.png"
+cases() {
+	cat <<-END
+		obj | $cube || mirrored_cube.obj o.gltf
+		obj, --verify | $cube || --verify --images=embed mirrored_cube.obj o.glb
+		obj, --images=copy | $cube | many | --images=copy -d out mirrored_cube.obj
+		ply | quad_wedge.ply || quad_wedge.ply o.ply
+		ply to gltf | quad_wedge.ply || quad_wedge.ply o.gltf
+		glb | plates.glb || --verify plates.glb o.glb
+		gltf | $plates || --images=embed plates.gltf o.glb
+		gltf, links | $plates || --buffers=link plates.gltf o.gltf
+		morphs | morph.gltf || --verify morph.gltf o.gltf
+		sparse | sparse.gltf || sparse.gltf o.glb
+		quantized | quantized.gltf || --precision=short quantized.gltf o.glb
+		skin, draco out | skin.gltf || --draco=sequential skin.gltf o.glb
+		draco | draco.glb bumps.png || --existing=replace --verify draco.glb o.gltf
+		edgebreaker | edge.gltf || --existing=replace --verify edge.gltf o.glb
+		meshopt | meshopt.glb bumps.png || --verify meshopt.glb o.glb
+		in place | $plates || --in-place plates.gltf
+		many | $cube quad.obj plates.glb | many | -d out mirrored_cube.obj quad.obj plates.glb
+		pictures | $cube || --check --uv-image=uv mirrored_cube.obj
+		convert and report | $cube | report=r.html | --report=r.html mirrored_cube.obj o.glb
+	END
+	for format in text json html sarif csv markdown junit; do
+		echo "$format | $cube | report=r | --check --report=r --report-format=$format mirrored_cube.obj"
+	done
+}
+
+# One case in a folder of its own: sweep_case NUMBER LINE KIND STRIDE
+sweep_case() {
+	local name files told arguments folder=$WORK/case$1
+	IFS='|' read -r name files told arguments <<<"$2"
+	rm -rf "$folder" && mkdir "$folder" || return 1
+	(cd "$WORK/in" && cp $files "$folder/") || return 1
+	"$faults/sweep" "$faults/faulty.so" $3 "$4" $(($1 * 7 % $4)) "$folder" $told -- "$NMTAN" $arguments \
+		>"$folder.out" 2>&1
+	sed -i "s/^/${name% }: /" "$folder.out"
+}
+
+sweep_all() {
+	local kinds=() kind line number jobs
+	while [ "$1" != -- ]; do kinds+=("$1"); shift; done
+	for kind in "${kinds[@]}"; do
+		number=0
+		rm -f "$WORK"/case*.out
+		while IFS= read -r line; do
+			sweep_case $number "$line" "$kind" "$2" &
+			number=$((number + 1))
+			[ $((number % $(nproc))) != 0 ] || wait
+		done < <(cases)
+		wait
+		cat "$WORK"/case*.out | grep -v ', bad 0$'
+		cat "$WORK"/case*.out | awk -v kind="$kind" -v cases=$number '
+			/calls, tried/ { ended++; for (i = 1; i < NF; i++) {
+				if ($i == "tried") tried += $(i + 1)
+				} }
+			/calls, tried/ { bad += $NF }
+			END { printf "%s: %d cases, tried %d, bad %d\n", kind, ended, tried, bad
+			      exit bad > 0 || ended != cases || tried < cases }' || return 1
+	done
+}

@@ -1,0 +1,79 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Looking for files: what is missing, and what is a fault.
+ */
+#include "test.h"
+#include <errno.h>
+#include <unistd.h>
+#include "folder.h"
+#include "file/lookup.h"
+
+static int enter(void **state)
+{
+	return make_folder(state) || chdir(in_folder(""));
+}
+
+static int leave(void **state)
+{
+	return chdir("/") || remove_folder(state);
+}
+
+static void only_some_numbers_mean_missing(void **state)
+{
+	(void)state;
+	static const struct {
+		int number;
+		nt_status status;
+	} rows[] = {{ENOENT, NT_ERROR_MISSING}, {ENOTDIR, NT_ERROR_MISSING}, {ENAMETOOLONG, NT_ERROR_MISSING},
+		{EISDIR, NT_ERROR_MISSING}, {ENOMEM, NT_ERROR_MEMORY}, {EIO, NT_ERROR_IO}, {EACCES, NT_ERROR_IO},
+		{ELOOP, NT_ERROR_IO}, {EMFILE, NT_ERROR_IO}, {ESTALE, NT_ERROR_IO}, {0, NT_ERROR_IO}};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		nt_error error;
+		assert_int_equal(nt_lookup_failed("a/b", rows[i].number, &error), rows[i].status);
+		assert_int_equal(error.status, rows[i].status);
+		assert_string_equal(error.place.file, "a/b");
+	}
+}
+
+static void files_are_found_or_missing_or_behind_a_fault(void **state)
+{
+	(void)state;
+	put_text_file("there", "x");
+	assert_int_equal(symlink("loop", "loop"), 0);
+	struct stat info;
+	nt_error error;
+	bool found;
+	assert_int_equal(nt_lookup("there", &info, &error), NT_OK);
+	assert_int_equal(info.st_size, 1);
+	assert_int_equal(nt_lookup_found("there", &info, &found, &error), NT_OK);
+	assert_true(found);
+	assert_int_equal(nt_lookup("nowhere", &info, &error), NT_ERROR_MISSING);
+	assert_int_equal(nt_lookup_found("there/below", &info, &found, &error), NT_OK);
+	assert_false(found);
+	assert_int_equal(nt_lookup_found("loop", &info, &found, &error), NT_ERROR_IO);
+	assert_false(found);
+
+	char *real;
+	nt_error untouched = {.status = NT_OK};
+	assert_int_equal(nt_lookup_real_found("nowhere", &real, &untouched), NT_OK);
+	assert_null(real);
+	assert_int_equal(nt_lookup_found("nowhere", &info, &found, &untouched), NT_OK);
+	assert_int_equal(untouched.status, NT_OK);
+	assert_int_equal(nt_lookup_real_found("loop", &real, &untouched), NT_ERROR_IO);
+	assert_int_equal(untouched.status, NT_ERROR_IO);
+	assert_int_equal(nt_lookup_real("./there", &real, &error), NT_OK);
+	assert_string_equal(strrchr(real, '/'), "/there");
+	free(real);
+	assert_int_equal(nt_lookup_real("nowhere", &real, &error), NT_ERROR_MISSING);
+	assert_null(real);
+	assert_int_equal(nt_lookup_real("loop", &real, &error), NT_ERROR_IO);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(only_some_numbers_mean_missing),
+		cmocka_unit_test(files_are_found_or_missing_or_behind_a_fault),
+	};
+	return cmocka_run_group_tests_name("file/lookup", tests, enter, leave);
+}
