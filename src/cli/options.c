@@ -32,9 +32,9 @@ const nt_option_row nt_option_rows[] = {
 		"mikktspace", "how triangles are averaged", SETTING(method), false},
 	{"repair", 0, NT_OPTION_CHOICE, "on|off", NMTAN_REPAIR_ON, 0, "on",
 		"replace results that no renderer can use", SETTING(repair), false},
-	{"normals", 0, NT_OPTION_CHOICE, "auto|flat|smooth", NT_NORMALS_AUTO, 0, "auto",
+	{"normals", 0, NT_OPTION_CHOICE, "auto|flat|smooth|replace-flat|replace-smooth", NT_NORMALS_AUTO, 0, "auto",
 		"how normals are made where they are missing; auto: OBJ by its smoothing groups, PLY "
-		"smooth, glTF not at all",
+		"smooth, glTF not at all; replace-: also where the input has some",
 		SETTING(normals), false},
 	{"across", 0, NT_OPTION_CHOICE, "primitive|mesh", NT_ACROSS_PRIMITIVE, 0, "primitive",
 		"glTF: each primitive is solved by itself, or those of a mesh that share texture coordinates as "

@@ -10,6 +10,10 @@
 #include <string.h>
 #include "tangent/normals.h"
 
+/* Made normals less apart than this are one: rounding of positions makes some ten millionths of well-shaped triangles
+ * in one plane, and the coarsest normals that glTF can quantize to in 16 bits are 3e-5 apart. */
+static const double CLOSE_RADIANS = 1e-5;
+
 /* What one run of the stage holds; everything is malloc'ed and handed to the arena at the end. */
 typedef struct normal_job {
 	float (*corners)[3];  /* [corner_count] */
@@ -28,19 +32,28 @@ static void free_job(normal_job *job)
 	free(job->normals);
 }
 
-/* Whether the normal of a corner has to be made. */
-static bool lacks_normal(const nt_mesh *mesh, size_t vertex, nt_normals mode)
+static size_t vertex_of(const nt_mesh *mesh, size_t corner)
 {
-	return mode != NT_NORMALS_AUTO || !mesh->normals ||
-	       (mesh->vertex_lacks && mesh->vertex_lacks[vertex] & NT_LACKS_NORMAL);
+	return mesh->indices ? mesh->indices[corner] : corner;
 }
 
-static bool any_lacks(const nt_mesh *mesh, nt_normals mode)
+static bool replaces(nt_normals mode)
 {
-	if (mode != NT_NORMALS_AUTO || !mesh->normals)
+	return mode == NT_NORMALS_REPLACE_FLAT || mode == NT_NORMALS_REPLACE_SMOOTH;
+}
+
+static bool lacks_normal(const nt_mesh *mesh, size_t vertex)
+{
+	return !mesh->normals || (mesh->vertex_lacks && mesh->vertex_lacks[vertex] & NT_LACKS_NORMAL);
+}
+
+/* Whether there is anything to be made. */
+static bool any_made(const nt_mesh *mesh, nt_normals mode)
+{
+	if (replaces(mode) || !mesh->normals)
 		return true;
 	for (size_t v = 0; mesh->vertex_lacks && v < mesh->vertex_count; v++)
-		if (mesh->vertex_lacks[v] & NT_LACKS_NORMAL)
+		if (lacks_normal(mesh, v))
 			return true;
 	return false;
 }
@@ -91,10 +104,10 @@ static nt_status make_corner_normals(const nt_mesh *mesh, nt_normals mode, norma
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
 	uint32_t *flat = NULL;
-	if (mode == NT_NORMALS_FLAT && !(flat = nt_calloc(mesh->face_count, sizeof *flat)))
+	const bool is_flat = mode == NT_NORMALS_FLAT || mode == NT_NORMALS_REPLACE_FLAT;
+	if (is_flat && !(flat = nt_calloc(mesh->face_count, sizeof *flat)))
 		return NT_ERROR_MEMORY;
-	const uint32_t *smoothing = mode == NT_NORMALS_FLAT ? flat
-		: mode == NT_NORMALS_SMOOTH ? NULL : mesh->face_smoothing;
+	const uint32_t *smoothing = is_flat ? flat : mode == NT_NORMALS_AUTO ? mesh->face_smoothing : NULL;
 	const nt_status status =
 		nt_status_of(nt_corner_normals(&view, mesh->corner_count, smoothing, &scratch, job->corners));
 	nt_scratch_free(&scratch);
@@ -102,19 +115,54 @@ static nt_status make_corner_normals(const nt_mesh *mesh, nt_normals mode, norma
 	return status;
 }
 
-/* Corners keep the normal their vertex has, where it has one. Returns how many were made. */
-static size_t choose_normals(const nt_mesh *mesh, nt_normals mode, normal_job *job)
+/* Corners keep the normal their vertex has, where it has one and that is not to be replaced. */
+static void choose_normals(nt_mesh *mesh, nt_normals mode, normal_job *job)
 {
-	size_t made = 0;
+	mesh->made_normal_corners = mesh->replaced_normal_corners = 0;
 	for (size_t c = 0; c < mesh->corner_count; c++) {
-		const size_t vertex = mesh->indices ? mesh->indices[c] : c;
-		const bool make = lacks_normal(mesh, vertex, mode);
+		const size_t vertex = vertex_of(mesh, c);
+		const bool lacks = lacks_normal(mesh, vertex), make = lacks || replaces(mode);
 		const float *n = make ? job->corners[c] : mesh->normals + 3 * vertex;
 		memcpy(job->rows[c], n, 3 * sizeof(float));
 		job->rows[c][3] = 0.0f;
-		made += make;
+		mesh->made_normal_corners += lacks;
+		mesh->replaced_normal_corners += make && !lacks;
 	}
-	return made;
+}
+
+static bool are_close(const float a[3], const float b[3])
+{
+	double square = 0;
+	for (int k = 0; k < 3; k++)
+		square += ((double)a[k] - b[k]) * ((double)a[k] - b[k]);
+	return square <= CLOSE_RADIANS * CLOSE_RADIANS;
+}
+
+/* A corner takes the normal of an earlier corner of its vertex that differs by no more than rounding: two triangles
+ * of a plane do not make two vertices. The last few different ones are looked at, so that a hub stays cheap. */
+static nt_status join_close(const nt_mesh *mesh, normal_job *job)
+{
+	enum { MOST_COMPARED = 8 };
+	uint32_t *last = nt_alloc(mesh->vertex_count, sizeof *last);   /* corner with the latest normal of a vertex */
+	uint32_t *before = nt_alloc(mesh->corner_count, sizeof *before); /* the one with another normal before it */
+	if (last && before)
+		memset(last, 0xff, mesh->vertex_count * sizeof *last);
+	for (size_t c = 0; last && before && c < mesh->corner_count; c++) {
+		const size_t vertex = vertex_of(mesh, c);
+		uint32_t other = last[vertex];
+		for (int i = 0; i < MOST_COMPARED && other != NT_NONE && !are_close(job->rows[c], job->rows[other]); i++)
+			other = i + 1 < MOST_COMPARED ? before[other] : NT_NONE;
+		if (other != NT_NONE) {
+			memcpy(job->rows[c], job->rows[other], sizeof job->rows[c]);
+			continue;
+		}
+		before[c] = last[vertex];
+		last[vertex] = (uint32_t)c;
+	}
+	const bool done = last && before;
+	free(last);
+	free(before);
+	return done ? NT_OK : NT_ERROR_MEMORY;
 }
 
 static nt_status split_by_normal(nt_scene *scene, nt_mesh *mesh, normal_job *job)
@@ -139,8 +187,17 @@ static nt_status split_by_normal(nt_scene *scene, nt_mesh *mesh, normal_job *job
 	return NT_OK;
 }
 
+void nt_report_normals(nt_scene *scene, const nt_mesh *mesh)
+{
+	if (mesh->made_normal_corners)
+		nt_finding_add(&scene->findings, NT_CODE_NORMALS_MADE, &mesh->place, mesh->made_normal_corners, NULL);
+	if (mesh->replaced_normal_corners)
+		nt_finding_add(&scene->findings, NT_CODE_NORMALS_REPLACED, &mesh->place,
+			mesh->replaced_normal_corners, NULL);
+}
+
 /* The new arrays become the mesh's. */
-static nt_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job, size_t made)
+static nt_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job)
 {
 	mesh->indices = job->indices;
 	mesh->vertex_sources = job->sources;
@@ -148,13 +205,12 @@ static nt_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job, size_t m
 	mesh->vertex_lacks = NULL;
 	mesh->tangents = NULL; /* authored for other normals */
 	mesh->normals_made = true;
-	mesh->made_normal_corners = made;
 	mesh->has_normals = true;
 	uint32_t *indices = job->indices, *sources = job->sources;
 	float *normals = job->normals;
 	job->indices = job->sources = NULL;
 	job->normals = NULL;
-	nt_finding_add(&scene->findings, NT_CODE_NORMALS_MADE, &mesh->place, made, NULL);
+	nt_report_normals(scene, mesh);
 	/* each, whatever became of the others: the arena frees what it cannot keep */
 	bool kept = nt_arena_adopt(&scene->arena, indices);
 	kept &= nt_arena_adopt(&scene->arena, sources);
@@ -164,7 +220,7 @@ static nt_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job, size_t m
 
 static nt_status make_lacking(nt_scene *scene, nt_mesh *mesh, nt_normals mode)
 {
-	if (!any_lacks(mesh, mode) || mesh->corner_count == 0)
+	if (!any_made(mesh, mode) || mesh->corner_count == 0)
 		return NT_OK;
 	normal_job job = {
 		.corners = nt_alloc(mesh->corner_count, sizeof *job.corners),
@@ -176,10 +232,12 @@ static nt_status make_lacking(nt_scene *scene, nt_mesh *mesh, nt_normals mode)
 	if (job.corners && job.rows && job.indices && job.sources)
 		status = make_corner_normals(mesh, mode, &job);
 	if (!status) {
-		const size_t made = choose_normals(mesh, mode, &job);
-		status = split_by_normal(scene, mesh, &job);
+		choose_normals(mesh, mode, &job);
+		status = join_close(mesh, &job);
 		if (!status)
-			status = adopt(scene, mesh, &job, made);
+			status = split_by_normal(scene, mesh, &job);
+		if (!status)
+			status = adopt(scene, mesh, &job);
 	}
 	free_job(&job);
 	return status;

@@ -239,8 +239,7 @@ static nt_status make_normals(run *r)
 		if (mesh->same_as) {
 			nt_mesh_share(mesh);
 			if (mesh->normals_made)
-				nt_finding_add(&r->scene.findings, NT_CODE_NORMALS_MADE, &mesh->place,
-					mesh->made_normal_corners, NULL);
+				nt_report_normals(&r->scene, mesh);
 			continue;
 		}
 		const nt_status status =

@@ -9,7 +9,14 @@
 #include "scene/format.h"
 #include "scene/select.h"
 
-typedef enum nt_normals { NT_NORMALS_AUTO, NT_NORMALS_FLAT, NT_NORMALS_SMOOTH } nt_normals;
+/* Where normals are missing; the last two replace authored ones, too. */
+typedef enum nt_normals {
+	NT_NORMALS_AUTO,
+	NT_NORMALS_FLAT,
+	NT_NORMALS_SMOOTH,
+	NT_NORMALS_REPLACE_FLAT,
+	NT_NORMALS_REPLACE_SMOOTH
+} nt_normals;
 
 /* Stages as --timing prints them. */
 typedef enum nt_stage {

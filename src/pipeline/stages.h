@@ -7,10 +7,13 @@
 
 #include "pipeline/settings.h"
 
-/* Makes the normals a mesh lacks (all of them when `mode` is not AUTO); vertices whose corners get
+/* Makes the normals a mesh lacks (all of them when `mode` says replace); vertices whose corners get
  * different normals are split, copies appended. Sets mesh->normals_made where something was made. Then gives the mesh
  * solve_normals where its normals are not of unit length. */
 nt_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_error *error);
+
+/* The findings of it, of a mesh that shares them too. */
+void nt_report_normals(nt_scene *scene, const nt_mesh *mesh);
 
 /* Solves and splits every mesh whose decision says so; counts and findings go to the summary. Large
  * meshes take all threads one after the other, small ones run side by side. */

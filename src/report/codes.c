@@ -57,6 +57,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"normals that have no direction, and its tangents are made for smooth ones.",
 		"Export normals if these are not what you want.",
 		"a PLY triangle with s and t but no nx, ny, nz"),
+	ROW(NORMALS_REPLACED, INFO, "{count} {normal|normals} of the input {was|were} replaced",
+		"--normals=replace-flat or replace-smooth asks for it. The finding counts corners that had a normal.",
+		"Nothing; --normals=flat and smooth make only those that are missing.",
+		"a PLY triangle with nx, ny, nz and --normals=replace-flat"),
 	ROW(NORMALS_SCALED, INFO, "{count} {normal was|normals were} made unit for the tangents",
 		"The length differs from 1 by more than 2^-12. Tangents lie across the unit normal, which is what "
 		"renderers make of it. An OBJ's or PLY's normals are stored unit in a new glTF, a glTF keeps those that "

@@ -151,7 +151,8 @@ typedef struct nt_mesh {
 	size_t source_vertex_count;
 	uint32_t *vertex_sources; /* [vertex_count - source_vertex_count] */
 	bool normals_made;
-	size_t made_normal_corners; /* corners whose normals were made */
+	size_t made_normal_corners; /* corners without a normal for which one was made */
+	size_t replaced_normal_corners; /* corners that had another one */
 
 	nt_morph *morphs;         /* [morph_count] targets that move positions or normals; filled by load() */
 	size_t morph_count;

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: MIT
+# --normals: what is missing is made, what the input has is replaced only when that is asked for.
+. "$ROOT/tests/support/cli.sh"
+
+# Two triangles in the plane z = 0 with the normal (0, 0.6, 0.8), which the plane does not have.
+tilted_obj() {
+	printf 'v %s\n' '0 0 0' '1 0 0' '1 1 0' '0 1 0'
+	printf 'vt %s\n' '0 0' '1 0' '1 1' '0 1'
+	printf 'vn 0 0.6 0.8\nf 1/1/1 2/2/1 3/3/1\nf 1/1/1 3/3/1 4/4/1\n'
+}
+
+# N by N quads in the plane z = 0.3 x + 0.7 y, each cut in two, without normals.
+plane_obj() {
+	awk -v n="$1" 'BEGIN {
+		for (j = 0; j <= n; j++) for (i = 0; i <= n; i++) {
+			printf "v %.9g %.9g %.9g\n", i / n, j / n, 0.3 * i / n + 0.7 * j / n
+			printf "vt %g %g\n", i / n, j / n
+		}
+		for (j = 0; j < n; j++) for (i = 0; i < n; i++) {
+			a = j * (n + 1) + i + 1; b = a + 1; c = b + n + 1; d = c - 1
+			printf "f %d/%d %d/%d %d/%d\nf %d/%d %d/%d %d/%d\n", a, a, b, b, c, c, a, a, c, c, d, d
+		}
+	}'
+}
+
+normals='[...new Set(rows(g.meshes[0].primitives[0].attributes.NORMAL).map(n => n.map(x => x.toFixed(3)).join(" ")))].join(", ")'
+positions='rows(g.meshes[0].primitives[0].attributes.POSITION).length'
+
+scene "smooth and flat leave the normals that an OBJ, a PLY and a glTF have"
+tilted_obj >t.obj
+run t.obj t.glb
+run t.obj t.ply
+for input in t.obj t.ply t.glb; do
+	for choice in smooth flat; do
+		run -v --only=all --existing=replace --normals=$choice "$input" out.glb
+		exits 0
+		says_not NORMALS_MADE
+		says_not NORMALS_REPLACED
+		is "$(gltf out.glb "$normals")" "0.000 0.600 0.800"
+	done
+done
+
+scene "replace-smooth and replace-flat replace them, and say so"
+tilted_obj >t.obj
+run t.obj t.glb
+for input in t.obj t.glb; do
+	for choice in replace-smooth replace-flat; do
+		run -v --only=all --existing=replace --normals=$choice "$input" out.glb
+		exits 0
+		says "6 normals of the input were replaced"
+		says_not NORMALS_MADE
+		is "$(gltf out.glb "$normals")" "0.000 0.000 1.000"
+		is "$(gltf out.glb "$positions")" 4
+	done
+done
+
+scene "where only some faces have normals the others get them"
+{
+	tilted_obj
+	printf 'v 2 0 0\nv 2 1 0\nvt 2 0\nvt 2 1\nf 2/2 5/5 3/3\n'
+} >t.obj
+run -v --normals=flat t.obj out.glb
+says NORMALS_MADE
+says_not NORMALS_REPLACED
+is "$(gltf out.glb "$normals")" "0.000 0.600 0.800, 0.000 0.000 1.000"
+run -v --normals=replace-flat t.obj out.glb
+says NORMALS_MADE
+says "6 normals of the input were replaced"
+is "$(gltf out.glb "$normals")" "0.000 0.000 1.000"
+
+scene "triangles of one plane keep sharing their vertices"
+plane_obj 9 >p.obj
+for choice in auto smooth flat replace-smooth replace-flat; do
+	run --normals=$choice p.obj out.glb
+	exits 0
+	is "$choice $(gltf out.glb "$positions")" "$choice 100"
+done
+
+scene "flat normals of a cube of eight vertices make three of each"
+{
+	for z in 0 1; do printf 'v %s\n' "0 0 $z" "1 0 $z" "1 1 $z" "0 1 $z"; done
+	echo 'vt 0 0'
+	for face in '1 4 3 2' '5 6 7 8' '1 2 6 5' '2 3 7 6' '3 4 8 7' '4 1 5 8'; do
+		set -- $face
+		echo "f $1/1 $2/1 $3/1"
+		echo "f $1/1 $3/1 $4/1"
+	done
+} >c.obj
+run --normals=flat --repair=off c.obj c.ply
+exits 0
+is "$(grep -a '^element vertex' c.ply)" "element vertex 24"
+
+done_testing
