@@ -72,6 +72,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Choose another output format, or add it again by hand.",
 		"a glTF with animations that is written as PLY"),
 
+	ROW(EXTENSION_STALE, WARNING, "{detail} refers to vertices, and vertices were copied",
+		"Vertices that need several tangents are copied, and attributes and indices follow. This extension seems "
+		"to refer to vertices as well, in a way that nmtan does not know, and was left as it is.",
+		"Make what the extension holds again from the output, or split the vertices before nmtan does.",
+		"a primitive whose extension names an accessor with one element for each vertex"),
 	ROW(DRACO_PLAIN, WARNING, "the primitive is written without Draco compression",
 		"--draco asks for compression, or the input's primitive is compressed, but a Draco block cannot hold "
 		"what it has now: vertices shared with other primitives, strips or fans, sparse accessors, or "

@@ -19,6 +19,7 @@
 #include "gltf/quantize.h"
 #include "gltf/edit/merge_splits.h"
 #include "gltf/edit/old_tangents.h"
+#include "gltf/edit/vertex_extensions.h"
 #include "gltf/view.h"
 
 /* What every pool's edit needs. */
@@ -220,6 +221,8 @@ static nt_status edit_pool(const editing *e, const nt_vertex_pool *pool, bool *p
 	if (!status && (compressed || e->options->draco > NT_DRACO_OFF))
 		status = nt_gltf_write_draco(e->edits, buffer, e->pools, &vertices, e->options, &e->scene->findings,
 			&done, e->error);
+	if (!status)
+		status = nt_gltf_follow_vertices(e->edits, buffer, e->scene, &vertices, done, e->error);
 	if (status || done)
 		return status;
 	*plain = true;
