@@ -20,6 +20,9 @@
  *   4  rename the final tmp onto M         M -> a.bin                   new
  *   5  unlink a.new-D.bin                  M -> a.bin                   new
  *
+ * The same way is gone, without step 3 and with the unlink before step 4, where a file that is named by its bytes (a-D.bin)
+ * supersedes another one of ours: the interim main file says which, for the next run if this one is killed.
+ *
  * Until step 2 everything can be taken back, and is. From step 3 on a failure leaves a whole new set, under names
  * that say what they are: where link(2) or a rename is refused, the interim main file stays and the result says so.
  * A run that is killed in between leaves at most files that the next one knows: temporary ones by their maker, a.bin and
@@ -49,9 +52,14 @@ static nt_status taken_meanwhile(nt_output *output, const char *path, nt_error *
 /* ---- folders ---- */
 
 /* Not every file system lets a folder be synchronised, and not every user may open it. */
-static nt_status sync_folder_of(const char *path, nt_error *error)
+nt_status nt_output_sync_name(const char *path, nt_error *error)
 {
-	char *folder = nt_last_part(path) == path ? strdup(".") : strndup(path, (size_t)(nt_last_part(path) - path));
+	size_t length = strlen(path);
+	while (length > 1 && path[length - 1] == '/')
+		length--;
+	while (length > 0 && path[length - 1] != '/')
+		length--;
+	char *folder = length ? strndup(path, length) : strdup(".");
 	if (!folder)
 		return nt_fail_memory(error);
 	const int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -69,7 +77,7 @@ static nt_status sync_step(const nt_output *output, nt_error *error)
 	nt_status status = NT_OK;
 	for (const nt_sink *sink = output->first; output->options.sync && sink && !status; sink = sink->next)
 		if (sink->target && sink != output->interim)
-			status = sync_folder_of(sink->target, error);
+			status = nt_output_sync_name(sink->target, error);
 	return status;
 }
 
@@ -195,17 +203,11 @@ static void note_interim(const nt_output *output, int number)
 				nt_sink_name(sink, true), strerror(number));
 }
 
-/* False: the interim names stay. */
-static bool settle_names(const nt_output *output, nt_error *error)
+static bool link_all(const nt_output *output)
 {
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
 		if (sink->interim && !link_stable(sink))
 			return false;
-	errno = EIO; /* of what fails in synchronising */
-	if (sync_step(output, error))
-		return false;
-	if (place_main(output, output->main, error))
-		return false;
 	return true;
 }
 
@@ -241,21 +243,36 @@ static void remove_superseded(const nt_output *output)
 			unlink_second_name(sink);
 }
 
+/* Steps 3 to 5; the interim main file is in place. */
+static nt_status settle_names(nt_output *output, nt_error *error)
+{
+	nt_error ignored;
+	const bool linked = link_all(output);
+	const int number = errno;
+	nt_status status = sync_step(output, error);
+	if (!status)
+		remove_superseded(output);
+	if (!status)
+		status = sync_step(output, error);
+	if (status)
+		return status;
+	if (!linked || place_main(output, output->main, &ignored)) {
+		note_interim(output, linked ? errno : number);
+		return NT_OK;
+	}
+	status = sync_step(output, error);
+	unlink_interim(output);
+	return status;
+}
+
 nt_status nt_output_place(nt_output *output, nt_error *error)
 {
 	sigset_t before;
 	nt_temporaries_hold(&before);
 	nt_status status = place_all(output, error);
-	if (!status && output->interim) {
-		nt_error ignored;
-		if (settle_names(output, &ignored)) {
-			status = sync_step(output, error);
-			unlink_interim(output);
-		} else {
-			note_interim(output, errno);
-		}
-	}
-	if (!status && output->main)
+	if (!status && output->interim)
+		status = settle_names(output, error);
+	else if (!status && output->main)
 		remove_superseded(output);
 	nt_temporaries_release(&before);
 	return status;

@@ -27,7 +27,7 @@
 #include "base/memory.h"
 
 /* A name's length in any file system; the digits of a digest that a name has; names that are tried. */
-enum { MOST_NAME_BYTES = 255, NAME_DIGITS = 16, MOST_NUMBERS = 1000, COMPARED_BYTES = 2 * 1024 * 1024 };
+enum { MOST_NAME_BYTES = 255, NAME_ROOM = 1024, NAME_DIGITS = 16, MOST_NUMBERS = 1000, COMPARED_BYTES = 2 * 1024 * 1024 };
 
 static const char of_content[] = "-", for_the_time_being[] = ".new-";
 
@@ -122,8 +122,9 @@ static nt_status digest_of(const char *path, char text[NT_DIGEST_TEXT], nt_error
 
 /* ---- names ---- */
 
-/* Appends "STEM" + infix + the digest's first digits + "-number" + ".ENDING"; a long stem is cut between characters. */
-static void append_name(nt_buffer *text, const char *name, const char *infix, const char *digest, unsigned number)
+/* "STEM" + infix + the digest's first digits + "-number" + ".ENDING"; a long stem is cut between characters. A name that is
+ * too long for that as it is gives itself, and is refused by the system. */
+static void make_name(char made[NAME_ROOM], const char *name, const char *infix, const char *digest, unsigned number)
 {
 	char inserted[48];
 	const char *dot = strrchr(name, '.');
@@ -137,9 +138,17 @@ static void append_name(nt_buffer *text, const char *name, const char *infix, co
 		while (stem > 1 && ((unsigned char)name[stem] & 0xC0) == 0x80)
 			stem--;
 	}
-	nt_buffer_append(text, name, stem);
-	nt_buffer_text(text, inserted);
-	nt_buffer_text(text, ending);
+	if (stem + others < NAME_ROOM)
+		snprintf(made, NAME_ROOM, "%.*s%s%s", (int)stem, name, inserted, ending);
+	else
+		snprintf(made, NAME_ROOM, "%s", name);
+}
+
+static void append_name(nt_buffer *text, const char *name, const char *infix, const char *digest, unsigned number)
+{
+	char made[NAME_ROOM];
+	make_name(made, name, infix, digest, number);
+	nt_buffer_text(text, made);
 }
 
 void nt_output_interim_name(nt_buffer *text, const char *name, const char *digest)
@@ -149,11 +158,9 @@ void nt_output_interim_name(nt_buffer *text, const char *name, const char *diges
 
 static bool is_name(const char *candidate, const char *name, const char *infix, const char *digest)
 {
-	nt_buffer text = {0};
-	append_name(&text, name, infix, digest, 0);
-	const bool same = !text.failed && strcmp(text.data, candidate) == 0;
-	nt_buffer_free(&text);
-	return same;
+	char made[NAME_ROOM];
+	make_name(made, name, infix, digest, 0);
+	return strcmp(made, candidate) == 0;
 }
 
 const char *nt_sink_name(const nt_sink *sink, bool interim)
@@ -221,40 +228,76 @@ static nt_status may_replace(nt_output *output, nt_sink *sink, bool *may, nt_err
 	return result;
 }
 
+/* Whether a file is of this name and these bytes, and neither guarded nor a link. */
+static bool is_intact(const nt_output *output, const char *path, const char *digest)
+{
+	char text[NT_DIGEST_TEXT];
+	struct stat status;
+	const nt_protected_file *ignored;
+	nt_error unused;
+	return lstat(path, &status) == 0 && S_ISREG(status.st_mode) &&
+	       !nt_output_is_protected(output, &status, &ignored) && digest_of(path, text, &unused) == NT_OK &&
+	       strcmp(text, digest) == 0;
+}
+
+/* Whether a companion of this set is called so, for good or for a time. */
+static bool is_used(const nt_output *output, const char *name)
+{
+	for (const nt_sink *sink = output->first; sink; sink = sink->next)
+		if (nt_sink_is_companion(sink) && (strcmp(nt_sink_name(sink, false), name) == 0 ||
+							  strcmp(nt_sink_name(sink, true), name) == 0))
+			return true;
+	return false;
+}
+
+/* Whether a claim is of a file that an earlier run made in place of the name that a buffer wants. */
+static bool is_made_for(const nt_output_claim_row *claim, const nt_sink *sink)
+{
+	const char *name = nt_last_part(sink->path);
+	return sink->role == NT_ROLE_BUFFER && (is_name(claim->name, name, of_content, claim->digest) ||
+		is_name(claim->name, name, for_the_time_being, claim->digest));
+}
+
+/* What a claim and a buffer say is superseded: the file itself, and what that superseded when its run was cut short. */
+static bool find_superseded(const nt_output *output, const nt_output_claim_row *claim, const nt_sink *sink, bool itself,
+	nt_buffer *path)
+{
+	const char *wanted = nt_last_part(sink->path), *digest = itself ? claim->digest : claim->before;
+	if (!digest || !is_made_for(claim, sink))
+		return false;
+	path->size = 0;
+	nt_buffer_append(path, sink->path, (size_t)(wanted - sink->path));
+	if (itself)
+		nt_buffer_text(path, claim->name);
+	else if (is_name(claim->name, wanted, of_content, claim->digest))
+		append_name(path, wanted, of_content, digest, 0);
+	else
+		return false; /* it was to replace the wanted name */
+	return !path->failed && !is_used(output, nt_last_part(path->data)) && is_intact(output, path->data, digest);
+}
+
 bool nt_output_superseded(const nt_output *output, size_t *at, nt_buffer *path)
 {
 	if (!output->main || output->main->in_place)
 		return false;
-	for (size_t i; (i = (*at)++) < output->claim_count;) {
-		const nt_output_claim_row *claim = &output->claims[i];
-		bool made = false, used = false;
-		const char *folder = NULL;
-		for (const nt_sink *sink = output->first; sink; sink = sink->next) {
-			if (!nt_sink_is_companion(sink))
-				continue;
-			const char *name = nt_last_part(sink->path);
-			made |= sink->role == NT_ROLE_BUFFER &&
-				(is_name(claim->name, name, of_content, claim->digest) ||
-					is_name(claim->name, name, for_the_time_being, claim->digest));
-			used |= strcmp(nt_sink_name(sink, false), claim->name) == 0 ||
-				(sink->interim && strcmp(nt_sink_name(sink, true), claim->name) == 0);
-			folder = sink->path;
-		}
-		if (!made || used)
-			continue;
-		nt_buffer_append(path, folder, (size_t)(nt_last_part(folder) - folder));
-		nt_buffer_text(path, claim->name);
-		char digest[NT_DIGEST_TEXT];
-		struct stat status;
-		const nt_protected_file *ignored;
-		nt_error unused;
-		if (!path->failed && lstat(path->data, &status) == 0 && S_ISREG(status.st_mode) &&
-			!nt_output_is_protected(output, &status, &ignored) &&
-			digest_of(path->data, digest, &unused) == NT_OK && strcmp(digest, claim->digest) == 0)
-			return true;
-		path->size = 0;
-	}
+	for (size_t i; (i = (*at)++) < 2 * output->claim_count;)
+		for (const nt_sink *sink = output->first; sink; sink = sink->next)
+			if (find_superseded(output, &output->claims[i / 2], sink, i % 2 == 0, path))
+				return true;
 	return false;
+}
+
+/* So that a later run can go on with the removal if this one is cut short, the interim main file says what goes. */
+static void note_superseded(const nt_output *output, nt_sink *sink)
+{
+	const char *chosen = nt_last_part(sink->target);
+	for (size_t i = 0; i < output->claim_count && !output->main->in_place; i++) {
+		const nt_output_claim_row *claim = &output->claims[i];
+		if (!is_made_for(claim, sink) || strcmp(claim->name, chosen) == 0 || strlen(claim->digest) >= NT_DIGEST_TEXT)
+			continue;
+		sink->supersedes = true;
+		strcpy(sink->before, claim->digest);
+	}
 }
 
 /* ---- choosing ---- */
@@ -340,6 +383,9 @@ static nt_status choose_other(nt_output *output, nt_sink *sink, nt_error *error)
 	}
 	status = find_name(output, sink, of_content, &sink->target, &found, &sink->there, error);
 	sink->naming = found == EQUAL ? NT_NAMING_USED : NT_NAMING_NEW;
+	sink->before[0] = '\0';
+	if (!status && output->main)
+		note_superseded(output, sink);
 	return status;
 }
 
@@ -402,7 +448,7 @@ nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error)
 bool nt_output_has_interim(const nt_output *output)
 {
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
-		if (sink->interim)
+		if (sink->interim || sink->supersedes)
 			return true;
 	return false;
 }
@@ -414,5 +460,5 @@ const char *nt_sink_digest(const nt_sink *sink)
 
 const char *nt_sink_digest_before(const nt_sink *sink)
 {
-	return sink->interim ? sink->before : NULL;
+	return sink->interim || sink->supersedes ? sink->before : NULL;
 }

@@ -53,7 +53,8 @@ struct nt_sink {
 	nt_file_state there;      /* what has the name: USED, REPLACES */
 	char *interim;            /* REPLACES: path of the interim name */
 	bool interim_is_there;    /* with these bytes */
-	char text[NT_DIGEST_TEXT], before[NT_DIGEST_TEXT];
+	bool supersedes;          /* a file named by its bytes, of the same wanted name and ours, goes */
+	char text[NT_DIGEST_TEXT], before[NT_DIGEST_TEXT]; /* before: of what is replaced, or superseded */
 };
 
 typedef struct nt_protected_file {

@@ -29,7 +29,8 @@ static void advance(struct iovec parts[2], size_t count)
 {
 	for (int i = 0; i < 2; i++) {
 		const size_t taken = count < parts[i].iov_len ? count : parts[i].iov_len;
-		parts[i].iov_base = (char *)parts[i].iov_base + taken;
+		if (taken)
+			parts[i].iov_base = (char *)parts[i].iov_base + taken;
 		parts[i].iov_len -= taken;
 		count -= taken;
 	}

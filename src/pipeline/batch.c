@@ -154,7 +154,7 @@ static nt_status refuse_foreign_inputs(const nt_batch *batch, nt_error *error)
 	return status;
 }
 
-static nt_status make_folder(const char *directory, bool dry_run, nt_error *error)
+static nt_status make_folder(const char *directory, const nt_settings *settings, nt_error *error)
 {
 	struct stat info;
 	if (stat(directory, &info) == 0) {
@@ -163,8 +163,10 @@ static nt_status make_folder(const char *directory, bool dry_run, nt_error *erro
 		nt_fail(error, NT_ERROR_IO, "is not a folder");
 		return nt_error_in_file(error, directory);
 	}
-	if (dry_run || mkdir(directory, 0777) == 0)
+	if (settings->dry_run)
 		return NT_OK;
+	if (mkdir(directory, 0777) == 0)
+		return settings->sync ? nt_output_sync_name(directory, error) : NT_OK;
 	nt_fail(error, NT_ERROR_IO, "cannot make the folder: %s", strerror(errno));
 	return nt_error_in_file(error, directory);
 }
@@ -183,7 +185,7 @@ nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count
 	status = refuse_equal_outputs(batch, error);
 	if (!status)
 		status = refuse_foreign_inputs(batch, error);
-	return status ? status : make_folder(directory, settings->dry_run, error);
+	return status ? status : make_folder(directory, settings, error);
 }
 
 nt_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)

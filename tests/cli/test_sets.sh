@@ -138,6 +138,37 @@ exits 0
 same o.bin before
 says "o.bin is another file"
 
+scene "what is read back before the switch is what will be there"
+run --bitangents "$data/plates.gltf" o.gltf
+run --verify "$data/plates.gltf" o.gltf
+exits 0
+only o.gltf o.bin
+echo somebody >o.bin
+run --verify --bitangents "$data/plates.gltf" o.gltf
+exits 0
+says "o.bin is another file"
+
+scene "no-clobber keeps what has a companion's name"
+echo somebody >o.bin
+run -n "$data/plates.gltf" o.gltf
+exits 0
+is "$(cat o.bin)" somebody
+before=$(state o.gltf)
+run -n --bitangents "$data/plates.gltf" o.gltf
+exits 2
+is "$(state o.gltf)" "$before"
+
+scene "a record is not carried to a document that did not make the file"
+run "$data/plates.gltf" a.gltf
+mkdir sub
+run --buffers=link a.gltf sub/a.glb
+run --buffers=link a.gltf sub/a.gltf
+run --embed --existing=replace a.gltf b.gltf
+for file in sub/a.glb sub/a.gltf b.gltf; do
+	! grep -q nmtan:xxh128 $file || wrong "$file claims a.bin"
+done
+grep -q nmtan:xxh128 a.gltf || wrong "a.gltf has no record"
+
 scene "a file that is used as it is does not become ours"
 run "$data/plates.gltf" a.gltf
 mv a.gltf kept.gltf && mv a.bin o.bin && sed -i 's/"a\.bin"/"o.bin"/' kept.gltf
@@ -284,6 +315,11 @@ scene "killed anywhere, beside somebody else's file"
 mkdir before && echo somebody >before/o.bin
 sweep kill before o.gltf -q -j1 "$data/plates.gltf" o.gltf
 sweep power before o.gltf -q -j1 --sync "$data/plates.gltf" o.gltf
+# and with another result before
+(cd before && "$NMTAN" -q --bitangents "$data/plates.gltf" o.gltf)
+for mode in kill fail power; do
+	sweep $mode before o.gltf -q -j1 --sync "$data/plates.gltf" o.gltf
+done
 
 scene "killed anywhere, in place"
 mkdir before && cp "$data/plates.gltf" "$data/plates.bin" "$data/bumps.png" before

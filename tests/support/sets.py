@@ -199,7 +199,7 @@ class Sweep:
     def power(self, stride):
         log = self.trace()
         self.judge('nothing was synchronised', any(o[0] == 'sync-folder' for o in log))
-        for end in range(0, len(log) + 1, stride):
+        for end in [*range(0, len(log), stride), len(log)]:
             durable, content, pending = dict(self.inodes), dict(self.content), []
             for operation in log[:end]:
                 if operation[0] == 'sync-file':
