@@ -6,6 +6,7 @@
  * some cells, which repair has to fill.
  */
 #include "test.h"
+#include "fail_alloc.h"
 #include "folder.h"
 #include <math.h>
 #include <stdio.h>
@@ -402,6 +403,87 @@ static void targets_are_solved_as_one_too(void **state)
 	close_result(&one);
 }
 
+/* As most exporters write it: one list of vertices, of which each primitive uses some. At the borders all use the same
+ * ones, and have the same tangents there: one TANGENT, and no copies but those that one primitive needs. */
+static void shared_vertices_are_not_split_at_borders(void **state)
+{
+	(void)state;
+	static part joined;
+	result r, one;
+	file f = {0};
+	nt_buffer mesh = {0};
+	memset(&joined, 0, sizeof joined);
+	joined.cells = CELLS;
+	for (int y = 0; y <= SIDE; y++)
+		for (int x = 0; x <= SIDE; x++)
+			put_vertex(&joined, (size_t)(y * (SIDE + 1) + x), x, y, false);
+	for (uint32_t i = 0; i < CELLS; i++) {
+		const uint32_t a = i / SIDE * (SIDE + 1) + i % SIDE, b = a + SIDE + 1;
+		memcpy(joined.indices + 6 * (size_t)i, (uint32_t[]){a, a + 1, b + 1, a, b + 1, b}, 6 * sizeof(uint32_t));
+	}
+	put_part(&f, &joined);
+	/* the first two thirds of the rows, and the rest */
+	const size_t two = 6 * CELLS / 3 * 2;
+	const size_t low = put_accessor(&f, joined.indices, two, 4, 5125, "SCALAR");
+	const size_t high = put_accessor(&f, joined.indices + two, 6 * CELLS - two, 4, 5125, "SCALAR");
+	nt_buffer_format(&mesh, "{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},"
+		"\"indices\":%zu,\"material\":0},{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},"
+		"\"indices\":%zu,\"material\":1}]}", low, high);
+	put_glb("two.glb", &f, mesh.data);
+	nt_buffer_free(&mesh);
+	put_part(&f, &joined);
+	nt_buffer_text(&mesh, "{\"primitives\":[");
+	put_primitive(&mesh, 0, "", ",\"material\":0");
+	nt_buffer_text(&mesh, "]}");
+	put_glb("one.glb", &f, mesh.data);
+	nt_buffer_free(&mesh);
+	convert(&one, "one.glb", across);
+	convert(&r, "two.glb", across);
+	const nt_mesh *meshes = r.scene.meshes;
+	assert_int_equal(differing(&meshes[0], &one.scene.meshes[0], 0), 0);
+	assert_int_equal(differing(&meshes[1], &one.scene.meshes[0], two), 0);
+	assert_int_equal(meshes[0].vertex_count, one.scene.meshes[0].vertex_count);
+	close_result(&r);
+	/* each by itself they are */
+	convert(&r, "two.glb", (nt_settings){.threads = 1});
+	assert_true(r.scene.meshes[0].vertex_count >= one.scene.meshes[0].vertex_count + SIDE - 1);
+	close_result(&r);
+	close_result(&one);
+}
+
+static void failed_allocations_end_the_run(void **state)
+{
+	(void)state;
+	const nt_report_options report = {0};
+	surface small;
+	memset(&small, 0, sizeof small);
+	for (size_t i = 0; i < MOST_PARTS; i++) {
+		small.parts[i] = sheet.parts[i];
+		small.parts[i].cells = 5;
+	}
+	const char *const target = ",\"targets\":[{\"POSITION\":4}]";
+	put_three("three.glb", &small, (int[]){3, 2, 3}, NULL, (const char *[]){target, "", ""});
+	nt_settings settings = {.texcoord_set = -1, .dry_run = true, .threads = 1, .report = &report};
+	for (int join = 0; join < 2; join++) {
+		settings.across = join ? NT_ACROSS_MESH : NT_ACROSS_PRIMITIVE;
+		size_t told = 0, failures = 0;
+		for (bool failed = true; failed; failures++) {
+			nt_summary summary;
+			nt_error error;
+			fail_allocations_from(failures);
+			const nt_status status =
+				nt_run(in_folder("three.glb"), in_folder("out.glb"), &settings, &summary, &error);
+			failed = stop_failing_allocations();
+			/* what frees the document allocates too, from a reserve: the last ones do no harm */
+			assert_true(status == NT_OK || (failed && status == NT_ERROR_MEMORY));
+			told += status != NT_OK;
+			nt_summary_free(&summary);
+			assert_true(failures < 10000);
+		}
+		assert_true(told > 100 && failures < told + 50);
+	}
+}
+
 static void same_for_others_and_for_checks(void **state)
 {
 	(void)state;
@@ -501,6 +583,8 @@ int main(void)
 		cmocka_unit_test(those_without_need_contribute_and_stay_as_they_are),
 		cmocka_unit_test(texture_transforms_divide),
 		cmocka_unit_test(shared_geometry_gets_tangents_of_its_own),
+		cmocka_unit_test(shared_vertices_are_not_split_at_borders),
+		cmocka_unit_test(failed_allocations_end_the_run),
 		cmocka_unit_test(targets_are_solved_as_one_too),
 		cmocka_unit_test(same_for_others_and_for_checks),
 		cmocka_unit_test(a_report_tells_borders_that_would_change),
