@@ -34,6 +34,7 @@ typedef struct kind {
 typedef struct group {
 	nt_scene *scene;
 	nt_gltf *document;
+	bool kept;             /* see joins.h */
 	uint32_t begin, end;   /* in scene->meshes */
 	uint32_t *kind_of;     /* [end - begin] or NO_KIND */
 	kind *kinds;           /* [kind_count]; room for end - begin */
@@ -44,9 +45,12 @@ typedef struct group {
 	nt_hash_index known;   /* kinds by hash */
 } group;
 
-static bool is_wanted(const nt_mesh *mesh)
+/* Whether the tangents of a primitive are asked for. */
+static bool is_wanted(const nt_mesh *mesh, bool kept)
 {
-	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR;
+	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR ||
+		(kept && mesh->decision == NT_SKIP_HAS_TANGENTS && mesh->has_positions && mesh->has_normals &&
+			mesh->has_texcoords);
 }
 
 /* ---- kinds ---- */
@@ -90,7 +94,7 @@ static void append_to_kind(group *g, uint32_t mesh, uint32_t number)
 	else
 		g->next[g->last[number] - g->begin] = mesh;
 	g->last[number] = mesh;
-	if (is_wanted(&g->scene->meshes[mesh]) && g->wanted[number] == NT_NONE)
+	if (is_wanted(&g->scene->meshes[mesh], g->kept) && g->wanted[number] == NT_NONE)
 		g->wanted[number] = mesh;
 }
 
@@ -100,7 +104,7 @@ static nt_status find_kinds(group *g, nt_error *error)
 		const nt_mesh *mesh = &g->scene->meshes[i];
 		g->kind_of[i - g->begin] = NO_KIND;
 		g->next[i - g->begin] = NT_NONE;
-		if (!mesh->slots && !is_wanted(mesh))
+		if (!mesh->slots && !is_wanted(mesh, g->kept))
 			continue;
 		kind k;
 		const nt_status status = read_kind(g, mesh, &k, error);
@@ -119,7 +123,7 @@ static nt_status find_kinds(group *g, nt_error *error)
 /* Whether a primitive has what a solve with this set takes. */
 static bool contributes(const group *g, const nt_mesh *mesh, uint64_t set)
 {
-	if (is_wanted(mesh))
+	if (is_wanted(mesh, g->kept))
 		return true;
 	char name[40];
 	snprintf(name, sizeof name, "TEXCOORD_%llu", (unsigned long long)set);
@@ -149,7 +153,7 @@ static uint32_t next_candidate(const group *g, uint32_t mesh, uint32_t number)
 static nt_mesh *part_of(const group *g, uint32_t mesh, uint32_t number)
 {
 	nt_mesh *own = &g->scene->meshes[mesh];
-	if (is_wanted(own))
+	if (is_wanted(own, g->kept))
 		return own;
 	nt_mesh *copy = nt_arena_alloc(&g->scene->arena, 1, sizeof *copy);
 	if (!copy)
@@ -234,12 +238,12 @@ static nt_status join_group(group *g, nt_error *error)
 	return status;
 }
 
-nt_status nt_gltf_find_joins(nt_scene *scene, nt_error *error)
+nt_status nt_gltf_find_joins(nt_scene *scene, bool kept, nt_error *error)
 {
 	const uint32_t mesh_count = (uint32_t)scene->mesh_count;
 	size_t wanted = 0;
 	for (uint32_t i = 0; i < mesh_count; i++)
-		wanted += is_wanted(&scene->meshes[i]);
+		wanted += is_wanted(&scene->meshes[i], kept);
 	/* a join has one wanted primitive at least */
 	scene->join_count = 0;
 	scene->joins = nt_arena_alloc(&scene->arena, wanted, sizeof *scene->joins);
@@ -250,8 +254,8 @@ nt_status nt_gltf_find_joins(nt_scene *scene, nt_error *error)
 		bool any = false;
 		for (end = begin; end < mesh_count &&
 			scene->meshes[end].gltf_mesh == scene->meshes[begin].gltf_mesh; end++)
-			any |= is_wanted(&scene->meshes[end]);
-		group g = {.scene = scene, .document = scene->source, .begin = begin, .end = end};
+			any |= is_wanted(&scene->meshes[end], kept);
+		group g = {.scene = scene, .document = scene->source, .kept = kept, .begin = begin, .end = end};
 		if (any && end - begin > 1)
 			status = join_group(&g, error);
 	}

@@ -51,11 +51,6 @@ static void free_whole(whole *w)
 	free(w->tangents);
 }
 
-static bool is_wanted(const nt_mesh *mesh)
-{
-	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR;
-}
-
 /* ---- gathering ---- */
 
 /* Numbers the vertices that the faces of a part use, in the order of their first corners. False: out of memory. */
@@ -197,9 +192,10 @@ static void mark_unassigned(const whole *w, float *raw)
 			raw[4 * c + 3] = 0.0f;
 }
 
+/* Whether a part is a mesh of the scene. */
 static bool is_solved_here(const whole *w, const nt_mesh *part)
 {
-	return part->join == w->join && is_wanted(part);
+	return part->join == w->join && !part->transform_of;
 }
 
 static nt_status count_parts(const whole *w)

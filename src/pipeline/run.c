@@ -163,7 +163,8 @@ static nt_status find_joins(run *r)
 	const bool across = r->settings->across == NT_ACROSS_MESH;
 	if (!r->reader->find_joins || !(across || r->settings->report))
 		return NT_OK;
-	const nt_status status = r->reader->find_joins(scene, r->error);
+	const bool judges_kept = across && r->settings->check && r->settings->report;
+	const nt_status status = r->reader->find_joins(scene, judges_kept, r->error);
 	for (size_t i = 0; !status && across && i < scene->join_count; i++)
 		for (size_t k = 0; k < scene->joins[i].part_count; k++)
 			scene->joins[i].parts[k]->join = &scene->joins[i];
@@ -177,7 +178,7 @@ static nt_status load_copies(run *r)
 	for (size_t i = 0; !status && i < r->scene.join_count; i++)
 		for (size_t k = 0; !status && k < r->scene.joins[i].part_count; k++) {
 			nt_mesh *mesh = r->scene.joins[i].parts[k];
-			if (is_wanted(mesh))
+			if (!mesh->transform_of)
 				continue;
 			status = r->reader->load(&r->scene, mesh, &r->read_options, r->error);
 			if (!status || mesh->join || status == NT_ERROR_MEMORY)

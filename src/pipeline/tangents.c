@@ -48,7 +48,7 @@ static bool is_solved(const nt_mesh *mesh)
 /* Whether a mesh is solved by itself, or stands for its join. */
 static bool is_item(const nt_mesh *mesh)
 {
-	return is_solved(mesh) && (!mesh->join || mesh->join->first == mesh);
+	return mesh->join ? mesh->join->first == mesh : is_solved(mesh);
 }
 
 typedef struct mesh_bytes {
@@ -241,7 +241,7 @@ static nt_status solve_join(const tangent_job *job, const nt_join *join, const n
 	nt_status status = nt_join_solve(join, stored_v_offset(job), !job->settings->check, options);
 	for (size_t i = 0; i < join->part_count; i++) {
 		nt_mesh *mesh = join->parts[i];
-		if (!is_wanted(mesh))
+		if (mesh->transform_of)
 			continue;
 		if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
 			restore_valid(mesh, mesh->corner_tangents);
@@ -374,7 +374,7 @@ static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *e
 {
 	bool kept = true;
 	for (size_t i = 0; i < job->scene->mesh_count; i++)
-		if (is_solved(&job->scene->meshes[i]))
+		if (is_solved(&job->scene->meshes[i]) || job->scene->meshes[i].join)
 			kept = keep_results(job->scene, &job->scene->meshes[i]) && kept;
 	if (!kept)
 		return nt_fail_memory(error);

@@ -287,6 +287,11 @@ static void judge_directions(nt_judge *judge, const float *fresh)
 static nt_status compare_with_fresh(nt_judge *judge)
 {
 	const nt_mesh *mesh = judge->mesh;
+	/* --across=mesh: as the mesh is solved with the others of its join */
+	if (mesh->join && mesh->corner_tangents && mesh->decision != NT_DECISION_REPAIR) {
+		judge_directions(judge, mesh->corner_tangents);
+		return NT_OK;
+	}
 	float *fresh = nt_scratch_alloc(judge->scratch, 4 * mesh->corner_count, sizeof *fresh);
 	if (!fresh)
 		return NT_ERROR_MEMORY;

@@ -23,7 +23,7 @@ says "usage:"
 
 for pair in "--frob|'--frob'" "--frob=1|'--frob'" "-x|'-x'" "--thread=2|'--thread'" \
 	"--verify=yes|'yes'" "--threads=two|'two'" "--threads=-1|'-1'" "--only=some|'some'" \
-	"--method=mikk|'mikk'" "--uv=1.5|'1.5'" "--output-format=obj|'obj'" "--fail-on=fatal|'fatal'" \
+	"--method=mikk|'mikk'" "--across=object|'object'" "--uv=1.5|'1.5'" "--output-format=obj|'obj'" "--fail-on=fatal|'fatal'" \
 	"-jfour|'four'" "-vj8x|'8x'"; do
 	scene "${pair%|*} is refused with the word that is wrong"
 	cp "$data/quad.obj" in.obj

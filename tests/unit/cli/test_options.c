@@ -58,7 +58,7 @@ static void every_option_sets_its_field(void **state)
 	(void)state;
 	nt_command c;
 	accepts(&c, WORDS("--only=needed", "--existing=replace", "--method=lengyel", "--repair=off",
-			    "--normals=smooth", "--uv=3", "--allow-outside", "--bitangents", "--embed",
+			    "--normals=smooth", "--across=mesh", "--uv=3", "--allow-outside", "--bitangents", "--embed",
 			    "--images=none", "--threads=5", "--sync", "--verify", "--dry-run",
 			    "--output-format=gltf", "--timing", "--progress=off", "a", "b"));
 	assert_int_equal(c.settings.only, NT_ONLY_NEEDED);
@@ -66,6 +66,7 @@ static void every_option_sets_its_field(void **state)
 	assert_int_equal(c.settings.method, NMTAN_METHOD_LENGYEL);
 	assert_int_equal(c.settings.repair, NMTAN_REPAIR_OFF);
 	assert_int_equal(c.settings.normals, NT_NORMALS_SMOOTH);
+	assert_int_equal(c.settings.across, NT_ACROSS_MESH);
 	assert_int_equal(c.settings.texcoord_set, 3);
 	assert_int_equal(c.settings.images, NT_IMAGES_NONE);
 	assert_int_equal(c.settings.threads, 5);

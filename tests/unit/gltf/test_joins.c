@@ -21,7 +21,7 @@ static void open_text(nt_scene *scene, const nt_buffer *json)
 	if (nt_gltf_open(scene, &(nt_read_options){.texcoord_set = -1}, &error))
 		fail_msg("%s: %s", error.place.pointer, error.message);
 	nt_select(scene, NT_ONLY_AUTO, NT_EXISTING_KEEP, false);
-	assert_int_equal(nt_gltf_find_joins(scene, &error), NT_OK);
+	assert_int_equal(nt_gltf_find_joins(scene, false, &error), NT_OK);
 }
 
 /* Primitives by letter: n normal map, N normal map and tangents, 1 normal map with set 1, t turned, . nothing,

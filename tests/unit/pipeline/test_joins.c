@@ -570,6 +570,35 @@ static void a_report_tells_borders_that_would_change(void **state)
 	}
 }
 
+/* What --check finds wrong with directions, of a file that --across=mesh has made. */
+static size_t mismatches(nt_across how)
+{
+	const nt_report_options report = {0};
+	const nt_settings settings = {.texcoord_set = -1, .check = true, .report = &report, .across = how, .threads = 1};
+	nt_summary summary;
+	nt_error error;
+	if (nt_run(in_folder("out.glb"), NULL, &settings, &summary, &error))
+		fail_msg("%s: %s", error.place.pointer, error.message);
+	size_t count = 0;
+	for (size_t i = 0; i < summary.report->issue_count; i++)
+		if (summary.report->issues[i].code == NT_CODE_TAN_DIRECTION_MISMATCH)
+			count += summary.report->issues[i].count;
+	nt_summary_free(&summary);
+	return count;
+}
+
+static void a_check_judges_by_the_same_rule(void **state)
+{
+	(void)state;
+	result r;
+	put_sheared("border.glb", 4);
+	convert(&r, "border.glb", across);
+	close_result(&r);
+	/* 76 degrees apart, and the joined tangents more than 30 from one of the two squares' */
+	assert_true(mismatches(NT_ACROSS_PRIMITIVE) > 0);
+	assert_int_equal(mismatches(NT_ACROSS_MESH), 0);
+}
+
 static int set_up(void **state)
 {
 	make_surface(&sheet);
@@ -588,6 +617,7 @@ int main(void)
 		cmocka_unit_test(targets_are_solved_as_one_too),
 		cmocka_unit_test(same_for_others_and_for_checks),
 		cmocka_unit_test(a_report_tells_borders_that_would_change),
+		cmocka_unit_test(a_check_judges_by_the_same_rule),
 	};
 	return cmocka_run_group_tests(tests, set_up, remove_folder);
 }
