@@ -4,6 +4,7 @@
  */
 #include "test.h"
 #include "folder.h"
+#include <sys/stat.h>
 #include "file/base64.h"
 #include "pipeline/run.h"
 
@@ -86,11 +87,36 @@ static void names_that_look_like_data_stay(void **state)
 	assert_embedded("data:application/gltf-buffer;base64,A");
 }
 
+/* The text is made twice where a companion gets its name in two steps: the second run replaces the first one's out/in.bin,
+ * while the other buffer is a data URI in both texts. */
+static void data_is_in_every_text(void **state)
+{
+	(void)state;
+	const nt_settings settings = {.buffers = NT_BUFFERS_COPY, .verify = true};
+	assert_int_equal(mkdir(in_folder("out"), 0777), 0);
+	put_triangle("first");
+	run("in.gltf", "out/in.gltf", settings);
+	nt_file before = open_file("out/in.gltf");
+	static const float turned[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0}; /* u and v exchanged */
+	put_file("in.bin", turned, sizeof turned);
+	run("in.gltf", "out/in.gltf", settings);
+	nt_file after = open_file("out/in.gltf"), companion = open_file("out/in.bin");
+	assert_true(has_text(&after, "\"uri\":\"data:application/gltf-buffer;base64,AAAA"));
+	assert_true(has_text(&after, "\"uri\":\"in.bin\""));
+	assert_int_equal(after.size, before.size);
+	assert_int_equal(companion.size, sizeof turned);
+	assert_memory_equal(companion.data, turned, sizeof turned);
+	nt_file_close(&before);
+	nt_file_close(&after);
+	nt_file_close(&companion);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(buffers_are_encoded_where_they_belong),
 		cmocka_unit_test(names_that_look_like_data_stay),
+		cmocka_unit_test(data_is_in_every_text),
 	};
 	return cmocka_run_group_tests_name("gltf/edit/data_uris", tests, make_folder, remove_folder);
 }
