@@ -32,6 +32,20 @@ uint32_t nt_gltf_component_bytes(uint64_t component_type)
 	}
 }
 
+uint32_t nt_gltf_index_type(uint64_t most, uint32_t least)
+{
+	if (least == NT_GLTF_UBYTE && most <= 0xFF)
+		return NT_GLTF_UBYTE;
+	return least != NT_GLTF_UINT && most <= 0xFFFF ? NT_GLTF_USHORT : NT_GLTF_UINT;
+}
+
+void nt_gltf_store_indices(const uint32_t *indices, size_t count, uint32_t width, unsigned char *bytes)
+{
+	for (size_t i = 0; i < count; i++)
+		for (uint32_t k = 0; k < width; k++)
+			bytes[i * width + k] = (unsigned char)(indices[i] >> 8 * k);
+}
+
 /* ---- checking ---- */
 
 /* Type names; matrices have columns, which begin at multiples of 4 bytes. */

@@ -14,6 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "file/base64.h"
+#include "gltf/accessor.h"
 #include "gltf/glb.h"
 #include "gltf/companion.h"
 #include "gltf/create/images.h"
@@ -124,10 +125,11 @@ static uint32_t plan_indices(composition *c, const nt_part *part)
 {
 	if (!part->indices)
 		return NT_MODEL_NONE;
-	const size_t size = nt_part_index_size(part);
+	const uint32_t type = nt_part_index_type(part);
 	const nt_model_accessor accessor = {
-		.view = add_block(c, part, NT_STREAM_COUNT, (uint64_t)part->index_count * size),
-		.component_type = size == 2 ? NT_GLTF_USHORT : NT_GLTF_UINT,
+		.view = add_block(c, part, NT_STREAM_COUNT,
+			(uint64_t)part->index_count * nt_gltf_component_bytes(type)),
+		.component_type = (int)type,
 		.components = 1,
 		.count = part->index_count,
 	};

@@ -11,6 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/vec.h"
+#include "gltf/accessor.h"
 
 enum { BLOCK_ROWS = 4096 };
 
@@ -216,9 +217,9 @@ bool nt_part_has(const nt_part *part, nt_stream stream)
 	return stream_rows(part->mesh, stream) != NULL;
 }
 
-size_t nt_part_index_size(const nt_part *part)
+uint32_t nt_part_index_type(const nt_part *part)
 {
-	return part->vertex_count <= 65535 ? sizeof(uint16_t) : sizeof(uint32_t);
+	return nt_gltf_index_type(part->vertex_count, NT_GLTF_USHORT);
 }
 
 /* The vertex before the split whose attributes a vertex of the part has. */
@@ -361,7 +362,7 @@ nt_status nt_part_write_stream(const nt_part *part, nt_stream stream, nt_part_wr
 nt_status nt_part_write_indices(const nt_part *part, nt_part_write write, void *user,
 	nt_error *error)
 {
-	if (nt_part_index_size(part) == sizeof(uint32_t))
+	if (nt_part_index_type(part) == NT_GLTF_UINT)
 		return write(user, part->indices, part->index_count * sizeof *part->indices, error);
 	uint16_t block[4 * BLOCK_ROWS];
 	size_t begin = 0;

@@ -48,8 +48,8 @@ bool nt_part_has(const nt_part *part, nt_stream stream);
 /* Smallest and largest coordinates of the positions, finite whatever they are. */
 void nt_part_bounds(const nt_part *part, float min[3], float max[3]);
 
-/* Bytes per index: 2 where 65535, which glTF reserves, is not needed, else 4. */
-size_t nt_part_index_size(const nt_part *part);
+/* The component type of the indices: NT_GLTF_USHORT where that will do, else NT_GLTF_UINT. */
+uint32_t nt_part_index_type(const nt_part *part);
 
 /* Where the bytes of a part go. */
 typedef nt_status (*nt_part_write)(void *user, const void *bytes, size_t size, nt_error *error);

@@ -126,20 +126,13 @@ nt_status nt_append_sparse(nt_appending *job, const nt_append_target *from)
 	nt_status status = find_replacements(job, a, &r);
 	if (status || r.count == r.old_count)
 		return status;
-	const uint32_t highest = r.elements[r.count - 1];
 	const uint32_t old_width = nt_gltf_component_bytes(a->sparse_index_type);
-	uint32_t type = a->sparse_index_type;
-	if (type == NT_GLTF_UBYTE && highest > 0xFF)
-		type = NT_GLTF_USHORT;
-	if (type == NT_GLTF_USHORT && highest > 0xFFFF)
-		type = NT_GLTF_UINT;
+	const uint32_t type = nt_gltf_index_type(r.elements[r.count - 1], a->sparse_index_type);
 	const uint32_t width = nt_gltf_component_bytes(type);
 	unsigned char *numbers = nt_arena_alloc(job->arena, r.count, width);
 	if (!numbers)
 		return nt_fail_memory(job->error);
-	for (size_t i = 0; i < r.count; i++)
-		for (uint32_t k = 0; k < width; k++)
-			numbers[i * width + k] = (unsigned char)(r.elements[i] >> 8 * k);
+	nt_gltf_store_indices(r.elements, r.count, width, numbers);
 
 	nt_json_value *sparse = nt_json_find(
 		nt_json_at(nt_gltf_root_member(job->document, "accessors"), a->index), "sparse");

@@ -6,6 +6,7 @@
 
 #include <string.h>
 #include "gltf/edit/new_accessors.h"
+#include "gltf/accessor.h"
 #include "gltf/view.h"
 
 /* ---- what goes into it ---- */
@@ -155,10 +156,9 @@ void nt_gltf_draco_describe(nt_gltf_recoding *r, const nt_draco_block *block)
 	nt_json_value *accessor =
 		nt_json_at(nt_gltf_root_member(r->document, "accessors"), (size_t)indices);
 	nt_json_get_uint64(nt_json_find(accessor, "componentType"), &type);
-	const size_t limit = type == NT_GLTF_UBYTE ? 0xFF : type == NT_GLTF_USHORT ? 0xFFFF : SIZE_MAX;
-	if (block->point_count > limit)
-		nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"),
-			block->point_count > 0xFFFF ? NT_GLTF_UINT : NT_GLTF_USHORT);
+	const uint32_t wide = nt_gltf_index_type(block->point_count, (uint32_t)type);
+	if (wide != type)
+		nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"), wide);
 	nt_json_remove(json, accessor, "min");
 	nt_json_remove(json, accessor, "max");
 }

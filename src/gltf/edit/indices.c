@@ -20,20 +20,6 @@ typedef struct encoded {
 	uint32_t type, width;
 } encoded;
 
-/* The narrowest type that is not below `least` and holds the numbers. */
-static uint32_t choose_type(uint32_t highest, uint32_t least)
-{
-	if (least == NT_GLTF_UBYTE && highest < 0xFF)
-		return NT_GLTF_UBYTE;
-	return least != NT_GLTF_UINT && highest < 0xFFFF ? NT_GLTF_USHORT : NT_GLTF_UINT;
-}
-
-static void store_index(unsigned char *bytes, uint32_t value, uint32_t width)
-{
-	for (uint32_t i = 0; i < width; i++)
-		bytes[i] = (unsigned char)(value >> 8 * i);
-}
-
 /* Indices that form no triangle, at the end of a list, stay. */
 static size_t tail_of(const nt_mesh *mesh, uint64_t mode, uint64_t old_count)
 {
@@ -49,7 +35,7 @@ static nt_status encode(nt_arena *arena, const nt_mesh *mesh, const uint32_t *in
 	out->count = mesh->corner_count + tail;
 	for (size_t c = mesh->corner_count; c < out->count; c++)
 		highest = mesh->indices[c] > highest ? mesh->indices[c] : highest;
-	out->type = choose_type(highest, least);
+	out->type = nt_gltf_index_type((uint64_t)highest + 1, least);
 	out->width = nt_gltf_component_bytes(out->type);
 	out->size = out->count * out->width;
 	/* they live as long as the scene: nothing to be encoded */
@@ -60,9 +46,10 @@ static nt_status encode(nt_arena *arena, const nt_mesh *mesh, const uint32_t *in
 	unsigned char *bytes = nt_arena_alloc(arena, out->count, out->width);
 	if (!bytes)
 		return nt_fail_memory(error);
-	for (size_t c = 0; c < out->count; c++)
-		store_index(bytes + c * out->width,
-			c < mesh->corner_count ? indices[c] : mesh->indices[c], out->width);
+	nt_gltf_store_indices(indices, mesh->corner_count, out->width, bytes);
+	if (tail)
+		nt_gltf_store_indices(mesh->indices + mesh->corner_count, tail, out->width,
+			bytes + mesh->corner_count * out->width);
 	out->bytes = bytes;
 	return NT_OK;
 }
