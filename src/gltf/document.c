@@ -167,7 +167,7 @@ void nt_gltf_forget(const nt_scene *scene, const void *bytes, size_t size)
 		nt_file_forget(scene->file, bytes, size);
 	for (size_t i = 0; i < document->buffer_count; i++) {
 		const nt_gltf_buffer *buffer = &document->buffers[i];
-		if (buffer->opened && buffer->home == NT_GLTF_HOME_FILE)
+		if (buffer->opened && buffer->storage == NT_GLTF_STORED_FILE)
 			nt_file_forget(&buffer->file, bytes, size);
 	}
 }
@@ -180,7 +180,7 @@ void nt_gltf_free(void *source)
 	for (size_t i = 0; document->buffers && i < document->buffer_count; i++) {
 		nt_gltf_buffer *buffer = &document->buffers[i];
 		free(buffer->decoded);
-		if (buffer->opened && buffer->home == NT_GLTF_HOME_FILE)
+		if (buffer->opened && buffer->storage == NT_GLTF_STORED_FILE)
 			nt_file_close(&buffer->file);
 	}
 	for (size_t i = 0; i < document->virtual_count; i++)
@@ -228,11 +228,11 @@ nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char 
 			nt_json_type_text(uri));
 	}
 	if (text)
-		buffer->home = nt_uri_is_data(text, length) ? NT_GLTF_HOME_DATA : NT_GLTF_HOME_FILE;
+		buffer->storage = nt_uri_is_data(text, length) ? NT_GLTF_STORED_DATA : NT_GLTF_STORED_FILE;
 	else if (index == 0 && document->is_glb && document->glb.has_bin)
-		buffer->home = NT_GLTF_HOME_BIN;
+		buffer->storage = NT_GLTF_STORED_BIN;
 	else
-		buffer->home = NT_GLTF_HOME_NOWHERE;
+		buffer->storage = NT_GLTF_STORED_NOWHERE;
 	buffer->described = true;
 	return NT_OK;
 }
@@ -267,24 +267,24 @@ static nt_status open_bytes(nt_gltf *document, nt_gltf_buffer *buffer, const nt_
 	size_t length = 0;
 	const char *uri = nt_json_get_string(nt_json_find(json, "uri"), &length);
 	nt_status status = NT_OK;
-	switch (buffer->home) {
-	case NT_GLTF_HOME_BIN:
+	switch (buffer->storage) {
+	case NT_GLTF_STORED_BIN:
 		buffer->bytes = document->bytes + document->glb.bin.offset;
 		buffer->size = document->glb.bin.size;
 		break;
-	case NT_GLTF_HOME_DATA:
+	case NT_GLTF_STORED_DATA:
 		status = nt_uri_decode_data(uri, length, &buffer->decoded, &buffer->size, error);
 		buffer->bytes = buffer->decoded;
 		break;
-	case NT_GLTF_HOME_FILE:
+	case NT_GLTF_STORED_FILE:
 		status = open_file(document, buffer, uri, length, error);
 		break;
-	case NT_GLTF_HOME_NOWHERE:
+	case NT_GLTF_STORED_NOWHERE:
 		return nt_fail(error, NT_ERROR_INPUT, document->is_glb ?
 			"the buffer has no uri and there is no BIN chunk for it" :
 			"the buffer has no uri");
 	}
-	if (!status && buffer->home != NT_GLTF_HOME_BIN)
+	if (!status && buffer->storage != NT_GLTF_STORED_BIN)
 		document->bytes_opened += buffer->size;
 	return status;
 }
@@ -313,7 +313,7 @@ nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *fro
 
 void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin, uint64_t length)
 {
-	if (length == 0 || (buffer->home != NT_GLTF_HOME_BIN && buffer->home != NT_GLTF_HOME_FILE))
+	if (length == 0 || (buffer->storage != NT_GLTF_STORED_BIN && buffer->storage != NT_GLTF_STORED_FILE))
 		return;
 	if (!buffer->pages) {
 		const size_t words = buffer->size / NT_GLTF_PAGE / 64 + 1;

@@ -18,15 +18,15 @@
 enum { NT_GLTF_POINTER = 160 };
 
 /* Where a buffer's bytes come from. */
-typedef enum nt_gltf_home {
-	NT_GLTF_HOME_NOWHERE, /* no uri and no BIN chunk: extensions may give it a meaning */
-	NT_GLTF_HOME_BIN,     /* the BIN chunk of the GLB */
-	NT_GLTF_HOME_DATA,    /* a data URI */
-	NT_GLTF_HOME_FILE     /* an external file */
-} nt_gltf_home;
+typedef enum nt_gltf_storage {
+	NT_GLTF_STORED_NOWHERE, /* no uri and no BIN chunk: extensions may give it a meaning */
+	NT_GLTF_STORED_BIN,     /* the BIN chunk of the GLB */
+	NT_GLTF_STORED_DATA,    /* a data URI */
+	NT_GLTF_STORED_FILE     /* an external file */
+} nt_gltf_storage;
 
 typedef struct nt_gltf_buffer {
-	nt_gltf_home home;
+	nt_gltf_storage storage;
 	uint64_t length;            /* byteLength */
 	bool described, opened;     /* the fields above and below are valid */
 	const unsigned char *bytes; /* NULL until opened */
@@ -98,7 +98,7 @@ nt_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t i
 nt_status nt_gltf_uint(const nt_json_value *object, const char *pointer, const char *key,
 	uint64_t limit, uint64_t otherwise, uint64_t *value, nt_error *error);
 
-/* Length and home of a buffer; nothing is opened. */
+/* Length and storage of a buffer; nothing is opened. */
 nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_buffer **buffer, nt_error *error);
 

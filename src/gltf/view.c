@@ -140,7 +140,7 @@ nt_status nt_gltf_decompress_view(nt_gltf *document, uint32_t index, nt_error *e
 		free(bytes);
 		return status;
 	}
-	document->virtuals[document->virtual_count] = (nt_gltf_buffer){.home = NT_GLTF_HOME_NOWHERE,
+	document->virtuals[document->virtual_count] = (nt_gltf_buffer){.storage = NT_GLTF_STORED_NOWHERE,
 		.length = view.length, .described = true, .opened = true, .bytes = bytes,
 		.size = (size_t)view.length, .decoded = bytes};
 	document->virtual_of[index] = NT_GLTF_VIRTUAL + (uint32_t)document->virtual_count++;

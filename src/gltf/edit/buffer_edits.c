@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Edits of a document's buffers, collected. A source buffer is a string of bytes; an edit replaces some of them; new
- * views come behind its end. Nothing moves before all edits are known: see relocate.c.
+ * Edits of a document's buffers, collected. A source buffer is a string of bytes; an edit replaces some of
+ * them; new views come behind its end. Nothing moves before all edits are known: see relocate.c.
  *
- * Views are never removed or renumbered, since extensions we do not know may refer to them, and they may not be empty;
- * but they need not keep bytes that nobody reads. The bytes are taken out, and the number waits for a new view: see
- * take_view().
+ * Views are never removed or renumbered, since extensions we do not know may refer to them, and they may not
+ * be empty; but they need not keep bytes that nobody reads. The bytes are taken out, and the number waits
+ * for a new view: see take_view().
  */
 #include "gltf/edit/buffer_edits.h"
 
@@ -192,7 +192,7 @@ nt_status nt_edits_add_view(nt_buffer_edits *edits, uint32_t index, const void *
 static bool can_extend(const nt_gltf *document, uint32_t index)
 {
 	return index < document->buffer_count && document->buffers[index].described &&
-		document->buffers[index].home != NT_GLTF_HOME_NOWHERE;
+		document->buffers[index].storage != NT_GLTF_STORED_NOWHERE;
 }
 
 nt_status nt_edits_choose_buffer(nt_buffer_edits *edits, uint32_t near, uint32_t *buffer,

@@ -55,8 +55,8 @@ typedef struct nt_buffer_edits {
 } nt_buffer_edits;
 
 /*
- * Starts with no edits. Compressed views that vertices will be appended to are decompressed first: edits have to know
- * them from the beginning. Faulty parts of the document that nothing needs are passed over.
+ * Starts with no edits. Compressed views that vertices will be appended to are decompressed first: edits
+ * have to know them from the beginning. Faulty parts of the document that nothing needs are passed over.
  */
 nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, nt_error *error);
 void nt_edits_free(nt_buffer_edits *edits);

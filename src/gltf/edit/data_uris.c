@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Data URIs of an edited document, encoded while its text is written: the JSON has their heads alone. In the JSON, as
- * it was before, a buffer took its size four times over: its bytes, their base64, the string's copy, and the text.
+ * Data URIs of an edited document, encoded while its text is written: the JSON has their heads alone. In the
+ * JSON, as it was before, a buffer took its size four times over: its bytes, their base64, the string's
+ * copy, and the text.
  *
- * Where a buffer's data belongs is found by making the text twice, once with a character in its place: where the
- * texts differ.
+ * Where a buffer's data belongs is found by making the text twice, once with a character in its place: where
+ * the texts differ.
  */
 #include "gltf/edit/data_uris.h"
 

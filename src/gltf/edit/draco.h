@@ -12,9 +12,9 @@
 bool nt_gltf_has_draco(const nt_vertex_pool *pool);
 
 /*
- * Writes a pool with compressed users, or one that is to be compressed: compressed (again) where that is possible, else
- * plain, with a finding. *done false: plain, and what plain pools need is still to be done; the indices of those that
- * were compressed count as changed. buffer: of new views.
+ * Writes a pool with compressed users, or one that is to be compressed: compressed (again) where that is
+ * possible, else plain, with a finding. *done false: plain, and what plain pools need is still to be done;
+ * the indices of those that were compressed count as changed. buffer: of new views.
  */
 nt_status nt_gltf_write_draco(nt_buffer_edits *edits, uint32_t buffer, nt_vertex_pools *pools,
 	nt_pool_vertices *vertices, const nt_write_options *options, nt_finding_list *findings, bool *done,

@@ -2,13 +2,13 @@
 /*
  * Plain primitives that an explicit --draco asks to compress.
  *
- * All attributes go into the block; floats that have a meaning we know are quantized, all other values
- * stay exact. Where the order of vertices matters to somebody (morph targets, attributes that Draco
- * cannot have, extensions of the primitive), the sequential method keeps it. A primitive is left plain
- * where that would not do: accessors that somebody else uses too, sparse or compressed ones, strips.
+ * All attributes go into the block; floats that have a meaning we know are quantized, all other values stay
+ * exact. Where the order of vertices matters to somebody (morph targets, attributes that Draco cannot have,
+ * extensions of the primitive), the sequential method keeps it. A primitive is left plain where that would
+ * not do: accessors that somebody else uses too, sparse or compressed ones, strips.
  *
- * The elements leave the buffers. Views keep their numbers: one takes the block, others that are empty then share bytes
- * with it.
+ * The elements leave the buffers. Views keep their numbers: one takes the block, others that are empty then
+ * share bytes with it.
  */
 #include "gltf/edit/draco_gather.h"
 
@@ -263,8 +263,8 @@ static nt_status remove_views(const nt_gltf_recoding *r, const run *runs, size_t
 	return status;
 }
 
-/* Bytes that somebody else has a use for stay, those in which another view begins or ends, and those that are all of
- * some view. */
+/* Bytes that somebody else has a use for stay, those in which another view begins or ends, and those that
+ * are all of some view. */
 static bool can_go(const nt_byte_users *users, const run *runs, size_t count, uint64_t begin, uint64_t end)
 {
 	for (size_t i = 0; i < count; i++)

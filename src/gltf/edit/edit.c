@@ -156,8 +156,8 @@ static nt_status choose_buffer(const editing *e, const nt_vertex_pool *pool, uin
 	return nt_edits_choose_buffer(e->edits, view.buffer, buffer, e->error);
 }
 
-/* What becomes of the TANGENT accessors that are there: new values for those that stay in place; the others lose their
- * bytes. old: [set]; overrides: room for every user. */
+/* What becomes of the TANGENT accessors that are there: new values for those that stay in place; the others
+ * lose their bytes. old: [set]; overrides: room for every user. */
 static nt_status settle_old_tangents(const editing *e, const nt_pool_vertices *vertices, nt_gltf_old_tangents *old,
 	nt_gltf_override *overrides, size_t *count)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Images of a patched document. They are linked where they are, so that none is opened, unless they have
+ * Images of an edited document. They are linked where they are, so that none is opened, unless they have
  * to move into the output or beside it. An image that cannot be read is a finding and stays a link.
  */
 #include "gltf/edit/images.h"
@@ -27,7 +27,7 @@ typedef struct moving {
 	nt_scene *scene;
 	nt_buffer_edits *edits;
 	nt_json *json;
-	const nt_gltf_destination *destination;
+	const nt_gltf_output *output;
 	nt_open_images *images;
 	nt_error *error;
 } moving;
@@ -122,8 +122,9 @@ static nt_status embed_image(moving *m, size_t index, nt_json_value *image)
 		return status;
 	const char *type = file ? media_type(file) : NULL;
 	if (!type)
-		return nt_gltf_link(m->json, image, m->destination->link_prefix, m->error);
-	return m->destination->options->format == NT_FORMAT_GLB ? embed_in_view(m, image, file, type) : embed_as_data(m, image, file, type);
+		return nt_gltf_link(m->json, image, m->output->link_prefix, m->error);
+	return m->output->options->format == NT_FORMAT_GLB ? embed_in_view(m, image, file, type) :
+							     embed_as_data(m, image, file, type);
 }
 
 /* Copies an image beside the output, under its own name where that is to be had. */
@@ -131,31 +132,31 @@ static nt_status copy_image(moving *m, size_t index, nt_json_value *image)
 {
 	size_t length;
 	const char *uri = nt_gltf_external_uri(image, &length);
-	if (!*m->destination->link_prefix)
+	if (!*m->output->link_prefix)
 		return NT_OK; /* it is there already */
 	const nt_file *file;
 	nt_status status = open_image(m, index, uri, length, &file);
 	if (status || !file)
-		return status ? status : nt_gltf_link(m->json, image, m->destination->link_prefix, m->error);
+		return status ? status : nt_gltf_link(m->json, image, m->output->link_prefix, m->error);
 	const char *source;
 	status = nt_uri_resolve(&m->edits->arena, m->edits->document->path, uri, length, m->edits->document->allow_outside,
 		&source, m->error);
 	if (status)
 		return status;
 	const char *slash = strrchr(source, '/'), *name = slash ? slash + 1 : source;
-	const char *folder_end = strrchr(m->destination->options->path, '/');
-	const size_t folder = folder_end ? (size_t)(folder_end - m->destination->options->path) + 1 : 0;
+	const char *folder_end = strrchr(m->output->options->path, '/');
+	const size_t folder = folder_end ? (size_t)(folder_end - m->output->options->path) + 1 : 0;
 	char *path = nt_arena_alloc(&m->edits->arena, folder + strlen(name) + 1, 1);
 	if (!path)
 		return nt_fail_memory(m->error);
-	memcpy(path, m->destination->options->path, folder);
+	memcpy(path, m->output->options->path, folder);
 	strcpy(path + folder, name);
 	nt_sink *sink;
-	status = nt_output_add(m->destination->output, path, NT_ROLE_IMAGE, &sink, m->error);
+	status = nt_output_add(m->output->set, path, NT_ROLE_IMAGE, &sink, m->error);
 	if (!status)
 		status = nt_sink_copy(sink, file, 0, file->size, m->error);
 	if (!status)
-		status = nt_output_settle(m->destination->output, sink, m->error);
+		status = nt_output_settle(m->output->set, sink, m->error);
 	if (status)
 		return status;
 	nt_buffer new_uri = {0};
@@ -167,13 +168,13 @@ static nt_status copy_image(moving *m, size_t index, nt_json_value *image)
 	return failed ? nt_fail_memory(m->error) : NT_OK;
 }
 
-nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_gltf_destination *destination,
+nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_gltf_output *output,
 	nt_open_images *images, nt_error *error)
 {
 	const nt_gltf *document = edits->document;
-	moving m = {.scene = scene, .edits = edits, .json = document->json, .destination = destination, .images = images,
+	moving m = {.scene = scene, .edits = edits, .json = document->json, .output = output, .images = images,
 		.error = error};
-	const nt_images choice = nt_gltf_images_choice(destination->options, document);
+	const nt_images choice = nt_gltf_images_choice(output->options, document);
 	const size_t count = nt_json_count(nt_gltf_root_member(document, "images"));
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < count; i++) {
@@ -187,7 +188,7 @@ nt_status nt_gltf_move_images(nt_scene *scene, nt_buffer_edits *edits, const nt_
 		else if (choice == NT_IMAGES_COPY)
 			status = copy_image(&m, i, image);
 		else
-			status = nt_gltf_link(m.json, image, destination->link_prefix, error);
+			status = nt_gltf_link(m.json, image, output->link_prefix, error);
 	}
 	return status;
 }

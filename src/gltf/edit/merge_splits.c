@@ -2,11 +2,11 @@
 /*
  * The vertices that the accessors of a pool will have: rows, to tell them from the vertices of the meshes.
  *
- * Each mesh was solved and split by itself. Where several of them use the same vertex, their tangents
- * for it may agree or not. The rows of a vertex form a chain that begins with its own; a mesh takes the
- * row of the chain where its set has the same tangent, else the first one where it has none yet, and
- * appends a row where all have one; by hash, since a hub may have any number of rows. For a mesh that shares nothing
- * this is exactly its own split, which is taken as it is.
+ * Each mesh was solved and split by itself. Where several of them use the same vertex, their tangents for it
+ * may agree or not. The rows of a vertex form a chain that begins with its own; a mesh takes the row of the
+ * chain where its set has the same tangent, else the first one where it has none yet, and appends a row
+ * where all have one; by hash, since a hub may have any number of rows. For a mesh that shares nothing this
+ * is exactly its own split, which is taken as it is.
  */
 #include "gltf/edit/merge_splits.h"
 
@@ -337,8 +337,8 @@ static bool same_triangles(const nt_mesh *mesh, const uint32_t *indices)
 	return true;
 }
 
-/* The user that a mesh shares its geometry with: users are in the order of their numbers. NT_NONE: none, or of another
- * pool. */
+/* The user that a mesh shares its geometry with: users are in the order of their numbers. NT_NONE: none, or
+ * of another pool. */
 static uint32_t find_same(const nt_vertex_pool *pool, const nt_mesh *mesh)
 {
 	size_t low = 0, high = pool->user_count;

@@ -26,8 +26,8 @@ static inline size_t nt_vertex_source(const nt_pool_vertices *vertices, size_t v
 	return vertex < vertices->old_count ? vertex : vertices->sources[vertex - vertices->old_count];
 }
 
-/* Merges the splits of a pool's users: a vertex of the source becomes one for each tangent (and made normal) that any of
- * them wants. The pool has a set. Everything is in the arena, or borrowed from the scene. */
+/* Merges the splits of a pool's users: a vertex of the source becomes one for each tangent (and made normal)
+ * that any of them wants. The pool has a set. Everything is in the arena, or borrowed from the scene. */
 nt_status nt_merge_splits(nt_pool_vertices *vertices, const nt_vertex_pool *pool, nt_arena *arena,
 	nt_error *error);
 

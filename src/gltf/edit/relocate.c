@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Relocation: where bytes of a source buffer lie after its edits, and writing them. A position moves by the sum of what
- * edits that end at or before it have added. Views and accessors are intervals of the buffer, so both ends are mapped
- * and the rest follows. Nothing is reordered.
+ * Relocation: where bytes of a source buffer lie after its edits, and writing them. A position moves by the
+ * sum of what edits that end at or before it have added. Views and accessors are intervals of the buffer, so
+ * both ends are mapped and the rest follows. Nothing is reordered.
  */
 #include "gltf/edit/relocate.h"
 
@@ -217,9 +217,9 @@ static nt_status put_source(nt_gltf *document, nt_gltf_buffer *buffer,
 	const uint64_t there = buffer->size < begin ? begin : buffer->size < end ? buffer->size : end;
 	const size_t size = (size_t)(there - begin);
 	nt_status status = NT_OK;
-	if (size && to->sink && buffer->home == NT_GLTF_HOME_FILE)
+	if (size && to->sink && buffer->storage == NT_GLTF_STORED_FILE)
 		status = nt_sink_copy(to->sink, &buffer->file, (size_t)begin, size, error);
-	else if (size && to->sink && buffer->home == NT_GLTF_HOME_BIN && to->input)
+	else if (size && to->sink && buffer->storage == NT_GLTF_STORED_BIN && to->input)
 		status = nt_sink_copy(to->sink, to->input,
 			document->glb.bin.offset + (size_t)begin, size, error);
 	else if (size)
@@ -236,7 +236,7 @@ static nt_status put_buffer(nt_gltf *document, const nt_relocated_buffer *buffer
 	nt_gltf_buffer *source = NULL;
 	nt_status status = NT_OK;
 	uint64_t at = 0, written = map_position(buffer, from->old_length);
-	if (from->old_length && index < NT_GLTF_VIRTUAL && document->buffers[index].home == NT_GLTF_HOME_NOWHERE)
+	if (from->old_length && index < NT_GLTF_VIRTUAL && document->buffers[index].storage == NT_GLTF_STORED_NOWHERE)
 		return put_zeros(to, from->old_length, error);
 	if (from->old_length)
 		status = nt_gltf_open_buffer(document, index, "/buffers", &source, error);

@@ -165,8 +165,8 @@ nt_status nt_vertex_pools_find(nt_vertex_pools *pools, const nt_scene *scene, nt
 
 /* ---- tangent sets of a pool ---- */
 
-/* What decides a tangent: meshes with the same three accessors form a set, if morph targets and texture transforms are
- * the same too, which is looked at where their hashes agree. */
+/* What decides a tangent: meshes with the same three accessors form a set, if morph targets and texture
+ * transforms are the same too, which is looked at where their hashes agree. */
 typedef struct set_key {
 	uint32_t positions, normals, texcoords;
 	uint32_t targets;    /* a hash of what the morph targets move */
@@ -221,8 +221,8 @@ static bool same_targets(const nt_vertex_pools *pools, const nt_mesh *a, const n
 	return true;
 }
 
-/* Whether texture transforms do the same to two meshes over the same texture coordinates. Where they do not, hardly a
- * tangent agrees: a TANGENT for each is less than a copy of every row. */
+/* Whether texture transforms do the same to two meshes over the same texture coordinates. Where they do not,
+ * hardly a tangent agrees: a TANGENT for each is less than a copy of every row. */
 static bool same_directions(const nt_mesh *a, const nt_mesh *b)
 {
 	const float *x = a->solve_texcoords, *y = b->solve_texcoords;

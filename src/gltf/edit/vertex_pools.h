@@ -2,9 +2,10 @@
 /*
  * Who shares what with whom: see vertex_pools.c.
  *
- * Primitives that share an attribute accessor share its elements, so their vertices can only be split together:
- * they are the users of one pool of vertices. Users of a pool with the same positions, normals, texture coordinates
- * (as texture transforms turn them) and morph targets form a tangent set: they have one TANGENT.
+ * Primitives that share an attribute accessor share its elements, so their vertices can only be split
+ * together: they are the users of one pool of vertices. Users of a pool with the same positions, normals,
+ * texture coordinates (as texture transforms turn them) and morph targets form a tangent set: they have one
+ * TANGENT.
  */
 #ifndef NT_GLTF_EDIT_VERTEX_POOLS_H
 #define NT_GLTF_EDIT_VERTEX_POOLS_H

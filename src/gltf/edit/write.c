@@ -25,26 +25,26 @@
 typedef struct writing {
 	nt_gltf *document;
 	nt_json *json;
-	nt_gltf_destination destination;
-	const nt_write_options *options; /* the destination's */
+	nt_gltf_output output;
+	const nt_write_options *options; /* the output's */
 	nt_file input;                   /* the document's own file, to stream from */
 	nt_relocated buffers;
 	nt_data_uris uris;
 	nt_sink *main;
-	nt_sink **companions;            /* [buffer count] the files that buffers are written to; NULL: another fate */
+	nt_sink **companions;            /* [buffer count] the files that buffers are written to; NULL: none */
 	nt_arena *arena;
 	nt_error *error;
 	bool to_glb, same_container, embed, in_place;
 } writing;
 
 /* What happens to a buffer. */
-typedef enum fate {
-	FATE_KEEP,     /* its JSON stays as it is */
-	FATE_LINK,     /* the same file, seen from the output's folder */
-	FATE_DATA,     /* a data URI */
-	FATE_BIN,      /* the BIN chunk */
-	FATE_COMPANION /* a file beside the output */
-} fate;
+typedef enum destination {
+	KEPT,   /* its JSON stays as it is */
+	LINKED, /* the same file, seen from the output's folder */
+	TO_DATA_URI,
+	TO_BIN_CHUNK,
+	TO_COMPANION /* a file beside the output */
+} destination;
 
 /* Zeros that a .glb may begin with because the source's first buffer has no data. */
 enum { EMPTY_BYTES = 1 << 24 };
@@ -109,38 +109,38 @@ static bool keeps_files(const writing *c)
 	return wish == NT_BUFFERS_LINK || wish == NT_BUFFERS_COPY;
 }
 
-static fate choose_fate(const writing *c, uint32_t index)
+static destination choose_destination(const writing *c, uint32_t index)
 {
 	const nt_gltf *document = c->document;
 	const bool edited = nt_is_edited(c->buffers.buffers[index].from);
 	/* The BIN chunk can be buffer 0 only, and only when the source's own chunk is not something else. */
 	const bool chunk_is_other = document->is_glb && document->glb.has_bin &&
-		document->buffer_count && document->buffers[0].home != NT_GLTF_HOME_BIN;
+		document->buffer_count && document->buffers[0].storage != NT_GLTF_STORED_BIN;
 	const bool files = keeps_files(c);
-	const fate in_glb = index == 0 && !chunk_is_other ? FATE_BIN : files ? FATE_COMPANION : FATE_DATA;
-	const fate moved = c->to_glb ? in_glb : c->embed ? FATE_DATA : FATE_COMPANION;
+	const destination in_glb = index == 0 && !chunk_is_other ? TO_BIN_CHUNK : files ? TO_COMPANION : TO_DATA_URI;
+	const destination moved = c->to_glb ? in_glb : c->embed ? TO_DATA_URI : TO_COMPANION;
 	if (index >= document->buffer_count)
 		return moved;
 	const nt_gltf_buffer *buffer = &document->buffers[index];
 	const bool into_glb = c->to_glb && !c->same_container;
 	if (!buffer->described)
-		return FATE_KEEP;
-	switch (buffer->home) {
-	case NT_GLTF_HOME_BIN:
+		return KEPT;
+	switch (buffer->storage) {
+	case NT_GLTF_STORED_BIN:
 		return moved;
-	case NT_GLTF_HOME_DATA:
+	case NT_GLTF_STORED_DATA:
 		if (into_glb && index == 0)
-			return FATE_BIN;
-		return edited ? FATE_DATA : FATE_KEEP;
-	case NT_GLTF_HOME_FILE:
+			return TO_BIN_CHUNK;
+		return edited ? TO_DATA_URI : KEPT;
+	case NT_GLTF_STORED_FILE:
 		if (edited || c->embed || (into_glb && !files))
 			return moved;
 		/* where the folder stays the same it is there already, as with images */
-		return c->options->buffers == NT_BUFFERS_COPY && *c->destination.link_prefix && files ? FATE_COMPANION
-											  : FATE_LINK;
+		return c->options->buffers == NT_BUFFERS_COPY && *c->output.link_prefix && files ? TO_COMPANION
+											  : LINKED;
 	default:
 		/* Buffer 0 of a .glb without a uri is the BIN chunk, so there has to be one. */
-		return into_glb && index == 0 && buffer->length <= EMPTY_BYTES ? FATE_BIN : FATE_KEEP;
+		return into_glb && index == 0 && buffer->length <= EMPTY_BYTES ? TO_BIN_CHUNK : KEPT;
 	}
 }
 
@@ -150,7 +150,7 @@ static nt_status check_first_buffer(const writing *c, const nt_byte_users *users
 {
 	const nt_gltf_buffer *first = c->document->buffers;
 	if (!c->to_glb || c->same_container || !c->document->buffer_count || !first->described ||
-		first->home != NT_GLTF_HOME_NOWHERE || nt_byte_users_count(users, 0, 0, first->length) == 0)
+		first->storage != NT_GLTF_STORED_NOWHERE || nt_byte_users_count(users, 0, 0, first->length) == 0)
 		return NT_OK;
 	return nt_fail_pointer(c->error, NT_ERROR_UNSUPPORTED, "/buffers/0",
 		"no uri, so that a .glb would need its bytes as BIN chunk, which are not there; "
@@ -169,7 +169,7 @@ static nt_status protect_inputs(writing *c)
 			const char *file, *uri = nt_gltf_external_uri(nt_json_at(elements, i), &length);
 			if (uri && nt_uri_resolve(c->arena, c->document->path, uri, length, true, &file,
 					   NULL) == NT_OK)
-				status = nt_output_protect(c->destination.output, file, NULL, c->error);
+				status = nt_output_protect(c->output.set, file, NULL, c->error);
 		}
 	}
 	return status;
@@ -200,11 +200,11 @@ static nt_status write_companion(writing *c, uint32_t index, bool first)
 	nt_sink *sink = NULL;
 	nt_status status = name_companion(c, index, first, &path);
 	if (!status)
-		status = nt_output_add(c->destination.output, path, NT_ROLE_BUFFER, &sink, c->error);
+		status = nt_output_add(c->output.set, path, NT_ROLE_BUFFER, &sink, c->error);
 	if (!status)
 		status = nt_relocated_write(&c->buffers, index, &c->input, sink, c->error);
 	if (!status)
-		status = nt_output_settle(c->destination.output, sink, c->error);
+		status = nt_output_settle(c->output.set, sink, c->error);
 	c->companions[index] = sink;
 	return status;
 }
@@ -216,12 +216,12 @@ static nt_status check_room(writing *c)
 	uint64_t sum = 0;
 	for (uint32_t i = 0; c->to_glb && i < c->buffers.buffer_count; i++) {
 		const uint64_t length = c->buffers.buffers[i].length;
-		const fate what = choose_fate(c, i);
-		if (what != FATE_BIN && what != FATE_DATA)
+		const destination what = choose_destination(c, i);
+		if (what != TO_BIN_CHUNK && what != TO_DATA_URI)
 			continue;
 		/* no sum of lengths below 2^32 wraps */
 		if (length <= UINT32_MAX)
-			sum += what == FATE_DATA ? nt_base64_length(length) : length;
+			sum += what == TO_DATA_URI ? nt_base64_length(length) : length;
 		if (length <= UINT32_MAX && sum <= UINT32_MAX)
 			continue;
 		char pointer[NT_GLTF_POINTER];
@@ -234,10 +234,10 @@ static nt_status check_room(writing *c)
 }
 
 /* What will be written must be open before its uri changes. */
-static nt_status open_source(writing *c, uint32_t index, fate what)
+static nt_status open_source(writing *c, uint32_t index, destination what)
 {
-	if (what == FATE_KEEP || what == FATE_LINK || index >= c->document->buffer_count ||
-		c->document->buffers[index].home == NT_GLTF_HOME_NOWHERE)
+	if (what == KEPT || what == LINKED || index >= c->document->buffer_count ||
+		c->document->buffers[index].storage == NT_GLTF_STORED_NOWHERE)
 		return NT_OK;
 	nt_gltf_buffer *buffer;
 	return nt_gltf_open_buffer(c->document, index, "/buffers", &buffer, c->error);
@@ -251,27 +251,27 @@ static nt_status settle_buffers(writing *c, bool *bin)
 	*bin = false;
 	for (uint32_t i = 0; !status && i < c->buffers.buffer_count; i++) {
 		nt_json_value *json = nt_json_at(nt_gltf_root_member(c->document, "buffers"), i);
-		const fate what = choose_fate(c, i);
+		const destination what = choose_destination(c, i);
 		status = open_source(c, i, what);
 		if (status)
 			break;
 		/* in place, what is linked to is what it was */
-		if (what != FATE_COMPANION && !(what == FATE_LINK && c->in_place))
+		if (what != TO_COMPANION && !(what == LINKED && c->in_place))
 			nt_gltf_forget_record(c->json, json);
 		switch (what) {
-		case FATE_KEEP:
+		case KEPT:
 			break;
-		case FATE_LINK:
-			status = nt_gltf_link(c->json, json, c->destination.link_prefix, c->error);
+		case LINKED:
+			status = nt_gltf_link(c->json, json, c->output.link_prefix, c->error);
 			break;
-		case FATE_DATA:
+		case TO_DATA_URI:
 			status = nt_data_uris_add(&c->uris, i, c->error);
 			break;
-		case FATE_BIN:
+		case TO_BIN_CHUNK:
 			nt_json_remove(c->json, json, "uri");
 			*bin = true;
 			break;
-		case FATE_COMPANION:
+		case TO_COMPANION:
 			status = write_companion(c, i, first);
 			first = false;
 			break;
@@ -340,8 +340,8 @@ static nt_status write_main(writing *c, bool bin)
 {
 	nt_sink *sink;
 	nt_status status = NT_OK;
-	if (nt_output_has_interim(c->destination.output)) {
-		status = nt_output_add(c->destination.output, c->options->path, NT_ROLE_INTERIM, &sink, c->error);
+	if (nt_output_has_interim(c->output.set)) {
+		status = nt_output_add(c->output.set, c->options->path, NT_ROLE_INTERIM, &sink, c->error);
 		if (!status)
 			status = write_document(c, bin, true, sink);
 	}
@@ -370,14 +370,14 @@ nt_status nt_gltf_write_document(nt_scene *scene, nt_buffer_edits *edits, const 
 	nt_output *output, nt_error *error)
 {
 	nt_gltf *document = edits->document;
-	writing c = {.document = document, .json = document->json, .destination = {options, output, ""},
+	writing c = {.document = document, .json = document->json, .output = {options, output, ""},
 		.options = options, .input = input_file(scene), .uris = {.relocated = &c.buffers},
 		.arena = &edits->arena, .error = error, .to_glb = options->format == NT_FORMAT_GLB,
 		.in_place = nt_output_is_in_place(output, options->path)};
 	c.same_container = c.to_glb == document->is_glb;
 	/* Standard output has no companions. */
 	c.embed = options->embed || (!c.to_glb && strcmp(options->path, "-") == 0);
-	nt_status status = nt_gltf_link_prefix(c.arena, options->path, document->path, &c.destination.link_prefix, error);
+	nt_status status = nt_gltf_link_prefix(c.arena, options->path, document->path, &c.output.link_prefix, error);
 	if (!status)
 		status = check_first_buffer(&c, &edits->users);
 	if (!status)
@@ -389,7 +389,7 @@ nt_status nt_gltf_write_document(nt_scene *scene, nt_buffer_edits *edits, const 
 	/* The last edits: images move into the document. */
 	nt_open_images images = {0};
 	if (!status)
-		status = nt_gltf_move_images(scene, edits, &c.destination, &images, error);
+		status = nt_gltf_move_images(scene, edits, &c.output, &images, error);
 	if (!status)
 		status = nt_gltf_relocate(edits, &c.buffers, error);
 	if (!status)
