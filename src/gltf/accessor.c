@@ -196,9 +196,9 @@ static nt_status check_sparse(nt_gltf *document, const nt_json_value *sparse, co
 /* The accessor of a compressed primitive is what the decoder gave, tightly packed. */
 static void use_decoded(const nt_gltf_decoded *decoded, nt_gltf_accessor *accessor)
 {
-	if (!decoded->rows)
+	if (!decoded->elements)
 		return;
-	accessor->decoded = decoded->rows;
+	accessor->decoded = decoded->elements;
 	accessor->count = decoded->count;
 	accessor->component_type = decoded->component_type;
 	accessor->component_bytes = nt_gltf_component_bytes(decoded->component_type);
@@ -233,10 +233,10 @@ nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *fr
 
 /* ---- bytes ---- */
 
-nt_status nt_gltf_accessor_rows(nt_gltf *document, const nt_gltf_accessor *accessor,
-	const unsigned char **rows, nt_error *error)
+nt_status nt_gltf_elements(nt_gltf *document, const nt_gltf_accessor *accessor,
+	const unsigned char **elements, nt_error *error)
 {
-	*rows = accessor->decoded;
+	*elements = accessor->decoded;
 	if (accessor->decoded)
 		return NT_OK;
 	if (accessor->view == NT_NONE || accessor->count == 0)
@@ -244,7 +244,7 @@ nt_status nt_gltf_accessor_rows(nt_gltf *document, const nt_gltf_accessor *acces
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "/accessors/%u", accessor->index);
 	const uint64_t length = (accessor->count - 1) * accessor->stride + accessor->element_bytes;
-	return nt_gltf_view_bytes(document, accessor->view, accessor->offset, length, pointer, rows,
+	return nt_gltf_view_bytes(document, accessor->view, accessor->offset, length, pointer, elements,
 		error);
 }
 
@@ -260,7 +260,7 @@ static uint32_t read_unsigned(const unsigned char *bytes, uint32_t component_typ
 }
 
 nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt_arena *arena,
-	const uint32_t **rows, const unsigned char **values, nt_error *error)
+	const uint32_t **elements, const unsigned char **values, nt_error *error)
 {
 	const uint64_t count = accessor->sparse_count;
 	const uint32_t width = nt_gltf_component_bytes(accessor->sparse_index_type);
@@ -282,7 +282,7 @@ nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt
 				list[i] >= accessor->count ? "less than the accessor's count" :
 							     "more than the one before");
 	}
-	*rows = list;
+	*elements = list;
 	snprintf(pointer, sizeof pointer, "/accessors/%u/sparse/values", accessor->index);
 	return nt_gltf_view_bytes(document, accessor->sparse_value_view, accessor->sparse_value_offset,
 		count * accessor->element_bytes, pointer, values, error);
@@ -290,28 +290,28 @@ nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt
 
 /* ---- decoding ---- */
 
-static void decode_row(const nt_gltf_accessor *accessor, const unsigned char *row, uint32_t width,
+static void decode_element(const nt_gltf_accessor *accessor, const unsigned char *element, uint32_t width,
 	float fill, float *out)
 {
 	for (uint32_t k = 0; k < width; k++)
 		out[k] = k < accessor->components ?
-			nt_component_value(row + k * accessor->component_bytes,
+			nt_component_value(element + k * accessor->component_bytes,
 				(int)accessor->component_type, accessor->normalized) :
 			fill;
 }
 
-static void decode_rows(const nt_gltf_accessor *accessor, const unsigned char *rows, uint32_t width,
+static void decode_elements(const nt_gltf_accessor *accessor, const unsigned char *elements, uint32_t width,
 	float fill, float *out)
 {
 	const bool plain = accessor->component_type == NT_GLTF_FLOAT && accessor->components >= width;
 	for (size_t i = 0; i < accessor->count; i++) {
-		if (!rows) {
+		if (!elements) {
 			for (uint32_t k = 0; k < width; k++)
 				out[i * width + k] = k < accessor->components ? 0 : fill;
 		} else if (plain) {
-			memcpy(out + i * width, rows + i * accessor->stride, width * sizeof *out);
+			memcpy(out + i * width, elements + i * accessor->stride, width * sizeof *out);
 		} else {
-			decode_row(accessor, rows + i * accessor->stride, width, fill, out + i * width);
+			decode_element(accessor, elements + i * accessor->stride, width, fill, out + i * width);
 		}
 	}
 }
@@ -319,21 +319,21 @@ static void decode_rows(const nt_gltf_accessor *accessor, const unsigned char *r
 nt_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width,
 	float fill, nt_arena *arena, float **floats, nt_error *error)
 {
-	const unsigned char *rows;
-	nt_status status = nt_gltf_accessor_rows(document, accessor, &rows, error);
+	const unsigned char *elements;
+	nt_status status = nt_gltf_elements(document, accessor, &elements, error);
 	if (status)
 		return status;
-	const bool as_wanted = rows && accessor->component_type == NT_GLTF_FLOAT &&
+	const bool as_wanted = elements && accessor->component_type == NT_GLTF_FLOAT &&
 		accessor->components == width && accessor->stride == width * sizeof(float) &&
-		(uintptr_t)rows % sizeof(float) == 0 && !accessor->sparse_count;
+		(uintptr_t)elements % sizeof(float) == 0 && !accessor->sparse_count;
 	if (as_wanted) {
-		memcpy(floats, &(const unsigned char *){rows}, sizeof *floats);
+		memcpy(floats, &(const unsigned char *){elements}, sizeof *floats);
 		return NT_OK;
 	}
 	float *out = nt_arena_alloc(arena, (size_t)accessor->count, width * sizeof *out);
 	if (!out)
 		return nt_fail_memory(error);
-	decode_rows(accessor, rows, width, fill, out);
+	decode_elements(accessor, elements, width, fill, out);
 	if (accessor->sparse_count) {
 		const uint32_t *replaced;
 		const unsigned char *values;
@@ -341,7 +341,7 @@ nt_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, ui
 		if (status)
 			return status;
 		for (size_t i = 0; i < accessor->sparse_count; i++)
-			decode_row(accessor, values + i * accessor->element_bytes, width, fill,
+			decode_element(accessor, values + i * accessor->element_bytes, width, fill,
 				out + (size_t)replaced[i] * width);
 	}
 	*floats = out;
@@ -363,19 +363,19 @@ nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, s
 	if (accessor->view == NT_NONE && !accessor->decoded && count > UNBACKED_INDICES)
 		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
 			"%zu indices without a bufferView", count);
-	const unsigned char *rows = NULL;
-	nt_status status = nt_gltf_accessor_rows(document, accessor, &rows, error);
+	const unsigned char *elements = NULL;
+	nt_status status = nt_gltf_elements(document, accessor, &elements, error);
 	if (status)
 		return status;
-	const bool as_wanted = type == NT_GLTF_UINT && accessor->stride == 4 && rows &&
-		(uintptr_t)rows % 4 == 0 && !accessor->sparse_count;
+	const bool as_wanted = type == NT_GLTF_UINT && accessor->stride == 4 && elements &&
+		(uintptr_t)elements % 4 == 0 && !accessor->sparse_count;
 	uint32_t *out = NULL;
 	if (as_wanted)
-		memcpy(&out, &rows, sizeof out);
+		memcpy(&out, &elements, sizeof out);
 	else if (!(out = nt_arena_alloc(arena, count, sizeof *out)))
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < count && !as_wanted; i++)
-		out[i] = rows ? read_unsigned(rows + i * accessor->stride, type) : 0;
+		out[i] = elements ? read_unsigned(elements + i * accessor->stride, type) : 0;
 	if (accessor->sparse_count) {
 		const uint32_t *replaced;
 		const unsigned char *values;

@@ -16,7 +16,7 @@ typedef struct nt_gltf_accessor {
 	bool normalized;
 	uint64_t count;
 	uint32_t view;           /* NT_NONE: all zeros, or decoded */
-	const unsigned char *decoded; /* rows from a compressed primitive; NULL: none */
+	const unsigned char *decoded; /* elements from a compressed primitive; NULL: none */
 	uint64_t offset;         /* in the view */
 	uint32_t stride;         /* as it applies, never 0 */
 	uint64_t sparse_count;   /* 0: not sparse */
@@ -28,14 +28,14 @@ typedef struct nt_gltf_accessor {
 nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_accessor *accessor, nt_error *error);
 
-/* The bytes of an accessor's rows, `stride` apart; NULL where it has no view. */
-nt_status nt_gltf_accessor_rows(nt_gltf *document, const nt_gltf_accessor *accessor,
-	const unsigned char **rows, nt_error *error);
+/* The bytes of an accessor's elements, `stride` apart; NULL where it has no view. */
+nt_status nt_gltf_elements(nt_gltf *document, const nt_gltf_accessor *accessor,
+	const unsigned char **elements, nt_error *error);
 
-/* The rows a sparse accessor replaces: their numbers, and their elements, tightly packed. Numbers are
+/* The elements a sparse accessor replaces: their numbers and new values, tightly packed. Numbers are
  * checked: increasing and below the count. The array is in the arena. */
 nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt_arena *arena,
-	const uint32_t **rows, const unsigned char **values, nt_error *error);
+	const uint32_t **elements, const unsigned char **values, nt_error *error);
 
 /*
  * An accessor as floats, `width` per element: normalized integers as the specification maps them, other

@@ -37,9 +37,9 @@ typedef struct nt_gltf_buffer {
 	const char *path;           /* of an external file */
 } nt_gltf_buffer;
 
-/* Rows of an accessor that come from a compressed primitive. */
+/* Elements of an accessor that come from a compressed primitive. */
 typedef struct nt_gltf_decoded {
-	const unsigned char *rows; /* NULL: none */
+	const unsigned char *elements; /* NULL: none */
 	size_t count;
 	uint32_t component_type;
 } nt_gltf_decoded;

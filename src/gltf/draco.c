@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * KHR_draco_mesh_compression: a primitive whose indices and some of whose attributes are one block. The
- * block is decoded when the primitive is loaded, and the accessors that it fills get their rows from
+ * block is decoded when the primitive is loaded, and the accessors that it fills get their elements from
  * it: their own count gives way to what was decoded, as the extension says.
  */
 #include "gltf/draco.h"
@@ -71,7 +71,7 @@ static nt_status decode_block(nt_gltf *document, uint64_t index, const char *poi
 	return NT_OK;
 }
 
-/* An accessor gets rows, if its type is that of the decoded attribute. */
+/* An accessor gets elements, if its type is that of the decoded attribute. */
 static nt_status give_attribute(nt_gltf *document, uint64_t index, const char *name,
 	const nt_draco_mesh *mesh, const nt_draco_attribute *from, const char *pointer, nt_error *error)
 {

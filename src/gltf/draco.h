@@ -13,7 +13,7 @@
 nt_json_value *nt_gltf_draco_of(const nt_json_value *primitive);
 
 /* Decodes a primitive's KHR_draco_mesh_compression, where it has one: from then on its accessors have
- * their rows. */
+ * their elements. */
 nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive,
 	const char *pointer, nt_error *error);
 

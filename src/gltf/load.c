@@ -149,7 +149,7 @@ typedef struct flipping {
 	float *to;
 } flipping;
 
-static void flip_rows(void *context, size_t begin, size_t end, unsigned slot)
+static void flip_range(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
 	const flipping *f = context;
@@ -169,7 +169,7 @@ static nt_status flip_texcoords(nt_scene *scene, nt_mesh *mesh, const float *sto
 	if (!mesh->texcoords)
 		return nt_fail_memory(error);
 	flipping f = {stored, mesh->texcoords};
-	nt_parallel_ranges(count < 2 * GRAIN ? 1 : nt_thread_count(threads), count, GRAIN, flip_rows, &f);
+	nt_parallel_ranges(count < 2 * GRAIN ? 1 : nt_thread_count(threads), count, GRAIN, flip_range, &f);
 	nt_gltf_forget(scene, stored, count * 2 * sizeof(float));
 	return NT_OK;
 }
@@ -297,10 +297,10 @@ static nt_status add_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *me
 }
 
 /* Sums of unit normals are not unit. */
-static void normalise_rows(float *rows, size_t count)
+static void normalise_vectors(float *vectors, size_t count)
 {
 	for (size_t i = 0; i < count; i++) {
-		float *n = rows + 3 * i;
+		float *n = vectors + 3 * i;
 		const double x = n[0], y = n[1], z = n[2], length = sqrt(x * x + y * y + z * z);
 		for (int k = 0; k < 3 && length > 0; k++)
 			n[k] = (float)(n[k] / length);
@@ -344,7 +344,7 @@ static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 		if (status)
 			return status;
 		if (morph.normals)
-			normalise_rows(morph.normals, mesh->vertex_count);
+			normalise_vectors(morph.normals, mesh->vertex_count);
 		/* one that moves a neighbour turns tangents at the border */
 		const nt_join *join = mesh->join;
 		if (morph.positions || morph.normals || (join && i < join->target_count && join->moves[i]))

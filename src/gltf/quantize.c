@@ -69,14 +69,14 @@ static double angle_between(nt_dvec3 a, nt_dvec3 b)
 	return atan2(sqrt(nt_dvec3_dot(cross, cross)), nt_dvec3_dot(a, b));
 }
 
-void nt_precision_round(nt_precision precision, float *rows, size_t count, nt_rounding *cost)
+void nt_precision_round(nt_precision precision, float *tangents, size_t count, nt_rounding *cost)
 {
 	const double most = kinds[precision].most;
 	if (precision == NT_PRECISION_FLOAT)
 		return;
 	for (size_t i = 0; i < count; i++) {
-		float *row = rows + 4 * i;
-		nt_dvec3 t = nt_dvec3_load(row), q = {0, 0, 0};
+		float *tangent = tangents + 4 * i;
+		nt_dvec3 t = nt_dvec3_load(tangent), q = {0, 0, 0};
 		if (nt_dvec3_normalise(&t)) {
 			q = nearest_direction(t, most);
 			const double angle = angle_between(t, q);
@@ -86,24 +86,24 @@ void nt_precision_round(nt_precision precision, float *rows, size_t count, nt_ro
 				cost->worst_radians = fmax(cost->worst_radians, angle);
 			}
 		}
-		row[0] = (float)(q.x / most);
-		row[1] = (float)(q.y / most);
-		row[2] = (float)(q.z / most);
-		row[3] = row[3] < 0 ? -1.0f : 1.0f;
+		tangent[0] = (float)(q.x / most);
+		tangent[1] = (float)(q.y / most);
+		tangent[2] = (float)(q.z / most);
+		tangent[3] = tangent[3] < 0 ? -1.0f : 1.0f;
 	}
 }
 
-void nt_precision_encode(nt_precision precision, const float *rows, size_t count, unsigned char *bytes)
+void nt_precision_encode(nt_precision precision, const float *tangents, size_t count, unsigned char *bytes)
 {
 	const float most = (float)kinds[precision].most;
 	if (precision == NT_PRECISION_FLOAT)
-		memcpy(bytes, rows, count * kinds[precision].bytes);
+		memcpy(bytes, tangents, count * kinds[precision].bytes);
 	for (size_t i = 0; precision == NT_PRECISION_SHORT && i < 4 * count; i++) {
-		const int16_t value = (int16_t)lrintf(rows[i] * most);
+		const int16_t value = (int16_t)lrintf(tangents[i] * most);
 		memcpy(bytes + i * sizeof value, &value, sizeof value);
 	}
 	for (size_t i = 0; precision == NT_PRECISION_BYTE && i < 4 * count; i++) {
-		const int8_t value = (int8_t)lrintf(rows[i] * most);
+		const int8_t value = (int8_t)lrintf(tangents[i] * most);
 		memcpy(bytes + i, &value, sizeof value);
 	}
 }

@@ -9,23 +9,23 @@
 
 #define NT_GLTF_QUANTIZATION "KHR_mesh_quantization"
 
-/* Bytes of a row, a multiple of 4 as glTF wants it; componentType. */
+/* Bytes of a tangent, a multiple of 4 as glTF wants it; componentType. */
 size_t nt_precision_bytes(nt_precision precision);
 uint32_t nt_precision_component_type(nt_precision precision);
 
 /*
- * Rounds tangents to what the integers can say; afterwards the rows hold what a reader will decode. w becomes
+ * Rounds tangents to what the integers can say; afterwards they hold what a reader will decode. w becomes
  * +-1 exactly. Of the up to eight integer vectors around T the one of the least angle is taken whose length is
  * within what the Khronos validator lets pass. Rows without a direction become zero. NT_PRECISION_FLOAT
  * changes nothing.
  *
- *   rows  [count][4]
+ *   tangents  [count][4]
  *   cost  what the rounding does to the directions is added to it; may be NULL
  */
-void nt_precision_round(nt_precision precision, float *rows, size_t count, nt_rounding *cost);
+void nt_precision_round(nt_precision precision, float *tangents, size_t count, nt_rounding *cost);
 
-/* The integers of rounded rows: count * nt_precision_bytes() bytes. */
-void nt_precision_encode(nt_precision precision, const float *rows, size_t count, unsigned char *bytes);
+/* The integers of rounded tangents: count * nt_precision_bytes() bytes. */
+void nt_precision_encode(nt_precision precision, const float *tangents, size_t count, unsigned char *bytes);
 
 /* Adds a cost to the scene's, and the finding that tells it. */
 void nt_precision_report(nt_scene *scene, nt_precision precision, const nt_rounding *cost,

@@ -49,7 +49,7 @@ static nt_status copy_elements(nt_appending *job, const nt_append_target *from, 
 		return NT_OK;
 	}
 	const unsigned char *elements;
-	nt_status status = nt_gltf_accessor_rows(job->document, a, &elements, job->error);
+	nt_status status = nt_gltf_elements(job->document, a, &elements, job->error);
 	for (size_t v = 0; !status && elements && v < a->count; v++)
 		memcpy(out + v * stride, elements + v * a->stride, a->element_bytes);
 	if (!status && bake && a->sparse_count) {
@@ -196,7 +196,7 @@ static nt_status block_bytes(nt_appending *job, const block *b, const unsigned c
 	/* each target has been checked against its own view; the block is their union */
 	for (size_t i = 0; !status && i < b->count; i++) {
 		const unsigned char *elements;
-		status = nt_gltf_accessor_rows(job->document, &b->targets[i].accessor, &elements, job->error);
+		status = nt_gltf_elements(job->document, &b->targets[i].accessor, &elements, job->error);
 		if (i == 0)
 			*bytes = elements;
 	}

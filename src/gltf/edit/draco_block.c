@@ -34,11 +34,11 @@ static uint32_t free_id(const nt_gltf_recoding *r)
 
 /* An attribute of ours: takes the place of one of that name. */
 static void put_floats(nt_gltf_recoding *r, const char *name, nt_draco_kind kind, int components,
-	const float *rows, int bits)
+	const float *elements, int bits)
 {
 	const nt_draco_attribute attribute = {.unique_id = free_id(r), .kind = kind,
 		.component_type = NT_GLTF_FLOAT, .components = components,
-		.quantization = {.bits = bits}, .data = rows};
+		.quantization = {.bits = bits}, .data = elements};
 	for (size_t i = 0; i < r->attribute_count; i++)
 		if (strcmp(r->names[i], name) == 0) {
 			const uint32_t id = r->attributes[i].unique_id;
@@ -58,9 +58,9 @@ static nt_status copy_attribute(nt_gltf_recoding *r, const nt_draco_attribute *f
 	if (!out)
 		return nt_fail_memory(r->error);
 	memcpy(out, from->data, all->old_count * width);
-	for (size_t row = all->old_count; row < all->new_count; row++)
-		memcpy(out + row * width,
-			(const unsigned char *)from->data + all->sources[row - all->old_count] * width, width);
+	for (size_t v = all->old_count; v < all->new_count; v++)
+		memcpy(out + v * width,
+			(const unsigned char *)from->data + nt_vertex_source(all, v) * width, width);
 	*elements = out;
 	return NT_OK;
 }
@@ -89,13 +89,13 @@ nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *r)
 
 nt_status nt_gltf_draco_add_own(nt_gltf_recoding *r)
 {
-	const nt_pool_vertices *rows = r->vertices;
+	const nt_pool_vertices *vertices = r->vertices;
 	const int bits = nt_gltf_draco_bits(r->options, NT_DRACO_BITS_TANGENT);
 	nt_status status = NT_OK;
-	if (rows->normals[0])
-		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, rows->normals[0],
+	if (vertices->normals[0])
+		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, vertices->normals[0],
 			nt_gltf_draco_bits(r->options, NT_DRACO_BITS_NORMAL));
-	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, rows->tangents[0], bits);
+	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, vertices->tangents[0], bits);
 	if (r->options->bitangents) {
 		float *bitangents;
 		status = nt_gltf_bitangents(r->vertices, 0, r->arena, &bitangents, r->error);

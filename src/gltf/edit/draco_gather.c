@@ -89,7 +89,7 @@ static nt_status tight_elements(nt_gltf_recoding *r, const nt_gltf_accessor *acc
 	unsigned char *out = nt_arena_alloc(r->arena, count, width);
 	if (!out)
 		return nt_fail_memory(r->error);
-	const nt_status status = nt_gltf_accessor_rows(r->document, accessor, &from, r->error);
+	const nt_status status = nt_gltf_elements(r->document, accessor, &from, r->error);
 	for (size_t v = 0; !status && v < count; v++)
 		memcpy(out + v * width, from + nt_vertex_source(r->vertices, v) * accessor->stride, width);
 	*result = out;
@@ -298,13 +298,13 @@ static void bound_accessor(nt_gltf *document, uint64_t index, const nt_draco_att
 {
 	nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "accessors"), (size_t)index);
 	nt_json_value *bounds[2] = {nt_json_find(json, "min"), nt_json_find(json, "max")};
-	const float *rows = decoded->data;
+	const float *values = decoded->data;
 	const size_t width = (size_t)decoded->components;
 	for (size_t b = 0; b < 2; b++)
 		for (size_t k = 0; k < width && nt_json_count(bounds[b]) == width; k++) {
-			float extreme = rows[k];
-			for (size_t row = 1; row < count; row++) {
-				const float value = rows[row * width + k];
+			float extreme = values[k];
+			for (size_t i = 1; i < count; i++) {
+				const float value = values[i * width + k];
 				if (b ? value > extreme : value < extreme)
 					extreme = value;
 			}
