@@ -24,16 +24,16 @@
 
 /* One range of the buffer that holds geometry. */
 typedef struct block {
-	const nt_part *part;
-	nt_stream stream; /* NT_STREAM_COUNT: the indices */
+	const nt_new_primitive *primitive;
+	nt_attribute attribute; /* NT_ATTRIBUTE_COUNT: the indices */
 	uint64_t offset, size;
 } block;
 
-/* The accessors of a part. */
-typedef struct part_record {
-	uint32_t streams[NT_STREAM_COUNT];
+/* The accessors of a primitive. */
+typedef struct primitive_record {
+	uint32_t attributes[NT_ATTRIBUTE_COUNT];
 	uint32_t indices;
-} part_record;
+} primitive_record;
 
 typedef struct composition {
 	nt_scene *scene;
@@ -44,8 +44,8 @@ typedef struct composition {
 	nt_model *model;
 	nt_image_set *images;
 
-	nt_parts *parts;           /* [mesh_count] */
-	part_record **records;     /* [mesh_count][parts] */
+	nt_new_primitives *primitives;           /* [mesh_count] */
+	primitive_record **records;     /* [mesh_count][primitives] */
 	uint32_t (*materials)[2];  /* [material_count] in the document, without and with textures */
 	block *blocks;
 	size_t block_count;
@@ -61,77 +61,79 @@ typedef struct byte_stream {
 
 /* ---- planning ---- */
 
-static nt_status plan_parts(composition *c, nt_error *error)
+static nt_status plan_primitives(composition *c, nt_error *error)
 {
 	nt_scene *scene = c->scene;
-	c->parts = nt_arena_alloc(&c->arena, scene->mesh_count, sizeof *c->parts);
+	c->primitives = nt_arena_alloc(&c->arena, scene->mesh_count, sizeof *c->primitives);
 	c->records = nt_arena_alloc(&c->arena, scene->mesh_count, sizeof *c->records);
 	c->materials = nt_arena_alloc(&c->arena, scene->material_count, sizeof *c->materials);
-	if (!c->parts || !c->records || !c->materials)
+	if (!c->primitives || !c->records || !c->materials)
 		return nt_fail_memory(error);
 	memset(c->materials, 0xff, scene->material_count * sizeof *c->materials);
 	size_t count = 0;
 	for (size_t m = 0; m < scene->mesh_count; m++) {
-		const nt_status status = nt_parts_make(&scene->meshes[m], &c->arena, &c->parts[m], error);
+		const nt_status status = nt_new_primitives_make(&scene->meshes[m], &c->arena, &c->primitives[m], error);
 		if (status != NT_OK)
 			return status;
-		c->records[m] = nt_arena_alloc(&c->arena, c->parts[m].count, sizeof **c->records);
+		c->records[m] = nt_arena_alloc(&c->arena, c->primitives[m].count, sizeof **c->records);
 		if (!c->records[m])
 			return nt_fail_memory(error);
-		count += c->parts[m].count;
+		count += c->primitives[m].count;
 	}
-	c->blocks = nt_arena_alloc(&c->arena, count * (NT_STREAM_COUNT + 1), sizeof *c->blocks);
+	c->blocks = nt_arena_alloc(&c->arena, count * (NT_ATTRIBUTE_COUNT + 1), sizeof *c->blocks);
 	return c->blocks ? NT_OK : nt_fail_memory(error);
 }
 
 /* Reserves a range of the buffer and gives it a view. */
-static uint32_t add_block(composition *c, const nt_part *part, nt_stream stream, uint64_t size)
+static uint32_t add_block(composition *c, const nt_new_primitive *primitive, nt_attribute attribute,
+	uint64_t size)
 {
 	const uint64_t offset = (c->buffer_size + 3) & ~(uint64_t)3;
-	c->blocks[c->block_count++] = (block){part, stream, offset, size};
+	c->blocks[c->block_count++] = (block){primitive, attribute, offset, size};
 	c->buffer_size = offset + size;
 	return nt_model_view(c->model, offset, size,
-		stream == NT_STREAM_COUNT ? NT_GLTF_ELEMENT_ARRAY_BUFFER : NT_GLTF_ARRAY_BUFFER);
+		attribute == NT_ATTRIBUTE_COUNT ? NT_GLTF_ELEMENT_ARRAY_BUFFER : NT_GLTF_ARRAY_BUFFER);
 }
 
-static uint32_t plan_stream(composition *c, const nt_part *part, nt_stream stream)
+static uint32_t plan_attribute(composition *c, const nt_new_primitive *primitive, nt_attribute attribute)
 {
-	if (!nt_part_has(part, stream) || (stream == NT_STREAM_BITANGENT && !c->options.bitangents))
+	if (!nt_new_primitive_has(primitive, attribute) ||
+		(attribute == NT_ATTRIBUTE_BITANGENT && !c->options.bitangents))
 		return NT_MODEL_NONE;
-	const int width = nt_stream_width(stream);
+	const int width = nt_attribute_width(attribute);
 	const nt_precision precision =
-		stream == NT_STREAM_TANGENT ? c->options.precision : NT_PRECISION_FLOAT;
+		attribute == NT_ATTRIBUTE_TANGENT ? c->options.precision : NT_PRECISION_FLOAT;
 	const bool integers = precision != NT_PRECISION_FLOAT;
 	const size_t row_bytes = integers ? nt_precision_bytes(precision) : (size_t)width * sizeof(float);
 	nt_model_accessor accessor = {
-		.view = add_block(c, part, stream, (uint64_t)part->vertex_count * row_bytes),
+		.view = add_block(c, primitive, attribute, (uint64_t)primitive->vertex_count * row_bytes),
 		.component_type = (int)nt_precision_component_type(precision),
 		.components = width,
-		.count = part->vertex_count,
+		.count = primitive->vertex_count,
 		.normalized = integers,
 	};
 	if (integers)
 		nt_model_require(c->model, NT_GLTF_QUANTIZATION);
 	float min[3], max[3];
-	if (stream == NT_STREAM_POSITION) {
-		nt_part_bounds(part, min, max);
+	if (attribute == NT_ATTRIBUTE_POSITION) {
+		nt_new_primitive_bounds(primitive, min, max);
 		accessor.min = min;
 		accessor.max = max;
 	}
 	return nt_model_add_accessor(c->model, &accessor);
 }
 
-static uint32_t plan_indices(composition *c, const nt_part *part)
+static uint32_t plan_indices(composition *c, const nt_new_primitive *primitive)
 {
-	if (!part->indices)
+	if (!primitive->indices)
 		return NT_MODEL_NONE;
-	const uint32_t type = nt_part_index_type(part);
+	const uint32_t type = nt_new_primitive_index_type(primitive);
 	const nt_model_accessor accessor = {
-		.view = add_block(c, part, NT_STREAM_COUNT,
-			(uint64_t)part->index_count * nt_gltf_component_bytes(type)),
+		.view = add_block(c, primitive, NT_ATTRIBUTE_COUNT,
+			(uint64_t)primitive->index_count * nt_gltf_component_bytes(type)),
 		.component_type = (int)type,
 		.components = 1,
-		.count = part->index_count,
+		.count = primitive->index_count,
 	};
 	return nt_model_add_accessor(c->model, &accessor);
 }
@@ -139,34 +141,34 @@ static uint32_t plan_indices(composition *c, const nt_part *part)
 static void plan_geometry(composition *c)
 {
 	for (size_t m = 0; m < c->scene->mesh_count; m++)
-		for (size_t p = 0; p < c->parts[m].count; p++) {
-			const nt_part *part = &c->parts[m].items[p];
-			part_record *record = &c->records[m][p];
-			for (int s = 0; s < NT_STREAM_COUNT; s++)
-				record->streams[s] = plan_stream(c, part, (nt_stream)s);
-			record->indices = plan_indices(c, part);
+		for (size_t p = 0; p < c->primitives[m].count; p++) {
+			const nt_new_primitive *primitive = &c->primitives[m].items[p];
+			primitive_record *record = &c->records[m][p];
+			for (int s = 0; s < NT_ATTRIBUTE_COUNT; s++)
+				record->attributes[s] = plan_attribute(c, primitive, (nt_attribute)s);
+			record->indices = plan_indices(c, primitive);
 		}
 }
 
-/* Which of a material's two versions a part gets: with textures, where both have something to do with
+/* Which of a material's two versions a primitive gets: with textures, where both have something to do with
  * them. */
-static bool is_textured(const composition *c, const nt_part *part)
+static bool is_textured(const composition *c, const nt_new_primitive *primitive)
 {
-	const nt_material *material = &c->scene->materials[part->material];
-	return nt_part_has(part, NT_STREAM_TEXCOORD) &&
+	const nt_material *material = &c->scene->materials[primitive->material];
+	return nt_new_primitive_has(primitive, NT_ATTRIBUTE_TEXCOORD) &&
 		(material->base_color_map || material->emissive_map || material->normal_map);
 }
 
-/* Calls body for the material of every part. */
+/* Calls body for the material of every primitive. */
 static nt_status each_material(composition *c, nt_error *error,
 	nt_status (*body)(composition *, uint32_t material, bool textured, nt_error *))
 {
 	nt_status status = NT_OK;
 	for (size_t m = 0; m < c->scene->mesh_count; m++)
-		for (size_t p = 0; p < c->parts[m].count && status == NT_OK; p++) {
-			const nt_part *part = &c->parts[m].items[p];
-			if (part->material != NT_NONE)
-				status = body(c, part->material, is_textured(c, part), error);
+		for (size_t p = 0; p < c->primitives[m].count && status == NT_OK; p++) {
+			const nt_new_primitive *primitive = &c->primitives[m].items[p];
+			if (primitive->material != NT_NONE)
+				status = body(c, primitive->material, is_textured(c, primitive), error);
 		}
 	return status;
 }
@@ -225,15 +227,15 @@ static nt_status plan_materials(composition *c, nt_error *error)
 	return status == NT_OK ? each_material(c, error, add_material) : status;
 }
 
-/* The attributes of a part, in the order of their names. */
-static size_t list_attributes(const part_record *record, nt_model_attribute *attributes)
+/* The attributes of a primitive, in the order of their names. */
+static size_t list_attributes(const primitive_record *record, nt_model_attribute *attributes)
 {
-	static const nt_stream order[NT_STREAM_COUNT] = {NT_STREAM_COLOR, NT_STREAM_NORMAL, NT_STREAM_POSITION,
-		NT_STREAM_TANGENT, NT_STREAM_TEXCOORD, NT_STREAM_BITANGENT};
+	static const nt_attribute order[NT_ATTRIBUTE_COUNT] = {NT_ATTRIBUTE_COLOR, NT_ATTRIBUTE_NORMAL, NT_ATTRIBUTE_POSITION,
+		NT_ATTRIBUTE_TANGENT, NT_ATTRIBUTE_TEXCOORD, NT_ATTRIBUTE_BITANGENT};
 	size_t count = 0;
-	for (int i = 0; i < NT_STREAM_COUNT; i++)
-		if (record->streams[order[i]] != NT_MODEL_NONE)
-			attributes[count++] = (nt_model_attribute){nt_stream_name(order[i]), record->streams[order[i]]};
+	for (int i = 0; i < NT_ATTRIBUTE_COUNT; i++)
+		if (record->attributes[order[i]] != NT_MODEL_NONE)
+			attributes[count++] = (nt_model_attribute){nt_attribute_name(order[i]), record->attributes[order[i]]};
 	return count;
 }
 
@@ -245,23 +247,23 @@ static nt_status plan_scene(composition *c, nt_error *error)
 	if (!numbers)
 		return nt_fail_memory(error);
 	for (size_t m = 0; m < scene->mesh_count; m++) {
-		if (c->parts[m].count == 0)
+		if (c->primitives[m].count == 0)
 			continue;
 		numbers[m] = nt_model_mesh(c->model, scene->meshes[m].name);
-		for (size_t p = 0; p < c->parts[m].count; p++) {
-			const nt_part *part = &c->parts[m].items[p];
-			const part_record *record = &c->records[m][p];
-			nt_model_attribute attributes[NT_STREAM_COUNT];
+		for (size_t p = 0; p < c->primitives[m].count; p++) {
+			const nt_new_primitive *primitive = &c->primitives[m].items[p];
+			const primitive_record *record = &c->records[m][p];
+			nt_model_attribute attributes[NT_ATTRIBUTE_COUNT];
 			const size_t count = list_attributes(record, attributes);
-			const uint32_t material = part->material == NT_NONE ? NT_MODEL_NONE
-				: c->materials[part->material][is_textured(c, part)];
+			const uint32_t material = primitive->material == NT_NONE ? NT_MODEL_NONE
+				: c->materials[primitive->material][is_textured(c, primitive)];
 			nt_model_primitive(c->model, attributes, count, record->indices,
 				material);
 		}
 	}
 	for (size_t i = 0; i < scene->instance_count; i++) {
 		const nt_instance *instance = &scene->instances[i];
-		if (c->parts[instance->mesh].count > 0)
+		if (c->primitives[instance->mesh].count > 0)
 			nt_model_node(c->model, scene->meshes[instance->mesh].name,
 				numbers[instance->mesh], instance->matrix);
 	}
@@ -305,17 +307,17 @@ static nt_status stream_rounded(void *user, const void *bytes, size_t size, nt_e
 	return status;
 }
 
-/* One stream of a part. */
+/* One attribute of a primitive. */
 static nt_status write_block(const composition *c, const block *b, byte_stream *stream, nt_error *error)
 {
-	if (b->stream == NT_STREAM_COUNT)
-		return nt_part_write_indices(b->part, stream_bytes, stream, error);
-	if (b->stream != NT_STREAM_TANGENT || c->options.precision == NT_PRECISION_FLOAT)
-		return nt_part_write_stream(b->part, b->stream, stream_bytes, stream, error);
+	if (b->attribute == NT_ATTRIBUTE_COUNT)
+		return nt_new_primitive_write_indices(b->primitive, stream_bytes, stream, error);
+	if (b->attribute != NT_ATTRIBUTE_TANGENT || c->options.precision == NT_PRECISION_FLOAT)
+		return nt_new_primitive_write_attribute(b->primitive, b->attribute, stream_bytes, stream, error);
 	rounding_stream rounding = {.stream = stream, .precision = c->options.precision};
 	const nt_status status =
-		nt_part_write_stream(b->part, b->stream, stream_rounded, &rounding, error);
-	nt_precision_report(c->scene, c->options.precision, &rounding.cost, &b->part->mesh->place);
+		nt_new_primitive_write_attribute(b->primitive, b->attribute, stream_rounded, &rounding, error);
+	nt_precision_report(c->scene, c->options.precision, &rounding.cost, &b->primitive->mesh->place);
 	return status;
 }
 
@@ -484,7 +486,7 @@ nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_o
 	nt_status status = c.model ? NT_OK : nt_fail_memory(error);
 	/* What becomes of each mesh. */
 	if (status == NT_OK)
-		status = plan_parts(&c, error);
+		status = plan_primitives(&c, error);
 	/* Where everything lies in the buffer. */
 	if (status == NT_OK) {
 		plan_geometry(&c);

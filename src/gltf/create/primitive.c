@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Parts: see primitive.h. Planning makes at most one array of indices per mesh; attributes are gathered
- * while they are written, through a buffer that stays in the cache, and go straight from the mesh where
+ * New primitives: see primitive.h. Planning makes at most one array of indices per mesh; attributes are
+ * gathered while they are written, through a buffer that stays in the cache, and go straight from the mesh where
  * nothing has to be changed. So writing costs about what copying to the file costs.
  */
 #include "gltf/create/primitive.h"
@@ -36,10 +36,10 @@ static size_t triangle_count(const nt_mesh *mesh)
 }
 
 /* A mesh with one primitive that is drawn as it is. */
-static nt_part whole_part(const nt_mesh *mesh)
+static nt_new_primitive whole_primitive(const nt_mesh *mesh)
 {
 	const uint32_t *indices = corner_vertices(mesh);
-	return (nt_part){
+	return (nt_new_primitive){
 		.mesh = mesh,
 		.material = mesh->primitive_count ? mesh->primitives[0].material : NT_NONE,
 		.vertex_count = indices ? vertex_count_after_split(mesh) : mesh->corner_count,
@@ -83,31 +83,31 @@ static uint32_t *sort_triangles(const nt_mesh *mesh, nt_arena *arena, size_t *fi
 	return sorted;
 }
 
-/* Gives the part the vertices that its indices use, in the order of first use. `numbers` is NT_NONE
+/* Gives the primitive the vertices that its indices use, in the order of first use. `numbers` is NT_NONE
  * for all vertices, before and after. */
-static bool compact(nt_part *part, uint32_t *indices, uint32_t *numbers, nt_arena *arena)
+static bool compact(nt_new_primitive *primitive, uint32_t *indices, uint32_t *numbers, nt_arena *arena)
 {
 	size_t count = 0;
-	for (size_t i = 0; i < part->index_count; i++)
+	for (size_t i = 0; i < primitive->index_count; i++)
 		if (numbers[indices[i]] == NT_NONE)
 			numbers[indices[i]] = (uint32_t)count++;
 	uint32_t *vertices = nt_arena_alloc(arena, count, sizeof *vertices);
 	if (!vertices)
 		return false;
-	for (size_t i = 0; i < part->index_count; i++) {
+	for (size_t i = 0; i < primitive->index_count; i++) {
 		const uint32_t number = numbers[indices[i]];
 		vertices[number] = indices[i];
 		indices[i] = number;
 	}
 	for (size_t i = 0; i < count; i++)
 		numbers[vertices[i]] = NT_NONE;
-	part->vertex_count = count;
-	part->vertices = vertices;
+	primitive->vertex_count = count;
+	primitive->vertices = vertices;
 	return true;
 }
 
-/* One part per primitive that has faces. */
-static bool divide(const nt_mesh *mesh, nt_arena *arena, nt_parts *parts, const size_t *first,
+/* One for each of the mesh's primitives that has faces. */
+static bool divide(const nt_mesh *mesh, nt_arena *arena, nt_new_primitives *made, const size_t *first,
 	uint32_t *sorted)
 {
 	const size_t vertices = vertex_count_after_split(mesh);
@@ -119,20 +119,20 @@ static bool divide(const nt_mesh *mesh, nt_arena *arena, nt_parts *parts, const 
 	for (size_t p = 0; p < mesh->primitive_count && done; p++) {
 		if (first[p] == first[p + 1])
 			continue;
-		nt_part *part = &parts->items[parts->count++];
-		*part = (nt_part){.mesh = mesh,
+		nt_new_primitive *primitive = &made->items[made->count++];
+		*primitive = (nt_new_primitive){.mesh = mesh,
 			.material = mesh->primitives[p].material,
 			.index_count = first[p + 1] - first[p],
 			.indices = sorted + first[p]};
-		done = compact(part, sorted + first[p], numbers, arena);
+		done = compact(primitive, sorted + first[p], numbers, arena);
 	}
 	free(numbers);
 	return done;
 }
 
-nt_status nt_parts_make(const nt_mesh *mesh, nt_arena *arena, nt_parts *parts, nt_error *error)
+nt_status nt_new_primitives_make(const nt_mesh *mesh, nt_arena *arena, nt_new_primitives *made, nt_error *error)
 {
-	*parts = (nt_parts){0};
+	*made = (nt_new_primitives){0};
 	if (mesh->face_count == 0)
 		return NT_OK;
 	if (vertex_count_after_split(mesh) > UINT32_MAX)
@@ -143,12 +143,12 @@ nt_status nt_parts_make(const nt_mesh *mesh, nt_arena *arena, nt_parts *parts, n
 		return nt_fail(error, NT_ERROR_INTERNAL, "solved quads come without their diagonals");
 
 	const size_t primitives = mesh->primitive_count ? mesh->primitive_count : 1;
-	parts->items = nt_arena_alloc(arena, primitives, sizeof *parts->items);
-	if (!parts->items)
+	made->items = nt_arena_alloc(arena, primitives, sizeof *made->items);
+	if (!made->items)
 		return nt_fail_memory(error);
 	if (primitives == 1) {
-		parts->items[0] = whole_part(mesh);
-		parts->count = 1;
+		made->items[0] = whole_primitive(mesh);
+		made->count = 1;
 		if (!mesh->face_sizes)
 			return NT_OK;
 	}
@@ -157,36 +157,36 @@ nt_status nt_parts_make(const nt_mesh *mesh, nt_arena *arena, nt_parts *parts, n
 	if (!sorted)
 		return nt_fail_memory(error);
 	if (primitives == 1) {
-		parts->items[0].vertex_count = vertex_count_after_split(mesh);
-		parts->items[0].indices = sorted;
-		parts->items[0].index_count = first[1];
+		made->items[0].vertex_count = vertex_count_after_split(mesh);
+		made->items[0].indices = sorted;
+		made->items[0].index_count = first[1];
 		return NT_OK;
 	}
-	return divide(mesh, arena, parts, first, sorted) ? NT_OK : nt_fail_memory(error);
+	return divide(mesh, arena, made, first, sorted) ? NT_OK : nt_fail_memory(error);
 }
 
-/* ---- what a part has ---- */
+/* ---- what a primitive has ---- */
 
 static const struct {
 	const char *name;
 	int width;
-} stream_table[NT_STREAM_COUNT] = {
-	[NT_STREAM_POSITION] = {"POSITION", 3},
-	[NT_STREAM_NORMAL] = {"NORMAL", 3},
-	[NT_STREAM_TANGENT] = {"TANGENT", 4},
-	[NT_STREAM_TEXCOORD] = {"TEXCOORD_0", 2},
-	[NT_STREAM_COLOR] = {"COLOR_0", 4},
-	[NT_STREAM_BITANGENT] = {"_BITANGENT", 3},
+} attribute_table[NT_ATTRIBUTE_COUNT] = {
+	[NT_ATTRIBUTE_POSITION] = {"POSITION", 3},
+	[NT_ATTRIBUTE_NORMAL] = {"NORMAL", 3},
+	[NT_ATTRIBUTE_TANGENT] = {"TANGENT", 4},
+	[NT_ATTRIBUTE_TEXCOORD] = {"TEXCOORD_0", 2},
+	[NT_ATTRIBUTE_COLOR] = {"COLOR_0", 4},
+	[NT_ATTRIBUTE_BITANGENT] = {"_BITANGENT", 3},
 };
 
-const char *nt_stream_name(nt_stream stream)
+const char *nt_attribute_name(nt_attribute attribute)
 {
-	return stream_table[stream].name;
+	return attribute_table[attribute].name;
 }
 
-int nt_stream_width(nt_stream stream)
+int nt_attribute_width(nt_attribute attribute)
 {
-	return stream_table[stream].width;
+	return attribute_table[attribute].width;
 }
 
 /* Tangents by vertex after the split: solved, or authored ones that were kept. */
@@ -195,49 +195,49 @@ static const float *vertex_tangents(const nt_mesh *mesh)
 	return mesh->split.vertex_tangents ? mesh->split.vertex_tangents : mesh->tangents;
 }
 
-/* The mesh's array for a stream; all but tangents have a row for the vertices before the split only. */
-static const float *stream_rows(const nt_mesh *mesh, nt_stream stream)
+/* The mesh's array for an attribute; all but tangents have a row for the vertices before the split only. */
+static const float *attribute_rows(const nt_mesh *mesh, nt_attribute attribute)
 {
-	switch (stream) {
-	case NT_STREAM_POSITION:
+	switch (attribute) {
+	case NT_ATTRIBUTE_POSITION:
 		return mesh->positions;
-	case NT_STREAM_NORMAL:
+	case NT_ATTRIBUTE_NORMAL:
 		return mesh->normals;
-	case NT_STREAM_TEXCOORD:
+	case NT_ATTRIBUTE_TEXCOORD:
 		return mesh->texcoords;
-	case NT_STREAM_COLOR:
+	case NT_ATTRIBUTE_COLOR:
 		return mesh->colors;
 	default:
 		return mesh->normals ? vertex_tangents(mesh) : NULL;
 	}
 }
 
-bool nt_part_has(const nt_part *part, nt_stream stream)
+bool nt_new_primitive_has(const nt_new_primitive *primitive, nt_attribute attribute)
 {
-	return stream_rows(part->mesh, stream) != NULL;
+	return attribute_rows(primitive->mesh, attribute) != NULL;
 }
 
-uint32_t nt_part_index_type(const nt_part *part)
+uint32_t nt_new_primitive_index_type(const nt_new_primitive *primitive)
 {
-	return nt_gltf_index_type(part->vertex_count, NT_GLTF_USHORT);
+	return nt_gltf_index_type(primitive->vertex_count, NT_GLTF_USHORT);
 }
 
-/* The vertex before the split whose attributes a vertex of the part has. */
-static size_t source_vertex(const nt_part *part, size_t row)
+/* The vertex before the split whose attributes a vertex of the primitive has. */
+static size_t source_vertex(const nt_new_primitive *primitive, size_t row)
 {
-	const size_t vertex = part->vertices ? part->vertices[row] : row;
-	const nt_mesh *mesh = part->mesh;
+	const size_t vertex = primitive->vertices ? primitive->vertices[row] : row;
+	const nt_mesh *mesh = primitive->mesh;
 	return vertex < mesh->vertex_count ? vertex : mesh->split.sources[vertex - mesh->vertex_count];
 }
 
-void nt_part_bounds(const nt_part *part, float min[3], float max[3])
+void nt_new_primitive_bounds(const nt_new_primitive *primitive, float min[3], float max[3])
 {
 	float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
 	/* without a list the copies follow the vertices they are copies of */
-	const size_t count = part->vertices || part->vertex_count < part->mesh->vertex_count
-		? part->vertex_count : part->mesh->vertex_count;
+	const size_t count = primitive->vertices || primitive->vertex_count < primitive->mesh->vertex_count
+		? primitive->vertex_count : primitive->mesh->vertex_count;
 	for (size_t i = 0; i < count; i++) {
-		const float *p = part->mesh->positions + 3 * (part->vertices ? source_vertex(part, i) : i);
+		const float *p = primitive->mesh->positions + 3 * (primitive->vertices ? source_vertex(primitive, i) : i);
 		for (int k = 0; k < 3; k++) {
 			low[k] = p[k] < low[k] ? p[k] : low[k];
 			high[k] = p[k] > high[k] ? p[k] : high[k];
@@ -279,22 +279,23 @@ static bool all_unit(const float *normals, size_t count)
 	return unit;
 }
 
-/* Rows [begin, begin + count) of a stream's array, as the mesh has them. */
-static void gather(const nt_part *part, nt_stream stream, size_t begin, size_t count, float *out)
+/* Rows [begin, begin + count) of an attribute's array, as the mesh has them. */
+static void gather(const nt_new_primitive *primitive, nt_attribute attribute, size_t begin, size_t count,
+	float *out)
 {
-	const nt_mesh *mesh = part->mesh;
-	const size_t width = stream == NT_STREAM_BITANGENT ? 4 : (size_t)stream_table[stream].width;
-	const float *rows = stream_rows(mesh, stream);
-	const bool split_rows = stream == NT_STREAM_TANGENT || stream == NT_STREAM_BITANGENT;
+	const nt_mesh *mesh = primitive->mesh;
+	const size_t width = attribute == NT_ATTRIBUTE_BITANGENT ? 4 : (size_t)attribute_table[attribute].width;
+	const float *rows = attribute_rows(mesh, attribute);
+	const bool split_rows = attribute == NT_ATTRIBUTE_TANGENT || attribute == NT_ATTRIBUTE_BITANGENT;
 	const size_t stored = split_rows ? vertex_count_after_split(mesh) : mesh->vertex_count;
-	if (!part->vertices && begin + count <= stored) {
+	if (!primitive->vertices && begin + count <= stored) {
 		memcpy(out, rows + width * begin, width * count * sizeof *out);
 		return;
 	}
 	for (size_t i = 0; i < count; i++) {
 		const size_t row = begin + i;
-		const size_t from = !split_rows ? source_vertex(part, row)
-			: part->vertices ? part->vertices[row] : row;
+		const size_t from = !split_rows ? source_vertex(primitive, row)
+			: primitive->vertices ? primitive->vertices[row] : row;
 		memcpy(out + width * i, rows + width * from, width * sizeof *out);
 	}
 }
@@ -319,35 +320,35 @@ static void make_bitangents(const float *normals, float *tangents, size_t count)
 		nt_bitangent(normals + 3 * i, tangents + 4 * i, tangents + 3 * i);
 }
 
-nt_status nt_part_write_stream(const nt_part *part, nt_stream stream, nt_part_write write,
-	void *user, nt_error *error)
+nt_status nt_new_primitive_write_attribute(const nt_new_primitive *primitive, nt_attribute attribute,
+	nt_byte_writer write, void *user, nt_error *error)
 {
-	const nt_mesh *mesh = part->mesh;
-	const size_t row_bytes = (size_t)stream_table[stream].width * sizeof(float);
+	const nt_mesh *mesh = primitive->mesh;
+	const size_t row_bytes = (size_t)attribute_table[attribute].width * sizeof(float);
 	size_t begin = 0;
-	const bool as_it_is = stream == NT_STREAM_POSITION || stream == NT_STREAM_COLOR ||
-		stream == NT_STREAM_TANGENT ||
-		(stream == NT_STREAM_NORMAL && all_unit(mesh->normals, mesh->vertex_count));
-	if (as_it_is && !part->vertices) {
-		const size_t stored = stream == NT_STREAM_TANGENT ? vertex_count_after_split(mesh)
+	const bool as_it_is = attribute == NT_ATTRIBUTE_POSITION || attribute == NT_ATTRIBUTE_COLOR ||
+		attribute == NT_ATTRIBUTE_TANGENT ||
+		(attribute == NT_ATTRIBUTE_NORMAL && all_unit(mesh->normals, mesh->vertex_count));
+	if (as_it_is && !primitive->vertices) {
+		const size_t stored = attribute == NT_ATTRIBUTE_TANGENT ? vertex_count_after_split(mesh)
 								  : mesh->vertex_count;
-		begin = part->vertex_count < stored ? part->vertex_count : stored;
+		begin = primitive->vertex_count < stored ? primitive->vertex_count : stored;
 		const nt_status status =
-			write(user, stream_rows(mesh, stream), begin * row_bytes, error);
+			write(user, attribute_rows(mesh, attribute), begin * row_bytes, error);
 		if (status != NT_OK)
 			return status;
 	}
 	float block[4 * BLOCK_ROWS], normals[3 * BLOCK_ROWS];
-	while (begin < part->vertex_count) {
-		const size_t left = part->vertex_count - begin;
+	while (begin < primitive->vertex_count) {
+		const size_t left = primitive->vertex_count - begin;
 		const size_t count = left < BLOCK_ROWS ? left : BLOCK_ROWS;
-		gather(part, stream, begin, count, block);
-		if (stream == NT_STREAM_TEXCOORD)
+		gather(primitive, attribute, begin, count, block);
+		if (attribute == NT_ATTRIBUTE_TEXCOORD)
 			flip_v(block, count);
-		if (stream == NT_STREAM_NORMAL)
+		if (attribute == NT_ATTRIBUTE_NORMAL)
 			make_units(block, count);
-		if (stream == NT_STREAM_BITANGENT) {
-			gather(part, NT_STREAM_NORMAL, begin, count, normals);
+		if (attribute == NT_ATTRIBUTE_BITANGENT) {
+			gather(primitive, NT_ATTRIBUTE_NORMAL, begin, count, normals);
 			make_units(normals, count);
 			make_bitangents(normals, block, count);
 		}
@@ -359,18 +360,18 @@ nt_status nt_part_write_stream(const nt_part *part, nt_stream stream, nt_part_wr
 	return NT_OK;
 }
 
-nt_status nt_part_write_indices(const nt_part *part, nt_part_write write, void *user,
+nt_status nt_new_primitive_write_indices(const nt_new_primitive *primitive, nt_byte_writer write, void *user,
 	nt_error *error)
 {
-	if (nt_part_index_type(part) == NT_GLTF_UINT)
-		return write(user, part->indices, part->index_count * sizeof *part->indices, error);
+	if (nt_new_primitive_index_type(primitive) == NT_GLTF_UINT)
+		return write(user, primitive->indices, primitive->index_count * sizeof *primitive->indices, error);
 	uint16_t block[4 * BLOCK_ROWS];
 	size_t begin = 0;
-	while (begin < part->index_count) {
-		const size_t left = part->index_count - begin;
+	while (begin < primitive->index_count) {
+		const size_t left = primitive->index_count - begin;
 		const size_t count = left < 4 * BLOCK_ROWS ? left : 4 * BLOCK_ROWS;
 		for (size_t i = 0; i < count; i++)
-			block[i] = (uint16_t)part->indices[begin + i];
+			block[i] = (uint16_t)primitive->indices[begin + i];
 		const nt_status status = write(user, block, count * sizeof *block, error);
 		if (status != NT_OK)
 			return status;
