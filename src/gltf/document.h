@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * A glTF document as nmtan sees it: the JSON as parsed, and views of it that are checked when they are
- * asked for and not before. What nobody asks for is never judged, opened or decoded.
+ * asked for and not before. What nobody asks for is never checked, opened or decoded.
  *
  * Every function that reads from the document reports faults with the JSON pointer of what is wrong.
  */

@@ -58,7 +58,7 @@ static bool is_wanted(const nt_mesh *mesh, bool kept)
 static nt_status read_kind(const group *g, const nt_mesh *mesh, kind *k, nt_error *error)
 {
 	nt_gltf_shading shading;
-	const nt_status status = nt_gltf_judge_materials(g->document, nt_gltf_primitive_of(g->document, mesh),
+	const nt_status status = nt_gltf_find_slots(g->document, nt_gltf_primitive_of(g->document, mesh),
 		mesh->place.pointer, &shading, error);
 	if (status)
 		return status;

@@ -232,7 +232,7 @@ static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *me
 	const nt_mesh *giver = mesh->transform_of ? mesh->transform_of : mesh;
 	const nt_json_value *primitive = nt_gltf_primitive_of(document, giver);
 	nt_gltf_shading shading;
-	const nt_status status = nt_gltf_judge_materials(document, primitive, giver->place.pointer,
+	const nt_status status = nt_gltf_find_slots(document, primitive, giver->place.pointer,
 		&shading, error);
 	if (status || !shading.has_set || shading.set != mesh->texcoord_set || !mesh->texcoords)
 		return status;

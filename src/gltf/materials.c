@@ -209,7 +209,7 @@ static void choose_set(const wishes *all, nt_gltf_shading *shading)
 	}
 }
 
-nt_status nt_gltf_judge_materials(nt_gltf *document, const nt_json_value *primitive,
+nt_status nt_gltf_find_slots(nt_gltf *document, const nt_json_value *primitive,
 	const char *pointer, nt_gltf_shading *shading, nt_error *error)
 {
 	*shading = (nt_gltf_shading){.material = NT_NONE};

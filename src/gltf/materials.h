@@ -27,8 +27,8 @@ typedef struct nt_gltf_shading {
 	bool transforms_differ;      /* another material or slot transforms that set otherwise */
 } nt_gltf_shading;
 
-/* Judges the materials of a primitive, variants included. */
-nt_status nt_gltf_judge_materials(nt_gltf *document, const nt_json_value *primitive,
+/* What the materials of a primitive want, variants included: slots, texture coordinates, transform. */
+nt_status nt_gltf_find_slots(nt_gltf *document, const nt_json_value *primitive,
 	const char *pointer, nt_gltf_shading *shading, nt_error *error);
 
 #endif

@@ -3,7 +3,7 @@
  * glTF and GLB as a scene: every primitive is a mesh of its own, since glTF defines tangents per
  * primitive. Opening describes the meshes from the JSON alone; load.c brings the geometry of one.
  *
- * Only what must be read is judged. Opening looks at meshes, their materials and who shows them; a
+ * Only what must be read is checked. Opening looks at meshes, their materials and who shows them; a
  * primitive's accessors are checked when it is loaded; cameras, skins, animations and images are not
  * looked at.
  */
@@ -100,7 +100,7 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	nt_status status = nt_gltf_uint(primitive, pointer, "mode", 6, NT_GLTF_TRIANGLES, &mode, error);
 	nt_gltf_shading shading;
 	if (!status)
-		status = nt_gltf_judge_materials(document, primitive, pointer, &shading, error);
+		status = nt_gltf_find_slots(document, primitive, pointer, &shading, error);
 	if (status)
 		return status;
 	name_place(document, mesh, shading.material);

@@ -31,7 +31,7 @@ typedef struct same_job {
 	size_t table_size;
 } same_job;
 
-/* Whether the mesh is going to be loaded: to be solved, or to be judged alone. */
+/* Whether the mesh is going to be loaded: to be solved, or only to be checked. */
 static bool is_wanted(const nt_mesh *mesh, const nt_read_options *options)
 {
 	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR ||
@@ -101,7 +101,7 @@ static nt_status put_key(same_job *job, const nt_mesh *mesh, nt_error *error)
 	const nt_json_value *primitive = nt_gltf_primitive_of(job->document, mesh);
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
 	nt_gltf_shading shading;
-	const nt_status status = nt_gltf_judge_materials(job->document, primitive, mesh->place.pointer,
+	const nt_status status = nt_gltf_find_slots(job->document, primitive, mesh->place.pointer,
 		&shading, error);
 	if (status)
 		return status;

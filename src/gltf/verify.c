@@ -398,9 +398,9 @@ static bool counts_match(const nt_mesh *mesh, const primitive_view *view)
 	return match;
 }
 
-/* A mesh of a patched document stands where it stood. Strips and fans keep their own indices: there only the
+/* A mesh of an edited document stands where it stood. Strips and fans keep their own indices: there only the
  * number of tangents is checked. */
-static nt_status verify_patched(nt_reread *model, const nt_mesh *mesh, nt_error *error)
+static nt_status verify_edited(nt_reread *model, const nt_mesh *mesh, nt_error *error)
 {
 	primitive_view view;
 	nt_status status = open_primitive(model, mesh->gltf_mesh, mesh->gltf_primitive, &view, error);
@@ -421,10 +421,10 @@ static nt_status compare_scene(const nt_scene *scene, nt_reread *model, nt_error
 	size_t number = 0;
 	for (size_t m = 0; m < scene->mesh_count; m++) {
 		const nt_mesh *mesh = &scene->meshes[m];
-		const bool patched = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
+		const bool edited = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
 		nt_status status = NT_OK;
-		if (patched)
-			status = mesh->split.vertex_tangents ? verify_patched(model, mesh, error) : NT_OK;
+		if (edited)
+			status = mesh->split.vertex_tangents ? verify_edited(model, mesh, error) : NT_OK;
 		else if (mesh->face_count)
 			status = verify_composed(model, mesh, number++, error);
 		if (status != NT_OK)
@@ -435,7 +435,7 @@ static nt_status compare_scene(const nt_scene *scene, nt_reread *model, nt_error
 
 /* Whether tinygltf refuses the input as well. Then nobody can say by it what became of the output, and a finding
  * says so. */
-static nt_status judge_input(nt_scene *scene, nt_error *error)
+static nt_status check_input(nt_scene *scene, nt_error *error)
 {
 	if (scene->format != NT_FORMAT_GLTF && scene->format != NT_FORMAT_GLB)
 		return NT_ERROR_INTERNAL;
@@ -472,7 +472,7 @@ nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path,
 	status = nt_reread_open(&model, file.data, file.size, find_companion, &set, error);
 	const bool refused = status == NT_ERROR_INPUT;
 	if (refused)
-		status = judge_input(scene, error);
+		status = check_input(scene, error);
 	if (status == NT_ERROR_INTERNAL)
 		error->status = status;
 	if (status == NT_OK && !refused)

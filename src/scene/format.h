@@ -55,7 +55,7 @@ typedef enum nt_buffers {
 	NT_BUFFERS_EMBED    /* data URIs, of a .glb the first one as BIN chunk: the same as nt_write_options.embed */
 } nt_buffers;
 
-/* NONE: for new documents; a document that is patched keeps its images. */
+/* NONE: for new documents; a document that is edited keeps its images. */
 typedef enum nt_images { NT_IMAGES_DEFAULT, NT_IMAGES_LINK, NT_IMAGES_EMBED, NT_IMAGES_COPY,
 	NT_IMAGES_NONE } nt_images;
 

@@ -230,8 +230,8 @@ static nt_status plan_materials(composition *c, nt_error *error)
 /* The attributes of a primitive, in the order of their names. */
 static size_t list_attributes(const primitive_record *record, nt_model_attribute *attributes)
 {
-	static const nt_attribute order[NT_ATTRIBUTE_COUNT] = {NT_ATTRIBUTE_COLOR, NT_ATTRIBUTE_NORMAL, NT_ATTRIBUTE_POSITION,
-		NT_ATTRIBUTE_TANGENT, NT_ATTRIBUTE_TEXCOORD, NT_ATTRIBUTE_BITANGENT};
+	static const nt_attribute order[NT_ATTRIBUTE_COUNT] = {NT_ATTRIBUTE_COLOR, NT_ATTRIBUTE_NORMAL,
+		NT_ATTRIBUTE_POSITION, NT_ATTRIBUTE_TANGENT, NT_ATTRIBUTE_TEXCOORD, NT_ATTRIBUTE_BITANGENT};
 	size_t count = 0;
 	for (int i = 0; i < NT_ATTRIBUTE_COUNT; i++)
 		if (record->attributes[order[i]] != NT_MODEL_NONE)
