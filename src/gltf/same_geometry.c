@@ -4,14 +4,15 @@
  *
  * Everything that load() reads of a primitive is written down as numbers: the accessors of what a solve
  * takes, with accessors over the same bytes counted as one, the mode, the compressed block and the
- * texture transform. Primitives with equal numbers have equal geometry; a hash table finds them in linear
+ * texture transform. Primitives with equal numbers have equal geometry; a table of keys finds them in linear
  * time. What is not known to be equal is not.
  */
 #include "gltf/same_geometry.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
+#include "base/buffer.h"
+#include "base/name_table.h"
 #include "gltf/materials.h"
 #include "gltf/primitive.h"
 
@@ -25,10 +26,7 @@ typedef struct same_job {
 	const nt_read_options *options;
 	uint32_t *first_alias; /* [accessor_count] */
 	size_t accessor_count;
-	nt_buffer keys;      /* of all meshes, one behind the other */
-	size_t *begin;       /* [mesh_count + 1] where a mesh's key begins */
-	uint32_t *table;     /* [table_size] numbers of meshes; at most half full */
-	size_t table_size;
+	nt_buffer key;       /* of the mesh at hand */
 } same_job;
 
 /* Whether the mesh is going to be loaded: to be solved, or only to be checked. */
@@ -42,7 +40,7 @@ static bool is_wanted(const nt_mesh *mesh, const nt_read_options *options)
 
 static void put_number(same_job *job, uint64_t number)
 {
-	nt_buffer_append(&job->keys, &number, sizeof number);
+	nt_buffer_append(&job->key, &number, sizeof number);
 }
 
 /* The accessor that a member names; a faulty one is followed by the mesh's own number. */
@@ -83,8 +81,8 @@ static void put_transform(same_job *job, const nt_mesh *mesh, const nt_gltf_shad
 	put_number(job, applies);
 	if (!applies)
 		return;
-	nt_buffer_append(&job->keys, &t->rotation, sizeof t->rotation);
-	nt_buffer_append(&job->keys, t->scale, sizeof t->scale);
+	nt_buffer_append(&job->key, &t->rotation, sizeof t->rotation);
+	nt_buffer_append(&job->key, t->scale, sizeof t->scale);
 }
 
 static void put_targets(same_job *job, const nt_mesh *mesh, const nt_json_value *primitive)
@@ -120,56 +118,36 @@ static nt_status put_key(same_job *job, const nt_mesh *mesh, nt_error *error)
 	put_transform(job, mesh, &shading);
 	if (!job->options->world && job->options->morphs == NT_MORPH_BAKE)
 		put_targets(job, mesh, primitive);
-	return job->keys.failed ? nt_fail_memory(error) : NT_OK;
+	return job->key.failed ? nt_fail_memory(error) : NT_OK;
 }
 
 /* ---- finding equal ones ---- */
 
-static bool same_key(const same_job *job, size_t a, size_t b)
+/* first: [wanted] by the number of its key, the first mesh that has it. */
+static nt_status find_all(same_job *job, nt_scene *scene, uint32_t *first, nt_error *error)
 {
-	const size_t size = job->begin[a + 1] - job->begin[a];
-	return size == job->begin[b + 1] - job->begin[b] &&
-		memcmp(job->keys.data + job->begin[a], job->keys.data + job->begin[b], size) == 0;
-}
-
-static uint64_t hash_key(const same_job *job, size_t mesh)
-{
-	uint64_t hash = 0x9e3779b97f4a7c15u;
-	for (size_t at = job->begin[mesh]; at < job->begin[mesh + 1]; at += sizeof hash) {
-		uint64_t word;
-		memcpy(&word, job->keys.data + at, sizeof word);
-		hash = (hash ^ word) * 0xff51afd7ed558ccdu;
-		hash ^= hash >> 32;
-	}
-	return hash;
-}
-
-/* The first mesh with the same key, which may be this one. */
-static uint32_t find_first(same_job *job, uint32_t mesh)
-{
-	size_t at = hash_key(job, mesh) & (job->table_size - 1);
-	while (job->table[at] != NT_NONE && !same_key(job, job->table[at], mesh))
-		at = (at + 1) & (job->table_size - 1);
-	if (job->table[at] == NT_NONE)
-		job->table[at] = mesh;
-	return job->table[at];
-}
-
-static nt_status find_all(same_job *job, nt_scene *scene, nt_error *error)
-{
+	nt_name_table keys = {0};
+	nt_arena arena = {0};
 	nt_status status = NT_OK;
 	for (uint32_t i = 0; !status && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
-		job->begin[i] = job->begin[i + 1] = job->keys.size;
 		/* what is solved with others has a result of its own */
 		if (!is_wanted(mesh, job->options) || mesh->join)
 			continue;
+		job->key.size = 0;
 		status = put_key(job, mesh, error);
-		job->begin[i + 1] = job->keys.size;
-		const uint32_t first = status ? i : find_first(job, i);
-		if (first != i)
-			mesh->same_as = &scene->meshes[first];
+		const size_t known = keys.count;
+		const char *text = status ? NULL : nt_arena_text(&arena, job->key.data, job->key.size);
+		const uint32_t number = text ? nt_name_add(&keys, text, job->key.size) : NT_NONE;
+		if (!status && number == NT_NONE)
+			status = nt_fail_memory(error);
+		if (!status && number == known)
+			first[number] = i;
+		else if (!status)
+			mesh->same_as = &scene->meshes[first[number]];
 	}
+	nt_name_table_free(&keys);
+	nt_arena_free(&arena);
 	return status;
 }
 
@@ -180,24 +158,15 @@ nt_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_
 		wanted += is_wanted(&scene->meshes[i], options);
 	if (wanted < 2)
 		return NT_OK;
-	same_job job = {.scene = scene, .document = scene->source, .options = options, .table_size = 4};
+	same_job job = {.scene = scene, .document = scene->source, .options = options};
 	job.accessor_count = nt_json_count(nt_gltf_root_member(job.document, "accessors"));
-	while (job.table_size < 2 * wanted)
-		job.table_size *= 2;
 	job.first_alias = nt_alloc(job.accessor_count, sizeof *job.first_alias);
-	job.begin = nt_alloc(scene->mesh_count + 1, sizeof *job.begin);
-	job.table = nt_alloc(job.table_size, sizeof *job.table);
-	nt_status status = NT_ERROR_MEMORY;
-	if (!job.first_alias || !job.begin || !job.table ||
-		!nt_gltf_find_first_aliases(job.document, job.first_alias, job.accessor_count)) {
-		nt_fail_memory(error);
-	} else {
-		memset(job.table, 0xFF, job.table_size * sizeof *job.table);
-		status = find_all(&job, scene, error);
-	}
-	nt_buffer_free(&job.keys);
+	uint32_t *first = nt_alloc(wanted, sizeof *first);
+	const bool ready = job.first_alias && first &&
+		nt_gltf_find_first_aliases(job.document, job.first_alias, job.accessor_count);
+	const nt_status status = ready ? find_all(&job, scene, first, error) : nt_fail_memory(error);
+	nt_buffer_free(&job.key);
 	free(job.first_alias);
-	free(job.begin);
-	free(job.table);
+	free(first);
 	return status;
 }

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Pools are found with a union-find over the accessors; tangent sets by a hash of all that decides a tangent.
+ * Pools are found with a union-find over the accessors; tangent sets by a key of all that decides a tangent.
  */
 #include "gltf/edit/vertex_pools.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/hash_index.h"
+#include "base/buffer.h"
+#include "base/name_table.h"
 #include "gltf/draco.h"
 
 /* ---- other users ---- */
@@ -165,133 +166,87 @@ nt_status nt_vertex_pools_find(nt_vertex_pools *pools, const nt_scene *scene, nt
 
 /* ---- tangent sets of a pool ---- */
 
-/* What decides a tangent: meshes with the same three accessors form a set, if morph targets and texture
- * transforms are the same too, which is looked at where their hashes agree. */
-typedef struct set_key {
-	uint32_t positions, normals, texcoords;
-	uint32_t targets;    /* a hash of what the morph targets move */
-	uint64_t join;       /* what is solved with others has other tangents than alone: 0, or the join's number + 1 */
-	uint64_t directions; /* a hash of what a texture transform makes of the texture coordinates; 0: there is none */
-} set_key;
+static void put_number(nt_buffer *key, uint64_t number)
+{
+	nt_buffer_append(key, &number, sizeof number);
+}
 
-static uint32_t alias_of(const nt_vertex_pools *pools, const nt_json_value *attributes,
+/* The accessor that a member names, by first alias. */
+static void put_accessor(nt_buffer *key, const nt_vertex_pools *pools, const nt_json_value *attributes,
 	const char *name)
 {
 	uint64_t accessor;
-	if (!nt_json_get_uint64(nt_json_find(attributes, name), &accessor) ||
-		accessor >= pools->accessor_count)
-		return NT_NONE;
-	return pools->first_alias[accessor];
+	const bool known = nt_json_get_uint64(nt_json_find(attributes, name), &accessor) &&
+		accessor < pools->accessor_count;
+	put_number(key, known ? pools->first_alias[accessor] : NT_NONE);
 }
 
-static set_key key_of(const nt_vertex_pools *pools, const nt_mesh *mesh)
+/*
+ * Writes down what decides a tangent: meshes with equal keys form a set. Texture coordinates count as texture transforms
+ * turn them; where those do not agree, hardly a tangent does, and a TANGENT for each is less than a copy of every
+ * vertex.
+ */
+static void put_key(nt_buffer *key, const nt_vertex_pools *pools, const nt_mesh *mesh)
 {
 	char name[32];
 	snprintf(name, sizeof name, "TEXCOORD_%u", mesh->texcoord_set);
 	const nt_json_value *primitive = nt_gltf_primitive_of(pools->scene->source, mesh);
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
 	const nt_json_value *targets = nt_json_find(primitive, "targets");
-	uint32_t hash = (uint32_t)mesh->morph_count;
+	put_accessor(key, pools, attributes, "POSITION");
+	put_accessor(key, pools, attributes, "NORMAL");
+	put_accessor(key, pools, attributes, name);
+	/* what is solved with others has other tangents than alone */
+	put_number(key, mesh->join ? (uint64_t)(mesh->join - pools->scene->joins) + 1 : 0);
+	put_number(key, mesh->morph_count);
+	put_number(key, nt_json_count(targets));
 	for (size_t i = 0; i < nt_json_count(targets); i++) {
-		const nt_json_value *target = nt_json_at(targets, i);
-		hash = (hash ^ alias_of(pools, target, "POSITION")) * 16777619u;
-		hash = (hash ^ alias_of(pools, target, "NORMAL")) * 16777619u;
+		put_accessor(key, pools, nt_json_at(targets, i), "POSITION");
+		put_accessor(key, pools, nt_json_at(targets, i), "NORMAL");
 	}
-	const uint64_t join = mesh->join ? (uint64_t)(mesh->join - pools->scene->joins) + 1 : 0;
-	const uint64_t directions = !mesh->solve_texcoords ? 0 :
-		nt_hash_bytes(1, mesh->solve_texcoords, mesh->vertex_count * 2 * sizeof *mesh->solve_texcoords);
-	return (set_key){alias_of(pools, attributes, "POSITION"),
-		alias_of(pools, attributes, "NORMAL"), alias_of(pools, attributes, name),
-		hash, join, directions};
+	if (mesh->solve_texcoords)
+		nt_buffer_append(key, mesh->solve_texcoords,
+			mesh->vertex_count * 2 * sizeof *mesh->solve_texcoords);
 }
 
-/* Whether the morph targets of two meshes move the same accessors. */
-static bool same_targets(const nt_vertex_pools *pools, const nt_mesh *a, const nt_mesh *b)
+/* Appends a user to its set, which may be a new one. keys: their numbers are those of the sets; last: [set] its last
+ * user yet. */
+static bool join_set(nt_name_table *keys, nt_arena *arena, uint32_t *last, nt_tangent_sets *sets, uint32_t user,
+	const nt_buffer *key)
 {
-	const nt_gltf *document = pools->scene->source;
-	const nt_json_value *x = nt_json_find(nt_gltf_primitive_of(document, a), "targets");
-	const nt_json_value *y = nt_json_find(nt_gltf_primitive_of(document, b), "targets");
-	if (a->morph_count != b->morph_count || nt_json_count(x) != nt_json_count(y))
+	const char *text = key->failed ? NULL : nt_arena_text(arena, key->data, key->size);
+	const uint32_t set = text ? nt_name_add(keys, text, key->size) : NT_NONE;
+	if (set == NT_NONE)
 		return false;
-	static const char *const names[] = {"POSITION", "NORMAL"};
-	for (size_t i = 0; i < 2 * nt_json_count(x); i++)
-		if (alias_of(pools, nt_json_at(x, i / 2), names[i % 2]) !=
-			alias_of(pools, nt_json_at(y, i / 2), names[i % 2]))
-			return false;
-	return true;
-}
-
-/* Whether texture transforms do the same to two meshes over the same texture coordinates. Where they do not,
- * hardly a tangent agrees: a TANGENT for each is less than a copy of every row. */
-static bool same_directions(const nt_mesh *a, const nt_mesh *b)
-{
-	const float *x = a->solve_texcoords, *y = b->solve_texcoords;
-	if (x == y)
-		return true;
-	return x && y && a->vertex_count == b->vertex_count &&
-		memcmp(x, y, a->vertex_count * 2 * sizeof *x) == 0;
-}
-
-/* What is known of the sets while they are found: thousands may share one accessor of positions, so they
- * stand in a table by the hash of their key. */
-typedef struct set_table {
-	set_key *keys;      /* [set] */
-	uint32_t *last;     /* [set] its last user yet */
-	uint32_t *slots;    /* [slot_count] sets or NT_NONE; at most half full */
-	size_t slot_count;  /* a power of two */
-} set_table;
-
-static size_t slot_of(const set_key *key, size_t slot_count)
-{
-	return (size_t)(nt_hash_bytes(0, key, sizeof *key) >> 32) & (slot_count - 1);
-}
-
-/* Appends a user to its set, which may be a new one. */
-static void join_set(set_table *table, nt_vertex_pool *pool, const nt_vertex_pools *pools, uint32_t user)
-{
-	nt_tangent_sets *sets = &pool->sets;
-	const nt_mesh *mesh = nt_pool_mesh(pool, user);
-	const set_key key = key_of(pools, mesh);
-	size_t slot = slot_of(&key, table->slot_count);
-	for (; table->slots[slot] != NT_NONE; slot = (slot + 1) & (table->slot_count - 1)) {
-		const uint32_t set = table->slots[slot];
-		const nt_mesh *first = nt_pool_set_mesh(pool, set);
-		if (memcmp(&table->keys[set], &key, sizeof key) != 0 || !same_directions(first, mesh) ||
-			!same_targets(pools, first, mesh))
-			continue;
-		sets->next[table->last[set]] = user;
-		table->last[set] = user;
-		sets->of[user] = set;
-		return;
-	}
-	const uint32_t set = (uint32_t)sets->count++;
-	table->slots[slot] = set;
-	table->keys[set] = key;
-	table->last[set] = sets->first[set] = user;
+	if (set == sets->count)
+		sets->first[sets->count++] = user;
+	else
+		sets->next[last[set]] = user;
+	last[set] = user;
 	sets->of[user] = set;
+	return true;
 }
 
 static bool find_sets(nt_vertex_pool *pool, const nt_vertex_pools *pools)
 {
-	const size_t count = pool->user_count;
-	set_table table = {.slot_count = 2};
-	while (table.slot_count < 2 * count)
-		table.slot_count *= 2;
-	table.keys = nt_alloc(count, sizeof *table.keys);
-	table.last = nt_alloc(count, sizeof *table.last);
-	table.slots = nt_alloc(table.slot_count, sizeof *table.slots);
-	const bool room = table.keys && table.last && table.slots;
-	if (room)
-		memset(table.slots, 0xff, table.slot_count * sizeof *table.slots);
-	for (uint32_t i = 0; room && i < count; i++) {
+	uint32_t *last = nt_alloc(pool->user_count, sizeof *last);
+	nt_name_table keys = {0};
+	nt_arena arena = {0};
+	nt_buffer key = {0};
+	bool found = last != NULL;
+	for (uint32_t i = 0; found && i < pool->user_count; i++) {
 		pool->sets.of[i] = pool->sets.next[i] = NT_NONE;
-		if (nt_gltf_is_solved(nt_pool_mesh(pool, i)))
-			join_set(&table, pool, pools, i);
+		if (!nt_gltf_is_solved(nt_pool_mesh(pool, i)))
+			continue;
+		key.size = 0;
+		put_key(&key, pools, nt_pool_mesh(pool, i));
+		found = join_set(&keys, &arena, last, &pool->sets, i, &key);
 	}
-	free(table.keys);
-	free(table.last);
-	free(table.slots);
-	return room;
+	nt_buffer_free(&key);
+	nt_arena_free(&arena);
+	nt_name_table_free(&keys);
+	free(last);
+	return found;
 }
 
 nt_status nt_vertex_pools_get(const nt_vertex_pools *pools, size_t number, nt_arena *arena, nt_vertex_pool *pool,
