@@ -171,6 +171,28 @@ static nt_status find_joins(run *r)
 	return status;
 }
 
+/* For a report alone, the comparison of a join costs at most some times what is solved anyway: primitives that lie
+ * on each other, as copies of one set of accessors do, are no surface that was cut by material. */
+static void leave_out_large_joins(run *r)
+{
+	enum { MOST_TIMES = 4, ALWAYS = 65536 };
+	nt_scene *scene = &r->scene;
+	if (r->settings->across == NT_ACROSS_MESH)
+		return;
+	size_t solved = 0, kept = 0;
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		if (is_wanted(&scene->meshes[i]) && !scene->meshes[i].same_as)
+			solved += scene->meshes[i].face_count;
+	for (size_t i = 0; i < scene->join_count; i++) {
+		size_t faces = 0;
+		for (size_t k = 0; k < scene->joins[i].part_count; k++)
+			faces += scene->joins[i].parts[k]->face_count;
+		if (faces <= MOST_TIMES * solved + ALWAYS)
+			scene->joins[kept++] = scene->joins[i];
+	}
+	scene->join_count = kept;
+}
+
 /* Loads the copies in joins. For a report alone, what cannot be read is left out. */
 static nt_status load_copies(run *r)
 {
@@ -202,6 +224,7 @@ static nt_status load_meshes(run *r)
 		if (status)
 			return status;
 	}
+	leave_out_large_joins(r);
 	for (size_t i = 0; r->reader->load && i < r->scene.mesh_count; i++) {
 		nt_mesh *mesh = &r->scene.meshes[i];
 		const bool loadable = mesh->triangles && mesh->has_positions;
