@@ -253,6 +253,15 @@ static nt_status parse_property(parser *p)
 	return expect_end(p);
 }
 
+/* A line that some exporter wrote without "comment" before it. Behind the first element it could be a misspelt property,
+ * without which rows would be read as what they are not. */
+static nt_status pass_over(parser *p)
+{
+	if (p->header->unknown_lines++ == 0)
+		p->header->unknown_line = p->line;
+	return NT_OK;
+}
+
 static nt_status parse_line(parser *p, bool *finished)
 {
 	const word keyword = next_word(p);
@@ -266,6 +275,8 @@ static nt_status parse_line(parser *p, bool *finished)
 		return parse_element(p);
 	if (is(keyword, "property"))
 		return parse_property(p);
+	if (p->header->element_count == 0 && !is(keyword, "end_header"))
+		return pass_over(p);
 	if (!is(keyword, "end_header"))
 		return fail_word(p, keyword,
 			"comment, obj_info, element, property or end_header");

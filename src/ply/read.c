@@ -55,7 +55,9 @@ static nt_status find_roles(ply_source *source, nt_error *error)
 	static const char *const colors[][4] = {{"red", "green", "blue", "alpha"},
 		{"red", "green", "blue", NULL}, {"diffuse_red", "diffuse_green", "diffuse_blue", NULL}};
 	static const char *const texcoords[][2] = {{"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"},
-		{"texcoord_u", "texcoord_v"}};
+		{"texcoord_u", "texcoord_v"}, {"texture_s", "texture_t"}, {"tu", "tv"},
+		{"texcoord_0", "texcoord_1"}};
+	enum { TEXCOORD_NAMES = sizeof texcoords / sizeof *texcoords };
 	ply_roles *roles = &source->roles;
 	const ply_element *vertex = source->vertex;
 	if (!find_set(vertex, positions, 3, roles->position))
@@ -65,7 +67,7 @@ static nt_status find_roles(ply_source *source, nt_error *error)
 	find_set(vertex, tangents, 4, roles->tangent);
 	for (size_t i = 0; i < 3 && !find_set(vertex, colors[i], 4, roles->color); i++)
 		;
-	for (size_t i = 0; i < 4 && !find_set(vertex, texcoords[i], 2, roles->texcoord); i++)
+	for (size_t i = 0; i < TEXCOORD_NAMES && !find_set(vertex, texcoords[i], 2, roles->texcoord); i++)
 		;
 	return NT_OK;
 }
@@ -117,6 +119,13 @@ static nt_status find_elements(ply_source *source, nt_error *error)
 /* What the file has and the scene has not. */
 static void report_unused(nt_scene *scene, const ply_source *source)
 {
+	if (source->header.unknown_lines) {
+		nt_place place;
+		nt_place_clear(&place);
+		place.line = source->header.unknown_line;
+		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, source->header.unknown_lines,
+			"lines of the header that are no statements");
+	}
 	for (size_t i = 0; i < source->header.element_count; i++) {
 		const ply_element *element = &source->header.elements[i];
 		if (element == source->vertex || element == source->face || element == source->strips ||

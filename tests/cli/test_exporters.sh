@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+# What some exporters write, against the letter of the formats, and others read.
+. "$ROOT/tests/support/cli.sh"
+
+# A PLY triangle whose texture coordinates have these names, and a line behind the format. No normals.
+named_ply() {
+	printf '%s\n' ply 'format ascii 1.0' "${3:-comment}" 'element vertex 3' 'property float x' 'property float y' \
+		'property float z' "property float $1" "property float $2" 'element face 1' \
+		'property list uchar int vertex_indices' end_header '0 0 0 0 0' '1 0 0 0.5 0' '0 1 0 0 0.25' '3 0 1 2'
+}
+
+scene "texture coordinates of a PLY have many names"
+for names in 's t' 'u v' 'texture_u texture_v' 'texcoord_u texcoord_v' 'texture_s texture_t' 'tu tv' 'texcoord_0 texcoord_1'; do
+	named_ply $names >n.ply
+	run n.ply n.glb
+	exits 0
+	is "$names $(gltf n.glb 'rows(g.meshes[0].primitives[0].attributes.TEXCOORD_0).join(" ")')" "$names 0,1 0.5,1 0,0.75"
+done
+
+scene "a line of a PLY header that is no statement is passed over before the first element"
+named_ply s t 'Created by Blender3D 2.48' >n.ply
+run -v n.ply n.glb
+exits 0
+says 'n.ply:3: info: 1 statement was not used: lines of the header that are no statements'
+
+scene "behind the first element it could be a misspelt property, and is refused"
+named_ply s t | sed 's/property float y/propery float y/' >n.ply
+run n.ply n.glb
+exits 3
+says 'n.ply:6: found "propery"'
+only n.ply
+
+scene "zero bytes behind the text of an OBJ are a finding"
+for count in 1 40; do
+	{ cat "$data/quad.obj"; head -c $count /dev/zero; } >q.obj
+	run -v q.obj q.glb
+	exits 0
+	says "$count zero bytes at the end"
+	run "$data/quad.obj" same.glb
+	same q.glb same.glb
+done
+
+scene "zero bytes within an OBJ are an error as before"
+printf 'v 0 0 0\0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n' >q.obj
+run q.obj q.glb
+exits 3
+
+scene "an OBJ whose faces refer to vn, of which it has none, gets normals and a warning"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1/1 2/2/2 3/3/-1\n' >n.obj
+run -v n.obj n.glb
+exits 0
+says NORMALS_NOT_THERE
+says NORMALS_MADE
+is "$(gltf n.glb 'rows(g.meshes[0].primitives[0].attributes.NORMAL).join(" ")')" "0,0,1 0,0,1 0,0,1"
+printf 'vn 0 0 1\n' >>n.obj
+run n.obj n.glb
+exits 3
+
+scene "a restart of KHR_mesh_primitive_restart is said to be unsupported, without the extension it is an error"
+python3 - <<'END'
+import base64, json, struct
+data = struct.pack('<12f', 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0) + struct.pack('<8H', 0, 1, 2, 65535, 1, 3, 2, 0)
+d = {'asset': {'version': '2.0'}, 'extensionsUsed': ['KHR_mesh_primitive_restart'],
+     'meshes': [{'primitives': [{'attributes': {'POSITION': 0, 'NORMAL': 0, 'TEXCOORD_0': 2}, 'indices': 1, 'mode': 5}]}],
+     'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 4, 'type': 'VEC3', 'min': [0, 0, 0], 'max': [1, 1, 0]},
+                   {'bufferView': 1, 'componentType': 5123, 'count': 7, 'type': 'SCALAR'},
+                   {'bufferView': 2, 'componentType': 5126, 'count': 4, 'type': 'VEC2'}],
+     'bufferViews': [{'buffer': 0, 'byteLength': 48}, {'buffer': 0, 'byteOffset': 48, 'byteLength': 16},
+                     {'buffer': 0, 'byteLength': 48, 'byteStride': 12}],
+     'buffers': [{'byteLength': len(data), 'uri': 'data:application/octet-stream;base64,' + base64.b64encode(data).decode()}]}
+json.dump(d, open('r.gltf', 'w'))
+del d['extensionsUsed']
+json.dump(d, open('plain.gltf', 'w'))
+END
+run --only=all --check r.gltf
+exits 5
+says KHR_mesh_primitive_restart
+run --only=all --check plain.gltf
+exits 3
+
+scene "CSV and Markdown are UTF-8 whatever a file is called"
+name=$(printf 'caf\351"x.obj')
+cp "$data/mirrored_cube.obj" "$name"
+for format in csv markdown; do
+	run --check --fail-on=never --report-format=$format "$name"
+	exits 0
+	python3 -c 'import sys; sys.exit("caf\ufffd" not in open(sys.argv[1], encoding="utf-8").read())' "$WORK/out.txt" ||
+		wrong "$format is not UTF-8, or lacks the name"
+done
+
+done_testing
