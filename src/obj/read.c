@@ -21,6 +21,7 @@
 
 #include <limits.h>
 #include <stdatomic.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/clock.h"
@@ -111,10 +112,28 @@ static bool add_tail(obj_file *file, size_t *capacity, const char *begin, const 
 	return file->tail && add_chunk(file, capacity, file->tail, padded_end);
 }
 
+/* The end of the text: some exporters write zero bytes behind it, which are a finding. */
+static const char *end_of_text(nt_scene *scene)
+{
+	const char *const begin = (const char *)scene->bytes;
+	size_t size = scene->byte_count;
+	while (size > 0 && begin[size - 1] == '\0')
+		size--;
+	if (size < scene->byte_count) {
+		nt_place place;
+		nt_place_clear(&place);
+		snprintf(place.file, sizeof place.file, "%s", scene->path);
+		place.offset = size;
+		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1,
+			"OBJ: %zu zero bytes at the end", scene->byte_count - size);
+	}
+	return begin + size;
+}
+
 static nt_status split(obj_file *file, nt_error *error)
 {
 	const char *p = (const char *)file->scene->bytes;
-	const char *const end = p + file->scene->byte_count;
+	const char *const end = end_of_text(file->scene);
 	if (end - p >= 3 && memcmp(p, "\xEF\xBB\xBF", 3) == 0)
 		p += 3;
 	const char *const begin = p;
