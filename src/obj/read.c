@@ -313,6 +313,12 @@ nt_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error 
 	if (!status)
 		status = obj_make_vertices(&file, error);
 	scene->index_seconds = nt_seconds() - begin;
+	if (!status && file.lacks_normals) {
+		nt_place place;
+		nt_place_clear(&place);
+		snprintf(place.file, sizeof place.file, "%s", scene->path);
+		nt_finding_add(&scene->findings, NT_CODE_NORMALS_NOT_THERE, &place, 1, NULL);
+	}
 	if (!status)
 		status = obj_make_meshes(&file, error);
 	if (!status && (scene->findings.failed || !obj_keep_places(&file)))

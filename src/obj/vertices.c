@@ -200,6 +200,10 @@ static nt_status number_distinct(obj_file *file, obj_chunk *chunk, size_t begin,
 {
 	for (size_t i = begin; i < end; i++) {
 		obj_corner c = chunk->distinct[i];
+		if (c.n != OBJ_ABSENT && file->row_counts[OBJ_VN] == 0) {
+			file->lacks_normals = true;
+			c.n = OBJ_ABSENT;
+		}
 		if (!resolve(&c.v, chunk->rows[OBJ_V].first, file->row_counts[OBJ_V]) ||
 			!resolve(&c.t, chunk->rows[OBJ_VT].first, file->row_counts[OBJ_VT]) ||
 			!resolve(&c.n, chunk->rows[OBJ_VN].first, file->row_counts[OBJ_VN]))

@@ -61,6 +61,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"--normals=replace-flat or replace-smooth asks for it. The finding counts corners that had a normal.",
 		"Nothing; --normals=flat and smooth make only those that are missing.",
 		"a PLY triangle with nx, ny, nz and --normals=replace-flat"),
+	ROW(NORMALS_NOT_THERE, WARNING, "faces refer to normals, but the file has none",
+		"The file has faces with numbers of normals and not a single vn. Normals are made as if the numbers were not "
+		"there.",
+		"Export the normals, or faces without them.",
+		"an OBJ triangle of corners like 1/1/1 without vn"),
 	ROW(NORMALS_SCALED, INFO, "{count} {normal was|normals were} made unit for the tangents",
 		"The length differs from 1 by more than 2^-12. Tangents lie across the unit normal, which is what "
 		"renderers make of it. An OBJ's or PLY's normals are stored unit in a new glTF, a glTF keeps those that "
