@@ -59,7 +59,8 @@ nt_status nt_meshopt_unpack(const nt_meshopt_view *v, const unsigned char *packe
 	if (attributes) {
 		if (size && packed[0] == 0xA1)
 			return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
-				"version 1 of the vertex codec, which nmtan does not decode");
+				"version 1 of the vertex codec, which nmtan does not decode: write the file without this "
+				"compression, or with EXT_meshopt_compression, which has version 0");
 		result = meshopt_decodeVertexBuffer(bytes, count, stride, packed, size);
 	} else if (strcmp(v->mode, "TRIANGLES") == 0) {
 		result = meshopt_decodeIndexBuffer(bytes, count, stride, packed, size);

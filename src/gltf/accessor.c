@@ -389,7 +389,11 @@ nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, s
 	const uint32_t most = nt_largest(out, count, threads);
 	const bool sound = count == 0 || (most < vertex_count && most < reserved);
 	for (size_t i = 0; !sound && i < count; i++)
-		if (out[i] >= vertex_count || out[i] == reserved)
+		if (out[i] == reserved && nt_gltf_uses(document, "KHR_mesh_primitive_restart"))
+			return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
+				"index %zu restarts the primitive (KHR_mesh_primitive_restart), which nmtan does not do: "
+				"write a list of triangles", i);
+		else if (out[i] >= vertex_count || out[i] == reserved)
 			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 				"index %zu is %u%s, there are %zu vertices", i, out[i],
 				out[i] == reserved ? " (reserved)" : "", vertex_count);

@@ -31,6 +31,17 @@ nt_json_value *nt_gltf_root_member(const nt_gltf *document, const char *name)
 	return nt_json_find(nt_json_root(document->json), name);
 }
 
+bool nt_gltf_uses(const nt_gltf *document, const char *extension)
+{
+	const nt_json_value *used = nt_gltf_root_member(document, "extensionsUsed");
+	for (size_t i = 0; i < nt_json_count(used); i++) {
+		const char *name = nt_json_get_string(nt_json_at(used, i), NULL);
+		if (name && strcmp(name, extension) == 0)
+			return true;
+	}
+	return false;
+}
+
 nt_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t index,
 	const char *from, const nt_json_value **element, nt_error *error)
 {

@@ -88,6 +88,9 @@ void nt_gltf_forget(const nt_scene *scene, const void *bytes, size_t size);
 /* A member of the root: NULL where there is none. */
 nt_json_value *nt_gltf_root_member(const nt_gltf *document, const char *name);
 
+/* Whether extensionsUsed has the name. */
+bool nt_gltf_uses(const nt_gltf *document, const char *extension);
+
 /* Element of a root array, which must be an object. `from` is the JSON pointer of the reference. */
 nt_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t index,
 	const char *from, const nt_json_value **element, nt_error *error);
