@@ -12,8 +12,11 @@ static void put_cell(const char *text, nt_buffer *out)
 	nt_buffer_text(out, "\"");
 	if (*text && strchr("=+-@\t\r", *text))
 		nt_buffer_text(out, "'");
-	for (; *text; text++)
-		nt_buffer_append(out, *text == '"' ? "\"\"" : text, *text == '"' ? 2 : 1);
+	while (*text) {
+		if (*text == '"')
+			nt_buffer_text(out, "\"");
+		text += nt_put_utf8(text, out);
+	}
 	nt_buffer_text(out, "\",");
 }
 

@@ -11,7 +11,8 @@ enum { MOST_ROWS = 100 };
 
 static void put_escaped(const char *text, nt_buffer *out)
 {
-	for (; *text; text++) {
+	for (size_t length; *text; text += length) {
+		length = 1;
 		const unsigned char c = (unsigned char)*text;
 		if (c < 0x20 || c == 0x7f)
 			nt_buffer_text(out, " ");
@@ -22,7 +23,7 @@ static void put_escaped(const char *text, nt_buffer *out)
 		else if (strchr("\\`*_{}[]()#+-!|>~@", c))
 			nt_buffer_format(out, "\\%c", c);
 		else
-			nt_buffer_append(out, text, 1);
+			length = nt_put_utf8(text, out);
 	}
 }
 

@@ -37,6 +37,10 @@ void nt_totals_text(const nt_totals *totals, nt_buffer *out);
 /* The name a mesh is shown with: its object in words, its name or its number. Never empty. */
 void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out);
 
+/* One character of a text that may be any bytes: as it is where it is UTF-8, else U+FFFD. Returns its length in the
+ * text, which is not at its end. */
+size_t nt_put_utf8(const char *text, nt_buffer *out);
+
 /* A JSON string with its quotes; bytes that are no UTF-8 become U+FFFD. */
 void nt_json_string(const char *text, nt_buffer *out);
 
