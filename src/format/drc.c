@@ -88,7 +88,8 @@ static nt_status fill_scene(nt_scene *scene, const nt_draco_mesh *from, nt_error
 	nt_primitive *primitive = nt_arena_alloc(&scene->arena, 1, sizeof *primitive);
 	if (!mesh || !instance || !indices || !primitive)
 		return nt_fail_memory(error);
-	memcpy(indices, from->indices, from->face_count * 3 * sizeof *indices);
+	if (from->face_count) /* else `from` has no array */
+		memcpy(indices, from->indices, from->face_count * 3 * sizeof *indices);
 	*instance = (nt_instance){.matrix = {[0] = 1.0, [5] = 1.0, [10] = 1.0, [15] = 1.0}};
 	*primitive = (nt_primitive){.material = NT_NONE, .face_count = from->face_count};
 	*mesh = (nt_mesh){.name = "", .gltf_mesh = NT_NONE, .gltf_primitive = NT_NONE,
