@@ -66,7 +66,7 @@ static void indices_out_of_range_are_named(void **state)
 		"face refers to \"v\" number 4, but the file has 3");
 	assert_fails(TRIANGLE "vt 0 0\nf 1/1 2/2 3\n", 5,
 		"face refers to \"vt\" number 2, but the file has 1");
-	assert_fails(TRIANGLE "f 1//1 2//2 3//3\n", 4, "face refers to \"vn\" number 1, but the file has 0");
+	assert_fails(TRIANGLE "vn 0 0 1\nf 1//1 2//2 3//3\n", 5, "face refers to \"vn\" number 2, but the file has 1");
 	assert_fails(TRIANGLE "f 1 2 99999999\n", 4,
 		"face refers to \"v\" number 99999999, but the file has 3");
 	assert_fails(TRIANGLE "f 1 2 2147483647\n", 4,

@@ -442,12 +442,16 @@ static void lines_longer_than_a_chunk(void **state)
 
 /* ---- the models ---- */
 
-/* test_wrong_attribute_mapping refers to normals it does not have, inf_nan has no finite position,
- * test_lines has no face: these are refused. */
+/* inf_nan has no finite position, test_lines has no face: these are refused. */
 static bool is_refused(const char *name)
 {
-	return strcmp(name, "test_wrong_attribute_mapping.obj") == 0 || strcmp(name, "inf_nan.obj") == 0 ||
-		strcmp(name, "test_lines.obj") == 0;
+	return strcmp(name, "inf_nan.obj") == 0 || strcmp(name, "test_lines.obj") == 0;
+}
+
+/* Refers to normals that it does not have: the naive reader does not know that they are passed over. */
+static bool lacks_normals(const char *name)
+{
+	return strcmp(name, "test_wrong_attribute_mapping.obj") == 0;
 }
 
 static char *read_file(const char *path, size_t *size)
@@ -486,7 +490,7 @@ static void public_models_agree_with_the_naive_reader(void **state)
 			nt_error error;
 			assert_int_equal(open_scene(&scene, bytes, size, 2, &error), NT_ERROR_INPUT);
 			nt_scene_free(&scene);
-		} else {
+		} else if (!lacks_normals(entry->d_name)) {
 			assert_agrees(bytes, size, 2);
 		}
 		free(bytes);

@@ -22,7 +22,9 @@ static void header_mistakes_have_their_line(void **state)
 	assert_refused("ply\nformat text 1.0\n", 2,
 		"found \"text\", expected ascii, binary_little_endian or binary_big_endian");
 	assert_refused("ply\nformat ascii\n", 2, "the line ends where the version, 1.0, was expected");
-	assert_refused("ply\nformat ascii 1.0\nelments vertex 3\n", 3,
+	assert_refused("ply\nformat ascii 1.0\nelments vertex 3\nproperty float x\n", 4,
+		"a property before the first element");
+	assert_refused("ply\nformat ascii 1.0\nelement vertex 3\nelments face 3\n", 4,
 		"found \"elments\", expected comment, obj_info, element, property or end_header");
 	assert_refused("ply\nformat ascii 1.0\nelement vertex\n", 3,
 		"the line ends where the number of rows was expected");
