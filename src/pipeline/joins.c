@@ -397,11 +397,15 @@ static void compare_part(nt_scene *scene, const nt_mesh *mesh, const float *join
 			"by up to %.1f degrees", nt_angle(sqrt(fmax(0, 1 - least * least)), least) * degrees);
 }
 
-static bool is_loaded(const nt_join *join)
+/* Whether all parts are there, and none of them twice: parts that lie on each other have no border, and a small file
+ * can name the same triangles any number of times. */
+static bool is_comparable(const nt_join *join)
 {
-	for (size_t i = 0; i < join->part_count; i++)
-		if (!join->parts[i]->positions || !join->parts[i]->normals || !join->parts[i]->texcoords)
+	for (size_t i = 0; i < join->part_count; i++) {
+		const nt_mesh *part = join->parts[i];
+		if (!part->positions || !part->normals || !part->texcoords || part->same_as)
 			return false;
+	}
 	return true;
 }
 
@@ -423,7 +427,7 @@ nt_status nt_stage_borders(nt_scene *scene, const nt_settings *settings, nt_erro
 		.repair = settings->repair, .threads = settings->threads};
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < scene->join_count; i++)
-		if (is_loaded(&scene->joins[i])) {
+		if (is_comparable(&scene->joins[i])) {
 			status = compare_join(scene, &scene->joins[i], &options);
 			/* each by itself they are not */
 			status = status == NT_ERROR_TOO_LARGE ? NT_OK : status;
