@@ -5,7 +5,9 @@
 #include "families.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+#include "soup.h"
 
 enum { SOUP = 600, FANS = 60, SPOKES = 8 };
 
@@ -82,7 +84,7 @@ static nt_owned both_scales(double level, uint64_t seed)
 }
 
 /* Soups: triangles of their own. The normal is that of the triangle before it became thin. */
-static nt_owned soup(uint64_t seed, double uv_aspect, double aspect)
+static nt_owned triangles_alone(uint64_t seed, double uv_aspect, double aspect)
 {
 	nt_random random = nt_random_seed(seed);
 	nt_owned o = nt_owned_make(3 * SOUP, SOUP);
@@ -114,17 +116,17 @@ static nt_owned soup(uint64_t seed, double uv_aspect, double aspect)
 
 static nt_owned uv_needles(double level, uint64_t seed)
 {
-	return soup(seed, level, 1);
+	return triangles_alone(seed, level, 1);
 }
 
 static nt_owned needles(double level, uint64_t seed)
 {
-	return soup(seed, 1, level);
+	return triangles_alone(seed, 1, level);
 }
 
 static nt_owned both_needles(double level, uint64_t seed)
 {
-	return soup(seed, level, level);
+	return triangles_alone(seed, level, level);
 }
 
 /* A value with a random exponent between -level and level decades. */
@@ -136,7 +138,7 @@ static double any_scale(nt_random *random, double level)
 
 static nt_owned mixed_exponents(double level, uint64_t seed)
 {
-	nt_owned o = soup(seed, 1, 1);
+	nt_owned o = triangles_alone(seed, 1, 1);
 	nt_random random = nt_random_seed(seed);
 	for (size_t v = 0; v < o.mesh.vertex_count; v++) {
 		set3(o.positions[v], any_scale(&random, level), any_scale(&random, level),
@@ -149,7 +151,7 @@ static nt_owned mixed_exponents(double level, uint64_t seed)
 /* UVs a, b, 2 b - a on a lattice: the determinant is exactly zero, or one unit of b's away from it. */
 static nt_owned cancelling(double level, uint64_t seed)
 {
-	nt_owned o = soup(seed, 1, 1);
+	nt_owned o = triangles_alone(seed, 1, 1);
 	nt_random random = nt_random_seed(seed);
 	const uint32_t size = (uint32_t)level;
 	for (size_t v = 0; v < o.mesh.vertex_count; v += 3) {
@@ -319,6 +321,44 @@ static nt_owned quads(double level, uint64_t seed)
 	return o;
 }
 
+/* A scan of a lumpy ball with UVs projected along z: the back is mirrored, the outline runs through triangles that are
+ * needles in UV space. `level` is the size of the lumps; normals are those of the ball, as a decimated scan has them. */
+static nt_owned planar_scan(double level, uint64_t seed)
+{
+	nt_owned o = nt_surface_grid(NT_SPHERE, 48, 32, 0.25, seed);
+	nt_random random = nt_random_seed(seed);
+	for (size_t v = 0; v < o.mesh.vertex_count; v++) {
+		const float *n = o.normals[v];
+		const double r = 1 + level * between(&random, -1, 1);
+		set3(o.positions[v], r * n[0], r * n[1], r * n[2]);
+		set2(o.texcoords[v], 0.5 + 0.5 * o.positions[v][0], 0.5 + 0.5 * o.positions[v][1]);
+	}
+	return o;
+}
+
+/* Public models, where ../shared/models/obj has them; an empty mesh where it has not. */
+static const char *const model_names[] = {"spot", "suzanne", "crangeract", "tangeract", "doomcone_smooth",
+	"rancid_geometry", "obliterated", "mat_test", "test_nm"};
+static const double models[] = {0, 1, 2, 3, 4, 5, 6, 7, 8};
+
+static nt_owned public_model(double level, uint64_t seed)
+{
+	(void)seed;
+	char path[256];
+	snprintf(path, sizeof path, "../shared/models/obj/%s.obj", model_names[(size_t)level]);
+	soup s = soup_read_obj(path, 20000);
+	nt_owned o = nt_owned_make_quads(s.corner_count, s.face_count);
+	memcpy(o.positions, s.positions, 12 * s.corner_count);
+	memcpy(o.normals, s.normals, 12 * s.corner_count);
+	memcpy(o.texcoords, s.texcoords, 8 * s.corner_count);
+	memcpy(o.face_sizes, s.sizes, s.face_count);
+	for (size_t c = 0; c < s.corner_count; c++)
+		o.indices[c] = (uint32_t)c;
+	o.corner_count = s.corner_count;
+	soup_free(&s);
+	return o;
+}
+
 static nt_owned size_of_mesh(double level, uint64_t seed)
 {
 	const uint32_t side = (uint32_t)sqrt(level / 2);
@@ -337,34 +377,37 @@ static const double percents[] = {0, 1, 5, 20, 50, 80, 95, 100};
 static const double tiny[] = {1e-36, 1e-38, 1e-40, 1e-42, 1e-44};
 static const double parts[] = {0, 0.001, 0.01, 0.1, 0.5, 1};
 static const double wander[] = {0, 0.01, 0.03, 0.1, 0.3, 1};
+static const double lumps[] = {1e-4, 1e-3, 1e-2, 1e-1};
 static const double sizes[] = {1e3, 1e4, 1e5, 1e6};
 
 #define LEVELS(list) list, sizeof list / sizeof *list
 const family families[] = {
-	{"uv scale", "scale of UVs", LEVELS(decades_30), true, true, false, uv_scale},
-	{"uv offset", "offset of UVs of size 0.1", LEVELS(offsets), true, true, false, uv_offset},
-	{"position scale", "scale of positions", LEVELS(decades_30), true, true, false, position_scale},
-	{"position offset", "offset of positions of size 1", LEVELS(far_offsets), true, true, false,
+	{"uv scale", "scale of UVs", LEVELS(decades_30), true, true, false, false, uv_scale},
+	{"uv offset", "offset of UVs of size 0.1", LEVELS(offsets), true, true, false, false, uv_offset},
+	{"position scale", "scale of positions", LEVELS(decades_30), true, true, false, false, position_scale},
+	{"position offset", "offset of positions of size 1", LEVELS(far_offsets), true, true, false, false,
 		position_offset},
-	{"both scales", "scale of UVs, inverse scale of positions", LEVELS(decades_30), true, true, false,
+	{"both scales", "scale of UVs, inverse scale of positions", LEVELS(decades_30), true, true, false, false,
 		both_scales},
-	{"uv needles", "aspect in UV space", LEVELS(thin), true, true, false, uv_needles},
-	{"needles", "aspect in space", LEVELS(thin), true, true, false, needles},
-	{"both needles", "aspect in UV space and in space", LEVELS(thin), true, true, false, both_needles},
-	{"mixed exponents", "decades on either side of 1", LEVELS(spreads), false, true, false,
+	{"uv needles", "aspect in UV space", LEVELS(thin), true, true, false, false, uv_needles},
+	{"needles", "aspect in space", LEVELS(thin), true, true, false, false, needles},
+	{"both needles", "aspect in UV space and in space", LEVELS(thin), true, true, false, false, both_needles},
+	{"mixed exponents", "decades on either side of 1", LEVELS(spreads), false, true, false, false,
 		mixed_exponents},
-	{"cancelling", "size of the UV lattice", LEVELS(lattices), true, true, false, cancelling},
-	{"squashed fans", "height", LEVELS(thin), true, true, false, squashed_fans},
-	{"opposed fans", "distance from half a turn", LEVELS(thin), true, true, false, opposed_fans},
-	{"valence", "triangles at the hub", LEVELS(valences), true, true, true, valence},
-	{"collapsed", "per cent of triangles collapsed", LEVELS(percents), false, true, false, collapsed},
-	{"near normal", "angle between T and N in radians", LEVELS(thin), true, true, false, near_normal},
-	{"negative zeros", "part of zeros that are negative", LEVELS(parts), false, true, false,
+	{"cancelling", "size of the UV lattice", LEVELS(lattices), true, true, false, false, cancelling},
+	{"squashed fans", "height", LEVELS(thin), true, true, false, false, squashed_fans},
+	{"opposed fans", "distance from half a turn", LEVELS(thin), true, true, false, false, opposed_fans},
+	{"valence", "triangles at the hub", LEVELS(valences), true, true, true, false, valence},
+	{"collapsed", "per cent of triangles collapsed", LEVELS(percents), false, true, false, true, collapsed},
+	{"near normal", "angle between T and N in radians", LEVELS(thin), true, true, false, true, near_normal},
+	{"negative zeros", "part of zeros that are negative", LEVELS(parts), false, true, false, false,
 		negative_zeros},
-	{"quads", "how far the fourth corner wanders", LEVELS(wander), false, true, false, quads},
-	{"size", "triangles", LEVELS(sizes), true, true, true, size_of_mesh},
-	{"denormal uvs", "scale of UVs", LEVELS(tiny), true, false, false, uv_scale},
-	{"denormal positions", "scale of positions", LEVELS(tiny), true, false, false, position_scale},
-	{"not finite", "part of vertices with NaN or infinity", LEVELS(parts), false, false, false, not_finite},
+	{"quads", "how far the fourth corner wanders", LEVELS(wander), false, true, false, true, quads},
+	{"planar scan", "size of lumps", LEVELS(lumps), true, true, false, true, planar_scan},
+	{"public models", "model", LEVELS(models), false, true, false, true, public_model},
+	{"size", "triangles", LEVELS(sizes), true, true, true, false, size_of_mesh},
+	{"denormal uvs", "scale of UVs", LEVELS(tiny), true, false, false, false, uv_scale},
+	{"denormal positions", "scale of positions", LEVELS(tiny), true, false, false, false, position_scale},
+	{"not finite", "part of vertices with NaN or infinity", LEVELS(parts), false, false, false, false, not_finite},
 };
 const size_t family_count = sizeof families / sizeof *families;

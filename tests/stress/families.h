@@ -15,6 +15,9 @@ typedef struct family {
 	bool logarithmic; /* the sweep */
 	bool finite;      /* all values are finite and within 1e-30 to 1e30: what must hold is asked */
 	bool linear;      /* the sweep is one of size: time per triangle must stay */
+	bool parts;       /* MikkTSpace's groups follow edges: here they may be parts of the triangles of an orientation
+	                     around a vertex, because edges are missing, and the exact average over all of them is no
+	                     closer than these differ from each other */
 	nt_owned (*make)(double level, uint64_t seed);
 } family;
 

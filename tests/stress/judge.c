@@ -80,6 +80,20 @@ static double along_normal(const float *t, const float *n)
 	return ((double)t[0] * n[0] + (double)t[1] * n[1] + (double)t[2] * n[2]) / length;
 }
 
+static bool has_unit_normal(const nmtan_mesh *mesh, size_t corner)
+{
+	const float *n = normal_of(mesh, corner);
+	return fabs((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2] - 1) < 1.0 / 2048 - 1e-6;
+}
+
+static bool is_off(const float *t, const oracle_corner *exact)
+{
+	bool off = false;
+	for (int i = 0; i < 3; i++)
+		off = off || !(fabs(t[i] - exact->t[i]) <= ONE_BIT);
+	return off;
+}
+
 static void score_signs(const nmtan_mesh *mesh, const oracle_corner *exact, const float *tangents, score *s)
 {
 	for (size_t f = 0, first = 0; f < mesh->face_count; f++) {
@@ -106,16 +120,14 @@ static void score_vectors(const nmtan_mesh *mesh, const oracle_corner *exact, bo
 		s->zero += !is_unit(t);
 		s->parallel += is_unit(t) && fabs(cosine) > 1 - 5e-7;
 		s->tilted += !(fabs(cosine) <= 4 * ONE_BIT);
+		s->leaning += has_unit_normal(mesh, c) && !(fabs(cosine) <= 1.0 / 1024 * (1 + 1.0 / 2048));
 		if (exact[c].sign == 0 || !oracle)
 			continue;
 		if (!(exact[c].condition < WELL_CONDITIONED)) {
 			s->beyond++;
 			continue;
 		}
-		bool off = false;
-		for (int i = 0; i < 3; i++)
-			off = off || !(fabs(t[i] - exact[c].t[i]) <= ONE_BIT);
-		s->off += off;
+		s->off += is_off(t, &exact[c]);
 		angles[s->judged++] = measure_degrees(t, exact[c].t);
 	}
 	if (s->judged == 0)
@@ -147,8 +159,42 @@ static size_t count_altered(const nmtan_mesh *mesh, const oracle_corner *exact, 
 	return altered;
 }
 
-bool judge_mesh(const nmtan_mesh *mesh, size_t corner_count, bool oracle, score scores[COLUMN_COUNT])
+/* The angle beyond `allowed_degrees`, in units of 2^-24 times the condition. */
+static double units_off(const float *t, const double *direction, double condition, double allowed_degrees)
 {
+	const double radians = fmax(0, measure_degrees(t, direction) - allowed_degrees) / 57.29577951308232;
+	return radians * WELL_CONDITIONED / fmin(condition, WELL_CONDITIONED);
+}
+
+/* The default has two kinds of corners: what repair replaced is the exact formula's value, what it kept is as good as
+ * MikkTSpace's float arithmetic is at this corner: beside the average of all triangles of its orientation, or beside
+ * its own triangle where that shares no edge with them; and, where groups are parts of these triangles, within their spread. */
+static void score_default(const oracle_corner *exact, const float *raw, const float *repaired, bool parts, score *s)
+{
+	for (size_t c = 0; c < s->corners; c++) {
+		const float *t = repaired + 4 * c;
+		s->replaced += memcmp(raw + 4 * c, t, 16) != 0;
+		if (exact[c].sign == 0)
+			continue;
+		if (memcmp(raw + 4 * c, t, 16) != 0) {
+			s->inexact += exact[c].condition < WELL_CONDITIONED && is_off(t, &exact[c]);
+		} else if (exact[c].condition_float < WELL_CONDITIONED ||
+			   exact[c].own_condition_float < WELL_CONDITIONED) {
+			const double all = units_off(t, exact[c].t, exact[c].condition_float,
+				parts ? exact[c].spread_degrees : 0);
+			double own = INFINITY;
+			for (int i = 0; i < exact[c].own_count; i++)
+				own = fmin(own, units_off(t, exact[c].own[i], exact[c].own_condition_float, 0));
+			s->kept++;
+			s->worst_units = fmax(s->worst_units, fmin(all, own));
+		}
+	}
+}
+
+bool judge_mesh(const nt_owned *owned, bool oracle, bool finite, bool parts, score scores[COLUMN_COUNT])
+{
+	const nmtan_mesh *mesh = &owned->mesh;
+	const size_t corner_count = owned->corner_count;
 	float *tangents[2] = {malloc(16 * corner_count), malloc(16 * corner_count)}; /* raw, others */
 	double *angles = malloc(corner_count * sizeof *angles);
 	oracle_corner *exact = malloc(corner_count * sizeof *exact);
@@ -179,6 +225,10 @@ bool judge_mesh(const nmtan_mesh *mesh, size_t corner_count, bool oracle, score 
 		score_vectors(mesh, exact, oracle, to, angles, s);
 		if (at == COLUMN_REPAIRED)
 			s->altered = count_altered(mesh, exact, tangents[0], to);
+		if (at == COLUMN_REPAIRED && oracle)
+			score_default(exact, tangents[0], to, parts, s);
+		for (int k = 0; oracle && finite && k < TWIN_COUNT && (at == COLUMN_REPAIRED || at == COLUMN_ROBUST); k++)
+			s->twins[k] = twin_differences(owned, &twins[k], columns[at].method, exact, parts);
 	}
 	nmtan_workspace_destroy(workspace);
 	free(tangents[0]);

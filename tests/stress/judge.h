@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include "nmtan.h"
+#include "surfaces.h"
+#include "twins.h"
 
 enum { COLUMN_RAW, COLUMN_REPAIRED, COLUMN_AREA, COLUMN_LENGYEL, COLUMN_ROBUST, COLUMN_COUNT };
 
@@ -32,13 +34,25 @@ typedef struct score {
 	size_t counted;     /* robust: what the library counts as ill-conditioned */
 	size_t off;         /* judged corners with a component further than 2^-23 from the oracle */
 	size_t tilted;      /* corners: |T . N| above 2^-21 */
+	size_t leaning;     /* corners with a unit normal: |T . N| above 2^-10 */
+	size_t replaced;    /* the default: corners whose bytes are not MikkTSpace's */
+	size_t inexact;     /* corners with MikkTSpace's bytes replaced, condition below 2^24: as `off` */
+	size_t kept;        /* corners with MikkTSpace's own bytes and a finite condition in float */
+	double worst_units; /* of these: angle in units of 2^-24 times that condition */
+	size_t twins[TWIN_COUNT]; /* the default and robust: corners at which the twin's answer differs */
 	size_t altered;     /* usable MikkTSpace corners whose bytes repair changed */
 	double worst_degrees, median_degrees, high_degrees; /* over judged corners; high: 99.9 % */
 	double ns_per_triangle;
 } score;
 
-/* Scores all methods. With `oracle` false only time and what needs no oracle but signs. False: a call of
+/* Scores all methods. With `oracle` false only time and what needs no oracle but signs; twins of `finite` meshes.
+ * parts: see family.parts. False: a call of
  * the library failed or memory is exhausted. */
-bool judge_mesh(const nmtan_mesh *mesh, size_t corner_count, bool oracle, score scores[COLUMN_COUNT]);
+bool judge_mesh(const nt_owned *owned, bool oracle, bool finite, bool parts, score scores[COLUMN_COUNT]);
+
+/* Units of 2^-24 times the condition in float by which MikkTSpace's bytes may miss the exact formula. Rounding by half
+ * a unit each: two differences and two products of a component (2), its sum (1), normalising (2), the projection (3) and
+ * the weighted sum of the triangles, of which each adds at most one more. */
+enum { MOST_UNITS = 16 };
 
 #endif

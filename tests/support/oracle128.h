@@ -23,6 +23,14 @@ typedef struct oracle_corner {
 	double t[3], b[3];  /* unit T and the unit sum of dP/dv */
 	double condition;   /* of T: sums and projections; infinite where T does not exist */
 	double condition_b;
+	double condition_float; /* of T where every difference and product is rounded to float, as MikkTSpace does: its
+	                           error is some 2^-24 times this, in radians; infinite where float may lose a sign or
+	                           leave its range */
+	double own[2][3]; /* T of the corner's own triangle alone; of a quad, for both that have the corner */
+	int own_count;
+	double own_condition_float;
+	double spread_degrees; /* the largest angle from t to a triangle's own. Caps of less than 90 degrees are convex:
+	                          the average over any part of the triangles is not further away. 180 from 90 on */
 	int sign;           /* exact orientation of the corner's face, 0: none */
 } oracle_corner;
 
