@@ -169,8 +169,11 @@ static void write_default(FILE *md, const family *f, const family_scores *scores
 		for (int k = 0; k < TWIN_COUNT; k++)
 			differing += s->twins[k];
 	}
-	fprintf(md, "| %s | %zu | %zu | %zu | %zu | %.2g | %zu |\n", f->name, corners, corners - kept, leaning[0],
-		leaning[1], units, differing);
+	fprintf(md, "| %s | %zu | %zu | %zu | %zu |", f->name, corners, corners - kept, leaning[0], leaning[1]);
+	if (f->finite)
+		fprintf(md, " %.2g | %zu |\n", units, differing);
+	else
+		fprintf(md, " - | - |\n");
 }
 
 static void write_chart(const char *folder, const family *f, const family_scores *scores, bool angles)
