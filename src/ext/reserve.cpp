@@ -103,6 +103,21 @@ void *operator new[](size_t size)
 	return operator new(size);
 }
 
+/* std::stable_sort() asks for its buffer in this way and gives it back by the delete below. */
+void *operator new(size_t size, const std::nothrow_t &) noexcept
+{
+	try {
+		return operator new(size);
+	} catch (const std::bad_alloc &) {
+		return nullptr;
+	}
+}
+
+void *operator new[](size_t size, const std::nothrow_t &nothrow) noexcept
+{
+	return operator new(size, nothrow);
+}
+
 void operator delete(void *memory) noexcept
 {
 	if (is_inside(memory))
@@ -122,6 +137,16 @@ void operator delete(void *memory, size_t) noexcept
 }
 
 void operator delete[](void *memory, size_t) noexcept
+{
+	operator delete(memory);
+}
+
+void operator delete(void *memory, const std::nothrow_t &) noexcept
+{
+	operator delete(memory);
+}
+
+void operator delete[](void *memory, const std::nothrow_t &) noexcept
 {
 	operator delete(memory);
 }
