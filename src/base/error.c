@@ -89,3 +89,8 @@ nt_status nt_error_in_file(nt_error *error, const char *file)
 		snprintf(error->place.file, sizeof error->place.file, "%s", file);
 	return error->status;
 }
+
+nt_status nt_error_in_output(nt_error *error, const char *file)
+{
+	return nt_error_in_file(error, strcmp(file, "-") == 0 ? "standard output" : file);
+}

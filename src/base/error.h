@@ -61,6 +61,9 @@ nt_status nt_fail_memory(nt_error *error);
 /* Names the file of an error, unless a deeper place already did. Returns error->status. */
 nt_status nt_error_in_file(nt_error *error, const char *file);
 
+/* The same for an output, where "-" is standard output. */
+nt_status nt_error_in_output(nt_error *error, const char *file);
+
 #ifdef __cplusplus
 }
 #endif

@@ -4,8 +4,7 @@
  * /proc has them) is read to its end. The descriptor of a mapped file stays open, so that the writer
  * can let the kernel copy ranges of it.
  *
- * A file that another process shortens while it is mapped ends the process with SIGBUS, as for every
- * program that maps files; nothing here can prevent that.
+ * A file that another process shortens while it is mapped reads as zeros from there on: see watch.h.
  */
 #include "file/input.h"
 
@@ -18,6 +17,7 @@
 #include <unistd.h>
 #include "base/memory.h"
 #include "file/lookup.h"
+#include "file/watch.h"
 
 enum { FIRST_READ_BYTES = 64 * 1024 };
 
@@ -58,7 +58,7 @@ static nt_status read_all(nt_file *file, int fd, const char *path, nt_error *err
 }
 
 /* Maps what can be mapped; false: it has to be read. */
-static bool map_all(nt_file *file, int fd, const struct stat *status)
+static bool map_all(nt_file *file, int fd, const char *path, const struct stat *status)
 {
 	if (!S_ISREG(status->st_mode) || status->st_size <= 0 ||
 		(uintmax_t)status->st_size > SIZE_MAX / 2 || lseek(fd, 0, SEEK_CUR) != 0)
@@ -67,6 +67,11 @@ static bool map_all(nt_file *file, int fd, const struct stat *status)
 	void *data = mmap(NULL, size, PROT_READ, MAP_PRIVATE, fd, 0);
 	if (data == MAP_FAILED)
 		return false;
+	file->watch = nt_watch_begin(data, size, fd, path);
+	if (file->watch < 0) {
+		munmap(data, size);
+		return false;
+	}
 	file->data = data;
 	file->size = size;
 	file->mapped = true;
@@ -82,6 +87,19 @@ static int open_patiently(const char *path)
 		fd = open(path, O_RDONLY | O_CLOEXEC);
 	while (fd < 0 && errno == EINTR);
 	return fd;
+}
+
+static bool is_readable(const struct stat *status)
+{
+	return S_ISREG(status->st_mode) || S_ISFIFO(status->st_mode) || S_ISSOCK(status->st_mode);
+}
+
+static nt_status fail_kind(const struct stat *status, const char *path, nt_error *error)
+{
+	if (S_ISDIR(status->st_mode))
+		return nt_lookup_failed(path, EISDIR, error);
+	nt_fail(error, NT_ERROR_IO, "cannot read: it is a device");
+	return nt_error_in_file(error, path);
 }
 
 nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
@@ -100,10 +118,10 @@ nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
 		file->device = (uint64_t)status.st_dev;
 		file->inode = (uint64_t)status.st_ino;
 	}
-	if (map_all(file, fd, &status))
+	if (map_all(file, fd, path, &status))
 		return NT_OK;
-	const nt_status result = S_ISDIR(status.st_mode) ? nt_lookup_failed(path, EISDIR, error)
-							    : read_all(file, fd, path, error);
+	const nt_status result = standard || is_readable(&status) ? read_all(file, fd, path, error)
+								  : fail_kind(&status, path, error);
 	close(fd);
 	return result;
 }
@@ -114,8 +132,10 @@ void nt_file_close(nt_file *file)
 		munmap((void *)(uintptr_t)file->data, file->size);
 	else if (file->data != no_bytes)
 		free((void *)(uintptr_t)file->data);
-	if (file->mapped)
+	if (file->mapped) {
+		nt_watch_end(file->watch);
 		close(file->fd);
+	}
 	*file = (nt_file){.data = no_bytes, .fd = -1};
 }
 

@@ -12,12 +12,13 @@ typedef struct nt_file {
 	const unsigned char *data; /* never NULL after success */
 	size_t size;
 	bool mapped; /* else malloc'ed */
+	int watch;   /* of a mapped file: see watch.h */
 	int fd;      /* of a mapped file, -1 otherwise */
 	uint64_t device, inode; /* which file it is; 0, 0 for standard input */
 } nt_file;
 
-/* Maps a file, or reads standard input when path is "-" or the file is a pipe. The error carries the
- * name. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
+/* Maps a file, or reads standard input when path is "-" or the file is a pipe; devices have no end and are refused.
+ * The error carries the name. Returns NT_OK, NT_ERROR_MISSING, NT_ERROR_IO or NT_ERROR_MEMORY. */
 nt_status nt_file_open(nt_file *file, const char *path, nt_error *error);
 void nt_file_close(nt_file *file);
 

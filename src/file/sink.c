@@ -4,6 +4,7 @@
  * through, and what only moves from an input to the output is left to the kernel where that is faster.
  */
 #include "file/output_parts.h"
+#include "file/watch.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -21,7 +22,7 @@ nt_status nt_sink_fail(nt_error *error, const char *path, int number)
 		nt_fail_memory(error);
 	else
 		nt_fail(error, NT_ERROR_IO, "cannot write: %s", strerror(number));
-	return nt_error_in_file(error, path);
+	return nt_error_in_output(error, path);
 }
 
 /* Takes `count` written bytes off the front of two parts. */
@@ -46,6 +47,8 @@ static nt_status write_parts(nt_sink *sink, struct iovec parts[2], nt_error *err
 			advance(parts, (size_t)count);
 		else if (errno == EAGAIN)
 			poll(&(struct pollfd){.fd = sink->fd, .events = POLLOUT}, 1, -1);
+		else if (errno == EFAULT && nt_watch_touch(parts[1].iov_base, parts[1].iov_len))
+			continue; /* an input became shorter; who commits asks for that */
 		else if (errno != EINTR)
 			return nt_sink_fail(error, sink->path, errno);
 	}

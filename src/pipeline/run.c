@@ -13,6 +13,7 @@
 #include "gltf/verify.h"
 #include "base/clock.h"
 #include "pipeline/joins.h"
+#include "file/watch.h"
 #include "pipeline/stages.h"
 
 /* What the stages of one run share. */
@@ -358,6 +359,8 @@ static nt_status write_scene(run *r)
 		begin_stage(r, NT_STAGE_VERIFY);
 		status = nt_verify_gltf(&r->scene, output, r->output_path, r->error);
 	}
+	if (!status)
+		status = nt_watch_check(r->error);
 	if (status || s->dry_run) {
 		nt_output_abort(output);
 		return status;
@@ -406,12 +409,27 @@ static nt_status copy_normal_map(nt_arena *arena, const nt_scene *scene, const n
 	return status;
 }
 
+/* What is wrong with an input that became shorter is that, whatever was made of it and found in it. */
+static nt_status check_inputs(run *r, nt_status status)
+{
+	const nt_status watched = nt_watch_check(r->error);
+	if (!watched)
+		return status;
+	nt_finding_list_free(&r->scene.findings);
+	r->scene.findings = (nt_finding_list){0};
+	return watched;
+}
+
 /* A report that could not be made says why, if that much can be said. */
 static nt_status build_report(run *r, const nt_report_options *options)
 {
-	const nt_status status = nt_report_build(&r->scene, options, &r->summary->report, r->error);
-	if (status)
-		r->summary->report = nt_report_of_error(r->input_path, r->error);
+	nt_status status = nt_report_build(&r->scene, options, &r->summary->report, r->error);
+	if (status || r->settings->check)
+		status = check_inputs(r, status);
+	if (!status)
+		return NT_OK;
+	nt_report_free(r->summary->report);
+	r->summary->report = nt_report_of_error(r->input_path, r->error);
 	return status;
 }
 
@@ -465,11 +483,14 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	r.stage_begin = begin;
 	nt_scene_init(&r.scene, input);
 
+	nt_watch_forget();
 	nt_status status = run_stages(&r);
 	for (unsigned attempt = 1; r.result.again && attempt < MOST_ATTEMPTS; attempt++) {
 		forget_attempt(&r);
 		status = run_stages(&r);
 	}
+	if (status || !r.writer)
+		status = check_inputs(&r, status);
 	summary->left = r.result.left;
 	if (!status && r.result.note.failed)
 		status = nt_fail_memory(error);

@@ -3,8 +3,9 @@
 # What the sweeps run: every reader and writer, --verify, --in-place, many inputs, every report format, as lines
 # "name | files | what sweep.c is told | arguments". Sourced with $NMTAN, $BUILD, $ROOT and $WORK set.
 #
-#   sweep_all KIND... -- STRIDE    every case with faults of every kind, "memory", "memory onwards", "EIO" and so on;
-#                                  bad runs on standard output, then one line for each kind: tried and bad
+#   sweep_all KIND... -- STRIDE    every case with faults of every kind, "memory", "memory onwards", "EIO" and so on,
+#                                  "shorten" for an input that becomes empty; bad runs on standard output, then one
+#                                  line for each kind: tried and bad
 faults=$BUILD/tests/faults
 
 make_inputs() {
@@ -45,15 +46,32 @@ cases() {
 	done
 }
 
+# "the input that becomes empty | files | what sweep.c is told | arguments"
+shorten_cases() {
+	cat <<-END
+		mirrored_cube.obj | $cube || --images=embed mirrored_cube.obj o.glb
+		mirrored_cube.obj | $cube || --check mirrored_cube.obj
+		mirrored_cube.obj | $cube | report=r.html | --check --report=r.html mirrored_cube.obj
+		quad_wedge.ply | quad_wedge.ply || quad_wedge.ply o.ply
+		plates.bin | $plates || --images=copy plates.gltf o.gltf
+		plates.gltf | $plates || plates.gltf o.gltf
+		plates.bin | $plates || --verify plates.gltf o.glb
+		plates.glb | plates.glb || --in-place plates.glb
+		edge.gltf | edge.gltf || --existing=replace edge.gltf o.glb
+		plates.glb | plates.glb quad.obj | many | -d out plates.glb quad.obj
+	END
+}
+
 # One case in a folder of its own: sweep_case NUMBER LINE KIND STRIDE
 sweep_case() {
 	local name files told arguments folder=$WORK/case$1
 	IFS='|' read -r name files told arguments <<<"$2"
 	rm -rf "$folder" && mkdir "$folder" || return 1
 	(cd "$WORK/in" && cp $files "$folder/") || return 1
+	[ "$3" != shorten ] || set -- "$1" "$2" "shorten:${name% }" "$4"
 	"$faults/sweep" "$faults/faulty.so" $3 "$4" $(($1 * 7 % $4)) "$folder" $told -- "$NMTAN" $arguments \
-		>"$folder.out" 2>&1
-	sed -i "s/^/${name% }: /" "$folder.out"
+		>"$folder.log" 2>&1
+	sed -i "s/^/${name% }: /" "$folder.log"
 }
 
 sweep_all() {
@@ -61,15 +79,15 @@ sweep_all() {
 	while [ "$1" != -- ]; do kinds+=("$1"); shift; done
 	for kind in "${kinds[@]}"; do
 		number=0
-		rm -f "$WORK"/case*.out
+		rm -f "$WORK"/case*.log
 		while IFS= read -r line; do
 			sweep_case $number "$line" "$kind" "$2" &
 			number=$((number + 1))
 			[ $((number % $(nproc))) != 0 ] || wait
-		done < <(cases)
+		done < <([ "$kind" = shorten ] && shorten_cases || cases)
 		wait
-		cat "$WORK"/case*.out | grep -v ', bad 0$'
-		cat "$WORK"/case*.out | awk -v kind="$kind" -v cases=$number '
+		cat "$WORK"/case*.log | grep -v ', bad 0$'
+		cat "$WORK"/case*.log | awk -v kind="$kind" -v cases=$number '
 			/calls, tried/ { ended++; for (i = 1; i < NF; i++) {
 				if ($i == "tried") tried += $(i + 1)
 				} }

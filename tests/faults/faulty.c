@@ -34,7 +34,7 @@ static void trace(const char *name)
 
 static bool fails(faulty_kind kind, const char *name)
 {
-	if (!armed || shared->kind != kind)
+	if (!armed || (shared->kind != kind && !(shared->kind == FAULTY_SHORTEN && kind == FAULTY_CALLS)))
 		return false;
 	const size_t number = __atomic_fetch_add(&shared->count, 1, __ATOMIC_RELAXED);
 	if (number < shared->target || (number > shared->target && !shared->onwards))
@@ -44,6 +44,13 @@ static bool fails(faulty_kind kind, const char *name)
 		strncpy(shared->name, name, sizeof shared->name - 1);
 		if (getenv("NT_FAULTY_TRACE"))
 			trace(name);
+	}
+	if (shared->kind == FAULTY_SHORTEN) {
+		const int kept = errno;
+		if (truncate(shared->shortened, 0) != 0)
+			_exit(70);
+		errno = kept;
+		return false;
 	}
 	errno = kind == FAULTY_MEMORY ? ENOMEM : shared->number;
 	return true;
@@ -138,6 +145,8 @@ WATCH(ssize_t, copy_file_range, (int in, off64_t *from, int out, off64_t *to, si
 	(in, from, out, to, size, flags))
 WATCH(ssize_t, sendfile, (int out, int in, off_t *from, size_t size), (out, in, from, size))
 WATCH(off_t, lseek, (int fd, off_t offset, int whence), (fd, offset, whence))
+WATCH(int, madvise, (void *address, size_t size, int advice), (address, size, advice))
+WATCH(int, munmap, (void *address, size_t size), (address, size))
 WATCH(int, ftruncate, (int fd, off_t size), (fd, size))
 WATCH(int, fallocate, (int fd, int mode, off_t offset, off_t size), (fd, mode, offset, size))
 WATCH(int, fsync, (int fd), (fd))

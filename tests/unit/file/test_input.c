@@ -97,9 +97,6 @@ static void input_empty_is_no_error(void **state)
 	assert_int_equal(file.size, 0);
 	assert_non_null(file.data);
 	nt_file_close(&file);
-	assert_int_equal(nt_file_open(&file, "/dev/null", &error), NT_OK);
-	assert_int_equal(file.size, 0);
-	nt_file_close(&file);
 }
 
 static void input_missing_or_a_folder_is_named(void **state)

@@ -1,0 +1,142 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Mapped files that become shorter: see watch.h.
+ *
+ * The handler looks the address up in a plain table of atomics and lays zeros over the map from the faulting page to
+ * its end; mmap() is a system call and no more on every system that we know. A fault elsewhere gets the action
+ * that was set before.
+ */
+#include "file/watch.h"
+
+#include <pthread.h>
+#include <signal.h>
+#include <stdatomic.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* A document of so many open files keeps the others in memory. */
+enum { MOST_MAPS = 512 };
+
+typedef struct watched {
+	atomic_uintptr_t begin; /* 0: free; 1: taken, being filled */
+	atomic_size_t size;
+	atomic_bool shortened;
+	_Atomic(const void *) owner;
+	int fd;
+	char path[512];
+} watched;
+
+static watched maps[MOST_MAPS];
+static atomic_size_t page_bytes;
+static struct sigaction action_before;
+
+static _Thread_local char lost[512]; /* a file of this thread that is closed */
+static _Thread_local bool has_lost;
+
+/* The map that an address lies in, or NULL. */
+static watched *map_of(uintptr_t address)
+{
+	for (int i = 0; i < MOST_MAPS; i++) {
+		const uintptr_t begin = atomic_load(&maps[i].begin);
+		if (begin > 1 && address >= begin && address - begin < atomic_load(&maps[i].size))
+			return &maps[i];
+	}
+	return NULL;
+}
+
+static void put_zeros(int number, siginfo_t *info, void *context)
+{
+	(void)context;
+	const uintptr_t address = (uintptr_t)info->si_addr;
+	watched *map = map_of(address);
+	const uintptr_t page = address / page_bytes * page_bytes; /* set before the first map was */
+	if (map && mmap((void *)page, atomic_load(&map->begin) + atomic_load(&map->size) - page, PROT_READ,
+			   MAP_PRIVATE | MAP_ANONYMOUS | MAP_FIXED, -1, 0) != MAP_FAILED) {
+		atomic_store(&map->shortened, true);
+		return;
+	}
+	/* the instruction runs into it once more */
+	sigaction(number, &action_before, NULL);
+}
+
+/* Unless it stands already: who shares the process may have set another one. */
+static void install(void)
+{
+	static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+	struct sigaction action = {.sa_sigaction = put_zeros, .sa_flags = SA_SIGINFO}, now;
+	sigemptyset(&action.sa_mask);
+	pthread_mutex_lock(&lock);
+	page_bytes = (size_t)sysconf(_SC_PAGESIZE);
+	if (sigaction(SIGBUS, NULL, &now) == 0 && now.sa_sigaction != put_zeros)
+		sigaction(SIGBUS, &action, &action_before);
+	pthread_mutex_unlock(&lock);
+}
+
+int nt_watch_begin(const void *map, size_t size, int fd, const char *path)
+{
+	install();
+	for (int i = 0; i < MOST_MAPS; i++) {
+		watched *w = &maps[i];
+		uintptr_t none = 0;
+		if (!atomic_compare_exchange_strong(&w->begin, &none, 1))
+			continue;
+		atomic_store(&w->owner, &has_lost);
+		w->fd = fd;
+		snprintf(w->path, sizeof w->path, "%s", path);
+		atomic_store(&w->shortened, false);
+		atomic_store(&w->size, size);
+		atomic_store(&w->begin, (uintptr_t)map);
+		return i;
+	}
+	return -1;
+}
+
+/* A page that holds the end of the file reads as zeros behind it, without a signal. */
+static bool is_shortened(const watched *w)
+{
+	struct stat info;
+	return atomic_load(&w->shortened) ||
+	       (fstat(w->fd, &info) == 0 && (uintmax_t)info.st_size < atomic_load(&w->size));
+}
+
+void nt_watch_end(int watch)
+{
+	watched *w = &maps[watch];
+	if (!has_lost && is_shortened(w)) {
+		memcpy(lost, w->path, sizeof lost);
+		has_lost = true;
+	}
+	atomic_store(&w->begin, 0);
+}
+
+void nt_watch_forget(void)
+{
+	has_lost = false;
+}
+
+nt_status nt_watch_check(nt_error *error)
+{
+	const char *path = has_lost ? lost : NULL;
+	for (int i = 0; i < MOST_MAPS && !path; i++)
+		if (atomic_load(&maps[i].begin) > 1 && atomic_load(&maps[i].owner) == &has_lost && is_shortened(&maps[i]))
+			path = maps[i].path;
+	if (!path)
+		return NT_OK;
+	nt_fail(error, NT_ERROR_IO, "the file became shorter while it was read");
+	return nt_error_in_file(error, path);
+}
+
+bool nt_watch_touch(const void *bytes, size_t size)
+{
+	const volatile unsigned char *at = bytes;
+	if (!size || !map_of((uintptr_t)bytes))
+		return false;
+	for (size_t i = 0; i < size; i += page_bytes)
+		(void)at[i];
+	(void)at[size - 1];
+	return true;
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Mapped files that become shorter while they are read. Reading what is gone raises SIGBUS, which would end the
+ * process; here the missing pages become zeros, the reader comes to its end with whatever it makes of them, and who
+ * asks before the result is used hears that it is worthless.
+ *
+ * A file belongs to the thread that opened it: what one run of many reads is its own affair. Threads that
+ * help it may read the file too.
+ */
+#ifndef NT_FILE_WATCH_H
+#define NT_FILE_WATCH_H
+
+#include <stdbool.h>
+#include "base/error.h"
+
+/* Watches a map of a file, named by `path`; a number for nt_watch_end(). Below 0: too many are watched, so that the
+ * file has to be read instead. */
+int nt_watch_begin(const void *map, size_t size, int fd, const char *path);
+
+/* To be called before the file is closed, and after its map is gone. */
+void nt_watch_end(int watch);
+
+/* Forgets what this thread has read so far, but for files that are open. */
+void nt_watch_forget(void);
+
+/* Returns NT_ERROR_IO, with the name, if a file that this thread opened has become shorter; else NT_OK. */
+nt_status nt_watch_check(nt_error *error);
+
+/* For bytes that a system call could not read (EFAULT): reads them as a program does. True when they were in a
+ * watched map and can be read now. */
+bool nt_watch_touch(const void *bytes, size_t size);
+
+#endif

@@ -1,0 +1,179 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Files that become shorter while they are mapped: what is gone reads as zeros, and is told to the thread that
+ * opened the file, and to no other.
+ */
+#include "test.h"
+#include <pthread.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include "file/input.h"
+#include "file/output.h"
+#include "file/watch.h"
+#include "folder.h"
+
+static size_t page;
+
+static void put_pages(const char *name, size_t count)
+{
+	char *bytes = malloc(count * page);
+	assert_non_null(bytes);
+	memset(bytes, 'x', count * page);
+	put_file(name, bytes, count * page);
+	free(bytes);
+}
+
+static void open_pages(nt_file *file, const char *name, size_t count)
+{
+	nt_error error;
+	put_pages(name, count);
+	nt_watch_forget();
+	assert_int_equal(nt_file_open(file, in_folder(name), &error), NT_OK);
+	assert_true(file->mapped);
+}
+
+static void expect_lost(const char *name)
+{
+	nt_error error;
+	assert_int_equal(nt_watch_check(&error), NT_ERROR_IO);
+	assert_string_equal(error.place.file, in_folder(name));
+	assert_non_null(strstr(error.message, "shorter"));
+}
+
+static void what_is_gone_reads_as_zeros(void **state)
+{
+	(void)state;
+	nt_file file;
+	nt_error error;
+	open_pages(&file, "a", 4);
+	assert_int_equal(nt_watch_check(&error), NT_OK);
+	assert_int_equal(truncate(in_folder("a"), (off_t)page), 0);
+	assert_int_equal(file.data[0], 'x');
+	assert_int_equal(file.data[3 * page], 0);
+	assert_int_equal(file.data[page], 0);
+	assert_int_equal(file.data[4 * page - 1], 0);
+	assert_int_equal(file.data[page - 1], 'x');
+	expect_lost("a");
+	nt_file_close(&file);
+	expect_lost("a"); /* also when it is closed */
+	nt_watch_forget();
+	assert_int_equal(nt_watch_check(&error), NT_OK);
+}
+
+/* No signal tells of that. */
+static void the_last_page_may_lose_a_part(void **state)
+{
+	(void)state;
+	nt_file file;
+	open_pages(&file, "b", 1);
+	assert_int_equal(truncate(in_folder("b"), 10), 0);
+	expect_lost("b");
+	nt_file_close(&file);
+}
+
+static void a_file_that_stays_is_not_told(void **state)
+{
+	(void)state;
+	nt_file file, other;
+	nt_error error;
+	open_pages(&file, "c", 2);
+	open_pages(&other, "d", 2);
+	assert_int_equal(truncate(in_folder("d"), 0), 0);
+	assert_int_equal(other.data[page], 0);
+	nt_file_close(&other);
+	assert_int_equal(file.data[page], 'x');
+	expect_lost("d");
+	nt_watch_forget();
+	assert_int_equal(nt_watch_check(&error), NT_OK);
+	nt_file_close(&file);
+}
+
+static void *read_and_check(void *argument)
+{
+	const nt_file *file = argument;
+	nt_error error;
+	for (size_t i = 0; i < file->size; i += page)
+		if (file->data[i] != 0)
+			return (void *)1;
+	return nt_watch_check(&error) ? (void *)2 : NULL;
+}
+
+static void helpers_may_read_and_other_runs_hear_nothing(void **state)
+{
+	(void)state;
+	nt_file file;
+	open_pages(&file, "e", 64);
+	assert_int_equal(truncate(in_folder("e"), 0), 0);
+	pthread_t threads[4];
+	for (int i = 0; i < 4; i++)
+		assert_int_equal(pthread_create(&threads[i], NULL, read_and_check, &file), 0);
+	for (int i = 0; i < 4; i++) {
+		void *fault;
+		pthread_join(threads[i], &fault);
+		assert_null(fault);
+	}
+	expect_lost("e");
+	nt_file_close(&file);
+}
+
+/* The kernel cannot read it for us. */
+static void what_is_gone_can_be_written(void **state)
+{
+	(void)state;
+	nt_file file;
+	nt_error error;
+	nt_output *output;
+	nt_sink *sink;
+	open_pages(&file, "f", 600);
+	assert_int_equal(truncate(in_folder("f"), 0), 0);
+	assert_int_equal(nt_output_create(&output, NULL, &error), NT_OK);
+	assert_int_equal(nt_output_add(output, in_folder("copy"), NT_ROLE_MAIN, &sink, &error), NT_OK);
+	assert_int_equal(nt_sink_write(sink, file.data, file.size, &error), NT_OK);
+	assert_int_equal(nt_output_size(output), 600 * page);
+	nt_output_abort(output);
+	expect_lost("f");
+	nt_file_close(&file);
+}
+
+static void more_files_than_are_watched_are_read(void **state)
+{
+	(void)state;
+	enum { COUNT = 600 };
+	static nt_file files[COUNT];
+	nt_error error;
+	put_pages("g", 1);
+	for (int i = 0; i < COUNT; i++)
+		assert_int_equal(nt_file_open(&files[i], in_folder("g"), &error), NT_OK);
+	assert_true(files[0].mapped);
+	assert_false(files[COUNT - 1].mapped);
+	assert_int_equal(files[COUNT - 1].size, page);
+	for (int i = 0; i < COUNT; i++)
+		nt_file_close(&files[i]);
+	open_pages(&files[0], "g", 1);
+	nt_file_close(&files[0]);
+}
+
+static void devices_are_refused(void **state)
+{
+	(void)state;
+	nt_file file;
+	nt_error error;
+	assert_int_equal(nt_file_open(&file, "/dev/full", &error), NT_ERROR_IO);
+	assert_string_equal(error.message, "cannot read: it is a device");
+	assert_string_equal(error.place.file, "/dev/full");
+}
+
+int main(void)
+{
+	page = (size_t)sysconf(_SC_PAGESIZE);
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(what_is_gone_reads_as_zeros),
+		cmocka_unit_test(the_last_page_may_lose_a_part),
+		cmocka_unit_test(a_file_that_stays_is_not_told),
+		cmocka_unit_test(helpers_may_read_and_other_runs_hear_nothing),
+		cmocka_unit_test(what_is_gone_can_be_written),
+		cmocka_unit_test(more_files_than_are_watched_are_read),
+		cmocka_unit_test(devices_are_refused),
+	};
+	return cmocka_run_group_tests_name("file/watch", tests, make_folder, remove_folder);
+}
