@@ -145,7 +145,7 @@ static void tell_job(void *user, nt_job *job)
 /* Returns whether there is sense in writing more. */
 static bool tell_report_error(session *s, nt_error *error, const char *path)
 {
-	nt_error_in_file(error, strcmp(path, "-") == 0 ? "standard output" : path);
+	nt_error_in_output(error, path);
 	nt_say_error(error, s->style);
 	s->exit_code = nt_exit_worse(s->exit_code, nt_exit_code(error->status));
 	return error->status != NT_ERROR_MEMORY;
@@ -273,6 +273,14 @@ static void hold_standard_streams(void)
 			return;
 }
 
+static void end_exhausted(void)
+{
+	static const char line[] = "nmtan: out of memory\n";
+	const ssize_t written = write(STDERR_FILENO, line, sizeof line - 1);
+	(void)written;
+	_exit(NT_EXIT_INTERNAL);
+}
+
 int main(int argc, char **argv)
 {
 	hold_standard_streams();
@@ -281,6 +289,7 @@ int main(int argc, char **argv)
 	signal(SIGPIPE, SIG_IGN);
 	signal(SIGXFSZ, SIG_IGN);
 	nt_run_catch_signals();
+	nt_run_catch_exhaustion(end_exhausted);
 
 	nt_command command;
 	nt_error error;

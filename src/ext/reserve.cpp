@@ -5,8 +5,10 @@
 // The block is a stack of pieces that is empty again when all of them are freed: what is taken from it is needed
 // shortly, by one call into a library that will be reported as failed.
 #include "ext/reserve.hpp"
+#include "ext/exhausted.h"
 
 #include <atomic>
+#include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -15,8 +17,9 @@
 
 namespace {
 
-// Documents of some 100 000 values come to their end in it. Pages that are not used are not there.
-constexpr size_t reserve_bytes = size_t(8) << 20, kept_for_unwinding = reserve_bytes / 4;
+// Address space: pages that are not used are not there. What unwinding destroys needs the more: nlohmann's destructors
+// list the members of what they destroy, 16 bytes each, in a vector that doubles.
+constexpr size_t reserve_bytes = size_t(32) << 20, kept_for_unwinding = size_t(28) << 20;
 constexpr size_t alignment = alignof(std::max_align_t);
 
 alignas(alignment) unsigned char block[reserve_bytes];
@@ -68,7 +71,48 @@ void give_back() noexcept
 		top = 0;
 }
 
+// ---- the end ----
+
+void (*end_exhausted)();
+std::terminate_handler usual_end;
+
+bool is_exhausted() noexcept
+{
+	if (depth && needed)
+		return true;
+	if (std::current_exception())
+		try {
+			throw;
+		} catch (const std::bad_alloc &) {
+			return true;
+		} catch (...) {
+		}
+	return false;
+}
+
+void on_terminate()
+{
+	if (is_exhausted())
+		end_exhausted();
+	usual_end();
+}
+
+// An assertion in a library. The handler gone, abort() does what it would have done.
+void on_abort(int)
+{
+	if (depth && needed)
+		end_exhausted();
+	std::signal(SIGABRT, SIG_DFL);
+}
+
 } // namespace
+
+void nt_on_exhausted(void (*end)(void))
+{
+	end_exhausted = end;
+	usual_end = std::set_terminate(on_terminate);
+	std::signal(SIGABRT, on_abort);
+}
 
 nt::reserve::reserve() noexcept
 {

@@ -14,6 +14,7 @@
 #include <string.h>
 #include <unistd.h>
 #include "base/memory.h"
+#include "ext/exhausted.h"
 #include "file/litter.h"
 
 static nt_status refuse(nt_error *error, const char *path, const char *why)
@@ -362,4 +363,18 @@ void nt_output_abort(nt_output *output)
 void nt_output_catch_signals(void)
 {
 	nt_temporaries_catch_signals();
+}
+
+static void (*end_process)(void);
+
+static void remove_and_end(void)
+{
+	nt_temporaries_remove_all();
+	end_process();
+}
+
+void nt_output_catch_exhaustion(void (*end)(void))
+{
+	end_process = end;
+	nt_on_exhausted(remove_and_end);
 }

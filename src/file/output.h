@@ -120,4 +120,8 @@ void nt_output_abort(nt_output *output);
  * into a write error. Called once by the front end. */
 void nt_output_catch_signals(void);
 
+/* Has the temporary files removed and `end` called, which must not return, where the process cannot go on for want of
+ * memory. */
+void nt_output_catch_exhaustion(void (*end)(void));
+
 #endif

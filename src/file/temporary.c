@@ -233,7 +233,7 @@ void nt_temporary_discard(nt_temporary *temporary)
 	free(temporary);
 }
 
-static void remove_and_end(int signal_number)
+void nt_temporaries_remove_all(void)
 {
 	atomic_store(&ending, true);
 	while (atomic_load(&holders))
@@ -242,6 +242,11 @@ static void remove_and_end(int signal_number)
 	for (const nt_temporary *entry = list; entry; entry = entry->next)
 		if (!entry->renamed)
 			unlink(entry->path);
+}
+
+static void remove_and_end(int signal_number)
+{
+	nt_temporaries_remove_all();
 	/* end as if it had not been caught, so that a shell sees the signal */
 	sigset_t only;
 	sigemptyset(&only);

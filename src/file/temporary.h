@@ -38,6 +38,10 @@ bool nt_temporary_rename(nt_temporary *temporary, const char *target, bool repla
 /* Frees the entry and removes the file, where it has not been renamed. NULL is allowed. */
 void nt_temporary_discard(nt_temporary *temporary);
 
+/* Removes the temporary files of all sets, for a process that ends: nobody creates or renames one from now on. Safe in
+ * a signal handler. */
+void nt_temporaries_remove_all(void);
+
 /* See nt_output_catch_signals(). */
 void nt_temporaries_catch_signals(void);
 

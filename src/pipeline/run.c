@@ -529,3 +529,8 @@ void nt_run_catch_signals(void)
 {
 	nt_output_catch_signals();
 }
+
+void nt_run_catch_exhaustion(void (*end)(void))
+{
+	nt_output_catch_exhaustion(end);
+}

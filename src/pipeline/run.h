@@ -28,4 +28,8 @@ void nt_summary_free(nt_summary *summary);
  * SIGPIPE into a write error. Called once, before the first run, by a front end that is the whole process. */
 void nt_run_catch_signals(void);
 
+/* The same where a C++ library would end the process for want of memory: `end` is called then, which must not
+ * return. */
+void nt_run_catch_exhaustion(void (*end)(void));
+
 #endif
