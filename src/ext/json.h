@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * JSON documents that can be read, patched and written again: key order, 64-bit integers and the
+ * JSON documents that can be read, edited and written again: key order, 64-bit integers and the
  * style of the text survive.
  *
  * A document owns its values; a value is a handle into it. Handles are small and cheap, and stay valid

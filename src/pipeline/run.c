@@ -286,15 +286,15 @@ static void count_decisions(run *r)
 /* What only a glTF made from a glTF can have. */
 static nt_status check_document_options(const run *r)
 {
-	const bool patch = r->writer && r->writer->format != NT_FORMAT_PLY &&
+	const bool edits = r->writer && r->writer->format != NT_FORMAT_PLY &&
 		(r->scene.format == NT_FORMAT_GLTF || r->scene.format == NT_FORMAT_GLB);
-	if (r->writer && !patch && r->settings->draco > NT_DRACO_OFF)
+	if (r->writer && !edits && r->settings->draco > NT_DRACO_OFF)
 		return nt_fail(r->error, NT_ERROR_USAGE,
 			"--draco=%s compresses only glTF that is made from glTF, not %s made from %s",
 			r->settings->draco == NT_DRACO_AS_SEQUENTIAL ? "sequential" : "edgebreaker",
 			r->writer->name, r->reader->name);
 	/* taking images away would renumber what refers to them */
-	if (patch && r->settings->images == NT_IMAGES_NONE)
+	if (edits && r->settings->images == NT_IMAGES_NONE)
 		return nt_fail(r->error, NT_ERROR_USAGE,
 			"--images=none: a glTF made from a glTF keeps its images; use link, embed or copy");
 	return NT_OK;

@@ -167,14 +167,15 @@ static bool run_input(uint32_t *chance)
 	const nt_report_options report = {.threads = 1};
 	const uint32_t form = mutate_random(chance, 4);
 	const bool check = mutate_random(chance, 8) == 0;
-	const bool patched = strstr(input, ".gl") && formats[form] != NT_FORMAT_PLY && !check;
+	const bool edited = strstr(input, ".gl") && formats[form] != NT_FORMAT_PLY && !check;
 	const bool integers = mutate_random(chance, 6) == 0 && formats[form] != NT_FORMAT_PLY;
 	const nt_settings settings = {.texcoord_set = -1, .only = mutate_random(chance, 4) ? NT_ONLY_ALL : 0,
 		.existing = mutate_random(chance, 2) ? NT_EXISTING_REPLACE : 0, .threads = 1,
 		.normals = mutate_random(chance, 3) ? NT_NORMALS_FLAT : NT_NORMALS_AUTO,
 		.images = images[mutate_random(chance, 4)], .embed = mutate_random(chance, 4) == 0,
 		.buffers = (nt_buffers)mutate_random(chance, 3),
-		.draco = draco[mutate_random(chance, patched ? 6 : 4)], .morphs = (nt_morph_choice)mutate_random(chance, 3),
+		.draco = draco[mutate_random(chance, edited ? 6 : 4)],
+		.morphs = (nt_morph_choice)mutate_random(chance, 3),
 		.precision = integers ? (nt_precision)(1 + mutate_random(chance, 2)) : NT_PRECISION_FLOAT,
 		.method = (nmtan_method)(mutate_random(chance, 4) ? 0 : mutate_random(chance, 4)),
 		.bitangents = mutate_random(chance, 8) == 0, .output_format = check ? 0 : formats[form],

@@ -71,17 +71,17 @@ static void every_difference_is_told(void **state)
 	assert_non_null(strstr(error.place.file, "a.glb"));
 }
 
-/* ---- a document that is patched ---- */
+/* ---- a document that is edited ---- */
 
 /* data/morph.gltf is a quad with one target that moves its positions. */
-typedef struct patched {
+typedef struct edited {
 	nt_file file;
 	nt_scene scene;
 	nt_output *output;
 	float tangents[4][4], moved[4][3];
-} patched;
+} edited;
 
-static void patch(patched *p, const nt_write_options *options)
+static void edit(edited *p, const nt_write_options *options)
 {
 	static const nt_read_options reading = {.texcoord_set = -1, .morphs = NT_MORPH_BAKE};
 	static const char input[] = NT_DATA_DIR "/morph.gltf";
@@ -107,7 +107,7 @@ static void patch(patched *p, const nt_write_options *options)
 	assert_int_equal(nt_gltf_edit(&p->scene, options, p->output, &error), NT_OK);
 }
 
-static void close_patched(patched *p)
+static void close_edited(edited *p)
 {
 	nt_output_abort(p->output);
 	nt_scene_free(&p->scene);
@@ -126,15 +126,15 @@ static void tangents_of_targets_are_compared(void **state)
 		const char *path = in_folder("a.glb");
 		const nt_write_options options = {.path = path, .format = NT_FORMAT_GLB,
 			.precision = ways[i].precision, .draco = ways[i].draco};
-		patched p;
+		edited p;
 		nt_error error;
-		patch(&p, &options);
+		edit(&p, &options);
 		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &error), NT_OK);
 		/* one bit of one number: 0.6 again, but for its last one */
 		p.moved[2][1] = nextafterf(p.moved[2][1], 1);
 		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &error), NT_ERROR_INTERNAL);
 		assert_non_null(strstr(error.message, "corner 2 "));
-		close_patched(&p);
+		close_edited(&p);
 	}
 }
 
