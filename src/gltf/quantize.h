@@ -16,7 +16,7 @@ uint32_t nt_precision_component_type(nt_precision precision);
 /*
  * Rounds tangents to what the integers can say; afterwards they hold what a reader will decode. w becomes
  * +-1 exactly. Of the up to eight integer vectors around T the one of the least angle is taken whose length is
- * within what the Khronos validator lets pass. Rows without a direction become zero. NT_PRECISION_FLOAT
+ * within what the Khronos validator lets pass. Tangents without a direction become zero. NT_PRECISION_FLOAT
  * changes nothing.
  *
  *   tangents  [count][4]

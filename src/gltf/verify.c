@@ -206,14 +206,14 @@ static size_t vertex_at(const primitive_view *view, size_t corner)
 	}
 }
 
-/* Row of a float array; NULL when there is none. */
-static const unsigned char *row_at(const nt_reread_array *array, size_t vertex)
+/* Element of a float array; NULL when there is none. */
+static const unsigned char *element_at(const nt_reread_array *array, size_t vertex)
 {
 	return vertex < array->count ? array->data + vertex * array->stride_bytes : NULL;
 }
 
-/* Whether a row holds a tangent: as it is, or rounded to the integers that it is stored as. */
-static bool tangent_matches(const nt_reread_array *array, const unsigned char *row, const float *tangent,
+/* Whether an element holds a tangent: as it is, or rounded to the integers that it is stored as. */
+static bool tangent_matches(const nt_reread_array *array, const unsigned char *element, const float *tangent,
 	float rounded[4])
 {
 	const nt_precision precision = array->component_type == NT_GLTF_SHORT ? NT_PRECISION_SHORT
@@ -222,7 +222,7 @@ static bool tangent_matches(const nt_reread_array *array, const unsigned char *r
 	memcpy(rounded, tangent, 4 * sizeof *rounded);
 	nt_precision_round(precision, rounded, 1, NULL);
 	nt_precision_encode(precision, rounded, 1, bytes);
-	return memcmp(row, bytes, nt_precision_bytes(precision)) == 0;
+	return memcmp(element, bytes, nt_precision_bytes(precision)) == 0;
 }
 
 /* Whether a vertex's targets say what leads from its stored tangent to theirs. */
@@ -231,11 +231,11 @@ static bool targets_match(const nt_mesh *mesh, const primitive_view *view, size_
 {
 	for (size_t m = 0; view->target_tangents && m < mesh->morph_count; m++) {
 		const nt_reread_array *array = &view->target_tangents[m];
-		const unsigned char *row = row_at(array, vertex);
+		const unsigned char *element = element_at(array, vertex);
 		const float *moved = mesh->morphs[m].vertex_tangents + 3 * split;
 		const float delta[3] = {moved[0] - stored[0], moved[1] - stored[1], moved[2] - stored[2]};
-		if (!row || array->component_type != NT_GLTF_FLOAT || array->components != 3 ||
-			memcmp(row, delta, sizeof delta) != 0)
+		if (!element || array->component_type != NT_GLTF_FLOAT || array->components != 3 ||
+			memcmp(element, delta, sizeof delta) != 0)
 			return false;
 	}
 	return true;
@@ -259,8 +259,8 @@ static bool corner_matches(const nt_mesh *mesh, size_t corner, primitive_view *v
 	size_t source;
 	const size_t split = split_vertex(mesh, corner, &source);
 	const size_t vertex = vertex_at(view, view->corner++);
-	const unsigned char *position = row_at(&view->positions, vertex);
-	const unsigned char *tangent = row_at(&view->tangents, vertex);
+	const unsigned char *position = element_at(&view->positions, vertex);
+	const unsigned char *tangent = element_at(&view->tangents, vertex);
 	if (!position || (view->positions.component_type == NT_GLTF_FLOAT &&
 				 memcmp(position, mesh->positions + 3 * source, 12) != 0))
 		return false;
@@ -336,8 +336,8 @@ static nt_verify_corner wanted_corner(const nt_mesh *mesh, size_t corner)
 static bool found_corner(const primitive_view *view, size_t corner, nt_verify_corner *found)
 {
 	const size_t vertex = vertex_at(view, corner);
-	const unsigned char *position = row_at(&view->positions, vertex);
-	const unsigned char *tangent = row_at(&view->tangents, vertex);
+	const unsigned char *position = element_at(&view->positions, vertex);
+	const unsigned char *tangent = element_at(&view->tangents, vertex);
 	if (!position || !tangent || view->positions.components != 3 ||
 		view->tangents.component_type != NT_GLTF_FLOAT || view->tangents.components != 4)
 		return false;

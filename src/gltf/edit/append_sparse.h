@@ -7,7 +7,7 @@
 
 #include "gltf/edit/append_items.h"
 
-/* Appends the rows that are copies of replaced ones to what a sparse accessor replaces. */
+/* Appends the elements that are copies of replaced ones to what a sparse accessor replaces. */
 nt_status nt_append_sparse(nt_appending *appending, const nt_append_target *target);
 
 #endif

@@ -255,15 +255,15 @@ static void quantized_interleaved_and_sparse_values_are_decoded(void **state)
 		(const float[]){0, 0, 0, 1.5f, 2.5f, 3.5f, 0, 0, 0});
 }
 
-static void sparse_rows_are_checked(void **state)
+static void sparse_elements_are_checked(void **state)
 {
 	(void)state;
 	const char *accessor = "\"componentType\":5126,\"type\":\"VEC3\",\"count\":3,\"sparse\":{"
 		"\"count\":2,\"indices\":{\"bufferView\":0,\"componentType\":5121},"
 		"\"values\":{\"bufferView\":0,\"byteOffset\":4}}";
-	static const uint8_t rows[][2] = {{0, 3}, {1, 1}, {2, 1}};
+	static const uint8_t sparse[][2] = {{0, 3}, {1, 1}, {2, 1}};
 	for (size_t i = 0; i < 3; i++) {
-		unsigned char bytes[28] = {rows[i][0], rows[i][1]};
+		unsigned char bytes[28] = {sparse[i][0], sparse[i][1]};
 		fixture f;
 		assert_int_equal(load_positions(&f, "\"buffer\":0,\"byteLength\":28", accessor, bytes, 28),
 			NT_ERROR_INPUT);
@@ -478,7 +478,7 @@ int main(void)
 		cmocka_unit_test(faults_have_their_pointer),
 		cmocka_unit_test(counts_offsets_and_strides_are_checked),
 		cmocka_unit_test(quantized_interleaved_and_sparse_values_are_decoded),
-		cmocka_unit_test(sparse_rows_are_checked),
+		cmocka_unit_test(sparse_elements_are_checked),
 		cmocka_unit_test(zeros_without_backing_are_limited),
 		cmocka_unit_test(materials_become_slots),
 		cmocka_unit_test(texture_transforms_turn_and_scale),

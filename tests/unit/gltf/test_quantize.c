@@ -6,18 +6,18 @@
 static void axes_and_signs_are_exact(void **state)
 {
 	(void)state;
-	float rows[3][4] = {{1, 0, 0, 1}, {0, -1, 0, -1}, {0, 0, 1, -1}};
+	float tangents[3][4] = {{1, 0, 0, 1}, {0, -1, 0, -1}, {0, 0, 1, -1}};
 	const float same[3][4] = {{1, 0, 0, 1}, {0, -1, 0, -1}, {0, 0, 1, -1}};
 	const int16_t shorts[3][4] = {{32767, 0, 0, 32767}, {0, -32767, 0, -32767}, {0, 0, 32767, -32767}};
 	const int8_t bytes[3][4] = {{127, 0, 0, 127}, {0, -127, 0, -127}, {0, 0, 127, -127}};
 	unsigned char out[3 * 8];
 	nt_rounding cost = {0};
-	nt_precision_round(NT_PRECISION_SHORT, rows[0], 3, &cost);
-	assert_memory_equal(rows, same, sizeof same);
-	nt_precision_encode(NT_PRECISION_SHORT, rows[0], 3, out);
+	nt_precision_round(NT_PRECISION_SHORT, tangents[0], 3, &cost);
+	assert_memory_equal(tangents, same, sizeof same);
+	nt_precision_encode(NT_PRECISION_SHORT, tangents[0], 3, out);
 	assert_memory_equal(out, shorts, sizeof shorts);
-	nt_precision_round(NT_PRECISION_BYTE, rows[0], 3, &cost);
-	nt_precision_encode(NT_PRECISION_BYTE, rows[0], 3, out);
+	nt_precision_round(NT_PRECISION_BYTE, tangents[0], 3, &cost);
+	nt_precision_encode(NT_PRECISION_BYTE, tangents[0], 3, out);
 	assert_memory_equal(out, bytes, sizeof bytes);
 	assert_int_equal(cost.count, 6);
 	assert_true(cost.worst_radians == 0 && cost.sum_radians == 0);
@@ -74,11 +74,11 @@ static void lengths_stay_within_the_validators_tolerance(void **state)
 static void what_has_no_direction_becomes_zero(void **state)
 {
 	(void)state;
-	float rows[3][4] = {{0, 0, 0, 1}, {NAN, 0, 1, -1}, {1, 0, 0, NAN}};
+	float tangents[3][4] = {{0, 0, 0, 1}, {NAN, 0, 1, -1}, {1, 0, 0, NAN}};
 	int8_t out[3][4];
 	nt_rounding cost = {0};
-	nt_precision_round(NT_PRECISION_BYTE, rows[0], 3, &cost);
-	nt_precision_encode(NT_PRECISION_BYTE, rows[0], 3, (unsigned char *)out);
+	nt_precision_round(NT_PRECISION_BYTE, tangents[0], 3, &cost);
+	nt_precision_encode(NT_PRECISION_BYTE, tangents[0], 3, (unsigned char *)out);
 	assert_memory_equal(out, ((int8_t[]){0, 0, 0, 127, 0, 0, 0, -127, 127, 0, 0, 127}), 12);
 	assert_int_equal(cost.count, 1);
 }

@@ -396,7 +396,7 @@ static void explicit_methods_compress_plain_primitives(void **state)
 			row(plain.mesh->colors, plain.mesh, c, 4), 16);
 	}
 	check_tangents(plain.mesh, out.mesh, 0.03);
-	/* the plain rows are gone: four bytes are left of each */
+	/* the plain elements are gone: four bytes are left of each */
 	assert_true(out.file.size < plain.file.size / 2);
 	unload(&plain);
 	unload(&out);
