@@ -5,7 +5,7 @@
 #ifndef NT_GLTF_EDIT_APPEND_H
 #define NT_GLTF_EDIT_APPEND_H
 
-#include "gltf/edit/append_items.h"
+#include "gltf/edit/append_targets.h"
 
 /* Gives every accessor of the pool its copied elements, and overridden accessors their new values; `overrides` is
  * sorted for that. buffer: of new views. decoded_too: what was decompressed by Draco goes into plain views. */

@@ -2,7 +2,7 @@
 /*
  * The accessors of a pool to which vertices are appended, and a record of the bytes that were edited for them.
  */
-#include "gltf/edit/append_items.h"
+#include "gltf/edit/append_targets.h"
 
 #include <stdio.h>
 #include <stdlib.h>

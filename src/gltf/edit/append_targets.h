@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What appending vertices to the accessors of a pool takes: see append_items.c.
+ * What appending vertices to the accessors of a pool takes: see append_targets.c.
  */
-#ifndef NT_GLTF_EDIT_APPEND_ITEMS_H
-#define NT_GLTF_EDIT_APPEND_ITEMS_H
+#ifndef NT_GLTF_EDIT_APPEND_TARGETS_H
+#define NT_GLTF_EDIT_APPEND_TARGETS_H
 
 #include "gltf/accessor.h"
 #include "gltf/edit/buffer_edits.h"
