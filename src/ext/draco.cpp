@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // Draco behind a C header, kept at the door: of 9 900 mutated files 508 decoded "ok" with indices out of
-// range, and memory reached 5.2 GB. So the number of faces is read from the stream's head and judged before
+// range, and memory reached 5.2 GB. So the number of faces is read from the stream's head and checked before
 // Draco sees it, and what it returns is copied into plain arrays with every index and every mapping checked.
 //
 // Who wants to encode again needs to know how values were quantized (origin, range, bits), so that they do not
@@ -287,7 +287,7 @@ nt_status take_mesh(nt_draco &result, const draco::Mesh &mesh, nt_error *error)
 }
 
 // Whether the stream's head is that of a mesh of at most `limit` faces.
-nt_status judge_head(const unsigned char *bytes, size_t size, size_t limit, stream_head *head,
+nt_status check_head(const unsigned char *bytes, size_t size, size_t limit, stream_head *head,
 	nt_error *error)
 {
 	if (!read_head(bytes, size, head))
@@ -372,7 +372,7 @@ nt_status nt::decode_draco(nt_draco &result, const unsigned char *bytes, size_t 
 	nt_error *error)
 {
 	stream_head head = {};
-	const nt_status status = judge_head(bytes, size, face_limit, &head, error);
+	const nt_status status = check_head(bytes, size, face_limit, &head, error);
 	if (status != NT_OK)
 		return status;
 	size_t reached = 0;

@@ -2,7 +2,7 @@
 /*
  * Draco: compressed meshes to arrays and back. For KHR_draco_mesh_compression and .drc files.
  *
- * Nothing that Draco returns is believed: sizes are judged before it decodes, and after it every index, every
+ * Nothing that Draco returns is believed: sizes are checked before it decodes, and after it every index, every
  * mapping and every attribute's extent is checked. What it encodes is decoded again and compared with what
  * went in, bit for bit after quantization. Functions may run in several threads at once.
  */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * meshoptimizer's decoders for compressed views of glTF. They are safe on any bytes; what they give is garbage
- * then, which is checked like any other data. Sizes are judged before anything is allocated: no mode packs more
+ * then, which is checked like any other data. Sizes are checked before anything is allocated: no mode packs more
  * than 64 bytes of data into one.
  *
  * meshoptimizer 0.18 knows version 0 of the vertex codec and no colour filter.

@@ -403,7 +403,7 @@ static nt_status choose(nt_output *output, nt_sink *sink, nt_error *error)
 }
 
 /* A file that is there is ours if the previous main file says so; one of this set, if that is. */
-static nt_status judge_used(nt_output *output, nt_sink *sink, nt_error *error)
+static nt_status check_used(nt_output *output, nt_sink *sink, nt_error *error)
 {
 	const char *name = nt_last_part(sink->target);
 	const nt_sink *other = find_in_set(output, sink, name);
@@ -435,7 +435,7 @@ nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error)
 		return nt_error_in_file(error, sink->path);
 	sink->ours = true;
 	if (sink->naming == NT_NAMING_USED) {
-		status = judge_used(output, sink, error);
+		status = check_used(output, sink, error);
 		nt_temporary_discard(sink->temporary);
 		sink->temporary = NULL;
 		close(sink->fd);

@@ -2,7 +2,7 @@
 /*
  * URIs in glTF documents, and why some of them are not followed. A document comes from anywhere; a URI
  * in it must not make us read a file outside the document's folder, neither by its text ("..", an
- * absolute path, a drive letter, a scheme) nor through a symbolic link. The text is judged after percent
+ * absolute path, a drive letter, a scheme) nor through a symbolic link. The text is checked after percent
  * decoding and with both kinds of slash, the link by comparing real paths.
  */
 #include "file/uri.h"
@@ -172,7 +172,7 @@ static bool has_parent_step(const char *name)
 }
 
 /* What is wrong with the text of a decoded name; NULL: nothing. */
-static const char *judge_text(const char *name, size_t length, bool allow_outside)
+static const char *check_text(const char *name, size_t length, bool allow_outside)
 {
 	if (length == 0)
 		return "is empty";
@@ -225,7 +225,7 @@ nt_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri,
 		return nt_fail_memory(error);
 	const size_t name_length = percent_decode(uri, length, name);
 	name[name_length] = '\0';
-	const char *fault = judge_text(name, name_length, allow_outside);
+	const char *fault = check_text(name, name_length, allow_outside);
 	if (fault)
 		return nt_fail(error, NT_ERROR_INPUT, "the URI \"%.*s\" %s", SHOWN, uri, fault);
 	if (has_scheme(name))

@@ -19,7 +19,8 @@ typedef struct nt_format_entry {
 	bool (*recognise)(const unsigned char *bytes, size_t size);
 	/* Describes the meshes of scene->bytes (and loads them, where that is one step). */
 	nt_status (*open)(nt_scene *scene, const nt_read_options *options, nt_error *error);
-	/* After the decisions: fills scene->joins, also of meshes whose kept tangents will be judged; NULL: there are none. */
+	/* After the decisions: fills scene->joins, also of meshes whose kept tangents will be checked; NULL: there are
+	 * none. */
 	nt_status (*find_joins)(nt_scene *scene, bool kept, nt_error *error);
 	/* After that: sets same_as of meshes that will be solved and have the geometry of an earlier one;
 	 * NULL: no two have the same. */

@@ -26,7 +26,7 @@ typedef struct nt_batch {
 } nt_batch;
 
 /*
- * Prepares one input and its output, or inputs that are judged only (output NULL). The names of inputs
+ * Prepares one input and its output, or inputs that are checked only (output NULL). The names of inputs
  * must outlive the batch.
  *
  * Returns NT_OK or NT_ERROR_MEMORY. The batch is to be freed after failure too.

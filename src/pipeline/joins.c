@@ -160,9 +160,9 @@ static nt_status take_rows(const nt_mesh *part, const float *rows, float **tange
 
 /* ---- counts of a part ---- */
 
-/* What a solve of the whole counted on a part: its triangles are judged again, its corners by the raw rows where the
+/* What a solve of the whole counted on a part: its triangles are checked again, its corners by the raw rows where the
  * solve repaired any. These are written to. */
-static nt_status judge_part(const whole *w, const nt_mesh *part, float *raw, nmtan_counts *counts)
+static nt_status check_part(const whole *w, const nt_mesh *part, float *raw, nmtan_counts *counts)
 {
 	nmtan_stored_uv stored;
 	nmtan_mesh view = nt_mesh_view(part, &stored);
@@ -175,14 +175,14 @@ static nt_status judge_part(const whole *w, const nt_mesh *part, float *raw, nmt
 	const nt_solve rows = {.mesh = &view, .corner_count = part->corner_count, .threads = 1, .scratch = &scratch,
 		.repair = raw != NULL, .tangents = raw};
 	const uint64_t *faulty;
-	const nt_status status = nt_status_of(nt_judge(&rows, counts, &faulty));
+	const nt_status status = nt_status_of(nt_find_unusable(&rows, counts, &faulty));
 	counts->struct_bytes = sizeof *counts;
 	nt_scratch_free(&scratch);
 	return status;
 }
 
 /* A corner that no triangle gives a tangent has MikkTSpace's placeholder in the raw result, which others may have
- * too: it is known by what repair made of it. Such corners get w = 0, by which judging knows them. */
+ * too: it is known by what repair made of it. Such corners get w = 0, by which the check knows them. */
 static void mark_unassigned(const whole *w, float *raw)
 {
 	static const float placeholder[4] = {1, 0, 0, -1};
@@ -216,7 +216,7 @@ static nt_status count_parts(const whole *w)
 		nt_mesh *part = w->join->parts[i];
 		if (!is_solved_here(w, part) || part->corner_count == 0)
 			continue;
-		status = judge_part(w, part, raw ? raw + 4 * corner : NULL, &part->counts);
+		status = check_part(w, part, raw ? raw + 4 * corner : NULL, &part->counts);
 		part->counts.ill_conditioned = ill_conditioned;
 		ill_conditioned = 0;
 	}
@@ -274,7 +274,7 @@ static nt_status hand_out_target(const whole *w, uint32_t target, const float *t
 }
 
 /* What adding half of the deltas does, part by part. */
-static nt_status judge_halfway(const whole *w, uint32_t target, const float *positions, const float *normals)
+static nt_status measure_halfway(const whole *w, uint32_t target, const float *positions, const float *normals)
 {
 	float *halfway;
 	const nt_status status = nt_morphs_solve_halfway(&w->mesh, positions, normals, w->options, &halfway);
@@ -304,7 +304,7 @@ static nt_status solve_target(const whole *w, uint32_t target)
 		status = hand_out_target(w, target, tangents, &turns);
 	free(tangents);
 	if (!status && turns)
-		status = judge_halfway(w, target, positions, normals);
+		status = measure_halfway(w, target, positions, normals);
 	free(positions);
 	free(normals);
 	return status;

@@ -55,7 +55,7 @@ size_t nt_morphs_count_turned(const nmtan_mesh *base, const nt_morph *morph)
 	return count;
 }
 
-static nt_status judge_halfway(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_options *options,
+static nt_status measure_halfway(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_options *options,
 	nt_morph *morph)
 {
 	if (!nt_morphs_turn(mesh, morph))
@@ -82,7 +82,7 @@ nt_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_opt
 		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = morph->corner_tangents};
 		nt_status status = nt_status_of(nmtan_tangents(&moved, options, &output, NULL));
 		if (!status)
-			status = judge_halfway(mesh, view, options, morph);
+			status = measure_halfway(mesh, view, options, morph);
 		if (status)
 			return status;
 	}

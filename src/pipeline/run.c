@@ -164,8 +164,8 @@ static nt_status find_joins(run *r)
 	const bool across = r->settings->across == NT_ACROSS_MESH;
 	if (!r->reader->find_joins || !(across || r->settings->report))
 		return NT_OK;
-	const bool judges_kept = across && r->settings->check && r->settings->report;
-	const nt_status status = r->reader->find_joins(scene, judges_kept, r->error);
+	const bool checks_kept = across && r->settings->check && r->settings->report;
+	const nt_status status = r->reader->find_joins(scene, checks_kept, r->error);
 	for (size_t i = 0; !status && across && i < scene->join_count; i++)
 		for (size_t k = 0; k < scene->joins[i].part_count; k++)
 			scene->joins[i].parts[k]->join = &scene->joins[i];

@@ -56,7 +56,7 @@ typedef struct nt_settings {
 	bool embed;
 	bool verify;   /* read the output back with tinygltf before it takes its name */
 	bool dry_run;  /* do everything but write */
-	bool check;    /* judge only: no output */
+	bool check;    /* a report only: no output */
 	bool sync;
 	bool no_clobber;
 	bool list_meshes; /* summary->lines is wanted */

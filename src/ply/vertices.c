@@ -5,7 +5,7 @@
  * blocks that stay in the first-level cache, so that the choice of a type is made once per block.
  *
  * A mesh must be finite, as in OBJ: there is no tangent at NaN and glTF cannot store it. Points are
- * passed through as they are, and so are tangents, which the caller may want to judge.
+ * passed through as they are, and so are tangents, which the caller may want to check.
  */
 #include "ply/vertices.h"
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * One report from one scene: see report.h. Each mesh is judged by itself, in one order of checks; the
+ * One report from one scene: see report.h. Each mesh is checked by itself, in one order of checks; the
  * scene's own findings are added, everything is sorted, and the reader is asked for the lines of what is left.
  *
  * Time is linear in the size of the mesh; a million triangles take a fraction of a second beside the
@@ -72,7 +72,7 @@ static bool describe_mesh(nt_report *report, const nt_mesh *mesh, const nt_repor
 	return facts->name && facts->why;
 }
 
-/* On --check a solve may have run too, but what is judged is what the file has. */
+/* On --check a solve may have run too, but what is checked is what the file has. */
 static nt_stored stored_tangents(const nt_mesh *mesh, bool converted)
 {
 	if (converted && mesh->split.vertex_tangents)
@@ -82,24 +82,24 @@ static nt_stored stored_tangents(const nt_mesh *mesh, bool converted)
 	return mesh->tangents ? NT_STORED_AUTHORED : NT_STORED_NONE;
 }
 
-static void measure_surface(nt_judge *judge)
+static void measure_surface(nt_check *check)
 {
-	const nt_surface *s = &judge->surface;
-	nt_report_mesh *facts = judge->facts;
-	facts->face_count = judge->mesh->face_count;
+	const nt_surface *s = &check->surface;
+	nt_report_mesh *facts = check->facts;
+	facts->face_count = check->mesh->face_count;
 	facts->triangle_count = s->triangle_count;
 	for (size_t t = 0; t < s->triangle_count; t++) {
 		facts->triangles[s->orientation[t] + 1]++;
 		facts->areas[s->orientation[t] + 1] += s->areas[t];
 	}
 	for (int i = 0; i < 3; i++)
-		judge->total_area += facts->areas[i];
+		check->total_area += facts->areas[i];
 	for (size_t c = 0; c < 3 * s->triangle_count; c++)
 		nt_box_add(&facts->box, nt_side_position(s, (uint32_t)c));
-	facts->vertices_before = judge->mesh->vertex_sources ? judge->mesh->source_vertex_count
-							     : judge->mesh->vertex_count;
-	judge->stored = stored_tangents(judge->mesh, judge->options->converted);
-	facts->judged_tangents = judge->stored != NT_STORED_NONE;
+	facts->vertices_before = check->mesh->vertex_sources ? check->mesh->source_vertex_count
+							     : check->mesh->vertex_count;
+	check->stored = stored_tangents(check->mesh, check->options->converted);
+	facts->checked_tangents = check->stored != NT_STORED_NONE;
 	facts->analysed = true;
 }
 
@@ -114,12 +114,12 @@ static void *copy_block(nt_arena *arena, const void *block, size_t count, size_t
 	return copy ? memcpy(copy, block, count * size) : NULL;
 }
 
-static nt_status keep_geometry(nt_judge *judge)
+static nt_status keep_geometry(nt_check *check)
 {
-	const nt_mesh *mesh = judge->mesh;
-	const nt_surface *s = &judge->surface;
-	nt_arena *arena = &judge->report->arena;
-	const bool split = judge->stored == NT_STORED_SPLIT;
+	const nt_mesh *mesh = check->mesh;
+	const nt_surface *s = &check->surface;
+	nt_arena *arena = &check->report->arena;
+	const bool split = check->stored == NT_STORED_SPLIT;
 	bool failed = false;
 	nt_report_geometry *g = nt_arena_alloc(arena, 1, sizeof *g);
 	if (!g)
@@ -134,7 +134,7 @@ static nt_status keep_geometry(nt_judge *judge)
 				      4 * sizeof(float), &failed)
 			    : copy_block(arena, mesh->tangents, g->vertex_count, 4 * sizeof(float), &failed);
 	g->orientation = copy_block(arena, s->orientation, s->triangle_count, 1, &failed);
-	g->islands = copy_block(arena, judge->islands, s->triangle_count, sizeof(uint32_t), &failed);
+	g->islands = copy_block(arena, check->islands, s->triangle_count, sizeof(uint32_t), &failed);
 	if (failed || !g->positions || !g->indices || (mesh->normals && !g->normals) ||
 		(mesh->texcoords && !g->texcoords))
 		return NT_ERROR_MEMORY;
@@ -144,50 +144,50 @@ static nt_status keep_geometry(nt_judge *judge)
 		if (g->normals)
 			memcpy(g->normals + 3 * v, mesh->normals + 3 * from, 3 * sizeof(float));
 		if (g->texcoords)
-			nt_source_texcoord(judge->scene, mesh->texcoords + 2 * from, g->texcoords + 2 * v);
+			nt_source_texcoord(check->scene, mesh->texcoords + 2 * from, g->texcoords + 2 * v);
 	}
 	for (size_t c = 0; c < 3 * s->triangle_count; c++)
 		g->indices[c] = split && mesh->split.indices ? mesh->split.indices[s->corners[c]] : s->vertices[c];
-	judge->facts->geometry = g;
+	check->facts->geometry = g;
 	return NT_OK;
 }
 
 /* Of all images together: more has no place in a page of 20 MB. */
 static const size_t MOST_IMAGE_BYTES = 2000000;
 
-static nt_status keep_normal_map(nt_judge *judge, size_t *most_bytes)
+static nt_status keep_normal_map(nt_check *check, size_t *most_bytes)
 {
-	const nt_report_options *options = judge->options;
+	const nt_report_options *options = check->options;
 	if (!options->find_normal_map)
 		return NT_OK;
-	const nt_status status = options->find_normal_map(&judge->report->arena, judge->scene, judge->mesh,
-		*most_bytes, &judge->facts->normal_map);
-	*most_bytes -= judge->facts->normal_map.size;
+	const nt_status status = options->find_normal_map(&check->report->arena, check->scene, check->mesh,
+		*most_bytes, &check->facts->normal_map);
+	*most_bytes -= check->facts->normal_map.size;
 	return status;
 }
 
 /* ---- one mesh ---- */
 
 /* most_image_bytes: how much of images may still be kept. */
-static nt_status judge_mesh(nt_judge *judge, size_t *most_image_bytes)
+static nt_status check_mesh(nt_check *check, size_t *most_image_bytes)
 {
-	nt_status status = nt_surface_build(&judge->surface, judge->mesh, judge->scratch);
-	if (status || judge->surface.triangle_count == 0)
+	nt_status status = nt_surface_build(&check->surface, check->mesh, check->scratch);
+	if (status || check->surface.triangle_count == 0)
 		return status;
-	measure_surface(judge);
-	nt_status (*const checks[])(nt_judge *) = {nt_judge_edges, nt_judge_geometry,
-		nt_judge_islands, nt_judge_seams, nt_judge_tangents, nt_judge_growth};
+	measure_surface(check);
+	nt_status (*const checks[])(nt_check *) = {nt_check_edges, nt_check_geometry,
+		nt_check_islands, nt_check_seams, nt_check_tangents, nt_check_growth};
 	for (size_t i = 0; i < sizeof checks / sizeof checks[0] && !status; i++)
-		status = checks[i](judge);
-	if (!status && judge->options->keep_geometry)
-		status = keep_geometry(judge);
+		status = checks[i](check);
+	if (!status && check->options->keep_geometry)
+		status = keep_geometry(check);
 	if (!status)
-		status = keep_normal_map(judge, most_image_bytes);
-	return status ? status : judge->failed ? NT_ERROR_MEMORY : NT_OK;
+		status = keep_normal_map(check, most_image_bytes);
+	return status ? status : check->failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
-/* Points and lines, empty meshes and ones that were never loaded have nothing to be judged. */
-static bool is_judged(const nt_mesh *mesh)
+/* Points and lines, empty meshes and ones that were never loaded have nothing to be checked. */
+static bool is_checked(const nt_mesh *mesh)
 {
 	return mesh->triangles && mesh->positions && mesh->face_count > 0;
 }
@@ -199,41 +199,41 @@ static bool same_uses(const nt_mesh *a, const nt_mesh *b)
 		a->targets_without_tangents == b->targets_without_tangents;
 }
 
-/* Meshes that are judged together: of the same geometry and used alike. */
-typedef struct judged_meshes {
-	uint32_t *first; /* [mesh_count] the one that is judged for it; NT_NONE: nobody */
+/* Meshes that are checked together: of the same geometry and used alike. */
+typedef struct checked_meshes {
+	uint32_t *first; /* [mesh_count] the one that is checked in its place; NT_NONE: nobody */
 	uint32_t *next;  /* [mesh_count] another first one of the same geometry, NT_NONE: none */
-	size_t *alike;   /* [mesh_count] of a first one: how many it is judged for */
-} judged_meshes;
+	size_t *alike;   /* [mesh_count] of a first one: how many it stands for */
+} checked_meshes;
 
-static uint32_t find_first(const nt_scene *scene, judged_meshes *judged, uint32_t mesh)
+static uint32_t find_first(const nt_scene *scene, checked_meshes *checked, uint32_t mesh)
 {
 	const nt_mesh *same_as = scene->meshes[mesh].same_as;
 	if (!same_as)
 		return mesh;
 	uint32_t at = (uint32_t)(same_as - scene->meshes);
-	while (judged->first[at] == at && !same_uses(&scene->meshes[at], &scene->meshes[mesh])) {
-		if (judged->next[at] == NT_NONE) {
-			judged->next[at] = mesh;
+	while (checked->first[at] == at && !same_uses(&scene->meshes[at], &scene->meshes[mesh])) {
+		if (checked->next[at] == NT_NONE) {
+			checked->next[at] = mesh;
 			return mesh;
 		}
-		at = judged->next[at];
+		at = checked->next[at];
 	}
-	return judged->first[at] == at ? at : mesh;
+	return checked->first[at] == at ? at : mesh;
 }
 
-static void find_judged(const nt_scene *scene, judged_meshes *judged)
+static void find_checked(const nt_scene *scene, checked_meshes *checked)
 {
 	for (uint32_t i = 0; i < scene->mesh_count; i++) {
-		judged->next[i] = NT_NONE;
-		judged->alike[i] = 0;
-		judged->first[i] = is_judged(&scene->meshes[i]) ? find_first(scene, judged, i) : NT_NONE;
-		if (judged->first[i] != NT_NONE)
-			judged->alike[judged->first[i]]++;
+		checked->next[i] = NT_NONE;
+		checked->alike[i] = 0;
+		checked->first[i] = is_checked(&scene->meshes[i]) ? find_first(scene, checked, i) : NT_NONE;
+		if (checked->first[i] != NT_NONE)
+			checked->alike[checked->first[i]]++;
 	}
 }
 
-/* The facts of a mesh are those of the one that was judged for it; seams, islands and geometry stay there. */
+/* The facts of a mesh are those of the one that was checked in its place; seams, islands and geometry stay there. */
 static void share_facts(nt_report *report, uint32_t mesh, uint32_t first)
 {
 	const nt_report_mesh own = report->meshes[mesh];
@@ -254,52 +254,52 @@ static void share_facts(nt_report *report, uint32_t mesh, uint32_t first)
 	facts->normal_map = (nt_image){0};
 }
 
-static nt_status judge_meshes(const nt_judge *judge, const judged_meshes *judged)
+static nt_status check_meshes(const nt_check *check, const checked_meshes *checked)
 {
-	const nt_scene *scene = judge->scene;
+	const nt_scene *scene = check->scene;
 	nt_status status = NT_OK;
 	size_t image_bytes = MOST_IMAGE_BYTES;
 	for (uint32_t i = 0; i < scene->mesh_count && !status; i++) {
-		if (judged->first[i] == NT_NONE)
+		if (checked->first[i] == NT_NONE)
 			continue;
-		if (judged->first[i] != i) {
-			share_facts(judge->report, i, judged->first[i]);
+		if (checked->first[i] != i) {
+			share_facts(check->report, i, checked->first[i]);
 			continue;
 		}
 		nt_scratch scratch;
 		nt_scratch_init(&scratch, NULL);
-		nt_judge one = *judge;
+		nt_check one = *check;
 		one.mesh_index = i;
-		one.alike = judged->alike[i];
+		one.alike = checked->alike[i];
 		one.mesh = &scene->meshes[i];
-		one.facts = &judge->report->meshes[i];
+		one.facts = &check->report->meshes[i];
 		one.scratch = &scratch;
-		status = judge_mesh(&one, &image_bytes);
+		status = check_mesh(&one, &image_bytes);
 		nt_scratch_free(&scratch);
 	}
 	return status;
 }
 
-static nt_status judge_scene(const nt_scene *scene, const nt_report_options *options,
+static nt_status check_scene(const nt_scene *scene, const nt_report_options *options,
 	nt_report *report)
 {
 	size_t issue_capacity = 0;
-	nt_judge judge = {.scene = scene, .options = options, .report = report,
+	nt_check check = {.scene = scene, .options = options, .report = report,
 		.issue_capacity = &issue_capacity};
-	judged_meshes judged = {.first = nt_alloc(scene->mesh_count, sizeof *judged.first),
-		.next = nt_alloc(scene->mesh_count, sizeof *judged.next),
-		.alike = nt_alloc(scene->mesh_count, sizeof *judged.alike)};
+	checked_meshes checked = {.first = nt_alloc(scene->mesh_count, sizeof *checked.first),
+		.next = nt_alloc(scene->mesh_count, sizeof *checked.next),
+		.alike = nt_alloc(scene->mesh_count, sizeof *checked.alike)};
 	nt_status status = NT_ERROR_MEMORY;
-	if (judged.first && judged.next && judged.alike) {
-		find_judged(scene, &judged);
-		status = judge_meshes(&judge, &judged);
+	if (checked.first && checked.next && checked.alike) {
+		find_checked(scene, &checked);
+		status = check_meshes(&check, &checked);
 	}
-	free(judged.first);
-	free(judged.next);
-	free(judged.alike);
+	free(checked.first);
+	free(checked.next);
+	free(checked.alike);
 	if (!status)
-		status = nt_issues_add_findings(&judge, &scene->findings);
-	return status ? status : judge.failed ? NT_ERROR_MEMORY : NT_OK;
+		status = nt_issues_add_findings(&check, &scene->findings);
+	return status ? status : check.failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
 /* ---- lines ---- */
@@ -367,7 +367,7 @@ static nt_status build(const nt_scene *scene, const nt_report_options *options, 
 		if (!describe_mesh(report, &scene->meshes[i], options, &report->meshes[i]))
 			return NT_ERROR_MEMORY;
 	count_instances(report, scene);
-	nt_status status = judge_scene(scene, options, report);
+	nt_status status = check_scene(scene, options, report);
 	if (!status)
 		status = nt_issues_finish(report, options);
 	if (!status && scene->locate_faces)

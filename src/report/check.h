@@ -16,7 +16,7 @@ typedef struct nt_mirror_edge {
 	bool non_manifold;
 } nt_mirror_edge;
 
-/* Whose tangents are judged: the input's, or, on conversion, the result. */
+/* Whose tangents are checked: the input's, or, on conversion, the result. */
 typedef enum nt_stored {
 	NT_STORED_NONE,
 	NT_STORED_AUTHORED, /* mesh->tangents */
@@ -24,7 +24,7 @@ typedef enum nt_stored {
 	NT_STORED_SPLIT     /* mesh->split.vertex_tangents */
 } nt_stored;
 
-typedef struct nt_judge {
+typedef struct nt_check {
 	const nt_scene *scene;
 	const nt_report_options *options;
 	nt_report *report;
@@ -46,7 +46,7 @@ typedef struct nt_judge {
 	size_t mirror_edge_count;
 	uint32_t *islands;        /* [triangle_count] NT_NONE: has no edges */
 	bool failed;              /* out of memory while reporting */
-} nt_judge;
+} nt_check;
 
 /* Occurrences of one finding. Start with {.code = ...}. */
 typedef struct nt_tally {
@@ -60,19 +60,19 @@ typedef struct nt_tally {
 	uint32_t seam, island; /* one more than the index; 0: none */
 } nt_tally;
 
-/* Each counts one occurrence. value is the number that was judged, or NAN. */
-void nt_tally_triangle(const nt_judge *judge, nt_tally *tally, size_t triangle, double value);
-void nt_tally_side(const nt_judge *judge, nt_tally *tally, uint32_t side, double value);
-void nt_tally_vertex(const nt_judge *judge, nt_tally *tally, uint32_t vertex, double value);
+/* Each counts one occurrence. value is the number that was checked, or NAN. */
+void nt_tally_triangle(const nt_check *check, nt_tally *tally, size_t triangle, double value);
+void nt_tally_side(const nt_check *check, nt_tally *tally, uint32_t side, double value);
+void nt_tally_vertex(const nt_check *check, nt_tally *tally, uint32_t vertex, double value);
 
 /* A number behind the finding. */
 void nt_tally_number(nt_tally *tally, const char *name, double value);
 
 /* Makes a finding of the tally unless it is empty or ignored. The severity is that of the table;
- * nt_judge_report_as() takes another one. detail_format may be NULL. */
-void nt_judge_report(nt_judge *judge, const nt_tally *tally, const char *detail_format, ...)
+ * nt_check_report_as() takes another one. detail_format may be NULL. */
+void nt_check_report(nt_check *check, const nt_tally *tally, const char *detail_format, ...)
 	NT_PRINTF(3, 4);
-void nt_judge_report_as(nt_judge *judge, const nt_tally *tally, nt_severity severity,
+void nt_check_report_as(nt_check *check, const nt_tally *tally, nt_severity severity,
 	const char *detail_format, ...) NT_PRINTF(4, 5);
 
 /* Boxes. */
@@ -107,45 +107,45 @@ static inline void nt_source_texcoord(const nt_scene *scene, const float *texcoo
 }
 
 /* The same of where a side begins. */
-static inline void nt_side_source_texcoord(const nt_judge *judge, uint32_t side, float out[2])
+static inline void nt_side_source_texcoord(const nt_check *check, uint32_t side, float out[2])
 {
-	nt_source_texcoord(judge->scene,
-		judge->mesh->texcoords + 2 * (size_t)judge->surface.vertices[side], out);
+	nt_source_texcoord(check->scene,
+		check->mesh->texcoords + 2 * (size_t)check->surface.vertices[side], out);
 }
 
-/* Which of the stored tangents a corner has; the judge has some. */
-static inline size_t nt_tangent_index(const nt_judge *judge, uint32_t corner)
+/* Which of the stored tangents a corner has; the mesh has some. */
+static inline size_t nt_tangent_index(const nt_check *check, uint32_t corner)
 {
-	const nt_mesh *mesh = judge->mesh;
-	if (judge->stored == NT_STORED_SPLIT && mesh->split.indices)
+	const nt_mesh *mesh = check->mesh;
+	if (check->stored == NT_STORED_SPLIT && mesh->split.indices)
 		return mesh->split.indices[corner];
-	if (judge->stored == NT_STORED_CORNERS)
+	if (check->stored == NT_STORED_CORNERS)
 		return corner;
 	return mesh->indices ? mesh->indices[corner] : corner;
 }
 
 /* The tangent that is, or will be, stored for a corner. */
-static inline const float *nt_stored_tangent(const nt_judge *judge, uint32_t corner)
+static inline const float *nt_stored_tangent(const nt_check *check, uint32_t corner)
 {
-	const nt_mesh *mesh = judge->mesh;
-	const float *tangents = judge->stored == NT_STORED_SPLIT ? mesh->split.vertex_tangents
-		: judge->stored == NT_STORED_CORNERS	    ? mesh->corner_tangents
+	const nt_mesh *mesh = check->mesh;
+	const float *tangents = check->stored == NT_STORED_SPLIT ? mesh->split.vertex_tangents
+		: check->stored == NT_STORED_CORNERS	    ? mesh->corner_tangents
 							    : mesh->tangents;
-	return tangents + 4 * nt_tangent_index(judge, corner);
+	return tangents + 4 * nt_tangent_index(check, corner);
 }
 
 /* The checks, in the order in which they run. */
-nt_status nt_judge_edges(nt_judge *judge);    /* edges.c: boundary, non-manifold, winding, islands' numbers */
-nt_status nt_judge_geometry(nt_judge *judge); /* geometry.c: positions, normals, UV triangles */
-nt_status nt_judge_islands(nt_judge *judge);  /* islands.c */
-nt_status nt_judge_seams(nt_judge *judge);    /* seams.c */
-nt_status nt_judge_tangents(nt_judge *judge); /* tangents.c */
-nt_status nt_judge_growth(nt_judge *judge);   /* growth.c: shared and copied vertices */
+nt_status nt_check_edges(nt_check *check);    /* edges.c: boundary, non-manifold, winding, islands' numbers */
+nt_status nt_check_geometry(nt_check *check); /* geometry.c: positions, normals, UV triangles */
+nt_status nt_check_islands(nt_check *check);  /* islands.c */
+nt_status nt_check_seams(nt_check *check);    /* seams.c */
+nt_status nt_check_tangents(nt_check *check); /* tangents.c */
+nt_status nt_check_growth(nt_check *check);   /* growth.c: shared and copied vertices */
 
 /* Ends: most severe first, limits, baseline. issues.c */
 nt_status nt_issues_finish(nt_report *report, const nt_report_options *options);
 
 /* Adds the findings that the scene's stages made. */
-nt_status nt_issues_add_findings(nt_judge *judge, const nt_finding_list *findings);
+nt_status nt_issues_add_findings(nt_check *check, const nt_finding_list *findings);
 
 #endif

@@ -93,38 +93,38 @@ static nt_status unite_many(const nt_surface *s, const uint32_t *sides, size_t c
 }
 
 /* Remembers the first unmirrored and the first mirrored side of the edge, if it has both. */
-static void find_mirror(nt_judge *judge, const uint32_t *sides, size_t count)
+static void find_mirror(nt_check *check, const uint32_t *sides, size_t count)
 {
 	uint32_t found[2] = {NT_NONE, NT_NONE};
 	for (size_t i = count; i-- > 0;) {
-		const int sign = judge->surface.orientation[sides[i] / 3];
+		const int sign = check->surface.orientation[sides[i] / 3];
 		if (sign)
 			found[sign < 0] = sides[i];
 	}
 	if (found[0] == NT_NONE || found[1] == NT_NONE)
 		return;
-	const uint32_t index = (uint32_t)judge->mirror_edge_count++;
-	judge->mirror_edges[index] = (nt_mirror_edge){{found[0], found[1]}, count > 2};
-	judge->seam_edge[found[0]] = judge->seam_edge[found[1]] = index;
+	const uint32_t index = (uint32_t)check->mirror_edge_count++;
+	check->mirror_edges[index] = (nt_mirror_edge){{found[0], found[1]}, count > 2};
+	check->seam_edge[found[0]] = check->seam_edge[found[1]] = index;
 }
 
-static nt_status judge_edge(nt_judge *judge, const uint32_t *sides, size_t count, uint32_t *parents,
+static nt_status check_edge(nt_check *check, const uint32_t *sides, size_t count, uint32_t *parents,
 	edge_tallies *tallies)
 {
-	nt_report_mesh *facts = judge->facts;
-	const nt_surface *s = &judge->surface;
+	nt_report_mesh *facts = check->facts;
+	const nt_surface *s = &check->surface;
 	if (count == 1) {
 		facts->boundary_edges++;
-		judge->boundary[sides[0]] = 1;
+		check->boundary[sides[0]] = 1;
 		return NT_OK;
 	}
 	if (count > 2)
-		nt_tally_side(judge, &tallies->non_manifold, sides[0], (double)count);
+		nt_tally_side(check, &tallies->non_manifold, sides[0], (double)count);
 	else if (same_way(s, sides[0], sides[1]))
-		nt_tally_side(judge, &tallies->inconsistent, sides[0], (double)count);
-	if (!judge->mesh->texcoords)
+		nt_tally_side(check, &tallies->inconsistent, sides[0], (double)count);
+	if (!check->mesh->texcoords)
 		return NT_OK;
-	find_mirror(judge, sides, count);
+	find_mirror(check, sides, count);
 	if (count > 2)
 		return unite_many(s, sides, count, parents);
 	if (nt_sides_meet(s, sides[0], sides[1]))
@@ -135,44 +135,44 @@ static nt_status judge_edge(nt_judge *judge, const uint32_t *sides, size_t count
 }
 
 /* Numbers islands by their lowest triangle. */
-static void number_islands(nt_judge *judge, uint32_t *parents)
+static void number_islands(nt_check *check, uint32_t *parents)
 {
-	const nt_surface *s = &judge->surface;
+	const nt_surface *s = &check->surface;
 	uint32_t count = 0;
 	for (size_t t = 0; t < s->triangle_count; t++) {
 		const bool has_edges = s->flatness[t] == NT_SOUND || s->flatness[t] == NT_COLLINEAR;
 		const uint32_t root = find_root(parents, (uint32_t)t);
-		if (!has_edges || !judge->mesh->texcoords)
-			judge->islands[t] = NT_NONE;
+		if (!has_edges || !check->mesh->texcoords)
+			check->islands[t] = NT_NONE;
 		else
-			judge->islands[t] = root == t ? count++ : judge->islands[root];
+			check->islands[t] = root == t ? count++ : check->islands[root];
 	}
-	judge->facts->island_count = count;
+	check->facts->island_count = count;
 }
 
-static nt_status allocate(nt_judge *judge)
+static nt_status allocate(nt_check *check)
 {
-	const size_t sides = 3 * judge->surface.triangle_count;
-	judge->boundary = nt_scratch_alloc(judge->scratch, sides, sizeof *judge->boundary);
-	judge->seam_edge = nt_scratch_alloc(judge->scratch, sides, sizeof *judge->seam_edge);
-	judge->mirror_edges = nt_scratch_alloc(judge->scratch, judge->surface.edge_count,
-		sizeof *judge->mirror_edges);
-	judge->islands = nt_scratch_alloc(judge->scratch, sides / 3, sizeof *judge->islands);
-	if (!judge->boundary || !judge->seam_edge || !judge->mirror_edges || !judge->islands)
+	const size_t sides = 3 * check->surface.triangle_count;
+	check->boundary = nt_scratch_alloc(check->scratch, sides, sizeof *check->boundary);
+	check->seam_edge = nt_scratch_alloc(check->scratch, sides, sizeof *check->seam_edge);
+	check->mirror_edges = nt_scratch_alloc(check->scratch, check->surface.edge_count,
+		sizeof *check->mirror_edges);
+	check->islands = nt_scratch_alloc(check->scratch, sides / 3, sizeof *check->islands);
+	if (!check->boundary || !check->seam_edge || !check->mirror_edges || !check->islands)
 		return NT_ERROR_MEMORY;
-	memset(judge->boundary, 0, sides * sizeof *judge->boundary);
-	memset(judge->seam_edge, 0xff, sides * sizeof *judge->seam_edge);
+	memset(check->boundary, 0, sides * sizeof *check->boundary);
+	memset(check->seam_edge, 0xff, sides * sizeof *check->seam_edge);
 	return NT_OK;
 }
 
-nt_status nt_judge_edges(nt_judge *judge)
+nt_status nt_check_edges(nt_check *check)
 {
-	const nt_surface *s = &judge->surface;
-	nt_status status = allocate(judge);
+	const nt_surface *s = &check->surface;
+	nt_status status = allocate(check);
 	if (status)
 		return status;
-	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
-	uint32_t *parents = nt_scratch_alloc(judge->scratch, s->triangle_count, sizeof *parents);
+	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	uint32_t *parents = nt_scratch_alloc(check->scratch, s->triangle_count, sizeof *parents);
 	if (!parents)
 		return NT_ERROR_MEMORY;
 	for (size_t t = 0; t < s->triangle_count; t++)
@@ -181,17 +181,17 @@ nt_status nt_judge_edges(nt_judge *judge)
 	edge_tallies tallies = {{.code = NT_CODE_MESH_NON_MANIFOLD_EDGE},
 		{.code = NT_CODE_MESH_INCONSISTENT_WINDING}};
 	for (size_t e = 0; e < s->edge_count && !status; e++)
-		status = judge_edge(judge, s->sides + s->edge_first[e],
+		status = check_edge(check, s->sides + s->edge_first[e],
 			s->edge_first[e + 1] - s->edge_first[e], parents, &tallies);
 	if (status)
 		return status;
-	number_islands(judge, parents);
-	nt_scratch_back(judge->scratch, mark);
+	number_islands(check, parents);
+	nt_scratch_back(check->scratch, mark);
 
-	judge->facts->edge_count = s->edge_count;
-	judge->facts->non_manifold_edges = tallies.non_manifold.count;
-	judge->facts->inconsistent_edges = tallies.inconsistent.count;
-	nt_judge_report(judge, &tallies.non_manifold, NULL);
-	nt_judge_report(judge, &tallies.inconsistent, NULL);
+	check->facts->edge_count = s->edge_count;
+	check->facts->non_manifold_edges = tallies.non_manifold.count;
+	check->facts->inconsistent_edges = tallies.inconsistent.count;
+	nt_check_report(check, &tallies.non_manifold, NULL);
+	nt_check_report(check, &tallies.inconsistent, NULL);
 	return NT_OK;
 }

@@ -75,29 +75,29 @@ static double rounding_bound(const nt_surface *s, size_t t, double *determinant)
 
 /* How many corners of a degenerate triangle share their vertex with a sound one, whose tangent they take;
  * the others get a vector perpendicular to their normal. */
-static size_t corners_with_neighbour(const nt_judge *judge, const uint8_t *sound_vertex, size_t t)
+static size_t corners_with_neighbour(const nt_check *check, const uint8_t *sound_vertex, size_t t)
 {
 	size_t count = 0;
 	for (size_t k = 0; k < 3; k++)
-		count += sound_vertex[judge->surface.vertices[3 * t + k]];
+		count += sound_vertex[check->surface.vertices[3 * t + k]];
 	return count;
 }
 
-static void judge_triangle(nt_judge *judge, size_t t, const uint8_t *sound_vertex, triangle_tallies *tt)
+static void check_triangle(nt_check *check, size_t t, const uint8_t *sound_vertex, triangle_tallies *tt)
 {
-	const nt_surface *s = &judge->surface;
+	const nt_surface *s = &check->surface;
 	const bool flat = s->flatness[t] == NT_COINCIDENT || s->flatness[t] == NT_COLLINEAR;
 	if (flat) {
 		tt->coincident += s->flatness[t] == NT_COINCIDENT;
 		tt->collinear += s->flatness[t] == NT_COLLINEAR;
-		nt_tally_triangle(judge, &tt->flat, t, s->areas[t]);
+		nt_tally_triangle(check, &tt->flat, t, s->areas[t]);
 	}
-	if (!judge->mesh->texcoords)
+	if (!check->mesh->texcoords)
 		return;
 	if (s->orientation[t] == 0) {
-		nt_tally_triangle(judge, &tt->no_uv_area, t, s->areas[t]);
+		nt_tally_triangle(check, &tt->no_uv_area, t, s->areas[t]);
 		tt->no_uv_share += s->areas[t];
-		tt->from_neighbour += corners_with_neighbour(judge, sound_vertex, t);
+		tt->from_neighbour += corners_with_neighbour(check, sound_vertex, t);
 		return;
 	}
 	double determinant;
@@ -106,7 +106,7 @@ static void judge_triangle(nt_judge *judge, size_t t, const uint8_t *sound_verte
 		tt->determinants[tt->determinant_count++] = (float)determinant;
 	if (!flat && !(sine <= NEAR_DEGENERATE_SINE)) {
 		const double bound = sine < 1.0 ? asin(sine) * DEGREES : 90.0;
-		nt_tally_triangle(judge, &tt->near, t, bound);
+		nt_tally_triangle(check, &tt->near, t, bound);
 		tt->near_share += s->areas[t];
 		tt->worst_bound = fmax(tt->worst_bound, bound);
 		tt->worst_determinant = fmin(tt->worst_determinant, determinant);
@@ -163,23 +163,23 @@ static void find_determinants(nt_report_mesh *facts, const triangle_tallies *tt)
 	facts->relative_determinant[2] = greatest;
 }
 
-static nt_severity severity_by_share(const nt_judge *judge, double area)
+static nt_severity severity_by_share(const nt_check *check, double area)
 {
-	return area > VISIBLE_SHARE * judge->total_area ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO;
+	return area > VISIBLE_SHARE * check->total_area ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO;
 }
 
-static void report_triangles(nt_judge *judge, triangle_tallies *tt)
+static void report_triangles(nt_check *check, triangle_tallies *tt)
 {
-	const double total = judge->total_area > 0.0 ? judge->total_area : 1.0;
+	const double total = check->total_area > 0.0 ? check->total_area : 1.0;
 	nt_tally_number(&tt->flat, "coincident_corners", (double)tt->coincident);
 	nt_tally_number(&tt->flat, "collinear_corners", (double)tt->collinear);
-	nt_judge_report(judge, &tt->flat, NULL);
+	nt_check_report(check, &tt->flat, NULL);
 
 	nt_tally *no_area = &tt->no_uv_area;
 	nt_tally_number(no_area, "area_share", tt->no_uv_share / total);
 	nt_tally_number(no_area, "corners_from_neighbour", (double)tt->from_neighbour);
 	nt_tally_number(no_area, "corners_from_normal", (double)(3 * no_area->count - tt->from_neighbour));
-	nt_judge_report_as(judge, no_area, severity_by_share(judge, tt->no_uv_share),
+	nt_check_report_as(check, no_area, severity_by_share(check, tt->no_uv_share),
 		"%.3g %% of the area; %zu corners take a neighbour's tangent, %zu one made from their normal",
 		100.0 * tt->no_uv_share / total, tt->from_neighbour,
 		3 * no_area->count - tt->from_neighbour);
@@ -187,43 +187,43 @@ static void report_triangles(nt_judge *judge, triangle_tallies *tt)
 	nt_tally_number(&tt->near, "area_share", tt->near_share / total);
 	nt_tally_number(&tt->near, "least_relative_determinant", tt->worst_determinant);
 	nt_tally_number(&tt->near, "greatest_error_degrees", tt->worst_bound);
-	nt_judge_report_as(judge, &tt->near, severity_by_share(judge, tt->near_share),
+	nt_check_report_as(check, &tt->near, severity_by_share(check, tt->near_share),
 		"relative determinant down to %.2g, error up to %.2g degrees", tt->worst_determinant,
 		tt->worst_bound);
 }
 
-static nt_status judge_triangles(nt_judge *judge)
+static nt_status check_triangles(nt_check *check)
 {
-	const nt_surface *s = &judge->surface;
-	triangle_tallies *tt = nt_scratch_alloc(judge->scratch, 1, sizeof *tt);
-	uint8_t *sound_vertex = nt_scratch_alloc(judge->scratch, judge->mesh->vertex_count, 1);
+	const nt_surface *s = &check->surface;
+	triangle_tallies *tt = nt_scratch_alloc(check->scratch, 1, sizeof *tt);
+	uint8_t *sound_vertex = nt_scratch_alloc(check->scratch, check->mesh->vertex_count, 1);
 	if (!tt || !sound_vertex)
 		return NT_ERROR_MEMORY;
 	*tt = (triangle_tallies){.flat = {.code = NT_CODE_POS_DEGENERATE_TRIANGLE},
 		.no_uv_area = {.code = NT_CODE_UV_DEGENERATE_TRIANGLE},
 		.near = {.code = NT_CODE_UV_NEAR_DEGENERATE},
 		.worst_determinant = INFINITY,
-		.determinants = nt_scratch_alloc(judge->scratch, s->triangle_count, sizeof(float)),
-		.histogram = nt_scratch_alloc(judge->scratch, 65536, sizeof(size_t))};
+		.determinants = nt_scratch_alloc(check->scratch, s->triangle_count, sizeof(float)),
+		.histogram = nt_scratch_alloc(check->scratch, 65536, sizeof(size_t))};
 	if (!tt->determinants || !tt->histogram)
 		return NT_ERROR_MEMORY;
-	memset(sound_vertex, 0, judge->mesh->vertex_count);
+	memset(sound_vertex, 0, check->mesh->vertex_count);
 	for (size_t c = 0; c < 3 * s->triangle_count; c++)
 		if (s->orientation[c / 3] && s->flatness[c / 3] != NT_COINCIDENT)
 			sound_vertex[s->vertices[c]] = 1;
 	for (size_t t = 0; t < s->triangle_count; t++)
-		judge_triangle(judge, t, sound_vertex, tt);
-	find_determinants(judge->facts, tt);
-	report_triangles(judge, tt);
+		check_triangle(check, t, sound_vertex, tt);
+	find_determinants(check->facts, tt);
+	report_triangles(check, tt);
 	return NT_OK;
 }
 
 /* Each vertex that a triangle uses, once. */
-static nt_status judge_vertices(nt_judge *judge)
+static nt_status check_vertices(nt_check *check)
 {
-	const nt_surface *s = &judge->surface;
-	const nt_mesh *mesh = judge->mesh;
-	uint8_t *seen = nt_scratch_alloc(judge->scratch, mesh->vertex_count, 1);
+	const nt_surface *s = &check->surface;
+	const nt_mesh *mesh = check->mesh;
+	uint8_t *seen = nt_scratch_alloc(check->scratch, mesh->vertex_count, 1);
 	if (!seen)
 		return NT_ERROR_MEMORY;
 	memset(seen, 0, mesh->vertex_count);
@@ -238,36 +238,36 @@ static nt_status judge_vertices(nt_judge *judge)
 			continue;
 		seen[v] = 1;
 		if (!is_finite(mesh->positions + 3 * (size_t)v, 3))
-			nt_tally_vertex(judge, &position, v, NAN);
+			nt_tally_vertex(check, &position, v, NAN);
 		if (mesh->texcoords && !is_finite(mesh->texcoords + 2 * (size_t)v, 2))
-			nt_tally_vertex(judge, &texcoord, v, NAN);
+			nt_tally_vertex(check, &texcoord, v, NAN);
 		if (!mesh->normals)
 			continue;
 		const nt_dvec3 n = nt_dvec3_load(mesh->normals + 3 * (size_t)v);
 		const double length = sqrt(nt_dvec3_dot(n, n));
 		if (!(length > 0.0) || !isfinite(length)) {
-			nt_tally_vertex(judge, &zero, v, length);
+			nt_tally_vertex(check, &zero, v, length);
 		} else if (fabs(length - 1.0) > UNIT_TOLERANCE) {
-			nt_tally_vertex(judge, &non_unit, v, length);
+			nt_tally_vertex(check, &non_unit, v, length);
 			if (fabs(length - 1.0) > fabs(worst - 1.0))
 				worst = length;
 		}
 	}
 	nt_tally_number(&non_unit, "worst_length", worst);
-	nt_judge_report(judge, &position, NULL);
-	nt_judge_report(judge, &texcoord, NULL);
-	nt_judge_report(judge, &zero, NULL);
-	nt_judge_report(judge, &non_unit, "the worst has length %.4g", worst);
+	nt_check_report(check, &position, NULL);
+	nt_check_report(check, &texcoord, NULL);
+	nt_check_report(check, &zero, NULL);
+	nt_check_report(check, &non_unit, "the worst has length %.4g", worst);
 	return NT_OK;
 }
 
 /* Triangles whose corner normals, summed, point to their back. */
-static void judge_winding(nt_judge *judge)
+static void check_winding(nt_check *check)
 {
-	const nt_surface *s = &judge->surface;
+	const nt_surface *s = &check->surface;
 	nt_tally against = {.code = NT_CODE_MESH_NORMAL_AGAINST_FACE};
 	double area = 0.0;
-	for (size_t t = 0; judge->mesh->normals && t < s->triangle_count; t++) {
+	for (size_t t = 0; check->mesh->normals && t < s->triangle_count; t++) {
 		if (s->flatness[t] != NT_SOUND)
 			continue;
 		const nt_dvec3 a = nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t)));
@@ -277,24 +277,24 @@ static void judge_winding(nt_judge *judge)
 		nt_dvec3 sum = {0, 0, 0};
 		for (size_t k = 0; k < 3; k++)
 			sum = nt_dvec3_add(sum,
-				nt_dvec3_load(judge->mesh->normals + 3 * (size_t)s->vertices[3 * t + k]));
+				nt_dvec3_load(check->mesh->normals + 3 * (size_t)s->vertices[3 * t + k]));
 		if (nt_dvec3_dot(face, sum) < 0.0) {
-			nt_tally_triangle(judge, &against, t, NAN);
+			nt_tally_triangle(check, &against, t, NAN);
 			area += s->areas[t];
 		}
 	}
-	nt_tally_number(&against, "area_share", judge->total_area > 0.0 ? area / judge->total_area : 0.0);
-	nt_judge_report(judge, &against, NULL);
+	nt_tally_number(&against, "area_share", check->total_area > 0.0 ? area / check->total_area : 0.0);
+	nt_check_report(check, &against, NULL);
 }
 
-nt_status nt_judge_geometry(nt_judge *judge)
+nt_status nt_check_geometry(nt_check *check)
 {
-	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
-	nt_status status = judge_triangles(judge);
+	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	nt_status status = check_triangles(check);
 	if (!status)
-		status = judge_vertices(judge);
+		status = check_vertices(check);
 	if (!status)
-		judge_winding(judge);
-	nt_scratch_back(judge->scratch, mark);
+		check_winding(check);
+	nt_scratch_back(check->scratch, mark);
 	return status;
 }

@@ -11,12 +11,12 @@
 
 enum { UNMIRRORED = 1, MIRRORED = 2 };
 
-static nt_status judge_shared(nt_judge *judge)
+static nt_status check_shared(nt_check *check)
 {
-	const nt_surface *s = &judge->surface;
-	const size_t vertex_count = judge->mesh->vertex_count;
-	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
-	uint8_t *sides = nt_scratch_alloc(judge->scratch, vertex_count, 1);
+	const nt_surface *s = &check->surface;
+	const size_t vertex_count = check->mesh->vertex_count;
+	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	uint8_t *sides = nt_scratch_alloc(check->scratch, vertex_count, 1);
 	if (!sides)
 		return NT_ERROR_MEMORY;
 	memset(sides, 0, vertex_count);
@@ -28,21 +28,21 @@ static nt_status judge_shared(nt_judge *judge)
 	nt_tally shared = {.code = NT_CODE_TAN_MIRROR_SHARED_VERTEX};
 	for (size_t v = 0; v < vertex_count; v++)
 		if (sides[v] == (UNMIRRORED | MIRRORED))
-			nt_tally_vertex(judge, &shared, (uint32_t)v, NAN);
-	nt_scratch_back(judge->scratch, mark);
-	const bool split = judge->options->converted && judge->mesh->split.vertex_tangents;
-	nt_judge_report_as(judge, &shared, split ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING, "%s",
+			nt_tally_vertex(check, &shared, (uint32_t)v, NAN);
+	nt_scratch_back(check->scratch, mark);
+	const bool split = check->options->converted && check->mesh->split.vertex_tangents;
+	nt_check_report_as(check, &shared, split ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING, "%s",
 		split ? "they were split" : "");
 	return NT_OK;
 }
 
-static void judge_copies(nt_judge *judge)
+static void check_copies(nt_check *check)
 {
-	const nt_mesh *mesh = judge->mesh;
-	nt_report_mesh *facts = judge->facts;
+	const nt_mesh *mesh = check->mesh;
+	nt_report_mesh *facts = check->facts;
 	nt_tally growth = {.code = NT_CODE_TAN_VERTEX_GROWTH};
 	for (size_t v = facts->vertices_before; v < mesh->vertex_count; v++)
-		nt_tally_vertex(judge, &growth, (uint32_t)v, NAN);
+		nt_tally_vertex(check, &growth, (uint32_t)v, NAN);
 	facts->added_normals = growth.count;
 	const float *tangents = mesh->split.vertex_tangents;
 	for (size_t i = 0; i < mesh->split.source_count; i++) {
@@ -50,22 +50,22 @@ static void judge_copies(nt_judge *judge)
 		const bool mirror = tangents &&
 			tangents[4 * source + 3] != tangents[4 * (mesh->vertex_count + i) + 3];
 		*(mirror ? &facts->added_mirror : &facts->added_direction) += 1;
-		nt_tally_vertex(judge, &growth, (uint32_t)source, NAN);
+		nt_tally_vertex(check, &growth, (uint32_t)source, NAN);
 	}
 	facts->vertices_after = mesh->vertex_count + mesh->split.source_count;
-	if (!judge->options->converted)
+	if (!check->options->converted)
 		return;
 	nt_tally_number(&growth, "mirrored", (double)facts->added_mirror);
 	nt_tally_number(&growth, "direction", (double)facts->added_direction);
 	nt_tally_number(&growth, "normals", (double)facts->added_normals);
-	nt_judge_report(judge, &growth, "%zu by mirroring, %zu by direction, %zu by normals",
+	nt_check_report(check, &growth, "%zu by mirroring, %zu by direction, %zu by normals",
 		facts->added_mirror, facts->added_direction, facts->added_normals);
 }
 
-nt_status nt_judge_growth(nt_judge *judge)
+nt_status nt_check_growth(nt_check *check)
 {
-	const nt_status status = judge->mesh->texcoords ? judge_shared(judge) : NT_OK;
+	const nt_status status = check->mesh->texcoords ? check_shared(check) : NT_OK;
 	if (!status)
-		judge_copies(judge);
+		check_copies(check);
 	return status;
 }

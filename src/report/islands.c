@@ -27,17 +27,17 @@ static const double COVERED_SHARE = 0.5, TWIN_SHARE = 0.95;
 
 /* ---- what each island is made of ---- */
 
-static void measure_islands(nt_judge *judge)
+static void measure_islands(nt_check *check)
 {
-	const nt_surface *s = &judge->surface;
-	for (size_t i = 0; i < judge->facts->island_count; i++)
-		judge->facts->islands[i] = (nt_island){.minimum = {INFINITY, INFINITY},
+	const nt_surface *s = &check->surface;
+	for (size_t i = 0; i < check->facts->island_count; i++)
+		check->facts->islands[i] = (nt_island){.minimum = {INFINITY, INFINITY},
 			.maximum = {-INFINITY, -INFINITY}, .covered = NAN, .first_triangle = NT_NONE,
 			.box = nt_box_empty()};
 	for (size_t t = 0; t < s->triangle_count; t++) {
-		if (judge->islands[t] == NT_NONE)
+		if (check->islands[t] == NT_NONE)
 			continue;
-		nt_island *island = &judge->facts->islands[judge->islands[t]];
+		nt_island *island = &check->facts->islands[check->islands[t]];
 		island->triangles[s->orientation[t] + 1]++;
 		island->area += s->areas[t];
 		if (island->first_triangle == NT_NONE)
@@ -45,7 +45,7 @@ static void measure_islands(nt_judge *judge)
 		for (size_t k = 0; k < 3; k++) {
 			const uint32_t side = (uint32_t)(3 * t + k);
 			float uv[2];
-			nt_side_source_texcoord(judge, side, uv);
+			nt_side_source_texcoord(check, side, uv);
 			for (int i = 0; i < 2; i++) {
 				island->minimum[i] = fminf(island->minimum[i], uv[i]);
 				island->maximum[i] = fmaxf(island->maximum[i], uv[i]);
@@ -96,16 +96,16 @@ static int cell_of(const grid *g, int axis, double value)
 
 /* Takes every n-th mirrored triangle, at most SAMPLE_COUNT, and the first one of every island. `met` is
  * cleared memory, one byte for each island. */
-static void take_samples(const nt_judge *judge, grid *g, size_t mirrored_count, uint8_t *met)
+static void take_samples(const nt_check *check, grid *g, size_t mirrored_count, uint8_t *met)
 {
-	const nt_surface *s = &judge->surface;
+	const nt_surface *s = &check->surface;
 	const size_t stride = (mirrored_count + SAMPLE_COUNT - 1) / SAMPLE_COUNT;
 	size_t seen = 0;
 	for (size_t t = 0; t < s->triangle_count; t++) {
-		if (s->orientation[t] >= 0 || judge->islands[t] == NT_NONE)
+		if (s->orientation[t] >= 0 || check->islands[t] == NT_NONE)
 			continue;
-		const bool first = !met[judge->islands[t]];
-		met[judge->islands[t]] = 1;
+		const bool first = !met[check->islands[t]];
+		met[check->islands[t]] = 1;
 		if (seen++ % stride != 0 && !first)
 			continue;
 		const float *a = nt_side_texcoord(s, (uint32_t)(3 * t));
@@ -114,7 +114,7 @@ static void take_samples(const nt_judge *judge, grid *g, size_t mirrored_count, 
 		g->samples[g->sample_count++] = (sample){.u = ((double)a[0] + b[0] + c[0]) / 3.0,
 			.v = ((double)a[1] + b[1] + c[1]) / 3.0,
 			.weight = -uv_area(a, b, c),
-			.island = judge->islands[t]};
+			.island = check->islands[t]};
 	}
 }
 
@@ -173,9 +173,9 @@ static double greatest(float a, float b, float c)
 	return fmaxf(a, fmaxf(b, c));
 }
 
-static void stream_triangles(const nt_judge *judge, grid *g)
+static void stream_triangles(const nt_check *check, grid *g)
 {
-	const nt_surface *s = &judge->surface;
+	const nt_surface *s = &check->surface;
 	for (size_t t = 0; t < s->triangle_count && g->visits < VISIT_LIMIT; t++) {
 		if (s->orientation[t] <= 0)
 			continue;
@@ -196,22 +196,22 @@ static void stream_triangles(const nt_judge *judge, grid *g)
 }
 
 /* Sets `covered` of every island with mirrored triangles. */
-static nt_status find_covered(nt_judge *judge, size_t mirrored_count)
+static nt_status find_covered(nt_check *check, size_t mirrored_count)
 {
-	const size_t islands = judge->facts->island_count;
-	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
-	grid *g = nt_scratch_alloc(judge->scratch, 1, sizeof *g);
-	sample *samples = nt_scratch_alloc(judge->scratch, SAMPLE_COUNT + islands, sizeof *samples);
-	uint8_t *met = nt_scratch_alloc(judge->scratch, islands, sizeof *met);
-	double *sums = nt_scratch_alloc(judge->scratch, 2 * islands, sizeof *sums);
+	const size_t islands = check->facts->island_count;
+	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	grid *g = nt_scratch_alloc(check->scratch, 1, sizeof *g);
+	sample *samples = nt_scratch_alloc(check->scratch, SAMPLE_COUNT + islands, sizeof *samples);
+	uint8_t *met = nt_scratch_alloc(check->scratch, islands, sizeof *met);
+	double *sums = nt_scratch_alloc(check->scratch, 2 * islands, sizeof *sums);
 	if (!g || !samples || !sums || !met)
 		return NT_ERROR_MEMORY;
 	memset(met, 0, islands * sizeof *met);
 	g->samples = samples;
 	g->sample_count = g->visits = 0;
-	take_samples(judge, g, mirrored_count, met);
+	take_samples(check, g, mirrored_count, met);
 	fill_grid(g);
-	stream_triangles(judge, g);
+	stream_triangles(check, g);
 	memset(sums, 0, 2 * islands * sizeof *sums);
 	for (size_t i = 0; i < g->sample_count; i++) {
 		const sample *p = &samples[i];
@@ -220,8 +220,8 @@ static nt_status find_covered(nt_judge *judge, size_t mirrored_count)
 	}
 	for (size_t i = 0; i < islands; i++)
 		if (sums[2 * i] > 0.0)
-			judge->facts->islands[i].covered = sums[2 * i + 1] / sums[2 * i];
-	nt_scratch_back(judge->scratch, mark);
+			check->facts->islands[i].covered = sums[2 * i + 1] / sums[2 * i];
+	nt_scratch_back(check->scratch, mark);
 	return NT_OK;
 }
 
@@ -254,10 +254,10 @@ static uv_key *look_up(uv_key *table, size_t mask, const float *uv, uint32_t isl
 	return &table[slot];
 }
 
-static bool is_mixed(const nt_judge *judge, size_t t)
+static bool is_mixed(const nt_check *check, size_t t)
 {
-	return judge->islands[t] != NT_NONE &&
-		judge->facts->islands[judge->islands[t]].kind == NT_ISLAND_MIXED;
+	return check->islands[t] != NT_NONE &&
+		check->facts->islands[check->islands[t]].kind == NT_ISLAND_MIXED;
 }
 
 /* Notes an unmirrored corner, or counts a mirrored one: in counts[1] when an unmirrored corner at another
@@ -279,16 +279,16 @@ static void meet_corner(const nt_surface *s, uint32_t side, uint32_t island, uv_
 
 /* Calls meet_corner, or only counts where table is NULL, for the triangles of one orientation in mixed
  * islands: once for each vertex and island, as long as the island's triangles follow each other. */
-static size_t visit_vertices(nt_judge *judge, bool mirrored, uv_key *table, size_t mask, uint32_t *last,
+static size_t visit_vertices(nt_check *check, bool mirrored, uv_key *table, size_t mask, uint32_t *last,
 	size_t *counts)
 {
-	const nt_surface *s = &judge->surface;
+	const nt_surface *s = &check->surface;
 	size_t visits = 0;
-	memset(last, 0xff, judge->mesh->vertex_count * sizeof *last);
+	memset(last, 0xff, check->mesh->vertex_count * sizeof *last);
 	for (size_t t = 0; t < s->triangle_count; t++) {
-		if (s->orientation[t] != (mirrored ? -1 : 1) || !is_mixed(judge, t))
+		if (s->orientation[t] != (mirrored ? -1 : 1) || !is_mixed(check, t))
 			continue;
-		const uint32_t island = judge->islands[t];
+		const uint32_t island = check->islands[t];
 		for (uint32_t side = (uint32_t)(3 * t); side < 3 * t + 3; side++) {
 			if (last[s->vertices[side]] == island)
 				continue;
@@ -304,33 +304,33 @@ static size_t visit_vertices(nt_judge *judge, bool mirrored, uv_key *table, size
 
 /* Sets `twin` of mixed islands: mirrored corners lie on unmirrored corners of the same island, and the
  * triangles on its triangles. */
-static nt_status find_twins(nt_judge *judge)
+static nt_status find_twins(nt_check *check)
 {
-	const size_t islands = judge->facts->island_count;
-	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
-	uint32_t *last = nt_scratch_alloc(judge->scratch, judge->mesh->vertex_count, sizeof *last);
-	size_t *counts = nt_scratch_alloc(judge->scratch, 2 * islands, sizeof *counts);
+	const size_t islands = check->facts->island_count;
+	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	uint32_t *last = nt_scratch_alloc(check->scratch, check->mesh->vertex_count, sizeof *last);
+	size_t *counts = nt_scratch_alloc(check->scratch, 2 * islands, sizeof *counts);
 	if (!last || !counts)
 		return NT_ERROR_MEMORY;
 	size_t capacity = 16;
-	const size_t unmirrored = visit_vertices(judge, false, NULL, 0, last, NULL);
+	const size_t unmirrored = visit_vertices(check, false, NULL, 0, last, NULL);
 	while (capacity < 2 * unmirrored)
 		capacity *= 2;
-	uv_key *table = nt_scratch_alloc(judge->scratch, capacity, sizeof *table);
+	uv_key *table = nt_scratch_alloc(check->scratch, capacity, sizeof *table);
 	if (!table)
 		return NT_ERROR_MEMORY;
 	memset(counts, 0, 2 * islands * sizeof *counts);
 	for (size_t i = 0; i < capacity; i++)
 		table[i].island = NT_NONE;
-	visit_vertices(judge, false, table, capacity - 1, last, counts);
-	visit_vertices(judge, true, table, capacity - 1, last, counts);
+	visit_vertices(check, false, table, capacity - 1, last, counts);
+	visit_vertices(check, true, table, capacity - 1, last, counts);
 	for (size_t i = 0; i < islands; i++) {
-		nt_island *island = &judge->facts->islands[i];
+		nt_island *island = &check->facts->islands[i];
 		const double corners = (double)(counts[2 * i] + counts[2 * i + 1]);
 		island->twin = island->kind == NT_ISLAND_MIXED && island->covered >= TWIN_SHARE &&
 			counts[2 * i + 1] > 0 && (double)counts[2 * i + 1] >= TWIN_SHARE * corners;
 	}
-	nt_scratch_back(judge->scratch, mark);
+	nt_scratch_back(check->scratch, mark);
 	return NT_OK;
 }
 
@@ -353,58 +353,58 @@ static size_t size_of(const nt_island *island)
 		: island->triangles[0];
 }
 
-static void tally_island(const nt_judge *judge, nt_tally *tally, size_t index)
+static void tally_island(const nt_check *check, nt_tally *tally, size_t index)
 {
-	const nt_island *island = &judge->facts->islands[index];
+	const nt_island *island = &check->facts->islands[index];
 	const size_t before = tally->count;
-	nt_tally_triangle(judge, tally, island->first_triangle, island->covered);
+	nt_tally_triangle(check, tally, island->first_triangle, island->covered);
 	nt_box_join(&tally->box, &island->box);
 	tally->count = before + size_of(island);
 }
 
-static void report_island(nt_judge *judge, size_t index)
+static void report_island(nt_check *check, size_t index)
 {
-	const nt_island *island = &judge->facts->islands[index];
+	const nt_island *island = &check->facts->islands[index];
 	nt_tally tally = {.code = code_of(island), .island = (uint32_t)index + 1};
-	tally_island(judge, &tally, index);
+	tally_island(check, &tally, index);
 	nt_tally_number(&tally, "mirrored_triangles", (double)island->triangles[0]);
 	nt_tally_number(&tally, "unmirrored_triangles", (double)island->triangles[2]);
 	nt_tally_number(&tally, "covered_share", island->covered);
-	nt_judge_report(judge, &tally, "island %zu", index);
+	nt_check_report(check, &tally, "island %zu", index);
 }
 
 /* One finding per island; many of a kind beyond the first are one finding together. */
-static void report_islands(nt_judge *judge)
+static void report_islands(nt_check *check)
 {
 	static const nt_code codes[3] = {NT_CODE_UV_MIRROR_OVERLAP, NT_CODE_UV_MIRROR_LONE,
 		NT_CODE_UV_MIXED_WINDING_ISLAND};
 	for (int i = 0; i < 3; i++) {
 		size_t seen = 0;
 		nt_tally rest = {.code = codes[i]};
-		for (size_t k = 0; k < judge->facts->island_count; k++) {
-			const nt_island *island = &judge->facts->islands[k];
+		for (size_t k = 0; k < check->facts->island_count; k++) {
+			const nt_island *island = &check->facts->islands[k];
 			if (island->triangles[0] == 0 || code_of(island) != codes[i])
 				continue;
 			if (seen++ < NT_SINGLE_FINDINGS)
-				report_island(judge, k);
+				report_island(check, k);
 			else
-				tally_island(judge, &rest, k);
+				tally_island(check, &rest, k);
 		}
 		if (seen > NT_SINGLE_FINDINGS)
-			nt_judge_report(judge, &rest, "%zu further islands", seen - NT_SINGLE_FINDINGS);
+			nt_check_report(check, &rest, "%zu further islands", seen - NT_SINGLE_FINDINGS);
 	}
 }
 
-nt_status nt_judge_islands(nt_judge *judge)
+nt_status nt_check_islands(nt_check *check)
 {
-	nt_report_mesh *facts = judge->facts;
-	if (!judge->mesh->texcoords || facts->island_count == 0)
+	nt_report_mesh *facts = check->facts;
+	if (!check->mesh->texcoords || facts->island_count == 0)
 		return NT_OK;
-	facts->islands = nt_arena_alloc(&judge->report->arena, facts->island_count,
+	facts->islands = nt_arena_alloc(&check->report->arena, facts->island_count,
 		sizeof *facts->islands);
 	if (!facts->islands)
 		return NT_ERROR_MEMORY;
-	measure_islands(judge);
+	measure_islands(check);
 	size_t mirrored = 0;
 	for (size_t i = 0; i < facts->island_count; i++) {
 		nt_island *island = &facts->islands[i];
@@ -412,10 +412,10 @@ nt_status nt_judge_islands(nt_judge *judge)
 		facts->island_kinds[island->kind]++;
 		mirrored += island->triangles[0];
 	}
-	nt_status status = mirrored ? find_covered(judge, mirrored) : NT_OK;
+	nt_status status = mirrored ? find_covered(check, mirrored) : NT_OK;
 	if (!status && facts->island_kinds[NT_ISLAND_MIXED])
-		status = find_twins(judge);
+		status = find_twins(check);
 	if (!status)
-		report_islands(judge);
+		report_islands(check);
 	return status;
 }

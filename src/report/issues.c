@@ -38,49 +38,49 @@ static nt_spot *count_one(nt_tally *tally, double value)
 	return spot;
 }
 
-static void add_vertex(const nt_judge *judge, nt_tally *tally, nt_spot *spot, uint32_t vertex)
+static void add_vertex(const nt_check *check, nt_tally *tally, nt_spot *spot, uint32_t vertex)
 {
-	const float *position = judge->mesh->positions + 3 * (size_t)vertex;
+	const float *position = check->mesh->positions + 3 * (size_t)vertex;
 	nt_box_add(&tally->box, position);
 	if (!spot)
 		return;
 	const unsigned k = spot->corner_count++;
-	spot->vertices[k] = nt_source_vertex(judge->mesh, vertex);
+	spot->vertices[k] = nt_source_vertex(check->mesh, vertex);
 	memcpy(spot->positions[k], position, sizeof spot->positions[k]);
-	spot->has_texcoords = judge->mesh->texcoords != NULL;
+	spot->has_texcoords = check->mesh->texcoords != NULL;
 	if (spot->has_texcoords)
-		nt_source_texcoord(judge->scene, judge->mesh->texcoords + 2 * (size_t)vertex,
+		nt_source_texcoord(check->scene, check->mesh->texcoords + 2 * (size_t)vertex,
 			spot->texcoords[k]);
 }
 
-static void set_triangle(const nt_judge *judge, nt_spot *spot, size_t triangle)
+static void set_triangle(const nt_check *check, nt_spot *spot, size_t triangle)
 {
 	if (!spot)
 		return;
-	const uint32_t face = judge->surface.faces[triangle];
+	const uint32_t face = check->surface.faces[triangle];
 	spot->triangle = (uint32_t)triangle;
-	spot->face = judge->mesh->face_polygon ? judge->mesh->face_polygon[face] : face;
+	spot->face = check->mesh->face_polygon ? check->mesh->face_polygon[face] : face;
 }
 
-void nt_tally_triangle(const nt_judge *judge, nt_tally *tally, size_t triangle, double value)
+void nt_tally_triangle(const nt_check *check, nt_tally *tally, size_t triangle, double value)
 {
 	nt_spot *spot = count_one(tally, value);
-	set_triangle(judge, spot, triangle);
+	set_triangle(check, spot, triangle);
 	for (size_t k = 0; k < 3; k++)
-		add_vertex(judge, tally, spot, judge->surface.vertices[3 * triangle + k]);
+		add_vertex(check, tally, spot, check->surface.vertices[3 * triangle + k]);
 }
 
-void nt_tally_side(const nt_judge *judge, nt_tally *tally, uint32_t side, double value)
+void nt_tally_side(const nt_check *check, nt_tally *tally, uint32_t side, double value)
 {
 	nt_spot *spot = count_one(tally, value);
-	set_triangle(judge, spot, side / 3);
-	add_vertex(judge, tally, spot, judge->surface.vertices[side]);
-	add_vertex(judge, tally, spot, judge->surface.vertices[nt_side_next(side)]);
+	set_triangle(check, spot, side / 3);
+	add_vertex(check, tally, spot, check->surface.vertices[side]);
+	add_vertex(check, tally, spot, check->surface.vertices[nt_side_next(side)]);
 }
 
-void nt_tally_vertex(const nt_judge *judge, nt_tally *tally, uint32_t vertex, double value)
+void nt_tally_vertex(const nt_check *check, nt_tally *tally, uint32_t vertex, double value)
 {
-	add_vertex(judge, tally, count_one(tally, value), vertex);
+	add_vertex(check, tally, count_one(tally, value), vertex);
 }
 
 void nt_tally_number(nt_tally *tally, const char *name, double value)
@@ -128,12 +128,12 @@ static uint64_t fingerprint_of(const nt_issue *issue, const nt_report_mesh *mesh
 }
 
 /* Completes and appends a finding whose code, place, count, box, numbers and spots are set. */
-static void add_issue(nt_judge *judge, nt_issue *issue, nt_severity severity, const char *detail)
+static void add_issue(nt_check *check, nt_issue *issue, nt_severity severity, const char *detail)
 {
-	nt_report *report = judge->report;
-	if (judge->options->ignore[issue->code])
+	nt_report *report = check->report;
+	if (check->options->ignore[issue->code])
 		return;
-	const uint8_t wish = judge->options->severity[issue->code];
+	const uint8_t wish = check->options->severity[issue->code];
 	issue->severity = wish ? (nt_severity)(wish - 1) : severity;
 	nt_buffer sentence = {0};
 	nt_code_sentence(issue->code, issue->count, detail, &sentence);
@@ -144,15 +144,15 @@ static void add_issue(nt_judge *judge, nt_issue *issue, nt_severity severity, co
 	nt_buffer_free(&sentence);
 	issue->fingerprint = fingerprint_of(issue,
 		issue->mesh == NT_NONE ? NULL : &report->meshes[issue->mesh], detail);
-	if (!issue->message || !nt_grow((void **)&report->issues, judge->issue_capacity,
+	if (!issue->message || !nt_grow((void **)&report->issues, check->issue_capacity,
 				       report->issue_count + 1, sizeof *issue)) {
-		judge->failed = true;
+		check->failed = true;
 		return;
 	}
 	report->issues[report->issue_count++] = *issue;
 }
 
-static void report_tally(nt_judge *judge, const nt_tally *tally, nt_severity severity,
+static void report_tally(nt_check *check, const nt_tally *tally, nt_severity severity,
 	const char *format, va_list arguments)
 {
 	if (tally->count == 0)
@@ -161,10 +161,10 @@ static void report_tally(nt_judge *judge, const nt_tally *tally, nt_severity sev
 	if (format)
 		vsnprintf(detail, sizeof detail, format, arguments);
 	nt_issue issue = {.code = tally->code,
-		.mesh = judge->mesh_index,
+		.mesh = check->mesh_index,
 		.count = tally->count,
-		.alike = judge->alike,
-		.place = judge->facts->place,
+		.alike = check->alike,
+		.place = check->facts->place,
 		.box = tally->box,
 		.seam = tally->seam ? tally->seam - 1 : NT_NONE,
 		.island = tally->island ? tally->island - 1 : NT_NONE,
@@ -172,23 +172,23 @@ static void report_tally(nt_judge *judge, const nt_tally *tally, nt_severity sev
 		.spot_count = tally->spot_count};
 	memcpy(issue.numbers, tally->numbers, sizeof issue.numbers);
 	memcpy(issue.spots, tally->spots, sizeof issue.spots);
-	add_issue(judge, &issue, severity, detail);
+	add_issue(check, &issue, severity, detail);
 }
 
-void nt_judge_report(nt_judge *judge, const nt_tally *tally, const char *detail_format, ...)
+void nt_check_report(nt_check *check, const nt_tally *tally, const char *detail_format, ...)
 {
 	va_list arguments;
 	va_start(arguments, detail_format);
-	report_tally(judge, tally, nt_code_info(tally->code)->severity, detail_format, arguments);
+	report_tally(check, tally, nt_code_info(tally->code)->severity, detail_format, arguments);
 	va_end(arguments);
 }
 
-void nt_judge_report_as(nt_judge *judge, const nt_tally *tally, nt_severity severity,
+void nt_check_report_as(nt_check *check, const nt_tally *tally, nt_severity severity,
 	const char *detail_format, ...)
 {
 	va_list arguments;
 	va_start(arguments, detail_format);
-	report_tally(judge, tally, severity, detail_format, arguments);
+	report_tally(check, tally, severity, detail_format, arguments);
 	va_end(arguments);
 }
 
@@ -225,7 +225,7 @@ static uint32_t find_mesh(const mesh_table *table, const nt_place *place)
 	return number == UINT32_MAX ? NT_NONE : table->meshes[number];
 }
 
-static void add_finding(nt_judge *judge, const mesh_table *table, const nt_finding *finding)
+static void add_finding(nt_check *check, const mesh_table *table, const nt_finding *finding)
 {
 	/* the solve counts these too, but does not know where they are: geometry.c does */
 	if (finding->code == NT_CODE_UV_DEGENERATE_TRIANGLE ||
@@ -239,15 +239,15 @@ static void add_finding(nt_judge *judge, const mesh_table *table, const nt_findi
 		.seam = NT_NONE,
 		.island = NT_NONE};
 	issue.alike = issue.mesh != NT_NONE;
-	add_issue(judge, &issue, nt_code_info(finding->code)->severity, finding->detail);
+	add_issue(check, &issue, nt_code_info(finding->code)->severity, finding->detail);
 }
 
-nt_status nt_issues_add_findings(nt_judge *judge, const nt_finding_list *findings)
+nt_status nt_issues_add_findings(nt_check *check, const nt_finding_list *findings)
 {
 	mesh_table table = {0};
-	const bool made = make_mesh_table(judge->report, &table);
+	const bool made = make_mesh_table(check->report, &table);
 	for (size_t i = 0; made && i < findings->count; i++)
-		add_finding(judge, &table, &findings->items[i]);
+		add_finding(check, &table, &findings->items[i]);
 	nt_name_table_free(&table.keys);
 	free(table.meshes);
 	return made ? NT_OK : NT_ERROR_MEMORY;

@@ -2,7 +2,7 @@
 /*
  * The validation report of one input: what was found, where, and the numbers behind it.
  *
- * nt_report_build() judges a scene whose meshes are loaded and, on conversion, solved and split; the
+ * nt_report_build() checks a scene whose meshes are loaded and, on conversion, solved and split; the
  * report owns all it holds, so the scene may go. nt_report_write() (report/render/render.h) turns one or many reports
  * into text, JSON and so on. Nothing here prints.
  *
@@ -64,7 +64,7 @@ typedef struct nt_spot {
 	float positions[3][3];
 	float texcoords[3][2];    /* as the source has them */
 	bool has_texcoords;
-	double value;             /* the number that was judged; NaN: none */
+	double value;             /* the number that was checked; NaN: none */
 	size_t line;              /* of the face in a text that has lines; 0: unknown */
 	const char *source;       /* the face's corners as written, "1/1/1 2/2/1 3/3/1"; NULL: none */
 } nt_spot;
@@ -142,11 +142,11 @@ typedef struct nt_island {
 	nt_box box;
 } nt_island;
 
-/* What pictures are drawn from. Everything per vertex or triangle of the mesh as judged. */
+/* What pictures are drawn from. Everything per vertex or triangle of the mesh as checked. */
 typedef struct nt_report_geometry {
 	size_t vertex_count, triangle_count;
 	float *positions, *normals, *texcoords, *tangents; /* NULL: none. Texcoords as the source has them,
-	                                                      tangents with w as the judge has it, v up */
+	                                                      tangents with w as the checks see it, v up */
 	uint32_t *indices;     /* [triangle_count][3] */
 	int8_t *orientation;   /* [triangle_count] */
 	uint32_t *islands;     /* [triangle_count], NT_NONE: none */
@@ -161,7 +161,7 @@ typedef struct nt_report_mesh {
 	const char *why;          /* why tangents were or were not made */
 	unsigned slots;           /* enum nt_slot */
 	uint32_t texcoord_set;
-	bool has_normals, has_texcoords, judged_tangents;
+	bool has_normals, has_texcoords, checked_tangents;
 	bool analysed;            /* false: not triangles, or nothing was loaded */
 
 	size_t face_count, triangle_count;
@@ -175,7 +175,7 @@ typedef struct nt_report_mesh {
 	size_t edge_count, boundary_edges, boundary_loops, boundary_chains, non_manifold_edges,
 		inconsistent_edges;
 	size_t left_out;          /* triangles at seams and boundaries that OpenMesh could not take */
-	double worst_orthogonality; /* degrees from perpendicular; NaN: nothing judged */
+	double worst_orthogonality; /* degrees from perpendicular; NaN: nothing checked */
 	double relative_determinant[3]; /* least, median, greatest; NaN: none */
 	size_t angle_histogram[NT_ANGLE_BINS]; /* corners, against a fresh solve */
 	size_t instance_count, negative_instances;
@@ -192,7 +192,7 @@ typedef struct nt_report {
 	nt_arena arena;
 	const char *path;
 	nt_format format;
-	const char *failure;      /* the input could not be judged: why; NULL */
+	const char *failure;      /* the input could not be checked: why; NULL */
 	nt_place failure_place;
 	nt_report_mesh *meshes;
 	size_t mesh_count;
@@ -205,9 +205,9 @@ typedef struct nt_report {
 } nt_report;
 
 /*
- * Judges a scene.
+ * Checks a scene.
  *
- *   scene    meshes that have positions are judged; its findings become part of the report
+ *   scene    meshes that have positions are checked; its findings become part of the report
  *   options  NULL: defaults
  *   report   receives the report, to be freed with nt_report_free()
  *

@@ -54,17 +54,17 @@ static double angle_between(nt_dvec3 a, nt_dvec3 b)
 }
 
 /* The vertex that stands for a corner in the output. */
-static uint32_t output_vertex(const nt_judge *judge, uint32_t side)
+static uint32_t output_vertex(const nt_check *check, uint32_t side)
 {
-	const nt_mesh *mesh = judge->mesh;
-	return mesh->split.indices ? mesh->split.indices[judge->surface.corners[side]]
-				   : judge->surface.vertices[side];
+	const nt_mesh *mesh = check->mesh;
+	return mesh->split.indices ? mesh->split.indices[check->surface.corners[side]]
+				   : check->surface.vertices[side];
 }
 
 /* An edge as seen in walking direction, from the point `from`. */
-static nt_seam_edge describe_edge(const nt_judge *judge, const nt_mirror_edge *edge, uint32_t from)
+static nt_seam_edge describe_edge(const nt_check *check, const nt_mirror_edge *edge, uint32_t from)
 {
-	const nt_surface *s = &judge->surface;
+	const nt_surface *s = &check->surface;
 	nt_seam_edge result = {.triangles = {edge->sides[0] / 3, edge->sides[1] / 3}};
 	for (int i = 0; i < 2; i++) {
 		const uint32_t side = edge->sides[i];
@@ -72,9 +72,9 @@ static nt_seam_edge describe_edge(const nt_judge *judge, const nt_mirror_edge *e
 		const uint32_t ends[2] = {along ? side : nt_side_next(side),
 			along ? nt_side_next(side) : side};
 		for (int end = 0; end < 2; end++) {
-			result.vertices[i][end] = nt_source_vertex(judge->mesh, s->vertices[ends[end]]);
-			result.output[i][end] = output_vertex(judge, ends[end]);
-			nt_side_source_texcoord(judge, ends[end], result.texcoords[i][end]);
+			result.vertices[i][end] = nt_source_vertex(check->mesh, s->vertices[ends[end]]);
+			result.output[i][end] = output_vertex(check, ends[end]);
+			nt_side_source_texcoord(check, ends[end], result.texcoords[i][end]);
 			memcpy(result.positions[end], nt_side_position(s, ends[end]),
 				sizeof result.positions[end]);
 		}
@@ -128,13 +128,13 @@ static void add_to_sums(const nt_surface *s, const nt_mirror_edge *edge, plane_s
 }
 
 /* Whether all points of the seam lie in the plane n p = d. */
-static bool plane_holds(const nt_judge *judge, const nt_chains *chains, size_t chain, nt_dvec3 n,
+static bool plane_holds(const nt_check *check, const nt_chains *chains, size_t chain, nt_dvec3 n,
 	double d, double tolerance)
 {
 	for (size_t i = chains->first[chain]; i < chains->first[chain + 1]; i++) {
 		for (int end = 0; end < 2; end++) {
 			const uint32_t side = end ? nt_side_next(chains->sides[i]) : chains->sides[i];
-			const nt_dvec3 p = nt_dvec3_load(nt_side_position(&judge->surface, side));
+			const nt_dvec3 p = nt_dvec3_load(nt_side_position(&check->surface, side));
 			if (!(fabs(nt_dvec3_dot(n, p) - d) <= tolerance))
 				return false;
 		}
@@ -160,10 +160,10 @@ static double clean_zero(double value, double tolerance)
  * normal is the mean direction from one side to the other. A plane along two axes is tried first, since
  * that is how symmetric models are made.
  */
-static void fit_plane(const nt_judge *judge, const nt_chains *chains, size_t chain, nt_seam *seam,
+static void fit_plane(const nt_check *check, const nt_chains *chains, size_t chain, nt_seam *seam,
 	const plane_sums *sums)
 {
-	const double tolerance = PLANE_TOLERANCE * extent_of(&judge->facts->box);
+	const double tolerance = PLANE_TOLERANCE * extent_of(&check->facts->box);
 	const nt_dvec3 centre = nt_dvec3_scale(1.0 / (double)sums->count, sums->points);
 	const double at[3] = {centre.x, centre.y, centre.z};
 	const nt_dvec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -173,7 +173,7 @@ static void fit_plane(const nt_judge *judge, const nt_chains *chains, size_t cha
 	int axis = fabs(across.x) >= fabs(across.y) ? 0 : 1;
 	if (fabs(across.z) > fabs(axis ? across.y : across.x))
 		axis = 2;
-	if (plane_holds(judge, chains, chain, axes[axis], at[axis], tolerance)) {
+	if (plane_holds(check, chains, chain, axes[axis], at[axis], tolerance)) {
 		const double d = clean_zero(at[axis], tolerance);
 		seam->has_plane = true;
 		memcpy(seam->plane, (double[4]){axes[axis].x, axes[axis].y, axes[axis].z, d},
@@ -182,7 +182,7 @@ static void fit_plane(const nt_judge *judge, const nt_chains *chains, size_t cha
 		return;
 	}
 	const double d = nt_dvec3_dot(across, centre);
-	if (!plane_holds(judge, chains, chain, across, d, tolerance))
+	if (!plane_holds(check, chains, chain, across, d, tolerance))
 		return;
 	seam->has_plane = true;
 	memcpy(seam->plane, (double[4]){across.x, across.y, across.z, d}, sizeof seam->plane);
@@ -192,23 +192,23 @@ static void fit_plane(const nt_judge *judge, const nt_chains *chains, size_t cha
 
 /* ---- one seam ---- */
 
-static nt_status describe_seam(nt_judge *judge, const nt_chains *chains, size_t chain, nt_seam *seam)
+static nt_status describe_seam(nt_check *check, const nt_chains *chains, size_t chain, nt_seam *seam)
 {
-	const nt_surface *s = &judge->surface;
+	const nt_surface *s = &check->surface;
 	const size_t first = chains->first[chain];
 	*seam = (nt_seam){.closed = chains->closed[chain],
 		.edge_count = chains->first[chain + 1] - first,
 		.dihedral = {NAN, NAN}, .tangent_angle = {NAN, NAN}, .box = nt_box_empty()};
 	const size_t kept = seam->edge_count < NT_SEAM_EDGES ? seam->edge_count : NT_SEAM_EDGES;
-	seam->edges = nt_arena_alloc(&judge->report->arena, kept, sizeof *seam->edges);
+	seam->edges = nt_arena_alloc(&check->report->arena, kept, sizeof *seam->edges);
 	if (!seam->edges)
 		return NT_ERROR_MEMORY;
 	plane_sums sums = {0};
 	for (size_t i = 0; i < seam->edge_count; i++) {
 		const uint32_t side = chains->sides[first + i];
-		const nt_mirror_edge *mirror = &judge->mirror_edges[judge->seam_edge[side]];
+		const nt_mirror_edge *mirror = &check->mirror_edges[check->seam_edge[side]];
 		const uint32_t from = chains->reversed[first + i] ? nt_side_next(side) : side;
-		const nt_seam_edge edge = describe_edge(judge, mirror, s->points[from]);
+		const nt_seam_edge edge = describe_edge(check, mirror, s->points[from]);
 		if (i < kept)
 			seam->edges[i] = edge;
 		seam->length += edge_length(&edge);
@@ -221,86 +221,86 @@ static nt_status describe_seam(nt_judge *judge, const nt_chains *chains, size_t 
 		nt_box_add(&seam->box, edge.positions[1]);
 		add_to_sums(s, mirror, &sums);
 		if (i == 0) {
-			seam->islands[0] = judge->islands[edge.triangles[0]];
-			seam->islands[1] = judge->islands[edge.triangles[1]];
+			seam->islands[0] = check->islands[edge.triangles[0]];
+			seam->islands[1] = check->islands[edge.triangles[1]];
 		}
 	}
-	fit_plane(judge, chains, chain, seam, &sums);
+	fit_plane(check, chains, chain, seam, &sums);
 	return NT_OK;
 }
 
-static void tally_seam(const nt_judge *judge, const nt_chains *chains, size_t chain, nt_tally *tally)
+static void tally_seam(const nt_check *check, const nt_chains *chains, size_t chain, nt_tally *tally)
 {
 	for (size_t i = chains->first[chain]; i < chains->first[chain + 1]; i++)
-		nt_tally_side(judge, tally, chains->sides[i], NAN);
+		nt_tally_side(check, tally, chains->sides[i], NAN);
 }
 
-static void report_seam(nt_judge *judge, const nt_chains *chains, size_t index)
+static void report_seam(nt_check *check, const nt_chains *chains, size_t index)
 {
-	const nt_seam *seam = &judge->facts->seams[index];
+	const nt_seam *seam = &check->facts->seams[index];
 	nt_tally tally = {.code = NT_CODE_UV_MIRROR_SEAM, .seam = (uint32_t)index + 1};
-	tally_seam(judge, chains, index, &tally);
+	tally_seam(check, chains, index, &tally);
 	nt_tally_number(&tally, "length", seam->length);
 	nt_tally_number(&tally, "dihedral_min_degrees", seam->dihedral[0]);
 	nt_tally_number(&tally, "dihedral_max_degrees", seam->dihedral[1]);
 	nt_tally_number(&tally, "tangent_angle_min_degrees", seam->tangent_angle[0]);
 	nt_tally_number(&tally, "tangent_angle_max_degrees", seam->tangent_angle[1]);
 	nt_tally_number(&tally, "edges_sharing_vertices", (double)seam->shared_count);
-	nt_judge_report(judge, &tally, "seam %zu, %s, length %.4g%s%s", index,
+	nt_check_report(check, &tally, "seam %zu, %s, length %.4g%s%s", index,
 		seam->closed ? "a closed loop" : "an open chain", seam->length,
 		seam->has_plane ? ", plane " : "", seam->plane_text);
 }
 
-static void report_seams(nt_judge *judge, const nt_chains *chains)
+static void report_seams(nt_check *check, const nt_chains *chains)
 {
 	nt_tally rest = {.code = NT_CODE_UV_MIRROR_SEAM};
 	for (size_t i = 0; i < chains->count; i++) {
 		if (i < NT_SINGLE_FINDINGS)
-			report_seam(judge, chains, i);
+			report_seam(check, chains, i);
 		else
-			tally_seam(judge, chains, i, &rest);
+			tally_seam(check, chains, i, &rest);
 	}
 	if (chains->count > NT_SINGLE_FINDINGS)
-		nt_judge_report(judge, &rest, "%zu further seams", chains->count - NT_SINGLE_FINDINGS);
+		nt_check_report(check, &rest, "%zu further seams", chains->count - NT_SINGLE_FINDINGS);
 }
 
 /* ---- entry ---- */
 
-static nt_status trace_boundary(nt_judge *judge)
+static nt_status trace_boundary(nt_check *check)
 {
 	nt_chains chains;
 	const nt_status status =
-		nt_chains_trace(&judge->surface, judge->boundary, judge->scratch, &chains, NULL);
+		nt_chains_trace(&check->surface, check->boundary, check->scratch, &chains, NULL);
 	for (size_t i = 0; !status && i < chains.count; i++) {
 		if (chains.closed[i])
-			judge->facts->boundary_loops++;
+			check->facts->boundary_loops++;
 		else
-			judge->facts->boundary_chains++;
+			check->facts->boundary_chains++;
 	}
 	if (!status)
-		judge->facts->left_out = chains.left_out;
+		check->facts->left_out = chains.left_out;
 	return status;
 }
 
-static nt_status trace_seams(nt_judge *judge)
+static nt_status trace_seams(nt_check *check)
 {
-	nt_report_mesh *facts = judge->facts;
-	const size_t side_count = 3 * judge->surface.triangle_count;
-	uint8_t *marked = nt_scratch_alloc(judge->scratch, side_count, 1);
+	nt_report_mesh *facts = check->facts;
+	const size_t side_count = 3 * check->surface.triangle_count;
+	uint8_t *marked = nt_scratch_alloc(check->scratch, side_count, 1);
 	if (!marked)
 		return NT_ERROR_MEMORY;
 	memset(marked, 0, side_count);
-	for (size_t i = 0; i < judge->mirror_edge_count; i++)
-		marked[judge->mirror_edges[i].sides[0]] = 1;
+	for (size_t i = 0; i < check->mirror_edge_count; i++)
+		marked[check->mirror_edges[i].sides[0]] = 1;
 	nt_chains chains;
-	nt_status status = nt_chains_trace(&judge->surface, marked, judge->scratch, &chains, NULL);
+	nt_status status = nt_chains_trace(&check->surface, marked, check->scratch, &chains, NULL);
 	if (status)
 		return status;
-	facts->seams = nt_arena_alloc(&judge->report->arena, chains.count, sizeof *facts->seams);
+	facts->seams = nt_arena_alloc(&check->report->arena, chains.count, sizeof *facts->seams);
 	if (!facts->seams)
 		return NT_ERROR_MEMORY;
 	for (size_t i = 0; i < chains.count; i++) {
-		status = describe_seam(judge, &chains, i, &facts->seams[i]);
+		status = describe_seam(check, &chains, i, &facts->seams[i]);
 		if (status)
 			return status;
 		facts->seam_edges += facts->seams[i].edge_count;
@@ -309,17 +309,17 @@ static nt_status trace_seams(nt_judge *judge)
 	}
 	if (chains.left_out > facts->left_out)
 		facts->left_out = chains.left_out;
-	report_seams(judge, &chains);
+	report_seams(check, &chains);
 	return NT_OK;
 }
 
-nt_status nt_judge_seams(nt_judge *judge)
+nt_status nt_check_seams(nt_check *check)
 {
-	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
-	nt_status status = judge->facts->boundary_edges ? trace_boundary(judge) : NT_OK;
-	nt_scratch_back(judge->scratch, mark);
-	if (!status && judge->mirror_edge_count)
-		status = trace_seams(judge);
-	nt_scratch_back(judge->scratch, mark);
+	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	nt_status status = check->facts->boundary_edges ? trace_boundary(check) : NT_OK;
+	nt_scratch_back(check->scratch, mark);
+	if (!status && check->mirror_edge_count)
+		status = trace_seams(check);
+	nt_scratch_back(check->scratch, mark);
 	return status;
 }

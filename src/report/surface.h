@@ -2,7 +2,7 @@
 /*
  * A mesh as a surface: its triangles, the points where vertices at one position meet, and the edges
  * between points with the triangles on them. Normals, texture coordinates and vertex numbers do not
- * matter for what is connected here; they are what is judged afterwards.
+ * matter for what is connected here; they are what is checked afterwards.
  *
  * Side 3 * t + k runs from corner k of triangle t to its next corner.
  */

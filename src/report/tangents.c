@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Stored tangents, judged: authored ones on --check, the result on conversion.
+ * Checks of stored tangents: authored ones on --check, the result on conversion.
  *
  * One by one: finite, of unit length, perpendicular to the normal, w a sign. By triangle: one w on its
  * three corners, and the one that the exact orientation of the texture coordinates asks for. By corner:
@@ -43,64 +43,64 @@ static double degrees_between(nt_dvec3 a, nt_dvec3 b)
 	return nt_angle(length_of(nt_dvec3_cross(a, b)), nt_dvec3_dot(a, b)) * DEGREES;
 }
 
-static void judge_angle(nt_judge *judge, tangent_tallies *tt, uint32_t vertex, nt_dvec3 tangent)
+static void check_angle(nt_check *check, tangent_tallies *tt, uint32_t vertex, nt_dvec3 tangent)
 {
-	if (!judge->mesh->normals)
+	if (!check->mesh->normals)
 		return;
-	nt_dvec3 normal = nt_dvec3_load(judge->mesh->normals + 3 * (size_t)vertex);
+	nt_dvec3 normal = nt_dvec3_load(check->mesh->normals + 3 * (size_t)vertex);
 	if (!nt_dvec3_normalise(&normal))
 		return;
 	const double off = fabs(degrees_between(normal, tangent) - 90.0);
-	nt_report_mesh *facts = judge->facts;
+	nt_report_mesh *facts = check->facts;
 	if (!(facts->worst_orthogonality >= off))
 		facts->worst_orthogonality = off;
 	if (off > 90.0 - PARALLEL_DEGREES)
-		nt_tally_vertex(judge, &tt->parallel, vertex, off);
+		nt_tally_vertex(check, &tt->parallel, vertex, off);
 	else if (off > ORTHOGONAL_DEGREES)
-		nt_tally_vertex(judge, &tt->not_orthogonal, vertex, off);
+		nt_tally_vertex(check, &tt->not_orthogonal, vertex, off);
 }
 
-static void judge_tangent(nt_judge *judge, tangent_tallies *tt, uint32_t vertex, const float *stored)
+static void check_tangent(nt_check *check, tangent_tallies *tt, uint32_t vertex, const float *stored)
 {
 	if (!isfinite(stored[0]) || !isfinite(stored[1]) || !isfinite(stored[2]) || !isfinite(stored[3])) {
-		nt_tally_vertex(judge, &tt->not_finite, vertex, NAN);
+		nt_tally_vertex(check, &tt->not_finite, vertex, NAN);
 		return;
 	}
 	if (fabsf(stored[3]) != 1.0f)
-		nt_tally_vertex(judge, &tt->bad_w, vertex, stored[3]);
+		nt_tally_vertex(check, &tt->bad_w, vertex, stored[3]);
 	const nt_dvec3 tangent = nt_dvec3_load(stored);
 	const double length = length_of(tangent);
 	if (length < ZERO_LENGTH) {
-		nt_tally_vertex(judge, &tt->zero, vertex, length);
+		nt_tally_vertex(check, &tt->zero, vertex, length);
 		return;
 	}
 	if (fabs(length - 1.0) > UNIT_TOLERANCE) {
-		nt_tally_vertex(judge, &tt->non_unit, vertex, length);
+		nt_tally_vertex(check, &tt->non_unit, vertex, length);
 		if (fabs(length - 1.0) > fabs(tt->worst_length - 1.0))
 			tt->worst_length = length;
 	}
-	judge_angle(judge, tt, vertex, tangent);
+	check_angle(check, tt, vertex, tangent);
 }
 
-static size_t tangent_count(const nt_judge *judge)
+static size_t tangent_count(const nt_check *check)
 {
-	const nt_mesh *mesh = judge->mesh;
-	if (judge->stored == NT_STORED_SPLIT)
+	const nt_mesh *mesh = check->mesh;
+	if (check->stored == NT_STORED_SPLIT)
 		return mesh->vertex_count + mesh->split.source_count;
-	return judge->stored == NT_STORED_CORNERS ? mesh->corner_count : mesh->vertex_count;
+	return check->stored == NT_STORED_CORNERS ? mesh->corner_count : mesh->vertex_count;
 }
 
 /* Tangents that no material uses cannot render wrong: then errors are warnings. */
-static nt_severity severity_of(const nt_judge *judge, nt_code code)
+static nt_severity severity_of(const nt_check *check, nt_code code)
 {
 	const nt_severity severity = nt_code_info(code)->severity;
-	const bool gltf = judge->scene->format == NT_FORMAT_GLTF || judge->scene->format == NT_FORMAT_GLB;
-	const bool unused = gltf && judge->mesh->slots == 0 && judge->stored == NT_STORED_AUTHORED;
+	const bool gltf = check->scene->format == NT_FORMAT_GLTF || check->scene->format == NT_FORMAT_GLB;
+	const bool unused = gltf && check->mesh->slots == 0 && check->stored == NT_STORED_AUTHORED;
 	return unused && severity == NT_SEVERITY_ERROR ? NT_SEVERITY_WARNING : severity;
 }
 
 /* On conversion: that tangents were kept although they are not usable. */
-static void report_kept(nt_judge *judge, const nt_tally *const *invalid, size_t count)
+static void report_kept(nt_check *check, const nt_tally *const *invalid, size_t count)
 {
 	nt_tally kept = {.code = NT_CODE_TAN_EXISTING_BAD, .box = nt_box_empty()};
 	for (size_t i = 0; i < count; i++) {
@@ -108,37 +108,37 @@ static void report_kept(nt_judge *judge, const nt_tally *const *invalid, size_t 
 		if (invalid[i]->count)
 			nt_box_join(&kept.box, &invalid[i]->box);
 	}
-	if (judge->options->converted && judge->stored == NT_STORED_AUTHORED)
-		nt_judge_report(judge, &kept, NULL);
+	if (check->options->converted && check->stored == NT_STORED_AUTHORED)
+		nt_check_report(check, &kept, NULL);
 }
 
-static nt_status judge_each(nt_judge *judge)
+static nt_status check_each(nt_check *check)
 {
-	const nt_surface *s = &judge->surface;
-	uint8_t *seen = nt_scratch_alloc(judge->scratch, tangent_count(judge), 1);
-	tangent_tallies *tt = nt_scratch_alloc(judge->scratch, 1, sizeof *tt);
+	const nt_surface *s = &check->surface;
+	uint8_t *seen = nt_scratch_alloc(check->scratch, tangent_count(check), 1);
+	tangent_tallies *tt = nt_scratch_alloc(check->scratch, 1, sizeof *tt);
 	if (!seen || !tt)
 		return NT_ERROR_MEMORY;
-	memset(seen, 0, tangent_count(judge));
+	memset(seen, 0, tangent_count(check));
 	*tt = (tangent_tallies){.not_finite = {.code = NT_CODE_TAN_NOT_FINITE},
 		.zero = {.code = NT_CODE_TAN_ZERO}, .non_unit = {.code = NT_CODE_TAN_NON_UNIT},
 		.bad_w = {.code = NT_CODE_TAN_BAD_W}, .parallel = {.code = NT_CODE_TAN_PARALLEL_NORMAL},
 		.not_orthogonal = {.code = NT_CODE_TAN_NOT_ORTHOGONAL}, .worst_length = 1.0};
 	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
-		const size_t index = nt_tangent_index(judge, s->corners[c]);
+		const size_t index = nt_tangent_index(check, s->corners[c]);
 		if (seen[index])
 			continue;
 		seen[index] = 1;
-		judge_tangent(judge, tt, s->vertices[c], nt_stored_tangent(judge, s->corners[c]));
+		check_tangent(check, tt, s->vertices[c], nt_stored_tangent(check, s->corners[c]));
 	}
 	nt_tally_number(&tt->non_unit, "worst_length", tt->worst_length);
-	nt_tally_number(&tt->not_orthogonal, "worst_degrees", judge->facts->worst_orthogonality);
+	nt_tally_number(&tt->not_orthogonal, "worst_degrees", check->facts->worst_orthogonality);
 	const nt_tally *all[] = {&tt->not_finite, &tt->zero, &tt->non_unit, &tt->bad_w, &tt->parallel};
 	for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
-		nt_judge_report_as(judge, all[i], severity_of(judge, all[i]->code), NULL);
-	report_kept(judge, all, sizeof all / sizeof all[0]);
-	nt_judge_report(judge, &tt->not_orthogonal, "the worst is %.3g degrees off",
-		judge->facts->worst_orthogonality);
+		nt_check_report_as(check, all[i], severity_of(check, all[i]->code), NULL);
+	report_kept(check, all, sizeof all / sizeof all[0]);
+	nt_check_report(check, &tt->not_orthogonal, "the worst is %.3g degrees off",
+		check->facts->worst_orthogonality);
 	return NT_OK;
 }
 
@@ -164,20 +164,20 @@ static bool direction_of_v(const nt_surface *s, size_t t, nt_dvec3 *v)
 
 /* Whether all three bitangents run against growing v although the normals agree with the winding. Asked
  * of triangles whose w is right: their tangents are then reversed too. */
-static bool is_reversed(const nt_judge *judge, size_t t)
+static bool is_reversed(const nt_check *check, size_t t)
 {
-	const nt_surface *s = &judge->surface;
+	const nt_surface *s = &check->surface;
 	nt_dvec3 v;
-	if (judge->stored != NT_STORED_AUTHORED || !judge->mesh->normals || !direction_of_v(s, t, &v))
+	if (check->stored != NT_STORED_AUTHORED || !check->mesh->normals || !direction_of_v(s, t, &v))
 		return false;
 	const nt_dvec3 a = nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t)));
 	const nt_dvec3 face = nt_dvec3_cross(
 		nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t + 1))), a),
 		nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t + 2))), a));
 	for (size_t k = 0; k < 3; k++) {
-		const float *stored = nt_stored_tangent(judge, s->corners[3 * t + k]);
+		const float *stored = nt_stored_tangent(check, s->corners[3 * t + k]);
 		const nt_dvec3 normal =
-			nt_dvec3_load(judge->mesh->normals + 3 * (size_t)s->vertices[3 * t + k]);
+			nt_dvec3_load(check->mesh->normals + 3 * (size_t)s->vertices[3 * t + k]);
 		nt_dvec3 bitangent = nt_dvec3_scale(stored[3],
 			nt_dvec3_cross(normal, nt_dvec3_load(stored)));
 		if (!(nt_dvec3_dot(face, normal) > 0.0) || !nt_dvec3_normalise(&bitangent) ||
@@ -189,165 +189,165 @@ static bool is_reversed(const nt_judge *judge, size_t t)
 
 typedef struct sign_tallies {
 	nt_tally mixed, wrong;
-	size_t judged, by_w, reversed;
+	size_t checked, by_w, reversed;
 	size_t untransformed; /* wrong, but right without the texture transform */
 } sign_tallies;
 
 /* Whether w is right for the file's own coordinates, where a texture transform turns them over. */
-static bool fits_untransformed(const nt_judge *judge, size_t t, float w)
+static bool fits_untransformed(const nt_check *check, size_t t, float w)
 {
-	const uint32_t *v = judge->surface.vertices + 3 * t;
-	const float *uv = judge->mesh->texcoords;
-	if (!judge->mesh->solve_texcoords)
+	const uint32_t *v = check->surface.vertices + 3 * t;
+	const float *uv = check->mesh->texcoords;
+	if (!check->mesh->solve_texcoords)
 		return false;
 	const int sign = nt_orientation(uv + 2 * (size_t)v[0], uv + 2 * (size_t)v[1], uv + 2 * (size_t)v[2]);
 	return sign != 0 && (w > 0.0f) == (sign > 0);
 }
 
-static void judge_sign(const nt_judge *judge, size_t t, sign_tallies *st)
+static void check_sign(const nt_check *check, size_t t, sign_tallies *st)
 {
-	const nt_surface *s = &judge->surface;
+	const nt_surface *s = &check->surface;
 	float w[3];
 	for (size_t k = 0; k < 3; k++)
-		w[k] = nt_stored_tangent(judge, s->corners[3 * t + k])[3];
+		w[k] = nt_stored_tangent(check, s->corners[3 * t + k])[3];
 	if (!isfinite(w[0] + w[1] + w[2]) || w[0] == 0.0f || w[1] == 0.0f || w[2] == 0.0f)
 		return;
 	if ((w[0] > 0.0f) != (w[1] > 0.0f) || (w[1] > 0.0f) != (w[2] > 0.0f)) {
-		nt_tally_triangle(judge, &st->mixed, t, NAN);
+		nt_tally_triangle(check, &st->mixed, t, NAN);
 		return;
 	}
 	if (s->orientation[t] == 0)
 		return;
-	st->judged++;
+	st->checked++;
 	const bool by_w = (w[0] > 0.0f) != (s->orientation[t] > 0);
-	const bool reversed = !by_w && is_reversed(judge, t);
+	const bool reversed = !by_w && is_reversed(check, t);
 	st->by_w += by_w;
 	st->reversed += reversed;
-	st->untransformed += by_w && fits_untransformed(judge, t, w[0]);
+	st->untransformed += by_w && fits_untransformed(check, t, w[0]);
 	if (by_w || reversed)
-		nt_tally_triangle(judge, &st->wrong, t, w[0]);
+		nt_tally_triangle(check, &st->wrong, t, w[0]);
 }
 
-static void judge_signs(nt_judge *judge)
+static void check_signs(nt_check *check)
 {
 	sign_tallies st = {.mixed = {.code = NT_CODE_TAN_MIXED_W_TRIANGLE},
 		.wrong = {.code = NT_CODE_TAN_SIGN_MISMATCH}};
-	for (size_t t = 0; t < judge->surface.triangle_count; t++)
-		judge_sign(judge, t, &st);
-	nt_judge_report(judge, &st.mixed, NULL);
-	const double share = st.judged ? (double)st.wrong.count / (double)st.judged : 0.0;
+	for (size_t t = 0; t < check->surface.triangle_count; t++)
+		check_sign(check, t, &st);
+	nt_check_report(check, &st.mixed, NULL);
+	const double share = st.checked ? (double)st.wrong.count / (double)st.checked : 0.0;
 	nt_tally_number(&st.wrong, "share", share);
-	nt_tally_number(&st.wrong, "judged_triangles", (double)st.judged);
+	nt_tally_number(&st.wrong, "judged_triangles", (double)st.checked);
 	nt_tally_number(&st.wrong, "wrong_w", (double)st.by_w);
 	nt_tally_number(&st.wrong, "reversed_tangents", (double)st.reversed);
 	nt_tally_number(&st.wrong, "right_without_transform", (double)st.untransformed);
 	/* exporters disagree about texture transforms, and so do renderers: not an error */
 	const bool untransformed = st.untransformed > 0 && st.untransformed == st.wrong.count;
-	nt_judge_report_as(judge, &st.wrong,
-		untransformed ? NT_SEVERITY_WARNING : severity_of(judge, NT_CODE_TAN_SIGN_MISMATCH),
-		"%.3g %% of %zu%s", 100.0 * share, st.judged,
+	nt_check_report_as(check, &st.wrong,
+		untransformed ? NT_SEVERITY_WARNING : severity_of(check, NT_CODE_TAN_SIGN_MISMATCH),
+		"%.3g %% of %zu%s", 100.0 * share, st.checked,
 		untransformed	     ? ", they were made without the texture transform"
-		: st.by_w == st.judged ? ", the convention is inverted"
+		: st.by_w == st.checked ? ", the convention is inverted"
 		: st.by_w == 0	     ? ", the tangents are reversed too"
 				     : "");
 }
 
 /* ---- directions ---- */
 
-static void judge_directions(nt_judge *judge, const float *fresh)
+static void check_directions(nt_check *check, const float *fresh)
 {
-	const nt_surface *s = &judge->surface;
+	const nt_surface *s = &check->surface;
 	nt_tally wrong = {.code = NT_CODE_TAN_DIRECTION_MISMATCH};
-	size_t judged = 0;
+	size_t checked = 0;
 	double worst = 0.0;
 	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
 		if (s->orientation[c / 3] == 0 || s->flatness[c / 3] != NT_SOUND)
 			continue;
-		nt_dvec3 stored = nt_dvec3_load(nt_stored_tangent(judge, s->corners[c]));
+		nt_dvec3 stored = nt_dvec3_load(nt_stored_tangent(check, s->corners[c]));
 		if (!nt_dvec3_normalise(&stored))
 			continue;
 		const double angle = degrees_between(stored, nt_dvec3_load(fresh + 4 * (size_t)s->corners[c]));
 		int bin = 0;
 		while (bin + 1 < NT_ANGLE_BINS && angle > nt_angle_bins[bin])
 			bin++;
-		judge->facts->angle_histogram[bin]++;
-		judged++;
+		check->facts->angle_histogram[bin]++;
+		checked++;
 		if (angle > MISMATCH_DEGREES)
-			nt_tally_vertex(judge, &wrong, s->vertices[c], angle);
+			nt_tally_vertex(check, &wrong, s->vertices[c], angle);
 		worst = fmax(worst, angle);
 	}
-	const double share = judged ? (double)wrong.count / (double)judged : 0.0;
+	const double share = checked ? (double)wrong.count / (double)checked : 0.0;
 	nt_tally_number(&wrong, "share", share);
 	nt_tally_number(&wrong, "worst_degrees", worst);
-	nt_judge_report_as(judge, &wrong,
+	nt_check_report_as(check, &wrong,
 		share > MISMATCH_SHARE ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO,
 		"%.3g %% of the corners, the worst by %.4g degrees", 100.0 * share, worst);
 }
 
-static nt_status compare_with_fresh(nt_judge *judge)
+static nt_status compare_with_fresh(nt_check *check)
 {
-	const nt_mesh *mesh = judge->mesh;
+	const nt_mesh *mesh = check->mesh;
 	/* --across=mesh: as the mesh is solved with the others of its join */
 	if (mesh->join && mesh->corner_tangents && mesh->decision != NT_DECISION_REPAIR) {
-		judge_directions(judge, mesh->corner_tangents);
+		check_directions(check, mesh->corner_tangents);
 		return NT_OK;
 	}
-	float *fresh = nt_scratch_alloc(judge->scratch, 4 * mesh->corner_count, sizeof *fresh);
+	float *fresh = nt_scratch_alloc(check->scratch, 4 * mesh->corner_count, sizeof *fresh);
 	if (!fresh)
 		return NT_ERROR_MEMORY;
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
-	const nmtan_options options = {.struct_bytes = sizeof options, .threads = judge->options->threads};
+	const nmtan_options options = {.struct_bytes = sizeof options, .threads = check->options->threads};
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = fresh};
 	const nt_status status = nt_status_of(nmtan_tangents(&view, &options, &output, NULL));
 	if (status == NT_OK)
-		judge_directions(judge, fresh);
+		check_directions(check, fresh);
 	return status;
 }
 
 /* ---- tangents that are there for nothing, or are not there ---- */
 
-static void judge_presence(nt_judge *judge)
+static void check_presence(nt_check *check)
 {
-	const nt_mesh *mesh = judge->mesh;
-	const bool gltf = judge->scene->format == NT_FORMAT_GLTF || judge->scene->format == NT_FORMAT_GLB;
-	const bool present = judge->facts->judged_tangents;
+	const nt_mesh *mesh = check->mesh;
+	const bool gltf = check->scene->format == NT_FORMAT_GLTF || check->scene->format == NT_FORMAT_GLB;
+	const bool present = check->facts->checked_tangents;
 	if (!gltf)
 		return;
 	if (present && mesh->slots == 0) {
-		const nt_tally unused = {.code = NT_CODE_TAN_UNUSED, .count = 1, .box = judge->facts->box};
-		nt_judge_report(judge, &unused, NULL);
+		const nt_tally unused = {.code = NT_CODE_TAN_UNUSED, .count = 1, .box = check->facts->box};
+		nt_check_report(check, &unused, NULL);
 	}
-	if (judge->stored == NT_STORED_AUTHORED && mesh->slots != 0 && mesh->targets_without_tangents) {
+	if (check->stored == NT_STORED_AUTHORED && mesh->slots != 0 && mesh->targets_without_tangents) {
 		const nt_tally morphs = {.code = NT_CODE_TAN_MORPH_MISSING,
-			.count = mesh->targets_without_tangents, .box = judge->facts->box};
-		nt_judge_report(judge, &morphs, NULL);
+			.count = mesh->targets_without_tangents, .box = check->facts->box};
+		nt_check_report(check, &morphs, NULL);
 	}
 	if (!present && mesh->slots != 0 && mesh->reachable) {
 		const nt_tally missing = {.code = NT_CODE_TAN_MISSING_REQUIRED, .count = 1,
-			.box = judge->facts->box};
+			.box = check->facts->box};
 		const bool client_may_make = mesh->slots & NT_SLOT_NORMAL;
-		nt_judge_report_as(judge, &missing,
+		nt_check_report_as(check, &missing,
 			client_may_make ? NT_SEVERITY_INFO : NT_SEVERITY_ERROR, "%s",
 			client_may_make ? "clients make them from the normal texture's coordinates"
 					: "and without a normal texture no client can make them");
 	}
 }
 
-nt_status nt_judge_tangents(nt_judge *judge)
+nt_status nt_check_tangents(nt_check *check)
 {
-	const nt_mesh *mesh = judge->mesh;
-	const nt_scratch_mark mark = nt_scratch_here(judge->scratch);
-	judge_presence(judge);
+	const nt_mesh *mesh = check->mesh;
+	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	check_presence(check);
 	nt_status status = NT_OK;
-	if (judge->facts->judged_tangents) {
-		status = judge_each(judge);
+	if (check->facts->checked_tangents) {
+		status = check_each(check);
 		if (!status && mesh->texcoords)
-			judge_signs(judge);
-		const bool authored = judge->stored == NT_STORED_AUTHORED;
+			check_signs(check);
+		const bool authored = check->stored == NT_STORED_AUTHORED;
 		if (!status && authored && mesh->texcoords && mesh->normals)
-			status = compare_with_fresh(judge);
+			status = compare_with_fresh(check);
 	}
-	nt_scratch_back(judge->scratch, mark);
+	nt_scratch_back(check->scratch, mark);
 	return status;
 }

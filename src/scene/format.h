@@ -42,7 +42,7 @@ typedef struct nt_read_options {
 	bool allow_outside; /* URIs may leave the folder of the input */
 	bool world;         /* the output is one mesh in the world: instances and colours are wanted too */
 	nt_morph_choice morphs; /* targets are loaded where they are to be baked */
-	bool report;        /* meshes that get no tangents are loaded too, to be judged */
+	bool report;        /* meshes that get no tangents are loaded too, to be checked */
 	unsigned threads;
 } nt_read_options;
 

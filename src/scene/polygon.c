@@ -313,7 +313,7 @@ static bool triangle_is_blocked(outline *o, uint32_t at)
 
 /* A spike or a repeated point is a flat ear: no later cut makes it better. A corner in the middle of a
  * straight edge is none: it gets its triangle when a neighbour has gone. */
-static enum verdict judge(outline *o, uint32_t at)
+static enum verdict verdict_of(outline *o, uint32_t at)
 {
 	const corner *b = &o->corners[at];
 	const corner *a = &o->corners[b->previous], *c = &o->corners[b->next];
@@ -375,7 +375,7 @@ static void clip_ears(outline *o)
 		o->queue[o->queue_tail++] = (uint32_t)(i % o->count);
 	uint32_t at = 1;
 	while (o->left > 3) {
-		const enum verdict verdict = judge(o, at);
+		const enum verdict verdict = verdict_of(o, at);
 		if (verdict == EAR) {
 			at = cut(o, at);
 		} else if (verdict == FLAT_EAR || !take(o, &at)) {

@@ -5,7 +5,7 @@
  * glTF: a primitive needs tangents when it is made of triangles, is shown by a scene and one of its
  * materials (variants included) has a normalTexture, a clearcoatNormalTexture or the anisotropy
  * extension; an unlit material needs nothing. Readers translate materials into slots, this file only
- * judges. OBJ and PLY say little about how a mesh is shaded, so everything with texture coordinates
+ * decides. OBJ and PLY say little about how a mesh is shaded, so everything with texture coordinates
  * gets tangents unless the user asks for less.
  *
  * A mesh that needs tangents and lacks normals or texture coordinates is skipped with a finding: glTF
@@ -19,7 +19,7 @@ static bool needs_tangents(const nt_mesh *mesh)
 }
 
 /* Whether the user's wish covers the mesh; if not, why. */
-static nt_decision judge_wish(const nt_mesh *mesh, nt_only only, bool knows_materials)
+static nt_decision decide_by_wish(const nt_mesh *mesh, nt_only only, bool knows_materials)
 {
 	if (only == NT_ONLY_ALL || (only == NT_ONLY_AUTO && !knows_materials))
 		return NT_DECISION_OPEN;
@@ -31,7 +31,7 @@ static nt_decision judge_wish(const nt_mesh *mesh, nt_only only, bool knows_mate
 }
 
 /* Whether the mesh has what a solve takes; if not, what is missing first. */
-static nt_decision judge_attributes(nt_scene *scene, const nt_mesh *mesh, bool make_normals)
+static nt_decision decide_by_attributes(nt_scene *scene, const nt_mesh *mesh, bool make_normals)
 {
 	const bool lacks_normals = !mesh->has_normals && !make_normals;
 	if (needs_tangents(mesh)) {
@@ -46,7 +46,7 @@ static nt_decision judge_attributes(nt_scene *scene, const nt_mesh *mesh, bool m
 	return lacks_normals ? NT_SKIP_NO_NORMALS : NT_DECISION_OPEN;
 }
 
-static nt_decision judge(nt_scene *scene, const nt_mesh *mesh, nt_only only, nt_existing existing,
+static nt_decision decide(nt_scene *scene, const nt_mesh *mesh, nt_only only, nt_existing existing,
 	bool make_normals)
 {
 	const bool knows_materials = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
@@ -54,7 +54,7 @@ static nt_decision judge(nt_scene *scene, const nt_mesh *mesh, nt_only only, nt_
 		return NT_SKIP_NOT_TRIANGLES;
 	if (mesh->face_count == 0)
 		return NT_SKIP_EMPTY;
-	nt_decision decision = judge_wish(mesh, only, knows_materials);
+	nt_decision decision = decide_by_wish(mesh, only, knows_materials);
 	if (decision != NT_DECISION_OPEN)
 		return decision;
 	if (mesh->texcoord_conflict)
@@ -62,7 +62,7 @@ static nt_decision judge(nt_scene *scene, const nt_mesh *mesh, nt_only only, nt_
 			"sets %u and %u", mesh->texcoord_set, mesh->texcoord_other_set);
 	if (mesh->has_tangents && existing == NT_EXISTING_KEEP)
 		return NT_SKIP_HAS_TANGENTS;
-	decision = judge_attributes(scene, mesh, make_normals);
+	decision = decide_by_attributes(scene, mesh, make_normals);
 	if (decision != NT_DECISION_OPEN)
 		return decision;
 	return mesh->has_tangents && existing == NT_EXISTING_REPAIR ? NT_DECISION_REPAIR
@@ -73,7 +73,7 @@ void nt_select(nt_scene *scene, nt_only only, nt_existing existing, bool make_no
 {
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
-		mesh->decision = judge(scene, mesh, only, existing, make_normals);
+		mesh->decision = decide(scene, mesh, only, existing, make_normals);
 	}
 }
 

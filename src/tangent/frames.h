@@ -53,7 +53,7 @@ int nt_triangle_orientation(const nmtan_mesh *mesh, const uint32_t corners[3], b
 
 /*
  * The exact orientation of a face, v up: +1, -1, or 0 where it has none. A quad takes the sign of its
- * larger half. `folded` (may be NULL) tells whether the halves differ; `stored`: judged by the stored
+ * larger half. `folded` (may be NULL) tells whether the halves differ; `stored`: decided by the stored
  * texture coordinates first.
  */
 int nt_face_orientation(const nmtan_mesh *mesh, size_t face, size_t first, bool stored, bool *folded);

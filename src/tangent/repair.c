@@ -2,7 +2,7 @@
 /*
  * Repair: see repair.h.
  *
- * Judging (usable.c) finds nothing on most meshes, and then nothing is done here. Where it finds something it has
+ * The check (usable.c) finds nothing on most meshes, and then nothing is done here. Where it finds something it has
  * marked the corners concerned with w = 0. They are collected by welded vertex, the triangles around these vertices
  * are visited once, and each corner gets, in this order:
  *
@@ -276,7 +276,7 @@ static void mend_face(const patient *p, size_t face, size_t first)
 nmtan_status nt_repair(const nt_solve *solve, nmtan_counts *counts)
 {
 	patient p = {.solve = solve};
-	nmtan_status status = nt_judge(solve, counts, &p.faulty);
+	nmtan_status status = nt_find_unusable(solve, counts, &p.faulty);
 	if (status || !p.faulty)
 		return status;
 	if ((status = weld(&p)) || (status = number_vertices(&p)) || (status = look_around(&p)))

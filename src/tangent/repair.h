@@ -8,7 +8,7 @@
 #include "tangent/solve.h"
 
 /*
- * Judges every corner tangent of a solve (judge.h) and counts what the mesh is like; replaces the unusable ones where
+ * Checks every corner tangent of a solve (usable.h) and counts what the mesh is like; replaces the unusable ones where
  * the solve repairs. Rows that the solve left out (nt_known.ids) stay out.
  *
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.

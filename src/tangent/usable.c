@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Judging: see judge.h. Most faces need no look: a method that has bounded the error of its determinants
- * and checked the vectors it shared out knows that they are usable (nt_solve.known). The others are suspects. Of triangles,
- * those among 64 are listed and asked for first and then judged without a branch on what is found: where suspects are
- * many they lie anywhere, and cache misses and wrong guesses took twice the time of the rest.
+ * The search for unusable tangents: see usable.h. Most faces need no look: a method that has bounded the error of
+ * its determinants and checked the vectors it shared out knows that they are usable (nt_solve.known). The others
+ * are suspects. Of triangles, those among 64 are listed and asked for first and then checked without a branch on
+ * what is found: where suspects are many they lie anywhere, and cache misses and wrong guesses took twice the time
+ * of the rest.
  */
 #include "tangent/usable.h"
 
@@ -14,13 +15,13 @@
 #include "topology/corners.h"
 
 /* Faces that share a word of faulty bits, and the words per thread below which threads do not pay. */
-enum { WORD = 64, JUDGE_GRAIN = (1 << 15) / WORD };
+enum { WORD = 64, GRAIN = (1 << 15) / WORD };
 
-typedef struct judge_job {
+typedef struct search {
 	const nt_solve *solve;
 	nmtan_counts *counts; /* [ranges] */
 	uint64_t *faulty;     /* [words] */
-} judge_job;
+} search;
 
 /* What is wrong with a row */
 
@@ -54,8 +55,9 @@ static float majority_sign(const float *tangents, size_t size)
 	return sum > 0.0f ? 1.0f : sum < 0.0f ? -1.0f : first;
 }
 
-/* Judges the rows of a face of a known orientation; true: some are unusable. */
-static bool judge_rows(const nt_solve *solve, size_t first, size_t size, int orientation, nmtan_counts *counts)
+/* Checks the rows of a face of a known orientation; true: some are unusable. */
+static bool has_unusable(const nt_solve *solve, size_t first, size_t size, int orientation,
+	nmtan_counts *counts)
 {
 	const nmtan_mesh *mesh = solve->mesh;
 	float *t = solve->tangents + 4 * first;
@@ -170,8 +172,8 @@ static void ask_for_triangle(const nt_solve *solve, size_t t)
 	}
 }
 
-/* Judges a suspect; true: it is faulty. */
-static bool judge_triangle(const nt_solve *solve, size_t t, nmtan_counts *counts)
+/* Checks a suspect; true: it is faulty. */
+static bool check_triangle(const nt_solve *solve, size_t t, nmtan_counts *counts)
 {
 	const nmtan_mesh *mesh = solve->mesh;
 	int orientation = nt_known_orientation(solve->known, t);
@@ -182,10 +184,10 @@ static bool judge_triangle(const nt_solve *solve, size_t t, nmtan_counts *counts
 		orientation = count_triangle(mesh, corners, counts);
 		counts->degenerate_positions += is_degenerate(mesh, corners);
 	}
-	return solve->repair && judge_rows(solve, 3 * t, 3, orientation, counts);
+	return solve->repair && has_unusable(solve, 3 * t, 3, orientation, counts);
 }
 
-static void judge_triangles(const judge_job *job, size_t begin, size_t end, nmtan_counts *counts)
+static void check_triangles(const search *job, size_t begin, size_t end, nmtan_counts *counts)
 {
 	const nt_solve *solve = job->solve;
 	const bool known = solve->known && solve->known->flags;
@@ -200,13 +202,13 @@ static void judge_triangles(const judge_job *job, size_t begin, size_t end, nmta
 		for (size_t i = 0; i < found; i++)
 			ask_for_triangle(solve, first + list[i]);
 		for (size_t i = 0; i < found; i++)
-			faulty |= (uint64_t)judge_triangle(solve, first + list[i], counts) << list[i];
+			faulty |= (uint64_t)check_triangle(solve, first + list[i], counts) << list[i];
 		job->faulty[word] = faulty;
 	}
 }
 
 /* Meshes with quads; flags are those of their triangles. */
-static void judge_quads(const judge_job *job, size_t begin, size_t end, nmtan_counts *counts)
+static void check_quads(const search *job, size_t begin, size_t end, nmtan_counts *counts)
 {
 	const nt_solve *solve = job->solve;
 	const nmtan_mesh *mesh = solve->mesh;
@@ -229,31 +231,31 @@ static void judge_quads(const judge_job *job, size_t begin, size_t end, nmtan_co
 			orientation = count_triangle(mesh, corners, counts);
 			counts->degenerate_positions += is_degenerate(mesh, corners);
 		}
-		if (solve->repair && judge_rows(solve, first, nt_face_size(mesh, face), orientation, counts))
+		if (solve->repair && has_unusable(solve, first, nt_face_size(mesh, face), orientation, counts))
 			job->faulty[face / WORD] |= (uint64_t)1 << face % WORD;
 	}
 }
 
-static void judge_words(void *context, size_t begin, size_t end, unsigned slot)
+static void check_words(void *context, size_t begin, size_t end, unsigned slot)
 {
-	const judge_job *job = context;
+	const search *job = context;
 	nmtan_counts counts = {0};
 	if (job->solve->mesh->face_sizes)
-		judge_quads(job, begin, end, &counts);
+		check_quads(job, begin, end, &counts);
 	else
-		judge_triangles(job, begin, end, &counts);
+		check_triangles(job, begin, end, &counts);
 	job->counts[slot] = counts;
 }
 
-nmtan_status nt_judge(const nt_solve *solve, nmtan_counts *counts, const uint64_t **faulty)
+nmtan_status nt_find_unusable(const nt_solve *solve, nmtan_counts *counts, const uint64_t **faulty)
 {
 	const size_t words = (solve->mesh->face_count + WORD - 1) / WORD;
-	const unsigned slots = nt_parallel_slots(solve->threads, words, JUDGE_GRAIN);
-	judge_job job = {solve, nt_scratch_alloc(solve->scratch, slots, sizeof *job.counts),
+	const unsigned slots = nt_parallel_slots(solve->threads, words, GRAIN);
+	search job = {solve, nt_scratch_alloc(solve->scratch, slots, sizeof *job.counts),
 		nt_scratch_alloc(solve->scratch, words, sizeof *job.faulty)};
 	if (!job.counts || !job.faulty)
 		return NMTAN_ERROR_MEMORY;
-	nt_parallel_ranges(solve->threads, words, JUDGE_GRAIN, judge_words, &job);
+	nt_parallel_ranges(solve->threads, words, GRAIN, check_words, &job);
 	memset(counts, 0, sizeof *counts);
 	for (unsigned slot = 0; slot < slots; slot++)
 		nt_counts_add(counts, &job.counts[slot]);

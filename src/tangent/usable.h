@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Judging: which corner tangents can a renderer use, and what is the mesh like?
+ * Usable tangents: which corner tangents can a renderer use, and what is the mesh like?
  *
  * A tangent is usable when at least one triangle gave it to its corner, it is finite and of unit length, it lies
  * across its normal, and its w is the exact orientation of its face and the same on all the face's corners. Across a
@@ -65,13 +65,13 @@ static inline bool nt_is_frame(const float *t, const float *n)
 }
 
 /*
- * Judges every face: what the mesh is like and, where the solve repairs, in the repaired_ fields how many corners
+ * Checks every face: what the mesh is like and, where the solve repairs, in the repaired_ fields how many corners
  * are unusable and why. These get w = 0, which no method gives; the rest of their rows stays.
  *
  *   faulty  receives a bit for each face, set where a corner is unusable; NULL where there is none
  *
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */
-nmtan_status nt_judge(const nt_solve *solve, nmtan_counts *counts, const uint64_t **faulty);
+nmtan_status nt_find_unusable(const nt_solve *solve, nmtan_counts *counts, const uint64_t **faulty);
 
 #endif

@@ -323,7 +323,7 @@ static void put_mesh(nt_buffer *out, const nt_report_mesh *mesh)
 	put_count(out, "texcoord_set", mesh->texcoord_set);
 	put_bool(out, "has_normals", mesh->has_normals);
 	put_bool(out, "has_texcoords", mesh->has_texcoords);
-	put_bool(out, "has_tangents", mesh->judged_tangents);
+	put_bool(out, "has_tangents", mesh->checked_tangents);
 	put_bool(out, "analysed", mesh->analysed);
 	put_counts(out, mesh);
 	put_float(out, "worst_orthogonality_degrees", mesh->worst_orthogonality);

@@ -25,7 +25,7 @@ typedef struct nt_vertex_tangent {
 enum {
 	NT_SUM_POSITIVE = 1, /* its face's orientation is +1 */
 	NT_SUM_NONE = 2,     /* its face has no orientation */
-	NT_SUM_SUSPECT = 4,  /* judging has to look at it */
+	NT_SUM_SUSPECT = 4,  /* the check for unusable tangents looks at it */
 	NT_SUM_SECOND = 8    /* second half of a quad: the first is the triangle before */
 };
 

@@ -281,7 +281,7 @@ static bool is_counted(const nt_sums *s, size_t t, size_t i)
 }
 
 /* Writes any triangle, and returns how many of its corners are ill-conditioned. A face without orientation
- * takes that of the sums at its corners. What judging has to see becomes suspect. */
+ * takes that of the sums at its corners. What that check has to see becomes suspect. */
 static size_t write_triangle(const nt_sums *s, size_t t)
 {
 	size_t ill = 0;
@@ -349,8 +349,8 @@ static void write_ranges(void *context, size_t begin, size_t end, unsigned slot)
 		w->r->ill[range] = write_range(w, range_begin(s, (unsigned)range), range_begin(s, (unsigned)range + 1));
 }
 
-/* Tells judging what it need not look at: a plain triangle has weight at its corners, so that its results are unit
- * vectors perpendicular to N unless one was lost, and its sign is exact. */
+/* Tells the check for unusable tangents what it need not look at: a plain triangle has weight at its corners, so
+ * that its results are unit vectors perpendicular to N unless one was lost, and its sign is exact. */
 static void tell_known(const nt_sums *s, bool sparse)
 {
 	nt_known *known = s->solve->known;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The choice of an implementation, which users do not have. That all give the same bytes is tested where
- * they are: test_fast.c, test_sums.c, test_judge.c.
+ * they are: test_fast.c, test_sums.c, test_usable.c.
  */
 #include "test.h"
 #include "api/tangents.h"

@@ -426,7 +426,7 @@ static void instances_have_world_matrices(void **state)
 	close_text(&f);
 }
 
-static void what_is_not_read_is_not_judged(void **state)
+static void what_is_not_read_is_not_checked(void **state)
 {
 	(void)state;
 	fixture f;
@@ -485,7 +485,7 @@ int main(void)
 		cmocka_unit_test(animated_transforms_are_a_finding),
 		cmocka_unit_test(scenes_decide_what_is_reached),
 		cmocka_unit_test(instances_have_world_matrices),
-		cmocka_unit_test(what_is_not_read_is_not_judged),
+		cmocka_unit_test(what_is_not_read_is_not_checked),
 		cmocka_unit_test(buffers_are_opened_only_when_wanted),
 		cmocka_unit_test(a_buffer_that_nobody_wants_may_be_missing),
 	};

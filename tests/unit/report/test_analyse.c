@@ -174,7 +174,7 @@ static void morph_targets_without_tangents_are_told(void **state)
 	hand_free(h, report);
 }
 
-/* A texture transform that turns u over: what is mirrored is judged as it is looked up, what is shown are the
+/* A texture transform that turns u over: what is mirrored is checked as it is looked up, what is shown are the
  * file's own coordinates. */
 static void texture_transform_that_mirrors_counts(void **state)
 {
@@ -264,7 +264,7 @@ static void relative_determinants_are_sines(void **state)
 	hand_free(h, report);
 }
 
-static void normals_are_judged(void **state)
+static void normals_are_checked(void **state)
 {
 	(void)state;
 	hand_mesh *h = sound_quad();
@@ -388,7 +388,7 @@ int main(void)
 		cmocka_unit_test(degenerate_triangles_are_counted_and_weighed),
 		cmocka_unit_test(nearly_collinear_coordinates_far_from_the_origin),
 		cmocka_unit_test(relative_determinants_are_sines),
-		cmocka_unit_test(normals_are_judged),
+		cmocka_unit_test(normals_are_checked),
 		cmocka_unit_test(values_that_are_not_finite_are_told_and_harmless),
 		cmocka_unit_test(options_ignore_reweigh_and_limit),
 		cmocka_unit_test(baseline_entries_count_once_each),

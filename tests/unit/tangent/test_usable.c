@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Judging with and without a method that knows its result: the fast path leaves out most faces, the definition
+ * Checking with and without a method that knows its result: the fast path leaves out most faces, the definition
  * none, and both must come to the same counts and the same repaired bytes.
  */
 #include "test.h"
@@ -65,7 +65,7 @@ static void known_faces_need_no_look_on_nasty_meshes(void **state)
 }
 
 /* Triangles so thin in v that storing it turns some of them: around the bound, on both sides. */
-static void slivers_around_the_bound_are_judged_exactly(void **state)
+static void slivers_around_the_bound_are_told_exactly(void **state)
 {
 	(void)state;
 	enum { COUNT = 4096 };
@@ -119,7 +119,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(known_faces_need_no_look_on_goldens),
 		cmocka_unit_test(known_faces_need_no_look_on_nasty_meshes),
-		cmocka_unit_test(slivers_around_the_bound_are_judged_exactly),
+		cmocka_unit_test(slivers_around_the_bound_are_told_exactly),
 	};
 	return cmocka_run_group_tests_name("tangent/usable", tests, NULL, NULL);
 }
