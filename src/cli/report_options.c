@@ -114,7 +114,7 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 	*plan = (nt_report_plan){
 		.wanted = command->settings.check || command->report || command->ignore || command->severity ||
 			command->uv_image};
-	plan->options.max_issues = (size_t)command->max_issues;
+	plan->options.max_findings = (size_t)command->max_issues;
 	nt_status status = check_outputs(command, error);
 	if (!status)
 		status = read_ignored(&plan->options, command->ignore, error);

@@ -283,9 +283,9 @@ static nt_status check_meshes(const nt_check *check, const checked_meshes *check
 static nt_status check_scene(const nt_scene *scene, const nt_report_options *options,
 	nt_report *report)
 {
-	size_t issue_capacity = 0;
+	size_t finding_capacity = 0;
 	nt_check check = {.scene = scene, .options = options, .report = report,
-		.issue_capacity = &issue_capacity};
+		.finding_capacity = &finding_capacity};
 	checked_meshes checked = {.first = nt_alloc(scene->mesh_count, sizeof *checked.first),
 		.next = nt_alloc(scene->mesh_count, sizeof *checked.next),
 		.alike = nt_alloc(scene->mesh_count, sizeof *checked.alike)};
@@ -298,7 +298,7 @@ static nt_status check_scene(const nt_scene *scene, const nt_report_options *opt
 	free(checked.next);
 	free(checked.alike);
 	if (!status)
-		status = nt_issues_add_findings(&check, &scene->findings);
+		status = nt_report_add_findings(&check, &scene->findings);
 	return status ? status : check.failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
@@ -315,23 +315,24 @@ static int compare_faces(const void *a, const void *b)
 /* Asks the reader where the faces of all spots stand. */
 static nt_status locate_spots(nt_report *report, const nt_scene *scene)
 {
-	nt_face_place *faces = nt_alloc(report->issue_count * NT_SPOT_COUNT, sizeof *faces);
+	nt_face_place *faces = nt_alloc(report->finding_count * NT_SPOT_COUNT, sizeof *faces);
 	if (!faces)
 		return NT_ERROR_MEMORY;
 	size_t count = 0;
-	for (size_t i = 0; i < report->issue_count; i++) {
-		const nt_issue *issue = &report->issues[i];
-		for (unsigned k = 0; k < issue->spot_count && issue->mesh != NT_NONE; k++)
-			if (issue->spots[k].face != NT_NONE)
-				faces[count++] = (nt_face_place){issue->mesh, issue->spots[k].face, 0, NULL};
+	for (size_t i = 0; i < report->finding_count; i++) {
+		const nt_report_finding *finding = &report->findings[i];
+		for (unsigned k = 0; k < finding->spot_count && finding->mesh != NT_NONE; k++)
+			if (finding->spots[k].face != NT_NONE)
+				faces[count++] = (nt_face_place){finding->mesh,
+					finding->spots[k].face, 0, NULL};
 	}
 	qsort(faces, count, sizeof *faces, compare_faces);
 	const nt_status status = scene->locate_faces(scene, faces, count, &report->arena);
-	for (size_t i = 0; i < report->issue_count && !status; i++) {
-		nt_issue *issue = &report->issues[i];
-		for (unsigned k = 0; k < issue->spot_count; k++) {
-			nt_spot *spot = &issue->spots[k];
-			const nt_face_place wanted = {issue->mesh, spot->face, 0, NULL};
+	for (size_t i = 0; i < report->finding_count && !status; i++) {
+		nt_report_finding *finding = &report->findings[i];
+		for (unsigned k = 0; k < finding->spot_count; k++) {
+			nt_spot *spot = &finding->spots[k];
+			const nt_face_place wanted = {finding->mesh, spot->face, 0, NULL};
 			const nt_face_place *found = bsearch(&wanted, faces, count, sizeof *faces, compare_faces);
 			spot->line = found ? found->line : 0;
 			spot->source = found ? found->corners : NULL;
@@ -369,7 +370,7 @@ static nt_status build(const nt_scene *scene, const nt_report_options *options, 
 	count_instances(report, scene);
 	nt_status status = check_scene(scene, options, report);
 	if (!status)
-		status = nt_issues_finish(report, options);
+		status = nt_report_complete(report, options);
 	if (!status && scene->locate_faces)
 		status = locate_spots(report, scene);
 	return status;
@@ -410,7 +411,7 @@ void nt_report_free(nt_report *report)
 {
 	if (!report)
 		return;
-	free(report->issues);
+	free(report->findings);
 	nt_arena_free(&report->arena);
 	free(report);
 }

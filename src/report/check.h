@@ -28,7 +28,7 @@ typedef struct nt_check {
 	const nt_scene *scene;
 	const nt_report_options *options;
 	nt_report *report;
-	size_t *issue_capacity;
+	size_t *finding_capacity;
 	nt_scratch *scratch; /* of this mesh */
 
 	uint32_t mesh_index;
@@ -142,10 +142,10 @@ nt_status nt_check_seams(nt_check *check);    /* seams.c */
 nt_status nt_check_tangents(nt_check *check); /* tangents.c */
 nt_status nt_check_growth(nt_check *check);   /* growth.c: shared and copied vertices */
 
-/* Ends: most severe first, limits, baseline. issues.c */
-nt_status nt_issues_finish(nt_report *report, const nt_report_options *options);
+/* Ends: most severe first, limits, baseline. findings.c */
+nt_status nt_report_complete(nt_report *report, const nt_report_options *options);
 
 /* Adds the findings that the scene's stages made. */
-nt_status nt_issues_add_findings(nt_check *check, const nt_finding_list *findings);
+nt_status nt_report_add_findings(nt_check *check, const nt_finding_list *findings);
 
 #endif

@@ -45,7 +45,7 @@ typedef struct nt_report_options {
 	bool converted;               /* the scene is what gets written, not what was read */
 	bool ignore[NT_CODE_COUNT];
 	uint8_t severity[NT_CODE_COUNT]; /* 0: the table's; else 1 + nt_severity */
-	size_t max_issues;            /* findings kept; 0: all */
+	size_t max_findings;          /* findings kept; 0: all */
 	const nt_baseline *baseline;  /* NULL: none */
 	bool keep_geometry;           /* for pictures: SVG and HTML */
 	/* Gives a copy of a mesh's normal map, in the arena, for HTML: no bytes where it has none or one of more
@@ -79,7 +79,7 @@ typedef struct nt_box {
 	float minimum[3], maximum[3];
 } nt_box;
 
-typedef struct nt_issue {
+typedef struct nt_report_finding {
 	nt_code code;
 	nt_severity severity;
 	uint32_t mesh;        /* index into the report's meshes, NT_NONE: the file as a whole */
@@ -96,7 +96,7 @@ typedef struct nt_issue {
 	unsigned number_count;
 	nt_spot spots[NT_SPOT_COUNT];
 	unsigned spot_count;
-} nt_issue;
+} nt_report_finding;
 
 /* One edge of a seam: side 0 is the unmirrored one. Both sides go from the same end to the same end. */
 typedef struct nt_seam_edge {
@@ -196,9 +196,9 @@ typedef struct nt_report {
 	nt_place failure_place;
 	nt_report_mesh *meshes;
 	size_t mesh_count;
-	nt_issue *issues;         /* most severe first, then by mesh and code */
-	size_t issue_count;
-	size_t dropped;           /* findings beyond max_issues */
+	nt_report_finding *findings; /* most severe first, then by mesh and code */
+	size_t finding_count;
+	size_t dropped;           /* findings beyond max_findings */
 	size_t by_severity[3];    /* findings, dropped ones too, that no baseline knows */
 	size_t known;             /* findings that the baseline knows */
 	bool compared;            /* there was a baseline */

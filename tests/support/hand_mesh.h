@@ -97,21 +97,21 @@ static inline nt_report *hand_report(const hand_mesh *h, const nt_report_options
 static inline size_t hand_findings(const nt_report *report, nt_code code)
 {
 	size_t count = 0;
-	for (size_t i = 0; i < report->issue_count; i++)
-		count += report->issues[i].code == code;
+	for (size_t i = 0; i < report->finding_count; i++)
+		count += report->findings[i].code == code;
 	return count;
 }
 
 /* The only finding of this code. */
-static inline const nt_issue *hand_finding(const nt_report *report, nt_code code)
+static inline const nt_report_finding *hand_finding(const nt_report *report, nt_code code)
 {
-	const nt_issue *found = NULL;
-	for (size_t i = 0; i < report->issue_count; i++) {
-		if (report->issues[i].code != code)
+	const nt_report_finding *found = NULL;
+	for (size_t i = 0; i < report->finding_count; i++) {
+		if (report->findings[i].code != code)
 			continue;
 		if (found)
 			fail_msg("%s is there twice", nt_code_info(code)->name);
-		found = &report->issues[i];
+		found = &report->findings[i];
 	}
 	if (!found)
 		fail_msg("%s is missing", nt_code_info(code)->name);

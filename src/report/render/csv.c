@@ -21,13 +21,13 @@ static void put_cell(const char *text, nt_buffer *out)
 }
 
 /* Nothing, or numbers of the first place: line, triangle, x, y, z, u, v. */
-static void put_spot(const nt_issue *issue, nt_buffer *out)
+static void put_spot(const nt_report_finding *finding, nt_buffer *out)
 {
-	if (issue->spot_count == 0) {
+	if (finding->spot_count == 0) {
 		nt_buffer_text(out, ",,,,,,,");
 		return;
 	}
-	const nt_spot *spot = &issue->spots[0];
+	const nt_spot *spot = &finding->spots[0];
 	if (spot->line)
 		nt_buffer_format(out, "%zu", spot->line);
 	nt_buffer_text(out, ",");
@@ -42,19 +42,19 @@ static void put_spot(const nt_issue *issue, nt_buffer *out)
 		nt_buffer_text(out, ",,,");
 }
 
-static void put_row(const nt_report *report, const nt_issue *issue, nt_buffer *out)
+static void put_row(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
 	nt_buffer label = {0};
-	if (issue->mesh != NT_NONE)
-		nt_mesh_label(report, issue->mesh, &label);
+	if (finding->mesh != NT_NONE)
+		nt_mesh_label(report, finding->mesh, &label);
 	put_cell(nt_shown_path(report->path), out);
 	put_cell(label.data ? label.data : "", out);
-	nt_buffer_format(out, "%s,%s,%zu,", nt_code_info(issue->code)->name,
-		nt_severity_name(issue->severity), issue->count);
-	put_cell(issue->message, out);
-	put_spot(issue, out);
-	nt_buffer_format(out, "%016llx,%s\r\n", (unsigned long long)issue->fingerprint,
-		issue->known ? "known" : "new");
+	nt_buffer_format(out, "%s,%s,%zu,", nt_code_info(finding->code)->name,
+		nt_severity_name(finding->severity), finding->count);
+	put_cell(finding->message, out);
+	put_spot(finding, out);
+	nt_buffer_format(out, "%016llx,%s\r\n", (unsigned long long)finding->fingerprint,
+		finding->known ? "known" : "new");
 	nt_buffer_free_into(&label, out);
 }
 
@@ -70,7 +70,7 @@ void nt_write_csv(const nt_report_list *reports, nt_buffer *out)
 			put_cell(report->failure, out);
 			nt_buffer_text(out, ",,,,,,,,\r\n");
 		}
-		for (size_t k = 0; k < report->issue_count; k++)
-			put_row(report, &report->issues[k], out);
+		for (size_t k = 0; k < report->finding_count; k++)
+			put_row(report, &report->findings[k], out);
 	}
 }

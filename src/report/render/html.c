@@ -292,11 +292,11 @@ static void put_facing(const nt_spot *spot, nt_buffer *out)
 	nt_buffer_format(out, "[%.4g,%.4g,%.4g]", n[0] / length, n[1] / length, n[2] / length);
 }
 
-static void put_uvs(const nt_report *report, const nt_issue *issue, nt_buffer *out)
+static void put_uvs(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
 	nt_buffer_text(out, ",\"uvs\":[");
-	for (unsigned i = 0; i < issue->spot_count; i++) {
-		const nt_spot *spot = &issue->spots[i];
+	for (unsigned i = 0; i < finding->spot_count; i++) {
+		const nt_spot *spot = &finding->spots[i];
 		float uv[2] = {0.0f, 0.0f};
 		for (unsigned k = 0; k < spot->corner_count; k++)
 			for (int axis = 0; axis < 2; axis++)
@@ -312,29 +312,29 @@ static void put_uvs(const nt_report *report, const nt_issue *issue, nt_buffer *o
 	nt_buffer_text(out, "]");
 }
 
-static void put_issue(const nt_report *report, const nt_issue *issue, nt_buffer *out)
+static void put_finding(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
 	nt_buffer_format(out, "{\"code\":\"%s\",\"severity\":\"%s\",\"count\":%zu,\"known\":%s,\"message\":",
-		nt_code_info(issue->code)->name, nt_severity_name(issue->severity), issue->count,
-		issue->known ? "true" : "false");
-	put_string(issue->message, out);
+		nt_code_info(finding->code)->name, nt_severity_name(finding->severity), finding->count,
+		finding->known ? "true" : "false");
+	put_string(finding->message, out);
 	nt_buffer_text(out, ",\"remedy\":");
-	put_string(nt_code_info(issue->code)->remedy, out);
+	put_string(nt_code_info(finding->code)->remedy, out);
 	nt_buffer_text(out, ",\"mesh\":");
-	if (issue->mesh == NT_NONE || issue->mesh >= MOST_MESHES)
+	if (finding->mesh == NT_NONE || finding->mesh >= MOST_MESHES)
 		nt_buffer_text(out, "null");
 	else
-		nt_buffer_format(out, "%u", issue->mesh);
+		nt_buffer_format(out, "%u", finding->mesh);
 	nt_buffer_text(out, ",\"seam\":");
-	if (issue->seam == NT_NONE)
+	if (finding->seam == NT_NONE)
 		nt_buffer_text(out, "null");
 	else
-		nt_buffer_format(out, "%u", issue->seam);
-	const nt_spot *spot = issue->spot_count ? &issue->spots[0] : NULL;
-	nt_buffer_format(out, ",\"line\":%zu,\"box\":", spot && spot->line ? spot->line : issue->place.line);
-	put_box(&issue->box, out);
+		nt_buffer_format(out, "%u", finding->seam);
+	const nt_spot *spot = finding->spot_count ? &finding->spots[0] : NULL;
+	nt_buffer_format(out, ",\"line\":%zu,\"box\":", spot && spot->line ? spot->line : finding->place.line);
+	put_box(&finding->box, out);
 	put_facing(spot, out);
-	put_uvs(report, issue, out);
+	put_uvs(report, finding, out);
 	nt_buffer_text(out, "}");
 }
 
@@ -348,14 +348,14 @@ static void put_file(const nt_report *report, budget *left, nt_buffer *out)
 		put_mesh(report, (uint32_t)i, left, out);
 	}
 	nt_buffer_text(out, "],\"findings\":[");
-	for (size_t i = 0; i < report->issue_count; i++) {
+	for (size_t i = 0; i < report->finding_count; i++) {
 		if (left->findings == 0) {
-			left->left_out += report->issue_count - i;
+			left->left_out += report->finding_count - i;
 			break;
 		}
 		left->findings--;
 		nt_buffer_text(out, i ? ",\n" : "\n");
-		put_issue(report, &report->issues[i], out);
+		put_finding(report, &report->findings[i], out);
 	}
 	left->left_out += report->dropped;
 	nt_buffer_text(out, "]}");

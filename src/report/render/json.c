@@ -384,32 +384,32 @@ static void put_spot(nt_buffer *out, const nt_spot *spot)
 	nt_buffer_text(out, "]}");
 }
 
-static void put_issue(nt_buffer *out, const nt_issue *issue)
+static void put_finding(nt_buffer *out, const nt_report_finding *finding)
 {
 	nt_buffer_text(out, "{");
-	put_text(out, "code", nt_code_info(issue->code)->name);
-	put_text(out, "severity", nt_severity_name(issue->severity));
-	put_text(out, "message", issue->message);
-	put_count(out, "count", issue->count);
-	put_count(out, "alike", issue->alike);
+	put_text(out, "code", nt_code_info(finding->code)->name);
+	put_text(out, "severity", nt_severity_name(finding->severity));
+	put_text(out, "message", finding->message);
+	put_count(out, "count", finding->count);
+	put_count(out, "alike", finding->alike);
 	key(out, SAME_LINE, "fingerprint");
-	nt_buffer_format(out, "\"%016llx\"", (unsigned long long)issue->fingerprint);
-	put_bool(out, "known", issue->known);
-	put_index(out, "mesh", issue->mesh);
-	put_index(out, "seam", issue->seam);
-	put_index(out, "island", issue->island);
-	put_place(out, "place", &issue->place);
-	put_box(out, &issue->box);
+	nt_buffer_format(out, "\"%016llx\"", (unsigned long long)finding->fingerprint);
+	put_bool(out, "known", finding->known);
+	put_index(out, "mesh", finding->mesh);
+	put_index(out, "seam", finding->seam);
+	put_index(out, "island", finding->island);
+	put_place(out, "place", &finding->place);
+	put_box(out, &finding->box);
 	key(out, SAME_LINE, "numbers");
 	nt_buffer_text(out, "{");
-	for (unsigned i = 0; i < issue->number_count; i++)
-		put_float(out, issue->numbers[i].name, issue->numbers[i].value);
+	for (unsigned i = 0; i < finding->number_count; i++)
+		put_float(out, finding->numbers[i].name, finding->numbers[i].value);
 	nt_buffer_text(out, "}");
 	key(out, SAME_LINE, "spots");
 	nt_buffer_text(out, "[");
-	for (unsigned i = 0; i < issue->spot_count; i++) {
+	for (unsigned i = 0; i < finding->spot_count; i++) {
 		separate(out, 5);
-		put_spot(out, &issue->spots[i]);
+		put_spot(out, &finding->spots[i]);
 	}
 	nt_buffer_text(out, "]}");
 }
@@ -447,9 +447,9 @@ static void put_report(nt_buffer *out, const nt_report *report)
 	nt_buffer_text(out, "]");
 	key(out, 3, "findings");
 	nt_buffer_text(out, "[");
-	for (size_t i = 0; i < report->issue_count; i++) {
+	for (size_t i = 0; i < report->finding_count; i++) {
 		separate(out, 4);
-		put_issue(out, &report->issues[i]);
+		put_finding(out, &report->findings[i]);
 	}
 	nt_buffer_text(out, "]");
 	close_with(out, 2, "}");

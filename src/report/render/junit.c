@@ -6,31 +6,31 @@
  */
 #include "report/render/writers.h"
 
-static bool is_failure(const nt_report_list *reports, const nt_issue *issue)
+static bool is_failure(const nt_report_list *reports, const nt_report_finding *finding)
 {
-	return !issue->known && (int)issue->severity >= reports->style.least_failure;
+	return !finding->known && (int)finding->severity >= reports->style.least_failure;
 }
 
 /* The findings of one code, one per line. */
 static void put_findings(const nt_report_list *reports, const nt_report *report, nt_code code,
 	bool failures, nt_buffer *out)
 {
-	for (size_t i = 0; i < report->issue_count; i++) {
-		const nt_issue *issue = &report->issues[i];
-		if (issue->code != code || is_failure(reports, issue) != failures)
+	for (size_t i = 0; i < report->finding_count; i++) {
+		const nt_report_finding *finding = &report->findings[i];
+		if (finding->code != code || is_failure(reports, finding) != failures)
 			continue;
-		nt_buffer_format(out, "%s: ", nt_severity_name(issue->severity));
-		nt_xml_text(issue->message, out);
-		if (issue->mesh != NT_NONE) {
+		nt_buffer_format(out, "%s: ", nt_severity_name(finding->severity));
+		nt_xml_text(finding->message, out);
+		if (finding->mesh != NT_NONE) {
 			nt_buffer label = {0};
-			nt_mesh_label(report, issue->mesh, &label);
+			nt_mesh_label(report, finding->mesh, &label);
 			nt_buffer_text(out, ", in ");
 			nt_xml_text(label.data ? label.data : "", out);
 			nt_buffer_free_into(&label, out);
 		}
-		if (issue->spot_count && issue->spots[0].line)
-			nt_buffer_format(out, ", line %zu", issue->spots[0].line);
-		nt_buffer_text(out, issue->known ? " (known)\n" : "\n");
+		if (finding->spot_count && finding->spots[0].line)
+			nt_buffer_format(out, ", line %zu", finding->spots[0].line);
+		nt_buffer_text(out, finding->known ? " (known)\n" : "\n");
 	}
 }
 
@@ -39,9 +39,9 @@ static void count_findings(const nt_report_list *reports, const nt_report *repor
 	size_t counts[2])
 {
 	counts[0] = counts[1] = 0;
-	for (size_t i = 0; i < report->issue_count; i++)
-		if (report->issues[i].code == code)
-			counts[is_failure(reports, &report->issues[i])]++;
+	for (size_t i = 0; i < report->finding_count; i++)
+		if (report->findings[i].code == code)
+			counts[is_failure(reports, &report->findings[i])]++;
 }
 
 static void put_case(const nt_report_list *reports, const nt_report *report, nt_code code, nt_buffer *out)

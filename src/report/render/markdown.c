@@ -53,23 +53,23 @@ static void put_findings(const nt_report *report, nt_buffer *out)
 	nt_buffer_text(out, "\n## ");
 	put_escaped(nt_shown_path(report->path), out);
 	nt_buffer_text(out, "\n\n| severity | code | where | finding |\n|---|---|---|---|\n");
-	for (size_t i = 0; i < report->issue_count && i < MOST_ROWS; i++) {
-		const nt_issue *issue = &report->issues[i];
+	for (size_t i = 0; i < report->finding_count && i < MOST_ROWS; i++) {
+		const nt_report_finding *finding = &report->findings[i];
 		nt_buffer label = {0};
-		if (issue->mesh != NT_NONE)
-			nt_mesh_label(report, issue->mesh, &label);
-		nt_buffer_format(out, "| %s%s | `%s` | ", nt_severity_name(issue->severity),
-			issue->known ? " (known)" : "", nt_code_info(issue->code)->name);
+		if (finding->mesh != NT_NONE)
+			nt_mesh_label(report, finding->mesh, &label);
+		nt_buffer_format(out, "| %s%s | `%s` | ", nt_severity_name(finding->severity),
+			finding->known ? " (known)" : "", nt_code_info(finding->code)->name);
 		put_escaped(label.data ? label.data : "", out);
-		if (issue->spot_count && issue->spots[0].line)
-			nt_buffer_format(out, ", line %zu", issue->spots[0].line);
+		if (finding->spot_count && finding->spots[0].line)
+			nt_buffer_format(out, ", line %zu", finding->spots[0].line);
 		nt_buffer_text(out, " | ");
-		put_escaped(issue->message, out);
+		put_escaped(finding->message, out);
 		nt_buffer_text(out, " |\n");
 		nt_buffer_free_into(&label, out);
 	}
 	const size_t missing = report->dropped +
-		(report->issue_count > MOST_ROWS ? report->issue_count - MOST_ROWS : 0);
+		(report->finding_count > MOST_ROWS ? report->finding_count - MOST_ROWS : 0);
 	if (missing)
 		nt_buffer_format(out, "\n%zu more findings are not shown.\n", missing);
 }
@@ -84,6 +84,6 @@ void nt_write_markdown(const nt_report_list *reports, nt_buffer *out)
 	for (size_t i = 0; i < reports->count; i++)
 		put_file_row(reports->items[i], out);
 	for (size_t i = 0; i < reports->count; i++)
-		if (reports->items[i]->issue_count)
+		if (reports->items[i]->finding_count)
 			put_findings(reports->items[i], out);
 }

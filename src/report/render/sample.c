@@ -47,11 +47,11 @@ static bool take(growth *w, size_t t)
 
 static void take_findings(growth *w, const nt_report *report, uint32_t mesh)
 {
-	for (size_t i = 0; i < report->issue_count; i++) {
-		const nt_issue *issue = &report->issues[i];
-		for (unsigned k = 0; k < issue->spot_count && issue->mesh == mesh; k++)
-			if (issue->spots[k].triangle != NT_NONE)
-				take(w, issue->spots[k].triangle);
+	for (size_t i = 0; i < report->finding_count; i++) {
+		const nt_report_finding *finding = &report->findings[i];
+		for (unsigned k = 0; k < finding->spot_count && finding->mesh == mesh; k++)
+			if (finding->spots[k].triangle != NT_NONE)
+				take(w, finding->spots[k].triangle);
 	}
 	const nt_report_mesh *m = &report->meshes[mesh];
 	for (size_t i = 0; i < m->seam_count; i++) {

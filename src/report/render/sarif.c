@@ -58,12 +58,12 @@ static void put_rules(nt_buffer *out)
 	nt_buffer_text(out, "\n\t\t\t\t]\n");
 }
 
-static size_t line_of(const nt_issue *issue)
+static size_t line_of(const nt_report_finding *finding)
 {
-	for (unsigned i = 0; i < issue->spot_count; i++)
-		if (issue->spots[i].line)
-			return issue->spots[i].line;
-	return issue->place.line ? issue->place.line : 1;
+	for (unsigned i = 0; i < finding->spot_count; i++)
+		if (finding->spots[i].line)
+			return finding->spots[i].line;
+	return finding->place.line ? finding->place.line : 1;
 }
 
 static void put_physical(const char *path, size_t line, nt_buffer *out)
@@ -73,20 +73,20 @@ static void put_physical(const char *path, size_t line, nt_buffer *out)
 	nt_buffer_format(out, "}, \"region\": {\"startLine\": %zu}}", line);
 }
 
-static void put_location(const nt_report *report, const nt_issue *issue, nt_buffer *out)
+static void put_location(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
 	nt_buffer_text(out, "\"locations\": [{");
-	put_physical(report->path, line_of(issue), out);
-	if (issue->mesh != NT_NONE || issue->place.pointer[0]) {
+	put_physical(report->path, line_of(finding), out);
+	if (finding->mesh != NT_NONE || finding->place.pointer[0]) {
 		nt_buffer label = {0};
-		if (issue->mesh != NT_NONE)
-			nt_mesh_label(report, issue->mesh, &label);
+		if (finding->mesh != NT_NONE)
+			nt_mesh_label(report, finding->mesh, &label);
 		nt_buffer_text(out, ", \"logicalLocations\": [{");
 		if (label.size)
 			put_text("name", label.data, out);
-		if (issue->place.pointer[0]) {
+		if (finding->place.pointer[0]) {
 			nt_buffer_text(out, label.size ? ", " : "");
-			put_text("fullyQualifiedName", issue->place.pointer, out);
+			put_text("fullyQualifiedName", finding->place.pointer, out);
 		}
 		nt_buffer_text(out, ", \"kind\": \"object\"}]");
 		nt_buffer_free_into(&label, out);
@@ -94,23 +94,24 @@ static void put_location(const nt_report *report, const nt_issue *issue, nt_buff
 	nt_buffer_text(out, "}]");
 }
 
-static void put_result(const nt_report *report, const nt_issue *issue, bool has_baseline, nt_buffer *out)
+static void put_result(const nt_report *report, const nt_report_finding *finding, bool has_baseline,
+	nt_buffer *out)
 {
 	nt_buffer_text(out, "{");
-	put_text("ruleId", nt_code_info(issue->code)->name, out);
-	nt_buffer_format(out, ", \"ruleIndex\": %u, \"level\": \"%s\", \"message\": {", (unsigned)issue->code,
-		level_of(issue->severity));
-	put_text("text", issue->message, out);
+	put_text("ruleId", nt_code_info(finding->code)->name, out);
+	nt_buffer_format(out, ", \"ruleIndex\": %u, \"level\": \"%s\", \"message\": {", (unsigned)finding->code,
+		level_of(finding->severity));
+	put_text("text", finding->message, out);
 	nt_buffer_text(out, "},\n\t\t\t\t");
-	put_location(report, issue, out);
+	put_location(report, finding, out);
 	nt_buffer_format(out, ",\n\t\t\t\t\"partialFingerprints\": {\"nmtan/v1\": \"%016llx\"}",
-		(unsigned long long)issue->fingerprint);
+		(unsigned long long)finding->fingerprint);
 	if (has_baseline)
-		nt_buffer_format(out, ", \"baselineState\": \"%s\"", issue->known ? "unchanged" : "new");
-	nt_buffer_format(out, ", \"occurrenceCount\": %zu, \"properties\": {", issue->count);
-	for (unsigned i = 0; i < issue->number_count; i++) {
-		nt_buffer_format(out, "%s\"%s\": ", i ? ", " : "", issue->numbers[i].name);
-		nt_json_float(issue->numbers[i].value, out);
+		nt_buffer_format(out, ", \"baselineState\": \"%s\"", finding->known ? "unchanged" : "new");
+	nt_buffer_format(out, ", \"occurrenceCount\": %zu, \"properties\": {", finding->count);
+	for (unsigned i = 0; i < finding->number_count; i++) {
+		nt_buffer_format(out, "%s\"%s\": ", i ? ", " : "", finding->numbers[i].name);
+		nt_json_float(finding->numbers[i].value, out);
 	}
 	nt_buffer_text(out, "}}");
 }
@@ -121,9 +122,9 @@ static void put_results(const nt_report_list *reports, bool has_baseline, nt_buf
 	nt_buffer_text(out, "\t\t\"results\": [");
 	for (size_t i = 0; i < reports->count; i++) {
 		const nt_report *report = reports->items[i];
-		for (size_t k = 0; k < report->issue_count && count < MOST_RESULTS; k++) {
+		for (size_t k = 0; k < report->finding_count && count < MOST_RESULTS; k++) {
 			nt_buffer_text(out, count++ ? ",\n\t\t\t" : "\n\t\t\t");
-			put_result(report, &report->issues[k], has_baseline, out);
+			put_result(report, &report->findings[k], has_baseline, out);
 		}
 	}
 	nt_buffer_text(out, "\n\t\t],\n");
@@ -134,7 +135,7 @@ static void put_invocation(const nt_report_list *reports, nt_buffer *out)
 {
 	size_t count = 0, results = 0, failures = 0;
 	for (size_t i = 0; i < reports->count; i++) {
-		results += reports->items[i]->issue_count;
+		results += reports->items[i]->finding_count;
 		failures += reports->items[i]->failure != NULL;
 	}
 	const size_t cut = results > MOST_RESULTS ? results - MOST_RESULTS : 0;

@@ -106,33 +106,33 @@ static void write_spot(const nt_spot *spot, nt_buffer *out)
 	nt_buffer_text(out, "\n");
 }
 
-static void write_issue(const nt_report_list *reports, const nt_report *report, const nt_issue *issue,
-	bool remedy, nt_buffer *out)
+static void write_finding(const nt_report_list *reports, const nt_report *report,
+	const nt_report_finding *finding, bool remedy, nt_buffer *out)
 {
 	nt_buffer_text(out, "  ");
-	write_severity(reports, issue->severity, out);
+	write_severity(reports, finding->severity, out);
 	nt_buffer_text(out, "   ");
 	paint(reports, bold, out);
-	nt_buffer_text(out, nt_code_info(issue->code)->name);
+	nt_buffer_text(out, nt_code_info(finding->code)->name);
 	paint(reports, plain, out);
 	nt_buffer_text(out, "  ");
-	nt_buffer_clean(out, issue->message);
-	nt_buffer_text(out, issue->known ? " (known)\n" : "\n");
-	if (issue->mesh != NT_NONE && report->mesh_count > 1) {
+	nt_buffer_clean(out, finding->message);
+	nt_buffer_text(out, finding->known ? " (known)\n" : "\n");
+	if (finding->mesh != NT_NONE && report->mesh_count > 1) {
 		nt_buffer label = {0};
-		nt_mesh_label(report, issue->mesh, &label);
+		nt_mesh_label(report, finding->mesh, &label);
 		nt_buffer_text(out, "            in ");
 		nt_buffer_clean(out, label.data ? label.data : "");
 		nt_buffer_text(out, "\n");
 		nt_buffer_free_into(&label, out);
 	}
-	for (unsigned i = 0; i < issue->spot_count && i < SHOWN_SPOTS; i++)
-		write_spot(&issue->spots[i], out);
-	if (issue->spot_count > SHOWN_SPOTS)
+	for (unsigned i = 0; i < finding->spot_count && i < SHOWN_SPOTS; i++)
+		write_spot(&finding->spots[i], out);
+	if (finding->spot_count > SHOWN_SPOTS)
 		nt_buffer_text(out, "            and others\n");
 	if (remedy) {
 		paint(reports, dim, out);
-		nt_buffer_format(out, "            %s\n", nt_code_info(issue->code)->remedy);
+		nt_buffer_format(out, "            %s\n", nt_code_info(finding->code)->remedy);
 		paint(reports, plain, out);
 	}
 }
@@ -156,10 +156,10 @@ static void write_report(const nt_report_list *reports, const nt_report *report,
 	for (size_t i = 0; i < report->mesh_count; i++)
 		write_mesh(report, (uint32_t)i, out);
 	bool told[NT_CODE_COUNT] = {false};
-	for (size_t i = 0; i < report->issue_count; i++) {
-		const nt_issue *issue = &report->issues[i];
-		write_issue(reports, report, issue, !told[issue->code], out);
-		told[issue->code] = true;
+	for (size_t i = 0; i < report->finding_count; i++) {
+		const nt_report_finding *finding = &report->findings[i];
+		write_finding(reports, report, finding, !told[finding->code], out);
+		told[finding->code] = true;
 	}
 }
 

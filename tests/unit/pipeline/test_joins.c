@@ -580,9 +580,9 @@ static size_t mismatches(nt_across how)
 	if (nt_run(in_folder("out.glb"), NULL, &settings, &summary, &error))
 		fail_msg("%s: %s", error.place.pointer, error.message);
 	size_t count = 0;
-	for (size_t i = 0; i < summary.report->issue_count; i++)
-		if (summary.report->issues[i].code == NT_CODE_TAN_DIRECTION_MISMATCH)
-			count += summary.report->issues[i].count;
+	for (size_t i = 0; i < summary.report->finding_count; i++)
+		if (summary.report->findings[i].code == NT_CODE_TAN_DIRECTION_MISMATCH)
+			count += summary.report->findings[i].count;
 	nt_summary_free(&summary);
 	return count;
 }

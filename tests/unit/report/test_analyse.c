@@ -34,7 +34,7 @@ static void sound_tangents_give_no_findings(void **state)
 	(void)state;
 	hand_mesh *h = sound_quad();
 	nt_report *report = hand_report(h, NULL);
-	assert_int_equal(report->issue_count, 0);
+	assert_int_equal(report->finding_count, 0);
 	assert_true(report->meshes[0].worst_orthogonality < 1e-6);
 	assert_int_equal(report->meshes[0].angle_histogram[0], 6);
 	nt_severity worst;
@@ -49,12 +49,12 @@ static void inverted_w_is_one_finding_with_its_share(void **state)
 	for (size_t v = 0; v < 4; v++)
 		h->tangents[v][3] = -1.0f;
 	nt_report *report = hand_report(h, NULL);
-	assert_int_equal(report->issue_count, 1);
-	const nt_issue *issue = hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH);
-	assert_int_equal(issue->count, 2);
-	assert_int_equal(issue->severity, NT_SEVERITY_ERROR);
-	assert_true(issue->numbers[0].value == 1.0);
-	assert_non_null(strstr(issue->message, "100 % of 2, the convention is inverted"));
+	assert_int_equal(report->finding_count, 1);
+	const nt_report_finding *finding = hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH);
+	assert_int_equal(finding->count, 2);
+	assert_int_equal(finding->severity, NT_SEVERITY_ERROR);
+	assert_true(finding->numbers[0].value == 1.0);
+	assert_non_null(strstr(finding->message, "100 % of 2, the convention is inverted"));
 	hand_free(h, report);
 }
 
@@ -106,7 +106,7 @@ static void length_within_the_validators_tolerance_is_unit(void **state)
 	hand_mesh *h = sound_quad();
 	set_tangent(h, 1, 1.0067f, 0, 0, 1);
 	nt_report *report = hand_report(h, NULL);
-	assert_int_equal(report->issue_count, 0);
+	assert_int_equal(report->finding_count, 0);
 	hand_free(h, report);
 }
 
@@ -128,9 +128,9 @@ static void directions_off_by_90_degrees_fill_one_bin(void **state)
 	for (size_t v = 0; v < 4; v++)
 		set_tangent(h, v, 0, 1, 0, 1);
 	nt_report *report = hand_report(h, NULL);
-	const nt_issue *issue = hand_finding(report, NT_CODE_TAN_DIRECTION_MISMATCH);
-	assert_int_equal(issue->count, 6);
-	assert_int_equal(issue->severity, NT_SEVERITY_WARNING);
+	const nt_report_finding *finding = hand_finding(report, NT_CODE_TAN_DIRECTION_MISMATCH);
+	assert_int_equal(finding->count, 6);
+	assert_int_equal(finding->severity, NT_SEVERITY_WARNING);
 	assert_int_equal(report->meshes[0].angle_histogram[5], 6);
 	hand_free(h, report);
 }
@@ -188,7 +188,7 @@ static void texture_transform_that_mirrors_counts(void **state)
 	h->mesh.solve_texcoords = solved[0];
 	nt_report *report = hand_report(h, NULL);
 	assert_int_equal(report->meshes[0].triangles[0], 2);
-	const nt_issue *sign = hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH);
+	const nt_report_finding *sign = hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH);
 	assert_int_equal(sign->count, 2);
 	assert_int_equal(sign->severity, NT_SEVERITY_WARNING); /* right for the coordinates as stored */
 	assert_non_null(strstr(sign->message, "without the texture transform"));
@@ -212,12 +212,12 @@ static void degenerate_triangles_are_counted_and_weighed(void **state)
 	hand_vertex(h, 2, 5, 0, 0, 1);
 	hand_triangle(h, 7, 8, 9);
 	nt_report *report = hand_report(h, NULL);
-	const nt_issue *uv = hand_finding(report, NT_CODE_UV_DEGENERATE_TRIANGLE);
+	const nt_report_finding *uv = hand_finding(report, NT_CODE_UV_DEGENERATE_TRIANGLE);
 	assert_int_equal(uv->count, 1);
 	assert_int_equal(uv->severity, NT_SEVERITY_WARNING);
 	assert_true(fabs(uv->numbers[0].value - 1.0 / 3.0) < 1e-12);
 	assert_true(uv->numbers[1].value == 1.0 && uv->numbers[2].value == 2.0);
-	const nt_issue *flat = hand_finding(report, NT_CODE_POS_DEGENERATE_TRIANGLE);
+	const nt_report_finding *flat = hand_finding(report, NT_CODE_POS_DEGENERATE_TRIANGLE);
 	assert_int_equal(flat->count, 2);
 	assert_true(flat->numbers[0].value == 1.0 && flat->numbers[1].value == 1.0);
 	hand_free(h, report);
@@ -301,11 +301,11 @@ static void options_ignore_reweigh_and_limit(void **state)
 	hand_mesh *h = sound_quad();
 	set_tangent(h, 1, 0, 0, 0, 1);    /* TAN_ZERO, error */
 	set_tangent(h, 3, 0.8f, 0, 0.6f, 1); /* TAN_NOT_ORTHOGONAL, warning */
-	nt_report_options options = {.max_issues = 1};
+	nt_report_options options = {.max_findings = 1};
 	nt_report *report = hand_report(h, &options);
-	assert_int_equal(report->issue_count, 1);
+	assert_int_equal(report->finding_count, 1);
 	assert_int_equal(report->dropped, report->by_severity[0] + report->by_severity[1]);
-	assert_int_equal(report->issues[0].code, NT_CODE_TAN_ZERO); /* the most severe stays */
+	assert_int_equal(report->findings[0].code, NT_CODE_TAN_ZERO); /* the most severe stays */
 	nt_report_free(report);
 
 	options = (nt_report_options){0};
@@ -313,7 +313,7 @@ static void options_ignore_reweigh_and_limit(void **state)
 	options.severity[NT_CODE_TAN_NOT_ORTHOGONAL] = 1 + NT_SEVERITY_ERROR;
 	report = hand_report(h, &options);
 	assert_int_equal(hand_findings(report, NT_CODE_TAN_ZERO), 0);
-	assert_int_equal(report->issues[0].code, NT_CODE_TAN_NOT_ORTHOGONAL);
+	assert_int_equal(report->findings[0].code, NT_CODE_TAN_NOT_ORTHOGONAL);
 	nt_severity worst;
 	assert_true(nt_report_worst(report, &worst));
 	assert_int_equal(worst, NT_SEVERITY_ERROR);
@@ -360,9 +360,9 @@ static void baseline_entries_count_once_each(void **state)
 	nt_report *report = hand_report(h, NULL);
 	assert_int_equal(hand_findings(report, NT_CODE_UV_MIRROR_LONE), 2);
 	uint64_t fingerprint = 0;
-	for (size_t i = 0; i < report->issue_count; i++)
-		if (report->issues[i].code == NT_CODE_UV_MIRROR_LONE)
-			fingerprint = report->issues[i].fingerprint;
+	for (size_t i = 0; i < report->finding_count; i++)
+		if (report->findings[i].code == NT_CODE_UV_MIRROR_LONE)
+			fingerprint = report->findings[i].fingerprint;
 	nt_report_free(report);
 	const nt_baseline baseline = {&fingerprint, 1};
 	const nt_report_options options = {.baseline = &baseline};

@@ -247,10 +247,10 @@ static void stacked_islands_are_told_from_lone_ones(void **state)
 	assert_int_equal(m->island_kinds[NT_ISLAND_NORMAL], 2);
 	assert_int_equal(m->island_kinds[NT_ISLAND_MIRRORED], 2);
 	assert_int_equal(m->seam_count, 0);
-	const nt_issue *overlap = hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP);
+	const nt_report_finding *overlap = hand_finding(report, NT_CODE_UV_MIRROR_OVERLAP);
 	assert_int_equal(overlap->island, 1);
 	assert_int_equal(overlap->count, 2);
-	const nt_issue *lone = hand_finding(report, NT_CODE_UV_MIRROR_LONE);
+	const nt_report_finding *lone = hand_finding(report, NT_CODE_UV_MIRROR_LONE);
 	assert_int_equal(lone->island, 2);
 	assert_int_equal(lone->severity, NT_SEVERITY_WARNING);
 	hand_free(h, report);
@@ -270,7 +270,7 @@ static void bowtie_of_two_triangles_meets_in_a_point_only(void **state)
 	assert_int_equal(report->meshes[0].boundary_edges, 6);
 	assert_int_equal(report->meshes[0].boundary_loops, 2);
 	assert_int_equal(report->meshes[0].non_manifold_edges, 0);
-	assert_int_equal(report->issue_count, 0);
+	assert_int_equal(report->finding_count, 0);
 	hand_free(h, report);
 }
 

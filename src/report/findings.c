@@ -107,17 +107,17 @@ static uint64_t hash_text(uint64_t hash, const char *text)
  * Code, mesh and where in the mesh: the box in steps of 1/128 of the mesh's own largest extent. Numbers
  * of vertices and triangles do not enter, nor does the count, so that an unrelated edit leaves it.
  */
-static uint64_t fingerprint_of(const nt_issue *issue, const nt_report_mesh *mesh, const char *detail)
+static uint64_t fingerprint_of(const nt_report_finding *finding, const nt_report_mesh *mesh, const char *detail)
 {
-	uint64_t hash = hash_text(UINT64_C(0xcbf29ce484222325), nt_code_info(issue->code)->name);
+	uint64_t hash = hash_text(UINT64_C(0xcbf29ce484222325), nt_code_info(finding->code)->name);
 	hash = hash_text(hash, mesh ? mesh->name : "");
-	if (!mesh || !(issue->box.minimum[0] <= issue->box.maximum[0]))
+	if (!mesh || !(finding->box.minimum[0] <= finding->box.maximum[0]))
 		return hash_text(hash, detail);
 	double extent = 0.0;
 	for (int i = 0; i < 3; i++)
 		extent = fmax(extent, (double)mesh->box.maximum[i] - mesh->box.minimum[i]);
 	for (int i = 0; i < 6; i++) {
-		const double value = i < 3 ? issue->box.minimum[i] : issue->box.maximum[i - 3];
+		const double value = i < 3 ? finding->box.minimum[i] : finding->box.maximum[i - 3];
 		const double steps = extent > 0.0 ? (value - mesh->box.minimum[i % 3]) / extent * 128.0 : 0.0;
 		const int32_t step = isfinite(steps) && fabs(steps) < 1e6 ? (int32_t)lround(steps) : 0;
 		const unsigned char bytes[4] = {(unsigned char)step, (unsigned char)(step >> 8),
@@ -128,28 +128,28 @@ static uint64_t fingerprint_of(const nt_issue *issue, const nt_report_mesh *mesh
 }
 
 /* Completes and appends a finding whose code, place, count, box, numbers and spots are set. */
-static void add_issue(nt_check *check, nt_issue *issue, nt_severity severity, const char *detail)
+static void add_finding(nt_check *check, nt_report_finding *finding, nt_severity severity, const char *detail)
 {
 	nt_report *report = check->report;
-	if (check->options->ignore[issue->code])
+	if (check->options->ignore[finding->code])
 		return;
-	const uint8_t wish = check->options->severity[issue->code];
-	issue->severity = wish ? (nt_severity)(wish - 1) : severity;
+	const uint8_t wish = check->options->severity[finding->code];
+	finding->severity = wish ? (nt_severity)(wish - 1) : severity;
 	nt_buffer sentence = {0};
-	nt_code_sentence(issue->code, issue->count, detail, &sentence);
-	if (issue->alike > 1)
-		nt_buffer_format(&sentence, ", and in %zu more of the same geometry", issue->alike - 1);
-	issue->message = sentence.failed ? NULL
+	nt_code_sentence(finding->code, finding->count, detail, &sentence);
+	if (finding->alike > 1)
+		nt_buffer_format(&sentence, ", and in %zu more of the same geometry", finding->alike - 1);
+	finding->message = sentence.failed ? NULL
 					 : nt_arena_text(&report->arena, sentence.data, sentence.size);
 	nt_buffer_free(&sentence);
-	issue->fingerprint = fingerprint_of(issue,
-		issue->mesh == NT_NONE ? NULL : &report->meshes[issue->mesh], detail);
-	if (!issue->message || !nt_grow((void **)&report->issues, check->issue_capacity,
-				       report->issue_count + 1, sizeof *issue)) {
+	finding->fingerprint = fingerprint_of(finding,
+		finding->mesh == NT_NONE ? NULL : &report->meshes[finding->mesh], detail);
+	if (!finding->message || !nt_grow((void **)&report->findings, check->finding_capacity,
+				       report->finding_count + 1, sizeof *finding)) {
 		check->failed = true;
 		return;
 	}
-	report->issues[report->issue_count++] = *issue;
+	report->findings[report->finding_count++] = *finding;
 }
 
 static void report_tally(nt_check *check, const nt_tally *tally, nt_severity severity,
@@ -160,7 +160,7 @@ static void report_tally(nt_check *check, const nt_tally *tally, nt_severity sev
 	char detail[256] = "";
 	if (format)
 		vsnprintf(detail, sizeof detail, format, arguments);
-	nt_issue issue = {.code = tally->code,
+	nt_report_finding finding = {.code = tally->code,
 		.mesh = check->mesh_index,
 		.count = tally->count,
 		.alike = check->alike,
@@ -170,9 +170,9 @@ static void report_tally(nt_check *check, const nt_tally *tally, nt_severity sev
 		.island = tally->island ? tally->island - 1 : NT_NONE,
 		.number_count = tally->number_count,
 		.spot_count = tally->spot_count};
-	memcpy(issue.numbers, tally->numbers, sizeof issue.numbers);
-	memcpy(issue.spots, tally->spots, sizeof issue.spots);
-	add_issue(check, &issue, severity, detail);
+	memcpy(finding.numbers, tally->numbers, sizeof finding.numbers);
+	memcpy(finding.spots, tally->spots, sizeof finding.spots);
+	add_finding(check, &finding, severity, detail);
 }
 
 void nt_check_report(nt_check *check, const nt_tally *tally, const char *detail_format, ...)
@@ -225,29 +225,29 @@ static uint32_t find_mesh(const mesh_table *table, const nt_place *place)
 	return number == UINT32_MAX ? NT_NONE : table->meshes[number];
 }
 
-static void add_finding(nt_check *check, const mesh_table *table, const nt_finding *finding)
+static void add_scene_finding(nt_check *check, const mesh_table *table, const nt_finding *found)
 {
 	/* the solve counts these too, but does not know where they are: geometry.c does */
-	if (finding->code == NT_CODE_UV_DEGENERATE_TRIANGLE ||
-		finding->code == NT_CODE_POS_DEGENERATE_TRIANGLE)
+	if (found->code == NT_CODE_UV_DEGENERATE_TRIANGLE ||
+		found->code == NT_CODE_POS_DEGENERATE_TRIANGLE)
 		return;
-	nt_issue issue = {.code = finding->code,
-		.mesh = find_mesh(table, &finding->place),
-		.count = finding->count,
-		.place = finding->place,
+	nt_report_finding finding = {.code = found->code,
+		.mesh = find_mesh(table, &found->place),
+		.count = found->count,
+		.place = found->place,
 		.box = nt_box_empty(),
 		.seam = NT_NONE,
 		.island = NT_NONE};
-	issue.alike = issue.mesh != NT_NONE;
-	add_issue(check, &issue, nt_code_info(finding->code)->severity, finding->detail);
+	finding.alike = finding.mesh != NT_NONE;
+	add_finding(check, &finding, nt_code_info(found->code)->severity, found->detail);
 }
 
-nt_status nt_issues_add_findings(nt_check *check, const nt_finding_list *findings)
+nt_status nt_report_add_findings(nt_check *check, const nt_finding_list *all)
 {
 	mesh_table table = {0};
 	const bool made = make_mesh_table(check->report, &table);
-	for (size_t i = 0; made && i < findings->count; i++)
-		add_finding(check, &table, &findings->items[i]);
+	for (size_t i = 0; made && i < all->count; i++)
+		add_scene_finding(check, &table, &all->items[i]);
 	nt_name_table_free(&table.keys);
 	free(table.meshes);
 	return made ? NT_OK : NT_ERROR_MEMORY;
@@ -255,7 +255,7 @@ nt_status nt_issues_add_findings(nt_check *check, const nt_finding_list *finding
 
 static int by_severity(const void *a, const void *b)
 {
-	const nt_issue *x = a, *y = b;
+	const nt_report_finding *x = a, *y = b;
 	if (x->severity != y->severity)
 		return x->severity > y->severity ? -1 : 1;
 	if (x->mesh != y->mesh)
@@ -264,9 +264,9 @@ static int by_severity(const void *a, const void *b)
 }
 
 /* Merge sort: findings of one code stay in the order in which they were found. */
-static bool sort_issues(nt_issue *issues, size_t count)
+static bool sort_findings(nt_report_finding *findings, size_t count)
 {
-	nt_issue *other = nt_alloc(count, sizeof *other);
+	nt_report_finding *other = nt_alloc(count, sizeof *other);
 	if (!other)
 		return false;
 	for (size_t width = 1; width < count; width *= 2) {
@@ -276,11 +276,11 @@ static bool sort_issues(nt_issue *issues, size_t count)
 			size_t a = begin, b = middle;
 			for (size_t i = begin; i < end; i++) {
 				const bool left = b == end ||
-					(a < middle && by_severity(&issues[a], &issues[b]) <= 0);
-				other[i] = issues[left ? a++ : b++];
+					(a < middle && by_severity(&findings[a], &findings[b]) <= 0);
+				other[i] = findings[left ? a++ : b++];
 			}
 		}
-		memcpy(issues, other, count * sizeof *issues);
+		memcpy(findings, other, count * sizeof *findings);
 	}
 	free(other);
 	return true;
@@ -292,8 +292,8 @@ static bool apply_baseline(nt_report *report, const nt_baseline *baseline)
 	bool *used = nt_calloc(baseline->count, sizeof *used);
 	if (!used)
 		return false;
-	for (size_t i = 0; i < report->issue_count; i++) {
-		const uint64_t wanted = report->issues[i].fingerprint;
+	for (size_t i = 0; i < report->finding_count; i++) {
+		const uint64_t wanted = report->findings[i].fingerprint;
 		size_t low = 0, high = baseline->count;
 		while (low < high) {
 			const size_t middle = (low + high) / 2;
@@ -304,7 +304,7 @@ static bool apply_baseline(nt_report *report, const nt_baseline *baseline)
 		}
 		for (; low < baseline->count && baseline->fingerprints[low] == wanted; low++) {
 			if (!used[low]) {
-				used[low] = report->issues[i].known = true;
+				used[low] = report->findings[i].known = true;
 				break;
 			}
 		}
@@ -313,22 +313,22 @@ static bool apply_baseline(nt_report *report, const nt_baseline *baseline)
 	return true;
 }
 
-nt_status nt_issues_finish(nt_report *report, const nt_report_options *options)
+nt_status nt_report_complete(nt_report *report, const nt_report_options *options)
 {
-	if (!sort_issues(report->issues, report->issue_count))
+	if (!sort_findings(report->findings, report->finding_count))
 		return NT_ERROR_MEMORY;
 	report->compared = options->baseline != NULL;
 	if (options->baseline && !apply_baseline(report, options->baseline))
 		return NT_ERROR_MEMORY;
-	for (size_t i = 0; i < report->issue_count; i++) {
-		if (report->issues[i].known)
+	for (size_t i = 0; i < report->finding_count; i++) {
+		if (report->findings[i].known)
 			report->known++;
 		else
-			report->by_severity[report->issues[i].severity]++;
+			report->by_severity[report->findings[i].severity]++;
 	}
-	if (options->max_issues && report->issue_count > options->max_issues) {
-		report->dropped = report->issue_count - options->max_issues;
-		report->issue_count = options->max_issues;
+	if (options->max_findings && report->finding_count > options->max_findings) {
+		report->dropped = report->finding_count - options->max_findings;
+		report->finding_count = options->max_findings;
 	}
 	return NT_OK;
 }
