@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Numbers of the glTF specification, for the wrappers that speak of accessors and for src/io.
+ * Numbers of the glTF specification, for the wrappers in ext and for src/gltf.
  */
 #ifndef NT_EXT_GLTF_NUMBERS_H
 #define NT_EXT_GLTF_NUMBERS_H

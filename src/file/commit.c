@@ -81,7 +81,7 @@ static nt_status sync_step(const nt_output *output, nt_error *error)
 	return status;
 }
 
-/* A file that is used as it is may be no more than promised to the disk. */
+/* A file that is used as it is may not have reached the disk yet. */
 static nt_status sync_used(const char *path, nt_error *error)
 {
 	const int fd = open(path, O_RDONLY | O_CLOEXEC);

@@ -8,7 +8,7 @@
  *
  * - A buffer replaces it if the previous main file at that very path refers to it and it is provably ours: the main
  *   file records the digest of the bytes that we wrote (nt_sink_digest), and the file still has that digest. An interim main
- *   file (commit.c) refers to interim names; it speaks for the name that they were on the way to, too, and records the digest of
+ *   file (commit.c) refers to interim names; it counts as referring to the final names too, and records the digest of
  *   what was there.
  * - Everything else is somebody else's and stays. The new file's name is made from its own bytes ("a-0123456789abcdef.bin"),
  *   so that the same result has the same name in every run and nothing piles up.

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What dead makers left in a folder: see litter.h.
+ * Removing what killed processes left in a folder: see litter.h.
  */
 #include "file/litter.h"
 

@@ -20,7 +20,7 @@ typedef struct nt_sink nt_sink;
 
 typedef enum nt_role {
 	NT_ROLE_MAIN,    /* named by the user. Further ones stand for themselves and are placed before the first */
-	NT_ROLE_INTERIM, /* the first main file once more, with the names that companions have until they can have theirs */
+	NT_ROLE_INTERIM, /* the first main file once more, with the interim names of companions */
 	NT_ROLE_BUFFER,  /* a companion of this main file: it may replace one that an earlier run made for it */
 	NT_ROLE_IMAGE    /* a companion that other documents may share: never replaced, never removed */
 } nt_role;

@@ -4,7 +4,7 @@
  *
  * Mode, owner, group, extended attributes and access lists go over. Nobody may come to read what he could not read
  * before: the new file is made for its owner alone, and where the group cannot be kept, the new group gets what
- * others have. What speaks for the old content goes: the bits that lend the owner's or group's rights, capabilities,
+ * others have. What was granted to the old content is dropped: set-user-ID and set-group-ID bits, capabilities,
  * and signatures. A file with further names could not keep them, and one that is read-only is meant to stay.
  */
 #include "file/output_parts.h"

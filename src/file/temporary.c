@@ -20,7 +20,7 @@
 #include <unistd.h>
 #include "file/maker.h"
 
-/* What is tried before giving up on a free name: names of dead processes with our number are rare. */
+/* What is tried before giving up on a free name: names of ended processes with our number are rare. */
 enum { MOST_ATTEMPTS = 1000 };
 
 struct nt_temporary {

@@ -30,7 +30,7 @@ typedef struct builder {
 	size_t index_count, face_count, polygon_count;
 	size_t index_capacity, size_capacity, polygon_capacity, primitive_capacity;
 
-	/* the row at hand */
+	/* the current row */
 	const unsigned char *row_begin;
 	uint32_t *corners;
 	float *uvs;
@@ -126,7 +126,7 @@ static nt_status add_face(builder *b, const uint32_t *vertices, size_t size)
 	return NT_OK;
 }
 
-/* Cuts the polygon at hand; the corner numbers of its triangles go to source->cuts. */
+/* Cuts the current polygon; the corner numbers of its triangles go to source->cuts. */
 static nt_status cut_polygon(builder *b, const uint32_t **cut)
 {
 	const size_t count = b->corner_count;
@@ -180,7 +180,7 @@ static nt_status apply_wedges(builder *b)
 	return NT_OK;
 }
 
-/* The polygon at hand becomes faces. */
+/* The current polygon becomes faces. */
 static nt_status add_polygon(builder *b)
 {
 	if (b->corner_count < 3) {
@@ -201,7 +201,7 @@ static nt_status add_polygon(builder *b)
 	return status;
 }
 
-/* The list at hand is a run of strips. Triangles with a doubled corner join strips and are no faces. */
+/* The current list is a run of strips. Triangles with a doubled corner join strips and are no faces. */
 static nt_status add_strips(builder *b)
 {
 	nt_status status = NT_OK;

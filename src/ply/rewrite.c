@@ -389,7 +389,7 @@ static size_t list_length(const plan *p, const ply_property *property, span all)
 	return count > 0 ? (size_t)count : 0;
 }
 
-/* The row at hand with other vertices; corners: which corners of the polygon they are, NULL: all. */
+/* The current row with other vertices; corners: which corners of the polygon they are, NULL: all. */
 static nt_status write_face(const plan *p, const uint32_t *vertices, size_t count, const uint32_t *corners)
 {
 	const ply_element *element = p->source->face;

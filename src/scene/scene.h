@@ -72,7 +72,7 @@ typedef struct nt_morph {
 	float *normals;         /* [vertex_count][3] moved, unit; NULL: as the base */
 	float *corner_tangents; /* [corner_count][4] while it is being solved */
 	float *vertex_tangents; /* [vertex_count + split.source_count][3]; NULL until solved */
-	size_t halfway_triangles; /* where adding half of the deltas leads more than 5 degrees astray */
+	size_t halfway_triangles; /* where adding half of the deltas is wrong by more than 5 degrees */
 	double halfway_degrees;   /* by how much at most */
 } nt_morph;
 

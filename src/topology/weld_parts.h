@@ -4,7 +4,7 @@
  * (weld_sieve.c) share: the entries of that table. For these files and weld.c only.
  *
  * An entry of 4 bytes holds a number and, in the bits that the number leaves free, a tag of the hash, so that
- * a foreign row is read about once in 2^tag probes. Tables are open-addressing and at most half full.
+ * the row of another key is read about once in 2^tag probes. Tables are open-addressing and at most half full.
  */
 #ifndef NT_TOPOLOGY_WELD_PARTS_H
 #define NT_TOPOLOGY_WELD_PARTS_H

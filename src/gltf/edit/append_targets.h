@@ -34,9 +34,9 @@ typedef struct nt_edited_range {
 
 typedef struct nt_appending {
 	nt_buffer_edits *edits;
-	nt_gltf *document; /* theirs, with its JSON, */
+	nt_gltf *document; /* of the edits, as its JSON */
 	nt_json *json;
-	nt_arena *arena;   /* and their arena */
+	nt_arena *arena;   /* of the edits */
 	const nt_vertex_pools *pools;
 	const nt_pool_vertices *vertices;
 	uint32_t buffer;  /* of new views */

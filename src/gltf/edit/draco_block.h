@@ -12,9 +12,9 @@
 /* A primitive that is to be compressed. */
 typedef struct nt_gltf_recoding {
 	nt_buffer_edits *edits;
-	nt_gltf *document; /* theirs, with its JSON, */
+	nt_gltf *document; /* of the edits, as its JSON */
 	nt_json *json;
-	nt_arena *arena;   /* and their arena */
+	nt_arena *arena;   /* of the edits */
 	const nt_write_options *options;
 	nt_vertex_pools *pools;
 	const nt_pool_vertices *vertices;

@@ -2,7 +2,7 @@
 /*
  * glTF from glTF: the source document with tangents put in, and nothing else changed. Pool by pool: splits are
  * merged, vertices appended, indices follow, TANGENT comes; then offsets are moved and the document is written.
- * What no solved primitive touches is not even looked at.
+ * What no solved primitive uses is not read.
  *
  * The solve is made on (u, -v), so its w is glTF's as it stands.
  */

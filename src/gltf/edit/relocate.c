@@ -240,7 +240,7 @@ static nt_status put_buffer(nt_gltf *document, const nt_relocated_buffer *buffer
 		return put_zeros(to, from->old_length, error);
 	if (from->old_length)
 		status = nt_gltf_open_buffer(document, index, "/buffers", &source, error);
-	/* A length that lies must not become that many zeros; padding may lack. */
+	/* A wrong length must not become that many zeros; padding may be missing. */
 	if (!status && source && from->old_length - source->size >= NT_EDITS_ALIGNMENT) {
 		char pointer[NT_GLTF_POINTER];
 		snprintf(pointer, sizeof pointer, "/buffers/%u", index);

@@ -144,7 +144,7 @@ static destination choose_destination(const writing *c, uint32_t index)
 	}
 }
 
-/* In a .glb a buffer 0 without a uri is the BIN chunk. Bytes that nobody ever had cannot be put there: zeros would
+/* In a .glb a buffer 0 without a uri is the BIN chunk. Bytes that exist nowhere cannot be put there: zeros would
  * be other data, and faulty where bounds or matrices are asked for. */
 static nt_status check_first_buffer(const writing *c, const nt_byte_users *users)
 {
