@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include <string.h>
+#include "api/vertices.h"
 #include "base/clock.h"
 #include "base/cpu.h"
 #include "base/parallel.h"
@@ -16,7 +17,6 @@
 #include "tangent/repair.h"
 #include "tangent/solve.h"
 #include "tangent/sums/sums.h"
-#include "api/vertices.h"
 #include "topology/corners.h"
 
 /* No stage shares fewer corners among threads. */

@@ -7,9 +7,9 @@
  */
 #include "api/vertices.h"
 
+#include "api/vertex_split.h"
 #include "base/clock.h"
 #include "tangent/repair.h"
-#include "api/vertex_split.h"
 #include "topology/corners.h"
 
 static nmtan_status split_rows(const nt_solve *solve, nt_splitter *splitter)

@@ -2,8 +2,8 @@
 /*
  * What is printed from the option table: --help and the completions of bash and zsh.
  */
-#include "cli/options.h"
 #include "cli/option_table.h"
+#include "cli/options.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -8,8 +8,8 @@
 // a vector of pairs with a constant key: when such a vector grows, it copies its members with all their
 // descendants. Members are therefore gathered on a stack of our own and moved once; grow_object() of json.cpp
 // does the same when a member is added later.
-#include "ext/json_parts.hpp"
 #include "ext/guard.hpp"
+#include "ext/json_parts.hpp"
 
 #include <algorithm>
 #include <cstring>

@@ -4,9 +4,9 @@
 // directory, decodes images, overflows its stack on deep JSON, knows no compression and checks no accessor: so it
 // gets its files through callbacks, an image loader that does nothing and text made for it (tinygltf_text.cpp), and
 // its accessors are checked and unpacked here.
-#include "ext/tinygltf.h"
 #include "ext/guard.hpp"
 #include "ext/meshopt.h"
+#include "ext/tinygltf.h"
 #include "ext/tinygltf_text.hpp"
 
 #include <cstring>

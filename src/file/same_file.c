@@ -10,11 +10,11 @@
 #include "file/output_parts.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/xattr.h>
 #include <unistd.h>
-#include <fcntl.h>
 #include "base/memory.h"
 
 static const char access_list[] = "system.posix_acl_access";

@@ -6,12 +6,12 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "gltf/document.h"
-#include "gltf/view.h"
 #include "file/image_type.h"
 #include "file/lookup.h"
 #include "file/relative_path.h"
 #include "file/uri.h"
+#include "gltf/document.h"
+#include "gltf/view.h"
 
 /* What is wrong with a map takes it away, and no more; its bytes stay NULL. */
 static nt_status without_map(nt_status status)

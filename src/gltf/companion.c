@@ -7,8 +7,8 @@
 
 #include <string.h>
 #include "base/memory.h"
-#include "gltf/glb.h"
 #include "file/uri.h"
+#include "gltf/glb.h"
 
 static const char key_digest[] = "nmtan:xxh128", key_before[] = "nmtan:replaces";
 

@@ -10,9 +10,9 @@
 #include <string.h>
 #include "ext/draco.h"
 #include "ext/tinygltf.h"
+#include "file/relative_path.h"
 #include "gltf/normalized.h"
 #include "gltf/quantize.h"
-#include "file/relative_path.h"
 #include "gltf/verify_faces.h"
 
 /* ---- finding the files ---- */

@@ -10,8 +10,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/parallel.h"
 #include "base/name_table.h"
+#include "base/parallel.h"
 #include "scene/polygon.h"
 
 enum { GRAIN = 1 << 14 }; /* rows per thread that are worth one */

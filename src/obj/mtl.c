@@ -14,12 +14,12 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include "base/name_table.h"
 #include "ext/number.h"
 #include "file/input.h"
 #include "file/lookup.h"
 #include "file/relative_path.h"
 #include "obj/mtl_map.h"
-#include "base/name_table.h"
 
 typedef struct reader {
 	nt_scene *scene;

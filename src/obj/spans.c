@@ -11,8 +11,8 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "obj/mtl.h"
 #include "base/name_table.h"
+#include "obj/mtl.h"
 
 /* Materials that no library defines are named one by one up to this many. */
 enum { NAMED_UNKNOWN_MOST = 100 };

@@ -7,13 +7,13 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include "format/format.h"
-#include "gltf/companion.h"
-#include "format/normal_map.h"
-#include "gltf/verify.h"
 #include "base/clock.h"
-#include "pipeline/joins.h"
 #include "file/watch.h"
+#include "format/format.h"
+#include "format/normal_map.h"
+#include "gltf/companion.h"
+#include "gltf/verify.h"
+#include "pipeline/joins.h"
 #include "pipeline/stages.h"
 
 /* What the stages of one run share. */

@@ -6,17 +6,17 @@
  * one thread with a workspace of its own. Each mesh's result depends on that mesh only, so the order does
  * not show. Meshes with the same geometry as an earlier one take its result.
  */
-#include "pipeline/stages.h"
 #include "pipeline/joins.h"
 #include "pipeline/morphs.h"
+#include "pipeline/stages.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "api/tangents.h"
 #include "base/counts.h"
 #include "base/dvec.h"
 #include "base/parallel.h"
-#include "api/tangents.h"
 
 /* Corners from which one mesh is worth all threads, and those that small ones must have together for threads
  * to be made at all, which costs as much as solving some hundred triangles. */

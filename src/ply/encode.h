@@ -5,8 +5,8 @@
 #ifndef NT_PLY_ENCODE_H
 #define NT_PLY_ENCODE_H
 
-#include "file/output.h"
 #include "base/buffer.h"
+#include "file/output.h"
 #include "ply/value.h"
 
 typedef struct ply_output {

@@ -9,8 +9,8 @@
  *     |      |      |
  *     0 ---- 1 ---- 4
  */
-#include "test.h"
 #include "nmtan.h"
+#include "test.h"
 
 static const float positions[6][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}, {2, 1, 0}};
 static const float normals[6][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}, {0, 0, 1}};

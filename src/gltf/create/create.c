@@ -15,11 +15,11 @@
 #include <string.h>
 #include "file/base64.h"
 #include "gltf/accessor.h"
-#include "gltf/glb.h"
 #include "gltf/companion.h"
 #include "gltf/create/images.h"
 #include "gltf/create/model.h"
 #include "gltf/create/primitive.h"
+#include "gltf/glb.h"
 #include "gltf/quantize.h"
 
 /* One range of the buffer that holds geometry. */

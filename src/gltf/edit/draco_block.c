@@ -5,8 +5,8 @@
 #include "gltf/edit/draco_block.h"
 
 #include <string.h>
-#include "gltf/edit/new_accessors.h"
 #include "gltf/accessor.h"
+#include "gltf/edit/new_accessors.h"
 #include "gltf/view.h"
 
 /* ---- what goes into it ---- */

@@ -5,8 +5,8 @@
 #ifndef NT_GLTF_EDIT_DRACO_BLOCK_H
 #define NT_GLTF_EDIT_DRACO_BLOCK_H
 
-#include "gltf/edit/buffer_edits.h"
 #include "gltf/draco.h"
+#include "gltf/edit/buffer_edits.h"
 #include "gltf/edit/merge_splits.h"
 
 /* A primitive that is to be compressed. */

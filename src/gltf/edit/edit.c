@@ -10,16 +10,16 @@
 
 #include <string.h>
 #include "gltf/accessor.h"
-#include "gltf/edit/write.h"
+#include "gltf/edit/append.h"
 #include "gltf/edit/draco.h"
 #include "gltf/edit/extensions.h"
-#include "gltf/edit/append.h"
 #include "gltf/edit/indices.h"
-#include "gltf/edit/new_accessors.h"
-#include "gltf/quantize.h"
 #include "gltf/edit/merge_splits.h"
+#include "gltf/edit/new_accessors.h"
 #include "gltf/edit/old_tangents.h"
 #include "gltf/edit/vertex_extensions.h"
+#include "gltf/edit/write.h"
+#include "gltf/quantize.h"
 #include "gltf/view.h"
 
 /* What every pool's edit needs. */

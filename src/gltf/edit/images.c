@@ -8,9 +8,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "gltf/edit/links.h"
 #include "file/image_type.h"
 #include "file/uri.h"
+#include "gltf/edit/links.h"
 
 nt_images nt_gltf_images_choice(const nt_write_options *options, const nt_gltf *document)
 {

@@ -14,12 +14,12 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "file/uri.h"
 #include "gltf/companion.h"
 #include "gltf/edit/data_uris.h"
 #include "gltf/edit/images.h"
 #include "gltf/edit/links.h"
 #include "gltf/edit/relocate.h"
-#include "file/uri.h"
 
 /* An edited document on its way into files. */
 typedef struct writing {

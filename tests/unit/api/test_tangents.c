@@ -3,8 +3,8 @@
  * The choice of an implementation, which users do not have. That all give the same bytes is tested where
  * they are: test_fast.c, test_sums.c, test_usable.c.
  */
-#include "test.h"
 #include "api/tangents.h"
+#include "test.h"
 
 static const float positions[3][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
 static const float normals[3][3] = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};

@@ -2,10 +2,10 @@
 /*
  * nmtan_vertex_tangents() against nmtan_tangents() followed by nmtan_split(), which it promises to equal.
  */
-#include "test.h"
 #include "golden.h"
 #include "nasty.h"
 #include "nmtan.h"
+#include "test.h"
 
 typedef struct split {
 	nmtan_split_output out;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "base/buffer.h"
 #include "fail_alloc.h"
+#include "test.h"
 
 static void pieces_follow_one_another(void **state)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "base/hash_index.h"
+#include "test.h"
 
 static void numbers_of_a_hash_come_in_the_order_of_adding(void **state)
 {

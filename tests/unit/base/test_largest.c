@@ -2,8 +2,8 @@
 /*
  * The largest of many numbers: wherever it stands, on any number of threads.
  */
-#include "test.h"
 #include "base/largest.h"
+#include "test.h"
 
 static void none_of_no_numbers(void **state)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "base/memory.h"
+#include "test.h"
 
 static void size_mul_overflow_is_told(void **state)
 {

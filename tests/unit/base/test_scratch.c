@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "base/scratch.h"
+#include "test.h"
 
 static void blocks_are_aligned_and_apart(void **state)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "cli/exit_code.h"
 #include "cli/messages.h"
+#include "test.h"
 
 static const nt_style plain = {false, 0}, verbose = {false, 1}, coloured = {true, 0};
 

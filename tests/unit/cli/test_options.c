@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "cli/option_table.h"
 #include "cli/options.h"
+#include "test.h"
 
 enum { MOST_WORDS = 24 };
 

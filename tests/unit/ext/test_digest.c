@@ -2,9 +2,9 @@
 /*
  * Digests: the values are those of xxhsum -H2 (xxHash 0.8.1).
  */
-#include "test.h"
 #include "ext/digest.h"
 #include "fail_alloc.h"
+#include "test.h"
 
 static void assert_digest(const char *text, const char *expected)
 {

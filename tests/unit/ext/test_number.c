@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "ext/number.h"
+#include "test.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "ext/tinygltf.h"
+#include "test.h"
 
 #include <meshoptimizer.h>
 

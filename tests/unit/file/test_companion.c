@@ -3,10 +3,10 @@
  * Names of companions, and which files are ours, in a folder of our own. "somebody\n" has the digest that
  * `xxhsum -H2` gives for it.
  */
-#include "test.h"
 #include "fail_alloc.h"
-#include "folder.h"
 #include "file/output.h"
+#include "folder.h"
+#include "test.h"
 
 #include <stdio.h>
 #include <sys/stat.h>

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "file/image_type.h"
+#include "test.h"
 
 static nt_image_type type_of(const char *bytes, size_t size)
 {

@@ -5,8 +5,8 @@
 #include "test.h"
 #include <errno.h>
 #include <unistd.h>
-#include "folder.h"
 #include "file/lookup.h"
+#include "folder.h"
 
 static int enter(void **state)
 {

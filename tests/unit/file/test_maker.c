@@ -2,8 +2,8 @@
 /*
  * Whose process is gone: only one of this machine, this boot and these process numbers can be known to be.
  */
-#include "test.h"
 #include "file/maker.h"
+#include "test.h"
 
 #include <signal.h>
 #include <sys/wait.h>

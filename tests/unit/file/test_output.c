@@ -2,9 +2,9 @@
 /*
  * Output sets, in a folder of our own that is removed afterwards.
  */
-#include "test.h"
-#include "folder.h"
 #include "file/output.h"
+#include "folder.h"
+#include "test.h"
 
 #include <errno.h>
 #include <fcntl.h>

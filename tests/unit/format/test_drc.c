@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "ext/draco.h"
 #include "format/format.h"
+#include "test.h"
 
 static const float positions[][3] = {{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}};
 static const float texcoords[][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 0.25f}};

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "format/format.h"
+#include "test.h"
 
 static nt_format of_input(const char *text, size_t size, const char *path)
 {

@@ -2,8 +2,8 @@
 #include "test.h"
 #include <math.h>
 #include <stdio.h>
-#include "gltf/document.h"
 #include "file/uri.h"
+#include "gltf/document.h"
 #include "gltf/load.h"
 #include "gltf/open.h"
 #include "scene/select.h"

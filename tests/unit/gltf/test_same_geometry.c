@@ -3,12 +3,12 @@
  * Which primitives count as the same. One triangle with everything a solve takes, and lists of primitives
  * over it; the expected answer is written beside each: the number of the earlier primitive, or -1.
  */
-#include "test.h"
 #include "file/base64.h"
-#include "pipeline/run.h"
 #include "gltf/load.h"
 #include "gltf/open.h"
 #include "gltf/same_geometry.h"
+#include "pipeline/run.h"
+#include "test.h"
 
 /* Positions, normals, texture coordinates, indices of one triangle; accessor 4 is 0 once more, 5 are other
  * positions, 6 is a delta. */

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
-#include "hand_gltf.h"
-#include "gltf/verify.h"
 #include "gltf/create/create.h"
-#include "gltf/load.h"
 #include "gltf/edit/edit.h"
+#include "gltf/load.h"
 #include "gltf/open.h"
+#include "gltf/verify.h"
+#include "hand_gltf.h"
 
 #include <math.h>
 

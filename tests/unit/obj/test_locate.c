@@ -2,8 +2,8 @@
 /*
  * Where faces stand in an OBJ: lines are counted by hand in the comments, corners as they stand in the text.
  */
-#include "obj_file.h"
 #include "fail_alloc.h"
+#include "obj_file.h"
 #include <stdio.h>
 
 /* Face `face` of mesh `mesh` stands in that line and has these corners. */

@@ -3,8 +3,8 @@
  * Every allocation of the OBJ and MTL readers and of the triangulation fails once; leaks are for the
  * sanitizers to see.
  */
-#include "test.h"
 #include "folder.h"
+#include "test.h"
 #include <stdio.h>
 #include "fail_alloc.h"
 #include "obj/read.h"

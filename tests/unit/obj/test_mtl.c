@@ -2,8 +2,8 @@
 /*
  * Material libraries, from strings and from a folder that the test makes and removes.
  */
-#include "test.h"
 #include "folder.h"
+#include "test.h"
 #include <stdio.h>
 #include <sys/stat.h>
 #include <unistd.h>

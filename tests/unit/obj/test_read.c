@@ -3,8 +3,8 @@
  * What the OBJ reader makes of files. Expected arrays are derived by hand beside each case: vertices are numbered by
  * the first use of their v/vt/vn. Files that are wrong are in test_damage.c.
  */
-#include "obj_file.h"
 #include "obj/read.h"
+#include "obj_file.h"
 
 static void assert_floats(const float *floats, const float *expected, size_t count)
 {

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "folder.h"
 #include "pipeline/batch.h"
+#include "test.h"
 
 #include <stdatomic.h>
 #include <sys/stat.h>

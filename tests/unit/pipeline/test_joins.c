@@ -5,9 +5,9 @@
  * the values of its neighbours. Texture coordinates are mirrored on the right half and the same for all corners of
  * some cells, which repair has to fill.
  */
-#include "test.h"
 #include "fail_alloc.h"
 #include "folder.h"
+#include "test.h"
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -4,8 +4,8 @@
  * the program holds for a file of one triangle. A grid of 352 800 triangles, as GLB and as OBJ; each run is a
  * process of its own, whose peak the system tells.
  */
-#include "test.h"
 #include "folder.h"
+#include "test.h"
 #include <math.h>
 #include <stdio.h>
 #include <sys/resource.h>

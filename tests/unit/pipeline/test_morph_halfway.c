@@ -8,8 +8,8 @@
  *
  * which is 0 for every rigid turn below 180 degrees, where both cancel.
  */
-#include "test.h"
 #include "folder.h"
+#include "test.h"
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

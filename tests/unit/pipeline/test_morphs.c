@@ -6,8 +6,8 @@
  * Target 0 tilts it by 45 degrees about y, normals too: T = (1, 0, 1) / sqrt 2. It has a TANGENT of its own,
  * which is nonsense. Target 1 moves x to -x: T = (-1, 0, 0), and both triangles are seen from behind.
  */
-#include "test.h"
 #include "folder.h"
+#include "test.h"
 #include <math.h>
 #include <stdio.h>
 #include <time.h>

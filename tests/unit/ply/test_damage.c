@@ -3,9 +3,9 @@
  * What is wrong with a PLY file, and where: header, text, counts, binary rows; every prefix of a file, every
  * byte replaced, and memory that ends.
  */
-#include "ply_file.h"
 #include "fail_alloc.h"
 #include "ply/read.h"
+#include "ply_file.h"
 
 #include <math.h>
 

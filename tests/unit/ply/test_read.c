@@ -3,9 +3,9 @@
  * What a PLY file can look like: the header, lines, numbers, types and properties, in all three encodings.
  * Faces are in test_faces.c, files that are wrong in test_damage.c.
  */
-#include "ply_file.h"
 #include "file/input.h"
 #include "ply/read.h"
+#include "ply_file.h"
 
 #include <dirent.h>
 #include <math.h>

@@ -2,13 +2,13 @@
 /*
  * The PLY writer on scenes whose results are set by hand, so that every byte of the output is known.
  */
-#include "test.h"
-#include "fail_alloc.h"
-#include "folder.h"
 #include "ext/number.h"
+#include "fail_alloc.h"
 #include "file/input.h"
+#include "folder.h"
 #include "ply/read.h"
 #include "ply/write.h"
+#include "test.h"
 
 #include <math.h>
 #include <stdio.h>

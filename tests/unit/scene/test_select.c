@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "scene/select.h"
+#include "test.h"
 
 /* A reachable mesh of triangles with everything a solve takes. */
 static nt_mesh complete_mesh(unsigned slots)

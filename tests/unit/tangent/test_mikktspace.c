@@ -5,8 +5,8 @@
 #include "test.h"
 #include <math.h>
 #include <stdio.h>
-#include "golden.h"
 #include "api/tangents.h"
+#include "golden.h"
 
 /* Floats with equal bits, or both NaN. */
 static size_t count_differences(const float *a, const float *b, size_t count)

@@ -5,10 +5,10 @@
  */
 #include "test.h"
 #include <math.h>
+#include "api/tangents.h"
 #include "golden.h"
 #include "nasty.h"
 #include "nmtan.h"
-#include "api/tangents.h"
 
 static size_t count_differences(const float *a, const float *b, size_t count)
 {

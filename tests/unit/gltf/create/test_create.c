@@ -2,8 +2,8 @@
 /*
  * New glTF documents: their geometry in every container. Their images are in tests/unit/gltf/edit/test_images.c.
  */
-#include "hand_gltf.h"
 #include "gltf/create/create.h"
+#include "hand_gltf.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "gltf/create/model.h"
+#include "test.h"
 
 static nt_model *new_model(void)
 {

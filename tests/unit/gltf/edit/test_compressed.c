@@ -3,8 +3,8 @@
  * The same mesh plain, packed by meshoptimizer and compressed by Draco. Its u runs back in the middle,
  * so that vertices have to be split.
  */
-#include "test.h"
 #include "folder.h"
+#include "test.h"
 #include <math.h>
 #include <meshoptimizer.h>
 #include <stdio.h>

@@ -2,8 +2,8 @@
 /*
  * Data URIs that are made while the text is written. What is written is read again, and says what companions say.
  */
-#include "test.h"
 #include "folder.h"
+#include "test.h"
 #include <sys/stat.h>
 #include "file/base64.h"
 #include "pipeline/run.h"

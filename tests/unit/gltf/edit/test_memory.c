@@ -4,10 +4,10 @@
  * data URIs, companions, Draco. The run says that memory is exhausted, or does without; leaks are for the sanitizers
  * to see.
  */
-#include "test.h"
-#include "folder.h"
 #include "fail_alloc.h"
+#include "folder.h"
 #include "pipeline/run.h"
+#include "test.h"
 
 static nt_status run(const char *input, nt_settings settings, nt_error *error)
 {

@@ -7,12 +7,12 @@
  * The numbers of the targets' accessors were searched for: an FNV hash of 32 bits over them, begun with the number of
  * targets, is the same for both primitives.
  */
-#include "test.h"
-#include "folder.h"
 #include "base/buffer.h"
+#include "folder.h"
 #include "gltf/accessor.h"
 #include "gltf/open.h"
 #include "pipeline/run.h"
+#include "test.h"
 
 enum { ACCESSORS = 20, TURNED_A = 8, TURNED_B = 7 };
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-#include "test.h"
 #include "gltf/extensions/outline.h"
+#include "test.h"
 
 static void assert_edges(const uint32_t *edges, size_t count, const nt_copied_triangles *t, const uint32_t *expected,
 	size_t expected_count)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /* Bins against a plain loop over the corners: sums, states, entries, for one range and several. */
-#include "test.h"
 #include "tangent/fast/bins.h"
+#include "test.h"
 
 enum { VERTICES = 100, TRIANGLES = 400, BITS = 5 };
 

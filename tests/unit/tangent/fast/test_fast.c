@@ -9,10 +9,10 @@
 #include <math.h>
 #include <stdio.h>
 #include <unistd.h>
+#include "api/tangents.h"
 #include "base/cpu.h"
 #include "golden.h"
 #include "nasty.h"
-#include "api/tangents.h"
 #include "tangent/fast/bins.h"
 #include "tangent/fast/fast.h"
 

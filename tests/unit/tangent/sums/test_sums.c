@@ -5,10 +5,10 @@
  */
 #include "test.h"
 #include <math.h>
+#include "api/tangents.h"
 #include "base/cpu.h"
 #include "golden.h"
 #include "surfaces.h"
-#include "api/tangents.h"
 
 static void solve(const nmtan_mesh *mesh, nmtan_options options, nt_implementation implementation,
 	float *tangents, float *bitangents,
