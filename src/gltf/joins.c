@@ -48,7 +48,7 @@ typedef struct group {
 /* Whether the tangents of a primitive are asked for. */
 static bool is_wanted(const nt_mesh *mesh, bool kept)
 {
-	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR ||
+	return nt_mesh_is_wanted(mesh) ||
 		(kept && mesh->decision == NT_SKIP_HAS_TANGENTS && mesh->has_positions && mesh->has_normals &&
 			mesh->has_texcoords);
 }

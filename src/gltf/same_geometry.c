@@ -32,7 +32,7 @@ typedef struct same_job {
 /* Whether the mesh is going to be loaded: to be solved, or only to be checked. */
 static bool is_wanted(const nt_mesh *mesh, const nt_read_options *options)
 {
-	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR ||
+	return nt_mesh_is_wanted(mesh) ||
 		(options->report && mesh->triangles && mesh->has_positions);
 }
 

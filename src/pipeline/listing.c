@@ -14,11 +14,6 @@ static size_t triangles_of(const nt_mesh *mesh)
 	return mesh->face_count + quads;
 }
 
-static bool is_solved(const nt_mesh *mesh)
-{
-	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR;
-}
-
 nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error *error)
 {
 	summary->lines = nt_calloc(scene->mesh_count, sizeof *summary->lines);
@@ -30,7 +25,7 @@ nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error 
 		const nt_mesh *solved = mesh->same_as ? mesh->same_as : mesh;
 		nt_mesh_line *line = &summary->lines[i];
 		*line = (nt_mesh_line){.place = mesh->place, .decision = mesh->decision,
-			.same = mesh->same_as && is_solved(mesh), .triangle_count = triangles_of(solved),
+			.same = mesh->same_as && nt_mesh_is_wanted(mesh), .triangle_count = triangles_of(solved),
 			.vertex_count = solved->source_vertex_count};
 		if (solved->vertex_count > solved->source_vertex_count)
 			line->appended = solved->vertex_count - solved->source_vertex_count;

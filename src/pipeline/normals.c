@@ -187,7 +187,7 @@ static nt_status split_by_normal(nt_scene *scene, nt_mesh *mesh, normal_job *job
 	return NT_OK;
 }
 
-void nt_report_normals(nt_scene *scene, const nt_mesh *mesh)
+static void report_normals(nt_scene *scene, const nt_mesh *mesh)
 {
 	if (mesh->made_normal_corners)
 		nt_finding_add(&scene->findings, NT_CODE_NORMALS_MADE, &mesh->place, mesh->made_normal_corners, NULL);
@@ -210,7 +210,7 @@ static nt_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job)
 	float *normals = job->normals;
 	job->indices = job->sources = NULL;
 	job->normals = NULL;
-	nt_report_normals(scene, mesh);
+	report_normals(scene, mesh);
 	/* each, whatever became of the others: the arena frees what it cannot keep */
 	bool kept = nt_arena_adopt(&scene->arena, indices);
 	kept &= nt_arena_adopt(&scene->arena, sources);
@@ -243,7 +243,7 @@ static nt_status make_lacking(nt_scene *scene, nt_mesh *mesh, nt_normals mode)
 	return status;
 }
 
-nt_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_error *error)
+static nt_status make_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_error *error)
 {
 	/* a glTF keeps the normals that it has, unless others are asked for */
 	const bool keeps = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
@@ -253,4 +253,35 @@ nt_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_e
 	if (!status)
 		status = nt_make_unit_normals(scene, mesh);
 	return status ? nt_fail(error, status, "cannot make normals: %s", nt_status_text(status)) : NT_OK;
+}
+
+/* Copies in joins have their own normals, whatever the others get. */
+static nt_status make_normals_of_copies(nt_scene *scene, nt_error *error)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < scene->join_count; i++)
+		for (size_t k = 0; !status && k < scene->joins[i].part_count; k++) {
+			nt_mesh *mesh = scene->joins[i].parts[k];
+			if (!nt_mesh_is_wanted(mesh) && mesh->positions)
+				status = make_normals(scene, mesh, NT_NORMALS_AUTO, error);
+		}
+	return status;
+}
+
+nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, nt_error *error)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < scene->mesh_count; i++) {
+		nt_mesh *mesh = &scene->meshes[i];
+		if (!nt_mesh_is_wanted(mesh))
+			continue;
+		if (!mesh->same_as) {
+			status = make_normals(scene, mesh, mode, error);
+			continue;
+		}
+		nt_mesh_share(mesh);
+		if (mesh->normals_made)
+			report_normals(scene, mesh);
+	}
+	return status ? status : make_normals_of_copies(scene, error);
 }

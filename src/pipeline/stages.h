@@ -1,24 +1,40 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The stages between reading and writing, each on one mesh of a scene.
+ * The stages of a run, in its order.
  */
 #ifndef NT_PIPELINE_STAGES_H
 #define NT_PIPELINE_STAGES_H
 
+#include "format/format.h"
 #include "pipeline/settings.h"
 
-/* Makes the normals a mesh lacks (all of them when `mode` says replace); vertices whose corners get
- * different normals are split, copies appended. Sets mesh->normals_made where something was made. Then gives the mesh
- * solve_normals where its normals are not of unit length. */
-nt_status nt_stage_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_error *error);
+/* Finds the row of who writes `path`, by settings and name; of a stream without one only when the reader is known: PLY
+ * for PLY, else GLB. NULL with settings->check. `reader` is NULL before the input is read; with it, what its files
+ * cannot become is refused. Returns NT_OK or NT_ERROR_USAGE. */
+nt_status nt_choose_writer(const nt_settings *settings, const char *path, const nt_format_entry *reader,
+	const nt_format_entry **writer, nt_error *error);
 
-/* The findings of it, of a mesh that shares them too. */
-void nt_report_normals(nt_scene *scene, const nt_mesh *mesh);
+/* After the decisions: finds joins and equal meshes, and loads whatever will be solved, written or reported. */
+nt_status nt_stage_load(nt_scene *scene, const nt_format_entry *reader, const nt_format_entry *writer,
+	const nt_settings *settings, const nt_read_options *options, nt_error *error);
+
+/* What is wrong with an input that became shorter is that, whatever was made of it and found in it: returns that, or
+ * `status`. */
+nt_status nt_check_inputs(nt_scene *scene, nt_status status, nt_error *error);
+
+/* Makes the normals that meshes lack (all of them when `mode` says replace); vertices whose corners get
+ * different normals are split, copies appended. Sets mesh->normals_made where something was made. Then gives each mesh
+ * solve_normals where its normals are not of unit length. */
+nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, nt_error *error);
 
 /* Solves and splits every mesh whose decision says so; counts and findings go to the summary. Large
  * meshes take all threads one after the other, small ones run side by side. */
 nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
 	nt_summary *summary, nt_error *error);
+
+/* Fills summary->report: of the scene as it now is, or of what went wrong. */
+nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_status status, nt_summary *summary,
+	nt_error *error);
 
 /* Fills summary->lines. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error *error);

@@ -35,14 +35,9 @@ typedef struct tangent_job {
 	nmtan_timing timing;          /* of the large meshes */
 } tangent_job;
 
-static bool is_wanted(const nt_mesh *mesh)
-{
-	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR;
-}
-
 static bool is_solved(const nt_mesh *mesh)
 {
-	return is_wanted(mesh) && !mesh->same_as;
+	return nt_mesh_is_wanted(mesh) && !mesh->same_as;
 }
 
 /* Whether a mesh is solved by itself, or stands for its join. */
@@ -389,7 +384,7 @@ static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *e
 	}
 	for (size_t i = 0; i < job->scene->mesh_count; i++) {
 		nt_mesh *mesh = &job->scene->meshes[i];
-		if (!is_wanted(mesh))
+		if (!nt_mesh_is_wanted(mesh))
 			continue;
 		if (mesh->same_as) {
 			nt_mesh_share(mesh);

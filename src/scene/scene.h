@@ -227,6 +227,12 @@ void nt_scene_init(nt_scene *scene, const char *path);
 /* Frees everything; the scene is empty afterwards. */
 void nt_scene_free(nt_scene *scene);
 
+/* Whether a mesh gets tangents. */
+static inline bool nt_mesh_is_wanted(const nt_mesh *mesh)
+{
+	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR;
+}
+
 /* Gives a mesh with same_as the geometry and the results that the other has by now. They are shared, not
  * copied. */
 void nt_mesh_share(nt_mesh *mesh);

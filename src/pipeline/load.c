@@ -1,0 +1,126 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Which meshes are loaded, and which of them are solved with others: see stages.h.
+ */
+#include "pipeline/stages.h"
+
+#include "file/watch.h"
+
+typedef struct loading {
+	nt_scene *scene;
+	const nt_format_entry *reader;
+	const nt_settings *settings;
+	const nt_read_options *options;
+	nt_error *error;
+} loading;
+
+/* Writers of other formats than the input's need every mesh, solved or not. */
+static bool needs_all(const nt_format_entry *reader, const nt_format_entry *writer)
+{
+	if (!writer)
+		return false;
+	const bool gltf_in = reader->format == NT_FORMAT_GLTF || reader->format == NT_FORMAT_GLB;
+	const bool gltf_out = writer->format == NT_FORMAT_GLTF || writer->format == NT_FORMAT_GLB;
+	return !(gltf_in && gltf_out) && reader->format != writer->format;
+}
+
+/* For the report alone: a mesh that cannot be read fails a check, but no conversion that does not need
+ * it. */
+static nt_status load_for_report(const loading *l, nt_mesh *mesh)
+{
+	if (mesh->same_as && !mesh->same_as->positions) /* that one could not be read */
+		return NT_OK;
+	const nt_status status = l->reader->load(l->scene, mesh, l->options, l->error);
+	if (!status || l->settings->check || status == NT_ERROR_MEMORY)
+		return status;
+	mesh->positions = NULL;
+	nt_error_clear(l->error);
+	return NT_OK;
+}
+
+/* Finds what is to be solved together, or, for a report, what could be. */
+static nt_status find_joins(const loading *l)
+{
+	nt_scene *scene = l->scene;
+	const bool across = l->settings->across == NT_ACROSS_MESH;
+	if (!l->reader->find_joins || !(across || l->settings->report))
+		return NT_OK;
+	const bool checks_kept = across && l->settings->check && l->settings->report;
+	const nt_status status = l->reader->find_joins(scene, checks_kept, l->error);
+	for (size_t i = 0; !status && across && i < scene->join_count; i++)
+		for (size_t k = 0; k < scene->joins[i].part_count; k++)
+			scene->joins[i].parts[k]->join = &scene->joins[i];
+	return status;
+}
+
+/* For a report alone, the comparison of a join costs at most some times what is solved anyway: primitives that lie
+ * on each other, as copies of one set of accessors do, are no surface that was cut by material. */
+static void leave_out_large_joins(const loading *l)
+{
+	enum { MOST_TIMES = 4, ALWAYS = 65536 };
+	nt_scene *scene = l->scene;
+	if (l->settings->across == NT_ACROSS_MESH)
+		return;
+	size_t solved = 0, kept = 0;
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		if (nt_mesh_is_wanted(&scene->meshes[i]) && !scene->meshes[i].same_as)
+			solved += scene->meshes[i].face_count;
+	for (size_t i = 0; i < scene->join_count; i++) {
+		size_t faces = 0;
+		for (size_t k = 0; k < scene->joins[i].part_count; k++)
+			faces += scene->joins[i].parts[k]->face_count;
+		if (faces <= MOST_TIMES * solved + ALWAYS)
+			scene->joins[kept++] = scene->joins[i];
+	}
+	scene->join_count = kept;
+}
+
+/* Loads the copies in joins. For a report alone, what cannot be read is left out. */
+static nt_status load_copies(const loading *l)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < l->scene->join_count; i++)
+		for (size_t k = 0; !status && k < l->scene->joins[i].part_count; k++) {
+			nt_mesh *mesh = l->scene->joins[i].parts[k];
+			if (!mesh->transform_of)
+				continue;
+			status = l->reader->load(l->scene, mesh, l->options, l->error);
+			if (!status || mesh->join || status == NT_ERROR_MEMORY)
+				continue;
+			mesh->positions = NULL;
+			nt_error_clear(l->error);
+			status = NT_OK;
+		}
+	return status;
+}
+
+nt_status nt_stage_load(nt_scene *scene, const nt_format_entry *reader, const nt_format_entry *writer,
+	const nt_settings *settings, const nt_read_options *options, nt_error *error)
+{
+	const loading l = {scene, reader, settings, options, error};
+	const bool all = needs_all(reader, writer);
+	nt_status status = find_joins(&l);
+	if (!status && reader->find_same)
+		status = reader->find_same(scene, options, error);
+	if (!status)
+		leave_out_large_joins(&l);
+	for (size_t i = 0; !status && reader->load && i < scene->mesh_count; i++) {
+		nt_mesh *mesh = &scene->meshes[i];
+		const bool loadable = mesh->triangles && mesh->has_positions;
+		if (nt_mesh_is_wanted(mesh) || (all && loadable))
+			status = reader->load(scene, mesh, options, error);
+		else if (settings->report && loadable)
+			status = load_for_report(&l, mesh);
+	}
+	return status ? status : load_copies(&l);
+}
+
+nt_status nt_check_inputs(nt_scene *scene, nt_status status, nt_error *error)
+{
+	const nt_status watched = nt_watch_check(error);
+	if (!watched)
+		return status;
+	nt_finding_list_free(&scene->findings);
+	scene->findings = (nt_finding_list){0};
+	return watched;
+}

@@ -1,0 +1,83 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Who writes the output: see stages.h.
+ */
+#include "pipeline/stages.h"
+
+#include <string.h>
+#include <sys/stat.h>
+
+/* Whether the output is standard output, a pipe or a device, whose name need not say a format. */
+static bool is_stream(const char *path)
+{
+	struct stat info;
+	return strcmp(path, "-") == 0 ||
+	       (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode));
+}
+
+/* What cp would write into. */
+static bool is_folder(const char *path)
+{
+	struct stat info;
+	const size_t length = strlen(path);
+	return (length && path[length - 1] == '/') || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
+}
+
+static nt_status choose(const nt_settings *settings, const char *path, const nt_format_entry *reader,
+	const nt_format_entry **writer, nt_error *error)
+{
+	const bool unnamed = !settings->check && settings->output_format == NT_FORMAT_UNKNOWN &&
+			     is_stream(path) && !nt_format_of_path(path);
+	if (settings->check || (unnamed && !reader))
+		return NT_OK;
+	if (unnamed)
+		*writer = nt_format_find(
+			reader->format == NT_FORMAT_PLY ? NT_FORMAT_PLY : NT_FORMAT_GLB);
+	else if (settings->output_format != NT_FORMAT_UNKNOWN)
+		*writer = nt_format_find(settings->output_format);
+	else
+		*writer = nt_format_of_path(path);
+	if (!*writer && is_folder(path))
+		return nt_fail(error, NT_ERROR_USAGE, "\"%s\" is a folder: to write into it use -d",
+			path);
+	if (!*writer)
+		return nt_fail(error, NT_ERROR_USAGE,
+			"cannot tell the output format from the name \"%s\": expected .gltf, .glb or .ply, "
+			"or --output-format", path);
+	if (!(*writer)->write)
+		return nt_fail(error, NT_ERROR_USAGE, "\"%s\": %s cannot be written, only read",
+			path, (*writer)->name);
+	if (settings->verify && (*writer)->format == NT_FORMAT_PLY)
+		return nt_fail(error, NT_ERROR_USAGE,
+			"--verify reads glTF back; \"%s\" will be PLY", path);
+	if (settings->precision != NT_PRECISION_FLOAT && (*writer)->format == NT_FORMAT_PLY)
+		return nt_fail(error, NT_ERROR_USAGE,
+			"--precision is about glTF; \"%s\" will be PLY, whose tangents are floats",
+			path);
+	return NT_OK;
+}
+
+/* What only a glTF made from a glTF can have. */
+static nt_status check_edit(const nt_settings *settings, const nt_format_entry *reader,
+	const nt_format_entry *writer, nt_error *error)
+{
+	const bool edits = writer && writer->format != NT_FORMAT_PLY &&
+		(reader->format == NT_FORMAT_GLTF || reader->format == NT_FORMAT_GLB);
+	if (writer && !edits && settings->draco > NT_DRACO_OFF)
+		return nt_fail(error, NT_ERROR_USAGE,
+			"--draco=%s compresses only glTF that is made from glTF, not %s made from %s",
+			settings->draco == NT_DRACO_AS_SEQUENTIAL ? "sequential" : "edgebreaker",
+			writer->name, reader->name);
+	/* taking images away would renumber what refers to them */
+	if (edits && settings->images == NT_IMAGES_NONE)
+		return nt_fail(error, NT_ERROR_USAGE,
+			"--images=none: a glTF made from a glTF keeps its images; use link, embed or copy");
+	return NT_OK;
+}
+
+nt_status nt_choose_writer(const nt_settings *settings, const char *path, const nt_format_entry *reader,
+	const nt_format_entry **writer, nt_error *error)
+{
+	const nt_status status = choose(settings, path, reader, writer, error);
+	return status || !reader ? status : check_edit(settings, reader, *writer, error);
+}
