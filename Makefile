@@ -41,7 +41,7 @@ NT_CFLAGS := -std=c11 -D_GNU_SOURCE $(COMMON) -Wshadow -Wstrict-prototypes -Wmis
 	-Wvla $(CFLAGS)
 NT_CXXFLAGS := -std=c++17 -fvisibility-inlines-hidden $(COMMON) $(CXXFLAGS)
 NT_LDFLAGS := $(flags_$(config)) -pthread $(LDFLAGS)
-TOOL_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lm
+TOOL_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lspng -ljpeg -ltiff -lm
 
 # The compute library: no files, no C++.
 core_src := src/base/status.c src/base/memory.c src/base/parallel.c src/base/pool.c src/base/cpu.c src/base/scratch.c \
@@ -106,6 +106,7 @@ $(call objects_of,report/render/page_assets.c): $(call existing,src/report/rende
 
 # Foreign headers whose warnings are not ours.
 $(call objects_of,ext/openmesh.cpp): FILE_FLAGS := -Wno-maybe-uninitialized -Wno-class-memaccess
+$(call objects_of,ext/codec/stb.c): FILE_FLAGS := -Wno-unused-function
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 

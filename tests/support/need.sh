@@ -7,7 +7,8 @@
 set -eu
 
 build="pkg-config libopenmesh-dev libtinygltf-dev nlohmann-json3-dev libdraco-dev
-	libmeshoptimizer-dev libfast-float-dev libxxhash-dev"
+	libmeshoptimizer-dev libfast-float-dev libxxhash-dev libspng-dev libjpeg62-turbo-dev
+	libtiff-dev libstb-dev"
 check="libcmocka-dev chromium"
 
 # Programs are looked for by name, since they often come from elsewhere than Debian.

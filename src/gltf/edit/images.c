@@ -36,7 +36,7 @@ typedef struct moving {
 static const char *media_type(const nt_file *file)
 {
 	const nt_image_type type = nt_image_type_of_bytes(file->data, file->size);
-	if (type != NT_IMAGE_OTHER)
+	if (nt_image_is_carried(type))
 		return nt_image_media_type(type);
 	if (file->size >= 12 && memcmp(file->data + 4, "ftypavif", 8) == 0)
 		return "image/avif"; /* EXT_texture_avif */

@@ -17,8 +17,28 @@ static void type_is_told_by_signature(void **state)
 	assert_int_equal(type_of("\xabKTX 11\xbb\r\n\x1a\n", 12), NT_IMAGE_OTHER);
 	assert_int_equal(type_of("RIFF\0\0\0\0WEBP", 12), NT_IMAGE_WEBP);
 	assert_int_equal(type_of("RIFF\0\0\0\0WAVE", 12), NT_IMAGE_OTHER);
-	assert_int_equal(type_of("BM\0\0", 4), NT_IMAGE_OTHER);
+	assert_int_equal(type_of("BM\0\0", 4), NT_IMAGE_BMP);
+	assert_int_equal(type_of("II*\0", 4), NT_IMAGE_TIFF);
+	assert_int_equal(type_of("MM\0*", 4), NT_IMAGE_TIFF);
+	assert_int_equal(type_of("#?RADIANCE\n", 11), NT_IMAGE_HDR);
+	assert_int_equal(type_of("8BPS", 4), NT_IMAGE_PSD);
+	assert_int_equal(type_of("\x76\x2f\x31\x01", 4), NT_IMAGE_EXR);
 	assert_int_equal(type_of("", 0), NT_IMAGE_OTHER);
+}
+
+static void type_of_a_tga_is_told_by_its_header(void **state)
+{
+	(void)state;
+	char header[18] = {[2] = 2, [12] = 4, [14] = 4, [16] = 24};
+	assert_int_equal(type_of(header, 18), NT_IMAGE_TGA);
+	assert_int_equal(type_of(header, 17), NT_IMAGE_OTHER);
+	header[2] = 10;
+	assert_int_equal(type_of(header, 18), NT_IMAGE_TGA);
+	header[16] = 25; /* bits a pixel */
+	assert_int_equal(type_of(header, 18), NT_IMAGE_OTHER);
+	header[16] = 24;
+	header[12] = 0; /* no width */
+	assert_int_equal(type_of(header, 18), NT_IMAGE_OTHER);
 }
 
 static void type_of_a_name_is_its_ending_in_any_case(void **state)
@@ -30,7 +50,9 @@ static void type_of_a_name_is_its_ending_in_any_case(void **state)
 	assert_int_equal(nt_image_type_of_name("c.ktx2"), NT_IMAGE_KTX2);
 	assert_int_equal(nt_image_type_of_name("c.ktx"), NT_IMAGE_OTHER);
 	assert_int_equal(nt_image_type_of_name("c.webp"), NT_IMAGE_WEBP);
-	assert_int_equal(nt_image_type_of_name("c.tga"), NT_IMAGE_OTHER);
+	assert_int_equal(nt_image_type_of_name("c.tga"), NT_IMAGE_TGA);
+	assert_int_equal(nt_image_type_of_name("c.TIF"), NT_IMAGE_TIFF);
+	assert_int_equal(nt_image_type_of_name("c.xcf"), NT_IMAGE_OTHER);
 	assert_int_equal(nt_image_type_of_name("png"), NT_IMAGE_OTHER);
 	assert_int_equal(nt_image_type_of_name("c."), NT_IMAGE_OTHER);
 }
@@ -44,12 +66,15 @@ static void core_types_need_no_extension(void **state)
 	assert_string_equal(nt_image_extension(NT_IMAGE_WEBP), "EXT_texture_webp");
 	assert_string_equal(nt_image_media_type(NT_IMAGE_JPEG), "image/jpeg");
 	assert_null(nt_image_media_type(NT_IMAGE_OTHER));
+	assert_true(nt_image_is_carried(NT_IMAGE_WEBP));
+	assert_false(nt_image_is_carried(NT_IMAGE_TGA));
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(type_is_told_by_signature),
+		cmocka_unit_test(type_of_a_tga_is_told_by_its_header),
 		cmocka_unit_test(type_of_a_name_is_its_ending_in_any_case),
 		cmocka_unit_test(core_types_need_no_extension),
 	};

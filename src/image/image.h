@@ -1,0 +1,36 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Images: bytes of any format to samples, samples to PNG. Knows no scene, no material, no files; nt_pixels and its
+ * limits are in ext/codec/pixels.h.
+ *
+ *     nt_pixels pixels;
+ *     nt_status status = nt_image_decode(bytes, size, &pixels, error);
+ *     if (!status)
+ *         status = nt_encode_png(&pixels, &png, &png_size, error);
+ *     nt_pixels_free(&pixels);
+ */
+#ifndef NT_IMAGE_IMAGE_H
+#define NT_IMAGE_IMAGE_H
+
+#include "ext/codec/pixels.h"
+#include "file/image_type.h"
+
+/* Whether nt_image_decode() knows the format. */
+bool nt_image_is_decoded(nt_image_type type);
+
+/*
+ * Decodes PNG, JPEG, TGA, BMP, PSD, HDR and TIFF, told by content.
+ *
+ *   bytes, size  the file; any bytes
+ *   pixels       receives the samples, rows from the top; nt_pixels_free(); empty after a failure
+ *
+ * Returns NT_OK; NT_ERROR_INPUT: damaged or cut short; NT_ERROR_UNSUPPORTED: another format, a rare variant of one
+ * of these, or more than NT_PIXELS_MOST pixels; or NT_ERROR_MEMORY. The error names no file.
+ */
+nt_status nt_image_decode(const unsigned char *bytes, size_t size, nt_pixels *pixels, nt_error *error);
+
+/* Whether every pixel is grey, or nearly so in a JPEG, whose chroma is rounded; only as many rows are decoded as it takes
+ * to see that one is not, where the format permits. The same statuses. */
+nt_status nt_image_is_grey(const unsigned char *bytes, size_t size, bool *grey, nt_error *error);
+
+#endif

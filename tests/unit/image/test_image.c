@@ -1,0 +1,459 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Decoding. The files are made here, byte by byte after each format's specification, by libjpeg and libtiff as other
+ * programs would, and (PNG) by Python's zlib; all show the picture of sample(). Then they are damaged.
+ */
+#include "image/image.h"
+
+#include <stdio.h>
+#include <jpeglib.h>
+#include <tiffio.h>
+#include <unistd.h>
+#include "fail_alloc.h"
+#include "folder.h"
+#include "mutate.h"
+#include "test.h"
+
+enum { WIDTH = 5, HEIGHT = 3, ROOM = 1 << 16 };
+
+static unsigned sample(unsigned x, unsigned y, unsigned channel)
+{
+	return (40 * x + 70 * y + 25 * channel) & 255;
+}
+
+typedef struct bytes {
+	unsigned char data[ROOM];
+	size_t size;
+} bytes;
+
+static void put(bytes *b, unsigned value, unsigned count, bool big)
+{
+	for (unsigned i = 0; i < count; i++)
+		b->data[b->size++] = (unsigned char)(value >> 8 * (big ? count - 1 - i : i));
+}
+
+/* ---- files ---- */
+
+static void tga_header(bytes *b, unsigned type, unsigned width, unsigned height, unsigned depth, unsigned descriptor)
+{
+	*b = (bytes){.size = 0};
+	put(b, type << 16, 12, false);
+	put(b, width, 2, false);
+	put(b, height, 2, false);
+	put(b, depth, 1, false);
+	put(b, descriptor, 1, false);
+}
+
+static void put_bgr(bytes *b, unsigned y)
+{
+	for (unsigned x = 0; x < WIDTH; x++)
+		for (unsigned channel = 3; channel-- > 0;)
+			put(b, sample(x, y, channel), 1, false);
+}
+
+static void make_tga(bytes *b)
+{
+	tga_header(b, 2, WIDTH, HEIGHT, 24, 0x20);
+	for (unsigned y = 0; y < HEIGHT; y++)
+		put_bgr(b, y);
+}
+
+/* From the bottom, which is a TGA's own way, and in packets. */
+static void make_packed_tga(bytes *b)
+{
+	tga_header(b, 10, WIDTH, HEIGHT, 24, 0);
+	for (unsigned y = HEIGHT; y-- > 0;) {
+		put(b, WIDTH - 1, 1, false);
+		put_bgr(b, y);
+	}
+}
+
+static void make_bmp(bytes *b)
+{
+	const unsigned row = (3 * WIDTH + 3) / 4 * 4;
+	*b = (bytes){.size = 0};
+	put(b, 'B' | 'M' << 8, 2, false);
+	put(b, 54 + row * HEIGHT, 4, false);
+	put(b, 0, 4, false);
+	put(b, 54, 4, false);
+	put(b, 40, 4, false);
+	put(b, WIDTH, 4, false);
+	put(b, HEIGHT, 4, false);
+	put(b, 1, 2, false);
+	put(b, 24, 2, false);
+	put(b, 0, 24, false);
+	for (unsigned y = HEIGHT; y-- > 0;) {
+		put_bgr(b, y);
+		put(b, 0, row - 3 * WIDTH, false);
+	}
+}
+
+static void make_psd(bytes *b, unsigned bits)
+{
+	*b = (bytes){.size = 0};
+	put(b, '8' << 24 | 'B' << 16 | 'P' << 8 | 'S', 4, true);
+	put(b, 1, 2, true);
+	put(b, 0, 6, true);
+	put(b, 3, 2, true);
+	put(b, HEIGHT, 4, true);
+	put(b, WIDTH, 4, true);
+	put(b, bits, 2, true);
+	put(b, 3, 2, true); /* RGB */
+	put(b, 0, 4, true);
+	put(b, 0, 4, true);
+	put(b, 0, 4, true);
+	put(b, 0, 2, true); /* not packed */
+	for (unsigned channel = 0; channel < 3; channel++)
+		for (unsigned y = 0; y < HEIGHT; y++)
+			for (unsigned x = 0; x < WIDTH; x++)
+				put(b, sample(x, y, channel) * (bits == 16 ? 257 : 1), bits / 8, true);
+}
+
+static void make_psd8(bytes *b)
+{
+	make_psd(b, 8);
+}
+
+static void make_psd16(bytes *b)
+{
+	make_psd(b, 16);
+}
+
+/* libtiff's own writer, to a file. */
+static void make_tiff(bytes *b, unsigned channels, unsigned bits, unsigned compression, bool tiled)
+{
+	const char *path = in_folder("made.tif");
+	TIFF *tiff = TIFFOpen(path, "w");
+	TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, WIDTH);
+	TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, HEIGHT);
+	TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, channels);
+	TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits);
+	TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+	TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, channels == 1 ? PHOTOMETRIC_MINISBLACK : PHOTOMETRIC_RGB);
+	TIFFSetField(tiff, TIFFTAG_COMPRESSION, compression);
+	unsigned char rows[16 * 16 * 8] = {0};
+	const size_t row = (tiled ? 16 : WIDTH) * channels * bits / 8;
+	for (unsigned y = 0; y < HEIGHT; y++)
+		for (unsigned i = 0; i < WIDTH * channels; i++)
+			for (unsigned k = 0; k < bits / 8; k++) /* both bytes alike, as 257 times the sample */
+				rows[y * row + i * bits / 8 + k] = (unsigned char)sample(i / channels, y, i % channels);
+	if (tiled) {
+		TIFFSetField(tiff, TIFFTAG_TILEWIDTH, 16);
+		TIFFSetField(tiff, TIFFTAG_TILELENGTH, 16);
+		assert_true(TIFFWriteTile(tiff, rows, 0, 0, 0, 0) > 0);
+	}
+	for (unsigned y = 0; y < HEIGHT && !tiled; y++)
+		assert_int_equal(TIFFWriteScanline(tiff, rows + y * row, y, 0), 1);
+	TIFFClose(tiff);
+	FILE *file = fopen(path, "rb");
+	b->size = fread(b->data, 1, ROOM, file);
+	fclose(file);
+}
+
+static void make_tiff8(bytes *b)
+{
+	make_tiff(b, 3, 8, COMPRESSION_LZW, false);
+}
+
+static void make_tiff16(bytes *b)
+{
+	make_tiff(b, 1, 16, COMPRESSION_ADOBE_DEFLATE, false);
+}
+
+static void make_tiled_tiff(bytes *b)
+{
+	make_tiff(b, 3, 8, COMPRESSION_PACKBITS, true);
+}
+
+/* 16 x 16 of one grey, which a JPEG has exactly. */
+static void make_jpeg(bytes *b, bool grey)
+{
+	struct jpeg_compress_struct jpeg;
+	struct jpeg_error_mgr errors;
+	unsigned char *made = NULL, row[16 * 3];
+	unsigned long size = 0;
+	jpeg.err = jpeg_std_error(&errors);
+	jpeg_create_compress(&jpeg);
+	jpeg_mem_dest(&jpeg, &made, &size);
+	jpeg.image_width = jpeg.image_height = 16;
+	jpeg.input_components = grey ? 1 : 3;
+	jpeg.in_color_space = grey ? JCS_GRAYSCALE : JCS_RGB;
+	jpeg_set_defaults(&jpeg);
+	jpeg_simple_progression(&jpeg);
+	jpeg_start_compress(&jpeg, TRUE);
+	memset(row, 100, sizeof row);
+	for (unsigned y = 0; y < 16; y++)
+		jpeg_write_scanlines(&jpeg, (JSAMPROW[]){row}, 1);
+	jpeg_finish_compress(&jpeg);
+	jpeg_destroy_compress(&jpeg);
+	memcpy(b->data, made, size);
+	b->size = size;
+	free(made);
+}
+
+static void make_grey_jpeg(bytes *b)
+{
+	make_jpeg(b, true);
+}
+
+static void make_rgb_jpeg(bytes *b)
+{
+	make_jpeg(b, false);
+}
+
+static void make_png(bytes *b)
+{
+	nt_pixels pixels;
+	nt_error error;
+	unsigned char *made;
+	make_tga(b);
+	assert_int_equal(nt_image_decode(b->data, b->size, &pixels, &error), NT_OK);
+	assert_int_equal(nt_encode_png(&pixels, &made, &b->size, &error), NT_OK);
+	memcpy(b->data, made, b->size);
+	nt_pixels_free(&pixels);
+	free(made);
+}
+
+static const struct {
+	const char *name;
+	void (*make)(bytes *b);
+	nt_image_type type;
+	unsigned channels, bits;
+	bool flat; /* all 100 */
+} files[] = {
+	{"png", make_png, NT_IMAGE_PNG, 3, 8, false},
+	{"tga", make_tga, NT_IMAGE_TGA, 3, 8, false},
+	{"packed tga", make_packed_tga, NT_IMAGE_TGA, 3, 8, false},
+	{"bmp", make_bmp, NT_IMAGE_BMP, 3, 8, false},
+	{"psd", make_psd8, NT_IMAGE_PSD, 3, 8, false},
+	{"psd of 16 bits", make_psd16, NT_IMAGE_PSD, 3, 16, false},
+	{"tiff", make_tiff8, NT_IMAGE_TIFF, 3, 8, false},
+	{"tiff of 16 bits", make_tiff16, NT_IMAGE_TIFF, 1, 16, false},
+	{"tiled tiff", make_tiled_tiff, NT_IMAGE_TIFF, 3, 8, false},
+	{"grey jpeg", make_grey_jpeg, NT_IMAGE_JPEG, 1, 8, true},
+	{"jpeg", make_rgb_jpeg, NT_IMAGE_JPEG, 3, 8, true},
+};
+enum { FILE_COUNT = sizeof files / sizeof files[0] };
+
+/* ---- tests ---- */
+
+static unsigned sample_at(const nt_pixels *p, unsigned x, unsigned y, unsigned channel)
+{
+	const size_t i = ((size_t)y * p->width + x) * p->channels + channel;
+	return p->bits == 8 ? ((uint8_t *)p->samples)[i] : ((uint16_t *)p->samples)[i];
+}
+
+static void decode_gives_the_picture(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < FILE_COUNT; i++) {
+		bytes b;
+		nt_pixels p;
+		nt_error error;
+		files[i].make(&b);
+		assert_int_equal(nt_image_type_of_bytes(b.data, b.size), files[i].type);
+		assert_true(nt_image_is_decoded(files[i].type));
+		if (nt_image_decode(b.data, b.size, &p, &error))
+			fail_msg("%s: %s", files[i].name, error.message);
+		assert_int_equal(p.channels, files[i].channels);
+		assert_int_equal(p.bits, files[i].bits);
+		assert_int_equal(p.width, files[i].flat ? 16 : WIDTH);
+		assert_int_equal(p.height, files[i].flat ? 16 : HEIGHT);
+		for (unsigned y = 0; y < p.height; y++)
+			for (unsigned x = 0; x < p.width; x++)
+				for (unsigned c = 0; c < p.channels; c++)
+					assert_int_equal(sample_at(&p, x, y, c),
+						files[i].flat ? 100 : sample(x, y, c) * (p.bits == 16 ? 257 : 1));
+		nt_pixels_free(&p);
+	}
+}
+
+/* Python: zlib.compress() of the rows with filter 0. */
+static const unsigned char png_grey16[] = {
+	0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52,
+	0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x10, 0x00, 0x00, 0x00, 0x00, 0x81, 0xd9, 0xfc,
+	0x15, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x10, 0x32, 0xf9, 0x77,
+	0x07, 0x00, 0x03, 0xc1, 0x02, 0x21, 0x0d, 0xe3, 0x47, 0x32, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45,
+	0x4e, 0x44, 0xae, 0x42, 0x60, 0x82,
+};
+static const unsigned char png_palette[] = {
+	0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52,
+	0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x02, 0x02, 0x03, 0x00, 0x00, 0x00, 0x0f, 0xd8, 0xe5,
+	0xb7, 0x00, 0x00, 0x00, 0x09, 0x50, 0x4c, 0x54, 0x45, 0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x07,
+	0x08, 0x09, 0x25, 0x85, 0x56, 0xf0, 0x00, 0x00, 0x00, 0x02, 0x74, 0x52, 0x4e, 0x53, 0xff, 0x80,
+	0x08, 0x0f, 0xb3, 0x6a, 0x00, 0x00, 0x00, 0x0c, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x70,
+	0x60, 0x68, 0x00, 0x00, 0x01, 0x44, 0x00, 0xc1, 0x3a, 0x7a, 0x1c, 0x56, 0x00, 0x00, 0x00, 0x00,
+	0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82,
+};
+
+static void decode_png_of_16_bits_and_of_a_palette(void **state)
+{
+	(void)state;
+	nt_pixels p;
+	nt_error error;
+	assert_int_equal(nt_image_decode(png_grey16, sizeof png_grey16, &p, &error), NT_OK);
+	assert_int_equal(p.channels, 1);
+	assert_int_equal(p.bits, 16);
+	assert_int_equal(sample_at(&p, 0, 0, 0), 0x1234);
+	assert_int_equal(sample_at(&p, 1, 0, 0), 0xfedc);
+	nt_pixels_free(&p);
+
+	/* indices 1 0 / 2 0; entry 1 has alpha 0x80 */
+	static const uint8_t expected[] = {4, 5, 6, 0x80, 1, 2, 3, 0xff, 7, 8, 9, 0xff, 1, 2, 3, 0xff};
+	assert_int_equal(nt_image_decode(png_palette, sizeof png_palette, &p, &error), NT_OK);
+	assert_int_equal(p.channels, 4);
+	assert_memory_equal(p.samples, expected, sizeof expected);
+	nt_pixels_free(&p);
+}
+
+static void encode_keeps_every_kind_of_sample(void **state)
+{
+	(void)state;
+	for (unsigned channels = 1; channels <= 4; channels++)
+		for (unsigned bits = 8; bits <= 16; bits += 8) {
+			nt_pixels p, back;
+			nt_error error;
+			unsigned char *png, *again;
+			size_t size, again_size;
+			assert_int_equal(nt_pixels_create(&p, 7, 9, channels, bits, &error), NT_OK);
+			for (size_t i = 0; i < nt_pixels_row_bytes(&p) * p.height; i++)
+				((uint8_t *)p.samples)[i] = (uint8_t)(i * i + 3 * i);
+			assert_int_equal(nt_encode_png(&p, &png, &size, &error), NT_OK);
+			assert_int_equal(nt_encode_png(&p, &again, &again_size, &error), NT_OK);
+			assert_int_equal(size, again_size);
+			assert_memory_equal(png, again, size);
+			assert_int_equal(nt_image_decode(png, size, &back, &error), NT_OK);
+			assert_int_equal(back.channels, channels);
+			assert_int_equal(back.bits, bits);
+			assert_memory_equal(back.samples, p.samples, nt_pixels_row_bytes(&p) * p.height);
+			nt_pixels_free(&p);
+			nt_pixels_free(&back);
+			free(png);
+			free(again);
+		}
+}
+
+static void grey_is_told_by_pixels(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < FILE_COUNT; i++) {
+		bytes b;
+		nt_error error;
+		bool grey;
+		files[i].make(&b);
+		assert_int_equal(nt_image_is_grey(b.data, b.size, &grey, &error), NT_OK);
+		assert_int_equal(grey, files[i].flat || files[i].channels == 1);
+	}
+}
+
+/* Whatever is missing of a file, it is no image. What may be missing: of a PNG the checksum of the last
+ * IDAT and the IEND, which has 12 bytes, the padding of a BMP's last row, and a TIFF's offset of a second image. */
+static void decode_refuses_what_is_cut_short(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < FILE_COUNT; i++) {
+		bytes b;
+		nt_error error;
+		nt_pixels p;
+		files[i].make(&b);
+		const size_t idle = files[i].type == NT_IMAGE_PNG ? 17
+			: files[i].type == NT_IMAGE_BMP || files[i].type == NT_IMAGE_TIFF ? 5 : 1;
+		for (size_t size = 0; size < b.size; size++) {
+			unsigned char *exact = malloc(size + !size); /* so that a sanitizer sees who reads beyond */
+			memcpy(exact, b.data, size);
+			const nt_status status = nt_image_decode(exact, size, &p, &error);
+			if (size + idle <= b.size && status == NT_OK)
+				fail_msg("%s: %zu of %zu bytes are decoded", files[i].name, size, b.size);
+			if (status)
+				assert_null(p.samples);
+			nt_pixels_free(&p);
+			free(exact);
+		}
+	}
+}
+
+static void decode_refuses_sizes_before_it_asks_for_memory(void **state)
+{
+	(void)state;
+	static const unsigned sides[] = {65535, 32768, 20000, 16384};
+	for (size_t i = 0; i < 4; i++) {
+		bytes b;
+		nt_pixels p;
+		nt_error error;
+		tga_header(&b, 2, sides[i], sides[i], 24, 0x20);
+		b.size += 200;
+		/* nothing of ours is asked for either; the libraries' blocks are small */
+		fail_allocations_from(0);
+		const nt_status status = nt_image_decode(b.data, b.size, &p, &error);
+		assert_false(stop_failing_allocations());
+		assert_int_equal(status, sides[i] > 16384 ? NT_ERROR_UNSUPPORTED : NT_ERROR_INPUT);
+
+		unsigned char png[sizeof png_grey16];
+		memcpy(png, png_grey16, sizeof png);
+		png[18] = png[22] = (unsigned char)(sides[i] >> 8);
+		png[19] = png[23] = (unsigned char)sides[i];
+		assert_int_not_equal(nt_image_decode(png, sizeof png, &p, &error), NT_OK);
+	}
+}
+
+/* Any bytes: an image or an error, and never more. The build with sanitizers looks on. */
+static void decode_survives_damage(void **state)
+{
+	(void)state;
+	uint32_t seed = 13;
+	for (size_t i = 0; i < FILE_COUNT; i++) {
+		bytes b;
+		files[i].make(&b);
+		for (int turn = 0; turn < 400; turn++) {
+			nt_pixels p;
+			nt_error error;
+			char *damaged = malloc(b.size + MUTATE_ROOM);
+			memcpy(damaged, b.data, b.size);
+			const size_t size = mutate(damaged, b.size, &seed);
+			bool grey;
+			if (nt_image_decode((unsigned char *)damaged, size, &p, &error) == NT_OK) {
+				assert_in_range(p.channels, 1, 4);
+				nt_pixels_free(&p);
+			}
+			nt_image_is_grey((unsigned char *)damaged, size, &grey, &error);
+			free(damaged);
+		}
+	}
+}
+
+static void decode_without_memory_is_an_error(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < FILE_COUNT; i++) {
+		bytes b;
+		files[i].make(&b);
+		for (size_t n = 0;; n++) {
+			nt_pixels p;
+			nt_error error;
+			fail_allocations_from(n);
+			const nt_status status = nt_image_decode(b.data, b.size, &p, &error);
+			if (!stop_failing_allocations()) {
+				assert_int_equal(status, NT_OK);
+				nt_pixels_free(&p);
+				break;
+			}
+			assert_int_equal(status, NT_ERROR_MEMORY);
+			assert_null(p.samples);
+		}
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(decode_gives_the_picture),
+		cmocka_unit_test(decode_png_of_16_bits_and_of_a_palette),
+		cmocka_unit_test(encode_keeps_every_kind_of_sample),
+		cmocka_unit_test(grey_is_told_by_pixels),
+		cmocka_unit_test(decode_refuses_what_is_cut_short),
+		cmocka_unit_test(decode_refuses_sizes_before_it_asks_for_memory),
+		cmocka_unit_test(decode_survives_damage),
+		cmocka_unit_test(decode_without_memory_is_an_error),
+	};
+	return cmocka_run_group_tests_name("image/image", tests, make_folder, remove_folder);
+}
