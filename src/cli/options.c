@@ -80,6 +80,8 @@ const nt_option_row nt_option_rows[] = {
 		"write bitangents too: bx by bz in PLY, _BITANGENT in glTF", SETTING(bitangents), true},
 	{"no-clobber", 'n', NT_OPTION_FLAG, NULL, 0, 0, NULL, "never replace a file",
 		SETTING(no_clobber), true},
+	{"write-if-changed", 0, NT_OPTION_SET, NULL, NT_EQUAL_KEEP, 0, NULL,
+		"an output that has its bytes already keeps its time of change", SETTING(equal), true},
 	{"sync", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "fsync files and folders, so that a power cut leaves the old or the new output",
 		SETTING(sync), true},
 	{"verify", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
@@ -132,13 +134,12 @@ const nt_option_row nt_option_rows[] = {
 };
 const size_t nt_option_row_count = sizeof nt_option_rows / sizeof *nt_option_rows;
 
-/* What the parser remembers: which rows were given, as bits. */
+/* What the parser remembers: which rows were given. */
 typedef struct parser {
 	nt_command *command;
 	nt_error *error;
-	uint64_t given;
+	bool given[sizeof nt_option_rows / sizeof *nt_option_rows];
 } parser;
-_Static_assert(sizeof nt_option_rows / sizeof *nt_option_rows <= 64, "given has a bit per row");
 
 static bool takes_value(const nt_option_row *row)
 {
@@ -214,7 +215,7 @@ static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 {
 	char *field = (char *)p->command + row->offset;
 	int value = row->first;
-	p->given |= (uint64_t)1 << (row - nt_option_rows);
+	p->given[row - nt_option_rows] = true;
 	switch (row->kind) {
 	case NT_OPTION_HEADING:
 		break;
@@ -308,8 +309,7 @@ static nt_status parse_short(parser *p, const char *word, const char *next, int 
 
 static bool given(const parser *p, const char *name)
 {
-	const nt_option_row *row = find_long(name, strlen(name));
-	return p->given >> (row - nt_option_rows) & 1;
+	return p->given[find_long(name, strlen(name)) - nt_option_rows];
 }
 
 /* "14,12,12,12": four whole numbers. Tangents of less than 12 bits can be seen; more than 24 a float does not have. */
@@ -356,7 +356,7 @@ static nt_status check_clashes(parser *p)
 			return nt_fail(p->error, NT_ERROR_USAGE, "--%s and --%s %s", pairs[i][0], pairs[i][1],
 				pairs[i][2]);
 	for (size_t i = 0; i < nt_option_row_count; i++)
-		if (p->command->settings.check && nt_option_rows[i].writes && p->given >> i & 1)
+		if (p->command->settings.check && nt_option_rows[i].writes && p->given[i])
 			return nt_fail(p->error, NT_ERROR_USAGE,
 				"--check writes no mesh, so --%s has no meaning", nt_option_rows[i].name);
 	nt_settings *s = &p->command->settings;
@@ -407,7 +407,7 @@ static nt_status check_operands(parser *p)
 
 nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error *error)
 {
-	parser p = {command, error, 0};
+	parser p = {.command = command, .error = error};
 	memset(command, 0, sizeof *command);
 	command->settings.texcoord_set = -1;
 	command->fail_on = NT_FAIL_ON_NEVER;

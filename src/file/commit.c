@@ -149,10 +149,8 @@ static nt_status place_main(const nt_output *output, nt_sink *sink, nt_error *er
 	sink->placed = nt_temporary_rename(sink->temporary, sink->target, !output->options.no_clobber);
 	if (sink->placed)
 		return NT_OK;
-	if (errno == EEXIST && output->options.no_clobber) {
-		nt_fail(error, NT_ERROR_IO, "refusing to write: the file exists already");
-		return nt_error_in_file(error, sink->path);
-	}
+	if (errno == EEXIST && output->options.no_clobber)
+		return nt_sink_refuse_existing(error, sink->path);
 	return nt_sink_fail(error, sink->path, errno);
 }
 

@@ -68,7 +68,7 @@ static nt_status open_foreign(nt_file *file, const char *path, bool *opened, nt_
 	*opened = false;
 	if (access(path, R_OK) != 0)
 		return NT_OK;
-	const nt_status status = nt_file_open(file, path, error);
+	const nt_status status = nt_file_open_untraced(file, path, error);
 	*opened = status == NT_OK;
 	return status;
 }

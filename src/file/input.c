@@ -17,6 +17,7 @@
 #include <unistd.h>
 #include "base/memory.h"
 #include "file/lookup.h"
+#include "file/trace.h"
 #include "file/watch.h"
 
 enum { FIRST_READ_BYTES = 64 * 1024 };
@@ -118,12 +119,22 @@ nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
 		file->device = (uint64_t)status.st_dev;
 		file->inode = (uint64_t)status.st_ino;
 	}
+	if (!standard)
+		nt_trace_note(NT_TRACE_READ, path, &status);
 	if (map_all(file, fd, path, &status))
 		return NT_OK;
 	const nt_status result = standard || is_readable(&status) ? read_all(file, fd, path, error)
 								  : fail_kind(&status, path, error);
 	close(fd);
 	return result;
+}
+
+nt_status nt_file_open_untraced(nt_file *file, const char *path, nt_error *error)
+{
+	nt_trace *trace = nt_trace_use(NULL);
+	const nt_status status = nt_file_open(file, path, error);
+	nt_trace_use(trace);
+	return status;
 }
 
 void nt_file_close(nt_file *file)

@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include "file/trace.h"
 
 nt_status nt_lookup_failed(const char *path, int number, nt_error *error)
 {
@@ -20,6 +21,8 @@ nt_status nt_lookup_failed(const char *path, int number, nt_error *error)
 		nt_fail_memory(error);
 	else
 		nt_fail(error, NT_ERROR_IO, "cannot read: %s", strerror(number));
+	if (error->status == NT_ERROR_MISSING)
+		nt_trace_note(NT_TRACE_MISSING, path, NULL);
 	return nt_error_in_file(error, path);
 }
 

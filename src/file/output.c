@@ -16,6 +16,7 @@
 #include "base/memory.h"
 #include "ext/exhausted.h"
 #include "file/litter.h"
+#include "file/trace.h"
 
 static nt_status refuse(nt_error *error, const char *path, const char *why)
 {
@@ -54,6 +55,13 @@ nt_status nt_output_protect(nt_output *output, const char *path, const char *way
 
 /* ---- adding ---- */
 
+nt_status nt_output_check_clobber(const nt_output_options *options, const char *path, nt_error *error)
+{
+	struct stat status;
+	return options->no_clobber && stat(path, &status) == 0 && S_ISREG(status.st_mode) ?
+		nt_sink_refuse_existing(error, path) : NT_OK;
+}
+
 static bool is_in_place(const nt_output *output, const struct stat *status)
 {
 	struct stat input;
@@ -88,7 +96,7 @@ static nt_status check_existing(const nt_output *output, nt_sink *sink, const st
 	if (!S_ISREG(status->st_mode))
 		return NT_OK;
 	if (output->options.no_clobber)
-		return refuse(error, sink->path, "refusing to write: the file exists already");
+		return nt_sink_refuse_existing(error, sink->path);
 	sink->in_place = is_in_place(output, status);
 	const char *refusal = sink->in_place ? nt_in_place_refusal(sink->path, status) : NULL;
 	if (!refusal)
@@ -301,21 +309,40 @@ static void note_names(const nt_output *output)
 		nt_buffer_format(note, "; %zu more names were taken", count - NAMES_SHOWN);
 }
 
-/* A main file in place that would only be replaced by its own bytes stays. */
+/* A main file that would only be replaced by its own bytes stays, if that is wanted. */
 static nt_status leave_equal(nt_output *output, nt_error *error)
 {
 	nt_sink *main = output->main;
-	if (!main || !main->in_place || !main->temporary)
+	const nt_equal_choice choice = main && main->in_place ? NT_EQUAL_KEEP : output->options.equal;
+	if (!main || !main->temporary || choice == NT_EQUAL_REPLACE)
 		return NT_OK;
 	bool same;
 	const nt_status status =
 		nt_same_bytes(nt_temporary_path(main->temporary), main->target, &same, error);
-	if (!status && same) {
+	/* what may not be touched is replaced */
+	if (!status && same && (choice == NT_EQUAL_KEEP || utimensat(AT_FDCWD, main->target, NULL, 0) == 0)) {
 		nt_temporary_discard(main->temporary);
 		main->temporary = NULL;
 		nt_output_leave(output);
 	}
 	return status;
+}
+
+/* Where the bytes of a complete file of the set are now. */
+static const char *present_path(const nt_sink *sink)
+{
+	if (sink->naming == NT_NAMING_REPLACES && sink->interim_is_there)
+		return sink->interim;
+	return sink->temporary ? nt_temporary_path(sink->temporary) : sink->target;
+}
+
+/* Under the names that they are going to have. Renaming and linking keep size and time. */
+static void note_written(const nt_output *output)
+{
+	struct stat status;
+	for (const nt_sink *sink = output->first; sink; sink = sink->next)
+		if (sink->target && sink->role != NT_ROLE_INTERIM && stat(present_path(sink), &status) == 0)
+			nt_trace_note(NT_TRACE_WRITTEN, nt_sink_is_companion(sink) ? sink->target : sink->path, &status);
 }
 
 nt_status nt_output_commit(nt_output *output, nt_error *error)
@@ -331,6 +358,11 @@ nt_status nt_output_commit(nt_output *output, nt_error *error)
 	}
 	if (!status)
 		status = leave_equal(output, error);
+	if (!status && !output->options.dry_run) {
+		note_written(output);
+		if (output->options.placing)
+			status = output->options.placing(output->options.placing_user, error);
+	}
 	if (!status && !output->options.dry_run) {
 		note_names(output);
 		status = nt_output_place(output, error);

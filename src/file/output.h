@@ -28,12 +28,20 @@ typedef enum nt_role {
 /* What became of a set, beyond its status. */
 typedef struct nt_output_result {
 	bool again;     /* the commit failed because a name was taken meanwhile: with the names chosen anew it would not */
-	bool left;      /* the main file had these bytes already and was left as it is; in place only */
+	bool left;      /* the main file had these bytes already and was left as it is */
 	nt_buffer note; /* which companions do not have their own names, and why: "; ..." */
 } nt_output_result;
 
+/* What becomes of a main file that has the bytes of its replacement already. In place it always stays. */
+typedef enum nt_equal_choice {
+	NT_EQUAL_REPLACE,
+	NT_EQUAL_KEEP, /* with its inode and its time of change */
+	NT_EQUAL_TOUCH /* with its inode; it counts as changed now */
+} nt_equal_choice;
+
 typedef struct nt_output_options {
 	bool no_clobber; /* refuse to replace an existing file */
+	nt_equal_choice equal;
 	bool sync;       /* whatever a power cut leaves, the main file is whole: files and folders are synchronised */
 	bool dry_run;    /* refuse what would be refused, count what would be written, write nothing */
 	const char *in_place; /* this file may be replaced by a main file, and keeps its mode, owner and attributes; NULL: none */
@@ -41,6 +49,10 @@ typedef struct nt_output_options {
 	/* Calls nt_output_claim() for what the main file at `path`, which is about to be replaced, says of its companions;
 	 * NULL: nothing is known. NT_OK, also when it says nothing or cannot be read, or NT_ERROR_MEMORY. */
 	nt_status (*find_claims)(nt_output *output, const char *path, nt_error *error);
+	/* Called by nt_output_commit() when every file is complete, noted (trace.h) and about to take its name. Then
+	 * nothing takes a name if this fails. NULL: nobody wants to know. */
+	nt_status (*placing)(void *user, nt_error *error);
+	void *placing_user;
 } nt_output_options;
 
 /* Starts an output set. Returns NT_OK or NT_ERROR_MEMORY. */
@@ -49,6 +61,9 @@ nt_status nt_output_create(nt_output **output, const nt_output_options *options,
 /* Names a file that must not be written: the input ("-" too) and every file the input refers to. Files that do
  * not exist are ignored. To write in place, do not name the input. way_out: what the refusal advises; NULL: nothing. */
 nt_status nt_output_protect(nt_output *output, const char *path, const char *way_out, nt_error *error);
+
+/* With no_clobber, refuses a main file that exists, as nt_output_add() does: for callers that have not read anything yet. */
+nt_status nt_output_check_clobber(const nt_output_options *options, const char *path, nt_error *error);
 
 /*
  * Adds a file to the set; "-" is standard output. The sink belongs to the set.

@@ -81,6 +81,7 @@ struct nt_output {
 /* ---- sink.c ---- */
 
 nt_status nt_sink_fail(nt_error *error, const char *path, int number);
+nt_status nt_sink_refuse_existing(nt_error *error, const char *path);
 nt_status nt_sink_flush(nt_sink *sink, nt_error *error);
 
 /* Flushes, synchronises where that is asked for, and closes. */

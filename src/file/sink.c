@@ -25,6 +25,12 @@ nt_status nt_sink_fail(nt_error *error, const char *path, int number)
 	return nt_error_in_output(error, path);
 }
 
+nt_status nt_sink_refuse_existing(nt_error *error, const char *path)
+{
+	nt_fail(error, NT_ERROR_IO, "refusing to write: the file exists already");
+	return nt_error_in_file(error, path);
+}
+
 /* Takes `count` written bytes off the front of two parts. */
 static void advance(struct iovec parts[2], size_t count)
 {

@@ -58,7 +58,7 @@ nt_status nt_gltf_find_claims(nt_output *output, const char *path, nt_error *err
 	nt_file file;
 	nt_json *json = NULL;
 	nt_error ignored;
-	nt_status status = nt_file_open(&file, path, &ignored);
+	nt_status status = nt_file_open_untraced(&file, path, &ignored);
 	if (!status) {
 		status = parse(&file, &json, &ignored);
 		nt_file_close(&file);

@@ -44,7 +44,7 @@ static bool open_companion(file_set *set, const char *uri, nt_file *file)
 	if (status == NT_OK && set->output)
 		status = nt_output_written(set->output, path.data, &written, set->error);
 	if (status == NT_OK)
-		status = nt_file_open(file, written ? written : path.data, set->error);
+		status = nt_file_open_untraced(file, written ? written : path.data, set->error);
 	nt_buffer_free(&path);
 	return status == NT_OK;
 }
@@ -464,7 +464,7 @@ nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path,
 	nt_status status = nt_output_written(output, path, &written, error);
 	if (status != NT_OK || !written)
 		return status;
-	status = nt_file_open(&file, written, error);
+	status = nt_file_open_untraced(&file, written, error);
 	if (status != NT_OK)
 		return status;
 	nt_error ignored;

@@ -101,13 +101,29 @@ static nt_status read_scene(run *r)
 	return status ? nt_error_in_file(r->error, r->input_path) : NT_OK;
 }
 
+/* Who keeps a record is told before the output has its name: the two agree then, or the output is made again. */
+static nt_status tell_placing(void *user, nt_error *error)
+{
+	const run *r = user;
+	if (r->summary->trace.failed)
+		return nt_fail_memory(error);
+	return r->settings->placing ? r->settings->placing(r->settings->placing_user, &r->summary->trace, error) : NT_OK;
+}
+
+static nt_output_options output_options_of(run *r)
+{
+	const nt_settings *s = r->settings;
+	return (nt_output_options){.no_clobber = s->no_clobber, .sync = s->sync, .equal = s->equal,
+		.dry_run = s->dry_run, .in_place = s->in_place ? r->input_path : NULL, .result = &r->result,
+		.find_claims = r->writer->format != NT_FORMAT_PLY ? nt_gltf_find_claims : NULL,
+		.placing = tell_placing, .placing_user = r};
+}
+
 static nt_status write_scene(run *r)
 {
 	begin_stage(r, NT_STAGE_WRITE);
 	const nt_settings *s = r->settings;
-	const nt_output_options output_options = {.no_clobber = s->no_clobber, .sync = s->sync,
-		.dry_run = s->dry_run, .in_place = s->in_place ? r->input_path : NULL, .result = &r->result,
-		.find_claims = r->writer->format != NT_FORMAT_PLY ? nt_gltf_find_claims : NULL};
+	const nt_output_options output_options = output_options_of(r);
 	const nt_write_options options = {
 		.format = r->writer->format,
 		.path = r->output_path,
@@ -154,6 +170,10 @@ static nt_status run_stages(run *r)
 	nt_status status = nt_choose_writer(r->settings, r->output_path, NULL, &r->writer, r->error);
 	/* a PLY is one mesh in the world, so the reader has to say where the meshes stand */
 	r->read_options.world = r->writer && r->writer->format == NT_FORMAT_PLY;
+	if (!status && r->writer) {
+		const nt_output_options options = output_options_of(r);
+		status = nt_output_check_clobber(&options, r->output_path, r->error);
+	}
 	if (!status)
 		status = read_scene(r);
 	if (!status) {
@@ -173,16 +193,21 @@ static nt_status run_stages(run *r)
 	return status;
 }
 
-/* What a run that is to be done again has found and made so far; the times it took stay. */
+/* What a run that is to be done again has found and made so far; the times it took stay, and what it read (the
+ * input is still open). */
 static void forget_attempt(run *r)
 {
 	nt_summary *s = r->summary;
 	double seconds[NT_STAGE_COUNT];
+	nt_trace trace = s->trace;
 	memcpy(seconds, s->seconds, sizeof seconds);
+	s->trace = (nt_trace){0};
 	nt_scene_free(&r->scene);
 	nt_summary_free(s);
 	memset(s, 0, sizeof *s);
 	memcpy(s->seconds, seconds, sizeof seconds);
+	nt_trace_forget_written(&trace);
+	s->trace = trace;
 	nt_buffer_free(&r->result.note);
 	r->result = (nt_output_result){0};
 	nt_error_clear(r->error);
@@ -204,6 +229,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	nt_scene_init(&r.scene, input);
 
 	nt_watch_forget();
+	nt_trace *outer = nt_trace_use(&summary->trace);
 	nt_status status = run_stages(&r);
 	for (unsigned attempt = 1; r.result.again && attempt < MOST_ATTEMPTS; attempt++) {
 		forget_attempt(&r);
@@ -229,6 +255,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	r.scene.findings = (nt_finding_list){0};
 	nt_scene_free(&r.scene);
 	nt_file_close(&r.input);
+	nt_trace_use(outer);
 	summary->total_seconds = nt_seconds() - begin;
 	if (!status && summary->findings.failed)
 		status = nt_fail_memory(error);
@@ -243,6 +270,7 @@ void nt_summary_free(nt_summary *summary)
 	nt_report_free(summary->report);
 	free(summary->lines);
 	free(summary->note);
+	nt_trace_free(&summary->trace);
 	summary->lines = NULL;
 	summary->note = NULL;
 	summary->report = NULL;

@@ -5,6 +5,8 @@
 #ifndef NT_PIPELINE_SETTINGS_H
 #define NT_PIPELINE_SETTINGS_H
 
+#include "file/output.h"
+#include "file/trace.h"
 #include "report/report.h"
 #include "scene/format.h"
 #include "scene/select.h"
@@ -62,6 +64,12 @@ typedef struct nt_settings {
 	bool list_meshes; /* summary->lines is wanted */
 	bool in_place;
 	bool allow_outside;
+	nt_equal_choice equal; /* what becomes of an output that has its bytes already */
+
+	/* Called when the output is complete and about to take its name, with what was read and written; it keeps its
+	 * name if this fails. NULL: nobody wants to know. */
+	nt_status (*placing)(void *user, const nt_trace *trace, nt_error *error);
+	void *placing_user;
 
 	/* What a report is to hold; NULL: none is made. `converted` is set by the run. */
 	const nt_report_options *report;
@@ -103,7 +111,8 @@ typedef struct nt_summary {
 	nt_report *report; /* NULL unless asked for; of a failed run it says why */
 	nt_mesh_line *lines; /* [line_count] in the order of the input; NULL unless asked for */
 	size_t line_count;
-	bool left;       /* in place: the file has what it would get, and was left as it is */
+	nt_trace trace;  /* which files were read, missed and written, after a failure too */
+	bool left;       /* the file has what it would get, and was left as it is */
 	char *note;      /* which files of the output have other names than they would, and why: "; ..."; NULL: none */
 } nt_summary;
 

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What a run reads and writes: see trace.h.
+ */
+#include "file/trace.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+#include "base/memory.h"
+
+static _Thread_local nt_trace *current;
+
+/* Of all traces: noting takes less than the system call that is noted. */
+static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+
+nt_trace *nt_trace_use(nt_trace *trace)
+{
+	nt_trace *before = current;
+	current = trace;
+	return before;
+}
+
+static int64_t nanoseconds(struct timespec time)
+{
+	return (int64_t)time.tv_sec * 1000000000 + time.tv_nsec;
+}
+
+int64_t nt_trace_modified(const struct stat *info)
+{
+	return nanoseconds(info->st_mtim);
+}
+
+static bool is_noted(const nt_trace *trace, uint64_t hash, nt_trace_kind kind, const char *path)
+{
+	size_t at = NT_HASH_BEGIN;
+	for (uint32_t i; (i = nt_hash_index_next(&trace->index, hash, &at)) != UINT32_MAX;)
+		if (i < trace->count && trace->files[i].kind == kind && strcmp(trace->files[i].path, path) == 0)
+			return true;
+	return false;
+}
+
+static bool add(nt_trace *trace, uint64_t hash, const nt_trace_file *file)
+{
+	if (!nt_grow((void **)&trace->files, &trace->capacity, trace->count + 1, sizeof *trace->files) ||
+		!nt_hash_index_add(&trace->index, hash, (uint32_t)trace->count))
+		return false;
+	trace->files[trace->count] = *file;
+	trace->files[trace->count].path = strdup(file->path);
+	/* without a path it must not be found */
+	if (!trace->files[trace->count].path)
+		return false;
+	trace->count++;
+	return true;
+}
+
+void nt_trace_note(nt_trace_kind kind, const char *path, const struct stat *info)
+{
+	nt_trace *trace = current;
+	if (!trace)
+		return;
+	struct timespec now;
+	clock_gettime(CLOCK_REALTIME, &now);
+	nt_trace_file file = {.path = (char *)(uintptr_t)path, .kind = kind, .noted = nanoseconds(now)};
+	if (kind != NT_TRACE_MISSING) {
+		file.size = (uint64_t)info->st_size;
+		file.modified = nt_trace_modified(info);
+	}
+	const uint64_t hash = nt_hash_bytes((uint64_t)kind, path, strlen(path));
+	pthread_mutex_lock(&lock);
+	if (!trace->failed && !is_noted(trace, hash, kind, path))
+		trace->failed = !add(trace, hash, &file);
+	pthread_mutex_unlock(&lock);
+}
+
+/* Nothing but these comes after them. Their numbers stay in the index, and are given again. */
+void nt_trace_forget_written(nt_trace *trace)
+{
+	while (trace->count && trace->files[trace->count - 1].kind == NT_TRACE_WRITTEN)
+		free(trace->files[--trace->count].path);
+}
+
+void nt_trace_free(nt_trace *trace)
+{
+	for (size_t i = 0; i < trace->count; i++)
+		free(trace->files[i].path);
+	free(trace->files);
+	nt_hash_index_free(&trace->index);
+	*trace = (nt_trace){0};
+}

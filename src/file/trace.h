@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What a run reads and writes, noted where it happens: nt_file_open() and the looking for files (lookup.h) note
+ * what is read and what is missing, nt_output_commit() what is written. Who runs something lends its thread a trace;
+ * nobody in between has to know.
+ */
+#ifndef NT_FILE_TRACE_H
+#define NT_FILE_TRACE_H
+
+#include <sys/stat.h>
+#include "base/error.h"
+#include "base/hash_index.h"
+
+typedef enum nt_trace_kind {
+	NT_TRACE_READ,
+	NT_TRACE_MISSING, /* it was looked for, and would have been read */
+	NT_TRACE_WRITTEN
+} nt_trace_kind;
+
+/* A file as it was when it was opened, or as it will be when its set is in place. */
+typedef struct nt_trace_file {
+	char *path; /* as the run named it: relative to the current folder, or absolute */
+	nt_trace_kind kind;
+	uint64_t size;            /* 0 for what is missing */
+	int64_t modified, noted;  /* nanoseconds since 1970: last change of the file; when it was noted */
+} nt_trace_file;
+
+/* Zeroed: empty. A file is in it once for each kind, in the order of first use. */
+typedef struct nt_trace {
+	nt_trace_file *files;
+	size_t count, capacity;
+	nt_hash_index index;
+	bool failed; /* memory ran out: something is not in it */
+} nt_trace;
+
+/* From now on this thread notes in `trace`; NULL: nowhere. Returns what it noted in before. Several threads may note
+ * in one trace: each that helps a run and opens files has to be lent it. */
+nt_trace *nt_trace_use(nt_trace *trace);
+
+/* Notes a file; nothing happens where no trace is used. `info` is not needed for what is missing. */
+void nt_trace_note(nt_trace_kind kind, const char *path, const struct stat *info);
+
+/* The time of the last change, in nanoseconds since 1970. */
+int64_t nt_trace_modified(const struct stat *info);
+
+/* Forgets what was written, for a run that is to be done again. */
+void nt_trace_forget_written(nt_trace *trace);
+
+void nt_trace_free(nt_trace *trace);
+
+#endif
