@@ -111,16 +111,18 @@ bench: bench-error
 bench-error: $(B)/tests/bench/error
 	@CC="$(CC)" sh tests/bench/run_error.sh $< build/bench
 
-# make bench-core: million triangles a second on each family of meshes.
-core_bench_obj := $(patsubst %,$(B)/tests/%.o,bench/core bench/families support/measure)
+# make bench-core: million triangles a second on real meshes ($MODELS names a folder of more, $PEERS one with native
+# peers: tests/bench/native.h) and on each family of meshes.
+core_bench_obj := $(patsubst %,$(B)/tests/%.o,$(addprefix bench/,core core_real families models native) \
+	$(addprefix support/,measure surfaces))
 
 $(B)/tests/bench/core: $(core_bench_obj) $(B)/libnmtan.a
-	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm
+	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm -ldl
 
 .PHONY: bench-core
 bench: bench-core
-bench-core: $(B)/tests/bench/core
-	@CC="$(CC)" sh tests/bench/run_core.sh $< build/bench/core
+bench-core: $(B)/tests/bench/core $(B)/nmtan
+	@$< $$(sh tests/bench/models.sh $(B)/nmtan build/bench/models)
 
 # make bench-obj: reading the 104 MB file that speed is stated for; the lines "parse" and "index" are the reader.
 build/bench/torus.obj: $(B)/tests/bench/make_obj.o

@@ -1,22 +1,20 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * core [FOLDER]: how many million triangles a second the core does on each family of meshes, as a table for
- * people. Runs of all columns are interleaved, so that a busy machine hurts all of them; best and median.
- * Repair is on, output and workspace are warm. Before the rates stands what one thread takes besides the output, in
+ * core [FILE...]: how many million triangles a second the core does: on real meshes, which models.sh has made, beside
+ * the native peers of the folder $PEERS (core_real.c), then on each family of meshes, as tables in
+ * Markdown. Runs of all columns are interleaved, so that a busy machine hurts all of them; the best counts.
+ * Repair is on, output and workspace are warm. The last column is what one thread takes besides the output, in
  * bytes a triangle. One thread is timed by the processor's clock for the thread, more by the wall's.
  *
  * The scalar definition is there to be compared, takes some 20 times as long, and on hubs its time grows
- * with the square of their size. Its column is measured once, on smaller meshes of the family, whose number of
- * triangles stands beside it.
- *
- * With FOLDER the meshes are also written there as FOLDER/NAME.mesh, for the peers that run_core.sh knows.
+ * with the square of their size. Its column is measured once, on smaller meshes of the family.
  */
+#include "core_real.h"
 #include "families.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 #include "base/cpu.h"
 #include "base/parallel.h"
 #include "base/scratch.h"
@@ -35,13 +33,6 @@ typedef struct column {
 	unsigned threads;
 	int runs;
 } column;
-
-static double seconds(clockid_t clock)
-{
-	struct timespec t;
-	clock_gettime(clock, &t);
-	return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void print_machine(void)
 {
@@ -94,14 +85,14 @@ static double time_run(const column *c, const workload *w, const nmtan_output *o
 		.threads = c->threads,
 		.workspace = workspace};
 	const size_t repeat = !c->implementation.scalar && w->triangles < 100000 ? 400000 / w->triangles : 1;
-	const clockid_t clock = c->threads == 1 ? CLOCK_THREAD_CPUTIME_ID : CLOCK_MONOTONIC;
-	const double begin = seconds(clock);
+	double (*clock)(void) = c->threads == 1 ? measure_thread_seconds : measure_seconds;
+	const double begin = clock();
 	for (size_t i = 0; i < repeat * w->count; i++)
 		if (nt_tangents(&w->meshes[i % w->count].mesh, &options, &c->implementation, output, NULL)) {
 			fprintf(stderr, "core: solving failed\n");
 			exit(1);
 		}
-	return (seconds(clock) - begin) / (double)repeat;
+	return (clock() - begin) / (double)repeat;
 }
 
 /* Bytes for each triangle that one thread takes besides the output; 0 for many meshes, which share a block. */
@@ -132,55 +123,27 @@ static void time_row(const char *name, const workload *w, const workload *smalle
 			if (run < columns[c].runs)
 				times[c][run] = time_run(&columns[c],
 					columns[c].implementation.scalar ? smaller : w, &output, workspace);
-	printf("%-22s %8zu %5.1f", name, w->triangles, scratch_bytes(w, &output));
+	printf("| %s, %zu |", name, w->triangles);
 	for (size_t c = 0; c < count; c++) {
 		qsort(times[c], (size_t)columns[c].runs, sizeof(double), measure_compare);
-		if (columns[c].implementation.scalar) {
-			printf(" %6.2f (%7zu)", 1e-6 * (double)smaller->triangles / times[c][0], smaller->triangles);
-			continue;
-		}
-		const double million = 1e-6 * (double)w->triangles;
-		printf(" %6.2f %6.2f", million / times[c][0], million / times[c][columns[c].runs / 2]);
+		const double triangles = (double)(columns[c].implementation.scalar ? smaller : w)->triangles;
+		printf(" %.2f |", 1e-6 * triangles / times[c][0]);
 	}
-	printf("\n");
+	const double bytes = scratch_bytes(w, &output);
+	if (bytes > 0)
+		printf(" %.1f |\n", bytes);
+	else
+		printf(" – |\n");
 	fflush(stdout);
 	nmtan_workspace_destroy(workspace);
 	free(output.tangents);
-}
-
-/* The exchange format of peers.mjs, where quads have no place, and a line of names.txt: what the mesh is. */
-static void export_mesh(const char *folder, int family, const nt_family_mesh *m)
-{
-	char path[1024];
-	if (m->face_sizes || !m->indices)
-		return;
-	snprintf(path, sizeof path, "%s/core%d.mesh", folder, family);
-	FILE *f = fopen(path, "wb");
-	snprintf(path, sizeof path, "%s/names.txt", folder);
-	FILE *names = fopen(path, "a");
-	if (!f || !names) {
-		fprintf(stderr, "core: cannot write to %s\n", folder);
-		exit(2);
-	}
-	const uint32_t head[2] = {(uint32_t)m->mesh.vertex_count, (uint32_t)m->corner_count};
-	fwrite(head, sizeof head, 1, f);
-	fwrite(m->positions, 12, m->mesh.vertex_count, f);
-	fwrite(m->normals, 12, m->mesh.vertex_count, f);
-	fwrite(m->texcoords, 8, m->mesh.vertex_count, f);
-	fwrite(m->indices, 4, m->corner_count, f);
-	fprintf(names, "core%d %zu %s\n", family, m->triangle_count, nt_family_names[family]);
-	const int failed = fclose(f) | fclose(names);
-	if (failed) {
-		fprintf(stderr, "core: cannot write to %s\n", folder);
-		exit(2);
-	}
 }
 
 static size_t list_columns(column columns[MOST_COLUMNS])
 {
 	static const char *const sets[] = {"", "baseline", "AVX2", "AVX-512"};
 	size_t n = 0;
-	columns[n++] = (column){"definition (size)", NMTAN_METHOD_MIKKTSPACE, {.scalar = true}, 1, 1};
+	columns[n++] = (column){"definition", NMTAN_METHOD_MIKKTSPACE, {.scalar = true}, 1, 1};
 	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++)
 		if (nt_cpu_has(isa))
 			columns[n++] = (column){sets[isa], NMTAN_METHOD_MIKKTSPACE, {.isa = isa}, 1, RUNS};
@@ -214,15 +177,18 @@ int main(int argument_count, char **arguments)
 	const size_t n = list_columns(columns);
 
 	print_machine();
-	printf("million triangles a second, best and median\n%-22s %8s %5s", "", "", "bytes");
+	core_real_table(arguments + 1, (size_t)argument_count - 1, getenv("PEERS"));
+	printf("Families of meshes, million triangles a second, best of %d interleaved runs; the definition on %d triangles "
+		"(hubs: %d)\n\n| mesh, triangles |", RUNS, DEFINITION_SIZE, DEFINITION_HUB);
 	for (size_t c = 0; c < n; c++)
-		printf(" %*s", columns[c].implementation.scalar ? 16 : 13, columns[c].name);
+		printf(" %s |", columns[c].name);
+	printf(" bytes |\n|---|");
+	for (size_t c = 0; c <= n; c++)
+		printf("---|");
 	printf("\n");
 	for (size_t i = 0; i < NT_FAMILY_COUNT; i++) {
 		workload w = make_workload((nt_family)i, 1, sizes[i]);
 		workload smaller = make_workload((nt_family)i, 1, i == NT_FAMILY_HUB ? DEFINITION_HUB : DEFINITION_SIZE);
-		if (argument_count > 1)
-			export_mesh(arguments[1], (int)i, w.meshes);
 		time_row(nt_family_names[i], &w, &smaller, columns, n);
 		free_workload(&w);
 		free_workload(&smaller);
