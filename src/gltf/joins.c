@@ -45,12 +45,11 @@ typedef struct group {
 	nt_hash_index known;   /* kinds by hash */
 } group;
 
-/* Whether the tangents of a primitive are asked for. */
+/* Whether the tangents of a primitive are asked for, and a solve can give them. */
 static bool is_wanted(const nt_mesh *mesh, bool kept)
 {
-	return nt_mesh_is_wanted(mesh) ||
-		(kept && mesh->decision == NT_SKIP_HAS_TANGENTS && mesh->has_positions && mesh->has_normals &&
-			mesh->has_texcoords);
+	return mesh->has_texcoords && (nt_mesh_is_wanted(mesh) ||
+		(kept && mesh->decision == NT_SKIP_HAS_TANGENTS && mesh->has_positions && mesh->has_normals));
 }
 
 /* ---- kinds ---- */

@@ -7,8 +7,12 @@
  * They share its w too, for targets have none. w is the orientation of the UVs, which no target changes; but
  * where one turns a triangle to the other side of its normals, B = cross(N, T) w turns round with it. Such
  * triangles are counted.
+ *
+ * Without texture coordinates there is nothing to solve: the tangents turn with their normals (authored.c). Half of such
+ * a delta is half of the turn, so that nothing has to be looked at halfway.
  */
 #include "pipeline/morphs.h"
+#include "pipeline/stages.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -79,6 +83,10 @@ nt_status nt_morphs_solve(nt_mesh *mesh, const nmtan_mesh *view, const nmtan_opt
 		if (!morph->corner_tangents)
 			return NT_ERROR_MEMORY;
 		mesh->morph_turned += nt_morphs_count_turned(view, morph);
+		if (!view->texcoords) {
+			nt_turn_untextured(mesh, view, &moved, morph->corner_tangents);
+			continue;
+		}
 		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = morph->corner_tangents};
 		nt_status status = nt_status_of(nmtan_tangents(&moved, options, &output, NULL));
 		if (!status)

@@ -42,6 +42,17 @@ nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error 
 /* Says of every mesh with quads where they are cut (face_diagonals). For writers of triangles. */
 nt_status nt_stage_quads(nt_scene *scene, nt_error *error);
 
+/* authored.c, for tangents.c and morphs.c: authored tangents that stay with --existing=repair. Of meshes with texture
+ * coordinates the corners of faces whose tangents are all valid take theirs back after a solve. */
+void nt_restore_authored(nt_mesh *mesh, float *corner_tangents);
+
+/* Without texture coordinates no solve is possible: each authored tangent stays or is mended by itself.
+ * `tangents` [corner_count][4] is filled. */
+void nt_mend_untextured(nt_mesh *mesh, const nmtan_mesh *view, float *tangents);
+
+/* The tangents that a mesh without texture coordinates has when its normals become those of `moved`. */
+void nt_turn_untextured(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan_mesh *moved, float *tangents);
+
 /* folded_quads.c, for tangents.c. Cuts the folded quads of a mesh with corner_tangents in two and gives each half its
  * own sign; the mesh gets new faces and indices, and cut_arrays to free. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads);

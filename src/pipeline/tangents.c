@@ -10,12 +10,10 @@
 #include "pipeline/morphs.h"
 #include "pipeline/stages.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include "api/tangents.h"
 #include "base/counts.h"
-#include "base/dvec.h"
 #include "base/parallel.h"
 
 /* Corners from which one mesh is worth all threads, and those that small ones must have together for threads
@@ -64,55 +62,6 @@ static float stored_v_offset(const tangent_job *job)
 	return is_gltf(job->scene->format) ? 1.0f : -1.0f;
 }
 
-/* Off perpendicular by no more than a degree, as --check has it: half a degree comes from rounding to 8 bits. */
-static bool is_across(const float *t, const float *n)
-{
-	static const double sine = 0.017452406437283512;
-	const nt_dvec3 tangent = nt_dvec3_load(t), normal = nt_dvec3_load(n);
-	return !(fabs(nt_dvec3_dot(tangent, normal)) > sine * nt_dvec3_length(tangent) * nt_dvec3_length(normal));
-}
-
-/* Whether authored tangents can stay on a face: finite, of unit length (to the Khronos validator's
- * tolerance), across their normals, one w, and that of the exact orientation of every triangle of it. */
-static bool face_is_valid(const nt_mesh *mesh, const size_t *vertices, size_t size)
-{
-	const float w = mesh->tangents[4 * vertices[0] + 3];
-	for (size_t k = 0; k < size; k++) {
-		const float *t = mesh->tangents + 4 * vertices[k];
-		const double squared = (double)t[0] * t[0] + (double)t[1] * t[1] + (double)t[2] * t[2];
-		if (!(fabs(sqrt(squared) - 1.0) <= 0.00674) || t[3] != w || (w != 1.0f && w != -1.0f))
-			return false;
-		if (mesh->normals && !is_across(t, mesh->normals + 3 * vertices[k]))
-			return false;
-	}
-	for (size_t k = 0; k < size; k++) {
-		/* of a quad every corner's triangle, whichever diagonal it is cut along */
-		const int sign = (mesh->solve_texcoords ? mesh->solve_sign : 1) *
-			nmtan_orientation(mesh->texcoords + 2 * vertices[k],
-				mesh->texcoords + 2 * vertices[(k + 1) % size],
-				mesh->texcoords + 2 * vertices[(k + 2) % size]);
-		if (sign != 0 && w != (float)sign)
-			return false;
-	}
-	return true;
-}
-
-/* --existing=repair: corners of valid faces take back their authored tangent. */
-static void restore_valid(const nt_mesh *mesh, float *corner_tangents)
-{
-	size_t first = 0;
-	for (size_t face = 0; face < mesh->face_count; face++) {
-		const size_t size = mesh->face_sizes ? mesh->face_sizes[face] : 3;
-		size_t vertices[4];
-		for (size_t k = 0; k < size; k++)
-			vertices[k] = mesh->indices ? mesh->indices[first + k] : first + k;
-		for (size_t k = 0; k < size && face_is_valid(mesh, vertices, size); k++)
-			memcpy(corner_tangents + 4 * (first + k), mesh->tangents + 4 * vertices[k],
-				4 * sizeof(float));
-		first += size;
-	}
-}
-
 /* Room for the worst case; pages that are not needed are never touched. */
 static nt_status make_split(const nt_mesh *mesh, nt_split *split, nmtan_split_output *output)
 {
@@ -130,7 +79,7 @@ static nt_status make_split(const nt_mesh *mesh, nt_split *split, nmtan_split_ou
 }
 
 /* Tangents of corners: for the report alone, or to be mixed with authored ones before they are split. */
-static nt_status solve_corners(const nt_mesh *mesh, const nmtan_mesh *view,
+static nt_status solve_corners(nt_mesh *mesh, const nmtan_mesh *view,
 	const nmtan_options *options, float **tangents, nmtan_counts *counts)
 {
 	const nmtan_output output = {.struct_bytes = sizeof output,
@@ -138,9 +87,13 @@ static nt_status solve_corners(const nt_mesh *mesh, const nmtan_mesh *view,
 	*tangents = output.tangents;
 	if (!output.tangents)
 		return NT_ERROR_MEMORY;
+	if (!view->texcoords) {
+		nt_mend_untextured(mesh, view, output.tangents);
+		return NT_OK;
+	}
 	const nt_status status = nt_status_of(nmtan_tangents(view, options, &output, counts));
 	if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
-		restore_valid(mesh, output.tangents);
+		nt_restore_authored(mesh, output.tangents);
 	return status;
 }
 
@@ -239,7 +192,7 @@ static nt_status solve_join(const tangent_job *job, const nt_join *join, const n
 		if (mesh->transform_of)
 			continue;
 		if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
-			restore_valid(mesh, mesh->corner_tangents);
+			nt_restore_authored(mesh, mesh->corner_tangents);
 		if (!status && job->settings->check)
 			continue;
 		nmtan_split_output output;
@@ -345,6 +298,7 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 		{NT_CODE_NORMALS_MADE, mesh->replaced_normals},
 		{NT_CODE_TAN_MORPH_TURNED, mesh->morph_turned},
 		{NT_CODE_TAN_REPAIRED, nt_counts_repaired(c)},
+		{NT_CODE_TAN_EXISTING_REPAIRED, mesh->replaced_tangents},
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
 		if (rows[i].count)

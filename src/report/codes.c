@@ -334,6 +334,13 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"--existing=keep leaves authored tangents as they are, and some of them are not usable.",
 		"Use --existing=repair or --existing=replace.",
 		"converting a normal-mapped glTF with a tangent (0,0,0,1)"),
+	ROW(TAN_EXISTING_REPAIRED, INFO, "{count} {corner|corners} got another tangent than the input has",
+		"With --existing=repair a face with an invalid tangent gets those that are computed. Without texture "
+		"coordinates nothing can be computed: what is invalid becomes the unit vector across the normal that is "
+		"nearest to it, or any across the normal where it has no direction, and w becomes 1 where the corners "
+		"of a triangle do not agree; --existing=replace does the same there.",
+		"Nothing; --existing=keep leaves them as they are.",
+		"a triangle whose TANGENT is its NORMAL, converted with --existing=repair --only=all"),
 };
 
 const nt_code_row *nt_code_info(nt_code code)

@@ -163,6 +163,8 @@ typedef struct nt_mesh {
 	void *cut_arrays;         /* the block of indices and face arrays, where folded quads were cut; NULL: none were */
 	float *corner_tangents;   /* [corner_count][4]; NULL until solved or after split */
 	nmtan_counts counts;
+	size_t replaced_tangents; /* corners whose authored tangent was invalid, or is beside one that was, and is another
+	                             now */
 	nt_split split;
 } nt_mesh;
 

@@ -9,7 +9,8 @@
  * gets tangents unless the user asks for less.
  *
  * A mesh that needs tangents and lacks normals or texture coordinates is skipped with a finding: glTF
- * clients shade it flat and ignore tangents in the first case, and have no direction in the second.
+ * clients shade it flat and ignore tangents in the first case, and have no direction in the second. Where it has
+ * tangents all the same, those of them that are invalid can be mended.
  */
 #include "scene/select.h"
 
@@ -30,18 +31,20 @@ static nt_decision decide_by_wish(const nt_mesh *mesh, nt_only only, bool knows_
 	return NT_DECISION_OPEN;
 }
 
-/* Whether the mesh has what a solve takes; if not, what is missing first. */
+/* Whether the mesh has what a solve takes, or what mending takes that has to do without texture coordinates; if not,
+ * what is missing first. */
 static nt_decision decide_by_attributes(nt_scene *scene, const nt_mesh *mesh, bool make_normals)
 {
 	const bool lacks_normals = !mesh->has_normals && !make_normals;
+	const bool lacks_texcoords = !mesh->has_texcoords && !mesh->has_tangents;
 	if (needs_tangents(mesh)) {
-		if (!mesh->has_texcoords)
+		if (lacks_texcoords)
 			nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, &mesh->place, 1,
 				"texture coordinate set %u", mesh->texcoord_set);
 		if (lacks_normals)
 			nt_finding_add(&scene->findings, NT_CODE_TAN_NO_NORMAL, &mesh->place, 1, NULL);
 	}
-	if (!mesh->has_texcoords)
+	if (lacks_texcoords)
 		return NT_SKIP_NO_TEXCOORDS;
 	return lacks_normals ? NT_SKIP_NO_NORMALS : NT_DECISION_OPEN;
 }
@@ -65,8 +68,9 @@ static nt_decision decide(nt_scene *scene, const nt_mesh *mesh, nt_only only, nt
 	decision = decide_by_attributes(scene, mesh, make_normals);
 	if (decision != NT_DECISION_OPEN)
 		return decision;
-	return mesh->has_tangents && existing == NT_EXISTING_REPAIR ? NT_DECISION_REPAIR
-								    : NT_DECISION_SOLVE;
+	/* what cannot be computed anew is not thrown away either */
+	const bool repair = existing == NT_EXISTING_REPAIR || !mesh->has_texcoords;
+	return mesh->has_tangents && repair ? NT_DECISION_REPAIR : NT_DECISION_SOLVE;
 }
 
 void nt_select(nt_scene *scene, nt_only only, nt_existing existing, bool make_normals)

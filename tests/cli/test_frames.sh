@@ -118,4 +118,43 @@ exits 0
 is "$(found UV_FOLDED_QUAD)" 1
 is "$(grep -ac 'element vertex 4' q.ply) $(grep -ac 'element face 1' q.ply)" '1 1'
 
+scene "deltas of morph targets that are right stay where they are"
+run "$ROOT/data/morph.gltf" m.glb
+exits 0
+sound m.glb
+
+# AnimatedMorphCube has T = (1, 0, 0, 1) on all six sides, which is the normal of two: 4 triangles, 12 corners. It has no
+# texture coordinates. Target 1 turns the normals of another side about x by 45 degrees, and no T with them.
+cube=$ROOT/../shared/models/gltf/AnimatedMorphCube/glTF/AnimatedMorphCube.gltf
+if [ -f "$cube" ]; then
+	scene "tangents without texture coordinates are mended, or kept as they are"
+	run --only=all --existing=keep --report=r.json "$cube" keep.glb
+	exits 0
+	is "$(found TAN_EXISTING_BAD) $(found TAN_EXISTING_REPAIRED)" '8 0'
+	is "$(tangents keep.glb)" "$(tangents "$cube")"
+	for existing in repair replace; do
+		run --only=all --existing=$existing --report=r.json --verify "$cube" $existing.glb
+		exits 0
+		is "$(found TAN_EXISTING_BAD) $(found TAN_EXISTING_REPAIRED)" '0 12'
+		sound $existing.glb
+		run --check --report=r.json $existing.glb
+		is "$(found TAN_PARALLEL_NORMAL)" 0
+		# eight vertices get (0, 0, -+1), what Duff's basis has across (+-1, 0, 0); the others stay
+		is "$(gltf $existing.glb '(() => { const a = g.meshes[0].primitives[0].attributes, N = rows(a.NORMAL);
+			const T = rows(a.TANGENT); return [T.length, T.filter((t, v) => t.join() === "1,0,0,1" && N[v][0] === 0).length,
+				T.filter((t, v) => t[0] === 0 && t[3] === 1 && N[v][0] !== 0).length]; })()')" '[24,16,8]'
+	done
+	same repair.glb replace.glb
+
+	# what each target moves has unit tangents across its normals, also where base tangents are other ones now
+	is "$(gltf repair.glb 'g.meshes[0].primitives[0].targets.map((t) => { const a = g.meshes[0].primitives[0].attributes;
+		const N = rows(a.NORMAL), T = rows(a.TANGENT), n = rows(t.NORMAL), d = rows(t.TANGENT);
+		return T.every((b, v) => { const m = N[v].map((x, i) => x + n[v][i]), s = d[v].map((x, i) => b[i] + x);
+			return Math.abs(Math.hypot(...s) - 1) < 1e-6 && Math.abs(m.reduce((e, x, i) => e + x * s[i], 0)) < 1e-6; }); })')" \
+		'[true,true]'
+	run --only=all --existing=repair --morph=keep "$cube" kept.glb
+	exits 0
+	is "$(tangents kept.glb)" "$(tangents repair.glb)"
+fi
+
 done_testing

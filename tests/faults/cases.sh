@@ -14,7 +14,7 @@ make_inputs() {
 		"$ROOT"/data/plates.* "$ROOT"/data/morph.gltf "$ROOT"/data/skin.gltf "$ROOT"/data/quantized.gltf \
 		"$ROOT"/data/sparse.gltf .
 	"$NMTAN" -q --draco=sequential plates.gltf draco.glb && "$NMTAN" -q --draco=edgebreaker morph.gltf edge.gltf &&
-		"$faults/make_meshopt" meshopt.glb
+		"$NMTAN" -q morph.gltf morph.glb && "$faults/make_meshopt" meshopt.glb
 }
 
 cube="mirrored_cube.obj mirrored_cube.mtl bumps.png"
@@ -30,6 +30,7 @@ cases() {
 		gltf | $plates || --images=embed plates.gltf o.glb
 		gltf, links | $plates || --buffers=link plates.gltf o.gltf
 		morphs | morph.gltf || --verify morph.gltf o.gltf
+		morphs again | morph.glb || --existing=repair morph.glb o.glb
 		sparse | sparse.gltf || sparse.gltf o.glb
 		quantized | quantized.gltf || --precision=short quantized.gltf o.glb
 		skin, draco out | skin.gltf || --draco=sequential skin.gltf o.glb

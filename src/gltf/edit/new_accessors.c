@@ -7,6 +7,7 @@
 
 #include <string.h>
 #include "base/vec.h"
+#include "gltf/accessor.h"
 
 uint32_t nt_gltf_new_accessor(nt_json *json, uint32_t view, uint32_t component_type, const char *type,
 	size_t count, bool normalized)
@@ -76,6 +77,30 @@ static void set_target(nt_json *json, const nt_vertex_pool *pool, uint32_t set, 
 	}
 }
 
+/* Whether a target has these deltas already in all meshes of the set: then nothing has to be written. */
+static nt_status find_deltas(nt_buffer_edits *edits, const nt_pool_vertices *vertices, uint32_t set, uint32_t target,
+	const float *delta, bool *found)
+{
+	const nt_vertex_pool *pool = vertices->pool;
+	nt_status status = NT_OK;
+	*found = vertices->new_count == vertices->old_count;
+	for (uint32_t i = pool->sets.first[set]; *found && i != NT_NONE; i = pool->sets.next[i]) {
+		const nt_json_value *attributes =
+			nt_json_at(nt_json_find(nt_pool_primitive(pool, i), "targets"), target);
+		uint64_t index;
+		nt_gltf_accessor accessor;
+		float *old;
+		*found = nt_json_get_uint64(nt_json_find(attributes, "TANGENT"), &index) &&
+			 nt_gltf_get_accessor(edits->document, index, "", &accessor, NULL) == NT_OK &&
+			 accessor.component_type == NT_GLTF_FLOAT && accessor.components == 3 &&
+			 accessor.count == vertices->new_count;
+		if (*found)
+			status = nt_gltf_floats(edits->document, &accessor, 3, 0, &edits->arena, &old, NULL);
+		*found = *found && !status && memcmp(old, delta, vertices->new_count * 3 * sizeof *old) == 0;
+	}
+	return status == NT_ERROR_MEMORY ? status : NT_OK;
+}
+
 nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_pool_vertices *vertices,
 	uint32_t set, nt_error *error)
 {
@@ -91,8 +116,12 @@ nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_p
 		for (size_t v = 0; v < vertices->new_count; v++)
 			for (size_t k = 0; k < 3; k++)
 				delta[3 * v + k] = moved[3 * v + k] - base[4 * v + k];
-		status = nt_gltf_add_floats(edits, buffer, delta, vertices->new_count, 3, &accessor, error);
-		if (!status)
+		bool found;
+		if (find_deltas(edits, vertices, set, mesh->morphs[m].target, delta, &found))
+			return nt_fail_memory(error);
+		if (!found)
+			status = nt_gltf_add_floats(edits, buffer, delta, vertices->new_count, 3, &accessor, error);
+		if (!status && !found)
 			set_target(edits->document->json, vertices->pool, set, mesh->morphs[m].target, "TANGENT",
 				accessor);
 	}

@@ -77,6 +77,11 @@ static void existing_tangents_are_kept_repaired_or_replaced(void **state)
 	assert_int_equal(decide_gltf(mesh, NT_ONLY_AUTO, NT_EXISTING_KEEP), NT_SKIP_HAS_TANGENTS);
 	assert_int_equal(decide_gltf(mesh, NT_ONLY_AUTO, NT_EXISTING_REPAIR), NT_DECISION_REPAIR);
 	assert_int_equal(decide_gltf(mesh, NT_ONLY_AUTO, NT_EXISTING_REPLACE), NT_DECISION_SOLVE);
+	mesh.has_texcoords = false; /* not lost where they cannot be computed anew, and nothing that they need lacks */
+	assert_int_equal(decide_gltf(mesh, NT_ONLY_AUTO, NT_EXISTING_KEEP), NT_SKIP_HAS_TANGENTS);
+	assert_int_equal(decide_gltf(mesh, NT_ONLY_AUTO, NT_EXISTING_REPAIR), NT_DECISION_REPAIR);
+	assert_int_equal(decide_gltf(mesh, NT_ONLY_AUTO, NT_EXISTING_REPLACE), NT_DECISION_REPAIR);
+	mesh.has_texcoords = true;
 	mesh.has_normals = false; /* kept all the same: nothing is lost by it */
 	assert_int_equal(decide_gltf(mesh, NT_ONLY_AUTO, NT_EXISTING_KEEP), NT_SKIP_HAS_TANGENTS);
 }
