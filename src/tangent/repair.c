@@ -44,7 +44,7 @@ typedef struct patient {
 	surroundings *around;   /* [id_count] */
 } patient;
 
-static bool has_bit(const uint64_t *bits, size_t i)
+static unsigned has_bit(const uint64_t *bits, size_t i)
 {
 	return bits[i / 64] >> i % 64 & 1;
 }
@@ -170,7 +170,7 @@ static nmtan_status look_around(patient *p)
 	for (size_t face = 0, first = 0; face < mesh->face_count; face++) {
 		const unsigned size = nt_face_size(mesh, face);
 		const uint32_t *v = p->welded + first;
-		bool near = has_bit(p->touched, v[0]) | has_bit(p->touched, v[1]) | has_bit(p->touched, v[2]);
+		unsigned near = has_bit(p->touched, v[0]) | has_bit(p->touched, v[1]) | has_bit(p->touched, v[2]);
 		near |= size == 4 && has_bit(p->touched, v[3]);
 		if (near)
 			visit_face(p, face, first);

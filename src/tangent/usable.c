@@ -77,7 +77,7 @@ static bool has_unusable(const nt_solve *solve, size_t first, size_t size, int o
 
 /* What a face is like */
 
-static bool equal_positions(const nmtan_mesh *mesh, uint32_t a, uint32_t b)
+static unsigned equal_positions(const nmtan_mesh *mesh, uint32_t a, uint32_t b)
 {
 	const float *p = nt_position(mesh, nt_vertex_of(mesh, a));
 	const float *q = nt_position(mesh, nt_vertex_of(mesh, b));
@@ -165,7 +165,8 @@ static void ask_for_triangle(const nt_solve *solve, size_t t)
 {
 	for (size_t c = 3 * t; c < 3 * t + 3; c++) {
 		const size_t v = nt_vertex_of(solve->mesh, c);
-		__builtin_prefetch(solve->tangents + 4 * c);
+		if (solve->tangents)
+			__builtin_prefetch(solve->tangents + 4 * c);
 		__builtin_prefetch(nt_normal(solve->mesh, v));
 		__builtin_prefetch(nt_position(solve->mesh, v));
 		__builtin_prefetch(nt_texcoord(solve->mesh, v));

@@ -258,7 +258,8 @@ static bool make_sieve(sieve *s)
 	const size_t bitmap_words = (size_t)2 * s->ranges << s->word_bits;
 	s->in_room = nt_borrowed_has(w->memory, bitmap_words + count, sizeof *s->bitmaps);
 	s->bitmaps = nt_borrowed_alloc(w->memory, bitmap_words + count, sizeof *s->bitmaps);
-	s->places = s->bitmaps + bitmap_words;
+	if (s->bitmaps)
+		s->places = s->bitmaps + bitmap_words;
 	return s->bitmaps;
 }
 

@@ -198,7 +198,7 @@ static void random_star_of_a_hundred_thousand_corners(void **state)
 		plane[i][0] = points[i][0], plane[i][1] = points[i][1];
 	const clock_t begin = clock();
 	assert_proper((const double(*)[2])plane, (const float(*)[3])points, COUNT);
-	assert_true(clock() - begin < CLOCKS_PER_SEC);
+	assert_true(clock() - begin < 3 * CLOCKS_PER_SEC); /* room for sanitizers; in quadratic time it takes 7 s */
 	free(plane);
 	free(points);
 }
