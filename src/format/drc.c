@@ -7,6 +7,7 @@
  */
 #include "format/drc.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 #include "ext/draco.h"
@@ -37,6 +38,17 @@ static float *read_rows(nt_scene *scene, const nt_draco_attribute *a, size_t cou
 				: missing;
 	}
 	return rows;
+}
+
+/* As OBJ and PLY: there is no tangent at NaN, and glTF cannot store it. */
+static nt_status check_finite(const float *rows, size_t count, int width, unsigned attribute, nt_error *error)
+{
+	for (size_t i = 0; i < count * (size_t)width; i++)
+		if (!isfinite(rows[i]))
+			return nt_fail(error, NT_ERROR_INPUT,
+				"Draco attribute %u of point %zu is not finite, expected finite numbers", attribute,
+				i / (size_t)width);
+	return NT_OK;
 }
 
 /* The rows that an attribute fills in the scene, and how wide they are. */
@@ -75,6 +87,9 @@ static nt_status take_attributes(nt_scene *scene, nt_mesh *mesh, const nt_draco_
 		*to.rows = read_rows(scene, a, from->point_count, to.width, 1.0f);
 		if (!*to.rows)
 			return nt_fail_memory(error);
+		const nt_status status = check_finite(*to.rows, from->point_count, to.width, a->unique_id, error);
+		if (status)
+			return status;
 	}
 	return mesh->positions ? NT_OK
 			       : nt_fail(error, NT_ERROR_INPUT, "the Draco mesh has no positions");

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include <math.h>
 #include "ext/draco.h"
 #include "format/format.h"
 #include "test.h"
@@ -88,6 +89,31 @@ static void mesh_without_positions_is_refused(void **state)
 	nt_draco_block_free(&block);
 }
 
+/* As OBJ and PLY: glTF cannot store it, and a PLY of it could not be read again. */
+static void values_that_are_not_finite_are_refused(void **state)
+{
+	(void)state;
+	nt_draco_block block = encoded(&quad);
+	/* every float of the file that is 2.0 or 0.25, the greatest position and the last coordinate, in turn */
+	size_t refused = 0;
+	for (size_t at = 0; at + 4 <= block.size; at++) {
+		static const float values[] = {2.0f, 0.25f}, infinite = INFINITY;
+		if (memcmp(block.bytes + at, &values[0], 4) != 0 && memcmp(block.bytes + at, &values[1], 4) != 0)
+			continue;
+		unsigned char *copy = memcpy(malloc(block.size), block.bytes, block.size);
+		memcpy(copy + at, &infinite, 4);
+		nt_scene scene;
+		nt_error error;
+		assert_int_equal(open_bytes(&scene, copy, block.size, &error), NT_ERROR_INPUT);
+		assert_non_null(strstr(error.message, "finite"));
+		refused++;
+		nt_scene_free(&scene);
+		free(copy);
+	}
+	assert_int_equal(refused, 3);
+	nt_draco_block_free(&block);
+}
+
 static void truncated_files_are_refused(void **state)
 {
 	(void)state;
@@ -109,6 +135,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(quad_becomes_a_mesh_of_two_triangles),
 		cmocka_unit_test(mesh_without_positions_is_refused),
+		cmocka_unit_test(values_that_are_not_finite_are_refused),
 		cmocka_unit_test(truncated_files_are_refused),
 	};
 	return cmocka_run_group_tests_name("format/drc", tests, NULL, NULL);
