@@ -175,16 +175,36 @@ static void put_color(ply_output *out, const layout *l, const float *color)
 		ply_put_integer(out, (uint32_t)rintf(c[i] * 255.0f), PLY_UINT8);
 }
 
-/* What a mesh does not have although others do is zero, a colour white. */
-static void put_vertex(ply_output *out, const layout *l, const placement *p, const nt_mesh *mesh,
-	size_t vertex, bool flip_v)
+static bool are_finite(const float *values, size_t count)
+{
+	while (count > 0 && isfinite(values[count - 1]))
+		count--;
+	return count == 0;
+}
+
+/* glTF may hold, or make of what it holds, numbers that no reader of PLY takes, this one included. */
+static nt_status fail_not_finite(const nt_mesh *mesh, const char *what, size_t vertex, bool placed, nt_error *error)
+{
+	nt_fail(error, NT_ERROR_INPUT, "the %s of vertex %zu is not finite%s, expected finite numbers for PLY", what, vertex,
+		placed ? " where the node places it" : "");
+	error->place = mesh->place;
+	return NT_ERROR_INPUT;
+}
+
+/* What a mesh does not have although others do is zero, a colour white. Returns NT_OK or NT_ERROR_INPUT. */
+static nt_status put_vertex(ply_output *out, const layout *l, const placement *p, const nt_mesh *mesh,
+	size_t vertex, bool flip_v, nt_error *error)
 {
 	const size_t v = mesh_vertex(mesh, vertex);
 	float position[3], normal[3] = {0}, uv[2] = {0}, tangent[4] = {0}, bitangent[3];
 	place_position(p, mesh->positions + 3 * v, position);
+	if (!are_finite(position, 3))
+		return fail_not_finite(mesh, "position", v, are_finite(mesh->positions + 3 * v, 3), error);
 	ply_put_floats(out, position, 3);
 	if (mesh->normals)
 		place_normal(p, mesh->normals + 3 * v, normal);
+	if (!are_finite(normal, 3))
+		return fail_not_finite(mesh, "normal", v, false, error);
 	if (l->normals)
 		ply_put_floats(out, normal, 3);
 	if (l->colors)
@@ -193,6 +213,8 @@ static void put_vertex(ply_output *out, const layout *l, const placement *p, con
 		uv[0] = mesh->texcoords[2 * v];
 		uv[1] = flip_v ? 1.0f + mesh->texcoords[2 * v + 1] : mesh->texcoords[2 * v + 1];
 	}
+	if (!are_finite(uv, 2))
+		return fail_not_finite(mesh, "texture coordinate", v, false, error);
 	if (l->texcoords)
 		ply_put_floats(out, uv, 2);
 	const float *own = tangent_of(mesh, vertex);
@@ -203,6 +225,7 @@ static void put_vertex(ply_output *out, const layout *l, const placement *p, con
 	nt_bitangent(normal, tangent, bitangent);
 	if (l->bitangents)
 		ply_put_floats(out, bitangent, 3);
+	return NT_OK;
 }
 
 static nt_status put_vertices(nt_scene *scene, ply_output *out, const layout *l, nt_error *error)
@@ -214,8 +237,9 @@ static nt_status put_vertices(nt_scene *scene, ply_output *out, const layout *l,
 		const placement p = find_placement(&scene->instances[i]);
 		const size_t count = is_written(mesh) ? vertices_of(mesh) : 0;
 		for (size_t v = 0; !status && v < count; v++) {
-			put_vertex(out, l, &p, mesh, v, flip_v);
-			status = ply_drain(out, error);
+			status = put_vertex(out, l, &p, mesh, v, flip_v, error);
+			if (!status)
+				status = ply_drain(out, error);
 		}
 	}
 	return status;

@@ -111,6 +111,22 @@ grep -aq '^property float tw' plates.ply || wrong "no tangents"
 run plates.ply again.glb
 exits 0
 
+scene "a PLY that could not be read again is not written"
+cp "$data/plates.bin" .
+printf '\0\0\300\177' | dd of=plates.bin bs=1 seek=4 conv=notrunc status=none # y of the first vertex is NaN
+cp "$data/plates.gltf" .
+run --only=all plates.gltf plates.ply
+exits 3
+says 'nmtan: plates.gltf: /meshes/0/primitives/0: mesh "plates", primitive 0'
+says "the position of vertex 0 is not finite"
+only plates.bin plates.gltf
+cp "$data/plates.bin" .
+sed -i 's/"mesh": 0/"scale": [1e39, 1, 1], &/' plates.gltf
+run --only=all plates.gltf plates.ply
+exits 3
+says "the position of vertex 1 is not finite where the node places it"
+only plates.bin plates.gltf
+
 scene "pipes carry meshes in and out"
 cp "$data/plates.glb" x.glb
 "$NMTAN" -q x.glb direct.glb
