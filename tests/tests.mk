@@ -53,7 +53,7 @@ $(B)/tests/faults/make_meshopt: $(B)/tests/faults/make_meshopt.o
 	$(CXX) $(NT_LDFLAGS) -o $@ $^ -lmeshoptimizer
 
 .PHONY: tests
-tests: $(unit_bin) $(api_bin) $(calls_so) $(if $(filter sanitize tsan,$(config)),,$(faults_bin))
+tests: $(unit_bin) $(api_bin) $(calls_so) $(if $(filter release debug clang,$(config)),$(faults_bin))
 
 .PHONY: unit
 unit: tests
@@ -78,7 +78,7 @@ check-built: build/node/node_modules/gltf-validator/package.json
 	@bash tests/run $(if $(filter true,$(CI)),--strict) build/release build/sanitize
 
 # The tool's opens and renames are watched.
-$(B)/tests/soak/hostile: $(B)/tests/soak/hostile.o $(B)/tests/support/mutate.o $(B)/libtool.a $(B)/libnmtan.a
+$(B)/tests/soak/hostile: $(B)/tests/soak/hostile.o $(B)/tests/support/any_settings.o $(B)/tests/support/mutate.o $(B)/libtool.a $(B)/libnmtan.a
 	$(CXX) $(NT_LDFLAGS) -Wl,--wrap=open,--wrap=rename,--wrap=link -o $@ $(filter %.o,$^) \
 		-Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(TOOL_LIBS)
 
@@ -88,6 +88,21 @@ soak-built: check-built
 	@$(MAKE) -s config=sanitize build/sanitize/tests/soak/hostile
 	@for script in tests/soak/*.sh; do [ ! -f $$script ] || \
 		{ echo "$$script" && bash $$script build/release build/sanitize || exit 1; }; done
+
+# make fuzz SECONDS=60 TARGET="obj gltf": made-up inputs, for so long with each target, all of them by default. Needs
+# clang and libclang-rt-14-dev.
+$(B)/tests/fuzz/target: $(patsubst %,$(B)/tests/%.o,fuzz/target fuzz/json_mutator support/any_settings support/mutate) \
+		$(B)/libtool.a $(B)/libnmtan.a
+	$(CXX) $(NT_LDFLAGS) -fsanitize=fuzzer -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(TOOL_LIBS)
+
+SECONDS ?= 60
+TARGET ?= obj mtl ply gltf glb drc
+.PHONY: fuzz
+fuzz:
+	@CLANG="$(CLANG)" sh tests/fuzz/need.sh
+	@$(MAKE) -s $(JOBS) config=release all build/release/tests/faults/make_meshopt
+	@$(MAKE) -s $(JOBS) config=fuzz build/fuzz/tests/fuzz/target
+	@bash tests/fuzz/run.sh build/release build/fuzz $(SECONDS) $(TARGET)
 
 # make stress: numerical stability at the edges of floating point; tables and charts in build/stress.
 stress_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/stress/*.c))

@@ -26,6 +26,7 @@
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
+#include "any_settings.h"
 #include "mutate.h"
 #include "pipeline/run.h"
 
@@ -159,29 +160,12 @@ static bool met_geometry(const nt_summary *summary, const nt_error *error)
 /* The options vary from run to run. */
 static bool run_input(uint32_t *chance)
 {
-	static const nt_format formats[] = {NT_FORMAT_GLB, NT_FORMAT_GLB, NT_FORMAT_GLTF, NT_FORMAT_PLY};
-	static const char *const names[] = {"o.glb", "o.glb", "o.gltf", "o.ply"};
-	static const nt_images images[] = {NT_IMAGES_DEFAULT, NT_IMAGES_LINK, NT_IMAGES_EMBED, NT_IMAGES_COPY};
-	static const nt_draco_choice draco[] = {NT_DRACO_OFF, NT_DRACO_OFF, NT_DRACO_KEEP, NT_DRACO_KEEP,
-		NT_DRACO_AS_SEQUENTIAL, NT_DRACO_AS_EDGEBREAKER};
 	const nt_report_options report = {.threads = 1};
-	const uint32_t form = mutate_random(chance, 4);
-	const bool check = mutate_random(chance, 8) == 0;
-	const bool edited = strstr(input, ".gl") && formats[form] != NT_FORMAT_PLY && !check;
-	const bool integers = mutate_random(chance, 6) == 0 && formats[form] != NT_FORMAT_PLY;
-	const nt_settings settings = {.texcoord_set = -1, .only = mutate_random(chance, 4) ? NT_ONLY_ALL : 0,
-		.existing = mutate_random(chance, 2) ? NT_EXISTING_REPLACE : 0, .threads = 1,
-		.normals = mutate_random(chance, 3) ? NT_NORMALS_FLAT : NT_NORMALS_AUTO,
-		.images = images[mutate_random(chance, 4)], .embed = mutate_random(chance, 4) == 0,
-		.buffers = (nt_buffers)mutate_random(chance, 3),
-		.draco = draco[mutate_random(chance, edited ? 6 : 4)],
-		.morphs = (nt_morph_choice)mutate_random(chance, 3),
-		.precision = integers ? (nt_precision)(1 + mutate_random(chance, 2)) : NT_PRECISION_FLOAT,
-		.method = (nmtan_method)(mutate_random(chance, 4) ? 0 : mutate_random(chance, 4)),
-		.bitangents = mutate_random(chance, 8) == 0, .output_format = check ? 0 : formats[form],
-		.report = mutate_random(chance, 4) && !check ? NULL : &report, .check = check};
+	const char *name;
+	const nt_settings settings = any_settings(input, chance, &report, &name);
+	const bool check = settings.check;
 	char output[200];
-	snprintf(output, sizeof output, "%s/%s", output_folder, names[form]);
+	snprintf(output, sizeof output, "%s/%s", output_folder, name);
 	nt_summary summary;
 	nt_error error;
 	nt_error_clear(&error);
