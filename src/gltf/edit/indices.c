@@ -8,6 +8,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include "base/hash_index.h"
 #include "base/largest.h"
 #include "gltf/accessor.h"
 #include "gltf/edit/new_accessors.h"
@@ -126,11 +127,13 @@ static nt_status give_view(nt_buffer_edits *edits, uint32_t buffer, const nt_glt
 	return status;
 }
 
-/* A user's new indices, to be found by users with the same ones. */
+/* A user's new indices. Users with equal ones in place of the same bytes follow the first of them. */
 typedef struct written {
 	uint32_t index;       /* the accessor of the source; NT_NONE: there was none */
 	uint32_t first_alias; /* of that */
-	uint32_t accessor;    /* the one in the output; NT_NONE: not yet */
+	uint32_t leader;      /* the first user with the same ones */
+	uint32_t agreeing;    /* of a leader: users that follow it, itself too, and have its accessor */
+	uint32_t accessor;    /* of a leader: the one in the output */
 } written;
 
 static bool equal_indices(const nt_pool_vertices *vertices, size_t a, size_t b)
@@ -141,28 +144,53 @@ static bool equal_indices(const nt_pool_vertices *vertices, size_t a, size_t b)
 		(of_a == of_b || memcmp(of_a, of_b, count * sizeof *of_a) == 0);
 }
 
-/* Whether everybody who uses a user's indices will have the same new ones. */
-static bool all_users_agree(const nt_vertex_pools *pools, const nt_pool_vertices *vertices, size_t user,
-	const written *log)
+/* The user before this one that has the same indices and leads; itself: none. NT_NONE: memory is exhausted.
+ * last: the changed user before this one, or NT_NONE. */
+static uint32_t find_leader(const nt_pool_vertices *vertices, uint32_t user, uint32_t last, const written *log,
+	nt_hash_index *leaders)
 {
-	if (log[user].index == NT_NONE)
-		return false;
-	const uint32_t users = pools->index_users[log[user].first_alias];
-	uint32_t agreeing = 1;
-	for (size_t i = 0; users > 1 && i < vertices->pool->user_count; i++)
-		agreeing += i != user && vertices->changed[i] && log[i].index == log[user].index &&
-			equal_indices(vertices, i, user);
-	return agreeing == users;
+	/* of primitives with the same triangles, which mostly follow each other, nothing is hashed again */
+	if (last != NT_NONE && vertices->indices[last] == vertices->indices[user] &&
+		log[last].first_alias == log[user].first_alias)
+		return log[last].leader;
+	const uint64_t hash = nt_hash_bytes(log[user].first_alias, vertices->indices[user],
+		nt_pool_mesh(vertices->pool, user)->corner_count * sizeof **vertices->indices);
+	uint32_t leader;
+	for (size_t at = NT_HASH_BEGIN; (leader = nt_hash_index_next(leaders, hash, &at)) != NT_NONE;)
+		if (log[leader].first_alias == log[user].first_alias && equal_indices(vertices, leader, user))
+			return leader;
+	return nt_hash_index_add(leaders, hash, user) ? user : NT_NONE;
 }
 
-/* The accessor that a user before this one got for the same indices; NT_NONE: none. */
-static uint32_t find_written(const nt_pool_vertices *vertices, size_t user, const written *log)
+/* Fills the log of changed users but for its accessors. */
+static bool find_leaders(const nt_vertex_pools *pools, const nt_pool_vertices *vertices, written *log)
 {
-	for (size_t i = 0; i < user; i++)
-		if (vertices->changed[i] && log[i].accessor != NT_NONE &&
-			log[i].first_alias == log[user].first_alias && equal_indices(vertices, i, user))
-			return log[i].accessor;
-	return NT_NONE;
+	nt_hash_index leaders = {0};
+	bool found = true;
+	for (uint32_t i = 0, last = NT_NONE; found && i < vertices->pool->user_count; i++) {
+		if (!vertices->changed[i])
+			continue;
+		uint64_t index;
+		log[i] = (written){.index = NT_NONE, .first_alias = NT_NONE, .accessor = NT_NONE};
+		if (nt_json_get_uint64(nt_json_find(nt_pool_primitive(vertices->pool, i), "indices"), &index) &&
+			index < pools->accessor_count) {
+			log[i].index = (uint32_t)index;
+			log[i].first_alias = pools->first_alias[index];
+		}
+		log[i].leader = find_leader(vertices, i, last, log, &leaders);
+		found = log[i].leader != NT_NONE;
+		if (found)
+			log[log[i].leader].agreeing += log[i].index == log[log[i].leader].index;
+		last = i;
+	}
+	nt_hash_index_free(&leaders);
+	return found;
+}
+
+/* Whether everybody who uses a leader's indices will have the same new ones. */
+static bool all_users_agree(const nt_vertex_pools *pools, const written *leader)
+{
+	return leader->index != NT_NONE && leader->agreeing == pools->index_users[leader->first_alias];
 }
 
 /* What a user's indices are in the source: of the narrowest type that all hardware likes, where there are none. */
@@ -181,27 +209,27 @@ static nt_status find_old(nt_gltf *document, const nt_mesh *mesh, uint32_t index
 	return status;
 }
 
-/* Writes the indices of a user: in place where that will do, else behind the end. */
+/* Writes the indices of a leader: in place where that will do, else behind the end. */
 static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
-	const nt_pool_vertices *vertices, size_t user, uint64_t mode, written *log, nt_error *error)
+	const nt_pool_vertices *vertices, size_t user, uint64_t mode, written *leader, nt_error *error)
 {
 	const nt_mesh *mesh = nt_pool_mesh(vertices->pool, user);
 	nt_gltf_accessor old;
 	encoded new = {0};
 	bool done = false;
-	nt_status status = find_old(edits->document, mesh, log[user].index, &old, error);
+	nt_status status = find_old(edits->document, mesh, leader->index, &old, error);
 	if (!status)
 		status = encode(&edits->arena, mesh, vertices->indices[user], tail_of(mesh, mode, old.count),
 			old.component_type, &new, error);
-	if (!status && all_users_agree(pools, vertices, user, log)) {
+	if (!status && all_users_agree(pools, leader)) {
 		if (old.decoded)
 			status = give_view(edits, buffer, &old, &new, error);
 		else
-			status = replace_indices(edits, log[user].first_alias, &old, &new, &done, error);
+			status = replace_indices(edits, leader->first_alias, &old, &new, &done, error);
 		done |= old.decoded != NULL;
 	}
-	log[user].accessor = log[user].index;
-	return status || done ? status : add_indices(edits, buffer, &new, &log[user].accessor, error);
+	leader->accessor = leader->index;
+	return status || done ? status : add_indices(edits, buffer, &new, &leader->accessor, error);
 }
 
 static nt_status edit_user(nt_buffer_edits *edits, uint32_t buffer, const nt_vertex_pools *pools,
@@ -210,14 +238,14 @@ static nt_status edit_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ver
 	nt_json *json = edits->document->json;
 	uint64_t mode = NT_GLTF_TRIANGLES;
 	nt_json_get_uint64(nt_json_find(nt_pool_primitive(vertices->pool, user), "mode"), &mode);
-	log[user].accessor = find_written(vertices, user, log);
-	const nt_status status = log[user].accessor != NT_NONE ? NT_OK :
-		write_user(edits, buffer, pools, vertices, user, mode, log, error);
+	written *leader = &log[log[user].leader];
+	const nt_status status = log[user].leader != user ? NT_OK :
+		write_user(edits, buffer, pools, vertices, user, mode, leader, error);
 	if (status)
 		return status;
 	nt_json_value *primitive = nt_pool_primitive(vertices->pool, user);
-	if (log[user].accessor != log[user].index)
-		nt_json_set_uint64(json, nt_json_put(json, primitive, "indices"), log[user].accessor);
+	if (leader->accessor != log[user].index)
+		nt_json_set_uint64(json, nt_json_put(json, primitive, "indices"), leader->accessor);
 	if (mode != NT_GLTF_TRIANGLES)
 		nt_json_set_uint64(json, nt_json_put(json, primitive, "mode"), NT_GLTF_TRIANGLES);
 	return NT_OK;
@@ -228,18 +256,8 @@ nt_status nt_gltf_write_indices(nt_buffer_edits *edits, uint32_t buffer, const n
 {
 	const nt_vertex_pool *pool = vertices->pool;
 	written *log = nt_arena_alloc(&edits->arena, pool->user_count, sizeof *log);
-	if (!log)
+	if (!log || !find_leaders(pools, vertices, log))
 		return nt_fail_memory(error);
-	for (size_t i = 0; i < pool->user_count; i++) {
-		uint64_t index;
-		log[i] = (written){NT_NONE, NT_NONE, NT_NONE};
-		if (vertices->changed[i] &&
-			nt_json_get_uint64(nt_json_find(nt_pool_primitive(pool, i), "indices"), &index) &&
-			index < pools->accessor_count) {
-			log[i].index = (uint32_t)index;
-			log[i].first_alias = pools->first_alias[index];
-		}
-	}
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < pool->user_count; i++)
 		if (vertices->changed[i])

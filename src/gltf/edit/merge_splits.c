@@ -279,8 +279,8 @@ static bool merge_mesh(merging *m, const nt_mesh *mesh, uint32_t set, uint32_t *
 	return merged;
 }
 
-/* Vertices that no corner of a set uses get the tangent that splitting gave them, copies that of the vertex
- * they copy. */
+/* Vertices that no corner of a set uses get the tangent that splitting its first mesh gave them, copies that of the
+ * vertex they copy. */
 static void fill_unused(merging *m, const nt_mesh *mesh, uint32_t set)
 {
 	for (size_t pool_vertex = 0; pool_vertex < m->vertices->new_count; pool_vertex++) {
@@ -378,9 +378,8 @@ static bool merge_users(merging *m, nt_arena *arena)
 		vertices->changed[i] = mesh->vertex_count > mesh->source_vertex_count ||
 			!same_triangles(mesh, vertices->indices[i]);
 	}
-	for (size_t i = 0; i < pool->user_count; i++)
-		if (nt_pool_is_solved(pool, i))
-			fill_unused(m, nt_pool_mesh(pool, i), pool->sets.of[i]);
+	for (uint32_t set = 0; set < pool->sets.count; set++)
+		fill_unused(m, nt_pool_set_mesh(pool, set), set);
 	return true;
 }
 
