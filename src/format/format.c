@@ -12,6 +12,7 @@
 #include "gltf/document.h"
 #include "gltf/edit/edit.h"
 #include "gltf/joins.h"
+#include "gltf/late.h"
 #include "gltf/load.h"
 #include "gltf/open.h"
 #include "gltf/same_geometry.h"
@@ -35,6 +36,7 @@ static const nt_format_entry table[] = {
 		.open = nt_gltf_open,
 		.find_joins = nt_gltf_find_joins,
 		.find_same = nt_gltf_find_same,
+		.find_late = nt_gltf_find_late,
 		.load = nt_gltf_load,
 		.write = write_gltf},
 	{.format = NT_FORMAT_DRC,
@@ -55,6 +57,7 @@ static const nt_format_entry table[] = {
 		.open = nt_gltf_open,
 		.find_joins = nt_gltf_find_joins,
 		.find_same = nt_gltf_find_same,
+		.find_late = nt_gltf_find_late,
 		.load = nt_gltf_load,
 		.write = write_gltf},
 	{.format = NT_FORMAT_OBJ,

@@ -25,6 +25,9 @@ typedef struct nt_format_entry {
 	/* After that: sets same_as of meshes that will be solved and have the geometry of an earlier one;
 	 * NULL: no two have the same. */
 	nt_status (*find_same)(nt_scene *scene, const nt_read_options *options, nt_error *error);
+	/* After that: sets late of meshes whose results need not all be there at once for an edit of the source's document;
+	 * NULL: there are none. */
+	nt_status (*find_late)(nt_scene *scene, nt_error *error);
 	/* Brings the geometry of one mesh; NULL: open did. */
 	nt_status (*load)(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 		nt_error *error);

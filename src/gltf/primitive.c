@@ -9,7 +9,7 @@
 
 bool nt_gltf_is_solved(const nt_mesh *mesh)
 {
-	return mesh->split.vertex_tangents != NULL;
+	return mesh->split.vertex_tangents != NULL || mesh->late;
 }
 
 bool nt_gltf_has_solved(const nt_scene *scene)

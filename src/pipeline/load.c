@@ -94,6 +94,15 @@ static nt_status load_copies(const loading *l)
 	return status;
 }
 
+/* Whether nobody but an edit of the document asks for what is loaded and solved, and it as gltf/late.h has it. */
+static bool can_be_late(const loading *l, const nt_format_entry *writer)
+{
+	const nt_settings *s = l->settings;
+	return writer && !needs_all(l->reader, writer) && !s->report && !s->verify && !s->bitangents &&
+		s->across == NT_ACROSS_PRIMITIVE && s->draco <= NT_DRACO_OFF && s->normals == NT_NORMALS_AUTO &&
+		!s->list_meshes;
+}
+
 nt_status nt_stage_load(nt_scene *scene, const nt_format_entry *reader, const nt_format_entry *writer,
 	const nt_settings *settings, const nt_read_options *options, nt_error *error)
 {
@@ -102,11 +111,15 @@ nt_status nt_stage_load(nt_scene *scene, const nt_format_entry *reader, const nt
 	nt_status status = find_joins(&l);
 	if (!status && reader->find_same)
 		status = reader->find_same(scene, options, error);
+	if (!status && reader->find_late && can_be_late(&l, writer))
+		status = reader->find_late(scene, error);
 	if (!status)
 		leave_out_large_joins(&l);
 	for (size_t i = 0; !status && reader->load && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
 		const bool loadable = mesh->triangles && mesh->has_positions;
+		if (mesh->late)
+			continue;
 		if (nt_mesh_is_wanted(mesh) || (all && loadable))
 			status = reader->load(scene, mesh, options, error);
 		else if (settings->report && loadable)

@@ -273,7 +273,7 @@ nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, nt_error *error)
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
-		if (!nt_mesh_is_wanted(mesh))
+		if (!nt_mesh_is_wanted(mesh) || mesh->late)
 			continue;
 		if (!mesh->same_as) {
 			status = make_normals(scene, mesh, mode, error);

@@ -10,6 +10,7 @@
 #include "file/watch.h"
 #include "gltf/companion.h"
 #include "gltf/verify.h"
+#include "pipeline/late.h"
 #include "pipeline/stages.h"
 
 /* What the stages of one run share. */
@@ -39,8 +40,9 @@ static void end_stage(run *r)
 	r->stage_begin = time;
 }
 
-static void begin_stage(run *r, nt_stage stage)
+static void begin_stage(void *user, nt_stage stage)
 {
+	run *r = user;
 	end_stage(r);
 	r->stage = stage;
 	if (r->settings->on_stage)
@@ -137,6 +139,10 @@ static nt_status write_scene(run *r)
 		.precision = s->precision,
 		.allow_outside = s->allow_outside,
 	};
+	nt_late late = {.scene = &r->scene, .reader = r->reader, .settings = s, .options = &r->read_options,
+		.output = r->writer->format, .summary = r->summary, .begin_stage = begin_stage, .run = r};
+	r->scene.solve_late = nt_late_solve;
+	r->scene.late = &late;
 	nt_output *output = NULL;
 	nt_status status = nt_output_create(&output, &output_options, r->error);
 	if (!status && r->writer->format != NT_FORMAT_PLY)
@@ -145,6 +151,7 @@ static nt_status write_scene(run *r)
 		status = nt_output_protect(output, r->input_path, "--in-place allows that", r->error);
 	if (!status)
 		status = r->writer->write(&r->scene, &options, output, r->error);
+	nt_late_free(&late);
 	/* the input may still be read here, and its faults are its own */
 	if (status && r->error->place.pointer[0])
 		nt_error_in_file(r->error, r->input_path);

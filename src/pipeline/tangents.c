@@ -35,7 +35,7 @@ typedef struct tangent_job {
 
 static bool is_solved(const nt_mesh *mesh)
 {
-	return nt_mesh_is_wanted(mesh) && !mesh->same_as;
+	return nt_mesh_is_wanted(mesh) && !mesh->same_as && !mesh->late;
 }
 
 /* Whether a mesh is solved by itself, or stands for its join. */
@@ -338,7 +338,7 @@ static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *e
 	}
 	for (size_t i = 0; i < job->scene->mesh_count; i++) {
 		nt_mesh *mesh = &job->scene->meshes[i];
-		if (!nt_mesh_is_wanted(mesh))
+		if (!nt_mesh_is_wanted(mesh) || mesh->late)
 			continue;
 		if (mesh->same_as) {
 			nt_mesh_share(mesh);

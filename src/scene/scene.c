@@ -41,11 +41,24 @@ void nt_mesh_share(nt_mesh *mesh)
 	mesh->targets_without_tangents = own.targets_without_tangents;
 	mesh->decision = own.decision;
 	mesh->same_as = own.same_as;
+	mesh->late = own.late;
 	mesh->join = own.join;
 	mesh->primitives = own.primitives;
 	mesh->primitive_count = own.primitive_count;
 	if (mesh->primitive_count == 1)
 		mesh->primitives[0].face_count = mesh->face_count;
+}
+
+void nt_mesh_forget(nt_mesh *mesh)
+{
+	mesh->positions = mesh->normals = mesh->solve_normals = mesh->colors = mesh->tangents = NULL;
+	mesh->texcoords = mesh->solve_texcoords = mesh->corner_tangents = mesh->split.vertex_tangents = NULL;
+	mesh->indices = mesh->vertex_sources = mesh->split.indices = mesh->split.sources = NULL;
+	mesh->face_polygon = mesh->face_smoothing = mesh->face_primitive = NULL;
+	mesh->vertex_lacks = mesh->face_sizes = mesh->face_diagonals = NULL;
+	mesh->cut_arrays = NULL;
+	mesh->morphs = NULL;
+	mesh->morph_count = 0;
 }
 
 nmtan_mesh nt_mesh_view(const nt_mesh *mesh, nmtan_stored_uv *stored)

@@ -115,6 +115,7 @@ typedef struct nt_mesh {
 	const struct nt_mesh *same_as; /* an earlier mesh with the same geometry, which is loaded and solved once;
 	                                  NULL: none. That one has none */
 
+	bool late;               /* loaded and solved while the writer asks for it: scene->solve_late */
 	const nt_join *join;     /* it is solved with the others of it; NULL: by itself */
 	const struct nt_mesh *transform_of; /* of a copy in a join: the mesh whose texture transform applies; NULL:
 	                                       its own */
@@ -205,6 +206,11 @@ typedef struct nt_scene {
 	nt_finding_list findings;
 	nt_rounding rounding; /* of all meshes that were written */
 
+	/* Meshes that are late: the writer has a run of them loaded and solved when it needs them, and what they hold is gone
+	 * when it asks for the next run. */
+	nt_status (*solve_late)(void *late, size_t first, size_t count, nt_error *error);
+	void *late;
+
 	/* What a reader keeps for the writer of the same format, and the input's bytes. */
 	void *source;
 	void (*free_source)(void *source);
@@ -234,6 +240,12 @@ static inline bool nt_mesh_is_wanted(const nt_mesh *mesh)
 {
 	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR;
 }
+
+/* So many corners of late meshes are solved at once: enough for all threads, and a hundred megabytes or two. */
+enum { NT_LATE_CORNERS = 4 << 20 };
+
+/* Makes NULL of what a mesh holds in an arena that is gone: geometry and results, but not what is counted of them. */
+void nt_mesh_forget(nt_mesh *mesh);
 
 /* Gives a mesh with same_as the geometry and the results that the other has by now. They are shared, not
  * copied. */

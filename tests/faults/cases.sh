@@ -13,6 +13,7 @@ make_inputs() {
 	cp "$ROOT"/data/mirrored_cube.* "$ROOT"/data/bumps.png "$ROOT"/data/quad.obj "$ROOT"/data/quad_wedge.ply \
 		"$ROOT"/data/plates.* "$ROOT"/data/morph.gltf "$ROOT"/data/skin.gltf "$ROOT"/data/quantized.gltf \
 		"$ROOT"/data/sparse.gltf .
+	python3 "$ROOT/tests/support/cost_inputs.py" windows 20 windows.glb 12 || return 1
 	"$NMTAN" -q --draco=sequential plates.gltf draco.glb && "$NMTAN" -q --draco=edgebreaker morph.gltf edge.gltf &&
 		"$NMTAN" -q morph.gltf morph.glb && "$faults/make_meshopt" meshopt.glb
 }
@@ -31,6 +32,8 @@ cases() {
 		gltf, links | $plates || --buffers=link plates.gltf o.gltf
 		morphs | morph.gltf || --verify morph.gltf o.gltf
 		morphs again | morph.glb || --existing=repair morph.glb o.glb
+		windows | windows.glb || --only=all windows.glb o.glb
+		across | windows.glb || --across=mesh --only=all --verify windows.glb o.glb
 		sparse | sparse.gltf || sparse.gltf o.glb
 		quantized | quantized.gltf || --precision=short quantized.gltf o.glb
 		skin, draco out | skin.gltf || --draco=sequential skin.gltf o.glb

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""cost_inputs.py KIND COUNT FILE: small files that ask for much work, by test_cost.sh.
+"""cost_inputs.py KIND COUNT FILE [SIDE]: small files that ask for much work, by test_cost.sh.
 
 elements  a PLY header of COUNT elements
 usemtl    an OBJ that changes its material COUNT times
 same      a GLB of COUNT primitives over one set of accessors, 43 218 triangles each
-windows   a GLB of COUNT primitives over one set of attributes, each with another window of the indices; the
-          texture coordinates turn back at every fourth column, so that vertices are split
+windows   a GLB of COUNT primitives over one grid of SIDE (118) quads squared, each with another window of its 16-bit
+          indices; the texture coordinates turn back at every fourth column, so that vertices are split
 strip     an OBJ strip of COUNT quads
 """
 import json
@@ -47,10 +47,11 @@ def glb(count, out, side, windows):
             arrays[0] += struct.pack('<3f', x, y, 0)
             arrays[1] += struct.pack('<3f', 0, 0, 1)
             arrays[2] += struct.pack('<2f', (u if windows else x) / side, y / side)
+    form, width_bytes, kind = ('<6H', 2, 5123) if windows else ('<6I', 4, 5125)
     for y in range(side):
         for x in range(side):
             a = y * width + x
-            arrays[3] += struct.pack('<6I', a, a + 1, a + width, a + 1, a + width + 1, a + width)
+            arrays[3] += struct.pack(form, a, a + 1, a + width, a + 1, a + width + 1, a + width)
     views, offset = [], 0
     for array in arrays:
         views.append({'buffer': 0, 'byteOffset': offset, 'byteLength': len(array)})
@@ -61,7 +62,7 @@ def glb(count, out, side, windows):
                  {'bufferView': 1, 'componentType': 5126, 'count': vertices, 'type': 'VEC3'},
                  {'bufferView': 2, 'componentType': 5126, 'count': vertices, 'type': 'VEC2'}]
     for i in range(count if windows else 1):
-        accessors.append({'bufferView': 3, 'byteOffset': 12 * i, 'componentType': 5125, 'type': 'SCALAR',
+        accessors.append({'bufferView': 3, 'byteOffset': 3 * width_bytes * i, 'componentType': kind, 'type': 'SCALAR',
                           'count': 3 * (triangles - (count if windows else 0))})
     primitives = [{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}, 'material': 0,
                    'indices': 3 + i if windows else 3} for i in range(count)]
@@ -81,6 +82,6 @@ with open(sys.argv[3], 'wb') as out:
     if kind == 'same':
         glb(count, out, 147, False)
     elif kind == 'windows':
-        glb(count, out, 118, True)
+        glb(count, out, int(sys.argv[4]) if len(sys.argv) > 4 else 118, True)
     else:
         {'elements': elements, 'usemtl': usemtl, 'strip': strip}[kind](count, out)

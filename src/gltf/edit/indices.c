@@ -29,7 +29,7 @@ static size_t tail_of(const nt_mesh *mesh, uint64_t mode, uint64_t old_count)
 			mesh->indices ? tail : 0;
 }
 
-static nt_status encode(nt_arena *arena, const nt_mesh *mesh, const uint32_t *indices, size_t tail,
+static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices, bool borrowed, size_t tail,
 	uint32_t least, encoded *out, nt_error *error)
 {
 	uint32_t highest = nt_largest(indices, mesh->corner_count, 1);
@@ -44,7 +44,9 @@ static nt_status encode(nt_arena *arena, const nt_mesh *mesh, const uint32_t *in
 		out->bytes = (const unsigned char *)indices;
 		return NT_OK;
 	}
-	unsigned char *bytes = nt_arena_alloc(arena, out->count, out->width);
+	/* narrower ones take their place */
+	const bool fits = !borrowed && out->size <= mesh->corner_count * sizeof *indices;
+	unsigned char *bytes = fits ? (unsigned char *)indices : nt_arena_alloc(arena, out->count, out->width);
 	if (!bytes)
 		return nt_fail_memory(error);
 	nt_gltf_store_indices(indices, mesh->corner_count, out->width, bytes);
@@ -219,7 +221,7 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ve
 	bool done = false;
 	nt_status status = find_old(edits->document, mesh, leader->index, &old, error);
 	if (!status)
-		status = encode(&edits->arena, mesh, vertices->indices[user], tail_of(mesh, mode, old.count),
+		status = encode(&edits->arena, mesh, vertices->indices[user], vertices->borrowed, tail_of(mesh, mode, old.count),
 			old.component_type, &new, error);
 	if (!status && all_users_agree(pools, leader)) {
 		if (old.decoded)

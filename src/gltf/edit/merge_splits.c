@@ -279,26 +279,32 @@ static bool merge_mesh(merging *m, const nt_mesh *mesh, uint32_t set, uint32_t *
 	return merged;
 }
 
-/* Vertices that no corner of a set uses get the tangent that splitting its first mesh gave them, copies that of the
- * vertex they copy. */
-static void fill_unused(merging *m, const nt_mesh *mesh, uint32_t set)
+/* Vertices that no corner of a set uses have the tangent that splitting its first mesh gave them. They stay
+ * undefined, so that others take them. */
+static void set_unused(merging *m, const nt_mesh *mesh, uint32_t set)
 {
-	for (size_t pool_vertex = 0; pool_vertex < m->vertices->new_count; pool_vertex++) {
-		if (m->defined[set][pool_vertex])
+	for (size_t v = 0; v < m->vertices->old_count; v++) {
+		if (m->defined[set][v])
 			continue;
-		const uint32_t source = m->source[pool_vertex];
-		const bool own = pool_vertex < m->vertices->old_count || !m->defined[set][source];
-		const float *tangent = own ? mesh->split.vertex_tangents + 4 * (size_t)source :
-					     m->tangents[set] + 4 * (size_t)source;
-		const float *normal = NULL;
+		memcpy(m->tangents[set] + 4 * v, mesh->split.vertex_tangents + 4 * v, 4 * sizeof(float));
 		if (m->has_normals[set])
-			normal = own ? mesh->normals + 3 * (size_t)source :
-				       m->normals[set] + 3 * (size_t)source;
-		define_vertex(m, set, (uint32_t)pool_vertex, tangent, normal);
+			memcpy(m->normals[set] + 3 * v, mesh->normals + 3 * v, 3 * sizeof(float));
 		for (size_t k = 0; k < m->morph_counts[set]; k++)
-			memcpy(m->morphs[set][k] + 3 * pool_vertex,
-				own ? mesh->morphs[k].vertex_tangents + 3 * (size_t)source :
-				      m->morphs[set][k] + 3 * (size_t)source, 3 * sizeof(float));
+			memcpy(m->morphs[set][k] + 3 * v, mesh->morphs[k].vertex_tangents + 3 * v, 3 * sizeof(float));
+	}
+}
+
+/* Copies that no corner of a set uses have that of the vertex they copy. */
+static void set_unused_copies(merging *m, uint32_t set)
+{
+	for (size_t copy = m->vertices->old_count; copy < m->vertices->new_count; copy++) {
+		const size_t source = m->source[copy];
+		if (m->defined[set][copy])
+			continue;
+		define_vertex(m, set, (uint32_t)copy, m->tangents[set] + 4 * source,
+			m->has_normals[set] ? m->normals[set] + 3 * source : NULL);
+		for (size_t k = 0; k < m->morph_counts[set]; k++)
+			memcpy(m->morphs[set][k] + 3 * copy, m->morphs[set][k] + 3 * source, 3 * sizeof(float));
 	}
 }
 
@@ -355,32 +361,67 @@ static uint32_t find_same(const nt_vertex_pool *pool, const nt_mesh *mesh)
 	return low < pool->user_count && pool->users[low] == wanted ? (uint32_t)low : NT_NONE;
 }
 
-static bool merge_users(merging *m, nt_arena *arena)
+/* The users behind `user` that are late and can be solved with it: meshes in a row. */
+static uint32_t count_late(const nt_vertex_pool *pool, uint32_t user)
+{
+	uint32_t count = 0;
+	size_t corners = 0;
+	while (user + count < pool->user_count && pool->users[user + count] == pool->users[user] + count) {
+		const nt_mesh *mesh = nt_pool_mesh(pool, user + count);
+		corners += mesh->same_as ? 0 : 3 * mesh->face_count;
+		if (!mesh->late || (count && corners > NT_LATE_CORNERS))
+			break;
+		count++;
+	}
+	return count;
+}
+
+/* Merges one solved user; what it holds is not needed any more. */
+static bool merge_user(merging *m, uint32_t user, nt_arena *arena)
 {
 	nt_pool_vertices *vertices = m->vertices;
 	const nt_vertex_pool *pool = vertices->pool;
-	for (size_t i = 0; i < pool->user_count; i++) {
-		const nt_mesh *mesh = nt_pool_mesh(pool, i);
+	const nt_mesh *mesh = nt_pool_mesh(pool, user);
+	const uint32_t set = pool->sets.of[user], same = find_same(pool, mesh);
+	if (same != NT_NONE && pool->sets.of[same] == set) {
+		vertices->indices[user] = vertices->indices[same];
+		vertices->changed[user] = vertices->changed[same];
+		return true;
+	}
+	vertices->indices[user] = nt_arena_alloc(arena, mesh->corner_count, sizeof(uint32_t));
+	if (!vertices->indices[user] || !merge_mesh(m, mesh, set, vertices->indices[user]))
+		return false;
+	if (pool->sets.first[set] == user)
+		set_unused(m, mesh, set);
+	/* normals that were made may have given the mesh indices of its own */
+	vertices->changed[user] = mesh->vertex_count > mesh->source_vertex_count ||
+		!same_triangles(mesh, vertices->indices[user]);
+	return true;
+}
+
+static nt_status merge_users(merging *m, nt_arena *arena, nt_error *error)
+{
+	nt_pool_vertices *vertices = m->vertices;
+	const nt_vertex_pool *pool = vertices->pool;
+	const nt_scene *scene = pool->scene;
+	for (uint32_t i = 0, ready = 0; i < pool->user_count; i++) {
 		vertices->indices[i] = NULL;
 		vertices->changed[i] = false;
 		if (!nt_pool_is_solved(pool, i))
 			continue;
-		const uint32_t same = find_same(pool, mesh);
-		if (same != NT_NONE) {
-			vertices->indices[i] = vertices->indices[same];
-			vertices->changed[i] = vertices->changed[same];
-			continue;
+		if (nt_pool_mesh(pool, i)->late && i >= ready) {
+			const uint32_t count = count_late(pool, i);
+			const nt_status status = scene->solve_late(scene->late, pool->users[i], count, error);
+			if (status)
+				return status;
+			ready = i + count;
 		}
-		vertices->indices[i] = nt_arena_alloc(arena, mesh->corner_count, sizeof(uint32_t));
-		if (!vertices->indices[i] || !merge_mesh(m, mesh, pool->sets.of[i], vertices->indices[i]))
-			return false;
-		/* normals that were made may have given the mesh indices of its own */
-		vertices->changed[i] = mesh->vertex_count > mesh->source_vertex_count ||
-			!same_triangles(mesh, vertices->indices[i]);
+		if (!merge_user(m, i, arena))
+			return nt_fail_memory(error);
 	}
 	for (uint32_t set = 0; set < pool->sets.count; set++)
-		fill_unused(m, nt_pool_set_mesh(pool, set), set);
-	return true;
+		set_unused_copies(m, set);
+	return NT_OK;
 }
 
 /* A pool's only solved mesh, which others may be the same as; NULL where there are several, or where vertices
@@ -392,7 +433,7 @@ static const nt_mesh *lone_mesh(const nt_vertex_pool *pool)
 		const nt_mesh *mesh = nt_pool_mesh(pool, i);
 		if (!nt_pool_is_solved(pool, i) || (lone && mesh->same_as == lone))
 			continue;
-		if (lone || mesh->normals_made || mesh->morph_count ||
+		if (lone || mesh->late || mesh->normals_made || mesh->morph_count ||
 			mesh->vertex_count != mesh->source_vertex_count)
 			return NULL;
 		lone = mesh;
@@ -468,7 +509,9 @@ nt_status nt_merge_splits(nt_pool_vertices *vertices, const nt_vertex_pool *pool
 	if (lone)
 		return borrow_split(vertices, lone, arena) ? NT_OK : nt_fail_memory(error);
 	merging m;
-	const bool merged = start_merging(&m, vertices) && merge_users(&m, arena) && keep_vertices(&m, arena);
+	status = start_merging(&m, vertices) ? merge_users(&m, arena, error) : nt_fail_memory(error);
+	if (!status && !keep_vertices(&m, arena))
+		status = nt_fail_memory(error);
 	end_merging(&m);
-	return merged ? NT_OK : nt_fail_memory(error);
+	return status;
 }
