@@ -249,6 +249,20 @@ typedef struct nmtan_counts {
 
 #define NMTAN_COUNTS_INIT {sizeof(nmtan_counts), 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
 
+/* Bits of nmtan_output.corner_faults. A corner that was repaired has exactly one of the first six, the reason, and
+ * may have one of the others. */
+typedef enum nmtan_fault {
+	NMTAN_FAULT_ZERO = 1,        /* counts.repaired_zero corners have it, and so on */
+	NMTAN_FAULT_NOT_FINITE = 2,  /* repaired_not_finite */
+	NMTAN_FAULT_PARALLEL = 4,    /* repaired_parallel */
+	NMTAN_FAULT_SIGN = 8,        /* repaired_sign */
+	NMTAN_FAULT_UNASSIGNED = 16, /* repaired_unassigned */
+	NMTAN_FAULT_LEANING = 32,    /* repaired_leaning */
+	NMTAN_FAULT_NO_AVERAGE = 64, /* repaired, and the triangles of its orientation around it have no average: the
+	                                direction is that of a neighbour, or any across the normal */
+	NMTAN_FAULT_ILL_CONDITIONED = 128 /* ill_conditioned; only with the robust method, also with repair off */
+} nmtan_fault;
+
 /* Where results go. Each array has one row per corner, tightly packed. */
 typedef struct nmtan_output {
 	size_t struct_bytes; /* sizeof(nmtan_output): see "Structs" */
@@ -258,9 +272,11 @@ typedef struct nmtan_output {
 	                        corners */
 	float *magnitudes;   /* [corner count][2], may be NULL: lengths of dP/du and dP/dv as MikkTSpace
 	                        reports them; 1 with the other methods and at repaired corners */
+	uint8_t *corner_faults; /* [corner count], may be NULL: bits of nmtan_fault, what was wrong with each corner;
+	                           0: nothing, and with the default method the bytes are MikkTSpace's */
 } nmtan_output;
 
-#define NMTAN_OUTPUT_INIT {sizeof(nmtan_output), NULL, NULL, NULL}
+#define NMTAN_OUTPUT_INIT {sizeof(nmtan_output), NULL, NULL, NULL, NULL}
 
 /*
  * Computes a tangent for every corner of the mesh.

@@ -168,6 +168,9 @@ nmtan_status nt_tangents(const nmtan_mesh *mesh, const nmtan_options *options,
 	r.solve.tangents = to.tangents;
 	r.solve.bitangents = to.bitangents;
 	r.solve.magnitudes = to.magnitudes;
+	r.solve.faults = to.corner_faults;
+	if (to.corner_faults)
+		memset(to.corner_faults, 0, r.solve.corner_count);
 
 	/* the method's own answer, then what a renderer can use */
 	size_t ill_conditioned = 0;

@@ -233,7 +233,8 @@ static bool targets_match(const nt_mesh *mesh, const primitive_view *view, size_
 		const nt_reread_array *array = &view->target_tangents[m];
 		const unsigned char *element = element_at(array, vertex);
 		const float *moved = mesh->morphs[m].vertex_tangents + 3 * split;
-		const float delta[3] = {moved[0] - stored[0], moved[1] - stored[1], moved[2] - stored[2]};
+		const float delta[3] = {nt_morph_delta(moved[0], stored[0]), nt_morph_delta(moved[1], stored[1]),
+			nt_morph_delta(moved[2], stored[2])};
 		if (!element || array->component_type != NT_GLTF_FLOAT || array->components != 3 ||
 			memcmp(element, delta, sizeof delta) != 0)
 			return false;

@@ -76,6 +76,12 @@ typedef struct nt_morph {
 	double halfway_degrees;   /* by how much at most */
 } nt_morph;
 
+/* What a morph target adds to a component; never -0, so that tangents which were read back give the same bytes. */
+static inline float nt_morph_delta(float moved, float base)
+{
+	return moved - base + 0.0f;
+}
+
 /* What splitting found: copies to append behind the mesh's vertices. */
 typedef struct nt_split {
 	uint32_t *indices;      /* [mesh corner_count]; NULL: the mesh's own, nothing was split */

@@ -203,7 +203,11 @@ static nt_dvec3 best_tangent(const patient *p, size_t first, size_t end, size_t 
 	const nt_solve *solve = p->solve;
 	const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
 	nt_dvec3 t;
-	if (find_around(p, c, side, n, &t))
+	if (nt_sum_tangent(&around_corner(p, c)->sums[side], n, &t))
+		return t;
+	if (solve->faults)
+		solve->faults[c] |= NMTAN_FAULT_NO_AVERAGE;
+	if (borrow(solve, around_corner(p, c)->usable[side], n, &t))
 		return t;
 	for (size_t k = first; k < end; k++)
 		if (is_usable(solve, k) && borrow(solve, (uint32_t)k, n, &t))

@@ -25,23 +25,28 @@ typedef struct search {
 
 /* What is wrong with a row */
 
-/* Counts why a corner is not usable, and marks it. */
-static void mark_fault(float *t, const float *n, nmtan_counts *counts)
+/* Why a corner is not usable, which is counted. */
+static nmtan_fault fault_of(const float *t, const float *n, nmtan_counts *counts)
 {
 	const float squared = nt_squared(t);
 	if (t[3] == 0.0f)
-		counts->repaired_unassigned++;
-	else if (!isfinite(squared))
-		counts->repaired_not_finite++;
-	else if (!(fabsf(squared - 1.0f) <= NT_UNIT_TOLERANCE))
-		counts->repaired_zero++;
-	else if (nt_is_parallel(t, n))
-		counts->repaired_parallel++;
-	else if (!nt_is_frame(t, n))
-		counts->repaired_leaning++;
-	else
-		counts->repaired_sign++;
-	t[3] = 0.0f;
+		return counts->repaired_unassigned++, NMTAN_FAULT_UNASSIGNED;
+	if (!isfinite(squared))
+		return counts->repaired_not_finite++, NMTAN_FAULT_NOT_FINITE;
+	if (!(fabsf(squared - 1.0f) <= NT_UNIT_TOLERANCE))
+		return counts->repaired_zero++, NMTAN_FAULT_ZERO;
+	if (nt_is_parallel(t, n))
+		return counts->repaired_parallel++, NMTAN_FAULT_PARALLEL;
+	if (!nt_is_frame(t, n))
+		return counts->repaired_leaning++, NMTAN_FAULT_LEANING;
+	return counts->repaired_sign++, NMTAN_FAULT_SIGN;
+}
+
+static void mark_fault(const nt_solve *solve, size_t corner, nmtan_fault fault)
+{
+	solve->tangents[4 * corner + 3] = 0.0f;
+	if (solve->faults)
+		solve->faults[corner] |= (uint8_t)fault;
 }
 
 /* The w of most corners of a face that have one; of the first of these when there are two of each; 0: none has. */
@@ -70,7 +75,7 @@ static bool has_unusable(const nt_solve *solve, size_t first, size_t size, int o
 	for (size_t k = 0; k < size; k++) {
 		const float *n = nt_normal(mesh, nt_vertex_of(mesh, first + k));
 		if (!nt_is_frame(t + 4 * k, n) || t[4 * k + 3] != w || w == 0.0f)
-			mark_fault(t + 4 * k, n, counts);
+			mark_fault(solve, first + k, fault_of(t + 4 * k, n, counts));
 	}
 	return true;
 }

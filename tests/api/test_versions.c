@@ -148,9 +148,15 @@ static void older_caller_gets_defaults(void **state)
 	c.options.options.workspace = nowhere;
 	c.output.output.struct_bytes = offsetof(nmtan_output, bitangents);
 	c.output.output.bitangents = c.output.output.magnitudes = nowhere;
+	c.output.output.corner_faults = nowhere;
 	assert_int_equal(solve(&c), NMTAN_OK);
 	for (int i = 0; i < 6; i++)
 		assert_true(c.tangents[i][0] == (i < 3 ? 1.0f : -1.0f) && c.tangents[i][3] == c.tangents[i][0]);
+	float magnitudes[12];
+	c.output.output.struct_bytes = offsetof(nmtan_output, corner_faults);
+	c.output.output.bitangents = NULL;
+	c.output.output.magnitudes = magnitudes;
+	assert_int_equal(solve(&c), NMTAN_OK);
 	c.split.split.struct_bytes = offsetof(nmtan_split_output, vertex_tangents);
 	c.split.split.vertex_tangents = nowhere;
 	assert_int_equal(split(&c), NMTAN_OK);

@@ -115,7 +115,7 @@ nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_p
 			return nt_fail_memory(error);
 		for (size_t v = 0; v < vertices->new_count; v++)
 			for (size_t k = 0; k < 3; k++)
-				delta[3 * v + k] = moved[3 * v + k] - base[4 * v + k];
+				delta[3 * v + k] = nt_morph_delta(moved[3 * v + k], base[4 * v + k]);
 		bool found;
 		if (find_deltas(edits, vertices, set, mesh->morphs[m].target, delta, &found))
 			return nt_fail_memory(error);

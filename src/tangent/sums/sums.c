@@ -292,7 +292,10 @@ static size_t write_triangle(const nt_sums *s, size_t t)
 		const bool none = side == NO_SIDE || !s->results[side];
 		if (!none && (vertex & NT_VERTEX_LOST << side))
 			s->flags[t] |= NT_SUM_SUSPECT;
-		ill += (none || (vertex & NT_VERTEX_ILL << side)) && !is_counted(s, t, i);
+		const bool is_ill = none || (vertex & NT_VERTEX_ILL << side);
+		ill += is_ill && !is_counted(s, t, i);
+		if (is_ill && s->solve->faults && s->weight == NT_WEIGHT_ANGLE)
+			s->solve->faults[nt_sums_corner(s, i)] |= NMTAN_FAULT_ILL_CONDITIONED;
 		write_corner(s, nt_sums_corner(s, i), id, side);
 	}
 	return ill;
