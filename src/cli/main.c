@@ -12,7 +12,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "batch/inputs.h"
 #include "cli/exit_code.h"
+#include "cli/failures.h"
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/progress.h"
@@ -30,8 +32,8 @@ typedef struct session {
 	nt_progress *progress;
 	nt_buffer text;   /* what is being said */
 	nt_summary total; /* of the times and sizes alone */
-	nt_buffer failures;
-	size_t failed;
+	nt_failures failures;
+	size_t untried;
 	int exit_code;
 } session;
 
@@ -104,42 +106,62 @@ static void add_times(nt_summary *total, const nt_summary *one)
 		total->skipped[reason] += one->skipped[reason];
 }
 
-/* Called once per job, in order: says what became of it. */
-static void tell_job(void *user, nt_job *job)
+/* Says what became of a job that ran, and returns its exit code. */
+static int tell_run(session *s, nt_job *job)
 {
-	session *s = user;
 	const nt_command *c = s->command;
+	nt_summary *summary = &job->outcome->summary;
 	int code = nt_exit_code(job->status);
 	/* a report on standard output says it better */
 	const char *report = s->plan->target.path;
 	if (s->style.verbosity >= 0 && !(report && strcmp(report, "-") == 0))
-		nt_message_findings(&s->text, &job->summary.findings, job->input,
+		nt_message_findings(&s->text, &summary->findings, job->input,
 			c->settings.check || s->style.verbosity > 0, s->style);
 	nt_message_meshes(&s->text, job); /* none unless -v asked for them */
 	if (job->status) {
-		nt_message_error(&s->text, &job->error, s->style);
-		nt_buffer_format(&s->failures, "%s", s->failed++ ? ", " : "");
-		nt_buffer_clean(&s->failures, job->input);
-		nt_buffer_format(&s->failures, " (%s)", nt_status_text(job->status));
+		nt_message_error(&s->text, &job->outcome->error, s->style);
 	} else {
 		if (s->style.verbosity >= 0)
 			nt_message_success(&s->text, job, &c->settings);
-		if (findings_fail(&job->summary, c->fail_on))
+		if (findings_fail(summary, c->fail_on))
 			code = NT_EXIT_FINDINGS;
 	}
-	add_times(&s->total, &job->summary);
+	add_times(&s->total, summary);
+	if (s->reports)
+		s->reports[s->report_count++] = summary->report;
+	summary->report = NULL;
+	return code;
+}
+
+/* What there is no memory for in a message is said all the same. */
+static void tell_failure(session *s, const nt_job *job)
+{
+	nt_error error;
+	nt_fail_memory(&error);
+	nt_say_error(job->outcome ? &job->outcome->error : &error, s->style);
+}
+
+/* Called once per job, in order: says what became of it. */
+static void tell_job(void *user, nt_job *job)
+{
+	session *s = user;
+	int code = nt_exit_code(job->status);
+	if (job->end == NT_JOB_UNTRIED)
+		s->untried++;
+	else if (job->outcome)
+		code = tell_run(s, job);
+	if (job->status)
+		nt_failures_add(&s->failures, job);
 	nt_progress_file(s->progress);
 	nt_progress_hide(s->progress);
-	if (job->status && s->text.failed)
-		nt_say_error(&job->error, s->style);
+	if (job->status && (s->text.failed || !job->outcome))
+		tell_failure(s, job);
 	else if (!nt_say(&s->text))
 		code = NT_EXIT_INTERNAL;
 	s->text.size = 0;
 	s->text.failed = false;
 	nt_progress_show(s->progress);
 	s->exit_code = nt_exit_worse(s->exit_code, code);
-	s->reports[s->report_count++] = job->summary.report;
-	job->summary.report = NULL;
 }
 
 /* Returns whether there is sense in writing more. */
@@ -170,24 +192,25 @@ static void tell_report(session *s)
 	free(s->reports);
 }
 
-/* After the last of many: how many failed, by name; and the times. */
+/* After the last of many: how many failed, and why; and the times. */
 static void tell_end(session *s, size_t count)
 {
-	if (count > 1 && (s->failed || s->style.verbosity >= 0)) {
-		nt_buffer_format(&s->text, "nmtan: %zu of %zu done", count - s->failed, count);
-		if (s->failed)
-			nt_buffer_format(&s->text, ", %zu failed", s->failed);
-		/* each has been told already */
-		if (s->failed && !s->failures.failed)
-			nt_buffer_format(&s->text, ": %s", s->failures.data);
-		nt_buffer_text(&s->text, "\n");
+	const size_t failed = s->failures.count;
+	if (count != 1 && (failed || s->style.verbosity >= 0)) {
+		nt_buffer_format(&s->text, "nmtan: %zu of %zu done", count - failed - s->untried, count);
+		if (failed)
+			nt_buffer_format(&s->text, ", %zu failed", failed);
+		if (s->untried)
+			nt_buffer_format(&s->text, ", %zu not tried", s->untried);
+		nt_buffer_text(&s->text, failed ? ":\n" : "\n");
+		nt_failures_append(&s->text, &s->failures, NULL);
 	}
 	if (s->command->timing)
 		nt_message_timing(&s->text, &s->total);
 	if (!nt_say(&s->text))
 		s->exit_code = nt_exit_worse(s->exit_code, NT_EXIT_INTERNAL);
 	nt_buffer_free(&s->text);
-	nt_buffer_free(&s->failures);
+	nt_failures_free(&s->failures);
 }
 
 static bool same_file(const char *a, const char *b)
@@ -202,7 +225,7 @@ static nt_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
 	if (c->settings.check)
 		return nt_batch_check(batch, c->operands, c->operand_count, error);
 	if (c->directory)
-		return nt_batch_into(batch, c->operands, c->operand_count, c->directory, &c->settings,
+		return nt_batch_into(batch, c->operands, c->operand_count, c->directory, c->mirror, &c->settings,
 			error);
 	const char *input = c->operands[0], *output = c->operands[c->operand_count - 1];
 	/* the same file twice says the same thing */
@@ -215,13 +238,20 @@ static nt_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
 	return nt_batch_pair(batch, input, output, error);
 }
 
+/* Memory for what is said, and for the reports; false: there is none. */
+static bool begin_session(session *s, size_t count)
+{
+	if (s->plan->wanted)
+		s->reports = calloc(count ? count : 1, sizeof *s->reports);
+	return (s->reports || !s->plan->wanted) && nt_buffer_reserve(&s->text, MESSAGE_BYTES);
+}
+
 static int run_batch(const nt_command *command, nt_style style, const nt_report_plan *plan,
 	nt_batch *batch)
 {
-	session s = {.command = command, .plan = plan, .style = style,
-		.reports = calloc(batch->count, sizeof(nt_report *))};
+	session s = {.command = command, .plan = plan, .style = style};
 	nt_error error;
-	if (!s.reports || !nt_buffer_reserve(&s.text, MESSAGE_BYTES)) {
+	if (!begin_session(&s, batch->count)) {
 		free(s.reports);
 		nt_fail_memory(&error);
 		nt_say_error(&error, style);
@@ -231,24 +261,49 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 	settings.report = plan->wanted ? &plan->options : NULL;
 	settings.list_meshes = style.verbosity > 0;
 	s.progress = nt_progress_start(style.verbosity < 0 ? NT_PROGRESS_OFF : command->progress,
-		batch->jobs[0].input, batch->count);
+		batch->count ? batch->jobs[0].input : "", batch->count);
 	if (s.progress && batch->count == 1) {
 		settings.on_stage = nt_progress_stage;
 		settings.on_stage_user = s.progress;
 	}
-	nt_batch_run(batch, &settings, nt_run, tell_job, &s);
+	const nt_batch_options options = {.run = nt_run, .jobs = (unsigned)command->jobs,
+		.fail_fast = command->fail_fast, .done = tell_job, .user = &s};
+	nt_batch_run(batch, &settings, &options);
 	nt_progress_stop(s.progress);
 	tell_report(&s);
 	tell_end(&s, batch->count);
 	return s.exit_code;
 }
 
-static int run(const nt_command *command, nt_style style, bool colour_on_stdout)
+/* The names of many inputs become the command's operands. */
+static nt_status choose_inputs(nt_command *c, nt_inputs *inputs, nt_error *error)
 {
+	const nt_folder_rules rules = {.recursive = c->recursive, .include = c->include.items,
+		.include_count = c->include.count, .exclude = c->exclude.items, .exclude_count = c->exclude.count,
+		.leave_out = c->directory};
+	nt_status status = NT_OK;
+	if (!nt_command_is_many(c))
+		return NT_OK;
+	for (size_t i = 0; i < c->operand_count && !status; i++)
+		status = nt_inputs_add(inputs, c->operands[i], &rules, error);
+	if (!status && c->files_from)
+		status = nt_inputs_add_list(inputs, c->files_from, '\n', &rules, error);
+	if (!status && c->files0_from)
+		status = nt_inputs_add_list(inputs, c->files0_from, '\0', &rules, error);
+	c->operands = inputs->names;
+	c->operand_count = inputs->count;
+	return status;
+}
+
+static int run(nt_command *command, nt_style style, bool colour_on_stdout)
+{
+	nt_inputs inputs = {0};
 	nt_batch batch = {0};
-	nt_report_plan plan;
+	nt_report_plan plan = {0};
 	nt_error error;
-	nt_status status = nt_report_plan_make(&plan, command, colour_on_stdout, &error);
+	nt_status status = choose_inputs(command, &inputs, &error);
+	if (!status)
+		status = nt_report_plan_make(&plan, command, colour_on_stdout, &error);
 	if (!status)
 		status = prepare(&batch, command, &error);
 	int code = nt_exit_code(status);
@@ -260,6 +315,7 @@ static int run(const nt_command *command, nt_style style, bool colour_on_stdout)
 		code = run_batch(command, style, &plan, &batch);
 	nt_batch_free(&batch);
 	nt_report_plan_free(&plan);
+	nt_inputs_free(&inputs);
 	return code;
 }
 

@@ -153,7 +153,7 @@ static void append_findings_count(nt_buffer *out, const nt_summary *s)
 
 void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *settings)
 {
-	const nt_summary *s = &job->summary;
+	const nt_summary *s = &job->outcome->summary;
 	nt_buffer_text(out, "nmtan: ");
 	nt_buffer_clean(out, strcmp(job->input, "-") == 0 ? "standard input" : job->input);
 	if (job->output) {
@@ -196,8 +196,9 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 
 void nt_message_meshes(nt_buffer *out, const nt_job *job)
 {
-	for (size_t i = 0; i < job->summary.line_count; i++) {
-		const nt_mesh_line *line = &job->summary.lines[i];
+	const nt_summary *s = &job->outcome->summary;
+	for (size_t i = 0; i < s->line_count; i++) {
+		const nt_mesh_line *line = &s->lines[i];
 		const bool solved = line->decision == NT_DECISION_SOLVE || line->decision == NT_DECISION_REPAIR;
 		nt_buffer_text(out, "nmtan: ");
 		append_place(out, &line->place, job->input);

@@ -12,7 +12,7 @@
 
 #include "base/buffer.h"
 #include "cli/options.h"
-#include "pipeline/batch.h"
+#include "batch/batch.h"
 
 typedef struct nt_style {
 	bool colour;

@@ -15,7 +15,8 @@ typedef enum nt_option_kind {
 	NT_OPTION_CHOICE,      /* int becomes `first` + the number of the word in `values` */
 	NT_OPTION_NUMBER,      /* int becomes 0..most */
 	NT_OPTION_AUTO_NUMBER, /* the same; -1 for the word auto */
-	NT_OPTION_TEXT         /* const char * becomes the word */
+	NT_OPTION_TEXT,        /* const char * becomes the word */
+	NT_OPTION_LIST         /* nt_words gets the word as its last */
 } nt_option_kind;
 
 typedef struct nt_option_row {

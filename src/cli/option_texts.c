@@ -124,7 +124,7 @@ void nt_options_bash(nt_buffer *out)
 			nt_buffer_text(out, "\t\tCOMPREPLY=($(compgen -W '");
 			append_words(out, row);
 			nt_buffer_text(out, "' -- \"$word\"))\n");
-		} else if (row->kind == NT_OPTION_TEXT) {
+		} else if (row->kind == NT_OPTION_TEXT || row->kind == NT_OPTION_LIST) {
 			nt_buffer_format(out, "\t\tCOMPREPLY=($(compgen -%c -- \"$word\"))\n",
 				strcmp(row->values, "DIR") == 0 ? 'd' : 'f');
 		}

@@ -46,11 +46,31 @@ const nt_option_row nt_option_rows[] = {
 	{"allow-outside", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"let the input refer to files outside its folder", SETTING(allow_outside), false},
 
+	{.kind = NT_OPTION_HEADING, .name = "Many inputs"},
+	{"directory", 'd', NT_OPTION_TEXT, "DIR", 0, 0, NULL,
+		"write each input into DIR under its own name", FIELD(directory), true},
+	{"mirror", 0, NT_OPTION_TEXT, "ROOT", 0, 0, NULL,
+		"with -d: keep the folders that inputs are in, from ROOT on", FIELD(mirror), true},
+	{"files-from", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
+		"read names of further inputs from FILE, one a line; - is standard input", FIELD(files_from), false},
+	{"files0-from", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL, "the same, with a NUL after each name",
+		FIELD(files0_from), false},
+	{"recursive", 'r', NT_OPTION_FLAG, NULL, 0, 0, NULL,
+		"a folder stands for the meshes in it and below, by the endings of their names", FIELD(recursive), false},
+	{"include", 0, NT_OPTION_LIST, "GLOB", 0, 0, NULL,
+		"with -r: only files that match GLOB, or one of several", FIELD(include), false},
+	{"exclude", 0, NT_OPTION_LIST, "GLOB", 0, 0, NULL,
+		"with -r: no files and folders that match GLOB", FIELD(exclude), false},
+	{"fail-fast", 0, NT_OPTION_SET, NULL, 1, 0, NULL, "begin with no further input after one has failed",
+		FIELD(fail_fast), false},
+	{"keep-going", 0, NT_OPTION_SET, NULL, 0, 0, NULL, "try every input; so it is by default",
+		FIELD(fail_fast), false},
+	{"jobs", 0, NT_OPTION_NUMBER, "N", 0, 1024, "0",
+		"how many inputs at a time, which share the threads; 0: as many as threads", FIELD(jobs), false},
+
 	{.kind = NT_OPTION_HEADING, .name = "Output"},
 	{"output-format", 0, NT_OPTION_CHOICE, "ply|gltf|glb", NT_FORMAT_PLY, 0, "by name",
 		"format of the output", SETTING(output_format), true},
-	{"directory", 'd', NT_OPTION_TEXT, "DIR", 0, 0, NULL,
-		"many inputs: write each into DIR under its own name", FIELD(directory), true},
 	{"in-place", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"replace each input by its output; with -d: outputs may replace inputs",
 		SETTING(in_place), true},
@@ -210,6 +230,22 @@ static nt_status refuse_value(parser *p, const nt_option_row *row, const char *w
 		row->name, word, row->kind == NT_OPTION_AUTO_NUMBER ? "auto or " : "", row->most);
 }
 
+static nt_status refuse_empty(parser *p, const nt_option_row *row)
+{
+	return nt_fail(p->error, NT_ERROR_USAGE, "--%s: '' is no %s", row->name, row->values);
+}
+
+static nt_status append_word(parser *p, const nt_option_row *row, nt_words *words, const char *word)
+{
+	if (!*word)
+		return refuse_empty(p, row);
+	if (words->count == NT_MOST_WORDS)
+		return nt_fail(p->error, NT_ERROR_USAGE, "--%s is there more than %d times: '%s'", row->name,
+			NT_MOST_WORDS, word);
+	words->items[words->count++] = word;
+	return NT_OK;
+}
+
 /* Stores what one option says; word is NULL where it takes none. */
 static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 {
@@ -241,14 +277,15 @@ static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 		break;
 	case NT_OPTION_TEXT:
 		if (!*word)
-			return nt_fail(p->error, NT_ERROR_USAGE, "--%s: '' is no %s", row->name,
-				row->values);
+			return refuse_empty(p, row);
 		/* of two choices the last one counts, but a name or a list would be lost */
 		if (*(const char **)(void *)field)
 			return nt_fail(p->error, NT_ERROR_USAGE, "--%s is there twice: '%s' and '%s'", row->name,
 				*(const char **)(void *)field, word);
 		*(const char **)(void *)field = word;
 		break;
+	case NT_OPTION_LIST:
+		return append_word(p, row, (nt_words *)(void *)field, word);
 	}
 	return NT_OK;
 }
@@ -359,6 +396,10 @@ static nt_status check_clashes(parser *p)
 		if (p->command->settings.check && nt_option_rows[i].writes && p->given[i])
 			return nt_fail(p->error, NT_ERROR_USAGE,
 				"--check writes no mesh, so --%s has no meaning", nt_option_rows[i].name);
+	static const char *const needs[][2] = {{"mirror", "directory"}, {"include", "recursive"}, {"exclude", "recursive"}};
+	for (size_t i = 0; i < sizeof needs / sizeof *needs; i++)
+		if (given(p, needs[i][0]) && !given(p, needs[i][1]))
+			return nt_fail(p->error, NT_ERROR_USAGE, "--%s needs --%s", needs[i][0], needs[i][1]);
 	nt_settings *s = &p->command->settings;
 	if (s->embed && given(p, "buffers") && s->buffers != NT_BUFFERS_EMBED)
 		return nt_fail(p->error, NT_ERROR_USAGE,
@@ -372,36 +413,62 @@ static nt_status check_clashes(parser *p)
 	return NT_OK;
 }
 
-/* Too few or too many names, and "-" where a name is needed. */
-static nt_status check_operands(parser *p)
+bool nt_command_is_many(const nt_command *command)
+{
+	return command->settings.check || command->directory || command->settings.in_place;
+}
+
+/* Which option names more inputs than the words do; NULL: none. */
+static const char *list_option(const nt_command *c)
+{
+	return c->files_from ? "files-from" : c->files0_from ? "files0-from" : c->recursive ? "recursive" : NULL;
+}
+
+/* Too few or too many names. */
+static nt_status check_count(const parser *p)
 {
 	const nt_command *c = p->command;
 	const size_t count = c->operand_count;
-	const bool many = c->settings.check || c->directory || c->settings.in_place;
-	if (count == 0)
+	const bool many = nt_command_is_many(c);
+	if (list_option(c) && !many)
+		return nt_fail(p->error, NT_ERROR_USAGE, "--%s is for many inputs: use -d DIR, --in-place or --check",
+			list_option(c));
+	if (count == 0 && !c->files_from && !c->files0_from)
 		return nt_fail(p->error, NT_ERROR_USAGE, "no input is named");
 	if (!many && count == 1)
 		return nt_fail(p->error, NT_ERROR_USAGE, "no output is named after '%s'", c->operands[0]);
 	if (!many && count > 2)
 		return nt_fail(p->error, NT_ERROR_USAGE,
 			"'%s' is one name too many; for many inputs use -d DIR or --in-place", c->operands[2]);
+	return NT_OK;
+}
+
+static bool is_dash(const char *name)
+{
+	return name && strcmp(name, "-") == 0;
+}
+
+/* "-" where a name is needed. */
+static nt_status check_dashes(const parser *p)
+{
+	const nt_command *c = p->command;
+	const bool many = nt_command_is_many(c);
 	size_t dashes = 0;
-	const size_t inputs = many ? count : 1;
+	const size_t inputs = many ? c->operand_count : 1;
 	for (size_t i = 0; i < inputs; i++)
-		dashes += strcmp(c->operands[i], "-") == 0;
+		dashes += is_dash(c->operands[i]);
 	if (dashes && (c->directory || c->settings.in_place))
 		return nt_fail(p->error, NT_ERROR_USAGE, "'-' has no name to write under: not with --%s",
 			c->directory ? "directory" : "in-place");
-	if (dashes > 1)
+	if (dashes + is_dash(c->files_from) + is_dash(c->files0_from) > 1)
 		return nt_fail(p->error, NT_ERROR_USAGE, "'-' can be read once only");
-	if (!many && count == 2 && strcmp(c->operands[1], "-") == 0) {
-		if (c->settings.output_format == NT_FORMAT_GLTF && !c->settings.embed)
-			return nt_fail(p->error, NT_ERROR_USAGE,
-				"'-' has no place for the .bin of --output-format=gltf: add --embed");
-		if (c->settings.verify)
-			return nt_fail(p->error, NT_ERROR_USAGE,
-				"--verify reads the output back, which '-' does not allow");
-	}
+	if (many || !is_dash(c->operands[1]))
+		return NT_OK;
+	if (c->settings.output_format == NT_FORMAT_GLTF && !c->settings.embed)
+		return nt_fail(p->error, NT_ERROR_USAGE,
+			"'-' has no place for the .bin of --output-format=gltf: add --embed");
+	if (c->settings.verify)
+		return nt_fail(p->error, NT_ERROR_USAGE, "--verify reads the output back, which '-' does not allow");
 	return NT_OK;
 }
 
@@ -442,5 +509,7 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 	nt_status status = parse_draco_bits(&p);
 	if (!status)
 		status = check_clashes(&p);
-	return status ? status : check_operands(&p);
+	if (!status)
+		status = check_count(&p);
+	return status ? status : check_dashes(&p);
 }

@@ -25,6 +25,14 @@ enum nt_fail_on { NT_FAIL_ON_ERROR, NT_FAIL_ON_WARNING, NT_FAIL_ON_INFO, NT_FAIL
 
 enum nt_progress_mode { NT_PROGRESS_AUTO, NT_PROGRESS_ON, NT_PROGRESS_OFF };
 
+/* What an option said each time it was given. */
+enum { NT_MOST_WORDS = 32 };
+
+typedef struct nt_words {
+	const char *items[NT_MOST_WORDS];
+	size_t count;
+} nt_words;
+
 /* What the words mean. */
 typedef struct nt_command {
 	nt_settings settings;
@@ -42,6 +50,12 @@ typedef struct nt_command {
 	int max_issues;        /* 0: all */
 	const char *uv_image;  /* folder; NULL: none */
 	const char *directory; /* -d; NULL: none */
+	const char *mirror;    /* folder whose tree outputs keep; NULL: none */
+	const char *files_from, *files0_from; /* lists of inputs; NULL: none */
+	bool recursive;
+	nt_words include, exclude; /* patterns */
+	int jobs;              /* inputs at a time; 0: as threads */
+	int fail_fast;         /* stop after a failure: 0, 1 */
 	const char **operands; /* in argv, which is reordered for it */
 	size_t operand_count;
 } nt_command;
@@ -56,6 +70,9 @@ typedef struct nt_command {
  * Returns NT_OK or NT_ERROR_USAGE.
  */
 nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error *error);
+
+/* Whether the operands are inputs, any number of them; else they are an input and an output. */
+bool nt_command_is_many(const nt_command *command);
 
 /* What --help prints, and the two lines that follow a mistake. */
 void nt_options_help(nt_buffer *out);

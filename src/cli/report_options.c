@@ -72,8 +72,7 @@ static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool c
 	nt_report_target *target = &plan->target;
 	target->no_clobber = c->settings.no_clobber;
 	target->inputs = c->operands;
-	target->input_count =
-		c->settings.check || c->directory || c->settings.in_place ? c->operand_count : 1;
+	target->input_count = nt_command_is_many(c) ? c->operand_count : 1;
 	target->path = c->report;
 	/* who names a format wants to see it */
 	if (!target->path && c->settings.check && (c->verbosity >= 0 || c->report_format))

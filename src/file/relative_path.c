@@ -9,6 +9,7 @@
 #include <limits.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 #include "file/lookup.h"
 #include "file/uri.h"
 
@@ -49,12 +50,10 @@ bool nt_link_is_absolute(const char *name)
 }
 
 /* Appends the components of a name to a path, one by one. `begin`: where the path begins in text. */
-static void append_components(nt_buffer *text, size_t begin, const char *name)
+static void append_components(nt_buffer *text, size_t begin, const char *name, const char *separators)
 {
 	while (*name && !text->failed) {
-		size_t length = 0;
-		while (name[length] && !is_separator(name[length]))
-			length++;
+		const size_t length = strcspn(name, separators);
 		if (length == 2 && memcmp(name, "..", 2) == 0) {
 			while (text->size > begin && text->data[--text->size] != '/')
 				;
@@ -65,18 +64,38 @@ static void append_components(nt_buffer *text, size_t begin, const char *name)
 			nt_buffer_append(text, name, length);
 		}
 		name += length;
-		name += is_separator(*name);
+		name += *name != '\0';
 	}
+}
+
+/* A path of no components is the root's. */
+static void end_path(nt_buffer *text, size_t begin)
+{
+	if (text->size == begin)
+		nt_buffer_text(text, "/");
 }
 
 void nt_link_join(nt_buffer *text, const char *folder, const char *name)
 {
 	const size_t begin = text->size;
 	if (!nt_link_is_absolute(name))
-		append_components(text, begin, folder);
-	append_components(text, begin, name);
-	if (text->size == begin)
-		nt_buffer_text(text, "/");
+		append_components(text, begin, folder, "/\\");
+	append_components(text, begin, name, "/\\");
+	end_path(text, begin);
+}
+
+nt_status nt_path_absolute(nt_buffer *text, const char *name, nt_error *error)
+{
+	const size_t begin = text->size;
+	char *current = name[0] == '/' ? NULL : getcwd(NULL, 0);
+	if (name[0] != '/' && !current)
+		return nt_lookup_failed(".", errno, error);
+	if (current)
+		append_components(text, begin, current, "/");
+	append_components(text, begin, name, "/");
+	end_path(text, begin);
+	free(current);
+	return text->failed ? nt_fail_memory(error) : NT_OK;
 }
 
 bool nt_link_is_inside(const char *path, const char *folder)

@@ -17,7 +17,8 @@ exits 2
 exists out/quad.glb out/plates.glb
 is "$(ls out | wc -l)" 2
 says "bad.obj:3:"
-says "2 of 4 done, 2 failed: missing.obj"
+says "2 of 4 done, 2 failed:"
+says "  1: no such file: missing.obj"
 run -q -d out missing.obj "$data/quad.obj"
 exits 2
 says "missing.obj"

@@ -14,6 +14,7 @@ make_inputs() {
 		"$ROOT"/data/plates.* "$ROOT"/data/morph.gltf "$ROOT"/data/skin.gltf "$ROOT"/data/quantized.gltf \
 		"$ROOT"/data/sparse.gltf .
 	python3 "$ROOT/tests/support/cost_inputs.py" windows 20 windows.glb 12 || return 1
+	printf 'quad.obj\nplates.glb\n' >list
 	"$NMTAN" -q --draco=sequential plates.gltf draco.glb && "$NMTAN" -q --draco=edgebreaker morph.gltf edge.gltf &&
 		"$NMTAN" -q morph.gltf morph.glb && "$faults/make_meshopt" meshopt.glb
 }
@@ -42,6 +43,8 @@ cases() {
 		meshopt | meshopt.glb bumps.png || --verify meshopt.glb o.glb
 		in place | $plates || --in-place plates.gltf
 		many | $cube quad.obj plates.glb | many | -d out mirrored_cube.obj quad.obj plates.glb
+		a list | list quad.obj plates.glb | many | --fail-fast -d out --files-from=list
+		a folder | quad.obj plates.glb | many | -r -d out --mirror=. --exclude=x .
 		pictures | $cube || --check --uv-image=uv mirrored_cube.obj
 		convert and report | $cube | report=r.html | --report=r.html mirrored_cube.obj o.glb
 	END

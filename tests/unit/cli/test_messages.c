@@ -87,10 +87,12 @@ static void success_is_one_line_that_accounts_for_everything(void **state)
 	nt_buffer out = {0};
 	nt_settings settings = {0};
 	char output[] = "b.glb";
-	nt_job job = {.input = "a.obj", .output = output};
-	job.summary = (nt_summary){.mesh_count = 3, .solved_count = 2, .triangle_count = 12,
+	nt_outcome outcome = {0};
+	nt_summary *summary = &outcome.summary;
+	nt_job job = {.input = "a.obj", .output = output, .outcome = &outcome};
+	*summary = (nt_summary){.mesh_count = 3, .solved_count = 2, .triangle_count = 12,
 		.vertex_count = 20, .appended_tangents = 4, .appended_normals = 1, .total_seconds = 0.25};
-	job.summary.skipped[NT_SKIP_NO_TEXCOORDS] = 1;
+	summary->skipped[NT_SKIP_NO_TEXCOORDS] = 1;
 	nt_message_success(&out, &job, &settings);
 	char expected[256];
 	snprintf(expected, sizeof expected,
@@ -100,15 +102,16 @@ static void success_is_one_line_that_accounts_for_everything(void **state)
 	says(&out, expected);
 
 	char stream[] = "-";
-	job = (nt_job){.input = "-", .output = stream,
-		.summary = {.mesh_count = 1, .solved_count = 1, .triangle_count = 1, .vertex_count = 3}};
+	job = (nt_job){.input = "-", .output = stream, .outcome = &outcome};
+	*summary = (nt_summary){.mesh_count = 1, .solved_count = 1, .triangle_count = 1, .vertex_count = 3};
 	nt_message_success(&out, &job, &settings);
 	says(&out, "nmtan: standard input -> standard output: 1 primitive, 1 triangle, 3 vertices, 0 s\n");
 
 	/* every primitive is judged, whichever would get tangents */
-	job = (nt_job){.input = "a.obj", .summary = {.mesh_count = 3, .solved_count = 1, .triangle_count = 1,
-		.vertex_count = 3, .counts = {.repaired_zero = 2, .repaired_sign = 1}}};
-	job.summary.skipped[NT_SKIP_NO_TEXCOORDS] = 2;
+	job = (nt_job){.input = "a.obj", .outcome = &outcome};
+	*summary = (nt_summary){.mesh_count = 3, .solved_count = 1, .triangle_count = 1,
+		.vertex_count = 3, .counts = {.repaired_zero = 2, .repaired_sign = 1}};
+	summary->skipped[NT_SKIP_NO_TEXCOORDS] = 2;
 	settings.check = true;
 	nt_message_success(&out, &job, &settings);
 	says(&out, "nmtan: a.obj: checked, 3 primitives, 3 tangents would be repaired, no findings, 0 s\n");
@@ -127,7 +130,8 @@ static void a_list_has_a_line_for_each_mesh(void **state)
 		nt_place_clear(&lines[i].place);
 	strcpy(lines[1].place.pointer, "/meshes/0/primitives/1");
 	strcpy(lines[1].place.object, "mesh \"head\", primitive 1");
-	const nt_job job = {.input = "a.glb", .summary = {.lines = lines, .line_count = 3}};
+	nt_outcome outcome = {.summary = {.lines = lines, .line_count = 3}};
+	const nt_job job = {.input = "a.glb", .outcome = &outcome};
 	nt_message_meshes(&out, &job);
 	says(&out, "nmtan: a.glb: tangents are computed, 4 triangles, 6 -> 8 vertices\n"
 		   "nmtan: a.glb: /meshes/0/primitives/1: mesh \"head\", primitive 1: skipped (no material of "

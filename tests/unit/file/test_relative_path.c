@@ -1,5 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
+
+#include <unistd.h>
 #include <stdio.h>
 #include "file/relative_path.h"
 
@@ -93,6 +95,22 @@ static void folder_of_a_name_may_be_missing_but_not_below_a_file(void **state)
 	assert_int_equal(taken(&text)[0], '/');
 }
 
+static void absolute_paths_are_of_this_system(void **state)
+{
+	(void)state;
+	nt_buffer text = {0};
+	nt_error error;
+	char here[4096], expected[8192];
+	assert_non_null(getcwd(here, sizeof here));
+	assert_int_equal(nt_path_absolute(&text, "/a/./b//c/../d\\e", &error), NT_OK);
+	assert_string_equal(taken(&text), "/a/b/d\\e");
+	assert_int_equal(nt_path_absolute(&text, "/..", &error), NT_OK);
+	assert_string_equal(taken(&text), "/");
+	assert_int_equal(nt_path_absolute(&text, "./x/", &error), NT_OK);
+	snprintf(expected, sizeof expected, "%s/x", here);
+	assert_string_equal(taken(&text), expected);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -101,6 +119,7 @@ int main(void)
 		cmocka_unit_test(join_resolves_dots_and_backslashes),
 		cmocka_unit_test(absolute_names_are_told),
 		cmocka_unit_test(inside_means_below),
+		cmocka_unit_test(absolute_paths_are_of_this_system),
 		cmocka_unit_test(folder_of_a_name_may_be_missing_but_not_below_a_file),
 	};
 	return cmocka_run_group_tests_name("file/relative_path", tests, NULL, NULL);

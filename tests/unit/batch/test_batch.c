@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 #include "folder.h"
-#include "pipeline/batch.h"
+#include "batch/batch.h"
 #include "test.h"
 
 #include <stdatomic.h>
@@ -30,7 +30,7 @@ static void outputs_have_the_name_of_the_input_and_the_ending_of_the_format(void
 	put_text_file("noname", "ply\nformat ascii 1.0\nend_header\n");
 	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "b.PLY", "c.d/e.gltf", "f.glb", "head.v2",
 					       ".glb", "h.drc"),
-				 "out", &settings, &error),
+				 "out", NULL, &settings, &error),
 		NT_OK);
 	assert_string_equal(batch.jobs[0].output, "out/a.glb");
 	assert_string_equal(batch.jobs[1].output, "out/b.ply");
@@ -45,7 +45,7 @@ static void outputs_have_the_name_of_the_input_and_the_ending_of_the_format(void
 	assert_true(S_ISDIR(info.st_mode));
 
 	settings.output_format = NT_FORMAT_PLY;
-	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "b.glb"), "out/", &settings, &error),
+	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "b.glb"), "out/", NULL, &settings, &error),
 		NT_OK);
 	assert_string_equal(batch.jobs[0].output, "out/a.ply");
 	assert_string_equal(batch.jobs[1].output, "out/b.ply");
@@ -58,7 +58,7 @@ static void two_inputs_of_one_output_are_refused_before_anything_is_made(void **
 	const nt_settings settings = {0};
 	nt_batch batch;
 	nt_error error;
-	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "b.obj", "y/a.glb"), "out2", &settings,
+	assert_int_equal(nt_batch_into(&batch, INPUTS("x/a.obj", "b.obj", "y/a.glb"), "out2", NULL, &settings,
 				 &error),
 		NT_ERROR_USAGE);
 	assert_non_null(strstr(error.message, "x/a.obj"));
@@ -75,7 +75,7 @@ static void an_output_that_is_another_input_is_refused(void **state)
 	nt_error error;
 	put_text_file("a.glb", "glTF");
 	assert_int_equal(link("a.glb", "other.ply"), 0);
-	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj", "other.ply"), ".", &settings, &error),
+	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj", "other.ply"), ".", NULL, &settings, &error),
 		NT_ERROR_USAGE);
 	assert_non_null(strstr(error.message, "other.ply"));
 	nt_batch_free(&batch);
@@ -107,16 +107,16 @@ static void a_dry_run_makes_no_folder_and_a_file_is_none(void **state)
 	nt_settings settings = {.dry_run = true};
 	nt_batch batch;
 	nt_error error;
-	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj"), "out3", &settings, &error), NT_OK);
+	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj"), "out3", NULL, &settings, &error), NT_OK);
 	nt_batch_free(&batch);
 	assert_int_equal(access("out3", F_OK), -1);
 	settings.dry_run = false;
 	put_text_file("file", "");
-	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj"), "file", &settings, &error),
+	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj"), "file", NULL, &settings, &error),
 		NT_ERROR_IO);
 	assert_string_equal(error.place.file, "file");
 	nt_batch_free(&batch);
-	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj"), "no/where", &settings, &error),
+	assert_int_equal(nt_batch_into(&batch, INPUTS("a.obj"), "no/where", NULL, &settings, &error),
 		NT_ERROR_IO);
 	nt_batch_free(&batch);
 }
@@ -151,10 +151,10 @@ static void note(void *user, nt_job *job)
 {
 	log *l = user;
 	strcat(l->names, job->input);
-	l->meshes += job->summary.mesh_count;
+	l->meshes += job->outcome->summary.mesh_count;
 	if (job->status) {
 		l->failures++;
-		assert_non_null(strstr(job->error.message, job->input));
+		assert_non_null(strstr(job->outcome->error.message, job->input));
 	}
 }
 
@@ -169,7 +169,7 @@ static void every_input_runs_and_is_told_about_in_order(void **state)
 		assert_int_equal(nt_batch_check(&batch, INPUTS("h1 ", "ax ", "c ", "gx ", "b ", "d ", "a "),
 					 &error),
 			NT_OK);
-		nt_batch_run(&batch, &settings, fake_run, note, &l);
+		nt_batch_run(&batch, &settings, &(nt_batch_options){.run = fake_run, .done = note, .user = &l});
 		assert_string_equal(l.names, "h1 ax c gx b d a ");
 		assert_int_equal(l.meshes, 7 + 0 + 2 + 6 + 1 + 3 + 0);
 		assert_int_equal(l.failures, 2);
@@ -188,7 +188,7 @@ static void one_input_has_all_threads(void **state)
 	const nt_settings settings = {.threads = 5};
 	assert_int_equal(nt_batch_pair(&batch, "a", "b", &error), NT_OK);
 	assert_string_equal(batch.jobs[0].output, "b");
-	nt_batch_run(&batch, &settings, fake_run, note, &l);
+	nt_batch_run(&batch, &settings, &(nt_batch_options){.run = fake_run, .done = note, .user = &l});
 	assert_int_equal(threads_seen, 5);
 	nt_batch_free(&batch);
 }
@@ -204,5 +204,5 @@ int main(void)
 		cmocka_unit_test(every_input_runs_and_is_told_about_in_order),
 		cmocka_unit_test(one_input_has_all_threads),
 	};
-	return cmocka_run_group_tests_name("pipeline/batch", tests, enter, leave);
+	return cmocka_run_group_tests_name("batch/batch", tests, enter, leave);
 }

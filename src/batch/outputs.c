@@ -1,18 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Many inputs: see batch.h. Jobs are handed out one by one, since files differ in size; each that ends
- * opens the way for those after it to be told about.
+ * Which output each of many inputs gets: see batch.h. Everything that can be refused is refused before anything runs.
  */
-#include "pipeline/batch.h"
+#include "batch/batch.h"
 
 #include <errno.h>
-#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "base/buffer.h"
-#include "base/parallel.h"
+#include "file/relative_path.h"
 #include "format/format.h"
 
 static nt_status make_jobs(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
@@ -68,20 +66,24 @@ static const char *output_ending(const char *input, nt_format wanted)
 	}
 }
 
-/* DIR/name.ending: the input's ending goes if it is one of a format ("head.v2" keeps its own). */
-static char *output_name(const char *input, const char *directory, nt_format wanted)
+static const char *last_part(const char *path)
 {
-	const char *slash = strrchr(input, '/');
-	const char *base = slash ? slash + 1 : input;
-	const char *dot = strrchr(base, '.');
-	const size_t stem = dot && dot != base && nt_format_of_path(base) ? (size_t)(dot - base)
-									   : strlen(base);
+	const char *slash = strrchr(path, '/');
+	return slash ? slash + 1 : path;
+}
+
+/* DIR/below.ending: the input's ending goes if it is one of a format ("head.v2" keeps its own). `below` is the end of
+ * the input's name that is kept. */
+static char *output_name(const char *input, const char *below, const char *directory, nt_format wanted)
+{
+	const char *base = last_part(below), *dot = strrchr(base, '.');
+	const size_t stem = dot && dot != base && nt_format_of_path(base) ? (size_t)(dot - below) : strlen(below);
 	const size_t length = strlen(directory);
 	nt_buffer name = {0};
 	nt_buffer_text(&name, directory);
 	if (length && directory[length - 1] != '/')
 		nt_buffer_text(&name, "/");
-	nt_buffer_append(&name, base, stem);
+	nt_buffer_append(&name, below, stem);
 	nt_buffer_text(&name, output_ending(input, wanted));
 	if (name.failed)
 		nt_buffer_free(&name);
@@ -171,21 +173,87 @@ static nt_status make_folder(const char *directory, const nt_settings *settings,
 	return nt_error_in_file(error, directory);
 }
 
-nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count,
-	const char *directory, const nt_settings *settings, nt_error *error)
+/* Outputs in a tree below the folder that is like the inputs' below the root. The names are compared as they are
+ * spelled: a tree of links is a tree. */
+static nt_status name_mirrored(nt_batch *batch, const char *directory, const char *mirror, nt_format wanted,
+	nt_error *error)
 {
-	nt_status status = make_jobs(batch, inputs, count, error);
-	if (status)
-		return status;
-	for (size_t i = 0; i < count; i++) {
-		batch->jobs[i].output = output_name(inputs[i], directory, settings->output_format);
-		if (!batch->jobs[i].output)
+	nt_buffer root = {0}, path = {0};
+	nt_status status = nt_path_absolute(&root, mirror, error);
+	for (size_t i = 0; i < batch->count && !status; i++) {
+		nt_job *job = &batch->jobs[i];
+		path.size = 0;
+		status = nt_path_absolute(&path, job->input, error);
+		if (status)
+			break;
+		if (!nt_link_is_inside(path.data, root.data)) {
+			status = nt_fail(error, NT_ERROR_USAGE, "'%s' is not below '%s', as --mirror asks", job->input,
+				mirror);
+			break;
+		}
+		const char *below = path.data + (root.size > 1 ? root.size + 1 : 1);
+		job->output = output_name(job->input, below, directory, wanted);
+		if (!job->output)
+			status = nt_fail_memory(error);
+	}
+	nt_buffer_free(&root);
+	nt_buffer_free(&path);
+	return status;
+}
+
+static nt_status name_outputs(nt_batch *batch, const char *directory, const char *mirror, nt_format wanted,
+	nt_error *error)
+{
+	if (mirror)
+		return name_mirrored(batch, directory, mirror, wanted, error);
+	for (size_t i = 0; i < batch->count; i++) {
+		nt_job *job = &batch->jobs[i];
+		job->output = output_name(job->input, last_part(job->input), directory, wanted);
+		if (!job->output)
 			return nt_fail_memory(error);
 	}
-	status = refuse_equal_outputs(batch, error);
+	return NT_OK;
+}
+
+/* The folders of an output below the one that is there already, `known` characters long. */
+static nt_status make_folders_below(char *output, size_t known, const nt_settings *settings, nt_error *error)
+{
+	nt_status status = NT_OK;
+	for (char *slash = strchr(output + known, '/'); slash && !status; slash = strchr(slash + 1, '/')) {
+		*slash = '\0';
+		status = make_folder(output, settings, error);
+		*slash = '/';
+	}
+	return status;
+}
+
+static nt_status make_folders(const nt_batch *batch, const char *directory, bool mirrored,
+	const nt_settings *settings, nt_error *error)
+{
+	nt_status status = make_folder(directory, settings, error);
+	const char *last = "";
+	for (size_t i = 0; i < batch->count && mirrored && !settings->dry_run && !status; i++) {
+		char *output = batch->jobs[i].output;
+		const size_t length = (size_t)(last_part(output) - output);
+		/* neighbours are mostly of one folder */
+		if (strncmp(last, output, length) != 0 || strchr(last + length, '/'))
+			status = make_folders_below(output, strlen(directory) + 1, settings, error);
+		last = output;
+	}
+	return status;
+}
+
+nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count, const char *directory,
+	const char *mirror, const nt_settings *settings, nt_error *error)
+{
+	nt_status status = make_jobs(batch, inputs, count, error);
+	if (!status)
+		status = name_outputs(batch, directory, mirror, settings->output_format, error);
+	if (!status)
+		status = refuse_equal_outputs(batch, error);
 	if (!status)
 		status = refuse_foreign_inputs(batch, error);
-	return status ? status : make_folder(directory, settings, error);
+	return status ? status : make_folders(batch, directory, mirror != NULL, settings, error);
 }
 
 nt_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
@@ -198,56 +266,6 @@ nt_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t c
 	if (!status)
 		status = refuse_equal_outputs(batch, error);
 	return status ? status : refuse_foreign_inputs(batch, error);
-}
-
-/* Shared by the threads of one batch. */
-typedef struct progress {
-	nt_batch *batch;
-	const nt_settings *settings;
-	nt_runner run;
-	pthread_mutex_t lock; /* of what follows */
-	size_t told;          /* jobs before this one have been told about */
-	void (*done)(void *user, nt_job *job);
-	void *user;
-} progress;
-
-static void run_job(nt_job *job, const nt_settings *settings, nt_runner run)
-{
-	nt_error_clear(&job->error);
-	job->status = run(job->input, job->output, settings, &job->summary, &job->error);
-}
-
-static void tell(progress *p, nt_job *ended)
-{
-	pthread_mutex_lock(&p->lock);
-	ended->finished = true;
-	for (; p->told < p->batch->count && p->batch->jobs[p->told].finished; p->told++) {
-		nt_job *job = &p->batch->jobs[p->told];
-		p->done(p->user, job);
-		nt_summary_free(&job->summary);
-	}
-	pthread_mutex_unlock(&p->lock);
-}
-
-static void run_one(void *context, size_t item, unsigned slot)
-{
-	(void)slot;
-	progress *p = context;
-	nt_job *job = &p->batch->jobs[item];
-	run_job(job, p->settings, p->run);
-	tell(p, job);
-}
-
-void nt_batch_run(nt_batch *batch, const nt_settings *settings, nt_runner run,
-	void (*done)(void *user, nt_job *job), void *user)
-{
-	nt_settings each = *settings;
-	if (batch->count > 1)
-		each.threads = 1;
-	progress p = {.batch = batch, .settings = &each, .run = run, .lock = PTHREAD_MUTEX_INITIALIZER,
-		.done = done, .user = user};
-	nt_parallel_items(nt_thread_count(settings->threads), batch->count, run_one, &p);
-	pthread_mutex_destroy(&p.lock);
 }
 
 void nt_batch_free(nt_batch *batch)

@@ -1,0 +1,88 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Many inputs: see batch.h. Jobs are handed out one by one, since files differ in size; each that ends
+ * opens the way for those after it to be told about.
+ */
+#include "batch/batch.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "base/parallel.h"
+
+/* Shared by the threads of one batch. */
+typedef struct progress {
+	nt_batch *batch;
+	const nt_settings *settings;
+	const nt_batch_options *options;
+	pthread_mutex_t lock; /* of what follows */
+	size_t told;          /* jobs before this one have been told about */
+	bool stop;            /* no further job begins */
+} progress;
+
+static void run_job(nt_job *job, const nt_settings *settings, nt_runner run)
+{
+	job->outcome = nt_calloc(1, sizeof *job->outcome);
+	if (!job->outcome) {
+		job->status = NT_ERROR_MEMORY;
+		return;
+	}
+	nt_error_clear(&job->outcome->error);
+	job->status = run(job->input, job->output, settings, &job->outcome->summary, &job->outcome->error);
+}
+
+static void free_outcome(nt_job *job)
+{
+	if (job->outcome)
+		nt_summary_free(&job->outcome->summary);
+	free(job->outcome);
+	job->outcome = NULL;
+}
+
+static void tell(progress *p, nt_job *ended)
+{
+	pthread_mutex_lock(&p->lock);
+	ended->ended = true;
+	p->stop |= ended->status && p->options->fail_fast;
+	for (; p->told < p->batch->count && p->batch->jobs[p->told].ended; p->told++) {
+		nt_job *job = &p->batch->jobs[p->told];
+		p->options->done(p->options->user, job);
+		free_outcome(job);
+	}
+	pthread_mutex_unlock(&p->lock);
+}
+
+static bool is_stopped(progress *p)
+{
+	pthread_mutex_lock(&p->lock);
+	const bool stopped = p->stop;
+	pthread_mutex_unlock(&p->lock);
+	return stopped;
+}
+
+static void run_one(void *context, size_t item, unsigned slot)
+{
+	(void)slot;
+	progress *p = context;
+	nt_job *job = &p->batch->jobs[item];
+	if (is_stopped(p))
+		job->end = NT_JOB_UNTRIED;
+	else
+		run_job(job, p->settings, p->options->run);
+	tell(p, job);
+}
+
+void nt_batch_run(nt_batch *batch, const nt_settings *settings, const nt_batch_options *options)
+{
+	const unsigned threads = nt_thread_count(settings->threads);
+	unsigned jobs = options->jobs ? options->jobs : threads;
+	if (jobs > batch->count)
+		jobs = (unsigned)batch->count;
+	nt_settings each = *settings;
+	if (jobs)
+		each.threads = threads / jobs ? threads / jobs : 1;
+	progress p = {.batch = batch, .settings = &each, .options = options, .lock = PTHREAD_MUTEX_INITIALIZER};
+	nt_parallel_items(jobs, batch->count, run_one, &p);
+	pthread_mutex_destroy(&p.lock);
+}

@@ -1,0 +1,206 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Which files a run of many is about: see inputs.h.
+ */
+#include "batch/inputs.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fnmatch.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/buffer.h"
+#include "file/input.h"
+#include "file/lookup.h"
+#include "format/format.h"
+
+/* A look through one folder and those below. */
+typedef struct walk {
+	nt_inputs *inputs;
+	const nt_folder_rules *rules;
+	nt_error *error;
+	size_t root_length;      /* of the path up to and with the slash behind the folder that was named */
+	struct stat leave_out;
+	bool has_leave_out;
+} walk;
+
+/* Takes a name that stays. */
+static nt_status add(nt_inputs *inputs, const char *name, nt_error *error)
+{
+	if (!name || !nt_grow((void **)(uintptr_t)&inputs->names, &inputs->capacity, inputs->count + 1, sizeof *inputs->names))
+		return nt_fail_memory(error);
+	inputs->names[inputs->count++] = name;
+	return NT_OK;
+}
+
+static nt_status fail_folder(const char *path, int number, nt_error *error)
+{
+	if (number == ENOMEM)
+		return nt_fail_memory(error);
+	nt_fail(error, NT_ERROR_IO, "cannot read the folder: %s", strerror(number));
+	return nt_error_in_file(error, path);
+}
+
+/* ---- what is taken ---- */
+
+static bool matches(const char *const *patterns, size_t count, const char *below)
+{
+	const char *slash = strrchr(below, '/');
+	for (size_t i = 0; i < count; i++)
+		if (fnmatch(patterns[i], strchr(patterns[i], '/') || !slash ? below : slash + 1, 0) == 0)
+			return true;
+	return false;
+}
+
+static bool is_taken(const nt_folder_rules *rules, const char *below)
+{
+	return nt_format_of_path(below) && !matches(rules->exclude, rules->exclude_count, below) &&
+	       (!rules->include_count || matches(rules->include, rules->include_count, below));
+}
+
+static bool is_left_out(const walk *w, const char *below, const struct stat *info)
+{
+	return matches(w->rules->exclude, w->rules->exclude_count, below) ||
+	       (w->has_leave_out && info->st_dev == w->leave_out.st_dev && info->st_ino == w->leave_out.st_ino);
+}
+
+/* ---- folders ---- */
+
+static int compare_names(const void *a, const void *b)
+{
+	return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* The names in a folder, sorted; free each, and the list. */
+static nt_status list_folder(const char *path, char ***names, size_t *count, nt_error *error)
+{
+	size_t capacity = 0;
+	*names = NULL;
+	*count = 0;
+	DIR *folder = opendir(path);
+	if (!folder)
+		return fail_folder(path, errno, error);
+	nt_status status = NT_OK;
+	while (!status) {
+		errno = 0;
+		const struct dirent *entry = readdir(folder);
+		if (!entry) {
+			status = errno ? fail_folder(path, errno, error) : NT_OK;
+			break;
+		}
+		if (strcmp(entry->d_name, ".") == 0 || strcmp(entry->d_name, "..") == 0)
+			continue;
+		char *name = strdup(entry->d_name);
+		if (name && nt_grow((void **)names, &capacity, *count + 1, sizeof **names)) {
+			(*names)[(*count)++] = name;
+		} else {
+			free(name);
+			status = nt_fail_memory(error);
+		}
+	}
+	closedir(folder);
+	if (*count)
+		qsort(*names, *count, sizeof **names, compare_names);
+	return status;
+}
+
+static nt_status look_through(walk *w, nt_buffer *path);
+
+/* What `path` names, within a folder. What vanished meanwhile, or is neither file nor folder, is passed over. */
+static nt_status visit(walk *w, nt_buffer *path)
+{
+	struct stat info;
+	const char *below = path->data + w->root_length;
+	if (lstat(path->data, &info) != 0)
+		return errno == ENOENT ? NT_OK : fail_folder(path->data, errno, w->error);
+	if (S_ISDIR(info.st_mode))
+		return is_left_out(w, below, &info) ? NT_OK : look_through(w, path);
+	if (!is_taken(w->rules, below) || (S_ISLNK(info.st_mode) && stat(path->data, &info) != 0) ||
+		!S_ISREG(info.st_mode))
+		return NT_OK;
+	return add(w->inputs, nt_arena_text(&w->inputs->arena, path->data, path->size), w->error);
+}
+
+static nt_status look_through(walk *w, nt_buffer *path)
+{
+	char **names;
+	size_t count;
+	nt_status status = list_folder(path->data, &names, &count, w->error);
+	const size_t length = path->size;
+	for (size_t i = 0; i < count; i++) {
+		if (!status) {
+			if (path->data[length - 1] != '/')
+				nt_buffer_text(path, "/");
+			nt_buffer_text(path, names[i]);
+			status = path->failed ? nt_fail_memory(w->error) : visit(w, path);
+			path->size = length;
+			path->data[length] = '\0';
+		}
+		free(names[i]);
+	}
+	free(names);
+	return status;
+}
+
+/* ---- names ---- */
+
+nt_status nt_inputs_add(nt_inputs *inputs, const char *name, const nt_folder_rules *rules, nt_error *error)
+{
+	struct stat info;
+	bool found = false;
+	nt_status status = rules->recursive ? nt_lookup_found(name, &info, &found, error) : NT_OK;
+	if (status)
+		return status;
+	if (!found || !S_ISDIR(info.st_mode))
+		return add(inputs, name, error);
+	walk w = {.inputs = inputs, .rules = rules, .error = error};
+	w.has_leave_out = rules->leave_out && stat(rules->leave_out, &w.leave_out) == 0;
+	nt_buffer path = {0};
+	nt_buffer_text(&path, name);
+	w.root_length = path.size + (path.size > 0 && name[path.size - 1] != '/');
+	status = path.failed ? nt_fail_memory(error) : look_through(&w, &path);
+	nt_buffer_free(&path);
+	return status;
+}
+
+/* A listed name, which ends where the list says. */
+static nt_status add_listed(nt_inputs *inputs, const char *text, size_t length, const nt_folder_rules *rules,
+	nt_error *error)
+{
+	if (!length)
+		return NT_OK;
+	const bool dash = length == 1 && *text == '-';
+	const char *name = nt_arena_text(&inputs->arena, dash ? "./-" : text, dash ? 3 : length);
+	return name ? nt_inputs_add(inputs, name, rules, error) : nt_fail_memory(error);
+}
+
+nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, char separator, const nt_folder_rules *rules,
+	nt_error *error)
+{
+	nt_file file;
+	nt_status status = nt_file_open(&file, path, error);
+	if (status)
+		return status;
+	const char *text = (const char *)file.data;
+	if (separator && memchr(text, '\0', file.size)) {
+		nt_fail(error, NT_ERROR_INPUT, "a list with a NUL in it, expected one name a line (see --files0-from)");
+		status = nt_error_in_file(error, path);
+	}
+	for (size_t at = 0; at < file.size && !status;) {
+		const char *end = memchr(text + at, separator, file.size - at);
+		const size_t length = end ? (size_t)(end - text) - at : file.size - at;
+		status = add_listed(inputs, text + at, length, rules, error);
+		at += length + 1;
+	}
+	nt_file_close(&file);
+	return status;
+}
+
+void nt_inputs_free(nt_inputs *inputs)
+{
+	nt_arena_free(&inputs->arena);
+	free(inputs->names);
+	*inputs = (nt_inputs){0};
+}

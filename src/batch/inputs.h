@@ -1,0 +1,44 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Which files a run of many is about: names as they are given, names that are listed in files, and the meshes in
+ * folders. The order is that of giving, of the lists, and of the names in a folder by their bytes.
+ */
+#ifndef NT_BATCH_INPUTS_H
+#define NT_BATCH_INPUTS_H
+
+#include "base/error.h"
+#include "base/memory.h"
+
+/* Zeroed: empty. */
+typedef struct nt_inputs {
+	nt_arena arena;
+	const char **names;
+	size_t count, capacity;
+} nt_inputs;
+
+/*
+ * What is taken from folders. A file is taken if its name has the ending of a format that is read, one of `include`
+ * matches (or there is none) and none of `exclude` does; a folder in which nothing is looked for if one of `exclude`
+ * matches. A pattern (fnmatch) with a slash is compared with the path below the folder that was named, else with the
+ * last name of it.
+ */
+typedef struct nt_folder_rules {
+	bool recursive; /* else a folder is a name like others, which cannot be read */
+	const char *const *include, *const *exclude;
+	size_t include_count, exclude_count;
+	const char *leave_out; /* a folder below those named in which nothing is looked for: the outputs'; NULL: none */
+} nt_folder_rules;
+
+/* Adds a name that outlives the inputs, or with rules->recursive what is in the folder that has it; links to folders
+ * are not followed below it. Returns NT_OK, NT_ERROR_IO (a folder that cannot be read) or NT_ERROR_MEMORY. */
+nt_status nt_inputs_add(nt_inputs *inputs, const char *name, const nt_folder_rules *rules, nt_error *error);
+
+/* Adds the names in a file, or from standard input ("-"), that are separated by `separator`, a line feed or NUL. They
+ * are relative to the current folder; empty ones are passed over, and "-" is a file. Returns as nt_inputs_add(), or
+ * NT_ERROR_MISSING; NT_ERROR_INPUT for a NUL in a list of lines. */
+nt_status nt_inputs_add_list(nt_inputs *inputs, const char *path, char separator, const nt_folder_rules *rules,
+	nt_error *error);
+
+void nt_inputs_free(nt_inputs *inputs);
+
+#endif

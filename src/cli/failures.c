@@ -1,0 +1,82 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What failed in a run of many: see failures.h.
+ */
+#include "cli/failures.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char *reason_of(const nt_job *job)
+{
+	const nt_error *error = job->outcome ? &job->outcome->error : NULL;
+	return error && error->message[0] ? error->message : nt_status_text(job->status);
+}
+
+static nt_failure_group *group_of(nt_failures *failures, const char *reason)
+{
+	for (size_t i = 0; i < failures->group_count; i++)
+		if (strcmp(failures->groups[i].reason, reason) == 0)
+			return &failures->groups[i];
+	if (failures->group_count == NT_FAILURE_GROUPS)
+		return NULL;
+	nt_failure_group *group = &failures->groups[failures->group_count];
+	group->reason = strdup(reason);
+	failures->group_count += group->reason != NULL;
+	return group->reason ? group : NULL;
+}
+
+void nt_failures_add(nt_failures *failures, const nt_job *job)
+{
+	failures->count++;
+	nt_failure_group *group = group_of(failures, reason_of(job));
+	if (!group)
+		return;
+	if (group->count < NT_FAILURE_NAMES)
+		group->names[group->count] = strdup(job->input);
+	group->count++;
+}
+
+static void append_group(nt_buffer *out, const nt_failure_group *group)
+{
+	size_t named = 0;
+	nt_buffer_format(out, "nmtan:   %zu: ", group->count);
+	nt_buffer_clean(out, group->reason);
+	for (size_t i = 0; i < NT_FAILURE_NAMES; i++)
+		if (group->names[i]) {
+			nt_buffer_text(out, named++ ? ", " : ": ");
+			nt_buffer_clean(out, group->names[i]);
+		}
+	if (group->count > named)
+		nt_buffer_format(out, " and %zu more", group->count - named);
+	nt_buffer_text(out, "\n");
+}
+
+void nt_failures_append(nt_buffer *out, const nt_failures *failures, const char *manifest)
+{
+	size_t shown = 0;
+	for (size_t i = 0; i < failures->group_count; i++) {
+		append_group(out, &failures->groups[i]);
+		shown += failures->groups[i].count;
+	}
+	if (shown == failures->count)
+		return;
+	nt_buffer_format(out, "nmtan:   %zu for other reasons; all of them are ", failures->count - shown);
+	if (manifest) {
+		nt_buffer_text(out, "in ");
+		nt_buffer_clean(out, manifest);
+	} else {
+		nt_buffer_text(out, "told above");
+	}
+	nt_buffer_text(out, "\n");
+}
+
+void nt_failures_free(nt_failures *failures)
+{
+	for (size_t i = 0; i < failures->group_count; i++) {
+		free(failures->groups[i].reason);
+		for (size_t k = 0; k < NT_FAILURE_NAMES; k++)
+			free(failures->groups[i].names[k]);
+	}
+	*failures = (nt_failures){0};
+}
