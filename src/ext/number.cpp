@@ -62,9 +62,7 @@ template <typename Number> char *write_json(char *to, Number value)
 	return placed ? placed : put(to, begin, static_cast<size_t>(end - begin));
 }
 
-} // namespace
-
-const char *nt_read_float(const char *begin, const char *end, float *value)
+template <typename Number> const char *read(const char *begin, const char *end, Number *value)
 {
 	if (begin != end && *begin == '+') {
 		++begin;
@@ -73,6 +71,18 @@ const char *nt_read_float(const char *begin, const char *end, float *value)
 	}
 	const auto result = fast_float::from_chars(begin, end, *value);
 	return result.ec == std::errc::invalid_argument ? nullptr : result.ptr;
+}
+
+} // namespace
+
+const char *nt_read_float(const char *begin, const char *end, float *value)
+{
+	return read(begin, end, value);
+}
+
+const char *nt_read_double(const char *begin, const char *end, double *value)
+{
+	return read(begin, end, value);
 }
 
 char *nt_write_float(char *text, float value)

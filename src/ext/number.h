@@ -13,6 +13,7 @@ extern "C" {
 /* Reads a number at [begin, end): optional sign ('+' too), digits, point, exponent, inf, nan. Returns
  * where it ends, NULL when there is no number. Overflow gives infinity, underflow zero. */
 const char *nt_read_float(const char *begin, const char *end, float *value);
+const char *nt_read_double(const char *begin, const char *end, double *value);
 
 /* Writes the shortest decimal text that reads back as the same float ("nan", "inf" and "-inf" where it
  * is no number), without a final NUL. Returns where it ends; text has room for NT_FLOAT_TEXT - 1 bytes. */

@@ -43,12 +43,13 @@ static nt_status claim_buffer(nt_output *output, const nt_json_value *buffer, nt
 static nt_status parse(const nt_file *file, nt_json **json, nt_error *error)
 {
 	if (!nt_glb_has_magic(file->data, file->size))
-		return nt_json_parse(json, (const char *)file->data, file->size, error);
+		return nt_json_parse(json, (const char *)file->data, file->size, "extras", error);
 	nt_arena arena = {0};
 	nt_glb glb;
 	nt_status status = nt_glb_parse(&glb, &arena, file->data, file->size, error);
 	if (!status)
-		status = nt_json_parse(json, (const char *)file->data + glb.json.offset, glb.json.size, error);
+		status = nt_json_parse(json, (const char *)file->data + glb.json.offset, glb.json.size,
+			"extras", error);
 	nt_arena_free(&arena);
 	return status;
 }

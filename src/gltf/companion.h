@@ -9,8 +9,8 @@
 #ifndef NT_GLTF_COMPANION_H
 #define NT_GLTF_COMPANION_H
 
-#include "ext/json.h"
 #include "file/output.h"
+#include "json/json.h"
 
 /* For nt_output_options.find_claims. */
 nt_status nt_gltf_find_claims(nt_output *output, const char *path, nt_error *error);

@@ -122,7 +122,7 @@ static nt_status parse_json(nt_gltf *document, nt_error *error)
 		begin = document->glb.json.offset;
 		size = document->glb.json.size;
 	}
-	const nt_status status = nt_json_parse(&document->json, text + begin, size, error);
+	const nt_status status = nt_json_parse(&document->json, text + begin, size, "extras", error);
 	if (status && error && error->place.offset != NT_NO_OFFSET)
 		error->place.offset += begin;
 	return status;

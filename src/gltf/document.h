@@ -9,9 +9,9 @@
 #define NT_GLTF_DOCUMENT_H
 
 #include "ext/gltf_numbers.h"
-#include "ext/json.h"
 #include "file/input.h"
 #include "gltf/glb.h"
+#include "json/json.h"
 #include "scene/scene.h"
 
 /* Room for the JSON pointers we make ourselves. */

@@ -6,7 +6,7 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "ext/json.h"
+#include "json/json.h"
 
 static int by_number(const void *a, const void *b)
 {
@@ -59,7 +59,7 @@ nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size,
 {
 	*baseline = (nt_baseline){0};
 	nt_json *document = NULL;
-	nt_status status = nt_json_parse(&document, text, size, error);
+	nt_status status = nt_json_parse(&document, text, size, NULL, error);
 	if (status)
 		return status;
 	status = read_files(baseline, nt_json_root(document), error);

@@ -114,6 +114,38 @@ for input in interleaved_gap.glb interleaved_u32.gltf; do
 	cmp -s once."${input##*.}" twice."${input##*.}" || wrong "$input: the copy differs"
 done
 
+scene "what is not edited is spelled as it was"
+spelling() {
+	PYTHONDONTWRITEBYTECODE=1 python3 "$ROOT/tests/support/json_spelling.py" "$@" || wrong "json_spelling.py $*"
+}
+# the edits; where a first member goes, the next one comes closer
+edits() {
+	case $words in
+	--draco*) spelling compare "$@" | grep -v " became " ;;
+	*) spelling compare "$@" ;;
+	esac
+}
+cp "$WORK"/layouts/{plain,three_buffers,sparse}* .
+for words in plain three_buffers sparse "--draco=sequential plain"; do
+	name=${words##* }
+	# shellcheck disable=SC2086
+	run --existing=replace $words.gltf straight.gltf
+	exits 0
+	edited=$(edits $name.gltf straight.gltf)
+	case $edited in
+	*"- /accessors/0/bufferView"* | *"+ /meshes/0/primitives/0/attributes/TANGENT"*) ;;
+	*) wrong "$edited" ;;
+	esac
+	for seed in 1 2 3; do
+		spelling respell $seed $name.gltf odd.gltf
+		# shellcheck disable=SC2086
+		run --verify --existing=replace ${words%"$name"}odd.gltf odd_out.gltf
+		exits 0
+		is "$(edits odd.gltf odd_out.gltf)" "$edited"
+		same straight.bin odd_out.bin
+	done
+done
+
 scene "links are kept right for the folder of the output"
 mkdir -p "in dir" out/deep
 cp "$WORK"/layouts/plain* "$WORK"/layouts/three* "in dir"

@@ -6,7 +6,7 @@
 #define NT_GLTF_EDIT_LINKS_H
 
 #include "base/memory.h"
-#include "ext/json.h"
+#include "json/json.h"
 
 /* The text of an external reference: neither a data URI nor anything else than a string. NULL: none. */
 const char *nt_gltf_external_uri(const nt_json_value *object, size_t *length);

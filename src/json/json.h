@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * JSON documents that can be read, edited and written again: key order, 64-bit integers and the
- * style of the text survive.
+ * JSON documents that can be read, edited and written again. What is not edited is written as it was spelled: numbers,
+ * escapes, white space, order and repetition of keys.
  *
  * A document owns its values; a value is a handle into it. Handles are small and cheap, and stay valid
  * until the container they are in gets or loses a member, or the document is freed. Reading functions
@@ -12,15 +12,11 @@
  *
  * Not for several threads that write; reading from several threads is fine.
  */
-#ifndef NT_EXT_JSON_H
-#define NT_EXT_JSON_H
+#ifndef NT_JSON_JSON_H
+#define NT_JSON_JSON_H
 
 #include "base/buffer.h"
 #include "base/error.h"
-
-#ifdef __cplusplus
-extern "C" {
-#endif
 
 /* Arrays and objects may be nested this deep. */
 enum { NT_JSON_MAX_DEPTH = 512 };
@@ -44,11 +40,14 @@ typedef enum nt_json_type {
  * keys, invalid UTF-8, lone surrogates, numbers beyond double, a byte order mark (glTF forbids it).
  *
  *   text      [size] bytes, no final NUL needed; not kept
+ *   foreign   key of members that are other people's, at any depth: duplicate keys and numbers beyond double are
+ *             no fault in them. NULL: there are none
  *   document  receives the document; free it with nt_json_free()
  *
- * Returns NT_OK, NT_ERROR_INPUT with the byte offset in `error`, or NT_ERROR_MEMORY.
+ * Memory: the text, and at most 24 bytes for each element of an array and 40 for each member of an object, twice
+ * that while parsing. Returns NT_OK, NT_ERROR_INPUT with the byte offset in `error`, or NT_ERROR_MEMORY.
  */
-nt_status nt_json_parse(nt_json **document, const char *text, size_t size, nt_error *error);
+nt_status nt_json_parse(nt_json **document, const char *text, size_t size, const char *foreign, nt_error *error);
 
 /* NULL is allowed. */
 void nt_json_free(nt_json *document);
@@ -74,7 +73,8 @@ nt_json_value *nt_json_at(const nt_json_value *value, size_t index);
 /* Key of an object's member: NUL-terminated, its length in *length (may be NULL); NULL: none. */
 const char *nt_json_key(const nt_json_value *object, size_t index, size_t *length);
 
-/* Value of an object's member; NULL when `object` is not an object or has no such member. */
+/* Value of an object's member, the first one with that key; NULL when `object` is not an object or has no such
+ * member. */
 nt_json_value *nt_json_find(const nt_json_value *object, const char *key);
 
 /* The value as a C type. False, and *result untouched, when it is something else or does not fit. Whole
@@ -100,11 +100,13 @@ nt_json_value *nt_json_put(nt_json *document, nt_json_value *object, const char 
 /* A null appended to an array. A value that is not an array becomes an empty one. */
 nt_json_value *nt_json_append(nt_json *document, nt_json_value *array);
 
-/* Takes a member out of an object, or an element out of an array; nothing happens when there is none. */
+/* Takes all members of that key out of an object, or an element out of an array; nothing happens when there is
+ * none. */
 void nt_json_remove(nt_json *document, nt_json_value *object, const char *key);
 void nt_json_remove_at(nt_json *document, nt_json_value *container, size_t index);
 
-/* Gives a value a new content. */
+/* Gives a value a new content; one that it has already leaves its spelling. `from` is of the same document; its numbers
+ * keep their spelling. */
 void nt_json_set_bool(nt_json *document, nt_json_value *value, bool content);
 void nt_json_set_uint64(nt_json *document, nt_json_value *value, uint64_t content);
 void nt_json_set_double(nt_json *document, nt_json_value *value, double content);
@@ -113,14 +115,12 @@ void nt_json_set_object(nt_json *document, nt_json_value *value); /* empty */
 void nt_json_set_copy(nt_json *document, nt_json_value *value, const nt_json_value *from);
 
 /*
- * Appends the document's text to a buffer, compact where the source was one line, else indented with
- * the source's own indentation. The same document gives the same bytes.
+ * Appends the document's text to a buffer: as it was parsed, but for the values that were set and the members and
+ * elements that were added or taken out. These are spaced as their neighbours are, else as the first member of the
+ * document is. The same document gives the same bytes.
  *
  * Returns NT_OK, or NT_ERROR_MEMORY, also where a change before ran out of memory.
  */
 nt_status nt_json_dump(const nt_json *document, nt_buffer *text, nt_error *error);
 
-#ifdef __cplusplus
-}
-#endif
 #endif

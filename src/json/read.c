@@ -1,0 +1,527 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * JSON text into a tree of values: one pass without recursion. The children of open containers are gathered on one stack,
+ * from which a container takes its own when it is closed, so that lists have their final size. No number becomes
+ * binary here, unless it may be beyond double; most are never asked for.
+ *
+ * Here and not a library's, because every value keeps the place of its text, which the trees of nlohmann and RapidJSON
+ * do not.
+ */
+#include <math.h>
+#include <stdlib.h>
+#include "base/utf8.h"
+#include "ext/number.h"
+#include "json/tree.h"
+
+/* NULs behind the text: it ends for every loop, also for those that look at eight bytes at once. */
+enum { PADDING_BYTES = 8 };
+
+/* A container whose end has not been read. */
+typedef struct opened {
+	const char *begin;
+	const char *key; /* its own, in the object around it */
+	size_t key_length;
+	size_t first; /* where its children begin in the stack, bytes */
+	bool is_object;
+	bool foreign; /* duplicate keys and numbers beyond double are no fault */
+	bool foreign_member; /* of the value that comes next */
+} opened;
+
+typedef struct reader {
+	nt_json *document;
+	char *at;
+	const char *foreign;
+	nt_error *error;
+	char *stack; /* [stack_size] bytes: nt_json_value or nt_json_member, as the container is */
+	size_t stack_size, stack_capacity;
+	const char *key; /* of the value that comes next */
+	size_t key_length;
+	size_t depth;
+	opened open[NT_JSON_MAX_DEPTH];
+} reader;
+
+/* ---- faults ---- */
+
+static nt_status fail(const reader *r, const char *at, const char *expected)
+{
+	const unsigned char c = (unsigned char)*at;
+	const size_t offset = (size_t)(at - r->document->text);
+	if (offset == r->document->size)
+		return nt_fail_offset(r->error, NT_ERROR_INPUT, offset, "JSON: the text ends, expected %s", expected);
+	if (c > 0x20 && c < 0x7f)
+		return nt_fail_offset(r->error, NT_ERROR_INPUT, offset, "JSON: '%c', expected %s", c, expected);
+	return nt_fail_offset(r->error, NT_ERROR_INPUT, offset, "JSON: byte 0x%02X, expected %s", c, expected);
+}
+
+/* ---- strings ---- */
+
+/* Behind the bytes that stand for themselves. */
+static char *skip_plain(char *at)
+{
+	static const uint64_t ones = 0x0101010101010101u, high = 0x8080808080808080u;
+	for (;; at += 8) {
+		uint64_t bytes;
+		memcpy(&bytes, at, sizeof bytes);
+		const uint64_t quotes = bytes ^ ones * '"', slashes = bytes ^ ones * '\\';
+		/* a high bit wherever a byte is a quote, a backslash, below 0x20 or above 0x7f; some more above the first */
+		if ((((quotes - ones) & ~quotes) | ((slashes - ones) & ~slashes) | ((bytes - ones * 0x20) & ~bytes) | bytes) & high)
+			break;
+	}
+	while (*at != '"' && *at != '\\' && (unsigned char)*at >= 0x20 && (unsigned char)*at < 0x80)
+		at++;
+	return at;
+}
+
+/* Four hexadecimal digits; -1: others. */
+static int32_t read_hex(const char *at)
+{
+	int32_t value = 0;
+	for (int i = 0; i < 4; i++) {
+		const int c = at[i], digit = c >= '0' && c <= '9' ? c - '0' : (c | 32) >= 'a' && (c | 32) <= 'f' ?
+			(c | 32) - 'a' + 10 : -1;
+		if (digit < 0)
+			return -1;
+		value = value * 16 + digit;
+	}
+	return value;
+}
+
+/* The length of an escape, of both surrogates too; 0: it is none. */
+static size_t read_escape(const char *at, uint32_t *code)
+{
+	static const char letters[] = "\"\\/bfnrt", codes[] = "\"\\/\b\f\n\r\t";
+	const char *letter = at[1] ? strchr(letters, at[1]) : NULL;
+	if (letter) {
+		*code = (unsigned char)codes[letter - letters];
+		return 2;
+	}
+	const int32_t first = at[1] == 'u' ? read_hex(at + 2) : -1;
+	*code = (uint32_t)first;
+	if (first < 0xD800 || first > 0xDFFF)
+		return first < 0 ? 0 : 6;
+	const int32_t second = first < 0xDC00 && at[6] == '\\' && at[7] == 'u' ? read_hex(at + 8) : -1;
+	if (second < 0xDC00 || second > 0xDFFF)
+		return 0;
+	*code = 0x10000 + ((uint32_t)(first - 0xD800) << 10) + (uint32_t)(second - 0xDC00);
+	return 12;
+}
+
+static nt_status fail_escape(const reader *r, const char *at)
+{
+	if (at[1] == 'u' && read_hex(at + 2) >= 0)
+		return nt_fail_offset(r->error, NT_ERROR_INPUT, (uint64_t)(at - r->document->text),
+			"JSON: the surrogate \\u%.4s is not one of a pair, expected UTF-16", at + 2);
+	return fail(r, at + 1, at[1] == 'u' ? "four hexadecimal digits" : "an escape that JSON has");
+}
+
+static char *put_utf8(char *to, uint32_t code)
+{
+	if (code < 0x80) {
+		*to++ = (char)code;
+		return to;
+	}
+	const int more = code < 0x800 ? 1 : code < 0x10000 ? 2 : 3;
+	*to++ = (char)(0xFF00 >> (more + 1) | code >> 6 * more);
+	for (int i = more - 1; i >= 0; i--)
+		*to++ = (char)(0x80 | (code >> 6 * i & 0x3F));
+	return to;
+}
+
+/* The text of a checked string with escapes, in the arena. */
+static nt_status decode(reader *r, const char *at, const char *end, const char **text, size_t *length)
+{
+	char *const begin = nt_arena_alloc(&r->document->arena, (size_t)(end - at) + 1, 1), *to = begin;
+	if (!begin)
+		return nt_fail_memory(r->error);
+	while (at < end) {
+		uint32_t code;
+		if (*at != '\\') {
+			*to++ = *at++;
+			continue;
+		}
+		at += read_escape(at, &code);
+		to = put_utf8(to, code);
+	}
+	*to = '\0';
+	*text = begin;
+	*length = (size_t)(to - begin);
+	return NT_OK;
+}
+
+/* The string that begins here; its closing quote becomes a NUL. */
+static nt_status read_string(reader *r, const char **text, size_t *length)
+{
+	char *const begin = r->at + 1, *at = skip_plain(begin);
+	bool plain = true;
+	while (*at != '"') {
+		const char *const end = r->document->text + r->document->size;
+		uint32_t code;
+		size_t step;
+		if (*at == '\\') {
+			plain = false;
+			step = read_escape(at, &code);
+			if (!step)
+				return fail_escape(r, at);
+		} else if ((unsigned char)*at < 0x20) {
+			return fail(r, at, at == end ? "a quote" : "an escape for a control character");
+		} else {
+			step = nt_utf8_length(at, (size_t)(end - at));
+			if (!step)
+				return fail(r, at, "UTF-8");
+		}
+		at = skip_plain(at + step);
+	}
+	*at = '\0';
+	r->at = at + 1;
+	if (!plain)
+		return decode(r, begin, at, text, length);
+	*text = begin;
+	*length = (size_t)(at - begin);
+	return NT_OK;
+}
+
+/* ---- scalars ---- */
+
+static bool is_digit(char c)
+{
+	return c >= '0' && c <= '9';
+}
+
+/* One digit or more. */
+static nt_status read_digits(reader *r)
+{
+	if (!is_digit(*r->at))
+		return fail(r, r->at, "a digit");
+	while (is_digit(*r->at))
+		r->at++;
+	return NT_OK;
+}
+
+/* Whether digits, with a minus perhaps, are an integer of 64 bits. */
+static bool fits_64_bits(const char *at, const char *end)
+{
+	const bool negative = *at == '-';
+	uint64_t value = 0;
+	if (end - at < 19)
+		return true;
+	for (at += negative; at < end; at++)
+		if (__builtin_mul_overflow(value, 10u, &value) || __builtin_add_overflow(value, (uint64_t)(*at - '0'), &value))
+			return false;
+	return !negative || value <= (uint64_t)1 << 63;
+}
+
+static bool is_beyond_double(const char *begin, const char *end)
+{
+	double value = 0;
+	nt_read_double(begin, end, &value);
+	return isinf(value);
+}
+
+static nt_status read_number(reader *r, bool foreign, nt_json_value *value)
+{
+	const char *const begin = r->at;
+	r->at += *begin == '-';
+	const char *const whole = r->at;
+	nt_status status = NT_OK;
+	if (*r->at == '0')
+		r->at++;
+	else
+		status = read_digits(r);
+	const char *const point = r->at;
+	if (!status && *r->at == '.') {
+		r->at++;
+		status = read_digits(r);
+	}
+	const bool has_exponent = !status && (*r->at == 'e' || *r->at == 'E');
+	if (has_exponent) {
+		r->at++;
+		r->at += *r->at == '+' || *r->at == '-';
+		status = read_digits(r);
+	}
+	if (status)
+		return status;
+	if (!foreign && (has_exponent || point - whole > 308) && is_beyond_double(begin, r->at))
+		return nt_fail_offset(r->error, NT_ERROR_INPUT, (uint64_t)(begin - r->document->text),
+			"JSON: the number %.*s, expected one that a double can hold",
+			r->at - begin < 100 ? (int)(r->at - begin) : 100, begin);
+	value->type = r->at == point && fits_64_bits(begin, point) ? NT_JSON_INTEGER : NT_JSON_REAL;
+	value->of.text = begin;
+	value->size = (uint64_t)(r->at - begin);
+	return NT_OK;
+}
+
+static nt_status read_word(reader *r, const char *word, nt_json_type type, nt_json_value *value)
+{
+	for (const char *letter = word; *letter; letter++, r->at++)
+		if (*r->at != *letter)
+			return fail(r, r->at, word);
+	value->type = type;
+	value->truth = *word == 't';
+	return NT_OK;
+}
+
+/* ---- containers ---- */
+
+/* Hands a finished value to the container around it. */
+static nt_status push(reader *r, const nt_json_value *value)
+{
+	if (!r->depth) {
+		r->document->root = *value;
+		return NT_OK;
+	}
+	const bool in_object = r->open[r->depth - 1].is_object;
+	const size_t bytes = nt_json_child_bytes(in_object);
+	if (r->stack_capacity - r->stack_size < bytes &&
+		!nt_grow((void **)&r->stack, &r->stack_capacity, r->stack_size + bytes, 1))
+		return nt_fail_memory(r->error);
+	nt_json_member *const to = (nt_json_member *)(r->stack + r->stack_size);
+	to->value = *value;
+	if (in_object) {
+		to->key = r->key;
+		to->key_length = r->key_length;
+	}
+	r->stack_size += bytes;
+	return NT_OK;
+}
+
+/* A member's key and the colon. */
+static nt_status read_key(reader *r)
+{
+	if (*r->at != '"')
+		return fail(r, r->at, "a key in quotes");
+	const nt_status status = read_string(r, &r->key, &r->key_length);
+	if (status)
+		return status;
+	r->at = (char *)nt_json_skip_space(r->at);
+	if (*r->at != ':')
+		return fail(r, r->at, "':'");
+	r->at++;
+	r->open[r->depth - 1].foreign_member = r->foreign && r->key_length == strlen(r->foreign) &&
+		memcmp(r->key, r->foreign, r->key_length) == 0;
+	return NT_OK;
+}
+
+static bool is_foreign(const reader *r)
+{
+	return r->depth && (r->open[r->depth - 1].foreign || r->open[r->depth - 1].foreign_member);
+}
+
+/* A container begins; *complete receives whether it ends here too. */
+static nt_status open_container(reader *r, nt_json_value *value, bool *complete)
+{
+	const bool is_object = *r->at == '{', foreign = is_foreign(r);
+	if (r->depth == NT_JSON_MAX_DEPTH)
+		return nt_fail_offset(r->error, NT_ERROR_INPUT, (uint64_t)(r->at - r->document->text),
+			"JSON is nested deeper than %d arrays and objects", NT_JSON_MAX_DEPTH);
+	value->type = is_object ? NT_JSON_OBJECT : NT_JSON_ARRAY;
+	r->at = (char *)nt_json_skip_space(r->at + 1);
+	*complete = *r->at == (is_object ? '}' : ']');
+	if (*complete) {
+		r->at++;
+		return push(r, value);
+	}
+	r->open[r->depth++] = (opened){value->begin, r->key, r->key_length, r->stack_size, is_object, foreign, false};
+	return is_object ? read_key(r) : NT_OK;
+}
+
+static int compare_keys(const void *a, const void *b)
+{
+	const nt_json_member *x = *(const nt_json_member *const *)a, *y = *(const nt_json_member *const *)b;
+	if (x->key_length != y->key_length)
+		return x->key_length < y->key_length ? -1 : 1;
+	const int difference = memcmp(x->key, y->key, x->key_length);
+	return difference ? difference : x < y ? -1 : x > y;
+}
+
+static bool equal_keys(const nt_json_member *a, const nt_json_member *b)
+{
+	return a->key_length == b->key_length && memcmp(a->key, b->key, a->key_length) == 0;
+}
+
+/* *second receives a member whose key another one before it has; NULL: there is none. Few are compared pair by pair,
+ * many are sorted. */
+static nt_status find_duplicate(const reader *r, const nt_json_member *members, size_t count,
+	const nt_json_member **second)
+{
+	enum { FEW = 16 };
+	*second = NULL;
+	if (count <= FEW) {
+		for (size_t i = 1; i < count; i++)
+			for (size_t k = 0; k < i; k++)
+				if (equal_keys(&members[i], &members[k]))
+					*second = &members[i];
+		return NT_OK;
+	}
+	const nt_json_member **order = nt_alloc(count, sizeof *order);
+	if (!order)
+		return nt_fail_memory(r->error);
+	for (size_t i = 0; i < count; i++)
+		order[i] = &members[i];
+	qsort(order, count, sizeof *order, compare_keys);
+	for (size_t i = 1; i < count && !*second; i++)
+		if (equal_keys(order[i], order[i - 1]))
+			*second = order[i];
+	free(order);
+	return NT_OK;
+}
+
+/* The keys of the object that ends here, which follow each other in the stack. */
+static nt_status check_keys(const reader *r, const nt_json_member *members, size_t count)
+{
+	const nt_json_member *second;
+	const nt_status status = find_duplicate(r, members, count, &second);
+	if (status || !second)
+		return status;
+	/* behind the key: in front of the value there are a colon and white space */
+	const char *at = second->value.begin - 1;
+	while (at[-1] != '\0')
+		at--;
+	return nt_fail_offset(r->error, NT_ERROR_INPUT, (uint64_t)(at - r->document->text),
+		"JSON: the key \"%.200s\" occurs twice in one object", second->key);
+}
+
+/* The container ends whose bracket was read; its children leave the stack. */
+static nt_status close_container(reader *r)
+{
+	const opened *const o = &r->open[--r->depth];
+	const size_t bytes = r->stack_size - o->first, count = bytes / nt_json_child_bytes(o->is_object);
+	const char *const children = r->stack + o->first;
+	nt_status status = NT_OK;
+	if (o->is_object && !o->foreign)
+		status = check_keys(r, (const nt_json_member *)children, count);
+	if (status)
+		return status;
+	nt_json_value value = {.begin = o->begin, .type = o->is_object ? NT_JSON_OBJECT : NT_JSON_ARRAY, .size = count};
+	value.of.list = nt_json_new_list(r->document, count, o->is_object);
+	if (!value.of.list)
+		return nt_fail_memory(r->error);
+	memcpy(value.of.list + 1, children, bytes);
+	value.of.list->end = r->at;
+	r->stack_size = o->first;
+	r->key = o->key;
+	r->key_length = o->key_length;
+	return push(r, &value);
+}
+
+/* ---- the whole ---- */
+
+/* *complete receives false when a container was opened, whose first value comes next. */
+static nt_status read_value(reader *r, bool *complete)
+{
+	nt_json_value value = {.begin = r->at};
+	nt_status status;
+	*complete = true;
+	switch (*r->at) {
+	case '{':
+	case '[':
+		return open_container(r, &value, complete);
+	case '"': {
+		const char *text = NULL;
+		size_t length = 0;
+		value.type = NT_JSON_STRING;
+		status = read_string(r, &text, &length);
+		value.of.text = text;
+		value.size = length;
+		break;
+	}
+	case 't':
+		status = read_word(r, "true", NT_JSON_BOOLEAN, &value);
+		break;
+	case 'f':
+		status = read_word(r, "false", NT_JSON_BOOLEAN, &value);
+		break;
+	case 'n':
+		status = read_word(r, "null", NT_JSON_NULL, &value);
+		break;
+	default:
+		if (*r->at != '-' && !is_digit(*r->at))
+			return fail(r, r->at, "a value");
+		status = read_number(r, is_foreign(r), &value);
+		break;
+	}
+	return status ? status : push(r, &value);
+}
+
+/* Behind a value in a container: *complete receives whether this ends too. */
+static nt_status read_separator(reader *r, bool *complete)
+{
+	const bool in_object = r->open[r->depth - 1].is_object;
+	r->at = (char *)nt_json_skip_space(r->at);
+	*complete = *r->at == (in_object ? '}' : ']');
+	if (!*complete && *r->at != ',')
+		return fail(r, r->at, in_object ? "',' or '}'" : "',' or ']'");
+	r->at++;
+	if (*complete)
+		return close_container(r);
+	r->at = (char *)nt_json_skip_space(r->at);
+	return in_object ? read_key(r) : NT_OK;
+}
+
+static nt_status read_text(reader *r)
+{
+	bool complete;
+	nt_status status;
+	do {
+		r->at = (char *)nt_json_skip_space(r->at);
+		status = read_value(r, &complete);
+		while (!status && complete && r->depth)
+			status = read_separator(r, &complete);
+	} while (!status && !complete);
+	if (status)
+		return status;
+	r->at = (char *)nt_json_skip_space(r->at);
+	return r->at == r->document->text + r->document->size ? NT_OK : fail(r, r->at, "the end of the text");
+}
+
+nt_json_list *nt_json_new_list(nt_json *document, size_t capacity, bool of_object)
+{
+	size_t bytes;
+	if (!nt_size_mul(capacity, nt_json_child_bytes(of_object), &bytes) ||
+		!nt_size_add(bytes, sizeof(nt_json_list), &bytes))
+		return NULL;
+	nt_json_list *list = nt_arena_alloc(&document->arena, bytes, 1);
+	if (list)
+		*list = (nt_json_list){.capacity = capacity};
+	return list;
+}
+
+nt_status nt_json_parse(nt_json **document, const char *text, size_t size, const char *foreign, nt_error *error)
+{
+	*document = NULL;
+	if (size >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0)
+		return nt_fail_offset(error, NT_ERROR_INPUT, 0,
+			"JSON begins with a byte order mark, which glTF does not allow");
+	nt_json *parsed = nt_calloc(1, sizeof *parsed);
+	reader *r = nt_calloc(1, sizeof *r);
+	size_t bytes;
+	nt_status status = NT_ERROR_MEMORY;
+	if (parsed && r && nt_size_add(size, PADDING_BYTES, &bytes))
+		parsed->text = nt_alloc(bytes, 1);
+	if (parsed && parsed->text) {
+		if (size)
+			memcpy(parsed->text, text, size);
+		memset(parsed->text + size, 0, PADDING_BYTES);
+		parsed->size = size;
+		*r = (reader){.document = parsed, .at = parsed->text, .foreign = foreign, .error = error};
+		status = read_text(r);
+	} else {
+		nt_fail_memory(error);
+	}
+	if (r)
+		free(r->stack);
+	free(r);
+	if (status)
+		nt_json_free(parsed);
+	else
+		*document = parsed;
+	return status;
+}
+
+void nt_json_free(nt_json *document)
+{
+	if (!document)
+		return;
+	nt_arena_free(&document->arena);
+	free(document->text);
+	free(document);
+}

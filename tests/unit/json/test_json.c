@@ -1,0 +1,448 @@
+/* SPDX-License-Identifier: MIT */
+#include "fail_alloc.h"
+#include "test.h"
+#include <stdio.h>
+#include <stdlib.h>
+#include "json/json.h"
+
+static nt_json *parse(const char *text)
+{
+	nt_json *document;
+	nt_error error;
+	nt_error_clear(&error);
+	const nt_status status = nt_json_parse(&document, text, strlen(text), "extras", &error);
+	if (status)
+		print_error("%s: %s\n", text, error.message);
+	assert_int_equal(status, NT_OK);
+	return document;
+}
+
+static void check_dump(const nt_json *document, const char *expected)
+{
+	nt_buffer text = {0};
+	nt_error error;
+	assert_int_equal(nt_json_dump(document, &text, &error), NT_OK);
+	assert_string_equal(text.data, expected);
+	nt_buffer_free(&text);
+}
+
+/* Parsing fails with INPUT at that byte. */
+static void check_refused(const char *text, size_t size, uint64_t offset)
+{
+	nt_json *document;
+	nt_error error;
+	nt_error_clear(&error);
+	assert_int_equal(nt_json_parse(&document, text, size, "extras", &error), NT_ERROR_INPUT);
+	assert_null(document);
+	assert_int_equal(error.status, NT_ERROR_INPUT);
+	assert_true(strlen(error.message) > 10);
+	if (error.place.offset != offset)
+		print_error("%s: %s\n", text, error.message);
+	assert_int_equal(error.place.offset, offset);
+}
+
+static void text_comes_back_as_it_was(void **state)
+{
+	(void)state;
+	static const char *const texts[] = {
+		"{}",
+		"[]",
+		"{\"z\":1,\"a\":2,\"m\":{\"y\":null,\"b\":[]}}",
+		"{\"big\":18446744073709551615,\"small\":-9223372036854775808,\"empty\":{}}",
+		"[0.1,1.0,1e+300,-2.5e-08,true,false,null,\"\"]",
+		"[\"\xC3\xA9\\n\\\"\\\\\\u0000\"]",
+		"{\n  \"a\": [\n    1,\n    2\n  ],\n  \"b\": {}\n}",
+		"{\n\t\"a\": 1\n}",
+	};
+	for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+		nt_json *document = parse(texts[i]);
+		check_dump(document, texts[i]);
+		nt_json_free(document);
+	}
+}
+
+static void faults_are_refused_with_their_place(void **state)
+{
+	(void)state;
+	check_refused("", 0, 0);
+	check_refused("{]", 2, 1);
+	check_refused("{\"a\":1", 6, 6);
+	check_refused("\xEF\xBB\xBF{}", 5, 0);
+	check_refused("{} x", 4, 3);
+	check_refused("[1e400]", 7, 1);
+	check_refused("[-1.5e309]", 10, 1);
+	check_refused("[\"\xFF\"]", 5, 2);
+	check_refused("[\"\\ud800\"]", 10, 2);
+	check_refused("[\"\\udc00\\ud800\"]", 16, 2);
+	check_refused("[\"\\ud800\\ud800\"]", 16, 2);
+	check_refused("[\"\\u12g4\"]", 10, 3);
+	check_refused("[\"\\x\"]", 6, 3);
+	check_refused("[\"\\", 3, 3);
+	check_refused("[\"\\u00", 6, 3);
+	check_refused("[\"\\ud800\\", 9, 2);
+	check_refused("[\"a", 3, 3);
+	check_refused("[\"\xC3", 3, 2);
+	check_refused("[\"\xED\xA0\x80\"]", 7, 2);
+	check_refused("[\"12345678\n\"]", 13, 10);
+	check_refused("[01]", 4, 2);
+	check_refused("[-]", 3, 2);
+	check_refused("[1.]", 4, 3);
+	check_refused("[1e+]", 5, 4);
+	check_refused("[+1]", 4, 1);
+	check_refused("[.5]", 4, 1);
+	check_refused("[NaN]", 5, 1);
+	check_refused("[nul]", 5, 4);
+	check_refused("-", 1, 1);
+	check_refused("[1,]", 4, 3);
+	check_refused("{\"a\":1,}", 8, 7);
+	check_refused("{\"a\" 1}", 7, 5);
+	check_refused("{a:1}", 5, 1);
+	check_refused("[1}", 3, 2);
+	check_refused("[1 2]", 5, 3);
+	check_refused("\0", 1, 0);
+	check_refused("{\"a\":1,\"b\":2,\"a\":3}", 19, 16);
+	check_refused("{\"a\":1,\"\\u0061\" : \"b\"}", 22, 15);
+	check_refused("[\"a\0b\"]", 7, 3);
+}
+
+static void duplicate_key_in_large_object_is_found(void **state)
+{
+	(void)state;
+	nt_buffer text = {0};
+	nt_buffer_text(&text, "{");
+	for (int i = 0; i < 1000; i++)
+		nt_buffer_format(&text, "\"k%d\":%d,", i, i);
+	const size_t end_of_good = text.size;
+	nt_buffer_text(&text, "\"k7\":0}");
+	check_refused(text.data, text.size, end_of_good + 4);
+	nt_buffer_free(&text);
+}
+
+static void nesting_is_capped(void **state)
+{
+	(void)state;
+	char text[2 * NT_JSON_MAX_DEPTH + 2];
+	memset(text, '[', NT_JSON_MAX_DEPTH + 1);
+	memset(text + NT_JSON_MAX_DEPTH + 1, ']', NT_JSON_MAX_DEPTH + 1);
+	check_refused(text, sizeof text, NT_JSON_MAX_DEPTH);
+	nt_json *document;
+	nt_error error;
+	assert_int_equal(nt_json_parse(&document, text + 1, sizeof text - 2, NULL, &error), NT_OK);
+	nt_json_free(document);
+}
+
+/* What an edit leaves out is as it was, to the byte. */
+static void what_is_not_edited_keeps_its_spelling(void **state)
+{
+	(void)state;
+	static const char *const texts[] = {
+		" [ 1.0E+03 , -0.0 , 0e5,1E-400000 , 12345678901234567890123 ]\r\n",
+		"{ \"\\u00e9\" : \"\\/\\u00E9\\ud83d\\ude00\" ,\n\t\"e\":[ ],\"o\":{\n} }",
+		"{\"extras\":{\"a\":1e400,\"a\":[{\"b\":-1e999,\"b\":0}]}}",
+		"{\"extras\":1e400}",
+		"\"a\\u0000b\"",
+		" null ",
+		"3.50",
+	};
+	for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+		nt_json *document = parse(texts[i]);
+		check_dump(document, texts[i]);
+		nt_json_free(document);
+	}
+}
+
+static void what_is_foreign_is_so_within_its_member_alone(void **state)
+{
+	(void)state;
+	check_refused("{\"extras\":{},\"b\":1e400}", 23, 17);
+	check_refused("{\"extra\":1e400}", 15, 9);
+	check_refused("[{\"extras\":{\"a\":1,\"a\":2}},{\"a\":1,\"a\":2}]", 40, 36);
+	check_refused("{\"extras\":1,\"extras\":2}", 23, 20);
+	nt_json *document;
+	nt_error error;
+	assert_int_equal(nt_json_parse(&document, "{\"extras\":1e400}", 16, NULL, &error), NT_ERROR_INPUT);
+	document = parse("{\"extras\":{\"n\":1e400,\"k\":1,\"k\":2}}");
+	nt_json_value *extras = nt_json_find(nt_json_root(document), "extras");
+	double real = 7;
+	uint64_t whole = 7;
+	assert_false(nt_json_get_double(nt_json_find(extras, "n"), &real));
+	assert_false(nt_json_get_uint64(nt_json_find(extras, "n"), &whole));
+	assert_true(nt_json_get_uint64(nt_json_find(extras, "k"), &whole));
+	assert_int_equal(whole, 1);
+	nt_json_remove(document, extras, "k");
+	check_dump(document, "{\"extras\":{\"n\":1e400}}");
+	nt_json_free(document);
+}
+
+/* One edit: a member is set, put, or (value NULL) taken out; the path has keys and numbers of elements. */
+typedef struct edit {
+	const char *text, *path, *key, *value, *expected;
+} edit;
+
+static nt_json_value *walk(nt_json *document, const char *path)
+{
+	nt_json_value *value = nt_json_root(document);
+	while (*path) {
+		char part[20];
+		const size_t length = strcspn(path, "/");
+		snprintf(part, sizeof part, "%.*s", (int)length, path);
+		value = nt_json_type_of(value) == NT_JSON_ARRAY ? nt_json_at(value, (size_t)atoi(part)) :
+								   nt_json_find(value, part);
+		assert_non_null(value);
+		path += length + (path[length] == '/');
+	}
+	return value;
+}
+
+static void edits_change_their_members_alone(void **state)
+{
+	(void)state;
+	static const edit edits[] = {
+		/* a value of its own */
+		{"{ \"a\" : 1.0E0 , \"b\":\"\\/\" }", "", "b", "7", "{ \"a\" : 1.0E0 , \"b\":7 }"},
+		{"{ \"a\" : {\"x\":[1 , 2]} , \"b\":\"\\/\" }", "", "a", "7", "{ \"a\" : 7 , \"b\":\"\\/\" }"},
+		{"{\"a\":[1E0, {\"n\" : \"\\u00e9\"}]}", "a/1", "n", "7", "{\"a\":[1E0, {\"n\" : 7}]}"},
+		/* the same value leaves its spelling */
+		{"{\"a\": 1.0E+03}", "", "a", "1000", "{\"a\": 1.0E+03}"},
+		/* members come as their neighbours stand */
+		{"{\"a\":1}", "", "b", "2", "{\"a\":1,\"b\":2}"},
+		{"{\"a\": 1, \"c\": 3}", "", "b", "2", "{\"a\": 1, \"c\": 3, \"b\": 2}"},
+		{"{\r\n  \"a\": 1\r\n}\r\n", "", "b", "2", "{\r\n  \"a\": 1,\r\n  \"b\": 2\r\n}\r\n"},
+		{"{\n  \"a\": {}\n}", "a", "b", "2", "{\n  \"a\": {\n    \"b\": 2\n  }\n}"},
+		{"{\n  \"a\": { \"x\": [] }\n}", "a", "b", "2", "{\n  \"a\": { \"x\": [], \"b\": 2 }\n}"},
+		{"{\n\t\"a\":{\n\t\t\"x\":1\n\t}\n}", "a", "b", "2", "{\n\t\"a\":{\n\t\t\"x\":1,\n\t\t\"b\":2\n\t}\n}"},
+		{"{}", "", "b", "2", "{\"b\":2}"},
+		{" { } ", "", "b", "2", " {\"b\":2} "},
+		/* and go with one comma */
+		{"{ \"a\":1 , \"b\":2 ,\"c\":3 }", "", "a", NULL, "{ \"b\":2 ,\"c\":3 }"},
+		{"{ \"a\":1 , \"b\":2 ,\"c\":3 }", "", "b", NULL, "{ \"a\":1 ,\"c\":3 }"},
+		{"{ \"a\":1 , \"b\":2 ,\"c\":3 }", "", "c", NULL, "{ \"a\":1 , \"b\":2 }"},
+		{"{ \"a\\n\":1 , \"b\":[{},\"\\\"\"] }", "", "b", NULL, "{ \"a\\n\":1 }"},
+		{"{ \"b\":[[1,{\"]\":\"[\"}]] }", "", "b", NULL, "{}"},
+	};
+	for (size_t i = 0; i < sizeof edits / sizeof *edits; i++) {
+		const edit *e = &edits[i];
+		nt_json *document = parse(e->text);
+		nt_json_value *object = walk(document, e->path);
+		if (e->value)
+			nt_json_set_uint64(document, nt_json_put(document, object, e->key), strtoull(e->value, NULL, 10));
+		else
+			nt_json_remove(document, object, e->key);
+		check_dump(document, e->expected);
+		nt_json_free(document);
+	}
+}
+
+static void several_edits_of_one_container(void **state)
+{
+	(void)state;
+	nt_json *document = parse("{\n  \"a\": [\n    1E0,\n    2E0,\n    3E0,\n    4E0\n  ]\n}\n");
+	nt_json_value *a = nt_json_find(nt_json_root(document), "a");
+	nt_json_remove_at(document, a, 1);
+	nt_json_remove_at(document, a, 1);
+	nt_json_set_uint64(document, nt_json_at(a, 1), 5);
+	nt_json_value *object = nt_json_append(document, a);
+	nt_json_set_string(document, nt_json_put(document, object, "s"), "\xC3\xA9/\x01", 4);
+	nt_json_set_object(document, nt_json_put(document, object, "e"));
+	nt_json_append(document, nt_json_put(document, object, "n"));
+	check_dump(document, "{\n  \"a\": [\n    1E0,\n    5,\n    {\n      \"s\": \"\xC3\xA9/\\u0001\",\n      \"e\": {},\n"
+		"      \"n\": [\n        null\n      ]\n    }\n  ]\n}\n");
+	nt_json_remove_at(document, a, 0);
+	nt_json_remove_at(document, a, 0);
+	check_dump(document, "{\n  \"a\": [\n    {\n      \"s\": \"\xC3\xA9/\\u0001\",\n      \"e\": {},\n"
+		"      \"n\": [\n        null\n      ]\n    }\n  ]\n}\n");
+	nt_json_remove_at(document, a, 0);
+	check_dump(document, "{\n  \"a\": []\n}\n");
+	nt_json_free(document);
+	document = parse("[{\"n\":1E0,\"s\":\"\\u0041\",\"extras\":{\"d\":1e400,\"d\":[]}} ]");
+	nt_json_set_copy(document, nt_json_append(document, nt_json_root(document)), nt_json_at(nt_json_root(document), 0));
+	check_dump(document, "[{\"n\":1E0,\"s\":\"\\u0041\",\"extras\":{\"d\":1e400,\"d\":[]}},"
+		"{\"n\":1E0,\"s\":\"A\",\"extras\":{\"d\":1e400,\"d\":[]}} ]");
+	nt_json_free(document);
+}
+
+/* White space is repeated for new members, but not without bound. */
+static void long_white_space_is_not_repeated(void **state)
+{
+	(void)state;
+	nt_buffer text = {0};
+	nt_buffer_text(&text, "[");
+	memset(nt_buffer_extend(&text, 100000), ' ', 100000);
+	nt_buffer_text(&text, "1]");
+	nt_json *document = parse(text.data);
+	for (int i = 0; i < 1000; i++)
+		nt_json_append(document, nt_json_root(document));
+	nt_buffer out = {0};
+	nt_error error;
+	assert_int_equal(nt_json_dump(document, &out, &error), NT_OK);
+	assert_true(out.size < 110000);
+	nt_json_free(document);
+	nt_buffer_free(&text);
+	nt_buffer_free(&out);
+}
+
+static void numbers_have_checked_types(void **state)
+{
+	(void)state;
+	nt_json *document = parse("[-1,9223372036854775807,9223372036854775808,1.0,1.5,\"1\",1e19,true,2e1,18446744073709551616]");
+	const nt_json_value *root = nt_json_root(document);
+	uint64_t unsigned_value = 77;
+	double real = 77;
+	assert_false(nt_json_get_uint64(nt_json_at(root, 0), &unsigned_value));
+	assert_int_equal(unsigned_value, 77);
+	assert_true(nt_json_get_uint64(nt_json_at(root, 1), &unsigned_value));
+	assert_true(unsigned_value == INT64_MAX);
+	assert_true(nt_json_get_uint64(nt_json_at(root, 2), &unsigned_value));
+	assert_true(unsigned_value == (uint64_t)1 << 63);
+	assert_true(nt_json_get_uint64(nt_json_at(root, 3), &unsigned_value));
+	assert_int_equal(unsigned_value, 1);
+	assert_false(nt_json_get_uint64(nt_json_at(root, 4), &unsigned_value));
+	assert_true(nt_json_get_double(nt_json_at(root, 4), &real));
+	assert_true(real == 1.5);
+	assert_false(nt_json_get_double(nt_json_at(root, 5), &real));
+	assert_true(nt_json_get_uint64(nt_json_at(root, 6), &unsigned_value));
+	assert_true(unsigned_value == 10000000000000000000u);
+	assert_false(nt_json_get_double(nt_json_at(root, 7), &real));
+	assert_true(nt_json_get_uint64(nt_json_at(root, 8), &unsigned_value));
+	assert_int_equal(unsigned_value, 20);
+	assert_false(nt_json_get_uint64(nt_json_at(root, 9), &unsigned_value)); /* 2^64 */
+	nt_json_free(document);
+}
+
+static void look_ups_of_nothing_give_nothing(void **state)
+{
+	(void)state;
+	nt_json *document = parse("{\"a\":{\"b\":[10,\"x\"]}}");
+	const nt_json_value *root = nt_json_root(document);
+	const nt_json_value *b = nt_json_find(nt_json_find(root, "a"), "b");
+	assert_int_equal(nt_json_count(b), 2);
+	assert_null(nt_json_at(b, 2));
+	assert_null(nt_json_find(b, "c"));
+	assert_null(nt_json_find(nt_json_find(root, "c"), "b"));
+	assert_int_equal(nt_json_count(NULL), 0);
+	assert_null(nt_json_get_string(NULL, NULL));
+	assert_null(nt_json_key(b, 0, NULL));
+	assert_int_equal(nt_json_type_of(NULL), NT_JSON_NONE);
+	assert_string_equal(nt_json_type_text(b), "an array");
+	size_t length;
+	assert_string_equal(nt_json_key(root, 0, &length), "a");
+	assert_int_equal(length, 1);
+	nt_json_free(document);
+}
+
+static void escapes_are_what_they_stand_for(void **state)
+{
+	(void)state;
+	nt_json *document = parse("{\"\\u006be\\u0000y\":\"\\\"\\\\\\/\\b\\f\\n\\r\\t|\\u0041\\u00e9\\uA041\\ud83d\\uDE00\\uffff\\u0000.\"}");
+	static const char expected[] = "\"\\/\b\f\n\r\t|A\xC3\xA9\xEA\x81\x81\xF0\x9F\x98\x80\xEF\xBF\xBF\0.";
+	size_t length;
+	const char *text = nt_json_get_string(nt_json_at(nt_json_root(document), 0), &length);
+	assert_int_equal(length, sizeof expected - 1);
+	assert_memory_equal(text, expected, sizeof expected);
+	assert_memory_equal(nt_json_key(nt_json_root(document), 0, &length), "ke\0y", 5);
+	assert_int_equal(length, 4);
+	assert_null(nt_json_find(nt_json_root(document), "ke"));
+	nt_json_free(document);
+}
+
+static void changes_keep_the_order_of_the_rest(void **state)
+{
+	(void)state;
+	nt_json *document = parse("{\"z\":1,\"y\":{\"deep\":[1,2]},\"x\":3}");
+	nt_json_value *root = nt_json_root(document);
+	const nt_json_value *deep = nt_json_at(nt_json_find(nt_json_find(root, "y"), "deep"), 1);
+	nt_json_set_uint64(document, nt_json_put(document, root, "z"), 7);
+	nt_json_set_string(document, nt_json_put(document, root, "new"), "n\0w", 3);
+	nt_json_set_double(document, nt_json_put(document, root, "mid"), 0.1);
+	nt_json_value *array = nt_json_put(document, root, "list");
+	nt_json_set_bool(document, nt_json_append(document, array), true);
+	nt_json_set_object(document, nt_json_append(document, array));
+	nt_json_set_copy(document, nt_json_append(document, array), nt_json_find(root, "y"));
+	/* values deep inside members that moved stay where they were */
+	uint64_t two = 0;
+	assert_true(nt_json_get_uint64(deep, &two));
+	assert_int_equal(two, 2);
+	nt_json_remove(document, root, "x");
+	nt_json_remove(document, root, "absent");
+	nt_json_remove_at(document, nt_json_find(root, "list"), 1);
+	check_dump(document, "{\"z\":7,\"y\":{\"deep\":[1,2]},\"new\":\"n\\u0000w\",\"mid\":0.1,"
+		"\"list\":[true,{\"deep\":[1,2]}]}");
+	assert_false(nt_json_failed(document));
+	nt_json_free(document);
+}
+
+static void equality_looks_at_values_and_order(void **state)
+{
+	(void)state;
+	nt_json *document = parse("[{\"a\":1,\"b\":2},{\"a\":1.0,\"b\":2},{\"b\":2,\"a\":1},{\"a\":1}]");
+	const nt_json_value *root = nt_json_root(document);
+	assert_true(nt_json_equal(nt_json_at(root, 0), nt_json_at(root, 1)));
+	assert_false(nt_json_equal(nt_json_at(root, 0), nt_json_at(root, 2)));
+	assert_false(nt_json_equal(nt_json_at(root, 0), nt_json_at(root, 3)));
+	assert_false(nt_json_equal(nt_json_at(root, 0), NULL));
+	nt_json_free(document);
+}
+
+static nt_status edit_all(nt_buffer *out, nt_error *error)
+{
+	static const char text[] = "{\"a\":[1,2,{\"\\u0061\":\"\\n\"}],\"k0\":0,\"k1\":0,\"k2\":0,\"k3\":0,\"k4\":0,\"k5\":0,"
+		"\"k6\":0,\"k7\":0,\"k8\":0,\"k9\":0,\"l0\":0,\"l1\":0,\"l2\":0,\"l3\":0,\"l4\":0,\"l5\":0,\"l6\":0}";
+	nt_json *document;
+	nt_status status = nt_json_parse(&document, text, sizeof text - 1, NULL, error);
+	if (status) {
+		assert_null(document);
+		return status;
+	}
+	nt_json_value *root = nt_json_root(document);
+	nt_json_set_copy(document, nt_json_put(document, root, "copy"), nt_json_find(root, "a"));
+	nt_json_set_double(document, nt_json_append(document, nt_json_put(document, root, "new")), 0.5);
+	nt_json_set_string(document, nt_json_put(document, root, "text"), "t", 1);
+	nt_json_set_uint64(document, nt_json_find(root, "k0"), 7);
+	nt_json_remove(document, root, "k1");
+	status = nt_json_dump(document, out, error);
+	assert_true(status == NT_OK || status == NT_ERROR_MEMORY);
+	nt_json_free(document);
+	return status;
+}
+
+static void every_allocation_may_fail(void **state)
+{
+	(void)state;
+	size_t count = 0;
+	for (nt_status status = NT_ERROR_MEMORY; status; count++) {
+		nt_buffer out = {0};
+		nt_error error;
+		nt_error_clear(&error);
+		fail_allocations_from(count);
+		status = edit_all(&out, &error);
+		stop_failing_allocations();
+		if (status)
+			assert_int_equal(error.status, NT_ERROR_MEMORY);
+		else
+			assert_non_null(strstr(out.data, ",\"copy\":[1,2,{\"a\":\"\\n\"}],\"new\":[0.5],\"text\":\"t\"}"));
+		nt_buffer_free(&out);
+	}
+	assert_true(count > 6);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(text_comes_back_as_it_was),
+		cmocka_unit_test(faults_are_refused_with_their_place),
+		cmocka_unit_test(duplicate_key_in_large_object_is_found),
+		cmocka_unit_test(nesting_is_capped),
+		cmocka_unit_test(what_is_not_edited_keeps_its_spelling),
+		cmocka_unit_test(what_is_foreign_is_so_within_its_member_alone),
+		cmocka_unit_test(edits_change_their_members_alone),
+		cmocka_unit_test(several_edits_of_one_container),
+		cmocka_unit_test(long_white_space_is_not_repeated),
+		cmocka_unit_test(numbers_have_checked_types),
+		cmocka_unit_test(look_ups_of_nothing_give_nothing),
+		cmocka_unit_test(escapes_are_what_they_stand_for),
+		cmocka_unit_test(changes_keep_the_order_of_the_rest),
+		cmocka_unit_test(every_allocation_may_fail),
+		cmocka_unit_test(equality_looks_at_values_and_order),
+	};
+	return cmocka_run_group_tests_name("json/json", tests, NULL, NULL);
+}
