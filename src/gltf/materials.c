@@ -17,6 +17,7 @@ typedef struct wishes {
 	bool mixed[3]; /* materials differ in the set of that slot */
 	uint32_t mixed_set[3];
 	nt_gltf_transform transform[3];
+	nt_wrap wrap[3][2];
 	bool mixed_transform[3];
 	unsigned slots;
 	size_t material_count, unlit_count;
@@ -84,6 +85,27 @@ static bool same_transform(const nt_gltf_transform *a, const nt_gltf_transform *
 	return a->rotation == b->rotation && a->scale[0] == b->scale[0] && a->scale[1] == b->scale[1];
 }
 
+static const nt_json_value *element_of(const nt_gltf *document, const char *array, const nt_json_value *index)
+{
+	uint64_t i;
+	return nt_json_get_uint64(index, &i) ? nt_json_at(nt_gltf_root_member(document, array), (size_t)i) : NULL;
+}
+
+/* Of the texture that a textureInfo names; what is missing or unknown repeats, as glTF has it. */
+static void read_wrap(const nt_gltf *document, const nt_json_value *info, nt_wrap wrap[2])
+{
+	enum { CLAMP_TO_EDGE = 33071, MIRRORED_REPEAT = 33648 };
+	const nt_json_value *texture = element_of(document, "textures", nt_json_find(info, "index"));
+	const nt_json_value *sampler = element_of(document, "samplers", nt_json_find(texture, "sampler"));
+	for (int axis = 0; axis < 2; axis++) {
+		uint64_t mode = 0;
+		nt_json_get_uint64(nt_json_find(sampler, axis ? "wrapT" : "wrapS"), &mode);
+		wrap[axis] = mode == CLAMP_TO_EDGE ? NT_WRAP_CLAMP
+			: mode == MIRRORED_REPEAT ? NT_WRAP_MIRRORED
+						  : NT_WRAP_REPEAT;
+	}
+}
+
 static nt_status note_texture(const nt_gltf *document, wishes *all, int slot,
 	const nt_json_value *texture, const char *material, const char *path, nt_error *error)
 {
@@ -104,6 +126,7 @@ static nt_status note_texture(const nt_gltf *document, wishes *all, int slot,
 		all->wants[slot] = true;
 		all->set[slot] = (uint32_t)set;
 		all->transform[slot] = transform;
+		read_wrap(document, texture, all->wrap[slot]);
 		return NT_OK;
 	}
 	if (all->set[slot] != set) {
@@ -194,6 +217,7 @@ static void choose_set(const wishes *all, nt_gltf_shading *shading)
 			shading->set = all->set[slot];
 			shading->set_slot = 1u << slot;
 			shading->transform = all->transform[slot];
+			memcpy(shading->wrap, all->wrap[slot], sizeof shading->wrap);
 			shading->transforms_differ = all->mixed_transform[slot];
 		}
 		if (all->set[slot] == shading->set &&

@@ -6,6 +6,7 @@
 #define NT_GLTF_MATERIALS_H
 
 #include "gltf/document.h"
+#include "scene/scene.h"
 
 /* What KHR_texture_transform does to directions; its offset does nothing to them. */
 typedef struct nt_gltf_transform {
@@ -24,6 +25,7 @@ typedef struct nt_gltf_shading {
 	uint32_t other_set;
 	uint32_t material; /* the primitive's own; NT_NONE: none */
 	nt_gltf_transform transform; /* of the texture that gives the set */
+	nt_wrap wrap[2];             /* and its sampler's */
 	bool transforms_differ;      /* another material or slot transforms that set otherwise */
 } nt_gltf_shading;
 

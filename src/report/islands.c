@@ -4,9 +4,10 @@
  *
  * A mirrored island that shares its texture with an unmirrored one is how symmetric models are made. To
  * tell it from a lone one, centroids of its triangles are looked up among the unmirrored triangles of
- * the whole mesh. The points (about SAMPLE_COUNT of them, at least one of each island) go into a grid and the
- * triangles stream over it; a point that is found leaves its cell, so that many stacked layers cost no more than
- * one.
+ * the whole mesh, both as the sampler wraps them: a mirrored half that was moved by a whole tile for baking
+ * still lies on the other half. The points (about SAMPLE_COUNT of them, at least one of each island) go into a
+ * grid and the triangles stream over it, once for each tile that they reach into; a point that is found leaves
+ * its cell, so that many stacked layers cost no more than one.
  *
  * An island with both windings is a fold, unless its mirrored part lies point by point on its own
  * unmirrored part: then it is a symmetric model whose halves share the coordinates of the middle line.
@@ -78,9 +79,19 @@ typedef struct grid {
 	double minimum[2], scale[2];
 	uint32_t cells[GRID_SIZE * GRID_SIZE]; /* first sample */
 	sample *samples;
-	size_t sample_count;
+	size_t sample_count, left; /* not found yet */
 	size_t visits;
+	const nt_wrap *wrap; /* [2] */
 } grid;
+
+/* Where a sampler looks: repeated modulo 1, mirrored folded, clamped (inside the texture) as it stands. */
+static double wrap_coordinate(double x, nt_wrap wrap)
+{
+	if (wrap == NT_WRAP_CLAMP)
+		return x;
+	const double tile = floor(x), within = x - tile;
+	return wrap == NT_WRAP_MIRRORED && fmod(tile, 2.0) != 0.0 ? 1.0 - within : within;
+}
 
 static double uv_area(const float *a, const float *b, const float *c)
 {
@@ -111,8 +122,9 @@ static void take_samples(const nt_check *check, grid *g, size_t mirrored_count, 
 		const float *a = nt_side_texcoord(s, (uint32_t)(3 * t));
 		const float *b = nt_side_texcoord(s, (uint32_t)(3 * t + 1));
 		const float *c = nt_side_texcoord(s, (uint32_t)(3 * t + 2));
-		g->samples[g->sample_count++] = (sample){.u = ((double)a[0] + b[0] + c[0]) / 3.0,
-			.v = ((double)a[1] + b[1] + c[1]) / 3.0,
+		g->samples[g->sample_count++] = (sample){
+			.u = wrap_coordinate(((double)a[0] + b[0] + c[0]) / 3.0, g->wrap[0]),
+			.v = wrap_coordinate(((double)a[1] + b[1] + c[1]) / 3.0, g->wrap[1]),
 			.weight = -uv_area(a, b, c),
 			.island = check->islands[t]};
 	}
@@ -140,22 +152,30 @@ static void fill_grid(grid *g)
 	}
 }
 
-static bool is_inside(const sample *p, const float *a, const float *b, const float *c)
+/* A triangle in UV space, counterclockwise. */
+typedef struct uv_triangle {
+	double u[3], v[3];
+} uv_triangle;
+
+static bool is_inside(const sample *p, const uv_triangle *t)
 {
-	const double ab = ((double)b[0] - a[0]) * (p->v - a[1]) - ((double)b[1] - a[1]) * (p->u - a[0]);
-	const double bc = ((double)c[0] - b[0]) * (p->v - b[1]) - ((double)c[1] - b[1]) * (p->u - b[0]);
-	const double ca = ((double)a[0] - c[0]) * (p->v - c[1]) - ((double)a[1] - c[1]) * (p->u - c[0]);
-	return ab >= 0.0 && bc >= 0.0 && ca >= 0.0;
+	for (int k = 0; k < 3; k++) {
+		const int next = (k + 1) % 3;
+		if (!((t->u[next] - t->u[k]) * (p->v - t->v[k]) - (t->v[next] - t->v[k]) * (p->u - t->u[k]) >= 0.0))
+			return false;
+	}
+	return true;
 }
 
 /* Takes the samples that lie in an unmirrored triangle out of a cell. */
-static void search_cell(grid *g, size_t cell, const float *a, const float *b, const float *c)
+static void search_cell(grid *g, size_t cell, const uv_triangle *t)
 {
 	for (uint32_t *link = &g->cells[cell]; *link != NT_NONE;) {
 		sample *p = &g->samples[*link];
 		g->visits++;
-		if (is_inside(p, a, b, c)) {
+		if (is_inside(p, t)) {
 			p->found = true;
+			g->left--;
 			*link = p->next;
 		} else {
 			link = &p->next;
@@ -163,35 +183,76 @@ static void search_cell(grid *g, size_t cell, const float *a, const float *b, co
 	}
 }
 
-static double least(float a, float b, float c)
+static double least(const double x[3])
 {
-	return fminf(a, fminf(b, c));
+	return fmin(x[0], fmin(x[1], x[2]));
 }
 
-static double greatest(float a, float b, float c)
+static double greatest(const double x[3])
 {
-	return fmaxf(a, fmaxf(b, c));
+	return fmax(x[0], fmax(x[1], x[2]));
+}
+
+static void search_cells(grid *g, const uv_triangle *t)
+{
+	const int x0 = cell_of(g, 0, least(t->u)), x1 = cell_of(g, 0, greatest(t->u));
+	const int y0 = cell_of(g, 1, least(t->v)), y1 = cell_of(g, 1, greatest(t->v));
+	for (int y = y0; y <= y1; y++) {
+		for (int x = x0; x <= x1; x++) {
+			g->visits++;
+			search_cell(g, (size_t)y * GRID_SIZE + (size_t)x, t);
+		}
+	}
+}
+
+/* The tiles that coordinates reach into: one where they are not wrapped. */
+static void find_tiles(const double x[3], nt_wrap wrap, double tiles[2])
+{
+	tiles[0] = wrap == NT_WRAP_CLAMP ? 0.0 : floor(least(x));
+	tiles[1] = wrap == NT_WRAP_CLAMP ? 0.0 : floor(greatest(x));
+}
+
+/* Moves a tile to the first one; returns whether that turns it over. */
+static bool move_tile(double x[3], double tile, nt_wrap wrap)
+{
+	const bool folded = wrap == NT_WRAP_MIRRORED && fmod(tile, 2.0) != 0.0;
+	for (int k = 0; k < 3; k++)
+		x[k] = folded ? 1.0 - (x[k] - tile) : x[k] - tile;
+	return folded;
+}
+
+static void search_tile(grid *g, uv_triangle t, double tile_u, double tile_v)
+{
+	const bool folded_u = move_tile(t.u, tile_u, g->wrap[0]), folded_v = move_tile(t.v, tile_v, g->wrap[1]);
+	g->visits++;
+	if (folded_u != folded_v) {
+		const double u = t.u[1], v = t.v[1];
+		t.u[1] = t.u[2];
+		t.v[1] = t.v[2];
+		t.u[2] = u;
+		t.v[2] = v;
+	}
+	search_cells(g, &t);
 }
 
 static void stream_triangles(const nt_check *check, grid *g)
 {
 	const nt_surface *s = &check->surface;
-	for (size_t t = 0; t < s->triangle_count && g->visits < VISIT_LIMIT; t++) {
+	for (size_t t = 0; t < s->triangle_count && g->left && g->visits < VISIT_LIMIT; t++) {
 		if (s->orientation[t] <= 0)
 			continue;
-		const float *a = nt_side_texcoord(s, (uint32_t)(3 * t));
-		const float *b = nt_side_texcoord(s, (uint32_t)(3 * t + 1));
-		const float *c = nt_side_texcoord(s, (uint32_t)(3 * t + 2));
-		const double low_u = least(a[0], b[0], c[0]), high_u = greatest(a[0], b[0], c[0]);
-		const double low_v = least(a[1], b[1], c[1]), high_v = greatest(a[1], b[1], c[1]);
-		const int x0 = cell_of(g, 0, low_u), x1 = cell_of(g, 0, high_u);
-		const int y0 = cell_of(g, 1, low_v), y1 = cell_of(g, 1, high_v);
-		for (int y = y0; y <= y1; y++) {
-			for (int x = x0; x <= x1; x++) {
-				g->visits++;
-				search_cell(g, (size_t)y * GRID_SIZE + (size_t)x, a, b, c);
-			}
+		uv_triangle uv;
+		for (uint32_t k = 0; k < 3; k++) {
+			const float *texcoord = nt_side_texcoord(s, (uint32_t)(3 * t) + k);
+			uv.u[k] = texcoord[0];
+			uv.v[k] = texcoord[1];
 		}
+		double us[2], vs[2];
+		find_tiles(uv.u, g->wrap[0], us);
+		find_tiles(uv.v, g->wrap[1], vs);
+		for (double v = vs[0]; v <= vs[1] && g->visits < VISIT_LIMIT; v += 1.0)
+			for (double u = us[0]; u <= us[1] && g->visits < VISIT_LIMIT; u += 1.0)
+				search_tile(g, uv, u, v);
 	}
 }
 
@@ -209,8 +270,10 @@ static nt_status find_covered(nt_check *check, size_t mirrored_count)
 	memset(met, 0, islands * sizeof *met);
 	g->samples = samples;
 	g->sample_count = g->visits = 0;
+	g->wrap = check->mesh->wrap;
 	take_samples(check, g, mirrored_count, met);
 	fill_grid(g);
+	g->left = g->sample_count;
 	stream_triangles(check, g);
 	memset(sums, 0, 2 * islands * sizeof *sums);
 	for (size_t i = 0; i < g->sample_count; i++) {
@@ -391,7 +454,8 @@ static void report_islands(nt_check *check)
 				tally_island(check, &rest, k);
 		}
 		if (seen > NT_SINGLE_FINDINGS)
-			nt_check_report(check, &rest, "%zu further islands", seen - NT_SINGLE_FINDINGS);
+			nt_check_report(check, &rest, "%zu further islands, one finding together beyond the first %d",
+				seen - NT_SINGLE_FINDINGS, NT_SINGLE_FINDINGS);
 	}
 }
 

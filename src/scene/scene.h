@@ -27,6 +27,9 @@ enum nt_slot {
 	NT_SLOT_ANISOTROPY = 4        /* KHR_materials_anisotropy, with or without a texture */
 };
 
+/* How a sampler takes coordinates outside of 0 to 1, along u or v. */
+typedef enum nt_wrap { NT_WRAP_REPEAT, NT_WRAP_MIRRORED, NT_WRAP_CLAMP } nt_wrap;
+
 /* Whether a mesh gets tangents, and why. */
 typedef enum nt_decision {
 	NT_DECISION_OPEN,            /* not decided yet */
@@ -114,6 +117,7 @@ typedef struct nt_mesh {
 	bool unlit;              /* every material of it is unlit */
 	bool has_positions, has_normals, has_texcoords, has_tangents; /* texcoords: the set that is used */
 	uint32_t texcoord_set;   /* number of that set */
+	nt_wrap wrap[2];         /* along u and v, of the texture that tangents serve */
 	bool texcoord_conflict;  /* another slot of it asks for another set: texcoord_other_set */
 	uint32_t texcoord_other_set;
 	uint32_t targets_without_tangents; /* morph targets that move it and have no TANGENT */

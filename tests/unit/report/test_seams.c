@@ -241,6 +241,7 @@ static void stacked_islands_are_told_from_lone_ones(void **state)
 	add_quad(h, 10, 0, true); /* on the first: another diagonal, but the same area */
 	add_quad(h, 20, 5, true); /* by itself */
 	add_quad(h, 30, 0, false); /* a copy, not mirrored */
+	h->mesh.wrap[0] = h->mesh.wrap[1] = NT_WRAP_CLAMP;
 	nt_report *report = hand_report(h, NULL);
 	const nt_report_mesh *m = &report->meshes[0];
 	assert_int_equal(m->island_count, 4);
@@ -254,6 +255,53 @@ static void stacked_islands_are_told_from_lone_ones(void **state)
 	assert_int_equal(lone->island, 2);
 	assert_int_equal(lone->severity, NT_SEVERITY_WARNING);
 	hand_free(h, report);
+}
+
+/* An unmirrored triangle at u 0.1 to 0.3 and a mirrored one whose u is `offset` + `scale` u, in another place. */
+static nt_code code_of_pair(nt_wrap wrap, float offset, float scale)
+{
+	static const float uv[3][2] = {{0.1f, 0.1f}, {0.3f, 0.1f}, {0.1f, 0.3f}};
+	hand_mesh *h = hand_new();
+	for (int i = 0; i < 3; i++)
+		hand_vertex(h, uv[i][0], uv[i][1], 0, uv[i][0], uv[i][1]);
+	for (int i = 0; i < 3; i++)
+		hand_vertex(h, 5 + uv[i][0], uv[i][1], 0, offset + scale * uv[i][0], uv[i][1]);
+	hand_triangle(h, 0, 1, 2);
+	if (scale > 0)
+		hand_triangle(h, 3, 5, 4);
+	else
+		hand_triangle(h, 3, 4, 5);
+	h->mesh.wrap[0] = wrap;
+	nt_report *report = hand_report(h, NULL);
+	assert_int_equal(report->meshes[0].triangles[0], 1);
+	const nt_code code = hand_findings(report, NT_CODE_UV_MIRROR_OVERLAP) ? NT_CODE_UV_MIRROR_OVERLAP
+									     : NT_CODE_UV_MIRROR_LONE;
+	assert_int_equal(hand_findings(report, code), 1);
+	hand_free(h, report);
+	return code;
+}
+
+static void overlap_is_judged_as_the_sampler_wraps(void **state)
+{
+	(void)state;
+	const nt_code on = NT_CODE_UV_MIRROR_OVERLAP, off = NT_CODE_UV_MIRROR_LONE;
+	const struct {
+		float offset, scale;
+		nt_code repeat, mirrored, clamp;
+	} rows[] = {
+		{0, 1, on, on, on},
+		{1, 1, on, off, off}, /* folded to 0.7 to 0.9 */
+		{-3, 1, on, off, off},
+		{2, 1, on, on, off},
+		{-6, 1, on, on, off},
+		{2, -1, off, on, off}, /* 1.7 to 1.9, folded to 0.1 to 0.3; repeated it is 0.7 to 0.9 */
+		{0.5f, 1, off, off, off},
+	};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+		assert_int_equal(code_of_pair(NT_WRAP_REPEAT, rows[i].offset, rows[i].scale), rows[i].repeat);
+		assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, rows[i].offset, rows[i].scale), rows[i].mirrored);
+		assert_int_equal(code_of_pair(NT_WRAP_CLAMP, rows[i].offset, rows[i].scale), rows[i].clamp);
+	}
 }
 
 static void bowtie_of_two_triangles_meets_in_a_point_only(void **state)
@@ -332,6 +380,7 @@ int main(void)
 		cmocka_unit_test(moebius_strip_has_one_edge_against_the_winding),
 		cmocka_unit_test(fold_is_found_inside_its_island),
 		cmocka_unit_test(stacked_islands_are_told_from_lone_ones),
+		cmocka_unit_test(overlap_is_judged_as_the_sampler_wraps),
 		cmocka_unit_test(bowtie_of_two_triangles_meets_in_a_point_only),
 		cmocka_unit_test(edge_of_three_triangles_is_reported_and_still_a_seam),
 		cmocka_unit_test(fingerprint_survives_other_indices_but_not_another_place),
