@@ -6,7 +6,7 @@
  * Words are taken in any case, as exporters write map_Bump, map_bump and Map_Bump. Of several
  * normal maps `norm` and `map_Kn` come before the bump maps, whatever their order. What the older
  * lighting model has and glTF has not (Ka, Ks, Ns, Ni, illum ...) is passed over without a word: every
- * file has it. Maps that are lost are named.
+ * file has it. Maps and layers that are lost are named.
  */
 #include "obj/mtl.h"
 
@@ -40,7 +40,7 @@ static bool is_blank(char c)
 /* Files of nonsense have as many different words as lines: beyond this many findings they are one. */
 enum { NAMED_FINDINGS_MOST = 1000 };
 
-static void add_finding(const reader *r, const char *detail, const char *what)
+static void add_finding(const reader *r, nt_code code, const char *detail, const char *what)
 {
 	if (r->scene->findings.count > NAMED_FINDINGS_MOST)
 		what = "";
@@ -48,13 +48,19 @@ static void add_finding(const reader *r, const char *detail, const char *what)
 	nt_place_clear(&place);
 	strncpy(place.file, r->path, sizeof place.file - 1);
 	place.line = r->line;
-	nt_finding_add(&r->scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1, "%s%.*s", detail,
+	nt_finding_add(&r->scene->findings, code, &place, 1, "%s%.*s", detail,
 		(int)(*what ? r->word_length < 64 ? r->word_length : 64 : 0), what);
 }
 
 static void ignore(const reader *r)
 {
-	add_finding(r, "MTL: ", r->word);
+	add_finding(r, NT_CODE_STATEMENT_IGNORED, "MTL: ", r->word);
+}
+
+/* Of what would be seen. */
+static void lose(const reader *r)
+{
+	add_finding(r, NT_CODE_MATERIAL_LOST, "MTL: ", r->word);
 }
 
 /* Fails with "found WORD, expected EXPECTED" at a line of the MTL. */
@@ -145,7 +151,7 @@ static nt_status read_map(reader *r, const char **map, float *scale)
 	if (read.name_begin == read.name_end)
 		return NT_OK; /* "map_Kd" alone: exporters write it for "none" */
 	if (read.transformed)
-		add_finding(r, "MTL: -o, -s or -t of ", r->word);
+		add_finding(r, NT_CODE_MATERIAL_LOST, "MTL: -o, -s or -t of ", r->word);
 	if (scale)
 		*scale = read.bump_scale;
 	char *name = nt_mtl_map_name(&r->scene->arena, &read);
@@ -155,11 +161,28 @@ static nt_status read_map(reader *r, const char **map, float *scale)
 	return NT_OK;
 }
 
+/* A map that has no place in a glTF; without a name it is none. */
+static void lose_map(const reader *r)
+{
+	nt_mtl_map read;
+	nt_mtl_map_read(r->text, r->end, &read);
+	if (read.name_begin != read.name_end)
+		lose(r);
+}
+
+/* Sheen, clearcoat, anisotropy: of strength 0, as exporters write them, they are none. */
+static void lose_layer(const reader *r)
+{
+	float strength;
+	if (nt_read_float(r->text, r->end, &strength) && strength != 0)
+		lose(r);
+}
+
 /* ---- statements ---- */
 
 enum action {
 	BASE_COLOR, EMISSIVE, OPACITY, TRANSPARENCY, ROUGHNESS, METALLIC, BASE_COLOR_MAP, EMISSIVE_MAP,
-	NORMAL_MAP, BUMP_MAP, PASS_OVER
+	NORMAL_MAP, BUMP_MAP, LAYER, LOST_MAP, PASS_OVER
 };
 
 static const struct {
@@ -170,8 +193,9 @@ static const struct {
 	{"Pm", METALLIC}, {"map_Kd", BASE_COLOR_MAP}, {"map_Ke", EMISSIVE_MAP}, {"norm", NORMAL_MAP},
 	{"map_Kn", NORMAL_MAP}, {"map_Bump", BUMP_MAP}, {"bump", BUMP_MAP}, {"Ka", PASS_OVER},
 	{"Ks", PASS_OVER}, {"Ns", PASS_OVER}, {"Ni", PASS_OVER}, {"Tf", PASS_OVER}, {"Km", PASS_OVER},
-	{"illum", PASS_OVER}, {"sharpness", PASS_OVER}, {"Ps", PASS_OVER}, {"Pc", PASS_OVER},
-	{"Pcr", PASS_OVER}, {"aniso", PASS_OVER}, {"anisor", PASS_OVER}, {"map_aat", PASS_OVER},
+	{"illum", PASS_OVER}, {"sharpness", PASS_OVER}, {"Ps", LAYER}, {"Pc", LAYER},
+	{"Pcr", PASS_OVER}, {"aniso", LAYER}, {"anisor", PASS_OVER}, {"map_aat", PASS_OVER},
+	{"map_Ka", PASS_OVER}, {"disp", LOST_MAP}, {"decal", LOST_MAP}, {"refl", LOST_MAP},
 };
 enum { STATEMENT_COUNT = sizeof statements / sizeof statements[0] };
 
@@ -205,6 +229,12 @@ static nt_status read_property(reader *r, nt_mtl_definition *d, enum action acti
 		if (!d->bump)
 			return nt_fail_memory(r->error);
 		return read_map(r, &m->normal_map, &m->normal_scale);
+	case LAYER:
+		lose_layer(r);
+		break;
+	case LOST_MAP:
+		lose_map(r);
+		break;
 	case PASS_OVER:
 		break;
 	}
@@ -251,7 +281,10 @@ static nt_status read_statement(reader *r, size_t first)
 			return read_property(r, &r->mtl->definitions[r->mtl->count - 1],
 				statements[i].action);
 		}
-	ignore(r);
+	if (r->word_length > 4 && strncasecmp(r->word, "map_", 4) == 0)
+		lose_map(r);
+	else
+		ignore(r);
 	return NT_OK;
 }
 

@@ -37,6 +37,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"nmtan uses the image as a normal map.",
 		"If it is a normal map, write norm instead; if it is a height map, bake it to a normal map.",
 		"an MTL with \"map_Bump n.png\""),
+	ROW(MATERIAL_LOST, WARNING, "{count} {property of a material is|properties of materials are} not carried over",
+		"A texture, a texture's place or a layer that a material names is not in the output, which will look different. "
+		"The detail names the statement.",
+		"Set it again in the output, or bake it into a texture that is carried over.",
+		"an MTL with \"disp height.png\""),
 	ROW(STATEMENT_IGNORED, INFO, "{count} {statement was|statements were} not used",
 		"The input has a statement, element or property that nmtan does not know or does not need.",
 		"Nothing, unless you expected it to matter.",
@@ -111,7 +116,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(UV_MIRROR_OVERLAP, INFO,
 		"mirrored island of {count} {triangle|triangles} lies on an unmirrored one",
 		"A mirrored island that shares its texture with its twin: the usual way to texture a symmetric "
-		"model at half the cost.",
+		"model at half the cost. Judged as the sampler wraps: repeated coordinates modulo 1, mirrored ones folded, "
+		"clamped ones as they stand.",
 		"Nothing. When baking, move the mirrored island by a whole tile so that only one is baked.",
 		"two separate quads with the same four UVs, the second one wound the other way"),
 	ROW(UV_MIRROR_LONE, WARNING,
@@ -157,7 +163,13 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"{count} {vertex has texture coordinates|vertices have texture coordinates} that are not finite",
 		"NaN or infinity. Nothing can be textured there.",
 		"Export the mesh again.",
-		"an OBJ with \"vt nan 0\""),
+		"a PLY vertex with s = nan"),
+	ROW(UV_MISSING, WARNING, "the mesh has no texture coordinates and gets no tangents",
+		"OBJ, PLY and Draco meshes get tangents wherever there are texture coordinates; other meshes of the file have "
+		"some. Where no mesh has, or a material's normal map needs them, "
+		"that is TAN_NO_UV.",
+		"Unwrap the mesh if it is to be normal mapped; else --only=needed, or --ignore=UV_MISSING.",
+		"an OBJ with two objects of which one has faces like 1 2 3"),
 
 	ROW(POS_DEGENERATE_TRIANGLE, INFO, "{count} {triangle has|triangles have} no area",
 		"Corners coincide or are collinear. The triangle cannot be seen, and MikkTSpace gives its "
@@ -167,7 +179,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(POS_NOT_FINITE, ERROR, "{count} {vertex has a position|vertices have positions} that are not finite",
 		"NaN or infinity. The triangles there cannot be drawn.",
 		"Export the mesh again.",
-		"an OBJ with \"v inf 0 0\""),
+		"a PLY vertex with x = inf"),
 	ROW(MESH_NON_MANIFOLD_EDGE, WARNING,
 		"{count} {edge belongs|edges belong} to more than two triangles",
 		"After vertices at one position are welded, three or more triangles meet at an edge. Which of "
@@ -274,7 +286,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a glTF primitive with POSITION, TEXCOORD_0 and a normal-mapped material"),
 	ROW(TAN_NO_UV, ERROR, "tangents are needed but there are no texture coordinates",
 		"A normal map is asked for, but the mesh lacks the texture coordinates that the map is to be "
-		"looked up with.",
+		"looked up with; or tangents were to be made for an OBJ, PLY or Draco file, and no mesh of it has texture "
+		"coordinates.",
 		"Unwrap the mesh, or choose a set that exists with --uv.",
 		"a normal-mapped glTF primitive without TEXCOORD_0"),
 	ROW(TAN_UVSET_CONFLICT, WARNING, "two textures want tangents of different texture coordinates",

@@ -17,6 +17,12 @@ typedef enum nt_format {
 	NT_FORMAT_DRC
 } nt_format;
 
+/* Both of its containers: v points down there. */
+static inline bool nt_format_is_gltf(nt_format format)
+{
+	return format == NT_FORMAT_GLTF || format == NT_FORMAT_GLB;
+}
+
 /* Which primitives of a glTF mesh are solved together. */
 typedef enum nt_across {
 	NT_ACROSS_PRIMITIVE, /* each by itself, as glTF defines tangents */

@@ -8,11 +8,18 @@
  * decides. OBJ and PLY say little about how a mesh is shaded, so everything with texture coordinates
  * gets tangents unless the user asks for less.
  *
- * A mesh that needs tangents and lacks normals or texture coordinates is skipped with a finding: glTF
+ * A mesh that should get tangents and lacks normals or texture coordinates is skipped with a finding: glTF
  * clients shade it flat and ignore tangents in the first case, and have no direction in the second. Where it has
  * tangents all the same, those of them that are invalid can be mended.
  */
 #include "scene/select.h"
+
+/* What is asked for, and what all meshes together are like. */
+typedef struct wishes {
+	nt_only only;
+	nt_existing existing;
+	bool make_normals, any_texcoords;
+} wishes;
 
 static bool needs_tangents(const nt_mesh *mesh)
 {
@@ -31,53 +38,73 @@ static nt_decision decide_by_wish(const nt_mesh *mesh, nt_only only, bool knows_
 	return NT_DECISION_OPEN;
 }
 
+static bool any_has_texcoords(const nt_scene *scene)
+{
+	bool any = false;
+	for (size_t i = 0; i < scene->mesh_count && !any; i++)
+		any = scene->meshes[i].triangles && scene->meshes[i].has_texcoords;
+	return any;
+}
+
+/* glTF's materials say what needs tangents. Meshes of other formats should all have them; where others of the file can,
+ * that one cannot may be meant. */
+static void report_no_texcoords(nt_scene *scene, const nt_mesh *mesh, bool others_have)
+{
+	if (!needs_tangents(mesh) && nt_format_is_gltf(scene->format))
+		return;
+	if (needs_tangents(mesh))
+		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, &mesh->place, 1, "texture coordinate set %u",
+			mesh->texcoord_set);
+	else if (!others_have)
+		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, &mesh->place, 1, "the file has none at all");
+	else
+		nt_finding_add(&scene->findings, NT_CODE_UV_MISSING, &mesh->place, 1, NULL);
+}
+
 /* Whether the mesh has what a solve takes, or what mending takes that has to do without texture coordinates; if not,
  * what is missing first. */
-static nt_decision decide_by_attributes(nt_scene *scene, const nt_mesh *mesh, bool make_normals)
+static nt_decision decide_by_attributes(nt_scene *scene, const nt_mesh *mesh, const wishes *w)
 {
-	const bool lacks_normals = !mesh->has_normals && !make_normals;
+	const bool lacks_normals = !mesh->has_normals && !w->make_normals;
 	const bool lacks_texcoords = !mesh->has_texcoords && !mesh->has_tangents;
-	if (needs_tangents(mesh)) {
-		if (lacks_texcoords)
-			nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, &mesh->place, 1,
-				"texture coordinate set %u", mesh->texcoord_set);
-		if (lacks_normals)
-			nt_finding_add(&scene->findings, NT_CODE_TAN_NO_NORMAL, &mesh->place, 1, NULL);
-	}
+	if (lacks_texcoords)
+		report_no_texcoords(scene, mesh, w->any_texcoords);
+	if (lacks_normals && needs_tangents(mesh))
+		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_NORMAL, &mesh->place, 1, NULL);
 	if (lacks_texcoords)
 		return NT_SKIP_NO_TEXCOORDS;
 	return lacks_normals ? NT_SKIP_NO_NORMALS : NT_DECISION_OPEN;
 }
 
-static nt_decision decide(nt_scene *scene, const nt_mesh *mesh, nt_only only, nt_existing existing,
-	bool make_normals)
+static nt_decision decide(nt_scene *scene, const nt_mesh *mesh, const wishes *w)
 {
-	const bool knows_materials = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
+	const bool knows_materials = nt_format_is_gltf(scene->format);
 	if (!mesh->triangles)
 		return NT_SKIP_NOT_TRIANGLES;
 	if (mesh->face_count == 0)
 		return NT_SKIP_EMPTY;
-	nt_decision decision = decide_by_wish(mesh, only, knows_materials);
+	nt_decision decision = decide_by_wish(mesh, w->only, knows_materials);
 	if (decision != NT_DECISION_OPEN)
 		return decision;
 	if (mesh->texcoord_conflict)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, &mesh->place, 1,
 			"sets %u and %u", mesh->texcoord_set, mesh->texcoord_other_set);
-	if (mesh->has_tangents && existing == NT_EXISTING_KEEP)
+	if (mesh->has_tangents && w->existing == NT_EXISTING_KEEP)
 		return NT_SKIP_HAS_TANGENTS;
-	decision = decide_by_attributes(scene, mesh, make_normals);
+	decision = decide_by_attributes(scene, mesh, w);
 	if (decision != NT_DECISION_OPEN)
 		return decision;
 	/* what cannot be computed anew is not thrown away either */
-	const bool repair = existing == NT_EXISTING_REPAIR || !mesh->has_texcoords;
+	const bool repair = w->existing == NT_EXISTING_REPAIR || !mesh->has_texcoords;
 	return mesh->has_tangents && repair ? NT_DECISION_REPAIR : NT_DECISION_SOLVE;
 }
 
 void nt_select(nt_scene *scene, nt_only only, nt_existing existing, bool make_normals)
 {
+	const wishes w = {only, existing, make_normals, any_has_texcoords(scene)};
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
-		mesh->decision = decide(scene, mesh, only, existing, make_normals);
+		mesh->decision = decide(scene, mesh, &w);
 	}
 }
 

@@ -65,8 +65,11 @@ static void obj_and_ply_get_tangents_wherever_there_are_texcoords(void **state)
 		NT_SKIP_NO_SLOT);
 	nt_mesh bare = plain;
 	bare.has_texcoords = false;
-	assert_int_equal(decide(bare, NT_FORMAT_PLY, NT_ONLY_AUTO, NT_EXISTING_KEEP, false, NULL, 0),
+	const nt_code none = NT_CODE_TAN_NO_UV;
+	assert_int_equal(decide(bare, NT_FORMAT_PLY, NT_ONLY_AUTO, NT_EXISTING_KEEP, false, &none, 1),
 		NT_SKIP_NO_TEXCOORDS);
+	assert_int_equal(decide(bare, NT_FORMAT_PLY, NT_ONLY_NEEDED, NT_EXISTING_KEEP, false, NULL, 0),
+		NT_SKIP_NO_SLOT);
 }
 
 static void existing_tangents_are_kept_repaired_or_replaced(void **state)
