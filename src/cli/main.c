@@ -75,21 +75,12 @@ static void version_text(nt_buffer *out)
 	nt_buffer_format(out, "nmtan %s\n", nmtan_version());
 }
 
-/* Whether findings reach the severity at which the run fails: those of the report, which knows what is
- * ignored or old, else what the stages noticed. */
-static bool findings_fail(const nt_summary *summary, int fail_on)
+/* Whether findings reach the severity at which the run fails. The report, which is made whenever that is asked,
+ * knows what is ignored or old. */
+static bool findings_fail(const nt_summary *summary, int least_failure)
 {
-	static const nt_severity least[] = {[NT_FAIL_ON_ERROR] = NT_SEVERITY_ERROR,
-		[NT_FAIL_ON_WARNING] = NT_SEVERITY_WARNING, [NT_FAIL_ON_INFO] = NT_SEVERITY_INFO};
-	if (fail_on == NT_FAIL_ON_NEVER)
-		return false;
 	nt_severity worst;
-	if (summary->report)
-		return nt_report_worst(summary->report, &worst) && worst >= least[fail_on];
-	for (size_t i = 0; i < summary->findings.count; i++)
-		if (nt_code_info(summary->findings.items[i].code)->severity >= least[fail_on])
-			return true;
-	return false;
+	return summary->report && nt_report_worst(summary->report, &worst) && (int)worst >= least_failure;
 }
 
 /* What --timing shows of all of them. */
@@ -112,23 +103,32 @@ static int tell_run(session *s, nt_job *job)
 	const nt_command *c = s->command;
 	nt_summary *summary = &job->outcome->summary;
 	int code = nt_exit_code(job->status);
+	const int least_failure = s->plan->target.style.least_failure;
+	const bool fails = !job->status && findings_fail(summary, least_failure);
 	/* a report on standard output says it better */
 	const char *report = s->plan->target.path;
-	if (s->style.verbosity >= 0 && !(report && strcmp(report, "-") == 0))
+	if (s->style.verbosity >= 0 && !(report && strcmp(report, "-") == 0)) {
+		const bool infos = c->settings.check || s->style.verbosity > 0;
+		if (fails && !report)
+			nt_message_failure(&s->text, job, least_failure, s->style);
 		nt_message_findings(&s->text, &summary->findings, job->input,
-			c->settings.check || s->style.verbosity > 0, s->style);
+			infos ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING,
+			fails && !report ? least_failure - 1 : NT_SEVERITY_ERROR, s->style);
+	}
 	nt_message_meshes(&s->text, job); /* none unless -v asked for them */
 	if (job->status) {
 		nt_message_error(&s->text, &job->outcome->error, s->style);
 	} else {
 		if (s->style.verbosity >= 0)
 			nt_message_success(&s->text, job, &c->settings);
-		if (findings_fail(summary, c->fail_on))
+		if (fails)
 			code = NT_EXIT_FINDINGS;
 	}
 	add_times(&s->total, summary);
 	if (s->reports)
 		s->reports[s->report_count++] = summary->report;
+	else
+		nt_report_free(summary->report); /* it was for the verdict alone */
 	summary->report = NULL;
 	return code;
 }
@@ -241,9 +241,10 @@ static nt_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
 /* Memory for what is said, and for the reports; false: there is none. */
 static bool begin_session(session *s, size_t count)
 {
-	if (s->plan->wanted)
+	const bool kept = s->plan->target.path || s->command->uv_image;
+	if (kept)
 		s->reports = calloc(count ? count : 1, sizeof *s->reports);
-	return (s->reports || !s->plan->wanted) && nt_buffer_reserve(&s->text, MESSAGE_BYTES);
+	return (s->reports || !kept) && nt_buffer_reserve(&s->text, MESSAGE_BYTES);
 }
 
 static int run_batch(const nt_command *command, nt_style style, const nt_report_plan *plan,

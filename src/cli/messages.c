@@ -50,20 +50,26 @@ void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style)
 	nt_buffer_text(out, "\n");
 }
 
-static void append_finding(nt_buffer *out, const nt_finding *finding, const char *file, nt_style style)
+static void append_sentence(nt_buffer *out, const nt_place *place, const char *file, nt_code code,
+	nt_severity severity, const char *sentence, nt_style style)
 {
 	static const char *const colours[] = {
 		[NT_SEVERITY_INFO] = "\033[36m", [NT_SEVERITY_WARNING] = "\033[1;33m",
 		[NT_SEVERITY_ERROR] = "\033[1;31m"};
-	const nt_code_row *row = nt_code_info(finding->code);
+	nt_buffer_text(out, "nmtan: ");
+	append_place(out, place, file);
+	nt_buffer_format(out, "%s%s:%s ", colour(style, colours[severity]), nt_severity_name(severity),
+		colour(style, "\033[0m"));
+	nt_buffer_clean(out, sentence);
+	nt_buffer_format(out, " [%s]\n", nt_code_info(code)->name);
+}
+
+static void append_finding(nt_buffer *out, const nt_finding *finding, const char *file, nt_style style)
+{
 	nt_buffer sentence = {0};
 	nt_code_sentence(finding->code, finding->count, finding->detail, &sentence);
-	nt_buffer_text(out, "nmtan: ");
-	append_place(out, &finding->place, file);
-	nt_buffer_format(out, "%s%s:%s ", colour(style, colours[row->severity]),
-		nt_severity_name(row->severity), colour(style, "\033[0m"));
-	nt_buffer_clean(out, sentence.data ? sentence.data : "");
-	nt_buffer_format(out, " [%s]\n", row->name);
+	append_sentence(out, &finding->place, file, finding->code, nt_code_info(finding->code)->severity,
+		sentence.data ? sentence.data : "", style);
 	nt_buffer_free_into(&sentence, out);
 }
 
@@ -87,14 +93,30 @@ static void append_code(nt_buffer *out, const nt_finding_list *findings, nt_code
 			nt_severity_name(nt_code_info(code)->severity), left_out, nt_code_info(code)->name);
 }
 
-void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, bool infos,
+void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, int least, int most,
 	nt_style style)
 {
-	for (int severity = NT_SEVERITY_ERROR; severity >= (infos ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING);
-		severity--)
+	for (int severity = most; severity >= least; severity--)
 		for (int code = 0; code < NT_CODE_COUNT; code++)
 			if ((int)nt_code_info((nt_code)code)->severity == severity)
 				append_code(out, findings, (nt_code)code, file, style);
+}
+
+void nt_message_failure(nt_buffer *out, const nt_job *job, int least_failure, nt_style style)
+{
+	const nt_report *report = job->outcome->summary.report;
+	size_t shown = 0, more = 0;
+	for (size_t i = 0; i < report->finding_count; i++) {
+		const nt_report_finding *found = &report->findings[i];
+		if (found->known || (int)found->severity < least_failure)
+			continue;
+		if (shown++ < PLACES_SHOWN || style.verbosity > 0)
+			append_sentence(out, &found->place, job->input, found->code, found->severity, found->message, style);
+		else
+			more++;
+	}
+	if (more)
+		nt_buffer_format(out, "nmtan: and %zu more findings that fail; --report shows all\n", more);
 }
 
 /* "1 primitive", "2 primitives". */
@@ -202,8 +224,13 @@ void nt_message_meshes(nt_buffer *out, const nt_job *job)
 		const bool solved = line->decision == NT_DECISION_SOLVE || line->decision == NT_DECISION_REPAIR;
 		nt_buffer_text(out, "nmtan: ");
 		append_place(out, &line->place, job->input);
-		nt_buffer_format(out, "%s%s%s%s, ", solved ? "" : "skipped (", nt_decision_text(line->decision),
+		nt_buffer_format(out, "%s%s%s%s", solved ? "" : "skipped (", nt_decision_text(line->decision),
 			solved ? "" : ")", line->same ? " (the same as an earlier one's)" : "");
+		if (line->decision == NT_SKIP_NOT_TRIANGLES) {
+			nt_buffer_text(out, "\n");
+			continue;
+		}
+		nt_buffer_text(out, ", ");
 		append_count(out, line->triangle_count, "triangle");
 		if (solved)
 			nt_buffer_format(out, ", %zu", line->vertex_count);

@@ -22,13 +22,16 @@ typedef struct nt_style {
 /* "nmtan: file:line: message", "nmtan: file: at byte N: message" or "nmtan: file: /pointer: message". */
 void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style);
 
-/* Findings, the worst first, a few of each code: "nmtan: file:line: warning: sentence [CODE]". Infos only
- * when `infos` is set. */
-void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, bool infos,
+/* Findings of the severities from `most` down to `least` (nt_severity), a few of each code:
+ * "nmtan: file:line: warning: sentence [CODE]". */
+void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, int least, int most,
 	nt_style style);
 
 /* A line for each mesh of the summary's list: what was decided and why, triangles, vertices. */
 void nt_message_meshes(nt_buffer *out, const nt_job *job);
+
+/* The findings for which a run fails, from the severity `least_failure` on; the job has a report. */
+void nt_message_failure(nt_buffer *out, const nt_job *job, int least_failure, nt_style style);
 
 /* One line: what happened. */
 void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *settings);

@@ -10,6 +10,7 @@
 #include "cli/options.h"
 #include "cli/option_table.h"
 
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -69,6 +70,8 @@ const nt_option_row nt_option_rows[] = {
 		"how many inputs at a time, which share the threads; 0: as many as threads", FIELD(jobs), false},
 
 	{.kind = NT_OPTION_HEADING, .name = "Output"},
+	{"output", 'o', NT_OPTION_TEXT, "FILE", 0, 0, NULL, "the output, in place of a second name", FIELD(output),
+		true},
 	{"output-format", 0, NT_OPTION_CHOICE, "ply|gltf|glb", NT_FORMAT_PLY, 0, "by name",
 		"format of the output", SETTING(output_format), true},
 	{"in-place", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
@@ -112,6 +115,9 @@ const nt_option_row nt_option_rows[] = {
 	{.kind = NT_OPTION_HEADING, .name = "Judging"},
 	{"check", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "read and judge, write no mesh", SETTING(check),
 		false},
+	{"as", 0, NT_OPTION_CHOICE, "ply|gltf|glb", NT_FORMAT_PLY, 0, "ply for PLY, glb for OBJ and Draco",
+		"with --check: judge what converting to this format would write; glTF is judged as it is without",
+		SETTING(as), false},
 	{"fail-on", 0, NT_OPTION_CHOICE, "error|warning|info|never", NT_FAIL_ON_ERROR, 0,
 		"error with --check, else never", "exit with 6 on findings of this severity or above",
 		FIELD(fail_on), false},
@@ -290,6 +296,57 @@ static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 	return NT_OK;
 }
 
+/* How many letters have to be added, taken away, changed or exchanged with their neighbour to get from one word to
+ * the other (the restricted Damerau-Levenshtein distance); words beyond MOST_LETTERS are far from all. */
+enum { MOST_LETTERS = 31 };
+static size_t distance_of(const char *a, size_t a_length, const char *b, size_t b_length)
+{
+	size_t rows[3][MOST_LETTERS + 1];
+	if (a_length > MOST_LETTERS || b_length > MOST_LETTERS)
+		return SIZE_MAX;
+	for (size_t k = 0; k <= b_length; k++)
+		rows[0][k] = k;
+	for (size_t i = 1; i <= a_length; i++) {
+		size_t *row = rows[i % 3];
+		const size_t *above = rows[(i - 1) % 3], *top = rows[(i + 1) % 3];
+		row[0] = i;
+		for (size_t k = 1; k <= b_length; k++) {
+			const size_t change = above[k - 1] + (a[i - 1] != b[k - 1]);
+			const size_t shorter = above[k] < row[k - 1] ? above[k] : row[k - 1];
+			row[k] = change < shorter + 1 ? change : shorter + 1;
+			if (i > 1 && k > 1 && a[i - 1] == b[k - 2] && a[i - 2] == b[k - 1] && top[k - 2] + 1 < row[k])
+				row[k] = top[k - 2] + 1;
+		}
+	}
+	return rows[a_length % 3][b_length];
+}
+
+/* The option that was probably meant: one that begins so, or at most a third of the letters away. NULL: none. */
+static const nt_option_row *find_nearest(const char *name, size_t length)
+{
+	const nt_option_row *nearest = NULL;
+	size_t least = length / 3 + 1;
+	for (size_t i = 0; i < nt_option_row_count; i++) {
+		const nt_option_row *row = &nt_option_rows[i];
+		if (row->kind == NT_OPTION_HEADING || !row->help)
+			continue;
+		const bool begins = length >= 3 && strncmp(row->name, name, length) == 0;
+		const size_t distance = begins ? 0 : distance_of(name, length, row->name, strlen(row->name));
+		if (distance < least) {
+			least = distance;
+			nearest = row;
+		}
+	}
+	return nearest;
+}
+
+static nt_status refuse_unknown(parser *p, const char *word, size_t length)
+{
+	const nt_option_row *nearest = find_nearest(word + 2, length);
+	return nt_fail(p->error, NT_ERROR_USAGE, "unknown option '%.*s'%s%s%s", (int)length + 2, word,
+		nearest ? "; did you mean --" : "", nearest ? nearest->name : "", nearest ? "?" : "");
+}
+
 /* --name, --name=value, --name value. *used becomes 2 where the next word belongs to it. */
 static nt_status parse_long(parser *p, const char *word, const char *next, int *used)
 {
@@ -297,7 +354,7 @@ static nt_status parse_long(parser *p, const char *word, const char *next, int *
 	const size_t length = strcspn(name, "=");
 	const nt_option_row *row = find_long(name, length);
 	if (!row)
-		return nt_fail(p->error, NT_ERROR_USAGE, "unknown option '%.*s'", (int)length + 2, word);
+		return refuse_unknown(p, word, length);
 	const char *value = name[length] ? name + length + 1 : NULL;
 	if (!takes_value(row)) {
 		if (value)
@@ -401,6 +458,11 @@ static nt_status check_clashes(parser *p)
 		if (given(p, needs[i][0]) && !given(p, needs[i][1]))
 			return nt_fail(p->error, NT_ERROR_USAGE, "--%s needs --%s", needs[i][0], needs[i][1]);
 	nt_settings *s = &p->command->settings;
+	if (s->as != NT_FORMAT_UNKNOWN && !s->check)
+		return nt_fail(p->error, NT_ERROR_USAGE, "--as is about --check; --output-format says what is written");
+	const char *into = p->command->directory ? "directory" : s->in_place ? "in-place" : NULL;
+	if (p->command->output && into)
+		return nt_fail(p->error, NT_ERROR_USAGE, "--output and --%s both say where to write", into);
 	if (s->embed && given(p, "buffers") && s->buffers != NT_BUFFERS_EMBED)
 		return nt_fail(p->error, NT_ERROR_USAGE,
 			"--embed and --buffers=%s contradict each other",
@@ -501,6 +563,8 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 	}
 	const int first = argc > 0 ? 1 : 0;
 	command->operands = (const char **)(void *)(argv + first);
+	if (command->output) /* -o and its value left room for it */
+		argv[kept++] = (char *)(uintptr_t)command->output;
 	command->operand_count = (size_t)(kept - first);
 	if (command->settings.check && !given(&p, "fail-on"))
 		command->fail_on = NT_FAIL_ON_ERROR;

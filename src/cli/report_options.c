@@ -74,6 +74,7 @@ static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool c
 	target->inputs = c->operands;
 	target->input_count = nt_command_is_many(c) ? c->operand_count : 1;
 	target->path = c->report;
+	target->style.least_failure = least_failure(c);
 	/* who names a format wants to see it */
 	if (!target->path && c->settings.check && (c->verbosity >= 0 || c->report_format))
 		target->path = "-";
@@ -89,7 +90,6 @@ static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool c
 			"cannot tell the report's format from the name '%s': use --report-format",
 			target->path);
 	target->style.colour = dash && colour;
-	target->style.least_failure = least_failure(c);
 	return NT_OK;
 }
 
@@ -101,9 +101,12 @@ static nt_status check_outputs(const nt_command *c, nt_error *error)
 	if (mesh_on_stdout && c->report && strcmp(c->report, "-") == 0)
 		return nt_fail(error, NT_ERROR_USAGE,
 			"the mesh and the report cannot both go to standard output");
-	if (!c->report && !c->settings.check && (c->report_format || c->baseline || c->max_issues))
+	const bool judged = c->report || c->settings.check;
+	if (!judged && (c->report_format || c->max_issues))
 		return nt_fail(error, NT_ERROR_USAGE, "--%s needs --report or --check",
-			c->report_format ? "report-format" : c->baseline ? "baseline" : "max-issues");
+			c->report_format ? "report-format" : "max-issues");
+	if (!judged && c->baseline && c->fail_on == NT_FAIL_ON_NEVER)
+		return nt_fail(error, NT_ERROR_USAGE, "--baseline needs --report, --check or --fail-on");
 	return NT_OK;
 }
 
@@ -112,7 +115,7 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 {
 	*plan = (nt_report_plan){
 		.wanted = command->settings.check || command->report || command->ignore || command->severity ||
-			command->uv_image};
+			command->uv_image || command->fail_on != NT_FAIL_ON_NEVER};
 	plan->options.max_findings = (size_t)command->max_issues;
 	nt_status status = check_outputs(command, error);
 	if (!status)

@@ -23,7 +23,7 @@
 static nt_status write_gltf(nt_scene *scene, const nt_write_options *options,
 	nt_output *output, nt_error *error)
 {
-	if (scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB)
+	if (nt_format_is_gltf(scene->format))
 		return nt_gltf_edit(scene, options, output, error);
 	return nt_gltf_compose(scene, options, output, error);
 }
@@ -105,4 +105,9 @@ const nt_format_entry *nt_format_of_path(const char *path)
 		if (has_word(table[i].extensions, dot))
 			return &table[i];
 	return NULL;
+}
+
+const nt_format_entry *nt_format_unnamed(const nt_format_entry *reader)
+{
+	return nt_format_find(reader->format == NT_FORMAT_PLY ? NT_FORMAT_PLY : NT_FORMAT_GLB);
 }

@@ -8,6 +8,8 @@
 
 static size_t triangles_of(const nt_mesh *mesh)
 {
+	if (!mesh->triangles)
+		return 0;
 	size_t quads = 0;
 	for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
 		quads += mesh->face_sizes[f] == 4;

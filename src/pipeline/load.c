@@ -19,8 +19,8 @@ static bool needs_all(const nt_format_entry *reader, const nt_format_entry *writ
 {
 	if (!writer)
 		return false;
-	const bool gltf_in = reader->format == NT_FORMAT_GLTF || reader->format == NT_FORMAT_GLB;
-	const bool gltf_out = writer->format == NT_FORMAT_GLTF || writer->format == NT_FORMAT_GLB;
+	const bool gltf_in = nt_format_is_gltf(reader->format);
+	const bool gltf_out = nt_format_is_gltf(writer->format);
 	return !(gltf_in && gltf_out) && reader->format != writer->format;
 }
 

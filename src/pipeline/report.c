@@ -41,8 +41,8 @@ static nt_status build_report(nt_scene *scene, const nt_settings *settings, cons
 	return status;
 }
 
-nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_status status, nt_summary *summary,
-	nt_error *error)
+nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_format written, nt_status status,
+	nt_summary *summary, nt_error *error)
 {
 	if (!status && settings->across == NT_ACROSS_PRIMITIVE)
 		status = nt_stage_borders(scene, settings, error);
@@ -51,7 +51,7 @@ nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_statu
 		return status;
 	}
 	nt_report_options options = *settings->report;
-	options.converted = !settings->check;
+	options.written = written;
 	if (options.keep_geometry)
 		options.find_normal_map = copy_normal_map;
 	options.threads = settings->threads;

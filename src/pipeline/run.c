@@ -8,6 +8,7 @@
 #include <string.h>
 #include "base/clock.h"
 #include "file/watch.h"
+#include "format/foreign.h"
 #include "gltf/companion.h"
 #include "gltf/verify.h"
 #include "pipeline/late.h"
@@ -21,7 +22,7 @@ typedef struct run {
 	nt_error *error;
 	nt_file input;
 	nt_scene scene;
-	const nt_format_entry *reader, *writer; /* writer: NULL with --check */
+	const nt_format_entry *reader, *writer; /* writer: NULL where --check judges the input as it is */
 	nt_read_options read_options;
 	double stage_begin;
 	nt_stage stage;
@@ -65,9 +66,11 @@ static nt_status open_scene(run *r)
 
 	begin_stage(r, NT_STAGE_PARSE);
 	r->reader = nt_format_of_input(r->input.data, r->input.size, r->input_path);
-	if (!r->reader)
-		return nt_fail(r->error, NT_ERROR_INPUT,
-			"not recognised: expected OBJ, PLY, glTF, GLB or Draco");
+	if (!r->reader) {
+		const char *advice = nt_foreign_advice(r->input.data, r->input.size, r->input_path);
+		return nt_fail(r->error, NT_ERROR_INPUT, "%s",
+			advice ? advice : "not recognised: expected OBJ, PLY, glTF, GLB or Draco");
+	}
 	r->scene.format = r->reader->format;
 	status = r->reader->open(&r->scene, &r->read_options, r->error);
 	end_stage(r);
@@ -94,9 +97,8 @@ static nt_status read_scene(run *r)
 		return status;
 
 	/* glTF without normals is left alone unless normals are asked for; the other formats get them */
-	const bool gltf = r->reader->format == NT_FORMAT_GLTF || r->reader->format == NT_FORMAT_GLB;
 	nt_select(&r->scene, r->settings->only, r->settings->existing,
-		!gltf || r->settings->normals != NT_NORMALS_AUTO);
+		!nt_format_is_gltf(r->reader->format) || r->settings->normals != NT_NORMALS_AUTO);
 	count_decisions(r);
 	begin_stage(r, NT_STAGE_DECODE);
 	status = nt_stage_load(&r->scene, r->reader, r->writer, r->settings, &r->read_options, r->error);
@@ -116,20 +118,22 @@ static nt_output_options output_options_of(run *r)
 {
 	const nt_settings *s = r->settings;
 	return (nt_output_options){.no_clobber = s->no_clobber, .sync = s->sync, .equal = s->equal,
-		.dry_run = s->dry_run, .in_place = s->in_place ? r->input_path : NULL, .result = &r->result,
+		.dry_run = s->dry_run || s->check, .in_place = s->in_place ? r->input_path : NULL, .result = &r->result,
 		.find_claims = r->writer->format != NT_FORMAT_PLY ? nt_gltf_find_claims : NULL,
 		.placing = tell_placing, .placing_user = r};
 }
 
+/* With --check as if to a stream, of which nothing is written: what writers leave out is found there. */
 static nt_status write_scene(run *r)
 {
 	begin_stage(r, NT_STAGE_WRITE);
 	const nt_settings *s = r->settings;
 	const nt_output_options output_options = output_options_of(r);
+	const bool dry = output_options.dry_run;
 	const nt_write_options options = {
 		.format = r->writer->format,
-		.path = r->output_path,
-		.embed = s->embed || s->buffers == NT_BUFFERS_EMBED,
+		.path = s->check ? "-" : r->output_path,
+		.embed = s->check || s->embed || s->buffers == NT_BUFFERS_EMBED,
 		.bitangents = s->bitangents,
 		.images = s->images,
 		.buffers = s->buffers,
@@ -147,7 +151,7 @@ static nt_status write_scene(run *r)
 	nt_status status = nt_output_create(&output, &output_options, r->error);
 	if (!status && r->writer->format != NT_FORMAT_PLY)
 		status = nt_stage_quads(&r->scene, r->error);
-	if (!status && !s->in_place)
+	if (!status && !s->in_place && !s->check)
 		status = nt_output_protect(output, r->input_path, "--in-place allows that", r->error);
 	if (!status)
 		status = r->writer->write(&r->scene, &options, output, r->error);
@@ -155,17 +159,17 @@ static nt_status write_scene(run *r)
 	/* the input may still be read here, and its faults are its own */
 	if (status && r->error->place.pointer[0])
 		nt_error_in_file(r->error, r->input_path);
-	if (!status)
+	if (!status && !s->check) {
 		r->summary->bytes_written = nt_output_size(output);
-	if (!status)
 		r->summary->bytes_copied = nt_output_copied(output);
-	if (!status && s->verify && !s->dry_run) {
+	}
+	if (!status && s->verify && !dry) {
 		begin_stage(r, NT_STAGE_VERIFY);
 		status = nt_verify_gltf(&r->scene, output, r->output_path, r->error);
 	}
 	if (!status)
 		status = nt_watch_check(r->error);
-	if (status || s->dry_run) {
+	if (status || dry) {
 		nt_output_abort(output);
 		return status;
 	}
@@ -242,7 +246,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 		forget_attempt(&r);
 		status = run_stages(&r);
 	}
-	if (status || !r.writer)
+	if (status || settings->check)
 		status = nt_check_inputs(&r.scene, status, error);
 	summary->left = r.result.left;
 	if (!status && r.result.note.failed)
@@ -250,7 +254,8 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->note = r.result.note.data;
 	if (settings->report) {
 		begin_stage(&r, NT_STAGE_REPORT);
-		status = nt_stage_report(&r.scene, settings, status, summary, error);
+		status = nt_stage_report(&r.scene, settings, r.writer ? r.writer->format : NT_FORMAT_UNKNOWN, status,
+			summary, error);
 	}
 
 	/* what was found belongs to the caller, also after a failure */

@@ -59,6 +59,7 @@ typedef struct nt_settings {
 	bool verify;   /* read the output back with tinygltf before it takes its name */
 	bool dry_run;  /* do everything but write */
 	bool check;    /* a report only: no output */
+	nt_format as;  /* with check: the format whose conversion is judged; NT_FORMAT_UNKNOWN: see run.c */
 	bool sync;
 	bool no_clobber;
 	bool list_meshes; /* summary->lines is wanted */
@@ -71,7 +72,7 @@ typedef struct nt_settings {
 	nt_status (*placing)(void *user, const nt_trace *trace, nt_error *error);
 	void *placing_user;
 
-	/* What a report is to hold; NULL: none is made. `converted` is set by the run. */
+	/* What a report is to hold; NULL: none is made. `written` is set by the run. */
 	const nt_report_options *report;
 
 	/* Called when a stage begins, from the thread that called nt_run; NULL: nobody looks. */
@@ -84,7 +85,7 @@ typedef struct nt_mesh_line {
 	nt_place place;
 	nt_decision decision;
 	bool same;             /* the geometry of an earlier one, whose tangents it shares */
-	size_t triangle_count; /* of skipped ones: as the source claims */
+	size_t triangle_count; /* of skipped ones: as the source claims; of points and lines 0 */
 	size_t vertex_count;   /* before; 0 where nothing was loaded */
 	size_t appended;       /* vertices added */
 } nt_mesh_line;

@@ -9,7 +9,7 @@
 #include "pipeline/settings.h"
 
 /* Finds the row of who writes `path`, by settings and name; of a stream without one only when the reader is known: PLY
- * for PLY, else GLB. NULL with settings->check. `reader` is NULL before the input is read; with it, what its files
+ * for PLY, else GLB. With settings->check: whose conversion is judged; NULL: the input is judged as it is. `reader` is NULL before the input is read; with it, what its files
  * cannot become is refused. Returns NT_OK or NT_ERROR_USAGE. */
 nt_status nt_choose_writer(const nt_settings *settings, const char *path, const nt_format_entry *reader,
 	const nt_format_entry **writer, nt_error *error);
@@ -32,9 +32,10 @@ nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, nt_error *error);
 nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
 	nt_summary *summary, nt_error *error);
 
-/* Fills summary->report: of the scene as it now is, or of what went wrong. */
-nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_status status, nt_summary *summary,
-	nt_error *error);
+/* Fills summary->report: of the scene as it now is, or of what went wrong. written: the format that is judged,
+ * NT_FORMAT_UNKNOWN: the input as it is. */
+nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_format written, nt_status status,
+	nt_summary *summary, nt_error *error);
 
 /* Fills summary->lines. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error *error);

@@ -25,6 +25,7 @@ typedef struct tangent_job {
 	const nt_settings *settings;
 	bool round_trip;    /* the output stores 1 - v */
 	bool triangulates;  /* the output has triangles where the input has quads */
+	bool splits;        /* something is written, or judged as if it were */
 	bool forgets;       /* the input is not read again after the solve */
 	nt_mesh **meshes;   /* the ones to solve */
 	nt_status *statuses;
@@ -49,17 +50,12 @@ typedef struct mesh_bytes {
 	const nt_mesh *mesh;
 } mesh_bytes;
 
-static bool is_gltf(nt_format format)
-{
-	return format == NT_FORMAT_GLTF || format == NT_FORMAT_GLB;
-}
-
 /* What v is added to when it is stored: nothing where the format stays, else see nmtan_stored_uv. */
 static float stored_v_offset(const tangent_job *job)
 {
 	if (!job->round_trip)
 		return 0.0f;
-	return is_gltf(job->scene->format) ? 1.0f : -1.0f;
+	return nt_format_is_gltf(job->scene->format) ? 1.0f : -1.0f;
 }
 
 /* Room for the worst case; pages that are not needed are never touched. */
@@ -159,7 +155,7 @@ static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, const nmtan_o
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	stored.v_offset = stored_v_offset(job);
 	mesh->counts = (nmtan_counts)NMTAN_COUNTS_INIT;
-	if (job->settings->check)
+	if (!job->splits)
 		return solve_corners(mesh, &view, options, &mesh->corner_tangents, &mesh->counts);
 
 	nmtan_split_output output = {.source_count = 0};
@@ -186,14 +182,14 @@ static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, const nmtan_o
 
 static nt_status solve_join(const tangent_job *job, const nt_join *join, const nmtan_options *options)
 {
-	nt_status status = nt_join_solve(join, stored_v_offset(job), !job->settings->check, options);
+	nt_status status = nt_join_solve(join, stored_v_offset(job), job->splits, options);
 	for (size_t i = 0; i < join->part_count; i++) {
 		nt_mesh *mesh = join->parts[i];
 		if (mesh->transform_of)
 			continue;
 		if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
 			nt_restore_authored(mesh, mesh->corner_tangents);
-		if (!status && job->settings->check)
+		if (!status && !job->splits)
 			continue;
 		nmtan_split_output output;
 		if (!status && !(status = split_corners(mesh, options, &output)))
@@ -354,9 +350,9 @@ nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_for
 	nt_summary *summary, nt_error *error)
 {
 	tangent_job job = {.scene = scene, .settings = settings,
-		.round_trip = output != NT_FORMAT_UNKNOWN && is_gltf(scene->format) != is_gltf(output),
-		.triangulates = is_gltf(output),
-		.forgets = scene->forget && is_gltf(output) && !settings->report && !settings->verify,
+		.round_trip = output != NT_FORMAT_UNKNOWN && nt_format_is_gltf(scene->format) != nt_format_is_gltf(output),
+		.triangulates = nt_format_is_gltf(output), .splits = output != NT_FORMAT_UNKNOWN,
+		.forgets = scene->forget && nt_format_is_gltf(output) && !settings->report && !settings->verify,
 		.meshes = nt_alloc(scene->mesh_count, sizeof *job.meshes),
 		.statuses = nt_calloc(scene->mesh_count, sizeof *job.statuses),
 		.timing = NMTAN_TIMING_INIT};

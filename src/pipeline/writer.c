@@ -23,16 +23,28 @@ static bool is_folder(const char *path)
 	return (length && path[length - 1] == '/') || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
 }
 
+/* What a check judges: the conversion to --as, or to what a stream without a name would get. A glTF is judged as it
+ * is, since it can hold tangents already. */
+static const nt_format_entry *find_judged(const nt_settings *settings, const nt_format_entry *reader)
+{
+	if (settings->as != NT_FORMAT_UNKNOWN)
+		return nt_format_find(settings->as);
+	return reader && !nt_format_is_gltf(reader->format) ? nt_format_unnamed(reader) : NULL;
+}
+
 static nt_status choose(const nt_settings *settings, const char *path, const nt_format_entry *reader,
 	const nt_format_entry **writer, nt_error *error)
 {
-	const bool unnamed = !settings->check && settings->output_format == NT_FORMAT_UNKNOWN &&
-			     is_stream(path) && !nt_format_of_path(path);
-	if (settings->check || (unnamed && !reader))
+	if (settings->check) {
+		*writer = find_judged(settings, reader);
+		return NT_OK;
+	}
+	const bool unnamed = settings->output_format == NT_FORMAT_UNKNOWN && is_stream(path) &&
+			     !nt_format_of_path(path);
+	if (unnamed && !reader)
 		return NT_OK;
 	if (unnamed)
-		*writer = nt_format_find(
-			reader->format == NT_FORMAT_PLY ? NT_FORMAT_PLY : NT_FORMAT_GLB);
+		*writer = nt_format_unnamed(reader);
 	else if (settings->output_format != NT_FORMAT_UNKNOWN)
 		*writer = nt_format_find(settings->output_format);
 	else
@@ -61,8 +73,7 @@ static nt_status choose(const nt_settings *settings, const char *path, const nt_
 static nt_status check_edit(const nt_settings *settings, const nt_format_entry *reader,
 	const nt_format_entry *writer, nt_error *error)
 {
-	const bool edits = writer && writer->format != NT_FORMAT_PLY &&
-		(reader->format == NT_FORMAT_GLTF || reader->format == NT_FORMAT_GLB);
+	const bool edits = writer && writer->format != NT_FORMAT_PLY && nt_format_is_gltf(reader->format);
 	if (writer && !edits && settings->draco > NT_DRACO_OFF)
 		return nt_fail(error, NT_ERROR_USAGE,
 			"--draco=%s compresses only glTF that is made from glTF, not %s made from %s",

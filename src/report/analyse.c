@@ -59,7 +59,7 @@ static const char *describe_why(nt_arena *arena, const nt_mesh *mesh, const char
 static bool describe_mesh(nt_report *report, const nt_mesh *mesh, const nt_report_options *options,
 	nt_report_mesh *facts)
 {
-	const bool solve = mesh->decision == NT_DECISION_SOLVE && !options->converted;
+	const bool solve = mesh->decision == NT_DECISION_SOLVE && options->written == NT_FORMAT_UNKNOWN;
 	*facts = (nt_report_mesh){.place = mesh->place,
 		.name = copy_text(&report->arena, mesh->name),
 		.why = describe_why(&report->arena, mesh,
@@ -72,12 +72,12 @@ static bool describe_mesh(nt_report *report, const nt_mesh *mesh, const nt_repor
 	return facts->name && facts->why;
 }
 
-/* On --check a solve may have run too, but what is checked is what the file has. */
-static nt_stored stored_tangents(const nt_mesh *mesh, bool converted)
+/* Where what was read is judged, a solve may have run too, but what counts is what the file has. */
+static nt_stored stored_tangents(const nt_mesh *mesh, bool written)
 {
-	if (converted && mesh->split.vertex_tangents)
+	if (written && mesh->split.vertex_tangents)
 		return NT_STORED_SPLIT;
-	if (converted && mesh->corner_tangents)
+	if (written && mesh->corner_tangents)
 		return NT_STORED_CORNERS;
 	return mesh->tangents ? NT_STORED_AUTHORED : NT_STORED_NONE;
 }
@@ -98,7 +98,7 @@ static void measure_surface(nt_check *check)
 		nt_box_add(&facts->box, nt_side_position(s, (uint32_t)c));
 	facts->vertices_before = check->mesh->vertex_sources ? check->mesh->source_vertex_count
 							     : check->mesh->vertex_count;
-	check->stored = stored_tangents(check->mesh, check->options->converted);
+	check->stored = stored_tangents(check->mesh, nt_is_written(check));
 	facts->checked_tangents = check->stored != NT_STORED_NONE;
 	facts->analysed = true;
 }
@@ -196,7 +196,8 @@ static bool is_checked(const nt_mesh *mesh)
 static bool same_uses(const nt_mesh *a, const nt_mesh *b)
 {
 	return a->slots == b->slots && a->reachable == b->reachable && a->decision == b->decision &&
-		a->targets_without_tangents == b->targets_without_tangents;
+		a->targets_without_tangents == b->targets_without_tangents && a->wrap[0] == b->wrap[0] &&
+		a->wrap[1] == b->wrap[1];
 }
 
 /* Meshes that are checked together: of the same geometry and used alike. */

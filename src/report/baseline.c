@@ -1,11 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Baselines: the fingerprints of an earlier JSON report, so that only new findings count.
+ * Baselines: the fingerprints of an earlier JSON report, so that only new findings count. A finding of one file is no
+ * excuse for another: a fingerprint counts together with the file's name, as reports show it.
  */
 #include "report/report.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include "base/hash_index.h"
 #include "json/json.h"
 
 static int by_number(const void *a, const void *b)
@@ -25,18 +27,31 @@ static bool read_fingerprint(const nt_json_value *finding, uint64_t *fingerprint
 	return true;
 }
 
-static nt_status read_findings(nt_baseline *baseline, size_t *capacity, const nt_json_value *findings,
-	nt_error *error)
+const char *nt_shown_path(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	return path[0] == '/' && slash ? slash + 1 : path;
+}
+
+uint64_t nt_baseline_key(const char *file, uint64_t fingerprint)
+{
+	while (file[0] == '.' && file[1] == '/')
+		file += 2;
+	return nt_hash_bytes(fingerprint, file, strlen(file));
+}
+
+static nt_status read_findings(nt_baseline *baseline, size_t *capacity, const char *file,
+	const nt_json_value *findings, nt_error *error)
 {
 	const size_t count = nt_json_count(findings);
-	if (!nt_grow((void **)&baseline->fingerprints, capacity, baseline->count + count,
-		    sizeof *baseline->fingerprints))
+	if (!nt_grow((void **)&baseline->keys, capacity, baseline->count + count, sizeof *baseline->keys))
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < count; i++) {
-		if (!read_fingerprint(nt_json_at(findings, i), &baseline->fingerprints[baseline->count]))
+		uint64_t fingerprint;
+		if (!read_fingerprint(nt_json_at(findings, i), &fingerprint))
 			return nt_fail(error, NT_ERROR_INPUT,
 				"finding %zu of the baseline has no fingerprint of 16 hexadecimal digits", i);
-		baseline->count++;
+		baseline->keys[baseline->count++] = nt_baseline_key(file, fingerprint);
 	}
 	return NT_OK;
 }
@@ -49,9 +64,11 @@ static nt_status read_files(nt_baseline *baseline, const nt_json_value *root, nt
 		return nt_fail(error, NT_ERROR_INPUT, "the baseline is not a JSON report of nmtan");
 	size_t capacity = 0;
 	nt_status status = NT_OK;
-	for (size_t i = 0; i < nt_json_count(files) && !status; i++)
-		status = read_findings(baseline, &capacity,
-			nt_json_find(nt_json_at(files, i), "findings"), error);
+	for (size_t i = 0; i < nt_json_count(files) && !status; i++) {
+		const nt_json_value *file = nt_json_at(files, i);
+		const char *name = nt_json_get_string(nt_json_find(file, "file"), NULL);
+		status = read_findings(baseline, &capacity, name ? name : "", nt_json_find(file, "findings"), error);
+	}
 	return status;
 }
 
@@ -67,12 +84,12 @@ nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size,
 	if (status)
 		nt_baseline_free(baseline);
 	else if (baseline->count)
-		qsort(baseline->fingerprints, baseline->count, sizeof *baseline->fingerprints, by_number);
+		qsort(baseline->keys, baseline->count, sizeof *baseline->keys, by_number);
 	return status;
 }
 
 void nt_baseline_free(nt_baseline *baseline)
 {
-	free(baseline->fingerprints);
+	free(baseline->keys);
 	*baseline = (nt_baseline){0};
 }

@@ -90,6 +90,17 @@ static inline void nt_box_add(nt_box *box, const float *position)
 
 void nt_box_join(nt_box *box, const nt_box *other);
 
+/* Whether what is judged is what a conversion writes, and in which format it is. */
+static inline bool nt_is_written(const nt_check *check)
+{
+	return check->options->written != NT_FORMAT_UNKNOWN;
+}
+
+static inline bool nt_is_gltf(const nt_check *check)
+{
+	return nt_format_is_gltf(nt_is_written(check) ? check->options->written : check->scene->format);
+}
+
 /* The vertex as the source numbers it: copies that making normals appended are mapped back. */
 static inline uint32_t nt_source_vertex(const nt_mesh *mesh, uint32_t vertex)
 {
@@ -101,7 +112,7 @@ static inline uint32_t nt_source_vertex(const nt_mesh *mesh, uint32_t vertex)
 /* Texture coordinates as the source has them: v down in glTF. */
 static inline void nt_source_texcoord(const nt_scene *scene, const float *texcoord, float out[2])
 {
-	const bool v_down = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
+	const bool v_down = nt_format_is_gltf(scene->format);
 	out[0] = texcoord[0];
 	out[1] = v_down ? 0.0f - texcoord[1] : texcoord[1];
 }

@@ -286,23 +286,24 @@ static bool sort_findings(nt_report_finding *findings, size_t count)
 	return true;
 }
 
-/* Marks findings whose fingerprint the baseline has, each of its entries once. */
+/* Marks findings that the baseline has, each of its entries once. */
 static bool apply_baseline(nt_report *report, const nt_baseline *baseline)
 {
 	bool *used = nt_calloc(baseline->count, sizeof *used);
 	if (!used)
 		return false;
 	for (size_t i = 0; i < report->finding_count; i++) {
-		const uint64_t wanted = report->findings[i].fingerprint;
+		const uint64_t wanted =
+			nt_baseline_key(nt_shown_path(report->path), report->findings[i].fingerprint);
 		size_t low = 0, high = baseline->count;
 		while (low < high) {
 			const size_t middle = (low + high) / 2;
-			if (baseline->fingerprints[middle] < wanted)
+			if (baseline->keys[middle] < wanted)
 				low = middle + 1;
 			else
 				high = middle;
 		}
-		for (; low < baseline->count && baseline->fingerprints[low] == wanted; low++) {
+		for (; low < baseline->count && baseline->keys[low] == wanted; low++) {
 			if (!used[low]) {
 				used[low] = report->findings[i].known = true;
 				break;

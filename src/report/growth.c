@@ -30,7 +30,7 @@ static nt_status check_shared(nt_check *check)
 		if (sides[v] == (UNMIRRORED | MIRRORED))
 			nt_tally_vertex(check, &shared, (uint32_t)v, NAN);
 	nt_scratch_back(check->scratch, mark);
-	const bool split = check->options->converted && check->mesh->split.vertex_tangents;
+	const bool split = nt_is_written(check) && check->mesh->split.vertex_tangents;
 	nt_check_report_as(check, &shared, split ? NT_SEVERITY_INFO : NT_SEVERITY_WARNING, "%s",
 		split ? "they were split" : "");
 	return NT_OK;
@@ -53,7 +53,7 @@ static void check_copies(nt_check *check)
 		nt_tally_vertex(check, &growth, (uint32_t)source, NAN);
 	}
 	facts->vertices_after = mesh->vertex_count + mesh->split.source_count;
-	if (!check->options->converted)
+	if (!nt_is_written(check))
 		return;
 	nt_tally_number(&growth, "mirrored", (double)facts->added_mirror);
 	nt_tally_number(&growth, "direction", (double)facts->added_direction);

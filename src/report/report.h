@@ -2,7 +2,7 @@
 /*
  * The validation report of one input: what was found, where, and the numbers behind it.
  *
- * nt_report_build() checks a scene whose meshes are loaded and, on conversion, solved and split; the
+ * nt_report_build() checks a scene whose meshes are loaded and, where it is judged as written, solved and split; the
  * report owns all it holds, so the scene may go. nt_report_write() (report/render/render.h) turns one or many reports
  * into text, JSON and so on. Nothing here prints.
  *
@@ -20,16 +20,16 @@ enum {
 	NT_SPOT_COUNT = 8,       /* places that a finding keeps */
 	NT_NUMBER_COUNT = 8,     /* numbers that a finding keeps */
 	NT_ANGLE_BINS = 6,       /* up to 1, 5, 15, 30, 60, 180 degrees */
-	NT_SINGLE_FINDINGS = 16, /* findings of one code in one mesh before the rest is put into one */
+	NT_SINGLE_FINDINGS = 1000, /* seams and islands of one code in one mesh before the rest is one finding */
 	NT_SEAM_EDGES = 4096     /* edges that are kept of one seam */
 };
 
 /* The edges of the bins of nt_report_mesh.angle_histogram. */
 extern const double nt_angle_bins[NT_ANGLE_BINS];
 
-/* Fingerprints of earlier findings; equal ones count as often as they stand there. */
+/* Earlier findings, each by its file and fingerprint; equal ones count as often as they stand there. */
 typedef struct nt_baseline {
-	uint64_t *fingerprints; /* ascending */
+	uint64_t *keys; /* ascending: nt_baseline_key() */
 	size_t count;
 } nt_baseline;
 
@@ -42,7 +42,8 @@ typedef struct nt_image {
 
 /* Zero-initialised means the defaults. */
 typedef struct nt_report_options {
-	bool converted;               /* the scene is what gets written, not what was read */
+	nt_format written;            /* what is judged is the scene as this format stores it; NT_FORMAT_UNKNOWN: as
+	                                 it was read */
 	bool ignore[NT_CODE_COUNT];
 	uint8_t severity[NT_CODE_COUNT]; /* 0: the table's; else 1 + nt_severity */
 	size_t max_findings;          /* findings kept; 0: all */
@@ -226,10 +227,16 @@ void nt_report_free(nt_report *report);
 bool nt_report_worst(const nt_report *report, nt_severity *worst);
 
 /*
- * Reads the fingerprints of a JSON report. Returns NT_OK, NT_ERROR_INPUT when the text is no report of
+ * Reads the findings of a JSON report. Returns NT_OK, NT_ERROR_INPUT when the text is no report of
  * nmtan, or NT_ERROR_MEMORY.
  */
 nt_status nt_baseline_read(nt_baseline *baseline, const char *text, size_t size, nt_error *error);
+
+/* A path as reports show it: without its folders where it is absolute. */
+const char *nt_shown_path(const char *path);
+
+/* What a finding is known by: the file as reports show it and the finding's fingerprint. */
+uint64_t nt_baseline_key(const char *file, uint64_t fingerprint);
 void nt_baseline_free(nt_baseline *baseline);
 
 #endif

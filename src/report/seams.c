@@ -261,7 +261,8 @@ static void report_seams(nt_check *check, const nt_chains *chains)
 			tally_seam(check, chains, i, &rest);
 	}
 	if (chains->count > NT_SINGLE_FINDINGS)
-		nt_check_report(check, &rest, "%zu further seams", chains->count - NT_SINGLE_FINDINGS);
+		nt_check_report(check, &rest, "%zu further seams, one finding together beyond the first %d",
+			chains->count - NT_SINGLE_FINDINGS, NT_SINGLE_FINDINGS);
 }
 
 /* ---- entry ---- */

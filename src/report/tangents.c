@@ -94,8 +94,7 @@ static size_t tangent_count(const nt_check *check)
 static nt_severity severity_of(const nt_check *check, nt_code code)
 {
 	const nt_severity severity = nt_code_info(code)->severity;
-	const bool gltf = check->scene->format == NT_FORMAT_GLTF || check->scene->format == NT_FORMAT_GLB;
-	const bool unused = gltf && check->mesh->slots == 0 && check->stored == NT_STORED_AUTHORED;
+	const bool unused = nt_is_gltf(check) && check->mesh->slots == 0;
 	return unused && severity == NT_SEVERITY_ERROR ? NT_SEVERITY_WARNING : severity;
 }
 
@@ -108,7 +107,7 @@ static void report_kept(nt_check *check, const nt_tally *const *invalid, size_t 
 		if (invalid[i]->count)
 			nt_box_join(&kept.box, &invalid[i]->box);
 	}
-	if (check->options->converted && check->stored == NT_STORED_AUTHORED)
+	if (nt_is_written(check) && check->stored == NT_STORED_AUTHORED)
 		nt_check_report(check, &kept, NULL);
 }
 
@@ -204,7 +203,31 @@ static bool fits_untransformed(const nt_check *check, size_t t, float w)
 	return sign != 0 && (w > 0.0f) == (sign > 0);
 }
 
-static void check_sign(const nt_check *check, size_t t, sign_tallies *st)
+/* What v is added to on its way between formats that count it from opposite ends: see nmtan_stored_uv. */
+static float stored_v_offset(const nt_check *check)
+{
+	const bool from_gltf = nt_format_is_gltf(check->scene->format);
+	if (!nt_is_written(check) || from_gltf == nt_is_gltf(check))
+		return 0.0f;
+	return from_gltf ? 1.0f : -1.0f;
+}
+
+/* The orientation that w is judged by: of the coordinates as they are stored, whose rounding turns tiny triangles. */
+static int stored_orientation(const nt_check *check, size_t t, float v_offset)
+{
+	const nt_surface *s = &check->surface;
+	if (v_offset == 0.0f || check->mesh->solve_texcoords)
+		return s->orientation[t];
+	float uv[3][2];
+	for (uint32_t k = 0; k < 3; k++) {
+		const float *source = nt_side_texcoord(s, (uint32_t)(3 * t) + k);
+		uv[k][0] = source[0];
+		uv[k][1] = source[1] + v_offset;
+	}
+	return nt_orientation(uv[0], uv[1], uv[2]);
+}
+
+static void check_sign(const nt_check *check, size_t t, int orientation, sign_tallies *st)
 {
 	const nt_surface *s = &check->surface;
 	float w[3];
@@ -216,10 +239,10 @@ static void check_sign(const nt_check *check, size_t t, sign_tallies *st)
 		nt_tally_triangle(check, &st->mixed, t, NAN);
 		return;
 	}
-	if (s->orientation[t] == 0)
+	if (orientation == 0)
 		return;
 	st->checked++;
-	const bool by_w = (w[0] > 0.0f) != (s->orientation[t] > 0);
+	const bool by_w = (w[0] > 0.0f) != (orientation > 0);
 	const bool reversed = !by_w && is_reversed(check, t);
 	st->by_w += by_w;
 	st->reversed += reversed;
@@ -232,8 +255,9 @@ static void check_signs(nt_check *check)
 {
 	sign_tallies st = {.mixed = {.code = NT_CODE_TAN_MIXED_W_TRIANGLE},
 		.wrong = {.code = NT_CODE_TAN_SIGN_MISMATCH}};
+	const float v_offset = stored_v_offset(check);
 	for (size_t t = 0; t < check->surface.triangle_count; t++)
-		check_sign(check, t, &st);
+		check_sign(check, t, stored_orientation(check, t, v_offset), &st);
 	nt_check_report(check, &st.mixed, NULL);
 	const double share = st.checked ? (double)st.wrong.count / (double)st.checked : 0.0;
 	nt_tally_number(&st.wrong, "share", share);
@@ -310,13 +334,13 @@ static nt_status compare_with_fresh(nt_check *check)
 static void check_presence(nt_check *check)
 {
 	const nt_mesh *mesh = check->mesh;
-	const bool gltf = check->scene->format == NT_FORMAT_GLTF || check->scene->format == NT_FORMAT_GLB;
 	const bool present = check->facts->checked_tangents;
-	if (!gltf)
+	if (!nt_is_gltf(check))
 		return;
 	if (present && mesh->slots == 0) {
 		const nt_tally unused = {.code = NT_CODE_TAN_UNUSED, .count = 1, .box = check->facts->box};
-		nt_check_report(check, &unused, NULL);
+		nt_check_report(check, &unused, "%s",
+			check->stored == NT_STORED_AUTHORED ? "" : "with --only=needed it would get none");
 	}
 	if (check->stored == NT_STORED_AUTHORED && mesh->slots != 0 && mesh->targets_without_tangents) {
 		const nt_tally morphs = {.code = NT_CODE_TAN_MORPH_MISSING,

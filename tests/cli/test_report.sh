@@ -107,14 +107,16 @@ done
 
 scene "exit codes follow the report, what is ignored and what is reweighed"
 cp "$data/head.obj" .
-run --check --fail-on=warning head.obj
+run --check --fail-on=info head.obj
 exits 6
 prints "TAN_MIRROR_SHARED_VERTEX"
-run --check --fail-on=warning --ignore=TAN_MIRROR_SHARED_VERTEX head.obj
+run --check --fail-on=warning --severity=TAN_MIRROR_SHARED_VERTEX=warning head.obj
+exits 6
+run --check --fail-on=warning --severity=TAN_MIRROR_SHARED_VERTEX=warning --ignore=TAN_MIRROR_SHARED_VERTEX head.obj
 exits 0
 run --check --severity=UV_MIRROR_SEAM=error head.obj
 exits 6
-run --check --severity=TAN_MIRROR_SHARED_VERTEX=info,UV_MIRROR_SEAM=info --fail-on=warning head.obj
+run --check --severity=NORMALS_MADE=error,NORMALS_MADE=info --fail-on=warning head.obj
 exits 0
 run --check --ignore=UV_MIRROR head.obj
 exits 1
@@ -139,7 +141,7 @@ exits 3
 says "broken.json"
 
 scene "--max-issues drops the least severe and says so"
-run --check --max-issues=1 --report=r.json "$data/head.obj"
+run --check --max-issues=1 --severity=UV_MIRROR_SEAM=warning --report=r.json "$data/head.obj"
 validates r.json
 is "$(value r.json '(r["truncated"], r["totals"]["dropped"] > 0, len(r["files"][0]["findings"]),
 	r["files"][0]["findings"][0]["severity"])')" "(True, True, 1, 'warning')"
@@ -197,13 +199,13 @@ is "$(value r.sarif 'r["runs"][0]["results"][0]["locations"][0]["physicalLocatio
 	"odd%20name%3F.obj"
 
 scene "JUnit fails where the run fails, file by rule"
-run --check --fail-on=warning --report=r.xml "$data/head.obj" "$data/quad.obj"
+run --check --severity=UV_MIRROR_SEAM=warning --fail-on=warning --report=r.xml "$data/head.obj" "$data/quad.obj"
 exits 6
 is "$(python3 -c 'import sys, xml.etree.ElementTree as x
 t = x.parse(sys.argv[1]).getroot()
 print([(s.get("name").split("/")[-1], s.get("failures"), [c.get("name") for c in s if c.find("failure") is not None])
 	for s in t], len(t[0]) == len(t[1]) == int(t[0].get("tests")))' r.xml)" \
-	"[('head.obj', '1', ['TAN_MIRROR_SHARED_VERTEX']), ('quad.obj', '0', [])] True"
+	"[('head.obj', '1', ['UV_MIRROR_SEAM']), ('quad.obj', '0', [])] True"
 run --check --report=r.xml "$data/head.obj"
 exits 0
 ! grep -q "<failure" r.xml || wrong "a failure although the run passes"

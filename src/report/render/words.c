@@ -8,12 +8,6 @@
 #include <string.h>
 #include "base/utf8.h"
 
-const char *nt_shown_path(const char *path)
-{
-	const char *slash = strrchr(path, '/');
-	return path[0] == '/' && slash ? slash + 1 : path;
-}
-
 nt_totals nt_report_totals(const nt_report_list *reports)
 {
 	nt_totals totals = {0};

@@ -19,9 +19,6 @@ typedef struct nt_report_list {
 	nt_report_style style;
 } nt_report_list;
 
-/* A path as reports show it: without its folders where it is absolute. */
-const char *nt_shown_path(const char *path);
-
 /* New findings of all reports, by severity; known and dropped ones. */
 typedef struct nt_totals {
 	size_t by_severity[3], known, dropped;

@@ -64,7 +64,7 @@ static void findings_come_worst_first_and_grouped(void **state)
 		nt_finding_add(&findings, NT_CODE_NORMALS_MADE, &place, 1, "o%u", i);
 	}
 	nt_buffer out = {0};
-	nt_message_findings(&out, &findings, "a.obj", false, plain);
+	nt_message_findings(&out, &findings, "a.obj", NT_SEVERITY_WARNING, NT_SEVERITY_ERROR, plain);
 	assert_non_null(strstr(out.data, "nmtan: a.obj:1: warning: "));
 	assert_non_null(strstr(out.data, "nmtan: a.obj:5: warning: "));
 	assert_null(strstr(out.data, "a.obj:6:"));
@@ -72,7 +72,7 @@ static void findings_come_worst_first_and_grouped(void **state)
 	assert_null(strstr(out.data, "NORMALS_MADE"));
 	nt_buffer_free(&out);
 
-	nt_message_findings(&out, &findings, "a.obj", true, verbose);
+	nt_message_findings(&out, &findings, "a.obj", NT_SEVERITY_INFO, NT_SEVERITY_ERROR, verbose);
 	const char *warning = strstr(out.data, "a.obj:8: warning: ");
 	const char *info = strstr(out.data, "a.obj:1: info: ");
 	assert_true(warning && info && warning < info);

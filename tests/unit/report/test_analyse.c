@@ -155,7 +155,7 @@ static void kept_tangents_that_are_bad_are_told_on_conversion(void **state)
 	(void)state;
 	hand_mesh *h = sound_quad();
 	set_tangent(h, 1, 0, 0, 0, 1);
-	const nt_report_options options = {.converted = true};
+	const nt_report_options options = {.written = NT_FORMAT_PLY};
 	nt_report *report = hand_report(h, &options);
 	assert_int_equal(hand_finding(report, NT_CODE_TAN_EXISTING_BAD)->count, 1);
 	nt_report_free(report);
@@ -328,8 +328,8 @@ static void baseline_knows_old_findings_each_as_often_as_it_has_them(void **stat
 	nt_report *report = hand_report(h, NULL);
 	char text[256];
 	snprintf(text, sizeof text,
-		"{\"report\":\"nmtan\",\"files\":[{\"findings\":[{\"fingerprint\":\"%016llx\"}]}]}",
-		(unsigned long long)hand_finding(report, NT_CODE_TAN_ZERO)->fingerprint);
+		"{\"report\":\"nmtan\",\"files\":[{\"file\":\"%s\",\"findings\":[{\"fingerprint\":\"%016llx\"}]}]}",
+		nt_shown_path(report->path), (unsigned long long)hand_finding(report, NT_CODE_TAN_ZERO)->fingerprint);
 	nt_report_free(report);
 	nt_baseline baseline;
 	nt_error error;
@@ -364,7 +364,8 @@ static void baseline_entries_count_once_each(void **state)
 		if (report->findings[i].code == NT_CODE_UV_MIRROR_LONE)
 			fingerprint = report->findings[i].fingerprint;
 	nt_report_free(report);
-	const nt_baseline baseline = {&fingerprint, 1};
+	uint64_t key = nt_baseline_key("hand.ply", fingerprint);
+	const nt_baseline baseline = {&key, 1};
 	const nt_report_options options = {.baseline = &baseline};
 	report = hand_report(h, &options);
 	assert_int_equal(report->known, 1);

@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: MIT
+# One verdict: whichever way it is asked for, the same mesh gets the same findings and the same exit code.
+. "$ROOT/tests/support/cli.sh"
+
+# Codes and counts of a JSON report, one to a line; $2: severities that count.
+findings() {
+	python3 -c 'import json, sys
+for f in json.load(open(sys.argv[1]))["files"][0]["findings"]:
+	if f["severity"] in sys.argv[2].split(): print(f["severity"], f["code"], f["count"])' "$1" "${2:-error warning info}" | sort
+}
+
+# A square whose right half is a mirrored copy moved by $1 tiles along u; its folded place is $2 more.
+halves() {
+	printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\nvn 0 0 1\n'
+	printf 'vt %s %s\n' .1 .1  .4 .1  .4 .4  .1 .4
+	python3 -c 'import sys
+for u, v in ((.4, .1), (.1, .1), (.1, .4), (.4, .4)): print("vt", round(u + float(sys.argv[1]), 6), v)' "$1"
+	printf 'f 1/1/1 2/2/1 3/3/1 4/4/1\nf 2/5/1 5/6/1 6/7/1 3/8/1\n'
+}
+
+scene "--fail-on judges a conversion, with a report and without"
+halves 0.5 >m.obj
+run -q --fail-on=warning m.obj a.glb
+exits 6
+silent
+run -q --fail-on=warning --report=r.json m.obj b.glb
+exits 6
+same a.glb b.glb
+run --fail-on=warning m.obj c.glb
+exits 6
+says "warning: mirrored island of 2 triangles lies on no other"
+run -q --fail-on=error m.obj d.glb
+exits 0
+run -q m.obj e.glb
+exits 0
+
+scene "checking an OBJ or PLY says what converting it says"
+cp "$data/mirrored_cube.obj" "$data/head.obj" "$data/quad_le.ply" .
+for pair in mirrored_cube.obj:glb head.obj:gltf head.obj:ply quad_le.ply:ply quad_le.ply:glb; do
+	in=${pair%:*} as=${pair#*:}
+	run -q --report=converted.json "$in" "out.$as"
+	run -q --check --fail-on=never "--as=$as" --report=checked.json "$in"
+	exits 0
+	is "$(findings checked.json)" "$(findings converted.json)"
+done
+run -q --check --report=default.json --fail-on=never mirrored_cube.obj
+run -q --check --report=glb.json --as=glb --fail-on=never mirrored_cube.obj
+same default.json glb.json
+
+scene "--check writes nothing, whichever target it is for"
+cp "$data/quad.obj" .
+for as in ply gltf glb; do
+	run --check "--as=$as" quad.obj
+	exits 0
+done
+only quad.obj
+run --as=ply quad.obj out.ply
+exits 1
+says "--as is about --check"
+
+scene "what a material loses is a warning of the check, too"
+cp "$data/quad.obj" .
+sed -i '1i mtllib m.mtl' quad.obj
+sed -i '/^f /i usemtl m' quad.obj
+printf 'newmtl m\nmap_Kd gone.png\nmap_Pr rough.png\nmap_Kd -o .5 0 gone.png\nPc 0.4\nPs 0\n' >m.mtl
+run --check --fail-on=warning quad.obj
+exits 6
+for text in "IMAGE_MISSING" "MTL: map_Pr" "MTL: -o, -s or -t of map_Kd" "MTL: Pc"; do
+	prints "$text"
+done
+! grep -q "MTL: Ps" "$WORK/out.txt" || wrong "a layer of strength 0 is no loss"
+
+scene "a mesh without texture coordinates is a finding"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >bare.obj
+run --check bare.obj
+exits 6
+prints "TAN_NO_UV"
+run --check --only=needed bare.obj
+exits 0
+run bare.obj out.glb
+exits 0
+says "TAN_NO_UV"
+run -q --fail-on=error bare.obj out.glb
+exits 6
+printf 'o one\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\no two\nf 1 2 3\n' >half.obj
+run --check half.obj
+exits 0
+prints "warning   UV_MISSING"
+
+# The triangle's v are so near to 1 that 1 - v turns it over: w follows what is stored, and so does its judge.
+scene "a conversion and the check of its output agree"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nvt 1 1e-9\nvt .5 -1e-9\nf 1/1/1 2/2/1 3/3/1\n' >thin.obj
+for in in thin.obj "$data/mirrored_cube.obj"; do
+	run -q --report=made.json "$in" out.glb
+	run -q --check --fail-on=never --report=back.json out.glb
+	is "$(findings made.json "error warning" | grep " TAN_")" "$(findings back.json "error warning" | grep " TAN_")"
+done
+for in in obliterated.obj rancid_geometry.obj; do
+	[ -f "$ROOT/../shared/models/obj/$in" ] || continue
+	run -q --report=made.json "$ROOT/../shared/models/obj/$in" out.glb
+	run -q --check --fail-on=never --report=back.json out.glb
+	is "$(findings made.json "error warning" | grep " TAN_")" "$(findings back.json "error warning" | grep " TAN_")"
+done
+
+scene "a mirrored half that was moved by a whole tile lies on the other half"
+for tiles in 0 1 -2; do
+	halves $tiles >m.obj
+	run --check --fail-on=warning m.obj
+	exits 0
+	prints "UV_MIRROR_OVERLAP"
+done
+halves 0.5 >m.obj
+run --check --fail-on=warning m.obj
+exits 6
+prints "UV_MIRROR_LONE"
+
+scene "every seam is a finding of its own"
+python3 - >many.obj <<'PY'
+print("vn 0 0 1\nvt 0 0\nvt 1 0\nvt .5 1")
+for i in range(40):
+	for p in ((0, 0), (1, 0), (.5, 1), (.5, -1)): print("v", p[0] + 2 * i, p[1], 0)
+	b = 4 * i
+	print(f"f {b+1}/1/1 {b+2}/2/1 {b+3}/3/1\nf {b+2}/2/1 {b+1}/1/1 {b+4}/3/1")
+PY
+run -q --check --report=r.json --fail-on=never many.obj
+is "$(findings r.json | grep -c UV_MIRROR_SEAM)" 40
+run --check --fail-on=never many.obj
+prints "and 24 more UV_MIRROR_SEAM"
+
+scene "a baseline of one file waives nothing in another"
+halves 0.5 >one.obj
+cp one.obj two.obj
+run -q --check --fail-on=never --report=one.json one.obj
+run --check --fail-on=warning --baseline=one.json one.obj
+exits 0
+run --check --fail-on=warning --baseline=one.json ./one.obj
+exits 0
+run --check --fail-on=warning --baseline=one.json two.obj
+exits 6
+
+scene "points and lines are not counted as triangles"
+cat >points.gltf <<'J'
+{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"meshes":[{"primitives":[{"mode":0,"attributes":{"POSITION":0}}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[0,0,0]}],
+"bufferViews":[{"buffer":0,"byteLength":36}],
+"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA"}]}
+J
+run -v points.gltf out.glb
+exits 0
+says "skipped (points or lines)"
+says_not "triangle"
+
+scene "the nearest option is offered"
+for pair in --repot:--report --chek:--check --thread:--threads --failon:--fail-on --sevreity:--severity; do
+	run "${pair%:*}" a b
+	exits 1
+	says "did you mean ${pair#*:}?"
+done
+run --frobnicate a b
+exits 1
+says_not "did you mean"
+
+scene "-o names the output"
+cp "$data/quad.obj" .
+run -q -o a.glb quad.obj
+exits 0
+run -q quad.obj -ob.glb
+exits 0
+same a.glb b.glb
+run quad.obj c.glb -o d.glb
+exits 1
+says "d.glb"
+run -o a.glb -d . quad.obj
+exits 1
+says "--output and --directory"
+run --check -o a.glb quad.obj
+exits 1
+
+scene "formats that are not read are named, with what to export instead"
+printf 'Kaydara FBX Binary  \0' >a.bin
+printf 'solid x\nendsolid\n' >b.stl
+printf '<?xml version="1.0"?><COLLADA/>' >c.dae
+printf '#usda 1.0\n' >d.usda
+for pair in a.bin:FBX b.stl:STL c.dae:COLLADA d.usda:USD; do
+	run "${pair%:*}" out.glb
+	exits 3
+	says "${pair#*:} is not read"
+	says "glTF"
+done
+done_testing
