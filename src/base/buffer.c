@@ -37,14 +37,16 @@ bool nt_buffer_reserve(nt_buffer *buffer, size_t size)
 
 void nt_buffer_append(nt_buffer *buffer, const void *bytes, size_t size)
 {
+	/* JSON of a million primitives comes in pieces of a few bytes */
+	if (size && size < buffer->capacity - buffer->size && !buffer->failed) {
+		memcpy(buffer->data + buffer->size, bytes, size);
+		buffer->size += size;
+		buffer->data[buffer->size] = '\0';
+		return;
+	}
 	void *begin = nt_buffer_extend(buffer, size);
 	if (begin && size)
 		memcpy(begin, bytes, size);
-}
-
-void nt_buffer_text(nt_buffer *buffer, const char *text)
-{
-	nt_buffer_append(buffer, text, strlen(text));
 }
 
 void nt_buffer_format(nt_buffer *buffer, const char *format, ...)

@@ -6,6 +6,7 @@
 #ifndef NT_BASE_BUFFER_H
 #define NT_BASE_BUFFER_H
 
+#include <string.h>
 #include "base/error.h"
 
 #ifdef __cplusplus
@@ -20,7 +21,13 @@ typedef struct nt_buffer {
 } nt_buffer;
 
 void nt_buffer_append(nt_buffer *buffer, const void *bytes, size_t size);
-void nt_buffer_text(nt_buffer *buffer, const char *text);
+
+/* Here, so that the length of a literal is known. */
+static inline void nt_buffer_text(nt_buffer *buffer, const char *text)
+{
+	nt_buffer_append(buffer, text, strlen(text));
+}
+
 void nt_buffer_format(nt_buffer *buffer, const char *format, ...) NT_PRINTF(2, 3);
 
 /* Appends text that may come from a file, with control characters as \x1b: they must not reach a terminal. */
