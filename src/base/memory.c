@@ -74,7 +74,8 @@ bool nt_grow(void **block, size_t *capacity, size_t needed, size_t size)
 	return true;
 }
 
-static struct nt_arena_block *push_block(nt_arena *arena, size_t capacity)
+/* The first block is the one that small requests are taken from; others go behind it, since it may have room yet. */
+static struct nt_arena_block *add_block(nt_arena *arena, size_t capacity, bool first)
 {
 	size_t bytes;
 	if (!nt_size_add(capacity, sizeof(struct nt_arena_block) + ALIGNMENT, &bytes))
@@ -82,8 +83,9 @@ static struct nt_arena_block *push_block(nt_arena *arena, size_t capacity)
 	struct nt_arena_block *block = nt_alloc_large(bytes);
 	if (!block)
 		return NULL;
-	*block = (struct nt_arena_block){.next = arena->blocks, .capacity = capacity};
-	arena->blocks = block;
+	struct nt_arena_block **at = first || !arena->blocks ? &arena->blocks : &arena->blocks->next;
+	*block = (struct nt_arena_block){.next = *at, .capacity = capacity};
+	*at = block;
 	return block;
 }
 
@@ -102,7 +104,7 @@ void *nt_arena_alloc(nt_arena *arena, size_t count, size_t size)
 	struct nt_arena_block *block = arena->blocks;
 	if (!block || block->capacity - block->used < bytes) {
 		const bool small = bytes <= SMALL_REQUEST_BYTES;
-		block = push_block(arena, small ? SMALL_BLOCK_BYTES : bytes);
+		block = add_block(arena, small ? SMALL_BLOCK_BYTES : bytes, small);
 		if (!block)
 			return NULL;
 	}
@@ -127,7 +129,7 @@ bool nt_arena_adopt(nt_arena *arena, void *block)
 {
 	if (!block)
 		return true;
-	struct nt_arena_block *holder = push_block(arena, 0);
+	struct nt_arena_block *holder = add_block(arena, 0, false);
 	if (!holder) {
 		free(block);
 		return false;

@@ -10,6 +10,7 @@
 #include <string.h>
 #include "base/largest.h"
 #include "gltf/normalized.h"
+#include "gltf/pointer.h"
 #include "gltf/view.h"
 
 /* Indices that an accessor without a bufferView may have: nothing in the file backs their number. */
@@ -218,7 +219,7 @@ nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *fr
 	if (status)
 		return status;
 	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "/accessors/%llu", (unsigned long long)index);
+	nt_gltf_pointer(pointer, "accessors", index);
 	accessor->index = (uint32_t)index;
 	status = read_format(json, pointer, accessor, error);
 	if (!status)
@@ -242,7 +243,7 @@ nt_status nt_gltf_elements(nt_gltf *document, const nt_gltf_accessor *accessor,
 	if (accessor->view == NT_NONE || accessor->count == 0)
 		return NT_OK;
 	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "/accessors/%u", accessor->index);
+	nt_gltf_pointer(pointer, "accessors", accessor->index);
 	const uint64_t length = (accessor->count - 1) * accessor->stride + accessor->element_bytes;
 	return nt_gltf_view_bytes(document, accessor->view, accessor->offset, length, pointer, elements,
 		error);
@@ -352,7 +353,7 @@ nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, s
 	unsigned threads, nt_arena *arena, uint32_t **indices, nt_error *error)
 {
 	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "/accessors/%u", accessor->index);
+	nt_gltf_pointer(pointer, "accessors", accessor->index);
 	const uint32_t type = accessor->component_type;
 	if (accessor->components != 1 ||
 		(type != NT_GLTF_UBYTE && type != NT_GLTF_USHORT && type != NT_GLTF_UINT))

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "ext/meshopt.h"
+#include "gltf/pointer.h"
 
 nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **name)
 {
@@ -31,7 +32,7 @@ nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, 
 	if (status)
 		return status;
 	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "/bufferViews/%llu", (unsigned long long)index);
+	nt_gltf_pointer(pointer, "bufferViews", index);
 	const uint64_t limit = (uint64_t)1 << 53;
 	uint64_t buffer_index = 0, stride = 0;
 	status = nt_gltf_uint(json, pointer, "buffer", UINT32_MAX - 1, NT_GLTF_REQUIRED, &buffer_index,
@@ -104,7 +105,7 @@ static nt_status read_packed(const nt_json_value *view, const char *pointer, pac
 nt_status nt_gltf_decompress_view(nt_gltf *document, uint32_t index, nt_error *error)
 {
 	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "/bufferViews/%u", index);
+	nt_gltf_pointer(pointer, "bufferViews", index);
 	nt_gltf_view view;
 	const nt_json_value *json;
 	packed p = {0};
@@ -157,7 +158,7 @@ nt_status nt_gltf_view_bytes(nt_gltf *document, uint32_t index, uint64_t offset,
 	if (status)
 		return status;
 	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "/bufferViews/%u", index);
+	nt_gltf_pointer(pointer, "bufferViews", index);
 	if (view.compression) {
 		status = nt_gltf_decompress_view(document, index, error);
 		if (!status)

@@ -7,6 +7,8 @@ usemtl    an OBJ that changes its material COUNT times
 same      a GLB of COUNT primitives over one set of accessors, 43 218 triangles each
 windows   a GLB of COUNT primitives over one grid of SIDE (118) quads squared, each with another window of its 16-bit
           indices; the texture coordinates turn back at every fourth column, so that vertices are split
+scene     a GLB of COUNT primitives, ten in a mesh, of SIDE (3) quads squared and with accessors of their own, of 50
+          materials
 strip     an OBJ strip of COUNT quads
 """
 import json
@@ -38,7 +40,8 @@ def strip(count, out):
         out.write(b'f %d/%d %d/%d %d/%d %d/%d\n' % (a, a, b, b, c, c, d, d))
 
 
-def glb(count, out, side, windows):
+def grid(side, windows):
+    """Positions, normals, texture coordinates and indices."""
     width = side + 1
     arrays = [b'', b'', b'', b'']
     for y in range(width):
@@ -47,16 +50,21 @@ def glb(count, out, side, windows):
             arrays[0] += struct.pack('<3f', x, y, 0)
             arrays[1] += struct.pack('<3f', 0, 0, 1)
             arrays[2] += struct.pack('<2f', (u if windows else x) / side, y / side)
-    form, width_bytes, kind = ('<6H', 2, 5123) if windows else ('<6I', 4, 5125)
+    form = '<6H' if windows else '<6I'
     for y in range(side):
         for x in range(side):
             a = y * width + x
             arrays[3] += struct.pack(form, a, a + 1, a + width, a + 1, a + width + 1, a + width)
+    return arrays
+
+
+def glb(count, out, side, windows):
+    arrays, kind, width_bytes = grid(side, windows), *((5123, 2) if windows else (5125, 4))
     views, offset = [], 0
     for array in arrays:
         views.append({'buffer': 0, 'byteOffset': offset, 'byteLength': len(array)})
         offset += len(array)
-    vertices, triangles = width * width, 2 * side * side
+    vertices, triangles = (side + 1) ** 2, 2 * side * side
     accessors = [{'bufferView': 0, 'componentType': 5126, 'count': vertices, 'type': 'VEC3',
                   'min': [0, 0, 0], 'max': [side, side, 0]},
                  {'bufferView': 1, 'componentType': 5126, 'count': vertices, 'type': 'VEC3'},
@@ -66,22 +74,51 @@ def glb(count, out, side, windows):
                           'count': 3 * (triangles - (count if windows else 0))})
     primitives = [{'attributes': {'POSITION': 0, 'NORMAL': 1, 'TEXCOORD_0': 2}, 'material': 0,
                    'indices': 3 + i if windows else 3} for i in range(count)]
-    document = {'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': [0]}], 'nodes': [{'mesh': 0}],
-                'meshes': [{'primitives': primitives}], 'materials': [{'normalTexture': {'index': 0}}],
-                'textures': [{'source': 0}], 'images': [{'uri': 'n.png'}], 'accessors': accessors,
-                'bufferViews': views, 'buffers': [{'byteLength': offset}]}
+    write_glb(out, {'meshes': [{'primitives': primitives}], 'materials': [{'normalTexture': {'index': 0}}],
+                    'accessors': accessors, 'bufferViews': views}, arrays)
+
+
+def scene(count, out, side):
+    arrays, accessors, views, chunks, meshes = grid(side, True), [], [], [], []
+    vertices, offset = (side + 1) ** 2, 0
+    for i in range(count):
+        # each has positions of its own
+        chunks.append(struct.pack('<3f', 0, 0, i / count) + arrays[0][12:])
+        chunks += arrays[1:]
+        for k, array in enumerate(arrays):
+            views.append({'buffer': 0, 'byteOffset': offset, 'byteLength': len(array)})
+            accessors.append({'bufferView': len(views) - 1, 'componentType': 5126 if k < 3 else 5123,
+                              'count': vertices if k < 3 else 6 * side * side,
+                              'type': ('VEC3', 'VEC3', 'VEC2', 'SCALAR')[k]})
+            offset += len(array)
+        accessors[-4] |= {'min': [0, 0, 0], 'max': [side, side, i / count]}
+        if i % 10 == 0:
+            meshes.append({'primitives': []})
+        meshes[-1]['primitives'].append({'attributes': {'POSITION': 4 * i, 'NORMAL': 4 * i + 1, 'TEXCOORD_0': 4 * i + 2},
+                                         'indices': 4 * i + 3, 'material': i % 50})
+    write_glb(out, {'meshes': meshes, 'materials': [{'normalTexture': {'index': 0}}] * 50, 'accessors': accessors,
+                    'bufferViews': views}, chunks)
+
+
+def write_glb(out, document, chunks):
+    count = len(document['meshes'])
+    binary = b''.join(chunks)
+    document |= {'asset': {'version': '2.0'}, 'scene': 0, 'scenes': [{'nodes': list(range(count))}],
+                 'nodes': [{'mesh': i} for i in range(count)], 'textures': [{'source': 0}],
+                 'images': [{'uri': 'n.png'}], 'buffers': [{'byteLength': len(binary)}]}
     text = json.dumps(document, separators=(',', ':')).encode()
     text += b' ' * (-len(text) % 4)
-    binary = b''.join(arrays)
     out.write(struct.pack('<4sIIII', b'glTF', 2, 28 + len(text) + len(binary), len(text), 0x4E4F534A))
     out.write(text + struct.pack('<II', len(binary), 0x004E4942) + binary)
 
 
-kind, count = sys.argv[1], int(sys.argv[2])
+kind, count, side = sys.argv[1], int(sys.argv[2]), int((sys.argv + [0])[4])
 with open(sys.argv[3], 'wb') as out:
     if kind == 'same':
         glb(count, out, 147, False)
     elif kind == 'windows':
-        glb(count, out, int(sys.argv[4]) if len(sys.argv) > 4 else 118, True)
+        glb(count, out, side or 118, True)
+    elif kind == 'scene':
+        scene(count, out, side or 3)
     else:
         {'elements': elements, 'usemtl': usemtl, 'strip': strip}[kind](count, out)

@@ -48,6 +48,11 @@ static void arena_blocks_are_apart_and_aligned(void **state)
 	assert_true(nt_arena_adopt(&arena, NULL));
 	assert_string_equal(nt_arena_text(&arena, "seamless", 4), "seam");
 	assert_null(nt_arena_alloc(&arena, SIZE_MAX, 2));
+	/* what is large or adopted does not keep small requests from the block that they are taken from */
+	char *const one = nt_arena_alloc(&arena, 16, 1);
+	assert_non_null(nt_arena_alloc(&arena, 100000, 1));
+	assert_true(nt_arena_adopt(&arena, malloc(100)));
+	assert_ptr_equal(nt_arena_alloc(&arena, 16, 1), one + 16);
 	nt_arena_free(&arena);
 	assert_null(arena.blocks);
 }
