@@ -54,7 +54,7 @@ NT_LDFLAGS := $(flags_$(config)) -pthread $(LDFLAGS)
 TOOL_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lspng -ljpeg -ltiff -lm
 
 # The compute library: no files, no C++.
-core_src := src/base/status.c src/base/memory.c src/base/parallel.c src/base/pool.c src/base/cpu.c src/base/scratch.c \
+core_src := src/base/status.c src/base/pages.c src/base/parallel.c src/base/pool.c src/base/cpu.c src/base/scratch.c \
 	src/base/struct_bytes.c src/base/largest.c src/base/counts.c \
 	$(foreach room,topology tangent tangent/fast tangent/sums api,$(wildcard src/$(room)/*.c))
 tool_src := $(filter-out $(core_src) src/cli/main.c src/bindings/%,$(wildcard src/*/*.c src/*/*/*.c)) \
@@ -121,6 +121,7 @@ $(call objects_of,ext/codec/stb.c): FILE_FLAGS := -Wno-unused-function
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 
 include tests/tests.mk
+include src/bindings/bindings.mk
 
 # Completions come from the tool's own table of options.
 $(B)/completion.%: $(B)/nmtan

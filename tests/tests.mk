@@ -68,6 +68,14 @@ build/node/node_modules/gltf-validator/package.json: tests/support/package.json 
 		echo "npm cannot install them: the tests that need it will be skipped"
 	@[ ! -f $@ ] || touch $@
 
+# Programs that the npm package is tried in.
+build/clients/node_modules/three/package.json: tests/bindings/package.json tests/bindings/package-lock.json
+	@mkdir -p build/clients
+	@cp tests/bindings/package.json tests/bindings/package-lock.json build/clients/
+	@echo "Installing three, glTF-Transform, esbuild and others (npm) into build/clients"
+	@npm ci --prefix build/clients --ignore-scripts --no-audit --no-fund --loglevel=error >/dev/null
+	@touch $@
+
 # Everything in release and under ASan and UBSan; make's own jobs carry over to the builds.
 .PHONY: check-built soak-built
 check-built: build/node/node_modules/gltf-validator/package.json

@@ -8,10 +8,9 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
+#include "base/pages.h"
 
 enum {
-	HUGE_PAGE_BYTES = 2 * 1024 * 1024,
 	SMALL_BLOCK_BYTES = 64 * 1024,
 	SMALL_REQUEST_BYTES = 8 * 1024,
 	ALIGNMENT = 16
@@ -23,20 +22,6 @@ struct nt_arena_block {
 	size_t used;
 	size_t capacity;
 };
-
-void *nt_alloc_large(size_t bytes)
-{
-#if defined(MADV_HUGEPAGE)
-	if (bytes >= 2 * HUGE_PAGE_BYTES) {
-		void *block;
-		if (posix_memalign(&block, HUGE_PAGE_BYTES, bytes) != 0)
-			return NULL;
-		madvise(block, bytes, MADV_HUGEPAGE); /* advice: a refusal changes nothing */
-		return block;
-	}
-#endif
-	return malloc(bytes);
-}
 
 void *nt_alloc(size_t count, size_t size)
 {

@@ -32,11 +32,6 @@ static inline bool nt_size_add(size_t a, size_t b, size_t *sum)
 void *nt_alloc(size_t count, size_t size);
 void *nt_calloc(size_t count, size_t size);
 
-/* malloc(bytes) for blocks that are going to be used: large ones are laid out for huge pages, where the
- * system has them, because a fault for every 4 KiB costs a seventh of a conversion (perf stat, a million
- * triangles). free() as usual. */
-void *nt_alloc_large(size_t bytes);
-
 /* Grows *block, of *capacity elements, to at least `needed` elements (at least doubling). False, and
  * everything as it was, on overflow or exhaustion. */
 bool nt_grow(void **block, size_t *capacity, size_t needed, size_t size);

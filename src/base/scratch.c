@@ -9,6 +9,7 @@
 #include <stdint.h>
 #include <stdlib.h>
 #include "base/memory.h"
+#include "base/pages.h"
 
 enum { ALIGNMENT = 64, LEAST_BLOCK_BYTES = 64 * 1024 };
 

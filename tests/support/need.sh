@@ -2,14 +2,16 @@
 # SPDX-License-Identifier: MIT
 #
 # Installs what is missing, and only that: "need.sh build" for make demo, "need.sh check" for the
-# tests as well. Touches nothing, and needs no network, when everything is there. Debian packages by
-# apt, with sudo when not root; on other systems it names what to install by hand.
+# tests as well, "need.sh wasm" for make wasm, whose packages the tests want too where clang is at hand. Touches
+# nothing, and needs no network, when everything is there. Debian packages by apt, with sudo when not root; on other
+# systems it names what to install by hand.
 set -eu
 
 build="pkg-config libopenmesh-dev libtinygltf-dev nlohmann-json3-dev libdraco-dev
 	libmeshoptimizer-dev libfast-float-dev libxxhash-dev libspng-dev libjpeg62-turbo-dev
 	libtiff-dev libstb-dev"
-check="libcmocka-dev chromium"
+check="libcmocka-dev chromium abigail-tools python3-numpy python3-pytest"
+wasm="lld wasi-libc libclang-rt-dev-wasm32 binaryen"
 
 # Programs are looked for by name, since they often come from elsewhere than Debian.
 missing=
@@ -18,9 +20,15 @@ for pair in gcc:build-essential g++:build-essential make:make; do
 done
 if [ "${1:-build}" = check ]; then
 	build="$build $check"
+	! command -v clang >/dev/null 2>&1 || build="$build $wasm"
 	for pair in node:nodejs npm:npm python3:python3; do
 		command -v "${pair%%:*}" >/dev/null 2>&1 || missing="$missing ${pair#*:}"
 	done
+fi
+
+if [ "${1:-build}" = wasm ]; then
+	build=$wasm
+	command -v clang >/dev/null 2>&1 || missing="$missing clang"
 fi
 
 if ! command -v dpkg-query >/dev/null 2>&1; then

@@ -11,9 +11,8 @@
  */
 #include "tangent/fast/records.h"
 
-#include <pthread.h>
-#include <sched.h>
 #include <string.h>
+#include "base/lock.h"
 #include "base/parallel.h"
 
 /* Records that are cleared at a time: a megabyte. */
@@ -30,7 +29,7 @@ typedef struct job {
 	nt_fast *fast; /* does not change while triangles are added */
 	const nt_kernels *kernels;
 	size_t record_count;  /* vertices, in whole blocks: settle reads these */
-	pthread_mutex_t lock; /* of the scratch, and of who allocates */
+	nt_lock lock;         /* of the scratch, and of who allocates */
 	array arrays[2];
 	bool failed;
 } job;
@@ -49,7 +48,7 @@ static void clear_chunk(const job *j, array *a, size_t chunk)
 static bool begin_array(job *j, array *a)
 {
 	const nt_fast *fast = j->fast;
-	pthread_mutex_lock(&j->lock);
+	nt_lock_take(&j->lock);
 	if (!a->records && !j->failed) {
 		a->records = nt_scratch_alloc(fast->solve->scratch, j->record_count, sizeof *a->records);
 		if (fast->wants_more)
@@ -60,7 +59,7 @@ static bool begin_array(job *j, array *a)
 			clear_chunk(j, a, 0);
 	}
 	const bool failed = j->failed;
-	pthread_mutex_unlock(&j->lock);
+	nt_lock_give(&j->lock);
 	return !failed;
 }
 
@@ -71,7 +70,7 @@ static void clear_array(const job *j, array *a)
 	for (size_t chunk; chunks > 1 && (chunk = __atomic_fetch_add(&a->chunks_begun, 1, __ATOMIC_RELAXED)) < chunks;)
 		clear_chunk(j, a, chunk);
 	while (__atomic_load_n(&a->chunks_cleared, __ATOMIC_ACQUIRE) < chunks)
-		sched_yield();
+		nt_give_way();
 }
 
 /* The nt_record_maker of all ranges. */
@@ -135,10 +134,10 @@ nmtan_status nt_fast_add(nt_fast *fast, const nt_kernels *kernels)
 	const unsigned ranges = fast->ranges.count;
 	if (ranges > 1 && !make_deferred(fast))
 		return NMTAN_ERROR_MEMORY;
-	job j = {.fast = fast, .kernels = kernels, .lock = PTHREAD_MUTEX_INITIALIZER,
+	job j = {.fast = fast, .kernels = kernels, .lock = NT_LOCK_INIT,
 		.record_count = (fast->vertex_count + NT_LANES - 1) / NT_LANES * NT_LANES};
 	nt_parallel_ranges(ranges, ranges, 1, add_ranges, &j);
-	pthread_mutex_destroy(&j.lock);
+	nt_lock_free(&j.lock);
 	if (j.failed)
 		return NMTAN_ERROR_MEMORY;
 	for (int o = 0; o < 2; o++) {

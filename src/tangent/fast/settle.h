@@ -14,6 +14,13 @@
 #define HUB UINT32_MAX
 #define DOUBTFUL ((uint32_t)1 << 16)
 
+/* The loops over a fan are worth their code, but not where each byte of it is sent to a browser. */
+#ifdef __wasm__
+#define UNROLL
+#else
+#define UNROLL _Pragma("GCC unroll 8")
+#endif
+
 /*
  * The fans of WIDTH vertices with at most `depth` corners: how many there are, DOUBTFUL added where a directed edge
  * occurs twice, because there pairs depend on order.
@@ -28,7 +35,7 @@ static inline __attribute__((always_inline)) lanes count_fans_of(const nt_fan_en
 	lanes linked[NT_FAN_DEPTH]; /* corner i: bit j for each neighbour j of its orientation */
 	lanes doubtful = {0}, count = {0};
 	/* voids where a vertex has fewer corners, above all numbers that accumulate gives to voids */
-#pragma GCC unroll 8
+	UNROLL
 	for (uint32_t k = 0; k < depth; k++, entries += NT_FAN_LANES) {
 		const lanes low = load_lanes(entries), high = load_lanes(entries + WIDTH / 2);
 		const lanes there = (lanes)(degree > k);
@@ -39,10 +46,10 @@ static inline __attribute__((always_inline)) lanes count_fans_of(const nt_fan_en
 		linked[k] = there & 0;
 	}
 	/* links across shared edges; edges are compared without the orientation in bit 31 */
-#pragma GCC unroll 8
+	UNROLL
 	for (uint32_t a = 0; a < depth; a++) {
 		const lanes bare_next = next[a] << 1, bare_previous = previous[a] << 1;
-#pragma GCC unroll 8
+		UNROLL
 		for (uint32_t b = a + 1; b < depth; b++) {
 			const lanes link = (lanes)(next[a] == previous[b]) | (lanes)(next[b] == previous[a]);
 			doubtful |= (lanes)(bare_next == next[b] << 1) | (lanes)(bare_previous == previous[b] << 1);
@@ -52,10 +59,10 @@ static inline __attribute__((always_inline)) lanes count_fans_of(const nt_fan_en
 	}
 	/* components by elimination: a corner hands its links to the later ones it is linked with; one that
 	 * has none when its turn comes is the last of its component */
-#pragma GCC unroll 8
+	UNROLL
 	for (uint32_t a = 0; a < depth; a++) {
 		const lanes mine = linked[a];
-#pragma GCC unroll 8
+		UNROLL
 		for (uint32_t b = a + 1; b < depth; b++)
 			linked[b] |= (lanes)((mine & 1u << b) != 0) & mine;
 		count -= (lanes)(mine >> a >> 1 == 0) & (lanes)((next[a] & NT_ENTRY_VOID) == 0);
@@ -67,11 +74,13 @@ static inline __attribute__((always_inline)) lanes count_fans_of(const nt_fan_en
 static lanes count_fans(const nt_fan_entry *entries, uint32_t depth, lanes degree, lanes mask)
 {
 	switch (depth) {
+#ifndef __wasm__
 	case 4: return count_fans_of(entries, 4, degree, mask);
 	case 5: return count_fans_of(entries, 5, degree, mask);
 	case 6: return count_fans_of(entries, 6, degree, mask);
 	case 7: return count_fans_of(entries, 7, degree, mask);
 	case 8: return count_fans_of(entries, 8, degree, mask);
+#endif
 	default: return count_fans_of(entries, depth, degree, mask);
 	}
 }

@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: MIT
+#
+# make wasm: the npm package in build/npm (clang, lld and wasi-libc; wasm-opt where it is there). make python: a
+# wheel in build/python.
+
+wasm_dir := src/bindings/wasm
+wasm_src := $(filter-out %/kernel_avx2.c %/kernel_avx512.c,$(core_src)) $(wildcard $(wasm_dir)/*.c)
+wasm_obj := $(patsubst %.c,build/wasm/%.o,$(wasm_src))
+
+# Four lanes of 32 bits; small, but where the time is spent.
+WASM_CC ?= clang
+WASM_FLAGS := --target=wasm32-wasi --sysroot=/usr -std=c11 -D_GNU_SOURCE -DNDEBUG -DNT_NO_THREADS -msimd128 -mbulk-memory \
+	-ffp-contract=off -fno-math-errno -fno-trapping-math -fvisibility=hidden -ffunction-sections \
+	-Iinclude -Isrc -Wall -Wextra -Wno-bitwise-instead-of-logical -MMD -MP
+
+build/wasm/%.o: WASM_LEVEL := -Oz
+build/wasm/src/tangent/fast/%.o build/wasm/src/topology/weld%.o: WASM_LEVEL := -O2
+build/wasm/%.o: %.c | need-wasm
+	@mkdir -p $(@D)
+	$(WASM_CC) $(WASM_FLAGS) $(WASM_LEVEL) -c -o $@ $<
+
+build/npm/nmtan.wasm: $(wasm_obj)
+	@mkdir -p $(@D)
+	$(WASM_CC) --target=wasm32-wasi --sysroot=/usr -nostartfiles -Wl,--no-entry,--gc-sections,--strip-all,-z,stack-size=262144 \
+		-o $@.part $^
+	@! command -v wasm-opt >/dev/null || wasm-opt -Oz --enable-simd --enable-bulk-memory $@.part -o $@.part
+	mv $@.part $@
+
+build/npm/wasm.js: build/npm/nmtan.wasm
+	{ printf '%s\n' '// SPDX-License-Identifier: MIT' && printf "export const wasm = '" && base64 -w 0 $< && \
+		printf "';\n"; } >$@.part && mv $@.part $@
+
+build/npm/package.json: $(wasm_dir)/package.json include/nmtan.h
+	@mkdir -p $(@D)
+	sed 's/"version": "0.0.0"/"version": "$(VERSION)"/' $< >$@.part && mv $@.part $@
+
+npm_copies := $(addprefix build/npm/,index.js external.js core.js index.d.ts README.md)
+$(npm_copies): build/npm/%: $(wasm_dir)/%
+	@mkdir -p $(@D)
+	cp $< $@
+build/npm/LICENSE: LICENSE
+	@mkdir -p $(@D)
+	cp $< $@
+
+.PHONY: wasm need-wasm
+need-wasm:
+	@sh tests/support/need.sh wasm
+wasm: $(npm_copies) $(addprefix build/npm/,LICENSE package.json wasm.js nmtan.wasm)
+
+-include $(wasm_obj:.o=.d)
+
+# The wheel's library needs no debugging information.
+python_src := $(wildcard src/bindings/python/nmtan/*) src/bindings/python/wheel.py
+.PHONY: python
+python: build/python/nmtan.whl
+
+build/python/nmtan.whl: $(python_src) $(B)/libnmtan.so include/nmtan.h LICENSE
+	@rm -rf $(@D) && mkdir -p $(@D)
+	strip -o $(@D)/libnmtan.so.0 $(B)/libnmtan.so
+	ln -s "$$(basename "$$(python3 src/bindings/python/wheel.py $(VERSION) $(@D)/libnmtan.so.0 LICENSE $(@D))")" $@

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+//
+// node wasm.mjs PACKAGE DATA HEADER: the functions of the npm package against the goldens, the example of nmtan.h and
+// what its page promises.
+import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { pathToFileURL } from 'node:url';
+import { Worker } from 'node:worker_threads';
+import { equalBytes, triangleGoldens } from './golden.mjs';
+import { done, test } from './tap.mjs';
+
+const [folder, data, header] = process.argv.slice(2);
+const url = (name) => pathToFileURL(`${folder}/${name}`).href;
+
+await test('before it is ready a call says so', async () => {
+	const core = await import(url('core.js'));
+	assert.throws(() => core.generateTangents([], [], []), /not ready/);
+});
+
+const inlined = await import(url('index.js'));
+const external = await import(url('external.js'));
+await test('both entries become ready, and are then alike', async () => {
+	await Promise.all([inlined.ready, external.ready]);
+	assert.equal(inlined.isReady && external.isReady, true);
+	assert.deepEqual(Object.keys(inlined), Object.keys(external));
+});
+const { generateTangents, generateTangentsIndexed } = inlined;
+const goldens = triangleGoldens(`${data}/golden`);
+const up = {convention: 'mikktspace'}, raw = {...up, repair: false};
+
+await test('corners: the bytes of every golden of triangles', () => {
+	assert.ok(goldens.size > 20);
+	for (const [name, g] of goldens)
+		assert.ok(equalBytes(generateTangents(g.positions, g.normals, g.texcoords), g.tangents), name);
+});
+
+const rowAt = (array, size, row) => array.subarray(size * row, size * row + size);
+
+// The mesh with one vertex for each position, normal and texture coordinate that differ in their bits.
+function weld(g) {
+	const known = new Map(), of = [[], [], []], indices = [];
+	for (let corner = 0; corner < g.positions.length / 3; corner++) {
+		const rows = [rowAt(g.positions, 3, corner), rowAt(g.normals, 3, corner), rowAt(g.texcoords, 2, corner)];
+		const key = rows.map((row) => Buffer.from(row.slice().buffer).toString('hex')).join();
+		if (!known.has(key)) {
+			known.set(key, known.size);
+			rows.forEach((row, i) => of[i].push(...row));
+		}
+		indices.push(known.get(key));
+	}
+	return {indices, positions: of[0], normals: of[1], texcoords: of[2], vertices: known.size};
+}
+
+await test('indexed: split vertices have the goldens\' bytes at every corner, and sources are right', () => {
+	for (const [name, g] of goldens) {
+		const m = weld(g);
+		const r = generateTangentsIndexed(m.indices, m.positions, m.normals, m.texcoords, raw);
+		assert.equal(r.tangents.length, 4 * (m.vertices + r.sources.length));
+		const corners = new Float32Array(4 * m.indices.length);
+		r.indices.forEach((vertex, corner) => corners.set(rowAt(r.tangents, 4, vertex), 4 * corner));
+		// a vertex has one of the tangents that are equal as numbers: 0 stands for -0
+		assert.deepEqual(Array.from(corners, (x) => x + 0), Array.from(g.tangents, (x) => x + 0), name);
+		r.indices.forEach((vertex, corner) =>
+			assert.equal(vertex < m.vertices ? vertex : r.sources[vertex - m.vertices], m.indices[corner], name));
+	}
+});
+
+const quads = {positions: [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 2, 0, 0, 2, 1, 0],
+	normals: [0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1], texcoords: [0, 0, 1, 0, 1, 1, 0, 1, 0, 0, 0, 1],
+	indices: [0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2]};
+const solve = (m, options) => generateTangentsIndexed(m.indices, m.positions, m.normals, m.texcoords, options);
+const left = [1, 0, 0, 1], right = [-1, 0, 0, -1];
+
+await test('the example of nmtan.h: two copies, and the tangents that theory gives', () => {
+	const r = solve(quads, up);
+	assert.deepEqual([...r.sources], [1, 2]);
+	assert.deepEqual([...r.tangents].map((x) => x + 0), [left, left, left, left, right, right, right, right].flat());
+	assert.deepEqual([...r.indices], [0, 1, 2, 0, 2, 3, 6, 4, 5, 6, 5, 7]);
+	assert.equal(r.counts.mirrored, 2);
+});
+
+await test('glTF\'s v points down: the same quads with 1 - v have the same tangents', () => {
+	const down = {...quads, texcoords: quads.texcoords.map((x, i) => (i % 2 ? 1 - x : x))};
+	assert.deepEqual(solve(down), solve(quads, up));
+	assert.deepEqual(down.texcoords, quads.texcoords.map((x, i) => (i % 2 ? 1 - x : x)), 'the input was changed');
+});
+
+await test('interleaved arrays, plain arrays and both widths of indices give the same', () => {
+	const rows = [];
+	for (let v = 0; v < 6; v++)
+		rows.push(9, ...quads.positions.slice(3 * v, 3 * v + 3), ...quads.normals.slice(3 * v, 3 * v + 3),
+			...quads.texcoords.slice(2 * v, 2 * v + 2));
+	const array = new Float32Array(rows), at = (offset) => ({array, stride: 9, offset});
+	const m = {positions: at(1), normals: at(4), texcoords: at(7), indices: quads.indices};
+	assert.deepEqual(solve(m, up), solve(quads, up));
+	for (const Type of [Uint8Array, Uint16Array, Uint32Array, Int32Array, Array])
+		assert.deepEqual([...solve({...quads, indices: Type.from(quads.indices)}, up).indices], [...solve(quads, up).indices]);
+	assert.ok(solve({...quads, indices: Uint16Array.from(quads.indices)}, up).indices instanceof Uint16Array);
+});
+
+await test('methods: each gives the flat quads their tangents; robust has none that is ill-conditioned', () => {
+	for (const method of ['mikktspace', 'area', 'lengyel', 'robust']) {
+		const r = solve(quads, {...up, method});
+		assert.deepEqual([...r.tangents].map((x) => x + 0), [left, left, left, left, right, right, right, right].flat(), method);
+		assert.equal(r.counts.illConditioned, 0);
+	}
+});
+
+await test('a triangle without UV area: raw leaves the placeholder, repair puts a unit vector across the normal', () => {
+	const m = {positions: [0, 0, 0, 1, 0, 0, 0, 1, 0], normals: [0.6, 0, 0.8, 0.6, 0, 0.8, 0.6, 0, 0.8],
+		texcoords: [0, 0, 0, 0, 0, 0], indices: [0, 1, 2]};
+	assert.deepEqual([...rowAt(solve(m, raw).tangents, 4, 0)], [1, 0, 0, -1]);
+	const r = solve(m, up), t = rowAt(r.tangents, 4, 0);
+	assert.ok(Math.abs(t[0] * 0.6 + t[2] * 0.8) < 2 ** -10 && Math.abs(Math.hypot(t[0], t[1], t[2]) - 1) < 2 ** -20);
+	assert.equal(r.counts.repairedUnassigned, 3);
+	assert.equal(r.counts.degenerateTexcoords, 1);
+});
+
+await test('the names of the counts are those of nmtan_counts, in order', () => {
+	const struct = readFileSync(header, 'utf8').match(/typedef struct nmtan_counts \{([^}]*)\}/)[1];
+	const names = [...struct.matchAll(/^\tsize_t (\w+);/gm)].map((match) => match[1]).slice(1);
+	assert.deepEqual(Object.keys(solve(quads, up).counts),
+		names.map((name) => name.replace(/_(.)/g, (whole, letter) => letter.toUpperCase())));
+});
+
+const wrong = [
+	['positions that are no array', {positions: 7}, TypeError, /positions: an array/],
+	['positions that are missing', {positions: undefined}, TypeError, /positions: an array/],
+	['positions that are not threes', {positions: [1, 2]}, TypeError, /positions: 2 numbers/],
+	['normals of another length', {normals: [0, 0, 1]}, TypeError, /normals: 1 vertices, positions has 6/],
+	['a stride below the row', {texcoords: {array: quads.texcoords, stride: 1}}, TypeError, /stride/],
+	['an offset behind the array', {texcoords: {array: quads.texcoords, offset: 99}}, TypeError, /texcoords/],
+	['64-bit integers', {positions: new BigInt64Array(18)}, TypeError, /array of numbers/],
+	['an index too large', {indices: [0, 1, 6]}, TypeError, /index/],
+	['a negative index', {indices: [0, 1, -1]}, TypeError, /indices\[2\]: -1/],
+	['half an index', {indices: [0, 1, 0.5]}, TypeError, /indices\[2\]: 0.5/],
+	['indices that are not threes', {indices: [0, 1]}, TypeError, /indices: 2/],
+	['indices that are none', {indices: null}, TypeError, /indices/],
+];
+for (const [name, change, type, text] of wrong)
+	await test(`refused: ${name}`, () => {
+		assert.throws(() => solve({...quads, ...change}, up), (error) => error instanceof type && text.test(error.message));
+		assert.deepEqual([...solve(quads, up).sources], [1, 2]); // and all is well afterwards
+	});
+await test('refused: a method and a convention that are none', () => {
+	assert.throws(() => solve(quads, {method: 'best'}), /method: one of mikktspace/);
+	assert.throws(() => solve(quads, {convention: 'dx'}), /convention: one of/);
+	assert.throws(() => generateTangents([0, 0, 0], [0, 0, 1], [0, 0]), /do not make triangles/);
+});
+
+await test('a mesh that 4 GB do not hold is a RangeError, and the next one is solved', () => {
+	assert.throws(() => solve({...quads, indices: new Uint16Array(3 * 10 ** 8)}, up),
+		(error) => error instanceof RangeError && /memory|large/.test(error.message));
+	assert.deepEqual([...solve(quads, up).sources], [1, 2]);
+});
+
+await test('an empty mesh has no tangents', () => {
+	assert.equal(generateTangents([], [], []).length, 0);
+	assert.deepEqual([...solve({positions: [], normals: [], texcoords: [], indices: []}).tangents], []);
+});
+
+await test('a worker may use it', async () => {
+	const source = `import { parentPort } from 'node:worker_threads';
+		const nmtan = await import(${JSON.stringify(url('index.js'))});
+		await nmtan.ready;
+		parentPort.postMessage(nmtan.generateTangents([0,0,0, 1,0,0, 0,1,0], [0,0,1, 0,0,1, 0,0,1], [0,0, 1,0, 0,1]));`;
+	const worker = new Worker(new URL(`data:text/javascript,${encodeURIComponent(source)}`));
+	const answer = await new Promise((resolve, reject) => worker.once('message', resolve).once('error', reject));
+	assert.deepEqual([...answer].map((x) => x + 0), [left, left, left].flat());
+	await worker.terminate();
+});
+
+await test('the program of the package\'s page prints what it says', async () => {
+	const page = readFileSync(`${folder}/README.md`, 'utf8').match(/```js\n([^]*?)```/)[1];
+	const said = [...page.matchAll(/console\.log\(.*\/\/ ([^\s:]+)/g)].map((match) => match[1]);
+	const printed = [], log = console.log;
+	console.log = (line) => printed.push(line);
+	try {
+		await import(`data:text/javascript,${encodeURIComponent(page.replace("'nmtan'", JSON.stringify(url('index.js'))))}`);
+	} finally {
+		console.log = log;
+	}
+	assert.equal(printed.length, 2);
+	assert.deepEqual(printed.map((line) => line.replace(/-0/g, '0')), said);
+});
+
+await test('each function of index.d.ts is there, and no other', () => {
+	const types = readFileSync(`${folder}/index.d.ts`, 'utf8');
+	assert.deepEqual([...types.matchAll(/^export (?:function|const) (\w+)/gm)].map((match) => match[1]).sort(),
+		Object.keys(inlined).sort());
+});
+
+await test('the module imports nothing and has at most 60 KB compressed', async () => {
+	const { gzipSync } = await import('node:zlib');
+	const wasm = readFileSync(`${folder}/nmtan.wasm`);
+	assert.deepEqual(WebAssembly.Module.imports(await WebAssembly.compile(wasm)), []);
+	assert.ok(gzipSync(wasm, {level: 9}).length <= 60000, `${gzipSync(wasm, {level: 9}).length} bytes`);
+});
+done();
