@@ -128,6 +128,7 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 		status = nt_baseline_open(&plan->baseline, command->baseline, error);
 		plan->options.baseline = &plan->baseline;
 	}
+	plan->options.measures = plan->target.path && plan->target.format == NT_REPORT_JSON;
 	plan->options.keep_geometry = command->uv_image ||
 		(plan->target.path && plan->target.format == NT_REPORT_HTML);
 	return status;

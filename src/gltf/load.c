@@ -389,6 +389,22 @@ static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 	return NT_OK;
 }
 
+/* What a copy of a vertex costs; attributes that cannot be read are not counted. */
+static size_t vertex_bytes_of(nt_gltf *document, const nt_json_value *primitive)
+{
+	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
+	size_t bytes = nt_json_find(attributes, "TANGENT") ? 0 : 4 * sizeof(float);
+	for (size_t i = 0; i < nt_json_count(attributes); i++) {
+		uint64_t index;
+		nt_gltf_accessor accessor;
+		nt_error error;
+		if (nt_json_get_uint64(nt_json_at(attributes, i), &index) &&
+			!nt_gltf_get_accessor(document, index, "", &accessor, &error))
+			bytes += accessor.element_bytes;
+	}
+	return bytes;
+}
+
 nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 	nt_error *error)
 {
@@ -412,6 +428,8 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 		status = apply_transform(scene, document, mesh, error);
 	if (!status)
 		status = load_faces(scene, document, mesh, primitive, options->threads, error);
+	if (!status && options->report)
+		mesh->vertex_bytes = vertex_bytes_of(document, primitive);
 	/* a mesh in the world is written without its targets */
 	if (!status && !options->world && options->morphs == NT_MORPH_BAKE)
 		status = load_morphs(scene, document, mesh, primitive, error);

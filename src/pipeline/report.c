@@ -5,6 +5,7 @@
 #include "pipeline/stages.h"
 
 #include <string.h>
+#include "file/image_size.h"
 #include "format/normal_map.h"
 #include "pipeline/joins.h"
 
@@ -23,6 +24,18 @@ static nt_status copy_normal_map(nt_arena *arena, const nt_scene *scene, const n
 		else
 			status = NT_ERROR_MEMORY;
 	}
+	nt_normal_map_close(&map);
+	return status;
+}
+
+static nt_status find_map_size(const nt_scene *scene, const nt_mesh *mesh, uint32_t pixels[2])
+{
+	nt_normal_map map;
+	nt_error error;
+	pixels[0] = pixels[1] = 0;
+	const nt_status status = nt_normal_map_open(&map, scene, mesh, &error);
+	if (!status && map.bytes)
+		nt_image_size(map.bytes, map.size, pixels);
 	nt_normal_map_close(&map);
 	return status;
 }
@@ -52,6 +65,7 @@ nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_forma
 	}
 	nt_report_options options = *settings->report;
 	options.written = written;
+	options.find_map_size = find_map_size;
 	if (options.keep_geometry)
 		options.find_normal_map = copy_normal_map;
 	options.threads = settings->threads;

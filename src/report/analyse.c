@@ -176,7 +176,7 @@ static nt_status check_mesh(nt_check *check, size_t *most_image_bytes)
 		return status;
 	measure_surface(check);
 	nt_status (*const checks[])(nt_check *) = {nt_check_edges, nt_check_geometry,
-		nt_check_islands, nt_check_seams, nt_check_tangents, nt_check_growth};
+		nt_check_islands, nt_check_seams, nt_check_tangents, nt_check_growth, nt_check_measures};
 	for (size_t i = 0; i < sizeof checks / sizeof checks[0] && !status; i++)
 		status = checks[i](check);
 	if (!status && check->options->keep_geometry)
@@ -253,6 +253,7 @@ static void share_facts(nt_report *report, uint32_t mesh, uint32_t first)
 	facts->islands = NULL;
 	facts->geometry = NULL;
 	facts->normal_map = (nt_image){0};
+	facts->texture_size[0] = facts->texture_size[1] = 0; /* its islands are not told either */
 }
 
 static nt_status check_meshes(const nt_check *check, const checked_meshes *checked)

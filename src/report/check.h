@@ -7,6 +7,7 @@
 #define NT_REPORT_CHECK_H
 
 #include <float.h>
+#include <math.h>
 #include "report/report.h"
 #include "report/surface.h"
 
@@ -124,6 +125,15 @@ static inline void nt_side_source_texcoord(const nt_check *check, uint32_t side,
 		check->mesh->texcoords + 2 * (size_t)check->surface.vertices[side], out);
 }
 
+/* Where a sampler looks: repeated modulo 1, mirrored folded, clamped (inside the texture) as it stands. */
+static inline double nt_wrap_coordinate(double x, nt_wrap wrap)
+{
+	if (wrap == NT_WRAP_CLAMP)
+		return x;
+	const double tile = floor(x), within = x - tile;
+	return wrap == NT_WRAP_MIRRORED && fmod(tile, 2.0) != 0.0 ? 1.0 - within : within;
+}
+
 /* Which of the stored tangents a corner has; the mesh has some. */
 static inline size_t nt_tangent_index(const nt_check *check, uint32_t corner)
 {
@@ -152,6 +162,7 @@ nt_status nt_check_islands(nt_check *check);  /* islands.c */
 nt_status nt_check_seams(nt_check *check);    /* seams.c */
 nt_status nt_check_tangents(nt_check *check); /* tangents.c */
 nt_status nt_check_growth(nt_check *check);   /* growth.c: shared and copied vertices */
+nt_status nt_check_measures(nt_check *check); /* measures.c: density, stretch, costs */
 
 /* Ends: most severe first, limits, baseline. findings.c */
 nt_status nt_report_complete(nt_report *report, const nt_report_options *options);

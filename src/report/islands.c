@@ -33,7 +33,8 @@ static void measure_islands(nt_check *check)
 	const nt_surface *s = &check->surface;
 	for (size_t i = 0; i < check->facts->island_count; i++)
 		check->facts->islands[i] = (nt_island){.minimum = {INFINITY, INFINITY},
-			.maximum = {-INFINITY, -INFINITY}, .covered = NAN, .first_triangle = NT_NONE,
+			.maximum = {-INFINITY, -INFINITY}, .covered = NAN, .texel_density = {NAN, NAN},
+			.stretch = {NAN, NAN}, .first_triangle = NT_NONE,
 			.box = nt_box_empty()};
 	for (size_t t = 0; t < s->triangle_count; t++) {
 		if (check->islands[t] == NT_NONE)
@@ -84,15 +85,6 @@ typedef struct grid {
 	const nt_wrap *wrap; /* [2] */
 } grid;
 
-/* Where a sampler looks: repeated modulo 1, mirrored folded, clamped (inside the texture) as it stands. */
-static double wrap_coordinate(double x, nt_wrap wrap)
-{
-	if (wrap == NT_WRAP_CLAMP)
-		return x;
-	const double tile = floor(x), within = x - tile;
-	return wrap == NT_WRAP_MIRRORED && fmod(tile, 2.0) != 0.0 ? 1.0 - within : within;
-}
-
 static double uv_area(const float *a, const float *b, const float *c)
 {
 	return ((double)b[0] - a[0]) * ((double)c[1] - a[1]) -
@@ -123,8 +115,8 @@ static void take_samples(const nt_check *check, grid *g, size_t mirrored_count, 
 		const float *b = nt_side_texcoord(s, (uint32_t)(3 * t + 1));
 		const float *c = nt_side_texcoord(s, (uint32_t)(3 * t + 2));
 		g->samples[g->sample_count++] = (sample){
-			.u = wrap_coordinate(((double)a[0] + b[0] + c[0]) / 3.0, g->wrap[0]),
-			.v = wrap_coordinate(((double)a[1] + b[1] + c[1]) / 3.0, g->wrap[1]),
+			.u = nt_wrap_coordinate(((double)a[0] + b[0] + c[0]) / 3.0, g->wrap[0]),
+			.v = nt_wrap_coordinate(((double)a[1] + b[1] + c[1]) / 3.0, g->wrap[1]),
 			.weight = -uv_area(a, b, c),
 			.island = check->islands[t]};
 	}

@@ -49,6 +49,9 @@ typedef struct nt_report_options {
 	size_t max_findings;          /* findings kept; 0: all */
 	const nt_baseline *baseline;  /* NULL: none */
 	bool keep_geometry;           /* for pictures: SVG and HTML */
+	bool measures;                /* texel density and stretch of islands, and what splitting costs */
+	/* Gives the size of a mesh's normal map in pixels, 0 0 where it is not known. NULL: nobody can. */
+	nt_status (*find_map_size)(const nt_scene *scene, const nt_mesh *mesh, uint32_t pixels[2]);
 	/* Gives a copy of a mesh's normal map, in the arena, for HTML: no bytes where it has none or one of more
 	 * than most_bytes. NULL: nobody can. */
 	nt_status (*find_normal_map)(nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh, size_t most_bytes,
@@ -118,6 +121,9 @@ typedef struct nt_seam {
 	double tangent_angle[2];
 	uint32_t islands[2];      /* at the first edge: unmirrored, mirrored */
 	size_t shared_count;      /* edges whose two sides use the same vertices */
+	double frame_angle[2];    /* between tangents at the ends, of the two sides: least and greatest, degrees; NaN */
+	size_t same_texel_count;  /* edges along which the two sides look up the same texels */
+	size_t unhidden_count;    /* of these, those whose frames differ: see seams.c */
 	size_t non_manifold_count;
 	bool has_plane;
 	double plane[4];          /* a x + b y + c z = d, unit normal */
@@ -137,6 +143,8 @@ typedef struct nt_island {
 	size_t triangles[3];  /* mirrored, degenerate, normal: [orientation + 1] */
 	double area;          /* in space */
 	double covered;       /* share of the mirrored triangles that lie on unmirrored ones, NaN: none */
+	double texel_density[2]; /* texels per unit: median by area, least; NaN: not measured, or the size is not known */
+	double stretch[2];       /* longest to shortest texel: median by area, greatest; NaN: not measured */
 	bool twin;            /* mixed, but the mirrored part lies point by point on its twin */
 	float minimum[2], maximum[2]; /* in the source's UV */
 	uint32_t first_triangle;
@@ -169,6 +177,8 @@ typedef struct nt_report_mesh {
 	size_t triangles[3];      /* mirrored, degenerate, normal: [orientation + 1] */
 	double areas[3];          /* the same, area in space */
 	size_t vertices_before, added_normals, added_mirror, added_direction, vertices_after;
+	size_t vertex_bytes;      /* of one copy of a vertex; 0: not measured */
+	uint32_t texture_size[2]; /* of the normal map, pixels; 0: not known, or not measured */
 	size_t island_kinds[4];   /* by nt_island_kind */
 	size_t seam_count, seam_edges;
 	double seam_length;

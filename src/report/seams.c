@@ -53,6 +53,70 @@ static double angle_between(nt_dvec3 a, nt_dvec3 b)
 	return nt_angle(sqrt(nt_dvec3_dot(cross, cross)), nt_dvec3_dot(a, b)) * DEGREES;
 }
 
+static void widen(double range[2], double value)
+{
+	range[0] = fmin(range[0], value); /* fmin and fmax pass NaN over */
+	range[1] = fmax(range[1], value);
+}
+
+/* ---- what a normal map can hide ---- */
+
+/*
+ * A baker writes what two frames differ by into the texels of each side. Where both sides look up the same texels,
+ * that cannot be: then the seam shows, but where the map is flat across it, if the frames differ by more than one
+ * step of an 8-bit map, 1 / 127.
+ */
+static const double HIDDEN_DEGREES = 0.45;
+
+/* Coordinates at one place of the texture, as the sampler wraps them; a whole tile away floats are rounded. */
+static bool same_texel(const nt_check *check, const float *a, const float *b)
+{
+	for (int axis = 0; axis < 2; axis++) {
+		const nt_wrap wrap = check->mesh->wrap[axis];
+		double d = fabs(nt_wrap_coordinate(a[axis], wrap) - nt_wrap_coordinate(b[axis], wrap));
+		if (wrap == NT_WRAP_REPEAT && d > 0.5) /* 0 and 1 are neighbours */
+			d = 1.0 - d;
+		if (!(d <= 1e-6 * fmax(1.0, fmax(fabs(a[axis]), fabs(b[axis])))))
+			return false;
+	}
+	return true;
+}
+
+/* The tangent of a corner: as it is stored, else as it was computed; NULL: there is none. */
+static const float *corner_tangent(const nt_check *check, uint32_t side)
+{
+	const uint32_t corner = check->surface.corners[side];
+	if (check->stored != NT_STORED_NONE)
+		return nt_stored_tangent(check, corner);
+	return check->mesh->corner_tangents ? check->mesh->corner_tangents + 4 * (size_t)corner : NULL;
+}
+
+/* Adds an edge to frame_angle, same_texel_count and unhidden_count. */
+static void compare_frames(const nt_check *check, const nt_mirror_edge *edge, uint32_t from, nt_seam *seam)
+{
+	const nt_surface *s = &check->surface;
+	bool same = true;
+	double greatest = 0.0;
+	uint32_t ends[2][2]; /* [side][end] */
+	for (int i = 0; i < 2; i++) {
+		const uint32_t side = edge->sides[i];
+		const bool along = s->points[side] == from;
+		ends[i][0] = along ? side : nt_side_next(side);
+		ends[i][1] = along ? nt_side_next(side) : side;
+	}
+	for (int end = 0; end < 2; end++) {
+		const float *a = corner_tangent(check, ends[0][end]), *b = corner_tangent(check, ends[1][end]);
+		same = same && same_texel(check, nt_side_texcoord(s, ends[0][end]), nt_side_texcoord(s, ends[1][end]));
+		const double angle = a && b ? angle_between(nt_dvec3_load(a), nt_dvec3_load(b)) : NAN;
+		widen(seam->frame_angle, angle);
+		greatest = fmax(greatest, angle);
+	}
+	seam->same_texel_count += same;
+	seam->unhidden_count += same && greatest > HIDDEN_DEGREES;
+}
+
+/* ---- the edge's other numbers ---- */
+
 /* The vertex that stands for a corner in the output. */
 static uint32_t output_vertex(const nt_check *check, uint32_t side)
 {
@@ -93,12 +157,6 @@ static double edge_length(const nt_seam_edge *edge)
 {
 	const nt_dvec3 d = nt_dvec3_sub(nt_dvec3_load(edge->positions[1]), nt_dvec3_load(edge->positions[0]));
 	return sqrt(nt_dvec3_dot(d, d));
-}
-
-static void widen(double range[2], double value)
-{
-	range[0] = fmin(range[0], value); /* fmin and fmax pass NaN over */
-	range[1] = fmax(range[1], value);
 }
 
 /* ---- the plane ---- */
@@ -198,7 +256,8 @@ static nt_status describe_seam(nt_check *check, const nt_chains *chains, size_t 
 	const size_t first = chains->first[chain];
 	*seam = (nt_seam){.closed = chains->closed[chain],
 		.edge_count = chains->first[chain + 1] - first,
-		.dihedral = {NAN, NAN}, .tangent_angle = {NAN, NAN}, .box = nt_box_empty()};
+		.dihedral = {NAN, NAN}, .tangent_angle = {NAN, NAN}, .frame_angle = {NAN, NAN},
+		.box = nt_box_empty()};
 	const size_t kept = seam->edge_count < NT_SEAM_EDGES ? seam->edge_count : NT_SEAM_EDGES;
 	seam->edges = nt_arena_alloc(&check->report->arena, kept, sizeof *seam->edges);
 	if (!seam->edges)
@@ -214,6 +273,7 @@ static nt_status describe_seam(nt_check *check, const nt_chains *chains, size_t 
 		seam->length += edge_length(&edge);
 		widen(seam->dihedral, edge.dihedral);
 		widen(seam->tangent_angle, edge.tangent_angle);
+		compare_frames(check, mirror, s->points[from], seam);
 		seam->shared_count += edge.vertices[0][0] == edge.vertices[1][0] &&
 			edge.vertices[0][1] == edge.vertices[1][1];
 		seam->non_manifold_count += mirror->non_manifold;

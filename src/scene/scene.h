@@ -132,6 +132,7 @@ typedef struct nt_mesh {
 
 	/* geometry: filled by load(). Arrays belong to the scene's arena or point into the input. */
 	size_t vertex_count;
+	size_t vertex_bytes;     /* of a vertex with all its attributes and a tangent, as it is stored; 0: not known */
 	float *positions;        /* [vertex_count][3] */
 	float *normals;          /* [vertex_count][3]; NULL: none */
 	float *solve_normals;    /* [vertex_count][3] of unit length: what tangents are made for, where normals are

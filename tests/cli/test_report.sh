@@ -146,6 +146,54 @@ validates r.json
 is "$(value r.json '(r["truncated"], r["totals"]["dropped"] > 0, len(r["files"][0]["findings"]),
 	r["files"][0]["findings"][0]["severity"])')" "(True, True, 1, 'warning')"
 
+# A map of 64 x 32 on a quad of 2 x 1 gives sqrt(64 * 32 / 2) = 32 texels per unit, square ones. On a second quad of 2 x 1
+# the map's left half lies: texels are 2 / 32 by 1 / 32, so sqrt(32 * 32 / 2) per unit and twice as long as wide. The third
+# island is the first one's mirror image: they share texels and the edge x = 2, across which T is (1,0,0) and (-1,0,0).
+scene "numbers that people act on: density, stretch, frames across seams, what splitting costs"
+python3 -c 'import struct, sys, zlib
+def chunk(name, data): return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+sys.stdout.buffer.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 64, 32, 8, 2, 0, 0, 0))
+	+ chunk(b"IDAT", zlib.compress(32 * (b"\0" + 64 * b"\x80\x80\xff"))) + chunk(b"IEND", b""))' >n.png
+printf 'newmtl m\nnorm n.png\n' >m.mtl
+cat >m.obj <<-'END'
+	mtllib m.mtl
+	usemtl m
+	v 0 0 0
+	v 2 0 0
+	v 2 1 0
+	v 0 1 0
+	v 4 0 0
+	v 4 1 0
+	v 0 5 0
+	v 2 5 0
+	v 2 6 0
+	v 0 6 0
+	vt 0 0
+	vt 1 0
+	vt 1 1
+	vt 0 1
+	vt 0.5 0
+	vt 0.5 1
+	vn 0 0 1
+	f 1/1/1 2/2/1 3/3/1 4/4/1
+	f 2/2/1 5/1/1 6/4/1 3/3/1
+	f 7/1/1 8/5/1 9/6/1 10/4/1
+END
+run -q --check --report=r.json m.obj
+exits 0
+validates r.json
+is "$(value r.json '[[round(i[k][w], 4) for k in ("texel_density", "stretch") for w in ("median", "worst")]
+	for i in r["files"][0]["meshes"][0]["islands"]]')" \
+	"[[32, 32, 1, 1], [22.6274, 22.6274, 2, 2]]"
+is "$(value r.json '[(m["texture_size"], m["split_cost"]) for m in r["files"][0]["meshes"]]')" \
+	"[([64, 32], {'vertices': 2, 'bytes_each': 48, 'bytes': 96})]"
+is "$(value r.json '[(s["frame_angle_degrees"], s["edges_sharing_texels"], s["unhidden_edges"])
+	for s in r["files"][0]["meshes"][0]["seams"]]')" "[([180, 180], 1, 1)]"
+sed -i 's/norm n.png/Kd 1 1 1/' m.mtl
+run -q --check --report=r.json m.obj
+is "$(value r.json '[(i["texel_density"], i["stretch"]["median"]) for i in r["files"][0]["meshes"][0]["islands"]]')" \
+	"[(None, 2), (None, 4)]"
+
 scene "converting with a report says what was split"
 run --report=r.json "$data/mirrored_cube.obj" out.glb
 exits 0

@@ -162,6 +162,20 @@ static void area_shares(nt_buffer *out, const double areas[3])
 	nt_buffer_text(out, "}");
 }
 
+/* Median and worst; null where nothing was measured. */
+static void put_measure(nt_buffer *out, const char *name, const double values[2])
+{
+	key(out, SAME_LINE, name);
+	if (isnan(values[0])) {
+		nt_buffer_text(out, "null");
+		return;
+	}
+	nt_buffer_text(out, "{");
+	put_float(out, "median", values[0]);
+	put_float(out, "worst", values[1]);
+	nt_buffer_text(out, "}");
+}
+
 static void put_island(nt_buffer *out, const nt_island *island)
 {
 	nt_buffer_text(out, "{");
@@ -170,6 +184,8 @@ static void put_island(nt_buffer *out, const nt_island *island)
 	put_float(out, "area", island->area);
 	put_float(out, "covered_share", island->covered);
 	put_bool(out, "twin", island->twin);
+	put_measure(out, "texel_density", island->texel_density);
+	put_measure(out, "stretch", island->stretch);
 	key(out, SAME_LINE, "uv_box");
 	nt_buffer_text(out, "[");
 	floats(out, island->minimum, 2);
@@ -228,6 +244,9 @@ static void put_seam(nt_buffer *out, const nt_seam *seam)
 	put_index(out, "mirrored", seam->islands[1]);
 	nt_buffer_text(out, "}");
 	put_count(out, "edges_sharing_vertices", seam->shared_count);
+	put_doubles(out, "frame_angle_degrees", seam->frame_angle, 2);
+	put_count(out, "edges_sharing_texels", seam->same_texel_count);
+	put_count(out, "unhidden_edges", seam->unhidden_count);
 	put_count(out, "non_manifold_edges", seam->non_manifold_count);
 	key(out, SAME_LINE, "plane");
 	if (seam->has_plane) {
@@ -276,6 +295,23 @@ static void put_histogram(nt_buffer *out, const nt_report_mesh *mesh)
 	nt_buffer_text(out, "]");
 }
 
+/* What splitting costs, and the texture that density is measured by. */
+static void put_costs(nt_buffer *out, const nt_report_mesh *mesh)
+{
+	const size_t added = mesh->added_mirror + mesh->added_direction;
+	key(out, SAME_LINE, "split_cost");
+	if (mesh->vertex_bytes)
+		nt_buffer_format(out, "{\"vertices\":%zu,\"bytes_each\":%zu,\"bytes\":%zu}", added, mesh->vertex_bytes,
+			added * mesh->vertex_bytes);
+	else
+		nt_buffer_text(out, "null");
+	key(out, SAME_LINE, "texture_size");
+	if (mesh->texture_size[0])
+		nt_buffer_format(out, "[%u,%u]", mesh->texture_size[0], mesh->texture_size[1]);
+	else
+		nt_buffer_text(out, "null");
+}
+
 static void put_counts(nt_buffer *out, const nt_report_mesh *mesh)
 {
 	put_count(out, "faces", mesh->face_count);
@@ -289,6 +325,7 @@ static void put_counts(nt_buffer *out, const nt_report_mesh *mesh)
 	put_count(out, "added_direction", mesh->added_direction);
 	put_count(out, "after", mesh->vertices_after);
 	nt_buffer_text(out, "}");
+	put_costs(out, mesh);
 	key(out, SAME_LINE, "edges");
 	nt_buffer_text(out, "{");
 	put_count(out, "all", mesh->edge_count);
@@ -462,7 +499,7 @@ void nt_write_json(const nt_report_list *reports, nt_buffer *out)
 	key(out, 1, "report");
 	nt_buffer_text(out, "\"nmtan\"");
 	key(out, 1, "report_version");
-	nt_buffer_text(out, "1");
+	nt_buffer_text(out, "2");
 	key(out, 1, "generator");
 	nt_buffer_format(out, "\"nmtan %s\"", NMTAN_VERSION_STRING);
 	put_totals(out, 1, &totals);

@@ -1,0 +1,151 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Numbers that people act on: how densely the texture lies on each island, how far it is stretched, and what splitting
+ * costs. Asked for by options->measures; all of it is for the mesh as it is checked.
+ *
+ * A triangle maps the texture to the surface linearly: with Su and Sv what one texel along u and v spans in space,
+ * the largest and smallest singular values of (Su Sv) are the longest and shortest length of a texel (Sander, Snyder,
+ * Gortler, Hoppe: Texture Mapping Progressive Meshes, 2001). Stretch is their ratio, 1 where the texture is not distorted;
+ * density, in texels per unit of length, one over the root of their product. Medians are by area: half the island has less.
+ */
+#include "report/check.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A triangle's number and how much of the island it is. */
+typedef struct weighed {
+	float value, area;
+} weighed;
+
+typedef struct texel {
+	double longest, shortest;
+} texel;
+
+/* Of a triangle that has an area in space and in the texture. */
+static texel measure_texel(const nt_surface *s, size_t t, double width, double height)
+{
+	const uint32_t c = (uint32_t)(3 * t);
+	const float *pa = nt_side_position(s, c), *pb = nt_side_position(s, c + 1), *pc = nt_side_position(s, c + 2);
+	const float *ta = nt_side_texcoord(s, c), *tb = nt_side_texcoord(s, c + 1), *tc = nt_side_texcoord(s, c + 2);
+	const double u1 = width * ((double)tb[0] - ta[0]), v1 = height * ((double)tb[1] - ta[1]);
+	const double u2 = width * ((double)tc[0] - ta[0]), v2 = height * ((double)tc[1] - ta[1]);
+	const double determinant = u1 * v2 - u2 * v1;
+	double uu = 0, uv = 0, vv = 0; /* products of Su and Sv */
+	for (int i = 0; i < 3; i++) {
+		const double p1 = (double)pb[i] - pa[i], p2 = (double)pc[i] - pa[i];
+		const double su = (v2 * p1 - v1 * p2) / determinant, sv = (u1 * p2 - u2 * p1) / determinant;
+		uu += su * su;
+		uv += su * sv;
+		vv += sv * sv;
+	}
+	const double root = sqrt((uu - vv) * (uu - vv) + 4.0 * uv * uv);
+	const double longest = sqrt(0.5 * (uu + vv + root));
+	/* the difference would cancel; the product of both is the ratio of the areas */
+	const double product = 2.0 * s->areas[t] / fabs(determinant);
+	return (texel){longest, product / longest};
+}
+
+static int by_value(const void *a, const void *b)
+{
+	const weighed *x = a, *y = b;
+	return x->value < y->value ? -1 : x->value > y->value;
+}
+
+/* Sorts. Up to which value half the area lies. */
+static double median_of(weighed *items, size_t count)
+{
+	double total = 0.0, sum = 0.0;
+	qsort(items, count, sizeof *items, by_value);
+	for (size_t i = 0; i < count; i++)
+		total += items[i].area;
+	for (size_t i = 0; i < count; i++) {
+		sum += items[i].area;
+		if (sum >= 0.5 * total)
+			return items[i].value;
+	}
+	return NAN;
+}
+
+static bool is_measured(const nt_check *check, size_t t)
+{
+	return check->islands[t] != NT_NONE && check->surface.orientation[t] != 0 && check->surface.areas[t] > 0.0;
+}
+
+/* Triangles by island: list[first[i]] to list[first[i + 1] - 1]. */
+static void list_triangles(const nt_check *check, uint32_t *first, uint32_t *list)
+{
+	const size_t islands = check->facts->island_count;
+	memset(first, 0, (islands + 2) * sizeof *first);
+	for (size_t t = 0; t < check->surface.triangle_count; t++)
+		if (is_measured(check, t))
+			first[check->islands[t] + 2]++;
+	for (size_t i = 0; i < islands; i++)
+		first[i + 2] += first[i + 1];
+	for (size_t t = 0; t < check->surface.triangle_count; t++)
+		if (is_measured(check, t))
+			list[first[check->islands[t] + 1]++] = (uint32_t)t;
+}
+
+/* density: whether the texture's size is known. */
+static void measure_island(const nt_check *check, nt_island *island, const uint32_t *list, size_t count,
+	bool density, weighed *items)
+{
+	const uint32_t *size = check->facts->texture_size;
+	const double width = density ? size[0] : 1.0, height = density ? size[1] : 1.0;
+	for (int pass = density ? 0 : 1; pass < 2 && count; pass++) {
+		for (size_t i = 0; i < count; i++) {
+			const texel x = measure_texel(&check->surface, list[i], width, height);
+			const double value = pass ? x.longest / x.shortest : 1.0 / sqrt(x.longest * x.shortest);
+			items[i] = (weighed){(float)value, (float)check->surface.areas[list[i]]};
+		}
+		const double median = median_of(items, count);
+		if (pass) {
+			island->stretch[0] = median;
+			island->stretch[1] = items[count - 1].value;
+		} else {
+			island->texel_density[0] = median;
+			island->texel_density[1] = items[0].value;
+		}
+	}
+}
+
+static void measure_split(nt_check *check)
+{
+	const nt_mesh *mesh = check->mesh;
+	nt_report_mesh *facts = check->facts;
+	/* what is made here is written as floats */
+	size_t bytes = mesh->vertex_bytes;
+	if (!bytes)
+		bytes = 12 + (mesh->normals ? 12 : 0) + (mesh->texcoords ? 8 : 0) + (mesh->colors ? 16 : 0) + 16;
+	facts->vertex_bytes = bytes;
+}
+
+nt_status nt_check_measures(nt_check *check)
+{
+	const size_t islands = check->facts->islands ? check->facts->island_count : 0;
+	const size_t triangles = check->surface.triangle_count;
+	if (!check->options->measures)
+		return NT_OK;
+	measure_split(check);
+	if (!islands)
+		return NT_OK;
+	nt_status status = NT_OK;
+	if (check->options->find_map_size)
+		status = check->options->find_map_size(check->scene, check->mesh, check->facts->texture_size);
+	if (status)
+		return status;
+	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	uint32_t *first = nt_scratch_alloc(check->scratch, islands + 2, sizeof *first);
+	uint32_t *list = nt_scratch_alloc(check->scratch, triangles, sizeof *list);
+	weighed *items = nt_scratch_alloc(check->scratch, triangles, sizeof *items);
+	if (!first || !list || !items)
+		return NT_ERROR_MEMORY;
+	list_triangles(check, first, list);
+	for (size_t i = 0; i < islands; i++)
+		measure_island(check, &check->facts->islands[i], list + first[i], first[i + 1] - first[i],
+			check->facts->texture_size[0] > 0, items);
+	nt_scratch_back(check->scratch, mark);
+	return NT_OK;
+}
