@@ -84,7 +84,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 
 	ROW(EXTENSION_STALE, WARNING, "{detail} refers to vertices, and vertices were copied",
 		"Vertices that need several tangents are copied, and attributes and indices follow. This extension seems "
-		"to refer to vertices as well, in a way that nmtan does not know, and was left as it is.",
+		"to refer to vertices as well, in a way that nmtan does not know or cannot follow, and was left as it is.",
 		"Make what the extension holds again from the output, or split the vertices before nmtan does.",
 		"a primitive whose extension names an accessor with one element for each vertex"),
 	ROW(DRACO_PLAIN, WARNING, "the primitive is written without Draco compression",

@@ -15,6 +15,7 @@ make_inputs() {
 		"$ROOT"/data/sparse.gltf .
 	python3 "$ROOT/tests/support/cost_inputs.py" windows 20 windows.glb 12 || return 1
 	printf 'quad.obj\nplates.glb\n' >list
+	python3 "$ROOT/tests/support/gltf_manifold.py" manifold.gltf || return 1
 	"$NMTAN" -q --draco=sequential plates.gltf draco.glb && "$NMTAN" -q --draco=edgebreaker morph.gltf edge.gltf &&
 		"$NMTAN" -q morph.gltf morph.glb && "$faults/make_meshopt" meshopt.glb
 }
@@ -37,6 +38,7 @@ cases() {
 		across | windows.glb || --across=mesh --only=all --verify windows.glb o.glb
 		sparse | sparse.gltf || sparse.gltf o.glb
 		quantized | quantized.gltf || --precision=short quantized.gltf o.glb
+		extensions | manifold.gltf || --only=all manifold.gltf o.gltf
 		skin, draco out | skin.gltf || --draco=sequential skin.gltf o.glb
 		draco | draco.glb bumps.png || --existing=replace --verify draco.glb o.gltf
 		edgebreaker | edge.gltf || --existing=replace --verify edge.gltf o.glb

@@ -19,6 +19,7 @@
 #include "gltf/edit/old_tangents.h"
 #include "gltf/edit/vertex_extensions.h"
 #include "gltf/edit/write.h"
+#include "gltf/extensions/geometry_metadata.h"
 #include "gltf/quantize.h"
 #include "gltf/view.h"
 
@@ -281,14 +282,19 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 	nt_arena arena = {0};
 	nt_vertex_pools pools;
 	nt_buffer_edits edits = {0};
+	nt_geometry_total *totals = NULL;
 	status = nt_vertex_pools_find(&pools, scene, &arena, error);
 	if (!status)
 		status = nt_edits_create(&edits, &pools, error);
+	if (!status && nt_geometry_totals(scene->source, &arena, &totals))
+		status = nt_fail_memory(error);
 
 	/* The edits, and with them the document. */
 	const editing e = {.scene = scene, .options = options, .pools = &pools, .edits = &edits, .error = error};
 	if (!status)
 		status = edit_pools(&e);
+	if (!status && nt_geometry_metadata_follow(scene, totals, &arena))
+		status = nt_fail_memory(error);
 	if (!status)
 		status = nt_gltf_write_document(scene, &edits, options, output, error);
 	nt_edits_free(&edits);

@@ -7,6 +7,7 @@
 #include "gltf/edit/vertex_extensions.h"
 
 #include "gltf/accessor.h"
+#include "gltf/edit/manifold.h"
 #include "gltf/edit/new_accessors.h"
 #include "gltf/extensions/outline.h"
 #include "gltf/extensions/references.h"
@@ -67,7 +68,7 @@ static void report_outline(nt_scene *scene, const nt_mesh *mesh)
 }
 
 nt_status nt_gltf_follow_vertices(nt_buffer_edits *edits, uint32_t buffer, nt_scene *scene,
-	const nt_pool_vertices *vertices, bool compressed, nt_error *error)
+	nt_pool_vertices *vertices, bool compressed, nt_error *error)
 {
 	const nt_vertex_pool *pool = vertices->pool;
 	uint32_t last_mesh = NT_NONE;
@@ -85,5 +86,8 @@ nt_status nt_gltf_follow_vertices(nt_buffer_edits *edits, uint32_t buffer, nt_sc
 			status = nt_fail_memory(error);
 		last_mesh = mesh->gltf_mesh;
 	}
+	for (size_t i = 0; !status && i < pool->user_count; i++)
+		if (i == 0 || nt_pool_mesh(pool, i)->gltf_mesh != nt_pool_mesh(pool, i - 1)->gltf_mesh)
+			status = nt_gltf_follow_manifold(edits, buffer, scene, vertices, i, compressed, error);
 	return status;
 }

@@ -14,10 +14,7 @@
 
 /* Extensions that need nothing, or that are looked after elsewhere. */
 static const char *const harmless[] = {"KHR_draco_mesh_compression", "KHR_materials_variants",
-	"CESIUM_primitive_outline", "EXT_mesh_features", "EXT_structural_metadata"};
-
-/* Extensions that are about vertices without a number of them in an accessor. */
-static const char *const vertex_extensions[] = {"EXT_mesh_manifold"};
+	"CESIUM_primitive_outline", "EXT_mesh_features", "EXT_mesh_manifold", "EXT_structural_metadata"};
 
 typedef struct search {
 	nt_scene *scene;
@@ -106,8 +103,7 @@ static void look_at(search *s, const nt_json_value *extensions, const char *owne
 		enter(s, extensions, i);
 		if (is_in(harmless, sizeof harmless / sizeof *harmless, name))
 			continue;
-		if (!is_in(vertex_extensions, sizeof vertex_extensions / sizeof *vertex_extensions, name) &&
-			!find_number(s, nt_json_at(extensions, i)))
+		if (!find_number(s, nt_json_at(extensions, i)))
 			continue;
 		if (s->pointer.failed)
 			return;
