@@ -41,8 +41,8 @@ function draw(geometry) {
 
 async function main() {
 	await nmtan.ready;
-	const knot = new three.TorusKnotGeometry(1, 0.35, 96, 24);
-	const both = [theirs, nmtan].map((module) => computeMikkTSpaceTangents(knot, module));
+	const knot = () => new three.TorusKnotGeometry(1, 0.35, 96, 24); // each its own: the function changes it
+	const both = [theirs, nmtan].map((module) => computeMikkTSpaceTangents(knot(), module));
 	const [a, b] = both.map((geometry) => geometry.attributes.tangent.array);
 	const [p, q] = both.map(draw);
 	let painted = 0, differ = 0;

@@ -30,12 +30,12 @@ cases_of() {
 		"ok - "*) scene "$prefix: ${line#ok - }" ;;
 		"not ok - "*)
 			scene "$prefix: ${line#not ok - }"
-			wrong "$(grep '^#' "$WORK/tap.txt" | head -30)"
+			wrong "$(grep "^#" "$WORK/tap.txt" | head -30)"
 			;;
 		esac
 	done <"$WORK/tap.txt"
 	scene "$prefix: ends with 0"
-	[ $ended = 0 ] && grep -q '^1\.\.' "$WORK/tap.txt" || wrong "$(tail -20 "$WORK/tap.txt")"
+	[ $ended = 0 ] && grep -q '^1\.\.' "$WORK/tap.txt" || wrong "$(tail -20 "$WORK/tap.txt" | sed "s,^,# ,")"
 	finish_case
 }
 
