@@ -29,10 +29,10 @@ endif
 B := build/$(config)
 VERSION := $(shell sed -n 's/^\#define NMTAN_VERSION_STRING "\(.*\)"/\1/p' include/nmtan.h)
 
-flags_release := -O2 -DNDEBUG
+flags_release := -O2 -g1 -DNDEBUG
 flags_debug := -O0 -g
-flags_sanitize := -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
-flags_tsan := -O1 -g -fsanitize=thread
+flags_sanitize := -O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefined -fno-omit-frame-pointer
+flags_tsan := -O1 -g1 -fsanitize=thread
 # clang 14 does not say that addresses are checked; its "undefined" has checks that gcc's lacks (float-cast-overflow).
 flags_clang := $(flags_release)
 flags_clang-sanitize := $(flags_sanitize) -D__SANITIZE_ADDRESS__=1
@@ -44,7 +44,7 @@ endif
 # No contraction anywhere: the bytes of the result depend on it (see README, "Reproducible"). No vectorization of
 # straight-line code either: gcc 12 forgets the rounding in "float x = (float)d; double y = x;" when it combines two
 # such lines into one vector.
-COMMON := $(flags_$(config)) -g1 -ffp-contract=off -fno-tree-slp-vectorize -fno-math-errno \
+COMMON := $(flags_$(config)) -ffp-contract=off -fno-tree-slp-vectorize -fno-math-errno \
 	-pthread -fPIC -fvisibility=hidden \
 	-Iinclude -Isrc -Wall -Wextra -MMD -MP
 NT_CFLAGS := -std=c11 -D_GNU_SOURCE $(COMMON) -Wshadow -Wstrict-prototypes -Wmissing-prototypes \
@@ -73,8 +73,9 @@ $(B)/nmtan: $(main_obj) $(tool_obj) $(B)/libnmtan.a
 $(B)/libnmtan.a: $(core_obj)
 	rm -f $@ && $(AR) qcs $@ $^
 
-$(B)/libnmtan.so: $(core_obj)
-	$(CC) $(NT_LDFLAGS) -shared -Wl,-soname,libnmtan.so.0,-z,nodelete -o $@ $^ -lm
+$(B)/libnmtan.so: $(core_obj) src/api/libnmtan.map
+	$(CC) $(NT_LDFLAGS) -shared -Wl,-soname,libnmtan.so.0,-z,nodelete,--version-script=src/api/libnmtan.map -o $@ \
+		$(core_obj) -lm
 
 # Everything but main, for unit tests. Members of several rooms share a name, so none replaces another (q).
 $(B)/libtool.a: $(tool_obj)
