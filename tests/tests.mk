@@ -123,16 +123,21 @@ $(B)/tests/stress/stress: $(stress_obj) $(measure_obj) $(B)/libnmtan.a
 stress: $(B)/tests/stress/stress
 	@sh tests/stress/run.sh $< build/stress
 
-# make bench: run time against error, with the peers that the machine has; in build/bench.
-error_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/bench/error*.c))
+# make bench: run time against error, with the peers that the machine has; tables, and data/charts/pareto.svg.
+pareto_obj := $(patsubst %,$(B)/tests/%.o,$(addprefix bench/,pareto image round_trip faults files models native) \
+	stress/families)
 
-$(B)/tests/bench/error: $(error_obj) $(measure_obj) $(B)/libnmtan.a
+$(B)/tests/bench/pareto: $(pareto_obj) $(measure_obj) $(B)/libnmtan.a
+	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm -ldl $(QUADMATH)
+
+$(B)/tests/bench/sweeps: $(B)/tests/bench/sweeps.o $(measure_obj) $(B)/libnmtan.a
 	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm $(QUADMATH)
 
 .PHONY: bench bench-error
 bench: bench-error
-bench-error: $(B)/tests/bench/error
-	@CC="$(CC)" sh tests/bench/run_error.sh $< build/bench
+bench-error: $(B)/tests/bench/pareto $(B)/tests/bench/sweeps $(B)/nmtan
+	@CC="$(CC)" sh tests/bench/run_pareto.sh $< $(B)/nmtan build/bench data/charts/pareto.svg
+	@$(B)/tests/bench/sweeps
 
 # make bench-core: million triangles a second on real meshes ($MODELS names a folder of more, $PEERS one with native
 # peers: tests/bench/native.h) and on each family of meshes.

@@ -100,6 +100,17 @@ static void make_normals(nt_owned *o)
 	free(sums);
 }
 
+/* Normals of unit length, as bakers have them; zero ones stay. */
+static void make_unit(nt_owned *o)
+{
+	for (size_t v = 0; v < o->mesh.vertex_count; v++) {
+		float *n = o->normals[v];
+		const double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
+		for (int i = 0; i < 3 && length > 0; i++)
+			n[i] = (float)(n[i] / length);
+	}
+}
+
 static double bounds(const nt_owned *o, float low[3])
 {
 	double size = 0;
@@ -242,6 +253,7 @@ size_t models_make(char *const *files, size_t count, model *models)
 	for (size_t i = 0; i < n; i++) {
 		float low[3];
 		models[i].size = bounds(&models[i].mesh, low);
+		make_unit(&models[i].mesh);
 	}
 	return n;
 }

@@ -2,8 +2,7 @@
 # SPDX-License-Identifier: MIT
 #
 # run_peers.sh FOLDER: the meshes of a folder in the peers that the machine has: assimp natively (pkg-config
-# assimp), npm's mikktspace and meshoptimizer under node (wasm), installed below build/. Missing ones are said
-# and skipped.
+# assimp), npm's packages of peers.mjs under node, installed below build/. Missing ones are said and skipped.
 folder=$1 peers=build/peers
 mkdir -p "$peers" || exit 2
 if pkg-config --exists assimp 2>/dev/null; then

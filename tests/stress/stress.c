@@ -187,7 +187,7 @@ static void write_chart(const char *folder, const family *f, const family_scores
 					 : fmax(percent(s->wrong_sign, s->oriented),
 						   percent(s->zero + s->parallel, s->corners));
 		}
-		series[c] = (chart_series){columns[c].name, f->levels, y[c], f->level_count};
+		series[c] = (chart_series){columns[c].name, f->levels, y[c], f->level_count, CHART_LINE, NULL};
 	}
 	char path[512], title[128];
 	snprintf(title, sizeof title, angles ? "%s: worst angle" : "%s: wrong sign or unusable", f->name);

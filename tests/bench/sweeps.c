@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* See error_sweeps.h. */
-#include "error_sweeps.h"
-
+/*
+ * What the methods do to surfaces that are known: how fast their tangents converge to the analytic dP/du, and how far thin
+ * bevels tilt the plane beside them. Prints a table in Markdown for each.
+ */
 #include <math.h>
-#include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
-#include "chart.h"
-#include "error_meshes.h"
+#include <string.h>
 #include "measure.h"
+#include "surfaces.h"
 
 /* Convergence: error against the analytic dP/du over resolutions. */
 
@@ -45,57 +46,91 @@ static void judge_level(uint32_t cells, double median[SUMMED], double worst[SUMM
 	}
 }
 
-void sweep_convergence(const char *output, FILE *md)
+static void sweep_convergence(void)
 {
-	double cells[LEVELS], median[SUMMED][LEVELS], worst[SUMMED][LEVELS];
-	FILE *csv = measure_open(output, "convergence.csv", "w");
-	fprintf(csv, "cells,method,median_degrees,worst_degrees\n");
+	double median[SUMMED][LEVELS], worst[SUMMED][LEVELS];
 	for (int l = 0; l < LEVELS; l++) {
 		double med[SUMMED], wor[SUMMED];
-		cells[l] = 8 << l;
-		judge_level((uint32_t)cells[l], med, wor);
+		judge_level(8u << l, med, wor);
 		for (int m = 0; m < SUMMED; m++) {
 			median[m][l] = med[m];
 			worst[m][l] = wor[m];
-			fprintf(csv, "%g,%s,%.5g,%.5g\n", cells[l], summed_names[m], med[m], wor[m]);
 		}
 	}
-	fclose(csv);
-	fprintf(md, "\n## Convergence to the analytic dP/du\n\nSphere, torus, twisted strip, sheared saddle and noise, "
-		"vertices moved by up to a quarter of a cell; median / worst degrees. The order is the slope of the "
-		"median from 16 to 128 cells.\n\n| cells |");
+	printf("\nConvergence to the analytic dP/du: sphere, torus, twisted strip, sheared saddle and noise, vertices moved by up "
+		"to a quarter of a cell; median / worst degrees. The order is the slope of the median from 16 to 128 cells.\n\n"
+		"| cells |");
 	for (int l = 0; l < LEVELS; l++)
-		fprintf(md, " %g |", cells[l]);
-	fprintf(md, " order |\n|---|");
+		printf(" %d |", 8 << l);
+	printf(" order |\n|---|");
 	for (int l = 0; l <= LEVELS; l++)
-		fprintf(md, "---|");
-	chart_series series[SUMMED];
+		printf("---|");
 	for (int m = 0; m < SUMMED; m++) {
-		fprintf(md, "\n| %s |", summed_names[m]);
+		printf("\n| %s |", summed_names[m]);
 		for (int l = 0; l < LEVELS; l++)
-			fprintf(md, " %.2g / %.2g |", median[m][l], worst[m][l]);
-		fprintf(md, " %.2f |", log2(median[m][1] / median[m][4]) / 3);
-		series[m] = (chart_series){summed_names[m], cells, median[m], LEVELS};
+			printf(" %.2g / %.2g |", median[m][l], worst[m][l]);
+		printf(" %.2f |", log2(median[m][1] / median[m][4]) / 3);
 	}
-	fprintf(md, "\n");
-	char path[512];
-	snprintf(path, sizeof path, "%s/convergence.svg", output);
-	const chart c = {.title = "Convergence to the analytic dP/du", .subtitle = "median over five surfaces",
-		.x_label = "cells along a side", .y_label = "degrees", .log_x = true, .log_y = true, .series = series,
-		.series_count = SUMMED};
-	if (!chart_write(path, &c))
-		exit(2);
-	printf("bench: convergence\n");
+	printf("\n");
 }
 
 /* Thin bevels: how far the plane's tangents are tilted at the bevel's edge. */
 
 enum { WIDTHS = 9, CELLS = 4, CELL_SIZES = 5 };
 
+static const double SHEAR = 4.0 / 3;
+
+static void set_vertex(nt_owned *o, size_t v, const double p[3], const double n[3], double u, double w)
+{
+	for (int i = 0; i < 3; i++) {
+		o->positions[v][i] = (float)p[i];
+		o->normals[v][i] = (float)n[i];
+	}
+	o->texcoords[v][0] = (float)u;
+	o->texcoords[v][1] = (float)w;
+}
+
+/*
+ * Two planes at a right angle and a flat bevel of the given width between them, cells x cells quads on the
+ * planes. u runs along the profile and v along the edge; on the bevel v is sheared by 4/3, as it is where
+ * an atlas joins two islands, so that dP/du turns by atan(4/3 sqrt 2) = 62.1 degrees in the projection.
+ * Vertices of the two edges carry the normals of the planes.
+ */
+static nt_owned make_bevel(double width, uint32_t cells)
+{
+	const uint32_t columns = 2 * cells + 1, rows = cells;
+	nt_owned o = nt_owned_make((size_t)(columns + 1) * (rows + 1), (size_t)columns * rows * 2);
+	const double down = width / sqrt(2);
+	for (uint32_t y = 0; y <= rows; y++) {
+		for (uint32_t x = 0; x <= columns; x++) {
+			const size_t v = (size_t)y * (columns + 1) + x;
+			const double along = (double)y / cells;
+			if (x <= cells) {
+				const double s = (double)x / cells;
+				set_vertex(&o, v, (double[3]){s, along, 0}, (double[3]){0, 0, 1}, s, along);
+				o.truth[v][0] = 1;
+			} else {
+				const double s = (double)(x - cells - 1) / cells;
+				set_vertex(&o, v, (double[3]){1 + down, along, -down - s}, (double[3]){1, 0, 0},
+					1 + width + s, along + SHEAR * width);
+			}
+		}
+	}
+	uint32_t *to = o.indices;
+	for (uint32_t y = 0; y < rows; y++) {
+		for (uint32_t x = 0; x < columns; x++) {
+			const uint32_t a = y * (columns + 1) + x, b = a + 1, d = a + columns + 1, c = d + 1;
+			memcpy(to, (uint32_t[6]){a, b, c, a, c, d}, 6 * sizeof *to);
+			to += 6;
+		}
+	}
+	return o;
+}
+
 /* The tilt at a vertex of the edge, numbered from 0 to `cells`, of planes of size 1 in cells x cells quads. */
 static double bevel_tilt(double width, uint32_t cells, uint32_t vertex, nmtan_method method)
 {
-	nt_owned mesh = bench_bevel(width, cells);
+	nt_owned mesh = make_bevel(width, cells);
 	float (*tangents)[4] = measure_room(mesh.corner_count, sizeof *tangents);
 	const nmtan_options options = {.struct_bytes = sizeof options, .method = method};
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
@@ -112,66 +147,55 @@ static double bevel_tilt(double width, uint32_t cells, uint32_t vertex, nmtan_me
 }
 
 /* Area weights tilt in proportion to the bevel's width by the size of the cells beside it. */
-static void sweep_cells(FILE *csv, FILE *md)
+static void sweep_cells(void)
 {
 	static const uint32_t cells[CELL_SIZES] = {1, 2, 4, 8, 16};
 	static const char *const places[3] = {"first vertex", "in between", "last vertex"};
 	const double width = 0.001;
-	fprintf(md, "\n`area` at width %g, by the size of the cells: at the two ends of the edge, where one plane triangle "
+	printf("\n`area` at width %g, by the size of the cells: at the two ends of the edge, where one plane triangle "
 		"meets two of the bevel or two meet one, and in between.\n\n| cells of |", width);
 	for (int i = 0; i < CELL_SIZES; i++)
-		fprintf(md, " %g |", 1.0 / cells[i]);
-	fprintf(md, "\n|---|");
+		printf(" %g |", 1.0 / cells[i]);
+	printf("\n|---|");
 	for (int i = 0; i < CELL_SIZES; i++)
-		fprintf(md, "---|");
+		printf("---|");
 	for (int place = 0; place < 3; place++) {
-		fprintf(md, "\n| %s |", places[place]);
+		printf("\n| %s |", places[place]);
 		for (int i = 0; i < CELL_SIZES; i++) {
 			const uint32_t vertex = place == 0 ? 0 : place == 1 ? cells[i] / 2 : cells[i];
 			if (place == 1 && cells[i] == 1) {
-				fprintf(md, " - |");
+				printf(" - |");
 				continue;
 			}
 			const double tilt = bevel_tilt(width, cells[i], vertex, NMTAN_METHOD_AREA);
-			fprintf(md, " %.3g |", tilt);
-			fprintf(csv, "%g,%g,area at the %s,%.5g\n", 1.0 / cells[i], width, places[place], tilt);
+			printf(" %.3g |", tilt);
 		}
 	}
-	fprintf(md, "\n");
+	printf("\n");
 }
 
-void sweep_bevels(const char *output, FILE *md)
+static void sweep_bevels(void)
 {
 	static const double widths[WIDTHS] = {0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1};
-	double tilt[SUMMED][WIDTHS];
-	FILE *csv = measure_open(output, "bevel.csv", "w");
-	fprintf(csv, "cell,width,method,tilt_degrees\n");
-	fprintf(md, "\n## Thin bevels\n\nTilt in degrees of the tangents of a plane beside a bevel of the given width whose "
-		"texture is sheared by 4/3; cells of %g, vertices away from the ends of the edge.\n\n| width |", 1.0 / CELLS);
+	printf("\nThin bevels: tilt in degrees of the tangents of a plane beside a bevel of the given width whose texture is sheared by "
+		"4/3; cells of %g, vertices away from the ends of the edge.\n\n| width |", 1.0 / CELLS);
 	for (int w = 0; w < WIDTHS; w++)
-		fprintf(md, " %g |", widths[w]);
-	fprintf(md, "\n|---|");
+		printf(" %g |", widths[w]);
+	printf("\n|---|");
 	for (int w = 0; w < WIDTHS; w++)
-		fprintf(md, "---|");
-	chart_series series[SUMMED];
+		printf("---|");
 	for (int m = 0; m < SUMMED; m++) {
-		fprintf(md, "\n| %s |", summed_names[m]);
-		for (int w = 0; w < WIDTHS; w++) {
-			tilt[m][w] = bevel_tilt(widths[w], CELLS, CELLS / 2, summed_methods[m]);
-			fprintf(md, " %.3g |", tilt[m][w]);
-			fprintf(csv, "%g,%g,%s,%.5g\n", 1.0 / CELLS, widths[w], summed_names[m], tilt[m][w]);
-		}
-		series[m] = (chart_series){summed_names[m], widths, tilt[m], WIDTHS};
+		printf("\n| %s |", summed_names[m]);
+		for (int w = 0; w < WIDTHS; w++)
+			printf(" %.3g |", bevel_tilt(widths[w], CELLS, CELLS / 2, summed_methods[m]));
 	}
-	fprintf(md, "\n");
-	sweep_cells(csv, md);
-	fclose(csv);
-	char path[512];
-	snprintf(path, sizeof path, "%s/bevel.svg", output);
-	const chart c = {.title = "Thin bevels tilt the plane beside them",
-		.subtitle = "angle between the plane's tangent at the bevel's edge and its dP/du",
-		.x_label = "width of the bevel (cells are 0.25)", .y_label = "degrees", .log_x = true, .log_y = true,
-		.series = series, .series_count = SUMMED};
-	if (!chart_write(path, &c))
-		exit(2);
+	printf("\n");
+	sweep_cells();
+}
+
+int main(void)
+{
+	sweep_convergence();
+	sweep_bevels();
+	return 0;
 }

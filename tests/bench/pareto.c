@@ -1,0 +1,613 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * make bench: run time against the error of an image.
+ *
+ *   pareto export FOLDER FILE...          writes the meshes for the peers: models FILE (see models.h) and nasty ones
+ *   pareto judge FOLDER NMTAN SVG FILE...  runs nmtan, native peers of $PEERS and gltfpack; reads what others left in
+ *                                          FOLDER; prints tables in Markdown, writes the chart
+ *
+ * Time is nanoseconds for each triangle of all models, of two kinds: of a call, arrays in and arrays out on one thread with warm
+ * memory; of a whole run, from file to file. Programs of one kind take turns; the best of the rounds counts. Error is
+ * that of image.h: median and 99.9 % over the points of all models, each in equal number. The front has what no other of its kind
+ * beats in both.
+ */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+#include "base/cpu.h"
+#include "base/parallel.h"
+#include "chart.h"
+#include "faults.h"
+#include "files.h"
+#include "measure.h"
+#include "models.h"
+#include "native.h"
+#include "oracle128.h"
+#include "round_trip.h"
+#include "api/tangents.h"
+
+enum { MOST_ROWS = 48, MOST_VARIANTS = 4, CALL_ROUNDS = 5, RUN_ROUNDS = 3, MOST_ARGUMENTS = 12 };
+
+/* What a call is repeated for in a round, in seconds. */
+static const double ROUND = 0.01;
+
+typedef enum kind {
+	CALL_NMTAN,
+	CALL_NATIVE,
+	CALL_OTHER, /* what its files say */
+	RUN_TOOL,
+	RUN_OTHER
+} kind;
+
+/* An nmtan that gives the same bytes in another time. */
+typedef struct variant {
+	const char *name;
+	nt_implementation implementation;
+	unsigned threads;
+} variant;
+
+typedef struct row {
+	char name[96];
+	kind kind;
+	nmtan_method method;                   /* CALL_NMTAN */
+	const native *peer;                    /* CALL_NATIVE */
+	char id[64];                           /* the others: in names of files */
+	const char *arguments[MOST_ARGUMENTS]; /* RUN_TOOL: program and options; input and output follow */
+	bool output_by_option;                 /* RUN_TOOL: as -i INPUT -o OUTPUT */
+	bool nasty;                            /* counted on nasty meshes */
+	bool present;
+	double seconds[MODEL_MOST][MOST_VARIANTS];
+	double ns[MOST_VARIANTS];
+	size_t variant_count, one_thread_count; /* the latter come first */
+	size_t missing; /* triangles that the tool has not kept */
+	measure_pool conventions[IMAGE_CONVENTIONS], bits16, bits8;
+	faults faults;
+	bool front_median, front_high;
+} row;
+
+typedef struct bench {
+	model models[MODEL_MOST];
+	nt_owned nasty[NASTY_MOST];
+	size_t model_count, nasty_count, nasty_corners;
+	variant variants[MOST_VARIANTS];
+	size_t variant_count;
+	native peers[NATIVE_MOST];
+	row rows[MOST_ROWS];
+	size_t row_count;
+	const char *folder, *nmtan;
+	char gltfpack[512];
+} bench;
+
+static char *path_of(const bench *b, char path[512], char letter, size_t number, const char *rest)
+{
+	snprintf(path, 512, "%s/%c%zu.%s", b->folder, letter, number, rest);
+	return path;
+}
+
+static void export_meshes(const bench *b)
+{
+	char path[512];
+	for (size_t i = 0; i < b->model_count + b->nasty_count; i++) {
+		const bool is_model = i < b->model_count;
+		const nt_owned *mesh = is_model ? &b->models[i].mesh : &b->nasty[i - b->model_count];
+		const size_t number = is_model ? i : i - b->model_count;
+		files_write_mesh(path_of(b, path, is_model ? 'm' : 'n', number, "mesh"), mesh);
+		files_write_glb(path_of(b, path, is_model ? 'm' : 'n', number, "glb"), mesh);
+	}
+}
+
+/* Rows */
+
+static row *add_row(bench *b, kind of, bool nasty)
+{
+	row *r = &b->rows[b->row_count++];
+	r->kind = of;
+	r->nasty = nasty;
+	r->variant_count = 1;
+	return r;
+}
+
+static const char *const method_names[] = {"mikktspace", "area", "lengyel", "robust"};
+
+static void list_calls(bench *b)
+{
+	static const char *const sets[] = {"", "baseline set", "AVX2", "AVX-512"};
+	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++)
+		if (nt_cpu_has(isa))
+			b->variants[b->variant_count++] = (variant){sets[isa], {.isa = isa}, 1};
+	const size_t one_thread_count = b->variant_count;
+	if (nt_thread_count(0) > 1)
+		b->variants[b->variant_count++] = (variant){"all threads", {.isa = NT_ISA_AUTO}, 0};
+	for (int m = NMTAN_METHOD_MIKKTSPACE; m <= NMTAN_METHOD_ROBUST; m++) {
+		row *r = add_row(b, CALL_NMTAN, true);
+		snprintf(r->name, sizeof r->name, "nmtan %s", method_names[m]);
+		r->method = (nmtan_method)m;
+		r->variant_count = b->variant_count;
+		r->one_thread_count = one_thread_count;
+	}
+	const size_t peers = native_open(getenv("PEERS"), b->peers);
+	for (size_t i = 0; i < peers; i++) {
+		row *r = add_row(b, CALL_NATIVE, true);
+		snprintf(r->name, sizeof r->name, "%s", b->peers[i].name);
+		r->peer = &b->peers[i];
+	}
+}
+
+static void list_runs(bench *b)
+{
+	static const struct {
+		const char *name, *option;
+	} outputs[] = {{"float", "--precision=float"}, {"short", "--precision=short"}, {"byte", "--precision=byte"},
+		{"Draco", "--draco=sequential"}};
+	static char methods[4][32];
+	for (int m = 0; m < 4; m++) {
+		snprintf(methods[m], sizeof methods[m], "--method=%s", method_names[m]);
+		for (int o = 0; o < 4; o++) {
+			row *r = add_row(b, RUN_TOOL, m == 0 && o < 3);
+			snprintf(r->name, sizeof r->name, "nmtan %s, %s", method_names[m], outputs[o].name);
+			const char *const arguments[] = {b->nmtan, "-q", "--threads=1", methods[m], outputs[o].option, NULL};
+			memcpy(r->arguments, arguments, sizeof arguments);
+		}
+	}
+	const char *peers = getenv("PEERS");
+	snprintf(b->gltfpack, sizeof b->gltfpack, "%s/gltfpack", peers ? peers : "/usr/bin");
+	if (access(b->gltfpack, X_OK) != 0) {
+		printf("bench: no %s, skipped\n", b->gltfpack);
+		return;
+	}
+	char version[32] = "";
+	char command[600];
+	snprintf(command, sizeof command, "%s -v", b->gltfpack);
+	FILE *f = popen(command, "r");
+	if (f) {
+		if (fscanf(f, "gltfpack %31s", version) != 1)
+			version[0] = 0;
+		pclose(f);
+	}
+	for (int quantised = 0; quantised < 2; quantised++) {
+		row *r = add_row(b, RUN_TOOL, true);
+		snprintf(r->name, sizeof r->name, "gltfpack %s -gt %s", version, quantised ? "-vtf" : "-noq");
+		const char *const arguments[] = {b->gltfpack, "-gt", quantised ? "-vtf" : "-noq", NULL};
+		memcpy(r->arguments, arguments, sizeof arguments);
+		r->output_by_option = true;
+	}
+}
+
+/* Peers that left a line in peers.txt, with the versions of versions.txt. */
+static void list_others(bench *b)
+{
+	char mesh[64], id[64];
+	double seconds;
+	FILE *f = measure_open(b->folder, "peers.txt", "r");
+	while (f && fscanf(f, "%63s %63s %lf", mesh, id, &seconds) == 3) {
+		row *r = b->rows;
+		while (r < b->rows + b->row_count && strcmp(r->id, id) != 0)
+			r++;
+		if (r == b->rows + b->row_count) {
+			r = add_row(b, strcmp(id, "gltf-transform") == 0 ? RUN_OTHER : CALL_OTHER, true);
+			snprintf(r->id, sizeof r->id, "%s", id);
+			snprintf(r->name, sizeof r->name, "%s", id);
+		}
+		if (mesh[0] == 'm' && (size_t)atoi(mesh + 1) < b->model_count)
+			r->seconds[atoi(mesh + 1)][0] = seconds;
+	}
+	if (f)
+		fclose(f);
+	f = measure_open(b->folder, "versions.txt", "r");
+	char version[32];
+	while (f && fscanf(f, "%63s %31s", id, version) == 2)
+		for (row *r = b->rows; r < b->rows + b->row_count; r++)
+			if (r->id[0] && strncmp(r->id, id, strlen(id)) == 0)
+				snprintf(r->name, sizeof r->name, "%s %.16s (npm)", r->id, version);
+	if (f)
+		fclose(f);
+}
+
+/* Time */
+
+/* Tangents of a call; false: the peer has none for this mesh. */
+static bool call(const bench *b, const row *r, size_t v, const nt_owned *mesh, nmtan_workspace *workspace,
+	float (*tangents)[4])
+{
+	if (r->kind == CALL_NATIVE)
+		return native_solve(r->peer, mesh, tangents);
+	const variant *as = &b->variants[v];
+	const nmtan_options options = {.struct_bytes = sizeof options, .method = r->method, .threads = as->threads,
+		.workspace = workspace};
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
+	return nt_tangents(&mesh->mesh, &options, &as->implementation, &output, NULL) == NMTAN_OK;
+}
+
+static void keep_best(double *best, double took)
+{
+	if (*best == 0 || took < *best)
+		*best = took;
+}
+
+static void time_calls(bench *b)
+{
+	nmtan_workspace *workspace = nmtan_workspace_create(NULL);
+	for (int round = 0; round < CALL_ROUNDS; round++) {
+		for (size_t m = 0; m < b->model_count; m++) {
+			const nt_owned *mesh = &b->models[m].mesh;
+			float (*tangents)[4] = measure_room(mesh->corner_count, sizeof *tangents);
+			for (row *r = b->rows; r < b->rows + b->row_count; r++) {
+				for (size_t v = 0; v < r->variant_count && r->kind <= CALL_NATIVE; v++) {
+					const double end = measure_seconds() + ROUND;
+					double start;
+					do {
+						start = measure_seconds();
+						call(b, r, v, mesh, workspace, tangents);
+						keep_best(&r->seconds[m][v], measure_seconds() - start);
+					} while (start < end);
+				}
+			}
+			free(tangents);
+		}
+	}
+	nmtan_workspace_destroy(workspace);
+}
+
+/* Runs a tool on mesh `letter``number`; the output's path. */
+static double run_tool(const bench *b, const row *r, char letter, size_t number, char output[512])
+{
+	char input[512], rest[64];
+	const char *arguments[MOST_ARGUMENTS + 5];
+	size_t n = 0;
+	for (; r->arguments[n]; n++)
+		arguments[n] = r->arguments[n];
+	path_of(b, input, letter, number, "glb");
+	snprintf(rest, sizeof rest, "row%zu.glb", (size_t)(r - b->rows));
+	path_of(b, output, letter, number, rest);
+	if (r->output_by_option)
+		arguments[n++] = "-i";
+	arguments[n++] = input;
+	if (r->output_by_option)
+		arguments[n++] = "-o";
+	arguments[n++] = output;
+	arguments[n] = NULL;
+	return files_run(arguments);
+}
+
+static void time_runs(bench *b)
+{
+	char output[512];
+	for (int round = 0; round < RUN_ROUNDS; round++) {
+		for (size_t m = 0; m < b->model_count; m++) {
+			for (row *r = b->rows; r < b->rows + b->row_count; r++) {
+				if (r->kind != RUN_TOOL)
+					continue;
+				const double took = run_tool(b, r, 'm', m, output);
+				if (took > 0)
+					keep_best(&r->seconds[m][0], took);
+				else if (round == 0)
+					printf("bench: %s fails on %s\n", r->name, b->models[m].name);
+			}
+		}
+	}
+}
+
+/* Error */
+
+static bool read_tangents(const bench *b, const row *r, char letter, size_t number, const nt_owned *mesh,
+	float (*tangents)[4])
+{
+	char path[512], rest[80];
+	snprintf(rest, sizeof rest, "%s.tan", r->id);
+	FILE *f = fopen(path_of(b, path, letter, number, rest), "rb");
+	const bool whole = f && fread(tangents, 16, mesh->corner_count, f) == mesh->corner_count;
+	if (f)
+		fclose(f);
+	return whole;
+}
+
+/* What a row makes of a model. */
+static bool shade(const bench *b, const row *r, size_t number, nmtan_workspace *workspace, shading *to)
+{
+	const model *m = &b->models[number];
+	char path[512], rest[80];
+	if (r->kind >= RUN_TOOL) {
+		if (r->kind == RUN_TOOL)
+			snprintf(rest, sizeof rest, "row%zu.glb", (size_t)(r - b->rows));
+		else
+			snprintf(rest, sizeof rest, "%s.glb", r->id);
+		return files_read_shading(b->nmtan, path_of(b, path, 'm', number, rest), &m->mesh, m->size, to);
+	}
+	for (size_t c = 0; c < m->mesh.corner_count; c++)
+		memcpy(to->normals[c], m->mesh.normals[m->mesh.indices[c]], 12);
+	memset(to->there, 1, m->mesh.mesh.face_count);
+	return r->kind == CALL_OTHER ? read_tangents(b, r, 'm', number, &m->mesh, to->tangents)
+				     : call(b, r, 0, &m->mesh, workspace, to->tangents);
+}
+
+static void judge_row(bench *b, row *r, const round_trip *trips)
+{
+	nmtan_workspace *workspace = nmtan_workspace_create(NULL);
+	size_t triangles = 0;
+	for (size_t m = 0; m < b->model_count; m++) {
+		shading s = shading_make(&b->models[m].mesh);
+		if (r->seconds[m][0] > 0 && shade(b, r, m, workspace, &s)) {
+			r->present = true;
+			r->missing += s.missing;
+			triangles += b->models[m].mesh.mesh.face_count;
+			for (size_t v = 0; v < r->variant_count; v++)
+				r->ns[v] += 1e9 * r->seconds[m][v];
+			round_trip_judge(&trips[m], &s, r->conventions);
+		} else {
+			printf("bench: %s has nothing for %s\n", r->name, b->models[m].name);
+		}
+		shading_free(&s);
+	}
+	for (size_t v = 0; v < r->variant_count; v++)
+		r->ns[v] /= (double)triangles;
+	for (int c = 0; c < IMAGE_CONVENTIONS; c++) {
+		measure_pool *all = image_conventions[c].bits == 16 ? &r->bits16 : &r->bits8;
+		for (size_t i = 0; i < r->conventions[c].count; i++)
+			measure_pool_add(all, r->conventions[c].values[i]);
+		measure_pool_finish(&r->conventions[c]);
+	}
+	measure_pool_finish(&r->bits16);
+	measure_pool_finish(&r->bits8);
+	nmtan_workspace_destroy(workspace);
+}
+
+/* Faults */
+
+static void count_files(const bench *b, row *r)
+{
+	static char paths[NASTY_MOST][512];
+	const char *files[NASTY_MOST];
+	char rest[80];
+	size_t n = 0;
+	snprintf(rest, sizeof rest, "%s.glb", r->id);
+	for (size_t i = 0; i < b->nasty_count; i++) {
+		files[n] = paths[n];
+		if (r->kind == RUN_TOOL ? run_tool(b, r, 'n', i, paths[n]) >= 0
+					: access(path_of(b, paths[n], 'n', i, rest), R_OK) == 0)
+			n++;
+	}
+	if (n < b->nasty_count)
+		printf("bench: %s does %zu of %zu nasty meshes\n", r->name, n, b->nasty_count);
+	if (!faults_add_files(files, n, &r->faults))
+		r->nasty = false;
+	if (r->faults.corners != b->nasty_corners)
+		printf("bench: %s: its files have %zu of %zu nasty corners\n", r->name, r->faults.corners, b->nasty_corners);
+}
+
+static void count_calls(const bench *b, row *r)
+{
+	nmtan_workspace *workspace = nmtan_workspace_create(NULL);
+	for (size_t i = 0; i < b->nasty_count; i++) {
+		float (*tangents)[4] = measure_room(b->nasty[i].corner_count, sizeof *tangents);
+		if (r->kind == CALL_OTHER ? read_tangents(b, r, 'n', i, &b->nasty[i], tangents)
+					  : call(b, r, 0, &b->nasty[i], workspace, tangents))
+			faults_add(&b->nasty[i], tangents, &r->faults);
+		else
+			printf("bench: %s has nothing for nasty mesh %zu\n", r->name, i);
+		free(tangents);
+	}
+	nmtan_workspace_destroy(workspace);
+}
+
+/* The front */
+
+/* Three digits: what differs less is equal. */
+static double rounded(double value)
+{
+	char text[32];
+	snprintf(text, sizeof text, "%.2e", value);
+	return atof(text);
+}
+
+static bool same_kind(const row *a, const row *b)
+{
+	return (a->kind >= RUN_TOOL) == (b->kind >= RUN_TOOL);
+}
+
+/* The best of the instruction sets. */
+static double fastest(const row *r)
+{
+	double best = r->ns[0];
+	for (size_t v = 1; v < r->one_thread_count; v++)
+		best = fmin(best, r->ns[v]);
+	return best;
+}
+
+static double error_of(const row *r, bool high)
+{
+	return rounded(high ? r->bits16.high : r->bits16.median);
+}
+
+static bool on_front(const bench *b, const row *r, bool high)
+{
+	for (const row *o = b->rows; o < b->rows + b->row_count; o++)
+		if (o != r && o->present && same_kind(o, r) && fastest(o) <= fastest(r) &&
+			error_of(o, high) <= error_of(r, high) &&
+			(fastest(o) < fastest(r) || error_of(o, high) < error_of(r, high)))
+			return false;
+	return true;
+}
+
+/* Tables */
+
+static void print_machine(const bench *b)
+{
+	char line[256] = "", *name = NULL;
+	FILE *f = fopen("/proc/cpuinfo", "r");
+	while (f && !name && fgets(line, sizeof line, f))
+		if (strncmp(line, "model name", 10) == 0 && (name = strchr(line, ':')))
+			name[strcspn(name, "\n")] = 0;
+	if (f)
+		fclose(f);
+	printf("\n%s, %u processors, gcc %s. Models:", name ? name + 2 : "A processor", nt_thread_count(0), __VERSION__);
+	for (size_t m = 0; m < b->model_count; m++)
+		printf("%s %s (%zu)", m ? "," : "", b->models[m].name, b->models[m].mesh.mesh.face_count);
+	printf(".\n\n");
+}
+
+static void print_times(const bench *b, const row *r)
+{
+	if (r->variant_count == 1)
+		printf(" %.0f |", r->ns[0]);
+	for (size_t v = 0; r->variant_count > 1 && v < r->variant_count; v++)
+		printf("%s%s %.0f%s", v ? ", " : " ", b->variants[v].name, r->ns[v], v + 1 == r->variant_count ? " |" : "");
+}
+
+static void print_rows(const bench *b)
+{
+	printf("| # | method | ns a triangle | 16 bits: median, 99.9 %% | 8 bits: median, 99.9 %% | nasty: wrong w | not unit | "
+		"not perpendicular |\n|---|---|---|---|---|---|---|---|\n");
+	size_t number = 0;
+	for (const row *r = b->rows; r < b->rows + b->row_count; r++) {
+		if (!r->present)
+			continue;
+		printf("| %zu%s | %s |", ++number, r->front_median || r->front_high ? " *" : "", r->name);
+		print_times(b, r);
+		printf(" %.2g, %.2g | %.2g, %.2g |", r->bits16.median, r->bits16.high, r->bits8.median, r->bits8.high);
+		if (r->nasty && r->faults.corners)
+			printf(" %zu | %zu | %zu |\n", r->faults.wrong, r->faults.zero, r->faults.leaning);
+		else
+			printf(" - | - | - |\n");
+		if (r->missing)
+			fprintf(stderr, "bench: %s lost %zu triangles\n", r->name, r->missing);
+	}
+}
+
+static void print_conventions(const bench *b)
+{
+	printf("\nThe same by convention, median and 99.9 %%.\n\n| method |");
+	for (int c = 0; c < IMAGE_CONVENTIONS; c++)
+		printf(" %s |", image_conventions[c].name);
+	printf("\n|---|");
+	for (int c = 0; c < IMAGE_CONVENTIONS; c++)
+		printf("---|");
+	for (const row *r = b->rows; r < b->rows + b->row_count; r++) {
+		if (!r->present)
+			continue;
+		printf("\n| %s |", r->name);
+		for (int c = 0; c < IMAGE_CONVENTIONS; c++)
+			printf(" %.2g, %.2g |", r->conventions[c].median, r->conventions[c].high);
+	}
+	printf("\n\n");
+}
+
+/* Chart */
+
+static int compare_rows(const void *a, const void *b)
+{
+	const double x = fastest(*(const row *const *)a), y = fastest(*(const row *const *)b);
+	return (x > y) - (x < y);
+}
+
+/* The points of one front in the order of time; their number. */
+static size_t front_points(bench *b, bool runs, bool high, double *x, double *y)
+{
+	const row *on[MOST_ROWS];
+	size_t n = 0;
+	for (const row *r = b->rows; r < b->rows + b->row_count; r++)
+		if (r->present && (r->kind >= RUN_TOOL) == runs && (high ? r->front_high : r->front_median))
+			on[n++] = r;
+	qsort(on, n, sizeof *on, compare_rows);
+	for (size_t i = 0; i < n; i++) {
+		x[i] = fastest(on[i]);
+		y[i] = high ? on[i]->bits16.high : on[i]->bits16.median;
+	}
+	return n;
+}
+
+static void write_chart(bench *b, const char *path)
+{
+	static double y[MOST_ROWS][MOST_VARIANTS], high[MOST_ROWS][MOST_VARIANTS], fronts[4][2][MOST_ROWS];
+	static const char *const front_names[4] = {"front of calls: median", "front of calls: 99.9 %",
+		"front of runs: median", "front of runs: 99.9 %"};
+	chart_series series[MOST_ROWS + 4];
+	size_t count = 0;
+	for (row *r = b->rows; r < b->rows + b->row_count; r++) {
+		if (!r->present)
+			continue;
+		for (size_t v = 0; v < r->variant_count; v++) {
+			y[count][v] = r->bits16.median;
+			high[count][v] = r->bits16.high;
+		}
+		series[count] = (chart_series){r->name, r->ns, y[count], r->variant_count, CHART_RANGES, high[count]};
+		count++;
+	}
+	for (int i = 0; i < 4; i++) {
+		const size_t n = front_points(b, i / 2, i % 2, fronts[i][0], fronts[i][1]);
+		series[count++] = (chart_series){front_names[i], fronts[i][0], fronts[i][1], n,
+			i % 2 ? CHART_DASHED_STEPS : CHART_STEPS, NULL};
+	}
+	const chart c = {.title = "Run time against the error of a normal map's round trip",
+		.subtitle = "full: median, hollow: 99.9 %, 16 bits. nmtan's calls: instruction sets from right to left, "
+			"then all threads",
+		.x_label = "nanoseconds a triangle: of a call (arrays), or of a run from file to file", .y_label = "degrees",
+		.log_x = true, .log_y = true, .series = series, .series_count = count};
+	if (!chart_write(path, &c)) {
+		fprintf(stderr, "bench: cannot write %s\n", path);
+		exit(2);
+	}
+}
+
+static void judge(bench *b, const char *svg)
+{
+	static round_trip trips[MODEL_MOST];
+	list_calls(b);
+	list_runs(b);
+	list_others(b);
+	time_calls(b);
+	time_runs(b);
+	size_t own = 0, points = 0;
+	for (size_t m = 0; m < b->model_count; m++) {
+		trips[m] = round_trip_make(&b->models[m]);
+		own += trips[m].own_groups;
+		points += trips[m].count * POINTS;
+	}
+	for (row *r = b->rows; r < b->rows + b->row_count; r++) {
+		judge_row(b, r, trips);
+		if (r->nasty && r->kind >= RUN_TOOL)
+			count_files(b, r);
+		else if (r->nasty)
+			count_calls(b, r);
+	}
+	for (row *r = b->rows; r < b->rows + b->row_count; r++) {
+		r->front_median = r->present && on_front(b, r, false);
+		r->front_high = r->present && on_front(b, r, true);
+	}
+	print_machine(b);
+	printf("Degrees at %zu points; %zu corners of these triangles have MikkTSpace's own frame. Nasty: %zu meshes with %zu "
+		"corners. *: on a front.\n\n", points, own, b->nasty_count, b->nasty_corners);
+	print_rows(b);
+	print_conventions(b);
+	write_chart(b, svg);
+	for (size_t m = 0; m < b->model_count; m++)
+		round_trip_free(&trips[m]);
+}
+
+int main(int argc, char **argv)
+{
+	static bench b;
+	const bool exports = argc > 2 && strcmp(argv[1], "export") == 0;
+	if (!exports && !(argc > 4 && strcmp(argv[1], "judge") == 0)) {
+		fprintf(stderr, "usage: pareto export FOLDER FILE... | pareto judge FOLDER NMTAN SVG FILE...\n");
+		return 2;
+	}
+	if (!image_check())
+		return 1;
+	const int first = exports ? 3 : 5;
+	b.folder = argv[2];
+	b.model_count = models_make(argv + first, (size_t)(argc - first), b.models);
+	b.nasty_count = nasty_make(b.nasty);
+	for (size_t i = 0; i < b.nasty_count; i++)
+		b.nasty_corners += b.nasty[i].corner_count;
+	if (exports)
+		export_meshes(&b);
+	b.nmtan = argv[3];
+	if (!exports)
+		judge(&b, argv[4]);
+	models_free(b.models, b.model_count);
+	for (size_t i = 0; i < b.nasty_count; i++)
+		nt_owned_free(&b.nasty[i]);
+	return 0;
+}
