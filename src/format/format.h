@@ -19,12 +19,12 @@ typedef struct nt_format_entry {
 	bool (*recognise)(const unsigned char *bytes, size_t size);
 	/* Describes the meshes of scene->bytes (and loads them, where that is one step). */
 	nt_status (*open)(nt_scene *scene, const nt_read_options *options, nt_error *error);
-	/* After the decisions: fills scene->joins, also of meshes whose kept tangents will be checked; NULL: there are
-	 * none. */
-	nt_status (*find_joins)(nt_scene *scene, bool kept, nt_error *error);
-	/* After that: sets same_as of meshes that will be solved and have the geometry of an earlier one;
-	 * NULL: no two have the same. */
+	/* After the decisions: sets same_as of meshes that have the geometry of an earlier one; NULL: no two have the
+	 * same. */
 	nt_status (*find_same)(nt_scene *scene, const nt_read_options *options, nt_error *error);
+	/* After that: fills scene->joins, to be solved or compared, also of meshes whose kept tangents will be checked; NULL:
+	 * there are none. */
+	nt_status (*find_joins)(nt_scene *scene, bool solved, bool kept, nt_error *error);
 	/* After that: sets late of meshes whose results need not all be there at once for an edit of the source's document;
 	 * NULL: there are none. */
 	nt_status (*find_late)(nt_scene *scene, nt_error *error);

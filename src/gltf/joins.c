@@ -6,16 +6,23 @@
  *
  * Primitives that get no tangents contribute their triangles all the same: those with tangents of their own to the
  * join of their kind, those whose materials ask for nothing, which have no kind, to every join whose set they have.
- * They are loaded apart, as copies, since they may be wanted with another set than they name, and turned by another
+ * They take part as copies, since they may be wanted with another set than they name, and turned by another
  * material's transform. A primitive without normals is shaded flat and has nothing to weld; it contributes where normals
  * are made for it.
+ *
+ * What is there several times counts once. Primitives with the same geometry (same_geometry.c) lie on each other: the
+ * first contributes, and the others have its result, so that a small file that names the same triangles a thousand times
+ * costs what one that names them once does, and a surface with two materials on it is no other surface. A join whose
+ * parts are those of an earlier one, in another mesh, has that one's result.
  */
 #include "gltf/joins.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/buffer.h"
 #include "base/hash_index.h"
+#include "base/name_table.h"
 #include "gltf/materials.h"
 #include "gltf/primitive.h"
 
@@ -29,6 +36,30 @@ typedef struct kind {
 	uint64_t set;
 	double rotation, scale[2];
 } kind;
+
+/* A join that is only to be compared costs at most so many times what is solved anyway, or so many triangles. */
+enum { MOST_TIMES = 4, ALWAYS = 65536 };
+
+/* The primitives of one kind of a mesh, each geometry once: a join, or one primitive by itself. */
+typedef struct unit {
+	nt_mesh **parts; /* [part_count] */
+	size_t part_count;
+} unit;
+
+/* All of them. */
+typedef struct search {
+	nt_scene *scene;
+	bool solved, kept;     /* see joins.h */
+	size_t solved_faces;   /* of what is solved without joins */
+	nt_name_table keys;    /* of units that differ: a kind and the geometry of its parts */
+	unit *units;           /* [keys.count] */
+	size_t unit_capacity;
+	nt_arena arena;        /* of the keys */
+	nt_buffer key;         /* of the unit at hand */
+	uint32_t *unit_of;     /* [mesh_count] of the first mesh with a geometry: the last unit that has it */
+	uint32_t *part_of;     /* [mesh_count] and which part of that one it is */
+	uint32_t unit_count;
+} search;
 
 /* The primitives of one glTF mesh. */
 typedef struct group {
@@ -148,7 +179,7 @@ static uint32_t next_candidate(const group *g, uint32_t mesh, uint32_t number)
 	return number < MOST_KINDS ? mesh + 1 : g->next[mesh - g->begin];
 }
 
-/* What stands for a primitive in a join: itself, or a copy that is loaded for it. */
+/* What stands for a primitive in a join: itself, or a copy. */
 static nt_mesh *part_of(const group *g, uint32_t mesh, uint32_t number)
 {
 	nt_mesh *own = &g->scene->meshes[mesh];
@@ -157,8 +188,12 @@ static nt_mesh *part_of(const group *g, uint32_t mesh, uint32_t number)
 	nt_mesh *copy = nt_arena_alloc(&g->scene->arena, 1, sizeof *copy);
 	if (!copy)
 		return NULL;
+	const kind *k = &g->kinds[number];
+	const bool turns = k->rotation != 0 || k->scale[0] != 1 || k->scale[1] != 1;
 	*copy = *own;
-	copy->texcoord_set = (uint32_t)g->kinds[number].set;
+	/* where the primitive itself is loaded, for a report, and in the same way, that will do */
+	copy->same_as = own->texcoord_set == k->set && (!turns || g->kind_of[mesh - g->begin] == number) ? own : NULL;
+	copy->texcoord_set = (uint32_t)k->set;
 	copy->transform_of = &g->scene->meshes[g->wanted[number]];
 	return copy;
 }
@@ -185,27 +220,96 @@ static bool find_targets(const group *g, nt_join *join)
 	return true;
 }
 
-/* The join of one kind; with one part it is none. */
-static bool make_join(const group *g, uint32_t number, nt_join *join)
+/* ---- units ---- */
+
+/* The mesh that stands for all with the geometry that a primitive contributes; itself, where it contributes it with
+ * other texture coordinates than its own. */
+static uint32_t geometry_of(const group *g, uint32_t mesh, uint32_t number)
 {
-	*join = (nt_join){0};
+	const nt_mesh *own = &g->scene->meshes[mesh];
+	return own->same_as && own->texcoord_set == g->kinds[number].set ? (uint32_t)(own->same_as - g->scene->meshes) :
+									    mesh;
+}
+
+/* The parts of a kind, and the unit's key. u->parts: room for all candidates. */
+static bool find_parts(search *s, const group *g, uint32_t number, unit *u)
+{
+	s->key.size = 0;
+	nt_buffer_append(&s->key, &g->kinds[number], sizeof g->kinds[number]);
+	s->unit_count++;
+	for (uint32_t i = first_candidate(g, number); i < g->end; i = next_candidate(g, i, number)) {
+		if (!belongs(g, i, number))
+			continue;
+		const uint32_t geometry = geometry_of(g, i, number);
+		if (s->unit_of[geometry] == s->unit_count)
+			continue;
+		s->unit_of[geometry] = s->unit_count;
+		s->part_of[geometry] = (uint32_t)u->part_count;
+		nt_buffer_append(&s->key, &geometry, sizeof geometry);
+		u->parts[u->part_count] = part_of(g, i, number);
+		if (!u->parts[u->part_count++])
+			return false;
+	}
+	return !s->key.failed;
+}
+
+/* The number of the first unit with the same key, which may be this one. NT_NONE: memory is exhausted. */
+static uint32_t add_unit(search *s, const unit *u)
+{
+	const size_t known = s->keys.count;
+	const char *text = nt_arena_text(&s->arena, s->key.data, s->key.size);
+	const uint32_t number = text ? nt_name_add(&s->keys, text, s->key.size) : NT_NONE;
+	if (number == NT_NONE || !nt_grow((void **)&s->units, &s->unit_capacity, s->keys.count, sizeof *s->units))
+		return NT_NONE;
+	if (number == known)
+		s->units[number] = *u;
+	return number;
+}
+
+/* Who has whose result, now that it is known who is solved with whom. */
+static void share_results(const search *s, const group *g, uint32_t number, const unit *first)
+{
+	for (uint32_t i = first_candidate(g, number); i < g->end; i = next_candidate(g, i, number)) {
+		nt_mesh *mesh = &g->scene->meshes[i];
+		if (!belongs(g, i, number) || !is_wanted(mesh, g->kept))
+			continue;
+		const nt_mesh *giver = first->parts[s->part_of[geometry_of(g, i, number)]];
+		mesh->same_as = giver == mesh ? NULL : giver;
+	}
+}
+
+static bool costs_too_much(const search *s, const unit *u)
+{
+	size_t faces = 0;
+	for (size_t i = 0; i < u->part_count; i++)
+		faces += u->parts[i]->face_count;
+	return !s->solved && faces > MOST_TIMES * s->solved_faces + ALWAYS;
+}
+
+/* The unit of one kind becomes a join, if it has several parts and is the first of its like. */
+static nt_status add_kind(search *s, const group *g, uint32_t number, nt_error *error)
+{
 	size_t count = 0;
 	for (uint32_t i = first_candidate(g, number); i < g->end; i = next_candidate(g, i, number))
 		count += belongs(g, i, number);
-	if (count < 2)
-		return true;
-	join->parts = nt_arena_alloc(&g->scene->arena, count, sizeof *join->parts);
-	if (!join->parts)
-		return false;
-	join->first = &g->scene->meshes[g->wanted[number]];
-	for (uint32_t i = first_candidate(g, number); i < g->end; i = next_candidate(g, i, number))
-		if (belongs(g, i, number) && !(join->parts[join->part_count++] = part_of(g, i, number)))
-			return false;
-	return find_targets(g, join);
+	unit u = {.parts = nt_arena_alloc(&g->scene->arena, count, sizeof *u.parts)};
+	if (!u.parts || !find_parts(s, g, number, &u))
+		return nt_fail_memory(error);
+	const size_t known = s->keys.count;
+	const uint32_t first = add_unit(s, &u);
+	if (first == NT_NONE)
+		return nt_fail_memory(error);
+	if (s->solved)
+		share_results(s, g, number, &s->units[first]);
+	if (first < known || u.part_count < 2 || costs_too_much(s, &u))
+		return NT_OK;
+	nt_join *join = &g->scene->joins[g->scene->join_count++];
+	*join = (nt_join){.parts = u.parts, .part_count = u.part_count, .first = &g->scene->meshes[g->wanted[number]]};
+	return find_targets(g, join) ? NT_OK : nt_fail_memory(error);
 }
 
 /* The joins of one glTF mesh, behind those that the scene has. */
-static nt_status join_group(group *g, nt_error *error)
+static nt_status join_group(search *s, group *g, nt_error *error)
 {
 	const size_t count = g->end - g->begin;
 	g->kind_of = nt_alloc(count, sizeof *g->kind_of);
@@ -219,14 +323,9 @@ static nt_status join_group(group *g, nt_error *error)
 		status = nt_fail_memory(error);
 	if (!status)
 		status = find_kinds(g, error);
-	for (uint32_t k = 0; !status && k < g->kind_count; k++) {
-		nt_join *join = &g->scene->joins[g->scene->join_count];
-		if (g->wanted[k] == NT_NONE)
-			continue;
-		if (!make_join(g, k, join))
-			status = nt_fail_memory(error);
-		g->scene->join_count += join->part_count > 0;
-	}
+	for (uint32_t k = 0; !status && k < g->kind_count; k++)
+		if (g->wanted[k] != NT_NONE)
+			status = add_kind(s, g, k, error);
 	free(g->kind_of);
 	free(g->next);
 	free(g->kinds);
@@ -237,26 +336,45 @@ static nt_status join_group(group *g, nt_error *error)
 	return status;
 }
 
-nt_status nt_gltf_find_joins(nt_scene *scene, bool kept, nt_error *error)
+static nt_status join_all(search *s, nt_error *error)
 {
+	nt_scene *scene = s->scene;
 	const uint32_t mesh_count = (uint32_t)scene->mesh_count;
-	size_t wanted = 0;
-	for (uint32_t i = 0; i < mesh_count; i++)
-		wanted += is_wanted(&scene->meshes[i], kept);
-	/* a join has one wanted primitive at least */
-	scene->join_count = 0;
-	scene->joins = nt_arena_alloc(&scene->arena, wanted, sizeof *scene->joins);
-	if (!scene->joins)
-		return nt_fail_memory(error);
 	nt_status status = NT_OK;
 	for (uint32_t begin = 0, end; !status && begin < mesh_count; begin = end) {
 		bool any = false;
 		for (end = begin; end < mesh_count &&
 			scene->meshes[end].gltf_mesh == scene->meshes[begin].gltf_mesh; end++)
-			any |= is_wanted(&scene->meshes[end], kept);
-		group g = {.scene = scene, .document = scene->source, .kept = kept, .begin = begin, .end = end};
-		if (any && end - begin > 1)
-			status = join_group(&g, error);
+			any |= is_wanted(&scene->meshes[end], s->kept);
+		group g = {.scene = scene, .document = scene->source, .kept = s->kept, .begin = begin, .end = end};
+		/* primitives by themselves are looked at for whose result they have */
+		if (any && (s->solved || end - begin > 1))
+			status = join_group(s, &g, error);
 	}
+	return status;
+}
+
+nt_status nt_gltf_find_joins(nt_scene *scene, bool solved, bool kept, nt_error *error)
+{
+	search s = {.scene = scene, .solved = solved, .kept = kept,
+		.unit_of = nt_calloc(scene->mesh_count, sizeof *s.unit_of),
+		.part_of = nt_alloc(scene->mesh_count, sizeof *s.part_of)};
+	size_t wanted = 0;
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[i];
+		wanted += is_wanted(mesh, kept);
+		s.solved_faces += nt_mesh_is_wanted(mesh) && !mesh->same_as ? mesh->face_count : 0;
+	}
+	/* a join has one wanted primitive at least */
+	scene->join_count = 0;
+	scene->joins = nt_arena_alloc(&scene->arena, wanted, sizeof *scene->joins);
+	const bool ready = s.unit_of && s.part_of && scene->joins;
+	const nt_status status = ready ? join_all(&s, error) : nt_fail_memory(error);
+	free(s.unit_of);
+	free(s.part_of);
+	free(s.units);
+	nt_buffer_free(&s.key);
+	nt_arena_free(&s.arena);
+	nt_name_table_free(&s.keys);
 	return status;
 }

@@ -29,11 +29,11 @@ typedef struct same_job {
 	nt_buffer key;       /* of the mesh at hand */
 } same_job;
 
-/* Whether the mesh is going to be loaded: to be solved, or only to be checked. */
+/* Whether the mesh is going to be loaded: to be solved, or only to be checked, or for others. */
 static bool is_wanted(const nt_mesh *mesh, const nt_read_options *options)
 {
 	return nt_mesh_is_wanted(mesh) ||
-		(options->report && mesh->triangles && mesh->has_positions);
+		((options->report || options->across) && mesh->triangles && mesh->has_positions);
 }
 
 /* ---- keys ---- */
@@ -131,8 +131,7 @@ static nt_status find_all(same_job *job, nt_scene *scene, uint32_t *first, nt_er
 	nt_status status = NT_OK;
 	for (uint32_t i = 0; !status && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
-		/* what is solved with others has a result of its own */
-		if (!is_wanted(mesh, job->options) || mesh->join)
+		if (!is_wanted(mesh, job->options))
 			continue;
 		job->key.size = 0;
 		status = put_key(job, mesh, error);

@@ -397,13 +397,12 @@ static void compare_part(nt_scene *scene, const nt_mesh *mesh, const float *join
 			"by up to %.1f degrees", nt_angle(sqrt(fmax(0, 1 - least * least)), least) * degrees);
 }
 
-/* Whether all parts are there, and none of them twice: parts that lie on each other have no border, and a small file
- * can name the same triangles any number of times. */
+/* Whether all parts are there: what a report could not read is left out. */
 static bool is_comparable(const nt_join *join)
 {
 	for (size_t i = 0; i < join->part_count; i++) {
 		const nt_mesh *part = join->parts[i];
-		if (!part->positions || !part->normals || !part->texcoords || part->same_as)
+		if (!part->positions || !part->normals || !part->texcoords)
 			return false;
 	}
 	return true;

@@ -46,33 +46,11 @@ static nt_status find_joins(const loading *l)
 	if (!l->reader->find_joins || !(across || l->settings->report))
 		return NT_OK;
 	const bool checks_kept = across && l->settings->check && l->settings->report;
-	const nt_status status = l->reader->find_joins(scene, checks_kept, l->error);
+	const nt_status status = l->reader->find_joins(scene, across, checks_kept, l->error);
 	for (size_t i = 0; !status && across && i < scene->join_count; i++)
 		for (size_t k = 0; k < scene->joins[i].part_count; k++)
 			scene->joins[i].parts[k]->join = &scene->joins[i];
 	return status;
-}
-
-/* For a report alone, the comparison of a join costs at most some times what is solved anyway: primitives that lie
- * on each other, as copies of one set of accessors do, are no surface that was cut by material. */
-static void leave_out_large_joins(const loading *l)
-{
-	enum { MOST_TIMES = 4, ALWAYS = 65536 };
-	nt_scene *scene = l->scene;
-	if (l->settings->across == NT_ACROSS_MESH)
-		return;
-	size_t solved = 0, kept = 0;
-	for (size_t i = 0; i < scene->mesh_count; i++)
-		if (nt_mesh_is_wanted(&scene->meshes[i]) && !scene->meshes[i].same_as)
-			solved += scene->meshes[i].face_count;
-	for (size_t i = 0; i < scene->join_count; i++) {
-		size_t faces = 0;
-		for (size_t k = 0; k < scene->joins[i].part_count; k++)
-			faces += scene->joins[i].parts[k]->face_count;
-		if (faces <= MOST_TIMES * solved + ALWAYS)
-			scene->joins[kept++] = scene->joins[i];
-	}
-	scene->join_count = kept;
 }
 
 /* Loads the copies in joins. For a report alone, what cannot be read is left out. */
@@ -84,6 +62,8 @@ static nt_status load_copies(const loading *l)
 			nt_mesh *mesh = l->scene->joins[i].parts[k];
 			if (!mesh->transform_of)
 				continue;
+			if (mesh->same_as && !mesh->same_as->positions) /* that one was not loaded */
+				mesh->same_as = NULL;
 			status = l->reader->load(l->scene, mesh, l->options, l->error);
 			if (!status || mesh->join || status == NT_ERROR_MEMORY)
 				continue;
@@ -108,13 +88,11 @@ nt_status nt_stage_load(nt_scene *scene, const nt_format_entry *reader, const nt
 {
 	const loading l = {scene, reader, settings, options, error};
 	const bool all = needs_all(reader, writer);
-	nt_status status = find_joins(&l);
-	if (!status && reader->find_same)
-		status = reader->find_same(scene, options, error);
+	nt_status status = reader->find_same ? reader->find_same(scene, options, error) : NT_OK;
+	if (!status)
+		status = find_joins(&l);
 	if (!status && reader->find_late && can_be_late(&l, writer))
 		status = reader->find_late(scene, error);
-	if (!status)
-		leave_out_large_joins(&l);
 	for (size_t i = 0; !status && reader->load && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
 		const bool loadable = mesh->triangles && mesh->has_positions;

@@ -234,7 +234,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 		.error = error};
 	r.read_options = (nt_read_options){.texcoord_set = settings->texcoord_set,
 		.allow_outside = settings->allow_outside, .morphs = settings->morphs,
-		.report = settings->report != NULL, .threads = settings->threads};
+		.report = settings->report != NULL, .across = settings->across == NT_ACROSS_MESH, .threads = settings->threads};
 	const double begin = nt_seconds();
 	r.stage_begin = begin;
 	nt_scene_init(&r.scene, input);

@@ -49,6 +49,7 @@ typedef struct nt_read_options {
 	bool world;         /* the output is one mesh in the world: instances and colours are wanted too */
 	nt_morph_choice morphs; /* targets are loaded where they are to be baked */
 	bool report;        /* meshes that get no tangents are loaded too, to be checked */
+	bool across;        /* and those that contribute to others: NT_ACROSS_MESH */
 	unsigned threads;
 } nt_read_options;
 

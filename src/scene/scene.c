@@ -43,6 +43,7 @@ void nt_mesh_share(nt_mesh *mesh)
 	mesh->same_as = own.same_as;
 	mesh->late = own.late;
 	mesh->join = own.join;
+	mesh->transform_of = own.transform_of;
 	mesh->primitives = own.primitives;
 	mesh->primitive_count = own.primitive_count;
 	if (mesh->primitive_count == 1)

@@ -96,7 +96,7 @@ typedef struct nt_split {
 /* Primitives of one glTF mesh with the same texture coordinates and the same texture transform, in their order. */
 typedef struct nt_join {
 	struct nt_mesh **parts; /* [part_count] at least two: meshes of the scene that get tangents (or whose kept ones are
-	                           checked), and copies of others, which are loaded for the join alone */
+	                           checked), and copies of others, which the join alone has */
 	size_t part_count;
 	struct nt_mesh *first;  /* the first of them that gets tangents */
 	bool *moves;            /* [target_count] morph targets that move any of them */

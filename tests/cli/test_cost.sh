@@ -61,6 +61,12 @@ is "$(value s.json '{m["same_as"] for m in r["files"][0]["meshes"][1:]}')" '{0}'
 is "$(value s.json '{m["faces"] for m in r["files"][0]["meshes"]}')" '{43218}'
 is "$(value s.json '{(f["mesh"], f["alike"]) for f in r["files"][0]["findings"]}')" '{(0, 1500)}'
 
+scene "1 500 primitives over one set of accessors are one part of a join"
+inputs same 1500 s.glb
+within 5 300 -q --across=mesh --only=all s.glb out.glb
+exits 0
+[ "$(stat -c %s out.glb)" -lt 3000000 ] || wrong "$(stat -c %s out.glb) bytes"
+
 scene "primitives of one geometry whose material needs no tangents are judged once, too"
 inputs same 1500 s.glb
 python3 - <<'END'

@@ -197,7 +197,8 @@ static void put_key(nt_buffer *key, const nt_vertex_pools *pools, const nt_mesh 
 	put_accessor(key, pools, attributes, "NORMAL");
 	put_accessor(key, pools, attributes, name);
 	/* what is solved with others has other tangents than alone */
-	put_number(key, mesh->join ? (uint64_t)(mesh->join - pools->scene->joins) + 1 : 0);
+	const nt_join *join = mesh->same_as ? mesh->same_as->join : mesh->join;
+	put_number(key, join ? (uint64_t)(join - pools->scene->joins) + 1 : 0);
 	put_number(key, mesh->morph_count);
 	put_number(key, nt_json_count(targets));
 	for (size_t i = 0; i < nt_json_count(targets); i++) {

@@ -9,29 +9,38 @@
 #include "base/buffer.h"
 #include "gltf/joins.h"
 #include "gltf/open.h"
+#include "gltf/same_geometry.h"
 #include "scene/select.h"
+
+/* How the joins of a test are found. */
+static bool shared, compared;
 
 static void open_text(nt_scene *scene, const nt_buffer *json)
 {
 	nt_error error;
+	const nt_read_options options = {.texcoord_set = -1, .across = true};
 	nt_scene_init(scene, "t.gltf");
 	scene->bytes = (const unsigned char *)json->data;
 	scene->byte_count = json->size;
 	scene->format = NT_FORMAT_GLTF;
-	if (nt_gltf_open(scene, &(nt_read_options){.texcoord_set = -1}, &error))
+	if (nt_gltf_open(scene, &options, &error))
 		fail_msg("%s: %s", error.place.pointer, error.message);
 	nt_select(scene, NT_ONLY_AUTO, NT_EXISTING_KEEP, false);
-	assert_int_equal(nt_gltf_find_joins(scene, false, &error), NT_OK);
+	if (shared)
+		assert_int_equal(nt_gltf_find_same(scene, &options, &error), NT_OK);
+	assert_int_equal(nt_gltf_find_joins(scene, !compared, false, &error), NT_OK);
 }
 
 /* Primitives by letter: n normal map, N normal map and tangents, 1 normal map with set 1, t turned, . nothing,
- * x nothing and no normals, l nothing and lines. Each has both sets. A blank begins another mesh. */
+ * x nothing and no normals, l nothing and lines, b nothing and 70 000 triangles. Each has both sets. A blank begins
+ * another mesh. */
 static void open_primitives(nt_scene *scene, nt_buffer *json, const char *letters)
 {
 	static const char normal[] = "{\"normalTexture\":{\"index\":0%s}},";
 	*json = (nt_buffer){0};
 	nt_buffer_text(json, "{\"asset\":{\"version\":\"2.0\"},\"accessors\":[{\"componentType\":5126,\"count\":3,"
-		"\"type\":\"VEC3\"}],\"textures\":[{}],\"materials\":[{},");
+		"\"type\":\"VEC3\"},{\"componentType\":5126,\"count\":210000,\"type\":\"VEC3\"}],\"textures\":[{}],"
+		"\"materials\":[{},");
 	nt_buffer_format(json, normal, "");
 	nt_buffer_format(json, normal, ",\"texCoord\":1");
 	nt_buffer_text(json, "{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":"
@@ -42,9 +51,9 @@ static void open_primitives(nt_scene *scene, nt_buffer *json, const char *letter
 			continue;
 		}
 		const int material = *l == 'n' || *l == 'N' ? 1 : *l == '1' ? 2 : *l == 't' ? 3 : 0;
-		nt_buffer_format(json, "%s{\"attributes\":{\"POSITION\":0,%s\"TEXCOORD_0\":0,\"TEXCOORD_1\":0%s},"
+		nt_buffer_format(json, "%s{\"attributes\":{\"POSITION\":%d,%s\"TEXCOORD_0\":0,\"TEXCOORD_1\":0%s},"
 			"\"material\":%d,\"mode\":%d}", l > letters && l[-1] != ' ' ? "," : "",
-			*l == 'x' ? "" : "\"NORMAL\":0,", *l == 'N' ? ",\"TANGENT\":0" : "", material,
+			*l == 'b', *l == 'x' ? "" : "\"NORMAL\":0,", *l == 'N' ? ",\"TANGENT\":0" : "", material,
 			*l == 'l' ? 1 : 4);
 	}
 	nt_buffer_text(json, "]}]}");
@@ -100,6 +109,60 @@ static void those_without_a_kind_are_in_all_of_them(void **state)
 	joins_are("..", "");
 }
 
+/* Whose result each mesh has, "-" its own, behind the joins. */
+static void results_are(const char *letters, const char *joins, const char *expected)
+{
+	nt_scene scene;
+	nt_buffer json, found = {0};
+	shared = true;
+	joins_are(letters, joins);
+	open_primitives(&scene, &json, letters);
+	for (size_t i = 0; i < scene.mesh_count; i++) {
+		const nt_mesh *mesh = &scene.meshes[i];
+		if (mesh->decision != NT_DECISION_SOLVE)
+			continue;
+		assert_true(!mesh->same_as || !mesh->same_as->same_as);
+		if (mesh->same_as)
+			nt_buffer_format(&found, "%zu", (size_t)(mesh->same_as - scene.meshes));
+		else
+			nt_buffer_text(&found, "-");
+	}
+	assert_string_equal(found.data, expected);
+	shared = false;
+	nt_buffer_free(&found);
+	nt_buffer_free(&json);
+	nt_scene_free(&scene);
+}
+
+/* All primitives of a letter have the same geometry. */
+static void the_same_geometry_contributes_once(void **state)
+{
+	(void)state;
+	results_are("nnn", "", "-00");
+	results_are("nn.", "0 2", "-0");
+	results_are("n..", "0 1", "-");
+	results_are("nnt.tn", "0 3, 2 3", "-0-20");
+	/* the same parts in another mesh */
+	results_are("n. n.", "0 1", "-0");
+	results_are("n.. n.", "0 1", "-0");
+	/* with set 1 the primitive without need has another geometry than the one that is compared */
+	results_are("n.1 n.1", "0 1, 1 2, 4 5", "--0-");
+	/* other parts: a result of their own, which those behind may have */
+	results_are("n. n n. n", "0 1", "--02");
+	results_are("n t n. nt", "2 3", "---01");
+}
+
+/* What is only compared may not cost many times the solve, which is of one triangle here. */
+static void a_comparison_is_not_dear(void **state)
+{
+	(void)state;
+	joins_are("nb", "0 1");
+	compared = true;
+	joins_are("nb", "");
+	joins_are("n.", "0 1");
+	compared = false;
+}
+
 /* A mesh whose primitives all have transforms of their own, with as many that take part in every join: their square is
  * 10^8. */
 static void many_kinds_cost_linear_time(void **state)
@@ -131,6 +194,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(kinds_are_sets_and_transforms),
 		cmocka_unit_test(those_without_a_kind_are_in_all_of_them),
+		cmocka_unit_test(the_same_geometry_contributes_once),
+		cmocka_unit_test(a_comparison_is_not_dear),
 		cmocka_unit_test(many_kinds_cost_linear_time),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
