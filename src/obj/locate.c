@@ -132,7 +132,7 @@ bool obj_keep_places(const obj_file *file)
 		stretches[c] = (stretch){chunk->begin, chunk->end, chunk->first_face, chunk->first_line};
 	}
 	stretches[file->chunk_count - 1].begin = file->tail_begin;
-	stretches[file->chunk_count - 1].end = (const char *)scene->bytes + scene->byte_count;
+	stretches[file->chunk_count - 1].end = file->tail_end;
 	memcpy(mesh_faces, file->mesh_faces, file->mesh_count * sizeof *mesh_faces);
 	*kept = (places){stretches, file->chunk_count, mesh_faces};
 	scene->source = kept;

@@ -108,7 +108,7 @@ typedef struct obj_file {
 	obj_chunk *chunks;
 	size_t chunk_count;
 	char *tail; /* the last lines, padded */
-	const char *tail_begin; /* where they stand in the input */
+	const char *tail_begin, *tail_end; /* where they stand in the input */
 
 	/* Of each kind: how many there are, and the chunk that has number i << OBJ_GUIDE_SHIFT. */
 	size_t row_counts[OBJ_KIND_COUNT];

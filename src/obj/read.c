@@ -108,6 +108,7 @@ static bool add_tail(obj_file *file, size_t *capacity, const char *begin, const 
 {
 	const char *padded_end;
 	file->tail_begin = begin;
+	file->tail_end = end;
 	file->tail = obj_copy_padded(begin, end, &padded_end);
 	return file->tail && add_chunk(file, capacity, file->tail, padded_end);
 }

@@ -58,6 +58,19 @@ static void locate_with_crlf_and_mark(void **state)
 	close_reading(&r);
 }
 
+/* ZBrush writes them. The face before them ends where they begin. */
+static void locate_before_zero_bytes(void **state)
+{
+	(void)state;
+	static const char text[] = TRIANGLE /* 1 to 3 */
+		"f 1 2 3\0\0";              /* 4: face 0 */
+	reading r;
+	open_bytes(&r, text, sizeof text, 1);
+	assert_int_equal(r.status, NT_OK);
+	assert_place(&r, 0, 0, 4, "1 2 3");
+	close_reading(&r);
+}
+
 /* A pentagon becomes three triangles and stays one face of the source. */
 static void locate_polygons(void **state)
 {
@@ -191,6 +204,7 @@ int main(void)
 		cmocka_unit_test(locate_behind_small_faces),
 		cmocka_unit_test(locate_with_lone_cr),
 		cmocka_unit_test(locate_with_crlf_and_mark),
+		cmocka_unit_test(locate_before_zero_bytes),
 		cmocka_unit_test(locate_polygons),
 		cmocka_unit_test(locate_joined_lines),
 		cmocka_unit_test(locate_in_objects),
