@@ -95,10 +95,17 @@ nt_status load(nt_reread &model, const unsigned char *bytes, size_t size, finder
 	const std::string eased = text.eased(model.packed);
 	const char *begin = eased.empty() ? reinterpret_cast<const char *>(bytes) : eased.data();
 	const unsigned length = static_cast<unsigned>(eased.empty() ? size : eased.size());
-	const bool loaded = text.is_binary()
-		? loader.LoadBinaryFromMemory(&model.document, &message, &warning,
-			reinterpret_cast<const unsigned char *>(begin), length)
-		: loader.LoadASCIIFromString(&model.document, &message, &warning, begin, length, "");
+	bool loaded = false;
+	try {
+		loaded = text.is_binary()
+			? loader.LoadBinaryFromMemory(&model.document, &message, &warning,
+				reinterpret_cast<const unsigned char *>(begin), length)
+			: loader.LoadASCIIFromString(&model.document, &message, &warning, begin, length, "");
+	} catch (const std::bad_alloc &) {
+		throw;
+	} catch (const std::exception &thrown) { // it looks for some things behind the end of their array
+		message = thrown.what();
+	}
 	if (loaded && message.empty())
 		return NT_OK;
 	for (char &c : message)

@@ -11,6 +11,7 @@
 #include "ext/draco.h"
 #include "ext/tinygltf.h"
 #include "file/relative_path.h"
+#include "gltf/document.h"
 #include "gltf/normalized.h"
 #include "gltf/quantize.h"
 #include "gltf/verify_faces.h"
@@ -434,12 +435,25 @@ static nt_status compare_scene(const nt_scene *scene, nt_reread *model, nt_error
 	return NT_OK;
 }
 
+/* glTF wants a byte at least. tinygltf refuses files without any, but reads a .glb whose buffer has none. */
+static bool has_empty_buffer(const nt_gltf *document)
+{
+	for (size_t i = 0; i < document->buffer_count; i++)
+		if (document->buffers[i].length == 0)
+			return true;
+	return false;
+}
+
 /* Whether tinygltf refuses the input as well. Then nobody can say by it what became of the output, and a finding
  * says so. */
 static nt_status check_input(nt_scene *scene, nt_error *error)
 {
 	if (scene->format != NT_FORMAT_GLTF && scene->format != NT_FORMAT_GLB)
 		return NT_ERROR_INTERNAL;
+	if (has_empty_buffer(scene->source)) {
+		nt_finding_add(&scene->findings, NT_CODE_NOT_VERIFIED, NULL, 1, "%s", error->message);
+		return NT_OK;
+	}
 	nt_error ignored, refusal;
 	nt_error_clear(&refusal);
 	nt_reread *model = NULL;

@@ -46,6 +46,22 @@ run --verify "$WORK/layouts/plain.gltf" out.gltf
 exits 0
 says_not NOT_VERIFIED
 
+# glTF wants a byte at least. tinygltf looks for the first of none in a .glb, and refuses an empty .bin.
+scene "a buffer of no bytes is a fault of the input"
+python3 - <<'END'
+import struct
+text = b'{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 0}]}   '
+with open("empty.glb", "wb") as file:
+    file.write(struct.pack("<4s4I", b"glTF", 2, 20 + len(text) + 12, len(text), 0x4e4f534a) + text +
+               struct.pack("<I4sI", 4, b"BIN\0", 0))
+END
+for output in out.glb out.gltf; do
+	run --verify empty.glb $output
+	exits 0
+	says "[NOT_VERIFIED]"
+	exists $output
+done
+
 scene "a buffer that stands for packed views needs no bytes"
 node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1]));
 	g.extensionsUsed = ["EXT_meshopt_compression"];
