@@ -118,6 +118,9 @@ $(call objects_of,report/render/page_assets.c): $(call existing,src/report/rende
 # Foreign headers whose warnings are not ours; clang knows one of the three.
 $(call objects_of,ext/openmesh.cpp): FILE_FLAGS := $(if $(findstring clang,$(CXX)),,-Wno-maybe-uninitialized -Wno-class-memaccess)
 $(call objects_of,ext/codec/stb.c): FILE_FLAGS := -Wno-unused-function
+# stb_image looks for colours behind the palette that it has read. clang 14 wants to be told twice.
+$(call objects_of,ext/codec/stb.c): FILE_FLAGS += -ftrivial-auto-var-init=zero \
+	$(if $(findstring clang,$(CC)),-enable-trivial-auto-var-init-zero-knowing-it-will-be-removed-from-clang)
 
 -include $(shell find $(B) -name '*.d' 2>/dev/null)
 

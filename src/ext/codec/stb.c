@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * TGA, BMP, PSD and HDR by stb_image, whose other decoders are left out. It reads zeros behind the end of its
+ * TGA, BMP, PSD and HDR by stb_image, whose other decoders are left out. It reads on behind the end of its
  * input, so the end is watched here: an image that needs bytes which are not there is an error.
  */
 #include "ext/codec/pixels.h"
@@ -44,6 +44,10 @@ static int read_source(void *user, char *to, int count)
 	const size_t left = s->size - s->position;
 	const size_t given = (size_t)count < left ? (size_t)count : left;
 	s->beyond |= !left || (given < (size_t)count && count != BUFFER_BYTES);
+	if (!left) { /* packets of pixels come to an end with these; with zeros, those of an HDR would not */
+		memset(to, 0xff, (size_t)count);
+		return count;
+	}
 	memcpy(to, s->bytes + s->position, given);
 	s->position += given;
 	return (int)given;

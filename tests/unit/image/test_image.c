@@ -243,6 +243,19 @@ static unsigned sample_at(const nt_pixels *p, unsigned x, unsigned y, unsigned c
 	return p->bits == 8 ? ((uint8_t *)p->samples)[i] : ((uint16_t *)p->samples)[i];
 }
 
+/* NT_SEEDS=FOLDER: there, for tests/fuzz/seeds.sh. */
+static void store_seed(const char *name, const bytes *b)
+{
+	char path[400];
+	if (!getenv("NT_SEEDS"))
+		return;
+	snprintf(path, sizeof path, "%s/%s", getenv("NT_SEEDS"), name);
+	FILE *stream = fopen(path, "wb");
+	assert_non_null(stream);
+	assert_int_equal(fwrite(b->data, 1, b->size, stream), b->size);
+	assert_int_equal(fclose(stream), 0);
+}
+
 static void decode_gives_the_picture(void **state)
 {
 	(void)state;
@@ -253,6 +266,7 @@ static void decode_gives_the_picture(void **state)
 		files[i].make(&b);
 		assert_int_equal(nt_image_type_of_bytes(b.data, b.size), files[i].type);
 		assert_true(nt_image_is_decoded(files[i].type));
+		store_seed(files[i].name, &b);
 		if (nt_image_decode(b.data, b.size, &p, &error))
 			fail_msg("%s: %s", files[i].name, error.message);
 		assert_int_equal(p.channels, files[i].channels);
@@ -333,6 +347,42 @@ static void encode_keeps_every_kind_of_sample(void **state)
 		}
 }
 
+static __attribute__((noinline)) void leave_on_the_stack(int value)
+{
+	char frame[1 << 14];
+	memset(frame, value, sizeof frame);
+	__asm__ volatile("" : : "r"(frame) : "memory");
+}
+
+/* stb_image looks for such a colour behind those that it has read. */
+static void colours_that_a_palette_lacks_are_the_same_in_every_run(void **state)
+{
+	(void)state;
+	bytes b = {.size = 0};
+	put(&b, 'B' | 'M' << 8, 2, false);
+	put(&b, 62 + 4, 4, false);
+	put(&b, 0, 4, false);
+	put(&b, 62, 4, false);
+	put(&b, 40, 4, false);
+	put(&b, 4, 4, false); /* 4 x 1 */
+	put(&b, 1, 4, false);
+	put(&b, 1, 2, false);
+	put(&b, 8, 2, false);
+	put(&b, 0, 24, false);
+	put(&b, 0x112233, 4, false); /* two colours */
+	put(&b, 0x445566, 4, false);
+	put(&b, 0xc8030100, 4, false); /* 0, 1, 3, 200 */
+	static const unsigned char expected[12] = {0x11, 0x22, 0x33, 0x44, 0x55, 0x66};
+	for (int value = 0; value < 3; value++) {
+		nt_pixels p;
+		nt_error error;
+		leave_on_the_stack(100 * value);
+		assert_int_equal(nt_image_decode(b.data, b.size, &p, &error), NT_OK);
+		assert_memory_equal(p.samples, expected, sizeof expected);
+		nt_pixels_free(&p);
+	}
+}
+
 static void grey_is_told_by_pixels(void **state)
 {
 	(void)state;
@@ -370,6 +420,18 @@ static void decode_refuses_what_is_cut_short(void **state)
 			free(exact);
 		}
 	}
+}
+
+/* stb_image would read packets of no pixels behind the end, for ever. */
+static void decode_ends_where_an_hdr_ends(void **state)
+{
+	(void)state;
+	static const unsigned char hdr[] = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 8\n" "\2\2\0\10\210a";
+	nt_pixels p;
+	nt_error error;
+	alarm(60);
+	assert_int_equal(nt_image_decode(hdr, sizeof hdr - 1, &p, &error), NT_ERROR_INPUT);
+	alarm(0);
 }
 
 static void decode_refuses_sizes_before_it_asks_for_memory(void **state)
@@ -449,8 +511,10 @@ int main(void)
 		cmocka_unit_test(decode_gives_the_picture),
 		cmocka_unit_test(decode_png_of_16_bits_and_of_a_palette),
 		cmocka_unit_test(encode_keeps_every_kind_of_sample),
+		cmocka_unit_test(colours_that_a_palette_lacks_are_the_same_in_every_run),
 		cmocka_unit_test(grey_is_told_by_pixels),
 		cmocka_unit_test(decode_refuses_what_is_cut_short),
+		cmocka_unit_test(decode_ends_where_an_hdr_ends),
 		cmocka_unit_test(decode_refuses_sizes_before_it_asks_for_memory),
 		cmocka_unit_test(decode_survives_damage),
 		cmocka_unit_test(decode_without_memory_is_an_error),
