@@ -99,16 +99,16 @@ soak-built: check-built
 
 # make fuzz SECONDS=60 TARGET="obj gltf": made-up inputs, for so long with each target, all of them by default. Needs
 # clang and libclang-rt-14-dev.
-$(B)/tests/fuzz/target: $(patsubst %,$(B)/tests/%.o,fuzz/target fuzz/json_mutator support/any_settings support/mutate) \
+$(B)/tests/fuzz/target: $(patsubst %,$(B)/tests/%.o,fuzz/target fuzz/json_mutator fuzz/image support/any_settings support/mutate) \
 		$(B)/libtool.a $(B)/libnmtan.a
-	$(CXX) $(NT_LDFLAGS) -fsanitize=fuzzer -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(TOOL_LIBS)
+	$(CXX) $(NT_LDFLAGS) -fsanitize=fuzzer -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(TOOL_LIBS) -lz
 
 SECONDS ?= 60
-TARGET ?= obj mtl ply gltf glb drc
+TARGET ?= obj mtl ply gltf glb drc image
 .PHONY: fuzz
 fuzz:
 	@CLANG="$(CLANG)" sh tests/fuzz/need.sh
-	@$(MAKE) -s $(JOBS) config=release all build/release/tests/faults/make_meshopt
+	@$(MAKE) -s $(JOBS) config=release all build/release/tests/faults/make_meshopt build/release/tests/unit/image/test_image
 	@$(MAKE) -s $(JOBS) config=fuzz build/fuzz/tests/fuzz/target
 	@bash tests/fuzz/run.sh build/release build/fuzz $(SECONDS) $(TARGET)
 

@@ -6,9 +6,9 @@
 # without sanitizers.
 set -eu
 cd "$(dirname "$0")/../.."
-nmtan=$PWD/$1/nmtan meshopt=$PWD/$1/tests/faults/make_meshopt seeds=$2
+nmtan=$PWD/$1/nmtan images=$PWD/$1/tests/unit/image/test_image meshopt=$PWD/$1/tests/faults/make_meshopt seeds=$2
 rm -rf "$seeds"
-mkdir -p "$seeds"/{obj,mtl,ply,gltf,glb,drc,layouts}
+mkdir -p "$seeds"/{obj,mtl,ply,gltf,glb,drc,image,layouts}
 seeds=$(cd "$seeds" && pwd)
 
 models=(data data/damaged)
@@ -40,6 +40,11 @@ for name in quad morph skin; do
 	"$nmtan" -q --embed "$seeds/glb/${name}_edgebreaker.glb" "$seeds/gltf/${name}_edgebreaker.gltf"
 	"$nmtan" -q "$seeds/glb/$name.glb" "$seeds/ply/$name.ply"
 done
+
+cp data/bumps.png "$seeds/image/"
+NT_SEEDS=$seeds/image "$images" >/dev/null 2>&1
+printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n0123456789abcdef' >"$seeds/image/flat.hdr"
+printf '#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 8\n\2\2\0\10\210a\210b\210c\210d' >"$seeds/image/packed.hdr"
 
 # The compressed blocks of those files are .drc files.
 python3 - "$seeds" <<'END'

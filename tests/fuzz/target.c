@@ -8,7 +8,7 @@
  * - two threads write the bytes of one;
  * - a report is rendered in every format, and the JSON one is read back.
  *
- * Memory, leaks and time are libFuzzer's and the sanitizers' to watch: see run.sh. FUZZ_TARGET names the target.
+ * Images are decoded alone: see image.h. Memory, leaks and time are libFuzzer's and the sanitizers' to watch: see run.sh. FUZZ_TARGET names the target.
  * FUZZ_VERBOSE tells what a run was told and what came of it.
  */
 #include <dirent.h>
@@ -20,6 +20,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include "any_settings.h"
+#include "image.h"
 #include "json_mutator.h"
 #include "mutate.h"
 #include "pipeline/run.h"
@@ -34,13 +35,15 @@ static const struct target {
 	const char *name, *file; /* what the input is called */
 	const char *run;         /* what is run, if that is another file: it refers to the input */
 	size_t (*mutate)(char *bytes, size_t size, size_t room, uint32_t *seed); /* NULL: as libFuzzer does */
+	void (*test)(const uint8_t *bytes, size_t size); /* NULL: a run, as below */
 } targets[] = {
-	{"obj", "x.obj", NULL, NULL},
-	{"mtl", "x.mtl", "mtl.obj", NULL},
-	{"ply", "x.ply", NULL, NULL},
-	{"gltf", "x.gltf", NULL, mutate_json},
-	{"glb", "x.glb", NULL, mutate_glb},
-	{"drc", "x.drc", NULL, NULL},
+	{"obj", "x.obj", NULL, NULL, NULL},
+	{"mtl", "x.mtl", "mtl.obj", NULL, NULL},
+	{"ply", "x.ply", NULL, NULL, NULL},
+	{"gltf", "x.gltf", NULL, mutate_json, NULL},
+	{"glb", "x.glb", NULL, mutate_glb, NULL},
+	{"drc", "x.drc", NULL, NULL, NULL},
+	{"image", "x.png", NULL, mutate_image, fuzz_image},
 };
 
 static const struct target *target;
@@ -208,7 +211,7 @@ static void check_threads(const char *output)
 	free(other);
 }
 
-int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
+static void test_run(const uint8_t *bytes, size_t size)
 {
 	/* FNV-1a */
 	uint32_t chance = 2166136261u;
@@ -237,6 +240,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
 	const size_t made = empty_output();
 	if ((made == 0) != (status != NT_OK || told.check))
 		wrong("status %d and %zu files", (int)status, made);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
+{
+	(target->test ? target->test : test_run)(bytes, size);
 	return 0;
 }
 

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT */
+/* Images: see image.h. */
+#include "image.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+#include "image/image.h"
+
+size_t LLVMFuzzerMutate(uint8_t *bytes, size_t size, size_t room);
+
+/* Larger images are decoded, and no more. */
+enum { MOST_PIXELS = 1 << 16 };
+
+static void require(bool good, const char *what, const nt_error *error)
+{
+	if (good)
+		return;
+	fprintf(stderr, "WRONG: %s: %s\n", what, error->message);
+	abort();
+}
+
+static void check_grey(const uint8_t *bytes, size_t size, const nt_pixels *pixels)
+{
+	bool grey, alike = true;
+	nt_error error;
+	nt_error_clear(&error);
+	require(nt_image_is_grey(bytes, size, &grey, &error) == NT_OK, "an image that is decoded is not looked at", &error);
+	const size_t sample = pixels->bits / 8, step = pixels->channels * sample;
+	const unsigned char *at = pixels->samples, *end = at + step * pixels->width * pixels->height;
+	for (; pixels->channels >= 3 && at < end; at += step)
+		alike &= memcmp(at, at + sample, sample) == 0 && memcmp(at, at + 2 * sample, sample) == 0;
+	const bool near = nt_image_type_of_bytes(bytes, size) == NT_IMAGE_JPEG;
+	require(grey == alike || (grey && near), "grey is told wrongly", &error);
+}
+
+static void check_png(const nt_pixels *pixels)
+{
+	unsigned char *png;
+	size_t size;
+	nt_pixels again;
+	nt_error error;
+	nt_error_clear(&error);
+	require(nt_encode_png(pixels, &png, &size, &error) == NT_OK, "no PNG", &error);
+	require(nt_image_decode(png, size, &again, &error) == NT_OK, "the PNG is not decoded", &error);
+	require(again.width == pixels->width && again.height == pixels->height && again.channels == pixels->channels &&
+			again.bits == pixels->bits &&
+			memcmp(again.samples, pixels->samples, nt_pixels_row_bytes(pixels) * pixels->height) == 0,
+		"the PNG shows something else", &error);
+	nt_pixels_free(&again);
+	free(png);
+}
+
+void fuzz_image(const uint8_t *bytes, size_t size)
+{
+	nt_pixels pixels;
+	nt_error error;
+	nt_error_clear(&error);
+	const nt_status status = nt_image_decode(bytes, size, &pixels, &error);
+	require(status != NT_ERROR_INTERNAL && (!status || strlen(error.message) >= 8), "no words", &error);
+	require(!status == (pixels.samples != NULL), "samples after a failure, or none", &error);
+	if (!status && (uint64_t)pixels.width * pixels.height <= MOST_PIXELS) {
+		check_grey(bytes, size, &pixels);
+		check_png(&pixels);
+	}
+	nt_pixels_free(&pixels);
+}
+
+static uint32_t load_big(const uint8_t *at)
+{
+	return (uint32_t)at[0] << 24 | (uint32_t)at[1] << 16 | (uint32_t)at[2] << 8 | at[3];
+}
+
+size_t mutate_image(char *bytes, size_t size, size_t room, uint32_t *seed)
+{
+	(void)seed;
+	uint8_t *file = (uint8_t *)bytes;
+	size = LLVMFuzzerMutate(file, size, room);
+	if (size < 8 || memcmp(file, "\x89PNG\r\n\x1a\n", 8) != 0)
+		return size;
+	/* chunks: length, type, bytes, check sum of the last two */
+	for (size_t at = 8; at + 12 <= size;) {
+		const size_t length = load_big(file + at);
+		if (length > size - at - 12)
+			break;
+		const uint32_t sum = (uint32_t)crc32(0, file + at + 4, (uInt)length + 4);
+		for (size_t i = 0; i < 4; i++)
+			file[at + 8 + length + i] = (uint8_t)(sum >> (24 - 8 * i));
+		at += 12 + length;
+	}
+	return size;
+}
