@@ -381,33 +381,50 @@ static const double lumps[] = {1e-4, 1e-3, 1e-2, 1e-1};
 static const double sizes[] = {1e3, 1e4, 1e5, 1e6};
 
 #define LEVELS(list) list, sizeof list / sizeof *list
+#define ALL_BOUNDED SIZE_MAX, 0
+
+/* In units of 2^-24 the arithmetic of a direction has a condition of some 1 / level in a triangle that is a needle in both
+ * spaces, ten times that in one of a hundred random ones; 8 units of 10 / level are a quarter turn at 3e-6. */
+#define BOTH_NEEDLES 6, 100
+
+/* Triangles of random exponents: some in a hundred are such needles from 10 decades on. */
+#define MIXED 5, 1
+
+/* Six members around a vertex whose directions, once the normal has taken all but `level` of them, are spread over the
+ * circle: two of them may be opposite for rounding, which MikkTSpace then keeps apart. */
+#define NEAR_NORMAL 1, 25
+
+/* Files that are meant to be nasty: several surfaces in one edge, opposite directions across it, texture coordinates
+ * that are one unit of rounding from having no area. The first two are plain models. */
+#define MODELS 2, 5
+
+/* Of a vertex with a NaN or infinity all triangles are undetermined, and so are the corners beside these. */
+#define NOT_FINITE 2, 40
+
 const family families[] = {
-	{"uv scale", "scale of UVs", LEVELS(decades_30), true, true, false, false, uv_scale},
-	{"uv offset", "offset of UVs of size 0.1", LEVELS(offsets), true, true, false, false, uv_offset},
-	{"position scale", "scale of positions", LEVELS(decades_30), true, true, false, false, position_scale},
-	{"position offset", "offset of positions of size 1", LEVELS(far_offsets), true, true, false, false,
-		position_offset},
-	{"both scales", "scale of UVs, inverse scale of positions", LEVELS(decades_30), true, true, false, false,
+	{"uv scale", "scale of UVs", LEVELS(decades_30), true, false, ALL_BOUNDED, uv_scale},
+	{"uv offset", "offset of UVs of size 0.1", LEVELS(offsets), true, false, ALL_BOUNDED, uv_offset},
+	{"position scale", "scale of positions", LEVELS(decades_30), true, false, ALL_BOUNDED, position_scale},
+	{"position offset", "offset of positions of size 1", LEVELS(far_offsets), true, false, ALL_BOUNDED, position_offset},
+	{"both scales", "scale of UVs, inverse scale of positions", LEVELS(decades_30), true, false, ALL_BOUNDED,
 		both_scales},
-	{"uv needles", "aspect in UV space", LEVELS(thin), true, true, false, false, uv_needles},
-	{"needles", "aspect in space", LEVELS(thin), true, true, false, false, needles},
-	{"both needles", "aspect in UV space and in space", LEVELS(thin), true, true, false, false, both_needles},
-	{"mixed exponents", "decades on either side of 1", LEVELS(spreads), false, true, false, false,
-		mixed_exponents},
-	{"cancelling", "size of the UV lattice", LEVELS(lattices), true, true, false, false, cancelling},
-	{"squashed fans", "height", LEVELS(thin), true, true, false, false, squashed_fans},
-	{"opposed fans", "distance from half a turn", LEVELS(thin), true, true, false, false, opposed_fans},
-	{"valence", "triangles at the hub", LEVELS(valences), true, true, true, false, valence},
-	{"collapsed", "per cent of triangles collapsed", LEVELS(percents), false, true, false, true, collapsed},
-	{"near normal", "angle between T and N in radians", LEVELS(thin), true, true, false, true, near_normal},
-	{"negative zeros", "part of zeros that are negative", LEVELS(parts), false, true, false, false,
-		negative_zeros},
-	{"quads", "how far the fourth corner wanders", LEVELS(wander), false, true, false, true, quads},
-	{"planar scan", "size of lumps", LEVELS(lumps), true, true, false, true, planar_scan},
-	{"public models", "model", LEVELS(models), false, true, false, true, public_model},
-	{"size", "triangles", LEVELS(sizes), true, true, true, false, size_of_mesh},
-	{"denormal uvs", "scale of UVs", LEVELS(tiny), true, false, false, false, uv_scale},
-	{"denormal positions", "scale of positions", LEVELS(tiny), true, false, false, false, position_scale},
-	{"not finite", "part of vertices with NaN or infinity", LEVELS(parts), false, false, false, false, not_finite},
+	{"uv needles", "aspect in UV space", LEVELS(thin), true, false, ALL_BOUNDED, uv_needles},
+	{"needles", "aspect in space", LEVELS(thin), true, false, ALL_BOUNDED, needles},
+	{"both needles", "aspect in UV space and in space", LEVELS(thin), true, false, BOTH_NEEDLES, both_needles},
+	{"mixed exponents", "decades on either side of 1", LEVELS(spreads), false, false, MIXED, mixed_exponents},
+	{"cancelling", "size of the UV lattice", LEVELS(lattices), true, false, ALL_BOUNDED, cancelling},
+	{"squashed fans", "height", LEVELS(thin), true, false, ALL_BOUNDED, squashed_fans},
+	{"opposed fans", "distance from half a turn", LEVELS(thin), true, false, ALL_BOUNDED, opposed_fans},
+	{"valence", "triangles at the hub", LEVELS(valences), true, true, ALL_BOUNDED, valence},
+	{"collapsed", "per cent of triangles collapsed", LEVELS(percents), false, false, ALL_BOUNDED, collapsed},
+	{"near normal", "angle between T and N in radians", LEVELS(thin), true, false, NEAR_NORMAL, near_normal},
+	{"negative zeros", "part of zeros that are negative", LEVELS(parts), false, false, ALL_BOUNDED, negative_zeros},
+	{"quads", "how far the fourth corner wanders", LEVELS(wander), false, false, ALL_BOUNDED, quads},
+	{"planar scan", "size of lumps", LEVELS(lumps), true, false, ALL_BOUNDED, planar_scan},
+	{"public models", "model", LEVELS(models), false, false, MODELS, public_model},
+	{"size", "triangles", LEVELS(sizes), true, true, ALL_BOUNDED, size_of_mesh},
+	{"denormal uvs", "scale of UVs", LEVELS(tiny), true, false, ALL_BOUNDED, uv_scale},
+	{"denormal positions", "scale of positions", LEVELS(tiny), true, false, ALL_BOUNDED, position_scale},
+	{"not finite", "part of vertices with NaN or infinity", LEVELS(parts), false, false, NOT_FINITE, not_finite},
 };
 const size_t family_count = sizeof families / sizeof *families;

@@ -13,11 +13,11 @@ typedef struct family {
 	const double *levels;   /* [level_count] */
 	size_t level_count;
 	bool logarithmic; /* the sweep */
-	bool finite;      /* all values are finite and within 1e-30 to 1e30: what must hold is asked */
 	bool linear;      /* the sweep is one of size: time per triangle must stay */
-	bool parts;       /* MikkTSpace's groups follow edges: here they may be parts of the triangles of an orientation
-	                     around a vertex, because edges are missing, and the exact average over all of them is no
-	                     closer than these differ from each other */
+	/* Corners with MikkTSpace's own bytes of which bounds.h can say nothing: none in the first `bounded` levels, at most
+	 * `most_unbounded` per cent of a mesh from there on. families.c says why. */
+	size_t bounded;
+	double most_unbounded;
 	nt_owned (*make)(double level, uint64_t seed);
 } family;
 

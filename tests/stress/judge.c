@@ -3,11 +3,13 @@
  * See judge.h. Nothing here calls into the library but nmtan_tangents(); signs and vectors come from the
  * oracle.
  */
+#include "judge.h"
+
 #include <math.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
-#include "judge.h"
+#include "bounds.h"
 #include "measure.h"
 #include "oracle128.h"
 
@@ -39,25 +41,24 @@ static size_t triangle_count(const nmtan_mesh *mesh)
 
 /* Runs a method with a warm workspace, one thread, until 4 ms or 3 runs have passed; the best run counts. */
 static bool run(const nmtan_mesh *mesh, const column *c, nmtan_workspace *workspace, float *tangents,
-	score *s)
+	uint8_t *faults, score *s)
 {
 	const nmtan_options options = {.struct_bytes = sizeof options, .method = c->method,
 		.repair = c->repair, .threads = 1,
 		.workspace = workspace};
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = tangents};
-	nmtan_counts counts = NMTAN_COUNTS_INIT;
+	const nmtan_output named = {.struct_bytes = sizeof named, .tangents = tangents, .corner_faults = faults};
 	double total = 0, best = INFINITY;
 	for (int i = 0; i < 50 && (i < 3 || total < 0.004) && (i < 1 || total < 2); i++) {
 		const double start = measure_thread_seconds();
-		if (nmtan_tangents(mesh, &options, &output, &counts))
+		if (nmtan_tangents(mesh, &options, &output, NULL))
 			return false;
 		const double took = measure_thread_seconds() - start;
 		total += took;
 		best = fmin(best, took);
 	}
 	s->ns_per_triangle = 1e9 * best / (double)triangle_count(mesh);
-	s->counted = counts.ill_conditioned;
-	return true;
+	return nmtan_tangents(mesh, &options, &named, NULL) == NMTAN_OK;
 }
 
 static const float *normal_of(const nmtan_mesh *mesh, size_t corner)
@@ -112,7 +113,7 @@ static void score_signs(const nmtan_mesh *mesh, const oracle_corner *exact, cons
 }
 
 static void score_vectors(const nmtan_mesh *mesh, const oracle_corner *exact, bool oracle,
-	const float *tangents, double *angles, score *s)
+	const float *tangents, const uint8_t *faults, double *angles, score *s)
 {
 	for (size_t c = 0; c < s->corners; c++) {
 		const float *t = tangents + 4 * c;
@@ -124,6 +125,9 @@ static void score_vectors(const nmtan_mesh *mesh, const oracle_corner *exact, bo
 		if (exact[c].sign == 0 || !oracle)
 			continue;
 		if (!(exact[c].condition < WELL_CONDITIONED)) {
+			/* the library has conditions to some digits */
+			s->unnamed += !(exact[c].condition < 1.01 * WELL_CONDITIONED) &&
+				      !(faults[c] & NMTAN_FAULT_ILL_CONDITIONED);
 			s->beyond++;
 			continue;
 		}
@@ -159,50 +163,48 @@ static size_t count_altered(const nmtan_mesh *mesh, const oracle_corner *exact, 
 	return altered;
 }
 
-/* The angle beyond `allowed_degrees`, in units of 2^-24 times the condition. */
-static double units_off(const float *t, const double *direction, double condition, double allowed_degrees)
-{
-	const double radians = fmax(0, measure_degrees(t, direction) - allowed_degrees) / 57.29577951308232;
-	return radians * WELL_CONDITIONED / fmin(condition, WELL_CONDITIONED);
-}
-
-/* The default has two kinds of corners: what repair replaced is the exact formula's value, what it kept is as good as
- * MikkTSpace's float arithmetic is at this corner: beside the average of all triangles of its orientation, or beside
- * its own triangle where that shares no edge with them; and, where groups are parts of these triangles, within their spread. */
-static void score_default(const oracle_corner *exact, const float *raw, const float *repaired, bool parts, score *s)
+/* The default has two kinds of corners: what repair replaced is the exact formula's value, what it kept is within its
+ * bound. */
+static void score_default(const oracle_corner *exact, const bound *bounds, const float *raw, const float *repaired, score *s)
 {
 	for (size_t c = 0; c < s->corners; c++) {
 		const float *t = repaired + 4 * c;
-		s->replaced += memcmp(raw + 4 * c, t, 16) != 0;
-		if (exact[c].sign == 0)
-			continue;
 		if (memcmp(raw + 4 * c, t, 16) != 0) {
-			s->inexact += exact[c].condition < WELL_CONDITIONED && is_off(t, &exact[c]);
-		} else if (exact[c].condition_float < WELL_CONDITIONED ||
-			   exact[c].own_condition_float < WELL_CONDITIONED) {
-			const double all = units_off(t, exact[c].t, exact[c].condition_float,
-				parts ? exact[c].spread_degrees : 0);
-			double own = INFINITY;
-			for (int i = 0; i < exact[c].own_count; i++)
-				own = fmin(own, units_off(t, exact[c].own[i], exact[c].own_condition_float, 0));
+			s->replaced++;
+			s->inexact += exact[c].sign != 0 && exact[c].condition < WELL_CONDITIONED && is_off(t, &exact[c]);
+		} else if (bounds[c].degrees == INFINITY) {
+			s->unbounded++;
+			if (exact[c].condition < WELL_CONDITIONED)
+				s->unbounded_degrees = fmax(s->unbounded_degrees, measure_degrees(t, exact[c].t));
+		} else {
+			const double degrees = measure_degrees(t, bounds[c].t);
 			s->kept++;
-			s->worst_units = fmax(s->worst_units, fmin(all, own));
+			s->beyond_bound += !(degrees <= bounds[c].degrees);
+			s->kept_degrees = fmax(s->kept_degrees, degrees);
+			s->kept_share = fmax(s->kept_share, degrees / bounds[c].degrees);
+			if (bounds[c].condition > 0)
+				s->kept_units = fmax(s->kept_units,
+					degrees / 57.29577951308232 * WELL_CONDITIONED / bounds[c].condition);
 		}
 	}
 }
 
-bool judge_mesh(const nt_owned *owned, bool oracle, bool finite, bool parts, score scores[COLUMN_COUNT])
+bool judge_mesh(const nt_owned *owned, bool oracle, score scores[COLUMN_COUNT])
 {
 	const nmtan_mesh *mesh = &owned->mesh;
 	const size_t corner_count = owned->corner_count;
 	float *tangents[2] = {malloc(16 * corner_count), malloc(16 * corner_count)}; /* raw, others */
 	double *angles = malloc(corner_count * sizeof *angles);
 	oracle_corner *exact = malloc(corner_count * sizeof *exact);
+	oracle_triangle *triangles = malloc(oracle_triangle_count(mesh) * sizeof *triangles);
+	bound *bounds = malloc(corner_count * sizeof *bounds);
+	uint8_t *faults = malloc(corner_count);
 	nmtan_workspace *workspace = nmtan_workspace_create(NULL);
-	bool done = tangents[0] && tangents[1] && angles && exact && workspace;
+	bool done = tangents[0] && tangents[1] && angles && exact && triangles && bounds && faults && workspace;
 	oracle_weight filled = ORACLE_ANGLE;
 	if (done && oracle)
-		done = oracle_solve(mesh, filled, exact);
+		done = oracle_solve_triangles(mesh, exact, triangles) &&
+		       find_bounds(mesh, exact, triangles, corner_count, bounds);
 	if (done && !oracle)
 		for (size_t c = 0; c < corner_count; c++) /* size sweeps: all faces are wound alike */
 			exact[c] = (oracle_corner){.sign = 1};
@@ -218,22 +220,25 @@ bool judge_mesh(const nt_owned *owned, bool oracle, bool finite, bool parts, sco
 			filled = weight_of(columns[at].method);
 			done = oracle_solve(mesh, filled, exact);
 		}
-		done = done && run(mesh, &columns[at], workspace, to, s);
+		done = done && run(mesh, &columns[at], workspace, to, faults, s);
 		if (!done)
 			break;
 		score_signs(mesh, exact, to, s);
-		score_vectors(mesh, exact, oracle, to, angles, s);
+		score_vectors(mesh, exact, oracle, to, faults, angles, s);
 		if (at == COLUMN_REPAIRED)
 			s->altered = count_altered(mesh, exact, tangents[0], to);
 		if (at == COLUMN_REPAIRED && oracle)
-			score_default(exact, tangents[0], to, parts, s);
-		for (int k = 0; oracle && finite && k < TWIN_COUNT && (at == COLUMN_REPAIRED || at == COLUMN_ROBUST); k++)
-			s->twins[k] = twin_differences(owned, &twins[k], columns[at].method, exact, parts);
+			score_default(exact, bounds, tangents[0], to, s);
+		for (int k = 0; oracle && k < TWIN_COUNT && (at == COLUMN_REPAIRED || at == COLUMN_ROBUST); k++)
+			s->twins[k] = twin_differences(owned, &twins[k], columns[at].method, exact, bounds);
 	}
 	nmtan_workspace_destroy(workspace);
 	free(tangents[0]);
 	free(tangents[1]);
 	free(angles);
 	free(exact);
+	free(triangles);
+	free(bounds);
+	free(faults);
 	return done;
 }

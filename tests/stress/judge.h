@@ -31,28 +31,26 @@ typedef struct score {
 	size_t parallel;    /* corners: T along N */
 	size_t judged;      /* corners whose condition is below 2^24 */
 	size_t beyond;      /* corners of oriented faces whose condition is not */
-	size_t counted;     /* robust: what the library counts as ill-conditioned */
+	size_t unnamed;     /* of these, robust: without NMTAN_FAULT_ILL_CONDITIONED */
 	size_t off;         /* judged corners with a component further than 2^-23 from the oracle */
 	size_t tilted;      /* corners: |T . N| above 2^-21 */
 	size_t leaning;     /* corners with a unit normal: |T . N| above 2^-10 */
 	size_t replaced;    /* the default: corners whose bytes are not MikkTSpace's */
 	size_t inexact;     /* corners with MikkTSpace's bytes replaced, condition below 2^24: as `off` */
-	size_t kept;        /* corners with MikkTSpace's own bytes and a finite condition in float */
-	double worst_units; /* of these: angle in units of 2^-24 times that condition */
+	size_t kept;        /* corners with MikkTSpace's own bytes that have a bound (bounds.h) */
+	size_t beyond_bound; /* of these: outside of it */
+	size_t unbounded;   /* corners with MikkTSpace's own bytes that have none */
+	double kept_degrees, kept_share, kept_units; /* of those with a bound: the worst angle, angle over bound, and
+	                                                angle over 2^-24 times the condition */
+	double unbounded_degrees; /* of the others: the worst angle to the average of all triangles of the orientation */
 	size_t twins[TWIN_COUNT]; /* the default and robust: corners at which the twin's answer differs */
 	size_t altered;     /* usable MikkTSpace corners whose bytes repair changed */
 	double worst_degrees, median_degrees, high_degrees; /* over judged corners; high: 99.9 % */
 	double ns_per_triangle;
 } score;
 
-/* Scores all methods. With `oracle` false only time and what needs no oracle but signs; twins of `finite` meshes.
- * parts: see family.parts. False: a call of
- * the library failed or memory is exhausted. */
-bool judge_mesh(const nt_owned *owned, bool oracle, bool finite, bool parts, score scores[COLUMN_COUNT]);
-
-/* Units of 2^-24 times the condition in float by which MikkTSpace's bytes may miss the exact formula. A difference of
- * texture coordinates, one of positions, their product and the sum of two products: four roundings of a unit each;
- * normalising and projecting take as many. The most that make stress finds is 2.5, on both needles. */
-enum { MOST_UNITS = 8 };
+/* Scores all methods. With `oracle` false only time and what needs no oracle but signs. False: a call of the library
+ * failed or memory is exhausted. */
+bool judge_mesh(const nt_owned *owned, bool oracle, score scores[COLUMN_COUNT]);
 
 #endif

@@ -7,17 +7,14 @@
  * Writes stress.csv, stress.md, samples.txt for check_fractions.py and two charts for each family (what is
  * unusable or has a wrong sign; the worst angle). Ends with 1 when something that must hold does not:
  *
- *   twins (see twins.h) of the default and of robust, finite families: the mirrored, scaled, turned answer
- *   mikktspace (repaired), finite families: perpendicular to normals of unit length within 2^-10. Corners that were
- *     repaired have the exact frame within 2^-23 where its condition is below 2^24. Corners with MikkTSpace's bytes are
- *     within MOST_UNITS (judge.h) of 2^-24 times their condition in float (oracle128.h) of the exact formula: in
- *     degrees the bound is small on uv scale and nothing can be said on uv needles of 1e-8. Families with `parts` add
- *     the spread of the triangles around a vertex
- *   mikktspace (repaired), finite families: no zero, non-unit or non-finite tangent; one w on every face;
- *     the exact sign on every face that has one; MikkTSpace's bytes wherever they are usable
- *   robust, finite families: the same but for the bytes; every component within 2^-23 of the oracle where
- *     the condition is below 2^24; T perpendicular to N within 2^-21; all corners beyond that
- *     condition are counted
+ *   the default and robust: no zero, non-unit or non-finite tangent; one w on every face; the exact sign on every face
+ *     that has one; perpendicular to normals of unit length within 2^-10; the mirrored, scaled, turned answer for the
+ *     mirrored, scaled, turned mesh (twins.h)
+ *   the default: MikkTSpace's bytes wherever they are usable, and these within the bound that is proved for each corner
+ *     (bounds.h). Corners without a bound: none where the family says so, and no more than it allows elsewhere. What
+ *     was repaired has the exact frame within 2^-23 where its condition is below 2^24
+ *   robust: every component within 2^-23 of the oracle where the condition is below 2^24; T perpendicular to N within
+ *     2^-21; corner_faults names all corners beyond that condition
  *   sweeps of size: time per triangle within a factor of 8 from 10^4 triangles on
  */
 #include <math.h>
@@ -47,33 +44,32 @@ static void must_hold(const family *f, double level, const char *method, const c
 		what);
 }
 
-static void check_level(const family *f, double level, const score scores[COLUMN_COUNT])
+static void check_level(const family *f, size_t l, const score scores[COLUMN_COUNT])
 {
+	const double level = f->levels[l];
 	static const int held[2] = {COLUMN_REPAIRED, COLUMN_ROBUST};
-	for (int i = 0; i < 2 && f->finite; i++) {
+	for (int i = 0; i < 2; i++) {
 		const score *s = &scores[held[i]];
 		const char *name = columns[held[i]].name;
 		must_hold(f, level, name, "zero, non-unit or non-finite tangents", s->zero);
 		must_hold(f, level, name, "faces with two values of w", s->mixed_sign);
 		must_hold(f, level, name, "faces with a wrong sign", s->wrong_sign);
+		must_hold(f, level, name, "corners more than 2^-10 off perpendicular", s->leaning);
 		for (int k = 0; k < TWIN_COUNT; k++) {
 			char what[64];
 			snprintf(what, sizeof what, "corners of the twin that is %s", twins[k].name);
 			must_hold(f, level, name, what, s->twins[k]);
 		}
 	}
-	if (!f->finite)
-		return;
 	const score *repaired = &scores[COLUMN_REPAIRED];
-	must_hold(f, level, "mikktspace", "corners more than 2^-10 off perpendicular", repaired->leaning);
 	must_hold(f, level, "mikktspace", "repaired corners further than 2^-23 from the oracle", repaired->inexact);
-	must_hold(f, level, "mikktspace", "units of rounding off the oracle",
-		repaired->worst_units > MOST_UNITS ? (size_t)repaired->worst_units : 0);
+	must_hold(f, level, "mikktspace", "kept corners outside of their bound", repaired->beyond_bound);
+	const double allowed = l < f->bounded ? 0 : f->most_unbounded;
+	must_hold(f, level, "mikktspace", "kept corners without a bound",
+		100.0 * (double)repaired->unbounded > allowed * (double)repaired->corners ? repaired->unbounded : 0);
 	must_hold(f, level, "mikktspace", "usable corners whose bytes changed", scores[COLUMN_REPAIRED].altered);
 	must_hold(f, level, "robust", "corners further than 2^-23 from the oracle", scores[COLUMN_ROBUST].off);
-	const size_t beyond = scores[COLUMN_ROBUST].beyond, counted = scores[COLUMN_ROBUST].counted;
-	must_hold(f, level, "robust", "ill-conditioned corners not counted",
-		beyond > counted + beyond / 100 ? beyond - counted : 0);
+	must_hold(f, level, "robust", "ill-conditioned corners that are not named", scores[COLUMN_ROBUST].unnamed);
 	must_hold(f, level, "robust", "corners not perpendicular to their normal", scores[COLUMN_ROBUST].tilted);
 }
 
@@ -105,7 +101,7 @@ static void write_csv(FILE *csv, const family *f, size_t l, const score scores[C
 		fprintf(csv, "%s,%g,%s,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%.3g,%zu,%.4g,%.4g,%.4g,%.1f\n", f->name,
 			f->levels[l], columns[c].name, s->faces, s->oriented, s->wrong_sign, s->mixed_sign,
 			s->corners, s->zero, s->parallel, s->judged, s->beyond, s->off, s->leaning, s->inexact,
-			s->kept, s->worst_units, s->altered,
+			s->kept, s->kept_units, s->altered,
 			s->median_degrees, s->high_degrees, s->worst_degrees, s->ns_per_triangle);
 	}
 }
@@ -157,23 +153,29 @@ static void write_summary(FILE *md, const family *f, const family_scores *scores
 /* What the default keeps and what it replaces: sums and worst of all levels. */
 static void write_default(FILE *md, const family *f, const family_scores *scores)
 {
-	size_t corners = 0, kept = 0, leaning[2] = {0, 0}, differing = 0;
-	double units = 0;
+	size_t corners = 0, replaced = 0, unbounded = 0, leaning[2] = {0, 0}, differing = 0;
+	double degrees = 0, share = 0, units = 0, unbounded_degrees = 0;
 	for (size_t l = 0; l < f->level_count; l++) {
 		const score *s = &scores->at[l][COLUMN_REPAIRED];
 		corners += s->corners;
-		kept += s->corners - s->replaced;
+		replaced += s->replaced;
+		unbounded += s->unbounded;
 		leaning[0] += scores->at[l][COLUMN_RAW].leaning;
 		leaning[1] += s->leaning;
-		units = fmax(units, s->worst_units);
+		degrees = fmax(degrees, s->kept_degrees);
+		share = fmax(share, s->kept_share);
+		units = fmax(units, s->kept_units);
+		unbounded_degrees = fmax(unbounded_degrees, s->unbounded_degrees);
 		for (int k = 0; k < TWIN_COUNT; k++)
 			differing += s->twins[k];
 	}
-	fprintf(md, "| %s | %zu | %zu | %zu | %zu |", f->name, corners, corners - kept, leaning[0], leaning[1]);
-	if (f->finite)
-		fprintf(md, " %.2g | %zu |\n", units, differing);
+	fprintf(md, "| %s | %zu | %zu | %zu | %zu | %.2g | %.2f | %.2g | %zu | ", f->name, corners, replaced, leaning[0],
+		leaning[1], degrees, share, units, unbounded);
+	if (unbounded)
+		fprintf(md, "%.3g", unbounded_degrees);
 	else
-		fprintf(md, " - | - |\n");
+		fprintf(md, "-");
+	fprintf(md, " | %zu |\n", differing);
 }
 
 static void write_chart(const char *folder, const family *f, const family_scores *scores, bool angles)
@@ -211,8 +213,7 @@ static bool run_family(const family *f, family_scores *scores, FILE *csv, FILE *
 			nt_owned_free(&mesh);
 			continue;
 		}
-		const bool done = judge_mesh(&mesh, mesh.mesh.face_count <= ORACLE_TRIANGLES, f->finite, f->parts,
-			scores->at[l]);
+		const bool done = judge_mesh(&mesh, mesh.mesh.face_count <= ORACLE_TRIANGLES, scores->at[l]);
 		sample_triangles(&mesh, samples);
 		nt_owned_free(&mesh);
 		if (!done) {
@@ -220,7 +221,7 @@ static bool run_family(const family *f, family_scores *scores, FILE *csv, FILE *
 			return false;
 		}
 		write_csv(csv, f, l, scores->at[l]);
-		check_level(f, f->levels[l], scores->at[l]);
+		check_level(f, l, scores->at[l]);
 	}
 	check_linear(f, scores);
 	printf("stress: %s\n", f->name);
@@ -265,11 +266,14 @@ int main(int argc, char **argv)
 	for (size_t i = 0; i < family_count; i++)
 		if (scores[i].at[0][0].faces)
 			write_summary(md, &families[i], &scores[i]);
-	fprintf(md, "\n## The default against MikkTSpace\n\nCorners over all levels: repaired; more than 2^-10 off perpendicular "
-		"to a unit normal, raw and repaired; the worst distance of MikkTSpace's own bytes from the exact formula, in "
-		"2^-24 times the condition in float (%d allowed); corners whose mirrored, scaled or turned twin differs.\n\n"
-		"| family | corners | repaired | leaning, raw | leaning | units | twins |\n|---|---|---|---|---|---|---|\n",
-		(int)MOST_UNITS);
+	fprintf(md, "\n## The default against MikkTSpace's formula\n\nCorners over all levels: repaired; more than 2^-10 off "
+		"perpendicular to a unit normal, raw and repaired. Of those that keep MikkTSpace's bytes and have a bound "
+		"(bounds.h): the worst angle to the exact average of their group, the largest share of a bound that was used, "
+		"and in units of 2^-24 times the condition (%d allowed). Of those without a bound, on which float arithmetic "
+		"leaves MikkTSpace itself undetermined: how many, and the worst angle to the average of all triangles of the "
+		"orientation. Corners whose mirrored, scaled or turned twin differs.\n\n"
+		"| family | corners | repaired | leaning, raw | leaning | kept, degrees | of the bound | units | no bound | "
+		"degrees there | twins |\n|---|---|---|---|---|---|---|---|---|---|---|\n", MOST_UNITS);
 	for (size_t i = 0; i < family_count; i++)
 		if (scores[i].at[0][0].faces)
 			write_default(md, &families[i], &scores[i]);

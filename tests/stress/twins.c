@@ -5,8 +5,8 @@
  *   mirrored in space, mirrored in UV   a sign changes in each product and sum, or in none
  *   scaled                              by powers of two, as long as no square or product leaves the normal floats
  *   quarter turn about z                x and y change places in dot products, x x + y y + z z, and a + b = b + a
- *   third of a turn about (1,1,1)       not exact: (a + b) + c is not (b + c) + a. Both answers must be within the
- *                                       bounds of the formula, and w equal
+ *   third of a turn about (1,1,1)       not exact: (a + b) + c is not (b + c) + a. The twin's answer must be within the
+ *                                       bound of the formula (bounds.h), and w equal
  *
  * Compared are corners whose answer is a sum of frames: MikkTSpace's own, or an average that repair took where the
  * condition is moderate. Where a face has no orientation and nothing around it has one, the answer is a perpendicular
@@ -55,6 +55,21 @@ static nt_owned make_twin(const nt_owned *mesh, const twin *kind)
 	return t;
 }
 
+/* Denormal numbers have no twin that is smaller. */
+static bool is_exact(const nt_owned *mesh, const nt_owned *other, const twin *kind)
+{
+	bool exact = true;
+	for (size_t v = 0; v < mesh->mesh.vertex_count; v++)
+		for (int i = 0; i < 3; i++) {
+			const float *p = mesh->positions[v], *q = other->positions[v];
+			const float from = p[kind->axis[i]], uv = i < 2 ? mesh->texcoords[v][i] : 0;
+			const float scaled = i < 2 ? other->texcoords[v][i] : 0;
+			exact &= !isfinite(from) || q[i] / kind->scale == kind->sign[i] * from;
+			exact &= !isfinite(uv) || scaled / kind->uv_scale == (i ? uv : kind->u_sign * uv);
+		}
+	return exact;
+}
+
 static void free_twin(nt_owned *t)
 {
 	free(t->positions);
@@ -80,19 +95,19 @@ static bool is_framed(const float *raw, const float *t, const oracle_corner *exa
 	return memcmp(raw, t, 16) == 0 || (exact->sign != 0 && exact->condition < MODERATE);
 }
 
-static bool is_near(const float *t, const float expected[3], nmtan_method method, const oracle_corner *exact,
-	bool parts)
+/* Robust and what is repaired are exact but for the last bit; MikkTSpace's own answer is within its bound. */
+static bool is_near(const twin *kind, const float *t, bool own, const oracle_corner *exact, const bound *b)
 {
-	const double other[3] = {expected[0], expected[1], expected[2]};
-	const double condition = method == NMTAN_METHOD_ROBUST ? 1 : exact->condition_float;
-	if (exact->sign == 0 || !(condition < 16777216.0) || !(exact->condition < MODERATE))
-		return true;
-	const double allowed = 2 * (MOST_UNITS * condition / 16777216.0 * 57.29577951308232 + (parts ? exact->spread_degrees : 0));
-	return measure_degrees(t, other) <= allowed;
+	const double *from = own ? b->t : exact->t;
+	double expected[3];
+	for (int i = 0; i < 3; i++)
+		expected[i] = kind->t_sign * kind->sign[i] * from[kind->axis[i]];
+	const double last_bit = exact->sign != 0 && exact->condition < MODERATE ? 1e-4 : INFINITY;
+	return !(measure_degrees(t, expected) > (own ? 2 * b->degrees : last_bit));
 }
 
 static bool differs(const twin *kind, nmtan_method method, const answers *a, size_t c, const oracle_corner *exact,
-	bool parts)
+	const bound *b)
 {
 	const float *t = a->twin_t[c];
 	float expected[3];
@@ -101,24 +116,24 @@ static bool differs(const twin *kind, nmtan_method method, const answers *a, siz
 		return true;
 	if (!is_framed(a->raw[c], a->t[c], exact) || !is_framed(a->twin_raw[c], t, exact))
 		return false;
-	const bool ranged = kind->scale == 1 || isfinite(exact->condition_float);
-	if (!kind->exact || !ranged)
-		return !is_near(t, expected, method, exact, parts);
+	if (!kind->exact || (kind->scale != 1 && !b->scalable))
+		return !is_near(kind, t, method == NMTAN_METHOD_MIKKTSPACE && memcmp(a->twin_raw[c], t, 16) == 0, exact, b);
 	return !(t[0] == expected[0] && t[1] == expected[1] && t[2] == expected[2]);
 }
 
 size_t twin_differences(const nt_owned *mesh, const twin *kind, nmtan_method method, const oracle_corner *exact,
-	bool parts)
+	const bound *bounds)
 {
 	nt_owned other = make_twin(mesh, kind);
-	const size_t count = mesh->corner_count;
-	answers a = {measure_room(count, 16), measure_room(count, 16), measure_room(count, 16), measure_room(count, 16)};
+	const size_t count = is_exact(mesh, &other, kind) ? mesh->corner_count : 0;
+	answers a = {measure_room(mesh->corner_count, 16), measure_room(mesh->corner_count, 16),
+		measure_room(mesh->corner_count, 16), measure_room(mesh->corner_count, 16)};
 	bool done = solve(mesh, method, NMTAN_REPAIR_OFF, a.raw[0]) && solve(mesh, method, NMTAN_REPAIR_ON, a.t[0]) &&
 		solve(&other, method, NMTAN_REPAIR_OFF, a.twin_raw[0]) &&
 		solve(&other, method, NMTAN_REPAIR_ON, a.twin_t[0]);
 	size_t differences = 0;
 	for (size_t c = 0; done && c < count; c++)
-		differences += differs(kind, method, &a, c, &exact[c], parts);
+		differences += differs(kind, method, &a, c, &exact[c], &bounds[c]);
 	free(a.raw);
 	free(a.t);
 	free(a.twin_raw);

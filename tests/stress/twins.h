@@ -5,7 +5,7 @@
 #ifndef NT_STRESS_TWINS_H
 #define NT_STRESS_TWINS_H
 
-#include "oracle128.h"
+#include "bounds.h"
 #include "surfaces.h"
 
 typedef struct twin {
@@ -21,8 +21,8 @@ enum { TWIN_COUNT = 5 };
 extern const twin twins[TWIN_COUNT];
 
 /* Corners at which a method's answer for the twin is not the twin of its answer. `exact` is the oracle's view of the
- * mesh, for the weights of the method; `parts` as in family. SIZE_MAX: a call failed. */
+ * mesh, for the weights of the method. SIZE_MAX: a call failed. */
 size_t twin_differences(const nt_owned *mesh, const twin *kind, nmtan_method method, const oracle_corner *exact,
-	bool parts);
+	const bound *bounds);
 
 #endif

@@ -203,13 +203,7 @@ typedef struct corner_row {
 typedef struct sums {
 	vec t, b;
 	quad spread_t, spread_b; /* sums of lengths times conditions */
-	double degrees; /* the largest angle between t and a triangle's own */
-	quad spread_float, spread_angle; /* the same in float, of directions and of weights */
-	size_t triangles;
 } sums;
-
-/* A square leaves the range of normal floats; the sign of a UV determinant may be lost. */
-enum { OUT_OF_RANGE = 1, SIGN_LOST = 2 };
 
 typedef struct oracle {
 	oracle_corner *corners; /* [corner_count] */
@@ -218,7 +212,7 @@ typedef struct oracle {
 	size_t corner_count;
 	size_t *vertex; /* [corner_count] welded */
 	sums (*sum)[2]; /* [corner_count] */
-	unsigned char *beyond; /* [corner_count] OUT_OF_RANGE, SIGN_LOST: what float does to a triangle at the welded vertex */
+	oracle_triangle *triangles; /* filled one after the other; NULL: not wanted */
 } oracle;
 
 static size_t vertex_of(const nmtan_mesh *mesh, size_t corner)
@@ -351,51 +345,97 @@ static void add_direction(oracle_weight weight, vec d, vec n, quad factor, quad 
 	}
 }
 
-/* What float arithmetic does to a triangle. u is its dP/du before it is normalised: MikkTSpace rounds the two products
- * whose difference it is, and those of the UV determinant. */
-typedef struct in_float {
-	quad condition; /* of u */
-	unsigned beyond;
-} in_float;
-
-static bool leaves_range(quad squared)
+static void to_doubles(vec v, double *to)
 {
-	return squared > 0 && (squared < 0x1p-100 || squared > 0x1p100);
+	const quad size = length(v);
+	for (int i = 0; i < 3; i++)
+		to[i] = size > 0 ? (double)(v.x[i] / size) : 0;
 }
 
-static in_float judge_float(const float *const p[3], const float *const t[3], vec u, quad det)
+static void find_range(const quad *values, size_t count, double *least, double *largest)
 {
-	quad d[2] = {0, 0}, e[2][2];
-	for (int k = 0; k < 2; k++) {
+	*least = INFINITY;
+	*largest = 0;
+	for (size_t i = 0; i < count; i++) {
+		*least = fmin(*least, (double)values[i]);
+		*largest = fmax(*largest, (double)values[i]);
+	}
+}
+
+/* What float does to the triangle as a whole. u and v are the lengths of dP/du and dP/dv times |determinant|; products
+ * [2] receives the two products that each is the difference of. */
+static void judge_float(const float *const p[3], const float *const t[3], quad u, quad v, quad det, oracle_triangle *to,
+	quad products[2])
+{
+	quad d[3] = {0, 0, 0}, e[2][2];
+	for (int k = 0; k < 3; k++)
 		for (int i = 0; i < 3; i++)
-			d[k] += ((quad)p[k + 1][i] - p[0][i]) * ((quad)p[k + 1][i] - p[0][i]);
+			d[k] += ((quad)p[(k + 1) % 3][i] - p[k][i]) * ((quad)p[(k + 1) % 3][i] - p[k][i]);
+	for (int k = 0; k < 2; k++)
 		for (int i = 0; i < 2; i++)
 			e[k][i] = fabs((double)t[k + 1][i] - t[0][i]);
-	}
-	const quad products = e[1][1] * square_root(d[0]) + e[0][1] * square_root(d[1]);
-	const quad areas = e[0][0] * e[1][1] + e[0][1] * e[1][0], size = length(u);
-	const bool leaves = leaves_range(size * size) || leaves_range(det) || leaves_range(d[0]) || leaves_range(d[1]);
-	return (in_float){size > 0 ? products / size : 0,
-		(leaves ? OUT_OF_RANGE : 0) | (areas > 0x1p21 * det ? SIGN_LOST : 0)};
+	for (int i = 0; i < 2; i++)
+		products[i] = e[1][1 - i] * square_root(d[0]) + e[0][1 - i] * square_root(d[2]);
+	const quad formed[] = {det, u, v, det > 0 ? u / det : 0, det > 0 ? v / det : 0}, squares[] = {d[0], d[1], d[2], u * u};
+	find_range(formed, sizeof formed / sizeof *formed, &to->least, &to->largest);
+	find_range(squares, sizeof squares / sizeof *squares, &to->least_square, &to->largest_square);
 }
 
-/* Adds what the triangle does to the float condition at a corner. Weights are acos() of the cosine of two unit vectors:
- * 1 / sine, but for what is left near 0 and pi, half of the bits. They do not matter where there is only one. off_unit: |n|^2 - 1, in units of 2^-24. */
-static void add_float(oracle_corner *own, sums *s, in_float f, vec unit_u, vec n, quad off_unit, quad angle, quad sine,
-	quad squares, quad edges)
+/* dP/du or dP/dv across n; returns its condition. Products and their difference may leave the range of normal floats: a
+ * unit is 2^-149 then, not 2^-24 of them. */
+static double give_direction(vec direction, vec n, double off_unit, quad products, double *to)
 {
-	const vec projected = project(n, unit_u);
-	const quad size = length(projected);
+	const quad size = length(direction);
+	const vec projected = project(n, size > 0 ? scale(1 / size, direction) : direction);
+	const quad left = length(projected);
+	to_doubles(projected, to);
+	return left > 0 ? (double)(((products + 0x1p-123) / size + 1 + off_unit) / left) : (double)INFINITY;
+}
+
+/* What it gives corner k. off_unit: |n|^2 - 1 in units of 2^-24. Weights are acos() of the cosine of two unit vectors:
+ * 1 / sine, but for what is left near 0 and pi, half of the bits. */
+static void give_corner(oracle_triangle *to, int k, const vec directions[2], vec n, double off_unit, const quad products[2],
+	quad angle, quad sine, quad squares, quad edges)
+{
 	const quad worst = 4096, inverse = sine > 0 ? square_root(squares) / sine : worst;
-	for (int i = 0; i < 3 && size > 0; i++)
-		own->own[own->own_count][i] = (double)(projected.x[i] / size);
-	own->own_count += size > 0;
-	if (size > 0)
-		s->spread_float += angle * (f.condition + 1 + off_unit) / size;
-	if (size > 0 && !(f.beyond & OUT_OF_RANGE))
-		own->own_condition_float = (double)((f.condition + 1 + off_unit) / size);
-	s->spread_angle += (inverse < worst ? inverse : worst) + (squares > 0 ? edges / square_root(squares) : 0);
-	s->triangles++;
+	to->at[k].t_condition = give_direction(directions[0], n, off_unit, products[0], to->at[k].t);
+	to->at[k].b_condition = give_direction(directions[1], n, off_unit, products[1], to->at[k].b);
+	to->at[k].angle = (double)angle;
+	to->at[k].angle_condition =
+		(double)((inverse < worst ? inverse : worst) + (squares > 0 ? edges / square_root(squares) : 0));
+}
+
+/* The one place of MikkTSpace where a rounded number decides what a triangle is. */
+static int sign_in_float(const float *a, const float *b, const float *c)
+{
+	const float bu = b[0] - a[0], bv = b[1] - a[1], cu = c[0] - a[0], cv = c[1] - a[1], p = bu * cv, q = bv * cu;
+	const float det = p - q;
+	return det > 0x1p-126f ? 1 : det < -0x1p-126f ? -1 : 0;
+}
+
+static bool equal_rows(const float *a, const float *b)
+{
+	return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
+/* Its corners and orientation; NULL: not wanted. */
+static oracle_triangle *begin_triangle(oracle *o, const size_t c[3], int side, int sign)
+{
+	oracle_triangle *to = o->triangles;
+	if (!to)
+		return NULL;
+	o->triangles++;
+	*to = (oracle_triangle){.sign = sign, .side = side ? 1 : -1, .largest = INFINITY,
+		.largest_square = INFINITY};
+	const float *p[3];
+	to->float_sign = sign_in_float(texcoord(o->mesh, c[0]), texcoord(o->mesh, c[1]), texcoord(o->mesh, c[2]));
+	for (int k = 0; k < 3; k++) {
+		to->corner[k] = c[k];
+		to->vertex[k] = o->vertex[c[k]];
+		p[k] = position(o->mesh, c[k]);
+	}
+	to->sound = !equal_rows(p[0], p[1]) && !equal_rows(p[1], p[2]) && !equal_rows(p[2], p[0]);
+	return to;
 }
 
 static void add_triangle(oracle *o, const size_t c[3], int side)
@@ -403,6 +443,7 @@ static void add_triangle(oracle *o, const size_t c[3], int side)
 	const nmtan_mesh *m = o->mesh;
 	const integer det = uv_determinant(o, c);
 	const int sign = sign_of(det);
+	oracle_triangle *given = begin_triangle(o, c, side, sign);
 	const float *p[3], *t[3];
 	for (int k = 0; k < 3; k++) {
 		p[k] = position(m, c[k]);
@@ -410,8 +451,12 @@ static void add_triangle(oracle *o, const size_t c[3], int side)
 		if (!all_finite(p[k], 3))
 			return;
 	}
-	if (sign == 0)
+	if (sign == 0) {
+		quad ignored[2];
+		if (given && all_finite(t[0], 2) && all_finite(t[1], 2) && all_finite(t[2], 2))
+			judge_float(p, t, 0, 0, 0, given, ignored);
 		return;
+	}
 	vec u, v, across, edge[3];
 	for (int i = 0; i < 3; i++) {
 		const int j = (i + 1) % 3, l = (i + 2) % 3;
@@ -424,8 +469,10 @@ static void add_triangle(oracle *o, const size_t c[3], int side)
 	}
 	const quad magnitude = to_quad(absolute(det), 2);
 	const quad lu = length(u), lv = length(v);
-	const in_float in = judge_float(p, t, u, magnitude);
-	const vec unit_u = lu > 0 ? scale(1 / lu, u) : u;
+	const vec directions[2] = {u, v};
+	quad products[2] = {0, 0};
+	if (given)
+		judge_float(p, t, lu, lv, magnitude, given, products);
 	if (o->weight == ORACLE_NONE) {
 		u = scale(1 / magnitude, u);
 		v = scale(1 / magnitude, v);
@@ -449,9 +496,9 @@ static void add_triangle(oracle *o, const size_t c[3], int side)
 		add_direction(o->weight, v, n, factor, angle, angle_condition, &s->b, &s->spread_b);
 		const float *raw = normal(m, c[k]);
 		const double off = (double)raw[0] * raw[0] + (double)raw[1] * raw[1] + (double)raw[2] * raw[2] - 1;
-		add_float(&o->corners[c[k]], s, in, unit_u, n, isfinite(off) ? fabs(off) * 0x1p24 : 0, angle, sine,
-			squares, length(e) * length(g));
-		o->beyond[o->vertex[c[k]]] |= (unsigned char)in.beyond;
+		if (given)
+			give_corner(given, k, directions, n, isfinite(off) ? fabs(off) * 0x1p24 : 0, products, angle, sine,
+				squares, length(e) * length(g));
 	}
 }
 
@@ -463,57 +510,26 @@ static double finish(vec sum, quad spread, double out[3])
 	return size > 0 ? (double)(spread / size) : (double)INFINITY;
 }
 
-/* For ORACLE_ANGLE, whose sums have its weights. */
-static double finish_float(const oracle *o, size_t vertex, int side)
+size_t oracle_triangle_count(const nmtan_mesh *mesh)
 {
-	const sums *s = &o->sum[vertex][side];
-	const quad size = length(s->t), spread = s->spread_float + (s->triangles > 1 ? s->spread_angle : 0);
-	/* alone, a triangle whose sign is lost has a wrong w, which repair sees */
-	const bool alone = s->triangles + o->sum[vertex][!side].triangles < 2;
-	return size > 0 && !(o->beyond[vertex] & (alone ? OUT_OF_RANGE : OUT_OF_RANGE | SIGN_LOST)) ? (double)(spread / size) : (double)INFINITY;
-}
-
-static double degrees_between(const double a[3], const double b[3])
-{
-	const double cross[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-	const double sine = sqrt(cross[0] * cross[0] + cross[1] * cross[1] + cross[2] * cross[2]);
-	return atan2(sine, a[0] * b[0] + a[1] * b[1] + a[2] * b[2]) * 57.29577951308232;
-}
-
-static void find_spreads(const oracle *o)
-{
-	for (size_t c = 0; c < o->corner_count; c++) {
-		oracle_corner *corner = &o->corners[c];
-		double *most = &o->sum[o->vertex[c]][corner->sign > 0].degrees;
-		for (int i = 0; i < corner->own_count; i++)
-			*most = fmax(*most, degrees_between(corner->t, corner->own[i]));
-	}
-	for (size_t c = 0; c < o->corner_count; c++) {
-		const double degrees = o->sum[o->vertex[c]][o->corners[c].sign > 0].degrees;
-		o->corners[c].spread_degrees = degrees < 90 ? degrees : 180;
-	}
-}
-
-bool oracle_solve(const nmtan_mesh *mesh, oracle_weight weight, oracle_corner *corners)
-{
-	oracle o = {.corners = corners, .mesh = mesh, .weight = weight, .corner_count = 3 * mesh->face_count};
+	size_t count = mesh->face_count;
 	for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
-		o.corner_count += mesh->face_sizes[f] == 4;
+		count += mesh->face_sizes[f] == 4;
+	return count;
+}
+
+static bool solve(const nmtan_mesh *mesh, oracle_weight weight, oracle_corner *corners, oracle_triangle *list)
+{
+	oracle o = {.corners = corners, .mesh = mesh, .weight = weight, .triangles = list,
+		.corner_count = oracle_triangle_count(mesh) + 2 * mesh->face_count};
 	o.vertex = malloc((o.corner_count + 1) * sizeof *o.vertex);
 	o.sum = calloc(o.corner_count + 1, sizeof *o.sum);
-	o.beyond = calloc(o.corner_count + 1, 1);
-	bool done = o.vertex && o.sum && o.beyond && weld(&o);
-	for (size_t c = 0; c < o.corner_count; c++)
-		corners[c] = (oracle_corner){.own_condition_float = INFINITY};
+	const bool done = o.vertex && o.sum && weld(&o);
 	for (size_t f = 0, first = 0; done && f < mesh->face_count; f++) {
 		const size_t size = mesh->face_sizes ? mesh->face_sizes[f] : 3;
 		size_t triangles[2][3];
 		const int count = cut_face(&o, first, size, triangles);
 		const int sign = face_sign(&o, triangles, count);
-		/* the halves of a folded quad pull in opposite directions; what MikkTSpace makes of them is its own */
-		if (count == 2 && sign_of(uv_determinant(&o, triangles[0])) != sign_of(uv_determinant(&o, triangles[1])))
-			for (size_t c = first; c < first + 4; c++)
-				o.beyond[o.vertex[c]] |= OUT_OF_RANGE;
 		for (int i = 0; i < count; i++)
 			add_triangle(&o, triangles[i], sign > 0);
 		for (size_t c = first; c < first + size; c++)
@@ -524,12 +540,18 @@ bool oracle_solve(const nmtan_mesh *mesh, oracle_weight weight, oracle_corner *c
 		const sums *s = &o.sum[o.vertex[c]][corners[c].sign > 0];
 		corners[c].condition = finish(s->t, s->spread_t, corners[c].t);
 		corners[c].condition_b = finish(s->b, s->spread_b, corners[c].b);
-		corners[c].condition_float = finish_float(&o, o.vertex[c], corners[c].sign > 0);
 	}
-	if (done)
-		find_spreads(&o);
-	free(o.beyond);
 	free(o.vertex);
 	free(o.sum);
 	return done;
+}
+
+bool oracle_solve(const nmtan_mesh *mesh, oracle_weight weight, oracle_corner *corners)
+{
+	return solve(mesh, weight, corners, NULL);
+}
+
+bool oracle_solve_triangles(const nmtan_mesh *mesh, oracle_corner *corners, oracle_triangle *triangles)
+{
+	return solve(mesh, ORACLE_ANGLE, corners, triangles);
 }
