@@ -247,6 +247,7 @@ const char *nt_stage_name(nt_stage stage)
 		[NT_STAGE_PARSE] = "parse",
 		[NT_STAGE_INDEX] = "index",
 		[NT_STAGE_DECODE] = "decode",
+		[NT_STAGE_TEXTURES] = "textures",
 		[NT_STAGE_NORMALS] = "normals",
 		[NT_STAGE_WELD] = "weld",
 		[NT_STAGE_TANGENTS] = "tangents",

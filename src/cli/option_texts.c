@@ -173,7 +173,7 @@ static void zsh_spec(nt_buffer *out, const nt_option_row *row, bool letter)
 		nt_buffer_text(out, ")");
 	} else if (row->values) {
 		nt_buffer_format(out, ":%s:%s", row->values,
-			row->kind != NT_OPTION_TEXT               ? " "
+			row->kind < NT_OPTION_TEXT               ? " "
 			: strcmp(row->values, "DIR") == 0 ? "_files -/"
 							  : "_files");
 	}

@@ -12,6 +12,7 @@
 
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define FIELD(name)   offsetof(nt_command, name)
@@ -86,6 +87,18 @@ const nt_option_row nt_option_rows[] = {
 	{"images", 0, NT_OPTION_CHOICE, "link|embed|copy|none", NT_IMAGES_LINK, 0,
 		"link for .gltf, embed for .glb", "how the output comes by its images", SETTING(images),
 		true},
+	{"textures", 0, NT_OPTION_CHOICE, "auto|keep|png", NT_TEXTURES_AUTO, 0, "auto",
+		"images of an OBJ; auto: what glTF does not carry becomes PNG; keep: it is left out; png: all that can be "
+		"decoded becomes PNG",
+		SETTING(textures), true},
+	{"texture-path", 0, NT_OPTION_LIST, "DIR", 0, 0, NULL,
+		"where images of an OBJ are looked for, too; may be given several times", FIELD(texture_paths), true},
+	{"bump", 0, NT_OPTION_CHOICE, "auto|height|normal|ignore", NT_BUMP_AUTO, 0, "auto",
+		"what map_Bump and bump name; auto: a height map where all pixels are grey, else a normal map; height: made a "
+		"normal map; ignore: left out",
+		SETTING(bump), false},
+	{"bump-height", 0, NT_OPTION_TEXT, "SHARE", 0, 0, "1/64",
+		"how far white is above black in a height map, as a share of its width; times -bm", FIELD(bump_height), true},
 	{"draco", 0, NT_OPTION_CHOICE, "keep|off|sequential|edgebreaker", NT_DRACO_KEEP, 0, "keep",
 		"glTF primitives that get tangents; keep: compressed ones are compressed again; off: "
 		"written plain; sequential, edgebreaker: plain ones are compressed too",
@@ -438,6 +451,23 @@ static nt_status parse_draco_bits(parser *p)
 	return NT_OK;
 }
 
+/* A height map can be as deep as wide, which is more than anybody bakes. */
+static nt_status parse_bump_height(parser *p)
+{
+	nt_settings *s = &p->command->settings;
+	const char *word = p->command->bump_height;
+	if (!word)
+		return NT_OK;
+	char *end;
+	s->bump_height = strtod(word, &end);
+	if (*end == '/')
+		s->bump_height /= strtod(end + 1, &end);
+	if (*end || !(s->bump_height > 0 && s->bump_height <= 1))
+		return nt_fail(p->error, NT_ERROR_USAGE,
+			"--bump-height: '%s' is not a number above 0 and up to 1, as 0.02 or 1/64", word);
+	return NT_OK;
+}
+
 /* Options that contradict each other. */
 static nt_status check_clashes(parser *p)
 {
@@ -570,7 +600,12 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 		command->fail_on = NT_FAIL_ON_ERROR;
 	if (command->action != NT_ACTION_RUN)
 		return NT_OK;
+	command->settings.texture_path_count = command->texture_paths.count;
+	if (command->texture_paths.count)
+		command->settings.texture_paths = command->texture_paths.items;
 	nt_status status = parse_draco_bits(&p);
+	if (!status)
+		status = parse_bump_height(&p);
 	if (!status)
 		status = check_clashes(&p);
 	if (!status)

@@ -46,6 +46,8 @@ typedef struct nt_command {
 	const char *ignore;    /* CODE,CODE; NULL: nothing */
 	const char *severity;  /* CODE=LEVEL,CODE=LEVEL; NULL: none */
 	const char *baseline;  /* file; NULL: none */
+	nt_words texture_paths;  /* those of the settings */
+	const char *bump_height; /* a number, parsed into the settings; NULL: the default */
 	const char *draco_bits; /* POS,NRM,UV,TAN, parsed into the settings; NULL: defaults */
 	int max_issues;        /* 0: all */
 	const char *uv_image;  /* folder; NULL: none */

@@ -33,12 +33,6 @@ static const char of_content[] = "-", for_the_time_being[] = ".new-";
 
 /* ---- files ---- */
 
-const char *nt_last_part(const char *path)
-{
-	const char *slash = strrchr(path, '/');
-	return slash ? slash + 1 : path;
-}
-
 nt_file_state nt_state_of(const struct stat *status)
 {
 	return (nt_file_state){status->st_dev, status->st_ino, status->st_size, status->st_mtim};

@@ -137,11 +137,21 @@ nt_status nt_file_open_untraced(nt_file *file, const char *path, nt_error *error
 	return status;
 }
 
+nt_file nt_file_of_bytes(const unsigned char *bytes, size_t size)
+{
+	return (nt_file){.data = bytes, .size = size, .borrowed = true, .fd = -1};
+}
+
+bool nt_file_is_intact(const nt_file *file)
+{
+	return !file->mapped || !nt_watch_is_shortened(file->watch);
+}
+
 void nt_file_close(nt_file *file)
 {
 	if (file->mapped)
 		munmap((void *)(uintptr_t)file->data, file->size);
-	else if (file->data != no_bytes)
+	else if (!file->borrowed && file->data != no_bytes)
 		free((void *)(uintptr_t)file->data);
 	if (file->mapped) {
 		nt_watch_end(file->watch);

@@ -11,7 +11,8 @@
 typedef struct nt_file {
 	const unsigned char *data; /* never NULL after success */
 	size_t size;
-	bool mapped; /* else malloc'ed */
+	bool mapped; /* else malloc'ed, unless it is borrowed */
+	bool borrowed;
 	int watch;   /* of a mapped file: see watch.h */
 	int fd;      /* of a mapped file, -1 otherwise */
 	uint64_t device, inode; /* which file it is; 0, 0 for standard input */
@@ -26,6 +27,9 @@ nt_status nt_file_open_untraced(nt_file *file, const char *path, nt_error *error
 
 void nt_file_close(nt_file *file);
 
+/* Bytes of the caller, as a file. */
+nt_file nt_file_of_bytes(const unsigned char *bytes, size_t size);
+
 /* Says that bytes of a mapped file will hardly be read again: their pages no longer count as memory of this
  * process, and come back when they are read all the same. What is not in the map is left alone. */
 void nt_file_forget(const nt_file *file, const void *bytes, size_t size);
@@ -35,6 +39,9 @@ void nt_file_forget(const nt_file *file, const void *bytes, size_t size);
  * read afterwards comes back. For files that are not mapped, and kernels that cannot, nothing happens. */
 void nt_file_fetch(const nt_file *file, size_t offset, size_t size);
 void nt_file_release(const nt_file *file, size_t offset, size_t size);
+
+/* Whether the file is as long as when it was opened: reading what is gone gives zeros (watch.h). */
+bool nt_file_is_intact(const nt_file *file);
 
 /* Whether path names the file that was opened. */
 bool nt_file_is(const nt_file *file, const char *path);

@@ -10,6 +10,8 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -292,6 +294,18 @@ uint64_t nt_output_copied(const nt_output *output)
 }
 
 /* ---- the end ---- */
+
+void nt_output_note(nt_output *output, const char *format, ...)
+{
+	if (!output->options.result)
+		return;
+	char text[1024];
+	va_list arguments;
+	va_start(arguments, format);
+	vsnprintf(text, sizeof text, format, arguments);
+	va_end(arguments);
+	nt_buffer_text(&output->options.result->note, text);
+}
 
 /* Which companions are not called what they would be. */
 static void note_names(const nt_output *output)

@@ -114,6 +114,9 @@ nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t
 nt_status nt_output_written(nt_output *output, const char *path, const char **temporary,
 	nt_error *error);
 
+/* Adds to nt_output_result.note, if that is wanted; begins with "; " or goes on. */
+void nt_output_note(nt_output *output, const char *format, ...) NT_PRINTF(2, 3);
+
 /* Bytes written to all files of the set so far, the interim one aside. */
 uint64_t nt_output_size(const nt_output *output);
 

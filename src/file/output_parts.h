@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 #include "ext/digest.h"
 #include "file/output.h"
+#include "file/relative_path.h"
 #include "file/temporary.h"
 
 /* What becomes of a settled companion. */
@@ -93,8 +94,6 @@ static inline bool nt_sink_is_companion(const nt_sink *sink)
 {
 	return sink->role == NT_ROLE_BUFFER || sink->role == NT_ROLE_IMAGE;
 }
-
-const char *nt_last_part(const char *path);
 
 nt_file_state nt_state_of(const struct stat *status);
 

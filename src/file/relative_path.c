@@ -104,6 +104,12 @@ bool nt_link_is_inside(const char *path, const char *folder)
 	return strncmp(path, folder, length) == 0 && path[length] == '/';
 }
 
+const char *nt_last_part(const char *path)
+{
+	const char *slash = strrchr(path, '/');
+	return slash ? slash + 1 : path;
+}
+
 void nt_link_uri(nt_buffer *text, const char *folder, const char *path)
 {
 	if (strcmp(folder, "/") == 0)

@@ -27,6 +27,9 @@ bool nt_link_is_absolute(const char *name);
 /* Whether an absolute, resolved path is below an absolute folder. */
 bool nt_link_is_inside(const char *path, const char *folder);
 
+/* Behind the last "/" of a path. */
+const char *nt_last_part(const char *path);
+
 /* Appends the URI by which a document in `folder` reaches `path`; both absolute and resolved. */
 void nt_link_uri(nt_buffer *text, const char *folder, const char *path);
 

@@ -103,6 +103,11 @@ static bool is_shortened(const watched *w)
 	       (fstat(w->fd, &info) == 0 && (uintmax_t)info.st_size < atomic_load(&w->size));
 }
 
+bool nt_watch_is_shortened(int watch)
+{
+	return is_shortened(&maps[watch]);
+}
+
 void nt_watch_end(int watch)
 {
 	watched *w = &maps[watch];

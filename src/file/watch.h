@@ -26,6 +26,9 @@ void nt_watch_forget(void);
 /* Returns NT_ERROR_IO, with the name, if a file that this thread opened has become shorter; else NT_OK. */
 nt_status nt_watch_check(nt_error *error);
 
+/* Whether a file has become shorter. */
+bool nt_watch_is_shortened(int watch);
+
 /* For bytes that a system call could not read (EFAULT): reads them as a program does. True when they were in a
  * watched map and can be read now. */
 bool nt_watch_touch(const void *bytes, size_t size);

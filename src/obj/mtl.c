@@ -219,14 +219,14 @@ static nt_status read_property(reader *r, nt_mtl_definition *d, enum action acti
 	case EMISSIVE_MAP:
 		return read_map(r, &m->emissive_map, NULL);
 	case NORMAL_MAP:
-		d->bump = NULL;
+		m->bump = NULL;
 		return read_map(r, &m->normal_map, &m->normal_scale);
 	case BUMP_MAP:
-		if (m->normal_map && !d->bump)
+		if (m->normal_map && !m->bump)
 			break;
-		d->bump_line = r->line;
-		d->bump = nt_arena_text(&r->scene->arena, r->word, r->word_length);
-		if (!d->bump)
+		m->bump_line = r->line;
+		m->bump = nt_arena_text(&r->scene->arena, r->word, r->word_length);
+		if (!m->bump)
 			return nt_fail_memory(r->error);
 		return read_map(r, &m->normal_map, &m->normal_scale);
 	case LAYER:
@@ -262,7 +262,7 @@ static nt_status begin_material(reader *r)
 			sizeof *mtl->definitions))
 		return nt_fail_memory(r->error);
 	nt_mtl_definition *d = &mtl->definitions[mtl->count++];
-	*d = (nt_mtl_definition){nt_mtl_default(name), raw_name, length, NULL, 0};
+	*d = (nt_mtl_definition){nt_mtl_default(name), raw_name, length};
 	d->material.library = r->path;
 	d->material.line = r->line;
 	return NT_OK;

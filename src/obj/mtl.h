@@ -12,8 +12,6 @@ typedef struct nt_mtl_definition {
 	nt_material material;
 	const char *raw_name;   /* as the file spells it, for comparing with usemtl; not converted */
 	size_t raw_length;
-	const char *bump;       /* the statement that normal_map came from, where it was a bump map; else NULL */
-	size_t bump_line;
 } nt_mtl_definition;
 
 /* The definitions of all libraries, in order. Texts belong to the scene's arena, the array to whoever

@@ -190,11 +190,6 @@ static void define(nt_scene *scene, uint32_t number, const nt_mtl_definition *d)
 		return;
 	}
 	*material = d->material;
-	if (d->bump) {
-		place.line = d->bump_line;
-		nt_finding_add(&scene->findings, NT_CODE_BUMP_AS_NORMAL, &place, 1, "%s of %.120s", d->bump,
-			material->name);
-	}
 }
 
 static nt_status make_materials(state *s, const nt_mtl *mtl)

@@ -24,6 +24,7 @@ typedef struct run {
 	nt_scene scene;
 	const nt_format_entry *reader, *writer; /* writer: NULL where --check judges the input as it is */
 	nt_read_options read_options;
+	nt_textures *textures; /* NULL: the output has none */
 	double stage_begin;
 	nt_stage stage;
 	bool input_is_open;
@@ -142,6 +143,7 @@ static nt_status write_scene(run *r)
 		.draco_bits = {s->draco_bits[0], s->draco_bits[1], s->draco_bits[2], s->draco_bits[3]},
 		.precision = s->precision,
 		.allow_outside = s->allow_outside,
+		.textures = r->textures,
 	};
 	nt_late late = {.scene = &r->scene, .reader = r->reader, .settings = s, .options = &r->read_options,
 		.output = r->writer->format, .summary = r->summary, .begin_stage = begin_stage, .run = r};
@@ -176,6 +178,13 @@ static nt_status write_scene(run *r)
 	return nt_output_commit(output, r->error);
 }
 
+/* Whether materials become those of a new glTF. */
+static bool makes_document(const run *r)
+{
+	return r->writer && r->writer->format != NT_FORMAT_PLY && r->scene.format != NT_FORMAT_GLTF &&
+	       r->scene.format != NT_FORMAT_GLB;
+}
+
 static nt_status run_stages(run *r)
 {
 	nt_status status = nt_choose_writer(r->settings, r->output_path, NULL, &r->writer, r->error);
@@ -187,16 +196,22 @@ static nt_status run_stages(run *r)
 	}
 	if (!status)
 		status = read_scene(r);
+	if (!status && makes_document(r)) {
+		begin_stage(r, NT_STAGE_TEXTURES);
+		status = nt_stage_textures(&r->scene, r->settings, &r->textures, r->error);
+	}
 	if (!status) {
 		begin_stage(r, NT_STAGE_NORMALS);
 		status = nt_stage_normals(&r->scene, r->settings->normals, r->error);
 	}
 	if (!status) {
 		begin_stage(r, NT_STAGE_TANGENTS);
-		status = nt_stage_tangents(&r->scene, r->settings,
-			r->writer ? r->writer->format : NT_FORMAT_UNKNOWN, r->summary, r->error);
+		status = nt_stage_tangents_and_textures(&r->scene, r->settings,
+			r->writer ? r->writer->format : NT_FORMAT_UNKNOWN, r->textures, r->summary, r->error);
 		nt_error_in_file(r->error, r->input_path);
 	}
+	if (!status)
+		status = nt_tell_textures(&r->scene, r->settings, r->textures, r->error);
 	if (!status && r->settings->list_meshes)
 		status = nt_stage_listing(&r->scene, r->summary, r->error);
 	if (!status && r->writer)
@@ -214,6 +229,8 @@ static void forget_attempt(run *r)
 	memcpy(seconds, s->seconds, sizeof seconds);
 	s->trace = (nt_trace){0};
 	nt_scene_free(&r->scene);
+	nt_textures_free(r->textures);
+	r->textures = NULL;
 	nt_summary_free(s);
 	memset(s, 0, sizeof *s);
 	memcpy(s->seconds, seconds, sizeof seconds);
@@ -266,6 +283,7 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->rounding = r.scene.rounding;
 	r.scene.findings = (nt_finding_list){0};
 	nt_scene_free(&r.scene);
+	nt_textures_free(r.textures);
 	nt_file_close(&r.input);
 	nt_trace_use(outer);
 	summary->total_seconds = nt_seconds() - begin;

@@ -7,6 +7,7 @@
 
 #include "file/output.h"
 #include "file/trace.h"
+#include "image/textures.h"
 #include "report/report.h"
 #include "scene/format.h"
 #include "scene/select.h"
@@ -20,12 +21,21 @@ typedef enum nt_normals {
 	NT_NORMALS_REPLACE_SMOOTH
 } nt_normals;
 
+/* What map_Bump and bump name. */
+typedef enum nt_bump {
+	NT_BUMP_AUTO,   /* grey images are height maps, others normal maps: also of norm and map_Kn */
+	NT_BUMP_HEIGHT,
+	NT_BUMP_NORMAL,
+	NT_BUMP_IGNORE
+} nt_bump;
+
 /* Stages as --timing prints them. */
 typedef enum nt_stage {
 	NT_STAGE_MAP,
 	NT_STAGE_PARSE,
 	NT_STAGE_INDEX,    /* corners with indices of their own become vertices: OBJ */
 	NT_STAGE_DECODE,
+	NT_STAGE_TEXTURES, /* images are looked for; they are made beside the solve */
 	NT_STAGE_NORMALS,
 	NT_STAGE_WELD,     /* weld and split of large meshes; small ones count as tangents */
 	NT_STAGE_TANGENTS,
@@ -54,6 +64,11 @@ typedef struct nt_settings {
 	nt_format output_format; /* NT_FORMAT_UNKNOWN: by name */
 	int texcoord_set;        /* -1: auto */
 	unsigned threads;        /* 0: all */
+	nt_texture_choice textures;
+	nt_bump bump;
+	double bump_height;      /* 0: the default */
+	const char *const *texture_paths; /* [texture_path_count] folders */
+	size_t texture_path_count;
 	bool bitangents;
 	bool embed;
 	bool verify;   /* read the output back with tinygltf before it takes its name */

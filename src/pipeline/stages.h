@@ -32,6 +32,19 @@ nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, nt_error *error);
 nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
 	nt_summary *summary, nt_error *error);
 
+/* Finds the images of materials for a document that is made anew, and notes in the materials which they are. *textures is to
+ * be freed after failure too. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
+nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, nt_textures **textures, nt_error *error);
+
+/* nt_stage_tangents(), and beside it the textures are made; these may be NULL. */
+nt_status nt_stage_tangents_and_textures(nt_scene *scene, const nt_settings *settings, nt_format output,
+	nt_textures *textures, nt_summary *summary, nt_error *error);
+
+/* Adds what is to be said about the images of materials to the findings; textures: NULL where they were not looked at.
+ * Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const nt_textures *textures,
+	nt_error *error);
+
 /* Fills summary->report: of the scene as it now is, or of what went wrong. written: the format that is judged,
  * NT_FORMAT_UNKNOWN: the input as it is. */
 nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_format written, nt_status status,

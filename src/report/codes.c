@@ -24,18 +24,33 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Export the material library again, or correct the name.",
 		"an OBJ with \"usemtl ghost\" and no mtllib"),
 	ROW(IMAGE_MISSING, WARNING, "image cannot be read",
-		"A material refers to an image file that is not there. The output keeps the reference where "
-		"it can.",
-		"Put the image where the material looks for it, or use --images=none.",
+		"A material refers to an image file that is not there. The output is without it; with --images=link it "
+		"refers to where the file should be.",
+		"Put the image where the material looks for it, or name its folder with --texture-path.",
 		"an MTL with \"map_Kd missing.png\""),
 	ROW(IMAGE_TYPE, WARNING, "image has a type that glTF does not carry",
-		"glTF carries PNG and JPEG (others by extension). TGA, BMP and the like are left out.",
+		"glTF carries PNG and JPEG (others by extension). TGA, BMP, PSD, HDR and TIFF become PNG, unless "
+		"--textures=keep is given; anything else is left out.",
 		"Convert the image to PNG and name that in the material.",
+		"an MTL with \"map_Kd wood.exr\""),
+	ROW(IMAGE_DAMAGED, WARNING, "image cannot be decoded",
+		"An image had to be decoded, to be converted or to see whether it is a height map, and that failed. What glTF "
+		"carries is used as it is, anything else is left out.",
+		"Write the image again.",
+		"a TGA that ends before its last pixel"),
+	ROW(IMAGE_ELSEWHERE, WARNING, "image was found elsewhere",
+		"The file that a material names is not there, but one whose path ends alike is: in the folder of the material "
+		"library or of the OBJ, in a folder of --texture-path, or under a name in another case.",
+		"If it is the wrong one, correct the name in the material.",
+		"an MTL with \"map_Kd C:/art/wood.png\" beside wood.png"),
+	ROW(IMAGE_CONVERTED, INFO, "image was converted",
+		"An image was converted to what glTF carries: another type to PNG, a height map to a normal map.",
+		"Nothing. --textures and --bump say what is converted, --bump-height how high heights are.",
 		"an MTL with \"map_Kd wood.tga\""),
 	ROW(BUMP_AS_NORMAL, WARNING, "bump map was taken as a normal map",
-		"map_Bump and bump are height maps by definition, but most files put a normal map there, so "
-		"nmtan uses the image as a normal map.",
-		"If it is a normal map, write norm instead; if it is a height map, bake it to a normal map.",
+		"map_Bump and bump are height maps by definition, but most files put a normal map there. An image whose "
+		"pixels are not all grey is taken as one.",
+		"If it is a normal map, write norm instead, or use --bump=normal; if it is a height map, use --bump=height.",
 		"an MTL with \"map_Bump n.png\""),
 	ROW(MATERIAL_LOST, WARNING, "{count} {property of a material is|properties of materials are} not carried over",
 		"A texture, a texture's place or a layer that a material names is not in the output, which will look different. "

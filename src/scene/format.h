@@ -96,6 +96,7 @@ typedef struct nt_write_options {
 	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
 	nt_precision precision;
 	bool allow_outside;
+	const struct nt_textures *textures; /* of a new document's materials: image/textures.h; NULL: none */
 } nt_write_options;
 
 #endif

@@ -59,6 +59,11 @@ typedef struct nt_material {
 	const char *base_color_map;  /* map_Kd */
 	const char *emissive_map;    /* map_Ke */
 	const char *normal_map;      /* norm, map_Kn, map_Bump, bump */
+	const char *bump;            /* the statement that normal_map came from, where it was a bump map; else NULL */
+	size_t bump_line;
+
+	/* wishes in nt_write_options.textures, filled by the pipeline; NT_NONE: none */
+	uint32_t base_color_texture, emissive_texture, normal_texture;
 } nt_material;
 
 /* The part of a mesh that one draw call shows. */

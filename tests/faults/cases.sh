@@ -16,10 +16,22 @@ make_inputs() {
 	python3 "$ROOT/tests/support/cost_inputs.py" windows 20 windows.glb 12 || return 1
 	printf 'quad.obj\nplates.glb\n' >list
 	python3 "$ROOT/tests/support/gltf_manifold.py" manifold.gltf || return 1
+	make_images &&
 	"$NMTAN" -q --draco=sequential plates.gltf draco.glb && "$NMTAN" -q --draco=edgebreaker morph.gltf edge.gltf &&
 		"$NMTAN" -q morph.gltf morph.glb && "$faults/make_meshopt" meshopt.glb
 }
 
+# An OBJ with one image of each decoder: TGA, TIFF, a height map in PNG, JPEG.
+make_images() {
+	local write="python3 $ROOT/tests/support/images.py write"
+	$write a.tga 4 4 '(x, y, 3)' && $write b.tif 4 4 '(x, y, 4)' && $write c.png 4 4 'x * y' &&
+		cp "$ROOT/data/grey.jpg" d.jpg || return 1
+	printf '%s\n' "newmtl a" "map_Kd a.tga" "map_Ke b.tif" "norm c.png" "newmtl b" "bump d.jpg" >images.mtl
+	printf '%s\n' "mtllib images.mtl" "v 0 0 0" "v 1 0 0" "v 0 1 0" "vt 0 0" "vt 1 0" "vt 0 1" "usemtl a" \
+		"f 1/1 2/2 3/3" "usemtl b" "f 3/3 2/2 1/1" >images.obj
+}
+
+images="images.obj images.mtl a.tga b.tif c.png d.jpg"
 cube="mirrored_cube.obj mirrored_cube.mtl bumps.png"
 plates="plates.gltf plates.bin bumps.png"
 cases() {
@@ -27,6 +39,8 @@ cases() {
 		obj | $cube || mirrored_cube.obj o.gltf
 		obj, --verify | $cube || --verify --images=embed mirrored_cube.obj o.glb
 		obj, --images=copy | $cube | many | --images=copy -d out mirrored_cube.obj
+		images | $images || --images=embed images.obj o.glb
+		images beside | $images || images.obj o.gltf
 		ply | quad_wedge.ply || quad_wedge.ply o.ply
 		ply to gltf | quad_wedge.ply || quad_wedge.ply o.gltf
 		glb | plates.glb || --verify plates.glb o.glb

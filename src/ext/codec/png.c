@@ -14,10 +14,40 @@ enum { MOST_CHUNK_BYTES = 16 << 20, MOST_RATIO = 1032, SLACK_BYTES = 4096 };
 /* A third of the time of the library's default level for one tenth more bytes (make bench, images). */
 enum { LEVEL = 3 };
 
+/* The library passes on what zlib says, which is the same for damaged data and for want of memory. */
+static _Thread_local bool exhausted;
+
+static void *note(void *block)
+{
+	exhausted |= !block;
+	return block;
+}
+
+static void *SPNG_CDECL allocate(size_t size)
+{
+	return note(malloc(size));
+}
+
+static void *SPNG_CDECL reallocate(void *block, size_t size)
+{
+	return note(realloc(block, size));
+}
+
+static void *SPNG_CDECL allocate_zeros(size_t count, size_t size)
+{
+	return note(calloc(count, size));
+}
+
+static spng_ctx *create(int flags)
+{
+	struct spng_alloc functions = {allocate, reallocate, allocate_zeros, free};
+	exhausted = false;
+	return spng_ctx_new2(&functions, flags);
+}
+
 static nt_status fail(int code, const char *what, nt_error *error)
 {
-	/* all that zlib's initialization can lack is memory */
-	if (code == SPNG_EMEM || code == SPNG_EZLIB_INIT)
+	if (exhausted || code == SPNG_EMEM)
 		return nt_fail_memory(error);
 	return nt_fail(error, NT_ERROR_INPUT, "%s: %s", what, spng_strerror(code));
 }
@@ -90,7 +120,7 @@ static nt_status decode(spng_ctx *png, size_t size, uint32_t rows, nt_pixels *pi
 nt_status nt_decode_png(const unsigned char *bytes, size_t size, uint32_t rows, nt_pixels *pixels, nt_error *error)
 {
 	*pixels = (nt_pixels){0};
-	spng_ctx *png = spng_ctx_new(0);
+	spng_ctx *png = create(0);
 	if (!png)
 		return nt_fail_memory(error);
 	spng_set_chunk_limits(png, MOST_CHUNK_BYTES, MOST_CHUNK_BYTES);
@@ -108,7 +138,7 @@ nt_status nt_encode_png(const nt_pixels *pixels, unsigned char **bytes, size_t *
 		SPNG_COLOR_TYPE_TRUECOLOR, SPNG_COLOR_TYPE_TRUECOLOR_ALPHA};
 	struct spng_ihdr header = {.width = pixels->width, .height = pixels->height,
 		.bit_depth = (uint8_t)pixels->bits, .color_type = color_types[pixels->channels]};
-	spng_ctx *png = spng_ctx_new(SPNG_CTX_ENCODER);
+	spng_ctx *png = create(SPNG_CTX_ENCODER);
 	if (!png)
 		return nt_fail_memory(error);
 	spng_set_option(png, SPNG_ENCODE_TO_BUFFER, 1);

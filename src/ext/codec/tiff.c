@@ -17,7 +17,8 @@ enum { MOST_RATIO = 2048, SLACK_BYTES = 65536, MOST_BLOCK_BYTES = 1 << 30 };
 typedef struct source {
 	const unsigned char *bytes;
 	size_t size, position;
-	char message[256]; /* the last one */
+	char message[256]; /* the first one */
+	bool exhausted;
 } source;
 
 static tmsize_t read_source(thandle_t handle, void *to, tmsize_t count)
@@ -55,11 +56,23 @@ static toff_t source_size(thandle_t handle)
 	return ((source *)handle)->size;
 }
 
+/* The library has no code for it. A block beyond our limit is the file's fault. */
+static bool is_of_memory(const char *message)
+{
+	return !strstr(message, "beyond") &&
+	       (strstr(message, "emory") || strstr(message, "No space") || strstr(message, "lloc") ||
+		       strstr(message, "Insertion in tif_map"));
+}
+
 static int on_error(TIFF *tiff, void *user, const char *module, const char *format, va_list arguments)
 {
 	(void)tiff, (void)module;
 	source *s = user;
-	vsnprintf(s->message, sizeof s->message, format, arguments);
+	char message[sizeof s->message];
+	vsnprintf(message, sizeof message, format, arguments);
+	s->exhausted |= is_of_memory(message);
+	if (!*s->message)
+		strcpy(s->message, message);
 	return 1;
 }
 
@@ -69,16 +82,9 @@ static int on_warning(TIFF *tiff, void *user, const char *module, const char *fo
 	return 1;
 }
 
-/* The library has no code for it. A block beyond our limit is the file's fault. */
-static bool is_exhausted(const source *s)
-{
-	return !strstr(s->message, "beyond") &&
-	       (strstr(s->message, "emory") || strstr(s->message, "No space") || strstr(s->message, "llocat"));
-}
-
 static nt_status fail(const source *s, nt_error *error)
 {
-	if (is_exhausted(s))
+	if (s->exhausted)
 		return nt_fail_memory(error);
 	return nt_fail(error, NT_ERROR_INPUT, "TIFF: %s", *s->message ? s->message : "damaged");
 }

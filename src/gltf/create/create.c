@@ -173,11 +173,16 @@ static nt_status each_material(composition *c, nt_error *error,
 	return status;
 }
 
-static nt_status find_images(composition *c, uint32_t material, bool textured, nt_error *error)
+static nt_status use_images(composition *c, uint32_t material, bool textured, nt_error *error)
 {
 	if (!textured)
 		return NT_OK;
-	return nt_image_set_find(c->images, &c->scene->materials[material], c->output, error);
+	const nt_material *m = &c->scene->materials[material];
+	const uint32_t wishes[] = {m->base_color_texture, m->emissive_texture, m->normal_texture};
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < sizeof wishes / sizeof *wishes && !status; i++)
+		status = nt_image_set_use(c->images, wishes[i], c->output, error);
+	return status;
 }
 
 static float clamp01(float value)
@@ -206,9 +211,9 @@ static nt_status add_material(composition *c, uint32_t index, bool textured, nt_
 	for (int i = 0; i < 4; i++)
 		material.base_color[i] = clamp01(from->base_color[i]);
 	if (textured) {
-		material.base_color_texture = nt_image_set_texture(c->images, from, from->base_color_map);
-		material.emissive_texture = nt_image_set_texture(c->images, from, from->emissive_map);
-		material.normal_texture = nt_image_set_texture(c->images, from, from->normal_map);
+		material.base_color_texture = nt_image_set_texture(c->images, from->base_color_texture);
+		material.emissive_texture = nt_image_set_texture(c->images, from->emissive_texture);
+		material.normal_texture = nt_image_set_texture(c->images, from->normal_texture);
 	}
 	*known = nt_model_add_material(c->model, &material);
 	return NT_OK;
@@ -216,9 +221,9 @@ static nt_status add_material(composition *c, uint32_t index, bool textured, nt_
 
 static nt_status plan_materials(composition *c, nt_error *error)
 {
-	nt_status status = nt_image_set_create(&c->images, c->scene, &c->options, error);
+	nt_status status = nt_image_set_create(&c->images, &c->options, error);
 	if (status == NT_OK)
-		status = each_material(c, error, find_images);
+		status = each_material(c, error, use_images);
 	/* The main file comes before its companions, and is none of the images that it refers to. */
 	if (status == NT_OK)
 		status = nt_output_add(c->output, c->options.path, NT_ROLE_MAIN, &c->main, error);
@@ -476,8 +481,6 @@ nt_status nt_gltf_compose(nt_scene *scene, const nt_write_options *options, nt_o
 {
 	composition c = {.scene = scene, .options = *options, .output = output};
 	const bool alone = options->format == NT_FORMAT_GLB || options->embed;
-	if (c.options.images == NT_IMAGES_DEFAULT)
-		c.options.images = alone ? NT_IMAGES_EMBED : NT_IMAGES_LINK;
 	if (!alone && strcmp(options->path, "-") == 0)
 		return nt_fail(error, NT_ERROR_USAGE,
 			"glTF with a .bin cannot go to standard output; write glb, or use --embed");

@@ -74,6 +74,13 @@ static void every_option_sets_its_field(void **state)
 	assert_int_equal(c.progress, NT_PROGRESS_OFF);
 	assert_true(c.settings.allow_outside && c.settings.bitangents && c.settings.embed);
 	assert_true(c.settings.sync && c.settings.verify && c.settings.dry_run && c.timing);
+	accepts(&c, WORDS("--textures=png", "--bump=ignore", "--bump-height=1/32", "--texture-path=x", "--texture-path", "y",
+			    "a", "b"));
+	assert_int_equal(c.settings.textures, NT_TEXTURES_PNG);
+	assert_int_equal(c.settings.bump, NT_BUMP_IGNORE);
+	assert_true(c.settings.bump_height == 1.0 / 32);
+	assert_int_equal(c.settings.texture_path_count, 2);
+	assert_string_equal(c.settings.texture_paths[1], "y");
 	accepts(&c, WORDS("-n", "-v", "a", "b"));
 	assert_true(c.settings.no_clobber);
 	assert_int_equal(c.verbosity, 1);
@@ -195,6 +202,10 @@ static void bad_values_are_refused_whole(void **state)
 	refuses("'25' for positions", WORDS("--draco-bits=25,12,12,12", "a", "b"));
 	refuses("'1' for normals", WORDS("--draco-bits=14,1,12,12", "a", "b"));
 	refuses("''", WORDS("--draco-bits=14,12,,12", "a", "b"));
+	refuses("'3'", WORDS("--bump-height=3", "a", "b"));
+	refuses("'1/0'", WORDS("--bump-height=1/0", "a", "b"));
+	refuses("'0.1x'", WORDS("--bump-height=0.1x", "a", "b"));
+	refuses("''", WORDS("--texture-path=", "a", "b"));
 	refuses("'14,12,12'", WORDS("--draco-bits=14,12,12", "a", "b"));
 	refuses("'14,12,12,12,12'", WORDS("--draco-bits=14,12,12,12,12", "a", "b"));
 }

@@ -63,7 +63,7 @@ static void every_property_is_read(void **state)
 	assert_string_equal(d->material.base_color_map, "stone.png");
 	assert_string_equal(d->material.emissive_map, "glow.jpg");
 	assert_string_equal(d->material.normal_map, "bumps.png");
-	assert_null(d->bump);
+	assert_null(d->material.bump);
 	assert_int_equal(r.scene.findings.count, 0);
 	close_reading(&r);
 }
@@ -113,8 +113,8 @@ static void bump_is_kept_apart_and_yields_to_normal_maps(void **state)
 		const nt_mtl_definition *d = parse_one(&r, text);
 		assert_string_equal(d->material.normal_map, "b.png");
 		assert_true(d->material.normal_scale == 0.5f);
-		assert_string_equal(d->bump, words[i]);
-		assert_int_equal(d->bump_line, 2);
+		assert_string_equal(d->material.bump, words[i]);
+		assert_int_equal(d->material.bump_line, 2);
 		close_reading(&r);
 	}
 	static const char *const both[] = {"newmtl a\nbump -bm 3 b.png\nmap_Kn n.png\n",
@@ -124,7 +124,7 @@ static void bump_is_kept_apart_and_yields_to_normal_maps(void **state)
 		const nt_mtl_definition *d = parse_one(&r, both[i]);
 		assert_string_equal(d->material.normal_map, "n.png");
 		assert_true(d->material.normal_scale == 1);
-		assert_null(d->bump);
+		assert_null(d->material.bump);
 		close_reading(&r);
 	}
 }
@@ -275,13 +275,12 @@ static void libraries_are_found_beside_the_obj(void **state)
 	assert_string_equal(materials[1].name, "a");
 	assert_true(materials[1].base_color[0] == 0.5f);
 	assert_string_equal(materials[2].name, "b c");
-	/* the bump map of a, not that of a material without faces; a twice more (in b c.mtl and by "a.mtl") */
-	assert_int_equal(r.scene.findings.count, 2);
-	assert_int_equal(r.scene.findings.items[0].code, NT_CODE_BUMP_AS_NORMAL);
-	assert_string_equal(r.scene.findings.items[0].detail, "bump of a");
-	assert_int_equal(r.scene.findings.items[0].place.line, 3);
-	assert_int_equal(r.scene.findings.items[1].code, NT_CODE_STATEMENT_IGNORED);
-	assert_int_equal(r.scene.findings.items[1].count, 2);
+	assert_string_equal(materials[1].bump, "bump");
+	assert_int_equal(materials[1].bump_line, 3);
+	/* a twice more (in b c.mtl and by "a.mtl") */
+	assert_int_equal(r.scene.findings.count, 1);
+	assert_int_equal(r.scene.findings.items[0].code, NT_CODE_STATEMENT_IGNORED);
+	assert_int_equal(r.scene.findings.items[0].count, 2);
 	close_reading(&r);
 }
 

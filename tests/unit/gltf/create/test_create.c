@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * New glTF documents: their geometry in every container. Their images are in tests/unit/gltf/edit/test_images.c.
+ * New glTF documents: their geometry in every container. Their images are in tests/unit/gltf/create/test_images.c.
  */
 #include "gltf/create/create.h"
 #include "hand_gltf.h"

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Images of new glTF documents: linked, embedded, copied or left out.
+ * Images of new glTF documents: linked, embedded, copied or left out. What is decoded is in tests/unit/image.
  */
 #include "hand_gltf.h"
 
 #include <sys/stat.h>
+#include "pipeline/stages.h"
 
 static const unsigned char png[] = "\x89PNG\r\n\x1a\n and then some";
 static const unsigned char jpeg[] = "\xff\xd8\xff\xe0 and then some more";
@@ -31,6 +32,30 @@ static nt_scene *make_textured(hand_scene *hand)
 	return scene;
 }
 
+/* As the pipeline does it. The images here are no images, and none is looked into. */
+static nt_status compose_with_images(nt_scene *scene, nt_write_options options, const char *name, nt_error *error)
+{
+	const nt_settings settings = {.images = options.images, .allow_outside = options.allow_outside,
+		.bump = NT_BUMP_NORMAL};
+	const nt_texture_rules rules = {.threads = 1};
+	nt_textures *textures;
+	assert_int_equal(nt_stage_textures(scene, &settings, &textures, error), NT_OK);
+	assert_int_equal(nt_textures_make(textures, &rules, error), NT_OK);
+	assert_int_equal(nt_tell_textures(scene, &settings, textures, error), NT_OK);
+	options.textures = textures;
+	const nt_status status = compose(scene, options, name, error);
+	nt_textures_free(textures);
+	return status;
+}
+
+static void compose_images_well(nt_scene *scene, nt_write_options options, const char *name)
+{
+	nt_error error;
+	const nt_status status = compose_with_images(scene, options, name, &error);
+	if (status != NT_OK)
+		fail_msg("%s", error.message);
+}
+
 static const nt_finding *finding_of(const nt_scene *scene, nt_code code)
 {
 	for (size_t i = 0; i < scene->findings.count; i++)
@@ -45,7 +70,7 @@ static void linked_images_are_relative_to_the_output(void **state)
 	hand_scene hand;
 	nt_scene *scene = make_textured(&hand);
 	mkdir(in_folder("out"), 0777);
-	compose_well(scene, (nt_write_options){0}, "out/linked.gltf");
+	compose_images_well(scene, (nt_write_options){0}, "out/linked.gltf");
 	char *text = text_of("out/linked.gltf");
 	assert_non_null(strstr(text, "\"uri\":\"../mtl/tex/a%20b.png\""));
 	assert_non_null(strstr(text, "\"uri\":\"../mtl/n.jpg\""));
@@ -64,7 +89,7 @@ static void embedded_images_lie_behind_the_geometry(void **state)
 	(void)state;
 	hand_scene hand;
 	nt_scene *scene = make_textured(&hand);
-	compose_well(scene, (nt_write_options){0}, "images.glb");
+	compose_images_well(scene, (nt_write_options){0}, "images.glb");
 	nt_file file;
 	nt_error error;
 	assert_int_equal(nt_file_open(&file, in_folder("images.glb"), &error), NT_OK);
@@ -86,7 +111,7 @@ static void copied_images_stand_beside_the_output(void **state)
 	hand_scene hand;
 	nt_scene *scene = make_textured(&hand);
 	mkdir(in_folder("copies"), 0777);
-	compose_well(scene, (nt_write_options){.images = NT_IMAGES_COPY}, "copies/c.gltf");
+	compose_images_well(scene, (nt_write_options){.images = NT_IMAGES_COPY}, "copies/c.gltf");
 	char *text = text_of("copies/c.gltf"), *copy = text_of("copies/n.jpg");
 	assert_non_null(strstr(text, "\"uri\":\"n.jpg\""));
 	assert_non_null(strstr(text, "\"uri\":\"a%20b.png\""));
@@ -98,7 +123,7 @@ static void copied_images_stand_beside_the_output(void **state)
 	/* two of one name, and one that is there already: the other is called by its bytes (xxhsum -H2) */
 	put_file("mtl/a b.png", jpeg, sizeof jpeg);
 	hand.material.normal_map = "a b.png";
-	compose_well(scene, (nt_write_options){.images = NT_IMAGES_COPY}, "mtl/c.gltf");
+	compose_images_well(scene, (nt_write_options){.images = NT_IMAGES_COPY}, "mtl/c.gltf");
 	text = text_of("mtl/c.gltf");
 	assert_non_null(strstr(text, "\"uri\":\"a%20b.png\""));
 	assert_non_null(strstr(text, "\"uri\":\"a%20b-256d04da728a78c9.png\""));
@@ -112,7 +137,7 @@ static void no_images_means_no_textures(void **state)
 	(void)state;
 	hand_scene hand;
 	nt_scene *scene = make_textured(&hand);
-	compose_well(scene, (nt_write_options){.images = NT_IMAGES_NONE}, "none.gltf");
+	compose_images_well(scene, (nt_write_options){.images = NT_IMAGES_NONE}, "none.gltf");
 	char *text = text_of("none.gltf");
 	assert_null(strstr(text, "exture"));
 	assert_non_null(strstr(text, "\"material\":0"));
@@ -126,9 +151,13 @@ static void missing_and_foreign_images_are_findings(void **state)
 	hand_scene hand;
 	nt_scene *scene = make_textured(&hand);
 	hand.material.base_color_map = "gone.png";
-	hand.material.emissive_map = "t.tga";
+	hand.material.emissive_map = "t.tga"; /* three bytes */
 	hand.material.normal_map = NULL;
-	compose_well(scene, (nt_write_options){0}, "gone.gltf");
+	compose_images_well(scene, (nt_write_options){0}, "gone.gltf");
+	char *text = text_of("gone.gltf");
+	assert_null(strstr(text, "gone.png")); /* nobody asked for a link to nothing */
+	free(text);
+	compose_images_well(scene, (nt_write_options){.images = NT_IMAGES_LINK}, "gone.gltf");
 	const nt_finding *missing = finding_of(scene, NT_CODE_IMAGE_MISSING);
 	assert_non_null(missing);
 	assert_string_equal(missing->detail, "gone.png");
@@ -137,12 +166,12 @@ static void missing_and_foreign_images_are_findings(void **state)
 	const nt_finding *type = finding_of(scene, NT_CODE_IMAGE_TYPE);
 	assert_non_null(type);
 	assert_string_equal(type->detail, "t.tga");
-	char *text = text_of("gone.gltf");
+	text = text_of("gone.gltf");
 	assert_non_null(strstr(text, "\"uri\":\"mtl/gone.png\"")); /* the link stays */
 	assert_null(strstr(text, "tga"));
 	assert_null(strstr(text, "emissiveTexture"));
 	free(text);
-	compose_well(scene, (nt_write_options){0}, "gone.glb"); /* there is nothing to embed */
+	compose_images_well(scene, (nt_write_options){0}, "gone.glb"); /* there is nothing to embed */
 	opened file = open_back("gone.glb");
 	close_back(&file);
 	nt_scene_free(scene);
@@ -153,18 +182,19 @@ static void images_outside_of_the_mtl_folder_need_leave(void **state)
 	(void)state;
 	hand_scene hand;
 	nt_scene *scene = make_textured(&hand);
+	scene->path = hand.material.library; /* beside the OBJ would be inside, too */
 	assert_int_equal(symlink("../outside.png", in_folder("mtl/link.png")), 0);
 	hand.material.base_color_map = "../outside.png";
 	hand.material.emissive_map = "link.png";
 	hand.material.normal_map = "C:\\work\\n.jpg"; /* found by its last part */
-	compose_well(scene, (nt_write_options){0}, "confined.gltf");
+	compose_images_well(scene, (nt_write_options){0}, "confined.gltf");
 	char *text = text_of("confined.gltf");
 	assert_null(strstr(text, "outside"));
 	assert_null(strstr(text, "link.png"));
 	assert_non_null(strstr(text, "\"uri\":\"mtl/n.jpg\""));
 	assert_non_null(strstr(finding_of(scene, NT_CODE_IMAGE_MISSING)->detail, "../outside.png"));
 	free(text);
-	compose_well(scene, (nt_write_options){.allow_outside = true}, "confined.gltf");
+	compose_images_well(scene, (nt_write_options){.allow_outside = true}, "confined.gltf");
 	text = text_of("confined.gltf");
 	assert_non_null(strstr(text, "\"uri\":\"outside.png\""));
 	assert_non_null(strstr(text, "\"uri\":\"mtl/link.png\""));
@@ -179,7 +209,7 @@ static void primitive_without_texcoords_gets_no_textures(void **state)
 	hand_scene hand;
 	nt_scene *scene = make_textured(&hand);
 	hand.mesh.texcoords = NULL;
-	compose_well(scene, (nt_write_options){0}, "plain.gltf");
+	compose_images_well(scene, (nt_write_options){0}, "plain.gltf");
 	char *text = text_of("plain.gltf");
 	assert_null(strstr(text, "exture"));
 	assert_null(strstr(text, "images"));
@@ -194,7 +224,7 @@ static void images_are_safe_from_the_output(void **state)
 	nt_scene *scene = make_textured(&hand);
 	put_file("mtl/n.bin", png, sizeof png);
 	hand.material.normal_map = "n.bin"; /* a PNG by content, and where the buffer would go */
-	compose_well(scene, (nt_write_options){0}, "mtl/n.gltf");
+	compose_images_well(scene, (nt_write_options){0}, "mtl/n.gltf");
 	char *kept = text_of("mtl/n.bin"), *text = text_of("mtl/n.gltf");
 	assert_memory_equal(kept, png, sizeof png);
 	assert_non_null(strstr(text, "\"uri\":\"n-"));
@@ -202,7 +232,7 @@ static void images_are_safe_from_the_output(void **state)
 	free(kept);
 	/* nor is the main file's name to be had */
 	nt_error error;
-	assert_int_equal(compose(scene, (nt_write_options){0}, "mtl/n.bin", &error), NT_ERROR_IO);
+	assert_int_equal(compose_with_images(scene, (nt_write_options){0}, "mtl/n.bin", &error), NT_ERROR_IO);
 	kept = text_of("mtl/n.bin");
 	assert_memory_equal(kept, png, sizeof png);
 	free(kept);
@@ -221,5 +251,5 @@ int main(void)
 		cmocka_unit_test(primitive_without_texcoords_gets_no_textures),
 		cmocka_unit_test(images_are_safe_from_the_output),
 	};
-	return cmocka_run_group_tests_name("gltf/edit/images", tests, make_folder, remove_folder);
+	return cmocka_run_group_tests_name("gltf/create/images", tests, make_folder, remove_folder);
 }

@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Finding images: see find.h. A candidate is a folder that we may look into and a relative name in it; whatever
+ * it leads to is resolved and compared with the folder before it counts.
+ */
+#include "image/find.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include "base/memory.h"
+#include "file/lookup.h"
+#include "file/relative_path.h"
+
+typedef struct search {
+	const nt_image_places *places;
+	nt_buffer *path;
+	bool outside; /* something was there, where it may not be looked at */
+	nt_error *error;
+} search;
+
+static nt_status is_file(const char *path, bool *is, nt_error *error)
+{
+	struct stat info;
+	const nt_status status = nt_lookup_found(path, &info, is, error);
+	*is = *is && S_ISREG(info.st_mode);
+	return status;
+}
+
+/* Whether the file at s->path, named from `folder`, may be the one. */
+static nt_status accept(search *s, const char *folder, bool *accepted)
+{
+	nt_status status = is_file(s->path->data, accepted, s->error);
+	if (status || !*accepted || s->places->allow_outside)
+		return status;
+	char *real;
+	status = nt_lookup_real_found(s->path->data, &real, s->error);
+	*accepted = !status && real && nt_link_is_inside(s->path->data, folder) && nt_link_is_inside(real, folder);
+	s->outside |= !status && !*accepted;
+	free(real);
+	return status;
+}
+
+static nt_status try_name(search *s, const char *folder, const char *name, bool *accepted)
+{
+	s->path->size = 0;
+	nt_link_join(s->path, folder, name);
+	return s->path->failed ? nt_fail_memory(s->error) : accept(s, folder, accepted);
+}
+
+/* ---- without case ---- */
+
+/* The entry of a folder that is called so in some case, in a malloc'ed block; NULL: none. */
+static nt_status find_entry(const char *folder, const char *name, size_t length, char **entry, nt_error *error)
+{
+	*entry = NULL;
+	DIR *dir = opendir(*folder ? folder : "/");
+	if (!dir)
+		return errno == ENOMEM ? nt_fail_memory(error) : NT_OK;
+	nt_status status = NT_OK;
+	for (const struct dirent *e; !status && (e = readdir(dir));) {
+		if (strlen(e->d_name) != length || strncasecmp(e->d_name, name, length) != 0 ||
+			(*entry && strcmp(e->d_name, *entry) > 0))
+			continue;
+		free(*entry);
+		*entry = strdup(e->d_name);
+		status = *entry ? NT_OK : nt_fail_memory(error);
+	}
+	closedir(dir);
+	return status;
+}
+
+/* As try_name(), part by part; a name with ".." is left to that. */
+static nt_status try_any_case(search *s, const char *folder, const char *name, bool *accepted)
+{
+	*accepted = false;
+	s->path->size = 0;
+	nt_buffer_text(s->path, strcmp(folder, "/") == 0 ? "" : folder);
+	nt_status status = NT_OK;
+	while (*name && !status) {
+		const size_t length = strcspn(name, "/");
+		char *entry;
+		if (s->path->failed)
+			return nt_fail_memory(s->error);
+		status = find_entry(s->path->data ? s->path->data : "", name, length, &entry, s->error);
+		if (status || !entry)
+			return status;
+		nt_buffer_format(s->path, "/%s", entry);
+		free(entry);
+		name += length;
+		name += strspn(name, "/");
+	}
+	if (!status)
+		status = s->path->failed ? nt_fail_memory(s->error) : accept(s, folder, accepted);
+	return status;
+}
+
+/* ---- parts of names ---- */
+
+typedef nt_status (*try_fn)(search *s, const char *folder, const char *name, bool *accepted);
+
+/* The suffixes of a name, which has "/" alone and begins with its first part. */
+static nt_status try_suffixes(search *s, const char *folder, const char *name, try_fn try, bool *accepted)
+{
+	nt_status status = NT_OK;
+	*accepted = false;
+	while (name && *name && !status && !*accepted) {
+		status = try(s, folder, name, accepted);
+		name = strchr(name, '/');
+		if (name)
+			name += strspn(name, "/");
+	}
+	return status;
+}
+
+/* A name without what its own machine means alone: drive, host, scheme, the way up and down; in a malloc'ed block.
+ * NULL: out of memory. */
+static char *portable_part(const char *name)
+{
+	nt_buffer text = {0}, joined = {0};
+	const char *colon = nt_link_is_absolute(name) ? strchr(name, ':') : NULL;
+	nt_link_join(&joined, "/", colon ? colon + 1 : name);
+	nt_buffer_text(&text, joined.data ? joined.data + strspn(joined.data, "/") : "");
+	nt_buffer_free_into(&joined, &text);
+	if (text.failed)
+		nt_buffer_free(&text);
+	return text.data;
+}
+
+/* The folders in which parts of names are looked for, one a call. False: no more. */
+static nt_status folder_at(const nt_image_places *places, size_t index, nt_buffer *folder, bool *more, nt_error *error)
+{
+	nt_error failure;
+	nt_status status;
+	folder->size = 0;
+	*more = index < places->folder_count + 2;
+	if (!*more)
+		return NT_OK;
+	if (index < 2) {
+		const char *file = index == 0 ? places->document : places->input;
+		status = file ? nt_link_folder(folder, file, &failure) : NT_ERROR_MISSING;
+	} else {
+		char *real;
+		status = nt_lookup_real(places->folders[index - 2], &real, &failure);
+		if (!status)
+			nt_buffer_text(folder, real);
+		free(real);
+	}
+	if (!status && folder->failed)
+		return nt_fail_memory(error);
+	if (status && status != NT_ERROR_MISSING)
+		*error = failure;
+	return status == NT_ERROR_MISSING ? NT_OK : status;
+}
+
+static nt_status try_folders(search *s, const char *name, try_fn try, bool *accepted)
+{
+	nt_buffer folder = {0};
+	nt_status status = NT_OK;
+	*accepted = false;
+	for (size_t i = 0; !status && !*accepted; i++) {
+		bool more;
+		status = folder_at(s->places, i, &folder, &more, s->error);
+		if (status || !more)
+			break;
+		if (folder.size)
+			status = try_suffixes(s, folder.data, name, try, accepted);
+	}
+	nt_buffer_free(&folder);
+	return status;
+}
+
+/* ---- the order ---- */
+
+/* The first step; `folder` receives the document's, "" where that does not exist. */
+static nt_status try_as_named(search *s, const char *name, nt_buffer *folder, bool *accepted)
+{
+	bool more;
+	*accepted = false;
+	nt_status status = folder_at(s->places, 0, folder, &more, s->error);
+	if (status || !folder->size)
+		return status;
+	const bool absolute = nt_link_is_absolute(name);
+	if (absolute && !s->places->allow_outside) {
+		bool there;
+		status = is_file(name, &there, s->error);
+		s->outside = !status && there;
+		return status;
+	}
+	return try_name(s, folder->data, name, accepted);
+}
+
+nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buffer *path, nt_image_found *found,
+	nt_error *error)
+{
+	nt_buffer folder = {0};
+	search s = {.places = places, .path = path, .error = error};
+	bool accepted;
+	nt_status status = try_as_named(&s, name, &folder, &accepted);
+	*found = NT_IMAGE_FOUND;
+	if (!status && !accepted) {
+		*found = NT_IMAGE_FOUND_ELSEWHERE;
+		char *part = portable_part(name);
+		status = part ? try_folders(&s, part, try_name, &accepted) : nt_fail_memory(error);
+		if (!status && !accepted)
+			status = try_folders(&s, part, try_any_case, &accepted);
+		if (!status && !accepted) {
+			*found = s.outside ? NT_IMAGE_OUTSIDE : NT_IMAGE_MISSING;
+			path->size = 0;
+			nt_link_join(path, folder.size ? folder.data : "/", nt_link_is_absolute(name) ? nt_last_part(part) : name);
+			status = path->failed ? nt_fail_memory(error) : NT_OK;
+		}
+		free(part);
+	}
+	nt_buffer_free(&folder);
+	return status;
+}

@@ -1,0 +1,45 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * From a name in a material to a file. Names are somebody else's text: paths of another machine, of a system that
+ * does not care for case, of a folder that was moved. And they are confined: what lies outside of the folders below
+ * is not looked at, also not through a symbolic link, unless the user allows it.
+ */
+#ifndef NT_IMAGE_FIND_H
+#define NT_IMAGE_FIND_H
+
+#include <stdbool.h>
+#include "base/buffer.h"
+
+/* Where to look. */
+typedef struct nt_image_places {
+	const char *document;       /* the file that has the name (MTL): names are relative to its folder */
+	const char *input;          /* the file that has the document (OBJ); NULL: none */
+	const char *const *folders; /* [folder_count] of the user's choice */
+	size_t folder_count;
+	bool allow_outside;
+} nt_image_places;
+
+typedef enum nt_image_found {
+	NT_IMAGE_FOUND,           /* as it is named */
+	NT_IMAGE_FOUND_ELSEWHERE, /* by a part of its name, in another folder, or in another case */
+	NT_IMAGE_MISSING,
+	NT_IMAGE_OUTSIDE          /* where it may not be looked at */
+} nt_image_found;
+
+/*
+ * Looks for a file in this order; the first that exists is it.
+ *
+ * 1. the name as it is, from the document's folder; an absolute one only if that is allowed
+ * 2. in the document's folder, the input's and `folders`, in this order: the name's last parts, as many as lead to a file
+ *    (of C:\art\tex\n.png: art/tex/n.png, tex/n.png, n.png)
+ * 3. the same without regard to case (of ASCII); of several files the first in the order of bytes
+ *
+ *   path   appended: absolute, links kept; of what is missing, where it would be by the document
+ *   found  receives how it was found
+ *
+ * Returns NT_OK, also for what is not found, NT_ERROR_IO or NT_ERROR_MEMORY.
+ */
+nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buffer *path, nt_image_found *found,
+	nt_error *error);
+
+#endif

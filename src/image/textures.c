@@ -1,0 +1,357 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The images of one output: see textures.h. A source is a file; a wish is for a source and what it is to become; a result
+ * is what wishes for the same bytes share. Whether a source is a height map is known when its first rows are, so
+ * that wishes become results in nt_textures_make().
+ *
+ * Files are opened to see their type and closed again, so that a thousand images do not need a thousand
+ * descriptors; whoever reads them later checks that they are still the same.
+ */
+#include "image/textures.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "base/name_table.h"
+#include "base/parallel.h"
+#include "file/relative_path.h"
+#include "file/watch.h"
+#include "image/heights.h"
+
+typedef struct source {
+	char *path;
+	nt_image_found found;
+	nt_image_type type;
+	nt_file identity;
+	bool in_question; /* somebody wants to know whether it is grey */
+	bool grey;
+	nt_error error;   /* of looking whether it is grey */
+} source;
+
+typedef struct wish {
+	uint32_t source;
+	nt_texture_wish what;
+	uint32_t result;
+} wish;
+
+/* How a result comes from its source. */
+typedef struct recipe {
+	uint32_t source;
+	bool decode;   /* else the file is the result */
+	bool heights;
+	double height; /* these two only with heights */
+	bool clamp;
+} recipe;
+
+typedef struct result {
+	recipe how;
+	nt_texture texture;
+	unsigned char *bytes;
+	char *name;
+	nt_error error;
+} result;
+
+struct nt_textures {
+	nt_arena arena;      /* of the keys in names */
+	nt_name_table names; /* document and name, which lead to a source */
+	uint32_t *name_sources;
+	size_t name_capacity;
+	source *sources;
+	size_t source_count, source_capacity;
+	wish *wishes;
+	size_t wish_count, wish_capacity;
+	result *results;
+	size_t result_count, result_capacity;
+	nt_texture_rules rules;
+};
+
+nt_textures *nt_textures_create(void)
+{
+	return nt_calloc(1, sizeof(nt_textures));
+}
+
+void nt_textures_free(nt_textures *t)
+{
+	if (!t)
+		return;
+	for (size_t i = 0; i < t->source_count; i++)
+		free(t->sources[i].path);
+	for (size_t i = 0; i < t->result_count; i++) {
+		free(t->results[i].bytes);
+		free(t->results[i].name);
+	}
+	free(t->sources);
+	free(t->wishes);
+	free(t->results);
+	free(t->name_sources);
+	nt_name_table_free(&t->names);
+	nt_arena_free(&t->arena);
+	free(t);
+}
+
+/* ---- wishes ---- */
+
+/* Looks into the file for its type and identity, if there is one. */
+static nt_status inspect(source *s, nt_error *error)
+{
+	nt_file file;
+	if (s->found == NT_IMAGE_MISSING)
+		s->type = nt_image_type_of_name(s->path);
+	if (s->found > NT_IMAGE_FOUND_ELSEWHERE)
+		return NT_OK;
+	const nt_status status = nt_file_open(&file, s->path, error);
+	if (status)
+		return status;
+	s->type = nt_image_type_of_bytes(file.data, file.size);
+	s->identity = (nt_file){.size = file.size, .fd = -1, .device = file.device, .inode = file.inode};
+	nt_file_close(&file);
+	return NT_OK;
+}
+
+static nt_status add_source(nt_textures *t, const nt_image_places *places, const char *name, uint32_t *number,
+	nt_error *error)
+{
+	nt_buffer path = {0};
+	nt_image_found found;
+	const nt_status status = nt_image_find(places, name, &path, &found, error);
+	for (*number = 0; !status && *number < t->source_count; ++*number)
+		if (strcmp(t->sources[*number].path, path.data) == 0)
+			break;
+	if (status || *number < t->source_count) {
+		nt_buffer_free(&path);
+		return status;
+	}
+	if (!nt_grow((void **)&t->sources, &t->source_capacity, t->source_count + 1, sizeof *t->sources)) {
+		nt_buffer_free(&path);
+		return nt_fail_memory(error);
+	}
+	source *s = &t->sources[t->source_count++];
+	*s = (source){.path = path.data, .found = found};
+	return inspect(s, error);
+}
+
+/* A name is looked for once for each document. */
+static nt_status find_source(nt_textures *t, const nt_image_places *places, const char *name, uint32_t *number,
+	nt_error *error)
+{
+	nt_buffer key = {0};
+	nt_buffer_format(&key, "%s\n%s", places->document, name);
+	const char *kept = key.failed ? NULL : nt_arena_text(&t->arena, key.data, key.size);
+	const size_t length = key.size, known = t->names.count;
+	nt_buffer_free(&key);
+	if (!kept || !nt_grow((void **)&t->name_sources, &t->name_capacity, known + 1, sizeof *t->name_sources))
+		return nt_fail_memory(error);
+	const uint32_t id = nt_name_add(&t->names, kept, length);
+	if (id == UINT32_MAX)
+		return nt_fail_memory(error);
+	const nt_status status = id < known ? NT_OK : add_source(t, places, name, &t->name_sources[id], error);
+	*number = status ? 0 : t->name_sources[id];
+	return status;
+}
+
+static bool equal_wishes(const nt_texture_wish *a, const nt_texture_wish *b)
+{
+	const bool heights = a->kind >= NT_TEXTURE_HEIGHTS;
+	return a->kind == b->kind && (!heights || (a->height == b->height && a->clamp == b->clamp));
+}
+
+nt_status nt_textures_wish(nt_textures *t, const nt_image_places *places, const char *name,
+	const nt_texture_wish *what, uint32_t *number, nt_error *error)
+{
+	uint32_t from = 0;
+	const nt_status status = find_source(t, places, name, &from, error);
+	if (status)
+		return status;
+	t->sources[from].in_question |= what->kind == NT_TEXTURE_NORMALS_OR_HEIGHTS;
+	for (*number = 0; *number < t->wish_count; ++*number)
+		if (t->wishes[*number].source == from && equal_wishes(&t->wishes[*number].what, what))
+			return NT_OK;
+	if (!nt_grow((void **)&t->wishes, &t->wish_capacity, t->wish_count + 1, sizeof *t->wishes))
+		return nt_fail_memory(error);
+	t->wishes[t->wish_count++] = (wish){.source = from, .what = *what};
+	return NT_OK;
+}
+
+/* ---- sources ---- */
+
+static bool is_there(const source *s)
+{
+	return s->found <= NT_IMAGE_FOUND_ELSEWHERE;
+}
+
+/* Opens a source that was looked at before. What becomes shorter while it is read has to be asked for: see
+ * close_source(). */
+static nt_status open_source(const source *s, nt_file *file, nt_error *error)
+{
+	const nt_status status = nt_file_open_untraced(file, s->path, error);
+	if (status)
+		return status;
+	if (file->size == s->identity.size && file->device == s->identity.device && file->inode == s->identity.inode)
+		return NT_OK;
+	nt_file_close(file);
+	nt_fail(error, NT_ERROR_IO, "the image changed while it was read");
+	return nt_error_in_file(error, s->path);
+}
+
+static nt_status close_source(const source *s, nt_file *file, nt_status status, nt_error *error)
+{
+	const bool intact = nt_file_is_intact(file);
+	nt_file_close(file);
+	if (intact)
+		return status;
+	nt_fail(error, NT_ERROR_IO, "the image became shorter while it was read");
+	return nt_error_in_file(error, s->path);
+}
+
+static void look_for_grey(void *context, size_t item, unsigned slot)
+{
+	(void)slot;
+	nt_textures *t = context;
+	source *s = &t->sources[item];
+	nt_file file;
+	nt_error_clear(&s->error);
+	if (!s->in_question || !is_there(s) || !nt_image_is_decoded(s->type) || open_source(s, &file, &s->error))
+		return;
+	const nt_status status = nt_image_is_grey(file.data, file.size, &s->grey, &s->error);
+	close_source(s, &file, status, &s->error);
+}
+
+/* ---- results ---- */
+
+/* What a wish comes to. */
+static recipe recipe_of(const nt_textures *t, const wish *w)
+{
+	const source *s = &t->sources[w->source];
+	const nt_texture_choice choice = t->rules.choice;
+	const nt_texture_kind kind = w->what.kind;
+	const bool decodable = is_there(s) && nt_image_is_decoded(s->type);
+	const bool heights = decodable &&
+		(kind == NT_TEXTURE_HEIGHTS || (kind == NT_TEXTURE_NORMALS_OR_HEIGHTS && s->grey));
+	const bool png = decodable && choice != NT_TEXTURES_KEEP &&
+		(choice == NT_TEXTURES_PNG ? s->type != NT_IMAGE_PNG : !nt_image_is_carried(s->type));
+	return (recipe){w->source, heights || png, heights, heights ? w->what.height : 0, heights && w->what.clamp};
+}
+
+/* The file's name; of what is made, with another ending. NULL: out of memory. */
+static char *name_of(const source *s, const recipe *how)
+{
+	const char *name = nt_last_part(s->path), *dot = strrchr(name, '.');
+	nt_buffer text = {0};
+	nt_buffer_append(&text, name, how->decode && dot > name ? (size_t)(dot - name) : strlen(name));
+	if (how->decode)
+		nt_buffer_text(&text, how->heights ? "-normal.png" : ".png");
+	if (text.failed)
+		nt_buffer_free(&text);
+	return text.data;
+}
+
+static nt_status add_result(nt_textures *t, const recipe *how, nt_error *error)
+{
+	const source *s = &t->sources[how->source];
+	char *name = name_of(s, how);
+	if (!name || !nt_grow((void **)&t->results, &t->result_capacity, t->result_count + 1, sizeof *t->results)) {
+		free(name);
+		return nt_fail_memory(error);
+	}
+	const bool usable = s->found != NT_IMAGE_OUTSIDE && (how->decode || nt_image_is_carried(s->type));
+	t->results[t->result_count++] = (result){.how = *how, .name = name, .texture = {
+		.path = s->path, .found = s->found, .source_type = s->type, .from_heights = how->heights,
+		.type = !usable ? NT_IMAGE_OTHER : how->decode ? NT_IMAGE_PNG : s->type,
+		.identity = s->identity, .name = name, .failure = s->error.status ? s->error.message : NULL}};
+	return NT_OK;
+}
+
+static bool equal_recipes(const recipe *a, const recipe *b)
+{
+	return a->source == b->source && a->decode == b->decode && a->heights == b->heights && a->height == b->height &&
+	       a->clamp == b->clamp;
+}
+
+static nt_status plan_results(nt_textures *t, nt_error *error)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < t->wish_count && !status; i++) {
+		const recipe how = recipe_of(t, &t->wishes[i]);
+		uint32_t *number = &t->wishes[i].result;
+		for (*number = 0; *number < t->result_count; ++*number)
+			if (equal_recipes(&t->results[*number].how, &how))
+				break;
+		if (*number == t->result_count)
+			status = add_result(t, &how, error);
+	}
+	return status;
+}
+
+static nt_status convert(const recipe *how, const nt_file *file, result *r)
+{
+	nt_pixels pixels, normals;
+	nt_status status = nt_image_decode(file->data, file->size, &pixels, &r->error);
+	if (!status && how->heights) {
+		status = nt_heights_to_normals(&pixels, how->height, how->clamp, &normals, &r->error);
+		nt_pixels_free(&pixels);
+		pixels = normals;
+	}
+	if (!status)
+		status = nt_encode_png(&pixels, &r->bytes, &r->texture.size, &r->error);
+	nt_pixels_free(&pixels);
+	return status;
+}
+
+static void make_result(void *context, size_t item, unsigned slot)
+{
+	(void)slot;
+	nt_textures *t = context;
+	result *r = &t->results[item];
+	const source *s = &t->sources[r->how.source];
+	nt_file file;
+	nt_error_clear(&r->error);
+	if (!r->how.decode || open_source(s, &file, &r->error))
+		return;
+	const nt_status status = close_source(s, &file, convert(&r->how, &file, r), &r->error);
+	r->texture.bytes = r->bytes;
+	if (!status)
+		return;
+	r->texture.type = NT_IMAGE_OTHER;
+	r->texture.failure = r->error.message;
+}
+
+/* Passes on what is the system's fault. */
+static nt_status fatal(const nt_error *failure, nt_error *error)
+{
+	if (failure->status != NT_ERROR_MEMORY && failure->status != NT_ERROR_IO && failure->status != NT_ERROR_MISSING)
+		return NT_OK;
+	*error = *failure;
+	return failure->status;
+}
+
+nt_status nt_textures_make(nt_textures *t, const nt_texture_rules *rules, nt_error *error)
+{
+	t->rules = *rules;
+	const unsigned threads = nt_thread_count(rules->threads);
+	nt_parallel_items(threads, t->source_count, look_for_grey, t);
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < t->source_count && !status; i++)
+		status = fatal(&t->sources[i].error, error);
+	if (!status)
+		status = plan_results(t, error);
+	if (status)
+		return status;
+	nt_parallel_items(threads, t->result_count, make_result, t);
+	for (size_t i = 0; i < t->result_count && !status; i++)
+		status = fatal(&t->results[i].error, error);
+	return status;
+}
+
+size_t nt_textures_count(const nt_textures *t)
+{
+	return t->result_count;
+}
+
+const nt_texture *nt_textures_at(const nt_textures *t, size_t number)
+{
+	return &t->results[number].texture;
+}
+
+size_t nt_textures_result(const nt_textures *t, uint32_t number)
+{
+	return t->wishes[number].result;
+}

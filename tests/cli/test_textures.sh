@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: MIT
+# Images of materials: found, converted, made normal maps, linked, copied or embedded.
+. "$ROOT/tests/support/cli.sh"
+images() { python3 "$ROOT/tests/support/images.py" "$@"; }
+
+# A normal map of gentle bumps, by a formula.
+bumps='(128 + (7 * x) % 60, 128 - (5 * y) % 60, 240)'
+
+# quad.obj with a material; its lines are the arguments.
+quad() {
+	{
+		echo "mtllib m.mtl"
+		echo "usemtl m"
+		grep -v '^#' "$data/quad.obj" | grep -v '^usemtl\|^mtllib'
+	} >quad.obj
+	{
+		echo "newmtl m"
+		printf '%s\n' "$@"
+	} >m.mtl
+}
+
+scene "a TGA normal map arrives, pixel by pixel as its PNG twin"
+images write n.tga 32 16 "$bumps"
+images write twin.png 32 16 "$bumps"
+quad "norm n.tga"
+run quad.obj quad.glb
+exits 0
+says "n.tga became n.png (embedded)"
+is "$(gltf quad.glb '[g.images[0].mimeType, g.materials[0].normalTexture.index]')" '["image/png",0]'
+images embedded quad.glb 0 made.png
+is "$(images rows made.png)" "$(images rows twin.png)"
+
+scene "beside a .gltf what was converted is a file, also where other images are linked"
+images write n.tga 32 16 "$bumps"
+images write b.bmp 8 8 '(x * 9, y * 9, 3)'
+quad "norm n.tga" "map_Kd b.bmp"
+mkdir out
+run quad.obj out/quad.gltf
+exits 0
+says "; b.bmp became b.png, n.tga became n.png"
+is "$(ls out)" "b.png
+n.png
+quad.bin
+quad.gltf"
+images rows out/b.png >rows.json
+is "$(python3 -c 'import json; print(json.load(open("rows.json"))[1][2])')" "[18, 9, 3]"
+cp -r out before
+run quad.obj out/quad.gltf
+exits 0
+same before/n.png out/n.png
+is "$(ls out | wc -l)" 4
+
+scene "a name that is taken by another file stays with that"
+images write n.tga 32 16 "$bumps"
+images write n.png 2 2 '(1, 2, 3)'
+cp n.png before.png
+quad "norm n.tga"
+run quad.obj quad.gltf
+exits 0
+same n.png before.png
+says "n.tga became n-"
+is "$(gltf quad.gltf 'g.images[0].uri.length')" 22
+
+scene "an image that needs no change is not decoded, and has the bytes that it had"
+printf '\211PNG\r\n\032\n and nothing that a decoder would take' >c.png
+quad "map_Kd c.png"
+run quad.obj quad.glb
+exits 0
+is "$(wc -l <"$WORK/err.txt")" 1
+images embedded quad.glb 0 made.png
+same c.png made.png
+
+scene "--textures=keep leaves out what glTF does not carry, and says so"
+images write n.tga 32 16 "$bumps"
+quad "norm n.tga"
+run --textures=keep quad.obj quad.glb
+exits 0
+says "IMAGE_TYPE"
+is "$(gltf quad.glb 'g.images')" undefined
+
+scene "--textures=png makes PNG of everything that can be decoded"
+cp "$data/grey.jpg" j.jpg # 8 x 8 of 100, by libjpeg
+quad "map_Kd j.jpg"
+run quad.obj quad.glb
+is "$(gltf quad.glb 'g.images[0].mimeType')" image/jpeg
+run --textures=png quad.obj quad.glb
+exits 0
+says "j.jpg became j.png"
+is "$(gltf quad.glb 'g.images[0].mimeType')" image/png
+images embedded quad.glb 0 made.png
+is "$(images rows made.png | cut -c1-24)" "[[[100],[100],[100],[100"
+
+scene "a damaged image is left out with a finding"
+images write n.tga 32 16 "$bumps"
+head -c 1000 n.tga >short.tga
+quad "norm short.tga" "map_Kd short.tga"
+run quad.obj quad.glb
+exits 0
+says "IMAGE_DAMAGED"
+says "ends before its last pixel"
+is "$(gltf quad.glb 'g.images')" undefined
+
+scene "an image of absurd size is left out before it takes memory"
+printf '\0\0\2\0\0\0\0\0\0\0\0\0\377\377\377\377\30\40' >huge.tga
+quad "map_Kd huge.tga"
+run quad.obj quad.glb
+exits 0
+says "65535 x 65535"
+
+scene "many materials with one image have one image"
+images write n.tga 32 16 "$bumps"
+quad "norm n.tga" "map_Ke n.tga" "newmtl second" "norm ./n.tga"
+sed '0,/^f/s/^f/usemtl second\nf/' quad.obj >both.obj
+grep '^f' quad.obj | head -1 >>both.obj
+run both.obj both.glb
+exits 0
+is "$(gltf both.glb 'g.images.length')" 1
+
+scene "the same bytes for every number of threads"
+for i in 1 2 3 4 5 6; do images write n$i.tga 64 $i "$bumps"; done
+quad "norm n1.tga" "map_Kd n2.tga" "map_Ke n3.tga"
+run -j1 quad.obj one.glb
+exits 0
+run -j8 quad.obj eight.glb
+same one.glb eight.glb
+
+# ---- finding ----
+
+scene "a path of another machine is found by its longest end, and that is said"
+mkdir -p art/tex tex
+images write art/tex/n.png 4 4 "$bumps"
+images write tex/n.png 8 8 "$bumps"
+images write n.png 16 16 "$bumps"
+quad 'norm D:\work\art\tex\n.png'
+run quad.obj quad.gltf
+exits 0
+says "D:/work/art/tex/n.png is art/tex/n.png [IMAGE_ELSEWHERE]"
+is "$(gltf quad.gltf 'g.images[0].uri')" art/tex/n.png
+rm -r art
+run quad.obj quad.gltf
+is "$(gltf quad.gltf 'g.images[0].uri')" tex/n.png
+quad 'norm /home/somebody/n.png'
+run quad.obj quad.gltf
+is "$(gltf quad.gltf 'g.images[0].uri')" n.png
+
+scene "case counts last"
+mkdir Tex
+images write Tex/N.PNG 4 4 "$bumps"
+quad 'norm tex\n.png'
+run quad.obj quad.gltf
+exits 0
+says "IMAGE_ELSEWHERE"
+is "$(gltf quad.gltf 'g.images[0].uri')" Tex/N.PNG
+images write n.png 4 4 "$bumps"
+run quad.obj quad.gltf
+is "$(gltf quad.gltf 'g.images[0].uri')" n.png
+
+scene "--texture-path names more folders, in their order"
+mkdir -p in a b/sub
+images write a/n.png 4 4 "$bumps"
+images write b/sub/n.png 8 8 "$bumps"
+quad 'norm sub/n.png'
+mv quad.obj m.mtl in
+run in/quad.obj in/quad.gltf
+exits 0
+says "IMAGE_MISSING"
+run --texture-path=a --texture-path=b in/quad.obj in/quad.gltf
+exits 0
+is "$(gltf in/quad.gltf 'g.images[0].uri')" ../a/n.png
+run --texture-path=b --texture-path=a in/quad.obj in/quad.gltf
+is "$(gltf in/quad.gltf 'g.images[0].uri')" ../b/sub/n.png
+run --texture-path=nowhere in/quad.obj in/quad.gltf
+exits 1
+says "nowhere"
+
+scene "what lies outside is not looked at without leave"
+mkdir in
+images write n.png 4 4 "$bumps"
+ln -s ../n.png in/link.png
+quad 'norm ../n.png' 'map_Kd link.png'
+mv quad.obj m.mtl in
+run in/quad.obj quad.gltf
+exits 0
+says "--allow-outside"
+is "$(gltf quad.gltf 'g.images')" undefined
+run --allow-outside in/quad.obj quad.gltf
+is "$(gltf quad.gltf 'g.images.length')" 2
+
+scene "a missing image leaves no reference, unless links are asked for"
+quad 'norm gone.png'
+run quad.obj quad.gltf
+exits 0
+says "IMAGE_MISSING"
+is "$(gltf quad.gltf '[g.images, g.materials[0].normalTexture]')" "[null,null]"
+run --images=link quad.obj quad.gltf
+is "$(gltf quad.gltf 'g.images[0].uri')" gone.png
+
+# ---- height maps ----
+
+scene "a grey bump map becomes a normal map, and -bm is in it"
+images write h.png 8 8 'abs(4 - x) * 16'
+quad 'map_Bump -bm 2 h.png'
+run -v quad.obj quad.glb
+exits 0
+says "height map to normal map"
+says_not "BUMP_AS_NORMAL"
+is "$(gltf quad.glb 'g.materials[0].normalTexture.scale === undefined')" true
+images embedded quad.glb 0 made.png
+images rows made.png >rows.json
+# a slope of 16 / 255 of the height in each pixel; height is 2/64 of 8 pixels: s = 0.25, p = -s 16/255 at x = 2
+is "$(python3 -c '
+import json, math
+p = 0.25 * 16 / 255
+n = [v / math.sqrt(p * p + 1) for v in (p, 0, 1)]
+want = [math.floor((v + 1) / 2 * 255 + 0.5) for v in n]
+print([row[2] for row in json.load(open("rows.json"))] == [want] * 8)')" True
+
+scene "--bump says what bump maps are, --bump-height how high"
+images write h.png 8 8 'abs(4 - x) * 16'
+images write n.png 8 8 "$bumps"
+quad 'map_Bump h.png'
+run --bump=normal quad.obj quad.glb
+images embedded quad.glb 0 made.png
+same made.png h.png
+run --bump=ignore quad.obj quad.glb
+is "$(gltf quad.glb 'g.images')" undefined
+run quad.obj low.glb
+run --bump-height=1/32 quad.obj high.glb
+exits 0
+images embedded low.glb 0 low.png
+images embedded high.glb 0 high.png
+is "$(cmp -s low.png high.png || echo different)" different
+quad 'map_Bump n.png'
+run quad.obj quad.glb
+says "BUMP_AS_NORMAL"
+images embedded quad.glb 0 made.png
+same made.png n.png
+run --bump=height -v quad.obj quad.glb
+says "height map to normal map"
+run --bump-height=2 quad.obj quad.glb
+exits 1
+says "--bump-height"
+
+scene "sixteen bits stay sixteen"
+images write h.png 8 8 '("16", 100 * x * (8 - x))'
+quad 'bump h.png'
+run quad.obj quad.gltf
+exits 0
+images rows h-normal.png >rows.json
+is "$(python3 -c '
+import json
+rows = json.load(open("rows.json"))
+print(rows[0][4][:2] == [32768, 32768], max(max(p) for p in rows[0]) > 65000)')" "True True"
+
+done_testing

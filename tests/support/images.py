@@ -1,0 +1,113 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Images for tests, with nothing but zlib.
+
+    images.py write FILE WIDTH HEIGHT EXPRESSION   a TGA, BMP, TIFF or PNG by its ending; EXPRESSION of x, y (rows down), w, h and
+                                                   math gives (r, g, b) of bytes, a grey byte, or ("16", grey) of 16 bits
+    images.py rows FILE                            the samples of a PNG as JSON, row by row
+    images.py embedded GLB NUMBER FILE             the bytes of an image of a GLB
+"""
+import json
+import math
+import struct
+import sys
+import zlib
+
+
+def chunk(kind, data):
+    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+
+def png(width, height, pixel):
+    first = pixel(0, 0)
+    wide = isinstance(first, tuple) and first[0] == "16"
+    grey = wide or not isinstance(first, tuple)
+    raw = bytearray()
+    for y in range(height):
+        raw.append(0)
+        for x in range(width):
+            p = pixel(x, y)
+            raw += struct.pack(">H", p[1]) if wide else bytes([p] if grey else p)
+    header = struct.pack(">IIBBBBB", width, height, 16 if wide else 8, 0 if grey else 2, 0, 0, 0)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(bytes(raw))) +
+            chunk(b"IEND", b""))
+
+
+def tga(width, height, pixel):
+    data = bytes([0, 0, 2]) + bytes(9) + struct.pack("<HHBB", width, height, 24, 0x20)
+    return data + b"".join(bytes(pixel(x, y)[::-1]) for y in range(height) for x in range(width))
+
+
+def bmp(width, height, pixel):
+    row = (3 * width + 3) // 4 * 4
+    data = b"BM" + struct.pack("<IIIIiiHHIIIIII", 54 + row * height, 0, 54, 40, width, height, 1, 24, 0, 0, 0, 0, 0, 0)
+    for y in reversed(range(height)):
+        data += b"".join(bytes(pixel(x, y)[::-1]) for x in range(width)).ljust(row, b"\0")
+    return data
+
+
+def tif(width, height, pixel):
+    data = b"".join(bytes(pixel(x, y)) for y in range(height) for x in range(width))
+    entries = [(256, 4, 1, width), (257, 4, 1, height), (258, 3, 3, 8), (259, 3, 1, 1), (262, 3, 1, 2),
+               (273, 4, 1, 8), (277, 3, 1, 3), (278, 4, 1, height), (279, 4, 1, len(data))]
+    at = 8 + len(data) + len(data) % 2
+    behind = at + 2 + 12 * len(entries) + 4
+    directory = struct.pack("<H", len(entries))
+    for tag, kind, count, value in entries:
+        directory += struct.pack("<HHII", tag, kind, count, behind if tag == 258 else value)
+    return (b"II*\0" + struct.pack("<I", at) + data + bytes(len(data) % 2) + directory + bytes(4) +
+            struct.pack("<HHH", 8, 8, 8))
+
+
+def paeth(a, b, c):
+    p = a + b - c
+    return min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+
+
+def rows(data):
+    width, height, depth, kind = struct.unpack(">IIBB", data[16:26])
+    channels = {0: 1, 2: 3, 4: 2, 6: 4}[kind]
+    at, packed = 8, b""
+    while at < len(data):
+        size, name = struct.unpack(">I4s", data[at:at + 8])
+        if name == b"IDAT":
+            packed += data[at + 8:at + 8 + size]
+        at += size + 12
+    raw, step = zlib.decompress(packed), channels * depth // 8
+    size = width * step
+    above, result = bytearray(size), []
+    for y in range(height):
+        method, line = raw[y * (size + 1)], bytearray(raw[y * (size + 1) + 1:(y + 1) * (size + 1)])
+        for i in range(size):
+            a = line[i - step] if i >= step else 0
+            c = above[i - step] if i >= step else 0
+            line[i] = (line[i] + (0, a, above[i], (a + above[i]) // 2, paeth(a, above[i], c))[method]) & 255
+        above = line
+        samples = list(struct.unpack(">%dH" % (size // 2), line)) if depth == 16 else list(line)
+        result.append([samples[i:i + channels] for i in range(0, len(samples), channels)])
+    return result
+
+
+def embedded(data, number):
+    size = struct.unpack("<I", data[12:16])[0]
+    document = json.loads(data[20:20 + size])
+    view = document["bufferViews"][document["images"][number]["bufferView"]]
+    begin = 28 + size + view.get("byteOffset", 0)
+    return data[begin:begin + view["byteLength"]]
+
+
+def main():
+    if sys.argv[1] == "write":
+        path, width, height = sys.argv[2], int(sys.argv[3]), int(sys.argv[4])
+        code = compile(sys.argv[5], "pixel", "eval")
+        make = {"tga": tga, "bmp": bmp, "tif": tif, "png": png}[path.rsplit(".", 1)[1].lower()]
+        with open(path, "wb") as file:
+            file.write(make(width, height, lambda x, y: eval(code, {"x": x, "y": y, "w": width, "h": height, "math": math})))
+    elif sys.argv[1] == "rows":
+        print(json.dumps(rows(open(sys.argv[2], "rb").read()), separators=(",", ":")))
+    else:
+        with open(sys.argv[4], "wb") as file:
+            file.write(embedded(open(sys.argv[2], "rb").read(), int(sys.argv[3])))
+
+
+main()

@@ -1,0 +1,125 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The images of an output: who shares what, and files that are not what they were. tests/cli/test_textures.sh has what
+ * is made of them.
+ */
+#include "image/textures.h"
+
+#include <unistd.h>
+#include "fail_alloc.h"
+#include "folder.h"
+#include "test.h"
+
+/* A TGA of 4 x 4 pixels of this colour. */
+static void put_tga(const char *name, unsigned blue, unsigned green, unsigned red)
+{
+	unsigned char tga[18 + 48] = {[2] = 2, [12] = 4, [14] = 4, [16] = 24, [17] = 0x20};
+	for (size_t i = 18; i < sizeof tga; i += 3) {
+		tga[i] = (unsigned char)blue;
+		tga[i + 1] = (unsigned char)green;
+		tga[i + 2] = (unsigned char)red;
+	}
+	put_file(name, tga, sizeof tga);
+}
+
+static uint32_t wish(nt_textures *textures, const char *name, nt_texture_kind kind, double height)
+{
+	static char document[300];
+	snprintf(document, sizeof document, "%s", in_folder("m.mtl"));
+	const nt_image_places places = {.document = document};
+	const nt_texture_wish what = {kind, height, false};
+	uint32_t number;
+	nt_error error;
+	assert_int_equal(nt_textures_wish(textures, &places, name, &what, &number, &error), NT_OK);
+	return number;
+}
+
+static const nt_texture *result(const nt_textures *textures, uint32_t number)
+{
+	return nt_textures_at(textures, nt_textures_result(textures, number));
+}
+
+static nt_status make(nt_textures *textures, nt_error *error)
+{
+	const nt_texture_rules rules = {NT_TEXTURES_AUTO, 2};
+	return nt_textures_make(textures, &rules, error);
+}
+
+static void equal_results_are_made_once(void **state)
+{
+	(void)state;
+	put_tga("grey.tga", 9, 9, 9);
+	put_tga("n.tga", 255, 128, 128);
+	nt_textures *t = nt_textures_create();
+	nt_error error;
+	/* a normal map is the same at any height, a height map is not */
+	const uint32_t n1 = wish(t, "n.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1),
+		       n2 = wish(t, "./n.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.2), n3 = wish(t, "n.tga", NT_TEXTURE_COLOR, 0),
+		       h1 = wish(t, "grey.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1),
+		       h2 = wish(t, "grey.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.2),
+		       h3 = wish(t, "grey.tga", NT_TEXTURE_HEIGHTS, 0.2), color = wish(t, "grey.tga", NT_TEXTURE_COLOR, 0);
+	assert_int_equal(make(t, &error), NT_OK);
+	assert_ptr_equal(result(t, n1), result(t, n2));
+	assert_ptr_equal(result(t, n1), result(t, n3));
+	assert_ptr_not_equal(result(t, h1), result(t, h2));
+	assert_ptr_equal(result(t, h2), result(t, h3));
+	assert_int_equal(nt_textures_count(t), 4);
+	assert_true(result(t, h1)->from_heights);
+	assert_false(result(t, color)->from_heights);
+	assert_string_equal(result(t, h1)->name, "grey-normal.png");
+	assert_string_equal(result(t, color)->name, "grey.png");
+	assert_int_equal(result(t, n1)->type, NT_IMAGE_PNG);
+	nt_textures_free(t);
+}
+
+static void file_that_is_not_what_it_was_is_an_error(void **state)
+{
+	(void)state;
+	put_tga("n.tga", 255, 128, 128);
+	nt_textures *t = nt_textures_create();
+	nt_error error;
+	wish(t, "n.tga", NT_TEXTURE_COLOR, 0);
+	assert_int_equal(truncate(in_folder("n.tga"), 40), 0);
+	assert_int_equal(make(t, &error), NT_ERROR_IO);
+	assert_non_null(strstr(error.message, "changed"));
+	nt_textures_free(t);
+
+	t = nt_textures_create();
+	wish(t, "n.tga", NT_TEXTURE_COLOR, 0);
+	assert_int_equal(unlink(in_folder("n.tga")), 0);
+	assert_int_equal(make(t, &error), NT_ERROR_MISSING);
+	nt_textures_free(t);
+}
+
+static void textures_without_memory_are_an_error(void **state)
+{
+	(void)state;
+	put_tga("grey.tga", 9, 9, 9);
+	for (size_t n = 0;; n++) {
+		nt_textures *t = nt_textures_create();
+		const nt_image_places places = {.document = in_folder("m.mtl")};
+		const nt_texture_wish what = {NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1, false};
+		const nt_texture_rules rules = {NT_TEXTURES_AUTO, 1};
+		uint32_t number;
+		nt_error error;
+		fail_allocations_from(n);
+		nt_status status = nt_textures_wish(t, &places, "grey.tga", &what, &number, &error);
+		if (!status)
+			status = nt_textures_make(t, &rules, &error);
+		const bool failed = stop_failing_allocations();
+		assert_int_equal(status, failed ? NT_ERROR_MEMORY : NT_OK);
+		nt_textures_free(t);
+		if (!failed)
+			break;
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(equal_results_are_made_once),
+		cmocka_unit_test(file_that_is_not_what_it_was_is_an_error),
+		cmocka_unit_test(textures_without_memory_are_an_error),
+	};
+	return cmocka_run_group_tests_name("image/textures", tests, make_folder, remove_folder);
+}
