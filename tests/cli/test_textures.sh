@@ -131,15 +131,15 @@ mkdir -p art/tex tex
 images write art/tex/n.png 4 4 "$bumps"
 images write tex/n.png 8 8 "$bumps"
 images write n.png 16 16 "$bumps"
-quad 'norm D:\work\art\tex\n.png'
+quad 'norm D:\old\art\tex\n.png'
 run quad.obj quad.gltf
 exits 0
-says "D:/work/art/tex/n.png is art/tex/n.png [IMAGE_ELSEWHERE]"
+says "D:/old/art/tex/n.png is art/tex/n.png [IMAGE_ELSEWHERE]"
 is "$(gltf quad.gltf 'g.images[0].uri')" art/tex/n.png
 rm -r art
 run quad.obj quad.gltf
 is "$(gltf quad.gltf 'g.images[0].uri')" tex/n.png
-quad 'norm /home/somebody/n.png'
+quad 'norm /art/of/somebody/n.png'
 run quad.obj quad.gltf
 is "$(gltf quad.gltf 'g.images[0].uri')" n.png
 
