@@ -104,7 +104,7 @@ static int tell_run(session *s, nt_job *job)
 	nt_summary *summary = &job->outcome->summary;
 	int code = nt_exit_code(job->status);
 	const int least_failure = s->plan->target.style.least_failure;
-	const bool fails = !job->status && findings_fail(summary, least_failure);
+	const bool fails = !job->status && !c->diff && findings_fail(summary, least_failure);
 	/* a report on standard output says it better */
 	const char *report = s->plan->target.path;
 	if (s->style.verbosity >= 0 && !(report && strcmp(report, "-") == 0)) {
@@ -173,6 +173,28 @@ static bool tell_report_error(session *s, nt_error *error, const char *path)
 	return error->status != NT_ERROR_MEMORY;
 }
 
+/* Compares the two reports and lets what is new decide. A version that could not be judged has been told. */
+static void tell_diff(session *s)
+{
+	nt_report_target target = s->plan->target;
+	nt_report_diff diff = {0};
+	nt_error error;
+	if (s->report_count != 2 || !s->reports[0] || !s->reports[1] || s->reports[0]->failure || s->reports[1]->failure)
+		return;
+	if (nt_report_compare(&diff, s->reports[0], s->reports[1])) {
+		nt_fail_memory(&error);
+		tell_report_error(s, &error, target.path ? target.path : "");
+		return;
+	}
+	for (int severity = target.style.least_failure; severity <= NT_SEVERITY_ERROR; severity++)
+		if (diff.by_severity[1][severity])
+			s->exit_code = nt_exit_worse(s->exit_code, NT_EXIT_FINDINGS);
+	target.diff = &diff;
+	if (target.path && nt_report_to_file(s->reports, s->report_count, &target, &error))
+		tell_report_error(s, &error, target.path);
+	nt_report_diff_free(&diff);
+}
+
 /* Writes the report and the pictures of all inputs where they were asked for, and frees them. */
 static void tell_report(session *s)
 {
@@ -183,7 +205,9 @@ static void tell_report(session *s)
 	bool all = true;
 	for (size_t i = 0; i < s->report_count; i++)
 		all &= s->reports[i] || !s->plan->wanted;
-	if (all && target->path && nt_report_to_file(s->reports, s->report_count, target, &error))
+	if (s->command->diff)
+		tell_diff(s);
+	else if (all && target->path && nt_report_to_file(s->reports, s->report_count, target, &error))
 		all = tell_report_error(s, &error, target->path);
 	if (all && images && nt_report_uv_images(s->reports, s->report_count, images, target, &error))
 		tell_report_error(s, &error, images);
@@ -241,7 +265,7 @@ static nt_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
 /* Memory for what is said, and for the reports; false: there is none. */
 static bool begin_session(session *s, size_t count)
 {
-	const bool kept = s->plan->target.path || s->command->uv_image;
+	const bool kept = s->plan->target.path || s->command->uv_image || s->command->diff;
 	if (kept)
 		s->reports = calloc(count ? count : 1, sizeof *s->reports);
 	return (s->reports || !kept) && nt_buffer_reserve(&s->text, MESSAGE_BYTES);

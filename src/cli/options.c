@@ -131,6 +131,9 @@ const nt_option_row nt_option_rows[] = {
 	{"as", 0, NT_OPTION_CHOICE, "ply|gltf|glb", NT_FORMAT_PLY, 0, "ply for PLY, glb for OBJ and Draco",
 		"with --check: judge what converting to this format would write; glTF is judged as it is without",
 		SETTING(as), false},
+	{"diff", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
+		"with --check OLD NEW: what changed in tangents, seams and findings; what is new decides the exit code",
+		FIELD(diff), false},
 	{"fail-on", 0, NT_OPTION_CHOICE, "error|warning|info|never", NT_FAIL_ON_ERROR, 0,
 		"error with --check, else never", "exit with 6 on findings of this severity or above",
 		FIELD(fail_on), false},
@@ -490,6 +493,8 @@ static nt_status check_clashes(parser *p)
 	nt_settings *s = &p->command->settings;
 	if (s->as != NT_FORMAT_UNKNOWN && !s->check)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--as is about --check; --output-format says what is written");
+	if (p->command->diff && !s->check)
+		return nt_fail(p->error, NT_ERROR_USAGE, "--diff is about --check");
 	const char *into = p->command->directory ? "directory" : s->in_place ? "in-place" : NULL;
 	if (p->command->output && into)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--output and --%s both say where to write", into);

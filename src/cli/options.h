@@ -58,6 +58,7 @@ typedef struct nt_command {
 	nt_words include, exclude; /* patterns */
 	int jobs;              /* inputs at a time; 0: as threads */
 	int fail_fast;         /* stop after a failure: 0, 1 */
+	bool diff;             /* of two inputs */
 	const char *output;    /* -o, also the last operand; NULL: none */
 	const char **operands; /* in argv, which is reordered for it */
 	size_t operand_count;

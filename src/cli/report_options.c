@@ -89,6 +89,8 @@ static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool c
 		return nt_fail(error, NT_ERROR_USAGE,
 			"cannot tell the report's format from the name '%s': use --report-format",
 			target->path);
+	if (c->diff && !nt_diff_has_format(target->format))
+		return nt_fail(error, NT_ERROR_USAGE, "--diff is written as text, JSON or Markdown");
 	target->style.colour = dash && colour;
 	return NT_OK;
 }
@@ -110,6 +112,18 @@ static nt_status check_outputs(const nt_command *c, nt_error *error)
 	return NT_OK;
 }
 
+static nt_status check_diff(const nt_command *c, nt_error *error)
+{
+	if (!c->diff)
+		return NT_OK;
+	if (c->operand_count != 2)
+		return nt_fail(error, NT_ERROR_USAGE, "--diff compares two files, an old one and a new one");
+	if (c->uv_image || c->baseline || c->max_issues)
+		return nt_fail(error, NT_ERROR_USAGE, "--%s and --diff exclude each other",
+			c->uv_image ? "uv-image" : c->baseline ? "baseline" : "max-issues");
+	return NT_OK;
+}
+
 nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, bool colour,
 	nt_error *error)
 {
@@ -118,6 +132,8 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 			command->uv_image || command->fail_on != NT_FAIL_ON_NEVER};
 	plan->options.max_findings = (size_t)command->max_issues;
 	nt_status status = check_outputs(command, error);
+	if (!status)
+		status = check_diff(command, error);
 	if (!status)
 		status = read_ignored(&plan->options, command->ignore, error);
 	if (!status)
@@ -128,8 +144,8 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 		status = nt_baseline_open(&plan->baseline, command->baseline, error);
 		plan->options.baseline = &plan->baseline;
 	}
-	plan->options.measures = plan->target.path && plan->target.format == NT_REPORT_JSON;
-	plan->options.keep_geometry = command->uv_image ||
+	plan->options.measures = plan->target.path && plan->target.format == NT_REPORT_JSON && !command->diff;
+	plan->options.keep_geometry = command->uv_image || command->diff ||
 		(plan->target.path && plan->target.format == NT_REPORT_HTML);
 	return status;
 }

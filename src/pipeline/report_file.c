@@ -31,7 +31,9 @@ static nt_status write_set(const nt_report *const *reports, size_t count,
 	if (!status)
 		status = nt_output_add(output, target->path, NT_ROLE_MAIN, &sink, error);
 	if (!status)
-		status = nt_report_write(reports, count, target->format, &target->style, to_sink, sink, error);
+		status = target->diff
+			? nt_diff_write(target->diff, target->format, to_sink, sink, error)
+			: nt_report_write(reports, count, target->format, &target->style, to_sink, sink, error);
 	if (status) {
 		nt_output_abort(output);
 		return status;

@@ -5,7 +5,7 @@
 #ifndef NT_PIPELINE_REPORT_FILE_H
 #define NT_PIPELINE_REPORT_FILE_H
 
-#include "report/render/render.h"
+#include "report/render/diff.h"
 
 /* Where a report goes. */
 typedef struct nt_report_target {
@@ -15,6 +15,7 @@ typedef struct nt_report_target {
 	bool no_clobber;
 	const char *const *inputs; /* [input_count] files that must not be replaced */
 	size_t input_count;
+	const nt_report_diff *diff; /* written in place of the reports; NULL: they are */
 } nt_report_target;
 
 /* Writes one document about all reports: whole or not at all. NULLs among the reports are passed over. Returns

@@ -62,6 +62,8 @@ cases() {
 		a list | list quad.obj plates.glb | many | --fail-fast -d out --files-from=list
 		a folder | quad.obj plates.glb | many | -r -d out --mirror=. --exclude=x .
 		pictures | $cube || --check --uv-image=uv mirrored_cube.obj
+		difference | $cube quad.obj | many | --check --diff mirrored_cube.obj quad.obj
+		verdict | $cube || --fail-on=info mirrored_cube.obj o.glb
 		convert and report | $cube | report=r.html | --report=r.html mirrored_cube.obj o.glb
 	END
 	for format in text json html sarif csv markdown junit; do

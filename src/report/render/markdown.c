@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Markdown, for comments on pull requests: a table of files, then a table of findings for each that has
- * some. Names come from files: everything that Markdown or HTML could take for markup is escaped.
+ * Markdown, for comments on pull requests: short, the worst first. A table of the files with errors or warnings, then a
+ * table of findings for each. Names come from files: everything that Markdown or HTML could take for markup is escaped.
  */
 #include "report/render/writers.h"
 
+#include <stdlib.h>
 #include <string.h>
 
-enum { MOST_ROWS = 100 };
+enum { MOST_FILES = 50, MOST_ROWS = 100, ROWS_OF_CODE = 5 };
 
-static void put_escaped(const char *text, nt_buffer *out)
+void nt_markdown_text(const char *text, nt_buffer *out)
 {
 	for (size_t length; *text; text += length) {
 		length = 1;
@@ -36,10 +37,10 @@ static void put_file_row(const nt_report *report, nt_buffer *out)
 		seams += report->meshes[i].seam_count;
 	}
 	nt_buffer_text(out, "| ");
-	put_escaped(nt_shown_path(report->path), out);
+	nt_markdown_text(nt_shown_path(report->path), out);
 	if (report->failure) {
 		nt_buffer_text(out, " | not judged: ");
-		put_escaped(report->failure, out);
+		nt_markdown_text(report->failure, out);
 		nt_buffer_text(out, " | | | | | |\n");
 		return;
 	}
@@ -48,42 +49,82 @@ static void put_file_row(const nt_report *report, nt_buffer *out)
 		report->by_severity[NT_SEVERITY_INFO], triangles, mirrored, seams);
 }
 
-static void put_findings(const nt_report *report, nt_buffer *out)
+void nt_markdown_finding(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
-	nt_buffer_text(out, "\n## ");
-	put_escaped(nt_shown_path(report->path), out);
+	nt_buffer label = {0};
+	if (finding->mesh != NT_NONE)
+		nt_mesh_label(report, finding->mesh, &label);
+	nt_buffer_format(out, "| %s%s | `%s` | ", nt_severity_name(finding->severity),
+		finding->known ? " (known)" : "", nt_code_info(finding->code)->name);
+	nt_markdown_text(label.data ? label.data : "", out);
+	if (finding->spot_count && finding->spots[0].line)
+		nt_buffer_format(out, ", line %zu", finding->spots[0].line);
+	nt_buffer_text(out, " | ");
+	nt_markdown_text(finding->message, out);
+	nt_buffer_text(out, " |\n");
+	nt_buffer_free_into(&label, out);
+}
+
+/* Of one code in one file few are shown, the first of them the worst. */
+static void put_findings(const nt_report *report, size_t *rows, nt_buffer *out)
+{
+	size_t shown[NT_CODE_COUNT] = {0}, missing = report->dropped;
+	nt_buffer_text(out, "\n### ");
+	nt_markdown_text(nt_shown_path(report->path), out);
 	nt_buffer_text(out, "\n\n| severity | code | where | finding |\n|---|---|---|---|\n");
-	for (size_t i = 0; i < report->finding_count && i < MOST_ROWS; i++) {
+	for (size_t i = 0; i < report->finding_count; i++) {
 		const nt_report_finding *finding = &report->findings[i];
-		nt_buffer label = {0};
-		if (finding->mesh != NT_NONE)
-			nt_mesh_label(report, finding->mesh, &label);
-		nt_buffer_format(out, "| %s%s | `%s` | ", nt_severity_name(finding->severity),
-			finding->known ? " (known)" : "", nt_code_info(finding->code)->name);
-		put_escaped(label.data ? label.data : "", out);
-		if (finding->spot_count && finding->spots[0].line)
-			nt_buffer_format(out, ", line %zu", finding->spots[0].line);
-		nt_buffer_text(out, " | ");
-		put_escaped(finding->message, out);
-		nt_buffer_text(out, " |\n");
-		nt_buffer_free_into(&label, out);
+		if (*rows >= MOST_ROWS || shown[finding->code]++ >= ROWS_OF_CODE) {
+			missing++;
+			continue;
+		}
+		nt_markdown_finding(report, finding, out);
+		++*rows;
 	}
-	const size_t missing = report->dropped +
-		(report->finding_count > MOST_ROWS ? report->finding_count - MOST_ROWS : 0);
 	if (missing)
 		nt_buffer_format(out, "\n%zu more findings are not shown.\n", missing);
+}
+
+/* Inputs that could not be read first, then by errors, warnings and infos. */
+static int by_worst(const void *a, const void *b)
+{
+	const nt_report *x = *(const nt_report *const *)a, *y = *(const nt_report *const *)b;
+	if (!x->failure != !y->failure)
+		return x->failure ? -1 : 1;
+	for (int severity = NT_SEVERITY_ERROR; severity >= NT_SEVERITY_INFO; severity--)
+		if (x->by_severity[severity] != y->by_severity[severity])
+			return x->by_severity[severity] > y->by_severity[severity] ? -1 : 1;
+	return strcmp(x->path, y->path);
+}
+
+static bool is_clean(const nt_report *report)
+{
+	return !report->failure && !report->by_severity[NT_SEVERITY_ERROR] && !report->by_severity[NT_SEVERITY_WARNING];
 }
 
 void nt_write_markdown(const nt_report_list *reports, nt_buffer *out)
 {
 	const nt_totals totals = nt_report_totals(reports);
-	nt_buffer_text(out, "# nmtan report: ");
+	const nt_report **sorted = nt_alloc(reports->count, sizeof *sorted);
+	if (!sorted) {
+		out->failed = true;
+		return;
+	}
+	if (reports->count)
+		memcpy(sorted, reports->items, reports->count * sizeof *sorted);
+	qsort(sorted, reports->count, sizeof *sorted, by_worst);
+	nt_buffer_text(out, "## nmtan: ");
 	nt_totals_text(&totals, out);
 	nt_buffer_text(out, "\n\n| file | errors | warnings | infos | triangles | mirrored | mirror seams |\n"
 		"|---|---:|---:|---:|---:|---:|---:|\n");
-	for (size_t i = 0; i < reports->count; i++)
-		put_file_row(reports->items[i], out);
-	for (size_t i = 0; i < reports->count; i++)
-		if (reports->items[i]->finding_count)
-			put_findings(reports->items[i], out);
+	size_t files = 0, rows = 0;
+	for (; files < reports->count && files < MOST_FILES && (files == 0 || !is_clean(sorted[files])); files++)
+		put_file_row(sorted[files], out);
+	if (files < reports->count)
+		nt_buffer_format(out, "\n%zu more files are not shown%s.\n", reports->count - files,
+			is_clean(sorted[files]) ? ", all without errors and warnings" : "");
+	for (size_t i = 0; i < files; i++)
+		if (sorted[i]->finding_count)
+			put_findings(sorted[i], &rows, out);
+	free(sorted);
 }

@@ -16,6 +16,10 @@ void nt_write_csv(const nt_report_list *reports, nt_buffer *out);
 void nt_write_markdown(const nt_report_list *reports, nt_buffer *out);
 void nt_write_html(const nt_report_list *reports, nt_buffer *out);
 
+/* For other writers of Markdown: a text without markup, and a finding as a row of four columns. */
+void nt_markdown_text(const char *text, nt_buffer *out);
+void nt_markdown_finding(const nt_report *report, const nt_report_finding *finding, nt_buffer *out);
+
 /* The UV layout of a mesh. False, and nothing appended, where it has no texture coordinates or its geometry
  * was not kept. */
 bool nt_write_uv_svg(const nt_report *report, uint32_t mesh, nt_buffer *out);

@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Two versions of an asset: see compare.h. Exporters renumber vertices and triangles, so triangles are found by their
+ * positions, which are hashed from the least of the three corners on. Findings, meshes and triangles are paired alike: by
+ * a key, each thing once.
+ */
+#include "report/compare.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "base/angle.h"
+#include "base/dvec.h"
+#include "base/hash_index.h"
+
+static const double DEGREES = 57.29577951308232;
+
+/* ---- pairs ---- */
+
+typedef struct keyed {
+	uint64_t key;
+	uint32_t index;
+} keyed;
+
+static int by_key(const void *a, const void *b)
+{
+	const keyed *x = a, *y = b;
+	if (x->key != y->key)
+		return x->key < y->key ? -1 : 1;
+	return x->index < y->index ? -1 : x->index > y->index;
+}
+
+/* For each of the new things the old one with its key, NT_NONE where there is none or others took it: equal keys are
+ * paired one by one in their order, in time that many equal ones do not lengthen. Sorts both lists. */
+static void pair_keys(keyed *old, size_t old_count, keyed *new, size_t new_count, uint32_t *partners)
+{
+	if (old_count)
+		qsort(old, old_count, sizeof *old, by_key);
+	if (new_count)
+		qsort(new, new_count, sizeof *new, by_key);
+	size_t a = 0;
+	for (size_t b = 0; b < new_count; b++) {
+		while (a < old_count && old[a].key < new[b].key)
+			a++;
+		const bool found = a < old_count && old[a].key == new[b].key;
+		partners[new[b].index] = found ? old[a++].index : NT_NONE;
+	}
+}
+
+/* Lists keys of both versions, pairs them, and gives partners; NULL: out of memory. */
+static uint32_t *find_partners(const void *old, size_t old_count, const void *new, size_t new_count,
+	uint64_t (*key_of)(const void *things, size_t index))
+{
+	keyed *lists[2] = {nt_alloc(old_count, sizeof(keyed)), nt_alloc(new_count, sizeof(keyed))};
+	uint32_t *partners = nt_alloc(new_count, sizeof *partners);
+	if (lists[0] && lists[1] && partners) {
+		for (size_t i = 0; i < old_count; i++)
+			lists[0][i] = (keyed){key_of(old, i), (uint32_t)i};
+		for (size_t i = 0; i < new_count; i++)
+			lists[1][i] = (keyed){key_of(new, i), (uint32_t)i};
+		pair_keys(lists[0], old_count, lists[1], new_count, partners);
+	} else {
+		free(partners);
+		partners = NULL;
+	}
+	free(lists[0]);
+	free(lists[1]);
+	return partners;
+}
+
+/* ---- findings ---- */
+
+static uint64_t finding_key(const void *report, size_t index)
+{
+	return ((const nt_report *)report)->findings[index].fingerprint;
+}
+
+static nt_status match_findings(nt_report_diff *diff)
+{
+	const nt_report *old = diff->reports[0], *new = diff->reports[1];
+	uint32_t *partners = find_partners(old, old->finding_count, new, new->finding_count, finding_key);
+	for (int i = 0; i < 2; i++)
+		diff->known[i] = nt_calloc(diff->reports[i]->finding_count, sizeof(bool));
+	const bool made = partners && diff->known[0] && diff->known[1];
+	for (size_t i = 0; made && i < new->finding_count; i++)
+		if (partners[i] != NT_NONE) {
+			diff->known[0][partners[i]] = diff->known[1][i] = true;
+			diff->unchanged++;
+		}
+	free(partners);
+	for (int i = 0; made && i < 2; i++)
+		for (size_t k = 0; k < diff->reports[i]->finding_count; k++)
+			if (!diff->known[i][k])
+				diff->by_severity[i][diff->reports[i]->findings[k].severity]++;
+	return made ? NT_OK : NT_ERROR_MEMORY;
+}
+
+/* ---- meshes ---- */
+
+static bool same_mesh(const nt_report_mesh *a, const nt_report_mesh *b)
+{
+	return strcmp(a->name, b->name) == 0 && a->gltf_primitive == b->gltf_primitive;
+}
+
+static uint64_t mesh_key(const void *report, size_t index)
+{
+	const nt_report_mesh *mesh = &((const nt_report *)report)->meshes[index];
+	return nt_hash_bytes(mesh->gltf_primitive, mesh->name, strlen(mesh->name));
+}
+
+/* Pairs what has one name. taken: [of the old report]. */
+static bool match_names(nt_report_diff *diff, bool *taken)
+{
+	const nt_report *old = diff->reports[0], *new = diff->reports[1];
+	uint32_t *partners = find_partners(old, old->mesh_count, new, new->mesh_count, mesh_key);
+	for (size_t i = 0; partners && i < new->mesh_count; i++) {
+		const uint32_t partner = partners[i];
+		if (partner == NT_NONE || !same_mesh(&old->meshes[partner], &new->meshes[i]))
+			continue;
+		diff->meshes[i].meshes[0] = partner;
+		taken[partner] = true;
+	}
+	const bool made = partners != NULL;
+	free(partners);
+	return made;
+}
+
+static nt_status match_meshes(nt_report_diff *diff)
+{
+	const nt_report *old = diff->reports[0], *new = diff->reports[1];
+	diff->meshes = nt_calloc(old->mesh_count + new->mesh_count, sizeof *diff->meshes);
+	bool *taken = nt_calloc(old->mesh_count, sizeof *taken);
+	if (!diff->meshes || !taken) {
+		free(taken);
+		return NT_ERROR_MEMORY;
+	}
+	diff->mesh_count = new->mesh_count;
+	for (size_t i = 0; i < new->mesh_count; i++)
+		diff->meshes[i] = (nt_mesh_change){.meshes = {NT_NONE, (uint32_t)i}, .worst_degrees = NAN};
+	if (!match_names(diff, taken)) {
+		free(taken);
+		return NT_ERROR_MEMORY;
+	}
+	/* renamed ones follow each other in both */
+	size_t next = 0;
+	for (size_t i = 0; i < new->mesh_count; i++) {
+		if (diff->meshes[i].meshes[0] != NT_NONE)
+			continue;
+		while (next < old->mesh_count && taken[next])
+			next++;
+		if (next == old->mesh_count || old->meshes[next].triangle_count != new->meshes[i].triangle_count)
+			continue;
+		diff->meshes[i].meshes[0] = (uint32_t)next;
+		taken[next] = true;
+	}
+	for (size_t i = 0; i < old->mesh_count; i++)
+		if (!taken[i])
+			diff->meshes[diff->mesh_count++] =
+				(nt_mesh_change){.meshes = {(uint32_t)i, NT_NONE}, .worst_degrees = NAN};
+	free(taken);
+	return NT_OK;
+}
+
+/* ---- triangles ---- */
+
+static const float *position_of(const nt_report_geometry *g, size_t t, unsigned k)
+{
+	return g->positions + 3 * (size_t)g->indices[3 * t + k];
+}
+
+/* 0 and -0 are one; NaN is as its bits are. */
+static int compare_positions(const float *a, const float *b)
+{
+	for (int i = 0; i < 3; i++)
+		if (a[i] < b[i] || a[i] > b[i])
+			return a[i] < b[i] ? -1 : 1;
+	return 0;
+}
+
+/* The corner to begin with, so that turned triangles are equal. */
+static unsigned first_corner(const nt_report_geometry *g, size_t t)
+{
+	unsigned first = 0;
+	for (unsigned k = 1; k < 3; k++)
+		if (compare_positions(position_of(g, t, k), position_of(g, t, first)) < 0)
+			first = k;
+	return first;
+}
+
+static uint64_t triangle_key(const void *geometry, size_t t)
+{
+	const nt_report_geometry *g = geometry;
+	const unsigned first = first_corner(g, t);
+	float values[9];
+	for (unsigned k = 0; k < 3; k++)
+		for (int i = 0; i < 3; i++)
+			values[3 * k + (unsigned)i] = position_of(g, t, (first + k) % 3)[i] + 0.0f;
+	return nt_hash_bytes(0, values, sizeof values);
+}
+
+static bool same_place(const nt_report_geometry *a, size_t t, const nt_report_geometry *b, size_t u)
+{
+	const unsigned first = first_corner(a, t), other = first_corner(b, u);
+	for (unsigned k = 0; k < 3; k++)
+		if (compare_positions(position_of(a, t, (first + k) % 3), position_of(b, u, (other + k) % 3)) != 0)
+			return false;
+	return true;
+}
+
+static void compare_tangents(nt_mesh_change *change, const float *before, const float *after, const float *position)
+{
+	nt_dvec3 a = nt_dvec3_load(before), b = nt_dvec3_load(after);
+	if (!nt_dvec3_normalise(&a) || !nt_dvec3_normalise(&b))
+		return;
+	const nt_dvec3 cross = nt_dvec3_cross(a, b);
+	const double degrees = nt_angle(nt_dvec3_length(cross), nt_dvec3_dot(a, b)) * DEGREES;
+	int bin = 0;
+	while (bin + 1 < NT_ANGLE_BINS && degrees > nt_angle_bins[bin])
+		bin++;
+	change->histogram[bin]++;
+	change->compared++;
+	change->turned += degrees > NT_TURNED_DEGREES;
+	change->reversed += before[3] != after[3];
+	if (!(degrees <= change->worst_degrees)) {
+		change->worst_degrees = degrees;
+		memcpy(change->worst_position, position, sizeof change->worst_position);
+	}
+}
+
+static void compare_triangles(nt_mesh_change *change, const nt_report_geometry *a, size_t t,
+	const nt_report_geometry *b, size_t u)
+{
+	const unsigned first = first_corner(a, t), other = first_corner(b, u);
+	change->matched++;
+	for (unsigned k = 0; k < 3; k++) {
+		const size_t v = a->indices[3 * t + (first + k) % 3], w = b->indices[3 * u + (other + k) % 3];
+		if (a->texcoords && b->texcoords)
+			change->moved_texcoords += a->texcoords[2 * v] != b->texcoords[2 * w] ||
+				a->texcoords[2 * v + 1] != b->texcoords[2 * w + 1];
+		if (a->tangents && b->tangents)
+			compare_tangents(change, a->tangents + 4 * v, b->tangents + 4 * w, b->positions + 3 * w);
+	}
+}
+
+static nt_status compare_geometry(nt_mesh_change *change, const nt_report_geometry *a, const nt_report_geometry *b)
+{
+	uint32_t *partners = find_partners(a, a->triangle_count, b, b->triangle_count, triangle_key);
+	for (size_t u = 0; partners && u < b->triangle_count; u++)
+		if (partners[u] != NT_NONE && same_place(a, partners[u], b, u))
+			compare_triangles(change, a, partners[u], b, u);
+	const nt_status status = partners ? NT_OK : NT_ERROR_MEMORY;
+	free(partners);
+	return status;
+}
+
+/* Meshes of one geometry have it at the first of them. */
+static const nt_report_geometry *geometry_of(const nt_report *report, uint32_t mesh)
+{
+	const nt_report_mesh *m = &report->meshes[mesh];
+	return m->same_as == NT_NONE ? m->geometry : report->meshes[m->same_as].geometry;
+}
+
+nt_status nt_report_compare(nt_report_diff *diff, const nt_report *before, const nt_report *after)
+{
+	*diff = (nt_report_diff){.reports = {before, after}};
+	nt_status status = match_findings(diff);
+	if (!status)
+		status = match_meshes(diff);
+	for (size_t i = 0; i < diff->mesh_count && !status; i++) {
+		nt_mesh_change *change = &diff->meshes[i];
+		if (change->meshes[0] == NT_NONE || change->meshes[1] == NT_NONE)
+			continue;
+		const nt_report_geometry *a = geometry_of(before, change->meshes[0]);
+		const nt_report_geometry *b = geometry_of(after, change->meshes[1]);
+		if (a && b)
+			status = compare_geometry(change, a, b);
+	}
+	if (status)
+		nt_report_diff_free(diff);
+	return status;
+}
+
+void nt_report_diff_free(nt_report_diff *diff)
+{
+	free(diff->meshes);
+	free(diff->known[0]);
+	free(diff->known[1]);
+	*diff = (nt_report_diff){0};
+}

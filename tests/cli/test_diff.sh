@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: MIT
+# --check --diff: what changed between two versions of an asset.
+. "$ROOT/tests/support/cli.sh"
+
+# Two separate unit squares in the plane z = 0; $1: the corners' texture coordinates of the second one, $2: a swap of lines.
+squares() {
+	printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 5 0 0\nv 6 0 0\nv 6 1 0\nv 5 1 0\n'
+	printf 'vn 0 0 1\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n'
+	set -- $1
+	printf 'f 1/1/1 2/2/1 3/3/1 4/4/1\nf 5/%s/1 6/%s/1 7/%s/1 8/%s/1\n' "$@"
+}
+
+value() {
+	python3 -c 'import json, sys; r = json.load(open(sys.argv[1])); print(eval(sys.argv[2]))' "$@"
+}
+
+validates() {
+	python3 "$ROOT/tests/report/schema.py" "$ROOT/data/nmtan-diff.schema.json" "$@" >faults.txt || wrong "$(head -3 faults.txt)"
+}
+
+scene "what did not change is not told, whatever numbers it has"
+squares "1 2 3 4" >old.obj
+{ sed -n '/^v/p' old.obj; printf 'f 7/3/1 8/4/1 5/1/1\nf 5/1/1 6/2/1 7/3/1\nf 2/2/1 3/3/1 1/1/1\nf 3/3/1 4/4/1 1/1/1\n'; } >new.obj
+run -q old.obj old.glb
+run -q new.obj new.glb
+run --check --diff --fail-on=info old.glb new.glb
+exits 0
+prints "old.glb -> new.glb: 0 new findings, 0 gone, 1 unchanged; 0 of 1 meshes changed"
+
+# The second square's texture is turned by a quarter: T goes from (1,0,0) to (0,-1,0). Then it is mirrored: w changes, T too.
+scene "turned tangents are counted with their angles, mirrored ones by w"
+squares "1 2 3 4" >old.obj
+squares "2 3 4 1" >turned.obj
+squares "2 1 4 3" >mirrored.obj
+for name in old turned mirrored; do run -q $name.obj $name.glb; done
+run -q --check --diff --report=d.json old.glb turned.glb
+validates d.json
+is "$(value d.json '[(m["triangles_in_place"], m["corners_with_other_texcoords"], m["tangents"]["compared"],
+	m["tangents"]["turned"], m["tangents"]["reversed_w"], round(m["tangents"]["worst_degrees"], 3),
+	[h["corners"] for h in m["tangents"]["histogram"]]) for m in r["meshes"]]')" \
+	"[(4, 6, 12, 6, 0, 90, [6, 0, 0, 0, 0, 6])]"
+run -q --check --diff --report=d.json old.glb mirrored.glb
+is "$(value d.json '[(m["tangents"]["turned"], m["tangents"]["reversed_w"], round(m["tangents"]["worst_degrees"], 3))
+	for m in r["meshes"]]')" "[(6, 6, 180)]"
+is "$(value d.json '[f["code"] for f in r["new_findings"]]')" "['UV_MIRROR_OVERLAP']"
+run -q --check --diff --report=back.json mirrored.glb old.glb
+is "$(value back.json '[f["code"] for f in r["gone_findings"]], r["new_findings"]')" "(['UV_MIRROR_OVERLAP'], [])"
+# an OBJ is compared as it would be converted
+run --check --diff mirrored.obj mirrored.glb
+prints "0 of 12 tangents turned"
+
+scene "new findings decide the exit code, old ones do not"
+squares "1 2 3 4" >old.obj
+sed 's/^vt 1 1$/vt 1 0/' old.obj >flat.obj
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/3/1 3/2/1\n' >lone.obj
+run --check --diff --fail-on=warning old.obj lone.obj
+exits 6
+prints "new   warning  UV_MIRROR_LONE"
+run --check --diff --fail-on=warning lone.obj old.obj
+exits 0
+prints "gone  warning  UV_MIRROR_LONE"
+run --check --diff --fail-on=warning lone.obj lone.obj
+exits 0
+run --check --diff --report=d.md --fail-on=warning old.obj lone.obj
+exits 6
+grep -q '^| warning | `UV_MIRROR_LONE` |' d.md || wrong "no row of the new finding"
+
+scene "meshes that came and went are told"
+printf 'o one\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n' >old.obj
+{ cat old.obj; printf 'o two\nv 3 0 0\nv 4 0 0\nv 3 1 0\nf 4/1/1 5/2/1 6/3/1\nf 6/1/1 5/2/1 4/3/1\n'; } >new.obj
+run --check --diff old.obj new.obj
+prints 'object "two": new, 2 triangles'
+run --check --diff new.obj old.obj
+prints 'object "two": gone, 2 triangles'
+
+scene "wrong uses are refused"
+cp "$data/quad.obj" .
+run --check --diff quad.obj
+exits 1
+says "an old one and a new one"
+run --diff quad.obj out.glb
+exits 1
+says "--diff is about --check"
+run --check --diff --report=r.sarif quad.obj quad.obj
+exits 1
+says "text, JSON or Markdown"
+run --check --diff --baseline=b.json quad.obj quad.obj
+exits 1
+run --check --diff quad.obj nothing.obj
+exits 2
+only quad.obj
+done_testing
