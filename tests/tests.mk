@@ -125,7 +125,7 @@ stress: $(B)/tests/stress/stress
 
 # make bench: run time against error, with the peers that the machine has; tables, and data/charts/pareto.svg.
 pareto_obj := $(patsubst %,$(B)/tests/%.o,$(addprefix bench/,pareto image round_trip faults files models native) \
-	stress/families)
+	stress/families stress/bounds)
 
 $(B)/tests/bench/pareto: $(pareto_obj) $(measure_obj) $(B)/libnmtan.a
 	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm -ldl $(QUADMATH)

@@ -20,11 +20,21 @@ static nt_owned make_twin(const family *f, double level, uint64_t seed)
 	return mesh;
 }
 
+/* Real models stand elsewhere; what is denormal or not finite no tool promises to read. */
+static bool is_left_out(const family *f)
+{
+	static const char *const names[] = {"public models", "denormal uvs", "denormal positions", "not finite"};
+	bool out = false;
+	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+		out = out || strcmp(f->name, names[i]) == 0;
+	return out;
+}
+
 size_t nasty_make(nt_owned *meshes)
 {
 	size_t n = 0;
 	for (const family *f = families; f < families + family_count; f++) {
-		if (!f->finite || strcmp(f->name, "public models") == 0)
+		if (is_left_out(f))
 			continue;
 		for (size_t l = 1; l < f->level_count && n + 2 <= NASTY_MOST; l += LEVEL_STEP) {
 			meshes[n] = f->make(f->levels[l], l);

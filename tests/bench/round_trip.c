@@ -5,11 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "oracle128.h"
-
-/* Degrees by which MikkTSpace may miss the formula, for each unit of the condition in float: 8 roundings of 2^-24 (see
- * MOST_UNITS in tests/stress/judge.h). */
-static const double ROUNDING = 8 * 57.29577951308232 / 16777216;
+#include "../stress/bounds.h"
 
 /* Barycentric weights of a point, all inside. */
 static void weights_of(int point, double weights[3])
@@ -23,12 +19,13 @@ static void weights_of(int point, double weights[3])
 }
 
 /* The baker's tangent; false: there is none. */
-static bool baker_tangent(const oracle_corner *exact, const float raw[4], const float repaired[4], double t[3], bool *own)
+static bool baker_tangent(const oracle_corner *exact, const bound *b, const float raw[4], const float repaired[4],
+	double t[3], bool *own)
 {
 	if (exact->sign == 0)
 		return false;
 	const bool usable = memcmp(raw, repaired, 16) == 0;
-	*own = usable && !(measure_degrees(raw, exact->t) <= ROUNDING * exact->condition_float);
+	*own = usable && !(b->condition > 0 && measure_degrees(raw, exact->t) <= b->degrees);
 	for (int i = 0; i < 3; i++)
 		t[i] = *own ? raw[i] : exact->t[i];
 	return *own || isfinite(exact->condition);
@@ -52,15 +49,15 @@ static bool surface_point(const model *m, size_t triangle, const double weights[
 	return length > 1e-6;
 }
 
-static bool sample(const model *m, size_t triangle, const oracle_corner *exact, const float (*raw)[4],
-	const float (*repaired)[4], sampled *to, size_t *own_groups)
+static bool sample(const model *m, size_t triangle, const oracle_corner *exact, const bound *bounds,
+	const float (*raw)[4], const float (*repaired)[4], sampled *to, size_t *own_groups)
 {
 	to->triangle = triangle;
 	size_t own_count = 0;
 	for (size_t k = 0; k < 3; k++) {
 		const size_t c = 3 * triangle + k;
 		bool own;
-		if (!baker_tangent(&exact[c], raw[c], repaired[c], to->baker.t[k], &own))
+		if (!baker_tangent(&exact[c], &bounds[c], raw[c], repaired[c], to->baker.t[k], &own))
 			return false;
 		own_count += own;
 		to->baker.w[k] = exact[c].sign;
@@ -84,16 +81,22 @@ round_trip round_trip_make(const model *m)
 	const size_t step = faces / SAMPLED + 1;
 	round_trip r = {.triangles = measure_room(faces / step + 1, sizeof *r.triangles)};
 	oracle_corner *exact = measure_room(corners, sizeof *exact);
+	oracle_triangle *triangles = measure_room(faces, sizeof *triangles);
+	bound *bounds = measure_room(corners, sizeof *bounds);
 	float (*raw)[4] = measure_room(corners, sizeof *raw), (*repaired)[4] = measure_room(corners, sizeof *repaired);
 	const nmtan_options off = {.struct_bytes = sizeof off, .repair = NMTAN_REPAIR_OFF};
 	const nmtan_output to_raw = {.struct_bytes = sizeof to_raw, .tangents = &raw[0][0]};
 	const nmtan_output to_repaired = {.struct_bytes = sizeof to_repaired, .tangents = &repaired[0][0]};
-	if (!oracle_solve(&m->mesh.mesh, ORACLE_ANGLE, exact) || nmtan_tangents(&m->mesh.mesh, &off, &to_raw, NULL) ||
+	if (!oracle_solve_triangles(&m->mesh.mesh, exact, triangles) ||
+		!find_bounds(&m->mesh.mesh, exact, triangles, corners, bounds) ||
+		nmtan_tangents(&m->mesh.mesh, &off, &to_raw, NULL) ||
 		nmtan_tangents(&m->mesh.mesh, NULL, &to_repaired, NULL))
 		exit(4);
 	for (size_t t = 0; t < faces; t += step)
-		r.count += sample(m, t, exact, raw, repaired, &r.triangles[r.count], &r.own_groups);
+		r.count += sample(m, t, exact, bounds, raw, repaired, &r.triangles[r.count], &r.own_groups);
 	free(exact);
+	free(triangles);
+	free(bounds);
 	free(raw);
 	free(repaired);
 	return r;
