@@ -152,6 +152,12 @@ bench: bench-core
 bench-core: $(B)/tests/bench/core $(B)/nmtan
 	@$< $$(sh tests/bench/models.sh $(B)/nmtan build/bench/models)
 
+# make bench-js: the npm package beside others, in Node.
+.PHONY: bench-js
+bench-js: $(B)/nmtan wasm build/clients/node_modules/three/package.json
+	@node tests/bench/js.mjs $(B)/nmtan $(CURDIR)/build/npm $(CURDIR)/build/clients build/bench/js \
+		$$(sh tests/bench/models.sh $(B)/nmtan build/bench/models)
+
 # make bench-obj: reading the 104 MB file that speed is stated for; the lines "parse" and "index" are the reader.
 build/bench/torus.obj: $(B)/tests/bench/make_obj.o
 	@mkdir -p $(@D)
