@@ -39,6 +39,9 @@ while IFS= read -r line; do
 		;;
 	esac
 done <"$WORK/pytest.txt"
+scene "the program of README.md prints what it says"
+PYTHONPATH=$WORK/wheel "$python" -m doctest -o ELLIPSIS "$ROOT/README.md" >doctest.txt 2>&1 || wrong "$(head -30 doctest.txt)"
+grep -q ">>> import numpy" "$ROOT/README.md" || wrong "there is no program"
 scene "module: pytest ends with 0"
 [ $ended = 0 ] || wrong "$(tail -50 "$WORK/pytest.txt")"
 done_testing
