@@ -297,8 +297,9 @@ NMTAN_API nmtan_status nmtan_tangents(const nmtan_mesh *mesh, const nmtan_option
 /* Where a split goes. Nothing is appended past source_capacity; the corner count is always enough. */
 typedef struct nmtan_split_output {
 	size_t struct_bytes;  /* sizeof(nmtan_split_output): see "Structs" */
-	uint32_t *indices;    /* [corner count], required: the vertex of each corner after the split. May
-	                         be the array that mesh->indices points to */
+	uint32_t *indices;    /* [corner count]: the vertex of each corner after the split. May be the array that
+	                         mesh->indices points to. Required, but for nmtan_split() where sources and
+	                         vertex_tangents are NULL too: it then only counts */
 	uint32_t *sources;    /* [source_capacity]: sources[i] is the vertex of which vertex
 	                         vertex_count + i is a copy. May be NULL where source_capacity is 0 */
 	size_t source_capacity;
@@ -306,9 +307,10 @@ typedef struct nmtan_split_output {
 	float *vertex_tangents; /* [vertex_count + source_capacity][4], may be NULL: the tangent of each
 	                           vertex after the split. A vertex without corners gets a unit vector
 	                           perpendicular to its normal and w = 1 */
+	uint32_t *copy_counts;  /* [vertex_count], may be NULL: how many copies each vertex gets */
 } nmtan_split_output;
 
-#define NMTAN_SPLIT_OUTPUT_INIT {sizeof(nmtan_split_output), NULL, NULL, 0, 0, NULL}
+#define NMTAN_SPLIT_OUTPUT_INIT {sizeof(nmtan_split_output), NULL, NULL, 0, 0, NULL, NULL}
 
 /*
  * Finds the vertices whose corners have different tangents and gives each further tangent a copy of

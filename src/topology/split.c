@@ -84,10 +84,13 @@ static nmtan_status take_copy(nt_splitter *s, uint32_t original, const nt_tangen
 		return NMTAN_ERROR_MEMORY;
 	const size_t at = find_slot(s, original, key);
 	if (s->table[at] == NO_COPY) {
-		if (s->copy_count >= s->output->source_capacity ||
+		if ((s->output->indices && s->copy_count >= s->output->source_capacity) ||
 			s->mesh->vertex_count + s->copy_count >= UINT32_MAX)
 			return NMTAN_ERROR_TOO_LARGE;
-		s->output->sources[s->copy_count] = original;
+		if (s->output->indices)
+			s->output->sources[s->copy_count] = original;
+		if (s->output->copy_counts)
+			s->output->copy_counts[original]++;
 		s->copies[s->copy_count] = (nt_vertex_copy){original, *key};
 		s->table[at] = (uint32_t)s->copy_count++;
 	}
@@ -117,6 +120,8 @@ nmtan_status nt_splitter_begin(nt_splitter *s, const nmtan_mesh *mesh, size_t co
 	if (!s->tangents || !s->seen)
 		return NMTAN_ERROR_MEMORY;
 	memset(s->seen, 0, mesh->vertex_count);
+	if (output->copy_counts)
+		memset(output->copy_counts, 0, mesh->vertex_count * sizeof *output->copy_counts);
 	return NMTAN_OK;
 }
 
@@ -151,6 +156,8 @@ nmtan_status nt_splitter_differs(nt_splitter *s, uint32_t vertex, const float *t
 		return status;
 	if (s->output->vertex_tangents)
 		memcpy(s->output->vertex_tangents + 4 * (size_t)vertex, tangent, 4 * sizeof(float));
+	if (!s->output->indices)
+		return NMTAN_OK;
 	if (!s->indexed)
 		copy_indices(s);
 	s->output->indices[corner] = vertex;
@@ -160,7 +167,7 @@ nmtan_status nt_splitter_differs(nt_splitter *s, uint32_t vertex, const float *t
 void nt_splitter_end(nt_splitter *s)
 {
 	s->output->source_count = s->copy_count;
-	if (!s->indexed && !s->lazy)
+	if (s->output->indices && !s->indexed && !s->lazy)
 		copy_indices(s);
 	for (size_t v = 0; s->output->vertex_tangents && v < s->mesh->vertex_count; v++)
 		if (!s->seen[v])
@@ -186,14 +193,21 @@ typedef struct split_arguments {
 	nmtan_split_output output;
 } split_arguments;
 
+/* Without indices only copies are counted. */
+static bool has_places(const nmtan_split_output *output)
+{
+	if (!output->indices)
+		return !output->sources && !output->source_capacity && !output->vertex_tangents;
+	return output->sources || output->source_capacity == 0;
+}
+
 static bool read_arguments(split_arguments *a, const nmtan_mesh *mesh, const nmtan_options *options,
 	const nmtan_split_output *output)
 {
 	a->options = (nmtan_options)NMTAN_OPTIONS_INIT;
 	return nt_struct_read(&a->mesh, sizeof a->mesh, mesh) &&
 	       (!options || nt_struct_read(&a->options, sizeof a->options, options)) &&
-	       nt_struct_read(&a->output, sizeof a->output, output) && a->output.indices &&
-	       (a->output.sources || a->output.source_capacity == 0) &&
+	       nt_struct_read(&a->output, sizeof a->output, output) && has_places(&a->output) &&
 	       (a->mesh.normals || !a->output.vertex_tangents) &&
 	       nt_fill_stride(&a->mesh.normal_stride_bytes, 3 * sizeof(float));
 }

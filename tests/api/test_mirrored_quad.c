@@ -68,6 +68,48 @@ static void seam_vertices_are_split_and_the_rest_stays(void **state)
 		assert_memory_equal(vertex_tangents[indices[c]], tangents[c], sizeof tangents[c]);
 }
 
+/* The same mesh with all tangents at vertex 2 made different: its corners 2, 4 and 11 need two copies, and the
+ * count that comes before everything else says so. */
+static void copies_are_counted_before_there_is_room_for_them(void **state)
+{
+	const nmtan_options *options = *state;
+	float tangents[12][4];
+	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
+	assert_int_equal(nmtan_tangents(&mesh, options, &output, NULL), NMTAN_OK);
+	tangents[4][0] = 0.5f;
+	const uint32_t expected[6] = {0, 1, 2, 0, 0, 0};
+	uint32_t copy_counts[6], indices[12], sources[3];
+	memset(copy_counts, 0xff, sizeof copy_counts);
+	nmtan_split_output split = NMTAN_SPLIT_OUTPUT_INIT;
+	split.copy_counts = copy_counts;
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], options, &split), NMTAN_OK);
+	assert_int_equal(split.source_count, 3);
+	assert_memory_equal(copy_counts, expected, sizeof expected);
+
+	memset(copy_counts, 0xff, sizeof copy_counts);
+	split.indices = indices;
+	split.sources = sources;
+	split.source_capacity = split.source_count;
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], options, &split), NMTAN_OK);
+	assert_int_equal(split.source_count, 3);
+	assert_memory_equal(copy_counts, expected, sizeof expected);
+	split.source_capacity = 2;
+	assert_int_equal(nmtan_split(&mesh, &tangents[0][0], options, &split), NMTAN_ERROR_TOO_LARGE);
+}
+
+/* nmtan_vertex_tangents() counts them too. */
+static void a_solve_with_split_counts_copies(void **state)
+{
+	uint32_t indices[12], sources[12], copy_counts[6];
+	float vertex_tangents[18][4];
+	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = indices, .sources = sources, .source_capacity = 12,
+		.vertex_tangents = &vertex_tangents[0][0], .copy_counts = copy_counts};
+	memset(copy_counts, 0xff, sizeof copy_counts);
+	assert_int_equal(nmtan_vertex_tangents(&mesh, *state, &split, NULL), NMTAN_OK);
+	const uint32_t expected[6] = {0, 1, 1, 0, 0, 0};
+	assert_memory_equal(copy_counts, expected, sizeof expected);
+}
+
 int main(void)
 {
 	static nmtan_options mikktspace = NMTAN_OPTIONS_INIT;
@@ -81,6 +123,9 @@ int main(void)
 		cmocka_unit_test_prestate(tangents_follow_u_and_w_tells_the_mirrored_side, &lengyel),
 		cmocka_unit_test_prestate(seam_vertices_are_split_and_the_rest_stays, &mikktspace),
 		cmocka_unit_test_prestate(seam_vertices_are_split_and_the_rest_stays, &area),
+		cmocka_unit_test_prestate(copies_are_counted_before_there_is_room_for_them, &mikktspace),
+		cmocka_unit_test_prestate(a_solve_with_split_counts_copies, &mikktspace),
+		cmocka_unit_test_prestate(a_solve_with_split_counts_copies, &area),
 	};
 	return cmocka_run_group_tests_name("api/mirrored_quad", tests, NULL, NULL);
 }
