@@ -27,7 +27,7 @@
 #include "base/memory.h"
 
 /* A name's length in any file system; the digits of a digest that a name has; names that are tried. */
-enum { MOST_NAME_BYTES = 255, NAME_ROOM = 1024, NAME_DIGITS = 16, MOST_NUMBERS = 1000, COMPARED_BYTES = 2 * 1024 * 1024 };
+enum { MOST_NAME_BYTES = 255, NAME_ROOM = 1024, NAME_DIGITS = 16, MOST_NUMBERS = 1000 };
 
 static const char of_content[] = "-", for_the_time_being[] = ".new-";
 
@@ -54,64 +54,6 @@ bool nt_output_is_protected(const nt_output *output, const struct stat *status, 
 			return true;
 		}
 	return false;
-}
-
-/* Opens what may be somebody else's: *opened is false where we are not allowed to or it is gone. */
-static nt_status open_foreign(nt_file *file, const char *path, bool *opened, nt_error *error)
-{
-	*opened = false;
-	if (access(path, R_OK) != 0)
-		return NT_OK;
-	const nt_status status = nt_file_open_untraced(file, path, error);
-	*opened = status == NT_OK;
-	return status;
-}
-
-nt_status nt_same_bytes(const char *a, const char *b, bool *same, nt_error *error)
-{
-	nt_file x, y;
-	bool opened;
-	*same = false;
-	nt_status status = open_foreign(&x, a, &opened, error);
-	if (!opened)
-		return status;
-	status = open_foreign(&y, b, &opened, error);
-	if (opened) {
-		*same = x.size == y.size;
-		for (size_t at = 0, part; *same && at < x.size; at += part) {
-			part = x.size - at < COMPARED_BYTES ? x.size - at : COMPARED_BYTES;
-			nt_file_fetch(&x, at, part);
-			nt_file_fetch(&y, at, part);
-			*same = memcmp(x.data + at, y.data + at, part) == 0;
-			nt_file_release(&x, at, part);
-			nt_file_release(&y, at, part);
-		}
-		nt_file_close(&y);
-	}
-	nt_file_close(&x);
-	return status;
-}
-
-static nt_status digest_of(const char *path, char text[NT_DIGEST_TEXT], nt_error *error)
-{
-	nt_file file;
-	bool opened;
-	text[0] = '\0';
-	const nt_status status = open_foreign(&file, path, &opened, error);
-	if (!opened)
-		return status;
-	nt_digest *digest = nt_digest_create();
-	for (size_t at = 0, part; digest && at < file.size; at += part) {
-		part = file.size - at < COMPARED_BYTES ? file.size - at : COMPARED_BYTES;
-		nt_file_fetch(&file, at, part);
-		nt_digest_add(digest, file.data + at, part);
-		nt_file_release(&file, at, part);
-	}
-	nt_file_close(&file);
-	if (digest)
-		nt_digest_text(digest, text);
-	nt_digest_free(digest);
-	return digest ? NT_OK : nt_fail_memory(error);
 }
 
 /* ---- names ---- */
@@ -217,7 +159,7 @@ static nt_status may_replace(nt_output *output, nt_sink *sink, bool *may, nt_err
 	if (result || !is_claimed(output, name, NULL))
 		return result;
 	sink->there = nt_state_of(&status);
-	result = digest_of(sink->path, sink->before, error);
+	result = nt_digest_of_file(sink->path, sink->before, error);
 	*may = !result && sink->before[0] && is_claimed(output, name, sink->before);
 	return result;
 }
@@ -230,7 +172,7 @@ static bool is_intact(const nt_output *output, const char *path, const char *dig
 	const nt_protected_file *ignored;
 	nt_error unused;
 	return lstat(path, &status) == 0 && S_ISREG(status.st_mode) &&
-	       !nt_output_is_protected(output, &status, &ignored) && digest_of(path, text, &unused) == NT_OK &&
+	       !nt_output_is_protected(output, &status, &ignored) && nt_digest_of_file(path, text, &unused) == NT_OK &&
 	       strcmp(text, digest) == 0;
 }
 

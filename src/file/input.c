@@ -120,7 +120,7 @@ nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
 		file->inode = (uint64_t)status.st_ino;
 	}
 	if (!standard)
-		nt_trace_note(NT_TRACE_READ, path, &status);
+		nt_trace_read(path, &status);
 	if (map_all(file, fd, path, &status))
 		return NT_OK;
 	const nt_status result = standard || is_readable(&status) ? read_all(file, fd, path, error)

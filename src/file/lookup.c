@@ -22,7 +22,7 @@ nt_status nt_lookup_failed(const char *path, int number, nt_error *error)
 	else
 		nt_fail(error, NT_ERROR_IO, "cannot read: %s", strerror(number));
 	if (error->status == NT_ERROR_MISSING)
-		nt_trace_note(NT_TRACE_MISSING, path, NULL);
+		nt_trace_missing(path);
 	return nt_error_in_file(error, path);
 }
 

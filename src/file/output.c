@@ -356,7 +356,7 @@ static void note_written(const nt_output *output)
 	struct stat status;
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
 		if (sink->target && sink->role != NT_ROLE_INTERIM && stat(present_path(sink), &status) == 0)
-			nt_trace_note(NT_TRACE_WRITTEN, nt_sink_is_companion(sink) ? sink->target : sink->path, &status);
+			nt_trace_written(nt_sink_is_companion(sink) ? sink->target : sink->path, present_path(sink), &status);
 }
 
 nt_status nt_output_commit(nt_output *output, nt_error *error)

@@ -7,7 +7,7 @@
 #define NT_FILE_OUTPUT_PARTS_H
 
 #include <sys/stat.h>
-#include "ext/digest.h"
+#include "file/contents.h"
 #include "file/output.h"
 #include "file/relative_path.h"
 #include "file/temporary.h"
@@ -99,10 +99,6 @@ nt_file_state nt_state_of(const struct stat *status);
 
 /* Whether a path, links followed, still is the file in that state. */
 bool nt_state_is(const char *path, const nt_file_state *state);
-
-/* Whether two files hold the same bytes. False too where one of them cannot be read; NT_ERROR_MEMORY or
- * NT_ERROR_IO where that is the system's fault. */
-nt_status nt_same_bytes(const char *a, const char *b, bool *same, nt_error *error);
 
 bool nt_output_is_protected(const nt_output *output, const struct stat *status, const nt_protected_file **file);
 

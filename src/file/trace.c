@@ -47,23 +47,29 @@ static bool add(nt_trace *trace, uint64_t hash, const nt_trace_file *file)
 		!nt_hash_index_add(&trace->index, hash, (uint32_t)trace->count))
 		return false;
 	trace->files[trace->count] = *file;
-	trace->files[trace->count].path = strdup(file->path);
-	/* without a path it must not be found */
-	if (!trace->files[trace->count].path)
-		return false;
-	trace->count++;
-	return true;
+	nt_trace_file *added = &trace->files[trace->count];
+	added->path = strdup(file->path);
+	added->present = file->present ? strdup(file->present) : NULL;
+	if (added->path && (added->present || !file->present)) {
+		trace->count++;
+		return true;
+	}
+	/* the index has a number that nothing stands behind */
+	free(added->path);
+	free(added->present);
+	return false;
 }
 
-void nt_trace_note(nt_trace_kind kind, const char *path, const struct stat *info)
+static void note(nt_trace_kind kind, const char *path, const char *present, const struct stat *info)
 {
 	nt_trace *trace = current;
 	if (!trace)
 		return;
 	struct timespec now;
 	clock_gettime(CLOCK_REALTIME, &now);
-	nt_trace_file file = {.path = (char *)(uintptr_t)path, .kind = kind, .noted = nanoseconds(now)};
-	if (kind != NT_TRACE_MISSING) {
+	nt_trace_file file = {.path = (char *)(uintptr_t)path, .kind = kind, .present = (char *)(uintptr_t)present,
+		.noted = nanoseconds(now)};
+	if (info) {
 		file.size = (uint64_t)info->st_size;
 		file.modified = nt_trace_modified(info);
 	}
@@ -74,17 +80,38 @@ void nt_trace_note(nt_trace_kind kind, const char *path, const struct stat *info
 	pthread_mutex_unlock(&lock);
 }
 
+void nt_trace_read(const char *path, const struct stat *info)
+{
+	note(NT_TRACE_READ, path, NULL, info);
+}
+
+void nt_trace_missing(const char *path)
+{
+	note(NT_TRACE_MISSING, path, NULL, NULL);
+}
+
+void nt_trace_written(const char *path, const char *present, const struct stat *info)
+{
+	note(NT_TRACE_WRITTEN, path, present, info);
+}
+
+static void free_file(nt_trace_file *file)
+{
+	free(file->path);
+	free(file->present);
+}
+
 /* Nothing but these comes after them. Their numbers stay in the index, and are given again. */
 void nt_trace_forget_written(nt_trace *trace)
 {
 	while (trace->count && trace->files[trace->count - 1].kind == NT_TRACE_WRITTEN)
-		free(trace->files[--trace->count].path);
+		free_file(&trace->files[--trace->count]);
 }
 
 void nt_trace_free(nt_trace *trace)
 {
 	for (size_t i = 0; i < trace->count; i++)
-		free(trace->files[i].path);
+		free_file(&trace->files[i]);
 	free(trace->files);
 	nt_hash_index_free(&trace->index);
 	*trace = (nt_trace){0};

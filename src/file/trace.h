@@ -21,6 +21,7 @@ typedef enum nt_trace_kind {
 typedef struct nt_trace_file {
 	char *path; /* as the run named it: relative to the current folder, or absolute */
 	nt_trace_kind kind;
+	char *present; /* where its bytes are when it is noted; NULL: under `path` */
 	uint64_t size;            /* 0 for what is missing */
 	int64_t modified, noted;  /* nanoseconds since 1970: last change of the file; when it was noted */
 } nt_trace_file;
@@ -37,8 +38,11 @@ typedef struct nt_trace {
  * in one trace: each that helps a run and opens files has to be lent it. */
 nt_trace *nt_trace_use(nt_trace *trace);
 
-/* Notes a file; nothing happens where no trace is used. `info` is not needed for what is missing. */
-void nt_trace_note(nt_trace_kind kind, const char *path, const struct stat *info);
+/* Notes a file that is read, looked for in vain, or about to be written: `present` has its bytes until it is in place.
+ * Nothing happens where no trace is used. */
+void nt_trace_read(const char *path, const struct stat *info);
+void nt_trace_missing(const char *path);
+void nt_trace_written(const char *path, const char *present, const struct stat *info);
 
 /* The time of the last change, in nanoseconds since 1970. */
 int64_t nt_trace_modified(const struct stat *info);

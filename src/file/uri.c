@@ -246,13 +246,22 @@ nt_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri,
 	return allow_outside ? NT_OK : check_links(full, folder_text, uri, error);
 }
 
+void nt_uri_append_decoded(nt_buffer *text, const char *uri, size_t length)
+{
+	char *decoded = nt_buffer_extend(text, length);
+	if (!decoded)
+		return;
+	text->size = text->size - length + percent_decode(uri, length, decoded);
+	text->data[text->size] = '\0';
+}
+
 bool nt_uri_append_name(nt_buffer *name, const char *uri, size_t length)
 {
-	char *decoded = nt_buffer_extend(name, length);
-	if (!decoded)
+	const size_t begin = name->size;
+	nt_uri_append_decoded(name, uri, length);
+	if (name->failed)
 		return false;
-	name->size = name->size - length + percent_decode(uri, length, decoded);
-	decoded[name->size] = '\0';
+	const char *decoded = name->data + begin;
 	return name->size > 0 && strlen(decoded) == name->size && !strpbrk(decoded, "/\\") && !has_scheme(decoded) &&
 	       strcmp(decoded, ".") != 0 && strcmp(decoded, "..") != 0;
 }
