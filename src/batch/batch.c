@@ -21,15 +21,34 @@ typedef struct progress {
 	bool stop;            /* no further job begins */
 } progress;
 
-static void run_job(nt_job *job, const nt_settings *settings, nt_runner run)
+/* Runs it unless it is up to date. */
+static nt_status run_if_needed(nt_job *job, const nt_settings *settings, const nt_batch_options *options)
+{
+	nt_outcome *outcome = job->outcome;
+	nt_settings own = *settings;
+	nt_update_job updated;
+	bool current = false;
+	nt_status status = NT_OK;
+	nt_error_clear(&outcome->error);
+	if (options->update && job->output)
+		status = nt_update_look(options->update, job->input, job->output, &updated, &own, &current,
+			&outcome->summary.trace, &outcome->error);
+	if (current)
+		job->end = NT_JOB_CURRENT;
+	if (status || current)
+		return status;
+	nt_trace_free(&outcome->summary.trace);
+	return options->run(job->input, job->output, &own, &outcome->summary, &outcome->error);
+}
+
+static void run_job(nt_job *job, const nt_settings *settings, const nt_batch_options *options)
 {
 	job->outcome = nt_calloc(1, sizeof *job->outcome);
 	if (!job->outcome) {
 		job->status = NT_ERROR_MEMORY;
 		return;
 	}
-	nt_error_clear(&job->outcome->error);
-	job->status = run(job->input, job->output, settings, &job->outcome->summary, &job->outcome->error);
+	job->status = run_if_needed(job, settings, options);
 }
 
 static void free_outcome(nt_job *job)
@@ -69,7 +88,7 @@ static void run_one(void *context, size_t item, unsigned slot)
 	if (is_stopped(p))
 		job->end = NT_JOB_UNTRIED;
 	else
-		run_job(job, p->settings, p->options->run);
+		run_job(job, p->settings, p->options);
 	tell(p, job);
 }
 

@@ -9,6 +9,7 @@
 #ifndef NT_BATCH_BATCH_H
 #define NT_BATCH_BATCH_H
 
+#include "batch/update.h"
 #include "pipeline/run.h"
 
 /* What became of an input, while somebody may want to know. */
@@ -20,6 +21,7 @@ typedef struct nt_outcome {
 /* How a job ended. */
 typedef enum nt_job_end {
 	NT_JOB_RAN,     /* well or not, as its status says */
+	NT_JOB_CURRENT, /* its output was up to date; the summary has the trace alone */
 	NT_JOB_UNTRIED  /* an earlier one failed, and nothing was to be done after that */
 } nt_job_end;
 
@@ -71,6 +73,7 @@ typedef nt_status (*nt_runner)(const char *input, const char *output, const nt_s
 typedef struct nt_batch_options {
 	nt_runner run;
 	unsigned jobs;  /* so many at a time; 0: as many as there are threads */
+	nt_update *update; /* what is up to date is left alone, and records are written; NULL: every input runs */
 	bool fail_fast; /* after a failure no further job begins */
 	/* Called once per job, in the order of the inputs, by one thread at a time, as soon as the job and all before it
 	 * have ended. It may take the summary's report, leaving NULL. */

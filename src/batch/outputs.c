@@ -178,14 +178,18 @@ static nt_status make_folder(const char *directory, const nt_settings *settings,
 static nt_status name_mirrored(nt_batch *batch, const char *directory, const char *mirror, nt_format wanted,
 	nt_error *error)
 {
-	nt_buffer root = {0}, path = {0};
-	nt_status status = nt_path_absolute(&root, mirror, error);
+	nt_buffer current = {0}, root = {0}, path = {0};
+	nt_status status = nt_path_absolute(&current, ".", error);
+	if (!status)
+		status = nt_path_absolute(&root, mirror, error);
 	for (size_t i = 0; i < batch->count && !status; i++) {
 		nt_job *job = &batch->jobs[i];
 		path.size = 0;
-		status = nt_path_absolute(&path, job->input, error);
-		if (status)
+		nt_path_join(&path, current.data, job->input);
+		if (path.failed) {
+			status = nt_fail_memory(error);
 			break;
+		}
 		if (!nt_link_is_inside(path.data, root.data)) {
 			status = nt_fail(error, NT_ERROR_USAGE, "'%s' is not below '%s', as --mirror asks", job->input,
 				mirror);
@@ -196,6 +200,7 @@ static nt_status name_mirrored(nt_batch *batch, const char *directory, const cha
 		if (!job->output)
 			status = nt_fail_memory(error);
 	}
+	nt_buffer_free(&current);
 	nt_buffer_free(&root);
 	nt_buffer_free(&path);
 	return status;

@@ -31,9 +31,11 @@ typedef struct session {
 	nt_style style;
 	nt_progress *progress;
 	nt_buffer text;   /* what is being said */
+	nt_buffer shaping; /* the options on which outputs depend */
+	nt_update *update; /* NULL: no records */
 	nt_summary total; /* of the times and sizes alone */
 	nt_failures failures;
-	size_t untried;
+	size_t count, current, untried; /* jobs: all, up to date, not tried */
 	int exit_code;
 } session;
 
@@ -133,6 +135,14 @@ static int tell_run(session *s, nt_job *job)
 	return code;
 }
 
+/* One that was up to date is counted, and named where one is named by one. */
+static void tell_current(session *s, const nt_job *job)
+{
+	s->current++;
+	if (s->style.verbosity + (s->count == 1) > 0)
+		nt_message_current(&s->text, job);
+}
+
 /* What there is no memory for in a message is said all the same. */
 static void tell_failure(session *s, const nt_job *job)
 {
@@ -148,6 +158,8 @@ static void tell_job(void *user, nt_job *job)
 	int code = nt_exit_code(job->status);
 	if (job->end == NT_JOB_UNTRIED)
 		s->untried++;
+	else if (job->end == NT_JOB_CURRENT)
+		tell_current(s, job);
 	else if (job->outcome)
 		code = tell_run(s, job);
 	if (job->status)
@@ -195,7 +207,7 @@ static void tell_diff(session *s)
 	nt_report_diff_free(&diff);
 }
 
-/* Writes the report and the pictures of all inputs where they were asked for, and frees them. */
+/* Writes the report and the pictures of all inputs where they were asked for. */
 static void tell_report(session *s)
 {
 	const nt_report_target *target = &s->plan->target;
@@ -211,17 +223,16 @@ static void tell_report(session *s)
 		all = tell_report_error(s, &error, target->path);
 	if (all && images && nt_report_uv_images(s->reports, s->report_count, images, target, &error))
 		tell_report_error(s, &error, images);
-	for (size_t i = 0; i < s->report_count; i++)
-		nt_report_free(s->reports[i]);
-	free(s->reports);
 }
 
 /* After the last of many: how many failed, and why; and the times. */
-static void tell_end(session *s, size_t count)
+static void tell_end(session *s)
 {
-	const size_t failed = s->failures.count;
+	const size_t failed = s->failures.count, count = s->count;
 	if (count != 1 && (failed || s->style.verbosity >= 0)) {
 		nt_buffer_format(&s->text, "nmtan: %zu of %zu done", count - failed - s->untried, count);
+		if (s->current)
+			nt_buffer_format(&s->text, ", %zu of them up to date", s->current);
 		if (failed)
 			nt_buffer_format(&s->text, ", %zu failed", failed);
 		if (s->untried)
@@ -233,8 +244,6 @@ static void tell_end(session *s, size_t count)
 		nt_message_timing(&s->text, &s->total);
 	if (!nt_say(&s->text))
 		s->exit_code = nt_exit_worse(s->exit_code, NT_EXIT_INTERNAL);
-	nt_buffer_free(&s->text);
-	nt_failures_free(&s->failures);
 }
 
 static bool same_file(const char *a, const char *b)
@@ -262,23 +271,49 @@ static nt_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
 	return nt_batch_pair(batch, input, output, error);
 }
 
-/* Memory for what is said, and for the reports; false: there is none. */
-static bool begin_session(session *s, size_t count)
+/* The records, if any. The words of the options belong to the session. */
+static nt_status begin_update(session *s, nt_error *error)
+{
+	const nt_command *c = s->command;
+	if (!c->update && !c->record)
+		return NT_OK;
+	nt_options_shaping(c, &s->shaping);
+	if (s->shaping.failed)
+		return nt_fail_memory(error);
+	const nt_update_options options = {.look = c->update, .by = (nt_update_by)c->update_by, .record = c->record,
+		.folder = c->directory, .options = s->shaping.data ? s->shaping.data : ""};
+	return nt_update_begin(&s->update, &options, error);
+}
+
+/* Memory for what is said and for the reports, and what else may be refused. */
+static nt_status begin_session(session *s, nt_error *error)
 {
 	const bool kept = s->plan->target.path || s->command->uv_image || s->command->diff;
 	if (kept)
-		s->reports = calloc(count ? count : 1, sizeof *s->reports);
-	return (s->reports || !kept) && nt_buffer_reserve(&s->text, MESSAGE_BYTES);
+		s->reports = nt_calloc(s->count, sizeof *s->reports);
+	if ((!s->reports && kept) || !nt_buffer_reserve(&s->text, MESSAGE_BYTES))
+		return nt_fail_memory(error);
+	return begin_update(s, error);
+}
+
+static void end_session(session *s)
+{
+	for (size_t i = 0; i < s->report_count; i++)
+		nt_report_free(s->reports[i]);
+	free(s->reports);
+	nt_update_end(s->update);
+	nt_buffer_free(&s->shaping);
+	nt_buffer_free(&s->text);
+	nt_failures_free(&s->failures);
 }
 
 static int run_batch(const nt_command *command, nt_style style, const nt_report_plan *plan,
 	nt_batch *batch)
 {
-	session s = {.command = command, .plan = plan, .style = style};
+	session s = {.command = command, .plan = plan, .style = style, .count = batch->count};
 	nt_error error;
-	if (!begin_session(&s, batch->count)) {
-		free(s.reports);
-		nt_fail_memory(&error);
+	if (begin_session(&s, &error)) {
+		end_session(&s);
 		nt_say_error(&error, style);
 		return nt_exit_code(error.status);
 	}
@@ -291,12 +326,13 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 		settings.on_stage = nt_progress_stage;
 		settings.on_stage_user = s.progress;
 	}
-	const nt_batch_options options = {.run = nt_run, .jobs = (unsigned)command->jobs,
+	const nt_batch_options options = {.run = nt_run, .jobs = (unsigned)command->jobs, .update = s.update,
 		.fail_fast = command->fail_fast, .done = tell_job, .user = &s};
 	nt_batch_run(batch, &settings, &options);
 	nt_progress_stop(s.progress);
 	tell_report(&s);
-	tell_end(&s, batch->count);
+	tell_end(&s);
+	end_session(&s);
 	return s.exit_code;
 }
 

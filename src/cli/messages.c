@@ -173,15 +173,27 @@ static void append_findings_count(nt_buffer *out, const nt_summary *s)
 		}
 }
 
-void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *settings)
+/* "nmtan: a.obj -> b.glb" */
+static void append_job(nt_buffer *out, const nt_job *job)
 {
-	const nt_summary *s = &job->outcome->summary;
 	nt_buffer_text(out, "nmtan: ");
 	nt_buffer_clean(out, strcmp(job->input, "-") == 0 ? "standard input" : job->input);
 	if (job->output) {
 		nt_buffer_text(out, " -> ");
 		nt_buffer_clean(out, strcmp(job->output, "-") == 0 ? "standard output" : job->output);
 	}
+}
+
+void nt_message_current(nt_buffer *out, const nt_job *job)
+{
+	append_job(out, job);
+	nt_buffer_text(out, ": up to date\n");
+}
+
+void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *settings)
+{
+	const nt_summary *s = &job->outcome->summary;
+	append_job(out, job);
 	nt_buffer_format(out, ": %s", settings->check ? "checked, "
 				      : settings->dry_run ? "dry run, nothing written, "
 							  : "");

@@ -27,6 +27,9 @@ void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style);
 void nt_message_findings(nt_buffer *out, const nt_finding_list *findings, const char *file, int least, int most,
 	nt_style style);
 
+/* An output that was up to date. */
+void nt_message_current(nt_buffer *out, const nt_job *job);
+
 /* A line for each mesh of the summary's list: what was decided and why, triangles, vertices. */
 void nt_message_meshes(nt_buffer *out, const nt_job *job);
 

@@ -19,6 +19,9 @@ typedef enum nt_option_kind {
 	NT_OPTION_LIST         /* nt_words gets the word as its last */
 } nt_option_kind;
 
+/* As `first` of a heading: the bytes of outputs depend on the options below it. */
+enum { NT_SHAPES_OUTPUT = 1 };
+
 typedef struct nt_option_row {
 	const char *name;   /* without the dashes */
 	char letter;        /* the short form; 0: none */

@@ -23,7 +23,7 @@ _Static_assert(sizeof(nt_only) == sizeof(int) && sizeof(nmtan_method) == sizeof(
 _Static_assert(NMTAN_METHOD_ROBUST == NMTAN_METHOD_MIKKTSPACE + 3, "the words of --method");
 
 const nt_option_row nt_option_rows[] = {
-	{.kind = NT_OPTION_HEADING, .name = "Which primitives, and how"},
+	{.kind = NT_OPTION_HEADING, .name = "Which primitives, and how", .first = NT_SHAPES_OUTPUT},
 	{"only", 0, NT_OPTION_CHOICE, "auto|needed|all", NT_ONLY_AUTO, 0, "auto",
 		"auto: glTF where a material needs tangents, OBJ and PLY wherever there are texture "
 		"coordinates; needed: by the materials alone; all: wherever possible",
@@ -70,7 +70,20 @@ const nt_option_row nt_option_rows[] = {
 	{"jobs", 0, NT_OPTION_NUMBER, "N", 0, 1024, "0",
 		"how many inputs at a time, which share the threads; 0: as many as threads", FIELD(jobs), false},
 
-	{.kind = NT_OPTION_HEADING, .name = "Output"},
+	{.kind = NT_OPTION_HEADING, .name = "Only what is needed"},
+	{"update", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
+		"leave alone what is up to date with its input, all files that belong to it, the options and nmtan",
+		FIELD(update), true},
+	{"update-by", 0, NT_OPTION_CHOICE, "time|content", NT_UPDATE_BY_TIME, 0, "time",
+		"time: files with the size and time of change that they had are the same; content: with the bytes",
+		FIELD(update_by), true},
+	{"record", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
+		"note in FILE what outputs are made of; without this, --update does so in .nmtan-record beside them",
+		FIELD(record), true},
+	{"write-if-changed", 0, NT_OPTION_SET, NULL, NT_EQUAL_KEEP, 0, NULL,
+		"an output that has its bytes already keeps its time of change", SETTING(equal), true},
+
+	{.kind = NT_OPTION_HEADING, .name = "Output", .first = NT_SHAPES_OUTPUT},
 	{"output", 'o', NT_OPTION_TEXT, "FILE", 0, 0, NULL, "the output, in place of a second name", FIELD(output),
 		true},
 	{"output-format", 0, NT_OPTION_CHOICE, "ply|gltf|glb", NT_FORMAT_PLY, 0, "by name",
@@ -116,8 +129,6 @@ const nt_option_row nt_option_rows[] = {
 		"write bitangents too: bx by bz in PLY, _BITANGENT in glTF", SETTING(bitangents), true},
 	{"no-clobber", 'n', NT_OPTION_FLAG, NULL, 0, 0, NULL, "never replace a file",
 		SETTING(no_clobber), true},
-	{"write-if-changed", 0, NT_OPTION_SET, NULL, NT_EQUAL_KEEP, 0, NULL,
-		"an output that has its bytes already keeps its time of change", SETTING(equal), true},
 	{"sync", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "fsync files and folders, so that a power cut leaves the old or the new output",
 		SETTING(sync), true},
 	{"verify", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
@@ -477,6 +488,9 @@ static nt_status check_clashes(parser *p)
 	static const char *const pairs[][3] = {
 		{"quiet", "verbose", "say opposite things"},
 		{"in-place", "no-clobber", "contradict each other"},
+		/* what is not read has no findings */
+		{"update", "report", "do not go together: what is up to date is not read"},
+		{"update", "uv-image", "do not go together: what is up to date is not read"},
 	};
 	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++)
 		if (given(p, pairs[i][0]) && given(p, pairs[i][1]))
@@ -486,7 +500,7 @@ static nt_status check_clashes(parser *p)
 		if (p->command->settings.check && nt_option_rows[i].writes && p->given[i])
 			return nt_fail(p->error, NT_ERROR_USAGE,
 				"--check writes no mesh, so --%s has no meaning", nt_option_rows[i].name);
-	static const char *const needs[][2] = {{"mirror", "directory"}, {"include", "recursive"}, {"exclude", "recursive"}};
+	static const char *const needs[][2] = {{"mirror", "directory"}, {"include", "recursive"}, {"exclude", "recursive"}, {"update-by", "update"}};
 	for (size_t i = 0; i < sizeof needs / sizeof *needs; i++)
 		if (given(p, needs[i][0]) && !given(p, needs[i][1]))
 			return nt_fail(p->error, NT_ERROR_USAGE, "--%s needs --%s", needs[i][0], needs[i][1]);
@@ -569,12 +583,70 @@ static nt_status check_dashes(const parser *p)
 	return NT_OK;
 }
 
-nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error *error)
+static void set_defaults(nt_command *command)
 {
-	parser p = {.command = command, .error = error};
 	memset(command, 0, sizeof *command);
 	command->settings.texcoord_set = -1;
 	command->fail_on = NT_FAIL_ON_NEVER;
+}
+
+/* The word of a choice by its number. */
+static void append_choice(nt_buffer *out, const char *values, int number)
+{
+	for (; number > 0; number--)
+		values += strcspn(values, "|") + 1;
+	nt_buffer_append(out, values, strcspn(values, "|"));
+}
+
+static void append_shaping(nt_buffer *out, const nt_option_row *row, const void *field)
+{
+	nt_buffer_format(out, "%s--%s", out->size ? " " : "", row->name);
+	if (row->kind == NT_OPTION_CHOICE) {
+		nt_buffer_text(out, "=");
+		append_choice(out, row->values, *(const int *)field - row->first);
+	} else if (row->kind == NT_OPTION_TEXT) {
+		nt_buffer_format(out, "=%s", *(const char *const *)field);
+	} else if (row->kind != NT_OPTION_FLAG) {
+		nt_buffer_format(out, "=%d", *(const int *)field);
+	}
+}
+
+/* How many bytes of the command a row's value takes. */
+static size_t field_bytes(const nt_option_row *row)
+{
+	return row->kind == NT_OPTION_FLAG ? sizeof(bool) : row->kind == NT_OPTION_TEXT ? sizeof(char *) : sizeof(int);
+}
+
+/* Options about the output that change when and how it is written, but not what. */
+static bool is_about_writing(const nt_option_row *row)
+{
+	static const char *const names[] = {"output", "in-place", "no-clobber", "sync", "verify", "dry-run"};
+	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+		if (strcmp(row->name, names[i]) == 0)
+			return true;
+	return false;
+}
+
+void nt_options_shaping(const nt_command *command, nt_buffer *out)
+{
+	nt_command defaults;
+	bool shapes = false;
+	set_defaults(&defaults);
+	for (size_t i = 0; i < nt_option_row_count; i++) {
+		const nt_option_row *row = &nt_option_rows[i];
+		const char *field = (const char *)command + row->offset;
+		if (row->kind == NT_OPTION_HEADING)
+			shapes = row->first == NT_SHAPES_OUTPUT;
+		else if (shapes && !is_about_writing(row) &&
+			 memcmp(field, (const char *)&defaults + row->offset, field_bytes(row)) != 0)
+			append_shaping(out, row, field);
+	}
+}
+
+nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error *error)
+{
+	parser p = {.command = command, .error = error};
+	set_defaults(command);
 
 	/* Operands move to the front, behind the program's name, in their order. */
 	int kept = argc > 0 ? 1 : 0;

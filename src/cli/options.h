@@ -8,6 +8,7 @@
 #define NT_CLI_OPTIONS_H
 
 #include "base/buffer.h"
+#include "batch/update.h"
 #include "pipeline/run.h"
 
 /* What the words ask for. */
@@ -57,6 +58,9 @@ typedef struct nt_command {
 	bool recursive;
 	nt_words include, exclude; /* patterns */
 	int jobs;              /* inputs at a time; 0: as threads */
+	bool update;           /* leave alone what is up to date */
+	int update_by;         /* nt_update_by */
+	const char *record;    /* file; NULL: by default */
 	int fail_fast;         /* stop after a failure: 0, 1 */
 	bool diff;             /* of two inputs */
 	const char *output;    /* -o, also the last operand; NULL: none */
@@ -77,6 +81,9 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 
 /* Whether the operands are inputs, any number of them; else they are an input and an output. */
 bool nt_command_is_many(const nt_command *command);
+
+/* Appends the options on which the bytes of outputs depend, in one way for each meaning; defaults are left out. */
+void nt_options_shaping(const nt_command *command, nt_buffer *out);
 
 /* What --help prints, and the two lines that follow a mistake. */
 void nt_options_help(nt_buffer *out);

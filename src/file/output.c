@@ -79,8 +79,11 @@ bool nt_output_is_in_place(const nt_output *output, const char *path)
 
 void nt_output_leave(nt_output *output)
 {
+	struct stat status;
 	if (output->options.result)
 		output->options.result->left = true;
+	if (!output->main && output->options.in_place && stat(output->options.in_place, &status) == 0)
+		nt_trace_written(output->options.in_place, NULL, &status);
 }
 
 /* Refuses a target that exists and has to stay. */

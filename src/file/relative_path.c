@@ -84,16 +84,21 @@ void nt_link_join(nt_buffer *text, const char *folder, const char *name)
 	end_path(text, begin);
 }
 
-nt_status nt_path_absolute(nt_buffer *text, const char *name, nt_error *error)
+void nt_path_join(nt_buffer *text, const char *folder, const char *name)
 {
 	const size_t begin = text->size;
+	if (name[0] != '/')
+		append_components(text, begin, folder, "/");
+	append_components(text, begin, name, "/");
+	end_path(text, begin);
+}
+
+nt_status nt_path_absolute(nt_buffer *text, const char *name, nt_error *error)
+{
 	char *current = name[0] == '/' ? NULL : getcwd(NULL, 0);
 	if (name[0] != '/' && !current)
 		return nt_lookup_failed(".", errno, error);
-	if (current)
-		append_components(text, begin, current, "/");
-	append_components(text, begin, name, "/");
-	end_path(text, begin);
+	nt_path_join(text, current, name);
 	free(current);
 	return text->failed ? nt_fail_memory(error) : NT_OK;
 }

@@ -17,6 +17,9 @@ nt_status nt_link_folder(nt_buffer *text, const char *path, nt_error *error);
 /* Appends `name` taken from `folder` (absolute), with "\" as "/", and "." and ".." resolved. */
 void nt_link_join(nt_buffer *text, const char *folder, const char *name);
 
+/* The same with names of this system, in which "\" is a character like others. */
+void nt_path_join(nt_buffer *text, const char *folder, const char *name);
+
 /* Appends the absolute path of a name of this system, "." and ".." resolved as they are spelled. Returns NT_OK,
  * NT_ERROR_MISSING or NT_ERROR_IO where the current folder has no name, or NT_ERROR_MEMORY. */
 nt_status nt_path_absolute(nt_buffer *text, const char *name, nt_error *error);

@@ -42,4 +42,264 @@ mkfifo nobody_writes
 timeout 10 "$NMTAN" -n nobody_writes o.glb 2>"$WORK/err.txt"
 is $? 2
 
+# Long enough for a clock of the file system to go on.
+later() {
+	sleep 0.03
+}
+
+# What the run made anew: the names of inputs.
+made() {
+	sed -n 's/^nmtan: \([^>]*\) -> .*, [0-9.e-]* s\(;.*\)*$/\1/p' "$WORK/err.txt" | tr '\n' ' '
+}
+
+take() {
+	cp "$data"/mirrored_cube.* "$data/bumps.png" "$data"/plates.gltf "$data/plates.bin" "$data/quad.obj" .
+	later
+}
+inputs="mirrored_cube.obj plates.gltf quad.obj"
+
+scene "what is up to date is not made again, and whatever it was made from counts"
+take
+run --update -d out $inputs
+exits 0
+is "$(made)" "$inputs "
+before=$(identity out/*)
+run --update -d out $inputs
+exits 0
+says "3 of 3 done, 3 of them up to date"
+is "$(made)" ""
+is "$(identity out/*)" "$before"
+for change in mirrored_cube.obj:mirrored_cube.obj mirrored_cube.mtl:mirrored_cube.obj bumps.png:mirrored_cube.obj \
+	plates.bin:plates.gltf plates.gltf:plates.gltf; do
+	later
+	touch "${change%:*}"
+	run --update -d out $inputs
+	exits 0
+	is "${change%:*} makes $(made)" "${change%:*} makes ${change#*:} "
+	run --update -d out $inputs
+	is "${change%:*} makes $(made)" "${change%:*} makes "
+done
+
+scene "an output that is gone, or was changed, is made again"
+take
+run --update -d out $inputs
+cp -r out expected
+rm out/plates.bin
+run --update -d out $inputs
+is "$(made)" "plates.gltf "
+echo >>out/quad.glb
+run --update -d out $inputs
+is "$(made)" "quad.obj "
+for file in quad.glb plates.gltf plates.bin mirrored_cube.glb; do same out/$file expected/$file; done
+
+scene "other options and another version make everything again, the same in other words does not"
+take
+run --update -d out $inputs
+run --update --method=mikktspace --uv auto --sync -j1 -d out $inputs
+is "$(made)" ""
+run --update --method=area -d out $inputs
+is "$(made)" "$inputs "
+run --update -d out --only=all --method=area quad.obj
+is "$(made)" "quad.obj "
+run --update -d out --method=area --only=all quad.obj
+is "$(made)" ""
+sed -i 's/"nmtan":"/&0/' out/.nmtan-record
+run --update -d out --method=area --only=all quad.obj
+is "$(made)" "quad.obj "
+
+scene "a companion that was missing, and comes, makes its input again"
+take
+rm mirrored_cube.mtl
+run --update -d out $inputs
+run --update -d out $inputs
+is "$(made)" ""
+cp "$data/mirrored_cube.mtl" .
+run --update -d out $inputs
+is "$(made)" "mirrored_cube.obj "
+mv bumps.png away.png
+run --update -d out $inputs
+is "$(made)" "mirrored_cube.obj "
+mv away.png bumps.png
+run --update -d out $inputs
+is "$(made)" "mirrored_cube.obj "
+run --update -d out $inputs
+is "$(made)" ""
+
+scene "without a record the times decide, and an unchanged output is touched"
+take
+run -d out $inputs
+run --update -d out $inputs
+is "$(made)" ""
+later
+touch quad.obj
+inode=$(stat -c %i out/quad.glb)
+run --update -d out $inputs
+exits 0
+is "$(made)" "quad.obj "
+says "left as it is"
+is "$(stat -c %i out/quad.glb)" "$inode"
+[ out/quad.glb -nt quad.obj ] || wrong "it was not touched"
+before=$(identity out/quad.glb)
+later
+touch quad.obj
+run --update -d out $inputs
+is "$(made)" "quad.obj "
+is "$(identity out/quad.glb)" "$before"
+
+scene "a change within one tick of the clock is seen"
+cp "$data/quad.obj" now.obj
+run --update -d out now.obj
+stamp=$(stat -c %y now.obj)
+sed -i 's/^v 1/v 2/' now.obj
+touch -d "$stamp" now.obj
+grep -q xxh128 out/.nmtan-record || wrong "the record has no digest of a file that has just changed"
+run --update -d out now.obj
+is "$(made)" "now.obj "
+
+scene "by content, a file that was touched is the same, and one of the same time is not"
+take
+run --update --update-by=content -d out $inputs
+exits 0
+later
+touch $inputs bumps.png out/*
+run --update --update-by=content -d out $inputs
+is "$(made)" ""
+stamp=$(stat -c %y quad.obj)
+sed -i 's/^v 1/v 3/' quad.obj
+touch -d "$stamp" quad.obj
+run --update --update-by=content -d out $inputs
+is "$(made)" "quad.obj "
+run --update-by=content -d out quad.obj
+exits 1
+says "--update-by needs --update"
+
+scene "a record can be elsewhere, and be written by a run that makes everything"
+take
+mkdir records
+run --record=records/r -d out $inputs
+exits 0
+run --record=records/r -d out $inputs
+is "$(made)" "$inputs "
+run --update --record=records/r -d out $inputs
+is "$(made)" ""
+only $inputs mirrored_cube.mtl bumps.png plates.bin out records
+is "$(ls -A out | grep -c record)" 0
+mkdir moved
+later
+mv * moved/ 2>/dev/null
+cd moved
+run --update --record=records/r -d out $inputs
+is "$(made)" ""
+run --update --record=nowhere/r -d out $inputs
+exits 2
+says "nowhere"
+
+scene "in place, a file is up to date as the last run left it"
+take
+mkdir sub
+cp plates.* bumps.png sub/
+run --in-place --update plates.gltf sub/plates.gltf
+exits 0
+is "$(made)" "plates.gltf sub/plates.gltf "
+exists .nmtan-record sub/.nmtan-record
+run --in-place --update plates.gltf sub/plates.gltf
+is "$(made)" ""
+later
+touch sub/plates.gltf
+before=$(identity sub/plates.gltf)
+run --in-place --update plates.gltf sub/plates.gltf
+is "$(made)" "sub/plates.gltf "
+is "$(identity sub/plates.gltf)" "$before"
+run --in-place --update plates.gltf sub/plates.gltf
+is "$(made)" ""
+
+scene "several processes append to one record, and half a line does no harm"
+take
+for i in $(seq 40); do cp quad.obj q$i.obj; done
+later
+mkdir out
+printf '{"output":"q1.glb","nmtan' >out/.nmtan-record
+"$NMTAN" -q --update -d out q?.obj & "$NMTAN" -q --update -d out q1?.obj q2?.obj & "$NMTAN" -q --update -d out q3?.obj q40.obj &
+wait
+is "$(grep -c '^{"output":"q[0-9]*.glb","nmtan":.*}$' out/.nmtan-record)" 40
+run --update -d out q*.obj
+is "$(made)" "quad.obj "
+
+scene "a record does not grow without end"
+take
+run --update -d out $inputs
+for i in $(seq 1100); do grep '"quad.glb"' out/.nmtan-record; done >many
+cat many >>out/.nmtan-record
+run --update -d out $inputs
+is "$(made)" ""
+is "$(wc -l <out/.nmtan-record)" 3
+run --update -d out $inputs
+is "$(made)" ""
+
+scene "names of any bytes are in the record"
+name=$'od"d\\\n \xff%20.obj'
+cp "$data/quad.obj" "$name"
+later
+run --update -d out "$name"
+exits 0
+run --update -d out "$name"
+says "up to date"
+
+scene "a dry run and streams leave no record"
+take
+run --update --dry-run -d out $inputs
+exits 0
+only $inputs mirrored_cube.mtl bumps.png plates.bin
+"$NMTAN" -q --update --record=r - - <quad.obj >piped.glb || wrong "exit code $?"
+run quad.obj o.glb
+same piped.glb o.glb
+[ ! -s r ] || wrong "a record of a pipe"
+
+scene "a report is not made of what is not read"
+run --update --report=r.json a b.glb
+exits 1
+says "--update and --report"
+
+scene "what was killed is gone on with, nothing is lost and nothing made twice"
+for ((i = 0; i < 1000; i++)); do cp "$data/quad.obj" in_$i.obj; done
+ls *.obj >list
+later
+"$NMTAN" -q -d clean --files-from=list || wrong "exit code $?"
+kills=0
+for ((i = 0; i < 50; i++)); do
+	"$NMTAN" -q --update -d out --files-from=list 2>/dev/null & pid=$!
+	sleep 0.0$((RANDOM % 4))$((RANDOM % 10))
+	kill -9 $pid 2>/dev/null && kills=$((kills + 1))
+	wait $pid 2>/dev/null
+done
+[ $kills -gt 5 ] || wrong "only $kills runs were killed"
+run --update -d out --files-from=list
+exits 0
+is "$(ls -A out | grep -v '^in_[0-9]*\.glb$')" .nmtan-record
+diff -r clean out --exclude=.nmtan-record >difference || wrong "$(head -3 difference)"
+# each run that was killed may have been at one file for each of its threads
+lines=$(wc -l <out/.nmtan-record)
+[ "$lines" -le $((1000 + kills * $(nproc))) ] || wrong "$lines files were made in $kills runs"
+
+scene "ten thousand files that are up to date take less than half a second"
+for ((i = 0; i < 100; i++)); do cp "$data/quad.obj" in_$i.obj; done
+for ((i = 1; i < 100; i++)); do mkdir $i; cp in_*.obj $i/; done
+mkdir 0 && mv in_*.obj 0/
+find . -name '*.obj' | sort >list
+later
+run -q --update -d out --mirror=. --files-from=list
+exits 0
+best=99999
+for i in 1 2 3; do
+	begin=$(date +%s%N)
+	run --update -d out --mirror=. --files-from=list
+	took=$((($(date +%s%N) - begin) / 1000000))
+	[ $took -ge $best ] || best=$took
+done
+says "10000 of 10000 done, 10000 of them up to date"
+case $BUILD in
+*sanitize*) ;;
+*) [ $best -lt 500 ] || wrong "$best ms" ;;
+esac
+
 done_testing

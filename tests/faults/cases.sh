@@ -16,6 +16,7 @@ make_inputs() {
 	python3 "$ROOT/tests/support/cost_inputs.py" windows 20 windows.glb 12 || return 1
 	printf 'quad.obj\nplates.glb\n' >list
 	python3 "$ROOT/tests/support/gltf_manifold.py" manifold.gltf || return 1
+	"$NMTAN" -q --update --update-by=content plates.gltf current.gltf || return 1
 	make_images &&
 	"$NMTAN" -q --draco=sequential plates.gltf draco.glb && "$NMTAN" -q --draco=edgebreaker morph.gltf edge.gltf &&
 		"$NMTAN" -q morph.gltf morph.glb && "$faults/make_meshopt" meshopt.glb
@@ -59,6 +60,9 @@ cases() {
 		meshopt | meshopt.glb bumps.png || --verify meshopt.glb o.glb
 		in place | $plates || --in-place plates.gltf
 		many | $cube quad.obj plates.glb | many | -d out mirrored_cube.obj quad.obj plates.glb
+		update | $cube quad.obj | many | --update -d out mirrored_cube.obj quad.obj
+		update, in place | $plates || --update --in-place plates.gltf
+		update, by content | $plates current.gltf current.bin .nmtan-record || -q --update --update-by=content plates.gltf current.gltf
 		a list | list quad.obj plates.glb | many | --fail-fast -d out --files-from=list
 		a folder | quad.obj plates.glb | many | -r -d out --mirror=. --exclude=x .
 		pictures | $cube || --check --uv-image=uv mirrored_cube.obj

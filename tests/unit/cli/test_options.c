@@ -314,6 +314,28 @@ static void help_lines_fit_a_terminal(void **state)
 	nt_buffer_free(&out);
 }
 
+static void shapes(const char *expected, const char *const *words)
+{
+	nt_command command;
+	nt_buffer text = {0};
+	accepts(&command, words);
+	nt_options_shaping(&command, &text);
+	assert_string_equal(text.data ? text.data : "", expected);
+	nt_buffer_free(&text);
+}
+
+static void options_that_shape_outputs_are_spelled_in_one_way(void **state)
+{
+	(void)state;
+	shapes("", WORDS("a", "b.glb"));
+	shapes("", WORDS("-j3", "--method=mikktspace", "--uv=auto", "--in-place", "--sync", "--verify", "--update", "-v",
+			   "--jobs=2", "a"));
+	shapes("--method=robust --allow-outside --output-format=glb --draco-bits=12,12,12,12",
+		WORDS("--draco-bits", "12,12,12,12", "a", "--output-format=gltf", "--output-format=glb", "b", "--allow-outside",
+			"--method=robust"));
+	shapes("--uv=0 --bitangents", WORDS("--bitangents", "--uv=0", "--bitangents", "a", "b.glb"));
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -331,6 +353,7 @@ int main(void)
 		cmocka_unit_test(names_must_be_as_many_as_the_form_takes),
 		cmocka_unit_test(help_and_version_ask_for_no_names),
 		cmocka_unit_test(texts_name_every_option_that_is_not_hidden),
+		cmocka_unit_test(options_that_shape_outputs_are_spelled_in_one_way),
 		cmocka_unit_test(help_lines_fit_a_terminal),
 	};
 	return cmocka_run_group_tests_name("cli/options", tests, NULL, NULL);

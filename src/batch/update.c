@@ -1,0 +1,196 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Doing only what is needed: see update.h.
+ */
+#include "batch/update.h"
+
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/buffer.h"
+#include "base/memory.h"
+#include "file/lookup.h"
+
+static const char record_name[] = ".nmtan-record";
+
+typedef struct open_record {
+	char *path;
+	nt_record *record;
+} open_record;
+
+struct nt_update {
+	nt_update_options options;
+	pthread_mutex_t lock; /* of what follows */
+	open_record *records;
+	size_t count, capacity;
+	nt_hash_index index; /* by path */
+};
+
+/* ---- records ---- */
+
+static nt_record *find(const nt_update *update, uint64_t hash, const char *path)
+{
+	size_t at = NT_HASH_BEGIN;
+	for (uint32_t i; (i = nt_hash_index_next(&update->index, hash, &at)) != UINT32_MAX;)
+		if (strcmp(update->records[i].path, path) == 0)
+			return update->records[i].record;
+	return NULL;
+}
+
+/* Takes the path over. */
+static nt_status open_one(nt_update *update, uint64_t hash, char *path, nt_record **record, nt_error *error)
+{
+	nt_status status = nt_record_open(record, path, error);
+	if (!status && (!nt_grow((void **)&update->records, &update->capacity, update->count + 1, sizeof *update->records) ||
+			       !nt_hash_index_add(&update->index, hash, (uint32_t)update->count))) {
+		nt_record_close(*record);
+		status = nt_fail_memory(error);
+	}
+	if (status) {
+		free(path);
+		return status;
+	}
+	update->records[update->count++] = (open_record){path, *record};
+	return NT_OK;
+}
+
+/* The record of a path, opened by the first who asks for it. */
+static nt_status get(nt_update *update, char *path, nt_record **record, nt_error *error)
+{
+	const uint64_t hash = nt_hash_bytes(0, path, strlen(path));
+	pthread_mutex_lock(&update->lock);
+	*record = find(update, hash, path);
+	nt_status status = NT_OK;
+	if (*record)
+		free(path);
+	else
+		status = open_one(update, hash, path, record, error);
+	pthread_mutex_unlock(&update->lock);
+	return status;
+}
+
+/* Of the outputs in a folder, named with its slash or by nothing. */
+static nt_status get_of_folder(nt_update *update, const char *folder, size_t length, nt_record **record,
+	nt_error *error)
+{
+	nt_buffer path = {0};
+	nt_buffer_append(&path, folder, length);
+	nt_buffer_format(&path, "%s%s", length && folder[length - 1] != '/' ? "/" : "", record_name);
+	return path.failed ? nt_fail_memory(error) : get(update, path.data, record, error);
+}
+
+static nt_status get_of_output(nt_update *update, const char *output, nt_record **record, nt_error *error)
+{
+	const nt_update_options *o = &update->options;
+	if (o->record) {
+		char *path = strdup(o->record);
+		return path ? get(update, path, record, error) : nt_fail_memory(error);
+	}
+	const char *slash = strrchr(output, '/'), *folder = o->folder ? o->folder : output;
+	return get_of_folder(update, folder, o->folder ? strlen(folder) : slash ? (size_t)(slash - output) + 1 : 0, record,
+		error);
+}
+
+static nt_status find_folder_of(const char *path, nt_error *error)
+{
+	struct stat info;
+	const char *slash = strrchr(path, '/');
+	char *folder = slash ? strndup(path, (size_t)(slash - path) + 1) : strdup("./");
+	const nt_status status = folder ? nt_lookup(folder, &info, error) : nt_fail_memory(error);
+	free(folder);
+	return status;
+}
+
+nt_status nt_update_begin(nt_update **update, const nt_update_options *options, nt_error *error)
+{
+	nt_record *record;
+	*update = nt_calloc(1, sizeof **update);
+	if (!*update)
+		return nt_fail_memory(error);
+	(*update)->options = *options;
+	pthread_mutex_init(&(*update)->lock, NULL);
+	/* the only one can be refused before anything runs; the folder of -d may be still to come, in a dry run */
+	nt_status status = options->record ? find_folder_of(options->record, error) : NT_OK;
+	if (status)
+		return status;
+	return options->record || options->folder ? get_of_output(*update, "", &record, error) : NT_OK;
+}
+
+void nt_update_end(nt_update *update)
+{
+	if (!update)
+		return;
+	for (size_t i = 0; i < update->count; i++) {
+		free(update->records[i].path);
+		nt_record_close(update->records[i].record);
+	}
+	free(update->records);
+	nt_hash_index_free(&update->index);
+	pthread_mutex_destroy(&update->lock);
+	free(update);
+}
+
+/* ---- one output ---- */
+
+static nt_status append(void *user, const nt_trace *trace, nt_error *error)
+{
+	const nt_update_job *job = user;
+	return nt_record_append(job->record, &job->making, trace, error);
+}
+
+/* What a record can be about: regular files, of which the output need not be there yet. */
+static nt_status look_at_files(const nt_making *making, struct stat *input, struct stat *output, bool *regular, bool *made,
+	nt_error *error)
+{
+	*regular = *made = false;
+	if (strcmp(making->input, "-") == 0 || strcmp(making->output, "-") == 0)
+		return NT_OK;
+	nt_status status = nt_lookup_found(making->input, input, regular, error);
+	if (!status)
+		status = nt_lookup_found(making->output, output, made, error);
+	*regular = *regular && S_ISREG(input->st_mode) && (!*made || S_ISREG(output->st_mode));
+	return status;
+}
+
+/* Without a record: whether the output is younger than the input, or as old. A file in place has one time for both,
+ * which says nothing. */
+static bool is_younger(const nt_making *making, const struct stat *output, nt_trace *trace)
+{
+	if (nt_same_file(&making->input_info, output) ||
+		nt_trace_modified(output) < nt_trace_modified(&making->input_info))
+		return false;
+	nt_trace *outer = nt_trace_use(trace);
+	nt_trace_read(making->input, &making->input_info);
+	nt_trace_written(making->output, NULL, output);
+	nt_trace_use(outer);
+	return true;
+}
+
+nt_status nt_update_look(nt_update *update, const char *input, const char *output, nt_update_job *job,
+	nt_settings *settings, bool *current, nt_trace *trace, nt_error *error)
+{
+	const nt_update_options *o = &update->options;
+	struct stat output_info;
+	bool regular, made;
+	*job = (nt_update_job){.update = update,
+		.making = {.input = input, .output = output, .options = o->options, .by = o->by}};
+	*current = false;
+	nt_status status = look_at_files(&job->making, &job->making.input_info, &output_info, &regular, &made, error);
+	if (status || !regular)
+		return status;
+	nt_freshness freshness = NT_FRESH_STALE;
+	status = get_of_output(update, output, &job->record, error);
+	if (!status && o->look && made)
+		status = nt_record_look(job->record, &job->making, &freshness, trace, error);
+	if (status)
+		return status;
+	const bool unknown = freshness == NT_FRESH_UNKNOWN;
+	*current = o->look && (freshness == NT_FRESH_CURRENT || (unknown && is_younger(&job->making, &output_info, trace)));
+	if (o->look && settings->equal == NT_EQUAL_REPLACE)
+		settings->equal = unknown ? NT_EQUAL_TOUCH : NT_EQUAL_KEEP;
+	settings->placing = append;
+	settings->placing_user = job;
+	return NT_OK;
+}
