@@ -100,6 +100,16 @@ nt_status check_attribute(const nt_draco_mesh &mesh, const nt_draco_attribute &a
 	return NT_OK;
 }
 
+// Edgebreaker's encoder takes every attribute but one for another kind, and reads what it never made where two are
+// positions.
+nt_status check_positions(const nt_draco_mesh &mesh, nt_error *error)
+{
+	const auto count = std::count_if(mesh.attributes, mesh.attributes + mesh.attribute_count,
+		[](const nt_draco_attribute &a) { return a.kind == NT_DRACO_POSITION; });
+	return mesh.method != NT_DRACO_EDGEBREAKER || count == 1 ? NT_OK : nt_fail(error, NT_ERROR_ARGUMENT,
+		"Edgebreaker cannot encode %zu attributes of positions, expected one", static_cast<size_t>(count));
+}
+
 nt_status check_mesh(const nt_draco_mesh &mesh, nt_error *error)
 {
 	if (mesh.face_count > 0x7fffffff / 6 || mesh.point_count > 0x7fffffff)
@@ -116,7 +126,7 @@ nt_status check_mesh(const nt_draco_mesh &mesh, nt_error *error)
 		if (status != NT_OK)
 			return status;
 	}
-	return NT_OK;
+	return check_positions(mesh, error);
 }
 
 // ---- the mesh as Draco wants it ----

@@ -272,6 +272,12 @@ static void what_cannot_be_encoded_is_refused(void **state)
 	g.mesh.face_count = 0;
 	assert_int_equal(encode_status(&g, &error), NT_ERROR_INPUT);
 	make_grid(&g, NT_DRACO_EDGEBREAKER, 12);
+	g.attributes[1].kind = NT_DRACO_POSITION; /* a second one */
+	assert_int_equal(encode_status(&g, &error), NT_ERROR_ARGUMENT);
+	assert_non_null(strstr(error.message, "2 attributes of positions"));
+	g.attributes[0].kind = g.attributes[1].kind = NT_DRACO_GENERIC;
+	assert_int_equal(encode_status(&g, &error), NT_ERROR_ARGUMENT);
+	make_grid(&g, NT_DRACO_EDGEBREAKER, 12);
 	memset(g.indices, 0, sizeof g.indices); /* nothing but degenerate faces */
 	assert_int_equal(encode_status(&g, &error), NT_ERROR_INPUT);
 }
