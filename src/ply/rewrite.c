@@ -44,14 +44,15 @@ typedef struct plan {
 
 /* What changes in the header. */
 
+/* A name may be there more than once; a reader could take what stays for what is new. */
 static void add_extras(plan *p, const char *const *names, size_t count)
 {
 	const ply_element *vertex = p->source->vertex;
 	for (size_t i = 0; i < count; i++) {
 		p->extra_names[p->extra_count++] = names[i];
-		const int old = ply_find_property(vertex, names[i]);
-		if (old != PLY_NO_PROPERTY)
-			p->drops_any = p->dropped[old] = true;
+		for (size_t k = 0; k < vertex->property_count; k++)
+			if (strcmp(vertex->properties[k].name, names[i]) == 0)
+				p->drops_any = p->dropped[k] = true;
 	}
 }
 

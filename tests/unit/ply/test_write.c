@@ -192,6 +192,24 @@ static void normals_that_were_made_are_written(void **state)
 		"1 0 0 1 0 0 3 0 0 1 0 0 0\n1 0 0 1 0 0 4 0 0 1 0 0 0\n3 0 4 2\n");
 }
 
+/* Two of the old ones are no normals; the reader would take them for the new ones. */
+static void properties_of_a_name_that_is_written_all_go(void **state)
+{
+	(void)state;
+	nt_scene scene;
+	open_text(&scene, "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ UV "property float nx\nproperty float ny\n"
+		"property float nx\nelement face 1\n" LIST "end_header\n"
+		"0 0 0 0 0 nan 5 6\n1 0 0 1 0 nan 5 6\n1 1 0 1 1 nan 5 6\n3 0 1 2\n");
+	nt_mesh *mesh = scene.meshes;
+	assert_null(mesh->normals);
+	mesh->normals = (float[]){0, 0, 1, 0, 0, 1, 0, 0, 1};
+	mesh->normals_made = true;
+	SET_SPLIT(&scene, 0, NULL, 0, 1, 2);
+	assert_written(&scene, false, "ply\nformat ascii 1.0\nelement vertex 3\n" XYZ UV NORMAL TANGENT
+		"element face 1\n" LIST "end_header\n"
+		"0 0 0 0 0 0 0 1 0 0 0 1\n1 0 0 1 0 0 0 1 1 0 0 1\n1 1 0 1 1 0 0 1 2 0 0 1\n3 0 1 2\n");
+}
+
 static void floats_in_text_read_back_as_themselves(void **state)
 {
 	(void)state;
@@ -590,6 +608,7 @@ int main(void)
 		CASE(split_vertices_are_appended_with_all_properties),
 		CASE(old_tangents_and_bitangents_are_replaced),
 		CASE(normals_that_were_made_are_written),
+		CASE(properties_of_a_name_that_is_written_all_go),
 		CASE(floats_in_text_read_back_as_themselves),
 		CASE(binary_files_keep_their_byte_order),
 		CASE(polygons_stay_where_their_triangles_agree),
