@@ -435,11 +435,14 @@ static nt_status compare_scene(const nt_scene *scene, nt_reread *model, nt_error
 	return NT_OK;
 }
 
-/* glTF wants a byte at least. tinygltf refuses files without any, but reads a .glb whose buffer has none. */
-static bool has_empty_buffer(const nt_gltf *document)
+/* glTF wants a byte at least, and an extension that says what a buffer without a URI is. tinygltf refuses others in a .gltf,
+ * and not in a .glb. */
+static bool has_odd_buffer(nt_gltf *document)
 {
+	const nt_json_value *buffers = nt_gltf_root_member(document, "buffers");
 	for (size_t i = 0; i < document->buffer_count; i++)
-		if (document->buffers[i].length == 0)
+		if (document->buffers[i].length == 0 || (document->buffers[i].storage == NT_GLTF_STORED_NOWHERE &&
+							       !nt_json_find(nt_json_at(buffers, i), "extensions")))
 			return true;
 	return false;
 }
@@ -450,7 +453,7 @@ static nt_status check_input(nt_scene *scene, nt_error *error)
 {
 	if (scene->format != NT_FORMAT_GLTF && scene->format != NT_FORMAT_GLB)
 		return NT_ERROR_INTERNAL;
-	if (has_empty_buffer(scene->source)) {
+	if (has_odd_buffer(scene->source)) {
 		nt_finding_add(&scene->findings, NT_CODE_NOT_VERIFIED, NULL, 1, "%s", error->message);
 		return NT_OK;
 	}

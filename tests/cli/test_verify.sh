@@ -46,21 +46,27 @@ run --verify "$WORK/layouts/plain.gltf" out.gltf
 exits 0
 says_not NOT_VERIFIED
 
-# glTF wants a byte at least. tinygltf looks for the first of none in a .glb, and refuses an empty .bin.
+# glTF wants a byte at least, and a word what a buffer without a URI is. tinygltf looks for the first byte of none in a
+# .glb, and refuses an empty .bin, or none.
 scene "a buffer of no bytes is a fault of the input"
 python3 - <<'END'
 import struct
-text = b'{"asset": {"version": "2.0"}, "buffers": [{"byteLength": 0}]}   '
-with open("empty.glb", "wb") as file:
-    file.write(struct.pack("<4s4I", b"glTF", 2, 20 + len(text) + 12, len(text), 0x4e4f534a) + text +
-               struct.pack("<I4sI", 4, b"BIN\0", 0))
+for name, buffers in ("empty", b'{"byteLength": 0}'), ("nowhere", b'{"byteLength": 4}, {"byteLength": 4}'):
+    text = b'{"asset": {"version": "2.0"}, "buffers": [%s]}' % buffers
+    text += b" " * (-len(text) % 4)
+    with open(name + ".glb", "wb") as file:
+        file.write(struct.pack("<4s4I", b"glTF", 2, 20 + len(text) + 12, len(text), 0x4e4f534a) + text +
+                   struct.pack("<I4sI", 4, b"BIN\0", 0))
 END
-for output in out.glb out.gltf; do
-	run --verify empty.glb $output
+for input in empty nowhere; do
+	run --verify $input.glb $input.gltf
 	exits 0
 	says "[NOT_VERIFIED]"
-	exists $output
+	exists $input.gltf
 done
+run --verify empty.glb out.glb
+exits 0
+says "[NOT_VERIFIED]"
 
 scene "a buffer that stands for packed views needs no bytes"
 node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1]));
