@@ -112,12 +112,13 @@ fuzz:
 	@$(MAKE) -s $(JOBS) config=fuzz build/fuzz/tests/fuzz/target
 	@bash tests/fuzz/run.sh build/release build/fuzz $(SECONDS) $(TARGET)
 
-# make stress: numerical stability at the edges of floating point; tables and charts in build/stress.
-stress_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/stress/*.c))
+# make stress: numerical stability at the edges of floating point; tables and charts in build/stress. $PEERS as below.
+stress_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/stress/*.c)) \
+	$(addprefix $(B)/tests/bench/,faults.o native.o)
 
 measure_obj := $(patsubst %,$(B)/tests/support/%.o,oracle128 surfaces soup chart golden measure)
 $(B)/tests/stress/stress: $(stress_obj) $(measure_obj) $(B)/libnmtan.a
-	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm $(QUADMATH)
+	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm -ldl $(QUADMATH)
 
 .PHONY: stress
 stress: $(B)/tests/stress/stress

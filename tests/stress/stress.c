@@ -4,6 +4,8 @@
  *
  *   stress FOLDER [FAMILY]
  *
+ * With $PEERS, the folder of native peers (tests/bench/native.h), their wrong signs, zeros and leaning tangents too.
+ *
  * Writes stress.csv, stress.md, samples.txt for check_fractions.py and two charts for each family (what is
  * unusable or has a wrong sign; the worst angle). Ends with 1 when something that must hold does not:
  *
@@ -25,12 +27,14 @@
 #include "chart.h"
 #include "families.h"
 #include "judge.h"
+#include "peers.h"
 #include "sample.h"
 
 enum { MOST_LEVELS = 16, ORACLE_TRIANGLES = 120000 };
 
 typedef struct family_scores {
 	score at[MOST_LEVELS][COLUMN_COUNT];
+	peer_counts faults;
 } family_scores;
 
 static size_t broken; /* how often something that must hold did not */
@@ -205,7 +209,7 @@ static void write_chart(const char *folder, const family *f, const family_scores
 		broken++;
 }
 
-static bool run_family(const family *f, family_scores *scores, FILE *csv, FILE *samples)
+static bool run_family(const family *f, const peers *p, family_scores *scores, FILE *csv, FILE *samples)
 {
 	for (size_t l = 0; l < f->level_count; l++) {
 		nt_owned mesh = f->make(f->levels[l], 1000 * l);
@@ -215,6 +219,7 @@ static bool run_family(const family *f, family_scores *scores, FILE *csv, FILE *
 		}
 		const bool done = judge_mesh(&mesh, mesh.mesh.face_count <= ORACLE_TRIANGLES, scores->at[l]);
 		sample_triangles(&mesh, samples);
+		peers_add(p, &mesh, &scores->faults);
 		nt_owned_free(&mesh);
 		if (!done) {
 			printf("stress: %s at %g: the call failed\n", f->name, f->levels[l]);
@@ -253,9 +258,11 @@ int main(int argc, char **argv)
 	fprintf(csv, "family,level,method,faces,oriented,wrong_sign,mixed_sign,corners,zero,parallel,judged,"
 		"beyond,off,leaning,inexact,kept,kept_units,altered,median_degrees,high_degrees,worst_degrees,ns_per_triangle\n");
 	bool done = true;
+	peers p;
+	peers_open(&p);
 	for (size_t i = 0; i < family_count; i++)
 		if (argc < 3 || strcmp(argv[2], families[i].name) == 0)
-			done = run_family(&families[i], &scores[i], csv, samples) && done;
+			done = run_family(&families[i], &p, &scores[i], csv, samples) && done;
 	fprintf(md, "# Numerical stability\n\nThe worst level of each family: wrong signs (%% of the faces that have "
 		"an exact one) / corners that are zero, not unit, not finite or along N (%%) / worst angle in "
 		"degrees against the 113-bit formula where its condition is below 2^24. The last column is the "
@@ -277,6 +284,9 @@ int main(int argc, char **argv)
 	for (size_t i = 0; i < family_count; i++)
 		if (scores[i].at[0][0].faces)
 			write_default(md, &families[i], &scores[i]);
+	peers_write_head(&p, md);
+	for (size_t i = 0; i < family_count; i++)
+		peers_write_row(&p, families[i].name, &scores[i].faults, md);
 	for (size_t i = 0; i < family_count; i++) {
 		if (!scores[i].at[0][0].faces)
 			continue;
