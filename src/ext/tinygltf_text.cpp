@@ -3,10 +3,12 @@
 // tinygltf does not know that a decoder brings what compressed documents leave out. It refuses primitives whose
 // indices have no buffer view, which is how Draco has them, and buffers without bytes, which is what views packed by
 // meshoptimizer are said to lie in. It gets a text without the former and with a byte for the latter; who wants
-// their values unpacks them.
+// their values unpacks them. Nor does its parser take numbers beyond double, which extras may have: it gets zeros.
 #include "ext/tinygltf_text.hpp"
+#include "ext/number.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -55,6 +57,49 @@ const json *packing_of(const json &object)
 		if (const json *found = extensions ? member(*extensions, name) : nullptr)
 			return found;
 	return nullptr;
+}
+
+// The closing quote of the string that begins at `at`, or the end.
+size_t skip_string(const char *text, size_t size, size_t at)
+{
+	for (at++; at < size && text[at] != '"'; at++)
+		at += text[at] == '\\';
+	return at;
+}
+
+// Where a number beyond double begins, and ends, from `at` on; false: there is none.
+bool find_huge_number(const char *text, size_t size, size_t at, size_t *begin, size_t *end)
+{
+	for (; at < size; at++) {
+		if (text[at] == '"') {
+			at = skip_string(text, size, at);
+			continue;
+		}
+		if (text[at] != '-' && (text[at] < '0' || text[at] > '9'))
+			continue;
+		*begin = at;
+		while (at < size && text[at] && std::strchr("+-.0123456789eE", text[at]))
+			at++;
+		*end = at;
+		double value = 0;
+		if (nt_read_double(text + *begin, text + *end, &value) && std::isinf(value))
+			return true;
+	}
+	return false;
+}
+
+// The file with zeros for numbers beyond double, of the same length; empty: there are none.
+std::string tame_numbers(const char *bytes, size_t size, size_t text, size_t text_size)
+{
+	size_t begin, end = 0;
+	std::string tamed;
+	while (find_huge_number(bytes + text, text_size, end, &begin, &end)) {
+		if (tamed.empty())
+			tamed.assign(bytes, size);
+		tamed.replace(text + begin, end - begin, end - begin, ' ');
+		tamed[text + begin] = '0';
+	}
+	return tamed;
 }
 
 void drop_compressed_indices(json &document)
@@ -107,16 +152,10 @@ nt::gltf_text::gltf_text(const unsigned char *file, size_t file_size)
 bool nt::gltf_text::is_too_deep() const
 {
 	int depth = 0;
-	bool in_string = false;
 	for (size_t i = 0; i < text_size; i++) {
 		const char c = text[i];
-		if (in_string) {
-			if (c == '\\')
-				i++;
-			else if (c == '"')
-				in_string = false;
-		} else if (c == '"') {
-			in_string = true;
+		if (c == '"') {
+			i = skip_string(text, text_size, i);
 		} else if (c == '[' || c == '{') {
 			if (++depth > max_depth)
 				return true;
@@ -129,6 +168,11 @@ bool nt::gltf_text::is_too_deep() const
 
 std::string nt::gltf_text::eased(packed_views &packed) const
 {
+	const std::string tamed = tame_numbers(bytes, size, static_cast<size_t>(text - bytes), text_size);
+	if (!tamed.empty()) {
+		const std::string eased = gltf_text(reinterpret_cast<const unsigned char *>(tamed.data()), size).eased(packed);
+		return eased.empty() ? tamed : eased;
+	}
 	const auto has = [&](const char *word) { return memmem(text, text_size, word, std::strlen(word)) != nullptr; };
 	if (!has(draco_extension) && !has(packings[0]) && !has(packings[1]))
 		return {};

@@ -163,6 +163,23 @@ static void packed_views_are_unpacked(void **state)
 	}
 }
 
+/* Other people's numbers may be any; what is in quotes is none. */
+static void numbers_beyond_double_are_taken(void **state)
+{
+	(void)state;
+	static const char *const texts[] = {
+		"{\"asset\":{\"version\":\"2.0\"},\"extras\":{\"n\":1e400,\"m\":[-1E+999,1e-999],\"s\":\"\\\"1e400\"}}",
+		"{\"asset\":{\"version\":\"2.0\"},\"extras\":1e400,\"extensionsUsed\":[\"KHR_draco_mesh_compression\"]}",
+	};
+	for (size_t i = 0; i < 2; i++) {
+		nt_reread *reread;
+		nt_error error;
+		assert_int_equal(nt_reread_open(&reread, (const unsigned char *)texts[i], strlen(texts[i]), NULL, NULL,
+			&error), NT_OK);
+		nt_reread_free(reread);
+	}
+}
+
 static void deep_json_is_refused_before_it_is_parsed(void **state)
 {
 	(void)state;
@@ -189,6 +206,7 @@ int main(void)
 		cmocka_unit_test(reread_finds_attributes_in_companions),
 		cmocka_unit_test(reread_checks_accessors_against_views_and_buffers),
 		cmocka_unit_test(packed_views_are_unpacked),
+		cmocka_unit_test(numbers_beyond_double_are_taken),
 		cmocka_unit_test(deep_json_is_refused_before_it_is_parsed),
 	};
 	return cmocka_run_group_tests_name("ext/tinygltf", tests, NULL, NULL);
