@@ -4,7 +4,7 @@
  * /proc has them) is read to its end. The descriptor of a mapped file stays open, so that the writer
  * can let the kernel copy ranges of it.
  *
- * A file that another process shortens while it is mapped reads as zeros from there on: see watch.h.
+ * A file that another process changes while it is mapped is no input: see watch.h.
  */
 #include "file/input.h"
 
@@ -68,7 +68,7 @@ static bool map_all(nt_file *file, int fd, const char *path, const struct stat *
 	void *data = mmap(NULL, size, PROT_READ, MAP_PRIVATE, fd, 0);
 	if (data == MAP_FAILED)
 		return false;
-	file->watch = nt_watch_begin(data, size, fd, path);
+	file->watch = nt_watch_begin(data, status, fd, path);
 	if (file->watch < 0) {
 		munmap(data, size);
 		return false;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Mapped files that become shorter: see watch.h.
+ * Mapped files that change: see watch.h.
  *
  * The handler looks the address up in a plain table of atomics and lays zeros over the map from the faulting page to
  * its end; mmap() is a system call and no more on every system that we know. A fault elsewhere gets the action
@@ -26,6 +26,7 @@ typedef struct watched {
 	atomic_size_t size;
 	atomic_bool shortened;
 	_Atomic(const void *) owner;
+	struct timespec modified; /* before it was mapped */
 	int fd;
 	char path[512];
 } watched;
@@ -35,7 +36,7 @@ static atomic_size_t page_bytes;
 static struct sigaction action_before;
 
 static _Thread_local char lost[512]; /* a file of this thread that is closed */
-static _Thread_local bool has_lost;
+static _Thread_local const char *has_lost; /* what happened to it; NULL: there is none */
 
 /* The map that an address lies in, or NULL. */
 static watched *map_of(uintptr_t address)
@@ -76,7 +77,7 @@ static void install(void)
 	pthread_mutex_unlock(&lock);
 }
 
-int nt_watch_begin(const void *map, size_t size, int fd, const char *path)
+int nt_watch_begin(const void *map, const struct stat *status, int fd, const char *path)
 {
 	install();
 	for (int i = 0; i < MOST_MAPS; i++) {
@@ -86,9 +87,10 @@ int nt_watch_begin(const void *map, size_t size, int fd, const char *path)
 			continue;
 		atomic_store(&w->owner, &has_lost);
 		w->fd = fd;
+		w->modified = status->st_mtim;
 		snprintf(w->path, sizeof w->path, "%s", path);
 		atomic_store(&w->shortened, false);
-		atomic_store(&w->size, size);
+		atomic_store(&w->size, (size_t)status->st_size);
 		atomic_store(&w->begin, (uintptr_t)map);
 		return i;
 	}
@@ -108,30 +110,45 @@ bool nt_watch_is_shortened(int watch)
 	return is_shortened(&maps[watch]);
 }
 
+/* What another process did to a file; NULL: nothing. */
+static const char *change_of(const watched *w)
+{
+	struct stat info;
+	if (is_shortened(w))
+		return "the file became shorter while it was read";
+	const bool changed = fstat(w->fd, &info) == 0 && (info.st_mtim.tv_sec != w->modified.tv_sec ||
+		info.st_mtim.tv_nsec != w->modified.tv_nsec);
+	return changed ? "the file changed while it was read" : NULL;
+}
+
 void nt_watch_end(int watch)
 {
 	watched *w = &maps[watch];
-	if (!has_lost && is_shortened(w)) {
+	const char *change = has_lost ? NULL : change_of(w);
+	if (change) {
 		memcpy(lost, w->path, sizeof lost);
-		has_lost = true;
+		has_lost = change;
 	}
 	atomic_store(&w->begin, 0);
 }
 
 void nt_watch_forget(void)
 {
-	has_lost = false;
+	has_lost = NULL;
 }
 
 nt_status nt_watch_check(nt_error *error)
 {
-	const char *path = has_lost ? lost : NULL;
-	for (int i = 0; i < MOST_MAPS && !path; i++)
-		if (atomic_load(&maps[i].begin) > 1 && atomic_load(&maps[i].owner) == &has_lost && is_shortened(&maps[i]))
-			path = maps[i].path;
-	if (!path)
+	const char *path = lost, *change = has_lost;
+	for (int i = 0; i < MOST_MAPS && !change; i++) {
+		if (atomic_load(&maps[i].begin) <= 1 || atomic_load(&maps[i].owner) != &has_lost)
+			continue;
+		path = maps[i].path;
+		change = change_of(&maps[i]);
+	}
+	if (!change)
 		return NT_OK;
-	nt_fail(error, NT_ERROR_IO, "the file became shorter while it was read");
+	nt_fail(error, NT_ERROR_IO, "%s", change);
 	return nt_error_in_file(error, path);
 }
 

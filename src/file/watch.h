@@ -1,8 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Mapped files that become shorter while they are read. Reading what is gone raises SIGBUS, which would end the
- * process; here the missing pages become zeros, the reader comes to its end with whatever it makes of them, and who
- * asks before the result is used hears that it is worthless.
+ * Mapped files that another process changes while they are read: what was read may be half of one state and half of
+ * another. Who asks before the result is used hears that it is worthless. A file whose bytes were written has another time
+ * of modification.
+ *
+ * Of a file that becomes shorter, reading what is gone raises SIGBUS, which would end the
+ * process; here the missing pages become zeros, and the reader comes to its end with whatever it makes of them.
  *
  * A file belongs to the thread that opened it: what one run of many reads is its own affair. Threads that
  * help it may read the file too.
@@ -11,11 +14,12 @@
 #define NT_FILE_WATCH_H
 
 #include <stdbool.h>
+#include <sys/stat.h>
 #include "base/error.h"
 
-/* Watches a map of a file, named by `path`; a number for nt_watch_end(). Below 0: too many are watched, so that the
- * file has to be read instead. */
-int nt_watch_begin(const void *map, size_t size, int fd, const char *path);
+/* Watches a map of a whole file, named by `path`, whose status was taken before it was mapped; a number for
+ * nt_watch_end(). Below 0: too many are watched, so that the file has to be read instead. */
+int nt_watch_begin(const void *map, const struct stat *status, int fd, const char *path);
 
 /* To be called before the file is closed, and after its map is gone. */
 void nt_watch_end(int watch);
@@ -23,7 +27,7 @@ void nt_watch_end(int watch);
 /* Forgets what this thread has read so far, but for files that are open. */
 void nt_watch_forget(void);
 
-/* Returns NT_ERROR_IO, with the name, if a file that this thread opened has become shorter; else NT_OK. */
+/* Returns NT_ERROR_IO, with the name, if a file that this thread opened has changed; else NT_OK. */
 nt_status nt_watch_check(nt_error *error);
 
 /* Whether a file has become shorter. */

@@ -4,8 +4,10 @@
  * opened the file, and to no other.
  */
 #include "test.h"
+#include <fcntl.h>
 #include <pthread.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 #include "file/input.h"
 #include "file/output.h"
@@ -69,6 +71,26 @@ static void the_last_page_may_lose_a_part(void **state)
 	assert_int_equal(truncate(in_folder("b"), 10), 0);
 	expect_lost("b");
 	nt_file_close(&file);
+}
+
+/* Same size, other bytes; also after it is closed. */
+static void what_was_written_to_is_told(void **state)
+{
+	(void)state;
+	nt_file file;
+	nt_error error;
+	open_pages(&file, "e", 2);
+	assert_int_equal(nt_watch_check(&error), NT_OK);
+	/* a second later, whatever the clock's grain */
+	const struct timespec times[2] = {{.tv_nsec = UTIME_OMIT}, {.tv_sec = time(NULL) + 1}};
+	assert_int_equal(utimensat(AT_FDCWD, in_folder("e"), times, 0), 0);
+	for (int closed = 0; closed < 2; closed++) {
+		assert_int_equal(nt_watch_check(&error), NT_ERROR_IO);
+		assert_string_equal(error.place.file, in_folder("e"));
+		assert_string_equal(error.message, "the file changed while it was read");
+		if (!closed)
+			nt_file_close(&file);
+	}
 }
 
 static void a_file_that_stays_is_not_told(void **state)
@@ -169,6 +191,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(what_is_gone_reads_as_zeros),
 		cmocka_unit_test(the_last_page_may_lose_a_part),
+		cmocka_unit_test(what_was_written_to_is_told),
 		cmocka_unit_test(a_file_that_stays_is_not_told),
 		cmocka_unit_test(helpers_may_read_and_other_runs_hear_nothing),
 		cmocka_unit_test(what_is_gone_can_be_written),
