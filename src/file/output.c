@@ -64,17 +64,34 @@ nt_status nt_output_check_clobber(const nt_output_options *options, const char *
 		nt_sink_refuse_existing(error, path) : NT_OK;
 }
 
-static bool is_in_place(const nt_output *output, const struct stat *status)
+static bool is_in_place(const nt_output_options *options, const struct stat *status)
 {
 	struct stat input;
-	return output->options.in_place && stat(output->options.in_place, &input) == 0 &&
-	       input.st_dev == status->st_dev && input.st_ino == status->st_ino;
+	return options->in_place && stat(options->in_place, &input) == 0 && input.st_dev == status->st_dev &&
+	       input.st_ino == status->st_ino;
+}
+
+/* What is meant to stay as it is. */
+static nt_status refuse_in_place(const char *path, const struct stat *status, nt_error *error)
+{
+	const char *refusal = nt_in_place_refusal(path, status);
+	if (!refusal)
+		return NT_OK;
+	nt_fail(error, NT_ERROR_IO, "refusing to write in place: %s", refusal);
+	return nt_error_in_file(error, path);
+}
+
+nt_status nt_output_check_in_place(const nt_output_options *options, const char *path, nt_error *error)
+{
+	struct stat status;
+	return stat(path, &status) == 0 && S_ISREG(status.st_mode) && is_in_place(options, &status) ?
+		refuse_in_place(path, &status, error) : NT_OK;
 }
 
 bool nt_output_is_in_place(const nt_output *output, const char *path)
 {
 	struct stat status;
-	return stat(path, &status) == 0 && is_in_place(output, &status);
+	return stat(path, &status) == 0 && is_in_place(&output->options, &status);
 }
 
 void nt_output_leave(nt_output *output)
@@ -102,12 +119,8 @@ static nt_status check_existing(const nt_output *output, nt_sink *sink, const st
 		return NT_OK;
 	if (output->options.no_clobber)
 		return nt_sink_refuse_existing(error, sink->path);
-	sink->in_place = is_in_place(output, status);
-	const char *refusal = sink->in_place ? nt_in_place_refusal(sink->path, status) : NULL;
-	if (!refusal)
-		return NT_OK;
-	nt_fail(error, NT_ERROR_IO, "refusing to write in place: %s", refusal);
-	return nt_error_in_file(error, sink->path);
+	sink->in_place = is_in_place(&output->options, status);
+	return sink->in_place ? refuse_in_place(sink->path, status, error) : NT_OK;
 }
 
 /* Two files of one set must not end at one place. */

@@ -65,6 +65,9 @@ nt_status nt_output_protect(nt_output *output, const char *path, const char *way
 /* With no_clobber, refuses a main file that exists, as nt_output_add() does: for callers that have not read anything yet. */
 nt_status nt_output_check_clobber(const nt_output_options *options, const char *path, nt_error *error);
 
+/* Refuses what nt_output_add() refuses in place: for callers that know that the file will change, before they solve. */
+nt_status nt_output_check_in_place(const nt_output_options *options, const char *path, nt_error *error);
+
 /*
  * Adds a file to the set; "-" is standard output. The sink belongs to the set.
  *

@@ -80,30 +80,17 @@ static nt_status open_scene(run *r)
 	return status;
 }
 
-static void count_decisions(run *r)
+/* Whether any mesh gets tangents. */
+static bool count_decisions(run *r)
 {
+	bool any = false;
 	r->summary->mesh_count = r->scene.mesh_count;
-	for (size_t i = 0; i < r->scene.mesh_count; i++)
-		if (!nt_mesh_is_wanted(&r->scene.meshes[i]))
-			r->summary->skipped[r->scene.meshes[i].decision]++;
-}
-
-static nt_status read_scene(run *r)
-{
-	nt_status status = open_scene(r);
-	if (status)
-		return nt_error_in_file(r->error, r->input_path);
-	status = nt_choose_writer(r->settings, r->output_path, r->reader, &r->writer, r->error);
-	if (status)
-		return status;
-
-	/* glTF without normals is left alone unless normals are asked for; the other formats get them */
-	nt_select(&r->scene, r->settings->only, r->settings->existing,
-		!nt_format_is_gltf(r->reader->format) || r->settings->normals != NT_NORMALS_AUTO);
-	count_decisions(r);
-	begin_stage(r, NT_STAGE_DECODE);
-	status = nt_stage_load(&r->scene, r->reader, r->writer, r->settings, &r->read_options, r->error);
-	return status ? nt_error_in_file(r->error, r->input_path) : NT_OK;
+	for (size_t i = 0; i < r->scene.mesh_count; i++) {
+		const nt_mesh *mesh = &r->scene.meshes[i];
+		r->summary->skipped[mesh->decision] += !nt_mesh_is_wanted(mesh);
+		any |= nt_mesh_is_wanted(mesh);
+	}
+	return any;
 }
 
 /* Who keeps a record is told before the output has its name: the two agree then, or the output is made again. */
@@ -122,6 +109,30 @@ static nt_output_options output_options_of(run *r)
 		.dry_run = s->dry_run || s->check, .in_place = s->in_place ? r->input_path : NULL, .result = &r->result,
 		.find_claims = r->writer->format != NT_FORMAT_PLY ? nt_gltf_find_claims : NULL,
 		.placing = tell_placing, .placing_user = r};
+}
+
+static nt_status read_scene(run *r)
+{
+	nt_status status = open_scene(r);
+	if (status)
+		return nt_error_in_file(r->error, r->input_path);
+	status = nt_choose_writer(r->settings, r->output_path, r->reader, &r->writer, r->error);
+	if (status)
+		return status;
+
+	/* glTF without normals is left alone unless normals are asked for; the other formats get them */
+	nt_select(&r->scene, r->settings->only, r->settings->existing,
+		!nt_format_is_gltf(r->reader->format) || r->settings->normals != NT_NORMALS_AUTO);
+	/* what needs nothing may be left alone wherever it is */
+	if (count_decisions(r) && r->settings->in_place) {
+		const nt_output_options options = output_options_of(r);
+		status = nt_output_check_in_place(&options, r->output_path, r->error);
+		if (status)
+			return status;
+	}
+	begin_stage(r, NT_STAGE_DECODE);
+	status = nt_stage_load(&r->scene, r->reader, r->writer, r->settings, &r->read_options, r->error);
+	return status ? nt_error_in_file(r->error, r->input_path) : NT_OK;
 }
 
 /* With --check as if to a stream, of which nothing is written: what writers leave out is found there. */

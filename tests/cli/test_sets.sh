@@ -431,6 +431,25 @@ says "name another output"
 same b.glb "$data/plates.glb"
 only a.glb b.glb
 
+scene "in place, the refusal comes before anything is decoded, and what needs nothing is left alone"
+python3 - "$data/plates.glb" <<'END'
+import struct, sys
+data = open(sys.argv[1], 'rb').read()
+at = 28 + struct.unpack_from('<I', data, 12)[0]
+open('a.glb', 'wb').write(data[:at] + b'\xff' * (len(data) - at))
+END
+run --in-place a.glb
+exits 3
+chmod 444 a.glb
+run --in-place a.glb
+exits 2
+says "the file is read-only"
+run -q "$data/plates.glb" b.glb
+exits 0
+chmod 444 b.glb
+run --in-place b.glb
+exits 0
+
 scene "symbolic links that lead nowhere or round in a circle are refused"
 ln -s nowhere.glb dangling.glb
 ln -s loop.glb loop.glb
