@@ -117,8 +117,11 @@ static nt_status visit(walk *w, nt_buffer *path)
 		return errno == ENOENT ? NT_OK : fail_folder(path->data, errno, w->error);
 	if (S_ISDIR(info.st_mode))
 		return is_left_out(w, below, &info) ? NT_OK : look_through(w, path);
-	if (!is_taken(w->rules, below) || (S_ISLNK(info.st_mode) && stat(path->data, &info) != 0) ||
-		!S_ISREG(info.st_mode))
+	if (!is_taken(w->rules, below))
+		return NT_OK;
+	if (S_ISLNK(info.st_mode) && stat(path->data, &info) != 0)
+		return errno == EIO || errno == ENOMEM ? fail_folder(path->data, errno, w->error) : NT_OK;
+	if (!S_ISREG(info.st_mode))
 		return NT_OK;
 	return add(w->inputs, nt_arena_text(&w->inputs->arena, path->data, path->size), w->error);
 }
@@ -156,7 +159,10 @@ nt_status nt_inputs_add(nt_inputs *inputs, const char *name, const nt_folder_rul
 	if (!found || !S_ISDIR(info.st_mode))
 		return add(inputs, name, error);
 	walk w = {.inputs = inputs, .rules = rules, .error = error};
-	w.has_leave_out = rules->leave_out && stat(rules->leave_out, &w.leave_out) == 0;
+	if (rules->leave_out)
+		status = nt_lookup_found(rules->leave_out, &w.leave_out, &w.has_leave_out, error);
+	if (status)
+		return status;
 	nt_buffer path = {0};
 	nt_buffer_text(&path, name);
 	w.root_length = path.size + (path.size > 0 && name[path.size - 1] != '/');

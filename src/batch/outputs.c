@@ -10,6 +10,7 @@
 #include <sys/stat.h>
 
 #include "base/buffer.h"
+#include "file/lookup.h"
 #include "file/relative_path.h"
 #include "format/format.h"
 
@@ -137,13 +138,16 @@ static nt_status refuse_foreign_inputs(const nt_batch *batch, nt_error *error)
 		return nt_fail_memory(error);
 	size_t count = 0;
 	struct stat info;
+	/* an input that cannot be looked at cannot be read either, and its run says so */
 	for (size_t i = 0; i < batch->count; i++)
 		if (stat(batch->jobs[i].input, &info) == 0)
 			inputs[count++] = (identity){info.st_dev, info.st_ino, i};
 	qsort(inputs, count, sizeof *inputs, compare_identities);
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < batch->count && !status; i++) {
-		if (stat(batch->jobs[i].output, &info) != 0)
+		bool found_output;
+		status = nt_lookup_found(batch->jobs[i].output, &info, &found_output, error);
+		if (status || !found_output)
 			continue;
 		const identity key = {info.st_dev, info.st_ino, i};
 		const identity *found = bsearch(&key, inputs, count, sizeof *inputs, compare_identities);
@@ -159,9 +163,11 @@ static nt_status refuse_foreign_inputs(const nt_batch *batch, nt_error *error)
 static nt_status make_folder(const char *directory, const nt_settings *settings, nt_error *error)
 {
 	struct stat info;
-	if (stat(directory, &info) == 0) {
-		if (S_ISDIR(info.st_mode))
-			return NT_OK;
+	bool found;
+	const nt_status status = nt_lookup_found(directory, &info, &found, error);
+	if (status || (found && S_ISDIR(info.st_mode)))
+		return status;
+	if (found) {
 		nt_fail(error, NT_ERROR_IO, "is not a folder");
 		return nt_error_in_file(error, directory);
 	}

@@ -78,7 +78,7 @@ static nt_status load_copies(const loading *l)
 static bool can_be_late(const loading *l, const nt_format_entry *writer)
 {
 	const nt_settings *s = l->settings;
-	return writer && !needs_all(l->reader, writer) && !s->report && !s->verify && !s->bitangents &&
+	return writer && !needs_all(l->reader, writer) && !s->check && !s->report && !s->verify && !s->bitangents &&
 		s->across == NT_ACROSS_PRIMITIVE && s->draco <= NT_DRACO_OFF && s->normals == NT_NORMALS_AUTO &&
 		!s->list_meshes;
 }

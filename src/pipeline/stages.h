@@ -10,7 +10,8 @@
 
 /* Finds the row of who writes `path`, by settings and name; of a stream without one only when the reader is known: PLY
  * for PLY, else GLB. With settings->check: whose conversion is judged; NULL: the input is judged as it is. `reader` is NULL before the input is read; with it, what its files
- * cannot become is refused. Returns NT_OK or NT_ERROR_USAGE. */
+ * cannot become is refused. Returns NT_OK, NT_ERROR_USAGE or, where the system
+ * cannot tell what is there, NT_ERROR_IO. */
 nt_status nt_choose_writer(const nt_settings *settings, const char *path, const nt_format_entry *reader,
 	const nt_format_entry **writer, nt_error *error);
 
@@ -18,7 +19,7 @@ nt_status nt_choose_writer(const nt_settings *settings, const char *path, const 
 nt_status nt_stage_load(nt_scene *scene, const nt_format_entry *reader, const nt_format_entry *writer,
 	const nt_settings *settings, const nt_read_options *options, nt_error *error);
 
-/* What is wrong with an input that became shorter is that, whatever was made of it and found in it: returns that, or
+/* What is wrong with an input that changed is that, whatever was made of it and found in it: returns that, or
  * `status`. */
 nt_status nt_check_inputs(nt_scene *scene, nt_status status, nt_error *error);
 

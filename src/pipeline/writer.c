@@ -5,22 +5,26 @@
 #include "pipeline/stages.h"
 
 #include <string.h>
-#include <sys/stat.h>
+#include "file/lookup.h"
 
-/* Whether the output is standard output, a pipe or a device, whose name need not say a format. */
-static bool is_stream(const char *path)
+/* What is under the name of an output. */
+typedef struct there {
+	bool stream; /* standard output, a pipe or a device, whose name need not say a format */
+	bool folder; /* what cp would write into */
+} there;
+
+static nt_status look(const char *path, there *t, nt_error *error)
 {
 	struct stat info;
-	return strcmp(path, "-") == 0 ||
-	       (stat(path, &info) == 0 && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode));
-}
-
-/* What cp would write into. */
-static bool is_folder(const char *path)
-{
-	struct stat info;
+	bool found;
 	const size_t length = strlen(path);
-	return (length && path[length - 1] == '/') || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
+	*t = (there){.stream = strcmp(path, "-") == 0, .folder = length && path[length - 1] == '/'};
+	if (t->stream || t->folder)
+		return NT_OK;
+	const nt_status status = nt_lookup_found(path, &info, &found, error);
+	t->folder = !status && found && S_ISDIR(info.st_mode);
+	t->stream = !status && found && !t->folder && !S_ISREG(info.st_mode);
+	return status;
 }
 
 /* What a check judges: the conversion to --as, or to what a stream without a name would get. A glTF is judged as it
@@ -39,8 +43,13 @@ static nt_status choose(const nt_settings *settings, const char *path, const nt_
 		*writer = find_judged(settings, reader);
 		return NT_OK;
 	}
-	const bool unnamed = settings->output_format == NT_FORMAT_UNKNOWN && is_stream(path) &&
-			     !nt_format_of_path(path);
+	/* a name that says a format needs no look */
+	const bool named = settings->output_format != NT_FORMAT_UNKNOWN || nt_format_of_path(path);
+	there t = {0};
+	const nt_status status = named ? NT_OK : look(path, &t, error);
+	if (status)
+		return status;
+	const bool unnamed = !named && t.stream;
 	if (unnamed && !reader)
 		return NT_OK;
 	if (unnamed)
@@ -49,7 +58,7 @@ static nt_status choose(const nt_settings *settings, const char *path, const nt_
 		*writer = nt_format_find(settings->output_format);
 	else
 		*writer = nt_format_of_path(path);
-	if (!*writer && is_folder(path))
+	if (!*writer && t.folder)
 		return nt_fail(error, NT_ERROR_USAGE, "\"%s\" is a folder: to write into it use -d",
 			path);
 	if (!*writer)
