@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { WIDTH = 960, LEFT = 80, RIGHT = 660, TOP = 60, LEAST_HEIGHT = 400, LEGEND_LINE = 18 };
+enum { WIDTH = 1020, LEFT = 80, RIGHT = 660, TOP = 60, LEAST_HEIGHT = 400, LEGEND_LINE = 18 };
 
 static const char *const colours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9",
 	"#000000", "#999999", "#8c564b", "#6a3d9a", "#b15928", "#e31a1c"};
@@ -152,7 +152,7 @@ static void draw_path(FILE *f, const chart *c, size_t s, const axis *ax, const a
 static void draw_series(FILE *f, const chart *c, size_t s, const axis *ax, const axis *ay)
 {
 	const chart_series *series = &c->series[s];
-	const char *colour = colours[s % COLOUR_COUNT];
+	const char *colour = series->style > CHART_RANGES ? "#000" : colours[s % COLOUR_COUNT];
 	const size_t shape = series->style == CHART_LINE ? s : s / COLOUR_COUNT;
 	draw_path(f, c, s, ax, ay, colour);
 	for (size_t i = 0; i < series->count; i++) {
