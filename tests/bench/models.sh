@@ -12,5 +12,10 @@ for file in "$shared"/obj/spot.obj "$shared"/obj/tangeract.obj "$shared"/obj/cra
 	${MODELS:+"$MODELS"/*.obj "$MODELS"/*.ply "$MODELS"/*.glb "$MODELS"/*.gltf}; do
 	[ -f "$file" ] || continue
 	name=${file##*/}
-	"$nmtan" -q --only=needed "$file" "$folder/${name%.*}.ply" && echo "$folder/${name%.*}.ply"
+	out=$folder/${name%.*}.ply
+	if [ -e "$out" ]; then
+		echo "bench: $file: there is a model of that name already, skipped" >&2
+		continue
+	fi
+	"$nmtan" -q --only=needed "$file" "$out" && echo "$out"
 done
