@@ -7,6 +7,7 @@ import multiprocessing
 import os
 import struct
 import threading
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -98,6 +99,14 @@ def test_arrays_of_other_kinds():
     }
     for name, arrays in kinds.items():
         assert nmtan.tangents(*arrays).tobytes() == expected, name
+
+
+def test_a_mesh_as_trimesh_has_it():
+    mesh = SimpleNamespace(vertices=POSITIONS.astype(float), vertex_normals=NORMALS.astype(float), faces=FACES.astype(np.int64),
+                           visual=SimpleNamespace(uv=TEXCOORDS.astype(float)))
+    result = nmtan.vertex_tangents(mesh.vertices, mesh.vertex_normals, mesh.visual.uv, mesh.faces)
+    assert result.apply(mesh.vertices)[result.faces].tolist() == mesh.vertices[mesh.faces].tolist()
+    assert result.apply(mesh.visual.uv).shape == (8, 2)
 
 
 def test_no_copy_of_what_fits():

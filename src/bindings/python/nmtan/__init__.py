@@ -167,7 +167,13 @@ def tangents(positions: ArrayLike, normals: ArrayLike, texcoords: ArrayLike, fac
 def vertex_tangents(positions: ArrayLike, normals: ArrayLike, texcoords: ArrayLike, faces: ArrayLike, *,
                     method: str = "mikktspace", repair: bool = True, convention: str = "mikktspace",
                     angular_threshold: float = 180.0, threads: int = 0) -> VertexTangents:
-    """One tangent for each vertex; vertices whose corners need different ones are copied. Arguments: see tangents()."""
+    """One tangent for each vertex; vertices whose corners need different ones are copied. Arguments: see tangents().
+
+    A mesh of trimesh has them all, in double and int64, which are converted:
+
+        result = nmtan.vertex_tangents(mesh.vertices, mesh.vertex_normals, mesh.visual.uv, mesh.faces)
+        vertices, texcoords = result.apply(mesh.vertices), result.apply(mesh.visual.uv)
+    """
     if faces is None:
         raise ValueError("faces: shape [faces, 3] or [faces, 4] is expected, not None")
     given = _Input(positions, normals, texcoords, faces, convention)
