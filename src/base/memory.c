@@ -123,6 +123,15 @@ bool nt_arena_adopt(nt_arena *arena, void *block)
 	return true;
 }
 
+void nt_arena_join(nt_arena *arena, nt_arena *other)
+{
+	struct nt_arena_block **end = &arena->blocks;
+	while (*end)
+		end = &(*end)->next;
+	*end = other->blocks;
+	other->blocks = NULL;
+}
+
 void nt_arena_free(nt_arena *arena)
 {
 	struct nt_arena_block *block = arena->blocks;

@@ -51,6 +51,9 @@ char *nt_arena_text(nt_arena *arena, const char *text, size_t length);
  * at once. NULL is allowed. */
 bool nt_arena_adopt(nt_arena *arena, void *block);
 
+/* Takes over everything in another arena, which is empty afterwards. */
+void nt_arena_join(nt_arena *arena, nt_arena *other);
+
 /* Frees everything; the arena is empty afterwards. */
 void nt_arena_free(nt_arena *arena);
 

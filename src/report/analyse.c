@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/parallel.h"
 #include "scene/select.h"
 
 /* ---- facts that need no check ---- */
@@ -147,7 +148,7 @@ static nt_status keep_geometry(nt_check *check)
 			nt_source_texcoord(check->scene, mesh->texcoords + 2 * from, g->texcoords + 2 * v);
 	}
 	for (size_t c = 0; c < 3 * s->triangle_count; c++)
-		g->indices[c] = split && mesh->split.indices ? mesh->split.indices[s->corners[c]] : s->vertices[c];
+		g->indices[c] = split && mesh->split.indices ? mesh->split.indices[nt_side_corner(s, c)] : s->vertices[c];
 	check->facts->geometry = g;
 	return NT_OK;
 }
@@ -168,22 +169,88 @@ static nt_status keep_normal_map(nt_check *check, size_t *most_bytes)
 
 /* ---- one mesh ---- */
 
+/* Checks that follow each other, with findings, texts and memory of their own: branches run side by side. Sorting puts
+ * findings in one order whoever was first, since each code is one check's. */
+typedef struct branch {
+	nt_status (*checks[4])(nt_check *); /* up to NULL */
+	nt_check check;
+	nt_report found;
+	size_t finding_capacity;
+	nt_scratch scratch;
+	nt_status status;
+} branch;
+
+static void run_branch(void *context, size_t item, unsigned slot)
+{
+	(void)slot;
+	branch *b = (branch *)context + item;
+	for (size_t i = 0; i < 4 && b->checks[i] && !b->status; i++)
+		b->status = b->checks[i](&b->check);
+}
+
+/* Moves a branch's findings and texts into the report. */
+static nt_status join_branch(nt_check *check, branch *b)
+{
+	nt_report *report = check->report;
+	const size_t count = b->found.finding_count;
+	nt_arena_join(&report->arena, &b->found.arena);
+	nt_status status = b->status ? b->status : b->check.failed ? NT_ERROR_MEMORY : NT_OK;
+	if (!status && count && !nt_grow((void **)&report->findings, check->finding_capacity,
+			report->finding_count + count, sizeof *report->findings))
+		status = NT_ERROR_MEMORY;
+	if (!status && count) {
+		memcpy(report->findings + report->finding_count, b->found.findings, count * sizeof *report->findings);
+		report->finding_count += count;
+	}
+	free(b->found.findings);
+	return status;
+}
+
+/* Leaves in `check` what the checks found out about edges and islands. */
+static nt_status run_checks(nt_check *check)
+{
+	/* triangles from which on threads pay */
+	enum { LARGE = 65536 };
+	branch branches[2] = {
+		{.checks = {nt_check_edges, nt_check_islands, nt_check_seams, nt_check_measures}},
+		{.checks = {nt_check_geometry, nt_check_tangents, nt_check_growth}}};
+	for (int i = 0; i < 2; i++) {
+		branch *b = &branches[i];
+		b->found = (nt_report){.meshes = check->report->meshes, .mesh_count = check->report->mesh_count};
+		b->check = *check;
+		b->check.report = &b->found;
+		b->check.finding_capacity = &b->finding_capacity;
+		nt_scratch_init(&b->scratch, NULL);
+		/* the first one's lists are asked for later */
+		if (i > 0)
+			b->check.scratch = &b->scratch;
+	}
+	const bool large = check->surface.triangle_count >= LARGE;
+	nt_parallel_items(large ? nt_thread_count(check->options->threads) : 1, 2, run_branch, branches);
+	check->islands = branches[0].check.islands;
+	nt_status status = NT_OK;
+	for (int i = 0; i < 2; i++) {
+		const nt_status joined = join_branch(check, &branches[i]);
+		nt_scratch_free(&branches[i].scratch);
+		status = status ? status : joined;
+	}
+	return status;
+}
+
 /* most_image_bytes: how much of images may still be kept. */
 static nt_status check_mesh(nt_check *check, size_t *most_image_bytes)
 {
-	nt_status status = nt_surface_build(&check->surface, check->mesh, check->scratch);
+	nt_status status = nt_surface_build(&check->surface, check->mesh, nt_thread_count(check->options->threads),
+		check->scratch);
 	if (status || check->surface.triangle_count == 0)
 		return status;
 	measure_surface(check);
-	nt_status (*const checks[])(nt_check *) = {nt_check_edges, nt_check_geometry,
-		nt_check_islands, nt_check_seams, nt_check_tangents, nt_check_growth, nt_check_measures};
-	for (size_t i = 0; i < sizeof checks / sizeof checks[0] && !status; i++)
-		status = checks[i](check);
+	status = run_checks(check);
 	if (!status && check->options->keep_geometry)
 		status = keep_geometry(check);
 	if (!status)
 		status = keep_normal_map(check, most_image_bytes);
-	return status ? status : check->failed ? NT_ERROR_MEMORY : NT_OK;
+	return status;
 }
 
 /* Points and lines, empty meshes and ones that were never loaded have nothing to be checked. */

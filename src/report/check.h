@@ -42,7 +42,7 @@ typedef struct nt_check {
 
 	/* by edges.c */
 	uint8_t *boundary;        /* [3 * triangle_count] side without a neighbour */
-	uint32_t *seam_edge;      /* [3 * triangle_count] index into mirror_edges, NT_NONE */
+	uint32_t *seam_edge;      /* [3 * triangle_count] index into mirror_edges, of sides that are in one */
 	nt_mirror_edge *mirror_edges;
 	size_t mirror_edge_count;
 	uint32_t *islands;        /* [triangle_count] NT_NONE: has no edges */

@@ -161,7 +161,6 @@ static nt_status allocate(nt_check *check)
 	if (!check->boundary || !check->seam_edge || !check->mirror_edges || !check->islands)
 		return NT_ERROR_MEMORY;
 	memset(check->boundary, 0, sides * sizeof *check->boundary);
-	memset(check->seam_edge, 0xff, sides * sizeof *check->seam_edge);
 	return NT_OK;
 }
 

@@ -57,7 +57,7 @@ static void set_triangle(const nt_check *check, nt_spot *spot, size_t triangle)
 {
 	if (!spot)
 		return;
-	const uint32_t face = check->surface.faces[triangle];
+	const uint32_t face = check->surface.faces ? check->surface.faces[triangle] : (uint32_t)triangle;
 	spot->triangle = (uint32_t)triangle;
 	spot->face = check->mesh->face_polygon ? check->mesh->face_polygon[face] : face;
 }

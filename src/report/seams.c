@@ -85,7 +85,7 @@ static bool same_texel(const nt_check *check, const float *a, const float *b)
 /* The tangent of a corner: as it is stored, else as it was computed; NULL: there is none. */
 static const float *corner_tangent(const nt_check *check, uint32_t side)
 {
-	const uint32_t corner = check->surface.corners[side];
+	const uint32_t corner = nt_side_corner(&check->surface, side);
 	if (check->stored != NT_STORED_NONE)
 		return nt_stored_tangent(check, corner);
 	return check->mesh->corner_tangents ? check->mesh->corner_tangents + 4 * (size_t)corner : NULL;
@@ -121,7 +121,7 @@ static void compare_frames(const nt_check *check, const nt_mirror_edge *edge, ui
 static uint32_t output_vertex(const nt_check *check, uint32_t side)
 {
 	const nt_mesh *mesh = check->mesh;
-	return mesh->split.indices ? mesh->split.indices[check->surface.corners[side]]
+	return mesh->split.indices ? mesh->split.indices[nt_side_corner(&check->surface, side)]
 				   : check->surface.vertices[side];
 }
 

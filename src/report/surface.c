@@ -11,34 +11,29 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/parallel.h"
 #include "topology/orientation.h"
 
-static nt_status allocate_triangles(nt_surface *s, size_t count, nt_scratch *scratch)
-{
-	s->corners = nt_scratch_alloc(scratch, 3 * count, sizeof *s->corners);
-	s->faces = nt_scratch_alloc(scratch, count, sizeof *s->faces);
-	s->vertices = nt_scratch_alloc(scratch, 3 * count, sizeof *s->vertices);
-	s->points = nt_scratch_alloc(scratch, 3 * count, sizeof *s->points);
-	s->orientation = nt_scratch_alloc(scratch, count, sizeof *s->orientation);
-	s->flatness = nt_scratch_alloc(scratch, count, sizeof *s->flatness);
-	s->areas = nt_scratch_alloc(scratch, count, sizeof *s->areas);
-	const bool complete = s->corners && s->faces && s->vertices && s->points && s->orientation &&
-		s->flatness && s->areas;
-	return complete ? NT_OK : NT_ERROR_MEMORY;
-}
+/* Ranges that threads take; fewer items are not worth one. */
+enum { GRAIN = 32768 };
 
 static uint32_t vertex_of(const nt_mesh *mesh, size_t corner)
 {
 	return mesh->indices ? mesh->indices[corner] : (uint32_t)corner;
 }
 
-static void add_triangle(nt_surface *s, size_t face, size_t first, const unsigned char order[3])
+/* Quads are cut, so that corners, faces and vertices are lists of their own. */
+typedef struct cut_lists {
+	uint32_t *corners, *faces, *vertices;
+} cut_lists;
+
+static void add_triangle(nt_surface *s, const cut_lists *lists, size_t face, size_t first, const unsigned char order[3])
 {
 	const size_t t = s->triangle_count++;
-	s->faces[t] = (uint32_t)face;
+	lists->faces[t] = (uint32_t)face;
 	for (size_t k = 0; k < 3; k++) {
-		s->corners[3 * t + k] = (uint32_t)(first + order[k]);
-		s->vertices[3 * t + k] = vertex_of(s->mesh, first + order[k]);
+		lists->corners[3 * t + k] = (uint32_t)(first + order[k]);
+		lists->vertices[3 * t + k] = vertex_of(s->mesh, first + order[k]);
 	}
 }
 
@@ -56,22 +51,63 @@ static int quad_cut(const nt_surface *s, size_t first)
 	return nt_quad_diagonal(uv, p);
 }
 
-static void cut_faces(nt_surface *s)
+static nt_status cut_faces(nt_surface *s, size_t triangle_count, nt_scratch *scratch)
 {
 	static const unsigned char in_order[3] = {0, 1, 2};
 	const nt_mesh *mesh = s->mesh;
+	const cut_lists lists = {nt_scratch_alloc(scratch, 3 * triangle_count, sizeof *lists.corners),
+		nt_scratch_alloc(scratch, triangle_count, sizeof *lists.faces),
+		nt_scratch_alloc(scratch, 3 * triangle_count, sizeof *lists.vertices)};
+	if (!lists.corners || !lists.faces || !lists.vertices)
+		return NT_ERROR_MEMORY;
 	size_t first = 0;
 	for (size_t face = 0; face < mesh->face_count; face++) {
-		if (!mesh->face_sizes || mesh->face_sizes[face] == 3) {
-			add_triangle(s, face, first, in_order);
+		if (mesh->face_sizes[face] == 3) {
+			add_triangle(s, &lists, face, first, in_order);
 			first += 3;
 			continue;
 		}
 		const int cut = quad_cut(s, first);
-		add_triangle(s, face, first, nt_quad_triangles[cut][0]);
-		add_triangle(s, face, first, nt_quad_triangles[cut][1]);
+		add_triangle(s, &lists, face, first, nt_quad_triangles[cut][0]);
+		add_triangle(s, &lists, face, first, nt_quad_triangles[cut][1]);
 		first += 4;
 	}
+	s->corners = lists.corners;
+	s->faces = lists.faces;
+	s->vertices = lists.vertices;
+	return NT_OK;
+}
+
+/* Triangles alone are what the mesh has already. */
+static nt_status list_triangles(nt_surface *s, nt_scratch *scratch)
+{
+	const nt_mesh *mesh = s->mesh;
+	size_t quads = 0;
+	for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
+		quads += mesh->face_sizes[f] == 4;
+	if (quads)
+		return cut_faces(s, mesh->face_count + quads, scratch);
+	s->triangle_count = mesh->face_count;
+	s->vertices = mesh->indices;
+	if (mesh->indices)
+		return NT_OK;
+	uint32_t *vertices = nt_scratch_alloc(scratch, 3 * s->triangle_count, sizeof *vertices);
+	if (!vertices)
+		return NT_ERROR_MEMORY;
+	for (size_t c = 0; c < 3 * s->triangle_count; c++)
+		vertices[c] = (uint32_t)c;
+	s->vertices = vertices;
+	return NT_OK;
+}
+
+static nt_status allocate(nt_surface *s, nt_scratch *scratch)
+{
+	const size_t count = s->triangle_count;
+	s->points = nt_scratch_alloc(scratch, 3 * count, sizeof *s->points);
+	s->orientation = nt_scratch_alloc(scratch, count, sizeof *s->orientation);
+	s->flatness = nt_scratch_alloc(scratch, count, sizeof *s->flatness);
+	s->areas = nt_scratch_alloc(scratch, count, sizeof *s->areas);
+	return s->points && s->orientation && s->flatness && s->areas ? NT_OK : NT_ERROR_MEMORY;
 }
 
 static uint32_t hash_position(const float *p)
@@ -154,6 +190,15 @@ static void measure_triangle(nt_surface *s, size_t t)
 			(exact ? s->mesh->solve_sign : 1));
 }
 
+static void measure_range(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	for (size_t t = begin; t < end; t++)
+		measure_triangle(context, t);
+}
+
+/* ---- edges ---- */
+
 typedef struct edge_end {
 	uint32_t other, side;
 } edge_end;
@@ -187,9 +232,11 @@ static bool has_edges(const nt_surface *s, size_t t)
 	return s->flatness[t] == NT_SOUND || s->flatness[t] == NT_COLLINEAR;
 }
 
-/* Sorts the sides by their lower point: ends[first[p]] to ends[first[p + 1] - 1] are those of p. */
-static void bucket_sides(const nt_surface *s, uint32_t *first, edge_end *ends)
+/* Sorts the sides by their lower point: s->sides[first[p]] to s->sides[first[p + 1] - 1] are those of p. Returns the
+ * most sides that a point has. */
+static size_t bucket_sides(const nt_surface *s, uint32_t *first)
 {
+	uint32_t most = 0;
 	memset(first, 0, (s->point_count + 2) * sizeof *first);
 	for (int pass = 0; pass < 2; pass++) {
 		for (size_t t = 0; t < s->triangle_count; t++) {
@@ -202,56 +249,92 @@ static void bucket_sides(const nt_surface *s, uint32_t *first, edge_end *ends)
 				if (pass == 0)
 					first[low + 2]++;
 				else
-					ends[first[low + 1]++] = (edge_end){a < b ? b : a, side};
+					s->sides[first[low + 1]++] = side;
 			}
 		}
-		for (size_t p = 0; pass == 0 && p < s->point_count; p++)
+		for (size_t p = 0; pass == 0 && p < s->point_count; p++) {
+			most = first[p + 2] > most ? first[p + 2] : most;
 			first[p + 2] += first[p + 1];
+		}
 	}
+	return most;
 }
 
-static nt_status find_edges(nt_surface *s, nt_scratch *scratch)
+/* Ranges of points, each of which finds its edges. */
+typedef struct edge_work {
+	nt_surface *s;
+	const uint32_t *first; /* [point_count + 1] */
+	edge_end *ends;        /* [slots][most] */
+	size_t most;
+	struct edge_range {
+		size_t begin, count; /* where its edges are listed in edge_first */
+	} *ranges;             /* [slots] */
+} edge_work;
+
+/* Puts the sides of each point in order and lists where edges begin, from the range's first side on: there are no more
+ * edges than sides. */
+static void find_range(void *context, size_t begin, size_t end, unsigned slot)
+{
+	const edge_work *work = context;
+	nt_surface *s = work->s;
+	edge_end *ends = work->ends + slot * work->most;
+	size_t edge = work->first[begin];
+	work->ranges[slot].begin = edge;
+	for (size_t p = begin; p < end; p++) {
+		const size_t base = work->first[p], count = work->first[p + 1] - base;
+		for (size_t i = 0; i < count; i++) {
+			const uint32_t side = s->sides[base + i], a = s->points[side], b = s->points[nt_side_next(side)];
+			ends[i] = (edge_end){a < b ? b : a, side};
+		}
+		sort_ends(ends, count);
+		for (size_t i = 0; i < count; i++) {
+			if (i == 0 || ends[i].other != ends[i - 1].other)
+				s->edge_first[edge++] = (uint32_t)(base + i);
+			s->sides[base + i] = ends[i].side;
+		}
+	}
+	work->ranges[slot].count = edge - work->ranges[slot].begin;
+}
+
+static nt_status find_edges(nt_surface *s, unsigned threads, nt_scratch *scratch)
 {
 	const size_t side_count = 3 * s->triangle_count;
 	s->edge_first = nt_scratch_alloc(scratch, side_count + 1, sizeof *s->edge_first);
 	s->sides = nt_scratch_alloc(scratch, side_count, sizeof *s->sides);
 	const nt_scratch_mark mark = nt_scratch_here(scratch);
 	uint32_t *first = nt_scratch_alloc(scratch, s->point_count + 2, sizeof *first);
-	edge_end *ends = nt_scratch_alloc(scratch, side_count, sizeof *ends);
-	if (!s->edge_first || !s->sides || !first || !ends)
+	if (!s->edge_first || !s->sides || !first)
 		return NT_ERROR_MEMORY;
-	bucket_sides(s, first, ends);
-	size_t total = 0;
-	for (size_t p = 0; p < s->point_count; p++) {
-		edge_end *begin = ends + first[p];
-		const size_t count = first[p + 1] - first[p];
-		sort_ends(begin, count);
-		for (size_t i = 0; i < count; i++) {
-			if (i == 0 || begin[i].other != begin[i - 1].other)
-				s->edge_first[s->edge_count++] = (uint32_t)total;
-			s->sides[total++] = begin[i].side;
-		}
+	edge_work work = {.s = s, .first = first, .most = bucket_sides(s, first)};
+	if (!work.most) /* nothing has edges */
+		work.most = 1;
+	const unsigned slots = nt_parallel_slots(threads, s->point_count, GRAIN);
+	work.ends = nt_scratch_alloc(scratch, slots * work.most, sizeof *work.ends);
+	work.ranges = nt_scratch_alloc(scratch, slots, sizeof *work.ranges);
+	if (!work.ends || !work.ranges)
+		return NT_ERROR_MEMORY;
+	nt_parallel_ranges(threads, s->point_count, GRAIN, find_range, &work);
+	for (unsigned slot = 0; slot < slots && s->point_count; slot++) {
+		memmove(s->edge_first + s->edge_count, s->edge_first + work.ranges[slot].begin,
+			work.ranges[slot].count * sizeof *s->edge_first);
+		s->edge_count += work.ranges[slot].count;
 	}
-	s->edge_first[s->edge_count] = (uint32_t)total;
+	s->edge_first[s->edge_count] = first[s->point_count];
 	nt_scratch_back(scratch, mark);
 	return NT_OK;
 }
 
-nt_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, nt_scratch *scratch)
+nt_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, unsigned threads, nt_scratch *scratch)
 {
 	*surface = (nt_surface){.mesh = mesh,
 		.texcoords = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords};
-	size_t quads = 0;
-	for (size_t f = 0; mesh->face_sizes && f < mesh->face_count; f++)
-		quads += mesh->face_sizes[f] == 4;
-	nt_status status = allocate_triangles(surface, mesh->face_count + quads, scratch);
+	nt_status status = list_triangles(surface, scratch);
+	if (!status)
+		status = allocate(surface, scratch);
+	if (!status)
+		status = weld_points(surface, scratch);
 	if (status)
 		return status;
-	cut_faces(surface);
-	status = weld_points(surface, scratch);
-	if (status)
-		return status;
-	for (size_t t = 0; t < surface->triangle_count; t++)
-		measure_triangle(surface, t);
-	return find_edges(surface, scratch);
+	nt_parallel_ranges(threads, surface->triangle_count, GRAIN, measure_range, surface);
+	return find_edges(surface, threads, scratch);
 }

@@ -25,9 +25,9 @@ typedef struct nt_surface {
 	const float *texcoords; /* [vertex_count][2] what is solved by: turned and scaled by a texture transform
 	                           where there is one; NULL: none */
 	size_t triangle_count;
-	uint32_t *corners;    /* [3 * triangle_count] corner of the mesh */
-	uint32_t *faces;      /* [triangle_count] face of the mesh */
-	uint32_t *vertices;   /* [3 * triangle_count] vertex of the mesh */
+	uint32_t *corners;    /* [3 * triangle_count] corner of the mesh; NULL: side c begins at corner c */
+	uint32_t *faces;      /* [triangle_count] face of the mesh; NULL: triangle t is face t */
+	const uint32_t *vertices; /* [3 * triangle_count] vertex of the mesh */
 	uint32_t *points;     /* [3 * triangle_count] welded position */
 	size_t point_count;
 	int8_t *orientation;  /* [triangle_count] exact sign in UV space, v up; 0 without texture coordinates */
@@ -41,9 +41,14 @@ typedef struct nt_surface {
 	uint32_t *sides;
 } nt_surface;
 
-/* Builds the surface of a loaded mesh. Everything is in scratch. Returns NT_OK or
- * NT_ERROR_MEMORY. */
-nt_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, nt_scratch *scratch);
+/* Builds the surface of a loaded mesh on up to `threads` threads; it does not depend on how many. Everything is in
+ * scratch or the mesh's own. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, unsigned threads, nt_scratch *scratch);
+
+static inline uint32_t nt_side_corner(const nt_surface *s, size_t side)
+{
+	return s->corners ? s->corners[side] : (uint32_t)side;
+}
 
 /* The side after this one in its triangle; its first corner is where this one ends. */
 static inline uint32_t nt_side_next(uint32_t side)

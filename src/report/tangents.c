@@ -124,11 +124,11 @@ static nt_status check_each(nt_check *check)
 		.bad_w = {.code = NT_CODE_TAN_BAD_W}, .parallel = {.code = NT_CODE_TAN_PARALLEL_NORMAL},
 		.not_orthogonal = {.code = NT_CODE_TAN_NOT_ORTHOGONAL}, .worst_length = 1.0};
 	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
-		const size_t index = nt_tangent_index(check, s->corners[c]);
+		const size_t index = nt_tangent_index(check, nt_side_corner(s, c));
 		if (seen[index])
 			continue;
 		seen[index] = 1;
-		check_tangent(check, tt, s->vertices[c], nt_stored_tangent(check, s->corners[c]));
+		check_tangent(check, tt, s->vertices[c], nt_stored_tangent(check, nt_side_corner(s, c)));
 	}
 	nt_tally_number(&tt->non_unit, "worst_length", tt->worst_length);
 	nt_tally_number(&tt->not_orthogonal, "worst_degrees", check->facts->worst_orthogonality);
@@ -174,7 +174,7 @@ static bool is_reversed(const nt_check *check, size_t t)
 		nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t + 1))), a),
 		nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t + 2))), a));
 	for (size_t k = 0; k < 3; k++) {
-		const float *stored = nt_stored_tangent(check, s->corners[3 * t + k]);
+		const float *stored = nt_stored_tangent(check, nt_side_corner(s, 3 * t + k));
 		const nt_dvec3 normal =
 			nt_dvec3_load(check->mesh->normals + 3 * (size_t)s->vertices[3 * t + k]);
 		nt_dvec3 bitangent = nt_dvec3_scale(stored[3],
@@ -232,7 +232,7 @@ static void check_sign(const nt_check *check, size_t t, int orientation, sign_ta
 	const nt_surface *s = &check->surface;
 	float w[3];
 	for (size_t k = 0; k < 3; k++)
-		w[k] = nt_stored_tangent(check, s->corners[3 * t + k])[3];
+		w[k] = nt_stored_tangent(check, nt_side_corner(s, 3 * t + k))[3];
 	if (!isfinite(w[0] + w[1] + w[2]) || w[0] == 0.0f || w[1] == 0.0f || w[2] == 0.0f)
 		return;
 	if ((w[0] > 0.0f) != (w[1] > 0.0f) || (w[1] > 0.0f) != (w[2] > 0.0f)) {
@@ -287,10 +287,10 @@ static void check_directions(nt_check *check, const float *fresh)
 	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
 		if (s->orientation[c / 3] == 0 || s->flatness[c / 3] != NT_SOUND)
 			continue;
-		nt_dvec3 stored = nt_dvec3_load(nt_stored_tangent(check, s->corners[c]));
+		nt_dvec3 stored = nt_dvec3_load(nt_stored_tangent(check, nt_side_corner(s, c)));
 		if (!nt_dvec3_normalise(&stored))
 			continue;
-		const double angle = degrees_between(stored, nt_dvec3_load(fresh + 4 * (size_t)s->corners[c]));
+		const double angle = degrees_between(stored, nt_dvec3_load(fresh + 4 * (size_t)nt_side_corner(s, c)));
 		int bin = 0;
 		while (bin + 1 < NT_ANGLE_BINS && angle > nt_angle_bins[bin])
 			bin++;
