@@ -155,12 +155,14 @@ static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, const nmtan_o
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	stored.v_offset = stored_v_offset(job);
 	mesh->counts = (nmtan_counts)NMTAN_COUNTS_INIT;
-	if (!job->splits)
+	const bool by_corner = mesh->decision == NT_DECISION_REPAIR || mesh->morph_count;
+	if (!job->splits && by_corner)
 		return solve_corners(mesh, &view, options, &mesh->corner_tangents, &mesh->counts);
 
+	/* vertices take less memory than corners, so that they are split although nothing is written */
 	nmtan_split_output output = {.source_count = 0};
 	nt_status status;
-	if (mesh->decision == NT_DECISION_REPAIR || mesh->morph_count || (job->triangulates && mesh->face_sizes)) {
+	if (by_corner || (job->triangulates && mesh->face_sizes)) {
 		status = solve_corners(mesh, &view, options, &mesh->corner_tangents, &mesh->counts);
 		if (!status && job->triangulates && mesh->counts.folded_quads && options->repair == NMTAN_REPAIR_ON)
 			status = nt_cut_folded_quads(mesh, stored.v_offset, options->threads);

@@ -45,14 +45,15 @@ static void check_copies(nt_check *check)
 		nt_tally_vertex(check, &growth, (uint32_t)v, NAN);
 	facts->added_normals = growth.count;
 	const float *tangents = mesh->split.vertex_tangents;
-	for (size_t i = 0; i < mesh->split.source_count; i++) {
+	const size_t copies = nt_is_written(check) ? mesh->split.source_count : 0;
+	for (size_t i = 0; i < copies; i++) {
 		const size_t source = mesh->split.sources[i];
 		const bool mirror = tangents &&
 			tangents[4 * source + 3] != tangents[4 * (mesh->vertex_count + i) + 3];
 		*(mirror ? &facts->added_mirror : &facts->added_direction) += 1;
 		nt_tally_vertex(check, &growth, (uint32_t)source, NAN);
 	}
-	facts->vertices_after = mesh->vertex_count + mesh->split.source_count;
+	facts->vertices_after = mesh->vertex_count + copies;
 	if (!nt_is_written(check))
 		return;
 	nt_tally_number(&growth, "mirrored", (double)facts->added_mirror);

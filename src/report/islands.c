@@ -49,8 +49,11 @@ static void measure_islands(nt_check *check)
 			float uv[2];
 			nt_side_source_texcoord(check, side, uv);
 			for (int i = 0; i < 2; i++) {
-				island->minimum[i] = fminf(island->minimum[i], uv[i]);
-				island->maximum[i] = fmaxf(island->maximum[i], uv[i]);
+				/* NaN is passed over */
+				if (uv[i] < island->minimum[i])
+					island->minimum[i] = uv[i];
+				if (uv[i] > island->maximum[i])
+					island->maximum[i] = uv[i];
 			}
 			nt_box_add(&island->box, nt_side_position(s, side));
 		}
@@ -177,12 +180,14 @@ static void search_cell(grid *g, size_t cell, const uv_triangle *t)
 
 static double least(const double x[3])
 {
-	return fmin(x[0], fmin(x[1], x[2]));
+	const double first = x[0] < x[1] ? x[0] : x[1];
+	return first < x[2] ? first : x[2];
 }
 
 static double greatest(const double x[3])
 {
-	return fmax(x[0], fmax(x[1], x[2]));
+	const double first = x[0] > x[1] ? x[0] : x[1];
+	return first > x[2] ? first : x[2];
 }
 
 static void search_cells(grid *g, const uv_triangle *t)

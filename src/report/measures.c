@@ -120,6 +120,7 @@ static void measure_split(nt_check *check)
 	if (!bytes)
 		bytes = 12 + (mesh->normals ? 12 : 0) + (mesh->texcoords ? 8 : 0) + (mesh->colors ? 16 : 0) + 16;
 	facts->vertex_bytes = bytes;
+	facts->split_vertices = mesh->split.source_count;
 }
 
 nt_status nt_check_measures(nt_check *check)

@@ -177,6 +177,7 @@ typedef struct nt_report_mesh {
 	size_t triangles[3];      /* mirrored, degenerate, normal: [orientation + 1] */
 	double areas[3];          /* the same, area in space */
 	size_t vertices_before, added_normals, added_mirror, added_direction, vertices_after;
+	size_t split_vertices;    /* copies that different tangents take, or would take */
 	size_t vertex_bytes;      /* of one copy of a vertex; 0: not measured */
 	uint32_t texture_size[2]; /* of the normal map, pixels; 0: not known, or not measured */
 	size_t island_kinds[4];   /* by nt_island_kind */

@@ -88,7 +88,13 @@ static const float *corner_tangent(const nt_check *check, uint32_t side)
 	const uint32_t corner = nt_side_corner(&check->surface, side);
 	if (check->stored != NT_STORED_NONE)
 		return nt_stored_tangent(check, corner);
-	return check->mesh->corner_tangents ? check->mesh->corner_tangents + 4 * (size_t)corner : NULL;
+	const nt_mesh *mesh = check->mesh;
+	if (mesh->corner_tangents)
+		return mesh->corner_tangents + 4 * (size_t)corner;
+	if (!mesh->split.vertex_tangents)
+		return NULL;
+	return mesh->split.vertex_tangents +
+		4 * (size_t)(mesh->split.indices ? mesh->split.indices[corner] : check->surface.vertices[side]);
 }
 
 /* Adds an edge to frame_angle, same_texel_count and unhidden_count. */
@@ -121,7 +127,7 @@ static void compare_frames(const nt_check *check, const nt_mirror_edge *edge, ui
 static uint32_t output_vertex(const nt_check *check, uint32_t side)
 {
 	const nt_mesh *mesh = check->mesh;
-	return mesh->split.indices ? mesh->split.indices[nt_side_corner(&check->surface, side)]
+	return nt_is_written(check) && mesh->split.indices ? mesh->split.indices[nt_side_corner(&check->surface, side)]
 				   : check->surface.vertices[side];
 }
 

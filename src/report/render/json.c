@@ -298,7 +298,7 @@ static void put_histogram(nt_buffer *out, const nt_report_mesh *mesh)
 /* What splitting costs, and the texture that density is measured by. */
 static void put_costs(nt_buffer *out, const nt_report_mesh *mesh)
 {
-	const size_t added = mesh->added_mirror + mesh->added_direction;
+	const size_t added = mesh->split_vertices;
 	key(out, SAME_LINE, "split_cost");
 	if (mesh->vertex_bytes)
 		nt_buffer_format(out, "{\"vertices\":%zu,\"bytes_each\":%zu,\"bytes\":%zu}", added, mesh->vertex_bytes,
