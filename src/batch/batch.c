@@ -64,6 +64,8 @@ static void tell(progress *p, nt_job *ended)
 	pthread_mutex_lock(&p->lock);
 	ended->ended = true;
 	p->stop |= ended->status && p->options->fail_fast;
+	if (p->options->ended)
+		p->options->ended(p->options->user, ended);
 	for (; p->told < p->batch->count && p->batch->jobs[p->told].ended; p->told++) {
 		nt_job *job = &p->batch->jobs[p->told];
 		p->options->done(p->options->user, job);

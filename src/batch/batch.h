@@ -78,6 +78,8 @@ typedef struct nt_batch_options {
 	/* Called once per job, in the order of the inputs, by one thread at a time, as soon as the job and all before it
 	 * have ended. It may take the summary's report, leaving NULL. */
 	void (*done)(void *user, nt_job *job);
+	/* Called before that as soon as a job has ended, by one thread at a time; NULL: nobody wants to know. */
+	void (*ended)(void *user, const nt_job *job);
 	void *user;
 } nt_batch_options;
 

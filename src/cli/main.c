@@ -12,9 +12,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "batch/depfile.h"
 #include "batch/inputs.h"
 #include "cli/exit_code.h"
 #include "cli/failures.h"
+#include "cli/manifest.h"
 #include "cli/messages.h"
 #include "cli/options.h"
 #include "cli/progress.h"
@@ -33,6 +35,9 @@ typedef struct session {
 	nt_buffer text;   /* what is being said */
 	nt_buffer shaping; /* the options on which outputs depend */
 	nt_update *update; /* NULL: no records */
+	nt_depfile depfile;
+	bool no_depfile; /* a rule is missing in it */
+	nt_manifest manifest;
 	nt_summary total; /* of the times and sizes alone */
 	nt_failures failures;
 	size_t count, current, untried; /* jobs: all, up to date, not tried */
@@ -143,6 +148,33 @@ static void tell_current(session *s, const nt_job *job)
 		nt_message_current(&s->text, job);
 }
 
+/* How a job that has ended, and still has its report, counts. */
+static int exit_code_of(const session *s, const nt_job *job)
+{
+	if (job->status || !job->outcome || !findings_fail(&job->outcome->summary, s->plan->target.style.least_failure))
+		return nt_exit_code(job->status);
+	return NT_EXIT_FINDINGS;
+}
+
+/* Called once per job, as soon as it ends. */
+static void note_end(void *user, const nt_job *job)
+{
+	session *s = user;
+	nt_manifest_add(&s->manifest, job, exit_code_of(s, job));
+}
+
+/* The rule of an output that is there. */
+static void add_rule(session *s, const nt_job *job, int *code)
+{
+	nt_error error;
+	if (!s->command->depfile || job->status || job->end == NT_JOB_UNTRIED || !job->outcome ||
+		!nt_depfile_add(&s->depfile, job->output, &job->outcome->summary.trace, &error))
+		return;
+	nt_message_error(&s->text, &error, s->style);
+	s->no_depfile = true;
+	*code = nt_exit_worse(*code, nt_exit_code(error.status));
+}
+
 /* What there is no memory for in a message is said all the same. */
 static void tell_failure(session *s, const nt_job *job)
 {
@@ -162,6 +194,7 @@ static void tell_job(void *user, nt_job *job)
 		tell_current(s, job);
 	else if (job->outcome)
 		code = tell_run(s, job);
+	add_rule(s, job, &code);
 	if (job->status)
 		nt_failures_add(&s->failures, job);
 	nt_progress_file(s->progress);
@@ -225,6 +258,18 @@ static void tell_report(session *s)
 		tell_report_error(s, &error, images);
 }
 
+/* The files that are complete only now. A depfile without rules would be one of no outputs. */
+static void tell_files(session *s)
+{
+	const nt_command *c = s->command;
+	nt_error error;
+	if (c->manifest && nt_manifest_close(&s->manifest, &error))
+		tell_report_error(s, &error, c->manifest);
+	if (c->depfile && s->depfile.text.size && !s->no_depfile &&
+		nt_depfile_write(&s->depfile, c->depfile, c->operands, nt_command_is_many(c) ? c->operand_count : 1, &error))
+		tell_report_error(s, &error, c->depfile);
+}
+
 /* After the last of many: how many failed, and why; and the times. */
 static void tell_end(session *s)
 {
@@ -238,7 +283,7 @@ static void tell_end(session *s)
 		if (s->untried)
 			nt_buffer_format(&s->text, ", %zu not tried", s->untried);
 		nt_buffer_text(&s->text, failed ? ":\n" : "\n");
-		nt_failures_append(&s->text, &s->failures, NULL);
+		nt_failures_append(&s->text, &s->failures, s->command->manifest);
 	}
 	if (s->command->timing)
 		nt_message_timing(&s->text, &s->total);
@@ -271,28 +316,31 @@ static nt_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
 	return nt_batch_pair(batch, input, output, error);
 }
 
-/* The records, if any. The words of the options belong to the session. */
+/* The records, if any. */
 static nt_status begin_update(session *s, nt_error *error)
 {
 	const nt_command *c = s->command;
 	if (!c->update && !c->record)
 		return NT_OK;
-	nt_options_shaping(c, &s->shaping);
-	if (s->shaping.failed)
-		return nt_fail_memory(error);
 	const nt_update_options options = {.look = c->update, .by = (nt_update_by)c->update_by, .record = c->record,
 		.folder = c->directory, .options = s->shaping.data ? s->shaping.data : ""};
 	return nt_update_begin(&s->update, &options, error);
 }
 
 /* Memory for what is said and for the reports, and what else may be refused. */
-static nt_status begin_session(session *s, nt_error *error)
+static nt_status begin_session(session *s, const nt_batch *batch, nt_error *error)
 {
 	const bool kept = s->plan->target.path || s->command->uv_image || s->command->diff;
 	if (kept)
 		s->reports = nt_calloc(s->count, sizeof *s->reports);
 	if ((!s->reports && kept) || !nt_buffer_reserve(&s->text, MESSAGE_BYTES))
 		return nt_fail_memory(error);
+	nt_options_shaping(s->command, &s->shaping);
+	if (s->shaping.failed)
+		return nt_fail_memory(error);
+	const char *options = s->shaping.data ? s->shaping.data : "";
+	if (s->command->manifest && nt_manifest_open(&s->manifest, s->command->manifest, options, batch, error))
+		return error->status;
 	return begin_update(s, error);
 }
 
@@ -302,6 +350,7 @@ static void end_session(session *s)
 		nt_report_free(s->reports[i]);
 	free(s->reports);
 	nt_update_end(s->update);
+	nt_depfile_free(&s->depfile);
 	nt_buffer_free(&s->shaping);
 	nt_buffer_free(&s->text);
 	nt_failures_free(&s->failures);
@@ -312,7 +361,7 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 {
 	session s = {.command = command, .plan = plan, .style = style, .count = batch->count};
 	nt_error error;
-	if (begin_session(&s, &error)) {
+	if (begin_session(&s, batch, &error)) {
 		end_session(&s);
 		nt_say_error(&error, style);
 		return nt_exit_code(error.status);
@@ -327,10 +376,12 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 		settings.on_stage_user = s.progress;
 	}
 	const nt_batch_options options = {.run = nt_run, .jobs = (unsigned)command->jobs, .update = s.update,
-		.fail_fast = command->fail_fast, .done = tell_job, .user = &s};
+		.fail_fast = command->fail_fast, .done = tell_job,
+		.ended = command->manifest ? note_end : NULL, .user = &s};
 	nt_batch_run(batch, &settings, &options);
 	nt_progress_stop(s.progress);
 	tell_report(&s);
+	tell_files(&s);
 	tell_end(&s);
 	end_session(&s);
 	return s.exit_code;

@@ -82,6 +82,8 @@ const nt_option_row nt_option_rows[] = {
 		FIELD(record), true},
 	{"write-if-changed", 0, NT_OPTION_SET, NULL, NT_EQUAL_KEEP, 0, NULL,
 		"an output that has its bytes already keeps its time of change", SETTING(equal), true},
+	{"depfile", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
+		"write to FILE, as a rule of make, which files an output was made of", FIELD(depfile), true},
 
 	{.kind = NT_OPTION_HEADING, .name = "Output", .first = NT_SHAPES_OUTPUT},
 	{"output", 'o', NT_OPTION_TEXT, "FILE", 0, 0, NULL, "the output, in place of a second name", FIELD(output),
@@ -175,6 +177,8 @@ const nt_option_row nt_option_rows[] = {
 		"show every finding, and what became of each mesh", FIELD(verbosity), false},
 	{"progress", 0, NT_OPTION_CHOICE, "auto|on|off", NT_PROGRESS_AUTO, 0, "auto",
 		"show what is being done; auto: on a terminal, after one second", FIELD(progress), false},
+	{"manifest", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
+		"write a JSON line to FILE for each input when it ends; - is standard output", FIELD(manifest), false},
 	{"timing", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "say how long each stage took", FIELD(timing),
 		false},
 	{"version", 0, NT_OPTION_SET, NULL, NT_ACTION_VERSION, 0, NULL, "print the version and end",
@@ -578,6 +582,8 @@ static nt_status check_dashes(const parser *p)
 	if (c->settings.output_format == NT_FORMAT_GLTF && !c->settings.embed)
 		return nt_fail(p->error, NT_ERROR_USAGE,
 			"'-' has no place for the .bin of --output-format=gltf: add --embed");
+	if (c->depfile)
+		return nt_fail(p->error, NT_ERROR_USAGE, "--depfile is about files; '-' is none");
 	if (c->settings.verify)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--verify reads the output back, which '-' does not allow");
 	return NT_OK;

@@ -61,6 +61,8 @@ typedef struct nt_command {
 	bool update;           /* leave alone what is up to date */
 	int update_by;         /* nt_update_by */
 	const char *record;    /* file; NULL: by default */
+	const char *depfile;   /* file; NULL: none */
+	const char *manifest;  /* file, "-"; NULL: none */
 	int fail_fast;         /* stop after a failure: 0, 1 */
 	bool diff;             /* of two inputs */
 	const char *output;    /* -o, also the last operand; NULL: none */

@@ -237,10 +237,10 @@ static const char *last_words(bytes said)
 	return words;
 }
 
-/* A record has the times of its run, and says nothing of a file that cannot be looked at again. */
-static bool is_record(const char *path)
+/* Records and manifests have the times of their run; a record says nothing of a file that cannot be looked at again. */
+static bool has_times(const char *path)
 {
-	return strstr(path, "/.nmtan-record") != NULL;
+	return strstr(path, "/.nmtan-record") || strstr(path, ".jsonl");
 }
 
 /* What is wrong with the files; NULL: nothing. `whole`: all must be what they should be. */
@@ -249,7 +249,7 @@ static const char *judge_files(const expectations *rules, const folder *before, 
 {
 	for (size_t i = 0; i < now->count; i++) {
 		const entry *is = &now->entries[i], *should = find(clean, is->path), *was = find(before, is->path);
-		if (is->is_folder || is_record(is->path) || (rules->shortened && strcmp(is->path + 2, rules->shortened) == 0))
+		if (is->is_folder || has_times(is->path) || (rules->shortened && strcmp(is->path + 2, rules->shortened) == 0))
 			continue;
 		const bool right = should && same(is->content, should->content);
 		if (!right && !whole && rules->report && strstr(is->path, rules->report) &&
@@ -264,7 +264,7 @@ static const char *judge_files(const expectations *rules, const folder *before, 
 		if (!find(now, before->entries[i].path))
 			return "a file is gone";
 	for (size_t i = 0; whole && i < clean->count; i++)
-		if (!is_record(clean->entries[i].path) && !find(now, clean->entries[i].path))
+		if (!has_times(clean->entries[i].path) && !find(now, clean->entries[i].path))
 			return "a file is missing";
 	return NULL;
 }

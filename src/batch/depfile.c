@@ -1,0 +1,119 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Depfiles: see depfile.h. Names are spelled as GNU make's manual ("Rule Syntax", "Using Wildcard Characters") and
+ * Ninja's depfile lexer both read them: a backslash before a blank, "#" and ":", each backslash before those doubled,
+ * and "$$". What only one of them knows (%, * in make) is left as it is. Of "\#" in a name Ninja reads one backslash too
+ * many, and makes the output again each time; make would lose the rest of the line the other way.
+ */
+#include "batch/depfile.h"
+
+#include <string.h>
+#include "file/output.h"
+#include "file/relative_path.h"
+
+/* `path` as a build that runs here names it. */
+static nt_status append_shown(nt_depfile *depfile, const char *path, bool relative, nt_buffer *shown, nt_error *error)
+{
+	shown->size = 0;
+	if (!depfile->current.size) {
+		const nt_status status = nt_path_absolute(&depfile->current, ".", error);
+		if (status)
+			return status;
+	}
+	nt_buffer absolute = {0};
+	nt_path_join(&absolute, depfile->current.data, path);
+	const bool below = !absolute.failed && relative && path[0] == '/' &&
+		nt_link_is_inside(absolute.data, depfile->current.data);
+	nt_buffer_text(shown, below ? absolute.data + depfile->current.size + 1 : path);
+	nt_buffer_free_into(&absolute, shown);
+	return shown->failed ? nt_fail_memory(error) : NT_OK;
+}
+
+static void append_escaped(nt_buffer *text, const char *name)
+{
+	size_t backslashes = 0;
+	for (const char *c = name; *c; c++) {
+		if (strchr(" \t#:", *c)) {
+			/* those before it would be taken for escapes */
+			for (size_t i = 0; i < backslashes; i++)
+				nt_buffer_text(text, "\\");
+			nt_buffer_text(text, "\\");
+		} else if (*c == '$') {
+			nt_buffer_text(text, "$");
+		}
+		backslashes = *c == '\\' ? backslashes + 1 : 0;
+		nt_buffer_append(text, c, 1);
+	}
+}
+
+static nt_status append_name(nt_depfile *depfile, const char *path, bool relative, nt_error *error)
+{
+	nt_buffer shown = {0};
+	nt_status status = append_shown(depfile, path, relative, &shown, error);
+	if (!status && strpbrk(shown.data, "\n\r")) {
+		nt_fail(error, NT_ERROR_UNSUPPORTED, "a name with a line feed cannot be in a depfile");
+		status = nt_error_in_file(error, path);
+	}
+	if (!status)
+		append_escaped(&depfile->text, shown.data);
+	nt_buffer_free(&shown);
+	return status;
+}
+
+/* The files that were read, each with `before` and `after` around it; without the first, which is the input. */
+static nt_status append_read(nt_depfile *depfile, const nt_trace *trace, bool relative, bool with_input, const char *before,
+	const char *after, nt_error *error)
+{
+	nt_status status = NT_OK;
+	bool first = true;
+	for (size_t i = 0; i < trace->count && !status; i++) {
+		if (trace->files[i].kind != NT_TRACE_READ)
+			continue;
+		if (!first || with_input) {
+			nt_buffer_text(&depfile->text, before);
+			status = append_name(depfile, trace->files[i].path, relative, error);
+			nt_buffer_text(&depfile->text, after);
+		}
+		first = false;
+	}
+	return status;
+}
+
+nt_status nt_depfile_add(nt_depfile *depfile, const char *output, const nt_trace *trace, nt_error *error)
+{
+	const bool relative = output[0] != '/';
+	nt_status status = append_name(depfile, output, relative, error);
+	nt_buffer_text(&depfile->text, ":");
+	if (!status)
+		status = append_read(depfile, trace, relative, true, " \\\n ", "", error);
+	nt_buffer_text(&depfile->text, "\n");
+	if (!status)
+		status = append_read(depfile, trace, relative, false, "", ":\n", error);
+	return status || !depfile->text.failed ? status : nt_fail_memory(error);
+}
+
+nt_status nt_depfile_write(const nt_depfile *depfile, const char *path, const char *const *inputs, size_t input_count,
+	nt_error *error)
+{
+	nt_output *output;
+	nt_sink *sink;
+	nt_status status = nt_output_create(&output, NULL, error);
+	if (status)
+		return status;
+	for (size_t i = 0; i < input_count && !status; i++)
+		status = nt_output_protect(output, inputs[i], NULL, error);
+	if (!status)
+		status = nt_output_add(output, path, NT_ROLE_MAIN, &sink, error);
+	if (!status && depfile->text.size)
+		status = nt_sink_write(sink, depfile->text.data, depfile->text.size, error);
+	if (!status)
+		return nt_output_commit(output, error);
+	nt_output_abort(output);
+	return status;
+}
+
+void nt_depfile_free(nt_depfile *depfile)
+{
+	nt_buffer_free(&depfile->text);
+	nt_buffer_free(&depfile->current);
+}

@@ -1,0 +1,33 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Depfiles: rules that tell make and Ninja which files an output was made of.
+ */
+#ifndef NT_BATCH_DEPFILE_H
+#define NT_BATCH_DEPFILE_H
+
+#include "base/buffer.h"
+#include "file/trace.h"
+
+/* The text of a depfile; zeroed: no rules yet. */
+typedef struct nt_depfile {
+	nt_buffer text;
+	nt_buffer current; /* the current folder */
+} nt_depfile;
+
+/*
+ * Appends a rule: the output depends on everything in the trace that was read. Files below the current folder are named
+ * from there on if the output is. What was read besides the input gets a rule without files, so that make goes on when
+ * it is gone.
+ *
+ * Returns NT_OK; NT_ERROR_UNSUPPORTED where a name has a line feed, for which neither has a spelling; NT_ERROR_IO or
+ * NT_ERROR_MEMORY.
+ */
+nt_status nt_depfile_add(nt_depfile *depfile, const char *output, const nt_trace *trace, nt_error *error);
+
+/* Writes the file whole or not at all, and not over one of the inputs. */
+nt_status nt_depfile_write(const nt_depfile *depfile, const char *path, const char *const *inputs, size_t input_count,
+	nt_error *error);
+
+void nt_depfile_free(nt_depfile *depfile);
+
+#endif

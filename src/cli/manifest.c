@@ -1,0 +1,220 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The manifest: see manifest.h.
+ */
+#include "cli/manifest.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/counts.h"
+#include "cli/messages.h"
+#include "report/codes.h"
+#include "report/render/words.h"
+
+/* A job that failed for want of memory has a line all the same. */
+enum { LINE_BYTES = 16 * 1024 };
+
+/* ---- a line ---- */
+
+static void append_text(nt_buffer *out, const char *key, const char *text)
+{
+	nt_buffer_format(out, "\"%s\":", key);
+	nt_json_string(text, out);
+}
+
+static void append_number(nt_buffer *out, const char *key, uint64_t number)
+{
+	nt_buffer_format(out, ",\"%s\":%" PRIu64, key, number);
+}
+
+static const char *status_of(const nt_job *job)
+{
+	if (job->end == NT_JOB_UNTRIED)
+		return "untried";
+	if (job->end == NT_JOB_CURRENT)
+		return "up-to-date";
+	return job->status ? "failed" : job->outcome->summary.left ? "left" : "done";
+}
+
+/* Files of one kind; those that were written with their sizes. */
+static void append_files(nt_buffer *out, const char *key, const nt_trace *trace, nt_trace_kind kind)
+{
+	const char *comma = "";
+	nt_buffer_format(out, ",\"%s\":[", key);
+	for (size_t i = 0; i < trace->count; i++) {
+		const nt_trace_file *file = &trace->files[i];
+		if (file->kind != kind)
+			continue;
+		nt_buffer_text(out, comma);
+		comma = ",";
+		if (kind == NT_TRACE_MISSING) {
+			nt_json_string(file->path, out);
+			continue;
+		}
+		nt_buffer_text(out, "{");
+		append_text(out, "path", file->path);
+		append_number(out, "bytes", file->size);
+		nt_buffer_text(out, "}");
+	}
+	nt_buffer_text(out, "]");
+}
+
+static void append_error(nt_buffer *out, const nt_error *error)
+{
+	const nt_place *place = &error->place;
+	nt_buffer_text(out, ",\"error\":{");
+	append_text(out, "message", error->message[0] ? error->message : nt_status_text(error->status));
+	if (place->file[0]) {
+		nt_buffer_text(out, ",");
+		append_text(out, "file", place->file);
+	}
+	if (place->line)
+		append_number(out, "line", place->line);
+	if (place->offset != NT_NO_OFFSET)
+		append_number(out, "offset", place->offset);
+	if (place->pointer[0]) {
+		nt_buffer_text(out, ",");
+		append_text(out, "pointer", place->pointer);
+	}
+	if (place->object[0]) {
+		nt_buffer_text(out, ",");
+		append_text(out, "object", place->object);
+	}
+	nt_buffer_text(out, "}");
+}
+
+/* How often each code was found. */
+static void append_findings(nt_buffer *out, const nt_finding_list *findings)
+{
+	size_t counts[NT_CODE_COUNT] = {0};
+	const char *comma = "";
+	for (size_t i = 0; i < findings->count; i++)
+		counts[findings->items[i].code] += findings->items[i].count;
+	nt_buffer_text(out, ",\"findings\":{");
+	for (int code = 0; code < NT_CODE_COUNT; code++)
+		if (counts[code]) {
+			nt_buffer_format(out, "%s\"%s\":%zu", comma, nt_code_info((nt_code)code)->name, counts[code]);
+			comma = ",";
+		}
+	nt_buffer_text(out, "}");
+}
+
+static void append_seconds(nt_buffer *out, const nt_summary *s)
+{
+	nt_buffer_text(out, ",\"seconds\":{");
+	for (int stage = 0; stage < NT_STAGE_COUNT; stage++)
+		nt_buffer_format(out, "\"%s\":%.6f,", nt_stage_name((nt_stage)stage), s->seconds[stage]);
+	nt_buffer_format(out, "\"total\":%.6f}", s->total_seconds);
+}
+
+/* What a run found and did. */
+static void append_run(nt_buffer *out, const nt_summary *s)
+{
+	append_findings(out, &s->findings);
+	append_number(out, "triangles", s->triangle_count);
+	append_number(out, "vertices_before", s->vertex_count);
+	append_number(out, "vertices_after", s->vertex_count + s->appended_normals + s->appended_tangents);
+	append_number(out, "split", s->appended_tangents);
+	append_number(out, "repaired", nt_counts_repaired(&s->counts));
+	append_number(out, "bytes_read", s->bytes_read);
+	append_number(out, "bytes_written", s->bytes_written);
+	append_seconds(out, s);
+}
+
+static void append_job(nt_buffer *out, const nt_job *job, const char *options, int exit_code)
+{
+	static const nt_trace nothing;
+	const nt_trace *trace = job->outcome ? &job->outcome->summary.trace : &nothing;
+	nt_buffer_text(out, "{");
+	append_text(out, "input", job->input);
+	nt_buffer_format(out, ",\"status\":\"%s\"", status_of(job));
+	nt_buffer_format(out, ",\"exit_code\":%d,", exit_code);
+	append_text(out, "nmtan", nmtan_version());
+	nt_buffer_text(out, ",");
+	append_text(out, "options", options);
+	append_files(out, "outputs", trace, NT_TRACE_WRITTEN);
+	append_files(out, "dependencies", trace, NT_TRACE_READ);
+	append_files(out, "missing", trace, NT_TRACE_MISSING);
+	if (job->status && job->outcome)
+		append_error(out, &job->outcome->error);
+	if (job->outcome && job->end == NT_JOB_RAN)
+		append_run(out, &job->outcome->summary);
+	nt_buffer_text(out, "}\n");
+}
+
+/* ---- the file ---- */
+
+static nt_status fail(const nt_manifest *manifest, int number, nt_error *error)
+{
+	nt_fail(error, NT_ERROR_IO, "cannot write the manifest: %s", strerror(number));
+	return nt_error_in_output(error, manifest->path);
+}
+
+static nt_status refuse_input(const nt_manifest *manifest, const nt_batch *batch, nt_error *error)
+{
+	struct stat info, input;
+	if (stat(manifest->path, &info) != 0)
+		return NT_OK;
+	for (size_t i = 0; i < batch->count; i++)
+		if (stat(batch->jobs[i].input, &input) == 0 && nt_same_file(&input, &info)) {
+			nt_fail(error, NT_ERROR_IO, "refusing to write: it is the same file as the input %s",
+				batch->jobs[i].input);
+			return nt_error_in_file(error, manifest->path);
+		}
+	return NT_OK;
+}
+
+nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *options, const nt_batch *batch,
+	nt_error *error)
+{
+	*manifest = (nt_manifest){.path = path, .options = options, .fd = -1};
+	if (!nt_buffer_reserve(&manifest->line, LINE_BYTES))
+		return nt_fail_memory(error);
+	const bool standard = strcmp(path, "-") == 0;
+	if (!standard && refuse_input(manifest, batch, error))
+		return error->status;
+	manifest->fd = standard ? dup(STDOUT_FILENO)
+				: open(path, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+	return manifest->fd < 0 ? fail(manifest, errno, error) : NT_OK;
+}
+
+static bool write_whole(int fd, const char *bytes, size_t size)
+{
+	while (size > 0) {
+		const ssize_t count = write(fd, bytes, size);
+		if (count < 0 && errno != EINTR)
+			return false;
+		bytes += count < 0 ? 0 : count;
+		size -= count < 0 ? 0 : (size_t)count;
+	}
+	return true;
+}
+
+void nt_manifest_add(nt_manifest *manifest, const nt_job *job, int exit_code)
+{
+	nt_buffer *line = &manifest->line;
+	if (manifest->error.status)
+		return;
+	line->size = 0;
+	append_job(line, job, manifest->options, exit_code);
+	if (line->failed)
+		nt_fail_memory(&manifest->error);
+	else if (!write_whole(manifest->fd, line->data, line->size))
+		fail(manifest, errno, &manifest->error);
+}
+
+nt_status nt_manifest_close(nt_manifest *manifest, nt_error *error)
+{
+	if (manifest->fd >= 0 && close(manifest->fd) != 0 && !manifest->error.status)
+		fail(manifest, errno, &manifest->error);
+	manifest->fd = -1;
+	nt_buffer_free(&manifest->line);
+	if (manifest->error.status)
+		*error = manifest->error;
+	return manifest->error.status;
+}

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: MIT
+# The manifest: one line for each input, valid, and true.
+. "$ROOT/tests/support/cli.sh"
+
+# Each line of a file is valid against the schema.
+validates() {
+	mkdir lines
+	split -l 1 "$1" lines/
+	python3 "$ROOT/tests/report/schema.py" "$data/nmtan-manifest.schema.json" lines/* >faults.txt ||
+		wrong "$(head -3 faults.txt)"
+	rm -rf lines faults.txt
+}
+
+# The value of a Python expression over m: the lines by input.
+value() {
+	python3 -c 'import json, sys; m = {l["input"]: l for l in map(json.loads, open(sys.argv[1]))}; print(eval(sys.argv[2]))' \
+		"$@"
+}
+
+scene "each input has a line that says what became of it"
+cp "$data"/mirrored_cube.obj "$data/bumps.png" "$data"/plates.* .
+printf 'v 0 0 0\nv 1 0 0\nf 1 2 3\n' >bad.obj
+run --method=area --manifest=m -d out mirrored_cube.obj plates.gltf bad.obj missing.obj
+exits 2
+validates m
+is "$(value m 'sorted((k, v["status"], v["exit_code"]) for k, v in m.items())')" \
+	"[('bad.obj', 'failed', 3), ('mirrored_cube.obj', 'done', 0), ('missing.obj', 'failed', 2), ('plates.gltf', 'done', 0)]"
+is "$(value m 'm["bad.obj"]["error"]')" \
+	"{'message': 'face refers to \"v\" number 3, but the file has 2', 'file': 'bad.obj', 'line': 3}"
+is "$(value m '[d["path"] for d in m["plates.gltf"]["dependencies"]], [d["path"] for d in m["plates.gltf"]["outputs"]]')" \
+	"(['plates.gltf', 'plates.bin'], ['out/plates.gltf', 'out/plates.bin'])"
+is "$(value m 'sum(d["bytes"] for d in m["plates.gltf"]["outputs"]), m["plates.gltf"]["bytes_written"]')" \
+	"($(cat out/plates.* | wc -c), $(cat out/plates.* | wc -c))"
+is "$(value m 'm["mirrored_cube.obj"]["missing"], m["mirrored_cube.obj"]["findings"]["MTL_MISSING"]')" \
+	"(['mirrored_cube.mtl'], 1)"
+is "$(value m '[m["plates.gltf"][k] for k in ("triangles", "vertices_before", "vertices_after", "split", "options")]')" \
+	"[8, 12, 14, 2, '--method=area']"
+is "$(value m 'abs(sum(v for k, v in m["plates.gltf"]["seconds"].items() if k != "total") - m["plates.gltf"]["seconds"]["total"]) < 0.01')" True
+
+scene "what was left, up to date or not tried has a line, too"
+cp "$data/quad.obj" a.obj
+cp "$data/quad.obj" c.obj
+run -d out a.obj
+run --write-if-changed --manifest=m -d out a.obj
+is "$(value m '[l["status"] for l in m.values()]')" "['left']"
+sleep 0.03
+run --update --manifest=m -d out a.obj
+run --update --manifest=m --fail-fast -j1 -d out a.obj b.obj c.obj
+exits 2
+validates m
+is "$(value m '[l["status"] for l in m.values()]')" "['up-to-date', 'failed', 'untried']"
+is "$(value m '[d["path"] for d in m["a.obj"]["dependencies"]]')" "['a.obj']"
+
+scene "findings that fail are in the exit code, and --check has a manifest"
+cp "$data/mirrored_cube.obj" a.obj
+run --check -q --fail-on=warning --manifest=m a.obj
+exits 6
+validates m
+is "$(value m 'm["a.obj"]["exit_code"], m["a.obj"]["outputs"]')" "(6, [])"
+
+scene "a manifest is no input, and its failure is told"
+cp "$data/quad.obj" a.obj
+run --manifest=a.obj -d out a.obj
+exits 2
+says "a.obj: refusing to write: it is the same file as the input a.obj"
+same a.obj "$data/quad.obj"
+run --manifest=/dev/full -d out a.obj
+exits 2
+says "/dev/full: cannot write the manifest: No space left on device"
+run --manifest=no/m -d out a.obj
+exits 2
+says "no/m: cannot write the manifest"
+
+scene "standard output can have it, and many failures are found there"
+for i in $(seq 12); do
+	yes 'v 0 0 0' | head -$i >bad$i.obj
+	echo "f 1 2 99" >>bad$i.obj
+done
+run -q --manifest=- -d out bad*.obj
+exits 3
+is "$(wc -l <"$WORK/out.txt")" 12
+run --manifest=m -d out bad*.obj
+says "2 for other reasons; all of them are in m"
+
+done_testing
