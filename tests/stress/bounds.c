@@ -211,7 +211,7 @@ static bool has_opposites(const work *w, size_t root, size_t members)
 	return false;
 }
 
-/* The bound of a corner in group g; `alone`: it can have no other. A triangle alone whose sign is lost has a wrong w,
+/* The bound of a corner in group g. A triangle alone whose sign is lost has a wrong w,
  * or is unassigned, and then repair sees it. */
 static bound bound_of(const group *g, const oracle_triangle *t, size_t k, bool opposites)
 {

@@ -8,7 +8,8 @@
  *   a direction is off by at most MOST_UNITS e times its condition: the two products of UV and position differences over
  *     what is left of their difference, over what the normal leaves of that (numbers of oracle128.c);
  *   a weight is an angle, never negative;
- *   the sign of a UV determinant is certain while the sum of its products is below 2^21 times their difference.
+ *   the sign of a UV determinant is what one line of float arithmetic says: the exact one; none, and the triangle gives
+ *     nothing but connects others; or the wrong one.
  *
  * So there are three kinds of bounds, of which the smallest counts:
  *
@@ -18,8 +19,9 @@
  *         the exact average that has all of them, as long as this is less than a hemisphere. For a triangle alone the cap is
  *         a point. The same where a part of the group may be missing, and where a corner of a triangle without size takes
  *         the answer of another at its vertex
- *   NONE  the sign of some triangle of the group is not certain, so that its direction may count backwards; or a bound
- *         above is a quarter turn or more
+ *   NONE  the sign of some triangle of the group is the wrong one, so that its direction counts backwards; or two of its
+ *         directions may be opposite, which MikkTSpace keeps apart, and together they cancel; or a bound above is a
+ *         quarter turn or more
  *
  * Corners with NONE are those on which MikkTSpace itself is undetermined in float: its bytes are kept, because they are
  * its bytes, and nothing but unit length, perpendicularity and w can be said of them. They are counted, and how many there

@@ -391,7 +391,8 @@ static const double sizes[] = {1e3, 1e4, 1e5, 1e6};
 #define MIXED 5, 1
 
 /* Six members around a vertex whose directions, once the normal has taken all but `level` of them, are spread over the
- * circle: two of them may be opposite for rounding, which MikkTSpace then keeps apart. */
+ * circle. Some are opposite, as on the two sides of an edge that runs along u. MikkTSpace keeps opposite ones apart, and
+ * whether they are is a matter of the last bit; taken together they cancel, and what is left is rounding. */
 #define NEAR_NORMAL 1, 25
 
 /* Files that are meant to be nasty: several surfaces in one edge, opposite directions across it, texture coordinates
