@@ -20,8 +20,9 @@
 
 enum { SAMPLE_COUNT = 16384, GRID_SIZE = 128 };
 
-/* Cells that the streaming triangles may visit: some 0.3 s. Beyond, points count as not found. */
-static const size_t VISIT_LIMIT = 100000000;
+/* Cells that the streaming triangles may visit: some 10 ms for a mesh and 3 us for each of its triangles, at most 0.3 s.
+ * Beyond, points count as not found. */
+static const size_t MESH_VISITS = 1 << 22, TRIANGLE_VISITS = 1 << 10, MOST_VISITS = 100000000;
 
 /* Shares from which on an island counts as lying on another, and as lying on its twin exactly. */
 static const double COVERED_SHARE = 0.5, TWIN_SHARE = 0.95;
@@ -84,7 +85,7 @@ typedef struct grid {
 	uint32_t cells[GRID_SIZE * GRID_SIZE]; /* first sample */
 	sample *samples;
 	size_t sample_count, left; /* not found yet */
-	size_t visits;
+	size_t visits, most_visits;
 	const nt_wrap *wrap; /* [2] */
 } grid;
 
@@ -235,7 +236,7 @@ static void search_tile(grid *g, uv_triangle t, double tile_u, double tile_v)
 static void stream_triangles(const nt_check *check, grid *g)
 {
 	const nt_surface *s = &check->surface;
-	for (size_t t = 0; t < s->triangle_count && g->left && g->visits < VISIT_LIMIT; t++) {
+	for (size_t t = 0; t < s->triangle_count && g->left && g->visits < g->most_visits; t++) {
 		if (s->orientation[t] <= 0)
 			continue;
 		uv_triangle uv;
@@ -247,8 +248,8 @@ static void stream_triangles(const nt_check *check, grid *g)
 		double us[2], vs[2];
 		find_tiles(uv.u, g->wrap[0], us);
 		find_tiles(uv.v, g->wrap[1], vs);
-		for (double v = vs[0]; v <= vs[1] && g->visits < VISIT_LIMIT; v += 1.0)
-			for (double u = us[0]; u <= us[1] && g->visits < VISIT_LIMIT; u += 1.0)
+		for (double v = vs[0]; v <= vs[1] && g->visits < g->most_visits; v += 1.0)
+			for (double u = us[0]; u <= us[1] && g->visits < g->most_visits; u += 1.0)
 				search_tile(g, uv, u, v);
 	}
 }
@@ -267,6 +268,8 @@ static nt_status find_covered(nt_check *check, size_t mirrored_count)
 	memset(met, 0, islands * sizeof *met);
 	g->samples = samples;
 	g->sample_count = g->visits = 0;
+	const size_t triangles = check->surface.triangle_count;
+	g->most_visits = triangles < MOST_VISITS / TRIANGLE_VISITS ? MESH_VISITS + TRIANGLE_VISITS * triangles : MOST_VISITS;
 	g->wrap = check->mesh->wrap;
 	take_samples(check, g, mirrored_count, met);
 	fill_grid(g);

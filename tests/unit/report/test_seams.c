@@ -5,6 +5,7 @@
 #include "hand_mesh.h"
 
 #include <math.h>
+#include <time.h>
 
 /* Two triangles over one edge, the third corners at the same UV: one is the other's mirror image. */
 static hand_mesh *mirrored_pair(bool split)
@@ -281,6 +282,24 @@ static nt_code code_of_pair(nt_wrap wrap, float offset, float scale)
 	return code;
 }
 
+/* Over 3e35 tiles, of which few are searched: many small meshes may have such coordinates. */
+static void search_of_overlap_is_bounded_by_the_triangles(void **state)
+{
+	(void)state;
+	hand_mesh *h = hand_new();
+	const uint32_t a = hand_vertex(h, 0, 0, 0, 0, 0), b = hand_vertex(h, 1, 0, 0, 3e35f, 0);
+	const uint32_t c = hand_vertex(h, 0, 1, 0, 0, 3e35f);
+	hand_triangle(h, a, b, c);
+	hand_triangle(h, hand_vertex(h, 5, 0, 0, 0.2f, 0.1f), hand_vertex(h, 5, 1, 0, 0.1f, 0.2f),
+		hand_vertex(h, 6, 0, 0, 0.2f, 0.2f));
+	hand_triangle(h, hand_vertex(h, 7, 1, 0, -3e35f, -2e35f), hand_vertex(h, 7, 0, 0, -3e35f, -3e35f),
+		hand_vertex(h, 8, 0, 0, -2e35f, -3e35f));
+	const clock_t begin = clock();
+	nt_report *report = hand_report(h, NULL);
+	assert_true(clock() - begin < CLOCKS_PER_SEC / 4); /* 0.02 s; without a bound 0.8 s */
+	hand_free(h, report);
+}
+
 static void overlap_is_judged_as_the_sampler_wraps(void **state)
 {
 	(void)state;
@@ -380,6 +399,7 @@ int main(void)
 		cmocka_unit_test(moebius_strip_has_one_edge_against_the_winding),
 		cmocka_unit_test(fold_is_found_inside_its_island),
 		cmocka_unit_test(stacked_islands_are_told_from_lone_ones),
+		cmocka_unit_test(search_of_overlap_is_bounded_by_the_triangles),
 		cmocka_unit_test(overlap_is_judged_as_the_sampler_wraps),
 		cmocka_unit_test(bowtie_of_two_triangles_meets_in_a_point_only),
 		cmocka_unit_test(edge_of_three_triangles_is_reported_and_still_a_seam),
