@@ -44,8 +44,9 @@ static int read_source(void *user, char *to, int count)
 	const size_t left = s->size - s->position;
 	const size_t given = (size_t)count < left ? (size_t)count : left;
 	s->beyond |= !left || (given < (size_t)count && count != BUFFER_BYTES);
-	if (!left) { /* packets of pixels come to an end with these; with zeros, those of an HDR would not */
+	if (!left) { /* an empty line, which ends a header, and packets of many pixels, which end a row */
 		memset(to, 0xff, (size_t)count);
+		*to = '\0';
 		return count;
 	}
 	memcpy(to, s->bytes + s->position, given);
