@@ -11,6 +11,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "base/hash_index.h"
 #include "base/name_table.h"
 #include "base/parallel.h"
 #include "file/relative_path.h"
@@ -61,6 +62,7 @@ struct nt_textures {
 	size_t wish_count, wish_capacity;
 	result *results;
 	size_t result_count, result_capacity;
+	nt_hash_index by_path, by_wish, by_recipe; /* sources, wishes and results */
 	nt_texture_rules rules;
 };
 
@@ -83,6 +85,9 @@ void nt_textures_free(nt_textures *t)
 	free(t->wishes);
 	free(t->results);
 	free(t->name_sources);
+	nt_hash_index_free(&t->by_path);
+	nt_hash_index_free(&t->by_wish);
+	nt_hash_index_free(&t->by_recipe);
 	nt_name_table_free(&t->names);
 	nt_arena_free(&t->arena);
 	free(t);
@@ -107,20 +112,31 @@ static nt_status inspect(source *s, nt_error *error)
 	return NT_OK;
 }
 
+/* The source of a path; UINT32_MAX: none. */
+static uint32_t source_of_path(const nt_textures *t, const char *path, uint64_t hash)
+{
+	uint32_t number;
+	for (size_t at = NT_HASH_BEGIN; (number = nt_hash_index_next(&t->by_path, hash, &at)) != UINT32_MAX;)
+		if (strcmp(t->sources[number].path, path) == 0)
+			break;
+	return number;
+}
+
 static nt_status add_source(nt_textures *t, const nt_image_places *places, const char *name, uint32_t *number,
 	nt_error *error)
 {
 	nt_buffer path = {0};
 	nt_image_found found;
 	const nt_status status = nt_image_find(places, name, &path, &found, error);
-	for (*number = 0; !status && *number < t->source_count; ++*number)
-		if (strcmp(t->sources[*number].path, path.data) == 0)
-			break;
-	if (status || *number < t->source_count) {
+	const uint64_t hash = status ? 0 : nt_hash_bytes(0, path.data, path.size);
+	*number = status ? UINT32_MAX : source_of_path(t, path.data, hash);
+	if (status || *number != UINT32_MAX) {
 		nt_buffer_free(&path);
 		return status;
 	}
-	if (!nt_grow((void **)&t->sources, &t->source_capacity, t->source_count + 1, sizeof *t->sources)) {
+	*number = (uint32_t)t->source_count;
+	if (!nt_grow((void **)&t->sources, &t->source_capacity, t->source_count + 1, sizeof *t->sources) ||
+		!nt_hash_index_add(&t->by_path, hash, *number)) {
 		nt_buffer_free(&path);
 		return nt_fail_memory(error);
 	}
@@ -154,6 +170,13 @@ static bool equal_wishes(const nt_texture_wish *a, const nt_texture_wish *b)
 	return a->kind == b->kind && (!heights || (a->height == b->height && a->clamp == b->clamp));
 }
 
+/* Of a source and what is made of it; adding 0 makes 0 of -0. */
+static uint64_t hash_of(uint32_t from, int kind, double height, bool clamp)
+{
+	const double numbers[] = {from, kind, height + 0.0, clamp};
+	return nt_hash_bytes(0, numbers, sizeof numbers);
+}
+
 nt_status nt_textures_wish(nt_textures *t, const nt_image_places *places, const char *name,
 	const nt_texture_wish *what, uint32_t *number, nt_error *error)
 {
@@ -162,10 +185,14 @@ nt_status nt_textures_wish(nt_textures *t, const nt_image_places *places, const 
 	if (status)
 		return status;
 	t->sources[from].in_question |= what->kind == NT_TEXTURE_NORMALS_OR_HEIGHTS;
-	for (*number = 0; *number < t->wish_count; ++*number)
+	const bool heights = what->kind >= NT_TEXTURE_HEIGHTS;
+	const uint64_t hash = hash_of(from, (int)what->kind, heights ? what->height : 0, heights && what->clamp);
+	for (size_t at = NT_HASH_BEGIN; (*number = nt_hash_index_next(&t->by_wish, hash, &at)) != UINT32_MAX;)
 		if (t->wishes[*number].source == from && equal_wishes(&t->wishes[*number].what, what))
 			return NT_OK;
-	if (!nt_grow((void **)&t->wishes, &t->wish_capacity, t->wish_count + 1, sizeof *t->wishes))
+	*number = (uint32_t)t->wish_count;
+	if (!nt_grow((void **)&t->wishes, &t->wish_capacity, t->wish_count + 1, sizeof *t->wishes) ||
+		!nt_hash_index_add(&t->by_wish, hash, *number))
 		return nt_fail_memory(error);
 	t->wishes[t->wish_count++] = (wish){.source = from, .what = *what};
 	return NT_OK;
@@ -272,11 +299,16 @@ static nt_status plan_results(nt_textures *t, nt_error *error)
 	for (size_t i = 0; i < t->wish_count && !status; i++) {
 		const recipe how = recipe_of(t, &t->wishes[i]);
 		uint32_t *number = &t->wishes[i].result;
-		for (*number = 0; *number < t->result_count; ++*number)
+		const uint64_t hash = hash_of(how.source, how.decode + 2 * how.heights, how.height, how.clamp);
+		for (size_t at = NT_HASH_BEGIN; (*number = nt_hash_index_next(&t->by_recipe, hash, &at)) != UINT32_MAX;)
 			if (equal_recipes(&t->results[*number].how, &how))
 				break;
-		if (*number == t->result_count)
-			status = add_result(t, &how, error);
+		if (*number != UINT32_MAX)
+			continue;
+		*number = (uint32_t)t->result_count;
+		status = add_result(t, &how, error);
+		if (!status && !nt_hash_index_add(&t->by_recipe, hash, *number))
+			status = nt_fail_memory(error);
 	}
 	return status;
 }

@@ -61,6 +61,12 @@ END
 within 5 300 extras.gltf out.gltf
 exits 0
 
+scene "an OBJ whose 20 000 materials have two images each"
+inputs images 20000 i.obj
+within 6 800 -q i.obj i.gltf
+exits 0
+is "$(gltf i.gltf 'g.materials.length')" 20000
+
 scene "1 500 primitives over one set of accessors are judged and drawn once"
 inputs same 1500 s.glb
 within 15 300 --check --report=s.html --only=all --fail-on=never s.glb

@@ -9,6 +9,7 @@ windows   a GLB of COUNT primitives over one grid of SIDE (118) quads squared, e
           indices; the texture coordinates turn back at every fourth column, so that vertices are split
 scene     a GLB of COUNT primitives, ten in a mesh, of SIDE (3) quads squared and with accessors of their own, of 50
           materials
+images    an OBJ of COUNT materials, and FILE.mtl beside it, with two images each that are not there
 strip     an OBJ strip of COUNT quads
 """
 import json
@@ -30,6 +31,15 @@ def usemtl(count, out):
     out.write(b'v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n')
     for i in range(count):
         out.write(b'usemtl m%d\nf 1/1/1 2/2/1 3/3/1\n' % i)
+
+
+def images(count, out):
+    out.write(b'mtllib %s.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nvn 0 0 1\n' % sys.argv[3].encode())
+    for i in range(count):
+        out.write(b'usemtl m%d\nf 1/1/1 2/2/1 3/3/1\n' % i)
+    with open(sys.argv[3] + '.mtl', 'w') as materials:
+        for i in range(count):
+            materials.write('newmtl m%d\nmap_Kd c%d.png\nnorm n%d.png\n' % (i, i, i))
 
 
 def strip(count, out):
@@ -121,4 +131,4 @@ with open(sys.argv[3], 'wb') as out:
     elif kind == 'scene':
         scene(count, out, side or 3)
     else:
-        {'elements': elements, 'usemtl': usemtl, 'strip': strip}[kind](count, out)
+        {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip}[kind](count, out)

@@ -351,8 +351,7 @@ static nt_status write_buffer(const composition *c, byte_stream *stream, nt_erro
 			break;
 		status = write_block(c, b, stream, error);
 	}
-	const size_t images = nt_image_set_embedded_count(c->images);
-	for (size_t i = 0; i < images && status == NT_OK; i++) {
+	for (uint32_t i = 0; status == NT_OK && (i = nt_image_set_embedded(c->images, i)) != UINT32_MAX; i++) {
 		nt_file file;
 		uint64_t offset;
 		status = nt_image_set_open(c->images, i, &file, &offset, error);

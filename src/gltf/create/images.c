@@ -219,20 +219,16 @@ uint32_t nt_image_set_texture(const nt_image_set *set, uint32_t wish)
 
 /* ---- writing ---- */
 
-size_t nt_image_set_embedded_count(const nt_image_set *set)
+uint32_t nt_image_set_embedded(const nt_image_set *set, uint32_t from)
 {
-	size_t count = 0;
-	for (size_t i = 0; i < set->entry_count; i++)
-		count += set->entries[i].embedded;
-	return count;
+	while (from < set->entry_count && !set->entries[from].embedded)
+		from++;
+	return from < set->entry_count ? from : UINT32_MAX;
 }
 
-nt_status nt_image_set_open(const nt_image_set *set, size_t index, nt_file *file,
+nt_status nt_image_set_open(const nt_image_set *set, uint32_t number, nt_file *file,
 	uint64_t *offset, nt_error *error)
 {
-	const image_entry *entry = set->entries;
-	while (!entry->embedded || index-- > 0)
-		entry++;
-	*offset = entry->offset;
-	return open_image(entry->image, file, error);
+	*offset = set->entries[number].offset;
+	return open_image(set->entries[number].image, file, error);
 }

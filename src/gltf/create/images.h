@@ -32,12 +32,12 @@ nt_status nt_image_set_add(nt_image_set *set, nt_model *model, uint64_t *buffer_
 /* The document's texture for a wish; NT_MODEL_NONE: none. */
 uint32_t nt_image_set_texture(const nt_image_set *set, uint32_t wish);
 
-/* The embedded images in the order of their places. */
-size_t nt_image_set_embedded_count(const nt_image_set *set);
+/* The number of the first embedded image from `from` on, in the order of their places; UINT32_MAX: there is none. */
+uint32_t nt_image_set_embedded(const nt_image_set *set, uint32_t from);
 
-/* One of them: opened, with the place it has in the buffer. Returns NT_OK or NT_ERROR_IO, also when
+/* That image: opened, with the place it has in the buffer. Returns NT_OK or NT_ERROR_IO, also when
  * the file is not what it was. */
-nt_status nt_image_set_open(const nt_image_set *set, size_t index, nt_file *file,
+nt_status nt_image_set_open(const nt_image_set *set, uint32_t number, nt_file *file,
 	uint64_t *offset, nt_error *error);
 
 #endif
