@@ -197,7 +197,8 @@ static void tell_job(void *user, nt_job *job)
 	add_rule(s, job, &code);
 	if (job->status)
 		nt_failures_add(&s->failures, job);
-	nt_progress_file(s->progress);
+	const nt_summary *summary = job->outcome ? &job->outcome->summary : NULL;
+	nt_progress_file(s->progress, summary ? summary->bytes_read + summary->bytes_written : 0, job->status != NT_OK);
 	nt_progress_hide(s->progress);
 	if (job->status && (s->text.failed || !job->outcome))
 		tell_failure(s, job);

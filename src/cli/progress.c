@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Progress: see progress.h. On a terminal the line replaces itself, beginning after a second, since a
- * line that flashes by only disturbs. --progress=on without a terminal prints a line per change, for logs.
+ * line that flashes by only disturbs. --progress=on without a terminal is for logs: a line for each stage of one file, or
+ * one every ten seconds for many.
  */
 #include "cli/progress.h"
 
@@ -15,14 +16,16 @@
 #include "cli/messages.h"
 
 /* A quarter of a second: quick enough for the eye, nothing to the processor. */
-enum { TICK_NANOSECONDS = 250000000, TICKS_BEFORE_FIRST = 4, TICKS_PER_SECOND = 4 };
+enum { TICK_NANOSECONDS = 250000000, TICKS_BEFORE_FIRST = 4, TICKS_PER_SECOND = 4,
+	TICKS_PER_LOG_LINE = 10 * TICKS_PER_SECOND };
 
 struct nt_progress {
 	pthread_t thread;
 	pthread_mutex_t mutex;
 	pthread_cond_t wake;
 	const char *label;
-	size_t files, ended;
+	size_t files, ended, failed;
+	uint64_t bytes; /* read and written by those that have ended */
 	nt_stage stage;
 	unsigned ticks;
 	bool terminal;
@@ -40,11 +43,23 @@ static void erase(nt_progress *p)
 	p->drawn = false;
 }
 
+/* How far, how fast, and how long still: as long for each file as so far. */
+static void describe_files(const nt_progress *p, nt_buffer *line)
+{
+	const double seconds = (double)p->ticks / TICKS_PER_SECOND;
+	nt_buffer_format(line, "%zu of %zu files", p->ended, p->files);
+	if (p->failed)
+		nt_buffer_format(line, ", %zu failed", p->failed);
+	if (seconds > 0 && p->ended)
+		nt_buffer_format(line, ", %.3g files/s, %.1f MB, %.0f s left", (double)p->ended / seconds,
+			(double)p->bytes / 1e6, seconds / (double)p->ended * (double)(p->files - p->ended));
+}
+
 static void draw(nt_progress *p)
 {
 	nt_buffer line = {0};
 	if (p->files > 1) {
-		nt_buffer_format(&line, "%zu of %zu files", p->ended, p->files);
+		describe_files(p, &line);
 	} else {
 		nt_buffer_clean(&line, p->label);
 		nt_buffer_format(&line, ": %s", nt_stage_name(p->stage));
@@ -56,7 +71,7 @@ static void draw(nt_progress *p)
 	if (p->terminal) {
 		erase(p);
 		/* One row, however long the name is: a wrapped line could not be erased. */
-		fprintf(stderr, "%.60s, %u s", line.data, p->ticks / TICKS_PER_SECOND);
+		fprintf(stderr, "%.70s, %u s", line.data, p->ticks / TICKS_PER_SECOND);
 		p->drawn = true;
 	} else if (strcmp(p->last, line.data) != 0) {
 		fprintf(stderr, "nmtan: %s\n", line.data);
@@ -77,7 +92,9 @@ static void *watch(void *user)
 		until.tv_nsec %= 1000000000;
 		pthread_cond_timedwait(&p->wake, &p->mutex, &until);
 		p->ticks++;
-		if (!p->stop && p->terminal && p->ticks >= TICKS_BEFORE_FIRST)
+		const bool due = p->terminal ? p->ticks >= TICKS_BEFORE_FIRST
+					     : p->files > 1 && p->ticks % TICKS_PER_LOG_LINE == 0;
+		if (!p->stop && due)
 			draw(p);
 	}
 	erase(p);
@@ -119,14 +136,14 @@ void nt_progress_stage(void *progress, nt_stage stage)
 	pthread_mutex_unlock(&p->mutex);
 }
 
-void nt_progress_file(nt_progress *p)
+void nt_progress_file(nt_progress *p, uint64_t bytes, bool failed)
 {
 	if (!p)
 		return;
 	pthread_mutex_lock(&p->mutex);
 	p->ended++;
-	if (!p->terminal && p->files > 1)
-		draw(p);
+	p->bytes += bytes;
+	p->failed += failed;
 	pthread_mutex_unlock(&p->mutex);
 }
 

@@ -17,8 +17,8 @@ nt_progress *nt_progress_start(int mode, const char *label, size_t files);
 /* For settings.on_stage. */
 void nt_progress_stage(void *progress, nt_stage stage);
 
-/* One more file has ended. */
-void nt_progress_file(nt_progress *progress);
+/* One more file has ended, for which so many bytes were read and written. */
+void nt_progress_file(nt_progress *progress, uint64_t bytes, bool failed);
 
 /* Between these two the line is gone and stays away, for messages. */
 void nt_progress_hide(nt_progress *progress);
