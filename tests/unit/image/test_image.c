@@ -26,10 +26,12 @@ typedef struct bytes {
 	size_t size;
 } bytes;
 
-static void put(bytes *b, unsigned value, unsigned count, bool big)
+static void put(bytes *b, uint64_t value, unsigned count, bool big)
 {
-	for (unsigned i = 0; i < count; i++)
-		b->data[b->size++] = (unsigned char)(value >> 8 * (big ? count - 1 - i : i));
+	for (unsigned i = 0; i < count; i++) {
+		const unsigned byte = big ? count - 1 - i : i;
+		b->data[b->size++] = byte < sizeof value ? (unsigned char)(value >> 8 * byte) : 0;
+	}
 }
 
 /* ---- files ---- */
