@@ -121,6 +121,9 @@ static nt_status parse_json(nt_gltf *document, nt_error *error)
 	if (document->is_glb) {
 		begin = document->glb.json.offset;
 		size = document->glb.json.size;
+		/* the chunk's padding is no part of the document: the next one has its own */
+		while (size && text[begin + size - 1] == ' ')
+			size--;
 	}
 	const nt_status status = nt_json_parse(&document->json, text + begin, size, "extras", error);
 	if (status && error && error->place.offset != NT_NO_OFFSET)

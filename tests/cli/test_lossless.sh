@@ -145,6 +145,15 @@ for words in plain three_buffers sparse "--draco=sequential plain"; do
 		same straight.bin odd_out.bin
 	done
 done
+# the JSON of a .glb ends without more than its padding, however often it is edited
+run --existing=replace plain.gltf odd_out.glb
+for precision in short float short; do
+	run --existing=replace --precision=$precision odd_out.glb again.glb
+	exits 0
+	mv again.glb odd_out.glb
+	is "$(python3 -c 'import struct; b = open("odd_out.glb", "rb").read()
+t = b[20:20 + struct.unpack("<I", b[12:16])[0]]; print(len(t) - len(t.rstrip(b" ")) < 4)')" True
+done
 # what tinygltf's parser refuses in extras does not keep --verify from its work
 sed 's/"extras": {}/"extras": {"n": 1e400, "n": [-1E+999]}/' plain.gltf >odd.gltf
 run --verify --existing=replace odd.gltf odd_out.gltf
