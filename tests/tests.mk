@@ -159,6 +159,15 @@ bench-js: $(B)/nmtan wasm build/clients/node_modules/three/package.json
 	@node tests/bench/js.mjs $(B)/nmtan $(CURDIR)/build/npm $(CURDIR)/build/clients build/bench/js \
 		$$(sh tests/bench/models.sh $(B)/nmtan build/bench/models)
 
+# make bench-green: which way green points, told of maps whose surface is known, and of $(MAPS).
+$(B)/tests/bench/green: $(B)/tests/bench/green.o $(B)/libtool.a $(B)/libnmtan.a
+	$(CXX) $(NT_LDFLAGS) -o $@ $< -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(TOOL_LIBS)
+
+.PHONY: bench-green
+bench: bench-green
+bench-green: $(B)/tests/bench/green
+	@$< $(MAPS)
+
 # make bench-obj: reading the 104 MB file that speed is stated for; the lines "parse" and "index" are the reader.
 build/bench/torus.obj: $(B)/tests/bench/make_obj.o
 	@mkdir -p $(@D)

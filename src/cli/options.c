@@ -114,6 +114,10 @@ const nt_option_row nt_option_rows[] = {
 		SETTING(bump), false},
 	{"bump-height", 0, NT_OPTION_TEXT, "SHARE", 0, 0, "1/64",
 		"how far white is above black in a height map, as a share of its width; times -bm", FIELD(bump_height), true},
+	{"flip-green", 0, NT_OPTION_CHOICE, "off|auto|on", NT_FLIP_OFF, 0, "off",
+		"normal maps of an OBJ whose green points down are turned to glTF's convention; auto: where that is certain; on: "
+		"all",
+		SETTING(flip_green), true},
 	{"draco", 0, NT_OPTION_CHOICE, "keep|off|sequential|edgebreaker", NT_DRACO_KEEP, 0, "keep",
 		"glTF primitives that get tangents; keep: compressed ones are compressed again; off: "
 		"written plain; sequential, edgebreaker: plain ones are compressed too",
@@ -147,6 +151,8 @@ const nt_option_row nt_option_rows[] = {
 	{"diff", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"with --check OLD NEW: what changed in tangents, seams and findings; what is new decides the exit code",
 		FIELD(diff), false},
+	{"check-maps", 0, NT_OPTION_CHOICE, "auto|on|off", NT_CHECK_MAPS_AUTO, 0, "auto",
+		"decode normal maps and examine them; auto: for a report, files of at most 16 MB", SETTING(check_maps), false},
 	{"fail-on", 0, NT_OPTION_CHOICE, "error|warning|info|never", NT_FAIL_ON_ERROR, 0,
 		"error with --check, else never", "exit with 6 on findings of this severity or above",
 		FIELD(fail_on), false},

@@ -6,12 +6,10 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "file/image_type.h"
-#include "file/lookup.h"
-#include "file/relative_path.h"
 #include "file/uri.h"
 #include "gltf/document.h"
 #include "gltf/view.h"
+#include "image/find.h"
 
 /* What is wrong with a map takes it away, and no more; its bytes stay NULL. */
 static nt_status without_map(nt_status status)
@@ -26,25 +24,21 @@ static nt_status open_file(nt_normal_map *map, const char *path, nt_error *error
 		return status;
 	map->bytes = map->file.data;
 	map->size = map->file.size;
+	map->identity[0] = map->file.device;
+	map->identity[1] = map->file.inode;
 	return NT_OK;
 }
 
 /* ---- OBJ ---- */
 
-/* Inside the folder of the material library, links resolved. */
-static nt_status open_inside(nt_normal_map *map, const char *document, const char *name, nt_error *error)
+static nt_status open_named(nt_normal_map *map, const nt_scene *scene, const nt_material *m, nt_error *error)
 {
-	nt_buffer folder = {0}, path = {0};
-	char *real = NULL;
-	nt_status status = nt_link_folder(&folder, document, error);
-	if (!status) {
-		nt_link_join(&path, folder.data, name);
-		status = path.failed ? nt_fail_memory(error) : nt_lookup_real(path.data, &real, error);
-	}
-	if (!status && nt_link_is_inside(real, folder.data))
-		status = open_file(map, real, error);
-	free(real);
-	nt_buffer_free(&folder);
+	const nt_image_places places = {.document = m->library ? m->library : scene->path, .input = scene->path};
+	nt_buffer path = {0};
+	nt_image_found found;
+	nt_status status = nt_image_find(&places, m->normal_map, &path, &found, error);
+	if (!status && found <= NT_IMAGE_FOUND_ELSEWHERE)
+		status = open_file(map, path.data, error);
 	nt_buffer_free(&path);
 	return status;
 }
@@ -55,9 +49,8 @@ static nt_status open_of_materials(nt_normal_map *map, const nt_scene *scene, co
 	for (size_t i = 0; i < mesh->primitive_count && !status && !map->bytes; i++) {
 		const uint32_t index = mesh->primitives[i].material;
 		const nt_material *m = index < scene->material_count ? &scene->materials[index] : NULL;
-		if (m && m->normal_map && !nt_link_is_absolute(m->normal_map))
-			status = without_map(open_inside(map, m->library ? m->library : scene->path, m->normal_map,
-				error));
+		if (m && m->normal_map && *m->normal_map)
+			status = without_map(open_named(map, scene, m, error));
 	}
 	return status;
 }
@@ -70,6 +63,15 @@ static const nt_json_value *element(const nt_json_value *array, const nt_json_va
 	return nt_json_get_uint64(index, &i) ? nt_json_at(array, (size_t)i) : NULL;
 }
 
+/* The image that every reader has comes first. */
+static const nt_json_value *source_of(const nt_json_value *texture)
+{
+	const nt_json_value *source = nt_json_find(texture, "source"), *extensions = nt_json_find(texture, "extensions");
+	for (nt_image_type type = NT_IMAGE_KTX2; !source && type <= NT_IMAGE_WEBP; type++)
+		source = nt_json_find(nt_json_find(extensions, nt_image_extension(type)), "source");
+	return source;
+}
+
 static const nt_json_value *image_of(const nt_gltf *document, const nt_mesh *mesh)
 {
 	const nt_json_value *owner = nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh);
@@ -79,7 +81,7 @@ static const nt_json_value *image_of(const nt_gltf *document, const nt_mesh *mes
 		nt_json_find(primitive, "material"));
 	const nt_json_value *texture = element(nt_gltf_root_member(document, "textures"),
 		nt_json_find(nt_json_find(material, "normalTexture"), "index"));
-	return element(nt_gltf_root_member(document, "images"), nt_json_find(texture, "source"));
+	return element(nt_gltf_root_member(document, "images"), source_of(texture));
 }
 
 static nt_status open_uri(nt_normal_map *map, nt_gltf *document, const char *uri, size_t length, nt_error *error)
@@ -87,6 +89,7 @@ static nt_status open_uri(nt_normal_map *map, nt_gltf *document, const char *uri
 	if (nt_uri_is_data(uri, length)) {
 		const nt_status status = nt_uri_decode_data(uri, length, &map->decoded, &map->size, error);
 		map->bytes = status ? NULL : map->decoded;
+		map->identity[1] = (uint64_t)(uintptr_t)uri;
 		return status;
 	}
 	const char *path;
@@ -102,6 +105,7 @@ static nt_status open_view(nt_normal_map *map, nt_gltf *document, uint64_t index
 	if (!status)
 		status = nt_gltf_view_bytes(document, view.index, 0, view.length, "", &map->bytes, error);
 	map->size = status ? 0 : (size_t)view.length;
+	map->identity[1] = (uint64_t)(uintptr_t)map->bytes;
 	return status;
 }
 
@@ -129,9 +133,8 @@ nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt
 		status = open_of_materials(map, scene, mesh, error);
 	else if (scene->source)
 		status = open_of_document(map, scene->source, mesh, error);
-	const nt_image_type type = map->bytes ? nt_image_type_of_bytes(map->bytes, map->size) : NT_IMAGE_OTHER;
-	if (type == NT_IMAGE_PNG || type == NT_IMAGE_JPEG)
-		map->type = nt_image_media_type(type);
+	if (map->bytes)
+		map->type = nt_image_type_of_bytes(map->bytes, map->size);
 	else
 		nt_normal_map_close(map);
 	return status;

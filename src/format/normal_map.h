@@ -1,25 +1,27 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The image file of a mesh's normal map, for the report's picture of the lit mesh. Nothing else needs it, so
- * nothing that is wrong with it is an error: such a mesh has no picture of its own. Exhausted memory and faults of
- * the system are errors all the same.
+ * The image file of a mesh's normal map, for the report: its picture of the lit mesh, and what the map itself says.
+ * Nothing else needs it, so nothing that is wrong with it is an error. Exhausted memory and faults of the system are
+ * errors all the same.
  */
 #ifndef NT_FORMAT_NORMAL_MAP_H
 #define NT_FORMAT_NORMAL_MAP_H
 
+#include "file/image_type.h"
 #include "file/input.h"
 #include "scene/scene.h"
 
 typedef struct nt_normal_map {
 	const unsigned char *bytes;
 	size_t size;
-	const char *type;       /* "image/png" or "image/jpeg" */
+	nt_image_type type;
+	uint64_t identity[2];   /* which image it is: equal for two meshes that share it */
 	nt_file file;           /* owned, where it is a file */
 	unsigned char *decoded; /* owned, where it is a data URI */
 } nt_normal_map;
 
-/* Finds and opens it: the first material with one, files inside the document's folder only, PNG and JPEG. Returns
- * NT_OK, with map->bytes NULL when there is none, NT_ERROR_IO or NT_ERROR_MEMORY. */
+/* Finds and opens it: the first material with one, files inside the document's folder only (of an OBJ as
+ * image/find.h has it). Returns NT_OK, with map->bytes NULL when there is none, NT_ERROR_IO or NT_ERROR_MEMORY. */
 nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh, nt_error *error);
 void nt_normal_map_close(nt_normal_map *map);
 

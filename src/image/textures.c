@@ -15,7 +15,7 @@
 #include "base/name_table.h"
 #include "base/parallel.h"
 #include "file/relative_path.h"
-#include "file/watch.h"
+#include "image/examine.h"
 #include "image/heights.h"
 
 typedef struct source {
@@ -37,7 +37,8 @@ typedef struct wish {
 /* How a result comes from its source. */
 typedef struct recipe {
 	uint32_t source;
-	bool decode;   /* else the file is the result */
+	bool png;      /* glTF does not carry the file, or PNG is wanted */
+	nt_flip flip;  /* OFF with heights */
 	bool heights;
 	double height; /* these two only with heights */
 	bool clamp;
@@ -255,17 +256,24 @@ static recipe recipe_of(const nt_textures *t, const wish *w)
 		(kind == NT_TEXTURE_HEIGHTS || (kind == NT_TEXTURE_NORMALS_OR_HEIGHTS && s->grey));
 	const bool png = decodable && choice != NT_TEXTURES_KEEP &&
 		(choice == NT_TEXTURES_PNG ? s->type != NT_IMAGE_PNG : !nt_image_is_carried(s->type));
-	return (recipe){w->source, heights || png, heights, heights ? w->what.height : 0, heights && w->what.clamp};
+	const bool may_flip = decodable && !heights && kind != NT_TEXTURE_COLOR && (png || nt_image_is_carried(s->type));
+	return (recipe){w->source, png, may_flip ? t->rules.flip : NT_FLIP_OFF, heights, heights ? w->what.height : 0,
+		heights && w->what.clamp};
 }
 
-/* The file's name; of what is made, with another ending. NULL: out of memory. */
-static char *name_of(const source *s, const recipe *how)
+static bool decodes(const recipe *how)
 {
-	const char *name = nt_last_part(s->path), *dot = strrchr(name, '.');
+	return how->png || how->heights || how->flip != NT_FLIP_OFF;
+}
+
+/* The file's name; of what was made, with another ending. NULL: out of memory. */
+static char *name_of(const nt_texture *texture)
+{
+	const char *name = nt_last_part(texture->path), *dot = strrchr(name, '.');
 	nt_buffer text = {0};
-	nt_buffer_append(&text, name, how->decode && dot > name ? (size_t)(dot - name) : strlen(name));
-	if (how->decode)
-		nt_buffer_text(&text, how->heights ? "-normal.png" : ".png");
+	nt_buffer_append(&text, name, texture->bytes && dot > name ? (size_t)(dot - name) : strlen(name));
+	if (texture->bytes)
+		nt_buffer_text(&text, texture->from_heights ? "-normal.png" : texture->flipped ? "-green-up.png" : ".png");
 	if (text.failed)
 		nt_buffer_free(&text);
 	return text.data;
@@ -274,23 +282,21 @@ static char *name_of(const source *s, const recipe *how)
 static nt_status add_result(nt_textures *t, const recipe *how, nt_error *error)
 {
 	const source *s = &t->sources[how->source];
-	char *name = name_of(s, how);
-	if (!name || !nt_grow((void **)&t->results, &t->result_capacity, t->result_count + 1, sizeof *t->results)) {
-		free(name);
+	if (!nt_grow((void **)&t->results, &t->result_capacity, t->result_count + 1, sizeof *t->results))
 		return nt_fail_memory(error);
-	}
-	const bool usable = s->found != NT_IMAGE_OUTSIDE && (how->decode || nt_image_is_carried(s->type));
-	t->results[t->result_count++] = (result){.how = *how, .name = name, .texture = {
+	const bool made = how->png || how->heights;
+	const bool usable = s->found != NT_IMAGE_OUTSIDE && (made || nt_image_is_carried(s->type));
+	t->results[t->result_count++] = (result){.how = *how, .texture = {
 		.path = s->path, .found = s->found, .source_type = s->type, .from_heights = how->heights,
-		.type = !usable ? NT_IMAGE_OTHER : how->decode ? NT_IMAGE_PNG : s->type,
-		.identity = s->identity, .name = name, .failure = s->error.status ? s->error.message : NULL}};
+		.type = !usable ? NT_IMAGE_OTHER : made ? NT_IMAGE_PNG : s->type,
+		.identity = s->identity, .failure = s->error.status ? s->error.message : NULL}};
 	return NT_OK;
 }
 
 static bool equal_recipes(const recipe *a, const recipe *b)
 {
-	return a->source == b->source && a->decode == b->decode && a->heights == b->heights && a->height == b->height &&
-	       a->clamp == b->clamp;
+	return a->source == b->source && a->png == b->png && a->flip == b->flip && a->heights == b->heights &&
+	       a->height == b->height && a->clamp == b->clamp;
 }
 
 static nt_status plan_results(nt_textures *t, nt_error *error)
@@ -313,6 +319,31 @@ static nt_status plan_results(nt_textures *t, nt_error *error)
 	return status;
 }
 
+static void flip_green(nt_pixels *p)
+{
+	const size_t count = (size_t)p->width * p->height * p->channels;
+	for (size_t i = 1; i < count; i += p->channels)
+		if (p->bits == 8)
+			((uint8_t *)p->samples)[i] = (uint8_t)(UINT8_MAX - ((uint8_t *)p->samples)[i]);
+		else
+			((uint16_t *)p->samples)[i] = (uint16_t)(UINT16_MAX - ((uint16_t *)p->samples)[i]);
+}
+
+/* Turns green around if the recipe says so. */
+static nt_status flip(const recipe *how, nt_pixels *pixels, bool *flipped, nt_error *error)
+{
+	nt_normal_facts facts;
+	nt_status status = NT_OK;
+	*flipped = how->flip == NT_FLIP_ON && pixels->channels >= 3;
+	if (how->flip == NT_FLIP_AUTO) {
+		status = nt_examine_normals(pixels, &facts, error);
+		*flipped = !status && facts.green == NT_GREEN_DOWN;
+	}
+	if (*flipped)
+		flip_green(pixels);
+	return status;
+}
+
 static nt_status convert(const recipe *how, const nt_file *file, result *r)
 {
 	nt_pixels pixels, normals;
@@ -323,8 +354,28 @@ static nt_status convert(const recipe *how, const nt_file *file, result *r)
 		pixels = normals;
 	}
 	if (!status)
+		status = flip(how, &pixels, &r->texture.flipped, &r->error);
+	if (!status && (how->png || how->heights || r->texture.flipped))
 		status = nt_encode_png(&pixels, &r->bytes, &r->texture.size, &r->error);
 	nt_pixels_free(&pixels);
+	return status;
+}
+
+static nt_status decode_result(const source *s, result *r)
+{
+	nt_file file;
+	nt_status status = open_source(s, &file, &r->error);
+	if (status)
+		return status;
+	status = close_source(s, &file, convert(&r->how, &file, r), &r->error);
+	if (status) {
+		const bool as_it_is = !r->how.png && !r->how.heights;
+		r->texture.type = as_it_is ? s->type : NT_IMAGE_OTHER;
+		r->texture.failure = r->error.message;
+	} else if (r->bytes) {
+		r->texture.bytes = r->bytes;
+		r->texture.type = NT_IMAGE_PNG;
+	}
 	return status;
 }
 
@@ -333,17 +384,12 @@ static void make_result(void *context, size_t item, unsigned slot)
 	(void)slot;
 	nt_textures *t = context;
 	result *r = &t->results[item];
-	const source *s = &t->sources[r->how.source];
-	nt_file file;
 	nt_error_clear(&r->error);
-	if (!r->how.decode || open_source(s, &file, &r->error))
-		return;
-	const nt_status status = close_source(s, &file, convert(&r->how, &file, r), &r->error);
-	r->texture.bytes = r->bytes;
-	if (!status)
-		return;
-	r->texture.type = NT_IMAGE_OTHER;
-	r->texture.failure = r->error.message;
+	if (decodes(&r->how))
+		decode_result(&t->sources[r->how.source], r);
+	r->texture.name = r->name = name_of(&r->texture);
+	if (!r->name)
+		nt_fail_memory(&r->error);
 }
 
 /* Passes on what is the system's fault. */

@@ -20,6 +20,13 @@ typedef enum nt_texture_choice {
 	NT_TEXTURES_PNG   /* what can be decoded becomes PNG */
 } nt_texture_choice;
 
+/* Normal maps whose green points down get it turned around. */
+typedef enum nt_flip {
+	NT_FLIP_OFF,
+	NT_FLIP_AUTO, /* where image/examine.h is sure */
+	NT_FLIP_ON    /* all of them */
+} nt_flip;
+
 typedef struct nt_textures nt_textures;
 
 typedef enum nt_texture_kind {
@@ -38,6 +45,7 @@ typedef struct nt_texture_wish {
 
 typedef struct nt_texture_rules {
 	nt_texture_choice choice;
+	nt_flip flip;
 	unsigned threads;
 } nt_texture_rules;
 
@@ -48,6 +56,7 @@ typedef struct nt_texture {
 	nt_image_type source_type; /* of the file; of a missing one, by its name */
 	nt_image_type type;        /* of the result; NT_IMAGE_OTHER: there is none */
 	bool from_heights;         /* a height map became a normal map */
+	bool flipped;              /* of a normal map green was turned around */
 	nt_file identity;          /* of the file, closed: size, device and inode */
 	const char *name;          /* what a file of it is called */
 	const unsigned char *bytes; /* [size] of a PNG that was made; NULL: the file is the result */

@@ -17,10 +17,12 @@ static nt_status copy_normal_map(nt_arena *arena, const nt_scene *scene, const n
 	nt_error error;
 	nt_status status = nt_normal_map_open(&map, scene, mesh, &error);
 	*image = (nt_image){0};
-	if (!status && map.bytes && map.size <= most_bytes) {
+	const bool shown = map.type == NT_IMAGE_PNG || map.type == NT_IMAGE_JPEG;
+	if (!status && shown && map.size <= most_bytes) {
 		void *copy = nt_arena_alloc(arena, map.size, 1);
 		if (copy)
-			*image = (nt_image){memcpy(copy, map.bytes, map.size), map.size, map.type};
+			*image = (nt_image){memcpy(copy, map.bytes, map.size), map.size,
+				nt_image_media_type(map.type)};
 		else
 			status = NT_ERROR_MEMORY;
 	}

@@ -29,6 +29,13 @@ typedef enum nt_bump {
 	NT_BUMP_IGNORE
 } nt_bump;
 
+/* Whether normal maps are decoded to be examined. */
+typedef enum nt_check_maps {
+	NT_CHECK_MAPS_AUTO, /* for a report, files of at most 16 MB */
+	NT_CHECK_MAPS_ON,
+	NT_CHECK_MAPS_OFF
+} nt_check_maps;
+
 /* Stages as --timing prints them. */
 typedef enum nt_stage {
 	NT_STAGE_MAP,
@@ -67,6 +74,8 @@ typedef struct nt_settings {
 	nt_texture_choice textures;
 	nt_bump bump;
 	double bump_height;      /* 0: the default */
+	nt_flip flip_green;
+	nt_check_maps check_maps;
 	const char *const *texture_paths; /* [texture_path_count] folders */
 	size_t texture_path_count;
 	bool bitangents;

@@ -46,6 +46,10 @@ nt_status nt_stage_tangents_and_textures(nt_scene *scene, const nt_settings *set
 nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const nt_textures *textures,
 	nt_error *error);
 
+/* Examines normal maps, if settings->check_maps or a report wants that, and adds what is found. Returns NT_OK, NT_ERROR_IO
+ * or NT_ERROR_MEMORY. */
+nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_error *error);
+
 /* Fills summary->report: of the scene as it now is, or of what went wrong. written: the format that is judged,
  * NT_FORMAT_UNKNOWN: the input as it is. */
 nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_format written, nt_status status,

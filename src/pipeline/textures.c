@@ -145,7 +145,7 @@ static void make_part(void *context, unsigned slot)
 		m->status[0] = nt_stage_tangents(m->scene, m->settings, m->output, m->summary, m->error);
 		return;
 	}
-	const nt_texture_rules rules = {m->settings->textures, m->settings->threads};
+	const nt_texture_rules rules = {m->settings->textures, m->settings->flip_green, m->settings->threads};
 	m->status[1] = nt_textures_make(m->textures, &rules, &m->texture_error);
 }
 
@@ -197,9 +197,9 @@ static void tell_image(nt_scene *scene, const nt_material *m, const char *name, 
 	if (image->found == NT_IMAGE_FOUND_ELSEWHERE)
 		tell_elsewhere(scene, &place, name, image);
 	if (image->bytes)
-		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "%.100s: %s to %s", name,
+		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "%.100s: %s to %s%s", name,
 			image->from_heights ? "height map" : nt_image_type_name(image->source_type),
-			image->from_heights ? "normal map" : "PNG");
+			image->from_heights ? "normal map" : "PNG", image->flipped ? ", green turned up" : "");
 }
 
 static void tell_bump(nt_scene *scene, const nt_material *m)

@@ -77,6 +77,9 @@ if [ -d "$ROOT/../shared/models" ]; then
 	run --check --uv=1 "$multi" # the set they were made for
 	! grep -q "TAN_SIGN\|TAN_DIRECTION" ../out.txt || wrong "found what is not there"
 	run --check --fail-on=info "$models/gltf/pbr_sphere/glTF/sphere.gltf"
+	prints "NMAP_NOT_UNIT"
+	exits 6
+	run --check --fail-on=info --check-maps=off "$models/gltf/pbr_sphere/glTF/sphere.gltf"
 	exits 0
 	run --check "$models/gltf/SheenCloth/glTF/SheenCloth.gltf" # scales v by -30
 	exits 0

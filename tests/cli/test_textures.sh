@@ -252,4 +252,82 @@ import json
 rows = json.load(open("rows.json"))
 print(rows[0][4][:2] == [32768, 32768], max(max(p) for p in rows[0]) > 65000)')" "True True"
 
+# ---- what maps say about themselves ----
+
+# The normal map of hills, whose slopes are p and q; green up with s = 1, down with s = -1.
+hills() {
+	local p='(1.2 * math.cos(x / 7 + y / 9) + 0.6 * math.cos(x / 5 - y / 6)) * .3'
+	local q='(0.9333 * math.cos(x / 7 + y / 9) - 0.5 * math.cos(x / 5 - y / 6)) * .3'
+	images write "$1" 96 96 "(lambda n: tuple(int((v / math.hypot(*n) + 1) * 127.5 + .5) for v in n))((-($p), $2 * ($q), 1))"
+}
+
+scene "a map whose green points down is found, and turned around on demand"
+hills up.png 1
+hills down.png -1
+quad 'norm up.png'
+run --check --report-format=json --report=r.json quad.obj
+exits 0
+is "$(grep -c NMAP_GREEN_DOWN r.json)" 0
+quad 'norm down.png'
+run --check --fail-on=warning quad.obj
+exits 6
+prints "NMAP_GREEN_DOWN"
+prints "correlation -"
+run --check --check-maps=off --fail-on=warning quad.obj
+exits 0
+run quad.obj quad.glb
+exits 0
+says_not "NMAP_"
+run --check-maps=on quad.obj quad.glb
+says "NMAP_GREEN_DOWN"
+run --flip-green=auto quad.obj quad.glb
+exits 0
+says "down.png became down-green-up.png"
+images embedded quad.glb 0 made.png
+images rows made.png >made.json
+images rows up.png >up.json
+# 255 - round(v) is round(255 - v) but at halves
+is "$(python3 -c '
+import json
+a, b = json.load(open("made.json")), json.load(open("up.json"))
+print(max(abs(x - y) for r, s in zip(a, b) for p, q in zip(r, s) for x, y in zip(p, q)) <= 1)')" True
+quad 'norm up.png'
+run --flip-green=auto quad.obj quad.glb
+images embedded quad.glb 0 made.png
+same made.png up.png
+run --flip-green=on quad.obj quad.glb
+says "up.png became up-green-up.png"
+
+scene "a glTF's maps are examined and stay as they are"
+hills n.png -1
+quad 'norm n.png'
+run quad.obj quad.glb
+run --check quad.glb
+prints "NMAP_GREEN_DOWN"
+run quad.glb again.glb
+same quad.glb again.glb
+
+scene "maps that are none, or of another kind"
+images write constant.png 8 8 '(128, 128, 255)'
+quad 'norm constant.png'
+run --check quad.obj
+prints "NMAP_CONSTANT"
+images write sphere.png 64 64 '(lambda a, b: (int(127.5 + 127 * math.cos(a) * math.sin(b)), int(127.5 + 127 * math.sin(a) * math.sin(b)),
+	int(127.5 + 127 * math.cos(b))))(x / 10, y / 20.5)'
+quad 'norm sphere.png'
+run --check quad.obj
+prints "NMAP_OBJECT_SPACE"
+images write long.png 64 64 '(128 + x, 128 + y, 255)'
+quad 'norm long.png'
+run --check quad.obj
+prints "NMAP_NOT_UNIT"
+printf '\253KTX 20\273\r\n\032\n and more' >k.ktx2
+quad 'norm k.ktx2'
+run --check quad.obj
+prints "NMAP_NOT_EXAMINED"
+images write h.png 8 8 'x'
+quad 'norm h.png'
+run --check quad.obj
+! grep -q NMAP_ ../out.txt || wrong "a height map was examined"
+
 done_testing

@@ -41,7 +41,7 @@ static const nt_texture *result(const nt_textures *textures, uint32_t number)
 
 static nt_status make(nt_textures *textures, nt_error *error)
 {
-	const nt_texture_rules rules = {NT_TEXTURES_AUTO, 2};
+	const nt_texture_rules rules = {NT_TEXTURES_AUTO, NT_FLIP_OFF, 2};
 	return nt_textures_make(textures, &rules, error);
 }
 
@@ -99,7 +99,7 @@ static void textures_without_memory_are_an_error(void **state)
 		nt_textures *t = nt_textures_create();
 		const nt_image_places places = {.document = in_folder("m.mtl")};
 		const nt_texture_wish what = {NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1, false};
-		const nt_texture_rules rules = {NT_TEXTURES_AUTO, 1};
+		const nt_texture_rules rules = {NT_TEXTURES_AUTO, NT_FLIP_OFF, 1};
 		uint32_t number;
 		nt_error error;
 		fail_allocations_from(n);

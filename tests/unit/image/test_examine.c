@@ -1,0 +1,160 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What normal maps say, on maps made from formulas. make bench-green has many more.
+ */
+#include "image/examine.h"
+
+#include <math.h>
+#include "fail_alloc.h"
+#include "test.h"
+
+enum { SIDE = 128 };
+
+typedef void (*slope_fn)(double x, double y, double *p, double *q);
+
+/* sin(x/7 + y/9) + sin(x/5 - y/6) */
+static void hills(double x, double y, double *p, double *q)
+{
+	const double a = cos(x / 7 + y / 9), b = cos(x / 5 - y / 6);
+	*p = a / 7 + b / 5;
+	*q = a / 9 - b / 6;
+}
+
+static void flat(double x, double y, double *p, double *q)
+{
+	(void)x, (void)y;
+	*p = *q = 0;
+}
+
+/* sin(x/5) + sin(y/6): no mixed derivative */
+static void grid(double x, double y, double *p, double *q)
+{
+	*p = cos(x / 5) / 5;
+	*q = cos(y / 6) / 6;
+}
+
+/* A swirl: no surface has these slopes. */
+static void swirl(double x, double y, double *p, double *q)
+{
+	*p = 0.3 * sin(y / 6) + 0.3 * cos(x / 4 + y / 5);
+	*q = 0.3 * sin(x / 9) + 0.3 * sin(x / 5 - y / 4);
+}
+
+static nt_pixels make(slope_fn slopes, double green, unsigned bits)
+{
+	nt_pixels p;
+	nt_error error;
+	const double most = (1u << bits) - 1;
+	assert_int_equal(nt_pixels_create(&p, SIDE, SIDE, 3, bits, &error), NT_OK);
+	for (size_t i = 0; i < SIDE * SIDE; i++) {
+		double s, t;
+		slopes((double)(i % SIDE), (double)(i / SIDE), &s, &t);
+		const double length = sqrt(s * s + t * t + 1), n[] = {-s / length, green * t / length, 1 / length};
+		for (size_t c = 0; c < 3; c++) {
+			const unsigned value = (unsigned)((n[c] + 1) / 2 * most + 0.5);
+			if (bits == 8)
+				((uint8_t *)p.samples)[3 * i + c] = (uint8_t)value;
+			else
+				((uint16_t *)p.samples)[3 * i + c] = (uint16_t)value;
+		}
+	}
+	return p;
+}
+
+static nt_normal_facts facts_of(nt_pixels p)
+{
+	nt_normal_facts facts;
+	nt_error error;
+	assert_int_equal(nt_examine_normals(&p, &facts, &error), NT_OK);
+	nt_pixels_free(&p);
+	return facts;
+}
+
+static void green_is_told_by_the_curl(void **state)
+{
+	(void)state;
+	for (unsigned bits = 8; bits <= 16; bits += 8) {
+		const nt_normal_facts up = facts_of(make(hills, 1, bits)), down = facts_of(make(hills, -1, bits));
+		assert_int_equal(up.green, NT_GREEN_UP);
+		assert_int_equal(down.green, NT_GREEN_DOWN);
+		assert_true(up.correlation > 0.95 && down.correlation < -0.95);
+		assert_true(up.agreement == 1 && down.agreement == 1);
+		assert_true(up.not_unit == 0 && up.blue_below == 0 && !up.constant && !up.object_space);
+	}
+}
+
+static void nothing_is_told_by_weak_evidence(void **state)
+{
+	(void)state;
+	for (int green = -1; green <= 1; green += 2) {
+		assert_int_equal(facts_of(make(grid, green, 8)).green, NT_GREEN_UNKNOWN);
+		assert_int_equal(facts_of(make(swirl, green, 8)).green, NT_GREEN_UNKNOWN);
+	}
+	const nt_normal_facts facts = facts_of(make(flat, 1, 8));
+	assert_int_equal(facts.green, NT_GREEN_UNKNOWN);
+	assert_true(facts.constant);
+}
+
+/* One half with green up and one with green down, as where two maps were joined. */
+static void halves_that_contradict_tell_nothing(void **state)
+{
+	(void)state;
+	nt_pixels a = make(hills, 1, 8), b = make(hills, -1, 8);
+	memcpy(a.samples, b.samples, nt_pixels_row_bytes(&a) * SIDE / 2);
+	nt_pixels_free(&b);
+	assert_int_equal(facts_of(a).green, NT_GREEN_UNKNOWN);
+}
+
+static void shares_are_counted(void **state)
+{
+	(void)state;
+	nt_pixels p = make(hills, 1, 8);
+	uint8_t *samples = p.samples;
+	for (size_t i = 0; i < SIDE * SIDE / 4; i++)
+		samples[3 * i + 2] = 128; /* the length is that of x and y */
+	for (size_t i = SIDE * SIDE / 2; i < SIDE * SIDE / 2 + SIDE * SIDE / 8; i++) {
+		samples[3 * i] = samples[3 * i + 1] = 128;
+		samples[3 * i + 2] = 0; /* straight into the surface */
+	}
+	const nt_normal_facts facts = facts_of(p);
+	assert_true(facts.not_unit == 0.25);
+	assert_true(facts.blue_below == 0.125);
+	assert_false(facts.object_space);
+}
+
+/* A slope that changes by one level in 16 pixels. */
+static void wide_steps_are_bands(void **state)
+{
+	(void)state;
+	nt_pixels p = make(hills, 1, 8);
+	assert_true(facts_of(p).banded < 0.1);
+	p = make(flat, 1, 8);
+	for (size_t i = 0; i < SIDE * SIDE; i++)
+		((uint8_t *)p.samples)[3 * i] = (uint8_t)(120 + i % SIDE / 16);
+	assert_true(facts_of(p).banded > 0.7);
+}
+
+static void examining_without_memory_is_an_error(void **state)
+{
+	(void)state;
+	nt_pixels p = make(hills, 1, 8);
+	nt_normal_facts facts;
+	nt_error error;
+	fail_allocations_from(0);
+	assert_int_equal(nt_examine_normals(&p, &facts, &error), NT_ERROR_MEMORY);
+	assert_true(stop_failing_allocations());
+	nt_pixels_free(&p);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(green_is_told_by_the_curl),
+		cmocka_unit_test(nothing_is_told_by_weak_evidence),
+		cmocka_unit_test(halves_that_contradict_tell_nothing),
+		cmocka_unit_test(shares_are_counted),
+		cmocka_unit_test(wide_steps_are_bands),
+		cmocka_unit_test(examining_without_memory_is_an_error),
+	};
+	return cmocka_run_group_tests_name("image/examine", tests, NULL, NULL);
+}
