@@ -5,6 +5,7 @@
     images.py write FILE WIDTH HEIGHT EXPRESSION   a TGA, BMP, TIFF or PNG by its ending; EXPRESSION of x, y (rows down), w, h and
                                                    math gives (r, g, b) of bytes, a grey byte, or ("16", grey) of 16 bits
     images.py rows FILE                            the samples of a PNG as JSON, row by row
+    images.py tga FILE.png FILE.tga                the same picture
     images.py embedded GLB NUMBER FILE             the bytes of an image of a GLB
 """
 import json
@@ -105,6 +106,10 @@ def main():
             file.write(make(width, height, lambda x, y: eval(code, {"x": x, "y": y, "w": width, "h": height, "math": math})))
     elif sys.argv[1] == "rows":
         print(json.dumps(rows(open(sys.argv[2], "rb").read()), separators=(",", ":")))
+    elif sys.argv[1] == "tga":
+        picture = rows(open(sys.argv[2], "rb").read())
+        with open(sys.argv[3], "wb") as file:
+            file.write(tga(len(picture[0]), len(picture), lambda x, y: picture[y][x][:3]))
     else:
         with open(sys.argv[4], "wb") as file:
             file.write(embedded(open(sys.argv[2], "rb").read(), int(sys.argv[3])))
