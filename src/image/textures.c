@@ -305,7 +305,7 @@ static nt_status plan_results(nt_textures *t, nt_error *error)
 	for (size_t i = 0; i < t->wish_count && !status; i++) {
 		const recipe how = recipe_of(t, &t->wishes[i]);
 		uint32_t *number = &t->wishes[i].result;
-		const uint64_t hash = hash_of(how.source, how.decode + 2 * how.heights, how.height, how.clamp);
+		const uint64_t hash = hash_of(how.source, how.png + 2 * how.heights + 4 * how.flip, how.height, how.clamp);
 		for (size_t at = NT_HASH_BEGIN; (*number = nt_hash_index_next(&t->by_recipe, hash, &at)) != UINT32_MAX;)
 			if (equal_recipes(&t->results[*number].how, &how))
 				break;
