@@ -20,6 +20,7 @@ NORMALS = np.tile(np.float32([0, 0, 1]), (6, 1))
 TEXCOORDS = np.float32([[0, 0], [1, 0], [1, 1], [0, 1], [0, 0], [0, 1]])
 FACES = np.uint32([[0, 1, 2], [0, 2, 3], [1, 4, 5], [1, 5, 2]])
 QUADS = np.uint32([[0, 1, 2, 3], [1, 4, 5, 2]])
+FACES_OF_CUBE = 10  # quads of data/mirrored_cube.obj
 LEFT, RIGHT = [1, 0, 0, 1], [-1, 0, 0, -1]
 
 
@@ -242,6 +243,31 @@ def test_structs_are_those_of_the_header():
         at = 0
         for member, _ in struct_type._fields_:  # in this order; a newer header may have more
             at = body.index(f"{member};", at)
+
+
+def convert(*arguments, **options):
+    return nmtan.convert(*arguments, program=os.environ["NMTAN"], **options)
+
+
+def test_convert(tmp_path):
+    output = tmp_path / "cube.gltf"
+    result = convert(os.path.join(DATA, "mirrored_cube.obj"), output, verify=True, quiet=True, report=None)
+    assert result.status == "done" and result.exit_code == 0
+    assert str(output) in result.outputs and str(tmp_path / "cube.bin") in result.outputs
+    assert all(os.path.exists(path) for path in result.outputs)
+    assert any(path.endswith("mirrored_cube.obj") for path in result.dependencies)
+    assert result.manifest["triangles"] == 2 * FACES_OF_CUBE
+
+
+def test_convert_fails_as_the_tool_does(tmp_path):
+    with pytest.raises(nmtan.ConversionError, match="no such file") as caught:
+        convert(tmp_path / "nothing.obj", tmp_path / "nothing.glb")
+    assert caught.value.exit_code == 2 and caught.value.conversion.status == "failed"
+    with pytest.raises(nmtan.ConversionError, match="unknown option") as caught:
+        convert("a.obj", "a.glb", no_such_option=True)
+    assert caught.value.exit_code == 1 and caught.value.conversion is None
+    with pytest.raises(FileNotFoundError):
+        nmtan.convert("a.obj", "a.glb", program="/no/such/nmtan")
 
 
 def test_version():

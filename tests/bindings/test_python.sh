@@ -10,7 +10,7 @@ done
 scene "the wheel has the module, the library and the licence, and nothing else"
 make -C "$ROOT" -s python >make.txt 2>&1 || wrong "$(tail -5 make.txt)"
 python3 -m zipfile -l "$ROOT/build/python/nmtan.whl" | awk 'NR > 1 { sub(/-[0-9.]+\.dist/, ".dist", $1); print $1 }' | sort >names.txt
-printf '%s\n' nmtan.dist-info/{LICENSE,METADATA,RECORD,WHEEL} nmtan/{__init__.py,_library.py,libnmtan.so.0,py.typed} |
+printf '%s\n' nmtan.dist-info/{LICENSE,METADATA,RECORD,WHEEL} nmtan/{__init__.py,_convert.py,_library.py,libnmtan.so.0,py.typed} |
 	sort | diff - names.txt >diff.txt || wrong "$(cat diff.txt)"
 
 scene "two builds of the wheel have the same bytes"

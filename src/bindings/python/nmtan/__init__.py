@@ -15,6 +15,8 @@
 Arrays of float32 whose rows are contiguous are read where they stand; others are converted. V points up, as in OBJ
 files, Blender and bakers: pass convention="gltf" where it points down. The GIL is released while a mesh is solved.
 
+convert() runs the tool on whole files.
+
 Errors: ValueError for arrays that do not fit each other, numbers out of range and unknown names; MemoryError.
 """
 
@@ -24,8 +26,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _library
+from ._convert import Conversion, ConversionError, convert
 
-__all__ = ["Counts", "VertexTangents", "split", "tangents", "version", "vertex_tangents"]
+__all__ = ["Conversion", "ConversionError", "Counts", "VertexTangents", "convert", "split", "tangents", "version",
+           "vertex_tangents"]
 
 _lib = _library.load()
 _METHODS = ("mikktspace", "area", "lengyel", "robust")
