@@ -109,7 +109,7 @@ same late.glb once.glb
 
 scene "$parts primitives with accessors of their own"
 inputs scene "$parts" p.glb
-within 10 1100 -q p.glb out.glb
+within 10 1300 -q p.glb out.glb
 exits 0
 is "$(gltf out.glb 'g.accessors.length')" $((5 * parts))
 rm out.glb

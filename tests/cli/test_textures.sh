@@ -26,6 +26,8 @@ quad "norm n.tga"
 run quad.obj quad.glb
 exits 0
 says "n.tga became n.png (embedded)"
+run --check quad.obj
+says_not "became"
 is "$(gltf quad.glb '[g.images[0].mimeType, g.materials[0].normalTexture.index]')" '["image/png",0]'
 images embedded quad.glb 0 made.png
 is "$(images rows made.png)" "$(images rows twin.png)"
