@@ -49,7 +49,7 @@ build=${1-}
 if [ -n "$build" ]; then
 	while IFS= read -r symbol; do
 		fault "libnmtan.so exports $symbol"
-	done < <(nm -D --defined-only "$build/libnmtan.so" | awk '$3 !~ /^nmtan_/ { print $3 }')
+	done < <(nm -D --defined-only "$build/libnmtan.so" | awk '$2 != "A" && $3 !~ /^nmtan_/ { print $3 }')
 	while IFS= read -r symbol; do
 		fault "libnmtan.a needs C++: $symbol"
 	done < <(nm -u "$build/libnmtan.a" 2>/dev/null | awk '$2 ~ /^(_Z|__cxa|__gxx)/ { print $2 }' | sort -u)
