@@ -161,4 +161,22 @@ if [ -f "$cube" ]; then
 	is "$(tangents kept.glb)" "$(tangents repair.glb)"
 fi
 
+scene "one geometry with other morph targets is another set: --morph=drop gives both their tangents"
+python3 - "$ROOT/data/morph.gltf" twice.gltf <<'PY'
+import json, sys
+document = json.load(open(sys.argv[1]))
+primitives = document["meshes"][0]["primitives"]
+primitives.append(json.loads(json.dumps(primitives[0])))
+primitives[0]["targets"] *= 2
+document["meshes"][0]["weights"] = [0, 0]
+json.dump(document, open(sys.argv[2], "w"))
+PY
+run --morph=drop "$ROOT/data/morph.gltf" once.gltf
+exits 0
+run --morph=drop twice.gltf out.gltf
+exits 0
+is "$(gltf out.gltf 'g.meshes[0].primitives.every((p) => "TANGENT" in p.attributes)')" true
+run --check --ignore=TAN_MORPH_MISSING --fail-on=warning out.gltf
+exits 0
+
 done_testing

@@ -424,12 +424,12 @@ static nt_status merge_users(merging *m, nt_arena *arena, nt_error *error)
 	return NT_OK;
 }
 
-/* A pool's only solved mesh, which others may be the same as; NULL where there are several, or where vertices
+/* A pool's only solved mesh, which others of its set may be the same as; NULL where there are several, or where vertices
  * are more than its split. */
 static const nt_mesh *lone_mesh(const nt_vertex_pool *pool)
 {
 	const nt_mesh *lone = NULL;
-	for (size_t i = 0; i < pool->user_count; i++) {
+	for (size_t i = 0; i < pool->user_count && pool->sets.count == 1; i++) {
 		const nt_mesh *mesh = nt_pool_mesh(pool, i);
 		if (!nt_pool_is_solved(pool, i) || (lone && mesh->same_as == lone))
 			continue;
