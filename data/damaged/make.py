@@ -115,6 +115,7 @@ def gltf():
     edit("indices", '"indices": 3', '"indices": 99')
     edit("mode", '"indices": 3,', '"indices": 3, "mode": 9,')
     edit("material", '"material": 0', '"material": 9')
+    edit("views_object", '"bufferViews": [', '"bufferViews": {}, "were": [')
     edit("buffer_short", '"uri": "plates.bin"', '"uri": "short.bin"')
     save("short.bin", good("plates.bin")[:600])
     edit("uri_missing", '"uri": "plates.bin"', '"uri": "nowhere.bin"')

@@ -347,6 +347,8 @@ static nt_status begin_session(session *s, const nt_batch *batch, nt_error *erro
 
 static void end_session(session *s)
 {
+	nt_error told; /* where the batch ran to its end it is closed, and this does nothing */
+	nt_manifest_close(&s->manifest, &told);
 	for (size_t i = 0; i < s->report_count; i++)
 		nt_report_free(s->reports[i]);
 	free(s->reports);
@@ -360,7 +362,7 @@ static void end_session(session *s)
 static int run_batch(const nt_command *command, nt_style style, const nt_report_plan *plan,
 	nt_batch *batch)
 {
-	session s = {.command = command, .plan = plan, .style = style, .count = batch->count};
+	session s = {.command = command, .plan = plan, .style = style, .count = batch->count, .manifest = {.fd = -1}};
 	nt_error error;
 	if (begin_session(&s, batch, &error)) {
 		end_session(&s);

@@ -173,11 +173,11 @@ nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *
 	nt_error *error)
 {
 	*manifest = (nt_manifest){.path = path, .options = options, .fd = -1};
-	if (!nt_buffer_reserve(&manifest->line, LINE_BYTES))
-		return nt_fail_memory(error);
 	const bool standard = strcmp(path, "-") == 0;
 	if (!standard && refuse_input(manifest, batch, error))
 		return error->status;
+	if (!nt_buffer_reserve(&manifest->line, LINE_BYTES))
+		return nt_fail_memory(error);
 	manifest->fd = standard ? dup(STDOUT_FILENO)
 				: open(path, O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
 	return manifest->fd < 0 ? fail(manifest, errno, error) : NT_OK;

@@ -156,8 +156,6 @@ const char *view_bytes(nt_reread &model, int index, const unsigned char **bytes,
 	*stride = view.byteStride;
 	if (model.packed.count(static_cast<size_t>(index)))
 		return unpack(model, static_cast<size_t>(index), view.byteLength, bytes);
-	if (!view.extensions.empty())
-		return "the buffer view has an extension";
 	if (view.buffer < 0)
 		return "the buffer view has no buffer";
 	*bytes = buffer_bytes(document, static_cast<uint64_t>(view.buffer), view.byteOffset, view.byteLength);

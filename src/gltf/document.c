@@ -42,16 +42,24 @@ bool nt_gltf_uses(const nt_gltf *document, const char *extension)
 	return false;
 }
 
+/* A member of the root that is there must be an array. */
+static nt_status check_array(const nt_gltf *document, const char *name, nt_error *error)
+{
+	const nt_json_value *elements = nt_gltf_root_member(document, name);
+	if (!elements || nt_json_type_of(elements) == NT_JSON_ARRAY)
+		return NT_OK;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/%s", name);
+	return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an array", nt_json_type_text(elements));
+}
+
 nt_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t index,
 	const char *from, const nt_json_value **element, nt_error *error)
 {
 	const nt_json_value *elements = nt_gltf_root_member(document, array);
-	if (elements && nt_json_type_of(elements) != NT_JSON_ARRAY) {
-		char pointer[NT_GLTF_POINTER];
-		snprintf(pointer, sizeof pointer, "/%s", array);
-		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an array",
-			nt_json_type_text(elements));
-	}
+	const nt_status status = check_array(document, array, error);
+	if (status)
+		return status;
 	if (index >= nt_json_count(elements))
 		return nt_fail_pointer(error, NT_ERROR_INPUT, from,
 			"refers to %s[%llu], there are %zu", array, (unsigned long long)index,
@@ -152,6 +160,10 @@ nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_out
 		status = parse_json(document, error);
 	if (!status)
 		status = check_version(document, error);
+	/* what new elements may be appended to */
+	static const char *const arrays[] = {"accessors", "bufferViews", "buffers"};
+	for (size_t i = 0; !status && i < sizeof arrays / sizeof *arrays; i++)
+		status = check_array(document, arrays[i], error);
 	if (!status) {
 		document->buffer_count = nt_json_count(nt_gltf_root_member(document, "buffers"));
 		document->buffers = nt_calloc(document->buffer_count, sizeof *document->buffers);
