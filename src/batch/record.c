@@ -332,11 +332,12 @@ static nt_status append_files(nt_record *record, const nt_making *making, const 
 	return status;
 }
 
-/* *known is false where a file changed while it was read: nothing is to be said then. */
+/* Of files that changed while they were read the line says that nothing was written, so that it never holds: without a
+ * line the times would decide. */
 static nt_status make_line(nt_record *record, const nt_making *making, const nt_trace *trace, nt_buffer *line,
-	bool *known, nt_error *error)
+	nt_error *error)
 {
-	*known = true;
+	bool is_known = !trace->unsure, *known = &is_known;
 	nt_buffer_text(line, line_begin);
 	nt_status status = append_uri(record, making->output, line, error);
 	nt_buffer_format(line, "\",\"nmtan\":\"%s\",\"options\":", nmtan_version());
@@ -348,8 +349,11 @@ static nt_status make_line(nt_record *record, const nt_making *making, const nt_
 	if (!status)
 		status = append_files(record, making, trace, NT_TRACE_MISSING, line, known, error);
 	nt_buffer_text(line, "],\"written\":[");
+	const size_t begin = line->size;
 	if (!status)
 		status = append_files(record, making, trace, NT_TRACE_WRITTEN, line, known, error);
+	if (!*known && !line->failed)
+		line->size = begin;
 	nt_buffer_text(line, "]}\n");
 	return status || !line->failed ? status : nt_fail_memory(error);
 }
@@ -357,9 +361,8 @@ static nt_status make_line(nt_record *record, const nt_making *making, const nt_
 nt_status nt_record_append(nt_record *record, const nt_making *making, const nt_trace *trace, nt_error *error)
 {
 	nt_buffer line = {0};
-	bool known;
-	nt_status status = make_line(record, making, trace, &line, &known, error);
-	if (!status && known)
+	nt_status status = make_line(record, making, trace, &line, error);
+	if (!status)
 		status = nt_record_file_append(&record->file, line.data, line.size, error);
 	nt_buffer_free(&line);
 	return status;

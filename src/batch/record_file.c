@@ -107,6 +107,11 @@ static nt_status load(nt_record_file *file, nt_error *error)
 		status = add_line(file, at, (size_t)(end - file->text) - at, error);
 		at = (size_t)(end - file->text) + 1;
 	}
+	const size_t head = strlen(file->prefix), known = file->size < head ? file->size : head;
+	if (!status && known && !file->line_count && memcmp(file->text, file->prefix, known) != 0) {
+		nt_fail(error, NT_ERROR_IO, "refusing to write: it is no record");
+		status = nt_error_in_file(error, file->path);
+	}
 	return status;
 }
 

@@ -187,7 +187,7 @@ nt_status nt_update_look(nt_update *update, const char *input, const char *outpu
 	if (status)
 		return status;
 	const bool unknown = freshness == NT_FRESH_UNKNOWN;
-	*current = o->look && (freshness == NT_FRESH_CURRENT || (unknown && is_younger(&job->making, &output_info, trace)));
+	*current = o->look && (freshness == NT_FRESH_CURRENT || (unknown && !o->whole && is_younger(&job->making, &output_info, trace)));
 	if (o->look && settings->equal == NT_EQUAL_REPLACE)
 		settings->equal = unknown ? NT_EQUAL_TOUCH : NT_EQUAL_KEEP;
 	settings->placing = append;

@@ -37,6 +37,7 @@ typedef struct session {
 	nt_update *update; /* NULL: no records */
 	nt_depfile depfile;
 	bool no_depfile; /* a rule is missing in it */
+	bool no_report;  /* it would replace a file of a job */
 	nt_manifest manifest;
 	nt_summary total; /* of the times and sizes alone */
 	nt_failures failures;
@@ -151,7 +152,7 @@ static void tell_current(session *s, const nt_job *job)
 /* How a job that has ended, and still has its report, counts. */
 static int exit_code_of(const session *s, const nt_job *job)
 {
-	if (job->status || !job->outcome || !findings_fail(&job->outcome->summary, s->plan->target.style.least_failure))
+	if (job->status || !job->outcome || s->command->diff || !findings_fail(&job->outcome->summary, s->plan->target.style.least_failure))
 		return nt_exit_code(job->status);
 	return NT_EXIT_FINDINGS;
 }
@@ -163,11 +164,32 @@ static void note_end(void *user, const nt_job *job)
 	nt_manifest_add(&s->manifest, job, exit_code_of(s, job));
 }
 
+/* What a job has read or written is not replaced by what is said about it. */
+static void refuse_own(session *s, const nt_job *job, const char *path, bool *refused, int *code)
+{
+	struct stat own, other;
+	nt_error error;
+	if (!path || *refused || !job->outcome || strcmp(path, "-") == 0 || stat(path, &own) != 0)
+		return;
+	const nt_trace *trace = &job->outcome->summary.trace;
+	size_t i = 0;
+	while (i < trace->count && !(stat(trace->files[i].path, &other) == 0 && nt_same_file(&own, &other)))
+		i++;
+	*refused = i < trace->count;
+	if (!*refused)
+		return;
+	nt_fail(&error, NT_ERROR_IO, "refusing to write: it is the same file as the %s %s",
+		trace->files[i].kind == NT_TRACE_WRITTEN ? "output" : "input", trace->files[i].path);
+	nt_error_in_file(&error, path);
+	nt_message_error(&s->text, &error, s->style);
+	*code = nt_exit_worse(*code, nt_exit_code(error.status));
+}
+
 /* The rule of an output that is there. */
 static void add_rule(session *s, const nt_job *job, int *code)
 {
 	nt_error error;
-	if (!s->command->depfile || job->status || job->end == NT_JOB_UNTRIED || !job->outcome ||
+	if (!s->command->depfile || s->command->settings.dry_run || job->status || job->end == NT_JOB_UNTRIED || !job->outcome ||
 		!nt_depfile_add(&s->depfile, job->output, &job->outcome->summary.trace, &error))
 		return;
 	nt_message_error(&s->text, &error, s->style);
@@ -194,6 +216,8 @@ static void tell_job(void *user, nt_job *job)
 		tell_current(s, job);
 	else if (job->outcome)
 		code = tell_run(s, job);
+	refuse_own(s, job, s->command->depfile, &s->no_depfile, &code);
+	refuse_own(s, job, s->command->report, &s->no_report, &code);
 	add_rule(s, job, &code);
 	if (job->status)
 		nt_failures_add(&s->failures, job);
@@ -248,7 +272,7 @@ static void tell_report(session *s)
 	const char *images = s->command->uv_image;
 	nt_error error;
 	/* what had no memory for its report has been told */
-	bool all = true;
+	bool all = !s->no_report;
 	for (size_t i = 0; i < s->report_count; i++)
 		all &= s->reports[i] || !s->plan->wanted;
 	if (s->command->diff)
@@ -324,7 +348,7 @@ static nt_status begin_update(session *s, nt_error *error)
 	if (!c->update && !c->record)
 		return NT_OK;
 	const nt_update_options options = {.look = c->update, .by = (nt_update_by)c->update_by, .record = c->record,
-		.folder = c->directory, .options = s->shaping.data ? s->shaping.data : ""};
+		.folder = c->directory, .whole = c->depfile != NULL, .options = s->shaping.data ? s->shaping.data : ""};
 	return nt_update_begin(&s->update, &options, error);
 }
 

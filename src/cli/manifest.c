@@ -155,9 +155,23 @@ static nt_status fail(const nt_manifest *manifest, int number, nt_error *error)
 	return nt_error_in_output(error, manifest->path);
 }
 
-static nt_status refuse_input(const nt_manifest *manifest, const nt_batch *batch, nt_error *error)
+/* It is emptied before it is known what is read: what is there has to be a manifest, or empty. */
+static bool is_ours(int fd)
+{
+	static const char begin[] = "{\"input\":";
+	char bytes[sizeof begin - 1];
+	const ssize_t count = pread(fd, bytes, sizeof bytes, 0);
+	return count <= 0 || (count == (ssize_t)sizeof bytes && memcmp(bytes, begin, sizeof bytes) == 0);
+}
+
+static nt_status refuse_foreign(const nt_manifest *manifest, const nt_batch *batch, nt_error *error)
 {
 	struct stat info, input;
+	for (size_t i = 0; i < batch->count; i++)
+		if (batch->jobs[i].output && strcmp(batch->jobs[i].output, manifest->path) == 0) {
+			nt_fail(error, NT_ERROR_USAGE, "--manifest and an output are both '%s'", manifest->path);
+			return error->status;
+		}
 	if (stat(manifest->path, &info) != 0)
 		return NT_OK;
 	for (size_t i = 0; i < batch->count; i++)
@@ -166,6 +180,14 @@ static nt_status refuse_input(const nt_manifest *manifest, const nt_batch *batch
 				batch->jobs[i].input);
 			return nt_error_in_file(error, manifest->path);
 		}
+	const int fd = S_ISREG(info.st_mode) ? open(manifest->path, O_RDONLY | O_CLOEXEC) : -1;
+	const bool ours = fd < 0 || is_ours(fd);
+	if (fd >= 0)
+		close(fd);
+	if (!ours) {
+		nt_fail(error, NT_ERROR_IO, "refusing to write: the file exists already and is no manifest");
+		return nt_error_in_file(error, manifest->path);
+	}
 	return NT_OK;
 }
 
@@ -174,7 +196,7 @@ nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *
 {
 	*manifest = (nt_manifest){.path = path, .options = options, .fd = -1};
 	const bool standard = strcmp(path, "-") == 0;
-	if (!standard && refuse_input(manifest, batch, error))
+	if (!standard && refuse_foreign(manifest, batch, error))
 		return error->status;
 	if (!nt_buffer_reserve(&manifest->line, LINE_BYTES))
 		return nt_fail_memory(error);

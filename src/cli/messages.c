@@ -223,7 +223,7 @@ void nt_message_success(nt_buffer *out, const nt_job *job, const nt_settings *se
 	else
 		append_skipped(out, s);
 	nt_buffer_format(out, ", %.3g s", s->total_seconds);
-	if (s->note && !settings->check)
+	if (s->note && !settings->check && !settings->dry_run)
 		nt_buffer_clean(out, s->note);
 	nt_buffer_text(out, "\n");
 }

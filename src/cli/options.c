@@ -618,6 +618,10 @@ static void append_shaping(nt_buffer *out, const nt_option_row *row, const void 
 		append_choice(out, row->values, *(const int *)field - row->first);
 	} else if (row->kind == NT_OPTION_TEXT) {
 		nt_buffer_format(out, "=%s", *(const char *const *)field);
+	} else if (row->kind == NT_OPTION_LIST) {
+		const nt_words *words = field;
+		for (size_t i = 0; i < words->count; i++)
+			nt_buffer_format(out, "%s%s=%s", i ? " --" : "", i ? row->name : "", words->items[i]);
 	} else if (row->kind != NT_OPTION_FLAG) {
 		nt_buffer_format(out, "=%d", *(const int *)field);
 	}
@@ -626,7 +630,8 @@ static void append_shaping(nt_buffer *out, const nt_option_row *row, const void 
 /* How many bytes of the command a row's value takes. */
 static size_t field_bytes(const nt_option_row *row)
 {
-	return row->kind == NT_OPTION_FLAG ? sizeof(bool) : row->kind == NT_OPTION_TEXT ? sizeof(char *) : sizeof(int);
+	return row->kind == NT_OPTION_FLAG ? sizeof(bool) : row->kind == NT_OPTION_TEXT ? sizeof(char *) :
+	       row->kind == NT_OPTION_LIST ? sizeof(nt_words) : sizeof(int);
 }
 
 /* Options about the output that change when and how it is written, but not what. */

@@ -100,6 +100,9 @@ static nt_status check_outputs(const nt_command *c, nt_error *error)
 {
 	const bool mesh_on_stdout = !c->settings.check && !c->directory && c->operand_count == 2 &&
 		strcmp(c->operands[1], "-") == 0;
+	const bool manifest_on_stdout = c->manifest && strcmp(c->manifest, "-") == 0;
+	if (manifest_on_stdout && mesh_on_stdout)
+		return nt_fail(error, NT_ERROR_USAGE, "the mesh and the manifest cannot both go to standard output");
 	if (mesh_on_stdout && c->report && strcmp(c->report, "-") == 0)
 		return nt_fail(error, NT_ERROR_USAGE,
 			"the mesh and the report cannot both go to standard output");

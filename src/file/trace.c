@@ -90,6 +90,12 @@ void nt_trace_missing(const char *path)
 	note(NT_TRACE_MISSING, path, NULL, NULL);
 }
 
+void nt_trace_unsure(void)
+{
+	if (current)
+		current->unsure = true;
+}
+
 void nt_trace_written(const char *path, const char *present, const struct stat *info)
 {
 	note(NT_TRACE_WRITTEN, path, present, info);

@@ -31,6 +31,7 @@ typedef struct nt_trace {
 	nt_trace_file *files;
 	size_t count, capacity;
 	nt_hash_index index;
+	bool unsure; /* something was looked for by other means than a name: that it is missing still cannot be told */
 	bool failed; /* memory ran out: something is not in it */
 } nt_trace;
 
@@ -43,6 +44,9 @@ nt_trace *nt_trace_use(nt_trace *trace);
 void nt_trace_read(const char *path, const struct stat *info);
 void nt_trace_missing(const char *path);
 void nt_trace_written(const char *path, const char *present, const struct stat *info);
+
+/* Notes that something was looked for in vain under names that are not noted. */
+void nt_trace_unsure(void);
 
 /* The time of the last change, in nanoseconds since 1970. */
 int64_t nt_trace_modified(const struct stat *info);

@@ -14,6 +14,10 @@
 #include "base/memory.h"
 #include "file/lookup.h"
 #include "file/relative_path.h"
+#include "file/trace.h"
+
+/* Of a name so many last parts are looked for: each is one more look into every folder. */
+enum { MOST_PARTS = 32 };
 
 typedef struct search {
 	const nt_image_places *places;
@@ -106,6 +110,11 @@ typedef nt_status (*try_fn)(search *s, const char *folder, const char *name, boo
 static nt_status try_suffixes(search *s, const char *folder, const char *name, try_fn try, bool *accepted)
 {
 	nt_status status = NT_OK;
+	size_t parts = 1;
+	for (const char *c = name; *c; c++)
+		parts += *c == '/';
+	for (; parts > MOST_PARTS; parts--)
+		name = strchr(name, '/') + 1;
 	*accepted = false;
 	while (name && *name && !status && !*accepted) {
 		status = try(s, folder, name, accepted);
@@ -161,15 +170,20 @@ static nt_status try_folders(search *s, const char *name, try_fn try, bool *acce
 	nt_buffer folder = {0};
 	nt_status status = NT_OK;
 	*accepted = false;
+	nt_buffer first = {0};
 	for (size_t i = 0; !status && !*accepted; i++) {
 		bool more;
 		status = folder_at(s->places, i, &folder, &more, s->error);
 		if (status || !more)
 			break;
-		if (folder.size)
+		if (i == 0)
+			nt_buffer_append(&first, folder.data ? folder.data : "", folder.size);
+		/* the input is mostly beside its document */
+		if (folder.size && (i != 1 || first.failed || !first.size || strcmp(first.data, folder.data) != 0))
 			status = try_suffixes(s, folder.data, name, try, accepted);
 	}
 	nt_buffer_free(&folder);
+	nt_buffer_free(&first);
 	return status;
 }
 
@@ -208,6 +222,7 @@ nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buff
 		if (!status && !accepted)
 			status = try_folders(&s, part, try_any_case, &accepted);
 		if (!status && !accepted) {
+			nt_trace_unsure(); /* any case will do */
 			*found = s.outside ? NT_IMAGE_OUTSIDE : NT_IMAGE_MISSING;
 			path->size = 0;
 			nt_link_join(path, folder.size ? folder.data : "/", nt_link_is_absolute(name) ? nt_last_part(part) : name);

@@ -7,6 +7,12 @@ identity() {
 	stat -c '%i %y' "$@"
 }
 
+# q.obj, whose normal map n.png is not there.
+quad_with_map() {
+	{ echo "mtllib q.mtl" && echo "usemtl q" && grep -v '^#\|^usemtl\|^mtllib' "$data/quad.obj"; } >q.obj
+	printf '%s\n' "newmtl q" "norm n.png" >q.mtl
+}
+
 scene "an output that has its bytes already keeps its inode and time with --write-if-changed, and not without"
 run "$data/quad.obj" o.glb
 before=$(identity o.glb)
@@ -280,6 +286,47 @@ diff -r clean out --exclude=.nmtan-record >difference || wrong "$(head -3 differ
 # each run that was killed may have been at one file for each of its threads
 lines=$(wc -l <out/.nmtan-record)
 [ "$lines" -le $((1000 + kills * $(nproc))) ] || wrong "$lines files were made in $kills runs"
+
+scene "a record, a manifest, a depfile and a report replace nothing that a run has read or written"
+cp "$data/mirrored_cube.obj" "$data/mirrored_cube.mtl" "$data/bumps.png" .
+sum() { cat mirrored_cube.obj mirrored_cube.mtl bumps.png | cksum; }
+before=$(sum)
+for taken in mirrored_cube.obj mirrored_cube.mtl bumps.png; do
+	for option in record manifest depfile report; do
+		kind=
+		[ $option != report ] || kind=--report-format=json
+		run "--$option=$taken" $kind mirrored_cube.obj o.glb
+		exits 2
+		says "refusing to write"
+		is "$(sum)" "$before"
+	done
+done
+run --depfile=o.glb mirrored_cube.obj o.glb
+exits 2
+is "$(head -c 4 o.glb)" glTF
+run --manifest=- --output-format=glb mirrored_cube.obj -
+exits 1
+
+scene "folders of images are among the options that a record compares"
+quad_with_map
+mkdir A B
+cp "$data/bumps.png" A/n.png
+{ cat "$data/bumps.png" && echo more; } >B/n.png
+run --update --texture-path=A q.obj q.glb
+exits 0
+run --update --texture-path=A q.obj q.glb
+says "up to date"
+run --update --texture-path=B q.obj q.glb
+says_not "up to date"
+
+scene "an image that appears under a name in another case is seen"
+quad_with_map
+run --update q.obj q.glb
+exits 0
+cp "$data/bumps.png" N.PNG
+run --update q.obj q.glb
+says_not "up to date"
+is "$(gltf q.glb 'g.images.length')" 1
 
 scene "ten thousand files that are up to date take less than half a second"
 for ((i = 0; i < 100; i++)); do cp "$data/quad.obj" in_$i.obj; done

@@ -18,7 +18,7 @@ typedef struct source {
 	const unsigned char *bytes;
 	size_t size, position;
 	char message[256]; /* the first one */
-	bool exhausted;
+	bool exhausted, limited; /* no memory; more than we give it */
 } source;
 
 static tmsize_t read_source(thandle_t handle, void *to, tmsize_t count)
@@ -70,7 +70,8 @@ static int on_error(TIFF *tiff, void *user, const char *module, const char *form
 	source *s = user;
 	char message[sizeof s->message];
 	vsnprintf(message, sizeof message, format, arguments);
-	s->exhausted |= is_of_memory(message);
+	s->limited |= strstr(message, "beyond") != NULL; /* another message about memory follows */
+	s->exhausted |= !s->limited && is_of_memory(message);
 	if (!*s->message)
 		strcpy(s->message, message);
 	return 1;
@@ -126,15 +127,17 @@ static bool read_scanlines(TIFF *tiff, nt_pixels *pixels)
 	return read;
 }
 
-static bool read_tiles(TIFF *tiff, nt_pixels *pixels)
+static bool read_tiles(TIFF *tiff, nt_pixels *pixels, bool *exhausted)
 {
 	uint32_t wide = 0, high = 0;
 	TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &wide);
 	TIFFGetField(tiff, TIFFTAG_TILELENGTH, &high);
 	const size_t pixel_bytes = pixels->channels * (pixels->bits / 8), row_bytes = nt_pixels_row_bytes(pixels);
 	const size_t tile_bytes = (size_t)TIFFTileSize(tiff);
-	char *tile = wide && high && tile_bytes / wide / pixel_bytes == high ? _TIFFmalloc((tmsize_t)tile_bytes) : NULL;
+	const bool possible = wide && high && tile_bytes <= MOST_BLOCK_BYTES && tile_bytes / wide / pixel_bytes == high;
+	char *tile = possible ? _TIFFmalloc((tmsize_t)tile_bytes) : NULL;
 	bool read = tile != NULL;
+	*exhausted |= possible && !tile;
 	for (uint32_t y = 0; read && y < pixels->height; y += high)
 		for (uint32_t x = 0; read && x < pixels->width; x += wide) {
 			read = TIFFReadTile(tiff, tile, x, y, 0, 0) >= 0;
@@ -187,7 +190,7 @@ static nt_status decode(TIFF *tiff, source *s, nt_pixels *pixels, nt_error *erro
 	if (status)
 		return status;
 	const bool read = !direct ? read_shown(tiff, pixels)
-				  : TIFFIsTiled(tiff) ? read_tiles(tiff, pixels) : read_scanlines(tiff, pixels);
+				  : TIFFIsTiled(tiff) ? read_tiles(tiff, pixels, &s->exhausted) : read_scanlines(tiff, pixels);
 	return read ? NT_OK : fail(s, error);
 }
 
