@@ -13,6 +13,7 @@
 #include "file/relative_path.h"
 #include "gltf/document.h"
 #include "gltf/normalized.h"
+#include "gltf/primitive.h"
 #include "gltf/quantize.h"
 #include "gltf/verify_faces.h"
 
@@ -402,15 +403,17 @@ static bool counts_match(const nt_mesh *mesh, const primitive_view *view)
 
 /* A mesh of an edited document stands where it stood. Strips and fans keep their own indices: there only the
  * number of tangents is checked. */
-static nt_status verify_edited(nt_reread *model, const nt_mesh *mesh, nt_error *error)
+static nt_status verify_edited(const nt_scene *scene, nt_reread *model, const nt_mesh *mesh, nt_error *error)
 {
+	uint64_t mode = NT_GLTF_TRIANGLES;
+	nt_json_get_uint64(nt_json_find(nt_gltf_primitive_of(scene->source, mesh), "mode"), &mode);
 	primitive_view view;
 	nt_status status = open_primitive(model, mesh->gltf_mesh, mesh->gltf_primitive, &view, error);
 	if (status == NT_OK)
 		status = open_targets(model, mesh, &view, error);
 	if (status == NT_OK && view.block)
 		status = compare_block(mesh, &view, error);
-	else if (status == NT_OK && corner_count(&view) == mesh->corner_count)
+	else if (status == NT_OK && mode == NT_GLTF_TRIANGLES && corner_count(&view) == mesh->corner_count)
 		status = compare_mesh(mesh, &view, error);
 	else if (status == NT_OK && !counts_match(mesh, &view))
 		status = fail_corner(mesh, 0, error);
@@ -426,7 +429,7 @@ static nt_status compare_scene(const nt_scene *scene, nt_reread *model, nt_error
 		const bool edited = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
 		nt_status status = NT_OK;
 		if (edited)
-			status = mesh->split.vertex_tangents ? verify_edited(model, mesh, error) : NT_OK;
+			status = mesh->split.vertex_tangents ? verify_edited(scene, model, mesh, error) : NT_OK;
 		else if (mesh->face_count)
 			status = verify_composed(model, mesh, number++, error);
 		if (status != NT_OK)

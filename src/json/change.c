@@ -50,6 +50,8 @@ static bool grow(nt_json *document, nt_json_value *container)
 /* A null behind the children of a container, which becomes an empty one of that type if it is no such. */
 static nt_json_value *add(nt_json *document, nt_json_value *container, nt_json_type type)
 {
+	if (!container) /* one that memory was missing for */
+		return NULL;
 	if (container->type != type)
 		set(container, (nt_json_value){.type = type});
 	if (!grow(document, container))

@@ -184,4 +184,14 @@ exits 0
 says_not EXTENSION_STALE
 is "$(gltf out.gltf 'g.meshes[0].primitives[0].extensions.CESIUM_primitive_outline.indices')" 4
 
+scene "extensions that are an array have no names, and are passed over"
+for place in 'g.meshes[0].primitives[0]' 'g.meshes[0]'; do
+	node -e "const g = JSON.parse(require('fs').readFileSync('$data/morph.gltf')); $place.extensions = ['x', 1];
+		require('fs').writeFileSync('array.gltf', JSON.stringify(g))"
+	for option in --draco=off --draco=sequential --morph=drop; do
+		run $option array.gltf out.glb
+		exits 0
+	done
+done
+
 done_testing

@@ -78,4 +78,19 @@ run --verify views.gltf out.gltf
 exits 0
 says_not NOT_VERIFIED
 
+scene "a fan of one triangle has as many corners as vertices, in another order"
+run "$data/quad.obj" quad.gltf
+python3 - <<'PY'
+import json
+document = json.load(open("quad.gltf"))
+primitive = document["meshes"][0]["primitives"][0]
+primitive["mode"] = 6
+del primitive["attributes"]["TANGENT"]
+document["accessors"][primitive["indices"]]["count"] = 3
+json.dump(document, open("fan.gltf", "w"))
+PY
+run --verify --only=all fan.gltf out.glb
+exits 0
+says_not NOT_VERIFIED
+
 done_testing

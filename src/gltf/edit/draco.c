@@ -100,7 +100,8 @@ static bool accessors_are_own(const nt_gltf_recoding *r)
 	const nt_json_value *accessors = nt_gltf_root_member(r->document, "accessors");
 	for (size_t i = 0; i < nt_json_count(ids); i++) {
 		uint64_t accessor;
-		if (!nt_json_get_uint64(nt_json_find(attributes, nt_json_key(ids, i, NULL)), &accessor) ||
+		const char *name = nt_json_key(ids, i, NULL);
+		if (!name || !nt_json_get_uint64(nt_json_find(attributes, name), &accessor) ||
 			r->pools->foreign[r->pools->first_alias[accessor]] ||
 			nt_json_find(nt_json_at(accessors, (size_t)accessor), "bufferView"))
 			return false;

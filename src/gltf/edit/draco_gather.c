@@ -213,7 +213,9 @@ nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r)
 	for (size_t m = 0; m < r->vertices->pool->user_count; m++) {
 		const nt_json_value *extensions = nt_json_find(nt_pool_primitive(r->vertices->pool, m),
 			"extensions");
-		for (size_t i = 0; i < nt_json_count(extensions); i++)
+		if (extensions && nt_json_type_of(extensions) != NT_JSON_OBJECT)
+			r->obstacle = "its extensions are no object";
+		for (size_t i = 0; !r->obstacle && i < nt_json_count(extensions); i++)
 			r->outside |= strcmp(nt_json_key(extensions, i, NULL), "KHR_materials_variants") != 0;
 	}
 	return NT_OK;

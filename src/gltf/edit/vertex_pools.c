@@ -200,8 +200,9 @@ static void put_key(nt_buffer *key, const nt_vertex_pools *pools, const nt_mesh 
 	const nt_join *join = mesh->same_as ? mesh->same_as->join : mesh->join;
 	put_number(key, join ? (uint64_t)(join - pools->scene->joins) + 1 : 0);
 	put_number(key, mesh->morph_count);
-	put_number(key, nt_json_count(targets));
-	for (size_t i = 0; i < nt_json_count(targets); i++) {
+	const size_t target_count = mesh->morph_count ? nt_json_count(targets) : 0; /* else they move no tangent */
+	put_number(key, target_count);
+	for (size_t i = 0; i < target_count; i++) {
 		put_accessor(key, pools, nt_json_at(targets, i), "POSITION");
 		put_accessor(key, pools, nt_json_at(targets, i), "NORMAL");
 	}

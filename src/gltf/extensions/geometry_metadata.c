@@ -71,6 +71,7 @@ static nt_geometry_total total_of_mesh(const nt_gltf *document, const nt_json_va
 /* A node whose children are being added up. */
 typedef struct visit {
 	size_t node, next; /* child */
+	const nt_json_value *children;
 } visit;
 
 typedef struct adding {
@@ -100,7 +101,7 @@ static bool enter(adding *a, size_t node, const nt_geometry_total *meshes, size_
 	uint64_t mesh;
 	if (!nt_grow((void **)&a->stack, &a->capacity, a->depth + 1, sizeof *a->stack))
 		return false;
-	a->stack[a->depth++] = (visit){node, 0};
+	a->stack[a->depth++] = (visit){node, 0, nt_json_find(nt_json_at(a->nodes, node), "children")};
 	a->seen[node] = true;
 	if (nt_json_get_uint64(nt_json_find(nt_json_at(a->nodes, node), "mesh"), &mesh) && mesh < mesh_count)
 		a->totals[node] = meshes[mesh];
@@ -113,7 +114,7 @@ static bool add_up(adding *a, size_t root, const nt_geometry_total *meshes, size
 	bool entered = a->seen[root] || enter(a, root, meshes, mesh_count);
 	while (entered && a->depth) {
 		visit *here = &a->stack[a->depth - 1];
-		const nt_json_value *children = nt_json_find(nt_json_at(a->nodes, here->node), "children");
+		const nt_json_value *children = here->children;
 		if (here->next == nt_json_count(children)) {
 			a->depth--;
 			continue;

@@ -101,7 +101,7 @@ static void look_at(search *s, const nt_json_value *extensions, const char *owne
 		s->pointer.size = 0;
 		nt_buffer_format(&s->pointer, "%s/extensions", owner);
 		enter(s, extensions, i);
-		if (is_in(harmless, sizeof harmless / sizeof *harmless, name))
+		if (!name || is_in(harmless, sizeof harmless / sizeof *harmless, name))
 			continue;
 		if (!find_number(s, nt_json_at(extensions, i)))
 			continue;
