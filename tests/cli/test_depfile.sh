@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # Depfiles: make and Ninja make again exactly what has to be.
 . "$ROOT/tests/support/cli.sh"
-unset MAKEFLAGS MFLAGS # of the make that runs the tests: it may be silent
+unset MAKEFLAGS MFLAGS MAKELEVEL # of the make that runs the tests: it may be silent
 
 take() {
 	cp "$data"/mirrored_cube.* "$data/bumps.png" "$data"/plates.gltf "$data/plates.bin" .

@@ -21,12 +21,12 @@ typedef struct encoded {
 	uint32_t type, width;
 } encoded;
 
-/* Indices that form no triangle, at the end of a list, stay. */
+/* Indices that form no triangle, at the end of a list, stay, but where making normals has made a new list. */
 static size_t tail_of(const nt_mesh *mesh, uint64_t mode, uint64_t old_count)
 {
 	const size_t tail = (size_t)(old_count - mesh->corner_count);
 	return mode == NT_GLTF_TRIANGLES && old_count > mesh->corner_count && tail < 3 &&
-			mesh->indices ? tail : 0;
+			mesh->indices && !mesh->normals_made ? tail : 0;
 }
 
 static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices, bool borrowed, size_t tail,
