@@ -207,6 +207,8 @@ static nt_status put_vertex(ply_output *out, const layout *l, const placement *p
 		return fail_not_finite(mesh, "normal", v, false, error);
 	if (l->normals)
 		ply_put_floats(out, normal, 3);
+	if (l->colors && mesh->colors && !are_finite(mesh->colors + 4 * v, 4))
+		return fail_not_finite(mesh, "colour", v, false, error);
 	if (l->colors)
 		put_color(out, l, mesh->colors ? mesh->colors + 4 * v : NULL);
 	if (mesh->texcoords) {
