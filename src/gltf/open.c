@@ -11,6 +11,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include "gltf/draco_shared.h"
 #include "gltf/materials.h"
 #include "gltf/nodes.h"
 
@@ -251,7 +252,9 @@ nt_status nt_gltf_open(nt_scene *scene, const nt_read_options *options, nt_error
 		return nt_fail_memory(error);
 	memset(reached, 0, mesh_count * sizeof *reached);
 	scene->mesh_count = count;
-	status = nt_gltf_reach(document, reached, mesh_count, error);
+	status = nt_gltf_separate_draco(document, error);
+	if (!status)
+		status = nt_gltf_reach(document, reached, mesh_count, error);
 	if (!status)
 		status = describe_meshes(scene, document, options, reached, error);
 

@@ -77,6 +77,53 @@ says "mesh \"sheet\", primitive 1"
 says "it shares vertices with other primitives [DRACO_PLAIN]"
 is "$(compressed two.glb)" 0
 
+scene "primitives with different blocks that name the same accessors keep their own vertices"
+node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1] + "/plain.gltf"));
+	const p = g.meshes[0].primitives[0], a = g.accessors[p.attributes.TEXCOORD_0], v = g.bufferViews[a.bufferView];
+	for (const buffer of g.buffers) fs.copyFileSync(process.argv[1] + "/" + decodeURIComponent(buffer.uri), decodeURIComponent(buffer.uri));
+	const b = fs.readFileSync(decodeURIComponent(g.buffers[v.buffer].uri));
+	delete p.targets;
+	fs.writeFileSync("one.gltf", JSON.stringify(g));
+	for (let i = 0; i < a.count; i++) { /* its mirror image */
+		const at = (v.byteOffset ?? 0) + (a.byteOffset ?? 0) + i * (v.byteStride ?? 8);
+		b.writeFloatLE(1 - b.readFloatLE(at), at);
+	}
+	g.buffers[v.buffer].uri = "other.bin";
+	fs.writeFileSync("other.bin", b);
+	fs.writeFileSync("other.gltf", JSON.stringify(g))' "$WORK/layouts"
+run --draco=sequential one.gltf one.glb
+exits 0
+run --draco=sequential other.gltf other.glb
+exits 0
+node -e 'const fs = require("fs"), open = (name) => {
+		const b = fs.readFileSync(name), size = b.readUInt32LE(12);
+		fs.writeFileSync(name + ".bin", b.subarray(28 + size));
+		return JSON.parse(b.subarray(20, 20 + size));
+	}, block = (p) => p.extensions.KHR_draco_mesh_compression, g = open("one.glb"), other = open("other.glb");
+	const [p] = g.meshes[0].primitives, [q] = other.meshes[0].primitives, view = other.bufferViews[block(q).bufferView];
+	q.attributes = p.attributes;
+	q.indices = p.indices;
+	block(q).bufferView = g.bufferViews.push({...view, buffer: 1}) - 1;
+	g.buffers = ["one", "other"].map((name, i) => ({uri: name + ".glb.bin",
+		byteLength: (i ? other : g).buffers[0].byteLength}));
+	g.meshes[0].primitives.push(q, structuredClone(q)); /* the third shares with the second all there is */
+	fs.writeFileSync("three.gltf", JSON.stringify(g))'
+row='[rows(p.attributes.POSITION), rows(p.attributes.TEXCOORD_0), rows(p.attributes.TANGENT), rows(p.indices)]'
+for choice in off keep; do
+	run --existing=replace --draco=off --verify one.glb one_plain.glb
+	run --existing=replace --draco=off --verify other.glb other_plain.glb
+	run --existing=replace --draco=$choice --verify three.gltf three.glb
+	exits 0
+	[ $choice = off ] || { run --draco=off --existing=replace three.glb three.glb.glb; mv three.glb.glb three.glb; }
+	is "$(gltf three.glb "g.meshes[0].primitives.slice(0, 1).map((p) => $row)")" \
+		"$(gltf one_plain.glb "g.meshes[0].primitives.map((p) => $row)")"
+	for k in 1 2; do
+		is "$(gltf three.glb "g.meshes[0].primitives.slice($k, $k + 1).map((p) => $row)")" \
+			"$(gltf other_plain.glb "g.meshes[0].primitives.map((p) => $row)")"
+	done
+	is "$(gltf three.glb 'new Set(g.meshes[0].primitives.map((p) => p.attributes.TEXCOORD_0)).size')" 2
+done
+
 scene "--precision says that it does not reach into a block"
 run --draco=edgebreaker --draco-bits=14,12,12,16 --precision=short "$WORK/layouts/plain.gltf" packed.glb
 exits 0

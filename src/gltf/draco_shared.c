@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * An accessor without a buffer view says of a compressed attribute how many elements it has, and of which type. Files
+ * exist in which primitives with different blocks name the same accessor, since those words are the same. Written
+ * plain, it could hold the elements of one of them only. So before anything is read, each further content (a block,
+ * and an attribute in it or its indices) gets a copy of the accessor, which says the same.
+ */
+#include "gltf/draco_shared.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "base/name_table.h"
+#include "gltf/draco.h"
+
+/* What an accessor stands for in a primitive. No padding: compared as bytes. */
+typedef struct content {
+	uint64_t accessor; /* as the file names it */
+	uint64_t view;     /* of the block */
+	uint64_t id;       /* of the attribute; INDICES */
+} content;
+
+#define INDICES UINT64_MAX
+
+typedef struct separating {
+	nt_gltf *document;
+	nt_json_value *accessors;
+	size_t named_count;      /* accessors of the file */
+	bool *given;             /* [named_count] has a content already */
+	nt_name_table contents;  /* each has the bytes of a content, in the arena */
+	nt_arena arena;
+	uint32_t *accessor_of;   /* [capacity] by content: the accessor that a content has now */
+	size_t capacity;
+} separating;
+
+/* The accessor for a content that is met for the first time. */
+static uint32_t accessor_for(separating *s, const content *c)
+{
+	nt_json *json = s->document->json;
+	if (!s->given[c->accessor]) {
+		s->given[c->accessor] = true;
+		return (uint32_t)c->accessor;
+	}
+	nt_json_value *copy = nt_json_append(json, s->accessors);
+	nt_json_set_copy(json, copy, nt_json_at(s->accessors, (size_t)c->accessor));
+	return (uint32_t)nt_json_count(s->accessors) - 1;
+}
+
+/* Points object[key] to the accessor of its content. False: out of memory. */
+static bool separate(separating *s, nt_json_value *object, const char *key, uint64_t view, uint64_t id)
+{
+	content c = {.view = view, .id = id};
+	if (!nt_json_get_uint64(nt_json_find(object, key), &c.accessor) || c.accessor >= s->named_count ||
+		nt_json_find(nt_json_at(s->accessors, (size_t)c.accessor), "bufferView"))
+		return true;
+	uint32_t number = nt_name_find(&s->contents, (const char *)&c, sizeof c);
+	if (number == UINT32_MAX) {
+		const char *own = nt_arena_text(&s->arena, (const char *)&c, sizeof c);
+		number = own ? nt_name_add(&s->contents, own, sizeof c) : UINT32_MAX;
+		if (number == UINT32_MAX ||
+			!nt_grow((void **)&s->accessor_of, &s->capacity, (size_t)number + 1, sizeof *s->accessor_of))
+			return false;
+		s->accessor_of[number] = accessor_for(s, &c);
+	}
+	if (s->accessor_of[number] != c.accessor)
+		nt_json_set_uint64(s->document->json, nt_json_find(object, key), s->accessor_of[number]);
+	return !nt_json_failed(s->document->json);
+}
+
+static bool separate_primitive(separating *s, nt_json_value *primitive)
+{
+	const nt_json_value *extension = nt_gltf_draco_of(primitive);
+	const nt_json_value *ids = nt_json_find(extension, "attributes");
+	uint64_t view, id;
+	if (!nt_json_get_uint64(nt_json_find(extension, "bufferView"), &view))
+		return true;
+	for (size_t i = 0; i < nt_json_count(ids); i++) {
+		const char *name = nt_json_key(ids, i, NULL);
+		if (name && nt_json_get_uint64(nt_json_at(ids, i), &id) &&
+			!separate(s, nt_json_find(primitive, "attributes"), name, view, id))
+			return false;
+	}
+	return separate(s, primitive, "indices", view, INDICES);
+}
+
+nt_status nt_gltf_separate_draco(nt_gltf *document, nt_error *error)
+{
+	if (!nt_gltf_uses(document, "KHR_draco_mesh_compression"))
+		return NT_OK;
+	separating s = {.document = document, .accessors = nt_gltf_root_member(document, "accessors")};
+	s.named_count = nt_json_count(s.accessors);
+	s.given = nt_calloc(s.named_count, sizeof *s.given);
+	bool room = s.given != NULL;
+	const nt_json_value *meshes = nt_gltf_root_member(document, "meshes");
+	for (size_t i = 0; room && i < nt_json_count(meshes); i++) {
+		const nt_json_value *primitives = nt_json_find(nt_json_at(meshes, i), "primitives");
+		for (size_t k = 0; room && k < nt_json_count(primitives); k++)
+			room = separate_primitive(&s, nt_json_at(primitives, k));
+	}
+	nt_name_table_free(&s.contents);
+	nt_arena_free(&s.arena);
+	free(s.accessor_of);
+	free(s.given);
+	return room ? NT_OK : nt_fail_memory(error);
+}
