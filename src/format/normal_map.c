@@ -36,7 +36,7 @@ static nt_status open_named(nt_normal_map *map, const nt_scene *scene, const nt_
 	const nt_image_places places = {.document = m->library ? m->library : scene->path, .input = scene->path};
 	nt_buffer path = {0};
 	nt_image_found found;
-	nt_status status = nt_image_find(&places, m->normal_map, &path, &found, error);
+	nt_status status = nt_image_find(&places, m->normal_map.name, &path, &found, error);
 	if (!status && found <= NT_IMAGE_FOUND_ELSEWHERE)
 		status = open_file(map, path.data, error);
 	nt_buffer_free(&path);
@@ -49,7 +49,7 @@ static nt_status open_of_materials(nt_normal_map *map, const nt_scene *scene, co
 	for (size_t i = 0; i < mesh->primitive_count && !status && !map->bytes; i++) {
 		const uint32_t index = mesh->primitives[i].material;
 		const nt_material *m = index < scene->material_count ? &scene->materials[index] : NULL;
-		if (m && m->normal_map && *m->normal_map)
+		if (m && m->normal_map.name && *m->normal_map.name)
 			status = without_map(open_named(map, scene, m, error));
 	}
 	return status;

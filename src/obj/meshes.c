@@ -351,7 +351,7 @@ static void set_slots(const nt_scene *scene, nt_mesh *mesh)
 {
 	for (size_t i = 0; i < mesh->primitive_count; i++) {
 		const uint32_t material = mesh->primitives[i].material;
-		if (material != NT_NONE && scene->materials[material].normal_map)
+		if (material != NT_NONE && scene->materials[material].normal_map.name)
 			mesh->slots |= NT_SLOT_NORMAL;
 	}
 }

@@ -144,7 +144,7 @@ static nt_status read_factor(const reader *r, float *factor, bool inverse)
 }
 
 /* A map: its options, then its file name. */
-static nt_status read_map(reader *r, const char **map, float *scale)
+static nt_status read_map(reader *r, nt_map *map, float *scale)
 {
 	nt_mtl_map read;
 	nt_mtl_map_read(r->text, r->end, &read);
@@ -157,7 +157,7 @@ static nt_status read_map(reader *r, const char **map, float *scale)
 	char *name = nt_mtl_map_name(&r->scene->arena, &read);
 	if (!name)
 		return nt_fail_memory(r->error);
-	*map = name;
+	map->name = name;
 	return NT_OK;
 }
 
@@ -222,7 +222,7 @@ static nt_status read_property(reader *r, nt_mtl_definition *d, enum action acti
 		m->bump = NULL;
 		return read_map(r, &m->normal_map, &m->normal_scale);
 	case BUMP_MAP:
-		if (m->normal_map && !m->bump)
+		if (m->normal_map.name && !m->bump)
 			break;
 		m->bump_line = r->line;
 		m->bump = nt_arena_text(&r->scene->arena, r->word, r->word_length);

@@ -16,12 +16,11 @@
 /* --bump-height where nobody says it. */
 static const double default_bump_height = 1.0 / 64;
 
-/* A name in a material, and where the number of its wish is kept. */
-typedef struct map_name {
-	const char *name;
-	uint32_t *wish;
+/* A map of a material, and what is wished for it. */
+typedef struct wished_map {
+	nt_map *map;
 	nt_texture_wish what;
-} map_name;
+} wished_map;
 
 enum { MOST_MAPS = 3 };
 
@@ -33,17 +32,15 @@ static nt_texture_kind kind_of_normal_map(const nt_material *m, nt_bump bump)
 }
 
 /* The maps that a material has. */
-static size_t list_maps(nt_material *m, const nt_settings *settings, map_name maps[MOST_MAPS])
+static size_t list_maps(nt_material *m, const nt_settings *settings, wished_map maps[MOST_MAPS])
 {
 	const double height = settings->bump_height > 0 ? settings->bump_height : default_bump_height;
 	const bool ignored = m->bump && settings->bump == NT_BUMP_IGNORE;
 	const nt_texture_wish normals = {kind_of_normal_map(m, settings->bump), height * m->normal_scale, false};
-	const map_name all[MOST_MAPS] = {{m->base_color_map, &m->base_color_texture, {0}},
-		{m->emissive_map, &m->emissive_texture, {0}},
-		{ignored ? NULL : m->normal_map, &m->normal_texture, normals}};
+	const wished_map all[MOST_MAPS] = {{&m->base_color_map, {0}}, {&m->emissive_map, {0}}, {&m->normal_map, normals}};
 	size_t count = 0;
 	for (size_t i = 0; i < MOST_MAPS; i++)
-		if (all[i].name && *all[i].name)
+		if (all[i].map->name && *all[i].map->name && !(ignored && all[i].map == &m->normal_map))
 			maps[count++] = all[i];
 	return count;
 }
@@ -91,11 +88,12 @@ static nt_status wish_for_material(nt_scene *scene, nt_material *m, void *contex
 	const nt_image_places places = {.document = m->library ? m->library : scene->path, .input = scene->path,
 		.folders = w->settings->texture_paths, .folder_count = w->settings->texture_path_count,
 		.allow_outside = w->settings->allow_outside};
-	map_name maps[MOST_MAPS];
+	wished_map maps[MOST_MAPS];
 	const size_t count = list_maps(m, w->settings, maps);
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < count && !status; i++)
-		status = nt_textures_wish(w->textures, &places, maps[i].name, &maps[i].what, maps[i].wish, error);
+		status = nt_textures_wish(w->textures, &places, maps[i].map->name, &maps[i].what, &maps[i].map->wish,
+			error);
 	return status;
 }
 
@@ -119,7 +117,7 @@ nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, nt_tex
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < scene->material_count; i++) {
 		nt_material *m = &scene->materials[i];
-		m->base_color_texture = m->emissive_texture = m->normal_texture = NT_NONE;
+		m->base_color_map.wish = m->emissive_map.wish = m->normal_map.wish = NT_NONE;
 	}
 	wishing w = {*textures, settings};
 	const nt_status status = check_folders(settings, error);
@@ -217,13 +215,13 @@ static nt_status tell_material(nt_scene *scene, nt_material *m, void *context, n
 {
 	(void)error;
 	const telling *t = context;
-	map_name maps[MOST_MAPS];
+	wished_map maps[MOST_MAPS];
 	const size_t count = list_maps(m, t->settings, maps);
 	for (size_t i = 0; i < count && t->textures; i++)
-		tell_image(scene, m, maps[i].name,
-			nt_textures_at(t->textures, nt_textures_result(t->textures, *maps[i].wish)));
-	const bool wished = t->textures && m->normal_texture != NT_NONE;
-	const nt_texture *normals = wished ? nt_textures_at(t->textures, nt_textures_result(t->textures, m->normal_texture)) : NULL;
+		tell_image(scene, m, maps[i].map->name,
+			nt_textures_at(t->textures, nt_textures_result(t->textures, maps[i].map->wish)));
+	const bool wished = t->textures && m->normal_map.wish != NT_NONE;
+	const nt_texture *normals = wished ? nt_textures_at(t->textures, nt_textures_result(t->textures, m->normal_map.wish)) : NULL;
 	if (m->bump && t->settings->bump == NT_BUMP_AUTO &&
 		(!t->textures || (normals && normals->type != NT_IMAGE_OTHER && !normals->from_heights)))
 		tell_bump(scene, m);

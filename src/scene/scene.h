@@ -46,8 +46,14 @@ typedef enum nt_decision {
 	NT_DECISION_COUNT
 } nt_decision;
 
-/* A material as OBJ has it; the writer of new documents turns it into glTF's. File names are as the
- * source spells them, relative to the folder of the file in `library`. */
+/* A map of a material. */
+typedef struct nt_map {
+	const char *name;            /* of the file, as the source spells it; NULL: there is no map */
+	uint32_t wish;               /* in nt_write_options.textures, filled by the pipeline; NT_NONE: none */
+} nt_map;
+
+/* A material as OBJ has it; the writer of new documents turns it into glTF's. File names are relative to
+ * the folder of the file in `library`. */
 typedef struct nt_material {
 	const char *name;
 	const char *library;         /* path of the MTL file; NULL: none */
@@ -56,14 +62,11 @@ typedef struct nt_material {
 	float emissive[3];           /* Ke */
 	float metallic, roughness;   /* Pm, Pr; glTF's default for OBJ is 0 and 1 */
 	float normal_scale;          /* -bm */
-	const char *base_color_map;  /* map_Kd */
-	const char *emissive_map;    /* map_Ke */
-	const char *normal_map;      /* norm, map_Kn, map_Bump, bump */
+	nt_map base_color_map;       /* map_Kd */
+	nt_map emissive_map;         /* map_Ke */
+	nt_map normal_map;           /* norm, map_Kn, map_Bump, bump */
 	const char *bump;            /* the statement that normal_map came from, where it was a bump map; else NULL */
 	size_t bump_line;
-
-	/* wishes in nt_write_options.textures, filled by the pipeline; NT_NONE: none */
-	uint32_t base_color_texture, emissive_texture, normal_texture;
 } nt_material;
 
 /* The part of a mesh that one draw call shows. */

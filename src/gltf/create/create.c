@@ -156,7 +156,7 @@ static bool is_textured(const composition *c, const nt_new_primitive *primitive)
 {
 	const nt_material *material = &c->scene->materials[primitive->material];
 	return nt_new_primitive_has(primitive, NT_ATTRIBUTE_TEXCOORD) &&
-		(material->base_color_map || material->emissive_map || material->normal_map);
+		(material->base_color_map.name || material->emissive_map.name || material->normal_map.name);
 }
 
 /* Calls body for the material of every primitive. */
@@ -178,7 +178,7 @@ static nt_status use_images(composition *c, uint32_t material, bool textured, nt
 	if (!textured)
 		return NT_OK;
 	const nt_material *m = &c->scene->materials[material];
-	const uint32_t wishes[] = {m->base_color_texture, m->emissive_texture, m->normal_texture};
+	const uint32_t wishes[] = {m->base_color_map.wish, m->emissive_map.wish, m->normal_map.wish};
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < sizeof wishes / sizeof *wishes && !status; i++)
 		status = nt_image_set_use(c->images, wishes[i], c->output, error);
@@ -211,9 +211,9 @@ static nt_status add_material(composition *c, uint32_t index, bool textured, nt_
 	for (int i = 0; i < 4; i++)
 		material.base_color[i] = clamp01(from->base_color[i]);
 	if (textured) {
-		material.base_color_texture = nt_image_set_texture(c->images, from->base_color_texture);
-		material.emissive_texture = nt_image_set_texture(c->images, from->emissive_texture);
-		material.normal_texture = nt_image_set_texture(c->images, from->normal_texture);
+		material.base_color_texture = nt_image_set_texture(c->images, from->base_color_map.wish);
+		material.emissive_texture = nt_image_set_texture(c->images, from->emissive_map.wish);
+		material.normal_texture = nt_image_set_texture(c->images, from->normal_map.wish);
 	}
 	*known = nt_model_add_material(c->model, &material);
 	return NT_OK;

@@ -60,9 +60,9 @@ static void every_property_is_read(void **state)
 	assert_true(d->material.roughness == 0.125f);
 	assert_true(d->material.metallic == 1);
 	assert_true(d->material.normal_scale == 1);
-	assert_string_equal(d->material.base_color_map, "stone.png");
-	assert_string_equal(d->material.emissive_map, "glow.jpg");
-	assert_string_equal(d->material.normal_map, "bumps.png");
+	assert_string_equal(d->material.base_color_map.name, "stone.png");
+	assert_string_equal(d->material.emissive_map.name, "glow.jpg");
+	assert_string_equal(d->material.normal_map.name, "bumps.png");
 	assert_null(d->material.bump);
 	assert_int_equal(r.scene.findings.count, 0);
 	close_reading(&r);
@@ -78,8 +78,8 @@ static void defaults_are_those_of_a_plain_material(void **state)
 	assert_memory_equal(d->material.emissive, emissive, sizeof emissive);
 	assert_true(d->material.roughness == 1);
 	assert_true(d->material.metallic == 0);
-	assert_null(d->material.base_color_map);
-	assert_null(d->material.normal_map);
+	assert_null(d->material.base_color_map.name);
+	assert_null(d->material.normal_map.name);
 	close_reading(&r);
 }
 
@@ -93,8 +93,8 @@ static void other_spellings_of_values(void **state)
 	assert_memory_equal(d->material.base_color, color, sizeof color);
 	assert_true(d->material.roughness == 1);
 	assert_true(d->material.metallic == 0);
-	assert_string_equal(d->material.base_color_map, "a b.png");
-	assert_null(d->material.emissive_map);
+	assert_string_equal(d->material.base_color_map.name, "a b.png");
+	assert_null(d->material.emissive_map.name);
 	close_reading(&r);
 	d = parse_one(&r, "newmtl a\nd -halo 0.5\nKd spectral a.rfl 1\n");
 	assert_true(d->material.base_color[3] == 0.5f);
@@ -111,7 +111,7 @@ static void bump_is_kept_apart_and_yields_to_normal_maps(void **state)
 		reading r;
 		snprintf(text, sizeof text, "newmtl a\n%s -bm 0.5 b.png\n", words[i]);
 		const nt_mtl_definition *d = parse_one(&r, text);
-		assert_string_equal(d->material.normal_map, "b.png");
+		assert_string_equal(d->material.normal_map.name, "b.png");
 		assert_true(d->material.normal_scale == 0.5f);
 		assert_string_equal(d->material.bump, words[i]);
 		assert_int_equal(d->material.bump_line, 2);
@@ -122,7 +122,7 @@ static void bump_is_kept_apart_and_yields_to_normal_maps(void **state)
 	for (int i = 0; i < 3; i++) {
 		reading r;
 		const nt_mtl_definition *d = parse_one(&r, both[i]);
-		assert_string_equal(d->material.normal_map, "n.png");
+		assert_string_equal(d->material.normal_map.name, "n.png");
 		assert_true(d->material.normal_scale == 1);
 		assert_null(d->material.bump);
 		close_reading(&r);
@@ -269,7 +269,7 @@ static void libraries_are_found_beside_the_obj(void **state)
 	assert_int_equal(r.scene.material_count, 3);
 	const nt_material *materials = r.scene.materials;
 	assert_string_equal(materials[0].name, "d");
-	assert_string_equal(materials[0].normal_map, "d.png");
+	assert_string_equal(materials[0].normal_map.name, "d.png");
 	assert_string_equal(materials[0].library, in_folder("in/sub/d.mtl"));
 	assert_int_equal(r.scene.meshes[0].slots, NT_SLOT_NORMAL);
 	assert_string_equal(materials[1].name, "a");

@@ -219,7 +219,7 @@ static void textures_in_comments_become_materials(void **state)
 		"element face 4\nproperty list uchar int vertex_indices\nproperty int texnumber\n"
 		"end_header\n" POINTS "3 0 1 2 2\n3 0 1 2 -1\n3 0 1 2 0\n3 0 1 2 2\n");
 	assert_int_equal(r.scene.material_count, 3);
-	assert_string_equal(r.scene.materials[0].base_color_map, "wood grain.png");
+	assert_string_equal(r.scene.materials[0].base_color_map.name, "wood grain.png");
 	assert_string_equal(r.scene.materials[0].library, "test.ply");
 	assert_int_equal(r.mesh->primitive_count, 3);
 	assert_int_equal(r.mesh->primitives[0].material, 0);

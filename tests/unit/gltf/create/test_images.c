@@ -25,9 +25,9 @@ static nt_scene *make_textured(hand_scene *hand)
 	snprintf(library, sizeof library, "%s", in_folder("mtl/m.mtl"));
 	hand->material.library = library;
 	hand->material.line = 3;
-	hand->material.base_color_map = "tex\\a b.png";
-	hand->material.emissive_map = "./tex/../tex/a b.png";
-	hand->material.normal_map = "n.jpg";
+	hand->material.base_color_map.name = "tex\\a b.png";
+	hand->material.emissive_map.name = "./tex/../tex/a b.png";
+	hand->material.normal_map.name = "n.jpg";
 	hand->primitives[0].material = 0;
 	return scene;
 }
@@ -122,7 +122,7 @@ static void copied_images_stand_beside_the_output(void **state)
 
 	/* two of one name, and one that is there already: the other is called by its bytes (xxhsum -H2) */
 	put_file("mtl/a b.png", jpeg, sizeof jpeg);
-	hand.material.normal_map = "a b.png";
+	hand.material.normal_map.name = "a b.png";
 	compose_images_well(scene, (nt_write_options){.images = NT_IMAGES_COPY}, "mtl/c.gltf");
 	text = text_of("mtl/c.gltf");
 	assert_non_null(strstr(text, "\"uri\":\"a%20b.png\""));
@@ -150,9 +150,9 @@ static void missing_and_foreign_images_are_findings(void **state)
 	(void)state;
 	hand_scene hand;
 	nt_scene *scene = make_textured(&hand);
-	hand.material.base_color_map = "gone.png";
-	hand.material.emissive_map = "t.tga"; /* three bytes */
-	hand.material.normal_map = NULL;
+	hand.material.base_color_map.name = "gone.png";
+	hand.material.emissive_map.name = "t.tga"; /* three bytes */
+	hand.material.normal_map.name = NULL;
 	compose_images_well(scene, (nt_write_options){0}, "gone.gltf");
 	char *text = text_of("gone.gltf");
 	assert_null(strstr(text, "gone.png")); /* nobody asked for a link to nothing */
@@ -184,9 +184,9 @@ static void images_outside_of_the_mtl_folder_need_leave(void **state)
 	nt_scene *scene = make_textured(&hand);
 	scene->path = hand.material.library; /* beside the OBJ would be inside, too */
 	assert_int_equal(symlink("../outside.png", in_folder("mtl/link.png")), 0);
-	hand.material.base_color_map = "../outside.png";
-	hand.material.emissive_map = "link.png";
-	hand.material.normal_map = "C:\\work\\n.jpg"; /* found by its last part */
+	hand.material.base_color_map.name = "../outside.png";
+	hand.material.emissive_map.name = "link.png";
+	hand.material.normal_map.name = "C:\\work\\n.jpg"; /* found by its last part */
 	compose_images_well(scene, (nt_write_options){0}, "confined.gltf");
 	char *text = text_of("confined.gltf");
 	assert_null(strstr(text, "outside"));
@@ -223,7 +223,7 @@ static void images_are_safe_from_the_output(void **state)
 	hand_scene hand;
 	nt_scene *scene = make_textured(&hand);
 	put_file("mtl/n.bin", png, sizeof png);
-	hand.material.normal_map = "n.bin"; /* a PNG by content, and where the buffer would go */
+	hand.material.normal_map.name = "n.bin"; /* a PNG by content, and where the buffer would go */
 	compose_images_well(scene, (nt_write_options){0}, "mtl/n.gltf");
 	char *kept = text_of("mtl/n.bin"), *text = text_of("mtl/n.gltf");
 	assert_memory_equal(kept, png, sizeof png);
