@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * MTL: finding the files and reading their lines. A library that is not there is a finding, since its
- * meshes can do without; one that is there and damaged is an error with its line, as in the OBJ itself.
+ * MTL: the lines of a library. What is damaged is an error with its line, as in the OBJ itself.
  *
  * Words are taken in any case, as exporters write map_Bump, map_bump and Map_Bump. Of several
  * normal maps `norm` and `map_Kn` come before the bump maps, whatever their order. What the older
@@ -16,9 +15,6 @@
 #include <strings.h>
 #include "base/name_table.h"
 #include "ext/number.h"
-#include "file/input.h"
-#include "file/lookup.h"
-#include "file/relative_path.h"
 #include "obj/mtl_map.h"
 
 typedef struct reader {
@@ -31,11 +27,6 @@ typedef struct reader {
 	const char *text, *end; /* what follows it, without blanks around it */
 	nt_error *error;
 } reader;
-
-static bool is_blank(char c)
-{
-	return c == ' ' || c == '\t';
-}
 
 /* Files of nonsense have as many different words as lines: beyond this many findings they are one. */
 enum { NAMED_FINDINGS_MOST = 1000 };
@@ -327,166 +318,6 @@ nt_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *b
 		r.line++;
 	}
 	return NT_OK;
-}
-
-/* ---- files ---- */
-
-/* What mtllib statements are read for. */
-typedef struct request {
-	nt_scene *scene;
-	const nt_read_options *options;
-	size_t line;
-	nt_mtl *mtl;
-	nt_error *error;
-} request;
-
-static void report_missing(const request *q, const char *name, const char *reason)
-{
-	nt_place place;
-	nt_place_clear(&place);
-	strncpy(place.file, q->scene->path, sizeof place.file - 1);
-	place.line = q->line;
-	nt_finding_add(&q->scene->findings, NT_CODE_MTL_MISSING, &place, 1, "%.120s: %.120s", name, reason);
-	q->mtl->incomplete = true;
-}
-
-/* Why a file name may not be followed, NULL where it may. */
-static const char *outside_reason(const char *name)
-{
-	if (name[0] == '/')
-		return "an absolute path, which is followed only with --allow-outside";
-	if (((name[0] | 0x20) >= 'a' && (name[0] | 0x20) <= 'z') && name[1] == ':')
-		return "a path with a drive letter";
-	for (const char *part = name; part;) {
-		if (strncmp(part, "..", 2) == 0 && (part[2] == '/' || part[2] == '\0'))
-			return "leaves the folder of the OBJ, which is followed only with --allow-outside";
-		part = strchr(part, '/');
-		if (part)
-			part++;
-	}
-	return NULL;
-}
-
-/* The path of a name that the OBJ refers to. */
-static char *path_beside(nt_scene *scene, const char *name)
-{
-	const char *slash = name[0] == '/' ? NULL : strrchr(scene->path, '/');
-	const size_t folder = slash ? (size_t)(slash - scene->path) + 1 : 0;
-	char *path = nt_arena_alloc(&scene->arena, folder + strlen(name) + 1, 1);
-	if (path) {
-		memcpy(path, scene->path, folder);
-		strcpy(path + folder, name);
-	}
-	return path;
-}
-
-/* A file name as this system spells it: without quotes around it, `\` as `/`. */
-static char *file_name(nt_scene *scene, const char *text, size_t length)
-{
-	if (length >= 2 && text[0] == '"' && text[length - 1] == '"') {
-		text++;
-		length -= 2;
-	}
-	char *name = nt_arena_text(&scene->arena, text, length);
-	for (char *p = name; p && *p; p++)
-		if (*p == '\\')
-			*p = '/';
-	return name;
-}
-
-/* Whether a path that does not say so leaves the folder of the OBJ by a symbolic link. */
-static nt_status leaves_by_link(const request *q, const char *path, bool *leaves, nt_error *error)
-{
-	char *real;
-	nt_buffer folder = {0};
-	nt_status status = nt_lookup_real(path, &real, error);
-	if (!status)
-		status = nt_link_folder(&folder, q->scene->path, error);
-	*leaves = !status && !nt_link_is_inside(real, folder.data);
-	free(real);
-	nt_buffer_free(&folder);
-	return status;
-}
-
-/* Opens a library; *reason, which may be the error's message, says why it is done without. */
-static nt_status open_library(const request *q, const char *name, const char *path, nt_file *file,
-	const char **reason, nt_error *error)
-{
-	const bool confined = !q->options->allow_outside;
-	bool leaves = false;
-	*reason = !*name ? "no file name" : confined ? outside_reason(name) : NULL;
-	if (*reason)
-		return NT_OK;
-	nt_status status = confined ? leaves_by_link(q, path, &leaves, error) : NT_OK;
-	if (!status && leaves)
-		*reason = "leaves the folder of the OBJ by a symbolic link, which is followed only with "
-			"--allow-outside";
-	else if (!status)
-		status = nt_file_open(file, path, error);
-	if (status != NT_ERROR_MISSING)
-		return status;
-	*reason = error->message;
-	return NT_OK;
-}
-
-/* Reads one library; what cannot be read is reported unless `quiet`. *found says whether it was. */
-static nt_status read_library(const request *q, const char *text, size_t length, bool quiet,
-	bool *found)
-{
-	*found = false;
-	const char *name = file_name(q->scene, text, length);
-	char *path = name ? path_beside(q->scene, name) : NULL;
-	if (!path)
-		return nt_fail_memory(q->error);
-	const char *reason;
-	nt_file file;
-	nt_error failure;
-	nt_status status = open_library(q, name, path, &file, &reason, &failure);
-	if (status)
-		*q->error = failure;
-	if (status)
-		return status;
-	if (reason) {
-		if (!quiet)
-			report_missing(q, name, reason);
-		return NT_OK;
-	}
-	*found = true;
-	status = nt_mtl_parse(q->scene, path, file.data, file.size, q->mtl, q->error);
-	nt_file_close(&file);
-	return status;
-}
-
-/* Where the first of several names ends: behind ".mtl" before a blank. */
-static size_t first_name_length(const char *text, size_t length)
-{
-	for (size_t i = 0; i + 4 < length; i++)
-		if (strncasecmp(text + i, ".mtl", 4) == 0 && is_blank(text[i + 4]))
-			return i + 4;
-	return length;
-}
-
-nt_status nt_mtl_read(nt_scene *scene, const char *names, size_t length, size_t line,
-	const nt_read_options *options, nt_mtl *mtl, nt_error *error)
-{
-	const request q = {scene, options, line, mtl, error};
-	/* The format allows several names, exporters write single names with blanks: one is tried first. */
-	const bool several = first_name_length(names, length) < length;
-	bool found;
-	nt_status status = read_library(&q, names, length, several, &found);
-	if (!several || found)
-		return status;
-	while (!status && length) {
-		const size_t first = first_name_length(names, length);
-		status = read_library(&q, names, first, false, &found);
-		names += first;
-		length -= first;
-		while (length && is_blank(*names)) {
-			names++;
-			length--;
-		}
-	}
-	return status;
 }
 
 void nt_mtl_free(nt_mtl *mtl)

@@ -25,11 +25,6 @@ typedef struct word {
 	const char *begin, *end;
 } word;
 
-static bool is_blank(char c)
-{
-	return c == ' ' || c == '\t';
-}
-
 /* The word at or behind p; empty at the end. */
 static word next_word(const char *p, const char *end)
 {

@@ -15,6 +15,11 @@ typedef struct nt_mtl_map {
 	bool transformed;                  /* -o, -s or -t move the texture: not carried over */
 } nt_mtl_map;
 
+static inline bool is_blank(char c)
+{
+	return c == ' ' || c == '\t';
+}
+
 /* Reads what follows the statement's word, without blanks around it. */
 void nt_mtl_map_read(const char *text, const char *end, nt_mtl_map *map);
 
