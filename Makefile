@@ -3,13 +3,14 @@
 #   make demo     installs what is missing, builds, puts tangents on a mesh from data/ and shows it
 #   make check    the same, then every test
 #   make          builds build/$(config)/nmtan, libnmtan.a and libnmtan.so
-#   make install PREFIX=/usr/local DESTDIR=
+#   make install PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=
 #   make soak     the heavy tests; make fuzz, make check-aarch64, make bench, make format, make lint, make clean
 #
 # config=release (default) | debug | sanitize | tsan | clang | clang-sanitize | fuzz
 
 config ?= release
 PREFIX ?= /usr/local
+LIBDIR ?= $(PREFIX)/lib
 DESTDIR ?=
 CC ?= gcc
 CXX ?= g++
@@ -43,9 +44,9 @@ endif
 
 # No contraction anywhere: the bytes of the result depend on it (see README, "Reproducible"). No vectorization of
 # straight-line code either: gcc 12 forgets the rounding in "float x = (float)d; double y = x;" when it combines two
-# such lines into one vector.
+# such lines into one vector. Where the tree lies makes no difference to what is built.
 COMMON := $(flags_$(config)) -ffp-contract=off -fno-tree-slp-vectorize -fno-math-errno \
-	-pthread -fPIC -fvisibility=hidden \
+	-pthread -fPIC -fvisibility=hidden '-ffile-prefix-map=$(CURDIR)=.' \
 	-Iinclude -Isrc -Wall -Wextra -MMD -MP
 NT_CFLAGS := -std=c11 -D_GNU_SOURCE $(COMMON) -Wshadow -Wstrict-prototypes -Wmissing-prototypes \
 	-Wvla $(CFLAGS)
@@ -65,13 +66,13 @@ tool_obj := $(call objects,$(tool_src))
 main_obj := $(B)/cli/main.c.o
 
 .PHONY: all
-all: $(B)/nmtan $(B)/libnmtan.a $(B)/libnmtan.so $(B)/nmtan.pc $(B)/completion.bash $(B)/completion.zsh
+all: $(B)/nmtan $(B)/libnmtan.a $(B)/libnmtan.so $(B)/completion.bash $(B)/completion.zsh
 
 $(B)/nmtan: $(main_obj) $(tool_obj) $(B)/libnmtan.a
 	$(CXX) $(NT_LDFLAGS) -o $@ $^ $(TOOL_LIBS)
 
 $(B)/libnmtan.a: $(core_obj)
-	rm -f $@ && $(AR) qcs $@ $^
+	rm -f $@ && $(AR) qcsD $@ $^
 
 $(B)/libnmtan.so: $(core_obj) src/api/libnmtan.map
 	$(CC) $(NT_LDFLAGS) -shared -Wl,-soname,libnmtan.so.0,-z,nodelete,--version-script=src/api/libnmtan.map -o $@ \
@@ -79,7 +80,7 @@ $(B)/libnmtan.so: $(core_obj) src/api/libnmtan.map
 
 # Everything but main, for unit tests. Members of several rooms share a name, so none replaces another (q).
 $(B)/libtool.a: $(tool_obj)
-	rm -f $@ && $(AR) qcs $@ $^
+	rm -f $@ && $(AR) qcsD $@ $^
 
 $(B)/%.c.o: src/%.c
 	@mkdir -p $(@D)
@@ -131,13 +132,6 @@ include src/bindings/bindings.mk
 $(B)/completion.%: $(B)/nmtan
 	$< --completion=$* > $@.new && mv $@.new $@
 
-$(B)/nmtan.pc: include/nmtan.h Makefile
-	@mkdir -p $(@D)
-	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$${prefix}/lib' 'includedir=$${prefix}/include' '' \
-		'Name: nmtan' 'Description: MikkTSpace-exact tangent frames for meshes' \
-		'Version: $(VERSION)' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lnmtan' \
-		'Libs.private: -pthread -lm' > $@
-
 # As many jobs as processors, unless the caller has said how many.
 JOBS = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(shell nproc))
 
@@ -164,14 +158,18 @@ check: need-check
 soak: need-check
 	@$(MAKE) --no-print-directory -s soak-built
 
-# Paths as they are installed; nmtan.pc is written anew because PREFIX may differ from the build's.
+# Paths as they are installed. What names them is made on the way, since they may differ from the build's. CMake's
+# file finds the header from where it lies itself, so that the whole may be moved.
 bin := $(DESTDIR)$(PREFIX)/bin
-lib := $(DESTDIR)$(PREFIX)/lib
+lib := $(DESTDIR)$(LIBDIR)
 share := $(DESTDIR)$(PREFIX)/share
 so := libnmtan.so
+cmake_files := nmtan-config.cmake nmtan-config-version.cmake
+names := sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(patsubst $(PREFIX)/%,$${prefix}/%,$(LIBDIR))|; s|@VERSION@|$(VERSION)|' \
+	-e 's|@TO_PREFIX@|$(shell realpath -ms --relative-to=$(LIBDIR)/cmake/nmtan $(PREFIX))|'
 .PHONY: install uninstall
 install: all
-	install -d $(bin) $(lib)/pkgconfig $(DESTDIR)$(PREFIX)/include $(share)/man/man1 \
+	install -d $(bin) $(lib)/pkgconfig $(lib)/cmake/nmtan $(DESTDIR)$(PREFIX)/include $(share)/man/man1 \
 		$(share)/bash-completion/completions $(share)/zsh/site-functions
 	install -m 755 $(B)/nmtan $(bin)/nmtan
 	install -m 644 $(B)/libnmtan.a $(lib)/libnmtan.a
@@ -179,8 +177,9 @@ install: all
 	ln -sf $(so).$(VERSION) $(lib)/$(so).0
 	ln -sf $(so).0 $(lib)/$(so)
 	install -m 644 include/nmtan.h $(DESTDIR)$(PREFIX)/include/nmtan.h
-	sed 's|^prefix=.*|prefix=$(PREFIX)|' $(B)/nmtan.pc > $(lib)/pkgconfig/nmtan.pc
-	chmod 644 $(lib)/pkgconfig/nmtan.pc
+	$(names) src/api/nmtan.pc > $(lib)/pkgconfig/nmtan.pc
+	for file in $(cmake_files); do $(names) src/api/$$file > $(lib)/cmake/nmtan/$$file; done
+	chmod 644 $(lib)/pkgconfig/nmtan.pc $(patsubst %,$(lib)/cmake/nmtan/%,$(cmake_files))
 	for page in man/*.1; do install -m 644 $$page $(share)/man/man1/; done
 	for page in man/*.5; do [ ! -f $$page ] || { install -d $(share)/man/man5 && \
 		install -m 644 $$page $(share)/man/man5/; }; done
@@ -190,6 +189,7 @@ install: all
 uninstall:
 	rm -f $(bin)/nmtan $(lib)/libnmtan.a $(lib)/$(so) $(lib)/$(so).0 $(lib)/$(so).$(VERSION) \
 		$(DESTDIR)$(PREFIX)/include/nmtan.h $(lib)/pkgconfig/nmtan.pc \
+		$(patsubst %,$(lib)/cmake/nmtan/%,$(cmake_files)) \
 		$(patsubst man/%,$(share)/man/man1/%,$(wildcard man/*.1)) \
 		$(patsubst man/%,$(share)/man/man5/%,$(wildcard man/*.5)) \
 		$(share)/bash-completion/completions/nmtan $(share)/zsh/site-functions/_nmtan

@@ -21,7 +21,7 @@ done
 if [ "${1:-build}" = check ]; then
 	build="$build $check"
 	! command -v clang >/dev/null 2>&1 || build="$build $wasm"
-	for pair in node:nodejs npm:npm python3:python3; do
+	for pair in node:nodejs npm:npm python3:python3 cmake:cmake; do
 		command -v "${pair%%:*}" >/dev/null 2>&1 || missing="$missing ${pair#*:}"
 	done
 fi

@@ -4,7 +4,7 @@
 
 version=$(sed -n 's/^#define NMTAN_VERSION_STRING "\(.*\)"/\1/p' "$ROOT/include/nmtan.h")
 install_here() {
-	make -s -C "$ROOT" MAKEFLAGS= "$1" config=release DESTDIR="$PWD/root" PREFIX=/opt/nmtan \
+	make -s -C "$ROOT" MAKEFLAGS= "$@" config=release DESTDIR="$PWD/root" PREFIX=/opt/nmtan \
 		>"$WORK/out.txt" 2>"$WORK/err.txt" || wrong "make $1 failed"
 }
 
@@ -12,7 +12,7 @@ scene "install puts every file in its place"
 install_here install
 p=root/opt/nmtan
 exists $p/bin/nmtan $p/lib/libnmtan.a "$p/lib/libnmtan.so.$version" $p/include/nmtan.h \
-	$p/lib/pkgconfig/nmtan.pc $p/share/man/man1/nmtan.1 \
+	$p/lib/pkgconfig/nmtan.pc $p/lib/cmake/nmtan/nmtan-config.cmake $p/share/man/man1/nmtan.1 \
 	$p/share/bash-completion/completions/nmtan $p/share/zsh/site-functions/_nmtan
 is "$(readlink $p/lib/libnmtan.so)" libnmtan.so.0
 is "$(readlink $p/lib/libnmtan.so.0)" "libnmtan.so.$version"
@@ -43,9 +43,64 @@ cc -o static program.c $(pkg-config "$where" --cflags nmtan) root/opt/nmtan/lib/
 is "$(./static)" "$version"
 ! ldd shared static | grep -q 'libstdc++' || wrong "C++ came along"
 
+triplet=$(cc -dumpmachine)
+scene "so does a CMake project, wherever the whole was moved to, and other versions are refused"
+install_here install LIBDIR=/opt/nmtan/lib/$triplet
+mv root/opt/nmtan moved
+mkdir project
+printf '%s\n' '#include <nmtan.h>' '#include <stdio.h>' \
+	'int main(void) { puts(nmtan_version()); return 0; }' >project/program.c
+cat >project/CMakeLists.txt <<'CMAKE'
+cmake_minimum_required(VERSION 3.16)
+project(asks C)
+find_package(nmtan ${WANTED} CONFIG REQUIRED)
+add_executable(shared program.c)
+target_link_libraries(shared nmtan::nmtan)
+add_executable(static program.c)
+target_link_libraries(static nmtan::static)
+CMAKE
+configure() {
+	cmake -S project -B "$1" -DCMAKE_PREFIX_PATH="$PWD/moved" -DWANTED="$2" >"$WORK/out.txt" 2>"$WORK/err.txt"
+}
+if configure built "${version%.*}" && cmake --build built >"$WORK/out.txt" 2>&1; then
+	is "$(built/shared)" "$version"
+	is "$(built/static)" "$version"
+	readelf -d built/static | grep -q libnmtan && wrong "the static program wants the shared library"
+	readelf -d built/shared | grep -q 'NEEDED.*libnmtan.so.0' || wrong "the shared program does not want libnmtan.so.0"
+else
+	wrong "cmake finds or builds nothing: $(tail -3 "$WORK/out.txt")"
+fi
+configure later 99.0 && wrong "version 99.0 is found"
+says 'version: '"$version"
+rm moved/lib/$triplet/libnmtan.so.*
+configure gone "$version" && wrong "a library that is gone is found"
+says 'nmtan_FOUND to FALSE'
+
+scene "pkg-config names the library's folder, inside of the prefix or elsewhere"
+install_here install LIBDIR=/opt/nmtan/lib/$triplet
+pc=root/opt/nmtan/lib/$triplet/pkgconfig/nmtan.pc
+is "$(pkg-config --variable=libdir $pc)" /opt/nmtan/lib/$triplet
+is "$(pkg-config --define-variable=prefix=/x --variable=libdir $pc)" /x/lib/$triplet
+install_here install LIBDIR=/elsewhere
+is "$(pkg-config --define-variable=prefix=/x --variable=libdir root/elsewhere/pkgconfig/nmtan.pc)" /elsewhere
+
 scene "uninstall leaves nothing"
 install_here install
 install_here uninstall
+install_here install LIBDIR=/elsewhere
+install_here uninstall LIBDIR=/elsewhere
 is "$(find root \( -type f -o -type l \))" ""
+
+scene "where the tree lies makes no difference to what is built"
+# tests/soak/packages.sh builds everything twice
+mkdir -p "a place with a long name/tree"
+cp -r "$ROOT/Makefile" "$ROOT/src" "$ROOT/include" "$ROOT/tests" "a place with a long name/tree"
+objects="base/pool.c.o topology/weld.c.o obj/mtl.c.o ext/digest.c.o"
+for object in $objects; do [ -f "$ROOT/build/release/$object" ] || wrong "$object is not there"; done
+make -s -C "a place with a long name/tree" MAKEFLAGS= config=release $(printf 'build/release/%s ' $objects) \
+	>"$WORK/out.txt" 2>"$WORK/err.txt" || wrong "make failed"
+for object in $objects; do
+	cmp "a place with a long name/tree/build/release/$object" "$ROOT/build/release/$object" || wrong "$object differs"
+done
 
 done_testing

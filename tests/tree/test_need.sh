@@ -19,7 +19,7 @@ machine() {
 	for tool in sh sort tr mktemp rm cat env printf mkdir chmod; do
 		ln -sf "$(command -v $tool)" "bin/$tool"
 	done
-	for tool in gcc g++ make node npm python3; do
+	for tool in gcc g++ make node npm python3 cmake; do
 		stand_in $tool 'exit 0'
 	done
 }
