@@ -168,6 +168,14 @@ bench: bench-green
 bench-green: $(B)/tests/bench/green
 	@$< $(MAPS)
 
+# make bench-need: the memory that runs take, beside what --memory guesses; of $(FILES), or of files that are made.
+$(B)/tests/bench/need: $(B)/tests/bench/need.o $(B)/libtool.a $(B)/libnmtan.a
+	$(CXX) $(NT_LDFLAGS) -o $@ $< -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(TOOL_LIBS)
+
+.PHONY: bench-need
+bench-need: $(B)/tests/bench/need $(B)/nmtan
+	@bash tests/bench/need.sh $(B)/nmtan $(FILES)
+
 # make bench-obj: reading the 104 MB file that speed is stated for; the lines "parse" and "index" are the reader.
 build/bench/torus.obj: $(B)/tests/bench/make_obj.o
 	@mkdir -p $(@D)

@@ -19,6 +19,11 @@ unsigned nt_pool_processors(void)
 	return 1;
 }
 
+void nt_pool_reserve(unsigned threads)
+{
+	(void)threads;
+}
+
 void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), void *context)
 {
 	for (unsigned slot = 0; slot < slots; slot++)
@@ -258,6 +263,14 @@ static void close_region(region *r, unsigned looks)
 		pthread_cond_wait(&pool.left, &pool.lock);
 	atomic_fetch_sub(&pool.waiting, 1);
 	pthread_mutex_unlock(&pool.lock);
+}
+
+void nt_pool_reserve(unsigned threads)
+{
+	pthread_mutex_lock(&pool.lock);
+	const unsigned lacking = reserve_threads(threads + 1);
+	pthread_mutex_unlock(&pool.lock);
+	make_threads(lacking);
 }
 
 void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), void *context)

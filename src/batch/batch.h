@@ -73,6 +73,9 @@ typedef nt_status (*nt_runner)(const char *input, const char *output, const nt_s
 typedef struct nt_batch_options {
 	nt_runner run;
 	unsigned jobs;  /* so many at a time; 0: as many as there are threads */
+	/* Bytes that jobs at a time may need together, as need.h guesses; who needs more runs alone, with all threads.
+	 * 0: half of what is available. */
+	uint64_t memory;
 	nt_update *update; /* what is up to date is left alone, and records are written; NULL: every input runs */
 	bool fail_fast; /* after a failure no further job begins */
 	/* Called once per job, in the order of the inputs, by one thread at a time, as soon as the job and all before it

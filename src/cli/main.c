@@ -402,7 +402,8 @@ static int run_batch(const nt_command *command, nt_style style, const nt_report_
 		settings.on_stage = nt_progress_stage;
 		settings.on_stage_user = s.progress;
 	}
-	const nt_batch_options options = {.run = nt_run, .jobs = (unsigned)command->jobs, .update = s.update,
+	const nt_batch_options options = {.run = nt_run, .jobs = (unsigned)command->jobs,
+		.memory = command->memory, .update = s.update,
 		.fail_fast = command->fail_fast, .done = tell_job,
 		.ended = command->manifest ? note_end : NULL, .user = &s};
 	nt_batch_run(batch, &settings, &options);

@@ -15,6 +15,7 @@ typedef enum nt_option_kind {
 	NT_OPTION_CHOICE,      /* int becomes `first` + the number of the word in `values` */
 	NT_OPTION_NUMBER,      /* int becomes 0..most */
 	NT_OPTION_AUTO_NUMBER, /* the same; -1 for the word auto */
+	NT_OPTION_SIZE,        /* uint64_t becomes so many bytes */
 	NT_OPTION_TEXT,        /* const char * becomes the word */
 	NT_OPTION_LIST         /* nt_words gets the word as its last */
 } nt_option_kind;

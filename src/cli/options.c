@@ -10,7 +10,7 @@
 #include "cli/options.h"
 #include "cli/option_table.h"
 
-#include <stdint.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,6 +69,10 @@ const nt_option_row nt_option_rows[] = {
 		FIELD(fail_fast), false},
 	{"jobs", 0, NT_OPTION_NUMBER, "N", 0, 1024, "0",
 		"how many inputs at a time, which share the threads; 0: as many as threads", FIELD(jobs), false},
+	{"memory", 0, NT_OPTION_SIZE, "SIZE", 0, 0, "0",
+		"begin with an input when what it may need is left of SIZE (64M, 2G); a larger one runs alone; 0: half of what "
+		"is available",
+		FIELD(memory), false},
 
 	{.kind = NT_OPTION_HEADING, .name = "Only what is needed"},
 	{"update", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
@@ -259,6 +263,31 @@ static int number_of(const char *word, int most)
 	return number;
 }
 
+/* "64M": a whole number, and what it counts, as GNU's tools have it: nothing for bytes; K, M, G, T or KiB, MiB, GiB, TiB
+ * for powers of 1024; kB, KB, MB, GB, TB for powers of 1000. UINT64_MAX for anything else. */
+static uint64_t size_of(const char *word)
+{
+	static const char units[] = "KMGT";
+	uint64_t number = 0;
+	const char *at = word;
+	for (; *at >= '0' && *at <= '9'; at++) {
+		if (number > (UINT64_MAX >> 40) / 10 - 1)
+			return UINT64_MAX;
+		number = number * 10 + (uint64_t)(*at - '0');
+	}
+	if (at == word)
+		return UINT64_MAX;
+	if (!*at)
+		return number;
+	const char *unit = strchr(units, *at == 'k' ? 'K' : *at);
+	const bool binary = !at[1] || strcmp(at + 1, "iB") == 0;
+	if (!unit || (*at == 'k' && binary) || (!binary && strcmp(at + 1, "B") != 0))
+		return UINT64_MAX;
+	for (const char *u = units; u <= unit; u++)
+		number *= binary ? 1024 : 1000;
+	return number;
+}
+
 static nt_status refuse_value(parser *p, const nt_option_row *row, const char *word)
 {
 	if (row->kind == NT_OPTION_CHOICE) {
@@ -269,6 +298,8 @@ static nt_status refuse_value(parser *p, const nt_option_row *row, const char *w
 		return nt_fail(p->error, NT_ERROR_USAGE, "--%s: '%s' is none of: %s", row->name, word,
 			list);
 	}
+	if (row->kind == NT_OPTION_SIZE)
+		return nt_fail(p->error, NT_ERROR_USAGE, "--%s: '%s' is not a size, as 500M, 2GiB or 2GB", row->name, word);
 	return nt_fail(p->error, NT_ERROR_USAGE, "--%s: '%s' is not %sa number from 0 to %d",
 		row->name, word, row->kind == NT_OPTION_AUTO_NUMBER ? "auto or " : "", row->most);
 }
@@ -294,6 +325,7 @@ static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 {
 	char *field = (char *)p->command + row->offset;
 	int value = row->first;
+	uint64_t size;
 	p->given[row - nt_option_rows] = true;
 	switch (row->kind) {
 	case NT_OPTION_HEADING:
@@ -317,6 +349,12 @@ static nt_status apply(parser *p, const nt_option_row *row, const char *word)
 		if (value < 0 && !(row->kind == NT_OPTION_AUTO_NUMBER && strcmp(word, "auto") == 0))
 			return refuse_value(p, row, word);
 		memcpy(field, &value, sizeof value);
+		break;
+	case NT_OPTION_SIZE:
+		size = size_of(word);
+		if (size == UINT64_MAX)
+			return refuse_value(p, row, word);
+		memcpy(field, &size, sizeof size);
 		break;
 	case NT_OPTION_TEXT:
 		if (!*word)
@@ -622,6 +660,8 @@ static void append_shaping(nt_buffer *out, const nt_option_row *row, const void 
 		const nt_words *words = field;
 		for (size_t i = 0; i < words->count; i++)
 			nt_buffer_format(out, "%s%s=%s", i ? " --" : "", i ? row->name : "", words->items[i]);
+	} else if (row->kind == NT_OPTION_SIZE) {
+		nt_buffer_format(out, "=%" PRIu64, *(const uint64_t *)field);
 	} else if (row->kind != NT_OPTION_FLAG) {
 		nt_buffer_format(out, "=%d", *(const int *)field);
 	}
@@ -631,7 +671,7 @@ static void append_shaping(nt_buffer *out, const nt_option_row *row, const void 
 static size_t field_bytes(const nt_option_row *row)
 {
 	return row->kind == NT_OPTION_FLAG ? sizeof(bool) : row->kind == NT_OPTION_TEXT ? sizeof(char *) :
-	       row->kind == NT_OPTION_LIST ? sizeof(nt_words) : sizeof(int);
+	       row->kind == NT_OPTION_LIST ? sizeof(nt_words) : row->kind == NT_OPTION_SIZE ? sizeof(uint64_t) : sizeof(int);
 }
 
 /* Options about the output that change when and how it is written, but not what. */

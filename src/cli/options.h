@@ -58,6 +58,7 @@ typedef struct nt_command {
 	bool recursive;
 	nt_words include, exclude; /* patterns */
 	int jobs;              /* inputs at a time; 0: as threads */
+	uint64_t memory;       /* bytes for them; 0: of what is available */
 	bool update;           /* leave alone what is up to date */
 	int update_by;         /* nt_update_by */
 	const char *record;    /* file; NULL: by default */

@@ -48,6 +48,56 @@ done
 same sum1 sum2
 same sum1 sum8
 
+scene "--jobs changes nothing that is said or written, --fail-fast stops, and failures are grouped"
+printf 'v 0 0 0\nv 1 0 0\nf 1 2 3\n' >bad.obj
+grid_obj 40 >m1.obj
+for i in 2 3 4 5 6; do cp "$data/quad.obj" m$i.obj; done
+inputs="m1.obj bad.obj m2.obj missing.obj m3.obj m4.obj m5.obj gone.obj m6.obj"
+for jobs in 1 2 4; do
+	run -j4 --jobs=$jobs -d out$jobs $inputs
+	exits 2
+	says "6 of 9 done, 3 failed:"
+	says "  2: no such file: missing.obj, gone.obj"
+	sed -e 's/, [0-9.e-]* s$//' -e "s/out$jobs/out/" "$WORK/err.txt" >said$jobs
+done
+for jobs in 2 4; do
+	diff said1 said$jobs >difference || wrong "$(cat difference)"
+	diff -r out1 out$jobs >difference || wrong "$(cat difference)"
+done
+for jobs in 1 4; do
+	run -j4 --jobs=$jobs --fail-fast -d fast$jobs bad.obj m1.obj m2.obj m3.obj m4.obj m5.obj m6.obj m1.obj
+	exits 1
+	run -j4 --jobs=$jobs --fail-fast -d fast$jobs bad.obj $(for i in $(seq 60); do cp m2.obj f$i.obj; echo f$i.obj; done)
+	exits 3
+	says " not tried"
+done
+is "$(ls fast1)" ""
+
+scene "--memory bounds what is converted at a time, and changes nothing else"
+# 3 MB of text each, which takes 18 MB, guessed to be 30; four at a time took 67 MB.
+grid_obj 200 >m1.obj
+for i in 2 3 4 5 6 7 8; do cp m1.obj m$i.obj; done
+# Kilobytes that it takes at most, over those of a run of one small file.
+peak() {
+	python3 -c 'import resource, subprocess, sys
+subprocess.run(sys.argv[1:], check=True)
+print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)' "$NMTAN" -q "$@"
+}
+least=$(peak "$data/quad.obj" q.glb)
+taken() { echo $(($(peak -j4 --jobs=4 "$@" m?.obj) - least)); }
+free=$(taken --memory=1G -d free)
+bound=$(taken --memory=40M -d bound)
+diff -r free bound >difference || wrong "$(cat difference)"
+run -j4 --jobs=4 --memory=40M -d bound m?.obj
+is "$(sed -n 's/^nmtan: \(m[0-9]\).obj -> .*/\1/p' "$WORK/err.txt" | tr '\n' ' ')" "m1 m2 m3 m4 m5 m6 m7 m8 "
+case $BUILD in
+*sanitize*) ;;
+*) [ "$bound" -lt 40000 ] || wrong "$bound KB with 40 MB, $free KB without a bound" ;;
+esac
+run -d out --memory=lots m1.obj
+exits 1
+says "'lots' is not a size, as 500M, 2GiB or 2GB"
+
 scene "two inputs with one output are refused before anything runs"
 mkdir x y
 cp "$data/quad.obj" x/a.obj

@@ -143,7 +143,7 @@ static nt_status fake_run(const char *input, const char *output, const nt_settin
 }
 
 typedef struct log {
-	char names[64];
+	char names[128];
 	size_t meshes, failures;
 } log;
 
@@ -156,6 +156,12 @@ static void note(void *user, nt_job *job)
 		l->failures++;
 		assert_non_null(strstr(job->outcome->error.message, job->input));
 	}
+}
+
+static void pass(void *user, nt_job *job)
+{
+	(void)job;
+	++*(size_t *)user;
 }
 
 static void every_input_runs_and_is_told_about_in_order(void **state)
@@ -177,6 +183,74 @@ static void every_input_runs_and_is_told_about_in_order(void **state)
 		assert_int_equal(batch.jobs[1].status, NT_ERROR_INPUT);
 		nt_batch_free(&batch);
 	}
+}
+
+/* Stands for nt_run where the bound of memory is about: notes who runs beside whom, and with how many threads. */
+static atomic_int running, most_running, wide_runs, wide_beside;
+
+static nt_status watched_run(const char *input, const char *output, const nt_settings *settings, nt_summary *summary,
+	nt_error *error)
+{
+	(void)input, (void)output, (void)summary, (void)error;
+	const int now = atomic_fetch_add(&running, 1) + 1;
+	if (now > most_running)
+		most_running = now;
+	usleep(2000);
+	if (settings->threads == 4) {
+		wide_runs++;
+		wide_beside += atomic_load(&running) > 1 || now > 1;
+	}
+	atomic_fetch_sub(&running, 1);
+	return NT_OK;
+}
+
+static void the_bound_of_memory_keeps_jobs_waiting(void **state)
+{
+	(void)state;
+	static char names[12][16];
+	const char *inputs[12];
+	static char bytes[400000];
+	/* one megabyte and ten bytes for each byte: 5 MB and, every fourth, 2 MB */
+	for (int i = 0; i < 12; i++) {
+		snprintf(names[i], sizeof names[i], "m%02d.obj", i);
+		put_file(inputs[i] = names[i], bytes, i % 4 ? sizeof bytes : 100000);
+	}
+	const struct {
+		uint64_t memory;
+		int least, most, wide;
+	} cases[] = {{100 << 20, 3, 4, 0}, {11 << 20, 1, 3, 0}, {6 << 20, 1, 1, 0}, {4 << 20, 1, 2, 9}};
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		nt_batch batch;
+		nt_error error;
+		log l = {0};
+		const nt_settings settings = {.threads = 4, .check = true};
+		most_running = wide_runs = wide_beside = 0;
+		assert_int_equal(nt_batch_check(&batch, inputs, 12, &error), NT_OK);
+		nt_batch_run(&batch, &settings, &(nt_batch_options){.run = watched_run, .jobs = 4, .memory = cases[i].memory,
+						       .done = note, .user = &l});
+		assert_string_equal(l.names, "m00.objm01.objm02.objm03.objm04.objm05.objm06.objm07.objm08.objm09.objm10.objm11.obj");
+		assert_in_range(most_running, cases[i].least, cases[i].most);
+		assert_int_equal(wide_runs, cases[i].wide);
+		assert_int_equal(wide_beside, 0);
+		nt_batch_free(&batch);
+	}
+}
+
+static void after_a_failure_no_further_job_begins_if_so_wished(void **state)
+{
+	(void)state;
+	nt_batch batch;
+	nt_error error;
+	const nt_settings settings = {.threads = 1, .check = true};
+	size_t ran = 0;
+	assert_int_equal(nt_batch_check(&batch, INPUTS("a", "bx", "c", "d"), &error), NT_OK);
+	nt_batch_run(&batch, &settings, &(nt_batch_options){.run = fake_run, .fail_fast = true, .done = pass, .user = &ran});
+	assert_int_equal(ran, 4);
+	assert_int_equal(batch.jobs[0].end, NT_JOB_RAN);
+	assert_int_equal(batch.jobs[1].status, NT_ERROR_INPUT);
+	assert_int_equal(batch.jobs[2].end, NT_JOB_UNTRIED);
+	assert_int_equal(batch.jobs[3].end, NT_JOB_UNTRIED);
+	nt_batch_free(&batch);
 }
 
 static void one_input_has_all_threads(void **state)
@@ -202,6 +276,8 @@ int main(void)
 		cmocka_unit_test(in_place_the_output_is_the_input),
 		cmocka_unit_test(a_dry_run_makes_no_folder_and_a_file_is_none),
 		cmocka_unit_test(every_input_runs_and_is_told_about_in_order),
+		cmocka_unit_test(the_bound_of_memory_keeps_jobs_waiting),
+		cmocka_unit_test(after_a_failure_no_further_job_begins_if_so_wished),
 		cmocka_unit_test(one_input_has_all_threads),
 	};
 	return cmocka_run_group_tests_name("batch/batch", tests, enter, leave);

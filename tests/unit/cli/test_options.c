@@ -92,6 +92,27 @@ static void every_option_sets_its_field(void **state)
 	assert_true(c.settings.check);
 }
 
+static void a_size_is_a_number_and_what_it_counts(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *word;
+		uint64_t bytes;
+	} sizes[] = {{"--memory=0", 0}, {"--memory=123", 123}, {"--memory=64M", UINT64_C(64) << 20},
+		{"--memory=2GiB", UINT64_C(2) << 30}, {"--memory=3kB", 3000}, {"--memory=3KB", 3000},
+		{"--memory=5K", 5 * 1024}, {"--memory=500MB", 500000000}, {"--memory=1T", UINT64_C(1) << 40},
+		{"--memory=1TB", UINT64_C(1000000000000)}};
+	nt_command c;
+	for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++) {
+		accepts(&c, WORDS(sizes[i].word, "a", "b"));
+		assert_true(c.memory == sizes[i].bytes);
+	}
+	static const char *const wrong[] = {"", "M", "-1", "1.5G", "64m", "64k", "64Mb", "64MiBs", "64 M", "1P",
+		"99999999999999999999", "20000000T"};
+	for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++)
+		refuses("is not a size", WORDS("--memory", wrong[i], "a", "b"));
+}
+
 static void every_word_of_a_choice_is_its_constant(void **state)
 {
 	(void)state;
@@ -341,6 +362,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(no_options_mean_the_defaults),
 		cmocka_unit_test(every_option_sets_its_field),
+		cmocka_unit_test(a_size_is_a_number_and_what_it_counts),
 		cmocka_unit_test(every_word_of_a_choice_is_its_constant),
 		cmocka_unit_test(values_stand_behind_equals_or_in_the_next_word),
 		cmocka_unit_test(options_and_names_may_mix_and_two_dashes_end_options),

@@ -1,0 +1,104 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Guesses from what files say about themselves. The expected numbers are those of the table in need.c.
+ */
+#include "batch/need.h"
+#include "folder.h"
+#include "test.h"
+
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MB = 1 << 20 };
+
+static uint64_t need_of(const char *name)
+{
+	const nt_settings settings = {0};
+	return nt_need_of(in_folder(name), &settings, 0);
+}
+
+static void text_counts_by_its_bytes(void **state)
+{
+	(void)state;
+	put_text_file("a.obj", "v 0 0 0\n");
+	assert_int_equal(need_of("a.obj"), MB + 10 * 8);
+	put_text_file("a.drc", "DRACO...");
+	assert_int_equal(need_of("a.drc"), MB + 256 * 8);
+	put_text_file("empty.obj", "");
+	assert_int_equal(need_of("empty.obj"), MB);
+}
+
+static void a_ply_counts_by_the_elements_of_its_header(void **state)
+{
+	(void)state;
+	static const char text[] = "ply\nformat ascii 1.0\nelement vertex 1000\nproperty float x\nelement face  20\n"
+				   "end_header\nelement vertex 7\n";
+	put_text_file("a.ply", text);
+	assert_int_equal(need_of("a.ply"), MB + 2 * strlen(text) + 96 * 1020);
+	put_text_file("open.ply", "ply\nelement ");
+	assert_int_equal(need_of("open.ply"), MB + 2 * 12);
+}
+
+static void gltf_counts_by_its_accessors_wherever_their_bytes_are(void **state)
+{
+	(void)state;
+	static const char plain[] = "{\"accessors\":[{\"count\": 600 },{ \"count\"\n:30}],\"bufferViews\":[]}";
+	static const char draco[] = "{\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],\"accessors\":[{\"count\":600}]}";
+	put_text_file("a.gltf", plain);
+	assert_int_equal(need_of("a.gltf"), MB + 12 * strlen(plain) + 40 * 630);
+	put_text_file("d.gltf", draco);
+	assert_int_equal(need_of("d.gltf"), MB + 12 * strlen(draco) + 100 * 600);
+	const nt_settings compress = {.draco = NT_DRACO_AS_EDGEBREAKER};
+	assert_int_equal(nt_need_of(in_folder("a.gltf"), &compress, 0), MB + 12 * strlen(plain) + 100 * 630);
+}
+
+static void a_glb_counts_its_json_and_its_bytes(void **state)
+{
+	(void)state;
+	static const char json[] = "{\"accessors\":[{\"count\":600}]}  ", more[] = "\"count\":99999";
+	struct stat info;
+	put_glb_file("a.glb", json, more, sizeof more - 1);
+	assert_int_equal(stat(in_folder("a.glb"), &info), 0);
+	const uint64_t padded = (strlen(json) + 3) / 4 * 4;
+	assert_int_equal(need_of("a.glb"), MB + 12 * padded + ((uint64_t)info.st_size - 20 - padded) + 40 * 600);
+	put_text_file("short.glb", "glTF\2\0\0");
+	assert_true(need_of("short.glb") >= MB);
+	/* a length beyond the file */
+	put_file("long.glb", "glTF\2\0\0\0\30\0\0\0\377\377\377\377JSON{}  ", 24);
+	assert_int_equal(need_of("long.glb"), MB + 12 * 4);
+}
+
+static void where_the_size_says_enough_nothing_is_opened(void **state)
+{
+	(void)state;
+	const nt_settings settings = {0};
+	put_text_file("tiny.glb", "glTF");
+	assert_int_equal(nt_need_of(in_folder("tiny.glb"), &settings, 2 * MB), MB + 256 * 4);
+	/* the size of a .gltf says nothing about its buffers */
+	put_text_file("tiny.gltf", "{\"count\":1000000}");
+	assert_int_equal(nt_need_of(in_folder("tiny.gltf"), &settings, 2 * MB), MB + 12 * 17 + 40 * 1000000);
+}
+
+static void what_has_no_size_is_alone_and_what_is_missing_is_nothing(void **state)
+{
+	(void)state;
+	assert_int_equal(need_of("nowhere.obj"), 0);
+	assert_int_equal(mkfifo(in_folder("pipe.obj"), 0600), 0);
+	assert_true(need_of("pipe.obj") == UINT64_MAX);
+	const nt_settings settings = {0};
+	assert_true(nt_need_of("-", &settings, 0) == UINT64_MAX);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(text_counts_by_its_bytes),
+		cmocka_unit_test(a_ply_counts_by_the_elements_of_its_header),
+		cmocka_unit_test(gltf_counts_by_its_accessors_wherever_their_bytes_are),
+		cmocka_unit_test(a_glb_counts_its_json_and_its_bytes),
+		cmocka_unit_test(where_the_size_says_enough_nothing_is_opened),
+		cmocka_unit_test(what_has_no_size_is_alone_and_what_is_missing_is_nothing),
+	};
+	return cmocka_run_group_tests_name("batch/need", tests, make_folder, remove_folder);
+}
