@@ -30,9 +30,15 @@ typedef struct tangent_job {
 	nt_mesh **meshes;   /* the ones to solve */
 	nt_status *statuses;
 	size_t count;
-	nmtan_workspace **workspaces; /* of each slot that solves small meshes */
-	nmtan_timing timing;          /* of the large meshes */
+	struct solver *solvers; /* of each slot that solves small meshes */
+	nmtan_timing timing;    /* of the large meshes */
 } tangent_job;
+
+/* What a thread solves with. */
+typedef struct solver {
+	nmtan_workspace *workspace; /* NULL: none */
+	nt_arena arena;             /* results, until the scene takes them over */
+} solver;
 
 static bool is_solved(const nt_mesh *mesh)
 {
@@ -58,7 +64,8 @@ static float stored_v_offset(const tangent_job *job)
 	return nt_format_is_gltf(job->scene->format) ? 1.0f : -1.0f;
 }
 
-/* Room for the worst case; pages that are not needed are never touched. */
+/* Room for the worst case; pages that are not needed are never touched. What is made here, keep_split() or
+ * drop_split() gets. */
 static nt_status make_split(const nt_mesh *mesh, nt_split *split, nmtan_split_output *output)
 {
 	const size_t capacity = mesh->corner_count;
@@ -127,13 +134,46 @@ static void free_corners(nt_mesh *mesh)
 	mesh->corner_tangents = NULL;
 }
 
-static void end_split(nt_mesh *mesh, const nmtan_split_output *output)
+static void drop_split(nt_mesh *mesh)
 {
-	mesh->split.source_count = output->source_count;
-	if (output->source_count == 0) {
-		free(mesh->split.indices);
-		mesh->split.indices = NULL;
+	free(mesh->split.indices);
+	free(mesh->split.sources);
+	free(mesh->split.vertex_tangents);
+	mesh->split = (nt_split){0};
+}
+
+/* A block becomes the arena's: a copy of what is used of it, where that is little. */
+static void *keep_block(nt_arena *arena, void *block, size_t count, size_t size)
+{
+	enum { LARGE_BYTES = 1 << 20 };
+	if (count * size >= LARGE_BYTES)
+		return nt_arena_adopt(arena, block) ? block : NULL;
+	void *kept = nt_arena_alloc(arena, count, size);
+	if (kept && count)
+		memcpy(kept, block, count * size);
+	free(block);
+	return kept;
+}
+
+/* Takes over what was split; without copies a mesh keeps its own indices. */
+static nt_status keep_split(nt_mesh *mesh, const nmtan_split_output *output, nt_arena *arena)
+{
+	nt_split *split = &mesh->split;
+	const size_t count = output->source_count;
+	split->source_count = count;
+	if (count == 0) {
+		free(split->indices);
+		split->indices = NULL;
+	} else {
+		split->indices = keep_block(arena, split->indices, mesh->corner_count, sizeof *split->indices);
 	}
+	split->sources = keep_block(arena, split->sources, count, sizeof *split->sources);
+	split->vertex_tangents = keep_block(arena, split->vertex_tangents, mesh->vertex_count + count,
+		4 * sizeof(float));
+	if (split->sources && split->vertex_tangents && (split->indices || count == 0))
+		return NT_OK;
+	*split = (nt_split){0};
+	return NT_ERROR_MEMORY;
 }
 
 /* The input's pages that a solve is done with: glTF that is made from glTF is copied by the kernel. */
@@ -149,7 +189,7 @@ static void forget_part(void *user, nt_mesh_part part)
 	}
 }
 
-static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, const nmtan_options *options)
+static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, const nmtan_options *options, nt_arena *arena)
 {
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
@@ -178,11 +218,12 @@ static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, const nmtan_o
 		status = nt_status_of(nt_vertex_tangents(&view, options, &request, &output, &mesh->counts));
 	}
 	if (!status)
-		end_split(mesh, &output);
+		return keep_split(mesh, &output, arena);
+	drop_split(mesh);
 	return status;
 }
 
-static nt_status solve_join(const tangent_job *job, const nt_join *join, const nmtan_options *options)
+static nt_status solve_join(const tangent_job *job, const nt_join *join, const nmtan_options *options, nt_arena *arena)
 {
 	nt_status status = nt_join_solve(join, stored_v_offset(job), job->splits, options);
 	for (size_t i = 0; i < join->part_count; i++) {
@@ -195,20 +236,22 @@ static nt_status solve_join(const tangent_job *job, const nt_join *join, const n
 			continue;
 		nmtan_split_output output;
 		if (!status && !(status = split_corners(mesh, options, &output)))
-			end_split(mesh, &output);
+			status = keep_split(mesh, &output, arena);
+		else
+			drop_split(mesh);
 		free_corners(mesh);
 	}
 	return status;
 }
 
 /* A mesh, or the join that it is the first of. */
-static nt_status solve_item(const tangent_job *job, nt_mesh *mesh, unsigned threads,
-	nmtan_workspace *workspace, nmtan_timing *timing)
+static nt_status solve_item(const tangent_job *job, nt_mesh *mesh, unsigned threads, nmtan_workspace *workspace,
+	nt_arena *arena, nmtan_timing *timing)
 {
 	const nmtan_options options = {.struct_bytes = sizeof options, .method = job->settings->method,
 		.repair = job->settings->repair, .threads = threads, .workspace = workspace,
 		.timing = timing};
-	return mesh->join ? solve_join(job, mesh->join, &options) : solve_mesh(job, mesh, &options);
+	return mesh->join ? solve_join(job, mesh->join, &options, arena) : solve_mesh(job, mesh, &options, arena);
 }
 
 static size_t corners_of(const nt_mesh *mesh)
@@ -226,7 +269,7 @@ static void solve_large(tangent_job *job)
 	for (size_t i = 0; i < job->count; i++)
 		if (corners_of(job->meshes[i]) >= LARGE_CORNERS)
 			job->statuses[i] = solve_item(job, job->meshes[i], job->settings->threads, NULL,
-				&job->timing);
+				&job->scene->arena, &job->timing);
 }
 
 static void solve_one_small(void *context, size_t item, unsigned slot)
@@ -235,14 +278,14 @@ static void solve_one_small(void *context, size_t item, unsigned slot)
 	nt_mesh *mesh = job->meshes[item];
 	if (corners_of(mesh) >= LARGE_CORNERS)
 		return;
+	solver *own = &job->solvers[slot];
 	/* without a workspace it is only slower */
-	nmtan_workspace **workspace = job->workspaces ? &job->workspaces[slot] : NULL;
-	if (workspace && !*workspace)
-		*workspace = nmtan_workspace_create(NULL);
-	job->statuses[item] = solve_item(job, mesh, 1, workspace ? *workspace : NULL, NULL);
+	if (!own->workspace)
+		own->workspace = nmtan_workspace_create(NULL);
+	job->statuses[item] = solve_item(job, mesh, 1, own->workspace, &own->arena, NULL);
 }
 
-static void solve_small(tangent_job *job)
+static nt_status solve_small(tangent_job *job)
 {
 	size_t corners = 0;
 	for (size_t i = 0; i < job->count; i++)
@@ -250,14 +293,19 @@ static void solve_small(tangent_job *job)
 			corners += corners_of(job->meshes[i]);
 	const unsigned threads = corners < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(job->settings->threads);
 	const size_t slots = threads < job->count ? threads : job->count;
-	job->workspaces = nt_calloc(slots, sizeof(nmtan_workspace *));
+	job->solvers = nt_calloc(slots, sizeof *job->solvers);
+	if (!job->solvers)
+		return NT_ERROR_MEMORY;
 	nt_parallel_items(threads, job->count, solve_one_small, job);
-	for (size_t i = 0; job->workspaces && i < slots; i++)
-		nmtan_workspace_destroy(job->workspaces[i]);
-	free(job->workspaces);
+	for (size_t i = 0; i < slots; i++) {
+		nmtan_workspace_destroy(job->solvers[i].workspace);
+		nt_arena_join(&job->scene->arena, &job->solvers[i].arena);
+	}
+	free(job->solvers);
+	return NT_OK;
 }
 
-/* Results live as long as the scene. */
+/* What is not kept yet lives as long as the scene. */
 static bool keep_results(nt_scene *scene, nt_mesh *mesh)
 {
 	bool kept = true;
@@ -266,9 +314,6 @@ static bool keep_results(nt_scene *scene, nt_mesh *mesh)
 	/* all of them are tried: what is not kept is freed */
 	kept &= nt_arena_adopt(&scene->arena, mesh->cut_arrays);
 	kept &= nt_arena_adopt(&scene->arena, mesh->corner_tangents);
-	kept &= nt_arena_adopt(&scene->arena, mesh->split.indices);
-	kept &= nt_arena_adopt(&scene->arena, mesh->split.sources);
-	kept &= nt_arena_adopt(&scene->arena, mesh->split.vertex_tangents);
 	return kept;
 }
 
@@ -369,8 +414,7 @@ nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_for
 		summary->seconds[NT_STAGE_WELD] += job.timing.weld;
 		summary->seconds[NT_STAGE_SPLIT] += job.timing.split;
 		summary->seconds[NT_STAGE_TANGENTS] -= job.timing.weld + job.timing.split;
-		solve_small(&job);
-		status = finish(&job, summary, error);
+		status = solve_small(&job) ? nt_fail_memory(error) : finish(&job, summary, error);
 	}
 	free(job.meshes);
 	free(job.statuses);
