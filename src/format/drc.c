@@ -80,7 +80,7 @@ static nt_status take_attributes(nt_scene *scene, nt_mesh *mesh, const nt_draco_
 		const nt_draco_attribute *a = &from->attributes[i];
 		const target to = target_of(mesh, a->kind);
 		if (!to.rows || *to.rows || a->components < to.least) {
-			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &mesh->place, 1,
+			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, nt_mesh_place(mesh, &(nt_place){0}), 1,
 				"Draco attribute %u with %d components", a->unique_id, a->components);
 			continue;
 		}
@@ -112,8 +112,6 @@ static nt_status fill_scene(nt_scene *scene, const nt_draco_mesh *from, nt_error
 		.vertex_count = from->point_count, .source_vertex_count = from->point_count,
 		.face_count = from->face_count, .corner_count = 3 * from->face_count,
 		.indices = indices, .primitives = primitive, .primitive_count = 1};
-	nt_place_clear(&mesh->place);
-	snprintf(mesh->place.object, sizeof mesh->place.object, "mesh");
 	scene->meshes = mesh;
 	scene->instances = instance;
 	scene->mesh_count = scene->instance_count = 1;

@@ -24,6 +24,7 @@
 #include "base/hash_index.h"
 #include "base/name_table.h"
 #include "gltf/materials.h"
+#include "gltf/pointer.h"
 #include "gltf/primitive.h"
 
 /* Primitives without a kind take part in the joins of so many kinds of a mesh, so that a file with a transform for
@@ -89,7 +90,7 @@ static nt_status read_kind(const group *g, const nt_mesh *mesh, kind *k, nt_erro
 {
 	nt_gltf_shading shading;
 	const nt_status status = nt_gltf_find_slots(g->document, nt_gltf_primitive_of(g->document, mesh),
-		mesh->place.pointer, &shading, error);
+		nt_gltf_of_mesh(mesh).pointer, &shading, error);
 	if (status)
 		return status;
 	const bool applies = shading.has_set && shading.set == mesh->texcoord_set && shading.transform.exists;

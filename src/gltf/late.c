@@ -16,6 +16,7 @@
 #include "gltf/accessor.h"
 #include "gltf/draco.h"
 #include "gltf/materials.h"
+#include "gltf/pointer.h"
 #include "gltf/primitive.h"
 #include "gltf/view.h"
 
@@ -73,9 +74,9 @@ static bool is_plain(const search *s, const nt_mesh *mesh)
 	const uint32_t number = accessor_of(s, primitive, "indices");
 	return mode == NT_GLTF_TRIANGLES && mesh->has_normals && !nt_json_find(primitive, "targets") &&
 		number != NT_NONE &&
-		nt_gltf_get_accessor(s->document, number, mesh->place.pointer, &indices, NULL) == NT_OK &&
+		nt_gltf_get_accessor(s->document, number, nt_gltf_of_mesh(mesh).pointer, &indices, NULL) == NT_OK &&
 		indices.count % 3 == 0 &&
-		nt_gltf_find_slots(s->document, primitive, mesh->place.pointer, &shading, NULL) == NT_OK &&
+		nt_gltf_find_slots(s->document, primitive, nt_gltf_of_mesh(mesh).pointer, &shading, NULL) == NT_OK &&
 		!shading.transform.exists;
 }
 
@@ -97,7 +98,7 @@ static nt_status mark_all(const search *s, nt_error *error)
 		mesh->late = is_late(s, mesh);
 		if (!mesh->late)
 			continue;
-		status = nt_gltf_get_accessor(s->document, positions_of(s, mesh), mesh->place.pointer, &positions,
+		status = nt_gltf_get_accessor(s->document, positions_of(s, mesh), nt_gltf_of_mesh(mesh).pointer, &positions,
 			error);
 		if (!status)
 			mesh->vertex_count = mesh->source_vertex_count = (size_t)positions.count;

@@ -15,6 +15,7 @@
 #include "gltf/accessor.h"
 #include "gltf/draco.h"
 #include "gltf/materials.h"
+#include "gltf/pointer.h"
 #include "gltf/primitive.h"
 
 /* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
@@ -26,7 +27,9 @@ static nt_status find_primitive(nt_gltf *document, const nt_mesh *mesh,
 	const nt_json_value *json =
 		nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh);
 	*primitive = nt_json_at(nt_json_find(json, "primitives"), mesh->gltf_primitive);
-	return nt_gltf_decode_draco(document, *primitive, mesh->place.pointer, error);
+	char pointer[NT_GLTF_POINTER];
+	nt_gltf_mesh_pointer(pointer, mesh);
+	return nt_gltf_decode_draco(document, *primitive, pointer, error);
 }
 
 /* An attribute of a primitive. *accessor has count 0 and no view where there is none. */
@@ -44,12 +47,12 @@ static nt_status find_attribute(nt_gltf *document, const nt_mesh *mesh,
 	if (!reference)
 		return NT_OK;
 	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "%.100s/attributes", mesh->place.pointer);
+	char *const end = nt_gltf_put_text(nt_gltf_mesh_pointer(pointer, mesh), "/attributes");
 	uint64_t index;
 	nt_status status =
 		nt_gltf_uint(attributes, pointer, name, UINT32_MAX - 1, NT_GLTF_REQUIRED, &index, error);
 	if (!status) {
-		snprintf(pointer, sizeof pointer, "%.100s/attributes/%.20s", mesh->place.pointer, name);
+		nt_gltf_put_text(nt_gltf_put_text(end, "/"), name);
 		status = nt_gltf_get_accessor(document, index, pointer, &found->accessor, error);
 	}
 	if (status)
@@ -68,7 +71,7 @@ static nt_status check_count(const nt_mesh *mesh, const attribute *found, const 
 	if (!found->exists || found->accessor.count == mesh->vertex_count)
 		return NT_OK;
 	char pointer[NT_GLTF_POINTER];
-	snprintf(pointer, sizeof pointer, "%.100s/attributes/%.20s", mesh->place.pointer, name);
+	nt_gltf_put_text(nt_gltf_put_text(nt_gltf_mesh_pointer(pointer, mesh), "/attributes/"), name);
 	return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 		"accessor %u has %llu elements, POSITION has %zu", found->accessor.index,
 		(unsigned long long)found->accessor.count, mesh->vertex_count);
@@ -84,12 +87,12 @@ static nt_status find_inputs(nt_gltf *document, const nt_mesh *mesh, const nt_js
 	const nt_read_options *options, inputs *in, nt_error *error)
 {
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
-	snprintf(in->texcoord_name, sizeof in->texcoord_name, "TEXCOORD_%u", mesh->texcoord_set);
+	nt_gltf_put_number(nt_gltf_put_text(in->texcoord_name, "TEXCOORD_"), mesh->texcoord_set);
 	in->colors.exists = false;
 	nt_status status =
 		find_attribute(document, mesh, attributes, "POSITION", 3, 3, &in->positions, error);
 	if (!status && !in->positions.exists)
-		status = nt_fail_pointer(error, NT_ERROR_INPUT, mesh->place.pointer,
+		status = nt_fail_pointer(error, NT_ERROR_INPUT, nt_gltf_of_mesh(mesh).pointer,
 			"the primitive has no POSITION");
 	if (!status)
 		status = find_attribute(document, mesh, attributes, "NORMAL", 3, 3, &in->normals, error);
@@ -121,7 +124,7 @@ static nt_status check_inputs(const nt_mesh *mesh, const inputs *in, nt_error *e
 	const bool backed = is_backed(&in->positions) || is_backed(&in->normals) ||
 		is_backed(&in->texcoords);
 	if (!status && !backed && mesh->vertex_count > UNBACKED_ELEMENTS)
-		status = nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, mesh->place.pointer,
+		status = nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, nt_gltf_of_mesh(mesh).pointer,
 			"%zu vertices, but neither positions nor normals nor texture coordinates have a "
 			"bufferView", mesh->vertex_count);
 	return status;
@@ -232,16 +235,16 @@ static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *me
 	const nt_mesh *giver = mesh->transform_of ? mesh->transform_of : mesh;
 	const nt_json_value *primitive = nt_gltf_primitive_of(document, giver);
 	nt_gltf_shading shading;
-	const nt_status status = nt_gltf_find_slots(document, primitive, giver->place.pointer,
+	const nt_status status = nt_gltf_find_slots(document, primitive, nt_gltf_of_mesh(giver).pointer,
 		&shading, error);
 	if (status || !shading.has_set || shading.set != mesh->texcoord_set || !mesh->texcoords)
 		return status;
 	const bool own = !mesh->transform_of;
 	if (own && shading.transforms_differ)
-		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, &mesh->place, 1,
+		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, nt_mesh_place(mesh, &(nt_place){0}), 1,
 			"set %u with different texture transforms", mesh->texcoord_set);
 	if (own && shading.transform.animated)
-		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED, &mesh->place, 1, NULL);
+		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED, nt_mesh_place(mesh, &(nt_place){0}), 1, NULL);
 	return shading.transform.exists && !mesh->same_as ?
 		transform_texcoords(scene, mesh, &shading.transform, error) : NT_OK;
 }
@@ -331,7 +334,7 @@ static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < count; i++) {
 		char pointer[NT_GLTF_POINTER];
-		snprintf(pointer, sizeof pointer, "%.100s/targets/%zu", mesh->place.pointer, i);
+		nt_gltf_put_number(nt_gltf_put_text(nt_gltf_mesh_pointer(pointer, mesh), "/targets/"), i);
 		nt_morph morph = {.target = (uint32_t)i, .name = name_of_target(scene, document, mesh, i)};
 		if (!morph.name)
 			return nt_fail_memory(error);
@@ -358,7 +361,7 @@ static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 {
 	uint64_t mode = NT_GLTF_TRIANGLES, index;
 	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
-	nt_status status = nt_gltf_uint(primitive, mesh->place.pointer, "indices", UINT32_MAX - 1,
+	nt_status status = nt_gltf_uint(primitive, nt_gltf_of_mesh(mesh).pointer, "indices", UINT32_MAX - 1,
 		NT_NONE, &index, error);
 	if (status)
 		return status;
@@ -366,7 +369,7 @@ static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 	uint64_t count = mesh->vertex_count;
 	if (index != NT_NONE) {
 		char pointer[NT_GLTF_POINTER];
-		snprintf(pointer, sizeof pointer, "%.100s/indices", mesh->place.pointer);
+		nt_gltf_put_text(nt_gltf_mesh_pointer(pointer, mesh), "/indices");
 		nt_gltf_accessor accessor;
 		status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
 		if (!status)
@@ -433,7 +436,9 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	/* a mesh in the world is written without its targets */
 	if (!status && !options->world && options->morphs == NT_MORPH_BAKE)
 		status = load_morphs(scene, document, mesh, primitive, error);
-	if (status && error && !error->place.object[0])
-		memcpy(error->place.object, mesh->place.object, sizeof error->place.object);
+	if (status && error && !error->place.object[0]) {
+		nt_place place;
+		memcpy(error->place.object, nt_mesh_place(mesh, &place)->object, sizeof error->place.object);
+	}
 	return status;
 }

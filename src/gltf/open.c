@@ -14,30 +14,13 @@
 #include "gltf/draco_shared.h"
 #include "gltf/materials.h"
 #include "gltf/nodes.h"
+#include "gltf/pointer.h"
 
 static const char *copy_name(nt_arena *arena, const nt_json_value *object)
 {
 	size_t length = 0;
 	const char *name = nt_json_get_string(nt_json_find(object, "name"), &length);
 	return nt_arena_text(arena, name ? name : "", name ? length : 0);
-}
-
-/* `mesh "head", primitive 2, material "skin"`. */
-static void name_place(nt_gltf *document, nt_mesh *mesh, uint32_t material)
-{
-	char *words = mesh->place.object;
-	const size_t room = sizeof mesh->place.object;
-	int used = mesh->name[0] ? snprintf(words, room, "mesh \"%.80s\"", mesh->name) :
-				   snprintf(words, room, "mesh %u", mesh->gltf_mesh);
-	used += snprintf(words + used, room - (size_t)used, ", primitive %u", mesh->gltf_primitive);
-	if (material == NT_NONE)
-		return;
-	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "materials"), material);
-	const char *name = nt_json_get_string(nt_json_find(json, "name"), NULL);
-	if (name)
-		snprintf(words + used, room - (size_t)used, ", material \"%.80s\"", name);
-	else
-		snprintf(words + used, room - (size_t)used, ", material %u", material);
 }
 
 /* How many elements an accessor claims; where that cannot be said, enough for a triangle, so that loading
@@ -69,7 +52,7 @@ static size_t claimed_faces(const nt_gltf *document, const nt_json_value *primit
 static bool has_texcoords(const nt_json_value *attributes, uint32_t set)
 {
 	char name[32];
-	snprintf(name, sizeof name, "TEXCOORD_%u", set);
+	nt_gltf_put_number(nt_gltf_put_text(name, "TEXCOORD_"), set);
 	return nt_json_find(attributes, name) != NULL;
 }
 
@@ -89,7 +72,8 @@ static uint32_t targets_without_tangents(const nt_json_value *primitive)
 static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	const nt_json_value *primitive, nt_mesh *mesh, const nt_read_options *options, nt_error *error)
 {
-	const char *pointer = mesh->place.pointer;
+	char pointer[NT_GLTF_POINTER];
+	nt_gltf_mesh_pointer(pointer, mesh);
 	if (nt_json_type_of(primitive) != NT_JSON_OBJECT)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "%s, expected an object",
 			nt_json_type_text(primitive));
@@ -104,7 +88,9 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 		status = nt_gltf_find_slots(document, primitive, pointer, &shading, error);
 	if (status)
 		return status;
-	name_place(document, mesh, shading.material);
+	mesh->gltf_material = shading.material;
+	mesh->gltf_material_name = nt_json_get_string(nt_json_find(
+		nt_json_at(nt_gltf_root_member(document, "materials"), shading.material), "name"), NULL);
 	mesh->triangles = mode >= NT_GLTF_TRIANGLES;
 	mesh->slots = shading.slots;
 	mesh->unlit = shading.unlit;
@@ -160,9 +146,6 @@ static nt_status describe_meshes(nt_scene *scene, nt_gltf *document, const nt_re
 			return nt_fail_memory(error);
 		for (size_t k = 0; k < nt_json_count(primitives); k++, mesh++) {
 			memset(mesh, 0, sizeof *mesh);
-			nt_place_clear(&mesh->place);
-			snprintf(mesh->place.pointer, sizeof mesh->place.pointer,
-				"/meshes/%zu/primitives/%zu", i, k);
 			mesh->name = name;
 			mesh->gltf_mesh = (uint32_t)i;
 			mesh->gltf_primitive = (uint32_t)k;

@@ -14,6 +14,7 @@
 #include "base/buffer.h"
 #include "base/name_table.h"
 #include "gltf/materials.h"
+#include "gltf/pointer.h"
 #include "gltf/primitive.h"
 
 /* Numbers that are no accessors. */
@@ -99,7 +100,7 @@ static nt_status put_key(same_job *job, const nt_mesh *mesh, nt_error *error)
 	const nt_json_value *primitive = nt_gltf_primitive_of(job->document, mesh);
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
 	nt_gltf_shading shading;
-	const nt_status status = nt_gltf_find_slots(job->document, primitive, mesh->place.pointer,
+	const nt_status status = nt_gltf_find_slots(job->document, primitive, nt_gltf_of_mesh(mesh).pointer,
 		&shading, error);
 	if (status)
 		return status;

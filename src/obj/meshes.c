@@ -199,7 +199,8 @@ static nt_status triangulate(builder *b, nt_mesh *mesh, const obj_polygon *polyg
 		to[i] = corners[b->triangles[i]];
 	if (!sound) {
 		nt_finding_list *findings = &b->file->scene->findings;
-		nt_place place = mesh->place;
+		nt_place place;
+		nt_mesh_place(mesh, &place);
 		place.line = polygon->line;
 		nt_finding_add(findings, NT_CODE_POLYGON_DEGENERATE, &place, 1, NULL);
 	}
@@ -297,7 +298,7 @@ static nt_status set_faces(builder *b, nt_mesh *mesh, size_t m)
 	const face_counts n =
 		count_faces(b, begin, end, file->mesh_corners[m + 1] - file->mesh_corners[m]);
 	if (n.faces > NMTAN_MAX_FACES)
-		return nt_fail_line(b->error, NT_ERROR_TOO_LARGE, mesh->place.line,
+		return nt_fail_line(b->error, NT_ERROR_TOO_LARGE, mesh->line,
 			"object of %zu faces, at most %zu can be solved together", n.faces, NMTAN_MAX_FACES);
 	mesh->face_count = n.faces;
 	mesh->corner_count = n.corners;
@@ -338,11 +339,8 @@ static nt_status set_name(builder *b, nt_mesh *mesh, size_t m)
 	mesh->name = object ? nt_utf8_text(&file->scene->arena, object->text, object->length) : "";
 	if (!mesh->name)
 		return nt_fail_memory(b->error);
-	nt_place_clear(&mesh->place);
-	strncpy(mesh->place.file, file->scene->path, sizeof mesh->place.file - 1);
-	mesh->place.line = file->mesh_lines[m];
-	if (*mesh->name)
-		snprintf(mesh->place.object, sizeof mesh->place.object, "object \"%.200s\"", mesh->name);
+	mesh->file = file->scene->path;
+	mesh->line = file->mesh_lines[m];
 	return NT_OK;
 }
 

@@ -393,7 +393,7 @@ static void compare_part(nt_scene *scene, const nt_mesh *mesh, const float *join
 		least = fmin(least, cosine);
 	}
 	if (count)
-		nt_finding_add(&scene->findings, NT_CODE_TAN_PRIMITIVE_BORDER, &mesh->place, count,
+		nt_finding_add(&scene->findings, NT_CODE_TAN_PRIMITIVE_BORDER, nt_mesh_place(mesh, &(nt_place){0}), count,
 			"by up to %.1f degrees", nt_angle(sqrt(fmax(0, 1 - least * least)), least) * degrees);
 }
 

@@ -71,7 +71,7 @@ static void tell_facts(nt_finding_list *findings, const nt_place *place, const n
 static void tell(const examination *e, const examined *x)
 {
 	nt_finding_list *findings = &e->scene->findings;
-	const nt_place *place = &x->mesh->place;
+	const nt_place *place = nt_mesh_place(x->mesh, &(nt_place){0});
 	if (!is_wanted(e, &x->map)) {
 		const bool large = nt_image_is_decoded(x->map.type);
 		nt_finding_add(findings, NT_CODE_NMAP_NOT_EXAMINED, place, 1, "%s%s", nt_image_type_name(x->map.type),

@@ -190,9 +190,9 @@ static nt_status split_by_normal(nt_scene *scene, nt_mesh *mesh, normal_job *job
 static void report_normals(nt_scene *scene, const nt_mesh *mesh)
 {
 	if (mesh->made_normal_corners)
-		nt_finding_add(&scene->findings, NT_CODE_NORMALS_MADE, &mesh->place, mesh->made_normal_corners, NULL);
+		nt_finding_add(&scene->findings, NT_CODE_NORMALS_MADE, nt_mesh_place(mesh, &(nt_place){0}), mesh->made_normal_corners, NULL);
 	if (mesh->replaced_normal_corners)
-		nt_finding_add(&scene->findings, NT_CODE_NORMALS_REPLACED, &mesh->place,
+		nt_finding_add(&scene->findings, NT_CODE_NORMALS_REPLACED, nt_mesh_place(mesh, &(nt_place){0}),
 			mesh->replaced_normal_corners, NULL);
 }
 

@@ -321,7 +321,7 @@ static bool keep_results(nt_scene *scene, nt_mesh *mesh)
 static void add_halfway(nt_finding_list *list, const nt_mesh *mesh, const nt_morph *morph)
 {
 	if (morph->halfway_triangles)
-		nt_finding_add(list, NT_CODE_TAN_MORPH_HALFWAY, &mesh->place, morph->halfway_triangles,
+		nt_finding_add(list, NT_CODE_TAN_MORPH_HALFWAY, nt_mesh_place(mesh, &(nt_place){0}), morph->halfway_triangles,
 			morph->name[0] ? "target %u \"%.80s\", %.1f degrees" : "target %u%s, %.1f degrees",
 			morph->target, morph->name, morph->halfway_degrees);
 }
@@ -345,7 +345,7 @@ static void add_findings(nt_finding_list *list, const nt_mesh *mesh)
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
 		if (rows[i].count)
-			nt_finding_add(list, rows[i].code, &mesh->place, rows[i].count, NULL);
+			nt_finding_add(list, rows[i].code, nt_mesh_place(mesh, &(nt_place){0}), rows[i].count, NULL);
 	for (size_t m = 0; m < mesh->morph_count; m++)
 		add_halfway(list, mesh, &mesh->morphs[m]);
 }
@@ -375,7 +375,7 @@ static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *e
 		if (job->statuses[i]) {
 			nt_fail(error, job->statuses[i], "cannot compute tangents: %s",
 				nt_status_text(job->statuses[i]));
-			error->place = mesh->place;
+			nt_mesh_place(mesh, &error->place);
 			return job->statuses[i];
 		}
 	}

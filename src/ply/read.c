@@ -213,8 +213,6 @@ static nt_status make_scene(nt_scene *scene, nt_error *error)
 	*scene->instances = (nt_instance){.matrix = {[0] = 1.0, [5] = 1.0, [10] = 1.0, [15] = 1.0}};
 	*scene->meshes = (nt_mesh){.name = "", .gltf_mesh = NT_NONE, .gltf_primitive = NT_NONE,
 		.reachable = true};
-	nt_place_clear(&scene->meshes->place);
-	snprintf(scene->meshes->place.object, sizeof scene->meshes->place.object, "mesh");
 	scene->instance_count = scene->mesh_count = 1;
 	return NT_OK;
 }

@@ -61,7 +61,7 @@ static bool describe_mesh(nt_report *report, const nt_mesh *mesh, const nt_repor
 	nt_report_mesh *facts)
 {
 	const bool solve = mesh->decision == NT_DECISION_SOLVE && options->written == NT_FORMAT_UNKNOWN;
-	*facts = (nt_report_mesh){.place = mesh->place,
+	*facts = (nt_report_mesh){
 		.name = copy_text(&report->arena, mesh->name),
 		.why = describe_why(&report->arena, mesh,
 			solve ? "tangents would be computed" : nt_decision_text(mesh->decision)),
@@ -70,6 +70,7 @@ static bool describe_mesh(nt_report *report, const nt_mesh *mesh, const nt_repor
 		.has_normals = mesh->normals != NULL, .has_texcoords = mesh->texcoords != NULL,
 		.worst_orthogonality = NAN, .relative_determinant = {NAN, NAN, NAN},
 		.box = nt_box_empty()};
+	nt_mesh_place(mesh, &facts->place);
 	return facts->name && facts->why;
 }
 

@@ -4,6 +4,7 @@
  */
 #include "scene/scene.h"
 
+#include <stdio.h>
 #include <string.h>
 
 void nt_scene_init(nt_scene *scene, const char *path)
@@ -22,15 +23,46 @@ void nt_scene_free(nt_scene *scene)
 	memset(scene, 0, sizeof *scene);
 }
 
+/* `mesh "head", primitive 2, material "skin"`. */
+static void name_primitive(const nt_mesh *mesh, char *words, size_t room)
+{
+	int used = mesh->name[0] ? snprintf(words, room, "mesh \"%.80s\"", mesh->name) :
+				   snprintf(words, room, "mesh %u", mesh->gltf_mesh);
+	used += snprintf(words + used, room - (size_t)used, ", primitive %u", mesh->gltf_primitive);
+	if (mesh->gltf_material_name)
+		snprintf(words + used, room - (size_t)used, ", material \"%.80s\"", mesh->gltf_material_name);
+	else if (mesh->gltf_material != NT_NONE)
+		snprintf(words + used, room - (size_t)used, ", material %u", mesh->gltf_material);
+}
+
+const nt_place *nt_mesh_place(const nt_mesh *mesh, nt_place *place)
+{
+	nt_place_clear(place);
+	if (mesh->file)
+		snprintf(place->file, sizeof place->file, "%s", mesh->file);
+	place->line = mesh->line;
+	if (mesh->gltf_mesh != NT_NONE) {
+		snprintf(place->pointer, sizeof place->pointer, "/meshes/%u/primitives/%u", mesh->gltf_mesh,
+			mesh->gltf_primitive);
+		name_primitive(mesh, place->object, sizeof place->object);
+	} else if (mesh->name[0]) {
+		snprintf(place->object, sizeof place->object, "object \"%.200s\"", mesh->name);
+	} else if (!mesh->line) {
+		strcpy(place->object, "mesh");
+	}
+	return place;
+}
+
 void nt_mesh_share(nt_mesh *mesh)
 {
 	const nt_mesh own = *mesh;
 	*mesh = *own.same_as;
 	/* all but geometry and results: what it is called, what decides, and its material */
 	mesh->name = own.name;
-	mesh->place = own.place;
 	mesh->gltf_mesh = own.gltf_mesh;
 	mesh->gltf_primitive = own.gltf_primitive;
+	mesh->gltf_material = own.gltf_material;
+	mesh->gltf_material_name = own.gltf_material_name;
 	mesh->slots = own.slots;
 	mesh->triangles = own.triangles;
 	mesh->reachable = own.reachable;

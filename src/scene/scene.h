@@ -114,9 +114,12 @@ typedef struct nt_join {
 typedef struct nt_mesh {
 	/* what it is called and where it stands */
 	const char *name;     /* object or mesh name; "" where there is none */
-	nt_place place;       /* of the mesh in the source; object is set for messages */
+	const char *file;     /* where it is, and its line there; NULL and 0: not known */
+	size_t line;
 	uint32_t gltf_mesh;      /* indices in the source document, NT_NONE elsewhere */
 	uint32_t gltf_primitive;
+	uint32_t gltf_material;  /* NT_NONE: none */
+	const char *gltf_material_name; /* NULL: none */
 
 	/* what decides: filled by open() */
 	unsigned slots;          /* enum nt_slot, union over materials and variants */
@@ -253,6 +256,9 @@ void nt_scene_init(nt_scene *scene, const char *path);
 
 /* Frees everything; the scene is empty afterwards. */
 void nt_scene_free(nt_scene *scene);
+
+/* Fills the place of a mesh in the source, with its name in words as object. Returns `place`. */
+const nt_place *nt_mesh_place(const nt_mesh *mesh, nt_place *place);
 
 /* Whether a mesh gets tangents. */
 static inline bool nt_mesh_is_wanted(const nt_mesh *mesh)

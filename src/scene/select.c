@@ -53,12 +53,12 @@ static void report_no_texcoords(nt_scene *scene, const nt_mesh *mesh, bool other
 	if (!needs_tangents(mesh) && nt_format_is_gltf(scene->format))
 		return;
 	if (needs_tangents(mesh))
-		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, &mesh->place, 1, "texture coordinate set %u",
+		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, nt_mesh_place(mesh, &(nt_place){0}), 1, "texture coordinate set %u",
 			mesh->texcoord_set);
 	else if (!others_have)
-		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, &mesh->place, 1, "the file has none at all");
+		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, nt_mesh_place(mesh, &(nt_place){0}), 1, "the file has none at all");
 	else
-		nt_finding_add(&scene->findings, NT_CODE_UV_MISSING, &mesh->place, 1, NULL);
+		nt_finding_add(&scene->findings, NT_CODE_UV_MISSING, nt_mesh_place(mesh, &(nt_place){0}), 1, NULL);
 }
 
 /* Whether the mesh has what a solve takes, or what mending takes that has to do without texture coordinates; if not,
@@ -70,7 +70,7 @@ static nt_decision decide_by_attributes(nt_scene *scene, const nt_mesh *mesh, co
 	if (lacks_texcoords)
 		report_no_texcoords(scene, mesh, w->any_texcoords);
 	if (lacks_normals && needs_tangents(mesh))
-		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_NORMAL, &mesh->place, 1, NULL);
+		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_NORMAL, nt_mesh_place(mesh, &(nt_place){0}), 1, NULL);
 	if (lacks_texcoords)
 		return NT_SKIP_NO_TEXCOORDS;
 	return lacks_normals ? NT_SKIP_NO_NORMALS : NT_DECISION_OPEN;
@@ -87,7 +87,7 @@ static nt_decision decide(nt_scene *scene, const nt_mesh *mesh, const wishes *w)
 	if (decision != NT_DECISION_OPEN)
 		return decision;
 	if (mesh->texcoord_conflict)
-		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, &mesh->place, 1,
+		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, nt_mesh_place(mesh, &(nt_place){0}), 1,
 			"sets %u and %u", mesh->texcoord_set, mesh->texcoord_other_set);
 	if (mesh->has_tangents && w->existing == NT_EXISTING_KEEP)
 		return NT_SKIP_HAS_TANGENTS;

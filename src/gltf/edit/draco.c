@@ -221,7 +221,7 @@ static void report_users(const nt_gltf_recoding *r, nt_finding_list *findings, b
 	for (size_t i = 0; i < pool->user_count; i++) {
 		if (!nt_pool_is_solved(pool, i))
 			continue;
-		const nt_place *place = &nt_pool_mesh(pool, i)->place;
+		const nt_place *place = nt_mesh_place(nt_pool_mesh(pool, i), &(nt_place){0});
 		const bool wanted = r->options->draco > NT_DRACO_OFF || is_compressed(pool, i);
 		if (!compressed && wanted)
 			nt_finding_add(findings, NT_CODE_DRACO_PLAIN, place, 1, "%s", r->obstacle);

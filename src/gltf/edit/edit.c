@@ -48,7 +48,8 @@ static nt_status round_tangents(const editing *e, nt_pool_vertices *vertices)
 			vertices->tangents[set] = memcpy(own, vertices->tangents[set], count * 4 * sizeof *own);
 		}
 		nt_precision_round(precision, vertices->tangents[set], count, &cost);
-		nt_precision_report(e->scene, precision, &cost, &nt_pool_set_mesh(vertices->pool, set)->place);
+		nt_precision_report(e->scene, precision, &cost, 
+			nt_mesh_place(nt_pool_set_mesh(vertices->pool, set), &(nt_place){0}));
 	}
 	return NT_OK;
 }

@@ -12,6 +12,7 @@
 #include "base/largest.h"
 #include "gltf/accessor.h"
 #include "gltf/edit/new_accessors.h"
+#include "gltf/pointer.h"
 #include "gltf/view.h"
 
 /* New indices of one primitive, encoded. */
@@ -202,7 +203,7 @@ static nt_status find_old(nt_gltf *document, const nt_mesh *mesh, uint32_t index
 	*old = (nt_gltf_accessor){.count = mesh->source_vertex_count, .component_type = NT_GLTF_USHORT};
 	if (index == NT_NONE)
 		return NT_OK;
-	const nt_status status = nt_gltf_get_accessor(document, index, mesh->place.pointer, old, error);
+	const nt_status status = nt_gltf_get_accessor(document, index, nt_gltf_of_mesh(mesh).pointer, old, error);
 	/* What Draco gave has 32 bits; the accessor may say less. */
 	uint64_t type;
 	if (!status && old->decoded && nt_json_get_uint64(nt_json_find(nt_json_at(

@@ -17,7 +17,8 @@ static const char name[] = "EXT_mesh_manifold";
 
 static void report(nt_scene *scene, const nt_mesh *mesh, const char *obstacle)
 {
-	nt_place place = mesh->place;
+	nt_place place;
+	nt_mesh_place(mesh, &place);
 	snprintf(place.pointer, sizeof place.pointer, "/meshes/%u/extensions/%s", mesh->gltf_mesh, name);
 	nt_finding_add(&scene->findings, NT_CODE_EXTENSION_STALE, &place, 1, "%s, %s,", name, obstacle);
 }

@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/hash_index.h"
+#include "gltf/pointer.h"
 
 typedef struct merging {
 	nt_pool_vertices *vertices;
@@ -485,7 +486,7 @@ static nt_status check_counts(nt_pool_vertices *vertices, nt_error *error)
 		if (!nt_pool_is_solved(vertices->pool, i))
 			continue;
 		if (!first && mesh->source_vertex_count != vertices->old_count)
-			return nt_fail_pointer(error, NT_ERROR_INPUT, mesh->place.pointer,
+			return nt_fail_pointer(error, NT_ERROR_INPUT, nt_gltf_of_mesh(mesh).pointer,
 				"%zu vertices, but a primitive that shares attributes with it has %zu",
 				mesh->source_vertex_count, vertices->old_count);
 		vertices->old_count = mesh->source_vertex_count;

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "base/buffer.h"
+#include "gltf/pointer.h"
 #include "gltf/primitive.h"
 
 /* Extensions that need nothing, or that are looked after elsewhere. */
@@ -107,7 +108,8 @@ static void look_at(search *s, const nt_json_value *extensions, const char *owne
 			continue;
 		if (s->pointer.failed)
 			return;
-		nt_place place = s->mesh->place;
+		nt_place place;
+		nt_mesh_place(s->mesh, &place);
 		snprintf(place.pointer, sizeof place.pointer, "%.*s", (int)s->pointer.size, s->pointer.data);
 		nt_finding_add(&s->scene->findings, NT_CODE_EXTENSION_STALE, &place, 1, "%.*s",
 			(int)(length < 100 ? length : 100), name);
@@ -118,7 +120,7 @@ nt_status nt_extension_references(nt_scene *scene, const nt_mesh *mesh, size_t o
 {
 	search s = {.scene = scene, .document = scene->source, .mesh = mesh, .old_count = old_count};
 	s.primitive = nt_gltf_primitive_of(s.document, mesh);
-	look_at(&s, nt_json_find(s.primitive, "extensions"), mesh->place.pointer);
+	look_at(&s, nt_json_find(s.primitive, "extensions"), nt_gltf_of_mesh(mesh).pointer);
 	if (with_mesh) {
 		char owner[NT_GLTF_POINTER];
 		snprintf(owner, sizeof owner, "/meshes/%u", mesh->gltf_mesh);

@@ -130,7 +130,10 @@ static void texcoords_have_v_up(void **state)
 	assert_memory_equal(mesh->positions, quad.positions, sizeof quad.positions);
 	assert_memory_equal(mesh->normals, quad.normals, sizeof quad.normals);
 	assert_null(mesh->tangents);
-	assert_string_equal(mesh->place.object, "mesh \"q\", primitive 0");
+	nt_place place;
+	nt_mesh_place(mesh, &place);
+	assert_string_equal(place.object, "mesh \"q\", primitive 0");
+	assert_string_equal(place.pointer, "/meshes/0/primitives/0");
 	close_text(&f);
 }
 

@@ -39,9 +39,11 @@ static void one_triangle_with_everything(void **state)
 		"# comment\no head\nv 0 0 0\nv 1.5 0 0\nv 0 -2e0 .25\n"
 		"vt 0.5 0.25\nvt 1 0\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1\n");
 	assert_string_equal(mesh->name, "head");
-	assert_string_equal(mesh->place.file, "folder/test.obj");
-	assert_int_equal(mesh->place.line, 2);
-	assert_string_equal(mesh->place.object, "object \"head\"");
+	nt_place place;
+	nt_mesh_place(mesh, &place);
+	assert_string_equal(place.file, "folder/test.obj");
+	assert_int_equal(place.line, 2);
+	assert_string_equal(place.object, "object \"head\"");
 	assert_int_equal(mesh->vertex_count, 3);
 	assert_int_equal(mesh->source_vertex_count, 3);
 	assert_int_equal(mesh->face_count, 1);
@@ -223,9 +225,10 @@ static void objects_become_meshes_and_groups_do_not(void **state)
 	assert_int_equal(r.scene.instance_count, 3);
 	const nt_mesh *mesh = r.scene.meshes;
 	assert_string_equal(mesh[0].name, "");
-	assert_string_equal(mesh[0].place.object, "");
+	nt_place place;
+	assert_string_equal(nt_mesh_place(&mesh[0], &place)->object, "");
 	assert_string_equal(mesh[1].name, "first");
-	assert_int_equal(mesh[1].place.line, 6);
+	assert_int_equal(mesh[1].line, 6);
 	assert_string_equal(mesh[2].name, "second one");
 	assert_int_equal(mesh[0].face_count, 1);
 	assert_int_equal(mesh[1].face_count, 2);

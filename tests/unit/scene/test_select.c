@@ -5,9 +5,8 @@
 /* A reachable mesh of triangles with everything a solve takes. */
 static nt_mesh complete_mesh(unsigned slots)
 {
-	nt_mesh mesh = {.slots = slots, .triangles = true, .reachable = true, .has_positions = true,
+	nt_mesh mesh = {.name = "", .slots = slots, .triangles = true, .reachable = true, .has_positions = true,
 		.has_normals = true, .has_texcoords = true, .face_count = 1};
-	nt_place_clear(&mesh.place);
 	return mesh;
 }
 
