@@ -279,7 +279,7 @@ static nt_status fail_corner(const nt_mesh *mesh, size_t corner, nt_error *error
 	nt_fail(error, NT_ERROR_INTERNAL,
 		"the output, read back, differs from what was written at corner %zu of mesh \"%s\"",
 		corner, mesh->name ? mesh->name : "");
-	error->place = mesh->place;
+	nt_mesh_place(mesh, &error->place);
 	return NT_ERROR_INTERNAL;
 }
 

@@ -187,7 +187,7 @@ static nt_status fail_not_finite(const nt_mesh *mesh, const char *what, size_t v
 {
 	nt_fail(error, NT_ERROR_INPUT, "the %s of vertex %zu is not finite%s, expected finite numbers for PLY", what, vertex,
 		placed ? " where the node places it" : "");
-	error->place = mesh->place;
+	nt_mesh_place(mesh, &error->place);
 	return NT_ERROR_INPUT;
 }
 

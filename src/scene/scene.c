@@ -47,7 +47,7 @@ const nt_place *nt_mesh_place(const nt_mesh *mesh, nt_place *place)
 		name_primitive(mesh, place->object, sizeof place->object);
 	} else if (mesh->name[0]) {
 		snprintf(place->object, sizeof place->object, "object \"%.200s\"", mesh->name);
-	} else if (!mesh->line) {
+	} else if (!mesh->file) {
 		strcpy(place->object, "mesh");
 	}
 	return place;

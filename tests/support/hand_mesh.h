@@ -25,7 +25,6 @@ static inline hand_mesh *hand_new(void)
 	hand_mesh *h = calloc(1, sizeof *h);
 	nt_scene_init(&h->scene, "hand.ply");
 	h->scene.format = NT_FORMAT_PLY;
-	nt_place_clear(&h->mesh.place);
 	h->mesh.name = "hand";
 	h->mesh.triangles = h->mesh.reachable = h->mesh.has_positions = true;
 	h->mesh.gltf_mesh = h->mesh.gltf_primitive = NT_NONE;

@@ -113,7 +113,7 @@ static nt_status clone_pinned(nt_appending *job)
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < job->target_count; i++) {
 		const uint32_t index = job->targets[i].accessor.index;
-		if (job->pinned[index] || job->pools->foreign[job->pools->first_alias[index]])
+		if (job->edits->pinned[index] || job->pools->foreign[job->pools->first_alias[index]])
 			status = clone_accessor(job, &job->targets[i]);
 	}
 	for (size_t i = 0; !status && i < job->vertices->pool->user_count; i++)
@@ -248,7 +248,7 @@ static nt_status append_to_block(nt_appending *job, const block *b, uint64_t pre
 {
 	nt_status status = NT_OK;
 	if (b->begin < previous_end || nt_byte_users_foreign(&job->edits->users, b->buffer, b->begin, b->end,
-					       job->own)) {
+					       job->edits->appended_by, nt_append_owner(job))) {
 		for (size_t i = 0; !status && i < b->count; i++)
 			status = move_away(job, &b->targets[i]);
 		return status;
@@ -345,21 +345,13 @@ nt_status nt_append_vertices(nt_buffer_edits *edits, uint32_t buffer, const nt_v
 {
 	nt_appending job = {.edits = edits, .document = edits->document,
 		.json = edits->document->json, .arena = &edits->arena, .buffer = buffer, .pools = pools, .vertices = vertices,
-		.decoded_too = decoded_too, .error = error,
-		.seen = nt_calloc(pools->accessor_count, sizeof *job.seen),
-		.pinned = nt_calloc(pools->accessor_count, sizeof *job.pinned),
-		.own = nt_calloc(pools->accessor_count, sizeof *job.own)};
-	nt_status status = job.seen && job.pinned && job.own ? NT_OK : nt_fail_memory(error);
-	if (!status)
-		status = nt_append_collect(&job, overrides, override_count);
+		.decoded_too = decoded_too, .error = error};
+	nt_status status = nt_append_collect(&job, overrides, override_count);
 	if (!status && nt_appended_count(&job) && must_pin(&job))
 		status = clone_pinned(&job);
 	if (!status)
 		status = append_to_targets(&job);
 	free(job.targets);
 	free(job.edited);
-	free(job.seen);
-	free(job.pinned);
-	free(job.own);
 	return status;
 }

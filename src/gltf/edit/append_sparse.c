@@ -62,7 +62,8 @@ static nt_status extend_sparse_part(nt_appending *job, const nt_append_target *f
 	bool same, some;
 	find_edited(job, view.buffer, begin, end, &same, &some);
 	if (some || (!part->extended && begin % part->width) ||
-		nt_byte_users_foreign(&job->edits->users, view.buffer, begin, end, job->own))
+		nt_byte_users_foreign(&job->edits->users, view.buffer, begin, end, job->edits->appended_by,
+			nt_append_owner(job)))
 		return move_sparse_part(job, part, json);
 	if (same)
 		return NT_OK;

@@ -43,7 +43,7 @@ static nt_status add_target(nt_appending *job, uint32_t index)
 		added->begin = view.offset + added->accessor.offset;
 	}
 	job->target_count++;
-	job->own[job->pools->first_alias[index]] = true;
+	job->edits->appended_by[job->pools->first_alias[index]] = nt_append_owner(job);
 	return NT_OK;
 }
 
@@ -54,10 +54,10 @@ static nt_status collect_attribute(void *context, nt_json_value *attributes, con
 	(void)name;
 	nt_appending *job = context;
 	if (job->collecting_unsolved)
-		job->pinned[accessor] = true;
-	if (job->seen[accessor])
+		job->edits->pinned[accessor] = true;
+	if (job->edits->seen[accessor])
 		return NT_OK;
-	job->seen[accessor] = true;
+	job->edits->seen[accessor] = true;
 	return add_target(job, accessor);
 }
 
@@ -75,7 +75,7 @@ nt_status nt_append_collect(nt_appending *job, nt_gltf_override *overrides, size
 		qsort(overrides, override_count, sizeof *overrides, compare_overrides);
 	for (size_t i = 0; i < override_count; i++)
 		if (!overrides[i].values)
-			job->seen[overrides[i].accessor] = true;
+			job->edits->seen[overrides[i].accessor] = true;
 	const bool all = nt_appended_count(job) || job->decoded_too;
 	for (size_t i = 0; !status && all && i < pool->user_count; i++) {
 		job->collecting_unsolved = !nt_pool_is_solved(pool, i);

@@ -44,9 +44,6 @@ typedef struct nt_appending {
 	nt_error *error;
 	nt_append_target *targets;
 	size_t target_count, target_capacity;
-	bool *seen;       /* [accessor_count] */
-	bool *pinned;     /* [accessor_count] used by an unsolved user */
-	bool *own;        /* [accessor_count] by first alias: among the targets */
 	bool collecting_unsolved;
 	nt_edited_range *edited;
 	size_t edited_count, edited_capacity;
@@ -56,6 +53,12 @@ typedef struct nt_appending {
 static inline size_t nt_appended_count(const nt_appending *a)
 {
 	return a->vertices->new_count - a->vertices->old_count;
+}
+
+/* The pool, as nt_buffer_edits.appended_by has it. */
+static inline uint32_t nt_append_owner(const nt_appending *a)
+{
+	return a->vertices->pool->users[0];
 }
 
 /* Notes that bytes of a source buffer have been edited. False: out of memory. */

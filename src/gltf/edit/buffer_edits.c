@@ -76,11 +76,15 @@ nt_status nt_edits_create(nt_buffer_edits *edits, const nt_vertex_pools *pools, 
 	edits->virtuals = nt_calloc(edits->view_count, sizeof *edits->virtuals);
 	edits->is_free = nt_calloc(edits->view_count, sizeof *edits->is_free);
 	edits->free_views = nt_alloc(edits->view_count, sizeof *edits->free_views);
-	if (!edits->buffers || !edits->virtuals || !edits->is_free || !edits->free_views ||
+	edits->seen = nt_calloc(pools->accessor_count, sizeof *edits->seen);
+	edits->pinned = nt_calloc(pools->accessor_count, sizeof *edits->pinned);
+	edits->appended_by = nt_alloc(pools->accessor_count, sizeof *edits->appended_by);
+	if (!edits->seen || !edits->pinned || !edits->appended_by || !edits->buffers || !edits->virtuals || !edits->is_free || !edits->free_views ||
 		!nt_byte_users_find(&edits->users, document, pools)) {
 		nt_edits_free(edits);
 		return nt_fail_memory(error);
 	}
+	memset(edits->appended_by, 0xFF, pools->accessor_count * sizeof *edits->appended_by);
 	if (edits->users.unknown)
 		edits->alignment = CAREFUL_ALIGNMENT;
 	for (size_t i = 0; i < document->buffer_count; i++) {
@@ -101,6 +105,9 @@ void nt_edits_free(nt_buffer_edits *edits)
 		free(edits->virtuals[i].edits);
 		free(edits->virtuals[i].additions);
 	}
+	free(edits->seen);
+	free(edits->pinned);
+	free(edits->appended_by);
 	free(edits->is_free);
 	free(edits->free_views);
 	free(edits->virtuals);

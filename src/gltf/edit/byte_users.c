@@ -150,13 +150,13 @@ static size_t users_before(const nt_byte_users *users, uint32_t buffer, uint64_t
 }
 
 bool nt_byte_users_foreign(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
-	const bool *own)
+	const uint32_t *owners, uint32_t own)
 {
 	for (size_t i = users_before(users, buffer, end); i-- > 0;) {
 		const nt_byte_user *user = &users->list[i];
 		if (user->buffer != buffer || user->reach <= begin)
 			break;
-		if (user->end > begin && (user->accessor == NT_NONE || !own[user->accessor]))
+		if (user->end > begin && (user->accessor == NT_NONE || owners[user->accessor] != own))
 			return true;
 	}
 	return false;

@@ -24,9 +24,9 @@ typedef struct nt_byte_users {
 /* Faulty parts of the document are passed over. False: out of memory. */
 bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document, const nt_vertex_pools *pools);
 
-/* Whether something other than the accessors in own[], by first alias, refers to bytes of [begin, end). */
+/* Whether something other than the accessors whose owner, by first alias, is `own` refers to bytes of [begin, end). */
 bool nt_byte_users_foreign(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,
-	const bool *own);
+	const uint32_t *owners, uint32_t own);
 
 /* Whether something other than one accessor, a first alias, does. */
 bool nt_byte_users_other(const nt_byte_users *users, uint32_t buffer, uint64_t begin, uint64_t end,

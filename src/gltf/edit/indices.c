@@ -152,10 +152,13 @@ static bool equal_indices(const nt_pool_vertices *vertices, size_t a, size_t b)
 static uint32_t find_leader(const nt_pool_vertices *vertices, uint32_t user, uint32_t last, const written *log,
 	nt_hash_index *leaders)
 {
-	/* of primitives with the same triangles, which mostly follow each other, nothing is hashed again */
+	/* of primitives with the same triangles, which mostly follow each other, nothing is hashed again; of one alone
+	 * nothing is hashed */
 	if (last != NT_NONE && vertices->indices[last] == vertices->indices[user] &&
 		log[last].first_alias == log[user].first_alias)
 		return log[last].leader;
+	if (vertices->pool->user_count == 1)
+		return user;
 	const uint64_t hash = nt_hash_bytes(log[user].first_alias, vertices->indices[user],
 		nt_pool_mesh(vertices->pool, user)->corner_count * sizeof **vertices->indices);
 	uint32_t leader;

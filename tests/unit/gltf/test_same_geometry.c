@@ -135,7 +135,8 @@ static void what_is_loaded_is_shared_and_not_copied(void **state)
 	assert_ptr_equal(a->indices, b->indices);
 	assert_int_equal(b->corner_count, 3);
 	/* what it is called stays its own */
-	assert_string_equal(b->place.object, "mesh 0, primitive 1, material \"other\"");
+	nt_place place;
+	assert_string_equal(nt_mesh_place(b, &place)->object, "mesh 0, primitive 1, material \"other\"");
 	assert_int_equal(b->gltf_primitive, 1);
 	close_scene();
 }

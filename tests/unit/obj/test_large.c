@@ -317,7 +317,7 @@ static void assert_same_scene(const nt_scene *a, const nt_scene *b)
 	for (size_t m = 0; m < a->mesh_count; m++) {
 		const nt_mesh *p = &a->meshes[m], *q = &b->meshes[m];
 		assert_string_equal(p->name, q->name);
-		assert_int_equal(p->place.line, q->place.line);
+		assert_int_equal(p->line, q->line);
 		assert_int_equal(p->vertex_count, q->vertex_count);
 		assert_int_equal(p->face_count, q->face_count);
 		assert_int_equal(p->corner_count, q->corner_count);
