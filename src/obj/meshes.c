@@ -348,9 +348,12 @@ static nt_status set_name(builder *b, nt_mesh *mesh, size_t m)
 static void set_slots(const nt_scene *scene, nt_mesh *mesh)
 {
 	for (size_t i = 0; i < mesh->primitive_count; i++) {
-		const uint32_t material = mesh->primitives[i].material;
-		if (material != NT_NONE && scene->materials[material].normal_map.name)
+		const uint32_t number = mesh->primitives[i].material;
+		const nt_material *material = number != NT_NONE ? &scene->materials[number] : NULL;
+		if (material && material->normal_map.name)
 			mesh->slots |= NT_SLOT_NORMAL;
+		if (material && material->anisotropy != 0)
+			mesh->slots |= NT_SLOT_ANISOTROPY;
 	}
 }
 

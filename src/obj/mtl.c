@@ -2,25 +2,27 @@
 /*
  * MTL: the lines of a library. What is damaged is an error with its line, as in the OBJ itself.
  *
- * Words are taken in any case, as exporters write map_Bump, map_bump and Map_Bump. Of several
- * normal maps `norm` and `map_Kn` come before the bump maps, whatever their order. What the older
- * lighting model has and glTF has not (Ka, Ks, Ns, Ni, illum ...) is passed over without a word: every
- * file has it. Maps and layers that are lost are named.
+ * Words are taken in any case, as exporters write map_Bump, map_bump and Map_Bump. What the statements of a material
+ * come to is in mtl_settle.c. Maps that have no place in a glTF are named.
  */
 #include "obj/mtl.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include "base/name_table.h"
 #include "ext/number.h"
 #include "obj/mtl_map.h"
+#include "obj/mtl_values.h"
 
 typedef struct reader {
 	nt_scene *scene;
 	const char *path;
 	nt_mtl *mtl;
+	nt_material *current; /* the last of mtl; NULL: nothing yet */
+	mtl_values *said;     /* of it */
 	size_t line;
 	const char *word;      /* the statement's first word */
 	size_t word_length;
@@ -28,30 +30,28 @@ typedef struct reader {
 	nt_error *error;
 } reader;
 
-/* Files of nonsense have as many different words as lines: beyond this many findings they are one. */
-enum { NAMED_FINDINGS_MOST = 1000 };
-
-static void add_finding(const reader *r, nt_code code, const char *detail, const char *what)
+static const char *material_name(const reader *r)
 {
-	if (r->scene->findings.count > NAMED_FINDINGS_MOST)
-		what = "";
-	nt_place place;
-	nt_place_clear(&place);
-	strncpy(place.file, r->path, sizeof place.file - 1);
-	place.line = r->line;
-	nt_finding_add(&r->scene->findings, code, &place, 1, "%s%.*s", detail,
-		(int)(*what ? r->word_length < 64 ? r->word_length : 64 : 0), what);
+	return r->current ? r->current->name : NULL;
+}
+
+/* Of the statement. */
+static void find(const reader *r, nt_code code, const char *detail)
+{
+	char text[256];
+	snprintf(text, sizeof text, "MTL: %s%.*s", detail, (int)(r->word_length < 64 ? r->word_length : 64), r->word);
+	nt_mtl_find(r->scene, code, r->path, r->line, code == NT_CODE_MATERIAL_LOST ? material_name(r) : NULL, text);
 }
 
 static void ignore(const reader *r)
 {
-	add_finding(r, NT_CODE_STATEMENT_IGNORED, "MTL: ", r->word);
+	find(r, NT_CODE_STATEMENT_IGNORED, "");
 }
 
 /* Of what would be seen. */
 static void lose(const reader *r)
 {
-	add_finding(r, NT_CODE_MATERIAL_LOST, "MTL: ", r->word);
+	find(r, NT_CODE_MATERIAL_LOST, "");
 }
 
 /* Fails with "found WORD, expected EXPECTED" at a line of the MTL. */
@@ -84,11 +84,6 @@ static nt_status read_numbers(const reader *r, float *numbers, int most, int *co
 	return NT_OK;
 }
 
-static float clamp_unit(float value)
-{
-	return value < 0 ? 0 : value > 1 ? 1 : value;
-}
-
 static bool begins_with(const reader *r, const char *word)
 {
 	const size_t length = strlen(word);
@@ -97,7 +92,7 @@ static bool begins_with(const reader *r, const char *word)
 }
 
 /* r g b, or one number for all three. "spectral" and "xyz" are not RGB and not carried over. */
-static nt_status read_color(const reader *r, float color[3], bool unit)
+static nt_status read_color(const reader *r, mtl_color which)
 {
 	if (begins_with(r, "spectral") || begins_with(r, "xyz")) {
 		ignore(r);
@@ -110,14 +105,13 @@ static nt_status read_color(const reader *r, float color[3], bool unit)
 		return status;
 	if (count != 1 && count != 3)
 		return fail_expected(r, r->end, "3 numbers, or one for all");
-	for (int k = 0; k < 3; k++) {
-		const float value = fmaxf(numbers[count == 3 ? k : 0], 0);
-		color[k] = unit ? clamp_unit(value) : value;
-	}
+	for (int k = 0; k < 3; k++)
+		r->said->colors[which].value[k] = fmaxf(numbers[count == 3 ? k : 0], 0);
+	r->said->colors[which].line = r->line;
 	return NT_OK;
 }
 
-static nt_status read_factor(const reader *r, float *factor, bool inverse)
+static nt_status read_number(const reader *r, mtl_number which)
 {
 	reader at = *r;
 	if (begins_with(r, "-halo"))
@@ -130,25 +124,32 @@ static nt_status read_factor(const reader *r, float *factor, bool inverse)
 		return status;
 	if (count != 1)
 		return fail_expected(&at, at.end, "a number");
-	*factor = clamp_unit(inverse ? 1 - value : value);
+	r->said->numbers[which].value = value;
+	r->said->numbers[which].line = r->line;
 	return NT_OK;
 }
 
 /* A map: its options, then its file name. */
-static nt_status read_map(reader *r, nt_map *map, float *scale)
+static nt_status read_map(const reader *r, mtl_map which)
 {
 	nt_mtl_map read;
 	nt_mtl_map_read(r->text, r->end, &read);
 	if (read.name_begin == read.name_end)
 		return NT_OK; /* "map_Kd" alone: exporters write it for "none" */
 	if (read.transformed)
-		add_finding(r, NT_CODE_MATERIAL_LOST, "MTL: -o, -s or -t of ", r->word);
-	if (scale)
-		*scale = read.bump_scale;
+		find(r, NT_CODE_MATERIAL_LOST, "-o, -s or -t of ");
+	if (read.channel == 'z') {
+		find(r, NT_CODE_MATERIAL_LOST, "-imfchan z of ");
+		read.channel = 0;
+	}
 	char *name = nt_mtl_map_name(&r->scene->arena, &read);
-	if (!name)
+	char *word = nt_arena_text(&r->scene->arena, r->word, r->word_length);
+	if (!name || !word)
 		return nt_fail_memory(r->error);
-	map->name = name;
+	r->said->maps[which].map = (nt_map){.name = name, .line = r->line, .channel = read.channel, .base = read.base,
+		.gain = read.gain};
+	r->said->maps[which].word = word;
+	r->said->maps[which].scale = read.bump_scale;
 	return NT_OK;
 }
 
@@ -161,68 +162,59 @@ static void lose_map(const reader *r)
 		lose(r);
 }
 
-/* Sheen, clearcoat, anisotropy: of strength 0, as exporters write them, they are none. */
-static void lose_layer(const reader *r)
-{
-	float strength;
-	if (nt_read_float(r->text, r->end, &strength) && strength != 0)
-		lose(r);
-}
-
 /* ---- statements ---- */
 
 enum action {
-	BASE_COLOR, EMISSIVE, OPACITY, TRANSPARENCY, ROUGHNESS, METALLIC, BASE_COLOR_MAP, EMISSIVE_MAP,
-	NORMAL_MAP, BUMP_MAP, LAYER, LOST_MAP, PASS_OVER
+	NUMBER, COLOR,
+	HINT_NUMBER, HINT_COLOR, /* without which a material can do: damaged ones are not used */
+	MAP, LOST_MAP, PASS_OVER
 };
 
+/* Words of the specification, of its extension for PBR (exocortex.com, 2015), of Model I/O (map_roughness ...) and of
+ * assimp (map_emissive ...). */
 static const struct {
 	const char *word;
 	enum action action;
+	int which;
 } statements[] = {
-	{"Kd", BASE_COLOR}, {"Ke", EMISSIVE}, {"d", OPACITY}, {"Tr", TRANSPARENCY}, {"Pr", ROUGHNESS},
-	{"Pm", METALLIC}, {"map_Kd", BASE_COLOR_MAP}, {"map_Ke", EMISSIVE_MAP}, {"norm", NORMAL_MAP},
-	{"map_Kn", NORMAL_MAP}, {"map_Bump", BUMP_MAP}, {"bump", BUMP_MAP}, {"Ka", PASS_OVER},
-	{"Ks", PASS_OVER}, {"Ns", PASS_OVER}, {"Ni", PASS_OVER}, {"Tf", PASS_OVER}, {"Km", PASS_OVER},
-	{"illum", PASS_OVER}, {"sharpness", PASS_OVER}, {"Ps", LAYER}, {"Pc", LAYER},
-	{"Pcr", PASS_OVER}, {"aniso", LAYER}, {"anisor", PASS_OVER}, {"map_aat", PASS_OVER},
-	{"map_Ka", PASS_OVER}, {"disp", LOST_MAP}, {"decal", LOST_MAP}, {"refl", LOST_MAP},
+	{"Kd", COLOR, MTL_KD}, {"Ke", COLOR, MTL_KE}, {"Ks", HINT_COLOR, MTL_KS}, {"Tf", HINT_COLOR, MTL_TF},
+	{"d", NUMBER, MTL_D}, {"Tr", NUMBER, MTL_TR}, {"Pr", NUMBER, MTL_PR}, {"Pm", NUMBER, MTL_PM},
+	{"Ns", HINT_NUMBER, MTL_NS}, {"Ni", HINT_NUMBER, MTL_NI}, {"illum", HINT_NUMBER, MTL_ILLUM},
+	{"Ps", HINT_NUMBER, MTL_PS}, {"Pc", HINT_NUMBER, MTL_PC}, {"Pcr", HINT_NUMBER, MTL_PCR},
+	{"aniso", HINT_NUMBER, MTL_ANISO}, {"anisor", HINT_NUMBER, MTL_ANISOR},
+	{"map_Kd", MAP, MTL_MAP_KD}, {"map_Ka", MAP, MTL_MAP_KA}, {"map_Ke", MAP, MTL_MAP_KE},
+	{"map_emissive", MAP, MTL_MAP_KE}, {"map_d", MAP, MTL_MAP_D}, {"map_Tr", MAP, MTL_MAP_TR},
+	{"map_Ks", MAP, MTL_MAP_KS}, {"map_Ns", MAP, MTL_MAP_NS}, {"map_Pr", MAP, MTL_MAP_PR},
+	{"map_roughness", MAP, MTL_MAP_PR}, {"map_Pm", MAP, MTL_MAP_PM}, {"map_metallic", MAP, MTL_MAP_PM},
+	{"map_Ps", MAP, MTL_MAP_PS}, {"map_Pc", MAP, MTL_MAP_PC}, {"map_Pcr", MAP, MTL_MAP_PCR},
+	{"map_ao", MAP, MTL_MAP_AO}, {"map_ORM", MAP, MTL_MAP_ORM}, {"map_RMA", MAP, MTL_MAP_RMA},
+	{"refl", MAP, MTL_MAP_REFL}, {"map_refl", MAP, MTL_MAP_REFL}, {"norm", MAP, MTL_MAP_NORM},
+	{"map_Kn", MAP, MTL_MAP_NORM}, {"map_tangentSpaceNormal", MAP, MTL_MAP_NORM}, {"map_Bump", MAP, MTL_MAP_BUMP},
+	{"bump", MAP, MTL_MAP_BUMP}, {"map_aat", PASS_OVER, 0}, {"Ka", PASS_OVER, 0}, {"Km", PASS_OVER, 0},
+	{"sharpness", PASS_OVER, 0}, {"disp", LOST_MAP, 0}, {"decal", LOST_MAP, 0},
 };
 enum { STATEMENT_COUNT = sizeof statements / sizeof statements[0] };
 
-static nt_status read_property(reader *r, nt_mtl_definition *d, enum action action)
+static nt_status read_property(const reader *r, enum action action, int which)
 {
-	nt_material *m = &d->material;
+	nt_error unused;
+	reader hint = *r;
+	hint.error = &unused;
 	switch (action) {
-	case BASE_COLOR:
-		return read_color(r, m->base_color, true);
-	case EMISSIVE:
-		return read_color(r, m->emissive, false);
-	case OPACITY:
-	case TRANSPARENCY:
-		return read_factor(r, &m->base_color[3], action == TRANSPARENCY);
-	case ROUGHNESS:
-		return read_factor(r, &m->roughness, false);
-	case METALLIC:
-		return read_factor(r, &m->metallic, false);
-	case BASE_COLOR_MAP:
-		return read_map(r, &m->base_color_map, NULL);
-	case EMISSIVE_MAP:
-		return read_map(r, &m->emissive_map, NULL);
-	case NORMAL_MAP:
-		m->bump = NULL;
-		return read_map(r, &m->normal_map, &m->normal_scale);
-	case BUMP_MAP:
-		if (m->normal_map.name && !m->bump)
-			break;
-		m->bump_line = r->line;
-		m->bump = nt_arena_text(&r->scene->arena, r->word, r->word_length);
-		if (!m->bump)
-			return nt_fail_memory(r->error);
-		return read_map(r, &m->normal_map, &m->normal_scale);
-	case LAYER:
-		lose_layer(r);
+	case COLOR:
+		return read_color(r, (mtl_color)which);
+	case NUMBER:
+		return read_number(r, (mtl_number)which);
+	case HINT_COLOR:
+		if (read_color(&hint, (mtl_color)which))
+			ignore(r);
 		break;
+	case HINT_NUMBER:
+		if (read_number(&hint, (mtl_number)which))
+			ignore(r);
+		break;
+	case MAP:
+		return read_map(r, (mtl_map)which);
 	case LOST_MAP:
 		lose_map(r);
 		break;
@@ -242,8 +234,19 @@ nt_material nt_mtl_default(const char *name)
 	};
 }
 
+/* The statements of a material are all there. */
+static void end_material(reader *r)
+{
+	if (r->current)
+		nt_mtl_settle(r->said, r->scene, r->current);
+	const bool blender = r->said->blender;
+	memset(r->said, 0, sizeof *r->said);
+	r->said->blender = blender;
+}
+
 static nt_status begin_material(reader *r)
 {
+	end_material(r);
 	nt_mtl *mtl = r->mtl;
 	const size_t length = (size_t)(r->end - r->text);
 	const char *raw_name = nt_arena_text(&r->scene->arena, r->text, length);
@@ -256,21 +259,20 @@ static nt_status begin_material(reader *r)
 	*d = (nt_mtl_definition){nt_mtl_default(name), raw_name, length};
 	d->material.library = r->path;
 	d->material.line = r->line;
+	r->current = &d->material;
 	return NT_OK;
 }
 
-/* first: definitions before it are of other files. */
-static nt_status read_statement(reader *r, size_t first)
+static nt_status read_statement(reader *r)
 {
 	if (r->word_length == 6 && strncasecmp(r->word, "newmtl", 6) == 0)
 		return begin_material(r);
 	for (size_t i = 0; i < STATEMENT_COUNT; i++)
 		if (strlen(statements[i].word) == r->word_length &&
 			strncasecmp(statements[i].word, r->word, r->word_length) == 0) {
-			if (r->mtl->count == first)
+			if (!r->current)
 				break;
-			return read_property(r, &r->mtl->definitions[r->mtl->count - 1],
-				statements[i].action);
+			return read_property(r, statements[i].action, statements[i].which);
 		}
 	if (r->word_length > 4 && strncasecmp(r->word, "map_", 4) == 0)
 		lose_map(r);
@@ -279,11 +281,21 @@ static nt_status read_statement(reader *r, size_t first)
 	return NT_OK;
 }
 
+/* "# Blender 3.2.1 MTL File: ...": see mtl_settle.c. Older ones have no number there. */
+static void read_comment(reader *r)
+{
+	static const char name[] = "Blender ";
+	const size_t length = sizeof name - 1;
+	if ((size_t)(r->end - r->text) > length && strncmp(r->text, name, length) == 0 && r->text[length] >= '0' &&
+		r->text[length] <= '9')
+		r->said->blender = true;
+}
+
 nt_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *bytes, size_t size,
 	nt_mtl *mtl, nt_error *error)
 {
-	const size_t first = mtl->count;
-	reader r = {.scene = scene, .path = path, .mtl = mtl, .line = 1, .error = error};
+	mtl_values said = {0};
+	reader r = {.scene = scene, .path = path, .mtl = mtl, .said = &said, .line = 1, .error = error};
 	const char *p = (const char *)bytes, *const end = p + size;
 	if (memchr(bytes, '\0', size)) {
 		nt_fail(error, NT_ERROR_INPUT, "a byte 0 in it, expected a material library in text");
@@ -307,16 +319,18 @@ nt_status nt_mtl_parse(nt_scene *scene, const char *path, const unsigned char *b
 		r.end = line_end;
 		while (r.end > r.text && is_blank(r.end[-1]))
 			r.end--;
-		if (r.word_length && r.word[0] != '#') {
-			const nt_status status = read_statement(&r, first);
-			if (status)
-				return status;
-		}
+		const bool comment = r.word_length && r.word[0] == '#';
+		const nt_status status = r.word_length && !comment ? read_statement(&r) : NT_OK;
+		if (status)
+			return status;
+		if (comment)
+			read_comment(&r);
 		p = line_end + 1;
 		if (line_end < end && *line_end == '\r' && p < end && *p == '\n')
 			p++;
 		r.line++;
 	}
+	end_material(&r);
 	return NT_OK;
 }
 

@@ -51,6 +51,15 @@ static size_t find_option(word w)
 	return i;
 }
 
+/* A number that is argument `i` of an option. */
+static void take_number(size_t option, int i, float value, nt_mtl_map *map)
+{
+	if (strcmp(options[option].name, "-bm") == 0)
+		map->bump_scale = value;
+	else if (strcmp(options[option].name, "-mm") == 0)
+		*(i ? &map->gain : &map->base) = value;
+}
+
 /* Takes an option's arguments. Those beyond the least have to be numbers and must leave a word, which
  * is the file name. Returns where the next word may begin. */
 static const char *take_arguments(size_t option, const char *p, const char *end, nt_mtl_map *map)
@@ -62,8 +71,11 @@ static const char *take_arguments(size_t option, const char *p, const char *end,
 		const bool number = is_number(argument, &value);
 		if (i >= options[option].least && (!number || behind.begin == behind.end))
 			break;
-		if (strcmp(options[option].name, "-bm") == 0 && number)
-			map->bump_scale = value;
+		if (number)
+			take_number(option, i, value, map);
+		else if (strcmp(options[option].name, "-imfchan") == 0 && argument.end - argument.begin == 1 &&
+			strchr("rgbmlz", *argument.begin))
+			map->channel = *argument.begin;
 		p = argument.end;
 	}
 	map->transformed = map->transformed || options[option].transforms;
@@ -92,7 +104,7 @@ static void take_trailing_scale(nt_mtl_map *map)
 
 void nt_mtl_map_read(const char *text, const char *end, nt_mtl_map *map)
 {
-	*map = (nt_mtl_map){.bump_scale = 1};
+	*map = (nt_mtl_map){.bump_scale = 1, .gain = 1};
 	word w = next_word(text, end);
 	for (size_t option; (option = find_option(w)) < OPTION_COUNT;)
 		w = next_word(take_arguments(option, w.end, end, map), end);

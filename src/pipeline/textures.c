@@ -115,10 +115,9 @@ nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, nt_tex
 	*textures = nt_textures_create();
 	if (!*textures)
 		return nt_fail_memory(error);
-	for (size_t i = 0; i < scene->material_count; i++) {
-		nt_material *m = &scene->materials[i];
-		m->base_color_map.wish = m->emissive_map.wish = m->normal_map.wish = NT_NONE;
-	}
+	for (size_t i = 0; i < scene->material_count; i++)
+		for (size_t k = 0; k < NT_MATERIAL_MAPS; k++)
+			scene->materials[i].maps[k].wish = NT_NONE;
 	wishing w = {*textures, settings};
 	const nt_status status = check_folders(settings, error);
 	return status || settings->images == NT_IMAGES_NONE ? status : each_material(scene, &w, error, wish_for_material);
@@ -202,7 +201,7 @@ static void tell_image(nt_scene *scene, const nt_material *m, const char *name, 
 
 static void tell_bump(nt_scene *scene, const nt_material *m)
 {
-	const nt_place place = place_of(scene, m, m->bump_line);
+	const nt_place place = place_of(scene, m, m->normal_map.line);
 	nt_finding_add(&scene->findings, NT_CODE_BUMP_AS_NORMAL, &place, 1, "%s of %.120s", m->bump, m->name);
 }
 
@@ -220,6 +219,12 @@ static nt_status tell_material(nt_scene *scene, nt_material *m, void *context, n
 	for (size_t i = 0; i < count && t->textures; i++)
 		tell_image(scene, m, maps[i].map->name,
 			nt_textures_at(t->textures, nt_textures_result(t->textures, maps[i].map->wish)));
+	for (size_t i = 0; i < NT_MATERIAL_MAPS; i++) {
+		const nt_map *map = &m->maps[i];
+		const nt_place place = place_of(scene, m, map->line);
+		if (map->name && map != &m->base_color_map && map != &m->emissive_map && map != &m->normal_map)
+			nt_finding_add(&scene->findings, NT_CODE_MATERIAL_LOST, &place, 1, "MTL: %.120s", map->name);
+	}
 	const bool wished = t->textures && m->normal_map.wish != NT_NONE;
 	const nt_texture *normals = wished ? nt_textures_at(t->textures, nt_textures_result(t->textures, m->normal_map.wish)) : NULL;
 	if (m->bump && t->settings->bump == NT_BUMP_AUTO &&

@@ -57,6 +57,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"The detail names the statement.",
 		"Set it again in the output, or bake it into a texture that is carried over.",
 		"an MTL with \"disp height.png\""),
+	ROW(MATERIAL_DOUBTFUL, WARNING, "{count} {property of a material is|properties of materials are} not taken at {its|their} word",
+		"Properties of a material contradict each other, or say what programs write without meaning it: d 0, which would "
+		"make all of it invisible, a black Kd beside a map. The detail says what was taken instead.",
+		"Correct the material where that is not what was meant.",
+		"an MTL with \"d 0\""),
 	ROW(NMAP_GREEN_DOWN, WARNING, "normal map whose green points down",
 		"glTF's normal maps have green up. Of a surface's map the slopes p = -x/z and q = y/z have equal mixed derivatives, "
 		"dp/dv = dq/du with rows counted down; in this one they are opposite. The figures are their correlation (-1: green "

@@ -114,3 +114,11 @@ nmtan_mesh nt_mesh_view(const nt_mesh *mesh, nmtan_stored_uv *stored)
 		.stored = stored,
 	};
 }
+
+bool nt_material_takes_texcoords(const nt_material *material)
+{
+	bool takes = material->anisotropy != 0;
+	for (size_t i = 0; i < NT_MATERIAL_MAPS && !takes; i++)
+		takes = material->maps[i].name != NULL;
+	return takes;
+}

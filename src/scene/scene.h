@@ -46,27 +46,47 @@ typedef enum nt_decision {
 	NT_DECISION_COUNT
 } nt_decision;
 
-/* A map of a material. */
+/* A map of a material. Of a map of numbers, which it has where nothing else is said, one channel counts: with v from 0
+ * to 1 the number is factor * (base + gain * v), or factor * the roughness of the exponent * (base + gain * v). */
 typedef struct nt_map {
 	const char *name;            /* of the file, as the source spells it; NULL: there is no map */
+	size_t line;                 /* where that stands in `library` */
 	uint32_t wish;               /* in nt_write_options.textures, filled by the pipeline; NT_NONE: none */
+	char channel;                /* 'r', 'g', 'b', 'm' (alpha), 'l' (luminance); 0: nobody says */
+	float base, gain;            /* colours: for each channel */
+	float exponent;              /* 0: it is no map of exponents */
+	float factor;
 } nt_map;
 
-/* A material as OBJ has it; the writer of new documents turns it into glTF's. File names are relative to
- * the folder of the file in `library`. */
+enum { NT_MATERIAL_MAPS = 10 };
+
+/* A material as OBJ has it, in glTF's terms; the numbers are those without maps. File names are relative to the folder
+ * of the file in `library`. */
 typedef struct nt_material {
 	const char *name;
 	const char *library;         /* path of the MTL file; NULL: none */
 	size_t line;                 /* of its newmtl */
-	float base_color[4];         /* Kd and d; linear factors */
-	float emissive[3];           /* Ke */
-	float metallic, roughness;   /* Pm, Pr; glTF's default for OBJ is 0 and 1 */
+	float base_color[4];         /* linear factors, and alpha */
+	float emissive[3];           /* also above 1 */
+	float metallic, roughness;   /* glTF's default for OBJ is 0 and 1 */
+	float clearcoat, clearcoat_roughness;
+	float sheen, sheen_roughness;
+	float anisotropy, anisotropy_rotation; /* in radians */
+	float ior;                   /* above 1; 0: nobody says */
 	float normal_scale;          /* -bm */
-	nt_map base_color_map;       /* map_Kd */
-	nt_map emissive_map;         /* map_Ke */
-	nt_map normal_map;           /* norm, map_Kn, map_Bump, bump */
+	union {
+		struct {
+			nt_map base_color_map;       /* a number of 0, of all channels, counts as 1 beside it */
+			nt_map alpha_map;
+			nt_map emissive_map;         /* as base_color_map */
+			nt_map roughness_map, metallic_map, occlusion_map;
+			nt_map clearcoat_map, clearcoat_roughness_map;
+			nt_map sheen_map;
+			nt_map normal_map;           /* norm, map_Kn, map_Bump, bump */
+		};
+		nt_map maps[NT_MATERIAL_MAPS];       /* all of these */
+	};
 	const char *bump;            /* the statement that normal_map came from, where it was a bump map; else NULL */
-	size_t bump_line;
 } nt_material;
 
 /* The part of a mesh that one draw call shows. */
@@ -271,6 +291,9 @@ enum { NT_LATE_CORNERS = 4 << 20 };
 
 /* Makes NULL of what a mesh holds in an arena that is gone: geometry and results, but not what is counted of them. */
 void nt_mesh_forget(nt_mesh *mesh);
+
+/* Whether anything of a material takes texture coordinates: maps and anisotropy. */
+bool nt_material_takes_texcoords(const nt_material *material);
 
 /* Gives a mesh with same_as the geometry and the results that the other has by now. They are shared, not
  * copied. */

@@ -17,6 +17,7 @@
 #include "gltf/accessor.h"
 #include "gltf/companion.h"
 #include "gltf/create/images.h"
+#include "gltf/create/material.h"
 #include "gltf/create/model.h"
 #include "gltf/create/primitive.h"
 #include "gltf/glb.h"
@@ -150,13 +151,12 @@ static void plan_geometry(composition *c)
 		}
 }
 
-/* Which of a material's two versions a primitive gets: with textures, where both have something to do with
- * them. */
+/* Which of a material's two versions a primitive gets: with what takes texture coordinates, where both have something
+ * to do with them. */
 static bool is_textured(const composition *c, const nt_new_primitive *primitive)
 {
 	const nt_material *material = &c->scene->materials[primitive->material];
-	return nt_new_primitive_has(primitive, NT_ATTRIBUTE_TEXCOORD) &&
-		(material->base_color_map.name || material->emissive_map.name || material->normal_map.name);
+	return nt_new_primitive_has(primitive, NT_ATTRIBUTE_TEXCOORD) && nt_material_takes_texcoords(material);
 }
 
 /* Calls body for the material of every primitive. */
@@ -175,47 +175,15 @@ static nt_status each_material(composition *c, nt_error *error,
 
 static nt_status use_images(composition *c, uint32_t material, bool textured, nt_error *error)
 {
-	if (!textured)
-		return NT_OK;
-	const nt_material *m = &c->scene->materials[material];
-	const uint32_t wishes[] = {m->base_color_map.wish, m->emissive_map.wish, m->normal_map.wish};
-	nt_status status = NT_OK;
-	for (size_t i = 0; i < sizeof wishes / sizeof *wishes && !status; i++)
-		status = nt_image_set_use(c->images, wishes[i], c->output, error);
-	return status;
-}
-
-static float clamp01(float value)
-{
-	return value > 0 ? (value < 1 ? value : 1) : 0;
+	return textured ? nt_new_material_use(&c->scene->materials[material], c->images, c->output, error) : NT_OK;
 }
 
 static nt_status add_material(composition *c, uint32_t index, bool textured, nt_error *error)
 {
 	(void)error;
-	const nt_material *from = &c->scene->materials[index];
 	uint32_t *known = &c->materials[index][textured];
-	if (*known != NT_MODEL_NONE)
-		return NT_OK;
-	nt_model_material material = {
-		.name = from->name,
-		.emissive = {from->emissive[0], from->emissive[1], from->emissive[2]},
-		.metallic = clamp01(from->metallic),
-		.roughness = clamp01(from->roughness),
-		.blend = from->base_color[3] < 1,
-		.base_color_texture = NT_MODEL_NONE,
-		.emissive_texture = NT_MODEL_NONE,
-		.normal_texture = NT_MODEL_NONE,
-		.normal_scale = from->normal_scale,
-	};
-	for (int i = 0; i < 4; i++)
-		material.base_color[i] = clamp01(from->base_color[i]);
-	if (textured) {
-		material.base_color_texture = nt_image_set_texture(c->images, from->base_color_map.wish);
-		material.emissive_texture = nt_image_set_texture(c->images, from->emissive_map.wish);
-		material.normal_texture = nt_image_set_texture(c->images, from->normal_map.wish);
-	}
-	*known = nt_model_add_material(c->model, &material);
+	if (*known == NT_MODEL_NONE)
+		*known = nt_new_material_add(&c->scene->materials[index], textured ? c->images : NULL, c->model);
 	return NT_OK;
 }
 

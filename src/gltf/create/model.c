@@ -15,7 +15,7 @@
 /* The arrays, in the order in which they are written. */
 enum { ACCESSORS, VIEWS, IMAGES, MATERIALS, MESHES, NODES, ROOTS, TEXTURES, ARRAY_COUNT };
 
-enum { MOST_EXTENSIONS = 8 };
+enum { MOST_EXTENSIONS = 16 };
 
 typedef struct name_list {
 	const char *names[MOST_EXTENSIONS];
@@ -283,7 +283,8 @@ static void put_reflection(nt_buffer *out, const nt_model_material *m)
 {
 	const float *color = m->base_color;
 	const bool white = color[0] == 1 && color[1] == 1 && color[2] == 1 && color[3] == 1;
-	if (white && m->base_color_texture == NT_MODEL_NONE && m->metallic == 1 && m->roughness == 1)
+	if (white && m->base_color_texture == NT_MODEL_NONE && m->metallic_roughness_texture == NT_MODEL_NONE &&
+		m->metallic == 1 && m->roughness == 1)
 		return;
 	put_key(out, "pbrMetallicRoughness");
 	put_text(out, "{");
@@ -294,6 +295,7 @@ static void put_reflection(nt_buffer *out, const nt_model_material *m)
 		put_key(out, "metallicFactor");
 		put_float(out, m->metallic);
 	}
+	put_texture(out, "metallicRoughnessTexture", m->metallic_roughness_texture);
 	if (m->roughness != 1) {
 		put_key(out, "roughnessFactor");
 		put_float(out, m->roughness);
@@ -314,26 +316,80 @@ static void put_normal_texture(nt_buffer *out, const nt_model_material *m)
 	put_text(out, "}");
 }
 
+/* A number that is not the one which is meant where none stands. */
+static void put_factor(nt_buffer *out, const char *key, float value, float otherwise)
+{
+	if (value == otherwise)
+		return;
+	put_key(out, key);
+	put_float(out, value);
+}
+
+/* Begins an extension of a material, which is the first where nothing stands in `out`. */
+static void begin_extension(nt_model *model, nt_buffer *out, const char *name)
+{
+	add_name(model, &model->used, name);
+	put_text(out, out->size ? "}" : "{");
+	put_key(out, name);
+	put_text(out, "{");
+}
+
+/* The object of a material's extensions, without its end; nothing, where it has none. */
+static void put_material_extensions(nt_model *model, nt_buffer *out, const nt_model_material *m, float strength)
+{
+	if (m->anisotropy != 0) {
+		begin_extension(model, out, "KHR_materials_anisotropy");
+		put_factor(out, "anisotropyRotation", m->anisotropy_rotation, 0);
+		put_factor(out, "anisotropyStrength", m->anisotropy, 0);
+	}
+	if (m->clearcoat != 0) {
+		begin_extension(model, out, "KHR_materials_clearcoat");
+		put_factor(out, "clearcoatFactor", m->clearcoat, 0);
+		put_factor(out, "clearcoatRoughnessFactor", m->clearcoat_roughness, 0);
+		put_texture(out, "clearcoatRoughnessTexture", m->clearcoat_roughness_texture);
+		put_texture(out, "clearcoatTexture", m->clearcoat_texture);
+	}
+	if (strength != 1) {
+		begin_extension(model, out, "KHR_materials_emissive_strength");
+		put_factor(out, "emissiveStrength", strength, 1);
+	}
+	if (m->ior != 0) {
+		begin_extension(model, out, "KHR_materials_ior");
+		put_factor(out, "ior", m->ior, 1.5f);
+	}
+	if (m->sheen != 0) {
+		begin_extension(model, out, "KHR_materials_sheen");
+		put_floats(out, "sheenColorFactor", (const float[]){m->sheen, m->sheen, m->sheen}, 3);
+		put_texture(out, "sheenColorTexture", m->sheen_texture);
+		put_factor(out, "sheenRoughnessFactor", m->sheen_roughness, 0);
+	}
+}
+
 uint32_t nt_model_add_material(nt_model *model, const nt_model_material *material)
 {
-	static const char strength_name[] = "KHR_materials_emissive_strength";
+	static const char *const modes[] = {[NT_ALPHA_MASK] = "MASK", [NT_ALPHA_BLEND] = "BLEND"};
 	uint32_t number;
+	nt_buffer extensions = {0};
 	nt_buffer *out = begin_object(model, MATERIALS, &number);
-	if (material->blend)
-		put_text(out, "\"alphaMode\":\"BLEND\"");
+	if (material->alpha_mode != NT_ALPHA_OPAQUE) {
+		put_key(out, "alphaMode");
+		put_string(out, modes[material->alpha_mode]);
+	}
 	const float strength = put_emissive(out, material->emissive);
 	put_texture(out, "emissiveTexture", material->emissive_texture);
-	if (strength != 1) {
-		add_name(model, &model->used, strength_name);
+	put_material_extensions(model, &extensions, material, strength);
+	if (extensions.size) {
 		put_key(out, "extensions");
-		nt_buffer_format(out, "{\"%s\":{\"emissiveStrength\":", strength_name);
-		put_float(out, strength);
+		nt_buffer_append(out, extensions.data, extensions.size);
 		put_text(out, "}}");
 	}
 	put_name(out, material->name);
 	put_normal_texture(out, material);
+	put_texture(out, "occlusionTexture", material->occlusion_texture);
 	put_reflection(out, material);
 	put_text(out, "}");
+	out->failed |= extensions.failed;
+	nt_buffer_free(&extensions);
 	return number;
 }
 

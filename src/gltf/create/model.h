@@ -47,14 +47,22 @@ uint32_t nt_model_image_view(nt_model *model, const char *name, uint32_t view, c
  * document then requires: "KHR_texture_basisu" or "EXT_texture_webp"; the text stays. */
 uint32_t nt_model_texture(nt_model *model, uint32_t image, const char *extension);
 
+typedef enum nt_alpha_mode { NT_ALPHA_OPAQUE, NT_ALPHA_MASK, NT_ALPHA_BLEND } nt_alpha_mode;
+
+/* A material; its extensions are listed as used. Textures may be NT_MODEL_NONE. */
 typedef struct nt_model_material {
 	const char *name;
+	nt_alpha_mode alpha_mode;
 	float base_color[4];
 	float emissive[3];  /* above 1: KHR_materials_emissive_strength */
 	float metallic, roughness;
-	bool blend;         /* alphaMode BLEND */
-	uint32_t base_color_texture, emissive_texture, normal_texture; /* or NT_MODEL_NONE */
 	float normal_scale;
+	float clearcoat, clearcoat_roughness; /* 0: without KHR_materials_clearcoat */
+	float sheen, sheen_roughness;         /* of white; 0: without KHR_materials_sheen */
+	float anisotropy, anisotropy_rotation; /* 0: without KHR_materials_anisotropy */
+	float ior;                            /* 0: without KHR_materials_ior */
+	uint32_t base_color_texture, emissive_texture, normal_texture, metallic_roughness_texture, occlusion_texture;
+	uint32_t clearcoat_texture, clearcoat_roughness_texture, sheen_texture;
 } nt_model_material;
 uint32_t nt_model_add_material(nt_model *model, const nt_model_material *material);
 

@@ -114,7 +114,7 @@ static void bump_is_kept_apart_and_yields_to_normal_maps(void **state)
 		assert_string_equal(d->material.normal_map.name, "b.png");
 		assert_true(d->material.normal_scale == 0.5f);
 		assert_string_equal(d->material.bump, words[i]);
-		assert_int_equal(d->material.bump_line, 2);
+		assert_int_equal(d->material.normal_map.line, 2);
 		close_reading(&r);
 	}
 	static const char *const both[] = {"newmtl a\nbump -bm 3 b.png\nmap_Kn n.png\n",
@@ -173,13 +173,13 @@ static void lost_statements_are_findings(void **state)
 {
 	(void)state;
 	reading r;
-	parse(&r, "Kd 1 1 1\nnewmtl a\nmap_Pr r.png\nmap_Pr r.png\nrubbish\nmap_Kd -s 2 2 a.png\n");
+	parse(&r, "Kd 1 1 1\nnewmtl a\ndecal r.png\ndecal r.png\nrubbish\nmap_Kd -s 2 2 a.png\n");
 	assert_int_equal(r.status, NT_OK);
 	assert_int_equal(r.scene.findings.count, 4);
 	const struct {
 		const char *detail;
 		size_t line, count;
-	} expected[] = {{"MTL: Kd", 1, 1}, {"MTL: map_Pr", 3, 2}, {"MTL: rubbish", 5, 1},
+	} expected[] = {{"MTL: Kd", 1, 1}, {"MTL: decal", 3, 2}, {"MTL: rubbish", 5, 1},
 		{"MTL: -o, -s or -t of map_Kd", 6, 1}};
 	for (int i = 0; i < 4; i++) {
 		assert_string_equal(r.scene.findings.items[i].detail, expected[i].detail);
@@ -276,7 +276,7 @@ static void libraries_are_found_beside_the_obj(void **state)
 	assert_true(materials[1].base_color[0] == 0.5f);
 	assert_string_equal(materials[2].name, "b c");
 	assert_string_equal(materials[1].bump, "bump");
-	assert_int_equal(materials[1].bump_line, 3);
+	assert_int_equal(materials[1].normal_map.line, 3);
 	/* a twice more (in b c.mtl and by "a.mtl") */
 	assert_int_equal(r.scene.findings.count, 1);
 	assert_int_equal(r.scene.findings.items[0].code, NT_CODE_STATEMENT_IGNORED);

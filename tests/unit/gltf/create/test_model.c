@@ -2,6 +2,11 @@
 #include "gltf/create/model.h"
 #include "test.h"
 
+#define NO_TEXTURES \
+	.base_color_texture = NT_MODEL_NONE, .emissive_texture = NT_MODEL_NONE, .normal_texture = NT_MODEL_NONE, \
+	.metallic_roughness_texture = NT_MODEL_NONE, .occlusion_texture = NT_MODEL_NONE, .clearcoat_texture = NT_MODEL_NONE, \
+	.clearcoat_roughness_texture = NT_MODEL_NONE, .sheen_texture = NT_MODEL_NONE
+
 static nt_model *new_model(void)
 {
 	nt_model *model = nt_model_create("nmtan test");
@@ -78,8 +83,7 @@ static void names_in_latin_1_become_utf_8(void **state)
 	/* 0xe9: Latin-1's e with acute; c3 a9 is the same in UTF-8; c0 80 is no UTF-8 */
 	const nt_model_material material = {.name = "\xe9 \xc3\xa9 \xc0\x80 \"\\",
 		.base_color = {0.8f, 0.1f, 1, 1}, .metallic = 0, .roughness = 1, .normal_scale = 1,
-		.base_color_texture = NT_MODEL_NONE, .emissive_texture = NT_MODEL_NONE,
-		.normal_texture = NT_MODEL_NONE};
+		NO_TEXTURES};
 	assert_int_equal(nt_model_add_material(model, &material), 0);
 	char *text = text_of(model, 0, NT_MODEL_CHUNK, NULL);
 	assert_non_null(strstr(text, "\"name\":\"\xc3\xa9 \xc3\xa9 \xc3\x80\xc2\x80 \\\"\\\\\""));
@@ -95,8 +99,7 @@ static void control_characters_are_escaped(void **state)
 	(void)state;
 	nt_model *model = new_model();
 	const nt_model_material material = {.name = "a\b\t\n\f\r\x01\x1f\x7f", .base_color = {1, 1, 1, 1}, .metallic = 1,
-		.roughness = 1, .normal_scale = 1, .base_color_texture = NT_MODEL_NONE,
-		.emissive_texture = NT_MODEL_NONE, .normal_texture = NT_MODEL_NONE};
+		.roughness = 1, .normal_scale = 1, NO_TEXTURES};
 	nt_model_add_material(model, &material);
 	char *text = text_of(model, 0, NT_MODEL_CHUNK, NULL);
 	assert_non_null(strstr(text, "\"materials\":[{\"name\":\"a\\b\\t\\n\\f\\r\\u0001\\u001f\x7f\"}]"));
@@ -135,7 +138,7 @@ static void bright_emission_needs_the_extension(void **state)
 	(void)state;
 	nt_model *model = new_model();
 	nt_model_material material = {.base_color = {1, 1, 1, 0.5f}, .metallic = 1, .roughness = 1,
-		.emissive = {4, 2, 0}, .blend = true, .normal_scale = 0.5f};
+		.emissive = {4, 2, 0}, .alpha_mode = NT_ALPHA_BLEND, .normal_scale = 0.5f, NO_TEXTURES};
 	const uint32_t image = nt_model_image_uri(model, "wood", "tex/wood%20.png");
 	material.base_color_texture = material.emissive_texture = nt_model_texture(model, image, NULL);
 	material.normal_texture = nt_model_texture(model,
@@ -152,6 +155,35 @@ static void bright_emission_needs_the_extension(void **state)
 	assert_non_null(strstr(text, "{\"name\":\"wood\",\"uri\":\"tex/wood%20.png\"}"));
 	assert_non_null(strstr(text, "\"textures\":[{\"source\":0},"
 				     "{\"extensions\":{\"KHR_texture_basisu\":{\"source\":1}}}]"));
+	free(text);
+	nt_model_free(model);
+}
+
+static void layers_are_extensions(void **state)
+{
+	(void)state;
+	nt_model *model = new_model();
+	nt_model_material material = {.base_color = {1, 1, 1, 1}, .metallic = 0, .roughness = 0.5f, .normal_scale = 1,
+		.alpha_mode = NT_ALPHA_MASK, .clearcoat = 0.5f, .clearcoat_roughness = 0.25f, .sheen = 0.75f,
+		.sheen_roughness = 0.5f, .anisotropy = 0.125f, .anisotropy_rotation = 1.5f, .ior = 1.25f, NO_TEXTURES};
+	material.clearcoat_texture = material.clearcoat_roughness_texture = 3;
+	material.sheen_texture = 4;
+	material.metallic_roughness_texture = material.occlusion_texture = 5;
+	nt_model_add_material(model, &material);
+	nt_model_add_material(model, &material);
+	char *text = text_of(model, 0, NT_MODEL_CHUNK, NULL);
+	assert_non_null(strstr(text, "{\"alphaMode\":\"MASK\",\"extensions\":{"
+		"\"KHR_materials_anisotropy\":{\"anisotropyRotation\":1.5,\"anisotropyStrength\":0.125},"
+		"\"KHR_materials_clearcoat\":{\"clearcoatFactor\":0.5,\"clearcoatRoughnessFactor\":0.25,"
+		"\"clearcoatRoughnessTexture\":{\"index\":3},\"clearcoatTexture\":{\"index\":3}},"
+		"\"KHR_materials_ior\":{\"ior\":1.25},"
+		"\"KHR_materials_sheen\":{\"sheenColorFactor\":[0.75,0.75,0.75],\"sheenColorTexture\":{\"index\":4},"
+		"\"sheenRoughnessFactor\":0.5}},"
+		"\"occlusionTexture\":{\"index\":5},\"pbrMetallicRoughness\":{\"metallicFactor\":0.0,"
+		"\"metallicRoughnessTexture\":{\"index\":5},\"roughnessFactor\":0.5}}"));
+	assert_non_null(strstr(text, "\"extensionsUsed\":[\"KHR_materials_anisotropy\",\"KHR_materials_clearcoat\","
+		"\"KHR_materials_ior\",\"KHR_materials_sheen\"]"));
+	assert_null(strstr(text, "extensionsRequired"));
 	free(text);
 	nt_model_free(model);
 }
@@ -193,6 +225,7 @@ int main(void)
 		cmocka_unit_test(control_characters_are_escaped),
 		cmocka_unit_test(primitives_follow_their_mesh),
 		cmocka_unit_test(bright_emission_needs_the_extension),
+		cmocka_unit_test(layers_are_extensions),
 		cmocka_unit_test(embedded_text_is_cut_where_the_base64_goes),
 		cmocka_unit_test(misuse_is_reported_at_the_end),
 	};

@@ -1,0 +1,69 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Materials of new documents: see material.h. Where a map is there its own factor counts, else the material's number.
+ */
+#include "gltf/create/material.h"
+
+#include <math.h>
+
+nt_status nt_new_material_use(const nt_material *material, nt_image_set *images, nt_output *output, nt_error *error)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < NT_MATERIAL_MAPS && !status; i++)
+		status = nt_image_set_use(images, material->maps[i].wish, output, error);
+	return status;
+}
+
+static float clamp01(float value)
+{
+	return value > 0 ? (value < 1 ? value : 1) : 0;
+}
+
+static uint32_t texture_of(const nt_image_set *images, const nt_map *map)
+{
+	return images && map->name ? nt_image_set_texture(images, map->wish) : NT_MODEL_NONE;
+}
+
+/* A number, and the texture of its map. */
+static float factor_of(const nt_image_set *images, const nt_map *map, float otherwise, uint32_t *texture)
+{
+	*texture = texture_of(images, map);
+	return clamp01(*texture == NT_MODEL_NONE ? otherwise : map->factor);
+}
+
+/* Colours, beside a texture none that would hide it. */
+static void take_color(const float *from, uint32_t texture, float most, float *to)
+{
+	const bool hides = texture != NT_MODEL_NONE && from[0] == 0 && from[1] == 0 && from[2] == 0;
+	for (int i = 0; i < 3; i++)
+		to[i] = hides ? 1 : from[i] < most ? from[i] : most;
+}
+
+uint32_t nt_new_material_add(const nt_material *from, const nt_image_set *images, nt_model *model)
+{
+	nt_model_material m = {
+		.name = from->name,
+		.normal_scale = from->normal_scale,
+		.ior = from->ior,
+		.anisotropy = images ? clamp01(from->anisotropy) : 0,
+		.anisotropy_rotation = from->anisotropy_rotation,
+		.sheen_roughness = from->sheen_roughness,
+		.base_color_texture = texture_of(images, &from->base_color_map),
+		.emissive_texture = texture_of(images, &from->emissive_map),
+		.normal_texture = texture_of(images, &from->normal_map),
+		.occlusion_texture = texture_of(images, &from->occlusion_map),
+		.base_color = {0, 0, 0, clamp01(from->base_color[3])},
+	};
+	take_color(from->base_color, m.base_color_texture, 1, m.base_color);
+	take_color(from->emissive, m.emissive_texture, INFINITY, m.emissive);
+	m.alpha_mode = m.base_color[3] < 1 ? NT_ALPHA_BLEND : NT_ALPHA_OPAQUE;
+	uint32_t metallic, roughness;
+	m.metallic = factor_of(images, &from->metallic_map, from->metallic, &metallic);
+	m.roughness = factor_of(images, &from->roughness_map, from->roughness, &roughness);
+	m.metallic_roughness_texture = metallic != NT_MODEL_NONE ? metallic : roughness;
+	m.clearcoat = factor_of(images, &from->clearcoat_map, from->clearcoat, &m.clearcoat_texture);
+	m.clearcoat_roughness = factor_of(images, &from->clearcoat_roughness_map, from->clearcoat_roughness,
+		&m.clearcoat_roughness_texture);
+	m.sheen = factor_of(images, &from->sheen_map, from->sheen, &m.sheen_texture);
+	return nt_model_add_material(model, &m);
+}
