@@ -3,7 +3,8 @@
 // tinygltf does not know that a decoder brings what compressed documents leave out. It refuses primitives whose
 // indices have no buffer view, which is how Draco has them, and buffers without bytes, which is what views packed by
 // meshoptimizer are said to lie in. It gets a text without the former and with a byte for the latter; who wants
-// their values unpacks them. Nor does its parser take numbers beyond double, which extras may have: it gets zeros.
+// their values unpacks them. Nor does its parser take numbers beyond double, which extras may have: it gets zeros. And
+// 8.0 is no integer to it, though it is one to JSON and glTF: it gets 8.
 #include "ext/tinygltf_text.hpp"
 #include "ext/number.h"
 
@@ -67,39 +68,52 @@ size_t skip_string(const char *text, size_t size, size_t at)
 	return at;
 }
 
-// Where a number beyond double begins, and ends, from `at` on; false: there is none.
-bool find_huge_number(const char *text, size_t size, size_t at, size_t *begin, size_t *end)
+// Where the next number begins, and ends, from `at` on; false: there is none.
+bool find_number(const char *text, size_t size, size_t at, size_t *begin, size_t *end)
 {
 	for (; at < size; at++) {
 		if (text[at] == '"') {
 			at = skip_string(text, size, at);
-			continue;
-		}
-		if (text[at] != '-' && (text[at] < '0' || text[at] > '9'))
-			continue;
-		*begin = at;
-		while (at < size && text[at] && std::strchr("+-.0123456789eE", text[at]))
-			at++;
-		*end = at;
-		double value = 0;
-		if (nt_read_double(text + *begin, text + *end, &value) && std::isinf(value))
+		} else if (text[at] == '-' || (text[at] >= '0' && text[at] <= '9')) {
+			*begin = at;
+			while (at < size && text[at] && std::strchr("+-.0123456789eE", text[at]))
+				at++;
+			*end = at;
 			return true;
+		}
 	}
 	return false;
 }
 
-// The file with zeros for numbers beyond double, of the same length; empty: there are none.
-std::string tame_numbers(const char *bytes, size_t size, size_t text, size_t text_size)
+// What the parser gets instead of a number; empty: the number as it stands.
+std::string easier_number(const char *begin, const char *end)
 {
-	size_t begin, end = 0;
-	std::string tamed;
-	while (find_huge_number(bytes + text, text_size, end, &begin, &end)) {
-		if (tamed.empty())
-			tamed.assign(bytes, size);
-		tamed.replace(text + begin, end - begin, end - begin, ' ');
-		tamed[text + begin] = '0';
+	constexpr double exact = 9007199254740992; // up to here every integer is a double
+	double value = 0;
+	if (std::none_of(begin, end, [](char c) { return c == '.' || c == 'e' || c == 'E'; }) && end - begin < 300)
+		return {};
+	if (!nt_read_double(begin, end, &value))
+		return {};
+	if (std::isinf(value))
+		return "0";
+	if (value != std::floor(value) || std::fabs(value) > exact || (value == 0 && std::signbit(value)))
+		return {};
+	return std::to_string(static_cast<int64_t>(value));
+}
+
+// The text with easier numbers; empty: all are easy.
+std::string ease_numbers(const char *text, size_t size)
+{
+	std::string eased;
+	size_t begin, end = 0, copied = 0;
+	while (find_number(text, size, end, &begin, &end)) {
+		const std::string easier = easier_number(text + begin, text + end);
+		if (easier.empty())
+			continue;
+		eased.append(text + copied, begin - copied).append(easier);
+		copied = end;
 	}
-	return tamed;
+	return copied ? eased.append(text + copied, size - copied) : eased;
 }
 
 void drop_compressed_indices(json &document)
@@ -166,31 +180,33 @@ bool nt::gltf_text::is_too_deep() const
 	return false;
 }
 
+std::string nt::gltf_text::with(std::string changed) const
+{
+	if (!binary)
+		return changed;
+	changed.append(-changed.size() & 3, ' ');
+	const size_t rest = size - 20 - text_size;
+	std::string out(bytes, 8);
+	put_little_endian(out, static_cast<uint32_t>(20 + changed.size() + rest));
+	put_little_endian(out, static_cast<uint32_t>(changed.size()));
+	out.append(bytes + 16, 4);
+	out += changed;
+	return out.append(bytes + 20 + text_size, rest);
+}
+
 std::string nt::gltf_text::eased(packed_views &packed) const
 {
-	const std::string tamed = tame_numbers(bytes, size, static_cast<size_t>(text - bytes), text_size);
-	if (!tamed.empty()) {
-		const std::string eased = gltf_text(reinterpret_cast<const unsigned char *>(tamed.data()), size).eased(packed);
-		return eased.empty() ? tamed : eased;
-	}
-	const auto has = [&](const char *word) { return memmem(text, text_size, word, std::strlen(word)) != nullptr; };
+	const std::string easy = ease_numbers(text, text_size);
+	const char *const from = easy.empty() ? text : easy.data();
+	const size_t length = easy.empty() ? text_size : easy.size();
+	const auto has = [&](const char *word) { return memmem(from, length, word, std::strlen(word)) != nullptr; };
 	if (!has(draco_extension) && !has(packings[0]) && !has(packings[1]))
-		return {};
-	json document = json::parse(text, text + text_size, nullptr, false);
+		return easy.empty() ? easy : with(easy);
+	json document = json::parse(from, from + length, nullptr, false);
 	if (!document.is_object()) // tinygltf says what it is
 		return {};
 	drop_compressed_indices(document);
 	note_packed_views(document, packed);
 	fill_fallback_buffers(document, binary);
-	std::string eased = document.dump();
-	if (!binary)
-		return eased;
-	eased.append(-eased.size() & 3, ' ');
-	const size_t rest = size - 20 - text_size;
-	std::string out(bytes, 8);
-	put_little_endian(out, static_cast<uint32_t>(20 + eased.size() + rest));
-	put_little_endian(out, static_cast<uint32_t>(eased.size()));
-	out.append(bytes + 16, 4);
-	out += eased;
-	return out.append(bytes + 20 + text_size, rest);
+	return with(document.dump());
 }

@@ -33,11 +33,12 @@ public:
 	// is JSON at all is not decided here.
 	bool is_too_deep() const;
 
-	// The file without what tinygltf refuses although compression makes it legal; empty where it can stay as it
-	// is. Fills the views that are packed.
+	// The file without what tinygltf refuses although it is legal; empty where it can stay as it is. Fills the views that are packed.
 	std::string eased(packed_views &packed) const;
 
 private:
+	std::string with(std::string changed) const; // the file with another text
+
 	const char *bytes, *text; // the text is all of a .gltf, and the JSON chunk of a .glb
 	size_t size, text_size;
 	bool binary;
