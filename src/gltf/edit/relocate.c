@@ -25,7 +25,8 @@ static int compare_edits(const void *a, const void *b)
 	return (x->removed > y->removed) - (x->removed < y->removed);
 }
 
-/* Where a position of a source buffer goes. */
+/* Where a position of a source buffer goes; one inside of bytes that are replaced, which the unused end of a view may
+ * be, stays inside of what comes for them. */
 static uint64_t map_position(const nt_relocated_buffer *buffer, uint64_t position)
 {
 	const nt_buffer_edit *edits = buffer->from->edits;
@@ -37,7 +38,10 @@ static uint64_t map_position(const nt_relocated_buffer *buffer, uint64_t positio
 		else
 			high = middle;
 	}
-	return low ? position + (uint64_t)buffer->shifts[low - 1] : position;
+	const uint64_t shift = low ? (uint64_t)buffer->shifts[low - 1] : 0;
+	if (low < buffer->from->edit_count && edits[low].at < position && edits[low].at + edits[low].size < position)
+		position = edits[low].at + edits[low].size;
+	return position + shift;
 }
 
 /* Puts the edits of a buffer in order; from then on positions can be mapped. */
