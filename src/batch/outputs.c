@@ -173,7 +173,8 @@ static nt_status make_folder(const char *directory, const nt_settings *settings,
 	}
 	if (settings->dry_run)
 		return NT_OK;
-	if (mkdir(directory, 0777) == 0)
+	/* another process may have been faster */
+	if (mkdir(directory, 0777) == 0 || (errno == EEXIST && stat(directory, &info) == 0 && S_ISDIR(info.st_mode)))
 		return settings->sync ? nt_output_sync_name(directory, error) : NT_OK;
 	nt_fail(error, NT_ERROR_IO, "cannot make the folder: %s", strerror(errno));
 	return nt_error_in_file(error, directory);
