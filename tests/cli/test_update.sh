@@ -153,8 +153,13 @@ is "$(made)" "quad.obj "
 is "$(identity out/quad.glb)" "$before"
 
 scene "a change within one tick of the clock is seen"
-cp "$data/quad.obj" now.obj
-run --update -d out now.obj
+# a machine with much to do may need some tries to read it so soon
+for _ in $(seq 50); do
+	rm -rf out
+	cp "$data/quad.obj" now.obj
+	run --update -d out now.obj
+	! grep -q xxh128 out/.nmtan-record || break
+done
 stamp=$(stat -c %y now.obj)
 sed -i 's/^v 1/v 2/' now.obj
 touch -d "$stamp" now.obj
@@ -199,6 +204,16 @@ is "$(made)" ""
 run --update --record=nowhere/r -d out $inputs
 exits 2
 says "nowhere"
+
+scene "a record's lines are as the schema says"
+take
+cp quad.obj $'\xff "%.obj'
+run --update --update-by=content -d out $inputs $'\xff "%.obj'
+exits 0
+run --update -d out --method=area quad.obj
+split -l 1 out/.nmtan-record line.
+is "$(ls line.* | wc -l)" 5
+python3 "$ROOT/tests/report/schema.py" "$data/nmtan-record.schema.json" line.* >faults.txt || wrong "$(head -3 faults.txt)"
 
 scene "in place, a file is up to date as the last run left it"
 take
