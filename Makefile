@@ -164,13 +164,14 @@ bin := $(DESTDIR)$(PREFIX)/bin
 lib := $(DESTDIR)$(LIBDIR)
 share := $(DESTDIR)$(PREFIX)/share
 so := libnmtan.so
+farm_programs := data/farm/nmtan-farm $(wildcard data/farm/*.sh)
 cmake_files := nmtan-config.cmake nmtan-config-version.cmake
 names := sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(patsubst $(PREFIX)/%,$${prefix}/%,$(LIBDIR))|; s|@VERSION@|$(VERSION)|' \
 	-e 's|@TO_PREFIX@|$(shell realpath -ms --relative-to=$(LIBDIR)/cmake/nmtan $(PREFIX))|'
 .PHONY: install uninstall
 install: all
 	install -d $(bin) $(lib)/pkgconfig $(lib)/cmake/nmtan $(DESTDIR)$(PREFIX)/include $(share)/man/man1 \
-		$(share)/bash-completion/completions $(share)/zsh/site-functions
+		$(share)/bash-completion/completions $(share)/zsh/site-functions $(share)/man/man7 $(share)/nmtan/farm
 	install -m 755 $(B)/nmtan $(bin)/nmtan
 	install -m 644 $(B)/libnmtan.a $(lib)/libnmtan.a
 	install -m 755 $(B)/$(so) $(lib)/$(so).$(VERSION)
@@ -183,6 +184,10 @@ install: all
 	for page in man/*.1; do install -m 644 $$page $(share)/man/man1/; done
 	for page in man/*.5; do [ ! -f $$page ] || { install -d $(share)/man/man5 && \
 		install -m 644 $$page $(share)/man/man5/; }; done
+	install -m 644 man/*.7 $(share)/man/man7/
+	install -m 644 data/*.schema.json $(share)/nmtan/
+	install -m 644 $(filter-out $(farm_programs),$(wildcard data/farm/*)) $(share)/nmtan/farm/
+	install -m 755 $(farm_programs) $(share)/nmtan/farm/
 	install -m 644 $(B)/completion.bash $(share)/bash-completion/completions/nmtan
 	install -m 644 $(B)/completion.zsh $(share)/zsh/site-functions/_nmtan
 
@@ -192,7 +197,9 @@ uninstall:
 		$(patsubst %,$(lib)/cmake/nmtan/%,$(cmake_files)) \
 		$(patsubst man/%,$(share)/man/man1/%,$(wildcard man/*.1)) \
 		$(patsubst man/%,$(share)/man/man5/%,$(wildcard man/*.5)) \
+		$(patsubst man/%,$(share)/man/man7/%,$(wildcard man/*.7)) \
 		$(share)/bash-completion/completions/nmtan $(share)/zsh/site-functions/_nmtan
+	rm -rf $(share)/nmtan
 
 .PHONY: lint
 lint: $(B)/libnmtan.a $(B)/libnmtan.so

@@ -44,4 +44,17 @@ for code in 0 1 2 3 4 5 6; do
 	sed -n '/^\.SH EXIT/,/^\.SH ENV/p' "$page" | grep -q "^\.B $code$" || wrong "$code is missing"
 done
 
+scene "the page about many machines has each file and command of the recipes, and no other"
+farm=$ROOT/man/nmtan-farm.7
+text() { sed -e 's/\\f[BIRP]//g' -e 's/\\-/-/g' "$1"; }
+text "$farm" | sed -n '/^\.SH FILES/,/^\.PP/p' | grep -o '[A-Za-z-]*\.sh\|nmtan-farm\|nmtan\.mk\|Snakefile' | sort -u >manual
+ls "$ROOT/data/farm" | sort >files
+diff files manual >difference || wrong "$(cat difference)"
+"$ROOT/data/farm/nmtan-farm" --help | grep -o '^    nmtan-farm [a-z]* [A-Z]* *\[*[A-Z]*' | tr -d '[' | awk '{ print $2, $3 }' | sort >help
+text "$farm" | sed -n 's/^\.B nmtan-farm \([a-z]* [A-Z]*\).*/\1/p' | sort -u >manual
+diff help manual >difference || wrong "$(cat difference)"
+if command -v man >/dev/null 2>&1; then
+	is "$(LC_ALL=C.UTF-8 man --warnings -l "$farm" 2>&1 >/dev/null)" ""
+fi
+
 done_testing

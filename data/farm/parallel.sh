@@ -1,0 +1,17 @@
+#!/bin/sh
+# SPDX-License-Identifier: MIT
+#
+# parallel.sh WORK [OPTION of parallel...]: runs what "nmtan-farm prepare WORK" has cut into chunks with GNU parallel,
+# here or on the hosts of --sshloginfile=FILE, which see the same folders under the same names. The chunks that have
+# failed, or have not ended because something was killed, are run when it is started again; what they have done already
+# is up to date. What came of each input is in WORK/manifest.jsonl.
+set -u
+farm=$(cd "$(dirname "$0")" && pwd)/nmtan-farm
+work=$(cd "$1" && pwd) || exit 2
+shift
+"$farm" chunks "$work" >/dev/null || exit
+# --env: what is set here is not set on other hosts. -q: nothing in these words is for a shell.
+export NMTAN="${NMTAN:-nmtan}"
+"$farm" chunks "$work" |
+	parallel --will-cite --joblog "$work/joblog" --resume-failed --env NMTAN "$@" -q "$farm" run "$work" {}
+"$farm" merge "$work"

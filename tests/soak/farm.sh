@@ -1,0 +1,181 @@
+#!/bin/bash
+# SPDX-License-Identifier: MIT
+#
+# tests/soak/farm.sh BUILD_DIR...: the recipes of data/farm for engines that nobody installs for a test, with the first
+# build: hosts by ssh (openssh-server, which starts a service), Slurm (slurm-wlm and munge, as root), Snakemake.
+cd "$(dirname "$0")/../.." || exit 1
+ROOT=$PWD BUILD=$PWD/$1 NMTAN=$PWD/$1/nmtan WORK=$(mktemp -d)
+trap 'cd / && rm -rf "$WORK"' EXIT
+export ROOT BUILD NMTAN WORK PATH=$PATH:/usr/sbin
+. "$ROOT/tests/support/cli.sh"
+. "$ROOT/tests/support/farm.sh"
+
+# Two hosts on this one: sshd on ports of the loopback, with keys and configuration of their own.
+start_sshd() {
+	local port=$1
+	cat >"ssh/$port.conf" <<END
+Port $port
+ListenAddress 127.0.0.1
+HostKey $PWD/ssh/host
+AuthorizedKeysFile $PWD/ssh/key.pub
+PidFile $PWD/ssh/$port.pid
+StrictModes no
+PasswordAuthentication no
+UsePAM no
+END
+	# of root it wants a folder of the system's
+	[ "$(id -u)" != 0 ] || mkdir -p /run/sshd
+	"$(command -v sshd)" -f "$PWD/ssh/$port.conf" -E "$PWD/ssh/$port.log"
+}
+free_ports() {
+	python3 -c 'import socket
+sockets = [socket.create_server(("127.0.0.1", 0)) for _ in range(2)]
+print(*(s.getsockname()[1] for s in sockets))'
+}
+
+scene "GNU parallel: two hosts by ssh"
+if ! command -v sshd >/dev/null; then
+	skip_case "sshd is not installed (openssh-server)"
+else
+	take_hard
+	clean
+	mkdir -m 700 ssh
+	ssh-keygen -q -t ed25519 -N '' -f ssh/host
+	ssh-keygen -q -t ed25519 -N '' -f ssh/key
+	ports=$(free_ports)
+	for port in $ports; do
+		start_sshd "$port" || wrong "sshd does not start: $(cat "ssh/$port.log")"
+		echo "1/ssh -p $port -i $PWD/ssh/key -o StrictHostKeyChecking=no -o UserKnownHostsFile=/dev/null -o LogLevel=ERROR $(id -un)@127.0.0.1"
+	done >hosts
+	prepare 6
+	recipe "$farm/parallel.sh" "my work" --sshloginfile hosts
+	exits 0
+	is_clean
+	for port in $ports; do
+		grep -q 'Accepted publickey' "ssh/$port.log" || wrong "nothing came to the host at $port: $(tail -3 "ssh/$port.log")"
+		kill "$(cat "ssh/$port.pid")"
+	done
+fi
+
+# A cluster of this machine alone: $slurm has its configuration, logs and process ids.
+start_slurm() {
+	local host
+	host=$(hostname -s)
+	# shellcheck disable=SC2046
+	set -- $(free_ports)
+	slurm=$WORK/slurm
+	mkdir -p "$slurm/state" "$slurm/spool"
+	cat >"$slurm/slurm.conf" <<END
+ClusterName=one
+SlurmctldHost=$host(127.0.0.1)
+SlurmctldPort=$1
+SlurmdPort=$2
+SlurmUser=root
+AuthType=auth/munge
+AuthInfo=socket=$slurm/munge.socket
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+JobAcctGatherType=jobacct_gather/none
+ReturnToService=2
+SelectType=select/cons_tres
+StateSaveLocation=$slurm/state
+SlurmdSpoolDir=$slurm/spool
+SlurmctldPidFile=$slurm/slurmctld.pid
+SlurmdPidFile=$slurm/slurmd.pid
+SlurmctldLogFile=$slurm/slurmctld.log
+SlurmdLogFile=$slurm/slurmd.log
+NodeName=$host NodeAddr=127.0.0.1 CPUs=2 RealMemory=1000
+PartitionName=all Nodes=ALL Default=YES
+END
+	head -c 128 /dev/urandom >"$slurm/munge.key"
+	chmod 400 "$slurm/munge.key"
+	munged --force --key-file="$slurm/munge.key" --socket="$slurm/munge.socket" --pid-file="$slurm/munged.pid" \
+		--log-file="$slurm/munged.log" --seed-file="$slurm/munge.seed" 2>/dev/null || return
+	export SLURM_CONF=$slurm/slurm.conf
+	slurmctld -c && slurmd -N "$host" || return
+	for _ in $(seq 200); do
+		[ "$(sinfo -h -o %t 2>/dev/null)" = idle ] && return
+		sleep 0.1
+	done
+	return 1
+}
+stop_slurm() {
+	local daemon
+	for daemon in slurmd slurmctld munged; do
+		[ ! -f "$slurm/$daemon.pid" ] || kill "$(cat "$slurm/$daemon.pid")"
+	done
+}
+# Until no job is left, a minute at most.
+await_jobs() {
+	for _ in $(seq 600); do
+		[ -n "$(squeue -h)" ] || return 0
+		sleep 0.1
+	done
+	wrong "jobs are left: $(squeue)"
+}
+
+if ! command -v slurmctld >/dev/null || ! command -v munged >/dev/null || [ "$(id -u)" != 0 ]; then
+	scene "Slurm: an array job over chunks, and one that merges"
+	skip_case "Slurm is not installed (slurm-wlm, munge), or this is not root"
+else
+	scene "Slurm: an array job over chunks, and one that merges after it"
+	start_slurm || wrong "Slurm does not start: $(tail -5 "$slurm"/*.log)"
+	take_hard
+	clean
+	prepare 5
+	recipe "$farm/slurm.sh" "my work" --time=5
+	exits 0
+	await_jobs
+	is_clean
+	is "$(ls "my work" | grep -c '\.1\.jsonl')" 5
+
+	scene "Slurm: a task that is requeued goes on where it was"
+	take_many
+	clean
+	prepare 2 --threads=1
+	recipe "$farm/slurm.sh" "my work"
+	exits 0
+	until [ "$(find "o ut" -name '*.glb' 2>/dev/null | wc -l)" -gt 60 ]; do sleep 0.01; done
+	tasks=$(squeue -h -r -t running -o '%i')
+	[ -n "$tasks" ] || wrong "no task is running any more"
+	for task in $tasks; do scontrol requeue "$task"; done
+	# begun anew only after some two minutes, unless it is released
+	for _ in $(seq 600); do
+		for task in $(squeue -h -r -t pending -o '%F_%K %j' | sed -n 's/ nmtan$//p'); do
+			scontrol update job="$task" StartTime=now 2>/dev/null
+		done
+		[ -n "$(squeue -h)" ] || break
+		sleep 0.1
+	done
+	await_jobs
+	is_clean
+	[ "$(ls "my work" | grep -c '\.2\.jsonl')" -gt 0 ] || wrong "no task was run twice"
+	stop_slurm
+fi
+
+scene "Snakemake: outputs are made again when what they were made of changes"
+if ! command -v snakemake >/dev/null; then
+	skip_case "Snakemake is not installed (snakemake)"
+else
+	take_hard
+	# names with a line feed, or that are no UTF-8, are none of Snakemake's
+	rm "as sets/-sub dir/"{$'line\nfeed',$'\xff\xfe'}.obj "as sets/plates.gltf"
+	clean
+	make_all() { snakemake -q -s "$farm/Snakefile" -c2 --rerun-triggers mtime --config in="as sets" out="o ut" nmtan="$NMTAN" >"$WORK/err.txt" 2>&1; }
+	made() { find "o ut" -name '*.glb' -newer before | wc -l; }
+	touch before
+	make_all || wrong "exit code $?"
+	(cd "o ut" && find . -name '*.glb' -exec cmp {} ../clean/{} \;) >difference
+	[ ! -s difference ] || wrong "$(cat difference)"
+	is "$(made)" "$(find clean -name '*.glb' | wc -l)"
+	sleep 1
+	touch before
+	make_all
+	is "$(made)" 0
+	sleep 1
+	echo "# changed" >>"as sets/mirrored_cube.mtl"
+	make_all
+	is "$(made)" 1
+fi
+
+done_testing

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: MIT
+# The recipes of data/farm, each with the engine that it is for; ssh, Slurm and Snakemake are in tests/soak/farm.sh.
+. "$ROOT/tests/support/cli.sh"
+. "$ROOT/tests/support/farm.sh"
+
+scene "chunks are balanced by bytes, each name is in one of them, and the order is kept"
+mkdir in
+for i in $(seq 10 40); do head -c $((i * i * 4000)) /dev/zero >"in/$i.obj"; done
+find in -type f -print0 | sort -z >list0
+"$farm/nmtan-farm" prepare w 4 -d out <list0 || wrong "exit code $?"
+cat w/[1-4].list0 | sort -z | cmp - list0 || wrong "names are lost"
+for i in 1 2 3 4; do
+	sort -z w/$i.list0 | cmp - w/$i.list0 || wrong "the order is another"
+	xargs -0 stat -c %s <w/$i.list0 | awk '{ sum += $1 } END { print sum }'
+done | sort -n >sums
+awk 'NR == 1 { least = $1 } END { exit !($1 < 1.05 * least) }' sums || wrong "$(tr '\n' ' ' <sums)"
+recipe "$farm/nmtan-farm" prepare w 4
+exits 1
+says "'w' is not empty"
+recipe "$farm/nmtan-farm" run w 5
+exits 1
+says "no chunk '5'"
+recipe "$farm/nmtan-farm" merge in
+exits 1
+says "'in' was not prepared"
+
+scene "of the lines of an input the last one counts, and those that are missing are told"
+printf 'a.obj\0b.obj\0c.obj\0d.obj\0' | "$farm/nmtan-farm" prepare w 1
+line() { printf '{"input":"%s.obj","status":"%s","exit_code":%s}\n' "$@"; }
+{ line a done 0; line b failed 3; line c untried 2; printf '{"input":"d.ob'; } >w/1.1.jsonl
+recipe "$farm/nmtan-farm" merge w
+exits 2
+says "not all inputs were tried; chunks to run again: 1 (2 of 4)"
+{ line a up-to-date 0; line b done 0; line c failed 3; line d done 0; line d failed 2; } >w/1.2.jsonl
+recipe "$farm/nmtan-farm" merge w
+exits 1
+says "2 of 4 inputs failed"
+{ line a done 0; line b done 0; line c failed 3; line d failed 2; } >expected
+same w/manifest.jsonl expected
+
+scene "GNU parallel: names of any kind; a failure is told, and its chunk alone is run by the next start"
+take_hard
+clean
+prepare 5 || wrong "prepare: $?"
+cp "as sets/mirrored_cube.obj" good.obj
+printf 'v 0 0 0\nv 1 0 0\nf 1 2 3\n' >"as sets/mirrored_cube.obj"
+recipe "$farm/parallel.sh" "my work" --jobs 2
+exits 1
+says "1 of $count inputs failed"
+is "$(ls "my work" | grep -c '\.1\.jsonl')" 5
+cp good.obj "as sets/mirrored_cube.obj"
+recipe "$farm/parallel.sh" "my work" --jobs 2
+exits 0
+is_clean
+is "$(ls "my work" | grep -c '\.2\.jsonl')" 1
+
+scene "GNU parallel: a worker that is killed, and all of it that is, lose nothing"
+take_many
+clean
+# Kills itself when it has made a third of its chunk, the first time.
+cat >killed.sh <<'END'
+#!/bin/bash
+"$TOOL" "$@" & pid=$!
+case "$*" in */2.list0*) if mkdir killed 2>/dev/null; then
+	until [ "$(find "$HERE/o ut" -name '*.glb' | wc -l)" -gt 60 ]; do :; done
+	kill -9 $pid
+fi ;; esac
+wait $pid
+END
+chmod +x killed.sh
+prepare 4 --threads=1
+TOOL=$NMTAN HERE=$PWD NMTAN=$PWD/killed.sh recipe "$farm/parallel.sh" "my work" --jobs 2
+exits 2
+says "not all inputs were tried; chunks to run again: 2 ("
+is "$(awk 'NR > 1 && $7 != 0 { print $NF }' "my work/joblog")" 2
+recipe "$farm/parallel.sh" "my work" --jobs 2
+exits 0
+is_clean
+# what the killed one had made was not made again; of the last one it may not have told any more
+made=$(cat "my work"/2.*.jsonl | grep -c '"status":"done"') inputs=$(tr -dc '\0' <"my work/2.list0" | wc -c)
+[ "$made" = "$inputs" ] || [ "$made" = $((inputs - 1)) ] || wrong "$made of $inputs were made"
+
+scene "Ninja: build.ninja is written for names of any kind but line feeds, and makes again what changed"
+take_hard
+recipe sh -c 'find "as sets" -name "*.obj" -print0 | "$0" ninja "o ut" "as sets" --method=area' "$farm/nmtan-farm"
+exits 1
+says "a name with a line feed cannot be in a build.ninja"
+rm "as sets/-sub dir/"$'line\nfeed.obj'
+list | "$NMTAN" -q --output-format=glb --method=area -d clean --mirror="as sets" --files0-from=-
+list | "$farm/nmtan-farm" ninja "o ut" "as sets" --method=area >build.ninja
+ninja >made 2>&1 || wrong "$(cat made)"
+diff -r clean "o ut" >difference || wrong "$(head -3 difference)"
+# those that Ninja cannot read in a depfile are made again each time
+rm "as sets/-sub dir/"*[\'\"\*\;]*
+list | "$farm/nmtan-farm" ninja "o ut" "as sets" --method=area >build.ninja
+is "$(ninja)" "ninja: no work to do."
+sleep 0.03
+touch "as sets/mirrored_cube.mtl" "as sets/-sub dir/two words.obj"
+ninja -v >made
+is "$(grep -c depfile made)" 2
+is "$(ninja)" "ninja: no work to do."
+
+scene "make: outputs are made again when what they were made of changes, and all that is below by one target"
+unset MAKEFLAGS MFLAGS MAKELEVEL
+mkdir -p in/sub
+cp "$data"/mirrored_cube.* "$data/bumps.png" "$data"/plates.gltf "$data/plates.bin" in/sub
+printf 'NMTAN_IN := in\ninclude %s\nall: out/sub/mirrored_cube.glb out/sub/plates.glb\n' "$farm/nmtan.mk" >Makefile
+echo '.DEFAULT_GOAL := all' >>Makefile
+make >made 2>&1 || wrong "$(cat made)"
+is "$(make)" "make: Nothing to be done for 'all'."
+sleep 0.03
+touch in/sub/plates.bin
+make >made
+is "$(grep -c depfile made)" 1
+grep -q plates made || wrong "$(cat made)"
+is "$(make)" "make: Nothing to be done for 'all'."
+take_hard
+make NMTAN_IN="'as sets'" NMTAN_OUT="'o ut'" nmtan-update >made 2>&1 || wrong "$(cat made)"
+clean
+rm "o ut/.nmtan-record"
+diff -r clean "o ut" >difference || wrong "$(head -3 difference)"
+
+done_testing
