@@ -46,8 +46,8 @@
  *
  * Memory: a call keeps no pointer to the caller's data. Inputs are only read. Outputs belong to the
  * caller and have the room that their comments state; they may not overlap inputs or each other unless a
- * comment allows it. Scratch comes from options->allocator, or malloc; it is released before the call
- * returns, unless a workspace keeps it warm.
+ * comment allows it. Scratch comes from options->allocator, or malloc, and what a few triangles need
+ * from the stack; it is released before the call returns, unless a workspace keeps it warm.
  *
  * Threads: every function may be called from several threads at once, as long as they do not share
  * outputs, counts, timing or a workspace. There is no global state but a pool of threads: the first call that

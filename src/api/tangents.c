@@ -7,6 +7,7 @@
 #include "api/tangents.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 #include "api/vertices.h"
 #include "base/clock.h"
@@ -64,6 +65,9 @@ static nmtan_status run_method(const nt_solve *solve, nmtan_method method, size_
 	return NMTAN_ERROR_ARGUMENT;
 }
 
+/* Scratch on the stack: allocating takes as long as solving two triangles. */
+enum { SMALL_BYTES = 8192 };
+
 /* One call: the checked input, and the scratch where the caller gave none. */
 typedef struct request {
 	nmtan_options options;
@@ -75,6 +79,7 @@ typedef struct request {
 	nt_scratch_mark mark;
 	nmtan_timing timing; /* of this call */
 	double begin;
+	char memory[SMALL_BYTES]; /* of `own`: what few triangles need */
 } request;
 
 /* Copies of what the caller gave, of whatever version; false where a size is none. */
@@ -95,7 +100,7 @@ static bool read_arguments(request *r, const nmtan_mesh *mesh, const nmtan_optio
 static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_implementation *implementation)
 {
-	memset(r, 0, sizeof *r);
+	memset(r, 0, offsetof(request, memory));
 	if (!read_arguments(r, mesh, options))
 		return NMTAN_ERROR_ARGUMENT;
 	r->timing = (nmtan_timing)NMTAN_TIMING_INIT;
@@ -109,6 +114,7 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 	if (status)
 		return status;
 	nt_scratch_init(&r->own, r->options.allocator);
+	nt_scratch_lend(&r->own, r->memory, sizeof r->memory);
 	nt_solve *solve = &r->solve;
 	solve->mesh = &r->mesh;
 	/* bounds on the error of the determinants of `texcoords` say nothing about those of others */

@@ -48,9 +48,13 @@ static void search_range(void *context, size_t begin, size_t end, unsigned slot)
 
 uint32_t nt_largest(const uint32_t *values, size_t count, unsigned threads)
 {
-	search s = {.values = values};
-	/* asking how many processors there are is a system call */
-	threads = count < 2 * GRAIN ? 1 : nt_thread_count(threads);
+	search s;
+	s.values = values;
+	if (count < 2 * GRAIN) {
+		search_range(&s, 0, count, 0);
+		return s.largest[0];
+	}
+	threads = nt_thread_count(threads);
 	threads = threads < MOST_RANGES ? threads : MOST_RANGES;
 	nt_parallel_ranges(threads, count, GRAIN, search_range, &s);
 	uint32_t largest = 0;

@@ -19,6 +19,7 @@ struct nt_scratch_block {
 	char *memory;
 	size_t size_bytes;
 	size_t used; /* offset of the first free byte */
+	bool lent;   /* the caller's, this header too */
 };
 
 static void *default_allocate(void *user, size_t size_bytes)
@@ -39,6 +40,15 @@ void nt_scratch_init(nt_scratch *scratch, const nmtan_allocator *allocator)
 	*scratch = (nt_scratch){.allocator = {default_allocate, default_release, NULL}};
 	if (allocator)
 		scratch->allocator = *allocator;
+}
+
+void nt_scratch_lend(nt_scratch *scratch, void *memory, size_t size_bytes)
+{
+	const size_t gap = (ALIGNMENT - (uintptr_t)memory % ALIGNMENT) % ALIGNMENT;
+	struct nt_scratch_block *block = (struct nt_scratch_block *)((char *)memory + gap);
+	*block = (struct nt_scratch_block){.memory = (char *)(block + 1), .size_bytes = size_bytes - gap - sizeof *block,
+		.lent = true};
+	scratch->first = block;
 }
 
 /* Offset of the next aligned byte of a block. */
@@ -136,8 +146,10 @@ void nt_scratch_free(nt_scratch *scratch)
 	struct nt_scratch_block *block = scratch->first;
 	while (block) {
 		struct nt_scratch_block *next = block->next;
-		scratch->allocator.release(scratch->allocator.user, block->memory, block->size_bytes);
-		scratch->allocator.release(scratch->allocator.user, block, sizeof *block);
+		if (!block->lent) {
+			scratch->allocator.release(scratch->allocator.user, block->memory, block->size_bytes);
+			scratch->allocator.release(scratch->allocator.user, block, sizeof *block);
+		}
 		block = next;
 	}
 	scratch->first = scratch->current = NULL;

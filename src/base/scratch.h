@@ -25,6 +25,9 @@ typedef struct nt_scratch_mark {
 /* An empty scratch over an allocator; NULL: malloc and free. */
 void nt_scratch_init(nt_scratch *scratch, const nmtan_allocator *allocator);
 
+/* Gives an empty scratch its first block: at least 256 bytes of the caller, which outlive it. */
+void nt_scratch_lend(nt_scratch *scratch, void *memory, size_t size_bytes);
+
 /* count * size bytes aligned to 64, not cleared. NULL on overflow or exhaustion. */
 void *nt_scratch_alloc(nt_scratch *scratch, size_t count, size_t size);
 

@@ -41,11 +41,35 @@ static void going_back_reuses_the_same_memory(void **state)
 	nt_scratch_free(&scratch);
 }
 
+/* Lent memory of any alignment is used first, and is not given to the allocator. */
+static void lent_memory_comes_first(void **state)
+{
+	(void)state;
+	enum { BYTES = 4096 };
+	static char memory[BYTES + 1];
+	for (size_t offset = 0; offset < 2; offset++) {
+		nt_scratch scratch;
+		nt_scratch_init(&scratch, NULL);
+		nt_scratch_lend(&scratch, memory + offset, BYTES);
+		const nt_scratch_mark mark = nt_scratch_here(&scratch);
+		char *first = nt_scratch_alloc(&scratch, 2000, 1), *second = nt_scratch_alloc(&scratch, 3000, 1);
+		assert_in_range(first, memory + offset, memory + offset + BYTES - 2000);
+		assert_int_equal((uintptr_t)first % 64, 0);
+		assert_true(second + 3000 <= memory + offset || second >= memory + offset + BYTES);
+		memset(first, 1, 2000);
+		memset(second, 2, 3000);
+		nt_scratch_back(&scratch, mark);
+		assert_ptr_equal(nt_scratch_alloc(&scratch, 2000, 1), first);
+		nt_scratch_free(&scratch);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(blocks_are_aligned_and_apart),
 		cmocka_unit_test(going_back_reuses_the_same_memory),
+		cmocka_unit_test(lent_memory_comes_first),
 	};
 	return cmocka_run_group_tests_name("base/scratch", tests, NULL, NULL);
 }
