@@ -276,7 +276,6 @@ static void accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, 
 	lanes_in in;
 	lanes_out out;
 	const float offset = nt_stored_v_offset(fast->solve->mesh);
-	const float slack = offset != 0.0f ? 3 * HALF_ULP : 0.0f;
 	const bool scattered = fast->scattered, direct = !fast->bins.cursors;
 	const uint32_t *cursors = direct ? fast->adjacency.cursors + range * fast->adjacency.vertex_count : NULL;
 	for (size_t first = begin, count; first < end; first += count) {
@@ -293,13 +292,9 @@ static void accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, 
 		if (scattered)
 			prefetch_rows(fast, first, end, 1);
 		if (fast->wants_more)
-			solve_lanes_more(&in, &out, offset, slack);
-#if WIDTH > 4
-		else if (count <= 4)
-			solve_four(&in, &out, offset, slack);
-#endif
+			solve_lanes_more(&in, &out, offset);
 		else
-			solve_lanes_plain(&in, &out, offset, slack, count);
+			solve_few(&in, &out, offset, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 2);
 		if (scattered && direct)

@@ -93,7 +93,7 @@ static void flood_group(const nt_complex *c, nt_batch *b, uint32_t seed)
 	b->group_count++;
 }
 
-static void list_members(nt_batch *b)
+void nt_list_members(nt_batch *b)
 {
 	b->members = b->across;
 	b->bounds = b->across + b->count;
@@ -116,7 +116,7 @@ void nt_find_groups(const nt_complex *c, nt_batch *b)
 	b->group_count = 0;
 	for (uint32_t i = 0; i < b->count; i++)
 		flood_group(c, b, i);
-	list_members(b);
+	nt_list_members(b);
 }
 
 /* Triangles without a frame */

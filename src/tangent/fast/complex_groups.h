@@ -63,6 +63,9 @@ bool nt_batch_alloc(const nt_complex *c, size_t capacity, nt_batch *batch);
 /* Pairs the edges of the vertex with places [begin, end), which the batch has. */
 void nt_pair_vertex(const nt_complex *c, nt_batch *batch, uint32_t begin, uint32_t end);
 
+/* Lists the members of a batch's groups. */
+void nt_list_members(nt_batch *batch);
+
 /* Finds the groups of a batch whose vertices are paired, and lists their members. */
 void nt_find_groups(const nt_complex *c, nt_batch *batch);
 

@@ -16,7 +16,7 @@
  *
  * Step 4 takes about half of the time on a clean mesh. Where neighbouring triangles have vertices far apart there is
  * no step 3, step 4 writes corners down in bins of vertices, and step 5 adds up and settles one bin after the other
- * (bins.h). Threads own ranges of triangles, and every sum is in triangle order whatever their number.
+ * (bins.h). Meshes of a few triangles go another way (tiny.c). Threads own ranges of triangles, and every sum is in triangle order whatever their number.
  *
  * Words of these files:
  *
@@ -42,11 +42,12 @@
 #include "tangent/fast/complex.h"
 #include "tangent/fast/memory.h"
 #include "tangent/fast/records.h"
+#include "tangent/fast/tiny.h"
 #include "tangent/fast/write.h"
 #include "topology/corners.h"
 
 /* Starting a thread costs more than it saves with fewer triangles. */
-static const nt_fast_plan usual = {.grain = 65536, .least_borrowed_bytes = 65536};
+static const nt_fast_plan usual = {.grain = 65536, .least_borrowed_bytes = 65536, .most_tiny = NT_TINY};
 
 typedef struct run {
 	nt_fast *fast;
@@ -299,6 +300,18 @@ static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, cons
 
 /* The whole */
 
+/* Few triangles, in one go; `done` becomes false where they have to go the usual way. */
+static nmtan_status solve_tiny(nt_fast *fast, const nt_kernels *kernels, size_t most, bool *done)
+{
+	*done = false;
+	if (fast->triangle_count > most || fast->wants_more || fast->triangle_count != fast->solve->mesh->face_count)
+		return NMTAN_OK;
+	const nmtan_status status = nt_fast_tiny(fast, kernels, done);
+	if (!status && *done && fast->solve->known)
+		tell_known(fast);
+	return status;
+}
+
 bool nt_fast_can(const nt_solve *solve)
 {
 	return solve->threshold_cos == -1.0f && solve->mesh->vertex_count < NT_WELD_LIMIT &&
@@ -312,12 +325,16 @@ nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *pl
 	nt_fast fast = {.solve = solve, .sparse = solve->sparse,
 		.wants_more = solve->bitangents || solve->magnitudes,
 		.triangle_count = nt_triangle_count(solve->mesh, solve->corner_count)};
+	bool done;
+	nmtan_status status = solve_tiny(&fast, kernels, plan->most_tiny, &done);
+	if (status || done)
+		return status;
 	const bool binned = is_binned(&fast, plan->bin_bits);
 	nt_fast_memory memory;
 	nt_fast_plan_memory(&fast, binned, plan->least_borrowed_bytes, &memory);
 
 	/* which corners are one vertex, and which triangles each thread does */
-	nmtan_status status = prepare(&fast, plan->grain, &memory);
+	status = prepare(&fast, plan->grain, &memory);
 	/* each vertex's sums over its corners, one for each orientation */
 	if (!status)
 		status = binned ? fill_bins(&fast, kernels, plan->bin_bits, &memory)

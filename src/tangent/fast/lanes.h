@@ -68,8 +68,9 @@ static inline __attribute__((always_inline)) float half_spaces(float x, float y,
 
 /* The frames of lanes [0, count), and what is known of the triangles. */
 static inline __attribute__((always_inline)) void solve_frames(const lanes_in *restrict in,
-	lanes_out *restrict out, float offset, float slack, bool more, int count)
+	lanes_out *restrict out, float offset, bool more, int count)
 {
+	const float slack = offset != 0.0f ? 3 * HALF_ULP : 0.0f;
 	for (int i = 0; i < count; i++) {
 		float p[3][3], t[3][2];
 #pragma GCC unroll 3
@@ -204,9 +205,9 @@ static inline __attribute__((always_inline)) void weigh_corners(lanes_out *restr
 /* Lanes [0, count). One loop for each idea: in a single one there are more values under way than
  * registers, and square roots wait for each other. */
 static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *restrict in,
-	lanes_out *restrict out, float offset, float slack, bool more, int count)
+	lanes_out *restrict out, float offset, bool more, int count)
 {
-	solve_frames(in, out, offset, slack, more, count);
+	solve_frames(in, out, offset, more, count);
 #pragma GCC unroll 3
 	for (int k = 0; k < 3; k++)
 		solve_corners(in, out, k, more, count);
@@ -216,19 +217,19 @@ static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *re
 }
 
 static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *in, lanes_out *out, float offset,
-	float slack, size_t count)
+	size_t count)
 {
 	const size_t lane_count = whole_lanes(count);
-	solve_lanes(in, out, offset, slack, false, (int)lane_count);
+	solve_lanes(in, out, offset, false, (int)lane_count);
 	for (int k = 0; k < 3; k++)
 		interleave(out->sum[k], lane_count, out->add[k]);
 }
 
 #if WIDTH > 4
 /* Four triangles in vectors of four: those of wider ones take longer. */
-static void __attribute__((noinline)) solve_four(const lanes_in *in, lanes_out *out, float offset, float slack)
+static void __attribute__((noinline)) solve_four(const lanes_in *in, lanes_out *out, float offset)
 {
-	solve_lanes(in, out, offset, slack, false, 4);
+	solve_lanes(in, out, offset, false, 4);
 	for (size_t k = 0; k < 3; k++) {
 		nt_float4 four[4];
 		for (size_t j = 0; j < 4; j++)
@@ -240,10 +241,21 @@ static void __attribute__((noinline)) solve_four(const lanes_in *in, lanes_out *
 }
 #endif
 
-static void __attribute__((noinline)) solve_lanes_more(const lanes_in *in, lanes_out *out, float offset,
-	float slack)
+/* As many lanes as `count` triangles take: see lanes_of(). */
+static inline void solve_few(const lanes_in *in, lanes_out *out, float offset, size_t count)
 {
-	solve_lanes(in, out, offset, slack, true, NT_LANES);
+#if WIDTH > 4
+	if (count <= 4) {
+		solve_four(in, out, offset);
+		return;
+	}
+#endif
+	solve_lanes_plain(in, out, offset, count);
+}
+
+static void __attribute__((noinline)) solve_lanes_more(const lanes_in *in, lanes_out *out, float offset)
+{
+	solve_lanes(in, out, offset, true, NT_LANES);
 	for (int k = 0; k < 3; k++) {
 		interleave(out->sum[k], NT_LANES, out->add[k]);
 		interleave(out->extra[k], NT_LANES, out->more[k][0]);

@@ -16,6 +16,9 @@
 
 enum { NT_LANES = 16 };
 
+/* Triangles of the largest mesh for tiny.c. */
+enum { NT_TINY = 24 };
+
 /* Bits of nt_fast.flags */
 enum {
 	NT_TRIANGLE_ORIENT = 1,     /* UV determinant positive (after a quad's halves agreed) */
@@ -94,6 +97,11 @@ typedef struct nt_kernels {
 		size_t end, nt_settled *settled);
 	/* Solves corners, given as 4 * triangle + k. `solved` has room for a multiple of NT_LANES. */
 	void (*corners)(const nt_fast *fast, const uint32_t *corners, size_t count, nt_corner *solved);
+	/* Solves all triangles: their flags, and what each corner adds. For tiny.c. */
+	void (*few_frames)(const nt_fast *fast, nt_record *add);
+	/* Turns the sums of groups, given with their vertices and orientations, into results: few_lanes.h. */
+	void (*few_results)(const nt_fast *fast, const uint32_t *vertices, size_t count, nt_record *results,
+		uint8_t *orients);
 } nt_kernels;
 
 extern const nt_kernels nt_kernels_baseline;

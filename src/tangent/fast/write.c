@@ -42,8 +42,7 @@ static bool has_sound_half(const nt_fast *fast, size_t t)
 	return nt_fast_quad_begins(fast, t) && !(fast->flags[t + 1] & NT_TRIANGLE_DEGENERATE);
 }
 
-/* A corner that no group reached (step 10). */
-static void write_unassigned(const nt_fast *fast, size_t corner)
+void nt_fast_write_unassigned(const nt_fast *fast, size_t corner)
 {
 	nt_record record = {.x = 1.0f};
 	const float w = nt_unassigned_sign(fast->solve);
@@ -71,7 +70,7 @@ static void write_special(nt_fast *fast, size_t t)
 		else if (degenerate && two)
 			*flags |= NT_TRIANGLE_COPY;
 		if (state == NT_RESULT_NONE)
-			write_unassigned(fast, nt_fast_corner(fast, i));
+			nt_fast_write_unassigned(fast, nt_fast_corner(fast, i));
 		else
 			write_vertex(fast, nt_fast_corner(fast, i), o, v);
 	}
@@ -167,7 +166,7 @@ void nt_fast_write_rest(nt_fast *fast)
 void nt_fast_write_defaults(const nt_fast *fast)
 {
 	for (size_t c = 0; c < fast->solve->corner_count; c++)
-		write_unassigned(fast, c);
+		nt_fast_write_unassigned(fast, c);
 }
 
 static void copy_corner(const nt_solve *solve, size_t to, size_t from)

@@ -14,7 +14,10 @@ void nt_fast_write(nt_fast *fast);
 /* Writes what a sparse solve left out. */
 void nt_fast_write_rest(nt_fast *fast);
 
-/* Writes the default to every corner, for a mesh without a sound triangle (step 10 of the spec page). */
+/* Writes the default to a corner that no group reached (step 10 of the spec page). */
+void nt_fast_write_unassigned(const nt_fast *fast, size_t corner);
+
+/* Writes the default to every corner, for a mesh without a sound triangle. */
 void nt_fast_write_defaults(const nt_fast *fast);
 
 /* Corners of triangles that are COPY take the values of others, which must have been written. Returns NMTAN_OK or

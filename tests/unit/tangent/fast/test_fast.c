@@ -15,6 +15,7 @@
 #include "nasty.h"
 #include "tangent/fast/bins.h"
 #include "tangent/fast/fast.h"
+#include "tangent/fast/parts.h"
 
 /* Floats with different bits that are not both NaN. */
 static size_t count_differences(const float *a, const float *b, size_t count)
@@ -91,18 +92,19 @@ static size_t compare_run(const char *name, const nmtan_mesh *mesh, size_t corne
 	return differences;
 }
 
-/* One thread with every instruction set, then more threads, and places that do not suffice; the same by bins where
+/* One thread with every instruction set, where few triangles may go a way of their own, then more threads, and places that do not suffice; the same by bins where
  * there is a choice. */
 static size_t compare_variants(const char *name, const nmtan_mesh *mesh, size_t corners,
 	const result *expected, bool more)
 {
 	static const unsigned threads[] = {2, 3, 8};
 	static const nt_fast_plan few_places = {.grain = 1, .most_places = 200},
-		bins = {.grain = 1, .bin_bits = 4}, larger_bins = {.grain = 1, .bin_bits = 5};
+		bins = {.grain = 1, .bin_bits = 4}, larger_bins = {.grain = 1, .bin_bits = 5},
+		tiny = {.grain = 1, .most_tiny = NT_TINY};
 	size_t differences = 0;
 	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++)
-		if (nt_cpu_has(isa))
-			differences += compare_run(name, mesh, corners, expected, more, isa, 1, &usual);
+		for (int small = 0; nt_cpu_has(isa) && small < 2; small++)
+			differences += compare_run(name, mesh, corners, expected, more, isa, 1, small ? &tiny : &usual);
 	for (int i = 0; i < 3; i++)
 		differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), threads[i], &usual);
 	for (unsigned count = 1; count <= 3; count += 2)
@@ -448,6 +450,16 @@ static void every_failed_allocation_is_told(void **state)
 		assert_int_equal(solve_within(&mesh, corners, &r, allowed, threads, bin_bits), NMTAN_OK);
 		assert_in_range(allowed, 8, 100);
 	}
+	/* two of its triangles alone */
+	nmtan_mesh few = mesh;
+	few.face_count = 2;
+	budget nothing = {0, 0};
+	const nmtan_allocator allocator = {spend, give_back, &nothing};
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, &allocator);
+	const nt_solve solve = make_solve(&few, 6, &scratch, &r, false);
+	assert_int_equal(nt_mikktspace_fast_as(&solve, &(nt_fast_plan){.grain = 1, .most_tiny = NT_TINY}), NMTAN_ERROR_MEMORY);
+	nt_scratch_free(&scratch);
 	result_free(&r);
 	free(p);
 	free(n);

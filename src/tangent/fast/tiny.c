@@ -1,0 +1,257 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Meshes of a few triangles, of which a file can have a hundred thousand. There every pass of the usual way costs more
+ * by being there than by what it does. This is the definition, step by step, with everything on the stack and small
+ * enough for the first-level cache:
+ *
+ *   weld     rows are compared with those of equal hash bits
+ *   frames   and weights of 16 triangles at a time                            few_lanes.h
+ *   pair     edges, by a table of all pairs of vertices
+ *   groups   flooded in the order of seeds: nothing has to be decided ahead
+ *   sums     over corners in order, each to its group; then results           few_lanes.h
+ *   write
+ *
+ * A group that may split, or has extreme values, is averaged by complex_solve.c.
+ */
+#include "tangent/fast/tiny.h"
+
+#include "tangent/fast/complex_solve.h"
+#include "tangent/fast/write.h"
+
+/* Corners are 4 * triangle + k here; an edge has the number of the corner where it begins. */
+enum { CORNERS = 3 * NT_TINY, SLOTS = 4 * NT_TINY, NOT_ONE = UINT8_MAX };
+_Static_assert(SLOTS <= NOT_ONE, "a byte holds a corner, a vertex, a group, or none");
+
+typedef struct tiny {
+	nt_fast *fast;
+	const nt_kernels *kernels;
+	const uint32_t *ids;
+	nt_weld_row rows[CORNERS];
+	nt_record add[CORNERS];        /* of corner 3 t + k */
+	uint8_t forward[SLOTS], backward[SLOTS]; /* the corner beyond the edge to the next, from the previous vertex, or
+	                                            NOT_ONE */
+	uint8_t group[SLOTS];          /* of a corner, or NOT_ONE */
+	nt_record results[CORNERS + NT_LANES]; /* of groups: sums, then results */
+	uint32_t vertices[CORNERS + NT_LANES]; /* of groups */
+	uint8_t orients[CORNERS + NT_LANES];   /* of groups: NT_TRIANGLE_ORIENT */
+	uint32_t group_count;
+} tiny;
+
+static uint8_t next_of(uint8_t c)
+{
+	return (uint8_t)((c & 3) == 2 ? c - 2 : c + 1);
+}
+
+/* Weld */
+
+static size_t find_row(const nt_weld_row *rows, size_t count, const nt_weld_row *row)
+{
+	size_t i = 0;
+	while (i < count && !nt_weld_same(&rows[i], row))
+		i++;
+	return i;
+}
+
+/* Numbers of items, which are vertices or corners; false where one holds a NaN. */
+static bool number_items(tiny *s, const uint32_t *vertices, size_t count, uint32_t *numbers)
+{
+	nt_fast *fast = s->fast;
+	const nmtan_mesh mesh = *fast->solve->mesh;
+	uint64_t seen[16] = {0};
+	nt_weld_flags unordered = {0};
+	size_t rows = 0;
+	for (size_t i = 0; i < count; i++) {
+		nt_weld_row *row = &s->rows[rows];
+		unordered |= nt_weld_load(&mesh, vertices ? vertices[i] : i, row);
+		const uint64_t hash = nt_weld_hash(row), bit = (uint64_t)1 << (hash >> 58);
+		uint64_t *word = &seen[hash >> 54 & 15];
+		const size_t number = *word & bit ? find_row(s->rows, rows, row) : rows;
+		*word |= bit;
+		numbers[i] = (uint32_t)number;
+		rows += number == rows;
+	}
+	fast->vertex_count = rows;
+	return nt_weld_ordered(unordered);
+}
+
+static nmtan_status weld(tiny *s, bool *done)
+{
+	nt_fast *fast = s->fast;
+	const nmtan_mesh *mesh = fast->solve->mesh;
+	const size_t corners = fast->solve->corner_count;
+	const bool by_vertex = mesh->indices && mesh->vertex_count <= corners;
+	uint32_t numbers[CORNERS];
+	uint32_t *ids = nt_scratch_alloc(fast->solve->scratch, corners, sizeof *ids);
+	fast->flags = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 1);
+	if (!ids || !fast->flags)
+		return NMTAN_ERROR_MEMORY;
+	memset(fast->flags, 0, fast->triangle_count);
+	*done = by_vertex ? number_items(s, NULL, mesh->vertex_count, numbers)
+			  : number_items(s, mesh->indices, corners, ids);
+	for (size_t c = 0; by_vertex && c < corners; c++)
+		ids[c] = numbers[mesh->indices[c]];
+	fast->triangles.ids = s->ids = ids;
+	return NMTAN_OK;
+}
+
+/* Pair */
+
+/* Corners at the end and at the beginning of an edge, and at the other ends of the edge that it is paired with. */
+typedef struct edge {
+	uint8_t begin, end;
+} edge;
+
+/* An edge meets the first that waits between its vertices and runs the other way; if there is none it waits behind those
+ * that run its own. */
+static inline void pair_edge(tiny *s, uint8_t *here, uint8_t *there, uint8_t *behind, edge e)
+{
+	if (*there) {
+		const uint8_t other = (uint8_t)(*there - 1), other_end = next_of(other);
+		s->forward[e.begin] = other_end;
+		s->forward[other] = e.end;
+		s->backward[e.end] = other;
+		s->backward[other_end] = e.begin;
+		*there = behind[other];
+		return;
+	}
+	while (*here)
+		here = &behind[*here - 1];
+	*here = (uint8_t)(e.begin + 1);
+}
+
+static void pair_edges(tiny *s)
+{
+	const nt_fast *fast = s->fast;
+	const size_t n = fast->vertex_count;
+	uint8_t waiting[CORNERS * CORNERS], behind[SLOTS]; /* by vertices, by edge: an edge and 1, or 0 */
+	memset(waiting, 0, n * n);
+	memset(behind, 0, sizeof behind);
+	memset(s->forward, NOT_ONE, sizeof s->forward);
+	memset(s->backward, NOT_ONE, sizeof s->backward);
+	for (size_t t = 0; t < fast->triangle_count; t++) {
+		if (fast->flags[t] & NT_TRIANGLE_DEGENERATE)
+			continue;
+		const uint8_t c = (uint8_t)(4 * t);
+		const size_t u = s->ids[3 * t], v = s->ids[3 * t + 1], w = s->ids[3 * t + 2];
+		pair_edge(s, &waiting[u * n + v], &waiting[v * n + u], behind, (edge){c, (uint8_t)(c + 1)});
+		pair_edge(s, &waiting[v * n + w], &waiting[w * n + v], behind, (edge){(uint8_t)(c + 1), (uint8_t)(c + 2)});
+		pair_edge(s, &waiting[w * n + u], &waiting[u * n + w], behind, (edge){(uint8_t)(c + 2), c});
+	}
+}
+
+/* Groups */
+
+/* Takes corner c into the newest group, if it is free and of its orientation. */
+static inline bool join_group(tiny *s, uint8_t *flags, uint8_t c, unsigned orient)
+{
+	uint8_t *f = &flags[c >> 2];
+	if (s->group[c] != NOT_ONE)
+		return false;
+	if ((*f & NT_TRIANGLE_ANY) && !(*f & NT_TRIANGLE_DECIDED))
+		*f = (uint8_t)((*f & ~NT_TRIANGLE_ORIENT) | orient | NT_TRIANGLE_DECIDED);
+	if ((*f & NT_TRIANGLE_ORIENT) != orient)
+		return false;
+	s->group[c] = (uint8_t)s->group_count;
+	return true;
+}
+
+/* The group that begins at a free corner with a frame. */
+static inline void flood_group(tiny *s, uint8_t *flags, uint8_t seed)
+{
+	const unsigned orient = flags[seed >> 2] & NT_TRIANGLE_ORIENT;
+	s->group[seed] = (uint8_t)s->group_count;
+	uint8_t c;
+	for (c = s->forward[seed]; c != NOT_ONE && join_group(s, flags, c, orient);)
+		c = s->forward[c];
+	for (c = s->backward[seed]; c != NOT_ONE && join_group(s, flags, c, orient);)
+		c = s->backward[c];
+	s->vertices[s->group_count] = s->ids[3 * (seed >> 2) + (seed & 3)];
+	s->orients[s->group_count++] = (uint8_t)orient;
+}
+
+static void find_groups(tiny *s)
+{
+	uint8_t *flags = s->fast->flags;
+	memset(s->group, NOT_ONE, sizeof s->group);
+	for (size_t t = 0; t < s->fast->triangle_count; t++)
+		for (size_t k = 0; k < 3 && !(flags[t] & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY)); k++)
+			if (s->group[4 * t + k] == NOT_ONE)
+				flood_group(s, flags, (uint8_t)(4 * t + k));
+}
+
+static void add_corners(tiny *s)
+{
+	const nt_fast *fast = s->fast;
+	/* lanes behind the last group, too: denormals that lie there take a microsecond */
+	for (size_t g = 0; g < (s->group_count + NT_LANES - 1) / NT_LANES * NT_LANES; g++)
+		s->results[g] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+	for (size_t t = 0; t < fast->triangle_count; t++)
+		for (size_t k = 0; k < 3 && !(fast->flags[t] & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY)); k++) {
+			nt_int4 add;
+			memcpy(&add, &s->add[3 * t + k], sizeof add);
+			nt_record_add(&s->results[s->group[4 * t + k]], add);
+		}
+}
+
+/* Write */
+
+/* Groups that are not their sums. */
+static nmtan_status solve_complex(tiny *s)
+{
+	uint32_t corners[CORNERS], groups[CORNERS], across[2 * CORNERS + 2];
+	const nt_complex c = {.fast = s->fast, .kernels = s->kernels};
+	nt_batch b = {.corners = corners, .group = groups, .across = across, .group_count = s->group_count};
+	for (uint32_t i = 0; i < 4 * s->fast->triangle_count; i++) {
+		if (s->group[i] == NOT_ONE || s->results[s->group[i]].state != NT_RESULT_COMPLEX)
+			continue;
+		groups[b.count] = s->group[i];
+		corners[b.count++] = i;
+	}
+	nt_list_members(&b);
+	return nt_solve_batch(&c, &b, NULL);
+}
+
+/* Every corner gets its group's result. */
+static nmtan_status write_corners(tiny *s)
+{
+	const nt_fast *fast = s->fast;
+	float *out = fast->solve->tangents;
+	bool complex = false;
+	unsigned seen = 0;
+	for (size_t t = 0; t < fast->triangle_count; t++) {
+		for (size_t k = 0; k < 3; k++) {
+			const uint8_t g = s->group[4 * t + k];
+			if (g == NOT_ONE) {
+				nt_fast_write_unassigned(fast, 3 * t + k);
+				continue;
+			}
+			memcpy(out + 4 * (3 * t + k), &s->results[g], sizeof *s->results);
+			complex |= s->results[g].state == NT_RESULT_COMPLEX;
+			fast->flags[t] |= s->orients[g] & NT_TRIANGLE_COMPLEX;
+		}
+		if (fast->flags[t] & NT_TRIANGLE_DEGENERATE)
+			fast->flags[t] |= NT_TRIANGLE_COPY;
+		seen |= fast->flags[t];
+	}
+	if (complex && solve_complex(s))
+		return NMTAN_ERROR_MEMORY;
+	return seen & NT_TRIANGLE_COPY ? nt_fast_write_copies(s->fast) : NMTAN_OK;
+}
+
+nmtan_status nt_fast_tiny(nt_fast *fast, const nt_kernels *kernels, bool *done)
+{
+	tiny s;
+	s.fast = fast;
+	s.kernels = kernels;
+	s.group_count = 0;
+	const nmtan_status status = weld(&s, done);
+	if (status || !*done)
+		return status;
+	fast->rows = s.rows;
+	kernels->few_frames(fast, s.add);
+	pair_edges(&s);
+	find_groups(&s);
+	add_corners(&s);
+	kernels->few_results(fast, s.vertices, s.group_count, s.results, s.orients);
+	return write_corners(&s);
+}
