@@ -23,6 +23,9 @@ enum nt_gltf_target {
 	NT_GLTF_ELEMENT_ARRAY_BUFFER = 34963
 };
 
+/* Values of a sampler's wrapS and wrapT that are not the default. */
+enum nt_gltf_wrap { NT_GLTF_CLAMP_TO_EDGE = 33071, NT_GLTF_MIRRORED_REPEAT = 33648 };
+
 /* Values of a primitive's mode that have faces. */
 enum nt_gltf_mode { NT_GLTF_TRIANGLES = 4, NT_GLTF_STRIP = 5, NT_GLTF_FAN = 6 };
 

@@ -93,10 +93,11 @@ static nt_status read_kind(const group *g, const nt_mesh *mesh, kind *k, nt_erro
 		nt_gltf_of_mesh(mesh).pointer, &shading, error);
 	if (status)
 		return status;
-	const bool applies = shading.has_set && shading.set == mesh->texcoord_set && shading.transform.exists;
+	const bool applies = shading.has_set && shading.set == mesh->texcoord_set && shading.transform.turns;
 	/* adding 0 makes 0 of -0 */
-	*k = (kind){mesh->texcoord_set, applies ? shading.transform.rotation + 0.0 : 0,
-		{applies ? shading.transform.scale[0] + 0.0 : 1, applies ? shading.transform.scale[1] + 0.0 : 1}};
+	const nt_uv_transform *uv = &shading.transform.uv;
+	*k = (kind){mesh->texcoord_set, applies ? uv->rotation + 0.0 : 0,
+		{applies ? uv->scale[0] + 0.0 : 1, applies ? uv->scale[1] + 0.0 : 1}};
 	return NT_OK;
 }
 

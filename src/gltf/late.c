@@ -77,7 +77,7 @@ static bool is_plain(const search *s, const nt_mesh *mesh)
 		nt_gltf_get_accessor(s->document, number, nt_gltf_of_mesh(mesh).pointer, &indices, NULL) == NT_OK &&
 		indices.count % 3 == 0 &&
 		nt_gltf_find_slots(s->document, primitive, nt_gltf_of_mesh(mesh).pointer, &shading, NULL) == NT_OK &&
-		!shading.transform.exists;
+		!shading.transform.turns;
 }
 
 static bool is_late(const search *s, const nt_mesh *mesh)

@@ -201,33 +201,6 @@ static nt_status load_vertices(nt_scene *scene, nt_gltf *document, nt_mesh *mesh
 	return status ? status : flip_texcoords(scene, mesh, stored, threads, error);
 }
 
-/*
- * Texture coordinates as KHR_texture_transform turns and scales them, rounded to float once. Its text says
- * counterclockwise and its code clockwise (v points down); viewers and the sample model do what the text
- * says, and with v up that is the usual rotation: (u, v) is scaled, then turned by the angle. The offset moves
- * all triangles alike.
- */
-static nt_status transform_texcoords(nt_scene *scene, nt_mesh *mesh, const nt_gltf_transform *t,
-	nt_error *error)
-{
-	mesh->solve_texcoords = nt_arena_alloc(&scene->arena, mesh->vertex_count, 2 * sizeof(float));
-	if (!mesh->solve_texcoords)
-		return nt_fail_memory(error);
-	/* turning keeps the orientation; only scales can reverse it */
-	for (int k = 0; k < 2; k++) {
-		const int sign = (t->scale[k] > 0) - (t->scale[k] < 0);
-		mesh->solve_sign = k ? mesh->solve_sign * sign : sign;
-	}
-	const double c = cos(t->rotation), s = sin(t->rotation);
-	for (size_t i = 0; i < mesh->vertex_count; i++) {
-		const double u = t->scale[0] * mesh->texcoords[2 * i];
-		const double v = t->scale[1] * mesh->texcoords[2 * i + 1];
-		mesh->solve_texcoords[2 * i] = (float)(t->rotation != 0 ? c * u - s * v : u);
-		mesh->solve_texcoords[2 * i + 1] = (float)(t->rotation != 0 ? s * u + c * v : v);
-	}
-	return NT_OK;
-}
-
 /* The transform of the texture that tangents serve; what cannot be served is a finding. A mesh that shares
  * its geometry has the same one applied already, a copy in a join has that of another. */
 static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, nt_error *error)
@@ -245,8 +218,8 @@ static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *me
 			"set %u with different texture transforms", mesh->texcoord_set);
 	if (own && shading.transform.animated)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED, nt_mesh_place(mesh, &(nt_place){0}), 1, NULL);
-	return shading.transform.exists && !mesh->same_as ?
-		transform_texcoords(scene, mesh, &shading.transform, error) : NT_OK;
+	return shading.transform.turns && !mesh->same_as
+		? nt_mesh_transform(mesh, &shading.transform.uv, &scene->arena, error) : NT_OK;
 }
 
 /* Triangles of a strip or fan, in the order and with the first corners that the specification gives. */

@@ -34,6 +34,18 @@ static nt_status read_number(const nt_json_value *value, const char *pointer, co
 		nt_json_type_text(value));
 }
 
+/* Two numbers of a transform, where it has them. */
+static nt_status read_pair(const nt_json_value *transform, const char *pointer, const char *key, double numbers[2],
+	nt_error *error)
+{
+	const nt_json_value *pair = nt_json_find(transform, key);
+	nt_status status = NT_OK;
+	for (size_t k = 0; !status && k < 2 && pair; k++)
+		status = read_number(nt_json_count(pair) == 2 ? nt_json_at(pair, k) : pair, pointer, key, &numbers[k],
+			error);
+	return status;
+}
+
 /* Whether an animation turns or scales this transform (KHR_animation_pointer). */
 static bool is_animated(const nt_gltf *document, const char *pointer)
 {
@@ -60,29 +72,30 @@ static nt_status read_transform(const nt_gltf *document, const nt_json_value *te
 	const char *pointer, nt_gltf_transform *transform, uint64_t *set, nt_error *error)
 {
 	char place[NT_GLTF_POINTER * 2];
-	*transform = (nt_gltf_transform){.scale = {1, 1}};
+	*transform = (nt_gltf_transform){.uv = {.scale = {1, 1}}};
 	const nt_json_value *json =
 		nt_json_find(nt_json_find(texture, "extensions"), "KHR_texture_transform");
 	if (!json)
 		return NT_OK;
 	snprintf(place, sizeof place, "%s/extensions/KHR_texture_transform", pointer);
 	nt_status status = nt_gltf_uint(json, place, "texCoord", 1000, *set, set, error);
-	const nt_json_value *scale = nt_json_find(json, "scale");
+	nt_uv_transform *uv = &transform->uv;
 	if (!status)
-		status = read_number(nt_json_find(json, "rotation"), place, "rotation",
-			&transform->rotation, error);
-	for (size_t k = 0; !status && k < 2 && scale; k++)
-		status = read_number(nt_json_count(scale) == 2 ? nt_json_at(scale, k) : scale, place,
-			"scale", &transform->scale[k], error);
+		status = read_number(nt_json_find(json, "rotation"), place, "rotation", &uv->rotation, error);
+	if (!status)
+		status = read_pair(json, place, "scale", uv->scale, error);
+	if (!status)
+		status = read_pair(json, place, "offset", uv->offset, error);
+	uv->offset[1] = -uv->offset[1];
 	transform->animated = is_animated(document, place);
-	transform->exists = transform->animated || transform->rotation != 0 ||
-		transform->scale[0] != 1 || transform->scale[1] != 1;
+	transform->turns = transform->animated || uv->rotation != 0 || uv->scale[0] != 1 || uv->scale[1] != 1;
 	return status;
 }
 
 static bool same_transform(const nt_gltf_transform *a, const nt_gltf_transform *b)
 {
-	return a->rotation == b->rotation && a->scale[0] == b->scale[0] && a->scale[1] == b->scale[1];
+	return a->uv.rotation == b->uv.rotation && a->uv.scale[0] == b->uv.scale[0] &&
+	       a->uv.scale[1] == b->uv.scale[1];
 }
 
 static const nt_json_value *element_of(const nt_gltf *document, const char *array, const nt_json_value *index)
@@ -94,14 +107,13 @@ static const nt_json_value *element_of(const nt_gltf *document, const char *arra
 /* Of the texture that a textureInfo names; what is missing or unknown repeats, as glTF has it. */
 static void read_wrap(const nt_gltf *document, const nt_json_value *info, nt_wrap wrap[2])
 {
-	enum { CLAMP_TO_EDGE = 33071, MIRRORED_REPEAT = 33648 };
 	const nt_json_value *texture = element_of(document, "textures", nt_json_find(info, "index"));
 	const nt_json_value *sampler = element_of(document, "samplers", nt_json_find(texture, "sampler"));
 	for (int axis = 0; axis < 2; axis++) {
 		uint64_t mode = 0;
 		nt_json_get_uint64(nt_json_find(sampler, axis ? "wrapT" : "wrapS"), &mode);
-		wrap[axis] = mode == CLAMP_TO_EDGE ? NT_WRAP_CLAMP
-			: mode == MIRRORED_REPEAT ? NT_WRAP_MIRRORED
+		wrap[axis] = mode == NT_GLTF_CLAMP_TO_EDGE ? NT_WRAP_CLAMP
+			: mode == NT_GLTF_MIRRORED_REPEAT ? NT_WRAP_MIRRORED
 						  : NT_WRAP_REPEAT;
 	}
 }

@@ -6,12 +6,13 @@
 #define NT_GLTF_MATERIALS_H
 
 #include "gltf/document.h"
-#include "scene/scene.h"
+#include "scene/transform.h"
 
-/* What KHR_texture_transform does to directions; its offset does nothing to them. */
+/* A KHR_texture_transform, as it is for v up. */
 typedef struct nt_gltf_transform {
-	bool exists, animated;
-	double rotation, scale[2];
+	nt_uv_transform uv;
+	bool turns;    /* it does something to directions: more than an offset */
+	bool animated;
 } nt_gltf_transform;
 
 /* What a primitive's materials ask for. */

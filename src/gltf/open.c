@@ -94,7 +94,11 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->triangles = mode >= NT_GLTF_TRIANGLES;
 	mesh->slots = shading.slots;
 	mesh->unlit = shading.unlit;
-	memcpy(mesh->wrap, shading.wrap, sizeof mesh->wrap);
+	for (int axis = 0; axis < 2; axis++) {
+		mesh->wrap[axis] = shading.wrap[axis];
+		mesh->wrap_offset[axis] =
+			shading.wrap[axis] == NT_WRAP_MIRRORED ? shading.transform.uv.offset[axis] : 0;
+	}
 	mesh->texcoord_set = options->texcoord_set >= 0 ? (uint32_t)options->texcoord_set : shading.set;
 	mesh->texcoord_conflict = shading.conflict && options->texcoord_set < 0;
 	mesh->texcoord_other_set = shading.other_set;

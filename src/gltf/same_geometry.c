@@ -78,12 +78,12 @@ static void put_draco(same_job *job, const nt_json_value *primitive, const char 
 static void put_transform(same_job *job, const nt_mesh *mesh, const nt_gltf_shading *shading)
 {
 	const nt_gltf_transform *t = &shading->transform;
-	const bool applies = shading->has_set && shading->set == mesh->texcoord_set && t->exists;
+	const bool applies = shading->has_set && shading->set == mesh->texcoord_set && t->turns;
 	put_number(job, applies);
 	if (!applies)
 		return;
-	nt_buffer_append(&job->key, &t->rotation, sizeof t->rotation);
-	nt_buffer_append(&job->key, t->scale, sizeof t->scale);
+	nt_buffer_append(&job->key, &t->uv.rotation, sizeof t->uv.rotation);
+	nt_buffer_append(&job->key, t->uv.scale, sizeof t->uv.scale);
 }
 
 static void put_targets(same_job *job, const nt_mesh *mesh, const nt_json_value *primitive)

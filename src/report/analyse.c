@@ -265,7 +265,8 @@ static bool same_uses(const nt_mesh *a, const nt_mesh *b)
 {
 	return a->slots == b->slots && a->reachable == b->reachable && a->decision == b->decision &&
 		a->targets_without_tangents == b->targets_without_tangents && a->wrap[0] == b->wrap[0] &&
-		a->wrap[1] == b->wrap[1];
+		a->wrap[1] == b->wrap[1] && a->wrap_offset[0] == b->wrap_offset[0] &&
+		a->wrap_offset[1] == b->wrap_offset[1];
 }
 
 /* Meshes that are checked together: of the same geometry and used alike. */

@@ -125,9 +125,12 @@ static inline void nt_side_source_texcoord(const nt_check *check, uint32_t side,
 		check->mesh->texcoords + 2 * (size_t)check->surface.vertices[side], out);
 }
 
-/* Where a sampler looks: repeated modulo 1, mirrored folded, clamped (inside the texture) as it stands. */
-static inline double nt_wrap_coordinate(double x, nt_wrap wrap)
+/* Where a sampler looks along an axis, for a coordinate of the surface: repeated modulo 1, mirrored folded, clamped
+ * (inside the texture) as it stands. Offsets that move all alike are left out. */
+static inline double nt_wrap_coordinate(const nt_mesh *mesh, int axis, double coordinate)
 {
+	const nt_wrap wrap = mesh->wrap[axis];
+	const double x = coordinate + mesh->wrap_offset[axis];
 	if (wrap == NT_WRAP_CLAMP)
 		return x;
 	const double tile = floor(x), within = x - tile;

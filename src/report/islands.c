@@ -86,7 +86,7 @@ typedef struct grid {
 	sample *samples;
 	size_t sample_count, left; /* not found yet */
 	size_t visits, most_visits;
-	const nt_wrap *wrap; /* [2] */
+	const nt_mesh *mesh; /* whose wrap and wrap_offset count */
 } grid;
 
 static double uv_area(const float *a, const float *b, const float *c)
@@ -119,8 +119,8 @@ static void take_samples(const nt_check *check, grid *g, size_t mirrored_count, 
 		const float *b = nt_side_texcoord(s, (uint32_t)(3 * t + 1));
 		const float *c = nt_side_texcoord(s, (uint32_t)(3 * t + 2));
 		g->samples[g->sample_count++] = (sample){
-			.u = nt_wrap_coordinate(((double)a[0] + b[0] + c[0]) / 3.0, g->wrap[0]),
-			.v = nt_wrap_coordinate(((double)a[1] + b[1] + c[1]) / 3.0, g->wrap[1]),
+			.u = nt_wrap_coordinate(g->mesh, 0, ((double)a[0] + b[0] + c[0]) / 3.0),
+			.v = nt_wrap_coordinate(g->mesh, 1, ((double)a[1] + b[1] + c[1]) / 3.0),
 			.weight = -uv_area(a, b, c),
 			.island = check->islands[t]};
 	}
@@ -221,7 +221,7 @@ static bool move_tile(double x[3], double tile, nt_wrap wrap)
 
 static void search_tile(grid *g, uv_triangle t, double tile_u, double tile_v)
 {
-	const bool folded_u = move_tile(t.u, tile_u, g->wrap[0]), folded_v = move_tile(t.v, tile_v, g->wrap[1]);
+	const bool folded_u = move_tile(t.u, tile_u, g->mesh->wrap[0]), folded_v = move_tile(t.v, tile_v, g->mesh->wrap[1]);
 	g->visits++;
 	if (folded_u != folded_v) {
 		const double u = t.u[1], v = t.v[1];
@@ -242,12 +242,12 @@ static void stream_triangles(const nt_check *check, grid *g)
 		uv_triangle uv;
 		for (uint32_t k = 0; k < 3; k++) {
 			const float *texcoord = nt_side_texcoord(s, (uint32_t)(3 * t) + k);
-			uv.u[k] = texcoord[0];
-			uv.v[k] = texcoord[1];
+			uv.u[k] = texcoord[0] + g->mesh->wrap_offset[0];
+			uv.v[k] = texcoord[1] + g->mesh->wrap_offset[1];
 		}
 		double us[2], vs[2];
-		find_tiles(uv.u, g->wrap[0], us);
-		find_tiles(uv.v, g->wrap[1], vs);
+		find_tiles(uv.u, g->mesh->wrap[0], us);
+		find_tiles(uv.v, g->mesh->wrap[1], vs);
 		for (double v = vs[0]; v <= vs[1] && g->visits < g->most_visits; v += 1.0)
 			for (double u = us[0]; u <= us[1] && g->visits < g->most_visits; u += 1.0)
 				search_tile(g, uv, u, v);
@@ -270,7 +270,7 @@ static nt_status find_covered(nt_check *check, size_t mirrored_count)
 	g->sample_count = g->visits = 0;
 	const size_t triangles = check->surface.triangle_count;
 	g->most_visits = triangles < MOST_VISITS / TRIANGLE_VISITS ? MESH_VISITS + TRIANGLE_VISITS * triangles : MOST_VISITS;
-	g->wrap = check->mesh->wrap;
+	g->mesh = check->mesh;
 	take_samples(check, g, mirrored_count, met);
 	fill_grid(g);
 	g->left = g->sample_count;

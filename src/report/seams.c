@@ -72,9 +72,9 @@ static const double HIDDEN_DEGREES = 0.45;
 static bool same_texel(const nt_check *check, const float *a, const float *b)
 {
 	for (int axis = 0; axis < 2; axis++) {
-		const nt_wrap wrap = check->mesh->wrap[axis];
-		double d = fabs(nt_wrap_coordinate(a[axis], wrap) - nt_wrap_coordinate(b[axis], wrap));
-		if (wrap == NT_WRAP_REPEAT && d > 0.5) /* 0 and 1 are neighbours */
+		const nt_mesh *mesh = check->mesh;
+		double d = fabs(nt_wrap_coordinate(mesh, axis, a[axis]) - nt_wrap_coordinate(mesh, axis, b[axis]));
+		if (mesh->wrap[axis] == NT_WRAP_REPEAT && d > 0.5) /* 0 and 1 are neighbours */
 			d = 1.0 - d;
 		if (!(d <= 1e-6 * fmax(1.0, fmax(fabs(a[axis]), fabs(b[axis])))))
 			return false;

@@ -216,15 +216,17 @@ static float stored_v_offset(const nt_check *check)
 static int stored_orientation(const nt_check *check, size_t t, float v_offset)
 {
 	const nt_surface *s = &check->surface;
-	if (v_offset == 0.0f || check->mesh->solve_texcoords)
+	const nt_mesh *mesh = check->mesh;
+	const bool exact = mesh->solve_texcoords && mesh->solve_sign;
+	if (v_offset == 0.0f || (mesh->solve_texcoords && !exact))
 		return s->orientation[t];
 	float uv[3][2];
 	for (uint32_t k = 0; k < 3; k++) {
-		const float *source = nt_side_texcoord(s, (uint32_t)(3 * t) + k);
+		const float *source = mesh->texcoords + 2 * (size_t)s->vertices[3 * t + k];
 		uv[k][0] = source[0];
 		uv[k][1] = source[1] + v_offset;
 	}
-	return nt_orientation(uv[0], uv[1], uv[2]);
+	return nt_orientation(uv[0], uv[1], uv[2]) * (exact ? mesh->solve_sign : 1);
 }
 
 static void check_sign(const nt_check *check, size_t t, int orientation, sign_tallies *st)

@@ -67,6 +67,8 @@ void nt_mesh_share(nt_mesh *mesh)
 	mesh->triangles = own.triangles;
 	mesh->reachable = own.reachable;
 	mesh->unlit = own.unlit;
+	memcpy(mesh->wrap, own.wrap, sizeof mesh->wrap);
+	memcpy(mesh->wrap_offset, own.wrap_offset, sizeof mesh->wrap_offset);
 	mesh->texcoord_set = own.texcoord_set;
 	mesh->texcoord_conflict = own.texcoord_conflict;
 	mesh->texcoord_other_set = own.texcoord_other_set;

@@ -46,11 +46,19 @@ typedef enum nt_decision {
 	NT_DECISION_COUNT
 } nt_decision;
 
+/* Where an image lies: it is sampled at scale * (u, v) + offset, v up. */
+typedef struct nt_placement {
+	bool moved;                  /* else scale counts as 1 and offset as 0 */
+	float scale[2], offset[2];   /* finite */
+	bool clamp;                  /* beyond 0 to 1 its border goes on; else it repeats */
+} nt_placement;
+
 /* A map of a material. Of a map of numbers, which it has where nothing else is said, one channel counts: with v from 0
  * to 1 the number is factor * (base + gain * v), or factor * the roughness of the exponent * (base + gain * v). */
 typedef struct nt_map {
 	const char *name;            /* of the file, as the source spells it; NULL: there is no map */
 	size_t line;                 /* where that stands in `library` */
+	nt_placement placement;
 	uint32_t wish;               /* in nt_write_options.textures, filled by the pipeline; NT_NONE: none */
 	char channel;                /* 'r', 'g', 'b', 'm' (alpha), 'l' (luminance); 0: nobody says */
 	float base, gain;            /* colours: for each channel */
@@ -149,6 +157,7 @@ typedef struct nt_mesh {
 	bool has_positions, has_normals, has_texcoords, has_tangents; /* texcoords: the set that is used */
 	uint32_t texcoord_set;   /* number of that set */
 	nt_wrap wrap[2];         /* along u and v, of the texture that tangents serve */
+	double wrap_offset[2];   /* of its transform, v up, where it is mirrored: elsewhere an offset moves all alike */
 	bool texcoord_conflict;  /* another slot of it asks for another set: texcoord_other_set */
 	uint32_t texcoord_other_set;
 	uint32_t targets_without_tangents; /* morph targets that move it and have no TANGENT */

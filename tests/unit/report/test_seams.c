@@ -258,8 +258,9 @@ static void stacked_islands_are_told_from_lone_ones(void **state)
 	hand_free(h, report);
 }
 
-/* An unmirrored triangle at u 0.1 to 0.3 and a mirrored one whose u is `offset` + `scale` u, in another place. */
-static nt_code code_of_pair(nt_wrap wrap, float offset, float scale)
+/* An unmirrored triangle at u 0.1 to 0.3 and a mirrored one whose u is `offset` + `scale` u, in another place; the
+ * texture is moved by `moved`. */
+static nt_code code_of_pair(nt_wrap wrap, double moved, float offset, float scale)
 {
 	static const float uv[3][2] = {{0.1f, 0.1f}, {0.3f, 0.1f}, {0.1f, 0.3f}};
 	hand_mesh *h = hand_new();
@@ -273,6 +274,7 @@ static nt_code code_of_pair(nt_wrap wrap, float offset, float scale)
 	else
 		hand_triangle(h, 3, 4, 5);
 	h->mesh.wrap[0] = wrap;
+	h->mesh.wrap_offset[0] = moved;
 	nt_report *report = hand_report(h, NULL);
 	assert_int_equal(report->meshes[0].triangles[0], 1);
 	const nt_code code = hand_findings(report, NT_CODE_UV_MIRROR_OVERLAP) ? NT_CODE_UV_MIRROR_OVERLAP
@@ -317,10 +319,15 @@ static void overlap_is_judged_as_the_sampler_wraps(void **state)
 		{0.5f, 1, off, off, off},
 	};
 	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-		assert_int_equal(code_of_pair(NT_WRAP_REPEAT, rows[i].offset, rows[i].scale), rows[i].repeat);
-		assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, rows[i].offset, rows[i].scale), rows[i].mirrored);
-		assert_int_equal(code_of_pair(NT_WRAP_CLAMP, rows[i].offset, rows[i].scale), rows[i].clamp);
+		assert_int_equal(code_of_pair(NT_WRAP_REPEAT, 0, rows[i].offset, rows[i].scale), rows[i].repeat);
+		assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0, rows[i].offset, rows[i].scale), rows[i].mirrored);
+		assert_int_equal(code_of_pair(NT_WRAP_CLAMP, 0, rows[i].offset, rows[i].scale), rows[i].clamp);
 	}
+	/* u + 0.25 and its mirror image 2 - (u + 0.25), which u' = 1.5 - u has */
+	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0.25, 1.5f, -1), on);
+	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0, 1.5f, -1), off);
+	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0.25, 2, -1), off);
+	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0.25, 2, 1), on);
 }
 
 static void bowtie_of_two_triangles_meets_in_a_point_only(void **state)
