@@ -27,7 +27,7 @@ typedef struct obj_reader {
 	/* Number + 1 of the distinct corner that last had a v, by the low bits of v. Valid are those of
 	 * this object that still exist. */
 	uint32_t *recent;
-	size_t object_begin;   /* distinct corners of the chunk before the object */
+	size_t object_begin;   /* distinct corners of the chunk before the object, or its last usemtl */
 } obj_reader;
 
 /* A copy of lines that may stand at the end of a file, ended and padded as chunks are; NULL: out of memory. */

@@ -13,6 +13,7 @@
 #include "base/name_table.h"
 #include "base/parallel.h"
 #include "scene/polygon.h"
+#include "scene/transform.h"
 
 enum { GRAIN = 1 << 14 }; /* rows per thread that are worth one */
 
@@ -344,17 +345,46 @@ static nt_status set_name(builder *b, nt_mesh *mesh, size_t m)
 	return NT_OK;
 }
 
-/* The slots that its materials ask for. */
-static void set_slots(const nt_scene *scene, nt_mesh *mesh)
+/* The normal map of one of its materials; NULL: none. */
+static const nt_map *normal_map_of(const nt_scene *scene, const nt_mesh *mesh, size_t primitive)
 {
-	for (size_t i = 0; i < mesh->primitive_count; i++) {
-		const uint32_t number = mesh->primitives[i].material;
-		const nt_material *material = number != NT_NONE ? &scene->materials[number] : NULL;
-		if (material && material->normal_map.name)
-			mesh->slots |= NT_SLOT_NORMAL;
-		if (material && material->anisotropy != 0)
+	const uint32_t material = mesh->primitives[primitive].material;
+	const nt_map *map = material == NT_NONE ? NULL : &scene->materials[material].normal_map;
+	return map && map->name ? map : NULL;
+}
+
+static bool has_anisotropy(const nt_scene *scene, const nt_mesh *mesh, size_t primitive)
+{
+	const uint32_t material = mesh->primitives[primitive].material;
+	return material != NT_NONE && scene->materials[material].anisotropy != 0;
+}
+
+/* What its materials ask for: slots, how normal maps are sampled. Where several differ, they are mirrored alike (see
+ * spans.c), which is all that tangents know of. */
+static nt_status set_slots(nt_scene *scene, nt_mesh *mesh, nt_error *error)
+{
+	nt_uv_transform transform = {.scale = {1, 1}};
+	bool clamps = false, repeats = false;
+	for (size_t i = 0, maps = 0; i < mesh->primitive_count; i++) {
+		const nt_map *map = normal_map_of(scene, mesh, i);
+		if (has_anisotropy(scene, mesh, i))
 			mesh->slots |= NT_SLOT_ANISOTROPY;
+		if (!map)
+			continue;
+		mesh->slots |= NT_SLOT_NORMAL;
+		clamps |= map->placement.clamp;
+		repeats |= !map->placement.clamp;
+		for (int axis = 0; axis < 2; axis++) {
+			const double scale = map->placement.moved ? map->placement.scale[axis] : 1;
+			const double common = maps ? transform.scale[axis] : scale;
+			transform.scale[axis] = scale == common ? scale : scale < 0 ? -1 : 1;
+		}
+		maps++;
 	}
+	for (int axis = 0; axis < 2; axis++)
+		mesh->wrap[axis] = clamps && !repeats ? NT_WRAP_CLAMP : NT_WRAP_REPEAT;
+	return mesh->texcoords && (transform.scale[0] != 1 || transform.scale[1] != 1)
+		? nt_mesh_transform(mesh, &transform, &scene->arena, error) : NT_OK;
 }
 
 static nt_status make_mesh(builder *b, size_t m)
@@ -376,7 +406,9 @@ static nt_status make_mesh(builder *b, size_t m)
 	const nt_status face_status = set_faces(b, mesh, m);
 	if (face_status)
 		return face_status;
-	set_slots(file->scene, mesh);
+	const nt_status slot_status = set_slots(file->scene, mesh, b->error);
+	if (slot_status)
+		return slot_status;
 	nt_instance *instance = &file->scene->instances[m];
 	*instance = (nt_instance){.mesh = (uint32_t)m};
 	for (int k = 0; k < 4; k++)

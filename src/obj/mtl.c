@@ -136,8 +136,8 @@ static nt_status read_map(const reader *r, mtl_map which)
 	nt_mtl_map_read(r->text, r->end, &read);
 	if (read.name_begin == read.name_end)
 		return NT_OK; /* "map_Kd" alone: exporters write it for "none" */
-	if (read.transformed)
-		find(r, NT_CODE_MATERIAL_LOST, "-o, -s or -t of ");
+	if (read.turbulent)
+		find(r, NT_CODE_MATERIAL_LOST, "-t of ");
 	if (read.channel == 'z') {
 		find(r, NT_CODE_MATERIAL_LOST, "-imfchan z of ");
 		read.channel = 0;
@@ -146,7 +146,7 @@ static nt_status read_map(const reader *r, mtl_map which)
 	char *word = nt_arena_text(&r->scene->arena, r->word, r->word_length);
 	if (!name || !word)
 		return nt_fail_memory(r->error);
-	r->said->maps[which].map = (nt_map){.name = name, .line = r->line, .channel = read.channel, .base = read.base,
+	r->said->maps[which].map = (nt_map){.name = name, .line = r->line, .placement = read.placement, .channel = read.channel, .base = read.base,
 		.gain = read.gain};
 	r->said->maps[which].word = word;
 	r->said->maps[which].scale = read.bump_scale;

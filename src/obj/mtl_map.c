@@ -7,17 +7,21 @@
 
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 #include "ext/number.h"
+
+/* What becomes of an option's arguments. */
+enum use { NOTHING, BUMP_SCALE, CHANNEL, CLAMP, OFFSET, RANGE, SCALE, TURBULENCE };
 
 static const struct {
 	const char *name;
 	int least, most; /* arguments */
-	bool transforms;
+	enum use use;
 } options[] = {
-	{"-blendu", 1, 1, false}, {"-blendv", 1, 1, false}, {"-boost", 1, 1, false}, {"-bm", 1, 1, false},
-	{"-cc", 1, 1, false}, {"-clamp", 1, 1, false}, {"-colorspace", 1, 1, false},
-	{"-imfchan", 1, 1, false}, {"-mm", 2, 2, false}, {"-o", 1, 3, true}, {"-s", 1, 3, true},
-	{"-t", 1, 3, true}, {"-texres", 1, 1, false}, {"-type", 1, 1, false},
+	{"-blendu", 1, 1, NOTHING}, {"-blendv", 1, 1, NOTHING}, {"-boost", 1, 1, NOTHING}, {"-bm", 1, 1, BUMP_SCALE},
+	{"-cc", 1, 1, NOTHING}, {"-clamp", 1, 1, CLAMP}, {"-colorspace", 1, 1, NOTHING},
+	{"-imfchan", 1, 1, CHANNEL}, {"-mm", 2, 2, RANGE}, {"-o", 1, 3, OFFSET}, {"-s", 1, 3, SCALE},
+	{"-t", 1, 3, TURBULENCE}, {"-texres", 1, 1, NOTHING}, {"-type", 1, 1, NOTHING},
 };
 enum { OPTION_COUNT = sizeof options / sizeof options[0] };
 
@@ -51,13 +55,27 @@ static size_t find_option(word w)
 	return i;
 }
 
-/* A number that is argument `i` of an option. */
-static void take_number(size_t option, int i, float value, nt_mtl_map *map)
+/* Argument i of an option is this number. A third one is of textures with depth, which images are not. */
+static void use_number(enum use use, int i, float value, nt_mtl_map *map)
 {
-	if (strcmp(options[option].name, "-bm") == 0)
+	nt_placement *p = &map->placement;
+	if (use == BUMP_SCALE)
 		map->bump_scale = value;
-	else if (strcmp(options[option].name, "-mm") == 0)
+	if (use == RANGE)
 		*(i ? &map->gain : &map->base) = value;
+	if (use == TURBULENCE)
+		map->turbulent = map->turbulent || value != 0;
+	if ((use != SCALE && use != OFFSET) || i == 2)
+		return;
+	if (!p->moved)
+		p->scale[0] = p->scale[1] = 1;
+	p->moved = true;
+	(use == SCALE ? p->scale : p->offset)[i] = value;
+}
+
+static bool is_word(word w, const char *text)
+{
+	return strlen(text) == (size_t)(w.end - w.begin) && strncasecmp(w.begin, text, strlen(text)) == 0;
 }
 
 /* Takes an option's arguments. Those beyond the least have to be numbers and must leave a word, which
@@ -72,13 +90,14 @@ static const char *take_arguments(size_t option, const char *p, const char *end,
 		if (i >= options[option].least && (!number || behind.begin == behind.end))
 			break;
 		if (number)
-			take_number(option, i, value, map);
-		else if (strcmp(options[option].name, "-imfchan") == 0 && argument.end - argument.begin == 1 &&
+			use_number(options[option].use, i, value, map);
+		else if (options[option].use == CLAMP)
+			map->placement.clamp = is_word(argument, "on");
+		else if (options[option].use == CHANNEL && argument.end - argument.begin == 1 &&
 			strchr("rgbmlz", *argument.begin))
 			map->channel = *argument.begin;
 		p = argument.end;
 	}
-	map->transformed = map->transformed || options[option].transforms;
 	return p;
 }
 
@@ -111,6 +130,8 @@ void nt_mtl_map_read(const char *text, const char *end, nt_mtl_map *map)
 	map->name_begin = w.begin;
 	map->name_end = end;
 	take_trailing_scale(map);
+	nt_placement *p = &map->placement;
+	p->moved = p->moved && (p->scale[0] != 1 || p->scale[1] != 1 || p->offset[0] != 0 || p->offset[1] != 0);
 }
 
 char *nt_mtl_map_name(nt_arena *arena, const nt_mtl_map *map)

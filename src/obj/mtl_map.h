@@ -6,15 +6,15 @@
 #ifndef NT_OBJ_MTL_MAP_H
 #define NT_OBJ_MTL_MAP_H
 
-#include <stdbool.h>
-#include "base/memory.h"
+#include "scene/scene.h"
 
 typedef struct nt_mtl_map {
 	const char *name_begin, *name_end; /* the file name in the text; equal: there is none */
 	float bump_scale;                  /* -bm, 1 where there is none */
 	char channel;                      /* -imfchan: r, g, b, m, l or z; 0: none */
 	float base, gain;                  /* -mm; 0 and 1 where there is none */
-	bool transformed;                  /* -o, -s or -t move the texture: not carried over */
+	nt_placement placement;            /* -s, -o, -clamp */
+	bool turbulent;                    /* -t distorts the texture: not carried over */
 } nt_mtl_map;
 
 static inline bool is_blank(char c)

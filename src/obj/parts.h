@@ -22,7 +22,7 @@ typedef struct obj_corner {
 
 typedef enum obj_event_kind {
 	OBJ_EVENT_OBJECT,    /* o */
-	OBJ_EVENT_MATERIAL,  /* usemtl */
+	OBJ_EVENT_MATERIAL,  /* usemtl: a mesh begins here, too, where its normal map is mirrored in another way */
 	OBJ_EVENT_SMOOTHING, /* s */
 	OBJ_EVENT_LIBRARY    /* mtllib */
 } obj_event_kind;
@@ -152,7 +152,7 @@ static inline const obj_chunk *obj_find_row(const obj_file *file, int kind, uint
 }
 
 typedef struct obj_span {
-	size_t face; /* the first one; the span ends where the next begins */
+	size_t face, corner; /* the first ones; the span ends where the next begins */
 	uint32_t material;
 	uint32_t smoothing;
 } obj_span;

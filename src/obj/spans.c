@@ -96,7 +96,7 @@ static bool end_stretch(state *s, size_t face, size_t corner)
 			!nt_grow((void **)&file->spans, &file->span_capacity, file->span_count + 1,
 				sizeof *file->spans))
 			return false;
-		file->spans[file->span_count++] = (obj_span){s->face, material, s->smoothing};
+		file->spans[file->span_count++] = (obj_span){s->face, s->corner, material, s->smoothing};
 	}
 	s->face = face;
 	s->corner = corner;
@@ -124,6 +124,14 @@ static bool read_event(state *s, const obj_chunk *chunk, const obj_event *event)
 	return true;
 }
 
+/* The last one ends with the file. */
+static void end_meshes(obj_file *file)
+{
+	file->mesh_faces[file->mesh_count] = file->face_count;
+	file->mesh_corners[file->mesh_count] = file->corner_count;
+	file->mesh_vertices[file->mesh_count] = 0;
+}
+
 static bool read_stretches(state *s)
 {
 	obj_file *file = s->file;
@@ -135,9 +143,7 @@ static bool read_stretches(state *s)
 				return false;
 	if (!end_stretch(s, file->face_count, file->corner_count))
 		return false;
-	file->mesh_faces[file->mesh_count] = file->face_count;
-	file->mesh_corners[file->mesh_count] = file->corner_count;
-	file->mesh_vertices[file->mesh_count] = 0;
+	end_meshes(file);
 	return true;
 }
 
@@ -223,6 +229,56 @@ static nt_status make_materials(state *s, const nt_mtl *mtl)
 	return NT_OK;
 }
 
+/* ---- objects whose materials lie on them in different ways ---- */
+
+/* How a material's normal map is mirrored, as bits for u and v: tangents follow it as it is sampled. */
+static unsigned mirrored_axes(const nt_scene *scene, uint32_t material)
+{
+	const nt_map *map = material == NT_NONE ? NULL : &scene->materials[material].normal_map;
+	return !map || !map->name || !map->placement.moved ? 0
+		: (map->placement.scale[0] < 0 ? 1u : 0) | (map->placement.scale[1] < 0 ? 2u : 0);
+}
+
+/* A mesh has one sign for all of its faces, so that it ends where the mirroring changes. Tangents have nothing in common
+ * there: they point the opposite way along u, or have the other w. */
+static nt_status divide_meshes(state *s)
+{
+	obj_file *file = s->file;
+	const obj_file before = *file;
+	bool divides = false;
+	for (size_t i = 1; i < file->span_count && !divides; i++)
+		divides = mirrored_axes(file->scene, file->spans[i].material) !=
+			mirrored_axes(file->scene, file->spans[i - 1].material);
+	if (!divides)
+		return NT_OK;
+	file->mesh_objects = NULL;
+	file->mesh_lines = file->mesh_faces = file->mesh_corners = file->mesh_vertices = NULL;
+	file->mesh_count = s->mesh_capacity = 0;
+	size_t mesh = 0; /* the next one, as it was */
+	bool done = true;
+	for (size_t i = 0; i < file->span_count && done; i++) {
+		const obj_span *span = &file->spans[i];
+		const bool begins = mesh < before.mesh_count && before.mesh_faces[mesh] == span->face;
+		if (begins) {
+			s->object = before.mesh_objects[mesh];
+			s->object_line = before.mesh_lines[mesh++];
+		}
+		if (!begins && mirrored_axes(file->scene, span->material) == mirrored_axes(file->scene, span[-1].material))
+			continue;
+		s->face = span->face;
+		s->corner = span->corner;
+		done = begin_mesh(s);
+	}
+	if (done)
+		end_meshes(file);
+	free(before.mesh_objects);
+	free(before.mesh_lines);
+	free(before.mesh_faces);
+	free(before.mesh_corners);
+	free(before.mesh_vertices);
+	return done ? NT_OK : nt_fail_memory(s->error);
+}
+
 /* ---- what was ignored ---- */
 
 /* The first chunk that has a statement of that kind, NULL for none, and how often the file has it. */
@@ -285,6 +341,8 @@ nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_err
 		status = read_libraries(&s, options, &mtl);
 	if (!status)
 		status = make_materials(&s, &mtl);
+	if (!status)
+		status = divide_meshes(&s);
 	if (!status)
 		report_ignored(file);
 	nt_mtl_free(&mtl);

@@ -150,7 +150,7 @@ static nt_status store_event(obj_reader *r, obj_event event)
 	event.line = r->statement_line;
 	event.face = chunk->face_count;
 	event.corner = chunk->corner_count;
-	if (event.kind == OBJ_EVENT_OBJECT)
+	if (event.kind == OBJ_EVENT_OBJECT || event.kind == OBJ_EVENT_MATERIAL)
 		r->object_begin = chunk->distinct_count;
 	chunk->events[chunk->event_count++] = event;
 	return NT_OK;

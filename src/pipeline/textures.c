@@ -36,7 +36,8 @@ static size_t list_maps(nt_material *m, const nt_settings *settings, wished_map 
 {
 	const double height = settings->bump_height > 0 ? settings->bump_height : default_bump_height;
 	const bool ignored = m->bump && settings->bump == NT_BUMP_IGNORE;
-	const nt_texture_wish normals = {kind_of_normal_map(m, settings->bump), height * m->normal_scale, false};
+	const nt_texture_wish normals = {kind_of_normal_map(m, settings->bump), height * m->normal_scale,
+		m->normal_map.placement.clamp};
 	const wished_map all[MOST_MAPS] = {{&m->base_color_map, {0}}, {&m->emissive_map, {0}}, {&m->normal_map, normals}};
 	size_t count = 0;
 	for (size_t i = 0; i < MOST_MAPS; i++)

@@ -27,7 +27,8 @@ make_images() {
 	local write="python3 $ROOT/tests/support/images.py write"
 	$write a.tga 4 4 '(x, y, 3)' && $write b.tif 4 4 '(x, y, 4)' && $write c.png 4 4 'x * y' &&
 		cp "$ROOT/data/grey.jpg" d.jpg || return 1
-	printf '%s\n' "newmtl a" "map_Kd a.tga" "map_Ke b.tif" "norm c.png" "newmtl b" "bump d.jpg" >images.mtl
+	printf '%s\n' "newmtl a" "map_Kd a.tga" "map_Ke -clamp on b.tif" "norm c.png" "newmtl b" \
+		"bump -s -1 1 -clamp on d.jpg" >images.mtl
 	printf '%s\n' "mtllib images.mtl" "v 0 0 0" "v 1 0 0" "v 0 1 0" "vt 0 0" "vt 1 0" "vt 0 1" "usemtl a" \
 		"f 1/1 2/2 3/3" "usemtl b" "f 3/3 2/2 1/1" >images.obj
 }

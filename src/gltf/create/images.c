@@ -5,6 +5,8 @@
  */
 #include "gltf/create/images.h"
 
+#include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include "file/relative_path.h"
@@ -15,9 +17,10 @@
 typedef struct image_entry {
 	const nt_texture *image;
 	bool used, embedded;
+	bool wants[2];       /* a texture that repeats, one that is clamped */
 	uint64_t offset;     /* in the buffer, where it is embedded */
 	const nt_sink *file; /* of the output; NULL: none */
-	uint32_t texture;
+	uint32_t textures[2]; /* repeating and clamped; NT_MODEL_NONE: nobody wants it */
 } image_entry;
 
 struct nt_image_set {
@@ -36,7 +39,8 @@ static nt_status fill(nt_image_set *set, nt_error *error)
 	if (!set->entries)
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < set->entry_count; i++)
-		set->entries[i] = (image_entry){.image = nt_textures_at(set->options.textures, i), .texture = NT_MODEL_NONE};
+		set->entries[i] = (image_entry){.image = nt_textures_at(set->options.textures, i), 
+			.textures = {NT_MODEL_NONE, NT_MODEL_NONE}};
 	const nt_status status = nt_link_folder(&folder, set->options.path, error);
 	set->folder = folder.data;
 	if (status != NT_ERROR_MISSING)
@@ -86,10 +90,13 @@ static bool is_usable(const nt_image_set *set, const nt_texture *image)
 	       (image->found != NT_IMAGE_MISSING || set->options.images == NT_IMAGES_LINK);
 }
 
-nt_status nt_image_set_use(nt_image_set *set, uint32_t wish, nt_output *output, nt_error *error)
+nt_status nt_image_set_use(nt_image_set *set, const nt_map *map, nt_output *output, nt_error *error)
 {
-	image_entry *entry = entry_of(set, wish);
-	if (!entry || entry->used || !is_usable(set, entry->image))
+	image_entry *entry = entry_of(set, map->wish);
+	if (!entry || !is_usable(set, entry->image))
+		return NT_OK;
+	entry->wants[map->placement.clamp] = true;
+	if (entry->used)
 		return NT_OK;
 	entry->used = true;
 	return nt_output_protect(output, entry->image->path, NULL, error);
@@ -175,7 +182,10 @@ static nt_status add_entry(nt_image_set *set, image_entry *entry, nt_model *mode
 		if (!uri.failed)
 			image = nt_model_image_uri(model, title, uri.data);
 	}
-	entry->texture = nt_model_texture(model, image, nt_image_extension(entry->image->type));
+	for (int clamp = 0; clamp < 2; clamp++)
+		if (entry->wants[clamp])
+			entry->textures[clamp] =
+				nt_model_texture(model, image, clamp, nt_image_extension(entry->image->type));
 	const bool failed = uri.failed || !title;
 	nt_buffer_free(&uri);
 	free(title);
@@ -211,10 +221,19 @@ nt_status nt_image_set_add(nt_image_set *set, nt_model *model, uint64_t *buffer_
 	return status;
 }
 
-uint32_t nt_image_set_texture(const nt_image_set *set, uint32_t wish)
+nt_model_use nt_image_set_texture(const nt_image_set *set, const nt_map *map)
 {
-	const image_entry *entry = entry_of(set, wish);
-	return entry ? entry->texture : NT_MODEL_NONE;
+	const image_entry *entry = entry_of(set, map->wish);
+	const nt_placement *p = &map->placement;
+	nt_model_use use = {.texture = entry ? entry->textures[p->clamp] : NT_MODEL_NONE, .moved = p->moved};
+	if (!use.moved)
+		return use;
+	use.scale[0] = p->scale[0];
+	use.scale[1] = p->scale[1];
+	use.offset[0] = p->offset[0];
+	/* glTF's v is 1 - v: it samples at 1 - (s v + o) = s (1 - v) + 1 - s - o */
+	use.offset[1] = (float)fmax(fmin(1.0 - p->scale[1] - p->offset[1], FLT_MAX), -FLT_MAX);
+	return use;
 }
 
 /* ---- writing ---- */

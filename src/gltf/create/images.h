@@ -2,14 +2,14 @@
 /*
  * The images of a new glTF document: of the results that its materials use (image/textures.h), each linked, copied or
  * embedded. An image that was made is a file of nobody yet, so where others are linked it is written beside the
- * output. An image that several materials use is one image and one texture.
+ * output. An image that several materials use is one image, and a texture for each of its samplers.
  */
 #ifndef NT_GLTF_CREATE_IMAGES_H
 #define NT_GLTF_CREATE_IMAGES_H
 
 #include "file/output.h"
 #include "gltf/create/model.h"
-#include "scene/format.h"
+#include "scene/scene.h"
 
 typedef struct nt_image_set nt_image_set;
 
@@ -20,17 +20,17 @@ nt_status nt_image_set_create(nt_image_set **set, const nt_write_options *option
 /* NULL is allowed. */
 void nt_image_set_free(nt_image_set *set);
 
-/* Says that the document uses the image that a wish led to, and protects its file from the output. NT_NONE and images
- * without result are passed over. Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_image_set_use(nt_image_set *set, uint32_t wish, nt_output *output, nt_error *error);
+/* Says that the document uses the image that a map's wish led to, and protects its file from the output. NT_NONE and
+ * images without result are passed over. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_image_set_use(nt_image_set *set, const nt_map *map, nt_output *output, nt_error *error);
 
 /* Adds what is used to the document: images and textures. Images that are embedded get their place at *buffer_size and
  * move it on. Others that need a file of their own are written. After all uses, once. */
 nt_status nt_image_set_add(nt_image_set *set, nt_model *model, uint64_t *buffer_size,
 	nt_output *output, nt_error *error);
 
-/* The document's texture for a wish; NT_MODEL_NONE: none. */
-uint32_t nt_image_set_texture(const nt_image_set *set, uint32_t wish);
+/* The document's texture for a map, and where it lies. */
+nt_model_use nt_image_set_texture(const nt_image_set *set, const nt_map *map);
 
 /* The number of the first embedded image from `from` on, in the order of their places; UINT32_MAX: there is none. */
 uint32_t nt_image_set_embedded(const nt_image_set *set, uint32_t from);

@@ -10,7 +10,7 @@ nt_status nt_new_material_use(const nt_material *material, nt_image_set *images,
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < NT_MATERIAL_MAPS && !status; i++)
-		status = nt_image_set_use(images, material->maps[i].wish, output, error);
+		status = nt_image_set_use(images, &material->maps[i], output, error);
 	return status;
 }
 
@@ -19,22 +19,22 @@ static float clamp01(float value)
 	return value > 0 ? (value < 1 ? value : 1) : 0;
 }
 
-static uint32_t texture_of(const nt_image_set *images, const nt_map *map)
+static nt_model_use texture_of(const nt_image_set *images, const nt_map *map)
 {
-	return images && map->name ? nt_image_set_texture(images, map->wish) : NT_MODEL_NONE;
+	return images && map->name ? nt_image_set_texture(images, map) : (nt_model_use){.texture = NT_MODEL_NONE};
 }
 
 /* A number, and the texture of its map. */
-static float factor_of(const nt_image_set *images, const nt_map *map, float otherwise, uint32_t *texture)
+static float factor_of(const nt_image_set *images, const nt_map *map, float otherwise, nt_model_use *texture)
 {
 	*texture = texture_of(images, map);
-	return clamp01(*texture == NT_MODEL_NONE ? otherwise : map->factor);
+	return clamp01(texture->texture == NT_MODEL_NONE ? otherwise : map->factor);
 }
 
 /* Colours, beside a texture none that would hide it. */
-static void take_color(const float *from, uint32_t texture, float most, float *to)
+static void take_color(const float *from, const nt_model_use *texture, float most, float *to)
 {
-	const bool hides = texture != NT_MODEL_NONE && from[0] == 0 && from[1] == 0 && from[2] == 0;
+	const bool hides = texture->texture != NT_MODEL_NONE && from[0] == 0 && from[1] == 0 && from[2] == 0;
 	for (int i = 0; i < 3; i++)
 		to[i] = hides ? 1 : from[i] < most ? from[i] : most;
 }
@@ -54,13 +54,13 @@ uint32_t nt_new_material_add(const nt_material *from, const nt_image_set *images
 		.occlusion_texture = texture_of(images, &from->occlusion_map),
 		.base_color = {0, 0, 0, clamp01(from->base_color[3])},
 	};
-	take_color(from->base_color, m.base_color_texture, 1, m.base_color);
-	take_color(from->emissive, m.emissive_texture, INFINITY, m.emissive);
+	take_color(from->base_color, &m.base_color_texture, 1, m.base_color);
+	take_color(from->emissive, &m.emissive_texture, INFINITY, m.emissive);
 	m.alpha_mode = m.base_color[3] < 1 ? NT_ALPHA_BLEND : NT_ALPHA_OPAQUE;
-	uint32_t metallic, roughness;
+	nt_model_use metallic, roughness;
 	m.metallic = factor_of(images, &from->metallic_map, from->metallic, &metallic);
 	m.roughness = factor_of(images, &from->roughness_map, from->roughness, &roughness);
-	m.metallic_roughness_texture = metallic != NT_MODEL_NONE ? metallic : roughness;
+	m.metallic_roughness_texture = metallic.texture != NT_MODEL_NONE ? metallic : roughness;
 	m.clearcoat = factor_of(images, &from->clearcoat_map, from->clearcoat, &m.clearcoat_texture);
 	m.clearcoat_roughness = factor_of(images, &from->clearcoat_roughness_map, from->clearcoat_roughness,
 		&m.clearcoat_roughness_texture);

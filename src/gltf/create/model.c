@@ -13,7 +13,7 @@
 #include "ext/number.h"
 
 /* The arrays, in the order in which they are written. */
-enum { ACCESSORS, VIEWS, IMAGES, MATERIALS, MESHES, NODES, ROOTS, TEXTURES, ARRAY_COUNT };
+enum { ACCESSORS, VIEWS, IMAGES, MATERIALS, MESHES, NODES, SAMPLERS, ROOTS, TEXTURES, ARRAY_COUNT };
 
 enum { MOST_EXTENSIONS = 16 };
 
@@ -152,14 +152,6 @@ static void put_floats(nt_buffer *out, const char *key, const float *values, int
 	put_text(out, "]");
 }
 
-static void put_texture(nt_buffer *out, const char *key, uint32_t texture)
-{
-	if (texture == NT_MODEL_NONE)
-		return;
-	put_key(out, key);
-	nt_buffer_format(out, "{\"index\":%u}", texture);
-}
-
 static void add_name(nt_model *model, name_list *list, const char *name)
 {
 	for (size_t i = 0; i < list->count; i++)
@@ -169,6 +161,30 @@ static void add_name(nt_model *model, name_list *list, const char *name)
 		model->misused = true;
 	else
 		list->names[list->count++] = name;
+}
+
+/* A textureInfo, which the caller ends. */
+static void begin_texture(nt_model *model, nt_buffer *out, const char *key, const nt_model_use *use)
+{
+	static const char transform[] = "KHR_texture_transform";
+	put_key(out, key);
+	put_text(out, "{");
+	if (use->moved) {
+		add_name(model, &model->used, transform);
+		nt_buffer_format(out, "\"extensions\":{\"%s\":{", transform);
+		put_floats(out, "offset", use->offset, 2);
+		put_floats(out, "scale", use->scale, 2);
+		put_text(out, "}}");
+	}
+	put_index(out, "index", use->texture);
+}
+
+static void put_texture(nt_model *model, nt_buffer *out, const char *key, const nt_model_use *use)
+{
+	if (use->texture == NT_MODEL_NONE)
+		return;
+	begin_texture(model, out, key, use);
+	put_text(out, "}");
 }
 
 /* ---- additions ---- */
@@ -252,17 +268,27 @@ uint32_t nt_model_image_view(nt_model *model, const char *name, uint32_t view, c
 	return number;
 }
 
-uint32_t nt_model_texture(nt_model *model, uint32_t image, const char *extension)
+/* The only sampler that is needed: what repeats has none. */
+static uint32_t clamping_sampler(nt_model *model)
+{
+	uint32_t number = 0;
+	if (!model->counts[SAMPLERS])
+		nt_buffer_format(begin_object(model, SAMPLERS, &number), "\"wrapS\":%d,\"wrapT\":%d}",
+			NT_GLTF_CLAMP_TO_EDGE, NT_GLTF_CLAMP_TO_EDGE);
+	return number;
+}
+
+uint32_t nt_model_texture(nt_model *model, uint32_t image, bool clamp, const char *extension)
 {
 	uint32_t number;
 	nt_buffer *out = begin_object(model, TEXTURES, &number);
 	if (extension) {
-		nt_buffer_format(out, "\"extensions\":{\"%s\":{\"source\":%u}}}", extension, image);
+		nt_buffer_format(out, "\"extensions\":{\"%s\":{\"source\":%u}}", extension, image);
 		nt_model_require(model, extension);
-	} else {
-		put_index(out, "source", image);
-		put_text(out, "}");
 	}
+	put_index(out, "sampler", clamp ? clamping_sampler(model) : NT_MODEL_NONE);
+	put_index(out, "source", extension ? NT_MODEL_NONE : image);
+	put_text(out, "}");
 	return number;
 }
 
@@ -279,23 +305,23 @@ static float put_emissive(nt_buffer *out, const float emissive[3])
 	return largest;
 }
 
-static void put_reflection(nt_buffer *out, const nt_model_material *m)
+static void put_reflection(nt_model *model, nt_buffer *out, const nt_model_material *m)
 {
 	const float *color = m->base_color;
 	const bool white = color[0] == 1 && color[1] == 1 && color[2] == 1 && color[3] == 1;
-	if (white && m->base_color_texture == NT_MODEL_NONE && m->metallic_roughness_texture == NT_MODEL_NONE &&
+	if (white && m->base_color_texture.texture == NT_MODEL_NONE && m->metallic_roughness_texture.texture == NT_MODEL_NONE &&
 		m->metallic == 1 && m->roughness == 1)
 		return;
 	put_key(out, "pbrMetallicRoughness");
 	put_text(out, "{");
 	if (!white)
 		put_floats(out, "baseColorFactor", color, 4);
-	put_texture(out, "baseColorTexture", m->base_color_texture);
+	put_texture(model, out, "baseColorTexture", &m->base_color_texture);
 	if (m->metallic != 1) {
 		put_key(out, "metallicFactor");
 		put_float(out, m->metallic);
 	}
-	put_texture(out, "metallicRoughnessTexture", m->metallic_roughness_texture);
+	put_texture(model, out, "metallicRoughnessTexture", &m->metallic_roughness_texture);
 	if (m->roughness != 1) {
 		put_key(out, "roughnessFactor");
 		put_float(out, m->roughness);
@@ -303,12 +329,11 @@ static void put_reflection(nt_buffer *out, const nt_model_material *m)
 	put_text(out, "}");
 }
 
-static void put_normal_texture(nt_buffer *out, const nt_model_material *m)
+static void put_normal_texture(nt_model *model, nt_buffer *out, const nt_model_material *m)
 {
-	if (m->normal_texture == NT_MODEL_NONE)
+	if (m->normal_texture.texture == NT_MODEL_NONE)
 		return;
-	put_key(out, "normalTexture");
-	nt_buffer_format(out, "{\"index\":%u", m->normal_texture);
+	begin_texture(model, out, "normalTexture", &m->normal_texture);
 	if (m->normal_scale != 1) {
 		put_key(out, "scale");
 		put_float(out, m->normal_scale);
@@ -346,8 +371,8 @@ static void put_material_extensions(nt_model *model, nt_buffer *out, const nt_mo
 		begin_extension(model, out, "KHR_materials_clearcoat");
 		put_factor(out, "clearcoatFactor", m->clearcoat, 0);
 		put_factor(out, "clearcoatRoughnessFactor", m->clearcoat_roughness, 0);
-		put_texture(out, "clearcoatRoughnessTexture", m->clearcoat_roughness_texture);
-		put_texture(out, "clearcoatTexture", m->clearcoat_texture);
+		put_texture(model, out, "clearcoatRoughnessTexture", &m->clearcoat_roughness_texture);
+		put_texture(model, out, "clearcoatTexture", &m->clearcoat_texture);
 	}
 	if (strength != 1) {
 		begin_extension(model, out, "KHR_materials_emissive_strength");
@@ -360,7 +385,7 @@ static void put_material_extensions(nt_model *model, nt_buffer *out, const nt_mo
 	if (m->sheen != 0) {
 		begin_extension(model, out, "KHR_materials_sheen");
 		put_floats(out, "sheenColorFactor", (const float[]){m->sheen, m->sheen, m->sheen}, 3);
-		put_texture(out, "sheenColorTexture", m->sheen_texture);
+		put_texture(model, out, "sheenColorTexture", &m->sheen_texture);
 		put_factor(out, "sheenRoughnessFactor", m->sheen_roughness, 0);
 	}
 }
@@ -376,7 +401,7 @@ uint32_t nt_model_add_material(nt_model *model, const nt_model_material *materia
 		put_string(out, modes[material->alpha_mode]);
 	}
 	const float strength = put_emissive(out, material->emissive);
-	put_texture(out, "emissiveTexture", material->emissive_texture);
+	put_texture(model, out, "emissiveTexture", &material->emissive_texture);
 	put_material_extensions(model, &extensions, material, strength);
 	if (extensions.size) {
 		put_key(out, "extensions");
@@ -384,9 +409,9 @@ uint32_t nt_model_add_material(nt_model *model, const nt_model_material *materia
 		put_text(out, "}}");
 	}
 	put_name(out, material->name);
-	put_normal_texture(out, material);
-	put_texture(out, "occlusionTexture", material->occlusion_texture);
-	put_reflection(out, material);
+	put_normal_texture(model, out, material);
+	put_texture(model, out, "occlusionTexture", &material->occlusion_texture);
+	put_reflection(model, out, material);
 	put_text(out, "}");
 	out->failed |= extensions.failed;
 	nt_buffer_free(&extensions);
@@ -536,6 +561,7 @@ nt_status nt_model_json(nt_model *model, uint64_t buffer_length, nt_model_buffer
 	add_array(text, model, MATERIALS, ",\"materials\":[", "]");
 	add_array(text, model, MESHES, ",\"meshes\":[", "]");
 	add_array(text, model, NODES, ",\"nodes\":[", "]");
+	add_array(text, model, SAMPLERS, ",\"samplers\":[", "]");
 	add_array(text, model, ROOTS, ",\"scene\":0,\"scenes\":[{\"nodes\":[", "]}]");
 	add_array(text, model, TEXTURES, ",\"textures\":[", "]");
 	add_piece(text, own->data + extensions, cut - extensions);

@@ -43,9 +43,17 @@ uint32_t nt_model_add_accessor(nt_model *model, const nt_model_accessor *accesso
 uint32_t nt_model_image_uri(nt_model *model, const char *name, const char *uri);
 uint32_t nt_model_image_view(nt_model *model, const char *name, uint32_t view, const char *media_type);
 
-/* A texture of an image. extension: NULL, or the one through which the image is referred to and that the
- * document then requires: "KHR_texture_basisu" or "EXT_texture_webp"; the text stays. */
-uint32_t nt_model_texture(nt_model *model, uint32_t image, const char *extension);
+/* A texture of an image. clamp: with a sampler that goes on with the border, else the image repeats. extension: NULL,
+ * or the one through which the image is referred to and that the document then requires: "KHR_texture_basisu" or
+ * "EXT_texture_webp"; the text stays. */
+uint32_t nt_model_texture(nt_model *model, uint32_t image, bool clamp, const char *extension);
+
+/* How a material uses a texture. */
+typedef struct nt_model_use {
+	uint32_t texture; /* or NT_MODEL_NONE */
+	bool moved;       /* KHR_texture_transform: sampled at scale * uv + offset, v down */
+	float scale[2], offset[2];
+} nt_model_use;
 
 typedef enum nt_alpha_mode { NT_ALPHA_OPAQUE, NT_ALPHA_MASK, NT_ALPHA_BLEND } nt_alpha_mode;
 
@@ -61,8 +69,8 @@ typedef struct nt_model_material {
 	float sheen, sheen_roughness;         /* of white; 0: without KHR_materials_sheen */
 	float anisotropy, anisotropy_rotation; /* 0: without KHR_materials_anisotropy */
 	float ior;                            /* 0: without KHR_materials_ior */
-	uint32_t base_color_texture, emissive_texture, normal_texture, metallic_roughness_texture, occlusion_texture;
-	uint32_t clearcoat_texture, clearcoat_roughness_texture, sheen_texture;
+	nt_model_use base_color_texture, emissive_texture, normal_texture, metallic_roughness_texture, occlusion_texture;
+	nt_model_use clearcoat_texture, clearcoat_roughness_texture, sheen_texture;
 } nt_model_material;
 uint32_t nt_model_add_material(nt_model *model, const nt_model_material *material);
 

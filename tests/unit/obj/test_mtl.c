@@ -135,18 +135,19 @@ static void map_options_are_skipped_by_their_arguments(void **state)
 	static const struct {
 		const char *text, *name;
 		float scale;
-		bool transformed;
+		bool turbulent;
 	} cases[] = {
 		{"a.png", "a.png", 1, false},
 		{"a file.png", "a file.png", 1, false},
 		{"-bm 0.5 a.png", "a.png", 0.5f, false},
 		{"a b.png -bm 0.25", "a b.png", 0.25f, false},
 		{"-clamp on -blendu off -blendv on -mm 0 1 -texres 512 -boost 2 -imfchan r a.png", "a.png", 1, false},
-		{"-o 1 a.png", "a.png", 1, true},
-		{"-s 1 2 3 a.png", "a.png", 1, true},
+		{"-o 1 a.png", "a.png", 1, false},
+		{"-s 1 2 3 a.png", "a.png", 1, false},
 		{"-t 0.5 0.5 a.png", "a.png", 1, true},
-		{"-s 1 2 3 4.png", "4.png", 1, true},
-		{"-s 1 2 3", "3", 1, true},
+		{"-t 0 0 0 a.png", "a.png", 1, false},
+		{"-s 1 2 3 4.png", "4.png", 1, false},
+		{"-s 1 2 3", "3", 1, false},
 		{"-type sphere -cc on a.png", "a.png", 1, false},
 		{"-unknown.png", "-unknown.png", 1, false},
 		{"C:\\maps\\a.png", "C:/maps/a.png", 1, false},
@@ -164,8 +165,43 @@ static void map_options_are_skipped_by_their_arguments(void **state)
 		nt_mtl_map_read(cases[i].text, cases[i].text + strlen(cases[i].text), &map);
 		assert_string_equal(nt_mtl_map_name(&arena, &map), cases[i].name);
 		assert_true(map.bump_scale == cases[i].scale);
-		assert_int_equal(map.transformed, cases[i].transformed);
+		assert_int_equal(map.turbulent, cases[i].turbulent);
 		nt_arena_free(&arena);
+	}
+}
+
+static void placements_are_read(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *text;
+		nt_placement placement;
+	} cases[] = {
+		{"a.png", {0}},
+		{"-s 2 3 a.png", {true, {2, 3}, {0, 0}, false}},
+		{"-s 2 a.png", {true, {2, 1}, {0, 0}, false}}, /* what is not said is 1, or 0 */
+		{"-s 1 -2 0 a.png", {true, {1, -2}, {0, 0}, false}},
+		{"-o 0.5 a.png", {true, {1, 1}, {0.5f, 0}, false}},
+		{"-o 0.5 0.25 9 -s -1 1 1 a.png", {true, {-1, 1}, {0.5f, 0.25f}, false}},
+		{"-s 2 2 -s 3 3 a.png", {true, {3, 3}, {0, 0}, false}}, /* the last one counts */
+		{"-s 1 1 1 -o 0 0 0 a.png", {false, {1, 1}, {0, 0}, false}}, /* exporters write it */
+		{"-o 0 0 1 a.png", {0}}, /* only a texture with depth would notice */
+		{"-s inf 1 a.png", {0}},
+		{"-clamp on a.png", {.clamp = true}},
+		{"-clamp ON a.png", {.clamp = true}},
+		{"-clamp on -clamp off a.png", {0}},
+		{"-clamp a.png", {0}},
+	};
+	for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+		const nt_placement *expected = &cases[i].placement;
+		nt_mtl_map map;
+		nt_mtl_map_read(cases[i].text, cases[i].text + strlen(cases[i].text), &map);
+		assert_int_equal(map.placement.moved, expected->moved);
+		assert_int_equal(map.placement.clamp, expected->clamp);
+		for (int axis = 0; axis < 2 && expected->moved; axis++) {
+			assert_true(map.placement.scale[axis] == expected->scale[axis]);
+			assert_true(map.placement.offset[axis] == expected->offset[axis]);
+		}
 	}
 }
 
@@ -173,14 +209,14 @@ static void lost_statements_are_findings(void **state)
 {
 	(void)state;
 	reading r;
-	parse(&r, "Kd 1 1 1\nnewmtl a\ndecal r.png\ndecal r.png\nrubbish\nmap_Kd -s 2 2 a.png\n");
+	parse(&r, "Kd 1 1 1\nnewmtl a\ndecal r.png\ndecal r.png\nrubbish\nmap_Kd -s 2 2 -t 2 2 a.png\n");
 	assert_int_equal(r.status, NT_OK);
 	assert_int_equal(r.scene.findings.count, 4);
 	const struct {
 		const char *detail;
 		size_t line, count;
 	} expected[] = {{"MTL: Kd", 1, 1}, {"MTL: decal", 3, 2}, {"MTL: rubbish", 5, 1},
-		{"MTL: -o, -s or -t of map_Kd", 6, 1}};
+		{"MTL: -t of map_Kd", 6, 1}};
 	for (int i = 0; i < 4; i++) {
 		assert_string_equal(r.scene.findings.items[i].detail, expected[i].detail);
 		assert_string_equal(r.scene.findings.items[i].place.file, "lib/a.mtl");
@@ -351,6 +387,7 @@ int main(void)
 		cmocka_unit_test(other_spellings_of_values),
 		cmocka_unit_test(bump_is_kept_apart_and_yields_to_normal_maps),
 		cmocka_unit_test(map_options_are_skipped_by_their_arguments),
+		cmocka_unit_test(placements_are_read),
 		cmocka_unit_test(lost_statements_are_findings),
 		cmocka_unit_test(damaged_numbers_are_named),
 		cmocka_unit_test(every_prefix_is_survived),

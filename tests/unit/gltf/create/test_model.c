@@ -2,10 +2,11 @@
 #include "gltf/create/model.h"
 #include "test.h"
 
+static const nt_model_use none = {.texture = NT_MODEL_NONE};
+
 #define NO_TEXTURES \
-	.base_color_texture = NT_MODEL_NONE, .emissive_texture = NT_MODEL_NONE, .normal_texture = NT_MODEL_NONE, \
-	.metallic_roughness_texture = NT_MODEL_NONE, .occlusion_texture = NT_MODEL_NONE, .clearcoat_texture = NT_MODEL_NONE, \
-	.clearcoat_roughness_texture = NT_MODEL_NONE, .sheen_texture = NT_MODEL_NONE
+	.base_color_texture = none, .emissive_texture = none, .normal_texture = none, .metallic_roughness_texture = none, \
+	.occlusion_texture = none, .clearcoat_texture = none, .clearcoat_roughness_texture = none, .sheen_texture = none
 
 static nt_model *new_model(void)
 {
@@ -140,9 +141,10 @@ static void bright_emission_needs_the_extension(void **state)
 	nt_model_material material = {.base_color = {1, 1, 1, 0.5f}, .metallic = 1, .roughness = 1,
 		.emissive = {4, 2, 0}, .alpha_mode = NT_ALPHA_BLEND, .normal_scale = 0.5f, NO_TEXTURES};
 	const uint32_t image = nt_model_image_uri(model, "wood", "tex/wood%20.png");
-	material.base_color_texture = material.emissive_texture = nt_model_texture(model, image, NULL);
-	material.normal_texture = nt_model_texture(model,
-		nt_model_image_view(model, "n", 0, "image/ktx2"), "KHR_texture_basisu");
+	material.base_color_texture.texture = material.emissive_texture.texture =
+		nt_model_texture(model, image, false, NULL);
+	material.normal_texture.texture = nt_model_texture(model,
+		nt_model_image_view(model, "n", 0, "image/ktx2"), false, "KHR_texture_basisu");
 	nt_model_add_material(model, &material);
 	char *text = text_of(model, 0, NT_MODEL_CHUNK, NULL);
 	assert_non_null(strstr(text, "\"emissiveFactor\":[1.0,0.5,0.0]"));
@@ -166,9 +168,9 @@ static void layers_are_extensions(void **state)
 	nt_model_material material = {.base_color = {1, 1, 1, 1}, .metallic = 0, .roughness = 0.5f, .normal_scale = 1,
 		.alpha_mode = NT_ALPHA_MASK, .clearcoat = 0.5f, .clearcoat_roughness = 0.25f, .sheen = 0.75f,
 		.sheen_roughness = 0.5f, .anisotropy = 0.125f, .anisotropy_rotation = 1.5f, .ior = 1.25f, NO_TEXTURES};
-	material.clearcoat_texture = material.clearcoat_roughness_texture = 3;
-	material.sheen_texture = 4;
-	material.metallic_roughness_texture = material.occlusion_texture = 5;
+	material.clearcoat_texture.texture = material.clearcoat_roughness_texture.texture = 3;
+	material.sheen_texture.texture = 4;
+	material.metallic_roughness_texture.texture = material.occlusion_texture.texture = 5;
 	nt_model_add_material(model, &material);
 	nt_model_add_material(model, &material);
 	char *text = text_of(model, 0, NT_MODEL_CHUNK, NULL);
@@ -204,6 +206,30 @@ static void embedded_text_is_cut_where_the_base64_goes(void **state)
 	nt_model_free(model);
 }
 
+static void what_is_moved_or_clamped_says_so(void **state)
+{
+	(void)state;
+	nt_model *model = new_model();
+	const uint32_t image = nt_model_image_uri(model, "n", "n.png");
+	nt_model_material material = {.base_color = {1, 1, 1, 1}, .metallic = 1, .roughness = 1, .normal_scale = 0.5f,
+		NO_TEXTURES};
+	material.base_color_texture.texture = nt_model_texture(model, image, true, NULL);
+	material.normal_texture =
+		(nt_model_use){nt_model_texture(model, image, false, NULL), true, {-1, 2}, {0.25f, -3}};
+	nt_model_texture(model, image, true, "EXT_texture_webp");
+	nt_model_add_material(model, &material);
+	char *text = text_of(model, 0, NT_MODEL_CHUNK, NULL);
+	assert_non_null(strstr(text, "\"extensionsUsed\":[\"EXT_texture_webp\",\"KHR_texture_transform\"]"));
+	assert_non_null(strstr(text, "\"normalTexture\":{\"extensions\":{\"KHR_texture_transform\":{\"offset\":[0.25,-3.0],"
+		"\"scale\":[-1.0,2.0]}},\"index\":1,\"scale\":0.5}"));
+	assert_non_null(strstr(text, "\"baseColorTexture\":{\"index\":0}"));
+	assert_non_null(strstr(text, "\"samplers\":[{\"wrapS\":33071,\"wrapT\":33071}]"));
+	assert_non_null(strstr(text, "\"textures\":[{\"sampler\":0,\"source\":0},{\"source\":0},"
+		"{\"extensions\":{\"EXT_texture_webp\":{\"source\":0}},\"sampler\":0}]"));
+	free(text);
+	nt_model_free(model);
+}
+
 static void misuse_is_reported_at_the_end(void **state)
 {
 	(void)state;
@@ -226,6 +252,7 @@ int main(void)
 		cmocka_unit_test(primitives_follow_their_mesh),
 		cmocka_unit_test(bright_emission_needs_the_extension),
 		cmocka_unit_test(layers_are_extensions),
+		cmocka_unit_test(what_is_moved_or_clamped_says_so),
 		cmocka_unit_test(embedded_text_is_cut_where_the_base64_goes),
 		cmocka_unit_test(misuse_is_reported_at_the_end),
 	};
