@@ -97,7 +97,7 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	for (int axis = 0; axis < 2; axis++) {
 		mesh->wrap[axis] = shading.wrap[axis];
 		mesh->wrap_offset[axis] =
-			shading.wrap[axis] == NT_WRAP_MIRRORED ? shading.transform.uv.offset[axis] : 0;
+			shading.wrap[axis] == NT_WRAP_MIRRORED ? (float)shading.transform.uv.offset[axis] : 0;
 	}
 	mesh->texcoord_set = options->texcoord_set >= 0 ? (uint32_t)options->texcoord_set : shading.set;
 	mesh->texcoord_conflict = shading.conflict && options->texcoord_set < 0;

@@ -242,8 +242,8 @@ static void stream_triangles(const nt_check *check, grid *g)
 		uv_triangle uv;
 		for (uint32_t k = 0; k < 3; k++) {
 			const float *texcoord = nt_side_texcoord(s, (uint32_t)(3 * t) + k);
-			uv.u[k] = texcoord[0] + g->mesh->wrap_offset[0];
-			uv.v[k] = texcoord[1] + g->mesh->wrap_offset[1];
+			uv.u[k] = (double)texcoord[0] + g->mesh->wrap_offset[0];
+			uv.v[k] = (double)texcoord[1] + g->mesh->wrap_offset[1];
 		}
 		double us[2], vs[2];
 		find_tiles(uv.u, g->mesh->wrap[0], us);

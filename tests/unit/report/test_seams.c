@@ -260,7 +260,7 @@ static void stacked_islands_are_told_from_lone_ones(void **state)
 
 /* An unmirrored triangle at u 0.1 to 0.3 and a mirrored one whose u is `offset` + `scale` u, in another place; the
  * texture is moved by `moved`. */
-static nt_code code_of_pair(nt_wrap wrap, double moved, float offset, float scale)
+static nt_code code_of_pair(nt_wrap wrap, float moved, float offset, float scale)
 {
 	static const float uv[3][2] = {{0.1f, 0.1f}, {0.3f, 0.1f}, {0.1f, 0.3f}};
 	hand_mesh *h = hand_new();
@@ -324,10 +324,10 @@ static void overlap_is_judged_as_the_sampler_wraps(void **state)
 		assert_int_equal(code_of_pair(NT_WRAP_CLAMP, 0, rows[i].offset, rows[i].scale), rows[i].clamp);
 	}
 	/* u + 0.25 and its mirror image 2 - (u + 0.25), which u' = 1.5 - u has */
-	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0.25, 1.5f, -1), on);
+	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0.25f, 1.5f, -1), on);
 	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0, 1.5f, -1), off);
-	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0.25, 2, -1), off);
-	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0.25, 2, 1), on);
+	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0.25f, 2, -1), off);
+	assert_int_equal(code_of_pair(NT_WRAP_MIRRORED, 0.25f, 2, 1), on);
 }
 
 static void bowtie_of_two_triangles_meets_in_a_point_only(void **state)
