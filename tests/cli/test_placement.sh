@@ -81,7 +81,7 @@ scene "-t has no place in a glTF, which is said; nothing of it is no turbulence"
 quad "norm -t 0 0 0 n.png" "map_Kd -t 1 0 0 n.png"
 run quad.obj quad.glb
 exits 0
-says "m.mtl:3: warning: 1 property of a material is not carried over: MTL: -t of map_Kd"
+says "m.mtl:3: material \"m\": warning: 1 property of a material is not carried over: MTL: -t of map_Kd"
 is "$(wc -l <"$WORK/err.txt")" 2
 
 # Two squares of one object, with their own materials.
