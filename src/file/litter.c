@@ -9,6 +9,8 @@
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <stdio.h>
+#include <string.h>
 #include <sys/stat.h>
 #include <sys/vfs.h>
 #include <unistd.h>
@@ -55,7 +57,12 @@ static bool is_first_look(const struct stat *status)
 
 void nt_litter_clean(const char *path)
 {
+	/* mostly that of the file before: not asked for again, which over a network would cost as much as a file */
+	static _Thread_local char latest[256];
 	struct stat status;
+	if (strcmp(path, latest) == 0)
+		return;
+	snprintf(latest, sizeof latest, "%s", path);
 	if (stat(path, &status) != 0 || !is_first_look(&status))
 		return;
 	DIR *folder = opendir(path);

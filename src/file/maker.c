@@ -10,6 +10,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -89,13 +90,23 @@ static void name_of_host(char host[MOST_HOST + 1])
 	host[count] = '\0';
 }
 
+/* It takes eight calls of the system to ask, and a process is the same for all its files; a child of fork() is not. */
 void nt_maker_text(char text[NT_MAKER_TEXT])
 {
+	static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+	static char known[NT_MAKER_TEXT];
+	static pid_t known_pid;
 	char host[MOST_HOST + 1], boot[BOOT_DIGITS + 1];
-	name_of_host(host);
-	boot_of_kernel(boot);
-	snprintf(text, NT_MAKER_TEXT, "%s-%s-%llu-%ld-%llu", host, boot, space_of_numbers(), (long)getpid(),
-		start_of("self"));
+	pthread_mutex_lock(&lock);
+	if (known_pid != getpid()) {
+		name_of_host(host);
+		boot_of_kernel(boot);
+		known_pid = getpid();
+		snprintf(known, sizeof known, "%s-%s-%llu-%ld-%llu", host, boot, space_of_numbers(), (long)known_pid,
+			start_of("self"));
+	}
+	memcpy(text, known, sizeof known);
+	pthread_mutex_unlock(&lock);
 }
 
 /* ---- who is gone ---- */

@@ -91,7 +91,7 @@ nt_status nt_output_check_in_place(const nt_output_options *options, const char 
 bool nt_output_is_in_place(const nt_output *output, const char *path)
 {
 	struct stat status;
-	return stat(path, &status) == 0 && is_in_place(&output->options, &status);
+	return output->options.in_place && stat(path, &status) == 0 && is_in_place(&output->options, &status);
 }
 
 void nt_output_leave(nt_output *output)
@@ -163,12 +163,17 @@ static nt_status open_temporary(nt_sink *sink, const char *beside, nt_error *err
  * not known. */
 static nt_status look_at(const char *path, struct stat *status, bool *exists, nt_error *error)
 {
-	*exists = stat(path, status) == 0;
+	struct stat link;
+	*exists = lstat(path, &link) == 0;
+	const bool is_link = *exists && S_ISLNK(link.st_mode);
+	if (*exists && !is_link)
+		*status = link;
+	if (is_link)
+		*exists = stat(path, status) == 0;
 	if (*exists)
 		return NT_OK;
 	const int number = errno;
-	struct stat link;
-	if (lstat(path, &link) == 0 && S_ISLNK(link.st_mode) && (number == ENOENT || number == ENOTDIR))
+	if (is_link && (number == ENOENT || number == ENOTDIR))
 		return refuse(error, path, "refusing to write: it is a symbolic link that leads nowhere");
 	if (number == ELOOP)
 		return refuse(error, path, "refusing to write: it is a symbolic link that leads back to itself");
@@ -347,6 +352,9 @@ static nt_status leave_equal(nt_output *output, nt_error *error)
 	if (!main || !main->temporary || choice == NT_EQUAL_REPLACE)
 		return NT_OK;
 	bool same;
+	struct stat there;
+	if (stat(main->target, &there) != 0 || (uintmax_t)there.st_size != main->size)
+		return NT_OK;
 	const nt_status status =
 		nt_same_bytes(nt_temporary_path(main->temporary), main->target, &same, error);
 	/* what may not be touched is replaced */

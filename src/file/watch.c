@@ -98,25 +98,25 @@ int nt_watch_begin(const void *map, const struct stat *status, int fd, const cha
 }
 
 /* A page that holds the end of the file reads as zeros behind it, without a signal. */
-static bool is_shortened(const watched *w)
+static bool is_shortened(const watched *w, const struct stat *info)
 {
-	struct stat info;
-	return atomic_load(&w->shortened) ||
-	       (fstat(w->fd, &info) == 0 && (uintmax_t)info.st_size < atomic_load(&w->size));
+	return atomic_load(&w->shortened) || (info && (uintmax_t)info->st_size < atomic_load(&w->size));
 }
 
 bool nt_watch_is_shortened(int watch)
 {
-	return is_shortened(&maps[watch]);
+	struct stat info;
+	return is_shortened(&maps[watch], fstat(maps[watch].fd, &info) == 0 ? &info : NULL);
 }
 
 /* What another process did to a file; NULL: nothing. */
 static const char *change_of(const watched *w)
 {
 	struct stat info;
-	if (is_shortened(w))
+	const bool known = fstat(w->fd, &info) == 0;
+	if (is_shortened(w, known ? &info : NULL))
 		return "the file became shorter while it was read";
-	const bool changed = fstat(w->fd, &info) == 0 && (info.st_mtim.tv_sec != w->modified.tv_sec ||
+	const bool changed = known && (info.st_mtim.tv_sec != w->modified.tv_sec ||
 		info.st_mtim.tv_nsec != w->modified.tv_nsec);
 	return changed ? "the file changed while it was read" : NULL;
 }

@@ -377,7 +377,9 @@ nt_status nt_gltf_write_document(nt_scene *scene, nt_buffer_edits *edits, const 
 	c.same_container = c.to_glb == document->is_glb;
 	/* Standard output has no companions. */
 	c.embed = options->embed || (!c.to_glb && strcmp(options->path, "-") == 0);
-	nt_status status = nt_gltf_link_prefix(c.arena, options->path, document->path, &c.output.link_prefix, error);
+	nt_status status = NT_OK;
+	if (has_external(document, "buffers") || has_external(document, "images"))
+		status = nt_gltf_link_prefix(c.arena, options->path, document->path, &c.output.link_prefix, error);
 	if (!status)
 		status = check_first_buffer(&c, &edits->users);
 	if (!status)
