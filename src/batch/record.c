@@ -26,11 +26,17 @@ static const int64_t fine_tick = 20 * 1000000, coarse_tick = INT64_C(2000) * 100
 
 static const char line_begin[] = "{\"output\":\"";
 
+/* An input's, an output's, and those of two companions. */
+enum { KNOWN_FOLDERS = 4 };
+
 struct nt_record {
 	nt_record_file file;
 	char *folder; /* absolute, links resolved */
 	pthread_mutex_t lock; /* of what follows */
-	char *known, *known_real; /* a folder as it was spelled last, and where it is */
+	struct {
+		char *spelled, *real;
+	} known[KNOWN_FOLDERS]; /* folders as they were spelled lately, and where they are */
+	size_t oldest;
 };
 
 /* ---- names ---- */
@@ -51,27 +57,44 @@ static nt_status find_folder(nt_buffer *folder, const char *path, nt_error *erro
 	return status;
 }
 
+/* Which of the known folders has this spelling; KNOWN_FOLDERS: none. */
+static size_t find_known(const nt_record *record, const char *path, size_t length)
+{
+	size_t i = 0;
+	while (i < KNOWN_FOLDERS && !(record->known[i].spelled && strlen(record->known[i].spelled) == length &&
+					     memcmp(record->known[i].spelled, path, length) == 0))
+		i++;
+	return i;
+}
+
+/* Looks where a folder is, and forgets another one. */
+static nt_status make_known(nt_record *record, const char *path, size_t length, size_t *found, nt_error *error)
+{
+	nt_buffer real = {0};
+	const nt_status status = find_folder(&real, path, error);
+	char *spelled = status ? NULL : strndup(path, length);
+	if (!spelled) {
+		nt_buffer_free(&real);
+		return status ? status : nt_fail_memory(error);
+	}
+	*found = record->oldest++ % KNOWN_FOLDERS;
+	free(record->known[*found].spelled);
+	free(record->known[*found].real);
+	record->known[*found].spelled = spelled;
+	record->known[*found].real = real.data;
+	return NT_OK;
+}
+
 /* Where the folder of a path is; neighbours mostly have the same. Appended. */
 static nt_status append_folder(nt_record *record, const char *path, nt_buffer *real, nt_error *error)
 {
 	const char *slash = strrchr(path, '/');
 	const size_t length = slash ? (size_t)(slash - path) + 1 : 0;
 	pthread_mutex_lock(&record->lock);
-	nt_status status = NT_OK;
-	if (!record->known || strlen(record->known) != length || memcmp(record->known, path, length) != 0) {
-		nt_buffer found = {0};
-		free(record->known);
-		free(record->known_real);
-		record->known = record->known_real = NULL;
-		status = find_folder(&found, path, error);
-		if (!status) {
-			record->known_real = found.data;
-			record->known = strndup(path, length);
-			status = record->known ? NT_OK : nt_fail_memory(error);
-		}
-	}
+	size_t at = find_known(record, path, length);
+	const nt_status status = at < KNOWN_FOLDERS ? NT_OK : make_known(record, path, length, &at, error);
 	if (!status)
-		nt_buffer_text(real, record->known_real);
+		nt_buffer_text(real, record->known[at].real);
 	pthread_mutex_unlock(&record->lock);
 	return status;
 }
@@ -395,7 +418,9 @@ void nt_record_close(nt_record *record)
 	nt_record_file_close(&record->file);
 	pthread_mutex_destroy(&record->lock);
 	free(record->folder);
-	free(record->known);
-	free(record->known_real);
+	for (size_t i = 0; i < KNOWN_FOLDERS; i++) {
+		free(record->known[i].spelled);
+		free(record->known[i].real);
+	}
 	free(record);
 }
