@@ -1,0 +1,147 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Rules as make's manual spells them; that make and Ninja read them so is tested in tests/cli/test_depfile.sh.
+ */
+#include "batch/depfile.h"
+#include "fail_alloc.h"
+#include "folder.h"
+#include "test.h"
+
+#include <stdio.h>
+#include <unistd.h>
+
+/* Works in a fresh folder. */
+static int enter(void **state)
+{
+	return make_folder(state) || chdir(in_folder(""));
+}
+
+static int leave(void **state)
+{
+	return chdir("/") || remove_folder(state);
+}
+
+/* Read in this order; NULL ends them. Another was looked for in vain. */
+static void make_trace(nt_trace *trace, const char *const *read)
+{
+	const struct stat info = {0};
+	*trace = (nt_trace){0};
+	nt_trace *outer = nt_trace_use(trace);
+	for (; *read; read++)
+		nt_trace_read(*read, &info);
+	nt_trace_missing("missing.mtl");
+	nt_trace_written("o.glb", NULL, &info);
+	nt_trace_use(outer);
+}
+
+#define READ(...) ((const char *const[]){__VA_ARGS__, NULL})
+
+/* The text of the rules of one output. */
+static void becomes(const char *output, const char *const *read, const char *expected)
+{
+	nt_depfile depfile = {0};
+	nt_trace trace;
+	nt_error error;
+	make_trace(&trace, read);
+	assert_int_equal(nt_depfile_add(&depfile, output, &trace, &error), NT_OK);
+	nt_buffer_append(&depfile.text, "", 1);
+	assert_string_equal(depfile.text.data, expected);
+	nt_depfile_free(&depfile);
+	nt_trace_free(&trace);
+}
+
+static void an_output_depends_on_what_was_read_and_that_on_nothing(void **state)
+{
+	(void)state;
+	becomes("o.glb", READ("a.obj"), "o.glb: \\\n a.obj\n");
+	becomes("o.glb", READ("a.obj", "a.mtl", "t/n.png"), "o.glb: \\\n a.obj \\\n a.mtl \\\n t/n.png\na.mtl:\nt/n.png:\n");
+}
+
+static void names_are_escaped(void **state)
+{
+	(void)state;
+	becomes("o.glb", READ("a b.obj"), "o.glb: \\\n a\\ b.obj\n");
+	becomes("o#.glb", READ("c:d.obj"), "o\\#.glb: \\\n c\\:d.obj\n");
+	becomes("$o", READ("a\\b\\ c"), "$$o: \\\n a\\b\\\\\\ c\n");
+	becomes("%o*", READ("\\"), "%o*: \\\n \\\n");
+}
+
+static void files_below_the_current_folder_are_named_as_the_output_is(void **state)
+{
+	(void)state;
+	char here[1024], inside[1100], expected[2300];
+	assert_non_null(getcwd(here, sizeof here));
+	snprintf(inside, sizeof inside, "%s/sub/a.obj", here);
+	becomes("o.glb", READ(inside, "/elsewhere/b"), "o.glb: \\\n sub/a.obj \\\n /elsewhere/b\n/elsewhere/b:\n");
+	snprintf(expected, sizeof expected, "/o.glb: \\\n %s\n", inside);
+	becomes("/o.glb", READ(inside), expected);
+}
+
+static void a_line_feed_has_no_spelling(void **state)
+{
+	(void)state;
+	nt_depfile depfile = {0};
+	nt_trace trace;
+	nt_error error;
+	make_trace(&trace, READ("a.obj", "b\n.mtl"));
+	assert_int_equal(nt_depfile_add(&depfile, "o.glb", &trace, &error), NT_ERROR_UNSUPPORTED);
+	assert_string_equal(error.place.file, "b\n.mtl");
+	nt_depfile_free(&depfile);
+	nt_trace_free(&trace);
+}
+
+static void it_is_written_whole_and_not_over_an_input(void **state)
+{
+	(void)state;
+	nt_depfile depfile = {0};
+	nt_trace trace;
+	nt_error error;
+	char text[64] = "";
+	make_trace(&trace, READ("a.obj"));
+	put_text_file("a.obj", "mesh");
+	const char *const inputs[] = {"a.obj"};
+	assert_int_equal(nt_depfile_add(&depfile, "o.glb", &trace, &error), NT_OK);
+	assert_int_equal(nt_depfile_write(&depfile, "a.obj", inputs, 1, &error), NT_ERROR_IO);
+	assert_int_equal(nt_depfile_write(&depfile, "no/d", inputs, 1, &error), NT_ERROR_IO);
+	assert_int_equal(nt_depfile_write(&depfile, "d", inputs, 1, &error), NT_OK);
+	FILE *file = fopen("d", "r");
+	assert_non_null(file);
+	assert_int_equal(fread(text, 1, sizeof text - 1, file), 16);
+	fclose(file);
+	assert_string_equal(text, "o.glb: \\\n a.obj\n");
+	assert_int_equal(count_in_folder(), 2);
+	nt_depfile_free(&depfile);
+	nt_trace_free(&trace);
+}
+
+static void an_exhausted_memory_is_told(void **state)
+{
+	(void)state;
+	nt_trace trace;
+	make_trace(&trace, READ("a.obj", "/x/a.mtl"));
+	bool failed = true;
+	for (size_t n = 0; failed; n++) {
+		nt_depfile depfile = {0};
+		nt_error error;
+		fail_allocations_from(n);
+		const nt_status status = nt_depfile_add(&depfile, "o.glb", &trace, &error);
+		failed = stop_failing_allocations();
+		assert_int_equal(status, failed ? NT_ERROR_MEMORY : NT_OK);
+		nt_depfile_free(&depfile);
+		assert_true(n < 100);
+	}
+	nt_trace_free(&trace);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(an_output_depends_on_what_was_read_and_that_on_nothing),
+		cmocka_unit_test(names_are_escaped),
+		cmocka_unit_test(files_below_the_current_folder_are_named_as_the_output_is),
+		cmocka_unit_test(a_line_feed_has_no_spelling),
+		cmocka_unit_test(it_is_written_whole_and_not_over_an_input),
+		cmocka_unit_test(an_exhausted_memory_is_told),
+	};
+	return cmocka_run_group_tests_name("batch/depfile", tests, enter, leave);
+}

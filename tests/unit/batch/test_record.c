@@ -1,0 +1,223 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What a record says of an output, and when that no longer holds, in a fresh folder that is the current one.
+ */
+#include "batch/record.h"
+#include "fail_alloc.h"
+#include "folder.h"
+#include "test.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* Works in a fresh folder. */
+static int enter(void **state)
+{
+	return make_folder(state) || chdir(in_folder(""));
+}
+
+static int leave(void **state)
+{
+	return chdir("/") || remove_folder(state);
+}
+
+/* A file that changed long before now, so that its time tells. */
+static void put_old_file(const char *name, const char *text)
+{
+	const struct timespec times[] = {{1000000000, 500}, {1000000000, 500}};
+	put_text_file(name, text);
+	assert_int_equal(utimensat(AT_FDCWD, name, times, 0), 0);
+}
+
+/* in/a.obj and a.png, without a.mtl, became out.glb. */
+static void put_files(void)
+{
+	mkdir("in", 0700);
+	unlink("in/a.mtl");
+	put_old_file("in/a.obj", "mesh");
+	put_old_file("in/a.png", "image");
+	put_old_file("out.glb", "result");
+}
+
+static nt_making making_of(nt_update_by by)
+{
+	nt_making making = {.input = "in/a.obj", .output = "out.glb", .options = "--method=area", .by = by};
+	assert_int_equal(stat(making.input, &making.input_info), 0);
+	return making;
+}
+
+static void note(nt_trace *trace)
+{
+	struct stat info;
+	nt_trace *outer = nt_trace_use(trace);
+	for (size_t i = 0; i < 3; i++) {
+		const char *name = ((const char *const[]){"in/a.obj", "in/a.png", "out.glb"})[i];
+		assert_int_equal(stat(name, &info), 0);
+		if (i < 2)
+			nt_trace_read(name, &info);
+		else
+			nt_trace_written(name, NULL, &info);
+	}
+	nt_trace_missing("in/a.mtl");
+	nt_trace_use(outer);
+}
+
+static void append(nt_update_by by)
+{
+	nt_record *record;
+	nt_trace trace = {0};
+	nt_error error;
+	unlink("record");
+	const nt_making making = making_of(by);
+	note(&trace);
+	assert_int_equal(nt_record_open(&record, "record", &error), NT_OK);
+	assert_int_equal(nt_record_append(record, &making, &trace, &error), NT_OK);
+	nt_record_close(record);
+	nt_trace_free(&trace);
+}
+
+static nt_freshness look_for(const nt_making *making, nt_trace *trace)
+{
+	nt_record *record;
+	nt_error error;
+	nt_freshness freshness;
+	assert_int_equal(nt_record_open(&record, "record", &error), NT_OK);
+	assert_int_equal(nt_record_look(record, making, &freshness, trace, &error), NT_OK);
+	nt_record_close(record);
+	return freshness;
+}
+
+static nt_freshness look(nt_update_by by)
+{
+	const nt_making making = making_of(by);
+	return look_for(&making, NULL);
+}
+
+static void an_output_is_current_while_all_is_as_it_was(void **state)
+{
+	(void)state;
+	nt_trace trace = {0};
+	put_files();
+	append(NT_UPDATE_BY_TIME);
+	nt_making making = making_of(NT_UPDATE_BY_TIME);
+	assert_int_equal(look_for(&making, &trace), NT_FRESH_CURRENT);
+	assert_int_equal(trace.count, 4);
+	assert_int_equal(trace.files[0].kind, NT_TRACE_READ);
+	assert_int_equal(trace.files[0].size, 4);
+	nt_trace_free(&trace);
+	making.output = "other.glb";
+	assert_int_equal(look_for(&making, NULL), NT_FRESH_UNKNOWN);
+	making = making_of(NT_UPDATE_BY_TIME);
+	making.options = "";
+	assert_int_equal(look_for(&making, NULL), NT_FRESH_STALE);
+}
+
+static void any_file_that_differs_makes_it_stale(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < 3; i++) {
+		const char *name = ((const char *const[]){"in/a.obj", "in/a.png", "out.glb"})[i];
+		put_files();
+		append(NT_UPDATE_BY_TIME);
+		put_old_file(name, "another size");
+		assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
+		put_files();
+		assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_CURRENT);
+		assert_int_equal(utimensat(AT_FDCWD, name, NULL, 0), 0);
+		assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
+		if (i == 0)
+			continue; /* what cannot be looked at is no input */
+		put_files();
+		assert_int_equal(unlink(name), 0);
+		assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
+	}
+	put_files();
+	append(NT_UPDATE_BY_TIME);
+	put_text_file("in/a.mtl", "it has come");
+	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
+}
+
+static void by_content_times_do_not_count(void **state)
+{
+	(void)state;
+	put_files();
+	append(NT_UPDATE_BY_CONTENT);
+	assert_int_equal(utimensat(AT_FDCWD, "in/a.png", NULL, 0), 0);
+	assert_int_equal(look(NT_UPDATE_BY_CONTENT), NT_FRESH_CURRENT);
+	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
+	put_old_file("in/a.png", "IMAGE");
+	assert_int_equal(look(NT_UPDATE_BY_CONTENT), NT_FRESH_STALE);
+	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_CURRENT);
+}
+
+static void what_changed_just_before_is_compared_by_content_too(void **state)
+{
+	(void)state;
+	struct stat info;
+	put_files();
+	put_text_file("in/a.png", "image");
+	append(NT_UPDATE_BY_TIME);
+	assert_int_equal(stat("in/a.png", &info), 0);
+	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_CURRENT);
+	put_text_file("in/a.png", "IMAGE");
+	assert_int_equal(utimensat(AT_FDCWD, "in/a.png", (const struct timespec[]){info.st_atim, info.st_mtim}, 0), 0);
+	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_STALE);
+}
+
+static void a_tree_can_be_moved_with_its_record(void **state)
+{
+	(void)state;
+	put_files();
+	append(NT_UPDATE_BY_TIME);
+	assert_int_equal(mkdir("moved", 0700), 0);
+	assert_int_equal(rename("in", "moved/in"), 0);
+	assert_int_equal(rename("out.glb", "moved/out.glb"), 0);
+	assert_int_equal(rename("record", "moved/record"), 0);
+	assert_int_equal(chdir("moved"), 0);
+	assert_int_equal(look(NT_UPDATE_BY_TIME), NT_FRESH_CURRENT);
+	assert_int_equal(chdir(".."), 0);
+}
+
+static void an_exhausted_memory_is_told(void **state)
+{
+	(void)state;
+	put_files();
+	append(NT_UPDATE_BY_TIME);
+	const nt_making making = making_of(NT_UPDATE_BY_TIME);
+	nt_trace noted = {0};
+	note(&noted);
+	bool failed = true;
+	for (size_t n = 0; failed; n++) {
+		nt_record *record = NULL;
+		nt_error error;
+		nt_freshness freshness;
+		nt_trace trace = {0};
+		fail_allocations_from(n);
+		nt_status status = nt_record_open(&record, "record", &error);
+		if (!status)
+			status = nt_record_look(record, &making, &freshness, &trace, &error);
+		if (!status)
+			status = nt_record_append(record, &making, &noted, &error);
+		failed = stop_failing_allocations();
+		assert_int_equal(status, failed ? NT_ERROR_MEMORY : NT_OK);
+		nt_trace_free(&trace);
+		nt_record_close(record);
+		assert_true(n < 300);
+	}
+	nt_trace_free(&noted);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(an_output_is_current_while_all_is_as_it_was, enter, leave),
+		cmocka_unit_test_setup_teardown(any_file_that_differs_makes_it_stale, enter, leave),
+		cmocka_unit_test_setup_teardown(by_content_times_do_not_count, enter, leave),
+		cmocka_unit_test_setup_teardown(what_changed_just_before_is_compared_by_content_too, enter, leave),
+		cmocka_unit_test_setup_teardown(a_tree_can_be_moved_with_its_record, enter, leave),
+		cmocka_unit_test_setup_teardown(an_exhausted_memory_is_told, enter, leave),
+	};
+	return cmocka_run_group_tests_name("batch/record", tests, NULL, NULL);
+}
