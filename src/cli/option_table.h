@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The shape of the option table, for the two files that read it.
+ * The table of options.
  */
 #ifndef NT_CLI_OPTION_TABLE_H
 #define NT_CLI_OPTION_TABLE_H
@@ -35,6 +35,7 @@ typedef struct nt_option_row {
 	bool writes;          /* about writing, so that --check refuses it */
 } nt_option_row;
 
+enum { NT_MOST_OPTIONS = 128 };
 extern const nt_option_row nt_option_rows[];
 extern const size_t nt_option_row_count;
 

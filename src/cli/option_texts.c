@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What is printed from the option table: --help and the completions of bash and zsh.
+ * What is said of options in words: --help, the completions of bash and zsh, and which options shape outputs.
  */
 #include "cli/option_table.h"
 #include "cli/options.h"
 
+#include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -192,4 +193,66 @@ void nt_options_zsh(nt_buffer *out)
 		zsh_spec(out, row, false);
 	}
 	nt_buffer_text(out, "\t'*:mesh:_files'\n");
+}
+
+/* ---- what shapes outputs ---- */
+
+/* The word of a choice by its number. */
+static void append_choice(nt_buffer *out, const char *values, int number)
+{
+	for (; number > 0; number--)
+		values += strcspn(values, "|") + 1;
+	nt_buffer_append(out, values, strcspn(values, "|"));
+}
+
+static void append_shaping(nt_buffer *out, const nt_option_row *row, const void *field)
+{
+	nt_buffer_format(out, "%s--%s", out->size ? " " : "", row->name);
+	if (row->kind == NT_OPTION_CHOICE) {
+		nt_buffer_text(out, "=");
+		append_choice(out, row->values, *(const int *)field - row->first);
+	} else if (row->kind == NT_OPTION_TEXT) {
+		nt_buffer_format(out, "=%s", *(const char *const *)field);
+	} else if (row->kind == NT_OPTION_LIST) {
+		const nt_words *words = field;
+		for (size_t i = 0; i < words->count; i++)
+			nt_buffer_format(out, "%s%s=%s", i ? " --" : "", i ? row->name : "", words->items[i]);
+	} else if (row->kind == NT_OPTION_SIZE) {
+		nt_buffer_format(out, "=%" PRIu64, *(const uint64_t *)field);
+	} else if (row->kind != NT_OPTION_FLAG) {
+		nt_buffer_format(out, "=%d", *(const int *)field);
+	}
+}
+
+/* How many bytes of the command a row's value takes. */
+static size_t field_bytes(const nt_option_row *row)
+{
+	return row->kind == NT_OPTION_FLAG ? sizeof(bool) : row->kind == NT_OPTION_TEXT ? sizeof(char *) :
+	       row->kind == NT_OPTION_LIST ? sizeof(nt_words) : row->kind == NT_OPTION_SIZE ? sizeof(uint64_t) : sizeof(int);
+}
+
+/* Options about the output that change when and how it is written, but not what. */
+static bool is_about_writing(const nt_option_row *row)
+{
+	static const char *const names[] = {"output", "in-place", "no-clobber", "sync", "verify", "dry-run"};
+	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+		if (strcmp(row->name, names[i]) == 0)
+			return true;
+	return false;
+}
+
+void nt_options_shaping(const nt_command *command, nt_buffer *out)
+{
+	nt_command defaults;
+	bool shapes = false;
+	nt_options_defaults(&defaults);
+	for (size_t i = 0; i < nt_option_row_count; i++) {
+		const nt_option_row *row = &nt_option_rows[i];
+		const char *field = (const char *)command + row->offset;
+		if (row->kind == NT_OPTION_HEADING)
+			shapes = row->first == NT_SHAPES_OUTPUT;
+		else if (shapes && !is_about_writing(row) &&
+			 memcmp(field, (const char *)&defaults + row->offset, field_bytes(row)) != 0)
+			append_shaping(out, row, field);
+	}
 }

@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Options: see options.h. The table comes first, then what reads it: the parser here, --help and the
- * completions in option_texts.c.
+ * The parser of the command line: see options.h. The options are in option_table.c.
  *
  * No option takes an optional value, names are not abbreviated, and a number is a whole word of digits:
  * what is not understood is refused with the word that was wrong, because a tool that guesses turns a
@@ -15,197 +14,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define FIELD(name)   offsetof(nt_command, name)
-#define SETTING(name) offsetof(nt_command, settings.name)
-
-/* Enumerations are stored through int; the words of a choice are in the order of its constants. */
-_Static_assert(sizeof(nt_only) == sizeof(int) && sizeof(nmtan_method) == sizeof(int), "enum is int");
-_Static_assert(NMTAN_METHOD_ROBUST == NMTAN_METHOD_MIKKTSPACE + 3, "the words of --method");
-
-const nt_option_row nt_option_rows[] = {
-	{.kind = NT_OPTION_HEADING, .name = "Which primitives, and how", .first = NT_SHAPES_OUTPUT},
-	{"only", 0, NT_OPTION_CHOICE, "auto|needed|all", NT_ONLY_AUTO, 0, "auto",
-		"auto: glTF where a material needs tangents, OBJ and PLY wherever there are texture "
-		"coordinates; needed: by the materials alone; all: wherever possible",
-		SETTING(only), false},
-	{"existing", 0, NT_OPTION_CHOICE, "keep|repair|replace", NT_EXISTING_KEEP, 0, "keep",
-		"what happens to tangents that the input has", SETTING(existing), false},
-	{"method", 0, NT_OPTION_CHOICE, "mikktspace|area|lengyel|robust", NMTAN_METHOD_MIKKTSPACE, 0,
-		"mikktspace", "how triangles are averaged", SETTING(method), false},
-	{"repair", 0, NT_OPTION_CHOICE, "on|off", NMTAN_REPAIR_ON, 0, "on",
-		"replace results that no renderer can use", SETTING(repair), false},
-	{"normals", 0, NT_OPTION_CHOICE, "auto|flat|smooth|replace-flat|replace-smooth", NT_NORMALS_AUTO, 0, "auto",
-		"how normals are made where they are missing; auto: OBJ by its smoothing groups, PLY "
-		"smooth, glTF not at all; replace-: also where the input has some",
-		SETTING(normals), false},
-	{"across", 0, NT_OPTION_CHOICE, "primitive|mesh", NT_ACROSS_PRIMITIVE, 0, "primitive",
-		"glTF: each primitive is solved by itself, or those of a mesh that share texture coordinates as "
-		"one, as bakers do",
-		SETTING(across), false},
-	{"uv", 0, NT_OPTION_AUTO_NUMBER, "auto|N", 0, 999, "auto",
-		"which set of texture coordinates; auto: the one the material asks for",
-		SETTING(texcoord_set), false},
-	{"allow-outside", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
-		"let the input refer to files outside its folder", SETTING(allow_outside), false},
-
-	{.kind = NT_OPTION_HEADING, .name = "Many inputs"},
-	{"directory", 'd', NT_OPTION_TEXT, "DIR", 0, 0, NULL,
-		"write each input into DIR under its own name", FIELD(directory), true},
-	{"mirror", 0, NT_OPTION_TEXT, "ROOT", 0, 0, NULL,
-		"with -d: keep the folders that inputs are in, from ROOT on", FIELD(mirror), true},
-	{"files-from", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
-		"read names of further inputs from FILE, one a line; - is standard input", FIELD(files_from), false},
-	{"files0-from", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL, "the same, with a NUL after each name",
-		FIELD(files0_from), false},
-	{"recursive", 'r', NT_OPTION_FLAG, NULL, 0, 0, NULL,
-		"a folder stands for the meshes in it and below, by the endings of their names", FIELD(recursive), false},
-	{"include", 0, NT_OPTION_LIST, "GLOB", 0, 0, NULL,
-		"with -r: only files that match GLOB, or one of several", FIELD(include), false},
-	{"exclude", 0, NT_OPTION_LIST, "GLOB", 0, 0, NULL,
-		"with -r: no files and folders that match GLOB", FIELD(exclude), false},
-	{"fail-fast", 0, NT_OPTION_SET, NULL, 1, 0, NULL, "begin with no further input after one has failed",
-		FIELD(fail_fast), false},
-	{"keep-going", 0, NT_OPTION_SET, NULL, 0, 0, NULL, "try every input; so it is by default",
-		FIELD(fail_fast), false},
-	{"jobs", 0, NT_OPTION_NUMBER, "N", 0, 1024, "0",
-		"how many inputs at a time, which share the threads; 0: as many as threads", FIELD(jobs), false},
-	{"memory", 0, NT_OPTION_SIZE, "SIZE", 0, 0, "0",
-		"begin with an input when what it may need is left of SIZE (64M, 2G); a larger one runs alone; 0: half of what "
-		"is available",
-		FIELD(memory), false},
-
-	{.kind = NT_OPTION_HEADING, .name = "Only what is needed"},
-	{"update", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
-		"leave alone what is up to date with its input, all files that belong to it, the options and nmtan",
-		FIELD(update), true},
-	{"update-by", 0, NT_OPTION_CHOICE, "time|content", NT_UPDATE_BY_TIME, 0, "time",
-		"time: files with the size and time of change that they had are the same; content: with the bytes",
-		FIELD(update_by), true},
-	{"record", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
-		"note in FILE what outputs are made of; without this, --update does so in .nmtan-record beside them",
-		FIELD(record), true},
-	{"write-if-changed", 0, NT_OPTION_SET, NULL, NT_EQUAL_KEEP, 0, NULL,
-		"an output that has its bytes already keeps its time of change", SETTING(equal), true},
-	{"depfile", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
-		"write to FILE, as a rule of make, which files an output was made of", FIELD(depfile), true},
-
-	{.kind = NT_OPTION_HEADING, .name = "Output", .first = NT_SHAPES_OUTPUT},
-	{"output", 'o', NT_OPTION_TEXT, "FILE", 0, 0, NULL, "the output, in place of a second name", FIELD(output),
-		true},
-	{"output-format", 0, NT_OPTION_CHOICE, "ply|gltf|glb", NT_FORMAT_PLY, 0, "by name",
-		"format of the output", SETTING(output_format), true},
-	{"in-place", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
-		"replace each input by its output; with -d: outputs may replace inputs",
-		SETTING(in_place), true},
-	{"embed", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, ".gltf: buffers inside, as data URIs",
-		SETTING(embed), true},
-	{"buffers", 0, NT_OPTION_CHOICE, "link|copy|embed", NT_BUFFERS_LINK, 0,
-		"embed for .glb from .gltf, else link",
-		"glTF from glTF: what becomes of .bin files that nothing changed; embed: as --embed",
-		SETTING(buffers), true},
-	{"images", 0, NT_OPTION_CHOICE, "link|embed|copy|none", NT_IMAGES_LINK, 0,
-		"link for .gltf, embed for .glb", "how the output comes by its images", SETTING(images),
-		true},
-	{"textures", 0, NT_OPTION_CHOICE, "auto|keep|png", NT_TEXTURES_AUTO, 0, "auto",
-		"images of an OBJ; auto: what glTF does not carry becomes PNG; keep: it is left out; png: all that can be "
-		"decoded becomes PNG",
-		SETTING(textures), true},
-	{"texture-path", 0, NT_OPTION_LIST, "DIR", 0, 0, NULL,
-		"where images of an OBJ are looked for, too; may be given several times", FIELD(texture_paths), true},
-	{"bump", 0, NT_OPTION_CHOICE, "auto|height|normal|ignore", NT_BUMP_AUTO, 0, "auto",
-		"what map_Bump and bump name; auto: a height map where all pixels are grey, else a normal map; height: made a "
-		"normal map; ignore: left out",
-		SETTING(bump), false},
-	{"bump-height", 0, NT_OPTION_TEXT, "SHARE", 0, 0, "1/64",
-		"how far white is above black in a height map, as a share of its width; times -bm", FIELD(bump_height), true},
-	{"flip-green", 0, NT_OPTION_CHOICE, "off|auto|on", NT_FLIP_OFF, 0, "off",
-		"normal maps of an OBJ whose green points down are turned to glTF's convention; auto: where that is certain; on: "
-		"all",
-		SETTING(flip_green), true},
-	{"draco", 0, NT_OPTION_CHOICE, "keep|off|sequential|edgebreaker", NT_DRACO_KEEP, 0, "keep",
-		"glTF primitives that get tangents; keep: compressed ones are compressed again; off: "
-		"written plain; sequential, edgebreaker: plain ones are compressed too",
-		SETTING(draco), true},
-	{"draco-bits", 0, NT_OPTION_TEXT, "POS,NRM,UV,TAN", 0, 0, "14,12,12,12",
-		"quantization of what was not quantized before; tangents get 12 bits or more",
-		FIELD(draco_bits), true},
-	{"morph", 0, NT_OPTION_CHOICE, "bake|keep|drop", NT_MORPH_BAKE, 0, "bake",
-		"glTF morph targets of primitives that get tangents: compute their TANGENT, leave it as "
-		"it is, or take it away", SETTING(morphs), true},
-	{"precision", 0, NT_OPTION_CHOICE, "float|short|byte", NT_PRECISION_FLOAT, 0, "float",
-		"how glTF stores tangents; short and byte need KHR_mesh_quantization", SETTING(precision),
-		true},
-	{"bitangents", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
-		"write bitangents too: bx by bz in PLY, _BITANGENT in glTF", SETTING(bitangents), true},
-	{"no-clobber", 'n', NT_OPTION_FLAG, NULL, 0, 0, NULL, "never replace a file",
-		SETTING(no_clobber), true},
-	{"sync", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "fsync files and folders, so that a power cut leaves the old or the new output",
-		SETTING(sync), true},
-	{"verify", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
-		"read a glTF output back with tinygltf before it takes its name", SETTING(verify), true},
-	{"dry-run", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "do everything but write", SETTING(dry_run),
-		true},
-
-	{.kind = NT_OPTION_HEADING, .name = "Judging"},
-	{"check", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "read and judge, write no mesh", SETTING(check),
-		false},
-	{"as", 0, NT_OPTION_CHOICE, "ply|gltf|glb", NT_FORMAT_PLY, 0, "ply for PLY, glb for OBJ and Draco",
-		"with --check: judge what converting to this format would write; glTF is judged as it is without",
-		SETTING(as), false},
-	{"diff", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
-		"with --check OLD NEW: what changed in tangents, seams and findings; what is new decides the exit code",
-		FIELD(diff), false},
-	{"check-maps", 0, NT_OPTION_CHOICE, "auto|on|off", NT_CHECK_MAPS_AUTO, 0, "auto",
-		"decode normal maps and examine them; auto: for a report, files of at most 16 MB", SETTING(check_maps), false},
-	{"fail-on", 0, NT_OPTION_CHOICE, "error|warning|info|never", NT_FAIL_ON_ERROR, 0,
-		"error with --check, else never", "exit with 6 on findings of this severity or above",
-		FIELD(fail_on), false},
-	{"report", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
-		"write a report of what was found to FILE; - is standard output", FIELD(report), false},
-	{"report-format", 0, NT_OPTION_CHOICE,
-		"text|json|sarif|junit|csv|markdown|html", 1, 0,
-		"by name", "format of the report", FIELD(report_format), false},
-	{"ignore", 0, NT_OPTION_TEXT, "CODE,...", 0, 0, NULL, "findings that are not reported",
-		FIELD(ignore), false},
-	{"severity", 0, NT_OPTION_TEXT, "CODE=LEVEL,...", 0, 0, NULL,
-		"findings that count as error, warning or info", FIELD(severity), false},
-	{"baseline", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
-		"an earlier JSON report: only what it does not have counts", FIELD(baseline), false},
-	{"max-issues", 0, NT_OPTION_NUMBER, "N", 0, 1000000000, "0",
-		"how many findings of a file are reported; 0: all", FIELD(max_issues), false},
-	{"uv-image", 0, NT_OPTION_TEXT, "DIR", 0, 0, NULL,
-		"draw the UV layout of each mesh to DIR/NAME-MESH.svg", FIELD(uv_image), false},
-	{"list-codes", 0, NT_OPTION_SET, NULL, NT_ACTION_LIST_CODES, 0, NULL,
-		"print what can be found, and end", FIELD(action), false},
-
-	{.kind = NT_OPTION_HEADING, .name = "The run"},
-	{"threads", 'j', NT_OPTION_NUMBER, "N", 0, 1024, "0", "how many threads; 0: all processors",
-		SETTING(threads), false},
-	{"quiet", 'q', NT_OPTION_SET, NULL, -1, 0, NULL, "say nothing but errors", FIELD(verbosity),
-		false},
-	{"verbose", 'v', NT_OPTION_SET, NULL, 1, 0, NULL,
-		"show every finding, and what became of each mesh", FIELD(verbosity), false},
-	{"progress", 0, NT_OPTION_CHOICE, "auto|on|off", NT_PROGRESS_AUTO, 0, "auto",
-		"show what is being done; auto: on a terminal, after one second", FIELD(progress), false},
-	{"manifest", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
-		"write a JSON line to FILE for each input when it ends; - is standard output", FIELD(manifest), false},
-	{"timing", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "say how long each stage took", FIELD(timing),
-		false},
-	{"version", 0, NT_OPTION_SET, NULL, NT_ACTION_VERSION, 0, NULL, "print the version and end",
-		FIELD(action), false},
-	{"help", 'h', NT_OPTION_SET, NULL, NT_ACTION_HELP, 0, NULL, "print this text and end",
-		FIELD(action), false},
-	/* Hidden: for the Makefile. */
-	{"completion", 0, NT_OPTION_CHOICE, "bash|zsh", NT_ACTION_COMPLETION_BASH, 0, NULL, NULL,
-		FIELD(action), false},
-};
-const size_t nt_option_row_count = sizeof nt_option_rows / sizeof *nt_option_rows;
-
 /* What the parser remembers: which rows were given. */
 typedef struct parser {
 	nt_command *command;
 	nt_error *error;
-	bool given[sizeof nt_option_rows / sizeof *nt_option_rows];
+	bool given[NT_MOST_OPTIONS];
 } parser;
 
 static bool takes_value(const nt_option_row *row)
@@ -633,77 +446,17 @@ static nt_status check_dashes(const parser *p)
 	return NT_OK;
 }
 
-static void set_defaults(nt_command *command)
+void nt_options_defaults(nt_command *command)
 {
 	memset(command, 0, sizeof *command);
 	command->settings.texcoord_set = -1;
 	command->fail_on = NT_FAIL_ON_NEVER;
 }
 
-/* The word of a choice by its number. */
-static void append_choice(nt_buffer *out, const char *values, int number)
-{
-	for (; number > 0; number--)
-		values += strcspn(values, "|") + 1;
-	nt_buffer_append(out, values, strcspn(values, "|"));
-}
-
-static void append_shaping(nt_buffer *out, const nt_option_row *row, const void *field)
-{
-	nt_buffer_format(out, "%s--%s", out->size ? " " : "", row->name);
-	if (row->kind == NT_OPTION_CHOICE) {
-		nt_buffer_text(out, "=");
-		append_choice(out, row->values, *(const int *)field - row->first);
-	} else if (row->kind == NT_OPTION_TEXT) {
-		nt_buffer_format(out, "=%s", *(const char *const *)field);
-	} else if (row->kind == NT_OPTION_LIST) {
-		const nt_words *words = field;
-		for (size_t i = 0; i < words->count; i++)
-			nt_buffer_format(out, "%s%s=%s", i ? " --" : "", i ? row->name : "", words->items[i]);
-	} else if (row->kind == NT_OPTION_SIZE) {
-		nt_buffer_format(out, "=%" PRIu64, *(const uint64_t *)field);
-	} else if (row->kind != NT_OPTION_FLAG) {
-		nt_buffer_format(out, "=%d", *(const int *)field);
-	}
-}
-
-/* How many bytes of the command a row's value takes. */
-static size_t field_bytes(const nt_option_row *row)
-{
-	return row->kind == NT_OPTION_FLAG ? sizeof(bool) : row->kind == NT_OPTION_TEXT ? sizeof(char *) :
-	       row->kind == NT_OPTION_LIST ? sizeof(nt_words) : row->kind == NT_OPTION_SIZE ? sizeof(uint64_t) : sizeof(int);
-}
-
-/* Options about the output that change when and how it is written, but not what. */
-static bool is_about_writing(const nt_option_row *row)
-{
-	static const char *const names[] = {"output", "in-place", "no-clobber", "sync", "verify", "dry-run"};
-	for (size_t i = 0; i < sizeof names / sizeof *names; i++)
-		if (strcmp(row->name, names[i]) == 0)
-			return true;
-	return false;
-}
-
-void nt_options_shaping(const nt_command *command, nt_buffer *out)
-{
-	nt_command defaults;
-	bool shapes = false;
-	set_defaults(&defaults);
-	for (size_t i = 0; i < nt_option_row_count; i++) {
-		const nt_option_row *row = &nt_option_rows[i];
-		const char *field = (const char *)command + row->offset;
-		if (row->kind == NT_OPTION_HEADING)
-			shapes = row->first == NT_SHAPES_OUTPUT;
-		else if (shapes && !is_about_writing(row) &&
-			 memcmp(field, (const char *)&defaults + row->offset, field_bytes(row)) != 0)
-			append_shaping(out, row, field);
-	}
-}
-
 nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error *error)
 {
 	parser p = {.command = command, .error = error};
-	set_defaults(command);
+	nt_options_defaults(command);
 
 	/* Operands move to the front, behind the program's name, in their order. */
 	int kept = argc > 0 ? 1 : 0;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * The options of the command line: one table, from which the parser, --help and the completions come.
- * A new option is a new row of `rows` in options.c and, where it is not one of the pipeline's settings,
+ * A new option is a new row in option_table.c and, where it is not one of the pipeline's settings,
  * a field of nt_command.
  */
 #ifndef NT_CLI_OPTIONS_H
@@ -70,6 +70,9 @@ typedef struct nt_command {
 	const char **operands; /* in argv, which is reordered for it */
 	size_t operand_count;
 } nt_command;
+
+/* What a command line without words means. */
+void nt_options_defaults(nt_command *command);
 
 /*
  * Reads the words of a command line.
