@@ -10,17 +10,11 @@
 
 static void read_row(const nt_pixels *p, uint32_t y, float *row)
 {
-	const unsigned colors = p->channels < 3 ? 1 : 3;
-	const size_t begin = (size_t)y * p->width * p->channels;
-	const uint8_t *narrow = (const uint8_t *)p->samples + begin;
-	const uint16_t *wide = (const uint16_t *)p->samples + begin;
-	const float scale = 1.0f / (float)(colors * ((1u << p->bits) - 1));
-	for (size_t x = 0; x < p->width; x++) {
-		unsigned sum = 0;
-		for (unsigned c = 0; c < colors; c++)
-			sum += p->bits == 8 ? narrow[x * p->channels + c] : wide[x * p->channels + c];
-		row[x] = (float)sum * scale;
-	}
+	const size_t begin = (size_t)y * p->width;
+	const float scale = 1.0f / (float)((1u << p->bits) - 1);
+	for (size_t x = 0; x < p->width; x++)
+		row[x] = scale * (float)(p->bits == 8 ? ((const uint8_t *)p->samples)[begin + x]
+						      : ((const uint16_t *)p->samples)[begin + x]);
 }
 
 /* The row or column that is sampled one beyond `last`, or one before 0. */

@@ -15,8 +15,7 @@
  *
  * which is exact for planes and paraboloids. Pixels are square.
  *
- *   heights  any image; of a coloured one the mean of red, green and blue counts; values are taken as they are, not as
- *            sRGB
+ *   heights  of one channel, which is taken as it is, not as sRGB
  *   height   of white over black, as a share of the image's width; finite, also 0 or negative
  *   clamp    beyond a border its own pixels go on; else the opposite border's follow, as repeating samplers do
  *   normals  receives RGB of the same size and bits

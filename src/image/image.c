@@ -39,8 +39,9 @@ nt_status nt_image_decode(const unsigned char *bytes, size_t size, nt_pixels *pi
 	return decode_rows(bytes, size, UINT32_MAX, pixels, error);
 }
 
-static bool is_grey(const nt_pixels *pixels, int tolerance)
+bool nt_pixels_are_grey(const nt_pixels *pixels, nt_image_type type)
 {
+	const int tolerance = type == NT_IMAGE_JPEG ? JPEG_CHROMA : 0;
 	const size_t count = (size_t)pixels->width * pixels->height, step = pixels->channels;
 	if (step < 3)
 		return true;
@@ -57,14 +58,14 @@ static bool is_grey(const nt_pixels *pixels, int tolerance)
 
 nt_status nt_image_is_grey(const unsigned char *bytes, size_t size, bool *grey, nt_error *error)
 {
-	const bool jpeg = nt_image_type_of_bytes(bytes, size) == NT_IMAGE_JPEG;
+	const nt_image_type type = nt_image_type_of_bytes(bytes, size);
 	const uint32_t rows[] = {SAMPLE_ROWS, UINT32_MAX};
 	nt_status status = NT_OK;
 	*grey = true;
 	for (size_t i = 0; i < 2 && !status && *grey; i++) {
 		nt_pixels pixels;
 		status = decode_rows(bytes, size, rows[i], &pixels, error);
-		*grey = !status && is_grey(&pixels, jpeg ? JPEG_CHROMA : 0);
+		*grey = !status && nt_pixels_are_grey(&pixels, type);
 		const bool known = pixels.channels < 3;
 		nt_pixels_free(&pixels);
 		if (known)

@@ -29,7 +29,10 @@ bool nt_image_is_decoded(nt_image_type type);
  */
 nt_status nt_image_decode(const unsigned char *bytes, size_t size, nt_pixels *pixels, nt_error *error);
 
-/* Whether every pixel is grey, or nearly so in a JPEG, whose chroma is rounded; only as many rows are decoded as it takes
+/* Whether every pixel is grey, or nearly so in a JPEG, whose chroma is rounded. */
+bool nt_pixels_are_grey(const nt_pixels *pixels, nt_image_type type);
+
+/* The same of a file; only as many rows are decoded as it takes
  * to see that one is not, where the format permits. The same statuses. */
 nt_status nt_image_is_grey(const unsigned char *bytes, size_t size, bool *grey, nt_error *error);
 

@@ -15,41 +15,29 @@
 #include "base/name_table.h"
 #include "base/parallel.h"
 #include "file/relative_path.h"
-#include "image/examine.h"
-#include "image/heights.h"
 
 typedef struct source {
+	nt_texture_source file;
 	char *path;
-	nt_image_found found;
-	nt_image_type type;
-	nt_file identity;
 	bool in_question; /* somebody wants to know whether it is grey */
 	bool grey;
 	nt_error error;   /* of looking whether it is grey */
 } source;
 
+/* In the recipe stand the sources; whether it is one for heights is said by the kind. */
 typedef struct wish {
-	uint32_t source;
-	nt_texture_wish what;
+	nt_texture_kind kind;
+	nt_recipe how;
 	uint32_t result;
 } wish;
 
-/* How a result comes from its source. */
-typedef struct recipe {
-	uint32_t source;
-	bool png;      /* glTF does not carry the file, or PNG is wanted */
-	nt_flip flip;  /* OFF with heights */
-	bool heights;
-	double height; /* these two only with heights */
-	bool clamp;
-} recipe;
-
 typedef struct result {
-	recipe how;
+	nt_recipe how;
 	nt_texture texture;
 	unsigned char *bytes;
 	char *name;
 	nt_error error;
+	uint32_t same; /* an earlier result that is the same file; UINT32_MAX: none */
 } result;
 
 struct nt_textures {
@@ -57,7 +45,7 @@ struct nt_textures {
 	nt_name_table names; /* document and name, which lead to a source */
 	uint32_t *name_sources;
 	size_t name_capacity;
-	source *sources;
+	source **sources;
 	size_t source_count, source_capacity;
 	wish *wishes;
 	size_t wish_count, wish_capacity;
@@ -76,8 +64,10 @@ void nt_textures_free(nt_textures *t)
 {
 	if (!t)
 		return;
-	for (size_t i = 0; i < t->source_count; i++)
-		free(t->sources[i].path);
+	for (size_t i = 0; i < t->source_count; i++) {
+		free(t->sources[i]->path);
+		free(t->sources[i]);
+	}
 	for (size_t i = 0; i < t->result_count; i++) {
 		free(t->results[i].bytes);
 		free(t->results[i].name);
@@ -97,7 +87,7 @@ void nt_textures_free(nt_textures *t)
 /* ---- wishes ---- */
 
 /* Looks into the file for its type and identity, if there is one. */
-static nt_status inspect(source *s, nt_error *error)
+static nt_status inspect(nt_texture_source *s, nt_error *error)
 {
 	nt_file file;
 	if (s->found == NT_IMAGE_MISSING)
@@ -118,7 +108,7 @@ static uint32_t source_of_path(const nt_textures *t, const char *path, uint64_t 
 {
 	uint32_t number;
 	for (size_t at = NT_HASH_BEGIN; (number = nt_hash_index_next(&t->by_path, hash, &at)) != UINT32_MAX;)
-		if (strcmp(t->sources[number].path, path) == 0)
+		if (strcmp(t->sources[number]->path, path) == 0)
 			break;
 	return number;
 }
@@ -136,14 +126,17 @@ static nt_status add_source(nt_textures *t, const nt_image_places *places, const
 		return status;
 	}
 	*number = (uint32_t)t->source_count;
-	if (!nt_grow((void **)&t->sources, &t->source_capacity, t->source_count + 1, sizeof *t->sources) ||
+	source *s = nt_calloc(1, sizeof *s);
+	if (!s || !nt_grow((void **)&t->sources, &t->source_capacity, t->source_count + 1, sizeof *t->sources) ||
 		!nt_hash_index_add(&t->by_path, hash, *number)) {
 		nt_buffer_free(&path);
+		free(s);
 		return nt_fail_memory(error);
 	}
-	source *s = &t->sources[t->source_count++];
-	*s = (source){.path = path.data, .found = found};
-	return inspect(s, error);
+	t->sources[t->source_count++] = s;
+	s->path = path.data;
+	s->file = (nt_texture_source){.path = path.data, .found = found};
+	return inspect(&s->file, error);
 }
 
 /* A name is looked for once for each document. */
@@ -165,50 +158,66 @@ static nt_status find_source(nt_textures *t, const nt_image_places *places, cons
 	return status;
 }
 
-static bool equal_wishes(const nt_texture_wish *a, const nt_texture_wish *b)
+static bool is_for_heights(nt_texture_kind kind)
 {
-	const bool heights = a->kind >= NT_TEXTURE_HEIGHTS;
-	return a->kind == b->kind && (!heights || (a->height == b->height && a->clamp == b->clamp));
+	return kind == NT_TEXTURE_HEIGHTS || kind == NT_TEXTURE_NORMALS_OR_HEIGHTS;
 }
 
-/* Of a source and what is made of it; adding 0 makes 0 of -0. */
-static uint64_t hash_of(uint32_t from, int kind, double height, bool clamp)
+/* What of a wish makes a difference. */
+static nt_recipe wanted(const nt_texture_wish *what, const uint32_t sources[4])
 {
-	const double numbers[] = {from, kind, height + 0.0, clamp};
-	return nt_hash_bytes(0, numbers, sizeof numbers);
+	const bool packed = what->kind == NT_TEXTURE_PACKED, heights = is_for_heights(what->kind);
+	nt_recipe how = {.packed = packed, .heights = heights, .height = heights ? what->height : 0,
+		.clamp = (packed || heights) && what->clamp, .suffix = what->suffix};
+	for (int k = 0; k < (packed ? 4 : 1); k++) {
+		const nt_texture_channel *c = &what->channels[k];
+		how.channels[k] = (nt_ingredient){.used = c->used || !packed, .source = sources[k]};
+		if (packed || heights)
+			how.channels[k].map = c->map;
+	}
+	return how;
 }
 
-nt_status nt_textures_wish(nt_textures *t, const nt_image_places *places, const char *name,
-	const nt_texture_wish *what, uint32_t *number, nt_error *error)
+nt_status nt_textures_wish(nt_textures *t, const nt_image_places *places, const nt_texture_wish *what, uint32_t *number,
+	nt_error *error)
 {
-	uint32_t from = 0;
-	const nt_status status = find_source(t, places, name, &from, error);
+	uint32_t sources[4] = {UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX};
+	nt_status status = NT_OK;
+	for (int k = 0; k < (what->kind == NT_TEXTURE_PACKED ? 4 : 1) && !status; k++)
+		if (what->channels[k].name)
+			status = find_source(t, places, what->channels[k].name, &sources[k], error);
 	if (status)
 		return status;
-	t->sources[from].in_question |= what->kind == NT_TEXTURE_NORMALS_OR_HEIGHTS;
-	const bool heights = what->kind >= NT_TEXTURE_HEIGHTS;
-	const uint64_t hash = hash_of(from, (int)what->kind, heights ? what->height : 0, heights && what->clamp);
+	const nt_recipe how = wanted(what, sources);
+	if (what->kind == NT_TEXTURE_NORMALS_OR_HEIGHTS)
+		t->sources[sources[0]]->in_question = true;
+	const uint64_t hash = nt_recipe_hash(&how) + (uint64_t)what->kind;
 	for (size_t at = NT_HASH_BEGIN; (*number = nt_hash_index_next(&t->by_wish, hash, &at)) != UINT32_MAX;)
-		if (t->wishes[*number].source == from && equal_wishes(&t->wishes[*number].what, what))
+		if (t->wishes[*number].kind == what->kind && nt_recipe_equal(&t->wishes[*number].how, &how))
 			return NT_OK;
 	*number = (uint32_t)t->wish_count;
 	if (!nt_grow((void **)&t->wishes, &t->wish_capacity, t->wish_count + 1, sizeof *t->wishes) ||
 		!nt_hash_index_add(&t->by_wish, hash, *number))
 		return nt_fail_memory(error);
-	t->wishes[t->wish_count++] = (wish){.source = from, .what = *what};
+	t->wishes[t->wish_count++] = (wish){.kind = what->kind, .how = how};
 	return NT_OK;
 }
 
 /* ---- sources ---- */
 
-static bool is_there(const source *s)
+static bool is_there(const nt_texture_source *s)
 {
 	return s->found <= NT_IMAGE_FOUND_ELSEWHERE;
 }
 
+static bool can_decode(const nt_texture_source *s)
+{
+	return is_there(s) && nt_image_is_decoded(s->type);
+}
+
 /* Opens a source that was looked at before. What becomes shorter while it is read has to be asked for: see
  * close_source(). */
-static nt_status open_source(const source *s, nt_file *file, nt_error *error)
+static nt_status open_source(const nt_texture_source *s, nt_file *file, nt_error *error)
 {
 	const nt_status status = nt_file_open_untraced(file, s->path, error);
 	if (status)
@@ -220,7 +229,7 @@ static nt_status open_source(const source *s, nt_file *file, nt_error *error)
 	return nt_error_in_file(error, s->path);
 }
 
-static nt_status close_source(const source *s, nt_file *file, nt_status status, nt_error *error)
+static nt_status close_source(const nt_texture_source *s, nt_file *file, nt_status status, nt_error *error)
 {
 	const bool intact = nt_file_is_intact(file);
 	nt_file_close(file);
@@ -234,149 +243,196 @@ static void look_for_grey(void *context, size_t item, unsigned slot)
 {
 	(void)slot;
 	nt_textures *t = context;
-	source *s = &t->sources[item];
+	source *s = t->sources[item];
 	nt_file file;
 	nt_error_clear(&s->error);
-	if (!s->in_question || !is_there(s) || !nt_image_is_decoded(s->type) || open_source(s, &file, &s->error))
+	if (!s->in_question || !can_decode(&s->file) || open_source(&s->file, &file, &s->error))
 		return;
 	const nt_status status = nt_image_is_grey(file.data, file.size, &s->grey, &s->error);
-	close_source(s, &file, status, &s->error);
+	close_source(&s->file, &file, status, &s->error);
 }
 
 /* ---- results ---- */
 
-/* What a wish comes to. */
-static recipe recipe_of(const nt_textures *t, const wish *w)
+/* A recipe of one image, which is what it is wished for or heights. */
+static nt_recipe recipe_of_one(const nt_textures *t, nt_texture_kind kind, const nt_recipe *wanted)
 {
-	const source *s = &t->sources[w->source];
+	const uint32_t from = wanted->channels[0].source;
+	const nt_texture_source *s = &t->sources[from]->file;
 	const nt_texture_choice choice = t->rules.choice;
-	const nt_texture_kind kind = w->what.kind;
-	const bool decodable = is_there(s) && nt_image_is_decoded(s->type);
+	const bool decodable = can_decode(s);
 	const bool heights = decodable &&
-		(kind == NT_TEXTURE_HEIGHTS || (kind == NT_TEXTURE_NORMALS_OR_HEIGHTS && s->grey));
+		(kind == NT_TEXTURE_HEIGHTS || (kind == NT_TEXTURE_NORMALS_OR_HEIGHTS && t->sources[from]->grey));
+	if (heights) {
+		nt_recipe how = *wanted;
+		how.png = choice != NT_TEXTURES_KEEP;
+		return how;
+	}
 	const bool png = decodable && choice != NT_TEXTURES_KEEP &&
 		(choice == NT_TEXTURES_PNG ? s->type != NT_IMAGE_PNG : !nt_image_is_carried(s->type));
-	const bool may_flip = decodable && !heights && kind != NT_TEXTURE_COLOR && (png || nt_image_is_carried(s->type));
-	return (recipe){w->source, png, may_flip ? t->rules.flip : NT_FLIP_OFF, heights, heights ? w->what.height : 0,
-		heights && w->what.clamp};
+	const bool normals = kind == NT_TEXTURE_NORMALS || kind == NT_TEXTURE_NORMALS_OR_HEIGHTS;
+	const bool may_flip = decodable && normals && (png || nt_image_is_carried(s->type));
+	return (nt_recipe){.channels = {{.used = true, .source = from}}, .png = png,
+		.flip = may_flip ? t->rules.flip : NT_FLIP_OFF};
 }
 
-static bool decodes(const recipe *how)
+/* What a wish comes to; *lost receives the channels whose image there is not. */
+static nt_recipe recipe_of(const nt_textures *t, const wish *w, unsigned *lost)
 {
-	return how->png || how->heights || how->flip != NT_FLIP_OFF;
+	*lost = 0;
+	if (w->kind != NT_TEXTURE_PACKED)
+		return recipe_of_one(t, w->kind, &w->how);
+	if (nt_recipe_is_image(&w->how))
+		return recipe_of_one(t, NT_TEXTURE_COLOR, &w->how);
+	nt_recipe how = w->how;
+	how.png = t->rules.choice == NT_TEXTURES_PNG;
+	for (int k = 0; k < 4; k++) {
+		const uint32_t from = how.channels[k].source;
+		if (!how.channels[k].used || from == UINT32_MAX || can_decode(&t->sources[from]->file))
+			continue;
+		*lost |= 1u << k;
+		how.channels[k].source = UINT32_MAX;
+	}
+	return how;
 }
 
 /* The file's name; of what was made, with another ending. NULL: out of memory. */
-static char *name_of(const nt_texture *texture)
+static char *name_of(const nt_recipe *how, const nt_texture *texture)
 {
-	const char *name = nt_last_part(texture->path), *dot = strrchr(name, '.');
+	const char *name = nt_last_part(texture->sources[0]->path), *dot = strrchr(name, '.');
 	nt_buffer text = {0};
 	nt_buffer_append(&text, name, texture->bytes && dot > name ? (size_t)(dot - name) : strlen(name));
 	if (texture->bytes)
-		nt_buffer_text(&text, texture->from_heights ? "-normal.png" : texture->flipped ? "-green-up.png" : ".png");
+		nt_buffer_format(&text, "%s.png",
+			how->packed ? how->suffix : texture->from_heights ? "-normal" : texture->flipped ? "-green-up" : "");
 	if (text.failed)
 		nt_buffer_free(&text);
 	return text.data;
 }
 
-static nt_status add_result(nt_textures *t, const recipe *how, nt_error *error)
+/* The files that it takes, each once, in the order of the channels. */
+static void list_sources(const nt_textures *t, const nt_recipe *how, nt_texture *texture)
 {
-	const source *s = &t->sources[how->source];
-	if (!nt_grow((void **)&t->results, &t->result_capacity, t->result_count + 1, sizeof *t->results))
-		return nt_fail_memory(error);
-	const bool made = how->png || how->heights;
-	const bool usable = s->found != NT_IMAGE_OUTSIDE && (made || nt_image_is_carried(s->type));
-	t->results[t->result_count++] = (result){.how = *how, .texture = {
-		.path = s->path, .found = s->found, .source_type = s->type, .from_heights = how->heights,
-		.type = !usable ? NT_IMAGE_OTHER : made ? NT_IMAGE_PNG : s->type,
-		.identity = s->identity, .failure = s->error.status ? s->error.message : NULL}};
-	return NT_OK;
+	for (int k = 0; k < 4; k++) {
+		const uint32_t from = how->channels[k].source;
+		const nt_texture_source *s = how->channels[k].used && from != UINT32_MAX ? &t->sources[from]->file : NULL;
+		bool known = !s;
+		for (size_t i = 0; i < texture->source_count && !known; i++)
+			known = texture->sources[i] == s;
+		if (!known)
+			texture->sources[texture->source_count++] = s;
+	}
 }
 
-static bool equal_recipes(const recipe *a, const recipe *b)
+static nt_status add_result(nt_textures *t, const nt_recipe *how, unsigned lost, nt_error *error)
 {
-	return a->source == b->source && a->png == b->png && a->flip == b->flip && a->heights == b->heights &&
-	       a->height == b->height && a->clamp == b->clamp;
+	if (!nt_grow((void **)&t->results, &t->result_capacity, t->result_count + 1, sizeof *t->results))
+		return nt_fail_memory(error);
+	result *r = &t->results[t->result_count++];
+	*r = (result){.how = *how, .same = UINT32_MAX,
+		.texture = {.from_heights = how->heights, .packed = how->packed, .lost = lost, .type = NT_IMAGE_OTHER}};
+	nt_texture *texture = &r->texture;
+	list_sources(t, how, texture);
+	if (how->packed || !texture->source_count) {
+		if (texture->source_count)
+			texture->type = NT_IMAGE_PNG;
+		return NT_OK;
+	}
+	const source *s = t->sources[how->channels[0].source];
+	const bool made = how->png || how->heights;
+	if (s->file.found != NT_IMAGE_OUTSIDE && (made || nt_image_is_carried(s->file.type)))
+		texture->type = made ? NT_IMAGE_PNG : s->file.type;
+	texture->failure = s->error.status ? s->error.message : NULL;
+	return NT_OK;
 }
 
 static nt_status plan_results(nt_textures *t, nt_error *error)
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < t->wish_count && !status; i++) {
-		const recipe how = recipe_of(t, &t->wishes[i]);
+		unsigned lost;
+		const nt_recipe how = recipe_of(t, &t->wishes[i], &lost);
 		uint32_t *number = &t->wishes[i].result;
-		const uint64_t hash = hash_of(how.source, how.png + 2 * how.heights + 4 * how.flip, how.height, how.clamp);
+		const uint64_t hash = nt_recipe_hash(&how);
 		for (size_t at = NT_HASH_BEGIN; (*number = nt_hash_index_next(&t->by_recipe, hash, &at)) != UINT32_MAX;)
-			if (equal_recipes(&t->results[*number].how, &how))
+			if (nt_recipe_equal(&t->results[*number].how, &how) && t->results[*number].texture.lost == lost)
 				break;
 		if (*number != UINT32_MAX)
 			continue;
 		*number = (uint32_t)t->result_count;
-		status = add_result(t, &how, error);
+		status = add_result(t, &how, lost, error);
 		if (!status && !nt_hash_index_add(&t->by_recipe, hash, *number))
 			status = nt_fail_memory(error);
 	}
 	return status;
 }
 
-static void flip_green(nt_pixels *p)
-{
-	const size_t count = (size_t)p->width * p->height * p->channels;
-	for (size_t i = 1; i < count; i += p->channels)
-		if (p->bits == 8)
-			((uint8_t *)p->samples)[i] = (uint8_t)(UINT8_MAX - ((uint8_t *)p->samples)[i]);
-		else
-			((uint16_t *)p->samples)[i] = (uint16_t)(UINT16_MAX - ((uint16_t *)p->samples)[i]);
-}
+/* ---- making ---- */
 
-/* Turns green around if the recipe says so. */
-static nt_status flip(const recipe *how, nt_pixels *pixels, bool *flipped, nt_error *error)
+/* The files of a result while it is made: each is opened once. */
+typedef struct opened {
+	nt_file files[4];
+	const nt_file *of_channels[4];
+	size_t count;
+} opened;
+
+static nt_status open_sources(const nt_texture *texture, const nt_textures *t, const nt_recipe *how, opened *o,
+	nt_error *error)
 {
-	nt_normal_facts facts;
+	*o = (opened){.count = 0};
 	nt_status status = NT_OK;
-	*flipped = how->flip == NT_FLIP_ON && pixels->channels >= 3;
-	if (how->flip == NT_FLIP_AUTO) {
-		status = nt_examine_normals(pixels, &facts, error);
-		*flipped = !status && facts.green == NT_GREEN_DOWN;
+	for (size_t i = 0; i < texture->source_count && !status; i++) {
+		status = open_source(texture->sources[i], &o->files[i], error);
+		o->count += !status;
 	}
-	if (*flipped)
-		flip_green(pixels);
+	for (int k = 0; k < 4 && !status; k++)
+		for (size_t i = 0; i < o->count; i++)
+			if (how->channels[k].used && how->channels[k].source != UINT32_MAX &&
+				texture->sources[i] == &t->sources[how->channels[k].source]->file)
+				o->of_channels[k] = &o->files[i];
 	return status;
 }
 
-static nt_status convert(const recipe *how, const nt_file *file, result *r)
+static nt_status close_sources(const nt_texture *texture, opened *o, nt_status status, nt_error *error)
 {
-	nt_pixels pixels, normals;
-	nt_status status = nt_image_decode(file->data, file->size, &pixels, &r->error);
-	if (!status && how->heights) {
-		status = nt_heights_to_normals(&pixels, how->height, how->clamp, &normals, &r->error);
-		nt_pixels_free(&pixels);
-		pixels = normals;
-	}
+	for (size_t i = 0; i < o->count; i++)
+		status = close_source(texture->sources[i], &o->files[i], status, error);
+	return status;
+}
+
+static void note_failure(result *r)
+{
+	nt_texture *texture = &r->texture;
+	const bool as_it_is = !r->how.png && !r->how.heights && !r->how.packed;
+	texture->type = as_it_is ? texture->sources[0]->type : NT_IMAGE_OTHER;
+	texture->failure = r->error.message;
+}
+
+static void decode_result(const nt_textures *t, result *r)
+{
+	nt_texture *texture = &r->texture;
+	nt_made made = {0};
+	opened files;
+	nt_status status = open_sources(texture, t, &r->how, &files, &r->error);
 	if (!status)
-		status = flip(how, &pixels, &r->texture.flipped, &r->error);
-	if (!status && (how->png || how->heights || r->texture.flipped))
-		status = nt_encode_png(&pixels, &r->bytes, &r->texture.size, &r->error);
-	nt_pixels_free(&pixels);
-	return status;
-}
-
-static nt_status decode_result(const source *s, result *r)
-{
-	nt_file file;
-	nt_status status = open_source(s, &file, &r->error);
-	if (status)
-		return status;
-	status = close_source(s, &file, convert(&r->how, &file, r), &r->error);
+		status = nt_recipe_make(&r->how, files.of_channels, &made, &r->error);
+	status = close_sources(texture, &files, status, &r->error);
+	r->bytes = made.bytes;
+	texture->damaged = made.damaged;
+	texture->lost |= made.damaged;
 	if (status) {
-		const bool as_it_is = !r->how.png && !r->how.heights;
-		r->texture.type = as_it_is ? s->type : NT_IMAGE_OTHER;
-		r->texture.failure = r->error.message;
-	} else if (r->bytes) {
-		r->texture.bytes = r->bytes;
-		r->texture.type = NT_IMAGE_PNG;
+		note_failure(r);
+		return;
 	}
-	return status;
+	if (made.damaged)
+		texture->failure = r->error.message;
+	else
+		nt_error_clear(&r->error);
+	texture->flipped = made.flipped;
+	texture->alpha = made.alpha;
+	texture->bytes = made.bytes;
+	texture->size = made.size;
+	texture->type = made.bytes ? NT_IMAGE_PNG : texture->sources[0]->type;
 }
 
 static void make_result(void *context, size_t item, unsigned slot)
@@ -385,9 +441,11 @@ static void make_result(void *context, size_t item, unsigned slot)
 	nt_textures *t = context;
 	result *r = &t->results[item];
 	nt_error_clear(&r->error);
-	if (decodes(&r->how))
-		decode_result(&t->sources[r->how.source], r);
-	r->texture.name = r->name = name_of(&r->texture);
+	if (nt_recipe_decodes(&r->how) && r->texture.source_count)
+		decode_result(t, r);
+	if (!r->texture.source_count)
+		return;
+	r->texture.name = r->name = name_of(&r->how, &r->texture);
 	if (!r->name)
 		nt_fail_memory(&r->error);
 }
@@ -401,6 +459,28 @@ static nt_status fatal(const nt_error *failure, nt_error *error)
 	return failure->status;
 }
 
+/* Results that turned out to be a file as it is are one. */
+static nt_status join_results(nt_textures *t, nt_error *error)
+{
+	nt_hash_index files = {0};
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < t->result_count && !status; i++) {
+		result *r = &t->results[i];
+		const nt_texture *texture = &r->texture;
+		if (texture->bytes || texture->type == NT_IMAGE_OTHER)
+			continue;
+		const uint64_t hash = nt_hash_bytes(0, &texture->sources[0], sizeof texture->sources[0]);
+		size_t at = NT_HASH_BEGIN;
+		while ((r->same = nt_hash_index_next(&files, hash, &at)) != UINT32_MAX)
+			if (t->results[r->same].texture.sources[0] == texture->sources[0])
+				break;
+		if (r->same == UINT32_MAX && !nt_hash_index_add(&files, hash, (uint32_t)i))
+			status = nt_fail_memory(error);
+	}
+	nt_hash_index_free(&files);
+	return status;
+}
+
 nt_status nt_textures_make(nt_textures *t, const nt_texture_rules *rules, nt_error *error)
 {
 	t->rules = *rules;
@@ -408,7 +488,7 @@ nt_status nt_textures_make(nt_textures *t, const nt_texture_rules *rules, nt_err
 	nt_parallel_items(threads, t->source_count, look_for_grey, t);
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < t->source_count && !status; i++)
-		status = fatal(&t->sources[i].error, error);
+		status = fatal(&t->sources[i]->error, error);
 	if (!status)
 		status = plan_results(t, error);
 	if (status)
@@ -416,7 +496,7 @@ nt_status nt_textures_make(nt_textures *t, const nt_texture_rules *rules, nt_err
 	nt_parallel_items(threads, t->result_count, make_result, t);
 	for (size_t i = 0; i < t->result_count && !status; i++)
 		status = fatal(&t->results[i].error, error);
-	return status;
+	return status ? status : join_results(t, error);
 }
 
 size_t nt_textures_count(const nt_textures *t)
@@ -431,5 +511,16 @@ const nt_texture *nt_textures_at(const nt_textures *t, size_t number)
 
 size_t nt_textures_result(const nt_textures *t, uint32_t number)
 {
-	return t->wishes[number].result;
+	const uint32_t own = t->wishes[number].result, same = t->results[own].same;
+	return same != UINT32_MAX ? same : own;
+}
+
+const nt_texture *nt_textures_of(const nt_textures *t, uint32_t number)
+{
+	return &t->results[t->wishes[number].result].texture;
+}
+
+const nt_texture_source *nt_textures_source(const nt_textures *t, uint32_t number, int channel)
+{
+	return &t->sources[t->wishes[number].how.channels[channel].source]->file;
 }

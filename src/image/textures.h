@@ -9,9 +9,8 @@
 #ifndef NT_IMAGE_TEXTURES_H
 #define NT_IMAGE_TEXTURES_H
 
-#include "file/input.h"
 #include "image/find.h"
-#include "image/image.h"
+#include "image/recipe.h"
 
 /* Images that a new document gets from its materials. */
 typedef enum nt_texture_choice {
@@ -20,27 +19,31 @@ typedef enum nt_texture_choice {
 	NT_TEXTURES_PNG   /* what can be decoded becomes PNG */
 } nt_texture_choice;
 
-/* Normal maps whose green points down get it turned around. */
-typedef enum nt_flip {
-	NT_FLIP_OFF,
-	NT_FLIP_AUTO, /* where image/examine.h is sure */
-	NT_FLIP_ON    /* all of them */
-} nt_flip;
-
 typedef struct nt_textures nt_textures;
 
 typedef enum nt_texture_kind {
 	NT_TEXTURE_COLOR,  /* or anything else that is no normal map */
 	NT_TEXTURE_NORMALS,
 	NT_TEXTURE_HEIGHTS, /* a height map, which becomes a normal map */
-	NT_TEXTURE_NORMALS_OR_HEIGHTS /* heights if its pixels are grey */
+	NT_TEXTURE_NORMALS_OR_HEIGHTS, /* heights if its pixels are grey */
+	NT_TEXTURE_PACKED  /* channels of several images */
 } nt_texture_kind;
+
+/* A channel of what is put together. */
+typedef struct nt_texture_channel {
+	bool used;          /* somebody samples it */
+	const char *name;   /* of the image; NULL: it is white */
+	nt_channel_map map;
+} nt_texture_channel;
 
 /* What an image is, and how it is used. */
 typedef struct nt_texture_wish {
 	nt_texture_kind kind;
-	double height; /* of heights: see image/heights.h */
-	bool clamp;
+	nt_texture_channel channels[4]; /* red, green, blue, alpha; if not packed the first alone, of which the map counts for
+	                                   heights */
+	double height;      /* of heights: see image/heights.h */
+	bool clamp;         /* of heights and what is packed */
+	const char *suffix; /* of the name of what is packed; stays */
 } nt_texture_wish;
 
 typedef struct nt_texture_rules {
@@ -49,37 +52,53 @@ typedef struct nt_texture_rules {
 	unsigned threads;
 } nt_texture_rules;
 
+/* A file that somebody wished for. */
+typedef struct nt_texture_source {
+	const char *path;     /* absolute: the file, or where it would be */
+	nt_image_found found;
+	nt_image_type type;   /* of the file; of a missing one, by its name */
+	nt_file identity;     /* of the file, closed: size, device and inode */
+} nt_texture_source;
+
 /* One result. Texts and bytes belong to the textures. */
 typedef struct nt_texture {
-	const char *path;          /* absolute: the file, or where it would be */
-	nt_image_found found;
-	nt_image_type source_type; /* of the file; of a missing one, by its name */
+	const nt_texture_source *sources[4]; /* [source_count] that it was made of; the first is it where bytes are NULL */
+	size_t source_count;
 	nt_image_type type;        /* of the result; NT_IMAGE_OTHER: there is none */
 	bool from_heights;         /* a height map became a normal map */
 	bool flipped;              /* of a normal map green was turned around */
-	nt_file identity;          /* of the file, closed: size, device and inode */
+	bool packed;               /* of channels */
+	nt_alpha_mode alpha;       /* of what is packed with alpha */
+	unsigned lost;             /* bits: channels of what is packed whose image is not there or damaged */
+	unsigned damaged;          /* of these, damaged ones */
 	const char *name;          /* what a file of it is called */
-	const unsigned char *bytes; /* [size] of a PNG that was made; NULL: the file is the result */
+	const unsigned char *bytes; /* [size] of a PNG that was made; NULL: the first source is the result */
 	size_t size;
-	const char *failure;       /* why it was not decoded; NULL: it was, or did not have to be */
+	const char *failure;       /* why something was not decoded; NULL: it was, or did not have to be */
 } nt_texture;
 
 /* NULL: out of memory. */
 nt_textures *nt_textures_create(void);
 void nt_textures_free(nt_textures *textures); /* NULL is allowed */
 
-/* Wishes for the image of a name in a material. The same wish has the same number. Returns NT_OK, also for what is not
+/* Wishes for an image of names in a material. The same wish has the same number. Returns NT_OK, also for what is not
  * found, NT_ERROR_IO or NT_ERROR_MEMORY. */
-nt_status nt_textures_wish(nt_textures *textures, const nt_image_places *places, const char *name,
-	const nt_texture_wish *wish, uint32_t *number, nt_error *error);
+nt_status nt_textures_wish(nt_textures *textures, const nt_image_places *places, const nt_texture_wish *wish,
+	uint32_t *number, nt_error *error);
 
 /* Makes the results. An image that cannot be decoded is no failure, but one without result, or as it is where glTF
  * carries it. Returns NT_OK, NT_ERROR_IO, also when a file is not what it was, or NT_ERROR_MEMORY. */
 nt_status nt_textures_make(nt_textures *textures, const nt_texture_rules *rules, nt_error *error);
 
-/* The results; several wishes may have one. */
+/* The results; several wishes may have one, and of results that are the same file one stands for all. */
 size_t nt_textures_count(const nt_textures *textures);
 const nt_texture *nt_textures_at(const nt_textures *textures, size_t result);
 size_t nt_textures_result(const nt_textures *textures, uint32_t wish);
+
+/* What a wish itself came to: what was lost, what its alpha does. */
+const nt_texture *nt_textures_of(const nt_textures *textures, uint32_t wish);
+
+/* The file that a channel of a wish led to, which has a name. */
+const nt_texture_source *nt_textures_source(const nt_textures *textures, uint32_t wish, int channel);
 
 #endif

@@ -187,7 +187,7 @@ static float roughness_of_ns(const settling *s)
 		return 1;
 	if (s->said->blender)
 		return n < 1000 ? 1 - sqrtf(n / 1000) : 0;
-	return (float)pow(2 / ((double)n + 2), 0.25);
+	return (float)sqrt(sqrt(2 / ((double)n + 2)));
 }
 
 /* The maps of highlights, where no statement says what the roughness is. */

@@ -4,47 +4,16 @@
  * the solve, the conversions, then what is to be said about them. Other inputs and outputs have no such images: a
  * glTF that is changed keeps its own.
  */
+#include "pipeline/map_wishes.h"
 #include "pipeline/stages.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include "base/parallel.h"
 #include "base/pool.h"
 #include "file/lookup.h"
 #include "file/relative_path.h"
-
-/* --bump-height where nobody says it. */
-static const double default_bump_height = 1.0 / 64;
-
-/* A map of a material, and what is wished for it. */
-typedef struct wished_map {
-	nt_map *map;
-	nt_texture_wish what;
-} wished_map;
-
-enum { MOST_MAPS = 3 };
-
-static nt_texture_kind kind_of_normal_map(const nt_material *m, nt_bump bump)
-{
-	if (bump == NT_BUMP_AUTO)
-		return NT_TEXTURE_NORMALS_OR_HEIGHTS;
-	return m->bump && bump == NT_BUMP_HEIGHT ? NT_TEXTURE_HEIGHTS : NT_TEXTURE_NORMALS;
-}
-
-/* The maps that a material has. */
-static size_t list_maps(nt_material *m, const nt_settings *settings, wished_map maps[MOST_MAPS])
-{
-	const double height = settings->bump_height > 0 ? settings->bump_height : default_bump_height;
-	const bool ignored = m->bump && settings->bump == NT_BUMP_IGNORE;
-	const nt_texture_wish normals = {kind_of_normal_map(m, settings->bump), height * m->normal_scale,
-		m->normal_map.placement.clamp};
-	const wished_map all[MOST_MAPS] = {{&m->base_color_map, {0}}, {&m->emissive_map, {0}}, {&m->normal_map, normals}};
-	size_t count = 0;
-	for (size_t i = 0; i < MOST_MAPS; i++)
-		if (all[i].map->name && *all[i].map->name && !(ignored && all[i].map == &m->normal_map))
-			maps[count++] = all[i];
-	return count;
-}
 
 /* Calls body once for each material that a mesh with texture coordinates uses, in the order of the meshes. */
 static nt_status each_material(nt_scene *scene, void *context, nt_error *error,
@@ -89,12 +58,16 @@ static nt_status wish_for_material(nt_scene *scene, nt_material *m, void *contex
 	const nt_image_places places = {.document = m->library ? m->library : scene->path, .input = scene->path,
 		.folders = w->settings->texture_paths, .folder_count = w->settings->texture_path_count,
 		.allow_outside = w->settings->allow_outside};
-	wished_map maps[MOST_MAPS];
-	const size_t count = list_maps(m, w->settings, maps);
+	nt_map_wish wishes[NT_MATERIAL_MAPS];
+	const size_t count = nt_map_wishes(m, w->settings, wishes);
 	nt_status status = NT_OK;
-	for (size_t i = 0; i < count && !status; i++)
-		status = nt_textures_wish(w->textures, &places, maps[i].map->name, &maps[i].what, &maps[i].map->wish,
-			error);
+	for (size_t i = 0; i < count && !status; i++) {
+		uint32_t number;
+		status = nt_textures_wish(w->textures, &places, &wishes[i].what, &number, error);
+		for (int k = 0; k < 4 && !status; k++)
+			if (wishes[i].maps[k])
+				wishes[i].maps[k]->wish = number;
+	}
 	return status;
 }
 
@@ -166,80 +139,130 @@ nt_status nt_stage_tangents_and_textures(nt_scene *scene, const nt_settings *set
 
 /* ---- what is to be said ---- */
 
+typedef struct telling {
+	nt_scene *scene;
+	const nt_textures *textures;
+	const nt_settings *settings;
+	nt_material *material;
+} telling;
+
 /* Where it is, from the folder of the material library. */
-static void tell_elsewhere(nt_scene *scene, const nt_place *place, const char *name, const nt_texture *image)
+static void tell_elsewhere(const telling *t, const nt_place *place, const char *name, const char *path)
 {
 	nt_buffer folder = {0}, relative = {0};
 	nt_error unused;
 	if (nt_link_folder(&folder, place->file, &unused) == NT_OK)
-		nt_link_uri(&relative, folder.data, image->path);
-	nt_finding_add(&scene->findings, NT_CODE_IMAGE_ELSEWHERE, place, 1, "%.100s is %.140s", name,
-		relative.data ? relative.data : image->path);
+		nt_link_uri(&relative, folder.data, path);
+	nt_finding_add(&t->scene->findings, NT_CODE_IMAGE_ELSEWHERE, place, 1, "%.100s is %.140s", name,
+		relative.data ? relative.data : path);
 	nt_buffer_free(&folder);
 	nt_buffer_free(&relative);
 }
 
-static void tell_image(nt_scene *scene, const nt_material *m, const char *name, const nt_texture *image)
+/* The image that a channel of a result came from. */
+static void tell_source(const telling *t, const nt_map *map, int channel, const nt_texture *image)
 {
-	const nt_place place = place_of(scene, m, m->line);
-	nt_finding_list *findings = &scene->findings;
-	if (image->found == NT_IMAGE_OUTSIDE)
+	const nt_place place = place_of(t->scene, t->material, map->line ? map->line : t->material->line);
+	const nt_texture_source *source = nt_textures_source(t->textures, map->wish, channel);
+	const bool lost = image->packed ? image->lost >> channel & 1 : image->type == NT_IMAGE_OTHER;
+	const bool failed = image->failure && (!image->packed || image->damaged >> channel & 1);
+	nt_finding_list *findings = &t->scene->findings;
+	if (source->found == NT_IMAGE_OUTSIDE)
 		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1,
-			"%.120s (it is outside of the folder of its MTL file, see --allow-outside)", name);
-	else if (image->found == NT_IMAGE_MISSING)
-		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1, "%.120s", name);
-	else if (image->failure)
-		nt_finding_add(findings, NT_CODE_IMAGE_DAMAGED, &place, 1, "%.100s (%.120s)", name, image->failure);
-	else if (image->type == NT_IMAGE_OTHER)
-		nt_finding_add(findings, NT_CODE_IMAGE_TYPE, &place, 1, "%.120s", name);
-	if (image->found == NT_IMAGE_FOUND_ELSEWHERE)
-		tell_elsewhere(scene, &place, name, image);
-	if (image->bytes)
-		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "%.100s: %s to %s%s", name,
-			image->from_heights ? "height map" : nt_image_type_name(image->source_type),
+			"%.120s (it is outside of the folder of its MTL file, see --allow-outside)", map->name);
+	else if (source->found == NT_IMAGE_MISSING)
+		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1, "%.120s", map->name);
+	else if (failed)
+		nt_finding_add(findings, NT_CODE_IMAGE_DAMAGED, &place, 1, "%.100s (%.120s)", map->name, image->failure);
+	else if (lost)
+		nt_finding_add(findings, NT_CODE_IMAGE_TYPE, &place, 1, "%.120s", map->name);
+	if (source->found == NT_IMAGE_FOUND_ELSEWHERE)
+		tell_elsewhere(t, &place, map->name, source->path);
+}
+
+static void tell_made(const telling *t, const nt_map *map, const nt_texture *image)
+{
+	const nt_place place = place_of(t->scene, t->material, map->line ? map->line : t->material->line);
+	nt_finding_list *findings = &t->scene->findings;
+	if (image->packed)
+		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "%.100s: channels to %.120s", map->name, image->name);
+	else
+		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "%.100s: %s to %s%s", map->name,
+			image->from_heights ? "height map" : nt_image_type_name(image->sources[0]->type),
 			image->from_heights ? "normal map" : "PNG", image->flipped ? ", green turned up" : "");
 }
 
-static void tell_bump(nt_scene *scene, const nt_material *m)
+/* The images of one wish. A map whose image is lost is none any more. */
+static void tell_wish(const telling *t, const nt_map_wish *w)
 {
-	const nt_place place = place_of(scene, m, m->normal_map.line);
-	nt_finding_add(&scene->findings, NT_CODE_BUMP_AS_NORMAL, &place, 1, "%s of %.120s", m->bump, m->name);
+	const nt_map *first = NULL;
+	const nt_texture *image = NULL;
+	for (int k = 0; k < 4; k++) {
+		nt_map *map = w->maps[k];
+		if (!map)
+			continue;
+		image = nt_textures_of(t->textures, map->wish);
+		bool told = false;
+		for (int j = 0; j < k; j++)
+			told |= w->maps[j] && strcmp(w->maps[j]->name, map->name) == 0;
+		if (!told)
+			tell_source(t, map, k, image);
+		first = first ? first : map;
+	}
+	if (image && image->bytes)
+		tell_made(t, first, image);
+	for (int k = 0; k < 4; k++)
+		if (w->maps[k] && image->lost >> k & 1)
+			w->maps[k]->wish = NT_NONE;
 }
 
-typedef struct telling {
-	const nt_textures *textures;
-	const nt_settings *settings;
-} telling;
+static void tell_normals(const telling *t, const nt_texture *image)
+{
+	nt_material *m = t->material;
+	const nt_place place = place_of(t->scene, m, m->normal_map.line);
+	nt_finding_list *findings = &t->scene->findings;
+	const bool normals = !image || (image->type != NT_IMAGE_OTHER && !image->from_heights);
+	if (m->bump && t->settings->bump == NT_BUMP_AUTO && normals)
+		nt_finding_add(findings, NT_CODE_BUMP_AS_NORMAL, &place, 1, "%s of %.120s", m->bump, m->name);
+	if (image && normals && !nt_map_is_plain(&m->normal_map))
+		nt_finding_add(findings, NT_CODE_MATERIAL_LOST, &place, 1, "MTL: -mm of a normal map");
+	if (image && image->from_heights)
+		m->normal_scale = 1; /* it went into the heights */
+}
+
+/* Maps for which nothing was wished, although they are there. */
+static void tell_misplaced(const telling *t)
+{
+	for (size_t i = 0; i < NT_MATERIAL_MAPS && t->textures; i++) {
+		const nt_map *map = &t->material->maps[i];
+		const nt_place place = place_of(t->scene, t->material, map->line);
+		if (map->name && map->wish == NT_NONE && map != &t->material->normal_map)
+			nt_finding_add(&t->scene->findings, NT_CODE_MATERIAL_LOST, &place, 1,
+				"%.120s lies elsewhere than the map beside which it would be in one image", map->name);
+	}
+}
 
 static nt_status tell_material(nt_scene *scene, nt_material *m, void *context, nt_error *error)
 {
 	(void)error;
-	const telling *t = context;
-	wished_map maps[MOST_MAPS];
-	const size_t count = list_maps(m, t->settings, maps);
-	for (size_t i = 0; i < count && t->textures; i++)
-		tell_image(scene, m, maps[i].map->name,
-			nt_textures_at(t->textures, nt_textures_result(t->textures, maps[i].map->wish)));
-	for (size_t i = 0; i < NT_MATERIAL_MAPS; i++) {
-		const nt_map *map = &m->maps[i];
-		const nt_place place = place_of(scene, m, map->line);
-		if (map->name && map != &m->base_color_map && map != &m->emissive_map && map != &m->normal_map)
-			nt_finding_add(&scene->findings, NT_CODE_MATERIAL_LOST, &place, 1, "MTL: %.120s", map->name);
-	}
+	telling *t = context;
+	t->scene = scene;
+	t->material = m;
+	nt_map_wish wishes[NT_MATERIAL_MAPS];
+	const size_t count = t->textures ? nt_map_wishes(m, t->settings, wishes) : 0;
 	const bool wished = t->textures && m->normal_map.wish != NT_NONE;
-	const nt_texture *normals = wished ? nt_textures_at(t->textures, nt_textures_result(t->textures, m->normal_map.wish)) : NULL;
-	if (m->bump && t->settings->bump == NT_BUMP_AUTO &&
-		(!t->textures || (normals && normals->type != NT_IMAGE_OTHER && !normals->from_heights)))
-		tell_bump(scene, m);
-	if (normals && normals->from_heights)
-		m->normal_scale = 1; /* it went into the heights */
+	if (wished || (m->normal_map.name && !t->textures))
+		tell_normals(t, wished ? nt_textures_of(t->textures, m->normal_map.wish) : NULL);
+	tell_misplaced(t);
+	for (size_t i = 0; i < count; i++)
+		tell_wish(t, &wishes[i]);
 	return NT_OK;
 }
 
 nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const nt_textures *textures,
 	nt_error *error)
 {
-	telling t = {textures, settings};
+	telling t = {.textures = textures, .settings = settings};
 	if (settings->images == NT_IMAGES_NONE)
 		return NT_OK;
 	return each_material(scene, &t, error, tell_material);

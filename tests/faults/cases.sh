@@ -26,14 +26,14 @@ make_inputs() {
 make_images() {
 	local write="python3 $ROOT/tests/support/images.py write"
 	$write a.tga 4 4 '(x, y, 3)' && $write b.tif 4 4 '(x, y, 4)' && $write c.png 4 4 'x * y' &&
-		cp "$ROOT/data/grey.jpg" d.jpg || return 1
-	printf '%s\n' "newmtl a" "map_Kd a.tga" "map_Ke -clamp on b.tif" "norm c.png" "newmtl b" \
-		"bump -s -1 1 -clamp on d.jpg" >images.mtl
+		$write m.tga 8 2 '(x, x, x)' && cp "$ROOT/data/grey.jpg" d.jpg || return 1
+	printf '%s\n' "newmtl a" "map_Kd a.tga" "map_Ke -clamp on b.tif" "norm c.png" "newmtl b" "bump -s -1 1 -clamp on d.jpg" \
+		"map_d c.png" "map_Pr c.png" "map_Pm m.tga" "Pc 1" "Ps 1" "aniso 1" "Ni 2" "map_ao m.tga" >images.mtl
 	printf '%s\n' "mtllib images.mtl" "v 0 0 0" "v 1 0 0" "v 0 1 0" "vt 0 0" "vt 1 0" "vt 0 1" "usemtl a" \
 		"f 1/1 2/2 3/3" "usemtl b" "f 3/3 2/2 1/1" >images.obj
 }
 
-images="images.obj images.mtl a.tga b.tif c.png d.jpg"
+images="images.obj images.mtl a.tga b.tif c.png d.jpg m.tga"
 cube="mirrored_cube.obj mirrored_cube.mtl bumps.png"
 plates="plates.gltf plates.bin bumps.png"
 cases() {

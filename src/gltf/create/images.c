@@ -87,7 +87,7 @@ static image_entry *entry_of(const nt_image_set *set, uint32_t wish)
 static bool is_usable(const nt_image_set *set, const nt_texture *image)
 {
 	return image->type != NT_IMAGE_OTHER &&
-	       (image->found != NT_IMAGE_MISSING || set->options.images == NT_IMAGES_LINK);
+	       (image->sources[0]->found != NT_IMAGE_MISSING || set->options.images == NT_IMAGES_LINK);
 }
 
 nt_status nt_image_set_use(nt_image_set *set, const nt_map *map, nt_output *output, nt_error *error)
@@ -99,7 +99,10 @@ nt_status nt_image_set_use(nt_image_set *set, const nt_map *map, nt_output *outp
 	if (entry->used)
 		return NT_OK;
 	entry->used = true;
-	return nt_output_protect(output, entry->image->path, NULL, error);
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < entry->image->source_count && !status; i++)
+		status = nt_output_protect(output, entry->image->sources[i]->path, NULL, error);
+	return status;
 }
 
 /* ---- adding ---- */
@@ -111,12 +114,13 @@ static nt_status open_image(const nt_texture *image, nt_file *file, nt_error *er
 		*file = nt_file_of_bytes(image->bytes, image->size);
 		return NT_OK;
 	}
-	const nt_status status = nt_file_open(file, image->path, error);
-	if (status || file->size == image->identity.size)
+	const nt_texture_source *source = image->sources[0];
+	const nt_status status = nt_file_open(file, source->path, error);
+	if (status || file->size == source->identity.size)
 		return status;
 	nt_file_close(file);
 	nt_fail(error, NT_ERROR_IO, "the image changed while it was read");
-	return nt_error_in_file(error, image->path);
+	return nt_error_in_file(error, source->path);
 }
 
 static nt_status write_file(nt_image_set *set, image_entry *entry, nt_output *output, nt_error *error)
@@ -126,7 +130,7 @@ static nt_status write_file(nt_image_set *set, image_entry *entry, nt_output *ou
 	nt_sink *sink;
 	nt_file file;
 	nt_status status = path.failed ? nt_fail_memory(error) : NT_OK;
-	if (status || (!entry->image->bytes && nt_file_is(&entry->image->identity, path.data))) { /* it is there: a link does */
+	if (status || (!entry->image->bytes && nt_file_is(&entry->image->sources[0]->identity, path.data))) { /* it is there: a link does */
 		nt_buffer_free(&path);
 		return status;
 	}
@@ -153,7 +157,7 @@ static char *image_title(const nt_texture *image)
 
 static uint32_t add_embedded(image_entry *entry, const char *title, nt_model *model, uint64_t *buffer_size)
 {
-	const uint64_t size = entry->image->bytes ? entry->image->size : entry->image->identity.size;
+	const uint64_t size = entry->image->bytes ? entry->image->size : entry->image->sources[0]->identity.size;
 	entry->offset = (*buffer_size + 3) & ~(uint64_t)3;
 	*buffer_size = entry->offset + size;
 	const uint32_t view = nt_model_view(model, entry->offset, size, NT_GLTF_NO_TARGET);
@@ -178,7 +182,7 @@ static nt_status add_entry(nt_image_set *set, image_entry *entry, nt_model *mode
 		if (entry->file)
 			nt_uri_append_path(&uri, nt_sink_name(entry->file, false));
 		else
-			nt_link_uri(&uri, set->folder, entry->image->path);
+			nt_link_uri(&uri, set->folder, entry->image->sources[0]->path);
 		if (!uri.failed)
 			image = nt_model_image_uri(model, title, uri.data);
 	}
@@ -201,7 +205,10 @@ static void note_made(const nt_image_set *set, nt_output *output)
 		const image_entry *entry = &set->entries[i];
 		if (!entry->used || !entry->image->bytes || count++ >= NAMES_SHOWN)
 			continue;
-		nt_output_note(output, "%s %s became %s%s", count == 1 ? ";" : ",", nt_last_part(entry->image->path),
+		nt_output_note(output, "%s", count == 1 ? ";" : ",");
+		for (size_t k = 0; k < entry->image->source_count; k++)
+			nt_output_note(output, "%s %s", k ? " and" : "", nt_last_part(entry->image->sources[k]->path));
+		nt_output_note(output, " became %s%s",
 			entry->file ? nt_sink_name(entry->file, false) : entry->image->name,
 			entry->embedded ? " (embedded)" : "");
 	}
@@ -219,6 +226,11 @@ nt_status nt_image_set_add(nt_image_set *set, nt_model *model, uint64_t *buffer_
 	if (status == NT_OK)
 		note_made(set, output);
 	return status;
+}
+
+nt_alpha_mode nt_image_set_alpha(const nt_image_set *set, uint32_t wish)
+{
+	return entry_of(set, wish) ? nt_textures_of(set->options.textures, wish)->alpha : NT_ALPHA_OPAQUE;
 }
 
 nt_model_use nt_image_set_texture(const nt_image_set *set, const nt_map *map)

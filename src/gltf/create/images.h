@@ -29,6 +29,9 @@ nt_status nt_image_set_use(nt_image_set *set, const nt_map *map, nt_output *outp
 nt_status nt_image_set_add(nt_image_set *set, nt_model *model, uint64_t *buffer_size,
 	nt_output *output, nt_error *error);
 
+/* What the alpha of a wish's image does, where the wish is for alpha. */
+nt_alpha_mode nt_image_set_alpha(const nt_image_set *set, uint32_t wish);
+
 /* The document's texture for a map, and where it lies. */
 nt_model_use nt_image_set_texture(const nt_image_set *set, const nt_map *map);
 

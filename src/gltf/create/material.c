@@ -31,12 +31,32 @@ static float factor_of(const nt_image_set *images, const nt_map *map, float othe
 	return clamp01(texture->texture == NT_MODEL_NONE ? otherwise : map->factor);
 }
 
+static bool is_black(const float color[3])
+{
+	return color[0] == 0 && color[1] == 0 && color[2] == 0;
+}
+
 /* Colours, beside a texture none that would hide it. */
 static void take_color(const float *from, const nt_model_use *texture, float most, float *to)
 {
-	const bool hides = texture->texture != NT_MODEL_NONE && from[0] == 0 && from[1] == 0 && from[2] == 0;
+	const bool hides = texture->texture != NT_MODEL_NONE && is_black(from);
 	for (int i = 0; i < 3; i++)
 		to[i] = hides ? 1 : from[i] < most ? from[i] : most;
+}
+
+/* The image of the base colour may be there for its alpha alone. */
+static void take_base_color(const nt_material *from, const nt_image_set *images, nt_model_material *m)
+{
+	nt_model_use alpha;
+	m->base_color_texture = texture_of(images, &from->base_color_map);
+	take_color(from->base_color, &m->base_color_texture, 1, m->base_color);
+	m->base_color[3] = factor_of(images, &from->alpha_map, from->base_color[3], &alpha);
+	if (m->base_color[3] < 1)
+		m->alpha_mode = NT_ALPHA_BLEND;
+	else if (alpha.texture != NT_MODEL_NONE)
+		m->alpha_mode = nt_image_set_alpha(images, from->alpha_map.wish);
+	if (m->base_color_texture.texture == NT_MODEL_NONE)
+		m->base_color_texture = alpha;
 }
 
 uint32_t nt_new_material_add(const nt_material *from, const nt_image_set *images, nt_model *model)
@@ -48,15 +68,12 @@ uint32_t nt_new_material_add(const nt_material *from, const nt_image_set *images
 		.anisotropy = images ? clamp01(from->anisotropy) : 0,
 		.anisotropy_rotation = from->anisotropy_rotation,
 		.sheen_roughness = from->sheen_roughness,
-		.base_color_texture = texture_of(images, &from->base_color_map),
 		.emissive_texture = texture_of(images, &from->emissive_map),
 		.normal_texture = texture_of(images, &from->normal_map),
 		.occlusion_texture = texture_of(images, &from->occlusion_map),
-		.base_color = {0, 0, 0, clamp01(from->base_color[3])},
 	};
-	take_color(from->base_color, &m.base_color_texture, 1, m.base_color);
+	take_base_color(from, images, &m);
 	take_color(from->emissive, &m.emissive_texture, INFINITY, m.emissive);
-	m.alpha_mode = m.base_color[3] < 1 ? NT_ALPHA_BLEND : NT_ALPHA_OPAQUE;
 	nt_model_use metallic, roughness;
 	m.metallic = factor_of(images, &from->metallic_map, from->metallic, &metallic);
 	m.roughness = factor_of(images, &from->roughness_map, from->roughness, &roughness);

@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "ext/gltf_numbers.h"
 #include "file/output.h"
+#include "image/pack.h"
 
 /* No index: an optional reference that is absent. */
 #define NT_MODEL_NONE UINT32_MAX
@@ -54,8 +55,6 @@ typedef struct nt_model_use {
 	bool moved;       /* KHR_texture_transform: sampled at scale * uv + offset, v down */
 	float scale[2], offset[2];
 } nt_model_use;
-
-typedef enum nt_alpha_mode { NT_ALPHA_OPAQUE, NT_ALPHA_MASK, NT_ALPHA_BLEND } nt_alpha_mode;
 
 /* A material; its extensions are listed as used. Textures may be NT_MODEL_NONE. */
 typedef struct nt_model_material {

@@ -27,10 +27,11 @@ static uint32_t wish(nt_textures *textures, const char *name, nt_texture_kind ki
 	static char document[300];
 	snprintf(document, sizeof document, "%s", in_folder("m.mtl"));
 	const nt_image_places places = {.document = document};
-	const nt_texture_wish what = {kind, height, false};
+	const nt_texture_wish what = {.kind = kind, .height = height,
+		.channels = {{.name = name, .map = {.channel = NT_CHANNEL_LUMINANCE, .gain = 1}}}};
 	uint32_t number;
 	nt_error error;
-	assert_int_equal(nt_textures_wish(textures, &places, name, &what, &number, &error), NT_OK);
+	assert_int_equal(nt_textures_wish(textures, &places, &what, &number, &error), NT_OK);
 	return number;
 }
 
@@ -98,12 +99,13 @@ static void textures_without_memory_are_an_error(void **state)
 	for (size_t n = 0;; n++) {
 		nt_textures *t = nt_textures_create();
 		const nt_image_places places = {.document = in_folder("m.mtl")};
-		const nt_texture_wish what = {NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1, false};
+		const nt_texture_wish what = {.kind = NT_TEXTURE_NORMALS_OR_HEIGHTS, .height = 0.1,
+			.channels = {{.name = "grey.tga", .map = {.channel = NT_CHANNEL_LUMINANCE, .gain = 1}}}};
 		const nt_texture_rules rules = {NT_TEXTURES_AUTO, NT_FLIP_OFF, 1};
 		uint32_t number;
 		nt_error error;
 		fail_allocations_from(n);
-		nt_status status = nt_textures_wish(t, &places, "grey.tga", &what, &number, &error);
+		nt_status status = nt_textures_wish(t, &places, &what, &number, &error);
 		if (!status)
 			status = nt_textures_make(t, &rules, &error);
 		const bool failed = stop_failing_allocations();
