@@ -48,11 +48,18 @@ static inline double nt_dvec3_length(nt_dvec3 v)
 	return sqrt(nt_dvec3_dot(v, v));
 }
 
+/* The largest magnitude of a component; of numbers alone. Not fmax(), which is a call. */
+static inline double nt_dvec3_largest(nt_dvec3 v)
+{
+	const double x = fabs(v.x), y = fabs(v.y), z = fabs(v.z), larger = x > y ? x : y;
+	return larger > z ? larger : z;
+}
+
 /* v scaled to unit length; false, and v as it was, where it is zero or not finite. Scaled by its largest
  * component first, so that squares of tiny vectors do not vanish. */
 static inline bool nt_dvec3_normalise(nt_dvec3 *v)
 {
-	const double largest = fmax(fabs(v->x), fmax(fabs(v->y), fabs(v->z)));
+	const double largest = nt_dvec3_largest(*v);
 	if (!(largest > 0.0) || !isfinite(largest) || !isfinite(v->x + v->y + v->z))
 		return false;
 	const nt_dvec3 scaled = {v->x / largest, v->y / largest, v->z / largest};

@@ -78,15 +78,10 @@ typedef struct solved {
 	double determinant;  /* of the UV edges, magnitude */
 } solved;
 
-static double largest_of(nt_dvec3 v)
-{
-	return fmax(fabs(v.x), fmax(fabs(v.y), fabs(v.z)));
-}
-
 /* A difference p - q of products, or of their largest components, that loses more than `most` bits' worth. */
 static bool cancels(double most, double p, double q, double difference)
 {
-	return most * difference < fmax(p, q);
+	return most * difference < (p > q ? p : q);
 }
 
 /* s a - t b as rounded products have it; false where they cancel. */
@@ -94,7 +89,7 @@ static bool combine(double most, double s, nt_dvec3 a, double t, nt_dvec3 b, nt_
 {
 	const nt_dvec3 p = nt_dvec3_scale(s, a), q = nt_dvec3_scale(t, b);
 	*difference = nt_dvec3_sub(p, q);
-	return !cancels(most, largest_of(p), largest_of(q), largest_of(*difference));
+	return !cancels(most, nt_dvec3_largest(p), nt_dvec3_largest(q), nt_dvec3_largest(*difference));
 }
 
 /* a x b, the same. */
@@ -102,7 +97,7 @@ static bool cross(double most, nt_dvec3 a, nt_dvec3 b, nt_dvec3 *difference)
 {
 	const nt_dvec3 p = {a.y * b.z, a.z * b.x, a.x * b.y}, q = {a.z * b.y, a.x * b.z, a.y * b.x};
 	*difference = nt_dvec3_sub(p, q);
-	return !cancels(most, largest_of(p), largest_of(q), largest_of(*difference));
+	return !cancels(most, nt_dvec3_largest(p), nt_dvec3_largest(q), nt_dvec3_largest(*difference));
 }
 
 static nt_dvec3 combine_exactly(double s, nt_dvec3 a, double t, nt_dvec3 b)

@@ -27,10 +27,21 @@
 #include "tangent/usable.h"
 #include "topology/corners.h"
 
+/* What the sums at a vertex and its usable corners come to, for orientation -1 and +1: 1 or 2 of the list above. */
+typedef struct answers {
+	float tangents[2][3], perpendicular[3]; /* unit; perpendicular to the normal */
+	bool averaged[2], borrowed[2];          /* 1; 2; neither: there is no tangent */
+	bool there[2];                          /* triangles or usable corners */
+} answers;
+
 /* What is around a vertex with an unusable corner, for orientation -1 and +1. */
 typedef struct surroundings {
-	nt_frame_sum sums[2];
-	uint32_t usable[2]; /* the first usable corner, or NT_NO_ID */
+	uint32_t corner;    /* the first unusable one, then the first usable ones, or NT_NO_ID */
+	uint32_t usable[2];
+	union {
+		nt_frame_sum sums[2]; /* until all around is visited */
+		answers answers;
+	};
 } surroundings;
 
 typedef struct patient {
@@ -57,6 +68,19 @@ static const surroundings *around_corner(const patient *p, size_t c)
 static bool is_usable(const nt_solve *solve, size_t c)
 {
 	return nt_corner_tangent(solve, c)[3] != 0.0f;
+}
+
+/* The exact orientation of a face, by what is known of it. */
+static int orientation_of(const patient *p, size_t face, size_t first)
+{
+	const nmtan_mesh *mesh = p->solve->mesh;
+	for (size_t c = first; has_bit(p->faulty, face) && c < first + nt_face_size(mesh, face); c++) {
+		const float w = nt_corner_tangent(p->solve, c)[3];
+		if (w == 0.0f && signbit(w))
+			return 0;
+	}
+	const int known = mesh->face_sizes ? 0 : nt_known_orientation(p->solve->known, face);
+	return known ? known : nt_face_orientation(mesh, face, first, true, NULL);
 }
 
 /* Faults */
@@ -138,17 +162,19 @@ static void visit_face(const patient *p, size_t face, size_t first)
 {
 	const nt_solve *solve = p->solve;
 	const nmtan_mesh *mesh = solve->mesh;
-	uint32_t corners[2][3];
-	const unsigned count = nt_face_triangles(mesh, face, first, corners);
-	int orientation = mesh->face_sizes ? 0 : nt_known_orientation(solve->known, face);
-	if (!orientation)
-		orientation = nt_cut_orientation(mesh, corners, count, true, NULL);
 	for (size_t c = first; c < first + nt_face_size(mesh, face); c++) {
-		if (!has_bit(p->touched, p->welded[c]) || !is_usable(solve, c))
+		if (!has_bit(p->touched, p->welded[c]))
 			continue;
-		uint32_t *slot = &p->around[p->ids[p->welded[c]]].usable[nt_corner_tangent(solve, c)[3] > 0.0f];
+		surroundings *around = &p->around[p->ids[p->welded[c]]];
+		const float w = nt_corner_tangent(solve, c)[3];
+		uint32_t *slot = w == 0.0f ? &around->corner : &around->usable[w > 0.0f];
 		*slot = *slot == NT_NO_ID ? (uint32_t)c : *slot;
 	}
+	const int orientation = orientation_of(p, face, first);
+	if (!orientation)
+		return; /* no triangle of it has a frame */
+	uint32_t corners[2][3];
+	const unsigned count = nt_face_triangles(mesh, face, first, corners);
 	for (unsigned i = 0; i < count; i++) {
 		nt_frame_sum *to[3];
 		for (int k = 0; k < 3; k++) {
@@ -159,6 +185,36 @@ static void visit_face(const patient *p, size_t face, size_t first)
 	}
 }
 
+/* A usable corner's tangent, perpendicular to n; false where it has no such part. */
+static bool borrow(const nt_solve *solve, uint32_t c, nt_dvec3 n, nt_dvec3 *tangent)
+{
+	*tangent = nt_dvec3_reject(n, nt_dvec3_load(nt_corner_tangent(solve, c)));
+	return nt_dvec3_dot(*tangent, *tangent) > NT_PARALLEL_SINE_SQUARED && nt_dvec3_normalise(tangent);
+}
+
+static void store(nt_dvec3 t, float *to)
+{
+	to[0] = (float)t.x, to[1] = (float)t.y, to[2] = (float)t.z;
+}
+
+/* Equal vertices of the mesh have equal normals: what is asked for at many corners is answered once. */
+static void answer(const nt_solve *solve, surroundings *around)
+{
+	const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, around->corner));
+	answers a = {0};
+	for (int side = 0; side < 2; side++) {
+		nt_dvec3 t;
+		a.there[side] = around->usable[side] != NT_NO_ID || around->sums[side].weights > 0.0;
+		a.averaged[side] = nt_sum_tangent(&around->sums[side], n, &t);
+		a.borrowed[side] = !a.averaged[side] && around->usable[side] != NT_NO_ID &&
+				   borrow(solve, around->usable[side], n, &t);
+		if (a.averaged[side] || a.borrowed[side])
+			store(t, a.tangents[side]);
+	}
+	store(nt_dvec3_perpendicular(n), a.perpendicular);
+	around->answers = a;
+}
+
 static nmtan_status look_around(patient *p)
 {
 	const nmtan_mesh *mesh = p->solve->mesh;
@@ -166,7 +222,7 @@ static nmtan_status look_around(patient *p)
 	if (!p->around)
 		return NMTAN_ERROR_MEMORY;
 	for (size_t i = 0; i < p->id_count; i++)
-		p->around[i] = (surroundings){.usable = {NT_NO_ID, NT_NO_ID}};
+		p->around[i] = (surroundings){.corner = NT_NO_ID, .usable = {NT_NO_ID, NT_NO_ID}};
 	for (size_t face = 0, first = 0; face < mesh->face_count; face++) {
 		const unsigned size = nt_face_size(mesh, face);
 		const uint32_t *v = p->welded + first;
@@ -176,45 +232,34 @@ static nmtan_status look_around(patient *p)
 			visit_face(p, face, first);
 		first += size;
 	}
+	for (size_t i = 0; i < p->id_count; i++)
+		answer(p->solve, &p->around[i]);
 	return NMTAN_OK;
 }
 
 /* Mending */
 
-/* A usable corner's tangent, perpendicular to n; false where it has no such part. */
-static bool borrow(const nt_solve *solve, uint32_t c, nt_dvec3 n, nt_dvec3 *tangent)
-{
-	if (c == NT_NO_ID)
-		return false;
-	*tangent = nt_dvec3_reject(n, nt_dvec3_load(nt_corner_tangent(solve, c)));
-	return nt_dvec3_dot(*tangent, *tangent) > NT_PARALLEL_SINE_SQUARED && nt_dvec3_normalise(tangent);
-}
-
-/* 1 or 2 of the list above. */
-static bool find_around(const patient *p, size_t c, int side, nt_dvec3 n, nt_dvec3 *t)
-{
-	const surroundings *around = around_corner(p, c);
-	return nt_sum_tangent(&around->sums[side], n, t) || borrow(p->solve, around->usable[side], n, t);
-}
-
 /* The best tangent that can be had at corner c of a face with corners [first, end). */
-static nt_dvec3 best_tangent(const patient *p, size_t first, size_t end, size_t c, int orientation, int side)
+static void best_tangent(const patient *p, size_t first, size_t end, size_t c, int orientation, int side, float *tangent)
 {
 	const nt_solve *solve = p->solve;
-	const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
-	nt_dvec3 t;
-	if (nt_sum_tangent(&around_corner(p, c)->sums[side], n, &t))
-		return t;
-	if (solve->faults)
+	const answers *a = &around_corner(p, c)->answers;
+	if (solve->faults && !a->averaged[side])
 		solve->faults[c] |= NMTAN_FAULT_NO_AVERAGE;
-	if (borrow(solve, around_corner(p, c)->usable[side], n, &t))
-		return t;
-	for (size_t k = first; k < end; k++)
-		if (is_usable(solve, k) && borrow(solve, (uint32_t)k, n, &t))
-			return t;
-	if (!orientation && find_around(p, c, !side, n, &t))
-		return t;
-	return nt_dvec3_perpendicular(n);
+	if (a->averaged[side] || a->borrowed[side]) {
+		memcpy(tangent, a->tangents[side], sizeof a->tangents[side]);
+		return;
+	}
+	for (size_t k = first; k < end; k++) {
+		nt_dvec3 t;
+		if (is_usable(solve, k) &&
+			borrow(solve, (uint32_t)k, nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c)), &t)) {
+			store(t, tangent);
+			return;
+		}
+	}
+	const bool other = !orientation && (a->averaged[!side] || a->borrowed[!side]);
+	memcpy(tangent, other ? a->tangents[!side] : a->perpendicular, sizeof a->perpendicular);
 }
 
 /* The side of a face without orientation: that of a usable corner, all of which agree; else what most of its vertices
@@ -229,8 +274,7 @@ static int choose_side(const patient *p, size_t first, size_t end)
 	for (size_t c = first; c < end; c++) {
 		const surroundings *around = around_corner(p, c);
 		for (int side = 0; side < 2; side++) {
-			const bool there = around->usable[side] != NT_NO_ID || around->sums[side].weights > 0.0;
-			votes += there ? 2 * side - 1 : 0;
+			votes += around->answers.there[side] ? 2 * side - 1 : 0;
 			if (around->usable[side] < least) {
 				least = around->usable[side];
 				nearest = side;
@@ -240,12 +284,10 @@ static int choose_side(const patient *p, size_t first, size_t end)
 	return votes ? votes > 0 : nearest;
 }
 
-static void write_corner(const nt_solve *solve, size_t c, nt_dvec3 t, float w)
+static void write_corner(const nt_solve *solve, size_t c, const float *t, float w)
 {
 	float *tangent = solve->tangents + 4 * c;
-	tangent[0] = (float)t.x;
-	tangent[1] = (float)t.y;
-	tangent[2] = (float)t.z;
+	memcpy(tangent, t, 3 * sizeof *t);
 	tangent[3] = w;
 	if (solve->bitangents) {
 		const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
@@ -263,14 +305,14 @@ static void mend_face(const patient *p, size_t face, size_t first)
 {
 	const nmtan_mesh *mesh = p->solve->mesh;
 	const size_t size = nt_face_size(mesh, face), end = first + size;
-	const int orientation = nt_face_orientation(mesh, face, first, true, NULL);
+	const int orientation = orientation_of(p, face, first);
 	const int side = orientation ? orientation > 0 : choose_side(p, first, end);
-	nt_dvec3 tangents[4];
+	float tangents[4][3];
 	bool mended[4];
 	for (size_t k = 0; k < size; k++) {
 		mended[k] = !is_usable(p->solve, first + k);
 		if (mended[k])
-			tangents[k] = best_tangent(p, first, end, first + k, orientation, side);
+			best_tangent(p, first, end, first + k, orientation, side, tangents[k]);
 	}
 	for (size_t k = 0; k < size; k++)
 		if (mended[k])

@@ -42,9 +42,9 @@ static nmtan_fault fault_of(const float *t, const float *n, nmtan_counts *counts
 	return counts->repaired_sign++, NMTAN_FAULT_SIGN;
 }
 
-static void mark_fault(const nt_solve *solve, size_t corner, nmtan_fault fault)
+static void mark_fault(const nt_solve *solve, size_t corner, int orientation, nmtan_fault fault)
 {
-	solve->tangents[4 * corner + 3] = 0.0f;
+	solve->tangents[4 * corner + 3] = orientation ? 0.0f : -0.0f;
 	if (solve->faults)
 		solve->faults[corner] |= (uint8_t)fault;
 }
@@ -67,15 +67,17 @@ static bool has_unusable(const nt_solve *solve, size_t first, size_t size, int o
 	const nmtan_mesh *mesh = solve->mesh;
 	float *t = solve->tangents + 4 * first;
 	const float w = orientation ? (float)orientation : majority_sign(t, size);
-	bool good = true;
+	bool good = w != 0.0f;
 	for (size_t k = 0; k < size; k++)
-		good &= nt_is_frame(t + 4 * k, nt_normal(mesh, nt_vertex_of(mesh, first + k))) & (t[4 * k + 3] == w);
-	if (__builtin_expect(good && w != 0.0f, 1))
+		good &= t[4 * k + 3] == w;
+	for (size_t k = 0; good && k < size; k++)
+		good = nt_is_frame(t + 4 * k, nt_normal(mesh, nt_vertex_of(mesh, first + k)));
+	if (__builtin_expect(good, 1))
 		return false;
 	for (size_t k = 0; k < size; k++) {
 		const float *n = nt_normal(mesh, nt_vertex_of(mesh, first + k));
-		if (!nt_is_frame(t + 4 * k, n) || t[4 * k + 3] != w || w == 0.0f)
-			mark_fault(solve, first + k, fault_of(t + 4 * k, n, counts));
+		if (t[4 * k + 3] != w || w == 0.0f || !nt_is_frame(t + 4 * k, n))
+			mark_fault(solve, first + k, orientation, fault_of(t + 4 * k, n, counts));
 	}
 	return true;
 }

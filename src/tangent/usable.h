@@ -66,7 +66,8 @@ static inline bool nt_is_frame(const float *t, const float *n)
 
 /*
  * Checks every face: what the mesh is like and, where the solve repairs, in the repaired_ fields how many corners
- * are unusable and why. These get w = 0, which no method gives; the rest of their rows stays.
+ * are unusable and why. These get w = 0, which no method gives, and -0 where their face has no orientation; the rest of
+ * their rows stays.
  *
  *   faulty  receives a bit for each face, set where a corner is unusable; NULL where there is none
  *
