@@ -1,13 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Changing documents. A value that is set forgets its content, not its place in the text; what is taken out of a list is
- * counted, so that the writer looks for it in the text. Lists that grow move and leave their old memory to the arena.
+ * Changing documents. A value that is set forgets its content, not its place in the text; that something was taken out of
+ * a list is noted, so that the writer looks for it in the text. Lists that grow move and leave their old memory to the
+ * arena.
  */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include "ext/number.h"
 #include "json/tree.h"
+
+/* Integers below it are in the value itself. */
+#define COUNTED_LIMIT ((uint64_t)1 << 48)
 
 static nt_json_value *fail(nt_json *document)
 {
@@ -16,34 +21,49 @@ static nt_json_value *fail(nt_json *document)
 	return &document->scratch;
 }
 
-/* Another content at the same place. */
+/* Another content at the same place, but for containers and what is said apart. */
 static void set(nt_json_value *value, nt_json_value content)
 {
-	content.begin = value->begin;
+	content.of.text = nt_json_begin(value);
 	content.made = 1;
 	*value = content;
 }
 
 /* ---- containers ---- */
 
+/* An empty container at the same place. */
+static bool set_container(nt_json *document, nt_json_value *value, nt_json_type type)
+{
+	nt_json_list *list = nt_json_new_list(document, 0, nt_json_begin(value));
+	if (list && type == NT_JSON_OBJECT)
+		list->shape = nt_json_shape_of(document, NULL, 0);
+	if (!list || (type == NT_JSON_OBJECT && !list->shape))
+		return false;
+	*value = (nt_json_value){.of.list = list, .type = type, .made = 1, .apart = 1};
+	return true;
+}
+
 /* Room for one more child; false: out of memory. */
 static bool grow(nt_json *document, nt_json_value *container)
 {
-	const bool of_object = container->type == NT_JSON_OBJECT;
-	const nt_json_list *old = container->of.list;
-	size_t capacity;
+	nt_json_list *const old = container->apart ? container->of.list : NULL;
 	if (old && container->size < old->capacity)
 		return true;
-	nt_json_list *list = nt_size_mul(container->size, 2, &capacity) ?
-		nt_json_new_list(document, capacity + 2, of_object) : NULL;
+	const size_t capacity = container->size < 4 ? 4 : container->size + container->size / 2;
+	nt_json_list *list = nt_json_new_list(document, capacity, nt_json_begin(container));
 	if (!list)
 		return false;
 	if (old) {
 		list->end = old->end;
-		list->taken = old->taken;
-		memcpy(list + 1, old + 1, container->size * nt_json_child_bytes(of_object));
+		list->shape = old->shape;
+		memcpy(list->children, old->children, container->size * sizeof *list->children);
+	} else if (container->type == NT_JSON_OBJECT) {
+		list->shape = nt_json_shape_of(document, NULL, 0);
+		if (!list->shape)
+			return false;
 	}
 	container->of.list = list;
+	container->apart = 1;
 	return true;
 }
 
@@ -52,14 +72,32 @@ static nt_json_value *add(nt_json *document, nt_json_value *container, nt_json_t
 {
 	if (!container) /* one that memory was missing for */
 		return NULL;
-	if (container->type != type)
-		set(container, (nt_json_value){.type = type});
+	if (container->type != type && !set_container(document, container, type))
+		return NULL;
 	if (!grow(document, container))
 		return NULL;
-	container->size++;
-	nt_json_value *child = nt_json_child(container, container->size - 1);
+	nt_json_value *child = nt_json_child(container, container->size++);
 	*child = (nt_json_value){.type = NT_JSON_NULL, .made = 1};
 	return child;
+}
+
+/* The shape that has one more key; NULL: out of memory. */
+static nt_json_shape *longer(nt_json *document, nt_json_shape *shape, const char *key, size_t length)
+{
+	const nt_json_name wanted = {key, length};
+	if (shape->longer && nt_json_same_key(&shape->longer->keys[shape->count], &wanted))
+		return shape->longer;
+	nt_json_name *keys = nt_alloc(shape->count + 1, sizeof *keys);
+	const char *text = nt_arena_text(&document->arena, key, length);
+	if (keys && shape->count)
+		memcpy(keys, shape->keys, shape->count * sizeof *keys);
+	if (keys)
+		keys[shape->count] = (nt_json_name){text, length};
+	nt_json_shape *found = keys && text ? nt_json_shape_of(document, keys, shape->count + 1) : NULL;
+	free(keys);
+	if (found)
+		shape->longer = found;
+	return found;
 }
 
 nt_json_value *nt_json_put(nt_json *document, nt_json_value *object, const char *key)
@@ -67,14 +105,15 @@ nt_json_value *nt_json_put(nt_json *document, nt_json_value *object, const char 
 	nt_json_value *found = nt_json_find(object, key);
 	if (found)
 		return found;
-	const size_t length = strlen(key);
-	const char *text = nt_arena_text(&document->arena, key, length);
-	if (!text || !add(document, object, NT_JSON_OBJECT))
-		return fail(document);
-	nt_json_member *member = &nt_json_members(object->of.list)[object->size - 1];
-	member->key = text;
-	member->key_length = length;
-	return &member->value;
+	nt_json_value *child = add(document, object, NT_JSON_OBJECT);
+	nt_json_shape *shape = child ? longer(document, object->of.list->shape, key, strlen(key)) : NULL;
+	if (shape) {
+		object->of.list->shape = shape;
+		return child;
+	}
+	if (child)
+		object->size--;
+	return fail(document);
 }
 
 nt_json_value *nt_json_append(nt_json *document, nt_json_value *array)
@@ -83,17 +122,36 @@ nt_json_value *nt_json_append(nt_json *document, nt_json_value *array)
 	return child ? child : fail(document);
 }
 
+/* The shape without one of its keys; NULL: out of memory. */
+static nt_json_shape *shorter(nt_json *document, const nt_json_shape *shape, size_t index)
+{
+	nt_json_name *keys = nt_alloc(shape->count, sizeof *keys);
+	if (!keys)
+		return NULL;
+	memcpy(keys, shape->keys, index * sizeof *keys);
+	memcpy(keys + index, shape->keys + index + 1, (shape->count - index - 1) * sizeof *keys);
+	nt_json_shape *found = nt_json_shape_of(document, keys, shape->count - 1);
+	free(keys);
+	return found;
+}
+
 void nt_json_remove_at(nt_json *document, nt_json_value *container, size_t index)
 {
-	(void)document;
 	const size_t count = nt_json_count(container);
 	if (index >= count)
 		return;
 	nt_json_list *list = container->of.list;
-	const size_t bytes = nt_json_child_bytes(container->type == NT_JSON_OBJECT);
-	char *child = (char *)(list + 1) + index * bytes;
-	list->taken += nt_json_child(container, index)->begin != NULL;
-	memmove(child, child + bytes, (count - index - 1) * bytes);
+	if (container->type == NT_JSON_OBJECT) {
+		nt_json_shape *shape = shorter(document, list->shape, index);
+		if (!shape) {
+			fail(document);
+			return;
+		}
+		list->shape = shape;
+	}
+	nt_json_value *child = &list->children[index];
+	container->taken |= nt_json_begin(child) != NULL;
+	memmove(child, child + 1, (count - index - 1) * sizeof *child);
 	container->size--;
 }
 
@@ -112,11 +170,15 @@ void nt_json_remove(nt_json *document, nt_json_value *object, const char *key)
 
 static void set_text(nt_json *document, nt_json_value *value, nt_json_type type, const char *text, size_t length)
 {
-	const char *copy = nt_arena_text(&document->arena, text, length);
-	if (copy)
-		set(value, (nt_json_value){.of.text = copy, .size = length, .type = type});
-	else
+	nt_json_said *said = nt_arena_alloc(&document->arena, sizeof *said + length + 1, 1);
+	if (!said) {
 		fail(document);
+		return;
+	}
+	said->begin = nt_json_begin(value);
+	memcpy(said->text, text, length);
+	said->text[length] = '\0';
+	*value = (nt_json_value){.of.said = said, .size = length, .type = type, .made = 1, .apart = 1};
 }
 
 void nt_json_set_bool(nt_json *document, nt_json_value *value, bool content)
@@ -133,6 +195,10 @@ void nt_json_set_uint64(nt_json *document, nt_json_value *value, uint64_t conten
 	uint64_t old;
 	if (nt_json_get_uint64(value, &old) && old == content)
 		return;
+	if (content < COUNTED_LIMIT) {
+		set(value, (nt_json_value){.type = NT_JSON_INTEGER, .size = content});
+		return;
+	}
 	const int length = snprintf(text, sizeof text, "%" PRIu64, content);
 	set_text(document, value, NT_JSON_INTEGER, text, (size_t)length);
 }
@@ -157,32 +223,36 @@ void nt_json_set_string(nt_json *document, nt_json_value *value, const char *tex
 
 void nt_json_set_object(nt_json *document, nt_json_value *value)
 {
-	(void)document;
-	set(value, (nt_json_value){.type = NT_JSON_OBJECT});
+	if (!set_container(document, value, NT_JSON_OBJECT))
+		fail(document);
 }
 
-/* What a copy has: texts are shared, lists are its own. */
-static nt_json_value copy(nt_json *document, const nt_json_value *from)
+/* The children of a container that has the room, one by one. */
+static void copy_children(nt_json *document, nt_json_value *value, const nt_json_value *from)
 {
-	nt_json_value to = *from;
-	to.begin = NULL;
-	to.made = 1;
-	if (!nt_json_is_container(from) || from->size == 0) {
-		if (nt_json_is_container(from))
-			to.of.list = NULL;
-		return to;
+	nt_json_list *list = nt_json_new_list(document, from->size, nt_json_begin(value));
+	if (!list) {
+		fail(document);
+		return;
 	}
-	to.of.list = nt_json_new_list(document, from->size, from->type == NT_JSON_OBJECT);
-	if (!to.of.list)
-		return *fail(document);
-	if (from->type == NT_JSON_OBJECT)
-		memcpy(to.of.list + 1, from->of.list + 1, from->size * sizeof(nt_json_member));
-	for (size_t i = 0; i < from->size; i++)
-		*nt_json_child(&to, i) = copy(document, nt_json_child(from, i));
-	return to;
+	list->shape = from->of.list->shape;
+	for (size_t i = 0; i < from->size; i++) {
+		list->children[i] = (nt_json_value){.type = NT_JSON_NULL, .made = 1};
+		nt_json_set_copy(document, &list->children[i], nt_json_child(from, i));
+	}
+	*value = (nt_json_value){.of.list = list, .size = from->size, .type = from->type, .made = 1, .apart = 1};
 }
 
+/* Lists and texts of a copy are its own. */
 void nt_json_set_copy(nt_json *document, nt_json_value *value, const nt_json_value *from)
 {
-	set(value, copy(document, from));
+	const nt_json_type type = (nt_json_type)from->type;
+	if (nt_json_is_container(from) && from->size)
+		copy_children(document, value, from);
+	else if (nt_json_is_container(from) && !set_container(document, value, type))
+		fail(document);
+	else if ((type == NT_JSON_STRING || type == NT_JSON_REAL || type == NT_JSON_INTEGER) && !nt_json_is_counted(from))
+		set_text(document, value, type, nt_json_text(from), from->size);
+	else if (!nt_json_is_container(from))
+		set(value, *from);
 }

@@ -19,9 +19,7 @@ enum { PADDING_BYTES = 8 };
 /* A container whose end has not been read. */
 typedef struct opened {
 	const char *begin;
-	const char *key; /* its own, in the object around it */
-	size_t key_length;
-	size_t first; /* where its children begin in the stack, bytes */
+	size_t first, first_key; /* where its children and keys begin in the stacks */
 	bool is_object;
 	bool foreign; /* duplicate keys and numbers beyond double are no fault */
 	bool foreign_member; /* of the value that comes next */
@@ -32,12 +30,12 @@ typedef struct reader {
 	char *at;
 	const char *foreign;
 	nt_error *error;
-	char *stack; /* [stack_size] bytes: nt_json_value or nt_json_member, as the container is */
-	size_t stack_size, stack_capacity;
-	const char *key; /* of the value that comes next */
-	size_t key_length;
+	nt_json_value *values; /* [value_count] of the open containers */
+	nt_json_name *keys;     /* [key_count] of those that are objects */
+	size_t value_count, value_capacity, key_count, key_capacity;
 	size_t depth;
 	opened open[NT_JSON_MAX_DEPTH];
+	nt_json_shape *expected[NT_JSON_MAX_DEPTH]; /* of the last object of that depth; NULL: there was none */
 } reader;
 
 /* ---- faults ---- */
@@ -127,12 +125,14 @@ static char *put_utf8(char *to, uint32_t code)
 	return to;
 }
 
-/* The text of a checked string with escapes, in the arena. */
-static nt_status decode(reader *r, const char *at, const char *end, const char **text, size_t *length)
+/* What a checked string with escapes says, in the arena; NULL: out of memory. */
+static nt_json_said *decode(reader *r, const char *at, const char *end, size_t *length)
 {
-	char *const begin = nt_arena_alloc(&r->document->arena, (size_t)(end - at) + 1, 1), *to = begin;
-	if (!begin)
-		return nt_fail_memory(r->error);
+	nt_json_said *const said = nt_arena_alloc(&r->document->arena, sizeof *said + (size_t)(end - at) + 1, 1);
+	if (!said)
+		return NULL;
+	said->begin = at - 1;
+	char *to = said->text;
 	while (at < end) {
 		uint32_t code;
 		if (*at != '\\') {
@@ -143,13 +143,12 @@ static nt_status decode(reader *r, const char *at, const char *end, const char *
 		to = put_utf8(to, code);
 	}
 	*to = '\0';
-	*text = begin;
-	*length = (size_t)(to - begin);
-	return NT_OK;
+	*length = (size_t)(to - said->text);
+	return said;
 }
 
 /* The string that begins here; its closing quote becomes a NUL. */
-static nt_status read_string(reader *r, const char **text, size_t *length)
+static nt_status read_string(reader *r, nt_json_value *value)
 {
 	char *const begin = r->at + 1, *at = skip_plain(begin);
 	bool plain = true;
@@ -173,10 +172,16 @@ static nt_status read_string(reader *r, const char **text, size_t *length)
 	}
 	*at = '\0';
 	r->at = at + 1;
-	if (!plain)
-		return decode(r, begin, at, text, length);
-	*text = begin;
-	*length = (size_t)(at - begin);
+	size_t length = (size_t)(at - begin);
+	value->type = NT_JSON_STRING;
+	value->of.text = begin;
+	if (!plain) {
+		value->apart = 1;
+		value->of.said = decode(r, begin, at, &length);
+		if (!value->of.said)
+			return nt_fail_memory(r->error);
+	}
+	value->size = length;
 	return NT_OK;
 }
 
@@ -269,18 +274,9 @@ static nt_status push(reader *r, const nt_json_value *value)
 		r->document->root = *value;
 		return NT_OK;
 	}
-	const bool in_object = r->open[r->depth - 1].is_object;
-	const size_t bytes = nt_json_child_bytes(in_object);
-	if (r->stack_capacity - r->stack_size < bytes &&
-		!nt_grow((void **)&r->stack, &r->stack_capacity, r->stack_size + bytes, 1))
+	if (!nt_grow((void **)&r->values, &r->value_capacity, r->value_count + 1, sizeof *r->values))
 		return nt_fail_memory(r->error);
-	nt_json_member *const to = (nt_json_member *)(r->stack + r->stack_size);
-	to->value = *value;
-	if (in_object) {
-		to->key = r->key;
-		to->key_length = r->key_length;
-	}
-	r->stack_size += bytes;
+	r->values[r->value_count++] = *value;
 	return NT_OK;
 }
 
@@ -289,15 +285,20 @@ static nt_status read_key(reader *r)
 {
 	if (*r->at != '"')
 		return fail(r, r->at, "a key in quotes");
-	const nt_status status = read_string(r, &r->key, &r->key_length);
+	nt_json_value string = {0};
+	const nt_status status = read_string(r, &string);
 	if (status)
 		return status;
+	if (!nt_grow((void **)&r->keys, &r->key_capacity, r->key_count + 1, sizeof *r->keys))
+		return nt_fail_memory(r->error);
+	const nt_json_name *const key = &r->keys[r->key_count];
+	r->keys[r->key_count++] = (nt_json_name){nt_json_text(&string), string.size};
 	r->at = (char *)nt_json_skip_space(r->at);
 	if (*r->at != ':')
 		return fail(r, r->at, "':'");
 	r->at++;
-	r->open[r->depth - 1].foreign_member = r->foreign && r->key_length == strlen(r->foreign) &&
-		memcmp(r->key, r->foreign, r->key_length) == 0;
+	r->open[r->depth - 1].foreign_member = r->foreign && key->length == strlen(r->foreign) &&
+		memcmp(key->text, r->foreign, key->length) == 0;
 	return NT_OK;
 }
 
@@ -320,86 +321,54 @@ static nt_status open_container(reader *r, nt_json_value *value, bool *complete)
 		r->at++;
 		return push(r, value);
 	}
-	r->open[r->depth++] = (opened){value->begin, r->key, r->key_length, r->stack_size, is_object, foreign, false};
+	r->open[r->depth++] = (opened){value->of.text, r->value_count, r->key_count, is_object, foreign, false};
 	return is_object ? read_key(r) : NT_OK;
 }
 
-static int compare_keys(const void *a, const void *b)
+/* A key of the object that ends here occurs for the second time. */
+static nt_status fail_repeated(const reader *r, const nt_json_value *value, const nt_json_name *key)
 {
-	const nt_json_member *x = *(const nt_json_member *const *)a, *y = *(const nt_json_member *const *)b;
-	if (x->key_length != y->key_length)
-		return x->key_length < y->key_length ? -1 : 1;
-	const int difference = memcmp(x->key, y->key, x->key_length);
-	return difference ? difference : x < y ? -1 : x > y;
-}
-
-static bool equal_keys(const nt_json_member *a, const nt_json_member *b)
-{
-	return a->key_length == b->key_length && memcmp(a->key, b->key, a->key_length) == 0;
-}
-
-/* *second receives a member whose key another one before it has; NULL: there is none. Few are compared pair by pair,
- * many are sorted. */
-static nt_status find_duplicate(const reader *r, const nt_json_member *members, size_t count,
-	const nt_json_member **second)
-{
-	enum { FEW = 16 };
-	*second = NULL;
-	if (count <= FEW) {
-		for (size_t i = 1; i < count; i++)
-			for (size_t k = 0; k < i; k++)
-				if (equal_keys(&members[i], &members[k]))
-					*second = &members[i];
-		return NT_OK;
-	}
-	const nt_json_member **order = nt_alloc(count, sizeof *order);
-	if (!order)
-		return nt_fail_memory(r->error);
-	for (size_t i = 0; i < count; i++)
-		order[i] = &members[i];
-	qsort(order, count, sizeof *order, compare_keys);
-	for (size_t i = 1; i < count && !*second; i++)
-		if (equal_keys(order[i], order[i - 1]))
-			*second = order[i];
-	free(order);
-	return NT_OK;
-}
-
-/* The keys of the object that ends here, which follow each other in the stack. */
-static nt_status check_keys(const reader *r, const nt_json_member *members, size_t count)
-{
-	const nt_json_member *second;
-	const nt_status status = find_duplicate(r, members, count, &second);
-	if (status || !second)
-		return status;
 	/* behind the key: in front of the value there are a colon and white space */
-	const char *at = second->value.begin - 1;
+	const char *at = nt_json_begin(value) - 1;
 	while (at[-1] != '\0')
 		at--;
 	return nt_fail_offset(r->error, NT_ERROR_INPUT, (uint64_t)(at - r->document->text),
-		"JSON: the key \"%.200s\" occurs twice in one object", second->key);
+		"JSON: the key \"%.200s\" occurs twice in one object", key->text);
+}
+
+/* The shape of the object that ends here, which mostly is that of the one before it; NULL: out of memory. */
+static nt_json_shape *find_shape(reader *r, const opened *o)
+{
+	nt_json_shape **const expected = &r->expected[r->depth];
+	const size_t count = r->key_count - o->first_key;
+	const nt_json_name *const keys = r->keys + o->first_key;
+	if (!*expected || !nt_json_has_keys(*expected, keys, count))
+		*expected = nt_json_shape_of(r->document, keys, count);
+	r->key_count = o->first_key;
+	return *expected;
 }
 
 /* The container ends whose bracket was read; its children leave the stack. */
 static nt_status close_container(reader *r)
 {
 	const opened *const o = &r->open[--r->depth];
-	const size_t bytes = r->stack_size - o->first, count = bytes / nt_json_child_bytes(o->is_object);
-	const char *const children = r->stack + o->first;
-	nt_status status = NT_OK;
-	if (o->is_object && !o->foreign)
-		status = check_keys(r, (const nt_json_member *)children, count);
-	if (status)
-		return status;
-	nt_json_value value = {.begin = o->begin, .type = o->is_object ? NT_JSON_OBJECT : NT_JSON_ARRAY, .size = count};
-	value.of.list = nt_json_new_list(r->document, count, o->is_object);
-	if (!value.of.list)
+	const size_t count = r->value_count - o->first;
+	const nt_json_value *const children = r->values + o->first;
+	nt_json_value value = {.type = o->is_object ? NT_JSON_OBJECT : NT_JSON_ARRAY, .size = count, .apart = 1};
+	nt_json_list *const list = value.of.list = nt_json_new_list(r->document, count, o->begin);
+	if (!list)
 		return nt_fail_memory(r->error);
-	memcpy(value.of.list + 1, children, bytes);
-	value.of.list->end = r->at;
-	r->stack_size = o->first;
-	r->key = o->key;
-	r->key_length = o->key_length;
+	if (o->is_object) {
+		list->shape = find_shape(r, o);
+		if (!list->shape)
+			return nt_fail_memory(r->error);
+		const size_t repeated = list->shape->repeated;
+		if (!o->foreign && repeated < count)
+			return fail_repeated(r, &children[repeated], &list->shape->keys[repeated]);
+	}
+	memcpy(list->children, children, count * sizeof *children);
+	list->end = r->at;
+	r->value_count = o->first;
 	return push(r, &value);
 }
 
@@ -408,22 +377,16 @@ static nt_status close_container(reader *r)
 /* *complete receives false when a container was opened, whose first value comes next. */
 static nt_status read_value(reader *r, bool *complete)
 {
-	nt_json_value value = {.begin = r->at};
+	nt_json_value value = {.of.text = r->at};
 	nt_status status;
 	*complete = true;
 	switch (*r->at) {
 	case '{':
 	case '[':
 		return open_container(r, &value, complete);
-	case '"': {
-		const char *text = NULL;
-		size_t length = 0;
-		value.type = NT_JSON_STRING;
-		status = read_string(r, &text, &length);
-		value.of.text = text;
-		value.size = length;
+	case '"':
+		status = read_string(r, &value);
 		break;
-	}
 	case 't':
 		status = read_word(r, "true", NT_JSON_BOOLEAN, &value);
 		break;
@@ -473,15 +436,14 @@ static nt_status read_text(reader *r)
 	return r->at == r->document->text + r->document->size ? NT_OK : fail(r, r->at, "the end of the text");
 }
 
-nt_json_list *nt_json_new_list(nt_json *document, size_t capacity, bool of_object)
+nt_json_list *nt_json_new_list(nt_json *document, size_t capacity, const char *begin)
 {
 	size_t bytes;
-	if (!nt_size_mul(capacity, nt_json_child_bytes(of_object), &bytes) ||
-		!nt_size_add(bytes, sizeof(nt_json_list), &bytes))
+	if (!nt_size_mul(capacity, sizeof(nt_json_value), &bytes) || !nt_size_add(bytes, sizeof(nt_json_list), &bytes))
 		return NULL;
 	nt_json_list *list = nt_arena_alloc(&document->arena, bytes, 1);
 	if (list)
-		*list = (nt_json_list){.capacity = capacity};
+		*list = (nt_json_list){.begin = begin, .capacity = capacity};
 	return list;
 }
 
@@ -507,8 +469,10 @@ nt_status nt_json_parse(nt_json **document, const char *text, size_t size, const
 	} else {
 		nt_fail_memory(error);
 	}
-	if (r)
-		free(r->stack);
+	if (r) {
+		free(r->values);
+		free(r->keys);
+	}
 	free(r);
 	if (status)
 		nt_json_free(parsed);
@@ -522,6 +486,8 @@ void nt_json_free(nt_json *document)
 	if (!document)
 		return;
 	nt_arena_free(&document->arena);
+	nt_hash_index_free(&document->known);
+	free(document->shapes);
 	free(document->text);
 	free(document);
 }

@@ -5,45 +5,71 @@
  * In the copy the closing quote of every string is a NUL, so that a string without escapes is its own text. There is no
  * other NUL before the end, so that who copies text puts quotes in their place. A value that changes still knows where
  * the old one stands; children that are new come behind those that are in the text.
+ *
+ * A document of 100 000 primitives has millions of values, so these are small. Most are nothing but a place in the text;
+ * the keys of an object are a shape, which all objects with the same keys have together.
  */
 #ifndef NT_JSON_TREE_H
 #define NT_JSON_TREE_H
 
 #include <string.h>
+#include "base/hash_index.h"
 #include "base/memory.h"
 #include "json/json.h"
 
-struct nt_json_value {
+typedef struct nt_json_list nt_json_list;
+
+/* What a value says that the text does not say so, or no more. */
+typedef struct nt_json_said {
 	const char *begin; /* where it stands, or stood, in the text; NULL: it was added */
+	char text[];       /* NUL-terminated */
+} nt_json_said;
+
+struct nt_json_value {
 	union {
-		const char *text;          /* numbers: their spelling; strings: what they say, NUL-terminated */
-		struct nt_json_list *list; /* containers; NULL: empty */
+		const char *text;   /* where it stands, or stood, in the text, strings behind the quote; NULL: it was added */
+		nt_json_said *said; /* apart: strings with escapes, and numbers and strings that were made */
+		nt_json_list *list; /* apart: containers that have children, or had some */
 	} of;
-	uint64_t size : 56; /* bytes of text, NUL not counted; children */
+	uint64_t size : 48; /* bytes of text, NUL not counted; children; the number of a counted one */
 	uint64_t type : 4;  /* nt_json_type */
 	uint64_t truth : 1; /* booleans */
-	uint64_t made : 1;  /* what the text has at `begin` is not the content */
+	uint64_t made : 1;  /* what the text has there is not the content */
+	uint64_t apart : 1;
+	uint64_t taken : 1; /* of a container: children that are in the text are no more here */
 };
 
-typedef struct nt_json_member {
-	nt_json_value value;
-	const char *key; /* NUL-terminated */
-	size_t key_length;
-} nt_json_member;
+typedef struct nt_json_name {
+	const char *text; /* NUL-terminated */
+	size_t length;
+} nt_json_name;
 
-/* Children of a container; nt_json_value[capacity] or nt_json_member[capacity] follow. */
-typedef struct nt_json_list {
-	const char *end; /* in the text, behind the bracket; NULL: the container had no children there */
+/* Keys in their order. The document has no two shapes with the same ones. */
+typedef struct nt_json_shape {
+	size_t count;
+	size_t repeated; /* a key that one before it has too; `count`: there is none */
+	struct nt_json_shape *longer; /* with one more key, as it was wanted last; NULL: it was not */
+	nt_json_name keys[];
+} nt_json_shape;
+
+/* Children of a container. */
+struct nt_json_list {
+	const char *begin; /* of the container, in the text; NULL: it was added */
+	const char *end;   /* in the text, behind the bracket; NULL: the container had no children there */
+	nt_json_shape *shape; /* of an object */
 	size_t capacity;
-	size_t taken; /* children that are in the text and no more here */
-} nt_json_list;
+	nt_json_value children[];
+};
 
 struct nt_json {
 	char *text; /* [size] and some NULs */
 	size_t size;
 	nt_json_value root;
 	nt_json_value scratch; /* what changing functions hand out once memory is exhausted */
-	nt_arena arena;        /* lists, strings with escapes, new contents */
+	nt_arena arena;        /* lists, shapes, what is said apart */
+	nt_hash_index known;   /* shapes by keys */
+	nt_json_shape **shapes;
+	size_t shape_count, shape_capacity;
 	bool failed;
 };
 
@@ -52,26 +78,30 @@ static inline bool nt_json_is_container(const nt_json_value *value)
 	return value->type == NT_JSON_ARRAY || value->type == NT_JSON_OBJECT;
 }
 
-static inline nt_json_value *nt_json_elements(const nt_json_list *list)
+/* Where a value stands, or stood, in the text; NULL: it was added. */
+static inline const char *nt_json_begin(const nt_json_value *value)
 {
-	return (nt_json_value *)(list + 1);
+	if (value->apart)
+		return nt_json_is_container(value) ? value->of.list->begin : value->of.said->begin;
+	return value->type == NT_JSON_STRING ? value->of.text - 1 : value->of.text;
 }
 
-static inline nt_json_member *nt_json_members(const nt_json_list *list)
+/* Whether an integer is in the value itself. */
+static inline bool nt_json_is_counted(const nt_json_value *value)
 {
-	return (nt_json_member *)(list + 1);
+	return value->type == NT_JSON_INTEGER && value->made && !value->apart;
 }
 
-static inline size_t nt_json_child_bytes(bool of_object)
+/* [size] what a string says, or how a number that is not counted is spelled. */
+static inline const char *nt_json_text(const nt_json_value *value)
 {
-	return of_object ? sizeof(nt_json_member) : sizeof(nt_json_value);
+	return value->apart ? value->of.said->text : value->of.text;
 }
 
-/* A child of a container that has it. */
+/* The children of a container that has some. */
 static inline nt_json_value *nt_json_child(const nt_json_value *container, size_t index)
 {
-	return container->type == NT_JSON_OBJECT ? &nt_json_members(container->of.list)[index].value :
-						   &nt_json_elements(container->of.list)[index];
+	return &container->of.list->children[index];
 }
 
 static inline bool nt_json_is_space(char c)
@@ -86,7 +116,33 @@ static inline const char *nt_json_skip_space(const char *at)
 	return at;
 }
 
+static inline bool nt_json_same_key(const nt_json_name *a, const nt_json_name *b)
+{
+	return a->length == b->length && memcmp(a->text, b->text, a->length) == 0;
+}
+
+/* The index of a key in a shape, of the first that is so; `count`: it has none. */
+static inline size_t nt_json_find_key(const nt_json_shape *shape, const char *text, size_t length)
+{
+	const nt_json_name key = {text, length};
+	size_t i = 0;
+	while (i < shape->count && !nt_json_same_key(&shape->keys[i], &key))
+		i++;
+	return i;
+}
+
+static inline bool nt_json_has_keys(const nt_json_shape *shape, const nt_json_name *keys, size_t count)
+{
+	bool same = shape->count == count;
+	for (size_t i = 0; same && i < count; i++)
+		same = nt_json_same_key(&shape->keys[i], &keys[i]);
+	return same;
+}
+
 /* A list in the document's arena with room for `capacity` children; NULL: out of memory. */
-nt_json_list *nt_json_new_list(nt_json *document, size_t capacity, bool of_object);
+nt_json_list *nt_json_new_list(nt_json *document, size_t capacity, const char *begin);
+
+/* The shape with these keys, whose texts must live as long as the document; NULL: out of memory. */
+nt_json_shape *nt_json_shape_of(nt_json *document, const nt_json_name *keys, size_t count);
 
 #endif

@@ -44,23 +44,18 @@ const char *nt_json_key(const nt_json_value *object, size_t index, size_t *lengt
 {
 	if (index >= nt_json_count(object) || object->type != NT_JSON_OBJECT)
 		return NULL;
-	const nt_json_member *member = &nt_json_members(object->of.list)[index];
+	const nt_json_name *key = &object->of.list->shape->keys[index];
 	if (length)
-		*length = member->key_length;
-	return member->key;
+		*length = key->length;
+	return key->text;
 }
 
 nt_json_value *nt_json_find(const nt_json_value *object, const char *key)
 {
-	if (!object || object->type != NT_JSON_OBJECT)
+	if (!object || object->type != NT_JSON_OBJECT || object->size == 0)
 		return NULL;
-	const size_t length = strlen(key);
-	for (size_t i = 0; i < object->size; i++) {
-		nt_json_member *member = &nt_json_members(object->of.list)[i];
-		if (member->key_length == length && memcmp(member->key, key, length) == 0)
-			return &member->value;
-	}
-	return NULL;
+	const size_t index = nt_json_find_key(object->of.list->shape, key, strlen(key));
+	return index < object->size ? nt_json_child(object, index) : NULL;
 }
 
 /* ---- scalars ---- */
@@ -76,8 +71,11 @@ bool nt_json_get_bool(const nt_json_value *value, bool *result)
 /* The magnitude of an integer, which fits. */
 static uint64_t read_integer(const nt_json_value *value, bool *negative)
 {
-	const char *at = value->of.text, *const end = at + value->size;
+	const char *at = nt_json_text(value), *const end = at + value->size;
 	uint64_t magnitude = 0;
+	*negative = false;
+	if (nt_json_is_counted(value))
+		return value->size;
 	*negative = *at == '-';
 	for (at += *negative; at < end; at++)
 		magnitude = magnitude * 10 + (uint64_t)(*at - '0');
@@ -87,7 +85,9 @@ static uint64_t read_integer(const nt_json_value *value, bool *negative)
 static double read_real(const nt_json_value *value)
 {
 	double real = 0;
-	nt_read_double(value->of.text, value->of.text + value->size, &real);
+	if (nt_json_is_counted(value))
+		return (double)value->size;
+	nt_read_double(nt_json_text(value), nt_json_text(value) + value->size, &real);
 	return real;
 }
 
@@ -128,20 +128,18 @@ const char *nt_json_get_string(const nt_json_value *value, size_t *length)
 		return NULL;
 	if (length)
 		*length = value->size;
-	return value->of.text;
+	return nt_json_text(value);
 }
 
 /* ---- equality ---- */
 
 static bool equal_texts(const nt_json_value *a, const nt_json_value *b)
 {
-	return a->size == b->size && memcmp(a->of.text, b->of.text, a->size) == 0;
+	return a->size == b->size && memcmp(nt_json_text(a), nt_json_text(b), a->size) == 0;
 }
 
 static bool equal_numbers(const nt_json_value *a, const nt_json_value *b)
 {
-	if (equal_texts(a, b))
-		return true;
 	if (a->type != NT_JSON_INTEGER || b->type != NT_JSON_INTEGER)
 		return read_real(a) == read_real(b);
 	bool a_negative, b_negative;
@@ -152,13 +150,10 @@ static bool equal_numbers(const nt_json_value *a, const nt_json_value *b)
 static bool equal_children(const nt_json_value *a, const nt_json_value *b)
 {
 	bool equal = a->size == b->size;
-	for (size_t i = 0; equal && i < a->size; i++) {
-		if (a->type == NT_JSON_OBJECT) {
-			const nt_json_member *x = &nt_json_members(a->of.list)[i], *y = &nt_json_members(b->of.list)[i];
-			equal = x->key_length == y->key_length && memcmp(x->key, y->key, x->key_length) == 0;
-		}
-		equal = equal && nt_json_equal(nt_json_child(a, i), nt_json_child(b, i));
-	}
+	if (equal && a->size && a->type == NT_JSON_OBJECT)
+		equal = nt_json_has_keys(a->of.list->shape, b->of.list->shape->keys, b->size);
+	for (size_t i = 0; equal && i < a->size; i++)
+		equal = nt_json_equal(nt_json_child(a, i), nt_json_child(b, i));
 	return equal;
 }
 

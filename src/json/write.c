@@ -68,8 +68,8 @@ static const char *skip_value(const char *at)
 /* The same for a child that is there. */
 static const char *end_of(const nt_json_value *child)
 {
-	const bool known = !child->made && nt_json_is_container(child) && child->of.list && child->of.list->end;
-	return known ? child->of.list->end : skip_value(child->begin);
+	const bool known = !child->made && nt_json_is_container(child) && child->apart && child->of.list->end;
+	return known ? child->of.list->end : skip_value(nt_json_begin(child));
 }
 
 /* The value of the child that begins here, which has a key in an object. */
@@ -84,7 +84,7 @@ static const char *value_of(const char *child, bool in_object)
 /* Where the first child of a container begins in the old text, or the closing bracket. */
 static const char *first_in_text(const nt_json_value *container)
 {
-	return nt_json_skip_space(container->begin + 1);
+	return nt_json_skip_space(nt_json_begin(container) + 1);
 }
 
 static bool is_closing(char c)
@@ -117,9 +117,9 @@ static slice comma_in_text(const nt_json_value *container)
 	const char *at = first_in_text(container);
 	if (is_closing(*at))
 		return no_text;
-	at = value_of(at, *container->begin == '{');
+	at = value_of(at, *nt_json_begin(container) == '{');
 	const nt_json_value *first = container->size ? nt_json_child(container, 0) : NULL;
-	const char *const end = first && first->begin == at ? end_of(first) : skip_value(at);
+	const char *const end = first && nt_json_begin(first) == at ? end_of(first) : skip_value(at);
 	at = nt_json_skip_space(end);
 	return *at == ',' ? between(end, nt_json_skip_space(at + 1)) : no_text;
 }
@@ -147,7 +147,7 @@ static void find_style(writer *w)
 	if (*first == '"') {
 		const char *const key_end = skip_value(first), *const value = value_of(first, true);
 		w->colon = value - key_end <= MOST_INDENT ? between(key_end, value) : w->colon;
-		const slice comma = root->begin && *root->begin == '{' ? comma_in_text(root) : no_text;
+		const slice comma = nt_json_begin(root) && *nt_json_begin(root) == '{' ? comma_in_text(root) : no_text;
 		if (!w->broken && comma.size && comma.size <= MOST_INDENT)
 			w->comma = comma;
 		else if (w->broken && w->colon.size > 1)
@@ -168,7 +168,7 @@ static void put_line(writer *w, const spacing *s)
 /* How the children of a container are spaced that is in the old text; outer: how it is spaced itself. */
 static spacing spacing_in_text(const nt_json_value *container, const spacing *outer)
 {
-	const char *const first = first_in_text(container), *line = container->begin + 1;
+	const char *const first = first_in_text(container), *line = nt_json_begin(container) + 1;
 	spacing s = *outer;
 	s.units++;
 	if (container->made || is_closing(*first) || first - line > MOST_SPACE)
@@ -204,14 +204,22 @@ static void put_string(writer *w, const char *text, size_t size)
 	nt_buffer_append(w->out, "\"", 1);
 }
 
+static void put_number(writer *w, const nt_json_value *value)
+{
+	if (nt_json_is_counted(value))
+		nt_buffer_format(w->out, "%llu", (unsigned long long)value->size);
+	else
+		put(w, (slice){nt_json_text(value), value->size});
+}
+
 static void put_value(writer *w, const nt_json_value *value, const spacing *outer);
 
 static void put_key(writer *w, const nt_json_value *container, size_t index)
 {
 	if (container->type != NT_JSON_OBJECT)
 		return;
-	const nt_json_member *member = &nt_json_members(container->of.list)[index];
-	put_string(w, member->key, member->key_length);
+	const nt_json_name *key = &container->of.list->shape->keys[index];
+	put_string(w, key->text, key->length);
 	put(w, w->colon);
 }
 
@@ -242,10 +250,10 @@ static void put_value(writer *w, const nt_json_value *value, const spacing *oute
 		break;
 	case NT_JSON_INTEGER:
 	case NT_JSON_REAL:
-		put(w, (slice){value->of.text, value->size});
+		put_number(w, value);
 		break;
 	case NT_JSON_STRING:
-		put_string(w, value->of.text, value->size);
+		put_string(w, nt_json_text(value), value->size);
 		break;
 	case NT_JSON_ARRAY:
 	case NT_JSON_OBJECT:
@@ -272,7 +280,7 @@ static bool write_left(writer *w, const nt_json_value *container, const spacing 
 	while (!is_closing(*child)) {
 		const char *const begin = value_of(child, is_object);
 		const nt_json_value *value = index < container->size ? nt_json_child(container, index) : NULL;
-		const bool is_left = value && value->begin == begin;
+		const bool is_left = value && nt_json_begin(value) == begin;
 		if (is_left) {
 			copy_to(w, left_end ? left_end : first);
 			w->copied = left_end ? end : child;
@@ -285,7 +293,7 @@ static bool write_left(writer *w, const nt_json_value *container, const spacing 
 		if (*child == ',')
 			child = nt_json_skip_space(child + 1);
 	}
-	copy_to(w, left_end ? left_end : index < container->size ? first : container->begin + 1);
+	copy_to(w, left_end ? left_end : index < container->size ? first : nt_json_begin(container) + 1);
 	w->copied = left_end || index < container->size ? end : child;
 	return left_end != NULL;
 }
@@ -300,7 +308,7 @@ static void write_added(writer *w, const nt_json_value *container, size_t first,
 	if (comma.size > MOST_SPACE)
 		comma = no_text;
 	if (was_empty) {
-		copy_to(w, container->begin + 1);
+		copy_to(w, nt_json_begin(container) + 1);
 		w->copied = in_text;
 	}
 	for (size_t i = first; i < container->size; i++) {
@@ -323,23 +331,22 @@ static void write_added(writer *w, const nt_json_value *container, size_t first,
 /* outer: how the container is spaced. */
 static void write_container(writer *w, const nt_json_value *container, const spacing *outer)
 {
-	const nt_json_list *list = container->of.list;
-	if (!list)
+	if (!container->apart)
 		return;
 	size_t added = container->size;
-	while (added && !nt_json_child(container, added - 1)->begin)
+	while (added && !nt_json_begin(nt_json_child(container, added - 1)))
 		added--;
 	const spacing inner = spacing_in_text(container, outer);
 	bool has_before = added > 0;
-	if (list->taken)
+	if (container->taken)
 		has_before = write_left(w, container, &inner);
 	else
 		for (size_t i = 0; i < added; i++)
 			write_value(w, nt_json_child(container, i), &inner);
 	if (added == container->size)
 		return;
-	if (has_before && !list->taken) {
-		const char *end = list->end - 1;
+	if (has_before && !container->taken) {
+		const char *end = container->of.list->end - 1;
 		while (nt_json_is_space(end[-1]))
 			end--;
 		copy_to(w, end);
@@ -351,9 +358,9 @@ static void write_container(writer *w, const nt_json_value *container, const spa
 static void write_value(writer *w, const nt_json_value *value, const spacing *outer)
 {
 	if (value->made) {
-		copy_to(w, value->begin);
+		copy_to(w, nt_json_begin(value));
 		put_value(w, value, outer);
-		w->copied = skip_value(value->begin);
+		w->copied = skip_value(nt_json_begin(value));
 	} else if (nt_json_is_container(value)) {
 		write_container(w, value, outer);
 	}
