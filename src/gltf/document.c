@@ -57,9 +57,8 @@ nt_status nt_gltf_element(const nt_gltf *document, const char *array, uint64_t i
 	const char *from, const nt_json_value **element, nt_error *error)
 {
 	const nt_json_value *elements = nt_gltf_root_member(document, array);
-	const nt_status status = check_array(document, array, error);
-	if (status)
-		return status;
+	if (elements && nt_json_type_of(elements) != NT_JSON_ARRAY)
+		return check_array(document, array, error);
 	if (index >= nt_json_count(elements))
 		return nt_fail_pointer(error, NT_ERROR_INPUT, from,
 			"refers to %s[%llu], there are %zu", array, (unsigned long long)index,
@@ -169,11 +168,13 @@ nt_status nt_gltf_create(nt_gltf **result, const nt_scene *scene, bool allow_out
 		document->buffers = nt_calloc(document->buffer_count, sizeof *document->buffers);
 		document->view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
 		document->virtual_of = nt_alloc(document->view_count, sizeof *document->virtual_of);
-		if (!document->buffers || !document->virtual_of)
+		document->views = nt_alloc(document->view_count, sizeof *document->views);
+		if (!document->buffers || !document->virtual_of || !document->views)
 			status = nt_fail_memory(error);
-		else
-			memset(document->virtual_of, 0xFF,
-				document->view_count * sizeof *document->virtual_of);
+		for (size_t i = 0; !status && i < document->view_count; i++) {
+			document->virtual_of[i] = NT_NONE;
+			document->views[i].buffer = NT_NONE;
+		}
 	}
 	if (status) {
 		nt_gltf_free(document);
@@ -215,6 +216,7 @@ void nt_gltf_free(void *source)
 		document->free_blocks(document->draco_blocks);
 	free(document->virtuals);
 	free(document->virtual_of);
+	free(document->views);
 	free(document->decoded);
 	free(document->buffers);
 	nt_json_free(document->json);

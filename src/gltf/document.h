@@ -47,6 +47,15 @@ typedef struct nt_gltf_decoded {
 /* Numbers of buffers that are no buffers of the document: each holds one decompressed view. */
 #define NT_GLTF_VIRTUAL ((uint32_t)1 << 30)
 
+/* A bufferView. */
+typedef struct nt_gltf_view {
+	uint32_t index;
+	uint32_t buffer;
+	uint64_t offset, length;
+	uint32_t stride; /* 0: none given */
+	const char *compression; /* the extension that compresses it; NULL: none, or already undone */
+} nt_gltf_view;
+
 typedef struct nt_gltf {
 	nt_arena arena;
 	nt_json *json;
@@ -61,6 +70,7 @@ typedef struct nt_gltf {
 	nt_gltf_buffer *virtuals;  /* [virtual_count] decompressed views; buffer NT_GLTF_VIRTUAL + i */
 	size_t virtual_count, virtual_capacity;
 	uint32_t *virtual_of;      /* [view_count] the buffer a view was decompressed to; NT_NONE */
+	nt_gltf_view *views;       /* [view_count] as they were read once; buffer NT_NONE: not yet. view.h */
 	size_t view_count;
 	nt_gltf_decoded *decoded;  /* [accessor_count] what Draco gave; NULL until there is something */
 	size_t accessor_count;

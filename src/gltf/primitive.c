@@ -73,24 +73,41 @@ static bool same_bytes(nt_gltf_accessor a, nt_gltf_accessor b)
 	return compare_accessors(&a, &b) == 0;
 }
 
+/* The view that an accessor names; NT_NONE: none that is there. */
+static uint32_t claimed_view(const nt_gltf *document, const nt_json_value *accessor)
+{
+	uint64_t view;
+	return nt_json_get_uint64(nt_json_find(accessor, "bufferView"), &view) && view < document->view_count ?
+		(uint32_t)view : NT_NONE;
+}
+
 bool nt_gltf_find_first_aliases(nt_gltf *document, uint32_t *first_alias, size_t accessor_count)
 {
-	nt_gltf_accessor *list = nt_alloc(accessor_count, sizeof *list);
-	if (!list)
-		return false;
-	size_t count = 0;
-	for (uint32_t i = 0; i < accessor_count; i++) {
-		first_alias[i] = i;
+	/* Most views have one accessor, about which there is no question. */
+	const nt_json_value *accessors = nt_gltf_root_member(document, "accessors");
+	uint32_t *users = nt_calloc(document->view_count, sizeof *users);
+	size_t shared = 0, count = 0;
+	for (uint32_t i = 0; users && i < accessor_count; i++) {
+		const uint32_t view = first_alias[i] = claimed_view(document, nt_json_at(accessors, i));
+		if (view != NT_NONE)
+			shared += users[view]++ ? 1 + (users[view] == 2) : 0;
+	}
+	nt_gltf_accessor *list = users ? nt_alloc(shared, sizeof *list) : NULL;
+	for (uint32_t i = 0; list && i < accessor_count; i++) {
 		nt_gltf_accessor accessor;
-		if (nt_gltf_get_accessor(document, i, "", &accessor, NULL) == NT_OK &&
+		if (first_alias[i] != NT_NONE && users[first_alias[i]] > 1 &&
+			nt_gltf_get_accessor(document, i, "", &accessor, NULL) == NT_OK &&
 			accessor.view != NT_NONE && !accessor.sparse_count)
 			list[count++] = accessor;
+		first_alias[i] = i;
 	}
 	if (count)
 		qsort(list, count, sizeof *list, compare_accessors);
 	for (size_t i = 1; i < count; i++)
 		if (same_bytes(list[i], list[i - 1]))
 			first_alias[list[i].index] = first_alias[list[i - 1].index];
+	const bool found = list != NULL;
 	free(list);
-	return true;
+	free(users);
+	return found;
 }

@@ -24,8 +24,8 @@ nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **na
 	return NULL;
 }
 
-nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
-	nt_error *error)
+/* As the JSON has it. */
+static nt_status read_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view, nt_error *error)
 {
 	const nt_json_value *json;
 	nt_status status = nt_gltf_element(document, "bufferViews", index, from, &json, error);
@@ -59,12 +59,34 @@ nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, 
 	view->stride = (uint32_t)stride;
 	view->compression = NULL;
 	nt_gltf_compression_of(json, &view->compression);
+	return NT_OK;
+}
+
+nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
+	nt_error *error)
+{
+	nt_gltf_view *const known = index < document->view_count ? &document->views[index] : NULL;
+	if (known && known->buffer != NT_NONE) {
+		*view = *known;
+	} else {
+		const nt_status status = read_view(document, index, from, view, error);
+		if (status)
+			return status;
+		if (known)
+			*known = *view;
+	}
 	if (index < document->view_count && document->virtual_of[index] != NT_NONE) {
 		view->buffer = document->virtual_of[index];
 		view->offset = 0;
 		view->compression = NULL;
 	}
 	return NT_OK;
+}
+
+void nt_gltf_view_changed(nt_gltf *document, uint64_t index)
+{
+	if (index < document->view_count)
+		document->views[index].buffer = NT_NONE;
 }
 
 /* ---- decompression ---- */

@@ -7,17 +7,12 @@
 
 #include "gltf/document.h"
 
-typedef struct nt_gltf_view {
-	uint32_t index;
-	uint32_t buffer;
-	uint64_t offset, length;
-	uint32_t stride; /* 0: none given */
-	const char *compression; /* the extension that compresses it; NULL: none, or already undone */
-} nt_gltf_view;
-
 /* A bufferView, checked against its buffer's byteLength. */
 nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
 	nt_error *error);
+
+/* The JSON of a view has changed. */
+void nt_gltf_view_changed(nt_gltf *document, uint64_t index);
 
 /* The extension object of a compressed view; NULL: none. *name (may be NULL) receives the extension. */
 nt_json_value *nt_gltf_compression_of(const nt_json_value *view, const char **name);

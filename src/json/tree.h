@@ -118,7 +118,7 @@ static inline const char *nt_json_skip_space(const char *at)
 
 static inline bool nt_json_same_key(const nt_json_name *a, const nt_json_name *b)
 {
-	return a->length == b->length && memcmp(a->text, b->text, a->length) == 0;
+	return a->length == b->length && *a->text == *b->text && memcmp(a->text, b->text, a->length) == 0;
 }
 
 /* The index of a key in a shape, of the first that is so; `count`: it has none. */

@@ -124,7 +124,11 @@ bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document, const nt_vertex
 	free(view_used);
 	if (!added)
 		return false;
-	if (users->count)
+	/* mostly they come in their order */
+	bool sorted = true;
+	for (size_t i = 1; sorted && i < users->count; i++)
+		sorted = compare_users(&users->list[i - 1], &users->list[i]) <= 0;
+	if (!sorted)
 		qsort(users->list, users->count, sizeof *users->list, compare_users);
 	for (size_t i = 0; i < users->count; i++) {
 		nt_byte_user *user = &users->list[i];
