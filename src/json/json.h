@@ -115,12 +115,20 @@ void nt_json_set_object(nt_json *document, nt_json_value *value); /* empty */
 void nt_json_set_copy(nt_json *document, nt_json_value *value, const nt_json_value *from);
 
 /*
- * Appends the document's text to a buffer: as it was parsed, but for the values that were set and the members and
- * elements that were added or taken out. These are spaced as their neighbours are, else as the first member of the
+ * Hands the document's text on, some of it at a time: as it was parsed, but for the values that were set and the members
+ * and elements that were added or taken out. These are spaced as their neighbours are, else as the first member of the
  * document is. The same document gives the same bytes.
  *
- * Returns NT_OK, or NT_ERROR_MEMORY, also where a change before ran out of memory.
+ * Returns NT_OK, NT_ERROR_MEMORY, also where a change before ran out of memory, or what `take` returned, which has
+ * filled the error then and is not called again.
  */
+typedef nt_status (*nt_json_put_text)(void *user, const char *text, size_t size);
+nt_status nt_json_write(const nt_json *document, nt_json_put_text take, void *user, nt_error *error);
+
+/* The length of that text. */
+nt_status nt_json_measure(const nt_json *document, uint64_t *size, nt_error *error);
+
+/* Appends that text to a buffer. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_json_dump(const nt_json *document, nt_buffer *text, nt_error *error);
 
 #endif

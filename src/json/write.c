@@ -5,6 +5,7 @@
  * neighbours: commas as between the first two children of its container, lines as before the first one; without
  * such, as at the beginning of the document.
  */
+#include <stdlib.h>
 #include "json/tree.h"
 
 /* Some bytes of the document's text, or constant ones. */
@@ -21,9 +22,17 @@ typedef struct spacing {
 	size_t units;
 } spacing;
 
+/* So many bytes are handed on at a time. */
+enum { PIECE_BYTES = 64 * 1024 };
+
 typedef struct writer {
 	const nt_json *document;
-	nt_buffer *out;
+	nt_json_put_text take; /* NULL: the text is only measured */
+	void *user;
+	nt_status status;      /* of take() */
+	char *piece;           /* [PIECE_BYTES], `used` of which wait */
+	size_t used;
+	uint64_t size;         /* of the text so far */
 	const char *copied; /* the old text is written, or skipped, up to here */
 	/* as the document begins */
 	bool broken;
@@ -36,9 +45,33 @@ enum { MOST_SPACE = 256, MOST_INDENT = 16 };
 
 static const slice no_text = {"", 0};
 
+static void flush(writer *w)
+{
+	if (w->used && !w->status)
+		w->status = w->take(w->user, w->piece, w->used);
+	w->used = 0;
+}
+
+/* Room for some of the next `size` bytes, *part of them, which are there at once. */
+static char *extend(writer *w, size_t size, size_t *part)
+{
+	if (w->used == PIECE_BYTES)
+		flush(w);
+	*part = size < PIECE_BYTES - w->used ? size : PIECE_BYTES - w->used;
+	char *const to = w->piece + w->used;
+	w->used += *part;
+	return to;
+}
+
 static void put(writer *w, slice s)
 {
-	nt_buffer_append(w->out, s.begin, s.size);
+	w->size += s.size;
+	if (!w->take)
+		return;
+	for (size_t part; s.size; s.begin += part, s.size -= part) {
+		char *const to = extend(w, s.size, &part);
+		memcpy(to, s.begin, part);
+	}
 }
 
 /* ---- the old text ---- */
@@ -92,15 +125,32 @@ static bool is_closing(char c)
 	return c == '}' || c == ']';
 }
 
-/* Copies the old text up to there; closing quotes were NULs. */
+/* Copies old text; closing quotes were NULs. */
+static void restore_quotes(char *to, const char *from, size_t size)
+{
+	static const uint64_t low = 0x7F7F7F7F7F7F7F7Fu;
+	size_t i = 0;
+	for (; i + 8 <= size; i += 8) {
+		uint64_t bytes;
+		memcpy(&bytes, from + i, sizeof bytes);
+		/* 1 in each byte that is 0 */
+		const uint64_t zeros = ~(((bytes & low) + low) | bytes | low) >> 7;
+		bytes |= zeros * '"';
+		memcpy(to + i, &bytes, sizeof bytes);
+	}
+	for (; i < size; i++)
+		to[i] = from[i] ? from[i] : '"';
+}
+
+/* Copies the old text up to there. */
 static void copy_to(writer *w, const char *end)
 {
-	const size_t size = (size_t)(end - w->copied);
-	char *to = size ? nt_buffer_extend(w->out, size) : NULL;
-	if (!to)
-		return;
-	for (size_t i = 0; i < size; i++)
-		to[i] = w->copied[i] ? w->copied[i] : '"';
+	size_t size = (size_t)(end - w->copied);
+	w->size += size;
+	for (size_t part; w->take && size; w->copied += part, size -= part) {
+		char *const to = extend(w, size, &part);
+		restore_quotes(to, w->copied, part);
+	}
 	w->copied = end;
 }
 
@@ -188,28 +238,35 @@ static spacing spacing_in_text(const nt_json_value *container, const spacing *ou
 static void put_string(writer *w, const char *text, size_t size)
 {
 	static const char escaped[] = "\"\\\b\f\n\r\t", letters[] = "\"\\bfnrt";
-	nt_buffer_append(w->out, "\"", 1);
+	put(w, (slice){"\"", 1});
 	for (size_t i = 0, plain = 0; i <= size; i++) {
 		const unsigned char c = i < size ? (unsigned char)text[i] : 0;
 		if (c >= 0x20 && c != '"' && c != '\\')
 			continue;
-		nt_buffer_append(w->out, text + plain, i - plain);
+		put(w, (slice){text + plain, i - plain});
 		plain = i + 1;
 		const char *known = c ? strchr(escaped, c) : NULL;
+		const char hex[] = {'\\', 'u', '0', '0', "01"[c >> 4 & 1], "0123456789abcdef"[c & 15]};
 		if (known)
-			nt_buffer_format(w->out, "\\%c", letters[known - escaped]);
+			put(w, (slice){(const char[]){'\\', letters[known - escaped]}, 2});
 		else if (i < size)
-			nt_buffer_format(w->out, "\\u%04x", c);
+			put(w, (slice){hex, sizeof hex});
 	}
-	nt_buffer_append(w->out, "\"", 1);
+	put(w, (slice){"\"", 1});
 }
 
 static void put_number(writer *w, const nt_json_value *value)
 {
-	if (nt_json_is_counted(value))
-		nt_buffer_format(w->out, "%llu", (unsigned long long)value->size);
-	else
+	char digits[20], *first = digits + sizeof digits;
+	if (!nt_json_is_counted(value)) {
 		put(w, (slice){nt_json_text(value), value->size});
+		return;
+	}
+	uint64_t number = value->size;
+	do {
+		*--first = (char)('0' + number % 10);
+	} while (number /= 10);
+	put(w, between(first, digits + sizeof digits));
 }
 
 static void put_value(writer *w, const nt_json_value *value, const spacing *outer);
@@ -366,14 +423,48 @@ static void write_value(writer *w, const nt_json_value *value, const spacing *ou
 	}
 }
 
-nt_status nt_json_dump(const nt_json *document, nt_buffer *text, nt_error *error)
+static nt_status write_text(writer *w)
+{
+	w->unit = no_text;
+	w->copied = w->document->text;
+	find_style(w);
+	const spacing outer = {.broken = w->broken, .base = no_text};
+	write_value(w, &w->document->root, &outer);
+	copy_to(w, w->document->text + w->document->size);
+	if (w->take)
+		flush(w);
+	return w->status;
+}
+
+nt_status nt_json_measure(const nt_json *document, uint64_t *size, nt_error *error)
 {
 	if (document->failed)
 		return nt_fail_memory(error);
-	writer w = {.document = document, .out = text, .copied = document->text, .unit = no_text};
-	find_style(&w);
-	const spacing outer = {.broken = w.broken, .base = no_text};
-	write_value(&w, &document->root, &outer);
-	copy_to(&w, document->text + document->size);
-	return text->failed ? nt_fail_memory(error) : NT_OK;
+	writer w = {.document = document};
+	write_text(&w);
+	*size = w.size;
+	return NT_OK;
+}
+
+nt_status nt_json_write(const nt_json *document, nt_json_put_text take, void *user, nt_error *error)
+{
+	char *piece = document->failed ? NULL : nt_alloc(PIECE_BYTES, 1);
+	if (!piece)
+		return nt_fail_memory(error);
+	writer w = {.document = document, .take = take, .user = user, .piece = piece};
+	const nt_status status = write_text(&w);
+	free(piece);
+	return status;
+}
+
+static nt_status append_text(void *user, const char *text, size_t size)
+{
+	nt_buffer *buffer = user;
+	nt_buffer_append(buffer, text, size);
+	return buffer->failed ? NT_ERROR_MEMORY : NT_OK;
+}
+
+nt_status nt_json_dump(const nt_json *document, nt_buffer *text, nt_error *error)
+{
+	return nt_json_write(document, append_text, text, error) ? nt_fail_memory(error) : NT_OK;
 }

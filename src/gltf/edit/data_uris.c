@@ -5,7 +5,7 @@
  * copy, and the text.
  *
  * Where a buffer's data belongs is found by making the text twice, once with a character in its place: where
- * the texts differ.
+ * the texts differ. Without data URIs the text is never in memory as a whole.
  */
 #include "gltf/edit/data_uris.h"
 
@@ -53,10 +53,12 @@ nt_status nt_data_uris_text(nt_data_uris *uris, nt_buffer *text, uint64_t *lengt
 {
 	nt_gltf *document = uris->relocated->document;
 	nt_buffer marked = {0};
+	if (!uris->count)
+		return nt_json_measure(document->json, length, error);
 	nt_status status = nt_json_dump(document->json, text, error);
 	for (size_t i = 0; !status && i < uris->count; i++)
 		status = set_data(document, uris->buffers[i].buffer, "A", error);
-	if (!status && uris->count)
+	if (!status)
 		status = nt_json_dump(document->json, &marked, error);
 	*length = text->size;
 	/* buffers come in their order, wherever the array stands */
@@ -72,10 +74,23 @@ nt_status nt_data_uris_text(nt_data_uris *uris, nt_buffer *text, uint64_t *lengt
 	return status;
 }
 
+typedef struct text_sink {
+	nt_sink *sink;
+	nt_error *error;
+} text_sink;
+
+static nt_status put_text(void *user, const char *text, size_t size)
+{
+	const text_sink *to = user;
+	return nt_sink_write(to->sink, text, size, to->error);
+}
+
 nt_status nt_data_uris_write(const nt_data_uris *uris, const nt_buffer *text, nt_sink *sink, nt_error *error)
 {
 	size_t written = 0;
 	nt_status status = NT_OK;
+	if (!uris->count)
+		return nt_json_write(uris->relocated->document->json, put_text, &(text_sink){sink, error}, error);
 	for (size_t i = 0; !status && i < uris->count; i++) {
 		const nt_data_uri *uri = &uris->buffers[i];
 		nt_base64 base64 = {.sink = sink};
