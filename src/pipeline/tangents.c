@@ -302,6 +302,9 @@ static nt_status solve_small(tangent_job *job)
 		nt_arena_join(&job->scene->arena, &job->solvers[i].arena);
 	}
 	free(job->solvers);
+	/* what passed while they were solved is too little each time to be let go of */
+	if (job->forgets && corners >= LARGE_CORNERS)
+		job->scene->forget(job->scene, NULL, 0);
 	return NT_OK;
 }
 

@@ -234,13 +234,24 @@ static nt_status put_source(nt_gltf *document, nt_gltf_buffer *buffer,
 	return status ? status : put_zeros(to, end - there, error);
 }
 
+/* Pages of a source buffer that was written up to there. */
+static void release(const nt_gltf *document, const nt_gltf_buffer *buffer, const nt_file *input, uint64_t begin,
+	uint64_t end)
+{
+	if (buffer->storage == NT_GLTF_STORED_FILE)
+		nt_file_release(&buffer->file, (size_t)begin, (size_t)(end - begin));
+	else if (buffer->storage == NT_GLTF_STORED_BIN && input)
+		nt_file_release(input, document->glb.bin.offset + (size_t)begin, (size_t)(end - begin));
+}
+
 static nt_status put_buffer(nt_gltf *document, const nt_relocated_buffer *buffer, uint32_t index, const target *to,
 	nt_error *error)
 {
+	enum { RELEASED_BYTES = 2 << 20 };
 	const nt_edited_buffer *from = buffer->from;
 	nt_gltf_buffer *source = NULL;
 	nt_status status = NT_OK;
-	uint64_t at = 0, written = map_position(buffer, from->old_length);
+	uint64_t at = 0, released = 0, written = map_position(buffer, from->old_length);
 	if (from->old_length && index < NT_GLTF_VIRTUAL && document->buffers[index].storage == NT_GLTF_STORED_NOWHERE)
 		return put_zeros(to, from->old_length, error);
 	if (from->old_length)
@@ -259,6 +270,11 @@ static nt_status put_buffer(nt_gltf *document, const nt_relocated_buffer *buffer
 		if (!status)
 			status = put_bytes(to, edit->bytes, edit->size, error);
 		at = edit->at + edit->removed;
+		/* many small edits come to as much as a large range, which is not kept in memory either */
+		if (source && at - released >= RELEASED_BYTES) {
+			release(document, source, to->input, released, at);
+			released = at;
+		}
 	}
 	if (!status && source)
 		status = put_source(document, source, to, at, from->old_length, error);
