@@ -132,6 +132,20 @@ void nt_arena_join(nt_arena *arena, nt_arena *other)
 	other->blocks = NULL;
 }
 
+void nt_arena_clear(nt_arena *arena)
+{
+	struct nt_arena_block *kept = arena->blocks;
+	if (!kept || kept->adopted || kept->capacity > SMALL_BLOCK_BYTES) {
+		nt_arena_free(arena);
+		return;
+	}
+	arena->blocks = kept->next;
+	nt_arena_free(arena);
+	kept->next = NULL;
+	kept->used = 0;
+	arena->blocks = kept;
+}
+
 void nt_arena_free(nt_arena *arena)
 {
 	struct nt_arena_block *block = arena->blocks;

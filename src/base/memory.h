@@ -54,6 +54,9 @@ bool nt_arena_adopt(nt_arena *arena, void *block);
 /* Takes over everything in another arena, which is empty afterwards. */
 void nt_arena_join(nt_arena *arena, nt_arena *other);
 
+/* Everything in the arena is gone; some memory is kept for what comes next. */
+void nt_arena_clear(nt_arena *arena);
+
 /* Frees everything; the arena is empty afterwards. */
 void nt_arena_free(nt_arena *arena);
 

@@ -109,9 +109,17 @@ same late.glb once.glb
 
 scene "$parts primitives with accessors of their own"
 inputs scene "$parts" p.glb
-within 10 1300 -q p.glb out.glb
+within 4 500 -q p.glb out.glb
 exits 0
 is "$(gltf out.glb 'g.accessors.length')" $((5 * parts))
+rm out.glb
+
+scene "$((parts / 2)) primitives whose vertices are split"
+inputs scene $((parts / 2)) p.glb 5
+within 4 500 -q p.glb out.glb
+exits 0
+is "$(gltf out.glb 'g.accessors.length')" $((5 * parts / 2))
+is "$(gltf out.glb 'g.accessors[0].count > 36')" true
 rm out.glb
 
 scene "the page of a long strip grows its sample in linear time"

@@ -117,7 +117,7 @@ bool nt_byte_users_find(nt_byte_users *users, nt_gltf *document, const nt_vertex
 	const size_t view_count = nt_json_count(nt_gltf_root_member(document, "bufferViews"));
 	const size_t accessor_count = nt_json_count(nt_gltf_root_member(document, "accessors"));
 	bool *view_used = nt_calloc(view_count, sizeof *view_used);
-	bool added = view_used != NULL;
+	bool added = view_used && nt_grow((void **)&users->list, &users->capacity, accessor_count, sizeof *users->list);
 	for (size_t i = 0; added && i < accessor_count; i++)
 		added = add_accessor(users, document, pools, (uint32_t)i, view_used);
 	added = added && add_whole_views(users, document, view_used, view_count);

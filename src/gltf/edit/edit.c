@@ -29,6 +29,7 @@ typedef struct editing {
 	const nt_write_options *options;
 	nt_vertex_pools *pools;
 	nt_buffer_edits *edits;
+	nt_arena *of_pool; /* what is needed while one pool is edited */
 	nt_error *error;
 } editing;
 
@@ -189,8 +190,8 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 		return status;
 
 	/* Tangents that are there keep their accessor, and their place where that will do. */
-	nt_gltf_override *overrides = nt_arena_alloc(&e->edits->arena, pool->user_count, sizeof *overrides);
-	nt_gltf_old_tangents *old = nt_arena_alloc(&e->edits->arena, pool->sets.count, sizeof *old);
+	nt_gltf_override *overrides = nt_arena_alloc(e->of_pool, pool->user_count, sizeof *overrides);
+	nt_gltf_old_tangents *old = nt_arena_alloc(e->of_pool, pool->sets.count, sizeof *old);
 	if (!overrides || !old)
 		return nt_fail_memory(e->error);
 	size_t override_count;
@@ -255,7 +256,8 @@ static nt_status edit_pools(const editing *e)
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < e->pools->count; i++) {
 		nt_vertex_pool pool;
-		status = nt_vertex_pools_get(e->pools, i, &e->edits->arena, &pool, e->error);
+		nt_arena_clear(e->of_pool);
+		status = nt_vertex_pools_get(e->pools, i, e->of_pool, &pool, e->error);
 		if (!status && pool.sets.count)
 			status = edit_pool(e, &pool, &plain);
 	}
@@ -280,7 +282,7 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 	/* Who shares what, and which bytes may change. */
 	if (options->morphs == NT_MORPH_DROP)
 		drop_target_tangents(scene);
-	nt_arena arena = {0};
+	nt_arena arena = {0}, of_pool = {0};
 	nt_vertex_pools pools;
 	nt_buffer_edits edits = {0};
 	nt_geometry_total *totals = NULL;
@@ -291,9 +293,11 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 		status = nt_fail_memory(error);
 
 	/* The edits, and with them the document. */
-	const editing e = {.scene = scene, .options = options, .pools = &pools, .edits = &edits, .error = error};
+	const editing e = {.scene = scene, .options = options, .pools = &pools, .edits = &edits,
+		.of_pool = &of_pool, .error = error};
 	if (!status)
 		status = edit_pools(&e);
+	nt_arena_free(&of_pool);
 	if (!status && nt_geometry_metadata_follow(scene, totals, &arena))
 		status = nt_fail_memory(error);
 	if (!status)

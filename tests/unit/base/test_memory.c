@@ -53,6 +53,11 @@ static void arena_blocks_are_apart_and_aligned(void **state)
 	assert_non_null(nt_arena_alloc(&arena, 100000, 1));
 	assert_true(nt_arena_adopt(&arena, malloc(100)));
 	assert_ptr_equal(nt_arena_alloc(&arena, 16, 1), one + 16);
+	/* what was adopted goes, the block of small requests stays */
+	nt_arena_clear(&arena);
+	assert_non_null(arena.blocks);
+	char *const again = nt_arena_alloc(&arena, 16, 1);
+	assert_ptr_equal(nt_arena_alloc(&arena, 16, 1), again + 16);
 	nt_arena_free(&arena);
 	assert_null(arena.blocks);
 }

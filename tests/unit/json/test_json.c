@@ -21,8 +21,11 @@ static void check_dump(const nt_json *document, const char *expected)
 {
 	nt_buffer text = {0};
 	nt_error error;
+	uint64_t size;
 	assert_int_equal(nt_json_dump(document, &text, &error), NT_OK);
 	assert_string_equal(text.data, expected);
+	assert_int_equal(nt_json_measure(document, &size, &error), NT_OK);
+	assert_int_equal(size, text.size);
 	nt_buffer_free(&text);
 }
 
@@ -309,6 +312,67 @@ static void numbers_have_checked_types(void **state)
 	nt_json_free(document);
 }
 
+/* Some are kept as numbers, some as text. */
+static void integers_of_all_sizes_are_set(void **state)
+{
+	(void)state;
+	static const uint64_t numbers[] = {0, 7, 0xFFFFFFFFFFFFu, 0x1000000000000u, UINT64_MAX};
+	nt_json *document = parse("{\"old\":[1,2,3,4,5],\"end\":0}");
+	nt_json_value *root = nt_json_root(document);
+	for (size_t i = 0; i < 5; i++) {
+		nt_json_value *new = nt_json_append(document, nt_json_put(document, root, "new"));
+		nt_json_set_uint64(document, new, numbers[i]);
+		nt_json_set_uint64(document, nt_json_at(nt_json_find(root, "old"), i), numbers[i]);
+		uint64_t read;
+		assert_true(nt_json_get_uint64(new, &read));
+		assert_int_equal(read, numbers[i]);
+	}
+	assert_true(nt_json_equal(nt_json_find(root, "old"), nt_json_find(root, "new")));
+	nt_json_set_copy(document, nt_json_put(document, root, "copy"), nt_json_find(root, "new"));
+	check_dump(document, "{\"old\":[0,7,281474976710655,281474976710656,18446744073709551615],\"end\":0,"
+		"\"new\":[0,7,281474976710655,281474976710656,18446744073709551615],"
+		"\"copy\":[0,7,281474976710655,281474976710656,18446744073709551615]}");
+	nt_json_set_uint64(document, nt_json_find(root, "copy"), 5);
+	nt_json_set_bool(document, nt_json_find(root, "end"), true);
+	nt_json_remove(document, root, "new");
+	check_dump(document, "{\"old\":[0,7,281474976710655,281474976710656,18446744073709551615],\"end\":true,\"copy\":5}");
+	nt_json_free(document);
+}
+
+typedef struct pieces {
+	size_t count, most;
+} pieces;
+
+static nt_status count_piece(void *user, const char *text, size_t size)
+{
+	(void)text;
+	(void)size;
+	pieces *p = user;
+	p->count++;
+	return p->count == p->most ? NT_ERROR_IO : NT_OK;
+}
+
+/* Strings, whose quotes are put back, begin and end everywhere in the pieces. */
+static void long_text_comes_in_pieces(void **state)
+{
+	(void)state;
+	nt_buffer text = {0};
+	nt_buffer_text(&text, "[");
+	for (unsigned i = 0; i < 30000; i++)
+		nt_buffer_format(&text, "%s{\"%.*s\":\"\xC3\xA9%u\"}", i ? "," : "", (int)(1 + i % 11), "abcdefghijkl", i);
+	nt_buffer_text(&text, "]");
+	nt_json *document = parse(text.data);
+	check_dump(document, text.data);
+	nt_error error;
+	pieces all = {0}, some = {.most = 3};
+	assert_int_equal(nt_json_write(document, count_piece, &all, &error), NT_OK);
+	assert_true(all.count > 5);
+	assert_int_equal(nt_json_write(document, count_piece, &some, &error), NT_ERROR_IO);
+	assert_int_equal(some.count, 3);
+	nt_json_free(document);
+	nt_buffer_free(&text);
+}
+
 static void look_ups_of_nothing_give_nothing(void **state)
 {
 	(void)state;
@@ -438,6 +502,8 @@ int main(void)
 		cmocka_unit_test(several_edits_of_one_container),
 		cmocka_unit_test(long_white_space_is_not_repeated),
 		cmocka_unit_test(numbers_have_checked_types),
+		cmocka_unit_test(integers_of_all_sizes_are_set),
+		cmocka_unit_test(long_text_comes_in_pieces),
 		cmocka_unit_test(look_ups_of_nothing_give_nothing),
 		cmocka_unit_test(escapes_are_what_they_stand_for),
 		cmocka_unit_test(changes_keep_the_order_of_the_rest),
