@@ -52,7 +52,7 @@ NT_CFLAGS := -std=c11 -D_GNU_SOURCE $(COMMON) -Wshadow -Wstrict-prototypes -Wmis
 	-Wvla $(CFLAGS)
 NT_CXXFLAGS := -std=c++17 -fvisibility-inlines-hidden $(COMMON) $(CXXFLAGS)
 NT_LDFLAGS := $(flags_$(config)) -pthread $(LDFLAGS)
-TOOL_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lspng -ljpeg -ltiff -lm
+TOOL_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lspng -ljpeg -ltiff -ldeflate -lm
 
 # The compute library: no files, no C++.
 core_src := src/base/status.c src/base/pages.c src/base/parallel.c src/base/pool.c src/base/cpu.c src/base/scratch.c \

@@ -150,6 +150,7 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 	plan->options.measures = plan->target.path && plan->target.format == NT_REPORT_JSON && !command->diff;
 	plan->options.keep_geometry = command->uv_image || command->diff ||
 		(plan->target.path && plan->target.format == NT_REPORT_HTML);
+	plan->options.keep_frames = plan->target.path && plan->target.format == NT_REPORT_HTML && !command->diff;
 	return status;
 }
 

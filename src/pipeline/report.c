@@ -22,7 +22,7 @@ static nt_status copy_normal_map(nt_arena *arena, const nt_scene *scene, const n
 		void *copy = nt_arena_alloc(arena, map.size, 1);
 		if (copy)
 			*image = (nt_image){memcpy(copy, map.bytes, map.size), map.size,
-				nt_image_media_type(map.type)};
+				nt_image_media_type(map.type), {1, 0, 0, 0, 1, 0}};
 		else
 			status = NT_ERROR_MEMORY;
 	}

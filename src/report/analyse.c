@@ -116,46 +116,96 @@ static void *copy_block(nt_arena *arena, const void *block, size_t count, size_t
 	return copy ? memcpy(copy, block, count * size) : NULL;
 }
 
+/* Vertices as pictures have them: those of the mesh, and the copies that a split appends. */
+typedef struct picture_vertices {
+	const uint32_t *indices;  /* [mesh corner_count]; NULL: the mesh's own */
+	const uint32_t *sources;  /* [source_count] */
+	size_t source_count;
+	const float *tangents;    /* [vertex_count + source_count][4] that nmtan computes; NULL: none */
+} picture_vertices;
+
+/* Solves a mesh that no stage solved, for its picture. */
+static nt_status solve_for_picture(const nt_check *check, picture_vertices *picture)
+{
+	const nt_mesh *mesh = check->mesh;
+	uint32_t *indices = nt_scratch_alloc(check->scratch, mesh->corner_count, sizeof *indices);
+	uint32_t *sources = nt_scratch_alloc(check->scratch, mesh->corner_count, sizeof *sources);
+	float *tangents = nt_scratch_alloc(check->scratch, mesh->vertex_count + mesh->corner_count, 4 * sizeof *tangents);
+	if (!indices || !sources || !tangents)
+		return NT_ERROR_MEMORY;
+	nmtan_stored_uv stored;
+	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
+	const nmtan_options options = {.struct_bytes = sizeof options, .threads = check->options->threads};
+	nmtan_split_output output = {.struct_bytes = sizeof output, .indices = indices, .sources = sources,
+		.source_capacity = mesh->corner_count, .vertex_tangents = tangents};
+	const nt_status status = nt_status_of(nmtan_vertex_tangents(&view, &options, &output, NULL));
+	*picture = (picture_vertices){indices, sources, output.source_count, tangents};
+	return status;
+}
+
+static nt_status find_picture(const nt_check *check, picture_vertices *picture)
+{
+	const nt_mesh *mesh = check->mesh;
+	*picture = (picture_vertices){0};
+	if (check->stored == NT_STORED_SPLIT)
+		*picture = (picture_vertices){mesh->split.indices, mesh->split.sources, mesh->split.source_count,
+			mesh->split.vertex_tangents};
+	else if (check->options->keep_frames && mesh->normals && mesh->texcoords)
+		return solve_for_picture(check, picture);
+	return NT_OK;
+}
+
+/* Copies rows of `width` floats of the picture's vertices; NULL where there are none. */
+static float *copy_rows(const nt_check *check, const picture_vertices *picture, const float *rows, size_t width,
+	bool *failed)
+{
+	const size_t own = check->mesh->vertex_count;
+	if (!rows)
+		return NULL;
+	float *copy = nt_arena_alloc(&check->report->arena, own + picture->source_count, width * sizeof *copy);
+	*failed |= !copy;
+	if (!copy)
+		return NULL;
+	memcpy(copy, rows, own * width * sizeof *copy);
+	for (size_t i = 0; i < picture->source_count; i++)
+		memcpy(copy + width * (own + i), rows + width * picture->sources[i], width * sizeof *copy);
+	return copy;
+}
+
 static nt_status keep_geometry(nt_check *check)
 {
 	const nt_mesh *mesh = check->mesh;
 	const nt_surface *s = &check->surface;
 	nt_arena *arena = &check->report->arena;
-	const bool split = check->stored == NT_STORED_SPLIT;
-	bool failed = false;
+	picture_vertices picture;
+	nt_status status = find_picture(check, &picture);
 	nt_report_geometry *g = nt_arena_alloc(arena, 1, sizeof *g);
-	if (!g)
-		return NT_ERROR_MEMORY;
+	if (status || !g)
+		return status ? status : NT_ERROR_MEMORY;
+	bool failed = false;
 	*g = (nt_report_geometry){.triangle_count = s->triangle_count,
-		.vertex_count = mesh->vertex_count + (split ? mesh->split.source_count : 0)};
-	g->positions = nt_arena_alloc(arena, 3 * g->vertex_count, sizeof(float));
-	g->normals = mesh->normals ? nt_arena_alloc(arena, 3 * g->vertex_count, sizeof(float)) : NULL;
-	g->texcoords = mesh->texcoords ? nt_arena_alloc(arena, 2 * g->vertex_count, sizeof(float)) : NULL;
-	g->indices = nt_arena_alloc(arena, 3 * s->triangle_count, sizeof *g->indices);
-	g->tangents = split ? copy_block(arena, mesh->split.vertex_tangents, g->vertex_count,
-				      4 * sizeof(float), &failed)
-			    : copy_block(arena, mesh->tangents, g->vertex_count, 4 * sizeof(float), &failed);
+		.vertex_count = mesh->vertex_count + picture.source_count};
+	g->positions = copy_rows(check, &picture, mesh->positions, 3, &failed);
+	g->normals = copy_rows(check, &picture, mesh->normals, 3, &failed);
+	g->texcoords = copy_rows(check, &picture, mesh->texcoords, 2, &failed);
+	g->authored = copy_rows(check, &picture, mesh->tangents, 4, &failed);
+	g->computed = copy_block(arena, picture.tangents, g->vertex_count, 4 * sizeof(float), &failed);
+	g->tangents = check->stored == NT_STORED_SPLIT ? g->computed : g->authored;
 	g->orientation = copy_block(arena, s->orientation, s->triangle_count, 1, &failed);
 	g->islands = copy_block(arena, check->islands, s->triangle_count, sizeof(uint32_t), &failed);
-	if (failed || !g->positions || !g->indices || (mesh->normals && !g->normals) ||
-		(mesh->texcoords && !g->texcoords))
+	g->indices = nt_arena_alloc(arena, 3 * s->triangle_count, sizeof *g->indices);
+	if (failed || !g->indices)
 		return NT_ERROR_MEMORY;
-	for (size_t v = 0; v < g->vertex_count; v++) {
-		const size_t from = v < mesh->vertex_count ? v : mesh->split.sources[v - mesh->vertex_count];
-		memcpy(g->positions + 3 * v, mesh->positions + 3 * from, 3 * sizeof(float));
-		if (g->normals)
-			memcpy(g->normals + 3 * v, mesh->normals + 3 * from, 3 * sizeof(float));
-		if (g->texcoords)
-			nt_source_texcoord(check->scene, mesh->texcoords + 2 * from, g->texcoords + 2 * v);
-	}
+	for (size_t v = 0; v < g->vertex_count && g->texcoords; v++)
+		nt_source_texcoord(check->scene, g->texcoords + 2 * v, g->texcoords + 2 * v);
 	for (size_t c = 0; c < 3 * s->triangle_count; c++)
-		g->indices[c] = split && mesh->split.indices ? mesh->split.indices[nt_side_corner(s, c)] : s->vertices[c];
+		g->indices[c] = picture.indices ? picture.indices[nt_side_corner(s, c)] : s->vertices[c];
 	check->facts->geometry = g;
 	return NT_OK;
 }
 
-/* Of all images together: more has no place in a page of 20 MB. */
-static const size_t MOST_IMAGE_BYTES = 2000000;
+/* Of all images of a report together. */
+static const size_t MOST_IMAGE_BYTES = 16000000;
 
 static nt_status keep_normal_map(nt_check *check, size_t *most_bytes)
 {

@@ -38,6 +38,8 @@ typedef struct nt_image {
 	const unsigned char *bytes;
 	size_t size;
 	const char *type; /* static */
+	/* Where a normal map is looked up: u' = t[0] u + t[1] v + t[2], v' = t[3] u + t[4] v + t[5], v pointing down. */
+	float transform[6];
 } nt_image;
 
 /* Zero-initialised means the defaults. */
@@ -49,6 +51,8 @@ typedef struct nt_report_options {
 	size_t max_findings;          /* findings kept; 0: all */
 	const nt_baseline *baseline;  /* NULL: none */
 	bool keep_geometry;           /* for pictures: SVG and HTML */
+	bool keep_frames;             /* with geometry: the file's tangents, and computed ones, which are solved where no
+	                                 stage did */
 	bool measures;                /* texel density and stretch of islands, and what splitting costs */
 	/* Gives the size of a mesh's normal map in pixels, 0 0 where it is not known. NULL: nobody can. */
 	nt_status (*find_map_size)(const nt_scene *scene, const nt_mesh *mesh, uint32_t pixels[2]);
@@ -156,6 +160,8 @@ typedef struct nt_report_geometry {
 	size_t vertex_count, triangle_count;
 	float *positions, *normals, *texcoords, *tangents; /* NULL: none. Texcoords as the source has them,
 	                                                      tangents with w as the checks see it, v up */
+	float *authored;       /* tangents of the input; NULL: none, or not kept. May be `tangents` */
+	float *computed;       /* tangents that nmtan computes; NULL: as before */
 	uint32_t *indices;     /* [triangle_count][3] */
 	int8_t *orientation;   /* [triangle_count] */
 	uint32_t *islands;     /* [triangle_count], NT_NONE: none */

@@ -217,7 +217,7 @@ static void test_run(const uint8_t *bytes, size_t size)
 	uint32_t chance = 2166136261u;
 	for (size_t i = 0; i < size; i++)
 		chance = (chance ^ bytes[i]) * 16777619u;
-	const nt_report_options report = {.threads = 1, .keep_geometry = true};
+	const nt_report_options report = {.threads = 1, .keep_geometry = true, .keep_frames = true};
 	const char *name;
 	char output[100];
 	told = any_settings(input, &chance, &report, &name);

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// page.mjs PAGE.html FACT...: opens an HTML report in Chromium and checks what a reader does with it. The
-// page is that of test_page.sh: object "plain" (blue, u 0 to 0.4), object "<script>window.broken=1</script>"
-// (mirrored, u 0.6 to 1). Prints one line per check that fails, and the number of checks that passed.
+// page.mjs MODULES FOLDER: opens HTML reports in Chromium and does what readers do. The pages are those of test_page.sh:
+//
+//   two.html    object "plain" (unmirrored, u 0 to 0.4) and object "</script>..." (mirrored, u 0.6 to 1)
+//   head.html   data/head.obj, whose mirror seams lie in x = 0
+//   large.html  a grid of a million triangles, mirrored at its middle
+//   many.html   500 files
+//   bad.html    meshes with nothing to show, and a position that is not finite
+//
+// Prints one line per check that fails, and the number of checks that passed.
 import {createRequire} from 'node:module';
 import {pathToFileURL} from 'node:url';
 
-const [page_path, modules, shot] = process.argv.slice(2);
+const [modules, folder, shots] = process.argv.slice(2);
 const {chromium} = createRequire(modules + '/')('playwright-core');
 let passed = 0, failed = 0;
 
@@ -20,17 +26,24 @@ const browser = await chromium.launch({executablePath: process.env.CHROMIUM || '
 	args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist']});
 const complaints = [], requests = [];
 
-async function open(options) {
-	const page = await browser.newPage({viewport: {width: 1400, height: 1000}, ...options});
-	page.on('console', m => { if (['error', 'warning'].includes(m.type())) complaints.push(m.text()); });
-	page.on('pageerror', e => complaints.push(e.message));
-	page.on('request', r => requests.push(r.url()));
-	await page.goto(pathToFileURL(page_path).href);
-	await page.waitForFunction(() => window.nmtanView && document.querySelector('#rows tr'));
+async function open(name, {hash = '', ...options} = {}) {
+	const page = await browser.newPage({viewport: {width: 1400, height: 900}, ...options}), address = pathToFileURL(folder + '/' + name).href;
+	page.on('console', m => { if (['error', 'warning'].includes(m.type()) && !m.text().includes('GPU stall')) complaints.push(name + ': ' + m.text()); });
+	page.on('pageerror', e => complaints.push(name + ': ' + e.message));
+	page.on('request', r => { if (!r.url().startsWith('data:') && r.url() !== address + hash && r.url() !== address) requests.push(r.url()); });
+	await page.goto(address + hash);
+	await ready(page);
 	return page;
 }
 
-// Colours of a PNG at places given as fractions, decoded by the browser itself.
+const ready = page => page.evaluate(() => window.nmtanReport.ready());
+const ask = (page, what, argument) => page.evaluate(([what, argument]) => window.nmtanReport[what](argument), [what, argument]);
+const selection = page => ask(page, 'selection');
+const camera = async page => JSON.stringify(await ask(page, 'camera'));
+const visible = page => page.locator('.finding').count();
+const rest = page => page.waitForTimeout(400);
+
+// The mean colour of patches of a picture, at places given as fractions, decoded by the browser itself.
 async function colours(page, png, places) {
 	return page.evaluate(async ({source, places}) => {
 		const image = new Image();
@@ -42,100 +55,274 @@ async function colours(page, png, places) {
 		const context = canvas.getContext('2d', {willReadFrequently: true});
 		context.drawImage(image, 0, 0);
 		return places.map(([x, y]) => { // the mean of a patch, since the hatch is dark
-			const d = context.getImageData(x * image.width - 10, y * image.height - 10, 20, 20).data, c = [0, 0, 0];
+			const d = context.getImageData(x * image.width - 8, y * image.height - 8, 16, 16).data, c = [0, 0, 0];
 			for (let i = 0; i < d.length; i += 4) for (let k = 0; k < 3; k++) c[k] += d[i + k] / (d.length / 4);
 			return c;
 		});
 	}, {source: 'data:image/png;base64,' + png.toString('base64'), places});
 }
 
-const rows = page => page.locator('#rows tr').count();
-const camera = page => page.evaluate(() => JSON.stringify(window.nmtanView.camera()));
-
-const page = await open({});
-const all = await rows(page);
-check(all >= 3, 'three findings or more, has ' + all);
-check(await page.locator('#summary').textContent() === '0 errors, 2 warnings, 4 infos', 'the summary');
-
-// filters
-await page.uncheck('#show-info');
-check(await rows(page) === 2, 'two warnings');
-await page.uncheck('#show-warning');
-check(await rows(page) === 0, 'no errors');
-await page.check('#show-info');
-await page.check('#show-warning');
-await page.selectOption('#code', 'UV_MIRROR_LONE');
-check(await rows(page) === 1, 'one lone island');
-await page.selectOption('#code', '');
-await page.fill('#text', 'no area in uv');
-check(await rows(page) === 1, 'one finding says "no area in UV space"');
-check((await page.locator('#shown').textContent()).startsWith('1 of ' + all), 'how many are shown');
-await page.fill('#text', '');
-check(await rows(page) === all, 'all again');
-
-// sorting
-await page.click('th[data-column=code] button');
-const codes = await page.locator('td.code').allTextContents();
-check(codes.join() === [...codes].sort().join(), 'sorted by code: ' + codes);
-await page.click('th[data-column=code] button');
-check((await page.locator('td.code').allTextContents()).join() === [...codes].reverse().join(), 'and backwards');
-check(await page.getAttribute('th[data-column=code]', 'aria-sort') === 'descending', 'aria-sort');
-
-// a click goes there, in both views, and so does the keyboard
-const before = await camera(page);
-await page.click('td.code button:has-text("UV_MIRROR_LONE")');
-const after = await camera(page);
-check(before !== after, 'the camera moves');
-const target = JSON.parse(after).target;
-check(target.every((x, i) => Math.abs(x - [10.5, 0.5, 0][i]) < 1e-5), 'to the island: ' + target);
-check((await page.locator('#mesh option:checked').textContent()).includes('<script>'), 'the mesh is chosen');
-check(await page.locator('#uv .marker').count() > 0, 'a ring in the UV layout');
-check(await page.locator('tr.chosen .remedy').count() === 1, 'the remedy is there');
-await page.focus('td.code button:has-text("UV_DEGENERATE")');
-await page.keyboard.press('Enter');
-check(await camera(page) !== after, 'Enter moves the camera too');
-await page.focus('#view');
-const turned = await camera(page);
-await page.keyboard.press('ArrowLeft');
-check(await camera(page) !== turned, 'arrow keys turn');
-
-// the UV picture: red where it must be
-for (const [option, place, red] of [[1, [0.8, 0.5], true], [0, [0.2, 0.35], false]]) {
-	await page.selectOption('#mesh', String(option));
-	const [c] = await colours(page, await page.locator('#uv svg').screenshot(), [place]);
-	check(red ? c[0] > c[2] + 30 : c[2] > c[0] + 30, (red ? 'red' : 'blue') + ' expected, is ' + c);
+// A click at a place of the texture.
+async function clickTexture(page, u, v) {
+	const [x, y] = await page.evaluate(([u, v]) => window.nmtanReport.place(u, v), [u, v]);
+	await page.click('#layout', {position: {x, y}});
+	await page.waitForTimeout(50);
 }
 
-// the 3D view shows something, and another thing in each mode; frames differ where tangents are stored
-await page.click('#home');
-const pictures = new Set();
-for (const show of ['0', '1', '2', '3', '4', '5']) {
-	await page.selectOption('#show', show);
-	const png = await page.locator('#view').screenshot();
-	const [centre, corner] = await colours(page, png, [[0.5, 0.5], [0.03, 0.03]]);
-	check(centre.some((x, i) => Math.abs(x - corner[i]) > 8), 'mode ' + show + ' shows the mesh');
-	pictures.add(centre.map(Math.round).join());
+// ---- two small meshes ----
+
+{
+	const page = await open('two.html'), all = await visible(page);
+	check(all === 6, 'six findings, has ' + all);
+	check(/0 errors.*2 warnings.*4 notes/.test(await page.locator('#summary').innerText().then(t => t.replace(/\s+/g, ' '))), 'the summary');
+	const kinds = await page.locator('.group').evaluateAll(g => g.map(x => x.classList[1]));
+	check(kinds.join() === [...kinds].sort((a, b) => (a === 'warning' ? 0 : 1) - (b === 'warning' ? 0 : 1)).join(), 'the most severe first: ' + kinds);
+
+	// filters
+	await page.uncheck('#show-info', {force: true});
+	check(await visible(page) === 2, 'two warnings');
+	await page.uncheck('#show-warning', {force: true});
+	check(await visible(page) === 0 && await page.locator('#groups .empty').count() === 1, 'nothing, and it says so');
+	await page.check('#show-info', {force: true});
+	await page.check('#show-warning', {force: true});
+	await page.fill('#text', 'no area in uv');
+	check(await visible(page) === 1, 'one finding says "no area in UV space"');
+	check((await page.locator('#shown').textContent()).startsWith('1 of 6'), 'how many are shown');
+	await page.fill('#text', '');
+
+	// a click goes there, in both views
+	const before = await camera(page), layout = await ask(page, 'layout');
+	await page.click('[data-code=UV_MIRROR_LONE] .finding');
+	await page.waitForFunction(() => window.nmtanReport.selection());
+	await rest(page);
+	const target = (await ask(page, 'camera')).target;
+	check(before !== await camera(page) && target.every((x, i) => Math.abs(x - [10.5, 0.5, 0][i]) < 1e-3), 'the camera goes to the island: ' + target);
+	check((await page.locator('#mesh option:checked').textContent()).includes('<script>'), 'the mesh is opened');
+	check(Math.abs((await ask(page, 'layout')).u - 0.8) < 0.01 && layout.u !== 0.8, 'and the texture view to its place');
+	check((await selection(page)).triangles === 2, 'both its triangles are chosen');
+	check(await page.locator('.finding[aria-current]').count() === 1, 'one row is marked');
+	check(page.url().endsWith('#finding-' + (await selection(page)).finding), 'the address says which: ' + page.url());
+	// mirrored is red, and what is chosen is yellow
+	const [chosen] = await colours(page, await page.locator('#layout').screenshot(), [[0.5, 0.4]]);
+	check(chosen[0] > 180 && chosen[1] > 140 && chosen[2] < 140, 'the island is filled yellow, is ' + chosen);
+	await page.keyboard.press('Escape');
+	await rest(page);
+	check(await selection(page) === null, 'Escape chooses nothing');
+	const [red] = await colours(page, await page.locator('#layout').screenshot(), [[0.5, 0.4]]);
+	check(red[0] > red[2] + 30, 'red expected, is ' + red);
+
+	// picking in the texture: the island, then the triangle, and the list follows
+	await clickTexture(page, 0.8, 0.4);
+	check((await selection(page)).island === 0 && await page.locator('.finding.related').count() > 0, 'a click chooses the island and marks its finding');
+	await clickTexture(page, 0.8, 0.4);
+	check((await selection(page)).triangles === 1, 'another one the triangle');
+	// and in space
+	await page.keyboard.press('Escape');
+	await page.click('#space-fit');
+	const box = await page.locator('#space').boundingBox();
+	await page.click('#space', {position: {x: box.width / 2, y: box.height / 2}});
+	await page.waitForTimeout(50);
+	check((await selection(page))?.island === 0, 'a click in space chooses the island');
+	await page.click('#space', {position: {x: 4, y: 4}});
+	await page.waitForTimeout(50);
+	check(await selection(page) === null, 'one beside the mesh nothing');
+
+	// keys
+	await page.focus('[data-code=UV_DEGENERATE_TRIANGLE] .finding, [data-code^=UV_DEGENERATE] .finding');
+	await page.keyboard.press('Enter');
+	await rest(page);
+	check((await selection(page))?.finding !== undefined, 'Enter chooses');
+	await page.focus('#space');
+	for (const key of ['ArrowLeft', 'ArrowUp', '+', '-', 'Home']) {
+		const was = await camera(page);
+		await page.keyboard.press(key);
+		check(await camera(page) !== was, key + ' moves the camera');
+	}
+	await page.focus('#layout');
+	for (const key of ['ArrowLeft', '+', '0']) {
+		const was = JSON.stringify(await ask(page, 'layout'));
+		await page.keyboard.press(key);
+		check(JSON.stringify(await ask(page, 'layout')) !== was, key + ' moves the texture');
+	}
+	await page.evaluate(() => document.activeElement.blur());
+	const first = await page.locator('.group[open] .finding').first().getAttribute('data-finding');
+	await page.keyboard.press('Escape');
+	await page.keyboard.press('j');
+	await rest(page);
+	check(String((await selection(page))?.finding) === first, 'j chooses the first finding');
+
+	// wheel and drag
+	const view = await ask(page, 'layout');
+	await page.mouse.move(...await page.locator('#layout').boundingBox().then(b => [b.x + 100, b.y + 100]));
+	await page.mouse.wheel(0, -300);
+	await rest(page);
+	check((await ask(page, 'layout')).scale > view.scale * 1.2, 'the wheel zooms');
+	const held = await ask(page, 'layout');
+	await page.mouse.down();
+	await page.mouse.move(...await page.locator('#layout').boundingBox().then(b => [b.x + 160, b.y + 100]), {steps: 3});
+	await page.mouse.up();
+	check(Math.abs((await ask(page, 'layout')).u - held.u + 60 / held.scale) < 1e-6, 'dragging moves by what it drags');
+
+	// each mode shows something else; frames can be compared
+	await page.keyboard.press('Escape');
+	await page.selectOption('#mesh', '0');
+	await ready(page);
+	const pictures = new Set();
+	for (let mode = 0; mode < 9; mode++) {
+		await page.selectOption('#mode', String(mode));
+		await rest(page);
+		const [centre, corner] = await colours(page, await page.locator('#space').screenshot(), [[0.46, 0.55], [0.03, 0.2]]);
+		check(centre.some((x, i) => Math.abs(x - corner[i]) > 6), 'mode ' + mode + ' shows the mesh');
+		pictures.add(centre.map(Math.round).join());
+	}
+	check(pictures.size >= 7, 'modes look different: ' + [...pictures].join(' '));
+	await page.selectOption('#mode', '4');
+	await page.selectOption('#other', '2');
+	check(await page.locator('#wipe').isVisible() && await page.locator('#left-name').textContent() === 'by nmtan', 'two frames with a wipe');
+	await page.focus('#wipe');
+	await page.keyboard.press('ArrowLeft');
+	check(await page.getAttribute('#wipe', 'aria-valuenow') === '48', 'which keys move');
+	await page.click('[data-layout=side]');
+	check(!await page.locator('#wipe').isVisible(), 'or side by side');
+	await page.check('#vectors', {force: true});
+	check((await page.locator('#space-note').textContent()) === '' , 'no note where none is needed');
+	await page.selectOption('#mode', '0');
+	check((await page.locator('#space-note').textContent()).includes('test pattern'), 'bumps that nobody made are called a test pattern');
+
+	// names are text
+	check(await page.evaluate(() => window.broken === undefined), 'a name was run as a script');
+	check(await page.locator('script').count() === 4, 'four script elements: data, script and two meshes');
+	if (shots) await page.screenshot({path: shots + '/two.png'});
+	await page.close();
 }
-check(pictures.size >= 5, 'modes look different: ' + [...pictures].join(' '));
-await page.selectOption('#show', '0');
-for (const frame of ['1', '2']) await page.selectOption('#frame', frame);
-await page.check('#vectors');
 
-// names are text
-check(await page.evaluate(() => window.broken === undefined), 'a name was run as a script');
-check(await page.locator('script').count() === 2, 'two script elements');
-if (shot) await page.screenshot({path: shot});
+// ---- dark and light, wide and narrow, print, a link to a finding ----
 
-// dark, and narrow
-const background = p => p.evaluate(() => getComputedStyle(document.body).backgroundColor);
-const dark = await open({colorScheme: 'dark', viewport: {width: 700, height: 900}});
-const light = await background(page), night = await background(dark);
-check(light !== night, 'dark is dark');
-await dark.click('#theme');
-check(await background(dark) === light, 'and can be made light');
+{
+	const background = p => p.evaluate(() => getComputedStyle(document.body).backgroundColor);
+	const light = await open('two.html', {hash: '#finding-1'}), dark = await open('two.html', {colorScheme: 'dark', viewport: {width: 500, height: 900}});
+	check((await selection(light))?.finding === 1, 'a link leads to its finding');
+	const day = await background(light), night = await background(dark);
+	check(day !== night, 'dark is dark');
+	await dark.click('#theme [data-theme=light]');
+	check(await background(dark) === day, 'and can be made light');
+	for (const width of [500, 700, 1000, 1900]) {
+		await dark.setViewportSize({width, height: 900});
+		check(await dark.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing hangs over at ' + width);
+		const narrow = await dark.locator('.message').evaluateAll(m => Math.min(...m.map(x => x.clientWidth)));
+		check(narrow > 150, 'messages have room at ' + width + ': ' + narrow);
+	}
+	// WCAG AA: 4.5 to 1 for all text
+	for (const [p, scheme] of [[light, 'light'], [dark, 'dark']]) {
+		await p.click('#theme [data-theme=' + scheme + ']');
+		const poor = await p.evaluate(() => {
+			const canvas = document.createElement('canvas').getContext('2d', {willReadFrequently: true});
+			const parse = text => { canvas.clearRect(0, 0, 1, 1); canvas.fillStyle = text; canvas.fillRect(0, 0, 1, 1); return [...canvas.getImageData(0, 0, 1, 1).data]; };
+			const under = e => { for (; e; e = e.parentElement) { const c = parse(getComputedStyle(e).backgroundColor); if (c[3] > 200) return c; } return [255, 255, 255]; };
+			const light = c => c.slice(0, 3).map(x => x / 255).map(x => x <= 0.03928 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4).reduce((s, x, i) => s + x * [0.2126, 0.7152, 0.0722][i], 0);
+			return [...document.querySelectorAll('body *')].filter(e => e.checkVisibility() && [...e.childNodes].some(n => n.nodeType === 3 && n.data.trim()) && !e.closest('script, style, option')).map(e => {
+				const a = light(parse(getComputedStyle(e).color)), b = light(under(e));
+				return [(Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05), e.className || e.tagName, e.textContent.slice(0, 20)];
+			}).filter(x => x[0] < 4.5);
+		});
+		check(poor.length === 0, 'contrast in ' + scheme + ': ' + JSON.stringify(poor.slice(0, 5)));
+	}
+	await light.emulateMedia({media: 'print'});
+	check(!await light.locator('#text').isVisible() && await light.locator('.finding').first().isVisible(), 'on paper there are findings and no controls');
+	await light.close();
+	await dark.close();
+}
 
-check(complaints.length === 0, 'the console complains: ' + complaints.join('; '));
-check(requests.every(url => url.startsWith('data:') || url === pathToFileURL(page_path).href), 'it asks for: ' + requests);
+// ---- a stranger finds a seam within three actions ----
+
+{
+	const page = await open('head.html');
+	await page.click('[data-code=UV_MIRROR_SEAM] .finding >> nth=0');
+	await page.waitForFunction(() => window.nmtanReport.selection());
+	await rest(page);
+	const {eye, target} = await ask(page, 'camera');
+	check(Math.abs(target[0]) < 0.02, 'the camera looks at x = 0, where the seam is: ' + target);
+	check(await ask(page, 'visible') > 0.01, 'the seam is seen: ' + await ask(page, 'visible'));
+	check(Math.hypot(...eye) > 1.2, 'from outside of the head: ' + eye);
+	const labels = await ask(page, 'labels');
+	check(labels.some(l => l.seam === 0), 'and has its number in the texture');
+	check(labels.every((a, i) => labels.every((b, k) => k <= i || a.box[0] >= b.box[2] || b.box[0] >= a.box[2] || a.box[1] >= b.box[3] || b.box[1] >= a.box[3])),
+		'numbers do not lie on each other');
+	// the reverse: a click on the other seam, at u = 1
+	await page.click('#layout-fit');
+	await clickTexture(page, 1, 0.31);
+	check((await selection(page)).seam === 1 && await page.locator('.finding.related').count() === 1, 'a click on a seam chooses it and marks its finding');
+	await page.waitForFunction(() => window.nmtanReport.overlapPixels() > 0);
+	check(true, 'the mirrored half lies on the other: overlaps are tinted');
+	// the frames of the file and of nmtan: an OBJ has none of its own
+	check(await page.evaluate(() => document.querySelector('#frame').options[0].disabled), 'an OBJ has no frames of its own');
+	if (shots) await page.screenshot({path: shots + '/head.png'});
+	await page.close();
+}
+
+// ---- a million triangles ----
+
+{
+	const page = await open('large.html'), g = await page.evaluate(() => {
+		const g = window.nmtanReport.geometry(), corners = [0, 708, 709 * 708, 709 * 709 - 1];
+		// the area that the outlines enclose is that of the triangles
+		const area = loops => loops.reduce((sum, loop) => sum + loop.reduce((s, v, i) => {
+			const w = loop[(i + 1) % loop.length], uv = g.texcoords;
+			return s + (uv[2 * v] * uv[2 * w + 1] - uv[2 * w] * uv[2 * v + 1]) / 2;
+		}, 0), 0);
+		return {triangles: g.triangles, whole: g.whole, regions: g.regions.length, loops: g.regions.map(r => r.loops.length),
+			points: g.regions.map(r => r.loops[0].length), areas: g.regions.map(r => area(r.loops)), corners};
+	});
+	check(g.triangles === 1002528 && g.whole, 'all triangles are there: ' + g.triangles);
+	check(g.regions === 2 && g.loops.join() === '1,1' && g.points.join() === '2124,2124', 'two outlines of 2 (354 + 708) points: ' + g.points);
+	check(g.areas.every(a => Math.abs(Math.abs(a) - 0.5) < 1e-4), 'each encloses half of the texture: ' + g.areas);
+	await page.click('[data-code=UV_MIRROR_SEAM] .finding');
+	await page.waitForFunction(() => window.nmtanReport.selection());
+	check(await ask(page, 'visible') > 0, 'its seam is seen');
+	if (shots) await page.screenshot({path: shots + '/large.png'});
+	await page.close();
+}
+
+// ---- 500 files ----
+
+{
+	const page = await open('many.html'), rows = () => page.locator('#file-rows tr').count();
+	check(await rows() === 500, '500 rows: ' + await rows());
+	check((await page.locator('header').innerText()).length < 200, 'and a short header');
+	check((await page.locator('#file-rows tr >> nth=0').innerText()).includes('bad.obj'), 'the worst first');
+	await page.click('[data-column=triangles] button');
+	check((await page.locator('#file-rows tr >> nth=0').innerText()).includes('head.obj') &&
+		await page.getAttribute('[data-column=triangles]', 'aria-sort') === 'descending', 'the largest first');
+	await page.fill('#file-text', 'head');
+	check(await rows() === 1, 'one is called head');
+	await page.click('#file-rows a');
+	await page.waitForFunction(() => document.querySelector('#title').textContent.includes('head.obj'));
+	await ready(page);
+	check((await page.evaluate(() => window.nmtanReport.geometry().triangles)) === 672, 'a row opens its file');
+	await page.goBack();
+	await page.waitForFunction(() => !document.querySelector('#overview').hidden);
+	check(await rows() === 1, 'and back');
+	if (shots) { await page.fill('#file-text', ''); await rest(page); await page.screenshot({path: shots + '/many.png'}); }
+	await page.close();
+}
+
+// ---- nothing to show ----
+
+{
+	const page = await open('bad.html'), names = await page.locator('#file-rows a').allTextContents();
+	for (let i = 0; i < names.length; i++) {
+		await page.evaluate(i => { location.hash = 'file-' + i; }, i);
+		await page.waitForFunction(i => document.querySelector('#title').textContent.endsWith([...document.querySelectorAll('#file-rows a')].find(a => a.hash === '#file-' + i).textContent), i);
+		await ready(page);
+		await rest(page);
+	}
+	check(names.length === 4, 'four files: ' + names);
+	check(await page.evaluate(() => window.broken === undefined), 'no name runs');
+	await page.close();
+}
+
+check(complaints.length === 0, 'the console complains: ' + complaints.slice(0, 4).join('; '));
+check(requests.length === 0, 'it asks for: ' + requests.slice(0, 3));
 await browser.close();
 console.log(passed + ' passed, ' + failed + ' failed');
 process.exit(failed ? 1 : 0);

@@ -1,35 +1,46 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The report as one HTML file that opens without a network: see page/page.js for what it shows.
+ * The report as one HTML file that opens without a network: see page/main.js for what it shows.
  *
- * The page holds its data as JSON in a script element that is not run, with every `<` written as \u003c, so
- * that no name can end the element. Arrays are base64. Budgets keep the file below 20 MB: what does not
- * fit is left out, and the page says so.
+ * What there is to read comes first, as JSON in a script element that is not run (#data), with every `<` written as
+ * \u003c, so that no name can end the element:
+ *
+ *   files     [{name, format, failure, counts: [errors, warnings, infos], meshes, findings}]
+ *             mesh:     {label, why, same_as, triangles, vertices, islands, box, facts: [[name, text]], image, map: [6],
+ *                       seams: [[edges, closed, length, plane, unmirrored island, mirrored island]], geometry: bool}
+ *             finding:  {code, severity, count, known, message, mesh, seam, island, line, box, at: [triangle]}
+ *   codes     {CODE: {title, meaning, remedy}} of the findings that there are
+ *   images    [data URI], which meshes number
+ *   left_out  findings that have no place on the page
+ *
+ * Then the page's script, then the geometry of each mesh in an element of its own, #g-FILE-MESH, which is not looked at
+ * until the mesh is opened: a line of JSON (the fields of nt_packed) and its bytes as base64: see pack/pack.h. Written
+ * and forgotten mesh by mesh.
  */
 #include "report/render/writers.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+#include "report/pack/pack.h"
 #include "report/render/page_assets.h"
-#include "report/render/sample.h"
 
-/* Bytes before base64 adds a third: geometry; text of pictures; images; and findings and seams by number. */
+/* What one page holds. Triangles take 10 to 20 bytes of it; where the meshes have more together, each gets its share and
+ * the page says so. */
 enum {
-	GEOMETRY_BYTES = 7 * 1000 * 1000,
-	PICTURE_BYTES = 3 * 1000 * 1000,
-	MOST_DRAWN_BYTES = 4 * PICTURE_BYTES,
-	IMAGE_BYTES = 2 * 1000 * 1000,
-	MOST_FINDINGS = 2000,
-	MOST_SEAM_POINTS = 20000,
-	MOST_MESHES = 1000
+	MOST_TRIANGLES = 3 * 1000 * 1000,
+	IMAGE_BYTES = 16 * 1000 * 1000,
+	MOST_FINDINGS = 20000,
+	MOST_SEAMS = 20000,
+	FLUSHED_BYTES = 1 << 20
 };
 
 /* What is left of the budgets while the page grows. */
 typedef struct budget {
-	size_t geometry, images, findings, seam_points, meshes;
-	size_t geometry_wanted; /* by the meshes still to come */
-	size_t left_out;        /* findings */
-	nt_buffer sources;      /* data URIs of images, as a JSON array without its end */
+	size_t images, findings, seams;
+	size_t left_out;   /* findings */
+	bool seen[NT_CODE_COUNT];
+	nt_buffer sources; /* data URIs of images, as a JSON array without its end */
 	size_t image_count;
 } budget;
 
@@ -86,9 +97,21 @@ static void put_box(const nt_box *box, nt_buffer *out)
 	nt_buffer_text(out, "]]");
 }
 
-static bool has_v_down(const nt_report *report)
+/* Three numbers that read back as doubles. */
+static void put_doubles(const char *name, const double *values, size_t count, nt_buffer *out)
 {
-	return report->format == NT_FORMAT_GLTF || report->format == NT_FORMAT_GLB;
+	nt_buffer_format(out, "\"%s\":[", name);
+	for (size_t i = 0; i < count; i++)
+		nt_buffer_format(out, i ? ",%.17g" : "%.17g", values[i]);
+	nt_buffer_text(out, "]");
+}
+
+static void put_index(const char *name, uint32_t index, nt_buffer *out)
+{
+	if (index == NT_NONE)
+		nt_buffer_format(out, ",\"%s\":null", name);
+	else
+		nt_buffer_format(out, ",\"%s\":%u", name, index);
 }
 
 /* Whether an element of an array stands before. */
@@ -97,94 +120,24 @@ static bool ends_in_bracket(const nt_buffer *out)
 	return out->size && out->data[out->size - 1] == ']';
 }
 
-/* ---- geometry ---- */
-
-/* Rows of `width` floats of the sample's vertices as base64, null without data. v_up turns v over. */
-static void put_rows(const char *name, const float *rows, size_t width, const nt_sample *sample, bool v_up,
-	nt_buffer *out)
-{
-	nt_buffer_format(out, ",\"%s\":", name);
-	if (!rows) {
-		nt_buffer_text(out, "null");
-		return;
-	}
-	nt_buffer raw = {0};
-	for (size_t i = 0; i < sample->vertex_count; i++) {
-		float row[4];
-		memcpy(row, rows + width * sample->vertices[i], width * sizeof *row);
-		if (v_up)
-			row[1] = 1.0f - row[1];
-		nt_buffer_append(&raw, row, width * sizeof *row);
-	}
-	nt_buffer_text(out, "\"");
-	put_base64(raw.data, raw.size, out);
-	nt_buffer_text(out, "\"");
-	nt_buffer_free_into(&raw, out);
-}
-
-static void put_note(const nt_report_mesh *m, const nt_sample *sample, nt_buffer *out)
-{
-	nt_buffer_text(out, "{\"note\":\"");
-	if (sample->whole)
-		nt_buffer_format(out, "All %zu triangles. ", sample->triangle_count);
-	else
-		nt_buffer_format(out, "%zu of %zu triangles: the neighbourhood of the findings. ",
-			sample->triangle_count, m->triangle_count);
-	nt_buffer_text(out, m->geometry->tangents
-			? "Frames are those that are stored."
-			: "There are no stored tangents: frames come from screen derivatives.");
-	nt_buffer_text(out, "\"");
-}
-
-static void put_geometry(const nt_report *report, uint32_t mesh, budget *left, nt_buffer *out)
-{
-	const nt_report_mesh *m = &report->meshes[mesh];
-	const nt_report_geometry *g = m->geometry;
-	const size_t wanted = nt_sample_bytes(m);
-	nt_buffer_text(out, ",\"geometry\":");
-	/* a share by size, so that no mesh starves */
-	const size_t share = left->geometry_wanted <= left->geometry
-		? wanted
-		: (size_t)((double)left->geometry * (double)wanted / (double)left->geometry_wanted);
-	left->geometry_wanted -= wanted;
-	nt_sample sample;
-	if (!g || nt_sample_make(&sample, report, mesh, share)) {
-		out->failed |= g != NULL;
-		nt_buffer_text(out, "null");
-		return;
-	}
-	if (sample.triangle_count == 0) {
-		nt_buffer_text(out, "null");
-		nt_sample_free(&sample);
-		return;
-	}
-	const size_t used = NT_SAMPLE_TRIANGLE_BYTES * sample.triangle_count +
-		NT_SAMPLE_VERTEX_BYTES * sample.vertex_count;
-	left->geometry -= used < left->geometry ? used : left->geometry;
-	put_note(m, &sample, out);
-	put_rows("positions", g->positions, 3, &sample, false, out);
-	put_rows("normals", g->normals, 3, &sample, false, out);
-	put_rows("tangents", g->tangents, 4, &sample, false, out);
-	put_rows("texcoords", g->texcoords, 2, &sample, !has_v_down(report), out);
-	nt_buffer_text(out, ",\"indices\":\"");
-	put_base64(sample.indices, 3 * sample.triangle_count * sizeof *sample.indices, out);
-	nt_buffer_text(out, "\"}");
-	nt_sample_free(&sample);
-}
-
 /* ---- meshes ---- */
 
-static void put_seam(const nt_seam *seam, budget *left, nt_buffer *out)
+static bool has_geometry(const nt_report_mesh *m)
 {
-	const size_t edges = seam->edge_count < NT_SEAM_EDGES ? seam->edge_count : NT_SEAM_EDGES;
-	nt_buffer_text(out, "{\"points\":[");
-	for (size_t i = 0; i < edges && left->seam_points > 0; i++, left->seam_points--) {
-		if (i == 0)
-			put_floats(seam->edges[0].positions[0], 3, out);
-		nt_buffer_text(out, ",");
-		put_floats(seam->edges[i].positions[1], 3, out);
-	}
-	nt_buffer_text(out, "]}");
+	return m->geometry && m->geometry->triangle_count;
+}
+
+static void put_seam(const nt_seam *seam, nt_buffer *out)
+{
+	nt_buffer_format(out, "[%zu,%s,%.6g,", seam->edge_count, seam->closed ? "true" : "false",
+		isfinite(seam->length) ? seam->length : 0.0);
+	put_string(seam->has_plane ? seam->plane_text : "", out);
+	for (int side = 0; side < 2; side++)
+		if (seam->islands[side] == NT_NONE)
+			nt_buffer_text(out, ",null");
+		else
+			nt_buffer_format(out, ",%u", seam->islands[side]);
+	nt_buffer_text(out, "]");
 }
 
 static void begin_fact(const char *name, nt_buffer *out)
@@ -230,16 +183,18 @@ static void put_facts(const nt_report_mesh *m, nt_buffer *out)
 /* The image's number among data.images, null where there is none or no room. */
 static void put_image(const nt_report_mesh *m, budget *left, nt_buffer *out)
 {
+	const nt_image *image = &m->normal_map;
 	nt_buffer_text(out, ",\"image\":");
-	if (!m->normal_map.bytes || m->normal_map.size > left->images) {
+	if (!image->bytes || image->size > left->images) {
 		nt_buffer_text(out, "null");
 		return;
 	}
-	left->images -= m->normal_map.size;
-	nt_buffer_format(out, "%zu", left->image_count);
-	nt_buffer_format(&left->sources, "%s\"data:%s;base64,", left->image_count++ ? "," : "",
-		m->normal_map.type);
-	put_base64(m->normal_map.bytes, m->normal_map.size, &left->sources);
+	left->images -= image->size;
+	nt_buffer_format(out, "%zu,\"map\":[", left->image_count);
+	put_floats(image->transform, 6, out);
+	nt_buffer_text(out, "]");
+	nt_buffer_format(&left->sources, "%s\"data:%s;base64,", left->image_count++ ? "," : "", image->type);
+	put_base64(image->bytes, image->size, &left->sources);
 	nt_buffer_text(&left->sources, "\"");
 }
 
@@ -253,226 +208,164 @@ static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_bu
 	nt_buffer_free_into(&label, out);
 	nt_buffer_text(out, ",\"why\":");
 	put_string(m->why, out);
-	if (m->same_as != NT_NONE)
-		nt_buffer_format(out, ",\"same_as\":%u", m->same_as);
-	nt_buffer_format(out, ",\"has_uv\":%s,\"box\":", m->has_texcoords ? "true" : "false");
+	put_index("same_as", m->same_as, out);
+	nt_buffer_format(out, ",\"triangles\":%zu,\"vertices\":%zu,\"islands\":%zu,\"geometry\":%s,\"box\":",
+		m->triangle_count, m->vertices_before, m->island_count, has_geometry(m) ? "true" : "false");
 	put_box(&m->box, out);
 	put_facts(m, out);
 	put_image(m, left, out);
 	nt_buffer_text(out, ",\"seams\":[");
-	for (size_t i = 0; m->seams && i < m->seam_count && left->seam_points > 0; i++) {
+	for (size_t i = 0; m->seams && i < m->seam_count && left->seams > 0; i++, left->seams--) {
 		nt_buffer_text(out, i ? "," : "");
-		put_seam(&m->seams[i], left, out);
+		put_seam(&m->seams[i], out);
 	}
-	nt_buffer_text(out, "]");
-	put_geometry(report, mesh, left, out);
-	nt_buffer_text(out, "}");
+	nt_buffer_text(out, "]}");
 }
 
 /* ---- findings ---- */
 
-/* The direction from which a finding's first triangle is seen from its front, null where there is none. */
-static void put_facing(const nt_spot *spot, nt_buffer *out)
-{
-	nt_buffer_text(out, ",\"facing\":");
-	double n[3] = {0, 0, 0};
-	if (spot && spot->corner_count == 3) {
-		double e[2][3];
-		for (int k = 0; k < 2; k++)
-			for (int i = 0; i < 3; i++)
-				e[k][i] = (double)spot->positions[k + 1][i] - spot->positions[0][i];
-		for (int i = 0; i < 3; i++)
-			n[i] = e[0][(i + 1) % 3] * e[1][(i + 2) % 3] - e[0][(i + 2) % 3] * e[1][(i + 1) % 3];
-	}
-	const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-	if (!(length > 0.0) || !isfinite(length)) {
-		nt_buffer_text(out, "null");
-		return;
-	}
-	nt_buffer_format(out, "[%.4g,%.4g,%.4g]", n[0] / length, n[1] / length, n[2] / length);
-}
-
-static void put_uvs(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
-{
-	nt_buffer_text(out, ",\"uvs\":[");
-	for (unsigned i = 0; i < finding->spot_count; i++) {
-		const nt_spot *spot = &finding->spots[i];
-		float uv[2] = {0.0f, 0.0f};
-		for (unsigned k = 0; k < spot->corner_count; k++)
-			for (int axis = 0; axis < 2; axis++)
-				uv[axis] += spot->texcoords[k][axis] / (float)spot->corner_count;
-		if (!spot->has_texcoords || !isfinite(uv[0]) || !isfinite(uv[1]))
-			continue;
-		if (!has_v_down(report))
-			uv[1] = 1.0f - uv[1];
-		nt_buffer_text(out, ends_in_bracket(out) ? ",[" : "[");
-		put_floats(uv, 2, out);
-		nt_buffer_text(out, "]");
-	}
-	nt_buffer_text(out, "]");
-}
-
-static void put_finding(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
+static void put_finding(const nt_report_finding *finding, nt_buffer *out)
 {
 	nt_buffer_format(out, "{\"code\":\"%s\",\"severity\":\"%s\",\"count\":%zu,\"known\":%s,\"message\":",
 		nt_code_info(finding->code)->name, nt_severity_name(finding->severity), finding->count,
 		finding->known ? "true" : "false");
 	put_string(finding->message, out);
-	nt_buffer_text(out, ",\"remedy\":");
-	put_string(nt_code_info(finding->code)->remedy, out);
-	nt_buffer_text(out, ",\"mesh\":");
-	if (finding->mesh == NT_NONE || finding->mesh >= MOST_MESHES)
-		nt_buffer_text(out, "null");
-	else
-		nt_buffer_format(out, "%u", finding->mesh);
-	nt_buffer_text(out, ",\"seam\":");
-	if (finding->seam == NT_NONE)
-		nt_buffer_text(out, "null");
-	else
-		nt_buffer_format(out, "%u", finding->seam);
+	put_index("mesh", finding->mesh, out);
+	put_index("seam", finding->seam, out);
+	put_index("island", finding->island, out);
 	const nt_spot *spot = finding->spot_count ? &finding->spots[0] : NULL;
 	nt_buffer_format(out, ",\"line\":%zu,\"box\":", spot && spot->line ? spot->line : finding->place.line);
 	put_box(&finding->box, out);
-	put_facing(spot, out);
-	put_uvs(report, finding, out);
-	nt_buffer_text(out, "}");
+	nt_buffer_text(out, ",\"at\":[");
+	for (unsigned i = 0, any = 0; i < finding->spot_count; i++)
+		if (finding->spots[i].triangle != NT_NONE)
+			nt_buffer_format(out, any++ ? ",%u" : "%u", finding->spots[i].triangle);
+	nt_buffer_text(out, "]}");
+}
+
+static void put_findings(const nt_report *report, budget *left, nt_buffer *out)
+{
+	size_t i = 0;
+	nt_buffer_text(out, "\"findings\":[");
+	for (; i < report->finding_count && left->findings > 0; i++, left->findings--) {
+		nt_buffer_text(out, i ? ",\n" : "\n");
+		put_finding(&report->findings[i], out);
+		left->seen[report->findings[i].code] = true;
+	}
+	left->left_out += report->finding_count - i + report->dropped;
+	nt_buffer_text(out, "]");
 }
 
 static void put_file(const nt_report *report, budget *left, nt_buffer *out)
 {
 	nt_buffer_text(out, "{\"name\":");
 	put_string(nt_shown_path(report->path), out);
+	nt_buffer_format(out, ",\"format\":\"%s\",\"counts\":[%zu,%zu,%zu],\"failure\":",
+		nt_input_format_name(report->format), report->by_severity[NT_SEVERITY_ERROR],
+		report->by_severity[NT_SEVERITY_WARNING], report->by_severity[NT_SEVERITY_INFO]);
+	if (report->failure)
+		put_string(report->failure, out);
+	else
+		nt_buffer_text(out, "null");
 	nt_buffer_text(out, ",\"meshes\":[");
-	for (size_t i = 0; i < report->mesh_count && i < MOST_MESHES; i++) {
+	for (size_t i = 0; i < report->mesh_count; i++) {
 		nt_buffer_text(out, i ? ",\n" : "\n");
 		put_mesh(report, (uint32_t)i, left, out);
 	}
-	nt_buffer_text(out, "],\"findings\":[");
-	for (size_t i = 0; i < report->finding_count; i++) {
-		if (left->findings == 0) {
-			left->left_out += report->finding_count - i;
-			break;
-		}
-		left->findings--;
-		nt_buffer_text(out, i ? ",\n" : "\n");
-		put_finding(report, &report->findings[i], out);
+	nt_buffer_text(out, "],");
+	put_findings(report, left, out);
+	nt_buffer_text(out, "}");
+}
+
+static void put_codes(const budget *left, nt_buffer *out)
+{
+	nt_buffer_text(out, "\"codes\":{");
+	for (unsigned code = 0, any = 0; code < NT_CODE_COUNT; code++) {
+		if (!left->seen[code])
+			continue;
+		const nt_code_row *row = nt_code_info((nt_code)code);
+		nt_buffer_format(out, any++ ? ",\n\"%s\":{\"meaning\":" : "\n\"%s\":{\"meaning\":", row->name);
+		put_string(row->meaning, out);
+		nt_buffer_text(out, ",\"remedy\":");
+		put_string(row->remedy, out);
+		nt_buffer_text(out, "}");
 	}
-	left->left_out += report->dropped;
-	nt_buffer_text(out, "]}");
+	nt_buffer_text(out, "}");
 }
 
 /* ---- the page ---- */
 
 static void put_data(const nt_report_list *reports, nt_buffer *out)
 {
-	budget left = {.geometry = GEOMETRY_BYTES, .images = IMAGE_BYTES, .findings = MOST_FINDINGS,
-		.seam_points = MOST_SEAM_POINTS};
-	for (size_t i = 0; i < reports->count; i++)
-		for (size_t m = 0; m < reports->items[i]->mesh_count && m < MOST_MESHES; m++)
-			left.geometry_wanted += nt_sample_bytes(&reports->items[i]->meshes[m]);
+	budget left = {.images = IMAGE_BYTES, .findings = MOST_FINDINGS, .seams = MOST_SEAMS};
 	nt_buffer_text(out, "<script type=\"application/json\" id=\"data\">{\"files\":[");
 	for (size_t i = 0; i < reports->count; i++) {
 		nt_buffer_text(out, i ? ",\n" : "\n");
 		put_file(reports->items[i], &left, out);
 	}
-	nt_buffer_format(out, "],\"left_out\":%zu,\"images\":[", left.left_out);
+	nt_buffer_text(out, "],");
+	put_codes(&left, out);
+	nt_buffer_format(out, ",\"left_out\":%zu,\"images\":[", left.left_out);
 	nt_buffer_append(out, left.sources.data, left.sources.size);
 	nt_buffer_free_into(&left.sources, out);
 	nt_buffer_text(out, "]}</script>\n");
 }
 
-/* The UV layouts, each in a template, while there is room. Ones that turn out not to fit are drawn in vain, but
- * not without end. */
-static void put_pictures(const nt_report_list *reports, nt_buffer *out)
+static void put_geometry(const nt_report *report, size_t file, uint32_t mesh, size_t most, nt_buffer *out)
 {
-	size_t left = PICTURE_BYTES, drawn_bytes = 0;
+	nt_packed packed;
+	if (nt_pack_mesh(&packed, report, mesh, most)) {
+		out->failed = true;
+	} else {
+		nt_buffer_format(out, "<script type=\"text/plain\" id=\"g-%zu-%u\">{\"vertices\":%zu,\"triangles\":%zu,"
+			"\"whole\":%s,\"bytes\":%zu,", file, mesh, packed.vertex_count, packed.triangle_count,
+			packed.whole ? "true" : "false", packed.raw_bytes);
+		put_doubles("origin", packed.position_origin, 3, out);
+		nt_buffer_text(out, ",");
+		put_doubles("step", packed.position_step, 3, out);
+		nt_buffer_text(out, ",");
+		put_doubles("uvOrigin", packed.texcoord_origin, 2, out);
+		nt_buffer_format(out, ",\"uvStep\":%.17g}\n", packed.texcoord_step);
+		put_base64(packed.bytes.data, packed.bytes.size, out);
+		nt_buffer_text(out, "</script>\n");
+	}
+	nt_buffer_free(&packed.bytes);
+}
+
+static void put_geometries(const nt_report_list *reports, nt_buffer *out)
+{
+	size_t wanted = 0;
+	for (size_t i = 0; i < reports->count; i++)
+		for (size_t m = 0; m < reports->items[i]->mesh_count; m++)
+			if (has_geometry(&reports->items[i]->meshes[m]))
+				wanted += reports->items[i]->meshes[m].geometry->triangle_count;
+	const double share = wanted > MOST_TRIANGLES ? (double)MOST_TRIANGLES / (double)wanted : 1.0;
 	for (size_t i = 0; i < reports->count; i++) {
 		const nt_report *report = reports->items[i];
-		for (size_t m = 0; m < report->mesh_count && m < MOST_MESHES && drawn_bytes < MOST_DRAWN_BYTES; m++) {
-			nt_buffer picture = {0};
-			const bool drawn = nt_write_uv_svg(report, (uint32_t)m, &picture);
-			drawn_bytes += picture.size;
-			if (drawn && picture.size <= left) {
-				nt_buffer_format(out, "<template id=\"uv-%zu-%zu\">", i, m);
-				nt_buffer_append(out, picture.data, picture.size);
-				nt_buffer_text(out, "</template>\n");
-				left -= picture.size;
-			}
-			nt_buffer_free_into(&picture, out);
+		for (uint32_t m = 0; m < report->mesh_count; m++) {
+			if (!has_geometry(&report->meshes[m]))
+				continue;
+			const double most = ceil(share * (double)report->meshes[m].geometry->triangle_count);
+			put_geometry(report, i, m, (size_t)most, out);
+			nt_list_flush(reports, FLUSHED_BYTES, out);
 		}
 	}
 }
 
-static void put_header(const nt_report_list *reports, nt_buffer *out)
-{
-	const nt_totals totals = nt_report_totals(reports);
-	nt_buffer summary = {0};
-	nt_totals_text(&totals, &summary);
-	nt_buffer_text(out, "<header><h1>nmtan report</h1><span id=\"summary\">");
-	nt_xml_text(summary.data ? summary.data : "", out);
-	nt_buffer_free_into(&summary, out);
-	nt_buffer_text(out, "</span><span class=\"note\">");
-	for (size_t i = 0; i < reports->count; i++) {
-		nt_buffer_text(out, i ? ", " : "");
-		nt_xml_text(nt_shown_path(reports->items[i]->path), out);
-	}
-	nt_buffer_text(out, "</span><span class=\"spacer\"></span>"
-		"<button type=\"button\" id=\"theme\">Light or dark</button></header>\n");
-	for (size_t i = 0; i < reports->count; i++) {
-		if (!reports->items[i]->failure)
-			continue;
-		nt_buffer_text(out, "<p class=\"error panel\">");
-		nt_xml_text(nt_shown_path(reports->items[i]->path), out);
-		nt_buffer_text(out, " could not be judged: ");
-		nt_xml_text(reports->items[i]->failure, out);
-		nt_buffer_text(out, "</p>\n");
-	}
-}
-
-static const char body[] =
-	"<main>\n<section>\n<div class=\"panel\"><h2>Findings</h2>\n<div class=\"row\">"
-	"<label><input type=\"checkbox\" id=\"show-error\" checked> errors</label>"
-	"<label><input type=\"checkbox\" id=\"show-warning\" checked> warnings</label>"
-	"<label><input type=\"checkbox\" id=\"show-info\" checked> infos</label>"
-	"<label>Code <select id=\"code\"><option value=\"\">all</option></select></label>"
-	"<label>Text <input type=\"search\" id=\"text\"></label></div>\n"
-	"<p class=\"note\" id=\"shown\" role=\"status\"></p>\n"
-	"<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table of findings\">"
-	"<table><thead><tr id=\"columns\"></tr></thead><tbody id=\"rows\"></tbody></table></div></div>\n"
-	"<div class=\"panel\"><h2>UV layout</h2>\n<p class=\"note\">Blue: unmirrored. Red and hatched: mirrored. "
-	"Grey: degenerate. Thick: mirror seams, with their numbers on both sides.</p><div id=\"uv\"></div></div>\n"
-	"</section>\n"
-	"<section>\n<div class=\"panel\"><h2><label>Mesh <select id=\"mesh\"></select></label></h2>"
-	"<dl id=\"facts\"></dl></div>\n"
-	"<div class=\"panel\"><h2>In space</h2>\n<div class=\"row\">"
-	"<label>Show <select id=\"show\"><option value=\"0\">lit by the normal map</option>"
-	"<option value=\"1\">normal</option><option value=\"2\">tangent</option>"
-	"<option value=\"3\">bitangent</option><option value=\"4\">tangent w</option>"
-	"<option value=\"5\">UV grid</option></select></label>"
-	"<label>Frame <select id=\"frame\"><option value=\"0\">stored, per vertex</option>"
-	"<option value=\"1\">stored, light in tangent space</option>"
-	"<option value=\"2\">per pixel, from screen derivatives</option></select></label>"
-	"<label><input type=\"checkbox\" id=\"vectors\"> T B N</label>"
-	"<label><input type=\"checkbox\" id=\"seams\" checked> seams</label>"
-	"<button type=\"button\" id=\"home\">Whole mesh</button></div>\n"
-	"<canvas id=\"view\" tabindex=\"0\" role=\"img\" aria-label=\"The mesh in space; arrow keys turn it, plus "
-	"and minus zoom, Home shows all of it\"></canvas>\n<p class=\"note\" id=\"note\"></p></div>\n"
-	"</section>\n</main>\n";
-
 void nt_write_html(const nt_report_list *reports, nt_buffer *out)
 {
 	nt_buffer_text(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-		"<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
+		"<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; "
 		"style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n"
 		"<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
 		"<link rel=\"icon\" href=\"data:,\">\n<title>nmtan report</title>\n<style>\n");
 	nt_buffer_text(out, nt_page_style);
 	nt_buffer_text(out, "</style>\n</head>\n<body>\n");
-	put_header(reports, out);
-	nt_buffer_text(out, body);
-	put_pictures(reports, out);
+	nt_buffer_text(out, nt_page_body);
 	put_data(reports, out);
 	nt_buffer_text(out, "<script>\n");
 	nt_buffer_text(out, nt_page_script);
-	nt_buffer_text(out, "</script>\n</body>\n</html>\n");
+	nt_buffer_text(out, "</script>\n");
+	put_geometries(reports, out);
+	nt_buffer_text(out, "</body>\n</html>\n");
 }

@@ -48,15 +48,17 @@ bool nt_report_format_of_path(const char *path, nt_report_format *format)
 nt_status nt_report_write(const nt_report *const *reports, size_t count, nt_report_format format,
 	const nt_report_style *style, nt_report_sink sink, void *user, nt_error *error)
 {
-	nt_report_list list = {.items = reports, .count = count};
+	nt_report_stream stream = {.sink = sink, .user = user, .error = error};
+	nt_report_list list = {.items = reports, .count = count, .stream = &stream};
 	if (style)
 		list.style = *style;
 	nt_buffer out = {0};
 	formats[format].write(&list, &out);
-	const nt_status status = out.failed ? nt_fail_memory(error)
-					       : sink(user, out.data ? out.data : "", out.size, error);
+	nt_list_flush(&list, 0, &out);
+	if (out.failed && !stream.status)
+		stream.status = nt_fail_memory(error);
 	nt_buffer_free(&out);
-	return status;
+	return stream.status;
 }
 
 nt_status nt_report_write_uv(const nt_report *report, uint32_t mesh, bool *drawn, nt_report_sink sink,

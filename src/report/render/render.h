@@ -15,15 +15,12 @@ typedef enum nt_report_format {
 	NT_REPORT_JUNIT,    /* XML, for test dashboards */
 	NT_REPORT_CSV,      /* a row per finding */
 	NT_REPORT_MARKDOWN, /* for comments on pull requests */
-	NT_REPORT_HTML,     /* one page with UV layouts and a 3D view */
+	NT_REPORT_HTML,     /* one page with UV layouts and the meshes in space */
 	NT_REPORT_FORMAT_COUNT
 } nt_report_format;
 
 /* The format that a file name's extension means; false when it is none of them. */
 bool nt_report_format_of_path(const char *path, nt_report_format *format);
-
-/* Takes a piece of the output. */
-typedef nt_status (*nt_report_sink)(void *user, const void *bytes, size_t size, nt_error *error);
 
 /*
  * Writes reports, one for each input, as one document. style may be NULL.

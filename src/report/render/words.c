@@ -8,6 +8,15 @@
 #include <string.h>
 #include "base/utf8.h"
 
+void nt_list_flush(const nt_report_list *reports, size_t least, nt_buffer *out)
+{
+	nt_report_stream *to = reports->stream;
+	if (out->failed || to->status || out->size < least)
+		return;
+	to->status = to->sink(to->user, out->data ? out->data : "", out->size, to->error);
+	out->size = 0;
+}
+
 nt_totals nt_report_totals(const nt_report_list *reports)
 {
 	nt_totals totals = {0};

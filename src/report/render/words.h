@@ -13,11 +13,26 @@ typedef struct nt_report_style {
 	int least_failure; /* JUnit: the nt_severity from which on a finding is a failure; 3: none */
 } nt_report_style;
 
+/* Takes a piece of the output. */
+typedef nt_status (*nt_report_sink)(void *user, const void *bytes, size_t size, nt_error *error);
+
+/* Where a document goes while it grows. */
+typedef struct nt_report_stream {
+	nt_report_sink sink;
+	void *user;
+	nt_error *error;
+	nt_status status; /* what the sink returned when it failed; nothing more is written then */
+} nt_report_stream;
+
 typedef struct nt_report_list {
 	const nt_report *const *items;
 	size_t count;
 	nt_report_style style;
+	nt_report_stream *stream;
 } nt_report_list;
+
+/* Hands on what a large document has so far, if it is `least` bytes or more. */
+void nt_list_flush(const nt_report_list *reports, size_t least, nt_buffer *out);
 
 /* New findings of all reports, by severity; known and dropped ones. */
 typedef struct nt_totals {

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+//
+// The first page of many files: a row each, the worst first. Pictures of their texture layouts are made when a row comes
+// into view, of files that are small enough.
+
+const MOST_THUMB_TRIANGLES = 60000;
+
+const fileColumns = [
+	['worst', '', null],
+	['name', 'File', (a, b) => a.name < b.name ? -1 : a.name > b.name ? 1 : 0],
+	['error', 'Errors', (a, b) => a.counts[0] - b.counts[0]],
+	['warning', 'Warnings', (a, b) => a.counts[1] - b.counts[1]],
+	['info', 'Notes', (a, b) => a.counts[2] - b.counts[2]],
+	['triangles', 'Triangles', (a, b) => a.triangles - b.triangles],
+	['islands', 'Islands', (a, b) => a.islands - b.islands],
+	['seams', 'Seams', (a, b) => a.seams - b.seams]];
+
+const worstFirst = (a, b) => (b.failure ? 1 : 0) - (a.failure ? 1 : 0) || b.counts[0] - a.counts[0] || b.counts[1] - a.counts[1] ||
+	b.counts[2] - a.counts[2] || a.number - b.number;
+
+class Overview {
+	constructor() {
+		this.sort = null;
+		this.text = '';
+		this.observer = new IntersectionObserver(entries => entries.forEach(e => {
+			if (!e.isIntersecting) return;
+			this.observer.unobserve(e.target);
+			this.drawThumb(e.target);
+		}), {rootMargin: '200px'});
+		$('file-columns').append(...fileColumns.map(([id, title, compare]) => element('th', {'data-column': id, scope: 'col', class: compare && id !== 'name' ? 'numeric' : null},
+			compare ? element('button', {type: 'button', onclick: () => this.sortBy(id)}, title) : element('span', {class: 'hidden'}, 'Layout'))));
+		$('file-text').addEventListener('input', e => { this.text = e.target.value.toLowerCase(); this.show(); });
+	}
+
+	sortBy(id) {
+		const numeric = id !== 'name', same = this.sort?.id === id;
+		this.sort = {id, down: same ? !this.sort.down : numeric};
+		this.show();
+	}
+
+	row(file) {
+		const mesh = file.meshes.find(m => m.hasGeometry && m.number === (m.same_as ?? m.number));
+		const canvas = element('canvas', {class: 'thumb', width: 112, height: 80, 'aria-hidden': 'true'});
+		if (mesh && mesh.triangles <= MOST_THUMB_TRIANGLES) { canvas.mesh = mesh; this.observer.observe(canvas); }
+		const number = (n, kind) => element('td', {class: 'numeric ' + (n ? kind || '' : 'none')}, count(n));
+		const codes = [...new Set(file.findings.filter(x => x.severity !== 'info').map(x => x.code))].slice(0, 3).map(titleOf).join(', ');
+		return element('tr', {class: file.failure || file.counts[0] ? 'error' : file.counts[1] ? 'warning' : 'clean', onclick: () => { location.hash = 'file-' + file.number; }},
+			element('td', {}, canvas),
+			element('td', {class: 'name'}, element('a', {href: '#file-' + file.number, onclick: e => e.stopPropagation()}, file.name),
+				element('span', {class: 'note'}, file.failure || codes || (file.counts[2] ? 'notes only' : 'nothing to report'))),
+			number(file.counts[0], 'error'), number(file.counts[1], 'warning'), number(file.counts[2], 'info'), number(file.triangles), number(file.islands), number(file.seams));
+	}
+
+	show() {
+		const compare = this.sort && fileColumns.find(c => c[0] === this.sort.id)[2], sign = this.sort?.down ? -1 : 1;
+		const shown = files.filter(f => !this.text || f.name.toLowerCase().includes(this.text) || f.findings.some(x => x.code.toLowerCase().includes(this.text)))
+			.sort(compare ? (a, b) => sign * compare(a, b) || a.number - b.number : worstFirst);
+		$('file-rows').replaceChildren(...shown.map(f => this.row(f)));
+		$('files-shown').textContent = (shown.length === files.length ? plural(files.length, 'file') : count(shown.length) + ' of ' + plural(files.length, 'file')) +
+			(this.sort ? '' : ', the worst first');
+		document.querySelectorAll('#file-columns th').forEach(th => th.setAttribute('aria-sort',
+			th.dataset.column !== this.sort?.id ? 'none' : this.sort.down ? 'descending' : 'ascending'));
+	}
+
+	async drawThumb(canvas) {
+		const g = await readGeometry(canvas.mesh), c = canvas.getContext('2d'), uv = g.texcoords, ink = layoutInk();
+		if (!uv) return;
+		const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+		for (let v = 0; v < uv.length; v++) { low[v & 1] = Math.min(low[v & 1], uv[v]); high[v & 1] = Math.max(high[v & 1], uv[v]); }
+		const scale = Math.min(104 / (high[0] - low[0] || 1), 72 / (high[1] - low[1] || 1));
+		const x = u => 56 + (u - (low[0] + high[0]) / 2) * scale, y = v => 40 + (v - (low[1] + high[1]) / 2) * scale;
+		for (const region of g.regions) {
+			c.fillStyle = region.mirrored ? ink.mirroredLine : ink.plainLine;
+			c.globalAlpha = 0.75;
+			c.beginPath();
+			for (const loop of region.loops) {
+				loop.forEach((v, i) => i ? c.lineTo(x(uv[2 * v]), y(uv[2 * v + 1])) : c.moveTo(x(uv[2 * v]), y(uv[2 * v + 1])));
+				c.closePath();
+			}
+			c.fill();
+		}
+	}
+}

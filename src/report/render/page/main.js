@@ -1,0 +1,343 @@
+// SPDX-License-Identifier: MIT
+//
+// The page: which file and mesh are open, and what is chosen, in the list and in both views at once.
+//
+// The address says what is shown: #file-3 a file, #finding-12 a finding of the page.
+
+// ---- colours ----
+
+const colourOf = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+const fontFamily = () => 'system-ui, sans-serif';
+const rgb = text => [1, 3, 5].map(i => parseInt(text.slice(i, i + 2), 16) / 255);
+let themeCache = null;
+
+function theme() {
+	return (themeCache ||= {}).space ||= {stage: rgb(colourOf('--stage')), plain: rgb(colourOf('--plain')), mirrored: rgb(colourOf('--mirrored')),
+		degenerate: rgb('#9a9a98')};
+}
+
+function layoutInk() {
+	return (themeCache ||= {}).layout ||= {stage: colourOf('--stage'), grid: colourOf('--grid'), faint: colourOf('--grid-faint'), soft: colourOf('--soft'),
+		plainFill: colourOf('--plain') + '66', plainLine: colourOf('--plain-line'), mirroredFill: colourOf('--mirrored') + '66',
+		mirroredLine: colourOf('--mirrored-line'), hatch: colourOf('--mirrored-line') + '99', overlap: rgb(colourOf('--twice')).map(x => 255 * x),
+		seam: colourOf('--seam'), label: colourOf('--label'), labelText: colourOf('--label-text'),
+		chosen: colourOf('--chosen'), chosenFill: colourOf('--chosen') + 'b0', chosenLine: colourOf('--chosen-line'), wire: colourOf('--wire')};
+}
+
+function setTheme(name) {
+	if (name) document.documentElement.dataset.theme = name;
+	else delete document.documentElement.dataset.theme;
+	document.querySelectorAll('#theme button').forEach(b => b.setAttribute('aria-pressed', b.dataset.theme === name));
+	themeCache = null;
+	layout.overlaps = null;
+	layout.draw();
+	space?.draw();
+	if (!$('overview').hidden) overview.show();
+}
+
+// ---- parts ----
+
+const layout = new Layout($('layout'));
+let space = null, spaceFailure = '';
+const list = new Findings(finding => choose({finding}));
+const overview = new Overview();
+let file = null, mesh = null, geometry = null, selection = null;
+
+// ---- choosing ----
+
+const islandOf = t => geometry.islands[t] - 1;
+
+// What a selection covers: {triangles, seams, text, related}.
+function resolve({finding, island, seam, triangle}) {
+	const mine = file.findings.filter(x => x.mesh === mesh.number || x.mesh === (mesh.same_as ?? -1));
+	if (finding) {
+		const local = geometry ? finding.at.map(t => localTriangle(geometry, t)).filter(t => t !== undefined) : [];
+		const seams = finding.seam !== null ? [finding.seam] : [];
+		let triangles = local;
+		if (geometry && finding.seam !== null) triangles = trianglesOfSeam(geometry, finding.seam);
+		else if (geometry && finding.island !== null) triangles = trianglesOfIsland(geometry, finding.island);
+		return {triangles, seams, text: finding.message, related: []};
+	}
+	if (seam !== undefined) {
+		const [edges, closed, long, plane, a, b] = mesh.seamList[seam] || [];
+		return {triangles: trianglesOfSeam(geometry, seam), seams: [seam], related: mine.filter(x => x.seam === seam),
+			text: 'Mirror seam ' + seam + (edges ? ': ' + plural(edges, 'edge') + (closed ? ', closed' : '') + ', length ' + Number(long.toPrecision(4)) +
+				(plane ? ', in ' + plane : '') + (a !== null ? ', between island ' + a + ' and ' + (a === b ? 'itself' : b) : '') : '')};
+	}
+	if (triangle !== undefined) {
+		const number = geometry.numbers ? [...geometry.numbers].find(([, t]) => t === triangle)[0] : triangle;
+		const kind = ['mirrored', 'degenerate', 'unmirrored'][geometry.kinds[triangle] & 3];
+		return {triangles: [triangle], seams: [], related: mine.filter(x => x.at.includes(number)),
+			text: 'Triangle ' + number + ', ' + kind + (islandOf(triangle) >= 0 ? ', of island ' + islandOf(triangle) : '')};
+	}
+	const triangles = trianglesOfIsland(geometry, island), kinds = [0, 0, 0];
+	for (const t of triangles) kinds[geometry.kinds[t] & 3]++;
+	const related = mine.filter(x => x.island === island);
+	return {triangles, seams: [], related, text: 'Island ' + island + ': ' + plural(triangles.length, 'triangle') + ', ' +
+		(kinds[0] && kinds[2] ? count(kinds[2]) + ' unmirrored and ' + count(kinds[0]) + ' mirrored' : kinds[0] ? 'mirrored' : kinds[2] ? 'unmirrored' : 'degenerate') +
+		(related.length ? '' : ', no finding')};
+}
+
+async function choose(what, options = {}) {
+	if (what.finding) {
+		if (what.finding.file !== file) openFile(what.finding.file);
+		const wanted = what.finding.mesh === null ? mesh : file.meshes[what.finding.mesh];
+		if (wanted && wanted !== mesh) await openMesh(wanted);
+		else await loading;
+		await painted;
+		history.replaceState(null, '', '#finding-' + what.finding.number);
+	}
+	selection = what;
+	const {triangles, seams, text, related} = mesh ? resolve(what) : {triangles: [], seams: [], text: what.finding.message, related: []};
+	selection.triangles = triangles;
+	selection.island = what.island;
+	list.choose(what.finding || null, related);
+	layout.choose(triangles, seams);
+	space?.choose(triangles, seams);
+	if (!options.still) {
+		if (options.from !== 'layout') layout.focus();
+		if (options.from !== 'space') space?.focus();
+	}
+	if (what.finding && matchMedia('(max-width: 900px)').matches) $('stage').scrollIntoView();
+	$('selection').hidden = false;
+	$('selection-text').textContent = text;
+	$('selection-show').hidden = !triangles.length;
+}
+
+function chooseNothing() {
+	selection = null;
+	list.choose(null, []);
+	layout.choose([], []);
+	space?.choose([], []);
+	$('selection').hidden = true;
+	if (location.hash.startsWith('#finding')) history.replaceState(null, '', files.length > 1 ? '#file-' + file.number : '#');
+}
+
+// A click in a view: the island; inside of the chosen island, the triangle.
+function pick(triangle, again, from) {
+	if (triangle < 0) { chooseNothing(); return; }
+	const island = islandOf(triangle);
+	const inside = selection && (selection.island === island || selection.finding?.island === island || selection.inIsland === island);
+	if (again || inside || island < 0) choose({triangle, inIsland: island}, {from});
+	else choose({island}, {from});
+}
+
+// ---- what is open ----
+
+let loading = Promise.resolve();
+
+function empty(id, text) {
+	$(id).hidden = !text;
+	$(id).textContent = text;
+}
+
+function openMesh(next) {
+	mesh = next;
+	geometry = null;
+	$('mesh').value = mesh.number;
+	$('facts').replaceChildren(element('dt', {}, 'tangents'), element('dd', {}, mesh.why),
+		...mesh.facts.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]));
+	$('summary-of-mesh').textContent = mesh.triangles ? [plural(mesh.triangles, 'triangle'), plural(mesh.vertices, 'vertex', 'vertices'), plural(mesh.islands, 'island'),
+		plural(mesh.seamList.length, 'mirror seam')].join(' · ') : mesh.why;
+	layout.load(mesh, null);
+	space?.load(mesh, null);
+	empty('layout-empty', mesh.hasGeometry ? 'Opening…' : 'No triangles to show: ' + mesh.why + '.');
+	empty('space-empty', spaceFailure || (mesh.hasGeometry ? 'Opening…' : 'No triangles to show.'));
+	const opening = openGeometry(mesh).then(g => {
+		if (mesh !== next || !g) return;
+		geometry = g;
+		layout.load(mesh, g);
+		space?.load(mesh, g);
+		empty('layout-empty', g.texcoords ? '' : 'This mesh has no texture coordinates.');
+		empty('space-empty', spaceFailure);
+		offerFrames();
+		describe();
+	}, failure => empty('space-empty', 'The geometry cannot be read: ' + failure.message));
+	loading = opening;
+	return opening;
+}
+
+function openFile(next) {
+	file = next;
+	selection = null;
+	$('selection').hidden = true;
+	$('overview').hidden = true;
+	$('file').hidden = false;
+	$('title').replaceChildren(...(files.length > 1 ? [element('a', {href: '#'}, 'All files'), ' / '] : []), element('span', {}, file.name));
+	document.title = file.name + ' – nmtan report';
+	summary(file.counts, file.failure);
+	$('mesh').replaceChildren(...file.meshes.map(m => new Option(m.label + (m.same_as === null ? '' : ' (same geometry as ' + file.meshes[m.same_as].label + ')'), m.number)));
+	$('mesh-field').hidden = file.meshes.length < 2;
+	$('stage').hidden = !file.meshes.length;
+	list.load(file);
+	const first = file.meshes.find(m => m.number === file.findings.find(x => x.mesh !== null && file.meshes[x.mesh].hasGeometry)?.mesh) ||
+		file.meshes.find(m => m.hasGeometry) || file.meshes[0];
+	if (first) openMesh(first);
+	else mesh = geometry = null;
+}
+
+function openOverview() {
+	file = mesh = geometry = null;
+	$('file').hidden = true;
+	$('overview').hidden = false;
+	$('title').textContent = plural(files.length, 'file');
+	document.title = 'nmtan report';
+	summary([0, 1, 2].map(i => files.reduce((sum, f) => sum + f.counts[i], 0)), null);
+	overview.show();
+}
+
+function summary(counts, failure) {
+	$('summary').replaceChildren(...(failure ? [element('span', {class: 'verdict error'}, 'could not be judged: ' + failure)] :
+		severities.map((severity, i) => element('span', {class: 'verdict ' + (counts[i] ? severity : 'none')}, plural(counts[i], severityName[severity])))));
+}
+
+function follow() {
+	const [, kind, number] = /^#(file|finding)-(\d+)$/.exec(location.hash) || [];
+	if (kind === 'finding' && findings[number]) choose({finding: findings[number]});
+	else if (kind === 'file' && files[number]) { if (file !== files[number]) openFile(files[number]); }
+	else if (files.length === 1) { if (!file) openFile(files[0]); }
+	else openOverview();
+}
+
+// ---- frames ----
+
+const frameNames = Object.fromEntries(FRAMES);
+
+// Which frames this mesh has.
+function framesThere() {
+	return FRAMES.map(([id]) => id === 'screen' ? geometry.texcoords : geometry[id]).map(there => !!there);
+}
+
+function offerFrames() {
+	if (!space) return;
+	const there = framesThere();
+	const option = (i, text) => { const o = new Option(text, i); o.disabled = !there[i]; return o; };
+	$('frame').replaceChildren(...FRAMES.map(([, name], i) => option(i, name)));
+	$('other').replaceChildren(new Option('nothing', -1), ...FRAMES.map(([, name], i) => option(i, name)));
+	if (!there[space.frame]) space.frame = [1, 0, 2].find(i => there[i]) ?? 2;
+	if (space.other >= 0 && !there[space.other]) space.other = -1;
+	$('frame').value = space.frame;
+	$('other').value = space.other;
+}
+
+function describe() {
+	if (!space || !geometry) return;
+	const mode = MODES[space.mode][0], two = space.other >= 0 && mode !== 'angle', parts = [];
+	if (mode === 'lit') parts.push(space.image ? 'Lit by the normal map.' : 'Lit with a test pattern of domes: there is no normal map here.');
+	if (mode === 'angle') parts.push('The angle between the tangents ' + frameNames[FRAMES[space.frame][0]] + ' and those ' + ((space.other < 0 || space.other === 2) ? 'of screen derivatives' : frameNames[FRAMES[space.other][0]]) + '; 180° where the handedness differs.');
+	if (mode === 'skew') parts.push('How far tangents lean out of the plane of the normal.');
+	if (mode === 'sign' || mode === 'winding') parts.push('Blue: unmirrored. Red: mirrored.');
+	if (!geometry.normals) parts.push('The mesh has no normals; faces are shown flat.');
+	if (!geometry.whole) parts.push(count(geometry.triangles) + ' of ' + count(mesh.triangles) + ' triangles: the neighbourhood of the findings. A page holds three million.');
+	$('space-note').textContent = parts.join(' ');
+	$('heat').hidden = mode !== 'angle' && mode !== 'skew';
+	$('heat-high').textContent = mode === 'skew' ? '30°' : '90°';
+	$('arrange').hidden = !two;
+	$('wipe').hidden = !two || space.layout !== 'wipe';
+	$('wipe').style.left = 100 * space.wipe + '%';
+	$('wipe').setAttribute('aria-valuenow', Math.round(100 * space.wipe));
+	for (const [id, frame] of [['left-name', space.frame], ['right-name', space.other]]) {
+		$(id).hidden = !two;
+		$(id).textContent = two ? frameNames[FRAMES[frame][0]] : '';
+	}
+	$('texture-toggle').hidden = !mesh.picture;
+	$('frame').closest('label').hidden = ['winding', 'checker', 'normal'].includes(mode);
+	$('other').closest('label').hidden = ['winding', 'checker', 'normal'].includes(mode);
+}
+
+function changeSpace(change) {
+	Object.assign(space, change);
+	if ('frame' in change) space.vectorLines = null;
+	if (space.mode === 7 && (space.other < 0 || space.other === space.frame)) {
+		const there = framesThere();
+		space.other = [1, 2, 0].find(i => there[i] && i !== space.frame) ?? -1;
+		$('other').value = space.other;
+	}
+	describe();
+	space.draw();
+}
+
+// ---- start ----
+
+layout.onpick = (triangle, again) => pick(triangle, again, 'layout');
+layout.onseam = seam => choose({seam}, {from: 'layout'});
+layout.onhover = (u, v) => { $('layout-readout').textContent = u === null || u === undefined || !layout.geometry ? '' : 'u ' + u.toFixed(4) + '  v ' + (1 - v).toFixed(4); };
+MODES.forEach(([, name], i) => $('mode').append(new Option(name, i)));
+$('mode').addEventListener('change', e => changeSpace({mode: Number(e.target.value)}));
+$('frame').addEventListener('change', e => changeSpace({frame: Number(e.target.value)}));
+$('other').addEventListener('change', e => changeSpace({other: Number(e.target.value)}));
+$('seams').addEventListener('change', e => changeSpace({showSeams: e.target.checked}));
+$('vectors').addEventListener('change', e => changeSpace({showVectors: e.target.checked}));
+$('texture').addEventListener('change', e => { layout.showTexture = e.target.checked; layout.draw(); });
+$('overlaps').addEventListener('change', e => { layout.showOverlaps = e.target.checked; layout.draw(); });
+$('layout-fit').addEventListener('click', () => layout.fit());
+$('space-fit').addEventListener('click', () => { if (geometry) space?.home(); });
+$('selection-show').addEventListener('click', () => { layout.focus(); space?.focus(); });
+$('selection-clear').addEventListener('click', chooseNothing);
+$('mesh').addEventListener('change', e => { chooseNothing(); openMesh(file.meshes[e.target.value]); });
+document.querySelectorAll('#arrange button').forEach(button => button.addEventListener('click', () => {
+	document.querySelectorAll('#arrange button').forEach(b => b.setAttribute('aria-pressed', b === button));
+	changeSpace({layout: button.dataset.layout});
+}));
+document.querySelectorAll('#theme button').forEach(b => b.addEventListener('click', () => setTheme(b.dataset.theme)));
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', () => setTheme(document.documentElement.dataset.theme || ''));
+$('wipe').addEventListener('pointermove', e => {
+	if (!(e.buttons & 1)) return;
+	const box = $('space').getBoundingClientRect();
+	changeSpace({wipe: clamp((e.clientX - box.left) / box.width, 0, 1)});
+});
+$('wipe').addEventListener('pointerdown', e => e.target.setPointerCapture(e.pointerId));
+$('wipe').addEventListener('keydown', e => {
+	const step = {ArrowLeft: -0.02, ArrowRight: 0.02, Home: -1, End: 1}[e.key];
+	if (!step) return;
+	e.preventDefault();
+	changeSpace({wipe: clamp(space.wipe + step, 0, 1)});
+});
+document.addEventListener('keydown', e => {
+	const typing = /^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName);
+	if (e.key === 'Escape' && selection) chooseNothing();
+	else if (e.key === '/' && !typing) { $($('file').hidden ? 'file-text' : 'text').focus(); e.preventDefault(); }
+	else if ((e.key === 'j' || e.key === 'k') && !typing && file && file.findings.length) {
+		const shown = [...document.querySelectorAll('.group[open] .finding')].map(b => findings[b.dataset.finding]);
+		const at = shown.indexOf(selection?.finding), next = shown[e.key === 'j' ? at + 1 : Math.max(at - 1, 0)];
+		if (next) choose({finding: next}).then(() => list.rows.get(next)?.focus({preventScroll: true}));
+	}
+});
+// WebGL takes longer to begin than all else: what there is to read is painted before.
+function startSpace() {
+	try {
+		space = new Space($('space'));
+	} catch (failure) {
+		spaceFailure = 'No 3D view: ' + failure.message + '.';
+		empty('space-empty', spaceFailure);
+		return;
+	}
+	space.onpick = (triangle, again) => pick(triangle, again, 'space');
+	space.onimage = image => { layout.image = image; layout.draw(); describe(); };
+	layout.oncoverage = (...window) => space.coverage(...window);
+	if (geometry) {
+		space.load(mesh, geometry);
+		offerFrames();
+		describe();
+		layout.draw();
+	}
+}
+const painted = new Promise(done => requestAnimationFrame(() => setTimeout(done))).then(startSpace);
+window.addEventListener('hashchange', follow);
+window.addEventListener('beforeprint', () => document.querySelectorAll('.group').forEach(g => { g.open = true; }));
+follow();
+
+// What the tests look at.
+window.nmtanReport = Object.freeze({
+	ready: () => painted.then(() => loading),
+	camera: () => space && {...space.camera, eye: space.eye(space.camera)},
+	layout: () => ({...layout.view, width: layout.width, height: layout.height}),
+	place: (u, v) => [layout.x(u), layout.y(v)],
+	geometry: () => geometry,
+	selection: () => selection && {...selection, finding: selection.finding?.number, triangles: selection.triangles.length},
+	labels: () => layout.labels,
+	overlapPixels: () => layout.overlapPixels,
+	visible: () => space.visible(space.camera),
+	frames: () => space.frames,
+	turn: (x, y) => space.turn(x, y),
+});

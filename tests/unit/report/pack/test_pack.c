@@ -1,0 +1,302 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Packed meshes, unpacked as pack.h describes them: every number is as near as its code allows, nothing is lost, and a
+ * triangle takes less than eight bytes.
+ */
+#include "fail_alloc.h"
+#include "test.h"
+
+#include <libdeflate.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include "report/pack/pack.h"
+
+enum { INDICES, POSITIONS, NORMALS, TEXCOORDS, AUTHORED, COMPUTED, KINDS, ISLANDS, OUTLINES, SEAMS, NUMBERS };
+
+typedef struct unpacked {
+	nt_packed packed;
+	unsigned char *raw;
+	const unsigned char *streams[NT_STREAM_COUNT];
+	uint32_t sizes[NT_STREAM_COUNT];
+	uint32_t *indices;
+} unpacked;
+
+static uint32_t get_varint(const unsigned char **at)
+{
+	uint32_t value = 0;
+	for (unsigned shift = 0;; shift += 7) {
+		value |= (uint32_t)(**at & 127) << shift;
+		if (!(*(*at)++ & 128))
+			return value;
+	}
+}
+
+static void unpack(unpacked *u, const nt_report *report, size_t most)
+{
+	assert_int_equal(nt_pack_mesh(&u->packed, report, 0, most), NT_OK);
+	u->raw = test_malloc(u->packed.raw_bytes);
+	struct libdeflate_decompressor *d = libdeflate_alloc_decompressor();
+	assert_int_equal(libdeflate_deflate_decompress(d, u->packed.bytes.data, u->packed.bytes.size, u->raw,
+				 u->packed.raw_bytes, NULL), LIBDEFLATE_SUCCESS);
+	libdeflate_free_decompressor(d);
+	size_t at = 4 * NT_STREAM_COUNT;
+	for (unsigned i = 0; i < NT_STREAM_COUNT; i++) {
+		const unsigned char *p = u->raw + 4 * i;
+		u->sizes[i] = (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+		u->streams[i] = u->raw + at;
+		at += u->sizes[i];
+	}
+	assert_int_equal(at, u->packed.raw_bytes);
+	const unsigned char *p = u->streams[INDICES];
+	u->indices = test_malloc(3 * u->packed.triangle_count * sizeof *u->indices);
+	uint32_t next = 0;
+	for (size_t c = 0; c < 3 * u->packed.triangle_count; c++) {
+		const uint32_t below = get_varint(&p);
+		u->indices[c] = next - below;
+		next += below == 0;
+	}
+	assert_int_equal(next, u->packed.vertex_count);
+}
+
+static void forget(unpacked *u)
+{
+	test_free(u->raw);
+	test_free(u->indices);
+	nt_buffer_free(&u->packed.bytes);
+}
+
+/* Component k of vertex v of a stream of codes. */
+static uint32_t code_of(const unpacked *u, int stream, size_t k, unsigned planes, size_t vertex)
+{
+	const size_t count = u->packed.vertex_count;
+	const uint32_t mask = planes == 3 ? 0xffffff : 0xffff;
+	uint32_t code = 0;
+	for (size_t v = 0; v <= vertex; v++) {
+		uint32_t z = 0;
+		for (unsigned i = 0; i < planes; i++)
+			z |= (uint32_t)u->streams[stream][(k * planes + i) * count + v] << 8 * i;
+		code = (code + (z & 1 ? 0u - (z + 1) / 2 : z / 2)) & mask;
+	}
+	return code;
+}
+
+static void decode_direction(const unpacked *u, int stream, size_t vertex, double d[3])
+{
+	double x = code_of(u, stream, 0, 2, vertex) / 2047.0 - 1.0, y = code_of(u, stream, 1, 2, vertex) / 2047.0 - 1.0;
+	d[2] = 1.0 - fabs(x) - fabs(y);
+	d[0] = d[2] < 0 ? (1 - fabs(y)) * (x < 0 ? -1 : 1) : x;
+	d[1] = d[2] < 0 ? (1 - fabs(x)) * (y < 0 ? -1 : 1) : y;
+	const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+	for (int i = 0; i < 3; i++)
+		d[i] /= length;
+}
+
+/* ---- meshes ---- */
+
+typedef struct sheet {
+	nt_report report;
+	nt_report_mesh mesh;
+	nt_report_geometry geometry;
+} sheet;
+
+/* A grid of n * n quads over a wavy surface with noise in every coordinate; the seed is fixed. */
+static sheet *make_sheet(uint32_t n, bool attributes)
+{
+	sheet *s = test_calloc(1, sizeof *s);
+	const size_t side = n + 1, vertices = side * side, triangles = 2 * (size_t)n * n;
+	nt_report_geometry *g = &s->geometry;
+	*g = (nt_report_geometry){.vertex_count = vertices, .triangle_count = triangles,
+		.positions = test_malloc(3 * vertices * sizeof(float)),
+		.normals = attributes ? test_malloc(3 * vertices * sizeof(float)) : NULL,
+		.texcoords = attributes ? test_malloc(2 * vertices * sizeof(float)) : NULL,
+		.computed = attributes ? test_malloc(4 * vertices * sizeof(float)) : NULL,
+		.indices = test_malloc(3 * triangles * sizeof(uint32_t)), .orientation = test_malloc(triangles),
+		.islands = test_calloc(triangles, sizeof(uint32_t))};
+	uint32_t seed = 1;
+	for (size_t v = 0; v < vertices; v++) {
+		const double x = (double)(v % side), y = (double)(v / side);
+		float noise[6];
+		for (int i = 0; i < 6; i++) {
+			seed = seed * 1664525u + 1013904223u;
+			noise[i] = (float)(seed >> 8) / 16777216.0f;
+		}
+		float *p = g->positions + 3 * v;
+		p[0] = (float)x + 0.3f * noise[0];
+		p[1] = (float)y + 0.3f * noise[1];
+		p[2] = 20.0f * (float)sin(x / 17) + noise[2];
+		if (!attributes)
+			continue;
+		const float direction[4] = {noise[3] - 0.5f, noise[4] - 0.5f, noise[5] - 0.5f, v % 3 ? 1.0f : -1.0f};
+		memcpy(g->normals + 3 * v, direction, 3 * sizeof(float));
+		memcpy(g->computed + 4 * v, direction, 4 * sizeof(float));
+		g->texcoords[2 * v] = (float)(x / n) - 3.0f;
+		g->texcoords[2 * v + 1] = (float)(y / n);
+	}
+	for (size_t t = 0; t < triangles; t++) {
+		const uint32_t a = (uint32_t)(t / 2 / n * side + t / 2 % n), b = a + (uint32_t)side;
+		const uint32_t corners[2][3] = {{a, a + 1, b + 1}, {a, b + 1, b}};
+		memcpy(g->indices + 3 * t, corners[t % 2], sizeof corners[0]);
+		g->orientation[t] = 1;
+	}
+	s->mesh = (nt_report_mesh){.geometry = g, .triangle_count = triangles};
+	s->report = (nt_report){.meshes = &s->mesh, .mesh_count = 1, .format = NT_FORMAT_OBJ};
+	return s;
+}
+
+static void free_sheet(sheet *s)
+{
+	void *blocks[] = {s->geometry.positions, s->geometry.normals, s->geometry.texcoords, s->geometry.computed,
+		s->geometry.indices, s->geometry.orientation, s->geometry.islands, s};
+	for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
+		if (blocks[i])
+			test_free(blocks[i]);
+}
+
+/* ---- cases ---- */
+
+static void positions_and_indices_take_less_than_eight_bytes_a_triangle(void **state)
+{
+	(void)state;
+	sheet *s = make_sheet(200, false);
+	unpacked u;
+	unpack(&u, &s->report, SIZE_MAX);
+	assert_true(u.packed.whole);
+	assert_int_equal(u.packed.vertex_count, 201 * 201);
+	const double bytes = (double)u.packed.bytes.size / (double)u.packed.triangle_count;
+	print_message("%.2f bytes a triangle\n", bytes);
+	assert_true(bytes < 8.0);
+	forget(&u);
+
+	/* and no more where triangles stand in any order */
+	for (size_t t = s->geometry.triangle_count - 1, seed = 7; t > 0; t--) {
+		seed = (seed * 1103515245 + 12345) & 0x7fffffff;
+		/* within some hundred of each other, as exporters sort by material and smoothing group */
+		const size_t other = t - (seed >> 8) % (t < 400 ? t + 1 : 400);
+		for (int k = 0; k < 3; k++) {
+			const uint32_t kept = s->geometry.indices[3 * t + (size_t)k];
+			s->geometry.indices[3 * t + (size_t)k] = s->geometry.indices[3 * other + (size_t)k];
+			s->geometry.indices[3 * other + (size_t)k] = kept;
+		}
+	}
+	unpack(&u, &s->report, SIZE_MAX);
+	const double shuffled = (double)u.packed.bytes.size / (double)u.packed.triangle_count;
+	print_message("%.2f bytes a triangle where neighbours lie apart\n", shuffled);
+	assert_true(shuffled < 8.0);
+	forget(&u);
+	free_sheet(s);
+}
+
+static void every_number_is_as_near_as_its_code(void **state)
+{
+	(void)state;
+	sheet *s = make_sheet(12, true);
+	const nt_report_geometry *g = &s->geometry;
+	unpacked u;
+	unpack(&u, &s->report, SIZE_MAX);
+	for (size_t c = 0; c < 3 * g->triangle_count; c++) {
+		const size_t from = g->indices[c], v = u.indices[c];
+		for (size_t i = 0; i < 3; i++) {
+			const double x = u.packed.position_origin[i] + code_of(&u, POSITIONS, i, 2, v) * u.packed.position_step[i];
+			assert_true(fabs(x - g->positions[3 * from + i]) <= 0.5001 * u.packed.position_step[i]);
+		}
+		for (size_t i = 0; i < 2; i++) {
+			const double wanted = i ? 1.0 - g->texcoords[2 * from + 1] : g->texcoords[2 * from];
+			const double x = u.packed.texcoord_origin[i] + code_of(&u, TEXCOORDS, i, 3, v) * u.packed.texcoord_step;
+			assert_true(fabs(x - wanted) <= 0.51 * u.packed.texcoord_step);
+		}
+		const float *n = g->normals + 3 * from;
+		const double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
+		const int streams[2] = {NORMALS, COMPUTED};
+		for (int i = 0; i < 2; i++) {
+			double d[3];
+			decode_direction(&u, streams[i], v, d);
+			/* half a code is 1 / 4094 of the octahedron, whose faces are up to sqrt(3) nearer than the sphere */
+			const double cosine = (d[0] * n[0] + d[1] * n[1] + d[2] * n[2]) / length;
+			assert_true(cosine > cos(sqrt(2.0) / 4094 * 3));
+		}
+		assert_int_equal(u.streams[COMPUTED][4 * u.packed.vertex_count + v], g->computed[4 * from + 3] > 0 ? 1 : 2);
+	}
+	assert_int_equal(u.sizes[AUTHORED], 0);
+	assert_int_equal(u.sizes[NUMBERS], 0);
+	assert_int_equal(u.sizes[KINDS], g->triangle_count);
+	assert_true(u.packed.texcoord_step <= 1.0 / (1 << 17));
+	forget(&u);
+	free_sheet(s);
+}
+
+static void what_is_not_finite_is_marked_and_does_not_stretch_the_rest(void **state)
+{
+	(void)state;
+	sheet *s = make_sheet(2, true);
+	s->geometry.positions[3 * 8] = NAN;
+	s->geometry.positions[3 * 7 + 1] = INFINITY;
+	s->geometry.texcoords[2 * 8] = NAN;
+	s->geometry.texcoords[2 * 7] = 3e38f;
+	s->geometry.computed[4 * 8] = NAN;
+	s->geometry.normals[3 * 8 + 1] = INFINITY;
+	unpacked u;
+	unpack(&u, &s->report, SIZE_MAX);
+	assert_true(u.packed.position_step[0] < 3.0 / 65535 && u.packed.position_step[1] < 3.0 / 65535);
+	assert_true(u.packed.texcoord_step < 1.0 / 200000);
+	for (size_t t = 0; t < 8; t++) {
+		const uint32_t *v = s->geometry.indices + 3 * t;
+		const bool broken = v[0] >= 7 || v[1] >= 7 || v[2] >= 7;
+		assert_int_equal(u.streams[KINDS][t], broken ? 2 + 4 : 2);
+	}
+	forget(&u);
+	free_sheet(s);
+}
+
+static void a_mesh_above_the_bound_is_a_part_that_keeps_its_numbers(void **state)
+{
+	(void)state;
+	sheet *s = make_sheet(20, true);
+	nt_report_finding finding = {.mesh = 0, .spot_count = 1, .spots = {{.triangle = 500}}};
+	s->report.findings = &finding;
+	s->report.finding_count = 1;
+	unpacked u;
+	unpack(&u, &s->report, 50);
+	assert_false(u.packed.whole);
+	assert_int_equal(u.packed.triangle_count, 50);
+	const unsigned char *p = u.streams[NUMBERS];
+	bool found = false;
+	for (uint32_t i = 0, number = 0; i < 50; i++) {
+		const uint32_t step = get_varint(&p);
+		assert_true(i == 0 || step > 0);
+		number += step;
+		assert_true(number > 500 - 170 && number < 500 + 170); /* four rings are four rows of 40 */
+		found |= number == 500;
+	}
+	assert_true(found);
+	forget(&u);
+	free_sheet(s);
+}
+
+static void exhausted_memory_is_told_and_nothing_leaks(void **state)
+{
+	(void)state;
+	sheet *s = make_sheet(6, true);
+	for (size_t most = 20; most <= 100; most += 80)
+		for (size_t n = 0, failed = 1; failed; n++) {
+			nt_packed packed;
+			fail_allocations_from(n);
+			const nt_status status = nt_pack_mesh(&packed, &s->report, 0, most);
+			failed = stop_failing_allocations();
+			assert_int_equal(status, failed ? NT_ERROR_MEMORY : NT_OK);
+			nt_buffer_free(&packed.bytes);
+		}
+	free_sheet(s);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(positions_and_indices_take_less_than_eight_bytes_a_triangle),
+		cmocka_unit_test(every_number_is_as_near_as_its_code),
+		cmocka_unit_test(what_is_not_finite_is_marked_and_does_not_stretch_the_rest),
+		cmocka_unit_test(a_mesh_above_the_bound_is_a_part_that_keeps_its_numbers),
+		cmocka_unit_test(exhausted_memory_is_told_and_nothing_leaks),
+	};
+	return cmocka_run_group_tests(tests, NULL, NULL);
+}
