@@ -53,6 +53,9 @@ void obj_ignore(obj_reader *r, size_t which);
 /* Reads what follows "f": faces.c. */
 nt_status obj_read_face(obj_reader *r);
 
+/* Reads a line that begins with "#MRGB": colors.c. */
+nt_status obj_read_mrgb(obj_reader *r);
+
 /* Reads the lines up to that of face number `last` of the chunk, or all: statements.c. */
 nt_status obj_read_lines(obj_reader *r, size_t last);
 

@@ -68,6 +68,14 @@ typedef struct obj_rows {
 	size_t first; /* of that kind in the file before this chunk; known after all have been read */
 } obj_rows;
 
+/* A line of colours. */
+typedef struct obj_mrgb_line {
+	size_t line;   /* within the chunk, from 0 */
+	size_t vertex; /* `v` of the chunk before it */
+	size_t count;  /* its colours */
+	bool sound;    /* all of it are colours */
+} obj_mrgb_line;
+
 /* Whole lines of the file and what was in them. */
 typedef struct obj_chunk {
 	const char *begin, *end; /* of the last chunk: in obj_file.tail */
@@ -75,6 +83,10 @@ typedef struct obj_chunk {
 	obj_rows rows[OBJ_KIND_COUNT];
 	float *colors; /* rows of 4 as written, as many as positions; NULL while no `v` has one */
 	size_t color_capacity;
+	uint32_t *mrgb; /* colours in comments, 0xRRGGBB: colors.c */
+	size_t mrgb_count, mrgb_capacity;
+	obj_mrgb_line *mrgb_lines;
+	size_t mrgb_line_count, mrgb_line_capacity;
 
 	/* Corners by number of their distinct v/t/n. Those are in order of first use; some come more than
 	 * once, and again in every object. */
@@ -167,6 +179,10 @@ typedef struct obj_vertex {
  * chunk->error is set. */
 nt_status obj_parse_chunk(obj_chunk *chunk);
 void obj_chunk_free(obj_chunk *chunk);
+
+/* Gives the vertices of the file the colours that stand in comments; what is wrong with those is a finding. Needs guides.
+ * Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status obj_join_mrgb(obj_file *file, nt_error *error);
 
 /* Line of a face of the file, by reading its chunk again; 0: out of memory. before: how many v, vt and vn of
  * its chunk stand before it. */

@@ -289,6 +289,8 @@ static inline nt_status read_statement(obj_reader *r)
 		r->p = p + 3;
 		return read_texcoord(r);
 	}
+	if (*p == '#' && strncmp(p, "#MRGB", 5) == 0 && is_blank(p[5]))
+		return obj_read_mrgb(r);
 	if (is_line_end(*p) || *p == '#')
 		return NT_OK;
 	return read_rare(r);
@@ -330,6 +332,8 @@ void obj_chunk_free(obj_chunk *chunk)
 	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
 		free(chunk->rows[kind].data);
 	free(chunk->colors);
+	free(chunk->mrgb);
+	free(chunk->mrgb_lines);
 	free(chunk->distinct);
 	free(chunk->corners);
 	free(chunk->face_sizes);

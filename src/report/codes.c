@@ -107,6 +107,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"The input has a statement, element or property that nmtan does not know or does not need.",
 		"Nothing, unless you expected it to matter.",
 		"an OBJ with a \"curv\" line"),
+	ROW(COLORS_DOUBTFUL, WARNING, "colours of vertices are not what they should be",
+		"A block of #MRGB comments in an OBJ has more or fewer colours than there are vertices before it, or something that is "
+		"no colour. The last vertices before it got them; what is missing or malformed is white.",
+		"Export the mesh again.",
+		"#MRGB ff0000 (six digits) in an OBJ"),
 	ROW(POLYGON_DEGENERATE, WARNING, "{count} {polygon|polygons} could not be triangulated properly",
 		"A face of five or more corners crosses itself, is collinear or not finite. It was cut into "
 		"triangles, but they may overlap.",

@@ -1,0 +1,173 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The colours of vertices that ZBrush writes as comments: "#MRGB" and 8 hexadecimal digits MMRRGGBB for each vertex, 64
+ * vertices a line (ZBrush says so in its files; http://paulbourke.net/dataformats/obj/colour.html). MM is the mask of
+ * sculpting, not opacity. The lines between two `v` are one block: n colours for the n vertices before it, so that a file of
+ * several tools, each with its block, is read, too. Where `v` have colours of their own, those count.
+ *
+ * Comments never fail a file: what is malformed is a finding with its line, and its vertices are white.
+ */
+#include "obj/line.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MRGB_DIGITS = 8 };
+
+static const uint32_t white = 0xffffff;
+
+/* ---- reading ---- */
+
+static int hex_digit(char c)
+{
+	if (is_digit(c))
+		return c - '0';
+	const char lower = (char)(c | 0x20);
+	return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
+}
+
+/* One colour; false: these are no 8 digits. */
+static bool read_entry(const char *p, uint32_t *color)
+{
+	uint32_t value = 0;
+	for (int i = 0; i < MRGB_DIGITS; i++) {
+		const int digit = hex_digit(p[i]);
+		if (digit < 0)
+			return false;
+		value = value << 4 | (uint32_t)digit;
+	}
+	*color = value & white;
+	return true;
+}
+
+nt_status obj_read_mrgb(obj_reader *r)
+{
+	obj_chunk *chunk = r->chunk;
+	const size_t first = chunk->mrgb_count;
+	const char *p = r->p + strlen("#MRGB");
+	bool sound = true;
+	while (is_blank(*p))
+		p++;
+	const char *end = p;
+	while (!is_line_end(*end))
+		end++;
+	while (end > p && is_blank(end[-1]))
+		end--;
+	for (; p < end; p += MRGB_DIGITS) {
+		uint32_t color = white;
+		sound &= end - p >= MRGB_DIGITS && read_entry(p, &color);
+		if (!obj_reserve(chunk, (void **)&chunk->mrgb, &chunk->mrgb_capacity, chunk->mrgb_count, sizeof color))
+			return obj_fail_memory(r);
+		chunk->mrgb[chunk->mrgb_count++] = color;
+	}
+	if (!nt_grow((void **)&chunk->mrgb_lines, &chunk->mrgb_line_capacity, chunk->mrgb_line_count + 1,
+			sizeof *chunk->mrgb_lines))
+		return obj_fail_memory(r);
+	chunk->mrgb_lines[chunk->mrgb_line_count++] =
+		(obj_mrgb_line){r->statement_line, chunk->rows[OBJ_V].count, chunk->mrgb_count - first, sound};
+	return NT_OK;
+}
+
+/* ---- giving them to vertices ---- */
+
+/* The block that is under way, and the next colour that is given. */
+typedef struct painter {
+	obj_file *file;
+	size_t line;         /* of the block, from 1; 0: none */
+	size_t count;        /* its colours */
+	size_t vertex;       /* `v` of the file before it */
+	size_t before;       /* `v` before the last block */
+	size_t chunk, color; /* of the chunk */
+	bool mismatched;     /* some block was */
+} painter;
+
+static void doubt(const obj_file *file, size_t line, const char *what)
+{
+	nt_place place;
+	nt_place_clear(&place);
+	strncpy(place.file, file->scene->path, sizeof place.file - 1);
+	place.line = line;
+	nt_finding_add(&file->scene->findings, NT_CODE_COLORS_DOUBTFUL, &place, 1, "#MRGB: %s", what);
+}
+
+static void check_count(painter *p)
+{
+	char what[80] = "and in other blocks";
+	const size_t vertices = p->vertex - p->before;
+	if (p->count == vertices)
+		return;
+	if (!p->mismatched)
+		snprintf(what, sizeof what, "%zu colours for %zu vertices", p->count, vertices);
+	p->mismatched = true;
+	doubt(p->file, p->line, what);
+}
+
+static uint32_t next_color(painter *p)
+{
+	while (p->color == p->file->chunks[p->chunk].mrgb_count) {
+		p->chunk++;
+		p->color = 0;
+	}
+	return p->file->chunks[p->chunk].mrgb[p->color++];
+}
+
+/* The colours of a chunk's vertices, white before any has one; NULL: out of memory. */
+static float *colors_of(obj_chunk *chunk)
+{
+	const size_t count = chunk->rows[OBJ_V].count;
+	if (chunk->colors || !(chunk->colors = nt_alloc(count, 4 * sizeof *chunk->colors)))
+		return chunk->colors;
+	for (size_t i = 0; i < 4 * count; i++)
+		chunk->colors[i] = 1;
+	return chunk->colors;
+}
+
+/* Gives the vertices before the block its colours. A file that is white all over has none: ZBrush writes that, too. */
+static nt_status end_block(painter *p, nt_error *error)
+{
+	const size_t vertices = p->count < p->vertex ? p->count : p->vertex;
+	if (!p->line)
+		return NT_OK;
+	check_count(p);
+	for (size_t i = 0; i < p->count; i++) {
+		const uint32_t color = next_color(p), number = (uint32_t)(p->vertex - vertices + i);
+		if (i >= vertices || color == white)
+			continue;
+		p->file->has_colors = true;
+		obj_chunk *chunk = &p->file->chunks[obj_find_row(p->file, OBJ_V, number) - p->file->chunks];
+		float *colors = colors_of(chunk);
+		if (!colors)
+			return nt_fail_memory(error);
+		for (int k = 0; k < 3; k++)
+			colors[4 * (number - chunk->rows[OBJ_V].first) + (size_t)k] = (float)(color >> (16 - 8 * k) & 255) / 255;
+	}
+	p->before = p->vertex;
+	p->line = p->count = 0;
+	return NT_OK;
+}
+
+static nt_status take_line(painter *p, const obj_chunk *chunk, const obj_mrgb_line *line, nt_error *error)
+{
+	const size_t vertex = chunk->rows[OBJ_V].first + line->vertex, number = chunk->first_line + line->line + 1;
+	const nt_status status = vertex != p->vertex ? end_block(p, error) : NT_OK;
+	if (!p->line)
+		p->line = number;
+	p->vertex = vertex;
+	p->count += line->count;
+	if (!line->sound)
+		doubt(p->file, number, "found something else, expected 8 hexadecimal digits for each vertex");
+	return status;
+}
+
+nt_status obj_join_mrgb(obj_file *file, nt_error *error)
+{
+	painter p = {.file = file};
+	nt_status status = NT_OK;
+	if (file->has_colors)
+		return NT_OK;
+	for (size_t c = 0; c < file->chunk_count && !status; c++)
+		for (size_t i = 0; i < file->chunks[c].mrgb_line_count && !status; i++)
+			status = take_line(&p, &file->chunks[c], &file->chunks[c].mrgb_lines[i], error);
+	return status ? status : end_block(&p, error);
+}
