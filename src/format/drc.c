@@ -12,6 +12,7 @@
 #include <string.h>
 #include "ext/draco.h"
 #include "gltf/normalized.h"
+#include "scene/srgb.h"
 
 bool nt_drc_recognise(const unsigned char *bytes, size_t size)
 {
@@ -90,6 +91,8 @@ static nt_status take_attributes(nt_scene *scene, nt_mesh *mesh, const nt_draco_
 		const nt_status status = check_finite(*to.rows, from->point_count, to.width, a->unique_id, error);
 		if (status)
 			return status;
+		if (a->kind == NT_DRACO_COLOR) /* those of an OBJ or PLY: draco_encoder copies them */
+			nt_linearise(mesh->colors, from->point_count);
 	}
 	return mesh->positions ? NT_OK
 			       : nt_fail(error, NT_ERROR_INPUT, "the Draco mesh has no positions");

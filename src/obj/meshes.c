@@ -13,6 +13,7 @@
 #include "base/name_table.h"
 #include "base/parallel.h"
 #include "scene/polygon.h"
+#include "scene/srgb.h"
 #include "scene/transform.h"
 
 enum { GRAIN = 1 << 14 }; /* rows per thread that are worth one */
@@ -23,6 +24,7 @@ typedef struct builder {
 	nt_error *error;
 	float *positions, *normals, *texcoords, *colors;
 	uint8_t *lacks;
+	nt_srgb srgb;
 	size_t span;              /* of the next face */
 	size_t polygon;           /* the next one of five corners and more */
 	uint32_t *material_slots; /* [material_count + 1] primitive of a material in the current mesh */
@@ -46,20 +48,15 @@ static void copy_row(const obj_file *file, int kind, uint32_t row, float *to)
 	}
 }
 
-static float linear_from_srgb(float value)
+static void copy_color(const builder *b, uint32_t row, float *to)
 {
-	const double c = value < 0 ? 0 : value > 1 ? 1 : value;
-	return (float)(c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4));
-}
-
-static void copy_color(const obj_file *file, uint32_t row, float *to)
-{
+	const obj_file *file = b->file;
 	const obj_chunk *chunk = obj_find_row(file, OBJ_V, row);
 	static const float white[4] = {1, 1, 1, 1};
 	const float *from =
 		chunk->colors ? chunk->colors + 4 * (row - chunk->rows[OBJ_V].first) : white;
 	for (int k = 0; k < 3; k++)
-		to[k] = linear_from_srgb(from[k]);
+		to[k] = nt_linear_from_srgb(&b->srgb, fminf(fmaxf(from[k], 0), 1));
 	to[3] = fminf(fmaxf(from[3], 0), 1);
 }
 
@@ -76,7 +73,7 @@ static void gather(void *context, size_t begin, size_t end, unsigned slot)
 		if (b->normals)
 			copy_row(file, OBJ_VN, x->n, b->normals + 3 * i);
 		if (b->colors)
-			copy_color(file, x->v, b->colors + 4 * i);
+			copy_color(b, x->v, b->colors + 4 * i);
 		b->lacks[i] = (uint8_t)((x->n == OBJ_ABSENT ? NT_LACKS_NORMAL : 0) |
 			(x->t == OBJ_ABSENT ? NT_LACKS_TEXCOORD : 0));
 	}
@@ -420,6 +417,7 @@ nt_status obj_make_meshes(obj_file *file, nt_error *error)
 {
 	nt_scene *scene = file->scene;
 	builder b = {.file = file, .error = error};
+	nt_srgb_init(&b.srgb);
 	scene->meshes = nt_arena_alloc(&scene->arena, file->mesh_count, sizeof *scene->meshes);
 	scene->instances = nt_arena_alloc(&scene->arena, file->mesh_count, sizeof *scene->instances);
 	b.material_slots = nt_calloc(scene->material_count + 1, sizeof *b.material_slots);

@@ -13,10 +13,12 @@
 #include <math.h>
 #include "base/dvec.h"
 #include "base/vec.h"
+#include "scene/srgb.h"
 
 /* What the vertices of the file have. */
 typedef struct layout {
 	bool normals, colors, byte_colors, texcoords, tangents, bitangents;
+	nt_srgb srgb;
 	size_t vertex_count, face_count;
 } layout;
 
@@ -50,20 +52,26 @@ static const float *tangent_of(const nt_mesh *mesh, size_t vertex)
 	return mesh->tangents ? mesh->tangents + 4 * mesh_vertex(mesh, vertex) : NULL;
 }
 
-/* Whether all colours are bytes divided by 255. */
-static bool are_bytes(const nt_mesh *mesh)
+/* Alpha as a byte divided by 255; -1: it is none. */
+static int alpha_byte(float alpha)
 {
-	for (size_t i = 0; i < 4 * mesh->vertex_count; i++) {
-		const float scaled = mesh->colors[i] * 255.0f;
-		if (!(scaled >= 0.0f && scaled <= 255.5f) || rintf(scaled) / 255.0f != mesh->colors[i])
-			return false;
-	}
-	return true;
+	const float scaled = alpha * 255.0f;
+	return scaled >= 0.0f && scaled <= 255.5f && rintf(scaled) / 255.0f == alpha ? (int)rintf(scaled) : -1;
+}
+
+/* Whether all colours come from sRGB bytes. */
+static bool are_bytes(const nt_mesh *mesh, const nt_srgb *srgb)
+{
+	bool bytes = true;
+	for (size_t i = 0; i < 4 * mesh->vertex_count && bytes; i++)
+		bytes = (i % 4 == 3 ? alpha_byte(mesh->colors[i]) : nt_srgb_byte(srgb, mesh->colors[i])) >= 0;
+	return bytes;
 }
 
 static layout find_layout(const nt_scene *scene, bool bitangents)
 {
 	layout l = {.byte_colors = true};
+	nt_srgb_init(&l.srgb);
 	for (size_t i = 0; i < scene->instance_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[scene->instances[i].mesh];
 		if (!is_written(mesh))
@@ -72,7 +80,7 @@ static layout find_layout(const nt_scene *scene, bool bitangents)
 		l.texcoords |= mesh->texcoords != NULL;
 		l.tangents |= mesh->split.vertex_tangents || mesh->tangents;
 		l.colors |= mesh->colors != NULL;
-		l.byte_colors = l.byte_colors && (!mesh->colors || are_bytes(mesh));
+		l.byte_colors = l.byte_colors && (!mesh->colors || are_bytes(mesh, &l.srgb));
 		l.vertex_count += vertices_of(mesh);
 		l.face_count += mesh->face_count;
 	}
@@ -169,10 +177,10 @@ static void put_color(ply_output *out, const layout *l, const float *color)
 {
 	static const float white[4] = {1.0f, 1.0f, 1.0f, 1.0f};
 	const float *c = color ? color : white;
-	if (!l->byte_colors)
-		ply_put_floats(out, c, 4);
 	for (size_t i = 0; l->byte_colors && i < 4; i++)
-		ply_put_integer(out, (uint32_t)rintf(c[i] * 255.0f), PLY_UINT8);
+		ply_put_integer(out, (uint32_t)(i == 3 ? alpha_byte(c[i]) : nt_srgb_byte(&l->srgb, c[i])), PLY_UINT8);
+	for (size_t i = 0; !l->byte_colors && i < 4; i++)
+		ply_put_floats(out, (const float[]){i == 3 ? c[i] : nt_srgb_from_linear(c[i])}, 1);
 }
 
 static bool are_finite(const float *values, size_t count)

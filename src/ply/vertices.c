@@ -12,6 +12,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
+#include "scene/srgb.h"
 
 /* Positions, normals, texture coordinates, colours, tangents. */
 enum { MOST_TARGETS = 3 + 3 + 2 + 4 + 4, BLOCK_ROWS = 512 };
@@ -351,6 +352,8 @@ nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *so
 		status = decode_listed(&r);
 	else
 		status = decode_fixed(&r);
+	if (!status && mesh->colors)
+		nt_linearise(mesh->colors, element->count);
 	mesh->vertex_count = element->count;
 	return status;
 }

@@ -29,7 +29,7 @@ make_images() {
 		$write m.tga 8 2 '(x, x, x)' && cp "$ROOT/data/grey.jpg" d.jpg || return 1
 	printf '%s\n' "newmtl a" "map_Kd a.tga" "map_Ke -clamp on b.tif" "norm c.png" "newmtl b" "bump -s -1 1 -clamp on d.jpg" \
 		"map_d c.png" "map_Pr c.png" "map_Pm m.tga" "Pc 1" "Ps 1" "aniso 1" "Ni 2" "map_ao m.tga" >images.mtl
-	printf '%s\n' "mtllib images.mtl" "v 0 0 0" "v 1 0 0" "v 0 1 0" "vt 0 0" "vt 1 0" "vt 0 1" "usemtl a" \
+	printf '%s\n' "mtllib images.mtl" "v 0 0 0" "v 1 0 0" "v 0 1 0" "#MRGB ff010203ff040506" "vt 0 0" "vt 1 0" "vt 0 1" "usemtl a" \
 		"f 1/1 2/2 3/3" "usemtl b" "f 3/3 2/2 1/1" >images.obj
 }
 

@@ -63,10 +63,10 @@ static void quad_becomes_a_mesh_of_two_triangles(void **state)
 	assert_memory_equal(mesh->indices, indices, sizeof indices);
 	assert_memory_equal(mesh->positions, positions, sizeof positions);
 	assert_memory_equal(mesh->texcoords, texcoords, sizeof texcoords);
-	/* n / 127, and -128 is -1 too; c / 255, and alpha 1 */
+	/* n / 127, and -128 is -1 too; c / 255 as sRGB, and alpha 1 */
 	static const float unit[] = {0, 0, 1, 0, 1, 0, -1, 0, 0, 0, -1, 0};
 	assert_memory_equal(mesh->normals, unit, sizeof unit);
-	static const float rgba[] = {1, 0, 51 / 255.0f, 1};
+	const float rgba[] = {1, 0, (float)pow((51 / 255.0f + 0.055) / 1.055, 2.4), 1};
 	assert_memory_equal(mesh->colors, rgba, sizeof rgba);
 	assert_int_equal(scene.findings.count, 1); /* the generic one */
 	assert_string_equal(scene.findings.items[0].detail, "Draco attribute 4 with 4 components");

@@ -196,17 +196,23 @@ static void texcoords_have_four_pairs_of_names(void **state)
 	close_reading(&r);
 }
 
-static void colors_are_scaled_by_their_type(void **state)
+/* sRGB to linear light. */
+static float linear(double c)
+{
+	return (float)(c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4));
+}
+
+static void colors_are_scaled_by_their_type_and_become_linear(void **state)
 {
 	(void)state;
 	reading r;
 	open_text(&r, HEAD("1") "property uchar red\nproperty uchar green\nproperty ushort blue\n"
 		"property float alpha\nend_header\n0 0 0 255 51 65535 0.5\n");
-	assert_floats(r.mesh->colors, FLOATS(1.0f, 51.0f / 255.0f, 1.0f, 0.5f));
+	assert_floats(r.mesh->colors, FLOATS(1.0f, linear(51.0f / 255.0f), 1.0f, 0.5f));
 	close_reading(&r);
 	open_text(&r, HEAD("1") "property float red\nproperty float green\nproperty float blue\n"
 		"end_header\n0 0 0 0.1 0.2 0.3\n");
-	assert_floats(r.mesh->colors, FLOATS(0.1f, 0.2f, 0.3f, 1.0f));
+	assert_floats(r.mesh->colors, FLOATS(linear(0.1f), linear(0.2f), linear(0.3f), 1.0f));
 	close_reading(&r);
 }
 
@@ -261,7 +267,7 @@ static void the_three_encodings_say_the_same(void **state)
 		assert_int_equal(r.mesh->primitive_count, 2);
 		assert_numbers(r.mesh->indices, NUMBERS(0, 1, 2, 5, 6, 7, 4));
 		assert_int_equal(r.mesh->vertex_count, 9);
-		assert_floats(r.mesh->colors, FLOATS(1 / 255.0f, 2 / 255.0f, 3 / 255.0f, 1));
+		assert_floats(r.mesh->colors, FLOATS(linear(1 / 255.0f), linear(2 / 255.0f), linear(3 / 255.0f), 1));
 		close_reading(&r);
 	}
 }
@@ -307,7 +313,7 @@ int main(void)
 		cmocka_unit_test(properties_come_in_any_order_among_strangers),
 		cmocka_unit_test(binary_rows_with_lists_are_walked),
 		cmocka_unit_test(texcoords_have_four_pairs_of_names),
-		cmocka_unit_test(colors_are_scaled_by_their_type),
+		cmocka_unit_test(colors_are_scaled_by_their_type_and_become_linear),
 		cmocka_unit_test(textures_in_comments_become_materials),
 		cmocka_unit_test(bytes_after_the_last_element_are_said),
 		cmocka_unit_test(the_three_encodings_say_the_same),

@@ -1,0 +1,29 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * sRGB and linear light. OBJ and PLY have colours as they are shown, sRGB; scenes and glTF linear ones. IEC 61966-2-1:
+ *
+ *     linear = c / 12.92 for c <= 0.04045, else ((c + 0.055) / 1.055)^2.4
+ */
+#ifndef NT_SCENE_SRGB_H
+#define NT_SCENE_SRGB_H
+
+#include <stddef.h>
+
+/* The linear values of bytes, which most colours are. */
+typedef struct nt_srgb {
+	float linear[256];
+} nt_srgb;
+
+void nt_srgb_init(nt_srgb *srgb);
+
+/* Both ways; what is not finite stays so. */
+float nt_linear_from_srgb(const nt_srgb *srgb, float value);
+float nt_srgb_from_linear(float value);
+
+/* The byte that has exactly this linear value; -1: none. */
+int nt_srgb_byte(const nt_srgb *srgb, float linear);
+
+/* Makes linear colours of [count][4]; alpha stays. */
+void nt_linearise(float *colors, size_t count);
+
+#endif

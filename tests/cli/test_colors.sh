@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+# Colours of vertices: sRGB in OBJ, PLY and .drc, linear in glTF. 188 / 255 is 0.5029 in linear light.
+. "$ROOT/tests/support/cli.sh"
+
+# A quad folded along its diagonal in texture space: its vertices are copied. The arguments stand behind the `v` lines.
+fold() {
+	printf '%s\n' "v 0 0 0$1" "v 1 0 0$2" "v 1 1 0$3" "v 0 1 0$4" "$5" "vt 0 0" "vt 1 0" "vt 1 1" "vn 0 0 1" \
+		"f 1/1/1 2/2/1 3/3/1" "f 1/1/1 3/3/1 4/2/1" >fold.obj
+}
+colors='rows(g.meshes[0].primitives[0].attributes.COLOR_0).map(c => c.map(x => Math.round(1e4 * x) / 1e4))'
+
+scene "colours of an OBJ's vertices arrive as COLOR_0, and go with every copy"
+fold " 1 0 0" " 0 0.7372549 0" " 0 0 1 0.5" "" ""
+run --verify fold.obj fold.glb
+exits 0
+valid fold.glb
+is "$(gltf fold.glb 'g.accessors[g.meshes[0].primitives[0].attributes.COLOR_0].componentType')" 5126
+is "$(gltf fold.glb "$colors")" "[[1,0,0,1],[0,0.5029,0,1],[0,0,1,0.5],[1,1,1,1],[1,0,0,1],[0,0,1,0.5]]"
+
+scene "ZBrush's colours in comments are the same colours"
+fold "" "" "" "" "#MRGB ffff0000ff00bc00000000ffffffffff"
+run --verify fold.obj fold.glb
+exits 0
+is "$(gltf fold.glb "$colors")" "[[1,0,0,1],[0,0.5029,0,1],[0,0,1,1],[1,1,1,1],[1,0,0,1],[0,0,1,1]]"
+run --check --fail-on=warning fold.obj
+is "$(grep -c COLORS_DOUBTFUL "$WORK/out.txt")" 0
+
+scene "comments that are malformed are a warning with their line, and no failure"
+fold "" "" "" "" "#MRGB ff0000"
+run fold.obj fold.glb
+exits 0
+says "fold.obj:5: warning: colours of vertices are not what they should be: #MRGB: 1 colours for 4 vertices [COLORS_DOUBTFUL]"
+says "fold.obj:5: warning: colours of vertices are not what they should be: #MRGB: found something else, expected 8 hexadecimal digits for each vertex"
+is "$(gltf fold.glb 'g.meshes[0].primitives[0].attributes.COLOR_0')" undefined
+
+scene "a PLY has the bytes that an OBJ had, and gives them back"
+fold "" "" "" "" "#MRGB ffff0000ff00bc0000010203ffffffff"
+run fold.obj fold.ply
+exits 0
+is "$(grep -ac '^property uchar red' fold.ply)" 1
+python3 - >colors.txt <<-'END'
+	data = open("fold.ply", "rb").read()
+	head, body = data.split(b"end_header\n", 1)
+	names = [line.split()[1:] for line in head.decode().splitlines() if line.startswith("property") and "list" not in line]
+	sizes = {"float": 4, "uchar": 1}
+	row = sum(sizes[t] for t, _ in names)
+	at = sum(sizes[t] for t, n in names[:[n for _, n in names].index("red")])
+	print(*(body[i * row + at:i * row + at + 4].hex() for i in range(4)))
+END
+is "$(cat colors.txt)" "ff0000ff 00bc00ff 010203ff ffffffff"
+run --existing=replace fold.ply back.glb
+exits 0
+is "$(gltf back.glb "$colors.slice(0, 3)")" "[[1,0,0,1],[0,0.5029,0,1],[0.0003,0.0006,0.0009,1]]"
+run back.glb again.ply
+exits 0
+is "$(grep -ac '^property uchar red' again.ply)" 1
+
+done_testing

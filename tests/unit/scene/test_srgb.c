@@ -1,0 +1,49 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * sRGB: the values of IEC 61966-2-1, computed apart.
+ */
+#include "scene/srgb.h"
+#include "test.h"
+#include <math.h>
+
+static void bytes_come_back(void **state)
+{
+	(void)state;
+	nt_srgb srgb;
+	nt_srgb_init(&srgb);
+	for (int i = 0; i < 256; i++) {
+		const float linear = nt_linear_from_srgb(&srgb, (float)i / 255.0f);
+		assert_int_equal(nt_srgb_byte(&srgb, linear), i);
+		assert_true(fabsf(nt_srgb_from_linear(linear) - (float)i / 255.0f) < 1e-6f);
+	}
+	assert_int_equal(nt_srgb_byte(&srgb, 0.5f), -1);
+	assert_int_equal(nt_srgb_byte(&srgb, -1.0f), -1);
+	assert_int_equal(nt_srgb_byte(&srgb, 2.0f), -1);
+	assert_int_equal(nt_srgb_byte(&srgb, NAN), -1);
+}
+
+static void values_are_those_of_the_standard(void **state)
+{
+	(void)state;
+	nt_srgb srgb;
+	nt_srgb_init(&srgb);
+	static const float pairs[][2] = {{0, 0}, {1, 1}, {0.5f, 0.21404114f}, {0.04045f, 0.0031308f}, {0.04f, 0.0030959752f},
+		{1.353256f, 2}};
+	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+		assert_true(fabsf(nt_linear_from_srgb(&srgb, pairs[i][0]) - pairs[i][1]) < 1e-6f);
+		assert_true(fabsf(nt_srgb_from_linear(pairs[i][1]) - pairs[i][0]) < 1e-5f);
+	}
+	assert_true(isnan(nt_linear_from_srgb(&srgb, NAN)));
+	float colors[] = {0.5f, 1, 0, 0.5f};
+	nt_linearise(colors, 1);
+	assert_true(colors[0] == nt_linear_from_srgb(&srgb, 0.5f) && colors[1] == 1 && colors[2] == 0 && colors[3] == 0.5f);
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(bytes_come_back),
+		cmocka_unit_test(values_are_those_of_the_standard),
+	};
+	return cmocka_run_group_tests_name("scene/srgb", tests, NULL, NULL);
+}
