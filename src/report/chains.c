@@ -2,7 +2,9 @@
 /*
  * Marked edges in walking order: see chains.h.
  *
- * OpenMesh walks (ext/openmesh.h); it gets only the triangles that touch a marked edge's ends, which is
+ * Where no more than two marked edges meet in a point, and no two triangles use an edge in one direction, the ends of
+ * the edges tell their order. Elsewhere OpenMesh walks (ext/openmesh.h), which knows around which side of a point an
+ * edge goes on; it gets only the triangles that touch a marked edge's ends, which is
  * all that a walk around these points needs and a small part of most meshes. What it cannot take comes
  * back from it in pieces: edges that more than two triangles share, triangles against the winding of
  * the others (the last face of a Moebius strip), fans that only meet in a point. The pieces, and edges it
@@ -28,6 +30,29 @@ typedef struct runs {
 	bool *reversed;
 	size_t side_count;
 } runs;
+
+/* ---- who needs OpenMesh ---- */
+
+static bool any_fork(const nt_surface *s, const uint8_t *marked, uint8_t *degree)
+{
+	memset(degree, 0, s->point_count);
+	for (size_t side = 0; side < 3 * s->triangle_count; side++)
+		if (marked[side] && (++degree[s->points[side]] > 2 || ++degree[s->points[nt_side_next((uint32_t)side)]] > 2))
+			return true;
+	return false;
+}
+
+/* Whether triangles use an edge in the same direction. */
+static bool any_conflict(const nt_surface *s)
+{
+	for (size_t e = 0; e < s->edge_count; e++) {
+		const uint32_t *sides = s->sides + s->edge_first[e];
+		const uint32_t count = s->edge_first[e + 1] - s->edge_first[e];
+		if (count > 2 || (count == 2 && s->points[sides[0]] == s->points[sides[1]]))
+			return true;
+	}
+	return false;
+}
 
 /* ---- the triangles around the marked edges ---- */
 
@@ -296,23 +321,29 @@ nt_status nt_chains_trace(const nt_surface *surface, const uint8_t *marked, nt_s
 	if (edges == 0)
 		return NT_OK;
 
-	vicinity v;
 	uint8_t *taken = nt_scratch_alloc(scratch, 3 * surface->triangle_count, 1);
-	if (!taken)
+	uint8_t *degree = nt_scratch_alloc(scratch, surface->point_count, 1);
+	if (!taken || !degree)
 		return NT_ERROR_MEMORY;
 	memset(taken, 0, 3 * surface->triangle_count);
-	status = find_vicinity(surface, marked, scratch, &v);
-	if (!status)
-		status = take_walks(surface, &v, marked, taken, &r, &chains->left_out, error);
-	if (status)
-		return status;
+	if (any_fork(surface, marked, degree) || any_conflict(surface)) {
+		vicinity v;
+		status = find_vicinity(surface, marked, scratch, &v);
+		if (!status)
+			status = take_walks(surface, &v, marked, taken, &r, &chains->left_out, error);
+		if (status)
+			return status;
+	}
 
-	/* edges that OpenMesh does not know are runs by themselves */
-	for (size_t side = 0; side < 3 * surface->triangle_count; side++) {
-		if (marked[side] && !taken[side]) {
+	/* edges that OpenMesh does not know, or was not asked about, are runs by themselves, the way their lowest sides go */
+	for (size_t e = 0; e < surface->edge_count; e++) {
+		const uint32_t *sides = surface->sides + surface->edge_first[e], *end = surface->sides + surface->edge_first[e + 1];
+		for (const uint32_t *side = sides; side < end; side++) {
+			if (!marked[*side] || taken[*side])
+				continue;
 			const size_t first = r.side_count;
-			r.sides[first] = (uint32_t)side;
-			r.reversed[r.side_count++] = false;
+			r.sides[first] = *side;
+			r.reversed[r.side_count++] = surface->points[*side] != surface->points[*sides];
 			add_run(&r, surface, first, false);
 		}
 	}
