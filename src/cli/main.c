@@ -37,7 +37,7 @@ typedef struct session {
 	nt_update *update; /* NULL: no records */
 	nt_depfile depfile;
 	bool no_depfile; /* a rule is missing in it */
-	bool no_report;  /* it would replace a file of a job */
+	bool no_report;  /* it would replace a file of a job, or say nothing of one for want of memory */
 	nt_manifest manifest;
 	nt_summary total; /* of the times and sizes alone */
 	nt_failures failures;
@@ -216,6 +216,8 @@ static void tell_job(void *user, nt_job *job)
 		tell_current(s, job);
 	else if (job->outcome)
 		code = tell_run(s, job);
+	else
+		s->no_report = true;
 	refuse_own(s, job, s->command->depfile, &s->no_depfile, &code);
 	refuse_own(s, job, s->command->report, &s->no_report, &code);
 	add_rule(s, job, &code);
