@@ -52,24 +52,61 @@ NT_CFLAGS := -std=c11 -D_GNU_SOURCE $(COMMON) -Wshadow -Wstrict-prototypes -Wmis
 	-Wvla $(CFLAGS)
 NT_CXXFLAGS := -std=c++17 -fvisibility-inlines-hidden $(COMMON) $(CXXFLAGS)
 NT_LDFLAGS := $(flags_$(config)) -pthread $(LDFLAGS)
-TOOL_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lspng -ljpeg -ltiff -ldeflate -lm
+TOOL_LIBS := -Wl,-Bstatic -ljpeg -ldeflate -Wl,-Bdynamic -lm -ldl
 
 # The compute library: no files, no C++.
 core_src := src/base/status.c src/base/pages.c src/base/parallel.c src/base/pool.c src/base/cpu.c src/base/scratch.c \
 	src/base/struct_bytes.c src/base/largest.c src/base/counts.c \
 	$(foreach room,topology tangent tangent/fast tangent/sums api,$(wildcard src/$(room)/*.c))
-tool_src := $(filter-out $(core_src) src/cli/main.c src/bindings/%,$(wildcard src/*/*.c src/*/*/*.c)) \
+tool_src := $(filter-out $(core_src) src/cli/main.c src/bindings/% src/ext/modules/%,$(wildcard src/*/*.c src/*/*/*.c)) \
 	$(wildcard src/ext/*.cpp)
 objects = $(patsubst src/%,$(B)/%.o,$(1))
 core_obj := $(call objects,$(core_src))
 tool_obj := $(call objects,$(tool_src))
 main_obj := $(B)/cli/main.c.o
 
-.PHONY: all
-all: $(B)/nmtan $(B)/libnmtan.a $(B)/libnmtan.so $(B)/completion.bash $(B)/completion.zsh
+# Foreign libraries, each in a module that the tool opens when an input needs it (src/ext/module.c). A module is made of
+# the files of its name, and what they use of the tool.
+module_libs_draco := -ldraco
+module_libs_meshopt := -lmeshoptimizer
+module_libs_openmesh := -lOpenMeshCore
+module_libs_png := -lspng
+module_libs_tiff := -ltiff
+module_libs_tinygltf := -ltinygltf -lmeshoptimizer
+modules := draco meshopt openmesh png tiff tinygltf
+module_so := $(modules:%=$(B)/nmtan-%.so)
+module_obj := $(call objects,$(wildcard src/ext/modules/*.c src/ext/modules/*.cpp))
+module_files = $(B)/ext/modules/$(1).c%.o $(B)/ext/modules/$(1)_%.o $(if $(filter tinygltf,$(1)),$(B)/ext/modules/meshopt.c.o)
 
-$(B)/nmtan: $(main_obj) $(tool_obj) $(B)/libnmtan.a
-	$(CXX) $(NT_LDFLAGS) -o $@ $^ $(TOOL_LIBS)
+.PHONY: all
+all: $(B)/nmtan $(module_so) $(B)/libnmtan.a $(B)/libnmtan.so $(B)/completion.bash $(B)/completion.zsh
+
+# The tool has no shared library but the system's. What it takes of the C++ library (std::to_chars) is linked in; modules
+# bring the whole, and find the tool's operators new and delete. So are libdeflate, which is small, and libjpeg: as a shared
+# library it would ask for thread-local memory late, and the loader ends a process that has none left.
+link_tool = $(CXX) $(NT_LDFLAGS) $(if $(findstring fsanitize,$(NT_LDFLAGS)),,-static-libstdc++ -static-libgcc) \
+	-Wl,--dynamic-list=src/ext/exported.list -o $@ $(1) $(filter %.o %.a,$^) $(TOOL_LIBS)
+
+$(B)/nmtan: $(main_obj) $(B)/libtool.a $(B)/libnmtan.a src/ext/exported.list
+	$(call link_tool)
+
+# As it is installed, it knows where its modules are. The one in the build folder has them beside it.
+$(B)/installed/nmtan: src/ext/module.c $(main_obj) $(B)/libtool.a $(B)/libnmtan.a src/ext/exported.list FORCE
+	@mkdir -p $(@D)
+	$(CC) $(NT_CFLAGS) -DNT_LIBDIR='"$(LIBDIR)"' -c -o $(@D)/module.o $<
+	$(call link_tool,$(@D)/module.o)
+
+.PHONY: FORCE
+FORCE:
+
+$(module_so): $(B)/nmtan-%.so: $(module_obj) $(B)/libmodule.a
+	$(CXX) $(NT_LDFLAGS) -shared -Wl,--exclude-libs,ALL -o $@ $(filter $(call module_files,$*),$^) $(B)/libmodule.a \
+		$(module_libs_$*)
+
+# What modules use of the tool; all of it without a state.
+$(B)/libmodule.a: $(call objects,src/base/error.c src/base/pages.c src/ext/number.cpp src/ext/codec/pixels.c \
+		src/ext/modules/cxx.cpp)
+	rm -f $@ && $(AR) qcsD $@ $^
 
 $(B)/libnmtan.a: $(core_obj)
 	rm -f $@ && $(AR) qcsD $@ $^
@@ -113,11 +150,17 @@ $(foreach set,baseline avx2 avx512,$(call objects_of,tangent/fast/kernel_$(set).
 $(call objects_of,topology/weld_table.c topology/weld_sieve.c topology/weld_threads.c): FILE_FLAGS := $(lanes)
 $(call objects_of,base/largest.c): FILE_FLAGS := $(lanes)
 
+# An exception passes operator new, but what it and number.cpp do throws nothing, so they need no C++ library.
+$(call objects_of,ext/reserve.cpp ext/number.cpp): FILE_FLAGS := -fno-exceptions
+
+# Thread-local memory of modules is there from the start of each thread: none can be missing later.
+$(module_obj): FILE_FLAGS := -ftls-model=initial-exec
+
 # The page of HTML reports is assembled into the binary: see page_assets.c.
 $(call objects_of,report/render/page_assets.c): $(call existing,src/report/render/page/*)
 
 # Foreign headers whose warnings are not ours; clang knows one of the three.
-$(call objects_of,ext/openmesh.cpp): FILE_FLAGS := $(if $(findstring clang,$(CXX)),,-Wno-maybe-uninitialized -Wno-class-memaccess)
+$(call objects_of,ext/modules/openmesh.cpp): FILE_FLAGS += $(if $(findstring clang,$(CXX)),,-Wno-maybe-uninitialized -Wno-class-memaccess)
 $(call objects_of,ext/codec/stb.c): FILE_FLAGS := -Wno-unused-function
 # stb_image looks for colours behind the palette that it has read. clang 14 wants to be told twice.
 $(call objects_of,ext/codec/stb.c): FILE_FLAGS += -ftrivial-auto-var-init=zero \
@@ -169,10 +212,11 @@ cmake_files := nmtan-config.cmake nmtan-config-version.cmake
 names := sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(patsubst $(PREFIX)/%,$${prefix}/%,$(LIBDIR))|; s|@VERSION@|$(VERSION)|' \
 	-e 's|@TO_PREFIX@|$(shell realpath -ms --relative-to=$(LIBDIR)/cmake/nmtan $(PREFIX))|'
 .PHONY: install uninstall
-install: all
-	install -d $(bin) $(lib)/pkgconfig $(lib)/cmake/nmtan $(DESTDIR)$(PREFIX)/include $(share)/man/man1 \
+install: all $(B)/installed/nmtan
+	install -d $(bin) $(lib)/pkgconfig $(lib)/cmake/nmtan $(lib)/nmtan $(DESTDIR)$(PREFIX)/include $(share)/man/man1 \
 		$(share)/bash-completion/completions $(share)/zsh/site-functions $(share)/man/man7 $(share)/nmtan/farm
-	install -m 755 $(B)/nmtan $(bin)/nmtan
+	install -m 755 $(B)/installed/nmtan $(bin)/nmtan
+	install -m 644 $(module_so) $(lib)/nmtan/
 	install -m 644 $(B)/libnmtan.a $(lib)/libnmtan.a
 	install -m 755 $(B)/$(so) $(lib)/$(so).$(VERSION)
 	ln -sf $(so).$(VERSION) $(lib)/$(so).0
@@ -192,7 +236,7 @@ install: all
 	install -m 644 $(B)/completion.zsh $(share)/zsh/site-functions/_nmtan
 
 uninstall:
-	rm -f $(bin)/nmtan $(lib)/libnmtan.a $(lib)/$(so) $(lib)/$(so).0 $(lib)/$(so).$(VERSION) \
+	rm -f $(bin)/nmtan $(modules:%=$(lib)/nmtan/nmtan-%.so) $(lib)/libnmtan.a $(lib)/$(so) $(lib)/$(so).0 $(lib)/$(so).$(VERSION) \
 		$(DESTDIR)$(PREFIX)/include/nmtan.h $(lib)/pkgconfig/nmtan.pc \
 		$(patsubst %,$(lib)/cmake/nmtan/%,$(cmake_files)) \
 		$(patsubst man/%,$(share)/man/man1/%,$(wildcard man/*.1)) \
@@ -200,6 +244,7 @@ uninstall:
 		$(patsubst man/%,$(share)/man/man7/%,$(wildcard man/*.7)) \
 		$(share)/bash-completion/completions/nmtan $(share)/zsh/site-functions/_nmtan
 	rm -rf $(share)/nmtan
+	[ ! -d $(lib)/nmtan ] || rmdir --ignore-fail-on-non-empty $(lib)/nmtan
 
 .PHONY: lint
 lint: $(B)/libnmtan.a $(B)/libnmtan.so

@@ -12,6 +12,9 @@ support_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/support/*.c)
 # The oracle of tests/support/oracle128.c.
 QUADMATH := $(if $(filter x86_64 i686,$(shell uname -m)),-lquadmath)
 
+# Tests have the modules' libraries linked in.
+LINKED_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lspng -ltiff $(TOOL_LIBS)
+
 # tests/support/fail_alloc.c stands in for these
 WRAP := -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=strdup,--wrap=strndup
 
@@ -19,8 +22,8 @@ $(B)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)
 	$(CC) $(NT_CFLAGS) -Itests/support -DNT_DATA_DIR='"data"' -c -o $@ $<
 
-$(unit_bin): $(B)/tests/%: $(B)/tests/%.o $(support_obj) $(B)/libtool.a $(B)/libnmtan.a
-	$(CXX) $(NT_LDFLAGS) $(WRAP) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group -lcmocka $(TOOL_LIBS) $(QUADMATH)
+$(unit_bin): $(B)/tests/%: $(B)/tests/%.o $(support_obj) $(module_obj) $(B)/libtool.a $(B)/libnmtan.a
+	$(CXX) $(NT_LDFLAGS) $(WRAP) -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group -lcmocka $(LINKED_LIBS) $(QUADMATH)
 
 $(api_bin): $(B)/tests/%: $(B)/tests/%.o $(support_obj) $(B)/libnmtan.a
 	$(CC) $(NT_LDFLAGS) $(WRAP) -o $@ $^ -lcmocka -lm $(QUADMATH)
@@ -86,9 +89,9 @@ check-built: build/node/node_modules/gltf-validator/package.json
 	@bash tests/run $(if $(filter true,$(CI)),--strict) build/release build/sanitize
 
 # The tool's opens and renames are watched.
-$(B)/tests/soak/hostile: $(B)/tests/soak/hostile.o $(B)/tests/support/any_settings.o $(B)/tests/support/mutate.o $(B)/libtool.a $(B)/libnmtan.a
+$(B)/tests/soak/hostile: $(B)/tests/soak/hostile.o $(B)/tests/support/any_settings.o $(B)/tests/support/mutate.o $(module_obj) $(B)/libtool.a $(B)/libnmtan.a
 	$(CXX) $(NT_LDFLAGS) -Wl,--wrap=open,--wrap=rename,--wrap=link -o $@ $(filter %.o,$^) \
-		-Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(TOOL_LIBS)
+		-Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(LINKED_LIBS)
 
 # Heavy runs: tests/soak/*.sh in turn, each with its own closing line.
 soak-built: check-built
@@ -100,8 +103,8 @@ soak-built: check-built
 # make fuzz SECONDS=60 TARGET="obj gltf": made-up inputs, for so long with each target, all of them by default. Needs
 # clang and libclang-rt-14-dev.
 $(B)/tests/fuzz/target: $(patsubst %,$(B)/tests/%.o,fuzz/target fuzz/json_mutator fuzz/image support/any_settings support/mutate) \
-		$(B)/libtool.a $(B)/libnmtan.a
-	$(CXX) $(NT_LDFLAGS) -fsanitize=fuzzer -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(TOOL_LIBS) -lz
+		$(module_obj) $(B)/libtool.a $(B)/libnmtan.a
+	$(CXX) $(NT_LDFLAGS) -fsanitize=fuzzer -o $@ $(filter %.o,$^) -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(LINKED_LIBS) -lz
 
 SECONDS ?= 60
 TARGET ?= obj mtl ply gltf glb drc image
@@ -160,8 +163,8 @@ bench-js: $(B)/nmtan wasm build/clients/node_modules/three/package.json
 		$$(sh tests/bench/models.sh $(B)/nmtan build/bench/models)
 
 # make bench-green: which way green points, told of maps whose surface is known, and of $(MAPS).
-$(B)/tests/bench/green: $(B)/tests/bench/green.o $(B)/libtool.a $(B)/libnmtan.a
-	$(CXX) $(NT_LDFLAGS) -o $@ $< -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(TOOL_LIBS)
+$(B)/tests/bench/green: $(B)/tests/bench/green.o $(module_obj) $(B)/libtool.a $(B)/libnmtan.a
+	$(CXX) $(NT_LDFLAGS) -o $@ $< -Wl,--start-group $(filter %.a,$^) -Wl,--end-group $(LINKED_LIBS)
 
 .PHONY: bench-green
 bench: bench-green

@@ -36,6 +36,8 @@ const char *nt_status_text(nt_status status)
 		return "invalid input";
 	case NT_ERROR_UNSUPPORTED:
 		return "unsupported input";
+	case NT_ERROR_MODULE:
+		return "a module is missing";
 	case NT_ERROR_INTERNAL:
 		return "internal error";
 	default:

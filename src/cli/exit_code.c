@@ -17,6 +17,7 @@ int nt_exit_code(nt_status status)
 	case NT_ERROR_INPUT:
 		return NT_EXIT_INPUT;
 	case NT_ERROR_UNSUPPORTED:
+	case NT_ERROR_MODULE:
 	case NT_ERROR_TOO_LARGE:
 		return NT_EXIT_UNSUPPORTED;
 	default:

@@ -22,6 +22,7 @@
 #include "cli/progress.h"
 #include "cli/report_options.h"
 #include "cli/say.h"
+#include "ext/module.h"
 #include "report/codes.h"
 
 /* What the jobs' ends add up to. */
@@ -81,6 +82,16 @@ static int print_text(void (*make)(nt_buffer *out), nt_style style)
 static void version_text(nt_buffer *out)
 {
 	nt_buffer_format(out, "nmtan %s\n", nmtan_version());
+}
+
+static void modules_text(nt_buffer *out)
+{
+	version_text(out);
+	for (int module = 0; module < NT_MODULE_COUNT; module++) {
+		char line[1000];
+		nt_module_describe((nt_module)module, line, sizeof line);
+		nt_buffer_format(out, "%s\n", line);
+	}
 }
 
 /* Whether findings reach the severity at which the run fails. The report, which is made whenever that is asked,
@@ -503,7 +514,7 @@ int main(int argc, char **argv)
 	case NT_ACTION_HELP:
 		return print_text(nt_options_help, style);
 	case NT_ACTION_VERSION:
-		return print_text(version_text, style);
+		return print_text(style.verbosity > 0 ? modules_text : version_text, style);
 	case NT_ACTION_LIST_CODES:
 		return print_text(nt_codes_list, style);
 	case NT_ACTION_COMPLETION_BASH:

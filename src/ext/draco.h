@@ -9,6 +9,8 @@
 #ifndef NT_EXT_DRACO_H
 #define NT_EXT_DRACO_H
 
+#include <stdlib.h>
+#include <string.h>
 #include "base/error.h"
 #include "ext/gltf_numbers.h"
 
@@ -55,9 +57,6 @@ typedef struct nt_draco_mesh {
 	size_t attribute_count;
 } nt_draco_mesh;
 
-/* Size of a component in bytes; 0: not a component type. */
-size_t nt_draco_component_size(int component_type);
-
 /* ---- decoding ---- */
 
 typedef struct nt_draco nt_draco;
@@ -94,7 +93,12 @@ typedef struct nt_draco_block {
 	                      edgebreaker, which reorders points and splits them */
 } nt_draco_block;
 
-void nt_draco_block_free(nt_draco_block *block);
+static inline void nt_draco_block_free(nt_draco_block *block)
+{
+	free(block->bytes);
+	free(block->sources);
+	memset(block, 0, sizeof *block);
+}
 
 /*
  * Encodes a mesh. Points that no face uses are left out. Sequential keeps the order of faces and of the

@@ -16,6 +16,25 @@ enum nt_gltf_component {
 	NT_GLTF_FLOAT = 5126
 };
 
+/* Bytes of a component; 0: not a component type. */
+static inline unsigned nt_component_size(int component_type)
+{
+	switch (component_type) {
+	case NT_GLTF_BYTE:
+	case NT_GLTF_UBYTE:
+		return 1;
+	case NT_GLTF_SHORT:
+	case NT_GLTF_USHORT:
+		return 2;
+	case NT_GLTF_INT:
+	case NT_GLTF_UINT:
+	case NT_GLTF_FLOAT:
+		return 4;
+	default:
+		return 0;
+	}
+}
+
 /* Values of a view's target. */
 enum nt_gltf_target {
 	NT_GLTF_NO_TARGET = 0,

@@ -1,74 +1,22 @@
 /* SPDX-License-Identifier: MIT */
+/*
+ * The functions of meshopt.h: they are in the module.
+ */
 #include "ext/meshopt.h"
 
-#include <meshoptimizer.h>
-#include <string.h>
+#include "ext/module.h"
+#include "ext/tables.h"
 
-enum { MAX_RATIO = 128, SLACK_BYTES = 65536 };
-
-/* What the extension's text demands of strides and counts, so that the decoders' assertions hold. */
-nt_status nt_meshopt_check(const nt_meshopt_view *v, uint64_t size, const char *pointer, nt_error *error)
+nt_status nt_meshopt_check(const nt_meshopt_view *view, uint64_t size, const char *pointer, nt_error *error)
 {
-	const bool attributes = strcmp(v->mode, "ATTRIBUTES") == 0;
-	const bool triangles = strcmp(v->mode, "TRIANGLES") == 0;
-	const unsigned long long count = v->count, stride = v->stride;
-	if (!attributes && !triangles && strcmp(v->mode, "INDICES") != 0)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
-			"mode \"%.30s\", expected ATTRIBUTES, TRIANGLES or INDICES", v->mode);
-	if (attributes ? stride == 0 || stride % 4 || stride > 256 : stride != 2 && stride != 4)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "byteStride %llu in mode %s", stride,
-			v->mode);
-	if (triangles && count % 3)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer, "count %llu is no multiple of 3", count);
-	if (count > UINT32_MAX || count * stride != size)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
-			"%llu elements of %llu bytes, but the view has %llu bytes", count, stride,
-			(unsigned long long)size);
-	if (size > SLACK_BYTES && (size - SLACK_BYTES - 1) / MAX_RATIO >= v->packed_size)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
-			"%llu bytes cannot hold %llu elements", (unsigned long long)v->packed_size, count);
-	return NT_OK;
+	nt_status status;
+	const nt_meshopt_table *meshopt = nt_module_open(NT_MODULE_MESHOPT, &status, error);
+	return meshopt ? meshopt->check(view, size, pointer, error) : status;
 }
 
-static nt_status apply_filter(const nt_meshopt_view *v, unsigned char *bytes, const char *pointer,
-	nt_error *error)
-{
-	const size_t count = (size_t)v->count, stride = (size_t)v->stride;
-	if (strcmp(v->filter, "NONE") == 0)
-		return NT_OK;
-	if (strcmp(v->filter, "OCTAHEDRAL") == 0 && (stride == 4 || stride == 8)) {
-		meshopt_decodeFilterOct(bytes, count, stride);
-	} else if (strcmp(v->filter, "QUATERNION") == 0 && stride == 8) {
-		meshopt_decodeFilterQuat(bytes, count, stride);
-	} else if (strcmp(v->filter, "EXPONENTIAL") == 0) {
-		meshopt_decodeFilterExp(bytes, count, stride);
-	} else {
-		return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
-			"filter \"%.30s\" with byteStride %zu, which nmtan does not decode", v->filter,
-			stride);
-	}
-	return NT_OK;
-}
-
-nt_status nt_meshopt_unpack(const nt_meshopt_view *v, const unsigned char *packed, unsigned char *bytes,
+nt_status nt_meshopt_unpack(const nt_meshopt_view *view, const unsigned char *packed, unsigned char *bytes,
 	const char *pointer, nt_error *error)
 {
-	const size_t count = (size_t)v->count, stride = (size_t)v->stride, size = (size_t)v->packed_size;
-	const bool attributes = strcmp(v->mode, "ATTRIBUTES") == 0;
-	int result;
-	if (attributes) {
-		if (size && packed[0] == 0xA1)
-			return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
-				"version 1 of the vertex codec, which nmtan does not decode: write the file without this "
-				"compression, or with EXT_meshopt_compression, which has version 0");
-		result = meshopt_decodeVertexBuffer(bytes, count, stride, packed, size);
-	} else if (strcmp(v->mode, "TRIANGLES") == 0) {
-		result = meshopt_decodeIndexBuffer(bytes, count, stride, packed, size);
-	} else {
-		result = meshopt_decodeIndexSequence(bytes, count, stride, packed, size);
-	}
-	if (result != 0)
-		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
-			"meshoptimizer cannot decode the view's %zu bytes", size);
-	return attributes ? apply_filter(v, bytes, pointer, error) : NT_OK;
+	const nt_meshopt_table *meshopt = nt_module_opened(NT_MODULE_MESHOPT); /* the view was checked */
+	return meshopt->unpack(view, packed, bytes, pointer, error);
 }

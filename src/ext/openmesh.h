@@ -17,6 +17,8 @@
 #ifndef NT_EXT_OPENMESH_H
 #define NT_EXT_OPENMESH_H
 
+#include <stdlib.h>
+#include <string.h>
 #include "base/error.h"
 
 #ifdef __cplusplus
@@ -56,7 +58,16 @@ typedef struct nt_walks {
 	uint32_t *left, *right, *from, *to; /* [first[count]] */
 } nt_walks;
 
-void nt_walks_free(nt_walks *walks);
+static inline void nt_walks_free(nt_walks *walks)
+{
+	free(walks->first);
+	free(walks->closed);
+	free(walks->left);
+	free(walks->right);
+	free(walks->from);
+	free(walks->to);
+	memset(walks, 0, sizeof *walks);
+}
 
 /*
  * The marked edges, each once, as walks that are as long as possible without passing a junction, which is a

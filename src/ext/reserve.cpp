@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 //
-// The operators new and delete of the whole program: see reserve.hpp. The linker lets C++ libraries use them too.
+// The operators new and delete of the whole program: see reserve.h. They are the program's, not a module's, so that
+// all C++ libraries use them, in whatever order modules are opened. The program itself has no C++ library: what
+// takes one is asked of the module that brings it.
 //
 // The block is a stack of pieces that is empty again when all of them are freed: what is taken from it is needed
 // shortly, by one call into a library that will be reported as failed.
-#include "ext/reserve.hpp"
-#include "ext/exhausted.h"
+#include "ext/reserve.h"
 
 #include <atomic>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <exception>
 #include <new>
 
 namespace {
@@ -29,6 +29,9 @@ std::atomic_flag busy = ATOMIC_FLAG_INIT;
 
 thread_local unsigned depth;
 thread_local bool needed;
+
+std::atomic<const nt_cxx *> runtime;
+void (*end_exhausted)() = std::abort;
 
 class lock {
 public:
@@ -51,7 +54,8 @@ bool is_inside(const void *memory)
 
 void *take(size_t size) noexcept
 {
-	const size_t most = std::uncaught_exceptions() ? reserve_bytes : reserve_bytes - kept_for_unwinding;
+	const nt_cxx *cxx = runtime.load(std::memory_order_acquire);
+	const size_t most = cxx && cxx->is_unwinding() ? reserve_bytes : reserve_bytes - kept_for_unwinding;
 	if (size > most)
 		return nullptr;
 	size = size ? (size + alignment - 1) / alignment * alignment : alignment;
@@ -71,37 +75,28 @@ void give_back() noexcept
 		top = 0;
 }
 
-// ---- the end ----
-
-void (*end_exhausted)();
-std::terminate_handler usual_end;
-
-bool is_exhausted() noexcept
+void *allocate(size_t size) noexcept
 {
-	if (depth && needed)
-		return true;
-	if (std::current_exception())
-		try {
-			throw;
-		} catch (const std::bad_alloc &) {
-			return true;
-		} catch (...) {
-		}
-	return false;
+	void *memory = std::malloc(size ? size : 1);
+	if (!memory && depth) {
+		needed = true;
+		memory = take(size);
+	}
+	return memory;
 }
 
-void on_terminate()
+// ---- the end ----
+
+void end_if_exhausted(bool of_bad_alloc)
 {
-	if (is_exhausted())
+	if (of_bad_alloc || (depth && needed))
 		end_exhausted();
-	usual_end();
 }
 
 // An assertion in a library. The handler gone, abort() does what it would have done.
 void on_abort(int)
 {
-	if (depth && needed)
-		end_exhausted();
+	end_if_exhausted(false);
 	std::signal(SIGABRT, SIG_DFL);
 }
 
@@ -110,36 +105,41 @@ void on_abort(int)
 void nt_on_exhausted(void (*end)(void))
 {
 	end_exhausted = end;
-	usual_end = std::set_terminate(on_terminate);
 	std::signal(SIGABRT, on_abort);
 }
 
-nt::reserve::reserve() noexcept
+void nt_reserve_serve(const nt_cxx *cxx)
+{
+	const nt_cxx *none = nullptr;
+	if (runtime.compare_exchange_strong(none, cxx, std::memory_order_acq_rel))
+		cxx->on_terminate(end_if_exhausted);
+}
+
+void nt_reserve_begin()
 {
 	if (depth++ == 0)
 		needed = false;
 }
 
-nt::reserve::~reserve()
+void nt_reserve_end()
 {
 	depth--;
 }
 
-bool nt::reserve::was_needed() const noexcept
+bool nt_reserve_was_needed()
 {
 	return needed;
 }
 
 void *operator new(size_t size)
 {
-	void *memory = std::malloc(size ? size : 1);
-	if (!memory && depth) {
-		needed = true;
-		memory = take(size);
-	}
-	if (!memory)
-		throw std::bad_alloc();
-	return memory;
+	void *memory = allocate(size);
+	if (memory)
+		return memory;
+	if (const nt_cxx *cxx = runtime.load(std::memory_order_acquire))
+		cxx->throw_bad_alloc();
+	end_exhausted(); // in a constructor of a library, while its module is opened
+	__builtin_unreachable();
 }
 
 void *operator new[](size_t size)
@@ -150,16 +150,12 @@ void *operator new[](size_t size)
 /* std::stable_sort() asks for its buffer in this way and gives it back by the delete below. */
 void *operator new(size_t size, const std::nothrow_t &) noexcept
 {
-	try {
-		return operator new(size);
-	} catch (const std::bad_alloc &) {
-		return nullptr;
-	}
+	return allocate(size);
 }
 
-void *operator new[](size_t size, const std::nothrow_t &nothrow) noexcept
+void *operator new[](size_t size, const std::nothrow_t &) noexcept
 {
-	return operator new(size, nothrow);
+	return allocate(size);
 }
 
 void operator delete(void *memory) noexcept

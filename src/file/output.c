@@ -16,7 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 #include "base/memory.h"
-#include "ext/exhausted.h"
+#include "ext/reserve.h"
 #include "file/litter.h"
 #include "file/trace.h"
 

@@ -26,7 +26,7 @@ static float *read_rows(nt_scene *scene, const nt_draco_attribute *a, size_t cou
 	float *rows = nt_arena_alloc(&scene->arena, count, (size_t)width * sizeof *rows);
 	if (!rows)
 		return NULL;
-	const size_t step = nt_draco_component_size(a->component_type), size = step * (size_t)a->components;
+	const size_t step = nt_component_size(a->component_type), size = step * (size_t)a->components;
 	if (a->component_type == NT_GLTF_FLOAT && a->components == width) {
 		memcpy(rows, a->data, count * size);
 		return rows;

@@ -18,19 +18,7 @@ enum { UNBACKED_INDICES = 65536 };
 
 uint32_t nt_gltf_component_bytes(uint64_t component_type)
 {
-	switch (component_type) {
-	case NT_GLTF_BYTE:
-	case NT_GLTF_UBYTE:
-		return 1;
-	case NT_GLTF_SHORT:
-	case NT_GLTF_USHORT:
-		return 2;
-	case NT_GLTF_UINT:
-	case NT_GLTF_FLOAT:
-		return 4;
-	default:
-		return 0;
-	}
+	return component_type == NT_GLTF_INT || component_type > NT_GLTF_FLOAT ? 0 : nt_component_size((int)component_type);
 }
 
 uint32_t nt_gltf_index_type(uint64_t most, uint32_t least)

@@ -96,7 +96,7 @@ typedef struct primitive_view {
 
 static nt_reread_array block_array(const nt_draco_attribute *attribute, size_t count)
 {
-	const size_t size = nt_draco_component_size(attribute->component_type);
+	const size_t size = nt_component_size(attribute->component_type);
 	return (nt_reread_array){attribute->data, count, size * (size_t)attribute->components,
 		attribute->component_type, attribute->components, attribute->normalized};
 }
@@ -345,7 +345,7 @@ static bool found_corner(const primitive_view *view, size_t corner, nt_verify_co
 		view->tangents.component_type != NT_GLTF_FLOAT || view->tangents.components != 4)
 		return false;
 	const nt_reread_array *array = &view->positions;
-	const size_t step = nt_draco_component_size(array->component_type);
+	const size_t step = nt_component_size(array->component_type);
 	for (size_t k = 0; k < 3; k++)
 		found->position[k] = nt_component_value(position + k * step, array->component_type, array->normalized);
 	memcpy(found->tangent, tangent, sizeof found->tangent);

@@ -450,10 +450,11 @@ static void make_result(void *context, size_t item, unsigned slot)
 		nt_fail_memory(&r->error);
 }
 
-/* Passes on what is the system's fault. */
+/* Passes on what is not the image's fault. */
 static nt_status fatal(const nt_error *failure, nt_error *error)
 {
-	if (failure->status != NT_ERROR_MEMORY && failure->status != NT_ERROR_IO && failure->status != NT_ERROR_MISSING)
+	if (failure->status != NT_ERROR_MEMORY && failure->status != NT_ERROR_IO && failure->status != NT_ERROR_MISSING &&
+		failure->status != NT_ERROR_MODULE)
 		return NT_OK;
 	*error = *failure;
 	return failure->status;

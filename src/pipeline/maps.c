@@ -77,7 +77,9 @@ static void tell(const examination *e, const examined *x)
 		nt_finding_add(findings, NT_CODE_NMAP_NOT_EXAMINED, place, 1, "%s%s", nt_image_type_name(x->map.type),
 			large ? " of more than 16 MB" : "");
 	}
-	if (x->error.status)
+	if (x->error.status == NT_ERROR_MODULE)
+		nt_finding_add(findings, NT_CODE_NMAP_NOT_EXAMINED, place, 1, "%.200s", x->error.message);
+	else if (x->error.status)
 		nt_finding_add(findings, NT_CODE_IMAGE_DAMAGED, place, 1, "normal map (%.200s)", x->error.message);
 	if (!x->decoded)
 		return;
@@ -95,10 +97,14 @@ static nt_status flush(examination *e, nt_error *error)
 	nt_status status = NT_OK;
 	nt_parallel_items(nt_thread_count(e->settings->threads), e->open_count, examine, e);
 	for (size_t i = 0; i < e->open_count; i++) {
-		if (e->open[i].error.status == NT_ERROR_MEMORY)
-			status = nt_fail_memory(error);
-		else
+		const nt_error *failure = &e->open[i].error;
+		const bool wanted = e->settings->check_maps == NT_CHECK_MAPS_ON;
+		if (failure->status == NT_ERROR_MEMORY || (failure->status == NT_ERROR_MODULE && wanted)) {
+			*error = *failure;
+			status = failure->status;
+		} else {
 			tell(e, &e->open[i]);
+		}
 		nt_normal_map_close(&e->open[i].map);
 	}
 	e->open_count = 0;

@@ -402,10 +402,10 @@ static nt_status check_meshes(const nt_check *check, const checked_meshes *check
 }
 
 static nt_status check_scene(const nt_scene *scene, const nt_report_options *options,
-	nt_report *report)
+	nt_report *report, nt_error *error)
 {
 	size_t finding_capacity = 0;
-	nt_check check = {.scene = scene, .options = options, .report = report,
+	nt_check check = {.scene = scene, .options = options, .report = report, .error = error,
 		.finding_capacity = &finding_capacity};
 	checked_meshes checked = {.first = nt_alloc(scene->mesh_count, sizeof *checked.first),
 		.next = nt_alloc(scene->mesh_count, sizeof *checked.next),
@@ -478,7 +478,7 @@ static nt_report *new_report(const char *path)
 	return report;
 }
 
-static nt_status build(const nt_scene *scene, const nt_report_options *options, nt_report *report)
+static nt_status build(const nt_scene *scene, const nt_report_options *options, nt_report *report, nt_error *error)
 {
 	report->format = scene->format;
 	report->mesh_count = scene->mesh_count;
@@ -489,7 +489,7 @@ static nt_status build(const nt_scene *scene, const nt_report_options *options, 
 		if (!describe_mesh(report, &scene->meshes[i], options, &report->meshes[i]))
 			return NT_ERROR_MEMORY;
 	count_instances(report, scene);
-	nt_status status = check_scene(scene, options, report);
+	nt_status status = check_scene(scene, options, report, error);
 	if (!status)
 		status = nt_report_complete(report, options);
 	if (!status && scene->locate_faces)
@@ -504,11 +504,13 @@ nt_status nt_report_build(const nt_scene *scene, const nt_report_options *option
 	*report = new_report(scene->path);
 	if (!*report)
 		return nt_fail_memory(error);
-	const nt_status status = build(scene, options ? options : &defaults, *report);
+	const nt_status status = build(scene, options ? options : &defaults, *report, error);
 	if (status == NT_OK)
 		return NT_OK;
 	nt_report_free(*report);
 	*report = NULL;
+	if (status == NT_ERROR_MODULE)
+		return status;
 	return status == NT_ERROR_MEMORY
 		? nt_fail_memory(error)
 		: nt_fail(error, status, "the report cannot be made: %s", nt_status_text(status));

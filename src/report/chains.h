@@ -26,7 +26,7 @@ typedef struct nt_chains {
  *
  *   marked  [3 * triangle_count] at most one side of each edge
  *
- * Everything is in scratch. Returns NT_OK or NT_ERROR_MEMORY.
+ * Everything is in scratch. Returns NT_OK, NT_ERROR_MEMORY, or NT_ERROR_MODULE and what else opening a module comes to.
  */
 nt_status nt_chains_trace(const nt_surface *surface, const uint8_t *marked, nt_scratch *scratch,
 	nt_chains *chains, nt_error *error);

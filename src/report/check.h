@@ -29,6 +29,7 @@ typedef struct nt_check {
 	const nt_scene *scene;
 	const nt_report_options *options;
 	nt_report *report;
+	nt_error *error;          /* of the one check whose faults have words: seams.c */
 	size_t *finding_capacity;
 	nt_scratch *scratch; /* of this mesh */
 

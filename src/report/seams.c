@@ -337,7 +337,7 @@ static nt_status trace_boundary(nt_check *check)
 {
 	nt_chains chains;
 	const nt_status status =
-		nt_chains_trace(&check->surface, check->boundary, check->scratch, &chains, NULL);
+		nt_chains_trace(&check->surface, check->boundary, check->scratch, &chains, check->error);
 	for (size_t i = 0; !status && i < chains.count; i++) {
 		if (chains.closed[i])
 			check->facts->boundary_loops++;
@@ -360,7 +360,7 @@ static nt_status trace_seams(nt_check *check)
 	for (size_t i = 0; i < check->mirror_edge_count; i++)
 		marked[check->mirror_edges[i].sides[0]] = 1;
 	nt_chains chains;
-	nt_status status = nt_chains_trace(&check->surface, marked, check->scratch, &chains, NULL);
+	nt_status status = nt_chains_trace(&check->surface, marked, check->scratch, &chains, check->error);
 	if (status)
 		return status;
 	facts->seams = nt_arena_alloc(&check->report->arena, chains.count, sizeof *facts->seams);

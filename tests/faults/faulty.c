@@ -2,7 +2,8 @@
 /*
  * Preloaded into the tool: the n-th allocation, whoever makes it, or the n-th system call that the tool itself
  * makes, fails. Counting begins with main(), since what fails before it is the loader's and the C++ libraries'
- * affair. NT_FAULTY_TRACE in the environment shows where the fault hits.
+ * affair; so is what the loader allocates while it opens a module, without which it may end the process:
+ * the tool asks for as much before. NT_FAULTY_TRACE in the environment shows where the fault hits.
  */
 #include "faulty.h"
 
@@ -22,6 +23,7 @@
 
 static faulty *shared;
 static bool armed;
+static __thread bool loading __attribute__((tls_model("initial-exec")));
 
 static void trace(const char *name)
 {
@@ -34,7 +36,7 @@ static void trace(const char *name)
 
 static bool fails(faulty_kind kind, const char *name)
 {
-	if (!armed || (shared->kind != kind && !(shared->kind == FAULTY_SHORTEN && kind == FAULTY_CALLS)))
+	if (!armed || loading || (shared->kind != kind && !(shared->kind == FAULTY_SHORTEN && kind == FAULTY_CALLS)))
 		return false;
 	const size_t number = __atomic_fetch_add(&shared->count, 1, __ATOMIC_RELAXED);
 	if (number < shared->target || (number > shared->target && !shared->onwards))
@@ -161,6 +163,14 @@ int close(int fd)
 {
 	const int result = REAL(close)(fd); /* it is closed whatever close() says */
 	return fails(FAULTY_CALLS, "close") ? -1 : result;
+}
+
+void *dlopen(const char *path, int flags)
+{
+	loading = true;
+	void *handle = REAL(dlopen)(path, flags);
+	loading = false;
+	return handle;
 }
 
 /* ---- from main on ---- */

@@ -22,8 +22,25 @@ is "$(readlink $p/lib/libnmtan.so)" libnmtan.so.0
 is "$(readlink $p/lib/libnmtan.so.0)" "libnmtan.so.$version"
 grep -q "^prefix=/opt/nmtan$" $p/lib/pkgconfig/nmtan.pc || wrong "nmtan.pc has another prefix"
 grep -q "^Version: $version$" $p/lib/pkgconfig/nmtan.pc || wrong "nmtan.pc has another version"
+exists $p/lib/nmtan/nmtan-{draco,meshopt,openmesh,png,tiff,tinygltf}.so
 [ -z "$(find root -type f -perm /022)" ] || wrong "files that others may write"
 "$p/bin/nmtan" --version | grep -q "$version" || wrong "the installed tool does not run"
+
+scene "the installed tool finds its modules where they were installed, by its own folder first"
+make -s -C "$ROOT" MAKEFLAGS= install config=release PREFIX="$PWD/root" LIBDIR="$PWD/root/lib/x" >"$WORK/out.txt" 2>&1 ||
+	wrong "make install failed"
+NMTAN=$PWD/root/bin/nmtan
+run -q --verify "$data/quad.obj" out.glb
+exits 0
+rm root/lib/x/nmtan/nmtan-tinygltf.so
+run -q --verify "$data/quad.obj" none.glb
+exits 5
+says "the module nmtan-tinygltf.so, which is not in $PWD/root/bin or $PWD/root/lib/x/nmtan"
+[ ! -e none.glb ] || wrong "an output without verification"
+printf x >root/bin/nmtan-tinygltf.so
+run -q --verify "$data/quad.obj" none.glb
+exits 5
+says "$PWD/root/bin/nmtan-tinygltf.so cannot be opened"
 
 scene "a C program finds header and library through pkg-config, shared and static, without C++"
 install_here install

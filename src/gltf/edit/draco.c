@@ -145,6 +145,12 @@ static nt_draco_method wanted_method(const nt_gltf_recoding *r)
 								       r->source->method;
 }
 
+/* Whether it is not the mesh that keeps Draco from encoding. */
+static bool is_beside_mesh(nt_status status)
+{
+	return status == NT_ERROR_MEMORY || status == NT_ERROR_MODULE || status == NT_ERROR_IO;
+}
+
 /* Encodes; *done false where the result would not do. */
 static nt_status recode(nt_gltf_recoding *r, bool *done)
 {
@@ -156,11 +162,14 @@ static nt_status recode(nt_gltf_recoding *r, bool *done)
 	/* Edgebreaker does not give every mesh back; the other method has nothing to lose. */
 	const nt_draco_method method = wanted_method(r);
 	nt_draco_block block = {0};
-	status = nt_gltf_draco_encode(r, method, &block);
-	if (status && status != NT_ERROR_MEMORY && method != NT_DRACO_SEQUENTIAL)
-		status = nt_gltf_draco_encode(r, NT_DRACO_SEQUENTIAL, &block);
-	if (status == NT_ERROR_MEMORY)
-		return nt_fail_memory(r->error);
+	nt_error failure;
+	status = nt_gltf_draco_encode(r, method, &block, &failure);
+	if (status && !is_beside_mesh(status) && method != NT_DRACO_SEQUENTIAL)
+		status = nt_gltf_draco_encode(r, NT_DRACO_SEQUENTIAL, &block, &failure);
+	if (is_beside_mesh(status)) {
+		*r->error = failure;
+		return status;
+	}
 	if (status || (r->outside && !order_is_kept(r, &block))) {
 		r->obstacle = status ? "Draco does not give it back"
 				     : "no face uses some of its vertices, whose order matters";

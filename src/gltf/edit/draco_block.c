@@ -53,7 +53,7 @@ static void put_floats(nt_gltf_recoding *r, const char *name, nt_draco_kind kind
 static nt_status copy_attribute(nt_gltf_recoding *r, const nt_draco_attribute *from, const void **elements)
 {
 	const nt_pool_vertices *all = r->vertices;
-	const size_t width = nt_draco_component_size(from->component_type) * (size_t)from->components;
+	const size_t width = nt_component_size(from->component_type) * (size_t)from->components;
 	unsigned char *out = nt_arena_alloc(r->arena, all->new_count, width);
 	if (!out)
 		return nt_fail_memory(r->error);
@@ -107,7 +107,8 @@ nt_status nt_gltf_draco_add_own(nt_gltf_recoding *r)
 
 /* ---- encoding ---- */
 
-nt_status nt_gltf_draco_encode(const nt_gltf_recoding *r, nt_draco_method method, nt_draco_block *block)
+nt_status nt_gltf_draco_encode(const nt_gltf_recoding *r, nt_draco_method method, nt_draco_block *block,
+	nt_error *error)
 {
 	const nt_draco_mesh mesh = {
 		.method = method,
@@ -117,8 +118,7 @@ nt_status nt_gltf_draco_encode(const nt_gltf_recoding *r, nt_draco_method method
 		.attributes = r->attributes,
 		.attribute_count = r->attribute_count,
 	};
-	nt_error ignored;
-	return nt_draco_encode(&mesh, block, &ignored);
+	return nt_draco_encode(&mesh, block, error);
 }
 
 /* ---- in the document ---- */

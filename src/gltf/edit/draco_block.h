@@ -47,7 +47,8 @@ nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *recoding);
 nt_status nt_gltf_draco_add_own(nt_gltf_recoding *recoding);
 
 /* Compresses what was gathered; the status says whether Draco gives it back. */
-nt_status nt_gltf_draco_encode(const nt_gltf_recoding *recoding, nt_draco_method method, nt_draco_block *block);
+nt_status nt_gltf_draco_encode(const nt_gltf_recoding *recoding, nt_draco_method method, nt_draco_block *block,
+	nt_error *error);
 
 /* The JSON of the primitive follows what a decoder will see; new accessors have no view, their elements are in the
  * block. */

@@ -335,7 +335,7 @@ static void touch(const nt_draco_mesh *mesh)
 		assert_true(mesh->indices[i] < mesh->point_count);
 	for (size_t i = 0; i < mesh->attribute_count; i++) {
 		const nt_draco_attribute *a = &mesh->attributes[i];
-		const size_t size = nt_draco_component_size(a->component_type) * (size_t)a->components;
+		const size_t size = nt_component_size(a->component_type) * (size_t)a->components;
 		const unsigned char *bytes = a->data;
 		for (size_t k = 0; k < size * mesh->point_count; k++)
 			sum += bytes[k];

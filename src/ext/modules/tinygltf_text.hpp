@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // The text of a document as tinygltf can read it.
-#ifndef NT_EXT_TINYGLTF_TEXT_HPP
-#define NT_EXT_TINYGLTF_TEXT_HPP
+#ifndef NT_EXT_MODULES_TINYGLTF_TEXT_HPP
+#define NT_EXT_MODULES_TINYGLTF_TEXT_HPP
 
 #include <cstddef>
 #include <cstdint>

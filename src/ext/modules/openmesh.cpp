@@ -8,8 +8,8 @@
 // the order in which they follow each other. Time is then linear, but for sorting the sides of a vertex.
 //
 // Only the connectivity class is used: no positions, no properties.
-#include "ext/openmesh.h"
-#include "ext/guard.hpp"
+#include "ext/modules/guard.hpp"
+#include "ext/tables.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -379,12 +379,17 @@ struct marked_edges {
 	}
 };
 
-} // namespace
+// ---- the table ----
 
-nt_status nt_halfedges_build(nt_halfedges **result, size_t vertex_count, const uint32_t *triangles,
+void free_mesh(nt_halfedges *mesh)
+{
+	const nt::reserve memory;
+	delete mesh;
+}
+
+nt_status build_mesh(nt_halfedges **result, size_t vertex_count, const uint32_t *triangles,
 	size_t triangle_count, nt_error *error)
 {
-	*result = nullptr;
 	if (triangle_count > max_triangles || vertex_count > NT_OPEN)
 		return nt_fail(error, NT_ERROR_TOO_LARGE,
 			"%zu triangles are too many for the seam report, which takes %zu",
@@ -405,23 +410,17 @@ nt_status nt_halfedges_build(nt_halfedges **result, size_t vertex_count, const u
 	if (status == NT_OK)
 		*result = mesh;
 	else
-		nt_halfedges_free(mesh);
+		free_mesh(mesh);
 	return status;
 }
 
-void nt_halfedges_free(nt_halfedges *mesh)
-{
-	const nt::reserve memory;
-	delete mesh;
-}
-
-size_t nt_halfedges_left_out(const nt_halfedges *mesh, const uint32_t **triangles)
+size_t left_out(const nt_halfedges *mesh, const uint32_t **triangles)
 {
 	*triangles = mesh->left_out.data();
 	return mesh->left_out.size();
 }
 
-nt_status nt_halfedges_chains(const nt_halfedges *mesh, const uint8_t *marked, nt_walks *walks,
+nt_status trace_chains(const nt_halfedges *mesh, const uint8_t *marked, nt_walks *walks,
 	nt_error *error)
 {
 	std::memset(walks, 0, sizeof *walks);
@@ -447,13 +446,9 @@ nt_status nt_halfedges_chains(const nt_halfedges *mesh, const uint8_t *marked, n
 	return status;
 }
 
-void nt_walks_free(nt_walks *walks)
-{
-	std::free(walks->first);
-	std::free(walks->closed);
-	std::free(walks->left);
-	std::free(walks->right);
-	std::free(walks->from);
-	std::free(walks->to);
-	std::memset(walks, 0, sizeof *walks);
-}
+} // namespace
+
+static const char version[] = {'0' + OM_GET_VER, '.', '0' + OM_GET_MAJ, 0};
+
+const nt_openmesh_table nt_openmesh_module = {NT_MODULE_HEAD(nt_openmesh_table, "OpenMesh", version, &nt::cxx),
+	build_mesh, free_mesh, left_out, trace_chains};

@@ -7,9 +7,8 @@
 // Who wants to encode again needs to know how values were quantized (origin, range, bits), so that they do not
 // move. Draco tells this only when it leaves attributes as integers, whose own type is lost then: so that takes
 // a second decoding. Encoding is in draco_encode.cpp.
-#include "ext/draco.h"
-#include "ext/draco_parts.hpp"
-#include "ext/guard.hpp"
+#include "ext/modules/draco_parts.hpp"
+#include "ext/modules/guard.hpp"
 
 #include <cstring>
 #include <memory>
@@ -27,17 +26,16 @@ using draco::PointIndex;
 struct component_row {
 	int type; // glTF's number
 	draco::DataType draco_type;
-	size_t size;
 };
 
 const component_row component_table[] = {
-	{NT_GLTF_BYTE, draco::DT_INT8, 1},
-	{NT_GLTF_UBYTE, draco::DT_UINT8, 1},
-	{NT_GLTF_SHORT, draco::DT_INT16, 2},
-	{NT_GLTF_USHORT, draco::DT_UINT16, 2},
-	{NT_GLTF_INT, draco::DT_INT32, 4},
-	{NT_GLTF_UINT, draco::DT_UINT32, 4},
-	{NT_GLTF_FLOAT, draco::DT_FLOAT32, 4},
+	{NT_GLTF_BYTE, draco::DT_INT8},
+	{NT_GLTF_UBYTE, draco::DT_UINT8},
+	{NT_GLTF_SHORT, draco::DT_INT16},
+	{NT_GLTF_USHORT, draco::DT_UINT16},
+	{NT_GLTF_INT, draco::DT_INT32},
+	{NT_GLTF_UINT, draco::DT_UINT32},
+	{NT_GLTF_FLOAT, draco::DT_FLOAT32},
 };
 
 const component_row *row_of_type(int type)
@@ -383,16 +381,9 @@ nt_status nt::decode_draco(nt_draco &result, const unsigned char *bytes, size_t 
 	return take_mesh(result, *decoded.value(), error);
 }
 
-size_t nt_draco_component_size(int component_type)
+nt_status nt::decode_checked(nt_draco **result, const unsigned char *bytes, size_t size, size_t max_faces,
+	bool with_quantization, nt_error *error)
 {
-	const component_row *row = row_of_type(component_type);
-	return row ? row->size : 0;
-}
-
-nt_status nt_draco_decode(nt_draco **result, const unsigned char *bytes, size_t size,
-	size_t max_faces, bool with_quantization, nt_error *error)
-{
-	*result = nullptr;
 	nt_draco *made = nullptr;
 	const size_t plausible = plausible_faces(size);
 	const size_t limit = max_faces && max_faces < plausible ? max_faces : plausible;
@@ -405,25 +396,12 @@ nt_status nt_draco_decode(nt_draco **result, const unsigned char *bytes, size_t 
 	if (status == NT_OK)
 		*result = made;
 	else
-		nt_draco_free(made);
+		free_decoded(made);
 	return status;
 }
 
-void nt_draco_free(nt_draco *result)
+void nt::free_decoded(nt_draco *result)
 {
 	const nt::reserve memory;
 	delete result;
-}
-
-const nt_draco_mesh *nt_draco_get(const nt_draco *result)
-{
-	return &result->mesh;
-}
-
-const nt_draco_attribute *nt_draco_find(const nt_draco_mesh *mesh, uint32_t unique_id)
-{
-	for (size_t i = 0; i < mesh->attribute_count; i++)
-		if (mesh->attributes[i].unique_id == unique_id)
-			return &mesh->attributes[i];
-	return nullptr;
 }

@@ -4,10 +4,9 @@
 // directory, decodes images, overflows its stack on deep JSON, knows no compression and checks no accessor: so it
 // gets its files through callbacks, an image loader that does nothing and text made for it (tinygltf_text.cpp), and
 // its accessors are checked and unpacked here.
-#include "ext/guard.hpp"
-#include "ext/meshopt.h"
-#include "ext/tinygltf.h"
-#include "ext/tinygltf_text.hpp"
+#include "ext/modules/guard.hpp"
+#include "ext/modules/tinygltf_text.hpp"
+#include "ext/tables.h"
 
 #include <cstring>
 #include <deque>
@@ -134,10 +133,10 @@ const char *unpack(nt_reread &model, size_t index, size_t size, const unsigned c
 			packed.size};
 		const unsigned char *from =
 			buffer_bytes(model.document, packed.buffer, packed.offset, packed.size);
-		if (!from || nt_meshopt_check(&view, size, "", nullptr) != NT_OK)
+		if (!from || nt_meshopt_module.check(&view, size, "", nullptr) != NT_OK)
 			return "the buffer view is packed, and its packed bytes are not as it says";
 		std::vector<unsigned char> made(size + 1); // never empty
-		if (nt_meshopt_unpack(&view, from, made.data(), "", nullptr) != NT_OK)
+		if (nt_meshopt_module.unpack(&view, from, made.data(), "", nullptr) != NT_OK)
 			return "meshoptimizer cannot unpack the buffer view";
 		unpacked = std::move(made);
 	}
@@ -249,6 +248,11 @@ int index_of(const std::map<std::string, int> &attributes, const char *name)
 	return found == attributes.end() ? -1 : found->second;
 }
 
+size_t primitive_count(const nt_reread *model, size_t mesh)
+{
+	return mesh < model->document.meshes.size() ? model->document.meshes[mesh].primitives.size() : 0;
+}
+
 constexpr size_t place_size = 200;
 
 // The array of the accessor that find() gives, -1 for none; it also says where in the primitive that stands.
@@ -257,7 +261,7 @@ nt_status read_array(nt_reread *model, size_t mesh, size_t primitive, nt_reread_
 	Find &&find)
 {
 	*array = {};
-	if (primitive >= nt_reread_primitive_count(model, mesh))
+	if (primitive >= primitive_count(model, mesh))
 		return nt_fail(error, NT_ERROR_INPUT, "mesh %zu has no primitive %zu", mesh, primitive);
 	return nt::guard(error, library, [&]() -> nt_status {
 		char place[place_size], pointer[place_size + 100];
@@ -274,7 +278,7 @@ nt_status read_array(nt_reread *model, size_t mesh, size_t primitive, nt_reread_
 // The extension of a compressed primitive; null: none.
 const tinygltf::Value *block_of(const nt_reread *model, size_t mesh, size_t primitive)
 {
-	if (primitive >= nt_reread_primitive_count(model, mesh))
+	if (primitive >= primitive_count(model, mesh))
 		return nullptr;
 	for (const auto &extension : model->document.meshes[mesh].primitives[primitive].extensions)
 		if (extension.first == nt::draco_extension && extension.second.IsObject())
@@ -292,12 +296,17 @@ int integer_member(const tinygltf::Value &object, const char *name)
 	return -1;
 }
 
-} // namespace
+// ---- the table ----
 
-nt_status nt_reread_open(nt_reread **model, const unsigned char *bytes, size_t size,
+void free_model(nt_reread *model)
+{
+	const nt::reserve memory;
+	delete model;
+}
+
+nt_status open(nt_reread **model, const unsigned char *bytes, size_t size,
 	nt_reread_find find, void *user, nt_error *error)
 {
-	*model = nullptr;
 	nt_reread *made = nullptr;
 	const nt_status status = nt::guard(error, library, [&] {
 		made = new nt_reread;
@@ -306,27 +315,16 @@ nt_status nt_reread_open(nt_reread **model, const unsigned char *bytes, size_t s
 	if (status == NT_OK)
 		*model = made;
 	else
-		nt_reread_free(made);
+		free_model(made);
 	return status;
 }
 
-void nt_reread_free(nt_reread *model)
-{
-	const nt::reserve memory;
-	delete model;
-}
-
-size_t nt_reread_mesh_count(const nt_reread *model)
+size_t mesh_count(const nt_reread *model)
 {
 	return model->document.meshes.size();
 }
 
-size_t nt_reread_primitive_count(const nt_reread *model, size_t mesh)
-{
-	return mesh < model->document.meshes.size() ? model->document.meshes[mesh].primitives.size() : 0;
-}
-
-nt_status nt_reread_attribute(nt_reread *model, size_t mesh, size_t primitive,
+nt_status attribute(nt_reread *model, size_t mesh, size_t primitive,
 	const char *name, nt_reread_array *array, nt_error *error)
 {
 	return read_array(model, mesh, primitive, array, error, [&](const tinygltf::Primitive &item, char *place) {
@@ -335,7 +333,7 @@ nt_status nt_reread_attribute(nt_reread *model, size_t mesh, size_t primitive,
 	});
 }
 
-nt_status nt_reread_target(nt_reread *model, size_t mesh, size_t primitive, size_t target,
+nt_status target(nt_reread *model, size_t mesh, size_t primitive, size_t target,
 	const char *name, nt_reread_array *array, nt_error *error)
 {
 	return read_array(model, mesh, primitive, array, error, [&](const tinygltf::Primitive &item, char *place) {
@@ -344,7 +342,7 @@ nt_status nt_reread_target(nt_reread *model, size_t mesh, size_t primitive, size
 	});
 }
 
-nt_status nt_reread_block(nt_reread *model, size_t mesh, size_t primitive, bool *has_block,
+nt_status block(nt_reread *model, size_t mesh, size_t primitive, bool *has_block,
 	const unsigned char **bytes, size_t *size, nt_error *error)
 {
 	const tinygltf::Value *block = block_of(model, mesh, primitive);
@@ -361,7 +359,7 @@ nt_status nt_reread_block(nt_reread *model, size_t mesh, size_t primitive, bool 
 	});
 }
 
-bool nt_reread_block_id(const nt_reread *model, size_t mesh, size_t primitive, const char *name, uint32_t *id)
+bool block_id(const nt_reread *model, size_t mesh, size_t primitive, const char *name, uint32_t *id)
 {
 	const tinygltf::Value *block = block_of(model, mesh, primitive);
 	if (!block || !block->IsObject())
@@ -375,3 +373,8 @@ bool nt_reread_block_id(const nt_reread *model, size_t mesh, size_t primitive, c
 	}
 	return false;
 }
+
+} // namespace
+
+const nt_tinygltf_table nt_tinygltf_module = {NT_MODULE_HEAD(nt_tinygltf_table, "tinygltf", nullptr, &nt::cxx), open, free_model,
+	mesh_count, primitive_count, attribute, target, block, block_id};

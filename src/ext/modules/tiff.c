@@ -5,6 +5,7 @@
  * those that textures have; the rarer codecs of the library are closed to input from outside.
  */
 #include "ext/codec/pixels.h"
+#include "ext/tables.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -194,8 +195,9 @@ static nt_status decode(TIFF *tiff, source *s, nt_pixels *pixels, nt_error *erro
 	return read ? NT_OK : fail(s, error);
 }
 
-nt_status nt_decode_tiff(const unsigned char *bytes, size_t size, nt_pixels *pixels, nt_error *error)
+static nt_status decode_tiff(const unsigned char *bytes, size_t size, uint32_t rows, nt_pixels *pixels, nt_error *error)
 {
+	(void)rows; /* it knows no part of an image */
 	*pixels = (nt_pixels){0};
 	source s = {.bytes = bytes, .size = size};
 	TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
@@ -214,3 +216,8 @@ nt_status nt_decode_tiff(const unsigned char *bytes, size_t size, nt_pixels *pix
 		nt_pixels_free(pixels);
 	return status;
 }
+
+static const char version[] = {'0' + TIFFLIB_MAJOR_VERSION, '.', '0' + TIFFLIB_MINOR_VERSION, '.',
+	'0' + TIFFLIB_MICRO_VERSION, 0};
+
+const nt_codec_table nt_tiff_module = {NT_MODULE_HEAD(nt_codec_table, "libtiff", version, NULL), decode_tiff, NULL};

@@ -3,9 +3,8 @@
 // Encoding with Draco. What would kill the encoder (values that are not finite), take it beyond memory, or could
 // not be decoded again (more than three points per face) is refused before; and its result is decoded and
 // compared with the input after quantization (draco_compare.cpp), since what it cannot keep it does not tell.
-#include "ext/draco.h"
-#include "ext/draco_parts.hpp"
-#include "ext/guard.hpp"
+#include "ext/modules/draco_parts.hpp"
+#include "ext/modules/guard.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -148,7 +147,7 @@ std::vector<uint32_t> compact(const nt_draco_mesh &mesh, std::vector<uint32_t> &
 
 void add_attribute(draco::Mesh &to, const nt_draco_attribute &a, const std::vector<uint32_t> &sources)
 {
-	const size_t width = nt_draco_component_size(a.component_type) * static_cast<size_t>(a.components);
+	const size_t width = nt_component_size(a.component_type) * static_cast<size_t>(a.components);
 	draco::GeometryAttribute layout;
 	layout.Init(nt::draco_kind_of(a.kind), nullptr, static_cast<uint8_t>(a.components),
 		nt::draco_type_of(a.component_type), a.normalized, static_cast<int64_t>(width), 0);
@@ -272,18 +271,10 @@ nt_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *err
 
 } // namespace
 
-nt_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error)
+nt_status nt::encode_draco(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error)
 {
-	*block = {};
 	const nt_status status = nt::guard(error, "Draco", [&] { return encode(*mesh, block, error); });
 	if (status != NT_OK)
 		nt_draco_block_free(block);
 	return status;
-}
-
-void nt_draco_block_free(nt_draco_block *block)
-{
-	std::free(block->bytes);
-	std::free(block->sources);
-	*block = {};
 }

@@ -4,6 +4,7 @@
  * that is cut short is an error, never an image that is half black.
  */
 #include "ext/codec/pixels.h"
+#include "ext/tables.h"
 
 #include <spng.h>
 #include <stdlib.h>
@@ -117,7 +118,7 @@ static nt_status decode(spng_ctx *png, size_t size, uint32_t rows, nt_pixels *pi
 	return decoded ? fail(decoded, "PNG", error) : NT_OK;
 }
 
-nt_status nt_decode_png(const unsigned char *bytes, size_t size, uint32_t rows, nt_pixels *pixels, nt_error *error)
+static nt_status decode_png(const unsigned char *bytes, size_t size, uint32_t rows, nt_pixels *pixels, nt_error *error)
 {
 	*pixels = (nt_pixels){0};
 	spng_ctx *png = create(0);
@@ -132,7 +133,7 @@ nt_status nt_decode_png(const unsigned char *bytes, size_t size, uint32_t rows, 
 	return status;
 }
 
-nt_status nt_encode_png(const nt_pixels *pixels, unsigned char **bytes, size_t *size, nt_error *error)
+static nt_status encode_png(const nt_pixels *pixels, unsigned char **bytes, size_t *size, nt_error *error)
 {
 	static const uint8_t color_types[] = {0, SPNG_COLOR_TYPE_GRAYSCALE, SPNG_COLOR_TYPE_GRAYSCALE_ALPHA,
 		SPNG_COLOR_TYPE_TRUECOLOR, SPNG_COLOR_TYPE_TRUECOLOR_ALPHA};
@@ -154,3 +155,7 @@ nt_status nt_encode_png(const nt_pixels *pixels, unsigned char **bytes, size_t *
 	const nt_status status = fail(code, "PNG encoder", error);
 	return status == NT_ERROR_MEMORY ? status : (error->status = NT_ERROR_INTERNAL);
 }
+
+static const char version[] = {'0' + SPNG_VERSION_MAJOR, '.', '0' + SPNG_VERSION_MINOR, '.', '0' + SPNG_VERSION_PATCH, 0};
+
+const nt_codec_table nt_png_module = {NT_MODULE_HEAD(nt_codec_table, "libspng", version, NULL), decode_png, encode_png};

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// What the three files around Draco share: draco.cpp decodes, draco_encode.cpp encodes, draco_compare.cpp tells
+// What the files around Draco share: draco_decode.cpp decodes, draco_encode.cpp encodes, draco_compare.cpp tells
 // whether what was encoded comes back.
-#ifndef NT_EXT_DRACO_PARTS_HPP
-#define NT_EXT_DRACO_PARTS_HPP
+#ifndef NT_EXT_MODULES_DRACO_PARTS_HPP
+#define NT_EXT_MODULES_DRACO_PARTS_HPP
 
 #include "ext/draco.h"
 
@@ -20,7 +20,7 @@ struct nt_draco {
 
 namespace nt {
 
-// ---- draco.cpp ----
+// ---- draco_decode.cpp ----
 
 // What Draco calls a component type of glTF; DT_INVALID: not one.
 draco::DataType draco_type_of(int component_type);
@@ -33,6 +33,16 @@ std::vector<unsigned char> copy_values(const draco::PointAttribute &attribute, s
 // Decodes a mesh of at most `face_limit` faces into plain arrays; quantization is left out.
 nt_status decode_draco(nt_draco &result, const unsigned char *bytes, size_t size, size_t face_limit,
 	nt_error *error);
+
+// nt_draco_decode() and nt_draco_free().
+nt_status decode_checked(nt_draco **result, const unsigned char *bytes, size_t size, size_t max_faces,
+	bool with_quantization, nt_error *error);
+void free_decoded(nt_draco *result);
+
+// ---- draco_encode.cpp ----
+
+// nt_draco_encode().
+nt_status encode_draco(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error);
 
 // ---- draco_compare.cpp ----
 
@@ -55,7 +65,7 @@ inline bool is_octahedral(const nt_draco_attribute &a)
 inline size_t stride_of(const nt_draco_attribute &a)
 {
 	return a.stride_bytes ? a.stride_bytes
-			      : nt_draco_component_size(a.component_type) * static_cast<size_t>(a.components);
+			      : nt_component_size(a.component_type) * static_cast<size_t>(a.components);
 }
 
 inline const unsigned char *value_of(const nt_draco_attribute &a, size_t point)

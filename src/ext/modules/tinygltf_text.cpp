@@ -5,7 +5,7 @@
 // meshoptimizer are said to lie in. It gets a text without the former and with a byte for the latter; who wants
 // their values unpacks them. Nor does its parser take numbers beyond double, which extras may have: it gets zeros. And
 // 8.0 is no integer to it, though it is one to JSON and glTF: it gets 8.
-#include "ext/tinygltf_text.hpp"
+#include "ext/modules/tinygltf_text.hpp"
 #include "ext/number.h"
 
 #include <algorithm>

@@ -3,7 +3,7 @@
 // Whether what Draco encoded comes back. Expected are the values after quantization, as Draco's own transforms
 // compute them. Sequential encoding keeps the order of points and faces, so that bytes are compared; edgebreaker
 // reorders both and joins and splits points, so that a sum of hashes over faces stands for the set of them.
-#include "ext/draco_parts.hpp"
+#include "ext/modules/draco_parts.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -61,7 +61,7 @@ uint64_t hash_point(const nt_draco_mesh &mesh, uint32_t point)
 	uint64_t hash = 0x9e3779b97f4a7c15;
 	for (size_t i = 0; i < mesh.attribute_count; i++) {
 		const nt_draco_attribute &a = mesh.attributes[i];
-		const size_t size = nt_draco_component_size(a.component_type);
+		const size_t size = nt_component_size(a.component_type);
 		for (int c = 0; c < a.components; c++) {
 			uint32_t bits = 0;
 			std::memcpy(&bits, value_of(a, point) + size * static_cast<size_t>(c), size);
@@ -105,7 +105,7 @@ bool is_degenerate(const nt_draco_mesh &mesh, const uint32_t *face)
 		if (a.kind != NT_DRACO_POSITION)
 			continue;
 		const size_t width =
-			nt_draco_component_size(a.component_type) * static_cast<size_t>(a.components);
+			nt_component_size(a.component_type) * static_cast<size_t>(a.components);
 		for (size_t k = 0; k < 3; k++)
 			equal |= std::memcmp(value_of(a, face[k]), value_of(a, face[(k + 1) % 3]), width) == 0;
 		break;

@@ -1,0 +1,46 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Memory for C++ libraries when there is none left. What they do then cannot be relied on: destructors allocate
+ * (nlohmann's) and end the process when that fails, streams swallow the failure and lose text, assertions meet
+ * half-made values. So between nt_reserve_begin() and nt_reserve_end() an allocation that malloc refuses comes from a
+ * block that the process has from its start, and it is remembered that it was needed: whoever began lets the
+ * library come to its end and reports NT_ERROR_MEMORY then. Only when the block is used up is bad_alloc thrown; a part of
+ * it is kept for what runs meanwhile.
+ */
+#ifndef NT_EXT_RESERVE_H
+#define NT_EXT_RESERVE_H
+
+#include <stdbool.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The program's own, for modules too. */
+#define NT_RESERVE __attribute__((visibility("default")))
+
+/* They nest, each within one thread. */
+NT_RESERVE void nt_reserve_begin(void);
+NT_RESERVE void nt_reserve_end(void);
+
+/* Whether malloc refused anything in this thread since the outermost begin. */
+NT_RESERVE bool nt_reserve_was_needed(void);
+
+/* What takes a C++ library; the program has none until a module brings it. */
+typedef struct nt_cxx {
+	void (*throw_bad_alloc)(void);
+	bool (*is_unwinding)(void);
+	void (*on_terminate)(void (*look)(bool of_bad_alloc)); /* calls it before C++ ends the process */
+} nt_cxx;
+
+/* For the module that brings one; those of later modules are the same and not needed. */
+void nt_reserve_serve(const nt_cxx *cxx);
+
+/* Calls `end`, which must not return and gets no memory, where C++ would abort the process for want of memory: in a
+ * destructor or an assertion, after the block was used up. Other aborts stay what they are. */
+void nt_on_exhausted(void (*end)(void));
+
+#ifdef __cplusplus
+}
+#endif
+#endif
