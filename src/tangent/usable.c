@@ -70,8 +70,9 @@ static bool has_unusable(const nt_solve *solve, size_t first, size_t size, int o
 	bool good = w != 0.0f;
 	for (size_t k = 0; k < size; k++)
 		good &= t[4 * k + 3] == w;
-	for (size_t k = 0; good && k < size; k++)
-		good = nt_is_frame(t + 4 * k, nt_normal(mesh, nt_vertex_of(mesh, first + k)));
+	if (good)
+		for (size_t k = 0; k < size; k++)
+			good &= nt_is_frame(t + 4 * k, nt_normal(mesh, nt_vertex_of(mesh, first + k)));
 	if (__builtin_expect(good, 1))
 		return false;
 	for (size_t k = 0; k < size; k++) {

@@ -93,6 +93,35 @@ static void flood_group(const nt_complex *c, nt_batch *b, uint32_t seed)
 	b->group_count++;
 }
 
+void nt_find_groups(const nt_complex *c, nt_batch *b)
+{
+	memset(b->group, 0xff, b->count * sizeof *b->group);
+	b->group_count = 0;
+	for (uint32_t i = 0; i < b->count; i++)
+		flood_group(c, b, i);
+}
+
+void nt_find_groups_in_order(const nt_complex *c, nt_batch *all)
+{
+	for (size_t v = 0; v < c->vertex_count; v++)
+		nt_pair_vertex(c, all, c->begin[v], c->begin[v + 1]);
+	memset(all->group, 0xff, all->count * sizeof *all->group);
+	all->group_count = 0;
+	for (size_t i = 0; i < all->count; i++)
+		flood_group(c, all, c->order[i]);
+}
+
+/* A group begins with its first corner that has a frame. */
+void nt_number_groups(const nt_complex *c, nt_batch *b, uint32_t *numbers)
+{
+	b->group_count = 0;
+	for (uint32_t i = 0; i < b->count; i++)
+		if (!(c->fast->flags[b->corners[i] >> 2] & NT_TRIANGLE_ANY) && numbers[b->group[i]] == NT_NONE)
+			numbers[b->group[i]] = b->group_count++;
+	for (uint32_t i = 0; i < b->count; i++)
+		b->group[i] = b->group[i] == NT_NONE ? NT_NONE : numbers[b->group[i]];
+}
+
 void nt_list_members(nt_batch *b)
 {
 	b->members = b->across;
@@ -101,65 +130,11 @@ void nt_list_members(nt_batch *b)
 	uint32_t *at = b->bounds + 1;
 	memset(b->bounds, 0, (b->group_count + 2) * sizeof *b->bounds);
 	for (uint32_t i = 0; i < b->count; i++)
-		if (b->group[i] != NT_NONE)
+		if (b->group[i] < NT_WRITTEN)
 			at[b->group[i] + 1]++;
 	for (uint32_t g = 1; g <= b->group_count; g++)
 		at[g] += at[g - 1];
 	for (uint32_t i = 0; i < b->count; i++)
-		if (b->group[i] != NT_NONE)
+		if (b->group[i] < NT_WRITTEN)
 			b->members[at[b->group[i]]++] = i;
-}
-
-void nt_find_groups(const nt_complex *c, nt_batch *b)
-{
-	memset(b->group, 0xff, b->count * sizeof *b->group);
-	b->group_count = 0;
-	for (uint32_t i = 0; i < b->count; i++)
-		flood_group(c, b, i);
-	nt_list_members(b);
-}
-
-/* Triangles without a frame */
-
-/* Pairs the corners of vertices that touch a triangle without a frame; these get their first place, others
- * NT_NONE. */
-static void pair_undecided(const nt_complex *c, nt_batch *b, uint32_t *places)
-{
-	for (size_t v = 0; v < c->vertex_count; v++) {
-		bool any = false;
-		for (uint32_t place = c->begin[v]; place < c->begin[v + 1] && !any; place++)
-			any = c->fast->flags[c->corners[place] >> 2] & NT_TRIANGLE_ANY;
-		places[v] = any ? c->begin[v] : NT_NONE;
-		if (any)
-			nt_pair_vertex(c, b, c->begin[v], c->begin[v + 1]);
-	}
-}
-
-/* Floods in the order of triangles, for what that does to flags: afterwards the vertices do not depend on each
- * other. */
-nmtan_status nt_decide_any(const nt_complex *c)
-{
-	const nt_fast *fast = c->fast;
-	const nt_scratch_mark mark = nt_scratch_here(c->memory->scratch);
-	const nt_borrowed memory = *c->memory;
-	nt_batch b;
-	uint32_t *at = nt_borrowed_alloc(c->memory, c->vertex_count, sizeof *at);
-	if (!at || !nt_batch_alloc(c, c->corner_count, &b))
-		return NMTAN_ERROR_MEMORY;
-	b.corners = c->corners;
-	memset(b.group, 0xff, c->corner_count * sizeof *b.group);
-	pair_undecided(c, &b, at);
-	for (size_t t = nt_next_complex(c, 0); t < fast->triangle_count; t = nt_next_complex(c, t + 1)) {
-		uint32_t copy[3];
-		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
-		for (size_t k = 0; k < 3; k++) {
-			const uint32_t number = nt_complex_number(c, v[k]);
-			if (number != NT_NONE && at[number] != NT_NONE)
-				flood_group(c, &b, at[number]++);
-		}
-	}
-	nt_scratch_back(c->memory->scratch, mark);
-	*c->memory = memory;
-	memset(c->waiting, 0, fast->vertex_count * sizeof *c->waiting);
-	return NMTAN_OK;
 }

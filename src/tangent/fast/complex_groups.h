@@ -11,6 +11,9 @@
 /* No group; no corner. */
 #define NT_NONE UINT32_MAX
 
+/* In place of a group: the corner is written. */
+#define NT_WRITTEN (UINT32_MAX - 1)
+
 /* Corners that are solved together. */
 enum { NT_BATCH = 128 };
 
@@ -20,12 +23,13 @@ typedef struct nt_complex {
 	nt_fast *fast;
 	const nt_kernels *kernels;
 	nt_borrowed *memory;
-	int orient;          /* of the records in which x of a complex vertex is its number, bit by bit */
+	int orient;          /* of the records whose states number complex vertices */
 	size_t vertex_count, corner_count;
 	size_t most;         /* corners of one vertex */
 	uint32_t *begin;     /* [vertex_count + 1] first place of each vertex */
 	uint32_t *corners;   /* [corner_count] */
 	uint32_t *waiting;   /* [welded vertices] see pair_edge() */
+	uint32_t *order;     /* [corner_count] places in the order of triangles; NULL: the order decides nothing */
 	bool any;            /* there are corners without a frame */
 	bool more;           /* results are whole, not only their u */
 } nt_complex;
@@ -36,19 +40,17 @@ typedef struct nt_batch {
 	const uint32_t *corners; /* [count] */
 	uint32_t *across;        /* [2 * count + 2] the corner beyond the edge to the next (2 i) and from the previous
 	                            vertex (2 i + 1); NT_WAITS and above: there is none */
-	uint32_t *group;         /* [count] or NT_NONE */
+	uint32_t *group;         /* [count], NT_NONE or NT_WRITTEN */
 	uint32_t group_count;
 	uint32_t *members;       /* [count] corners by group, ascending; the memory of across */
 	uint32_t *bounds;        /* [group_count + 1] first member of each group; the same */
 } nt_batch;
 
-/* The number of a complex vertex; NT_NONE: it is not complex. */
+/* The number of a complex vertex, which has one; NT_NONE: it is not complex. */
 static inline uint32_t nt_complex_number(const nt_complex *c, uint32_t vertex)
 {
-	const nt_record *record = nt_fast_record(c->fast, c->orient, vertex);
-	uint32_t number;
-	memcpy(&number, &record->x, sizeof number);
-	return record->state == NT_RESULT_NUMBERED ? number : NT_NONE;
+	const uint32_t state = nt_fast_record(c->fast, c->orient, vertex)->state;
+	return state & NT_RESULT_COMPLEX ? state & NT_RESULT_NUMBER : NT_NONE;
 }
 
 /* The next triangle from t on that has a corner at a complex vertex. */
@@ -63,14 +65,18 @@ bool nt_batch_alloc(const nt_complex *c, size_t capacity, nt_batch *batch);
 /* Pairs the edges of the vertex with places [begin, end), which the batch has. */
 void nt_pair_vertex(const nt_complex *c, nt_batch *batch, uint32_t begin, uint32_t end);
 
-/* Lists the members of a batch's groups. */
-void nt_list_members(nt_batch *batch);
-
-/* Finds the groups of a batch whose vertices are paired, and lists their members. */
+/* Finds the groups of a batch whose vertices are paired. */
 void nt_find_groups(const nt_complex *c, nt_batch *batch);
 
-/* Gives every triangle without a frame the orientation of the first group that reaches it. Returns NMTAN_OK or
- * NMTAN_ERROR_MEMORY. */
-nmtan_status nt_decide_any(const nt_complex *c);
+/* The same for a batch of all vertices, in the order of triangles: every triangle without a frame takes the orientation of
+ * the first group that reaches it. */
+void nt_find_groups_in_order(const nt_complex *c, nt_batch *all);
+
+/* Gives the groups of a batch, which are numbered among those of all vertices, numbers from 0 in the order in which they
+ * begin. `numbers` [groups of all vertices] is NT_NONE for those of this batch. */
+void nt_number_groups(const nt_complex *c, nt_batch *batch, uint32_t *numbers);
+
+/* Lists the members of a batch's groups, in the memory of across. */
+void nt_list_members(nt_batch *batch);
 
 #endif

@@ -174,6 +174,31 @@ static void write_untouched(const nt_complex *c, const nt_batch *b)
 			write_corner(c, mesh_corner(c, b, i), &untouched, nt_unassigned_sign(c->fast->solve));
 }
 
+void nt_write_sums(const nt_complex *c, nt_batch *b, uint32_t begin, uint32_t end)
+{
+	const nt_fast *fast = c->fast;
+	const uint32_t vertex = fast->triangles.ids[mesh_corner(c, b, begin)];
+	if (!(nt_fast_record(fast, c->orient, vertex)->state & NT_RESULT_SUM))
+		return;
+	/* the first group of each orientation; NT_WRITTEN: there are more */
+	uint32_t groups[2] = {NT_NONE, NT_NONE};
+	for (uint32_t i = begin; i < end; i++) {
+		const unsigned flags = fast->flags[b->corners[i] >> 2];
+		uint32_t *group = &groups[flags & NT_TRIANGLE_ORIENT];
+		if (!(flags & NT_TRIANGLE_ANY))
+			*group = *group == NT_NONE || *group == b->group[i] ? b->group[i] : NT_WRITTEN;
+	}
+	for (uint32_t i = begin; i < end; i++) {
+		const int orient = fast->flags[b->corners[i] >> 2] & NT_TRIANGLE_ORIENT;
+		if (b->group[i] == NT_NONE || b->group[i] != groups[orient])
+			continue;
+		nt_record record = *nt_fast_record(fast, orient, vertex);
+		record.state = orient ? NT_RESULT_PLUS : NT_RESULT_MINUS;
+		memcpy(fast->solve->tangents + 4 * mesh_corner(c, b, i), &record, sizeof record);
+		b->group[i] = NT_WRITTEN;
+	}
+}
+
 /* The corner of a quad's diagonal gets two results, one from each half: they are averaged. */
 static nt_corner merge(const nt_corner *a, const nt_corner *b)
 {

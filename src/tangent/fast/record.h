@@ -40,8 +40,15 @@ enum {
 #define NT_RESULT_PLUS 0x3f800000u    /* 1.0f */
 #define NT_RESULT_MINUS 0xbf800000u   /* -1.0f */
 #define NT_RESULT_NONE 0u             /* no corner has this orientation */
-#define NT_RESULT_COMPLEX 0x40000000u /* ask complex.c */
-#define NT_RESULT_NUMBERED 0x40000001u /* complex.c has been there */
+#define NT_RESULT_COMPLEX 0x40000000u /* ask complex.c; no other state has this bit */
+
+/* Beside it: the sums have nothing extreme and do not split, so that an orientation with one group has the record as its
+ * result. */
+#define NT_RESULT_SUM 0x20000000u
+
+/* Beside it: complex.c has given the vertex the number in the lowest bits. */
+#define NT_RESULT_NUMBERED 0x80000000u
+#define NT_RESULT_NUMBER (((uint32_t)1 << 28) - 1)
 
 typedef float nt_float4 __attribute__((vector_size(16)));
 typedef int nt_int4 __attribute__((vector_size(16)));

@@ -223,7 +223,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	const size_t count = left < NT_LANES ? left : NT_LANES;
 	const nt_fan_entry *entries = nt_adjacency_block(a, block - a->first_vertex / NT_FAN_LANES);
 	const size_t used = whole_lanes(count);
-	uint32_t degree[NT_LANES], mask[NT_LANES], fan_count[NT_LANES], complex[NT_LANES];
+	uint32_t degree[NT_LANES], mask[NT_LANES], fan_count[NT_LANES], complex[NT_LANES], unsound[NT_LANES];
 	record_lanes r[2];
 	const uint32_t depth = load_degrees(a, first, count, used, degree);
 	for (int o = 0; o < 2; o++)
@@ -243,9 +243,9 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	for (size_t i = 0; i < used; i++) {
 		const uint32_t both = r[0].state[i] & r[1].state[i];
 		const uint32_t present = r[0].present[i] + r[1].present[i];
-		const uint32_t unsound = (r[0].present[i] & !r[0].sound[i]) | (r[1].present[i] & !r[1].sound[i]);
+		unsound[i] = (r[0].present[i] & !r[0].sound[i]) | (r[1].present[i] & !r[1].sound[i]);
 		const uint32_t mixed = present == 2 && !(both & NT_STATE_NO_ANY);
-		complex[i] = present != 0 && 0 != (unsound | mixed | !(both & NT_STATE_LOCAL) |
+		complex[i] = present != 0 && 0 != (unsound[i] | mixed | !(both & NT_STATE_LOCAL) |
 						     (fan_count[i] != present));
 	}
 	for (int o = 0; o < 2; o++)
@@ -264,7 +264,8 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 			continue;
 		const uint32_t sign = o ? NT_RESULT_PLUS : NT_RESULT_MINUS;
 		for (size_t i = 0; i < used; i++) {
-			r[o].state[i] = complex[i] ? NT_RESULT_COMPLEX : r[o].present[i] ? sign : NT_RESULT_NONE;
+			r[o].state[i] = complex[i] ? NT_RESULT_COMPLEX | (unsound[i] ? 0 : NT_RESULT_SUM)
+				: r[o].present[i] ? sign : NT_RESULT_NONE;
 		}
 		store_records(nt_fast_record(fast, o, (uint32_t)first), fast->record_step, count, used, &r[o]);
 		if (fast->wants_more)

@@ -65,7 +65,7 @@ static void write_special(nt_fast *fast, size_t t)
 		const uint32_t state = nt_fast_record(fast, o, v)->state;
 		const bool two = fast->records[!o] && state != NT_RESULT_NONE &&
 				 nt_fast_record(fast, !o, v)->state != NT_RESULT_NONE;
-		if (state == NT_RESULT_COMPLEX)
+		if (state & NT_RESULT_COMPLEX)
 			*flags |= degenerate ? NT_TRIANGLE_COPY : NT_TRIANGLE_COMPLEX;
 		else if (degenerate && two)
 			*flags |= NT_TRIANGLE_COPY;
@@ -102,7 +102,7 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
 		const int orient = *flags & NT_TRIANGLE_ORIENT;
 		for (int k = 0; k < 3; k++)
-			if (nt_fast_record(fast, orient, v[k])->state == NT_RESULT_COMPLEX)
+			if (nt_fast_record(fast, orient, v[k])->state & NT_RESULT_COMPLEX)
 				*flags |= NT_TRIANGLE_COMPLEX;
 		if (fast->sparse && !(*flags & NT_TRIANGLE_SUSPECT))
 			continue;
@@ -134,7 +134,7 @@ static void write_plain_triangles(nt_fast *fast, size_t begin, size_t end)
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 0), &a, sizeof a);
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 1), &b, sizeof b);
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 2), &c, sizeof c);
-		if (a.state == NT_RESULT_COMPLEX || b.state == NT_RESULT_COMPLEX || c.state == NT_RESULT_COMPLEX)
+		if ((a.state | b.state | c.state) & NT_RESULT_COMPLEX)
 			flags[t] |= NT_TRIANGLE_COMPLEX;
 	}
 }
