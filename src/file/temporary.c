@@ -128,7 +128,7 @@ static int make_listed(nt_temporary *entry, const char *from, unsigned mode)
 	sigset_t before;
 	lock_list(&before);
 	const int fd = from ? link(from, entry->path)
-			    : open(entry->path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, (mode_t)mode);
+			    : open(entry->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, (mode_t)mode);
 	if (fd >= 0) {
 		entry->next = list;
 		if (list)

@@ -13,7 +13,7 @@
 
 typedef struct nt_temporary nt_temporary;
 
-/* Creates a new file beside `target`, open for writing; its mode is less the umask. Returns its descriptor; -1 with
+/* Creates a new file beside `target`, open for reading and writing; its mode is less the umask. Returns its descriptor; -1 with
  * errno set otherwise (ENOMEM included). */
 int nt_temporary_create(const char *target, unsigned mode, nt_temporary **temporary);
 

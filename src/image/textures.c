@@ -15,6 +15,7 @@
 #include "base/name_table.h"
 #include "base/parallel.h"
 #include "file/relative_path.h"
+#include "file/spill.h"
 
 typedef struct source {
 	nt_texture_source file;
@@ -34,7 +35,6 @@ typedef struct wish {
 typedef struct result {
 	nt_recipe how;
 	nt_texture texture;
-	unsigned char *bytes;
 	char *name;
 	nt_error error;
 	uint32_t same; /* an earlier result that is the same file; UINT32_MAX: none */
@@ -53,11 +53,18 @@ struct nt_textures {
 	size_t result_count, result_capacity;
 	nt_hash_index by_path, by_wish, by_recipe; /* sources, wishes and results */
 	nt_texture_rules rules;
+	nt_spill *spill;
 };
 
-nt_textures *nt_textures_create(void)
+nt_textures *nt_textures_create(const char *beside)
 {
-	return nt_calloc(1, sizeof(nt_textures));
+	nt_textures *t = nt_calloc(1, sizeof *t);
+	if (t)
+		t->spill = nt_spill_create(beside);
+	if (!t || t->spill)
+		return t;
+	free(t);
+	return NULL;
 }
 
 void nt_textures_free(nt_textures *t)
@@ -68,10 +75,9 @@ void nt_textures_free(nt_textures *t)
 		free(t->sources[i]->path);
 		free(t->sources[i]);
 	}
-	for (size_t i = 0; i < t->result_count; i++) {
-		free(t->results[i].bytes);
+	for (size_t i = 0; i < t->result_count; i++)
 		free(t->results[i].name);
-	}
+	nt_spill_free(t->spill);
 	free(t->sources);
 	free(t->wishes);
 	free(t->results);
@@ -417,7 +423,11 @@ static void decode_result(const nt_textures *t, result *r)
 	if (!status)
 		status = nt_recipe_make(&r->how, files.of_channels, &made, &r->error);
 	status = close_sources(texture, &files, status, &r->error);
-	r->bytes = made.bytes;
+	texture->bytes = made.bytes ? nt_spill_take(t->spill, made.bytes, made.size) : NULL;
+	if (made.bytes && !texture->bytes) {
+		free(made.bytes);
+		status = nt_fail_memory(&r->error);
+	}
 	texture->damaged = made.damaged;
 	texture->lost |= made.damaged;
 	if (status) {
@@ -430,7 +440,6 @@ static void decode_result(const nt_textures *t, result *r)
 		nt_error_clear(&r->error);
 	texture->flipped = made.flipped;
 	texture->alpha = made.alpha;
-	texture->bytes = made.bytes;
 	texture->size = made.size;
 	texture->type = made.bytes ? NT_IMAGE_PNG : texture->sources[0]->type;
 }
@@ -524,4 +533,10 @@ const nt_texture *nt_textures_of(const nt_textures *t, uint32_t number)
 const nt_texture_source *nt_textures_source(const nt_textures *t, uint32_t number, int channel)
 {
 	return &t->sources[t->wishes[number].how.channels[channel].source]->file;
+}
+
+void nt_textures_forget(const nt_textures *t, const nt_texture *texture)
+{
+	if (texture->bytes)
+		nt_spill_forget(t->spill, texture->bytes);
 }

@@ -77,8 +77,9 @@ typedef struct nt_texture {
 	const char *failure;       /* why something was not decoded; NULL: it was, or did not have to be */
 } nt_texture;
 
-/* NULL: out of memory. */
-nt_textures *nt_textures_create(void);
+/* beside: a path, which stays; large PNGs wait in a file beside it (file/spill.h). NULL: in memory. Returns NULL when memory
+ * is exhausted. */
+nt_textures *nt_textures_create(const char *beside);
 void nt_textures_free(nt_textures *textures); /* NULL is allowed */
 
 /* Wishes for an image of names in a material. The same wish has the same number. Returns NT_OK, also for what is not
@@ -94,6 +95,9 @@ nt_status nt_textures_make(nt_textures *textures, const nt_texture_rules *rules,
 size_t nt_textures_count(const nt_textures *textures);
 const nt_texture *nt_textures_at(const nt_textures *textures, size_t result);
 size_t nt_textures_result(const nt_textures *textures, uint32_t wish);
+
+/* Says that the bytes of a result will hardly be read again. */
+void nt_textures_forget(const nt_textures *textures, const nt_texture *texture);
 
 /* What a wish itself came to: what was lost, what its alpha does. */
 const nt_texture *nt_textures_of(const nt_textures *textures, uint32_t wish);

@@ -177,7 +177,7 @@ static const struct {
 	enum action action;
 	int which;
 } statements[] = {
-	{"Kd", COLOR, MTL_KD}, {"Ke", COLOR, MTL_KE}, {"Ks", HINT_COLOR, MTL_KS}, {"Tf", HINT_COLOR, MTL_TF},
+	{"Ka", HINT_COLOR, MTL_KA}, {"Kd", COLOR, MTL_KD}, {"Ke", COLOR, MTL_KE}, {"Ks", HINT_COLOR, MTL_KS}, {"Tf", HINT_COLOR, MTL_TF},
 	{"d", NUMBER, MTL_D}, {"Tr", NUMBER, MTL_TR}, {"Pr", NUMBER, MTL_PR}, {"Pm", NUMBER, MTL_PM},
 	{"Ns", HINT_NUMBER, MTL_NS}, {"Ni", HINT_NUMBER, MTL_NI}, {"illum", HINT_NUMBER, MTL_ILLUM},
 	{"Ps", HINT_NUMBER, MTL_PS}, {"Pc", HINT_NUMBER, MTL_PC}, {"Pcr", HINT_NUMBER, MTL_PCR},
@@ -190,7 +190,7 @@ static const struct {
 	{"map_ao", MAP, MTL_MAP_AO}, {"map_ORM", MAP, MTL_MAP_ORM}, {"map_RMA", MAP, MTL_MAP_RMA},
 	{"refl", MAP, MTL_MAP_REFL}, {"map_refl", MAP, MTL_MAP_REFL}, {"norm", MAP, MTL_MAP_NORM},
 	{"map_Kn", MAP, MTL_MAP_NORM}, {"map_tangentSpaceNormal", MAP, MTL_MAP_NORM}, {"map_Bump", MAP, MTL_MAP_BUMP},
-	{"bump", MAP, MTL_MAP_BUMP}, {"map_aat", PASS_OVER, 0}, {"Ka", PASS_OVER, 0}, {"Km", PASS_OVER, 0},
+	{"bump", MAP, MTL_MAP_BUMP}, {"map_aat", PASS_OVER, 0}, {"Km", PASS_OVER, 0},
 	{"sharpness", PASS_OVER, 0}, {"disp", LOST_MAP, 0}, {"decal", LOST_MAP, 0},
 };
 enum { STATEMENT_COUNT = sizeof statements / sizeof statements[0] };

@@ -145,7 +145,8 @@ static void settle_colors(const settling *s)
 	if (m->base_color_map.name && is_black(m->base_color))
 		find(s, NT_CODE_MATERIAL_DOUBTFUL, s->said->colors[MTL_KD].line, "MTL: black Kd beside a map: the map counts");
 	const char *ambient = s->said->maps[MTL_MAP_KA].map.name;
-	if (ambient && !(m->base_color_map.name && strcmp(ambient, m->base_color_map.name) == 0))
+	const bool unlit = s->said->colors[MTL_KA].line && is_black(s->said->colors[MTL_KA].value);
+	if (ambient && !unlit && !(m->base_color_map.name && strcmp(ambient, m->base_color_map.name) == 0))
 		lose_map(s, MTL_MAP_KA, "");
 }
 

@@ -12,7 +12,7 @@ typedef enum mtl_number {
 	MTL_NUMBER_COUNT
 } mtl_number;
 
-typedef enum mtl_color { MTL_KD, MTL_KE, MTL_KS, MTL_TF, MTL_COLOR_COUNT } mtl_color;
+typedef enum mtl_color { MTL_KA, MTL_KD, MTL_KE, MTL_KS, MTL_TF, MTL_COLOR_COUNT } mtl_color;
 
 /* ORM, RMA: one image of occlusion, roughness and metallic in the order of the letters. */
 typedef enum mtl_map {

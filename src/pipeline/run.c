@@ -209,7 +209,7 @@ static nt_status run_stages(run *r)
 		status = read_scene(r);
 	if (!status && makes_document(r)) {
 		begin_stage(r, NT_STAGE_TEXTURES);
-		status = nt_stage_textures(&r->scene, r->settings, &r->textures, r->error);
+		status = nt_stage_textures(&r->scene, r->settings, r->output_path, &r->textures, r->error);
 	}
 	if (!status) {
 		begin_stage(r, NT_STAGE_NORMALS);

@@ -33,9 +33,10 @@ nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, nt_error *error);
 nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
 	nt_summary *summary, nt_error *error);
 
-/* Finds the images of materials for a document that is made anew, and notes in the materials which they are. *textures is to
- * be freed after failure too. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
-nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, nt_textures **textures, nt_error *error);
+/* Finds the images of materials for a document that is made anew, and notes in the materials which they are. output: its
+ * path, which stays. *textures is to be freed after failure too. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
+nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, const char *output, nt_textures **textures,
+	nt_error *error);
 
 /* nt_stage_tangents(), and beside it the textures are made; these may be NULL. */
 nt_status nt_stage_tangents_and_textures(nt_scene *scene, const nt_settings *settings, nt_format output,

@@ -84,9 +84,11 @@ static nt_status check_folders(const nt_settings *settings, nt_error *error)
 	return status;
 }
 
-nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, nt_textures **textures, nt_error *error)
+nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, const char *output, nt_textures **textures,
+	nt_error *error)
 {
-	*textures = nt_textures_create();
+	const bool writes = !settings->check && !settings->dry_run && strcmp(output, "-") != 0;
+	*textures = nt_textures_create(writes ? output : NULL);
 	if (!*textures)
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < scene->material_count; i++)

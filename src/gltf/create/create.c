@@ -329,7 +329,7 @@ static nt_status write_buffer(const composition *c, byte_stream *stream, nt_erro
 		status = pad_to(stream, offset, error);
 		if (status == NT_OK)
 			status = write_image(stream, &file, error);
-		nt_file_close(&file);
+		nt_image_set_close(c->images, i, &file);
 	}
 	return status;
 }

@@ -42,5 +42,6 @@ uint32_t nt_image_set_embedded(const nt_image_set *set, uint32_t from);
  * the file is not what it was. */
 nt_status nt_image_set_open(const nt_image_set *set, uint32_t number, nt_file *file,
 	uint64_t *offset, nt_error *error);
+void nt_image_set_close(const nt_image_set *set, uint32_t number, nt_file *file);
 
 #endif

@@ -51,7 +51,7 @@ static void equal_results_are_made_once(void **state)
 	(void)state;
 	put_tga("grey.tga", 9, 9, 9);
 	put_tga("n.tga", 255, 128, 128);
-	nt_textures *t = nt_textures_create();
+	nt_textures *t = nt_textures_create(NULL);
 	nt_error error;
 	/* a normal map is the same at any height, a height map is not */
 	const uint32_t n1 = wish(t, "n.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1),
@@ -77,7 +77,7 @@ static void file_that_is_not_what_it_was_is_an_error(void **state)
 {
 	(void)state;
 	put_tga("n.tga", 255, 128, 128);
-	nt_textures *t = nt_textures_create();
+	nt_textures *t = nt_textures_create(NULL);
 	nt_error error;
 	wish(t, "n.tga", NT_TEXTURE_COLOR, 0);
 	assert_int_equal(truncate(in_folder("n.tga"), 40), 0);
@@ -85,7 +85,7 @@ static void file_that_is_not_what_it_was_is_an_error(void **state)
 	assert_non_null(strstr(error.message, "changed"));
 	nt_textures_free(t);
 
-	t = nt_textures_create();
+	t = nt_textures_create(NULL);
 	wish(t, "n.tga", NT_TEXTURE_COLOR, 0);
 	assert_int_equal(unlink(in_folder("n.tga")), 0);
 	assert_int_equal(make(t, &error), NT_ERROR_MISSING);
@@ -97,7 +97,7 @@ static void textures_without_memory_are_an_error(void **state)
 	(void)state;
 	put_tga("grey.tga", 9, 9, 9);
 	for (size_t n = 0;; n++) {
-		nt_textures *t = nt_textures_create();
+		nt_textures *t = nt_textures_create(NULL);
 		const nt_image_places places = {.document = in_folder("m.mtl")};
 		const nt_texture_wish what = {.kind = NT_TEXTURE_NORMALS_OR_HEIGHTS, .height = 0.1,
 			.channels = {{.name = "grey.tga", .map = {.channel = NT_CHANNEL_LUMINANCE, .gain = 1}}}};

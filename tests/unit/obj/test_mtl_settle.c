@@ -193,6 +193,7 @@ static void what_is_lost_is_named(void **state)
 		const char *lines, *detail;
 	} cases[] = {
 		{"map_Ks s.png", "MTL: map_Ks"}, {"map_Kd a.png\nmap_Ka b.png", "MTL: map_Ka"}, {"map_Kd a.png\nmap_Ka a.png", NULL},
+		{"Ka 0 0 0\nmap_Ka b.png", NULL},
 		{"Tf 1 0.5 1", "MTL: Tf"}, {"map_refl r.png", "MTL: map_refl"}, {"map_disp r.png", "MTL: map_disp"},
 		{"map_Kd -imfchan g a.png", "MTL: -imfchan of map_Kd"}, {"map_Pr -imfchan z a.png", "MTL: -imfchan z of map_Pr"},
 		{"map_ORM a.png\nmap_RMA b.png", "MTL: map_RMA beside map_ORM"}, {"map_Ns n.png\nPr 1", "MTL: map_Ns"},
