@@ -103,7 +103,7 @@ const nt_option_row nt_option_rows[] = {
 		"decoded becomes PNG",
 		SETTING(textures), true},
 	{"texture-path", 0, NT_OPTION_LIST, "DIR", 0, 0, NULL,
-		"where images of an OBJ are looked for, too; may be given several times", FIELD(texture_paths), true},
+		"where images of an OBJ are looked for, too; may be given several times", FIELD(texture_paths), false},
 	{"bump", 0, NT_OPTION_CHOICE, "auto|height|normal|ignore", NT_BUMP_AUTO, 0, "auto",
 		"what map_Bump and bump name; auto: a height map where all pixels are grey, else a normal map; height: made a "
 		"normal map; ignore: left out",

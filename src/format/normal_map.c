@@ -31,9 +31,12 @@ static nt_status open_file(nt_normal_map *map, const char *path, nt_error *error
 
 /* ---- OBJ ---- */
 
-static nt_status open_named(nt_normal_map *map, const nt_scene *scene, const nt_material *m, nt_error *error)
+static nt_status open_named(nt_normal_map *map, const nt_scene *scene, const nt_material *m,
+	const nt_image_places *searched, nt_error *error)
 {
-	const nt_image_places places = {.document = m->library ? m->library : scene->path, .input = scene->path};
+	nt_image_places places = searched ? *searched : (nt_image_places){0};
+	places.document = m->library ? m->library : scene->path;
+	places.input = scene->path;
 	nt_buffer path = {0};
 	nt_image_found found;
 	nt_status status = nt_image_find(&places, m->normal_map.name, &path, &found, error);
@@ -43,14 +46,15 @@ static nt_status open_named(nt_normal_map *map, const nt_scene *scene, const nt_
 	return status;
 }
 
-static nt_status open_of_materials(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh, nt_error *error)
+static nt_status open_of_materials(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh,
+	const nt_image_places *searched, nt_error *error)
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < mesh->primitive_count && !status && !map->bytes; i++) {
 		const uint32_t index = mesh->primitives[i].material;
 		const nt_material *m = index < scene->material_count ? &scene->materials[index] : NULL;
 		if (m && m->normal_map.name && *m->normal_map.name)
-			status = without_map(open_named(map, scene, m, error));
+			status = without_map(open_named(map, scene, m, searched, error));
 	}
 	return status;
 }
@@ -72,15 +76,18 @@ static const nt_json_value *source_of(const nt_json_value *texture)
 	return source;
 }
 
-static const nt_json_value *image_of(const nt_gltf *document, const nt_mesh *mesh)
+static const nt_json_value *image_of(const nt_gltf *document, const nt_mesh *mesh, enum nt_slot slot)
 {
 	const nt_json_value *owner = nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh);
 	const nt_json_value *primitive =
 		nt_json_at(nt_json_find(owner, "primitives"), mesh->gltf_primitive);
 	const nt_json_value *material = element(nt_gltf_root_member(document, "materials"),
 		nt_json_find(primitive, "material"));
-	const nt_json_value *texture = element(nt_gltf_root_member(document, "textures"),
-		nt_json_find(nt_json_find(material, "normalTexture"), "index"));
+	const nt_json_value *info = slot == NT_SLOT_NORMAL ? nt_json_find(material, "normalTexture")
+		: nt_json_find(nt_json_find(nt_json_find(material, "extensions"), "KHR_materials_clearcoat"),
+			"clearcoatNormalTexture");
+	const nt_json_value *texture =
+		element(nt_gltf_root_member(document, "textures"), nt_json_find(info, "index"));
 	return element(nt_gltf_root_member(document, "images"), source_of(texture));
 }
 
@@ -109,9 +116,10 @@ static nt_status open_view(nt_normal_map *map, nt_gltf *document, uint64_t index
 	return status;
 }
 
-static nt_status open_of_document(nt_normal_map *map, nt_gltf *document, const nt_mesh *mesh, nt_error *error)
+static nt_status open_of_document(nt_normal_map *map, nt_gltf *document, const nt_mesh *mesh, enum nt_slot slot,
+	nt_error *error)
 {
-	const nt_json_value *image = image_of(document, mesh);
+	const nt_json_value *image = image_of(document, mesh, slot);
 	size_t length;
 	uint64_t view;
 	const char *uri = nt_json_get_string(nt_json_find(image, "uri"), &length);
@@ -124,15 +132,16 @@ static nt_status open_of_document(nt_normal_map *map, nt_gltf *document, const n
 
 /* ---- both ---- */
 
-nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh, nt_error *error)
+nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh, enum nt_slot slot,
+	const nt_image_places *searched, nt_error *error)
 {
 	*map = (nt_normal_map){0};
 	const bool gltf = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
 	nt_status status = NT_OK;
-	if (!gltf)
-		status = open_of_materials(map, scene, mesh, error);
-	else if (scene->source)
-		status = open_of_document(map, scene->source, mesh, error);
+	if (!gltf && slot == NT_SLOT_NORMAL)
+		status = open_of_materials(map, scene, mesh, searched, error);
+	else if (gltf && scene->source)
+		status = open_of_document(map, scene->source, mesh, slot, error);
 	if (map->bytes)
 		map->type = nt_image_type_of_bytes(map->bytes, map->size);
 	else

@@ -9,6 +9,7 @@
 
 #include "file/image_type.h"
 #include "file/input.h"
+#include "image/find.h"
 #include "scene/scene.h"
 
 typedef struct nt_normal_map {
@@ -21,8 +22,14 @@ typedef struct nt_normal_map {
 } nt_normal_map;
 
 /* Finds and opens it: the first material with one, files inside the document's folder only (of an OBJ as
- * image/find.h has it). Returns NT_OK, with map->bytes NULL when there is none, NT_ERROR_IO or NT_ERROR_MEMORY. */
-nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh, nt_error *error);
+ * image/find.h has it).
+ *
+ *   slot      NT_SLOT_NORMAL, or NT_SLOT_CLEARCOAT_NORMAL, which only glTF has
+ *   searched  where an OBJ's is looked for besides: its folders and allow_outside count; NULL: nowhere
+ *
+ * Returns NT_OK, with map->bytes NULL when there is none, NT_ERROR_IO or NT_ERROR_MEMORY. */
+nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh, enum nt_slot slot,
+	const nt_image_places *searched, nt_error *error);
 void nt_normal_map_close(nt_normal_map *map);
 
 #endif

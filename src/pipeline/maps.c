@@ -138,6 +138,18 @@ static nt_status add_map(examination *e, const nt_mesh *mesh, nt_normal_map *map
 	return e->open_count == MOST_OPEN ? flush(e, error) : NT_OK;
 }
 
+/* The map of a slot, if the mesh has it. */
+static nt_status take_map(examination *e, const nt_mesh *mesh, enum nt_slot slot, nt_error *error)
+{
+	const nt_image_places searched = {.folders = e->settings->texture_paths,
+		.folder_count = e->settings->texture_path_count, .allow_outside = e->settings->allow_outside};
+	nt_normal_map map;
+	if (!(mesh->slots & slot))
+		return NT_OK;
+	const nt_status status = nt_normal_map_open(&map, e->scene, mesh, slot, &searched, error);
+	return status ? status : add_map(e, mesh, &map, error);
+}
+
 nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_error *error)
 {
 	const bool wanted = settings->check_maps == NT_CHECK_MAPS_ON ||
@@ -149,12 +161,9 @@ nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_error *
 	e->settings = settings;
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < scene->mesh_count && !status; i++) {
-		nt_normal_map map;
-		if (!(scene->meshes[i].slots & NT_SLOT_NORMAL))
-			continue;
-		status = nt_normal_map_open(&map, scene, &scene->meshes[i], error);
+		status = take_map(e, &scene->meshes[i], NT_SLOT_NORMAL, error);
 		if (!status)
-			status = add_map(e, &scene->meshes[i], &map, error);
+			status = take_map(e, &scene->meshes[i], NT_SLOT_CLEARCOAT_NORMAL, error);
 	}
 	const nt_status flushed = flush(e, error);
 	nt_hash_index_free(&e->known);

@@ -15,7 +15,7 @@ static nt_status copy_normal_map(nt_arena *arena, const nt_scene *scene, const n
 {
 	nt_normal_map map;
 	nt_error error;
-	nt_status status = nt_normal_map_open(&map, scene, mesh, &error);
+	nt_status status = nt_normal_map_open(&map, scene, mesh, NT_SLOT_NORMAL, NULL, &error);
 	*image = (nt_image){0};
 	const bool shown = map.type == NT_IMAGE_PNG || map.type == NT_IMAGE_JPEG;
 	if (!status && shown && map.size <= most_bytes) {
@@ -35,7 +35,7 @@ static nt_status find_map_size(const nt_scene *scene, const nt_mesh *mesh, uint3
 	nt_normal_map map;
 	nt_error error;
 	pixels[0] = pixels[1] = 0;
-	const nt_status status = nt_normal_map_open(&map, scene, mesh, &error);
+	const nt_status status = nt_normal_map_open(&map, scene, mesh, NT_SLOT_NORMAL, NULL, &error);
 	if (!status && map.bytes)
 		nt_image_size(map.bytes, map.size, pixels);
 	nt_normal_map_close(&map);

@@ -309,6 +309,43 @@ prints "NMAP_GREEN_DOWN"
 run quad.glb again.glb
 same quad.glb again.glb
 
+scene "the normal map of a clearcoat is examined, too, and once where both are one"
+hills n.png -1
+hills up.png 1
+quad 'norm up.png' 'map_Kd n.png'
+run --embed quad.obj quad.gltf
+sed -i 's/"normalTexture"/"extensions":{"KHR_materials_clearcoat":{"clearcoatFactor":1.0,"clearcoatNormalTexture":{"index":0}}},&/' quad.gltf
+index=$(gltf quad.gltf 'g.images.findIndex(i => i.name === "n")')
+sed -i "s/\"clearcoatNormalTexture\":{\"index\":[^}]*}/\"clearcoatNormalTexture\":{\"index\":$index}/" quad.gltf
+run --check --report-format=json quad.gltf
+is "$(grep -c '"NMAP_GREEN_DOWN"' "$WORK/out.txt")" 1
+sed "s/\"clearcoatNormalTexture\":{\"index\":[^}]*}/\"clearcoatNormalTexture\":{\"index\":$((1 - index))}/" quad.gltf >same.gltf
+run --check --report-format=json same.gltf
+is "$(grep -c '"NMAP_GREEN_DOWN"' "$WORK/out.txt")" 0
+
+scene "a normal map that --texture-path finds is examined"
+mkdir elsewhere
+hills elsewhere/n.png -1
+quad 'norm n.png'
+run --check --texture-path=elsewhere quad.obj
+prints "NMAP_GREEN_DOWN"
+
+scene "the image that a PLY names is found and converted as an OBJ's"
+mkdir elsewhere
+images write elsewhere/wood.tga 8 8 '(x * 9, y * 9, 3)'
+{
+	printf '%s\n' ply "format ascii 1.0" "comment TextureFile wood.tga" "element vertex 3" "property float x" "property float y" \
+		"property float z" "property float s" "property float t" "element face 1" "property list uchar int vertex_indices" \
+		end_header "0 0 0 0 0" "1 0 0 1 0" "0 1 0 0 1" "3 0 1 2"
+} >t.ply
+run t.ply t.glb
+exits 0
+says "IMAGE_MISSING"
+run --texture-path=elsewhere t.ply t.glb
+exits 0
+says "wood.tga became wood.png (embedded)"
+is "$(gltf t.glb '[g.images[0].mimeType, g.materials[0].pbrMetallicRoughness.baseColorTexture.index]')" '["image/png",0]'
+
 scene "maps that are none, or of another kind"
 images write constant.png 8 8 '(128, 128, 255)'
 quad 'norm constant.png'
