@@ -393,7 +393,7 @@ nt_status nt_record_append(nt_record *record, const nt_making *making, const nt_
 
 /* ---- opening ---- */
 
-nt_status nt_record_open(nt_record **record, const char *path, nt_error *error)
+nt_status nt_record_open(nt_record **record, const char *path, bool tidy, nt_error *error)
 {
 	nt_buffer folder = {0};
 	nt_record *made = nt_calloc(1, sizeof *made);
@@ -403,7 +403,7 @@ nt_status nt_record_open(nt_record **record, const char *path, nt_error *error)
 	nt_status status = nt_link_folder(&folder, path, error);
 	made->folder = folder.data;
 	if (!status)
-		status = nt_record_file_open(&made->file, path, line_begin, error);
+		status = nt_record_file_open(&made->file, path, line_begin, tidy, error);
 	if (status)
 		nt_record_close(made);
 	else

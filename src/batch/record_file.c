@@ -226,13 +226,13 @@ static nt_status rewrite(nt_record_file *file, nt_error *error)
 	return status;
 }
 
-nt_status nt_record_file_open(nt_record_file *file, const char *path, const char *prefix, nt_error *error)
+nt_status nt_record_file_open(nt_record_file *file, const char *path, const char *prefix, bool tidy, nt_error *error)
 {
 	*file = (nt_record_file){.path = strdup(path), .prefix = prefix};
 	if (!file->path)
 		return nt_fail_memory(error);
 	nt_status status = load(file, error);
-	if (!status && file->superseded_count > FEW_LINES && file->superseded_count > file->line_count)
+	if (!status && tidy && file->superseded_count > FEW_LINES && file->superseded_count > file->line_count)
 		status = rewrite(file, error);
 	return status;
 }

@@ -42,7 +42,7 @@ static nt_record *find(const nt_update *update, uint64_t hash, const char *path)
 /* Takes the path over. */
 static nt_status open_one(nt_update *update, uint64_t hash, char *path, nt_record **record, nt_error *error)
 {
-	nt_status status = nt_record_open(record, path, error);
+	nt_status status = nt_record_open(record, path, !update->options.dry_run, error);
 	if (!status && (!nt_grow((void **)&update->records, &update->capacity, update->count + 1, sizeof *update->records) ||
 			       !nt_hash_index_add(&update->index, hash, (uint32_t)update->count))) {
 		nt_record_close(*record);

@@ -23,6 +23,8 @@
 #include "cli/report_options.h"
 #include "cli/say.h"
 #include "ext/module.h"
+#include "file/output.h"
+#include "file/relative_path.h"
 #include "report/codes.h"
 
 /* What the jobs' ends add up to. */
@@ -361,8 +363,42 @@ static nt_status begin_update(session *s, nt_error *error)
 	if (!c->update && !c->record)
 		return NT_OK;
 	const nt_update_options options = {.look = c->update, .by = (nt_update_by)c->update_by, .record = c->record,
-		.folder = c->directory, .whole = c->depfile != NULL, .options = s->shaping.data ? s->shaping.data : ""};
+		.folder = c->directory, .dry_run = c->settings.dry_run, .whole = c->depfile != NULL, .options = s->shaping.data ? s->shaping.data : ""};
 	return nt_update_begin(&s->update, &options, error);
+}
+
+static nt_status same_path(const char *a, const char *b, bool *same, nt_error *error)
+{
+	nt_buffer paths[2] = {{0}, {0}};
+	*same = false;
+	if (strcmp(nt_last_part(a), nt_last_part(b)) != 0)
+		return NT_OK;
+	nt_status status = nt_path_absolute(&paths[0], a, error);
+	if (!status)
+		status = nt_path_absolute(&paths[1], b, error);
+	*same = !status && strcmp(paths[0].data, paths[1].data) == 0;
+	nt_buffer_free(&paths[0]);
+	nt_buffer_free(&paths[1]);
+	return status;
+}
+
+/* What a run writes beside its outputs is none of them, and with --no-clobber new. */
+static nt_status check_own(const nt_command *c, const nt_batch *batch, nt_error *error)
+{
+	const char *const files[] = {c->depfile, c->manifest};
+	const nt_output_options options = {.no_clobber = c->settings.no_clobber};
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < sizeof files / sizeof *files && !status; i++)
+		if (files[i] && strcmp(files[i], "-") != 0)
+			status = nt_output_check_clobber(&options, files[i], error);
+	for (size_t i = 0; i < batch->count && c->record && !status; i++) {
+		bool same = false;
+		if (batch->jobs[i].output)
+			status = same_path(c->record, batch->jobs[i].output, &same, error);
+		if (same)
+			return nt_fail(error, NT_ERROR_USAGE, "--record and an output are both '%s'", c->record);
+	}
+	return status;
 }
 
 /* Memory for what is said and for the reports, and what else may be refused. */
@@ -377,6 +413,8 @@ static nt_status begin_session(session *s, const nt_batch *batch, nt_error *erro
 	if (s->shaping.failed)
 		return nt_fail_memory(error);
 	const char *options = s->shaping.data ? s->shaping.data : "";
+	if (check_own(s->command, batch, error))
+		return error->status;
 	if (s->command->manifest && nt_manifest_open(&s->manifest, s->command->manifest, options, batch, error))
 		return error->status;
 	return begin_update(s, error);

@@ -4,6 +4,7 @@
  */
 #include "cli/option_table.h"
 #include "cli/options.h"
+#include "file/relative_path.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -205,6 +206,15 @@ static void append_choice(nt_buffer *out, const char *values, int number)
 	nt_buffer_append(out, values, strcspn(values, "|"));
 }
 
+/* Folders count as what they are, wherever the program is run. */
+static void append_folder(nt_buffer *out, const char *name)
+{
+	nt_error unused;
+	nt_buffer path = {0};
+	nt_buffer_text(out, nt_path_absolute(&path, name, &unused) ? name : path.data);
+	nt_buffer_free(&path);
+}
+
 static void append_shaping(nt_buffer *out, const nt_option_row *row, const void *field)
 {
 	nt_buffer_format(out, "%s--%s", out->size ? " " : "", row->name);
@@ -215,8 +225,10 @@ static void append_shaping(nt_buffer *out, const nt_option_row *row, const void 
 		nt_buffer_format(out, "=%s", *(const char *const *)field);
 	} else if (row->kind == NT_OPTION_LIST) {
 		const nt_words *words = field;
-		for (size_t i = 0; i < words->count; i++)
-			nt_buffer_format(out, "%s%s=%s", i ? " --" : "", i ? row->name : "", words->items[i]);
+		for (size_t i = 0; i < words->count; i++) {
+			nt_buffer_format(out, "%s%s=", i ? " --" : "", i ? row->name : "");
+			append_folder(out, words->items[i]);
+		}
 	} else if (row->kind == NT_OPTION_SIZE) {
 		nt_buffer_format(out, "=%" PRIu64, *(const uint64_t *)field);
 	} else if (row->kind != NT_OPTION_FLAG) {

@@ -364,4 +364,60 @@ case $BUILD in
 *) [ $best -lt 500 ] || wrong "$best ms" ;;
 esac
 
+scene "a record is none of the outputs"
+cp "$data/quad.obj" .
+for record in out.glb ./out.glb "$PWD/out.glb"; do
+	run --record="$record" quad.obj out.glb
+	exits 1
+	says "--record and an output are both '$record'"
+	only quad.obj
+done
+
+scene "a folder of images is what it is, wherever nmtan runs"
+mkdir a b a/tex b/tex
+{
+	echo "mtllib m.mtl"
+	grep -v '^#' "$data/quad.obj" | sed '/^f /i usemtl m'
+} >quad.obj
+printf 'newmtl m\nmap_Kd n.png\n' >m.mtl
+printf '\211PNG\r\n\032\n a' >a/tex/n.png
+printf '\211PNG\r\n\032\n b' >b/tex/n.png
+for folder in a b; do
+	(cd $folder && "$NMTAN" -q --update --texture-path=tex ../quad.obj ../o.glb) || wrong "exit code $?"
+	python3 "$ROOT/tests/support/images.py" embedded o.glb 0 made.png
+	same made.png $folder/tex/n.png
+done
+(cd b && "$NMTAN" --update --texture-path=./tex ../quad.obj ../o.glb) 2>&1 | grep -q "up to date" || wrong "it was made again"
+
+scene "a dry run leaves records as they are"
+cp "$data/quad.obj" .
+run --update quad.obj o.glb
+exits 0
+line=$(cat .nmtan-record)
+for i in $(seq 1100); do echo "$line"; done >.nmtan-record
+cp .nmtan-record before
+run --dry-run --update quad.obj o.glb
+exits 0
+same before .nmtan-record
+run --update quad.obj o.glb
+exits 0
+is "$(wc -l <.nmtan-record)" 1
+
+scene "--no-clobber replaces no depfile and no manifest either"
+cp "$data/quad.obj" .
+run --depfile=d --manifest=m quad.obj first.glb
+exits 0
+cp d d.before
+cp m m.before
+for option in --depfile=d --manifest=m; do
+	run -n $option quad.obj o.glb
+	exits 2
+	says "the file exists already"
+	only quad.obj first.glb d m d.before m.before
+done
+same d d.before
+same m m.before
+run -n --depfile=other --manifest=- quad.obj o.glb
+exits 0
+
 done_testing

@@ -72,7 +72,7 @@ static void append(nt_update_by by)
 	unlink("record");
 	const nt_making making = making_of(by);
 	note(&trace);
-	assert_int_equal(nt_record_open(&record, "record", &error), NT_OK);
+	assert_int_equal(nt_record_open(&record, "record", true, &error), NT_OK);
 	assert_int_equal(nt_record_append(record, &making, &trace, &error), NT_OK);
 	nt_record_close(record);
 	nt_trace_free(&trace);
@@ -83,7 +83,7 @@ static nt_freshness look_for(const nt_making *making, nt_trace *trace)
 	nt_record *record;
 	nt_error error;
 	nt_freshness freshness;
-	assert_int_equal(nt_record_open(&record, "record", &error), NT_OK);
+	assert_int_equal(nt_record_open(&record, "record", true, &error), NT_OK);
 	assert_int_equal(nt_record_look(record, making, &freshness, trace, &error), NT_OK);
 	nt_record_close(record);
 	return freshness;
@@ -195,7 +195,7 @@ static void an_exhausted_memory_is_told(void **state)
 		nt_freshness freshness;
 		nt_trace trace = {0};
 		fail_allocations_from(n);
-		nt_status status = nt_record_open(&record, "record", &error);
+		nt_status status = nt_record_open(&record, "record", true, &error);
 		if (!status)
 			status = nt_record_look(record, &making, &freshness, &trace, &error);
 		if (!status)
