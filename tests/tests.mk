@@ -179,6 +179,11 @@ $(B)/tests/bench/need: $(B)/tests/bench/need.o $(B)/libtool.a $(B)/libnmtan.a
 bench-need: $(B)/tests/bench/need $(B)/nmtan
 	@bash tests/bench/need.sh $(B)/nmtan $(FILES)
 
+# make bench-farm: 10 000 files in one process, by GNU parallel, by Slurm; calls of the system per file.
+.PHONY: bench-farm
+bench-farm: $(B)/nmtan
+	@bash tests/bench/farm.sh $(B)/nmtan
+
 # make bench-obj: reading the 104 MB file that speed is stated for; the lines "parse" and "index" are the reader.
 build/bench/torus.obj: $(B)/tests/bench/make_obj.o
 	@mkdir -p $(@D)

@@ -9,6 +9,7 @@ trap 'cd / && rm -rf "$WORK"' EXIT
 export ROOT BUILD NMTAN WORK PATH=$PATH:/usr/sbin
 . "$ROOT/tests/support/cli.sh"
 . "$ROOT/tests/support/farm.sh"
+. "$ROOT/tests/support/slurm.sh"
 
 # Two hosts on this one: sshd on ports of the loopback, with keys and configuration of their own.
 start_sshd() {
@@ -26,11 +27,6 @@ END
 	# of root it wants a folder of the system's
 	[ "$(id -u)" != 0 ] || mkdir -p /run/sshd
 	"$(command -v sshd)" -f "$PWD/ssh/$port.conf" -E "$PWD/ssh/$port.log"
-}
-free_ports() {
-	python3 -c 'import socket
-sockets = [socket.create_server(("127.0.0.1", 0)) for _ in range(2)]
-print(*(s.getsockname()[1] for s in sockets))'
 }
 
 scene "GNU parallel: two hosts by ssh"
@@ -57,64 +53,7 @@ else
 	done
 fi
 
-# A cluster of this machine alone: $slurm has its configuration, logs and process ids.
-start_slurm() {
-	local host
-	host=$(hostname -s)
-	# shellcheck disable=SC2046
-	set -- $(free_ports)
-	slurm=$WORK/slurm
-	mkdir -p "$slurm/state" "$slurm/spool"
-	cat >"$slurm/slurm.conf" <<END
-ClusterName=one
-SlurmctldHost=$host(127.0.0.1)
-SlurmctldPort=$1
-SlurmdPort=$2
-SlurmUser=root
-AuthType=auth/munge
-AuthInfo=socket=$slurm/munge.socket
-ProctrackType=proctrack/linuxproc
-TaskPlugin=task/none
-JobAcctGatherType=jobacct_gather/none
-ReturnToService=2
-SelectType=select/cons_tres
-StateSaveLocation=$slurm/state
-SlurmdSpoolDir=$slurm/spool
-SlurmctldPidFile=$slurm/slurmctld.pid
-SlurmdPidFile=$slurm/slurmd.pid
-SlurmctldLogFile=$slurm/slurmctld.log
-SlurmdLogFile=$slurm/slurmd.log
-NodeName=$host NodeAddr=127.0.0.1 CPUs=2 RealMemory=1000
-PartitionName=all Nodes=ALL Default=YES
-END
-	head -c 128 /dev/urandom >"$slurm/munge.key"
-	chmod 400 "$slurm/munge.key"
-	munged --force --key-file="$slurm/munge.key" --socket="$slurm/munge.socket" --pid-file="$slurm/munged.pid" \
-		--log-file="$slurm/munged.log" --seed-file="$slurm/munge.seed" 2>/dev/null || return
-	export SLURM_CONF=$slurm/slurm.conf
-	slurmctld -c && slurmd -N "$host" || return
-	for _ in $(seq 200); do
-		[ "$(sinfo -h -o %t 2>/dev/null)" = idle ] && return
-		sleep 0.1
-	done
-	return 1
-}
-stop_slurm() {
-	local daemon
-	for daemon in slurmd slurmctld munged; do
-		[ ! -f "$slurm/$daemon.pid" ] || kill "$(cat "$slurm/$daemon.pid")"
-	done
-}
-# Until no job is left, a minute at most.
-await_jobs() {
-	for _ in $(seq 600); do
-		[ -n "$(squeue -h)" ] || return 0
-		sleep 0.1
-	done
-	wrong "jobs are left: $(squeue)"
-}
-
-if ! command -v slurmctld >/dev/null || ! command -v munged >/dev/null || [ "$(id -u)" != 0 ]; then
+if ! has_slurm; then
 	scene "Slurm: an array job over chunks, and one that merges"
 	skip_case "Slurm is not installed (slurm-wlm, munge), or this is not root"
 else
@@ -125,7 +64,7 @@ else
 	prepare 5
 	recipe "$farm/slurm.sh" "my work" --time=5
 	exits 0
-	await_jobs
+	await_jobs || wrong "jobs are left: $(squeue)"
 	is_clean
 	is "$(ls "my work" | grep -c '\.1\.jsonl')" 5
 
@@ -147,7 +86,7 @@ else
 		[ -n "$(squeue -h)" ] || break
 		sleep 0.1
 	done
-	await_jobs
+	await_jobs || wrong "jobs are left: $(squeue)"
 	is_clean
 	[ "$(ls "my work" | grep -c '\.2\.jsonl')" -gt 0 ] || wrong "no task was run twice"
 	stop_slurm
