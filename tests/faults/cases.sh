@@ -65,6 +65,7 @@ cases() {
 		update, in place | $plates || --update --in-place plates.gltf
 		update, by content | $plates current.gltf current.bin .nmtan-record || -q --update --update-by=content plates.gltf current.gltf
 		depfile and manifest | $cube | report=m.jsonl | --depfile=d --manifest=m.jsonl mirrored_cube.obj o.glb
+		a bound of memory | quad.obj $plates | many | --jobs=2 --memory=1M -d out quad.obj plates.gltf
 		a list | list quad.obj plates.glb | many | --fail-fast -d out --files-from=list
 		a folder | quad.obj plates.glb | many | -r -d out --mirror=. --exclude=x .
 		pictures | $cube || --check --uv-image=uv mirrored_cube.obj
