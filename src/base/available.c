@@ -28,11 +28,11 @@ static uint64_t meminfo_available(void)
 }
 
 /* A file with one number; "max" is none. */
-static uint64_t limit_in(const char *folder, const char *group, const char *name)
+static uint64_t limit_in(const char *root, const char *group, const char *name)
 {
 	char path[4096];
 	uint64_t number, found = UINT64_MAX;
-	const int length = snprintf(path, sizeof path, "%s%s/%s", folder, group, name);
+	const int length = snprintf(path, sizeof path, "%s%s/%s", root, group, name);
 	FILE *file = length > 0 && (size_t)length < sizeof path ? fopen(path, "re") : NULL;
 	if (file && fscanf(file, "%" SCNu64, &number) == 1)
 		found = number;
@@ -43,20 +43,21 @@ static uint64_t limit_in(const char *folder, const char *group, const char *name
 
 /* The least limit of a group and those above it. In a container the path may be that outside of it, so that only the
  * root is there. */
-static uint64_t limit_of_group(const char *folder, char *group, const char *name)
+static uint64_t limit_of_group(const char *root, char *group, const char *name)
 {
-	uint64_t found = limit_in(folder, "", name);
+	uint64_t found = limit_in(root, "", name);
 	for (char *slash; (slash = strrchr(group, '/')) && slash[1]; *slash = '\0')
-		found = least(found, limit_in(folder, group, name));
+		found = least(found, limit_in(root, group, name));
 	return found;
 }
 
-/* /proc/self/cgroup has lines like "0::/a/b" (version 2) and "4:memory:/a/b". */
-static uint64_t control_groups(void)
+/* The list has lines like "0::/a/b" (version 2) and "4:memory:/a/b", whose files are below a folder "memory". */
+uint64_t nt_memory_of_groups(const char *list, const char *root)
 {
-	char line[4096];
+	char line[4096], memory[4096];
 	uint64_t found = UINT64_MAX;
-	FILE *file = fopen("/proc/self/cgroup", "re");
+	snprintf(memory, sizeof memory, "%s/memory", root);
+	FILE *file = fopen(list, "re");
 	while (file && fgets(line, sizeof line, file)) {
 		char *controllers = strchr(line, ':'), *group = controllers ? strchr(controllers + 1, ':') : NULL;
 		if (!group)
@@ -64,9 +65,9 @@ static uint64_t control_groups(void)
 		*group++ = '\0';
 		group[strcspn(group, "\n")] = '\0';
 		if (!controllers[1])
-			found = least(found, limit_of_group("/sys/fs/cgroup", group, "memory.max"));
+			found = least(found, limit_of_group(root, group, "memory.max"));
 		else if (strcmp(controllers + 1, "memory") == 0)
-			found = least(found, limit_of_group("/sys/fs/cgroup/memory", group, "memory.limit_in_bytes"));
+			found = least(found, limit_of_group(memory, group, "memory.limit_in_bytes"));
 	}
 	if (file)
 		fclose(file);
@@ -76,7 +77,7 @@ static uint64_t control_groups(void)
 uint64_t nt_memory_available(void)
 {
 	struct rlimit limit;
-	uint64_t found = least(meminfo_available(), control_groups());
+	uint64_t found = least(meminfo_available(), nt_memory_of_groups("/proc/self/cgroup", "/sys/fs/cgroup"));
 	if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
 		found = least(found, (uint64_t)limit.rlim_cur);
 	return found;

@@ -12,4 +12,7 @@
  * nothing says. Page cache counts as available, so this is a guess about what others do. */
 uint64_t nt_memory_available(void);
 
+/* The part of it that is about control groups: `list` is /proc/self/cgroup, `root` /sys/fs/cgroup. */
+uint64_t nt_memory_of_groups(const char *list, const char *root);
+
 #endif

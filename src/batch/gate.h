@@ -17,6 +17,7 @@ typedef struct nt_gate {
 	uint64_t arrived, entered; /* so many: who comes first enters first */
 } nt_gate;
 
+/* With nothing to share, a limit of 0, everybody is alone. */
 void nt_gate_init(nt_gate *gate, uint64_t limit);
 void nt_gate_end(nt_gate *gate);
 

@@ -17,6 +17,9 @@ awk 'NR == 1 { least = $1 } END { exit !($1 < 1.05 * least) }' sums || wrong "$(
 recipe "$farm/nmtan-farm" prepare w 4
 exits 1
 says "'w' is not empty"
+recipe "$farm/nmtan-farm" run
+exits 1
+says "run: missing a required argument: 'work'; see nmtan-farm --help"
 recipe "$farm/nmtan-farm" run w 5
 exits 1
 says "no chunk '5'"

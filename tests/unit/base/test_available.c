@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/available.h"
+#include "folder.h"
 #include "test.h"
 
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 static void it_is_at_most_what_the_machine_has(void **state)
@@ -26,11 +28,36 @@ static void a_limit_of_the_address_space_counts(void **state)
 	assert_true(found <= 100 * 1024 * 1024);
 }
 
+/* What a list of groups means where these are the limits of version 2 at the root, /a and /a/b, and of version 1. */
+static void the_least_limit_of_the_groups_above_counts(void **state)
+{
+	(void)state;
+	static const struct {
+		const char *list;
+		uint64_t expected;
+	} cases[] = {{"0::/\n", UINT64_MAX}, {"0::/a\n", 3000}, {"0::/a/b\n", 3000}, {"0::/a/c\n", 2000}, {"0::/unknown/x\n", UINT64_MAX},
+		{"9:cpu:/a\n4:memory:/a\n0::/\n", 1000}, {"4:memory:/none\n", 5000}, {"no list", UINT64_MAX}, {"", UINT64_MAX}};
+	const char *const folders[] = {"a", "a/b", "a/c", "memory", "memory/a"};
+	for (size_t i = 0; i < sizeof folders / sizeof *folders; i++)
+		assert_int_equal(mkdir(in_folder(folders[i]), 0700), 0);
+	put_text_file("a/memory.max", "3000\n");
+	put_text_file("a/b/memory.max", "max\n");
+	put_text_file("a/c/memory.max", "2000\n");
+	put_text_file("memory/memory.limit_in_bytes", "5000\n");
+	put_text_file("memory/a/memory.limit_in_bytes", "1000\n");
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		put_text_file("list", cases[i].list);
+		assert_true(nt_memory_of_groups(in_folder("list"), in_folder("")) == cases[i].expected);
+	}
+	assert_true(nt_memory_of_groups(in_folder("nowhere"), in_folder("")) == UINT64_MAX);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(it_is_at_most_what_the_machine_has),
 		cmocka_unit_test(a_limit_of_the_address_space_counts),
+		cmocka_unit_test(the_least_limit_of_the_groups_above_counts),
 	};
-	return cmocka_run_group_tests_name("base/available", tests, NULL, NULL);
+	return cmocka_run_group_tests_name("base/available", tests, make_folder, remove_folder);
 }
