@@ -72,12 +72,11 @@ else
 	take_many
 	clean
 	prepare 2 --threads=1
-	recipe "$farm/slurm.sh" "my work"
+	stopping
+	TOOL=$NMTAN NMTAN=$PWD/stopping.sh recipe "$farm/slurm.sh" "my work"
 	exits 0
-	until [ "$(find "o ut" -name '*.glb' 2>/dev/null | wc -l)" -gt 60 ]; do sleep 0.01; done
-	tasks=$(squeue -h -r -t running -o '%i')
-	[ -n "$tasks" ] || wrong "no task is running any more"
-	for task in $tasks; do scontrol requeue "$task"; done
+	await_stop
+	scontrol requeue "$(squeue -h -r -t running -o '%i' | grep '_2$')"
 	# begun anew only after some two minutes, unless it is released
 	for _ in $(seq 600); do
 		for task in $(squeue -h -r -t pending -o '%F_%K %j' | sed -n 's/ nmtan$//p'); do
@@ -88,7 +87,8 @@ else
 	done
 	await_jobs || wrong "jobs are left: $(squeue)"
 	is_clean
-	[ "$(ls "my work" | grep -c '\.2\.jsonl')" -gt 0 ] || wrong "no task was run twice"
+	is "$(ls "my work" | grep '\.2\.jsonl')" 2.2.jsonl
+	is "$(cat "my work"/2.*.jsonl | grep -c '"status":"done"')" "$(tr -dc '\0' <"my work/2.list0" | wc -c)"
 	stop_slurm
 fi
 

@@ -34,3 +34,17 @@ recipe() {
 	"$@" >"$WORK/out.txt" 2>"$WORK/err.txt" </dev/null
 	status=$?
 }
+# Makes stopping.sh, which runs $TOOL: the first time that chunk 2 is run, a pipe that nobody writes to stands behind its
+# 40th input, where it waits for somebody to end it: first/pid.
+stopping() {
+	cat >stopping.sh <<'END'
+#!/bin/bash
+case "$*" in *"/2.list0 "*) mkdir first 2>/dev/null || exec "$TOOL" "$@" ;; *) exec "$TOOL" "$@" ;; esac
+mkfifo "as sets/pipe.obj"
+{ head -z -n 40 "my work/2.list0" && printf 'as sets/pipe.obj\0'; } >first/list0
+echo $$ >first/pid
+exec "$TOOL" "${@/#--files0-from=*/--files0-from=first/list0}"
+END
+	chmod +x stopping.sh
+}
+await_stop() { until [ "$(cat "my work/2.1.jsonl" 2>/dev/null | wc -l)" = 40 ]; do sleep 0.02; done; }
