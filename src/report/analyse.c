@@ -84,20 +84,11 @@ static nt_stored stored_tangents(const nt_mesh *mesh, bool written)
 	return mesh->tangents ? NT_STORED_AUTHORED : NT_STORED_NONE;
 }
 
-static void measure_surface(nt_check *check)
+static void describe_surface(nt_check *check)
 {
-	const nt_surface *s = &check->surface;
 	nt_report_mesh *facts = check->facts;
 	facts->face_count = check->mesh->face_count;
-	facts->triangle_count = s->triangle_count;
-	for (size_t t = 0; t < s->triangle_count; t++) {
-		facts->triangles[s->orientation[t] + 1]++;
-		facts->areas[s->orientation[t] + 1] += s->areas[t];
-	}
-	for (int i = 0; i < 3; i++)
-		check->total_area += facts->areas[i];
-	for (size_t c = 0; c < 3 * s->triangle_count; c++)
-		nt_box_add(&facts->box, nt_side_position(s, (uint32_t)c));
+	facts->triangle_count = check->surface.triangle_count;
 	facts->vertices_before = check->mesh->vertex_sources ? check->mesh->source_vertex_count
 							     : check->mesh->vertex_count;
 	check->stored = stored_tangents(check->mesh, nt_is_written(check));
@@ -199,7 +190,7 @@ static nt_status keep_geometry(nt_check *check)
 	for (size_t v = 0; v < g->vertex_count && g->texcoords; v++)
 		nt_source_texcoord(check->scene, g->texcoords + 2 * v, g->texcoords + 2 * v);
 	for (size_t c = 0; c < 3 * s->triangle_count; c++)
-		g->indices[c] = picture.indices ? picture.indices[nt_side_corner(s, c)] : s->vertices[c];
+		g->indices[c] = picture.indices ? picture.indices[nt_side_corner(s, c)] : nt_side_vertex(s, c);
 	check->facts->geometry = g;
 	return NT_OK;
 }
@@ -223,7 +214,7 @@ static nt_status keep_normal_map(nt_check *check, size_t *most_bytes)
 /* Checks that follow each other, with findings, texts and memory of their own: branches run side by side. Sorting puts
  * findings in one order whoever was first, since each code is one check's. */
 typedef struct branch {
-	nt_status (*checks[4])(nt_check *); /* up to NULL */
+	nt_status (*checks[3])(nt_check *); /* up to NULL */
 	nt_check check;
 	nt_report found;
 	size_t finding_capacity;
@@ -235,7 +226,7 @@ static void run_branch(void *context, size_t item, unsigned slot)
 {
 	(void)slot;
 	branch *b = (branch *)context + item;
-	for (size_t i = 0; i < 4 && b->checks[i] && !b->status; i++)
+	for (size_t i = 0; i < 3 && b->checks[i] && !b->status; i++)
 		b->status = b->checks[i](&b->check);
 }
 
@@ -257,14 +248,19 @@ static nt_status join_branch(nt_check *check, branch *b)
 	return status;
 }
 
-/* Leaves in `check` what the checks found out about edges and islands. */
+/* First what all threads can do together, then what they cannot, side by side. */
 static nt_status run_checks(nt_check *check)
 {
+	nt_status status = nt_check_geometry(check);
+	if (!status)
+		status = nt_check_edges(check);
+	if (status)
+		return status;
 	/* triangles from which on threads pay */
 	enum { LARGE = 65536 };
 	branch branches[2] = {
-		{.checks = {nt_check_edges, nt_check_islands, nt_check_seams, nt_check_measures}},
-		{.checks = {nt_check_geometry, nt_check_tangents, nt_check_growth}}};
+		{.checks = {nt_check_islands, nt_check_seams, nt_check_measures}},
+		{.checks = {nt_check_tangents, nt_check_growth}}};
 	for (int i = 0; i < 2; i++) {
 		branch *b = &branches[i];
 		b->found = (nt_report){.meshes = check->report->meshes, .mesh_count = check->report->mesh_count};
@@ -278,8 +274,6 @@ static nt_status run_checks(nt_check *check)
 	}
 	const bool large = check->surface.triangle_count >= LARGE;
 	nt_parallel_items(large ? nt_thread_count(check->options->threads) : 1, 2, run_branch, branches);
-	check->islands = branches[0].check.islands;
-	nt_status status = NT_OK;
 	for (int i = 0; i < 2; i++) {
 		const nt_status joined = join_branch(check, &branches[i]);
 		nt_scratch_free(&branches[i].scratch);
@@ -295,7 +289,7 @@ static nt_status check_mesh(nt_check *check, size_t *most_image_bytes)
 		check->scratch);
 	if (status || check->surface.triangle_count == 0)
 		return status;
-	measure_surface(check);
+	describe_surface(check);
 	status = run_checks(check);
 	if (!status && check->options->keep_geometry)
 		status = keep_geometry(check);

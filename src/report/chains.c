@@ -14,12 +14,16 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "base/parallel.h"
 #include "ext/openmesh.h"
+
+/* Triangles that are worth a thread. */
+enum { GRAIN = 32768 };
 
 /* A run of edges in walking order, in the arrays of `runs`. */
 typedef struct run {
 	size_t first, count;
-	uint32_t ends[2]; /* points */
+	uint32_t ends[2]; /* as `ends` numbers them */
 	bool closed, used;
 } run;
 
@@ -31,26 +35,55 @@ typedef struct runs {
 	size_t side_count;
 } runs;
 
-/* ---- who needs OpenMesh ---- */
+/* ---- the ends of marked edges ---- */
 
-static bool any_fork(const nt_surface *s, const uint8_t *marked, uint8_t *degree)
+/* Points that are ends, numbered in their order. */
+typedef struct ends {
+	const nt_surface *s;
+	uint64_t *touched; /* [point_count] bits */
+	uint32_t *ranks;
+	size_t count;
+} ends;
+
+static uint32_t begin_of(const ends *e, uint32_t side)
 {
-	memset(degree, 0, s->point_count);
-	for (size_t side = 0; side < 3 * s->triangle_count; side++)
-		if (marked[side] && (++degree[s->points[side]] > 2 || ++degree[s->points[nt_side_next((uint32_t)side)]] > 2))
-			return true;
-	return false;
+	return nt_bit_rank(e->touched, e->ranks, nt_side_point(e->s, side));
 }
 
-/* Whether triangles use an edge in the same direction. */
-static bool any_conflict(const nt_surface *s)
+static uint32_t end_of(const ends *e, uint32_t side)
 {
-	for (size_t e = 0; e < s->edge_count; e++) {
-		const uint32_t *sides = s->sides + s->edge_first[e];
-		const uint32_t count = s->edge_first[e + 1] - s->edge_first[e];
-		if (count > 2 || (count == 2 && s->points[sides[0]] == s->points[sides[1]]))
-			return true;
+	return begin_of(e, nt_side_next(side));
+}
+
+/* The marked side from `side` on; as many as there are sides: none. */
+static size_t next_marked(const nt_surface *s, const nt_marks *marks, size_t side)
+{
+	return nt_bit_next(marks->sides, side, 3 * s->triangle_count);
+}
+
+static nt_status find_ends(const nt_surface *s, const nt_marks *marks, nt_scratch *scratch, ends *e)
+{
+	const size_t words = nt_bit_words(s->point_count), sides = 3 * s->triangle_count;
+	*e = (ends){.s = s, .touched = nt_scratch_alloc(scratch, words, sizeof *e->touched),
+		.ranks = nt_scratch_alloc(scratch, words, sizeof *e->ranks)};
+	if (!e->touched || !e->ranks)
+		return NT_ERROR_MEMORY;
+	memset(e->touched, 0, words * sizeof *e->touched);
+	for (size_t side = 0; (side = next_marked(s, marks, side)) < sides; side++) {
+		nt_bit_set(e->touched, nt_side_point(s, side));
+		nt_bit_set(e->touched, nt_side_point(s, nt_side_next((uint32_t)side)));
 	}
+	e->count = nt_bit_ranks(e->touched, s->point_count, e->ranks);
+	return NT_OK;
+}
+
+/* degree: [e->count] */
+static bool any_fork(const ends *e, const nt_marks *marks, uint8_t *degree)
+{
+	memset(degree, 0, e->count);
+	for (size_t side = 0; (side = next_marked(e->s, marks, side)) < 3 * e->s->triangle_count; side++)
+		if (++degree[begin_of(e, (uint32_t)side)] > 2 || ++degree[end_of(e, (uint32_t)side)] > 2)
+			return true;
 	return false;
 }
 
@@ -64,49 +97,55 @@ typedef struct vicinity {
 	uint8_t *marked;     /* [3 * triangle_count] */
 } vicinity;
 
-/* Whether the triangle has edges and one of its points is touched. */
-static bool is_near(const nt_surface *s, const uint8_t *touched, size_t t)
+typedef struct near_search {
+	const ends *e;
+	uint64_t *near; /* [triangle_count] bits */
+} near_search;
+
+/* Marks the triangles that have edges and an end. */
+static void find_near(void *context, size_t begin, size_t end, unsigned slot)
 {
-	const uint32_t *p = s->points + 3 * t;
-	const bool has_edges = s->flatness[t] == NT_SOUND || s->flatness[t] == NT_COLLINEAR;
-	return has_edges && (touched[p[0]] || touched[p[1]] || touched[p[2]]);
+	const near_search *search = context;
+	const nt_surface *s = search->e->s;
+	const uint64_t *touched = search->e->touched;
+	(void)slot;
+	for (size_t t = begin; t < end; t++)
+		if ((nt_bit(touched, nt_side_point(s, 3 * t)) || nt_bit(touched, nt_side_point(s, 3 * t + 1)) ||
+			    nt_bit(touched, nt_side_point(s, 3 * t + 2))) && nt_has_edges(s, t))
+			nt_bit_set(search->near, t);
 }
 
-static nt_status find_vicinity(const nt_surface *s, const uint8_t *marked, nt_scratch *scratch,
-	vicinity *v)
+static nt_status find_vicinity(const ends *e, const nt_marks *marks, unsigned threads, nt_scratch *scratch, vicinity *v)
 {
 	*v = (vicinity){0};
+	const nt_surface *s = e->s;
+	const size_t words = nt_bit_words(s->triangle_count);
+	const near_search search = {e, nt_scratch_alloc(scratch, words, sizeof *search.near)};
 	uint32_t *number = nt_scratch_alloc(scratch, s->point_count, sizeof *number);
-	uint8_t *touched = nt_scratch_alloc(scratch, s->point_count, 1);
-	if (!number || !touched)
+	if (!number || !search.near)
 		return NT_ERROR_MEMORY;
 	memset(number, 0xff, s->point_count * sizeof *number);
-	memset(touched, 0, s->point_count);
-	for (size_t side = 0; side < 3 * s->triangle_count; side++)
-		if (marked[side])
-			touched[s->points[side]] = touched[s->points[nt_side_next((uint32_t)side)]] = 1;
-	for (size_t t = 0; t < s->triangle_count; t++)
-		v->triangle_count += is_near(s, touched, t);
+	memset(search.near, 0, words * sizeof *search.near);
+	nt_parallel_ranges(threads, s->triangle_count, GRAIN, find_near, (void *)&search);
+	for (size_t word = 0; word < words; word++)
+		v->triangle_count += (size_t)__builtin_popcountll(search.near[word]);
 	v->triangles = nt_scratch_alloc(scratch, 3 * v->triangle_count, sizeof *v->triangles);
 	v->origin = nt_scratch_alloc(scratch, v->triangle_count, sizeof *v->origin);
 	v->points = nt_scratch_alloc(scratch, 3 * v->triangle_count, sizeof *v->points);
 	v->marked = nt_scratch_alloc(scratch, 3 * v->triangle_count, 1);
 	if (!v->triangles || !v->origin || !v->points || !v->marked)
 		return NT_ERROR_MEMORY;
-	size_t n = 0;
-	for (size_t t = 0; t < s->triangle_count; t++) {
-		if (!is_near(s, touched, t))
-			continue;
-		const uint32_t *p = s->points + 3 * t;
+	for (size_t n = 0, t = 0; (t = nt_bit_next(search.near, t, s->triangle_count)) < s->triangle_count; n++, t++) {
 		for (size_t k = 0; k < 3; k++) {
-			if (number[p[k]] == NT_NONE) {
-				number[p[k]] = (uint32_t)v->point_count;
-				v->points[v->point_count++] = p[k];
+			const uint32_t point = nt_side_point(s, 3 * t + k);
+			if (number[point] == NT_NONE) {
+				number[point] = (uint32_t)v->point_count;
+				v->points[v->point_count++] = point;
 			}
-			v->triangles[3 * n + k] = number[p[k]];
-			v->marked[3 * n + k] = marked[3 * t + k];
+			v->triangles[3 * n + k] = number[point];
+			v->marked[3 * n + k] = nt_bit(marks->sides, 3 * t + k);
 		}
-		v->origin[n++] = (uint32_t)t;
+		v->origin[n] = (uint32_t)t;
 	}
 	return NT_OK;
 }
@@ -120,54 +159,54 @@ static uint32_t original_side(const vicinity *v, uint32_t side)
 }
 
 /* The marked one of a step's two sides. */
-static uint32_t marked_side(const vicinity *v, const uint8_t *marked, uint32_t left, uint32_t right)
+static uint32_t marked_side(const vicinity *v, const uint64_t *marked, uint32_t left, uint32_t right)
 {
 	const uint32_t a = original_side(v, left), b = original_side(v, right);
-	if (a != NT_NONE && marked[a])
+	if (a != NT_NONE && nt_bit(marked, a))
 		return a;
-	return b != NT_NONE && marked[b] ? b : NT_NONE;
+	return b != NT_NONE && nt_bit(marked, b) ? b : NT_NONE;
 }
 
-static void add_run(runs *r, const nt_surface *s, size_t first, bool closed)
+static void add_run(runs *r, const ends *e, size_t first, bool closed)
 {
 	const size_t count = r->side_count - first;
 	if (count == 0)
 		return;
 	const uint32_t a = r->sides[first], b = r->sides[r->side_count - 1];
 	r->items[r->count++] = (run){.first = first, .count = count, .closed = closed,
-		.ends = {s->points[r->reversed[first] ? nt_side_next(a) : a],
-			s->points[r->reversed[r->side_count - 1] ? b : nt_side_next(b)]}};
+		.ends = {r->reversed[first] ? end_of(e, a) : begin_of(e, a),
+			r->reversed[r->side_count - 1] ? begin_of(e, b) : end_of(e, b)}};
 }
 
-static void take_walk(const nt_surface *s, const vicinity *v, const nt_walks *walks, size_t walk,
-	const uint8_t *marked, uint8_t *taken, runs *r)
+static void take_walk(const ends *e, const vicinity *v, const nt_walks *walks, size_t walk, const nt_marks *marks,
+	uint64_t *taken, runs *r)
 {
 	const size_t first = r->side_count;
 	bool whole = true;
 	for (size_t step = walks->first[walk]; step < walks->first[walk + 1]; step++) {
-		const uint32_t side = marked_side(v, marked, walks->left[step], walks->right[step]);
-		if (side == NT_NONE || taken[side]) {
+		const uint32_t side = marked_side(v, marks->sides, walks->left[step], walks->right[step]);
+		if (side == NT_NONE || nt_bit(taken, side)) {
 			whole = false;
 			continue;
 		}
-		taken[side] = 1;
+		nt_bit_set(taken, side);
 		r->sides[r->side_count] = side;
-		r->reversed[r->side_count++] = s->points[side] != v->points[walks->from[step]];
+		r->reversed[r->side_count++] = nt_side_point(e->s, side) != v->points[walks->from[step]];
 	}
 	if (whole || r->side_count - first <= 1) {
-		add_run(r, s, first, whole && walks->closed[walk]);
+		add_run(r, e, first, whole && walks->closed[walk]);
 		return;
 	}
 	/* cannot be, but then each edge is a run of its own: joining puts them together */
 	const size_t end = r->side_count;
 	for (size_t i = first; i < end; i++) {
 		r->side_count = i + 1;
-		add_run(r, s, i, false);
+		add_run(r, e, i, false);
 	}
 }
 
-static nt_status take_walks(const nt_surface *s, const vicinity *v, const uint8_t *marked,
-	uint8_t *taken, runs *r, size_t *left_out, nt_error *error)
+static nt_status take_walks(const ends *e, const vicinity *v, const nt_marks *marks, uint64_t *taken, runs *r,
+	size_t *left_out, nt_error *error)
 {
 	nt_halfedges *mesh = NULL;
 	nt_status status = nt_halfedges_build(&mesh, v->point_count, v->triangles,
@@ -179,7 +218,7 @@ static nt_status take_walks(const nt_surface *s, const vicinity *v, const uint8_
 	nt_walks walks = {0};
 	status = nt_halfedges_chains(mesh, v->marked, &walks, error);
 	for (size_t w = 0; !status && w < walks.count; w++)
-		take_walk(s, v, &walks, w, marked, taken, r);
+		take_walk(e, v, &walks, w, marks, taken, r);
 	nt_walks_free(&walks);
 	nt_halfedges_free(mesh);
 	return status;
@@ -189,22 +228,22 @@ static nt_status take_walks(const nt_surface *s, const vicinity *v, const uint8_
 
 /* Ends of runs at points, in two slots per point. degree counts all of them. */
 typedef struct joints {
-	uint32_t *ends;  /* [2 * point_count] 2 * run + end */
+	uint32_t *ends;  /* [2 * ends] 2 * run + end */
 	uint32_t *degree;
 } joints;
 
-static nt_status find_joints(const nt_surface *s, const runs *r, nt_scratch *scratch, joints *j)
+static nt_status find_joints(const ends *e, const runs *r, nt_scratch *scratch, joints *j)
 {
-	j->ends = nt_scratch_alloc(scratch, 2 * s->point_count, sizeof *j->ends);
-	j->degree = nt_scratch_alloc(scratch, s->point_count, sizeof *j->degree);
+	j->ends = nt_scratch_alloc(scratch, 2 * e->count, sizeof *j->ends);
+	j->degree = nt_scratch_alloc(scratch, e->count, sizeof *j->degree);
 	if (!j->ends || !j->degree)
 		return NT_ERROR_MEMORY;
-	memset(j->degree, 0, s->point_count * sizeof *j->degree);
+	memset(j->degree, 0, e->count * sizeof *j->degree);
 	for (size_t i = 0; i < r->side_count; i++) { /* inner points too: a run may pass another's end */
-		j->degree[s->points[r->sides[i]]]++;
-		j->degree[s->points[nt_side_next(r->sides[i])]]++;
+		j->degree[begin_of(e, r->sides[i])]++;
+		j->degree[end_of(e, r->sides[i])]++;
 	}
-	memset(j->ends, 0xff, 2 * s->point_count * sizeof *j->ends);
+	memset(j->ends, 0xff, 2 * e->count * sizeof *j->ends);
 	for (size_t i = 0; i < r->count; i++) {
 		for (size_t end = 0; end < 2 && !r->items[i].closed; end++) {
 			uint32_t *slots = j->ends + 2 * (size_t)r->items[i].ends[end];
@@ -268,11 +307,11 @@ static int by_lowest_side(const void *a, const void *b)
 }
 
 /* Joins runs, in the order of their lowest sides. */
-static nt_status join_runs(const nt_surface *s, runs *r, nt_scratch *scratch, nt_chains *chains)
+static nt_status join_runs(const ends *e, runs *r, nt_scratch *scratch, nt_chains *chains)
 {
 	joints j;
 	uint64_t *order = nt_scratch_alloc(scratch, r->count, sizeof *order);
-	nt_status status = find_joints(s, r, scratch, &j);
+	nt_status status = find_joints(e, r, scratch, &j);
 	if (status || !order)
 		return NT_ERROR_MEMORY;
 	for (size_t i = 0; i < r->count; i++) {
@@ -307,45 +346,42 @@ static nt_status allocate(nt_scratch *scratch, size_t edges, runs *r, nt_chains 
 	return complete ? NT_OK : NT_ERROR_MEMORY;
 }
 
-nt_status nt_chains_trace(const nt_surface *surface, const uint8_t *marked, nt_scratch *scratch,
+nt_status nt_chains_trace(const nt_surface *surface, const nt_marks *marks, unsigned threads, nt_scratch *scratch,
 	nt_chains *chains, nt_error *error)
 {
-	size_t edges = 0;
-	for (size_t side = 0; side < 3 * surface->triangle_count; side++)
-		edges += marked[side];
+	const size_t sides = 3 * surface->triangle_count, words = nt_bit_words(sides);
 	runs r;
-	nt_status status = allocate(scratch, edges, &r, chains);
+	nt_status status = allocate(scratch, marks->count, &r, chains);
 	if (status)
 		return status;
 	chains->first[0] = 0;
-	if (edges == 0)
+	if (marks->count == 0)
 		return NT_OK;
 
-	uint8_t *taken = nt_scratch_alloc(scratch, 3 * surface->triangle_count, 1);
-	uint8_t *degree = nt_scratch_alloc(scratch, surface->point_count, 1);
+	ends e;
+	status = find_ends(surface, marks, scratch, &e);
+	uint64_t *taken = status ? NULL : nt_scratch_alloc(scratch, words, sizeof *taken);
+	uint8_t *degree = status ? NULL : nt_scratch_alloc(scratch, e.count, 1);
 	if (!taken || !degree)
 		return NT_ERROR_MEMORY;
-	memset(taken, 0, 3 * surface->triangle_count);
-	if (any_fork(surface, marked, degree) || any_conflict(surface)) {
+	memset(taken, 0, words * sizeof *taken);
+	if (marks->conflicts || any_fork(&e, marks, degree)) {
 		vicinity v;
-		status = find_vicinity(surface, marked, scratch, &v);
+		status = find_vicinity(&e, marks, threads, scratch, &v);
 		if (!status)
-			status = take_walks(surface, &v, marked, taken, &r, &chains->left_out, error);
+			status = take_walks(&e, &v, marks, taken, &r, &chains->left_out, error);
 		if (status)
 			return status;
 	}
 
 	/* edges that OpenMesh does not know, or was not asked about, are runs by themselves, the way their lowest sides go */
-	for (size_t e = 0; e < surface->edge_count; e++) {
-		const uint32_t *sides = surface->sides + surface->edge_first[e], *end = surface->sides + surface->edge_first[e + 1];
-		for (const uint32_t *side = sides; side < end; side++) {
-			if (!marked[*side] || taken[*side])
-				continue;
-			const size_t first = r.side_count;
-			r.sides[first] = *side;
-			r.reversed[r.side_count++] = surface->points[*side] != surface->points[*sides];
-			add_run(&r, surface, first, false);
-		}
+	for (size_t side = 0; (side = next_marked(surface, marks, side)) < sides; side++) {
+		if (nt_bit(taken, side))
+			continue;
+		const size_t first = r.side_count;
+		r.sides[first] = (uint32_t)side;
+		r.reversed[r.side_count++] = marks->against && nt_bit(marks->against, side);
+		add_run(&r, &e, first, false);
 	}
-	return join_runs(surface, &r, scratch, chains);
+	return join_runs(&e, &r, scratch, chains);
 }

@@ -6,7 +6,6 @@
 #ifndef NT_REPORT_CHECK_H
 #define NT_REPORT_CHECK_H
 
-#include <float.h>
 #include <math.h>
 #include "report/report.h"
 #include "report/surface.h"
@@ -15,6 +14,7 @@
 typedef struct nt_mirror_edge {
 	uint32_t sides[2]; /* unmirrored, mirrored */
 	bool non_manifold;
+	bool against; /* the unmirrored side runs against the lowest side of the edge */
 } nt_mirror_edge;
 
 /* Whose tangents are checked: the input's, or, on conversion, the result. */
@@ -42,9 +42,11 @@ typedef struct nt_check {
 	nt_stored stored;
 
 	/* by edges.c */
-	uint8_t *boundary;        /* [3 * triangle_count] side without a neighbour */
-	uint32_t *seam_edge;      /* [3 * triangle_count] index into mirror_edges, of sides that are in one */
-	nt_mirror_edge *mirror_edges;
+	uint64_t *boundary;       /* [3 * triangle_count] bits: sides without a neighbour */
+	uint64_t *mirrors;        /* [3 * triangle_count] bits: unmirrored sides of mirror edges; NULL: there are none */
+	uint64_t *mirrors_against; /* of these, sides that run against the lowest one of their edge */
+	uint32_t *mirror_ranks;
+	nt_mirror_edge *mirror_edges; /* [mirror_edge_count] by their unmirrored sides, ascending */
 	size_t mirror_edge_count;
 	uint32_t *islands;        /* [triangle_count] NT_NONE: has no edges */
 	bool failed;              /* out of memory while reporting */
@@ -67,6 +69,9 @@ void nt_tally_triangle(const nt_check *check, nt_tally *tally, size_t triangle, 
 void nt_tally_side(const nt_check *check, nt_tally *tally, uint32_t side, double value);
 void nt_tally_vertex(const nt_check *check, nt_tally *tally, uint32_t vertex, double value);
 
+/* Adds another tally of the same code, whose occurrences come after those of the first. */
+void nt_tally_join(nt_tally *tally, const nt_tally *other);
+
 /* A number behind the finding. */
 void nt_tally_number(nt_tally *tally, const char *name, double value);
 
@@ -77,20 +82,11 @@ void nt_check_report(nt_check *check, const nt_tally *tally, const char *detail_
 void nt_check_report_as(nt_check *check, const nt_tally *tally, nt_severity severity,
 	const char *detail_format, ...) NT_PRINTF(4, 5);
 
-/* Boxes. */
-nt_box nt_box_empty(void);
-static inline void nt_box_add(nt_box *box, const float *position)
+/* The mirror edge of an unmirrored side that is in one. */
+static inline nt_mirror_edge *nt_mirror_edge_of(const nt_check *check, uint32_t side)
 {
-	for (int i = 0; i < 3; i++) {
-		const float x = position[i];
-		if (x < box->minimum[i] && x >= -FLT_MAX)
-			box->minimum[i] = x;
-		if (x > box->maximum[i] && x <= FLT_MAX)
-			box->maximum[i] = x;
-	}
+	return &check->mirror_edges[nt_bit_rank(check->mirrors, check->mirror_ranks, side)];
 }
-
-void nt_box_join(nt_box *box, const nt_box *other);
 
 /* Whether what is judged is what a conversion writes, and in which format it is. */
 static inline bool nt_is_written(const nt_check *check)
@@ -119,11 +115,21 @@ static inline void nt_source_texcoord(const nt_scene *scene, const float *texcoo
 	out[1] = v_down ? 0.0f - texcoord[1] : texcoord[1];
 }
 
+/* The same of a range. */
+static inline void nt_source_range(const nt_scene *scene, float minimum[2], float maximum[2])
+{
+	if (nt_format_is_gltf(scene->format)) {
+		const float v = minimum[1];
+		minimum[1] = 0.0f - maximum[1];
+		maximum[1] = 0.0f - v;
+	}
+}
+
 /* The same of where a side begins. */
 static inline void nt_side_source_texcoord(const nt_check *check, uint32_t side, float out[2])
 {
 	nt_source_texcoord(check->scene,
-		check->mesh->texcoords + 2 * (size_t)check->surface.vertices[side], out);
+		check->mesh->texcoords + 2 * (size_t)nt_side_vertex(&check->surface, side), out);
 }
 
 /* Where a sampler looks along an axis, for a coordinate of the surface: repeated modulo 1, mirrored folded, clamped
@@ -160,8 +166,8 @@ static inline const float *nt_stored_tangent(const nt_check *check, uint32_t cor
 }
 
 /* The checks, in the order in which they run. */
+nt_status nt_check_geometry(nt_check *check); /* geometry.c: the surface's triangles; positions, normals, UV triangles */
 nt_status nt_check_edges(nt_check *check);    /* edges.c: boundary, non-manifold, winding, islands' numbers */
-nt_status nt_check_geometry(nt_check *check); /* geometry.c: positions, normals, UV triangles */
 nt_status nt_check_islands(nt_check *check);  /* islands.c */
 nt_status nt_check_seams(nt_check *check);    /* seams.c */
 nt_status nt_check_tangents(nt_check *check); /* tangents.c */

@@ -6,43 +6,71 @@
  *
  * Two triangles of an edge continue each other in UV space when both ends have equal texture
  * coordinates on both. On an edge of many triangles all that have the same coordinates do.
+ *
+ * Threads take bins of edges. What they find goes to lists by bin, or into sets that do not show who was first.
  */
 #include "report/check.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include "base/parallel.h"
+#include "report/edge_bins.h"
 
 /* ---- islands by union and find, the lower number on top ---- */
 
+/* Parents only ever become lower, whatever other threads unite at the same time. */
 static uint32_t find_root(uint32_t *parents, uint32_t t)
 {
-	while (parents[t] != t) {
-		parents[t] = parents[parents[t]];
-		t = parents[t];
+	for (;;) {
+		const uint32_t parent = __atomic_load_n(&parents[t], __ATOMIC_RELAXED);
+		if (parent == t)
+			return t;
+		const uint32_t above = __atomic_load_n(&parents[parent], __ATOMIC_RELAXED);
+		if (above != parent)
+			__atomic_store_n(&parents[t], above, __ATOMIC_RELAXED);
+		t = above;
 	}
-	return t;
 }
 
 static void unite(uint32_t *parents, uint32_t a, uint32_t b)
 {
-	a = find_root(parents, a);
-	b = find_root(parents, b);
-	if (a < b)
-		parents[b] = a;
-	else
-		parents[a] = b;
+	for (;;) {
+		a = find_root(parents, a);
+		b = find_root(parents, b);
+		if (a == b)
+			return;
+		uint32_t high = a > b ? a : b;
+		const uint32_t low = a > b ? b : a;
+		if (__atomic_compare_exchange_n(&parents[high], &high, low, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+			return;
+	}
 }
+
+/* Sides by which triangles are prefetched before they are united. */
+enum { AHEAD = 16 };
+
+/* ---- what is found ---- */
+
+/* In one bin. */
+typedef struct bin_result {
+	size_t edges, boundary, uv_seams;
+	nt_tally non_manifold, inconsistent;
+} bin_result;
+
+/* By one thread, in no order. */
+typedef struct mirror_list {
+	nt_mirror_edge *edges;
+	size_t count, capacity;
+	bool failed; /* out of memory */
+} mirror_list;
+
+typedef struct edge_work {
+	nt_check *check;
+	bin_result *results;  /* [bins] */
+	mirror_list *mirrors; /* [slots] */
+} edge_work;
 
 /* ---- one edge ---- */
-
-typedef struct edge_tallies {
-	nt_tally non_manifold, inconsistent;
-} edge_tallies;
-
-static bool same_way(const nt_surface *s, uint32_t a, uint32_t b)
-{
-	return s->points[a] == s->points[b];
-}
 
 /* Texture coordinates of a side's ends, the lower point first, for sorting. */
 typedef struct side_key {
@@ -60,13 +88,13 @@ static int by_key(const void *a, const void *b)
 	return x->side < y->side ? -1 : x->side > y->side;
 }
 
-static side_key key_of(const nt_surface *s, uint32_t side)
+static side_key key_of(const nt_surface *s, const nt_edge_side *side)
 {
-	const uint32_t next = nt_side_next(side);
-	const bool ascending = s->points[side] < s->points[next];
-	const float *low = nt_side_texcoord(s, ascending ? side : next);
-	const float *high = nt_side_texcoord(s, ascending ? next : side);
-	return (side_key){{low[0], low[1], high[0], high[1]}, side};
+	const uint32_t first = side->side, next = nt_side_next(first);
+	const bool ascending = side->low & NT_EDGE_ASCENDING;
+	const float *low = nt_side_texcoord(s, ascending ? first : next);
+	const float *high = nt_side_texcoord(s, ascending ? next : first);
+	return (side_key){{low[0], low[1], high[0], high[1]}, first};
 }
 
 static bool same_coordinates(const side_key *a, const side_key *b)
@@ -76,121 +104,193 @@ static bool same_coordinates(const side_key *a, const side_key *b)
 }
 
 /* Unites all triangles of an edge of three and more that have the same coordinates along it. */
-static nt_status unite_many(const nt_surface *s, const uint32_t *sides, size_t count,
-	uint32_t *parents)
+static bool unite_many(const nt_check *check, const nt_edge_side *sides, size_t count)
 {
+	if (!(sides[0].low & NT_EDGE_JOINT)) {
+		for (size_t i = 1; i < count; i++)
+			unite(check->islands, sides[i].side / 3, sides[0].side / 3);
+		return true;
+	}
 	side_key *keys = nt_alloc(count, sizeof *keys);
 	if (!keys)
-		return NT_ERROR_MEMORY;
+		return false;
 	for (size_t i = 0; i < count; i++)
-		keys[i] = key_of(s, sides[i]);
+		keys[i] = key_of(&check->surface, &sides[i]);
 	qsort(keys, count, sizeof *keys, by_key);
 	for (size_t i = 1; i < count; i++)
 		if (same_coordinates(&keys[i], &keys[i - 1]))
-			unite(parents, keys[i].side / 3, keys[i - 1].side / 3);
+			unite(check->islands, keys[i].side / 3, keys[i - 1].side / 3);
 	free(keys);
-	return NT_OK;
+	return true;
 }
 
 /* Remembers the first unmirrored and the first mirrored side of the edge, if it has both. */
-static void find_mirror(nt_check *check, const uint32_t *sides, size_t count)
+static void find_mirror(const nt_edge_side *sides, size_t count, mirror_list *list)
 {
-	uint32_t found[2] = {NT_NONE, NT_NONE};
+	const nt_edge_side *found[2] = {NULL, NULL};
 	for (size_t i = count; i-- > 0;) {
-		const int sign = check->surface.orientation[sides[i] / 3];
+		const int sign = nt_edge_orientation(&sides[i]);
 		if (sign)
-			found[sign < 0] = sides[i];
+			found[sign < 0] = &sides[i];
 	}
-	if (found[0] == NT_NONE || found[1] == NT_NONE)
+	if (!found[0] || !found[1])
 		return;
-	const uint32_t index = (uint32_t)check->mirror_edge_count++;
-	check->mirror_edges[index] = (nt_mirror_edge){{found[0], found[1]}, count > 2};
-	check->seam_edge[found[0]] = check->seam_edge[found[1]] = index;
+	if (nt_grow((void **)&list->edges, &list->capacity, list->count + 1, sizeof *list->edges))
+		list->edges[list->count++] = (nt_mirror_edge){.sides = {found[0]->side, found[1]->side},
+			.non_manifold = count > 2, .against = !nt_edge_same_way(&sides[0], found[0])};
+	else
+		list->failed = true;
 }
 
-static nt_status check_edge(nt_check *check, const uint32_t *sides, size_t count, uint32_t *parents,
-	edge_tallies *tallies)
+static void check_edge(nt_check *check, const nt_edge_side *sides, size_t count, bin_result *result,
+	mirror_list *mirrors)
 {
-	nt_report_mesh *facts = check->facts;
-	const nt_surface *s = &check->surface;
+	result->edges++;
 	if (count == 1) {
-		facts->boundary_edges++;
-		check->boundary[sides[0]] = 1;
-		return NT_OK;
+		result->boundary++;
+		nt_bit_set(check->boundary, sides[0].side);
+		return;
 	}
 	if (count > 2)
-		nt_tally_side(check, &tallies->non_manifold, sides[0], (double)count);
-	else if (same_way(s, sides[0], sides[1]))
-		nt_tally_side(check, &tallies->inconsistent, sides[0], (double)count);
+		nt_tally_side(check, &result->non_manifold, sides[0].side, (double)count);
+	else if (nt_edge_same_way(&sides[0], &sides[1]))
+		nt_tally_side(check, &result->inconsistent, sides[0].side, (double)count);
 	if (!check->mesh->texcoords)
-		return NT_OK;
-	find_mirror(check, sides, count);
+		return;
+	if (count > 2 || nt_edge_orientation(&sides[0]) != nt_edge_orientation(&sides[1]))
+		find_mirror(sides, count, mirrors);
 	if (count > 2)
-		return unite_many(s, sides, count, parents);
-	if (nt_sides_meet(s, sides[0], sides[1]))
-		unite(parents, sides[0] / 3, sides[1] / 3);
+		mirrors->failed |= !unite_many(check, sides, count);
+	else if (!(sides[0].low & NT_EDGE_JOINT) || nt_sides_meet(&check->surface, sides[0].side, sides[1].side))
+		unite(check->islands, sides[0].side / 3, sides[1].side / 3);
 	else
-		facts->uv_seam_edges++;
+		result->uv_seams++;
+}
+
+static void check_bin(void *context, size_t bin, const nt_edge_side *sides, size_t count, unsigned slot)
+{
+	const edge_work *work = context;
+	const uint32_t *islands = work->check->islands;
+	bin_result *result = &work->results[bin];
+	*result = (bin_result){.non_manifold = {.code = NT_CODE_MESH_NON_MANIFOLD_EDGE},
+		.inconsistent = {.code = NT_CODE_MESH_INCONSISTENT_WINDING}};
+	for (size_t i = 0, end; i < count; i = end) {
+		for (end = i + 1; end < count && nt_edge_same(&sides[i], &sides[end]); end++)
+			if (end + AHEAD < count)
+				__builtin_prefetch(&islands[sides[end + AHEAD].side / 3], 1);
+		check_edge(work->check, sides + i, end - i, result, &work->mirrors[slot]);
+	}
+}
+
+/* ---- the results together ---- */
+
+static void join_results(nt_check *check, const bin_result *results, size_t count)
+{
+	nt_report_mesh *facts = check->facts;
+	nt_tally non_manifold = {.code = NT_CODE_MESH_NON_MANIFOLD_EDGE};
+	nt_tally inconsistent = {.code = NT_CODE_MESH_INCONSISTENT_WINDING};
+	for (size_t bin = 0; bin < count; bin++) {
+		facts->edge_count += results[bin].edges;
+		facts->boundary_edges += results[bin].boundary;
+		facts->uv_seam_edges += results[bin].uv_seams;
+		nt_tally_join(&non_manifold, &results[bin].non_manifold);
+		nt_tally_join(&inconsistent, &results[bin].inconsistent);
+	}
+	facts->non_manifold_edges = non_manifold.count;
+	facts->inconsistent_edges = inconsistent.count;
+	nt_check_report(check, &non_manifold, NULL);
+	nt_check_report(check, &inconsistent, NULL);
+}
+
+/* One list of mirror edges, by their unmirrored sides. */
+static nt_status join_mirrors(nt_check *check, const mirror_list *lists, unsigned count)
+{
+	const size_t sides = 3 * check->surface.triangle_count;
+	for (unsigned slot = 0; slot < count; slot++) {
+		check->mirror_edge_count += lists[slot].count;
+		if (lists[slot].failed)
+			return NT_ERROR_MEMORY;
+	}
+	if (!check->mirror_edge_count)
+		return NT_OK;
+	check->mirror_edges = nt_scratch_alloc(check->scratch, check->mirror_edge_count, sizeof *check->mirror_edges);
+	check->mirrors = nt_scratch_alloc(check->scratch, nt_bit_words(sides), sizeof *check->mirrors);
+	check->mirrors_against = nt_scratch_alloc(check->scratch, nt_bit_words(sides), sizeof *check->mirrors_against);
+	check->mirror_ranks = nt_scratch_alloc(check->scratch, nt_bit_words(sides), sizeof *check->mirror_ranks);
+	if (!check->mirror_edges || !check->mirrors || !check->mirrors_against || !check->mirror_ranks)
+		return NT_ERROR_MEMORY;
+	memset(check->mirrors, 0, nt_bit_words(sides) * sizeof *check->mirrors);
+	memset(check->mirrors_against, 0, nt_bit_words(sides) * sizeof *check->mirrors_against);
+	for (unsigned slot = 0; slot < count; slot++) {
+		for (size_t i = 0; i < lists[slot].count; i++) {
+			const nt_mirror_edge *edge = &lists[slot].edges[i];
+			nt_bit_set(check->mirrors, edge->sides[0]);
+			if (edge->against)
+				nt_bit_set(check->mirrors_against, edge->sides[0]);
+		}
+	}
+	nt_bit_ranks(check->mirrors, sides, check->mirror_ranks);
+	for (unsigned slot = 0; slot < count; slot++)
+		for (size_t i = 0; i < lists[slot].count; i++)
+			*nt_mirror_edge_of(check, lists[slot].edges[i].sides[0]) = lists[slot].edges[i];
 	return NT_OK;
 }
 
-/* Numbers islands by their lowest triangle. */
-static void number_islands(nt_check *check, uint32_t *parents)
+/* From parents to the numbers of islands, which count by their lowest triangles. */
+static void number_islands(nt_check *check)
 {
 	const nt_surface *s = &check->surface;
 	uint32_t count = 0;
 	for (size_t t = 0; t < s->triangle_count; t++) {
-		const bool has_edges = s->flatness[t] == NT_SOUND || s->flatness[t] == NT_COLLINEAR;
-		const uint32_t root = find_root(parents, (uint32_t)t);
-		if (!has_edges || !check->mesh->texcoords)
+		const uint32_t parent = check->islands[t]; /* if it is a lower one it has its number */
+		if (!nt_has_edges(s, t) || !check->mesh->texcoords)
 			check->islands[t] = NT_NONE;
 		else
-			check->islands[t] = root == t ? count++ : check->islands[root];
+			check->islands[t] = parent == t ? count++ : check->islands[parent];
 	}
 	check->facts->island_count = count;
 }
 
 static nt_status allocate(nt_check *check)
 {
-	const size_t sides = 3 * check->surface.triangle_count;
-	check->boundary = nt_scratch_alloc(check->scratch, sides, sizeof *check->boundary);
-	check->seam_edge = nt_scratch_alloc(check->scratch, sides, sizeof *check->seam_edge);
-	check->mirror_edges = nt_scratch_alloc(check->scratch, check->surface.edge_count,
-		sizeof *check->mirror_edges);
-	check->islands = nt_scratch_alloc(check->scratch, sides / 3, sizeof *check->islands);
-	if (!check->boundary || !check->seam_edge || !check->mirror_edges || !check->islands)
+	const size_t triangles = check->surface.triangle_count, words = nt_bit_words(3 * triangles);
+	check->boundary = nt_scratch_alloc(check->scratch, words, sizeof *check->boundary);
+	check->islands = nt_scratch_alloc(check->scratch, triangles, sizeof *check->islands);
+	if (!check->boundary || !check->islands)
 		return NT_ERROR_MEMORY;
-	memset(check->boundary, 0, sides * sizeof *check->boundary);
+	memset(check->boundary, 0, words * sizeof *check->boundary);
+	for (size_t t = 0; t < triangles; t++)
+		check->islands[t] = (uint32_t)t;
 	return NT_OK;
+}
+
+static nt_status check_bins(nt_check *check, const nt_edge_bins *bins)
+{
+	edge_work work = {.check = check,
+		.results = nt_scratch_alloc(check->scratch, bins->count, sizeof *work.results),
+		.mirrors = nt_scratch_alloc(check->scratch, bins->slots, sizeof *work.mirrors)};
+	if (!work.results || !work.mirrors)
+		return NT_ERROR_MEMORY;
+	memset(work.mirrors, 0, bins->slots * sizeof *work.mirrors);
+	nt_status status = nt_edge_bins_visit(bins, check->scratch, check_bin, &work);
+	if (!status)
+		join_results(check, work.results, bins->count);
+	if (!status)
+		status = join_mirrors(check, work.mirrors, bins->slots);
+	for (unsigned slot = 0; slot < bins->slots; slot++)
+		free(work.mirrors[slot].edges);
+	return status;
 }
 
 nt_status nt_check_edges(nt_check *check)
 {
-	const nt_surface *s = &check->surface;
 	nt_status status = allocate(check);
-	if (status)
-		return status;
-	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
-	uint32_t *parents = nt_scratch_alloc(check->scratch, s->triangle_count, sizeof *parents);
-	if (!parents)
-		return NT_ERROR_MEMORY;
-	for (size_t t = 0; t < s->triangle_count; t++)
-		parents[t] = (uint32_t)t;
-
-	edge_tallies tallies = {{.code = NT_CODE_MESH_NON_MANIFOLD_EDGE},
-		{.code = NT_CODE_MESH_INCONSISTENT_WINDING}};
-	for (size_t e = 0; e < s->edge_count && !status; e++)
-		status = check_edge(check, s->sides + s->edge_first[e],
-			s->edge_first[e + 1] - s->edge_first[e], parents, &tallies);
-	if (status)
-		return status;
-	number_islands(check, parents);
-	nt_scratch_back(check->scratch, mark);
-
-	check->facts->edge_count = s->edge_count;
-	check->facts->non_manifold_edges = tallies.non_manifold.count;
-	check->facts->inconsistent_edges = tallies.inconsistent.count;
-	nt_check_report(check, &tallies.non_manifold, NULL);
-	nt_check_report(check, &tallies.inconsistent, NULL);
-	return NT_OK;
+	nt_edge_bins bins;
+	if (!status)
+		status = nt_edge_bins_make(&bins, &check->surface, nt_thread_count(check->options->threads), check->scratch);
+	if (!status)
+		status = check_bins(check, &bins);
+	if (!status)
+		number_islands(check);
+	return status;
 }

@@ -18,14 +18,6 @@ nt_box nt_box_empty(void)
 	return (nt_box){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
 }
 
-void nt_box_join(nt_box *box, const nt_box *other)
-{
-	for (int i = 0; i < 3; i++) {
-		box->minimum[i] = fminf(box->minimum[i], other->minimum[i]);
-		box->maximum[i] = fmaxf(box->maximum[i], other->maximum[i]);
-	}
-}
-
 /* Counts an occurrence and returns the spot to fill, NULL when there are enough. */
 static nt_spot *count_one(nt_tally *tally, double value)
 {
@@ -67,20 +59,32 @@ void nt_tally_triangle(const nt_check *check, nt_tally *tally, size_t triangle, 
 	nt_spot *spot = count_one(tally, value);
 	set_triangle(check, spot, triangle);
 	for (size_t k = 0; k < 3; k++)
-		add_vertex(check, tally, spot, check->surface.vertices[3 * triangle + k]);
+		add_vertex(check, tally, spot, nt_side_vertex(&check->surface, 3 * triangle + k));
 }
 
 void nt_tally_side(const nt_check *check, nt_tally *tally, uint32_t side, double value)
 {
 	nt_spot *spot = count_one(tally, value);
 	set_triangle(check, spot, side / 3);
-	add_vertex(check, tally, spot, check->surface.vertices[side]);
-	add_vertex(check, tally, spot, check->surface.vertices[nt_side_next(side)]);
+	add_vertex(check, tally, spot, nt_side_vertex(&check->surface, side));
+	add_vertex(check, tally, spot, nt_side_vertex(&check->surface, nt_side_next(side)));
 }
 
 void nt_tally_vertex(const nt_check *check, nt_tally *tally, uint32_t vertex, double value)
 {
 	add_vertex(check, tally, count_one(tally, value), vertex);
+}
+
+void nt_tally_join(nt_tally *tally, const nt_tally *other)
+{
+	if (other->count == 0)
+		return;
+	if (tally->count == 0)
+		tally->box = nt_box_empty();
+	tally->count += other->count;
+	nt_box_join(&tally->box, &other->box);
+	for (unsigned i = 0; i < other->spot_count && tally->spot_count < NT_SPOT_COUNT; i++)
+		tally->spots[tally->spot_count++] = other->spots[i];
 }
 
 void nt_tally_number(nt_tally *tally, const char *name, double value)

@@ -12,8 +12,10 @@
 #include "report/check.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include "base/dvec.h"
+#include "base/parallel.h"
 
 /* Sine of the rounding error from which on a triangle counts as nearly degenerate: of one degree. */
 static const double NEAR_DEGENERATE_SINE = 0.017452406437283512;
@@ -26,16 +28,25 @@ static const double UNIT_TOLERANCE = 0.00674;
 
 static const double DEGREES = 57.29577951308232;
 
-typedef struct triangle_tallies {
-	nt_tally flat, no_uv_area, near;
+/* Blocks that a thread takes at a time. What is found in them is joined in their order. */
+enum { PART = 128 };
+
+/* Triangles or vertices that are worth a thread. */
+enum { GRAIN = 32768 };
+
+/* What is found in the triangles of a part. */
+typedef struct triangle_part {
+	nt_tally flat, no_uv_area, near, against;
 	size_t coincident, collinear;
-	size_t from_neighbour; /* corners of degenerate triangles that take a neighbour's tangent */
-	double no_uv_share, near_share; /* area */
+	double no_uv_area_sum, near_area, against_area;
 	double worst_bound, worst_determinant;
-	float *determinants; /* relative; of triangles with an orientation */
-	size_t determinant_count;
-	size_t *histogram; /* [65536] for their median */
-} triangle_tallies;
+} triangle_part;
+
+typedef struct triangle_work {
+	nt_check *check;
+	triangle_part *parts;
+	float *determinants; /* [triangle_count] relative; NaN where a triangle has no orientation */
+} triangle_work;
 
 static bool is_finite(const float *values, size_t count)
 {
@@ -45,73 +56,158 @@ static bool is_finite(const float *values, size_t count)
 	return true;
 }
 
-/* Bound of the sine of how far rounding of the texture coordinates may turn the tangent. `determinant`
- * receives |det| / (|e1| |e2|). */
-static double rounding_bound(const nt_surface *s, size_t t, double *determinant)
-{
-	const float *ta = nt_side_texcoord(s, (uint32_t)(3 * t));
-	const float *tb = nt_side_texcoord(s, (uint32_t)(3 * t + 1));
-	const float *tc = nt_side_texcoord(s, (uint32_t)(3 * t + 2));
-	const double e1[2] = {(double)tb[0] - ta[0], (double)tb[1] - ta[1]};
-	const double e2[2] = {(double)tc[0] - ta[0], (double)tc[1] - ta[1]};
-	const double n1 = e1[0] * e1[0] + e1[1] * e1[1], n2 = e2[0] * e2[0] + e2[1] * e2[1];
-	const double det = fabs(e1[0] * e2[1] - e1[1] * e2[0]);
-	*determinant = det / sqrt(n1 * n2);
+/* A triangle's UV edges, and the edges of its tangent and bitangent times the determinant. */
+typedef struct uv_frame {
+	double n1, n2, determinant; /* |e1|^2, |e2|^2, |det M| */
+	double uu, vv;              /* |det M|^2 |T|^2, |det M|^2 |B|^2 */
+	double size;                /* max |uv| */
+} uv_frame;
 
-	const double half = 0.5 * (n1 + n2);
-	const double largest = sqrt(half + sqrt(fmax(half * half - det * det, 0.0)));
-	const nt_dvec3 a = nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t)));
-	const nt_dvec3 d1 = nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t + 1))), a);
-	const nt_dvec3 d2 = nt_dvec3_sub(nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t + 2))), a);
+static double greater(double a, double b)
+{
+	return a > b ? a : b;
+}
+
+static uv_frame measure_frame(const float *const t[3], nt_dvec3 d1, nt_dvec3 d2)
+{
+	const double e1[2] = {(double)t[1][0] - t[0][0], (double)t[1][1] - t[0][1]};
+	const double e2[2] = {(double)t[2][0] - t[0][0], (double)t[2][1] - t[0][1]};
 	const nt_dvec3 u = nt_dvec3_sub(nt_dvec3_scale(e2[1], d1), nt_dvec3_scale(e1[1], d2));
 	const nt_dvec3 v = nt_dvec3_sub(nt_dvec3_scale(e1[0], d2), nt_dvec3_scale(e2[0], d1));
-	const double uu = nt_dvec3_dot(u, u), vv = nt_dvec3_dot(v, v);
 	double size = 0.0;
-	for (int i = 0; i < 2; i++)
-		size = fmax(size, fmax(fabs(ta[i]), fmax(fabs(tb[i]), fabs(tc[i]))));
-	const double error = 2.0 * 1.4142135623730951 * size * 0x1p-24;
-	return error * largest / det * sqrt((uu + vv) / uu);
+	for (int k = 0; k < 3; k++)
+		size = greater(size, greater(fabs(t[k][0]), fabs(t[k][1])));
+	return (uv_frame){e1[0] * e1[0] + e1[1] * e1[1], e2[0] * e2[0] + e2[1] * e2[1],
+		fabs(e1[0] * e2[1] - e1[1] * e2[0]), nt_dvec3_dot(u, u), nt_dvec3_dot(v, v), size};
 }
 
-/* How many corners of a degenerate triangle share their vertex with a sound one, whose tangent they take;
- * the others get a vector perpendicular to their normal. */
-static size_t corners_with_neighbour(const nt_check *check, const uint8_t *sound_vertex, size_t t)
+/* Bound of the sine of how far rounding of the texture coordinates may turn the tangent. */
+static double rounding_bound(const uv_frame *f)
 {
-	size_t count = 0;
-	for (size_t k = 0; k < 3; k++)
-		count += sound_vertex[check->surface.vertices[3 * t + k]];
-	return count;
+	const double half = 0.5 * (f->n1 + f->n2);
+	const double largest = sqrt(half + sqrt(greater(half * half - f->determinant * f->determinant, 0.0)));
+	const double error = 2.0 * 1.4142135623730951 * f->size * 0x1p-24;
+	return error * largest / f->determinant * sqrt((f->uu + f->vv) / f->uu);
 }
 
-static void check_triangle(nt_check *check, size_t t, const uint8_t *sound_vertex, triangle_tallies *tt)
+/* Whether that bound is below the limit for certain, without a root or a quotient: the larger singular value is at most
+ * the root of both edges' squares. Of the rest, with what is too small or too large to be squared, the bound itself
+ * decides. */
+static bool is_far_from_degenerate(const uv_frame *f)
 {
+	const double left = 8.0 * 0x1p-48 * f->size * f->size * (f->n1 + f->n2) * (f->uu + f->vv);
+	const double right = 0.9 * NEAR_DEGENERATE_SINE * NEAR_DEGENERATE_SINE * f->determinant * f->determinant * f->uu;
+	return left < right && right > 1e-200;
+}
+
+static void check_texcoords(const triangle_work *work, size_t t, const uint32_t v[3], nt_dvec3 d1, nt_dvec3 d2,
+	triangle_part *part)
+{
+	nt_check *check = work->check;
 	const nt_surface *s = &check->surface;
-	const bool flat = s->flatness[t] == NT_COINCIDENT || s->flatness[t] == NT_COLLINEAR;
-	if (flat) {
-		tt->coincident += s->flatness[t] == NT_COINCIDENT;
-		tt->collinear += s->flatness[t] == NT_COLLINEAR;
-		nt_tally_triangle(check, &tt->flat, t, s->areas[t]);
-	}
-	if (!check->mesh->texcoords)
-		return;
+	work->determinants[t] = NAN;
 	if (s->orientation[t] == 0) {
-		nt_tally_triangle(check, &tt->no_uv_area, t, s->areas[t]);
-		tt->no_uv_share += s->areas[t];
-		tt->from_neighbour += corners_with_neighbour(check, sound_vertex, t);
+		const double area = nt_triangle_area(s, t);
+		nt_tally_triangle(check, &part->no_uv_area, t, area);
+		part->no_uv_area_sum += area;
 		return;
 	}
-	double determinant;
-	const double sine = rounding_bound(s, t, &determinant);
+	const float *const uv[3] = {s->texcoords + 2 * (size_t)v[0], s->texcoords + 2 * (size_t)v[1],
+		s->texcoords + 2 * (size_t)v[2]};
+	const uv_frame frame = measure_frame(uv, d1, d2);
+	const double determinant = frame.determinant / sqrt(frame.n1 * frame.n2);
 	if (isfinite(determinant))
-		tt->determinants[tt->determinant_count++] = (float)determinant;
-	if (!flat && !(sine <= NEAR_DEGENERATE_SINE)) {
+		work->determinants[t] = (float)determinant;
+	if (is_far_from_degenerate(&frame) || s->flatness[t] == NT_COINCIDENT || s->flatness[t] == NT_COLLINEAR)
+		return;
+	const double sine = rounding_bound(&frame);
+	if (!(sine <= NEAR_DEGENERATE_SINE)) {
 		const double bound = sine < 1.0 ? asin(sine) * DEGREES : 90.0;
-		nt_tally_triangle(check, &tt->near, t, bound);
-		tt->near_share += s->areas[t];
-		tt->worst_bound = fmax(tt->worst_bound, bound);
-		tt->worst_determinant = fmin(tt->worst_determinant, determinant);
+		nt_tally_triangle(check, &part->near, t, bound);
+		part->near_area += nt_triangle_area(s, t);
+		part->worst_bound = fmax(part->worst_bound, bound);
+		part->worst_determinant = fmin(part->worst_determinant, determinant);
 	}
 }
+
+/* Whether the normals of the corners, summed, point to the back. */
+static bool is_against_normals(const float *normals, const uint32_t v[3], nt_dvec3 d1, nt_dvec3 d2)
+{
+	nt_dvec3 sum = {0, 0, 0};
+	for (size_t k = 0; k < 3; k++)
+		sum = nt_dvec3_add(sum, nt_dvec3_load(normals + 3 * (size_t)v[k]));
+	return nt_dvec3_dot(nt_dvec3_cross(d1, d2), sum) < 0.0;
+}
+
+static void check_triangle(const triangle_work *work, size_t t, triangle_part *part)
+{
+	nt_check *check = work->check;
+	const nt_surface *s = &check->surface;
+	const nt_flatness flatness = s->flatness[t];
+	if (flatness == NT_COINCIDENT || flatness == NT_COLLINEAR) {
+		part->coincident += flatness == NT_COINCIDENT;
+		part->collinear += flatness == NT_COLLINEAR;
+		nt_tally_triangle(check, &part->flat, t, nt_triangle_area(s, t));
+	}
+	const uint32_t v[3] = {nt_side_vertex(s, 3 * t), nt_side_vertex(s, 3 * t + 1), nt_side_vertex(s, 3 * t + 2)};
+	const float *positions = check->mesh->positions;
+	const nt_dvec3 a = nt_dvec3_load(positions + 3 * (size_t)v[0]);
+	const nt_dvec3 d1 = nt_dvec3_sub(nt_dvec3_load(positions + 3 * (size_t)v[1]), a);
+	const nt_dvec3 d2 = nt_dvec3_sub(nt_dvec3_load(positions + 3 * (size_t)v[2]), a);
+	if (check->mesh->texcoords)
+		check_texcoords(work, t, v, d1, d2, part);
+	if (check->mesh->normals && flatness == NT_SOUND && is_against_normals(check->mesh->normals, v, d1, d2)) {
+		nt_tally_triangle(check, &part->against, t, NAN);
+		part->against_area += nt_triangle_area(s, t);
+	}
+}
+
+static void check_part(void *context, size_t item, unsigned slot)
+{
+	const triangle_work *work = context;
+	triangle_part *part = &work->parts[item];
+	(void)slot;
+	*part = (triangle_part){.flat = {.code = NT_CODE_POS_DEGENERATE_TRIANGLE},
+		.no_uv_area = {.code = NT_CODE_UV_DEGENERATE_TRIANGLE},
+		.near = {.code = NT_CODE_UV_NEAR_DEGENERATE},
+		.against = {.code = NT_CODE_MESH_NORMAL_AGAINST_FACE},
+		.worst_determinant = INFINITY};
+	nt_surface *s = &work->check->surface;
+	for (size_t b = item * PART; b < (item + 1) * PART && b < nt_block_count(s); b++) {
+		nt_surface_measure(s, b);
+		for (size_t t = b * NT_BLOCK; t < nt_block_end(s, b); t++)
+			check_triangle(work, t, part);
+	}
+}
+
+static void join_part(triangle_part *all, const triangle_part *part)
+{
+	nt_tally_join(&all->flat, &part->flat);
+	nt_tally_join(&all->no_uv_area, &part->no_uv_area);
+	nt_tally_join(&all->near, &part->near);
+	nt_tally_join(&all->against, &part->against);
+	all->coincident += part->coincident;
+	all->collinear += part->collinear;
+	all->no_uv_area_sum += part->no_uv_area_sum;
+	all->near_area += part->near_area;
+	all->against_area += part->against_area;
+	all->worst_bound = fmax(all->worst_bound, part->worst_bound);
+	all->worst_determinant = fmin(all->worst_determinant, part->worst_determinant);
+}
+
+/* ---- least, median and greatest determinant ---- */
+
+/* Up to which sorting is faster than counting. */
+enum { FEW = 2048 };
+
+/* Counts of determinants whose bits above `shift + 16` are `upper`, by the 16 below. */
+typedef struct histogram {
+	const float *values;
+	uint32_t upper;
+	unsigned shift;
+	uint32_t *counts; /* [slots][65536] */
+	float *ranges;    /* [slots][2] least and greatest */
+} histogram;
 
 static uint32_t bits_of(float value)
 {
@@ -120,47 +216,104 @@ static uint32_t bits_of(float value)
 	return bits;
 }
 
-/* The k-th smallest of values that are not negative, whose bits are in the order of their values: a count of
- * upper halves, then of the lower halves in the one that holds it. Linear whatever the values, which
- * quickselect is not. `histogram` has room for 65536 counts. */
-static float select_value(const float *values, size_t count, size_t k, size_t *histogram)
+static void count_range(void *context, size_t begin, size_t end, unsigned slot)
 {
-	uint32_t upper = 0;
-	for (int pass = 0; pass < 2; pass++) {
-		memset(histogram, 0, 65536 * sizeof *histogram);
-		for (size_t i = 0; i < count; i++) {
-			const uint32_t bits = bits_of(values[i]);
-			if (pass == 0)
-				histogram[bits >> 16]++;
-			else if (bits >> 16 == upper)
-				histogram[bits & 65535]++;
-		}
-		uint32_t at = 0;
-		while (at < 65535 && k >= histogram[at])
-			k -= histogram[at++];
-		if (pass == 0)
-			upper = at;
-		else
-			upper = upper << 16 | at;
+	const histogram *h = context;
+	uint32_t *counts = h->counts + (size_t)slot * 65536;
+	float least = INFINITY, greatest = -INFINITY;
+	memset(counts, 0, 65536 * sizeof *counts);
+	for (size_t i = begin; i < end; i++) {
+		const float value = h->values[i];
+		if (value != value)
+			continue;
+		least = value < least ? value : least;
+		greatest = value > greatest ? value : greatest;
+		const uint32_t bits = bits_of(value);
+		if ((uint64_t)bits >> (h->shift + 16) == h->upper)
+			counts[bits >> h->shift & 65535]++;
 	}
-	float value;
-	memcpy(&value, &upper, sizeof value);
-	return value;
+	h->ranges[2 * (size_t)slot] = least;
+	h->ranges[2 * (size_t)slot + 1] = greatest;
 }
 
-static void find_determinants(nt_report_mesh *facts, const triangle_tallies *tt)
+/* Adds up the slots, in the first. Returns the sum of all. */
+static size_t join_counts(histogram *h, unsigned slots)
 {
-	const size_t count = tt->determinant_count;
-	if (count == 0)
-		return;
-	float least = tt->determinants[0], greatest = least;
-	for (size_t i = 1; i < count; i++) {
-		least = fminf(least, tt->determinants[i]);
-		greatest = fmaxf(greatest, tt->determinants[i]);
+	size_t sum = 0;
+	for (size_t i = 0; i < 65536; i++) {
+		for (unsigned slot = 1; slot < slots; slot++)
+			h->counts[i] += h->counts[(size_t)slot * 65536 + i];
+		sum += h->counts[i];
 	}
+	for (unsigned slot = 1; slot < slots; slot++) {
+		h->ranges[0] = fminf(h->ranges[0], h->ranges[2 * (size_t)slot]);
+		h->ranges[1] = fmaxf(h->ranges[1], h->ranges[2 * (size_t)slot + 1]);
+	}
+	return sum;
+}
+
+static void set_determinants(nt_report_mesh *facts, float least, float median, float greatest)
+{
 	facts->relative_determinant[0] = least;
-	facts->relative_determinant[1] = select_value(tt->determinants, count, count / 2, tt->histogram);
+	facts->relative_determinant[1] = median;
 	facts->relative_determinant[2] = greatest;
+}
+
+static int by_value(const void *a, const void *b)
+{
+	const float x = *(const float *)a, y = *(const float *)b;
+	return x < y ? -1 : x > y;
+}
+
+/* Of few. They are put in order. */
+static void sort_determinants(nt_report_mesh *facts, float *determinants, size_t count)
+{
+	size_t known = 0;
+	for (size_t t = 0; t < count; t++)
+		if (determinants[t] == determinants[t])
+			determinants[known++] = determinants[t];
+	if (!known)
+		return;
+	qsort(determinants, known, sizeof *determinants, by_value);
+	set_determinants(facts, determinants[0], determinants[known / 2], determinants[known - 1]);
+}
+
+/* Of many, whose bits are in the order of their values since none is negative: a count of upper halves, then of the
+ * lower halves in the one that holds the median. Linear whatever the values, which quickselect is not. */
+static nt_status count_determinants(nt_check *check, const float *determinants)
+{
+	const size_t count = check->surface.triangle_count;
+	const unsigned threads = nt_thread_count(check->options->threads), slots = nt_parallel_slots(threads, count, GRAIN);
+	histogram h = {.values = determinants, .shift = 16,
+		.counts = nt_scratch_alloc(check->scratch, (size_t)slots * 65536, sizeof *h.counts),
+		.ranges = nt_scratch_alloc(check->scratch, 2 * (size_t)slots, sizeof *h.ranges)};
+	if (!h.counts || !h.ranges)
+		return NT_ERROR_MEMORY;
+	size_t k = 0;
+	for (int pass = 0; pass < 2; pass++, h.shift = 0) {
+		nt_parallel_ranges(threads, count, GRAIN, count_range, &h);
+		const size_t known = join_counts(&h, slots);
+		if (known == 0)
+			return NT_OK;
+		k = pass ? k : known / 2;
+		uint32_t at = 0;
+		while (at < 65535 && k >= h.counts[at])
+			k -= h.counts[at++];
+		h.upper = h.upper << 16 | at;
+	}
+	float median;
+	memcpy(&median, &h.upper, sizeof median);
+	set_determinants(check->facts, h.ranges[0], median, h.ranges[1]);
+	return NT_OK;
+}
+
+static nt_status find_determinants(nt_check *check, float *determinants)
+{
+	const size_t count = check->surface.triangle_count;
+	if (count > FEW)
+		return count_determinants(check, determinants);
+	sort_determinants(check->facts, determinants, count);
+	return NT_OK;
 }
 
 static nt_severity severity_by_share(const nt_check *check, double area)
@@ -168,54 +321,143 @@ static nt_severity severity_by_share(const nt_check *check, double area)
 	return area > VISIBLE_SHARE * check->total_area ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO;
 }
 
-static void report_triangles(nt_check *check, triangle_tallies *tt)
+static void sum_blocks(nt_check *check)
+{
+	const nt_surface *s = &check->surface;
+	nt_report_mesh *facts = check->facts;
+	for (size_t b = 0; b < nt_block_count(s); b++) {
+		for (int i = 0; i < 3; i++) {
+			facts->triangles[i] += s->blocks[b].triangles[i];
+			facts->areas[i] += s->blocks[b].areas[i];
+		}
+		nt_box_join(&facts->box, &s->blocks[b].box);
+	}
+	for (int i = 0; i < 3; i++)
+		check->total_area += facts->areas[i];
+}
+
+typedef struct sound_search {
+	const nt_surface *s;
+	uint64_t *vertices;
+} sound_search;
+
+static void find_sound(void *context, size_t begin, size_t end, unsigned slot)
+{
+	const sound_search *search = context;
+	const nt_surface *s = search->s;
+	(void)slot;
+	for (size_t c = 3 * begin; c < 3 * end; c++)
+		if (s->orientation[c / 3] && s->flatness[c / 3] != NT_COINCIDENT)
+			nt_bit_set(search->vertices, nt_side_vertex(s, c));
+}
+
+/* How many corners of degenerate triangles share their vertex with a sound one, whose tangent they take; the others get
+ * a vector perpendicular to their normal. */
+static nt_status count_neighbours(const nt_check *check, size_t *count)
+{
+	const nt_surface *s = &check->surface;
+	const size_t words = nt_bit_words(check->mesh->vertex_count);
+	*count = 0;
+	if (!check->mesh->texcoords || !check->facts->triangles[1])
+		return NT_OK;
+	sound_search search = {s, nt_scratch_alloc(check->scratch, words, sizeof *search.vertices)};
+	if (!search.vertices)
+		return NT_ERROR_MEMORY;
+	memset(search.vertices, 0, words * sizeof *search.vertices);
+	nt_parallel_ranges(nt_thread_count(check->options->threads), s->triangle_count, GRAIN, find_sound, &search);
+	for (size_t c = 0; c < 3 * s->triangle_count; c++)
+		*count += !s->orientation[c / 3] && nt_bit(search.vertices, nt_side_vertex(s, c));
+	return NT_OK;
+}
+
+/* from_neighbour: corners of degenerate triangles that take a neighbour's tangent. */
+static void report_triangles(nt_check *check, triangle_part *all, size_t from_neighbour)
 {
 	const double total = check->total_area > 0.0 ? check->total_area : 1.0;
-	nt_tally_number(&tt->flat, "coincident_corners", (double)tt->coincident);
-	nt_tally_number(&tt->flat, "collinear_corners", (double)tt->collinear);
-	nt_check_report(check, &tt->flat, NULL);
+	nt_tally_number(&all->flat, "coincident_corners", (double)all->coincident);
+	nt_tally_number(&all->flat, "collinear_corners", (double)all->collinear);
+	nt_check_report(check, &all->flat, NULL);
 
-	nt_tally *no_area = &tt->no_uv_area;
-	nt_tally_number(no_area, "area_share", tt->no_uv_share / total);
-	nt_tally_number(no_area, "corners_from_neighbour", (double)tt->from_neighbour);
-	nt_tally_number(no_area, "corners_from_normal", (double)(3 * no_area->count - tt->from_neighbour));
-	nt_check_report_as(check, no_area, severity_by_share(check, tt->no_uv_share),
+	nt_tally *no_area = &all->no_uv_area;
+	const size_t from_normal = 3 * no_area->count - from_neighbour;
+	nt_tally_number(no_area, "area_share", all->no_uv_area_sum / total);
+	nt_tally_number(no_area, "corners_from_neighbour", (double)from_neighbour);
+	nt_tally_number(no_area, "corners_from_normal", (double)from_normal);
+	nt_check_report_as(check, no_area, severity_by_share(check, all->no_uv_area_sum),
 		"%.3g %% of the area; %zu corners take a neighbour's tangent, %zu one made from their normal",
-		100.0 * tt->no_uv_share / total, tt->from_neighbour,
-		3 * no_area->count - tt->from_neighbour);
+		100.0 * all->no_uv_area_sum / total, from_neighbour, from_normal);
 
-	nt_tally_number(&tt->near, "area_share", tt->near_share / total);
-	nt_tally_number(&tt->near, "least_relative_determinant", tt->worst_determinant);
-	nt_tally_number(&tt->near, "greatest_error_degrees", tt->worst_bound);
-	nt_check_report_as(check, &tt->near, severity_by_share(check, tt->near_share),
-		"relative determinant down to %.2g, error up to %.2g degrees", tt->worst_determinant,
-		tt->worst_bound);
+	nt_tally_number(&all->near, "area_share", all->near_area / total);
+	nt_tally_number(&all->near, "least_relative_determinant", all->worst_determinant);
+	nt_tally_number(&all->near, "greatest_error_degrees", all->worst_bound);
+	nt_check_report_as(check, &all->near, severity_by_share(check, all->near_area),
+		"relative determinant down to %.2g, error up to %.2g degrees", all->worst_determinant,
+		all->worst_bound);
+
+	nt_tally_number(&all->against, "area_share",
+		check->total_area > 0.0 ? all->against_area / check->total_area : 0.0);
+	nt_check_report(check, &all->against, NULL);
 }
 
 static nt_status check_triangles(nt_check *check)
 {
-	const nt_surface *s = &check->surface;
-	triangle_tallies *tt = nt_scratch_alloc(check->scratch, 1, sizeof *tt);
-	uint8_t *sound_vertex = nt_scratch_alloc(check->scratch, check->mesh->vertex_count, 1);
-	if (!tt || !sound_vertex)
+	const size_t triangles = check->surface.triangle_count;
+	const size_t parts = (nt_block_count(&check->surface) + PART - 1) / PART;
+	triangle_work work = {.check = check,
+		.parts = nt_scratch_alloc(check->scratch, parts, sizeof *work.parts),
+		.determinants = nt_scratch_alloc(check->scratch, triangles, sizeof *work.determinants)};
+	if (!work.parts || !work.determinants)
 		return NT_ERROR_MEMORY;
-	*tt = (triangle_tallies){.flat = {.code = NT_CODE_POS_DEGENERATE_TRIANGLE},
-		.no_uv_area = {.code = NT_CODE_UV_DEGENERATE_TRIANGLE},
-		.near = {.code = NT_CODE_UV_NEAR_DEGENERATE},
-		.worst_determinant = INFINITY,
-		.determinants = nt_scratch_alloc(check->scratch, s->triangle_count, sizeof(float)),
-		.histogram = nt_scratch_alloc(check->scratch, 65536, sizeof(size_t))};
-	if (!tt->determinants || !tt->histogram)
-		return NT_ERROR_MEMORY;
-	memset(sound_vertex, 0, check->mesh->vertex_count);
-	for (size_t c = 0; c < 3 * s->triangle_count; c++)
-		if (s->orientation[c / 3] && s->flatness[c / 3] != NT_COINCIDENT)
-			sound_vertex[s->vertices[c]] = 1;
-	for (size_t t = 0; t < s->triangle_count; t++)
-		check_triangle(check, t, sound_vertex, tt);
-	find_determinants(check->facts, tt);
-	report_triangles(check, tt);
-	return NT_OK;
+	nt_parallel_items(nt_thread_count(check->options->threads), parts, check_part, &work);
+	for (size_t i = 1; i < parts; i++)
+		join_part(&work.parts[0], &work.parts[i]);
+	sum_blocks(check);
+	size_t from_neighbour;
+	nt_status status = count_neighbours(check, &from_neighbour);
+	if (!status && check->mesh->texcoords)
+		status = find_determinants(check, work.determinants);
+	if (!status)
+		report_triangles(check, &work.parts[0], from_neighbour);
+	return status;
+}
+
+/* ---- vertices ---- */
+
+/* Normals whose squared length lies between these have unit length for certain. */
+static const double LEAST_UNIT = 0.987, GREATEST_UNIT = 1.0134;
+
+typedef struct odd_search {
+	const nt_check *check;
+	uint64_t *odd; /* [vertex_count] bits */
+	bool found;
+} odd_search;
+
+static bool is_odd(const nt_mesh *mesh, size_t v)
+{
+	if (!is_finite(mesh->positions + 3 * v, 3) || (mesh->texcoords && !is_finite(mesh->texcoords + 2 * v, 2)))
+		return true;
+	if (!mesh->normals)
+		return false;
+	const nt_dvec3 n = nt_dvec3_load(mesh->normals + 3 * v);
+	const double square = nt_dvec3_dot(n, n);
+	return !(square > LEAST_UNIT && square < GREATEST_UNIT);
+}
+
+/* Marks the vertices of triangles that there may be something to say about. */
+static void find_odd(void *context, size_t begin, size_t end, unsigned slot)
+{
+	odd_search *search = context;
+	const nt_check *check = search->check;
+	bool found = false;
+	(void)slot;
+	for (size_t v = begin; v < end; v++) {
+		if (check->surface.points[v] == NT_NONE || !is_odd(check->mesh, v))
+			continue;
+		nt_bit_set(search->odd, v);
+		found = true;
+	}
+	if (found)
+		__atomic_store_n(&search->found, true, __ATOMIC_RELAXED);
 }
 
 /* Each vertex that a triangle uses, once. */
@@ -223,20 +465,22 @@ static nt_status check_vertices(nt_check *check)
 {
 	const nt_surface *s = &check->surface;
 	const nt_mesh *mesh = check->mesh;
-	uint8_t *seen = nt_scratch_alloc(check->scratch, mesh->vertex_count, 1);
-	if (!seen)
+	const size_t words = nt_bit_words(mesh->vertex_count);
+	odd_search search = {.check = check, .odd = nt_scratch_alloc(check->scratch, words, sizeof *search.odd)};
+	if (!search.odd)
 		return NT_ERROR_MEMORY;
-	memset(seen, 0, mesh->vertex_count);
+	memset(search.odd, 0, words * sizeof *search.odd);
+	nt_parallel_ranges(nt_thread_count(check->options->threads), mesh->vertex_count, GRAIN, find_odd, &search);
 	nt_tally position = {.code = NT_CODE_POS_NOT_FINITE};
 	nt_tally texcoord = {.code = NT_CODE_UV_NOT_FINITE};
 	nt_tally zero = {.code = NT_CODE_MESH_NORMAL_ZERO};
 	nt_tally non_unit = {.code = NT_CODE_MESH_NORMAL_NON_UNIT};
 	double worst = 1.0;
-	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
-		const uint32_t v = s->vertices[c];
-		if (seen[v])
+	for (size_t c = 0; search.found && c < 3 * s->triangle_count; c++) {
+		const uint32_t v = nt_side_vertex(s, c);
+		if (!nt_bit(search.odd, v))
 			continue;
-		seen[v] = 1;
+		nt_bit_clear(search.odd, v);
 		if (!is_finite(mesh->positions + 3 * (size_t)v, 3))
 			nt_tally_vertex(check, &position, v, NAN);
 		if (mesh->texcoords && !is_finite(mesh->texcoords + 2 * (size_t)v, 2))
@@ -261,40 +505,12 @@ static nt_status check_vertices(nt_check *check)
 	return NT_OK;
 }
 
-/* Triangles whose corner normals, summed, point to their back. */
-static void check_winding(nt_check *check)
-{
-	const nt_surface *s = &check->surface;
-	nt_tally against = {.code = NT_CODE_MESH_NORMAL_AGAINST_FACE};
-	double area = 0.0;
-	for (size_t t = 0; check->mesh->normals && t < s->triangle_count; t++) {
-		if (s->flatness[t] != NT_SOUND)
-			continue;
-		const nt_dvec3 a = nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t)));
-		const nt_dvec3 b = nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t + 1)));
-		const nt_dvec3 c = nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t + 2)));
-		const nt_dvec3 face = nt_dvec3_cross(nt_dvec3_sub(b, a), nt_dvec3_sub(c, a));
-		nt_dvec3 sum = {0, 0, 0};
-		for (size_t k = 0; k < 3; k++)
-			sum = nt_dvec3_add(sum,
-				nt_dvec3_load(check->mesh->normals + 3 * (size_t)s->vertices[3 * t + k]));
-		if (nt_dvec3_dot(face, sum) < 0.0) {
-			nt_tally_triangle(check, &against, t, NAN);
-			area += s->areas[t];
-		}
-	}
-	nt_tally_number(&against, "area_share", check->total_area > 0.0 ? area / check->total_area : 0.0);
-	nt_check_report(check, &against, NULL);
-}
-
 nt_status nt_check_geometry(nt_check *check)
 {
 	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
 	nt_status status = check_triangles(check);
 	if (!status)
 		status = check_vertices(check);
-	if (!status)
-		check_winding(check);
 	nt_scratch_back(check->scratch, mark);
 	return status;
 }

@@ -23,7 +23,7 @@ static nt_status check_shared(nt_check *check)
 	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
 		const int sign = s->orientation[c / 3];
 		if (sign)
-			sides[s->vertices[c]] |= sign > 0 ? UNMIRRORED : MIRRORED;
+			sides[nt_side_vertex(s, c)] |= sign > 0 ? UNMIRRORED : MIRRORED;
 	}
 	nt_tally shared = {.code = NT_CODE_TAN_MIRROR_SHARED_VERTEX};
 	for (size_t v = 0; v < vertex_count; v++)
@@ -65,7 +65,8 @@ static void check_copies(nt_check *check)
 
 nt_status nt_check_growth(nt_check *check)
 {
-	const nt_status status = check->mesh->texcoords ? check_shared(check) : NT_OK;
+	const bool both = check->facts->triangles[0] && check->facts->triangles[2];
+	const nt_status status = both ? check_shared(check) : NT_OK;
 	if (!status)
 		check_copies(check);
 	return status;

@@ -17,8 +17,12 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/parallel.h"
 
 enum { SAMPLE_COUNT = 16384, GRID_SIZE = 128 };
+
+/* Blocks that are worth a thread. */
+enum { GRAIN = 128 };
 
 /* Cells that the streaming triangles may visit: some 10 ms for a mesh and 3 us for each of its triangles, at most 0.3 s.
  * Beyond, points count as not found. */
@@ -29,36 +33,98 @@ static const double COVERED_SHARE = 0.5, TWIN_SHARE = 0.95;
 
 /* ---- what each island is made of ---- */
 
-static void measure_islands(nt_check *check)
+typedef struct measuring {
+	const nt_check *check;
+	nt_island *islands;
+	const uint64_t *mixed; /* bits: blocks with triangles of several islands, or of none */
+	unsigned owners;
+} measuring;
+
+static void add_triangle(const nt_check *check, nt_island *island, size_t t)
 {
 	const nt_surface *s = &check->surface;
-	for (size_t i = 0; i < check->facts->island_count; i++)
-		check->facts->islands[i] = (nt_island){.minimum = {INFINITY, INFINITY},
+	island->triangles[s->orientation[t] + 1]++;
+	island->area += nt_triangle_area(s, t);
+	if (t < island->first_triangle)
+		island->first_triangle = (uint32_t)t;
+	for (size_t side = 3 * t; side < 3 * t + 3; side++) {
+		const size_t vertex = nt_side_vertex(s, side);
+		nt_range_add(island->minimum, island->maximum, check->mesh->texcoords + 2 * vertex);
+		nt_box_add(&island->box, check->mesh->positions + 3 * vertex);
+	}
+}
+
+static void add_block(const nt_check *check, nt_island *island, size_t b)
+{
+	const nt_block *block = &check->surface.blocks[b];
+	for (int i = 0; i < 3; i++) {
+		island->triangles[i] += block->triangles[i];
+		island->area += block->areas[i];
+	}
+	if (b * NT_BLOCK < island->first_triangle)
+		island->first_triangle = (uint32_t)(b * NT_BLOCK);
+	nt_range_add(island->minimum, island->maximum, block->minimum);
+	nt_range_add(island->minimum, island->maximum, block->maximum);
+	nt_box_join(&island->box, &block->box);
+}
+
+/* The island of all triangles of a block; NT_NONE: there is no such one. */
+static uint32_t island_of_block(const nt_check *check, size_t b)
+{
+	const uint32_t island = check->islands[b * NT_BLOCK];
+	for (size_t t = b * NT_BLOCK; t < nt_block_end(&check->surface, b); t++)
+		if (check->islands[t] != island)
+			return NT_NONE;
+	return island;
+}
+
+/* Adds the triangles of mixed blocks that belong to an owner's islands. */
+static void add_owned(void *context, size_t owner, unsigned slot)
+{
+	const measuring *m = context;
+	const size_t blocks = nt_block_count(&m->check->surface);
+	(void)slot;
+	for (size_t b = 0; (b = nt_bit_next(m->mixed, b, blocks)) < blocks; b++)
+		for (size_t t = b * NT_BLOCK; t < nt_block_end(&m->check->surface, b); t++) {
+			const uint32_t island = m->check->islands[t];
+			if (island != NT_NONE && island % m->owners == owner)
+				add_triangle(m->check, &m->islands[island], t);
+		}
+}
+
+/* Blocks of one island are added as they are, in their order; the triangles of others by the thread that owns their
+ * island, in theirs. */
+static nt_status measure_islands(nt_check *check)
+{
+	nt_report_mesh *facts = check->facts;
+	const size_t blocks = nt_block_count(&check->surface);
+	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
+	uint64_t *mixed = nt_scratch_alloc(check->scratch, nt_bit_words(blocks), sizeof *mixed);
+	if (!mixed)
+		return NT_ERROR_MEMORY;
+	memset(mixed, 0, nt_bit_words(blocks) * sizeof *mixed);
+	for (size_t i = 0; i < facts->island_count; i++)
+		facts->islands[i] = (nt_island){.minimum = {INFINITY, INFINITY},
 			.maximum = {-INFINITY, -INFINITY}, .covered = NAN, .texel_density = {NAN, NAN},
 			.stretch = {NAN, NAN}, .first_triangle = NT_NONE,
 			.box = nt_box_empty()};
-	for (size_t t = 0; t < s->triangle_count; t++) {
-		if (check->islands[t] == NT_NONE)
-			continue;
-		nt_island *island = &check->facts->islands[check->islands[t]];
-		island->triangles[s->orientation[t] + 1]++;
-		island->area += s->areas[t];
-		if (island->first_triangle == NT_NONE)
-			island->first_triangle = (uint32_t)t;
-		for (size_t k = 0; k < 3; k++) {
-			const uint32_t side = (uint32_t)(3 * t + k);
-			float uv[2];
-			nt_side_source_texcoord(check, side, uv);
-			for (int i = 0; i < 2; i++) {
-				/* NaN is passed over */
-				if (uv[i] < island->minimum[i])
-					island->minimum[i] = uv[i];
-				if (uv[i] > island->maximum[i])
-					island->maximum[i] = uv[i];
-			}
-			nt_box_add(&island->box, nt_side_position(s, side));
+	size_t mixed_count = 0;
+	for (size_t b = 0; b < blocks; b++) {
+		const uint32_t island = island_of_block(check, b);
+		if (island != NT_NONE) {
+			add_block(check, &facts->islands[island], b);
+		} else {
+			nt_bit_set(mixed, b);
+			mixed_count++;
 		}
 	}
+	measuring m = {check, facts->islands, mixed,
+		mixed_count < GRAIN ? 1 : nt_thread_count(check->options->threads)};
+	nt_parallel_items(m.owners, m.owners, add_owned, &m);
+	for (size_t i = 0; i < facts->island_count; i++)
+		nt_source_range(check->scene, facts->islands[i].minimum, facts->islands[i].maximum);
+	nt_scratch_back(check->scratch, mark);
+	return NT_OK;
 }
 
 static nt_island_kind kind_of(const nt_island *island)
@@ -328,7 +394,7 @@ static bool is_mixed(const nt_check *check, size_t t)
 static void meet_corner(const nt_surface *s, uint32_t side, uint32_t island, uv_key *entry, bool mirrored,
 	size_t *counts)
 {
-	const uint32_t point = s->points[side];
+	const uint32_t point = nt_side_point(s, side);
 	const float *uv = nt_side_texcoord(s, side);
 	if (mirrored) {
 		if (entry->island == NT_NONE || entry->point != point)
@@ -353,9 +419,10 @@ static size_t visit_vertices(nt_check *check, bool mirrored, uv_key *table, size
 			continue;
 		const uint32_t island = check->islands[t];
 		for (uint32_t side = (uint32_t)(3 * t); side < 3 * t + 3; side++) {
-			if (last[s->vertices[side]] == island)
+			uint32_t *met = &last[nt_side_vertex(s, side)];
+			if (*met == island)
 				continue;
-			last[s->vertices[side]] = island;
+			*met = island;
 			visits++;
 			if (table)
 				meet_corner(s, side, island,
@@ -468,7 +535,9 @@ nt_status nt_check_islands(nt_check *check)
 		sizeof *facts->islands);
 	if (!facts->islands)
 		return NT_ERROR_MEMORY;
-	measure_islands(check);
+	nt_status status = measure_islands(check);
+	if (status)
+		return status;
 	size_t mirrored = 0;
 	for (size_t i = 0; i < facts->island_count; i++) {
 		nt_island *island = &facts->islands[i];
@@ -476,7 +545,8 @@ nt_status nt_check_islands(nt_check *check)
 		facts->island_kinds[island->kind]++;
 		mirrored += island->triangles[0];
 	}
-	nt_status status = mirrored ? find_covered(check, mirrored) : NT_OK;
+	if (mirrored)
+		status = find_covered(check, mirrored);
 	if (!status && facts->island_kinds[NT_ISLAND_MIXED])
 		status = find_twins(check);
 	if (!status)

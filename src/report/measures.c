@@ -43,7 +43,7 @@ static texel measure_texel(const nt_surface *s, size_t t, double width, double h
 	const double root = sqrt((uu - vv) * (uu - vv) + 4.0 * uv * uv);
 	const double longest = sqrt(0.5 * (uu + vv + root));
 	/* the difference would cancel; the product of both is the ratio of the areas */
-	const double product = 2.0 * s->areas[t] / fabs(determinant);
+	const double product = 2.0 * nt_triangle_area(s, t) / fabs(determinant);
 	return (texel){longest, product / longest};
 }
 
@@ -70,7 +70,7 @@ static double median_of(weighed *items, size_t count)
 
 static bool is_measured(const nt_check *check, size_t t)
 {
-	return check->islands[t] != NT_NONE && check->surface.orientation[t] != 0 && check->surface.areas[t] > 0.0;
+	return check->islands[t] != NT_NONE && check->surface.orientation[t] != 0 && check->surface.flatness[t] == NT_SOUND;
 }
 
 /* Triangles by island: list[first[i]] to list[first[i + 1] - 1]. */
@@ -98,7 +98,7 @@ static void measure_island(const nt_check *check, nt_island *island, const uint3
 		for (size_t i = 0; i < count; i++) {
 			const texel x = measure_texel(&check->surface, list[i], width, height);
 			const double value = pass ? x.longest / x.shortest : 1.0 / sqrt(x.longest * x.shortest);
-			items[i] = (weighed){(float)value, (float)check->surface.areas[list[i]]};
+			items[i] = (weighed){(float)value, (float)nt_triangle_area(&check->surface, list[i])};
 		}
 		const double median = median_of(items, count);
 		if (pass) {

@@ -13,6 +13,7 @@
 #define NT_REPORT_REPORT_H
 
 #include "base/memory.h"
+#include "report/box.h"
 #include "report/codes.h"
 #include "scene/scene.h"
 
@@ -81,11 +82,6 @@ typedef struct nt_number {
 	const char *name; /* static */
 	double value;
 } nt_number;
-
-/* A box that nothing is in has minimum > maximum. */
-typedef struct nt_box {
-	float minimum[3], maximum[3];
-} nt_box;
 
 typedef struct nt_report_finding {
 	nt_code code;

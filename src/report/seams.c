@@ -14,6 +14,7 @@
 #include <string.h>
 #include "base/angle.h"
 #include "base/dvec.h"
+#include "base/parallel.h"
 #include "report/chains.h"
 
 /* A seam lies in a plane when its points keep within this part of the mesh's extent. */
@@ -94,7 +95,7 @@ static const float *corner_tangent(const nt_check *check, uint32_t side)
 	if (!mesh->split.vertex_tangents)
 		return NULL;
 	return mesh->split.vertex_tangents +
-		4 * (size_t)(mesh->split.indices ? mesh->split.indices[corner] : check->surface.vertices[side]);
+		4 * (size_t)(mesh->split.indices ? mesh->split.indices[corner] : nt_side_vertex(&check->surface, side));
 }
 
 /* Adds an edge to frame_angle, same_texel_count and unhidden_count. */
@@ -106,7 +107,7 @@ static void compare_frames(const nt_check *check, const nt_mirror_edge *edge, ui
 	uint32_t ends[2][2]; /* [side][end] */
 	for (int i = 0; i < 2; i++) {
 		const uint32_t side = edge->sides[i];
-		const bool along = s->points[side] == from;
+		const bool along = nt_side_point(s, side) == from;
 		ends[i][0] = along ? side : nt_side_next(side);
 		ends[i][1] = along ? nt_side_next(side) : side;
 	}
@@ -128,7 +129,7 @@ static uint32_t output_vertex(const nt_check *check, uint32_t side)
 {
 	const nt_mesh *mesh = check->mesh;
 	return nt_is_written(check) && mesh->split.indices ? mesh->split.indices[nt_side_corner(&check->surface, side)]
-				   : check->surface.vertices[side];
+				   : nt_side_vertex(&check->surface, side);
 }
 
 /* An edge as seen in walking direction, from the point `from`. */
@@ -138,11 +139,11 @@ static nt_seam_edge describe_edge(const nt_check *check, const nt_mirror_edge *e
 	nt_seam_edge result = {.triangles = {edge->sides[0] / 3, edge->sides[1] / 3}};
 	for (int i = 0; i < 2; i++) {
 		const uint32_t side = edge->sides[i];
-		const bool along = s->points[side] == from;
+		const bool along = nt_side_point(s, side) == from;
 		const uint32_t ends[2] = {along ? side : nt_side_next(side),
 			along ? nt_side_next(side) : side};
 		for (int end = 0; end < 2; end++) {
-			result.vertices[i][end] = nt_source_vertex(check->mesh, s->vertices[ends[end]]);
+			result.vertices[i][end] = nt_source_vertex(check->mesh, nt_side_vertex(s, ends[end]));
 			result.output[i][end] = output_vertex(check, ends[end]);
 			nt_side_source_texcoord(check, ends[end], result.texcoords[i][end]);
 			memcpy(result.positions[end], nt_side_position(s, ends[end]),
@@ -151,7 +152,7 @@ static nt_seam_edge describe_edge(const nt_check *check, const nt_mirror_edge *e
 	}
 	/* the dihedral angle is 0 on a flat surface; sides that run the same way face each other's back */
 	nt_dvec3 other = face_normal(s, result.triangles[1]);
-	if (s->points[edge->sides[0]] == s->points[edge->sides[1]])
+	if (nt_side_point(s, edge->sides[0]) == nt_side_point(s, edge->sides[1]))
 		other = nt_dvec3_scale(-1.0, other);
 	result.dihedral = (float)angle_between(face_normal(s, result.triangles[0]), other);
 	result.tangent_angle = (float)angle_between(face_tangent(s, result.triangles[0]),
@@ -271,15 +272,15 @@ static nt_status describe_seam(nt_check *check, const nt_chains *chains, size_t 
 	plane_sums sums = {0};
 	for (size_t i = 0; i < seam->edge_count; i++) {
 		const uint32_t side = chains->sides[first + i];
-		const nt_mirror_edge *mirror = &check->mirror_edges[check->seam_edge[side]];
-		const uint32_t from = chains->reversed[first + i] ? nt_side_next(side) : side;
-		const nt_seam_edge edge = describe_edge(check, mirror, s->points[from]);
+		const nt_mirror_edge *mirror = nt_mirror_edge_of(check, side);
+		const uint32_t from = nt_side_point(s, chains->reversed[first + i] ? nt_side_next(side) : side);
+		const nt_seam_edge edge = describe_edge(check, mirror, from);
 		if (i < kept)
 			seam->edges[i] = edge;
 		seam->length += edge_length(&edge);
 		widen(seam->dihedral, edge.dihedral);
 		widen(seam->tangent_angle, edge.tangent_angle);
-		compare_frames(check, mirror, s->points[from], seam);
+		compare_frames(check, mirror, from, seam);
 		seam->shared_count += edge.vertices[0][0] == edge.vertices[1][0] &&
 			edge.vertices[0][1] == edge.vertices[1][1];
 		seam->non_manifold_count += mirror->non_manifold;
@@ -333,11 +334,18 @@ static void report_seams(nt_check *check, const nt_chains *chains)
 
 /* ---- entry ---- */
 
+static bool any_conflict(const nt_check *check)
+{
+	return check->facts->non_manifold_edges || check->facts->inconsistent_edges;
+}
+
 static nt_status trace_boundary(nt_check *check)
 {
 	nt_chains chains;
-	const nt_status status =
-		nt_chains_trace(&check->surface, check->boundary, check->scratch, &chains, check->error);
+	const nt_marks marks = {.sides = check->boundary, .count = check->facts->boundary_edges,
+		.conflicts = any_conflict(check)};
+	const nt_status status = nt_chains_trace(&check->surface, &marks, nt_thread_count(check->options->threads),
+		check->scratch, &chains, check->error);
 	for (size_t i = 0; !status && i < chains.count; i++) {
 		if (chains.closed[i])
 			check->facts->boundary_loops++;
@@ -352,15 +360,11 @@ static nt_status trace_boundary(nt_check *check)
 static nt_status trace_seams(nt_check *check)
 {
 	nt_report_mesh *facts = check->facts;
-	const size_t side_count = 3 * check->surface.triangle_count;
-	uint8_t *marked = nt_scratch_alloc(check->scratch, side_count, 1);
-	if (!marked)
-		return NT_ERROR_MEMORY;
-	memset(marked, 0, side_count);
-	for (size_t i = 0; i < check->mirror_edge_count; i++)
-		marked[check->mirror_edges[i].sides[0]] = 1;
 	nt_chains chains;
-	nt_status status = nt_chains_trace(&check->surface, marked, check->scratch, &chains, check->error);
+	const nt_marks marks = {.sides = check->mirrors, .against = check->mirrors_against,
+		.count = check->mirror_edge_count, .conflicts = any_conflict(check)};
+	nt_status status = nt_chains_trace(&check->surface, &marks, nt_thread_count(check->options->threads),
+		check->scratch, &chains, check->error);
 	if (status)
 		return status;
 	facts->seams = nt_arena_alloc(&check->report->arena, chains.count, sizeof *facts->seams);

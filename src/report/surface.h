@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A mesh as a surface: its triangles, the points where vertices at one position meet, and the edges
- * between points with the triangles on them. Normals, texture coordinates and vertex numbers do not
- * matter for what is connected here; they are what is checked afterwards.
+ * A mesh as a surface: its triangles, and the points where vertices at one position meet. Normals, texture
+ * coordinates and vertex numbers do not matter for what is connected here; they are what is checked afterwards.
  *
  * Side 3 * t + k runs from corner k of triangle t to its next corner.
  */
 #ifndef NT_REPORT_SURFACE_H
 #define NT_REPORT_SURFACE_H
 
+#include "base/bits.h"
 #include "base/scratch.h"
+#include "report/box.h"
 #include "scene/scene.h"
 
 /* Whether a triangle spans an area in space. */
@@ -20,6 +21,18 @@ typedef enum nt_flatness {
 	NT_NOT_FINITE  /* a coordinate is NaN or infinite */
 } nt_flatness;
 
+/* Triangles of a block. Whatever is summed is summed by block and then in the order of blocks, so that the last bit
+ * does not depend on threads. */
+enum { NT_BLOCK = 128 };
+
+/* What the triangles of one block are together. */
+typedef struct nt_block {
+	uint32_t triangles[3]; /* mirrored, degenerate, normal: [orientation + 1] */
+	double areas[3];       /* the same, in space */
+	nt_box box;            /* of finite positions */
+	float minimum[2], maximum[2]; /* of the mesh's texture coordinates; NaN is passed over */
+} nt_block;
+
 typedef struct nt_surface {
 	const nt_mesh *mesh;
 	const float *texcoords; /* [vertex_count][2] what is solved by: turned and scaled by a texture transform
@@ -27,27 +40,53 @@ typedef struct nt_surface {
 	size_t triangle_count;
 	uint32_t *corners;    /* [3 * triangle_count] corner of the mesh; NULL: side c begins at corner c */
 	uint32_t *faces;      /* [triangle_count] face of the mesh; NULL: triangle t is face t */
-	const uint32_t *vertices; /* [3 * triangle_count] vertex of the mesh */
-	uint32_t *points;     /* [3 * triangle_count] welded position */
+	const uint32_t *vertices; /* [3 * triangle_count] vertex of the mesh; NULL: side c begins at vertex c */
+	uint32_t *points;     /* [vertex_count] welded position, numbered in order of first use; NT_NONE: no triangle
+	                         has the vertex */
 	size_t point_count;
+	uint64_t *joints;     /* [point_count] bits: points where texture coordinates may differ, since several
+	                         vertices are there, or one whose coordinates are NaN */
 	int8_t *orientation;  /* [triangle_count] exact sign in UV space, v up; 0 without texture coordinates */
 	uint8_t *flatness;    /* [triangle_count] nt_flatness */
-	double *areas;        /* [triangle_count] in space */
-
-	/* Edges between different points, ordered by their lower point, then the higher one, and on each its
-	 * sides, ascending. Triangles that are coincident or not finite have no edges. */
-	size_t edge_count;
-	uint32_t *edge_first; /* [edge_count + 1] into sides */
-	uint32_t *sides;
+	nt_block *blocks;     /* [nt_block_count(triangle_count)] */
 } nt_surface;
 
-/* Builds the surface of a loaded mesh on up to `threads` threads; it does not depend on how many. Everything is in
- * scratch or the mesh's own. Returns NT_OK or NT_ERROR_MEMORY. */
+/* Builds the surface of a loaded mesh, but for orientation, flatness and blocks, on up to `threads` threads; it does not
+ * depend on how many. Everything is in scratch or the mesh's own. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, unsigned threads, nt_scratch *scratch);
+
+/* Of that: sets points, point_count and joints. points.c */
+nt_status nt_surface_weld(nt_surface *surface, unsigned threads, nt_scratch *scratch);
+
+/* Sets the orientation and flatness of a block's triangles, and the block. The triangles are then in the cache. */
+void nt_surface_measure(nt_surface *surface, size_t block);
+
+static inline size_t nt_block_count(const nt_surface *s)
+{
+	return (s->triangle_count + NT_BLOCK - 1) / NT_BLOCK;
+}
+
+/* The triangle after the last one of a block. */
+static inline size_t nt_block_end(const nt_surface *s, size_t block)
+{
+	const size_t end = (block + 1) * NT_BLOCK;
+	return end < s->triangle_count ? end : s->triangle_count;
+}
 
 static inline uint32_t nt_side_corner(const nt_surface *s, size_t side)
 {
 	return s->corners ? s->corners[side] : (uint32_t)side;
+}
+
+static inline uint32_t nt_side_vertex(const nt_surface *s, size_t side)
+{
+	return s->vertices ? s->vertices[side] : (uint32_t)side;
+}
+
+/* The point where a side begins. */
+static inline uint32_t nt_side_point(const nt_surface *s, size_t side)
+{
+	return s->points[nt_side_vertex(s, side)];
 }
 
 /* The side after this one in its triangle; its first corner is where this one ends. */
@@ -56,21 +95,30 @@ static inline uint32_t nt_side_next(uint32_t side)
 	return side % 3 == 2 ? side - 2 : side + 1;
 }
 
-static inline const float *nt_side_position(const nt_surface *s, uint32_t side)
+static inline const float *nt_side_position(const nt_surface *s, size_t side)
 {
-	return s->mesh->positions + 3 * (size_t)s->vertices[side];
+	return s->mesh->positions + 3 * (size_t)nt_side_vertex(s, side);
 }
 
 /* Where a side begins in UV space; the mesh has texture coordinates. */
-static inline const float *nt_side_texcoord(const nt_surface *s, uint32_t side)
+static inline const float *nt_side_texcoord(const nt_surface *s, size_t side)
 {
-	return s->texcoords + 2 * (size_t)s->vertices[side];
+	return s->texcoords + 2 * (size_t)nt_side_vertex(s, side);
 }
+
+/* Triangles that are coincident or not finite have no edges. */
+static inline bool nt_has_edges(const nt_surface *s, size_t triangle)
+{
+	return s->flatness[triangle] == NT_SOUND || s->flatness[triangle] == NT_COLLINEAR;
+}
+
+/* The area of a triangle in space; 0 where it is not finite. */
+double nt_triangle_area(const nt_surface *s, size_t triangle);
 
 /* Whether two sides of one edge lie on each other in UV space. */
 static inline bool nt_sides_meet(const nt_surface *s, uint32_t a, uint32_t b)
 {
-	const bool same_way = s->points[a] == s->points[b];
+	const bool same_way = nt_side_point(s, a) == nt_side_point(s, b);
 	const float *a0 = nt_side_texcoord(s, a), *a1 = nt_side_texcoord(s, nt_side_next(a));
 	const float *b0 = nt_side_texcoord(s, same_way ? b : nt_side_next(b));
 	const float *b1 = nt_side_texcoord(s, same_way ? nt_side_next(b) : b);

@@ -128,7 +128,7 @@ static nt_status check_each(nt_check *check)
 		if (seen[index])
 			continue;
 		seen[index] = 1;
-		check_tangent(check, tt, s->vertices[c], nt_stored_tangent(check, nt_side_corner(s, c)));
+		check_tangent(check, tt, nt_side_vertex(s, c), nt_stored_tangent(check, nt_side_corner(s, c)));
 	}
 	nt_tally_number(&tt->non_unit, "worst_length", tt->worst_length);
 	nt_tally_number(&tt->not_orthogonal, "worst_degrees", check->facts->worst_orthogonality);
@@ -176,7 +176,7 @@ static bool is_reversed(const nt_check *check, size_t t)
 	for (size_t k = 0; k < 3; k++) {
 		const float *stored = nt_stored_tangent(check, nt_side_corner(s, 3 * t + k));
 		const nt_dvec3 normal =
-			nt_dvec3_load(check->mesh->normals + 3 * (size_t)s->vertices[3 * t + k]);
+			nt_dvec3_load(check->mesh->normals + 3 * (size_t)nt_side_vertex(s, 3 * t + k));
 		nt_dvec3 bitangent = nt_dvec3_scale(stored[3],
 			nt_dvec3_cross(normal, nt_dvec3_load(stored)));
 		if (!(nt_dvec3_dot(face, normal) > 0.0) || !nt_dvec3_normalise(&bitangent) ||
@@ -195,11 +195,12 @@ typedef struct sign_tallies {
 /* Whether w is right for the file's own coordinates, where a texture transform turns them over. */
 static bool fits_untransformed(const nt_check *check, size_t t, float w)
 {
-	const uint32_t *v = check->surface.vertices + 3 * t;
+	const nt_surface *s = &check->surface;
 	const float *uv = check->mesh->texcoords;
 	if (!check->mesh->solve_texcoords)
 		return false;
-	const int sign = nt_orientation(uv + 2 * (size_t)v[0], uv + 2 * (size_t)v[1], uv + 2 * (size_t)v[2]);
+	const int sign = nt_orientation(uv + 2 * (size_t)nt_side_vertex(s, 3 * t), uv + 2 * (size_t)nt_side_vertex(s, 3 * t + 1),
+		uv + 2 * (size_t)nt_side_vertex(s, 3 * t + 2));
 	return sign != 0 && (w > 0.0f) == (sign > 0);
 }
 
@@ -222,7 +223,7 @@ static int stored_orientation(const nt_check *check, size_t t, float v_offset)
 		return s->orientation[t];
 	float uv[3][2];
 	for (uint32_t k = 0; k < 3; k++) {
-		const float *source = mesh->texcoords + 2 * (size_t)s->vertices[3 * t + k];
+		const float *source = mesh->texcoords + 2 * (size_t)nt_side_vertex(s, 3 * t + k);
 		uv[k][0] = source[0];
 		uv[k][1] = source[1] + v_offset;
 	}
@@ -299,7 +300,7 @@ static void check_directions(nt_check *check, const float *fresh)
 		check->facts->angle_histogram[bin]++;
 		checked++;
 		if (angle > MISMATCH_DEGREES)
-			nt_tally_vertex(check, &wrong, s->vertices[c], angle);
+			nt_tally_vertex(check, &wrong, nt_side_vertex(s, c), angle);
 		worst = fmax(worst, angle);
 	}
 	const double share = checked ? (double)wrong.count / (double)checked : 0.0;
