@@ -13,6 +13,7 @@ typedef struct ply_cursor {
 	size_t body_line;                      /* line that body is on */
 	const unsigned char *body;
 	ply_encoding encoding;
+	unsigned threads; /* of plain rows of text; 0 and 1: the caller alone */
 } ply_cursor;
 
 /* Line (1-based) of a position in an ASCII body: counted when an error needs it. */

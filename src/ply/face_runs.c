@@ -6,6 +6,8 @@
  */
 #include "ply/face_runs.h"
 
+#include "ply/pieces.h"
+
 /* Bytes that a short row of text and the eight-byte steps of decimal.h may touch. */
 enum { TEXT_MARGIN = 64 };
 
@@ -49,8 +51,8 @@ static inline __attribute__((always_inline)) size_t take_binary(const ply_run_la
 }
 
 /* "3 0 1 2" with single blanks and numbers of at most 8 digits, from the beginning of a line. */
-static size_t take_text(ply_cursor *cursor, size_t rows, size_t size, size_t vertex_count,
-	uint32_t *indices)
+static inline __attribute__((always_inline)) size_t take_text(ply_cursor *cursor, size_t rows, size_t size,
+	size_t vertex_count, uint32_t *indices)
 {
 	const char *at = (const char *)cursor->at;
 	const char *const end = (const char *)cursor->end;
@@ -74,6 +76,19 @@ static size_t take_text(ply_cursor *cursor, size_t rows, size_t size, size_t ver
 	return taken;
 }
 
+typedef struct text_faces {
+	size_t size, vertex_count;
+	uint32_t *indices; /* of the first row */
+} text_faces;
+
+static size_t take_text_rows(void *user, ply_cursor *cursor, size_t first, size_t rows)
+{
+	const text_faces *faces = user;
+	uint32_t *const to = faces->indices + first * faces->size;
+	return faces->size == 3 ? take_text(cursor, rows, 3, faces->vertex_count, to)
+				: take_text(cursor, rows, 4, faces->vertex_count, to);
+}
+
 size_t ply_run_size(const ply_run_layout *layout, const ply_cursor *cursor)
 {
 	if (!layout->possible || (size_t)(cursor->end - cursor->at) <= layout->lead)
@@ -87,8 +102,7 @@ size_t ply_take_run(const ply_run_layout *layout, ply_cursor *cursor, size_t row
 	size_t vertex_count, uint32_t *indices)
 {
 	if (layout->encoding == PLY_ASCII)
-		return size == 3 ? take_text(cursor, rows, 3, vertex_count, indices)
-				 : take_text(cursor, rows, 4, vertex_count, indices);
+		return ply_take_pieces(cursor, rows, take_text_rows, &(text_faces){size, vertex_count, indices});
 	const bool swap = ply_swaps(layout->encoding);
 	if (size == 3)
 		return swap ? take_binary(layout, cursor, rows, 3, true, vertex_count, indices)

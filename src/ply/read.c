@@ -13,6 +13,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include "base/parallel.h"
 #include "ply/faces.h"
 #include "ply/vertices.h"
 
@@ -157,12 +158,13 @@ static nt_status read_element(nt_scene *scene, nt_mesh *mesh, ply_source *source
 }
 
 /* All elements in the order of the file; faces that come before the vertices at the end. */
-static nt_status read_body(nt_scene *scene, nt_mesh *mesh, ply_source *source, nt_error *error)
+static nt_status read_body(nt_scene *scene, nt_mesh *mesh, ply_source *source, unsigned threads, nt_error *error)
 {
 	const ply_header *header = &source->header;
 	const unsigned char *body = scene->bytes + header->body;
 	ply_cursor cursor = {.begin = scene->bytes, .at = body, .end = scene->bytes + scene->byte_count,
-		.body = body, .body_line = header->body_line, .encoding = header->encoding};
+		.body = body, .body_line = header->body_line, .encoding = header->encoding,
+		.threads = nt_thread_count(threads)};
 	bool have_vertices = false, faces_first = false;
 	for (size_t i = 0; i < header->element_count; i++) {
 		const ply_element *element = &header->elements[i];
@@ -229,7 +231,6 @@ static void describe_mesh(nt_mesh *mesh, const ply_source *source)
 
 nt_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
-	(void)options;
 	scene->format = NT_FORMAT_PLY;
 	ply_source *source = nt_calloc(1, sizeof *source);
 	if (!source)
@@ -247,7 +248,7 @@ nt_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_error 
 		status = make_materials(scene, &source->header, error);
 	if (!status) {
 		report_unused(scene, source);
-		status = read_body(scene, scene->meshes, source, error);
+		status = read_body(scene, scene->meshes, source, options->threads, error);
 	}
 	if (!status)
 		describe_mesh(scene->meshes, source);

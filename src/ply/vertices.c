@@ -12,6 +12,7 @@
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
+#include "ply/pieces.h"
 #include "scene/srgb.h"
 
 /* Positions, normals, texture coordinates, colours, tangents. */
@@ -266,17 +267,25 @@ static inline const char *read_plain_line(const char *at, const char *end, size_
 	return *at == '\n' ? at + 1 : NULL;
 }
 
-static void read_plain_lines(const reader *r, size_t *row, const column *columns)
+/* Plain lines from a row of the element on. */
+typedef struct plain_lines {
+	const column *columns;
+	size_t column_count, row;
+} plain_lines;
+
+static size_t take_plain_lines(void *user, ply_cursor *cursor, size_t first, size_t rows)
 {
-	const char *at = (const char *)r->cursor->at;
-	const char *const end = (const char *)r->cursor->end;
-	const size_t count = r->element->property_count;
-	for (const char *next; *row < r->element->count; at = next, ++*row) {
-		next = read_plain_line(at, end, *row, columns, count);
+	const plain_lines *lines = user;
+	const char *at = (const char *)cursor->at;
+	const char *const end = (const char *)cursor->end;
+	size_t taken = 0;
+	for (const char *next; taken < rows; at = next, taken++) {
+		next = read_plain_line(at, end, lines->row + first + taken, lines->columns, lines->column_count);
 		if (!next)
 			break;
 	}
-	r->cursor->at = (const unsigned char *)at;
+	cursor->at = (const unsigned char *)at;
+	return taken;
 }
 
 static nt_status read_any_line(const reader *r, size_t row, const target *const *by_property)
@@ -302,7 +311,8 @@ static nt_status read_lines_into(const reader *r, const target **by_property, co
 	for (size_t row = 0; !status && row < r->element->count;) {
 		if (!r->element->has_list) {
 			ply_next_row(r->cursor);
-			read_plain_lines(r, &row, columns);
+			plain_lines lines = {columns, r->element->property_count, row};
+			row += ply_take_pieces(r->cursor, r->element->count - row, take_plain_lines, &lines);
 		}
 		if (row < r->element->count)
 			status = read_any_line(r, row++, by_property);
