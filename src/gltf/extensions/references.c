@@ -8,6 +8,7 @@
 #include "gltf/extensions/references.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include "base/buffer.h"
 #include "gltf/pointer.h"
@@ -24,6 +25,8 @@ typedef struct search {
 	const nt_json_value *primitive;
 	size_t old_count;
 	nt_buffer pointer; /* of the value that is looked at */
+	bool *own;         /* [accessor_count] attributes of the primitive; NULL: not yet known */
+	bool failed;       /* they cannot be, for lack of memory */
 } search;
 
 static bool is_in(const char *const *names, size_t count, const char *name)
@@ -34,35 +37,34 @@ static bool is_in(const char *const *names, size_t count, const char *name)
 	return false;
 }
 
-static bool has_value(const nt_json_value *object, uint64_t number)
+static nt_status mark_attribute(void *context, nt_json_value *attributes, const char *name, uint32_t accessor)
 {
-	for (size_t i = 0; i < nt_json_count(object); i++) {
-		uint64_t value;
-		if (nt_json_get_uint64(nt_json_at(object, i), &value) && value == number)
-			return true;
+	(void)attributes;
+	(void)name;
+	search *s = context;
+	s->own[accessor] = true;
+	return NT_OK;
+}
+
+/* Whether an accessor grows with the primitive. All that do are marked when the first one is asked for. */
+static bool is_attribute(search *s, uint64_t accessor, size_t accessor_count)
+{
+	if (!s->own) {
+		s->own = nt_calloc(accessor_count, sizeof *s->own);
+		s->failed = !s->own;
+		if (s->own)
+			nt_gltf_visit_attributes(s->primitive, accessor_count, mark_attribute, s);
 	}
-	return false;
+	return s->failed || s->own[accessor];
 }
 
-/* Whether an accessor grows with the primitive. */
-static bool is_attribute(const search *s, uint64_t accessor)
-{
-	if (has_value(nt_json_find(s->primitive, "attributes"), accessor))
-		return true;
-	const nt_json_value *targets = nt_json_find(s->primitive, "targets");
-	for (size_t i = 0; i < nt_json_count(targets); i++)
-		if (has_value(nt_json_at(targets, i), accessor))
-			return true;
-	return false;
-}
-
-static bool is_per_vertex(const search *s, const nt_json_value *value)
+static bool is_per_vertex(search *s, const nt_json_value *value)
 {
 	uint64_t accessor, count;
 	const nt_json_value *accessors = nt_gltf_root_member(s->document, "accessors");
 	return nt_json_get_uint64(value, &accessor) && accessor < nt_json_count(accessors) &&
 		nt_json_get_uint64(nt_json_find(nt_json_at(accessors, accessor), "count"), &count) &&
-		count == s->old_count && !is_attribute(s, accessor);
+		count == s->old_count && !is_attribute(s, accessor, nt_json_count(accessors));
 }
 
 /* Goes on with a member or an element, whose name becomes part of the pointer; returns its length before. */
@@ -127,7 +129,8 @@ nt_status nt_extension_references(nt_scene *scene, const nt_mesh *mesh, size_t o
 		look_at(&s, nt_json_find(nt_json_at(nt_gltf_root_member(s.document, "meshes"), mesh->gltf_mesh),
 			"extensions"), owner);
 	}
-	const bool failed = s.pointer.failed;
+	const bool failed = s.pointer.failed || s.failed;
 	nt_buffer_free(&s.pointer);
+	free(s.own);
 	return failed ? NT_ERROR_MEMORY : NT_OK;
 }
