@@ -26,8 +26,7 @@ typedef struct nt_weld {
  *
  *   row_memory, memory
  *            for the rows, and for everything else, which is given back but for ids; may be the same
- *   ranges   threads to use, at least 1; they pay from about 65536 triangles each. The result does not
- *            depend on them.
+ *   ranges   threads to use, at least 1. The result does not depend on them.
  *
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */

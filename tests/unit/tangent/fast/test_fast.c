@@ -100,13 +100,14 @@ static size_t compare_variants(const char *name, const nmtan_mesh *mesh, size_t 
 	static const unsigned threads[] = {2, 3, 8};
 	static const nt_fast_plan few_places = {.grain = 1, .most_places = 200},
 		bins = {.grain = 1, .bin_bits = 4}, larger_bins = {.grain = 1, .bin_bits = 5},
-		tiny = {.grain = 1, .most_tiny = NT_TINY};
+		tiny = {.grain = 1, .most_tiny = NT_TINY}, two = {.grain = SIZE_MAX, .least_two = 2};
 	size_t differences = 0;
 	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++)
 		for (int small = 0; nt_cpu_has(isa) && small < 2; small++)
 			differences += compare_run(name, mesh, corners, expected, more, isa, 1, small ? &tiny : &usual);
 	for (int i = 0; i < 3; i++)
 		differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), threads[i], &usual);
+	differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), 3, &two);
 	for (unsigned count = 1; count <= 3; count += 2)
 		differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), count, &few_places);
 	if (more)
