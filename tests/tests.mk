@@ -190,6 +190,17 @@ build/bench/torus.obj: $(B)/tests/bench/make_obj.o
 	$(CC) $(NT_LDFLAGS) -o $(B)/tests/bench/make_obj $< -lm
 	$(B)/tests/bench/make_obj 700 >$@.part && mv $@.part $@
 
+# make bench-draco: size and time of Draco's levels.
+build/bench/torus_350.obj: $(B)/tests/bench/make_obj.o
+	@mkdir -p $(@D)
+	$(CC) $(NT_LDFLAGS) -o $(B)/tests/bench/make_obj $< -lm
+	$(B)/tests/bench/make_obj 350 >$@.part && mv $@.part $@
+
+.PHONY: bench-draco
+bench: bench-draco
+bench-draco: build/bench/torus_350.obj $(B)/nmtan $(module_so)
+	@sh tests/bench/draco.sh $(B)/nmtan $< build/bench/draco
+
 .PHONY: bench-obj
 bench-obj: build/bench/torus.obj $(B)/nmtan
 	@for threads in 1 2; do for run in 1 2 3 4 5; do \

@@ -121,6 +121,8 @@ const nt_option_row nt_option_rows[] = {
 	{"draco-bits", 0, NT_OPTION_TEXT, "POS,NRM,UV,TAN", 0, 0, "14,12,12,12",
 		"quantization of what was not quantized before; tangents get 12 bits or more",
 		FIELD(draco_bits), true},
+	{"draco-speed", 0, NT_OPTION_NUMBER, "N", 0, 10, "5",
+		"0: smallest blocks, 10: fastest", SETTING(draco_speed), true},
 	{"morph", 0, NT_OPTION_CHOICE, "bake|keep|drop", NT_MORPH_BAKE, 0, "bake",
 		"glTF morph targets of primitives that get tangents: compute their TANGENT, leave it as "
 		"it is, or take it away", SETTING(morphs), true},

@@ -295,7 +295,7 @@ static bool given(const parser *p, const char *name)
 }
 
 /* "14,12,12,12": four whole numbers. Tangents of less than 12 bits can be seen; more than 24 a float does not have. */
-static nt_status parse_draco_bits(parser *p)
+static nt_status parse_draco(parser *p)
 {
 	static const struct {
 		const char *what;
@@ -323,6 +323,8 @@ static nt_status parse_draco_bits(parser *p)
 	}
 	if (p->command->draco_bits && p->command->settings.draco == NT_DRACO_OFF)
 		return nt_fail(p->error, NT_ERROR_USAGE, "--draco=off leaves nothing for --draco-bits");
+	if (given(p, "draco-speed") && p->command->settings.draco == NT_DRACO_OFF)
+		return nt_fail(p->error, NT_ERROR_USAGE, "--draco=off leaves nothing for --draco-speed");
 	return NT_OK;
 }
 
@@ -450,6 +452,7 @@ void nt_options_defaults(nt_command *command)
 {
 	memset(command, 0, sizeof *command);
 	command->settings.texcoord_set = -1;
+	command->settings.draco_speed = NT_DRACO_SPEED;
 	command->fail_on = NT_FAIL_ON_NEVER;
 }
 
@@ -490,7 +493,7 @@ nt_status nt_options_parse(int argc, char **argv, nt_command *command, nt_error 
 	command->settings.texture_path_count = command->texture_paths.count;
 	if (command->texture_paths.count)
 		command->settings.texture_paths = command->texture_paths.items;
-	nt_status status = parse_draco_bits(&p);
+	nt_status status = parse_draco(&p);
 	if (!status)
 		status = parse_bump_height(&p);
 	if (!status)

@@ -55,6 +55,7 @@ typedef struct nt_draco_mesh {
 	const uint32_t *indices; /* [face_count][3] */
 	const nt_draco_attribute *attributes;
 	size_t attribute_count;
+	int speed; /* encoding: Draco's level, 0 (smallest) to 10 (fastest) */
 } nt_draco_mesh;
 
 /* ---- decoding ---- */

@@ -67,6 +67,7 @@ typedef struct nt_settings {
 	nt_draco_choice draco;
 	nt_morph_choice morphs;
 	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
+	int draco_speed;         /* 0 (smallest) to 10 */
 	nt_precision precision;
 	nt_format output_format; /* NT_FORMAT_UNKNOWN: by name */
 	int texcoord_set;        /* -1: auto */

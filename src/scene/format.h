@@ -84,6 +84,9 @@ typedef enum nt_draco_bits {
 	NT_DRACO_BITS_COUNT
 } nt_draco_bits;
 
+/* Draco's level, from 0 (smallest blocks) to 10 (fastest), where nobody says another. */
+enum { NT_DRACO_SPEED = 5 };
+
 typedef struct nt_write_options {
 	nt_format format;   /* of the output */
 	const char *path;   /* of the output, "-" for standard output */
@@ -94,6 +97,7 @@ typedef struct nt_write_options {
 	nt_draco_choice draco;
 	nt_morph_choice morphs;
 	int draco_bits[NT_DRACO_BITS_COUNT]; /* 0: the default */
+	int draco_speed;    /* 0 (smallest) to 10 */
 	nt_precision precision;
 	bool allow_outside;
 	const struct nt_textures *textures; /* of a new document's materials: image/textures.h; NULL: none */

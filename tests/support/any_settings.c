@@ -23,7 +23,7 @@ nt_settings any_settings(const char *input, uint32_t *chance, const nt_report_op
 		.across = mutate_random(chance, 6) ? NT_ACROSS_PRIMITIVE : NT_ACROSS_MESH,
 		.images = images[mutate_random(chance, 4)], .embed = mutate_random(chance, 4) == 0,
 		.buffers = (nt_buffers)mutate_random(chance, 3),
-		.draco = draco[mutate_random(chance, edited ? 6 : 4)],
+		.draco = draco[mutate_random(chance, edited ? 6 : 4)], .draco_speed = (int)mutate_random(chance, 11),
 		.morphs = (nt_morph_choice)mutate_random(chance, 3),
 		.precision = integers ? (nt_precision)(1 + mutate_random(chance, 2)) : NT_PRECISION_FLOAT,
 		.method = (nmtan_method)(mutate_random(chance, 4) ? 0 : mutate_random(chance, 4)),

@@ -154,7 +154,7 @@ void nt::expect_back(nt_draco &expected, const nt_draco_mesh &from, const draco:
 			for (size_t k = 0; k < 3; k++)
 				expected.indices.push_back(numbers[from.indices[3 * f + k]]);
 	expected.mesh = {from.method, point_count, expected.indices.size() / 3, expected.indices.data(),
-		expected.attributes.data(), expected.attributes.size()};
+		expected.attributes.data(), expected.attributes.size(), from.speed};
 }
 
 bool nt::came_back(nt_draco &expected, nt_draco &decoded)

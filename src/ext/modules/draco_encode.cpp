@@ -212,7 +212,7 @@ void set_options(draco::ExpertEncoder &encoder, const nt_draco_mesh &mesh)
 	encoder.Reset(options);
 	encoder.SetEncodingMethod(mesh.method == NT_DRACO_SEQUENTIAL ? draco::MESH_SEQUENTIAL_ENCODING
 								     : draco::MESH_EDGEBREAKER_ENCODING);
-	encoder.SetSpeedOptions(5, 5);
+	encoder.SetSpeedOptions(mesh.speed, mesh.speed);
 }
 
 nt_status hand_over(const draco::EncoderBuffer &buffer, const nt_draco &decoded,

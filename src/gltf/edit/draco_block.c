@@ -117,6 +117,7 @@ nt_status nt_gltf_draco_encode(const nt_gltf_recoding *r, nt_draco_method method
 		.indices = r->vertices->indices[0],
 		.attributes = r->attributes,
 		.attribute_count = r->attribute_count,
+		.speed = r->options->draco_speed,
 	};
 	return nt_draco_encode(&mesh, block, error);
 }
