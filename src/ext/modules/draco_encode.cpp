@@ -19,6 +19,7 @@
 
 namespace {
 
+using draco::PointAttribute;
 using nt::is_octahedral;
 using nt::value_of;
 
@@ -176,6 +177,49 @@ std::unique_ptr<draco::Mesh> make_mesh(const nt_draco_mesh &mesh,
 	return made;
 }
 
+uint64_t hash_value(const unsigned char *bytes, size_t width)
+{
+	uint64_t hash = 0x9e3779b97f4a7c15;
+	for (size_t i = 0; i < width; i += 4) {
+		uint32_t word = 0;
+		std::memcpy(&word, bytes + i, std::min<size_t>(width - i, 4));
+		hash = (hash ^ word) * 0xff51afd7ed558ccd;
+		hash ^= hash >> 32;
+	}
+	return hash;
+}
+
+// What DeduplicateValues() of the attribute does, whose tables take a third of the whole time: values that are equal bit
+// for bit become one, in the order in which they come first. Each point has a value of its own before.
+void join_values(PointAttribute &attribute, uint32_t count)
+{
+	const size_t width = static_cast<size_t>(attribute.byte_stride());
+	unsigned char *values = attribute.buffer()->data();
+	size_t mask = 15;
+	while (mask < 2 * size_t(count))
+		mask = 2 * mask + 1;
+	constexpr uint32_t none = ~uint32_t(0);
+	std::vector<uint32_t> table(mask + 1, none), ids(count);
+	uint32_t unique = 0;
+	for (uint32_t p = 0; p < count; p++) {
+		const unsigned char *value = values + width * p;
+		size_t at = hash_value(value, width) & mask;
+		while (table[at] != none && std::memcmp(values + width * table[at], value, width) != 0)
+			at = (at + 1) & mask;
+		if (table[at] == none) {
+			std::memmove(values + width * unique, value, width);
+			table[at] = unique++;
+		}
+		ids[p] = table[at];
+	}
+	if (unique == count)
+		return;
+	attribute.SetExplicitMapping(count);
+	for (uint32_t p = 0; p < count; p++)
+		attribute.SetPointMapEntry(draco::PointIndex(p), draco::AttributeValueIndex(ids[p]));
+	attribute.Resize(unique);
+}
+
 // ---- encoding ----
 
 // A float as text that gives it back.
@@ -248,7 +292,8 @@ nt_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *err
 		return nt_fail(error, NT_ERROR_INPUT, "every face is degenerate: nothing to encode");
 	if (mesh.method == NT_DRACO_EDGEBREAKER) {
 		// joins what split vertices separate, so that one surface is encoded as one
-		made->DeduplicateAttributeValues();
+		for (int i = 0; i < made->num_attributes(); i++)
+			join_values(*made->attribute(i), made->num_points());
 		made->DeduplicatePointIds();
 	}
 
