@@ -242,9 +242,10 @@ uninstall:
 		$(patsubst man/%,$(share)/man/man1/%,$(wildcard man/*.1)) \
 		$(patsubst man/%,$(share)/man/man5/%,$(wildcard man/*.5)) \
 		$(patsubst man/%,$(share)/man/man7/%,$(wildcard man/*.7)) \
+		$(patsubst data/%,$(share)/nmtan/%,$(wildcard data/*.schema.json data/farm/*)) \
 		$(share)/bash-completion/completions/nmtan $(share)/zsh/site-functions/_nmtan
-	rm -rf $(share)/nmtan
-	[ ! -d $(lib)/nmtan ] || rmdir --ignore-fail-on-non-empty $(lib)/nmtan
+	for folder in $(lib)/nmtan $(share)/nmtan/farm $(share)/nmtan; do \
+		[ ! -d $$folder ] || rmdir --ignore-fail-on-non-empty $$folder; done
 
 .PHONY: lint
 lint: $(B)/libnmtan.a $(B)/libnmtan.so

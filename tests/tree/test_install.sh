@@ -111,6 +111,7 @@ install_here uninstall
 install_here install LIBDIR=/elsewhere
 install_here uninstall LIBDIR=/elsewhere
 is "$(find root \( -type f -o -type l \))" ""
+[ ! -e root/opt/nmtan/share/nmtan ] || wrong "its folder is left"
 
 scene "where the tree lies makes no difference to what is built"
 # tests/soak/packages.sh builds everything twice
