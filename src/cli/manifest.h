@@ -16,7 +16,8 @@ typedef struct nt_manifest {
 	nt_error error;      /* the first that came about */
 } nt_manifest;
 
-/* Begins a file anew, which must not be one of the inputs. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
+/* Begins a file anew, which must not be one of the inputs. Returns NT_OK, NT_ERROR_IO, NT_ERROR_USAGE or
+ * NT_ERROR_MEMORY; close it after failure, too. */
 nt_status nt_manifest_open(nt_manifest *manifest, const char *path, const char *options, const nt_batch *batch,
 	nt_error *error);
 

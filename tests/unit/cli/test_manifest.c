@@ -102,21 +102,28 @@ static void a_failure_has_its_place(void **state)
 	assert_non_null(strstr(line_of(&job, 3), ",\"error\":{\"message\":\"bad\"},"));
 }
 
+static void refuses(const nt_batch *batch, const char *path, nt_status expected)
+{
+	nt_manifest manifest;
+	nt_error error;
+	assert_int_equal(nt_manifest_open(&manifest, path, "", batch, &error), expected);
+	if (expected == NT_ERROR_IO)
+		assert_string_equal(error.place.file, path);
+	nt_manifest_close(&manifest, &error);
+}
+
 static void only_a_manifest_is_replaced(void **state)
 {
 	(void)state;
 	char output[] = "o.glb";
 	nt_job job = {.input = "a.obj", .output = output};
 	const nt_batch batch = {&job, 1};
-	nt_manifest manifest;
-	nt_error error;
 	put_text_file("a.obj", "");
 	put_text_file("notes", "mine");
-	assert_int_equal(nt_manifest_open(&manifest, "a.obj", "", &batch, &error), NT_ERROR_IO);
-	assert_int_equal(nt_manifest_open(&manifest, "o.glb", "", &batch, &error), NT_ERROR_USAGE);
-	assert_int_equal(nt_manifest_open(&manifest, "notes", "", &batch, &error), NT_ERROR_IO);
-	assert_string_equal(error.place.file, "notes");
-	assert_int_equal(nt_manifest_open(&manifest, "no/m", "", &batch, &error), NT_ERROR_IO);
+	refuses(&batch, "a.obj", NT_ERROR_IO);
+	refuses(&batch, "o.glb", NT_ERROR_USAGE);
+	refuses(&batch, "notes", NT_ERROR_IO);
+	refuses(&batch, "no/m", NT_ERROR_IO);
 	put_text_file("m", "{\"input\":\"earlier\"}\n");
 	job.end = NT_JOB_UNTRIED;
 	assert_null(strstr(line_of(&job, 0), "earlier"));
@@ -147,6 +154,7 @@ static void a_line_needs_no_memory(void **state)
 	fail_allocations_from(0);
 	assert_int_equal(nt_manifest_open(&manifest, "m", "", &none, &error), NT_ERROR_MEMORY);
 	stop_failing_allocations();
+	nt_manifest_close(&manifest, &error);
 	assert_int_equal(nt_manifest_open(&manifest, "m", "", &none, &error), NT_OK);
 	fail_allocations_from(0);
 	nt_manifest_add(&manifest, &job, 4);
