@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // render.mjs PLAYWRIGHT THREE OUT.png LEFT.glb RIGHT.glb: signs.html with the two files, rendered by three.js in
-// headless Chromium. PLAYWRIGHT and THREE are node_modules folders. Nothing is asked of the network.
+// headless Chromium. PLAYWRIGHT and THREE are node_modules folders. Nothing is asked of the network. A file without tangents
+// is refused, unless DERIVATIVES is set: then three.js makes them of screen derivatives.
 import {createRequire} from 'node:module';
 import {readFileSync, writeFileSync} from 'node:fs';
 import {resolve} from 'node:path';
@@ -25,7 +26,7 @@ await page.route('http://signs.invalid/**', route => {
 	const [body, contentType] = answer(new URL(route.request().url()).pathname);
 	route.fulfill({body, contentType});
 });
-await page.goto('http://signs.invalid/');
+await page.goto('http://signs.invalid/' + (process.env.DERIVATIVES ? '#derivatives' : ''));
 await page.waitForFunction(() => window.done, null, {timeout: 120000}).catch(e => complaints.push(e.message));
 writeFileSync(out, await page.screenshot());
 await browser.close();

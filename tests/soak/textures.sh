@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: MIT
 #
 # textures.sh BUILD: an OBJ whose normal map is a TGA, and its twin with a PNG, in three.js in headless Chromium. Both GLBs
-# hold the same samples and the same geometry, so that one renderer gets the same input: no pixel may differ. Needs
-# Chromium, and npm for three.
+# hold the same samples and the same geometry, so that one renderer gets the same input: no pixel may differ. Then the same
+# OBJ with its image moved, scaled and mirrored by -s and -o, beside the file without TANGENT, where the renderer makes
+# tangents of screen derivatives: pixels may differ by less than 2 of 255 on average, for the derivatives of a triangle are not
+# those of its vertices (with -s -1 1 it is 0.2, with the other w 6.1). Needs Chromium, and npm for three.
 set -eu
 cd "$(dirname "$0")/../.."
 nmtan=$1/nmtan work=$(mktemp -d)
@@ -28,3 +30,36 @@ python3 - "$work/rows.json" <<-'END'
 	print("textures: %d pixels drawn, %d differ between the TGA and the PNG" % (drawn, differ))
 	sys.exit(drawn < 50000 or differ != 0)
 END
+
+# Without its tangents.
+bare() {
+	python3 - "$1" "$2" <<-'END'
+		import json
+		import struct
+		import sys
+		data = open(sys.argv[1], "rb").read()
+		size = struct.unpack_from("<I", data, 12)[0]
+		document, rest = json.loads(data[20:20 + size]), data[20 + size:]
+		[primitive["attributes"].pop("TANGENT") for mesh in document["meshes"] for primitive in mesh["primitives"]]
+		text = json.dumps(document).encode()
+		text += b" " * (-len(text) % 4)
+		open(sys.argv[2], "wb").write(struct.pack("<4sIII4s", b"glTF", 2, 20 + len(text) + len(rest), len(text), b"JSON") + text + rest)
+	END
+}
+for options in "-s 2 3" "-s -1 1 -o 0.25 0.5" "-s 1 -1 -o 0.5 0.25" "-s -1 -1 -o 0.125 0.75" "-s -2 3"; do
+	sed -i "s/^norm .*/norm $options tile_normal.png/" "$work/tile.mtl"
+	"$nmtan" -q "$work/tile.obj" "$work/moved.glb"
+	bare "$work/moved.glb" "$work/bare.glb"
+	DERIVATIVES=1 node tests/picture/render.mjs build/node/node_modules "$work/node_modules" "$work/moved.png" "$work/moved.glb" "$work/bare.glb"
+	python3 tests/support/images.py rows "$work/moved.png" >"$work/rows.json"
+	python3 - "$work/rows.json" "$options" <<-'END'
+		import json
+		import sys
+		rows = json.load(open(sys.argv[1]))[:440]
+		half = len(rows[0]) // 2
+		pairs = [(p, q) for row in rows for p, q in zip(row[:half], row[half:]) if p != rows[0][0]]
+		mean = sum(abs(a - b) for p, q in pairs for a, b in zip(p[:3], q[:3])) / (3 * len(pairs))
+		print("textures: %s: by tangents and by derivatives pixels differ by %.2f of 255" % (sys.argv[2], mean))
+		sys.exit(mean >= 2)
+	END
+done
