@@ -4,6 +4,7 @@
  */
 #include "format/normal_map.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include "file/uri.h"
@@ -59,6 +60,26 @@ static nt_status open_of_materials(nt_normal_map *map, const nt_scene *scene, co
 	return status;
 }
 
+const nt_material *nt_normal_map_material(const nt_scene *scene, const nt_mesh *mesh)
+{
+	for (size_t i = 0; i < mesh->primitive_count; i++) {
+		const uint32_t index = mesh->primitives[i].material;
+		const nt_material *m = index < scene->material_count ? &scene->materials[index] : NULL;
+		if (m && m->normal_map.name && *m->normal_map.name)
+			return m;
+	}
+	return NULL;
+}
+
+/* v turned over before, and back behind. */
+static void place_map(const nt_placement *placement, float t[6])
+{
+	t[0] = placement->scale[0];
+	t[2] = placement->offset[0];
+	t[4] = placement->scale[1];
+	t[5] = 1.0f - placement->scale[1] - placement->offset[1];
+}
+
 /* ---- glTF ---- */
 
 static const nt_json_value *element(const nt_json_value *array, const nt_json_value *index)
@@ -76,18 +97,23 @@ static const nt_json_value *source_of(const nt_json_value *texture)
 	return source;
 }
 
-static const nt_json_value *image_of(const nt_gltf *document, const nt_mesh *mesh, enum nt_slot slot)
+/* The textureInfo of a mesh's normal map in a slot; NULL: none. */
+static const nt_json_value *info_of(const nt_gltf *document, const nt_mesh *mesh, enum nt_slot slot)
 {
 	const nt_json_value *owner = nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh);
 	const nt_json_value *primitive =
 		nt_json_at(nt_json_find(owner, "primitives"), mesh->gltf_primitive);
 	const nt_json_value *material = element(nt_gltf_root_member(document, "materials"),
 		nt_json_find(primitive, "material"));
-	const nt_json_value *info = slot == NT_SLOT_NORMAL ? nt_json_find(material, "normalTexture")
+	return slot == NT_SLOT_NORMAL ? nt_json_find(material, "normalTexture")
 		: nt_json_find(nt_json_find(nt_json_find(material, "extensions"), "KHR_materials_clearcoat"),
 			"clearcoatNormalTexture");
-	const nt_json_value *texture =
-		element(nt_gltf_root_member(document, "textures"), nt_json_find(info, "index"));
+}
+
+static const nt_json_value *image_of(const nt_gltf *document, const nt_mesh *mesh, enum nt_slot slot)
+{
+	const nt_json_value *texture = element(nt_gltf_root_member(document, "textures"),
+		nt_json_find(info_of(document, mesh, slot), "index"));
 	return element(nt_gltf_root_member(document, "images"), source_of(texture));
 }
 
@@ -130,14 +156,45 @@ static nt_status open_of_document(nt_normal_map *map, nt_gltf *document, const n
 	return NT_OK;
 }
 
+/* KHR_texture_transform, turned as gltf/load.c turns coordinates. */
+static void read_transform(const nt_json_value *info, float t[6])
+{
+	const nt_json_value *json = nt_json_find(nt_json_find(info, "extensions"), "KHR_texture_transform");
+	const nt_json_value *lists[2] = {nt_json_find(json, "scale"), nt_json_find(json, "offset")};
+	double angle = 0.0, values[2][2] = {{1.0, 1.0}, {0.0, 0.0}};
+	nt_json_get_double(nt_json_find(json, "rotation"), &angle);
+	for (int i = 0; i < 2; i++)
+		for (size_t k = 0; k < 2; k++)
+			nt_json_get_double(nt_json_at(lists[i], k), &values[i][k]);
+	const double c = cos(angle), s = sin(angle);
+	const double whole[6] = {c * values[0][0], s * values[0][1], values[1][0], -s * values[0][0], c * values[0][1],
+		values[1][1]};
+	for (int i = 0; i < 6; i++)
+		t[i] = (float)whole[i];
+}
+
 /* ---- both ---- */
+
+void nt_normal_map_transform(const nt_scene *scene, const nt_mesh *mesh, float t[6])
+{
+	static const float identity[6] = {1, 0, 0, 0, 1, 0};
+	memcpy(t, identity, sizeof identity);
+	const nt_material *m = nt_normal_map_material(scene, mesh);
+	if (nt_format_is_gltf(scene->format) && scene->source)
+		read_transform(info_of(scene->source, mesh, NT_SLOT_NORMAL), t);
+	else if (m && m->normal_map.placement.moved)
+		place_map(&m->normal_map.placement, t);
+	for (int i = 0; i < 6; i++)
+		if (!isfinite(t[i]))
+			memcpy(t, identity, sizeof identity);
+}
 
 nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh, enum nt_slot slot,
 	const nt_image_places *searched, nt_error *error)
 {
 	*map = (nt_normal_map){0};
-	const bool gltf = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
 	nt_status status = NT_OK;
+	const bool gltf = nt_format_is_gltf(scene->format);
 	if (!gltf && slot == NT_SLOT_NORMAL)
 		status = open_of_materials(map, scene, mesh, searched, error);
 	else if (gltf && scene->source)

@@ -32,4 +32,11 @@ nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt
 	const nt_image_places *searched, nt_error *error);
 void nt_normal_map_close(nt_normal_map *map);
 
+/* Where it is looked up, at texture coordinates whose v points down: u' = t[0] u + t[1] v + t[2], v' = t[3] u + t[4] v +
+ * t[5]. What says nothing, or nothing that is a number, moves nothing. */
+void nt_normal_map_transform(const nt_scene *scene, const nt_mesh *mesh, float t[6]);
+
+/* The first material of a mesh of an OBJ that names a normal map; NULL: none. */
+const nt_material *nt_normal_map_material(const nt_scene *scene, const nt_mesh *mesh);
+
 #endif

@@ -9,29 +9,49 @@
 #include "format/normal_map.h"
 #include "pipeline/joins.h"
 
-/* A copy of a mesh's normal map for the report. */
-static nt_status copy_normal_map(nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh, size_t most_bytes,
-	nt_image *image)
+/* What a conversion makes of the normal map of an OBJ; NULL: nothing, it is used as it is or not at all. */
+static const nt_texture *find_converted(const nt_textures *textures, const nt_scene *scene, const nt_mesh *mesh)
 {
+	const nt_material *m = textures ? nt_normal_map_material(scene, mesh) : NULL;
+	if (!m || m->normal_map.wish == NT_NONE)
+		return NULL;
+	const nt_texture *made = nt_textures_at(textures, nt_textures_result(textures, m->normal_map.wish));
+	return made->bytes ? made : NULL;
+}
+
+static nt_status copy_image(nt_arena *arena, const unsigned char *bytes, size_t size, nt_image_type type, nt_image *image)
+{
+	void *copy = nt_arena_alloc(arena, size, 1);
+	if (!copy)
+		return NT_ERROR_MEMORY;
+	image->bytes = memcpy(copy, bytes, size);
+	image->size = size;
+	image->type = nt_image_media_type(type);
+	return NT_OK;
+}
+
+/* A copy of a mesh's normal map for the report, as it is after a conversion. */
+static nt_status copy_normal_map(const void *user, nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh,
+	size_t most_bytes, nt_image *image)
+{
+	*image = (nt_image){0};
+	nt_normal_map_transform(scene, mesh, image->transform);
+	const nt_texture *made = find_converted(user, scene, mesh);
+	if (made)
+		return made->size <= most_bytes ? copy_image(arena, made->bytes, made->size, NT_IMAGE_PNG, image) : NT_OK;
 	nt_normal_map map;
 	nt_error error;
 	nt_status status = nt_normal_map_open(&map, scene, mesh, NT_SLOT_NORMAL, NULL, &error);
-	*image = (nt_image){0};
 	const bool shown = map.type == NT_IMAGE_PNG || map.type == NT_IMAGE_JPEG;
-	if (!status && shown && map.size <= most_bytes) {
-		void *copy = nt_arena_alloc(arena, map.size, 1);
-		if (copy)
-			*image = (nt_image){memcpy(copy, map.bytes, map.size), map.size,
-				nt_image_media_type(map.type), {1, 0, 0, 0, 1, 0}};
-		else
-			status = NT_ERROR_MEMORY;
-	}
+	if (!status && shown && map.size <= most_bytes)
+		status = copy_image(arena, map.bytes, map.size, map.type, image);
 	nt_normal_map_close(&map);
 	return status;
 }
 
-static nt_status find_map_size(const nt_scene *scene, const nt_mesh *mesh, uint32_t pixels[2])
+static nt_status find_map_size(const void *user, const nt_scene *scene, const nt_mesh *mesh, uint32_t pixels[2])
 {
+	(void)user;
 	nt_normal_map map;
 	nt_error error;
 	pixels[0] = pixels[1] = 0;
@@ -56,8 +76,8 @@ static nt_status build_report(nt_scene *scene, const nt_settings *settings, cons
 	return status;
 }
 
-nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_format written, nt_status status,
-	nt_summary *summary, nt_error *error)
+nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_format written, const nt_textures *textures,
+	nt_status status, nt_summary *summary, nt_error *error)
 {
 	if (!status && settings->across == NT_ACROSS_PRIMITIVE)
 		status = nt_stage_borders(scene, settings, error);
@@ -67,6 +87,7 @@ nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_forma
 	}
 	nt_report_options options = *settings->report;
 	options.written = written;
+	options.find_user = textures;
 	options.find_map_size = find_map_size;
 	if (options.keep_geometry)
 		options.find_normal_map = copy_normal_map;

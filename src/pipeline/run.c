@@ -285,8 +285,8 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->note = r.result.note.data;
 	if (settings->report) {
 		begin_stage(&r, NT_STAGE_REPORT);
-		status = nt_stage_report(&r.scene, settings, r.writer ? r.writer->format : NT_FORMAT_UNKNOWN, status,
-			summary, error);
+		status = nt_stage_report(&r.scene, settings, r.writer ? r.writer->format : NT_FORMAT_UNKNOWN, r.textures,
+			status, summary, error);
 	}
 
 	/* what was found belongs to the caller, also after a failure */

@@ -52,9 +52,9 @@ nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const n
 nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_error *error);
 
 /* Fills summary->report: of the scene as it now is, or of what went wrong. written: the format that is judged,
- * NT_FORMAT_UNKNOWN: the input as it is. */
-nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_format written, nt_status status,
-	nt_summary *summary, nt_error *error);
+ * NT_FORMAT_UNKNOWN: the input as it is. textures: what its images become, NULL: nothing. */
+nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_format written, const nt_textures *textures,
+	nt_status status, nt_summary *summary, nt_error *error);
 
 /* Fills summary->lines. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error *error);

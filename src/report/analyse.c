@@ -203,8 +203,8 @@ static nt_status keep_normal_map(nt_check *check, size_t *most_bytes)
 	const nt_report_options *options = check->options;
 	if (!options->find_normal_map)
 		return NT_OK;
-	const nt_status status = options->find_normal_map(&check->report->arena, check->scene, check->mesh,
-		*most_bytes, &check->facts->normal_map);
+	const nt_status status = options->find_normal_map(options->find_user, &check->report->arena, check->scene,
+		check->mesh, *most_bytes, &check->facts->normal_map);
 	*most_bytes -= check->facts->normal_map.size;
 	return status;
 }

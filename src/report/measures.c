@@ -134,7 +134,8 @@ nt_status nt_check_measures(nt_check *check)
 		return NT_OK;
 	nt_status status = NT_OK;
 	if (check->options->find_map_size)
-		status = check->options->find_map_size(check->scene, check->mesh, check->facts->texture_size);
+		status = check->options->find_map_size(check->options->find_user, check->scene, check->mesh,
+			check->facts->texture_size);
 	if (status)
 		return status;
 	const nt_scratch_mark mark = nt_scratch_here(check->scratch);

@@ -55,12 +55,13 @@ typedef struct nt_report_options {
 	bool keep_frames;             /* with geometry: the file's tangents, and computed ones, which are solved where no
 	                                 stage did */
 	bool measures;                /* texel density and stretch of islands, and what splitting costs */
+	const void *find_user; /* what the next ones get first */
 	/* Gives the size of a mesh's normal map in pixels, 0 0 where it is not known. NULL: nobody can. */
-	nt_status (*find_map_size)(const nt_scene *scene, const nt_mesh *mesh, uint32_t pixels[2]);
+	nt_status (*find_map_size)(const void *user, const nt_scene *scene, const nt_mesh *mesh, uint32_t pixels[2]);
 	/* Gives a copy of a mesh's normal map, in the arena, for HTML: no bytes where it has none or one of more
 	 * than most_bytes. NULL: nobody can. */
-	nt_status (*find_normal_map)(nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh, size_t most_bytes,
-		nt_image *image);
+	nt_status (*find_normal_map)(const void *user, nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh,
+		size_t most_bytes, nt_image *image);
 	unsigned threads;
 } nt_report_options;
 

@@ -74,6 +74,27 @@ else
 	skip_case "chromium or playwright-core is not installed"
 fi
 
+# What the page has of the first mesh's normal map: what it is, and where it is looked up.
+normal_map() {
+	grep -ao '"image":[0-9]*,"map":[^]]*]' "$1" | head -1
+	grep -ao 'data:image/[a-z]*' "$1" | head -1
+}
+
+scene "the lit mesh has the normal map as a conversion leaves it, where its transform puts it"
+{ printf 'mtllib m.mtl\nusemtl m\n'; grep -v '^#\|^usemtl\|^mtllib' "$data/quad.obj"; } >quad.obj
+printf 'newmtl m\nnorm -s 2 4 1 -o 0.25 0.5 0 n.tga\n' >m.mtl
+python3 "$ROOT/tests/support/images.py" write n.tga 32 16 '(128 + (7 * x) % 60, 128, 240)'
+run --check --report=quad.html --fail-on=never quad.obj
+# v pointing up is 4 v + 0.5, so that v' = 1 - (4 (1 - v) + 0.5) = 4 v - 3.5
+is "$(normal_map quad.html)" '"image":0,"map":[2,0,0.25,0,4,-3.5]
+data:image/png'
+run --report=converted.html quad.obj quad.glb
+is "$(normal_map converted.html)" "$(normal_map quad.html)"
+run --check --report=turned.html --fail-on=never "$data/transformed.gltf"
+# by a quarter: u' = v + 0.5, v' = 7 - u
+is "$(normal_map turned.html | sed 's/[0-9.]*e-17/0/g')" '"image":0,"map":[0,1,0.5,-1,0,7]
+data:image/png'
+
 scene "UV pictures are well-formed SVG with blue, red and seams"
 run --check --uv-image=pictures "$data/mirrored_cube.obj" "$data/plates.gltf"
 exists pictures/mirrored_cube-0.svg pictures/plates-0.svg pictures/plates-2.svg
