@@ -222,7 +222,9 @@ build/aarch64/run_fast: $(aarch64_src) $(wildcard src/*/*.h src/*/*/*.h)
 	aarch64-linux-gnu-gcc -std=c11 -D_GNU_SOURCE -O2 -ffp-contract=off -fno-math-errno -fno-trapping-math \
 		-pthread -Iinclude -Isrc -Itests/support -Wall -Wextra -o $@ $(aarch64_src) -lm
 
-# make picture: data/signs.png, the picture at the top of the README, rendered anew.
+# make picture: the pictures of the README rendered anew: data/signs.png, at its top, and data/report.png.
 .PHONY: picture
 picture: $(B)/nmtan build/node/node_modules/gltf-validator/package.json
 	@sh tests/picture/run.sh $< build/picture
+	@$< --check -q --report=build/picture/report.html data/head.obj
+	@node tests/picture/report.mjs build/picture/report.html build/node data/report.png

@@ -100,7 +100,7 @@ async function choose(what, options = {}) {
 	}
 	if (what.finding && matchMedia('(max-width: 900px)').matches) $('stage').scrollIntoView();
 	$('selection').hidden = false;
-	$('selection-text').textContent = text;
+	$('selection-text').textContent = $('selection-text').title = text;
 	$('selection-show').hidden = !triangles.length;
 }
 
@@ -183,6 +183,8 @@ function openOverview() {
 	$('title').textContent = plural(files.length, 'file');
 	document.title = 'nmtan report';
 	summary([0, 1, 2].map(i => files.reduce((sum, f) => sum + f.counts[i], 0)), null);
+	const failed = files.filter(f => f.failure).length;
+	if (failed) $('summary').prepend(element('span', {class: 'verdict error'}, plural(failed, 'file') + ' could not be judged'));
 	overview.show();
 }
 

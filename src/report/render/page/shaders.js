@@ -4,9 +4,9 @@
 
 const MODES = [
 	['lit', 'Lit'], ['winding', 'Winding'], ['checker', 'Checker'], ['normal', 'Normals'], ['tangent', 'Tangents'],
-	['bitangent', 'Bitangents'], ['sign', 'Handedness (w)'], ['angle', 'Angle between frames'],
+	['bitangent', 'Bitangents'], ['sign', 'Handedness (w)'], ['angle', 'Angle of frames'],
 	['skew', 'Tangent off surface']];
-const FRAMES = [['authored', 'in the file'], ['computed', 'by nmtan'], ['screen', 'from the screen']];
+const FRAMES = [['authored', 'in the file'], ['computed', 'by nmtan'], ['screen', 'by the screen']];
 
 const surfaceVertex = `#version 300 es
 uniform mat4 camera; uniform vec3 origin, step_;
@@ -138,7 +138,7 @@ void main() { colour = gl_FrontFacing ? tint : vec4(0.0, 1.0, 0.0, 1.0); }`;
 
 // A line of some pixels' width: each is a strip of four corners.
 const lineVertex = `#version 300 es
-uniform mat4 camera; uniform vec2 size; uniform float width;
+uniform mat4 camera; uniform vec2 size; uniform float width, lift;
 layout(location=0) in vec3 from; layout(location=1) in vec3 to; layout(location=2) in vec3 ink;
 out vec3 c;
 void main() {
@@ -152,7 +152,7 @@ void main() {
 	vec2 aside = vec2(-along.y, along.x) * (gl_VertexID % 2 == 0 ? -1.0 : 1.0) * width;
 	vec2 ahead = along * (gl_VertexID < 2 ? -0.5 : 0.5) * width;
 	vec4 end = gl_VertexID < 2 ? a : b;
-	gl_Position = end + vec4((aside + ahead) / size * end.w, -0.0015 * end.w, 0.0);
+	gl_Position = end + vec4((aside + ahead) / size * end.w, -lift * end.w, 0.0);
 	c = ink;
 }`;
 const lineFragment = `#version 300 es

@@ -230,13 +230,12 @@ class Space {
 		for (const yaw of [0, 1, 2, 3, 4, 5, 6, 7]) for (const pitch of [0.1, 0.75, -0.6])
 			directions.push([Math.sin(yaw * Math.PI / 4) * Math.cos(pitch), Math.sin(pitch), Math.cos(yaw * Math.PI / 4) * Math.cos(pitch)]);
 		directions.sort((a, b) => dot(b, wanted) - dot(a, wanted));
-		let best = null;
-		for (const d of directions.slice(0, this.geometry.triangles > 300000 ? 4 : 12)) {
-			for (const distance of distances) {
-				const camera = {target: middle, distance, yaw: Math.atan2(d[0], d[2]), pitch: clamp(Math.asin(clamp(d[1], -1, 1)), -1.4, 1.4)};
-				const score = this.visible(camera) * (1.2 + dot(d, wanted)) * (distance / near) ** 1.7;
-				if (!best || score > best.score * 1.05) best = {score, camera};
-			}
+		const cameraAt = (d, distance) => ({target: middle, distance, yaw: Math.atan2(d[0], d[2]), pitch: clamp(Math.asin(clamp(d[1], -1, 1)), -1.4, 1.4)});
+		// where it is hidden from all sides it shines through
+		let best = {score: 0.006, camera: cameraAt(wanted, near)};
+		for (const d of directions.slice(0, this.geometry.triangles > 300000 ? 4 : 12)) for (const distance of distances) {
+			const camera = cameraAt(d, distance), score = this.visible(camera) * (1.2 + dot(d, wanted)) * (distance / near) ** 1.5;
+			if (score > best.score * 1.05) best = {score, camera};
 		}
 		this.camera = best.camera;
 		this.draw();
@@ -342,13 +341,14 @@ class Space {
 		gl.bindVertexArray(null);
 	}
 
-	drawLines(lines, matrix, size, width) {
+	drawLines(lines, matrix, size, width, lift = 0.0015) {
 		const gl = this.gl;
 		if (!lines || !lines.count) return;
 		gl.useProgram(this.lines.program);
 		gl.uniformMatrix4fv(this.lines.at.camera, false, matrix);
 		gl.uniform2fv(this.lines.at.size, size);
 		gl.uniform1f(this.lines.at.width, width);
+		gl.uniform1f(this.lines.at.lift, lift);
 		gl.bindVertexArray(lines.array);
 		gl.drawArraysInstanced(gl.TRIANGLE_STRIP, 0, 4, lines.count);
 		gl.bindVertexArray(null);
@@ -388,8 +388,12 @@ class Space {
 			gl.polygonOffset(-1, -2);
 			this.use(this.fill, matrix);
 			gl.uniform3fv(this.fill.at.eye, eye);
-			gl.uniform4f(this.fill.at.tint, ...SELECTED, 0.6);
-			this.drawElements(this.chosen.elements, this.chosen.count);
+			for (const [test, alpha] of [[gl.GREATER, 0.12], [gl.LEQUAL, 0.6]]) { // faint where something lies before it
+				gl.depthFunc(test);
+				gl.depthMask(test === gl.LEQUAL);
+				gl.uniform4f(this.fill.at.tint, ...SELECTED, alpha);
+				this.drawElements(this.chosen.elements, this.chosen.count);
+			}
 			gl.disable(gl.POLYGON_OFFSET_FILL);
 			gl.disable(gl.BLEND);
 		}
@@ -400,7 +404,7 @@ class Space {
 			gl.depthFunc(gl.GREATER); // thin where something lies before it
 			this.drawLines(this.chosen.lines, matrix, size, 1.5 * scale);
 			gl.depthFunc(gl.LEQUAL);
-			this.drawLines(this.chosen.lines, matrix, size, 5 * scale);
+			this.drawLines(this.chosen.lines, matrix, size, 5 * scale, 0.003);
 		}
 	}
 
