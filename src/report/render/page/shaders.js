@@ -51,8 +51,9 @@ mat3 derived(vec3 normal) {
 	return mat3(gu * s, gv * s, normal);
 }
 mat3 frameOf(int which, vec3 normal) {
+	if (which == 2) return derived(normal);
 	vec4 t = which == 0 ? authored : computed;
-	return which == 2 ? derived(normal) : mat3(t.xyz, cross(n, t.xyz) * t.w, n);
+	return mat3(t.xyz, cross(n, t.xyz) * t.w, n);
 }
 float signOf(int which, mat3 f) {
 	return which == 0 ? authored.w : which == 1 ? computed.w : dot(cross(f[2], f[0]), f[1]) < 0.0 ? -1.0 : 1.0;

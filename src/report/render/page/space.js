@@ -32,7 +32,7 @@ class Space {
 		if (!gl) throw new Error('this browser has no WebGL 2');
 		Object.assign(this, {gl, canvas, mode: 0, frame: 0, other: -1, layout: 'wipe', wipe: 0.5, showVectors: false,
 			showSeams: true, camera: {target: [0, 0, 0], distance: 3, yaw: 0.6, pitch: 0.35}, buffers: [], frames: 0,
-			moving: false, quality: 1, drawn: 0});
+			moving: false, quality: 0.8, slow: 0, drawn: 0});
 		this.surface = this.program(surfaceVertex, surfaceFragment);
 		this.fill = this.program(surfaceVertex, fillFragment);
 		this.seen = this.program(surfaceVertex, seenFragment);
@@ -414,12 +414,14 @@ class Space {
 		requestAnimationFrame(() => { this.pending = false; this.drawNow(); });
 	}
 
-	// While it moves, as many pixels as it is quick with; at rest four for each of the page's, where edges are smooth.
+	// While it moves, as many pixels as it is quick with, in steps, since another size is another buffer; at rest four for
+	// each of the page's, where edges are smooth.
 	pixelScale() {
 		const ratio = window.devicePixelRatio || 1, now = performance.now(), since = now - this.drawn;
 		this.drawn = now;
 		if (!this.moving) return ratio < 2 ? 2 : ratio;
-		if (since < 400) this.quality = clamp(this.quality * (since > 36 ? 0.85 : since < 22 ? 1.08 : 1), 0.35, 1);
+		this.slow = since > 2000 ? 0 : since > 36 ? this.slow + 1 : Math.max(0, this.slow - 1);
+		if (this.slow > 1 && this.quality > 0.3) { this.quality *= 0.7; this.slow = 0; }
 		return ratio * this.quality;
 	}
 
