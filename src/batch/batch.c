@@ -143,7 +143,8 @@ void nt_batch_run(nt_batch *batch, const nt_settings *settings, const nt_batch_o
 		.lock = PTHREAD_MUTEX_INITIALIZER};
 	if (batch->count > 1)
 		return_freed_memory();
-	nt_gate_init(&p.gate, options->memory ? options->memory : nt_memory_available() / 2);
+	/* one job at a time needs no gate: what is available is in six files of the system */
+	nt_gate_init(&p.gate, options->memory ? options->memory : jobs > 1 ? nt_memory_available() / 2 : 0);
 	nt_parallel_items(jobs, batch->count, run_one, &p);
 	nt_gate_end(&p.gate);
 	pthread_mutex_destroy(&p.lock);
