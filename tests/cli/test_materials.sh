@@ -254,6 +254,18 @@ says 'material "m"'
 says "MTL: disp"
 says "MTL: map_aniso"
 
+scene "a check of the OBJ finds what its conversion finds"
+images write r.tga 4 4 '(x, x, x)'
+head -c 20 r.tga >short.tga
+quad "map_Kd gone.png" "map_Pr r.tga" "d 0" "disp h.png" "map_Pm short.tga"
+run --fail-on=warning quad.obj quad.glb
+exits 6
+grep -o '\[[A-Z_]*\]' ../err.txt | sort >converted
+run --check --fail-on=warning quad.obj
+exits 6
+grep -o '^  warning  *[A-Z_]*' ../out.txt | sed 's/.* \(.*\)/[\1]/' | sort >checked
+same converted checked
+
 scene "a map that is not there leaves the number"
 images write m.png 4 4 '10 * x'
 convert "Pr 0.25" "map_Pr gone.png" "map_Pm m.png"
