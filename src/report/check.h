@@ -155,14 +155,18 @@ static inline size_t nt_tangent_index(const nt_check *check, uint32_t corner)
 	return mesh->indices ? mesh->indices[corner] : corner;
 }
 
+static inline const float *nt_stored_tangents(const nt_check *check)
+{
+	const nt_mesh *mesh = check->mesh;
+	return check->stored == NT_STORED_SPLIT ? mesh->split.vertex_tangents
+		: check->stored == NT_STORED_CORNERS ? mesh->corner_tangents
+						     : mesh->tangents;
+}
+
 /* The tangent that is, or will be, stored for a corner. */
 static inline const float *nt_stored_tangent(const nt_check *check, uint32_t corner)
 {
-	const nt_mesh *mesh = check->mesh;
-	const float *tangents = check->stored == NT_STORED_SPLIT ? mesh->split.vertex_tangents
-		: check->stored == NT_STORED_CORNERS	    ? mesh->corner_tangents
-							    : mesh->tangents;
-	return tangents + 4 * nt_tangent_index(check, corner);
+	return nt_stored_tangents(check) + 4 * nt_tangent_index(check, corner);
 }
 
 /* The checks, in the order in which they run. */

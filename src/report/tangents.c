@@ -12,6 +12,7 @@
 #include <string.h>
 #include "base/angle.h"
 #include "base/dvec.h"
+#include "base/parallel.h"
 #include "topology/orientation.h"
 
 /* Below this a tangent has no length; the tolerance of the Khronos validator for the others. */
@@ -28,6 +29,21 @@ const double nt_angle_bins[NT_ANGLE_BINS] = {1.0, 5.0, 15.0, 30.0, 60.0, 180.0};
 
 static const double DEGREES = 57.29577951308232;
 
+/* Triangles that a thread takes at a time, and items of which fewer are not worth one. What is found in parts is joined
+ * in their order. */
+enum { PART = 16384, GRAIN = 32768 };
+
+static size_t part_count(const nt_check *check)
+{
+	return (check->surface.triangle_count + PART - 1) / PART;
+}
+
+static size_t part_end(const nt_check *check, size_t part)
+{
+	const size_t end = (part + 1) * PART, count = check->surface.triangle_count;
+	return end < count ? end : count;
+}
+
 typedef struct tangent_tallies {
 	nt_tally not_finite, zero, non_unit, bad_w, parallel, not_orthogonal;
 	double worst_length;
@@ -43,6 +59,12 @@ static double degrees_between(nt_dvec3 a, nt_dvec3 b)
 	return nt_angle(length_of(nt_dvec3_cross(a, b)), nt_dvec3_dot(a, b)) * DEGREES;
 }
 
+/* From perpendicular. */
+static double degrees_off(nt_dvec3 a, nt_dvec3 b)
+{
+	return fabs(degrees_between(a, b) - 90.0);
+}
+
 static void check_angle(nt_check *check, tangent_tallies *tt, uint32_t vertex, nt_dvec3 tangent)
 {
 	if (!check->mesh->normals)
@@ -50,7 +72,7 @@ static void check_angle(nt_check *check, tangent_tallies *tt, uint32_t vertex, n
 	nt_dvec3 normal = nt_dvec3_load(check->mesh->normals + 3 * (size_t)vertex);
 	if (!nt_dvec3_normalise(&normal))
 		return;
-	const double off = fabs(degrees_between(normal, tangent) - 90.0);
+	const double off = degrees_off(normal, tangent);
 	nt_report_mesh *facts = check->facts;
 	if (!(facts->worst_orthogonality >= off))
 		facts->worst_orthogonality = off;
@@ -111,24 +133,113 @@ static void report_kept(nt_check *check, const nt_tally *const *invalid, size_t 
 		nt_check_report(check, &kept, NULL);
 }
 
+/* ---- each tangent, once ---- */
+
+/* sin^2 of 0.99 degrees: what is less off perpendicular is no finding. The greatest such measure that is known says of
+ * others that they are not the worst, without an angle, unless it is noise itself. */
+static const double NEARLY_ORTHOGONAL = 0.000298, NOISE = 1e-16, SURELY_LESS = 1.0 - 1e-6;
+
+typedef struct tangent_search {
+	nt_check *check;
+	uint64_t *used, *odd; /* [tangent_count] bits: of triangles; there may be something to say about */
+	double *worst;        /* [slots] degrees off perpendicular; NaN: none */
+} tangent_search;
+
+static void find_used(void *context, size_t begin, size_t end, unsigned slot)
+{
+	const tangent_search *search = context;
+	(void)slot;
+	for (size_t c = begin; c < end; c++)
+		nt_bit_set(search->used, nt_tangent_index(search->check, nt_side_corner(&search->check->surface, c)));
+}
+
+/* The vertex of a stored tangent. */
+static size_t vertex_of(const nt_check *check, size_t index)
+{
+	const nt_mesh *mesh = check->mesh;
+	if (check->stored == NT_STORED_CORNERS)
+		return mesh->indices ? mesh->indices[index] : index;
+	return index < mesh->vertex_count ? index : mesh->split.sources[index - mesh->vertex_count];
+}
+
+/* Whether a tangent has unit length, w and a normal that it is perpendicular to, or none. most: the greatest sin^2 off
+ * perpendicular so far, and worst its degrees. */
+static bool is_sound(const nt_check *check, size_t index, double *most, double *worst)
+{
+	const float *stored = nt_stored_tangents(check) + 4 * index;
+	const nt_dvec3 tangent = nt_dvec3_load(stored);
+	const double length = length_of(tangent);
+	if (fabsf(stored[3]) != 1.0f || !(fabs(length - 1.0) <= UNIT_TOLERANCE))
+		return false;
+	if (!check->mesh->normals)
+		return true;
+	nt_dvec3 normal = nt_dvec3_load(check->mesh->normals + 3 * vertex_of(check, index));
+	const double dot = nt_dvec3_dot(normal, tangent), both = nt_dvec3_dot(normal, normal) * length * length;
+	if (*most > NOISE && dot * dot < *most * SURELY_LESS * both)
+		return true;
+	if (!nt_dvec3_normalise(&normal))
+		return true;
+	const double off = degrees_off(normal, tangent);
+	if (dot * dot > NEARLY_ORTHOGONAL * both)
+		return false;
+	if (!(*worst >= off)) {
+		*worst = off;
+		*most = dot * dot / both;
+	}
+	return true;
+}
+
+static void find_odd(void *context, size_t begin, size_t end, unsigned slot)
+{
+	const tangent_search *search = context;
+	double most = 0.0, worst = NAN;
+	for (size_t i = begin; (i = nt_bit_next(search->used, i, end)) < end; i++)
+		if (!is_sound(search->check, i, &most, &worst))
+			nt_bit_set(search->odd, i);
+	search->worst[slot] = worst;
+}
+
+/* Marks the tangents that there may be something to say about. */
+static nt_status search_tangents(tangent_search *search, unsigned threads)
+{
+	nt_check *check = search->check;
+	const size_t count = tangent_count(check), words = nt_bit_words(count);
+	const unsigned slots = nt_parallel_slots(threads, count, GRAIN);
+	search->used = nt_scratch_alloc(check->scratch, words, sizeof *search->used);
+	search->odd = nt_scratch_alloc(check->scratch, words, sizeof *search->odd);
+	search->worst = nt_scratch_alloc(check->scratch, slots, sizeof *search->worst);
+	if (!search->used || !search->odd || !search->worst)
+		return NT_ERROR_MEMORY;
+	memset(search->used, 0, words * sizeof *search->used);
+	memset(search->odd, 0, words * sizeof *search->odd);
+	nt_parallel_ranges(threads, 3 * check->surface.triangle_count, GRAIN, find_used, search);
+	nt_parallel_ranges(threads, count, GRAIN, find_odd, search);
+	for (unsigned slot = 0; slot < slots; slot++)
+		if (!(check->facts->worst_orthogonality >= search->worst[slot]) && !isnan(search->worst[slot]))
+			check->facts->worst_orthogonality = search->worst[slot];
+	return NT_OK;
+}
+
+/* In the order of corners. */
 static nt_status check_each(nt_check *check)
 {
 	const nt_surface *s = &check->surface;
-	uint8_t *seen = nt_scratch_alloc(check->scratch, tangent_count(check), 1);
+	tangent_search search = {.check = check};
 	tangent_tallies *tt = nt_scratch_alloc(check->scratch, 1, sizeof *tt);
-	if (!seen || !tt)
+	if (!tt || search_tangents(&search, nt_thread_count(check->options->threads)))
 		return NT_ERROR_MEMORY;
-	memset(seen, 0, tangent_count(check));
 	*tt = (tangent_tallies){.not_finite = {.code = NT_CODE_TAN_NOT_FINITE},
 		.zero = {.code = NT_CODE_TAN_ZERO}, .non_unit = {.code = NT_CODE_TAN_NON_UNIT},
 		.bad_w = {.code = NT_CODE_TAN_BAD_W}, .parallel = {.code = NT_CODE_TAN_PARALLEL_NORMAL},
 		.not_orthogonal = {.code = NT_CODE_TAN_NOT_ORTHOGONAL}, .worst_length = 1.0};
-	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
+	const size_t sides = 3 * s->triangle_count, count = tangent_count(check);
+	const bool any = nt_bit_next(search.odd, 0, count) < count;
+	for (size_t c = 0; any && c < sides; c++) {
 		const size_t index = nt_tangent_index(check, nt_side_corner(s, c));
-		if (seen[index])
+		if (!nt_bit(search.odd, index))
 			continue;
-		seen[index] = 1;
-		check_tangent(check, tt, nt_side_vertex(s, c), nt_stored_tangent(check, nt_side_corner(s, c)));
+		nt_bit_clear(search.odd, index);
+		check_tangent(check, tt, nt_side_vertex(s, c), nt_stored_tangents(check) + 4 * index);
 	}
 	nt_tally_number(&tt->non_unit, "worst_length", tt->worst_length);
 	nt_tally_number(&tt->not_orthogonal, "worst_degrees", check->facts->worst_orthogonality);
@@ -254,13 +365,39 @@ static void check_sign(const nt_check *check, size_t t, int orientation, sign_ta
 		nt_tally_triangle(check, &st->wrong, t, w[0]);
 }
 
-static void check_signs(nt_check *check)
+typedef struct sign_work {
+	const nt_check *check;
+	sign_tallies *parts;
+} sign_work;
+
+static void check_sign_part(void *context, size_t item, unsigned slot)
 {
-	sign_tallies st = {.mixed = {.code = NT_CODE_TAN_MIXED_W_TRIANGLE},
-		.wrong = {.code = NT_CODE_TAN_SIGN_MISMATCH}};
+	const sign_work *work = context;
+	const nt_check *check = work->check;
 	const float v_offset = stored_v_offset(check);
-	for (size_t t = 0; t < check->surface.triangle_count; t++)
-		check_sign(check, t, stored_orientation(check, t, v_offset), &st);
+	(void)slot;
+	work->parts[item] = (sign_tallies){.mixed = {.code = NT_CODE_TAN_MIXED_W_TRIANGLE},
+		.wrong = {.code = NT_CODE_TAN_SIGN_MISMATCH}};
+	for (size_t t = item * PART; t < part_end(check, item); t++)
+		check_sign(check, t, stored_orientation(check, t, v_offset), &work->parts[item]);
+}
+
+static nt_status check_signs(nt_check *check)
+{
+	const size_t parts = part_count(check);
+	const sign_work work = {check, nt_scratch_alloc(check->scratch, parts, sizeof *work.parts)};
+	if (!work.parts)
+		return NT_ERROR_MEMORY;
+	nt_parallel_items(nt_thread_count(check->options->threads), parts, check_sign_part, (void *)&work);
+	sign_tallies st = work.parts[0];
+	for (size_t i = 1; i < parts; i++) {
+		nt_tally_join(&st.mixed, &work.parts[i].mixed);
+		nt_tally_join(&st.wrong, &work.parts[i].wrong);
+		st.checked += work.parts[i].checked;
+		st.by_w += work.parts[i].by_w;
+		st.reversed += work.parts[i].reversed;
+		st.untransformed += work.parts[i].untransformed;
+	}
 	nt_check_report(check, &st.mixed, NULL);
 	const double share = st.checked ? (double)st.wrong.count / (double)st.checked : 0.0;
 	nt_tally_number(&st.wrong, "share", share);
@@ -277,31 +414,78 @@ static void check_signs(nt_check *check)
 		: st.by_w == st.checked ? ", the convention is inverted"
 		: st.by_w == 0	     ? ", the tangents are reversed too"
 				     : "");
+	return NT_OK;
 }
 
 /* ---- directions ---- */
 
-static void check_directions(nt_check *check, const float *fresh)
+typedef struct direction_part {
+	nt_tally wrong;
+	size_t histogram[NT_ANGLE_BINS];
+	double worst;
+} direction_part;
+
+typedef struct direction_work {
+	const nt_check *check;
+	const float *fresh;
+	direction_part *parts;
+} direction_work;
+
+/* tan^2 of 0.99 degrees: less is in the first bin for certain. */
+static const double SAME_DIRECTION = 0.0002986;
+
+static void check_direction(const direction_work *work, size_t c, direction_part *part)
 {
-	const nt_surface *s = &check->surface;
+	const nt_check *check = work->check;
+	const uint32_t corner = nt_side_corner(&check->surface, c);
+	nt_dvec3 stored = nt_dvec3_load(nt_stored_tangent(check, corner));
+	const nt_dvec3 fresh = nt_dvec3_load(work->fresh + 4 * (size_t)corner);
+	const nt_dvec3 cross = nt_dvec3_cross(stored, fresh);
+	const double dot = nt_dvec3_dot(stored, fresh);
+	if (dot > 0.0 && nt_dvec3_dot(cross, cross) < SAME_DIRECTION * dot * dot) {
+		part->histogram[0]++;
+		return;
+	}
+	if (!nt_dvec3_normalise(&stored))
+		return;
+	const double angle = degrees_between(stored, fresh);
+	int bin = 0;
+	while (bin + 1 < NT_ANGLE_BINS && angle > nt_angle_bins[bin])
+		bin++;
+	part->histogram[bin]++;
+	if (angle > MISMATCH_DEGREES)
+		nt_tally_vertex(check, &part->wrong, nt_side_vertex(&check->surface, c), angle);
+	part->worst = fmax(part->worst, angle);
+}
+
+static void check_direction_part(void *context, size_t item, unsigned slot)
+{
+	const direction_work *work = context;
+	const nt_surface *s = &work->check->surface;
+	(void)slot;
+	work->parts[item] = (direction_part){.wrong = {.code = NT_CODE_TAN_DIRECTION_MISMATCH}};
+	for (size_t t = item * PART; t < part_end(work->check, item); t++)
+		for (size_t c = 3 * t; c < 3 * t + 3 && s->orientation[t] && s->flatness[t] == NT_SOUND; c++)
+			check_direction(work, c, &work->parts[item]);
+}
+
+static nt_status check_directions(nt_check *check, const float *fresh)
+{
+	const size_t parts = part_count(check);
+	const direction_work work = {check, fresh, nt_scratch_alloc(check->scratch, parts, sizeof *work.parts)};
+	if (!work.parts)
+		return NT_ERROR_MEMORY;
+	nt_parallel_items(nt_thread_count(check->options->threads), parts, check_direction_part, (void *)&work);
 	nt_tally wrong = {.code = NT_CODE_TAN_DIRECTION_MISMATCH};
 	size_t checked = 0;
-	double worst = 0.0;
-	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
-		if (s->orientation[c / 3] == 0 || s->flatness[c / 3] != NT_SOUND)
-			continue;
-		nt_dvec3 stored = nt_dvec3_load(nt_stored_tangent(check, nt_side_corner(s, c)));
-		if (!nt_dvec3_normalise(&stored))
-			continue;
-		const double angle = degrees_between(stored, nt_dvec3_load(fresh + 4 * (size_t)nt_side_corner(s, c)));
-		int bin = 0;
-		while (bin + 1 < NT_ANGLE_BINS && angle > nt_angle_bins[bin])
-			bin++;
-		check->facts->angle_histogram[bin]++;
-		checked++;
-		if (angle > MISMATCH_DEGREES)
-			nt_tally_vertex(check, &wrong, nt_side_vertex(s, c), angle);
-		worst = fmax(worst, angle);
+	double worst = 0.0; /* of those that are not in the first bin, if there are any */
+	for (size_t i = 0; i < parts; i++) {
+		nt_tally_join(&wrong, &work.parts[i].wrong);
+		worst = fmax(worst, work.parts[i].worst);
+		for (int bin = 0; bin < NT_ANGLE_BINS; bin++) {
+			check->facts->angle_histogram[bin] += work.parts[i].histogram[bin];
+			checked += work.parts[i].histogram[bin];
+		}
 	}
 	const double share = checked ? (double)wrong.count / (double)checked : 0.0;
 	nt_tally_number(&wrong, "share", share);
@@ -309,16 +493,15 @@ static void check_directions(nt_check *check, const float *fresh)
 	nt_check_report_as(check, &wrong,
 		share > MISMATCH_SHARE ? NT_SEVERITY_WARNING : NT_SEVERITY_INFO,
 		"%.3g %% of the corners, the worst by %.4g degrees", 100.0 * share, worst);
+	return NT_OK;
 }
 
 static nt_status compare_with_fresh(nt_check *check)
 {
 	const nt_mesh *mesh = check->mesh;
 	/* --across=mesh: as the mesh is solved with the others of its join */
-	if (mesh->join && mesh->corner_tangents && mesh->decision != NT_DECISION_REPAIR) {
-		check_directions(check, mesh->corner_tangents);
-		return NT_OK;
-	}
+	if (mesh->join && mesh->corner_tangents && mesh->decision != NT_DECISION_REPAIR)
+		return check_directions(check, mesh->corner_tangents);
 	float *fresh = nt_scratch_alloc(check->scratch, 4 * mesh->corner_count, sizeof *fresh);
 	if (!fresh)
 		return NT_ERROR_MEMORY;
@@ -327,9 +510,7 @@ static nt_status compare_with_fresh(nt_check *check)
 	const nmtan_options options = {.struct_bytes = sizeof options, .threads = check->options->threads};
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = fresh};
 	const nt_status status = nt_status_of(nmtan_tangents(&view, &options, &output, NULL));
-	if (status == NT_OK)
-		check_directions(check, fresh);
-	return status;
+	return status ? status : check_directions(check, fresh);
 }
 
 /* ---- tangents that are there for nothing, or are not there ---- */
@@ -370,7 +551,7 @@ nt_status nt_check_tangents(nt_check *check)
 	if (check->facts->checked_tangents) {
 		status = check_each(check);
 		if (!status && mesh->texcoords)
-			check_signs(check);
+			status = check_signs(check);
 		const bool authored = check->stored == NT_STORED_AUTHORED;
 		if (!status && authored && mesh->texcoords && mesh->normals)
 			status = compare_with_fresh(check);
