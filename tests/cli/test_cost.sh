@@ -127,4 +127,14 @@ inputs strip 200000 strip.obj
 within 30 1500 --check --report=s.html --fail-on=never strip.obj
 exits 0
 
+for kind in hub edge patches; do
+	scene "$kind: 100 000 faces that all meet, or none, are judged in nearly linear time, on any number of threads alike"
+	inputs $kind 100000 c.obj
+	for threads in 1 3; do
+		within 5 400 -q --check --report=c$threads.json --fail-on=never --threads=$threads c.obj
+		exits 0
+	done
+	same c1.json c3.json
+done
+
 done_testing

@@ -11,6 +11,9 @@ scene     a GLB of COUNT primitives, ten in a mesh, of SIDE (3) quads squared an
           materials
 images    an OBJ of COUNT materials, and FILE.mtl beside it, with two images each that are not there
 strip     an OBJ strip of COUNT quads
+hub       an OBJ of COUNT triangles around one point
+edge      an OBJ of COUNT triangles on one edge
+patches   an OBJ of COUNT quads, each an island of its own over the same texels, every other one mirrored
 """
 import json
 import math
@@ -48,6 +51,37 @@ def strip(count, out):
     for i in range(count):
         a, b, c, d = 2 * i + 1, 2 * i + 3, 2 * i + 4, 2 * i + 2
         out.write(b'f %d/%d %d/%d %d/%d %d/%d\n' % (a, a, b, b, c, c, d, d))
+
+
+def circle(count, out):
+    for i in range(count):
+        angle = 2 * math.pi * i / count
+        out.write(b'v %.9g %.9g 0\nvt %.9g %.9g\n' % (math.cos(angle), math.sin(angle), math.cos(angle), math.sin(angle)))
+
+
+def hub(count, out):
+    circle(count, out)
+    out.write(b'v 0 0 0\nvt 0 0\n')
+    for i in range(count):
+        a, b, c = i + 1, (i + 1) % count + 1, count + 1
+        out.write(b'f %d/%d %d/%d %d/%d\n' % (a, a, b, b, c, c))
+
+
+def edge(count, out):
+    circle(count, out)
+    out.write(b'v 0 0 0\nv 0 0 1\nvt 0 0\nvt 0 2\n')
+    for i in range(count):
+        a, b, c = i + 1, count + 1, count + 2
+        out.write(b'f %d/%d %d/%d %d/%d\n' % (a, a, b, b, c, c))
+
+
+def patches(count, out):
+    out.write(b'vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n')
+    for i in range(count):
+        for x, y in (0, 0), (.8, 0), (.8, .8), (0, .8):
+            out.write(b'v %.9g %.9g 0\n' % (i % 500 + x, i // 500 + y))
+        corners = (1, 2, 3, 4) if i % 2 else (2, 1, 4, 3)
+        out.write(b'f %d/%d %d/%d %d/%d %d/%d\n' % tuple(n for k in range(4) for n in (4 * i + k + 1, corners[k])))
 
 
 def grid(side, windows):
@@ -131,4 +165,5 @@ with open(sys.argv[3], 'wb') as out:
     elif kind == 'scene':
         scene(count, out, side or 3)
     else:
-        {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip}[kind](count, out)
+        {'elements': elements, 'usemtl': usemtl, 'images': images, 'strip': strip, 'hub': hub, 'edge': edge,
+         'patches': patches}[kind](count, out)
