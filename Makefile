@@ -4,6 +4,7 @@
 #   make check    the same, then every test
 #   make          builds build/$(config)/nmtan, libnmtan.a and libnmtan.so
 #   make install PREFIX=/usr/local LIBDIR=PREFIX/lib DESTDIR=
+#   make deb      Debian packages in build/deb
 #   make soak     the heavy tests; make fuzz, make check-aarch64, make bench, make format, make lint, make clean
 #
 # config=release (default) | debug | sanitize | tsan | clang | clang-sanitize | fuzz
@@ -49,8 +50,8 @@ COMMON := $(flags_$(config)) -ffp-contract=off -fno-tree-slp-vectorize -fno-math
 	-pthread -fPIC -fvisibility=hidden '-ffile-prefix-map=$(CURDIR)=.' \
 	-Iinclude -Isrc -Wall -Wextra -MMD -MP
 NT_CFLAGS := -std=c11 -D_GNU_SOURCE $(COMMON) -Wshadow -Wstrict-prototypes -Wmissing-prototypes \
-	-Wvla $(CFLAGS)
-NT_CXXFLAGS := -std=c++17 -fvisibility-inlines-hidden $(COMMON) $(CXXFLAGS)
+	-Wvla $(CPPFLAGS) $(CFLAGS)
+NT_CXXFLAGS := -std=c++17 -fvisibility-inlines-hidden $(COMMON) $(CPPFLAGS) $(CXXFLAGS)
 NT_LDFLAGS := $(flags_$(config)) -pthread $(LDFLAGS)
 TOOL_LIBS := -Wl,-Bstatic -ljpeg -ldeflate -Wl,-Bdynamic -lm -ldl
 
@@ -79,7 +80,7 @@ module_obj := $(call objects,$(wildcard src/ext/modules/*.c src/ext/modules/*.cp
 module_files = $(B)/ext/modules/$(1).c%.o $(B)/ext/modules/$(1)_%.o $(if $(filter tinygltf,$(1)),$(B)/ext/modules/meshopt.c.o)
 
 .PHONY: all
-all: $(B)/nmtan $(module_so) $(B)/libnmtan.a $(B)/libnmtan.so $(B)/completion.bash $(B)/completion.zsh
+all: $(B)/nmtan $(module_so) $(B)/libnmtan.a $(B)/libnmtan.so $(B)/completion.bash $(B)/completion.zsh $(B)/licences.txt
 
 # The tool has no shared library but the system's. What it takes of the C++ library (std::to_chars) is linked in; modules
 # bring the whole, and find the tool's operators new and delete. So are libdeflate, which is small, and libjpeg: as a shared
@@ -171,6 +172,10 @@ $(call objects_of,ext/codec/stb.c): FILE_FLAGS += -ftrivial-auto-var-init=zero \
 include tests/tests.mk
 include src/bindings/bindings.mk
 
+$(B)/licences.txt: src/ext/licences.sh
+	@mkdir -p $(@D)
+	sh $< > $@
+
 # Completions come from the tool's own table of options.
 $(B)/completion.%: $(B)/nmtan
 	$< --completion=$* > $@.new && mv $@.new $@
@@ -214,7 +219,7 @@ names := sed -e 's|@PREFIX@|$(PREFIX)|; s|@LIBDIR@|$(patsubst $(PREFIX)/%,$${pre
 .PHONY: install uninstall
 install: all $(B)/installed/nmtan
 	install -d $(bin) $(lib)/pkgconfig $(lib)/cmake/nmtan $(lib)/nmtan $(DESTDIR)$(PREFIX)/include $(share)/man/man1 \
-		$(share)/bash-completion/completions $(share)/zsh/site-functions $(share)/man/man7 $(share)/nmtan/farm
+		$(share)/bash-completion/completions $(share)/zsh/site-functions $(share)/man/man7 $(share)/nmtan/farm $(share)/doc/nmtan
 	install -m 755 $(B)/installed/nmtan $(bin)/nmtan
 	install -m 644 $(module_so) $(lib)/nmtan/
 	install -m 644 $(B)/libnmtan.a $(lib)/libnmtan.a
@@ -232,6 +237,7 @@ install: all $(B)/installed/nmtan
 	install -m 644 data/*.schema.json $(share)/nmtan/
 	install -m 644 $(filter-out $(farm_programs),$(wildcard data/farm/*)) $(share)/nmtan/farm/
 	install -m 755 $(farm_programs) $(share)/nmtan/farm/
+	install -m 644 LICENSE $(B)/licences.txt $(share)/doc/nmtan/
 	install -m 644 $(B)/completion.bash $(share)/bash-completion/completions/nmtan
 	install -m 644 $(B)/completion.zsh $(share)/zsh/site-functions/_nmtan
 
@@ -243,9 +249,17 @@ uninstall:
 		$(patsubst man/%,$(share)/man/man5/%,$(wildcard man/*.5)) \
 		$(patsubst man/%,$(share)/man/man7/%,$(wildcard man/*.7)) \
 		$(patsubst data/%,$(share)/nmtan/%,$(wildcard data/*.schema.json data/farm/*)) \
+		$(share)/doc/nmtan/LICENSE $(share)/doc/nmtan/licences.txt \
 		$(share)/bash-completion/completions/nmtan $(share)/zsh/site-functions/_nmtan
-	for folder in $(lib)/nmtan $(share)/nmtan/farm $(share)/nmtan; do \
+	for folder in $(lib)/nmtan $(share)/nmtan/farm $(share)/nmtan $(share)/doc/nmtan; do \
 		[ ! -d $$folder ] || rmdir --ignore-fail-on-non-empty $$folder; done
+
+# Debian packages, in build/deb: built from a copy of the tree, with data/debian as its debian folder. The time of the
+# changelog stands for all others, so that the same tree gives the same packages.
+DEB ?= build/deb
+.PHONY: deb
+deb:
+	@sh data/debian/build.sh $(DEB)
 
 .PHONY: lint
 lint: $(B)/libnmtan.a $(B)/libnmtan.so

@@ -22,6 +22,7 @@
 #include "cli/progress.h"
 #include "cli/report_options.h"
 #include "cli/say.h"
+#include "ext/linked.h"
 #include "ext/module.h"
 #include "file/output.h"
 #include "file/relative_path.h"
@@ -86,9 +87,14 @@ static void version_text(nt_buffer *out)
 	nt_buffer_format(out, "nmtan %s\n", nmtan_version());
 }
 
-static void modules_text(nt_buffer *out)
+static void libraries_text(nt_buffer *out)
 {
-	version_text(out);
+	size_t count;
+	const nt_linked_library *linked = nt_linked_libraries(&count);
+	nt_buffer_format(out, "nmtan %s, MIT\n", nmtan_version());
+	for (size_t i = 0; i < count; i++)
+		nt_buffer_format(out, "linked: %s%s%s, %s\n", linked[i].name, linked[i].version ? " " : "",
+			linked[i].version ? linked[i].version : "", linked[i].licence);
 	for (int module = 0; module < NT_MODULE_COUNT; module++) {
 		char line[1000];
 		nt_module_describe((nt_module)module, line, sizeof line);
@@ -552,7 +558,7 @@ int main(int argc, char **argv)
 	case NT_ACTION_HELP:
 		return print_text(nt_options_help, style);
 	case NT_ACTION_VERSION:
-		return print_text(style.verbosity > 0 ? modules_text : version_text, style);
+		return print_text(style.verbosity > 0 ? libraries_text : version_text, style);
 	case NT_ACTION_LIST_CODES:
 		return print_text(nt_codes_list, style);
 	case NT_ACTION_COMPLETION_BASH:

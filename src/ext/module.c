@@ -167,8 +167,8 @@ void nt_module_describe(nt_module module, char *line, size_t size)
 	nt_error error;
 	const nt_module_head *head = nt_module_open(module, &status, &error);
 	if (head)
-		snprintf(line, size, "%s: %s%s%s", rows[module].name, head->library, head->library_version ? " " : "",
-			head->library_version ? head->library_version : "");
+		snprintf(line, size, "%s: %s%s%s, %s", rows[module].name, head->library, head->library_version ? " " : "",
+			head->library_version ? head->library_version : "", head->licence);
 	else
 		snprintf(line, size, "%s: %s", rows[module].name, error.message);
 }

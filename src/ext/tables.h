@@ -21,10 +21,12 @@ typedef struct nt_module_head {
 	size_t struct_bytes; /* of the whole table */
 	const char *version; /* of nmtan */
 	const char *library, *library_version; /* that it was built with; version NULL: the library does not say */
+	const char *licence; /* of the library: an SPDX expression */
 	const nt_cxx *cxx;   /* NULL: nothing in it is C++ */
 } nt_module_head;
 
-#define NT_MODULE_HEAD(table, library, version, cxx) {sizeof(table), NMTAN_VERSION_STRING, library, version, cxx}
+#define NT_MODULE_HEAD(table, library, version, licence, cxx) \
+	{sizeof(table), NMTAN_VERSION_STRING, library, version, licence, cxx}
 
 typedef struct nt_draco_table {
 	nt_module_head head;

@@ -122,6 +122,27 @@ prints "draco: Draco compression needs the module nmtan-draco.so"
 run --version
 is "$(wc -l <"$WORK/out.txt")" 1
 
+scene "--version -v names every foreign library and its licence"
+NMTAN=$built
+run --version -v
+exits 0
+case $BUILD in
+*release) ;;
+*) skip_case "of release builds" ;;
+esac
+[ -z "$case_name" ] || for module in "$BUILD"/nmtan-*.so; do
+	for library in $(readelf -d "$module" | sed -n 's/.*NEEDED.*\[lib\([A-Za-z]*\).*/\1/p'); do
+		case $library in
+		c | m | gcc | stdc) ;;
+		OpenMeshCore) prints "OpenMesh " ;;
+		*) grep -qi "$library.*, [A-Za-z]" "$WORK/out.txt" || wrong "$library of $module is not named" ;;
+		esac
+	done
+done
+for library in $(sed -n 's/^TOOL_LIBS := -Wl,-Bstatic \(.*\) -Wl,-Bdynamic.*/\1/p' "$ROOT/Makefile"); do
+	grep -q "^linked: lib${library#-l}.*, [A-Za-z]" "$WORK/out.txt" || wrong "$library is not named"
+done
+
 scene "the tool itself needs no library but the system's"
 case $BUILD in
 *release)

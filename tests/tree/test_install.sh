@@ -24,6 +24,11 @@ grep -q "^prefix=/opt/nmtan$" $p/lib/pkgconfig/nmtan.pc || wrong "nmtan.pc has a
 grep -q "^Version: $version$" $p/lib/pkgconfig/nmtan.pc || wrong "nmtan.pc has another version"
 exists $p/lib/nmtan/nmtan-{draco,meshopt,openmesh,png,tiff,tinygltf}.so
 [ -z "$(find root -type f -perm /022)" ] || wrong "files that others may write"
+"$p/bin/nmtan" --version -v >"$WORK/out.txt"
+for name in $(sed -n 's/^linked: \([A-Za-z_]*\).*/\1/p' "$WORK/out.txt"); do
+	case $name in libjpeg) name=jpeg62 ;; stb_image) name=stb ;; xxHash) name=xxhash ;; fast_float) name=fast-float ;; esac
+	grep -q "^==== .*$name" $p/share/doc/nmtan/licences.txt || wrong "the licence of $name is not installed"
+done
 "$p/bin/nmtan" --version | grep -q "$version" || wrong "the installed tool does not run"
 
 scene "the installed tool finds its modules where they were installed, by its own folder first"

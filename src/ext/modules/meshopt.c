@@ -78,4 +78,4 @@ static nt_status unpack(const nt_meshopt_view *v, const unsigned char *packed, u
 static const char version[] = {'0' + MESHOPTIMIZER_VERSION / 1000, '.', '0' + MESHOPTIMIZER_VERSION / 100 % 10,
 	'0' + MESHOPTIMIZER_VERSION / 10 % 10, 0};
 
-const nt_meshopt_table nt_meshopt_module = {NT_MODULE_HEAD(nt_meshopt_table, "meshoptimizer", version, NULL), check, unpack};
+const nt_meshopt_table nt_meshopt_module = {NT_MODULE_HEAD(nt_meshopt_table, "meshoptimizer", version, "MIT", NULL), check, unpack};

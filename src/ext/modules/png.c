@@ -158,4 +158,4 @@ static nt_status encode_png(const nt_pixels *pixels, unsigned char **bytes, size
 
 static const char version[] = {'0' + SPNG_VERSION_MAJOR, '.', '0' + SPNG_VERSION_MINOR, '.', '0' + SPNG_VERSION_PATCH, 0};
 
-const nt_codec_table nt_png_module = {NT_MODULE_HEAD(nt_codec_table, "libspng", version, NULL), decode_png, encode_png};
+const nt_codec_table nt_png_module = {NT_MODULE_HEAD(nt_codec_table, "libspng", version, "BSD-2-Clause", NULL), decode_png, encode_png};

@@ -220,4 +220,4 @@ static nt_status decode_tiff(const unsigned char *bytes, size_t size, uint32_t r
 static const char version[] = {'0' + TIFFLIB_MAJOR_VERSION, '.', '0' + TIFFLIB_MINOR_VERSION, '.',
 	'0' + TIFFLIB_MICRO_VERSION, 0};
 
-const nt_codec_table nt_tiff_module = {NT_MODULE_HEAD(nt_codec_table, "libtiff", version, NULL), decode_tiff, NULL};
+const nt_codec_table nt_tiff_module = {NT_MODULE_HEAD(nt_codec_table, "libtiff", version, "libtiff", NULL), decode_tiff, NULL};

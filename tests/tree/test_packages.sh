@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: MIT
+# make deb: four packages that lintian has nothing to say against, that a root directory with nothing in it but what
+# they depend on takes, runs and gives back.
+. "$ROOT/tests/support/cli.sh"
+version=$(sed -n 's/^#define NMTAN_VERSION_STRING "\(.*\)"/\1/p' "$ROOT/include/nmtan.h")
+triplet=$(dpkg-architecture -qDEB_HOST_MULTIARCH)
+deb=$WORK/deb
+
+scene "make deb builds packages that lintian accepts"
+make -s -C "$ROOT" MAKEFLAGS= deb DEB="$deb" >"$WORK/out.txt" 2>"$WORK/err.txt" || wrong "$(tail -30 "$WORK/out.txt")"
+for package in nmtan libnmtan0 libnmtan-dev; do
+	exists "$deb/${package}_${version}_$(dpkg --print-architecture).deb"
+done
+exists "$deb/nmtan-farm_${version}_all.deb"
+! grep -E '^[EW]: ' "$WORK/out.txt" || wrong "lintian complains"
+
+# A file with all that the dynamic linker wants for it, at the same place below ./root.
+with_libraries() {
+	local file
+	for file in $(ldd "$@" | awk '/=> \// { print $3 } $1 ~ /^\// && $1 !~ /:$/ { print $1 }' | sort -u); do
+		case $file in "$PWD"*) continue ;; esac
+		mkdir -p "root$(dirname "$file")"
+		cp -L "$file" "root$file"
+	done
+}
+in_root() {
+	dpkg --root="$PWD/root" --force-not-root --force-script-chrootless --force-depends --log=/dev/null "$@" \
+		>"$WORK/out.txt" 2>&1 || wrong "dpkg $*: $(tail -3 "$WORK/out.txt")"
+}
+
+scene "they are installed, run and removed in an empty root directory"
+mkdir -p root/var/lib/dpkg/info root/var/lib/dpkg/updates root/tmp
+touch root/var/lib/dpkg/status root/var/lib/dpkg/available
+in_root -i "$deb"/nmtan_*.deb "$deb"/nmtan-farm_*.deb "$deb"/libnmtan0_*.deb "$deb"/libnmtan-dev_*.deb
+exists root/usr/bin/nmtan root/usr/share/man/man1/nmtan.1.gz root/usr/share/doc/nmtan/copyright \
+	root/usr/share/bash-completion/completions/nmtan root/usr/share/zsh/vendor-completions/_nmtan
+# shellcheck disable=SC2046
+with_libraries root/usr/bin/nmtan $(find root/usr/lib -name '*.so*' -type f)
+cp "$data/head.obj" "$data"/plates.* "$data/bumps.png" root/tmp
+enter="chroot root"
+[ "$(id -u)" = 0 ] || enter="unshare --map-root-user --root=root"
+for words in "/tmp/head.obj /tmp/head.glb" "--draco=edgebreaker --verify /tmp/plates.gltf /tmp/plates_packed.glb" \
+	"--check /tmp/plates_packed.glb"; do
+	# shellcheck disable=SC2086
+	$enter /usr/bin/nmtan $words >"$WORK/out.txt" 2>"$WORK/err.txt" </dev/null
+	status=$?
+	exits 0
+done
+run "$data/head.obj" head.glb
+cmp head.glb root/tmp/head.glb || wrong "the package's tool has other bytes"
+
+printf '%s\n' '#include <nmtan.h>' '#include <stdio.h>' 'int main(void) { puts(nmtan_version()); return 0; }' >program.c
+export PKG_CONFIG_LIBDIR=$PWD/root/usr/lib/$triplet/pkgconfig PKG_CONFIG_SYSROOT_DIR=$PWD/root \
+	PKG_CONFIG_SYSTEM_INCLUDE_PATH=/ PKG_CONFIG_SYSTEM_LIBRARY_PATH=/
+# shellcheck disable=SC2046
+cc -o program program.c $(pkg-config --cflags --libs nmtan) || wrong "a program does not build with libnmtan-dev"
+is "$(LD_LIBRARY_PATH=root/usr/lib/$triplet ./program)" "$version"
+
+in_root --purge nmtan-farm nmtan libnmtan-dev libnmtan0
+is "$(find root/usr \( -name '*nmtan*' -o -name '*.pc' \))" ""
+
+scene "a changelog of another version is no package"
+mkdir -p tree/data
+cp -r "$ROOT/data/debian" tree/data
+cp -r "$ROOT/include" tree
+sed -i 's/^nmtan ([^)]*)/nmtan (99.0)/' tree/data/debian/changelog
+sh tree/data/debian/build.sh elsewhere >"$WORK/out.txt" 2>"$WORK/err.txt"
+status=$?
+exits 1
+says "data/debian/changelog ends with 99.0, include/nmtan.h says $version"
+
+done_testing
