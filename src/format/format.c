@@ -10,6 +10,7 @@
 #include "format/drc.h"
 #include "gltf/create/create.h"
 #include "gltf/document.h"
+#include "gltf/draco.h"
 #include "gltf/edit/edit.h"
 #include "gltf/joins.h"
 #include "gltf/late.h"
@@ -37,6 +38,7 @@ static const nt_format_entry table[] = {
 		.find_joins = nt_gltf_find_joins,
 		.find_same = nt_gltf_find_same,
 		.find_late = nt_gltf_find_late,
+		.load_ahead = nt_gltf_decode_ahead,
 		.load = nt_gltf_load,
 		.write = write_gltf},
 	{.format = NT_FORMAT_DRC,
@@ -58,6 +60,7 @@ static const nt_format_entry table[] = {
 		.find_joins = nt_gltf_find_joins,
 		.find_same = nt_gltf_find_same,
 		.find_late = nt_gltf_find_late,
+		.load_ahead = nt_gltf_decode_ahead,
 		.load = nt_gltf_load,
 		.write = write_gltf},
 	{.format = NT_FORMAT_OBJ,

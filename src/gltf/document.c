@@ -221,7 +221,7 @@ void nt_gltf_free(void *source)
 	for (size_t i = 0; i < document->virtual_count; i++)
 		free(document->virtuals[i].decoded);
 	if (document->free_blocks)
-		document->free_blocks(document->draco_blocks);
+		document->free_blocks(document);
 	free(document->virtuals);
 	free(document->virtual_of);
 	free(document->views);

@@ -74,8 +74,8 @@ typedef struct nt_gltf {
 	size_t view_count;
 	nt_gltf_decoded *decoded;  /* [accessor_count] what Draco gave; NULL until there is something */
 	size_t accessor_count;
-	struct nt_gltf_draco *draco_blocks; /* decoded blocks: draco.c */
-	void (*free_blocks)(struct nt_gltf_draco *blocks); /* set with the first of them */
+	struct nt_draco **draco_blocks; /* [view_count] decoded blocks: draco.c; NULL until there is something */
+	void (*free_blocks)(struct nt_gltf *document); /* set with them */
 	uint64_t bytes_read;     /* of buffers */
 	uint64_t bytes_opened;   /* of external files and data URIs */
 } nt_gltf;

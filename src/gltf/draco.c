@@ -1,75 +1,142 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * KHR_draco_mesh_compression: a primitive whose indices and some of whose attributes are one block. The
- * block is decoded when the primitive is loaded, and the accessors that it fills get their elements from
+ * block is decoded when the primitive is loaded, or before that on several threads, and the accessors that it fills get their elements from
  * it: their own count gives way to what was decoded, as the extension says.
  */
 #include "gltf/draco.h"
 
 #include <stdio.h>
 #include <stdlib.h>
+#include "base/parallel.h"
 #include "gltf/accessor.h"
+#include "gltf/primitive.h"
 #include "gltf/view.h"
-
-typedef struct nt_gltf_draco {
-	struct nt_gltf_draco *next;
-	uint64_t view; /* that holds the block */
-	nt_draco *mesh;
-} nt_gltf_draco;
 
 nt_json_value *nt_gltf_draco_of(const nt_json_value *primitive)
 {
 	return nt_json_find(nt_json_find(primitive, "extensions"), "KHR_draco_mesh_compression");
 }
 
-static void free_blocks(nt_gltf_draco *block)
+static void free_blocks(nt_gltf *document)
 {
-	while (block) {
-		nt_gltf_draco *next = block->next;
-		nt_draco_free(block->mesh);
-		free(block);
-		block = next;
-	}
+	for (size_t i = 0; i < document->view_count; i++)
+		nt_draco_free(document->draco_blocks[i]);
+	free(document->draco_blocks);
+}
+
+static nt_status make_room(nt_gltf *document, nt_error *error)
+{
+	if (document->draco_blocks)
+		return NT_OK;
+	document->draco_blocks = nt_calloc(document->view_count, sizeof *document->draco_blocks);
+	if (!document->draco_blocks)
+		return nt_fail_memory(error);
+	document->free_blocks = free_blocks;
+	return NT_OK;
 }
 
 const nt_draco_mesh *nt_gltf_draco_block(const nt_gltf *document, uint64_t view)
 {
-	for (const nt_gltf_draco *block = document->draco_blocks; block; block = block->next)
-		if (block->view == view)
-			return nt_draco_get(block->mesh);
-	return NULL;
+	const nt_draco *block = document->draco_blocks && view < document->view_count ?
+		document->draco_blocks[view] : NULL;
+	return block ? nt_draco_get(block) : NULL;
 }
 
-static nt_status decode_block(nt_gltf *document, uint64_t index, const char *pointer,
-	nt_error *error)
+static nt_status find_bytes(nt_gltf *document, uint64_t index, const char *pointer, const unsigned char **bytes,
+	size_t *size, nt_error *error)
 {
 	nt_gltf_view view;
-	const unsigned char *bytes = NULL;
-	nt_status status = nt_gltf_get_view(document, index, pointer, &view, error);
-	if (!status)
-		status = nt_gltf_view_bytes(document, (uint32_t)index, 0, view.length, pointer, &bytes,
-			error);
+	const nt_status status = nt_gltf_get_view(document, index, pointer, &view, error);
 	if (status)
 		return status;
-	nt_gltf_draco *block = nt_calloc(1, sizeof *block);
-	if (!block)
-		return nt_fail_memory(error);
-	block->view = index;
-	status = nt_draco_decode(&block->mesh, bytes, (size_t)view.length, 0, true, error);
-	if (status) {
-		free(block);
-		if (error && status != NT_ERROR_MEMORY) {
-			snprintf(error->place.pointer, sizeof error->place.pointer, "/bufferViews/%llu",
-				(unsigned long long)index);
-			error->place.offset = NT_NO_OFFSET;
-		}
+	*size = (size_t)view.length;
+	return nt_gltf_view_bytes(document, (uint32_t)index, 0, view.length, pointer, bytes, error);
+}
+
+static nt_status decode_block(nt_gltf *document, uint64_t index, const char *pointer, bool with_quantization,
+	nt_error *error)
+{
+	const unsigned char *bytes = NULL;
+	size_t size;
+	nt_status status = find_bytes(document, index, pointer, &bytes, &size, error);
+	if (!status)
+		status = make_room(document, error);
+	if (status)
 		return status;
+	status = nt_draco_decode(&document->draco_blocks[index], bytes, size, 0, with_quantization, error);
+	if (status && error && status != NT_ERROR_MEMORY) {
+		snprintf(error->place.pointer, sizeof error->place.pointer, "/bufferViews/%llu",
+			(unsigned long long)index);
+		error->place.offset = NT_NO_OFFSET;
 	}
-	block->next = document->draco_blocks;
-	document->draco_blocks = block;
-	document->free_blocks = free_blocks;
+	return status;
+}
+
+/* ---- several at a time ---- */
+
+typedef struct packed {
+	const unsigned char *bytes; /* NULL: not wanted */
+	size_t size;
+} packed;
+
+typedef struct decoding {
+	nt_gltf *document;
+	packed *blocks; /* [view_count] */
+	bool with_quantization;
+} decoding;
+
+static void decode_wanted(void *context, size_t view, unsigned slot)
+{
+	const decoding *d = context;
+	(void)slot;
+	if (d->blocks[view].bytes)
+		nt_draco_decode(&d->document->draco_blocks[view], d->blocks[view].bytes, d->blocks[view].size, 0,
+			d->with_quantization, NULL);
+}
+
+/* How many blocks the meshes have that are not decoded. */
+static size_t find_wanted(const decoding *d, const nt_scene *scene, const bool *needed)
+{
+	nt_gltf *document = d->document;
+	size_t count = 0;
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[i];
+		uint64_t view;
+		if (!needed[i] || mesh->same_as || !nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(
+				nt_gltf_primitive_of(document, mesh)), "bufferView"), &view) ||
+			view >= document->view_count || document->draco_blocks[view] || d->blocks[view].bytes)
+			continue;
+		packed *block = &d->blocks[view];
+		nt_error ignored;
+		if (find_bytes(document, view, "", &block->bytes, &block->size, &ignored) != NT_OK)
+			block->bytes = NULL;
+		count += block->bytes != NULL;
+	}
+	return count;
+}
+
+nt_status nt_gltf_decode_ahead(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error)
+{
+	nt_gltf *document = scene->source;
+	const unsigned threads = nt_thread_count(options->threads);
+	if (threads == 1 || !nt_gltf_uses(document, "KHR_draco_mesh_compression"))
+		return NT_OK;
+	const nt_status status = make_room(document, error);
+	if (status)
+		return status;
+	const decoding d = {document, nt_calloc(document->view_count, sizeof *d.blocks), options->recompress};
+	if (!d.blocks)
+		return nt_fail_memory(error);
+	const size_t count = find_wanted(&d, scene, needed);
+	if (count > 1)
+		nt_parallel_items(count < threads ? (unsigned)count : threads, document->view_count, decode_wanted,
+			(void *)&d);
+	free(d.blocks);
 	return NT_OK;
 }
+
+/* ---- a primitive's ---- */
 
 /* An accessor gets elements, if its type is that of the decoded attribute. */
 static nt_status give_attribute(nt_gltf *document, uint64_t index, const char *name,
@@ -118,7 +185,7 @@ static nt_status give_attributes(nt_gltf *document, const nt_json_value *primiti
 }
 
 nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive,
-	const char *primitive_pointer, nt_error *error)
+	const char *primitive_pointer, bool with_quantization, nt_error *error)
 {
 	const nt_json_value *extension = nt_gltf_draco_of(primitive);
 	if (!extension)
@@ -140,7 +207,7 @@ nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive
 			status = nt_fail_memory(error);
 	}
 	if (!status && !nt_gltf_draco_block(document, view))
-		status = decode_block(document, view, pointer, error);
+		status = decode_block(document, view, pointer, with_quantization, error);
 	if (status)
 		return status;
 	const nt_draco_mesh *mesh = nt_gltf_draco_block(document, view);

@@ -13,9 +13,14 @@
 nt_json_value *nt_gltf_draco_of(const nt_json_value *primitive);
 
 /* Decodes a primitive's KHR_draco_mesh_compression, where it has one: from then on its accessors have
- * their elements. */
+ * their elements. with_quantization: as in ext/draco.h. */
 nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive,
-	const char *pointer, nt_error *error);
+	const char *pointer, bool with_quantization, nt_error *error);
+
+/* For the table of formats: decodes the blocks of several meshes on several threads. needed: [mesh_count]. A block that
+ * fails is left for nt_gltf_decode_draco(), which has it alone and says what is wrong. Returns NT_OK or
+ * NT_ERROR_MEMORY. */
+nt_status nt_gltf_decode_ahead(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error);
 
 /* The block of a view; NULL: not decoded. */
 const nt_draco_mesh *nt_gltf_draco_block(const nt_gltf *document, uint64_t view);

@@ -4,6 +4,7 @@
  */
 #include "pipeline/stages.h"
 
+#include <stdlib.h>
 #include "file/watch.h"
 
 typedef struct loading {
@@ -83,6 +84,26 @@ static bool can_be_late(const loading *l, const nt_format_entry *writer)
 		!s->list_meshes;
 }
 
+/* Whether a mesh is loaded: to be solved or written, or for the report alone. */
+static bool is_needed(const loading *l, const nt_mesh *mesh, bool all)
+{
+	return !mesh->late && (nt_mesh_is_wanted(mesh) ||
+		((all || l->settings->report) && mesh->triangles && mesh->has_positions));
+}
+
+static nt_status load_ahead(const loading *l, bool all)
+{
+	nt_scene *scene = l->scene;
+	bool *needed = nt_alloc(scene->mesh_count, sizeof *needed);
+	if (!needed)
+		return nt_fail_memory(l->error);
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		needed[i] = is_needed(l, &scene->meshes[i], all);
+	const nt_status status = l->reader->load_ahead(scene, needed, l->options, l->error);
+	free(needed);
+	return status;
+}
+
 nt_status nt_stage_load(nt_scene *scene, const nt_format_entry *reader, const nt_format_entry *writer,
 	const nt_settings *settings, const nt_read_options *options, nt_error *error)
 {
@@ -93,14 +114,15 @@ nt_status nt_stage_load(nt_scene *scene, const nt_format_entry *reader, const nt
 		status = find_joins(&l);
 	if (!status && reader->find_late && can_be_late(&l, writer))
 		status = reader->find_late(scene, error);
+	if (!status && reader->load_ahead)
+		status = load_ahead(&l, all);
 	for (size_t i = 0; !status && reader->load && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
-		const bool loadable = mesh->triangles && mesh->has_positions;
-		if (mesh->late)
+		if (!is_needed(&l, mesh, all))
 			continue;
-		if (nt_mesh_is_wanted(mesh) || (all && loadable))
+		if (nt_mesh_is_wanted(mesh) || all)
 			status = reader->load(scene, mesh, options, error);
-		else if (settings->report && loadable)
+		else
 			status = load_for_report(&l, mesh);
 	}
 	return status ? status : load_copies(&l);

@@ -165,6 +165,52 @@ run --draco=off --draco-speed=3 grid.glb out.glb
 exits 1
 says "--draco=off leaves nothing for --draco-speed"
 
+scene "blocks are decoded on several threads: the bytes, and what is wrong and where, do not depend on how many"
+for method in sequential edgebreaker; do
+	run -q --only=all --existing=replace --draco=$method "$data/plates.glb" three.glb
+	exits 0
+	# nine primitives, each with a block of its own; in another file those of two are damaged
+	node -e 'const fs = require("fs"), b = fs.readFileSync("three.glb"), size = b.readUInt32LE(12);
+		const g = JSON.parse(b.subarray(20, 20 + size)), bin = b.subarray(28 + size), parts = [bin];
+		const three = g.meshes[0].primitives, block = (p) => p.extensions.KHR_draco_mesh_compression;
+		const copy = (list, i) => list.push(structuredClone(list[i])) - 1;
+		for (let k = 1; k < 3; k++)
+			for (const p of structuredClone(three.slice(0, 3))) {
+				for (const name in p.attributes)
+					p.attributes[name] = copy(g.accessors, p.attributes[name]);
+				p.indices = copy(g.accessors, p.indices);
+				block(p).bufferView = copy(g.bufferViews, block(p).bufferView);
+				g.bufferViews[block(p).bufferView].byteOffset = (g.bufferViews[block(p).bufferView].byteOffset ?? 0) +
+					k * bin.length;
+				three.push(p);
+			}
+		const nine = Buffer.concat([bin, bin, bin]);
+		g.buffers = [{uri: "nine.bin", byteLength: nine.length}];
+		fs.writeFileSync("nine.bin", nine);
+		fs.writeFileSync("nine.gltf", JSON.stringify(g));
+		for (const i of [7, 4]) {
+			const at = g.bufferViews[block(three[i]).bufferView].byteOffset;
+			nine.fill(0, at, at + 5);
+		}
+		fs.writeFileSync("damaged.bin", nine);
+		g.buffers[0].uri = "damaged.bin";
+		fs.writeFileSync("damaged.gltf", JSON.stringify(g));
+		fs.writeFileSync("view", "" + block(three[4]).bufferView)'
+	is "$(compressed nine.gltf)" 9
+	for choice in keep off; do
+		for threads in 1 2 8; do
+			run -q --only=all --threads=$threads --existing=replace --draco=$choice nine.gltf $threads.glb
+			exits 0
+			same 1.glb $threads.glb
+		done
+	done
+	for threads in 1 2 8; do
+		run -q --only=all --threads=$threads --existing=replace damaged.gltf out.glb
+		exits 3
+		says "/bufferViews/$(cat view): mesh \"plates\", primitive 4, material \"plain\": not Draco data"
+	done
+done
+
 scene "only a glTF made from a glTF is compressed"
 run --draco=edgebreaker "$data/quad.obj" quad.glb
 exits 1

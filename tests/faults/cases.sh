@@ -56,7 +56,7 @@ cases() {
 		quantized | quantized.gltf || --precision=short quantized.gltf o.glb
 		extensions | manifold.gltf || --only=all manifold.gltf o.gltf
 		skin, draco out | skin.gltf || --draco=sequential skin.gltf o.glb
-		draco | draco.glb bumps.png || --existing=replace --verify draco.glb o.gltf
+		draco | draco.glb bumps.png || --threads=2 --existing=replace --verify draco.glb o.gltf
 		edgebreaker | edge.gltf || --existing=replace --verify edge.gltf o.glb
 		meshopt | meshopt.glb bumps.png || --verify meshopt.glb o.glb
 		in place | $plates || --in-place plates.gltf
