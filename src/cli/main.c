@@ -26,6 +26,7 @@
 #include "ext/module.h"
 #include "file/output.h"
 #include "file/relative_path.h"
+#include "pipeline/report_folder.h"
 #include "report/codes.h"
 
 /* What the jobs' ends add up to. */
@@ -34,6 +35,8 @@ typedef struct session {
 	const nt_report_plan *plan;
 	nt_report **reports; /* [of the batch] taken from the jobs */
 	size_t report_count;
+	nt_report_folder *folder; /* of reports; NULL: they are one file, or none */
+	size_t told; /* jobs */
 	nt_style style;
 	nt_progress *progress;
 	nt_buffer text;   /* what is being said */
@@ -124,6 +127,19 @@ static void add_times(nt_summary *total, const nt_summary *one)
 		total->skipped[reason] += one->skipped[reason];
 }
 
+/* Writes the job's own page. An index without it would not be whole. */
+static void add_page(session *s, nt_report *report, int *code)
+{
+	nt_error error;
+	if (!s->folder)
+		return;
+	const nt_status status = report ? nt_report_folder_add(s->folder, s->told, report, &error) : NT_OK;
+	if (status)
+		nt_message_error(&s->text, &error, s->style);
+	s->no_report |= status || !report;
+	*code = nt_exit_worse(*code, nt_exit_code(status));
+}
+
 /* Says what became of a job that ran, and returns its exit code. */
 static int tell_run(session *s, nt_job *job)
 {
@@ -152,6 +168,7 @@ static int tell_run(session *s, nt_job *job)
 			code = NT_EXIT_FINDINGS;
 	}
 	add_times(&s->total, summary);
+	add_page(s, summary->report, &code);
 	if (s->reports)
 		s->reports[s->report_count++] = summary->report;
 	else
@@ -253,6 +270,7 @@ static void tell_job(void *user, nt_job *job)
 	s->text.failed = false;
 	nt_progress_show(s->progress);
 	s->exit_code = nt_exit_worse(s->exit_code, code);
+	s->told++;
 }
 
 /* Returns whether there is sense in writing more. */
@@ -298,7 +316,9 @@ static void tell_report(session *s)
 		all &= s->reports[i] || !s->plan->wanted;
 	if (s->command->diff)
 		tell_diff(s);
-	else if (all && target->path && nt_report_to_file(s->reports, s->report_count, target, &error))
+	else if (all && s->folder && nt_report_folder_end(s->folder, &error))
+		all = tell_report_error(s, &error, target->path);
+	else if (all && !s->folder && target->path && nt_report_to_file(s->reports, s->report_count, target, &error))
 		all = tell_report_error(s, &error, target->path);
 	if (all && images && nt_report_uv_images(s->reports, s->report_count, images, target, &error))
 		tell_report_error(s, &error, images);
@@ -410,7 +430,7 @@ static nt_status check_own(const nt_command *c, const nt_batch *batch, nt_error 
 /* Memory for what is said and for the reports, and what else may be refused. */
 static nt_status begin_session(session *s, const nt_batch *batch, nt_error *error)
 {
-	const bool kept = s->plan->target.path || s->command->uv_image || s->command->diff;
+	const bool kept = (s->plan->target.path && !s->folder) || s->command->uv_image || s->command->diff;
 	if (kept)
 		s->reports = nt_calloc(s->count, sizeof *s->reports);
 	if ((!s->reports && kept) || !nt_buffer_reserve(&s->text, MESSAGE_BYTES))
@@ -441,9 +461,9 @@ static void end_session(session *s)
 }
 
 static int run_batch(const nt_command *command, nt_style style, const nt_report_plan *plan,
-	nt_batch *batch)
+	nt_batch *batch, nt_report_folder *folder)
 {
-	session s = {.command = command, .plan = plan, .style = style, .count = batch->count, .manifest = {.fd = -1}};
+	session s = {.command = command, .plan = plan, .folder = folder, .style = style, .count = batch->count, .manifest = {.fd = -1}};
 	nt_error error;
 	if (begin_session(&s, batch, &error)) {
 		end_session(&s);
@@ -497,19 +517,23 @@ static int run(nt_command *command, nt_style style, bool colour_on_stdout)
 	nt_inputs inputs = {0};
 	nt_batch batch = {0};
 	nt_report_plan plan = {0};
+	nt_report_folder folder = {0};
 	nt_error error;
 	nt_status status = choose_inputs(command, &inputs, &error);
 	if (!status)
 		status = nt_report_plan_make(&plan, command, colour_on_stdout, &error);
 	if (!status)
 		status = prepare(&batch, command, &error);
+	if (!status && plan.target.folder)
+		status = nt_report_folder_begin(&folder, &plan.target, &error);
 	int code = nt_exit_code(status);
 	if (status == NT_ERROR_USAGE)
 		say_usage(&error, style);
 	else if (status)
 		nt_say_error(&error, style);
 	else
-		code = run_batch(command, style, &plan, &batch);
+		code = run_batch(command, style, &plan, &batch, plan.target.folder ? &folder : NULL);
+	nt_report_folder_free(&folder);
 	nt_batch_free(&batch);
 	nt_report_plan_free(&plan);
 	nt_inputs_free(&inputs);

@@ -155,7 +155,7 @@ const nt_option_row nt_option_rows[] = {
 		"error with --check, else never", "exit with 6 on findings of this severity or above",
 		FIELD(fail_on), false},
 	{"report", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
-		"write a report of what was found to FILE; - is standard output", FIELD(report), false},
+		"write a report of what was found to FILE; - is standard output, DIR/ gets a page of each input", FIELD(report), false},
 	{"report-format", 0, NT_OPTION_CHOICE,
 		"text|json|sarif|junit|csv|markdown|html", 1, 0,
 		"by name", "format of the report", FIELD(report_format), false},

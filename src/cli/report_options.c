@@ -6,6 +6,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
 
 /* Takes the next word of a list separated by commas; false at its end. */
 static bool next_word(const char **list, char *word, size_t size)
@@ -66,6 +67,13 @@ static int least_failure(const nt_command *c)
 	return least[c->fail_on];
 }
 
+static bool is_folder(const char *path)
+{
+	struct stat info;
+	const size_t length = strlen(path);
+	return (length && path[length - 1] == '/') || (stat(path, &info) == 0 && S_ISDIR(info.st_mode));
+}
+
 static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool colour,
 	nt_error *error)
 {
@@ -81,7 +89,12 @@ static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool c
 	if (!target->path)
 		return NT_OK;
 	const bool dash = strcmp(target->path, "-") == 0;
-	if (c->report_format)
+	target->folder = c->report && !dash && is_folder(c->report);
+	if (target->folder && c->report_format && c->report_format - 1 != NT_REPORT_HTML)
+		return nt_fail(error, NT_ERROR_USAGE, "a report in a folder is HTML; for another format, --report names a file");
+	if (target->folder)
+		target->format = NT_REPORT_HTML;
+	else if (c->report_format)
 		target->format = (nt_report_format)(c->report_format - 1);
 	else if (dash || !c->report)
 		target->format = NT_REPORT_TEXT;

@@ -30,10 +30,12 @@ static nt_status write_set(const nt_report *const *reports, size_t count,
 		status = nt_output_protect(output, target->inputs[i], NULL, error);
 	if (!status)
 		status = nt_output_add(output, target->path, NT_ROLE_MAIN, &sink, error);
-	if (!status)
-		status = target->diff
-			? nt_diff_write(target->diff, target->format, to_sink, sink, error)
-			: nt_report_write(reports, count, target->format, &target->style, to_sink, sink, error);
+	if (!status && target->diff)
+		status = nt_diff_write(target->diff, target->format, to_sink, sink, error);
+	else if (!status && target->rows)
+		status = nt_report_write_index(target->rows, to_sink, sink, error);
+	else if (!status)
+		status = nt_report_write(reports, count, target->format, &target->style, to_sink, sink, error);
 	if (status) {
 		nt_output_abort(output);
 		return status;

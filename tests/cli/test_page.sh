@@ -65,6 +65,8 @@ printf 'o <img src=x onerror=window.broken=1>\001\377"\047</script>\nv 0 0 0\nv 
 printf '# nothing\n' >empty.obj
 run --check --report=bad.html --fail-on=never lines.obj empty.obj '"><script>window.broken=1.obj' "$data/mirrored_cube.obj"
 exists two.html head.html large.html many.html bad.html
+run --check --report=pages/ --fail-on=never many/head.obj many/bad.obj many/q[12]?.obj many/q[1-9].obj many/q30.obj '"><script>window.broken=1.obj'
+exists pages/index.html
 
 run --check --threads=1 --report=large.1.html large.obj
 cmp large.html large.1.html || wrong "one thread writes another page"

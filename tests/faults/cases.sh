@@ -71,6 +71,7 @@ cases() {
 		pictures | $cube || --check --uv-image=uv mirrored_cube.obj
 		difference | $cube quad.obj | many | --check --diff mirrored_cube.obj quad.obj
 		verdict | $cube || --fail-on=info mirrored_cube.obj o.glb
+		a folder of pages | $cube quad.obj | many report=pages/ | --check --report=pages/ mirrored_cube.obj quad.obj
 		convert and report | $cube | report=r.html | --report=r.html mirrored_cube.obj o.glb
 	END
 	for format in text json html sarif csv markdown junit; do

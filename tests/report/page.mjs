@@ -6,6 +6,7 @@
 //   head.html   data/head.obj, whose mirror seams lie in x = 0
 //   large.html  a grid of a million triangles, mirrored at its middle
 //   many.html   500 files
+//   pages/      index.html, and a page of each of head.obj, bad.obj, 30 quads and a name that tries to be a script
 //   bad.html    meshes with nothing to show, and a position that is not finite
 //
 // Prints one line per check that fails, and the number of checks that passed.
@@ -303,6 +304,41 @@ async function clickTexture(page, u, v) {
 	await page.waitForFunction(() => !document.querySelector('#overview').hidden);
 	check(await rows() === 1, 'and back');
 	if (shots) { await page.fill('#file-text', ''); await rest(page); await page.screenshot({path: shots + '/many.png'}); }
+	await page.close();
+}
+
+// ---- a folder of pages ----
+
+{
+	const page = await open('pages/index.html'), rows = () => page.locator('#file-rows tr').count();
+	const first = async () => page.locator('#file-rows tr >> nth=0').innerText();
+	check(await rows() === 33, '33 rows: ' + await rows());
+	check((await page.locator('#file-rows tr.error').allInnerTexts()).join().includes('bad.obj') && /bad|broken/.test(await first()), 'the worst first');
+	await page.click('[data-column=triangles] button');
+	check((await first()).includes('head.obj'), 'the largest first');
+	await rest(page);
+	check(await page.evaluate(() => { // the quads are blue, the mirrored half of the head lies on the other and is red
+		let blue = 0, red = 0;
+		for (const canvas of document.querySelectorAll('#file-rows canvas')) {
+			const d = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+			for (let i = 0; i < d.length; i += 4) if (d[i + 3] > 100) { if (d[i] > d[i + 2]) red++; else blue++; }
+		}
+		return blue > 3000 && red > 3000;
+	}), 'with layouts');
+	await page.fill('#file-text', 'broken');
+	check(await rows() === 1 && await page.evaluate(() => window.broken === undefined), 'a name is text');
+	await page.click('#file-rows a');
+	await page.waitForFunction(() => document.title.includes('broken'));
+	check(await page.evaluate(() => window.broken === undefined), 'and in its page');
+	await page.click('#title a');
+	await page.waitForFunction(() => !document.querySelector('#overview').hidden);
+	await page.fill('#file-text', 'head');
+	await page.click('#file-rows tr');
+	await page.waitForFunction(() => document.title.includes('head.obj'));
+	await ready(page);
+	check((await page.evaluate(() => window.nmtanReport.geometry().triangles)) === 672, 'a row opens its page');
+	check(requests.every(r => /^file:.*\/pages\/[^\/]*\.html$/.test(r)), 'pages ask for nothing but each other');
+	requests.length = 0;
 	await page.close();
 }
 

@@ -12,6 +12,10 @@
  *   codes     {CODE: {title, meaning, remedy}} of the findings that there are
  *   images    [data URI], which meshes number
  *   left_out  findings that have no place on the page
+ *   index     the page that lists all files; null: none but this one
+ *
+ * The index of a folder of pages has `folder: true` and, of each file, {name, format, counts, failure, page, triangles,
+ * islands, seams, layout: [path, path], meshes: [], findings: [{code, severity}]}, without equal findings.
  *
  * Then the page's script, then the geometry of each mesh in an element of its own, #g-FILE-MESH, which is not looked at
  * until the mesh is opened: a line of JSON (the fields of nt_packed) and its bytes as base64: see pack/pack.h. Written
@@ -23,7 +27,9 @@
 #include <stdio.h>
 #include <string.h>
 #include "report/pack/pack.h"
+#include "report/pack/thumb.h"
 #include "report/render/page_assets.h"
+#include "report/render/render.h"
 
 /* What one page holds. Triangles take 10 to 20 bytes of it; where the meshes have more together, each gets its share and
  * the page says so. */
@@ -256,7 +262,8 @@ static void put_findings(const nt_report *report, budget *left, nt_buffer *out)
 	nt_buffer_text(out, "]");
 }
 
-static void put_file(const nt_report *report, budget *left, nt_buffer *out)
+/* How a file begins, in its page and in the index. */
+static void put_head(const nt_report *report, nt_buffer *out)
 {
 	nt_buffer_text(out, "{\"name\":");
 	put_string(nt_shown_path(report->path), out);
@@ -267,6 +274,11 @@ static void put_file(const nt_report *report, budget *left, nt_buffer *out)
 		put_string(report->failure, out);
 	else
 		nt_buffer_text(out, "null");
+}
+
+static void put_file(const nt_report *report, budget *left, nt_buffer *out)
+{
+	put_head(report, out);
 	nt_buffer_text(out, ",\"meshes\":[");
 	for (size_t i = 0; i < report->mesh_count; i++) {
 		nt_buffer_text(out, i ? ",\n" : "\n");
@@ -308,7 +320,12 @@ static void put_data(const nt_report_list *reports, nt_buffer *out)
 	nt_buffer_format(out, ",\"left_out\":%zu,\"images\":[", left.left_out);
 	nt_buffer_append(out, left.sources.data, left.sources.size);
 	nt_buffer_free_into(&left.sources, out);
-	nt_buffer_text(out, "]}</script>\n");
+	nt_buffer_text(out, "],\"index\":");
+	if (reports->style.index)
+		put_string(reports->style.index, out);
+	else
+		nt_buffer_text(out, "null");
+	nt_buffer_text(out, "}</script>\n");
 }
 
 static void put_geometry(const nt_report *report, size_t file, uint32_t mesh, size_t most, nt_buffer *out)
@@ -352,9 +369,14 @@ static void put_geometries(const nt_report_list *reports, nt_buffer *out)
 	}
 }
 
-void nt_write_html(const nt_report_list *reports, nt_buffer *out)
+const char nt_html_mark[] = "<meta name=\"generator\" content=\"nmtan\">\n";
+
+/* What stands before the data. */
+static void begin_page(nt_buffer *out)
 {
-	nt_buffer_text(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+	nt_buffer_text(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+	nt_buffer_text(out, nt_html_mark);
+	nt_buffer_text(out,
 		"<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; "
 		"style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n"
 		"<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
@@ -362,10 +384,79 @@ void nt_write_html(const nt_report_list *reports, nt_buffer *out)
 	nt_buffer_text(out, nt_page_style);
 	nt_buffer_text(out, "</style>\n</head>\n<body>\n");
 	nt_buffer_text(out, nt_page_body);
-	put_data(reports, out);
+}
+
+static void put_script(nt_buffer *out)
+{
 	nt_buffer_text(out, "<script>\n");
 	nt_buffer_text(out, nt_page_script);
 	nt_buffer_text(out, "</script>\n");
-	put_geometries(reports, out);
+}
+
+static void end_page(nt_buffer *out)
+{
 	nt_buffer_text(out, "</body>\n</html>\n");
+}
+
+void nt_write_html(const nt_report_list *reports, nt_buffer *out)
+{
+	begin_page(out);
+	put_data(reports, out);
+	put_script(out);
+	put_geometries(reports, out);
+	end_page(out);
+}
+
+/* ---- the index of many pages ---- */
+
+/* The first layout. */
+static void put_thumb(const nt_report *report, nt_buffer *out)
+{
+	const bool v_down = report->format == NT_FORMAT_GLTF || report->format == NT_FORMAT_GLB;
+	nt_buffer paths[2] = {{0}, {0}};
+	size_t m = 0;
+	while (m < report->mesh_count && !has_geometry(&report->meshes[m]))
+		m++;
+	if (m < report->mesh_count && nt_thumb(report->meshes[m].geometry, v_down, paths))
+		out->failed = true;
+	nt_buffer_format(out, "[\"%s\",\"%s\"]", paths[0].data ? paths[0].data : "", paths[1].data ? paths[1].data : "");
+	nt_buffer_free_into(&paths[0], out);
+	nt_buffer_free_into(&paths[1], out);
+}
+
+void nt_report_index_row(const nt_report *report, const char *page, nt_buffer *rows)
+{
+	size_t triangles = 0, islands = 0, seams = 0;
+	bool seen[NT_CODE_COUNT][3] = {{false}};
+	for (size_t i = 0; i < report->mesh_count; i++) {
+		triangles += report->meshes[i].triangle_count;
+		islands += report->meshes[i].island_count;
+		seams += report->meshes[i].seams ? report->meshes[i].seam_count : 0;
+	}
+	nt_buffer_text(rows, rows->size ? ",\n" : "\n");
+	put_head(report, rows);
+	nt_buffer_text(rows, ",\"page\":");
+	put_string(page, rows);
+	nt_buffer_format(rows, ",\"triangles\":%zu,\"islands\":%zu,\"seams\":%zu,\"layout\":", triangles, islands, seams);
+	put_thumb(report, rows);
+	nt_buffer_text(rows, ",\"meshes\":[],\"findings\":[");
+	for (size_t i = 0, any = 0; i < report->finding_count; i++) {
+		const nt_report_finding *finding = &report->findings[i];
+		bool *before = &seen[finding->code][finding->severity];
+		if (!*before)
+			nt_buffer_format(rows, "%s{\"code\":\"%s\",\"severity\":\"%s\"}", any++ ? "," : "",
+				nt_code_info(finding->code)->name, nt_severity_name(finding->severity));
+		*before = true;
+	}
+	nt_buffer_text(rows, "]}");
+}
+
+void nt_write_html_index(const nt_buffer *rows, nt_buffer *out)
+{
+	begin_page(out);
+	nt_buffer_text(out, "<script type=\"application/json\" id=\"data\">{\"folder\":true,\"files\":[");
+	nt_buffer_append(out, rows->data, rows->size);
+	nt_buffer_text(out, "]}</script>\n");
+	put_script(out);
+	end_page(out);
 }

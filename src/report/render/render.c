@@ -61,6 +61,15 @@ nt_status nt_report_write(const nt_report *const *reports, size_t count, nt_repo
 	return stream.status;
 }
 
+nt_status nt_report_write_index(const nt_buffer *rows, nt_report_sink sink, void *user, nt_error *error)
+{
+	nt_buffer out = {0};
+	nt_write_html_index(rows, &out);
+	const nt_status status = out.failed ? nt_fail_memory(error) : sink(user, out.data, out.size, error);
+	nt_buffer_free(&out);
+	return status;
+}
+
 nt_status nt_report_write_uv(const nt_report *report, uint32_t mesh, bool *drawn, nt_report_sink sink,
 	void *user, nt_error *error)
 {

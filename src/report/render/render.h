@@ -30,6 +30,16 @@ bool nt_report_format_of_path(const char *path, nt_report_format *format);
 nt_status nt_report_write(const nt_report *const *reports, size_t count, nt_report_format format,
 	const nt_report_style *style, nt_report_sink sink, void *user, nt_error *error);
 
+/* What tells an HTML report from other files: it is in the first 1000 bytes. */
+extern const char nt_html_mark[];
+
+/* Appends the row of a report in an HTML index of many pages: its counts, the codes that it has and a thumbnail of its
+ * first layout. `page` is the report's own page, as a URI. */
+void nt_report_index_row(const nt_report *report, const char *page, nt_buffer *rows);
+
+/* Writes the index whose rows were made by nt_report_index_row(). Statuses as above. */
+nt_status nt_report_write_index(const nt_buffer *rows, nt_report_sink sink, void *user, nt_error *error);
+
 /* Writes the UV layout of one mesh as SVG. *drawn receives false, and nothing is written, where it has no
  * texture coordinates; the report must have been built with keep_geometry. Statuses as above. */
 nt_status nt_report_write_uv(const nt_report *report, uint32_t mesh, bool *drawn, nt_report_sink sink,

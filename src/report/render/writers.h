@@ -16,6 +16,9 @@ void nt_write_csv(const nt_report_list *reports, nt_buffer *out);
 void nt_write_markdown(const nt_report_list *reports, nt_buffer *out);
 void nt_write_html(const nt_report_list *reports, nt_buffer *out);
 
+/* The HTML page that lists files by the rows that nt_report_index_row() made. */
+void nt_write_html_index(const nt_buffer *rows, nt_buffer *out);
+
 /* For other writers of Markdown: a text without markup, and a finding as a row of four columns. */
 void nt_markdown_text(const char *text, nt_buffer *out);
 void nt_markdown_finding(const nt_report *report, const nt_report_finding *finding, nt_buffer *out);

@@ -86,6 +86,7 @@ static const char manual_head[] =
 	"million\ntriangles in one page; above that each mesh is shown around its findings, and the page says so. Of several files "
 	"the first\npage is a table. The keys j and k go through the findings, / filters, Escape chooses nothing; #finding-N behind "
 	"the\naddress leads to a finding.\n"
+	"With\n.BI \\-\\-report= DIR/\neach file has a page of its own, up to three million triangles each, and index.html is the table.\n"
 	".PP\n"
 	"All are deterministic: they contain no time and no absolute path.\n"
 	".SH CODES\n"

@@ -45,6 +45,7 @@ files.forEach((file, f) => {
 		finding.file = file;
 		findings.push(finding);
 	});
+	if (file.page) return; // a row of a folder's index has the sums
 	file.triangles = file.meshes.reduce((sum, mesh) => sum + mesh.triangles, 0);
 	file.islands = file.meshes.reduce((sum, mesh) => sum + mesh.islands, 0);
 	file.seams = file.meshes.reduce((sum, mesh) => sum + mesh.seams.length, 0);

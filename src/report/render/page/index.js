@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // The first page of many files: a row each, the worst first. Pictures of their texture layouts are made when a row comes
-// into view, of files that are small enough.
+// into view, of files that are small enough; the index of a folder has them made.
 
 const MOST_THUMB_TRIANGLES = 60000;
 
@@ -41,12 +41,14 @@ class Overview {
 	row(file) {
 		const mesh = file.meshes.find(m => m.hasGeometry && m.number === (m.same_as ?? m.number));
 		const canvas = element('canvas', {class: 'thumb', width: 112, height: 80, 'aria-hidden': 'true'});
-		if (mesh && mesh.triangles <= MOST_THUMB_TRIANGLES) { canvas.mesh = mesh; this.observer.observe(canvas); }
+		if (file.page) { canvas.layout = file.layout; this.observer.observe(canvas); }
+		else if (mesh && mesh.triangles <= MOST_THUMB_TRIANGLES) { canvas.mesh = mesh; this.observer.observe(canvas); }
+		const address = file.page || '#file-' + file.number;
 		const number = (n, kind) => element('td', {class: 'numeric ' + (n ? kind || '' : 'none')}, count(n));
 		const codes = [...new Set(file.findings.filter(x => x.severity !== 'info').map(x => x.code))].slice(0, 3).map(titleOf).join(', ');
-		return element('tr', {class: file.failure || file.counts[0] ? 'error' : file.counts[1] ? 'warning' : 'clean', onclick: () => { location.hash = 'file-' + file.number; }},
+		return element('tr', {class: file.failure || file.counts[0] ? 'error' : file.counts[1] ? 'warning' : 'clean', onclick: () => { location.href = address; }},
 			element('td', {}, canvas),
-			element('td', {class: 'name'}, element('a', {href: '#file-' + file.number, onclick: e => e.stopPropagation()}, file.name),
+			element('td', {class: 'name'}, element('a', {href: address, onclick: e => e.stopPropagation()}, file.name),
 				element('span', {class: 'note'}, file.failure || codes || (file.counts[2] ? 'notes only' : 'nothing to report'))),
 			number(file.counts[0], 'error'), number(file.counts[1], 'warning'), number(file.counts[2], 'info'), number(file.triangles), number(file.islands), number(file.seams));
 	}
@@ -63,7 +65,14 @@ class Overview {
 	}
 
 	async drawThumb(canvas) {
-		const g = await readGeometry(canvas.mesh), c = canvas.getContext('2d'), uv = g.texcoords, ink = layoutInk();
+		const c = canvas.getContext('2d'), ink = layoutInk();
+		c.globalAlpha = 0.75;
+		if (canvas.layout) {
+			c.setTransform(0.5, 0, 0, 0.5, 4, 4);
+			[ink.plainLine, ink.mirroredLine].forEach((style, i) => { c.fillStyle = style; c.fill(new Path2D(canvas.layout[i])); });
+			return;
+		}
+		const g = await readGeometry(canvas.mesh), uv = g.texcoords;
 		if (!uv) return;
 		const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
 		for (let v = 0; v < uv.length; v++) { low[v & 1] = Math.min(low[v & 1], uv[v]); high[v & 1] = Math.max(high[v & 1], uv[v]); }
@@ -71,7 +80,6 @@ class Overview {
 		const x = u => 56 + (u - (low[0] + high[0]) / 2) * scale, y = v => 40 + (v - (low[1] + high[1]) / 2) * scale;
 		for (const region of g.regions) {
 			c.fillStyle = region.mirrored ? ink.mirroredLine : ink.plainLine;
-			c.globalAlpha = 0.75;
 			c.beginPath();
 			for (const loop of region.loops) {
 				loop.forEach((v, i) => i ? c.lineTo(x(uv[2 * v]), y(uv[2 * v + 1])) : c.moveTo(x(uv[2 * v]), y(uv[2 * v + 1])));

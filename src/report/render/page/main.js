@@ -163,7 +163,7 @@ function openFile(next) {
 	$('selection').hidden = true;
 	$('overview').hidden = true;
 	$('file').hidden = false;
-	$('title').replaceChildren(...(files.length > 1 ? [element('a', {href: '#'}, 'All files'), ' / '] : []), element('span', {}, file.name));
+	$('title').replaceChildren(...(files.length > 1 || data.index ? [element('a', {href: data.index || '#'}, 'All files'), ' / '] : []), element('span', {}, file.name));
 	document.title = file.name + ' – nmtan report';
 	summary(file.counts, file.failure);
 	$('mesh').replaceChildren(...file.meshes.map(m => new Option(m.label + (m.same_as === null ? '' : ' (same geometry as ' + file.meshes[m.same_as].label + ')'), m.number)));
@@ -195,7 +195,8 @@ function summary(counts, failure) {
 
 function follow() {
 	const [, kind, number] = /^#(file|finding)-(\d+)$/.exec(location.hash) || [];
-	if (kind === 'finding' && findings[number]) choose({finding: findings[number]});
+	if (data.folder) openOverview();
+	else if (kind === 'finding' && findings[number]) choose({finding: findings[number]});
 	else if (kind === 'file' && files[number]) { if (file !== files[number]) openFile(files[number]); }
 	else if (files.length === 1) { if (!file) openFile(files[0]); }
 	else openOverview();

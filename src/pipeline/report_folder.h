@@ -1,0 +1,39 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A report as a folder: a page of each input, and index.html, which lists them. Pages are written as their inputs are
+ * done, and the index, of which only a row is kept for each, at the end.
+ */
+#ifndef NT_PIPELINE_REPORT_FOLDER_H
+#define NT_PIPELINE_REPORT_FOLDER_H
+
+#include <sys/types.h>
+#include "base/buffer.h"
+#include "pipeline/report_file.h"
+
+typedef struct nt_report_folder {
+	const nt_report_target *target;
+	char **pages;   /* [target->input_count] file names in the folder */
+	struct { dev_t device; ino_t inode; } *inputs; /* [input_count] of those that are there */
+	size_t input_count;
+	nt_buffer rows; /* of the index */
+} nt_report_folder;
+
+/*
+ * Names the page of each input of the target, which must outlive the folder, and makes the folder target->path where it
+ * is missing (not its parents). A page is named after the last part of its input's name: what is not a letter, a digit or
+ * one of ".-_" becomes "_"; where two would have the same name, but for the case of letters, the later one has a hash of
+ * its input's path too.
+ *
+ * Returns NT_OK, NT_ERROR_IO, also where a page would replace what nmtan did not make, or an input, or NT_ERROR_MEMORY. The folder is to be freed after failure too.
+ */
+nt_status nt_report_folder_begin(nt_report_folder *folder, const nt_report_target *target, nt_error *error);
+
+/* Writes the page of an input, and notes its row for the index. Statuses as above; errors name the page. */
+nt_status nt_report_folder_add(nt_report_folder *folder, size_t input, nt_report *report, nt_error *error);
+
+/* Writes the index of the pages so far. */
+nt_status nt_report_folder_end(nt_report_folder *folder, nt_error *error);
+
+void nt_report_folder_free(nt_report_folder *folder);
+
+#endif

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: MIT
+# A report as a folder: a page of each input and an index.
+. "$ROOT/tests/support/cli.sh"
+script='"><script>.obj'
+
+# The index's rows, in the order of the inputs: a Python expression over the row f.
+rows() {
+	python3 -c 'import json, re, sys
+text = open(sys.argv[1], encoding="utf-8").read()
+data = json.loads(re.search(r"id=\"data\">(.*?)</script>", text, re.S).group(1))
+for f in data["files"]: print(eval(sys.argv[2]))' "$1" "$2"
+}
+
+# What several scenes report on: names that are equal, equal but for case, hostile, hidden; an input that cannot be read.
+inputs() {
+	mkdir a b
+	cp "$data/mirrored_cube.obj" a/m.obj
+	cp "$data/quad.obj" b/m.obj
+	cp "$data/quad.obj" a/M.obj
+	cp "$data/quad.obj" a/index
+	cp "$data/quad.obj" "a/$script"
+	cp "$data/quad.obj" a/..obj
+	cp "$data/quad.obj" "a/$(printf 'n\nu\377 %%2e.obj')"
+	echo 'f 1 2 3' >b/bad.obj
+}
+
+scene "a page of each input and an index; names are safe, and none is taken twice"
+inputs
+run --check --report=r/ a/* a/..obj b/*
+exits 3
+exists r/M.obj.html r/bad.obj.html r/_.obj.html r/___script_.obj.html
+is "$(ls r | grep -c '\.html$') $(ls -A r | wc -l)" "9 9"
+is "$(ls r | grep -ci '^m\.obj')" 3
+is "$(ls r | tr A-Z a-z | sort -u | wc -l)" 9
+rows r/index.html 'f["page"]' >pages
+is "$(grep -c '^[A-Za-z0-9._%-]*$' pages)" 8
+python3 -c 'import os, urllib.parse
+for line in open("pages"): assert os.path.isfile(b"r/" + urllib.parse.unquote_to_bytes(line.strip())), line' || wrong "a link leads nowhere"
+grep -aq '<script>\.obj' r/*.html && wrong "a name is markup"
+
+scene "the index has counts, layouts, and what could not be judged"
+inputs
+run --check --report=r a/m.obj b/bad.obj
+exits 1
+mkdir r
+run --check --report=r --fail-on=never a/m.obj b/bad.obj
+run --check --report=r.html --fail-on=never a/m.obj b/bad.obj
+is "$(rows r/index.html 'f["name"], f["counts"], f["failure"]')" "$(rows r.html 'f["name"], f["counts"], f["failure"]')"
+is "$(rows r/index.html 'f["triangles"], f["islands"], f["seams"]')" \
+	"$(rows r.html 'tuple(sum(x) for x in ([m["triangles"] for m in f["meshes"]], [m["islands"] for m in f["meshes"]], [len(m["seams"]) for m in f["meshes"]]))')"
+is "$(rows r/index.html 'sorted({x["code"] for x in f["findings"]})')" "$(rows r.html 'sorted({x["code"] for x in f["findings"]})')"
+is "$(rows r/index.html '[bool(x) for x in f["layout"]]')" "[True, True]
+[False, False]"
+is "$(rows r/m.obj.html 'f["name"], f["counts"]')" "$(rows r/index.html 'f["name"], f["counts"]' | head -1)"
+
+scene "any number of jobs and threads, and another run, write the same bytes"
+inputs
+run --check --report=one/ --jobs=1 --threads=1 a/* b/*
+run --check --report=four/ --jobs=4 --threads=4 a/* b/*
+diff -r one four >/dev/null || wrong "they differ"
+run --check --report=four/ a/* b/*
+diff -r one four >/dev/null || wrong "another run differs"
+
+scene "pages that nmtan made are replaced or stay, all else is refused before anything is done"
+inputs
+run --check --report=r/ --fail-on=never a/m.obj b/bad.obj
+exits 3
+run --check --report=r/ --fail-on=never a/m.obj
+exits 0
+exists r/bad.obj.html
+is "$(rows r/index.html 'f["page"]')" m.obj.html
+for name in m.obj.html index.html; do
+	mv r/$name kept
+	echo mine >r/$name
+	run --report=r/ -d out a/m.obj
+	exits 2
+	says "r/$name: refusing to write: it is no page of a report that nmtan made"
+	is "$(cat r/$name)" mine
+	[ ! -e out/m.glb ] || wrong "it ran"
+	mv kept r/$name
+done
+run --report=r/ --no-clobber a/m.obj new.glb
+exits 2
+[ ! -e new.glb ] || wrong "it ran, with --no-clobber"
+# an input is not replaced, whatever it says of itself
+cp "$data/quad.obj" m.obj
+{ printf '# <meta name="generator" content="nmtan">\n'; cat "$data/quad.obj"; } >m.obj.html
+cp m.obj.html before
+run --check --report=./ m.obj m.obj.html
+exits 2
+same m.obj.html before
+
+scene "a folder is HTML, and of a conversion too"
+cp "$data/mirrored_cube.obj" m.obj
+run --check --report=r/ --report-format=json m.obj
+exits 1
+says "a report in a folder is HTML"
+run --check --diff --report=r/ m.obj m.obj
+exits 1
+run --check --report=no/r/ m.obj
+exits 2
+[ ! -e r ] || wrong "a folder for nothing"
+run --report=r/ --report-format=html m.obj m.glb
+exits 0
+only m.obj m.glb r
+is "$(ls r | tr '\n' ' ')" "index.html m.obj.html "
+
+done_testing
