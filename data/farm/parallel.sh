@@ -6,8 +6,8 @@
 # failed, or have not ended because something was killed, are run when it is started again; what they have done already
 # is up to date. What came of each input is in WORK/manifest.jsonl.
 set -u
-farm=$(cd "$(dirname "$0")" && pwd)/nmtan-farm
-work=$(cd "$1" && pwd) || exit 2
+farm=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)/nmtan-farm
+work=$(CDPATH= cd -- "$1" && pwd) || exit 2
 shift
 "$farm" chunks "$work" >/dev/null || exit
 # --env: what is set here is not set on other hosts. -q: nothing in these words is for a shell.

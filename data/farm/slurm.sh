@@ -6,8 +6,8 @@
 # failed or somebody else came first, goes on where it was: what is done is up to date. So does slurm.sh when it is
 # started again. Slurm allows 1001 tasks unless MaxArraySize says more. Prints the number of the merging job.
 set -eu
-farm=$(cd "$(dirname "$0")" && pwd)/nmtan-farm
-work=$(cd "$1" && pwd)
+farm=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)/nmtan-farm
+work=$(CDPATH= cd -- "$1" && pwd)
 shift
 count=$("$farm" chunks "$work" | wc -l)
 log=$(printf '%s\n' "$work" | sed 's/%/%%/g')

@@ -6,7 +6,7 @@ export NMTAN
 
 # Names that hurt, in folders that do, and the files that the meshes refer to.
 hard=('two words.obj' "it's.obj" 'quo"te.obj' $'line\nfeed.obj' '-dash.obj' 'back\slash.obj' '$HOME `x`;.obj'
-	'{}.obj' '100%.obj' '*.obj' $'\xff\xfe.obj' 'é.obj')
+	'{}.obj' '100%.obj' '*.obj' 'a|b.obj' $'\xff\xfe.obj' 'é.obj')
 take_hard() {
 	local name
 	mkdir -p "as sets/-sub dir"

@@ -41,6 +41,30 @@ says "2 of 4 inputs failed"
 { line a done 0; line b done 0; line c failed 3; line d failed 2; } >expected
 same w/manifest.jsonl expected
 
+scene "inputs that would have one output are refused, whatever the number of chunks"
+mkdir x y
+cp "$data/quad.obj" x
+cp "$data/quad.obj" y
+printf 'x/quad.obj\0y/quad.obj\0' | "$farm/nmtan-farm" prepare w 2 -d out
+recipe "$farm/nmtan-farm" run w 1
+exits 1
+says "would both be written to"
+
+scene "names that look the same in a manifest are told apart"
+printf 'a\xff.obj\0a\xfe.obj\0' | "$farm/nmtan-farm" prepare w 1
+{ line 'a\ufffd' failed 3; line 'a\ufffd' done 0; } >w/1.1.jsonl
+recipe "$farm/nmtan-farm" merge w
+exits 1
+says "1 of 2 inputs failed"
+same w/manifest.jsonl w/1.1.jsonl
+
+scene "CDPATH leads nowhere"
+export CDPATH=$PWD
+printf '' | "$farm/nmtan-farm" prepare w 1
+recipe "$farm/parallel.sh" w --jobs 1
+says_not "was not prepared"
+unset CDPATH
+
 scene "GNU parallel: names of any kind; a failure is told, and its chunk alone is run by the next start"
 take_hard
 clean
@@ -84,7 +108,7 @@ list | "$farm/nmtan-farm" ninja "o ut" "as sets" --method=area >build.ninja
 ninja >made 2>&1 || wrong "$(cat made)"
 diff -r clean "o ut" >difference || wrong "$(head -3 difference)"
 # those that Ninja cannot read in a depfile are made again each time
-rm "as sets/-sub dir/"*[\'\"\*\;]*
+rm "as sets/-sub dir/"*[\'\"\*\;\|]*
 list | "$farm/nmtan-farm" ninja "o ut" "as sets" --method=area >build.ninja
 is "$(ninja)" "ninja: no work to do."
 sleep 0.03
