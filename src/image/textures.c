@@ -411,6 +411,10 @@ static void note_failure(result *r)
 	nt_texture *texture = &r->texture;
 	const bool as_it_is = !r->how.png && !r->how.heights && !r->how.packed;
 	texture->type = as_it_is ? texture->sources[0]->type : NT_IMAGE_OTHER;
+	for (int k = 0; k < 4 && r->how.packed; k++)
+		if (r->how.channels[k].used && r->how.channels[k].source != UINT32_MAX)
+			texture->damaged |= 1u << k;
+	texture->lost |= texture->damaged;
 	texture->failure = r->error.message;
 }
 
@@ -507,6 +511,11 @@ nt_status nt_textures_make(nt_textures *t, const nt_texture_rules *rules, nt_err
 	for (size_t i = 0; i < t->result_count && !status; i++)
 		status = fatal(&t->results[i].error, error);
 	return status ? status : join_results(t, error);
+}
+
+size_t nt_textures_wishes(const nt_textures *t)
+{
+	return t->wish_count;
 }
 
 size_t nt_textures_count(const nt_textures *t)

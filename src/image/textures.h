@@ -87,11 +87,14 @@ void nt_textures_free(nt_textures *textures); /* NULL is allowed */
 nt_status nt_textures_wish(nt_textures *textures, const nt_image_places *places, const nt_texture_wish *wish,
 	uint32_t *number, nt_error *error);
 
+/* How many wishes there are. */
+size_t nt_textures_wishes(const nt_textures *textures);
+
 /* Makes the results. An image that cannot be decoded is no failure, but one without result, or as it is where glTF
  * carries it. Returns NT_OK, NT_ERROR_IO, also when a file is not what it was, or NT_ERROR_MEMORY. */
 nt_status nt_textures_make(nt_textures *textures, const nt_texture_rules *rules, nt_error *error);
 
-/* The results; several wishes may have one, and of results that are the same file one stands for all. */
+/* The results, none before they are made; several wishes may have one, and of results that are the same file one stands for all. */
 size_t nt_textures_count(const nt_textures *textures);
 const nt_texture *nt_textures_at(const nt_textures *textures, size_t result);
 size_t nt_textures_result(const nt_textures *textures, uint32_t wish);

@@ -128,7 +128,7 @@ nt_status nt_stage_tangents_and_textures(nt_scene *scene, const nt_settings *set
 	making m = {.scene = scene, .settings = settings, .output = output, .textures = textures, .summary = summary,
 		.error = error};
 	/* a thread costs more than making nothing */
-	if (!textures || !nt_textures_count(textures) || nt_thread_count(settings->threads) == 1) {
+	if (!textures || !nt_textures_wishes(textures) || nt_thread_count(settings->threads) == 1) {
 		make_part(&m, 0);
 		if (textures && !m.status[0])
 			make_part(&m, 1);

@@ -313,6 +313,15 @@ run --flip-green=auto quad.obj quad.glb
 exits 0
 is "$(gltf quad.glb 'g.images.length')" 1
 
+scene "maps that would be too large together are told, and their numbers count"
+images write wide.png 20000 1 '(9, 9, 9)'
+images write tall.png 1 20000 '(9, 9, 9)'
+quad "Pr 0.25" "map_Pr wide.png" "map_Pm tall.png"
+run -v quad.obj quad.glb
+exits 0
+says "IMAGE_DAMAGED"
+is "$(material .pbrMetallicRoughness.roughnessFactor)" 0.25
+
 scene "the same bytes for every number of threads"
 for i in 1 2 3 4; do images write "$i.tga" 64 $((i * 16)) '(x + y, x, y)'; done
 quad "map_Kd 1.tga" "map_d 2.tga" "map_Pr 3.tga" "map_Pm 4.tga" "map_Ke 2.tga"
