@@ -146,6 +146,8 @@ static nt_status read_map(const reader *r, mtl_map which)
 	char *word = nt_arena_text(&r->scene->arena, r->word, r->word_length);
 	if (!name || !word)
 		return nt_fail_memory(r->error);
+	if (!*name)
+		return NT_OK; /* "" is none, too */
 	r->said->maps[which].map = (nt_map){.name = name, .line = r->line, .placement = read.placement, .channel = read.channel, .base = read.base,
 		.gain = read.gain};
 	r->said->maps[which].word = word;

@@ -249,7 +249,8 @@ static void settle_layers(const settling *s)
 	if (has_map(s, MTL_MAP_PS))
 		take_scaled(s, MTL_MAP_PS, MTL_PS, &m->sheen_map);
 	m->anisotropy = unit(s, MTL_ANISO, 0);
-	m->anisotropy_rotation = (float)(2 * 3.14159265358979323846 * (double)s->said->numbers[MTL_ANISOR].value);
+	/* whole turns change nothing, and many would not be a float */
+	m->anisotropy_rotation = (float)(2 * 3.14159265358979323846 * fmod((double)s->said->numbers[MTL_ANISOR].value, 1));
 }
 
 /* Ni 1 (and 0) is what programs write that know no refraction. */

@@ -109,6 +109,9 @@ static void layers_are_taken(void **state)
 	assert_true(m->ior == 1.33f);
 	expect_finding(&r, NT_CODE_MATERIAL_LOST, 0, NULL);
 	close_reading(&r);
+	m = settle(&r, "aniso 1\nanisor 3e38");
+	assert_true(isfinite(m->anisotropy_rotation));
+	close_reading(&r);
 	m = settle(&r, "Ni 1.0");
 	assert_true(m->ior == 0);
 	close_reading(&r);
