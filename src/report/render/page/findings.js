@@ -90,7 +90,7 @@ class Findings {
 
 	show() {
 		const shown = this.file.findings.filter(x => this.isShown(x)), groups = new Map();
-		for (const x of shown) groups.set(x.code, [...groups.get(x.code) || [], x]);
+		for (const x of shown) groups.has(x.code) ? groups.get(x.code).push(x) : groups.set(x.code, [x]);
 		const worst = items => Math.min(...items.map(x => severities.indexOf(x.severity)));
 		const order = [...groups].sort((a, b) => worst(a[1]) - worst(b[1]) || b[1].length - a[1].length || (a[0] < b[0] ? -1 : 1));
 		this.rows.clear();
