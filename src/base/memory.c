@@ -123,12 +123,15 @@ bool nt_arena_adopt(nt_arena *arena, void *block)
 	return true;
 }
 
+/* Behind the first block, from which small requests go on being taken; as long as the other's blocks, however many are
+ * here: joining many arenas with one takes linear time. */
 void nt_arena_join(nt_arena *arena, nt_arena *other)
 {
-	struct nt_arena_block **end = &arena->blocks;
-	while (*end)
-		end = &(*end)->next;
-	*end = other->blocks;
+	struct nt_arena_block **at = arena->blocks ? &arena->blocks->next : &arena->blocks, *const behind = *at;
+	*at = other->blocks;
+	while (*at)
+		at = &(*at)->next;
+	*at = behind;
 	other->blocks = NULL;
 }
 

@@ -248,6 +248,17 @@ static nt_status join_branch(nt_check *check, branch *b)
 	return status;
 }
 
+/* What the branches do, into the report itself: a scene may have a hundred thousand small meshes. */
+static nt_status run_one_by_one(nt_check *check)
+{
+	static nt_status (*const checks[])(nt_check *) = {nt_check_islands, nt_check_seams, nt_check_measures,
+		nt_check_tangents, nt_check_growth};
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < sizeof checks / sizeof *checks && !status; i++)
+		status = checks[i](check);
+	return status ? status : check->failed ? NT_ERROR_MEMORY : NT_OK;
+}
+
 /* First what all threads can do together, then what they cannot, side by side. */
 static nt_status run_checks(nt_check *check)
 {
@@ -256,8 +267,10 @@ static nt_status run_checks(nt_check *check)
 		status = nt_check_edges(check);
 	if (status)
 		return status;
-	/* triangles from which on threads pay */
+	/* triangles from which on threads pay, and lists of their own */
 	enum { LARGE = 65536 };
+	if (check->surface.triangle_count < LARGE)
+		return run_one_by_one(check);
 	branch branches[2] = {
 		{.checks = {nt_check_islands, nt_check_seams, nt_check_measures}},
 		{.checks = {nt_check_tangents, nt_check_growth}}};
@@ -272,8 +285,7 @@ static nt_status run_checks(nt_check *check)
 		if (i > 0)
 			b->check.scratch = &b->scratch;
 	}
-	const bool large = check->surface.triangle_count >= LARGE;
-	nt_parallel_items(large ? nt_thread_count(check->options->threads) : 1, 2, run_branch, branches);
+	nt_parallel_items(nt_thread_count(check->options->threads), 2, run_branch, branches);
 	for (int i = 0; i < 2; i++) {
 		const nt_status joined = join_branch(check, &branches[i]);
 		nt_scratch_free(&branches[i].scratch);
