@@ -290,7 +290,7 @@ static void tell_diff(session *s)
 	nt_error error;
 	if (s->report_count != 2 || !s->reports[0] || !s->reports[1] || s->reports[0]->failure || s->reports[1]->failure)
 		return;
-	if (nt_report_compare(&diff, s->reports[0], s->reports[1])) {
+	if (nt_report_compare(&diff, s->reports[0], s->reports[1], target.format == NT_REPORT_HTML)) {
 		nt_fail_memory(&error);
 		tell_report_error(s, &error, target.path ? target.path : "");
 		return;

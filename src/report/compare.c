@@ -227,8 +227,20 @@ static void compare_tangents(nt_mesh_change *change, const float *before, const 
 	}
 }
 
+/* Notes the other version's tangent of a vertex, if it turned more than what was noted before. Both have a length. */
+static void note_other(float *noted, const float *own, const float *other)
+{
+	nt_dvec3 t = nt_dvec3_load(own), before = nt_dvec3_load(noted), now = nt_dvec3_load(other);
+	if (!nt_dvec3_normalise(&t) || !nt_dvec3_normalise(&now))
+		return;
+	const bool any = nt_dvec3_normalise(&before);
+	const double turned = own[3] != other[3] ? -2.0 : nt_dvec3_dot(t, now);
+	if (!any || turned < (own[3] != noted[3] ? -2.0 : nt_dvec3_dot(t, before)))
+		memcpy(noted, other, 4 * sizeof *noted);
+}
+
 static void compare_triangles(nt_mesh_change *change, const nt_report_geometry *a, size_t t,
-	const nt_report_geometry *b, size_t u)
+	const nt_report_geometry *b, size_t u, bool exchange)
 {
 	const unsigned first = first_corner(a, t), other = first_corner(b, u);
 	change->matched++;
@@ -237,17 +249,24 @@ static void compare_triangles(nt_mesh_change *change, const nt_report_geometry *
 		if (a->texcoords && b->texcoords)
 			change->moved_texcoords += a->texcoords[2 * v] != b->texcoords[2 * w] ||
 				a->texcoords[2 * v + 1] != b->texcoords[2 * w + 1];
-		if (a->tangents && b->tangents)
-			compare_tangents(change, a->tangents + 4 * v, b->tangents + 4 * w, b->positions + 3 * w);
+		if (!a->tangents || !b->tangents)
+			continue;
+		const float *before = a->tangents + 4 * v, *after = b->tangents + 4 * w;
+		compare_tangents(change, before, after, b->positions + 3 * w);
+		if (exchange) {
+			note_other(a->computed + 4 * v, before, after);
+			note_other(b->computed + 4 * w, after, before);
+		}
 	}
 }
 
-static nt_status compare_geometry(nt_mesh_change *change, const nt_report_geometry *a, const nt_report_geometry *b)
+static nt_status compare_geometry(nt_mesh_change *change, const nt_report_geometry *a, const nt_report_geometry *b,
+	bool exchange)
 {
 	uint32_t *partners = find_partners(a, a->triangle_count, b, b->triangle_count, triangle_key);
 	for (size_t u = 0; partners && u < b->triangle_count; u++)
 		if (partners[u] != NT_NONE && same_place(a, partners[u], b, u))
-			compare_triangles(change, a, partners[u], b, u);
+			compare_triangles(change, a, partners[u], b, u, exchange);
 	const nt_status status = partners ? NT_OK : NT_ERROR_MEMORY;
 	free(partners);
 	return status;
@@ -260,10 +279,29 @@ static const nt_report_geometry *geometry_of(const nt_report *report, uint32_t m
 	return m->same_as == NT_NONE ? m->geometry : report->meshes[m->same_as].geometry;
 }
 
-nt_status nt_report_compare(nt_report_diff *diff, const nt_report *before, const nt_report *after)
+static nt_status begin_exchange(nt_report *report)
+{
+	for (size_t i = 0; i < report->mesh_count; i++) {
+		nt_report_geometry *g = report->meshes[i].geometry;
+		if (!g || !g->tangents || report->meshes[i].same_as != NT_NONE)
+			continue;
+		g->authored = g->tangents;
+		g->computed = nt_arena_alloc(&report->arena, g->vertex_count, 4 * sizeof *g->computed);
+		if (!g->computed)
+			return NT_ERROR_MEMORY;
+		memset(g->computed, 0, 4 * g->vertex_count * sizeof *g->computed);
+	}
+	return NT_OK;
+}
+
+nt_status nt_report_compare(nt_report_diff *diff, nt_report *before, nt_report *after, bool exchange)
 {
 	*diff = (nt_report_diff){.reports = {before, after}};
 	nt_status status = match_findings(diff);
+	if (!status && exchange)
+		status = begin_exchange(before);
+	if (!status && exchange)
+		status = begin_exchange(after);
 	if (!status)
 		status = match_meshes(diff);
 	for (size_t i = 0; i < diff->mesh_count && !status; i++) {
@@ -273,7 +311,7 @@ nt_status nt_report_compare(nt_report_diff *diff, const nt_report *before, const
 		const nt_report_geometry *a = geometry_of(before, change->meshes[0]);
 		const nt_report_geometry *b = geometry_of(after, change->meshes[1]);
 		if (a && b)
-			status = compare_geometry(change, a, b);
+			status = compare_geometry(change, a, b, exchange);
 	}
 	if (status)
 		nt_report_diff_free(diff);

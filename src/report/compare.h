@@ -38,9 +38,15 @@ typedef struct nt_report_diff {
  * Compares two reports, made with keep_geometry, that stay until the diff is freed.
  *
  * Meshes are the same by name and glTF primitive, in their order; those left over by their order where they have as
- * many triangles. Findings are the same by fingerprint. Returns NT_OK or NT_ERROR_MEMORY.
+ * many triangles. Findings are the same by fingerprint.
+ *
+ *   exchange  what a page shows: in the geometry of both reports `authored` becomes the tangents that are compared, and
+ *             `computed` those of the other version at the same place, of a vertex's corners the one that turned most;
+ *             zero where there is none
+ *
+ * Returns NT_OK or NT_ERROR_MEMORY.
  */
-nt_status nt_report_compare(nt_report_diff *diff, const nt_report *before, const nt_report *after);
+nt_status nt_report_compare(nt_report_diff *diff, nt_report *before, nt_report *after, bool exchange);
 
 /* Zero-initialised is allowed. */
 void nt_report_diff_free(nt_report_diff *diff);

@@ -64,7 +64,13 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\n' >lines.obj
 printf 'o <img src=x onerror=window.broken=1>\001\377"\047</script>\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >'"><script>window.broken=1.obj'
 printf '# nothing\n' >empty.obj
 run --check --report=bad.html --fail-on=never lines.obj empty.obj '"><script>window.broken=1.obj' "$data/mirrored_cube.obj"
-exists two.html head.html large.html many.html bad.html
+{ echo 'o </script><script>window.broken=1</script>'
+	printf 'v %s\n' '0 0 0' '1 0 0' '1 1 0' '0 1 0' '5 0 0' '6 0 0' '6 1 0' '5 1 0'
+	printf 'vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvn 0 0 1\nf 1/1/1 2/2/1 3/3/1 4/4/1\n'; } >squares.obj
+{ cat squares.obj; echo 'f 5/2/1 6/1/1 7/4/1 8/3/1'; } >mirrored.obj
+{ cat squares.obj; echo 'f 5/1/1 6/2/1 7/3/1 8/4/1'; } >plain.obj
+run --check --diff --report=diff.html mirrored.obj plain.obj
+exists two.html head.html large.html many.html bad.html diff.html
 run --check --report=pages/ --fail-on=never many/head.obj many/bad.obj many/q[12]?.obj many/q[1-9].obj many/q30.obj '"><script>window.broken=1.obj'
 exists pages/index.html
 

@@ -70,6 +70,7 @@ cases() {
 		a folder | quad.obj plates.glb | many | -r -d out --mirror=. --exclude=x .
 		pictures | $cube || --check --uv-image=uv mirrored_cube.obj
 		difference | $cube quad.obj | many | --check --diff mirrored_cube.obj quad.obj
+		difference as a page | $cube quad.obj | many report=r.html | --check --diff --report=r.html mirrored_cube.obj quad.obj
 		verdict | $cube || --fail-on=info mirrored_cube.obj o.glb
 		a folder of pages | $cube quad.obj | many report=pages/ | --check --report=pages/ mirrored_cube.obj quad.obj
 		convert and report | $cube | report=r.html | --report=r.html mirrored_cube.obj o.glb

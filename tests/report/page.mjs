@@ -8,6 +8,7 @@
 //   many.html   500 files
 //   pages/      index.html, and a page of each of head.obj, bad.obj, 30 quads and a name that tries to be a script
 //   bad.html    meshes with nothing to show, and a position that is not finite
+//   diff.html   two squares, of which the second was mirrored in the old version
 //
 // Prints one line per check that fails, and the number of checks that passed.
 import {createRequire} from 'node:module';
@@ -354,6 +355,37 @@ async function clickTexture(page, u, v) {
 	}
 	check(names.length === 4, 'four files: ' + names);
 	check(await page.evaluate(() => window.broken === undefined), 'no name runs');
+	await page.close();
+}
+
+// ---- two versions ----
+
+{
+	const page = await open('diff.html');
+	// codes of (1,0,0) and (-1,0,0) with w: those of the new version, of the old one in its places, and the reverse
+	const tangents = await page.evaluate(() => {
+		const {geometry, twin} = window.nmtanReport, codes = list => Array.from({length: list.length / 4}, (_, v) => list.slice(4 * v, 4 * v + 3).join());
+		return [geometry(), twin().geometry].flatMap(g => [g.authored, g.computed]).map(list => [...new Set(codes(list))].sort().join(' '));
+	});
+	const both = '0,2047,2 4094,2047,1', plain = '4094,2047,1';
+	check(tangents.join() === [plain, both, both, plain].join(), 'each version has the other one\'s tangents too: ' + tangents);
+	check(await page.locator('#twin-layout h2').textContent() === 'Texture, old' && await page.inputValue('#mode') === '7', 'the heat map of both');
+	for (const [moved, canvas] of [['the twin', '#space'], ['the view', '#twin-space canvas']]) {
+		const was = await camera(page);
+		await page.focus(canvas);
+		await page.keyboard.press('ArrowLeft');
+		await rest(page);
+		const {yaw} = await ask(page, 'camera'), twin = await ask(page, 'twin');
+		check(await camera(page) !== was && yaw === twin.camera.yaw && twin.mode === 7, moved + ' follows');
+	}
+	await page.click('[data-code=UV_MIRROR_OVERLAP] .finding');
+	await page.waitForFunction(() => document.querySelector('#twin-layout h2').textContent === 'Texture, new');
+	await rest(page);
+	check((await selection(page)).triangles === 2, 'what is gone is shown in the old version');
+	await page.keyboard.press('Escape');
+	check(await page.evaluate(() => window.broken === undefined), 'no name runs');
+	check(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing hangs over');
+	if (shots) await page.screenshot({path: shots + '/diff.png'});
 	await page.close();
 }
 

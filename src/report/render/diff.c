@@ -2,7 +2,7 @@
 /*
  * What changed between two versions: see diff.h. Short, the worst first: meshes that are as they were are not listed in text
  * and Markdown, and of findings that both versions have only the number is told. data/nmtan-diff.schema.json
- * describes the JSON.
+ * describes the JSON. HTML is the page of html.c, with both versions.
  */
 #include "report/render/diff.h"
 
@@ -309,24 +309,92 @@ static void write_json(const nt_report_diff *diff, nt_buffer *out)
 	nt_buffer_text(out, "\n\t]\n}\n");
 }
 
+/* ---- HTML ---- */
+
+static void page_index(const char *name, uint32_t index, nt_buffer *out)
+{
+	if (index == NT_NONE)
+		nt_buffer_format(out, "\"%s\":null,", name);
+	else
+		nt_buffer_format(out, "\"%s\":%u,", name, index);
+}
+
+static void page_rows(const nt_report_diff *diff, const nt_mesh_change *change, nt_buffer *out)
+{
+	const nt_report_mesh *a = mesh_of(diff, change, OLD), *b = mesh_of(diff, change, NEW);
+	if (!a || !b) {
+		nt_buffer_format(out, "[\"mesh\",\"%s, %zu triangles\"]", a ? "gone" : "new", (a ? a : b)->triangle_count);
+		return;
+	}
+	nt_buffer_text(out, "[\"tangents\",\"");
+	put_tangents(diff, change, out);
+	nt_buffer_text(out, "\"],[\"triangles\",\"");
+	put_pair(a->triangle_count, b->triangle_count, out);
+	nt_buffer_format(out, ", %zu in place\"],[\"texture\",\"%zu corners with other coordinates\"],[\"islands\",\"",
+		change->matched, change->moved_texcoords);
+	put_pair(a->island_count, b->island_count, out);
+	nt_buffer_text(out, "\"],[\"vertices\",\"");
+	put_pair(a->vertices_after, b->vertices_after, out);
+	nt_buffer_text(out, "\"],[\"split for tangents\",\"");
+	put_pair(a->vertices_after - a->vertices_before, b->vertices_after - b->vertices_before, out);
+	nt_buffer_text(out, "\"],[\"mirror seams\",\"");
+	put_pair(a->seam_count, b->seam_count, out);
+	nt_buffer_format(out, " of length %.4g -> %.4g\"]", a->seam_length, b->seam_length);
+}
+
+/* What html.c calls diff. */
+static void page_json(const nt_report_diff *diff, nt_buffer *out)
+{
+	nt_buffer_format(out, "{\"unchanged\":%zu,\"meshes\":[", diff->unchanged);
+	for (size_t i = 0; i < diff->mesh_count; i++) {
+		const nt_mesh_change *change = &diff->meshes[i];
+		nt_buffer label = {0};
+		put_label(diff, change, &label);
+		nt_buffer_text(out, i ? ",\n{" : "\n{");
+		page_index("old", change->meshes[OLD], out);
+		page_index("new", change->meshes[NEW], out);
+		json_member("label", label.data ? label.data : "", out);
+		nt_buffer_free_into(&label, out);
+		nt_buffer_format(out, ",\"changed\":%s,\"rows\":[", is_changed(diff, change) ? "true" : "false");
+		page_rows(diff, change, out);
+		nt_buffer_text(out, "]}");
+	}
+	nt_buffer_text(out, "]}");
+}
+
+static void write_html(const nt_report_diff *diff, nt_report_list *versions, nt_buffer *out)
+{
+	nt_buffer changes = {0};
+	page_json(diff, &changes);
+	versions->changes = &changes;
+	nt_write_html(versions, out);
+}
+
 /* ---- entry ---- */
 
 bool nt_diff_has_format(nt_report_format format)
 {
-	return format == NT_REPORT_TEXT || format == NT_REPORT_JSON || format == NT_REPORT_MARKDOWN;
+	return format == NT_REPORT_TEXT || format == NT_REPORT_JSON || format == NT_REPORT_MARKDOWN ||
+		format == NT_REPORT_HTML;
 }
 
 nt_status nt_diff_write(const nt_report_diff *diff, nt_report_format format, nt_report_sink sink, void *user,
 	nt_error *error)
 {
+	nt_report_stream stream = {.sink = sink, .user = user, .error = error};
+	nt_report_list versions = {.items = diff->reports, .count = 2, .stream = &stream, .diff = diff};
 	nt_buffer out = {0};
-	if (format == NT_REPORT_JSON)
+	if (format == NT_REPORT_HTML)
+		write_html(diff, &versions, &out);
+	else if (format == NT_REPORT_JSON)
 		write_json(diff, &out);
 	else if (format == NT_REPORT_MARKDOWN)
 		write_markdown(diff, &out);
 	else
 		write_text(diff, &out);
-	const nt_status status = out.failed ? nt_fail_memory(error) : sink(user, out.data, out.size, error);
+	nt_list_flush(&versions, 0, &out);
+	if (out.failed && !stream.status)
+		stream.status = nt_fail_memory(error);
 	nt_buffer_free(&out);
-	return status;
+	return stream.status;
 }

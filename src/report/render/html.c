@@ -13,6 +13,8 @@
  *   images    [data URI], which meshes number
  *   left_out  findings that have no place on the page
  *   index     the page that lists all files; null: none but this one
+ *   diff      of two versions only: {unchanged, meshes: [{old, new, changed, label, rows: [[name, text]]}]}, where old and new are
+ *             numbers of meshes or null; a finding is known where the other version has it
  *
  * The index of a folder of pages has `folder: true` and, of each file, {name, format, counts, failure, page, triangles,
  * islands, seams, layout: [path, path], meshes: [], findings: [{code, severity}]}, without equal findings.
@@ -46,6 +48,7 @@ typedef struct budget {
 	size_t images, findings, seams;
 	size_t left_out;   /* findings */
 	bool seen[NT_CODE_COUNT];
+	const bool *known; /* of a difference: which findings of the file both versions have; NULL */
 	nt_buffer sources; /* data URIs of images, as a JSON array without its end */
 	size_t image_count;
 } budget;
@@ -67,18 +70,23 @@ static void put_base64(const void *bytes, size_t size, nt_buffer *out)
 	}
 }
 
-/* A JSON string that is safe inside a script element. */
+/* Appends JSON so that it is safe inside a script element, and frees it. */
+static void put_safe(nt_buffer *json, nt_buffer *out)
+{
+	for (size_t i = 0; i < json->size; i++) {
+		if (json->data[i] == '<')
+			nt_buffer_text(out, "\\u003c");
+		else
+			nt_buffer_append(out, json->data + i, 1);
+	}
+	nt_buffer_free_into(json, out);
+}
+
 static void put_string(const char *text, nt_buffer *out)
 {
 	nt_buffer plain = {0};
 	nt_json_string(text, &plain);
-	for (size_t i = 0; i < plain.size; i++) {
-		if (plain.data[i] == '<')
-			nt_buffer_text(out, "\\u003c");
-		else
-			nt_buffer_append(out, plain.data + i, 1);
-	}
-	nt_buffer_free_into(&plain, out);
+	put_safe(&plain, out);
 }
 
 static void put_floats(const float *values, size_t count, nt_buffer *out)
@@ -230,11 +238,11 @@ static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_bu
 
 /* ---- findings ---- */
 
-static void put_finding(const nt_report_finding *finding, nt_buffer *out)
+static void put_finding(const nt_report_finding *finding, bool known, nt_buffer *out)
 {
 	nt_buffer_format(out, "{\"code\":\"%s\",\"severity\":\"%s\",\"count\":%zu,\"known\":%s,\"message\":",
 		nt_code_info(finding->code)->name, nt_severity_name(finding->severity), finding->count,
-		finding->known ? "true" : "false");
+		known ? "true" : "false");
 	put_string(finding->message, out);
 	put_index("mesh", finding->mesh, out);
 	put_index("seam", finding->seam, out);
@@ -255,7 +263,7 @@ static void put_findings(const nt_report *report, budget *left, nt_buffer *out)
 	nt_buffer_text(out, "\"findings\":[");
 	for (; i < report->finding_count && left->findings > 0; i++, left->findings--) {
 		nt_buffer_text(out, i ? ",\n" : "\n");
-		put_finding(&report->findings[i], out);
+		put_finding(&report->findings[i], left->known ? left->known[i] : report->findings[i].known, out);
 		left->seen[report->findings[i].code] = true;
 	}
 	left->left_out += report->finding_count - i + report->dropped;
@@ -313,6 +321,7 @@ static void put_data(const nt_report_list *reports, nt_buffer *out)
 	nt_buffer_text(out, "<script type=\"application/json\" id=\"data\">{\"files\":[");
 	for (size_t i = 0; i < reports->count; i++) {
 		nt_buffer_text(out, i ? ",\n" : "\n");
+		left.known = reports->diff ? reports->diff->known[i] : NULL;
 		put_file(reports->items[i], &left, out);
 	}
 	nt_buffer_text(out, "],");
@@ -325,6 +334,10 @@ static void put_data(const nt_report_list *reports, nt_buffer *out)
 		put_string(reports->style.index, out);
 	else
 		nt_buffer_text(out, "null");
+	if (reports->diff) {
+		nt_buffer_text(out, ",\"diff\":");
+		put_safe(reports->changes, out);
+	}
 	nt_buffer_text(out, "}</script>\n");
 }
 

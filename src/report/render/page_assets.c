@@ -19,4 +19,4 @@ EMBED(nt_page_style, FILE_BYTES("page.css"));
 EMBED(nt_page_body, FILE_BYTES("page.html"));
 EMBED(nt_page_script, ".ascii \"'use strict';\\n(() => {\\n\"\n" FILE_BYTES("data.js") FILE_BYTES("math.js")
 	FILE_BYTES("shaders.js") FILE_BYTES("space.js") FILE_BYTES("uv.js") FILE_BYTES("findings.js")
-	FILE_BYTES("index.js") FILE_BYTES("main.js") ".ascii \"})();\\n\"\n");
+	FILE_BYTES("index.js") FILE_BYTES("diff.js") FILE_BYTES("main.js") ".ascii \"})();\\n\"\n");

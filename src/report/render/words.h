@@ -6,7 +6,7 @@
 #ifndef NT_REPORT_RENDER_WORDS_H
 #define NT_REPORT_RENDER_WORDS_H
 
-#include "report/report.h"
+#include "report/compare.h"
 
 typedef struct nt_report_style {
 	bool colour;       /* text: for a terminal */
@@ -30,6 +30,8 @@ typedef struct nt_report_list {
 	size_t count;
 	nt_report_style style;
 	nt_report_stream *stream;
+	const nt_report_diff *diff; /* HTML: of the two reports; NULL: none */
+	nt_buffer *changes;         /* and what the page says of it, as JSON; empty when it is written */
 } nt_report_list;
 
 /* Hands on what a large document has so far, if it is `least` bytes or more. */

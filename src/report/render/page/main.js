@@ -32,6 +32,7 @@ function setTheme(name) {
 	layout.overlaps = null;
 	layout.draw();
 	space?.draw();
+	twin?.draw();
 	if (!$('overview').hidden) overview.show();
 }
 
@@ -41,6 +42,7 @@ const layout = new Layout($('layout'));
 let space = null, spaceFailure = '';
 const list = new Findings(finding => choose({finding}));
 const overview = new Overview();
+const twin = data.diff ? new Twin(pick) : null;
 let file = null, mesh = null, geometry = null, selection = null;
 
 // ---- choosing ----
@@ -135,6 +137,7 @@ function openMesh(next) {
 	mesh = next;
 	geometry = null;
 	$('mesh').value = mesh.number;
+	const twinOpening = twin?.open(mesh);
 	$('facts').replaceChildren(element('dt', {}, 'tangents'), element('dd', {}, mesh.why),
 		...mesh.facts.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]));
 	$('summary-of-mesh').textContent = mesh.triangles ? [plural(mesh.triangles, 'triangle'), plural(mesh.vertices, 'vertex', 'vertices'), plural(mesh.islands, 'island'),
@@ -153,11 +156,11 @@ function openMesh(next) {
 		offerFrames();
 		describe();
 	}, failure => empty('space-empty', 'The geometry cannot be read: ' + failure.message));
-	loading = opening;
-	return opening;
+	loading = Promise.all([opening, twinOpening]);
+	return loading;
 }
 
-function openFile(next) {
+function openFile(next, wanted) {
 	file = next;
 	selection = null;
 	$('selection').hidden = true;
@@ -169,11 +172,13 @@ function openFile(next) {
 	$('mesh').replaceChildren(...file.meshes.map(m => new Option(m.label + (m.same_as === null ? '' : ' (same geometry as ' + file.meshes[m.same_as].label + ')'), m.number)));
 	$('mesh-field').hidden = file.meshes.length < 2;
 	$('stage').hidden = !file.meshes.length;
-	list.load(file);
-	const first = file.meshes.find(m => m.number === file.findings.find(x => x.mesh !== null && file.meshes[x.mesh].hasGeometry)?.mesh) ||
+	if (!twin) list.load(file);
+	const first = wanted || file.meshes.find(m => m.number === file.findings.find(x => x.mesh !== null && file.meshes[x.mesh].hasGeometry)?.mesh) ||
 		file.meshes.find(m => m.hasGeometry) || file.meshes[0];
-	if (first) openMesh(first);
-	else mesh = geometry = null;
+	twin?.summary();
+	if (first) return openMesh(first);
+	mesh = geometry = null;
+	return Promise.resolve();
 }
 
 function openOverview() {
@@ -198,7 +203,7 @@ function follow() {
 	if (data.folder) openOverview();
 	else if (kind === 'finding' && findings[number]) choose({finding: findings[number]});
 	else if (kind === 'file' && files[number]) { if (file !== files[number]) openFile(files[number]); }
-	else if (files.length === 1) { if (!file) openFile(files[0]); }
+	else if (files.length === 1 || twin) { if (!file) openFile(files.at(-1)); }
 	else openOverview();
 }
 
@@ -217,8 +222,8 @@ function offerFrames() {
 	const option = (i, text) => { const o = new Option(text, i); o.disabled = !there[i]; return o; };
 	$('frame').replaceChildren(...FRAMES.map(([, name], i) => option(i, name)));
 	$('other').replaceChildren(new Option('nothing', -1), ...FRAMES.map(([, name], i) => option(i, name)));
-	if (!there[space.frame]) space.frame = [1, 0, 2].find(i => there[i]) ?? 2;
-	if (space.other >= 0 && !there[space.other]) space.other = -1;
+	if (!there[space.frame]) space.frame = (twin ? [0, 2] : [1, 0, 2]).find(i => there[i]) ?? 2;
+	if (space.other >= 0 && !there[space.other] && !twin) space.other = -1;
 	$('frame').value = space.frame;
 	$('other').value = space.other;
 }
@@ -228,6 +233,7 @@ function describe() {
 	const mode = MODES[space.mode][0], two = space.other >= 0 && mode !== 'angle', parts = [];
 	if (mode === 'lit') parts.push(space.image ? 'Lit by the normal map.' : 'Lit with a test pattern of domes: there is no normal map here.');
 	if (mode === 'angle') parts.push('The angle between the tangents ' + frameNames[FRAMES[space.frame][0]] + ' and those ' + ((space.other < 0 || space.other === 2) ? 'of screen derivatives' : frameNames[FRAMES[space.other][0]]) + '; 180° where the handedness differs.');
+	if (mode === 'angle' && twin) parts.push('Grey: the other version has no triangle here, or there are no tangents.');
 	if (mode === 'skew') parts.push('How far tangents lean out of the plane of the normal.');
 	if (mode === 'sign' || mode === 'winding') parts.push('Blue: unmirrored. Red: mirrored.');
 	if (!geometry.normals) parts.push('The mesh has no normals; faces are shown flat.');
@@ -244,12 +250,13 @@ function describe() {
 		$(id).textContent = two ? frameNames[FRAMES[frame][0]] : '';
 	}
 	$('texture-toggle').hidden = !mesh.picture;
-	$('frame').closest('label').hidden = ['winding', 'checker', 'normal'].includes(mode);
-	$('other').closest('label').hidden = ['winding', 'checker', 'normal'].includes(mode);
+	$('frame').closest('label').hidden = twin || ['winding', 'checker', 'normal'].includes(mode);
+	$('other').closest('label').hidden = twin || ['winding', 'checker', 'normal'].includes(mode);
 }
 
 function changeSpace(change) {
 	Object.assign(space, change);
+	if (twin && geometry && 'mode' in change) Object.assign(space, space.mode === 7 ? {frame: 0, other: 1} : {frame: framesThere()[0] ? 0 : 2, other: -1});
 	if ('frame' in change) space.vectorLines = null;
 	if (space.mode === 7 && (space.other < 0 || space.other === space.frame)) {
 		const there = framesThere();
@@ -262,6 +269,7 @@ function changeSpace(change) {
 
 // ---- start ----
 
+if (twin) { link(layout, twin.layout, ['view', 'fitted', 'showTexture', 'showOverlaps']); list.load(twin.changed); }
 layout.onpick = (triangle, again) => pick(triangle, again, 'layout');
 layout.onseam = seam => choose({seam}, {from: 'layout'});
 layout.onhover = (u, v) => { $('layout-readout').textContent = u === null || u === undefined || !layout.geometry ? '' : 'u ' + u.toFixed(4) + '  v ' + (1 - v).toFixed(4); };
@@ -300,7 +308,7 @@ document.addEventListener('keydown', e => {
 	const typing = /^(INPUT|SELECT|TEXTAREA)$/.test(e.target.tagName);
 	if (e.key === 'Escape' && selection) chooseNothing();
 	else if (e.key === '/' && !typing) { $($('file').hidden ? 'file-text' : 'text').focus(); e.preventDefault(); }
-	else if ((e.key === 'j' || e.key === 'k') && !typing && file && file.findings.length) {
+	else if ((e.key === 'j' || e.key === 'k') && !typing && file && findings.length) {
 		const shown = [...document.querySelectorAll('.group[open] .finding')].map(b => findings[b.dataset.finding]);
 		const at = shown.indexOf(selection?.finding), next = shown[e.key === 'j' ? at + 1 : Math.max(at - 1, 0)];
 		if (next) choose({finding: next}).then(() => list.rows.get(next)?.focus({preventScroll: true}));
@@ -318,6 +326,7 @@ function startSpace() {
 	space.onpick = (triangle, again) => pick(triangle, again, 'space');
 	space.onimage = image => { layout.image = image; layout.draw(); describe(); };
 	layout.oncoverage = (...window) => space.coverage(...window);
+	twin?.startSpace(space);
 	if (geometry) {
 		space.load(mesh, geometry);
 		offerFrames();
@@ -342,5 +351,6 @@ window.nmtanReport = Object.freeze({
 	overlapPixels: () => layout.overlapPixels,
 	visible: () => space.visible(space.camera),
 	frames: () => space.frames,
+	twin: () => twin && {geometry: twin.geometry, camera: twin.space?.camera, view: twin.layout.view, mode: twin.space?.mode},
 	turn: (x, y) => space.turn(x, y),
 });

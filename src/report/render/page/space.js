@@ -453,6 +453,7 @@ class Space {
 			this.drawPart(this.other, [half, 0, w - half, h], [half, 0, w - half, h], scale);
 		}
 		this.frames++;
+		this.ondraw?.();
 	}
 
 	// ---- moving ----

@@ -375,6 +375,7 @@ class Layout {
 		this.drawSeams(c, ink);
 		this.drawTiles(c, ink, taken);
 		this.drawLabels(c, ink, taken);
+		this.ondraw?.();
 	}
 
 	// ---- moving and picking ----
