@@ -209,8 +209,12 @@ void nt_json_set_double(nt_json *document, nt_json_value *value, double content)
 	double old;
 	if (nt_json_get_double(value, &old) && old == content && !signbit(old) == !signbit(content))
 		return;
+	if (!isfinite(content)) {
+		set(value, (nt_json_value){.type = NT_JSON_NULL});
+		return;
+	}
 	const size_t length = (size_t)(nt_write_json_double(text, content) - text);
-	set_text(document, value, isfinite(content) ? NT_JSON_REAL : NT_JSON_NULL, text, length);
+	set_text(document, value, NT_JSON_REAL, text, length);
 }
 
 void nt_json_set_string(nt_json *document, nt_json_value *value, const char *text, size_t length)

@@ -37,6 +37,13 @@ value() {
 	python3 -c 'import json, sys; r = json.load(open(sys.argv[1])); print(eval(sys.argv[2]))' "$@"
 }
 
+scene "20 000 Draco blocks are found in linear time"
+inputs usemtl 20000 blocks.obj
+run -q --only=all blocks.obj blocks.glb
+run -q --only=all --existing=replace --draco=edgebreaker blocks.glb draco.glb
+within 8 300 -q --only=all --existing=replace draco.glb out.glb
+exits 0
+
 scene "a PLY header of 100 000 elements is read in linear time"
 inputs elements 100000 e.ply
 within 15 300 e.ply out.ply
@@ -49,6 +56,12 @@ exits 0
 is "$(gltf m.glb 'g.meshes[0].primitives.length')" 100000
 # at most 36 times the input: the geometry and the JSON of five accessors for every line of 34 bytes
 [ $(($(stat -c %s m.glb) / $(stat -c %s m.obj))) -lt 36 ] || wrong "$(stat -c %s m.glb) bytes"
+
+scene "a check of 20 000 primitives takes linear time"
+inputs usemtl 20000 checked.obj
+run -q --only=all checked.obj checked.glb
+within 8 300 -q --check checked.glb
+exits 0
 
 scene "10 MB of JSON that nobody asks for take at most 48 bytes for each number and 80 for each member"
 cp "$data"/plates.* "$data"/bumps.png .

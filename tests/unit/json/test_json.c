@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 #include "fail_alloc.h"
 #include "test.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include "json/json.h"
@@ -489,6 +490,24 @@ static void every_allocation_may_fail(void **state)
 	assert_true(count > 6);
 }
 
+static void what_is_no_number_becomes_null_and_is_copied(void **state)
+{
+	(void)state;
+	nt_json *document;
+	nt_error error;
+	nt_buffer out = {0};
+	assert_int_equal(nt_json_parse(&document, "[1,2]", 5, NULL, &error), NT_OK);
+	nt_json_value *root = nt_json_root(document);
+	nt_json_set_double(document, nt_json_at(root, 0), (double)NAN);
+	nt_json_set_copy(document, nt_json_at(root, 1), nt_json_at(root, 0));
+	nt_json_set_copy(document, nt_json_append(document, root), nt_json_at(root, 0));
+	assert_int_equal(nt_json_dump(document, &out, &error), NT_OK);
+	assert_int_equal(out.size, strlen("[null,null,null]"));
+	assert_memory_equal(out.data, "[null,null,null]", out.size);
+	nt_buffer_free(&out);
+	nt_json_free(document);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
@@ -508,6 +527,7 @@ int main(void)
 		cmocka_unit_test(escapes_are_what_they_stand_for),
 		cmocka_unit_test(changes_keep_the_order_of_the_rest),
 		cmocka_unit_test(every_allocation_may_fail),
+		cmocka_unit_test(what_is_no_number_becomes_null_and_is_copied),
 		cmocka_unit_test(equality_looks_at_values_and_order),
 	};
 	return cmocka_run_group_tests_name("json/json", tests, NULL, NULL);
