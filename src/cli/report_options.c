@@ -102,8 +102,8 @@ static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool c
 		return nt_fail(error, NT_ERROR_USAGE,
 			"cannot tell the report's format from the name '%s': use --report-format",
 			target->path);
-	if (c->diff && !nt_diff_has_format(target->format))
-		return nt_fail(error, NT_ERROR_USAGE, "--diff is written as text, JSON, Markdown or HTML");
+	if (c->diff && (target->folder || !nt_diff_has_format(target->format)))
+		return nt_fail(error, NT_ERROR_USAGE, "--diff is written to one file, as text, JSON, Markdown or HTML");
 	target->style.colour = dash && colour;
 	return NT_OK;
 }

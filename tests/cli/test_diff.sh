@@ -114,6 +114,9 @@ says "--diff is about --check"
 run --check --diff --report=r.sarif quad.obj quad.obj
 exits 1
 says "text, JSON, Markdown or HTML"
+run --check --diff --report=pages/ quad.obj quad.obj
+exits 1
+says "to one file"
 run --check --diff --baseline=b.json quad.obj quad.obj
 exits 1
 run --check --diff quad.obj nothing.obj
