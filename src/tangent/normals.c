@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Normals from faces: see normals.h. Corners meet by the value of their position, not by index, so that a
- * texture seam does not become a crease. Expected linear time; one hash lookup a corner.
+ * texture seam does not become a crease. Expected linear time; a vertex remembers the sum that it has in the group of the
+ * corner before, so that hardly more than one look-up is made for each.
  */
 #include "tangent/normals.h"
 
@@ -17,9 +18,16 @@ typedef struct shared_normal {
 	nt_dvec3 sum;
 } shared_normal;
 
+/* What a vertex remembers. */
+typedef struct known_normal {
+	uint32_t group; /* 0: nothing */
+	uint32_t entry;
+} known_normal;
+
 typedef struct normal_table {
 	shared_normal *entries; /* [size], group 0 where free */
 	size_t size;            /* a power of two */
+	known_normal *known;    /* [vertex count] */
 } normal_table;
 
 static nt_dvec3 corner_position(const nmtan_mesh *mesh, size_t corner)
@@ -59,11 +67,8 @@ static uint64_t hash_position(const float position[3], uint32_t group)
 	return hash;
 }
 
-/* The entry of a corner's position in a group other than 0. */
-static shared_normal *find_entry(const normal_table *table, const nmtan_mesh *mesh, size_t corner,
-	uint32_t group)
+static uint32_t look_up(const normal_table *table, const float *p, uint32_t group)
 {
-	const float *p = nt_position(mesh, nt_vertex_of(mesh, corner));
 	const float position[3] = {p[0] + 0.0f, p[1] + 0.0f, p[2] + 0.0f};
 	size_t at = hash_position(position, group) & (table->size - 1);
 	for (;; at = (at + 1) & (table->size - 1)) {
@@ -71,11 +76,38 @@ static shared_normal *find_entry(const normal_table *table, const nmtan_mesh *me
 		if (entry->group == 0) {
 			entry->group = group;
 			memcpy(entry->position, position, sizeof position);
-			return entry;
+			return (uint32_t)at;
 		}
 		if (entry->group == group && memcmp(entry->position, position, sizeof position) == 0)
-			return entry;
+			return (uint32_t)at;
 	}
+}
+
+/* The entry of a corner's position in a group other than 0. */
+static shared_normal *find_entry(const normal_table *table, const nmtan_mesh *mesh, size_t corner, uint32_t group)
+{
+	const size_t vertex = nt_vertex_of(mesh, corner);
+	known_normal *known = &table->known[vertex];
+	if (known->group != group)
+		*known = (known_normal){group, look_up(table, nt_position(mesh, vertex), group)};
+	return &table->entries[known->entry];
+}
+
+/* At least as many as there are entries: how often a corner's group is not that of its vertex's corner before. */
+static size_t count_entries(const nmtan_mesh *mesh, const uint32_t *smoothing, known_normal *known)
+{
+	size_t first = 0, count = 0;
+	for (size_t face = 0; face < mesh->face_count; face++) {
+		const size_t size = nt_face_size(mesh, face);
+		const uint32_t group = smoothing ? smoothing[face] : 1;
+		for (size_t k = 0; k < size && group != 0; k++) {
+			uint32_t *before = &known[nt_vertex_of(mesh, first + k)].group;
+			count += *before != group;
+			*before = group;
+		}
+		first += size;
+	}
+	return count;
 }
 
 static void sum_normals(const nmtan_mesh *mesh, const uint32_t *smoothing, normal_table *table)
@@ -96,6 +128,20 @@ static void sum_normals(const nmtan_mesh *mesh, const uint32_t *smoothing, norma
 	}
 }
 
+/* Sums become unit vectors; zero where they have no direction. */
+static void normalise_sums(normal_table *table)
+{
+	for (size_t i = 0; i < table->size; i++)
+		if (table->entries[i].group != 0 && !nt_dvec3_normalise(&table->entries[i].sum))
+			table->entries[i].sum = (nt_dvec3){0, 0, 0};
+}
+
+static bool is_zero(nt_dvec3 n)
+{
+	return n.x == 0 && n.y == 0 && n.z == 0;
+}
+
+/* Every corner gets its sum; in group 0, or where that has no direction, its face's normal. */
 static void write_normals(const nmtan_mesh *mesh, const uint32_t *smoothing, const normal_table *table,
 	float (*normals)[3])
 {
@@ -103,16 +149,10 @@ static void write_normals(const nmtan_mesh *mesh, const uint32_t *smoothing, con
 	for (size_t face = 0; face < mesh->face_count; face++) {
 		const size_t size = nt_face_size(mesh, face);
 		const uint32_t group = smoothing ? smoothing[face] : 1;
-		nt_dvec3 flat;
-		if (!face_normal(mesh, first, size, &flat))
-			flat = (nt_dvec3){0, 0, 1};
 		for (size_t k = 0; k < size; k++) {
-			nt_dvec3 n = flat;
-			if (group != 0) {
-				n = find_entry(table, mesh, first + k, group)->sum;
-				if (!nt_dvec3_normalise(&n))
-					n = flat;
-			}
+			nt_dvec3 n = group != 0 ? find_entry(table, mesh, first + k, group)->sum : (nt_dvec3){0, 0, 0};
+			if (is_zero(n) && !face_normal(mesh, first, size, &n))
+				n = (nt_dvec3){0, 0, 1};
 			float *out = normals[first + k];
 			out[0] = (float)n.x;
 			out[1] = (float)n.y;
@@ -126,14 +166,23 @@ nmtan_status nt_corner_normals(const nmtan_mesh *mesh, size_t corner_count, cons
 	nt_scratch *scratch, float (*normals)[3])
 {
 	const nt_scratch_mark mark = nt_scratch_here(scratch);
-	normal_table table = {.size = 16};
-	while (table.size < 2 * corner_count)
+	const size_t vertices = mesh->indices ? mesh->vertex_count : corner_count;
+	normal_table table = {.size = 16, .known = nt_scratch_alloc(scratch, vertices, sizeof *table.known)};
+	if (!table.known)
+		return NMTAN_ERROR_MEMORY;
+	memset(table.known, 0, vertices * sizeof *table.known);
+	const size_t most = count_entries(mesh, smoothing, table.known);
+	while (table.size < 2 * most)
 		table.size *= 2;
+	if (table.size > (size_t)1 << 32) /* entries have 32 bits; these take 200 GB */
+		return NMTAN_ERROR_MEMORY;
 	table.entries = nt_scratch_alloc(scratch, table.size, sizeof *table.entries);
 	if (!table.entries)
 		return NMTAN_ERROR_MEMORY;
 	memset(table.entries, 0, table.size * sizeof *table.entries);
+	memset(table.known, 0, vertices * sizeof *table.known);
 	sum_normals(mesh, smoothing, &table);
+	normalise_sums(&table);
 	write_normals(mesh, smoothing, &table, normals);
 	nt_scratch_back(scratch, mark);
 	return NMTAN_OK;
