@@ -2,20 +2,7 @@
 # Materials of an OBJ: what the statements of an MTL become in glTF. Expected numbers are those of the formulas in the man
 # page, worked out here.
 . "$ROOT/tests/support/cli.sh"
-images() { python3 "$ROOT/tests/support/images.py" "$@"; }
-
-# quad.obj with a material; its lines are the arguments.
-quad() {
-	{
-		echo "mtllib m.mtl"
-		echo "usemtl m"
-		grep -v '^#' "$data/quad.obj" | grep -v '^usemtl\|^mtllib'
-	} >quad.obj
-	{
-		echo "newmtl m"
-		printf '%s\n' "$@"
-	} >m.mtl
-}
+. "$ROOT/tests/support/mtl.sh"
 
 # Converts the quad with these lines; the validator has nothing to say against it.
 convert() {

@@ -1,23 +1,10 @@
 # SPDX-License-Identifier: MIT
 # Images of materials: found, converted, made normal maps, linked, copied or embedded.
 . "$ROOT/tests/support/cli.sh"
-images() { python3 "$ROOT/tests/support/images.py" "$@"; }
+. "$ROOT/tests/support/mtl.sh"
 
 # A normal map of gentle bumps, by a formula.
 bumps='(128 + (7 * x) % 60, 128 - (5 * y) % 60, 240)'
-
-# quad.obj with a material; its lines are the arguments.
-quad() {
-	{
-		echo "mtllib m.mtl"
-		echo "usemtl m"
-		grep -v '^#' "$data/quad.obj" | grep -v '^usemtl\|^mtllib'
-	} >quad.obj
-	{
-		echo "newmtl m"
-		printf '%s\n' "$@"
-	} >m.mtl
-}
 
 scene "a TGA normal map arrives, pixel by pixel as its PNG twin"
 images write n.tga 32 16 "$bumps"
