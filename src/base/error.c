@@ -15,6 +15,11 @@ void nt_place_clear(nt_place *place)
 	place->offset = NT_NO_OFFSET;
 }
 
+nt_place_view nt_view_place(const nt_place *place)
+{
+	return (nt_place_view){place->file, place->pointer, place->object, place->line, place->offset};
+}
+
 void nt_error_clear(nt_error *error)
 {
 	error->status = NT_OK;

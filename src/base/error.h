@@ -26,6 +26,14 @@ typedef struct nt_place {
 
 #define NT_NO_OFFSET UINT64_MAX
 
+/* A place whose texts, "" where unknown, are somewhere else: a place has room for all texts, which a hundred thousand
+ * findings do not need. */
+typedef struct nt_place_view {
+	const char *file, *pointer, *object;
+	size_t line;
+	uint64_t offset;
+} nt_place_view;
+
 typedef struct nt_error {
 	nt_status status;
 	char message[768]; /* one sentence without a full stop: what was found, what was expected */
@@ -41,6 +49,9 @@ typedef struct nt_error {
 /* Empties an error or a place. */
 void nt_error_clear(nt_error *error);
 void nt_place_clear(nt_place *place);
+
+/* The texts are the place's own. */
+nt_place_view nt_view_place(const nt_place *place);
 
 /* Fills an error: status and message. The place is cleared. Returns status, so that a caller can write
  * `return nt_fail(error, ...)`. error may be NULL. */

@@ -21,7 +21,7 @@ static const char *colour(nt_style style, const char *code)
 }
 
 /* "file:line: ", "file: at byte N: ", "file: /pointer: ", then "mesh "head": ". */
-static void append_place(nt_buffer *out, const nt_place *place, const char *file)
+static void append_place(nt_buffer *out, const nt_place_view *place, const char *file)
 {
 	const char *name = place->file[0] ? place->file : file;
 	if (name && *name) {
@@ -45,12 +45,13 @@ static void append_place(nt_buffer *out, const nt_place *place, const char *file
 void nt_message_error(nt_buffer *out, const nt_error *error, nt_style style)
 {
 	nt_buffer_format(out, "%snmtan:%s ", colour(style, "\033[1;31m"), colour(style, "\033[0m"));
-	append_place(out, &error->place, NULL);
+	const nt_place_view place = nt_view_place(&error->place);
+	append_place(out, &place, NULL);
 	nt_buffer_clean(out, error->message[0] ? error->message : nt_status_text(error->status));
 	nt_buffer_text(out, "\n");
 }
 
-static void append_sentence(nt_buffer *out, const nt_place *place, const char *file, nt_code code,
+static void append_sentence(nt_buffer *out, const nt_place_view *place, const char *file, nt_code code,
 	nt_severity severity, const char *sentence, nt_style style)
 {
 	static const char *const colours[] = {
@@ -235,7 +236,8 @@ void nt_message_meshes(nt_buffer *out, const nt_job *job)
 		const nt_mesh_line *line = &s->lines[i];
 		const bool solved = line->decision == NT_DECISION_SOLVE || line->decision == NT_DECISION_REPAIR;
 		nt_buffer_text(out, "nmtan: ");
-		append_place(out, &line->place, job->input);
+		const nt_place_view place = nt_view_place(&line->place);
+		append_place(out, &place, job->input);
 		nt_buffer_format(out, "%s%s%s%s", solved ? "" : "skipped (", nt_decision_text(line->decision),
 			solved ? "" : ")", line->same ? " (the same as an earlier one's)" : "");
 		if (line->decision == NT_SKIP_NOT_TRIANGLES) {

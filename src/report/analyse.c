@@ -70,8 +70,9 @@ static bool describe_mesh(nt_report *report, const nt_mesh *mesh, const nt_repor
 		.has_normals = mesh->normals != NULL, .has_texcoords = mesh->texcoords != NULL,
 		.worst_orthogonality = NAN, .relative_determinant = {NAN, NAN, NAN},
 		.box = nt_box_empty()};
-	nt_mesh_place(mesh, &facts->place);
-	return facts->name && facts->why;
+	nt_place place;
+	const nt_place_view view = nt_view_place(nt_mesh_place(mesh, &place));
+	return facts->name && facts->why && nt_keep_place(&report->arena, &view, &facts->place);
 }
 
 /* Where what was read is judged, a solve may have run too, but what counts is what the file has. */
@@ -528,8 +529,8 @@ nt_report *nt_report_of_error(const char *path, const nt_error *failure)
 	if (!report)
 		return NULL;
 	report->failure = copy_text(&report->arena, failure->message);
-	report->failure_place = failure->place;
-	if (!report->failure) {
+	const nt_place_view place = nt_view_place(&failure->place);
+	if (!report->failure || !nt_keep_place(&report->arena, &place, &report->failure_place)) {
 		nt_report_free(report);
 		return NULL;
 	}

@@ -174,8 +174,15 @@ static void report_tally(nt_check *check, const nt_tally *tally, nt_severity sev
 		.island = tally->island ? tally->island - 1 : NT_NONE,
 		.number_count = tally->number_count,
 		.spot_count = tally->spot_count};
-	memcpy(finding.numbers, tally->numbers, sizeof finding.numbers);
-	memcpy(finding.spots, tally->spots, sizeof finding.spots);
+	nt_arena *arena = &check->report->arena;
+	finding.numbers = nt_arena_alloc(arena, tally->number_count, sizeof *finding.numbers);
+	finding.spots = nt_arena_alloc(arena, tally->spot_count, sizeof *finding.spots);
+	if (!finding.numbers || !finding.spots) {
+		check->failed = true;
+		return;
+	}
+	memcpy(finding.numbers, tally->numbers, tally->number_count * sizeof *finding.numbers);
+	memcpy(finding.spots, tally->spots, tally->spot_count * sizeof *finding.spots);
 	add_finding(check, &finding, severity, detail);
 }
 
@@ -197,7 +204,7 @@ void nt_check_report_as(nt_check *check, const nt_tally *tally, nt_severity seve
 }
 
 /* What a place is known by: a JSON pointer, or an object of a text. */
-static const char *key_of(const nt_place *place)
+static const char *key_of(const nt_place_view *place)
 {
 	return place->pointer[0] ? place->pointer : place->object;
 }
@@ -222,7 +229,7 @@ static bool make_mesh_table(const nt_report *report, mesh_table *table)
 	return table->meshes != NULL;
 }
 
-static uint32_t find_mesh(const mesh_table *table, const nt_place *place)
+static uint32_t find_mesh(const mesh_table *table, const nt_place_view *place)
 {
 	const char *key = key_of(place);
 	const uint32_t number = nt_name_find(&table->keys, key, strlen(key));
@@ -238,11 +245,14 @@ static void add_scene_finding(nt_check *check, const mesh_table *table, const nt
 	nt_report_finding finding = {.code = found->code,
 		.mesh = find_mesh(table, &found->place),
 		.count = found->count,
-		.place = found->place,
 		.box = nt_box_empty(),
 		.seam = NT_NONE,
 		.island = NT_NONE};
 	finding.alike = finding.mesh != NT_NONE;
+	if (!nt_keep_place(&check->report->arena, &found->place, &finding.place)) {
+		check->failed = true;
+		return;
+	}
 	add_finding(check, &finding, nt_code_info(found->code)->severity, found->detail);
 }
 

@@ -91,16 +91,15 @@ typedef struct nt_report_finding {
 	size_t count;         /* occurrences */
 	size_t alike;         /* meshes of this geometry that it holds for, the mesh itself included; 0: no mesh */
 	const char *message;  /* one sentence */
-	nt_place place;
+	nt_place_view place;  /* texts in the report's arena */
 	nt_box box;           /* around all occurrences */
 	uint64_t fingerprint;
 	bool known;           /* the baseline has it */
 	uint32_t seam;        /* index into the mesh's seams, NT_NONE */
 	uint32_t island;      /* index into the mesh's islands, NT_NONE */
-	nt_number numbers[NT_NUMBER_COUNT];
-	unsigned number_count;
-	nt_spot spots[NT_SPOT_COUNT];
-	unsigned spot_count;
+	nt_number *numbers;   /* [number_count] at most NT_NUMBER_COUNT */
+	nt_spot *spots;       /* [spot_count] at most NT_SPOT_COUNT */
+	unsigned number_count, spot_count;
 } nt_report_finding;
 
 /* One edge of a seam: side 0 is the unmirrored one. Both sides go from the same end to the same end. */
@@ -166,7 +165,7 @@ typedef struct nt_report_geometry {
 
 typedef struct nt_report_mesh {
 	const char *name;
-	nt_place place;
+	nt_place_view place;
 	uint32_t gltf_mesh, gltf_primitive;
 	uint32_t same_as;         /* an earlier mesh with the same geometry and uses: what is found there holds
 	                             here, and is not said again. Seams, islands and geometry are there; NT_NONE */
@@ -208,7 +207,7 @@ typedef struct nt_report {
 	const char *path;
 	nt_format format;
 	const char *failure;      /* the input could not be checked: why; NULL */
-	nt_place failure_place;
+	nt_place_view failure_place;
 	nt_report_mesh *meshes;
 	size_t mesh_count;
 	nt_report_finding *findings; /* most severe first, then by mesh and code */

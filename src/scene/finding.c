@@ -24,19 +24,33 @@ static bool same_finding(const nt_finding *a, const nt_finding *b)
 		strcmp(a->place.object, b->place.object) == 0;
 }
 
+/* False: out of memory. */
+static bool keep_text(nt_arena *arena, const char *text, const char **kept)
+{
+	*kept = *text ? nt_arena_text(arena, text, strlen(text)) : "";
+	return *kept != NULL;
+}
+
+bool nt_keep_place(nt_arena *arena, const nt_place_view *place, nt_place_view *kept)
+{
+	*kept = *place;
+	return keep_text(arena, place->file, &kept->file) && keep_text(arena, place->pointer, &kept->pointer) &&
+		keep_text(arena, place->object, &kept->object);
+}
+
 void nt_finding_add(nt_finding_list *list, nt_code code, const nt_place *place, size_t count,
 	const char *detail_format, ...)
 {
-	nt_finding finding = {.code = code, .count = count};
-	nt_place_clear(&finding.place);
-	if (place)
-		finding.place = *place;
+	char detail[256] = "";
 	if (detail_format) {
 		va_list arguments;
 		va_start(arguments, detail_format);
-		vsnprintf(finding.detail, sizeof finding.detail, detail_format, arguments);
+		vsnprintf(detail, sizeof detail, detail_format, arguments);
 		va_end(arguments);
 	}
+	static const nt_place nowhere = {.offset = NT_NO_OFFSET};
+	nt_finding finding = {.code = code, .count = count, .place = nt_view_place(place ? place : &nowhere),
+		.detail = detail};
 	const uint64_t hash = hash_finding(&finding);
 	uint32_t number;
 	for (size_t at = NT_HASH_BEGIN;
@@ -47,6 +61,8 @@ void nt_finding_add(nt_finding_list *list, nt_code code, const nt_place *place, 
 		}
 	if (list->count >= UINT32_MAX ||
 		!nt_grow((void **)&list->items, &list->capacity, list->count + 1, sizeof finding) ||
+		!nt_keep_place(&list->arena, &finding.place, &finding.place) ||
+		!keep_text(&list->arena, detail, &finding.detail) ||
 		!nt_hash_index_add(&list->known, hash, (uint32_t)list->count)) {
 		list->failed = true;
 		return;
@@ -58,5 +74,6 @@ void nt_finding_list_free(nt_finding_list *list)
 {
 	free(list->items);
 	nt_hash_index_free(&list->known);
+	nt_arena_free(&list->arena);
 	*list = (nt_finding_list){0};
 }

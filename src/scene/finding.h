@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/hash_index.h"
+#include "base/memory.h"
 
 typedef enum nt_severity { NT_SEVERITY_INFO, NT_SEVERITY_WARNING, NT_SEVERITY_ERROR } nt_severity;
 
@@ -98,16 +99,17 @@ typedef enum nt_code {
 
 typedef struct nt_finding {
 	nt_code code;
-	nt_place place;     /* of the first occurrence */
-	size_t count;       /* occurrences, at least 1 */
-	char detail[256];   /* the words that differ from case to case (a file name, a statement); may be
-	                       empty */
+	nt_place_view place; /* of the first occurrence */
+	size_t count;        /* occurrences, at least 1 */
+	const char *detail;  /* the words that differ from case to case (a file name, a statement); may be
+	                        empty */
 } nt_finding;
 
 typedef struct nt_finding_list {
 	nt_finding *items;
 	size_t count;
 	size_t capacity;
+	nt_arena arena;      /* texts of items */
 	nt_hash_index known; /* items by code, object and detail */
 	bool failed; /* out of memory while adding */
 } nt_finding_list;
@@ -118,5 +120,8 @@ void nt_finding_add(nt_finding_list *list, nt_code code, const nt_place *place, 
 	const char *detail_format, ...) NT_PRINTF(5, 6);
 
 void nt_finding_list_free(nt_finding_list *list);
+
+/* The same place with texts in an arena. False: out of memory. */
+bool nt_keep_place(nt_arena *arena, const nt_place_view *place, nt_place_view *kept);
 
 #endif

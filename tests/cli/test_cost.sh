@@ -125,6 +125,8 @@ inputs scene "$parts" p.glb
 within 4 500 -q p.glb out.glb
 exits 0
 is "$(gltf out.glb 'g.accessors.length')" $((5 * parts))
+within 8 650 -q --check p.glb
+exits 0
 rm out.glb
 
 scene "$((parts / 2)) primitives whose vertices are split"

@@ -110,7 +110,7 @@ static void put_box(nt_buffer *out, const nt_box *box)
 	nt_buffer_text(out, "]");
 }
 
-static void put_place(nt_buffer *out, const char *name, const nt_place *place)
+static void put_place(nt_buffer *out, const char *name, const nt_place_view *place)
 {
 	key(out, SAME_LINE, name);
 	nt_buffer_text(out, "{");

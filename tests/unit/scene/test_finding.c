@@ -34,6 +34,31 @@ static void equal_findings_are_one_with_the_sum_of_their_counts(void **state)
 	assert_int_equal(list.count, 0);
 }
 
+/* A finding has its texts itself: the caller's are gone when it is shown. */
+static void places_are_kept(void **state)
+{
+	(void)state;
+	nt_finding_list list = {0};
+	nt_place place = {.file = "a.obj", .line = 3, .offset = 4, .pointer = "/meshes/5", .object = "mesh 5"};
+	char detail[] = "norm";
+	nt_finding_add(&list, NT_CODE_TAN_ZERO, &place, 1, "%s", detail);
+	memset(&place, 'x', sizeof place);
+	memset(detail, 'x', sizeof detail - 1);
+	nt_finding_add(&list, NT_CODE_TAN_ZERO, NULL, 1, NULL);
+	const nt_finding *kept = &list.items[0], *nowhere = &list.items[1];
+	assert_string_equal(kept->place.file, "a.obj");
+	assert_string_equal(kept->place.pointer, "/meshes/5");
+	assert_string_equal(kept->place.object, "mesh 5");
+	assert_string_equal(kept->detail, "norm");
+	assert_int_equal(kept->place.line, 3);
+	assert_int_equal(kept->place.offset, 4);
+	assert_string_equal(nowhere->place.file, "");
+	assert_string_equal(nowhere->place.object, "");
+	assert_string_equal(nowhere->detail, "");
+	assert_true(nowhere->place.offset == NT_NO_OFFSET);
+	nt_finding_list_free(&list);
+}
+
 /* Compared one with another these would be 2 * 10^10 pairs of texts. */
 static void two_hundred_thousand_objects_are_no_burden(void **state)
 {
@@ -58,6 +83,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(equal_findings_are_one_with_the_sum_of_their_counts),
+		cmocka_unit_test(places_are_kept),
 		cmocka_unit_test(two_hundred_thousand_objects_are_no_burden),
 	};
 	return cmocka_run_group_tests_name("scene/finding", tests, NULL, NULL);

@@ -252,7 +252,7 @@ static void a_mesh_above_the_bound_is_a_part_that_keeps_its_numbers(void **state
 {
 	(void)state;
 	sheet *s = make_sheet(20, true);
-	nt_report_finding finding = {.mesh = 0, .spot_count = 1, .spots = {{.triangle = 500}}};
+	nt_report_finding finding = {.mesh = 0, .spot_count = 1, .spots = &(nt_spot){.triangle = 500}};
 	s->report.findings = &finding;
 	s->report.finding_count = 1;
 	unpacked u;
