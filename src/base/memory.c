@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Checked allocation and the arena. The arena bumps small requests through 64 KiB blocks and gives
- * each large one a block of its own, so that big arrays return to the system one by one.
+ * Checked allocation and the arena. The arena bumps small requests through blocks of 4 to 64 KiB, each twice as large as
+ * the one before, and gives each large request a block of its own, so that big arrays return to the system one by one.
  */
 #include "base/memory.h"
 
@@ -11,6 +11,7 @@
 #include "base/pages.h"
 
 enum {
+	LEAST_BLOCK_BYTES = 4 * 1024,
 	SMALL_BLOCK_BYTES = 64 * 1024,
 	SMALL_REQUEST_BYTES = 8 * 1024,
 	ALIGNMENT = 16
@@ -80,6 +81,14 @@ static char *block_data(struct nt_arena_block *block)
 	return (char *)block + header;
 }
 
+/* Of the block that a small request opens. */
+static size_t next_capacity(const nt_arena *arena, size_t bytes)
+{
+	const size_t twice = arena->blocks ? 2 * arena->blocks->capacity : 0;
+	const size_t capacity = twice < LEAST_BLOCK_BYTES ? LEAST_BLOCK_BYTES : twice < SMALL_BLOCK_BYTES ? twice : SMALL_BLOCK_BYTES;
+	return capacity < bytes ? bytes : capacity;
+}
+
 void *nt_arena_alloc(nt_arena *arena, size_t count, size_t size)
 {
 	size_t bytes;
@@ -89,7 +98,7 @@ void *nt_arena_alloc(nt_arena *arena, size_t count, size_t size)
 	struct nt_arena_block *block = arena->blocks;
 	if (!block || block->capacity - block->used < bytes) {
 		const bool small = bytes <= SMALL_REQUEST_BYTES;
-		block = add_block(arena, small ? SMALL_BLOCK_BYTES : bytes, small);
+		block = add_block(arena, small ? next_capacity(arena, bytes) : bytes, small);
 		if (!block)
 			return NULL;
 	}

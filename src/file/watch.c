@@ -32,6 +32,7 @@ typedef struct watched {
 } watched;
 
 static watched maps[MOST_MAPS];
+static atomic_int ever_taken; /* of them, from the first: what lies behind has not been touched, and takes no memory */
 static atomic_size_t page_bytes;
 static struct sigaction action_before;
 
@@ -41,7 +42,8 @@ static _Thread_local const char *has_lost; /* what happened to it; NULL: there i
 /* The map that an address lies in, or NULL. */
 static watched *map_of(uintptr_t address)
 {
-	for (int i = 0; i < MOST_MAPS; i++) {
+	const int count = atomic_load(&ever_taken);
+	for (int i = 0; i < count; i++) {
 		const uintptr_t begin = atomic_load(&maps[i].begin);
 		if (begin > 1 && address >= begin && address - begin < atomic_load(&maps[i].size))
 			return &maps[i];
@@ -77,6 +79,13 @@ static void install(void)
 	pthread_mutex_unlock(&lock);
 }
 
+static void take(int number)
+{
+	int count = atomic_load(&ever_taken);
+	while (count <= number && !atomic_compare_exchange_weak(&ever_taken, &count, number + 1))
+		;
+}
+
 int nt_watch_begin(const void *map, const struct stat *status, int fd, const char *path)
 {
 	install();
@@ -85,6 +94,7 @@ int nt_watch_begin(const void *map, const struct stat *status, int fd, const cha
 		uintptr_t none = 0;
 		if (!atomic_compare_exchange_strong(&w->begin, &none, 1))
 			continue;
+		take(i);
 		atomic_store(&w->owner, &has_lost);
 		w->fd = fd;
 		w->modified = status->st_mtim;
@@ -140,7 +150,8 @@ void nt_watch_forget(void)
 nt_status nt_watch_check(nt_error *error)
 {
 	const char *path = lost, *change = has_lost;
-	for (int i = 0; i < MOST_MAPS && !change; i++) {
+	const int count = atomic_load(&ever_taken);
+	for (int i = 0; i < count && !change; i++) {
 		if (atomic_load(&maps[i].begin) <= 1 || atomic_load(&maps[i].owner) != &has_lost)
 			continue;
 		path = maps[i].path;

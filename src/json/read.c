@@ -8,6 +8,7 @@
  * do not.
  */
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include "base/utf8.h"
 #include "ext/number.h"
@@ -33,9 +34,10 @@ typedef struct reader {
 	nt_json_value *values; /* [value_count] of the open containers */
 	nt_json_name *keys;     /* [key_count] of those that are objects */
 	size_t value_count, value_capacity, key_count, key_capacity;
-	size_t depth;
-	opened open[NT_JSON_MAX_DEPTH];
-	nt_json_shape *expected[NT_JSON_MAX_DEPTH]; /* of the last object of that depth; NULL: there was none */
+	size_t depth, deepest;
+	/* most of both is never touched */
+	opened open[NT_JSON_MAX_DEPTH];             /* [depth] */
+	nt_json_shape *expected[NT_JSON_MAX_DEPTH]; /* [deepest] of the last object of that depth; NULL: there was none */
 } reader;
 
 /* ---- faults ---- */
@@ -321,6 +323,8 @@ static nt_status open_container(reader *r, nt_json_value *value, bool *complete)
 		r->at++;
 		return push(r, value);
 	}
+	if (r->depth == r->deepest)
+		r->expected[r->deepest++] = NULL;
 	r->open[r->depth++] = (opened){value->of.text, r->value_count, r->key_count, is_object, foreign, false};
 	return is_object ? read_key(r) : NT_OK;
 }
@@ -454,9 +458,11 @@ nt_status nt_json_parse(nt_json **document, const char *text, size_t size, const
 		return nt_fail_offset(error, NT_ERROR_INPUT, 0,
 			"JSON begins with a byte order mark, which glTF does not allow");
 	nt_json *parsed = nt_calloc(1, sizeof *parsed);
-	reader *r = nt_calloc(1, sizeof *r);
+	reader *r = nt_alloc(1, sizeof *r);
 	size_t bytes;
 	nt_status status = NT_ERROR_MEMORY;
+	if (r)
+		memset(r, 0, offsetof(reader, open));
 	if (parsed && r && nt_size_add(size, PADDING_BYTES, &bytes))
 		parsed->text = nt_alloc(bytes, 1);
 	if (parsed && parsed->text) {
@@ -464,7 +470,10 @@ nt_status nt_json_parse(nt_json **document, const char *text, size_t size, const
 			memcpy(parsed->text, text, size);
 		memset(parsed->text + size, 0, PADDING_BYTES);
 		parsed->size = size;
-		*r = (reader){.document = parsed, .at = parsed->text, .foreign = foreign, .error = error};
+		r->document = parsed;
+		r->at = parsed->text;
+		r->foreign = foreign;
+		r->error = error;
 		status = read_text(r);
 	} else {
 		nt_fail_memory(error);
