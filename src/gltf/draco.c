@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * KHR_draco_mesh_compression: a primitive whose indices and some of whose attributes are one block. The
- * block is decoded when the primitive is loaded, or before that on several threads, and the accessors that it fills get their elements from
- * it: their own count gives way to what was decoded, as the extension says.
+ * block is decoded when the primitive is loaded, or before that on several threads, and the accessors that it fills get
+ * their elements from it: their own count gives way to what was decoded, as the extension says.
  */
 #include "gltf/draco.h"
 
@@ -105,7 +105,7 @@ static size_t find_wanted(const decoding *d, const nt_scene *scene, const bool *
 		uint64_t view;
 		if (!needed[i] || mesh->same_as || !nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(
 				nt_gltf_primitive_of(document, mesh)), "bufferView"), &view) ||
-			view >= document->view_count || document->draco_blocks[view] || d->blocks[view].bytes)
+			view >= document->view_count || nt_gltf_draco_block(document, view) || d->blocks[view].bytes)
 			continue;
 		packed *block = &d->blocks[view];
 		nt_error ignored;
@@ -122,18 +122,17 @@ nt_status nt_gltf_decode_ahead(nt_scene *scene, const bool *needed, const nt_rea
 	const unsigned threads = nt_thread_count(options->threads);
 	if (threads == 1 || !nt_gltf_uses(document, "KHR_draco_mesh_compression"))
 		return NT_OK;
-	const nt_status status = make_room(document, error);
-	if (status)
-		return status;
 	const decoding d = {document, nt_calloc(document->view_count, sizeof *d.blocks), options->recompress};
 	if (!d.blocks)
 		return nt_fail_memory(error);
 	const size_t count = find_wanted(&d, scene, needed);
-	if (count > 1)
+	/* room for blocks says that there are some */
+	const nt_status status = count > 1 ? make_room(document, error) : NT_OK;
+	if (!status && count > 1)
 		nt_parallel_items(count < threads ? (unsigned)count : threads, document->view_count, decode_wanted,
 			(void *)&d);
 	free(d.blocks);
-	return NT_OK;
+	return status;
 }
 
 /* ---- a primitive's ---- */

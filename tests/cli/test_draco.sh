@@ -211,6 +211,14 @@ for method in sequential edgebreaker; do
 	done
 done
 
+scene "an extension that is listed and not used stays listed, with any number of threads"
+sed '1,/{/s/{/{"extensionsUsed": ["KHR_draco_mesh_compression"],/' "$data/morph.gltf" >morph.gltf
+for threads in 1 2 8; do
+	run -q --threads=$threads morph.gltf $threads.glb
+	exits 0
+	same 1.glb $threads.glb
+done
+
 scene "only a glTF made from a glTF is compressed"
 run --draco=edgebreaker "$data/quad.obj" quad.glb
 exits 1
