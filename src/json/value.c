@@ -71,11 +71,11 @@ bool nt_json_get_bool(const nt_json_value *value, bool *result)
 /* The magnitude of an integer, which fits. */
 static uint64_t read_integer(const nt_json_value *value, bool *negative)
 {
-	const char *at = nt_json_text(value), *const end = at + value->size;
 	uint64_t magnitude = 0;
 	*negative = false;
 	if (nt_json_is_counted(value))
 		return value->size;
+	const char *at = nt_json_text(value), *const end = at + value->size;
 	*negative = *at == '-';
 	for (at += *negative; at < end; at++)
 		magnitude = magnitude * 10 + (uint64_t)(*at - '0');

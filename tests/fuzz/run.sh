@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: MIT
 #
 # tests/fuzz/run.sh BUILD FUZZ_BUILD SECONDS TARGET...: so many seconds with each target in turn. An input that fails
-# is kept in FUZZ_BUILD/found/TARGET and the target goes on. What leads further is kept in FUZZ_BUILD/corpus/TARGET, for
+# is kept in FUZZ_BUILD/found/TARGET and the target goes on, unless it fails at the same input again. What leads further
+# is kept in FUZZ_BUILD/corpus/TARGET, for
 # the next time. Fails when an input did. To run one again:
 #
 #   FUZZ_VERBOSE=1 FUZZ_TARGET=ply build/fuzz/tests/fuzz/target build/fuzz/found/ply/crash-...
@@ -22,7 +23,7 @@ for target in "$@"; do
 	mkdir -p "$corpus" "$found"
 	: >"$log"
 	dictionary=tests/fuzz/${target/glb/gltf}.dict
-	executions=0 edges=0 failed=0 end=$((SECONDS + seconds))
+	executions=0 edges=0 failed=0 last= end=$((SECONDS + seconds))
 	while [ $SECONDS -lt $end ]; do
 		"$fuzz/tests/fuzz/target" "${limits[@]}" -max_total_time=$((end - SECONDS)) -dict="$dictionary" \
 			-artifact_prefix="$found/" -print_final_stats=1 "$corpus" "$fuzz/seeds/$target" >"$log.run" 2>&1
@@ -37,6 +38,9 @@ for target in "$@"; do
 		failed=$((failed + 1))
 		grep -aE 'WRONG|runtime error|ERROR: |SUMMARY: |Test unit written' "$log.run" | head -6
 		[ "$more" -gt 0 ] || { tail -5 "$log.run"; break; }
+		written=$(grep -a 'Test unit written' "$log.run")
+		[ "$written" != "$last" ] || break
+		last=$written
 	done
 	rm -f "$log.run"
 	echo "$target: $executions executions, $edges edges, $failed crashes"
