@@ -24,14 +24,21 @@
 /* Of any run, and of any byte of a format that has all its bytes in one file. */
 enum { LEAST = 1 << 20, MOST_BYTE_COST = 256 };
 
+/* sum + cost * count. A file may claim what it likes: beyond 64 bits it is more than there is. */
+static uint64_t plus(uint64_t sum, uint64_t cost, uint64_t count)
+{
+	uint64_t product;
+	return __builtin_mul_overflow(cost, count, &product) || __builtin_add_overflow(sum, product, &sum) ? UINT64_MAX : sum;
+}
+
 /* A number after a key and what may stand between them; 0: none. */
 static uint64_t number_after(const char *text, const char *end, const char *between)
 {
 	uint64_t number = 0;
 	while (text < end && strchr(between, *text) && *text)
 		text++;
-	for (; text < end && *text >= '0' && *text <= '9' && number < UINT32_MAX; text++)
-		number = number * 10 + (uint64_t)(*text - '0');
+	for (; text < end && *text >= '0' && *text <= '9'; text++)
+		number = plus((uint64_t)(*text - '0'), 10, number);
 	return number;
 }
 
@@ -49,10 +56,10 @@ static uint64_t ply_need(const char *text, size_t size)
 		const char *name_end = memchr(at, ' ', (size_t)(end - at));
 		if (!name_end)
 			break;
-		elements += number_after(name_end, end, " ");
+		elements = plus(elements, 1, number_after(name_end, end, " "));
 		at = name_end;
 	}
-	return 2 * (uint64_t)size + 96 * elements;
+	return plus(2 * (uint64_t)size, 96, elements);
 }
 
 static uint64_t gltf_need(const char *text, size_t json_size, size_t size, const nt_settings *settings)
@@ -64,9 +71,9 @@ static uint64_t gltf_need(const char *text, size_t json_size, size_t size, const
 	uint64_t counts = 0;
 	for (const char *at = text; (at = memmem(at, (size_t)(end - at), count, sizeof count - 1));) {
 		at += sizeof count - 1;
-		counts += number_after(at, end, ": \t\r\n");
+		counts = plus(counts, 1, number_after(at, end, ": \t\r\n"));
 	}
-	return 12 * (uint64_t)json_size + (size - json_size) + (compressed ? 100 : 40) * counts;
+	return plus(12 * (uint64_t)json_size + (size - json_size), compressed ? 100 : 40, counts);
 }
 
 static uint64_t need_of_bytes(const nt_file *file, const char *path, const nt_settings *settings)
@@ -112,7 +119,7 @@ uint64_t nt_need_of(const char *input, const nt_settings *settings, uint64_t eno
 		return LEAST + MOST_BYTE_COST * (uint64_t)info.st_size;
 	if (nt_file_open_untraced(&file, input, &error))
 		return 0;
-	const uint64_t need = LEAST + need_of_bytes(&file, input, settings);
+	const uint64_t need = plus(LEAST, 1, need_of_bytes(&file, input, settings));
 	nt_file_close(&file);
 	return need;
 }

@@ -69,6 +69,20 @@ static void a_glb_counts_its_json_and_its_bytes(void **state)
 	assert_int_equal(need_of("long.glb"), MB + 12 * 4);
 }
 
+/* Each half of these is a number, and what it would take: 2 * 2^63, 40 * 2^60. */
+static void what_is_claimed_beyond_64_bits_is_more_than_there_is(void **state)
+{
+	(void)state;
+	put_text_file("sum.gltf", "{\"accessors\":[{\"count\":9223372036854775808},{\"count\":9223372036854775808}]}");
+	assert_true(need_of("sum.gltf") == UINT64_MAX);
+	put_text_file("product.gltf", "{\"accessors\":[{\"count\":1152921504606846976}]}");
+	assert_true(need_of("product.gltf") == UINT64_MAX);
+	put_text_file("number.gltf", "{\"accessors\":[{\"count\":340282366920938463463374607431768211456}]}");
+	assert_true(need_of("number.gltf") == UINT64_MAX);
+	put_text_file("sum.ply", "ply\nelement vertex 192153584101141163\nelement face 1\nend_header\n");
+	assert_true(need_of("sum.ply") == UINT64_MAX);
+}
+
 static void where_the_size_says_enough_nothing_is_opened(void **state)
 {
 	(void)state;
@@ -97,6 +111,7 @@ int main(void)
 		cmocka_unit_test(a_ply_counts_by_the_elements_of_its_header),
 		cmocka_unit_test(gltf_counts_by_its_accessors_wherever_their_bytes_are),
 		cmocka_unit_test(a_glb_counts_its_json_and_its_bytes),
+		cmocka_unit_test(what_is_claimed_beyond_64_bits_is_more_than_there_is),
 		cmocka_unit_test(where_the_size_says_enough_nothing_is_opened),
 		cmocka_unit_test(what_has_no_size_is_alone_and_what_is_missing_is_nothing),
 	};
