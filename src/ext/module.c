@@ -16,6 +16,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include "ext/reserve.h"
 #include "ext/tables.h"
@@ -68,15 +69,17 @@ static nt_status find_program(char folder[PATH_MAX], nt_error *error)
 	return NT_OK;
 }
 
-/* Whether the module is in a folder; fills its path. */
+/* Whether the module is in a folder; fills its path. Opening a pipe of that name would not end. */
 static nt_status look_in(const char *folder, const row *module, char path[PATH_MAX], bool *found, nt_error *error)
 {
 	*found = false;
 	const int length = snprintf(path, PATH_MAX, "%s/nmtan-%s.so", folder, module->name);
 	if (length < 0 || length >= PATH_MAX)
 		return NT_OK;
-	*found = access(path, F_OK) == 0;
-	if (*found || errno == ENOENT || errno == ENOTDIR)
+	struct stat info;
+	const bool there = stat(path, &info) == 0;
+	*found = there && S_ISREG(info.st_mode);
+	if (there || errno == ENOENT || errno == ENOTDIR)
 		return NT_OK;
 	return nt_fail(error, NT_ERROR_IO, "cannot look for %s: %s", path, strerror(errno));
 }

@@ -46,6 +46,18 @@ exits 5
 says "nmtan-png.so"
 only tool
 
+scene "a pipe or a folder with the name of a module is none"
+lone_tool
+mkfifo tool/nmtan-draco.so
+mkdir tool/nmtan-tinygltf.so
+NMTAN=timeout
+run 10 tool/nmtan --existing=replace "$WORK/draco.glb" out.glb
+exits 5
+says "the module nmtan-draco.so, which is not in $PWD/tool"
+run 10 tool/nmtan --verify "$data/quad.obj" out.glb
+exits 5
+says "the module nmtan-tinygltf.so, which is not in $PWD/tool"
+
 scene "OpenMesh is needed where boundaries fork, not where they are plain"
 lone_tool
 printf '%s\n' "v 0 0 0" "v 1 0 0" "v 0 1 0" "v -1 0 0" "v 0 -1 0" "f 1 2 3" >plain.obj
