@@ -19,7 +19,7 @@ static nt_channel_map channel_map(const nt_map *map, nt_channel otherwise)
 {
 	const char *letters = "rgbml", *letter = map->channel ? strchr(letters, map->channel) : NULL;
 	return (nt_channel_map){.channel = letter ? (nt_channel)(letter - letters) : otherwise, .base = map->base,
-		.gain = nt_map_is_plain(map) ? 1 : map->gain, .exponent = map->exponent};
+		.gain = map->gain, .exponent = map->exponent};
 }
 
 /* A channel of numbers. */

@@ -195,14 +195,15 @@ static void tell_made(const telling *t, const nt_map *map, const nt_texture *ima
 			image->from_heights ? "normal map" : "PNG", image->flipped ? ", green turned up" : "");
 }
 
-/* The images of one wish. A map whose image is lost is none any more. */
+/* The images of one wish. A map whose image is lost is none any more, nor is the roughness of a coat that went with one. */
 static void tell_wish(const telling *t, const nt_map_wish *w)
 {
+	nt_material *m = t->material;
 	const nt_map *first = NULL;
 	const nt_texture *image = NULL;
 	for (int k = 0; k < 4; k++) {
 		nt_map *map = w->maps[k];
-		if (!map)
+		if (!map || map->wish == NT_NONE)
 			continue;
 		image = nt_textures_of(t->textures, map->wish);
 		bool told = false;
@@ -210,13 +211,16 @@ static void tell_wish(const telling *t, const nt_map_wish *w)
 			told |= w->maps[j] && strcmp(w->maps[j]->name, map->name) == 0;
 		if (!told)
 			tell_source(t, map, k, image);
-		first = first ? first : map;
 	}
-	if (image && image->bytes)
-		tell_made(t, first, image);
-	for (int k = 0; k < 4; k++)
+	for (int k = 0; k < 4 && image; k++)
 		if (w->maps[k] && image->lost >> k & 1)
 			w->maps[k]->wish = NT_NONE;
+	if (m->clearcoat == 0 && m->clearcoat_map.wish == NT_NONE)
+		m->clearcoat_roughness_map.wish = NT_NONE;
+	for (int k = 4; k-- > 0;)
+		first = w->maps[k] && w->maps[k]->wish != NT_NONE ? w->maps[k] : first;
+	if (first && image->bytes)
+		tell_made(t, first, image);
 }
 
 static void tell_normals(const telling *t, const nt_texture *image)

@@ -61,7 +61,7 @@ typedef struct nt_map {
 	nt_placement placement;
 	uint32_t wish;               /* in nt_write_options.textures, filled by the pipeline; NT_NONE: none */
 	char channel;                /* 'r', 'g', 'b', 'm' (alpha), 'l' (luminance); 0: nobody says */
-	float base, gain;            /* colours: for each channel; both 0: 0 and 1 */
+	float base, gain;            /* colours: for each channel */
 	float exponent;              /* 0: it is no map of exponents */
 	float factor;
 } nt_map;
@@ -69,7 +69,7 @@ typedef struct nt_map {
 /* Whether the samples themselves are meant. */
 static inline bool nt_map_is_plain(const nt_map *map)
 {
-	return map->base == 0 && (map->gain == 1 || map->gain == 0);
+	return map->base == 0 && map->gain == 1;
 }
 
 enum { NT_MATERIAL_MAPS = 10 };

@@ -150,6 +150,12 @@ is "$(samples 'rows[1][1]')" "[24]"
 convert "map_Kd -mm 0 0.5 x.png"
 made 0
 is "$(samples 'rows[2][2]')" "[10, 20, 50]"
+convert "map_Kd -mm 0 0 x.png"
+made 0
+is "$(samples 'rows[2][2]')" "[0, 0, 0]"
+convert "map_Pr -mm 0 0 x.png"
+made 0
+is "$(samples 'rows[2][2]')" "[0]"
 images write h.png 8 8 '(0, abs(4 - x) * 16, 0)'
 convert "bump -imfchan g h.png"
 made 0
@@ -292,6 +298,20 @@ made 0
 # sRGB of 0.2 is 1.055 * 0.2^(1 / 2.4) - 0.055
 is "$(samples 'rows[0][1] == [math.floor(255 * (1.055 * 0.2 ** (1 / 2.4) - 0.055) + 0.5)]')" True
 is "$(material .extensions.KHR_materials_sheen.sheenColorTexture)" '{"index":0}'
+
+scene "without its coat a roughness of the coat is in no image, and nothing is said to have become one"
+images write c.png 4 4 '10 * x'
+head -c 30 c.png >short.png
+for coat in gone.png short.png; do
+	for place in "" "-s 2 2 1"; do
+		convert "map_Pc $coat" "map_Pcr $place c.png"
+		says "$coat"
+		says_not "c-clearcoat.png"
+		is "$(gltf quad.glb '"images" in g')" false
+		convert "Pc 0.5" "map_Pc $coat" "map_Pcr $place c.png"
+		is "$(gltf quad.glb 'g.images.length')" 1
+	done
+done
 
 scene "an image that is used as a colour and as a normal map that stays is one image"
 images write n.png 16 16 '(128, 128, 255)'

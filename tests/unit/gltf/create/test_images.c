@@ -28,6 +28,8 @@ static nt_scene *make_textured(hand_scene *hand)
 	hand->material.base_color_map.name = "tex\\a b.png";
 	hand->material.emissive_map.name = "./tex/../tex/a b.png";
 	hand->material.normal_map.name = "n.jpg";
+	for (size_t i = 0; i < NT_MATERIAL_MAPS; i++)
+		hand->material.maps[i].gain = 1;
 	hand->primitives[0].material = 0;
 	return scene;
 }
