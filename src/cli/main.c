@@ -234,11 +234,16 @@ static void add_rule(session *s, const nt_job *job, int *code)
 }
 
 /* What there is no memory for in a message is said all the same. */
-static void tell_failure(session *s, const nt_job *job)
+static void tell_shortly(session *s, const nt_job *job)
 {
 	nt_error error;
-	nt_fail_memory(&error);
-	nt_say_error(job->outcome ? &job->outcome->error : &error, s->style);
+	if (job->status)
+		nt_fail_memory(&error);
+	else
+		nt_fail(&error, NT_ERROR_MEMORY, "out of memory for a message%s",
+			job->output && !s->command->settings.dry_run ? "; the output stands" : "");
+	nt_error_in_file(&error, job->input);
+	nt_say_error(job->status && job->outcome ? &job->outcome->error : &error, s->style);
 }
 
 /* Called once per job, in order: says what became of it. */
@@ -262,10 +267,12 @@ static void tell_job(void *user, nt_job *job)
 	const nt_summary *summary = job->outcome ? &job->outcome->summary : NULL;
 	nt_progress_file(s->progress, summary ? summary->bytes_read + summary->bytes_written : 0, job->status != NT_OK);
 	nt_progress_hide(s->progress);
-	if (job->status && (s->text.failed || !job->outcome))
-		tell_failure(s, job);
-	else if (!nt_say(&s->text))
-		code = NT_EXIT_INTERNAL;
+	if (s->text.failed || (job->status && !job->outcome)) {
+		tell_shortly(s, job);
+		code = nt_exit_worse(code, job->status ? NT_EXIT_DONE : NT_EXIT_INTERNAL);
+	} else {
+		nt_say(&s->text);
+	}
 	s->text.size = 0;
 	s->text.failed = false;
 	nt_progress_show(s->progress);

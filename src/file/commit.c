@@ -37,7 +37,8 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdlib.h>
+#include <limits.h>
+#include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -54,20 +55,19 @@ static nt_status taken_meanwhile(nt_output *output, const char *path, nt_error *
 /* Not every file system lets a folder be synchronised, and not every user may open it. */
 nt_status nt_output_sync_name(const char *path, nt_error *error)
 {
+	char folder[PATH_MAX] = "."; /* no memory is asked for: what it tells of has its place */
 	size_t length = strlen(path);
 	while (length > 1 && path[length - 1] == '/')
 		length--;
 	while (length > 0 && path[length - 1] != '/')
 		length--;
-	char *folder = length ? strndup(path, length) : strdup(".");
-	if (!folder)
-		return nt_fail_memory(error);
+	if (length)
+		snprintf(folder, sizeof folder, "%.*s", length < PATH_MAX ? (int)length : PATH_MAX, path);
 	const int fd = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
 	const bool failed = fd >= 0 && fsync(fd) != 0 && errno != EINVAL && errno != EBADF && errno != ENOTSUP;
 	const int number = errno;
 	if (fd >= 0)
 		close(fd);
-	free(folder);
 	return failed ? nt_sink_fail(error, path, number) : NT_OK;
 }
 

@@ -328,20 +328,24 @@ void nt_output_note(nt_output *output, const char *format, ...)
 	nt_buffer_text(&output->options.result->note, text);
 }
 
-/* Which companions are not called what they would be. */
-static void note_names(const nt_output *output)
+/* Which companions are not called what they would be. What nt_output_place() may add has its memory before anything has
+ * its place. */
+static nt_status note_names(const nt_output *output, nt_error *error)
 {
-	enum { NAMES_SHOWN = 3 };
+	enum { NAMES_SHOWN = 3, OTHER_WORDS = 200 };
 	nt_buffer *note = output->options.result ? &output->options.result->note : NULL;
-	size_t count = 0;
+	size_t count = 0, later = 0;
 	for (const nt_sink *sink = output->first; sink && note; sink = sink->next) {
 		const char *wanted = nt_last_part(sink->path);
 		if (nt_sink_is_companion(sink) && strcmp(wanted, nt_sink_name(sink, false)) != 0 &&
 			count++ < NAMES_SHOWN)
 			nt_buffer_format(note, "; %s is another file, so ours is %s", wanted, nt_sink_name(sink, false));
+		if (sink->interim)
+			later += strlen(nt_sink_name(sink, false)) + strlen(nt_sink_name(sink, true)) + OTHER_WORDS;
 	}
 	if (count > NAMES_SHOWN)
 		nt_buffer_format(note, "; %zu more names were taken", count - NAMES_SHOWN);
+	return !note || (nt_buffer_reserve(note, later) && !note->failed) ? NT_OK : nt_fail_memory(error);
 }
 
 /* A main file that would only be replaced by its own bytes stays, if that is wanted. */
@@ -401,10 +405,10 @@ nt_status nt_output_commit(nt_output *output, nt_error *error)
 		if (output->options.placing)
 			status = output->options.placing(output->options.placing_user, error);
 	}
-	if (!status && !output->options.dry_run) {
-		note_names(output);
+	if (!status && !output->options.dry_run)
+		status = note_names(output, error);
+	if (!status && !output->options.dry_run)
 		status = nt_output_place(output, error);
-	}
 	nt_output_abort(output);
 	return status;
 }

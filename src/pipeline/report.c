@@ -62,15 +62,23 @@ static nt_status find_map_size(const void *user, const nt_scene *scene, const nt
 	return status;
 }
 
-/* A report that could not be made says why, if that much can be said. */
+/* A report that could not be made says why, if that much can be said, and what does not depend on it. */
 static nt_status build_report(nt_scene *scene, const nt_settings *settings, const nt_report_options *options,
 	nt_summary *summary, nt_error *error)
 {
-	nt_status status = nt_report_build(scene, options, &summary->report, error);
+	nt_status status = NT_OK;
+	if (settings->across == NT_ACROSS_PRIMITIVE)
+		status = nt_stage_borders(scene, settings, error);
+	if (!status && scene->findings.failed)
+		status = nt_fail_memory(error);
+	if (!status)
+		status = nt_report_build(scene, options, &summary->report, error);
 	if (status || settings->check)
 		status = nt_check_inputs(scene, status, error);
 	if (!status)
 		return NT_OK;
+	if (options->written != NT_FORMAT_UNKNOWN && !settings->check && !settings->dry_run)
+		strncat(error->message, "; the output stands", sizeof error->message - strlen(error->message) - 1);
 	nt_report_free(summary->report);
 	summary->report = nt_report_of_error(scene->path, error);
 	return status;
@@ -79,8 +87,6 @@ static nt_status build_report(nt_scene *scene, const nt_settings *settings, cons
 nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_format written, const nt_textures *textures,
 	nt_status status, nt_summary *summary, nt_error *error)
 {
-	if (!status && settings->across == NT_ACROSS_PRIMITIVE)
-		status = nt_stage_borders(scene, settings, error);
 	if (status) {
 		summary->report = nt_report_of_error(scene->path, error);
 		return status;

@@ -185,6 +185,9 @@ static nt_status write_scene(run *r)
 	}
 	if (!status)
 		status = nt_watch_check(r->error);
+	/* what there is to say of an output has its memory before that appears */
+	if (!status && (r->scene.findings.failed || r->result.note.failed))
+		status = nt_fail_memory(r->error);
 	if (status || dry) {
 		nt_output_abort(output);
 		return status;
@@ -282,8 +285,6 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	if (status || settings->check)
 		status = nt_check_inputs(&r.scene, status, error);
 	summary->left = r.result.left;
-	if (!status && r.result.note.failed)
-		status = nt_fail_memory(error);
 	summary->note = r.result.note.data;
 	if (settings->report) {
 		begin_stage(&r, NT_STAGE_REPORT);

@@ -10,8 +10,8 @@
  *     it was empty when it was opened) for a file that became empty;
  *   - with that of the run without faults: files, standard output and standard error are what they were then;
  *   - else it says so on standard error, in one line unless there are "many" inputs, and leaves each file as it was
- *     before or as it should be, and no others. A folder of outputs may have been made, and the "report" may tell of
- *     the fault.
+ *     before or as it should be, and no others, and not all of them as they should be, unless it says
+ *     that "the output stands". A folder of outputs may have been made, and the "report" may tell of the fault.
  *
  * Prints "tried N, bad N" after a line for each of the first bad ones. Times in messages do not count.
  */
@@ -269,6 +269,17 @@ static const char *judge_files(const expectations *rules, const folder *before, 
 	return NULL;
 }
 
+/* Whether the run without faults left other files than it found. */
+static bool makes_files(const folder *before, const folder *clean)
+{
+	for (size_t i = 0; i < clean->count; i++) {
+		const entry *is = &clean->entries[i], *was = find(before, is->path);
+		if (!has_times(is->path) && !is->is_folder && (!was || !same(is->content, was->content)))
+			return true;
+	}
+	return false;
+}
+
 static const char *judge(const expectations *rules, const folder *before, const result *clean, const result *r)
 {
 	if (!WIFEXITED(r->status))
@@ -290,6 +301,9 @@ static const char *judge(const expectations *rules, const folder *before, const 
 		return "it says nothing";
 	if (lines != 1 && !rules->many)
 		return "it says more than one line";
+	if (makes_files(before, &clean->files) && !strstr(r->err.data, "the output stands") &&
+		!judge_files(rules, before, &clean->files, &r->files, true, r->err))
+		return "it fails although its files stand";
 	return judge_files(rules, before, &clean->files, &r->files, false, r->err);
 }
 
