@@ -38,11 +38,12 @@ void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), voi
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 #include <unistd.h>
 
-/* Looks before sleeping: 20 microseconds at the 40 to 140 cycles of a pause. After a thread could not be made,
- * the regions that do without before one is tried again. */
-enum { MOST_LOOKS = 1000, REGIONS_WITHOUT = 100 };
+/* Looks before sleeping: 80 microseconds at the 40 to 140 cycles of a pause, somewhat more than waking takes. After a
+ * thread could not be made, the regions that do without before one is tried again. */
+enum { MOST_LOOKS = 4000, REGIONS_WITHOUT = 100 };
 
 typedef struct region {
 	void (*body)(void *context, unsigned slot);
@@ -127,9 +128,41 @@ static void await_post(unsigned long bell, unsigned looks)
 		pause_shortly();
 }
 
-static void *run_thread(void *unused)
+/* A new thread begins on another processor than its maker's, where there is one: a system that packs threads, as virtual
+ * machines do, lets it wait there until the maker's time is up, 1.2 to 3 ms instead of 0.13. Returns the processor that
+ * the thread has to be given back; -1: none. */
+static int begin_elsewhere(pthread_attr_t *attributes)
 {
-	(void)unused;
+#ifdef __GLIBC__
+	cpu_set_t set;
+	const int here = sched_getcpu();
+	if (here >= 0 && sched_getaffinity(0, sizeof set, &set) == 0 && CPU_ISSET(here, &set) && CPU_COUNT(&set) > 1) {
+		CPU_CLR(here, &set);
+		if (pthread_attr_setaffinity_np(attributes, sizeof set, &set) == 0)
+			return here;
+	}
+#else
+	(void)attributes;
+#endif
+	return -1;
+}
+
+static void give_back(int processor)
+{
+#ifdef __GLIBC__
+	cpu_set_t set;
+	if (processor < 0 || sched_getaffinity(0, sizeof set, &set) != 0)
+		return;
+	CPU_SET(processor, &set);
+	sched_setaffinity(0, sizeof set, &set); /* a refusal leaves it the others */
+#else
+	(void)processor;
+#endif
+}
+
+static void *run_thread(void *withheld)
+{
+	give_back((int)(intptr_t)withheld);
 	for (;;) {
 		const unsigned long bell = atomic_load(&pool.bell);
 		pthread_mutex_lock(&pool.lock);
@@ -172,7 +205,8 @@ static bool make_thread(void)
 	pthread_sigmask(SIG_SETMASK, &all, &before);
 	pthread_t thread;
 	pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
-	const bool made = pthread_create(&thread, &attributes, run_thread, NULL) == 0;
+	const int withheld = begin_elsewhere(&attributes);
+	const bool made = pthread_create(&thread, &attributes, run_thread, (void *)(intptr_t)withheld) == 0;
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
 	pthread_attr_destroy(&attributes);
 	return made;

@@ -5,6 +5,7 @@
  */
 #include "test.h"
 #include <errno.h>
+#include <limits.h>
 #include <pthread.h>
 #include <stdatomic.h>
 #include <stdbool.h>
@@ -77,6 +78,7 @@ static bool each_slot_once(unsigned slots)
 typedef struct meeting {
 	atomic_uint here;
 	atomic_bool met;
+	atomic_uint fewest; /* processors that a slot's thread may use */
 } meeting;
 
 static void meet(void *context, unsigned slot)
@@ -88,6 +90,15 @@ static void meet(void *context, unsigned slot)
 		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
 	if (m->here >= 2)
 		m->met = true;
+}
+
+/* The same, on as many processors as the process may use: a new thread has begun on fewer. */
+static void meet_anywhere(void *context, unsigned slot)
+{
+	meeting *m = context;
+	const unsigned processors = nt_pool_processors();
+	meet(context, slot);
+	m->fewest = processors < m->fewest ? processors : (unsigned)m->fewest;
 }
 
 static bool two_slots_meet(void)
@@ -171,6 +182,15 @@ static void *run_regions(void *fault)
 		if (!each_slot_once(2 + i % 7))
 			*(bool *)fault = true;
 	return NULL;
+}
+
+static void threads_may_go_wherever_their_maker_may(void **state)
+{
+	(void)state;
+	meeting m = {.fewest = UINT_MAX};
+	nt_pool_run(2, meet_anywhere, &m);
+	assert_true(m.met);
+	assert_int_equal(m.fewest, nt_pool_processors());
 }
 
 static void callers_may_be_many(void **state)
@@ -320,6 +340,7 @@ int main(void)
 		cmocka_unit_test(no_slot_and_one_slot_take_no_thread),
 		cmocka_unit_test(small_meshes_make_no_thread),
 		cmocka_unit_test(slots_run_beside_one_another_and_threads_are_kept),
+		cmocka_unit_test(threads_may_go_wherever_their_maker_may),
 		cmocka_unit_test(callers_may_be_many),
 		cmocka_unit_test(regions_nest),
 		cmocka_unit_test(a_child_makes_threads_of_its_own),
