@@ -54,63 +54,41 @@ static void count_ranges(void *context, size_t begin, size_t end, unsigned slot)
 		count_range(context, range);
 }
 
-/* Turns the counts of one vertex into cursors that begin at `place`; returns the sum of the counts. */
-static uint32_t place_vertex(nt_adjacency *a, size_t vertex, uint32_t place)
-{
-	uint32_t total = 0;
-	for (unsigned r = 0; r < a->ranges; r++) {
-		uint32_t *cursor = &a->cursors[r * a->vertex_count + vertex];
-		const uint32_t count = *cursor;
-		const bool shared = total > 0 && count > 0;
-		*cursor = (place + total * NT_FAN_LANES) | (shared ? NT_CURSOR_SHARED : 0);
-		a->shared_counts[r] += shared ? count : 0;
-		total += count;
-	}
-	return total;
-}
-
-static uint32_t total_count(const nt_adjacency *a, size_t vertex)
-{
-	uint32_t total = 0;
-	for (unsigned r = 0; r < a->ranges; r++)
-		total += a->cursors[r * a->vertex_count + vertex];
-	return total;
-}
-
-static void mark_hub(nt_adjacency *a, size_t vertex)
-{
-	for (unsigned r = 0; r < a->ranges; r++) {
-		uint32_t *cursor = &a->cursors[r * a->vertex_count + vertex];
-		*cursor = (*cursor & NT_CURSOR_SHARED) | NT_CURSOR_HUB;
-	}
-}
-
-/* Turns the counts of a block's vertices into cursors that begin at `place`; vertices of more than `most` corners
- * become hubs. Returns how deep the block is. */
-static uint32_t place_block(nt_adjacency *a, size_t first, size_t count, uint32_t place, uint32_t most)
+/* Vertices of a block with more than `most` corners become hubs. Returns how deep the block is without them. */
+static uint32_t __attribute__((noinline)) mark_hubs(const nt_adjacency *a, size_t first, size_t count, uint32_t most,
+	const uint32_t *totals)
 {
 	uint32_t depth = 0;
 	for (size_t lane = 0; lane < count; lane++) {
-		const uint32_t degree = total_count(a, first + lane);
-		place_vertex(a, first + lane, place + (uint32_t)lane);
-		if (degree > most)
-			mark_hub(a, first + lane);
-		else
-			depth = degree > depth ? degree : depth;
+		const bool hub = totals[lane] > most;
+		depth = !hub && totals[lane] > depth ? totals[lane] : depth;
+		for (unsigned r = 0; hub && r < a->ranges; r++) {
+			uint32_t *cursor = &a->cursors[r * a->vertex_count + first + lane];
+			*cursor = (*cursor & NT_CURSOR_SHARED) | NT_CURSOR_HUB;
+		}
 	}
 	return depth;
 }
 
-/* The same for one range: nobody's corners come before its own. */
-static uint32_t place_block_alone(uint32_t *cursors, size_t count, uint32_t place, uint32_t most)
+/* Turns the counts of a block's vertices into cursors that begin at `place`. Returns how deep the block is. Straight
+ * loops over lanes, which with constants for the last two become vectors. */
+static inline uint32_t place_block(nt_adjacency *a, size_t first, uint32_t place, uint32_t most, size_t count,
+	unsigned ranges)
 {
-	uint32_t depth = 0;
-	for (size_t lane = 0; lane < count; lane++) {
-		const uint32_t degree = cursors[lane], known = degree > most ? 0 : degree;
-		cursors[lane] = degree > most ? NT_CURSOR_HUB : place + (uint32_t)lane;
-		depth = known > depth ? known : depth;
+	uint32_t totals[NT_FAN_LANES] = {0}, depth = 0;
+	for (unsigned r = 0; r < ranges; r++) {
+		uint32_t *cursors = a->cursors + r * a->vertex_count + first, shared_count = 0;
+		for (size_t lane = 0; lane < count; lane++) {
+			const uint32_t here = cursors[lane], shared = (totals[lane] > 0) & (here > 0);
+			cursors[lane] = (place + (uint32_t)lane + totals[lane] * NT_FAN_LANES) | shared * NT_CURSOR_SHARED;
+			shared_count += shared * here;
+			totals[lane] += here;
+		}
+		a->shared_counts[r] += shared_count;
 	}
-	return depth;
+	for (size_t lane = 0; lane < count; lane++)
+		depth = totals[lane] > depth ? totals[lane] : depth;
+	return depth > most ? mark_hubs(a, first, count, most, totals) : depth;
 }
 
 /* Returns the number of entries, padding included: at most most_places. */
@@ -121,9 +99,9 @@ static size_t place_blocks(nt_adjacency *a, size_t most_places)
 		const size_t left = a->vertex_count - first, count = left < NT_FAN_LANES ? left : NT_FAN_LANES;
 		a->block_begin[first / NT_FAN_LANES] = (uint32_t)place;
 		const uint32_t most = place + NT_FAN_LANES * NT_FAN_DEPTH <= most_places ? NT_FAN_DEPTH : 0;
-		const uint32_t depth = a->ranges == 1
-			? place_block_alone(a->cursors + first, count, (uint32_t)place, most)
-			: place_block(a, first, count, (uint32_t)place, most);
+		const uint32_t depth = count < NT_FAN_LANES ? place_block(a, first, (uint32_t)place, most, count, a->ranges)
+			: a->ranges == 1 ? place_block(a, first, (uint32_t)place, most, NT_FAN_LANES, 1)
+			: place_block(a, first, (uint32_t)place, most, NT_FAN_LANES, a->ranges);
 		place += (size_t)depth * NT_FAN_LANES;
 	}
 	a->block_begin[(a->vertex_count + NT_FAN_LANES - 1) / NT_FAN_LANES] = (uint32_t)place;
