@@ -2,8 +2,8 @@
 /*
  * The stage that computes: tangents per corner, then the vertices they split.
  *
- * A mesh large enough to occupy all threads is solved alone; smaller ones are solved side by side, each by
- * one thread with a workspace of its own. Each mesh's result depends on that mesh only, so the order does
+ * A mesh large enough to occupy all threads is solved alone, and so is one that other threads would wait for; smaller ones
+ * are solved side by side, each by one thread with a workspace of its own. Each mesh's result depends on that mesh only, so the order does
  * not show. Meshes with the same geometry as an earlier one take its result.
  */
 #include "pipeline/joins.h"
@@ -16,9 +16,10 @@
 #include "base/counts.h"
 #include "base/parallel.h"
 
-/* Corners from which one mesh is worth all threads, and those that small ones must have together for threads
- * to be made at all, which costs as much as solving some hundred triangles. */
-enum { LARGE_CORNERS = 3 * 128 * 1024, LEAST_SHARED_CORNERS = 3 * 4096 };
+/* Corners from which one mesh is worth all threads, whatever else there is, and where the others are less than half of
+ * it; and those that small ones must have together for threads to be made at all, which costs as much as solving some
+ * hundred triangles. */
+enum { LARGE_CORNERS = 3 * 128 * 1024, LEAST_ALONE_CORNERS = 3 * 30000, LEAST_SHARED_CORNERS = 3 * 4096 };
 
 typedef struct tangent_job {
 	nt_scene *scene;
@@ -30,6 +31,7 @@ typedef struct tangent_job {
 	nt_mesh **meshes;   /* the ones to solve */
 	nt_status *statuses;
 	size_t count;
+	const nt_mesh *longest; /* one below LARGE_CORNERS for which other threads would wait; NULL: none */
 	struct solver *solvers; /* of each slot that solves small meshes */
 	nmtan_timing timing;    /* of the large meshes */
 } tangent_job;
@@ -264,10 +266,33 @@ static size_t corners_of(const nt_mesh *mesh)
 	return corners;
 }
 
+/* The mesh that takes longer than the others beside it, whose threads would have nothing to do. */
+static const nt_mesh *find_longest(const tangent_job *job)
+{
+	const nt_mesh *longest = NULL;
+	size_t most = 0, sum = 0;
+	for (size_t i = 0; i < job->count; i++) {
+		const size_t corners = corners_of(job->meshes[i]);
+		if (corners >= LARGE_CORNERS)
+			continue;
+		sum += corners;
+		if (corners > most) {
+			most = corners;
+			longest = job->meshes[i];
+		}
+	}
+	return most >= LEAST_ALONE_CORNERS && sum - most < most / 2 ? longest : NULL;
+}
+
+static bool has_all_threads(const tangent_job *job, const nt_mesh *mesh)
+{
+	return mesh == job->longest || corners_of(mesh) >= LARGE_CORNERS;
+}
+
 static void solve_large(tangent_job *job)
 {
 	for (size_t i = 0; i < job->count; i++)
-		if (corners_of(job->meshes[i]) >= LARGE_CORNERS)
+		if (has_all_threads(job, job->meshes[i]))
 			job->statuses[i] = solve_item(job, job->meshes[i], job->settings->threads, NULL,
 				&job->scene->arena, &job->timing);
 }
@@ -276,7 +301,7 @@ static void solve_one_small(void *context, size_t item, unsigned slot)
 {
 	tangent_job *job = context;
 	nt_mesh *mesh = job->meshes[item];
-	if (corners_of(mesh) >= LARGE_CORNERS)
+	if (has_all_threads(job, mesh))
 		return;
 	solver *own = &job->solvers[slot];
 	/* without a workspace it is only slower */
@@ -289,7 +314,7 @@ static nt_status solve_small(tangent_job *job)
 {
 	size_t corners = 0;
 	for (size_t i = 0; i < job->count; i++)
-		if (corners_of(job->meshes[i]) < LARGE_CORNERS)
+		if (!has_all_threads(job, job->meshes[i]))
 			corners += corners_of(job->meshes[i]);
 	const unsigned threads = corners < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(job->settings->threads);
 	const size_t slots = threads < job->count ? threads : job->count;
@@ -413,6 +438,7 @@ nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_for
 		for (size_t i = 0; i < scene->mesh_count; i++)
 			if (is_item(&scene->meshes[i]))
 				job.meshes[job.count++] = &scene->meshes[i];
+		job.longest = find_longest(&job);
 		solve_large(&job);
 		summary->seconds[NT_STAGE_WELD] += job.timing.weld;
 		summary->seconds[NT_STAGE_SPLIT] += job.timing.split;
