@@ -47,6 +47,9 @@ typedef struct nt_draco_attribute {
 	nt_draco_quantization quantization;
 	const void *data;   /* [point_count][components]; aligned for its type when decoded */
 	size_t stride_bytes; /* 0: tightly packed, as it is when decoded */
+	const uint32_t *copied; /* encoding: points from own_count on have no value of their own, but that of the point
+	                           copied[point - own_count], which is below own_count. NULL: all have their own */
+	size_t own_count;
 } nt_draco_attribute;
 
 typedef struct nt_draco_mesh {
@@ -92,12 +95,15 @@ typedef struct nt_draco_block {
 	size_t point_count, face_count; /* as a decoder will see them */
 	uint32_t *sources; /* [point_count] sequential: the point of the input that each one is. NULL with
 	                      edgebreaker, which reorders points and splits them */
+	float (*bounds)[2][4]; /* [attribute_count] least and most of each component, as a decoder will see them, of
+	                          attributes that are quantized */
 } nt_draco_block;
 
 static inline void nt_draco_block_free(nt_draco_block *block)
 {
 	free(block->bytes);
 	free(block->sources);
+	free(block->bounds);
 	memset(block, 0, sizeof *block);
 }
 

@@ -157,6 +157,7 @@ static nt_status write_scene(run *r)
 		.draco_speed = s->draco_speed,
 		.precision = s->precision,
 		.allow_outside = s->allow_outside,
+		.threads = s->threads,
 		.textures = r->textures,
 	};
 	nt_late late = {.scene = &r->scene, .reader = r->reader, .settings = s, .options = &r->read_options,

@@ -101,6 +101,7 @@ typedef struct nt_write_options {
 	int draco_speed;    /* 0 (smallest) to 10 */
 	nt_precision precision;
 	bool allow_outside;
+	unsigned threads;   /* 0: all */
 	const struct nt_textures *textures; /* of a new document's materials: image/textures.h; NULL: none */
 } nt_write_options;
 

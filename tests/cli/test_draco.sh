@@ -219,6 +219,86 @@ for threads in 1 2 8; do
 	same 1.glb $threads.glb
 done
 
+
+scene "blocks are encoded on several threads: each is that of the primitive alone, whoever stands beside it"
+# grids of unlike sizes; the third shares its vertices with a copy that has other triangles, which both are plain then
+for n in 3 40 2 12; do
+	grid_obj $n >grid.obj
+	run -q --images=none grid.obj grid_$n.glb
+done
+node -e 'const fs = require("fs"), parts = [], all = {asset: {version: "2.0"}, bufferViews: [], accessors: [], meshes: []};
+	let size = 0;
+	for (const n of [3, 40, 2, 12]) {
+		const b = fs.readFileSync(`grid_${n}.glb`), json = b.readUInt32LE(12), bin = b.subarray(28 + json);
+		const g = JSON.parse(b.subarray(20, 20 + json)), views = all.bufferViews.length, rows = all.accessors.length;
+		all.bufferViews.push(...g.bufferViews.map((v) => ({...v, byteOffset: (v.byteOffset ?? 0) + size})));
+		all.accessors.push(...g.accessors.map((a) => ({...a, bufferView: a.bufferView + views})));
+		const [p] = g.meshes[0].primitives;
+		for (const name in p.attributes) p.attributes[name] += rows;
+		p.indices += rows;
+		delete p.material;
+		const other = structuredClone(p);
+		other.indices = all.accessors.push({...all.accessors[p.indices], count: 6}) - 1;
+		all.meshes.push({primitives: n === 2 ? [p, other] : [p]});
+		parts.push(bin);
+		size += bin.length;
+	}
+	all.buffers = [{uri: "grids.bin", byteLength: size}];
+	fs.writeFileSync("grids.bin", Buffer.concat(parts));
+	fs.writeFileSync("grids.gltf", JSON.stringify(all))'
+blocks() {
+	node -e 'const fs = require("fs"), crypto = require("crypto"), b = fs.readFileSync(process.argv[1]), size = b.readUInt32LE(12);
+		const g = JSON.parse(b.subarray(20, 20 + size)), bin = b.subarray(28 + size);
+		for (const p of g.meshes.flatMap((m) => m.primitives)) {
+			const block = p.extensions?.KHR_draco_mesh_compression, v = block && g.bufferViews[block.bufferView];
+			const at = v?.byteOffset ?? 0;
+			console.log(v ? crypto.createHash("md5").update(bin.subarray(at, at + v.byteLength)).digest("hex") : "plain");
+		}' "$1"
+}
+for method in sequential edgebreaker; do
+	for n in 3 40 12; do
+		run -q --only=all --existing=replace --draco=$method grid_$n.glb alone_$n.glb
+	done
+	for threads in 1 2 8; do
+		run -q --threads=$threads --only=all --existing=replace --draco=$method --verify grids.gltf $threads.glb
+		exits 0
+		same 1.glb $threads.glb
+	done
+	is "$(blocks 8.glb)" "$(blocks alone_3.glb; blocks alone_40.glb; echo plain; echo plain; blocks alone_12.glb)"
+done
+
+scene "indices that are an attribute elsewhere stay"
+grid_obj 3 >grid.obj
+run -q --images=none grid.obj grid_3.glb
+node -e 'const fs = require("fs"), b = fs.readFileSync("grid_3.glb"), json = b.readUInt32LE(12), bin = b.subarray(28 + json);
+	const g = JSON.parse(b.subarray(20, 20 + json)), [p] = g.meshes[0].primitives, parts = [bin];
+	let size = bin.length;
+	const at = (a, i, width) => {
+		const v = g.bufferViews[a.bufferView], from = (v.byteOffset ?? 0) + (a.byteOffset ?? 0) + i * (v.byteStride ?? width);
+		return bin.subarray(from, from + width);
+	}, indices = g.accessors[p.indices], width = {5123: 2, 5125: 4}[indices.componentType];
+	const corners = Array.from({length: indices.count}, (_, c) => at(indices, c, width).readUIntLE(0, width));
+	const other = {attributes: {_CORNER: p.indices}}; /* the same triangles, one vertex for each corner */
+	for (const name in p.attributes) {
+		const a = g.accessors[p.attributes[name]], wide = {VEC2: 8, VEC3: 12, VEC4: 16}[a.type];
+		const rows = Buffer.concat(corners.map((v) => at(a, v, wide)));
+		g.bufferViews.push({buffer: 0, byteOffset: size, byteLength: rows.length});
+		other.attributes[name] = g.accessors.push({...a, byteOffset: 0, bufferView: g.bufferViews.length - 1,
+			count: indices.count}) - 1;
+		parts.push(rows);
+		size += rows.length;
+	}
+	delete p.material;
+	g.meshes.push({primitives: [other]});
+	g.buffers = [{uri: "corners.bin", byteLength: size}];
+	fs.writeFileSync("corners.bin", Buffer.concat(parts));
+	fs.writeFileSync("corners.gltf", JSON.stringify(g))'
+run --only=all --existing=replace --draco=sequential corners.gltf out.glb
+exits 0
+says "mesh 0, primitive 0: warning: the primitive is written without Draco compression: its indices are shared"
+is "$(gltf out.glb 'rows(g.meshes[1].primitives[0].attributes._CORNER)')" \
+	"$(gltf corners.gltf 'rows(g.meshes[1].primitives[0].attributes._CORNER)')"
+
 scene "only a glTF made from a glTF is compressed"
 run --draco=edgebreaker "$data/quad.obj" quad.glb
 exits 1

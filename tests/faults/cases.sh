@@ -56,6 +56,7 @@ cases() {
 		quantized | quantized.gltf || --precision=short quantized.gltf o.glb
 		extensions | manifold.gltf || --only=all manifold.gltf o.gltf
 		skin, draco out | skin.gltf || --draco=sequential skin.gltf o.glb
+		edgebreaker out | plates.glb || --threads=2 --draco=edgebreaker --bitangents plates.glb o.glb
 		draco | draco.glb bumps.png || --threads=2 --existing=replace --verify draco.glb o.gltf
 		edgebreaker | edge.gltf || --existing=replace --verify edge.gltf o.glb
 		meshopt | meshopt.glb bumps.png || --verify meshopt.glb o.glb

@@ -146,6 +146,7 @@ void nt::expect_back(nt_draco &expected, const nt_draco_mesh &from, const draco:
 			expected_values(*made.attribute(static_cast<int>(i)), a, point_count));
 		a.data = expected.data.back().data();
 		a.stride_bytes = 0;
+		a.copied = nullptr;
 		expected.attributes.push_back(a);
 	}
 	const bool drop = from.method == NT_DRACO_EDGEBREAKER;

@@ -259,19 +259,38 @@ void set_options(draco::ExpertEncoder &encoder, const nt_draco_mesh &mesh)
 	encoder.SetSpeedOptions(mesh.speed, mesh.speed);
 }
 
-nt_status hand_over(const draco::EncoderBuffer &buffer, const nt_draco &decoded,
+// Least and most of the values of a quantized attribute.
+void find_bounds(const nt_draco_attribute &a, size_t count, float (&bounds)[2][4])
+{
+	const float *values = static_cast<const float *>(a.data);
+	const size_t width = static_cast<size_t>(a.components);
+	std::copy_n(values, width, bounds[0]);
+	std::copy_n(values, width, bounds[1]);
+	for (size_t i = 1; i < count; i++)
+		for (size_t k = 0; k < width; k++) {
+			bounds[0][k] = std::min(bounds[0][k], values[i * width + k]);
+			bounds[1][k] = std::max(bounds[1][k], values[i * width + k]);
+		}
+}
+
+nt_status hand_over(const draco::EncoderBuffer &buffer, const nt_draco_mesh &mesh, const nt_draco &decoded,
 	const std::vector<uint32_t> &sources, nt_draco_block *block, nt_error *error)
 {
 	block->bytes = static_cast<unsigned char *>(std::malloc(buffer.size()));
-	if (decoded.mesh.method == NT_DRACO_SEQUENTIAL)
+	block->bounds = static_cast<float(*)[2][4]>(std::calloc(mesh.attribute_count, sizeof *block->bounds));
+	if (mesh.method == NT_DRACO_SEQUENTIAL)
 		block->sources = static_cast<uint32_t *>(std::malloc(4 * sources.size()));
-	if (!block->bytes || (decoded.mesh.method == NT_DRACO_SEQUENTIAL && !block->sources)) {
+	if (!block->bytes || !block->bounds || (mesh.method == NT_DRACO_SEQUENTIAL && !block->sources)) {
 		nt_draco_block_free(block);
 		return nt_fail_memory(error);
 	}
 	std::memcpy(block->bytes, buffer.data(), buffer.size());
 	if (block->sources)
 		std::memcpy(block->sources, sources.data(), 4 * sources.size());
+	for (size_t i = 0; i < mesh.attribute_count; i++)
+		for (const nt_draco_attribute &a : decoded.attributes)
+			if (a.unique_id == mesh.attributes[i].unique_id && mesh.attributes[i].quantization.bits)
+				find_bounds(a, decoded.mesh.point_count, block->bounds[i]);
 	block->size = buffer.size();
 	block->point_count = decoded.mesh.point_count;
 	block->face_count = decoded.mesh.face_count;
@@ -311,7 +330,7 @@ nt_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *err
 	if (status != NT_OK || !nt::came_back(expected, decoded))
 		return nt_fail(error, NT_ERROR_INTERNAL,
 			"what Draco encoded does not decode to what it was given");
-	return hand_over(buffer, decoded, sources, block, error);
+	return hand_over(buffer, mesh, decoded, sources, block, error);
 }
 
 } // namespace

@@ -70,7 +70,8 @@ inline size_t stride_of(const nt_draco_attribute &a)
 
 inline const unsigned char *value_of(const nt_draco_attribute &a, size_t point)
 {
-	return static_cast<const unsigned char *>(a.data) + stride_of(a) * point;
+	const size_t owner = a.copied && point >= a.own_count ? a.copied[point - a.own_count] : point;
+	return static_cast<const unsigned char *>(a.data) + stride_of(a) * owner;
 }
 
 } // namespace nt

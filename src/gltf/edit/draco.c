@@ -13,6 +13,7 @@
 
 #include <string.h>
 #include "gltf/edit/append.h"
+#include "gltf/edit/draco_encode.h"
 #include "gltf/edit/draco_gather.h"
 #include "gltf/edit/extensions.h"
 #include "gltf/edit/new_accessors.h"
@@ -65,8 +66,7 @@ static nt_status make_plain(nt_buffer_edits *edits, nt_vertex_pools *pools, nt_j
 	return status;
 }
 
-/* Their indices are to be written then. */
-static nt_status make_all_plain(nt_buffer_edits *edits, nt_vertex_pools *pools, nt_pool_vertices *vertices,
+nt_status nt_gltf_draco_make_plain(nt_buffer_edits *edits, nt_vertex_pools *pools, nt_pool_vertices *vertices,
 	nt_error *error)
 {
 	nt_status status = NT_OK;
@@ -108,86 +108,20 @@ static bool accessors_are_own(const nt_gltf_recoding *r)
 	}
 	uint64_t indices;
 	return nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &indices) &&
-		r->pools->index_users[r->pools->first_alias[indices]] == r->vertices->pool->user_count &&
-		!nt_json_find(nt_json_at(accessors, (size_t)indices), "bufferView");
+		nt_gltf_draco_owns_indices(r, indices) && !nt_json_find(nt_json_at(accessors, (size_t)indices), "bufferView");
 }
 
-/* Whether edgebreaker would drop a face: two corners at one position. */
-static bool has_degenerate_face(const nt_gltf_recoding *r)
+/* What is in the block leaves the buffers, and what is not grows beside it. */
+static nt_status store(nt_gltf_recoding *r, uint32_t buffer, nt_error *error)
 {
-	const uint32_t *indices = r->vertices->indices[0];
-	for (size_t c = 0; c + 2 < r->mesh->corner_count; c += 3)
-		for (size_t k = 0; k < 3; k++) {
-			const size_t a = indices[c + k], b = indices[c + (k + 1) % 3];
-			if (memcmp(r->mesh->positions + 3 * nt_vertex_source(r->vertices, a),
-				r->mesh->positions + 3 * nt_vertex_source(r->vertices, b), 3 * sizeof(float)) == 0)
-				return true;
-		}
-	return false;
-}
-
-/* Whether elements outside of the block still fit the points in it. */
-static bool order_is_kept(const nt_gltf_recoding *r, const nt_draco_block *block)
-{
-	if (block->point_count != r->vertices->new_count || !block->sources)
-		return false;
-	for (size_t i = 0; i < block->point_count; i++)
-		if (block->sources[i] != i)
-			return false;
-	return true;
-}
-
-static nt_draco_method wanted_method(const nt_gltf_recoding *r)
-{
-	if (r->outside || has_degenerate_face(r) || r->options->draco == NT_DRACO_AS_SEQUENTIAL)
-		return NT_DRACO_SEQUENTIAL;
-	return r->options->draco == NT_DRACO_AS_EDGEBREAKER ? NT_DRACO_EDGEBREAKER :
-								       r->source->method;
-}
-
-/* Whether it is not the mesh that keeps Draco from encoding. */
-static bool is_beside_mesh(nt_status status)
-{
-	return status == NT_ERROR_MEMORY || status == NT_ERROR_MODULE || status == NT_ERROR_IO;
-}
-
-/* Encodes; *done false where the result would not do. */
-static nt_status recode(nt_gltf_recoding *r, bool *done)
-{
-	nt_status status = r->source ? nt_gltf_draco_gather_block(r) : NT_OK;
-	if (!status)
-		status = nt_gltf_draco_add_own(r);
-	if (status)
-		return status;
-	/* Edgebreaker does not give every mesh back; the other method has nothing to lose. */
-	const nt_draco_method method = wanted_method(r);
-	nt_draco_block block = {0};
-	nt_error failure;
-	status = nt_gltf_draco_encode(r, method, &block, &failure);
-	if (status && !is_beside_mesh(status) && method != NT_DRACO_SEQUENTIAL)
-		status = nt_gltf_draco_encode(r, NT_DRACO_SEQUENTIAL, &block, &failure);
-	if (is_beside_mesh(status)) {
-		*r->error = failure;
-		return status;
-	}
-	if (status || (r->outside && !order_is_kept(r, &block))) {
-		r->obstacle = status ? "Draco does not give it back"
-				     : "no face uses some of its vertices, whose order matters";
-		nt_draco_block_free(&block);
-		return NT_OK; /* plain, then */
-	}
-	*done = true;
-	status = r->source ? NT_OK : nt_gltf_draco_take_out(r, &block);
+	nt_status status = r->source ? NT_OK : nt_gltf_draco_take_out(r, error);
 	if (!status && r->outside && r->vertices->new_count > r->vertices->old_count)
-		status = nt_append_vertices(r->edits, r->buffer, r->pools, r->vertices, NULL, 0, false, r->error);
+		status = nt_append_vertices(r->edits, buffer, r->pools, r->vertices, NULL, 0, false, error);
 	if (!status) {
-		nt_gltf_draco_describe(r, &block);
-		status = nt_gltf_draco_store(r, &block);
+		nt_gltf_draco_describe(r);
+		status = nt_gltf_draco_store(r, buffer, error);
 	}
-	if (!status)
-		status = nt_gltf_add_morphs(r->edits, r->buffer, r->vertices, 0, r->error);
-	nt_draco_block_free(&block);
-	return status;
+	return status ? status : nt_gltf_add_morphs(r->edits, buffer, r->vertices, 0, error);
 }
 
 /* Whether the pool is one primitive, perhaps several times: with the same geometry and the same
@@ -240,36 +174,45 @@ static void report_users(const nt_gltf_recoding *r, nt_finding_list *findings, b
 	}
 }
 
-nt_status nt_gltf_write_draco(nt_buffer_edits *edits, uint32_t buffer, nt_vertex_pools *pools,
-	nt_pool_vertices *vertices, const nt_write_options *options, nt_finding_list *findings, bool *done,
-	nt_error *error)
+nt_status nt_gltf_draco_look_up(nt_gltf_recoding *r, nt_buffer_edits *edits, nt_vertex_pools *pools,
+	nt_pool_vertices *vertices, const nt_write_options *options, nt_arena *arena, nt_error *error)
 {
-	*done = false;
-	if (options->draco == NT_DRACO_OFF)
-		return make_all_plain(edits, pools, vertices, error);
-	nt_gltf_recoding r = {.edits = edits, .document = edits->document, .json = edits->document->json,
-		.arena = &edits->arena, .options = options, .pools = pools, .vertices = vertices, .buffer = buffer,
-		.error = error, .mesh = nt_pool_mesh(vertices->pool, 0),
-		.primitive = nt_pool_primitive(vertices->pool, 0)};
-	r.extension = nt_gltf_draco_of(r.primitive);
+	*r = (nt_gltf_recoding){.edits = edits, .document = edits->document, .json = edits->document->json,
+		.arena = arena, .options = options, .pools = pools, .vertices = vertices,
+		.mesh = nt_pool_mesh(vertices->pool, 0), .primitive = nt_pool_primitive(vertices->pool, 0)};
+	r->extension = nt_gltf_draco_of(r->primitive);
 	nt_status status = NT_OK;
 	if (!is_one_primitive(vertices->pool)) {
-		r.obstacle = "it shares vertices with other primitives";
-	} else if (!r.extension) {
-		status = nt_gltf_draco_gather_plain(&r);
-	} else if (!accessors_are_own(&r) ||
-		!nt_json_get_uint64(nt_json_find(r.extension, "bufferView"), &r.view)) {
-		r.obstacle = "something else uses its accessors";
+		r->obstacle = "it shares vertices with other primitives";
+	} else if (!r->extension) {
+		status = nt_gltf_draco_gather_plain(r, error);
+	} else if (!accessors_are_own(r) ||
+		!nt_json_get_uint64(nt_json_find(r->extension, "bufferView"), &r->view)) {
+		r->obstacle = "something else uses its accessors";
 	} else {
-		r.source = nt_gltf_draco_block(r.document, r.view);
-		nt_gltf_visit_attributes(r.primitive, pools->accessor_count, note_outside, &r);
+		r->source = nt_gltf_draco_block(r->document, r->view);
+		nt_gltf_visit_attributes(r->primitive, pools->accessor_count, note_outside, r);
+		status = nt_gltf_draco_gather_block(r, error);
 	}
-	if (!status && !r.obstacle)
-		status = recode(&r, done);
+	if (!status && !r->obstacle)
+		nt_gltf_draco_add_own(r);
+	return status;
+}
+
+nt_status nt_gltf_write_draco(nt_gltf_recoding *r, uint32_t buffer, nt_finding_list *findings, bool *done,
+	nt_error *error)
+{
+	r->primitive = nt_pool_primitive(r->vertices->pool, 0);
+	r->extension = nt_gltf_draco_of(r->primitive);
+	nt_status status = r->encoded || r->obstacle ? NT_OK : nt_gltf_draco_encode(r, error);
+	*done = !status && !r->obstacle;
+	if (*done)
+		status = store(r, buffer, error);
+	nt_draco_block_free(&r->block);
 	if (status)
 		return status;
 	if (*done)
-		share_block(&r);
-	report_users(&r, findings, *done);
-	return *done ? NT_OK : make_all_plain(edits, pools, vertices, error);
+		share_block(r);
+	report_users(r, findings, *done);
+	return *done ? NT_OK : nt_gltf_draco_make_plain(r->edits, r->pools, r->vertices, error);
 }

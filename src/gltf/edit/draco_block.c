@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A Draco block: what goes into it, encoding, and the view and JSON that it gets.
+ * A Draco block: what goes into it, and the view and JSON that it gets.
  */
 #include "gltf/edit/draco_block.h"
 
@@ -10,6 +10,13 @@
 #include "gltf/view.h"
 
 /* ---- what goes into it ---- */
+
+bool nt_gltf_draco_owns_indices(const nt_gltf_recoding *r, uint64_t accessor)
+{
+	const nt_vertex_pools *pools = r->pools;
+	return accessor < pools->accessor_count && !pools->attribute_users[pools->first_alias[accessor]] &&
+		pools->index_users[pools->first_alias[accessor]] == r->vertices->pool->user_count;
+}
 
 int nt_gltf_draco_bits(const nt_write_options *options, nt_draco_bits which)
 {
@@ -49,23 +56,7 @@ static void put_floats(nt_gltf_recoding *r, const char *name, nt_draco_kind kind
 	nt_gltf_draco_add(r, name, attribute);
 }
 
-/* Elements of a decoded attribute with their copies. */
-static nt_status copy_attribute(nt_gltf_recoding *r, const nt_draco_attribute *from, const void **elements)
-{
-	const nt_pool_vertices *all = r->vertices;
-	const size_t width = nt_component_size(from->component_type) * (size_t)from->components;
-	unsigned char *out = nt_arena_alloc(r->arena, all->new_count, width);
-	if (!out)
-		return nt_fail_memory(r->error);
-	memcpy(out, from->data, all->old_count * width);
-	for (size_t v = all->old_count; v < all->new_count; v++)
-		memcpy(out + v * width,
-			(const unsigned char *)from->data + nt_vertex_source(all, v) * width, width);
-	*elements = out;
-	return NT_OK;
-}
-
-nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *r)
+nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *r, nt_error *error)
 {
 	const nt_json_value *ids = nt_json_find(r->extension, "attributes");
 	r->attributes = nt_arena_alloc(r->arena, nt_json_count(ids) + NT_GLTF_OWN_ATTRIBUTES,
@@ -73,53 +64,29 @@ nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *r)
 	r->names = nt_arena_alloc(r->arena, nt_json_count(ids) + NT_GLTF_OWN_ATTRIBUTES,
 		sizeof *r->names);
 	if (!r->attributes || !r->names)
-		return nt_fail_memory(r->error);
-	nt_status status = NT_OK;
-	for (size_t i = 0; !status && i < nt_json_count(ids); i++) {
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < nt_json_count(ids); i++) {
 		uint64_t id = 0;
 		nt_json_get_uint64(nt_json_at(ids, i), &id);
-		nt_draco_attribute copy = *nt_draco_find(r->source, (uint32_t)id);
-		copy.quantization.explicit_box = copy.quantization.bits > 0;
-		copy.stride_bytes = 0;
-		status = copy_attribute(r, nt_draco_find(r->source, (uint32_t)id), &copy.data);
-		nt_gltf_draco_add(r, nt_json_key(ids, i, NULL), copy);
+		nt_draco_attribute attribute = *nt_draco_find(r->source, (uint32_t)id);
+		attribute.quantization.explicit_box = attribute.quantization.bits > 0;
+		attribute.copied = r->vertices->sources;
+		attribute.own_count = r->vertices->old_count;
+		nt_gltf_draco_add(r, nt_json_key(ids, i, NULL), attribute);
 	}
-	return status;
+	return NT_OK;
 }
 
-nt_status nt_gltf_draco_add_own(nt_gltf_recoding *r)
+void nt_gltf_draco_add_own(nt_gltf_recoding *r)
 {
 	const nt_pool_vertices *vertices = r->vertices;
 	const int bits = nt_gltf_draco_bits(r->options, NT_DRACO_BITS_TANGENT);
-	nt_status status = NT_OK;
 	if (vertices->normals[0])
 		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, vertices->normals[0],
 			nt_gltf_draco_bits(r->options, NT_DRACO_BITS_NORMAL));
 	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, vertices->tangents[0], bits);
-	if (r->options->bitangents) {
-		float *bitangents;
-		status = nt_gltf_bitangents(r->vertices, 0, r->arena, &bitangents, r->error);
-		if (!status)
-			put_floats(r, "_BITANGENT", NT_DRACO_GENERIC, 3, bitangents, bits);
-	}
-	return status;
-}
-
-/* ---- encoding ---- */
-
-nt_status nt_gltf_draco_encode(const nt_gltf_recoding *r, nt_draco_method method, nt_draco_block *block,
-	nt_error *error)
-{
-	const nt_draco_mesh mesh = {
-		.method = method,
-		.point_count = r->vertices->new_count,
-		.face_count = r->mesh->corner_count / 3,
-		.indices = r->vertices->indices[0],
-		.attributes = r->attributes,
-		.attribute_count = r->attribute_count,
-		.speed = r->options->draco_speed,
-	};
-	return nt_draco_encode(&mesh, block, error);
+	if (r->options->bitangents)
+		put_floats(r, "_BITANGENT", NT_DRACO_GENERIC, 3, NULL, bits);
 }
 
 /* ---- in the document ---- */
@@ -131,9 +98,10 @@ static void set_count(nt_gltf *document, uint64_t accessor, size_t count)
 	nt_json_set_uint64(document->json, nt_json_put(document->json, json, "count"), count);
 }
 
-void nt_gltf_draco_describe(nt_gltf_recoding *r, const nt_draco_block *block)
+void nt_gltf_draco_describe(nt_gltf_recoding *r)
 {
 	nt_json *json = r->json;
+	const nt_draco_block *block = &r->block;
 	nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
 	for (size_t i = 0; i < r->attribute_count; i++) {
 		const nt_draco_attribute *a = &r->attributes[i];
@@ -170,24 +138,21 @@ bool nt_gltf_draco_release(nt_vertex_pools *pools, uint64_t view, size_t count)
 	return pools->block_users[view] == 0;
 }
 
-nt_status nt_gltf_draco_store(nt_gltf_recoding *r, const nt_draco_block *block)
+nt_status nt_gltf_draco_store(nt_gltf_recoding *r, uint32_t buffer, nt_error *error)
 {
-	unsigned char *bytes = nt_arena_alloc(r->arena, block->size, 1);
-	if (!bytes)
-		return nt_fail_memory(r->error);
-	memcpy(bytes, block->bytes, block->size);
+	unsigned char *bytes = r->block.bytes;
+	r->block.bytes = NULL;
+	if (!nt_arena_adopt(&r->edits->arena, bytes))
+		return nt_fail_memory(error);
 	nt_gltf_view view;
-	nt_status status = r->source ?
-		nt_gltf_get_view(r->document, r->view, "", &view, r->error) : NT_OK;
+	nt_status status = r->source ? nt_gltf_get_view(r->document, r->view, "", &view, error) : NT_OK;
 	if (status)
 		return status;
 	if (r->source && nt_gltf_draco_release(r->pools, r->view, r->vertices->pool->user_count) &&
 		nt_byte_users_count(&r->edits->users, view.buffer, view.offset, view.offset + view.length) == 1)
-		return nt_edits_replace(r->edits, view.buffer, view.offset, view.length, bytes,
-			block->size, r->error);
+		return nt_edits_replace(r->edits, view.buffer, view.offset, view.length, bytes, r->block.size, error);
 	uint32_t number;
-	status = nt_edits_add_view(r->edits, r->buffer, bytes, block->size, 0, 0, &number,
-		r->error);
+	status = nt_edits_add_view(r->edits, buffer, bytes, r->block.size, 0, 0, &number, error);
 	nt_json_set_uint64(r->json, nt_json_put(r->json, r->extension, "bufferView"), number);
 	return status;
 }

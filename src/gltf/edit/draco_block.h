@@ -9,55 +9,58 @@
 #include "gltf/edit/buffer_edits.h"
 #include "gltf/edit/merge_splits.h"
 
-/* A primitive that is to be compressed. */
+/* A primitive that is to be compressed. The first part is what is known of it, the second what was looked up in the
+ * document, the third what was encoded. */
 typedef struct nt_gltf_recoding {
 	nt_buffer_edits *edits;
 	nt_gltf *document; /* of the edits, as its JSON */
 	nt_json *json;
-	nt_arena *arena;   /* of the edits */
+	nt_arena *arena;   /* of names and attributes */
 	const nt_write_options *options;
 	nt_vertex_pools *pools;
-	const nt_pool_vertices *vertices;
-	uint32_t buffer;   /* of new views */
-	nt_error *error;
+	nt_pool_vertices *vertices;
 	const nt_mesh *mesh;
-	nt_json_value *primitive, *extension;
+
+	nt_json_value *primitive, *extension; /* until the JSON changes */
 	uint64_t view;
 	const nt_draco_mesh *source; /* NULL: the primitive is plain */
-	nt_draco_attribute *attributes;
+	nt_draco_attribute *attributes; /* their values are where the document or the scene has them; data NULL: of
+	                                   _BITANGENT, which are made when they are encoded */
 	size_t attribute_count;
 	const char **names;
 	bool outside; /* something of the primitive is not in the block */
 	const char *obstacle; /* why it cannot be compressed; NULL: nothing is known to stand in the way */
+
+	bool encoded;
+	nt_draco_block block; /* where it is compressed */
 } nt_gltf_recoding;
 
 /* Attributes that nmtan may add to those of the source: NORMAL, TANGENT, _BITANGENT. */
 enum { NT_GLTF_OWN_ATTRIBUTES = 3 };
 
+/* Whether an accessor is indices of the pool's primitives alone, and nobody's attribute. */
+bool nt_gltf_draco_owns_indices(const nt_gltf_recoding *recoding, uint64_t accessor);
+
 /* Quantization as the options have it, or the default. */
 int nt_gltf_draco_bits(const nt_write_options *options, nt_draco_bits which);
 
-/* There is room for what the primitive has and NT_GLTF_OWN_ATTRIBUTES. */
+/* There is room for what the primitive has and NT_GLTF_OWN_ATTRIBUTES. The name lives as long as the JSON. */
 void nt_gltf_draco_add(nt_gltf_recoding *recoding, const char *name, nt_draco_attribute attribute);
 
-/* The attributes of the primitive's block, as they are, with copies of their elements. */
-nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *recoding);
+/* The attributes of the primitive's block, as they are. */
+nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *recoding, nt_error *error);
 
 /* What nmtan made: NORMAL where it did, TANGENT, _BITANGENT where asked for. */
-nt_status nt_gltf_draco_add_own(nt_gltf_recoding *recoding);
-
-/* Compresses what was gathered; the status says whether Draco gives it back. */
-nt_status nt_gltf_draco_encode(const nt_gltf_recoding *recoding, nt_draco_method method, nt_draco_block *block,
-	nt_error *error);
+void nt_gltf_draco_add_own(nt_gltf_recoding *recoding);
 
 /* The JSON of the primitive follows what a decoder will see; new accessors have no view, their elements are in the
  * block. */
-void nt_gltf_draco_describe(nt_gltf_recoding *recoding, const nt_draco_block *block);
+void nt_gltf_draco_describe(nt_gltf_recoding *recoding);
 
 /* So many primitives do not refer to a block any more. Whether nobody does. */
 bool nt_gltf_draco_release(nt_vertex_pools *pools, uint64_t view, size_t count);
 
-/* Puts the block where the primitive's was, else into a new view. */
-nt_status nt_gltf_draco_store(nt_gltf_recoding *recoding, const nt_draco_block *block);
+/* Puts the block where the primitive's was, else into a new view of `buffer`. */
+nt_status nt_gltf_draco_store(nt_gltf_recoding *recoding, uint32_t buffer, nt_error *error);
 
 #endif

@@ -76,25 +76,10 @@ static bool indices_are_own(const nt_gltf_recoding *r)
 	nt_gltf_accessor accessor;
 	uint64_t index;
 	return !indices || (nt_json_get_uint64(indices, &index) && lies_plain(r, index, &accessor) &&
-		r->pools->index_users[r->pools->first_alias[index]] == r->vertices->pool->user_count);
+		nt_gltf_draco_owns_indices(r, index));
 }
 
 /* ---- gathering ---- */
-
-static nt_status tight_elements(nt_gltf_recoding *r, const nt_gltf_accessor *accessor, size_t width,
-	const void **result)
-{
-	const size_t count = r->vertices->new_count;
-	const unsigned char *from;
-	unsigned char *out = nt_arena_alloc(r->arena, count, width);
-	if (!out)
-		return nt_fail_memory(r->error);
-	const nt_status status = nt_gltf_elements(r->document, accessor, &from, r->error);
-	for (size_t v = 0; !status && v < count; v++)
-		memcpy(out + v * width, from + nt_vertex_source(r->vertices, v) * accessor->stride, width);
-	*result = out;
-	return status;
-}
 
 static bool is_in_block(const nt_gltf_recoding *r, const nt_json_value *attributes, const char *name)
 {
@@ -106,7 +91,7 @@ static bool is_in_block(const nt_gltf_recoding *r, const nt_json_value *attribut
 	return false;
 }
 
-static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_t index)
+static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_t index, nt_error *error)
 {
 	nt_gltf_accessor accessor;
 	if (!lies_plain(r, index, &accessor) || accessor.count != r->vertices->old_count)
@@ -126,9 +111,11 @@ static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_
 	nt_draco_attribute attribute = {.unique_id = (uint32_t)r->attribute_count,
 		.kind = kind_of(name), .component_type = (int)accessor.component_type,
 		.components = (int)accessor.components, .normalized = accessor.normalized,
-		.quantization = {.bits = is_float ? bits_of(r->options, name) : 0}};
-	const size_t width = (size_t)accessor.components * accessor.component_bytes;
-	const nt_status status = tight_elements(r, &accessor, width, &attribute.data);
+		.quantization = {.bits = is_float ? bits_of(r->options, name) : 0},
+		.stride_bytes = accessor.stride, .copied = r->vertices->sources, .own_count = r->vertices->old_count};
+	const unsigned char *elements = NULL;
+	const nt_status status = nt_gltf_elements(r->document, &accessor, &elements, error);
+	attribute.data = elements;
 	if (!status)
 		nt_gltf_draco_add(r, name, attribute);
 	return status;
@@ -179,7 +166,7 @@ static bool has_doubles(const nt_gltf_recoding *r)
 	return false;
 }
 
-nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r)
+nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r, nt_error *error)
 {
 	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
 	const size_t count = nt_json_count(attributes);
@@ -194,15 +181,12 @@ nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *r)
 	r->attributes = nt_arena_alloc(r->arena, count + NT_GLTF_OWN_ATTRIBUTES, sizeof *r->attributes);
 	r->names = nt_arena_alloc(r->arena, count + NT_GLTF_OWN_ATTRIBUTES, sizeof *r->names);
 	if (!r->attributes || !r->names)
-		return nt_fail_memory(r->error);
+		return nt_fail_memory(error);
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && !r->obstacle && i < count; i++) {
-		/* names outlive the members that are put in behind them */
-		const char *key = nt_json_key(attributes, i, NULL);
-		const char *name = nt_arena_text(r->arena, key, strlen(key));
 		uint64_t index = UINT64_MAX;
 		nt_json_get_uint64(nt_json_at(attributes, i), &index);
-		status = name ? gather_attribute(r, name, index) : nt_fail_memory(r->error);
+		status = gather_attribute(r, nt_json_key(attributes, i, NULL), index, error);
 	}
 	if (status || r->obstacle)
 		return status;
@@ -253,14 +237,14 @@ static run detach(const nt_gltf_recoding *r, uint64_t index)
 }
 
 /* Views that only runs lie in go as a whole. */
-static nt_status remove_views(const nt_gltf_recoding *r, const run *runs, size_t count)
+static nt_status remove_views(const nt_gltf_recoding *r, const run *runs, size_t count, nt_error *error)
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < count; i++) {
 		size_t users = 0;
 		for (size_t k = 0; k < count; k++)
 			users += runs[k].view == runs[i].view;
-		status = nt_edits_release_view(r->edits, runs[i].view, users, r->error);
+		status = nt_edits_release_view(r->edits, runs[i].view, users, error);
 	}
 	return status;
 }
@@ -276,11 +260,11 @@ static bool can_go(const nt_byte_users *users, const run *runs, size_t count, ui
 	return nt_byte_users_count(users, runs->buffer, begin, end) == count;
 }
 
-static nt_status remove_runs(const nt_gltf_recoding *r, run *runs, size_t count)
+static nt_status remove_runs(const nt_gltf_recoding *r, run *runs, size_t count, nt_error *error)
 {
 	if (count)
 		qsort(runs, count, sizeof *runs, compare_runs);
-	nt_status status = remove_views(r, runs, count);
+	nt_status status = remove_views(r, runs, count, error);
 	for (size_t first = 0, next; !status && first < count; first = next) {
 		const uint64_t begin = runs[first].begin;
 		uint64_t end = runs[first].end;
@@ -289,49 +273,20 @@ static nt_status remove_runs(const nt_gltf_recoding *r, run *runs, size_t count)
 			end = runs[next].end > end ? runs[next].end : end;
 		if (!r->edits->is_free[runs[first].view] && can_go(&r->edits->users, runs + first, next - first, begin, end))
 			status = nt_edits_replace(r->edits, runs[first].buffer, begin, end - begin,
-				(const unsigned char *)"", 0, r->error);
+				(const unsigned char *)"", 0, error);
 	}
 	return status;
 }
 
-/* Bounds of what a decoder will see; quantization moves values. */
-static void bound_accessor(nt_gltf *document, uint64_t index, const nt_draco_attribute *decoded,
-	size_t count)
+/* Bounds become those of what a decoder will see; quantization moves values. */
+static void set_bounds(nt_gltf_recoding *r, size_t attribute, uint64_t accessor)
 {
-	nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "accessors"), (size_t)index);
+	nt_json_value *json = nt_json_at(nt_gltf_root_member(r->document, "accessors"), (size_t)accessor);
 	nt_json_value *bounds[2] = {nt_json_find(json, "min"), nt_json_find(json, "max")};
-	const float *values = decoded->data;
-	const size_t width = (size_t)decoded->components;
+	const size_t width = (size_t)r->attributes[attribute].components;
 	for (size_t b = 0; b < 2; b++)
-		for (size_t k = 0; k < width && nt_json_count(bounds[b]) == width; k++) {
-			float extreme = values[k];
-			for (size_t i = 1; i < count; i++) {
-				const float value = values[i * width + k];
-				if (b ? value > extreme : value < extreme)
-					extreme = value;
-			}
-			nt_json_set_double(document->json, nt_json_at(bounds[b], k), (double)extreme);
-		}
-}
-
-static nt_status set_bounds(nt_gltf_recoding *r, const nt_draco_block *block)
-{
-	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
-	nt_draco *decoded;
-	nt_status status =
-		nt_draco_decode(&decoded, block->bytes, block->size, 0, false, r->error);
-	if (status)
-		return status;
-	const nt_draco_mesh *mesh = nt_draco_get(decoded);
-	for (size_t i = 0; i < r->attribute_count; i++) {
-		uint64_t index;
-		const nt_draco_attribute *found = nt_draco_find(mesh, r->attributes[i].unique_id);
-		if (found && r->attributes[i].quantization.bits &&
-			nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index))
-			bound_accessor(r->document, index, found, mesh->point_count);
-	}
-	nt_draco_free(decoded);
-	return status;
+		for (size_t k = 0; k < width && nt_json_count(bounds[b]) == width; k++)
+			nt_json_set_double(r->json, nt_json_at(bounds[b], k), (double)r->block.bounds[attribute][b][k]);
 }
 
 static void put_extension(nt_gltf_recoding *r)
@@ -345,23 +300,23 @@ static void put_extension(nt_gltf_recoding *r)
 	nt_gltf_list_extension(r->document, "extensionsRequired", "KHR_draco_mesh_compression");
 }
 
-nt_status nt_gltf_draco_take_out(nt_gltf_recoding *r, const nt_draco_block *block)
+nt_status nt_gltf_draco_take_out(nt_gltf_recoding *r, nt_error *error)
 {
 	run *runs = nt_arena_alloc(r->arena, r->attribute_count + 1, sizeof *runs);
 	if (!runs)
-		return nt_fail_memory(r->error);
-	nt_status status = set_bounds(r, block);
-	if (status)
-		return status;
+		return nt_fail_memory(error);
 	const nt_json_value *attributes = nt_json_find(r->primitive, "attributes");
 	size_t count = 0;
 	uint64_t index;
 	for (size_t i = 0; i < r->attribute_count; i++)
-		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index))
+		if (nt_json_get_uint64(nt_json_find(attributes, r->names[i]), &index)) {
+			if (r->attributes[i].quantization.bits)
+				set_bounds(r, i, index);
 			runs[count++] = detach(r, index);
+		}
 	if (nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &index))
 		runs[count++] = detach(r, index);
-	status = remove_runs(r, runs, count);
+	const nt_status status = remove_runs(r, runs, count, error);
 	put_extension(r);
 	return status;
 }

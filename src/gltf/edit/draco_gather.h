@@ -8,9 +8,9 @@
 #include "gltf/edit/draco_block.h"
 
 /* The attributes of a plain primitive; recoding->obstacle where it cannot be compressed. */
-nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *recoding);
+nt_status nt_gltf_draco_gather_plain(nt_gltf_recoding *recoding, nt_error *error);
 
 /* Takes what the block holds out of the buffers, and gives the primitive its extension. */
-nt_status nt_gltf_draco_take_out(nt_gltf_recoding *recoding, const nt_draco_block *block);
+nt_status nt_gltf_draco_take_out(nt_gltf_recoding *recoding, nt_error *error);
 
 #endif

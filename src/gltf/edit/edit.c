@@ -2,16 +2,19 @@
 /*
  * glTF from glTF: the source document with tangents put in, and nothing else changed. Pool by pool: splits are
  * merged, vertices appended, indices follow, TANGENT comes; then offsets are moved and the document is written.
- * What no solved primitive uses is not read.
+ * What no solved primitive uses is not read. Only Draco takes long: its blocks are encoded on all threads, of some
+ * hundred pools before the first of them is edited.
  *
  * The solve is made on (u, -v), so its w is glTF's as it stands.
  */
 #include "gltf/edit/edit.h"
 
 #include <string.h>
+#include "base/parallel.h"
 #include "gltf/accessor.h"
 #include "gltf/edit/append.h"
 #include "gltf/edit/draco.h"
+#include "gltf/edit/draco_encode.h"
 #include "gltf/edit/extensions.h"
 #include "gltf/edit/indices.h"
 #include "gltf/edit/merge_splits.h"
@@ -29,9 +32,20 @@ typedef struct editing {
 	const nt_write_options *options;
 	nt_vertex_pools *pools;
 	nt_buffer_edits *edits;
-	nt_arena *of_pool; /* what is needed while one pool is edited */
+	nt_arena *of_window; /* what is needed while the pools of one window are edited */
 	nt_error *error;
 } editing;
+
+/* Pools that are prepared together: enough for many threads, few enough for their descriptions to be small. */
+enum { WINDOW = 1024 };
+
+/* One of them. */
+typedef struct pool_edit {
+	nt_vertex_pool pool;
+	bool for_draco;            /* what follows is there */
+	nt_pool_vertices vertices;
+	nt_gltf_recoding recoding;
+} pool_edit;
 
 /* ---- values ---- */
 
@@ -190,8 +204,8 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 		return status;
 
 	/* Tangents that are there keep their accessor, and their place where that will do. */
-	nt_gltf_override *overrides = nt_arena_alloc(e->of_pool, pool->user_count, sizeof *overrides);
-	nt_gltf_old_tangents *old = nt_arena_alloc(e->of_pool, pool->sets.count, sizeof *old);
+	nt_gltf_override *overrides = nt_arena_alloc(e->of_window, pool->user_count, sizeof *overrides);
+	nt_gltf_old_tangents *old = nt_arena_alloc(e->of_window, pool->sets.count, sizeof *old);
 	if (!overrides || !old)
 		return nt_fail_memory(e->error);
 	size_t override_count;
@@ -208,28 +222,42 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 	return status;
 }
 
+/* The pool, and where Draco has to do with it what its block will hold. Changes nothing in the document. */
+static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
+{
+	*p = (pool_edit){.for_draco = false};
+	nt_status status = nt_vertex_pools_get(e->pools, number, e->of_window, &p->pool, e->error);
+	if (status || !p->pool.sets.count || e->options->draco == NT_DRACO_OFF ||
+		(e->options->draco == NT_DRACO_KEEP && !nt_gltf_has_draco(&p->pool)))
+		return status;
+	p->for_draco = true;
+	status = nt_merge_splits(&p->vertices, &p->pool, &e->edits->arena, e->error);
+	return status ? status : nt_gltf_draco_look_up(&p->recoding, e->edits, e->pools, &p->vertices, e->options,
+		e->of_window, e->error);
+}
+
 /* *plain becomes true where it is not compressed. */
-static nt_status edit_pool(const editing *e, const nt_vertex_pool *pool, bool *plain)
+static nt_status edit_pool(const editing *e, pool_edit *p, bool *plain)
 {
 	/* One vertex for each tangent that a vertex has. */
-	nt_pool_vertices vertices;
 	uint32_t buffer = 0;
-	nt_status status = nt_merge_splits(&vertices, pool, &e->edits->arena, e->error);
+	nt_status status = p->for_draco ? NT_OK : nt_merge_splits(&p->vertices, &p->pool, &e->edits->arena, e->error);
 	if (!status)
-		status = choose_buffer(e, pool, &buffer);
+		status = choose_buffer(e, &p->pool, &buffer);
 
 	/* Compressed primitives are compressed again, or become plain ones here. */
-	const bool compressed = nt_gltf_has_draco(pool);
+	const bool compressed = nt_gltf_has_draco(&p->pool);
 	bool done = false;
-	if (!status && (compressed || e->options->draco > NT_DRACO_OFF))
-		status = nt_gltf_write_draco(e->edits, buffer, e->pools, &vertices, e->options, &e->scene->findings,
-			&done, e->error);
+	if (!status && p->for_draco)
+		status = nt_gltf_write_draco(&p->recoding, buffer, &e->scene->findings, &done, e->error);
+	else if (!status && compressed)
+		status = nt_gltf_draco_make_plain(e->edits, e->pools, &p->vertices, e->error);
 	if (!status)
-		status = nt_gltf_follow_vertices(e->edits, buffer, e->scene, &vertices, done, e->error);
+		status = nt_gltf_follow_vertices(e->edits, buffer, e->scene, &p->vertices, done, e->error);
 	if (status || done)
 		return status;
 	*plain = true;
-	return edit_plain(e, buffer, &vertices, compressed);
+	return edit_plain(e, buffer, &p->vertices, compressed);
 }
 
 /* ---- the whole ---- */
@@ -248,19 +276,48 @@ static void drop_target_tangents(const nt_scene *scene)
 	}
 }
 
+/* The blocks of prepared pools, as far as they can be encoded. list: room for all. */
+static void encode_pools(const editing *e, pool_edit *window, size_t count, nt_gltf_recoding **list)
+{
+	size_t found = 0;
+	for (size_t i = 0; i < count; i++)
+		if (window[i].for_draco && !window[i].recoding.obstacle)
+			list[found++] = &window[i].recoding;
+	nt_gltf_draco_encode_all(list, found, nt_thread_count(e->options->threads));
+}
+
+/* Some pools from `first` on, which becomes the first of the next window. An error is that of the first pool that has
+ * one. */
+static nt_status edit_window(const editing *e, pool_edit *window, nt_gltf_recoding **list, size_t *first, bool *plain)
+{
+	nt_status status = NT_OK, unprepared = NT_OK;
+	size_t count = 0;
+	nt_arena_clear(e->of_window);
+	while (!unprepared && count < WINDOW && *first + count < e->pools->count) {
+		unprepared = prepare_pool(e, *first + count, &window[count]);
+		count += !unprepared;
+	}
+	encode_pools(e, window, count, list);
+	for (size_t i = 0; !status && i < count; i++)
+		if (window[i].pool.sets.count)
+			status = edit_pool(e, &window[i], plain);
+	for (size_t i = 0; i < count; i++)
+		nt_draco_block_free(&window[i].recoding.block);
+	*first += count;
+	return status ? status : unprepared;
+}
+
 /* All pools with a solved user. */
 static nt_status edit_pools(const editing *e)
 {
 	nt_gltf *document = e->edits->document;
+	const size_t size = e->pools->count < WINDOW ? e->pools->count : WINDOW;
+	pool_edit *window = nt_arena_alloc(&e->edits->arena, size, sizeof *window);
+	nt_gltf_recoding **list = nt_arena_alloc(&e->edits->arena, size, sizeof *list);
 	bool plain = false;
-	nt_status status = NT_OK;
-	for (size_t i = 0; !status && i < e->pools->count; i++) {
-		nt_vertex_pool pool;
-		nt_arena_clear(e->of_pool);
-		status = nt_vertex_pools_get(e->pools, i, e->of_pool, &pool, e->error);
-		if (!status && pool.sets.count)
-			status = edit_pool(e, &pool, &plain);
-	}
+	nt_status status = window && list ? NT_OK : nt_fail_memory(e->error);
+	for (size_t first = 0; !status && first < e->pools->count;)
+		status = edit_window(e, window, list, &first, &plain);
 	nt_gltf_drop_draco(e->scene);
 	if (!status && plain && e->options->precision != NT_PRECISION_FLOAT) {
 		nt_gltf_list_extension(document, "extensionsUsed", NT_GLTF_QUANTIZATION);
@@ -282,7 +339,7 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 	/* Who shares what, and which bytes may change. */
 	if (options->morphs == NT_MORPH_DROP)
 		drop_target_tangents(scene);
-	nt_arena arena = {0}, of_pool = {0};
+	nt_arena arena = {0}, of_window = {0};
 	nt_vertex_pools pools;
 	nt_buffer_edits edits = {0};
 	nt_geometry_total *totals = NULL;
@@ -294,10 +351,10 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 
 	/* The edits, and with them the document. */
 	const editing e = {.scene = scene, .options = options, .pools = &pools, .edits = &edits,
-		.of_pool = &of_pool, .error = error};
+		.of_window = &of_window, .error = error};
 	if (!status)
 		status = edit_pools(&e);
-	nt_arena_free(&of_pool);
+	nt_arena_free(&of_window);
 	if (!status && nt_geometry_metadata_follow(scene, totals, &arena))
 		status = nt_fail_memory(error);
 	if (!status)

@@ -208,6 +208,66 @@ static void non_manifold_meshes_survive_edgebreaker(void **state)
 	nt_draco_block_free(&block);
 }
 
+/* The grid's last points told as copies: the block is that of points which have the same values of their own. */
+static void copied_points_have_the_values_of_others(void **state)
+{
+	(void)state;
+	for (int method = NT_DRACO_SEQUENTIAL; method <= NT_DRACO_EDGEBREAKER; method++) {
+		enum { OWN = POINTS - 20 };
+		uint32_t copied[POINTS - OWN];
+		grid g, told;
+		make_grid(&g, (nt_draco_method)method, 11);
+		for (uint32_t p = OWN; p < POINTS; p++) {
+			const uint32_t from = copied[p - OWN] = p % 7 * 10;
+			memcpy(g.normals[p], g.normals[from], sizeof *g.normals);
+			memcpy(g.texcoords[p], g.texcoords[from], sizeof *g.texcoords);
+			memcpy(g.joints[p], g.joints[from], sizeof *g.joints);
+		}
+		told = g;
+		told.mesh.attributes = told.attributes;
+		memset(told.normals[OWN], 0x7F, 20 * sizeof *told.normals);
+		memset(told.texcoords[OWN], 0x7F, 20 * sizeof *told.texcoords);
+		memset(told.joints[OWN], 0x7F, 20 * sizeof *told.joints);
+		told.attributes[1].data = told.normals;
+		told.attributes[2].data = told.texcoords;
+		told.attributes[4].data = told.joints;
+		for (int i = 1; i < 5; i++)
+			if (i != 3) { /* positions and tangents are all their own */
+				told.attributes[i].copied = copied;
+				told.attributes[i].own_count = OWN;
+			}
+		nt_draco_block block = encoded(&g.mesh), same = encoded(&told.mesh);
+		assert_int_equal(block.size, same.size);
+		assert_memory_equal(block.bytes, same.bytes, block.size);
+		nt_draco_block_free(&block);
+		nt_draco_block_free(&same);
+	}
+}
+
+/* The extremes of what a decoder gives back. */
+static void bounds_are_those_of_the_decoded_values(void **state)
+{
+	(void)state;
+	grid g;
+	make_grid(&g, NT_DRACO_EDGEBREAKER, 9);
+	nt_draco_block block = encoded(&g.mesh);
+	nt_draco *result = decoded(&block);
+	for (size_t i = 0; i < 4; i++) {
+		const nt_draco_attribute *a = nt_draco_find(nt_draco_get(result), g.attributes[i].unique_id);
+		for (int k = 0; k < a->components; k++) {
+			float least = INFINITY, most = -INFINITY;
+			for (size_t p = 0; p < block.point_count; p++) {
+				const float value = ((const float *)a->data)[p * (size_t)a->components + (size_t)k];
+				least = fminf(least, value);
+				most = fmaxf(most, value);
+			}
+			assert_true(block.bounds[i][0][k] == least && block.bounds[i][1][k] == most);
+		}
+	}
+	nt_draco_free(result);
+	nt_draco_block_free(&block);
+}
+
 static nt_status encode_status(const grid *g, nt_error *error)
 {
 	nt_draco_block block;
@@ -436,6 +496,8 @@ int main(void)
 		cmocka_unit_test(twelve_bits_keep_tangents_and_their_sign),
 		cmocka_unit_test(second_encoding_in_the_same_box_moves_nothing),
 		cmocka_unit_test(edgebreaker_keeps_every_sound_face),
+		cmocka_unit_test(copied_points_have_the_values_of_others),
+		cmocka_unit_test(bounds_are_those_of_the_decoded_values),
 		cmocka_unit_test(non_manifold_meshes_survive_edgebreaker),
 		cmocka_unit_test(what_cannot_be_encoded_is_refused),
 		cmocka_unit_test(damaged_streams_are_refused),

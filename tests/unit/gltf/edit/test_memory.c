@@ -63,7 +63,7 @@ static void allocations_of_draco_may_fail(void **state)
 {
 	(void)state;
 	fail_each(NT_DATA_DIR "/plates.glb", (nt_settings){.output_format = NT_FORMAT_GLB,
-		.draco = NT_DRACO_AS_SEQUENTIAL});
+		.draco = NT_DRACO_AS_SEQUENTIAL, .bitangents = true});
 }
 
 static void allocations_of_texture_transforms_may_fail(void **state)

@@ -1,0 +1,145 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Draco blocks, each encoded by one thread. The largest come first, so that no thread is left alone with one of them at
+ * the end; and of those that take much memory only so many are encoded at once as there is room for.
+ */
+#include "gltf/edit/draco_encode.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "base/available.h"
+#include "base/parallel.h"
+#include "gltf/edit/new_accessors.h"
+
+/* What Draco takes for each corner and vertex, of ordinary meshes: see batch/need.h. */
+enum { ELEMENT_BYTES = 100 };
+
+/* ---- one ---- */
+
+/* Whether edgebreaker would drop a face: two corners at one position. */
+static bool has_degenerate_face(const nt_gltf_recoding *r)
+{
+	const uint32_t *indices = r->vertices->indices[0];
+	for (size_t c = 0; c + 2 < r->mesh->corner_count; c += 3)
+		for (size_t k = 0; k < 3; k++) {
+			const size_t a = indices[c + k], b = indices[c + (k + 1) % 3];
+			if (memcmp(r->mesh->positions + 3 * nt_vertex_source(r->vertices, a),
+				r->mesh->positions + 3 * nt_vertex_source(r->vertices, b), 3 * sizeof(float)) == 0)
+				return true;
+		}
+	return false;
+}
+
+static nt_draco_method wanted_method(const nt_gltf_recoding *r)
+{
+	if (r->outside || has_degenerate_face(r) || r->options->draco == NT_DRACO_AS_SEQUENTIAL)
+		return NT_DRACO_SEQUENTIAL;
+	return r->options->draco == NT_DRACO_AS_EDGEBREAKER ? NT_DRACO_EDGEBREAKER :
+								       r->source->method;
+}
+
+/* Whether elements outside of the block still fit the points in it. */
+static bool order_is_kept(const nt_gltf_recoding *r)
+{
+	if (r->block.point_count != r->vertices->new_count || !r->block.sources)
+		return false;
+	for (size_t i = 0; i < r->block.point_count; i++)
+		if (r->block.sources[i] != i)
+			return false;
+	return true;
+}
+
+/* Whether it is not the mesh that keeps Draco from encoding. */
+static bool is_beside_mesh(nt_status status)
+{
+	return status == NT_ERROR_MEMORY || status == NT_ERROR_MODULE || status == NT_ERROR_IO;
+}
+
+/* Edgebreaker does not give every mesh back; the other method has nothing to lose. */
+static nt_status encode(nt_gltf_recoding *r, nt_error *error)
+{
+	nt_draco_mesh mesh = {
+		.method = wanted_method(r),
+		.point_count = r->vertices->new_count,
+		.face_count = r->mesh->corner_count / 3,
+		.indices = r->vertices->indices[0],
+		.attributes = r->attributes,
+		.attribute_count = r->attribute_count,
+		.speed = r->options->draco_speed,
+	};
+	nt_status status = nt_draco_encode(&mesh, &r->block, error);
+	if (status && !is_beside_mesh(status) && mesh.method != NT_DRACO_SEQUENTIAL) {
+		mesh.method = NT_DRACO_SEQUENTIAL;
+		status = nt_draco_encode(&mesh, &r->block, error);
+	}
+	return status;
+}
+
+nt_status nt_gltf_draco_encode(nt_gltf_recoding *r, nt_error *error)
+{
+	nt_arena arena = {0};
+	nt_draco_attribute *made = NULL; /* _BITANGENT */
+	float *bitangents = NULL;
+	for (size_t i = 0; i < r->attribute_count; i++)
+		made = r->attributes[i].data ? made : &r->attributes[i];
+	nt_error failure;
+	nt_status status = made ? nt_gltf_bitangents(r->vertices, 0, &arena, &bitangents, &failure) : NT_OK;
+	if (made)
+		made->data = bitangents;
+	if (!status)
+		status = encode(r, &failure);
+	if (made)
+		made->data = NULL;
+	nt_arena_free(&arena);
+	if (is_beside_mesh(status)) {
+		*error = failure;
+		return status;
+	}
+	r->encoded = true;
+	if (status || (r->outside && !order_is_kept(r))) {
+		r->obstacle = status ? "Draco does not give it back"
+				     : "no face uses some of its vertices, whose order matters";
+		nt_draco_block_free(&r->block);
+	}
+	free(r->block.sources);
+	r->block.sources = NULL;
+	return NT_OK;
+}
+
+/* ---- several ---- */
+
+static uint64_t need_of(const nt_gltf_recoding *r)
+{
+	return ELEMENT_BYTES * ((uint64_t)r->mesh->corner_count + r->vertices->new_count);
+}
+
+static int compare_needs(const void *a, const void *b)
+{
+	const uint64_t x = need_of(*(nt_gltf_recoding *const *)a), y = need_of(*(nt_gltf_recoding *const *)b);
+	return (x < y) - (x > y);
+}
+
+static void encode_item(void *context, size_t item, unsigned slot)
+{
+	nt_gltf_recoding *const *list = context;
+	nt_error ignored;
+	(void)slot;
+	nt_gltf_draco_encode(list[item], &ignored);
+}
+
+void nt_gltf_draco_encode_all(nt_gltf_recoding **list, size_t count, unsigned threads)
+{
+	if (!count)
+		return;
+	qsort(list, count, sizeof *list, compare_needs);
+	/* half, as several inputs have by default */
+	const uint64_t room = count > 1 && threads > 1 ? nt_memory_available() / 2 : 0;
+	for (size_t first = 0, end; first < count; first = end) {
+		const uint64_t most = need_of(list[first]), fitting = most ? room / most : threads;
+		const unsigned at_once = fitting < 1 ? 1 : fitting < threads ? (unsigned)fitting : threads;
+		/* those that are half as large may be more */
+		for (end = first + 1; end < count && (at_once == threads || need_of(list[end]) > most / 2);)
+			end++;
+		nt_parallel_items(at_once, end - first, encode_item, list + first);
+	}
+}
