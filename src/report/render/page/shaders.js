@@ -31,15 +31,19 @@ void main() {
 	gl_Position = camera * vec4(p, 1.0);
 }`;
 
+// A program for each mode and its frames: without a GPU a pixel pays for every branch and a triangle for every input that
+// the text has, taken or not. `normals` and `textured`: whether the mesh has normals and texture coordinates.
+//
 // The frame from screen derivatives: T and B as the gradients of u and v over the surface, with their common scale
 // taken out, so that a mirrored triangle gets a mirrored frame without stored data.
-const surfaceFragment = `#version 300 es
+const frameText = which => which === 2 ? 'derived(normal)' : 'stored(' + FRAMES[which][0] + ')';
+const signText = (which, frame) => which === 2 ? 'sideOf(' + frame + ')' : FRAMES[which][0] + '.w';
+const surfaceFragment = (mode, frame, other, normals, textured) => `#version 300 es
 precision highp float;
-uniform int mode, frame, other; uniform bool normals, textured; uniform vec3 light, eye; uniform sampler2D bump;
-uniform mat3 map; uniform vec3 plain, mirrored, degenerate;
+const int mode = ${mode}; const bool normals = ${normals}, textured = ${textured};
+uniform vec3 light, eye; uniform sampler2D bump; uniform mat3 map; uniform vec3 plain, mirrored, degenerate;
 in vec3 p, n; in vec2 st; in vec4 authored, computed;
 out vec4 colour;
-vec3 faceNormal;
 mat3 derived(vec3 normal) {
 	vec2 at = (map * vec3(st, 1.0)).xy;
 	vec3 px = dFdx(p), py = dFdy(p);
@@ -50,14 +54,8 @@ mat3 derived(vec3 normal) {
 	float s = inversesqrt(max(max(dot(gu, gu), dot(gv, gv)), 1e-30));
 	return mat3(gu * s, gv * s, normal);
 }
-mat3 frameOf(int which, vec3 normal) {
-	if (which == 2) return derived(normal);
-	vec4 t = which == 0 ? authored : computed;
-	return mat3(t.xyz, cross(n, t.xyz) * t.w, n);
-}
-float signOf(int which, mat3 f) {
-	return which == 0 ? authored.w : which == 1 ? computed.w : dot(cross(f[2], f[0]), f[1]) < 0.0 ? -1.0 : 1.0;
-}
+mat3 stored(vec4 t) { return mat3(t.xyz, cross(n, t.xyz) * t.w, n); }
+float sideOf(mat3 f) { return dot(cross(f[2], f[0]), f[1]) < 0.0 ? -1.0 : 1.0; }
 vec3 heat(float degrees, float most) {
 	float x = sqrt(clamp(degrees / most, 0.0, 1.0));
 	vec3 a = vec3(0.13, 0.19, 0.38), b = vec3(0.25, 0.55, 0.62), c = vec3(0.96, 0.80, 0.32), d = vec3(0.80, 0.16, 0.14);
@@ -67,7 +65,7 @@ float degreesBetween(vec3 a, vec3 b) {
 	return degrees(atan(length(cross(a, b)), dot(a, b)));
 }
 vec3 checker() {
-	vec2 cell = floor(st * 16.0), line = abs(fract(st * 16.0) - 0.5), wide = fwidth(st) * 16.0;
+	vec2 cell = floor(st * 16.0), wide = fwidth(st) * 16.0;
 	float odd = mod(cell.x + cell.y, 2.0), blur = clamp(max(wide.x, wide.y) * 1.5 - 0.5, 0.0, 1.0);
 	vec3 hue = 0.55 + 0.35 * cos(6.2831853 * (vec3(0.0, 0.33, 0.67) + fract(floor(st.x) * 0.13 + floor(st.y) * 0.29) + st.x * 0.35));
 	return mix(hue * mix(0.62, 1.0, mix(odd, 0.5, blur)), vec3(1.0), 0.12 * st.y - 0.06);
@@ -76,19 +74,18 @@ vec3 shade(vec3 base, vec3 normal) {
 	return base * (0.45 + 0.6 * abs(dot(normal, light)));
 }
 void main() {
-	faceNormal = normalize(cross(dFdx(p), dFdy(p)));
+	vec3 faceNormal = normalize(cross(dFdx(p), dFdy(p)));
 	if (dot(faceNormal, eye - p) < 0.0) faceNormal = -faceNormal;
 	vec3 normal = normals ? normalize(n) : faceNormal;
 	// back faces are lit as the other side of a sheet is
 	vec3 shown = dot(normal, eye - p) < 0.0 && dot(faceNormal, normal) < 0.0 ? -normal : normal;
-	mat3 used = frameOf(frame, normal);
+	mat3 used = ${frameText(frame)};
 	vec3 tangent = used[0], missing = vec3(0.62, 0.62, 0.6);
 	bool has = dot(tangent, tangent) > 1e-12;
 	if (mode == 1) {
 		float turn = dFdx(st).x * dFdy(st).y - dFdx(st).y * dFdy(st).x;
-		bool front = dot(cross(dFdx(p), dFdy(p)), eye - p) > 0.0;
 		vec3 base = !textured || turn == 0.0 ? degenerate : (turn < 0.0) == gl_FrontFacing ? plain : mirrored;
-		colour = vec4(shade(base, shown) , 1.0);
+		colour = vec4(shade(base, shown), 1.0);
 	} else if (mode == 2) {
 		colour = vec4(textured ? shade(checker(), shown) * 1.1 : shade(missing, shown), 1.0);
 	} else if (mode == 3) {
@@ -96,13 +93,13 @@ void main() {
 	} else if (mode == 4 || mode == 5) {
 		colour = vec4(has ? normalize(mode == 4 ? used[0] : used[1]) * 0.5 + 0.5 : missing, 1.0);
 	} else if (mode == 6) {
-		float w = signOf(frame, used);
+		float w = ${signText(frame, 'used')};
 		colour = vec4(shade(!has ? missing : w > 0.99 ? plain : w < -0.99 ? mirrored : vec3(0.95, 0.8, 0.15), shown), 1.0);
 	} else if (mode == 7) {
-		mat3 second = frameOf(other, normal);
+		mat3 second = ${frameText(other)};
 		bool both = has && dot(second[0], second[0]) > 1e-12;
 		float angle = degreesBetween(used[0], second[0]);
-		if (signOf(frame, used) * signOf(other, second) < 0.0) angle = 180.0;
+		if (${signText(frame, 'used')} * ${signText(other, 'second')} < 0.0) angle = 180.0;
 		colour = vec4(both ? shade(heat(angle, 90.0), shown) * 1.15 : missing, 1.0);
 	} else if (mode == 8) {
 		colour = vec4(has ? shade(heat(abs(90.0 - degreesBetween(tangent, normal)), 30.0), shown) * 1.15 : missing, 1.0);

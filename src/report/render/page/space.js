@@ -28,12 +28,12 @@ function decodeDirection(codes, at) {
 
 class Space {
 	constructor(canvas) {
-		const gl = canvas.getContext('webgl2', {antialias: false});
+		const gl = canvas.getContext('webgl2', {antialias: false, alpha: false});
 		if (!gl) throw new Error('this browser has no WebGL 2');
 		Object.assign(this, {gl, canvas, mode: 0, frame: 0, other: -1, layout: 'wipe', wipe: 0.5, showVectors: false,
 			showSeams: true, camera: {target: [0, 0, 0], distance: 3, yaw: 0.6, pitch: 0.35}, buffers: [], frames: 0,
 			moving: false, quality: 0.8, slow: 0, drawn: 0});
-		this.surface = this.program(surfaceVertex, surfaceFragment);
+		this.surfaces = new Map();
 		this.fill = this.program(surfaceVertex, fillFragment);
 		this.seen = this.program(surfaceVertex, seenFragment);
 		this.lines = this.program(lineVertex, lineFragment);
@@ -59,6 +59,14 @@ class Space {
 			at[name] = gl.getUniformLocation(program, name);
 		}
 		return {program, at};
+	}
+
+	// Of the mode, with a frame.
+	surface(frame) {
+		const other = this.mode === 7 && this.other >= 0 ? this.other : 2, {normals, texcoords} = this.geometry;
+		const what = [this.mode, frame, other, !!normals, !!texcoords], key = what.join();
+		if (!this.surfaces.has(key)) this.surfaces.set(key, this.program(surfaceVertex, surfaceFragment(...what)));
+		return this.surfaces.get(key);
 	}
 
 	// ---- what is shown ----
@@ -355,16 +363,11 @@ class Space {
 	}
 
 	drawSurface(eye, matrix, frame) {
-		const gl = this.gl, {at} = this.surface, g = this.geometry, m = this.mesh.map || [1, 0, 0, 0, 1, 0];
+		const gl = this.gl, surface = this.surface(frame), {at} = surface, g = this.geometry, m = this.mesh.map || [1, 0, 0, 0, 1, 0];
 		const [right, up, back] = axesOf(eye, this.camera.target);
-		this.use(this.surface, matrix);
+		this.use(surface, matrix);
 		gl.uniform3fv(at.light, unit(add(back, add(times(right, -0.35), times(up, 0.55)))));
 		gl.uniform3fv(at.eye, eye);
-		gl.uniform1i(at.mode, this.mode);
-		gl.uniform1i(at.frame, frame);
-		gl.uniform1i(at.other, this.other < 0 ? 2 : this.other);
-		gl.uniform1i(at.normals, g.normals ? 1 : 0);
-		gl.uniform1i(at.textured, g.texcoords ? 1 : 0);
 		gl.uniformMatrix3fv(at.map, false, [m[0], m[3], 0, m[1], m[4], 0, m[2], m[5], 1]);
 		for (const name of ['plain', 'mirrored', 'degenerate']) gl.uniform3fv(at[name], this.theme[name]);
 		gl.bindTexture(gl.TEXTURE_2D, this.bump);
