@@ -23,7 +23,7 @@ typedef struct outline_edge {
 typedef struct outlining {
 	const nt_outlined *mesh;
 	uint32_t *points;      /* [vertex_count] the first vertex with the same texture coordinates */
-	uint32_t *first;       /* [vertex_count + 1] where a point's half edges begin */
+	uint32_t *first;       /* [vertex_count + 1] where a point's half edges begin; then, in put_loops(), its edges */
 	half_edge *halves;     /* [3 * triangle_count] */
 	nt_buffer edges;       /* outline_edge */
 } outlining;
@@ -154,49 +154,38 @@ static int compare_edges(const void *a, const void *b)
 	return x->to < y->to ? -1 : x->to > y->to;
 }
 
-/* Where the edges of one region that leave `point` begin. */
-static size_t find_leaving(const outline_edge *edges, size_t count, uint32_t point)
-{
-	size_t low = 0, high = count;
-	while (low < high) {
-		const size_t middle = low + (high - low) / 2;
-		if (edges[middle].from < point)
-			low = middle + 1;
-		else
-			high = middle;
-	}
-	return low;
-}
-
-/* Walks once around, from an edge that was not used. used[i]: how many of the edges that begin where edge i begins
- * are used, at the first of them. */
-static void put_loop(const outline_edge *edges, size_t count, uint32_t *used, size_t start, uint32_t *before,
+/* Walks once around, from an edge that was not used. leaving[p]: the first of the region's edges that begin at point p.
+ * used[i]: how many of the edges that begin where edge i begins are used, at the first of them. */
+static void put_loop(const outline_edge *edges, const uint32_t *leaving, uint32_t *used, uint32_t start, uint32_t *before,
 	nt_buffer *out)
 {
 	nt_buffer points = {0};
 	uint32_t point_count = 0;
-	for (size_t first = start;;) {
+	for (uint32_t first = start;;) {
 		const outline_edge *edge = &edges[first + used[first]++];
 		nt_put_varint(nt_zigzag(edge->from - *before), &points);
 		*before = edge->from;
 		point_count++;
 		if (edge->to == edges[start].from)
 			break;
-		first = find_leaving(edges, count, edge->to);
+		first = leaving[edge->to];
 	}
 	nt_put_varint(point_count, out);
 	nt_buffer_append(out, points.data, points.size);
 	nt_buffer_free_into(&points, out);
 }
 
-static uint32_t put_loops(const outline_edge *edges, size_t count, uint32_t *used, uint32_t *before, nt_buffer *out)
+static uint32_t put_loops(const outline_edge *edges, uint32_t count, uint32_t *leaving, uint32_t *used, uint32_t *before,
+	nt_buffer *out)
 {
 	uint32_t loops = 0;
-	for (size_t i = 0, next; i < count; i = next) {
+	for (uint32_t i = count; i-- > 0;)
+		leaving[edges[i].from] = i;
+	for (uint32_t i = 0, next; i < count; i = next) {
 		for (next = i; next < count && edges[next].from == edges[i].from; next++)
 			;
 		while (i + used[i] < next) {
-			put_loop(edges, count, used, i, before, out);
+			put_loop(edges, leaving, used, i, before, out);
 			loops++;
 		}
 	}
@@ -218,7 +207,7 @@ static nt_status put_regions(outlining *o, nt_buffer *out)
 		nt_buffer loops = {0};
 		for (next = i; next < count && edges[next].region == edges[i].region; next++)
 			;
-		const uint32_t loop_count = put_loops(edges + i, next - i, used + i, &before, &loops);
+		const uint32_t loop_count = put_loops(edges + i, (uint32_t)(next - i), o->first, used + i, &before, &loops);
 		nt_put_varint(nt_zigzag(edges[i].region - region), &regions);
 		nt_put_varint(loop_count, &regions);
 		nt_buffer_append(&regions, loops.data, loops.size);

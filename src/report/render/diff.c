@@ -283,10 +283,8 @@ static void json_findings(const nt_report_diff *diff, int version, const char *n
 		json_member("message", finding->message, out);
 		nt_buffer_format(out, ",\"count\":%zu,\"fingerprint\":\"%016llx\",\"mesh\":", finding->count,
 			(unsigned long long)finding->fingerprint);
-		if (finding->mesh == NT_NONE)
-			nt_buffer_text(out, "null}");
-		else
-			nt_buffer_format(out, "%u}", finding->mesh);
+		nt_json_index(finding->mesh, out);
+		nt_buffer_text(out, "}");
 	}
 	nt_buffer_text(out, first ? "]" : "\n\t]");
 }
@@ -310,14 +308,6 @@ static void write_json(const nt_report_diff *diff, nt_buffer *out)
 }
 
 /* ---- HTML ---- */
-
-static void page_index(const char *name, uint32_t index, nt_buffer *out)
-{
-	if (index == NT_NONE)
-		nt_buffer_format(out, "\"%s\":null,", name);
-	else
-		nt_buffer_format(out, "\"%s\":%u,", name, index);
-}
 
 static void page_rows(const nt_report_diff *diff, const nt_mesh_change *change, nt_buffer *out)
 {
@@ -350,9 +340,11 @@ static void page_json(const nt_report_diff *diff, nt_buffer *out)
 		const nt_mesh_change *change = &diff->meshes[i];
 		nt_buffer label = {0};
 		put_label(diff, change, &label);
-		nt_buffer_text(out, i ? ",\n{" : "\n{");
-		page_index("old", change->meshes[OLD], out);
-		page_index("new", change->meshes[NEW], out);
+		nt_buffer_text(out, i ? ",\n{\"old\":" : "\n{\"old\":");
+		nt_json_index(change->meshes[OLD], out);
+		nt_buffer_text(out, ",\"new\":");
+		nt_json_index(change->meshes[NEW], out);
+		nt_buffer_text(out, ",");
 		json_member("label", label.data ? label.data : "", out);
 		nt_buffer_free_into(&label, out);
 		nt_buffer_format(out, ",\"changed\":%s,\"rows\":[", is_changed(diff, change) ? "true" : "false");

@@ -57,10 +57,7 @@ static void put_count(nt_buffer *out, const char *name, size_t count)
 static void put_index(nt_buffer *out, const char *name, uint32_t index)
 {
 	key(out, SAME_LINE, name);
-	if (index == NT_NONE)
-		nt_buffer_text(out, "null");
-	else
-		nt_buffer_format(out, "%u", index);
+	nt_json_index(index, out);
 }
 
 static void put_bool(nt_buffer *out, const char *name, bool value)

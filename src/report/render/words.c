@@ -110,6 +110,14 @@ void nt_json_float(double value, nt_buffer *out)
 		nt_buffer_text(out, "null");
 }
 
+void nt_json_index(uint32_t index, nt_buffer *out)
+{
+	if (index == NT_NONE)
+		nt_buffer_text(out, "null");
+	else
+		nt_buffer_format(out, "%u", index);
+}
+
 void nt_xml_text(const char *text, nt_buffer *out)
 {
 	while (*text) {

@@ -11,7 +11,8 @@
 typedef struct nt_report_style {
 	bool colour;       /* text: for a terminal */
 	int least_failure; /* JUnit: the nt_severity from which on a finding is a failure; 3: none */
-	const char *index; /* HTML: the page that lists all files, as a URI; NULL: none but this one */
+	const char *index; /* HTML: the page that lists all files, as a URI; beside it are the parts that pages share. NULL:
+	                      there is none but this one */
 } nt_report_style;
 
 /* Takes a piece of the output. */
@@ -61,6 +62,9 @@ void nt_json_string(const char *text, nt_buffer *out);
 
 /* A JSON number that reads back as the same float; null for NaN and infinities. */
 void nt_json_float(double value, nt_buffer *out);
+
+/* A JSON number; null for NT_NONE. */
+void nt_json_index(uint32_t index, nt_buffer *out);
 
 /* Text for XML and HTML: markup escaped, control characters and bytes that are no UTF-8 replaced. */
 void nt_xml_text(const char *text, nt_buffer *out);
