@@ -34,6 +34,8 @@ static nt_status write_set(const nt_report *const *reports, size_t count,
 		status = nt_diff_write(target->diff, target->format, to_sink, sink, error);
 	else if (!status && target->rows)
 		status = nt_report_write_index(target->rows, to_sink, sink, error);
+	else if (!status && target->text)
+		status = nt_sink_write(sink, target->text, strlen(target->text), error);
 	else if (!status)
 		status = nt_report_write(reports, count, target->format, &target->style, to_sink, sink, error);
 	if (status) {

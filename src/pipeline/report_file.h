@@ -18,6 +18,7 @@ typedef struct nt_report_target {
 	bool folder;               /* path is one, for a page of each input and an index: see report_folder.h */
 	const nt_report_diff *diff; /* written in place of the reports; NULL: they are */
 	const nt_buffer *rows;      /* the same: those of a folder's index */
+	const char *text;           /* the same: as it is */
 } nt_report_target;
 
 /* Writes one document about all reports: whole or not at all. NULLs among the reports are passed over. Returns

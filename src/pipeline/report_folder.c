@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include "base/hash_index.h"
+#include "file/input.h"
 #include "file/output.h"
 #include "file/relative_path.h"
 #include "file/uri.h"
@@ -170,20 +171,7 @@ static nt_status check_pages(const nt_report_folder *folder, nt_error *error)
 	return status;
 }
 
-nt_status nt_report_folder_begin(nt_report_folder *folder, const nt_report_target *target, nt_error *error)
-{
-	*folder = (nt_report_folder){.target = target};
-	nt_status status = name_pages(folder, error);
-	if (!status)
-		status = note_inputs(folder, error);
-	if (!status)
-		status = check_pages(folder, error);
-	if (!status && mkdir(target->path, 0777) && errno != EEXIST)
-		status = nt_fail(error, NT_ERROR_IO, "cannot make the folder \"%s\": %s", target->path, strerror(errno));
-	return status;
-}
-
-/* ---- pages ---- */
+/* ---- writing ---- */
 
 static nt_status write_page(const nt_report_folder *folder, const char *page, const nt_report_target *what,
 	nt_report *const *reports, size_t count, nt_error *error)
@@ -199,6 +187,59 @@ static nt_status write_page(const nt_report_folder *folder, const char *page, co
 		nt_error_in_output(error, path.data);
 	nt_buffer_free(&path);
 	return status;
+}
+
+/* Whether a part is there. What else has its name is refused. */
+static nt_status find_part(const char *path, const char *text, bool *there, nt_error *error)
+{
+	struct stat info;
+	nt_file file;
+	*there = stat(path, &info) == 0 && S_ISREG(info.st_mode);
+	if (!*there)
+		return NT_OK; /* what else is in the way is said when it is written */
+	nt_status status = nt_file_open_untraced(&file, path, error);
+	if (status)
+		return status;
+	if (file.size != strlen(text) || memcmp(file.data, text, file.size) != 0) {
+		nt_fail(error, NT_ERROR_IO, "refusing to write: it is no part of a report that nmtan made");
+		status = nt_error_in_file(error, path);
+	}
+	nt_file_close(&file);
+	return status;
+}
+
+/* Writes the parts that are missing, or only looks for them. */
+static nt_status put_parts(const nt_report_folder *folder, bool write, nt_error *error)
+{
+	nt_buffer name = {0}, path = {0};
+	nt_status status = NT_OK;
+	for (int kind = 0; kind < NT_HTML_PART_COUNT && !status; kind++) {
+		bool there = false;
+		name.size = 0;
+		const nt_report_target part = {.text = nt_html_part(kind, &name)};
+		status = !name.failed && append_path(folder, name.data, &path)
+			? find_part(path.data, part.text, &there, error) : nt_fail_memory(error);
+		if (!status && write && !there)
+			status = write_page(folder, name.data, &part, NULL, 0, error);
+	}
+	nt_buffer_free(&name);
+	nt_buffer_free(&path);
+	return status;
+}
+
+nt_status nt_report_folder_begin(nt_report_folder *folder, const nt_report_target *target, nt_error *error)
+{
+	*folder = (nt_report_folder){.target = target};
+	nt_status status = name_pages(folder, error);
+	if (!status)
+		status = note_inputs(folder, error);
+	if (!status)
+		status = check_pages(folder, error);
+	if (!status)
+		status = put_parts(folder, false, error);
+	if (!status && mkdir(target->path, 0777) && errno != EEXIST)
+		status = nt_fail(error, NT_ERROR_IO, "cannot make the folder \"%s\": %s", target->path, strerror(errno));
+	return status ? status : put_parts(folder, true, error);
 }
 
 nt_status nt_report_folder_add(nt_report_folder *folder, size_t input, nt_report *report, nt_error *error)

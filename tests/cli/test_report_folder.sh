@@ -29,9 +29,9 @@ inputs
 run --check --report=r/ a/* a/..obj b/*
 exits 3
 exists r/M.obj.html r/bad.obj.html r/_.obj.html r/___script_.obj.html
-is "$(ls r | grep -c '\.html$') $(ls -A r | wc -l)" "9 9"
+is "$(ls r | grep -c '\.html$') $(ls r | grep -c '^nmtan-[0-9a-f]*\.\(js\|css\)$') $(ls -A r | wc -l)" "9 2 11"
 is "$(ls r | grep -ci '^m\.obj')" 3
-is "$(ls r | tr A-Z a-z | sort -u | wc -l)" 9
+is "$(ls r | tr A-Z a-z | sort -u | wc -l)" 11
 rows r/index.html 'f["page"]' >pages
 is "$(grep -c '^[A-Za-z0-9._%-]*$' pages)" 8
 python3 -c 'import os, urllib.parse
@@ -103,6 +103,41 @@ exits 2
 run --report=r/ --report-format=html m.obj m.glb
 exits 0
 only m.obj m.glb r
-is "$(ls r | tr '\n' ' ')" "index.html m.obj.html "
+is "$(ls r | sed 's/-[0-9a-f]*\./-N./' | tr '\n' ' ')" "index.html m.obj.html nmtan-N.css nmtan-N.js "
+
+scene "pages share one script and one style, which are there first and never replace anything"
+cp "$data/quad.obj" m.obj
+run --check --report=r/ m.obj
+run --check --report=m.html m.obj
+script=$(echo r/nmtan-*.js) style=$(echo r/nmtan-*.css)
+for page in r/index.html r/m.obj.html; do
+	grep -q "<script src=\"${script#r/}\">" $page || wrong "$page does not have the script"
+	grep -q "href=\"${style#r/}\">" $page || wrong "$page does not have the style"
+	[ "$(wc -c <$page)" -lt 20000 ] || wrong "$page is large"
+done
+[ "$(wc -c <m.html)" -gt "$(cat "$script" "$style" | wc -c)" ] || wrong "a single page has not all in it"
+! grep -q '<script src\|<link rel="stylesheet' m.html || wrong "a single page is not all"
+# older pages keep theirs
+cp "$script" r/nmtan-0123456789abcdef.js
+ln "$script" kept
+run --check --report=r/ m.obj
+exits 0
+exists r/nmtan-0123456789abcdef.js
+[ "$script" -ef kept ] || wrong "it was written again"
+for part in "$script" "$style"; do
+	cp "$part" before
+	echo mine >"$part"
+	rm r/index.html
+	run --report=r/ m.obj m.glb
+	exits 2
+	says "$part: refusing to write: it is no part of a report that nmtan made"
+	is "$(cat "$part")" mine
+	[ ! -e m.glb ] && [ ! -e r/index.html ] || wrong "it ran"
+	cp before "$part"
+done
+rm "$script"
+mkdir "$script"
+run --check --report=r/ m.obj
+exits 2
 
 done_testing

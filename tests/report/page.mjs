@@ -338,7 +338,8 @@ async function clickTexture(page, u, v) {
 	await page.waitForFunction(() => document.title.includes('head.obj'));
 	await ready(page);
 	check((await page.evaluate(() => window.nmtanReport.geometry().triangles)) === 672, 'a row opens its page');
-	check(requests.every(r => /^file:.*\/pages\/[^\/]*\.html$/.test(r)), 'pages ask for nothing but each other');
+	check(requests.every(r => /^file:.*\/pages\/([^\/]*\.html|nmtan-[0-9a-f]{16}\.(js|css))$/.test(r)), 'pages ask for nothing but each other and their parts');
+	check(await page.evaluate(() => getComputedStyle(document.querySelector('#layout')).touchAction === 'none'), 'and have their style');
 	requests.length = 0;
 	await page.close();
 }

@@ -19,7 +19,7 @@
  * The index of a folder of pages has `folder: true` and, of each file, {name, format, counts, failure, page, triangles,
  * islands, seams, layout: [path, path], meshes: [], findings: [{code, severity}]}, without equal findings.
  *
- * Then the page's script, then the geometry of each mesh in an element of its own, #g-FILE-MESH, which is not looked at
+ * Then the page's script (the pages of a folder refer to one file with it, and to one with the style), then the geometry of each mesh in an element of its own, #g-FILE-MESH, which is not looked at
  * until the mesh is opened: a line of JSON (the fields of nt_packed) and its bytes as base64: see pack/pack.h. Written
  * and forgotten mesh by mesh.
  */
@@ -28,6 +28,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+#include "base/hash_index.h"
 #include "report/pack/pack.h"
 #include "report/pack/thumb.h"
 #include "report/render/page_assets.h"
@@ -122,10 +123,8 @@ static void put_doubles(const char *name, const double *values, size_t count, nt
 
 static void put_index(const char *name, uint32_t index, nt_buffer *out)
 {
-	if (index == NT_NONE)
-		nt_buffer_format(out, ",\"%s\":null", name);
-	else
-		nt_buffer_format(out, ",\"%s\":%u", name, index);
+	nt_buffer_format(out, ",\"%s\":", name);
+	nt_json_index(index, out);
 }
 
 /* Whether an element of an array stands before. */
@@ -146,11 +145,10 @@ static void put_seam(const nt_seam *seam, nt_buffer *out)
 	nt_buffer_format(out, "[%zu,%s,%.6g,", seam->edge_count, seam->closed ? "true" : "false",
 		isfinite(seam->length) ? seam->length : 0.0);
 	put_string(seam->has_plane ? seam->plane_text : "", out);
-	for (int side = 0; side < 2; side++)
-		if (seam->islands[side] == NT_NONE)
-			nt_buffer_text(out, ",null");
-		else
-			nt_buffer_format(out, ",%u", seam->islands[side]);
+	for (int side = 0; side < 2; side++) {
+		nt_buffer_text(out, ",");
+		nt_json_index(seam->islands[side], out);
+	}
 	nt_buffer_text(out, "]");
 }
 
@@ -384,26 +382,43 @@ static void put_geometries(const nt_report_list *reports, nt_buffer *out)
 
 const char nt_html_mark[] = "<meta name=\"generator\" content=\"nmtan\">\n";
 
-/* What stands before the data. */
-static void begin_page(nt_buffer *out)
+const char *nt_html_part(nt_html_part_kind kind, nt_buffer *name)
 {
-	nt_buffer_text(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
-	nt_buffer_text(out, nt_html_mark);
-	nt_buffer_text(out,
-		"<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; "
-		"style-src 'unsafe-inline'; script-src 'unsafe-inline'\">\n"
-		"<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-		"<link rel=\"icon\" href=\"data:,\">\n<title>nmtan report</title>\n<style>\n");
-	nt_buffer_text(out, nt_page_style);
-	nt_buffer_text(out, "</style>\n</head>\n<body>\n");
-	nt_buffer_text(out, nt_page_body);
+	const char *text = kind == NT_HTML_STYLE ? nt_page_style : nt_page_script;
+	nt_buffer_format(name, "nmtan-%016llx.%s", (unsigned long long)nt_hash_bytes(0, text, strlen(text)),
+		kind == NT_HTML_STYLE ? "css" : "js");
+	return text;
 }
 
-static void put_script(nt_buffer *out)
+/* A part, or where it is. */
+static void put_part(nt_html_part_kind kind, bool in_folder, nt_buffer *out)
 {
-	nt_buffer_text(out, "<script>\n");
-	nt_buffer_text(out, nt_page_script);
-	nt_buffer_text(out, "</script>\n");
+	const bool style = kind == NT_HTML_STYLE;
+	nt_buffer name = {0};
+	const char *text = nt_html_part(kind, &name);
+	if (in_folder)
+		nt_buffer_format(out, style ? "<link rel=\"stylesheet\" href=\"%s\">\n" : "<script src=\"%s\"></script>\n",
+			name.data ? name.data : "");
+	else
+		nt_buffer_format(out, style ? "<style>\n%s</style>\n" : "<script>\n%s</script>\n", text);
+	out->failed |= name.failed;
+	nt_buffer_free(&name);
+}
+
+/* What stands before the data. A file is from file: or, on a server, from there. */
+static void begin_page(bool in_folder, nt_buffer *out)
+{
+	const char *parts = in_folder ? "'self' file:" : "'unsafe-inline'";
+	nt_buffer_text(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
+	nt_buffer_text(out, nt_html_mark);
+	nt_buffer_format(out,
+		"<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; "
+		"style-src %s; script-src %s\">\n"
+		"<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+		"<link rel=\"icon\" href=\"data:,\">\n<title>nmtan report</title>\n", parts, parts);
+	put_part(NT_HTML_STYLE, in_folder, out);
+	nt_buffer_text(out, "</head>\n<body>\n");
+	nt_buffer_text(out, nt_page_body);
 }
 
 static void end_page(nt_buffer *out)
@@ -413,9 +428,10 @@ static void end_page(nt_buffer *out)
 
 void nt_write_html(const nt_report_list *reports, nt_buffer *out)
 {
-	begin_page(out);
+	const bool in_folder = reports->style.index;
+	begin_page(in_folder, out);
 	put_data(reports, out);
-	put_script(out);
+	put_part(NT_HTML_SCRIPT, in_folder, out);
 	put_geometries(reports, out);
 	end_page(out);
 }
@@ -466,10 +482,10 @@ void nt_report_index_row(const nt_report *report, const char *page, nt_buffer *r
 
 void nt_write_html_index(const nt_buffer *rows, nt_buffer *out)
 {
-	begin_page(out);
+	begin_page(true, out);
 	nt_buffer_text(out, "<script type=\"application/json\" id=\"data\">{\"folder\":true,\"files\":[");
 	nt_buffer_append(out, rows->data, rows->size);
 	nt_buffer_text(out, "]}</script>\n");
-	put_script(out);
+	put_part(NT_HTML_SCRIPT, true, out);
 	end_page(out);
 }
