@@ -9,7 +9,7 @@
 #include "tangent/fast/settle.h"
 
 /* Frames as accumulate() makes them: flags, and what each corner adds, in order. */
-static void few_frames(const nt_fast *fast, nt_record *add)
+static void few_frames(const nt_fast *fast, nt_record *add, nt_frames *frames)
 {
 	lanes_in in;
 	lanes_out out;
@@ -20,6 +20,10 @@ static void few_frames(const nt_fast *fast, nt_record *add)
 		gather_lanes(fast->rows, fast->triangles.ids + 3 * first, count, lanes_of(count), in.row);
 		solve_few(&in, &out, offset, count);
 		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
+		for (size_t c = 0; c < 3; c++) { /* as a whole it would be copied by "rep movs", which takes long to begin */
+			memcpy(frames[first / NT_LANES].u[c], out.frames.u[c], sizeof out.frames.u[c]);
+			memcpy(frames[first / NT_LANES].v[c], out.frames.v[c], sizeof out.frames.v[c]);
+		}
 		for (size_t i = 0; i < count; i++)
 			for (size_t k = 0; k < 3; k++)
 				memcpy(&add[3 * (first + i) + k], out.add[k] + 4 * turned_place(i), sizeof *add);
@@ -29,31 +33,92 @@ static void few_frames(const nt_fast *fast, nt_record *add)
 	}
 }
 
+/* Sums of groups and normals by component, in turned places. */
+static inline void load_groups(const nt_record *results, const float *const *normals_at, size_t used, record_lanes *r,
+	float normals[3][NT_LANES])
+{
+	load_records(results, used, r);
+	for (size_t i = 0; i < used; i += WIDTH) {
+		lanes four[4];
+		for (size_t j = 0; j < 4; j++)
+			four[j] = load_parts(normals_at + i + j * (WIDTH / 4));
+		turn(four);
+		for (size_t c = 0; c < 3; c++)
+			memcpy(normals[c] + i, &four[c], sizeof *four);
+	}
+}
+
+/* The same for four, in order. */
+static inline void load_four_groups(const nt_record *results, const float *const *normals_at, record_lanes *r,
+	float normals[3][NT_LANES])
+{
+	nt_float4 sums[4], rows[4];
+	memcpy(sums, results, sizeof sums);
+	for (size_t i = 0; i < 4; i++)
+		memcpy(&rows[i], normals_at[i], sizeof *rows);
+	turn_four(sums);
+	turn_four(rows);
+	memcpy(r->x, &sums[0], sizeof *sums);
+	memcpy(r->y, &sums[1], sizeof *sums);
+	memcpy(r->z, &sums[2], sizeof *sums);
+	memcpy(r->state, &sums[3], sizeof *sums);
+	for (size_t c = 0; c < 3; c++)
+		memcpy(normals[c], &rows[c], sizeof *rows);
+	read_states(4, r);
+}
+
+static inline void store_four_groups(const record_lanes *r, nt_record *results)
+{
+	nt_float4 rows[4];
+	memcpy(&rows[0], r->x, sizeof *rows);
+	memcpy(&rows[1], r->y, sizeof *rows);
+	memcpy(&rows[2], r->z, sizeof *rows);
+	memcpy(&rows[3], r->state, sizeof *rows);
+	turn_four(rows);
+	memcpy(results, rows, sizeof rows);
+}
+
+/* Up to `used` groups: whole vectors, or `four` in vectors of four. */
+static inline __attribute__((always_inline)) void finish_groups(const nt_fast *fast, const uint32_t *vertices, size_t count,
+	size_t used, bool four, nt_record *results, uint8_t *orients)
+{
+	const float *normals_at[NT_LANES];
+	float normals[3][NT_LANES];
+	uint32_t unusable[NT_LANES];
+	record_lanes r;
+	for (size_t i = 0; i < used; i++) {
+		normals_at[i] = fast->rows[vertices[i < count ? i : count - 1]].normal;
+		unusable[i] = 0;
+	}
+	if (four)
+		load_four_groups(results, normals_at, &r, normals);
+	else
+		load_groups(results, normals_at, used, &r, normals);
+	normalise_records(used, &r);
+	leave_unusable(normals, &r, unusable, used);
+	for (size_t i = 0; i < used; i++) {
+		const size_t g = four ? i : turned_place(i);
+		const uint32_t sign = orients[g] & NT_TRIANGLE_ORIENT ? NT_RESULT_PLUS : NT_RESULT_MINUS;
+		r.state[i] = r.sound[i] ? sign : NT_RESULT_COMPLEX;
+		orients[g] = (uint8_t)(orients[g] | (r.sound[i] && !unusable[i] ? 0 : NT_TRIANGLE_COMPLEX));
+	}
+	if (four)
+		store_four_groups(&r, results);
+	else
+		store_records(results, 1, used, used, &r);
+}
+
 /* Results of groups from their sums. A group that is not its sum gets the state NT_RESULT_COMPLEX; one that may not be
- * usable, NT_TRIANGLE_COMPLEX in `orients`. Both arrays have room for whole vectors. */
+ * usable, NT_TRIANGLE_COMPLEX in `orients`. Both arrays have room for whole vectors, which hold sums throughout. */
 static void few_results(const nt_fast *fast, const uint32_t *vertices, size_t count, nt_record *results, uint8_t *orients)
 {
+	if (count > 0 && count <= 4) {
+		finish_groups(fast, vertices, count, 4, WIDTH > 4, results, orients);
+		return;
+	}
 	for (size_t first = 0; first < count; first += NT_LANES) {
-		const size_t left = count - first, used = whole_lanes(left < NT_LANES ? left : NT_LANES);
-		record_lanes r;
-		float normals[3][NT_LANES];
-		uint32_t unusable[NT_LANES] = {0};
-		load_records(results + first, used, &r);
-		normalise_records(used, &r);
-		memset(normals, 0, sizeof normals);
-		for (size_t i = 0; i < used; i++) {
-			const size_t g = first + turned_place(i);
-			const float *n = fast->rows[vertices[g < count ? g : count - 1]].normal;
-			normals[0][i] = n[0], normals[1][i] = n[1], normals[2][i] = n[2];
-		}
-		leave_unusable(normals, &r, unusable, used);
-		for (size_t i = 0; i < used; i++) {
-			const size_t g = first + turned_place(i);
-			const uint32_t sign = orients[g] & NT_TRIANGLE_ORIENT ? NT_RESULT_PLUS : NT_RESULT_MINUS;
-			r.state[i] = r.sound[i] ? sign : NT_RESULT_COMPLEX;
-			orients[g] = (uint8_t)(orients[g] | (r.sound[i] && !unusable[i] ? 0 : NT_TRIANGLE_COMPLEX));
-		}
-		store_records(results + first, 1, used, used, &r);
+		const size_t left = count - first < NT_LANES ? count - first : NT_LANES;
+		finish_groups(fast, vertices + first, left, whole_lanes(left), false, results + first, orients + first);
 	}
 }
 

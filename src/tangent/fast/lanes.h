@@ -42,7 +42,7 @@ typedef struct lanes_in {
 
 typedef struct lanes_out {
 	_Alignas(64) float edge[3][3][NT_LANES];     /* of edge k, from corner k to the next */
-	float u[3][NT_LANES], v[3][NT_LANES]; /* the frame's directions */
+	nt_frames frames;
 	float mag_u[NT_LANES], mag_v[NT_LANES];
 	float sum[3][4][NT_LANES];      /* corner, float of its nt_record */
 	float extra[3][8][NT_LANES];    /* corner, float of its nt_record_more */
@@ -105,7 +105,7 @@ static inline __attribute__((always_inline)) void solve_frames(const lanes_in *r
 		const float rs = sign / ls, rt = sign / lt;
 #pragma GCC unroll 3
 		for (int c = 0; c < 3; c++)
-			out->u[c][i] = rs * os[c], out->v[c][i] = rt * ot[c];
+			out->frames.u[c][i] = rs * os[c], out->frames.v[c][i] = rt * ot[c];
 		if (more)
 			out->mag_u[i] = ls / size, out->mag_v[i] = lt / size;
 		/* 3 u (|p| + |r|) bounds the rounding of the area, u = 2^-24, and the difference is rounded once
@@ -124,15 +124,21 @@ static inline __attribute__((always_inline)) void solve_frames(const lanes_in *r
 	}
 }
 
-/* Corner k: its unit directions, the cosine of its angle, and the bits of what holds for it. */
-static inline __attribute__((always_inline)) void solve_corners(const lanes_in *restrict in,
-	lanes_out *restrict out, int k, bool more, int count)
+/* Corners in lanes, by component. */
+typedef struct corner_lanes {
+	const float (*n)[NT_LANES];                     /* normal */
+	const float (*u)[NT_LANES], (*v)[NT_LANES];     /* directions of the triangle's frame */
+	const float (*from)[NT_LANES], (*to)[NT_LANES]; /* edges: from the corner before, to the next one */
+	float (*sum)[NT_LANES], *cosine, (*extra)[NT_LANES]; /* as in lanes_out */
+} corner_lanes;
+
+/* Each corner's unit directions, the cosine of its angle, and the bits of what holds for it. */
+static inline __attribute__((always_inline)) void solve_corners(corner_lanes a, bool more, int count)
 {
-	const int before = (k + 2) % 3;
 	for (int i = 0; i < count; i++) {
-		const float n[3] = {in->row[k][3][i], in->row[k][4][i], in->row[k][5][i]};
-		const float os[3] = {out->u[0][i], out->u[1][i], out->u[2][i]};
-		const float ot[3] = {out->v[0][i], out->v[1][i], out->v[2][i]};
+		const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
+		const float os[3] = {a.u[0][i], a.u[1][i], a.u[2][i]};
+		const float ot[3] = {a.v[0][i], a.v[1][i], a.v[2][i]};
 		/* u and v: the directions without their part along n */
 		const float nu = n[0] * os[0] + n[1] * os[1] + n[2] * os[2];
 		const float nv = n[0] * ot[0] + n[1] * ot[1] + n[2] * ot[2];
@@ -143,8 +149,8 @@ static inline __attribute__((always_inline)) void solve_corners(const lanes_in *
 		ux = ur * ux, uy = ur * uy, uz = ur * uz;
 
 		/* the angle between the edges, seen along n; e runs towards the corner, which its length mends */
-		const float e[3] = {out->edge[before][0][i], out->edge[before][1][i], out->edge[before][2][i]};
-		const float f[3] = {out->edge[k][0][i], out->edge[k][1][i], out->edge[k][2][i]};
+		const float e[3] = {a.from[0][i], a.from[1][i], a.from[2][i]};
+		const float f[3] = {a.to[0][i], a.to[1][i], a.to[2][i]};
 		const float ne = n[0] * e[0] + n[1] * e[1] + n[2] * e[2];
 		const float nf = n[0] * f[0] + n[1] * f[1] + n[2] * f[2];
 		float ex = e[0] - ne * n[0], ey = e[1] - ne * n[1], ez = e[2] - ne * n[2];
@@ -166,40 +172,47 @@ static inline __attribute__((always_inline)) void solve_corners(const lanes_in *
 		state += 64 * half_spaces(vx * fabsf(vx), vy * fabsf(vy), vz * fabsf(vz), HALF_SPACE * HALF_SPACE * vv);
 		state += sound ? STATE_BIT(NT_STATE_SOUND) : 0.0f;
 
-		out->sum[k][0][i] = ux;
-		out->sum[k][1][i] = uy;
-		out->sum[k][2][i] = uz;
-		out->sum[k][3][i] = state;
-		out->cosine[k][i] = c < -1.0f ? -1.0f : c;
+		a.sum[0][i] = ux;
+		a.sum[1][i] = uy;
+		a.sum[2][i] = uz;
+		a.sum[3][i] = state;
+		a.cosine[i] = c < -1.0f ? -1.0f : c;
 		if (more) {
 			const float vr = 1.0f / sqrtf(vv);
-			out->extra[k][0][i] = vr * vx;
-			out->extra[k][1][i] = vr * vy;
-			out->extra[k][2][i] = vr * vz;
+			a.extra[0][i] = vr * vx;
+			a.extra[1][i] = vr * vy;
+			a.extra[2][i] = vr * vz;
 		}
 	}
 }
 
-/* Directions are weighted by the angle of corner k. */
-static inline __attribute__((always_inline)) void weigh_corners(lanes_out *restrict out, int k, bool more,
-	int count)
+/* Directions are weighted by the angle. */
+static inline __attribute__((always_inline)) void weigh_corners(corner_lanes a, const float *mag_u, const float *mag_v,
+	bool more, int count)
 {
 	for (int i = 0; i < count; i++) {
-		const float w = nt_acos(out->cosine[k][i]);
-		out->sum[k][0][i] *= w;
-		out->sum[k][1][i] *= w;
-		out->sum[k][2][i] *= w;
+		const float w = nt_acos(a.cosine[i]);
+		a.sum[0][i] *= w;
+		a.sum[1][i] *= w;
+		a.sum[2][i] *= w;
 		if (more) {
-			out->extra[k][0][i] *= w;
-			out->extra[k][1][i] *= w;
-			out->extra[k][2][i] *= w;
-			out->extra[k][3][i] = w;
-			out->extra[k][4][i] = w * out->mag_u[i];
-			out->extra[k][5][i] = w * out->mag_v[i];
-			out->extra[k][6][i] = 0.0f;
-			out->extra[k][7][i] = 0.0f;
+			a.extra[0][i] *= w;
+			a.extra[1][i] *= w;
+			a.extra[2][i] *= w;
+			a.extra[3][i] = w;
+			a.extra[4][i] = w * mag_u[i];
+			a.extra[5][i] = w * mag_v[i];
+			a.extra[6][i] = 0.0f;
+			a.extra[7][i] = 0.0f;
 		}
 	}
+}
+
+/* Corner k of 16 triangles. */
+static inline __attribute__((always_inline)) corner_lanes corner_of(const lanes_in *in, lanes_out *out, int k)
+{
+	return (corner_lanes){.n = in->row[k] + 3, .u = out->frames.u, .v = out->frames.v, .from = out->edge[(k + 2) % 3],
+		.to = out->edge[k], .sum = out->sum[k], .cosine = out->cosine[k], .extra = out->extra[k]};
 }
 
 /* Lanes [0, count). One loop for each idea: in a single one there are more values under way than
@@ -210,13 +223,13 @@ static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *re
 	solve_frames(in, out, offset, more, count);
 #pragma GCC unroll 3
 	for (int k = 0; k < 3; k++)
-		solve_corners(in, out, k, more, count);
+		solve_corners(corner_of(in, out, k), more, count);
 #pragma GCC unroll 3
 	for (int k = 0; k < 3; k++)
-		weigh_corners(out, k, more, count);
+		weigh_corners(corner_of(in, out, k), out->mag_u, out->mag_v, more, count);
 }
 
-static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *in, lanes_out *out, float offset,
+static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *restrict in, lanes_out *restrict out, float offset,
 	size_t count)
 {
 	const size_t lane_count = whole_lanes(count);
@@ -226,18 +239,44 @@ static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *in, lane
 }
 
 #if WIDTH > 4
-/* Four triangles in vectors of four: those of wider ones take longer. */
-static void __attribute__((noinline)) solve_four(const lanes_in *in, lanes_out *out, float offset)
+/* Four lanes from each of four places. */
+static inline __attribute__((always_inline)) void spread(const float *a, const float *b, const float *c, const float *d,
+	float to[NT_LANES])
 {
-	solve_lanes(in, out, offset, false, 4);
-	for (size_t k = 0; k < 3; k++) {
-		nt_float4 four[4];
-		for (size_t j = 0; j < 4; j++)
-			memcpy(&four[j], out->sum[k][j], sizeof four[j]);
-		turn_four(four);
-		for (size_t j = 0; j < 4; j++)
-			memcpy(out->add[k] + 4 * turned_place(j), &four[j], sizeof four[j]);
+	const float *const from[NT_LANES / 4] = {a, b, c, d};
+	for (size_t i = 0; i < NT_LANES / 4; i += WIDTH / 4) {
+		const lanes parts = load_parts(from + i);
+		memcpy(to + 4 * i, &parts, sizeof parts);
 	}
+}
+
+/* Four triangles: lane 4 k + i has corner k of triangle i, and all four parts have the frames. The last part repeats the
+ * first one. */
+static void __attribute__((noinline)) solve_four(const lanes_in *restrict in, lanes_out *restrict out, float offset)
+{
+	lanes_in frames;
+	_Alignas(64) float n[3][NT_LANES], from[3][NT_LANES], to[3][NT_LANES], add[4 * NT_LANES];
+#pragma GCC unroll 8
+	for (int c = 0; c < 8; c++)
+#pragma GCC unroll 3
+		for (int k = 0; k < 3; k++)
+			spread(in->row[k][c], in->row[k][c], in->row[k][c], in->row[k][c], frames.row[k][c]);
+	solve_frames(&frames, out, offset, false, NT_LANES);
+#pragma GCC unroll 3
+	for (int c = 0; c < 3; c++) {
+		const float *const e[3] = {out->edge[0][c], out->edge[1][c], out->edge[2][c]};
+		spread(in->row[0][3 + c], in->row[1][3 + c], in->row[2][3 + c], in->row[0][3 + c], n[c]);
+		spread(e[2], e[0], e[1], e[2], from[c]);
+		spread(e[0], e[1], e[2], e[0], to[c]);
+	}
+	const corner_lanes corners = {.n = n, .u = out->frames.u, .v = out->frames.v, .from = from, .to = to, .sum = out->sum[0],
+		.cosine = out->cosine[0]};
+	solve_corners(corners, false, NT_LANES);
+	weigh_corners(corners, NULL, NULL, false, NT_LANES);
+	interleave(out->sum[0], NT_LANES, add);
+	for (size_t k = 0; k < 3; k++)
+		for (size_t i = 0; i < 4; i++)
+			memcpy(out->add[k] + 4 * turned_place(i), add + 4 * turned_place(4 * k + i), 4 * sizeof *add);
 }
 #endif
 

@@ -17,7 +17,7 @@
 enum { NT_LANES = 16 };
 
 /* Triangles of the largest mesh for tiny.c. */
-enum { NT_TINY = 24 };
+enum { NT_TINY = 32 };
 
 /* Bits of nt_fast.flags */
 enum {
@@ -82,6 +82,11 @@ typedef struct nt_corner {
  * and no value means anything. */
 enum { NT_CORNER_UNIT, NT_CORNER_EXTREME, NT_CORNER_ANY };
 
+/* The unit directions of 16 triangles' frames, by component. */
+typedef struct nt_frames {
+	float u[3][NT_LANES], v[3][NT_LANES];
+} nt_frames;
+
 /* The passes of one instruction set. */
 typedef struct nt_kernels {
 	/* Solves triangles [begin, end) of a range and adds them to their vertices, or to the bins where
@@ -97,8 +102,8 @@ typedef struct nt_kernels {
 		size_t end, nt_settled *settled);
 	/* Solves corners, given as 4 * triangle + k. `solved` has room for a multiple of NT_LANES. */
 	void (*corners)(const nt_fast *fast, const uint32_t *corners, size_t count, nt_corner *solved);
-	/* Solves all triangles: their flags, and what each corner adds. For tiny.c. */
-	void (*few_frames)(const nt_fast *fast, nt_record *add);
+	/* Solves all triangles: their flags, what each corner adds, and the frames. For tiny.c. */
+	void (*few_frames)(const nt_fast *fast, nt_record *add, nt_frames *frames);
 	/* Turns the sums of groups, given with their vertices and orientations, into results: few_lanes.h. */
 	void (*few_results)(const nt_fast *fast, const uint32_t *vertices, size_t count, nt_record *results,
 		uint8_t *orients);

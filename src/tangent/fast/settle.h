@@ -95,6 +95,15 @@ typedef struct record_lanes {
 	uint32_t sound[NT_LANES];
 } record_lanes;
 
+static inline void read_states(size_t used, record_lanes *restrict r)
+{
+	for (size_t i = 0; i < used; i++) {
+		const uint32_t s = r->state[i];
+		r->present[i] = (s & NT_STATE_EMPTY) == 0;
+		r->sound[i] = (s & NT_STATE_U) != 0 && (s & NT_STATE_V) != 0 && (s & NT_STATE_SOUND) != 0;
+	}
+}
+
 static void load_records(const nt_record *restrict records, size_t used, record_lanes *restrict r)
 {
 	if (!records) {
@@ -113,14 +122,10 @@ static void load_records(const nt_record *restrict records, size_t used, record_
 		memcpy(r->z + i, &four[2], sizeof *four);
 		memcpy(r->state + i, &four[3], sizeof *four);
 	}
-	for (size_t i = 0; i < used; i++) {
-		const uint32_t s = r->state[i];
-		r->present[i] = (s & NT_STATE_EMPTY) == 0;
-		r->sound[i] = (s & NT_STATE_U) != 0 && (s & NT_STATE_V) != 0 && (s & NT_STATE_SOUND) != 0;
-	}
+	read_states(used, r);
 }
 
-static void normalise_records(size_t used, record_lanes *restrict r)
+static inline void normalise_records(size_t used, record_lanes *restrict r)
 {
 	for (size_t i = 0; i < used; i++) {
 		const float x = r->x[i], y = r->y[i], z = r->z[i];
@@ -153,7 +158,7 @@ static void load_normals(const nt_weld_row *rows, size_t count, size_t used, flo
 
 /* A vertex whose result tangent/usable.c would not accept is left to complex.c, too: then the triangles at all other
  * vertices still need no look. */
-static void leave_unusable(const float (*restrict normals)[NT_LANES], const record_lanes *restrict r,
+static inline void leave_unusable(const float (*restrict normals)[NT_LANES], const record_lanes *restrict r,
 	uint32_t *restrict complex, size_t used)
 {
 	for (size_t i = 0; i < used; i++) {

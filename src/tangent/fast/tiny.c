@@ -8,13 +8,16 @@
  *   frames   and weights of 16 triangles at a time                            few_lanes.h
  *   pair     edges, by a table of all pairs of vertices
  *   groups   flooded in the order of seeds: nothing has to be decided ahead
- *   sums     over corners in order, each to its group; then results           few_lanes.h
+ *   sums     over corners in order, each to its group
+ *   vouch    for groups whose directions are too far apart for what lanes see of them
+ *   results                                                                    few_lanes.h
  *   write
  *
  * A group that may split, or has extreme values, is averaged by complex_solve.c.
  */
 #include "tangent/fast/tiny.h"
 
+#include "base/vec.h"
 #include "tangent/fast/complex_solve.h"
 #include "tangent/fast/write.h"
 
@@ -28,6 +31,7 @@ typedef struct tiny {
 	const uint32_t *ids;
 	nt_weld_row rows[CORNERS];
 	nt_record add[CORNERS];        /* of corner 3 t + k */
+	nt_frames frames[(NT_TINY + NT_LANES - 1) / NT_LANES];
 	uint8_t forward[SLOTS], backward[SLOTS]; /* the corner beyond the edge to the next, from the previous vertex, or
 	                                            NOT_ONE */
 	uint8_t group[SLOTS];          /* of a corner, or NOT_ONE */
@@ -183,7 +187,8 @@ static void add_corners(tiny *s)
 {
 	const nt_fast *fast = s->fast;
 	/* lanes behind the last group, too: denormals that lie there take a microsecond */
-	for (size_t g = 0; g < (s->group_count + NT_LANES - 1) / NT_LANES * NT_LANES; g++)
+	const size_t lanes = s->group_count <= 4 ? 4 : (s->group_count + NT_LANES - 1) / NT_LANES * NT_LANES;
+	for (size_t g = 0; g < lanes; g++)
 		s->results[g] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
 	for (size_t t = 0; t < fast->triangle_count; t++)
 		for (size_t k = 0; k < 3 && !(fast->flags[t] & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY)); k++) {
@@ -191,6 +196,70 @@ static void add_corners(tiny *s)
 			memcpy(&add, &s->add[3 * t + k], sizeof add);
 			nt_record_add(&s->results[s->group[4 * t + k]], add);
 		}
+}
+
+/* Vouch */
+
+/* Of unit vectors: below its square two of them, each rounded, cannot have the dot product -1 at which groups split. */
+#define MOST_SQUARED_COSINE 0.999f
+
+/* Corners of groups as lists. */
+typedef struct lists {
+	uint8_t first[CORNERS], next[SLOTS]; /* of groups, of corners; NOT_ONE: none */
+} lists;
+
+static void list_corners(const tiny *s, lists *l)
+{
+	memset(l->first, NOT_ONE, sizeof l->first);
+	for (size_t c = 0; c < 4 * s->fast->triangle_count; c++) {
+		const uint8_t g = s->group[c];
+		if (g == NOT_ONE || (s->fast->flags[c / 4] & NT_TRIANGLE_ANY))
+			continue;
+		l->next[c] = l->first[g];
+		l->first[g] = (uint8_t)c;
+	}
+}
+
+/* Whether two of a group's directions, u or v as they lie across the normal n, may be opposite. */
+static bool may_be_opposite(const tiny *s, const lists *l, size_t group, bool of_v, const float *n)
+{
+	float seen[CORNERS][4];
+	size_t count = 0;
+	for (uint8_t c = l->first[group]; c != NOT_ONE; c = l->next[c], count++) {
+		const size_t t = c / 4;
+		const nt_frames *f = &s->frames[t / NT_LANES];
+		const float (*d)[NT_LANES] = of_v ? f->v : f->u;
+		const nt_vec3 whole = {d[0][t % NT_LANES], d[1][t % NT_LANES], d[2][t % NT_LANES]};
+		const float along = n[0] * whole.x + n[1] * whole.y + n[2] * whole.z;
+		const nt_vec3 a = {whole.x - along * n[0], whole.y - along * n[1], whole.z - along * n[2]};
+		const float squared = nt_vec3_dot(a, a);
+		for (size_t i = 0; i < count; i++) {
+			const float dot = a.x * seen[i][0] + a.y * seen[i][1] + a.z * seen[i][2];
+			if (!(dot > 0.0f) && !(dot * dot < MOST_SQUARED_COSINE * squared * seen[i][3]))
+				return true;
+		}
+		memcpy(seen[count], (float[4]){a.x, a.y, a.z, squared}, sizeof *seen);
+	}
+	return false;
+}
+
+/* Groups whose directions fit in no half-space of the lanes, but which do not split. */
+static void vouch_for_groups(tiny *s)
+{
+	lists l;
+	bool listed = false;
+	for (size_t g = 0; g < s->group_count; g++) {
+		uint32_t *state = &s->results[g].state;
+		const bool u = *state & NT_STATE_U, v = *state & NT_STATE_V;
+		if ((u && v) || !(*state & NT_STATE_SOUND))
+			continue;
+		if (!listed)
+			list_corners(s, &l);
+		listed = true;
+		const float *n = s->rows[s->vertices[g]].normal;
+		if ((u || !may_be_opposite(s, &l, g, false, n)) && (v || !may_be_opposite(s, &l, g, true, n)))
+			*state |= NT_STATE_U | NT_STATE_V;
+	}
 }
 
 /* Write */
@@ -248,10 +317,11 @@ nmtan_status nt_fast_tiny(nt_fast *fast, const nt_kernels *kernels, bool *done)
 	if (status || !*done)
 		return status;
 	fast->rows = s.rows;
-	kernels->few_frames(fast, s.add);
+	kernels->few_frames(fast, s.add, s.frames);
 	pair_edges(&s);
 	find_groups(&s);
 	add_corners(&s);
+	vouch_for_groups(&s);
 	kernels->few_results(fast, s.vertices, s.group_count, s.results, s.orients);
 	return write_corners(&s);
 }

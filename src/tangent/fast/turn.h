@@ -88,7 +88,6 @@ static inline __attribute__((always_inline)) void turn(lanes rows[4])
 	rows[3] = __builtin_shufflevector(ab23, cd23, IN_PARTS(2, 3, 6, 7));
 }
 
-#if WIDTH > 4
 /* The same for one part alone. */
 static inline __attribute__((always_inline)) void turn_four(nt_float4 rows[4])
 {
@@ -101,7 +100,6 @@ static inline __attribute__((always_inline)) void turn_four(nt_float4 rows[4])
 	rows[2] = __builtin_shufflevector(ab23, cd23, 0, 1, 4, 5);
 	rows[3] = __builtin_shufflevector(ab23, cd23, 2, 3, 6, 7);
 }
-#endif
 
 /* Where turn() leaves the row of a lane, and from where it takes it. */
 static inline size_t turned_place(size_t lane)
