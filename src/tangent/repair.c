@@ -16,8 +16,7 @@
  * A face without orientation takes that of its usable corners, or of what is around its vertices. What is usable
  * keeps its bytes.
  *
- * Apart from what is faulty this costs one look at the vertices of each triangle, in a set of bits that stays in the
- * first-level cache.
+ * Apart from what is faulty this costs one look at the numbers of each triangle's vertices.
  */
 #include "tangent/repair.h"
 
@@ -49,8 +48,7 @@ typedef struct patient {
 	const uint64_t *faulty; /* a bit for each face */
 	const uint32_t *welded; /* [corner_count] */
 	size_t welded_count;
-	uint64_t *touched;      /* a bit for each welded vertex: it has an unusable corner */
-	uint32_t *ids;          /* [welded_count] numbers of the touched ones; the others have no meaning */
+	uint32_t *ids;          /* [welded_count] numbers of those that have an unusable corner, the touched ones; NT_NO_ID */
 	size_t id_count;
 	surroundings *around;   /* [id_count] */
 } patient;
@@ -137,19 +135,15 @@ static nmtan_status weld(patient *p)
 static nmtan_status number_vertices(patient *p)
 {
 	const nt_solve *solve = p->solve;
-	const size_t words = p->welded_count / 64 + 1;
-	p->touched = nt_scratch_alloc(solve->scratch, words, sizeof *p->touched);
 	p->ids = nt_scratch_alloc(solve->scratch, p->welded_count, sizeof *p->ids);
-	if (!p->touched || !p->ids)
+	if (!p->ids)
 		return NMTAN_ERROR_MEMORY;
-	memset(p->touched, 0, words * sizeof *p->touched);
+	memset(p->ids, 0xff, p->welded_count * sizeof *p->ids);
 	for (place at = {0, 0}; find_faulty(p, &at); step_over(p, &at)) {
 		for (size_t c = at.first; c < at.first + nt_face_size(solve->mesh, at.face); c++) {
-			const uint32_t v = p->welded[c];
-			if (is_usable(solve, c) || has_bit(p->touched, v))
-				continue;
-			p->touched[v / 64] |= (uint64_t)1 << v % 64;
-			p->ids[v] = (uint32_t)p->id_count++;
+			uint32_t *id = &p->ids[p->welded[c]];
+			if (!is_usable(solve, c) && *id == NT_NO_ID)
+				*id = (uint32_t)p->id_count++;
 		}
 	}
 	return NMTAN_OK;
@@ -163,9 +157,10 @@ static void visit_face(const patient *p, size_t face, size_t first)
 	const nt_solve *solve = p->solve;
 	const nmtan_mesh *mesh = solve->mesh;
 	for (size_t c = first; c < first + nt_face_size(mesh, face); c++) {
-		if (!has_bit(p->touched, p->welded[c]))
+		const uint32_t id = p->ids[p->welded[c]];
+		if (id == NT_NO_ID)
 			continue;
-		surroundings *around = &p->around[p->ids[p->welded[c]]];
+		surroundings *around = &p->around[id];
 		const float w = nt_corner_tangent(solve, c)[3];
 		uint32_t *slot = w == 0.0f ? &around->corner : &around->usable[w > 0.0f];
 		*slot = *slot == NT_NO_ID ? (uint32_t)c : *slot;
@@ -178,8 +173,8 @@ static void visit_face(const patient *p, size_t face, size_t first)
 	for (unsigned i = 0; i < count; i++) {
 		nt_frame_sum *to[3];
 		for (int k = 0; k < 3; k++) {
-			const uint32_t v = p->welded[corners[i][k]];
-			to[k] = has_bit(p->touched, v) ? &p->around[p->ids[v]].sums[orientation > 0] : NULL;
+			const uint32_t id = p->ids[p->welded[corners[i][k]]];
+			to[k] = id == NT_NO_ID ? NULL : &p->around[id].sums[orientation > 0];
 		}
 		nt_add_triangle(mesh, NT_WEIGHT_ANGLE, corners[i], to);
 	}
@@ -215,23 +210,48 @@ static void answer(const nt_solve *solve, surroundings *around)
 	around->answers = a;
 }
 
-static nmtan_status look_around(patient *p)
+/* Whether the triangle with that first corner has a touched vertex. */
+static inline bool is_near(const patient *p, size_t first)
+{
+	const uint32_t *v = p->welded + first;
+	return (p->ids[v[0]] & p->ids[v[1]] & p->ids[v[2]]) != NT_NO_ID;
+}
+
+/* Visits the triangles with a touched vertex, which are listed without a branch. */
+static void visit_triangles(const patient *p)
+{
+	const size_t count = p->solve->mesh->face_count;
+	uint8_t list[64];
+	for (size_t begin = 0; begin < count; begin += 64) {
+		size_t found = 0;
+		for (size_t t = begin; t < count && t < begin + 64; t++) {
+			list[found] = (uint8_t)(t - begin);
+			found += is_near(p, 3 * t);
+		}
+		for (size_t i = 0; i < found; i++)
+			visit_face(p, begin + list[i], 3 * (begin + list[i]));
+	}
+}
+
+static void visit_faces(const patient *p)
 {
 	const nmtan_mesh *mesh = p->solve->mesh;
+	for (size_t face = 0, first = 0; face < mesh->face_count; first += nt_face_size(mesh, face++))
+		if (is_near(p, first) || (nt_face_size(mesh, face) == 4 && p->ids[p->welded[first + 3]] != NT_NO_ID))
+			visit_face(p, face, first);
+}
+
+static nmtan_status look_around(patient *p)
+{
 	p->around = nt_scratch_alloc(p->solve->scratch, p->id_count, sizeof *p->around);
 	if (!p->around)
 		return NMTAN_ERROR_MEMORY;
 	for (size_t i = 0; i < p->id_count; i++)
 		p->around[i] = (surroundings){.corner = NT_NO_ID, .usable = {NT_NO_ID, NT_NO_ID}};
-	for (size_t face = 0, first = 0; face < mesh->face_count; face++) {
-		const unsigned size = nt_face_size(mesh, face);
-		const uint32_t *v = p->welded + first;
-		unsigned near = has_bit(p->touched, v[0]) | has_bit(p->touched, v[1]) | has_bit(p->touched, v[2]);
-		near |= size == 4 && has_bit(p->touched, v[3]);
-		if (near)
-			visit_face(p, face, first);
-		first += size;
-	}
+	if (p->solve->mesh->face_sizes)
+		visit_faces(p);
+	else
+		visit_triangles(p);
 	for (size_t i = 0; i < p->id_count; i++)
 		answer(p->solve, &p->around[i]);
 	return NMTAN_OK;
