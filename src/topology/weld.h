@@ -3,8 +3,8 @@
  * The weld of the fast path: which corners are one vertex (spec page, step 2), and each vertex's eight
  * floats as one row of 32 bytes, so that a later pass finds all of a corner in one place.
  *
- * The numbers are those of nt_weld_corners() up to their order, and where no vertex is equal to another
- * the mesh's own indices are used as they are.
+ * Corners have equal numbers where those of nt_weld_corners() are equal. The numbers have gaps, and where no vertex is
+ * equal to another the mesh's own indices are used as they are.
  */
 #ifndef NT_TOPOLOGY_WELD_H
 #define NT_TOPOLOGY_WELD_H
@@ -14,7 +14,7 @@
 
 typedef struct nt_weld {
 	const uint32_t *ids;     /* [corner_count] welded vertex of each corner; may be mesh->indices */
-	const nt_weld_row *rows; /* [count] */
+	const nt_weld_row *rows; /* [count], of numbers that no corner has too */
 	size_t count;
 } nt_weld;
 
@@ -26,7 +26,7 @@ typedef struct nt_weld {
  *
  *   row_memory, memory
  *            for the rows, and for everything else, which is given back but for ids; may be the same
- *   ranges   threads to use, at least 1. The result does not depend on them.
+ *   ranges   threads to use, at least 1. Which corners have equal numbers does not depend on them.
  *
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */

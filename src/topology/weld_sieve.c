@@ -13,7 +13,7 @@
  * A bitmap is a quarter of the table at most and stays in the second-level cache where the table does not.
  * A mesh that turns out to have many equal vertices is left
  * to the table. Threads have bitmaps of their own for their ranges of vertices; what two of them have marked
- * counts as marked again. Numbers do not depend on threads, nor on whether a vertex is listed by chance.
+ * counts as marked again. What is equal does not depend on threads, nor on whether a vertex is listed by chance.
  */
 #include "base/parallel.h"
 #include "topology/weld_parts.h"
@@ -175,25 +175,20 @@ static size_t list_vertices(sieve *s)
 
 /* Number */
 
-/* Numbers of all vertices, in order of first appearance, from those of the listed ones among themselves; rows move
- * to their numbers. */
-static void number_vertices(nt_welder *w, const nt_welder *listed)
+/* Numbers of all vertices: their own, or that of the first of equal ones. Rows stay where they are, and those of the
+ * others are nobody's. */
+static void number_vertices(const nt_welder *w, const nt_welder *listed)
 {
 	uint32_t *const firsts = listed->numbers; /* takes the place of what has been read */
-	size_t next = 0, classes = 0, l = 0;
-	for (size_t v = 0; v < w->item_count; v++) {
-		if (l < listed->item_count && listed->items[l] == v) {
-			const uint32_t class = listed->numbers[l++];
-			if (class < classes) {
-				w->numbers[v] = firsts[class];
-				continue;
-			}
-			firsts[classes++] = (uint32_t)next;
-		}
-		w->numbers[v] = (uint32_t)next;
-		w->rows[next++] = w->rows[v];
+	size_t classes = 0;
+	for (size_t v = 0; v < w->item_count; v++)
+		w->numbers[v] = (uint32_t)v;
+	for (size_t l = 0; l < listed->item_count; l++) {
+		const uint32_t class = listed->numbers[l], v = listed->items[l];
+		if (class == classes)
+			firsts[classes++] = v;
+		w->numbers[v] = firsts[class];
 	}
-	w->row_count = next;
 }
 
 /* In place of the number of a vertex with a NaN: its row was given to a corner. */
