@@ -113,35 +113,68 @@ static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t
 			addition_of(out, k, turned_place((size_t)lane)));
 }
 
-/* Triangles with frames, lanes [begin, end): add_triangle() with everything that does not change in local variables. */
-static void __attribute__((noinline)) add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t begin,
-	size_t end, const uint32_t *ids, const lanes_out *out)
+/* Triangles with frames, lanes [i, end), up to the first with a corner whose cursor has a flag, but for ELSEWHERE if
+ * `elsewhere` says so: its lane, or `end`. Entries are moved as words, and nothing is called, so that nearly all the loop
+ * needs is in registers. */
+static inline __attribute__((always_inline)) size_t add_usual(const nt_fast *fast, unsigned range, size_t first, size_t i,
+	size_t end, const uint32_t *ids, const lanes_out *out, bool elsewhere)
 {
-	uint32_t *const cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
-	nt_fan_entry *const entries = fast->adjacency.entries;
+	const nt_adjacency *const adjacency = &fast->adjacency;
+	uint32_t *const cursors = adjacency->cursors + range * adjacency->vertex_count;
+	nt_fan_entry *const entries = adjacency->entries;
 	nt_record *const records[2] = {fast->records[0], fast->records[1]};
-	const uint8_t *flags = fast->flags + first;
-	ids += 3 * begin;
-	for (size_t i = begin; i < end; i++, ids += 3) {
+	const uint8_t *const flags = fast->flags + first;
+	for (ids += 3 * i; i < end; i++, ids += 3) {
 		const uint32_t a = ids[0], b = ids[1], c = ids[2];
 		const uint32_t pa = cursors[a], pb = cursors[b], pc = cursors[c];
-		const unsigned orient = flags[i] & NT_TRIANGLE_ORIENT;
-		if (__builtin_expect((pa | pb | pc) >= NT_CURSOR_FLAGGED, 0) || fast->wants_more) {
-			add_triangle(fast, range, first + i, ids, (int)i, out);
-			continue;
-		}
-		const uint32_t bit = orient << 31;
-		const size_t place = 4 * turned_place(i);
+		if (__builtin_expect((pa | pb | pc) >= (elsewhere ? NT_CURSOR_SHARED : NT_CURSOR_FLAGGED), 0))
+			break;
 		cursors[a] = pa + NT_FAN_LANES;
 		cursors[b] = pb + NT_FAN_LANES;
 		cursors[c] = pc + NT_FAN_LANES;
-		entries[pa] = (nt_fan_entry){b | bit, c | bit};
-		entries[pb] = (nt_fan_entry){c | bit, a | bit};
-		entries[pc] = (nt_fan_entry){a | bit, b | bit};
+		const size_t orient = flags[i] & NT_TRIANGLE_ORIENT;
+		const uint64_t bits = -(uint64_t)orient & ((uint64_t)NT_ENTRY_ORIENT << 32 | NT_ENTRY_ORIENT);
+		uint64_t ab, bc;
+		memcpy(&ab, ids, sizeof ab);
+		memcpy(&bc, ids + 1, sizeof bc);
+		ab |= bits;
+		bc |= bits;
+		const uint64_t ca = bc >> 32 | ab << 32;
+		memcpy(elsewhere ? nt_adjacency_entry(adjacency, pa) : &entries[pa], &bc, sizeof bc);
+		memcpy(elsewhere ? nt_adjacency_entry(adjacency, pb) : &entries[pb], &ca, sizeof ca);
+		memcpy(elsewhere ? nt_adjacency_entry(adjacency, pc) : &entries[pc], &ab, sizeof ab);
 		nt_record *const to = records[orient];
-		add_record(to + a, out->add[0] + place);
-		add_record(to + b, out->add[1] + place);
-		add_record(to + c, out->add[2] + place);
+		const float *add = out->add[0] + turned_rows[i];
+		add_record(to + a, add);
+		add_record(to + b, add + 4 * NT_LANES);
+		add_record(to + c, add + 8 * NT_LANES);
+	}
+	return i;
+}
+
+static size_t __attribute__((noinline)) add_here(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
+	const uint32_t *ids, const lanes_out *out)
+{
+	return add_usual(fast, range, first, i, end, ids, out, false);
+}
+
+static size_t __attribute__((noinline)) add_elsewhere(const nt_fast *fast, unsigned range, size_t first, size_t i,
+	size_t end, const uint32_t *ids, const lanes_out *out)
+{
+	return add_usual(fast, range, first, i, end, ids, out, true);
+}
+
+/* Triangles with frames, lanes [begin, end). */
+static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t begin, size_t end, const uint32_t *ids,
+	const lanes_out *out)
+{
+	for (size_t i = begin; i < end; i++) {
+		if (!fast->wants_more)
+			i = add_here(fast, range, first, i, end, ids, out);
+		if (!fast->wants_more && fast->adjacency.rest)
+			i = add_elsewhere(fast, range, first, i, end, ids, out);
+		if (i < end)
+			add_triangle(fast, range, first + i, ids + 3 * i, (int)i, out);
 	}
 }
 

@@ -56,11 +56,10 @@ typedef int nt_int4 __attribute__((vector_size(16)));
 /* Adds the sum, and keeps the bits of the state that both have. */
 static inline void nt_record_add(nt_record *record, nt_int4 add)
 {
-	static const nt_int4 state_lane = {0, 0, 0, -1};
 	nt_float4 old;
 	memcpy(&old, record, sizeof old);
 	const nt_int4 sum = (nt_int4)(old + (nt_float4)add), both = (nt_int4)old & add;
-	const nt_int4 result = (both & state_lane) | (sum & ~state_lane);
+	const nt_int4 result = __builtin_shufflevector(sum, both, 0, 1, 2, 7);
 	memcpy(record, &result, sizeof result);
 }
 

@@ -268,9 +268,10 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		if (!sums[o])
 			continue;
 		const uint32_t sign = o ? NT_RESULT_PLUS : NT_RESULT_MINUS;
+		/* with masks, since gcc 12 makes branches of the same with conditions */
 		for (size_t i = 0; i < used; i++) {
-			r[o].state[i] = complex[i] ? NT_RESULT_COMPLEX | (unsound[i] ? 0 : NT_RESULT_SUM)
-				: r[o].present[i] ? sign : NT_RESULT_NONE;
+			const uint32_t open = NT_RESULT_COMPLEX | ((unsound[i] - 1) & NT_RESULT_SUM);
+			r[o].state[i] = (-complex[i] & open) | ((complex[i] - 1) & -r[o].present[i] & sign);
 		}
 		store_records(nt_fast_record(fast, o, (uint32_t)first), fast->record_step, count, used, &r[o]);
 		if (fast->wants_more)

@@ -108,6 +108,11 @@ static inline size_t turned_place(size_t lane)
 	return lane - in_vector + in_vector % 4 * (WIDTH / 4) + in_vector / 4;
 }
 
+/* The same as the first float of a lane's row of four. */
+#define ROW(lane) (4 * ((lane) - (lane) % WIDTH + (lane) % WIDTH % 4 * (WIDTH / 4) + (lane) % WIDTH / 4))
+static const uint8_t turned_rows[NT_LANES] = {ROW(0), ROW(1), ROW(2), ROW(3), ROW(4), ROW(5), ROW(6), ROW(7), ROW(8),
+	ROW(9), ROW(10), ROW(11), ROW(12), ROW(13), ROW(14), ROW(15)};
+
 /* Lanes of the whole vectors that hold `count` of 1 to 16. */
 static inline size_t whole_lanes(size_t count)
 {
