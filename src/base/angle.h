@@ -6,31 +6,44 @@
 #ifndef NT_BASE_ANGLE_H
 #define NT_BASE_ANGLE_H
 
-#include <stdbool.h>
+/* A t in [0, 1], the nearest of eight parts, and its arc tangent. */
+typedef struct nt_tangent {
+	double t, base, arc;
+} nt_tangent;
 
-/* atan(t) for t in [0, 1]: atan(k/8) of the nearest k, plus atan(r) of what is left,
- * r = (t - k/8) / (1 + t k/8) with |r| <= 1/16. The first term left out of its series is
- * r^15 / 15 < 6e-20. */
-static inline double nt_atan_unit(double t)
+/* The tangent of the angle that nt_angle() has, or of what it lacks to a right angle: in [0, 1]; 1 of what is no number. */
+static inline double nt_lesser_tangent(double s, double c)
 {
-	double base = 0.0, arc = 0.0;
-#define NT_ATAN_STEP(eighths, value) \
-	base = t >= (eighths - 0.5) / 8 ? eighths / 8.0 : base; \
-	arc = t >= (eighths - 0.5) / 8 ? value : arc
-	NT_ATAN_STEP(1, 0.12435499454676143503);
-	NT_ATAN_STEP(2, 0.24497866312686415417);
-	NT_ATAN_STEP(3, 0.35877067027057222040);
-	NT_ATAN_STEP(4, 0.46364760900080611621);
-	NT_ATAN_STEP(5, 0.55859931534356243597);
-	NT_ATAN_STEP(6, 0.64350110879328438680);
-	NT_ATAN_STEP(7, 0.71882999962162450542);
-	NT_ATAN_STEP(8, 0.78539816339744830962);
-#undef NT_ATAN_STEP
-	const double r = (t - base) / (1.0 + t * base);
+	const double a = c < 0.0 ? -c : c;
+	const double small = s <= a ? s : a, large = s <= a ? a : s;
+	const double t = small / (large > 0.0 ? large : 1.0);
+	return t < 1.0 ? t : 1.0;
+}
+
+/* A table, which loops over lanes have by itself: the rest of nt_angle() is vectors there. */
+static inline nt_tangent nt_nearest_arc(double t)
+{
+	static const double arcs[9] = {0.0, 0.12435499454676143503, 0.24497866312686415417, 0.35877067027057222040,
+		0.46364760900080611621, 0.55859931534356243597, 0.64350110879328438680, 0.71882999962162450542,
+		0.78539816339744830962};
+	const int eighths = (int)(t * 8 + 0.5);
+	return (nt_tangent){t, eighths * 0.125, arcs[eighths]};
+}
+
+/* nt_angle() of a point whose lesser tangent is known. atan(t) is atan(k/8) of the nearest k, plus atan(r) of what is left,
+ * r = (t - k/8) / (1 + t k/8) with |r| <= 1/16. The first term left out of its series is r^15 / 15 < 6e-20. */
+static inline double nt_angle_by(nt_tangent tangent, double s, double c)
+{
+	const double half_pi = 1.57079632679489661923, pi = 3.14159265358979323846;
+	const double largest = 1.7976931348623157e308;
+	const double r = (tangent.t - tangent.base) / (1.0 + tangent.t * tangent.base);
 	const double q = r * r;
 	const double series = 1.0 / 3 - q * (1.0 / 5 - q * (1.0 / 7 - q * (1.0 / 9 -
 			q * (1.0 / 11 - q * (1.0 / 13)))));
-	return arc + (r - r * q * series);
+	const double arc = tangent.arc + (r - r * q * series);
+	const double a = c < 0.0 ? -c : c;
+	const double first = s <= a ? arc : half_pi - arc, angle = c < 0.0 ? pi - first : first;
+	return s <= largest && a <= largest ? angle : 0.0;
 }
 
 /* The angle in [0, pi] of the point (c, s) on the unit circle, s >= 0, to 2^-50 of itself; 0 where both are 0.
@@ -65,15 +78,7 @@ static inline __attribute__((always_inline)) double nt_angle_on_circle(double s,
  * are zero or one is not finite. */
 static inline double nt_angle(double s, double c)
 {
-	const double half_pi = 1.57079632679489661923, pi = 3.14159265358979323846;
-	const double largest = 1.7976931348623157e308;
-	if (!(s <= largest && c <= largest && c >= -largest))
-		return 0.0;
-	const double a = c < 0.0 ? -c : c;
-	const double small = s <= a ? s : a, large = s <= a ? a : s;
-	const double arc = nt_atan_unit(small / (large > 0.0 ? large : 1.0));
-	const double first = s <= a ? arc : half_pi - arc;
-	return c < 0.0 ? pi - first : first;
+	return nt_angle_by(nt_nearest_arc(nt_lesser_tangent(s, c)), s, c);
 }
 
 #endif

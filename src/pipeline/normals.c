@@ -16,7 +16,6 @@ static const double CLOSE_RADIANS = 1e-5;
 
 /* What one run of the stage holds; everything is malloc'ed and handed to the arena at the end. */
 typedef struct normal_job {
-	float (*corners)[3];  /* [corner_count] */
 	float (*rows)[4];     /* [corner_count] normals as rows that nmtan_split compares */
 	uint32_t *indices;    /* [corner_count] */
 	uint32_t *sources;    /* [corner_count] */
@@ -25,7 +24,6 @@ typedef struct normal_job {
 
 static void free_job(normal_job *job)
 {
-	free(job->corners);
 	free(job->rows);
 	free(job->indices);
 	free(job->sources);
@@ -109,7 +107,7 @@ static nt_status make_corner_normals(const nt_mesh *mesh, nt_normals mode, norma
 		return NT_ERROR_MEMORY;
 	const uint32_t *smoothing = is_flat ? flat : mode == NT_NORMALS_AUTO ? mesh->face_smoothing : NULL;
 	const nt_status status =
-		nt_status_of(nt_corner_normals(&view, mesh->corner_count, smoothing, &scratch, job->corners));
+		nt_status_of(nt_corner_normals(&view, mesh->corner_count, smoothing, &scratch, job->rows));
 	nt_scratch_free(&scratch);
 	free(flat);
 	return status;
@@ -122,9 +120,8 @@ static void choose_normals(nt_mesh *mesh, nt_normals mode, normal_job *job)
 	for (size_t c = 0; c < mesh->corner_count; c++) {
 		const size_t vertex = vertex_of(mesh, c);
 		const bool lacks = lacks_normal(mesh, vertex), make = lacks || replaces(mode);
-		const float *n = make ? job->corners[c] : mesh->normals + 3 * vertex;
-		memcpy(job->rows[c], n, 3 * sizeof(float));
-		job->rows[c][3] = 0.0f;
+		if (!make)
+			memcpy(job->rows[c], mesh->normals + 3 * vertex, 3 * sizeof(float));
 		mesh->made_normal_corners += lacks;
 		mesh->replaced_normal_corners += make && !lacks;
 	}
@@ -223,13 +220,12 @@ static nt_status make_lacking(nt_scene *scene, nt_mesh *mesh, nt_normals mode)
 	if (!any_made(mesh, mode) || mesh->corner_count == 0)
 		return NT_OK;
 	normal_job job = {
-		.corners = nt_alloc(mesh->corner_count, sizeof *job.corners),
 		.rows = nt_alloc(mesh->corner_count, sizeof *job.rows),
 		.indices = nt_alloc(mesh->corner_count, sizeof *job.indices),
 		.sources = nt_alloc(mesh->corner_count, sizeof *job.sources),
 	};
 	nt_status status = NT_ERROR_MEMORY;
-	if (job.corners && job.rows && job.indices && job.sources)
+	if (job.rows && job.indices && job.sources)
 		status = make_corner_normals(mesh, mode, &job);
 	if (!status) {
 		choose_normals(mesh, mode, &job);

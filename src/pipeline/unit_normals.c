@@ -51,14 +51,14 @@ nt_status nt_mark_directionless(nt_scene *scene, nt_mesh *mesh)
 }
 
 /* Smooth normals of all corners; NULL when memory is exhausted. */
-static float (*make_smooth(const nt_mesh *mesh))[3]
+static float (*make_smooth(const nt_mesh *mesh))[4]
 {
 	nmtan_stored_uv stored;
 	nmtan_mesh view = nt_mesh_view(mesh, &stored);
 	view.position_stride_bytes = 3 * sizeof(float);
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
-	float (*corners)[3] = nt_alloc(mesh->corner_count, sizeof *corners);
+	float (*corners)[4] = nt_alloc(mesh->corner_count, sizeof *corners);
 	if (corners && nt_corner_normals(&view, mesh->corner_count, NULL, &scratch, corners)) {
 		free(corners);
 		corners = NULL;
@@ -70,14 +70,14 @@ static float (*make_smooth(const nt_mesh *mesh))[3]
 /* Vertices without a direction take the smooth normal of their first corner. */
 static nt_status replace_directionless(nt_mesh *mesh)
 {
-	float (*corners)[3] = make_smooth(mesh);
+	float (*corners)[4] = make_smooth(mesh);
 	if (!corners)
 		return NT_ERROR_MEMORY;
 	for (size_t c = 0; c < mesh->corner_count; c++) {
 		float *n = mesh->solve_normals + 3 * (mesh->indices ? mesh->indices[c] : c);
 		if (has_direction(n))
 			continue;
-		memcpy(n, corners[c], sizeof corners[c]);
+		memcpy(n, corners[c], 3 * sizeof *n);
 		mesh->replaced_normals++;
 	}
 	free(corners);

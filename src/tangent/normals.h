@@ -13,7 +13,8 @@
  *
  *   mesh       positions, faces and indices; normals and texcoords are not read. Strides must be filled in
  *   smoothing  [face_count] smoothing group of each face, 0: flat; NULL: all faces are in one group
- *   normals    [corner_count][3] receives unit vectors; (0, 0, 1) where a corner's faces have no area
+ *   normals    [corner_count][4] receives unit vectors and a 0, rows that nmtan_split() takes; (0, 0, 1, 0) where a
+ *              corner's faces have no area
  *
  * A corner's normal is the sum of the face normals of its group at its position, weighted by corner angle
  * (G. Thuermer and C. Wuethrich, "Computing Vertex Normals from Polygonal Facets", 1998), or its own
@@ -22,6 +23,6 @@
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */
 nmtan_status nt_corner_normals(const nmtan_mesh *mesh, size_t corner_count, const uint32_t *smoothing,
-	nt_scratch *scratch, float (*normals)[3]);
+	nt_scratch *scratch, float (*normals)[4]);
 
 #endif

@@ -12,7 +12,7 @@ static const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 2, .v
 	.face_sizes = quads,
 	.positions = &positions[0][0], .position_stride_bytes = 12};
 
-static void make(const uint32_t *smoothing, float (*normals)[3])
+static void make(const uint32_t *smoothing, float (*normals)[4])
 {
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
@@ -29,7 +29,7 @@ static void assert_near(const float *n, float x, float y, float z)
 static void smooth_normals_meet_across_separate_vertices(void **state)
 {
 	(void)state;
-	float n[8][3];
+	float n[8][4];
 	const float h = sqrtf(0.5f);
 	make(NULL, n);
 	assert_near(n[0], 0, 0, 1);
@@ -46,7 +46,7 @@ static void groups_keep_apart_and_group_zero_is_flat(void **state)
 	const uint32_t apart[2] = {1, 2}, flat[2] = {0, 0};
 	const uint32_t *both[2] = {apart, flat};
 	for (int i = 0; i < 2; i++) {
-		float n[8][3];
+		float n[8][4];
 		make(both[i], n);
 		for (int c = 0; c < 4; c++)
 			assert_near(n[c], 0, 0, 1);
@@ -68,7 +68,7 @@ static void angle_weights_do_not_depend_on_the_cut(void **state)
 		.position_stride_bytes = 12};
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
-	float n[12][3];
+	float n[12][4];
 	assert_int_equal(nt_corner_normals(&cube, 12, NULL, &scratch, n), NMTAN_OK);
 	nt_scratch_free(&scratch);
 	const float d = fabsf(n[0][0]);
@@ -86,11 +86,82 @@ static void faces_without_area_give_a_unit_vector(void **state)
 		.position_stride_bytes = 12};
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
-	float n[3][3];
+	float n[3][4];
 	assert_int_equal(nt_corner_normals(&sliver, 3, NULL, &scratch, n), NMTAN_OK);
 	nt_scratch_free(&scratch);
 	for (int c = 0; c < 3; c++)
 		assert_near(n[c], 0, 0, 1);
+}
+
+/* The position of a corner of a face. */
+static const float *corner_at(const nmtan_mesh *m, size_t corner)
+{
+	return m->positions + 3 * m->indices[corner];
+}
+
+/* What the header says, by atan2 and over all pairs of corners: a's share of the sum at b's position. */
+static void add_share(const nmtan_mesh *m, size_t first, size_t size, size_t k, const float *at, double sum[3])
+{
+	const float *p[4];
+	double e[3], f[3], one[3], other[3], n[3], across[3];
+	for (size_t i = 0; i < size; i++)
+		p[i] = corner_at(m, first + i);
+	if (memcmp(p[k], at, 12) != 0)
+		return;
+	for (int i = 0; i < 3; i++) {
+		e[i] = (double)p[(k + 1) % size][i] - p[k][i];
+		f[i] = (double)p[(k + size - 1) % size][i] - p[k][i];
+		one[i] = (double)p[size == 3 ? 1 : 2][i] - p[0][i];
+		other[i] = (double)p[size - 1][i] - p[size == 3 ? 0 : 1][i];
+	}
+	for (int i = 0; i < 3; i++) {
+		const int y = (i + 1) % 3, z = (i + 2) % 3;
+		n[i] = one[y] * other[z] - one[z] * other[y];
+		across[i] = e[y] * f[z] - e[z] * f[y];
+	}
+	const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+	const double angle = atan2(sqrt(across[0] * across[0] + across[1] * across[1] + across[2] * across[2]),
+		e[0] * f[0] + e[1] * f[1] + e[2] * f[2]);
+	for (int i = 0; i < 3; i++)
+		sum[i] += angle * n[i] / length;
+}
+
+/* More faces than are worked out together, of both sizes and several groups. */
+static void many_faces_are_what_the_formula_says(void **state)
+{
+	(void)state;
+	enum { FACES = 150, VERTICES = 60 };
+	float p[VERTICES][3];
+	uint32_t indices[4 * FACES], smoothing[FACES];
+	uint8_t sizes[FACES];
+	uint64_t random = 1;
+	size_t corners = 0;
+	for (size_t i = 0; i < 3 * VERTICES; i++)
+		p[i / 3][i % 3] = (float)((random = random * 6364136223846793005u + 1442695040888963407u) >> 48) / 65536;
+	memcpy(p[VERTICES - 1], p[0], sizeof p[0]); /* one position, two vertices */
+	for (size_t face = 0; face < FACES; face++) {
+		sizes[face] = face % 3 ? 3 : 4;
+		smoothing[face] = 1 + face / 7 % 3;
+		for (size_t k = 0; k < sizes[face]; k++)
+			indices[corners++] = (uint32_t)((face * 7 + k * 13 + face / 11) % VERTICES);
+	}
+	const nmtan_mesh m = {.struct_bytes = sizeof m, .face_count = FACES, .face_sizes = sizes, .vertex_count = VERTICES,
+		.indices = indices, .positions = &p[0][0], .position_stride_bytes = 12};
+	float n[4 * FACES][4];
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	assert_int_equal(nt_corner_normals(&m, corners, smoothing, &scratch, n), NMTAN_OK);
+	nt_scratch_free(&scratch);
+	for (size_t face = 0, c = 0; face < FACES; face++)
+		for (size_t k = 0; k < sizes[face]; k++, c++) {
+			double sum[3] = {0, 0, 0};
+			for (size_t other = 0, first = 0; other < FACES; first += sizes[other++])
+				for (size_t i = 0; i < sizes[other] && smoothing[other] == smoothing[face]; i++)
+					add_share(&m, first, sizes[other], i, corner_at(&m, c), sum);
+			const double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+			assert_near(n[c], (float)(sum[0] / length), (float)(sum[1] / length), (float)(sum[2] / length));
+			assert_true(n[c][3] == 0.0f);
+		}
 }
 
 int main(void)
@@ -100,6 +171,7 @@ int main(void)
 		cmocka_unit_test(groups_keep_apart_and_group_zero_is_flat),
 		cmocka_unit_test(angle_weights_do_not_depend_on_the_cut),
 		cmocka_unit_test(faces_without_area_give_a_unit_vector),
+		cmocka_unit_test(many_faces_are_what_the_formula_says),
 	};
 	return cmocka_run_group_tests_name("tangent/normals", tests, NULL, NULL);
 }
