@@ -1,11 +1,37 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Welding: an indexed mesh by its vertices (weld_sieve.c), others by their corners, whose rows are looked up in a
- * table (weld_table.c); several threads do so for a range of corners each (weld_threads.c).
+ * Welding: an indexed mesh by its vertices (weld_sieve.c), and so a soup of triangles that hardly share any; others by
+ * their corners, whose rows are looked up in a table (weld_table.c); several threads do so for a range of corners each
+ * (weld_threads.c).
  */
 #include "topology/weld.h"
 
 #include "topology/weld_parts.h"
+
+/* Soups of fewer corners are not looked at. */
+enum { LEAST_FLAT = 3 * 1024 };
+
+/* Whether the corners of a mesh without indices seem to have vertices of their own, as with a normal for each triangle: in
+ * triangles that follow one another, at some places, hardly any two are equal. The sieve gives up soon where that was
+ * chance. */
+static bool is_flat(const nmtan_mesh *mesh, size_t corner_count)
+{
+	enum { PLACES = 16, TRIANGLES = 4, CORNERS = 3 * TRIANGLES };
+	size_t equal = 0;
+	if (corner_count < LEAST_FLAT)
+		return false;
+	for (size_t place = 0; place < PLACES; place++) {
+		nt_weld_row rows[CORNERS];
+		for (size_t i = 0; i < CORNERS; i++) {
+			nt_weld_load(mesh, corner_count / (3 * PLACES) * 3 * place + i, &rows[i]);
+			size_t before = 0;
+			while (before < i && !nt_weld_same(&rows[before], &rows[i]))
+				before++;
+			equal += before < i;
+		}
+	}
+	return equal <= PLACES / 2;
+}
 
 nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_borrowed *row_memory,
 	nt_borrowed *memory, nt_weld *weld)
@@ -13,14 +39,14 @@ nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned 
 	nt_welder w = {.mesh = mesh, .row_memory = row_memory, .memory = memory};
 	char *const begin = memory->begin;
 	/* few of many vertices used: corner by corner, so that time follows the corners */
-	if (!mesh->indices || mesh->vertex_count / 2 > corner_count) {
+	if (mesh->indices ? mesh->vertex_count / 2 > corner_count : !is_flat(mesh, corner_count)) {
 		w.items = mesh->indices;
 		w.item_count = corner_count;
 		w.row_guess = corner_count / 4; /* corners share vertices, usually six to one */
 		w.numbers = nt_scratch_alloc(memory->scratch, corner_count, sizeof *w.numbers);
 		weld->ids = w.numbers && nt_weld_items(&w, ranges) ? w.numbers : NULL;
 	} else {
-		w.item_count = mesh->vertex_count;
+		w.item_count = mesh->indices ? mesh->vertex_count : corner_count;
 		weld->ids = nt_weld_vertices(&w, corner_count, ranges);
 	}
 	if (!weld->ids)

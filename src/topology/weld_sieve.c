@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The weld of an indexed mesh. Nearly always no vertex is equal to another, and the whole weld is to find that
- * out: a sieve does so without a table of the vertices.
+ * The weld of an indexed mesh, or of one whose corners have a vertex each. Nearly always no vertex is equal to another,
+ * and the whole weld is to find that out: a sieve does so without a table of the vertices.
  *
  *   load    each vertex's row; its hash marks two bits of a word in a bitmap (a Bloom filter of one word). A
  *           vertex that finds both marked already may equal an earlier one: the bits are marked in a second bitmap
@@ -203,8 +203,10 @@ static void copy_numbers(void *context, size_t begin, size_t end, unsigned slot)
 {
 	const copying *job = context;
 	(void)slot;
-	for (size_t c = begin; c < end; c++)
-		job->ids[c] = job->numbers[job->indices[c]];
+	for (size_t c = begin; c < end; c++) {
+		const uint32_t vertex = job->indices ? job->indices[c] : (uint32_t)c;
+		job->ids[c] = job->numbers ? job->numbers[vertex] : vertex;
+	}
 }
 
 /* Gives each corner of a vertex with a NaN a row of its own: the first takes that of the vertex. */
@@ -227,14 +229,16 @@ static bool number_unordered(nt_welder *w, size_t corner_count, uint32_t *ids)
 	return true;
 }
 
-/* Numbers of corners from numbers of vertices. */
+/* Numbers of corners from numbers of vertices, NULL: each its own; without indices likewise. */
 static const uint32_t *number_corners(nt_welder *w, size_t corner_count, unsigned ranges)
 {
+	if (!w->numbers && w->mesh->indices)
+		return w->mesh->indices;
 	uint32_t *ids = nt_scratch_alloc(w->memory->scratch, corner_count, sizeof *ids);
 	if (!ids)
 		return NULL;
 	nt_parallel_ranges(ranges, corner_count, 1, copy_numbers, &(copying){w->numbers, w->mesh->indices, ids});
-	return !w->unordered || number_unordered(w, corner_count, ids) ? ids : NULL;
+	return !w->unordered || !w->mesh->indices || number_unordered(w, corner_count, ids) ? ids : NULL;
 }
 
 /* The whole */
@@ -313,5 +317,5 @@ const uint32_t *nt_weld_vertices(nt_welder *w, size_t corner_count, unsigned ran
 	} else if (!weld_listed(&s, ranges)) {
 		return NULL;
 	}
-	return w->numbers ? number_corners(w, corner_count, ranges) : w->mesh->indices;
+	return number_corners(w, corner_count, ranges);
 }
