@@ -184,17 +184,23 @@ bench-need: $(B)/tests/bench/need $(B)/nmtan
 bench-farm: $(B)/nmtan
 	@bash tests/bench/farm.sh $(B)/nmtan
 
+# make bench-process PEERS=DIR: whole processes on small files, beside DIR/gltfpack.
+$(B)/tests/bench/process $(B)/tests/bench/make_obj: $(B)/tests/bench/%: $(B)/tests/bench/%.o
+	$(CC) $(NT_LDFLAGS) -o $@ $< -lm
+
+.PHONY: bench-process
+bench-process: $(B)/tests/bench/process $(B)/nmtan $(B)/tests/bench/make_obj
+	@CXX="$(CXX)" sh tests/bench/process.sh $^
+
 # make bench-obj: reading the 104 MB file that speed is stated for; the lines "parse" and "index" are the reader.
-build/bench/torus.obj: $(B)/tests/bench/make_obj.o
+build/bench/torus.obj: $(B)/tests/bench/make_obj
 	@mkdir -p $(@D)
-	$(CC) $(NT_LDFLAGS) -o $(B)/tests/bench/make_obj $< -lm
-	$(B)/tests/bench/make_obj 700 >$@.part && mv $@.part $@
+	$< 700 >$@.part && mv $@.part $@
 
 # make bench-draco: size and time of Draco's levels.
-build/bench/torus_350.obj: $(B)/tests/bench/make_obj.o
+build/bench/torus_350.obj: $(B)/tests/bench/make_obj
 	@mkdir -p $(@D)
-	$(CC) $(NT_LDFLAGS) -o $(B)/tests/bench/make_obj $< -lm
-	$(B)/tests/bench/make_obj 350 >$@.part && mv $@.part $@
+	$< 350 >$@.part && mv $@.part $@
 
 .PHONY: bench-draco
 bench: bench-draco
