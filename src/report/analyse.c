@@ -66,7 +66,7 @@ static bool describe_mesh(nt_report *report, const nt_mesh *mesh, const nt_repor
 		.why = describe_why(&report->arena, mesh,
 			solve ? "tangents would be computed" : nt_decision_text(mesh->decision)),
 		.same_as = NT_NONE, .gltf_mesh = mesh->gltf_mesh, .gltf_primitive = mesh->gltf_primitive,
-		.slots = mesh->slots, .texcoord_set = mesh->texcoord_set,
+		.slots = mesh->slots, .texcoord_set = mesh->texcoord_set, .wrap = {mesh->wrap[0], mesh->wrap[1]},
 		.has_normals = mesh->normals != NULL, .has_texcoords = mesh->texcoords != NULL,
 		.worst_orthogonality = NAN, .relative_determinant = {NAN, NAN, NAN},
 		.box = nt_box_empty()};

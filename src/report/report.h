@@ -194,6 +194,7 @@ typedef struct nt_report_mesh {
 	size_t angle_histogram[NT_ANGLE_BINS]; /* corners, against a fresh solve */
 	size_t instance_count, negative_instances;
 
+	nt_wrap wrap[2];          /* along u and v: how the sampler repeats what the mesh lies on */
 	nt_seam *seams;           /* [seam_count] */
 	nt_island *islands;       /* [island_count] */
 	size_t island_count;

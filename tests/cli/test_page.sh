@@ -74,6 +74,23 @@ exists two.html head.html large.html many.html bad.html diff.html
 run --check --report=pages/ --fail-on=never many/head.obj many/bad.obj many/q[12]?.obj many/q[1-9].obj many/q30.obj '"><script>window.broken=1.obj'
 exists pages/index.html
 
+# two quads, u 0.1 to 0.4 and 1.1 to 1.6, v 0.1 to 0.9
+{ printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 3 0 0\nv 3 1 0\nv 2 1 0\nvn 0 0 1\n'
+	printf 'vt %s\n' '0.1 0.1' '0.4 0.1' '0.4 0.9' '0.1 0.9' '1.1 0.1' '1.6 0.1' '1.6 0.9' '1.1 0.9'
+	printf 'f 1/1/1 2/2/1 3/3/1 4/4/1\nf 5/5/1 6/6/1 7/7/1 8/8/1\n'; } >tiles.obj
+sed 's/^vt 1.6/vt 500/' tiles.obj >far.obj
+python3 "$ROOT/tests/support/images.py" write n.png 32 32 '(128, 128, 255)'
+run -q tiles.obj tiles.gltf
+python3 -c 'import json
+for name, transform in ("mirrored", {}), ("shifted", {"KHR_texture_transform": {"offset": [0.35, 0]}}):
+	d = json.load(open("tiles.gltf"))
+	d.update(images=[{"uri": "n.png"}], samplers=[{"wrapS": 33648, "wrapT": 10497}], textures=[{"source": 0, "sampler": 0}],
+		materials=[{"normalTexture": {"index": 0, "extensions": transform}}], extensionsUsed=["KHR_texture_transform"])
+	d["meshes"][0]["primitives"][0]["material"] = 0
+	json.dump(d, open(name + ".gltf", "w"))'
+run --check --report=tiles.html --fail-on=never tiles.obj mirrored.gltf shifted.gltf far.obj
+exists tiles.html
+
 run --check --threads=1 --report=large.1.html large.obj
 cmp large.html large.1.html || wrong "one thread writes another page"
 if [ -f "$modules/node_modules/playwright-core/package.json" ] && command -v chromium >/dev/null 2>&1; then

@@ -9,6 +9,7 @@
 //   pages/      index.html, and a page of each of head.obj, bad.obj, 30 quads and a name that tries to be a script
 //   bad.html    meshes with nothing to show, and a position that is not finite
 //   diff.html   two squares, of which the second was mirrored in the old version
+//   tiles.html  two quads in neighbouring tiles: repeated, mirrored by the sampler, that with an offset, and over 500 tiles
 //
 // Prints one line per check that fails, and the number of checks that passed.
 import {createRequire} from 'node:module';
@@ -344,6 +345,75 @@ async function clickTexture(page, u, v) {
 	await page.close();
 }
 
+// ---- what lies on each other across tiles ----
+
+{
+	const page = await open('tiles.html'), note = page.locator('#layout-note');
+	// u modulo 1 both quads have 0.1 to 0.4; folded, 1.1 to 1.6 is 0.9 to 0.4; moved by 0.35, 0.45 to 0.75 and 0.55 to 0.05
+	for (const [file, area] of [0.48, 0, 0.16].entries()) {
+		await page.evaluate(file => { location.hash = 'file-' + file; }, file);
+		await page.waitForFunction(name => document.querySelector('#title').textContent.endsWith(name), ['tiles.obj', 'mirrored.gltf', 'shifted.gltf'][file]);
+		await ready(page);
+		await rest(page);
+		const {scale} = await ask(page, 'layout'), tinted = await ask(page, 'overlapPixels') / scale ** 2;
+		check(Math.abs(tinted - area) < 0.01, 'tinted are ' + area + ' of file ' + file + ': ' + tinted);
+		if (file === 0) check((await note.textContent()).includes('count all tiles as one'), 'and it says so: ' + await note.textContent());
+		if (shots) await page.screenshot({path: shots + '/tiles' + file + '.png'});
+	}
+	await page.evaluate(() => { location.hash = 'file-3'; });
+	await page.waitForFunction(() => document.querySelector('#layout-note').textContent.includes('too many tiles'));
+	await page.uncheck('#overlaps', {force: true});
+	check(await note.textContent() === '', 'nothing is said of what is not shown');
+	await page.close();
+}
+
+// ---- fingers ----
+
+{
+	const page = await open('two.html', {hasTouch: true}), session = await page.context().newCDPSession(page);
+	const touch = (type, ...points) => session.send('Input.dispatchTouchEvent', {type, touchPoints: points.map(([x, y], id) => ({x, y, id}))});
+	const middle = async id => page.locator(id).boundingBox().then(b => [b.x + b.width / 2, b.y + b.height / 2]);
+	// moves two fingers from places to others, in steps, and lifts them
+	const pinch = async (from, to) => {
+		await touch('touchStart', from[0]);
+		await touch('touchStart', ...from);
+		for (let i = 1; i <= 10; i++) await touch('touchMove', ...from.map((p, k) => p.map((x, j) => x + (to[k][j] - x) * i / 10)));
+		await touch('touchEnd');
+		await page.waitForTimeout(50);
+	};
+	const beside = ([x, y], dx, dy) => [[x - dx, y - dy], [x + dx, y + dy]];
+
+	// the texture: twice as far apart, and 30 pixels to the right
+	const at = await middle('#layout'), layout = await ask(page, 'layout');
+	await pinch(beside(at, 50, 0), beside([at[0] + 30, at[1]], 100, 0));
+	const zoomed = await ask(page, 'layout');
+	check(Math.abs(zoomed.scale / layout.scale - 2) < 0.01, 'two fingers zoom the texture: ' + zoomed.scale / layout.scale);
+	check(Math.abs(zoomed.u + 30 / zoomed.scale - layout.u) < 0.01 && Math.abs(zoomed.v - layout.v) < 0.01, 'what is between them stays there');
+	check(await selection(page) === null, 'and choose nothing');
+
+	// the model
+	const there = await middle('#space'), before = await ask(page, 'camera');
+	await pinch(beside(there, 40, 0), beside(there, 80, 0));
+	const near = await ask(page, 'camera');
+	check(Math.abs(before.distance / near.distance - 2) < 0.01 && near.yaw === before.yaw, 'two fingers zoom the model: ' + before.distance / near.distance);
+	const arc = k => beside(there, 80 * Math.cos(k), 80 * Math.sin(k));
+	await touch('touchStart', ...arc(0));
+	for (let k = 1; k <= 6; k++) await touch('touchMove', ...arc(k * 0.1));
+	await rest(page);
+	const twisted = await ask(page, 'camera');
+	check(Math.abs(twisted.yaw - near.yaw - 0.6) < 0.01 && Math.abs(twisted.distance / near.distance - 1) < 0.01, 'and turn it: ' + (twisted.yaw - near.yaw));
+	await touch('touchEnd');
+	await touch('touchStart', ...beside(there, 5, 0));
+	await touch('touchEnd');
+	await rest(page);
+	check(await selection(page) === null, 'a tap of two fingers chooses nothing');
+	await page.click('#space-fit');
+	await page.touchscreen.tap(...there);
+	await page.waitForTimeout(50);
+	check((await selection(page))?.triangles > 0, 'a tap of one chooses');
+	await page.close();
+}
+
 // ---- nothing to show ----
 
 {
@@ -379,6 +449,44 @@ async function clickTexture(page, u, v) {
 		const {yaw} = await ask(page, 'camera'), twin = await ask(page, 'twin');
 		check(await camera(page) !== was && yaw === twin.camera.yaw && twin.mode === 7, moved + ' follows');
 	}
+	// a wipe between them: the second square is red in the old version, blue in the new one, at the same place
+	await page.selectOption('#mode', '6');
+	await page.click('[data-layout=wipe]');
+	await rest(page);
+	const [box, twinBox] = [await page.locator('#space').boundingBox(), await page.locator('#space + canvas').boundingBox()];
+	check(JSON.stringify(box) === JSON.stringify(twinBox) && box.width > 800, 'both are in one frame: ' + JSON.stringify([box, twinBox]));
+	check(await page.locator('#left-name').textContent() === 'old' && await page.getAttribute('#wipe', 'aria-label') === 'Border between the old and the new version', 'with names');
+	const square = [[0.62, 0.55]], redness = async () => colours(page, await page.locator('#space-frame .canvas').screenshot(), square).then(([c]) => c[0] - c[2]);
+	await page.mouse.move(box.x + box.width / 2, box.y + 60);
+	await page.mouse.down();
+	await page.mouse.move(box.x + box.width * 0.9, box.y + 60, {steps: 4});
+	await page.mouse.up();
+	await rest(page);
+	check(await page.getAttribute('#wipe', 'aria-valuenow') === '90' && await redness() > 30, 'left of the border is the old version: ' + await redness());
+	await page.focus('#wipe');
+	await page.keyboard.press('Home');
+	await rest(page);
+	check(await redness() < -30, 'right of it the new one: ' + await redness());
+	for (let i = 0; i < 25; i++) await page.keyboard.press('ArrowRight');
+	if (shots) await page.screenshot({path: shots + '/wipe.png'});
+	await page.mouse.click(box.x + 40, box.y + 40); // beside the mesh, on the old side: nothing
+	check(await page.locator('#layout-frame h2').textContent() === 'Texture, new', 'the new version is open');
+	await page.keyboard.press('Home');
+	await page.focus('#wipe');
+	await page.keyboard.press('End');
+	await rest(page);
+	await page.mouse.click(box.x + box.width * square[0][0], box.y + box.height * square[0][1]);
+	await page.waitForFunction(() => document.querySelector('#layout-frame h2').textContent === 'Texture, old');
+	await rest(page);
+	check((await selection(page))?.triangles === 2, 'a click on the old side opens the old version');
+	check(await page.locator('#space + canvas').count() === 1 && await redness() > 0, 'and the wipe stays');
+	await page.keyboard.press('Escape');
+	await page.click('[data-layout=side]');
+	await rest(page);
+	check(await page.locator('#twin-space canvas').count() === 1 && await page.locator('#twin-space').isVisible() && !await page.locator('#wipe').isVisible(), 'side by side again');
+	await page.selectOption('#mode', '7');
+	await page.click('.change .more');
+	await page.waitForFunction(() => document.querySelector('#layout-frame h2').textContent === 'Texture, new');
 	await page.click('[data-code=UV_MIRROR_OVERLAP] .finding');
 	await page.waitForFunction(() => document.querySelector('#twin-layout h2').textContent === 'Texture, new');
 	await rest(page);

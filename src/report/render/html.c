@@ -7,7 +7,7 @@
  *
  *   files     [{name, format, failure, counts: [errors, warnings, infos], meshes, findings}]
  *             mesh:     {label, why, same_as, triangles, vertices, islands, box, facts: [[name, text]], image, map: [6],
- *                       seams: [[edges, closed, length, plane, unmirrored island, mirrored island]], geometry: bool}
+ *                       wrap: [nt_wrap, nt_wrap], seams: [[edges, closed, length, plane, unmirrored island, mirrored island]], geometry: bool}
  *             finding:  {code, severity, count, known, message, mesh, seam, island, line, box, at: [triangle]}
  *   codes     {CODE: {title, meaning, remedy}} of the findings that there are
  *   images    [data URI], which meshes number
@@ -196,15 +196,15 @@ static void put_facts(const nt_report_mesh *m, nt_buffer *out)
 static void put_image(const nt_report_mesh *m, budget *left, nt_buffer *out)
 {
 	const nt_image *image = &m->normal_map;
+	const bool there = image->bytes && image->size <= left->images;
 	nt_buffer_text(out, ",\"image\":");
-	if (!image->bytes || image->size > left->images) {
-		nt_buffer_text(out, "null");
-		return;
-	}
-	left->images -= image->size;
-	nt_buffer_format(out, "%zu,\"map\":[", left->image_count);
+	nt_json_index(there ? (uint32_t)left->image_count : NT_NONE, out);
+	nt_buffer_text(out, ",\"map\":[");
 	put_floats(image->transform, 6, out);
 	nt_buffer_text(out, "]");
+	if (!there)
+		return;
+	left->images -= image->size;
 	nt_buffer_format(&left->sources, "%s\"data:%s;base64,", left->image_count++ ? "," : "", image->type);
 	put_base64(image->bytes, image->size, &left->sources);
 	nt_buffer_text(&left->sources, "\"");
@@ -226,7 +226,7 @@ static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_bu
 	put_box(&m->box, out);
 	put_facts(m, out);
 	put_image(m, left, out);
-	nt_buffer_text(out, ",\"seams\":[");
+	nt_buffer_format(out, ",\"wrap\":[%d,%d],\"seams\":[", (int)m->wrap[0], (int)m->wrap[1]);
 	for (size_t i = 0; m->seams && i < m->seam_count && left->seams > 0; i++, left->seams--) {
 		nt_buffer_text(out, i ? "," : "");
 		put_seam(&m->seams[i], out);

@@ -22,6 +22,9 @@ function element(name, properties, ...children) {
 const plural = (n, one, many) => count(n) + ' ' + (n === 1 ? one : many || one + 's');
 const count = n => n.toLocaleString('en-US').replace(/,/g, '\u2009');
 
+// Maps of texture coordinates: [a, b, c, d, e, f] takes (u, v) to (a u + b v + c, d u + e v + f).
+const determinant = m => m[0] * m[4] - m[1] * m[3];
+
 // ---- files, meshes, findings ----
 
 const severities = ['error', 'warning', 'info'];
@@ -37,7 +40,8 @@ files.forEach((file, f) => {
 		mesh.source = 'g-' + f + '-' + shown.number;
 		mesh.hasGeometry = shown.geometry;
 		mesh.seamList = shown.seams;
-		mesh.map = shown.map;
+		mesh.map = determinant(shown.map) ? shown.map : [1, 0, 0, 0, 1, 0];
+		mesh.wrap = shown.wrap;
 		mesh.picture = shown.image === null || shown.image === undefined ? null : data.images[shown.image];
 	});
 	file.findings.forEach(finding => {
@@ -252,6 +256,16 @@ function trianglesOfSeam(g, seam) {
 	for (let t = 0; t < g.triangles; t++)
 		if (touched[g.indices[3 * t]] + touched[g.indices[3 * t + 1]] + touched[g.indices[3 * t + 2]] > 1) list.push(t);
 	return list;
+}
+
+// Of all texture coordinates.
+function uvBox(g) {
+	const low = [Infinity, Infinity], high = [-Infinity, -Infinity], uv = g.texcoords;
+	for (let i = 0; i < uv.length; i++) {
+		low[i & 1] = Math.min(low[i & 1], uv[i]);
+		high[i & 1] = Math.max(high[i & 1], uv[i]);
+	}
+	return {low, high};
 }
 
 // The last triangle, as it is drawn, whose texture coordinates are around a point; -1: none.

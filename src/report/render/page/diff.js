@@ -55,9 +55,32 @@ class Twin {
 		this.space.onimage = image => { this.layout.image = image; this.layout.draw(); };
 		this.layout.oncoverage = (...window) => this.space.coverage(...window);
 		link(space, this.space, ['camera', 'mode', 'frame', 'other', 'layout', 'wipe', 'showSeams', 'showVectors', 'moving']);
-		for (const view of [space, this.space]) Object.assign(view, {mode: 7, frame: 0, other: 1});
+		for (const view of [space, this.space]) Object.assign(view, {mode: 7, frame: 0, other: 1, layout: 'side'});
+		$('arrange').setAttribute('aria-label', 'How the two versions are shown');
+		$('wipe').setAttribute('aria-label', 'Border between the old and the new version');
 		$('mode').value = 7;
 		if (this.mesh) this.load();
+	}
+
+	// Whether both versions have the mesh, to be seen.
+	get paired() { return !!(this.mesh?.hasGeometry && mesh?.hasGeometry); }
+
+	// Side by side, or in one frame with a wipe between them: then each canvas is cut off at the border. Returns whether it is so.
+	arrange(space) {
+		const {main, figure, canvas} = this.figures[1], wiped = this.paired && space.layout === 'wipe', {number} = this;
+		if (wiped !== figure.hidden) {
+			if (wiped) $('space').after(canvas);
+			else figure.querySelector('.canvas').prepend(canvas);
+			figure.hidden = wiped;
+			document.body.classList.toggle('wiped', wiped);
+		}
+		main.querySelector('h2').textContent = 'Model, ' + (wiped ? 'old and new' : versions[number]);
+		[space, this.space].forEach((view, i) => {
+			const [from, to] = view.part = !wiped ? [0, 1] : number === i ? [0, space.wipe] : [space.wipe, 1];
+			view.canvas.style.clipPath = wiped ? 'inset(0 ' + 100 * (1 - to) + '% 0 ' + 100 * from + '%)' : '';
+			view.draw();
+		});
+		return wiped;
 	}
 
 	load() {
@@ -72,7 +95,7 @@ class Twin {
 
 	// The mesh of the other version.
 	async open(mesh) {
-		const number = mesh.file.number, pair = data.diff.meshes.find(m => m[versions[number]] === mesh.number);
+		const number = this.number = mesh.file.number, pair = data.diff.meshes.find(m => m[versions[number]] === mesh.number);
 		const other = files[1 - number].meshes[pair?.[versions[1 - number]] ?? -1];
 		this.figures.forEach(({title, legend, figure, main, empty}, i) => {
 			const name = i ? 'Model, ' : 'Texture, ';
@@ -87,10 +110,12 @@ class Twin {
 		this.mesh = other;
 		this.geometry = null;
 		this.load();
+		describe();
 		const geometry = other && await openGeometry(other);
 		if (this.mesh !== other || !geometry) return;
 		this.geometry = geometry;
 		this.load();
+		describe();
 	}
 
 	draw() {

@@ -74,8 +74,7 @@ class Overview {
 		}
 		const g = await readGeometry(canvas.mesh), uv = g.texcoords;
 		if (!uv) return;
-		const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
-		for (let v = 0; v < uv.length; v++) { low[v & 1] = Math.min(low[v & 1], uv[v]); high[v & 1] = Math.max(high[v & 1], uv[v]); }
+		const {low, high} = uvBox(g);
 		const scale = Math.min(104 / (high[0] - low[0] || 1), 72 / (high[1] - low[1] || 1));
 		const x = u => 56 + (u - (low[0] + high[0]) / 2) * scale, y = v => 40 + (v - (low[1] + high[1]) / 2) * scale;
 		for (const region of g.regions) {

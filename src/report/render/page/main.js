@@ -229,8 +229,10 @@ function offerFrames() {
 }
 
 function describe() {
-	if (!space || !geometry) return;
-	const mode = MODES[space.mode][0], two = space.other >= 0 && mode !== 'angle', parts = [];
+	if (!space) return;
+	const wiped = twin?.arrange(space);
+	if (!geometry) return;
+	const mode = MODES[space.mode][0], two = twin ? twin.paired : space.other >= 0 && mode !== 'angle', parts = [];
 	if (mode === 'lit') parts.push(space.image ? 'Lit by the normal map.' : 'Lit with a test pattern of domes: there is no normal map here.');
 	if (mode === 'angle') parts.push('The angle between the tangents ' + frameNames[FRAMES[space.frame][0]] + ' and those ' + ((space.other < 0 || space.other === 2) ? 'of screen derivatives' : frameNames[FRAMES[space.other][0]]) + '; 180° where the handedness differs.');
 	if (mode === 'angle' && twin) parts.push('Grey: the other version has no triangle here, or there are no tangents.');
@@ -245,13 +247,22 @@ function describe() {
 	$('wipe').hidden = !two || space.layout !== 'wipe';
 	$('wipe').style.left = 100 * space.wipe + '%';
 	$('wipe').setAttribute('aria-valuenow', Math.round(100 * space.wipe));
-	for (const [id, frame] of [['left-name', space.frame], ['right-name', space.other]]) {
-		$(id).hidden = !two;
-		$(id).textContent = two ? frameNames[FRAMES[frame][0]] : '';
-	}
+	document.querySelectorAll('#arrange button').forEach(b => b.setAttribute('aria-pressed', b.dataset.layout === space.layout));
+	['left-name', 'right-name'].forEach((id, i) => {
+		$(id).hidden = !(twin ? wiped : two);
+		$(id).textContent = twin ? versions[i] : two ? frameNames[FRAMES[i ? space.other : space.frame][0]] : '';
+	});
 	$('texture-toggle').hidden = !mesh.picture;
 	$('frame').closest('label').hidden = twin || ['winding', 'checker', 'normal'].includes(mode);
 	$('other').closest('label').hidden = twin || ['winding', 'checker', 'normal'].includes(mode);
+}
+
+// What is under the islands, and what is tinted.
+function noteLayout() {
+	const {overlaps, showOverlaps} = layout, repeated = showOverlaps && overlaps?.repeated;
+	$('layout-note').textContent = !showOverlaps || !overlaps ? '' :
+		overlaps.repeated === null ? 'Overlaps of one tile with another are not shown: there are too many tiles.' :
+		repeated ? 'Overlaps count all tiles as one, since the texture repeats.' : '';
 }
 
 function changeSpace(change) {
@@ -280,14 +291,13 @@ $('other').addEventListener('change', e => changeSpace({other: Number(e.target.v
 $('seams').addEventListener('change', e => changeSpace({showSeams: e.target.checked}));
 $('vectors').addEventListener('change', e => changeSpace({showVectors: e.target.checked}));
 $('texture').addEventListener('change', e => { layout.showTexture = e.target.checked; layout.draw(); });
-$('overlaps').addEventListener('change', e => { layout.showOverlaps = e.target.checked; layout.draw(); });
+$('overlaps').addEventListener('change', e => { layout.showOverlaps = e.target.checked; layout.draw(); noteLayout(); });
 $('layout-fit').addEventListener('click', () => layout.fit());
 $('space-fit').addEventListener('click', () => { if (geometry) space?.home(); });
 $('selection-show').addEventListener('click', () => { layout.focus(); space?.focus(); });
 $('selection-clear').addEventListener('click', chooseNothing);
 $('mesh').addEventListener('change', e => { chooseNothing(); openMesh(file.meshes[e.target.value]); });
 document.querySelectorAll('#arrange button').forEach(button => button.addEventListener('click', () => {
-	document.querySelectorAll('#arrange button').forEach(b => b.setAttribute('aria-pressed', b === button));
 	changeSpace({layout: button.dataset.layout});
 }));
 document.querySelectorAll('#theme button').forEach(b => b.addEventListener('click', () => setTheme(b.dataset.theme)));
@@ -326,6 +336,7 @@ function startSpace() {
 	space.onpick = (triangle, again) => pick(triangle, again, 'space');
 	space.onimage = image => { layout.image = image; layout.draw(); describe(); };
 	layout.oncoverage = (...window) => space.coverage(...window);
+	layout.onoverlaps = noteLayout;
 	twin?.startSpace(space);
 	if (geometry) {
 		space.load(mesh, geometry);

@@ -27,6 +27,23 @@ function perspective(angle, aspect, near, far) {
 	return [f / aspect, 0, 0, 0, 0, f, 0, 0, 0, 0, (far + near) / (near - far), -1, 0, 0, 2 * far * near / (near - far), 0];
 }
 
+// The map that is `second` after `first`, both as data.js has maps of texture coordinates; and the one back.
+function mapAfter(second, first) {
+	const [a, b, c, d, e, f] = second, [g, h, i, j, k, l] = first;
+	return [a * g + b * j, a * h + b * k, a * i + b * l + c, d * g + e * j, d * h + e * k, d * i + e * l + f];
+}
+
+function mapBack(m) {
+	const [a, b, c, d, e, f] = m, s = determinant(m);
+	return [e / s, -b / s, (b * f - c * e) / s, -d / s, a / s, (c * d - a * f) / s];
+}
+
+// The box around a box that a map moves: [low, high].
+function mapBox(m, low, high) {
+	const corners = [low, high].flatMap(p => [low, high].map(q => [m[0] * p[0] + m[1] * q[1] + m[2], m[3] * p[0] + m[4] * q[1] + m[5]]));
+	return [Math.min, Math.max].map(f => [0, 1].map(i => f(...corners.map(c => c[i]))));
+}
+
 function multiply(a, b) {
 	const c = new Array(16).fill(0);
 	for (let i = 0; i < 4; i++) for (let k = 0; k < 4; k++) for (let j = 0; j < 4; j++)

@@ -160,10 +160,11 @@ void main() { colour = vec4(c, 1.0); }`;
 
 // How often triangles cover a place of the texture: see Space.coverage().
 const coverVertex = `#version 300 es
-uniform vec4 window;
+uniform mat3 place;
 layout(location=2) in vec2 uv;
-void main() { gl_Position = vec4((uv - window.xy) * window.zw - 1.0, 0.0, 1.0); }`;
+void main() { gl_Position = vec4((place * vec3(uv, 1.0)).xy, 0.0, 1.0); }`;
 const coverFragment = `#version 300 es
 precision mediump float;
+uniform vec4 tint;
 out vec4 colour;
-void main() { colour = vec4(0.25); }`;
+void main() { colour = tint; }`;

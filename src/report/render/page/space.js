@@ -3,6 +3,7 @@
 // The mesh in space: WebGL2. One camera turns around a target; what is chosen is filled, and the camera is turned to a
 // side from which it is seen. Two frames can be looked at beside each other, or with a wipe between them.
 
+const MOST_REPETITIONS = 400;
 const SELECTED = [1.0, 0.83, 0.1];
 const SEAM = [1.0, 0.58, 0.0];
 const AXES = [[0.93, 0.2, 0.2], [0.1, 0.72, 0.25], [0.25, 0.45, 1]];
@@ -32,7 +33,7 @@ class Space {
 		if (!gl) throw new Error('this browser has no WebGL 2');
 		Object.assign(this, {gl, canvas, mode: 0, frame: 0, other: -1, layout: 'wipe', wipe: 0.5, showVectors: false,
 			showSeams: true, camera: {target: [0, 0, 0], distance: 3, yaw: 0.6, pitch: 0.35}, buffers: [], frames: 0,
-			moving: false, quality: 0.8, slow: 0, drawn: 0});
+			part: [0, 1], moving: false, quality: 0.8, slow: 0, drawn: 0});
 		this.surfaces = new Map();
 		this.fill = this.program(surfaceVertex, fillFragment);
 		this.seen = this.program(surfaceVertex, seenFragment);
@@ -292,7 +293,30 @@ class Space {
 		return {buffer, colour, width, height};
 	}
 
-	// How often each pixel of a window of the texture is covered, as bytes of 64 for each time.
+	// Where the sampler repeats the mesh on a window of the texture, as maps, itself left out; null: at too many places.
+	// What it repeats is what it is asked for: texture coordinates behind the material's map.
+	repetitions(low, high) {
+		const {map, wrap} = this.mesh, g = this.geometry, all = uvBox(g);
+		const whole = mapBox(map, all.low, all.high);
+		const window = mapBox(map, [0, 1].map(i => Math.max(low[i], all.low[i])), [0, 1].map(i => Math.min(high[i], all.high[i])));
+		const moves = [0, 1].map(axis => { // x: s x + t
+			const list = [], least = 1e-6 * (1 + whole[1][axis] - whole[0][axis]);
+			for (const s of wrap[axis] === 1 ? [1, -1] : [1]) {
+				const ends = [s * whole[0][axis], s * whole[1][axis]], step = wrap[axis] === 1 ? 2 : 1;
+				const first = Math.ceil((window[0][axis] - Math.max(...ends) + least) / step), last = Math.floor((window[1][axis] - Math.min(...ends) - least) / step);
+				if (wrap[axis] === 2) list.push([1, 0]);
+				else if (last - first > MOST_REPETITIONS) return null;
+				else for (let t = first; t <= last; t++) list.push([s, t * step]);
+			}
+			return list;
+		});
+		if (!moves[0] || !moves[1] || moves[0].length * moves[1].length > MOST_REPETITIONS || moves[0].length * moves[1].length * g.triangles > 2e7) return null;
+		return moves[0].flatMap(([s, t]) => moves[1].filter(([r, q]) => s !== 1 || t !== 0 || r !== 1 || q !== 0)
+			.map(([r, q]) => mapAfter(mapBack(map), mapAfter([s, 0, t, 0, r, q], map))));
+	}
+
+	// How often each pixel of a window of the texture is covered, as bytes of 64 for each time: red by the mesh where it
+	// lies, alpha by all that the sampler shows there. repeated: how many repetitions count; null: too many, none does.
 	coverage(low, high, width, height) {
 		const gl = this.gl;
 		if (!this.geometry || !this.geometry.texcoords || width < 1 || height < 1) return null;
@@ -309,13 +333,19 @@ class Space {
 		gl.enable(gl.BLEND);
 		gl.blendFunc(gl.ONE, gl.ONE);
 		gl.useProgram(this.cover.program);
-		gl.uniform4f(this.cover.at.window, low[0], low[1], 2 / (high[0] - low[0]), 2 / (high[1] - low[1]));
-		this.drawElements(this.whole, this.geometry.indices.length);
+		const [x, y] = [0, 1].map(i => 2 / (high[i] - low[i])), window = [x, 0, -1 - x * low[0], 0, y, -1 - y * low[1]];
+		const repetitions = this.repetitions(low, high);
+		for (const map of [null, ...repetitions || []]) {
+			const m = map ? mapAfter(window, map) : window;
+			gl.uniformMatrix3fv(this.cover.at.place, false, [m[0], m[3], 0, m[1], m[4], 0, m[2], m[5], 1]);
+			gl.uniform4f(this.cover.at.tint, map ? 0 : 0.25, 0, 0, 0.25);
+			this.drawElements(this.whole, this.geometry.indices.length);
+		}
 		gl.disable(gl.BLEND);
 		const pixels = new Uint8ClampedArray(4 * width * height);
 		gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
 		gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-		return pixels;
+		return {pixels, repeated: repetitions && repetitions.length};
 	}
 
 	// ---- drawing ----
@@ -363,7 +393,7 @@ class Space {
 	}
 
 	drawSurface(eye, matrix, frame) {
-		const gl = this.gl, surface = this.surface(frame), {at} = surface, g = this.geometry, m = this.mesh.map || [1, 0, 0, 0, 1, 0];
+		const gl = this.gl, surface = this.surface(frame), {at} = surface, g = this.geometry, m = this.mesh.map;
 		const [right, up, back] = axesOf(eye, this.camera.target);
 		this.use(surface, matrix);
 		gl.uniform3fv(at.light, unit(add(back, add(times(right, -0.35), times(up, 0.55)))));
@@ -447,7 +477,8 @@ class Space {
 		if (!this.geometry) return;
 		const two = this.other >= 0 && this.mode !== 7, half = Math.round(w / 2), cut = Math.round(this.wipe * w);
 		if (!two) {
-			this.drawPart(this.frame, [0, 0, w, h], [0, 0, w, h], scale);
+			const [from, to] = this.part.map(x => Math.round(x * w)); // what of its width is looked at
+			this.drawPart(this.frame, [0, 0, w, h], [from, 0, to - from, h], scale);
 		} else if (this.layout === 'wipe') {
 			this.drawPart(this.frame, [0, 0, w, h], [0, 0, cut, h], scale);
 			this.drawPart(this.other, [0, 0, w, h], [cut, 0, w - cut, h], scale);
@@ -515,6 +546,7 @@ class Space {
 		trackPointers(this.canvas, {
 			drag: (dx, dy, second) => second ? this.pan(dx, dy) : this.turn(dx / 150, dy / 150),
 			zoom: (factor, x, y, dx, dy) => { this.zoom(1 / factor); if (dx || dy) this.pan(dx, dy); },
+			twist: angle => this.turn(-angle, 0),
 			click: (x, y, again) => { if (this.geometry) this.onpick?.(this.pick(x, y), again); },
 		});
 		this.canvas.addEventListener('keydown', e => {
@@ -531,7 +563,7 @@ class Space {
 }
 
 // Drags, pinches, wheels and clicks of a canvas, in pixels of the page. drag(dx, dy, second): second button, shift or
-// space; zoom(factor, x, y, dx, dy); click(x, y, again).
+// space; zoom(factor, x, y, dx, dy); twist(radians, clockwise): two fingers; click(x, y, again).
 function trackPointers(canvas, on) {
 	const points = new Map();
 	let moved = 0;
@@ -540,7 +572,7 @@ function trackPointers(canvas, on) {
 		canvas.setPointerCapture(e.pointerId);
 		canvas.focus({preventScroll: true});
 		points.set(e.pointerId, [e.offsetX, e.offsetY]);
-		if (points.size === 1) moved = 0;
+		moved = points.size === 1 ? 0 : Infinity; // two fingers never click
 	});
 	canvas.addEventListener('pointermove', e => {
 		const from = points.get(e.pointerId);
@@ -553,8 +585,9 @@ function trackPointers(canvas, on) {
 			return;
 		}
 		const other = [...points].find(([id]) => id !== e.pointerId)[1];
-		const before = Math.hypot(from[0] - other[0], from[1] - other[1]), after = Math.hypot(to[0] - other[0], to[1] - other[1]);
-		on.zoom(after / Math.max(before, 1), (to[0] + other[0]) / 2, (to[1] + other[1]) / 2, dx / 2, dy / 2);
+		const [ax, ay, bx, by] = [from[0] - other[0], from[1] - other[1], to[0] - other[0], to[1] - other[1]];
+		on.zoom(Math.max(Math.hypot(bx, by), 1) / Math.max(Math.hypot(ax, ay), 1), (to[0] + other[0]) / 2, (to[1] + other[1]) / 2, dx / 2, dy / 2);
+		on.twist?.(Math.atan2(ax * by - ay * bx, ax * bx + ay * by));
 	});
 	const end = e => {
 		if (points.delete(e.pointerId) && e.type === 'pointerup' && moved <= 3 && points.size === 0 && e.button === 0)

@@ -47,12 +47,7 @@ class Layout {
 			return many ? [{mirrored, path: this.pathOf(regions.flatMap(r => r.loops))}]
 				: regions.map(r => ({mirrored, island: r.island, path: this.pathOf(r.loops)}));
 		});
-		this.low = [Infinity, Infinity];
-		this.high = [-Infinity, -Infinity];
-		for (let v = 0; v < uv.length; v++) {
-			this.low[v & 1] = Math.min(this.low[v & 1], uv[v]);
-			this.high[v & 1] = Math.max(this.high[v & 1], uv[v]);
-		}
+		Object.assign(this, uvBox(g));
 		this.seams = g.seams.map(edges => [0, 1].map(side => {
 			const path = new Path2D();
 			let last = -1;
@@ -163,7 +158,7 @@ class Layout {
 
 	drawTexture(c) {
 		const low = [this.u(0), this.v(0)].map(Math.floor), high = [this.u(this.width), this.v(this.height)].map(Math.ceil);
-		const m = this.mesh.map || [1, 0, 0, 0, 1, 0];
+		const m = this.mesh.map;
 		if (!this.showTexture || !this.image || (high[0] - low[0]) * (high[1] - low[1]) > 64) return;
 		c.save();
 		c.globalAlpha = 0.85;
@@ -321,7 +316,7 @@ class Layout {
 		}
 	}
 
-	// Where two triangles lie on each other, once the picture rests.
+	// Where two triangles lie on each other, as the sampler repeats them, once the picture rests.
 	drawOverlaps(c, ink) {
 		const {u, v, scale} = this.view, key = [u, v, scale, this.width, this.height].join();
 		if (!this.showOverlaps || !this.oncoverage) return;
@@ -336,12 +331,13 @@ class Layout {
 
 	findOverlaps(key, ink) {
 		const w = Math.round(this.width), h = Math.round(this.height);
-		const pixels = this.geometry && this.oncoverage([this.u(0), this.v(0)], [this.u(w), this.v(h)], w, h);
-		if (!pixels) return;
+		const found = this.geometry && this.oncoverage([this.u(0), this.v(0)], [this.u(w), this.v(h)], w, h);
+		if (!found) return;
+		const {pixels, repeated} = found;
 		const [r, g, b] = ink.overlap;
 		this.overlapPixels = 0;
 		for (let i = 0; i < pixels.length; i += 4) {
-			const twice = pixels[i] > 96;
+			const twice = pixels[i] > 32 && pixels[i + 3] > 96;
 			this.overlapPixels += twice;
 			pixels[i] = r;
 			pixels[i + 1] = g;
@@ -352,7 +348,8 @@ class Layout {
 		canvas.width = w;
 		canvas.height = h;
 		canvas.getContext('2d').putImageData(new ImageData(pixels, w, h), 0, 0);
-		this.overlaps = {key, canvas};
+		this.overlaps = {key, canvas, repeated};
+		this.onoverlaps?.(repeated);
 		this.draw();
 	}
 
