@@ -249,6 +249,8 @@ nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char 
 	*result = buffer;
 	if (buffer->described)
 		return NT_OK;
+	if (document->is_shared)
+		return nt_gltf_refuse(error);
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "/buffers/%llu", (unsigned long long)index);
 	status = nt_gltf_uint(json, pointer, "byteLength", (uint64_t)1 << 53, NT_GLTF_REQUIRED,
@@ -335,6 +337,8 @@ nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *fro
 	*result = buffer;
 	if (buffer->opened)
 		return NT_OK;
+	if (document->is_shared)
+		return nt_gltf_refuse(error);
 	char pointer[NT_GLTF_POINTER];
 	snprintf(pointer, sizeof pointer, "/buffers/%llu", (unsigned long long)index);
 	const nt_json_value *json = nt_json_at(nt_gltf_root_member(document, "buffers"), (size_t)index);
@@ -343,28 +347,34 @@ nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *fro
 		return place_error(error, status, pointer);
 	if (buffer->size > buffer->length)
 		buffer->size = (size_t)buffer->length;
+	if (buffer->storage == NT_GLTF_STORED_BIN || buffer->storage == NT_GLTF_STORED_FILE) {
+		/* without memory a figure is missing, nothing else */
+		const size_t words = buffer->size / NT_GLTF_PAGE / 64 + 1;
+		buffer->pages = nt_arena_alloc(&document->arena, words, sizeof *buffer->pages);
+		if (buffer->pages)
+			memset(buffer->pages, 0, words * sizeof *buffer->pages);
+	}
 	buffer->opened = true;
 	return NT_OK;
 }
 
+nt_status nt_gltf_refuse(nt_error *error)
+{
+	return nt_fail(error, NT_ERROR_UNSUPPORTED, "not while several threads read the document");
+}
+
+/* Of threads that come to the same page, one counts it. */
 void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin, uint64_t length)
 {
-	if (length == 0 || (buffer->storage != NT_GLTF_STORED_BIN && buffer->storage != NT_GLTF_STORED_FILE))
+	if (length == 0 || !buffer->pages)
 		return;
-	if (!buffer->pages) {
-		const size_t words = buffer->size / NT_GLTF_PAGE / 64 + 1;
-		buffer->pages = nt_arena_alloc(&document->arena, words, sizeof *buffer->pages);
-		if (!buffer->pages)
-			return; /* a figure is missing, nothing else */
-		memset(buffer->pages, 0, words * sizeof *buffer->pages);
-	}
 	for (uint64_t page = begin / NT_GLTF_PAGE; page <= (begin + length - 1) / NT_GLTF_PAGE; page++) {
+		uint64_t *const word = &buffer->pages[page / 64];
 		const uint64_t bit = (uint64_t)1 << page % 64;
-		if (buffer->pages[page / 64] & bit)
+		if (__atomic_load_n(word, __ATOMIC_RELAXED) & bit || __atomic_fetch_or(word, bit, __ATOMIC_RELAXED) & bit)
 			continue;
-		buffer->pages[page / 64] |= bit;
 		const uint64_t left = buffer->size - page * NT_GLTF_PAGE;
-		document->bytes_read += left < NT_GLTF_PAGE ? left : NT_GLTF_PAGE;
+		__atomic_fetch_add(&document->bytes_read, left < NT_GLTF_PAGE ? left : NT_GLTF_PAGE, __ATOMIC_RELAXED);
 	}
 }
 

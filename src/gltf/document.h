@@ -33,7 +33,7 @@ typedef struct nt_gltf_buffer {
 	size_t size;                /* bytes that are there: byteLength or less */
 	unsigned char *decoded;     /* of a data URI: owned */
 	nt_file file;               /* of an external file: owned */
-	uint64_t *pages;            /* one bit for each NT_GLTF_PAGE bytes that were read; NULL: none yet */
+	uint64_t *pages;            /* one bit for each NT_GLTF_PAGE bytes that were read; NULL: they are not counted */
 	const char *path;           /* of an external file */
 } nt_gltf_buffer;
 
@@ -76,6 +76,8 @@ typedef struct nt_gltf {
 	size_t accessor_count;
 	struct nt_draco **draco_blocks; /* [view_count] decoded blocks: draco.c; NULL until there is something */
 	void (*free_blocks)(struct nt_gltf *document); /* set with them */
+	bool is_shared;          /* several threads load: nothing is opened, decompressed or decoded, what would have to be
+	                            fails */
 	uint64_t bytes_read;     /* of buffers */
 	uint64_t bytes_opened;   /* of external files and data URIs */
 } nt_gltf;
@@ -118,6 +120,9 @@ nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char 
 /* The same with its bytes. */
 nt_status nt_gltf_open_buffer(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_buffer **buffer, nt_error *error);
+
+/* For what a shared document refuses: it is done again when the document is nobody else's, and has words then. */
+nt_status nt_gltf_refuse(nt_error *error);
 
 /* Books bytes of a buffer as read: whole pages, each once. What a data URI holds was read with the JSON. */
 enum { NT_GLTF_PAGE = 4096 };

@@ -17,7 +17,7 @@ nt_json_value *nt_gltf_draco_of(const nt_json_value *primitive);
 nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive,
 	const char *pointer, bool with_quantization, nt_error *error);
 
-/* For the table of formats: decodes the blocks of several meshes on several threads. needed: [mesh_count]. A block that
+/* Decodes the blocks of several meshes on several threads. needed: [mesh_count]. A block that
  * fails is left for nt_gltf_decode_draco(), which has it alone and says what is wrong. Returns NT_OK or
  * NT_ERROR_MEMORY. */
 nt_status nt_gltf_decode_ahead(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error);

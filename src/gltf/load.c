@@ -10,6 +10,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
 #include "gltf/accessor.h"
@@ -17,6 +18,7 @@
 #include "gltf/materials.h"
 #include "gltf/pointer.h"
 #include "gltf/primitive.h"
+#include "gltf/view.h"
 
 /* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
 enum { UNBACKED_ELEMENTS = 65536 };
@@ -27,6 +29,8 @@ static nt_status find_primitive(nt_gltf *document, const nt_mesh *mesh,
 	const nt_json_value *json =
 		nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh);
 	*primitive = nt_json_at(nt_json_find(json, "primitives"), mesh->gltf_primitive);
+	if (document->is_shared && nt_gltf_draco_of(*primitive))
+		return nt_gltf_refuse(error);
 	char pointer[NT_GLTF_POINTER];
 	nt_gltf_mesh_pointer(pointer, mesh);
 	return nt_gltf_decode_draco(document, *primitive, pointer, options->recompress, error);
@@ -206,6 +210,8 @@ static nt_status load_vertices(nt_scene *scene, nt_gltf *document, nt_mesh *mesh
 static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, nt_error *error)
 {
 	const nt_mesh *giver = mesh->transform_of ? mesh->transform_of : mesh;
+	if (!giver->texcoords_transformed)
+		return NT_OK;
 	const nt_json_value *primitive = nt_gltf_primitive_of(document, giver);
 	nt_gltf_shading shading;
 	const nt_status status = nt_gltf_find_slots(document, primitive, nt_gltf_of_mesh(giver).pointer,
@@ -213,6 +219,9 @@ static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *me
 	if (status || !shading.has_set || shading.set != mesh->texcoord_set || !mesh->texcoords)
 		return status;
 	const bool own = !mesh->transform_of;
+	/* findings come in the order of the meshes */
+	if (document->is_shared && (shading.transforms_differ || shading.transform.animated))
+		return nt_gltf_refuse(error);
 	if (own && shading.transforms_differ)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, nt_mesh_place(mesh, &(nt_place){0}), 1,
 			"set %u with different texture transforms", mesh->texcoord_set);
@@ -366,19 +375,23 @@ static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 }
 
 /* What a copy of a vertex costs; attributes that cannot be read are not counted. */
-static size_t vertex_bytes_of(nt_gltf *document, const nt_json_value *primitive)
+static nt_status find_vertex_bytes(nt_gltf *document, const nt_json_value *primitive, size_t *vertex_bytes,
+	nt_error *error)
 {
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
 	size_t bytes = nt_json_find(attributes, "TANGENT") ? 0 : 4 * sizeof(float);
 	for (size_t i = 0; i < nt_json_count(attributes); i++) {
 		uint64_t index;
 		nt_gltf_accessor accessor;
-		nt_error error;
-		if (nt_json_get_uint64(nt_json_at(attributes, i), &index) &&
-			!nt_gltf_get_accessor(document, index, "", &accessor, &error))
+		if (!nt_json_get_uint64(nt_json_at(attributes, i), &index))
+			continue;
+		if (!nt_gltf_get_accessor(document, index, "", &accessor, NULL))
 			bytes += accessor.element_bytes;
+		else if (document->is_shared)
+			return nt_gltf_refuse(error);
 	}
-	return bytes;
+	*vertex_bytes = bytes;
+	return NT_OK;
 }
 
 nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
@@ -405,7 +418,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	if (!status)
 		status = load_faces(scene, document, mesh, primitive, options->threads, error);
 	if (!status && options->report)
-		mesh->vertex_bytes = vertex_bytes_of(document, primitive);
+		status = find_vertex_bytes(document, primitive, &mesh->vertex_bytes, error);
 	/* a mesh in the world is written without its targets */
 	if (!status && !options->world && options->morphs == NT_MORPH_BAKE)
 		status = load_morphs(scene, document, mesh, primitive, error);
@@ -414,4 +427,78 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 		memcpy(error->place.object, nt_mesh_place(mesh, &place)->object, sizeof error->place.object);
 	}
 	return status;
+}
+
+/* ---- small ones, several at a time ---- */
+
+/* Faces from which on a mesh has all threads for itself, and those that small ones must have together. */
+enum { LARGE_FACES = 128 * 1024, LEAST_SHARED_FACES = 4096 };
+
+typedef struct small_ones {
+	nt_scene *scene;
+	const nt_read_options *options;
+	bool *needed;   /* [mesh_count] */
+	nt_arena *arenas; /* of each slot: what was loaded, until the scene takes it over */
+} small_ones;
+
+static bool is_small(const nt_mesh *mesh)
+{
+	return !mesh->same_as && mesh->face_count < LARGE_FACES;
+}
+
+static void load_one_small(void *context, size_t item, unsigned slot)
+{
+	const small_ones *job = context;
+	nt_mesh *mesh = &job->scene->meshes[item];
+	if (!job->needed[item] || !is_small(mesh))
+		return;
+	nt_scene own = *job->scene;
+	own.arena = job->arenas[slot];
+	job->needed[item] = nt_gltf_load(&own, mesh, job->options, NULL) != NT_OK;
+	job->arenas[slot] = own.arena;
+}
+
+/* Opens the buffer of a mesh's positions: mostly that of all meshes. */
+static void open_buffer_of(nt_gltf *document, const nt_mesh *mesh)
+{
+	uint64_t index;
+	nt_gltf_accessor accessor;
+	nt_gltf_view view;
+	nt_gltf_buffer *buffer;
+	nt_error ignored;
+	const nt_json_value *attributes = nt_json_find(nt_gltf_primitive_of(document, mesh), "attributes");
+	if (nt_json_get_uint64(nt_json_find(attributes, "POSITION"), &index) &&
+		!nt_gltf_get_accessor(document, index, "", &accessor, &ignored) && accessor.view != NT_NONE &&
+		!nt_gltf_get_view(document, accessor.view, "", &view, &ignored))
+		nt_gltf_open_buffer(document, view.buffer, "", &buffer, &ignored);
+}
+
+nt_status nt_gltf_load_ahead(nt_scene *scene, bool *needed, const nt_read_options *options, nt_error *error)
+{
+	const nt_status status = nt_gltf_decode_ahead(scene, needed, options, error);
+	const unsigned threads = nt_thread_count(options->threads);
+	if (status || threads == 1)
+		return status;
+	size_t faces = 0, first = scene->mesh_count;
+	for (size_t i = scene->mesh_count; i-- > 0;)
+		if (needed[i] && is_small(&scene->meshes[i])) {
+			faces += scene->meshes[i].face_count;
+			first = i;
+		}
+	if (faces < LEAST_SHARED_FACES)
+		return NT_OK;
+	nt_gltf *document = scene->source;
+	nt_read_options of_one = *options;
+	of_one.threads = 1;
+	const small_ones job = {scene, &of_one, needed, nt_calloc(threads, sizeof *job.arenas)};
+	if (!job.arenas)
+		return nt_fail_memory(error);
+	open_buffer_of(document, &scene->meshes[first]);
+	document->is_shared = true;
+	nt_parallel_items(threads, scene->mesh_count, load_one_small, (void *)&job);
+	document->is_shared = false;
+	for (unsigned i = 0; i < threads; i++)
+		nt_arena_join(&scene->arena, &job.arenas[i]);
+	free(job.arenas);
+	return NT_OK;
 }

@@ -100,6 +100,7 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 			shading.wrap[axis] == NT_WRAP_MIRRORED ? (float)shading.transform.uv.offset[axis] : 0;
 	}
 	mesh->texcoord_set = options->texcoord_set >= 0 ? (uint32_t)options->texcoord_set : shading.set;
+	mesh->texcoords_transformed = shading.transforms_differ || shading.transform.animated || shading.transform.turns;
 	mesh->texcoord_conflict = shading.conflict && options->texcoord_set < 0;
 	mesh->texcoord_other_set = shading.other_set;
 	mesh->has_positions = nt_json_find(attributes, "POSITION") != NULL;

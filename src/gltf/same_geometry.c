@@ -75,15 +75,19 @@ static void put_draco(same_job *job, const nt_json_value *primitive, const char 
 	}
 }
 
-static void put_transform(same_job *job, const nt_mesh *mesh, const nt_gltf_shading *shading)
+static nt_status put_transform(same_job *job, const nt_mesh *mesh, const nt_json_value *primitive, nt_error *error)
 {
-	const nt_gltf_transform *t = &shading->transform;
-	const bool applies = shading->has_set && shading->set == mesh->texcoord_set && t->turns;
+	nt_gltf_shading shading = {.has_set = false};
+	const nt_status status = !mesh->texcoords_transformed ? NT_OK : nt_gltf_find_slots(job->document, primitive,
+		nt_gltf_of_mesh(mesh).pointer, &shading, error);
+	const nt_gltf_transform *t = &shading.transform;
+	const bool applies = shading.has_set && shading.set == mesh->texcoord_set && t->turns;
 	put_number(job, applies);
-	if (!applies)
-		return;
-	nt_buffer_append(&job->key, &t->uv.rotation, sizeof t->uv.rotation);
-	nt_buffer_append(&job->key, t->uv.scale, sizeof t->uv.scale);
+	if (applies) {
+		nt_buffer_append(&job->key, &t->uv.rotation, sizeof t->uv.rotation);
+		nt_buffer_append(&job->key, t->uv.scale, sizeof t->uv.scale);
+	}
+	return status;
 }
 
 static void put_targets(same_job *job, const nt_mesh *mesh, const nt_json_value *primitive)
@@ -99,11 +103,6 @@ static nt_status put_key(same_job *job, const nt_mesh *mesh, nt_error *error)
 {
 	const nt_json_value *primitive = nt_gltf_primitive_of(job->document, mesh);
 	const nt_json_value *attributes = nt_json_find(primitive, "attributes");
-	nt_gltf_shading shading;
-	const nt_status status = nt_gltf_find_slots(job->document, primitive, nt_gltf_of_mesh(mesh).pointer,
-		&shading, error);
-	if (status)
-		return status;
 	char texcoords[32];
 	snprintf(texcoords, sizeof texcoords, "TEXCOORD_%u", mesh->texcoord_set);
 	const char *const names[] = {"POSITION", "NORMAL", texcoords, "TANGENT", "COLOR_0"};
@@ -116,7 +115,9 @@ static nt_status put_key(same_job *job, const nt_mesh *mesh, nt_error *error)
 		put_accessor(job, mesh, attributes, names[i]);
 	put_accessor(job, mesh, primitive, "indices");
 	put_draco(job, primitive, names, count);
-	put_transform(job, mesh, &shading);
+	const nt_status status = put_transform(job, mesh, primitive, error);
+	if (status)
+		return status;
 	if (!job->options->world && job->options->morphs == NT_MORPH_BAKE)
 		put_targets(job, mesh, primitive);
 	return job->key.failed ? nt_fail_memory(error) : NT_OK;
@@ -124,15 +125,42 @@ static nt_status put_key(same_job *job, const nt_mesh *mesh, nt_error *error)
 
 /* ---- finding equal ones ---- */
 
-/* first: [wanted] by the number of its key, the first mesh that has it. */
-static nt_status find_all(same_job *job, nt_scene *scene, uint32_t *first, nt_error *error)
+/* The accessor of a mesh's positions; NT_NONE: none that is there. */
+static uint32_t positions_of(const same_job *job, const nt_mesh *mesh)
+{
+	uint64_t accessor;
+	return nt_json_get_uint64(nt_json_find(nt_json_find(nt_gltf_primitive_of(job->document, mesh), "attributes"),
+		"POSITION"), &accessor) && accessor < job->accessor_count ? job->first_alias[accessor] : NT_NONE;
+}
+
+/* Fills positions, [mesh_count], of meshes that share theirs; NT_NONE: others, of which nothing more has to be known.
+ * users: [accessor_count] zeros. Returns how many share. */
+static size_t find_sharing(const same_job *job, uint32_t *positions, uint32_t *users)
+{
+	const nt_scene *scene = job->scene;
+	size_t count = 0;
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		positions[i] = is_wanted(&scene->meshes[i], job->options) ? positions_of(job, &scene->meshes[i]) : NT_NONE;
+		if (positions[i] != NT_NONE)
+			users[positions[i]]++;
+	}
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		if (positions[i] != NT_NONE && users[positions[i]] == 1)
+			positions[i] = NT_NONE;
+		count += positions[i] != NT_NONE;
+	}
+	return count;
+}
+
+/* first: by the number of its key, the first mesh that has it: as many as share positions. */
+static nt_status find_all(same_job *job, nt_scene *scene, const uint32_t *positions, uint32_t *first, nt_error *error)
 {
 	nt_name_table keys = {0};
 	nt_arena arena = {0};
 	nt_status status = NT_OK;
 	for (uint32_t i = 0; !status && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
-		if (!is_wanted(mesh, job->options))
+		if (positions[i] == NT_NONE)
 			continue;
 		job->key.size = 0;
 		status = put_key(job, mesh, error);
@@ -151,6 +179,21 @@ static nt_status find_all(same_job *job, nt_scene *scene, uint32_t *first, nt_er
 	return status;
 }
 
+static nt_status find_among(same_job *job, nt_scene *scene, nt_error *error)
+{
+	uint32_t *positions = nt_alloc(scene->mesh_count, sizeof *positions);
+	uint32_t *users = nt_calloc(job->accessor_count, sizeof *users);
+	const bool ready = positions && users;
+	const size_t count = ready ? find_sharing(job, positions, users) : 0;
+	free(users);
+	uint32_t *first = ready ? nt_alloc(count, sizeof *first) : NULL;
+	const nt_status status = first ? find_all(job, scene, positions, first, error) : nt_fail_memory(error);
+	nt_buffer_free(&job->key);
+	free(positions);
+	free(first);
+	return status;
+}
+
 nt_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
 	size_t wanted = 0;
@@ -161,12 +204,9 @@ nt_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_
 	same_job job = {.scene = scene, .document = scene->source, .options = options};
 	job.accessor_count = nt_json_count(nt_gltf_root_member(job.document, "accessors"));
 	job.first_alias = nt_alloc(job.accessor_count, sizeof *job.first_alias);
-	uint32_t *first = nt_alloc(wanted, sizeof *first);
-	const bool ready = job.first_alias && first &&
+	const bool ready = job.first_alias &&
 		nt_gltf_find_first_aliases(job.document, job.first_alias, job.accessor_count);
-	const nt_status status = ready ? find_all(&job, scene, first, error) : nt_fail_memory(error);
-	nt_buffer_free(&job.key);
+	const nt_status status = ready ? find_among(&job, scene, error) : nt_fail_memory(error);
 	free(job.first_alias);
-	free(first);
 	return status;
 }

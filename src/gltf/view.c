@@ -7,6 +7,7 @@
 
 #include <stdio.h>
 #include <stdlib.h>
+#include "base/lock.h"
 #include "ext/meshopt.h"
 #include "gltf/pointer.h"
 
@@ -62,18 +63,36 @@ static nt_status read_view(nt_gltf *document, uint64_t index, const char *from, 
 	return NT_OK;
 }
 
+/* Notes a view that was read. A reader that sees the number of the buffer sees the rest. */
+static void keep_view(nt_gltf_view *known, const nt_gltf_view *view, bool is_shared)
+{
+	static nt_lock lock = NT_LOCK_INIT;
+	if (is_shared)
+		nt_lock_take(&lock);
+	if (known->buffer == NT_NONE) {
+		known->index = view->index;
+		known->offset = view->offset;
+		known->length = view->length;
+		known->stride = view->stride;
+		known->compression = view->compression;
+		__atomic_store_n(&known->buffer, view->buffer, __ATOMIC_RELEASE);
+	}
+	if (is_shared)
+		nt_lock_give(&lock);
+}
+
 nt_status nt_gltf_get_view(nt_gltf *document, uint64_t index, const char *from, nt_gltf_view *view,
 	nt_error *error)
 {
 	nt_gltf_view *const known = index < document->view_count ? &document->views[index] : NULL;
-	if (known && known->buffer != NT_NONE) {
+	if (known && __atomic_load_n(&known->buffer, __ATOMIC_ACQUIRE) != NT_NONE) {
 		*view = *known;
 	} else {
 		const nt_status status = read_view(document, index, from, view, error);
 		if (status)
 			return status;
 		if (known)
-			*known = *view;
+			keep_view(known, view, document->is_shared);
 	}
 	if (index < document->view_count && document->virtual_of[index] != NT_NONE) {
 		view->buffer = document->virtual_of[index];
@@ -137,6 +156,8 @@ nt_status nt_gltf_decompress_view(nt_gltf *document, uint32_t index, nt_error *e
 		status = nt_gltf_element(document, "bufferViews", index, pointer, &json, error);
 	if (status || !view.compression)
 		return status;
+	if (document->is_shared)
+		return nt_gltf_refuse(error);
 	snprintf(pointer, sizeof pointer, "/bufferViews/%u/extensions/%s", index, view.compression);
 	status = read_packed(json, pointer, &p, error);
 	if (!status)

@@ -91,7 +91,7 @@ static bool is_needed(const loading *l, const nt_mesh *mesh, bool all)
 		((all || l->settings->report) && mesh->triangles && mesh->has_positions));
 }
 
-static nt_status load_ahead(const loading *l, bool all)
+static nt_status load_meshes(const loading *l, bool all)
 {
 	nt_scene *scene = l->scene;
 	bool *needed = nt_alloc(scene->mesh_count, sizeof *needed);
@@ -99,7 +99,14 @@ static nt_status load_ahead(const loading *l, bool all)
 		return nt_fail_memory(l->error);
 	for (size_t i = 0; i < scene->mesh_count; i++)
 		needed[i] = is_needed(l, &scene->meshes[i], all);
-	const nt_status status = l->reader->load_ahead(scene, needed, l->options, l->error);
+	nt_status status = l->reader->load_ahead ? l->reader->load_ahead(scene, needed, l->options, l->error) : NT_OK;
+	for (size_t i = 0; !status && i < scene->mesh_count; i++) {
+		nt_mesh *mesh = &scene->meshes[i];
+		if (needed[i] && (nt_mesh_is_wanted(mesh) || all))
+			status = l->reader->load(scene, mesh, l->options, l->error);
+		else if (needed[i])
+			status = load_for_report(l, mesh);
+	}
 	free(needed);
 	return status;
 }
@@ -114,17 +121,8 @@ nt_status nt_stage_load(nt_scene *scene, const nt_format_entry *reader, const nt
 		status = find_joins(&l);
 	if (!status && reader->find_late && can_be_late(&l, writer))
 		status = reader->find_late(scene, error);
-	if (!status && reader->load_ahead)
-		status = load_ahead(&l, all);
-	for (size_t i = 0; !status && reader->load && i < scene->mesh_count; i++) {
-		nt_mesh *mesh = &scene->meshes[i];
-		if (!is_needed(&l, mesh, all))
-			continue;
-		if (nt_mesh_is_wanted(mesh) || all)
-			status = reader->load(scene, mesh, options, error);
-		else
-			status = load_for_report(&l, mesh);
-	}
+	if (!status && reader->load)
+		status = load_meshes(&l, all);
 	return status ? status : load_copies(&l);
 }
 

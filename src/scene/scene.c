@@ -70,6 +70,7 @@ void nt_mesh_share(nt_mesh *mesh)
 	memcpy(mesh->wrap, own.wrap, sizeof mesh->wrap);
 	memcpy(mesh->wrap_offset, own.wrap_offset, sizeof mesh->wrap_offset);
 	mesh->texcoord_set = own.texcoord_set;
+	mesh->texcoords_transformed = own.texcoords_transformed;
 	mesh->texcoord_conflict = own.texcoord_conflict;
 	mesh->texcoord_other_set = own.texcoord_other_set;
 	mesh->targets_without_tangents = own.targets_without_tangents;

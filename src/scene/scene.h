@@ -164,6 +164,7 @@ typedef struct nt_mesh {
 	uint32_t texcoord_set;   /* number of that set */
 	nt_wrap wrap[2];         /* along u and v, of the texture that tangents serve */
 	float wrap_offset[2];    /* of its transform, v up, where it is mirrored: elsewhere an offset moves all alike */
+	bool texcoords_transformed; /* textures may be looked up elsewhere than the set says: glTF's texture transforms */
 	bool texcoord_conflict;  /* another slot of it asks for another set: texcoord_other_set */
 	uint32_t texcoord_other_set;
 	uint32_t targets_without_tangents; /* morph targets that move it and have no TANGENT */
