@@ -31,10 +31,13 @@ static void load_texcoords(const nmtan_mesh *mesh, const uint32_t corners[3], bo
 
 int nt_triangle_orientation(const nmtan_mesh *mesh, const uint32_t corners[3], bool stored)
 {
+	if (!stored || !nt_has_stored(mesh))
+		return nt_orientation(nt_texcoord(mesh, nt_vertex_of(mesh, corners[0])),
+			nt_texcoord(mesh, nt_vertex_of(mesh, corners[1])), nt_texcoord(mesh, nt_vertex_of(mesh, corners[2])));
 	float t[3][2];
 	load_texcoords(mesh, corners, stored, t);
 	const int sign = nt_orientation(t[0], t[1], t[2]);
-	return stored && nt_has_stored_texcoords(mesh) && mesh->stored->mirrored ? -sign : sign;
+	return nt_has_stored_texcoords(mesh) && mesh->stored->mirrored ? -sign : sign;
 }
 
 /* The sign of a quad whose halves have the given, different, non-zero signs. */
@@ -216,13 +219,19 @@ void nt_add_triangle(const nmtan_mesh *mesh, nt_weight weight, const uint32_t co
 	if (!solve_triangle(mesh, corners, &f))
 		return;
 	const nt_measured m = nt_measure(f.u, f.across);
+	nt_dvec3 normals[3];
+	bool adds[3], any = false; /* what has no weight adds no condition either */
+	for (int k = 0; k < 3; k++) {
+		normals[k] = sums[k] ? nt_unit_normal(mesh, nt_vertex_of(mesh, corners[k])) : (nt_dvec3){0, 0, 0};
+		adds[k] = sums[k] && (weight == NT_WEIGHT_NONE || nt_is_across(&m, nt_dvec3_reject(normals[k], m.u)));
+		any = any || adds[k];
+	}
 	double lengths[3];
-	for (int k = 0; k < 3; k++)
+	for (int k = 0; any && k < 3; k++)
 		lengths[k] = nt_measure_edge(f.edge[k], weight == NT_WEIGHT_AREA);
 	for (int k = 0; k < 3; k++)
-		if (sums[k])
-			add_corner(&f, &m, lengths, weight, nt_unit_normal(mesh, nt_vertex_of(mesh, corners[k])), k,
-				sums[k]);
+		if (adds[k])
+			add_corner(&f, &m, lengths, weight, normals[k], k, sums[k]);
 }
 
 bool nt_sum_tangent(const nt_frame_sum *sum, nt_dvec3 n, nt_dvec3 *tangent)

@@ -63,20 +63,20 @@ static const surroundings *around_corner(const patient *p, size_t c)
 	return &p->around[p->ids[p->welded[c]]];
 }
 
+/* Whether a corner of a faulty face is usable. Such a face is a suspect: its rows are there. */
 static bool is_usable(const nt_solve *solve, size_t c)
 {
-	return nt_corner_tangent(solve, c)[3] != 0.0f;
+	return solve->tangents[4 * c + 3] != 0.0f;
 }
 
 /* The exact orientation of a face, by what is known of it. */
 static int orientation_of(const patient *p, size_t face, size_t first)
 {
 	const nmtan_mesh *mesh = p->solve->mesh;
-	for (size_t c = first; has_bit(p->faulty, face) && c < first + nt_face_size(mesh, face); c++) {
-		const float w = nt_corner_tangent(p->solve, c)[3];
-		if (w == 0.0f && signbit(w))
+	const size_t faulty = has_bit(p->faulty, face) ? nt_face_size(mesh, face) : 0;
+	for (size_t c = first; c < first + faulty; c++)
+		if (!is_usable(p->solve, c) && signbit(p->solve->tangents[4 * c + 3]))
 			return 0;
-	}
 	const int known = mesh->face_sizes ? 0 : nt_known_orientation(p->solve->known, face);
 	return known ? known : nt_face_orientation(mesh, face, first, true, NULL);
 }
@@ -259,46 +259,51 @@ static nmtan_status look_around(patient *p)
 
 /* Mending */
 
-/* The best tangent that can be had at corner c of a face with corners [first, end). */
-static void best_tangent(const patient *p, size_t first, size_t end, size_t c, int orientation, int side, float *tangent)
+/* A faulty face. */
+typedef struct face {
+	size_t first, size; /* its corners */
+	bool usable[4];
+	int orientation, side;
+} face;
+
+/* The best tangent that can be had at an unusable corner c of a face. */
+static void best_tangent(const patient *p, const face *f, size_t c, float *tangent)
 {
 	const nt_solve *solve = p->solve;
 	const answers *a = &around_corner(p, c)->answers;
-	if (solve->faults && !a->averaged[side])
+	if (solve->faults && !a->averaged[f->side])
 		solve->faults[c] |= NMTAN_FAULT_NO_AVERAGE;
-	if (a->averaged[side] || a->borrowed[side]) {
-		memcpy(tangent, a->tangents[side], sizeof a->tangents[side]);
+	if (a->averaged[f->side] || a->borrowed[f->side]) {
+		memcpy(tangent, a->tangents[f->side], sizeof a->tangents[f->side]);
 		return;
 	}
-	for (size_t k = first; k < end; k++) {
+	for (size_t k = 0; k < f->size; k++) {
 		nt_dvec3 t;
-		if (is_usable(solve, k) &&
-			borrow(solve, (uint32_t)k, nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c)), &t)) {
+		if (f->usable[k] && borrow(solve, (uint32_t)(f->first + k),
+					    nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c)), &t)) {
 			store(t, tangent);
 			return;
 		}
 	}
-	const bool other = !orientation && (a->averaged[!side] || a->borrowed[!side]);
-	memcpy(tangent, other ? a->tangents[!side] : a->perpendicular, sizeof a->perpendicular);
+	const bool other = !f->orientation && (a->averaged[!f->side] || a->borrowed[!f->side]);
+	memcpy(tangent, other ? a->tangents[!f->side] : a->perpendicular, sizeof a->perpendicular);
 }
 
 /* The side of a face without orientation: that of a usable corner, all of which agree; else what most of its vertices
  * have around them; of the first usable corner around where that is even; +1 where there is nothing. */
-static int choose_side(const patient *p, size_t first, size_t end)
+static int choose_side(const patient *p, const face *f)
 {
 	int votes = 0, nearest = 1;
 	uint32_t least = NT_NO_ID;
-	for (size_t c = first; c < end; c++)
-		if (is_usable(p->solve, c))
-			return nt_corner_tangent(p->solve, c)[3] > 0.0f;
-	for (size_t c = first; c < end; c++) {
-		const surroundings *around = around_corner(p, c);
+	for (size_t k = 0; k < f->size; k++)
+		if (f->usable[k])
+			return p->solve->tangents[4 * (f->first + k) + 3] > 0.0f;
+	for (size_t k = 0; k < f->size; k++) {
+		const surroundings *around = around_corner(p, f->first + k);
+		votes += around->answers.there[1] - around->answers.there[0];
 		for (int side = 0; side < 2; side++) {
-			votes += around->answers.there[side] ? 2 * side - 1 : 0;
-			if (around->usable[side] < least) {
-				least = around->usable[side];
-				nearest = side;
-			}
+			nearest = around->usable[side] < least ? side : nearest;
+			least = around->usable[side] < least ? around->usable[side] : least;
 		}
 	}
 	return votes ? votes > 0 : nearest;
@@ -321,22 +326,19 @@ static void write_corner(const nt_solve *solve, size_t c, const float *t, float 
 
 /* Repairs one face. Its own corners are read before any is written, and those around are usable ones, which are never
  * written: the order of faces does not matter. */
-static void mend_face(const patient *p, size_t face, size_t first)
+static void mend_face(const patient *p, size_t number, size_t first)
 {
-	const nmtan_mesh *mesh = p->solve->mesh;
-	const size_t size = nt_face_size(mesh, face), end = first + size;
-	const int orientation = orientation_of(p, face, first);
-	const int side = orientation ? orientation > 0 : choose_side(p, first, end);
+	face f = {.first = first, .size = nt_face_size(p->solve->mesh, number), .orientation = orientation_of(p, number, first)};
 	float tangents[4][3];
-	bool mended[4];
-	for (size_t k = 0; k < size; k++) {
-		mended[k] = !is_usable(p->solve, first + k);
-		if (mended[k])
-			best_tangent(p, first, end, first + k, orientation, side, tangents[k]);
-	}
-	for (size_t k = 0; k < size; k++)
-		if (mended[k])
-			write_corner(p->solve, first + k, tangents[k], side ? 1.0f : -1.0f);
+	for (size_t k = 0; k < f.size; k++)
+		f.usable[k] = is_usable(p->solve, first + k);
+	f.side = f.orientation ? f.orientation > 0 : choose_side(p, &f);
+	for (size_t k = 0; k < f.size; k++)
+		if (!f.usable[k])
+			best_tangent(p, &f, first + k, tangents[k]);
+	for (size_t k = 0; k < f.size; k++)
+		if (!f.usable[k])
+			write_corner(p->solve, first + k, tangents[k], f.side ? 1.0f : -1.0f);
 }
 
 nmtan_status nt_repair(const nt_solve *solve, nmtan_counts *counts)

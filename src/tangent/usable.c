@@ -85,17 +85,17 @@ static bool has_unusable(const nt_solve *solve, size_t first, size_t size, int o
 
 /* What a face is like */
 
-static unsigned equal_positions(const nmtan_mesh *mesh, uint32_t a, uint32_t b)
+static inline unsigned is_same(const float *p, const float *q)
 {
-	const float *p = nt_position(mesh, nt_vertex_of(mesh, a));
-	const float *q = nt_position(mesh, nt_vertex_of(mesh, b));
 	return (p[0] == q[0]) & (p[1] == q[1]) & (p[2] == q[2]);
 }
 
 static bool is_degenerate(const nmtan_mesh *mesh, const uint32_t c[3])
 {
-	return equal_positions(mesh, c[0], c[1]) | equal_positions(mesh, c[1], c[2]) |
-	       equal_positions(mesh, c[2], c[0]);
+	const float *p[3];
+	for (int k = 0; k < 3; k++)
+		p[k] = nt_position(mesh, nt_vertex_of(mesh, c[k]));
+	return is_same(p[0], p[1]) | is_same(p[1], p[2]) | is_same(p[2], p[0]);
 }
 
 /* Adds what a triangle is like to the counts; returns its exact orientation, as stored if it has one there. */

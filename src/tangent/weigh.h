@@ -48,6 +48,12 @@ static inline __attribute__((always_inline)) nt_dvec3 nt_weigh_normal(double x, 
 	return nt_dvec3_scale(nt_rsqrt(nt_dvec3_dot(n, n)), n);
 }
 
+/* Whether u has a direction across a normal, without which it is `across`: what is left where it runs along it is noise. */
+static inline __attribute__((always_inline)) bool nt_is_across(const nt_measured *m, nt_dvec3 across)
+{
+	return nt_dvec3_dot(across, across) > NT_PARALLEL * NT_PARALLEL * m->squared;
+}
+
 /*
  * The corner with unit or zero normal n between edge e, to the next vertex, and edge g, from the previous
  * one, of those lengths. Its angle is seen along n; the sine is the part of the triangle's cross
@@ -59,8 +65,7 @@ static inline __attribute__((always_inline)) nt_weighed nt_weigh_corner(const nt
 {
 	const nt_dvec3 d = nt_dvec3_reject(n, m->u);
 	const double squared = nt_dvec3_dot(d, d);
-	/* u may run along n; what is left of it is noise then */
-	const double usable = squared > NT_PARALLEL * NT_PARALLEL * m->squared ? 1.0 : 0.0;
+	const double usable = nt_is_across(m, d) ? 1.0 : 0.0;
 	const double cosine = nt_dvec3_dot(n, e) * nt_dvec3_dot(n, g) - nt_dvec3_dot(e, g);
 	const double turn = nt_rsqrt(sine * sine + cosine * cosine);
 	const double lengths = e_length * g_length;
