@@ -62,9 +62,13 @@ uint64_t hash_point(const nt_draco_mesh &mesh, uint32_t point)
 	for (size_t i = 0; i < mesh.attribute_count; i++) {
 		const nt_draco_attribute &a = mesh.attributes[i];
 		const size_t size = nt_component_size(a.component_type);
-		for (int c = 0; c < a.components; c++) {
+		const unsigned char *at = value_of(a, point);
+		for (int c = 0; c < a.components; c++, at += size) {
 			uint32_t bits = 0;
-			std::memcpy(&bits, value_of(a, point) + size * static_cast<size_t>(c), size);
+			if (size == sizeof bits)
+				std::memcpy(&bits, at, sizeof bits);
+			else
+				std::memcpy(&bits, at, size);
 			if (a.component_type == NT_GLTF_FLOAT && bits == 0x80000000)
 				bits = 0;
 			hash = (hash ^ bits) * 0xff51afd7ed558ccd;
@@ -72,6 +76,18 @@ uint64_t hash_point(const nt_draco_mesh &mesh, uint32_t point)
 		}
 	}
 	return hash;
+}
+
+uint64_t mix(uint64_t hash)
+{
+	hash = (hash ^ hash >> 29) * 0xc4ceb9fe1a85ec53;
+	return hash ^ hash >> 32;
+}
+
+// A number for a side that runs from one point to the other.
+uint64_t hash_side(uint64_t from, uint64_t to)
+{
+	return mix(from * 0xff51afd7ed558ccd + to);
 }
 
 // A number for a set of faces, in any order, each beginning at any of its corners.
@@ -82,34 +98,21 @@ uint64_t hash_faces(const nt_draco_mesh &mesh)
 		points[p] = hash_point(mesh, static_cast<uint32_t>(p));
 	uint64_t sum = 0;
 	for (size_t f = 0; f < mesh.face_count; f++) {
-		uint64_t best = ~uint64_t(0);
-		for (size_t k = 0; k < 3; k++) {
-			uint64_t hash = 0;
-			for (size_t i = 0; i < 3; i++) {
-				hash = (hash ^ points[mesh.indices[3 * f + (k + i) % 3]]) * 0xc4ceb9fe1a85ec53;
-				hash ^= hash >> 29;
-			}
-			best = std::min(best, hash);
-		}
-		sum += best;
+		const uint32_t *face = mesh.indices + 3 * f;
+		const uint64_t a = points[face[0]], b = points[face[1]], c = points[face[2]];
+		sum += mix(hash_side(a, b) + hash_side(b, c) + hash_side(c, a));
 	}
 	return sum;
 }
 
 // Two corners at one point or one position.
-bool is_degenerate(const nt_draco_mesh &mesh, const uint32_t *face)
+bool is_degenerate(const nt_draco_attribute &positions, const uint32_t *face)
 {
-	bool equal = face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
-	for (size_t i = 0; i < mesh.attribute_count && !equal; i++) {
-		const nt_draco_attribute &a = mesh.attributes[i];
-		if (a.kind != NT_DRACO_POSITION)
-			continue;
-		const size_t width =
-			nt_component_size(a.component_type) * static_cast<size_t>(a.components);
-		for (size_t k = 0; k < 3; k++)
-			equal |= std::memcmp(value_of(a, face[k]), value_of(a, face[(k + 1) % 3]), width) == 0;
-		break;
-	}
+	const size_t width =
+		nt_component_size(positions.component_type) * static_cast<size_t>(positions.components);
+	bool equal = false;
+	for (size_t k = 0; k < 3 && !equal; k++)
+		equal = std::memcmp(value_of(positions, face[k]), value_of(positions, face[(k + 1) % 3]), width) == 0;
 	return equal;
 }
 
@@ -149,9 +152,12 @@ void nt::expect_back(nt_draco &expected, const nt_draco_mesh &from, const draco:
 		a.copied = nullptr;
 		expected.attributes.push_back(a);
 	}
-	const bool drop = from.method == NT_DRACO_EDGEBREAKER;
+	const nt_draco_attribute *positions = from.attributes; // edgebreaker's input has them
+	while (from.method == NT_DRACO_EDGEBREAKER && positions->kind != NT_DRACO_POSITION)
+		positions++;
+	expected.indices.reserve(3 * from.face_count);
 	for (size_t f = 0; f < from.face_count; f++)
-		if (!drop || !is_degenerate(from, from.indices + 3 * f))
+		if (from.method == NT_DRACO_SEQUENTIAL || !is_degenerate(*positions, from.indices + 3 * f))
 			for (size_t k = 0; k < 3; k++)
 				expected.indices.push_back(numbers[from.indices[3 * f + k]]);
 	expected.mesh = {from.method, point_count, expected.indices.size() / 3, expected.indices.data(),

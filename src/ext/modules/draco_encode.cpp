@@ -155,9 +155,9 @@ void add_attribute(draco::Mesh &to, const nt_draco_attribute &a, const std::vect
 	const int id = to.AddAttribute(layout, true, static_cast<uint32_t>(sources.size()));
 	draco::PointAttribute *attribute = to.attribute(id);
 	attribute->set_unique_id(a.unique_id);
+	unsigned char *values = attribute->buffer()->data();
 	for (size_t p = 0; p < sources.size(); p++)
-		attribute->SetAttributeValue(draco::AttributeValueIndex(static_cast<uint32_t>(p)),
-			value_of(a, sources[p]));
+		std::memcpy(values + width * p, value_of(a, sources[p]), width);
 }
 
 std::unique_ptr<draco::Mesh> make_mesh(const nt_draco_mesh &mesh,
@@ -189,35 +189,109 @@ uint64_t hash_value(const unsigned char *bytes, size_t width)
 	return hash;
 }
 
+// Numbers things by their first equal, in the order in which they come. Half of the hash stands beside each number, so
+// that hardly a thing is looked at that is not equal; slots are asked for some things ahead, since each is a cache miss.
+class numbering {
+public:
+	enum { AHEAD = 16 };
+
+	explicit numbering(size_t count)
+	{
+		size_t size = 16;
+		while (size < 2 * count)
+			size *= 2;
+		slots.resize(size);
+	}
+
+	void prefetch(uint64_t hash) const { __builtin_prefetch(&slots[hash & (slots.size() - 1)]); }
+
+	// The number of a thing; `next` where it is the first of its kind, which has that number then.
+	template <typename Equal> uint32_t number(uint64_t hash, uint32_t next, Equal &&is_equal)
+	{
+		const uint32_t tag = static_cast<uint32_t>(hash >> 32);
+		for (size_t at = hash & (slots.size() - 1);; at = (at + 1) & (slots.size() - 1)) {
+			slot &s = slots[at];
+			if (!s.used) {
+				s = {tag, next + 1};
+				return next;
+			}
+			if (s.tag == tag && is_equal(s.used - 1))
+				return s.used - 1;
+		}
+	}
+
+private:
+	struct slot {
+		uint32_t tag, used; // 0: not; else a number and 1
+	};
+	std::vector<slot> slots;
+};
+
 // What DeduplicateValues() of the attribute does, whose tables take a third of the whole time: values that are equal bit
-// for bit become one, in the order in which they come first. Each point has a value of its own before.
-void join_values(PointAttribute &attribute, uint32_t count)
+// for bit become one, in the order in which they come first. Each point has a value of its own before. Returns whether
+// all differ.
+bool join_values(PointAttribute &attribute, uint32_t count)
 {
 	const size_t width = static_cast<size_t>(attribute.byte_stride());
 	unsigned char *values = attribute.buffer()->data();
-	size_t mask = 15;
-	while (mask < 2 * size_t(count))
-		mask = 2 * mask + 1;
-	constexpr uint32_t none = ~uint32_t(0);
-	std::vector<uint32_t> table(mask + 1, none), ids(count);
+	numbering numbers(count);
+	std::vector<uint32_t> ids(count);
+	uint64_t hashes[numbering::AHEAD] = {};
 	uint32_t unique = 0;
-	for (uint32_t p = 0; p < count; p++) {
-		const unsigned char *value = values + width * p;
-		size_t at = hash_value(value, width) & mask;
-		while (table[at] != none && std::memcmp(values + width * table[at], value, width) != 0)
-			at = (at + 1) & mask;
-		if (table[at] == none) {
-			std::memmove(values + width * unique, value, width);
-			table[at] = unique++;
+	for (uint32_t p = 0; p < count + numbering::AHEAD; p++) {
+		uint64_t &hash = hashes[p % numbering::AHEAD];
+		if (p >= numbering::AHEAD) {
+			const uint32_t here = p - numbering::AHEAD;
+			const unsigned char *value = values + width * here;
+			ids[here] = numbers.number(hash, unique, [&](uint32_t other) {
+				return std::memcmp(values + width * other, value, width) == 0;
+			});
+			if (ids[here] == unique && unique++ != here)
+				std::memcpy(values + width * ids[here], value, width);
 		}
-		ids[p] = table[at];
+		if (p < count) {
+			hash = hash_value(values + width * p, width);
+			numbers.prefetch(hash);
+		}
 	}
 	if (unique == count)
-		return;
+		return true;
 	attribute.SetExplicitMapping(count);
 	for (uint32_t p = 0; p < count; p++)
 		attribute.SetPointMapEntry(draco::PointIndex(p), draco::AttributeValueIndex(ids[p]));
 	attribute.Resize(unique);
+	return false;
+}
+
+// Whether no two points have the same values in all attributes, as most files have it. May say no where it is so.
+bool points_differ(const draco::Mesh &mesh)
+{
+	numbering numbers(mesh.num_points());
+	std::vector<uint64_t> hashes(mesh.num_points(), 0);
+	for (int i = 0; i < mesh.num_attributes(); i++)
+		for (uint32_t p = 0; p < mesh.num_points(); p++) {
+			const uint32_t id = mesh.attribute(i)->mapped_index(draco::PointIndex(p)).value();
+			hashes[p] = (hashes[p] ^ id) * 0xff51afd7ed558ccd;
+			hashes[p] ^= hashes[p] >> 32;
+		}
+	for (uint32_t p = 0; p < mesh.num_points(); p++) {
+		if (p + numbering::AHEAD < mesh.num_points())
+			numbers.prefetch(hashes[p + numbering::AHEAD]);
+		if (numbers.number(hashes[p], p, [&](uint32_t other) { return hashes[other] == hashes[p]; }) != p)
+			return false;
+	}
+	return true;
+}
+
+// Joins what split vertices separate, so that one surface is encoded as one. Draco's own search for equal points takes
+// long, and there is nothing to find where no two are equal.
+void join_points(draco::Mesh &mesh)
+{
+	bool differ = false;
+	for (int i = 0; i < mesh.num_attributes(); i++)
+		differ |= join_values(*mesh.attribute(i), mesh.num_points());
+	if (!differ && !points_differ(mesh))
+		mesh.DeduplicatePointIds();
 }
 
 // ---- encoding ----
@@ -309,12 +383,8 @@ nt_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *err
 	nt::expect_back(expected, mesh, *made, numbers);
 	if (expected.mesh.face_count == 0)
 		return nt_fail(error, NT_ERROR_INPUT, "every face is degenerate: nothing to encode");
-	if (mesh.method == NT_DRACO_EDGEBREAKER) {
-		// joins what split vertices separate, so that one surface is encoded as one
-		for (int i = 0; i < made->num_attributes(); i++)
-			join_values(*made->attribute(i), made->num_points());
-		made->DeduplicatePointIds();
-	}
+	if (mesh.method == NT_DRACO_EDGEBREAKER)
+		join_points(*made);
 
 	draco::ExpertEncoder encoder(*made);
 	set_options(encoder, mesh);

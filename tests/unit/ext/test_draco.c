@@ -244,6 +244,43 @@ static void copied_points_have_the_values_of_others(void **state)
 	}
 }
 
+/* Three points for each face: equal ones become one again. */
+static void equal_points_are_joined_by_edgebreaker(void **state)
+{
+	(void)state;
+	enum { SOUP = 3 * (FACES - 1) };
+	grid g;
+	make_grid(&g, NT_DRACO_EDGEBREAKER, 0);
+	static float positions[SOUP][3], texcoords[SOUP][2];
+	static uint32_t indices[SOUP];
+	for (uint32_t c = 0; c < SOUP; c++) {
+		const uint32_t p = g.indices[c / 3][c % 3];
+		memcpy(positions[c], g.positions[p], sizeof *positions);
+		memcpy(texcoords[c], g.texcoords[p], sizeof *texcoords);
+		texcoords[c][0] = fabsf(texcoords[c][0] - 0.5f); /* neither kind of value is a point's alone */
+		positions[c][0] = 0.37f * (float)(p % (SIDE + 1) % 7);
+		positions[c][1] = (float)(p / (SIDE + 1));
+		indices[c] = c;
+	}
+	const nt_draco_attribute attributes[] = {
+		{.kind = NT_DRACO_POSITION, .component_type = NT_GLTF_FLOAT, .components = 3, .data = positions},
+		{.unique_id = 1, .kind = NT_DRACO_TEXCOORD, .component_type = NT_GLTF_FLOAT, .components = 2, .data = texcoords}};
+	const nt_draco_mesh mesh = {.method = NT_DRACO_EDGEBREAKER, .point_count = SOUP, .face_count = FACES - 1,
+		.indices = indices, .attributes = attributes, .attribute_count = 2};
+	size_t distinct = 0;
+	for (size_t c = 0; c < SOUP; c++) {
+		size_t first = 0;
+		while (memcmp(positions[first], positions[c], sizeof *positions) != 0 ||
+			memcmp(texcoords[first], texcoords[c], sizeof *texcoords) != 0)
+			first++;
+		distinct += first == c;
+	}
+	nt_draco_block block = encoded(&mesh);
+	assert_true(distinct < SOUP / 2);
+	assert_int_equal(block.point_count, distinct);
+	nt_draco_block_free(&block);
+}
+
 /* The extremes of what a decoder gives back. */
 static void bounds_are_those_of_the_decoded_values(void **state)
 {
@@ -497,6 +534,7 @@ int main(void)
 		cmocka_unit_test(second_encoding_in_the_same_box_moves_nothing),
 		cmocka_unit_test(edgebreaker_keeps_every_sound_face),
 		cmocka_unit_test(copied_points_have_the_values_of_others),
+		cmocka_unit_test(equal_points_are_joined_by_edgebreaker),
 		cmocka_unit_test(bounds_are_those_of_the_decoded_values),
 		cmocka_unit_test(non_manifold_meshes_survive_edgebreaker),
 		cmocka_unit_test(what_cannot_be_encoded_is_refused),
