@@ -8,7 +8,14 @@
  * virtual machine, and the compiler's way asks a dozen times before main(), needed or not. */
 #if defined(__x86_64__) && __has_include(<sys/platform/x86.h>)
 #include <sys/platform/x86.h>
-#define HAS(feature, name) (CPU_FEATURE_ACTIVE(feature) != 0)
+
+/* As CPU_FEATURE_ACTIVE(), which shifts a signed 1 by 31 places for AVX512VL: a leaf has four registers. */
+static bool is_active(unsigned feature)
+{
+	return __x86_get_cpuid_feature_leaf(feature / 128)->active_array[feature / 32 % 4] >> feature % 32 & 1;
+}
+
+#define HAS(feature, name) is_active(x86_cpu_##feature)
 #elif defined(__x86_64__)
 #define HAS(feature, name) (__builtin_cpu_supports(name) != 0)
 #endif

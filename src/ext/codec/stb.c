@@ -27,7 +27,14 @@ enum { MOST_RATIO = 128 };
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wsign-compare"
 #pragma GCC diagnostic ignored "-Wshadow"
+/* Of a PSD that is nearly transparent it divides by alpha, and takes what is no byte for one. */
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((no_sanitize("float-cast-overflow"))), apply_to = function)
+#endif
 #include <stb/stb_image.h>
+#ifdef __clang__
+#pragma clang attribute pop
+#endif
 #pragma GCC diagnostic pop
 
 _Static_assert(sizeof(((stbi__context *)0)->buffer_start) == BUFFER_BYTES, "the end is told by this size");
