@@ -99,17 +99,17 @@ static nt_status decode(spng_ctx *png, size_t size, uint32_t rows, nt_pixels *pi
 	const int found = spng_get_trns(png, &transparency);
 	if (found && found != SPNG_ECHUNKAVAIL)
 		return fail(found, "PNG", error);
+	/* one bit a pixel is the least that a file holds */
+	const uint64_t least_bytes = (uint64_t)header.width * header.height / 8;
+	if (least_bytes / MOST_RATIO > (uint64_t)size + SLACK_BYTES)
+		return nt_fail(error, NT_ERROR_INPUT, "PNG: %zu bytes cannot hold %u x %u pixels", size, header.width,
+			header.height);
 	const form wanted = form_of(&header, !found);
 	const bool all = rows >= header.height || header.interlace_method;
 	nt_status status = nt_pixels_create(pixels, header.width, all ? header.height : rows, wanted.channels, wanted.bits,
 		error);
 	if (status)
 		return status;
-	/* one bit a pixel is the least that a file holds */
-	const uint64_t least_bytes = (uint64_t)header.width * header.height / 8;
-	if (least_bytes / MOST_RATIO > (uint64_t)size + SLACK_BYTES)
-		return nt_fail(error, NT_ERROR_INPUT, "PNG: %zu bytes cannot hold %u x %u pixels", size, header.width,
-			header.height);
 	pixels->srgb = spng_get_srgb(png, &intent) == 0;
 	if (!all)
 		return decode_rows(png, &wanted, pixels, error);
