@@ -164,6 +164,38 @@ static size_t __attribute__((noinline)) add_elsewhere(const nt_fast *fast, unsig
 	return add_usual(fast, range, first, i, end, ids, out, true);
 }
 
+/* The same up to a corner of a hub or elsewhere. What is added to a vertex that an earlier range adds to is put aside,
+ * without a branch: where triangles do not come in order such vertices are anywhere. */
+static size_t __attribute__((noinline)) add_shared(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
+	const uint32_t *ids, const lanes_out *out)
+{
+	static const nt_record nothing = {0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+	uint32_t *const cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
+	nt_deferred *const deferred = &fast->deferred[range];
+	size_t count = deferred->count;
+	for (ids += 3 * i; i < end; i++, ids += 3) {
+		if ((cursors[ids[0]] | cursors[ids[1]] | cursors[ids[2]]) & (NT_CURSOR_HUB | NT_CURSOR_ELSEWHERE))
+			break;
+		const size_t orient = fast->flags[first + i] & NT_TRIANGLE_ORIENT;
+		const uint32_t bit = (uint32_t)orient << 31;
+		for (size_t k = 0; k < 3; k++) {
+			const uint32_t vertex = ids[k], place = cursors[vertex];
+			const bool shared = place & NT_CURSOR_SHARED;
+			cursors[vertex] = place + NT_FAN_LANES;
+			fast->adjacency.entries[place & NT_CURSOR_PLACE] =
+				(nt_fan_entry){ids[(k + 1) % 3] | bit, ids[(k + 2) % 3] | bit};
+			nt_record *const own = &fast->records[orient][vertex], *const to = shared ? &deferred->add[count] : own;
+			nt_record sum = *(shared ? &nothing : own);
+			add_record(&sum, out->add[k] + turned_rows[i]);
+			*to = sum;
+			deferred->to[count] = vertex | bit;
+			count += shared;
+		}
+	}
+	deferred->count = count;
+	return i;
+}
+
 /* Triangles with frames, lanes [begin, end). */
 static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t begin, size_t end, const uint32_t *ids,
 	const lanes_out *out)
@@ -171,6 +203,8 @@ static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t beg
 	for (size_t i = begin; i < end; i++) {
 		if (!fast->wants_more)
 			i = add_here(fast, range, first, i, end, ids, out);
+		if (!fast->wants_more && fast->deferred)
+			i = add_shared(fast, range, first, i, end, ids, out);
 		if (!fast->wants_more && fast->adjacency.rest)
 			i = add_elsewhere(fast, range, first, i, end, ids, out);
 		if (i < end)

@@ -39,7 +39,7 @@ enum {
 
 /* Contributions of a range that have to wait for earlier ranges'. */
 typedef struct nt_deferred {
-	uint32_t *to; /* vertices, with NT_ENTRY_ORIENT */
+	uint32_t *to; /* vertices, with NT_ENTRY_ORIENT; one more than can be counted may be written */
 	nt_record *add;
 	nt_record_more *more; /* or NULL */
 	size_t count;
@@ -61,7 +61,7 @@ typedef struct nt_fast {
 	bool scattered;          /* neighbouring triangles have vertices far apart: prefetch */
 	nt_bins bins;            /* of a scattered mesh: its corners on their way to the records */
 	nt_triangle_ranges ranges;
-	nt_deferred *deferred;       /* [ranges] */
+	nt_deferred *deferred;       /* [ranges]; NULL: there is one */
 } nt_fast;
 
 typedef struct nt_settled {

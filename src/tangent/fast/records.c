@@ -106,7 +106,7 @@ static bool make_deferred(nt_fast *fast)
 	for (unsigned r = 0; r < ranges; r++) {
 		const size_t most = fast->adjacency.shared_counts[r];
 		nt_deferred *d = &fast->deferred[r];
-		*d = (nt_deferred){.to = nt_scratch_alloc(fast->solve->scratch, most, sizeof *d->to)};
+		*d = (nt_deferred){.to = nt_scratch_alloc(fast->solve->scratch, most + 1, sizeof *d->to)};
 		d->add = nt_scratch_alloc(fast->solve->scratch, most, sizeof *d->add);
 		if (fast->wants_more)
 			d->more = nt_scratch_alloc(fast->solve->scratch, most, sizeof *d->more);
