@@ -7,6 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include "file/relative_path.h"
 
 /* Takes the next word of a list separated by commas; false at its end. */
 static bool next_word(const char **list, char *word, size_t size)
@@ -160,6 +161,16 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 		status = nt_baseline_open(&plan->baseline, command->baseline, error);
 		plan->options.baseline = &plan->baseline;
 	}
+	if (!status && plan->target.path && plan->target.format == NT_REPORT_HTML && strcmp(plan->target.path, "-") != 0) {
+		nt_buffer page = {0};
+		nt_buffer_text(&page, plan->target.path);
+		while (plan->target.folder && page.size > 1 && page.data[page.size - 1] == '/')
+			page.size--;
+		nt_buffer_text(&page, plan->target.folder ? "/page" : "");
+		status = page.failed ? nt_fail_memory(error) : nt_link_folder(&plan->folder, page.data, error);
+		plan->options.page_folder = plan->folder.data;
+		nt_buffer_free(&page);
+	}
 	plan->options.measures = plan->target.path && plan->target.format == NT_REPORT_JSON && !command->diff;
 	plan->options.keep_geometry = command->uv_image || command->diff ||
 		(plan->target.path && plan->target.format == NT_REPORT_HTML);
@@ -170,4 +181,5 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 void nt_report_plan_free(nt_report_plan *plan)
 {
 	nt_baseline_free(&plan->baseline);
+	nt_buffer_free(&plan->folder);
 }

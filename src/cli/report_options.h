@@ -13,6 +13,7 @@ typedef struct nt_report_plan {
 	bool wanted;
 	nt_report_options options;
 	nt_baseline baseline;
+	nt_buffer folder;        /* where a page will be, absolute */
 	nt_report_target target; /* its path is NULL where nothing is written */
 } nt_report_plan;
 

@@ -23,6 +23,9 @@ static nt_status open_file(nt_normal_map *map, const char *path, nt_error *error
 	const nt_status status = nt_file_open(&map->file, path, error);
 	if (status)
 		return status;
+	map->path = strdup(path);
+	if (!map->path)
+		return nt_fail_memory(error);
 	map->bytes = map->file.data;
 	map->size = map->file.size;
 	map->identity[0] = map->file.device;
@@ -32,7 +35,12 @@ static nt_status open_file(nt_normal_map *map, const char *path, nt_error *error
 
 /* ---- OBJ ---- */
 
-static nt_status open_named(nt_normal_map *map, const nt_scene *scene, const nt_material *m,
+static const nt_map *map_of(const nt_material *m, enum nt_slot slot)
+{
+	return slot ? &m->normal_map : &m->base_color_map;
+}
+
+static nt_status open_named(nt_normal_map *map, const nt_scene *scene, const nt_material *m, enum nt_slot slot,
 	const nt_image_places *searched, nt_error *error)
 {
 	nt_image_places places = searched ? *searched : (nt_image_places){0};
@@ -40,33 +48,33 @@ static nt_status open_named(nt_normal_map *map, const nt_scene *scene, const nt_
 	places.input = scene->path;
 	nt_buffer path = {0};
 	nt_image_found found;
-	nt_status status = nt_image_find(&places, m->normal_map.name, &path, &found, error);
+	nt_status status = nt_image_find(&places, map_of(m, slot)->name, &path, &found, error);
 	if (!status && found <= NT_IMAGE_FOUND_ELSEWHERE)
 		status = open_file(map, path.data, error);
 	nt_buffer_free(&path);
 	return status;
 }
 
-static nt_status open_of_materials(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh,
+static nt_status open_of_materials(nt_normal_map *map, const nt_scene *scene, const nt_mesh *mesh, enum nt_slot slot,
 	const nt_image_places *searched, nt_error *error)
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < mesh->primitive_count && !status && !map->bytes; i++) {
 		const uint32_t index = mesh->primitives[i].material;
 		const nt_material *m = index < scene->material_count ? &scene->materials[index] : NULL;
-		if (m && m->normal_map.name && *m->normal_map.name)
-			status = without_map(open_named(map, scene, m, searched, error));
+		if (m && map_of(m, slot)->name && *map_of(m, slot)->name)
+			status = without_map(open_named(map, scene, m, slot, searched, error));
 	}
 	return status;
 }
 
-const nt_material *nt_normal_map_material(const nt_scene *scene, const nt_mesh *mesh)
+const nt_map *nt_normal_map_named(const nt_scene *scene, const nt_mesh *mesh, enum nt_slot slot)
 {
 	for (size_t i = 0; i < mesh->primitive_count; i++) {
 		const uint32_t index = mesh->primitives[i].material;
 		const nt_material *m = index < scene->material_count ? &scene->materials[index] : NULL;
-		if (m && m->normal_map.name && *m->normal_map.name)
-			return m;
+		if (m && map_of(m, slot)->name && *map_of(m, slot)->name)
+			return map_of(m, slot);
 	}
 	return NULL;
 }
@@ -105,6 +113,8 @@ static const nt_json_value *info_of(const nt_gltf *document, const nt_mesh *mesh
 		nt_json_at(nt_json_find(owner, "primitives"), mesh->gltf_primitive);
 	const nt_json_value *material = element(nt_gltf_root_member(document, "materials"),
 		nt_json_find(primitive, "material"));
+	if (!slot)
+		return nt_json_find(nt_json_find(material, "pbrMetallicRoughness"), "baseColorTexture");
 	return slot == NT_SLOT_NORMAL ? nt_json_find(material, "normalTexture")
 		: nt_json_find(nt_json_find(nt_json_find(material, "extensions"), "KHR_materials_clearcoat"),
 			"clearcoatNormalTexture");
@@ -142,12 +152,23 @@ static nt_status open_view(nt_normal_map *map, nt_gltf *document, uint64_t index
 	return status;
 }
 
+/* The set of texture coordinates that a textureInfo names. */
+static uint64_t set_of(const nt_json_value *info)
+{
+	uint64_t set = 0;
+	nt_json_get_uint64(nt_json_find(info, "texCoord"), &set);
+	nt_json_get_uint64(nt_json_find(nt_json_find(nt_json_find(info, "extensions"), "KHR_texture_transform"), "texCoord"), &set);
+	return set;
+}
+
 static nt_status open_of_document(nt_normal_map *map, nt_gltf *document, const nt_mesh *mesh, enum nt_slot slot,
 	nt_error *error)
 {
 	const nt_json_value *image = image_of(document, mesh, slot);
 	size_t length;
 	uint64_t view;
+	if (!slot && set_of(info_of(document, mesh, slot)) != mesh->texcoord_set)
+		return NT_OK;
 	const char *uri = nt_json_get_string(nt_json_find(image, "uri"), &length);
 	if (uri)
 		return without_map(open_uri(map, document, uri, length, error));
@@ -175,15 +196,15 @@ static void read_transform(const nt_json_value *info, float t[6])
 
 /* ---- both ---- */
 
-void nt_normal_map_transform(const nt_scene *scene, const nt_mesh *mesh, float t[6])
+void nt_normal_map_transform(const nt_scene *scene, const nt_mesh *mesh, enum nt_slot slot, float t[6])
 {
 	static const float identity[6] = {1, 0, 0, 0, 1, 0};
 	memcpy(t, identity, sizeof identity);
-	const nt_material *m = nt_normal_map_material(scene, mesh);
+	const nt_map *map = nt_normal_map_named(scene, mesh, slot);
 	if (nt_format_is_gltf(scene->format) && scene->source)
-		read_transform(info_of(scene->source, mesh, NT_SLOT_NORMAL), t);
-	else if (m && m->normal_map.placement.moved)
-		place_map(&m->normal_map.placement, t);
+		read_transform(info_of(scene->source, mesh, slot), t);
+	else if (map && map->placement.moved)
+		place_map(&map->placement, t);
 	for (int i = 0; i < 6; i++)
 		if (!isfinite(t[i]))
 			memcpy(t, identity, sizeof identity);
@@ -195,8 +216,8 @@ nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt
 	*map = (nt_normal_map){0};
 	nt_status status = NT_OK;
 	const bool gltf = nt_format_is_gltf(scene->format);
-	if (!gltf && slot == NT_SLOT_NORMAL)
-		status = open_of_materials(map, scene, mesh, searched, error);
+	if (!gltf && slot != NT_SLOT_CLEARCOAT_NORMAL)
+		status = open_of_materials(map, scene, mesh, slot, searched, error);
 	else if (gltf && scene->source)
 		status = open_of_document(map, scene->source, mesh, slot, error);
 	if (map->bytes)
@@ -210,6 +231,7 @@ void nt_normal_map_close(nt_normal_map *map)
 {
 	if (map->file.data)
 		nt_file_close(&map->file);
+	free(map->path);
 	free(map->decoded);
 	*map = (nt_normal_map){0};
 }

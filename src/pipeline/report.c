@@ -6,16 +6,22 @@
 
 #include <string.h>
 #include "file/image_size.h"
+#include "file/relative_path.h"
 #include "format/normal_map.h"
 #include "pipeline/joins.h"
 
-/* What a conversion makes of the normal map of an OBJ; NULL: nothing, it is used as it is or not at all. */
-static const nt_texture *find_converted(const nt_textures *textures, const nt_scene *scene, const nt_mesh *mesh)
+/* Who finds images. */
+typedef struct finder {
+	const nt_textures *textures; /* NULL: none are made */
+	const char *page_folder;     /* NULL: files are not referred to */
+} finder;
+
+/* What a conversion makes of a map of an OBJ; NULL: nothing, it is used as it is or not at all. */
+static const nt_texture *find_converted(const nt_textures *textures, const nt_map *map)
 {
-	const nt_material *m = textures ? nt_normal_map_material(scene, mesh) : NULL;
-	if (!m || m->normal_map.wish == NT_NONE)
+	if (!textures || !map || map->wish == NT_NONE)
 		return NULL;
-	const nt_texture *made = nt_textures_at(textures, nt_textures_result(textures, m->normal_map.wish));
+	const nt_texture *made = nt_textures_at(textures, nt_textures_result(textures, map->wish));
 	return made->bytes ? made : NULL;
 }
 
@@ -30,20 +36,47 @@ static nt_status copy_image(nt_arena *arena, const unsigned char *bytes, size_t 
 	return NT_OK;
 }
 
-/* A copy of a mesh's normal map for the report, as it is after a conversion. */
-static nt_status copy_normal_map(const void *user, nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh,
-	size_t most_bytes, nt_image *image)
+/* Where a page finds a file, if they have a folder in common that is not the root: then it says nothing of the machine. */
+static nt_status refer(nt_arena *arena, const char *page_folder, const char *path, nt_image *image)
 {
+	nt_error error;
+	nt_buffer whole = {0}, uri = {0};
+	nt_status status = nt_link_folder(&whole, path, &error);
+	nt_buffer_format(&whole, "/%s", nt_last_part(path));
+	if (!status && !whole.failed) {
+		const size_t first = 1 + strcspn(whole.data + 1, "/");
+		if (whole.data[first] && strncmp(page_folder, whole.data, first) == 0 &&
+			(page_folder[first] == '/' || page_folder[first] == '\0'))
+			nt_link_uri(&uri, page_folder, whole.data);
+	}
+	char *copy = uri.size ? nt_arena_alloc(arena, uri.size + 1, 1) : NULL;
+	if (copy)
+		image->file = memcpy(copy, uri.data, uri.size + 1);
+	const bool failed = whole.failed || uri.failed || (uri.size && !copy) || status == NT_ERROR_MEMORY;
+	nt_buffer_free(&whole);
+	nt_buffer_free(&uri);
+	return failed ? NT_ERROR_MEMORY : NT_OK;
+}
+
+/* An image of a mesh for the report, as it is after a conversion: a copy, of a base colour only where the page cannot refer to
+ * its file. */
+static nt_status find_picture(const void *user, nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh,
+	nt_picture picture, size_t most_bytes, nt_image *image)
+{
+	const finder *f = user;
+	const enum nt_slot slot = picture == NT_PICTURE_NORMAL ? NT_SLOT_NORMAL : 0;
 	*image = (nt_image){0};
-	nt_normal_map_transform(scene, mesh, image->transform);
-	const nt_texture *made = find_converted(user, scene, mesh);
+	nt_normal_map_transform(scene, mesh, slot, image->transform);
+	const nt_texture *made = find_converted(f->textures, nt_normal_map_named(scene, mesh, slot));
 	if (made)
 		return made->size <= most_bytes ? copy_image(arena, made->bytes, made->size, NT_IMAGE_PNG, image) : NT_OK;
 	nt_normal_map map;
 	nt_error error;
-	nt_status status = nt_normal_map_open(&map, scene, mesh, NT_SLOT_NORMAL, NULL, &error);
+	nt_status status = nt_normal_map_open(&map, scene, mesh, slot, NULL, &error);
 	const bool shown = map.type == NT_IMAGE_PNG || map.type == NT_IMAGE_JPEG;
-	if (!status && shown && map.size <= most_bytes)
+	if (!status && map.path && f->page_folder)
+		status = refer(arena, f->page_folder, map.path, image);
+	if (!status && shown && map.size <= most_bytes && (slot || !image->file))
 		status = copy_image(arena, map.bytes, map.size, map.type, image);
 	nt_normal_map_close(&map);
 	return status;
@@ -93,10 +126,11 @@ nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_forma
 	}
 	nt_report_options options = *settings->report;
 	options.written = written;
-	options.find_user = textures;
+	const finder found_by = {textures, options.page_folder};
+	options.find_user = &found_by;
 	options.find_map_size = find_map_size;
 	if (options.keep_geometry)
-		options.find_normal_map = copy_normal_map;
+		options.find_picture = find_picture;
 	options.threads = settings->threads;
 	return build_report(scene, settings, &options, summary, error);
 }

@@ -196,17 +196,18 @@ static nt_status keep_geometry(nt_check *check)
 	return NT_OK;
 }
 
-/* Of all images of a report together. */
+/* Of all normal maps of a report together, and of all other images. */
 static const size_t MOST_IMAGE_BYTES = 16000000;
 
-static nt_status keep_normal_map(nt_check *check, size_t *most_bytes)
+static nt_status keep_pictures(nt_check *check, size_t most_bytes[NT_PICTURE_COUNT])
 {
 	const nt_report_options *options = check->options;
-	if (!options->find_normal_map)
-		return NT_OK;
-	const nt_status status = options->find_normal_map(options->find_user, &check->report->arena, check->scene,
-		check->mesh, *most_bytes, &check->facts->normal_map);
-	*most_bytes -= check->facts->normal_map.size;
+	nt_status status = NT_OK;
+	for (nt_picture p = 0; p < NT_PICTURE_COUNT && options->find_picture && !status; p++) {
+		status = options->find_picture(options->find_user, &check->report->arena, check->scene, check->mesh, p,
+			most_bytes[p], &check->facts->pictures[p]);
+		most_bytes[p] -= check->facts->pictures[p].size;
+	}
 	return status;
 }
 
@@ -296,7 +297,7 @@ static nt_status run_checks(nt_check *check)
 }
 
 /* most_image_bytes: how much of images may still be kept. */
-static nt_status check_mesh(nt_check *check, size_t *most_image_bytes)
+static nt_status check_mesh(nt_check *check, size_t most_image_bytes[NT_PICTURE_COUNT])
 {
 	nt_status status = nt_surface_build(&check->surface, check->mesh, nt_thread_count(check->options->threads),
 		check->scratch);
@@ -307,7 +308,7 @@ static nt_status check_mesh(nt_check *check, size_t *most_image_bytes)
 	if (!status && check->options->keep_geometry)
 		status = keep_geometry(check);
 	if (!status)
-		status = keep_normal_map(check, most_image_bytes);
+		status = keep_pictures(check, most_image_bytes);
 	return status;
 }
 
@@ -378,7 +379,7 @@ static void share_facts(nt_report *report, uint32_t mesh, uint32_t first)
 	facts->seams = NULL;
 	facts->islands = NULL;
 	facts->geometry = NULL;
-	facts->normal_map = (nt_image){0};
+	memset(facts->pictures, 0, sizeof facts->pictures);
 	facts->texture_size[0] = facts->texture_size[1] = 0; /* its islands are not told either */
 }
 
@@ -386,7 +387,7 @@ static nt_status check_meshes(const nt_check *check, const checked_meshes *check
 {
 	const nt_scene *scene = check->scene;
 	nt_status status = NT_OK;
-	size_t image_bytes = MOST_IMAGE_BYTES;
+	size_t image_bytes[NT_PICTURE_COUNT] = {MOST_IMAGE_BYTES, MOST_IMAGE_BYTES};
 	for (uint32_t i = 0; i < scene->mesh_count && !status; i++) {
 		if (checked->first[i] == NT_NONE)
 			continue;
@@ -402,7 +403,7 @@ static nt_status check_meshes(const nt_check *check, const checked_meshes *check
 		one.mesh = &scene->meshes[i];
 		one.facts = &check->report->meshes[i];
 		one.scratch = &scratch;
-		status = check_mesh(&one, &image_bytes);
+		status = check_mesh(&one, image_bytes);
 		nt_scratch_free(&scratch);
 	}
 	return status;

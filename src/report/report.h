@@ -39,9 +39,13 @@ typedef struct nt_image {
 	const unsigned char *bytes;
 	size_t size;
 	const char *type; /* static */
-	/* Where a normal map is looked up: u' = t[0] u + t[1] v + t[2], v' = t[3] u + t[4] v + t[5], v pointing down. */
+	const char *file; /* URI of a file, relative to options.page_folder; NULL: none */
+	/* Where it is looked up: u' = t[0] u + t[1] v + t[2], v' = t[3] u + t[4] v + t[5], v pointing down. */
 	float transform[6];
 } nt_image;
+
+/* Images of a mesh that a page shows under its islands. */
+typedef enum nt_picture { NT_PICTURE_NORMAL, NT_PICTURE_BASE_COLOR, NT_PICTURE_COUNT } nt_picture;
 
 /* Zero-initialised means the defaults. */
 typedef struct nt_report_options {
@@ -58,10 +62,11 @@ typedef struct nt_report_options {
 	const void *find_user; /* what the next ones get first */
 	/* Gives the size of a mesh's normal map in pixels, 0 0 where it is not known. NULL: nobody can. */
 	nt_status (*find_map_size)(const void *user, const nt_scene *scene, const nt_mesh *mesh, uint32_t pixels[2]);
-	/* Gives a copy of a mesh's normal map, in the arena, for HTML: no bytes where it has none or one of more
+	/* Gives a copy of an image of a mesh, in the arena, for HTML: no bytes where it has none or one of more
 	 * than most_bytes. NULL: nobody can. */
-	nt_status (*find_normal_map)(const void *user, nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh,
-		size_t most_bytes, nt_image *image);
+	nt_status (*find_picture)(const void *user, nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh,
+		nt_picture picture, size_t most_bytes, nt_image *image);
+	const char *page_folder;      /* absolute: where an HTML page will be; NULL: nobody knows */
 	unsigned threads;
 } nt_report_options;
 
@@ -200,7 +205,7 @@ typedef struct nt_report_mesh {
 	size_t island_count;
 	nt_box box;
 	nt_report_geometry *geometry; /* NULL unless kept */
-	nt_image normal_map;          /* bytes NULL: none, or not kept */
+	nt_image pictures[NT_PICTURE_COUNT]; /* bytes NULL: none, or not kept */
 } nt_report_mesh;
 
 typedef struct nt_report {

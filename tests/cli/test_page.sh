@@ -91,6 +91,36 @@ for name, transform in ("mirrored", {}), ("shifted", {"KHR_texture_transform": {
 run --check --report=tiles.html --fail-on=never tiles.obj mirrored.gltf shifted.gltf far.obj
 exists tiles.html
 
+# a quad on the left half of the texture, with a normal map and a red base colour: files, of which one gets lost, and in the glTF
+mkdir tex
+python3 "$ROOT/tests/support/images.py" write tex/red.png 8 8 '(255, 0, 0)'
+cp tex/red.png tex/lost.png
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nvt 0.5 0\nvt 0.5 1\nvt 0 1\nf 1/1/1 2/2/1 3/3/1 4/4/1\n' >half.obj
+run -q half.obj half.gltf
+python3 -c 'import base64, json
+inside = "data:image/png;base64," + base64.b64encode(open("tex/red.png", "rb").read()).decode()
+for name, uri, set in ("red", "tex/red.png", 0), ("lost", "tex/lost.png", 0), ("inside", inside, 0), ("other", "tex/red.png", 1):
+	d = json.load(open("half.gltf"))
+	d.update(images=[{"uri": "n.png"}, {"uri": uri}], textures=[{"source": 0}, {"source": 1}],
+		materials=[{"normalTexture": {"index": 0}, "pbrMetallicRoughness": {"baseColorTexture": {"index": 1, "texCoord": set}}}])
+	d["meshes"][0]["primitives"][0]["material"] = 0
+	json.dump(d, open(name + ".gltf", "w"))'
+run --check --report=pictures.html --fail-on=never red.gltf lost.gltf inside.gltf other.gltf
+grep -ao '"image":[0-9nul]*,"map":[^]]*\],"file":[^}]*' pictures.html | sed 's/"map":[^]]*.,//' >images.txt
+is "$(cat images.txt)" '"image":0,"file":"n.png"
+"image":null,"file":"tex/red.png"
+"image":1,"file":"n.png"
+"image":null,"file":"tex/lost.png"
+"image":2,"file":"n.png"
+"image":3,"file":null
+"image":4,"file":"n.png"
+"image":null,"file":null'
+rm tex/lost.png
+run --check --report=below/ --fail-on=never red.gltf
+grep -aq '"file":"../tex/red.png"' below/red.gltf.html || wrong "a page in a folder does not find the image"
+run --check --report-format=html --fail-on=never red.gltf
+prints '"file":null}],"wrap"'
+
 run --check --threads=1 --report=large.1.html large.obj
 cmp large.html large.1.html || wrong "one thread writes another page"
 if [ -f "$modules/node_modules/playwright-core/package.json" ] && command -v chromium >/dev/null 2>&1; then

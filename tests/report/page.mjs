@@ -9,6 +9,7 @@
 //   pages/      index.html, and a page of each of head.obj, bad.obj, 30 quads and a name that tries to be a script
 //   bad.html    meshes with nothing to show, and a position that is not finite
 //   diff.html   two squares, of which the second was mirrored in the old version
+//   pictures.html  a quad with a normal map and a base colour: a file, a lost one, in the page, of other texture coordinates
 //   tiles.html  two quads in neighbouring tiles: repeated, mirrored by the sampler, that with an offset, and over 500 tiles
 //
 // Prints one line per check that fails, and the number of checks that passed.
@@ -364,6 +365,48 @@ async function clickTexture(page, u, v) {
 	await page.waitForFunction(() => document.querySelector('#layout-note').textContent.includes('too many tiles'));
 	await page.uncheck('#overlaps', {force: true});
 	check(await note.textContent() === '', 'nothing is said of what is not shown');
+	await page.close();
+}
+
+// ---- the image below the islands ----
+
+{
+	const page = await open('pictures.html'), note = page.locator('#layout-note');
+	const go = async (file, name) => {
+		await page.evaluate(file => { location.hash = 'file-' + file; }, file);
+		await page.waitForFunction(name => document.querySelector('#title').textContent.endsWith(name), name);
+		await ready(page);
+		await rest(page);
+	};
+	// beside the quad, in the right half of the texture
+	const colour = async () => {
+		const [x, y] = await page.evaluate(() => window.nmtanReport.place(0.6, 0.5)), box = await page.locator('#layout').boundingBox();
+		return colours(page, await page.locator('#layout').screenshot(), [[x / box.width, y / box.height]]).then(([c]) => c[0] > c[1] + 80 ? 'red' : c[2] > c[0] + 40 ? 'blue' : 'grey');
+	};
+	await go(0, 'red.gltf');
+	await page.click('#layout-fit');
+	await rest(page);
+	check((await page.locator('#texture option').allTextContents()).join() === 'none,Normal map,Base colour', 'what can be chosen');
+	check(await page.inputValue('#texture') === '0' && await colour() === 'blue', 'the normal map lies below, is ' + await colour());
+	check(requests.length === 0, 'no file is asked for unless it is chosen');
+	await page.selectOption('#texture', '1');
+	await rest(page);
+	check(await colour() === 'red' && await note.textContent() === '', 'the base colour, from a file, is ' + await colour());
+	if (shots) await page.screenshot({path: shots + '/picture.png'});
+	await page.selectOption('#texture', '-1');
+	await rest(page);
+	check(await colour() === 'grey', 'none is none, is ' + await colour());
+	await page.selectOption('#texture', '1');
+	await go(1, 'lost.gltf');
+	check((await note.textContent()).includes('tex/lost.png is not beside this page') && await colour() === 'grey', 'a file that is not there is said: ' + await note.textContent());
+	if (shots) await page.screenshot({path: shots + '/lost.png'});
+	await go(2, 'inside.gltf');
+	check(await colour() === 'red' && await note.textContent() === '', 'a base colour in the page, is ' + await colour());
+	await go(3, 'other.gltf');
+	check((await page.locator('#texture option').allTextContents()).join() === 'none,Normal map', 'none of other texture coordinates');
+	check(requests.every(r => /\/tex\/(red|lost)\.png$/.test(r)) && requests.length === 2, 'only its images are asked for: ' + requests);
+	requests.length = 0;
+	complaints.splice(0, complaints.length, ...complaints.filter(c => !c.includes('ERR_FILE_NOT_FOUND')));
 	await page.close();
 }
 

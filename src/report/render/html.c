@@ -6,7 +6,8 @@
  * \u003c, so that no name can end the element:
  *
  *   files     [{name, format, failure, counts: [errors, warnings, infos], meshes, findings}]
- *             mesh:     {label, why, same_as, triangles, vertices, islands, box, facts: [[name, text]], image, map: [6],
+ *             mesh:     {label, why, same_as, triangles, vertices, islands, box, facts: [[name, text]],
+ *                       images: [{image, map: [6], file}] of normal map and base colour: numbers of images, and URIs, or null,
  *                       wrap: [nt_wrap, nt_wrap], seams: [[edges, closed, length, plane, unmirrored island, mirrored island]], geometry: bool}
  *             finding:  {code, severity, count, known, message, mesh, seam, island, line, box, at: [triangle]}
  *   codes     {CODE: {title, meaning, remedy}} of the findings that there are
@@ -38,7 +39,7 @@
  * the page says so. */
 enum {
 	MOST_TRIANGLES = 3 * 1000 * 1000,
-	IMAGE_BYTES = 16 * 1000 * 1000,
+	IMAGE_BYTES = 16 * 1000 * 1000, /* of normal maps, and of other images */
 	MOST_FINDINGS = 20000,
 	MOST_SEAMS = 20000,
 	FLUSHED_BYTES = 1 << 20
@@ -46,7 +47,7 @@ enum {
 
 /* What is left of the budgets while the page grows. */
 typedef struct budget {
-	size_t images, findings, seams;
+	size_t images[NT_PICTURE_COUNT], findings, seams;
 	size_t left_out;   /* findings */
 	bool seen[NT_CODE_COUNT];
 	const bool *known; /* of a difference: which findings of the file both versions have; NULL */
@@ -193,18 +194,22 @@ static void put_facts(const nt_report_mesh *m, nt_buffer *out)
 }
 
 /* The image's number among data.images, null where there is none or no room. */
-static void put_image(const nt_report_mesh *m, budget *left, nt_buffer *out)
+static void put_image(const nt_image *image, size_t *bytes_left, budget *left, nt_buffer *out)
 {
-	const nt_image *image = &m->normal_map;
-	const bool there = image->bytes && image->size <= left->images;
-	nt_buffer_text(out, ",\"image\":");
+	const bool there = image->bytes && image->size <= *bytes_left;
+	nt_buffer_text(out, "{\"image\":");
 	nt_json_index(there ? (uint32_t)left->image_count : NT_NONE, out);
 	nt_buffer_text(out, ",\"map\":[");
 	put_floats(image->transform, 6, out);
-	nt_buffer_text(out, "]");
+	nt_buffer_text(out, "],\"file\":");
+	if (image->file)
+		put_string(image->file, out);
+	else
+		nt_buffer_text(out, "null");
+	nt_buffer_text(out, "}");
 	if (!there)
 		return;
-	left->images -= image->size;
+	*bytes_left -= image->size;
 	nt_buffer_format(&left->sources, "%s\"data:%s;base64,", left->image_count++ ? "," : "", image->type);
 	put_base64(image->bytes, image->size, &left->sources);
 	nt_buffer_text(&left->sources, "\"");
@@ -225,8 +230,11 @@ static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_bu
 		m->triangle_count, m->vertices_before, m->island_count, has_geometry(m) ? "true" : "false");
 	put_box(&m->box, out);
 	put_facts(m, out);
-	put_image(m, left, out);
-	nt_buffer_format(out, ",\"wrap\":[%d,%d],\"seams\":[", (int)m->wrap[0], (int)m->wrap[1]);
+	for (int p = 0; p < NT_PICTURE_COUNT; p++) {
+		nt_buffer_text(out, p ? "," : ",\"images\":[");
+		put_image(&m->pictures[p], &left->images[p], left, out);
+	}
+	nt_buffer_format(out, "],\"wrap\":[%d,%d],\"seams\":[", (int)m->wrap[0], (int)m->wrap[1]);
 	for (size_t i = 0; m->seams && i < m->seam_count && left->seams > 0; i++, left->seams--) {
 		nt_buffer_text(out, i ? "," : "");
 		put_seam(&m->seams[i], out);
@@ -315,7 +323,7 @@ static void put_codes(const budget *left, nt_buffer *out)
 
 static void put_data(const nt_report_list *reports, nt_buffer *out)
 {
-	budget left = {.images = IMAGE_BYTES, .findings = MOST_FINDINGS, .seams = MOST_SEAMS};
+	budget left = {.images = {IMAGE_BYTES, IMAGE_BYTES}, .findings = MOST_FINDINGS, .seams = MOST_SEAMS};
 	nt_buffer_text(out, "<script type=\"application/json\" id=\"data\">{\"files\":[");
 	for (size_t i = 0; i < reports->count; i++) {
 		nt_buffer_text(out, i ? ",\n" : "\n");
@@ -412,7 +420,7 @@ static void begin_page(bool in_folder, nt_buffer *out)
 	nt_buffer_text(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
 	nt_buffer_text(out, nt_html_mark);
 	nt_buffer_format(out,
-		"<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob:; "
+		"<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob: 'self' file:; "
 		"style-src %s; script-src %s\">\n"
 		"<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
 		"<link rel=\"icon\" href=\"data:,\">\n<title>nmtan report</title>\n", parts, parts);

@@ -40,9 +40,11 @@ files.forEach((file, f) => {
 		mesh.source = 'g-' + f + '-' + shown.number;
 		mesh.hasGeometry = shown.geometry;
 		mesh.seamList = shown.seams;
-		mesh.map = determinant(shown.map) ? shown.map : [1, 0, 0, 0, 1, 0];
+		// normal map, base colour: {source, file, map}, of which source and file may be null
+		mesh.pictures = shown.images.map(({image, file, map}) => ({source: image === null ? null : data.images[image], file,
+			map: determinant(map) ? map : [1, 0, 0, 0, 1, 0]}));
+		mesh.map = mesh.pictures[0].map;
 		mesh.wrap = shown.wrap;
-		mesh.picture = shown.image === null || shown.image === undefined ? null : data.images[shown.image];
 	});
 	file.findings.forEach(finding => {
 		finding.number = findings.length;

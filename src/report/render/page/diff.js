@@ -52,7 +52,6 @@ class Twin {
 	startSpace(space) {
 		this.space = new Space(this.figures[1].canvas);
 		this.space.onpick = (triangle, again) => this.pick(triangle, again, 'space');
-		this.space.onimage = image => { this.layout.image = image; this.layout.draw(); };
 		this.layout.oncoverage = (...window) => this.space.coverage(...window);
 		link(space, this.space, ['camera', 'mode', 'frame', 'other', 'layout', 'wipe', 'showSeams', 'showVectors', 'moving']);
 		for (const view of [space, this.space]) Object.assign(view, {mode: 7, frame: 0, other: 1, layout: 'side'});

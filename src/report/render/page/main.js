@@ -142,6 +142,7 @@ function openMesh(next) {
 		...mesh.facts.flatMap(([name, value]) => [element('dt', {}, name), element('dd', {}, value)]));
 	$('summary-of-mesh').textContent = mesh.triangles ? [plural(mesh.triangles, 'triangle'), plural(mesh.vertices, 'vertex', 'vertices'), plural(mesh.islands, 'island'),
 		plural(mesh.seamList.length, 'mirror seam')].join(' · ') : mesh.why;
+	offerPictures();
 	layout.load(mesh, null);
 	space?.load(mesh, null);
 	empty('layout-empty', mesh.hasGeometry ? 'Opening…' : 'No triangles to show: ' + mesh.why + '.');
@@ -233,7 +234,7 @@ function describe() {
 	const wiped = twin?.arrange(space);
 	if (!geometry) return;
 	const mode = MODES[space.mode][0], two = twin ? twin.paired : space.other >= 0 && mode !== 'angle', parts = [];
-	if (mode === 'lit') parts.push(space.image ? 'Lit by the normal map.' : 'Lit with a test pattern of domes: there is no normal map here.');
+	if (mode === 'lit') parts.push(space.image ? 'Lit by the normal map.' : 'Lit with a test pattern of domes: ' + (mesh.pictures[0].file ? 'the normal map is not in this page.' : 'there is no normal map here.'));
 	if (mode === 'angle') parts.push('The angle between the tangents ' + frameNames[FRAMES[space.frame][0]] + ' and those ' + ((space.other < 0 || space.other === 2) ? 'of screen derivatives' : frameNames[FRAMES[space.other][0]]) + '; 180° where the handedness differs.');
 	if (mode === 'angle' && twin) parts.push('Grey: the other version has no triangle here, or there are no tangents.');
 	if (mode === 'skew') parts.push('How far tangents lean out of the plane of the normal.');
@@ -252,17 +253,28 @@ function describe() {
 		$(id).hidden = !(twin ? wiped : two);
 		$(id).textContent = twin ? versions[i] : two ? frameNames[FRAMES[i ? space.other : space.frame][0]] : '';
 	});
-	$('texture-toggle').hidden = !mesh.picture;
 	$('frame').closest('label').hidden = twin || ['winding', 'checker', 'normal'].includes(mode);
 	$('other').closest('label').hidden = twin || ['winding', 'checker', 'normal'].includes(mode);
 }
 
-// What is under the islands, and what is tinted.
+const pictureNames = ['Normal map', 'Base colour'];
+let wanted = null; // by hand, else what the page has in itself
+
+// The images of the mesh.
+function offerPictures() {
+	const there = mesh.pictures.map(p => p.source || p.file);
+	$('texture').replaceChildren(new Option('none', -1), ...there.flatMap((source, i) => source ? [new Option(pictureNames[i], i)] : []));
+	$('texture').closest('label').hidden = !there.some(source => source);
+	layout.shown = wanted === null || (wanted >= 0 && !there[wanted]) ? mesh.pictures.findIndex(p => p.source) : wanted;
+	$('texture').value = layout.shown;
+}
+
+// What is missing under the islands, and what is tinted.
 function noteLayout() {
 	const {overlaps, showOverlaps} = layout, repeated = showOverlaps && overlaps?.repeated;
-	$('layout-note').textContent = !showOverlaps || !overlaps ? '' :
-		overlaps.repeated === null ? 'Overlaps of one tile with another are not shown: there are too many tiles.' :
-		repeated ? 'Overlaps count all tiles as one, since the texture repeats.' : '';
+	$('layout-note').textContent = (layout.missing ? 'No image: ' + layout.missing + ' is not beside this page, or this browser cannot show it. ' : '') +
+		(!showOverlaps || !overlaps ? '' : overlaps.repeated === null ? 'Overlaps of one tile with another are not shown: there are too many tiles.' :
+		repeated ? 'Overlaps count all tiles as one, since the texture repeats.' : '');
 }
 
 function changeSpace(change) {
@@ -280,8 +292,9 @@ function changeSpace(change) {
 
 // ---- start ----
 
-if (twin) { link(layout, twin.layout, ['view', 'fitted', 'showTexture', 'showOverlaps']); list.load(twin.changed); }
+if (twin) { link(layout, twin.layout, ['view', 'fitted', 'shown', 'showOverlaps']); list.load(twin.changed); }
 layout.onpick = (triangle, again) => pick(triangle, again, 'layout');
+layout.onoverlaps = layout.onpicture = noteLayout;
 layout.onseam = seam => choose({seam}, {from: 'layout'});
 layout.onhover = (u, v) => { $('layout-readout').textContent = u === null || u === undefined || !layout.geometry ? '' : 'u ' + u.toFixed(4) + '  v ' + (1 - v).toFixed(4); };
 MODES.forEach(([, name], i) => $('mode').append(new Option(name, i)));
@@ -290,7 +303,7 @@ $('frame').addEventListener('change', e => changeSpace({frame: Number(e.target.v
 $('other').addEventListener('change', e => changeSpace({other: Number(e.target.value)}));
 $('seams').addEventListener('change', e => changeSpace({showSeams: e.target.checked}));
 $('vectors').addEventListener('change', e => changeSpace({showVectors: e.target.checked}));
-$('texture').addEventListener('change', e => { layout.showTexture = e.target.checked; layout.draw(); });
+$('texture').addEventListener('change', e => { wanted = layout.shown = Number(e.target.value); });
 $('overlaps').addEventListener('change', e => { layout.showOverlaps = e.target.checked; layout.draw(); noteLayout(); });
 $('layout-fit').addEventListener('click', () => layout.fit());
 $('space-fit').addEventListener('click', () => { if (geometry) space?.home(); });
@@ -334,9 +347,8 @@ function startSpace() {
 		return;
 	}
 	space.onpick = (triangle, again) => pick(triangle, again, 'space');
-	space.onimage = image => { layout.image = image; layout.draw(); describe(); };
+	space.onimage = describe;
 	layout.oncoverage = (...window) => space.coverage(...window);
-	layout.onoverlaps = noteLayout;
 	twin?.startSpace(space);
 	if (geometry) {
 		space.load(mesh, geometry);

@@ -117,7 +117,7 @@ class Space {
 			this.box = [0, 1, 2].map(i => g.step[i] * 65535);
 			this.extent = Math.hypot(...this.box) || 1;
 			this.centre = [0, 1, 2].map(i => g.origin[i] + this.box[i] / 2);
-			this.loadBump(mesh.picture);
+			this.loadBump(mesh.pictures[0].source);
 			this.seamLines = this.lineArray(this.seamSegments(g.seams.map((_, i) => i), SEAM));
 			this.home();
 		}
@@ -143,7 +143,7 @@ class Space {
 			this.image = image;
 			this.texture(gl => gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, image));
 			this.draw();
-			this.onimage?.(image);
+			this.onimage?.();
 		};
 		image.src = source;
 	}

@@ -10,7 +10,7 @@ class Layout {
 		this.geometry = null;
 		this.view = {u: 0.5, v: 0.5, scale: 400}; // the middle, and pixels of the page a unit
 		this.chosen = null;
-		this.showTexture = true;
+		this.picture = -1; // of the mesh's pictures, that is wanted below the islands; -1: none
 		this.showOverlaps = true;
 		this.overlaps = null;
 		this.listen();
@@ -20,11 +20,41 @@ class Layout {
 	load(mesh, geometry) {
 		this.mesh = mesh;
 		this.geometry = geometry && geometry.texcoords ? geometry : null;
-		this.image = null;
 		this.chosen = null;
 		this.overlaps = null;
+		this.loadPicture();
 		if (this.geometry) this.makePaths();
 		this.fit();
+	}
+
+	// ---- the image below ----
+
+	get shown() { return this.picture; }
+	set shown(picture) {
+		if (picture === this.picture) return;
+		this.picture = picture;
+		this.loadPicture();
+	}
+
+	// A file may be missing, or of a format that the browser does not know: then `missing` is its name.
+	loadPicture() {
+		const picture = this.geometry && this.mesh.pictures[this.picture], source = picture?.source || picture?.file;
+		this.image = this.missing = this.loading = null;
+		this.overlaps = null;
+		if (source) {
+			const image = this.loading = new Image();
+			const done = (loaded, missing) => {
+				if (this.loading !== image) return;
+				Object.assign(this, {image: loaded, missing, overlaps: null});
+				this.onpicture?.();
+				this.draw();
+			};
+			image.onload = () => done(image, null);
+			image.onerror = () => done(null, picture.file ? decodeURIComponent(picture.file) : 'the image');
+			image.src = source;
+		}
+		this.onpicture?.();
+		this.draw();
 	}
 
 	// ---- paths ----
@@ -158,8 +188,8 @@ class Layout {
 
 	drawTexture(c) {
 		const low = [this.u(0), this.v(0)].map(Math.floor), high = [this.u(this.width), this.v(this.height)].map(Math.ceil);
-		const m = this.mesh.map;
-		if (!this.showTexture || !this.image || (high[0] - low[0]) * (high[1] - low[1]) > 64) return;
+		const m = this.mesh.pictures[this.picture]?.map;
+		if (!this.image || (high[0] - low[0]) * (high[1] - low[1]) > 64) return;
 		c.save();
 		c.globalAlpha = 0.85;
 		const plain = m.join() === '1,0,0,0,1,0';
@@ -223,7 +253,7 @@ class Layout {
 		pattern.setTransform(new DOMMatrix().scale(1 / (scale * this.ratio)));
 		this.toTexture(c);
 		c.lineJoin = c.lineCap = 'round';
-		const under = this.showTexture && this.image;
+		const under = this.image;
 		for (const shape of this.shapes) {
 			c.globalAlpha = under ? 0.32 : 1;
 			c.fillStyle = shape.mirrored ? ink.mirroredFill : ink.plainFill;
@@ -342,7 +372,7 @@ class Layout {
 			pixels[i] = r;
 			pixels[i + 1] = g;
 			pixels[i + 2] = b;
-			pixels[i + 3] = twice ? (this.showTexture && this.image ? 75 : 95) : 0;
+			pixels[i + 3] = twice ? (this.image ? 75 : 95) : 0;
 		}
 		const canvas = document.createElement('canvas');
 		canvas.width = w;
