@@ -88,8 +88,8 @@ static nt_status read_format(const nt_json_value *json, const char *pointer,
 		error);
 }
 
-/* `count` elements of `bytes` each, `stride` apart, from `offset` on in a view. */
-static nt_status check_range(const nt_gltf_view *view, uint64_t offset, uint64_t count,
+/* `count` elements of `bytes` each, `stride` apart, from `offset` on in view `index`. */
+static nt_status check_range(uint32_t index, const nt_gltf_view *view, uint64_t offset, uint64_t count,
 	uint64_t bytes, uint64_t stride, const char *pointer, nt_error *error)
 {
 	/* count < 2^32 and stride < 2^16, offset <= 2^53: no overflow */
@@ -97,7 +97,7 @@ static nt_status check_range(const nt_gltf_view *view, uint64_t offset, uint64_t
 	if (end > view->length)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"%llu elements end at byte %llu of bufferView %u, which has %llu",
-			(unsigned long long)count, (unsigned long long)end, view->index,
+			(unsigned long long)count, (unsigned long long)end, index,
 			(unsigned long long)view->length);
 	return NT_OK;
 }
@@ -124,10 +124,10 @@ static nt_status check_dense(nt_gltf *document, const nt_json_value *json, const
 		if (view.stride < accessor->element_bytes)
 			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 				"elements of %u bytes, but bufferView %u has a byteStride of %u",
-				accessor->element_bytes, view.index, view.stride);
+				accessor->element_bytes, accessor->view, view.stride);
 		accessor->stride = view.stride;
 	}
-	return check_range(&view, accessor->offset, accessor->count, accessor->element_bytes,
+	return check_range(accessor->view, &view, accessor->offset, accessor->count, accessor->element_bytes,
 		accessor->stride, pointer, error);
 }
 
@@ -150,7 +150,7 @@ static nt_status check_sparse_part(nt_gltf *document, const nt_json_value *spars
 	if (status)
 		return status;
 	*view_index = (uint32_t)index;
-	return check_range(&view, *offset, count, element_bytes, element_bytes, place, error);
+	return check_range(*view_index, &view, *offset, count, element_bytes, element_bytes, place, error);
 }
 
 static nt_status check_sparse(nt_gltf *document, const nt_json_value *sparse, const char *accessor_pointer,

@@ -49,9 +49,8 @@ typedef struct nt_gltf_decoded {
 
 /* A bufferView. */
 typedef struct nt_gltf_view {
-	uint32_t index;
-	uint32_t buffer;
 	uint64_t offset, length;
+	uint32_t buffer;
 	uint32_t stride; /* 0: none given */
 	const char *compression; /* the extension that compresses it; NULL: none, or already undone */
 } nt_gltf_view;

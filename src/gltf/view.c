@@ -55,7 +55,6 @@ static nt_status read_view(nt_gltf *document, uint64_t index, const char *from, 
 			"bytes %llu to %llu, but buffer %llu has %llu", (unsigned long long)view->offset,
 			(unsigned long long)(view->offset + view->length),
 			(unsigned long long)buffer_index, (unsigned long long)buffer->length);
-	view->index = (uint32_t)index;
 	view->buffer = (uint32_t)buffer_index;
 	view->stride = (uint32_t)stride;
 	view->compression = NULL;
@@ -70,7 +69,6 @@ static void keep_view(nt_gltf_view *known, const nt_gltf_view *view, bool is_sha
 	if (is_shared)
 		nt_lock_take(&lock);
 	if (known->buffer == NT_NONE) {
-		known->index = view->index;
 		known->offset = view->offset;
 		known->length = view->length;
 		known->stride = view->stride;

@@ -122,7 +122,7 @@ same late.glb once.glb
 
 scene "$parts primitives with accessors of their own"
 inputs scene "$parts" p.glb
-within 4 500 -q p.glb out.glb
+within 4 450 -q p.glb out.glb
 exits 0
 is "$(gltf out.glb 'g.accessors.length')" $((5 * parts))
 within 8 650 -q --check p.glb

@@ -261,6 +261,8 @@ nt_status nt_gltf_write_indices(nt_buffer_edits *edits, uint32_t buffer, const n
 	const nt_pool_vertices *vertices, nt_error *error)
 {
 	const nt_vertex_pool *pool = vertices->pool;
+	if (!memchr(vertices->changed, true, pool->user_count * sizeof *vertices->changed))
+		return NT_OK;
 	written *log = nt_arena_alloc(&edits->arena, pool->user_count, sizeof *log);
 	if (!log || !find_leaders(pools, vertices, log))
 		return nt_fail_memory(error);
