@@ -8,8 +8,8 @@
 #include <string.h>
 #include "base/parallel.h"
 
-/* Corners by which a count is prefetched before it is needed: costs nothing where neighbours are near. */
-enum { COUNT_AHEAD = 48 };
+/* Corners by which a count is prefetched before it is needed, where counts may not be in the first-level cache. */
+enum { COUNT_AHEAD = 48, NEAR_VERTICES = 1 << 14 };
 
 /* Of entries that do not fit the borrowed memory, less than one in so many may lie elsewhere. */
 enum { PART_ELSEWHERE = 2 };
@@ -23,10 +23,10 @@ typedef struct counting {
 	const nt_adjacency *adjacency;
 } counting;
 
-static void count_corners(uint32_t *counts, const uint32_t *ids, size_t count)
+static void count_corners(uint32_t *counts, const uint32_t *ids, size_t count, bool far)
 {
 	size_t i = 0;
-	for (; i + COUNT_AHEAD < count; i++) {
+	for (; far && i + COUNT_AHEAD < count; i++) {
 		__builtin_prefetch(&counts[ids[i + COUNT_AHEAD]], 1);
 		counts[ids[i]]++;
 	}
@@ -43,7 +43,8 @@ static void count_range(const counting *c, size_t range)
 	for (size_t t = c->ranges->bounds[range]; t < end; t += step) {
 		uint32_t copy[3 * BATCH];
 		step = c->triangles->cuts && end - t > BATCH ? BATCH : end - t;
-		count_corners(counts, nt_triangle_vertices(c->triangles, t, step, copy), 3 * step);
+		count_corners(counts, nt_triangle_vertices(c->triangles, t, step, copy), 3 * step,
+			c->adjacency->vertex_count > NEAR_VERTICES);
 	}
 }
 
