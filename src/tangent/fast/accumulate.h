@@ -196,19 +196,30 @@ static size_t __attribute__((noinline)) add_shared(const nt_fast *fast, unsigned
 	return i;
 }
 
+/* Whether a corner of a triangle is at a hub. */
+static inline bool has_hub(const nt_fast *fast, unsigned range, const uint32_t *v)
+{
+	const uint32_t *const cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
+	return (cursors[v[0]] | cursors[v[1]] | cursors[v[2]]) & NT_CURSOR_HUB;
+}
+
 /* Triangles with frames, lanes [begin, end). */
 static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t begin, size_t end, const uint32_t *ids,
 	const lanes_out *out)
 {
-	for (size_t i = begin; i < end; i++) {
+	for (size_t i = begin; i < end;) {
 		if (!fast->wants_more)
 			i = add_here(fast, range, first, i, end, ids, out);
 		if (!fast->wants_more && fast->deferred)
 			i = add_shared(fast, range, first, i, end, ids, out);
 		if (!fast->wants_more && fast->adjacency.rest)
 			i = add_elsewhere(fast, range, first, i, end, ids, out);
-		if (i < end)
+		if (i == end)
+			return;
+		do {
 			add_triangle(fast, range, first + i, ids + 3 * i, (int)i, out);
+			i++;
+		} while (i < end && (fast->wants_more || has_hub(fast, range, ids + 3 * i)));
 	}
 }
 

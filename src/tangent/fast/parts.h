@@ -137,23 +137,19 @@ static inline nt_record *nt_fast_record(const nt_fast *fast, int orient, uint32_
 	return &fast->records[orient][fast->record_step * vertex];
 }
 
-/* The next triangle from t on that has one of these flags; triangle_count: none. Most have none, eight a step. */
-static inline size_t nt_fast_next_flagged(const nt_fast *fast, size_t t, unsigned flags)
+/* The next triangle from t on that has this flag; triangle_count: none. Most have none, eight a step. */
+static inline size_t nt_fast_next_flagged(const nt_fast *fast, size_t t, unsigned flag)
 {
-	const uint64_t pattern = 0x0101010101010101u * flags;
-	while (t < fast->triangle_count) {
-		uint64_t eight;
-		if (fast->triangle_count - t >= sizeof eight) {
-			memcpy(&eight, fast->flags + t, sizeof eight);
-			if (!(eight & pattern)) {
-				t += sizeof eight;
-				continue;
-			}
-		}
-		for (const size_t stop = t + sizeof eight; t < stop && t < fast->triangle_count; t++)
-			if (fast->flags[t] & flags)
-				return t;
+	const uint64_t pattern = 0x0101010101010101u * flag;
+	for (uint64_t eight; fast->triangle_count - t >= sizeof eight; t += sizeof eight) {
+		memcpy(&eight, fast->flags + t, sizeof eight);
+		eight &= pattern;
+		if (eight)
+			return t + (size_t)(__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? __builtin_clzll(eight)
+										 : __builtin_ctzll(eight)) / 8;
 	}
+	while (t < fast->triangle_count && !(fast->flags[t] & flag))
+		t++;
 	return t;
 }
 
