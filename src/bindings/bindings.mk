@@ -14,7 +14,7 @@ WASM_FLAGS := --target=wasm32-wasi --sysroot=/usr -std=c11 -D_GNU_SOURCE -DNDEBU
 	-Iinclude -Isrc -Wall -Wextra -Wno-bitwise-instead-of-logical -MMD -MP
 
 build/wasm/%.o: WASM_LEVEL := -Oz
-$(patsubst %,build/wasm/src/tangent/fast/%.o,fast kernel_baseline records write) build/wasm/src/topology/weld%.o: WASM_LEVEL := -O2
+build/wasm/src/tangent/fast/kernel_baseline.o: WASM_LEVEL := -O2
 build/wasm/%.o: %.c | need-wasm
 	@mkdir -p $(@D)
 	$(WASM_CC) $(WASM_FLAGS) $(WASM_LEVEL) -c -o $@ $<

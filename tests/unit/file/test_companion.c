@@ -181,6 +181,7 @@ static void a_name_that_is_taken_meanwhile_is_not_replaced(void **state)
 	assert_int_equal(access(in_folder("a.gltf"), F_OK), -1);
 	assert_int_equal(count_in_folder(), 1);
 	/* nor is what was to be used, or replaced, if it changed */
+	nt_buffer_free(&result.note);
 	result = (nt_output_result){0};
 	put_text_file("n.png", "new");
 	output = start(&options, &main);
