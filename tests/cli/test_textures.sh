@@ -331,6 +331,9 @@ says "IMAGE_MISSING"
 run --texture-path=elsewhere t.ply t.glb
 exits 0
 says "wood.tga became wood.png (embedded)"
+images write twin.png 8 8 '(x * 9, y * 9, 3)'
+images embedded t.glb 0 made.png
+is "$(images rows made.png)" "$(images rows twin.png)"
 is "$(gltf t.glb '[g.images[0].mimeType, g.materials[0].pbrMetallicRoughness.baseColorTexture.index]')" '["image/png",0]'
 
 scene "maps that are none, or of another kind"

@@ -227,6 +227,7 @@ static void textures_in_comments_become_materials(void **state)
 	assert_int_equal(r.scene.material_count, 3);
 	assert_string_equal(r.scene.materials[0].base_color_map.name, "wood grain.png");
 	assert_string_equal(r.scene.materials[0].library, "test.ply");
+	assert_true(nt_map_is_plain(&r.scene.materials[0].base_color_map));
 	assert_int_equal(r.mesh->primitive_count, 3);
 	assert_int_equal(r.mesh->primitives[0].material, 0);
 	assert_int_equal(r.mesh->primitives[1].material, 2);
