@@ -32,6 +32,7 @@ void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), voi
 
 #else
 
+#include <errno.h>
 #include <pthread.h>
 #include <sched.h>
 #include <signal.h>
@@ -189,12 +190,24 @@ static void *run_thread(void *withheld)
 	return NULL;
 }
 
+/* Returns the error of pthread_create(). */
+static int begin_thread(bool elsewhere)
+{
+	pthread_attr_t attributes;
+	int error = pthread_attr_init(&attributes);
+	if (error)
+		return error;
+	pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
+	const int withheld = elsewhere ? begin_elsewhere(&attributes) : -1;
+	pthread_t thread;
+	error = pthread_create(&thread, &attributes, run_thread, (void *)(intptr_t)withheld);
+	pthread_attr_destroy(&attributes);
+	return error;
+}
+
 /* Signals are for the user's threads, but for those that an instruction raises. */
 static bool make_thread(void)
 {
-	pthread_attr_t attributes;
-	if (pthread_attr_init(&attributes) != 0)
-		return false;
 	sigset_t all, before;
 	sigfillset(&all);
 	sigdelset(&all, SIGBUS);
@@ -203,13 +216,11 @@ static bool make_thread(void)
 	sigdelset(&all, SIGSEGV);
 	sigdelset(&all, SIGTRAP);
 	pthread_sigmask(SIG_SETMASK, &all, &before);
-	pthread_t thread;
-	pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
-	const int withheld = begin_elsewhere(&attributes);
-	const bool made = pthread_create(&thread, &attributes, run_thread, (void *)(intptr_t)withheld) == 0;
+	int error = begin_thread(true);
+	if (error && error != EAGAIN) /* a filter of system calls may refuse the choice of processors alone */
+		error = begin_thread(false);
 	pthread_sigmask(SIG_SETMASK, &before, NULL);
-	pthread_attr_destroy(&attributes);
-	return made;
+	return error == 0;
 }
 
 /* In the child none of the pool's threads exists, and nobody holds the lock. */

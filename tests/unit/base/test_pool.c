@@ -16,7 +16,7 @@
 #include "nmtan.h"
 
 static atomic_uint threads_made;
-static atomic_bool creation_fails;
+static atomic_bool creation_fails, affinity_fails;
 
 int __real_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*run)(void *), void *argument);
 int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, void *(*run)(void *), void *argument);
@@ -25,6 +25,11 @@ int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, v
 {
 	if (creation_fails)
 		return EAGAIN;
+#ifdef __GLIBC__
+	cpu_set_t set; /* all there can be where none was chosen */
+	if (affinity_fails && pthread_attr_getaffinity_np(attributes, sizeof set, &set) == 0 && CPU_COUNT(&set) < CPU_SETSIZE)
+		return EPERM;
+#endif
 	threads_made++;
 	return __real_pthread_create(thread, attributes, run, argument);
 }
@@ -77,7 +82,7 @@ static bool each_slot_once(unsigned slots)
 /* Two slots that meet: true where they ran beside one another, given half a minute. */
 typedef struct meeting {
 	atomic_uint here;
-	atomic_bool met;
+	atomic_bool missed;
 	atomic_uint fewest; /* processors that a slot's thread may use */
 } meeting;
 
@@ -88,8 +93,8 @@ static void meet(void *context, unsigned slot)
 	m->here++;
 	for (int i = 0; i < 30000 && m->here < 2; i++)
 		nanosleep(&(struct timespec){.tv_nsec = 1000000}, NULL);
-	if (m->here >= 2)
-		m->met = true;
+	if (m->here < 2)
+		m->missed = true;
 }
 
 /* The same, on as many processors as the process may use: a new thread has begun on fewer. */
@@ -105,7 +110,7 @@ static bool two_slots_meet(void)
 {
 	meeting m = {0};
 	nt_pool_run(2, meet, &m);
-	return m.met;
+	return !m.missed;
 }
 
 /* ---- cases ---- */
@@ -189,8 +194,21 @@ static void threads_may_go_wherever_their_maker_may(void **state)
 	(void)state;
 	meeting m = {.fewest = UINT_MAX};
 	nt_pool_run(2, meet_anywhere, &m);
-	assert_true(m.met);
+	assert_false(m.missed);
 	assert_int_equal(m.fewest, nt_pool_processors());
+}
+
+static void meet_where_none_may_be_chosen(void)
+{
+	affinity_fails = true;
+	expect(two_slots_meet());
+}
+
+/* As under a filter of system calls that refuses sched_setaffinity(). */
+static void threads_begin_where_no_processor_may_be_chosen(void **state)
+{
+	(void)state;
+	in_a_child(meet_where_none_may_be_chosen);
 }
 
 static void callers_may_be_many(void **state)
@@ -341,6 +359,7 @@ int main(void)
 		cmocka_unit_test(small_meshes_make_no_thread),
 		cmocka_unit_test(slots_run_beside_one_another_and_threads_are_kept),
 		cmocka_unit_test(threads_may_go_wherever_their_maker_may),
+		cmocka_unit_test(threads_begin_where_no_processor_may_be_chosen),
 		cmocka_unit_test(callers_may_be_many),
 		cmocka_unit_test(regions_nest),
 		cmocka_unit_test(a_child_makes_threads_of_its_own),
