@@ -14,7 +14,7 @@ WASM_FLAGS := --target=wasm32-wasi --sysroot=/usr -std=c11 -D_GNU_SOURCE -DNDEBU
 	-Iinclude -Isrc -Wall -Wextra -Wno-bitwise-instead-of-logical -MMD -MP
 
 build/wasm/%.o: WASM_LEVEL := -Oz
-build/wasm/src/tangent/fast/kernel_baseline.o: WASM_LEVEL := -O2
+$(patsubst %,build/wasm/src/%.o,tangent/fast/kernel_baseline topology/weld_sieve): WASM_LEVEL := -O2
 build/wasm/%.o: %.c | need-wasm
 	@mkdir -p $(@D)
 	$(WASM_CC) $(WASM_FLAGS) $(WASM_LEVEL) -c -o $@ $<

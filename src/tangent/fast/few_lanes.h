@@ -112,8 +112,8 @@ static inline __attribute__((always_inline)) void finish_groups(const nt_fast *f
  * usable, NT_TRIANGLE_COMPLEX in `orients`. Both arrays have room for whole vectors, which hold sums throughout. */
 static void few_results(const nt_fast *fast, const uint32_t *vertices, size_t count, nt_record *results, uint8_t *orients)
 {
-	if (count > 0 && count <= 4) {
-		finish_groups(fast, vertices, count, 4, WIDTH > 4, results, orients);
+	if (WIDTH > 4 && count > 0 && count <= 4) {
+		finish_groups(fast, vertices, count, 4, true, results, orients);
 		return;
 	}
 	for (size_t first = 0; first < count; first += NT_LANES) {
