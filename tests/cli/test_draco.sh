@@ -299,6 +299,18 @@ says "mesh 0, primitive 0: warning: the primitive is written without Draco compr
 is "$(gltf out.glb 'rows(g.meshes[1].primitives[0].attributes._CORNER)')" \
 	"$(gltf corners.gltf 'rows(g.meshes[1].primitives[0].attributes._CORNER)')"
 
+scene "indices of a block that claim to be sparse, too, are the block's where they are written plain"
+run -q --only=all --draco=edgebreaker "$data/plates.gltf" block.gltf
+node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync("block.gltf")), p = g.meshes[0].primitives[0];
+	g.accessors[p.indices].sparse = {count: 1, indices: {bufferView: 0, componentType: 5121}, values: {bufferView: 0}};
+	g.bufferViews[0].byteLength = 8;
+	fs.writeFileSync("sparse.gltf", JSON.stringify(g))'
+run -q --only=all --existing=replace --draco=off block.gltf plain.glb
+run --only=all --existing=replace --draco=off --verify sparse.gltf out.glb
+exits 0
+is "$(gltf out.glb 'rows(g.meshes[0].primitives[0].indices)')" "$(gltf plain.glb 'rows(g.meshes[0].primitives[0].indices)')"
+is "$(gltf out.glb 'g.accessors[g.meshes[0].primitives[0].indices].sparse')" undefined
+
 scene "only a glTF made from a glTF is compressed"
 run --draco=edgebreaker "$data/quad.obj" quad.glb
 exits 1

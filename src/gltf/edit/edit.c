@@ -2,8 +2,8 @@
 /*
  * glTF from glTF: the source document with tangents put in, and nothing else changed. Pool by pool: splits are
  * merged, vertices appended, indices follow, TANGENT comes; then offsets are moved and the document is written.
- * What no solved primitive uses is not read. Only Draco takes long: its blocks are encoded on all threads, of some
- * hundred pools before the first of them is edited.
+ * What no solved primitive uses is not read. Only Draco takes long: its blocks are encoded on all threads, of a
+ * window of pools before the first of them is edited.
  *
  * The solve is made on (u, -v), so its w is glTF's as it stands.
  */

@@ -123,6 +123,7 @@ static nt_status give_view(nt_buffer_edits *edits, uint32_t buffer, const nt_glt
 	nt_json_value *accessor = nt_json_at(nt_gltf_root_member(edits->document, "accessors"), old->index);
 	nt_json_set_uint64(json, nt_json_put(json, accessor, "bufferView"), view);
 	nt_json_remove(json, accessor, "byteOffset");
+	nt_json_remove(json, accessor, "sparse"); /* what was in the block had none */
 	nt_json_set_uint64(json, nt_json_put(json, accessor, "componentType"), new->type);
 	nt_json_set_uint64(json, nt_json_put(json, accessor, "count"), new->count);
 	nt_json_remove(json, accessor, "min");
