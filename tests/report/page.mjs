@@ -45,7 +45,17 @@ const ask = (page, what, argument) => page.evaluate(([what, argument]) => window
 const selection = page => ask(page, 'selection');
 const camera = async page => JSON.stringify(await ask(page, 'camera'));
 const visible = page => page.locator('.finding').count();
-const rest = page => page.waitForTimeout(400);
+// Until what is to be drawn is drawn; and until the page's timers, of at most 180 ms, and what these draw are over, too. A
+// machine that is slow waits longer.
+const frames = page => page.evaluate(() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done)))));
+const rest = page => frames(page).then(() => page.evaluate(() => new Promise(done => setTimeout(done, 200)))).then(() => frames(page));
+// What get() says once that is what is expected, or half a minute later.
+async function settled(get, expected) {
+	for (const end = Date.now() + 30000; ;) {
+		const value = await get();
+		if (value === expected || Date.now() > end) return value;
+	}
+}
 
 // The mean colour of patches of a picture, at places given as fractions, decoded by the browser itself.
 async function colours(page, png, places) {
@@ -70,7 +80,7 @@ async function colours(page, png, places) {
 async function clickTexture(page, u, v) {
 	const [x, y] = await page.evaluate(([u, v]) => window.nmtanReport.place(u, v), [u, v]);
 	await page.click('#layout', {position: {x, y}});
-	await page.waitForTimeout(50);
+	await frames(page);
 }
 
 // ---- two small meshes ----
@@ -125,10 +135,10 @@ async function clickTexture(page, u, v) {
 	await page.click('#space-fit');
 	const box = await page.locator('#space').boundingBox();
 	await page.click('#space', {position: {x: box.width / 2, y: box.height / 2}});
-	await page.waitForTimeout(50);
+	await frames(page);
 	check((await selection(page))?.island === 0, 'a click in space chooses the island');
 	await page.click('#space', {position: {x: 4, y: 4}});
-	await page.waitForTimeout(50);
+	await frames(page);
 	check(await selection(page) === null, 'one beside the mesh nothing');
 
 	// keys
@@ -319,15 +329,14 @@ async function clickTexture(page, u, v) {
 	check((await page.locator('#file-rows tr.error').allInnerTexts()).join().includes('bad.obj') && /bad|broken/.test(await first()), 'the worst first');
 	await page.click('[data-column=triangles] button');
 	check((await first()).includes('head.obj'), 'the largest first');
-	await rest(page);
-	check(await page.evaluate(() => { // the quads are blue, the mirrored half of the head lies on the other and is red
+	check(await settled(() => page.evaluate(() => { // the quads are blue, the mirrored half of the head lies on the other and is red
 		let blue = 0, red = 0;
 		for (const canvas of document.querySelectorAll('#file-rows canvas')) {
 			const d = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
 			for (let i = 0; i < d.length; i += 4) if (d[i + 3] > 100) { if (d[i] > d[i + 2]) red++; else blue++; }
 		}
 		return blue > 3000 && red > 3000;
-	}), 'with layouts');
+	}), true), 'with layouts');
 	await page.fill('#file-text', 'broken');
 	check(await rows() === 1 && await page.evaluate(() => window.broken === undefined), 'a name is text');
 	await page.click('#file-rows a');
@@ -387,21 +396,22 @@ async function clickTexture(page, u, v) {
 	await page.click('#layout-fit');
 	await rest(page);
 	check((await page.locator('#texture option').allTextContents()).join() === 'none,Normal map,Base colour', 'what can be chosen');
-	check(await page.inputValue('#texture') === '0' && await colour() === 'blue', 'the normal map lies below, is ' + await colour());
+	check(await page.inputValue('#texture') === '0' && await settled(colour, 'blue') === 'blue', 'the normal map lies below, is ' + await colour());
 	check(requests.length === 0, 'no file is asked for unless it is chosen');
 	await page.selectOption('#texture', '1');
 	await rest(page);
-	check(await colour() === 'red' && await note.textContent() === '', 'the base colour, from a file, is ' + await colour());
+	check(await settled(colour, 'red') === 'red' && await note.textContent() === '', 'the base colour, from a file, is ' + await colour());
 	if (shots) await page.screenshot({path: shots + '/picture.png'});
 	await page.selectOption('#texture', '-1');
 	await rest(page);
-	check(await colour() === 'grey', 'none is none, is ' + await colour());
+	check(await settled(colour, 'grey') === 'grey', 'none is none, is ' + await colour());
 	await page.selectOption('#texture', '1');
 	await go(1, 'lost.gltf');
-	check((await note.textContent()).includes('tex/lost.png is not beside this page') && await colour() === 'grey', 'a file that is not there is said: ' + await note.textContent());
+	const said = 'tex/lost.png is not beside this page';
+	check(await settled(async () => (await note.textContent()).includes(said) && await colour() === 'grey', true), 'a file that is not there is said: ' + await note.textContent());
 	if (shots) await page.screenshot({path: shots + '/lost.png'});
 	await go(2, 'inside.gltf');
-	check(await colour() === 'red' && await note.textContent() === '', 'a base colour in the page, is ' + await colour());
+	check(await settled(colour, 'red') === 'red' && await note.textContent() === '', 'a base colour in the page, is ' + await colour());
 	await go(3, 'other.gltf');
 	check((await page.locator('#texture option').allTextContents()).join() === 'none,Normal map', 'none of other texture coordinates');
 	check(requests.every(r => /\/tex\/(red|lost)\.png$/.test(r)) && requests.length === 2, 'only its images are asked for: ' + requests);
@@ -422,7 +432,7 @@ async function clickTexture(page, u, v) {
 		await touch('touchStart', ...from);
 		for (let i = 1; i <= 10; i++) await touch('touchMove', ...from.map((p, k) => p.map((x, j) => x + (to[k][j] - x) * i / 10)));
 		await touch('touchEnd');
-		await page.waitForTimeout(50);
+		await frames(page);
 	};
 	const beside = ([x, y], dx, dy) => [[x - dx, y - dy], [x + dx, y + dy]];
 
@@ -452,7 +462,7 @@ async function clickTexture(page, u, v) {
 	check(await selection(page) === null, 'a tap of two fingers chooses nothing');
 	await page.click('#space-fit');
 	await page.touchscreen.tap(...there);
-	await page.waitForTimeout(50);
+	await frames(page);
 	check((await selection(page))?.triangles > 0, 'a tap of one chooses');
 	await page.close();
 }
