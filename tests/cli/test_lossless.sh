@@ -27,6 +27,10 @@ for input in "$WORK"/layouts/*.gl*; do
 		exits 0
 		lossless "$input" "${words##* }" $reference
 	done
+	# a second run finds the tangents where it puts them; a .glb has one buffer, and so the same bytes
+	run --existing=replace other/b.glb again.glb
+	exits 0
+	same other/b.glb again.glb
 	mkdir -p "$WORK/outputs/$name" && cp -r . "$WORK/outputs/$name"
 	for output in same/a.gltf other/b.glb same/c.gltf other/d.gltf; do
 		printf '%s\t%s\n' "$WORK/outputs/$name/$output" "$input" >>"$WORK/pairs"

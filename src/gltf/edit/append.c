@@ -250,7 +250,8 @@ static nt_status append_to_block(nt_appending *job, const block *b, uint64_t pre
 	if (b->begin < previous_end || nt_byte_users_foreign(&job->edits->users, b->buffer, b->begin, b->end,
 					       job->edits->appended_by, nt_append_owner(job))) {
 		for (size_t i = 0; !status && i < b->count; i++)
-			status = move_away(job, &b->targets[i]);
+			if (nt_appended_count(job) || b->targets[i].override)
+				status = move_away(job, &b->targets[i]);
 		return status;
 	}
 	const unsigned char *elements;

@@ -76,8 +76,7 @@ nt_status nt_append_collect(nt_appending *job, nt_gltf_override *overrides, size
 	for (size_t i = 0; i < override_count; i++)
 		if (!overrides[i].values)
 			job->edits->seen[overrides[i].accessor] = true;
-	const bool all = nt_appended_count(job) || job->decoded_too;
-	for (size_t i = 0; !status && all && i < pool->user_count; i++) {
+	for (size_t i = 0; !status && i < pool->user_count; i++) {
 		job->collecting_unsolved = !nt_pool_is_solved(pool, i);
 		status = nt_gltf_visit_attributes(nt_pool_primitive(pool, i), job->pools->accessor_count,
 			collect_attribute, job);
