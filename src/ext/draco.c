@@ -8,12 +8,12 @@
 #include "ext/tables.h"
 
 nt_status nt_draco_decode(nt_draco **result, const unsigned char *bytes, size_t size, size_t max_faces,
-	bool with_quantization, nt_error *error)
+	nt_error *error)
 {
 	nt_status status;
 	const nt_draco_table *draco = nt_module_open(NT_MODULE_DRACO, &status, error);
 	*result = NULL;
-	return draco ? draco->decode(result, bytes, size, max_faces, with_quantization, error) : status;
+	return draco ? draco->decode(result, bytes, size, max_faces, error) : status;
 }
 
 void nt_draco_free(nt_draco *result)

@@ -69,14 +69,13 @@ typedef struct nt_draco nt_draco;
  * Decodes a mesh.
  *
  *   max_faces  the context's limit; 0: none but what so many bytes can plausibly hold
- *   with_quantization  fills the attributes' quantization, for encoding them again; takes about as long again
  *
  * Returns NT_OK; NT_ERROR_INPUT for what is not Draco or damaged, with Draco's words;
  * NT_ERROR_UNSUPPORTED for point clouds and attributes that glTF cannot have; NT_ERROR_TOO_LARGE when it
  * declares more faces than allowed; NT_ERROR_MEMORY.
  */
 nt_status nt_draco_decode(nt_draco **result, const unsigned char *bytes, size_t size,
-	size_t max_faces, bool with_quantization, nt_error *error);
+	size_t max_faces, nt_error *error);
 
 /* NULL is allowed. */
 void nt_draco_free(nt_draco *result);

@@ -54,8 +54,7 @@ static nt_status find_bytes(nt_gltf *document, uint64_t index, const char *point
 	return nt_gltf_view_bytes(document, (uint32_t)index, 0, view.length, pointer, bytes, error);
 }
 
-static nt_status decode_block(nt_gltf *document, uint64_t index, const char *pointer, bool with_quantization,
-	nt_error *error)
+static nt_status decode_block(nt_gltf *document, uint64_t index, const char *pointer, nt_error *error)
 {
 	const unsigned char *bytes = NULL;
 	size_t size;
@@ -64,7 +63,7 @@ static nt_status decode_block(nt_gltf *document, uint64_t index, const char *poi
 		status = make_room(document, error);
 	if (status)
 		return status;
-	status = nt_draco_decode(&document->draco_blocks[index], bytes, size, 0, with_quantization, error);
+	status = nt_draco_decode(&document->draco_blocks[index], bytes, size, 0, error);
 	if (status && error && status != NT_ERROR_MEMORY) {
 		snprintf(error->place.pointer, sizeof error->place.pointer, "/bufferViews/%llu",
 			(unsigned long long)index);
@@ -83,7 +82,6 @@ typedef struct packed {
 typedef struct decoding {
 	nt_gltf *document;
 	packed *blocks; /* [view_count] */
-	bool with_quantization;
 } decoding;
 
 static void decode_wanted(void *context, size_t view, unsigned slot)
@@ -92,7 +90,7 @@ static void decode_wanted(void *context, size_t view, unsigned slot)
 	(void)slot;
 	if (d->blocks[view].bytes)
 		nt_draco_decode(&d->document->draco_blocks[view], d->blocks[view].bytes, d->blocks[view].size, 0,
-			d->with_quantization, NULL);
+			NULL);
 }
 
 /* How many blocks the meshes have that are not decoded. */
@@ -122,7 +120,7 @@ nt_status nt_gltf_decode_ahead(nt_scene *scene, const bool *needed, const nt_rea
 	const unsigned threads = nt_thread_count(options->threads);
 	if (threads == 1 || !nt_gltf_uses(document, "KHR_draco_mesh_compression"))
 		return NT_OK;
-	const decoding d = {document, nt_calloc(document->view_count, sizeof *d.blocks), options->recompress};
+	const decoding d = {document, nt_calloc(document->view_count, sizeof *d.blocks)};
 	if (!d.blocks)
 		return nt_fail_memory(error);
 	const size_t count = find_wanted(&d, scene, needed);
@@ -184,7 +182,7 @@ static nt_status give_attributes(nt_gltf *document, const nt_json_value *primiti
 }
 
 nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive,
-	const char *primitive_pointer, bool with_quantization, nt_error *error)
+	const char *primitive_pointer, nt_error *error)
 {
 	const nt_json_value *extension = nt_gltf_draco_of(primitive);
 	if (!extension)
@@ -206,7 +204,7 @@ nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive
 			status = nt_fail_memory(error);
 	}
 	if (!status && !nt_gltf_draco_block(document, view))
-		status = decode_block(document, view, pointer, with_quantization, error);
+		status = decode_block(document, view, pointer, error);
 	if (status)
 		return status;
 	const nt_draco_mesh *mesh = nt_gltf_draco_block(document, view);

@@ -13,9 +13,9 @@
 nt_json_value *nt_gltf_draco_of(const nt_json_value *primitive);
 
 /* Decodes a primitive's KHR_draco_mesh_compression, where it has one: from then on its accessors have
- * their elements. with_quantization: as in ext/draco.h. */
+ * their elements. */
 nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive,
-	const char *pointer, bool with_quantization, nt_error *error);
+	const char *pointer, nt_error *error);
 
 /* Decodes the blocks of several meshes on several threads. needed: [mesh_count]. A block that
  * fails is left for nt_gltf_decode_draco(), which has it alone and says what is wrong. Returns NT_OK or

@@ -23,8 +23,8 @@
 /* Elements that an accessor without a bufferView may have when nothing in the file backs the number. */
 enum { UNBACKED_ELEMENTS = 65536 };
 
-static nt_status find_primitive(nt_gltf *document, const nt_mesh *mesh,
-	const nt_read_options *options, const nt_json_value **primitive, nt_error *error)
+static nt_status find_primitive(nt_gltf *document, const nt_mesh *mesh, const nt_json_value **primitive,
+	nt_error *error)
 {
 	const nt_json_value *json =
 		nt_json_at(nt_gltf_root_member(document, "meshes"), mesh->gltf_mesh);
@@ -33,7 +33,7 @@ static nt_status find_primitive(nt_gltf *document, const nt_mesh *mesh,
 		return nt_gltf_refuse(error);
 	char pointer[NT_GLTF_POINTER];
 	nt_gltf_mesh_pointer(pointer, mesh);
-	return nt_gltf_decode_draco(document, *primitive, pointer, options->recompress, error);
+	return nt_gltf_decode_draco(document, *primitive, pointer, error);
 }
 
 /* An attribute of a primitive. *accessor has count 0 and no view where there is none. */
@@ -403,7 +403,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 		nt_mesh_share(mesh);
 		return apply_transform(scene, document, mesh, error);
 	}
-	nt_status status = find_primitive(document, mesh, options, &primitive, error);
+	nt_status status = find_primitive(document, mesh, &primitive, error);
 	inputs in;
 	if (!status)
 		status = find_inputs(document, mesh, primitive, options, &in, error);

@@ -122,7 +122,7 @@ static nt_status open_block(nt_reread *model, size_t mesh, size_t primitive, con
 {
 	if (!bytes)
 		return nt_fail(error, NT_ERROR_INPUT, "the compressed block is not inside of a buffer");
-	const nt_status status = nt_draco_decode(&view->block, bytes, size, 0, true, error);
+	const nt_status status = nt_draco_decode(&view->block, bytes, size, 0, error);
 	if (status != NT_OK)
 		return status;
 	const nt_draco_mesh *decoded = nt_draco_get(view->block);

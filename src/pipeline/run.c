@@ -119,8 +119,6 @@ static nt_status read_scene(run *r)
 	status = nt_choose_writer(r->settings, r->output_path, r->reader, &r->writer, r->error);
 	if (status)
 		return status;
-	r->read_options.recompress = r->writer && nt_format_is_gltf(r->writer->format) &&
-		r->settings->draco != NT_DRACO_OFF;
 
 	/* glTF without normals is left alone unless normals are asked for; the other formats get them */
 	nt_select(&r->scene, r->settings->only, r->settings->existing,

@@ -50,7 +50,6 @@ typedef struct nt_read_options {
 	nt_morph_choice morphs; /* targets are loaded where they are to be baked */
 	bool report;        /* meshes that get no tangents are loaded too, to be checked */
 	bool across;        /* and those that contribute to others: NT_ACROSS_MESH */
-	bool recompress;    /* blocks of compressed primitives are encoded again, as they were quantized */
 	unsigned threads;
 } nt_read_options;
 

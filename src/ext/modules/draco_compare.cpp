@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// Whether what Draco encoded comes back. Expected are the values after quantization, as Draco's own transforms
-// compute them. Sequential encoding keeps the order of points and faces, so that bytes are compared; edgebreaker
-// reorders both and joins and splits points, so that a sum of hashes over faces stands for the set of them.
+// Whether what Draco encoded comes back. Expected are the values after quantization by Draco's own transforms, and what
+// decoding makes of them. Sequential encoding keeps the order of points and faces, so that bytes are compared;
+// edgebreaker reorders both and joins and splits points, so that a sum of hashes over faces stands for the set of them.
 #include "ext/modules/draco_parts.hpp"
 
 #include <algorithm>
@@ -17,17 +17,6 @@ using draco::PointAttribute;
 using nt::is_octahedral;
 using nt::stride_of;
 using nt::value_of;
-
-// Undoes an attribute's transform, as a decoder would.
-std::vector<unsigned char> restore(const PointAttribute &portable,
-	draco::AttributeTransform &transform, const nt_draco_attribute &a, size_t point_count)
-{
-	PointAttribute result;
-	result.Init(nt::draco_kind_of(a.kind), static_cast<int8_t>(a.components), draco::DT_FLOAT32, false,
-		point_count);
-	return transform.InverseTransformAttribute(portable, &result) ? nt::copy_values(result, point_count)
-								      : std::vector<unsigned char>();
-}
 
 // What a decoder should return for an attribute, point by point: the values after quantization, as Draco
 // itself computes it.
@@ -50,9 +39,9 @@ std::vector<unsigned char> expected_values(const PointAttribute &attribute,
 	}
 	const auto portable =
 		transform->InitTransformedAttribute(attribute, static_cast<int>(point_count));
-	if (!transform->TransformAttribute(attribute, {}, portable.get()))
+	if (!transform->TransformAttribute(attribute, {}, portable.get()) || !transform->TransferToAttribute(portable.get()))
 		return {};
-	return restore(*portable, *transform, a, point_count);
+	return nt::restore(*portable, nt::quantization_of(*portable), point_count);
 }
 
 // A number for a corner's values, the same for -0 and +0, which Draco may merge.

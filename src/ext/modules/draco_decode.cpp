@@ -4,9 +4,10 @@
 // range, and memory reached 5.2 GB. So the number of faces is read from the stream's head and checked before
 // Draco sees it, and what it returns is copied into plain arrays with every index and every mapping checked.
 //
-// Who wants to encode again needs to know how values were quantized (origin, range, bits), so that they do not
-// move. Draco tells this only when it leaves attributes as integers, whose own type is lost then: so that takes
-// a second decoding. Encoding is in draco_encode.cpp.
+// Floats that were quantized are made here of the integers that the decoder has of them (its portable attributes),
+// since the library rounds where its compiler likes: Debian's for arm64 multiplies and adds in one step, and has a w
+// that is neither 1 nor -1.
+// Encoding is in draco_encode.cpp.
 #include "ext/modules/draco_parts.hpp"
 #include "ext/modules/guard.hpp"
 
@@ -15,7 +16,9 @@
 
 #include <draco/attributes/attribute_octahedron_transform.h>
 #include <draco/attributes/attribute_quantization_transform.h>
-#include <draco/compression/decode.h>
+#include <draco/compression/attributes/normal_compression_utils.h>
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/compression/mesh/mesh_sequential_decoder.h>
 
 namespace {
 
@@ -192,30 +195,6 @@ nt_draco_kind kind_of(const PointAttribute &attribute)
 	}
 }
 
-// How the floats of an attribute had been quantized, from what Draco left as integers. Bits 0: not at all.
-nt_draco_quantization quantization_of(const PointAttribute &portable)
-{
-	nt_draco_quantization result = {};
-	const draco::AttributeTransformData *data = portable.GetAttributeTransformData();
-	draco::AttributeOctahedronTransform octahedron;
-	draco::AttributeQuantizationTransform box;
-	if (!data)
-		return result;
-	if (data->transform_type() == draco::ATTRIBUTE_OCTAHEDRON_TRANSFORM &&
-		octahedron.InitFromAttribute(portable)) {
-		result.bits = octahedron.quantization_bits();
-		result.octahedral = true;
-	} else if (data->transform_type() == draco::ATTRIBUTE_QUANTIZATION_TRANSFORM &&
-		portable.num_components() <= 4 && box.InitFromAttribute(portable)) {
-		result.bits = box.quantization_bits();
-		result.explicit_box = true;
-		result.range = box.range();
-		for (int i = 0; i < portable.num_components(); i++)
-			result.origin[i] = box.min_value(i);
-	}
-	return result;
-}
-
 // Whether every point maps to a value that is inside of the attribute's buffer.
 bool is_sound(const PointAttribute &attribute, size_t point_count)
 {
@@ -235,7 +214,9 @@ bool is_sound(const PointAttribute &attribute, size_t point_count)
 	return true;
 }
 
-nt_status take_attribute(nt_draco &result, const PointAttribute &decoded, nt_error *error)
+// portable: the integers of floats that were quantized; null where Draco has none.
+nt_status take_attribute(nt_draco &result, const PointAttribute &decoded, const PointAttribute *portable,
+	nt_error *error)
 {
 	const size_t point_count = result.mesh.point_count;
 	nt_draco_attribute attribute = {};
@@ -247,21 +228,25 @@ nt_status take_attribute(nt_draco &result, const PointAttribute &decoded, nt_err
 			"Draco attribute %u has a type that glTF cannot have (type %d, %d components)",
 			decoded.unique_id(), static_cast<int>(decoded.data_type()),
 			static_cast<int>(decoded.num_components()));
-	if (!is_sound(decoded, point_count))
+	attribute.quantization = portable ? nt::quantization_of(*portable) : nt_draco_quantization{};
+	const bool quantized = attribute.quantization.bits > 0;
+	if (!is_sound(quantized ? *portable : decoded, point_count))
 		return nt_fail(error, NT_ERROR_INPUT,
 			"damaged Draco data: attribute %u has fewer values than its points refer to",
 			decoded.unique_id());
 	attribute.component_type = row->type;
 	attribute.components = decoded.num_components();
 	attribute.normalized = decoded.normalized();
-	result.data.push_back(nt::copy_values(decoded, point_count));
+	result.data.push_back(quantized ? nt::restore(*portable, attribute.quantization, point_count)
+		: nt::copy_values(decoded, point_count));
 	attribute.data = result.data.back().data();
 	result.attributes.push_back(attribute);
 	return NT_OK;
 }
 
-nt_status take_mesh(nt_draco &result, const draco::Mesh &mesh, nt_error *error)
+nt_status take_mesh(nt_draco &result, draco::MeshDecoder &decoder, nt_error *error)
 {
+	const draco::Mesh &mesh = *decoder.mesh();
 	result.mesh.face_count = mesh.num_faces();
 	result.mesh.point_count = mesh.num_points();
 	result.indices.reserve(3 * result.mesh.face_count);
@@ -274,7 +259,8 @@ nt_status take_mesh(nt_draco &result, const draco::Mesh &mesh, nt_error *error)
 			result.indices.push_back(corner.value());
 		}
 	for (int i = 0; i < mesh.num_attributes(); i++) {
-		const nt_status status = take_attribute(result, *mesh.attribute(i), error);
+		const nt_status status =
+			take_attribute(result, *mesh.attribute(i), decoder.GetPortableAttribute(i), error);
 		if (status != NT_OK)
 			return status;
 	}
@@ -298,33 +284,6 @@ nt_status check_head(const unsigned char *bytes, size_t size, size_t limit, stre
 			"Draco data of %zu bytes declares %llu faces and %llu points, at most %zu faces are "
 			"expected", size, static_cast<unsigned long long>(head->faces),
 			static_cast<unsigned long long>(head->points), limit);
-	return NT_OK;
-}
-
-draco::StatusOr<std::unique_ptr<draco::Mesh>> run_decoder(const unsigned char *bytes, size_t size,
-	bool leave_integers, size_t *reached)
-{
-	draco::Decoder decoder;
-	for (int type = 0; leave_integers && type < draco::GeometryAttribute::NAMED_ATTRIBUTES_COUNT; type++)
-		decoder.SetSkipAttributeTransform(static_cast<draco::GeometryAttribute::Type>(type));
-	draco::DecoderBuffer buffer;
-	buffer.Init(reinterpret_cast<const char *>(bytes), size);
-	auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-	*reached = static_cast<size_t>(buffer.decoded_size());
-	return decoded;
-}
-
-// The second decoding, for the parameters alone.
-nt_status add_quantization(nt_draco &result, const unsigned char *bytes, size_t size,
-	nt_error *error)
-{
-	size_t reached = 0;
-	const auto decoded = run_decoder(bytes, size, true, &reached);
-	if (!decoded.ok() || decoded.value()->num_attributes() != static_cast<int>(result.attributes.size()))
-		return damaged(error, reached, "it does not decode twice");
-	for (size_t i = 0; i < result.attributes.size(); i++)
-		result.attributes[i].quantization =
-			quantization_of(*decoded.value()->attribute(static_cast<int>(i)));
 	return NT_OK;
 }
 
@@ -352,6 +311,29 @@ draco::GeometryAttribute::Type nt::draco_kind_of(nt_draco_kind kind)
 	}
 }
 
+nt_draco_quantization nt::quantization_of(const PointAttribute &portable)
+{
+	nt_draco_quantization result = {};
+	const draco::AttributeTransformData *data = portable.GetAttributeTransformData();
+	draco::AttributeOctahedronTransform octahedron;
+	draco::AttributeQuantizationTransform box;
+	if (!data)
+		return result;
+	if (data->transform_type() == draco::ATTRIBUTE_OCTAHEDRON_TRANSFORM &&
+		octahedron.InitFromAttribute(portable)) {
+		result.bits = octahedron.quantization_bits();
+		result.octahedral = true;
+	} else if (data->transform_type() == draco::ATTRIBUTE_QUANTIZATION_TRANSFORM &&
+		portable.num_components() <= 4 && box.InitFromAttribute(portable)) {
+		result.bits = box.quantization_bits();
+		result.explicit_box = true;
+		result.range = box.range();
+		for (int i = 0; i < portable.num_components(); i++)
+			result.origin[i] = box.min_value(i);
+	}
+	return result;
+}
+
 std::vector<unsigned char> nt::copy_values(const PointAttribute &attribute, size_t point_count)
 {
 	const size_t width = static_cast<size_t>(attribute.byte_stride());
@@ -366,6 +348,30 @@ std::vector<unsigned char> nt::copy_values(const PointAttribute &attribute, size
 	return values;
 }
 
+std::vector<unsigned char> nt::restore(const PointAttribute &portable, const nt_draco_quantization &q,
+	size_t point_count)
+{
+	const std::vector<unsigned char> integers = copy_values(portable, point_count);
+	const size_t components = q.octahedral ? 3 : static_cast<size_t>(portable.num_components());
+	std::vector<unsigned char> result(sizeof(float) * components * point_count);
+	draco::OctahedronToolBox octahedron; // its arithmetic is inline, and compiled as ours
+	if (q.octahedral)
+		octahedron.SetQuantizationBits(q.bits);
+	const float step = q.range / static_cast<float>((1u << q.bits) - 1);
+	for (size_t p = 0; p < point_count; p++) {
+		int32_t from[4];
+		float to[4];
+		std::memcpy(from, integers.data() + p * portable.byte_stride(), portable.byte_stride());
+		if (q.octahedral)
+			octahedron.QuantizedOctahedralCoordsToUnitVector(from[0], from[1], to);
+		else
+			for (size_t i = 0; i < components; i++)
+				to[i] = static_cast<float>(from[i]) * step + q.origin[i];
+		std::memcpy(result.data() + sizeof(float) * components * p, to, sizeof(float) * components);
+	}
+	return result;
+}
+
 nt_status nt::decode_draco(nt_draco &result, const unsigned char *bytes, size_t size, size_t face_limit,
 	nt_error *error)
 {
@@ -373,25 +379,30 @@ nt_status nt::decode_draco(nt_draco &result, const unsigned char *bytes, size_t 
 	const nt_status status = check_head(bytes, size, face_limit, &head, error);
 	if (status != NT_OK)
 		return status;
-	size_t reached = 0;
-	const auto decoded = run_decoder(bytes, size, false, &reached);
+	draco::Mesh mesh;
+	draco::DecoderBuffer buffer;
+	buffer.Init(reinterpret_cast<const char *>(bytes), size);
+	draco::MeshSequentialDecoder sequential;
+	draco::MeshEdgebreakerDecoder edgebreaker;
+	draco::MeshDecoder *decoder = &sequential;
+	if (head.method == NT_DRACO_EDGEBREAKER)
+		decoder = &edgebreaker;
+	const draco::Status decoded = decoder->Decode({}, &buffer, &mesh);
 	if (!decoded.ok())
-		return damaged(error, reached, decoded.status().error_msg());
+		return damaged(error, static_cast<size_t>(buffer.decoded_size()), decoded.error_msg());
 	result.mesh.method = head.method;
-	return take_mesh(result, *decoded.value(), error);
+	return take_mesh(result, *decoder, error);
 }
 
 nt_status nt::decode_checked(nt_draco **result, const unsigned char *bytes, size_t size, size_t max_faces,
-	bool with_quantization, nt_error *error)
+	nt_error *error)
 {
 	nt_draco *made = nullptr;
 	const size_t plausible = plausible_faces(size);
 	const size_t limit = max_faces && max_faces < plausible ? max_faces : plausible;
 	const nt_status status = nt::guard(error, "Draco", [&] {
 		made = new nt_draco;
-		const nt_status decoded = nt::decode_draco(*made, bytes, size, limit, error);
-		return decoded == NT_OK && with_quantization
-			? add_quantization(*made, bytes, size, error) : decoded;
+		return nt::decode_draco(*made, bytes, size, limit, error);
 	});
 	if (status == NT_OK)
 		*result = made;

@@ -30,13 +30,20 @@ draco::GeometryAttribute::Type draco_kind_of(nt_draco_kind kind);
 // The values of an attribute, point by point, which must have one for each.
 std::vector<unsigned char> copy_values(const draco::PointAttribute &attribute, size_t point_count);
 
-// Decodes a mesh of at most `face_limit` faces into plain arrays; quantization is left out.
+// How the floats of an attribute were quantized, of which Draco has these integers. Bits 0: not at all.
+nt_draco_quantization quantization_of(const draco::PointAttribute &portable);
+
+// The floats that those integers stand for, point by point: Draco's arithmetic, with each step rounded.
+std::vector<unsigned char> restore(const draco::PointAttribute &portable, const nt_draco_quantization &q,
+	size_t point_count);
+
+// Decodes a mesh of at most `face_limit` faces into plain arrays.
 nt_status decode_draco(nt_draco &result, const unsigned char *bytes, size_t size, size_t face_limit,
 	nt_error *error);
 
 // nt_draco_decode() and nt_draco_free().
 nt_status decode_checked(nt_draco **result, const unsigned char *bytes, size_t size, size_t max_faces,
-	bool with_quantization, nt_error *error);
+	nt_error *error);
 void free_decoded(nt_draco *result);
 
 // ---- draco_encode.cpp ----
