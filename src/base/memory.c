@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Checked allocation and the arena. The arena bumps small requests through blocks of 4 to 64 KiB, each twice as large as
- * the one before, and gives each large request a block of its own, so that big arrays return to the system one by one.
+ * Checked allocation and the arena. The arena bumps requests through blocks of 4 KiB to 4 MiB, each twice as large as
+ * the one before: a large arena is in large pages, of which each costs as much to begin as some ten small ones. A request
+ * that is large beside the block gets one of its own.
  */
 #include "base/memory.h"
 
@@ -12,8 +13,9 @@
 
 enum {
 	LEAST_BLOCK_BYTES = 4 * 1024,
-	SMALL_BLOCK_BYTES = 64 * 1024,
-	SMALL_REQUEST_BYTES = 8 * 1024,
+	MOST_BLOCK_BYTES = 4 * 1024 * 1024, /* the least that nt_alloc_large() has large pages for */
+	LEAST_LARGE_BYTES = 8 * 1024,       /* of a request; in large blocks more is not large yet */
+	LARGE_SHARE = 16,
 	ALIGNMENT = 16
 };
 
@@ -23,6 +25,8 @@ struct nt_arena_block {
 	size_t used;
 	size_t capacity;
 };
+
+enum { HEADER_BYTES = (sizeof(struct nt_arena_block) + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT };
 
 void *nt_alloc(size_t count, size_t size)
 {
@@ -64,7 +68,7 @@ bool nt_grow(void **block, size_t *capacity, size_t needed, size_t size)
 static struct nt_arena_block *add_block(nt_arena *arena, size_t capacity, bool first)
 {
 	size_t bytes;
-	if (!nt_size_add(capacity, sizeof(struct nt_arena_block) + ALIGNMENT, &bytes))
+	if (!nt_size_add(capacity, HEADER_BYTES, &bytes))
 		return NULL;
 	struct nt_arena_block *block = nt_alloc_large(bytes);
 	if (!block)
@@ -75,20 +79,6 @@ static struct nt_arena_block *add_block(nt_arena *arena, size_t capacity, bool f
 	return block;
 }
 
-static char *block_data(struct nt_arena_block *block)
-{
-	const size_t header = (sizeof *block + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
-	return (char *)block + header;
-}
-
-/* Of the block that a small request opens. */
-static size_t next_capacity(const nt_arena *arena, size_t bytes)
-{
-	const size_t twice = arena->blocks ? 2 * arena->blocks->capacity : 0;
-	const size_t capacity = twice < LEAST_BLOCK_BYTES ? LEAST_BLOCK_BYTES : twice < SMALL_BLOCK_BYTES ? twice : SMALL_BLOCK_BYTES;
-	return capacity < bytes ? bytes : capacity;
-}
-
 void *nt_arena_alloc(nt_arena *arena, size_t count, size_t size)
 {
 	size_t bytes;
@@ -97,12 +87,16 @@ void *nt_arena_alloc(nt_arena *arena, size_t count, size_t size)
 	bytes = (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
 	struct nt_arena_block *block = arena->blocks;
 	if (!block || block->capacity - block->used < bytes) {
-		const bool small = bytes <= SMALL_REQUEST_BYTES;
-		block = add_block(arena, small ? next_capacity(arena, bytes) : bytes, small);
+		const size_t last = arena->block_bytes, next = !last ? LEAST_BLOCK_BYTES :
+			last < MOST_BLOCK_BYTES ? 2 * last : MOST_BLOCK_BYTES;
+		const bool small = bytes <= (next > LARGE_SHARE * LEAST_LARGE_BYTES ? next / LARGE_SHARE : LEAST_LARGE_BYTES);
+		block = add_block(arena, small && bytes <= next - HEADER_BYTES ? next - HEADER_BYTES : bytes, small);
 		if (!block)
 			return NULL;
+		if (small)
+			arena->block_bytes = next;
 	}
-	void *result = block_data(block) + block->used;
+	void *result = (char *)block + HEADER_BYTES + block->used;
 	block->used += bytes;
 	return result;
 }
@@ -141,21 +135,22 @@ void nt_arena_join(nt_arena *arena, nt_arena *other)
 	while (*at)
 		at = &(*at)->next;
 	*at = behind;
-	other->blocks = NULL;
+	*other = (nt_arena){0};
 }
 
 void nt_arena_clear(nt_arena *arena)
 {
 	struct nt_arena_block *kept = arena->blocks;
-	if (!kept || kept->adopted || kept->capacity > SMALL_BLOCK_BYTES) {
+	if (!kept || kept->adopted || kept->capacity > MOST_BLOCK_BYTES) {
 		nt_arena_free(arena);
 		return;
 	}
+	const size_t block_bytes = arena->block_bytes;
 	arena->blocks = kept->next;
 	nt_arena_free(arena);
 	kept->next = NULL;
 	kept->used = 0;
-	arena->blocks = kept;
+	*arena = (nt_arena){kept, block_bytes};
 }
 
 void nt_arena_free(nt_arena *arena)
@@ -167,5 +162,5 @@ void nt_arena_free(nt_arena *arena)
 		free(block);
 		block = next;
 	}
-	arena->blocks = NULL;
+	*arena = (nt_arena){0};
 }

@@ -50,7 +50,7 @@ static void arena_blocks_are_apart_and_aligned(void **state)
 	assert_null(nt_arena_alloc(&arena, SIZE_MAX, 2));
 	/* what is large or adopted does not keep small requests from the block that they are taken from */
 	char *const one = nt_arena_alloc(&arena, 16, 1);
-	assert_non_null(nt_arena_alloc(&arena, 100000, 1));
+	assert_non_null(nt_arena_alloc(&arena, 1 << 20, 1));
 	assert_true(nt_arena_adopt(&arena, malloc(100)));
 	assert_ptr_equal(nt_arena_alloc(&arena, 16, 1), one + 16);
 	/* what was adopted goes, the block of small requests stays */
@@ -62,12 +62,36 @@ static void arena_blocks_are_apart_and_aligned(void **state)
 	assert_null(arena.blocks);
 }
 
+/* 64 MB in small requests lie in few blocks; one large request does not make the next block large. */
+static void large_arenas_have_large_blocks(void **state)
+{
+	(void)state;
+	enum { REQUESTS = 64 * 1024, BYTES = 1024 };
+	nt_arena arena = {0};
+	size_t blocks = 0;
+	char *last = NULL;
+	for (size_t i = 0; i < REQUESTS; i++) {
+		char *const at = nt_arena_alloc(&arena, BYTES, 1);
+		assert_non_null(at);
+		blocks += last + BYTES != at;
+		last = at;
+	}
+	assert_in_range(blocks, 17, 40);
+	nt_arena_free(&arena);
+	assert_non_null(nt_arena_alloc(&arena, 1 << 24, 1));
+	assert_int_equal(arena.block_bytes, 0);
+	assert_non_null(nt_arena_alloc(&arena, 16, 1));
+	assert_in_range(arena.block_bytes, 1, 65536);
+	nt_arena_free(&arena);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(size_mul_overflow_is_told),
 		cmocka_unit_test(grow_keeps_content_and_refuses_overflow),
 		cmocka_unit_test(arena_blocks_are_apart_and_aligned),
+		cmocka_unit_test(large_arenas_have_large_blocks),
 	};
 	return cmocka_run_group_tests_name("base/memory", tests, NULL, NULL);
 }
