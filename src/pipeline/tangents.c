@@ -31,7 +31,8 @@ typedef struct tangent_job {
 	nt_mesh **meshes;   /* the ones to solve */
 	nt_status *statuses;
 	size_t count;
-	const nt_mesh *longest; /* one below LARGE_CORNERS for which other threads would wait; NULL: none */
+	bool *is_large;     /* [count] solved by all threads: LARGE_CORNERS, or one for which other threads would wait */
+	size_t small_corners; /* of the others together */
 	struct solver *solvers; /* of each slot that solves small meshes */
 	nmtan_timing timing;    /* of the large meshes */
 } tangent_job;
@@ -266,33 +267,32 @@ static size_t corners_of(const nt_mesh *mesh)
 	return corners;
 }
 
-/* The mesh that takes longer than the others beside it, whose threads would have nothing to do. */
-static const nt_mesh *find_longest(const tangent_job *job)
+/* Marks the large ones, and one that takes longer than the others beside it, whose threads would have nothing to do;
+ * counts the corners of what is left. */
+static void find_large(tangent_job *job)
 {
-	const nt_mesh *longest = NULL;
-	size_t most = 0, sum = 0;
+	size_t longest = 0, most = 0, sum = 0;
 	for (size_t i = 0; i < job->count; i++) {
 		const size_t corners = corners_of(job->meshes[i]);
-		if (corners >= LARGE_CORNERS)
+		job->is_large[i] = corners >= LARGE_CORNERS;
+		if (job->is_large[i])
 			continue;
 		sum += corners;
 		if (corners > most) {
 			most = corners;
-			longest = job->meshes[i];
+			longest = i;
 		}
 	}
-	return most >= LEAST_ALONE_CORNERS && sum - most < most / 2 ? longest : NULL;
-}
-
-static bool has_all_threads(const tangent_job *job, const nt_mesh *mesh)
-{
-	return mesh == job->longest || corners_of(mesh) >= LARGE_CORNERS;
+	const bool alone = most >= LEAST_ALONE_CORNERS && sum - most < most / 2;
+	if (alone)
+		job->is_large[longest] = true;
+	job->small_corners = alone ? sum - most : sum;
 }
 
 static void solve_large(tangent_job *job)
 {
 	for (size_t i = 0; i < job->count; i++)
-		if (has_all_threads(job, job->meshes[i]))
+		if (job->is_large[i])
 			job->statuses[i] = solve_item(job, job->meshes[i], job->settings->threads, NULL,
 				&job->scene->arena, &job->timing);
 }
@@ -301,7 +301,7 @@ static void solve_one_small(void *context, size_t item, unsigned slot)
 {
 	tangent_job *job = context;
 	nt_mesh *mesh = job->meshes[item];
-	if (has_all_threads(job, mesh))
+	if (job->is_large[item])
 		return;
 	solver *own = &job->solvers[slot];
 	/* without a workspace it is only slower */
@@ -312,10 +312,7 @@ static void solve_one_small(void *context, size_t item, unsigned slot)
 
 static nt_status solve_small(tangent_job *job)
 {
-	size_t corners = 0;
-	for (size_t i = 0; i < job->count; i++)
-		if (!has_all_threads(job, job->meshes[i]))
-			corners += corners_of(job->meshes[i]);
+	const size_t corners = job->small_corners;
 	const unsigned threads = corners < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(job->settings->threads);
 	const size_t slots = threads < job->count ? threads : job->count;
 	job->solvers = nt_calloc(slots, sizeof *job->solvers);
@@ -430,15 +427,16 @@ nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_for
 		.forgets = scene->forget && nt_format_is_gltf(output) && !settings->report && !settings->verify,
 		.meshes = nt_alloc(scene->mesh_count, sizeof *job.meshes),
 		.statuses = nt_calloc(scene->mesh_count, sizeof *job.statuses),
+		.is_large = nt_calloc(scene->mesh_count, sizeof *job.is_large),
 		.timing = NMTAN_TIMING_INIT};
 	nt_status status = NT_OK;
-	if (!job.meshes || !job.statuses) {
+	if (!job.meshes || !job.statuses || !job.is_large) {
 		status = nt_fail_memory(error);
 	} else {
 		for (size_t i = 0; i < scene->mesh_count; i++)
 			if (is_item(&scene->meshes[i]))
 				job.meshes[job.count++] = &scene->meshes[i];
-		job.longest = find_longest(&job);
+		find_large(&job);
 		solve_large(&job);
 		summary->seconds[NT_STAGE_WELD] += job.timing.weld;
 		summary->seconds[NT_STAGE_SPLIT] += job.timing.split;
@@ -447,5 +445,6 @@ nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_for
 	}
 	free(job.meshes);
 	free(job.statuses);
+	free(job.is_large);
 	return status;
 }
