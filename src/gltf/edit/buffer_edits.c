@@ -101,7 +101,7 @@ void nt_edits_free(nt_buffer_edits *edits)
 		free(edits->buffers[i].edits);
 		free(edits->buffers[i].additions);
 	}
-	for (size_t i = 0; edits->virtuals && i < edits->view_count; i++) {
+	for (size_t i = 0; edits->virtuals && i < edits->document->virtual_count; i++) {
 		free(edits->virtuals[i].edits);
 		free(edits->virtuals[i].additions);
 	}

@@ -184,7 +184,8 @@ static nt_status settle_old_tangents(const editing *e, const nt_pool_vertices *v
 	*count = 0;
 	for (uint32_t set = 0; !status && set < pool->sets.count; set++) {
 		const unsigned char *values = NULL;
-		status = nt_gltf_find_tangents(e->edits, e->pools, pool, set, precision, &old[set], e->error);
+		status = nt_gltf_find_tangents(e->edits, e->pools, pool, set, precision, e->of_window,
+			&old[set], e->error);
 		if (!status)
 			status = old[set].in_place ? stored_tangents(e, vertices, set, &values) :
 						     nt_gltf_release_tangents(e->edits, &old[set], e->error);
@@ -231,7 +232,7 @@ static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
 		(e->options->draco == NT_DRACO_KEEP && !nt_gltf_has_draco(&p->pool)))
 		return status;
 	p->for_draco = true;
-	status = nt_merge_splits(&p->vertices, &p->pool, &e->edits->arena, e->error);
+	status = nt_merge_splits(&p->vertices, &p->pool, &e->edits->arena, e->of_window, e->error);
 	return status ? status : nt_gltf_draco_look_up(&p->recoding, e->edits, e->pools, &p->vertices, e->options,
 		e->of_window, e->error);
 }
@@ -241,7 +242,8 @@ static nt_status edit_pool(const editing *e, pool_edit *p, bool *plain)
 {
 	/* One vertex for each tangent that a vertex has. */
 	uint32_t buffer = 0;
-	nt_status status = p->for_draco ? NT_OK : nt_merge_splits(&p->vertices, &p->pool, &e->edits->arena, e->error);
+	nt_status status = p->for_draco ? NT_OK :
+		nt_merge_splits(&p->vertices, &p->pool, &e->edits->arena, e->of_window, e->error);
 	if (!status)
 		status = choose_buffer(e, &p->pool, &buffer);
 

@@ -309,14 +309,14 @@ static void set_unused_copies(merging *m, uint32_t set)
 	}
 }
 
-/* Hands the results to the arena. */
-static bool keep_vertices(merging *m, nt_arena *arena)
+/* Hands the results to the arenas. */
+static bool keep_vertices(merging *m, nt_arena *arena, nt_arena *tables)
 {
 	nt_pool_vertices *vertices = m->vertices;
-	vertices->sources = nt_arena_alloc(arena, vertices->new_count - vertices->old_count, sizeof(uint32_t));
-	vertices->tangents = nt_arena_alloc(arena, vertices->pool->sets.count, sizeof *vertices->tangents);
-	vertices->normals = nt_arena_alloc(arena, vertices->pool->sets.count, sizeof *vertices->normals);
-	vertices->morphs = nt_arena_alloc(arena, vertices->pool->sets.count, sizeof *vertices->morphs);
+	vertices->sources = nt_arena_alloc(tables, vertices->new_count - vertices->old_count, sizeof(uint32_t));
+	vertices->tangents = nt_arena_alloc(tables, vertices->pool->sets.count, sizeof *vertices->tangents);
+	vertices->normals = nt_arena_alloc(tables, vertices->pool->sets.count, sizeof *vertices->normals);
+	vertices->morphs = nt_arena_alloc(tables, vertices->pool->sets.count, sizeof *vertices->morphs);
 	if (!vertices->sources || !vertices->tangents || !vertices->normals || !vertices->morphs)
 		return false;
 	for (size_t i = vertices->old_count; i < vertices->new_count; i++)
@@ -443,11 +443,11 @@ static const nt_mesh *lone_mesh(const nt_vertex_pool *pool)
 }
 
 /* The triangles of a mesh after its split. */
-static uint32_t *split_triangles(const nt_mesh *mesh, nt_arena *arena)
+static uint32_t *split_triangles(const nt_mesh *mesh, nt_arena *tables)
 {
 	if (mesh->split.indices || mesh->indices)
 		return mesh->split.indices ? mesh->split.indices : mesh->indices;
-	uint32_t *indices = nt_arena_alloc(arena, mesh->corner_count, sizeof *indices);
+	uint32_t *indices = nt_arena_alloc(tables, mesh->corner_count, sizeof *indices);
 	for (size_t c = 0; indices && c < mesh->corner_count; c++)
 		indices[c] = (uint32_t)c;
 	return indices;
@@ -455,20 +455,20 @@ static uint32_t *split_triangles(const nt_mesh *mesh, nt_arena *arena)
 
 /* Vertices of a mesh that shares nothing: its split as it stands, borrowed from the scene. Merging would come
  * to the same in a fifth of the time that the whole conversion of a million triangles takes. */
-static bool borrow_split(nt_pool_vertices *vertices, const nt_mesh *mesh, nt_arena *arena)
+static bool borrow_split(nt_pool_vertices *vertices, const nt_mesh *mesh, nt_arena *tables)
 {
 	vertices->new_count = vertices->old_count + mesh->split.source_count;
 	vertices->sources = mesh->split.sources;
 	vertices->borrowed = true;
-	vertices->tangents = nt_arena_alloc(arena, 1, sizeof *vertices->tangents);
-	vertices->normals = nt_arena_alloc(arena, 1, sizeof *vertices->normals);
-	vertices->morphs = nt_arena_alloc(arena, 1, sizeof *vertices->morphs);
+	vertices->tangents = nt_arena_alloc(tables, 1, sizeof *vertices->tangents);
+	vertices->normals = nt_arena_alloc(tables, 1, sizeof *vertices->normals);
+	vertices->morphs = nt_arena_alloc(tables, 1, sizeof *vertices->morphs);
 	if (!vertices->tangents || !vertices->normals || !vertices->morphs)
 		return false;
 	vertices->tangents[0] = mesh->split.vertex_tangents;
 	vertices->normals[0] = NULL;
 	vertices->morphs[0] = NULL;
-	uint32_t *triangles = split_triangles(mesh, arena);
+	uint32_t *triangles = split_triangles(mesh, tables);
 	for (size_t i = 0; i < vertices->pool->user_count; i++) {
 		const bool solved = nt_pool_is_solved(vertices->pool, i);
 		vertices->indices[i] = solved ? triangles : NULL;
@@ -495,12 +495,12 @@ static nt_status check_counts(nt_pool_vertices *vertices, nt_error *error)
 	return NT_OK;
 }
 
-nt_status nt_merge_splits(nt_pool_vertices *vertices, const nt_vertex_pool *pool, nt_arena *arena,
+nt_status nt_merge_splits(nt_pool_vertices *vertices, const nt_vertex_pool *pool, nt_arena *arena, nt_arena *tables,
 	nt_error *error)
 {
 	*vertices = (nt_pool_vertices){.pool = pool,
-		.indices = nt_arena_alloc(arena, pool->user_count, sizeof *vertices->indices),
-		.changed = nt_arena_alloc(arena, pool->user_count, sizeof *vertices->changed)};
+		.indices = nt_arena_alloc(tables, pool->user_count, sizeof *vertices->indices),
+		.changed = nt_arena_alloc(tables, pool->user_count, sizeof *vertices->changed)};
 	if (!vertices->indices || !vertices->changed)
 		return nt_fail_memory(error);
 	nt_status status = check_counts(vertices, error);
@@ -508,10 +508,10 @@ nt_status nt_merge_splits(nt_pool_vertices *vertices, const nt_vertex_pool *pool
 		return status;
 	const nt_mesh *lone = lone_mesh(pool);
 	if (lone)
-		return borrow_split(vertices, lone, arena) ? NT_OK : nt_fail_memory(error);
+		return borrow_split(vertices, lone, tables) ? NT_OK : nt_fail_memory(error);
 	merging m;
 	status = start_merging(&m, vertices) ? merge_users(&m, arena, error) : nt_fail_memory(error);
-	if (!status && !keep_vertices(&m, arena))
+	if (!status && !keep_vertices(&m, arena, tables))
 		status = nt_fail_memory(error);
 	end_merging(&m);
 	return status;

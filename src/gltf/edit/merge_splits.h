@@ -27,8 +27,9 @@ static inline size_t nt_vertex_source(const nt_pool_vertices *vertices, size_t v
 }
 
 /* Merges the splits of a pool's users: a vertex of the source becomes one for each tangent (and made normal)
- * that any of them wants. The pool has a set. Everything is in the arena, or borrowed from the scene. */
-nt_status nt_merge_splits(nt_pool_vertices *vertices, const nt_vertex_pool *pool, nt_arena *arena,
+ * that any of them wants. The pool has a set. What edits may refer to is in `arena`, or borrowed from the scene; tables
+ * of it are in `tables`. */
+nt_status nt_merge_splits(nt_pool_vertices *vertices, const nt_vertex_pool *pool, nt_arena *arena, nt_arena *tables,
 	nt_error *error);
 
 #endif

@@ -79,12 +79,12 @@ static nt_status list_tangents(const nt_vertex_pools *pools, const nt_vertex_poo
 }
 
 nt_status nt_gltf_find_tangents(nt_buffer_edits *edits, const nt_vertex_pools *pools, const nt_vertex_pool *pool,
-	uint32_t set, nt_precision precision, nt_gltf_old_tangents *old, nt_error *error)
+	uint32_t set, nt_precision precision, nt_arena *arena, nt_gltf_old_tangents *old, nt_error *error)
 {
 	uint32_t *list;
 	size_t count = 0;
 	*old = (nt_gltf_old_tangents){.in_place = true};
-	const nt_status status = list_tangents(pools, pool, set, &edits->arena, &list, &count, error);
+	const nt_status status = list_tangents(pools, pool, set, arena, &list, &count, error);
 	if (status)
 		return status;
 	old->accessors = list; /* what is kept overtakes nothing that is still to be read */
@@ -138,7 +138,7 @@ static void set_type(nt_json *json, nt_json_value *accessor, nt_precision precis
 void nt_gltf_retype_tangents(nt_gltf *document, const nt_gltf_old_tangents *old, nt_precision precision)
 {
 	for (size_t i = 0; i < old->count; i++) {
-		nt_json_value *accessor = nt_json_at(nt_gltf_root_member(document, "accessors"), old->accessors[i]);
+		nt_json_value *accessor = nt_gltf_change_accessor(document, old->accessors[i]);
 		uint64_t type = 0;
 		nt_json_get_uint64(nt_json_find(accessor, "componentType"), &type);
 		if (type != nt_precision_component_type(precision))
@@ -151,7 +151,7 @@ void nt_gltf_move_tangents(nt_gltf *document, const nt_gltf_old_tangents *old, n
 {
 	nt_json *json = document->json;
 	for (size_t i = 0; i < old->count; i++) {
-		nt_json_value *accessor = nt_json_at(nt_gltf_root_member(document, "accessors"), old->accessors[i]);
+		nt_json_value *accessor = nt_gltf_change_accessor(document, old->accessors[i]);
 		nt_json_set_uint64(json, nt_json_put(json, accessor, "bufferView"), view);
 		nt_json_set_uint64(json, nt_json_put(json, accessor, "count"), count);
 		set_type(json, accessor, precision);

@@ -17,9 +17,9 @@ typedef struct nt_gltf_old_tangents {
 /* The TANGENT accessor of a user; NT_NONE: none. */
 uint32_t nt_gltf_tangent_of(const nt_vertex_pools *pools, const nt_vertex_pool *pool, size_t user);
 
-/* precision: of the new ones. What is found is in the edits' arena. */
+/* precision: of the new ones. What is found is in the arena. */
 nt_status nt_gltf_find_tangents(nt_buffer_edits *edits, const nt_vertex_pools *pools, const nt_vertex_pool *pool,
-	uint32_t set, nt_precision precision, nt_gltf_old_tangents *old, nt_error *error);
+	uint32_t set, nt_precision precision, nt_arena *arena, nt_gltf_old_tangents *old, nt_error *error);
 
 /* Takes their bytes out of the buffers, where nobody else refers to them. */
 nt_status nt_gltf_release_tangents(nt_buffer_edits *edits, const nt_gltf_old_tangents *old, nt_error *error);

@@ -30,7 +30,13 @@ static int compare_edits(const void *a, const void *b)
 static uint64_t map_position(const nt_relocated_buffer *buffer, uint64_t position)
 {
 	const nt_buffer_edit *edits = buffer->from->edits;
-	size_t low = 0, high = buffer->from->edit_count;
+	size_t low = *buffer->near, high = buffer->from->edit_count;
+	/* mostly positions ascend: the next edits are looked at first */
+	if (low && edits[low - 1].at + edits[low - 1].removed > position)
+		low = 0;
+	for (size_t step = 1; step < high - low; step *= 2)
+		if (edits[low + step].at + edits[low + step].removed > position)
+			high = low + step;
 	while (low < high) {
 		const size_t middle = low + (high - low) / 2;
 		if (edits[middle].at + edits[middle].removed <= position)
@@ -38,6 +44,7 @@ static uint64_t map_position(const nt_relocated_buffer *buffer, uint64_t positio
 		else
 			high = middle;
 	}
+	*buffer->near = low;
 	const uint64_t shift = low ? (uint64_t)buffer->shifts[low - 1] : 0;
 	if (low < buffer->from->edit_count && edits[low].at < position && edits[low].at + edits[low].size < position)
 		position = edits[low].at + edits[low].size;
@@ -49,9 +56,11 @@ static nt_status order_edits(nt_buffer_edits *edits, uint32_t index, nt_relocate
 {
 	nt_edited_buffer *from = nt_edits_of(edits, index);
 	*result = (nt_relocated_buffer){.from = from,
-		.shifts = nt_arena_alloc(&edits->arena, from->edit_count, sizeof *result->shifts)};
-	if (!result->shifts)
+		.shifts = nt_arena_alloc(&edits->arena, from->edit_count, sizeof *result->shifts),
+		.near = nt_arena_alloc(&edits->arena, 1, sizeof *result->near)};
+	if (!result->shifts || !result->near)
 		return nt_fail_memory(error);
+	*result->near = 0;
 	if (from->edit_count)
 		qsort(from->edits, from->edit_count, sizeof *from->edits, compare_edits);
 	int64_t shift = 0;
@@ -170,6 +179,7 @@ static void move_accessors(const nt_buffer_edits *edits, const moved_view *moved
 	const size_t view_count = edits->view_count;
 	nt_json *json = edits->document->json;
 	nt_json_value *accessors = nt_gltf_root_member(edits->document, "accessors");
+	edits->document->kept_count = 0;
 	for (size_t i = 0; i < nt_json_count(accessors); i++) {
 		nt_json_value *accessor = nt_json_at(accessors, i);
 		move_in_view(json, accessor, moved, view_count);

@@ -12,6 +12,7 @@
 typedef struct nt_relocated_buffer {
 	const nt_edited_buffer *from; /* its edits are in order */
 	int64_t *shifts;              /* [edit_count] how far everything behind an edit moves */
+	size_t *near;                 /* the first edit behind the last position that was mapped */
 	uint64_t *offsets;            /* [addition_count] in the new buffer */
 	uint64_t length;
 } nt_relocated_buffer;
