@@ -13,6 +13,9 @@
 #include "gltf/pointer.h"
 #include "gltf/view.h"
 
+/* Of a kept accessor's type. */
+enum { NORMALIZED = 128 };
+
 /* Indices that an accessor without a bufferView may have: nothing in the file backs their number. */
 enum { UNBACKED_INDICES = 65536 };
 
@@ -28,9 +31,21 @@ uint32_t nt_gltf_index_type(uint64_t most, uint32_t least)
 	return least != NT_GLTF_UINT && most <= 0xFFFF ? NT_GLTF_USHORT : NT_GLTF_UINT;
 }
 
+/* Most indices have 16 bits: eight at a time. */
+typedef uint16_t eight_short __attribute__((vector_size(16)));
+typedef uint32_t eight_wide __attribute__((vector_size(32)));
+enum { LITTLE_ENDIAN_16 = __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__ };
+
 void nt_gltf_store_indices(const uint32_t *indices, size_t count, uint32_t width, unsigned char *bytes)
 {
-	for (size_t i = 0; i < count; i++)
+	size_t i = 0;
+	for (; LITTLE_ENDIAN_16 && width == 2 && i + 8 <= count; i += 8) {
+		eight_wide wide;
+		memcpy(&wide, indices + i, sizeof wide);
+		const eight_short narrow = __builtin_convertvector(wide, eight_short);
+		memcpy(bytes + 2 * i, &narrow, sizeof narrow);
+	}
+	for (; i < count; i++)
 		for (uint32_t k = 0; k < width; k++)
 			bytes[i * width + k] = (unsigned char)(indices[i] >> 8 * k);
 }
@@ -198,10 +213,10 @@ static void use_decoded(const nt_gltf_decoded *decoded, nt_gltf_accessor *access
 	accessor->sparse_count = 0;
 }
 
-nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
-	nt_gltf_accessor *accessor, nt_error *error)
+/* As the JSON has it. */
+static nt_status read_accessor(nt_gltf *document, uint64_t index, const char *from, nt_gltf_accessor *accessor,
+	nt_error *error)
 {
-	*accessor = (nt_gltf_accessor){.view = NT_NONE};
 	const nt_json_value *json;
 	nt_status status = nt_gltf_element(document, "accessors", index, from, &json, error);
 	if (status)
@@ -215,9 +230,58 @@ nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *fr
 	const nt_json_value *sparse = nt_json_find(json, "sparse");
 	if (!status && sparse)
 		status = check_sparse(document, sparse, pointer, accessor, error);
+	return status;
+}
+
+/* Notes what was read, unless another thread does so. A reader that sees that it is known sees the rest. */
+static void keep(nt_gltf_kept_accessor *kept, const nt_gltf_accessor *a)
+{
+	uint8_t unknown = 0;
+	if (a->sparse_count || a->offset > UINT32_MAX || a->stride > UINT8_MAX ||
+		a->element_bytes != a->component_bytes * a->components || /* columns with padding */
+		!__atomic_compare_exchange_n(&kept->state, &unknown, 1, false, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+		return;
+	kept->view = a->view;
+	kept->offset = (uint32_t)a->offset;
+	kept->count = (uint32_t)a->count;
+	kept->type = (uint8_t)(a->component_type - NT_GLTF_BYTE + (a->normalized ? NORMALIZED : 0));
+	kept->components = (uint8_t)a->components;
+	kept->stride = (uint8_t)a->stride;
+	__atomic_store_n(&kept->state, 2, __ATOMIC_RELEASE);
+}
+
+static void take(const nt_gltf_kept_accessor *kept, uint32_t index, nt_gltf_accessor *a)
+{
+	const uint32_t type = NT_GLTF_BYTE + kept->type % NORMALIZED, bytes = nt_gltf_component_bytes(type);
+	*a = (nt_gltf_accessor){.index = index, .component_type = type, .component_bytes = bytes,
+		.components = kept->components, .element_bytes = bytes * kept->components,
+		.normalized = kept->type >= NORMALIZED, .count = kept->count, .view = kept->view, .offset = kept->offset,
+		.stride = kept->stride};
+}
+
+nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
+	nt_gltf_accessor *accessor, nt_error *error)
+{
+	nt_gltf_kept_accessor *const kept = index < document->kept_count ? &document->kept[index] : NULL;
+	nt_status status = NT_OK;
+	if (kept && __atomic_load_n(&kept->state, __ATOMIC_ACQUIRE) == 2) {
+		take(kept, (uint32_t)index, accessor);
+	} else {
+		*accessor = (nt_gltf_accessor){.view = NT_NONE};
+		status = read_accessor(document, index, from, accessor, error);
+		if (!status && kept)
+			keep(kept, accessor);
+	}
 	if (!status && document->decoded && index < document->accessor_count)
 		use_decoded(&document->decoded[index], accessor);
 	return status;
+}
+
+nt_json_value *nt_gltf_change_accessor(nt_gltf *document, uint64_t index)
+{
+	if (index < document->kept_count)
+		document->kept[index].state = 0;
+	return nt_json_at(nt_gltf_root_member(document, "accessors"), (size_t)index);
 }
 
 /* ---- bytes ---- */
@@ -337,6 +401,20 @@ nt_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, ui
 	return NT_OK;
 }
 
+/* elements: NULL gives zeros. */
+static void widen(const unsigned char *elements, uint32_t type, uint32_t stride, size_t count, uint32_t *out)
+{
+	size_t i = 0;
+	for (; LITTLE_ENDIAN_16 && elements && type == NT_GLTF_USHORT && stride == 2 && i + 8 <= count; i += 8) {
+		eight_short narrow;
+		memcpy(&narrow, elements + 2 * i, sizeof narrow);
+		const eight_wide wide = __builtin_convertvector(narrow, eight_wide);
+		memcpy(out + i, &wide, sizeof wide);
+	}
+	for (; i < count; i++)
+		out[i] = elements ? read_unsigned(elements + i * stride, type) : 0;
+}
+
 nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, size_t vertex_count,
 	unsigned threads, nt_arena *arena, uint32_t **indices, nt_error *error)
 {
@@ -363,8 +441,8 @@ nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, s
 		memcpy(&out, &elements, sizeof out);
 	else if (!(out = nt_arena_alloc(arena, count, sizeof *out)))
 		return nt_fail_memory(error);
-	for (size_t i = 0; i < count && !as_wanted; i++)
-		out[i] = elements ? read_unsigned(elements + i * accessor->stride, type) : 0;
+	if (!as_wanted)
+		widen(elements, type, accessor->stride, count, out);
 	if (accessor->sparse_count) {
 		const uint32_t *replaced;
 		const unsigned char *values;

@@ -28,6 +28,9 @@ typedef struct nt_gltf_accessor {
 nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *from,
 	nt_gltf_accessor *accessor, nt_error *error);
 
+/* The JSON of an accessor, NULL where there is none, that is going to be changed: it will be read anew. */
+nt_json_value *nt_gltf_change_accessor(nt_gltf *document, uint64_t index);
+
 /* The bytes of an accessor's elements, `stride` apart; NULL where it has no view. */
 nt_status nt_gltf_elements(nt_gltf *document, const nt_gltf_accessor *accessor,
 	const unsigned char **elements, nt_error *error);

@@ -55,6 +55,14 @@ typedef struct nt_gltf_view {
 	const char *compression; /* the extension that compresses it; NULL: none, or already undone */
 } nt_gltf_view;
 
+/* An accessor as it was read once, not sparse and its numbers not too large: accessor.c. */
+typedef struct nt_gltf_kept_accessor {
+	uint32_t view, offset, count;
+	uint8_t type; /* component type, from NT_GLTF_BYTE on; normalized: 128 more */
+	uint8_t components, stride;
+	uint8_t state; /* 0: it is not known; 1: a thread fills it; 2: it is known */
+} nt_gltf_kept_accessor;
+
 typedef struct nt_gltf {
 	nt_arena arena;
 	nt_json *json;
@@ -71,6 +79,8 @@ typedef struct nt_gltf {
 	uint32_t *virtual_of;      /* [view_count] the buffer a view was decompressed to; NT_NONE */
 	nt_gltf_view *views;       /* [view_count] as they were read once; buffer NT_NONE: not yet. view.h */
 	size_t view_count;
+	nt_gltf_kept_accessor *kept; /* [kept_count] accessors of the source */
+	size_t kept_count;
 	nt_gltf_decoded *decoded;  /* [accessor_count] what Draco gave; NULL until there is something */
 	size_t accessor_count;
 	struct nt_draco **draco_blocks; /* [view_count] decoded blocks: draco.c; NULL until there is something */

@@ -15,6 +15,7 @@
 #ifndef NT_JSON_JSON_H
 #define NT_JSON_JSON_H
 
+#include <string.h>
 #include "base/buffer.h"
 #include "base/error.h"
 
@@ -73,9 +74,15 @@ nt_json_value *nt_json_at(const nt_json_value *value, size_t index);
 /* Key of an object's member: NUL-terminated, its length in *length (may be NULL); NULL: none. */
 const char *nt_json_key(const nt_json_value *object, size_t index, size_t *length);
 
-/* Value of an object's member, the first one with that key; NULL when `object` is not an object or has no such
- * member. */
-nt_json_value *nt_json_find(const nt_json_value *object, const char *key);
+/* Value of an object's member, the first one with that key, of `length` bytes; NULL when `object` is not an object or has
+ * no such member. */
+nt_json_value *nt_json_find_key(const nt_json_value *object, const char *key, size_t length);
+
+/* The same; the length of a literal is known where this is compiled. */
+static inline nt_json_value *nt_json_find(const nt_json_value *object, const char *key)
+{
+	return nt_json_find_key(object, key, strlen(key));
+}
 
 /* The value as a C type. False, and *result untouched, when it is something else or does not fit. Whole
  * numbers written as reals (2.0, 1e3) count as integers, as glTF asks. */

@@ -50,11 +50,11 @@ const char *nt_json_key(const nt_json_value *object, size_t index, size_t *lengt
 	return key->text;
 }
 
-nt_json_value *nt_json_find(const nt_json_value *object, const char *key)
+nt_json_value *nt_json_find_key(const nt_json_value *object, const char *key, size_t length)
 {
 	if (!object || object->type != NT_JSON_OBJECT || object->size == 0)
 		return NULL;
-	const size_t index = nt_json_find_key(object->of.list->shape, key, strlen(key));
+	const size_t index = nt_json_index_of(object->of.list->shape, key, length);
 	return index < object->size ? nt_json_child(object, index) : NULL;
 }
 

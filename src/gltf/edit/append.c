@@ -180,8 +180,7 @@ static nt_status move_away(nt_appending *job, const nt_append_target *moved)
 	const nt_status status = add_elements_view(job, moved, false, &view);
 	if (status)
 		return status;
-	nt_json_value *json =
-		nt_json_at(nt_gltf_root_member(job->document, "accessors"), moved->accessor.index);
+	nt_json_value *json = nt_gltf_change_accessor(job->document, moved->accessor.index);
 	nt_json_set_uint64(job->json, nt_json_put(job->json, json, "bufferView"), view);
 	nt_json_remove(job->json, json, "byteOffset");
 	return NT_OK;
@@ -330,8 +329,7 @@ static nt_status append_to_targets(nt_appending *job)
 		}
 	for (size_t i = 0; !status && (nt_appended_count(job) || job->decoded_too) && i < job->target_count; i++) {
 		const nt_append_target *target = &job->targets[i];
-		nt_json_value *json = nt_json_at(nt_gltf_root_member(job->document, "accessors"),
-			target->accessor.index);
+		nt_json_value *json = nt_gltf_change_accessor(job->document, target->accessor.index);
 		nt_json_set_uint64(job->json, nt_json_put(job->json, json, "count"),
 			job->vertices->new_count);
 		if (target->accessor.sparse_count && nt_appended_count(job))

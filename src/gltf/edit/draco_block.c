@@ -93,8 +93,7 @@ void nt_gltf_draco_add_own(nt_gltf_recoding *r)
 
 static void set_count(nt_gltf *document, uint64_t accessor, size_t count)
 {
-	nt_json_value *json =
-		nt_json_at(nt_gltf_root_member(document, "accessors"), (size_t)accessor);
+	nt_json_value *json = nt_gltf_change_accessor(document, accessor);
 	nt_json_set_uint64(document->json, nt_json_put(document->json, json, "count"), count);
 }
 
@@ -122,8 +121,7 @@ void nt_gltf_draco_describe(nt_gltf_recoding *r)
 		r->extension = nt_gltf_draco_of(r->primitive); /* members have moved */
 	}
 	set_count(r->document, indices, block->face_count * 3);
-	nt_json_value *accessor =
-		nt_json_at(nt_gltf_root_member(r->document, "accessors"), (size_t)indices);
+	nt_json_value *accessor = nt_gltf_change_accessor(r->document, indices);
 	nt_json_get_uint64(nt_json_find(accessor, "componentType"), &type);
 	const uint32_t wide = nt_gltf_index_type(block->point_count, (uint32_t)type);
 	if (wide != type)

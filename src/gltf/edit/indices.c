@@ -99,7 +99,7 @@ static nt_status replace_indices(nt_buffer_edits *edits, uint32_t first_alias, c
 		memcpy(padded + pad, new->bytes, new->size);
 		bytes = padded;
 	}
-	nt_json_value *accessor = nt_json_at(nt_gltf_root_member(edits->document, "accessors"), old->index);
+	nt_json_value *accessor = nt_gltf_change_accessor(edits->document, old->index);
 	if (pad)
 		nt_json_set_uint64(json, nt_json_put(json, accessor, "byteOffset"), old->offset + pad);
 	if (new->type != old->component_type)
@@ -120,7 +120,7 @@ static nt_status give_view(nt_buffer_edits *edits, uint32_t buffer, const nt_glt
 	uint32_t view;
 	const nt_status status = nt_edits_add_view(edits, buffer, new->bytes, new->size,
 		NT_GLTF_ELEMENT_ARRAY_BUFFER, 0, &view, error);
-	nt_json_value *accessor = nt_json_at(nt_gltf_root_member(edits->document, "accessors"), old->index);
+	nt_json_value *accessor = nt_gltf_change_accessor(edits->document, old->index);
 	nt_json_set_uint64(json, nt_json_put(json, accessor, "bufferView"), view);
 	nt_json_remove(json, accessor, "byteOffset");
 	nt_json_remove(json, accessor, "sparse"); /* what was in the block had none */
