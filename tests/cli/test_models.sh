@@ -16,6 +16,14 @@ fi
 # convert INPUT OUTPUT: exit codes 3 and 5 are kept for the list of what was refused.
 refused=$WORK/refused
 : >"$refused"
+# glTF whose buffers all have bytes to bring along, where these are not on the web.
+embeddable=$(find "$shared/models" "$shared/corpus" -type f -name '*.gltf' -print0 | python3 -c 'import json, sys
+for name in sys.stdin.buffer.read().split(b"\0")[:-1]:
+	try:
+		if all("uri" in b for b in json.load(open(name, encoding="utf-8-sig")).get("buffers", [])):
+			sys.stdout.buffer.write(name + b"\n")
+	except (ValueError, TypeError, AttributeError):
+		pass')
 number=0
 while IFS= read -r input; do
 	number=$((number + 1))
@@ -28,8 +36,7 @@ while IFS= read -r input; do
 	*) wrong "$input: exit code $status" ;;
 	esac
 	# Into the other container, where every buffer has bytes to bring along.
-	if [ "$status" = 0 ] && [ $ending = gltf ] &&
-		[ "$(gltf "$input" '(g.buffers ?? []).every((b) => b.uri)' 2>&1)" = true ]; then
+	if [ "$status" = 0 ] && [ $ending = gltf ] && [[ $'\n'$embeddable$'\n' == *$'\n'"$input"$'\n'* ]]; then
 		run --only=all "$input" "o$number/o.glb"
 		case $status in
 		0) printf '%s\t%s\n' "$PWD/o$number/o.glb" "$input" >>pairs ;;
@@ -43,10 +50,11 @@ valid --pairs pairs
 
 scene "what is refused is invalid, compressed or has no triangles"
 if [ -f "$ROOT/build/node/node_modules/gltf-validator/package.json" ]; then
+	inputs=() # the same for every build
 	grep -E '\.(gltf|glb)	' "$refused" | grep -v '^5' | cut -f2 >suspects
 	while IFS= read -r input; do
 		# A file the validator accepts without an error must not be refused as invalid.
-		! node "$ROOT/tests/support/validate.mjs" "$input" >/dev/null 2>&1 ||
+		! answer inputs node "$ROOT/tests/support/validate.mjs" "$input" >/dev/null 2>&1 ||
 			wrong "refused although valid: $(grep -F "	$input	" "$refused" | cut -f3)"
 	done <suspects
 	# Infinite coordinates, and lines alone.

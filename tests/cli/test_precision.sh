@@ -12,7 +12,8 @@ for precision in short byte; do
 		scene "--precision=$precision: $name keeps everything but tangents"
 		run --existing=replace --precision=$precision "$input" out.gltf
 		exits 0
-		PYTHONDONTWRITEBYTECODE=1 python3 "$ROOT/tests/support/gltf_lossless.py" --quantized "$input" out.gltf \
+		folders=(.) # layouts are the same for every build
+		answer folders python3 "$ROOT/tests/support/gltf_lossless.py" --quantized "$input" out.gltf \
 			>"$WORK/err.txt" 2>&1 || wrong "$input is not lossless"
 		mkdir -p "$WORK/outputs/$precision-$name" && cp -r . "$WORK/outputs/$precision-$name"
 		printf '%s\t%s\n' "$WORK/outputs/$precision-$name/out.gltf" "$input" >>"$WORK/pairs"

@@ -16,28 +16,26 @@ fault() {
 python3 tests/lint/rooms.py ${1+"$1"} || faults=$((faults + 1))
 
 while IFS= read -r file; do
-	case $file in
-	src/ext/* | *.[ch]) ;;
-	*) fault "$file: C++ outside src/ext" ;;
-	esac
-	case $file in
-	src/cli/*) continue ;;
-	esac
+	fault "$file: C++ outside src/ext"
+done < <(find src -name '*.[ch]pp' ! -path 'src/ext/*' | sort)
+
+calls='(^|[^a-zA-Z0-9_.>])(abort|exit|_exit|_Exit|quick_exit|printf|puts|putchar|perror|vprintf)[[:space:]]*\(|fprintf[[:space:]]*\([[:space:]]*std|std::(cout|cerr)'
+while IFS= read -r file; do
 	# Comments may speak of printf; code may not call it.
-	sed -E 's,/\*.*\*/,,; s,^[[:space:]]*\*.*,,; s,//.*,,' "$file" |
-		grep -nE '(^|[^a-zA-Z0-9_.>])(abort|exit|_exit|_Exit|quick_exit|printf|puts|putchar|perror|vprintf)[[:space:]]*\(|fprintf[[:space:]]*\([[:space:]]*std|std::(cout|cerr)' |
+	sed -E 's,/\*.*\*/,,; s,^[[:space:]]*\*.*,,; s,//.*,,' "$file" | grep -nE "$calls" |
 		# The handler of a deadly signal may end what the signal would have ended.
 		{ [ "$file" = src/file/temporary.c ] && grep -v '_exit(128 + ' || cat; } |
 		while IFS= read -r line; do echo "lint: $file:${line%%:*}: prints or exits: ${line#*:}"; done |
 		grep . && faults=$((faults + 1))
-done < <(find src -name '*.[ch]' -o -name '*.[ch]pp' | sort)
+done < <(grep -rlE --include='*.[ch]' --include='*.[ch]pp' "$calls" src | grep -v '^src/cli/' | sort)
 
+marked=$(git ls-files -z 2>/dev/null | xargs -0 grep -nHsIm1 'SPDX-License-Identifier: MIT' | sed -nE 's/:[123]:.*//p')
 while IFS= read -r file; do
 	case $file in
 	LICENSE | .gitignore | .clang-format | *README.md | man/* | data/*) continue ;;
 	*.json | *.tsv | *.png | *.bin | *.glb | *.gltf) continue ;;
 	esac
-	head -3 "$file" | grep -q 'SPDX-License-Identifier: MIT' || fault "$file: no SPDX line at its top"
+	[[ $'\n'$marked$'\n' == *$'\n'"$file"$'\n'* ]] || fault "$file: no SPDX line at its top"
 done < <(git ls-files 2>/dev/null)
 
 while IFS= read -r hit; do

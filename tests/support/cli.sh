@@ -94,15 +94,34 @@ is() {
 	[ "$1" = "$2" ] || wrong "got '$1', expected '$2'"
 }
 
+# answer FOLDERS COMMAND...: a command whose answer depends on its words and on the files in folders (an array's name) alone.
+# Another build's files should have the same bytes: for these tests/run keeps the answers of the first one.
+answer() {
+	local -n of=$1
+	local folder file files=() kept rest
+	shift
+	[ -n "${ANSWERS-}" ] || { "$@"; return; }
+	for folder in "${of[@]}"; do
+		for file in "$folder"/* "$folder"/*/*; do [ ! -f "$file" ] || files+=("$file"); done
+	done
+	read -r kept rest < <({ printf '%s\0' "$PWD" "$@" "${files[@]}" && cat -- /dev/null "${files[@]}"; } | sha256sum)
+	kept=$ANSWERS/$kept
+	[ -e "$kept" ] || { "$@" >"$kept.new" && mv "$kept.new" "$kept"; } || { rest=$? && cat "$kept.new" && return $rest; }
+	cat "$kept"
+}
+
 # The value of a JavaScript expression over a glTF file: see gltf.mjs.
 gltf() {
-	node "$ROOT/tests/support/gltf.mjs" "$@"
+	local folders=("$(dirname "$1")")
+	answer folders node "$ROOT/tests/support/gltf.mjs" "$@"
 }
 
 # The output has no error in the Khronos validator that its input (if any) did not have.
 valid() {
+	local folders=("$(dirname "$1")")
+	[ "$1" != --pairs ] || mapfile -t folders < <(cut -f1 "$2" | sed 's|/[^/]*$||' | sort -u)
 	if [ -f "$ROOT/build/node/node_modules/gltf-validator/package.json" ]; then
-		node "$ROOT/tests/support/validate.mjs" "$@" || wrong "$1 is not valid"
+		answer folders node "$ROOT/tests/support/validate.mjs" "$@" || wrong "$1 is not valid"
 	else
 		skip_case "gltf-validator is not installed (no network?)"
 	fi
