@@ -344,16 +344,17 @@ run --update q.obj q.glb
 says_not "up to date"
 is "$(gltf q.glb 'g.images.length')" 1
 
-scene "ten thousand files that are up to date take less than half a second of the processors"
+case $BUILD in *sanitize*) folders=5 ;; *) folders=100 ;; esac
+scene "${folders}00 files that are up to date take less than half a second of the processors"
 for ((i = 0; i < 100; i++)); do cp "$data/quad.obj" in_$i.obj; done
-for ((i = 1; i < 100; i++)); do mkdir $i; cp in_*.obj $i/; done
+for ((i = 1; i < folders; i++)); do mkdir $i; cp in_*.obj $i/; done
 mkdir 0 && mv in_*.obj 0/
 find . -name '*.obj' | sort >list
 later
 run -q --update -d out --mirror=. --files-from=list
 exits 0
 run --update -d out --mirror=. --files-from=list
-says "10000 of 10000 done, 10000 of them up to date"
+says "${folders}00 of ${folders}00 done, ${folders}00 of them up to date"
 case $BUILD in
 *sanitize*) ;;
 *)
