@@ -333,6 +333,14 @@ d.json['accessors'][names['TANGENT']]['sparse'] = {
 d.primitive(names, d.indices(triangles(), USHORT))
 d.write('tangents_sparse.gltf')
 
+# those of two primitives in one view, as all else of theirs
+d = Document()
+both = d.sequential({n + twin: a for twin in ('', '!') for n, a in {**attributes, 'TANGENT': tangents}.items()})
+d.json['accessors'][both['POSITION!']].update(d.bounds(attributes['POSITION']))
+for twin in ('', '!'):
+    d.primitive({n: both[n + twin] for n in (*attributes, 'TANGENT')}, d.indices(triangles(), USHORT))
+d.write('tangents_one_view.gltf')
+
 # several buffers, one of which nothing touches
 d = Document()
 d.bins.append(bytearray())

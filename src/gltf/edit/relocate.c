@@ -131,7 +131,7 @@ typedef struct moved_view {
 	uint64_t old_offset, new_offset;
 } moved_view;
 
-static void move_views(const nt_buffer_edits *edits, const nt_relocated_buffer *buffers, moved_view *moved)
+static void move_views(nt_buffer_edits *edits, const nt_relocated_buffer *buffers, moved_view *moved)
 {
 	nt_json *json = edits->document->json;
 	nt_json_value *views = nt_gltf_root_member(edits->document, "bufferViews");
@@ -154,9 +154,12 @@ static void move_views(const nt_buffer_edits *edits, const nt_relocated_buffer *
 		moved[i].old_offset = view.offset;
 		nt_gltf_view_changed(edits->document, i);
 		moved[i].new_offset = map_position(moved[i].buffer, view.offset);
+		const uint64_t length = map_position(moved[i].buffer, view.offset + view.length) - moved[i].new_offset;
 		set_offset(json, object, "byteOffset", moved[i].new_offset);
-		set_offset(json, object, "byteLength",
-			map_position(moved[i].buffer, view.offset + view.length) - moved[i].new_offset);
+		set_offset(json, object, "byteLength", length);
+		/* emptied accessor by accessor */
+		if (view.length && !length)
+			edits->free_views[edits->free_count++] = (uint32_t)i;
 	}
 }
 
