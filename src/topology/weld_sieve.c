@@ -150,9 +150,9 @@ static void list_range(void *context, size_t begin, size_t end, unsigned slot)
 	const uint32_t *const again = again_of(s, 0);
 	uint32_t *const places = s->places, *list = places + begin;
 	for (size_t v = begin; v < end; v++) {
-		const uint32_t place = places[v], bits = bits_of(place);
+		const uint32_t place = places[v], word = again[word_of(place)];
 		*list = (uint32_t)v;
-		list += (again[word_of(place)] & bits) == bits;
+		list += word >> (place & 31) & word >> (place >> BIT_BITS & 31) & 1; /* both of bits_of() */
 	}
 	s->listed[slot] = (size_t)(list - (places + begin));
 }

@@ -254,13 +254,14 @@ static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range,
 	int lane, lanes_out *out)
 {
 	static const float zero[4] = {0};
-	const float note[4] = {0.0f, 0.0f, 0.0f, 2.0f + STATE_BIT(NT_STATE_ALL - NT_STATE_NO_ANY)};
+	static const nt_record note = {.state = NT_STATE_BASE | (NT_STATE_ALL & ~NT_STATE_NO_ANY)};
+	static const uint32_t unsound = NT_STATE_BASE | NT_STATE_NO_ANY | NT_STATE_LOCAL;
 	const uint8_t flags = fast->flags[t];
 	if (fast->bins.cursors && !(flags & NT_TRIANGLE_DEGENERATE))
 		fast->bins.seen[range] |= flags & NT_TRIANGLE_ANY ? NT_SEEN_ANY : NT_SEEN(flags & NT_TRIANGLE_ORIENT);
 	if (!(flags & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY))) {
 		for (int k = 0; k < 3; k++)
-			out->add[k][4 * turned_place((size_t)lane) + 3] = 2.0f + STATE_BIT(NT_STATE_NO_ANY + NT_STATE_LOCAL);
+			memcpy(&out->add[k][4 * turned_place((size_t)lane) + 3], &unsound, sizeof unsound);
 		add_triangle(fast, range, t, v, lane, out);
 		return;
 	}
@@ -281,7 +282,7 @@ static void __attribute__((noinline)) add_special(nt_fast *fast, unsigned range,
 	}
 	for (int k = 0; k < 3; k++)
 		add_corner(fast, range, v[k], orient, (nt_fan_entry){v[(k + 1) % 3], v[(k + 2) % 3]},
-			(addition){note, {zero, zero}});
+			(addition){&note.x, {zero, zero}});
 }
 
 /* The next lane from i on whose triangle is one for add_special(). */

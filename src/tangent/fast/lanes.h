@@ -21,9 +21,11 @@
  * The smaller H is, the fewer vertices fail the test. */
 #define HALF_SPACE 0.01f
 
-/* Lengths in here are normalised without loss: their squares neither overflow nor lose bits. */
+/* Lengths in here are normalised without loss: their squares neither overflow nor lose bits. Across a normal of unit length
+ * a unit vector becomes shorter. So v need not be divided by its length before the test above; across long normals,
+ * where it is below 4, H is a quarter and the product still above 1.25e-5 - 1. */
 #define LEAST_SQUARE 1e-30f
-#define MOST_SQUARE 1e30f
+#define MOST_SQUARE 16.0f
 
 /* Half a unit in the last place of 1: the relative error of a rounded float operation. */
 #define HALF_ULP 0x1p-24f
@@ -31,9 +33,6 @@
 /* Ratios that a float quotient can hold with room to spare. */
 #define LEAST_RATIO 1e-30f
 #define MOST_RATIO 1e30f
-
-/* A bit of nt_record.state as the float that sets it: NT_STATE_BASE is 2.0f, whose last place is 2^-22. */
-#define STATE_BIT(bit) ((float)(bit) * 0x1p-22f)
 
 /* 16 triangles by component. */
 typedef struct lanes_in {
@@ -57,13 +56,26 @@ typedef struct lanes_out {
 	int degenerate[NT_LANES];
 } lanes_out;
 
-/* A unit vector's bits of NT_STATE_U, as what they add to the state. */
-static inline __attribute__((always_inline)) float half_spaces(float x, float y, float z, float h)
+/* A state with that bit where `there`: one masked operation, or two without masks. */
+static inline __attribute__((always_inline)) uint32_t set_where(uint32_t state, bool there, uint32_t bit)
 {
-	float state = (x > h ? STATE_BIT(1) : 0.0f) + (x < -h ? STATE_BIT(2) : 0.0f);
-	state += (y > h ? STATE_BIT(4) : 0.0f) + (y < -h ? STATE_BIT(8) : 0.0f);
-	state += (z > h ? STATE_BIT(16) : 0.0f) + (z < -h ? STATE_BIT(32) : 0.0f);
-	return state;
+#if WIDTH == 16
+	return there ? state | bit : state;
+#else
+	return state | (there ? bit : 0);
+#endif
+}
+
+/* A state with the bits of NT_STATE_U, times `first`, of a vector: each component may be beyond h or -h. */
+static inline __attribute__((always_inline)) uint32_t half_spaces(uint32_t state, float x, float y, float z, float h,
+	uint32_t first)
+{
+	state = set_where(state, x > h, first);
+	state = set_where(state, x < -h, first << 1);
+	state = set_where(state, y > h, first << 2);
+	state = set_where(state, y < -h, first << 3);
+	state = set_where(state, z > h, first << 4);
+	return set_where(state, z < -h, first << 5);
 }
 
 /* The frames of lanes [0, count), and what is known of the triangles. */
@@ -163,19 +175,18 @@ static inline __attribute__((always_inline)) void solve_corners(corner_lanes a, 
 		const float c = dot > 1.0f ? 1.0f : dot;
 
 		/* with these squares the definition normalises as well; NaN in either of them is kept; the
-		 * product of an edge without length is NaN */
+		 * product of an edge without length is NaN. v is as long as it is: see MOST_SQUARE */
 		const float least = uu < vv ? uu : vv, most = vv > uu ? vv : uu;
 		const int sound = (least > LEAST_SQUARE) & (most < MOST_SQUARE) & (fabsf(dot) < 2.0f);
-		float state = 2.0f + STATE_BIT(NT_STATE_NO_ANY + NT_STATE_LOCAL);
-		state += half_spaces(ux, uy, uz, HALF_SPACE);
-		/* x |x| > h^2 is x > h */
-		state += 64 * half_spaces(vx * fabsf(vx), vy * fabsf(vy), vz * fabsf(vz), HALF_SPACE * HALF_SPACE * vv);
-		state += sound ? STATE_BIT(NT_STATE_SOUND) : 0.0f;
+		uint32_t state = NT_STATE_BASE | NT_STATE_NO_ANY | NT_STATE_LOCAL;
+		state = half_spaces(state, ux, uy, uz, HALF_SPACE, 1);
+		state = half_spaces(state, vx, vy, vz, HALF_SPACE, NT_STATE_V / NT_STATE_U);
+		state = set_where(state, sound, NT_STATE_SOUND);
 
 		a.sum[0][i] = ux;
 		a.sum[1][i] = uy;
 		a.sum[2][i] = uz;
-		a.sum[3][i] = state;
+		memcpy(&a.sum[3][i], &state, sizeof state);
 		a.cosine[i] = c < -1.0f ? -1.0f : c;
 		if (more) {
 			const float vr = 1.0f / sqrtf(vv);

@@ -8,6 +8,7 @@
 #define NT_TANGENT_FAST_SETTLE_H
 
 #include "base/vec.h"
+#include "tangent/fast/lane_sets.h"
 #include "tangent/fast/lanes.h"
 
 /* Degree of a hub, whose fans are not looked at; a number of fans that no vertex has. */
@@ -21,6 +22,35 @@
 #define UNROLL _Pragma("GCC unroll 8")
 #endif
 
+/* Corner k of WIDTH vertices of so many corners; where one has fewer, voids above all numbers that accumulate gives to
+ * voids. Of an entry the bits of `mask` count. */
+static inline __attribute__((always_inline)) void load_corners(const nt_fan_entry *entries, uint32_t k, lanes degree, lanes mask,
+	lanes *next, lanes *previous)
+{
+	const lanes low = load_lanes(entries + k * NT_FAN_LANES), high = load_lanes(entries + k * NT_FAN_LANES + WIDTH / 2);
+	const lanes there = (lanes)(degree > k);
+	*next = __builtin_shufflevector(low, high, EVEN) & mask;
+	*previous = __builtin_shufflevector(low, high, ODD) & mask;
+	*next = (*next & there) | ((NT_ENTRY_VOID | 1u << 28 | k) & ~there);
+	*previous = (*previous & there) | ((NT_ENTRY_VOID | 3u << 28 | k) & ~there);
+}
+
+/* -1 for vertices at which a directed edge occurs twice, whatever the orientations in bit 31. */
+static lanes __attribute__((noinline)) find_twice(const nt_fan_entry *entries, uint32_t depth, lanes degree, lanes mask)
+{
+	lanes twice = {0};
+	for (uint32_t b = 1; b < depth; b++) {
+		lanes next, previous;
+		load_corners(entries, b, degree, mask, &next, &previous);
+		for (uint32_t a = 0; a < b; a++) {
+			lanes other_next, other_previous;
+			load_corners(entries, a, degree, mask, &other_next, &other_previous);
+			twice |= (lanes)(next << 1 == other_next << 1) | (lanes)(previous << 1 == other_previous << 1);
+		}
+	}
+	return twice;
+}
+
 /*
  * The fans of WIDTH vertices with at most `depth` corners: how many there are, DOUBTFUL added where a directed edge
  * occurs twice, because there pairs depend on order.
@@ -32,29 +62,24 @@ static inline __attribute__((always_inline)) lanes count_fans_of(const nt_fan_en
 	lanes degree, lanes mask)
 {
 	lanes next[NT_FAN_DEPTH], previous[NT_FAN_DEPTH];
-	lanes linked[NT_FAN_DEPTH]; /* corner i: bit j for each neighbour j of its orientation */
-	lanes doubtful = {0}, count = {0};
-	/* voids where a vertex has fewer corners, above all numbers that accumulate gives to voids */
+	lanes linked[NT_FAN_DEPTH]; /* corner i: bit j for each later neighbour j of its orientation */
+	lanes halves[NT_FAN_DEPTH]; /* the low 16 bits of next and of previous */
+	lanes count = {0};
+	half_set distinct = ALL_HALVES;
 	UNROLL
-	for (uint32_t k = 0; k < depth; k++, entries += NT_FAN_LANES) {
-		const lanes low = load_lanes(entries), high = load_lanes(entries + WIDTH / 2);
-		const lanes there = (lanes)(degree > k);
-		next[k] = __builtin_shufflevector(low, high, EVEN) & mask;
-		previous[k] = __builtin_shufflevector(low, high, ODD) & mask;
-		next[k] = (next[k] & there) | ((NT_ENTRY_VOID | 1u << 28 | k) & ~there);
-		previous[k] = (previous[k] & there) | ((NT_ENTRY_VOID | 3u << 28 | k) & ~there);
-		linked[k] = there & 0;
+	for (uint32_t k = 0; k < depth; k++) {
+		load_corners(entries, k, degree, mask, &next[k], &previous[k]);
+		halves[k] = (next[k] & 0xffff) | previous[k] << 16;
+		linked[k] = (degree & 0) | ((1u << depth) - (2u << k));
 	}
-	/* links across shared edges; edges are compared without the orientation in bit 31 */
+	/* links across shared edges; edges whose low halves differ are not the same */
 	UNROLL
 	for (uint32_t a = 0; a < depth; a++) {
-		const lanes bare_next = next[a] << 1, bare_previous = previous[a] << 1;
 		UNROLL
 		for (uint32_t b = a + 1; b < depth; b++) {
-			const lanes link = (lanes)(next[a] == previous[b]) | (lanes)(next[b] == previous[a]);
-			doubtful |= (lanes)(bare_next == next[b] << 1) | (lanes)(bare_previous == previous[b] << 1);
-			linked[a] |= link & 1u << b;
-			linked[b] |= link & 1u << a;
+			const lane_set apart = differ(differ(ALL_LANES, next[a], previous[b]), next[b], previous[a]);
+			linked[a] = without_bit(linked[a], apart, 1u << b);
+			distinct = halves_differ(distinct, halves[a], halves[b]);
 		}
 	}
 	/* components by elimination: a corner hands its links to the later ones it is linked with; one that
@@ -64,10 +89,10 @@ static inline __attribute__((always_inline)) lanes count_fans_of(const nt_fan_en
 		const lanes mine = linked[a];
 		UNROLL
 		for (uint32_t b = a + 1; b < depth; b++)
-			linked[b] |= (lanes)((mine & 1u << b) != 0) & mine;
+			linked[b] = with_bits(linked[b], having_bit(mine, 1u << b), mine);
 		count -= (lanes)(mine >> a >> 1 == 0) & (lanes)((next[a] & NT_ENTRY_VOID) == 0);
 	}
-	return count | (doubtful & DOUBTFUL);
+	return all_halves(distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
 }
 
 /* The usual depths are worth a loop without branches each. */
@@ -75,6 +100,8 @@ static lanes count_fans(const nt_fan_entry *entries, uint32_t depth, lanes degre
 {
 	switch (depth) {
 #ifndef __wasm__
+	case 2: return count_fans_of(entries, 2, degree, mask);
+	case 3: return count_fans_of(entries, 3, degree, mask);
 	case 4: return count_fans_of(entries, 4, degree, mask);
 	case 5: return count_fans_of(entries, 5, degree, mask);
 	case 6: return count_fans_of(entries, 6, degree, mask);
@@ -203,22 +230,25 @@ static void settle_more(nt_record_more *more, size_t count, const uint32_t *pres
 	}
 }
 
-/* Corners of the block's vertices, HUB for a hub. Returns the most corners. */
-static uint32_t load_degrees(const nt_adjacency *a, size_t first, size_t count, size_t used,
-	uint32_t *restrict degree)
+/* Corners of the block's vertices, HUB for a hub; and the most of each WIDTH of them. */
+static void load_degrees(const nt_adjacency *a, size_t first, size_t count, size_t used, uint32_t *restrict degree,
+	uint32_t *restrict most)
 {
 	const size_t place = first - a->first_vertex;
 	const uint32_t *cursors = a->cursors + (a->ranges - 1) * a->vertex_count + place;
 	const uint32_t begin = a->block_begin[place / NT_FAN_LANES];
-	int most = 0;
-	for (uint32_t i = 0; i < used; i++) {
-		const uint32_t cursor = cursors[i], corners = ((cursor & NT_CURSOR_PLACE) - begin) / NT_FAN_LANES;
-		const uint32_t there = i < (uint32_t)count ? UINT32_MAX : 0, hub = cursor & NT_CURSOR_HUB ? UINT32_MAX : 0;
-		const int known = (int)(corners & there & ~hub);
-		most = known > most ? known : most;
-		degree[i] = (uint32_t)known | (hub & there);
+	for (uint32_t v = 0; v < used; v += WIDTH) {
+		int deepest = 0;
+		for (uint32_t i = v; i < v + WIDTH; i++) {
+			const uint32_t cursor = cursors[i], corners = ((cursor & NT_CURSOR_PLACE) - begin) / NT_FAN_LANES;
+			const uint32_t there = i < (uint32_t)count ? UINT32_MAX : 0;
+			const uint32_t hub = cursor & NT_CURSOR_HUB ? UINT32_MAX : 0;
+			const int known = (int)(corners & there & ~hub);
+			deepest = known > deepest ? known : deepest;
+			degree[i] = (uint32_t)known | (hub & there);
+		}
+		most[v / WIDTH] = (uint32_t)deepest;
 	}
-	return (uint32_t)most;
 }
 
 static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const sums[2], size_t block,
@@ -229,8 +259,9 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	const nt_fan_entry *entries = nt_adjacency_block(a, block - a->first_vertex / NT_FAN_LANES);
 	const size_t used = whole_lanes(count);
 	uint32_t degree[NT_LANES], mask[NT_LANES], fan_count[NT_LANES], complex[NT_LANES], unsound[NT_LANES];
+	uint32_t depths[NT_LANES / WIDTH];
 	record_lanes r[2];
-	const uint32_t depth = load_degrees(a, first, count, used, degree);
+	load_degrees(a, first, count, used, degree, depths);
 	for (int o = 0; o < 2; o++)
 		load_records(sums[o] ? sums[o] + first - a->first_vertex : NULL, used, &r[o]);
 
@@ -239,7 +270,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		mask[i] = r[0].present[i] & r[1].present[i] ? UINT32_MAX : NT_ENTRY_VERTEX;
 	for (size_t i = 0; i < used; i += WIDTH) {
 		const lanes degrees = load_lanes(degree + i), masks = load_lanes(mask + i);
-		const lanes counted = count_fans(entries + i, depth, degrees,
+		const lanes counted = count_fans(entries + i, depths[i / WIDTH], degrees,
 			__builtin_shufflevector(masks, masks, UNTURNED)) | ((lanes)(degrees == HUB) & DOUBTFUL);
 		const lanes turned = __builtin_shufflevector(counted, counted, TURNED);
 		memcpy(fan_count + i, &turned, sizeof turned);

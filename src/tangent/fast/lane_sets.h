@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Sets of lanes, which comparisons give: a vector of 0 and -1, or a mask where the instruction set has masks. By name,
+ * because gcc 12 makes vectors of masks and masks of vectors at each step. Included by settle.h.
+ */
+#ifndef NT_TANGENT_FAST_LANE_SETS_H
+#define NT_TANGENT_FAST_LANE_SETS_H
+
+#include <stdbool.h>
+#include "tangent/fast/turn.h"
+
+#if WIDTH == 16
+#include <immintrin.h>
+
+typedef __mmask16 lane_set;
+typedef __mmask32 half_set; /* of the 16-bit halves of lanes */
+#define ALL_LANES ((lane_set)-1)
+#define ALL_HALVES ((half_set)-1)
+
+/* Those of a set where a and b differ. */
+static inline lane_set differ(lane_set set, lanes a, lanes b)
+{
+	return _mm512_mask_cmpneq_epi32_mask(set, (__m512i)a, (__m512i)b);
+}
+
+static inline half_set halves_differ(half_set set, lanes a, lanes b)
+{
+	return _mm512_mask_cmpneq_epi16_mask(set, (__m512i)a, (__m512i)b);
+}
+
+static inline lane_set having_bit(lanes a, uint32_t bit)
+{
+	return _mm512_test_epi32_mask((__m512i)a, _mm512_set1_epi32((int)bit));
+}
+
+/* a without that bit, or with the bits of b, in a set. */
+static inline lanes without_bit(lanes a, lane_set set, uint32_t bit)
+{
+	return (lanes)_mm512_mask_and_epi32((__m512i)a, set, (__m512i)a, _mm512_set1_epi32((int)~bit));
+}
+
+static inline lanes with_bits(lanes a, lane_set set, lanes b)
+{
+	return (lanes)_mm512_mask_or_epi32((__m512i)a, set, (__m512i)a, (__m512i)b);
+}
+
+static inline bool all_halves(half_set set)
+{
+	return set == ALL_HALVES;
+}
+#else
+typedef uint16_t lane_halves __attribute__((vector_size(4 * WIDTH)));
+typedef lanes lane_set;
+typedef lane_halves half_set;
+#define ALL_LANES ((lane_set){0} - 1)
+#define ALL_HALVES ((half_set){0} - 1)
+
+static inline lane_set differ(lane_set set, lanes a, lanes b)
+{
+	return set & (lanes)(a != b);
+}
+
+static inline half_set halves_differ(half_set set, lanes a, lanes b)
+{
+	return set & (lane_halves)((lane_halves)a != (lane_halves)b);
+}
+
+static inline lane_set having_bit(lanes a, uint32_t bit)
+{
+	return (lanes)((a & bit) != 0);
+}
+
+static inline lanes without_bit(lanes a, lane_set set, uint32_t bit)
+{
+	return a & ~(set & bit);
+}
+
+static inline lanes with_bits(lanes a, lane_set set, lanes b)
+{
+	return a | (set & b);
+}
+
+static inline bool all_halves(half_set set)
+{
+	const lanes whole = (lanes)set;
+	uint32_t all = UINT32_MAX;
+	for (int i = 0; i < WIDTH; i++)
+		all &= whole[i];
+	return all == UINT32_MAX;
+}
+#endif
+
+#endif
