@@ -1,13 +1,15 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Reading back: see verify.h. Corners are compared, not vertices, so it does not matter how a writer
- * numbers its vertices, or shares them.
+ * numbers its vertices, or shares them. tinygltf's document is asked for the arrays of one mesh after the other; blocks
+ * are decoded, and meshes compared, by several threads.
  */
 #include "gltf/verify.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/parallel.h"
 #include "ext/draco.h"
 #include "ext/tinygltf.h"
 #include "file/relative_path.h"
@@ -90,7 +92,10 @@ typedef struct primitive_view {
 	nt_reread_array positions, tangents, indices;
 	nt_reread_array *target_tangents; /* [morph_count] of the scene's mesh; NULL: none are compared */
 	size_t corner; /* the next one */
-	nt_draco *block; /* of a compressed primitive */
+	const unsigned char *packed; /* [packed_size] the block of a compressed primitive; NULL: it is not compressed */
+	size_t packed_size;
+	uint32_t position_id, tangent_id; /* in the block; UINT32_MAX: outside of it */
+	nt_draco *block; /* decoded */
 	nt_verify_tolerance tolerance;
 } primitive_view;
 
@@ -116,23 +121,24 @@ static float tolerance_of(const nt_draco_attribute *a, size_t count)
 	return (float)(0.501 * a->quantization.range / steps + 1e-6 * largest);
 }
 
-/* What a compressed primitive has in its block, decoded. */
-static nt_status open_block(nt_reread *model, size_t mesh, size_t primitive, const unsigned char *bytes,
-	size_t size, primitive_view *view, nt_error *error)
+static uint32_t block_id(const nt_reread *model, size_t mesh, size_t primitive, const char *name)
 {
-	if (!bytes)
-		return nt_fail(error, NT_ERROR_INPUT, "the compressed block is not inside of a buffer");
-	const nt_status status = nt_draco_decode(&view->block, bytes, size, 0, error);
+	uint32_t id;
+	return nt_reread_block_id(model, mesh, primitive, name, &id) ? id : UINT32_MAX;
+}
+
+/* Decodes what a compressed primitive has in its block. */
+static nt_status decode_block(primitive_view *view, nt_error *error)
+{
+	const nt_status status = nt_draco_decode(&view->block, view->packed, view->packed_size, 0, error);
 	if (status != NT_OK)
 		return status;
 	const nt_draco_mesh *decoded = nt_draco_get(view->block);
-	const char *const names[] = {"POSITION", "TANGENT"};
+	const uint32_t ids[] = {view->position_id, view->tangent_id};
 	nt_reread_array *const arrays[] = {&view->positions, &view->tangents};
 	float *const tolerances[] = {&view->tolerance.position, &view->tolerance.tangent};
 	for (size_t i = 0; i < 2; i++) {
-		uint32_t id;
-		const nt_draco_attribute *found = nt_reread_block_id(model, mesh, primitive, names[i], &id)
-			? nt_draco_find(decoded, id) : NULL;
+		const nt_draco_attribute *found = ids[i] != UINT32_MAX ? nt_draco_find(decoded, ids[i]) : NULL;
 		if (!found)
 			continue; /* outside of the block */
 		*arrays[i] = block_array(found, decoded->point_count);
@@ -143,19 +149,11 @@ static nt_status open_block(nt_reread *model, size_t mesh, size_t primitive, con
 	return NT_OK;
 }
 
-static void close_primitive(primitive_view *view)
-{
-	nt_draco_free(view->block);
-	free(view->target_tangents);
-	*view = (primitive_view){0};
-}
-
 static nt_status open_primitive(nt_reread *model, size_t mesh, size_t primitive,
 	primitive_view *view, nt_error *error)
 {
-	*view = (primitive_view){.corner = 0};
-	const unsigned char *bytes;
-	size_t size;
+	*view = (primitive_view){.position_id = block_id(model, mesh, primitive, "POSITION"),
+		.tangent_id = block_id(model, mesh, primitive, "TANGENT")};
 	nt_status status =
 		nt_reread_attribute(model, mesh, primitive, "POSITION", &view->positions, error);
 	if (status == NT_OK)
@@ -164,9 +162,9 @@ static nt_status open_primitive(nt_reread *model, size_t mesh, size_t primitive,
 		status = nt_reread_attribute(model, mesh, primitive, NULL, &view->indices, error);
 	bool has_block = false;
 	if (status == NT_OK)
-		status = nt_reread_block(model, mesh, primitive, &has_block, &bytes, &size, error);
-	if (status == NT_OK && has_block)
-		status = open_block(model, mesh, primitive, bytes, size, view, error);
+		status = nt_reread_block(model, mesh, primitive, &has_block, &view->packed, &view->packed_size, error);
+	if (status == NT_OK && has_block && !view->packed)
+		status = nt_fail(error, NT_ERROR_INPUT, "the compressed block is not inside of a buffer");
 	return status;
 }
 
@@ -301,27 +299,6 @@ static nt_status compare_mesh(const nt_mesh *mesh, primitive_view *views, nt_err
 	return NT_OK;
 }
 
-/* A mesh of a composed document: its primitives are those that have faces, in order. */
-static nt_status verify_composed(nt_reread *model, const nt_mesh *mesh, size_t number,
-	nt_error *error)
-{
-	const size_t count = mesh->primitive_count ? mesh->primitive_count : 1;
-	primitive_view *views = nt_calloc(count, sizeof *views);
-	size_t *faces = nt_calloc(count, sizeof *faces);
-	nt_status status = views && faces ? NT_OK : nt_fail_memory(error);
-	for (size_t f = 0; f < mesh->face_count && status == NT_OK; f++)
-		faces[count > 1 && mesh->face_primitive ? mesh->face_primitive[f] : 0]++;
-	size_t primitive = 0;
-	for (size_t p = 0; p < count && status == NT_OK; p++)
-		if (faces[p])
-			status = open_primitive(model, number, primitive++, &views[p], error);
-	if (status == NT_OK)
-		status = compare_mesh(mesh, views, error);
-	free(views);
-	free(faces);
-	return status;
-}
-
 /* ---- compressed primitives ---- */
 
 /* A corner as the scene has it. */
@@ -365,7 +342,7 @@ static nt_status compare_block_targets(const nt_mesh *mesh, const primitive_view
 }
 
 /* The sequential method keeps corners where they are; if they are elsewhere, the surface has to be the same. */
-static nt_status compare_block(const nt_mesh *mesh, const primitive_view *view, nt_error *error)
+static nt_status compare_block(const nt_mesh *mesh, const primitive_view *view, unsigned threads, nt_error *error)
 {
 	const size_t count = mesh->corner_count;
 	if (view->indices.count != count)
@@ -382,7 +359,7 @@ static nt_status compare_block(const nt_mesh *mesh, const primitive_view *view, 
 	}
 	size_t first = SIZE_MAX;
 	if (status == NT_OK && !ordered &&
-		nt_verify_faces(wanted, count / 3, found, count / 3, &view->tolerance, &first) != NT_OK)
+		nt_verify_faces(wanted, count / 3, found, count / 3, &view->tolerance, threads, &first) != NT_OK)
 		status = nt_fail_memory(error);
 	if (status == NT_OK && first != SIZE_MAX)
 		status = fail_corner(mesh, 3 * first, error);
@@ -401,45 +378,145 @@ static bool counts_match(const nt_mesh *mesh, const primitive_view *view)
 	return match;
 }
 
-/* A mesh of an edited document stands where it stood. Strips and fans keep their own indices: there only the
- * number of tangents is checked. */
-static nt_status verify_edited(const nt_scene *scene, nt_reread *model, const nt_mesh *mesh, nt_error *error)
+/* ---- all meshes ---- */
+
+/* A mesh of the scene and what the document has of it. */
+typedef struct mesh_check {
+	const nt_mesh *mesh;
+	primitive_view *views; /* [view_count] the primitives that it became */
+	size_t view_count;
+	uint64_t mode; /* of an edited document's primitive */
+	nt_status status;
+} mesh_check;
+
+typedef struct verification {
+	const nt_scene *scene;
+	nt_reread *model;
+	bool edited; /* else the document is a new one */
+	unsigned threads; /* for the triangles of one mesh */
+	mesh_check *checks; /* [count] */
+	size_t count;
+} verification;
+
+static void close_check(mesh_check *check)
 {
-	uint64_t mode = NT_GLTF_TRIANGLES;
-	nt_json_get_uint64(nt_json_find(nt_gltf_primitive_of(scene->source, mesh), "mode"), &mode);
-	primitive_view view;
-	nt_status status = open_primitive(model, mesh->gltf_mesh, mesh->gltf_primitive, &view, error);
-	if (status == NT_OK)
-		status = open_targets(model, mesh, &view, error);
-	if (status == NT_OK && view.block)
-		status = compare_block(mesh, &view, error);
-	else if (status == NT_OK && mode == NT_GLTF_TRIANGLES && corner_count(&view) == mesh->corner_count)
-		status = compare_mesh(mesh, &view, error);
-	else if (status == NT_OK && !counts_match(mesh, &view))
-		status = fail_corner(mesh, 0, error);
-	close_primitive(&view);
+	for (size_t p = 0; p < check->view_count; p++)
+		free(check->views[p].target_tangents);
+	free(check->views);
+}
+
+/* A mesh of a composed document: its primitives are those that have faces, in order. */
+static nt_status open_composed(const verification *v, mesh_check *check, size_t number, nt_error *error)
+{
+	const nt_mesh *mesh = check->mesh;
+	const size_t count = check->view_count;
+	size_t *faces = nt_calloc(count, sizeof *faces);
+	nt_status status = faces ? NT_OK : nt_fail_memory(error);
+	for (size_t f = 0; f < mesh->face_count && status == NT_OK; f++)
+		faces[count > 1 && mesh->face_primitive ? mesh->face_primitive[f] : 0]++;
+	size_t primitive = 0;
+	for (size_t p = 0; p < count && status == NT_OK; p++)
+		if (faces[p])
+			status = open_primitive(v->model, number, primitive++, &check->views[p], error);
+	free(faces);
 	return status;
 }
 
-static nt_status compare_scene(const nt_scene *scene, nt_reread *model, nt_error *error)
+/* A mesh of an edited document stands where it stood. */
+static nt_status open_edited(const verification *v, mesh_check *check, nt_error *error)
 {
-	size_t number = 0;
-	for (size_t m = 0; m < scene->mesh_count; m++) {
-		const nt_mesh *mesh = &scene->meshes[m];
-		const bool edited = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
-		nt_status status = NT_OK;
-		if (edited)
-			status = mesh->split.vertex_tangents ? verify_edited(scene, model, mesh, error) : NT_OK;
-		else if (mesh->face_count)
-			status = verify_composed(model, mesh, number++, error);
-		if (status != NT_OK)
-			return status == NT_ERROR_INPUT ? error->status = NT_ERROR_INTERNAL : status;
-	}
-	return NT_OK;
+	const nt_mesh *mesh = check->mesh;
+	check->mode = NT_GLTF_TRIANGLES;
+	nt_json_get_uint64(nt_json_find(nt_gltf_primitive_of(v->scene->source, mesh), "mode"), &check->mode);
+	const nt_status status = open_primitive(v->model, mesh->gltf_mesh, mesh->gltf_primitive, check->views, error);
+	return status == NT_OK ? open_targets(v->model, mesh, check->views, error) : status;
 }
 
-/* glTF wants a byte at least, and an extension that says what a buffer without a URI is. tinygltf refuses others in a .gltf,
- * and not in a .glb. */
+/* Looks up what the document has of each mesh, in order, as far as that goes. */
+static nt_status open_checks(verification *v, nt_error *error)
+{
+	size_t number = 0;
+	nt_status status = NT_OK;
+	for (size_t m = 0; m < v->scene->mesh_count && status == NT_OK; m++) {
+		const nt_mesh *mesh = &v->scene->meshes[m];
+		if (v->edited ? !mesh->split.vertex_tangents : !mesh->face_count)
+			continue;
+		mesh_check *check = &v->checks[v->count];
+		*check = (mesh_check){.mesh = mesh, .view_count = !v->edited && mesh->primitive_count ? mesh->primitive_count : 1};
+		check->views = nt_calloc(check->view_count, sizeof *check->views);
+		if (!check->views)
+			return nt_fail_memory(error);
+		status = v->edited ? open_edited(v, check, error) : open_composed(v, check, number++, error);
+		if (status == NT_OK)
+			v->count++;
+		else
+			close_check(check);
+	}
+	return status;
+}
+
+/* Strips and fans keep their own indices: there only the number of tangents is checked. */
+static nt_status compare_edited(const mesh_check *check, unsigned threads, nt_error *error)
+{
+	primitive_view *view = check->views;
+	if (!view->packed && check->mode == NT_GLTF_TRIANGLES && corner_count(view) == check->mesh->corner_count)
+		return compare_mesh(check->mesh, view, error);
+	if (!view->packed)
+		return counts_match(check->mesh, view) ? NT_OK : fail_corner(check->mesh, 0, error);
+	nt_status status = decode_block(view, error);
+	if (status == NT_OK)
+		status = compare_block(check->mesh, view, threads, error);
+	nt_draco_free(view->block);
+	view->block = NULL;
+	return status;
+}
+
+static nt_status compare_check(const verification *v, const mesh_check *check, nt_error *error)
+{
+	for (size_t p = 0; p < check->view_count; p++)
+		check->views[p].corner = 0;
+	return v->edited ? compare_edited(check, v->threads, error) : compare_mesh(check->mesh, check->views, error);
+}
+
+static void compare_one(void *context, size_t item, unsigned slot)
+{
+	verification *v = context;
+	nt_error ignored;
+	(void)slot;
+	v->checks[item].status = compare_check(v, &v->checks[item], &ignored);
+}
+
+/* A mesh that failed is compared again, alone, to say where it differs: the first of them that does. */
+static nt_status compare_all(verification *v, unsigned threads, nt_error *error)
+{
+	v->threads = v->count == 1 ? threads : 1;
+	nt_parallel_items(threads, v->count, compare_one, v);
+	nt_status status = NT_OK;
+	for (size_t i = 0; i < v->count && status == NT_OK; i++)
+		if (v->checks[i].status != NT_OK)
+			status = compare_check(v, &v->checks[i], error);
+	return status;
+}
+
+static nt_status compare_scene(const nt_scene *scene, nt_reread *model, unsigned threads, nt_error *error)
+{
+	verification v = {.scene = scene, .model = model,
+		.edited = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB,
+		.checks = nt_calloc(scene->mesh_count, sizeof *v.checks)};
+	if (!v.checks)
+		return nt_fail_memory(error);
+	const nt_status opened = open_checks(&v, error);
+	nt_status status = compare_all(&v, nt_thread_count(threads), error);
+	if (status == NT_OK)
+		status = opened;
+	for (size_t i = 0; i < v.count; i++)
+		close_check(&v.checks[i]);
+	free(v.checks);
+	return status == NT_ERROR_INPUT ? error->status = NT_ERROR_INTERNAL : status;
+}
+
+/* glTF wants a byte at least, and an extension that says what a buffer without a URI is. tinygltf refuses others in a
+ * .gltf, and not in a .glb. */
 static bool has_odd_buffer(nt_gltf *document)
 {
 	const nt_json_value *buffers = nt_gltf_root_member(document, "buffers");
@@ -476,7 +553,7 @@ static nt_status check_input(nt_scene *scene, nt_error *error)
 	return NT_OK;
 }
 
-nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path,
+nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, unsigned threads,
 	nt_error *error)
 {
 	const char *written;
@@ -497,7 +574,7 @@ nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path,
 	if (status == NT_ERROR_INTERNAL)
 		error->status = status;
 	if (status == NT_OK && !refused)
-		status = compare_scene(scene, model, error);
+		status = compare_scene(scene, model, threads, error);
 	nt_reread_free(model);
 	close_companions(&set);
 	nt_file_close(&file);

@@ -8,6 +8,7 @@
 
 #include <math.h>
 #include "base/hash_index.h"
+#include "base/parallel.h"
 
 static bool within(const float *a, const float *b, size_t count, float tolerance)
 {
@@ -87,14 +88,28 @@ static nt_status find_missing(const nt_verify_corner *a, size_t a_faces, const n
 	return status;
 }
 
-nt_status nt_verify_faces(const nt_verify_corner *a, size_t a_faces, const nt_verify_corner *b, size_t b_faces,
-	const nt_verify_tolerance *tolerance, size_t *first)
+typedef struct both_ways {
+	const nt_verify_corner *corners[2];
+	size_t face_counts[2], missing[2]; /* missing in the other list */
+	const nt_verify_tolerance *tolerance;
+	nt_status statuses[2];
+} both_ways;
+
+static void ask_one_way(void *context, size_t way, unsigned slot)
 {
-	nt_status status = find_missing(a, a_faces, b, b_faces, tolerance, first);
-	size_t extra = SIZE_MAX;
-	if (status == NT_OK && *first == SIZE_MAX)
-		status = find_missing(b, b_faces, a, a_faces, tolerance, &extra);
-	if (status == NT_OK && *first == SIZE_MAX && (extra != SIZE_MAX || a_faces != b_faces))
+	both_ways *w = context;
+	(void)slot;
+	w->statuses[way] = find_missing(w->corners[way], w->face_counts[way], w->corners[1 - way],
+		w->face_counts[1 - way], w->tolerance, &w->missing[way]);
+}
+
+nt_status nt_verify_faces(const nt_verify_corner *a, size_t a_faces, const nt_verify_corner *b, size_t b_faces,
+	const nt_verify_tolerance *tolerance, unsigned threads, size_t *first)
+{
+	both_ways w = {.corners = {a, b}, .face_counts = {a_faces, b_faces}, .tolerance = tolerance};
+	nt_parallel_items(threads, 2, ask_one_way, &w);
+	*first = w.missing[0];
+	if (*first == SIZE_MAX && (w.missing[1] != SIZE_MAX || a_faces != b_faces))
 		*first = 0;
-	return status;
+	return w.statuses[0] ? w.statuses[0] : w.statuses[1];
 }

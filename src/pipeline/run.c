@@ -180,7 +180,7 @@ static nt_status write_scene(run *r)
 	}
 	if (!status && s->verify && !dry) {
 		begin_stage(r, NT_STAGE_VERIFY);
-		status = nt_verify_gltf(&r->scene, output, r->output_path, r->error);
+		status = nt_verify_gltf(&r->scene, output, r->output_path, s->threads, r->error);
 	}
 	if (!status)
 		status = nt_watch_check(r->error);

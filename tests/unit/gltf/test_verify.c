@@ -28,7 +28,7 @@ static nt_status verify_after(const char *name, void (*spoil)(hand_scene *), nt_
 	assert_int_equal(nt_gltf_compose(&hand.scene, &options, output, error), NT_OK);
 	if (spoil)
 		spoil(&hand);
-	const nt_status status = nt_verify_gltf(&hand.scene, output, path, error);
+	const nt_status status = nt_verify_gltf(&hand.scene, output, path, 1, error);
 	nt_output_abort(output);
 	return status;
 }
@@ -73,18 +73,20 @@ static void every_difference_is_told(void **state)
 
 /* ---- a document that is edited ---- */
 
-/* data/morph.gltf is a quad with one target that moves its positions. */
+/* data/morph.gltf is a quad with one target that moves its positions; data/plates.gltf has three primitives of six
+ * vertices each. */
+enum { MESHES = 3, VERTICES = 6 };
+
 typedef struct edited {
 	nt_file file;
 	nt_scene scene;
 	nt_output *output;
-	float tangents[4][4], moved[4][3];
+	float tangents[MESHES][VERTICES][4], moved[VERTICES][3];
 } edited;
 
-static void edit(edited *p, const nt_write_options *options)
+static void edit(edited *p, const char *input, const nt_write_options *options)
 {
 	static const nt_read_options reading = {.texcoord_set = -1, .morphs = NT_MORPH_BAKE};
-	static const char input[] = NT_DATA_DIR "/morph.gltf";
 	nt_error error;
 	assert_int_equal(nt_file_open(&p->file, input, &error), NT_OK);
 	nt_scene_init(&p->scene, input);
@@ -92,17 +94,20 @@ static void edit(edited *p, const nt_write_options *options)
 	p->scene.byte_count = p->file.size;
 	p->scene.format = NT_FORMAT_GLTF;
 	assert_int_equal(nt_gltf_open(&p->scene, &reading, &error), NT_OK);
-	nt_mesh *mesh = p->scene.meshes;
-	assert_int_equal(nt_gltf_load(&p->scene, mesh, &reading, &error), NT_OK);
-	assert_int_equal(mesh->vertex_count, 4);
-	assert_int_equal(mesh->morph_count, 1);
-	for (int v = 0; v < 4; v++) {
+	for (int v = 0; v < VERTICES; v++) {
 		const float tangent[] = {0.6f, 0.8f, 0, 1}, moved[] = {-0.8f, 0.6f, 0};
-		memcpy(p->tangents[v], tangent, sizeof tangent);
+		for (int m = 0; m < MESHES; m++)
+			memcpy(p->tangents[m][v], tangent, sizeof tangent);
 		memcpy(p->moved[v], moved, sizeof moved);
 	}
-	mesh->split.vertex_tangents = p->tangents[0];
-	mesh->morphs[0].vertex_tangents = p->moved[0];
+	for (size_t m = 0; m < p->scene.mesh_count; m++) {
+		nt_mesh *mesh = &p->scene.meshes[m];
+		assert_int_equal(nt_gltf_load(&p->scene, mesh, &reading, &error), NT_OK);
+		assert_true(mesh->vertex_count <= VERTICES);
+		mesh->split.vertex_tangents = p->tangents[m][0];
+		if (mesh->morph_count)
+			mesh->morphs[0].vertex_tangents = p->moved[0];
+	}
 	assert_int_equal(nt_output_create(&p->output, NULL, &error), NT_OK);
 	assert_int_equal(nt_gltf_edit(&p->scene, options, p->output, &error), NT_OK);
 }
@@ -128,12 +133,42 @@ static void tangents_of_targets_are_compared(void **state)
 			.precision = ways[i].precision, .draco = ways[i].draco};
 		edited p;
 		nt_error error;
-		edit(&p, &options);
-		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &error), NT_OK);
+		edit(&p, NT_DATA_DIR "/morph.gltf", &options);
+		assert_int_equal(p.scene.meshes[0].morph_count, 1);
+		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, 1, &error), NT_OK);
 		/* one bit of one number: 0.6 again, but for its last one */
 		p.moved[2][1] = nextafterf(p.moved[2][1], 1);
-		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, &error), NT_ERROR_INTERNAL);
+		assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, 1, &error), NT_ERROR_INTERNAL);
 		assert_non_null(strstr(error.message, "corner 2 "));
+		close_edited(&p);
+	}
+}
+
+/* Whatever thread is done first. */
+static void the_first_mesh_that_differs_is_told(void **state)
+{
+	(void)state;
+	static const nt_draco_choice ways[] = {NT_DRACO_OFF, NT_DRACO_AS_SEQUENTIAL, NT_DRACO_AS_EDGEBREAKER};
+	for (size_t i = 0; i < sizeof ways / sizeof *ways; i++) {
+		const char *path = in_folder("a.glb");
+		const nt_write_options options = {.path = path, .format = NT_FORMAT_GLB, .draco = ways[i]};
+		edited p;
+		nt_error error;
+		edit(&p, NT_DATA_DIR "/plates.gltf", &options);
+		assert_int_equal(p.scene.mesh_count, MESHES);
+		for (unsigned threads = 1; threads <= 4; threads++)
+			assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, threads, &error), NT_OK);
+		for (int m = MESHES; m-- > 0;) {
+			p.tangents[m][p.scene.meshes[m].indices[3]][3] = -1;
+			for (unsigned threads = 1; threads <= 4; threads++) {
+				char pointer[40];
+				assert_int_equal(nt_verify_gltf(&p.scene, p.output, path, threads, &error),
+					NT_ERROR_INTERNAL);
+				snprintf(pointer, sizeof pointer, "/meshes/0/primitives/%d", m);
+				assert_string_equal(error.place.pointer, pointer);
+				assert_non_null(strstr(error.message, "corner "));
+			}
+		}
 		close_edited(&p);
 	}
 }
@@ -144,6 +179,7 @@ int main(void)
 		cmocka_unit_test(good_output_is_good),
 		cmocka_unit_test(every_difference_is_told),
 		cmocka_unit_test(tangents_of_targets_are_compared),
+		cmocka_unit_test(the_first_mesh_that_differs_is_told),
 	};
 	return cmocka_run_group_tests_name("gltf/verify", tests, make_folder, remove_empty_folder);
 }

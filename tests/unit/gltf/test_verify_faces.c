@@ -33,7 +33,7 @@ static void shuffle(const nt_verify_corner *from, nt_verify_corner *to)
 static size_t first_missing(const nt_verify_corner *a, size_t a_faces, const nt_verify_corner *b, size_t b_faces)
 {
 	size_t first;
-	assert_int_equal(nt_verify_faces(a, a_faces, b, b_faces, &fine, &first), NT_OK);
+	assert_int_equal(nt_verify_faces(a, a_faces, b, b_faces, &fine, 2, &first), NT_OK);
 	return first;
 }
 
