@@ -13,7 +13,9 @@
 #include <jpeglib.h>
 #include <jerror.h>
 
-enum { MOST_SCANS = 500 };
+/* A Huffman code has a bit at least, and each block of 8 x 8 has one, of its first coefficient. Arithmetic coding has no
+ * such bound. */
+enum { MOST_SCANS = 500, MOST_PIXELS_PER_BYTE = 8 * 8 * 8 };
 
 typedef struct decoder {
 	struct jpeg_decompress_struct jpeg;
@@ -61,6 +63,11 @@ static void decode(decoder *d, const unsigned char *bytes, size_t size, uint32_t
 	jpeg->progress = &d->progress;
 	jpeg_mem_src(jpeg, bytes, size);
 	jpeg_read_header(jpeg, TRUE);
+	if (!jpeg->arith_code && (uint64_t)jpeg->image_width * jpeg->image_height / MOST_PIXELS_PER_BYTE > size) {
+		nt_fail(d->error, NT_ERROR_INPUT, "JPEG: %zu bytes cannot hold %u x %u pixels", size, jpeg->image_width,
+			jpeg->image_height);
+		longjmp(d->leave, 1);
+	}
 	jpeg->out_color_space = jpeg->num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
 	jpeg->dct_method = JDCT_ISLOW;
 	const bool all = rows >= jpeg->image_height;

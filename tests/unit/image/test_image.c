@@ -464,6 +464,46 @@ static void decode_refuses_sizes_before_it_asks_for_memory(void **state)
 	assert_string_equal(error.message, "PNG: 44 bytes cannot hold 42 x 5963792 pixels");
 }
 
+/* The densest JPEG by Huffman codes: one grey, a scan that has the blocks' first coefficients alone, a bit each. */
+static void jpegs_are_held_against_a_bit_for_each_block(void **state)
+{
+	(void)state;
+	enum { SIDE = 2048 };
+	static const jpeg_scan_info first_coefficients = {.comps_in_scan = 1};
+	struct jpeg_compress_struct jpeg;
+	struct jpeg_error_mgr errors;
+	unsigned char *made = NULL, row[SIDE] = {0};
+	unsigned long size = 0;
+	jpeg.err = jpeg_std_error(&errors);
+	jpeg_create_compress(&jpeg);
+	jpeg_mem_dest(&jpeg, &made, &size);
+	jpeg.image_width = jpeg.image_height = SIDE;
+	jpeg.input_components = 1;
+	jpeg.in_color_space = JCS_GRAYSCALE;
+	jpeg_set_defaults(&jpeg);
+	jpeg.scan_info = &first_coefficients;
+	jpeg.num_scans = 1;
+	jpeg.optimize_coding = TRUE;
+	jpeg_start_compress(&jpeg, TRUE);
+	for (unsigned y = 0; y < SIDE; y++)
+		jpeg_write_scanlines(&jpeg, (JSAMPROW[]){row}, 1);
+	jpeg_finish_compress(&jpeg);
+	jpeg_destroy_compress(&jpeg);
+
+	nt_pixels p;
+	nt_error error;
+	assert_true(size < SIDE * SIDE / 512 + 200);
+	assert_int_equal(nt_image_decode(made, size, &p, &error), NT_OK);
+	nt_pixels_free(&p);
+	/* the frame's marker, length and precision, then height and width: a pixel more than twice as high */
+	unsigned char *frame = memmem(made, size, "\xff\xc2", 2);
+	frame[5] = 2 * SIDE >> 8;
+	frame[6] = 1;
+	assert_int_equal(nt_image_decode(made, size, &p, &error), NT_ERROR_INPUT);
+	assert_non_null(strstr(error.message, " bytes cannot hold 2048 x 4097 pixels"));
+	free(made);
+}
+
 /* Any bytes: an image or an error, and never more. The build with sanitizers looks on. */
 static void decode_survives_damage(void **state)
 {
@@ -522,6 +562,7 @@ int main(void)
 		cmocka_unit_test(decode_refuses_what_is_cut_short),
 		cmocka_unit_test(decode_ends_where_an_hdr_ends),
 		cmocka_unit_test(decode_refuses_sizes_before_it_asks_for_memory),
+		cmocka_unit_test(jpegs_are_held_against_a_bit_for_each_block),
 		cmocka_unit_test(decode_survives_damage),
 		cmocka_unit_test(decode_without_memory_is_an_error),
 	};
