@@ -156,3 +156,12 @@ size_t nt_map_wishes(nt_material *m, const nt_settings *settings, nt_map_wish wi
 	wish_for_normals(m, settings, wishes, &count);
 	return count;
 }
+
+void nt_map_wish_settle(nt_material *m, const nt_map_wish *w, unsigned lost)
+{
+	for (int k = 0; k < 4; k++)
+		if (w->maps[k] && lost >> k & 1)
+			w->maps[k]->wish = NT_NONE;
+	if (m->clearcoat == 0 && m->clearcoat_map.wish == NT_NONE)
+		m->clearcoat_roughness_map.wish = NT_NONE;
+}

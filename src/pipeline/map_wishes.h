@@ -16,4 +16,8 @@ typedef struct nt_map_wish {
 /* Fills `wishes` for the maps that a material has; returns how many there are. */
 size_t nt_map_wishes(nt_material *material, const nt_settings *settings, nt_map_wish wishes[NT_MATERIAL_MAPS]);
 
+/* A map whose image is lost is none any more, nor is the roughness of a coat that there is not. lost: a bit for each
+ * channel of the wish. */
+void nt_map_wish_settle(nt_material *material, const nt_map_wish *wish, unsigned lost);
+
 #endif

@@ -195,10 +195,9 @@ static void tell_made(const telling *t, const nt_map *map, const nt_texture *ima
 			image->from_heights ? "normal map" : "PNG", image->flipped ? ", green turned up" : "");
 }
 
-/* The images of one wish. A map whose image is lost is none any more, nor is the roughness of a coat that went with one. */
+/* The images of one wish. */
 static void tell_wish(const telling *t, const nt_map_wish *w)
 {
-	nt_material *m = t->material;
 	const nt_map *first = NULL;
 	const nt_texture *image = NULL;
 	for (int k = 0; k < 4; k++) {
@@ -212,11 +211,7 @@ static void tell_wish(const telling *t, const nt_map_wish *w)
 		if (!told)
 			tell_source(t, map, k, image);
 	}
-	for (int k = 0; k < 4 && image; k++)
-		if (w->maps[k] && image->lost >> k & 1)
-			w->maps[k]->wish = NT_NONE;
-	if (m->clearcoat == 0 && m->clearcoat_map.wish == NT_NONE)
-		m->clearcoat_roughness_map.wish = NT_NONE;
+	nt_map_wish_settle(t->material, w, image ? image->lost : 0);
 	for (int k = 4; k-- > 0;)
 		first = w->maps[k] && w->maps[k]->wish != NT_NONE ? w->maps[k] : first;
 	if (first && image->bytes)
