@@ -66,7 +66,13 @@ typedef struct nt_map {
 	float factor;
 } nt_map;
 
-/* Whether the samples themselves are meant. */
+/* A map whose samples themselves are meant. */
+static inline nt_map nt_map_of(const char *name)
+{
+	return (nt_map){.name = name, .gain = 1};
+}
+
+/* Whether they are. */
 static inline bool nt_map_is_plain(const nt_map *map)
 {
 	return map->base == 0 && map->gain == 1;
