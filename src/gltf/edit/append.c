@@ -48,7 +48,7 @@ static nt_status copy_elements(nt_appending *job, const nt_append_target *from, 
 				from->override->width);
 		return NT_OK;
 	}
-	const unsigned char *elements;
+	const unsigned char *elements = NULL;
 	nt_status status = nt_gltf_elements(job->document, a, &elements, job->error);
 	for (size_t v = 0; !status && elements && v < a->count; v++)
 		memcpy(out + v * stride, elements + v * a->stride, a->element_bytes);
@@ -253,7 +253,7 @@ static nt_status append_to_block(nt_appending *job, const block *b, uint64_t pre
 				status = move_away(job, &b->targets[i]);
 		return status;
 	}
-	const unsigned char *elements;
+	const unsigned char *elements = NULL;
 	status = block_bytes(job, b, &elements);
 	if (!status && !nt_append_note_edit(job, b->buffer, b->begin, b->end))
 		status = nt_fail_memory(job->error);
