@@ -45,6 +45,12 @@ grid() {
 		printf "f %d/%d %d/%d %d/%d %d/%d\n", a, a, b, b, b + 1, b + 1, a + 1, a + 1 } }'
 }
 
+scene "an image that several meshes have is in a page once, however many of them it shows"
+run --check --report=twice.html --fail-on=never "$data/transformed.gltf"
+exits 0
+[ "$(grep -ao '"images":\[{"image":[0-9]' twice.html | wc -l)" -gt 1 ] || wrong "no two meshes have an image"
+[ "$(grep -ao 'data:image/png;base64,[^"]*' twice.html | sort | uniq -d | wc -l)" = 0 ] || wrong "an image is there twice"
+
 # What a browser shows is the same whoever made the page; sanitizers look at its making alone.
 case $BUILD in *sanitize*) browses=false side=60 ;; *) browses=true side=708 ;; esac
 

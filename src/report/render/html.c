@@ -30,6 +30,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "base/hash_index.h"
+#include "base/name_table.h"
 #include "report/pack/pack.h"
 #include "report/pack/thumb.h"
 #include "report/render/page_assets.h"
@@ -52,7 +53,7 @@ typedef struct budget {
 	bool seen[NT_CODE_COUNT];
 	const bool *known; /* of a difference: which findings of the file both versions have; NULL */
 	nt_buffer sources; /* data URIs of images, as a JSON array without its end */
-	size_t image_count;
+	nt_name_table held; /* their bytes */
 } budget;
 
 /* ---- small things ---- */
@@ -193,12 +194,18 @@ static void put_facts(const nt_report_mesh *m, nt_buffer *out)
 	nt_buffer_text(out, "]");
 }
 
-/* The image's number among data.images, null where there is none or no room. */
+/* The image's number among data.images, null where there is none or no room. One that several meshes have is there
+ * once. */
 static void put_image(const nt_image *image, size_t *bytes_left, budget *left, nt_buffer *out)
 {
-	const bool there = image->bytes && image->size <= *bytes_left;
+	const char *bytes = (const char *)image->bytes;
+	uint32_t number = bytes ? nt_name_find(&left->held, bytes, image->size) : NT_NONE;
+	const bool first = bytes && number == NT_NONE && image->size <= *bytes_left;
+	if (first)
+		number = nt_name_add(&left->held, bytes, image->size);
+	left->sources.failed |= first && number == NT_NONE;
 	nt_buffer_text(out, "{\"image\":");
-	nt_json_index(there ? (uint32_t)left->image_count : NT_NONE, out);
+	nt_json_index(number, out);
 	nt_buffer_text(out, ",\"map\":[");
 	put_floats(image->transform, 6, out);
 	nt_buffer_text(out, "],\"file\":");
@@ -207,10 +214,10 @@ static void put_image(const nt_image *image, size_t *bytes_left, budget *left, n
 	else
 		nt_buffer_text(out, "null");
 	nt_buffer_text(out, "}");
-	if (!there)
+	if (!first)
 		return;
 	*bytes_left -= image->size;
-	nt_buffer_format(&left->sources, "%s\"data:%s;base64,", left->image_count++ ? "," : "", image->type);
+	nt_buffer_format(&left->sources, "%s\"data:%s;base64,", number ? "," : "", image->type);
 	put_base64(image->bytes, image->size, &left->sources);
 	nt_buffer_text(&left->sources, "\"");
 }
@@ -335,6 +342,7 @@ static void put_data(const nt_report_list *reports, nt_buffer *out)
 	nt_buffer_format(out, ",\"left_out\":%zu,\"images\":[", left.left_out);
 	nt_buffer_append(out, left.sources.data, left.sources.size);
 	nt_buffer_free_into(&left.sources, out);
+	nt_name_table_free(&left.held);
 	nt_buffer_text(out, "],\"index\":");
 	if (reports->style.index)
 		put_string(reports->style.index, out);
