@@ -65,7 +65,7 @@ static uint32_t __attribute__((noinline)) mark_hubs(const nt_adjacency *a, size_
 		depth = !hub && totals[lane] > depth ? totals[lane] : depth;
 		for (unsigned r = 0; hub && r < a->ranges; r++) {
 			uint32_t *cursor = &a->cursors[r * a->vertex_count + first + lane];
-			*cursor = (*cursor & NT_CURSOR_SHARED) | NT_CURSOR_HUB;
+			*cursor = (*cursor & NT_CURSOR_SHARED) | NT_CURSOR_HUB | totals[lane];
 		}
 	}
 	return depth;

@@ -24,7 +24,7 @@ typedef struct nt_fan_entry {
 
 /* A cursor: where the vertex's next entry of this range goes (each corner moves it by NT_FAN_LANES), and
  * flags above. */
-#define NT_CURSOR_HUB ((uint32_t)1 << 31)       /* a hub: there is no place */
+#define NT_CURSOR_HUB ((uint32_t)1 << 31)       /* a hub: in the place's stead is how many corners it has in all */
 #define NT_CURSOR_SHARED ((uint32_t)1 << 30)    /* an earlier range has corners of this vertex too */
 #define NT_CURSOR_ELSEWHERE ((uint32_t)1 << 29) /* the place is in `rest` */
 #define NT_CURSOR_PLACE (((uint32_t)1 << 28) - 1)

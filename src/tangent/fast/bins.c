@@ -140,7 +140,8 @@ static void add_corners(const nt_bins *b, size_t begin, size_t end, nt_record *c
 		const bool full = cursor >= (vertex / NT_FAN_LANES + 1) * BLOCK_ENTRIES;
 		if (!full)
 			a->entries[cursor] = nt_binned_load(b->entries + NT_BINNED_ENTRY * i, state & NT_BINNED_ORIENT);
-		a->cursors[vertex] = full ? NT_CURSOR_HUB : cursor + NT_FAN_LANES;
+		a->cursors[vertex] = !full ? cursor + NT_FAN_LANES
+			: cursor & NT_CURSOR_HUB ? cursor + 1 : NT_CURSOR_HUB | (NT_FAN_DEPTH + 1);
 		nt_int4 sum;
 		memcpy(&sum, &b->sums[i], sizeof sum);
 		sum &= sum_bits;

@@ -9,6 +9,6 @@
 
 /* Solves the vertices whose records are complex and writes their corners. `memory` is what the passes
  * before have left. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
-nmtan_status nt_fast_complex(nt_fast *fast, const nt_kernels *kernels, size_t complex_count, nt_borrowed *memory);
+nmtan_status nt_fast_complex(nt_fast *fast, const nt_kernels *kernels, const nt_settled *settled, nt_borrowed *memory);
 
 #endif

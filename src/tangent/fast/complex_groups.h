@@ -14,8 +14,8 @@
 /* In place of a group: the corner is written. */
 #define NT_WRITTEN (UINT32_MAX - 1)
 
-/* Corners that are solved together. */
-enum { NT_BATCH = 128 };
+/* Corners of a batch, but for a vertex that has more; corners that are solved together. */
+enum { NT_BATCH = 512, NT_SOLVED = 128 };
 
 /* A corner is 4 * triangle + k here, so that parting the two is no division. A "place" is an index into all
  * corners of complex vertices, which are sorted by vertex and then by triangle. */
@@ -23,14 +23,15 @@ typedef struct nt_complex {
 	nt_fast *fast;
 	const nt_kernels *kernels;
 	nt_borrowed *memory;
-	int orient;          /* of the records whose states number complex vertices */
-	size_t vertex_count, corner_count;
-	size_t most;         /* corners of one vertex */
-	uint32_t *begin;     /* [vertex_count + 1] first place of each vertex */
-	uint32_t *corners;   /* [corner_count] */
-	uint32_t *waiting;   /* [welded vertices] see pair_edge() */
+	int orient;          /* of the records whose states have the places of complex vertices */
+	size_t vertex_count;
+	uint32_t *vertices;  /* [vertex_count + 1] first place of each, with NT_RESULT_SUM and NT_RESULT_TANGLED */
+	uint32_t *corners;   /* [places] */
+	uint32_t *waiting;   /* [welded vertices] see pair_edge(); NULL: no vertex is tangled */
 	uint32_t *order;     /* [corner_count] places in the order of triangles; NULL: the order decides nothing */
-	bool any;            /* there are corners without a frame */
+	size_t corner_count;
+	uint32_t *decided;   /* [places] groups that nt_find_groups_in_order() has found; NULL: none */
+	bool single;         /* there are records of this orientation only */
 	bool more;           /* results are whole, not only their u */
 } nt_complex;
 
@@ -40,41 +41,46 @@ typedef struct nt_batch {
 	const uint32_t *corners; /* [count] */
 	uint32_t *across;        /* [2 * count + 2] the corner beyond the edge to the next (2 i) and from the previous
 	                            vertex (2 i + 1); NT_WAITS and above: there is none */
-	uint32_t *group;         /* [count], NT_NONE or NT_WRITTEN */
+	uint32_t *group;         /* [count] the corner that it begins with, then its number; NT_NONE or NT_WRITTEN */
 	uint32_t group_count;
 	uint32_t *members;       /* [count] corners by group, ascending; the memory of across */
 	uint32_t *bounds;        /* [group_count + 1] first member of each group; the same */
+	nt_corner *results;      /* [count] where the halves of quads have to meet; NULL: there are no quads */
 } nt_batch;
 
-/* The number of a complex vertex, which has one; NT_NONE: it is not complex. */
-static inline uint32_t nt_complex_number(const nt_complex *c, uint32_t vertex)
+static inline uint32_t nt_first_place(const nt_complex *c, size_t v)
 {
-	const uint32_t state = nt_fast_record(c->fast, c->orient, vertex)->state;
-	return state & NT_RESULT_COMPLEX ? state & NT_RESULT_NUMBER : NT_NONE;
+	return c->vertices[v] & NT_RESULT_NUMBER;
 }
 
-/* The next triangle from t on that has a corner at a complex vertex. */
-static inline size_t nt_next_complex(const nt_complex *c, size_t t)
+static inline bool nt_is_tangled(const nt_complex *c, size_t v)
 {
-	return nt_fast_next_flagged(c->fast, t, NT_TRIANGLE_COMPLEX);
+	return c->vertices[v] & NT_RESULT_TANGLED;
+}
+
+/* The place behind the last corner of a vertex; for hubs there may be more places. */
+static inline uint32_t nt_last_place(const nt_complex *c, size_t v)
+{
+	if (!nt_is_tangled(c, v))
+		return nt_first_place(c, v + 1);
+	const uint32_t corner = c->corners[nt_first_place(c, v)];
+	const nt_triangles *triangles = &c->fast->triangles;
+	const uint32_t vertex = triangles->ids[nt_triangle_corner(triangles, corner >> 2, corner & 3)];
+	return nt_fast_record(c->fast, c->orient, vertex)->state & NT_RESULT_NUMBER;
 }
 
 /* Memory of a batch of `capacity` corners; false: there is none. */
 bool nt_batch_alloc(const nt_complex *c, size_t capacity, nt_batch *batch);
 
-/* Pairs the edges of the vertex with places [begin, end), which the batch has. */
-void nt_pair_vertex(const nt_complex *c, nt_batch *batch, uint32_t begin, uint32_t end);
+/* Finds the groups of complex vertex v, which the batch has. */
+void nt_find_groups(const nt_complex *c, nt_batch *batch, size_t v);
 
-/* Finds the groups of a batch whose vertices are paired. */
-void nt_find_groups(const nt_complex *c, nt_batch *batch);
-
-/* The same for a batch of all vertices, in the order of triangles: every triangle without a frame takes the orientation of
- * the first group that reaches it. */
+/* Finds the groups of all vertices that have a triangle without a frame, in the order of triangles: every such triangle
+ * takes the orientation of the first group that reaches it. At the other vertices it leaves NT_WRITTEN. */
 void nt_find_groups_in_order(const nt_complex *c, nt_batch *all);
 
-/* Gives the groups of a batch, which are numbered among those of all vertices, numbers from 0 in the order in which they
- * begin. `numbers` [groups of all vertices] is NT_NONE for those of this batch. */
-void nt_number_groups(const nt_complex *c, nt_batch *batch, uint32_t *numbers);
+/* Numbers the groups of a batch from 0 in the order in which they begin. Those that are written are none. */
+void nt_number_groups(nt_batch *batch);
 
 /* Lists the members of a batch's groups, in the memory of across. */
 void nt_list_members(nt_batch *batch);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Averages of groups at complex vertices: steps 7 to 10 of the spec page. Corners are solved NT_BATCH at a time in the
+ * Averages of groups at complex vertices: steps 7 to 10 of the spec page. Corners are solved NT_SOLVED at a time in the
  * order of groups. Most groups do not split: their members' directions lie within a half-space, or at least no one
  * is antiparallel to the few outside of it. Otherwise a member that belongs to a part of its group has a sum of its own.
  */
@@ -21,9 +21,9 @@ typedef struct part {
 static void solve_members(const nt_complex *c, const nt_batch *b, const uint32_t *members, size_t count,
 	nt_corner *solved)
 {
-	uint32_t corners[NT_BATCH];
-	for (size_t first = 0; first < count; first += NT_BATCH) {
-		const size_t n = count - first < NT_BATCH ? count - first : NT_BATCH;
+	uint32_t corners[NT_SOLVED];
+	for (size_t first = 0; first < count; first += NT_SOLVED) {
+		const size_t n = count - first < NT_SOLVED ? count - first : NT_SOLVED;
 		for (size_t i = 0; i < n; i++)
 			corners[i] = b->corners[members[first + i]];
 		c->kernels->corners(c->fast, corners, n, solved + first);
@@ -149,17 +149,23 @@ static void write_corner(const nt_complex *c, size_t corner, const nt_corner *r,
 		memcpy(solve->magnitudes + 2 * corner, (float[2]){r->mag_s, r->mag_t}, 2 * sizeof(float));
 }
 
-/* The sign of a corner that a group has: its triangle's, which is its group's. */
-static float sign_of(const nt_complex *c, const nt_batch *b, uint32_t i)
+/* The orientation of a corner that a group has: its triangle's, which is its group's. Where only one orientation
+ * occurs, triangles without a frame are not decided. */
+static int orientation_of(const nt_complex *c, const nt_batch *b, uint32_t i)
 {
-	return c->fast->flags[b->corners[i] >> 2] & NT_TRIANGLE_ORIENT ? 1.0f : -1.0f;
+	return c->single ? c->orient : c->fast->flags[b->corners[i] >> 2] & NT_TRIANGLE_ORIENT;
 }
 
-/* A member's result goes to its corner, or to `results` where the halves of quads have to meet. */
-static void put_result(const nt_complex *c, const nt_batch *b, uint32_t i, const nt_corner *r, nt_corner *results)
+static float sign_of(const nt_complex *c, const nt_batch *b, uint32_t i)
 {
-	if (results)
-		results[i] = *r;
+	return orientation_of(c, b, i) ? 1.0f : -1.0f;
+}
+
+/* A member's result goes to its corner, or to the batch's results. */
+static void put_result(const nt_complex *c, const nt_batch *b, uint32_t i, const nt_corner *r)
+{
+	if (b->results)
+		b->results[i] = *r;
 	else
 		write_corner(c, mesh_corner(c, b, i), r, sign_of(c, b, i));
 }
@@ -174,22 +180,22 @@ static void write_untouched(const nt_complex *c, const nt_batch *b)
 			write_corner(c, mesh_corner(c, b, i), &untouched, nt_unassigned_sign(c->fast->solve));
 }
 
-void nt_write_sums(const nt_complex *c, nt_batch *b, uint32_t begin, uint32_t end)
+void nt_write_sums(const nt_complex *c, nt_batch *b, size_t v)
 {
-	const nt_fast *fast = c->fast;
-	const uint32_t vertex = fast->triangles.ids[mesh_corner(c, b, begin)];
-	if (!(nt_fast_record(fast, c->orient, vertex)->state & NT_RESULT_SUM))
+	if (!(c->vertices[v] & NT_RESULT_SUM))
 		return;
+	const nt_fast *fast = c->fast;
+	const uint32_t begin = nt_first_place(c, v) - b->first, end = nt_last_place(c, v) - b->first;
 	/* the first group of each orientation; NT_WRITTEN: there are more */
 	uint32_t groups[2] = {NT_NONE, NT_NONE};
 	for (uint32_t i = begin; i < end; i++) {
-		const unsigned flags = fast->flags[b->corners[i] >> 2];
-		uint32_t *group = &groups[flags & NT_TRIANGLE_ORIENT];
-		if (!(flags & NT_TRIANGLE_ANY))
+		uint32_t *group = &groups[orientation_of(c, b, i)];
+		if (b->group[i] != NT_NONE)
 			*group = *group == NT_NONE || *group == b->group[i] ? b->group[i] : NT_WRITTEN;
 	}
+	const uint32_t vertex = fast->triangles.ids[mesh_corner(c, b, begin)];
 	for (uint32_t i = begin; i < end; i++) {
-		const int orient = fast->flags[b->corners[i] >> 2] & NT_TRIANGLE_ORIENT;
+		const int orient = orientation_of(c, b, i);
 		if (b->group[i] == NT_NONE || b->group[i] != groups[orient])
 			continue;
 		nt_record record = *nt_fast_record(fast, orient, vertex);
@@ -217,26 +223,26 @@ static nt_corner merge(const nt_corner *a, const nt_corner *b)
 }
 
 /* Writes the corner i, and j (NT_NONE: there is none), the other half's corner of the same face vertex. */
-static void write_halves(const nt_complex *c, const nt_batch *b, uint32_t i, uint32_t j, const nt_corner *results)
+static void write_halves(const nt_complex *c, const nt_batch *b, uint32_t i, uint32_t j)
 {
 	const bool first = b->group[i] != NT_NONE, second = j != NT_NONE && b->group[j] != NT_NONE;
 	const size_t corner = mesh_corner(c, b, i);
 	if (first && second) {
-		const nt_corner r = merge(&results[i], &results[j]);
+		const nt_corner r = merge(&b->results[i], &b->results[j]);
 		/* the orientation is that of the later group */
 		write_corner(c, corner, &r, sign_of(c, b, b->group[i] > b->group[j] ? i : j));
 	} else if (first || second) {
-		write_corner(c, corner, &results[first ? i : j], sign_of(c, b, first ? i : j));
+		write_corner(c, corner, &b->results[first ? i : j], sign_of(c, b, first ? i : j));
 	} else {
 		write_corner(c, corner, &untouched, nt_unassigned_sign(c->fast->solve));
 	}
 }
 
-static void write_quads(const nt_complex *c, const nt_batch *b, const nt_corner *results)
+static void write_quads(const nt_complex *c, const nt_batch *b)
 {
 	for (uint32_t i = 0; i < b->count; i++) {
 		const bool two = i + 1 < b->count && mesh_corner(c, b, i) == mesh_corner(c, b, i + 1);
-		write_halves(c, b, i, two ? i + 1 : NT_NONE, results);
+		write_halves(c, b, i, two ? i + 1 : NT_NONE);
 		i += two;
 	}
 }
@@ -244,7 +250,7 @@ static void write_quads(const nt_complex *c, const nt_batch *b, const nt_corner 
 /* Groups */
 
 /* A group, all of whose members are solved. */
-static void average_group(const nt_complex *c, const nt_batch *b, const part *p, nt_corner *results)
+static void average_group(const nt_complex *c, const nt_batch *b, const part *p)
 {
 	nt_corner whole = {.kind = NT_CORNER_EXTREME};
 	add_members(c, b, p, NT_NONE, &whole);
@@ -252,33 +258,33 @@ static void average_group(const nt_complex *c, const nt_batch *b, const part *p,
 	const bool one = is_one(c, b, p);
 	for (size_t i = 0; i < p->count; i++) {
 		if (one || belongs_to_all(c, b, p, i)) {
-			put_result(c, b, p->members[i], &whole, results);
+			put_result(c, b, p->members[i], &whole);
 			continue;
 		}
 		nt_corner own = {.kind = NT_CORNER_EXTREME};
 		add_members(c, b, p, i, &own);
 		finish(c, &own);
-		put_result(c, b, p->members[i], &own, results);
+		put_result(c, b, p->members[i], &own);
 	}
 }
 
-/* Groups [first, end), NT_BATCH members together. */
-static void solve_groups(const nt_complex *c, const nt_batch *b, uint32_t first, uint32_t end, nt_corner *results)
+/* Groups [first, end), NT_SOLVED members together. */
+static void solve_groups(const nt_complex *c, const nt_batch *b, uint32_t first, uint32_t end)
 {
-	nt_corner solved[NT_BATCH + NT_LANES];
+	nt_corner solved[NT_SOLVED + NT_LANES];
 	const uint32_t begin = b->bounds[first];
 	solve_members(c, b, b->members + begin, b->bounds[end] - begin, solved);
 	for (uint32_t g = first; g < end; g++) {
 		const part p = {b->members + b->bounds[g], solved + (b->bounds[g] - begin),
 			b->bounds[g + 1] - b->bounds[g]};
-		average_group(c, b, &p, results);
+		average_group(c, b, &p);
 	}
 }
 
 /* The same for a group of more members, of which few at a time are solved: those that are not near the axis are kept. */
 typedef struct outliers {
-	uint32_t members[NT_BATCH];
-	nt_corner solved[NT_BATCH];
+	uint32_t members[NT_SOLVED];
+	nt_corner solved[NT_SOLVED];
 	size_t count;
 } outliers;
 
@@ -288,7 +294,7 @@ static bool add_outliers(const part *p, const nt_corner *axis, outliers *o)
 	for (size_t i = 0; i < p->count; i++) {
 		if (is_near(&p->solved[i], axis))
 			continue;
-		if (o->count == NT_BATCH)
+		if (o->count == NT_SOLVED)
 			return false;
 		o->members[o->count] = p->members[i];
 		o->solved[o->count++] = p->solved[i];
@@ -311,12 +317,12 @@ static bool no_outlier_splits(const nt_complex *c, const nt_batch *b, const part
 static bool add_large_group(const nt_complex *c, const nt_batch *b, const uint32_t *members, size_t count,
 	nt_corner *sum)
 {
-	nt_corner solved[NT_BATCH + NT_LANES], axis = {.kind = NT_CORNER_ANY};
+	nt_corner solved[NT_SOLVED + NT_LANES], axis = {.kind = NT_CORNER_ANY};
 	outliers o;
 	o.count = 0;
 	for (int round = 0; round < 2; round++) {
-		for (size_t first = 0; first < count; first += NT_BATCH) {
-			const part p = {members + first, solved, count - first < NT_BATCH ? count - first : NT_BATCH};
+		for (size_t first = 0; first < count; first += NT_SOLVED) {
+			const part p = {members + first, solved, count - first < NT_SOLVED ? count - first : NT_SOLVED};
 			solve_members(c, b, p.members, p.count, solved);
 			if (axis.kind == NT_CORNER_ANY)
 				axis = *first_with_frame(&p);
@@ -332,7 +338,7 @@ static bool add_large_group(const nt_complex *c, const nt_batch *b, const uint32
 }
 
 /* All members are kept only if they may split. */
-static nmtan_status solve_large_group(const nt_complex *c, const nt_batch *b, uint32_t group, nt_corner *results)
+static nmtan_status solve_large_group(const nt_complex *c, const nt_batch *b, uint32_t group)
 {
 	const uint32_t *members = b->members + b->bounds[group];
 	const size_t count = b->bounds[group + 1] - b->bounds[group];
@@ -340,7 +346,7 @@ static nmtan_status solve_large_group(const nt_complex *c, const nt_batch *b, ui
 	if (add_large_group(c, b, members, count, &whole)) {
 		finish(c, &whole);
 		for (size_t i = 0; i < count; i++)
-			put_result(c, b, members[i], &whole, results);
+			put_result(c, b, members[i], &whole);
 		return NMTAN_OK;
 	}
 	const nt_scratch_mark mark = nt_scratch_here(c->memory->scratch);
@@ -350,24 +356,24 @@ static nmtan_status solve_large_group(const nt_complex *c, const nt_batch *b, ui
 		return NMTAN_ERROR_MEMORY;
 	solve_members(c, b, members, count, solved);
 	const part p = {members, solved, count};
-	average_group(c, b, &p, results);
+	average_group(c, b, &p);
 	nt_scratch_back(c->memory->scratch, mark);
 	*c->memory = memory;
 	return NMTAN_OK;
 }
 
-nmtan_status nt_solve_batch(const nt_complex *c, const nt_batch *b, nt_corner *results)
+nmtan_status nt_solve_batch(const nt_complex *c, const nt_batch *b)
 {
 	for (uint32_t g = 0, end; g < b->group_count; g = end) {
-		for (end = g; end < b->group_count && b->bounds[end + 1] - b->bounds[g] <= NT_BATCH;)
+		for (end = g; end < b->group_count && b->bounds[end + 1] - b->bounds[g] <= NT_SOLVED;)
 			end++;
 		if (end > g)
-			solve_groups(c, b, g, end, results);
-		else if (solve_large_group(c, b, end++, results))
+			solve_groups(c, b, g, end);
+		else if (solve_large_group(c, b, end++))
 			return NMTAN_ERROR_MEMORY;
 	}
-	if (results)
-		write_quads(c, b, results);
+	if (b->results)
+		write_quads(c, b);
 	else
 		write_untouched(c, b);
 	return NMTAN_OK;

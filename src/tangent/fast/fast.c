@@ -263,8 +263,11 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 			&r);
 	}
 	*sum = (nt_settled){0};
-	for (unsigned i = 0; i < ranges; i++)
+	for (unsigned i = 0; i < ranges; i++) {
 		sum->complex_count += r.settled[i].complex_count;
+		sum->complex_corners += r.settled[i].complex_corners;
+		sum->tangled_count += r.settled[i].tangled_count;
+	}
 	return NMTAN_OK;
 }
 
@@ -293,7 +296,7 @@ static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, cons
 	nt_fast_write(fast);
 	nt_borrowed left = nt_fast_left_memory(fast);
 	const nmtan_status status = settled->complex_count > 0
-		? nt_fast_complex(fast, kernels, settled->complex_count, &left) : NMTAN_OK;
+		? nt_fast_complex(fast, kernels, settled, &left) : NMTAN_OK;
 	if (status)
 		return status;
 	if (fast->solve->known)

@@ -64,8 +64,9 @@ typedef struct nt_fast {
 	nt_deferred *deferred;       /* [ranges]; NULL: there is one */
 } nt_fast;
 
+/* How many vertices are complex, with how many corners at most, and how many of them are tangled. */
 typedef struct nt_settled {
-	size_t complex_count;
+	size_t complex_count, complex_corners, tangled_count;
 } nt_settled;
 
 /* Makes fast->records[orient], which a triangle needs and which does not exist; false: it cannot be had now. */

@@ -46,8 +46,12 @@ enum {
  * result. */
 #define NT_RESULT_SUM 0x20000000u
 
-/* Beside it: complex.c has given the vertex the number in the lowest bits. */
-#define NT_RESULT_NUMBERED 0x80000000u
+/* Beside it: a hub, or an edge at the vertex occurs twice in one direction, so that pairs depend on order. */
+#define NT_RESULT_TANGLED 0x10000000u
+
+/* Beside it, in the lowest bits: how many corners the vertex has, a hub those of degenerate triangles too; where complex.c
+ * has seen the vertex, NT_RESULT_PLACED and the place of its next corner. */
+#define NT_RESULT_PLACED 0x80000000u
 #define NT_RESULT_NUMBER (((uint32_t)1 << 28) - 1)
 
 typedef float nt_float4 __attribute__((vector_size(16)));

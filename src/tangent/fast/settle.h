@@ -251,6 +251,33 @@ static void load_degrees(const nt_adjacency *a, size_t first, size_t count, size
 	}
 }
 
+/* What complex.c wants to know of a block's complex vertices goes to their records: see NT_RESULT_COMPLEX. */
+static void describe_complex(const nt_fast *fast, const nt_adjacency *a, size_t first, size_t used,
+	const uint32_t *complex, const uint32_t *fan_count, nt_settled *settled)
+{
+	const size_t place = first - a->first_vertex, block = place / NT_FAN_LANES;
+	const uint32_t *cursors = a->cursors + (a->ranges - 1) * a->vertex_count + place;
+	const nt_fan_entry *entries = nt_adjacency_block(a, block);
+	for (size_t i = 0; i < used; i++) {
+		if (!complex[i])
+			continue;
+		const size_t lane = turned_place(i);
+		const uint32_t places = cursors[lane] & NT_CURSOR_PLACE, tangled = fan_count[i] >= DOUBTFUL;
+		uint32_t corners = 0;
+		if (cursors[lane] & NT_CURSOR_HUB)
+			corners = places;
+		else
+			for (size_t e = lane; e < places - a->block_begin[block]; e += NT_FAN_LANES)
+				corners += !(entries[e].next & NT_ENTRY_VOID);
+		for (int o = 0; o < 2; o++)
+			if (fast->records[o])
+				nt_fast_record(fast, o, (uint32_t)(first + lane))->state |= corners | tangled * NT_RESULT_TANGLED;
+		settled->complex_count++;
+		settled->complex_corners += corners;
+		settled->tangled_count += tangled;
+	}
+}
+
 static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const sums[2], size_t block,
 	nt_settled *settled)
 {
@@ -308,8 +335,11 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		if (fast->wants_more)
 			settle_more(fast->more[o] + first, count, r[o].present);
 	}
+	uint32_t complex_count = 0;
 	for (size_t i = 0; i < used; i++)
-		settled->complex_count += complex[i];
+		complex_count += complex[i];
+	if (complex_count > 0)
+		describe_complex(fast, a, first, used, complex, fan_count, settled);
 }
 
 static void settle(nt_fast *fast, const nt_adjacency *adjacency, nt_record *const sums[2], size_t begin, size_t end,

@@ -277,7 +277,7 @@ static nmtan_status solve_complex(tiny *s)
 		corners[b.count++] = i;
 	}
 	nt_list_members(&b);
-	return nt_solve_batch(&c, &b, NULL);
+	return nt_solve_batch(&c, &b);
 }
 
 /* Every corner gets its group's result. */
