@@ -4,9 +4,11 @@
  */
 #include "base/pages.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #ifdef __linux__
 #include <sys/mman.h>
+#include <unistd.h>
 #endif
 
 enum { HUGE_PAGE_BYTES = 2 * 1024 * 1024 };
@@ -23,4 +25,17 @@ void *nt_alloc_large(size_t bytes)
 	}
 #endif
 	return malloc(bytes);
+}
+
+void nt_drop_pages(void *memory, size_t bytes)
+{
+#ifdef __linux__
+	enum { WORTH_BYTES = 1024 * 1024 };
+	const uintptr_t page = (uintptr_t)sysconf(_SC_PAGESIZE), begin = ((uintptr_t)memory + page - 1) / page * page;
+	if (bytes >= WORTH_BYTES)
+		madvise((void *)begin, ((uintptr_t)memory + bytes) / page * page - begin, MADV_DONTNEED);
+#else
+	(void)memory;
+	(void)bytes;
+#endif
 }

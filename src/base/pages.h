@@ -12,4 +12,8 @@
  * triangles). free() as usual. */
 void *nt_alloc_large(size_t bytes);
 
+/* What is in a part of a block is not needed any more, but the block cannot be freed: the system takes the pages of a
+ * large one back. */
+void nt_drop_pages(void *memory, size_t bytes);
+
 #endif

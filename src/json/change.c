@@ -2,12 +2,13 @@
 /*
  * Changing documents. A value that is set forgets its content, not its place in the text; that something was taken out of
  * a list is noted, so that the writer looks for it in the text. Lists that grow move and leave their old memory to the
- * arena.
+ * arena; the pages of large ones are given back.
  */
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include "base/pages.h"
 #include "ext/number.h"
 #include "json/tree.h"
 
@@ -57,6 +58,7 @@ static bool grow(nt_json *document, nt_json_value *container)
 		list->end = old->end;
 		list->shape = old->shape;
 		memcpy(list->children, old->children, container->size * sizeof *list->children);
+		nt_drop_pages(old, sizeof *old + old->capacity * sizeof *old->children);
 	} else if (container->type == NT_JSON_OBJECT) {
 		list->shape = nt_json_shape_of(document, NULL, 0);
 		if (!list->shape)

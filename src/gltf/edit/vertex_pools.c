@@ -99,8 +99,9 @@ static void list_pools(nt_vertex_pools *pools, uint32_t *parent, uint32_t *pool_
 
 static uint32_t *zeroed(nt_arena *arena, size_t count)
 {
-	uint32_t *numbers = nt_arena_alloc(arena, count, sizeof *numbers);
-	return numbers ? memset(numbers, 0, count * sizeof *numbers) : NULL;
+	/* what nobody counts in takes no memory */
+	uint32_t *numbers = nt_calloc(count, sizeof *numbers);
+	return nt_arena_adopt(arena, numbers) ? numbers : NULL;
 }
 
 static bool allocate(nt_vertex_pools *pools, nt_arena *arena)
