@@ -247,7 +247,7 @@ static void keep(nt_gltf_kept_accessor *kept, const nt_gltf_accessor *a)
 	kept->type = (uint8_t)(a->component_type - NT_GLTF_BYTE + (a->normalized ? NORMALIZED : 0));
 	kept->components = (uint8_t)a->components;
 	kept->stride = (uint8_t)a->stride;
-	__atomic_store_n(&kept->state, 2, __ATOMIC_RELEASE);
+	__atomic_store_n(&kept->state, NT_GLTF_KEPT, __ATOMIC_RELEASE);
 }
 
 static void take(const nt_gltf_kept_accessor *kept, uint32_t index, nt_gltf_accessor *a)
@@ -264,7 +264,7 @@ nt_status nt_gltf_get_accessor(nt_gltf *document, uint64_t index, const char *fr
 {
 	nt_gltf_kept_accessor *const kept = index < document->kept_count ? &document->kept[index] : NULL;
 	nt_status status = NT_OK;
-	if (kept && __atomic_load_n(&kept->state, __ATOMIC_ACQUIRE) == 2) {
+	if (kept && __atomic_load_n(&kept->state, __ATOMIC_ACQUIRE) == NT_GLTF_KEPT) {
 		take(kept, (uint32_t)index, accessor);
 	} else {
 		*accessor = (nt_gltf_accessor){.view = NT_NONE};

@@ -55,12 +55,14 @@ typedef struct nt_gltf_view {
 	const char *compression; /* the extension that compresses it; NULL: none, or already undone */
 } nt_gltf_view;
 
+enum { NT_GLTF_KEPT = 2 };
+
 /* An accessor as it was read once, not sparse and its numbers not too large: accessor.c. */
 typedef struct nt_gltf_kept_accessor {
 	uint32_t view, offset, count;
 	uint8_t type; /* component type, from NT_GLTF_BYTE on; normalized: 128 more */
 	uint8_t components, stride;
-	uint8_t state; /* 0: it is not known; 1: a thread fills it; 2: it is known */
+	uint8_t state; /* 0: it is not known; 1: a thread fills it; NT_GLTF_KEPT: it is known */
 } nt_gltf_kept_accessor;
 
 typedef struct nt_gltf {

@@ -74,10 +74,13 @@ static bool same_bytes(nt_gltf_accessor a, nt_gltf_accessor b)
 }
 
 /* The view that an accessor names; NT_NONE: none that is there. */
-static uint32_t claimed_view(const nt_gltf *document, const nt_json_value *accessor)
+static uint32_t claimed_view(const nt_gltf *document, const nt_json_value *accessors, uint32_t index)
 {
 	uint64_t view;
-	return nt_json_get_uint64(nt_json_find(accessor, "bufferView"), &view) && view < document->view_count ?
+	if (index < document->kept_count && document->kept[index].state == NT_GLTF_KEPT)
+		return document->kept[index].view;
+	return nt_json_get_uint64(nt_json_find(nt_json_at(accessors, index), "bufferView"), &view) &&
+			view < document->view_count ?
 		(uint32_t)view : NT_NONE;
 }
 
@@ -88,7 +91,7 @@ bool nt_gltf_find_first_aliases(nt_gltf *document, uint32_t *first_alias, size_t
 	uint32_t *users = nt_calloc(document->view_count, sizeof *users);
 	size_t shared = 0, count = 0;
 	for (uint32_t i = 0; users && i < accessor_count; i++) {
-		const uint32_t view = first_alias[i] = claimed_view(document, nt_json_at(accessors, i));
+		const uint32_t view = first_alias[i] = claimed_view(document, accessors, i);
 		if (view != NT_NONE)
 			shared += users[view]++ ? 1 + (users[view] == 2) : 0;
 	}

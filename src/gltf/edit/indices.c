@@ -30,14 +30,19 @@ static size_t tail_of(const nt_mesh *mesh, uint64_t mode, uint64_t old_count)
 			mesh->indices && !mesh->normals_made ? tail : 0;
 }
 
+/* most: all indices are below it. */
 static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices, bool borrowed, size_t tail,
-	uint32_t least, encoded *out, nt_error *error)
+	uint64_t most, uint32_t least, encoded *out, nt_error *error)
 {
-	uint32_t highest = nt_largest(indices, mesh->corner_count, 1);
 	out->count = mesh->corner_count + tail;
-	for (size_t c = mesh->corner_count; c < out->count; c++)
-		highest = mesh->indices[c] > highest ? mesh->indices[c] : highest;
-	out->type = nt_gltf_index_type((uint64_t)highest + 1, least);
+	/* those of few vertices fit, whatever they are */
+	if (nt_gltf_index_type(most, least) != least) {
+		uint32_t highest = nt_largest(indices, mesh->corner_count, 1);
+		for (size_t c = mesh->corner_count; c < out->count; c++)
+			highest = mesh->indices[c] > highest ? mesh->indices[c] : highest;
+		most = (uint64_t)highest + 1;
+	}
+	out->type = nt_gltf_index_type(most, least);
 	out->width = nt_gltf_component_bytes(out->type);
 	out->size = out->count * out->width;
 	/* they live as long as the scene: nothing to be encoded */
@@ -227,7 +232,7 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ve
 	nt_status status = find_old(edits->document, mesh, leader->index, &old, error);
 	if (!status)
 		status = encode(&edits->arena, mesh, vertices->indices[user], vertices->borrowed, tail_of(mesh, mode, old.count),
-			old.component_type, &new, error);
+			vertices->new_count, old.component_type, &new, error);
 	if (!status && all_users_agree(pools, leader)) {
 		if (old.decoded)
 			status = give_view(edits, buffer, &old, &new, error);

@@ -61,7 +61,10 @@ static nt_status order_edits(nt_buffer_edits *edits, uint32_t index, nt_relocate
 	if (!result->shifts || !result->near)
 		return nt_fail_memory(error);
 	*result->near = 0;
-	if (from->edit_count)
+	bool sorted = true; /* mostly they are */
+	for (size_t i = 1; sorted && i < from->edit_count; i++)
+		sorted = compare_edits(&from->edits[i - 1], &from->edits[i]) <= 0;
+	if (!sorted)
 		qsort(from->edits, from->edit_count, sizeof *from->edits, compare_edits);
 	int64_t shift = 0;
 	for (size_t i = 0; i < from->edit_count; i++) {
