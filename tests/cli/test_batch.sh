@@ -67,7 +67,7 @@ done
 for jobs in 1 4; do
 	run -j4 --jobs=$jobs --fail-fast -d fast$jobs bad.obj m1.obj m2.obj m3.obj m4.obj m5.obj m6.obj m1.obj
 	exits 1
-	run -j4 --jobs=$jobs --fail-fast -d fast$jobs bad.obj $(for i in $(seq 60); do cp m2.obj f$i.obj; echo f$i.obj; done)
+	run -j4 --jobs=$jobs --fail-fast -d fast$jobs bad.obj $(for i in $(seq 60); do cp m1.obj f$i.obj; echo f$i.obj; done) # of some milliseconds each
 	exits 3
 	says " not tried"
 done
