@@ -11,6 +11,13 @@
 #include "base/scratch.h"
 #include "nmtan.h"
 
+/* Ways of their own for meshes that are rare, and which come to the same, are not worth their bytes in a browser. */
+#ifdef __wasm__
+enum { NT_SHORT_WAYS = 0 };
+#else
+enum { NT_SHORT_WAYS = 1 };
+#endif
+
 /* What a method knows of its result, so that usable.c need not look at all of it. Of a triangle without a bit of
  * `suspect` all corners are usable, it is not degenerate, no half of a folded quad, and its orientation, positive
  * where a bit of `positive` is set, is exact and survives storing.

@@ -25,8 +25,7 @@
  *   undecided   an "any" triangle that groups of both orientations can reach: it takes that of the first
  *   fan         the corners of a vertex that hang together by shared edges
  *   hub         a vertex of too many corners for step 3 to give them places
- *   settled     a vertex whose records are its results: each is one fan, its directions cannot be antiparallel, and
- *               a renderer can use the tangent
+ *   settled     a vertex whose records are its results: each is one fan, and its directions cannot be antiparallel
  *   complex     a vertex that is not settled; hubs are complex
  *   suspect     a triangle whose corners are not known to be good (nt_known): repair and split look at each
  *   sparse      a solve that writes the corners of suspects only; the others' tangents are those of their records
@@ -39,6 +38,7 @@
 #include "base/clock.h"
 #include "base/cpu.h"
 #include "base/parallel.h"
+#include "base/vec.h"
 #include "tangent/fast/complex.h"
 #include "tangent/fast/memory.h"
 #include "tangent/fast/records.h"
@@ -56,6 +56,26 @@ typedef struct run {
 	nt_settled *settled;       /* [ranges] */
 	nt_bin *bins;              /* [ranges] each for one after the other */
 } run;
+
+/* Before all */
+
+/* Whether a triangle may have an area in UV space, as step 4 computes it; nearly always the first one has. Where none has,
+ * no triangle has a frame, and no corner gets a tangent. Quads are not looked at. */
+static bool has_areas(const nt_solve *solve)
+{
+	const nmtan_mesh *mesh = solve->mesh;
+	size_t c = mesh->face_sizes ? solve->corner_count + 1 : 0;
+	for (; c < solve->corner_count; c += 3) {
+		const float *t[3];
+		for (size_t k = 0; k < 3; k++)
+			t[k] = nt_texcoord(mesh, nt_vertex_of(mesh, c + k));
+		const float t21x = t[1][0] - t[0][0], t21y = t[1][1] - t[0][1];
+		const float t31x = t[2][0] - t[0][0], t31y = t[2][1] - t[0][1];
+		if (nt_not_zero(t21x * t31y - t21y * t31x))
+			break;
+	}
+	return c != solve->corner_count;
+}
 
 /* 1 and 2: weld, cut */
 
@@ -340,6 +360,10 @@ nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *pl
 	nmtan_status status = solve_tiny(&fast, kernels, plan->most_tiny, &done);
 	if (status || done)
 		return status;
+	if (NT_SHORT_WAYS && !has_areas(solve)) {
+		nt_fast_write_defaults(&fast);
+		return NMTAN_OK;
+	}
 	const bool binned = is_binned(&fast, plan->bin_bits);
 	nt_fast_memory memory;
 	nt_fast_plan_memory(&fast, binned, plan->least_borrowed_bytes, &memory);

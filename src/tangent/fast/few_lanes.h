@@ -86,16 +86,14 @@ static inline __attribute__((always_inline)) void finish_groups(const nt_fast *f
 	float normals[3][NT_LANES];
 	uint32_t unusable[NT_LANES];
 	record_lanes r;
-	for (size_t i = 0; i < used; i++) {
+	for (size_t i = 0; i < used; i++)
 		normals_at[i] = fast->rows[vertices[i < count ? i : count - 1]].normal;
-		unusable[i] = 0;
-	}
 	if (four)
 		load_four_groups(results, normals_at, &r, normals);
 	else
 		load_groups(results, normals_at, used, &r, normals);
 	normalise_records(used, &r);
-	leave_unusable(normals, &r, unusable, used);
+	find_unusable(normals, &r, unusable, used);
 	for (size_t i = 0; i < used; i++) {
 		const size_t g = four ? i : turned_place(i);
 		const uint32_t sign = orients[g] & NT_TRIANGLE_ORIENT ? NT_RESULT_PLUS : NT_RESULT_MINUS;

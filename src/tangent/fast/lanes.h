@@ -54,6 +54,7 @@ typedef struct lanes_out {
 	int certain[NT_LANES];    /* the area's sign is exact, and stays when v is stored */
 	int sound[NT_LANES];      /* every length and ratio is well inside float's range: certainly not "any" */
 	int degenerate[NT_LANES];
+	int extreme[NT_LANES];    /* the sum of a corner is not sound */
 } lanes_out;
 
 /* A state with that bit where `there`: one masked operation, or two without masks. */
@@ -129,11 +130,17 @@ static inline __attribute__((always_inline)) void solve_frames(const lanes_in *r
 		out->area[i] = area;
 		out->orient[i] = area > 0.0f;
 		out->degenerate[i] = same01 | same12 | same20;
+		out->extreme[i] = 0;
 		out->frameless[i] = !(size > FLT_MIN);
 		out->sound[i] = (size > FLT_MIN) & (ls > FLT_MIN) & (lt > FLT_MIN) &
 				(ls > LEAST_RATIO * size) & (lt > LEAST_RATIO * size) &
 				(ls < MOST_RATIO * size) & (lt < MOST_RATIO * size);
 	}
+}
+
+static inline __attribute__((always_inline)) int is_zero(float x, float y, float z)
+{
+	return (x == 0.0f) & (y == 0.0f) & (z == 0.0f);
 }
 
 /* Corners in lanes, by component. */
@@ -142,10 +149,12 @@ typedef struct corner_lanes {
 	const float (*u)[NT_LANES], (*v)[NT_LANES];     /* directions of the triangle's frame */
 	const float (*from)[NT_LANES], (*to)[NT_LANES]; /* edges: from the corner before, to the next one */
 	float (*sum)[NT_LANES], *cosine, (*extra)[NT_LANES]; /* as in lanes_out */
+	int *extreme;                                        /* those of the corners before are kept */
 } corner_lanes;
 
-/* Each corner's unit directions, the cosine of its angle, and the bits of what holds for it. */
-static inline __attribute__((always_inline)) void solve_corners(corner_lanes a, bool more, int count)
+/* Each corner's unit directions, the cosine of its angle, and the bits of what holds for it; `along`: directions and
+ * edges along the normal, of which nothing is left but zero, are sound as well. */
+static inline __attribute__((always_inline)) void solve_corners(corner_lanes a, bool along, bool more, int count)
 {
 	for (int i = 0; i < count; i++) {
 		const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
@@ -156,7 +165,8 @@ static inline __attribute__((always_inline)) void solve_corners(corner_lanes a, 
 		const float nv = n[0] * ot[0] + n[1] * ot[1] + n[2] * ot[2];
 		float ux = os[0] - nu * n[0], uy = os[1] - nu * n[1], uz = os[2] - nu * n[2];
 		const float vx = ot[0] - nv * n[0], vy = ot[1] - nv * n[1], vz = ot[2] - nv * n[2];
-		const float uu = ux * ux + uy * uy + uz * uz, vv = vx * vx + vy * vy + vz * vz;
+		const int no_u = along && is_zero(ux, uy, uz), no_v = along && is_zero(vx, vy, vz);
+		const float uu = no_u ? 1.0f : ux * ux + uy * uy + uz * uz, vv = no_v ? 1.0f : vx * vx + vy * vy + vz * vz;
 		const float ur = 1.0f / sqrtf(uu);
 		ux = ur * ux, uy = ur * uy, uz = ur * uz;
 
@@ -167,8 +177,8 @@ static inline __attribute__((always_inline)) void solve_corners(corner_lanes a, 
 		const float nf = n[0] * f[0] + n[1] * f[1] + n[2] * f[2];
 		float ex = e[0] - ne * n[0], ey = e[1] - ne * n[1], ez = e[2] - ne * n[2];
 		float fx = f[0] - nf * n[0], fy = f[1] - nf * n[1], fz = f[2] - nf * n[2];
-		const float er = -1.0f / sqrtf(ex * ex + ey * ey + ez * ez);
-		const float fr = 1.0f / sqrtf(fx * fx + fy * fy + fz * fz);
+		const float er = along && is_zero(ex, ey, ez) ? 1.0f : -1.0f / sqrtf(ex * ex + ey * ey + ez * ez);
+		const float fr = along && is_zero(fx, fy, fz) ? 1.0f : 1.0f / sqrtf(fx * fx + fy * fy + fz * fz);
 		ex = er * ex, ey = er * ey, ez = er * ez;
 		fx = fr * fx, fy = fr * fy, fz = fr * fz;
 		const float dot = ex * fx + ey * fy + ez * fz;
@@ -181,12 +191,18 @@ static inline __attribute__((always_inline)) void solve_corners(corner_lanes a, 
 		uint32_t state = NT_STATE_BASE | NT_STATE_NO_ANY | NT_STATE_LOCAL;
 		state = half_spaces(state, ux, uy, uz, HALF_SPACE, 1);
 		state = half_spaces(state, vx, vy, vz, HALF_SPACE, NT_STATE_V / NT_STATE_U);
+		if (along) {
+			state = set_where(state, no_u, NT_STATE_U);
+			state = set_where(state, no_v, NT_STATE_V);
+		}
 		state = set_where(state, sound, NT_STATE_SOUND);
 
 		a.sum[0][i] = ux;
 		a.sum[1][i] = uy;
 		a.sum[2][i] = uz;
 		memcpy(&a.sum[3][i], &state, sizeof state);
+		if (NT_SHORT_WAYS)
+			a.extreme[i] |= !sound;
 		a.cosine[i] = c < -1.0f ? -1.0f : c;
 		if (more) {
 			const float vr = 1.0f / sqrtf(vv);
@@ -223,7 +239,21 @@ static inline __attribute__((always_inline)) void weigh_corners(corner_lanes a, 
 static inline __attribute__((always_inline)) corner_lanes corner_of(const lanes_in *in, lanes_out *out, int k)
 {
 	return (corner_lanes){.n = in->row[k] + 3, .u = out->frames.u, .v = out->frames.v, .from = out->edge[(k + 2) % 3],
-		.to = out->edge[k], .sum = out->sum[k], .cosine = out->cosine[k], .extra = out->extra[k]};
+		.to = out->edge[k], .sum = out->sum[k], .cosine = out->cosine[k], .extra = out->extra[k],
+		.extreme = out->extreme};
+}
+
+static inline __attribute__((always_inline)) void solve_three(const lanes_in *in, lanes_out *out, bool along, bool more,
+	int count)
+{
+#pragma GCC unroll 3
+	for (int k = 0; k < 3; k++)
+		solve_corners(corner_of(in, out, k), along, more, count);
+}
+
+static void __attribute__((noinline)) solve_along(const lanes_in *in, lanes_out *out, size_t count)
+{
+	solve_three(in, out, true, false, (int)whole_lanes(count));
 }
 
 /* Lanes [0, count). One loop for each idea: in a single one there are more values under way than
@@ -231,10 +261,13 @@ static inline __attribute__((always_inline)) corner_lanes corner_of(const lanes_
 static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *restrict in,
 	lanes_out *restrict out, float offset, bool more, int count)
 {
+	int extreme = 0; /* somewhere directions or edges may lie along normals, which is rare */
 	solve_frames(in, out, offset, more, count);
-#pragma GCC unroll 3
-	for (int k = 0; k < 3; k++)
-		solve_corners(corner_of(in, out, k), more, count);
+	solve_three(in, out, false, more, count);
+	for (int i = 0; NT_SHORT_WAYS && i < count; i++)
+		extreme |= out->extreme[i] & out->sound[i] & !out->degenerate[i];
+	if (NT_SHORT_WAYS && extreme && !more)
+		solve_along(in, out, (size_t)count);
 #pragma GCC unroll 3
 	for (int k = 0; k < 3; k++)
 		weigh_corners(corner_of(in, out, k), out->mag_u, out->mag_v, more, count);
@@ -281,8 +314,8 @@ static void __attribute__((noinline)) solve_four(const lanes_in *restrict in, la
 		spread(e[0], e[1], e[2], e[0], to[c]);
 	}
 	const corner_lanes corners = {.n = n, .u = out->frames.u, .v = out->frames.v, .from = from, .to = to, .sum = out->sum[0],
-		.cosine = out->cosine[0]};
-	solve_corners(corners, false, NT_LANES);
+		.cosine = out->cosine[0], .extreme = out->extreme};
+	solve_corners(corners, false, false, NT_LANES);
 	weigh_corners(corners, NULL, NULL, false, NT_LANES);
 	interleave(out->sum[0], NT_LANES, add);
 	for (size_t k = 0; k < 3; k++)

@@ -25,7 +25,7 @@ enum {
 	NT_TRIANGLE_ANY = 2,        /* no frame: joins groups of any orientation */
 	NT_TRIANGLE_DEGENERATE = 4, /* two corners at one position: takes no part */
 	NT_TRIANGLE_SECOND = 8,     /* second half of a quad: the first is the triangle before */
-	NT_TRIANGLE_COMPLEX = 16,   /* has a corner at a complex vertex */
+	NT_TRIANGLE_COMPLEX = 16,   /* has a corner at a complex vertex, or one whose result is not usable */
 	NT_TRIANGLE_COPY = 32,      /* degenerate, and copies corners that are written later */
 	NT_TRIANGLE_DECIDED = 64,   /* "any", and a group has a corner of it: ORIENT is that group's */
 	NT_TRIANGLE_UNCERTAIN = 128 /* the exact orientation, as stored too, may differ */
@@ -96,9 +96,8 @@ typedef struct nt_kernels {
 	void (*accumulate)(nt_fast *fast, size_t begin, size_t end, unsigned range, nt_record_maker *make,
 		void *context);
 	/* Turns the sums of blocks [begin, end) of vertices, all of them in the adjacency, into results, which go
-	 * to the records; counts the vertices that are complex, those too whose tangent is not usable. Sums are
-	 * counted from the adjacency's first vertex. Results may replace the rows of their block and of those
-	 * before. */
+	 * to the records; counts the vertices that are complex. Sums are counted from the adjacency's first vertex.
+	 * Results may replace the rows of their block and of those before. */
 	void (*settle)(nt_fast *fast, const nt_adjacency *adjacency, nt_record *const sums[2], size_t begin,
 		size_t end, nt_settled *settled);
 	/* Solves corners, given as 4 * triangle + k. `solved` has room for a multiple of NT_LANES. */

@@ -26,7 +26,7 @@ typedef struct nt_record_more {
 /* Bits of nt_record.state while it is a sum. All states carry NT_STATE_BASE, which makes them normal
  * floats: the lane takes part in the addition of its record, and a denormal may cost 100 cycles. */
 enum {
-	NT_STATE_U = 0x3f,          /* one bit for each half-space that all u directions lie in */
+	NT_STATE_U = 0x3f,          /* one bit for each half-space that all u directions lie in; zero lies in all */
 	NT_STATE_V = 0x3f << 6,     /* the same for v */
 	NT_STATE_SOUND = 1 << 12,   /* every value met was well inside float's range */
 	NT_STATE_EMPTY = 1 << 13,   /* no corner was added */
@@ -42,7 +42,10 @@ enum {
 #define NT_RESULT_NONE 0u             /* no corner has this orientation */
 #define NT_RESULT_COMPLEX 0x40000000u /* ask complex.c; no other state has this bit */
 
-/* Beside it: the sums have nothing extreme and do not split, so that an orientation with one group has the record as its
+/* Beside a sign: the record is the result, but tangent/usable.c would not accept it. No corner gets this bit. */
+#define NT_RESULT_UNUSABLE 1u
+
+/* Beside NT_RESULT_COMPLEX: the sums have nothing extreme and do not split, so that an orientation with one group has the record as its
  * result. */
 #define NT_RESULT_SUM 0x20000000u
 

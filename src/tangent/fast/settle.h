@@ -183,15 +183,14 @@ static void load_normals(const nt_weld_row *rows, size_t count, size_t used, flo
 	}
 }
 
-/* A vertex whose result tangent/usable.c would not accept is left to complex.c, too: then the triangles at all other
- * vertices still need no look. */
-static inline void leave_unusable(const float (*restrict normals)[NT_LANES], const record_lanes *restrict r,
-	uint32_t *restrict complex, size_t used)
+/* Which results tangent/usable.c would not accept: triangles at other vertices need no look. */
+static inline void find_unusable(const float (*restrict normals)[NT_LANES], const record_lanes *restrict r,
+	uint32_t *restrict unusable, size_t used)
 {
 	for (size_t i = 0; i < used; i++) {
 		const float t[3] = {r->x[i], r->y[i], r->z[i]};
 		const float n[3] = {normals[0][i], normals[1][i], normals[2][i]};
-		complex[i] |= r->present[i] & !nt_is_frame(t, n);
+		unusable[i] = r->present[i] & !nt_is_frame(t, n);
 	}
 }
 
@@ -286,7 +285,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	const nt_fan_entry *entries = nt_adjacency_block(a, block - a->first_vertex / NT_FAN_LANES);
 	const size_t used = whole_lanes(count);
 	uint32_t degree[NT_LANES], mask[NT_LANES], fan_count[NT_LANES], complex[NT_LANES], unsound[NT_LANES];
-	uint32_t depths[NT_LANES / WIDTH];
+	uint32_t depths[NT_LANES / WIDTH], unusable[2][NT_LANES] = {{0}};
 	record_lanes r[2];
 	load_degrees(a, first, count, used, degree, depths);
 	for (int o = 0; o < 2; o++)
@@ -319,7 +318,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		load_normals(fast->rows + first, count, used, normals);
 		for (int o = 0; o < 2; o++)
 			if (sums[o])
-				leave_unusable(normals, &r[o], complex, used);
+				find_unusable(normals, &r[o], unusable[o], used);
 	}
 	/* from here on the rows may be overwritten */
 	for (int o = 0; o < 2; o++) {
@@ -329,7 +328,8 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		/* with masks, since gcc 12 makes branches of the same with conditions */
 		for (size_t i = 0; i < used; i++) {
 			const uint32_t open = NT_RESULT_COMPLEX | ((unsound[i] - 1) & NT_RESULT_SUM);
-			r[o].state[i] = (-complex[i] & open) | ((complex[i] - 1) & -r[o].present[i] & sign);
+			r[o].state[i] = (-complex[i] & open) |
+					((complex[i] - 1) & -r[o].present[i] & (sign | unusable[o][i]));
 		}
 		store_records(nt_fast_record(fast, o, (uint32_t)first), fast->record_step, count, used, &r[o]);
 		if (fast->wants_more)

@@ -15,7 +15,9 @@ static void write_corner(const nt_fast *fast, size_t corner, const nt_record *re
 	const nt_record_more *more)
 {
 	const nt_solve *solve = fast->solve;
-	memcpy(solve->tangents + 4 * corner, record, sizeof *record);
+	const uint32_t sign = record->state & ~NT_RESULT_UNUSABLE;
+	memcpy(solve->tangents + 4 * corner, record, 3 * sizeof(float));
+	memcpy(solve->tangents + 4 * corner + 3, &sign, sizeof sign);
 	if (solve->bitangents)
 		memcpy(solve->bitangents + 3 * corner, &more->x, 3 * sizeof(float));
 	if (solve->magnitudes)
@@ -102,13 +104,27 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
 		const int orient = *flags & NT_TRIANGLE_ORIENT;
 		for (int k = 0; k < 3; k++)
-			if (nt_fast_record(fast, orient, v[k])->state & NT_RESULT_COMPLEX)
+			if (nt_fast_record(fast, orient, v[k])->state & (NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE))
 				*flags |= NT_TRIANGLE_COMPLEX;
 		if (fast->sparse && !(*flags & NT_TRIANGLE_SUSPECT))
 			continue;
 		for (unsigned k = 0; k < 3; k++)
 			write_vertex(fast, nt_triangle_corner(&fast->triangles, t, k), orient, v[k]);
 	}
+}
+
+/* Whether a record's state is a sign with NT_RESULT_UNUSABLE beside it. */
+static inline unsigned is_unusable(int state)
+{
+	return ((uint32_t)state & (NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE)) == NT_RESULT_UNUSABLE;
+}
+
+/* The sign alone of a triangle's corners. */
+static void __attribute__((noinline)) write_signs(const nt_fast *fast, size_t t)
+{
+	const float sign = fast->flags[t] & NT_TRIANGLE_ORIENT ? 1.0f : -1.0f;
+	for (size_t i = 3 * t; i < 3 * t + 3; i++)
+		fast->solve->tangents[4 * nt_fast_corner(fast, i) + 3] = sign;
 }
 
 /* The same for the usual case, tangents only; `cuts` are those of the triangles. This loop is a fifth of the whole
@@ -139,8 +155,11 @@ static inline __attribute__((always_inline)) void write_plain(nt_fast *fast, siz
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 0), &a, sizeof a);
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 1), &b, sizeof b);
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 2), &c, sizeof c);
-		if ((a | b | c)[3] & (int)NT_RESULT_COMPLEX)
+		if (__builtin_expect((a | b | c)[3] & (int)(NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE), 0)) {
 			flags[t] |= NT_TRIANGLE_COMPLEX;
+			if (is_unusable(a[3]) | is_unusable(b[3]) | is_unusable(c[3]))
+				write_signs(fast, t);
+		}
 	}
 }
 

@@ -386,6 +386,83 @@ static void scattered_meshes_are_byte_identical(void **state)
 	compare_scattered((grid){0});
 }
 
+/* A grid in a plane through the normal, so that u, or v, and some edges lie along it; or one of which
+ * all texture coordinates are equal. With one more cell, beside them, that is ordinary: `mixed`. */
+typedef enum hopeless { ALONG_U, ALONG_V, ONE_POINT } hopeless;
+enum { ROW = 10, HOPELESS_CELLS = (ROW - 1) * (ROW - 1), HOPELESS_VERTICES = ROW * ROW + 4 };
+
+static nmtan_mesh make_hopeless(hopeless kind, bool mixed, float (*p)[3], float (*n)[3], float (*t)[2], unsigned *indices)
+{
+	size_t v = 0, corner = 0;
+	for (; v < HOPELESS_VERTICES; v++) {
+		const size_t own = HOPELESS_VERTICES - 4, width = v < own ? ROW : 2, i = v < own ? v : v - own;
+		const float a = (float)(i % width) / 9, b = (float)(i / width) / 9;
+		memcpy(n[v], (float[3]){0, 0, 1}, 12);
+		memcpy(t[v], v < own && kind == ONE_POINT ? (float[2]){0.5f, 0.5f} : (float[2]){a, b}, 8);
+		memcpy(p[v], v >= own ? (float[3]){a, b, 2} : kind == ALONG_U ? (float[3]){b, 0, a} : (float[3]){a, 0, b}, 12);
+	}
+	for (unsigned cell = 0; cell < HOPELESS_CELLS + (mixed ? 1u : 0); cell++) {
+		const bool last = cell == HOPELESS_CELLS;
+		const unsigned i = last ? ROW * ROW : cell / (ROW - 1) * ROW + cell % (ROW - 1), up = last ? 2 : ROW;
+		memcpy(indices + corner, (unsigned[6]){i, i + 1, i + up + 1, i, i + up + 1, i + up}, 24);
+		corner += 6;
+	}
+	return (nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = corner / 3, .vertex_count = HOPELESS_VERTICES,
+		.positions = p[0], .normals = n[0], .texcoords = t[0], .indices = indices};
+}
+
+/* What callers get, faults and counts too, is the definition's with every instruction set. */
+static void compare_calls(const nmtan_mesh *mesh, nmtan_repair repair)
+{
+	const size_t corners = 3 * mesh->face_count;
+	const nmtan_options options = {.struct_bytes = sizeof options, .threads = 1, .repair = repair};
+	result expected = result_make(corners), got = result_make(corners);
+	uint8_t *faults = malloc(2 * corners);
+	nmtan_counts wanted = NMTAN_COUNTS_INIT, counts = NMTAN_COUNTS_INIT;
+	const nmtan_output to_expected = {.struct_bytes = sizeof to_expected, .tangents = expected.tangents,
+		.corner_faults = faults};
+	const nmtan_output to_got = {.struct_bytes = sizeof to_got, .tangents = got.tangents, .corner_faults = faults + corners};
+	const nt_implementation definition = {.scalar = true};
+	assert_int_equal(nt_tangents(mesh, &options, &definition, &to_expected, &wanted), NMTAN_OK);
+	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++) {
+		const nt_implementation set = {.isa = isa};
+		if (!nt_cpu_has(isa))
+			continue;
+		memset(got.tangents, 0xab, corners * 16);
+		assert_int_equal(nt_tangents(mesh, &options, &set, &to_got, &counts), NMTAN_OK);
+		assert_memory_equal(got.tangents, expected.tangents, corners * 16);
+		assert_memory_equal(faults + corners, faults, corners);
+		assert_memory_equal(&counts, &wanted, sizeof wanted);
+	}
+	compare_vertices(mesh, corners, &options, expected.tangents);
+	free(faults);
+	result_free(&expected);
+	result_free(&got);
+}
+
+static void unusable_vertices_are_byte_identical(void **state)
+{
+	(void)state;
+	float p[HOPELESS_VERTICES][3], n[HOPELESS_VERTICES][3], t[HOPELESS_VERTICES][2];
+	unsigned indices[6 * (HOPELESS_CELLS + 1)];
+	for (hopeless kind = ALONG_U; kind <= ONE_POINT; kind++)
+		for (int mixed = 0; mixed < 2; mixed++) {
+			const nmtan_mesh mesh = make_hopeless(kind, mixed, p, n, t, indices), full = filled(&mesh);
+			const size_t corners = 3 * mesh.face_count;
+			result expected = result_make(corners);
+			nt_scratch scratch;
+			nt_scratch_init(&scratch, NULL);
+			const nt_solve solve = make_solve(&full, corners, &scratch, &expected, true);
+			assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
+			nt_scratch_free(&scratch);
+			for (int more = 0; more < 2; more++)
+				assert_int_equal(compare_variants("unusable", &full, corners, &expected, more), 0);
+			result_free(&expected);
+			compare_calls(&mesh, NMTAN_REPAIR_ON);
+			compare_calls(&mesh, NMTAN_REPAIR_OFF);
+		}
+}
+
 /* An allocator that fails from the n-th request on. */
 typedef struct budget {
 	size_t left, live;
@@ -482,6 +559,7 @@ int main(void)
 		cmocka_unit_test(antiparallel_directions_are_byte_identical),
 		cmocka_unit_test(short_directions_are_byte_identical),
 		cmocka_unit_test(scattered_meshes_are_byte_identical),
+		cmocka_unit_test(unusable_vertices_are_byte_identical),
 		cmocka_unit_test(every_failed_allocation_is_told),
 	};
 	return cmocka_run_group_tests_name("tangent/fast/fast", tests, NULL, NULL);
