@@ -145,57 +145,77 @@ static void solve_by_expansions(const float *const p[3], const float *const t[3]
 	f->determinant = nt_exact_product_difference(bu, cv, bv, cu);
 }
 
-/* From differences that are doubles, or nearly; false where that is not enough. */
-static bool solve_by_doubles(const float *const p[3], const float *const t[3], solved *f)
+/* The edges from a triangle's first corner. */
+typedef struct edges {
+	const float *p[3], *t[3];  /* positions, texture coordinates */
+	double bu, bv, cu, cv;
+	bool exact, exact_uv;      /* differences are doubles: all; those of texture coordinates */
+	double most;               /* by which products may cancel */
+} edges;
+
+/* The direction of growing u, from differences that are doubles, or nearly; false where that is not enough. */
+static bool solve_direction(const edges *e, solved *f)
 {
 	const nt_dvec3 d1 = f->edge[0], d2 = nt_dvec3_scale(-1.0, f->edge[2]);
-	const double bu = (double)t[1][0] - t[0][0], bv = (double)t[1][1] - t[0][1];
-	const double cu = (double)t[2][0] - t[0][0], cv = (double)t[2][1] - t[0][1];
-	const bool exact_uv = nt_is_difference(bu, t[0][0], t[1][0]) && nt_is_difference(bv, t[0][1], t[1][1]) &&
-			      nt_is_difference(cu, t[0][0], t[2][0]) && nt_is_difference(cv, t[0][1], t[2][1]);
-	const bool exact = exact_uv && exact3(d1, p[0], p[1]) && exact3(d2, p[0], p[2]);
-	const double most = exact ? NT_CANCELLATION : NT_CANCELLATION_INEXACT;
-	if (!combine(most, cv, d1, bv, d2, &f->u)) {
-		if (!exact)
-			return false;
-		f->u = combine_exactly(cv, d1, bv, d2);
-	}
-	if (!cross(most, d1, d2, &f->across)) {
-		if (!exact)
+	if (combine(e->most, e->cv, d1, e->bv, d2, &f->u))
+		return true;
+	if (e->exact)
+		f->u = combine_exactly(e->cv, d1, e->bv, d2);
+	return e->exact;
+}
+
+/* The same of all else. */
+static bool solve_rest(const edges *e, solved *f)
+{
+	const nt_dvec3 d1 = f->edge[0], d2 = nt_dvec3_scale(-1.0, f->edge[2]);
+	if (!cross(e->most, d1, d2, &f->across)) {
+		if (!e->exact)
 			return false;
 		f->across = cross_exactly(d1, d2);
 	}
-	f->determinant = bu * cv - bv * cu;
-	if (cancels(exact_uv ? NT_CANCELLATION : NT_CANCELLATION_INEXACT, fabs(bu * cv), fabs(bv * cu),
+	f->determinant = e->bu * e->cv - e->bv * e->cu;
+	if (cancels(e->exact_uv ? NT_CANCELLATION : NT_CANCELLATION_INEXACT, fabs(e->bu * e->cv), fabs(e->bv * e->cu),
 		    fabs(f->determinant))) {
-		if (!exact_uv)
+		if (!e->exact_uv)
 			return false;
-		f->determinant = nt_product_difference(bu, cv, bv, cu);
+		f->determinant = nt_product_difference(e->bu, e->cv, e->bv, e->cu);
 	}
 	return true;
 }
 
-/* False where the determinant is zero or a value is not finite. */
-static bool solve_triangle(const nmtan_mesh *mesh, const uint32_t corners[3], solved *f)
+/* Edges, and those of `f`. Returns the exact sign of the determinant; 0 where a value is not finite, too. */
+static int make_edges(const nmtan_mesh *mesh, const uint32_t corners[3], edges *e, solved *f)
 {
-	const float *p[3], *t[3];
 	bool finite = true;
 	for (int k = 0; k < 3; k++) {
 		const size_t vertex = nt_vertex_of(mesh, corners[k]);
-		p[k] = nt_position(mesh, vertex);
-		t[k] = nt_texcoord(mesh, vertex);
-		finite = finite && isfinite(p[k][0]) && isfinite(p[k][1]) && isfinite(p[k][2]);
+		e->p[k] = nt_position(mesh, vertex);
+		e->t[k] = nt_texcoord(mesh, vertex);
+		finite = finite && isfinite(e->p[k][0]) && isfinite(e->p[k][1]) && isfinite(e->p[k][2]);
 	}
+	const float *const *p = e->p, *const *t = e->t;
 	const int sign = nt_orientation(t[0], t[1], t[2]); /* 0 where one is not finite */
 	if (sign == 0 || !finite)
-		return false;
+		return 0;
 	for (int k = 0; k < 3; k++)
 		f->edge[k] = nt_dvec3_sub(nt_dvec3_load(p[(k + 1) % 3]), nt_dvec3_load(p[k]));
-	if (!solve_by_doubles(p, t, f))
-		solve_by_expansions(p, t, f);
-	f->u = nt_dvec3_scale(sign, f->u);
-	f->determinant = fabs(f->determinant);
-	return true;
+	e->bu = (double)t[1][0] - t[0][0], e->bv = (double)t[1][1] - t[0][1];
+	e->cu = (double)t[2][0] - t[0][0], e->cv = (double)t[2][1] - t[0][1];
+	e->exact_uv = nt_is_difference(e->bu, t[0][0], t[1][0]) && nt_is_difference(e->bv, t[0][1], t[1][1]) &&
+		      nt_is_difference(e->cu, t[0][0], t[2][0]) && nt_is_difference(e->cv, t[0][1], t[2][1]);
+	e->exact = e->exact_uv && exact3(f->edge[0], p[0], p[1]) &&
+		   exact3(nt_dvec3_scale(-1.0, f->edge[2]), p[0], p[2]);
+	e->most = e->exact ? NT_CANCELLATION : NT_CANCELLATION_INEXACT;
+	return sign;
+}
+
+/* Which corners a direction adds to; what has no weight adds no condition either. False: to none. */
+static bool find_corners(nt_weight weight, nt_dvec3 u, const nt_dvec3 normals[3], nt_frame_sum *const sums[3], bool adds[3])
+{
+	const nt_measured m = {.u = u, .squared = nt_dvec3_dot(u, u)};
+	for (int k = 0; k < 3; k++)
+		adds[k] = sums[k] && (weight == NT_WEIGHT_NONE || nt_is_across(&m, nt_dvec3_reject(normals[k], u)));
+	return adds[0] || adds[1] || adds[2];
 }
 
 static void add_corner(const solved *f, const nt_measured *m, const double lengths[3], nt_weight weight, nt_dvec3 n,
@@ -212,22 +232,28 @@ static void add_corner(const solved *f, const nt_measured *m, const double lengt
 	sum->sensitivity += w.sensitivity;
 }
 
-void nt_add_triangle(const nmtan_mesh *mesh, nt_weight weight, const uint32_t corners[3],
+void nt_add_triangle(const nmtan_mesh *mesh, nt_weight weight, const uint32_t corners[3], const nt_dvec3 normals[3],
 	nt_frame_sum *const sums[3])
 {
 	solved f;
-	if (!solve_triangle(mesh, corners, &f))
+	edges e;
+	bool adds[3];
+	const int sign = make_edges(mesh, corners, &e, &f);
+	if (!sign)
+		return;
+	const bool by_doubles = solve_direction(&e, &f);
+	/* a direction from exact differences stays: whether it adds something is known before the rest is */
+	if (by_doubles && e.exact && !find_corners(weight, f.u, normals, sums, adds))
+		return;
+	if (!by_doubles || !solve_rest(&e, &f))
+		solve_by_expansions(e.p, e.t, &f);
+	f.u = nt_dvec3_scale(sign, f.u);
+	f.determinant = fabs(f.determinant);
+	if (!find_corners(weight, f.u, normals, sums, adds))
 		return;
 	const nt_measured m = nt_measure(f.u, f.across);
-	nt_dvec3 normals[3];
-	bool adds[3], any = false; /* what has no weight adds no condition either */
-	for (int k = 0; k < 3; k++) {
-		normals[k] = sums[k] ? nt_unit_normal(mesh, nt_vertex_of(mesh, corners[k])) : (nt_dvec3){0, 0, 0};
-		adds[k] = sums[k] && (weight == NT_WEIGHT_NONE || nt_is_across(&m, nt_dvec3_reject(normals[k], m.u)));
-		any = any || adds[k];
-	}
 	double lengths[3];
-	for (int k = 0; any && k < 3; k++)
+	for (int k = 0; k < 3; k++)
 		lengths[k] = nt_measure_edge(f.edge[k], weight == NT_WEIGHT_AREA);
 	for (int k = 0; k < 3; k++)
 		if (adds[k])

@@ -22,6 +22,7 @@
 
 #include <math.h>
 #include <string.h>
+#include "base/counts.h"
 #include "tangent/frames.h"
 #include "tangent/usable.h"
 #include "topology/corners.h"
@@ -35,8 +36,8 @@ typedef struct answers {
 
 /* What is around a vertex with an unusable corner, for orientation -1 and +1. */
 typedef struct surroundings {
-	uint32_t corner;    /* the first unusable one, then the first usable ones, or NT_NO_ID */
-	uint32_t usable[2];
+	nt_dvec3 normal;    /* unit or zero: of the first unusable corner */
+	uint32_t usable[2]; /* the first usable corners, or NT_NO_ID */
 	union {
 		nt_frame_sum sums[2]; /* until all around is visited */
 		answers answers;
@@ -50,7 +51,7 @@ typedef struct patient {
 	size_t welded_count;
 	uint32_t *ids;          /* [welded_count] numbers of those that have an unusable corner, the touched ones; NT_NO_ID */
 	size_t id_count;
-	surroundings *around;   /* [id_count] */
+	surroundings *around;   /* [id_count], with room for as many as there can be */
 } patient;
 
 static unsigned has_bit(const uint64_t *bits, size_t i)
@@ -70,7 +71,7 @@ static bool is_usable(const nt_solve *solve, size_t c)
 }
 
 /* The exact orientation of a face, by what is known of it. */
-static int orientation_of(const patient *p, size_t face, size_t first)
+static inline int orientation_of(const patient *p, size_t face, size_t first)
 {
 	const nmtan_mesh *mesh = p->solve->mesh;
 	const size_t faulty = has_bit(p->faulty, face) ? nt_face_size(mesh, face) : 0;
@@ -131,19 +132,26 @@ static nmtan_status weld(patient *p)
 		   : NMTAN_ERROR_MEMORY;
 }
 
-/* Numbers the welded vertices that have an unusable corner. */
-static nmtan_status number_vertices(patient *p)
+/* Numbers the welded vertices that have an unusable corner, of which there are `unusable`. Equal vertices of the mesh have
+ * equal normals: what is asked for at many corners is made once. */
+static nmtan_status number_vertices(patient *p, size_t unusable)
 {
 	const nt_solve *solve = p->solve;
+	const nmtan_mesh *mesh = solve->mesh;
 	p->ids = nt_scratch_alloc(solve->scratch, p->welded_count, sizeof *p->ids);
-	if (!p->ids)
+	p->around = nt_scratch_alloc(solve->scratch, unusable < p->welded_count ? unusable : p->welded_count,
+		sizeof *p->around);
+	if (!p->ids || !p->around)
 		return NMTAN_ERROR_MEMORY;
 	memset(p->ids, 0xff, p->welded_count * sizeof *p->ids);
 	for (place at = {0, 0}; find_faulty(p, &at); step_over(p, &at)) {
-		for (size_t c = at.first; c < at.first + nt_face_size(solve->mesh, at.face); c++) {
+		for (size_t c = at.first; c < at.first + nt_face_size(mesh, at.face); c++) {
 			uint32_t *id = &p->ids[p->welded[c]];
-			if (!is_usable(solve, c) && *id == NT_NO_ID)
-				*id = (uint32_t)p->id_count++;
+			if (*id != NT_NO_ID || is_usable(solve, c))
+				continue;
+			*id = (uint32_t)p->id_count++;
+			p->around[*id] = (surroundings){.normal = nt_unit_normal(mesh, nt_vertex_of(mesh, c)),
+				.usable = {NT_NO_ID, NT_NO_ID}};
 		}
 	}
 	return NMTAN_OK;
@@ -151,32 +159,32 @@ static nmtan_status number_vertices(patient *p)
 
 /* What is around */
 
-/* Adds a face with a touched vertex to what is around these. */
-static void visit_face(const patient *p, size_t face, size_t first)
+/* Adds a face of 3 or 4 corners with a touched vertex to what is around these. */
+static inline void visit_face(const patient *p, size_t face, size_t first, unsigned size)
 {
 	const nt_solve *solve = p->solve;
-	const nmtan_mesh *mesh = solve->mesh;
-	for (size_t c = first; c < first + nt_face_size(mesh, face); c++) {
-		const uint32_t id = p->ids[p->welded[c]];
-		if (id == NT_NO_ID)
-			continue;
-		surroundings *around = &p->around[id];
-		const float w = nt_corner_tangent(solve, c)[3];
-		uint32_t *slot = w == 0.0f ? &around->corner : &around->usable[w > 0.0f];
-		*slot = *slot == NT_NO_ID ? (uint32_t)c : *slot;
+	surroundings *around[4]; /* of its vertices; NULL: not touched */
+	for (size_t k = 0; k < size; k++) {
+		const uint32_t id = p->ids[p->welded[first + k]];
+		around[k] = id == NT_NO_ID ? NULL : &p->around[id];
+		const float w = around[k] ? nt_corner_tangent(solve, first + k)[3] : 0.0f;
+		if (w != 0.0f && around[k]->usable[w > 0.0f] == NT_NO_ID)
+			around[k]->usable[w > 0.0f] = (uint32_t)(first + k);
 	}
 	const int orientation = orientation_of(p, face, first);
 	if (!orientation)
 		return; /* no triangle of it has a frame */
-	uint32_t corners[2][3];
-	const unsigned count = nt_face_triangles(mesh, face, first, corners);
+	uint32_t corners[2][3] = {{(uint32_t)first, (uint32_t)first + 1, (uint32_t)first + 2}};
+	const unsigned count = size == 3 ? 1 : nt_face_triangles(solve->mesh, face, first, corners);
 	for (unsigned i = 0; i < count; i++) {
 		nt_frame_sum *to[3];
+		nt_dvec3 normals[3];
 		for (int k = 0; k < 3; k++) {
-			const uint32_t id = p->ids[p->welded[corners[i][k]]];
-			to[k] = id == NT_NO_ID ? NULL : &p->around[id].sums[orientation > 0];
+			surroundings *at = around[corners[i][k] - first];
+			to[k] = at ? &at->sums[orientation > 0] : NULL;
+			normals[k] = at ? at->normal : (nt_dvec3){0, 0, 0};
 		}
-		nt_add_triangle(mesh, NT_WEIGHT_ANGLE, corners[i], to);
+		nt_add_triangle(solve->mesh, NT_WEIGHT_ANGLE, corners[i], normals, to);
 	}
 }
 
@@ -192,17 +200,16 @@ static void store(nt_dvec3 t, float *to)
 	to[0] = (float)t.x, to[1] = (float)t.y, to[2] = (float)t.z;
 }
 
-/* Equal vertices of the mesh have equal normals: what is asked for at many corners is answered once. */
 static void answer(const nt_solve *solve, surroundings *around)
 {
-	const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, around->corner));
+	const nt_dvec3 n = around->normal;
 	answers a = {0};
 	for (int side = 0; side < 2; side++) {
+		const bool weighs = around->sums[side].weights > 0.0, usable = around->usable[side] != NT_NO_ID;
 		nt_dvec3 t;
-		a.there[side] = around->usable[side] != NT_NO_ID || around->sums[side].weights > 0.0;
-		a.averaged[side] = nt_sum_tangent(&around->sums[side], n, &t);
-		a.borrowed[side] = !a.averaged[side] && around->usable[side] != NT_NO_ID &&
-				   borrow(solve, around->usable[side], n, &t);
+		a.there[side] = usable || weighs;
+		a.averaged[side] = weighs && nt_sum_tangent(&around->sums[side], n, &t);
+		a.borrowed[side] = !a.averaged[side] && usable && borrow(solve, around->usable[side], n, &t);
 		if (a.averaged[side] || a.borrowed[side])
 			store(t, a.tangents[side]);
 	}
@@ -229,7 +236,7 @@ static void visit_triangles(const patient *p)
 			found += is_near(p, 3 * t);
 		}
 		for (size_t i = 0; i < found; i++)
-			visit_face(p, begin + list[i], 3 * (begin + list[i]));
+			visit_face(p, begin + list[i], 3 * (begin + list[i]), 3);
 	}
 }
 
@@ -238,23 +245,17 @@ static void visit_faces(const patient *p)
 	const nmtan_mesh *mesh = p->solve->mesh;
 	for (size_t face = 0, first = 0; face < mesh->face_count; first += nt_face_size(mesh, face++))
 		if (is_near(p, first) || (nt_face_size(mesh, face) == 4 && p->ids[p->welded[first + 3]] != NT_NO_ID))
-			visit_face(p, face, first);
+			visit_face(p, face, first, nt_face_size(mesh, face));
 }
 
-static nmtan_status look_around(patient *p)
+static void look_around(const patient *p)
 {
-	p->around = nt_scratch_alloc(p->solve->scratch, p->id_count, sizeof *p->around);
-	if (!p->around)
-		return NMTAN_ERROR_MEMORY;
-	for (size_t i = 0; i < p->id_count; i++)
-		p->around[i] = (surroundings){.corner = NT_NO_ID, .usable = {NT_NO_ID, NT_NO_ID}};
 	if (p->solve->mesh->face_sizes)
 		visit_faces(p);
 	else
 		visit_triangles(p);
 	for (size_t i = 0; i < p->id_count; i++)
 		answer(p->solve, &p->around[i]);
-	return NMTAN_OK;
 }
 
 /* Mending */
@@ -266,27 +267,25 @@ typedef struct face {
 	int orientation, side;
 } face;
 
-/* The best tangent that can be had at an unusable corner c of a face. */
-static void best_tangent(const patient *p, const face *f, size_t c, float *tangent)
+/* The best tangent that can be had at an unusable corner c of a face; it may lie in `own`. */
+static const float *best_tangent(const patient *p, const face *f, size_t c, float own[3])
 {
 	const nt_solve *solve = p->solve;
 	const answers *a = &around_corner(p, c)->answers;
 	if (solve->faults && !a->averaged[f->side])
 		solve->faults[c] |= NMTAN_FAULT_NO_AVERAGE;
-	if (a->averaged[f->side] || a->borrowed[f->side]) {
-		memcpy(tangent, a->tangents[f->side], sizeof a->tangents[f->side]);
-		return;
-	}
+	if (a->averaged[f->side] || a->borrowed[f->side])
+		return a->tangents[f->side];
 	for (size_t k = 0; k < f->size; k++) {
 		nt_dvec3 t;
 		if (f->usable[k] && borrow(solve, (uint32_t)(f->first + k),
 					    nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c)), &t)) {
-			store(t, tangent);
-			return;
+			store(t, own);
+			return own;
 		}
 	}
 	const bool other = !f->orientation && (a->averaged[!f->side] || a->borrowed[!f->side]);
-	memcpy(tangent, other ? a->tangents[!f->side] : a->perpendicular, sizeof a->perpendicular);
+	return other ? a->tangents[!f->side] : a->perpendicular;
 }
 
 /* The side of a face without orientation: that of a usable corner, all of which agree; else what most of its vertices
@@ -311,9 +310,8 @@ static int choose_side(const patient *p, const face *f)
 
 static void write_corner(const nt_solve *solve, size_t c, const float *t, float w)
 {
-	float *tangent = solve->tangents + 4 * c;
-	memcpy(tangent, t, 3 * sizeof *t);
-	tangent[3] = w;
+	const float tangent[4] = {t[0], t[1], t[2], w};
+	memcpy(solve->tangents + 4 * c, tangent, sizeof tangent);
 	if (solve->bitangents) {
 		const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
 		const nt_dvec3 b = nt_dvec3_scale(w, nt_dvec3_cross(n, nt_dvec3_load(tangent)));
@@ -324,21 +322,19 @@ static void write_corner(const nt_solve *solve, size_t c, const float *t, float 
 		solve->magnitudes[2 * c] = solve->magnitudes[2 * c + 1] = 1.0f;
 }
 
-/* Repairs one face. Its own corners are read before any is written, and those around are usable ones, which are never
- * written: the order of faces does not matter. */
+/* Repairs one face. What is read of its own corners and of those around are usable ones, which are never written: the order
+ * of corners and of faces does not matter. */
 static void mend_face(const patient *p, size_t number, size_t first)
 {
 	face f = {.first = first, .size = nt_face_size(p->solve->mesh, number), .orientation = orientation_of(p, number, first)};
-	float tangents[4][3];
 	for (size_t k = 0; k < f.size; k++)
 		f.usable[k] = is_usable(p->solve, first + k);
 	f.side = f.orientation ? f.orientation > 0 : choose_side(p, &f);
-	for (size_t k = 0; k < f.size; k++)
+	for (size_t k = 0; k < f.size; k++) {
+		float own[3];
 		if (!f.usable[k])
-			best_tangent(p, &f, first + k, tangents[k]);
-	for (size_t k = 0; k < f.size; k++)
-		if (!f.usable[k])
-			write_corner(p->solve, first + k, tangents[k], f.side ? 1.0f : -1.0f);
+			write_corner(p->solve, first + k, best_tangent(p, &f, first + k, own), f.side ? 1.0f : -1.0f);
+	}
 }
 
 nmtan_status nt_repair(const nt_solve *solve, nmtan_counts *counts)
@@ -347,8 +343,9 @@ nmtan_status nt_repair(const nt_solve *solve, nmtan_counts *counts)
 	nmtan_status status = nt_find_unusable(solve, counts, &p.faulty);
 	if (status || !p.faulty)
 		return status;
-	if ((status = weld(&p)) || (status = number_vertices(&p)) || (status = look_around(&p)))
+	if ((status = weld(&p)) || (status = number_vertices(&p, nt_counts_repaired(counts))))
 		return status;
+	look_around(&p);
 	for (place at = {0, 0}; find_faulty(&p, &at); step_over(&p, &at))
 		mend_face(&p, at.face, at.first);
 	return NMTAN_OK;

@@ -28,9 +28,9 @@ typedef struct search {
 /* Why a corner is not usable, which is counted. */
 static nmtan_fault fault_of(const float *t, const float *n, nmtan_counts *counts)
 {
-	const float squared = nt_squared(t);
 	if (t[3] == 0.0f)
 		return counts->repaired_unassigned++, NMTAN_FAULT_UNASSIGNED;
+	const float squared = nt_squared(t);
 	if (!isfinite(squared))
 		return counts->repaired_not_finite++, NMTAN_FAULT_NOT_FINITE;
 	if (!(fabsf(squared - 1.0f) <= NT_UNIT_TOLERANCE))
@@ -67,19 +67,18 @@ static bool has_unusable(const nt_solve *solve, size_t first, size_t size, int o
 	const nmtan_mesh *mesh = solve->mesh;
 	float *t = solve->tangents + 4 * first;
 	const float w = orientation ? (float)orientation : majority_sign(t, size);
-	bool good = w != 0.0f;
+	const unsigned all = (1u << size) - 1;
+	unsigned bad = w == 0.0f ? all : 0;
 	for (size_t k = 0; k < size; k++)
-		good &= t[4 * k + 3] == w;
-	if (good)
-		for (size_t k = 0; k < size; k++)
-			good &= nt_is_frame(t + 4 * k, nt_normal(mesh, nt_vertex_of(mesh, first + k)));
-	if (__builtin_expect(good, 1))
+		bad |= (unsigned)(t[4 * k + 3] != w) << k;
+	for (size_t k = 0; bad != all && k < size; k++)
+		bad |= (unsigned)!nt_is_frame(t + 4 * k, nt_normal(mesh, nt_vertex_of(mesh, first + k))) << k;
+	if (__builtin_expect(!bad, 1))
 		return false;
-	for (size_t k = 0; k < size; k++) {
-		const float *n = nt_normal(mesh, nt_vertex_of(mesh, first + k));
-		if (t[4 * k + 3] != w || w == 0.0f || !nt_is_frame(t + 4 * k, n))
-			mark_fault(solve, first + k, orientation, fault_of(t + 4 * k, n, counts));
-	}
+	for (size_t k = 0; k < size; k++)
+		if (bad >> k & 1)
+			mark_fault(solve, first + k, orientation,
+				fault_of(t + 4 * k, nt_normal(mesh, nt_vertex_of(mesh, first + k)), counts));
 	return true;
 }
 

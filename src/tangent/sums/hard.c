@@ -14,9 +14,12 @@ void nt_sums_do_hard(const nt_sums *s, size_t t, int lane, nt_sum_block *block)
 	nt_frame_sum parts[3] = {{.weights = 0}, {.weights = 0}, {.weights = 0}};
 	nt_frame_sum *const to[3] = {&parts[0], &parts[1], &parts[2]};
 	uint32_t corners[3];
-	for (size_t k = 0; k < 3; k++)
+	nt_dvec3 normals[3];
+	for (size_t k = 0; k < 3; k++) {
 		corners[k] = (uint32_t)nt_sums_corner(s, 3 * t + k);
-	nt_add_triangle(mesh, s->weight, corners, to);
+		normals[k] = nt_unit_normal(mesh, nt_vertex_of(mesh, corners[k]));
+	}
+	nt_add_triangle(mesh, s->weight, corners, normals, to);
 	for (int k = 0; k < 3; k++) {
 		block->add[k][0][lane] = parts[k].u.x;
 		block->add[k][1][lane] = parts[k].u.y;
