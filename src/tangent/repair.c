@@ -337,11 +337,57 @@ static void mend_face(const patient *p, size_t number, size_t first)
 	}
 }
 
+/* Where there is nothing to repair from */
+
+/* Whether all corners are unusable, and no face has an orientation, as in meshes that nobody has unwrapped. */
+static bool is_hopeless(const nt_solve *solve, const nmtan_counts *counts)
+{
+	size_t c = nt_counts_repaired(counts) == solve->corner_count ? 0 : solve->corner_count + 1;
+	while (c < solve->corner_count && signbit(solve->tangents[4 * c + 3]))
+		c++;
+	return c == solve->corner_count;
+}
+
+/* Whether a normal has a -0, in which equal vertices may differ: then the first of them decides. */
+static bool has_negative_zero(const float *n)
+{
+	return (n[0] == 0.0f && signbit(n[0])) || (n[1] == 0.0f && signbit(n[1])) || (n[2] == 0.0f && signbit(n[2]));
+}
+
+/* Gives each corner what its normal alone says, without a look at what is around; `done` becomes false where that is not
+ * enough, or not less work. */
+static nmtan_status mend_by_normals(const nt_solve *solve, bool *done)
+{
+	const nmtan_mesh *mesh = solve->mesh;
+	const size_t count = mesh->indices ? mesh->vertex_count : solve->corner_count;
+	*done = false;
+	if (count > solve->corner_count)
+		return NMTAN_OK;
+	float (*tangents)[3] = nt_scratch_alloc(solve->scratch, count, sizeof *tangents);
+	if (!tangents)
+		return NMTAN_ERROR_MEMORY;
+	for (size_t v = 0; v < count; v++) {
+		if (has_negative_zero(nt_normal(mesh, v)))
+			return NMTAN_OK;
+		store(nt_dvec3_perpendicular(nt_unit_normal(mesh, v)), tangents[v]);
+	}
+	for (size_t c = 0; c < solve->corner_count; c++) {
+		write_corner(solve, c, tangents[nt_vertex_of(mesh, c)], 1.0f);
+		if (solve->faults)
+			solve->faults[c] |= NMTAN_FAULT_NO_AVERAGE;
+	}
+	*done = true;
+	return NMTAN_OK;
+}
+
 nmtan_status nt_repair(const nt_solve *solve, nmtan_counts *counts)
 {
 	patient p = {.solve = solve};
 	nmtan_status status = nt_find_unusable(solve, counts, &p.faulty);
-	if (status || !p.faulty)
+	bool done = false;
+	if (NT_SHORT_WAYS && !status && p.faulty && is_hopeless(solve, counts))
+		status = mend_by_normals(solve, &done);
+	if (status || done || !p.faulty)
 		return status;
 	if ((status = weld(&p)) || (status = number_vertices(&p, nt_counts_repaired(counts))))
 		return status;

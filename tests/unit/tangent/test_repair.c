@@ -11,6 +11,7 @@
 #include "oracle128.h"
 #include "surfaces.h"
 #include "tangent/frames.h"
+#include "tangent/weigh.h"
 #include "topology/corners.h"
 
 /* |T| within 32 units in the last place of 1, finite. */
@@ -205,6 +206,32 @@ static void missing_texture_space_gives_a_perpendicular(void **state)
 		nmtan_counts counts = NMTAN_COUNTS_INIT;
 		assert_int_equal(nmtan_tangents(&mesh, NULL, &output, &counts), NMTAN_OK);
 		assert_int_equal(counts.repaired_unassigned, 3);
+	}
+}
+
+/* Vertices that differ in the sign of a zero alone are one vertex, which has one tangent: that of the first normal,
+ * whichever it is. Each corner has no average. */
+static void missing_texture_space_gives_equal_vertices_one_tangent(void **state)
+{
+	(void)state;
+	for (int zeros = 0; zeros < 3; zeros++) {
+		const float positions[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 0}}, texcoords[4][2] = {{0, 0}};
+		const float normals[4][3] = {{zeros == 1 ? -0.0f : 0.0f, 0.6f, 0.8f}, {0, 0, -1}, {0.6f, 0.8f, 0},
+			{zeros == 2 ? -0.0f : 0.0f, 0.6f, 0.8f}};
+		const unsigned indices[6] = {0, 1, 2, 3, 2, 1};
+		const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 2, .vertex_count = 4,
+			.positions = &positions[0][0], .normals = &normals[0][0], .texcoords = &texcoords[0][0],
+			.indices = indices};
+		float tangents[6][4];
+		uint8_t faults[6];
+		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0], .corner_faults = faults};
+		assert_int_equal(nmtan_tangents(&mesh, NULL, &output, NULL), NMTAN_OK);
+		for (int c = 0; c < 6; c++) {
+			const float *n = normals[c == 3 ? 0 : indices[c]];
+			const nt_dvec3 t = nt_dvec3_perpendicular(nt_weigh_normal(n[0], n[1], n[2]));
+			assert_memory_equal(tangents[c], ((float[4]){(float)t.x, (float)t.y, (float)t.z, 1.0f}), 16);
+			assert_int_equal(faults[c], NMTAN_FAULT_UNASSIGNED | NMTAN_FAULT_NO_AVERAGE);
+		}
 	}
 }
 
@@ -403,6 +430,7 @@ int main(void)
 		cmocka_unit_test(the_reference_leans_on_68_corners),
 		cmocka_unit_test(frames_survive_extreme_scales),
 		cmocka_unit_test(missing_texture_space_gives_a_perpendicular),
+		cmocka_unit_test(missing_texture_space_gives_equal_vertices_one_tangent),
 		cmocka_unit_test(a_triangle_without_a_float_determinant_is_repaired),
 		cmocka_unit_test(twins_at_tiny_scales_are_repaired_alike),
 		cmocka_unit_test(stored_texture_coordinates_decide_the_sign),
