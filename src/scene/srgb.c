@@ -4,11 +4,18 @@
  */
 #include "scene/srgb.h"
 
+#include <float.h>
 #include <math.h>
+
+/* What is finite but no float becomes the largest one of its sign. */
+static float saturated(double c)
+{
+	return (float)(isfinite(c) ? fmin(fmax(c, -FLT_MAX), FLT_MAX) : c);
+}
 
 static float linear_of(double c)
 {
-	return (float)(c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4));
+	return saturated(c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4));
 }
 
 void nt_srgb_init(nt_srgb *srgb)
@@ -28,7 +35,7 @@ float nt_linear_from_srgb(const nt_srgb *srgb, float value)
 float nt_srgb_from_linear(float value)
 {
 	const double c = value;
-	return (float)(c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055);
+	return saturated(c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055);
 }
 
 int nt_srgb_byte(const nt_srgb *srgb, float linear)

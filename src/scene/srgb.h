@@ -16,7 +16,7 @@ typedef struct nt_srgb {
 
 void nt_srgb_init(nt_srgb *srgb);
 
-/* Both ways; what is not finite stays so. */
+/* Both ways. What is finite stays so, at most FLT_MAX either way; what is not finite stays so, too. */
 float nt_linear_from_srgb(const nt_srgb *srgb, float value);
 float nt_srgb_from_linear(float value);
 

@@ -4,6 +4,7 @@
  */
 #include "scene/srgb.h"
 #include "test.h"
+#include <float.h>
 #include <math.h>
 
 static void bytes_come_back(void **state)
@@ -39,11 +40,24 @@ static void values_are_those_of_the_standard(void **state)
 	assert_true(colors[0] == nt_linear_from_srgb(&srgb, 0.5f) && colors[1] == 1 && colors[2] == 0 && colors[3] == 0.5f);
 }
 
+/* 12.92 * -1.7e38 and ((1e20 + 0.055) / 1.055)^2.4 are no floats: PLY and glTF allow no infinite colour. */
+static void finite_stays_finite(void **state)
+{
+	(void)state;
+	nt_srgb srgb;
+	nt_srgb_init(&srgb);
+	assert_true(nt_srgb_from_linear(-1.7e38f) == -FLT_MAX);
+	assert_true(nt_linear_from_srgb(&srgb, 1e20f) == FLT_MAX);
+	assert_true(isinf(nt_srgb_from_linear(-INFINITY)) && isinf(nt_linear_from_srgb(&srgb, INFINITY)));
+	assert_true(isnan(nt_srgb_from_linear(NAN)));
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(bytes_come_back),
 		cmocka_unit_test(values_are_those_of_the_standard),
+		cmocka_unit_test(finite_stays_finite),
 	};
 	return cmocka_run_group_tests_name("scene/srgb", tests, NULL, NULL);
 }
