@@ -16,7 +16,7 @@ QUADMATH := $(if $(filter x86_64 i686,$(shell uname -m)),-lquadmath)
 LINKED_LIBS := -ltinygltf -lOpenMeshCore -ldraco -lmeshoptimizer -lspng -ltiff $(TOOL_LIBS)
 
 # tests/support/fail_alloc.c stands in for these
-WRAP := -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=strdup,--wrap=strndup
+WRAP := -Wl,--wrap=malloc,--wrap=calloc,--wrap=realloc,--wrap=posix_memalign,--wrap=strdup,--wrap=strndup
 
 $(B)/tests/%.o: tests/%.c
 	@mkdir -p $(@D)

@@ -15,7 +15,7 @@ enum {
 	LEAST_BLOCK_BYTES = 4 * 1024,
 	MOST_BLOCK_BYTES = 4 * 1024 * 1024, /* the least that nt_alloc_large() has large pages for */
 	LEAST_LARGE_BYTES = 8 * 1024,       /* of a request; in large blocks more is not large yet */
-	LARGE_SHARE = 16,
+	LARGE_SHARE = 8,
 	ALIGNMENT = 16
 };
 

@@ -4,7 +4,7 @@
  * bytes, in chunks of whole lines that threads take one after the other; then the chunks are joined.
  *
  *   split     the file into chunks of 1 MiB, whatever the number of threads, so that it cannot show
- *   parse     statements.c, faces.c: numbers, corners, and the statements between faces
+ *   parse     statements.c, faces.c: numbers, corners, and the statements between faces; kept by shelf.c
  *   join      what was counted; rows of numbers stay in their chunks and are found there
  *   events    spans.c: objects, materials and smoothing groups, in order
  *   vertices  vertices.c: equal v/vt/vn of one object become one vertex
@@ -172,24 +172,28 @@ typedef struct parse_job {
  * error is the first in the file does not depend on the threads. */
 static void parse_chunks(void *context, size_t begin, size_t end, unsigned slot)
 {
-	(void)begin, (void)end, (void)slot;
+	(void)begin, (void)end;
 	parse_job *job = context;
+	obj_shelf *shelf = &job->file->shelves[slot];
 	while (!atomic_load(&job->failed)) {
 		const size_t c = atomic_fetch_add(&job->next, 1);
 		if (c >= job->file->chunk_count)
-			return;
+			break;
 		const obj_chunk *chunk = &job->file->chunks[c];
-		if (obj_parse_chunk(&job->file->chunks[c]))
+		if (obj_parse_chunk(&job->file->chunks[c], shelf))
 			atomic_store(&job->failed, true);
 		/* text is half of what a conversion would hold, and only names are read again */
 		if (job->file->scene->file)
 			nt_file_forget(job->file->scene->file, chunk->begin, (size_t)(chunk->end - chunk->begin));
 	}
+	obj_chunk_free_arrays(&shelf->desk);
 }
 
 static nt_status parse(obj_file *file, nt_error *error)
 {
 	parse_job job = {.file = file};
+	if (!obj_shelves_make(file))
+		return nt_fail_memory(error);
 	nt_parallel_ranges(file->threads, file->chunk_count, 1, parse_chunks, &job);
 	size_t line = 0;
 	for (size_t c = 0; c < file->chunk_count; c++) {
@@ -286,6 +290,7 @@ static void free_file(obj_file *file)
 {
 	for (size_t c = 0; c < file->chunk_count; c++)
 		obj_chunk_free(&file->chunks[c]);
+	obj_shelves_free(file);
 	free(file->chunks);
 	free(file->tail);
 	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)

@@ -317,26 +317,24 @@ nt_status obj_read_lines(obj_reader *r, size_t last)
 	return NT_OK;
 }
 
-nt_status obj_parse_chunk(obj_chunk *chunk)
+nt_status obj_parse_chunk(obj_chunk *chunk, obj_shelf *shelf)
 {
 	obj_reader r;
+	obj_shelf_lend(shelf, chunk);
 	nt_status status = obj_reader_init(&r, chunk);
 	if (!status)
 		status = obj_read_lines(&r, SIZE_MAX);
+	if (!obj_shelf_keep(shelf, chunk) && !status)
+		status = obj_fail_memory(&r);
 	obj_reader_free(&r);
 	return status;
 }
 
 void obj_chunk_free(obj_chunk *chunk)
 {
-	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
-		free(chunk->rows[kind].data);
 	free(chunk->colors);
 	free(chunk->mrgb);
 	free(chunk->mrgb_lines);
-	free(chunk->distinct);
-	free(chunk->corners);
-	free(chunk->face_sizes);
 	free(chunk->polygons);
 	free(chunk->events);
 }

@@ -22,8 +22,8 @@ enum { LINK_MOST = 8 };
 
 typedef struct table {
 	uint32_t *heads;      /* [position_count] vertex + 1; 0 or of an earlier mesh: none */
-	obj_vertex *vertices;
-	size_t count, capacity;
+	obj_vertex *vertices; /* room for one of each distinct corner */
+	size_t count;
 	uint32_t *slots;      /* hash table of vertices + 1 that are not linked */
 	size_t slot_count, slot_used; /* slot_count is a power of two or 0 */
 } table;
@@ -77,9 +77,6 @@ static bool grow_slots(table *s)
 
 static uint32_t append(table *s, uint32_t v, uint32_t t, uint32_t n)
 {
-	if (s->count >= NT_NONE - 1 ||
-		!nt_grow((void **)&s->vertices, &s->capacity, s->count + 1, sizeof *s->vertices))
-		return NT_NONE;
 	s->vertices[s->count] = (obj_vertex){v, t, n, 0};
 	return (uint32_t)s->count++;
 }
@@ -93,12 +90,9 @@ static uint32_t find_in_slots(table *s, uint32_t v, uint32_t t, uint32_t n, size
 	const size_t slot = find_slot(s, &wanted, base);
 	if (s->slots[slot])
 		return s->slots[slot] - 1;
-	const uint32_t vertex = append(s, v, t, n);
-	if (vertex != NT_NONE) {
-		s->slots[slot] = vertex + 1;
-		s->slot_used++;
-	}
-	return vertex;
+	s->slot_used++;
+	s->slots[slot] = append(s, v, t, n) + 1;
+	return s->slots[slot] - 1;
 }
 
 /* The vertex of a corner in the mesh whose vertices begin at base; it is made where there is none.
@@ -107,10 +101,8 @@ static uint32_t find_vertex(table *s, uint32_t v, uint32_t t, uint32_t n, size_t
 {
 	const uint32_t head = s->heads[v];
 	if (head <= base) {
-		const uint32_t vertex = append(s, v, t, n);
-		if (vertex != NT_NONE)
-			s->heads[v] = vertex + 1;
-		return vertex;
+		s->heads[v] = append(s, v, t, n) + 1;
+		return s->heads[v] - 1;
 	}
 	uint32_t at = head - 1;
 	for (int links = 0;; links++) {
@@ -122,10 +114,8 @@ static uint32_t find_vertex(table *s, uint32_t v, uint32_t t, uint32_t n, size_t
 			break;
 		at = s->vertices[at].next - 1;
 	}
-	const uint32_t vertex = append(s, v, t, n);
-	if (vertex != NT_NONE)
-		s->vertices[at].next = vertex + 1;
-	return vertex;
+	s->vertices[at].next = append(s, v, t, n) + 1;
+	return s->vertices[at].next - 1;
 }
 
 /* ---- distinct corners ---- */
@@ -237,8 +227,12 @@ static nt_status number_chunk(obj_file *file, obj_chunk *chunk, table *vertices,
 
 static nt_status number_all(obj_file *file, table *vertices, nt_error *error)
 {
+	size_t most = 0;
+	for (size_t c = 0; c < file->chunk_count; c++)
+		most += file->chunks[c].distinct_count;
+	vertices->vertices = nt_alloc(most, sizeof *vertices->vertices);
 	vertices->heads = nt_calloc(file->row_counts[OBJ_V], sizeof *vertices->heads);
-	if (!vertices->heads)
+	if (!vertices->vertices || !vertices->heads)
 		return nt_fail_memory(error);
 	size_t mesh = 0;
 	for (size_t c = 0; c < file->chunk_count; c++) {
@@ -266,8 +260,7 @@ static size_t mesh_of_corner(const obj_file *file, size_t corner)
 	return low;
 }
 
-/* Writes the vertices of the corners of chunks [begin, end), relative to their meshes; the chunks' own
- * corners have done their work. */
+/* Writes the vertices of the corners of chunks [begin, end), relative to their meshes. */
 static void write_corners(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
@@ -285,10 +278,6 @@ static void write_corners(void *context, size_t begin, size_t end, unsigned slot
 			for (; i < stop; i++)
 				to[i] = chunk->distinct[chunk->corners[i]].v - base;
 		}
-		free(chunk->distinct);
-		free(chunk->corners);
-		chunk->distinct = NULL;
-		chunk->corners = NULL;
 	}
 }
 
@@ -302,6 +291,7 @@ nt_status obj_make_vertices(obj_file *file, nt_error *error)
 		status = nt_fail_memory(error);
 	if (!status)
 		nt_parallel_ranges(file->threads, file->chunk_count, 1, write_corners, file);
+	obj_shelves_clear_corners(file);
 	file->vertices = vertices.vertices;
 	file->vertex_count = vertices.count;
 	free(vertices.heads);

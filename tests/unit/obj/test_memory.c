@@ -56,6 +56,34 @@ static void every_allocation_of_the_reader_may_fail(void **state)
 	assert_true(count > 40); /* at least one of each kind */
 }
 
+/* What is read goes into common blocks then; comments fill the chunks. */
+static void every_allocation_for_a_file_of_many_chunks_may_fail(void **state)
+{
+	(void)state;
+	enum { CHUNKS = 6, CHUNK = 1 << 20 };
+	char path[200], *const text = malloc(CHUNKS * CHUNK + 1000), *p = text;
+	assert_non_null(text);
+	snprintf(path, sizeof path, "%s", in_folder("many.obj"));
+	for (int c = 0; c < CHUNKS; c++) {
+		p += sprintf(p, "v %d 0 0\nv 0 %d 0\nv 0 0 1\nvt 0 0\nvn 0 0 1\nf -3/1/1 -2/1/1 -1/1/1\n#", c, c);
+		memset(p, ' ', CHUNK);
+		p[CHUNK] = '\n';
+		p += CHUNK + 1;
+		p[0] = '\0';
+	}
+	nt_error error;
+	assert_int_equal(open_text(path, text, &error), NT_OK);
+	for (size_t count = 0;; count++) {
+		fail_allocations_from(count);
+		const nt_status status = open_text(path, text, &error);
+		if (status == NT_OK)
+			break;
+		assert_int_equal(status, NT_ERROR_MEMORY);
+		assert_string_equal(error.place.file, path);
+	}
+	free(text);
+}
+
 static void allocations_of_large_polygons_may_fail(void **state)
 {
 	(void)state;
@@ -82,6 +110,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(every_allocation_of_the_reader_may_fail),
+		cmocka_unit_test(every_allocation_for_a_file_of_many_chunks_may_fail),
 		cmocka_unit_test(allocations_of_large_polygons_may_fail),
 	};
 	return cmocka_run_group_tests_name("obj/memory", tests, make_folder, remove_folder);
