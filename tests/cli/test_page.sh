@@ -118,11 +118,11 @@ run --check --report=pictures.html --fail-on=never red.gltf lost.gltf inside.glt
 grep -ao '"image":[0-9nul]*,"map":[^]]*\],"file":[^}]*' pictures.html | sed 's/"map":[^]]*.,//' >images.txt
 is "$(cat images.txt)" '"image":0,"file":"n.png"
 "image":null,"file":"tex/red.png"
-"image":1,"file":"n.png"
+"image":0,"file":"n.png"
 "image":null,"file":"tex/lost.png"
-"image":2,"file":"n.png"
-"image":3,"file":null
-"image":4,"file":"n.png"
+"image":0,"file":"n.png"
+"image":1,"file":null
+"image":0,"file":"n.png"
 "image":null,"file":null'
 rm tex/lost.png
 run --check --report=below/ --fail-on=never red.gltf
