@@ -65,6 +65,20 @@ typedef struct nt_gltf_kept_accessor {
 	uint8_t state; /* 0: it is not known; 1: a thread fills it; NT_GLTF_KEPT: it is known */
 } nt_gltf_kept_accessor;
 
+/* The arrays that elements may be added to. */
+typedef enum nt_gltf_growing {
+	NT_GLTF_ACCESSORS,
+	NT_GLTF_VIEWS,
+	NT_GLTF_BUFFERS,
+	NT_GLTF_GROWING /* how many */
+} nt_gltf_growing;
+
+/* The lowest number of those that something refers to although the file has no such element. */
+typedef struct nt_gltf_dangling {
+	uint64_t number;  /* UINT64_MAX: none */
+	char pointer[80]; /* to who does */
+} nt_gltf_dangling;
+
 typedef struct nt_gltf {
 	nt_arena arena;
 	nt_json *json;
@@ -87,6 +101,8 @@ typedef struct nt_gltf {
 	size_t accessor_count;
 	struct nt_draco **draco_blocks; /* [view_count] decoded blocks: draco.c; NULL until there is something */
 	void (*free_blocks)(struct nt_gltf *document); /* set with them */
+	bool dangling_known;     /* then these are, as the file had them: dangling.h */
+	nt_gltf_dangling dangling[NT_GLTF_GROWING];
 	bool is_shared;          /* several threads load: nothing is opened, decompressed or decoded, what would have to be
 	                            fails */
 	uint64_t bytes_read;     /* of buffers */

@@ -10,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/name_table.h"
+#include "gltf/dangling.h"
 #include "gltf/draco.h"
 
 /* What an accessor stands for in a primitive. No padding: compared as bytes. */
@@ -40,6 +41,7 @@ static uint32_t accessor_for(separating *s, const content *c)
 		s->given[c->accessor] = true;
 		return (uint32_t)c->accessor;
 	}
+	nt_gltf_find_dangling(s->document);
 	nt_json_value *copy = nt_json_append(json, s->accessors);
 	nt_json_set_copy(json, copy, nt_json_at(s->accessors, (size_t)c->accessor));
 	return (uint32_t)nt_json_count(s->accessors) - 1;
@@ -100,5 +102,5 @@ nt_status nt_gltf_separate_draco(nt_gltf *document, nt_error *error)
 	nt_arena_free(&s.arena);
 	free(s.accessor_of);
 	free(s.given);
-	return room ? NT_OK : nt_fail_memory(error);
+	return room ? nt_gltf_check_dangling(document, error) : nt_fail_memory(error);
 }

@@ -7,8 +7,8 @@
 
 #include "gltf/document.h"
 
-/* Gives each content an accessor of its own. What is malformed is left for loading to find. Returns NT_OK or
- * NT_ERROR_MEMORY. */
+/* Gives each content an accessor of its own. What is malformed is left for loading to find. Returns NT_OK,
+ * NT_ERROR_INPUT (dangling.h) or NT_ERROR_MEMORY. */
 nt_status nt_gltf_separate_draco(nt_gltf *document, nt_error *error);
 
 #endif

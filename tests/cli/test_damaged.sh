@@ -26,4 +26,46 @@ for file in "$data"/damaged/*.obj "$data"/damaged/*.ply "$data"/damaged/*.glb "$
 	grep -q "^${file##*/}	" "$ROOT/tests/cli/damaged.tsv" || wrong "${file##*/} is not in damaged.tsv"
 done
 
+scene "what a file refers to in vain never comes to mean what is added"
+python3 - <<'PY'
+import base64, json, struct
+data = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + struct.pack("<6f", 0, 0, 1, 0, 0, 1) + struct.pack("<9f", *[0, 0, 1] * 3)
+views = [(0, 36), (36, 24), (60, 36)]
+triangle = {"attributes": {"POSITION": 0, "TEXCOORD_0": 1, "NORMAL": 2}}
+def write(name, hidden=triangle, **more):
+	json.dump({"asset": {"version": "2.0"}, "meshes": [{"primitives": [triangle]}, {"primitives": hidden if isinstance(hidden, list) else [hidden]}],
+		"nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}], "scene": 0,
+		"accessors": [{"bufferView": i, "type": t, "componentType": 5126, "count": 3} for i, t in enumerate(["VEC3", "VEC2", "VEC3"])] +
+			[{"type": "VEC3", "componentType": 5126, "count": 3}],
+		"bufferViews": [{"buffer": 0, "byteOffset": o, "byteLength": n} for o, n in views],
+		"buffers": [{"byteLength": len(data), "uri": "data:application/octet-stream;base64," + base64.b64encode(data).decode()}]}
+		| more, open(name, "w"))
+def packed(view, **more):
+	return {"attributes": {"POSITION": 3} | more,
+		"extensions": {"KHR_draco_mesh_compression": {"bufferView": view, "attributes": {"POSITION": 0}}}}
+write("attribute.gltf", {"attributes": {"POSITION": 0, "NORMAL": 4}})
+write("target.gltf", {"attributes": {"POSITION": 0}, "targets": [{"POSITION": 4}]})
+write("skin.gltf", skins=[{"joints": [0]}, {"joints": [0], "inverseBindMatrices": 4}])
+write("sampler.gltf", animations=[{"channels": [], "samplers": [{"input": 4, "output": 0}]}])
+write("image.gltf", images=[{"bufferView": 3, "mimeType": "image/png"}])
+write("shared.gltf", [packed(1), packed(2, NORMAL=4)], extensionsUsed=["KHR_draco_mesh_compression"])
+write("far.gltf", {"attributes": {"POSITION": 0, "NORMAL": 40}})
+PY
+while read -r name place what; do
+	run --only=all "$name.gltf" out.glb
+	exits 3
+	says "$name.gltf: $place: refers to $what"
+	[ ! -e out.glb ] || wrong "$name: there is an output"
+done <<'LIST'
+attribute /meshes/1/primitives/0 accessors[4], there are 4
+target /meshes/1/primitives/0 accessors[4], there are 4
+skin /skins/1 accessors[4], there are 4
+sampler /animations/0/samplers/0 accessors[4], there are 4
+image /images/0 bufferViews[3], there are 3
+shared /meshes/1/primitives/1 accessors[4], there are 4
+LIST
+run --only=all far.gltf out.glb
+exits 0
+is "$(gltf out.glb '[g.meshes[1].primitives[0].attributes.NORMAL, g.accessors.length]')" "[40,5]"
+
 done_testing

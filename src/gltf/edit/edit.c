@@ -12,6 +12,7 @@
 #include <string.h>
 #include "base/parallel.h"
 #include "gltf/accessor.h"
+#include "gltf/dangling.h"
 #include "gltf/edit/append.h"
 #include "gltf/edit/draco.h"
 #include "gltf/edit/draco_encode.h"
@@ -339,6 +340,7 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 		return status;
 
 	/* Who shares what, and which bytes may change. */
+	nt_gltf_find_dangling(scene->source);
 	if (options->morphs == NT_MORPH_DROP)
 		drop_target_tangents(scene);
 	nt_arena arena = {0}, of_window = {0};

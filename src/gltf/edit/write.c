@@ -16,6 +16,7 @@
 #include <string.h>
 #include "file/uri.h"
 #include "gltf/companion.h"
+#include "gltf/dangling.h"
 #include "gltf/edit/data_uris.h"
 #include "gltf/edit/images.h"
 #include "gltf/edit/links.h"
@@ -394,6 +395,8 @@ nt_status nt_gltf_write_document(nt_scene *scene, nt_buffer_edits *edits, const 
 		status = nt_gltf_move_images(scene, edits, &c.output, &images, error);
 	if (!status)
 		status = nt_gltf_relocate(edits, &c.buffers, error);
+	if (!status)
+		status = nt_gltf_check_dangling(document, error);
 	if (!status)
 		status = write_files(&c);
 	nt_open_images_close(&images);
