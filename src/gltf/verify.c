@@ -18,6 +18,7 @@
 #include "gltf/primitive.h"
 #include "gltf/quantize.h"
 #include "gltf/verify_faces.h"
+#include "gltf/view.h"
 
 /* ---- finding the files ---- */
 
@@ -522,7 +523,7 @@ static bool has_odd_buffer(nt_gltf *document)
 	const nt_json_value *buffers = nt_gltf_root_member(document, "buffers");
 	for (size_t i = 0; i < document->buffer_count; i++)
 		if (document->buffers[i].length == 0 || (document->buffers[i].storage == NT_GLTF_STORED_NOWHERE &&
-							       !nt_json_find(nt_json_at(buffers, i), "extensions")))
+							       !nt_gltf_compression_of(nt_json_at(buffers, i), NULL)))
 			return true;
 	return false;
 }

@@ -51,14 +51,15 @@ says_not NOT_VERIFIED
 scene "a buffer of no bytes is a fault of the input"
 python3 - <<'END'
 import struct
-for name, buffers in ("empty", b'{"byteLength": 0}'), ("nowhere", b'{"byteLength": 4}, {"byteLength": 4}'):
+for name, buffers in ("empty", b'{"byteLength": 0}'), ("nowhere", b'{"byteLength": 4}, {"byteLength": 4}'), \
+		("unnamed", b'{"byteLength": 4}, {"byteLength": 4, "extensions": {}}'):
     text = b'{"asset": {"version": "2.0"}, "buffers": [%s]}' % buffers
     text += b" " * (-len(text) % 4)
     with open(name + ".glb", "wb") as file:
         file.write(struct.pack("<4s4I", b"glTF", 2, 20 + len(text) + 12, len(text), 0x4e4f534a) + text +
                    struct.pack("<I4sI", 4, b"BIN\0", 0))
 END
-for input in empty nowhere; do
+for input in empty nowhere unnamed; do
 	run --verify $input.glb $input.gltf
 	exits 0
 	says "[NOT_VERIFIED]"
@@ -77,6 +78,27 @@ cp "$WORK"/layouts/plain*.bin .
 run --verify views.gltf out.gltf
 exits 0
 says_not NOT_VERIFIED
+
+# A block has all elements of its accessors, whatever these say besides. Bytes of "DRACO" and the version as an index: 68
+# of 4, and 2.
+scene "an accessor in a block is not sparse in the output"
+run "$data/quad.obj" quad.gltf
+run --only=all --existing=replace --draco=sequential quad.gltf block.gltf
+exits 0
+for index_offset in none 0 5; do
+	node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1])), offset = process.argv[2];
+		const p = g.meshes[0].primitives[0], view = p.extensions.KHR_draco_mesh_compression.bufferView;
+		if (offset !== "none")
+			g.accessors[p.attributes.POSITION].sparse = { count: 1, values: { bufferView: view },
+				indices: { bufferView: view, componentType: 5121, byteOffset: +offset } };
+		fs.writeFileSync("sparse.gltf", JSON.stringify(g))' block.gltf $index_offset
+	for draco in keep off; do
+		run --verify --only=all --existing=replace --draco=$draco sparse.gltf $draco.$index_offset.glb
+		exits 0
+		says_not NOT_VERIFIED
+		cmp -s $draco.none.glb $draco.$index_offset.glb || wrong "--draco=$draco, $index_offset: it is"
+	done
+done
 
 scene "a fan of one triangle has as many corners as vertices, in another order"
 run "$data/quad.obj" quad.gltf

@@ -183,6 +183,7 @@ static nt_status move_away(nt_appending *job, const nt_append_target *moved)
 	nt_json_value *json = nt_gltf_change_accessor(job->document, moved->accessor.index);
 	nt_json_set_uint64(job->json, nt_json_put(job->json, json, "bufferView"), view);
 	nt_json_remove(job->json, json, "byteOffset");
+	nt_json_remove(job->json, json, "sparse"); /* what was in the block had none */
 	return NT_OK;
 }
 

@@ -91,9 +91,11 @@ void nt_gltf_draco_add_own(nt_gltf_recoding *r)
 
 /* ---- in the document ---- */
 
+/* All elements of the accessor are in the block. */
 static void set_count(nt_gltf *document, uint64_t accessor, size_t count)
 {
 	nt_json_value *json = nt_gltf_change_accessor(document, accessor);
+	nt_json_remove(document->json, json, "sparse");
 	nt_json_set_uint64(document->json, nt_json_put(document->json, json, "count"), count);
 }
 
