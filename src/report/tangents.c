@@ -254,11 +254,12 @@ static nt_status check_each(nt_check *check)
 
 /* ---- signs ---- */
 
-/* At most cos 120 degrees between a bitangent and where v grows: reversed beyond what averaging does. */
+/* At most cos 120 degrees between a tangent and where u grows, and a bitangent and where v does: reversed beyond what
+ * averaging does. One of them alone says little: it may be far off where u and v grow almost the same way. */
 static const double REVERSED_COSINE = -0.5;
 
-/* dP/dv of a triangle, scaled to unit length; false where it has no direction. */
-static bool direction_of_v(const nt_surface *s, size_t t, nt_dvec3 *v)
+/* dP/du and dP/dv of a triangle, scaled to unit length; false where one has no direction. */
+static bool directions_of_uv(const nt_surface *s, size_t t, nt_dvec3 *u, nt_dvec3 *v)
 {
 	const uint32_t c = (uint32_t)(3 * t);
 	const float *ta = nt_side_texcoord(s, c);
@@ -269,16 +270,18 @@ static bool direction_of_v(const nt_surface *s, size_t t, nt_dvec3 *v)
 	const double sign = s->orientation[t];
 	*v = nt_dvec3_sub(nt_dvec3_scale(sign * ((double)tb[0] - ta[0]), d2),
 		nt_dvec3_scale(sign * ((double)tc[0] - ta[0]), d1));
-	return nt_dvec3_normalise(v);
+	*u = nt_dvec3_sub(nt_dvec3_scale(sign * ((double)tc[1] - ta[1]), d1),
+		nt_dvec3_scale(sign * ((double)tb[1] - ta[1]), d2));
+	return nt_dvec3_normalise(u) && nt_dvec3_normalise(v);
 }
 
-/* Whether all three bitangents run against growing v although the normals agree with the winding. Asked
- * of triangles whose w is right: their tangents are then reversed too. */
+/* Whether all three tangents run against growing u and all bitangents against growing v although the normals agree with
+ * the winding. Asked of triangles whose w is right. */
 static bool is_reversed(const nt_check *check, size_t t)
 {
 	const nt_surface *s = &check->surface;
-	nt_dvec3 v;
-	if (check->stored != NT_STORED_AUTHORED || !check->mesh->normals || !direction_of_v(s, t, &v))
+	nt_dvec3 u, v;
+	if (check->stored != NT_STORED_AUTHORED || !check->mesh->normals || !directions_of_uv(s, t, &u, &v))
 		return false;
 	const nt_dvec3 a = nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t)));
 	const nt_dvec3 face = nt_dvec3_cross(
@@ -288,10 +291,11 @@ static bool is_reversed(const nt_check *check, size_t t)
 		const float *stored = nt_stored_tangent(check, nt_side_corner(s, 3 * t + k));
 		const nt_dvec3 normal =
 			nt_dvec3_load(check->mesh->normals + 3 * (size_t)nt_side_vertex(s, 3 * t + k));
-		nt_dvec3 bitangent = nt_dvec3_scale(stored[3],
-			nt_dvec3_cross(normal, nt_dvec3_load(stored)));
+		nt_dvec3 tangent = nt_dvec3_load(stored);
+		nt_dvec3 bitangent = nt_dvec3_scale(stored[3], nt_dvec3_cross(normal, tangent));
 		if (!(nt_dvec3_dot(face, normal) > 0.0) || !nt_dvec3_normalise(&bitangent) ||
-			nt_dvec3_dot(bitangent, v) > REVERSED_COSINE)
+			nt_dvec3_dot(bitangent, v) > REVERSED_COSINE || !nt_dvec3_normalise(&tangent) ||
+			nt_dvec3_dot(tangent, u) > REVERSED_COSINE)
 			return false;
 	}
 	return true;

@@ -58,6 +58,30 @@ static void inverted_w_is_one_finding_with_its_share(void **state)
 	hand_free(h, report);
 }
 
+/* T turned by half a turn, and with it the bitangent. Where dP/dv is 20 degrees from dP/du, a T that averaging turned by
+ * 60 degrees has a bitangent that is 130 degrees from dP/dv, and yet is not reversed. */
+static void reversed_tangents_are_not_those_of_sheared_coordinates(void **state)
+{
+	(void)state;
+	hand_mesh *h = sound_quad();
+	for (size_t v = 0; v < 4; v++)
+		set_tangent(h, v, -1, 0, 0, 1);
+	nt_report *report = hand_report(h, NULL);
+	const nt_report_finding *finding = hand_finding(report, NT_CODE_TAN_SIGN_MISMATCH);
+	assert_int_equal(finding->count, 2);
+	assert_non_null(strstr(finding->message, "100 % of 2, the tangents are reversed too"));
+	hand_free(h, report);
+
+	h = sound_quad();
+	for (size_t v = 0; v < 4; v++) {
+		h->texcoords[v][0] -= h->texcoords[v][1] * 2.7474774f; /* cot 20 degrees */
+		set_tangent(h, v, 0.5f, 0.8660254f, 0, 1);
+	}
+	report = hand_report(h, NULL);
+	assert_int_equal(hand_findings(report, NT_CODE_TAN_SIGN_MISMATCH), 0);
+	hand_free(h, report);
+}
+
 static void unused_tangents_are_told_and_cannot_be_errors(void **state)
 {
 	(void)state;
@@ -377,6 +401,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(sound_tangents_give_no_findings),
 		cmocka_unit_test(inverted_w_is_one_finding_with_its_share),
+		cmocka_unit_test(reversed_tangents_are_not_those_of_sheared_coordinates),
 		cmocka_unit_test(unused_tangents_are_told_and_cannot_be_errors),
 		cmocka_unit_test(each_kind_of_bad_tangent_has_its_code),
 		cmocka_unit_test(length_within_the_validators_tolerance_is_unit),
