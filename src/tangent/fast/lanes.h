@@ -54,7 +54,6 @@ typedef struct lanes_out {
 	int certain[NT_LANES];    /* the area's sign is exact, and stays when v is stored */
 	int sound[NT_LANES];      /* every length and ratio is well inside float's range: certainly not "any" */
 	int degenerate[NT_LANES];
-	int extreme[NT_LANES];    /* the sum of a corner is not sound */
 } lanes_out;
 
 /* A state with that bit where `there`: one masked operation, or two without masks. */
@@ -130,7 +129,6 @@ static inline __attribute__((always_inline)) void solve_frames(const lanes_in *r
 		out->area[i] = area;
 		out->orient[i] = area > 0.0f;
 		out->degenerate[i] = same01 | same12 | same20;
-		out->extreme[i] = 0;
 		out->frameless[i] = !(size > FLT_MIN);
 		out->sound[i] = (size > FLT_MIN) & (ls > FLT_MIN) & (lt > FLT_MIN) &
 				(ls > LEAST_RATIO * size) & (lt > LEAST_RATIO * size) &
@@ -149,7 +147,6 @@ typedef struct corner_lanes {
 	const float (*u)[NT_LANES], (*v)[NT_LANES];     /* directions of the triangle's frame */
 	const float (*from)[NT_LANES], (*to)[NT_LANES]; /* edges: from the corner before, to the next one */
 	float (*sum)[NT_LANES], *cosine, (*extra)[NT_LANES]; /* as in lanes_out */
-	int *extreme;                                        /* those of the corners before are kept */
 } corner_lanes;
 
 /* Each corner's unit directions, the cosine of its angle, and the bits of what holds for it; `along`: directions and
@@ -201,8 +198,6 @@ static inline __attribute__((always_inline)) void solve_corners(corner_lanes a, 
 		a.sum[1][i] = uy;
 		a.sum[2][i] = uz;
 		memcpy(&a.sum[3][i], &state, sizeof state);
-		if (NT_SHORT_WAYS)
-			a.extreme[i] |= !sound;
 		a.cosine[i] = c < -1.0f ? -1.0f : c;
 		if (more) {
 			const float vr = 1.0f / sqrtf(vv);
@@ -239,21 +234,18 @@ static inline __attribute__((always_inline)) void weigh_corners(corner_lanes a, 
 static inline __attribute__((always_inline)) corner_lanes corner_of(const lanes_in *in, lanes_out *out, int k)
 {
 	return (corner_lanes){.n = in->row[k] + 3, .u = out->frames.u, .v = out->frames.v, .from = out->edge[(k + 2) % 3],
-		.to = out->edge[k], .sum = out->sum[k], .cosine = out->cosine[k], .extra = out->extra[k],
-		.extreme = out->extreme};
+		.to = out->edge[k], .sum = out->sum[k], .cosine = out->cosine[k], .extra = out->extra[k]};
 }
 
-static inline __attribute__((always_inline)) void solve_three(const lanes_in *in, lanes_out *out, bool along, bool more,
-	int count)
+static inline __attribute__((always_inline)) void solve_three(const lanes_in *restrict in, lanes_out *restrict out,
+	bool along, bool more, int count)
 {
 #pragma GCC unroll 3
 	for (int k = 0; k < 3; k++)
 		solve_corners(corner_of(in, out, k), along, more, count);
-}
-
-static void __attribute__((noinline)) solve_along(const lanes_in *in, lanes_out *out, size_t count)
-{
-	solve_three(in, out, true, false, (int)whole_lanes(count));
+#pragma GCC unroll 3
+	for (int k = 0; k < 3; k++)
+		weigh_corners(corner_of(in, out, k), out->mag_u, out->mag_v, more, count);
 }
 
 /* Lanes [0, count). One loop for each idea: in a single one there are more values under way than
@@ -261,16 +253,30 @@ static void __attribute__((noinline)) solve_along(const lanes_in *in, lanes_out 
 static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *restrict in,
 	lanes_out *restrict out, float offset, bool more, int count)
 {
-	int extreme = 0; /* somewhere directions or edges may lie along normals, which is rare */
 	solve_frames(in, out, offset, more, count);
 	solve_three(in, out, false, more, count);
-	for (int i = 0; NT_SHORT_WAYS && i < count; i++)
-		extreme |= out->extreme[i] & out->sound[i] & !out->degenerate[i];
-	if (NT_SHORT_WAYS && extreme && !more)
-		solve_along(in, out, (size_t)count);
-#pragma GCC unroll 3
+}
+
+/* Whether a corner of a sound triangle is not: directions or edges may lie along normals. */
+static inline bool has_extremes(const lanes_out *out, size_t count)
+{
+	int extreme = 0;
+	for (size_t i = 0; i < count; i++) {
+		uint32_t states[3];
+		for (int k = 0; k < 3; k++)
+			memcpy(&states[k], &out->sum[k][3][i], sizeof states[k]);
+		const int sound = (states[0] & states[1] & states[2] & NT_STATE_SOUND) != 0;
+		extreme |= out->sound[i] & (sound ^ 1) & (out->degenerate[i] ^ 1);
+	}
+	return extreme;
+}
+
+/* Corners once more, which is rare. */
+static void __attribute__((noinline)) solve_along(const lanes_in *in, lanes_out *out, size_t lane_count)
+{
+	solve_three(in, out, true, false, (int)lane_count);
 	for (int k = 0; k < 3; k++)
-		weigh_corners(corner_of(in, out, k), out->mag_u, out->mag_v, more, count);
+		interleave(out->sum[k], lane_count, out->add[k]);
 }
 
 static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *restrict in, lanes_out *restrict out, float offset,
@@ -280,6 +286,8 @@ static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *restrict
 	solve_lanes(in, out, offset, false, (int)lane_count);
 	for (int k = 0; k < 3; k++)
 		interleave(out->sum[k], lane_count, out->add[k]);
+	if (NT_SHORT_WAYS && has_extremes(out, lane_count))
+		solve_along(in, out, lane_count);
 }
 
 #if WIDTH > 4
@@ -314,7 +322,7 @@ static void __attribute__((noinline)) solve_four(const lanes_in *restrict in, la
 		spread(e[0], e[1], e[2], e[0], to[c]);
 	}
 	const corner_lanes corners = {.n = n, .u = out->frames.u, .v = out->frames.v, .from = from, .to = to, .sum = out->sum[0],
-		.cosine = out->cosine[0], .extreme = out->extreme};
+		.cosine = out->cosine[0]};
 	solve_corners(corners, false, false, NT_LANES);
 	weigh_corners(corners, NULL, NULL, false, NT_LANES);
 	interleave(out->sum[0], NT_LANES, add);

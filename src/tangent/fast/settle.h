@@ -319,6 +319,8 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		for (int o = 0; o < 2; o++)
 			if (sums[o])
 				find_unusable(normals, &r[o], unusable[o], used);
+		for (size_t i = 0; i < used; i++)
+			settled->unusable |= unusable[0][i] | unusable[1][i];
 	}
 	/* from here on the rows may be overwritten */
 	for (int o = 0; o < 2; o++) {

@@ -113,20 +113,6 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 	}
 }
 
-/* Whether a record's state is a sign with NT_RESULT_UNUSABLE beside it. */
-static inline unsigned is_unusable(int state)
-{
-	return ((uint32_t)state & (NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE)) == NT_RESULT_UNUSABLE;
-}
-
-/* The sign alone of a triangle's corners. */
-static void __attribute__((noinline)) write_signs(const nt_fast *fast, size_t t)
-{
-	const float sign = fast->flags[t] & NT_TRIANGLE_ORIENT ? 1.0f : -1.0f;
-	for (size_t i = 3 * t; i < 3 * t + 3; i++)
-		fast->solve->tangents[4 * nt_fast_corner(fast, i) + 3] = sign;
-}
-
 /* The same for the usual case, tangents only; `cuts` are those of the triangles. This loop is a fifth of the whole
  * time. */
 static inline __attribute__((always_inline)) void write_plain(nt_fast *fast, size_t begin, size_t end,
@@ -155,11 +141,21 @@ static inline __attribute__((always_inline)) void write_plain(nt_fast *fast, siz
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 0), &a, sizeof a);
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 1), &b, sizeof b);
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 2), &c, sizeof c);
-		if (__builtin_expect((a | b | c)[3] & (int)(NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE), 0)) {
+		if ((a | b | c)[3] & (int)(NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE))
 			flags[t] |= NT_TRIANGLE_COMPLEX;
-			if (is_unusable(a[3]) | is_unusable(b[3]) | is_unusable(c[3]))
-				write_signs(fast, t);
-		}
+	}
+}
+
+/* Of triangles with an unusable corner write_plain() has left NT_RESULT_UNUSABLE beside signs. Those of complex vertices are
+ * not written yet. */
+static void write_signs(const nt_fast *fast, size_t begin, size_t end)
+{
+	for (size_t t = begin; t < end; t++) {
+		const unsigned flags = fast->flags[t];
+		if (!(flags & NT_TRIANGLE_COMPLEX) || (flags & NT_TRIANGLE_ANY))
+			continue;
+		for (size_t i = 3 * t; i < 3 * t + 3; i++)
+			fast->solve->tangents[4 * nt_fast_corner(fast, i) + 3] = flags & NT_TRIANGLE_ORIENT ? 1.0f : -1.0f;
 	}
 }
 
@@ -169,6 +165,8 @@ static void write_plain_triangles(nt_fast *fast, size_t begin, size_t end)
 		write_plain(fast, begin, end, fast->triangles.cuts);
 	else
 		write_plain(fast, begin, end, NULL);
+	if (fast->has_unusable)
+		write_signs(fast, begin, end);
 }
 
 static void write_ranges(void *context, size_t begin, size_t end, unsigned slot)
