@@ -74,6 +74,9 @@ static struct nt_scratch_block *insert_block(nt_scratch *scratch, size_t bytes)
 		return NULL;
 	if (size_bytes < LEAST_BLOCK_BYTES)
 		size_bytes = LEAST_BLOCK_BYTES;
+	if (size_bytes < scratch->expected_bytes)
+		size_bytes = scratch->expected_bytes;
+	scratch->expected_bytes = 0;
 	const nmtan_allocator *from = &scratch->allocator;
 	struct nt_scratch_block *block = from->allocate(from->user, sizeof *block);
 	if (!block)
@@ -115,6 +118,14 @@ void *nt_scratch_alloc(nt_scratch *scratch, size_t count, size_t size)
 		return NULL;
 	scratch->current = block;
 	return take(block, bytes);
+}
+
+void nt_scratch_expect(nt_scratch *scratch, size_t bytes)
+{
+	const struct nt_scratch_block *block = scratch->first;
+	while (block && block->lent)
+		block = block->next;
+	scratch->expected_bytes = block ? 0 : bytes;
 }
 
 nt_scratch_mark nt_scratch_here(const nt_scratch *scratch)

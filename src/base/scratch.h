@@ -14,6 +14,7 @@
 typedef struct nt_scratch {
 	nmtan_allocator allocator;
 	struct nt_scratch_block *first, *current;
+	size_t expected_bytes; /* of the first own block; 0: none is expected, or it is there */
 } nt_scratch;
 
 /* Where a stack stands, to go back to. */
@@ -30,6 +31,10 @@ void nt_scratch_lend(nt_scratch *scratch, void *memory, size_t size_bytes);
 
 /* count * size bytes aligned to 64, not cleared. NULL on overflow or exhaustion. */
 void *nt_scratch_alloc(nt_scratch *scratch, size_t count, size_t size);
+
+/* The first block that a scratch gets from its allocator will be at least so large. malloc keeps twice the largest block
+ * that it was given back: where blocks are many and small, each call has fresh pages again. */
+void nt_scratch_expect(nt_scratch *scratch, size_t bytes);
 
 /* Everything allocated after nt_scratch_here() is released by nt_scratch_back(); blocks are kept. */
 nt_scratch_mark nt_scratch_here(const nt_scratch *scratch);

@@ -64,12 +64,35 @@ static void lent_memory_comes_first(void **state)
 	}
 }
 
+/* What is expected is in the first block that is not lent, once. */
+static void the_first_own_block_is_as_large_as_expected(void **state)
+{
+	(void)state;
+	static char memory[4096];
+	for (int lends = 0; lends < 2; lends++) {
+		nt_scratch scratch;
+		nt_scratch_init(&scratch, NULL);
+		if (lends)
+			nt_scratch_lend(&scratch, memory, sizeof memory);
+		nt_scratch_expect(&scratch, 1000000);
+		assert_non_null(nt_scratch_alloc(&scratch, 1000, 1));
+		assert_non_null(nt_scratch_alloc(&scratch, 500000, 1));
+		const size_t bytes = nt_scratch_bytes(&scratch);
+		assert_in_range(bytes, 1000000, 1010000);
+		nt_scratch_expect(&scratch, 1000000); /* too late */
+		assert_non_null(nt_scratch_alloc(&scratch, 600000, 1));
+		assert_in_range(nt_scratch_bytes(&scratch) - bytes, 600000, 610000);
+		nt_scratch_free(&scratch);
+	}
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(blocks_are_aligned_and_apart),
 		cmocka_unit_test(going_back_reuses_the_same_memory),
 		cmocka_unit_test(lent_memory_comes_first),
+		cmocka_unit_test(the_first_own_block_is_as_large_as_expected),
 	};
 	return cmocka_run_group_tests_name("base/scratch", tests, NULL, NULL);
 }
