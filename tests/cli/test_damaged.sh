@@ -50,6 +50,14 @@ write("sampler.gltf", animations=[{"channels": [], "samplers": [{"input": 4, "ou
 write("image.gltf", images=[{"bufferView": 3, "mimeType": "image/png"}])
 write("shared.gltf", [packed(1), packed(2, NORMAL=4)], extensionsUsed=["KHR_draco_mesh_compression"])
 write("far.gltf", {"attributes": {"POSITION": 0, "NORMAL": 40}})
+# mirrored triangles over one edge: two vertices are copied, so that what is there moves
+data = struct.pack("<12f", 0, 0, 0, 0, 1, 0, 1, 0, 0, -1, 0, 0) + struct.pack("<8f", 0, 0, 0, 1, 1, 0, 1, 0) + struct.pack("<12f", *[0, 0, 1] * 4)
+views = [(0, 48), (48, 32), (80, 48), (128, 12)]
+data += struct.pack("<6H", 0, 2, 1, 0, 1, 3)
+triangle = triangle | {"indices": 3}
+write("split.gltf", {"attributes": {"POSITION": 0}}, skins=[{"joints": [0], "inverseBindMatrices": 4}],
+	accessors=[{"bufferView": i, "type": t, "componentType": 5126, "count": 4} for i, t in enumerate(["VEC3", "VEC2", "VEC3"])] +
+		[{"bufferView": 3, "type": "SCALAR", "componentType": 5123, "count": 6}])
 PY
 while read -r name place what; do
 	run --only=all "$name.gltf" out.glb
@@ -63,6 +71,7 @@ skin /skins/1 accessors[4], there are 4
 sampler /animations/0/samplers/0 accessors[4], there are 4
 image /images/0 bufferViews[3], there are 3
 shared /meshes/1/primitives/1 accessors[4], there are 4
+split /skins/0 accessors[4], there are 4
 LIST
 run --only=all far.gltf out.glb
 exits 0

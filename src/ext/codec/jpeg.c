@@ -13,9 +13,7 @@
 #include <jpeglib.h>
 #include <jerror.h>
 
-/* A Huffman code has a bit at least, and each block of 8 x 8 has one, of its first coefficient. Arithmetic coding has no
- * such bound. */
-enum { MOST_SCANS = 500, MOST_PIXELS_PER_BYTE = 8 * 8 * 8 };
+enum { MOST_SCANS = 500 };
 
 typedef struct decoder {
 	struct jpeg_decompress_struct jpeg;
@@ -54,6 +52,16 @@ static void on_progress(j_common_ptr jpeg)
 	longjmp(d->leave, 1);
 }
 
+/* A Huffman code has a bit at least, and each block of each component has one, of its first coefficient. Arithmetic coding
+ * has no such bound. */
+static bool is_too_small(const struct jpeg_decompress_struct *jpeg, size_t size)
+{
+	uint64_t blocks = 0;
+	for (int i = 0; i < jpeg->num_components; i++)
+		blocks += (uint64_t)jpeg->comp_info[i].width_in_blocks * jpeg->comp_info[i].height_in_blocks;
+	return !jpeg->arith_code && blocks / 8 > size;
+}
+
 static void decode(decoder *d, const unsigned char *bytes, size_t size, uint32_t rows)
 {
 	struct jpeg_decompress_struct *jpeg = &d->jpeg;
@@ -63,7 +71,7 @@ static void decode(decoder *d, const unsigned char *bytes, size_t size, uint32_t
 	jpeg->progress = &d->progress;
 	jpeg_mem_src(jpeg, bytes, size);
 	jpeg_read_header(jpeg, TRUE);
-	if (!jpeg->arith_code && (uint64_t)jpeg->image_width * jpeg->image_height / MOST_PIXELS_PER_BYTE > size) {
+	if (is_too_small(jpeg, size)) {
 		nt_fail(d->error, NT_ERROR_INPUT, "JPEG: %zu bytes cannot hold %u x %u pixels", size, jpeg->image_width,
 			jpeg->image_height);
 		longjmp(d->leave, 1);

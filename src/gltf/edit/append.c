@@ -173,6 +173,22 @@ static block find_block(const nt_appending *job, nt_append_target *targets, size
 	return b;
 }
 
+/* Whether new values would go where another accessor of the block, or the next target behind it (NULL: none), has its own
+ * ones. */
+static bool is_crowded(const block *b, const nt_append_target *next)
+{
+	if (!b->overridden)
+		return false;
+	bool crowded = next && next->accessor.view != NT_NONE && next->buffer == b->buffer && next->begin < b->end;
+	for (size_t i = 0; !crowded && i < b->count; i++)
+		for (size_t k = 0; b->targets[i].override && !crowded && k < b->count; k++) {
+			const nt_append_target *x = &b->targets[i], *y = &b->targets[k];
+			crowded = x != y && x->begin < y->begin + y->accessor.element_bytes &&
+				y->begin < x->begin + x->accessor.element_bytes;
+		}
+	return crowded;
+}
+
 /* Moves an accessor to a view of its own. */
 static nt_status move_away(nt_appending *job, const nt_append_target *moved)
 {
@@ -244,10 +260,10 @@ static nt_status replace_vertices(nt_appending *job, const block *b, const unsig
 	return nt_edits_replace(job->edits, b->buffer, b->begin, old_size, out, size, job->error);
 }
 
-static nt_status append_to_block(nt_appending *job, const block *b, uint64_t previous_end)
+static nt_status append_to_block(nt_appending *job, const block *b, uint64_t previous_end, const nt_append_target *next)
 {
 	nt_status status = NT_OK;
-	if (b->begin < previous_end || nt_byte_users_foreign(&job->edits->users, b->buffer, b->begin, b->end,
+	if (b->begin < previous_end || is_crowded(b, next) || nt_byte_users_foreign(&job->edits->users, b->buffer, b->begin, b->end,
 					       job->edits->appended_by, nt_append_owner(job))) {
 		for (size_t i = 0; !status && i < b->count; i++)
 			if (nt_appended_count(job) || b->targets[i].override)
@@ -314,7 +330,8 @@ static nt_status append_to_targets(nt_appending *job)
 	for (size_t i = 0; !status && i < job->target_count && job->targets[i].accessor.view != NT_NONE;) {
 		const block b = find_block(job, &job->targets[i], job->target_count - i);
 		if (nt_appended_count(job) || b.overridden)
-			status = append_to_block(job, &b, b.buffer == previous_buffer ? previous_end : 0);
+			status = append_to_block(job, &b, b.buffer == previous_buffer ? previous_end : 0,
+				i + b.count < job->target_count ? &job->targets[i + b.count] : NULL);
 		if (b.buffer != previous_buffer || b.end > previous_end)
 			previous_end = b.end;
 		previous_buffer = b.buffer;

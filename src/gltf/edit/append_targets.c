@@ -17,26 +17,26 @@ bool nt_append_note_edit(nt_appending *job, uint32_t buffer, uint64_t begin, uin
 	return true;
 }
 
-static nt_status add_target(nt_appending *job, uint32_t index)
+static nt_status add_target(nt_appending *job, uint32_t index, nt_error *error)
 {
 	if (!nt_grow((void **)&job->targets, &job->target_capacity, job->target_count + 1, sizeof *job->targets))
-		return nt_fail_memory(job->error);
+		return nt_fail_memory(error);
 	nt_append_target *added = &job->targets[job->target_count];
 	*added = (nt_append_target){.clone = NT_NONE};
 	nt_status status =
-		nt_gltf_get_accessor(job->document, index, "/accessors", &added->accessor, job->error);
+		nt_gltf_get_accessor(job->document, index, "/accessors", &added->accessor, error);
 	if (status)
 		return status;
 	if (added->accessor.count != job->vertices->old_count) {
 		char pointer[NT_GLTF_POINTER];
 		snprintf(pointer, sizeof pointer, "/accessors/%u", index);
-		return nt_fail_pointer(job->error, NT_ERROR_INPUT, pointer,
+		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"%llu elements, but other attributes of the same primitives have %zu",
 			(unsigned long long)added->accessor.count, job->vertices->old_count);
 	}
 	if (added->accessor.view != NT_NONE) {
 		nt_gltf_view view;
-		status = nt_gltf_get_view(job->document, added->accessor.view, "", &view, job->error);
+		status = nt_gltf_get_view(job->document, added->accessor.view, "", &view, error);
 		if (status)
 			return status;
 		added->buffer = view.buffer;
@@ -58,7 +58,11 @@ static nt_status collect_attribute(void *context, nt_json_value *attributes, con
 	if (job->edits->seen[accessor])
 		return NT_OK;
 	job->edits->seen[accessor] = true;
-	return add_target(job, accessor);
+	nt_error unread;
+	const nt_status status = add_target(job, accessor, job->collecting_beside ? &unread : job->error);
+	if (job->collecting_beside && status == NT_ERROR_MEMORY)
+		return nt_fail_memory(job->error);
+	return job->collecting_beside ? NT_OK : status;
 }
 
 static int compare_overrides(const void *a, const void *b)
@@ -76,14 +80,14 @@ nt_status nt_append_collect(nt_appending *job, nt_gltf_override *overrides, size
 	for (size_t i = 0; i < override_count; i++)
 		if (!overrides[i].values)
 			job->edits->seen[overrides[i].accessor] = true;
+	for (size_t i = 0; !status && i < override_count; i++)
+		status = collect_attribute(job, NULL, "TANGENT", overrides[i].accessor);
+	/* where nothing grows, the others matter as far as overrides are between them */
+	job->collecting_beside = !nt_appended_count(job) && !job->decoded_too;
 	for (size_t i = 0; !status && i < pool->user_count; i++) {
 		job->collecting_unsolved = !nt_pool_is_solved(pool, i);
 		status = nt_gltf_visit_attributes(nt_pool_primitive(pool, i), job->pools->accessor_count,
 			collect_attribute, job);
-	}
-	for (size_t i = 0; !status && i < override_count; i++) {
-		job->collecting_unsolved = false;
-		status = collect_attribute(job, NULL, "TANGENT", overrides[i].accessor);
 	}
 	for (size_t i = 0; !status && override_count && i < job->target_count; i++) {
 		const nt_gltf_override key = {.accessor = job->targets[i].accessor.index};

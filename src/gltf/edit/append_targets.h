@@ -44,7 +44,7 @@ typedef struct nt_appending {
 	nt_error *error;
 	nt_append_target *targets;
 	size_t target_count, target_capacity;
-	bool collecting_unsolved;
+	bool collecting_unsolved, collecting_beside; /* beside: nothing is appended to it, so what is wrong with it is left out */
 	nt_edited_range *edited;
 	size_t edited_count, edited_capacity;
 } nt_appending;

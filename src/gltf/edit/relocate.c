@@ -185,7 +185,7 @@ static void move_accessors(const nt_buffer_edits *edits, const moved_view *moved
 	const size_t view_count = edits->view_count;
 	nt_json *json = edits->document->json;
 	nt_json_value *accessors = nt_gltf_root_member(edits->document, "accessors");
-	edits->document->kept_count = 0;
+	memset(edits->document->kept, 0, edits->document->kept_count * sizeof *edits->document->kept);
 	for (size_t i = 0; i < nt_json_count(accessors); i++) {
 		nt_json_value *accessor = nt_json_at(accessors, i);
 		move_in_view(json, accessor, moved, view_count);

@@ -295,9 +295,9 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	for (size_t i = 0; i < used; i++)
 		mask[i] = r[0].present[i] & r[1].present[i] ? UINT32_MAX : NT_ENTRY_VERTEX;
 	for (size_t i = 0; i < used; i += WIDTH) {
-		const lanes degrees = load_lanes(degree + i), masks = load_lanes(mask + i);
-		const lanes counted = count_fans(entries + i, depths[i / WIDTH], degrees,
-			__builtin_shufflevector(masks, masks, UNTURNED)) | ((lanes)(degrees == HUB) & DOUBTFUL);
+		const lanes degrees = load_lanes(degree + i), masks = load_lanes(mask + i), hubs = (lanes)(degrees == HUB);
+		const lanes counted = count_fans(entries + i, depths[i / WIDTH], degrees & ~hubs,
+			__builtin_shufflevector(masks, masks, UNTURNED)) | (hubs & DOUBTFUL);
 		const lanes turned = __builtin_shufflevector(counted, counted, TURNED);
 		memcpy(fan_count + i, &turned, sizeof turned);
 	}
