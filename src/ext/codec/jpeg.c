@@ -52,8 +52,8 @@ static void on_progress(j_common_ptr jpeg)
 	longjmp(d->leave, 1);
 }
 
-/* A Huffman code has a bit at least, and each block of each component has one, of its first coefficient. Arithmetic coding
- * has no such bound. */
+/* A Huffman code has a bit at least, and each block of each component has one, of its first coefficient. Arithmetic
+ * coding has no such bound. */
 static bool is_too_small(const struct jpeg_decompress_struct *jpeg, size_t size)
 {
 	uint64_t blocks = 0;

@@ -351,7 +351,6 @@ std::vector<unsigned char> nt::copy_values(const PointAttribute &attribute, size
 std::vector<unsigned char> nt::restore(const PointAttribute &portable, const nt_draco_quantization &q,
 	size_t point_count)
 {
-	const std::vector<unsigned char> integers = copy_values(portable, point_count);
 	const size_t components = q.octahedral ? 3 : static_cast<size_t>(portable.num_components());
 	std::vector<unsigned char> result(sizeof(float) * components * point_count);
 	draco::OctahedronToolBox octahedron; // its arithmetic is inline, and compiled as ours
@@ -361,7 +360,7 @@ std::vector<unsigned char> nt::restore(const PointAttribute &portable, const nt_
 	for (size_t p = 0; p < point_count; p++) {
 		int32_t from[4];
 		float to[4];
-		std::memcpy(from, integers.data() + p * portable.byte_stride(), portable.byte_stride());
+		portable.GetMappedValue(PointIndex(static_cast<uint32_t>(p)), from);
 		if (q.octahedral)
 			octahedron.QuantizedOctahedralCoordsToUnitVector(from[0], from[1], to);
 		else

@@ -173,8 +173,8 @@ static block find_block(const nt_appending *job, nt_append_target *targets, size
 	return b;
 }
 
-/* Whether new values would go where another accessor of the block, or the next target behind it (NULL: none), has its own
- * ones. */
+/* Whether new values would go where another accessor of the block has its own, or the next target behind the block.
+ * next: NULL: there is none. */
 static bool is_crowded(const block *b, const nt_append_target *next)
 {
 	if (!b->overridden)
@@ -260,7 +260,8 @@ static nt_status replace_vertices(nt_appending *job, const block *b, const unsig
 	return nt_edits_replace(job->edits, b->buffer, b->begin, old_size, out, size, job->error);
 }
 
-static nt_status append_to_block(nt_appending *job, const block *b, uint64_t previous_end, const nt_append_target *next)
+static nt_status append_to_block(nt_appending *job, const block *b, uint64_t previous_end,
+	const nt_append_target *next)
 {
 	nt_status status = NT_OK;
 	if (b->begin < previous_end || is_crowded(b, next) || nt_byte_users_foreign(&job->edits->users, b->buffer, b->begin, b->end,

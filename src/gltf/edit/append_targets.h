@@ -17,7 +17,7 @@ typedef struct nt_gltf_override {
 	uint32_t width;
 } nt_gltf_override;
 
-/* An accessor to which vertices are appended. */
+/* An accessor to which vertices are appended, or that may lie between values that are replaced. */
 typedef struct nt_append_target {
 	nt_gltf_accessor accessor;
 	uint32_t buffer;
@@ -44,7 +44,8 @@ typedef struct nt_appending {
 	nt_error *error;
 	nt_append_target *targets;
 	size_t target_count, target_capacity;
-	bool collecting_unsolved, collecting_beside; /* beside: nothing is appended to it, so what is wrong with it is left out */
+	bool collecting_unsolved;
+	bool collecting_beside; /* nothing is appended to them: one that cannot be read is none */
 	nt_edited_range *edited;
 	size_t edited_count, edited_capacity;
 } nt_appending;

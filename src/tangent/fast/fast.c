@@ -50,10 +50,6 @@
  * triangles each must have. Two need fewer: their halves take 10 to 18 % more processor time than the whole. */
 static const nt_fast_plan usual = {.grain = 65536, .least_two = 30000, .least_borrowed_bytes = 65536, .most_tiny = NT_TINY};
 
-/* Small meshes have one block for nearly all that they take, a triangle. Fresh pages are half of the time of a mesh of 15 000
- * triangles whose caller has no workspace. */
-enum { SMALL_TRIANGLES = 32768, SMALL_BYTES = 64 };
-
 typedef struct run {
 	nt_fast *fast;
 	const nt_kernels *kernels;
@@ -370,8 +366,6 @@ nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *pl
 		nt_fast_write_defaults(&fast);
 		return NMTAN_OK;
 	}
-	if (fast.triangle_count < SMALL_TRIANGLES)
-		nt_scratch_expect(solve->scratch, SMALL_BYTES * fast.triangle_count);
 	const bool binned = is_binned(&fast, plan->bin_bits);
 	nt_fast_memory memory;
 	nt_fast_plan_memory(&fast, binned, plan->least_borrowed_bytes, &memory);

@@ -7,16 +7,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include "base/cpu.h"
 #include "base/scratch.h"
 #include "tangent/fast/fast.h"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
-#define MALLOC_IS_OTHER 1
-#else
-#define MALLOC_IS_OTHER 0
-#endif
 
 typedef struct shape {
 	float *p, *n, *t;
@@ -37,38 +30,26 @@ static void put_vertex(shape *s, size_t v, float x, float y, float u, float v_up
 	memcpy(s->t + 2 * v, (float[2]){u, v_up}, 8);
 }
 
-/* Bytes of scratch. */
-static size_t solve(const shape *s, float *tangents)
+/* Bytes a triangle; frees the shape. */
+static double solve_bytes(shape *s)
 {
 	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = s->triangle_count,
 		.vertex_count = s->vertex_count, .positions = s->p,
 		.normals = s->n, .texcoords = s->t, .indices = s->indices, .position_stride_bytes = 12,
 		.normal_stride_bytes = 12, .texcoord_stride_bytes = 8};
+	float *tangents = malloc(s->triangle_count * 48);
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
 	const nt_solve solve = {.mesh = &mesh, .corner_count = 3 * s->triangle_count, .threshold_cos = -1.0f,
 		.threads = 1, .isa = nt_cpu_best(), .scratch = &scratch, .tangents = tangents};
 	assert_int_equal(nt_mikktspace_fast(&solve), NMTAN_OK);
-	const size_t bytes = nt_scratch_bytes(&scratch);
+	const double bytes = (double)nt_scratch_bytes(&scratch) / (double)s->triangle_count;
 	nt_scratch_free(&scratch);
-	return bytes;
-}
-
-static void shape_free(shape *s)
-{
+	free(tangents);
 	free(s->p);
 	free(s->n);
 	free(s->t);
 	free(s->indices);
-}
-
-/* Bytes a triangle; frees the shape. */
-static double solve_bytes(shape *s)
-{
-	float *tangents = malloc(s->triangle_count * 48);
-	const double bytes = (double)solve(s, tangents) / (double)s->triangle_count;
-	free(tangents);
-	shape_free(s);
 	return bytes;
 }
 
@@ -131,38 +112,9 @@ static void mirrored_meshes_take_at_most_40_bytes_a_triangle(void **state)
 	}
 }
 
-static long minor_faults(void)
-{
-	struct rusage usage;
-	getrusage(RUSAGE_SELF, &usage);
-	return usage.ru_minflt;
-}
-
-/* malloc keeps what it has been given back, since it is one block. The first of all cases: larger blocks that were
- * given back before would have it keep more. */
-static void a_second_solve_has_no_fresh_pages(void **state)
-{
-	(void)state;
-	enum { MOST = 30000 };
-	shape s = make_square(1);
-	float *tangents = malloc((size_t)MOST * 48);
-	for (s.triangle_count = 500; s.triangle_count <= MOST; s.triangle_count = s.triangle_count * 3 / 2) {
-		s.vertex_count = (s.triangle_count / 400 + 2) * 201;
-		solve(&s, tangents);
-		solve(&s, tangents);
-		const long before = minor_faults();
-		for (int i = 0; i < 4; i++)
-			solve(&s, tangents);
-		assert_true(MALLOC_IS_OTHER || minor_faults() - before < 8);
-	}
-	free(tangents);
-	shape_free(&s);
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(a_second_solve_has_no_fresh_pages),
 		cmocka_unit_test(hubs_take_at_most_40_bytes_a_triangle),
 		cmocka_unit_test(clean_meshes_take_at_most_16_bytes_a_triangle),
 		cmocka_unit_test(mirrored_meshes_take_at_most_40_bytes_a_triangle),
