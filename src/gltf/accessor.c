@@ -103,12 +103,12 @@ static nt_status read_format(const nt_json_value *json, const char *pointer,
 		error);
 }
 
-/* `count` elements of `bytes` each, `stride` apart, from `offset` on in view `index`. */
+/* `count` elements of `bytes` each, `stride` apart, from `offset` on in view `index`. None lie anywhere. */
 static nt_status check_range(uint32_t index, const nt_gltf_view *view, uint64_t offset, uint64_t count,
 	uint64_t bytes, uint64_t stride, const char *pointer, nt_error *error)
 {
 	/* count < 2^32 and stride < 2^16, offset <= 2^53: no overflow */
-	const uint64_t end = count ? offset + (count - 1) * stride + bytes : offset;
+	const uint64_t end = count ? offset + (count - 1) * stride + bytes : 0;
 	if (end > view->length)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"%llu elements end at byte %llu of bufferView %u, which has %llu",

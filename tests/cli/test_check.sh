@@ -36,4 +36,22 @@ cp "$data/mirrored_cube.obj" .
 run --check --fail-on=info mirrored_cube.obj nothing.obj
 exits 2
 
+# Optimizers leave such primitives behind: accessors of 0 elements, at some byte of a view of 0 bytes.
+scene "elements that are not there lie in no bytes"
+cat >empty.gltf <<END
+{"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"indices":2}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"type":"VEC3","count":0},
+{"bufferView":0,"byteOffset":12,"componentType":5126,"type":"VEC2","count":0},
+{"bufferView":0,"byteOffset":20,"componentType":5123,"type":"SCALAR","count":0}],
+"bufferViews":[{"buffer":0,"byteLength":0,"byteStride":20}],
+"buffers":[{"byteLength":4,"uri":"data:application/octet-stream;base64,AAAAAA=="}]}
+END
+run --check --report=empty.html empty.gltf
+exits 0
+says "empty.gltf: checked"
+run --only=all --existing=replace --verify empty.gltf empty.glb
+exits 0
+says "skipped 1 (no faces)"
+
 done_testing
