@@ -9,15 +9,18 @@
 const versions = ['old', 'new'];
 const unchanged = 'No finding is new or gone.';
 
-// Draws `to` as `from` is drawn, and the reverse.
+// Draws `to` as `from` is drawn, and the reverse. Only the fields that changed are copied: both may change before either is drawn.
 function link(from, to, fields) {
-	let known = '';
+	const known = {};
 	for (const [a, b] of [[from, to], [to, from]])
 		a.ondraw = () => {
-			const state = JSON.stringify(fields.map(name => a[name]));
-			if (state === known || !a.geometry || !b.geometry) return;
-			known = state;
-			JSON.parse(state).forEach((value, i) => { b[fields[i]] = value; });
+			if (!a.geometry || !b.geometry) return;
+			const changed = fields.map(name => [name, JSON.stringify(a[name] ?? null)]).filter(([name, value]) => value !== known[name]);
+			if (!changed.length) return;
+			for (const [name, value] of changed) {
+				known[name] = value;
+				b[name] = JSON.parse(value);
+			}
 			b.vectorLines = null;
 			b.draw();
 		};
