@@ -104,6 +104,10 @@ const char *nt_sink_digest_before(const nt_sink *sink);
 /* The name that data for `name` has while `name` is not to be had: "a.new-0123456789abcdef.bin" for "a.bin". Appended. */
 void nt_output_interim_name(nt_buffer *text, const char *name, const char *digest);
 
+/* Says before the first byte how many there will be: a large file gets its room on the disk at once where that can be
+ * had. Neither less nor more is an error. */
+void nt_sink_expect(nt_sink *sink, uint64_t size);
+
 /* Appends bytes. Small writes are buffered, large ones go straight to the file. */
 nt_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error *error);
 

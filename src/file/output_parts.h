@@ -27,8 +27,8 @@ typedef struct nt_file_state {
 	struct timespec modified;
 } nt_file_state;
 
-/* Buffer of a sink. */
-enum { NT_SINK_BUFFER_BYTES = 256 * 1024 };
+/* Buffer of a sink: the page cache takes a megabyte at a time in larger pages than a quarter of one. */
+enum { NT_SINK_BUFFER_BYTES = 1024 * 1024 };
 
 struct nt_sink {
 	nt_sink *next;            /* in the order of adding */

@@ -13,8 +13,12 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
-/* From which size on the kernel copies better than write() does, and how much of a map is looked at at a time. */
-enum { KERNEL_COPY_BYTES = 1024 * 1024, MAPPED_COPY_BYTES = 2 * 1024 * 1024 };
+/* From which size on the kernel copies better than write() does, how much of a map is looked at at a time, and which files
+ * get their room at once: that is a system call of 30 us. */
+enum { KERNEL_COPY_BYTES = 1024 * 1024, MAPPED_COPY_BYTES = 2 * 1024 * 1024, LARGE_FILE_BYTES = 1024 * 1024 };
+
+/* What goes straight through, and takes no memory of the buffer. */
+enum { STRAIGHT_BYTES = 128 * 1024 };
 
 nt_status nt_sink_fail(nt_error *error, const char *path, int number)
 {
@@ -29,6 +33,14 @@ nt_status nt_sink_refuse_existing(nt_error *error, const char *path)
 {
 	nt_fail(error, NT_ERROR_IO, "refusing to write: the file exists already");
 	return nt_error_in_file(error, path);
+}
+
+/* Without it ext4 sets aside room for each of its blocks when that is written: 6.4 ms instead of 4.6 for 35 MB. A refusal
+ * changes nothing: if the disk is full, the write that finds it so says it. */
+void nt_sink_expect(nt_sink *sink, uint64_t size)
+{
+	if (sink->temporary && size >= LARGE_FILE_BYTES && size <= INT64_MAX)
+		(void)!fallocate(sink->fd, FALLOC_FL_KEEP_SIZE, 0, (off_t)size);
 }
 
 /* Takes `count` written bytes off the front of two parts. */
@@ -81,10 +93,10 @@ static nt_status write_bytes(nt_sink *sink, const void *bytes, size_t size, nt_e
 	sink->size += size;
 	if (sink->dry)
 		return NT_OK;
+	if (size >= STRAIGHT_BYTES)
+		return flush_with(sink, bytes, size, error);
 	if (size > NT_SINK_BUFFER_BYTES - sink->used) {
-		if (size >= NT_SINK_BUFFER_BYTES / 2)
-			return flush_with(sink, bytes, size, error);
-		const nt_status status = flush_with(sink, NULL, 0, error);
+		const nt_status status = nt_sink_flush(sink, error);
 		if (status)
 			return status;
 	}

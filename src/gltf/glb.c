@@ -180,6 +180,7 @@ nt_status nt_glb_begin(nt_sink *sink, uint64_t json_size, bool has_bin, uint64_t
 	memcpy(header, "glTF", 4);
 	store_u32(header + 4, 2);
 	store_u32(header + 8, (uint32_t)total);
+	nt_sink_expect(sink, total);
 	const nt_status status = nt_sink_write(sink, header, sizeof header, error);
 	return status ? status : write_chunk_head(sink, type_json, json_size, error);
 }

@@ -398,6 +398,7 @@ static nt_status write_bin(const composition *c, nt_sink **bin, nt_error *error)
 	if (status != NT_OK || !*bin)
 		return status;
 	byte_stream stream = {.sink = *bin};
+	nt_sink_expect(*bin, c->buffer_size);
 	status = write_buffer(c, &stream, error);
 	return status == NT_OK ? nt_output_settle(c->output, *bin, error) : status;
 }

@@ -202,8 +202,10 @@ static nt_status write_companion(writing *c, uint32_t index, bool first)
 	nt_status status = name_companion(c, index, first, &path);
 	if (!status)
 		status = nt_output_add(c->output.set, path, NT_ROLE_BUFFER, &sink, c->error);
-	if (!status)
+	if (!status) {
+		nt_sink_expect(sink, c->buffers.buffers[index].length);
 		status = nt_relocated_write(&c->buffers, index, &c->input, sink, c->error);
+	}
 	if (!status)
 		status = nt_output_settle(c->output.set, sink, c->error);
 	c->companions[index] = sink;

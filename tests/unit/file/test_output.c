@@ -131,6 +131,34 @@ static void output_bytes_are_the_same_for_small_and_large_writes(void **state)
 	free(bytes);
 }
 
+/* Room that was announced is there before the bytes, where the file system gives any, and is no part of the file. */
+static void output_has_its_bytes_whatever_was_announced(void **state)
+{
+	(void)state;
+	enum { SIZE = 2000000 };
+	static const char zeros[SIZE];
+	nt_error error;
+	const int trial = open(in_folder("trial"), O_WRONLY | O_CREAT, 0666);
+	const bool gives_room = fallocate(trial, FALLOC_FL_KEEP_SIZE, 0, SIZE) == 0;
+	assert_int_equal(close(trial), 0);
+	const uint64_t announced[] = {SIZE, 2 * SIZE, SIZE - 1, 0, UINT64_MAX};
+	for (size_t i = 0; i < sizeof announced / sizeof *announced; i++) {
+		nt_output *output = start(NULL);
+		nt_sink *sink = add(output, in_folder("out"), NT_ROLE_MAIN);
+		nt_sink_expect(sink, announced[i]);
+		const char *temporary;
+		struct stat status;
+		assert_int_equal(nt_output_written(output, in_folder("out"), &temporary, &error), NT_OK);
+		assert_int_equal(stat(temporary, &status), 0);
+		assert_int_equal(status.st_size, 0);
+		assert_true(!gives_room || i > 2 || (uint64_t)status.st_blocks * 512 >= announced[i]);
+		assert_int_equal(nt_sink_write(sink, zeros, SIZE, &error), NT_OK);
+		assert_int_equal(nt_output_commit(output, &error), NT_OK);
+		assert_int_equal(stat(in_folder("out"), &status), 0);
+		assert_int_equal(status.st_size, SIZE);
+	}
+}
+
 static void output_can_be_read_back_before_it_has_its_name(void **state)
 {
 	(void)state;
@@ -370,6 +398,7 @@ int main(void)
 		CASE(output_appears_at_commit_only),
 		CASE(output_abort_leaves_nothing),
 		CASE(output_bytes_are_the_same_for_small_and_large_writes),
+		CASE(output_has_its_bytes_whatever_was_announced),
 		CASE(output_can_be_read_back_before_it_has_its_name),
 		CASE(output_that_is_an_input_is_refused_by_name),
 		CASE(output_in_place_replaces_what_is_mapped),
