@@ -3,23 +3,81 @@
  * A faulty file may refer to accessors, views or buffers that it does not have, where nobody looks: in a mesh of no
  * scene, a skin, an image. What an edit adds takes the next numbers, and such a reference would come to mean it. So the
  * lowest number of each kind that is referred to in vain is noted before anything is added, and the file is refused if
- * it is taken. What extensions other than those below refer to is not known.
+ * it is taken. Known are the places below: those of glTF 2.0, of the extensions in Khronos' repository of glTF, and of
+ * some others that are in use. Elements of other arrays (images, materials ...) are never added.
  */
 #include "gltf/dangling.h"
 
 #include <stdio.h>
-#include "gltf/draco.h"
+#include <string.h>
 
 static const char *const arrays[NT_GLTF_GROWING] = {[NT_GLTF_ACCESSORS] = "accessors",
 	[NT_GLTF_VIEWS] = "bufferViews", [NT_GLTF_BUFFERS] = "buffers"};
 
-/* Where a reference is: /array/index, and within that /part/number if part is not NULL. */
-typedef struct owner {
-	const char *array;
-	size_t index;
-	const char *part;
-	size_t number;
-} owner;
+/* A place of references: keys from the root on, * for every element or member. */
+typedef struct place {
+	const char *path;
+	nt_gltf_growing kind; /* of what is referred to */
+} place;
+
+/* What begins alike stands together: it is looked up once. */
+static const place places[] = {
+	{"accessors/*/bufferView", NT_GLTF_VIEWS},
+	{"accessors/*/sparse/indices/bufferView", NT_GLTF_VIEWS},
+	{"accessors/*/sparse/values/bufferView", NT_GLTF_VIEWS},
+	{"accessors/*/extensions/MPEG_accessor_timed/bufferView", NT_GLTF_VIEWS},
+	{"animations/*/samplers/*/input", NT_GLTF_ACCESSORS},
+	{"animations/*/samplers/*/output", NT_GLTF_ACCESSORS},
+	{"bufferViews/*/buffer", NT_GLTF_BUFFERS},
+	{"bufferViews/*/extensions/EXT_meshopt_compression/buffer", NT_GLTF_BUFFERS},
+	{"bufferViews/*/extensions/KHR_meshopt_compression/buffer", NT_GLTF_BUFFERS},
+	{"cameras/*/extensions/MPEG_viewport_recommended/viewports/*/translation", NT_GLTF_ACCESSORS},
+	{"cameras/*/extensions/MPEG_viewport_recommended/viewports/*/rotation", NT_GLTF_ACCESSORS},
+	{"cameras/*/extensions/MPEG_viewport_recommended/viewports/*/parameters", NT_GLTF_ACCESSORS},
+	{"images/*/bufferView", NT_GLTF_VIEWS},
+	{"meshes/*/primitives/*/attributes/*", NT_GLTF_ACCESSORS},
+	{"meshes/*/primitives/*/indices", NT_GLTF_ACCESSORS},
+	{"meshes/*/primitives/*/targets/*/*", NT_GLTF_ACCESSORS},
+	{"meshes/*/primitives/*/extensions/CESIUM_primitive_outline/indices", NT_GLTF_ACCESSORS},
+	{"meshes/*/primitives/*/extensions/EXT_mesh_primitive_edge_visibility/visibility", NT_GLTF_ACCESSORS},
+	{"meshes/*/primitives/*/extensions/EXT_mesh_primitive_edge_visibility/silhouetteNormals", NT_GLTF_ACCESSORS},
+	{"meshes/*/primitives/*/extensions/EXT_mesh_primitive_edge_visibility/lineStrings/*/indices", NT_GLTF_ACCESSORS},
+	{"meshes/*/primitives/*/extensions/KHR_draco_mesh_compression/bufferView", NT_GLTF_VIEWS},
+	{"meshes/*/primitives/*/extensions/KHR_gaussian_splatting/extensions/KHR_gaussian_splatting_compression_spz_2/"
+		"bufferView", NT_GLTF_VIEWS},
+	{"meshes/*/extensions/EXT_mesh_manifold/manifoldPrimitive/attributes/*", NT_GLTF_ACCESSORS},
+	{"meshes/*/extensions/EXT_mesh_manifold/manifoldPrimitive/indices", NT_GLTF_ACCESSORS},
+	{"meshes/*/extensions/EXT_mesh_manifold/mergeIndices", NT_GLTF_ACCESSORS},
+	{"meshes/*/extensions/EXT_mesh_manifold/mergeValues", NT_GLTF_ACCESSORS},
+	{"meshes/*/extensions/EXT_mesh_primitive_restart/primitiveGroups/*/indices", NT_GLTF_ACCESSORS},
+	{"meshes/*/extensions/MPEG_mesh_linking/correspondence", NT_GLTF_ACCESSORS},
+	{"meshes/*/extensions/MPEG_mesh_linking/pose", NT_GLTF_ACCESSORS},
+	{"meshes/*/extensions/MPEG_mesh_linking/weights", NT_GLTF_ACCESSORS},
+	{"nodes/*/extensions/EXT_mesh_gpu_instancing/attributes/*", NT_GLTF_ACCESSORS},
+	{"nodes/*/extensions/GRIFFEL_bim_data/bufferView", NT_GLTF_VIEWS},
+	{"nodes/*/extensions/MPEG_audio_spatial/sources/*/accessors/*", NT_GLTF_ACCESSORS},
+	{"skins/*/inverseBindMatrices", NT_GLTF_ACCESSORS},
+	{"textures/*/extensions/MPEG_texture_video/accessor", NT_GLTF_ACCESSORS},
+	{"extensions/EXT_feature_metadata/featureTables/*/properties/*/bufferView", NT_GLTF_VIEWS},
+	{"extensions/EXT_feature_metadata/featureTables/*/properties/*/arrayOffsetBufferView", NT_GLTF_VIEWS},
+	{"extensions/EXT_feature_metadata/featureTables/*/properties/*/stringOffsetBufferView", NT_GLTF_VIEWS},
+	{"extensions/EXT_lights_ies/lights/*/bufferView", NT_GLTF_VIEWS},
+	{"extensions/EXT_structural_metadata/propertyTables/*/properties/*/values", NT_GLTF_VIEWS},
+	{"extensions/EXT_structural_metadata/propertyTables/*/properties/*/arrayOffsets", NT_GLTF_VIEWS},
+	{"extensions/EXT_structural_metadata/propertyTables/*/properties/*/stringOffsets", NT_GLTF_VIEWS},
+	{"extensions/KHR_audio/audio/*/bufferView", NT_GLTF_VIEWS},
+	{"extensions/KHR_audio_emitter/audio/*/bufferView", NT_GLTF_VIEWS},
+	{"extensions/KHR_techniques_webgl/shaders/*/bufferView", NT_GLTF_VIEWS},
+	{"extensions/MPEG_animation_timing/accessor", NT_GLTF_ACCESSORS},
+	{"extensions/MPEG_audio_spatial/sources/*/accessors/*", NT_GLTF_ACCESSORS},
+	{"extensions/MSFT_audio_emitter/clips/*/bufferView", NT_GLTF_VIEWS},
+	{"extensions/NV_materials_mdl/modules/*/bufferView", NT_GLTF_VIEWS},
+	{"extensions/NV_materials_mdl/bsdfMeasurements/*/bufferView", NT_GLTF_VIEWS},
+};
+
+enum { STARS = 4 }; /* at most, in a path */
+
+#define MEMBER SIZE_MAX /* a star that stands for the member of an object */
 
 static size_t count_in_file(const nt_gltf *document, nt_gltf_growing kind)
 {
@@ -27,97 +85,61 @@ static size_t count_in_file(const nt_gltf *document, nt_gltf_growing kind)
 		kind == NT_GLTF_VIEWS ? document->view_count : document->buffer_count;
 }
 
-/* reference: NULL: there is none. */
-static void note(nt_gltf *document, nt_gltf_growing kind, const nt_json_value *reference, const owner *at)
+/* numbers: [STARS] what the path's stars stand for. */
+static void note(nt_gltf *document, const nt_json_value *reference, const place *at, const size_t *numbers)
 {
-	nt_gltf_dangling *lowest = &document->dangling[kind];
+	nt_gltf_dangling *lowest = &document->dangling[at->kind];
 	uint64_t number;
-	if (!nt_json_get_uint64(reference, &number) || number < count_in_file(document, kind) ||
+	if (!nt_json_get_uint64(reference, &number) || number < count_in_file(document, at->kind) ||
 		number >= lowest->number)
 		return;
 	lowest->number = number;
-	const int length = snprintf(lowest->pointer, sizeof lowest->pointer, "/%s/%zu", at->array, at->index);
-	if (at->part)
-		snprintf(lowest->pointer + length, sizeof lowest->pointer - (size_t)length, "/%s/%zu", at->part,
-			at->number);
+	/* The pointer ends where a key of the file would come, which may be of any length. */
+	size_t length = 0;
+	for (const char *key = at->path; *key && (*key != '*' || *numbers != MEMBER);) {
+		const size_t key_length = strcspn(key, "/");
+		const size_t room = sizeof lowest->pointer - length;
+		length += (size_t)(*key == '*' ? snprintf(lowest->pointer + length, room, "/%zu", *numbers++) :
+			snprintf(lowest->pointer + length, room, "/%.*s", (int)key_length, key));
+		key += key_length + (key[key_length] == '/');
+	}
 }
 
-static void note_all(nt_gltf *document, const nt_json_value *attributes, const owner *at)
+/* Looks at the places from `from` to before `end`, which all begin with the path of the value, of `skip` bytes. `star`
+ * of its numbers are known. */
+static void look_at(nt_gltf *document, const nt_json_value *value, const place *from, const place *end, size_t skip,
+	size_t *numbers, size_t star)
 {
-	for (size_t i = 0; i < nt_json_count(attributes); i++)
-		note(document, NT_GLTF_ACCESSORS, nt_json_at(attributes, i), at);
-}
-
-static void look_at_primitive(nt_gltf *document, const nt_json_value *primitive, const owner *at)
-{
-	note_all(document, nt_json_find(primitive, "attributes"), at);
-	note(document, NT_GLTF_ACCESSORS, nt_json_find(primitive, "indices"), at);
-	note(document, NT_GLTF_VIEWS, nt_json_find(nt_gltf_draco_of(primitive), "bufferView"), at);
-	const nt_json_value *targets = nt_json_find(primitive, "targets");
-	for (size_t i = 0; i < nt_json_count(targets); i++)
-		note_all(document, nt_json_at(targets, i), at);
-}
-
-static void look_at_sampler(nt_gltf *document, const nt_json_value *sampler, const owner *at)
-{
-	note(document, NT_GLTF_ACCESSORS, nt_json_find(sampler, "input"), at);
-	note(document, NT_GLTF_ACCESSORS, nt_json_find(sampler, "output"), at);
-}
-
-static void look_at_skin(nt_gltf *document, const nt_json_value *skin, const owner *at)
-{
-	note(document, NT_GLTF_ACCESSORS, nt_json_find(skin, "inverseBindMatrices"), at);
-}
-
-static void look_at_node(nt_gltf *document, const nt_json_value *node, const owner *at)
-{
-	note_all(document, nt_json_find(nt_json_find(nt_json_find(node, "extensions"), "EXT_mesh_gpu_instancing"),
-		"attributes"), at);
-}
-
-static void look_at_accessor(nt_gltf *document, const nt_json_value *accessor, const owner *at)
-{
-	const nt_json_value *sparse = nt_json_find(accessor, "sparse");
-	note(document, NT_GLTF_VIEWS, nt_json_find(accessor, "bufferView"), at);
-	note(document, NT_GLTF_VIEWS, nt_json_find(nt_json_find(sparse, "indices"), "bufferView"), at);
-	note(document, NT_GLTF_VIEWS, nt_json_find(nt_json_find(sparse, "values"), "bufferView"), at);
-}
-
-static void look_at_image(nt_gltf *document, const nt_json_value *image, const owner *at)
-{
-	note(document, NT_GLTF_VIEWS, nt_json_find(image, "bufferView"), at);
-}
-
-static void look_at_view(nt_gltf *document, const nt_json_value *view, const owner *at)
-{
-	note(document, NT_GLTF_BUFFERS, nt_json_find(view, "buffer"), at);
+	while (from < end) {
+		const char *const key = from->path + skip;
+		const size_t length = strcspn(key, "/");
+		const place *next = from + 1;
+		while (next < end && strncmp(next->path + skip, key, length + 1) == 0)
+			next++;
+		const bool is_star = *key == '*';
+		const size_t count = is_star ? nt_json_count(value) : 1;
+		for (size_t i = 0; i < count; i++) {
+			const nt_json_value *child = is_star ? nt_json_at(value, i) : nt_json_find_key(value, key, length);
+			if (is_star)
+				numbers[star] = nt_json_type_of(value) == NT_JSON_ARRAY ? i : MEMBER;
+			if (!key[length])
+				note(document, child, from, numbers);
+			else if (child)
+				look_at(document, child, from, next, skip + length + 1, numbers, star + is_star);
+		}
+		from = next;
+	}
 }
 
 void nt_gltf_find_dangling(nt_gltf *document)
 {
-	static const struct {
-		const char *array, *part; /* part: an array in each element; NULL: the element itself is looked at */
-		void (*look_at)(nt_gltf *document, const nt_json_value *element, const owner *at);
-	} places[] = {{"meshes", "primitives", look_at_primitive}, {"animations", "samplers", look_at_sampler},
-		{"skins", NULL, look_at_skin}, {"nodes", NULL, look_at_node}, {"accessors", NULL, look_at_accessor},
-		{"images", NULL, look_at_image}, {"bufferViews", NULL, look_at_view}};
 	if (document->dangling_known)
 		return;
 	document->dangling_known = true;
 	for (size_t i = 0; i < NT_GLTF_GROWING; i++)
 		document->dangling[i].number = UINT64_MAX;
-	for (size_t p = 0; p < sizeof places / sizeof *places; p++) {
-		const nt_json_value *elements = nt_gltf_root_member(document, places[p].array);
-		owner at = {.array = places[p].array, .part = places[p].part};
-		for (at.index = 0; at.index < nt_json_count(elements); at.index++) {
-			const nt_json_value *element = nt_json_at(elements, at.index);
-			if (!at.part)
-				places[p].look_at(document, element, &at);
-			const nt_json_value *parts = at.part ? nt_json_find(element, at.part) : NULL;
-			for (at.number = 0; at.number < nt_json_count(parts); at.number++)
-				places[p].look_at(document, nt_json_at(parts, at.number), &at);
-		}
-	}
+	size_t numbers[STARS] = {0};
+	look_at(document, nt_json_root(document->json), places, places + sizeof places / sizeof *places, 0, numbers, 0);
 }
 
 nt_status nt_gltf_check_dangling(const nt_gltf *document, nt_error *error)

@@ -75,8 +75,8 @@ typedef enum nt_gltf_growing {
 
 /* The lowest number of those that something refers to although the file has no such element. */
 typedef struct nt_gltf_dangling {
-	uint64_t number;  /* UINT64_MAX: none */
-	char pointer[80]; /* to who does */
+	uint64_t number;   /* UINT64_MAX: none */
+	char pointer[160]; /* to it, as far as it has no key of the file */
 } nt_gltf_dangling;
 
 typedef struct nt_gltf {

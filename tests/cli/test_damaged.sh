@@ -65,13 +65,13 @@ while read -r name place what; do
 	says "$name.gltf: $place: refers to $what"
 	[ ! -e out.glb ] || wrong "$name: there is an output"
 done <<'LIST'
-attribute /meshes/1/primitives/0 accessors[4], there are 4
-target /meshes/1/primitives/0 accessors[4], there are 4
-skin /skins/1 accessors[4], there are 4
-sampler /animations/0/samplers/0 accessors[4], there are 4
-image /images/0 bufferViews[3], there are 3
-shared /meshes/1/primitives/1 accessors[4], there are 4
-split /skins/0 accessors[4], there are 4
+attribute /meshes/1/primitives/0/attributes accessors[4], there are 4
+target /meshes/1/primitives/0/targets/0 accessors[4], there are 4
+skin /skins/1/inverseBindMatrices accessors[4], there are 4
+sampler /animations/0/samplers/0/input accessors[4], there are 4
+image /images/0/bufferView bufferViews[3], there are 3
+shared /meshes/1/primitives/1/attributes accessors[4], there are 4
+split /skins/0/inverseBindMatrices accessors[4], there are 4
 LIST
 run --only=all far.gltf out.glb
 exits 0

@@ -1,0 +1,148 @@
+/* SPDX-License-Identifier: MIT */
+#include "test.h"
+#include <stdio.h>
+#include "base/buffer.h"
+#include "gltf/dangling.h"
+
+/* `,"meshes":[{"primitives":[9]}]` for "/meshes/0/primitives/0": nothing stands beside what the path names. */
+static void put_path(nt_buffer *text, const char *path)
+{
+	char closing[256];
+	size_t open = 0;
+	for (const char *key = path; *key; open++) {
+		const size_t length = strcspn(++key, "/");
+		if (*key == '0')
+			nt_buffer_text(text, "[");
+		else
+			nt_buffer_format(text, "%s\"%.*s\":", open ? "{" : ",", (int)length, key);
+		closing[open] = *key == '0' ? ']' : '}';
+		key += length;
+	}
+	nt_buffer_text(text, "9");
+	while (open > 1)
+		nt_buffer_format(text, "%c", closing[--open]);
+}
+
+/* The document with what a path names; the dangling references of it are known. */
+static const nt_gltf *find_dangling(nt_scene *scene, nt_buffer *text, const char *path)
+{
+	nt_gltf *document = NULL;
+	nt_error error;
+	nt_buffer_text(text, "{\"asset\":{\"version\":\"2.0\"}");
+	put_path(text, path);
+	nt_buffer_text(text, "}");
+	nt_scene_init(scene, "test.gltf");
+	scene->bytes = (const unsigned char *)text->data;
+	scene->byte_count = text->size;
+	assert_int_equal(nt_gltf_create(&document, scene, false, &error), NT_OK);
+	scene->source = document;
+	nt_gltf_find_dangling(document);
+	return document;
+}
+
+/* From glTF 2.0 and the schemas of the extensions. */
+static const struct {
+	nt_gltf_growing kind;
+	const char *pointer, *rest; /* rest: what the pointer leaves out, beginning with a key that the file chooses */
+} references[] = {
+	{NT_GLTF_VIEWS, "/accessors/0/bufferView", ""},
+	{NT_GLTF_VIEWS, "/accessors/0/sparse/indices/bufferView", ""},
+	{NT_GLTF_VIEWS, "/accessors/0/sparse/values/bufferView", ""},
+	{NT_GLTF_VIEWS, "/accessors/0/extensions/MPEG_accessor_timed/bufferView", ""},
+	{NT_GLTF_ACCESSORS, "/animations/0/samplers/0/input", ""},
+	{NT_GLTF_ACCESSORS, "/animations/0/samplers/0/output", ""},
+	{NT_GLTF_BUFFERS, "/bufferViews/0/buffer", ""},
+	{NT_GLTF_BUFFERS, "/bufferViews/0/extensions/EXT_meshopt_compression/buffer", ""},
+	{NT_GLTF_BUFFERS, "/bufferViews/0/extensions/KHR_meshopt_compression/buffer", ""},
+	{NT_GLTF_ACCESSORS, "/cameras/0/extensions/MPEG_viewport_recommended/viewports/0/translation", ""},
+	{NT_GLTF_ACCESSORS, "/cameras/0/extensions/MPEG_viewport_recommended/viewports/0/rotation", ""},
+	{NT_GLTF_ACCESSORS, "/cameras/0/extensions/MPEG_viewport_recommended/viewports/0/parameters", ""},
+	{NT_GLTF_VIEWS, "/images/0/bufferView", ""},
+	{NT_GLTF_ACCESSORS, "/meshes/0/primitives/0/attributes", "/NORMAL"},
+	{NT_GLTF_ACCESSORS, "/meshes/0/primitives/0/indices", ""},
+	{NT_GLTF_ACCESSORS, "/meshes/0/primitives/0/targets/0", "/NORMAL"},
+	{NT_GLTF_ACCESSORS, "/meshes/0/primitives/0/extensions/CESIUM_primitive_outline/indices", ""},
+	{NT_GLTF_ACCESSORS, "/meshes/0/primitives/0/extensions/EXT_mesh_primitive_edge_visibility/visibility", ""},
+	{NT_GLTF_ACCESSORS, "/meshes/0/primitives/0/extensions/EXT_mesh_primitive_edge_visibility/silhouetteNormals", ""},
+	{NT_GLTF_ACCESSORS,
+		"/meshes/0/primitives/0/extensions/EXT_mesh_primitive_edge_visibility/lineStrings/0/indices", ""},
+	{NT_GLTF_VIEWS, "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/bufferView", ""},
+	{NT_GLTF_VIEWS, "/meshes/0/primitives/0/extensions/KHR_gaussian_splatting/extensions/"
+		"KHR_gaussian_splatting_compression_spz_2/bufferView", ""},
+	{NT_GLTF_ACCESSORS, "/meshes/0/extensions/EXT_mesh_manifold/manifoldPrimitive/attributes", "/POSITION"},
+	{NT_GLTF_ACCESSORS, "/meshes/0/extensions/EXT_mesh_manifold/manifoldPrimitive/indices", ""},
+	{NT_GLTF_ACCESSORS, "/meshes/0/extensions/EXT_mesh_manifold/mergeIndices", ""},
+	{NT_GLTF_ACCESSORS, "/meshes/0/extensions/EXT_mesh_manifold/mergeValues", ""},
+	{NT_GLTF_ACCESSORS, "/meshes/0/extensions/EXT_mesh_primitive_restart/primitiveGroups/0/indices", ""},
+	{NT_GLTF_ACCESSORS, "/meshes/0/extensions/MPEG_mesh_linking/correspondence", ""},
+	{NT_GLTF_ACCESSORS, "/meshes/0/extensions/MPEG_mesh_linking/pose", ""},
+	{NT_GLTF_ACCESSORS, "/meshes/0/extensions/MPEG_mesh_linking/weights", ""},
+	{NT_GLTF_ACCESSORS, "/nodes/0/extensions/EXT_mesh_gpu_instancing/attributes", "/TRANSLATION"},
+	{NT_GLTF_VIEWS, "/nodes/0/extensions/GRIFFEL_bim_data/bufferView", ""},
+	{NT_GLTF_ACCESSORS, "/nodes/0/extensions/MPEG_audio_spatial/sources/0/accessors/0", ""},
+	{NT_GLTF_ACCESSORS, "/skins/0/inverseBindMatrices", ""},
+	{NT_GLTF_ACCESSORS, "/textures/0/extensions/MPEG_texture_video/accessor", ""},
+	{NT_GLTF_VIEWS, "/extensions/EXT_feature_metadata/featureTables", "/trees/properties/height/bufferView"},
+	{NT_GLTF_VIEWS, "/extensions/EXT_feature_metadata/featureTables", "/trees/properties/height/arrayOffsetBufferView"},
+	{NT_GLTF_VIEWS, "/extensions/EXT_feature_metadata/featureTables", "/trees/properties/name/stringOffsetBufferView"},
+	{NT_GLTF_VIEWS, "/extensions/EXT_lights_ies/lights/0/bufferView", ""},
+	{NT_GLTF_VIEWS, "/extensions/EXT_structural_metadata/propertyTables/0/properties", "/height/values"},
+	{NT_GLTF_VIEWS, "/extensions/EXT_structural_metadata/propertyTables/0/properties", "/height/arrayOffsets"},
+	{NT_GLTF_VIEWS, "/extensions/EXT_structural_metadata/propertyTables/0/properties", "/name/stringOffsets"},
+	{NT_GLTF_VIEWS, "/extensions/KHR_audio/audio/0/bufferView", ""},
+	{NT_GLTF_VIEWS, "/extensions/KHR_audio_emitter/audio/0/bufferView", ""},
+	{NT_GLTF_VIEWS, "/extensions/KHR_techniques_webgl/shaders/0/bufferView", ""},
+	{NT_GLTF_ACCESSORS, "/extensions/MPEG_animation_timing/accessor", ""},
+	{NT_GLTF_ACCESSORS, "/extensions/MPEG_audio_spatial/sources/0/accessors/0", ""},
+	{NT_GLTF_VIEWS, "/extensions/MSFT_audio_emitter/clips/0/bufferView", ""},
+	{NT_GLTF_VIEWS, "/extensions/NV_materials_mdl/modules/0/bufferView", ""},
+	{NT_GLTF_VIEWS, "/extensions/NV_materials_mdl/bsdfMeasurements/0/bufferView", ""},
+};
+
+/* Each is found with its kind and its place, and nothing else is. */
+static void references_are_found_with_kind_and_place(void **state)
+{
+	(void)state;
+	for (size_t i = 0; i < sizeof references / sizeof *references; i++) {
+		char path[256];
+		snprintf(path, sizeof path, "%s%s", references[i].pointer, references[i].rest);
+		nt_scene scene;
+		nt_buffer text = {0};
+		const nt_gltf *document = find_dangling(&scene, &text, path);
+		for (nt_gltf_growing kind = 0; kind < NT_GLTF_GROWING; kind++)
+			if (document->dangling[kind].number != (kind == references[i].kind ? 9 : UINT64_MAX))
+				fail_msg("%s: %llu of kind %d", path, (unsigned long long)document->dangling[kind].number, kind);
+		assert_string_equal(document->dangling[references[i].kind].pointer, references[i].pointer);
+		nt_scene_free(&scene);
+		nt_buffer_free(&text);
+	}
+}
+
+/* Numbers elsewhere refer to nothing that an edit adds: to materials, to images, or they are the file's own words. */
+static void numbers_elsewhere_are_no_references(void **state)
+{
+	(void)state;
+	static const char *const others[] = {"/meshes/0/primitives/0/material", "/meshes/0/extras/indices",
+		"/textures/0/extensions/KHR_texture_basisu/source", "/nodes/0/mesh", "/accessors/0/extras/bufferView",
+		"/meshes/0/primitives/0/extensions/EXT_mesh_primitive_edge_visibility/material",
+		"/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/attributes/POSITION"};
+	for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+		nt_scene scene;
+		nt_buffer text = {0};
+		const nt_gltf *document = find_dangling(&scene, &text, others[i]);
+		for (nt_gltf_growing kind = 0; kind < NT_GLTF_GROWING; kind++)
+			if (document->dangling[kind].number != UINT64_MAX)
+				fail_msg("%s", others[i]);
+		nt_scene_free(&scene);
+		nt_buffer_free(&text);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test(references_are_found_with_kind_and_place),
+		cmocka_unit_test(numbers_elsewhere_are_no_references),
+	};
+	return cmocka_run_group_tests_name("gltf/dangling", tests, NULL, NULL);
+}
