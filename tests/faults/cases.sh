@@ -31,6 +31,9 @@ make_images() {
 		"map_d c.png" "map_Pr c.png" "map_Pm m.tga" "Pc 1" "Ps 1" "aniso 1" "Ni 2" "map_ao m.tga" >images.mtl
 	printf '%s\n' "mtllib images.mtl" "v 0 0 0" "v 1 0 0" "v 0 1 0" "#MRGB ff010203ff040506" "vt 0 0" "vt 1 0" "vt 0 1" "usemtl a" \
 		"f 1/1 2/2 3/3" "usemtl b" "f 3/3 2/2 1/1" >images.obj
+	# and one of libtiff's with a JPEG, for which see test_memory.sh
+	python3 "$ROOT/tests/support/images.py" jpegtif d.jpg e.tif && printf '%s\n' "newmtl a" "norm e.tif" >jpeg.mtl &&
+		sed 's/images.mtl/jpeg.mtl/; s/usemtl b/usemtl a/' images.obj >jpeg.obj
 }
 
 images="images.obj images.mtl a.tga b.tif c.png d.jpg m.tga"

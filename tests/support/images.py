@@ -6,6 +6,7 @@
                                                    math gives (r, g, b) of bytes, a grey byte, or ("16", grey) of 16 bits
     images.py rows FILE                            the samples of a PNG as JSON, row by row
     images.py tga FILE.png FILE.tga                the same picture
+    images.py jpegtif FILE.jpg FILE.tif            the same grey picture, 8 x 8; tables apart from the scan, as TIFFs have them
     images.py embedded GLB NUMBER FILE             the bytes of an image of a GLB
 """
 import json
@@ -47,17 +48,32 @@ def bmp(width, height, pixel):
     return data
 
 
-def tif(width, height, pixel):
-    data = b"".join(bytes(pixel(x, y)) for y in range(height) for x in range(width))
-    entries = [(256, 4, 1, width), (257, 4, 1, height), (258, 3, 3, 8), (259, 3, 1, 1), (262, 3, 1, 2),
-               (273, 4, 1, 8), (277, 3, 1, 3), (278, 4, 1, height), (279, 4, 1, len(data))]
+def tif_of(data, behind, entries):
+    """entries: tag, type, count, value; None: it is in `behind`, after the directory."""
     at = 8 + len(data) + len(data) % 2
-    behind = at + 2 + 12 * len(entries) + 4
     directory = struct.pack("<H", len(entries))
     for tag, kind, count, value in entries:
-        directory += struct.pack("<HHII", tag, kind, count, behind if tag == 258 else value)
-    return (b"II*\0" + struct.pack("<I", at) + data + bytes(len(data) % 2) + directory + bytes(4) +
-            struct.pack("<HHH", 8, 8, 8))
+        directory += struct.pack("<HHII", tag, kind, count, at + 2 + 12 * len(entries) + 4 if value is None else value)
+    return b"II*\0" + struct.pack("<I", at) + data + bytes(len(data) % 2) + directory + bytes(4) + behind
+
+
+def tif(width, height, pixel):
+    data = b"".join(bytes(pixel(x, y)) for y in range(height) for x in range(width))
+    return tif_of(data, struct.pack("<HHH", 8, 8, 8), [
+        (256, 4, 1, width), (257, 4, 1, height), (258, 3, 3, None), (259, 3, 1, 1), (262, 3, 1, 2),
+        (273, 4, 1, 8), (277, 3, 1, 3), (278, 4, 1, height), (279, 4, 1, len(data))])
+
+
+def jpegtif(jpeg):
+    at, parts = 2, {True: b"", False: b""}
+    while jpeg[at + 1] != 0xda:  # the scan
+        size = 2 + struct.unpack(">H", jpeg[at + 2:at + 4])[0]
+        parts[jpeg[at + 1] in (0xdb, 0xc4)] += jpeg[at:at + size]
+        at += size
+    data, tables = b"\xff\xd8" + parts[False] + jpeg[at:], b"\xff\xd8" + parts[True] + b"\xff\xd9"
+    return tif_of(data, tables, [
+        (256, 4, 1, 8), (257, 4, 1, 8), (258, 3, 1, 8), (259, 3, 1, 7), (262, 3, 1, 1),
+        (273, 4, 1, 8), (277, 3, 1, 1), (278, 4, 1, 8), (279, 4, 1, len(data)), (347, 7, len(tables), None)])
 
 
 def paeth(a, b, c):
@@ -110,6 +126,9 @@ def main():
         picture = rows(open(sys.argv[2], "rb").read())
         with open(sys.argv[3], "wb") as file:
             file.write(tga(len(picture[0]), len(picture), lambda x, y: picture[y][x][:3]))
+    elif sys.argv[1] == "jpegtif":
+        with open(sys.argv[3], "wb") as file:
+            file.write(jpegtif(open(sys.argv[2], "rb").read()))
     else:
         with open(sys.argv[4], "wb") as file:
             file.write(embedded(open(sys.argv[2], "rb").read(), int(sys.argv[3])))

@@ -57,11 +57,11 @@ static toff_t source_size(thandle_t handle)
 	return ((source *)handle)->size;
 }
 
-/* The library has no code for it. A block beyond our limit is the file's fault. */
+/* The library has no code for it, and no word where zlib has none. A block beyond our limit is the file's fault. */
 static bool is_of_memory(const char *message)
 {
 	return !strstr(message, "beyond") &&
-	       (strstr(message, "emory") || strstr(message, "No space") || strstr(message, "lloc") ||
+	       (!*message || strstr(message, "emory") || strstr(message, "No space") || strstr(message, "lloc") ||
 		       strstr(message, "Insertion in tif_map"));
 }
 
@@ -173,6 +173,18 @@ static bool read_shown(TIFF *tiff, nt_pixels *pixels)
 	return true;
 }
 
+/* Whether the library lacks an array that it believes to have: it says nothing where there was no memory for one. */
+static bool lacks_arrays(TIFF *tiff)
+{
+	uint32_t table_bytes = 0;
+	uint16_t extra = 0, *kinds = NULL, *palette[3] = {NULL};
+	void *tables = NULL;
+	return (TIFFGetField(tiff, TIFFTAG_JPEGTABLES, &table_bytes, &tables) && table_bytes && !tables) ||
+	       (TIFFGetField(tiff, TIFFTAG_EXTRASAMPLES, &extra, &kinds) && extra && !kinds) ||
+	       (TIFFGetField(tiff, TIFFTAG_COLORMAP, &palette[0], &palette[1], &palette[2]) &&
+		       !(palette[0] && palette[1] && palette[2]));
+}
+
 static nt_status decode(TIFF *tiff, source *s, nt_pixels *pixels, nt_error *error)
 {
 	uint32_t width = 0, height = 0;
@@ -192,7 +204,7 @@ static nt_status decode(TIFF *tiff, source *s, nt_pixels *pixels, nt_error *erro
 		return status;
 	const bool read = !direct ? read_shown(tiff, pixels)
 				  : TIFFIsTiled(tiff) ? read_tiles(tiff, pixels, &s->exhausted) : read_scanlines(tiff, pixels);
-	return read ? NT_OK : fail(s, error);
+	return read && !s->exhausted ? NT_OK : fail(s, error);
 }
 
 static nt_status decode_tiff(const unsigned char *bytes, size_t size, uint32_t rows, nt_pixels *pixels, nt_error *error)
@@ -209,7 +221,9 @@ static nt_status decode_tiff(const unsigned char *bytes, size_t size, uint32_t r
 	TIFF *tiff = TIFFClientOpenExt("", "rm", &s, read_source, write_source, seek_source, close_source, source_size,
 		NULL, NULL, options);
 	TIFFOpenOptionsFree(options);
-	const nt_status status = tiff ? decode(tiff, &s, pixels, error) : fail(&s, error);
+	/* A directory is opened without a tag for which there was no memory, and would be decoded as if it never had it. */
+	s.exhausted |= tiff && lacks_arrays(tiff);
+	const nt_status status = tiff && !s.exhausted ? decode(tiff, &s, pixels, error) : fail(&s, error);
 	if (tiff)
 		TIFFClose(tiff);
 	if (status)
