@@ -49,7 +49,7 @@ cp "$data/quad.obj" c.obj
 run -d out a.obj
 run --write-if-changed --manifest=m -d out a.obj
 is "$(value m '[l["status"] for l in m.values()]')" "['left']"
-sleep 0.03
+later
 run --update --manifest=m -d out a.obj
 run --update --manifest=m --fail-fast -j1 -d out a.obj b.obj c.obj
 exits 2

@@ -45,13 +45,8 @@ run -n bad.obj other.glb
 exits 3
 is "$(cat o.glb)" mine
 mkfifo nobody_writes
-timeout 10 "$NMTAN" -n nobody_writes o.glb 2>"$WORK/err.txt"
+timeout 60 "$NMTAN" -n nobody_writes o.glb 2>"$WORK/err.txt"
 is $? 2
-
-# Long enough for a clock of the file system to go on.
-later() {
-	sleep 0.03
-}
 
 # What the run made anew: the names of inputs.
 made() {
@@ -154,11 +149,11 @@ is "$(made)" "quad.obj "
 is "$(identity out/quad.glb)" "$before"
 
 scene "a change within one tick of the clock is seen"
-# a machine with much to do may need some tries to read it so soon, or cannot: then it changed a second from now
+# a machine with much to do may need some tries to read it so soon, or cannot: then it changed an hour from now
 for try in $(seq 50); do
 	rm -rf out
 	cp "$data/quad.obj" now.obj
-	[ $try -le 25 ] || touch -d "1 second" now.obj
+	[ $try -le 25 ] || touch -d "1 hour" now.obj
 	run --update -d out now.obj
 	! grep -q xxh128 out/.nmtan-record || break
 done
@@ -289,20 +284,23 @@ ls *.obj >list
 later
 "$NMTAN" -q -d clean --files-from=list || wrong "exit code $?"
 kills=0
+made_so_far() { wc -l 2>/dev/null <out/.nmtan-record || echo 0; }
 for ((i = 0; i < 50; i++)); do
-	"$NMTAN" -q --update -d out --files-from=list 2>/dev/null & pid=$!
-	sleep 0.0$((RANDOM % 4))$((RANDOM % 10))
-	kill -9 $pid 2>/dev/null && kills=$((kills + 1))
+	goal=$(($(made_so_far) + RANDOM % 50))
+	"$NMTAN" -q -j2 --update -d out --files-from=list 2>/dev/null & pid=$!
+	while [ "$(made_so_far)" -lt $goal ] && kill -0 $pid 2>/dev/null; do :; done
+	kill -9 $pid 2>/dev/null
 	wait $pid 2>/dev/null
+	[ $? != 137 ] || kills=$((kills + 1))
 done
 [ $kills -gt 5 ] || wrong "only $kills runs were killed"
 run --update -d out --files-from=list
 exits 0
 is "$(ls -A out | grep -v '^in_[0-9]*\.glb$')" .nmtan-record
 diff -r clean out --exclude=.nmtan-record >difference || wrong "$(head -3 difference)"
-# each run that was killed may have been at one file for each of its threads
+# each run that was killed may have been at one file for each of its two threads
 lines=$(wc -l <out/.nmtan-record)
-[ "$lines" -le $((1000 + kills * $(nproc))) ] || wrong "$lines files were made in $kills runs"
+[ "$lines" -le $((1000 + kills * 2)) ] || wrong "$lines files were made in $kills runs"
 
 scene "a record, a manifest, a depfile and a report replace nothing that a run has read or written"
 cp "$data/mirrored_cube.obj" "$data/mirrored_cube.mtl" "$data/bumps.png" .
@@ -352,22 +350,21 @@ for ((i = 1; i < folders; i++)); do mkdir $i; cp in_*.obj $i/; done
 mkdir 0 && mv in_*.obj 0/
 find . -name '*.obj' | sort >list
 later
-run -q --update -d out --mirror=. --files-from=list
-exits 0
+# Milliseconds of the processors.
+took() {
+	local TIMEFORMAT='%U %S'
+	{ time "$NMTAN" -q --update -d out --mirror=. --files-from=list; } 2>&1 | awk 'END { printf "%d", 1000 * ($1 + $2) }'
+}
+made=$(took)
 run --update -d out --mirror=. --files-from=list
+exits 0
 says "${folders}00 of ${folders}00 done, ${folders}00 of them up to date"
 case $BUILD in
 *sanitize*) ;;
 *)
-	python3 -c 'import resource, subprocess, sys
-def took():
-	subprocess.run(sys.argv[1:], check=True)
-	usage = resource.getrusage(resource.RUSAGE_CHILDREN)
-	return usage.ru_utime + usage.ru_stime
-ends = [0, took(), took(), took()]
-best = min(b - a for a, b in zip(ends, ends[1:]))
-sys.exit("%.3f s" % best if best >= 0.5 else 0)' "$NMTAN" -q --update -d out --mirror=. --files-from=list 2>slow ||
-		wrong "$(tail -1 slow)"
+	# a machine of a third of the speed takes longer, but then so did making them, which is six times as much
+	best=$(for try in 1 2 3; do took; echo; done | sort -n | head -1)
+	[ "$best" -lt 500 ] || [ $((3 * best)) -lt "$made" ] || wrong "$best ms; making them took $made"
 	;;
 esac
 

@@ -127,6 +127,24 @@ valid() {
 	fi
 }
 
+# Until a command succeeds, one minute at most.
+await() {
+	local try
+	for ((try = 0; try < 6000; try++)); do
+		"$@" && return
+		sleep 0.01
+	done
+	return 1
+}
+
+# Until a file that is touched now has a later time than all that were before, whatever the grain of the file system's clock;
+# and longer than that of --update (src/batch/record.c).
+later() {
+	touch "$WORK/before"
+	sleep 0.03
+	await eval 'touch "$WORK/after" && [ "$WORK/after" -nt "$WORK/before" ]'
+}
+
 # An OBJ grid of N by N quads with texture coordinates: big enough to last a while.
 grid_obj() {
 	awk -v n="$1" 'BEGIN {

@@ -47,4 +47,4 @@ exec "$TOOL" "${@/#--files0-from=*/--files0-from=first/list0}"
 END
 	chmod +x stopping.sh
 }
-await_stop() { until [ "$(cat "my work/2.1.jsonl" 2>/dev/null | wc -l)" = 40 ]; do sleep 0.02; done; }
+await_stop() { await eval '[ "$(cat "my work/2.1.jsonl" 2>/dev/null | wc -l)" = 40 ]'; }
