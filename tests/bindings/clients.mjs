@@ -61,10 +61,11 @@ await test('three.js draws the same pixels with it as with its own module', asyn
 	await bundle({contents: readFileSync(here, 'utf8'), resolveDir: folder}, `${folder}/page.js`, 'iife');
 	writeFileSync(`${folder}/page.html`, '<!doctype html><script src="page.js"></script>');
 	const { chromium } = createRequire(`${playwright}/`)('playwright-core');
-	const browser = await chromium.launch({executablePath: process.env.CHROMIUM || '/usr/bin/chromium',
+	const browser = await chromium.launch({timeout: 300000, executablePath: process.env.CHROMIUM || '/usr/bin/chromium',
 		args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist']});
 	try {
 		const page = await browser.newPage();
+		page.setDefaultTimeout(300000);
 		await page.goto(pathToFileURL(`${folder}/page.html`).href);
 		const result = await (await page.waitForFunction(() => window.result)).jsonValue();
 		assert.equal(result.error, undefined);

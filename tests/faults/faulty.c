@@ -187,7 +187,7 @@ static int watched_main(int count, char **arguments, char **environment)
 	if (!shared || shared == MAP_FAILED)
 		_exit(70);
 	close(fd);
-	alarm(30);
+	alarm(300);
 	void *frame;
 	if (getenv("NT_FAULTY_TRACE"))
 		(void)backtrace(&frame, 1); /* loads what it needs */
