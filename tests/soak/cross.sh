@@ -25,7 +25,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 if [ ! -e "$libraries/libtinygltf.so" ]; then
-	mkdir "$work/packages"
+	mkdir -p "$work/packages" "$root"
 	# shellcheck disable=SC2086
 	(cd "$work/packages" && apt-get -q download nlohmann-json3-dev $(printf '%s:arm64 ' $packages)) >"$work/said" 2>&1 ||
 		{ tail -3 "$work/said"; exit 1; }
