@@ -13,7 +13,7 @@
 #include <jpeglib.h>
 #include <jerror.h>
 
-enum { MOST_SCANS = 500 };
+enum { MOST_SCANS = 500, SLACK_BYTES = 65536 };
 
 typedef struct decoder {
 	struct jpeg_decompress_struct jpeg;
@@ -53,13 +53,14 @@ static void on_progress(j_common_ptr jpeg)
 }
 
 /* A Huffman code has a bit at least, and each block of each component has one, of its first coefficient. Arithmetic
- * coding has no such bound. */
+ * coding has no such bound; its images may be as large as if some bytes more were there. The coefficients of all scans,
+ * which libjpeg keeps at once, take 128 bytes for each block: 1 KB for each byte of the file. */
 static bool is_too_small(const struct jpeg_decompress_struct *jpeg, size_t size)
 {
 	uint64_t blocks = 0;
 	for (int i = 0; i < jpeg->num_components; i++)
 		blocks += (uint64_t)jpeg->comp_info[i].width_in_blocks * jpeg->comp_info[i].height_in_blocks;
-	return !jpeg->arith_code && blocks / 8 > size;
+	return blocks / 8 > (uint64_t)size + (jpeg->arith_code ? SLACK_BYTES : 0);
 }
 
 static void decode(decoder *d, const unsigned char *bytes, size_t size, uint32_t rows)
@@ -79,8 +80,9 @@ static void decode(decoder *d, const unsigned char *bytes, size_t size, uint32_t
 	jpeg->out_color_space = jpeg->num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
 	jpeg->dct_method = JDCT_ISLOW;
 	const bool all = rows >= jpeg->image_height;
-	if (nt_pixels_create(d->pixels, jpeg->image_width, all ? jpeg->image_height : rows,
-		    jpeg->num_components == 1 ? 1 : 3, 8, d->error))
+	const unsigned channels = jpeg->num_components == 1 ? 1 : 3;
+	if (nt_pixels_check(jpeg->image_width, jpeg->image_height, channels, 8, d->error) ||
+		nt_pixels_create(d->pixels, jpeg->image_width, all ? jpeg->image_height : rows, channels, 8, d->error))
 		longjmp(d->leave, 1);
 	jpeg_start_decompress(jpeg);
 	while (jpeg->output_scanline < d->pixels->height) {

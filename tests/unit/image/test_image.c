@@ -464,43 +464,103 @@ static void decode_refuses_sizes_before_it_asks_for_memory(void **state)
 	assert_string_equal(error.message, "PNG: 44 bytes cannot hold 42 x 5963792 pixels");
 }
 
-/* The densest JPEG by Huffman codes: one grey, a scan that has the blocks' first coefficients alone, a bit each. */
-static void jpegs_are_held_against_a_bit_for_each_block(void **state)
+/* A JPEG of SIDE x SIDE black pixels whose scan has the blocks' first coefficients alone; malloc'ed. */
+enum { SIDE = 2048 };
+
+static unsigned char *make_dense_jpeg(int components, bool wide_and_high, bool arithmetic, unsigned long *size)
 {
-	(void)state;
-	enum { SIDE = 2048 };
-	static const jpeg_scan_info first_coefficients = {.comps_in_scan = 1};
+	const jpeg_scan_info first_coefficients = {.comps_in_scan = components, .component_index = {0, 1, 2}};
 	struct jpeg_compress_struct jpeg;
 	struct jpeg_error_mgr errors;
-	unsigned char *made = NULL, row[SIDE] = {0};
-	unsigned long size = 0;
+	unsigned char *made = NULL, row[3 * SIDE] = {0};
+	*size = 0;
 	jpeg.err = jpeg_std_error(&errors);
 	jpeg_create_compress(&jpeg);
-	jpeg_mem_dest(&jpeg, &made, &size);
+	jpeg_mem_dest(&jpeg, &made, size);
 	jpeg.image_width = jpeg.image_height = SIDE;
-	jpeg.input_components = 1;
-	jpeg.in_color_space = JCS_GRAYSCALE;
+	jpeg.input_components = components;
+	jpeg.in_color_space = components == 1 ? JCS_GRAYSCALE : JCS_RGB;
 	jpeg_set_defaults(&jpeg);
+	if (wide_and_high) {
+		jpeg.comp_info[0].h_samp_factor = jpeg.comp_info[1].v_samp_factor = 4;
+		jpeg.comp_info[0].v_samp_factor = jpeg.comp_info[1].h_samp_factor = 1;
+	}
 	jpeg.scan_info = &first_coefficients;
 	jpeg.num_scans = 1;
-	jpeg.optimize_coding = TRUE;
+	jpeg.arith_code = arithmetic;
+	jpeg.optimize_coding = !arithmetic;
 	jpeg_start_compress(&jpeg, TRUE);
 	for (unsigned y = 0; y < SIDE; y++)
 		jpeg_write_scanlines(&jpeg, (JSAMPROW[]){row}, 1);
 	jpeg_finish_compress(&jpeg);
 	jpeg_destroy_compress(&jpeg);
+	return made;
+}
 
+/* Its frame (SOF2 or SOF10): the marker, length and precision, then height and width. */
+static void declare(unsigned char *jpeg, size_t size, unsigned width, unsigned height)
+{
+	unsigned char *frame = memmem(jpeg, size, "\xff\xc2", 2);
+	frame = frame ? frame : memmem(jpeg, size, "\xff\xca", 2);
+	memcpy(frame + 5, (unsigned char[]){height >> 8 & 255, height & 255, width >> 8 & 255, width & 255}, 4);
+}
+
+static void decodes_with(const unsigned char *jpeg, size_t size, nt_status expected, const char *message)
+{
 	nt_pixels p;
 	nt_error error;
+	const nt_status status = nt_image_decode(jpeg, size, &p, &error);
+	assert_int_equal(status, expected);
+	if (status)
+		assert_non_null(strstr(error.message, message));
+	else
+		nt_pixels_free(&p);
+}
+
+/* The densest JPEG by Huffman codes: one grey, a bit each. */
+static void jpegs_are_held_against_a_bit_for_each_block(void **state)
+{
+	(void)state;
+	unsigned long size;
+	unsigned char *made = make_dense_jpeg(1, false, false, &size);
 	assert_true(size < SIDE * SIDE / 512 + 200);
-	assert_int_equal(nt_image_decode(made, size, &p, &error), NT_OK);
-	nt_pixels_free(&p);
-	/* the frame's marker, length and precision, then height and width: a pixel more than twice as high */
-	unsigned char *frame = memmem(made, size, "\xff\xc2", 2);
-	frame[5] = 2 * SIDE >> 8;
-	frame[6] = 1;
-	assert_int_equal(nt_image_decode(made, size, &p, &error), NT_ERROR_INPUT);
-	assert_non_null(strstr(error.message, " bytes cannot hold 2048 x 4097 pixels"));
+	decodes_with(made, size, NT_OK, NULL);
+	declare(made, size, SIDE, 2 * SIDE + 1); /* more than twice as high */
+	decodes_with(made, size, NT_ERROR_INPUT, " bytes cannot hold 2048 x 4097 pixels");
+	free(made);
+}
+
+/* With components of 4 x 1, 1 x 4 and 1 x 1 no component has a block for each 8 x 8 pixels: of 16 all have 9. */
+static void blocks_of_a_jpeg_may_cover_many_pixels(void **state)
+{
+	(void)state;
+	unsigned long size;
+	unsigned char *made = make_dense_jpeg(3, true, false, &size);
+	assert_in_range(size, SIDE * SIDE / 512 * 9 / 16, SIDE * SIDE / 512 * 10 / 16 + 200);
+	decodes_with(made, size, NT_OK, NULL);
+	free(made);
+}
+
+/* Arithmetic codes take next to nothing where nothing changes. What libjpeg keeps of all scans follows the declared size:
+ * that is looked at first, also where some rows are enough. */
+static void jpegs_of_arithmetic_codes_have_a_bound(void **state)
+{
+	(void)state;
+	unsigned long size;
+	unsigned char *made = make_dense_jpeg(3, false, true, &size);
+	assert_true(size < SIDE);
+	decodes_with(made, size, NT_OK, NULL);
+	declare(made, size, 8192, 8192);
+	decodes_with(made, size, NT_ERROR_INPUT, " bytes cannot hold 8192 x 8192 pixels");
+	/* Seven megabytes behind the image, so that these are enough. */
+	const size_t padded = size + 7 * (1 << 20);
+	made = realloc(made, padded);
+	memset(made + size, 0, padded - size);
+	declare(made, size, 17000, 16384);
+	nt_pixels p;
+	nt_error error;
+	assert_int_equal(nt_decode_jpeg(made, padded, 1, &p, &error), NT_ERROR_UNSUPPORTED);
+	assert_non_null(strstr(error.message, "17000 x 16384 pixels of 3 bytes, more than nmtan decodes"));
 	free(made);
 }
 
@@ -563,6 +623,8 @@ int main(void)
 		cmocka_unit_test(decode_ends_where_an_hdr_ends),
 		cmocka_unit_test(decode_refuses_sizes_before_it_asks_for_memory),
 		cmocka_unit_test(jpegs_are_held_against_a_bit_for_each_block),
+		cmocka_unit_test(blocks_of_a_jpeg_may_cover_many_pixels),
+		cmocka_unit_test(jpegs_of_arithmetic_codes_have_a_bound),
 		cmocka_unit_test(decode_survives_damage),
 		cmocka_unit_test(decode_without_memory_is_an_error),
 	};
