@@ -118,7 +118,7 @@ gltf() {
 
 # The output has no error in the Khronos validator that its input (if any) did not have.
 valid() {
-	local folders=("$(dirname "$1")")
+	local folders=("$(dirname -- "$1")")
 	[ "$1" != --pairs ] || mapfile -t folders < <(cut -f1 "$2" | sed 's|/[^/]*$||' | sort -u)
 	if [ -f "$ROOT/build/node/node_modules/gltf-validator/package.json" ]; then
 		answer folders node "$ROOT/tests/support/validate.mjs" "$@" || wrong "$1 is not valid"
