@@ -265,6 +265,78 @@ static void nasty_meshes_are_byte_identical(void **state)
 	assert_int_equal(wrong, 0);
 }
 
+/* Many nasty meshes as one, with vertices and corners enough for the threads of complex vertices (complex.c). Every second
+ * one has its coordinates in other units, so that not all of them weld. */
+typedef struct joined {
+	nmtan_mesh mesh;
+	size_t corner_count;
+	float *rows[3]; /* positions, normals, texture coordinates */
+	uint32_t *indices;
+	uint8_t *sizes;
+} joined;
+
+static void copy_rows(const float *from, size_t stride_bytes, size_t floats, size_t count, float scale, float *to)
+{
+	for (size_t i = 0; i < count; i++)
+		for (size_t k = 0; k < floats; k++)
+			to[i * floats + k] = scale * from[i * stride_bytes / sizeof *from + k];
+}
+
+static void join(joined *j, const nt_nasty *part, float unit)
+{
+	const nmtan_mesh m = filled(&part->mesh);
+	const size_t vertices = j->mesh.vertex_count, faces = j->mesh.face_count;
+	for (int i = 0; i < 3; i++)
+		assert_non_null(j->rows[i] = realloc(j->rows[i], (vertices + m.vertex_count) * 12 + 1));
+	assert_non_null(j->indices = realloc(j->indices, (j->corner_count + part->corner_count) * sizeof *j->indices + 1));
+	assert_non_null(j->sizes = realloc(j->sizes, faces + m.face_count + 1));
+	copy_rows(m.positions, m.position_stride_bytes, 3, m.vertex_count, 1, j->rows[0] + 3 * vertices);
+	copy_rows(m.normals, m.normal_stride_bytes, 3, m.vertex_count, 1, j->rows[1] + 3 * vertices);
+	copy_rows(m.texcoords, m.texcoord_stride_bytes, 2, m.vertex_count, unit, j->rows[2] + 2 * vertices);
+	for (size_t c = 0; c < part->corner_count; c++)
+		j->indices[j->corner_count + c] = (uint32_t)vertices + (m.indices ? m.indices[c] : (uint32_t)c);
+	for (size_t f = 0; f < m.face_count; f++)
+		j->sizes[faces + f] = m.face_sizes ? m.face_sizes[f] : 3;
+	j->corner_count += part->corner_count;
+	j->mesh.vertex_count += m.vertex_count;
+	j->mesh.face_count += m.face_count;
+}
+
+static void nasty_meshes_joined_are_byte_identical(void **state)
+{
+	(void)state;
+	static const unsigned threads[] = {1, 2, 4};
+	joined j = {.mesh = {.struct_bytes = sizeof j.mesh}};
+	for (uint64_t seed = 0; seed < 400; seed++) {
+		nt_nasty part;
+		nt_nasty_make(seed, &part);
+		join(&j, &part, ldexpf(1, (int)(seed % 2 * (seed % 32))));
+		nt_nasty_free(&part);
+	}
+	j.mesh.positions = j.rows[0];
+	j.mesh.normals = j.rows[1];
+	j.mesh.texcoords = j.rows[2];
+	j.mesh.indices = j.indices;
+	j.mesh.face_sizes = j.sizes;
+	const nmtan_mesh mesh = filled(&j.mesh);
+	result expected = result_make(j.corner_count);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	const nt_solve solve = make_solve(&mesh, j.corner_count, &scratch, &expected, true);
+	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
+	nt_scratch_free(&scratch);
+	size_t differences = 0;
+	for (int more = 0; more < 2; more++)
+		for (int i = 0; i < 3; i++)
+			differences += compare_run("joined", &mesh, j.corner_count, &expected, more, nt_cpu_best(), threads[i], &usual);
+	assert_int_equal(differences, 0);
+	result_free(&expected);
+	for (int i = 0; i < 3; i++)
+		free(j.rows[i]);
+	free(j.indices);
+	free(j.sizes);
+}
+
 /* A grid large enough for the plan to choose bins by itself; vertices and faces are numbered by a stride that is
  * prime to their count. */
 enum { GRID_SIDE = 300, STRIDE = 39119, GRID_VERTICES = GRID_SIDE * GRID_SIDE,
@@ -556,6 +628,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(goldens_are_byte_identical),
 		cmocka_unit_test(nasty_meshes_are_byte_identical),
+		cmocka_unit_test(nasty_meshes_joined_are_byte_identical),
 		cmocka_unit_test(antiparallel_directions_are_byte_identical),
 		cmocka_unit_test(short_directions_are_byte_identical),
 		cmocka_unit_test(scattered_meshes_are_byte_identical),
