@@ -211,7 +211,7 @@ done
 scene "signals leave no temporary files"
 grid_obj 220 >grid.obj
 ended=0
-for delay in 0.02 0.05 0.08 0.11 0.15 0.2 0.3; do
+for delay in 0.01 0.02 0.05 0.08 0.11 0.15 0.2 0.3; do
 	for signal in TERM INT; do
 		# A shell's background jobs ignore SIGINT; env gives them the default again.
 		env --default-signal=INT,TERM "$NMTAN" -q -j1 grid.obj out.gltf &
