@@ -199,6 +199,12 @@ void nt_fast_write_defaults(const nt_fast *fast)
 		nt_fast_write_unassigned(fast, c);
 }
 
+/* The next triangle from t on that copies corners. */
+static size_t next_copy(const nt_fast *fast, size_t t)
+{
+	return nt_fast_next_flagged(fast, t, NT_TRIANGLE_COPY);
+}
+
 static void copy_corner(const nt_solve *solve, size_t to, size_t from)
 {
 	memcpy(solve->tangents + 4 * to, solve->tangents + 4 * from, 4 * sizeof(float));
@@ -208,16 +214,35 @@ static void copy_corner(const nt_solve *solve, size_t to, size_t from)
 		memcpy(solve->magnitudes + 2 * to, solve->magnitudes + 2 * from, 2 * sizeof(float));
 }
 
-/* The first corner of each vertex among the sound triangles. */
+/* The first corners, among the sound triangles, of the vertices of all triangles that copy: [vertex_count], UINT32_MAX where
+ * there is none. Those of other vertices are not there. */
 static uint32_t *find_first_corners(const nt_fast *fast)
 {
 	uint32_t *first = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *first);
-	if (!first)
+	uint8_t *wanted = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, 1);
+	if (!first || !wanted)
 		return NULL;
-	memset(first, 0xff, fast->vertex_count * sizeof *first);
-	for (size_t t = fast->triangle_count; t-- > 0;)
-		for (size_t i = 3 * t + 3; !(fast->flags[t] & NT_TRIANGLE_DEGENERATE) && i-- > 3 * t;)
-			first[nt_fast_vertex(fast, i)] = (uint32_t)nt_fast_corner(fast, i);
+	memset(wanted, 0, fast->vertex_count);
+	size_t left = 0;
+	for (size_t t = next_copy(fast, 0); t < fast->triangle_count; t = next_copy(fast, t + 1))
+		for (size_t i = 3 * t; i < 3 * t + 3; i++) {
+			const uint32_t v = nt_fast_vertex(fast, i);
+			left += !wanted[v];
+			wanted[v] = 1;
+			first[v] = UINT32_MAX;
+		}
+	for (size_t t = 0; left > 0 && t < fast->triangle_count; t++) {
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
+		if (!(wanted[v[0]] | wanted[v[1]] | wanted[v[2]]) || fast->flags[t] & NT_TRIANGLE_DEGENERATE)
+			continue;
+		for (size_t k = 0; k < 3; k++) {
+			if (wanted[v[k]])
+				first[v[k]] = (uint32_t)nt_fast_corner(fast, 3 * t + k);
+			left -= wanted[v[k]];
+			wanted[v[k]] = 0;
+		}
+	}
 	return first;
 }
 
@@ -253,8 +278,7 @@ static void copy_from_half(const nt_fast *fast, size_t t)
 nmtan_status nt_fast_write_copies(nt_fast *fast)
 {
 	const uint32_t *first = NULL;
-	size_t t = nt_fast_next_flagged(fast, 0, NT_TRIANGLE_COPY);
-	for (; t < fast->triangle_count; t = nt_fast_next_flagged(fast, t + 1, NT_TRIANGLE_COPY)) {
+	for (size_t t = next_copy(fast, 0); t < fast->triangle_count; t = next_copy(fast, t + 1)) {
 		if (has_sound_half(fast, t)) {
 			copy_from_half(fast, t);
 			continue;
