@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Sets of lanes, which comparisons give: a vector of 0 and -1, or a mask where the instruction set has masks. By name,
- * because gcc 12 makes vectors of masks and masks of vectors at each step. Included by settle.h.
+ * because gcc 12 makes vectors of masks and masks of vectors at each step. Included by lanes.h.
  */
 #ifndef NT_TANGENT_FAST_LANE_SETS_H
 #define NT_TANGENT_FAST_LANE_SETS_H
@@ -48,6 +48,12 @@ static inline bool all_halves(half_set set)
 {
 	return set == ALL_HALVES;
 }
+
+/* Whether a lane is not 0. */
+static inline bool any_lane(lanes a)
+{
+	return _mm512_test_epi32_mask((__m512i)a, (__m512i)a) != 0;
+}
 #else
 typedef uint16_t lane_halves __attribute__((vector_size(4 * WIDTH)));
 typedef lanes lane_set;
@@ -87,6 +93,14 @@ static inline bool all_halves(half_set set)
 	for (int i = 0; i < WIDTH; i++)
 		all &= whole[i];
 	return all == UINT32_MAX;
+}
+
+static inline bool any_lane(lanes a)
+{
+	uint32_t any = 0;
+	for (int i = 0; i < WIDTH; i++)
+		any |= a[i];
+	return any != 0;
 }
 #endif
 

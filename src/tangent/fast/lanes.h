@@ -14,7 +14,7 @@
 #include "tangent/acos.h"
 #include "tangent/fast/parts.h"
 #include "tangent/usable.h"
-#include "tangent/fast/turn.h"
+#include "tangent/fast/lane_sets.h"
 
 /* Two unit vectors whose components along one axis are both above H, or both below -H, have a dot product
  * of at least 2 H^2 - 1 = -0.9998, well away from the -1 at which step 7 parts them: rounding moves it by 1e-6.
@@ -258,17 +258,14 @@ static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *re
 }
 
 /* Whether a corner of a sound triangle is not: directions or edges may lie along normals. */
-static inline bool has_extremes(const lanes_out *out, size_t count)
+static inline __attribute__((always_inline)) bool has_extremes(const lanes_out *out, size_t count)
 {
-	int extreme = 0;
-	for (size_t i = 0; i < count; i++) {
-		uint32_t states[3];
-		for (int k = 0; k < 3; k++)
-			memcpy(&states[k], &out->sum[k][3][i], sizeof states[k]);
-		const int sound = (states[0] & states[1] & states[2] & NT_STATE_SOUND) != 0;
-		extreme |= out->sound[i] & (sound ^ 1) & (out->degenerate[i] ^ 1);
+	lanes extreme = {0};
+	for (size_t i = 0; i < count; i += WIDTH) {
+		const lanes states = load_lanes(out->sum[0][3] + i) & load_lanes(out->sum[1][3] + i) & load_lanes(out->sum[2][3] + i);
+		extreme |= load_lanes(out->sound + i) & ~load_lanes(out->degenerate + i) & ~(states / NT_STATE_SOUND);
 	}
-	return extreme;
+	return any_lane(extreme);
 }
 
 /* Corners once more, which is rare. */

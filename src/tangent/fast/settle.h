@@ -8,7 +8,6 @@
 #define NT_TANGENT_FAST_SETTLE_H
 
 #include "base/vec.h"
-#include "tangent/fast/lane_sets.h"
 #include "tangent/fast/lanes.h"
 
 /* Degree of a hub, whose fans are not looked at; a number of fans that no vertex has. */
@@ -121,6 +120,15 @@ typedef struct record_lanes {
 	uint32_t present[NT_LANES];
 	uint32_t sound[NT_LANES];
 } record_lanes;
+
+/* Whether one of `used` values is not 0. */
+static inline bool any_of(const uint32_t *values, size_t used)
+{
+	lanes any = {0};
+	for (size_t i = 0; i < used; i += WIDTH)
+		any |= load_lanes(values + i);
+	return any_lane(any);
+}
 
 static inline void read_states(size_t used, record_lanes *restrict r)
 {
@@ -310,17 +318,18 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		complex[i] = present != 0 && 0 != (unsound[i] | mixed | !(both & NT_STATE_LOCAL) |
 						     (fan_count[i] != present));
 	}
-	for (int o = 0; o < 2; o++)
-		if (sums[o])
-			normalise_records(used, &r[o]);
-	if (fast->solve->known) {
-		float normals[3][NT_LANES];
+	/* few blocks have vertices of both orientations */
+	const bool there[2] = {any_of(r[0].present, used), any_of(r[1].present, used)};
+	float normals[3][NT_LANES];
+	if (fast->solve->known)
 		load_normals(fast->rows + first, count, used, normals);
-		for (int o = 0; o < 2; o++)
-			if (sums[o])
-				find_unusable(normals, &r[o], unusable[o], used);
-		for (size_t i = 0; i < used; i++)
-			settled->unusable |= unusable[0][i] | unusable[1][i];
+	for (int o = 0; o < 2; o++) {
+		if (!there[o])
+			continue;
+		normalise_records(used, &r[o]);
+		if (fast->solve->known)
+			find_unusable(normals, &r[o], unusable[o], used);
+		settled->unusable |= any_of(unusable[o], used);
 	}
 	/* from here on the rows may be overwritten */
 	for (int o = 0; o < 2; o++) {
@@ -337,10 +346,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		if (fast->wants_more)
 			settle_more(fast->more[o] + first, count, r[o].present);
 	}
-	uint32_t complex_count = 0;
-	for (size_t i = 0; i < used; i++)
-		complex_count += complex[i];
-	if (complex_count > 0)
+	if (any_of(complex, used))
 		describe_complex(fast, a, first, used, complex, fan_count, settled);
 }
 
