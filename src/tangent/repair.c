@@ -51,6 +51,7 @@ typedef struct patient {
 	size_t welded_count;
 	uint32_t *ids;          /* [welded_count] numbers of those that have an unusable corner, the touched ones; NT_NO_ID */
 	size_t id_count;
+	bool among_suspects;    /* all triangles with a touched vertex are suspects */
 	surroundings *around;   /* [id_count], with room for as many as there can be */
 } patient;
 
@@ -224,14 +225,28 @@ static inline bool is_near(const patient *p, size_t first)
 	return (p->ids[v[0]] & p->ids[v[1]] & p->ids[v[2]]) != NT_NO_ID;
 }
 
+/* Triangles that are looked at together. */
+enum { STEP = 8 };
+
+/* Whether one of STEP triangles from t on is a suspect. */
+static inline bool has_suspect(const nt_known *known, size_t t)
+{
+	uint64_t flags;
+	memcpy(&flags, known->flags + t, STEP);
+	return flags & (0x0101010101010101u * known->suspect);
+}
+
 /* Visits the triangles with a touched vertex, which are listed without a branch. */
 static void visit_triangles(const patient *p)
 {
 	const size_t count = p->solve->mesh->face_count;
-	uint8_t list[64];
-	for (size_t begin = 0; begin < count; begin += 64) {
+	uint8_t list[STEP];
+	for (size_t begin = 0, end; begin < count; begin = end) {
 		size_t found = 0;
-		for (size_t t = begin; t < count && t < begin + 64; t++) {
+		end = count - begin < STEP ? count : begin + STEP;
+		if (p->among_suspects && end == begin + STEP && !has_suspect(p->solve->known, begin))
+			continue;
+		for (size_t t = begin; t < end; t++) {
 			list[found] = (uint8_t)(t - begin);
 			found += is_near(p, 3 * t);
 		}
@@ -391,6 +406,7 @@ nmtan_status nt_repair(const nt_solve *solve, nmtan_counts *counts)
 		return status;
 	if ((status = weld(&p)) || (status = number_vertices(&p, nt_counts_repaired(counts))))
 		return status;
+	p.among_suspects = solve->known && solve->known->around && counts->repaired_sign == 0;
 	look_around(&p);
 	for (place at = {0, 0}; find_faulty(&p, &at); step_over(&p, &at))
 		mend_face(&p, at.face, at.first);

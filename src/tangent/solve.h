@@ -33,6 +33,7 @@ typedef struct nt_known {
 	const float *rows[2]; /* [vertex count][4] by orientation, w = 0 where no triangle at the vertex
 	                         has it; NULL: none at all */
 	size_t row_step;      /* floats from one row to the next */
+	bool around;          /* where a corner is unusable by more than its sign, all triangles at its vertex are suspects */
 	const uint32_t *welded; /* [corner_count] welded vertices, below welded_count, whatever else is
 	                           known; NULL: ask nt_weld_corners() */
 	size_t welded_count;

@@ -299,6 +299,7 @@ static void tell_known(const nt_fast *fast)
 {
 	*fast->solve->known = (nt_known){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT,
 		.suspect = NT_TRIANGLE_SUSPECT, .doubtful = NT_TRIANGLE_SUSPECT & ~NT_TRIANGLE_COMPLEX,
+		.around = fast->records[0] || fast->records[1], /* of few triangles groups are judged, not vertices */
 		.welded = fast->triangles.ids, .welded_count = fast->vertex_count};
 }
 

@@ -42,7 +42,8 @@ enum {
 #define NT_RESULT_NONE 0u             /* no corner has this orientation */
 #define NT_RESULT_COMPLEX 0x40000000u /* ask complex.c; no other state has this bit */
 
-/* Beside a sign: the record is the result, but tangent/usable.c would not accept it. No corner gets this bit. */
+/* Beside a sign: the record is the result, but tangent/usable.c would not accept it, or not that of the vertex's other
+ * orientation. No corner gets this bit. */
 #define NT_RESULT_UNUSABLE 1u
 
 /* Beside NT_RESULT_COMPLEX: the sums have nothing extreme and do not split, so that an orientation with one group has the record as its

@@ -340,7 +340,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		for (size_t i = 0; i < used; i++) {
 			const uint32_t open = NT_RESULT_COMPLEX | ((unsound[i] - 1) & NT_RESULT_SUM);
 			r[o].state[i] = (-complex[i] & open) |
-					((complex[i] - 1) & -r[o].present[i] & (sign | unusable[o][i]));
+					((complex[i] - 1) & -r[o].present[i] & (sign | unusable[0][i] | unusable[1][i]));
 		}
 		store_records(nt_fast_record(fast, o, (uint32_t)first), fast->record_step, count, used, &r[o]);
 		if (fast->wants_more)

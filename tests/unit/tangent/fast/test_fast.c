@@ -16,6 +16,8 @@
 #include "tangent/fast/bins.h"
 #include "tangent/fast/fast.h"
 #include "tangent/fast/parts.h"
+#include "tangent/repair.h"
+#include "topology/orientation.h"
 
 /* Floats with different bits that are not both NaN. */
 static size_t count_differences(const float *a, const float *b, size_t count)
@@ -133,6 +135,34 @@ static void goldens_are_byte_identical(void **state)
 	assert_int_equal(differences, 0);
 }
 
+/* With repair, which relies on what the fast path knows of its result, by vertices and by groups. */
+static size_t compare_repairs(const char *name, const nmtan_mesh *mesh, size_t corners)
+{
+	static const nt_fast_plan plans[] = {{.grain = 1}, {.grain = 1, .bin_bits = 4}, {.grain = 1, .most_tiny = NT_TINY}};
+	enum { PLANS = sizeof plans / sizeof *plans };
+	result results[PLANS + 1]; /* the definition's is the last */
+	size_t differences = 0;
+	for (size_t i = PLANS + 1; i-- > 0;) {
+		results[i] = result_make(corners);
+		nt_scratch scratch;
+		nt_scratch_init(&scratch, NULL);
+		nt_known known = {0};
+		nmtan_counts counts;
+		nt_solve solve = make_solve(mesh, corners, &scratch, &results[i], false);
+		solve.repair = true;
+		solve.known = nt_has_stored_texcoords(mesh) ? NULL : &known;
+		assert_int_equal(i == PLANS ? nt_mikktspace_scalar(&solve) : nt_mikktspace_fast_as(&solve, &plans[i]), NMTAN_OK);
+		assert_int_equal(nt_repair(&solve, &counts), NMTAN_OK);
+		differences += result_differences(&results[PLANS], &results[i], corners, false);
+		nt_scratch_free(&scratch);
+	}
+	for (size_t i = 0; i <= PLANS; i++)
+		result_free(&results[i]);
+	if (differences)
+		print_error("%s, repaired: %zu floats differ\n", name, differences);
+	return differences;
+}
+
 static size_t compare_nasty(uint64_t seed)
 {
 	char name[64];
@@ -147,7 +177,8 @@ static size_t compare_nasty(uint64_t seed)
 	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
 	nt_scratch_free(&scratch);
 	snprintf(name, sizeof name, "seed %llu", (unsigned long long)seed);
-	const size_t differences = compare_variants(name, &mesh, nasty.corner_count, &expected, more);
+	const size_t differences = compare_variants(name, &mesh, nasty.corner_count, &expected, more) +
+		compare_repairs(name, &mesh, nasty.corner_count);
 	result_free(&expected);
 	nt_nasty_free(&nasty);
 	return differences;
@@ -535,6 +566,49 @@ static void unusable_vertices_are_byte_identical(void **state)
 		}
 }
 
+/* A sheet of 8 x 8 cells, bent and mirrored in the middle, whose triangles are beyond doubt but for one beside which they are
+ * not marked: repair has to see those around it all the same. */
+enum { SHEET = 9, MIDDLE = 4 };
+
+/* The determinant of these is 2.3e-10 in float and negative in truth. */
+static const float misjudged[3][2] = {{0.0827391148f, 0.0331479087f}, {0.00360275805f, 0.00178954005f},
+	{0.000188201055f, 0.000436497037f}};
+
+static void what_is_around_faults_is_seen(void **state)
+{
+	(void)state;
+	for (int by_sign = 0; by_sign < 2; by_sign++) {
+		float p[SHEET * SHEET + 2][3] = {{0}}, n[SHEET * SHEET + 2][3] = {{0}}, t[SHEET * SHEET + 2][2] = {{0}};
+		unsigned indices[6 * (SHEET - 1) * (SHEET - 1) + 3], count = 0;
+		for (int i = 0; i < SHEET * SHEET; i++) {
+			const int x = i % SHEET, y = i / SHEET, beyond = x > MIDDLE ? x - MIDDLE : 0;
+			const float beside = fabsf((float)(x - MIDDLE)), lean = by_sign ? 0.033f : 0.0f;
+			memcpy(p[i], (float[3]){(float)(x - beyond), (float)y, (float)-beyond}, sizeof p[i]);
+			n[i][0] = n[i][2] = sqrtf(0.5f); /* across neither side */
+			memcpy(t[i], (float[2]){0.08f * (beside - 1), lean * (beside - 1) + 0.05f * (float)(y - MIDDLE)}, sizeof t[i]);
+			const unsigned at = (unsigned)i, cell[6] = {at, at + 1, at + SHEET + 1, at, at + SHEET + 1, at + SHEET};
+			if (x + 1 < SHEET && y + 1 < SHEET)
+				memcpy(indices + 6 * count++, cell, sizeof cell);
+		}
+		const unsigned v = MIDDLE * SHEET + (by_sign ? 2 : MIDDLE);
+		count *= 2;
+		if (by_sign) {
+			memcpy(t[v], misjudged[0], sizeof t[v]);
+			memcpy(t[v + 1], misjudged[1], sizeof t[v]);
+			memcpy(t[v + SHEET + 1], misjudged[2], sizeof t[v]);
+			assert_int_equal(nt_orientation(misjudged[0], misjudged[1], misjudged[2]), -1);
+		} else {
+			/* along the tangents of one side; a triangle without any area takes either side's */
+			memcpy(n[v], (float[3]){0.5f, 0, 0}, sizeof n[v]);
+			n[SHEET * SHEET][0] = n[SHEET * SHEET + 1][1] = 1;
+			memcpy(indices + 3 * count++, (unsigned[3]){v, SHEET * SHEET, SHEET * SHEET + 1}, 12);
+		}
+		compare_calls(&(nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = count,
+			.vertex_count = SHEET * SHEET + 2, .positions = p[0], .normals = n[0], .texcoords = t[0],
+			.indices = indices}, NMTAN_REPAIR_ON);
+	}
+}
+
 /* An allocator that fails from the n-th request on. */
 typedef struct budget {
 	size_t left, live;
@@ -633,6 +707,7 @@ int main(void)
 		cmocka_unit_test(short_directions_are_byte_identical),
 		cmocka_unit_test(scattered_meshes_are_byte_identical),
 		cmocka_unit_test(unusable_vertices_are_byte_identical),
+		cmocka_unit_test(what_is_around_faults_is_seen),
 		cmocka_unit_test(every_failed_allocation_is_told),
 	};
 	return cmocka_run_group_tests_name("tangent/fast/fast", tests, NULL, NULL);
