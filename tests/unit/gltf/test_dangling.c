@@ -36,6 +36,7 @@ static const nt_gltf *find_dangling(nt_scene *scene, nt_buffer *text, const char
 	scene->byte_count = text->size;
 	assert_int_equal(nt_gltf_create(&document, scene, false, &error), NT_OK);
 	scene->source = document;
+	scene->free_source = nt_gltf_free;
 	nt_gltf_find_dangling(document);
 	return document;
 }
