@@ -1,6 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 #include "base/memory.h"
+#include "base/pages.h"
 #include "test.h"
+
+#include <inttypes.h>
+#include <stdio.h>
 
 static void size_mul_overflow_is_told(void **state)
 {
@@ -28,6 +32,41 @@ static void grow_keeps_content_and_refuses_overflow(void **state)
 	assert_false(nt_grow((void **)&block, &capacity, SIZE_MAX / 2, sizeof *block));
 	assert_int_equal(capacity, before);
 	free(block);
+}
+
+/* Whether the system was asked for large pages at an address. */
+static bool is_advised(const char *at)
+{
+	char line[1024];
+	bool here = false, advised = false;
+	FILE *maps = fopen("/proc/self/smaps", "r");
+	while (maps && fgets(line, sizeof line, maps)) {
+		uintptr_t begin, end;
+		if (sscanf(line, "%" SCNxPTR "-%" SCNxPTR " ", &begin, &end) == 2)
+			here = (uintptr_t)at >= begin && (uintptr_t)at < end;
+		else if (here && strncmp(line, "VmFlags:", 8) == 0)
+			advised = strstr(line, " hg");
+	}
+	if (maps)
+		fclose(maps);
+	return advised;
+}
+
+static void large_blocks_end_with_a_large_page_where_that_is_little_more(void **state)
+{
+	(void)state;
+	enum { PAGE = 2 * 1024 * 1024 };
+	const size_t bytes[] = {4 * PAGE, 4 * PAGE - 4096, 7 * PAGE - PAGE / 2 /* a thirteenth more */};
+	char *blocks[3];
+	for (size_t i = 0; i < 3; i++) {
+		blocks[i] = nt_alloc_large(bytes[i]);
+		assert_non_null(blocks[i]);
+		/* a system without large pages, or without that file, says nothing */
+		assert_true(!is_advised(blocks[i]) || is_advised(blocks[i] + (bytes[i] + PAGE - 1) / PAGE * PAGE - 1));
+	}
+	for (size_t i = 0; i < 3; i++)
+		free(blocks[i]);
+	assert_null(nt_alloc_large(SIZE_MAX - 4096));
 }
 
 static void arena_blocks_are_apart_and_aligned(void **state)
@@ -90,6 +129,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(size_mul_overflow_is_told),
 		cmocka_unit_test(grow_keeps_content_and_refuses_overflow),
+		cmocka_unit_test(large_blocks_end_with_a_large_page_where_that_is_little_more),
 		cmocka_unit_test(arena_blocks_are_apart_and_aligned),
 		cmocka_unit_test(large_arenas_have_large_blocks),
 	};
