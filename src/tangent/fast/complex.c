@@ -19,7 +19,7 @@
  * depends on the order of all corners; where there are such triangles and both orientations, the groups of their
  * vertices are found first, all at once, in that order.
  *
- * Time is linear in corners but for directions that really are antiparallel: there every member of a group may have
+ * Time is linear in corners but for directions that really are antiparallel: there every direction of a group may have
  * a sum of its own.
  */
 #include "tangent/fast/complex.h"

@@ -1,12 +1,14 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Averages of groups at complex vertices: steps 7 to 10 of the spec page. Corners are solved NT_SOLVED at a time in the
- * order of groups. Most groups do not split: their members' directions lie within a half-space, or at least no one
- * is antiparallel to the few outside of it. Otherwise a member that belongs to a part of its group has a sum of its own.
+ * order of groups. Most groups do not split: their members' directions lie within a half-space. Otherwise each direction
+ * has a sum of its own, which is that of all members with this direction: 16 directions at a time (part_lanes.h), in large
+ * groups by several threads. So it costs directions times members.
  */
 #include "tangent/fast/complex_solve.h"
 
 #include <string.h>
+#include "base/parallel.h"
 #include "base/vec.h"
 
 /* Some members of a group. */
@@ -15,6 +17,24 @@ typedef struct part {
 	const nt_corner *solved; /* [count] */
 	size_t count;
 } part;
+
+/* The different directions of a group's members. */
+typedef struct directions {
+	uint32_t *number; /* [members] of the direction that each has */
+	uint32_t *of;     /* [count] the first member that has it */
+	nt_corner *sums;  /* [count] averages of those that belong together with it */
+	uint32_t *table;  /* [table_size(members)] numbers by hash; NT_NONE: free */
+	size_t count;
+} directions;
+
+/* A power of two. */
+static size_t table_size(size_t members)
+{
+	size_t size = 2;
+	while (size < 2 * members)
+		size *= 2;
+	return size;
+}
 
 /* Solving */
 
@@ -30,41 +50,15 @@ static void solve_members(const nt_complex *c, const nt_batch *b, const uint32_t
 	}
 }
 
-static uint32_t triangle_of(const nt_batch *b, const part *p, size_t i)
-{
-	return b->corners[p->members[i]] >> 2;
-}
-
-/* Whether two members belong together whatever their directions are: without a frame, or of one face. */
-static bool always_belong(const nt_complex *c, const nt_batch *b, const part *p, size_t i, const part *q, size_t j)
-{
-	if (p->solved[i].kind == NT_CORNER_ANY || q->solved[j].kind == NT_CORNER_ANY)
-		return true;
-	const uint32_t pt = triangle_of(b, p, i), qt = triangle_of(b, q, j);
-	const uint32_t first = pt < qt ? pt : qt, second = pt < qt ? qt : pt;
-	return first == second || (second == first + 1 && (c->fast->flags[second] & NT_TRIANGLE_SECOND));
-}
-
-/* Whether two members of a group, one of part p and one of part q, are averaged together: step 7 with the default
- * threshold. */
-static inline bool belong_together(const nt_complex *c, const nt_batch *b, const part *p, size_t i, const part *q,
-	size_t j)
-{
-	const nt_corner *f = &p->solved[i], *t = &q->solved[j];
-	const bool parted = !(nt_dot3(f->u, t->u) > -1.0f) || !(nt_dot3(f->v, t->v) > -1.0f);
-	return !parted || always_belong(c, b, p, i, q, j);
-}
-
-/* Adds members, or those of them that belong together with member f; NT_NONE: all. The angles of their weights
- * are added too. */
-static void add_members(const nt_complex *c, const nt_batch *b, const part *p, size_t f, nt_corner *sum)
+/* Adds all members. The angles of their weights are added too. */
+static void add_members(const part *p, nt_corner *sum)
 {
 	nt_float4 u, v;
 	memcpy(&u, sum->u, sizeof u);
 	memcpy(&v, sum->v, sizeof v);
 	for (size_t i = 0; i < p->count; i++) {
 		const nt_corner *m = &p->solved[i];
-		if (m->kind == NT_CORNER_ANY || (f != NT_NONE && !belong_together(c, b, p, f, p, i)))
+		if (m->kind == NT_CORNER_ANY)
 			continue;
 		nt_float4 mu, mv;
 		memcpy(&mu, m->u, sizeof mu);
@@ -96,13 +90,10 @@ static void finish(const nt_complex *c, nt_corner *total)
 	}
 }
 
-/* The first member with a frame, or any if there is none. */
-static const nt_corner *first_with_frame(const part *p)
+/* Whether two members of a group are averaged together for their directions: step 7 with the default threshold. */
+static bool belong_together(const nt_corner *a, const nt_corner *b)
 {
-	size_t i = 0;
-	while (i + 1 < p->count && p->solved[i].kind == NT_CORNER_ANY)
-		i++;
-	return &p->solved[i];
+	return nt_dot3(a->u, b->u) > -1.0f && nt_dot3(a->v, b->v) > -1.0f;
 }
 
 /* Two unit vectors less than 89.4 degrees from a third one, the axis, have a dot product of at least
@@ -113,21 +104,29 @@ static bool is_near(const nt_corner *m, const nt_corner *axis)
 	       (m->kind == NT_CORNER_UNIT && nt_dot3(m->u, axis->u) > 0.01f && nt_dot3(m->v, axis->v) > 0.01f);
 }
 
-/* Whether member f belongs together with all. */
-static bool belongs_to_all(const nt_complex *c, const nt_batch *b, const part *p, size_t f)
+static bool belongs_to_all(const part *p, const nt_corner *m)
 {
 	for (size_t i = 0; i < p->count; i++)
-		if (!belong_together(c, b, p, i, p, f))
+		if (p->solved[i].kind != NT_CORNER_ANY && !belong_together(&p->solved[i], m))
 			return false;
 	return true;
 }
 
-/* Whether a group does not split. Of two members that do one is not near the axis. */
-static bool is_one(const nt_complex *c, const nt_batch *b, const part *p)
+/* The first member with a frame, or any if there is none. */
+static const nt_corner *first_with_frame(const part *p)
 {
-	const nt_corner *axis = first_with_frame(p);
+	size_t i = 0;
+	while (i + 1 < p->count && p->solved[i].kind == NT_CORNER_ANY)
+		i++;
+	return &p->solved[i];
+}
+
+/* Whether a group certainly does not split. Of two members that do one is not near the axis; where members are few, all of
+ * them are asked. */
+static bool is_one(const part *p, const nt_corner *axis)
+{
 	for (size_t i = 0; i < p->count; i++)
-		if (!is_near(&p->solved[i], axis) && !belongs_to_all(c, b, p, i))
+		if (!is_near(&p->solved[i], axis) && (p->count > NT_LANES || !belongs_to_all(p, &p->solved[i])))
 			return false;
 	return true;
 }
@@ -247,119 +246,196 @@ static void write_quads(const nt_complex *c, const nt_batch *b)
 	}
 }
 
+/* Parts of groups */
+
+/* Bits, so that members of one direction have equal sums. */
+static bool have_one_direction(const nt_corner *a, const nt_corner *b)
+{
+	return memcmp(a->u, b->u, sizeof a->u) == 0 && memcmp(a->v, b->v, sizeof a->v) == 0;
+}
+
+static uint64_t hash_direction(const nt_corner *m)
+{
+	uint32_t bits[6];
+	memcpy(bits, m->u, sizeof m->u);
+	memcpy(bits + 3, m->v, sizeof m->v);
+	uint64_t hash = 0;
+	for (int i = 0; i < 6; i++) {
+		hash = (hash ^ bits[i]) * 0xff51afd7ed558ccdu;
+		hash ^= hash >> 32;
+	}
+	return hash;
+}
+
+static void list_directions(const part *p, directions *d)
+{
+	const size_t mask = table_size(p->count) - 1;
+	memset(d->table, 0xff, (mask + 1) * sizeof *d->table);
+	d->count = 0;
+	for (size_t i = 0; i < p->count; i++) {
+		const nt_corner *m = &p->solved[i];
+		if (m->kind == NT_CORNER_ANY)
+			continue;
+		size_t at = (size_t)hash_direction(m) & mask;
+		while (d->table[at] != NT_NONE && !have_one_direction(&p->solved[d->of[d->table[at]]], m))
+			at = (at + 1) & mask;
+		if (d->table[at] == NT_NONE) {
+			d->of[d->count] = (uint32_t)i;
+			d->table[at] = (uint32_t)d->count++;
+		}
+		d->number[i] = d->table[at];
+	}
+}
+
+typedef struct sum_context {
+	const nt_complex *c;
+	const part *p;
+	const directions *d;
+} sum_context;
+
+/* Averages for directions NT_LANES * [begin, end). */
+static void sum_directions(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	const sum_context *s = context;
+	const directions *d = s->d;
+	for (size_t first = NT_LANES * begin; first < NT_LANES * end; first += NT_LANES) {
+		_Alignas(64) float lanes[6][NT_LANES] = {{0}}, sums[NT_CORNER_FLOATS][NT_LANES] = {{0}};
+		const size_t count = d->count - first < NT_LANES ? d->count - first : NT_LANES;
+		for (size_t lane = 0; lane < count; lane++) {
+			const nt_corner *m = &s->p->solved[d->of[first + lane]];
+			for (size_t i = 0; i < 3; i++)
+				lanes[i][lane] = m->u[i], lanes[3 + i][lane] = m->v[i];
+		}
+		s->c->kernels->part_sums(s->p->solved, s->p->count, lanes, s->c->more, sums);
+		for (size_t lane = 0; lane < count; lane++) {
+			float row[NT_CORNER_FLOATS];
+			for (size_t i = 0; i < NT_CORNER_FLOATS; i++)
+				row[i] = sums[i][lane];
+			memcpy(&d->sums[first + lane], row, sizeof row);
+			finish(s->c, &d->sums[first + lane]);
+		}
+	}
+}
+
+static uint32_t triangle_of(const nt_batch *b, const part *p, size_t i)
+{
+	return b->corners[p->members[i]] >> 2;
+}
+
+/* Members of one face belong together whatever their directions are: halves of a quad, which are neighbours, and a
+ * member and itself, which a NaN parts. Whether that tells two members from others of their directions. */
+static bool belongs_by_face(const nt_complex *c, const nt_batch *b, const part *p, size_t first, size_t second)
+{
+	const uint32_t t = triangle_of(b, p, first), other = triangle_of(b, p, second);
+	return (t == other || (t + 1 == other && c->fast->flags[other] & NT_TRIANGLE_SECOND)) &&
+	       !belong_together(&p->solved[first], &p->solved[second]);
+}
+
+/* The average of those that belong together with member i, where it is not as others of its direction: with [first, end) by
+ * face. With a NaN there are no others. */
+static nt_corner average_own(const nt_complex *c, const part *p, size_t i, size_t first, size_t end)
+{
+	const bool alone = !belong_together(&p->solved[i], &p->solved[i]);
+	nt_corner own = {.kind = NT_CORNER_EXTREME};
+	for (size_t j = alone ? first : 0; j < (alone ? end : p->count); j++)
+		if ((j >= first && j < end) || belong_together(&p->solved[i], &p->solved[j]))
+			add_members(&(part){p->members + j, p->solved + j, 1}, &own);
+	finish(c, &own);
+	return own;
+}
+
+/* A member's result in a group that may split. `whole` is that of a member without a frame, which belongs to all. */
+static nt_corner part_result(const nt_complex *c, const nt_batch *b, const part *p, const directions *d, size_t i,
+	const nt_corner *whole)
+{
+	if (p->solved[i].kind == NT_CORNER_ANY)
+		return *whole;
+	const size_t first = i > 0 && belongs_by_face(c, b, p, i - 1, i) ? i - 1 : i;
+	const size_t last = i + 1 < p->count && belongs_by_face(c, b, p, i, i + 1) ? i + 1 : i;
+	if (!NT_SHORT_WAYS || first < last || belongs_by_face(c, b, p, i, i))
+		return average_own(c, p, i, first, last + 1);
+	return d->sums[d->number[i]];
+}
+
 /* Groups */
 
-/* A group, all of whose members are solved. */
-static void average_group(const nt_complex *c, const nt_batch *b, const part *p)
+/* Averages a group that certainly does not split. False: it may, and nothing is written. */
+static bool average_whole(const nt_complex *c, const nt_batch *b, const part *p, nt_corner *whole)
 {
-	nt_corner whole = {.kind = NT_CORNER_EXTREME};
-	add_members(c, b, p, NT_NONE, &whole);
-	finish(c, &whole);
-	const bool one = is_one(c, b, p);
+	*whole = (nt_corner){.kind = NT_CORNER_EXTREME};
+	add_members(p, whole);
+	finish(c, whole);
+	if (!is_one(p, first_with_frame(p))) {
+		nt_corner mean = *whole;
+		normalise_safe(mean.v);
+		if (!NT_SHORT_WAYS || !is_one(p, &mean))
+			return false;
+	}
+	for (size_t i = 0; i < p->count; i++)
+		put_result(c, b, p->members[i], whole);
+	return true;
+}
+
+/* Averages a group whose members may split. */
+static void average_parts(const nt_complex *c, const nt_batch *b, const part *p, const nt_corner *whole, directions *d)
+{
+	const unsigned threads = p->count > NT_SOLVED ? c->fast->solve->threads : 1;
+	if (NT_SHORT_WAYS) {
+		list_directions(p, d);
+		nt_parallel_ranges(threads, (d->count + NT_LANES - 1) / NT_LANES, 1, sum_directions, &(sum_context){c, p, d});
+	}
 	for (size_t i = 0; i < p->count; i++) {
-		if (one || belongs_to_all(c, b, p, i)) {
-			put_result(c, b, p->members[i], &whole);
-			continue;
-		}
-		nt_corner own = {.kind = NT_CORNER_EXTREME};
-		add_members(c, b, p, i, &own);
-		finish(c, &own);
-		put_result(c, b, p->members[i], &own);
+		const nt_corner result = part_result(c, b, p, d, i, whole);
+		put_result(c, b, p->members[i], &result);
 	}
 }
 
 /* Groups [first, end), NT_SOLVED members together. */
 static void solve_groups(const nt_complex *c, const nt_batch *b, uint32_t first, uint32_t end)
 {
-	nt_corner solved[NT_SOLVED + NT_LANES];
+	nt_corner solved[NT_SOLVED + NT_LANES], sums[NT_SOLVED], whole;
+	uint32_t number[NT_SOLVED], of[NT_SOLVED], table[2 * NT_SOLVED];
+	directions d = {number, of, sums, table, 0};
 	const uint32_t begin = b->bounds[first];
 	solve_members(c, b, b->members + begin, b->bounds[end] - begin, solved);
 	for (uint32_t g = first; g < end; g++) {
 		const part p = {b->members + b->bounds[g], solved + (b->bounds[g] - begin),
 			b->bounds[g + 1] - b->bounds[g]};
-		average_group(c, b, &p);
+		if (!average_whole(c, b, &p, &whole))
+			average_parts(c, b, &p, &whole, &d);
 	}
 }
 
-/* The same for a group of more members, of which few at a time are solved: those that are not near the axis are kept. */
-typedef struct outliers {
-	uint32_t members[NT_SOLVED];
-	nt_corner solved[NT_SOLVED];
-	size_t count;
-} outliers;
-
-/* False: they are too many. */
-static bool add_outliers(const part *p, const nt_corner *axis, outliers *o)
+static nmtan_status average_large_parts(const nt_complex *c, const nt_batch *b, const part *p, const nt_corner *whole)
 {
-	for (size_t i = 0; i < p->count; i++) {
-		if (is_near(&p->solved[i], axis))
-			continue;
-		if (o->count == NT_SOLVED)
-			return false;
-		o->members[o->count] = p->members[i];
-		o->solved[o->count++] = p->solved[i];
-	}
-	return true;
+	directions d = {
+		.number = nt_borrowed_alloc(c->memory, p->count, sizeof *d.number),
+		.of = nt_borrowed_alloc(c->memory, p->count, sizeof *d.of),
+		.sums = nt_borrowed_alloc(c->memory, p->count, sizeof *d.sums),
+		.table = nt_borrowed_alloc(c->memory, table_size(p->count), sizeof *d.table),
+	};
+	if (!d.number || !d.of || !d.sums || !d.table)
+		return NMTAN_ERROR_MEMORY;
+	average_parts(c, b, p, whole, &d);
+	return NMTAN_OK;
 }
 
-/* Whether no member splits from an outlier. Where that holds for all members no two of them split. */
-static bool no_outlier_splits(const nt_complex *c, const nt_batch *b, const part *p, const outliers *o)
-{
-	const part others = {o->members, o->solved, o->count};
-	for (size_t j = 0; j < o->count; j++)
-		for (size_t i = 0; i < p->count; i++)
-			if (!belong_together(c, b, p, i, &others, j))
-				return false;
-	return true;
-}
-
-/* Whether a large group does not split, and if so its sum. */
-static bool add_large_group(const nt_complex *c, const nt_batch *b, const uint32_t *members, size_t count,
-	nt_corner *sum)
-{
-	nt_corner solved[NT_SOLVED + NT_LANES], axis = {.kind = NT_CORNER_ANY};
-	outliers o;
-	o.count = 0;
-	for (int round = 0; round < 2; round++) {
-		for (size_t first = 0; first < count; first += NT_SOLVED) {
-			const part p = {members + first, solved, count - first < NT_SOLVED ? count - first : NT_SOLVED};
-			solve_members(c, b, p.members, p.count, solved);
-			if (axis.kind == NT_CORNER_ANY)
-				axis = *first_with_frame(&p);
-			if (round == 0 ? !add_outliers(&p, &axis, &o) : !no_outlier_splits(c, b, &p, &o))
-				return false;
-			if (round == 0)
-				add_members(c, b, &p, NT_NONE, sum);
-		}
-		if (o.count == 0)
-			break;
-	}
-	return true;
-}
-
-/* All members are kept only if they may split. */
+/* A group of more members. */
 static nmtan_status solve_large_group(const nt_complex *c, const nt_batch *b, uint32_t group)
 {
-	const uint32_t *members = b->members + b->bounds[group];
-	const size_t count = b->bounds[group + 1] - b->bounds[group];
-	nt_corner whole = {.kind = NT_CORNER_EXTREME};
-	if (add_large_group(c, b, members, count, &whole)) {
-		finish(c, &whole);
-		for (size_t i = 0; i < count; i++)
-			put_result(c, b, members[i], &whole);
-		return NMTAN_OK;
-	}
 	const nt_scratch_mark mark = nt_scratch_here(c->memory->scratch);
 	const nt_borrowed memory = *c->memory;
-	nt_corner *solved = nt_borrowed_alloc(c->memory, count + NT_LANES, sizeof *solved);
+	const size_t count = b->bounds[group + 1] - b->bounds[group];
+	nt_corner *solved = nt_borrowed_alloc(c->memory, count + NT_LANES, sizeof *solved), whole;
 	if (!solved)
 		return NMTAN_ERROR_MEMORY;
-	solve_members(c, b, members, count, solved);
-	const part p = {members, solved, count};
-	average_group(c, b, &p);
+	const part p = {b->members + b->bounds[group], solved, count};
+	solve_members(c, b, p.members, count, solved);
+	const nmtan_status status = average_whole(c, b, &p, &whole) ? NMTAN_OK : average_large_parts(c, b, &p, &whole);
 	nt_scratch_back(c->memory->scratch, mark);
 	*c->memory = memory;
-	return NMTAN_OK;
+	return status;
 }
 
 nmtan_status nt_solve_batch(const nt_complex *c, const nt_batch *b)

@@ -273,6 +273,76 @@ static void short_directions_are_byte_identical(void **state)
 	assert_int_equal(differences, 0);
 }
 
+/* Corners around a vertex whose edges are of a few kinds in space and, always counterclockwise, in texture coordinates. So they
+ * have few directions, each often, of which many are opposite in u or in v alone, as those of a quad's halves may be; some
+ * triangles have no frame, and some, whose lengths overflow, one of NaN. */
+enum { RIM_MOST = 700 };
+typedef struct hub {
+	float p[RIM_MOST + 1][3], n[RIM_MOST + 1][3], t[RIM_MOST + 1][2];
+	unsigned indices[4 * RIM_MOST];
+	unsigned char face_sizes[RIM_MOST];
+	nmtan_mesh mesh;
+	size_t corners;
+} hub;
+
+static void make_hub(uint32_t random, size_t rim, bool quads, bool large, hub *h)
+{
+	static const float compass[8][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+	*h = (hub){.n[0] = {0, 0, 1}};
+	uint32_t place = 0, angle = 0;
+	for (size_t i = 1; i <= rim; i++) {
+		random = random * 1664525 + 1013904223;
+		/* never that of the vertex before, so that the fan does not end */
+		place += 1 + (random >> 29) % 7;
+		const float *p = compass[place % 8], scale = large && (random >> 20) % 8 == 0 ? 3e38f : 1.0f;
+		angle += (random >> 26) % 8 ? 1 + (random >> 26) % 3 : 0;
+		memcpy(h->p[i], (float[3]){scale * p[0], scale * p[1], 0}, sizeof h->p[i]);
+		memcpy(h->t[i], compass[angle % 8], sizeof h->t[i]);
+		/* no two vertices of the rim are one */
+		memcpy(h->n[i], (float[3]){(float)i, 1, 0}, sizeof h->n[i]);
+	}
+	unsigned *to = h->indices;
+	size_t faces = 0;
+	for (unsigned i = 1, step; i < rim; i += step) {
+		step = quads && i + 1 < rim && i % 3 ? 2 : 1;
+		*to++ = 0;
+		for (unsigned j = 0; j <= step; j++)
+			*to++ = i + j;
+		h->face_sizes[faces++] = (unsigned char)(step + 2);
+	}
+	h->corners = (size_t)(to - h->indices);
+	h->mesh = filled(&(nmtan_mesh){.struct_bytes = sizeof h->mesh, .face_count = faces, .vertex_count = rim + 1,
+		.positions = h->p[0], .normals = h->n[0], .texcoords = h->t[0], .indices = h->indices,
+		.face_sizes = quads ? h->face_sizes : NULL});
+}
+
+static size_t compare_hub(const hub *h, bool more)
+{
+	result expected = result_make(h->corners);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	const nt_solve solve = make_solve(&h->mesh, h->corners, &scratch, &expected, more);
+	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
+	nt_scratch_free(&scratch);
+	const size_t differences = compare_variants("hub", &h->mesh, h->corners, &expected, more);
+	result_free(&expected);
+	return differences;
+}
+
+static void hubs_are_byte_identical(void **state)
+{
+	(void)state;
+	static const size_t rims[] = {8, 13, 100, 300, RIM_MOST};
+	hub *h = malloc(sizeof *h);
+	size_t differences = 0;
+	for (unsigned i = 0; i < 8 * sizeof rims / sizeof *rims; i++) {
+		make_hub(i + 1, rims[i / 8], i & 1, i & 2, h);
+		differences += compare_hub(h, i & 4);
+	}
+	assert_int_equal(differences, 0);
+	free(h);
+}
+
 static uint64_t environment(const char *name, uint64_t otherwise)
 {
 	const char *text = getenv(name);
@@ -681,6 +751,14 @@ static void every_failed_allocation_is_told(void **state)
 		assert_int_equal(solve_within(&mesh, corners, &r, allowed, threads, bin_bits), NMTAN_OK);
 		assert_in_range(allowed, 8, 100);
 	}
+	/* a hub whose directions differ */
+	hub *h = malloc(sizeof *h);
+	make_hub(1, RIM_MOST, false, false, h);
+	size_t enough = 0;
+	while (solve_within(&h->mesh, h->corners, &r, enough, 1, 0) == NMTAN_ERROR_MEMORY)
+		enough++;
+	assert_in_range(enough, 2, 100);
+	free(h);
 	/* two of its triangles alone */
 	nmtan_mesh few = mesh;
 	few.face_count = 2;
@@ -705,6 +783,7 @@ int main(void)
 		cmocka_unit_test(nasty_meshes_joined_are_byte_identical),
 		cmocka_unit_test(antiparallel_directions_are_byte_identical),
 		cmocka_unit_test(short_directions_are_byte_identical),
+		cmocka_unit_test(hubs_are_byte_identical),
 		cmocka_unit_test(scattered_meshes_are_byte_identical),
 		cmocka_unit_test(unusable_vertices_are_byte_identical),
 		cmocka_unit_test(what_is_around_faults_is_seen),

@@ -1,0 +1,52 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Sums of the members of a group that belong together with one of them, for 16 of these at a time. Members are added in
+ * order, and one that a lane is parted from adds zero there, which changes no bits: a sum that begins with 0 is never -0.
+ * Included by kernel.h.
+ */
+#ifndef NT_TANGENT_FAST_PART_LANES_H
+#define NT_TANGENT_FAST_PART_LANES_H
+
+#include "base/vec.h"
+#include "tangent/fast/turn.h"
+
+typedef float float_lanes __attribute__((vector_size(4 * WIDTH)));
+
+/* Floats that are added up at a time: those of u alone take a third of the time of all, and the code is short. */
+enum { ADDED = 3 };
+
+/* Sums of floats [from, from + ADDED) for WIDTH lanes from `lane` on, whose directions are u and then v. */
+static void add_part_lanes(const nt_corner *members, size_t count, const float directions[6][NT_LANES], size_t lane,
+	size_t from, float sums[NT_CORNER_FLOATS][NT_LANES])
+{
+	float_lanes d[6], sum[ADDED] = {{0}};
+	for (int i = 0; i < 6; i++)
+		memcpy(&d[i], &directions[i][lane], sizeof d[i]);
+	for (const nt_corner *m = members; m < members + count; m++) {
+		if (m->kind == NT_CORNER_ANY)
+			continue;
+		const float_lanes uu = d[0] * m->u[0] + d[1] * m->u[1] + d[2] * m->u[2];
+		const float_lanes vv = d[3] * m->v[0] + d[4] * m->v[1] + d[5] * m->v[2];
+		const lanes together = (lanes)(uu > -1.0f) & (lanes)(vv > -1.0f);
+		float floats[ADDED];
+		memcpy(floats, (const char *)m + from * sizeof *floats, sizeof floats);
+#pragma GCC unroll 3
+		for (size_t i = 0; i < ADDED; i++) {
+			/* the last float is the weight itself */
+			const float weight = from + i < NT_CORNER_FLOATS - 1 ? m->angle : 1.0f;
+			sum[i] += (float_lanes)(together & (lanes)(weight * floats[i] - (float_lanes){0}));
+		}
+	}
+	for (size_t i = 0; i < ADDED; i++)
+		memcpy(&sums[from + i][lane], &sum[i], sizeof sum[i]);
+}
+
+static void part_sums(const nt_corner *members, size_t count, const float directions[6][NT_LANES], bool more,
+	float sums[NT_CORNER_FLOATS][NT_LANES])
+{
+	for (size_t lane = 0; lane < NT_LANES; lane += WIDTH)
+		for (size_t from = 0; from < (more ? NT_CORNER_FLOATS : ADDED); from += ADDED)
+			add_part_lanes(members, count, directions, lane, from, sums);
+}
+
+#endif
