@@ -286,9 +286,9 @@ typedef struct nmtan_output {
  *   output   required; output->tangents too
  *   counts   may be NULL
  *
- * Time is linear in the number of corners, whatever the mesh looks like, but for one thing: where tangents around a vertex
- * are opposite, MikkTSpace may have a sum of its own for each direction among them, so that their number counts times that
- * of the vertex's corners.
+ * Time is linear in the number of corners, whatever the mesh looks like, but for one thing: where tangents around a
+ * vertex are opposite, MikkTSpace may have a sum of its own for each direction among them, so that their number counts
+ * times that of the vertex's corners.
  *
  * Returns NMTAN_OK, NMTAN_ERROR_ARGUMENT, NMTAN_ERROR_INDEX, NMTAN_ERROR_FACE_SIZE,
  * NMTAN_ERROR_TOO_LARGE or NMTAN_ERROR_MEMORY.

@@ -11,7 +11,8 @@ typedef struct nt_tangent {
 	double t, base, arc;
 } nt_tangent;
 
-/* The tangent of the angle that nt_angle() has, or of what it lacks to a right angle: in [0, 1]; 1 of what is no number. */
+/* The tangent of the angle that nt_angle() has, or of what it lacks to a right angle: in [0, 1]; 1 of what is no
+ * number. */
 static inline double nt_lesser_tangent(double s, double c)
 {
 	const double a = c < 0.0 ? -c : c;
@@ -30,8 +31,8 @@ static inline nt_tangent nt_nearest_arc(double t)
 	return (nt_tangent){t, eighths * 0.125, arcs[eighths]};
 }
 
-/* nt_angle() of a point whose lesser tangent is known. atan(t) is atan(k/8) of the nearest k, plus atan(r) of what is left,
- * r = (t - k/8) / (1 + t k/8) with |r| <= 1/16. The first term left out of its series is r^15 / 15 < 6e-20. */
+/* nt_angle() of a point whose lesser tangent is known. atan(t) is atan(k/8) of the nearest k, plus atan(r) of what is
+ * left, r = (t - k/8) / (1 + t k/8) with |r| <= 1/16. The first term left out of its series is r^15 / 15 < 6e-20. */
 static inline double nt_angle_by(nt_tangent tangent, double s, double c)
 {
 	const double half_pi = 1.57079632679489661923, pi = 3.14159265358979323846;
@@ -47,8 +48,8 @@ static inline double nt_angle_by(nt_tangent tangent, double s, double c)
 }
 
 /* The angle in [0, pi] of the point (c, s) on the unit circle, s >= 0, to 2^-50 of itself; 0 where both are 0.
- * Without a division or a branch, for vectors: the nearest k pi/16 is turned away, and what is left, |r| <= sin(pi/32), has an
- * arc sine whose first term left out is r^15 143/10240 < 2^-53 r. */
+ * Without a division or a branch, for vectors: the nearest k pi/16 is turned away, and what is left, |r| <= sin(pi/32),
+ * has an arc sine whose first term left out is r^15 143/10240 < 2^-53 r. */
 static inline __attribute__((always_inline)) double nt_angle_on_circle(double s, double c)
 {
 	const double half_pi = 1.57079632679489661923, pi = 3.14159265358979323846;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Checked allocation and the arena. The arena bumps requests through blocks of 4 KiB to 4 MiB, each twice as large as
- * the one before: a large arena is in large pages, of which each costs as much to begin as some ten small ones. A request
- * that is large beside the block gets one of its own.
+ * the one before: a large arena is in large pages, of which each costs as much to begin as some ten small ones. A
+ * request that is large beside the block gets one of its own.
  */
 #include "base/memory.h"
 

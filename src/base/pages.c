@@ -14,8 +14,9 @@
 enum { HUGE_PAGE_BYTES = 2 * 1024 * 1024 };
 
 #ifdef MADV_HUGEPAGE
-/* The end of a block, which fills no large page, gets one where that is a twelfth more at most: beginning its small pages
- * would take longer. 980 000 triangles take 60 ms of processor time and 1650 page faults instead of 64.5 and 3370. */
+/* The end of a block, which fills no large page, gets one where that is a twelfth more at most: beginning its small
+ * pages would take longer. 980 000 triangles take 60 ms of processor time and 1650 page faults instead of 64.5 and
+ * 3370. */
 static size_t whole_pages(size_t bytes)
 {
 	const size_t missing = (HUGE_PAGE_BYTES - bytes % HUGE_PAGE_BYTES) % HUGE_PAGE_BYTES;

@@ -129,9 +129,9 @@ static void await_post(unsigned long bell, unsigned looks)
 		pause_shortly();
 }
 
-/* A new thread begins on another processor than its maker's, where there is one: a system that packs threads, as virtual
- * machines do, lets it wait there until the maker's time is up, 1.2 to 3 ms instead of 0.13. Returns the processor that
- * the thread has to be given back; -1: none. */
+/* A new thread begins on another processor than its maker's, where there is one: a system that packs threads, as
+ * virtual machines do, lets it wait there until the maker's time is up, 1.2 to 3 ms instead of 0.13. Returns the
+ * processor that the thread has to be given back; -1: none. */
 static int begin_elsewhere(pthread_attr_t *attributes)
 {
 #ifdef __GLIBC__

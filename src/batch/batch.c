@@ -119,10 +119,10 @@ static void run_one(void *context, size_t item, unsigned slot)
 	tell(p, job);
 }
 
-/* malloc() has a heap for each thread, which may keep up to 64 MB of what that has freed, while the next job's thread takes
- * new: four jobs in turn took twice as much as one. It begins with giving back every 128 KB, and with asking the system for
- * each larger block: three calls for a small file, and a page fault of a microsecond for every page that is new again,
- * which were a tenth of the time of a mesh with 6000 triangles. */
+/* malloc() has a heap for each thread, which may keep up to 64 MB of what that has freed, while the next job's thread
+ * takes new: four jobs in turn took twice as much as one. It begins with giving back every 128 KB, and with asking the
+ * system for each larger block: three calls for a small file, and a page fault of a microsecond for every page that is
+ * new again, which were a tenth of the time of a mesh with 6000 triangles. */
 static void return_freed_memory(void)
 {
 #ifdef M_TRIM_THRESHOLD

@@ -78,8 +78,8 @@ typedef struct nt_batch_options {
 	uint64_t memory;
 	nt_update *update; /* what is up to date is left alone, and records are written; NULL: every input runs */
 	bool fail_fast; /* after a failure no further job begins */
-	/* Called once per job, in the order of the inputs, by one thread at a time, as soon as the job and all before it
-	 * have ended. It may take the summary's report, leaving NULL. */
+	/* Called once per job, in the order of the inputs, by one thread at a time, as soon as the job and all before
+	 * it have ended. It may take the summary's report, leaving NULL. */
 	void (*done)(void *user, nt_job *job);
 	/* Called before that as soon as a job has ended, by one thread at a time; NULL: nobody wants to know. */
 	void (*ended)(void *user, const nt_job *job);

@@ -2,8 +2,8 @@
 /*
  * Depfiles: see depfile.h. Names are spelled as GNU make's manual ("Rule Syntax", "Using Wildcard Characters") and
  * Ninja's depfile lexer both read them: a backslash before a blank, "#" and ":", each backslash before those doubled,
- * and "$$". What only one of them knows (%, * in make) is left as it is. Of "\#" in a name Ninja reads one backslash too
- * many, and makes the output again each time; make would lose the rest of the line the other way.
+ * and "$$". What only one of them knows (%, * in make) is left as it is. Of "\#" in a name Ninja reads one backslash
+ * too many, and makes the output again each time; make would lose the rest of the line the other way.
  */
 #include "batch/depfile.h"
 

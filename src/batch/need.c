@@ -9,8 +9,8 @@
  *              accessors, wherever their bytes are (30; 105); 100 where there is or will be Draco (98; 207)
  *   Draco      256 for each byte (20 to 190)
  *
- * as "make bench-need" prints it. Images that are converted, polygons of many corners, and instances that become one PLY
- * are not seen.
+ * as "make bench-need" prints it. Images that are converted, polygons of many corners, and instances that become one
+ * PLY are not seen.
  */
 #include "batch/need.h"
 

@@ -34,8 +34,8 @@ typedef enum nt_update_by { NT_UPDATE_BY_TIME, NT_UPDATE_BY_CONTENT } nt_update_
 typedef struct nt_record nt_record;
 
 /* Reads a record, which need not be there yet. Lines that cannot be understood are passed over, and with `tidy`
- * superseded ones are taken out of the file when they are many. Returns NT_OK, NT_ERROR_IO, NT_ERROR_MISSING (no such folder) or
- * NT_ERROR_MEMORY. */
+ * superseded ones are taken out of the file when they are many. Returns NT_OK, NT_ERROR_IO, NT_ERROR_MISSING (no such
+ * folder) or NT_ERROR_MEMORY. */
 nt_status nt_record_open(nt_record **record, const char *path, bool tidy, nt_error *error);
 
 /* NULL is allowed. */

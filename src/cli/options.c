@@ -76,8 +76,8 @@ static int number_of(const char *word, int most)
 	return number;
 }
 
-/* "64M": a whole number, and what it counts, as GNU's tools have it: nothing for bytes; K, M, G, T or KiB, MiB, GiB, TiB
- * for powers of 1024; kB, KB, MB, GB, TB for powers of 1000. UINT64_MAX for anything else. */
+/* "64M": a whole number, and what it counts, as GNU's tools have it: nothing for bytes; K, M, G, T or KiB, MiB, GiB,
+ * TiB for powers of 1024; kB, KB, MB, GB, TB for powers of 1000. UINT64_MAX for anything else. */
 static uint64_t size_of(const char *word)
 {
 	static const char units[] = "KMGT";

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Progress: see progress.h. On a terminal the line replaces itself, beginning after a second, since a
- * line that flashes by only disturbs. --progress=on without a terminal is for logs: a line for each stage of one file, or
- * one every ten seconds for many.
+ * line that flashes by only disturbs. --progress=on without a terminal is for logs: a line for each stage of one file,
+ * or one every ten seconds for many.
  */
 #include "cli/progress.h"
 

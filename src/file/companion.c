@@ -7,11 +7,11 @@
  * is there once. Where another file has it:
  *
  * - A buffer replaces it if the previous main file at that very path refers to it and it is provably ours: the main
- *   file records the digest of the bytes that we wrote (nt_sink_digest), and the file still has that digest. An interim main
- *   file (commit.c) refers to interim names; it counts as referring to the final names too, and records the digest of
- *   what was there.
- * - Everything else is somebody else's and stays. The new file's name is made from its own bytes ("a-0123456789abcdef.bin"),
- *   so that the same result has the same name in every run and nothing piles up.
+ *   file records the digest of the bytes that we wrote (nt_sink_digest), and the file still has that digest. An interim
+ *   main file (commit.c) refers to interim names; it counts as referring to the final names too, and records the digest
+ *   of what was there.
+ * - Everything else is somebody else's and stays. The new file's name is made from its own bytes
+ *   ("a-0123456789abcdef.bin"), so that the same result has the same name in every run and nothing piles up.
  *
  * In place nothing but the document is replaced, so there the second rule is the only one. An image may serve
  * documents that we know nothing of, so it is never replaced either. A buffer that was used as it is gets a digest in
@@ -58,8 +58,8 @@ bool nt_output_is_protected(const nt_output *output, const struct stat *status, 
 
 /* ---- names ---- */
 
-/* "STEM" + infix + the digest's first digits + "-number" + ".ENDING"; a long stem is cut between characters. A name that is
- * too long for that as it is gives itself, and is refused by the system. */
+/* "STEM" + infix + the digest's first digits + "-number" + ".ENDING"; a long stem is cut between characters. A name
+ * that is too long for that as it is gives itself, and is refused by the system. */
 static void make_name(char made[NAME_ROOM], const char *name, const char *infix, const char *digest, unsigned number)
 {
 	char inserted[48];

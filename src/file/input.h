@@ -22,7 +22,8 @@ typedef struct nt_file {
  * The error carries the name. Returns NT_OK, NT_ERROR_MISSING, NT_ERROR_IO or NT_ERROR_MEMORY. */
 nt_status nt_file_open(nt_file *file, const char *path, nt_error *error);
 
-/* The same for a file that is no source of what is made, such as an output that is compared: not in the trace (trace.h). */
+/* The same for a file that is no source of what is made, such as an output that is compared: not in the trace
+ * (trace.h). */
 nt_status nt_file_open_untraced(nt_file *file, const char *path, nt_error *error);
 
 void nt_file_close(nt_file *file);

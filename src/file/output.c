@@ -159,8 +159,8 @@ static nt_status open_temporary(nt_sink *sink, const char *beside, nt_error *err
 	return nt_error_in_file(error, sink->path);
 }
 
-/* Whether a path is taken, and by what. A link that leads nowhere, or round in a circle, is refused: what it stands for is
- * not known. */
+/* Whether a path is taken, and by what. A link that leads nowhere, or round in a circle, is refused: what it stands for
+ * is not known. */
 static nt_status look_at(const char *path, struct stat *status, bool *exists, nt_error *error)
 {
 	struct stat link;

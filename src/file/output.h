@@ -46,8 +46,9 @@ typedef struct nt_output_options {
 	bool dry_run;    /* refuse what would be refused, count what would be written, write nothing */
 	const char *in_place; /* this file may be replaced by a main file, and keeps its mode, owner and attributes; NULL: none */
 	nt_output_result *result; /* NULL: not wanted */
-	/* Calls nt_output_claim() for what the main file at `path`, which is about to be replaced, says of its companions;
-	 * NULL: nothing is known. NT_OK, also when it says nothing or cannot be read, or NT_ERROR_MEMORY. */
+	/* Calls nt_output_claim() for what the main file at `path`, which is about to be replaced, says of its
+	 * companions; NULL: nothing is known. NT_OK, also when it says nothing or cannot be read, or
+	 * NT_ERROR_MEMORY. */
 	nt_status (*find_claims)(nt_output *output, const char *path, nt_error *error);
 	/* Called by nt_output_commit() when every file is complete, noted (trace.h) and about to take its name. Then
 	 * nothing takes a name if this fails. NULL: nobody wants to know. */
@@ -62,7 +63,8 @@ nt_status nt_output_create(nt_output **output, const nt_output_options *options,
  * not exist are ignored. To write in place, do not name the input. way_out: what the refusal advises; NULL: nothing. */
 nt_status nt_output_protect(nt_output *output, const char *path, const char *way_out, nt_error *error);
 
-/* With no_clobber, refuses a main file that exists, as nt_output_add() does: for callers that have not read anything yet. */
+/* With no_clobber, refuses a main file that exists, as nt_output_add() does: for callers that have not read anything
+ * yet. */
 nt_status nt_output_check_clobber(const nt_output_options *options, const char *path, nt_error *error);
 
 /* Refuses what nt_output_add() refuses in place: for callers that know that the file will change, before they solve. */
@@ -77,12 +79,14 @@ nt_status nt_output_check_in_place(const nt_output_options *options, const char 
  */
 nt_status nt_output_add(nt_output *output, const char *path, nt_role role, nt_sink **sink, nt_error *error);
 
-/* Whether this path is the file that is replaced in place; and that it needs no change, so that it is not even added. */
+/* Whether this path is the file that is replaced in place; and that it needs no change, so that it is not even
+ * added. */
 bool nt_output_is_in_place(const nt_output *output, const char *path);
 void nt_output_leave(nt_output *output);
 
-/* Says of a companion of the main file that is about to be replaced (its name in the same folder) by which digest of its
- * bytes we made it. `before`: of what the name `name` was to replace when the run that made it was cut short; NULL: of nothing. */
+/* Says of a companion of the main file that is about to be replaced (its name in the same folder) by which digest of
+ * its bytes we made it. `before`: of what the name `name` was to replace when the run that made it was cut short; NULL:
+ * of nothing. */
 nt_status nt_output_claim(nt_output *output, const char *name, const char *digest, const char *before,
 	nt_error *error);
 
@@ -101,7 +105,8 @@ const char *nt_sink_name(const nt_sink *sink, bool interim);
 const char *nt_sink_digest(const nt_sink *sink);
 const char *nt_sink_digest_before(const nt_sink *sink);
 
-/* The name that data for `name` has while `name` is not to be had: "a.new-0123456789abcdef.bin" for "a.bin". Appended. */
+/* The name that data for `name` has while `name` is not to be had: "a.new-0123456789abcdef.bin" for "a.bin".
+ * Appended. */
 void nt_output_interim_name(nt_buffer *text, const char *name, const char *digest);
 
 /* Says before the first byte how many there will be: a large file gets its room on the disk at once where that can be
@@ -134,8 +139,8 @@ uint64_t nt_output_copied(const nt_output *output);
  * either way. */
 nt_status nt_output_commit(nt_output *output, nt_error *error);
 
-/* Makes the name of a file or folder lasting: the folder that it is in onto the disk. Folders that cannot be synchronised
- * are passed over. */
+/* Makes the name of a file or folder lasting: the folder that it is in onto the disk. Folders that cannot be
+ * synchronised are passed over. */
 nt_status nt_output_sync_name(const char *path, nt_error *error);
 
 /* Removes the temporary files and frees the set; NULL is allowed. */

@@ -13,8 +13,8 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
-/* From which size on the kernel copies better than write() does, how much of a map is looked at at a time, and which files
- * get their room at once: that is a system call of 30 us. */
+/* From which size on the kernel copies better than write() does, how much of a map is looked at at a time, and which
+ * files get their room at once: that is a system call of 30 us. */
 enum { KERNEL_COPY_BYTES = 1024 * 1024, MAPPED_COPY_BYTES = 2 * 1024 * 1024, LARGE_FILE_BYTES = 1024 * 1024 };
 
 /* What goes straight through, and takes no memory of the buffer. */
@@ -35,8 +35,8 @@ nt_status nt_sink_refuse_existing(nt_error *error, const char *path)
 	return nt_error_in_file(error, path);
 }
 
-/* Without it ext4 sets aside room for each of its blocks when that is written: 6.4 ms instead of 4.6 for 35 MB. A refusal
- * changes nothing: if the disk is full, the write that finds it so says it. */
+/* Without it ext4 sets aside room for each of its blocks when that is written: 6.4 ms instead of 4.6 for 35 MB. A
+ * refusal changes nothing: if the disk is full, the write that finds it so says it. */
 void nt_sink_expect(nt_sink *sink, uint64_t size)
 {
 	if (sink->temporary && size >= LARGE_FILE_BYTES && size <= INT64_MAX)

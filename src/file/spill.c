@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A file of large blocks: see spill.h. It has lost its name before anything is written, so that nobody has to remove it.
- * Whatever the system refuses (space, maps) leaves a block in memory.
+ * A file of large blocks: see spill.h. It has lost its name before anything is written, so that nobody has to remove
+ * it. Whatever the system refuses (space, maps) leaves a block in memory.
  */
 #include "file/spill.h"
 

@@ -13,8 +13,8 @@
 
 typedef struct nt_temporary nt_temporary;
 
-/* Creates a new file beside `target`, open for reading and writing; its mode is less the umask. Returns its descriptor; -1 with
- * errno set otherwise (ENOMEM included). */
+/* Creates a new file beside `target`, open for reading and writing; its mode is less the umask. Returns its descriptor;
+ * -1 with errno set otherwise (ENOMEM included). */
 int nt_temporary_create(const char *target, unsigned mode, nt_temporary **temporary);
 
 /* A second name beside `target` for the file `from`. False, with errno, where the file system has no links. */

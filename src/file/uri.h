@@ -42,8 +42,8 @@ nt_status nt_uri_resolve(nt_arena *arena, const char *document, const char *uri,
 /* Appends the path that a relative URI without a scheme spells. */
 void nt_uri_append_decoded(nt_buffer *text, const char *uri, size_t length);
 
-/* Appends the name of the file that a URI names beside the document. False: it names something else, in another folder or
- * with a scheme, or memory is exhausted. */
+/* Appends the name of the file that a URI names beside the document. False: it names something else, in another folder
+ * or with a scheme, or memory is exhausted. */
 bool nt_uri_append_name(nt_buffer *name, const char *uri, size_t length);
 
 /* Appends a path as a URI: everything but letters, digits and "-._~/" is percent-encoded. */

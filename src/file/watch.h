@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Mapped files that another process changes while they are read: what was read may be half of one state and half of
- * another. Who asks before the result is used hears that it is worthless. A file whose bytes were written has another time
- * of modification.
+ * another. Who asks before the result is used hears that it is worthless. A file whose bytes were written has another
+ * time of modification.
  *
  * Of a file that becomes shorter, reading what is gone raises SIGBUS, which would end the
  * process; here the missing pages become zeros, and the reader comes to its end with whatever it makes of them.

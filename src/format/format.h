@@ -22,14 +22,15 @@ typedef struct nt_format_entry {
 	/* After the decisions: sets same_as of meshes that have the geometry of an earlier one; NULL: no two have the
 	 * same. */
 	nt_status (*find_same)(nt_scene *scene, const nt_read_options *options, nt_error *error);
-	/* After that: fills scene->joins, to be solved or compared, also of meshes whose kept tangents will be checked; NULL:
-	 * there are none. */
-	nt_status (*find_joins)(nt_scene *scene, bool solved, bool kept, nt_error *error);
-	/* After that: sets late of meshes whose results need not all be there at once for an edit of the source's document;
+	/* After that: fills scene->joins, to be solved or compared, also of meshes whose kept tangents will be checked;
 	 * NULL: there are none. */
+	nt_status (*find_joins)(nt_scene *scene, bool solved, bool kept, nt_error *error);
+	/* After that: sets late of meshes whose results need not all be there at once for an edit of the source's
+	 * document; NULL: there are none. */
 	nt_status (*find_late)(nt_scene *scene, nt_error *error);
-	/* After that: takes from the loads what threads can do side by side. needed: [mesh_count], which will be loaded, false
-	 * where that is done; what is wrong with one of them is said when it is. NULL: there is nothing of that kind. */
+	/* After that: takes from the loads what threads can do side by side. needed: [mesh_count], which will be
+	 * loaded, false where that is done; what is wrong with one of them is said when it is. NULL: there is nothing
+	 * of that kind. */
 	nt_status (*load_ahead)(nt_scene *scene, bool *needed, const nt_read_options *options, nt_error *error);
 	/* Brings the geometry of one mesh; NULL: open did. */
 	nt_status (*load)(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The image file of a mesh's normal map or base colour, for the report: its pictures, and what a normal map itself says.
- * Nothing else needs it, so nothing that is wrong with it is an error. Exhausted memory and faults of the system are
- * errors all the same.
+ * The image file of a mesh's normal map or base colour, for the report: its pictures, and what a normal map itself
+ * says. Nothing else needs it, so nothing that is wrong with it is an error. Exhausted memory and faults of the system
+ * are errors all the same.
  */
 #ifndef NT_FORMAT_NORMAL_MAP_H
 #define NT_FORMAT_NORMAL_MAP_H
@@ -25,8 +25,8 @@ typedef struct nt_normal_map {
 /* Finds and opens it: the first material with one, files inside the document's folder only (of an OBJ as
  * image/find.h has it).
  *
- *   slot      NT_SLOT_NORMAL, NT_SLOT_CLEARCOAT_NORMAL, which only glTF has, or 0: the base colour, if it has the texture
- *             coordinates of mesh->texcoord_set
+ *   slot      NT_SLOT_NORMAL, NT_SLOT_CLEARCOAT_NORMAL, which only glTF has, or 0: the base colour, if it has the
+ *             texture coordinates of mesh->texcoord_set
  *   searched  where an OBJ's is looked for besides: its folders and allow_outside count; NULL: nowhere
  *
  * Returns NT_OK, with map->bytes NULL when there is none, NT_ERROR_IO or NT_ERROR_MEMORY. */
@@ -34,8 +34,8 @@ nt_status nt_normal_map_open(nt_normal_map *map, const nt_scene *scene, const nt
 	const nt_image_places *searched, nt_error *error);
 void nt_normal_map_close(nt_normal_map *map);
 
-/* Where the map of a slot is looked up, at texture coordinates whose v points down: u' = t[0] u + t[1] v + t[2], v' = t[3] u + t[4] v +
- * t[5]. What says nothing, or nothing that is a number, moves nothing. */
+/* Where the map of a slot is looked up, at texture coordinates whose v points down: u' = t[0] u + t[1] v + t[2], v' =
+ * t[3] u + t[4] v + t[5]. What says nothing, or nothing that is a number, moves nothing. */
 void nt_normal_map_transform(const nt_scene *scene, const nt_mesh *mesh, enum nt_slot slot, float t[6]);
 
 /* The map of a slot in the first material of a mesh of an OBJ that names one; NULL: none. */

@@ -7,13 +7,13 @@
  * Primitives that get no tangents contribute their triangles all the same: those with tangents of their own to the
  * join of their kind, those whose materials ask for nothing, which have no kind, to every join whose set they have.
  * They take part as copies, since they may be wanted with another set than they name, and turned by another
- * material's transform. A primitive without normals is shaded flat and has nothing to weld; it contributes where normals
- * are made for it.
+ * material's transform. A primitive without normals is shaded flat and has nothing to weld; it contributes where
+ * normals are made for it.
  *
  * What is there several times counts once. Primitives with the same geometry (same_geometry.c) lie on each other: the
- * first contributes, and the others have its result, so that a small file that names the same triangles a thousand times
- * costs what one that names them once does, and a surface with two materials on it is no other surface. A join whose
- * parts are those of an earlier one, in another mesh, has that one's result.
+ * first contributes, and the others have its result, so that a small file that names the same triangles a thousand
+ * times costs what one that names them once does, and a surface with two materials on it is no other surface. A join
+ * whose parts are those of an earlier one, in another mesh, has that one's result.
  */
 #include "gltf/joins.h"
 

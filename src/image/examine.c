@@ -3,15 +3,16 @@
  * Facts of normal maps: see examine.h.
  *
  * Which way is green: the map of a surface h has the slopes p = -x/z = dh/du and, if green is up, q = y/z = dh/dv, with
- * rows counted down as glTF's v is. Both mixed derivatives are then one: dp/dv = dq/du. If green is down, q has the other
- * sign, and they are opposite. So the correlation of the two is near 1 for one convention and near -1 for the other;
- * rounding, painting and seams bring it nearer to 0. A surface without mixed derivatives (straight grooves along the
- * axes, bricks without corners) has only noise there.
+ * rows counted down as glTF's v is. Both mixed derivatives are then one: dp/dv = dq/du. If green is down, q has the
+ * other sign, and they are opposite. So the correlation of the two is near 1 for one convention and near -1 for the
+ * other; rounding, painting and seams bring it nearer to 0. A surface without mixed derivatives (straight grooves along
+ * the axes, bricks without corners) has only noise there.
  *
- * A pixel counts where it and its neighbours are unit vectors that look out of the surface and lie close together: padding
- * and the borders of islands do not. The image is cut into blocks; a verdict needs many of them, and most of their weight,
- * to agree. And it is asked at several sizes, each half of the one before: where a fine grain of one convention was painted
- * over forms of the other (tinyrenderer's african head), the sizes contradict each other, and there is no verdict.
+ * A pixel counts where it and its neighbours are unit vectors that look out of the surface and lie close together:
+ * padding and the borders of islands do not. The image is cut into blocks; a verdict needs many of them, and most of
+ * their weight, to agree. And it is asked at several sizes, each half of the one before: where a fine grain of one
+ * convention was painted over forms of the other (tinyrenderer's african head), the sizes contradict each other, and
+ * there is no verdict.
  */
 #include "image/examine.h"
 

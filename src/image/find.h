@@ -30,8 +30,8 @@ typedef enum nt_image_found {
  * Looks for a file in this order; the first that exists is it.
  *
  * 1. the name as it is, from the document's folder; an absolute one only if that is allowed
- * 2. in the document's folder, the input's and `folders`, in this order: the name's last parts, as many as lead to a file
- *    (of C:\art\tex\n.png: art/tex/n.png, tex/n.png, n.png)
+ * 2. in the document's folder, the input's and `folders`, in this order: the name's last parts, as many as lead to a
+ *    file (of C:\art\tex\n.png: art/tex/n.png, tex/n.png, n.png)
  * 3. the same without regard to case (of ASCII); of several files the first in the order of bytes
  *
  *   path   appended: absolute, links kept; of what is missing, where it would be by the document

@@ -7,7 +7,8 @@
 
 #include "ext/codec/pixels.h"
 
-/* Which number of a pixel is meant. Of grey images red, green and blue are the grey; an image without alpha is opaque. */
+/* Which number of a pixel is meant. Of grey images red, green and blue are the grey; an image without alpha is
+ * opaque. */
 typedef enum nt_channel {
 	NT_CHANNEL_RED, NT_CHANNEL_GREEN, NT_CHANNEL_BLUE, NT_CHANNEL_ALPHA,
 	NT_CHANNEL_LUMINANCE, /* 0.2126 red + 0.7152 green + 0.0722 blue of the samples as they are */

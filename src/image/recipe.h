@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How one image of an output comes from files: as it is, converted, a height map made a normal map, green turned around,
- * or put together of channels of several. Knows bytes and pixels; which files there are is textures.c's.
+ * How one image of an output comes from files: as it is, converted, a height map made a normal map, green turned
+ * around, or put together of channels of several. Knows bytes and pixels; which files there are is textures.c's.
  */
 #ifndef NT_IMAGE_RECIPE_H
 #define NT_IMAGE_RECIPE_H

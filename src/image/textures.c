@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The images of one output: see textures.h. A source is a file; a wish is for a source and what it is to become; a result
- * is what wishes for the same bytes share. Whether a source is a height map is known when its first rows are, so
+ * The images of one output: see textures.h. A source is a file; a wish is for a source and what it is to become; a
+ * result is what wishes for the same bytes share. Whether a source is a height map is known when its first rows are, so
  * that wishes become results in nt_textures_make().
  *
  * Files are opened to see their type and closed again, so that a thousand images do not need a thousand

@@ -77,8 +77,8 @@ typedef struct nt_texture {
 	const char *failure;       /* why something was not decoded; NULL: it was, or did not have to be */
 } nt_texture;
 
-/* beside: a path, which stays; large PNGs wait in a file beside it (file/spill.h). NULL: in memory. Returns NULL when memory
- * is exhausted. */
+/* beside: a path, which stays; large PNGs wait in a file beside it (file/spill.h). NULL: in memory. Returns NULL when
+ * memory is exhausted. */
 nt_textures *nt_textures_create(const char *beside);
 void nt_textures_free(nt_textures *textures); /* NULL is allowed */
 
@@ -94,7 +94,8 @@ size_t nt_textures_wishes(const nt_textures *textures);
  * carries it. Returns NT_OK, NT_ERROR_IO, also when a file is not what it was, or NT_ERROR_MEMORY. */
 nt_status nt_textures_make(nt_textures *textures, const nt_texture_rules *rules, nt_error *error);
 
-/* The results, none before they are made; several wishes may have one, and of results that are the same file one stands for all. */
+/* The results, none before they are made; several wishes may have one, and of results that are the same file one stands
+ * for all. */
 size_t nt_textures_count(const nt_textures *textures);
 const nt_texture *nt_textures_at(const nt_textures *textures, size_t result);
 size_t nt_textures_result(const nt_textures *textures, uint32_t wish);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Changing documents. A value that is set forgets its content, not its place in the text; that something was taken out of
- * a list is noted, so that the writer looks for it in the text. Lists that grow move and leave their old memory to the
- * arena; the pages of large ones are given back.
+ * Changing documents. A value that is set forgets its content, not its place in the text; that something was taken out
+ * of a list is noted, so that the writer looks for it in the text. Lists that grow move and leave their old memory to
+ * the arena; the pages of large ones are given back.
  */
 #include <inttypes.h>
 #include <math.h>

@@ -46,7 +46,8 @@ typedef enum nt_json_type {
  *   document  receives the document; free it with nt_json_free()
  *
  * Memory: the text, and at most 32 bytes for each array and object, 16 for each element and member, and 16 for each key
- * of an object whose keys no other has in that order; all but the text twice while parsing. Returns NT_OK, NT_ERROR_INPUT with the byte offset in `error`, or NT_ERROR_MEMORY.
+ * of an object whose keys no other has in that order; all but the text twice while parsing. Returns NT_OK,
+ * NT_ERROR_INPUT with the byte offset in `error`, or NT_ERROR_MEMORY.
  */
 nt_status nt_json_parse(nt_json **document, const char *text, size_t size, const char *foreign, nt_error *error);
 
@@ -74,8 +75,8 @@ nt_json_value *nt_json_at(const nt_json_value *value, size_t index);
 /* Key of an object's member: NUL-terminated, its length in *length (may be NULL); NULL: none. */
 const char *nt_json_key(const nt_json_value *object, size_t index, size_t *length);
 
-/* Value of an object's member, the first one with that key, of `length` bytes; NULL when `object` is not an object or has
- * no such member. */
+/* Value of an object's member, the first one with that key, of `length` bytes; NULL when `object` is not an object or
+ * has no such member. */
 nt_json_value *nt_json_find_key(const nt_json_value *object, const char *key, size_t length);
 
 /* The same; the length of a literal is known where this is compiled. */
@@ -122,9 +123,9 @@ void nt_json_set_object(nt_json *document, nt_json_value *value); /* empty */
 void nt_json_set_copy(nt_json *document, nt_json_value *value, const nt_json_value *from);
 
 /*
- * Hands the document's text on, some of it at a time: as it was parsed, but for the values that were set and the members
- * and elements that were added or taken out. These are spaced as their neighbours are, else as the first member of the
- * document is. The same document gives the same bytes.
+ * Hands the document's text on, some of it at a time: as it was parsed, but for the values that were set and the
+ * members and elements that were added or taken out. These are spaced as their neighbours are, else as the first member
+ * of the document is. The same document gives the same bytes.
  *
  * Returns NT_OK, NT_ERROR_MEMORY, also where a change before ran out of memory, or what `take` returned, which has
  * filled the error then and is not called again.

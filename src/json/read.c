@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * JSON text into a tree of values: one pass without recursion. The children of open containers are gathered on one stack,
- * from which a container takes its own when it is closed, so that lists have their final size. No number becomes
+ * JSON text into a tree of values: one pass without recursion. The children of open containers are gathered on one
+ * stack, from which a container takes its own when it is closed, so that lists have their final size. No number becomes
  * binary here, unless it may be beyond double; most are never asked for.
  *
  * Here and not a library's, because every value keeps the place of its text, which the trees of nlohmann and RapidJSON
@@ -63,7 +63,8 @@ static char *skip_plain(char *at)
 		uint64_t bytes;
 		memcpy(&bytes, at, sizeof bytes);
 		const uint64_t quotes = bytes ^ ones * '"', slashes = bytes ^ ones * '\\';
-		/* a high bit wherever a byte is a quote, a backslash, below 0x20 or above 0x7f; some more above the first */
+		/* a high bit wherever a byte is a quote, a backslash, below 0x20 or above 0x7f; some more above the
+		 * first */
 		if ((((quotes - ones) & ~quotes) | ((slashes - ones) & ~slashes) | ((bytes - ones * 0x20) & ~bytes) | bytes) & high)
 			break;
 	}

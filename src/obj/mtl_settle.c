@@ -6,12 +6,12 @@
  * Ns is the exponent n of Blinn-Phong highlights. A microfacet distribution of the same width has
  * alpha^2 = 2 / (n + 2) (Walter et al. 2007, Microfacet Models for Refraction through Rough Surfaces, section 5.2), and
  * glTF's alpha is the roughness squared: roughness = (2 / (n + 2))^(1/4). Blender from 3.2 on writes
- * Ns = 1000 (1 - roughness)^2 instead and puts maps of the roughness and of metal into map_Ns and map_refl; its libraries
- * say who wrote them, so that it is taken back. Numbers beside maps are what Blender's maps replace; elsewhere a map
- * is multiplied by its number, as map_Kd is by Kd.
+ * Ns = 1000 (1 - roughness)^2 instead and puts maps of the roughness and of metal into map_Ns and map_refl; its
+ * libraries say who wrote them, so that it is taken back. Numbers beside maps are what Blender's maps replace;
+ * elsewhere a map is multiplied by its number, as map_Kd is by Kd.
  *
- * Exporters write 0 for what they do not mean: d 0 (Tr 1), which would make all of it invisible, and 0 for the number of
- * a map, which would make the map invisible. Both become 1, as in obj2gltf.
+ * Exporters write 0 for what they do not mean: d 0 (Tr 1), which would make all of it invisible, and 0 for the number
+ * of a map, which would make the map invisible. Both become 1, as in obj2gltf.
  */
 #include "obj/mtl_values.h"
 

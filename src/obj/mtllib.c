@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * MTL: the files that mtllib statements name. A library that is not there is a finding, since its meshes can do without.
+ * MTL: the files that mtllib statements name. A library that is not there is a finding, since its meshes can do
+ * without.
  */
 #include <stdlib.h>
 #include <string.h>

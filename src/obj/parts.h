@@ -205,8 +205,8 @@ bool obj_shelf_keep(obj_shelf *shelf, obj_chunk *chunk);
 void obj_shelves_clear_corners(obj_file *file);
 void obj_shelves_free(obj_file *file);
 
-/* Gives the vertices of the file the colours that stand in comments; what is wrong with those is a finding. Needs guides.
- * Returns NT_OK or NT_ERROR_MEMORY. */
+/* Gives the vertices of the file the colours that stand in comments; what is wrong with those is a finding. Needs
+ * guides. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status obj_join_mrgb(obj_file *file, nt_error *error);
 
 /* Line of a face of the file, by reading its chunk again; 0: out of memory. before: how many v, vt and vn of

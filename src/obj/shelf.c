@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Where the arrays of chunks are kept. A thread reads one chunk after the other into the same arrays, its desk, whose
- * pages are there and in the cache; what was read is then copied, without the room that was left, into blocks large enough
- * for huge pages. With arrays of its own for each chunk, 106 MB of text take 193 ms on one thread instead of 172, and 120 MB
- * of memory instead of 88 (nmtan --threads=1 --timing; perf stat -e minor-faults: 18 300 faults instead of 6 500).
+ * pages are there and in the cache; what was read is then copied, without the room that was left, into blocks large
+ * enough for huge pages. With arrays of its own for each chunk, 106 MB of text take 193 ms on one thread instead of
+ * 172, and 120 MB of memory instead of 88 (nmtan --threads=1 --timing; perf stat -e minor-faults: 18 300 faults instead
+ * of 6 500).
  *
  * A file of few chunks has no such blocks: the arrays that were read are kept as they are.
  */
@@ -60,7 +61,8 @@ void obj_shelf_lend(obj_shelf *shelf, obj_chunk *chunk)
 	}
 }
 
-/* In blocks: the array goes back to the desk, and what is in it stays as a copy. NULL: out of memory, or it is empty. */
+/* In blocks: the array goes back to the desk, and what is in it stays as a copy. NULL: out of memory, or it is
+ * empty. */
 static void *copy_rows(nt_arena *arena, const array *from, const array *desk)
 {
 	void *copy = from->bytes ? nt_arena_alloc(arena, from->bytes, 1) : NULL;

@@ -239,8 +239,8 @@ static unsigned mirrored_axes(const nt_scene *scene, uint32_t material)
 		: (map->placement.scale[0] < 0 ? 1u : 0) | (map->placement.scale[1] < 0 ? 2u : 0);
 }
 
-/* A mesh has one sign for all of its faces, so that it ends where the mirroring changes. Tangents have nothing in common
- * there: they point the opposite way along u, or have the other w. */
+/* A mesh has one sign for all of its faces, so that it ends where the mirroring changes. Tangents have nothing in
+ * common there: they point the opposite way along u, or have the other w. */
 static nt_status divide_meshes(state *s)
 {
 	obj_file *file = s->file;

@@ -5,9 +5,9 @@
  * With texture coordinates there is a fresh solve, and faces go one by one: either all corners of a face keep their
  * tangents or all get the new ones, because they are interpolated with each other.
  *
- * Without them nothing says where a tangent should point but the tangent itself. Each corner goes by itself: what is valid
- * keeps its bytes, what is not becomes the nearest unit vector across its normal. w stays where the corners of a face
- * agree on a sign, and is 1 where they do not. When a morph target turns the normal, the tangent turns with it.
+ * Without them nothing says where a tangent should point but the tangent itself. Each corner goes by itself: what is
+ * valid keeps its bytes, what is not becomes the nearest unit vector across its normal. w stays where the corners of a
+ * face agree on a sign, and is 1 where they do not. When a morph target turns the normal, the tangent turns with it.
  */
 #include "pipeline/stages.h"
 

@@ -7,8 +7,9 @@
 
 #include "pipeline/settings.h"
 
-/* Solves the parts of a join as one mesh, and, where they are wanted, as its morph targets move it. The meshes of the scene among them get their corner_tangents and counts, and
- * their morph targets corner_tangents and what is said of them; blocks are malloc'ed, also after failure. */
+/* Solves the parts of a join as one mesh, and, where they are wanted, as its morph targets move it. The meshes of the
+ * scene among them get their corner_tangents and counts, and their morph targets corner_tangents and what is said of
+ * them; blocks are malloc'ed, also after failure. */
 nt_status nt_join_solve(const nt_join *join, float stored_v_offset, bool targets, const nmtan_options *options);
 
 /* For a report on meshes that were solved each by itself: a finding for every mesh whose tangents would differ if its

@@ -8,8 +8,8 @@
  * where one turns a triangle to the other side of its normals, B = cross(N, T) w turns round with it. Such
  * triangles are counted.
  *
- * Without texture coordinates there is nothing to solve: the tangents turn with their normals (authored.c). Half of such
- * a delta is half of the turn, so that nothing has to be looked at halfway.
+ * Without texture coordinates there is nothing to solve: the tangents turn with their normals (authored.c). Half of
+ * such a delta is half of the turn, so that nothing has to be looked at halfway.
  */
 #include "pipeline/morphs.h"
 #include "pipeline/stages.h"

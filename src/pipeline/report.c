@@ -36,7 +36,8 @@ static nt_status copy_image(nt_arena *arena, const unsigned char *bytes, size_t 
 	return NT_OK;
 }
 
-/* Where a page finds a file, if they have a folder in common that is not the root: then it says nothing of the machine. */
+/* Where a page finds a file, if they have a folder in common that is not the root: then it says nothing of the
+ * machine. */
 static nt_status refer(nt_arena *arena, const char *page_folder, const char *path, nt_image *image)
 {
 	nt_error error;
@@ -58,8 +59,8 @@ static nt_status refer(nt_arena *arena, const char *page_folder, const char *pat
 	return failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
-/* An image of a mesh for the report, as it is after a conversion: a copy, of a base colour only where the page cannot refer to
- * its file. */
+/* An image of a mesh for the report, as it is after a conversion: a copy, of a base colour only where the page cannot
+ * refer to its file. */
 static nt_status find_picture(const void *user, nt_arena *arena, const nt_scene *scene, const nt_mesh *mesh,
 	nt_picture picture, size_t most_bytes, nt_image *image)
 {

@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A report as a folder: a page of each input, and index.html, which lists them. What pages share is written first, pages
- * are as their inputs are done, and the index, of which only a row is kept for each, at the end: who is referred to is there.
+ * A report as a folder: a page of each input, and index.html, which lists them. What pages share is written first,
+ * pages are as their inputs are done, and the index, of which only a row is kept for each, at the end: who is referred
+ * to is there.
  */
 #ifndef NT_PIPELINE_REPORT_FOLDER_H
 #define NT_PIPELINE_REPORT_FOLDER_H
@@ -20,12 +21,12 @@ typedef struct nt_report_folder {
 
 /*
  * Names the page of each input of the target, which must outlive the folder, makes the folder target->path where it
- * is missing (not its parents), and writes the parts that its pages share, where they are missing. A page is named after the last part of its input's name: what is not a letter, a digit or
- * one of ".-_" becomes "_"; where two would have the same name, but for the case of letters, the later one has a hash of
- * its input's path too.
+ * is missing (not its parents), and writes the parts that its pages share, where they are missing. A page is named
+ * after the last part of its input's name: what is not a letter, a digit or one of ".-_" becomes "_"; where two would
+ * have the same name, but for the case of letters, the later one has a hash of its input's path too.
  *
- * Returns NT_OK, NT_ERROR_IO, also where a file would replace what nmtan did not make, or an input, or NT_ERROR_MEMORY. The
- * folder is to be freed after failure too.
+ * Returns NT_OK, NT_ERROR_IO, also where a file would replace what nmtan did not make, or an input, or NT_ERROR_MEMORY.
+ * The folder is to be freed after failure too.
  */
 nt_status nt_report_folder_begin(nt_report_folder *folder, const nt_report_target *target, nt_error *error);
 

@@ -9,9 +9,9 @@
 #include "pipeline/settings.h"
 
 /* Finds the row of who writes `path`, by settings and name; of a stream without one only when the reader is known: PLY
- * for PLY, else GLB. With settings->check: whose conversion is judged; NULL: the input is judged as it is. `reader` is NULL before the input is read; with it, what its files
- * cannot become is refused. Returns NT_OK, NT_ERROR_USAGE or, where the system
- * cannot tell what is there, NT_ERROR_IO. */
+ * for PLY, else GLB. With settings->check: whose conversion is judged; NULL: the input is judged as it is. `reader` is
+ * NULL before the input is read; with it, what its files cannot become is refused. Returns NT_OK, NT_ERROR_USAGE or,
+ * where the system cannot tell what is there, NT_ERROR_IO. */
 nt_status nt_choose_writer(const nt_settings *settings, const char *path, const nt_format_entry *reader,
 	const nt_format_entry **writer, nt_error *error);
 
@@ -33,8 +33,8 @@ nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, nt_error *error);
 nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
 	nt_summary *summary, nt_error *error);
 
-/* Finds the images of materials for a document that is made anew, and notes in the materials which they are. output: its
- * path, which stays. *textures is to be freed after failure too. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
+/* Finds the images of materials for a document that is made anew, and notes in the materials which they are. output:
+ * its path, which stays. *textures is to be freed after failure too. Returns NT_OK, NT_ERROR_IO or NT_ERROR_MEMORY. */
 nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, const char *output, nt_textures **textures,
 	nt_error *error);
 
@@ -47,8 +47,8 @@ nt_status nt_stage_tangents_and_textures(nt_scene *scene, const nt_settings *set
 nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const nt_textures *textures,
 	nt_error *error);
 
-/* Examines normal maps, if settings->check_maps or a report wants that, and adds what is found. Returns NT_OK, NT_ERROR_IO
- * or NT_ERROR_MEMORY. */
+/* Examines normal maps, if settings->check_maps or a report wants that, and adds what is found. Returns NT_OK,
+ * NT_ERROR_IO or NT_ERROR_MEMORY. */
 nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_error *error);
 
 /* Fills summary->report: of the scene as it now is, or of what went wrong. written: the format that is judged,
@@ -77,7 +77,8 @@ void nt_turn_untextured(const nt_mesh *mesh, const nmtan_mesh *base, const nmtan
  * own sign; the mesh gets new faces and indices, and cut_arrays to free. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned threads);
 
-/* unit_normals.c, for normals.c. Vertices whose normal has no direction lack it. Both return NT_OK or NT_ERROR_MEMORY. */
+/* unit_normals.c, for normals.c. Vertices whose normal has no direction lack it. Both return NT_OK or
+ * NT_ERROR_MEMORY. */
 nt_status nt_mark_directionless(nt_scene *scene, nt_mesh *mesh);
 
 /* Makes mesh->solve_normals where normals are not of unit length. */

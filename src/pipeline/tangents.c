@@ -2,9 +2,9 @@
 /*
  * The stage that computes: tangents per corner, then the vertices they split.
  *
- * A mesh large enough to occupy all threads is solved alone, and so is one that other threads would wait for; smaller ones
- * are solved side by side, each by one thread with a workspace of its own. Each mesh's result depends on that mesh only, so the order does
- * not show. Meshes with the same geometry as an earlier one take its result.
+ * A mesh large enough to occupy all threads is solved alone, and so is one that other threads would wait for; smaller
+ * ones are solved side by side, each by one thread with a workspace of its own. Each mesh's result depends on that mesh
+ * only, so the order does not show. Meshes with the same geometry as an earlier one take its result.
  */
 #include "pipeline/joins.h"
 #include "pipeline/morphs.h"

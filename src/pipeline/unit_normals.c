@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Unit normals, for the stage that makes normals: the one normal of a vertex is what is written, made unit, and tangents
- * have to lie across that. Most meshes have nothing but normals of unit length and are only looked at.
+ * Unit normals, for the stage that makes normals: the one normal of a vertex is what is written, made unit, and
+ * tangents have to lie across that. Most meshes have nothing but normals of unit length and are only looked at.
  *
  * A length is 1 where |n|^2 is within 2^-11 of it: such normals are used as they are, so that rounding them anew
  * changes no tangent. Others are made unit for the solve, here and in the same way for every format; the writers of

@@ -253,8 +253,8 @@ static nt_status parse_property(parser *p)
 	return expect_end(p);
 }
 
-/* A line that some exporter wrote without "comment" before it. Behind the first element it could be a misspelt property,
- * without which rows would be read as what they are not. */
+/* A line that some exporter wrote without "comment" before it. Behind the first element it could be a misspelt
+ * property, without which rows would be read as what they are not. */
 static nt_status pass_over(parser *p)
 {
 	if (p->header->unknown_lines++ == 0)

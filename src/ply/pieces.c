@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Plain rows of text by several threads. The text is cut into pieces of whole lines; where each row is a line, the lines
- * before a piece say which row it begins with. Whether all of them are rows shows itself when they are read: what comes
- * behind the first that is no plain row is read again, by one thread, since there may be as many of these as lines.
+ * Plain rows of text by several threads. The text is cut into pieces of whole lines; where each row is a line, the
+ * lines before a piece say which row it begins with. Whether all of them are rows shows itself when they are read: what
+ * comes behind the first that is no plain row is read again, by one thread, since there may be as many of these as
+ * lines.
  *
  * The size of pieces does not depend on the number of threads, and none of it shows in what is read.
  */

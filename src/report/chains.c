@@ -374,7 +374,8 @@ nt_status nt_chains_trace(const nt_surface *surface, const nt_marks *marks, unsi
 			return status;
 	}
 
-	/* edges that OpenMesh does not know, or was not asked about, are runs by themselves, the way their lowest sides go */
+	/* edges that OpenMesh does not know, or was not asked about, are runs by themselves, the way their lowest sides
+	 * go */
 	for (size_t side = 0; (side = next_marked(surface, marks, side)) < sides; side++) {
 		if (nt_bit(taken, side))
 			continue;

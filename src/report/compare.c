@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Two versions of an asset: see compare.h. Exporters renumber vertices and triangles, so triangles are found by their
- * positions, which are hashed from the least of the three corners on. Findings, meshes and triangles are paired alike: by
- * a key, each thing once.
+ * positions, which are hashed from the least of the three corners on. Findings, meshes and triangles are paired alike:
+ * by a key, each thing once.
  */
 #include "report/compare.h"
 

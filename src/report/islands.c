@@ -24,8 +24,8 @@ enum { SAMPLE_COUNT = 16384, GRID_SIZE = 128 };
 /* Blocks that are worth a thread. */
 enum { GRAIN = 128 };
 
-/* Cells that the streaming triangles may visit: some 10 ms for a mesh and 3 us for each of its triangles, at most 0.3 s.
- * Beyond, points count as not found. */
+/* Cells that the streaming triangles may visit: some 10 ms for a mesh and 3 us for each of its triangles, at most 0.3
+ * s. Beyond, points count as not found. */
 static const size_t MESH_VISITS = 1 << 22, TRIANGLE_VISITS = 1 << 10, MOST_VISITS = 100000000;
 
 /* Shares from which on an island counts as lying on another, and as lying on its twin exactly. */

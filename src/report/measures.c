@@ -5,8 +5,9 @@
  *
  * A triangle maps the texture to the surface linearly: with Su and Sv what one texel along u and v spans in space,
  * the largest and smallest singular values of (Su Sv) are the longest and shortest length of a texel (Sander, Snyder,
- * Gortler, Hoppe: Texture Mapping Progressive Meshes, 2001). Stretch is their ratio, 1 where the texture is not distorted;
- * density, in texels per unit of length, one over the root of their product. Medians are by area: half the island has less.
+ * Gortler, Hoppe: Texture Mapping Progressive Meshes, 2001). Stretch is their ratio, 1 where the texture is not
+ * distorted; density, in texels per unit of length, one over the root of their product. Medians are by area: half the
+ * island has less.
  */
 #include "report/check.h"
 

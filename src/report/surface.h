@@ -51,8 +51,8 @@ typedef struct nt_surface {
 	nt_block *blocks;     /* [nt_block_count(triangle_count)] */
 } nt_surface;
 
-/* Builds the surface of a loaded mesh, but for orientation, flatness and blocks, on up to `threads` threads; it does not
- * depend on how many. Everything is in scratch or the mesh's own. Returns NT_OK or NT_ERROR_MEMORY. */
+/* Builds the surface of a loaded mesh, but for orientation, flatness and blocks, on up to `threads` threads; it does
+ * not depend on how many. Everything is in scratch or the mesh's own. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, unsigned threads, nt_scratch *scratch);
 
 /* Of that: sets points, point_count and joints. points.c */

@@ -270,8 +270,8 @@ typedef struct nt_scene {
 	nt_finding_list findings;
 	nt_rounding rounding; /* of all meshes that were written */
 
-	/* Meshes that are late: the writer has a run of them loaded and solved when it needs them, and what they hold is gone
-	 * when it asks for the next run. */
+	/* Meshes that are late: the writer has a run of them loaded and solved when it needs them, and what they hold
+	 * is gone when it asks for the next run. */
 	nt_status (*solve_late)(void *late, size_t first, size_t count, nt_error *error);
 	void *late;
 

@@ -13,8 +13,8 @@ typedef struct nt_uv_transform {
 } nt_uv_transform;
 
 /*
- * Gives a mesh with texcoords its solve_texcoords, in the arena, and solve_sign: scaled and turned, rounded to float once.
- * The offset moves all triangles alike, so that no tangent knows of it.
+ * Gives a mesh with texcoords its solve_texcoords, in the arena, and solve_sign: scaled and turned, rounded to float
+ * once. The offset moves all triangles alike, so that no tangent knows of it.
  *
  * Returns NT_OK or NT_ERROR_MEMORY.
  */

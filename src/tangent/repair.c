@@ -133,8 +133,8 @@ static nmtan_status weld(patient *p)
 		   : NMTAN_ERROR_MEMORY;
 }
 
-/* Numbers the welded vertices that have an unusable corner, of which there are `unusable`. Equal vertices of the mesh have
- * equal normals: what is asked for at many corners is made once. */
+/* Numbers the welded vertices that have an unusable corner, of which there are `unusable`. Equal vertices of the mesh
+ * have equal normals: what is asked for at many corners is made once. */
 static nmtan_status number_vertices(patient *p, size_t unusable)
 {
 	const nt_solve *solve = p->solve;
@@ -337,8 +337,8 @@ static void write_corner(const nt_solve *solve, size_t c, const float *t, float 
 		solve->magnitudes[2 * c] = solve->magnitudes[2 * c + 1] = 1.0f;
 }
 
-/* Repairs one face. What is read of its own corners and of those around are usable ones, which are never written: the order
- * of corners and of faces does not matter. */
+/* Repairs one face. What is read of its own corners and of those around are usable ones, which are never written: the
+ * order of corners and of faces does not matter. */
 static void mend_face(const patient *p, size_t number, size_t first)
 {
 	face f = {.first = first, .size = nt_face_size(p->solve->mesh, number), .orientation = orientation_of(p, number, first)};
@@ -369,8 +369,8 @@ static bool has_negative_zero(const float *n)
 	return (n[0] == 0.0f && signbit(n[0])) || (n[1] == 0.0f && signbit(n[1])) || (n[2] == 0.0f && signbit(n[2]));
 }
 
-/* Gives each corner what its normal alone says, without a look at what is around; `done` becomes false where that is not
- * enough, or not less work. */
+/* Gives each corner what its normal alone says, without a look at what is around; `done` becomes false where that is
+ * not enough, or not less work. */
 static nmtan_status mend_by_normals(const nt_solve *solve, bool *done)
 {
 	const nmtan_mesh *mesh = solve->mesh;

@@ -48,7 +48,8 @@ static inline __attribute__((always_inline)) nt_dvec3 nt_weigh_normal(double x, 
 	return nt_dvec3_scale(nt_rsqrt(nt_dvec3_dot(n, n)), n);
 }
 
-/* Whether u has a direction across a normal, without which it is `across`: what is left where it runs along it is noise. */
+/* Whether u has a direction across a normal, without which it is `across`: what is left where it runs along it is
+ * noise. */
 static inline __attribute__((always_inline)) bool nt_is_across(const nt_measured *m, nt_dvec3 across)
 {
 	return nt_dvec3_dot(across, across) > NT_PARALLEL * NT_PARALLEL * m->squared;

@@ -11,9 +11,9 @@
 /* Soups of fewer corners are not looked at. */
 enum { LEAST_FLAT = 3 * 1024 };
 
-/* Whether the corners of a mesh without indices seem to have vertices of their own, as with a normal for each triangle: in
- * triangles that follow one another, at some places, hardly any two are equal. The sieve gives up soon where that was
- * chance. */
+/* Whether the corners of a mesh without indices seem to have vertices of their own, as with a normal for each triangle:
+ * in triangles that follow one another, at some places, hardly any two are equal. The sieve gives up soon where that
+ * was chance. */
 static bool is_flat(const nmtan_mesh *mesh, size_t corner_count)
 {
 	enum { PLACES = 16, TRIANGLES = 4, CORNERS = 3 * TRIANGLES };

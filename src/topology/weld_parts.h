@@ -83,8 +83,8 @@ bool nt_weld_grow_rows(nt_welder *w, size_t capacity);
 /* All items, on one thread or several. False when out of memory. */
 bool nt_weld_items(nt_welder *w, unsigned ranges);
 
-/* Welds the vertices, which are the items, of a mesh, those of its corners where it has no indices; rows and row_count come
- * to be. Returns the number of each corner, which may be the mesh's indices; NULL when out of memory. */
+/* Welds the vertices, which are the items, of a mesh, those of its corners where it has no indices; rows and row_count
+ * come to be. Returns the number of each corner, which may be the mesh's indices; NULL when out of memory. */
 const uint32_t *nt_weld_vertices(nt_welder *w, size_t corner_count, unsigned ranges);
 
 #endif

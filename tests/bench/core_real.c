@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * See core_real.h. All ways to solve a mesh take turns, so that a busy machine hurts all of them; the best of the rounds
- * counts. nmtan has its default options, repair on; the peers allocate on every call, so that nmtan without a
+ * See core_real.h. All ways to solve a mesh take turns, so that a busy machine hurts all of them; the best of the
+ * rounds counts. nmtan has its default options, repair on; the peers allocate on every call, so that nmtan without a
  * workspace is the fair comparison, and the one that most programs make. One thread is timed by its own clock, more
  * by the wall's.
  */
@@ -17,7 +17,8 @@
 
 enum { ROUNDS = 7, MOST_WAYS = 5 + NATIVE_MOST };
 
-/* What a way runs in one round at least, in seconds; triangles between two looks at the clock, which is a system call. */
+/* What a way runs in one round at least, in seconds; triangles between two looks at the clock, which is a system
+ * call. */
 static const double ROUND = 0.01;
 enum { LEAST_TIMED = 10000 };
 

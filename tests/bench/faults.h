@@ -18,9 +18,9 @@ typedef struct faults {
 } faults;
 
 /*
- * Triangle meshes of the families of make stress, within 1e-30 to 1e30 and finite, each followed by its mirrored twin: the w of
- * a corner that was never computed is right by chance on one of the two, and which one depends on the direction of v
- * that a tool works in. Returns their number; meshes is [NASTY_MOST].
+ * Triangle meshes of the families of make stress, within 1e-30 to 1e30 and finite, each followed by its mirrored twin:
+ * the w of a corner that was never computed is right by chance on one of the two, and which one depends on the
+ * direction of v that a tool works in. Returns their number; meshes is [NASTY_MOST].
  */
 size_t nasty_make(nt_owned *meshes);
 

@@ -28,8 +28,8 @@ void files_write_mesh(const char *path, const nt_owned *mesh);
 double files_run(const char *const *arguments);
 
 /*
- * Fills a shading with what a tool made of files_write_glb()'s mesh. Triangles are found by their place in the file, where
- * all are within 2^-12 of the mesh's size of where they were, else by their positions: the nearest within that.
+ * Fills a shading with what a tool made of files_write_glb()'s mesh. Triangles are found by their place in the file,
+ * where all are within 2^-12 of the mesh's size of where they were, else by their positions: the nearest within that.
  *
  *   nmtan  path of the tool that reads the GLB (it has its own tests) and writes it as PLY
  *   glb    the tool's output

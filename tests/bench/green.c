@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How often the convention of a normal map's green channel is told, and how often wrongly: maps of known surfaces in both
- * conventions, and any images that are named as arguments, of which only the verdict is printed.
+ * How often the convention of a normal map's green channel is told, and how often wrongly: maps of known surfaces in
+ * both conventions, and any images that are named as arguments, of which only the verdict is printed.
  *
  *     green [IMAGE...]
  */

@@ -8,9 +8,9 @@
  *     texel = quantise(unit([T B N]baker^-1 m)),    shown = unit([T B N]shader texel)
  *     error = atan2(|shown x m|, shown . m), in degrees
  *
- * With equal frames only the quantisation is left: 0.18 degrees root mean square at 8 bits a channel, 0.0007 at 16. Frames are
- * interpolated over a triangle from its corners, in one of four ways, by baker and shader alike; w is interpolated too.
- * Filtering of textures is left out.
+ * With equal frames only the quantisation is left: 0.18 degrees root mean square at 8 bits a channel, 0.0007 at 16.
+ * Frames are interpolated over a triangle from its corners, in one of four ways, by baker and shader alike; w is
+ * interpolated too. Filtering of textures is left out.
  */
 #ifndef NT_BENCH_IMAGE_H
 #define NT_BENCH_IMAGE_H
@@ -41,8 +41,8 @@ double image_error(const image_triangle *baker, const image_triangle *shader, co
 
 /*
  * Holds the measure against theory: a frame turned by a around N errs by 2 asin(sin f sin(a / 2)) where f is the angle
- * from m to N, one with the other w by 2 asin |m . B|, both within half a step of the map; quantisation alone has a root mean
- * square of (2 / (2^bits - 1)) / sqrt(6) radians. False, and a line on standard error: it departs.
+ * from m to N, one with the other w by 2 asin |m . B|, both within half a step of the map; quantisation alone has a
+ * root mean square of (2 / (2^bits - 1)) / sqrt(6) radians. False, and a line on standard error: it departs.
  */
 bool image_check(void);
 

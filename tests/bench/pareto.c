@@ -6,10 +6,10 @@
  *   pareto judge FOLDER NMTAN SVG FILE...  runs nmtan, native peers of $PEERS and gltfpack; reads what others left in
  *                                          FOLDER; prints tables in Markdown, writes the chart
  *
- * Time is nanoseconds for each triangle of all models, of two kinds: of a call, arrays in and arrays out on one thread with warm
- * memory; of a whole run, from file to file. Programs of one kind take turns; the best of the rounds counts. Error is
- * that of image.h: median and 99.9 % over the points of all models, each in equal number. The front has what no other of its kind
- * beats in both.
+ * Time is nanoseconds for each triangle of all models, of two kinds: of a call, arrays in and arrays out on one thread
+ * with warm memory; of a whole run, from file to file. Programs of one kind take turns; the best of the rounds counts.
+ * Error is that of image.h: median and 99.9 % over the points of all models, each in equal number. The front has what
+ * no other of its kind beats in both.
  */
 #include <math.h>
 #include <stdio.h>

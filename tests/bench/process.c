@@ -4,9 +4,10 @@
  *
  *   process ROUNDS OUTPUTS NAME COMMAND... -- COMMAND...
  *
- * A command with @ in an argument runs OUTPUTS times, one process after the other, with the numbers from 0 in the place of @;
- * another one runs once. Before each turn out/0.glb and so on are removed, so that all outputs are new. Prints the medians in
- * milliseconds a turn, and the first command's part of the second's: of the medians and of the best quartiles.
+ * A command with @ in an argument runs OUTPUTS times, one process after the other, with the numbers from 0 in the place
+ * of @; another one runs once. Before each turn out/0.glb and so on are removed, so that all outputs are new. Prints
+ * the medians in milliseconds a turn, and the first command's part of the second's: of the medians and of the best
+ * quartiles.
  */
 #include <errno.h>
 #include <fcntl.h>

@@ -2,11 +2,11 @@
 /*
  * Normal maps of real models, there and back: where they are sampled, and in which frames they were baked.
  *
- * The baker has MikkTSpace's frame without its rounding: the formula in 113 bits (oracle128.h). Two kinds of corners are
- * other: where MikkTSpace's own answer is usable and further from the formula than the bound of its rounding
- * (tests/stress/bounds.h), its group is a part of the triangles around the vertex, and bakers have that answer; triangles
- * without texture area, or with a corner that has no frame at all, are not sampled. The shader has the vertices of the file,
- * normals too.
+ * The baker has MikkTSpace's frame without its rounding: the formula in 113 bits (oracle128.h). Two kinds of corners
+ * are other: where MikkTSpace's own answer is usable and further from the formula than the bound of its rounding
+ * (tests/stress/bounds.h), its group is a part of the triangles around the vertex, and bakers have that answer;
+ * triangles without texture area, or with a corner that has no frame at all, are not sampled. The shader has the
+ * vertices of the file, normals too.
  */
 #ifndef NT_BENCH_ROUND_TRIP_H
 #define NT_BENCH_ROUND_TRIP_H

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the methods do to surfaces that are known: how fast their tangents converge to the analytic dP/du, and how far thin
- * bevels tilt the plane beside them. Prints a table in Markdown for each.
+ * What the methods do to surfaces that are known: how fast their tangents converge to the analytic dP/du, and how far
+ * thin bevels tilt the plane beside them. Prints a table in Markdown for each.
  */
 #include <math.h>
 #include <stdio.h>

@@ -133,8 +133,8 @@ static bool is_named(const document *d, int i, const char *name, size_t length)
 	return v->key_end - v->key == length && memcmp(d->text + v->key, name, length) == 0;
 }
 
-/* A value of a kind; NO_VALUE where there is none. `like`: with that value's name, NO_VALUE: any. Whatever lies in an array
- * is seldom chosen for itself: matrices, weights and extents would be most of it. */
+/* A value of a kind; NO_VALUE where there is none. `like`: with that value's name, NO_VALUE: any. Whatever lies in an
+ * array is seldom chosen for itself: matrices, weights and extents would be most of it. */
 static int choose(const document *d, char kind, int like)
 {
 	int chosen = NO_VALUE;

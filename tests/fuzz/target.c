@@ -8,8 +8,8 @@
  * - two threads write the bytes of one;
  * - a report is rendered in every format, and the JSON one is read back.
  *
- * Images are decoded alone: see image.h. Memory, leaks and time are libFuzzer's and the sanitizers' to watch: see run.sh. FUZZ_TARGET names the target.
- * FUZZ_VERBOSE tells what a run was told and what came of it.
+ * Images are decoded alone: see image.h. Memory, leaks and time are libFuzzer's and the sanitizers' to watch: see
+ * run.sh. FUZZ_TARGET names the target. FUZZ_VERBOSE tells what a run was told and what came of it.
  */
 #include <dirent.h>
 #include <fcntl.h>

@@ -5,11 +5,11 @@
  *   NT_CALLS_KILL=N             SIGKILL in place of the N-th call, from 1 on
  *   NT_CALLS_FAIL=NAME:ERRNO    the calls of that name fail; with :N behind, the N-th of them alone
  *   NT_CALLS_COUNT=FILE         the names of all calls in their order, at the end
- *   NT_CALLS_TRACE=DIR          DIR/log has each call that changes names or makes something lasting, after it succeeded;
- *                               what fsync makes lasting of a file is copied to DIR/NUMBER
+ *   NT_CALLS_TRACE=DIR          DIR/log has each call that changes names or makes something lasting, after it
+ *                               succeeded; what fsync makes lasting of a file is copied to DIR/NUMBER
  *
- * A rename is logged as it is; all paths are as the program gave them. fsync is not passed on: no test looks at the disk
- * itself, and it would take most of the time. Programs under test run with one thread.
+ * A rename is logged as it is; all paths are as the program gave them. fsync is not passed on: no test looks at the
+ * disk itself, and it would take most of the time. Programs under test run with one thread.
  */
 #include <dlfcn.h>
 #include <errno.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * See bounds.h. Groups are found with a union of the triangles' corners over paired edges; what is not certain is joined
- * with everything that it may belong to.
+ * See bounds.h. Groups are found with a union of the triangles' corners over paired edges; what is not certain is
+ * joined with everything that it may belong to.
  */
 #include "bounds.h"
 
@@ -248,8 +248,8 @@ static const float *position_of(const nmtan_mesh *mesh, size_t corner)
 	return mesh->positions + 3 * (mesh->indices ? mesh->indices[corner] : corner);
 }
 
-/* The corner of a quad's other half, which has size, at the position of corner k of triangle t: what MikkTSpace copies from.
- * SIZE_MAX: none. */
+/* The corner of a quad's other half, which has size, at the position of corner k of triangle t: what MikkTSpace copies
+ * from. SIZE_MAX: none. */
 static size_t find_original(const work *w, const nmtan_mesh *mesh, size_t t, size_t k)
 {
 	for (size_t other = t ? t - 1 : 0; other < w->count && other <= t + 1; other++) {

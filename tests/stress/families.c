@@ -322,7 +322,8 @@ static nt_owned quads(double level, uint64_t seed)
 }
 
 /* A scan of a lumpy ball with UVs projected along z: the back is mirrored, the outline runs through triangles that are
- * needles in UV space. `level` is the size of the lumps; normals are those of the ball, as a decimated scan has them. */
+ * needles in UV space. `level` is the size of the lumps; normals are those of the ball, as a decimated scan has
+ * them. */
 static nt_owned planar_scan(double level, uint64_t seed)
 {
 	nt_owned o = nt_surface_grid(NT_SPHERE, 48, 32, 0.25, seed);
@@ -383,16 +384,16 @@ static const double sizes[] = {1e3, 1e4, 1e5, 1e6};
 #define LEVELS(list) list, sizeof list / sizeof *list
 #define ALL_BOUNDED SIZE_MAX, 0
 
-/* In units of 2^-24 the arithmetic of a direction has a condition of some 1 / level in a triangle that is a needle in both
- * spaces, ten times that in one of a hundred random ones; 8 units of 10 / level are a quarter turn at 3e-6. */
+/* In units of 2^-24 the arithmetic of a direction has a condition of some 1 / level in a triangle that is a needle in
+ * both spaces, ten times that in one of a hundred random ones; 8 units of 10 / level are a quarter turn at 3e-6. */
 #define BOTH_NEEDLES 6, 100
 
 /* Triangles of random exponents: some in a hundred are such needles from 10 decades on. */
 #define MIXED 5, 1
 
 /* Six members around a vertex whose directions, once the normal has taken all but `level` of them, are spread over the
- * circle. Some are opposite, as on the two sides of an edge that runs along u. MikkTSpace keeps opposite ones apart, and
- * whether they are is a matter of the last bit; taken together they cancel, and what is left is rounding. */
+ * circle. Some are opposite, as on the two sides of an edge that runs along u. MikkTSpace keeps opposite ones apart,
+ * and whether they are is a matter of the last bit; taken together they cancel, and what is left is rounding. */
 #define NEAR_NORMAL 1, 25
 
 /* Files that are meant to be nasty: several surfaces in one edge, opposite directions across it, texture coordinates

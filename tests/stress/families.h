@@ -14,8 +14,8 @@ typedef struct family {
 	size_t level_count;
 	bool logarithmic; /* the sweep */
 	bool linear;      /* the sweep is one of size: time per triangle must stay */
-	/* Corners with MikkTSpace's own bytes of which bounds.h can say nothing: none in the first `bounded` levels, at most
-	 * `most_unbounded` per cent of a mesh from there on. families.c says why. */
+	/* Corners with MikkTSpace's own bytes of which bounds.h can say nothing: none in the first `bounded` levels, at
+	 * most `most_unbounded` per cent of a mesh from there on. families.c says why. */
 	size_t bounded;
 	double most_unbounded;
 	nt_owned (*make)(double level, uint64_t seed);

@@ -10,7 +10,8 @@
  *
  * Compared are corners whose answer is a sum of frames: MikkTSpace's own, or an average that repair took where the
  * condition is moderate. Where a face has no orientation and nothing around it has one, the answer is a perpendicular
- * of the normal that need not turn with the mesh, and w is +1 on both; stress asks that it is unit and across the normal.
+ * of the normal that need not turn with the mesh, and w is +1 on both; stress asks that it is unit and across the
+ * normal.
  */
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Makes the n-th allocation of our own objects fail (malloc, calloc, realloc, posix_memalign, strdup and strndup, by the
- * linker's --wrap; what libraries allocate inside is not touched).
+ * Makes the n-th allocation of our own objects fail (malloc, calloc, realloc, posix_memalign, strdup and strndup, by
+ * the linker's --wrap; what libraries allocate inside is not touched).
  */
 #ifndef NT_TEST_FAIL_ALLOC_H
 #define NT_TEST_FAIL_ALLOC_H

@@ -5,8 +5,8 @@
  * once.
  *
  * Every decoder fills *pixels on success alone and returns NT_OK, NT_ERROR_INPUT (damaged, truncated),
- * NT_ERROR_UNSUPPORTED (sound, but of a kind that it does not decode, or too large) or NT_ERROR_MEMORY. The error says why,
- * without the file's name.
+ * NT_ERROR_UNSUPPORTED (sound, but of a kind that it does not decode, or too large) or NT_ERROR_MEMORY. The error says
+ * why, without the file's name.
  */
 #ifndef NT_EXT_CODEC_PIXELS_H
 #define NT_EXT_CODEC_PIXELS_H

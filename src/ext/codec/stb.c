@@ -96,8 +96,8 @@ static nt_status fail(const source *s, nt_error *error)
 	return nt_fail(error, NT_ERROR_INPUT, "not an image that stb_image decodes: %s", why ? why : "unknown");
 }
 
-/* stb_image gives every PSD four channels, and its own look at the depth does not find it (it skips two numbers inside of
- * a sizeof). The header: 4 signature, 2 version, 6 zeros, 2 channels, 8 size, 2 depth. */
+/* stb_image gives every PSD four channels, and its own look at the depth does not find it (it skips two numbers inside
+ * of a sizeof). The header: 4 signature, 2 version, 6 zeros, 2 channels, 8 size, 2 depth. */
 static bool is_psd(const unsigned char *bytes, size_t size)
 {
 	return size > 24 && memcmp(bytes, "8BPS", 4) == 0;

@@ -190,7 +190,8 @@ uint64_t hash_value(const unsigned char *bytes, size_t width)
 }
 
 // Numbers things by their first equal, in the order in which they come. Half of the hash stands beside each number, so
-// that hardly a thing is looked at that is not equal; slots are asked for some things ahead, since each is a cache miss.
+// that hardly a thing is looked at that is not equal; slots are asked for some things ahead, since each is a cache
+// miss.
 class numbering {
 public:
 	enum { AHEAD = 16 };
@@ -227,9 +228,9 @@ private:
 	std::vector<slot> slots;
 };
 
-// What DeduplicateValues() of the attribute does, whose tables take a third of the whole time: values that are equal bit
-// for bit become one, in the order in which they come first. Each point has a value of its own before. Returns whether
-// all differ.
+// What DeduplicateValues() of the attribute does, whose tables take a third of the whole time: values that are equal
+// bit for bit become one, in the order in which they come first. Each point has a value of its own before. Returns
+// whether all differ.
 bool join_values(PointAttribute &attribute, uint32_t count)
 {
 	const size_t width = static_cast<size_t>(attribute.byte_stride());

@@ -221,7 +221,8 @@ static nt_status decode_tiff(const unsigned char *bytes, size_t size, uint32_t r
 	TIFF *tiff = TIFFClientOpenExt("", "rm", &s, read_source, write_source, seek_source, close_source, source_size,
 		NULL, NULL, options);
 	TIFFOpenOptionsFree(options);
-	/* A directory is opened without a tag for which there was no memory, and would be decoded as if it never had it. */
+	/* A directory is opened without a tag for which there was no memory, and would be decoded as if it never had
+	 * it. */
 	s.exhausted |= tiff && lacks_arrays(tiff);
 	const nt_status status = tiff && !s.exhausted ? decode(tiff, &s, pixels, error) : fail(&s, error);
 	if (tiff)

@@ -33,7 +33,8 @@ public:
 	// is JSON at all is not decided here.
 	bool is_too_deep() const;
 
-	// The file without what tinygltf refuses although it is legal; empty where it can stay as it is. Fills the views that are packed.
+	// The file without what tinygltf refuses although it is legal; empty where it can stay as it is. Fills the
+	// views that are packed.
 	std::string eased(packed_views &packed) const;
 
 private:

@@ -13,8 +13,8 @@
 
 typedef struct nt_image_set nt_image_set;
 
-/* A set for one output. options->textures may be NULL: there are no images. Returns NT_OK, NT_ERROR_IO when the output's
- * folder is missing, or NT_ERROR_MEMORY. */
+/* A set for one output. options->textures may be NULL: there are no images. Returns NT_OK, NT_ERROR_IO when the
+ * output's folder is missing, or NT_ERROR_MEMORY. */
 nt_status nt_image_set_create(nt_image_set **set, const nt_write_options *options, nt_error *error);
 
 /* NULL is allowed. */

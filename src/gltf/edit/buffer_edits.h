@@ -53,8 +53,8 @@ typedef struct nt_buffer_edits {
 	nt_byte_users users;        /* of the source */
 	uint32_t alignment;         /* insertions are multiples of this */
 
-	/* For appending to the attributes of one pool after the other. An attribute belongs to one pool, so that nothing
-	 * has to be emptied in between; bytes may be another pool's too. */
+	/* For appending to the attributes of one pool after the other. An attribute belongs to one pool, so that
+	 * nothing has to be emptied in between; bytes may be another pool's too. */
 	bool *seen;                 /* [accessor_count] */
 	bool *pinned;               /* [accessor_count] used by an unsolved user */
 	uint32_t *appended_by;      /* [accessor_count] by first alias: the pool that appends to it, by its first user */

@@ -22,7 +22,8 @@ typedef struct nt_data_uris {
 /* Gives a buffer a uri, without its data; buffers come in their order. */
 nt_status nt_data_uris_add(nt_data_uris *uris, uint32_t buffer, nt_error *error);
 
-/* The document's text without the data, empty where no buffer has such, and its length with it. Anew after each change of the document. */
+/* The document's text without the data, empty where no buffer has such, and its length with it. Anew after each change
+ * of the document. */
 nt_status nt_data_uris_text(nt_data_uris *uris, nt_buffer *text, uint64_t *length, nt_error *error);
 
 /* Writes that text with the data. */

@@ -425,8 +425,8 @@ static nt_status merge_users(merging *m, nt_arena *arena, nt_error *error)
 	return NT_OK;
 }
 
-/* A pool's only solved mesh, which others of its set may be the same as; NULL where there are several, or where vertices
- * are more than its split. */
+/* A pool's only solved mesh, which others of its set may be the same as; NULL where there are several, or where
+ * vertices are more than its split. */
 static const nt_mesh *lone_mesh(const nt_vertex_pool *pool)
 {
 	const nt_mesh *lone = NULL;

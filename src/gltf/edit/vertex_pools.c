@@ -183,9 +183,9 @@ static void put_accessor(nt_buffer *key, const nt_vertex_pools *pools, const nt_
 }
 
 /*
- * Writes down what decides a tangent: meshes with equal keys form a set. Texture coordinates count as texture transforms
- * turn them; where those do not agree, hardly a tangent does, and a TANGENT for each is less than a copy of every
- * vertex.
+ * Writes down what decides a tangent: meshes with equal keys form a set. Texture coordinates count as texture
+ * transforms turn them; where those do not agree, hardly a tangent does, and a TANGENT for each is less than a copy of
+ * every vertex.
  */
 static void put_key(nt_buffer *key, const nt_vertex_pools *pools, const nt_mesh *mesh)
 {

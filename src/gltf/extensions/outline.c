@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * CESIUM_primitive_outline lists edges as pairs of vertices, and a client draws those sides of triangles that have both.
- * A triangle whose vertices were copied has other numbers, so that each edge becomes all the pairs that its sides
+ * CESIUM_primitive_outline lists edges as pairs of vertices, and a client draws those sides of triangles that have
+ * both. A triangle whose vertices were copied has other numbers, so that each edge becomes all the pairs that its sides
  * have now; an edge that no triangle has stays as it is. By sorting: n log n in edges and corners.
  */
 #include "gltf/extensions/outline.h"

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Packing a mesh for a page: see pack.h. Streams are chosen so that deflate finds what is alike: neighbours in the order
- * of use lie beside each other, so that differences are small and their high bytes nearly always zero. A triangle of a
- * welded mesh takes two to seven bytes for positions and indices (test_pack.c). Memory is some forty bytes a triangle while it runs.
+ * Packing a mesh for a page: see pack.h. Streams are chosen so that deflate finds what is alike: neighbours in the
+ * order of use lie beside each other, so that differences are small and their high bytes nearly always zero. A triangle
+ * of a welded mesh takes two to seven bytes for positions and indices (test_pack.c). Memory is some forty bytes a
+ * triangle while it runs.
  */
 #include "report/pack/pack.h"
 

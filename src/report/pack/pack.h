@@ -14,13 +14,13 @@
  *   kinds       of each triangle a byte: orientation + 1, and 4 where a position is not finite
  *   islands     of each triangle a varint: its island + 1, 0: none, as a zigzag difference from the triangle before
  *   outlines    see outline.h
- *   seams       of each seam a varint: how many edges, then of each edge the vertices at its ends, unmirrored side first,
- *               as zigzag differences from the number before
+ *   seams       of each seam a varint: how many edges, then of each edge the vertices at its ends, unmirrored side
+ *               first, as zigzag differences from the number before
  *   numbers     where triangles are left out, of each a varint: its number, as difference from the one before
  *
  * Varints have seven bits a byte, the lowest first. A code of 16 or 24 bits is the zigzag difference from the vertex
- * before, modulo 2^16 or 2^24; each component has two or three planes of bytes, the lowest first. A direction is two components of 16
- * bits: the octahedron |x| + |y| + |z| = 1, its lower half folded out, as 2047 + round(2047 x).
+ * before, modulo 2^16 or 2^24; each component has two or three planes of bytes, the lowest first. A direction is two
+ * components of 16 bits: the octahedron |x| + |y| + |z| = 1, its lower half folded out, as 2047 + round(2047 x).
  */
 #ifndef NT_REPORT_PACK_PACK_H
 #define NT_REPORT_PACK_PACK_H
@@ -38,8 +38,8 @@ typedef struct nt_packed {
 	nt_buffer bytes;             /* deflated */
 } nt_packed;
 
-/* Packs a mesh whose geometry was kept: the whole of it, or `most` triangles around the findings. packed->bytes is to be
- * freed, after failure too. Returns NT_OK or NT_ERROR_MEMORY. */
+/* Packs a mesh whose geometry was kept: the whole of it, or `most` triangles around the findings. packed->bytes is to
+ * be freed, after failure too. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_pack_mesh(nt_packed *packed, const nt_report *report, uint32_t mesh, size_t most);
 
 #endif

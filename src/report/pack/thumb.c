@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Thumbnails of UV layouts: see thumb.h. The outlines are those of the page, with points on a raster of half pixels, so that
- * what is smaller than that takes no place.
+ * Thumbnails of UV layouts: see thumb.h. The outlines are those of the page, with points on a raster of half pixels, so
+ * that what is smaller than that takes no place.
  */
 #include "report/pack/thumb.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What changed between two versions: see diff.h. Short, the worst first: meshes that are as they were are not listed in text
- * and Markdown, and of findings that both versions have only the number is told. data/nmtan-diff.schema.json
+ * What changed between two versions: see diff.h. Short, the worst first: meshes that are as they were are not listed in
+ * text and Markdown, and of findings that both versions have only the number is told. data/nmtan-diff.schema.json
  * describes the JSON. HTML is the page of html.c, with both versions.
  */
 #include "report/render/diff.h"

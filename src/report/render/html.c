@@ -7,22 +7,23 @@
  *
  *   files     [{name, format, failure, counts: [errors, warnings, infos], meshes, findings}]
  *             mesh:     {label, why, same_as, triangles, vertices, islands, box, facts: [[name, text]],
- *                       images: [{image, map: [6], file}] of normal map and base colour: numbers of images, and URIs, or null,
- *                       wrap: [nt_wrap, nt_wrap], seams: [[edges, closed, length, plane, unmirrored island, mirrored island]], geometry: bool}
+ *                       images: [{image, map: [6], file}] of normal map and base colour: numbers of images, and URIs,
+ *                       or null, wrap: [nt_wrap, nt_wrap], seams: [[edges, closed, length, plane, unmirrored island,
+ *                       mirrored island]], geometry: bool}
  *             finding:  {code, severity, count, known, message, mesh, seam, island, line, box, at: [triangle]}
  *   codes     {CODE: {title, meaning, remedy}} of the findings that there are
  *   images    [data URI], which meshes number
  *   left_out  findings that have no place on the page
  *   index     the page that lists all files; null: none but this one
- *   diff      of two versions only: {unchanged, meshes: [{old, new, changed, label, rows: [[name, text]]}]}, where old and new are
- *             numbers of meshes or null; a finding is known where the other version has it
+ *   diff      of two versions only: {unchanged, meshes: [{old, new, changed, label, rows: [[name, text]]}]}, where old
+ *             and new are numbers of meshes or null; a finding is known where the other version has it
  *
  * The index of a folder of pages has `folder: true` and, of each file, {name, format, counts, failure, page, triangles,
  * islands, seams, layout: [path, path], meshes: [], findings: [{code, severity}]}, without equal findings.
  *
- * Then the page's script (the pages of a folder refer to one file with it, and to one with the style), then the geometry of each mesh in an element of its own, #g-FILE-MESH, which is not looked at
- * until the mesh is opened: a line of JSON (the fields of nt_packed) and its bytes as base64: see pack/pack.h. Written
- * and forgotten mesh by mesh.
+ * Then the page's script (the pages of a folder refer to one file with it, and to one with the style), then the
+ * geometry of each mesh in an element of its own, #g-FILE-MESH, which is not looked at until the mesh is opened: a line
+ * of JSON (the fields of nt_packed) and its bytes as base64: see pack/pack.h. Written and forgotten mesh by mesh.
  */
 #include "report/render/writers.h"
 
@@ -36,8 +37,8 @@
 #include "report/render/page_assets.h"
 #include "report/render/render.h"
 
-/* What one page holds. Triangles take 10 to 20 bytes of it; where the meshes have more together, each gets its share and
- * the page says so. */
+/* What one page holds. Triangles take 10 to 20 bytes of it; where the meshes have more together, each gets its share
+ * and the page says so. */
 enum {
 	MOST_TRIANGLES = 3 * 1000 * 1000,
 	IMAGE_BYTES = 16 * 1000 * 1000, /* of normal maps, and of other images */

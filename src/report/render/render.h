@@ -36,8 +36,8 @@ extern const char nt_html_mark[];
 /* What the pages of a folder share, a file each beside them. */
 typedef enum nt_html_part_kind { NT_HTML_STYLE, NT_HTML_SCRIPT, NT_HTML_PART_COUNT } nt_html_part_kind;
 
-/* The text of a part. Appends the name of its file, which depends on the text: a page has the parts that it was made for,
- * whatever other versions put beside them. */
+/* The text of a part. Appends the name of its file, which depends on the text: a page has the parts that it was made
+ * for, whatever other versions put beside them. */
 const char *nt_html_part(nt_html_part_kind kind, nt_buffer *name);
 
 /* Appends the row of a report in an HTML index of many pages: its counts, the codes that it has and a thumbnail of its

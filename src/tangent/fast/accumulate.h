@@ -114,8 +114,8 @@ static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t
 }
 
 /* Triangles with frames, lanes [i, end), up to the first with a corner whose cursor has a flag, but for ELSEWHERE if
- * `elsewhere` says so: its lane, or `end`. Entries are moved as words, and nothing is called, so that nearly all the loop
- * needs is in registers. */
+ * `elsewhere` says so: its lane, or `end`. Entries are moved as words, and nothing is called, so that nearly all the
+ * loop needs is in registers. */
 static inline __attribute__((always_inline)) size_t add_usual(const nt_fast *fast, unsigned range, size_t first, size_t i,
 	size_t end, const uint32_t *ids, const lanes_out *out, bool elsewhere)
 {

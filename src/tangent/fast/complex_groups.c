@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Groups at complex vertices: steps 5 and 6 of the spec page. Edges are paired at each vertex by itself: by comparing its few
- * corners, or, where it is tangled, in order and through a table over all vertices, so that a hub costs as much for each of
- * its corners as any other vertex does.
+ * Groups at complex vertices: steps 5 and 6 of the spec page. Edges are paired at each vertex by itself: by comparing
+ * its few corners, or, where it is tangled, in order and through a table over all vertices, so that a hub costs as much
+ * for each of its corners as any other vertex does.
  */
 #include "tangent/fast/complex_groups.h"
 

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Averages of groups at complex vertices: steps 7 to 10 of the spec page. Corners are solved NT_SOLVED at a time in the
- * order of groups. Most groups do not split: their members' directions lie within a half-space. Otherwise each direction
- * has a sum of its own, which is that of all members with this direction: 16 directions at a time (part_lanes.h), in large
- * groups by several threads. So it costs directions times members.
+ * order of groups. Most groups do not split: their members' directions lie within a half-space. Otherwise each
+ * direction has a sum of its own, which is that of all members with this direction: 16 directions at a time
+ * (part_lanes.h), in large groups by several threads. So it costs directions times members.
  */
 #include "tangent/fast/complex_solve.h"
 
@@ -121,8 +121,8 @@ static const nt_corner *first_with_frame(const part *p)
 	return &p->solved[i];
 }
 
-/* Whether a group certainly does not split. Of two members that do one is not near the axis; where members are few, all of
- * them are asked. */
+/* Whether a group certainly does not split. Of two members that do one is not near the axis; where members are few, all
+ * of them are asked. */
 static bool is_one(const part *p, const nt_corner *axis)
 {
 	for (size_t i = 0; i < p->count; i++)
@@ -332,8 +332,8 @@ static bool belongs_by_face(const nt_complex *c, const nt_batch *b, const part *
 	       !belong_together(&p->solved[first], &p->solved[second]);
 }
 
-/* The average of those that belong together with member i, where it is not as others of its direction: with [first, end) by
- * face. With a NaN there are no others. */
+/* The average of those that belong together with member i, where it is not as others of its direction: with [first,
+ * end) by face. With a NaN there are no others. */
 static nt_corner average_own(const nt_complex *c, const part *p, size_t i, size_t first, size_t end)
 {
 	const bool alone = !belong_together(&p->solved[i], &p->solved[i]);

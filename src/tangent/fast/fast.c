@@ -16,7 +16,8 @@
  *
  * Step 4 takes about half of the time on a clean mesh. Where neighbouring triangles have vertices far apart there is
  * no step 3, step 4 writes corners down in bins of vertices, and step 5 adds up and settles one bin after the other
- * (bins.h). Meshes of a few triangles go another way (tiny.c). Threads own ranges of triangles, and every sum is in triangle order whatever their number.
+ * (bins.h). Meshes of a few triangles go another way (tiny.c). Threads own ranges of triangles, and every sum is in
+ * triangle order whatever their number.
  *
  * Words of these files:
  *
@@ -59,8 +60,8 @@ typedef struct run {
 
 /* Before all */
 
-/* Whether a triangle may have an area in UV space, as step 4 computes it; nearly always the first one has. Where none has,
- * no triangle has a frame, and no corner gets a tangent. Quads are not looked at. */
+/* Whether a triangle may have an area in UV space, as step 4 computes it; nearly always the first one has. Where none
+ * has, no triangle has a frame, and no corner gets a tangent. Quads are not looked at. */
 static bool has_areas(const nt_solve *solve)
 {
 	const nmtan_mesh *mesh = solve->mesh;

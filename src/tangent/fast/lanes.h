@@ -21,9 +21,9 @@
  * The smaller H is, the fewer vertices fail the test. */
 #define HALF_SPACE 0.01f
 
-/* Lengths in here are normalised without loss: their squares neither overflow nor lose bits. Across a normal of unit length
- * a unit vector becomes shorter. So v need not be divided by its length before the test above; across long normals,
- * where it is below 4, H is a quarter and the product still above 1.25e-5 - 1. */
+/* Lengths in here are normalised without loss: their squares neither overflow nor lose bits. Across a normal of unit
+ * length a unit vector becomes shorter. So v need not be divided by its length before the test above; across long
+ * normals, where it is below 4, H is a quarter and the product still above 1.25e-5 - 1. */
 #define LEAST_SQUARE 1e-30f
 #define MOST_SQUARE 16.0f
 
@@ -299,8 +299,8 @@ static inline __attribute__((always_inline)) void spread(const float *a, const f
 	}
 }
 
-/* Four triangles: lane 4 k + i has corner k of triangle i, and all four parts have the frames. The last part repeats the
- * first one. */
+/* Four triangles: lane 4 k + i has corner k of triangle i, and all four parts have the frames. The last part repeats
+ * the first one. */
 static void __attribute__((noinline)) solve_four(const lanes_in *restrict in, lanes_out *restrict out, float offset)
 {
 	lanes_in frames;

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Sums of the members of a group that belong together with one of them, for 16 of these at a time. Members are added in
- * order, and one that a lane is parted from adds zero there, which changes no bits: a sum that begins with 0 is never -0.
- * Included by kernel.h.
+ * order, and one that a lane is parted from adds zero there, which changes no bits: a sum that begins with 0 is never
+ * -0. Included by kernel.h.
  */
 #ifndef NT_TANGENT_FAST_PART_LANES_H
 #define NT_TANGENT_FAST_PART_LANES_H

@@ -46,15 +46,15 @@ enum {
  * orientation. No corner gets this bit. */
 #define NT_RESULT_UNUSABLE 1u
 
-/* Beside NT_RESULT_COMPLEX: the sums have nothing extreme and do not split, so that an orientation with one group has the record as its
- * result. */
+/* Beside NT_RESULT_COMPLEX: the sums have nothing extreme and do not split, so that an orientation with one group has
+ * the record as its result. */
 #define NT_RESULT_SUM 0x20000000u
 
 /* Beside it: a hub, or an edge at the vertex occurs twice in one direction, so that pairs depend on order. */
 #define NT_RESULT_TANGLED 0x10000000u
 
-/* Beside it, in the lowest bits: how many corners the vertex has, a hub those of degenerate triangles too; where complex.c
- * has seen the vertex, NT_RESULT_PLACED and the place of its next corner. */
+/* Beside it, in the lowest bits: how many corners the vertex has, a hub those of degenerate triangles too; where
+ * complex.c has seen the vertex, NT_RESULT_PLACED and the place of its next corner. */
 #define NT_RESULT_PLACED 0x80000000u
 #define NT_RESULT_NUMBER (((uint32_t)1 << 28) - 1)
 

@@ -105,8 +105,8 @@ typedef struct edge {
 	uint8_t begin, end;
 } edge;
 
-/* An edge meets the first that waits between its vertices and runs the other way; if there is none it waits behind those
- * that run its own. */
+/* An edge meets the first that waits between its vertices and runs the other way; if there is none it waits behind
+ * those that run its own. */
 static inline void pair_edge(tiny *s, uint8_t *here, uint8_t *there, uint8_t *behind, edge e)
 {
 	if (*there) {

@@ -7,9 +7,9 @@
 
 #include "tangent/fast/parts.h"
 
-/* Solves a mesh of at most NT_TINY triangles, none of them of a quad, for tangents alone, from the weld to the writing of
- * all corners. It makes triangles, vertex_count and flags. `done` becomes false where it cannot: a value is NaN. Returns
- * NMTAN_OK or NMTAN_ERROR_MEMORY. */
+/* Solves a mesh of at most NT_TINY triangles, none of them of a quad, for tangents alone, from the weld to the writing
+ * of all corners. It makes triangles, vertex_count and flags. `done` becomes false where it cannot: a value is NaN.
+ * Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */
 nmtan_status nt_fast_tiny(nt_fast *fast, const nt_kernels *kernels, bool *done);
 
 #endif

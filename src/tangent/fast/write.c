@@ -146,8 +146,8 @@ static inline __attribute__((always_inline)) void write_plain(nt_fast *fast, siz
 	}
 }
 
-/* Of triangles with an unusable corner write_plain() has left NT_RESULT_UNUSABLE beside signs. Those of complex vertices are
- * not written yet. */
+/* Of triangles with an unusable corner write_plain() has left NT_RESULT_UNUSABLE beside signs. Those of complex
+ * vertices are not written yet. */
 static void write_signs(const nt_fast *fast, size_t begin, size_t end)
 {
 	for (size_t t = begin; t < end; t++) {
@@ -214,8 +214,8 @@ static void copy_corner(const nt_solve *solve, size_t to, size_t from)
 		memcpy(solve->magnitudes + 2 * to, solve->magnitudes + 2 * from, 2 * sizeof(float));
 }
 
-/* The first corners, among the sound triangles, of the vertices of all triangles that copy: [vertex_count], UINT32_MAX where
- * there is none. Those of other vertices are not there. */
+/* The first corners, among the sound triangles, of the vertices of all triangles that copy: [vertex_count], UINT32_MAX
+ * where there is none. Those of other vertices are not there. */
 static uint32_t *find_first_corners(const nt_fast *fast)
 {
 	uint32_t *first = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *first);

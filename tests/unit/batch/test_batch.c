@@ -185,9 +185,9 @@ static void every_input_runs_and_is_told_about_in_order(void **state)
 	}
 }
 
-/* Stands for nt_run where the bound of memory is about: notes who runs beside whom, with how many threads, and what that
- * takes by the gate's guess. Runs stay until as many as there is room for have been beside one another, half a minute at
- * most, so that no scheduler keeps them apart. */
+/* Stands for nt_run where the bound of memory is about: notes who runs beside whom, with how many threads, and what
+ * that takes by the gate's guess. Runs stay until as many as there is room for have been beside one another, half a
+ * minute at most, so that no scheduler keeps them apart. */
 static atomic_int running, most_running, awaited, wide_runs, wide_beside;
 static atomic_size_t running_bytes, most_bytes;
 

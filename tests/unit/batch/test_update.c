@@ -29,7 +29,8 @@ static void put_at(const char *name, time_t seconds)
 	assert_int_equal(utimensat(AT_FDCWD, name, times, 0), 0);
 }
 
-/* What is decided about a.obj and a.glb. `settings` may be changed; a trace of it is written to the record if `make`. */
+/* What is decided about a.obj and a.glb. `settings` may be changed; a trace of it is written to the record if
+ * `make`. */
 static bool is_current(const nt_update_options *options, nt_settings *settings, bool make)
 {
 	nt_update *update;

@@ -106,8 +106,8 @@ static void borders_wrap_as_the_sampler_does(void **state)
 }
 
 /* A hemisphere of radius R lit from anywhere looks as its radii say: (dx, -dy, z) / R. Central differences of step 1
- * are wrong by f'''/6, at 0.8 R by 0.8 R^-2 / 0.6^5 / 2, which is 1e-3 for R = 60; 0.004 leaves room for the rounding of
- * colours to 16 bits and for the other direction. */
+ * are wrong by f'''/6, at 0.8 R by 0.8 R^-2 / 0.6^5 / 2, which is 1e-3 for R = 60; 0.004 leaves room for the rounding
+ * of colours to 16 bits and for the other direction. */
 static void hemisphere_relit_is_the_hemisphere(void **state)
 {
 	(void)state;

@@ -541,8 +541,8 @@ static void blocks_of_a_jpeg_may_cover_many_pixels(void **state)
 	free(made);
 }
 
-/* Arithmetic codes take next to nothing where nothing changes. What libjpeg keeps of all scans follows the declared size:
- * that is looked at first, also where some rows are enough. */
+/* Arithmetic codes take next to nothing where nothing changes. What libjpeg keeps of all scans follows the declared
+ * size: that is looked at first, also where some rows are enough. */
 static void jpegs_of_arithmetic_codes_have_a_bound(void **state)
 {
 	(void)state;

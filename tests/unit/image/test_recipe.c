@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * How one image is put together: what is the image as it is, what is made, and what becomes of damage and exhausted memory.
+ * How one image is put together: what is the image as it is, what is made, and what becomes of damage and exhausted
+ * memory.
  */
 #include "image/recipe.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Authored tangents of meshes without texture coordinates: what stays, and what the others become. The normal is along z
- * unless a case says otherwise.
+ * Authored tangents of meshes without texture coordinates: what stays, and what the others become. The normal is along
+ * z unless a case says otherwise.
  */
 #include "test.h"
 #include <math.h>

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Folded quads and normals that are not of unit length in a whole run: what is counted, and that every failed allocation
- * ends it with a status and nothing else. What is written is tests/cli/test_frames.sh's.
+ * Folded quads and normals that are not of unit length in a whole run: what is counted, and that every failed
+ * allocation ends it with a status and nothing else. What is written is tests/cli/test_frames.sh's.
  */
 #include "test.h"
 #include <stdio.h>

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * --across=mesh: primitives of one glTF mesh have the tangents, byte for byte, of one primitive with all their triangles.
- * The surface is a wavy grid whose cells go to three primitives in turn; every primitive has vertices of its own, with
- * the values of its neighbours. Texture coordinates are mirrored on the right half and the same for all corners of
- * some cells, which repair has to fill.
+ * --across=mesh: primitives of one glTF mesh have the tangents, byte for byte, of one primitive with all their
+ * triangles. The surface is a wavy grid whose cells go to three primitives in turn; every primitive has vertices of its
+ * own, with the values of its neighbours. Texture coordinates are mirrored on the right half and the same for all
+ * corners of some cells, which repair has to fill.
  */
 #include "fail_alloc.h"
 #include "folder.h"
@@ -544,8 +544,8 @@ static void a_report_tells_borders_that_would_change(void **state)
 	const nt_report_options report = {0};
 	for (double k = 0.01; k < 2; k *= 2) {
 		const double a = atan(k), degrees = a * 180 / pi;
-		/* largest: the first square's corner at (1, 1), where the second has most weight, or the second's own at
-		 * (1, 0), which turns by what is left of a */
+		/* largest: the first square's corner at (1, 1), where the second has most weight, or the second's own
+		 * at (1, 0), which turns by what is left of a */
 		const double above = 90 + degrees, below = 90 - degrees;
 		const double first = atan2(above * sin(a), 90 + above * cos(a)) * 180 / pi;
 		const double second = degrees - atan2(below * sin(a), 90 + below * cos(a)) * 180 / pi;

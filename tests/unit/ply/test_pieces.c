@@ -107,8 +107,8 @@ static size_t take_letters(void *user, ply_cursor *cursor, size_t first, size_t 
 	return taken;
 }
 
-/* The run ends with the last row that is wanted, or before the first that is no such row, and after that one thread goes
- * on alone. */
+/* The run ends with the last row that is wanted, or before the first that is no such row, and after that one thread
+ * goes on alone. */
 static void runs_end_at_the_first_other_row(void **state)
 {
 	(void)state;

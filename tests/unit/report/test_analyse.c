@@ -58,8 +58,8 @@ static void inverted_w_is_one_finding_with_its_share(void **state)
 	hand_free(h, report);
 }
 
-/* T turned by half a turn, and with it the bitangent. Where dP/dv is 20 degrees from dP/du, a T that averaging turned by
- * 60 degrees has a bitangent that is 130 degrees from dP/dv, and yet is not reversed. */
+/* T turned by half a turn, and with it the bitangent. Where dP/dv is 20 degrees from dP/du, a T that averaging turned
+ * by 60 degrees has a bitangent that is 130 degrees from dP/dv, and yet is not reversed. */
 static void reversed_tangents_are_not_those_of_sheared_coordinates(void **state)
 {
 	(void)state;

@@ -78,7 +78,8 @@ static void check_promises(const nmtan_mesh *given, size_t corner_count, nmtan_m
 			assert_true(after[3] == mended.tangents[4 * first + 3]);
 			assert_true(fabsf(after[3]) == 1.0f && (sign == 0 || after[3] == (float)sign));
 			const bool sound = is_unit(before) && !is_parallel(before, n);
-			/* a sum of one orientation for a face without one is a choice that a mirrored twin makes, too */
+			/* a sum of one orientation for a face without one is a choice that a mirrored twin makes,
+			 * too */
 			const bool chosen = sign == 0 && method != NMTAN_METHOD_MIKKTSPACE;
 			if (agree && sound && !leans(before, n) && !may_be_unassigned(before) && !chosen)
 				assert_memory_equal(before, after, 16);

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT */
-/* Places of corners: filled as accumulate fills them, then read as settle reads them, in borrowed memory of every size. */
+/* Places of corners: filled as accumulate fills them, then read as settle reads them, in borrowed memory of every
+ * size. */
 #include "test.h"
 #include <string.h>
 #include "topology/adjacency.h"

@@ -301,7 +301,8 @@ static void meshopt_views_that_do_not_change_stay_packed(void **state)
 	unload(&out);
 }
 
-/* Splitting the first primitive gives the second, which gets no tangents, new vertices too: in all of its attributes. */
+/* Splitting the first primitive gives the second, which gets no tangents, new vertices too: in all of its
+ * attributes. */
 static void meshopt_views_of_others_in_the_pool_grow(void **state)
 {
 	(void)state;

@@ -87,8 +87,8 @@ static void names_that_look_like_data_stay(void **state)
 	assert_embedded("data:application/gltf-buffer;base64,A");
 }
 
-/* The text is made twice where a companion gets its name in two steps: the second run replaces the first one's out/in.bin,
- * while the other buffer is a data URI in both texts. */
+/* The text is made twice where a companion gets its name in two steps: the second run replaces the first one's
+ * out/in.bin, while the other buffer is a data URI in both texts. */
 static void data_is_in_every_text(void **state)
 {
 	(void)state;

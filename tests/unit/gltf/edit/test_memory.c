@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Every allocation of a run from glTF to glTF fails: sparse accessors, morph targets, shared vertices, texture transforms,
- * data URIs, companions, Draco. The run says that memory is exhausted, or does without; leaks are for the sanitizers
- * to see.
+ * Every allocation of a run from glTF to glTF fails: sparse accessors, morph targets, shared vertices, texture
+ * transforms, data URIs, companions, Draco. The run says that memory is exhausted, or does without; leaks are for the
+ * sanitizers to see.
  */
 #include "fail_alloc.h"
 #include "folder.h"

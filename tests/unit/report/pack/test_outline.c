@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Outlines of meshes made by hand, read back as numbers: region count; of each island and winding, and how many loops; of
- * each how many points, and these.
+ * Outlines of meshes made by hand, read back as numbers: region count; of each island and winding, and how many loops;
+ * of each how many points, and these.
  */
 #include "test.h"
 

@@ -211,7 +211,8 @@ static void every_number_is_as_near_as_its_code(void **state)
 		for (int i = 0; i < 2; i++) {
 			double d[3];
 			decode_direction(&u, streams[i], v, d);
-			/* half a code is 1 / 4094 of the octahedron, whose faces are up to sqrt(3) nearer than the sphere */
+			/* half a code is 1 / 4094 of the octahedron, whose faces are up to sqrt(3) nearer than the
+			 * sphere */
 			const double cosine = (d[0] * n[0] + d[1] * n[1] + d[2] * n[2]) / length;
 			assert_true(cosine > cos(sqrt(2.0) / 4094 * 3));
 		}

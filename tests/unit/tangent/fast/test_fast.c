@@ -94,8 +94,8 @@ static size_t compare_run(const char *name, const nmtan_mesh *mesh, size_t corne
 	return differences;
 }
 
-/* One thread with every instruction set, where few triangles may go a way of their own, then more threads, and places that do not suffice; the same by bins where
- * there is a choice. */
+/* One thread with every instruction set, where few triangles may go a way of their own, then more threads, and places
+ * that do not suffice; the same by bins where there is a choice. */
 static size_t compare_variants(const char *name, const nmtan_mesh *mesh, size_t corners,
 	const result *expected, bool more)
 {
@@ -273,9 +273,9 @@ static void short_directions_are_byte_identical(void **state)
 	assert_int_equal(differences, 0);
 }
 
-/* Corners around a vertex whose edges are of a few kinds in space and, always counterclockwise, in texture coordinates. So they
- * have few directions, each often, of which many are opposite in u or in v alone, as those of a quad's halves may be; some
- * triangles have no frame, and some, whose lengths overflow, one of NaN. */
+/* Corners around a vertex whose edges are of a few kinds in space and, always counterclockwise, in texture coordinates.
+ * So they have few directions, each often, of which many are opposite in u or in v alone, as those of a quad's halves
+ * may be; some triangles have no frame, and some, whose lengths overflow, one of NaN. */
 enum { RIM_MOST = 700 };
 typedef struct hub {
 	float p[RIM_MOST + 1][3], n[RIM_MOST + 1][3], t[RIM_MOST + 1][2];
@@ -366,8 +366,8 @@ static void nasty_meshes_are_byte_identical(void **state)
 	assert_int_equal(wrong, 0);
 }
 
-/* Many nasty meshes as one, with vertices and corners enough for the threads of complex vertices (complex.c). Every second
- * one has its coordinates in other units, so that not all of them weld. */
+/* Many nasty meshes as one, with vertices and corners enough for the threads of complex vertices (complex.c). Every
+ * second one has its coordinates in other units, so that not all of them weld. */
 typedef struct joined {
 	nmtan_mesh mesh;
 	size_t corner_count;
@@ -636,8 +636,8 @@ static void unusable_vertices_are_byte_identical(void **state)
 		}
 }
 
-/* A sheet of 8 x 8 cells, bent and mirrored in the middle, whose triangles are beyond doubt but for one beside which they are
- * not marked: repair has to see those around it all the same. */
+/* A sheet of 8 x 8 cells, bent and mirrored in the middle, whose triangles are beyond doubt but for one beside which
+ * they are not marked: repair has to see those around it all the same. */
 enum { SHEET = 9, MIDDLE = 4 };
 
 /* The determinant of these is 2.3e-10 in float and negative in truth. */
