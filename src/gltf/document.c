@@ -248,6 +248,10 @@ nt_status nt_gltf_describe_buffer(nt_gltf *document, uint64_t index, const char 
 	nt_status status = nt_gltf_element(document, "buffers", index, from, &json, error);
 	if (status)
 		return status;
+	/* What an edit has added is none of the file's: a reference that dangled in it has come to mean that. */
+	if (index >= document->buffer_count)
+		return nt_fail_pointer(error, NT_ERROR_INPUT, from, "refers to buffers[%llu], there are %zu",
+			(unsigned long long)index, document->buffer_count);
 	nt_gltf_buffer *buffer = &document->buffers[index];
 	*result = buffer;
 	if (buffer->described)

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include "base/buffer.h"
 #include "gltf/dangling.h"
+#include "gltf/view.h"
 
 /* `,"meshes":[{"primitives":[9]}]` for "/meshes/0/primitives/0": nothing stands beside what the path names. */
 static void put_path(nt_buffer *text, const char *path)
@@ -139,11 +140,37 @@ static void numbers_elsewhere_are_no_references(void **state)
 	}
 }
 
+/* A view of a buffer that is not there has no bytes, also when an edit has added a buffer of that number. */
+static void an_added_buffer_is_not_what_the_file_refers_to(void **state)
+{
+	(void)state;
+	nt_gltf *document = NULL;
+	nt_scene scene;
+	nt_scene_init(&scene, "test.gltf");
+	scene.bytes = (const unsigned char *)"{\"asset\":{\"version\":\"2.0\"},\"bufferViews\":[{\"buffer\":0,\"byteLength\":4}]}";
+	scene.byte_count = strlen((const char *)scene.bytes);
+	nt_error error;
+	assert_int_equal(nt_gltf_create(&document, &scene, false, &error), NT_OK);
+	scene.source = document;
+	scene.free_source = nt_gltf_free;
+	for (int added = 0; added < 2; added++) {
+		nt_gltf_view view;
+		assert_int_equal(nt_gltf_get_view(document, 0, "/accessors/0", &view, &error), NT_ERROR_INPUT);
+		assert_string_equal(error.message, "refers to buffers[0], there are 0");
+		assert_string_equal(error.place.pointer, "/bufferViews/0");
+		nt_json *json = document->json;
+		nt_json_value *buffer = nt_json_append(json, nt_json_put(json, nt_json_root(json), "buffers"));
+		nt_json_set_uint64(json, nt_json_put(json, buffer, "byteLength"), 8);
+	}
+	nt_scene_free(&scene);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(references_are_found_with_kind_and_place),
 		cmocka_unit_test(numbers_elsewhere_are_no_references),
+		cmocka_unit_test(an_added_buffer_is_not_what_the_file_refers_to),
 	};
 	return cmocka_run_group_tests_name("gltf/dangling", tests, NULL, NULL);
 }
