@@ -112,7 +112,7 @@ static void large_arenas_have_large_blocks(void **state)
 	for (size_t i = 0; i < REQUESTS; i++) {
 		char *const at = nt_arena_alloc(&arena, BYTES, 1);
 		assert_non_null(at);
-		blocks += last + BYTES != at;
+		blocks += !last || last + BYTES != at;
 		last = at;
 	}
 	assert_in_range(blocks, 17, 40);
