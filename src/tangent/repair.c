@@ -395,20 +395,26 @@ static nmtan_status mend_by_normals(const nt_solve *solve, bool *done)
 	return NMTAN_OK;
 }
 
-nmtan_status nt_repair(const nt_solve *solve, nmtan_counts *counts)
+/* What nearly all meshes do not need: not in line, since it saves many registers. */
+static nmtan_status __attribute__((noinline)) mend(const nt_solve *solve, const nmtan_counts *counts, const uint64_t *faulty)
 {
-	patient p = {.solve = solve};
-	nmtan_status status = nt_find_unusable(solve, counts, &p.faulty);
+	patient p = {.solve = solve, .faulty = faulty};
+	nmtan_status status = NMTAN_OK;
 	bool done = false;
-	if (NT_SHORT_WAYS && !status && p.faulty && is_hopeless(solve, counts))
+	if (NT_SHORT_WAYS && is_hopeless(solve, counts))
 		status = mend_by_normals(solve, &done);
-	if (status || done || !p.faulty)
-		return status;
-	if ((status = weld(&p)) || (status = number_vertices(&p, nt_counts_repaired(counts))))
+	if (status || done || (status = weld(&p)) || (status = number_vertices(&p, nt_counts_repaired(counts))))
 		return status;
 	p.among_suspects = solve->known && solve->known->around && counts->repaired_sign == 0;
 	look_around(&p);
 	for (place at = {0, 0}; find_faulty(&p, &at); step_over(&p, &at))
 		mend_face(&p, at.face, at.first);
 	return NMTAN_OK;
+}
+
+nmtan_status nt_repair(const nt_solve *solve, nmtan_counts *counts)
+{
+	const uint64_t *faulty = NULL;
+	const nmtan_status status = nt_find_unusable(solve, counts, &faulty);
+	return status || !faulty ? status : mend(solve, counts, faulty);
 }
