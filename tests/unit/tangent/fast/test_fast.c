@@ -343,6 +343,57 @@ static void hubs_are_byte_identical(void **state)
 	free(h);
 }
 
+/* Scratch that a hub takes whose directions turn by so much in all, or, `once`, at one place and back again. */
+static size_t solve_turning_hub(float turn, bool once)
+{
+	enum { SPOKES = 1500 };
+	float (*p)[3] = calloc(SPOKES + 2, sizeof *p), (*n)[3] = calloc(SPOKES + 2, sizeof *n);
+	float (*t)[2] = calloc(SPOKES + 2, sizeof *t);
+	unsigned (*indices)[3] = malloc(SPOKES * sizeof *indices);
+	float turned = 0;
+	n[0][2] = 1;
+	for (unsigned i = 1; i <= SPOKES + 1; i++) {
+		/* at once backwards, then forwards by less than a spoke: texture coordinates stay counterclockwise */
+		turned = !once ? turn * (float)i / SPOKES : i == 6 ? -turn : fminf(turned + 0.2f, 0);
+		const float angle = 0.3f * (float)i, direction = turned + 0.1f * sinf((float)i / 1000) - angle;
+		memcpy(p[i], (float[3]){cosf(angle), sinf(angle), 0}, sizeof *p);
+		memcpy(t[i], (float[2]){cosf(direction), -sinf(direction)}, sizeof *t);
+		memcpy(n[i], (float[3]){(float)i, 1, 0}, sizeof *n);
+		if (i <= SPOKES)
+			memcpy(indices[i - 1], (unsigned[3]){0, i, i + 1}, sizeof *indices);
+	}
+	const nmtan_mesh mesh = filled(&(nmtan_mesh){.struct_bytes = sizeof mesh, .face_count = SPOKES,
+		.vertex_count = SPOKES + 2, .positions = p[0], .normals = n[0], .texcoords = t[0], .indices = indices[0]});
+	result expected = result_make(3 * SPOKES), got = result_make(3 * SPOKES);
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	nt_solve solve = make_solve(&mesh, 3 * SPOKES, &scratch, &expected, true);
+	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
+	nt_scratch_free(&scratch);
+	nt_scratch_init(&scratch, NULL);
+	solve = make_solve(&mesh, 3 * SPOKES, &scratch, &got, true);
+	assert_int_equal(nt_mikktspace_fast_as(&solve, &usual), NMTAN_OK);
+	const size_t bytes = nt_scratch_bytes(&scratch);
+	nt_scratch_free(&scratch);
+	assert_int_equal(result_differences(&expected, &got, 3 * SPOKES, true), 0);
+	result_free(&expected);
+	result_free(&got);
+	free(p);
+	free(n);
+	free(t);
+	free(indices);
+	return bytes;
+}
+
+/* Sums for each direction, which take quadratic time, take memory, too. */
+static void few_directions_aside_do_not_split_a_hub(void **state)
+{
+	(void)state;
+	const size_t bytes = solve_turning_hub(0, false);
+	assert_int_equal(solve_turning_hub(1.9f, true), bytes);
+	assert_true(solve_turning_hub(6, false) > bytes);
+}
+
 static uint64_t environment(const char *name, uint64_t otherwise)
 {
 	const char *text = getenv(name);
@@ -784,6 +835,7 @@ int main(void)
 		cmocka_unit_test(antiparallel_directions_are_byte_identical),
 		cmocka_unit_test(short_directions_are_byte_identical),
 		cmocka_unit_test(hubs_are_byte_identical),
+		cmocka_unit_test(few_directions_aside_do_not_split_a_hub),
 		cmocka_unit_test(scattered_meshes_are_byte_identical),
 		cmocka_unit_test(unusable_vertices_are_byte_identical),
 		cmocka_unit_test(what_is_around_faults_is_seen),
