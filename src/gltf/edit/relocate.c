@@ -272,14 +272,6 @@ static nt_status put_buffer(nt_gltf *document, const nt_relocated_buffer *buffer
 		return put_zeros(to, from->old_length, error);
 	if (from->old_length)
 		status = nt_gltf_open_buffer(document, index, "/buffers", &source, error);
-	/* A wrong length must not become that many zeros; padding may be missing. */
-	if (!status && source && from->old_length - source->size >= NT_EDITS_ALIGNMENT) {
-		char pointer[NT_GLTF_POINTER];
-		snprintf(pointer, sizeof pointer, "/buffers/%u", index);
-		status = nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
-			"byteLength is %llu, but only %zu bytes are there",
-			(unsigned long long)from->old_length, source->size);
-	}
 	for (size_t i = 0; !status && i < from->edit_count; i++) {
 		const nt_buffer_edit *edit = &from->edits[i];
 		status = put_source(document, source, to, at, edit->at, error);

@@ -236,14 +236,21 @@ static nt_status check_room(writing *c)
 	return NT_OK;
 }
 
-/* What will be written must be open before its uri changes. */
+/* What will be written must be open before its uri changes, and have its length before room is made for it. */
 static nt_status open_source(writing *c, uint32_t index, destination what)
 {
 	if (what == KEPT || what == LINKED || index >= c->document->buffer_count ||
 		c->document->buffers[index].storage == NT_GLTF_STORED_NOWHERE)
 		return NT_OK;
 	nt_gltf_buffer *buffer;
-	return nt_gltf_open_buffer(c->document, index, "/buffers", &buffer, c->error);
+	const nt_status status = nt_gltf_open_buffer(c->document, index, "/buffers", &buffer, c->error);
+	/* A wrong length must not become that many zeros; padding may be missing. */
+	if (status || buffer->length - buffer->size < NT_EDITS_ALIGNMENT)
+		return status;
+	char pointer[NT_GLTF_POINTER];
+	snprintf(pointer, sizeof pointer, "/buffers/%u", index);
+	return nt_fail_pointer(c->error, NT_ERROR_INPUT, pointer, "byteLength is %llu, but only %zu bytes are there",
+		(unsigned long long)buffer->length, buffer->size);
 }
 
 /* Settles every buffer but the BIN chunk; *bin receives whether there is one. */

@@ -1,0 +1,80 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Room on the disk is asked for by what is there, not by what a file says of itself.
+ */
+#include "folder.h"
+#include "test.h"
+#include <errno.h>
+#include <fcntl.h>
+#include "pipeline/run.h"
+
+enum { FILE_BYTES = 1200000 };
+
+/* Stands for that of the system, which is not asked. */
+static off_t asked_for;
+
+int fallocate(int fd, int mode, off_t offset, off_t size)
+{
+	(void)fd;
+	(void)mode;
+	asked_for += offset + size;
+	errno = EOPNOTSUPP;
+	return -1;
+}
+
+/* A triangle in a file of FILE_BYTES, which is said to have `length`. */
+static void put_triangle(unsigned long long length)
+{
+	static const float values[FILE_BYTES / 4] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+	nt_buffer json = {0};
+	put_file("in.bin", values, sizeof values);
+	nt_buffer_format(&json, "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{"
+		"\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},\"material\":0}]}],"
+		"\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\","
+		"\"min\":[0,0,0],\"max\":[1,1,0]},{\"bufferView\":1,\"componentType\":5126,\"count\":3,"
+		"\"type\":\"VEC3\"},{\"bufferView\":2,\"componentType\":5126,\"count\":3,\"type\":\"VEC2\"}],"
+		"\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":36},"
+		"{\"buffer\":0,\"byteOffset\":72,\"byteLength\":24}],\"buffers\":[{\"byteLength\":%llu,\"uri\":\"in.bin\"}],"
+		"\"materials\":[{\"normalTexture\":{\"index\":0}}],\"textures\":[{}]}", length);
+	put_file("in.gltf", json.data, json.size);
+	nt_buffer_free(&json);
+}
+
+static nt_status run(const char *to, nt_error *error)
+{
+	nt_summary summary;
+	asked_for = 0;
+	const nt_status status = nt_run(in_folder("in.gltf"), in_folder(to), &(nt_settings){.texcoord_set = -1}, &summary,
+		error);
+	if (!status)
+		nt_summary_free(&summary);
+	return status;
+}
+
+static void lengths_are_looked_at_before_room_is_made(void **state)
+{
+	(void)state;
+	static const char *const outputs[] = {"out.gltf", "out.glb"};
+	static const unsigned long long wrong[] = {FILE_BYTES + 4, 3ull << 30};
+	nt_error error;
+	for (size_t k = 0; k < 2; k++) {
+		put_triangle(FILE_BYTES + 3); /* padding may be missing */
+		assert_int_equal(run(outputs[k], &error), NT_OK);
+		assert_in_range(asked_for, FILE_BYTES + 48, FILE_BYTES + 4096);
+		for (size_t i = 0; i < 2; i++) {
+			put_triangle(wrong[i]);
+			assert_int_equal(run(outputs[k], &error), NT_ERROR_INPUT);
+			assert_string_equal(error.place.pointer, "/buffers/0");
+			assert_non_null(strstr(error.message, " but only 1200000 bytes are there"));
+			assert_int_equal(asked_for, 0);
+		}
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(lengths_are_looked_at_before_room_is_made, make_folder, remove_folder),
+	};
+	return cmocka_run_group_tests_name("gltf/edit/room", tests, NULL, NULL);
+}
