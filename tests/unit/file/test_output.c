@@ -139,7 +139,10 @@ static void output_has_its_bytes_whatever_was_announced(void **state)
 	static const char zeros[SIZE];
 	nt_error error;
 	const int trial = open(in_folder("trial"), O_WRONLY | O_CREAT, 0666);
-	const bool gives_room = fallocate(trial, FALLOC_FL_KEEP_SIZE, 0, SIZE) == 0;
+	struct stat status;
+	/* some say yes and give nothing */
+	const bool gives_room = fallocate(trial, FALLOC_FL_KEEP_SIZE, 0, SIZE) == 0 && fstat(trial, &status) == 0 &&
+		(uint64_t)status.st_blocks * 512 >= SIZE;
 	assert_int_equal(close(trial), 0);
 	const uint64_t announced[] = {SIZE, 2 * SIZE, SIZE - 1, 0, UINT64_MAX};
 	for (size_t i = 0; i < sizeof announced / sizeof *announced; i++) {
@@ -147,7 +150,6 @@ static void output_has_its_bytes_whatever_was_announced(void **state)
 		nt_sink *sink = add(output, in_folder("out"), NT_ROLE_MAIN);
 		nt_sink_expect(sink, announced[i]);
 		const char *temporary;
-		struct stat status;
 		assert_int_equal(nt_output_written(output, in_folder("out"), &temporary, &error), NT_OK);
 		assert_int_equal(stat(temporary, &status), 0);
 		assert_int_equal(status.st_size, 0);
