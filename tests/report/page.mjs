@@ -41,7 +41,7 @@ async function expect(holds, text) {
 	check(false, (typeof text === 'function' ? await text() : text) + thrown);
 }
 
-const browser = await chromium.launch({executablePath: process.env.CHROMIUM || '/usr/bin/chromium',
+const browser = await chromium.launch({timeout: 300000, executablePath: process.env.CHROMIUM || '/usr/bin/chromium',
 	args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist']});
 const complaints = [], requests = [];
 
