@@ -13,7 +13,7 @@
 #include <jpeglib.h>
 #include <jerror.h>
 
-enum { MOST_SCANS = 500, SLACK_BYTES = 65536 };
+enum { MOST_SCANS = 500, SLACK_BYTES = 131072 };
 
 typedef struct decoder {
 	struct jpeg_decompress_struct jpeg;
@@ -53,14 +53,15 @@ static void on_progress(j_common_ptr jpeg)
 }
 
 /* A Huffman code has a bit at least, and each block of each component has one, of its first coefficient. Arithmetic
- * coding has no such bound; its images may be as large as if some bytes more were there. The coefficients of all scans,
- * which libjpeg keeps at once, take 128 bytes for each block: 1 KB for each byte of the file. */
-static bool is_too_small(const struct jpeg_decompress_struct *jpeg, size_t size)
+ * coding has no such bound. The coefficients of several scans, which libjpeg keeps at once, take 128 bytes for each
+ * block, 1 KB for each byte of the file: there, its images may be as large as if some bytes more were in it. */
+static bool is_too_small(struct jpeg_decompress_struct *jpeg, size_t size)
 {
 	uint64_t blocks = 0;
 	for (int i = 0; i < jpeg->num_components; i++)
 		blocks += (uint64_t)jpeg->comp_info[i].width_in_blocks * jpeg->comp_info[i].height_in_blocks;
-	return blocks / 8 > (uint64_t)size + (jpeg->arith_code ? SLACK_BYTES : 0);
+	return jpeg->arith_code ? jpeg_has_multiple_scans(jpeg) && blocks / 8 > (uint64_t)size + SLACK_BYTES :
+				  blocks / 8 > size;
 }
 
 static void decode(decoder *d, const unsigned char *bytes, size_t size, uint32_t rows)

@@ -464,10 +464,11 @@ static void decode_refuses_sizes_before_it_asks_for_memory(void **state)
 	assert_string_equal(error.message, "PNG: 44 bytes cannot hold 42 x 5963792 pixels");
 }
 
-/* A JPEG of SIDE x SIDE black pixels whose scan has the blocks' first coefficients alone; malloc'ed. */
+/* A JPEG of SIDE x SIDE black pixels whose scan has the blocks' first coefficients alone, or all; malloc'ed. */
 enum { SIDE = 2048 };
 
-static unsigned char *make_dense_jpeg(int components, bool wide_and_high, bool arithmetic, unsigned long *size)
+static unsigned char *make_dense_jpeg(int components, bool wide_and_high, bool arithmetic, bool sequential,
+	unsigned long *size)
 {
 	const jpeg_scan_info first_coefficients = {.comps_in_scan = components, .component_index = {0, 1, 2}};
 	struct jpeg_compress_struct jpeg;
@@ -485,8 +486,10 @@ static unsigned char *make_dense_jpeg(int components, bool wide_and_high, bool a
 		jpeg.comp_info[0].h_samp_factor = jpeg.comp_info[1].v_samp_factor = 4;
 		jpeg.comp_info[0].v_samp_factor = jpeg.comp_info[1].h_samp_factor = 1;
 	}
-	jpeg.scan_info = &first_coefficients;
-	jpeg.num_scans = 1;
+	if (!sequential) {
+		jpeg.scan_info = &first_coefficients;
+		jpeg.num_scans = 1;
+	}
 	jpeg.arith_code = arithmetic;
 	jpeg.optimize_coding = !arithmetic;
 	jpeg_start_compress(&jpeg, TRUE);
@@ -497,11 +500,12 @@ static unsigned char *make_dense_jpeg(int components, bool wide_and_high, bool a
 	return made;
 }
 
-/* Its frame (SOF2 or SOF10): the marker, length and precision, then height and width. */
+/* Its frame (SOF2, SOF9 or SOF10): the marker, length and precision, then height and width. */
 static void declare(unsigned char *jpeg, size_t size, unsigned width, unsigned height)
 {
 	unsigned char *frame = memmem(jpeg, size, "\xff\xc2", 2);
 	frame = frame ? frame : memmem(jpeg, size, "\xff\xca", 2);
+	frame = frame ? frame : memmem(jpeg, size, "\xff\xc9", 2);
 	memcpy(frame + 5, (unsigned char[]){height >> 8 & 255, height & 255, width >> 8 & 255, width & 255}, 4);
 }
 
@@ -522,7 +526,7 @@ static void jpegs_are_held_against_a_bit_for_each_block(void **state)
 {
 	(void)state;
 	unsigned long size;
-	unsigned char *made = make_dense_jpeg(1, false, false, &size);
+	unsigned char *made = make_dense_jpeg(1, false, false, false, &size);
 	assert_true(size < SIDE * SIDE / 512 + 200);
 	decodes_with(made, size, NT_OK, NULL);
 	declare(made, size, SIDE, 2 * SIDE + 1); /* more than twice as high */
@@ -535,7 +539,7 @@ static void blocks_of_a_jpeg_may_cover_many_pixels(void **state)
 {
 	(void)state;
 	unsigned long size;
-	unsigned char *made = make_dense_jpeg(3, true, false, &size);
+	unsigned char *made = make_dense_jpeg(3, true, false, false, &size);
 	assert_in_range(size, SIDE * SIDE / 512 * 9 / 16, SIDE * SIDE / 512 * 10 / 16 + 200);
 	decodes_with(made, size, NT_OK, NULL);
 	free(made);
@@ -547,7 +551,7 @@ static void jpegs_of_arithmetic_codes_have_a_bound(void **state)
 {
 	(void)state;
 	unsigned long size;
-	unsigned char *made = make_dense_jpeg(3, false, true, &size);
+	unsigned char *made = make_dense_jpeg(3, false, true, false, &size);
 	assert_true(size < SIDE);
 	decodes_with(made, size, NT_OK, NULL);
 	declare(made, size, 8192, 8192);
@@ -562,6 +566,27 @@ static void jpegs_of_arithmetic_codes_have_a_bound(void **state)
 	assert_int_equal(nt_decode_jpeg(made, padded, 1, &p, &error), NT_ERROR_UNSUPPORTED);
 	assert_non_null(strstr(error.message, "17000 x 16384 pixels of 3 bytes, more than nmtan decodes"));
 	free(made);
+}
+
+/* Of one colour, they are as small as they like. Nothing is kept of a single scan. */
+static void large_jpegs_of_arithmetic_codes_are_decoded(void **state)
+{
+	(void)state;
+	static const unsigned sides[] = {6000, 16384}; /* of several scans, of one */
+	for (int sequential = 0; sequential < 2; sequential++) {
+		unsigned long size;
+		nt_pixels p;
+		nt_error error;
+		unsigned char *made = make_dense_jpeg(3, false, true, sequential, &size);
+		assert_true(size < 1000);
+		declare(made, size, sides[sequential], sides[sequential]);
+		if (nt_decode_jpeg(made, size, 8, &p, &error))
+			fail_msg("%s", error.message);
+		assert_int_equal(p.width, sides[sequential]);
+		assert_int_equal(p.height, 8);
+		nt_pixels_free(&p);
+		free(made);
+	}
 }
 
 /* Any bytes: an image or an error, and never more. The build with sanitizers looks on. */
@@ -625,6 +650,7 @@ int main(void)
 		cmocka_unit_test(jpegs_are_held_against_a_bit_for_each_block),
 		cmocka_unit_test(blocks_of_a_jpeg_may_cover_many_pixels),
 		cmocka_unit_test(jpegs_of_arithmetic_codes_have_a_bound),
+		cmocka_unit_test(large_jpegs_of_arithmetic_codes_are_decoded),
 		cmocka_unit_test(decode_survives_damage),
 		cmocka_unit_test(decode_without_memory_is_an_error),
 	};
