@@ -46,8 +46,7 @@ static nt_status run(const char *to, nt_error *error)
 	asked_for = 0;
 	const nt_status status = nt_run(in_folder("in.gltf"), in_folder(to), &(nt_settings){.texcoord_set = -1}, &summary,
 		error);
-	if (!status)
-		nt_summary_free(&summary);
+	nt_summary_free(&summary);
 	return status;
 }
 
