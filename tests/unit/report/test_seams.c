@@ -296,9 +296,15 @@ static void search_of_overlap_is_bounded_by_the_triangles(void **state)
 		hand_vertex(h, 6, 0, 0, 0.2f, 0.2f));
 	hand_triangle(h, hand_vertex(h, 7, 1, 0, -3e35f, -2e35f), hand_vertex(h, 7, 0, 0, -3e35f, -3e35f),
 		hand_vertex(h, 8, 0, 0, -2e35f, -3e35f));
-	const clock_t begin = clock();
-	nt_report *report = hand_report(h, NULL);
-	assert_true(clock() - begin < CLOCKS_PER_SEC / 4); /* 0.02 s; without a bound 0.8 s */
+	nt_report *report = NULL;
+	clock_t least = CLOCKS_PER_SEC;
+	for (int i = 0; i < 5 && least >= CLOCKS_PER_SEC / 4; i++) { /* others may take the caches */
+		nt_report_free(report);
+		const clock_t begin = clock();
+		report = hand_report(h, NULL);
+		least = clock() - begin;
+	}
+	assert_true(least < CLOCKS_PER_SEC / 4); /* 0.02 s; without a bound 0.8 s */
 	hand_free(h, report);
 }
 
