@@ -288,7 +288,7 @@ typedef struct nmtan_output {
  *
  * Time is linear in the number of corners, whatever the mesh looks like, but for one thing: where tangents around a
  * vertex are opposite, MikkTSpace may have a sum of its own for each direction among them, so that their number counts
- * times that of the vertex's corners.
+ * times that of the vertex's corners; so it may, here, where many are more than a right angle apart.
  *
  * Returns NMTAN_OK, NMTAN_ERROR_ARGUMENT, NMTAN_ERROR_INDEX, NMTAN_ERROR_FACE_SIZE,
  * NMTAN_ERROR_TOO_LARGE or NMTAN_ERROR_MEMORY.

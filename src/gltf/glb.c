@@ -33,7 +33,7 @@ static nt_status read_header(const unsigned char *bytes, size_t size, size_t *en
 		return nt_fail_offset(error, NT_ERROR_INPUT, size,
 			"the file ends within the 12-byte GLB header");
 	if (!nt_glb_has_magic(bytes, size))
-		return nt_fail_offset(error, NT_ERROR_INPUT, 0, "not a GLB: no \"glTF\" at its begin");
+		return nt_fail_offset(error, NT_ERROR_INPUT, 0, "not a GLB: no \"glTF\" at its beginning");
 	const uint32_t version = read_u32(bytes + 4), length = read_u32(bytes + 8);
 	if (version != 2)
 		return nt_fail_offset(error, NT_ERROR_UNSUPPORTED, 4,

@@ -1,8 +1,8 @@
 #!/bin/bash
 # SPDX-License-Identifier: MIT
 #
-# tests/soak/hostile.sh BUILD_DIR...: 10 000 damaged copies (NT_MUTATIONS) of every file of ../shared that
-# is a model or a test of the validator, and the files themselves, in as many processes as there are
+# tests/soak/hostile.sh BUILD_DIR...: 10 000 damaged copies (NT_MUTATIONS) in all of the files of ../shared that
+# are models or tests of the validator, and the files themselves, in as many processes as there are
 # processors: see hostile.c. A third or more must come as far as geometry. NT_RUN=FILE:RUN, as the
 # messages number them, runs one alone; NT_KEEP=PATH keeps its input.
 set -u
