@@ -198,9 +198,12 @@ void nt_write_sums(const nt_complex *c, nt_batch *b, size_t v)
 		const int orient = orientation_of(c, b, i);
 		if (b->group[i] == NT_NONE || b->group[i] != groups[orient])
 			continue;
-		nt_record record = *nt_fast_record(fast, orient, vertex);
-		record.state = orient ? NT_RESULT_PLUS : NT_RESULT_MINUS;
-		memcpy(fast->solve->tangents + 4 * mesh_corner(c, b, i), &record, sizeof record);
+		/* step 6 has written the record, but for triangles that had no orientation */
+		if (fast->flags[b->corners[i] >> 2] & NT_TRIANGLE_ANY) {
+			nt_record record = *nt_fast_record(fast, orient, vertex);
+			record.state = orient ? NT_RESULT_PLUS : NT_RESULT_MINUS;
+			memcpy(fast->solve->tangents + 4 * mesh_corner(c, b, i), &record, sizeof record);
+		}
 		b->group[i] = NT_WRITTEN;
 	}
 }

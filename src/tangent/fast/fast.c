@@ -288,7 +288,6 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 		sum->complex_count += r.settled[i].complex_count;
 		sum->complex_corners += r.settled[i].complex_corners;
 		sum->tangled_count += r.settled[i].tangled_count;
-		sum->unusable |= r.settled[i].unusable;
 	}
 	return NMTAN_OK;
 }
@@ -316,7 +315,6 @@ static void tell_rows(const nt_fast *fast)
 
 static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, const nt_settled *settled)
 {
-	fast->has_unusable = settled->unusable != 0;
 	nt_fast_write(fast);
 	nt_borrowed left = nt_fast_left_memory(fast);
 	const nmtan_status status = settled->complex_count > 0

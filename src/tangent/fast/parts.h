@@ -58,7 +58,6 @@ typedef struct nt_fast {
 	nt_record_more *more[2];     /* [vertex_count] the same for the optional outputs */
 	bool wants_more;
 	bool sparse;             /* step 6 leaves out corners whose result is their record */
-	bool has_unusable;       /* some records have NT_RESULT_UNUSABLE */
 	bool scattered;          /* neighbouring triangles have vertices far apart: prefetch */
 	nt_bins bins;            /* of a scattered mesh: its corners on their way to the records */
 	nt_triangle_ranges ranges;
@@ -68,7 +67,6 @@ typedef struct nt_fast {
 /* How many vertices are complex, with how many corners at most, and how many of them are tangled. */
 typedef struct nt_settled {
 	size_t complex_count, complex_corners, tangled_count;
-	uint32_t unusable; /* not 0: some records have NT_RESULT_UNUSABLE */
 } nt_settled;
 
 /* Makes fast->records[orient], which a triangle needs and which does not exist; false: it cannot be had now. */

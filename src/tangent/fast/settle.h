@@ -329,7 +329,6 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		normalise_records(used, &r[o]);
 		if (fast->solve->known)
 			find_unusable(normals, &r[o], unusable[o], used);
-		settled->unusable |= any_of(unusable[o], used);
 	}
 	/* from here on the rows may be overwritten */
 	for (int o = 0; o < 2; o++) {

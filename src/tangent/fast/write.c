@@ -12,12 +12,11 @@
 enum { WRITE_AHEAD = 16 };
 
 static void write_corner(const nt_fast *fast, size_t corner, const nt_record *record,
-	const nt_record_more *more)
+	const nt_record_more *more, float sign)
 {
 	const nt_solve *solve = fast->solve;
-	const uint32_t sign = record->state & ~NT_RESULT_UNUSABLE;
 	memcpy(solve->tangents + 4 * corner, record, 3 * sizeof(float));
-	memcpy(solve->tangents + 4 * corner + 3, &sign, sizeof sign);
+	solve->tangents[4 * corner + 3] = sign;
 	if (solve->bitangents)
 		memcpy(solve->bitangents + 3 * corner, &more->x, 3 * sizeof(float));
 	if (solve->magnitudes)
@@ -33,7 +32,7 @@ static int single_record(const nt_fast *fast, uint32_t vertex)
 static void write_vertex(const nt_fast *fast, size_t corner, int orient, uint32_t vertex)
 {
 	write_corner(fast, corner, nt_fast_record(fast, orient, vertex),
-		fast->wants_more ? &fast->more[orient][vertex] : NULL);
+		fast->wants_more ? &fast->more[orient][vertex] : NULL, orient ? 1.0f : -1.0f);
 }
 
 /* Whether the other half of a triangle's quad is sound. */
@@ -46,11 +45,9 @@ static bool has_sound_half(const nt_fast *fast, size_t t)
 
 void nt_fast_write_unassigned(const nt_fast *fast, size_t corner)
 {
-	nt_record record = {.x = 1.0f};
-	const float w = nt_unassigned_sign(fast->solve);
+	const nt_record record = {.x = 1.0f};
 	const nt_record_more more = {.y = 1.0f, .mag_s = 1.0f, .mag_t = 1.0f};
-	memcpy(&record.state, &w, sizeof w);
-	write_corner(fast, corner, &record, &more);
+	write_corner(fast, corner, &record, &more, nt_unassigned_sign(fast->solve));
 }
 
 static void write_special(nt_fast *fast, size_t t)
@@ -89,7 +86,8 @@ static inline void prefetch_records(const nt_fast *fast, size_t t, size_t end)
 		__builtin_prefetch(nt_fast_record(fast, orient, v[k]));
 }
 
-/* Every corner of [begin, end) gets its vertex's result; in a sparse solve those of suspects only. */
+/* Every corner of [begin, end) gets its vertex's record and its orientation's sign, which complex.c takes as they are
+ * where that is the result; in a sparse solve those of suspects only. */
 static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 {
 	for (size_t t = begin; t < end; t++) {
@@ -131,7 +129,8 @@ static inline __attribute__((always_inline)) void write_plain(nt_fast *fast, siz
 			write_special(fast, t);
 			continue;
 		}
-		const nt_record *from = records[flags[t] & NT_TRIANGLE_ORIENT];
+		const int orient = flags[t] & NT_TRIANGLE_ORIENT;
+		const nt_record *from = records[orient];
 		uint32_t copy[3];
 		const uint32_t *v = nt_triangle_vertices(&triangles, t, 1, copy);
 		nt_int4 a, b, c;
@@ -141,21 +140,11 @@ static inline __attribute__((always_inline)) void write_plain(nt_fast *fast, siz
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 0), &a, sizeof a);
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 1), &b, sizeof b);
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 2), &c, sizeof c);
-		if ((a | b | c)[3] & (int)(NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE))
+		if ((a | b | c)[3] & (int)(NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE)) {
+			for (unsigned k = 0; k < 3; k++)
+				out[4 * nt_triangle_corner(&triangles, t, k) + 3] = (float)(2 * orient - 1);
 			flags[t] |= NT_TRIANGLE_COMPLEX;
-	}
-}
-
-/* Of triangles with an unusable corner write_plain() has left NT_RESULT_UNUSABLE beside signs. Those of complex
- * vertices are not written yet. */
-static void write_signs(const nt_fast *fast, size_t begin, size_t end)
-{
-	for (size_t t = begin; t < end; t++) {
-		const unsigned flags = fast->flags[t];
-		if (!(flags & NT_TRIANGLE_COMPLEX) || (flags & NT_TRIANGLE_ANY))
-			continue;
-		for (size_t i = 3 * t; i < 3 * t + 3; i++)
-			fast->solve->tangents[4 * nt_fast_corner(fast, i) + 3] = flags & NT_TRIANGLE_ORIENT ? 1.0f : -1.0f;
+		}
 	}
 }
 
@@ -165,8 +154,6 @@ static void write_plain_triangles(nt_fast *fast, size_t begin, size_t end)
 		write_plain(fast, begin, end, fast->triangles.cuts);
 	else
 		write_plain(fast, begin, end, NULL);
-	if (fast->has_unusable)
-		write_signs(fast, begin, end);
 }
 
 static void write_ranges(void *context, size_t begin, size_t end, unsigned slot)
