@@ -76,20 +76,23 @@ static uint32_t __attribute__((noinline)) mark_hubs(const nt_adjacency *a, size_
 static inline uint32_t place_block(nt_adjacency *a, size_t first, uint32_t place, uint32_t most, size_t count,
 	unsigned ranges)
 {
-	uint32_t totals[NT_FAN_LANES] = {0}, depth = 0;
+	/* signed, which all vectors compare: there are fewer corners than NT_ADJACENCY_LIMIT */
+	int32_t totals[NT_FAN_LANES] = {0}, depth = 0;
 	for (unsigned r = 0; r < ranges; r++) {
-		uint32_t *cursors = a->cursors + r * a->vertex_count + first, shared_count = 0;
+		uint32_t *cursors = a->cursors + r * a->vertex_count + first;
+		int32_t shared_count = 0;
 		for (size_t lane = 0; lane < count; lane++) {
-			const uint32_t here = cursors[lane], shared = (totals[lane] > 0) & (here > 0);
-			cursors[lane] = (place + (uint32_t)lane + totals[lane] * NT_FAN_LANES) | shared * NT_CURSOR_SHARED;
-			shared_count += shared * here;
+			const int32_t here = (int32_t)cursors[lane], shared = -((totals[lane] > 0) & (here > 0));
+			cursors[lane] = (place + (uint32_t)lane + (uint32_t)totals[lane] * NT_FAN_LANES) |
+				((uint32_t)shared & NT_CURSOR_SHARED);
+			shared_count += shared & here;
 			totals[lane] += here;
 		}
-		a->shared_counts[r] += shared_count;
+		a->shared_counts[r] += (uint32_t)shared_count;
 	}
 	for (size_t lane = 0; lane < count; lane++)
 		depth = totals[lane] > depth ? totals[lane] : depth;
-	return depth > most ? mark_hubs(a, first, count, most, totals) : depth;
+	return (uint32_t)depth > most ? mark_hubs(a, first, count, most, (const uint32_t *)totals) : (uint32_t)depth;
 }
 
 /* Returns the number of entries, padding included: at most most_places. */
