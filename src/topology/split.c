@@ -169,9 +169,9 @@ void nt_splitter_end(nt_splitter *s)
 	s->output->source_count = s->copy_count;
 	if (s->output->indices && !s->indexed && !s->lazy)
 		copy_indices(s);
-	for (size_t v = 0; s->output->vertex_tangents && v < s->mesh->vertex_count; v++)
-		if (!s->seen[v])
-			set_unused_tangent(s->mesh, v, s->output->vertex_tangents + 4 * v);
+	const uint8_t *at = s->seen, *const end = at + s->mesh->vertex_count;
+	for (; s->output->vertex_tangents && (at = memchr(at, 0, (size_t)(end - at))); at++)
+		set_unused_tangent(s->mesh, (size_t)(at - s->seen), s->output->vertex_tangents + 4 * (at - s->seen));
 }
 
 static nmtan_status split_mesh(nt_splitter *s, const float *tangents)
