@@ -18,7 +18,7 @@ static nt_status solve(const nt_late *l, nt_scene *part, nt_error *error)
 		status = l->reader->load(part, &part->meshes[i], l->options, error);
 	l->begin_stage(l->run, NT_STAGE_NORMALS);
 	if (!status)
-		status = nt_stage_normals(part, l->settings->normals, error);
+		status = nt_stage_normals(part, l->settings->normals, l->settings->threads, error);
 	l->begin_stage(l->run, NT_STAGE_TANGENTS);
 	if (!status)
 		status = nt_stage_tangents(part, l->settings, l->output, l->summary, error);

@@ -239,32 +239,32 @@ static nt_status make_lacking(nt_scene *scene, nt_mesh *mesh, nt_normals mode)
 	return status;
 }
 
-static nt_status make_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, nt_error *error)
+static nt_status make_normals(nt_scene *scene, nt_mesh *mesh, nt_normals mode, unsigned threads, nt_error *error)
 {
 	/* a glTF keeps the normals that it has, unless others are asked for */
 	const bool keeps = scene->format == NT_FORMAT_GLTF || scene->format == NT_FORMAT_GLB;
-	nt_status status = keeps ? NT_OK : nt_mark_directionless(scene, mesh);
+	nt_status status = keeps ? NT_OK : nt_mark_directionless(scene, mesh, threads);
 	if (!status)
 		status = make_lacking(scene, mesh, mode);
 	if (!status)
-		status = nt_make_unit_normals(scene, mesh);
+		status = nt_make_unit_normals(scene, mesh, threads);
 	return status ? nt_fail(error, status, "cannot make normals: %s", nt_status_text(status)) : NT_OK;
 }
 
 /* Copies in joins have their own normals, whatever the others get. */
-static nt_status make_normals_of_copies(nt_scene *scene, nt_error *error)
+static nt_status make_normals_of_copies(nt_scene *scene, unsigned threads, nt_error *error)
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < scene->join_count; i++)
 		for (size_t k = 0; !status && k < scene->joins[i].part_count; k++) {
 			nt_mesh *mesh = scene->joins[i].parts[k];
 			if (!nt_mesh_is_wanted(mesh) && mesh->positions)
-				status = make_normals(scene, mesh, NT_NORMALS_AUTO, error);
+				status = make_normals(scene, mesh, NT_NORMALS_AUTO, threads, error);
 		}
 	return status;
 }
 
-nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, nt_error *error)
+nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, unsigned threads, nt_error *error)
 {
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < scene->mesh_count; i++) {
@@ -272,12 +272,12 @@ nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, nt_error *error)
 		if (!nt_mesh_is_wanted(mesh) || mesh->late)
 			continue;
 		if (!mesh->same_as) {
-			status = make_normals(scene, mesh, mode, error);
+			status = make_normals(scene, mesh, mode, threads, error);
 			continue;
 		}
 		nt_mesh_share(mesh);
 		if (mesh->normals_made)
 			report_normals(scene, mesh);
 	}
-	return status ? status : make_normals_of_copies(scene, error);
+	return status ? status : make_normals_of_copies(scene, threads, error);
 }

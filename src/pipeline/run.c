@@ -218,7 +218,7 @@ static nt_status run_stages(run *r)
 	}
 	if (!status) {
 		begin_stage(r, NT_STAGE_NORMALS);
-		status = nt_stage_normals(&r->scene, r->settings->normals, r->error);
+		status = nt_stage_normals(&r->scene, r->settings->normals, r->settings->threads, r->error);
 	}
 	if (!status) {
 		begin_stage(r, NT_STAGE_TANGENTS);

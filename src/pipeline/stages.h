@@ -26,7 +26,7 @@ nt_status nt_check_inputs(nt_scene *scene, nt_status status, nt_error *error);
 /* Makes the normals that meshes lack (all of them when `mode` says replace); vertices whose corners get
  * different normals are split, copies appended. Sets mesh->normals_made where something was made. Then gives each mesh
  * solve_normals where its normals are not of unit length. */
-nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, nt_error *error);
+nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, unsigned threads, nt_error *error);
 
 /* Solves and splits every mesh whose decision says so; counts and findings go to the summary. Large
  * meshes take all threads one after the other, small ones run side by side. */
@@ -79,9 +79,9 @@ nt_status nt_cut_folded_quads(nt_mesh *mesh, float stored_v_offset, unsigned thr
 
 /* unit_normals.c, for normals.c. Vertices whose normal has no direction lack it. Both return NT_OK or
  * NT_ERROR_MEMORY. */
-nt_status nt_mark_directionless(nt_scene *scene, nt_mesh *mesh);
+nt_status nt_mark_directionless(nt_scene *scene, nt_mesh *mesh, unsigned threads);
 
 /* Makes mesh->solve_normals where normals are not of unit length. */
-nt_status nt_make_unit_normals(nt_scene *scene, nt_mesh *mesh);
+nt_status nt_make_unit_normals(nt_scene *scene, nt_mesh *mesh, unsigned threads);
 
 #endif

@@ -57,6 +57,7 @@ static bool is_item(const nt_mesh *mesh)
 typedef struct mesh_bytes {
 	const nt_scene *scene;
 	const nt_mesh *mesh;
+	unsigned threads;
 } mesh_bytes;
 
 /* What v is added to when it is stored: nothing where the format stays, else see nmtan_stored_uv. */
@@ -179,16 +180,36 @@ static nt_status keep_split(nt_mesh *mesh, const nmtan_split_output *output, nt_
 	return NT_ERROR_MEMORY;
 }
 
+typedef struct forgetting {
+	const nt_scene *scene;
+	const void *bytes;
+} forgetting;
+
+static void forget_range(void *context, size_t begin, size_t end, unsigned slot)
+{
+	(void)slot;
+	const forgetting *f = context;
+	f->scene->forget(f->scene, (const char *)f->bytes + begin, end - begin);
+}
+
+static void forget_bytes(const mesh_bytes *of, const void *bytes, size_t size)
+{
+	enum { GRAIN = 2 << 20 };
+	forgetting f = {of->scene, bytes};
+	if (bytes)
+		nt_parallel_ranges(of->threads, size, GRAIN, forget_range, &f);
+}
+
 /* The input's pages that a solve is done with: glTF that is made from glTF is copied by the kernel. */
 static void forget_part(void *user, nt_mesh_part part)
 {
-	const mesh_bytes *bytes = user;
-	const nt_mesh *mesh = bytes->mesh;
+	const mesh_bytes *of = user;
+	const nt_mesh *mesh = of->mesh;
 	if (part == NT_PART_ATTRIBUTES) {
-		bytes->scene->forget(bytes->scene, mesh->positions, 3 * sizeof(float) * mesh->vertex_count);
-		bytes->scene->forget(bytes->scene, mesh->normals, 3 * sizeof(float) * mesh->vertex_count);
+		forget_bytes(of, mesh->positions, 3 * sizeof(float) * mesh->vertex_count);
+		forget_bytes(of, mesh->normals, 3 * sizeof(float) * mesh->vertex_count);
 	} else {
-		bytes->scene->forget(bytes->scene, mesh->indices, sizeof(uint32_t) * mesh->corner_count);
+		forget_bytes(of, mesh->indices, sizeof(uint32_t) * mesh->corner_count);
 	}
 }
 
@@ -215,7 +236,7 @@ static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, const nmtan_o
 			status = split_corners(mesh, options, &output);
 		free_corners(mesh);
 	} else if (!(status = make_split(mesh, &mesh->split, &output))) {
-		mesh_bytes bytes = {job->scene, mesh};
+		mesh_bytes bytes = {job->scene, mesh, nt_thread_count(options->threads)};
 		const nt_vertex_request request = {.lazy_indices = true,
 			.passed = job->forgets ? forget_part : NULL, .user = &bytes};
 		status = nt_status_of(nt_vertex_tangents(&view, options, &request, &output, &mesh->counts));

@@ -11,18 +11,38 @@
  */
 #include "pipeline/stages.h"
 
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/dvec.h"
+#include "base/parallel.h"
 #include "tangent/normals.h"
 #include "tangent/usable.h"
 
-static size_t count_odd(const float *normals, size_t count)
+typedef struct looking {
+	const float *normals;
+	atomic_bool odd;
+} looking;
+
+static void look_at_range(void *context, size_t begin, size_t end, unsigned slot)
 {
+	(void)slot;
+	looking *l = context;
 	size_t odd = 0;
-	for (size_t v = 0; v < count; v++)
-		odd += !nt_is_unit_normal(normals + 3 * v);
-	return odd;
+	for (size_t v = begin; v < end; v++)
+		odd += !nt_is_unit_normal(l->normals + 3 * v);
+	if (odd)
+		atomic_store(&l->odd, true);
+}
+
+/* Whether a mesh has normals that are not of unit length. */
+static bool has_odd(const nt_mesh *mesh, unsigned threads)
+{
+	enum { GRAIN = 1 << 16 };
+	looking l = {.normals = mesh->normals};
+	const size_t count = mesh->normals ? mesh->vertex_count : 0;
+	nt_parallel_ranges(count < 2 * GRAIN ? 1 : nt_thread_count(threads), count, GRAIN, look_at_range, &l);
+	return l.odd;
 }
 
 static bool has_direction(const float *n)
@@ -32,9 +52,9 @@ static bool has_direction(const float *n)
 }
 
 /* Vertices whose normal has no direction lack it. */
-nt_status nt_mark_directionless(nt_scene *scene, nt_mesh *mesh)
+nt_status nt_mark_directionless(nt_scene *scene, nt_mesh *mesh, unsigned threads)
 {
-	if (!mesh->normals || count_odd(mesh->normals, mesh->vertex_count) == 0)
+	if (!has_odd(mesh, threads))
 		return NT_OK;
 	for (size_t v = 0; v < mesh->vertex_count; v++) {
 		if (has_direction(mesh->normals + 3 * v))
@@ -84,10 +104,9 @@ static nt_status replace_directionless(nt_mesh *mesh)
 	return NT_OK;
 }
 
-nt_status nt_make_unit_normals(nt_scene *scene, nt_mesh *mesh)
+nt_status nt_make_unit_normals(nt_scene *scene, nt_mesh *mesh, unsigned threads)
 {
-	const size_t odd = mesh->normals ? count_odd(mesh->normals, mesh->vertex_count) : 0;
-	if (odd == 0)
+	if (!has_odd(mesh, threads))
 		return NT_OK;
 	mesh->solve_normals = nt_arena_alloc(&scene->arena, mesh->vertex_count, 3 * sizeof(float));
 	if (!mesh->solve_normals)
