@@ -23,7 +23,7 @@ unsigned nt_pool_processors(void);
 void nt_pool_reserve(unsigned threads);
 
 /* Calls body once for each slot below `slots` and returns when all have returned. Several at a time where
- * threads are free, in no promised order: a slot must not wait for another. */
+ * threads are free, begun in their order: a slot may wait for one below it, and for no other. */
 void nt_pool_run(unsigned slots, void (*body)(void *context, unsigned slot), void *context);
 
 #endif

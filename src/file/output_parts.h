@@ -38,6 +38,7 @@ struct nt_sink {
 	bool shared_fd;           /* standard output: not ours to close */
 	bool no_kernel_copy;      /* it was tried in vain */
 	bool dry;                 /* counts bytes and drops them */
+	unsigned threads;         /* as options.threads has it */
 	bool in_place;            /* the main file: it is the input's */
 	bool placed;              /* its temporary file has a name */
 	uint64_t size;

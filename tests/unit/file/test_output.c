@@ -10,6 +10,7 @@
 #include <fcntl.h>
 #include <signal.h>
 #include <stdio.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -129,6 +130,51 @@ static void output_bytes_are_the_same_for_small_and_large_writes(void **state)
 	assert_memory_equal(file.data, bytes, SIZE);
 	nt_file_close(&file);
 	free(bytes);
+}
+
+/* What no page of the output meets goes through memory, where a second thread may fetch it: the bytes
+ * are those of the file, and an output that may not grow that far is an error, whoever is at work then. */
+static void output_has_the_bytes_of_a_large_file_for_any_number_of_threads(void **state)
+{
+	(void)state;
+	enum { SIZE = 70 << 20, STEP = 50021, MOST = 20 << 20 };
+	const int fd = open(in_folder("in"), O_WRONLY | O_CREAT, 0666);
+	assert_int_equal(ftruncate(fd, SIZE), 0);
+	for (off_t at = 0; at + (off_t)sizeof at <= SIZE; at += STEP)
+		assert_int_equal(pwrite(fd, &at, sizeof at, at), sizeof at);
+	assert_int_equal(close(fd), 0);
+	nt_error error;
+	nt_file file;
+	assert_int_equal(nt_file_open(&file, in_folder("in"), &error), NT_OK);
+	struct rlimit unlimited;
+	assert_int_equal(getrlimit(RLIMIT_FSIZE, &unlimited), 0);
+	signal(SIGXFSZ, SIG_IGN);
+	for (unsigned threads = 1; threads <= 3; threads++) {
+		nt_output *output = start(&(nt_output_options){.threads = threads});
+		nt_sink *sink = add(output, in_folder("out"), NT_ROLE_MAIN);
+		assert_int_equal(nt_sink_write(sink, "head", 4, &error), NT_OK);
+		assert_int_equal(nt_sink_copy(sink, &file, 1, SIZE - 1, &error), NT_OK);
+		assert_int_equal(nt_output_commit(output, &error), NT_OK);
+		nt_file copy;
+		assert_int_equal(nt_file_open(&copy, in_folder("out"), &error), NT_OK);
+		assert_int_equal(copy.size, SIZE + 3);
+		assert_memory_equal(copy.data, "head", 4);
+		assert_int_equal(memcmp(copy.data + 4, file.data + 1, SIZE - 1), 0);
+		nt_file_close(&copy);
+
+		assert_int_equal(unlink(in_folder("out")), 0);
+		output = start(&(nt_output_options){.threads = threads});
+		sink = add(output, in_folder("out"), NT_ROLE_MAIN);
+		assert_int_equal(setrlimit(RLIMIT_FSIZE, &(struct rlimit){MOST, unlimited.rlim_max}), 0);
+		assert_int_equal(nt_sink_write(sink, "head", 4, &error), NT_OK);
+		assert_int_equal(nt_sink_copy(sink, &file, 1, SIZE - 1, &error), NT_ERROR_IO);
+		assert_int_equal(setrlimit(RLIMIT_FSIZE, &unlimited), 0);
+		assert_string_equal(error.message, "cannot write: File too large");
+		nt_output_abort(output);
+		assert_int_equal(count_in_folder(), 1);
+	}
+	signal(SIGXFSZ, SIG_DFL);
+	nt_file_close(&file);
 }
 
 /* Room that was announced is there before the bytes, where the file system gives any, and is no part of the file. */
@@ -400,6 +446,7 @@ int main(void)
 		CASE(output_appears_at_commit_only),
 		CASE(output_abort_leaves_nothing),
 		CASE(output_bytes_are_the_same_for_small_and_large_writes),
+		CASE(output_has_the_bytes_of_a_large_file_for_any_number_of_threads),
 		CASE(output_has_its_bytes_whatever_was_announced),
 		CASE(output_can_be_read_back_before_it_has_its_name),
 		CASE(output_that_is_an_input_is_refused_by_name),
