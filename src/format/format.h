@@ -28,10 +28,10 @@ typedef struct nt_format_entry {
 	/* After that: sets late of meshes whose results need not all be there at once for an edit of the source's
 	 * document; NULL: there are none. */
 	nt_status (*find_late)(nt_scene *scene, nt_error *error);
-	/* After that: takes from the loads what threads can do side by side. needed: [mesh_count], which will be
-	 * loaded, false where that is done; what is wrong with one of them is said when it is. NULL: there is nothing
-	 * of that kind. */
-	nt_status (*load_ahead)(nt_scene *scene, bool *needed, const nt_read_options *options, nt_error *error);
+	/* After that: from share() to unshare() several threads may load, as gltf/load.h says. needed: [mesh_count],
+	 * which will be loaded. NULL: load() is for one thread. */
+	nt_status (*share)(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error);
+	void (*unshare)(nt_scene *scene);
 	/* Brings the geometry of one mesh; NULL: open did. */
 	nt_status (*load)(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 		nt_error *error);

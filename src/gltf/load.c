@@ -440,34 +440,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	return status;
 }
 
-/* ---- small ones, several at a time ---- */
-
-/* Faces from which on a mesh has all threads for itself, and those that small ones must have together. */
-enum { LARGE_FACES = 128 * 1024, LEAST_SHARED_FACES = 4096 };
-
-typedef struct small_ones {
-	nt_scene *scene;
-	const nt_read_options *options;
-	bool *needed;   /* [mesh_count] */
-	nt_arena *arenas; /* of each slot: what was loaded, until the scene takes it over */
-} small_ones;
-
-static bool is_small(const nt_mesh *mesh)
-{
-	return !mesh->same_as && mesh->face_count < LARGE_FACES;
-}
-
-static void load_one_small(void *context, size_t item, unsigned slot)
-{
-	const small_ones *job = context;
-	nt_mesh *mesh = &job->scene->meshes[item];
-	if (!job->needed[item] || !is_small(mesh))
-		return;
-	nt_scene own = *job->scene;
-	own.arena = job->arenas[slot];
-	job->needed[item] = nt_gltf_load(&own, mesh, job->options, NULL) != NT_OK;
-	job->arenas[slot] = own.arena;
-}
+/* ---- several at a time ---- */
 
 /* Opens the buffer of a mesh's positions: mostly that of all meshes. */
 static void open_buffer_of(nt_gltf *document, const nt_mesh *mesh)
@@ -484,32 +457,21 @@ static void open_buffer_of(nt_gltf *document, const nt_mesh *mesh)
 		nt_gltf_open_buffer(document, view.buffer, "", &buffer, &ignored);
 }
 
-nt_status nt_gltf_load_ahead(nt_scene *scene, bool *needed, const nt_read_options *options, nt_error *error)
+nt_status nt_gltf_share(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error)
 {
-	const nt_status status = nt_gltf_decode_ahead(scene, needed, options, error);
-	const unsigned threads = nt_thread_count(options->threads);
-	if (status || threads == 1)
-		return status;
-	size_t faces = 0, first = scene->mesh_count;
-	for (size_t i = scene->mesh_count; i-- > 0;)
-		if (needed[i] && is_small(&scene->meshes[i])) {
-			faces += scene->meshes[i].face_count;
-			first = i;
-		}
-	if (faces < LEAST_SHARED_FACES)
-		return NT_OK;
 	nt_gltf *document = scene->source;
-	nt_read_options of_one = *options;
-	of_one.threads = 1;
-	const small_ones job = {scene, &of_one, needed, nt_calloc(threads, sizeof *job.arenas)};
-	if (!job.arenas)
-		return nt_fail_memory(error);
-	open_buffer_of(document, &scene->meshes[first]);
-	document->is_shared = true;
-	nt_parallel_items(threads, scene->mesh_count, load_one_small, (void *)&job);
+	const nt_status status = nt_gltf_decode_ahead(scene, needed, options, error);
+	size_t first = 0;
+	while (first < scene->mesh_count && !needed[first])
+		first++;
+	if (!status && first < scene->mesh_count)
+		open_buffer_of(document, &scene->meshes[first]);
+	document->is_shared = !status;
+	return status;
+}
+
+void nt_gltf_unshare(nt_scene *scene)
+{
+	nt_gltf *document = scene->source;
 	document->is_shared = false;
-	for (unsigned i = 0; i < threads; i++)
-		nt_arena_join(&scene->arena, &job.arenas[i]);
-	free(job.arenas);
-	return NT_OK;
 }

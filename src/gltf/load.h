@@ -12,14 +12,14 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	nt_error *error);
 
 /*
- * For the table of formats: what several threads can do before meshes are loaded one after the other. Compressed blocks
- * are decoded, and small meshes loaded.
+ * For the table of formats: between these two several threads may load, each with a copy of the scene that has an arena
+ * of its own. What would add a finding or change the document fails without words: it is to be loaded afterwards.
  *
- *   needed  [mesh_count] meshes that will be loaded; receives false for those that are
+ *   needed  [mesh_count] meshes that will be loaded; several threads decode their compressed blocks here
  *
- * What fails, or cannot be done by several threads, is left for nt_gltf_load(), so that faults and findings come in the
- * order of the meshes. Returns NT_OK or NT_ERROR_MEMORY.
+ * Returns NT_OK or NT_ERROR_MEMORY, and then nothing is shared.
  */
-nt_status nt_gltf_load_ahead(nt_scene *scene, bool *needed, const nt_read_options *options, nt_error *error);
+nt_status nt_gltf_share(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error);
+void nt_gltf_unshare(nt_scene *scene);
 
 #endif

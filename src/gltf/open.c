@@ -11,6 +11,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include "gltf/draco.h"
 #include "gltf/draco_shared.h"
 #include "gltf/materials.h"
 #include "gltf/nodes.h"
@@ -69,6 +70,15 @@ static uint32_t targets_without_tangents(const nt_json_value *primitive)
 	return count;
 }
 
+/* Whether nothing but its tangents will ever depend on its vertices: whole triangles, since indices that form none
+ * stay as they are, with normals, uncompressed, not moved, and texture coordinates as all take them. */
+static bool is_plain(const nt_gltf *document, const nt_json_value *primitive, const nt_mesh *mesh, uint64_t mode)
+{
+	const nt_json_value *indices = nt_json_find(primitive, "indices");
+	return mode == NT_GLTF_TRIANGLES && indices && claimed_count(document, indices) % 3 == 0 && mesh->has_normals &&
+		!mesh->texcoords_transformed && !nt_json_find(primitive, "targets") && !nt_gltf_draco_of(primitive);
+}
+
 static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	const nt_json_value *primitive, nt_mesh *mesh, const nt_read_options *options, nt_error *error)
 {
@@ -109,6 +119,7 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->has_texcoords = has_texcoords(attributes, mesh->texcoord_set);
 	mesh->targets_without_tangents = targets_without_tangents(primitive);
 	mesh->face_count = claimed_faces(document, primitive, attributes, mode);
+	mesh->plain = is_plain(document, primitive, mesh, mode);
 	mesh->primitive_count = 1;
 	mesh->primitives = nt_arena_alloc(&scene->arena, 1, sizeof *mesh->primitives);
 	if (!mesh->primitives)

@@ -75,8 +75,8 @@ static nt_status load_copies(const loading *l)
 	return status;
 }
 
-/* Whether nobody but an edit of the document asks for what is loaded and solved, and it as gltf/late.h has it. */
-static bool can_be_late(const loading *l, const nt_format_entry *writer)
+/* Whether nobody but an edit of the document asks for what is loaded and solved, and only for results. */
+static bool asks_for_results(const loading *l, const nt_format_entry *writer)
 {
 	const nt_settings *s = l->settings;
 	return writer && !needs_all(l->reader, writer) && !s->check && !s->report && !s->verify && !s->bitangents &&
@@ -91,7 +91,7 @@ static bool is_needed(const loading *l, const nt_mesh *mesh, bool all)
 		((all || l->settings->report) && mesh->triangles && mesh->has_positions));
 }
 
-static nt_status load_meshes(const loading *l, bool all)
+static nt_status load_meshes(const loading *l, const nt_format_entry *writer, bool all)
 {
 	nt_scene *scene = l->scene;
 	bool *needed = nt_alloc(scene->mesh_count, sizeof *needed);
@@ -99,7 +99,8 @@ static nt_status load_meshes(const loading *l, bool all)
 		return nt_fail_memory(l->error);
 	for (size_t i = 0; i < scene->mesh_count; i++)
 		needed[i] = is_needed(l, &scene->meshes[i], all);
-	nt_status status = l->reader->load_ahead ? l->reader->load_ahead(scene, needed, l->options, l->error) : NT_OK;
+	nt_status status = l->reader->share ? nt_load_ahead(scene, l->reader, asks_for_results(l, writer) ? writer : NULL,
+		l->settings, l->options, needed, l->error) : NT_OK;
 	for (size_t i = 0; !status && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
 		if (needed[i] && (nt_mesh_is_wanted(mesh) || all))
@@ -119,10 +120,10 @@ nt_status nt_stage_load(nt_scene *scene, const nt_format_entry *reader, const nt
 	nt_status status = reader->find_same ? reader->find_same(scene, options, error) : NT_OK;
 	if (!status)
 		status = find_joins(&l);
-	if (!status && reader->find_late && can_be_late(&l, writer))
+	if (!status && reader->find_late && asks_for_results(&l, writer))
 		status = reader->find_late(scene, error);
 	if (!status && reader->load)
-		status = load_meshes(&l, all);
+		status = load_meshes(&l, writer, all);
 	return status ? status : load_copies(&l);
 }
 

@@ -41,7 +41,7 @@ typedef enum nt_stage {
 	NT_STAGE_MAP,
 	NT_STAGE_PARSE,
 	NT_STAGE_INDEX,    /* corners with indices of their own become vertices: OBJ */
-	NT_STAGE_DECODE,
+	NT_STAGE_DECODE,   /* small meshes that are solved as soon as they are loaded, too */
 	NT_STAGE_TEXTURES, /* images are looked for; they are made beside the solve */
 	NT_STAGE_NORMALS,
 	NT_STAGE_WELD,     /* weld and split of large meshes; small ones count as tangents */

@@ -15,7 +15,8 @@
 nt_status nt_choose_writer(const nt_settings *settings, const char *path, const nt_format_entry *reader,
 	const nt_format_entry **writer, nt_error *error);
 
-/* After the decisions: finds joins and equal meshes, and loads whatever will be solved, written or reported. */
+/* After the decisions: finds joins and equal meshes, and loads whatever will be solved, written or reported. Small
+ * meshes whose geometry nobody else asks for are solved too. */
 nt_status nt_stage_load(nt_scene *scene, const nt_format_entry *reader, const nt_format_entry *writer,
 	const nt_settings *settings, const nt_read_options *options, nt_error *error);
 
@@ -61,6 +62,29 @@ nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error 
 
 /* Says of every mesh with quads where they are cut (face_diagonals). For writers of triangles. */
 nt_status nt_stage_quads(nt_scene *scene, nt_error *error);
+
+/* ahead.c, for load.c. Several threads load small meshes, each as if it were alone; all that fails is left for the load
+ * of one after the other, so that findings and faults come in order.
+ *
+ *   writer  who asks for nothing of the meshes but their results, so that those that are plain are solved and their
+ *           geometry is let go of; NULL: only loaded
+ *   needed  [mesh_count] meshes that will be loaded; receives false for those that are
+ *
+ * Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_load_ahead(nt_scene *scene, const nt_format_entry *reader, const nt_format_entry *writer,
+	const nt_settings *settings, const nt_read_options *options, bool *needed, nt_error *error);
+
+/* tangents.c, for ahead.c too: small meshes, of which up to `slots` threads at a time solve one each. NULL: memory is
+ * exhausted. */
+typedef struct nt_small_solves nt_small_solves;
+nt_small_solves *nt_small_solves_begin(nt_scene *scene, const nt_settings *settings, nt_format output, unsigned slots);
+
+/* Solves a mesh, or the join that it is the first of. The scene has the results after nt_small_solves_end(). */
+nt_status nt_small_solve(nt_small_solves *small, nt_mesh *mesh, unsigned slot);
+void nt_small_solves_end(nt_small_solves *small);
+
+/* Corners from which on a mesh may be worth all threads: it is not solved ahead of others. */
+enum { NT_LEAST_ALONE_CORNERS = 3 * 30000 };
 
 /* authored.c, for tangents.c and morphs.c: authored tangents that stay with --existing=repair. Of meshes with texture
  * coordinates the corners of faces whose tangents are all valid take theirs back after a solve. */

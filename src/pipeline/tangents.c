@@ -19,29 +19,49 @@
 /* Corners from which one mesh is worth all threads, whatever else there is, and where the others are less than half of
  * it; and those that small ones must have together for threads to be made at all, which costs as much as solving some
  * hundred triangles. */
-enum { LARGE_CORNERS = 3 * 128 * 1024, LEAST_ALONE_CORNERS = 3 * 30000, LEAST_SHARED_CORNERS = 3 * 4096 };
+enum { LARGE_CORNERS = 3 * 128 * 1024, LEAST_SHARED_CORNERS = 3 * 4096 };
 
-typedef struct tangent_job {
+/* What holds for all meshes of a run. */
+typedef struct wishes {
 	nt_scene *scene;
 	const nt_settings *settings;
 	bool round_trip;    /* the output stores 1 - v */
 	bool triangulates;  /* the output has triangles where the input has quads */
 	bool splits;        /* something is written, or judged as if it were */
 	bool forgets;       /* the input is not read again after the solve */
+} wishes;
+
+/* What a thread solves small meshes with. */
+typedef struct solver {
+	nmtan_workspace *workspace; /* NULL: none */
+	nt_arena arena;             /* results, until the scene takes them over */
+	size_t corners;             /* that it solved */
+} solver;
+
+struct nt_small_solves {
+	wishes wishes;
+	unsigned slots;
+	solver solvers[]; /* [slots] */
+};
+
+typedef struct tangent_job {
+	wishes wishes;
 	nt_mesh **meshes;   /* the ones to solve */
 	nt_status *statuses;
 	size_t count;
 	bool *is_large;     /* [count] solved by all threads: LARGE_CORNERS, or one for which other threads would wait */
 	size_t small_corners; /* of the others together */
-	struct solver *solvers; /* of each slot that solves small meshes */
+	nt_small_solves *small; /* while these are solved */
 	nmtan_timing timing;    /* of the large meshes */
 } tangent_job;
 
-/* What a thread solves with. */
-typedef struct solver {
-	nmtan_workspace *workspace; /* NULL: none */
-	nt_arena arena;             /* results, until the scene takes them over */
-} solver;
+static wishes wishes_of(nt_scene *scene, const nt_settings *settings, nt_format output)
+{
+	return (wishes){.scene = scene, .settings = settings,
+		.round_trip = output != NT_FORMAT_UNKNOWN && nt_format_is_gltf(scene->format) != nt_format_is_gltf(output),
+		.triangulates = nt_format_is_gltf(output), .splits = output != NT_FORMAT_UNKNOWN,
+		.forgets = scene->forget && nt_format_is_gltf(output) && !settings->report && !settings->verify};
+}
 
 static bool is_solved(const nt_mesh *mesh)
 {
@@ -51,7 +71,7 @@ static bool is_solved(const nt_mesh *mesh)
 /* Whether a mesh is solved by itself, or stands for its join. */
 static bool is_item(const nt_mesh *mesh)
 {
-	return mesh->join ? mesh->join->first == mesh : is_solved(mesh);
+	return mesh->join ? mesh->join->first == mesh : is_solved(mesh) && !nt_mesh_is_solved_ahead(mesh);
 }
 
 typedef struct mesh_bytes {
@@ -61,7 +81,7 @@ typedef struct mesh_bytes {
 } mesh_bytes;
 
 /* What v is added to when it is stored: nothing where the format stays, else see nmtan_stored_uv. */
-static float stored_v_offset(const tangent_job *job)
+static float stored_v_offset(const wishes *job)
 {
 	if (!job->round_trip)
 		return 0.0f;
@@ -213,7 +233,7 @@ static void forget_part(void *user, nt_mesh_part part)
 	}
 }
 
-static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, const nmtan_options *options, nt_arena *arena)
+static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_options *options, nt_arena *arena)
 {
 	nmtan_stored_uv stored;
 	const nmtan_mesh view = nt_mesh_view(mesh, &stored);
@@ -247,7 +267,7 @@ static nt_status solve_mesh(const tangent_job *job, nt_mesh *mesh, const nmtan_o
 	return status;
 }
 
-static nt_status solve_join(const tangent_job *job, const nt_join *join, const nmtan_options *options, nt_arena *arena)
+static nt_status solve_join(const wishes *job, const nt_join *join, const nmtan_options *options, nt_arena *arena)
 {
 	nt_status status = nt_join_solve(join, stored_v_offset(job), job->splits, options);
 	for (size_t i = 0; i < join->part_count; i++) {
@@ -269,7 +289,7 @@ static nt_status solve_join(const tangent_job *job, const nt_join *join, const n
 }
 
 /* A mesh, or the join that it is the first of. */
-static nt_status solve_item(const tangent_job *job, nt_mesh *mesh, unsigned threads, nmtan_workspace *workspace,
+static nt_status solve_item(const wishes *job, nt_mesh *mesh, unsigned threads, nmtan_workspace *workspace,
 	nt_arena *arena, nmtan_timing *timing)
 {
 	const nmtan_options options = {.struct_bytes = sizeof options, .method = job->settings->method,
@@ -304,7 +324,7 @@ static void find_large(tangent_job *job)
 			longest = i;
 		}
 	}
-	const bool alone = most >= LEAST_ALONE_CORNERS && sum - most < most / 2;
+	const bool alone = most >= NT_LEAST_ALONE_CORNERS && sum - most < most / 2;
 	if (alone)
 		job->is_large[longest] = true;
 	job->small_corners = alone ? sum - most : sum;
@@ -314,40 +334,61 @@ static void solve_large(tangent_job *job)
 {
 	for (size_t i = 0; i < job->count; i++)
 		if (job->is_large[i])
-			job->statuses[i] = solve_item(job, job->meshes[i], job->settings->threads, NULL,
-				&job->scene->arena, &job->timing);
+			job->statuses[i] = solve_item(&job->wishes, job->meshes[i], job->wishes.settings->threads, NULL,
+				&job->wishes.scene->arena, &job->timing);
+}
+
+nt_small_solves *nt_small_solves_begin(nt_scene *scene, const nt_settings *settings, nt_format output, unsigned slots)
+{
+	nt_small_solves *small = nt_calloc(1, sizeof *small + slots * sizeof *small->solvers);
+	if (small) {
+		small->wishes = wishes_of(scene, settings, output);
+		small->slots = slots;
+	}
+	return small;
+}
+
+nt_status nt_small_solve(nt_small_solves *small, nt_mesh *mesh, unsigned slot)
+{
+	solver *own = &small->solvers[slot];
+	/* without a workspace it is only slower */
+	if (!own->workspace)
+		own->workspace = nmtan_workspace_create(NULL);
+	own->corners += corners_of(mesh);
+	return solve_item(&small->wishes, mesh, 1, own->workspace, &own->arena, NULL);
+}
+
+void nt_small_solves_end(nt_small_solves *small)
+{
+	const wishes *job = &small->wishes;
+	size_t corners = 0;
+	for (unsigned i = 0; i < small->slots; i++) {
+		corners += small->solvers[i].corners;
+		nmtan_workspace_destroy(small->solvers[i].workspace);
+		nt_arena_join(&job->scene->arena, &small->solvers[i].arena);
+	}
+	/* what passed while they were solved is too little each time to be let go of */
+	if (job->forgets && corners >= LARGE_CORNERS)
+		job->scene->forget(job->scene, NULL, 0);
+	free(small);
 }
 
 static void solve_one_small(void *context, size_t item, unsigned slot)
 {
-	tangent_job *job = context;
-	nt_mesh *mesh = job->meshes[item];
-	if (job->is_large[item])
-		return;
-	solver *own = &job->solvers[slot];
-	/* without a workspace it is only slower */
-	if (!own->workspace)
-		own->workspace = nmtan_workspace_create(NULL);
-	job->statuses[item] = solve_item(job, mesh, 1, own->workspace, &own->arena, NULL);
+	const tangent_job *job = context;
+	if (!job->is_large[item])
+		job->statuses[item] = nt_small_solve(job->small, job->meshes[item], slot);
 }
 
-static nt_status solve_small(tangent_job *job)
+static nt_status solve_small(tangent_job *job, nt_format output)
 {
-	const size_t corners = job->small_corners;
-	const unsigned threads = corners < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(job->settings->threads);
-	const size_t slots = threads < job->count ? threads : job->count;
-	job->solvers = nt_calloc(slots, sizeof *job->solvers);
-	if (!job->solvers)
+	const nt_settings *settings = job->wishes.settings;
+	const unsigned threads = job->small_corners < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(settings->threads);
+	job->small = nt_small_solves_begin(job->wishes.scene, settings, output, threads);
+	if (!job->small)
 		return NT_ERROR_MEMORY;
 	nt_parallel_items(threads, job->count, solve_one_small, job);
-	for (size_t i = 0; i < slots; i++) {
-		nmtan_workspace_destroy(job->solvers[i].workspace);
-		nt_arena_join(&job->scene->arena, &job->solvers[i].arena);
-	}
-	free(job->solvers);
-	/* what passed while they were solved is too little each time to be let go of */
-	if (job->forgets && corners >= LARGE_CORNERS)
-		job->scene->forget(job->scene, NULL, 0);
+	nt_small_solves_end(job->small);
 	return NT_OK;
 }
 
@@ -410,10 +451,11 @@ static void add_counts(nt_summary *summary, const nt_mesh *mesh)
 /* What was solved is kept, shared with the meshes that have the same geometry, and counted for each. */
 static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *error)
 {
+	nt_scene *scene = job->wishes.scene;
 	bool kept = true;
-	for (size_t i = 0; i < job->scene->mesh_count; i++)
-		if (is_solved(&job->scene->meshes[i]) || job->scene->meshes[i].join)
-			kept = keep_results(job->scene, &job->scene->meshes[i]) && kept;
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		if (is_solved(&scene->meshes[i]) || scene->meshes[i].join)
+			kept = keep_results(scene, &scene->meshes[i]) && kept;
 	if (!kept)
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < job->count; i++) {
@@ -425,15 +467,15 @@ static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *e
 			return job->statuses[i];
 		}
 	}
-	for (size_t i = 0; i < job->scene->mesh_count; i++) {
-		nt_mesh *mesh = &job->scene->meshes[i];
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		nt_mesh *mesh = &scene->meshes[i];
 		if (!nt_mesh_is_wanted(mesh) || mesh->late)
 			continue;
 		if (mesh->same_as) {
 			nt_mesh_share(mesh);
 			summary->same_count++;
 		}
-		add_findings(&job->scene->findings, mesh);
+		add_findings(&scene->findings, mesh);
 		add_counts(summary, mesh);
 	}
 	return NT_OK;
@@ -442,10 +484,7 @@ static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *e
 nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_format output,
 	nt_summary *summary, nt_error *error)
 {
-	tangent_job job = {.scene = scene, .settings = settings,
-		.round_trip = output != NT_FORMAT_UNKNOWN && nt_format_is_gltf(scene->format) != nt_format_is_gltf(output),
-		.triangulates = nt_format_is_gltf(output), .splits = output != NT_FORMAT_UNKNOWN,
-		.forgets = scene->forget && nt_format_is_gltf(output) && !settings->report && !settings->verify,
+	tangent_job job = {.wishes = wishes_of(scene, settings, output),
 		.meshes = nt_alloc(scene->mesh_count, sizeof *job.meshes),
 		.statuses = nt_calloc(scene->mesh_count, sizeof *job.statuses),
 		.is_large = nt_calloc(scene->mesh_count, sizeof *job.is_large),
@@ -462,7 +501,7 @@ nt_status nt_stage_tangents(nt_scene *scene, const nt_settings *settings, nt_for
 		summary->seconds[NT_STAGE_WELD] += job.timing.weld;
 		summary->seconds[NT_STAGE_SPLIT] += job.timing.split;
 		summary->seconds[NT_STAGE_TANGENTS] -= job.timing.weld + job.timing.split;
-		status = solve_small(&job) ? nt_fail_memory(error) : finish(&job, summary, error);
+		status = solve_small(&job, output) ? nt_fail_memory(error) : finish(&job, summary, error);
 	}
 	free(job.meshes);
 	free(job.statuses);

@@ -178,6 +178,7 @@ typedef struct nt_mesh {
 	const struct nt_mesh *same_as; /* an earlier mesh with the same geometry, which is loaded and solved once;
 	                                  NULL: none. That one has none */
 
+	bool plain;              /* of its geometry, an edit of the source's document needs what a solve makes of it alone */
 	bool late;               /* loaded and solved while the writer asks for it: scene->solve_late */
 	const nt_join *join;     /* it is solved with the others of it; NULL: by itself */
 	const struct nt_mesh *transform_of; /* of a copy in a join: the mesh whose texture transform applies; NULL:
@@ -307,6 +308,13 @@ const nt_place *nt_mesh_place(const nt_mesh *mesh, nt_place *place);
 static inline bool nt_mesh_is_wanted(const nt_mesh *mesh)
 {
 	return mesh->decision == NT_DECISION_SOLVE || mesh->decision == NT_DECISION_REPAIR;
+}
+
+/* Before the stages that make normals and solve: whether a mesh was solved as soon as it was loaded. It has results
+ * then, and no geometry but its triangles where no vertex was split. */
+static inline bool nt_mesh_is_solved_ahead(const nt_mesh *mesh)
+{
+	return mesh->split.vertex_tangents != NULL;
 }
 
 /* So many corners of late meshes are solved at once: enough for all threads, and a hundred megabytes or two. */

@@ -394,8 +394,8 @@ static bool merge_user(merging *m, uint32_t user, nt_arena *arena)
 		return false;
 	if (pool->sets.first[set] == user)
 		set_unused(m, mesh, set);
-	/* normals that were made may have given the mesh indices of its own */
-	vertices->changed[user] = mesh->vertex_count > mesh->source_vertex_count ||
+	/* a copy differs from what it copies; normals that were made may have given the mesh indices of its own */
+	vertices->changed[user] = mesh->split.source_count || mesh->vertex_count > mesh->source_vertex_count ||
 		!same_triangles(mesh, vertices->indices[user]);
 	return true;
 }

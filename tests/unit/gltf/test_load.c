@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Small meshes that several threads load: which, and what is left for the load of one after the other.
+ * Meshes that several threads load: which, and what is left for the load of one after the other.
  */
 #include "test.h"
 #include "base/buffer.h"
+#include "base/parallel.h"
 #include "file/uri.h"
 #include "gltf/load.h"
 #include "gltf/open.h"
@@ -46,6 +47,25 @@ static nt_buffer make_document(void)
 	return json;
 }
 
+enum { MOST_THREADS = 4 };
+
+typedef struct loading {
+	nt_scene *scene;
+	const nt_read_options *options;
+	bool *needed;
+	nt_arena arenas[MOST_THREADS];
+} loading;
+
+static void load_one(void *context, size_t item, unsigned slot)
+{
+	loading *job = context;
+	nt_scene own = *job->scene;
+	own.arena = job->arenas[slot];
+	if (job->needed[item])
+		job->needed[item] = nt_gltf_load(&own, &own.meshes[item], job->options, NULL) != NT_OK;
+	job->arenas[slot] = own.arena;
+}
+
 static void check_with(unsigned threads)
 {
 	nt_buffer json = make_document();
@@ -62,10 +82,15 @@ static void check_with(unsigned threads)
 	assert_int_equal(scene.mesh_count, MESHES);
 	for (size_t i = 0; i < MESHES; i++)
 		needed[i] = i != UNASKED;
-	assert_int_equal(nt_gltf_load_ahead(&scene, needed, &options, &error), NT_OK);
+	assert_int_equal(nt_gltf_share(&scene, needed, &options, &error), NT_OK);
+	loading job = {.scene = &scene, .options = &options, .needed = needed};
+	nt_parallel_items(threads, MESHES, load_one, &job);
+	nt_gltf_unshare(&scene);
+	for (unsigned i = 0; i < threads; i++)
+		nt_arena_join(&scene.arena, &job.arenas[i]);
 	for (size_t i = 0; i < MESHES; i++) {
-		const bool left = threads == 1 || i == DAMAGED || i == COLORED || i == ELSEWHERE;
-		assert_int_equal(needed[i], i != UNASKED && left);
+		const bool left = i == DAMAGED || i == COLORED || i == ELSEWHERE;
+		assert_int_equal(needed[i], left);
 		if (i == UNASKED)
 			assert_null(scene.meshes[i].positions);
 	}
@@ -92,24 +117,18 @@ static void check_with(unsigned threads)
 	nt_buffer_free(&json);
 }
 
-static void small_meshes_are_loaded_by_several_threads(void **state)
-{
-	(void)state;
-	check_with(2);
-	check_with(4);
-}
-
-static void one_thread_leaves_all_to_the_load_of_one(void **state)
+static void meshes_are_loaded_by_several_threads(void **state)
 {
 	(void)state;
 	check_with(1);
+	check_with(2);
+	check_with(MOST_THREADS);
 }
 
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(small_meshes_are_loaded_by_several_threads),
-		cmocka_unit_test(one_thread_leaves_all_to_the_load_of_one),
+		cmocka_unit_test(meshes_are_loaded_by_several_threads),
 	};
 	return cmocka_run_group_tests_name("gltf/load", tests, NULL, NULL);
 }

@@ -1,0 +1,289 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Small meshes that are solved as soon as they are loaded: the output and what is said are those of a run that loads
+ * all of them first, as --verify makes it, whatever the number of threads. A scene of primitives of all kinds: grids of
+ * SIDE x SIDE quads.
+ */
+#include "fail_alloc.h"
+#include "folder.h"
+#include "test.h"
+#include <math.h>
+#include "base/buffer.h"
+#include "file/input.h"
+#include "pipeline/stages.h"
+#include "pipeline/run.h"
+
+enum { SIDE = 16, VERTICES = (SIDE + 1) * (SIDE + 1), CORNERS = 6 * SIDE * SIDE };
+
+/* What a primitive is, in this order, again and again. */
+typedef enum kind {
+	MIRRORED,    /* half of its texture coordinates: vertices are split */
+	PLAIN,       /* no vertex is */
+	WIDE,        /* the same with indices of 32 bits, which are used where they are */
+	TAIL,        /* mirrored, with two indices that form no triangle */
+	REVERSED,    /* the vertices of the one before it, other triangles */
+	SAME,        /* all accessors of the first mirrored one */
+	CONFLICT,    /* the same, and textures with different transforms: a finding */
+	CHAIN,       /* a strip */
+	LONG,        /* normals of length 2, and one of length 0 */
+	LISTED,      /* mirrored, without indices */
+	CUT,         /* two triangles with one vertex in common, which is split: as many vertices then as corners */
+	BESIDE,      /* one triangle of the same vertices */
+	KINDS
+} kind;
+
+typedef struct file {
+	nt_buffer bin, accessors, primitives;
+	size_t accessor_count, primitive_count;
+} file;
+
+static size_t put_accessor(file *f, const void *data, size_t count, size_t width, int type, const char *words)
+{
+	nt_buffer_format(&f->accessors, "%s{\"bufferView\":0,\"byteOffset\":%zu,\"componentType\":%d,\"count\":%zu,"
+		"\"type\":\"%s\"}", f->accessor_count ? "," : "", f->bin.size, type, count, words);
+	nt_buffer_append(&f->bin, data, count * width);
+	nt_buffer_append(&f->bin, "\0\0\0", (4 - count * width % 4) % 4);
+	return f->accessor_count++;
+}
+
+/* POSITION, NORMAL and TEXCOORD_0 of a grid, different for each `number`; the number of the first. vertices: [count] of
+ * the grid; NULL: all VERTICES. */
+static size_t put_vertices(file *f, int number, bool mirrored, float length, const uint32_t *vertices, size_t count)
+{
+	static float positions[CORNERS][3], normals[CORNERS][3], texcoords[CORNERS][2];
+	for (size_t i = 0; i < count; i++) {
+		const uint32_t v = vertices ? vertices[i] : (uint32_t)i;
+		const float x = (float)(v % (SIDE + 1)), y = (float)(v / (SIDE + 1));
+		const float tilt = 0.3f * sinf(x + (float)number), up = sqrtf(1 - tilt * tilt);
+		memcpy(positions[i], (float[]){x, y, 0.4f * sinf(y + 0.1f * (float)number)}, sizeof positions[i]);
+		memcpy(normals[i], (float[]){length * tilt, 0, length * up}, sizeof normals[i]);
+		memcpy(texcoords[i], (float[]){mirrored ? fabsf(x - SIDE / 2) : x, y + 0.2f * sinf(x)}, sizeof texcoords[i]);
+	}
+	if (length != 1)
+		memset(normals[SIDE], 0, sizeof normals[SIDE]);
+	const size_t first = put_accessor(f, positions, count, 12, 5126, "VEC3");
+	put_accessor(f, normals, count, 12, 5126, "VEC3");
+	put_accessor(f, texcoords, count, 8, 5126, "VEC2");
+	return first;
+}
+
+static void make_corners(uint32_t *corners, bool reversed)
+{
+	for (uint32_t y = 0; y < SIDE; y++)
+		for (uint32_t x = 0; x < SIDE; x++) {
+			const uint32_t a = y * (SIDE + 1) + x, b = a + SIDE + 1, quad[6] = {a, a + 1, b + 1, a, b + 1, b};
+			memcpy(corners + 6 * (y * SIDE + x), quad, sizeof quad);
+		}
+	for (size_t c = 0; reversed && 2 * c < CORNERS; c++) {
+		const uint32_t other = corners[CORNERS - 1 - c];
+		corners[CORNERS - 1 - c] = corners[c];
+		corners[c] = other;
+	}
+}
+
+/* The number of an accessor of `count` indices, of 16 bits or 32. */
+static size_t put_indices(file *f, const uint32_t *corners, size_t count, bool wide)
+{
+	uint16_t narrow[CORNERS + 2];
+	if (wide)
+		return put_accessor(f, corners, count, 4, 5125, "SCALAR");
+	for (size_t c = 0; c < count; c++)
+		narrow[c] = (uint16_t)corners[c];
+	return put_accessor(f, narrow, count, 2, 5123, "SCALAR");
+}
+
+static void put_primitive(file *f, kind which, bool faulty)
+{
+	uint32_t corners[CORNERS + 2] = {0};
+	const int number = (int)f->primitive_count;
+	const bool mirrored = which != PLAIN && which != WIDE && which != LONG, lists = which == LISTED;
+	make_corners(corners, which == REVERSED);
+	if (faulty)
+		corners[CORNERS / 2] = VERTICES;
+	/* both sides of the line where texture coordinates are mirrored */
+	static const uint32_t few[] = {SIDE / 2, SIDE / 2 + 1, SIDE + SIDE / 2 + 2, SIDE + SIDE / 2, SIDE / 2 - 1},
+		cut[] = {0, 1, 2, 3, 4, 0};
+	const bool shares = which == REVERSED || which == BESIDE, same = which == SAME || which == CONFLICT;
+	const size_t first = same ? 0 : shares ? f->accessor_count - 4 :
+		which == CUT ? put_vertices(f, number, mirrored, 1, few, 5) :
+		put_vertices(f, number, mirrored, which == LONG ? 2 : 1, lists ? corners : NULL, lists ? CORNERS : VERTICES);
+	const size_t count = which == CUT ? 6 : which == BESIDE ? 3 : which == TAIL ? CORNERS + 2 : CORNERS;
+	const size_t indices = same ? 3 : lists ? 0 :
+		put_indices(f, which == CUT || which == BESIDE ? cut : corners, count, which == WIDE);
+	nt_buffer_format(&f->primitives, "%s{\"attributes\":{\"POSITION\":%zu,\"NORMAL\":%zu,\"TEXCOORD_0\":%zu},",
+		number ? "," : "", first, first + 1, first + 2);
+	if (!lists)
+		nt_buffer_format(&f->primitives, "\"indices\":%zu,", indices);
+	nt_buffer_format(&f->primitives, "\"mode\":%d,\"material\":%d}", which == CHAIN ? 5 : 4, which == CONFLICT);
+	f->primitive_count++;
+}
+
+/* A scene of `count` primitives, of which those behind `faulty` have an index that is no vertex. */
+static void put_scene(const char *name, size_t count, size_t faulty)
+{
+	file f = {0};
+	nt_buffer json = {0};
+	for (size_t i = 0; i < count; i++)
+		put_primitive(&f, (kind)(i % KINDS), i >= faulty);
+	nt_buffer_format(&json, "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_texture_transform\"],"
+		"\"textures\":[{}],\"materials\":[{\"normalTexture\":{\"index\":0}},{\"normalTexture\":{\"index\":0},"
+		"\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatNormalTexture\":{\"index\":0,\"extensions\":{"
+		"\"KHR_texture_transform\":{\"scale\":[2,1]}}}}}}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu}],"
+		"\"accessors\":[%s],\"meshes\":[{\"primitives\":[%s]}],\"buffers\":[{\"byteLength\":%zu}]}", f.bin.size,
+		f.accessors.data, f.primitives.data, f.bin.size);
+	put_glb_file(name, json.data, f.bin.data, f.bin.size);
+	nt_buffer_free(&json);
+	nt_buffer_free(&f.bin);
+	nt_buffer_free(&f.accessors);
+	nt_buffer_free(&f.primitives);
+}
+
+static void assert_same_findings(const nt_finding_list *a, const nt_finding_list *b)
+{
+	assert_int_equal(a->count, b->count);
+	for (size_t i = 0; i < a->count; i++) {
+		assert_int_equal(a->items[i].code, b->items[i].code);
+		assert_int_equal(a->items[i].count, b->items[i].count);
+		assert_string_equal(a->items[i].place.pointer, b->items[i].place.pointer);
+		assert_string_equal(a->items[i].detail, b->items[i].detail);
+	}
+}
+
+static void assert_same_files(const char *a, const char *b)
+{
+	nt_file x, y;
+	nt_error error;
+	assert_int_equal(nt_file_open(&x, a, &error), NT_OK);
+	assert_int_equal(nt_file_open(&y, b, &error), NT_OK);
+	assert_int_equal(x.size, y.size);
+	assert_memory_equal(x.data, y.data, x.size);
+	nt_file_close(&x);
+	nt_file_close(&y);
+}
+
+static void the_same_as_all_loaded_first(void **state)
+{
+	(void)state;
+	put_scene("in.glb", 2 * KINDS, SIZE_MAX);
+	nt_error error;
+	nt_summary first, ahead;
+	const nt_settings loads = {.texcoord_set = -1, .verify = true, .threads = 1};
+	assert_int_equal(nt_run(in_folder("in.glb"), in_folder("first.glb"), &loads, &first, &error), NT_OK);
+	assert_int_equal(first.solved_count, 2 * KINDS);
+	assert_int_equal(first.same_count, 4);
+	assert_true(first.appended_tangents > 0);
+	bool conflict = false;
+	for (size_t i = 0; i < first.findings.count; i++)
+		conflict |= first.findings.items[i].code == NT_CODE_TAN_UVSET_CONFLICT;
+	assert_true(conflict);
+	static const unsigned threads[] = {1, 2, 4};
+	for (size_t i = 0; i < sizeof threads / sizeof *threads; i++) {
+		const nt_settings settings = {.texcoord_set = -1, .threads = threads[i]};
+		assert_int_equal(nt_run(in_folder("in.glb"), in_folder("ahead.glb"), &settings, &ahead, &error), NT_OK);
+		assert_same_files(in_folder("first.glb"), in_folder("ahead.glb"));
+		assert_same_findings(&first.findings, &ahead.findings);
+		assert_memory_equal(&first.counts, &ahead.counts, sizeof first.counts);
+		assert_int_equal(first.solved_count, ahead.solved_count);
+		assert_int_equal(first.same_count, ahead.same_count);
+		assert_int_equal(first.triangle_count, ahead.triangle_count);
+		assert_int_equal(first.vertex_count, ahead.vertex_count);
+		assert_int_equal(first.appended_tangents, ahead.appended_tangents);
+		nt_summary_free(&ahead);
+	}
+	nt_summary_free(&first);
+}
+
+/* Of each mesh, what is left after nt_load_ahead(). */
+static void geometry_is_let_go_of_where_only_results_count(void **state)
+{
+	(void)state;
+	put_scene("in.glb", KINDS, SIZE_MAX);
+	for (int solves = 0; solves < 2; solves++) {
+		const nt_settings settings = {.texcoord_set = -1, .threads = 2};
+		const nt_read_options options = {.texcoord_set = -1, .threads = 2};
+		nt_error error;
+		nt_file input;
+		nt_scene scene;
+		nt_scene_init(&scene, in_folder("in.glb"));
+		assert_int_equal(nt_file_open(&input, scene.path, &error), NT_OK);
+		scene.bytes = input.data;
+		scene.byte_count = input.size;
+		const nt_format_entry *glb = nt_format_find(NT_FORMAT_GLB);
+		assert_int_equal(glb->open(&scene, &options, &error), NT_OK);
+		nt_select(&scene, NT_ONLY_NEEDED, NT_EXISTING_KEEP, false);
+		assert_int_equal(glb->find_same(&scene, &options, &error), NT_OK);
+		bool needed[KINDS];
+		memset(needed, true, sizeof needed);
+		assert_int_equal(nt_load_ahead(&scene, glb, solves ? glb : NULL, &settings, &options, needed, &error), NT_OK);
+		for (size_t i = 0; i < KINDS; i++) {
+			const nt_mesh *mesh = &scene.meshes[i];
+			/* the first is shared by one whose texture transform is to be looked at */
+			const bool solved = solves && i != MIRRORED && i != TAIL && i != SAME && i != CONFLICT && i != CHAIN &&
+				i != LISTED;
+			const bool shares = i == SAME || i == CONFLICT, copies = i == REVERSED || i == CUT;
+			assert_int_equal(needed[i], shares);
+			assert_int_equal(mesh->split.vertex_tangents != NULL, solved);
+			assert_int_equal(mesh->positions == NULL, solved || shares);
+			assert_int_equal(mesh->indices == NULL, shares || i == LISTED || (solved && copies));
+			static const uint32_t begin[] = {0, 1, SIDE + 2, 0, SIDE + 2, SIDE + 1};
+			for (uint32_t c = 0; solved && i != BESIDE && mesh->indices && c < 6; c++)
+				assert_int_equal(mesh->indices[c], begin[c]);
+		}
+		nt_scene_free(&scene);
+		nt_file_close(&input);
+	}
+}
+
+/* The first fault of the file is told, although a later mesh may be loaded earlier. */
+static void the_first_fault_is_told(void **state)
+{
+	(void)state;
+	enum { FAULTY = 2 * KINDS + TAIL };
+	put_scene("in.glb", 4 * KINDS, FAULTY);
+	for (unsigned threads = 1; threads <= 4; threads++) {
+		const nt_settings settings = {.texcoord_set = -1, .threads = threads};
+		nt_summary summary;
+		nt_error error;
+		assert_int_equal(nt_run(in_folder("in.glb"), in_folder("out.glb"), &settings, &summary, &error),
+			NT_ERROR_INPUT);
+		char object[40];
+		snprintf(object, sizeof object, "mesh 0, primitive %d, material 0", FAULTY);
+		assert_string_equal(error.place.object, object);
+		assert_int_equal(count_in_folder(), 1);
+		nt_summary_free(&summary);
+	}
+}
+
+static void exhausted_memory_is_told(void **state)
+{
+	(void)state;
+	put_scene("in.glb", KINDS, SIZE_MAX);
+	for (unsigned threads = 1; threads <= 2; threads++) {
+		size_t failures = 0, told = 0;
+		for (bool failed = true; failed; failures++) {
+			const nt_settings settings = {.texcoord_set = -1, .threads = threads};
+			nt_summary summary;
+			nt_error error;
+			fail_allocations_from(failures);
+			const nt_status status =
+				nt_run(in_folder("in.glb"), in_folder("out.glb"), &settings, &summary, &error);
+			failed = stop_failing_allocations();
+			assert_true(status == NT_OK || (failed && status == NT_ERROR_MEMORY));
+			told += status != NT_OK;
+			nt_summary_free(&summary);
+			assert_true(failures < 10000);
+		}
+		assert_true(told > 50);
+	}
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(the_same_as_all_loaded_first, make_folder, remove_folder),
+		cmocka_unit_test_setup_teardown(geometry_is_let_go_of_where_only_results_count, make_folder, remove_folder),
+		cmocka_unit_test_setup_teardown(the_first_fault_is_told, make_folder, remove_folder),
+		cmocka_unit_test_setup_teardown(exhausted_memory_is_told, make_folder, remove_folder),
+	};
+	return cmocka_run_group_tests_name("pipeline/ahead", tests, NULL, NULL);
+}
