@@ -268,6 +268,32 @@ for method in sequential edgebreaker; do
 	is "$(blocks 8.glb)" "$(blocks alone_3.glb; blocks alone_40.glb; echo plain; echo plain; blocks alone_12.glb)"
 done
 
+scene "where nothing is to be repaired blocks stay as they are"
+run --draco=edgebreaker --only=all --existing=replace "$data/plates.glb" packed.glb
+exits 0
+for draco in keep off edgebreaker; do
+	run --only=all --existing=repair --draco=$draco --verify packed.glb $draco.glb
+	exits 0
+	says "3 primitives"
+done
+same packed.glb keep.glb
+is "$(compressed off.glb)" 0
+cmp -s packed.glb edgebreaker.glb && wrong "what was asked for was not done"
+# the third has no tangents any more and gets some; the others keep their blocks
+node -e 'const fs = require("fs"), b = fs.readFileSync("packed.glb"), size = b.readUInt32LE(12);
+	const g = JSON.parse(b.subarray(20, 20 + size)), p = g.meshes[0].primitives[2];
+	delete p.attributes.TANGENT;
+	delete p.extensions.KHR_draco_mesh_compression.attributes.TANGENT;
+	const text = Buffer.from(JSON.stringify(g).padEnd(size));
+	text.copy(b, 20);
+	fs.writeFileSync("two.glb", b)'
+run --only=all --existing=repair --verify two.glb three.glb
+exits 0
+says "3 primitives"
+is "$(compressed three.glb)" 3
+is "$(blocks three.glb | head -2)" "$(blocks packed.glb | head -2)"
+[ "$(blocks three.glb | tail -1)" != "$(blocks packed.glb | tail -1)" ] || wrong "the third has its old block"
+
 scene "indices that are an attribute elsewhere stay"
 grid_obj 3 >grid.obj
 run -q --images=none grid.obj grid_3.glb

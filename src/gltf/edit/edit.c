@@ -43,10 +43,41 @@ enum { WINDOW = 1024 };
 /* One of them. */
 typedef struct pool_edit {
 	nt_vertex_pool pool;
+	bool stays;                /* as it is */
 	bool for_draco;            /* what follows is there */
 	nt_pool_vertices vertices;
 	nt_gltf_recoding recoding;
 } pool_edit;
+
+/* ---- what stays ---- */
+
+/* Whether a primitive stays as it is: with --existing=repair, where no tangent was invalid and nothing else is asked
+ * for. A Draco block that was encoded again would hold its triangles in another order. */
+static bool stays(const nt_scene *scene, const nt_write_options *options, const nt_mesh *mesh)
+{
+	if (!nt_gltf_is_solved(mesh))
+		return true;
+	return mesh->decision == NT_DECISION_REPAIR && mesh->tangents && !mesh->replaced_tangents && !mesh->late &&
+		!mesh->morph_count && options->morphs != NT_MORPH_DROP && !options->bitangents &&
+		options->precision == NT_PRECISION_FLOAT && (options->draco == NT_DRACO_KEEP ||
+		(options->draco == NT_DRACO_OFF && !nt_gltf_draco_of(nt_gltf_primitive_of(scene->source, mesh))));
+}
+
+static bool all_stay(const nt_scene *scene, const nt_write_options *options)
+{
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		if (!stays(scene, options, &scene->meshes[i]))
+			return false;
+	return true;
+}
+
+static bool pool_stays(const editing *e, const nt_vertex_pool *pool)
+{
+	for (size_t i = 0; i < pool->user_count; i++)
+		if (!stays(e->scene, e->options, nt_pool_mesh(pool, i)))
+			return false;
+	return true;
+}
 
 /* ---- values ---- */
 
@@ -229,7 +260,8 @@ static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
 {
 	*p = (pool_edit){.for_draco = false};
 	nt_status status = nt_vertex_pools_get(e->pools, number, e->of_window, &p->pool, e->error);
-	if (status || !p->pool.sets.count || e->options->draco == NT_DRACO_OFF ||
+	p->stays = !status && pool_stays(e, &p->pool);
+	if (status || p->stays || e->options->draco == NT_DRACO_OFF ||
 		(e->options->draco == NT_DRACO_KEEP && !nt_gltf_has_draco(&p->pool)))
 		return status;
 	p->for_draco = true;
@@ -302,7 +334,7 @@ static nt_status edit_window(const editing *e, pool_edit *window, nt_gltf_recodi
 	}
 	encode_pools(e, window, count, list);
 	for (size_t i = 0; !status && i < count; i++)
-		if (window[i].pool.sets.count)
+		if (!window[i].stays)
 			status = edit_pool(e, &window[i], plain);
 	for (size_t i = 0; i < count; i++)
 		nt_draco_block_free(&window[i].recoding.block);
@@ -334,7 +366,7 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 	/* Nothing to be done: the input as it is. */
 	bool written = false;
 	nt_status status = NT_OK;
-	if (!nt_gltf_has_solved(scene))
+	if (all_stay(scene, options))
 		status = nt_gltf_copy_unchanged(scene, options, output, &written, error);
 	if (status || written)
 		return status;

@@ -79,9 +79,19 @@ static const char *const accessors_without = "\"accessors\":["
 	ACCESSOR("", "5126", "169", "VEC2", "") ","
 	ACCESSOR("", "5121", "169", "VEC4", ",\"normalized\":true") ","
 	ACCESSOR("", "5125", "864", "SCALAR", "") "],";
+/* The fourth as tangents. */
+static const char *const accessors_with_tangents = "\"accessors\":["
+	ACCESSOR("\"bufferView\":0,", "5126", "169", "VEC3", BOUNDS) ","
+	ACCESSOR("\"bufferView\":1,", "5126", "169", "VEC3", "") ","
+	ACCESSOR("\"bufferView\":2,", "5126", "169", "VEC2", "") ","
+	ACCESSOR("\"bufferView\":3,", "5120", "169", "VEC4", ",\"normalized\":true") ","
+	ACCESSOR("\"bufferView\":4,", "5125", "864", "SCALAR", "") "],";
 #define PRIMITIVE                                                                                  \
 	"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2," \
 	"\"COLOR_0\":3},\"indices\":4,\"material\":0"
+#define WITH_TANGENTS                                                                              \
+	"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2," \
+	"\"TANGENT\":3},\"indices\":4,\"material\":0"
 /* The second has no material, and so no use for tangents; it alone has colours. */
 #define TWO_PRIMITIVES                                                                             \
 	"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2}," \
@@ -108,7 +118,7 @@ static void write_plain(const sheet *s, const char *name)
 	nt_buffer_free(&json);
 }
 
-static void write_meshopt(const sheet *s, const char *meshes, const char *name)
+static void write_meshopt(const sheet *s, const char *accessors, const char *meshes, const char *name)
 {
 	const struct {
 		const void *bytes;
@@ -137,7 +147,7 @@ static void write_meshopt(const sheet *s, const char *meshes, const char *name)
 	}
 	nt_buffer_format(&json, "],%s%s}]}],\"buffers\":[{\"byteLength\":%zu},{\"byteLength\":%zu,"
 		"\"extensions\":{\"EXT_meshopt_compression\":{\"fallback\":true}}}]}",
-		accessors_with_views, meshes, bin.size, fallback);
+		accessors, meshes, bin.size, fallback);
 	put_glb_file(name, json.data, bin.data, bin.size);
 	nt_buffer_free(&bin);
 	nt_buffer_free(&json);
@@ -260,7 +270,7 @@ static void meshopt_gives_what_plain_gives(void **state)
 {
 	(void)state;
 	write_plain(&source, "plain.glb");
-	write_meshopt(&source, PRIMITIVE, "packed.glb");
+	write_meshopt(&source, accessors_with_views, PRIMITIVE, "packed.glb");
 	solve(in_folder("plain.glb"), in_folder("plain_out.glb"), NT_DRACO_KEEP);
 	solve(in_folder("packed.glb"), in_folder("packed_out.glb"), NT_DRACO_KEEP);
 	loaded in, plain, packed;
@@ -291,7 +301,7 @@ static void meshopt_views_that_do_not_change_stay_packed(void **state)
 	sheet even = source;
 	for (int v = 0; v < VERTICES; v++)
 		even.texcoords[v][0] = (float)(v % (N + 1)) * 0.125f;
-	write_meshopt(&even, PRIMITIVE, "packed.glb");
+	write_meshopt(&even, accessors_with_views, PRIMITIVE, "packed.glb");
 	solve(in_folder("packed.glb"), in_folder("packed_out.glb"), NT_DRACO_KEEP);
 	loaded out;
 	load(&out, in_folder("packed_out.glb"));
@@ -301,12 +311,50 @@ static void meshopt_views_that_do_not_change_stay_packed(void **state)
 	unload(&out);
 }
 
+static bool same_files(const char *a, const char *b)
+{
+	nt_file x, y;
+	nt_error error;
+	assert_int_equal(nt_file_open(&x, a, &error), NT_OK);
+	assert_int_equal(nt_file_open(&y, b, &error), NT_OK);
+	const bool same = x.size == y.size && memcmp(x.data, y.data, x.size) == 0;
+	nt_file_close(&x);
+	nt_file_close(&y);
+	return same;
+}
+
+/* u runs along x and v, which glTF has down, along y: T = x, N = z and B = -y, so that w = -1. */
+static void packed_tangents_that_are_valid_stay_packed(void **state)
+{
+	(void)state;
+	static const int8_t tangent[4] = {127, 0, 0, -127};
+	sheet even = source;
+	for (int v = 0; v < VERTICES; v++) {
+		even.texcoords[v][0] = (float)(v % (N + 1)) * 0.125f;
+		memcpy(even.colors[v], tangent, sizeof tangent);
+	}
+	nt_settings settings = {.texcoord_set = -1, .existing = NT_EXISTING_REPAIR, .verify = true};
+	/* the last one has an invalid tangent; and what is asked for beside the repair is done */
+	for (int i = 0; i < 4; i++) {
+		even.colors[N + 3][0] = i < 3 ? 127 : 0;
+		write_meshopt(&even, accessors_with_tangents, WITH_TANGENTS, "packed.glb");
+		settings.bitangents = i == 1;
+		settings.precision = i == 2 ? NT_PRECISION_SHORT : NT_PRECISION_FLOAT;
+		nt_summary summary;
+		nt_error error;
+		assert_int_equal(nt_run(in_folder("packed.glb"), in_folder("packed_out.glb"), &settings, &summary, &error), NT_OK);
+		assert_int_equal(summary.solved_count, 1);
+		nt_summary_free(&summary);
+		assert_int_equal(same_files(in_folder("packed.glb"), in_folder("packed_out.glb")), i == 0);
+	}
+}
+
 /* Splitting the first primitive gives the second, which gets no tangents, new vertices too: in all of its
  * attributes. */
 static void meshopt_views_of_others_in_the_pool_grow(void **state)
 {
 	(void)state;
-	write_meshopt(&source, TWO_PRIMITIVES, "packed.glb");
+	write_meshopt(&source, accessors_with_views, TWO_PRIMITIVES, "packed.glb");
 	solve(in_folder("packed.glb"), in_folder("packed_out.glb"), NT_DRACO_KEEP);
 	loaded in, out;
 	load_mesh(&in, in_folder("packed.glb"), 1);
@@ -484,7 +532,7 @@ static void damaged_blocks_are_harmless(void **state)
 	(void)state;
 	for (int kind = 0; kind < 2; kind++) {
 		if (kind)
-			write_meshopt(&source, PRIMITIVE, "good.glb");
+			write_meshopt(&source, accessors_with_views, PRIMITIVE, "good.glb");
 		else
 			write_draco(&source, NT_DRACO_EDGEBREAKER, "good.glb");
 		nt_file good;
@@ -518,6 +566,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(meshopt_gives_what_plain_gives),
 		cmocka_unit_test(meshopt_views_that_do_not_change_stay_packed),
+		cmocka_unit_test(packed_tangents_that_are_valid_stay_packed),
 		cmocka_unit_test(meshopt_views_of_others_in_the_pool_grow),
 		cmocka_unit_test(draco_sequential_keeps_every_value),
 		cmocka_unit_test(draco_edgebreaker_keeps_every_value),
