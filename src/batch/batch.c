@@ -8,6 +8,8 @@
 #include <malloc.h>
 #include <pthread.h>
 #include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
 
 #include "base/available.h"
 #include "base/memory.h"
@@ -26,21 +28,64 @@ typedef struct progress {
 	nt_gate gate;         /* where several run at a time */
 	pthread_mutex_t lock; /* of what follows */
 	size_t told;          /* jobs before this one have been told about */
+	bool deferred;        /* some jobs are for the second round */
 	bool stop;            /* no further job begins */
 } progress;
+
+/* Whether an input waits for who writes it, perhaps for ever. */
+static bool is_stream(const char *input)
+{
+	struct stat info;
+	return strcmp(input, "-") == 0 || (stat(input, &info) == 0 && (S_ISFIFO(info.st_mode) || S_ISSOCK(info.st_mode)));
+}
+
+/* A run that goes through the gate once its input has been read. */
+typedef struct stream_run {
+	nt_gate *gate;
+	bool inside;
+} stream_run;
+
+static void enter_once_read(void *user, nt_stage stage)
+{
+	stream_run *r = user;
+	if (stage == NT_STAGE_MAP || r->inside)
+		return;
+	nt_gate_enter(r->gate, UINT64_MAX);
+	r->inside = true;
+}
+
+static nt_status run(progress *p, nt_job *job, const nt_settings *settings)
+{
+	return p->options->run(job->input, job->output, settings, &job->outcome->summary, &job->outcome->error);
+}
+
+/* Nothing is known of it before it has been read, so that it runs alone. */
+static nt_status run_stream(progress *p, nt_job *job, nt_settings *settings)
+{
+	stream_run r = {.gate = &p->gate};
+	settings->on_stage = enter_once_read;
+	settings->on_stage_user = &r;
+	settings->threads = p->threads;
+	nt_pool_reserve(p->jobs - 1 + p->threads - 1);
+	const nt_status status = run(p, job, settings);
+	if (r.inside)
+		nt_gate_leave(&p->gate, UINT64_MAX);
+	return status;
+}
 
 /* Runs it when there is memory for it; one that has it all has all threads, too. */
 static nt_status run_with_memory(progress *p, nt_job *job, nt_settings *settings)
 {
-	nt_outcome *outcome = job->outcome;
 	if (p->jobs <= 1)
-		return p->options->run(job->input, job->output, settings, &outcome->summary, &outcome->error);
+		return run(p, job, settings);
+	if (job->deferred)
+		return run_stream(p, job, settings);
 	const uint64_t need = nt_need_of(job->input, settings, p->gate.limit / p->jobs);
 	if (nt_gate_enter(&p->gate, need)) {
 		settings->threads = p->threads;
 		nt_pool_reserve(p->jobs - 1 + p->threads - 1); /* the others wait */
 	}
-	const nt_status status = p->options->run(job->input, job->output, settings, &outcome->summary, &outcome->error);
+	const nt_status status = run(p, job, settings);
 	nt_gate_leave(&p->gate, need);
 	return status;
 }
@@ -107,16 +152,36 @@ static bool is_stopped(progress *p)
 	return stopped;
 }
 
-static void run_one(void *context, size_t item, unsigned slot)
+static void run_one(progress *p, nt_job *job)
 {
-	(void)slot;
-	progress *p = context;
-	nt_job *job = &p->batch->jobs[item];
 	if (is_stopped(p))
 		job->end = NT_JOB_UNTRIED;
 	else
 		run_job(p, job);
 	tell(p, job);
+}
+
+static void run_file(void *context, size_t item, unsigned slot)
+{
+	(void)slot;
+	progress *p = context;
+	nt_job *job = &p->batch->jobs[item];
+	job->deferred = p->batch->count > 1 && is_stream(job->input);
+	if (!job->deferred) {
+		run_one(p, job);
+		return;
+	}
+	pthread_mutex_lock(&p->lock);
+	p->deferred = true;
+	pthread_mutex_unlock(&p->lock);
+}
+
+static void run_deferred(void *context, size_t item, unsigned slot)
+{
+	(void)slot;
+	progress *p = context;
+	if (p->batch->jobs[item].deferred)
+		run_one(p, &p->batch->jobs[item]);
 }
 
 /* malloc() has a heap for each thread, which may keep up to 64 MB of what that has freed, while the next job's thread
@@ -145,7 +210,10 @@ void nt_batch_run(nt_batch *batch, const nt_settings *settings, const nt_batch_o
 	return_freed_memory();
 	/* one job at a time needs no gate: what is available is in six files of the system */
 	nt_gate_init(&p.gate, options->memory ? options->memory : jobs > 1 ? nt_memory_available() / 2 : 0);
-	nt_parallel_items(jobs, batch->count, run_one, &p);
+	/* streams come last: a job for each could wait while no file is done */
+	nt_parallel_items(jobs, batch->count, run_file, &p);
+	if (p.deferred)
+		nt_parallel_items(jobs, batch->count, run_deferred, &p);
 	nt_gate_end(&p.gate);
 	pthread_mutex_destroy(&p.lock);
 }

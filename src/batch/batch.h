@@ -33,6 +33,7 @@ typedef struct nt_job {
 	nt_status status;
 	nt_job_end end;
 	bool ended;
+	bool deferred; /* until the others have ended */
 } nt_job;
 
 typedef struct nt_batch {
@@ -86,7 +87,7 @@ typedef struct nt_batch_options {
 	void *user;
 } nt_batch_options;
 
-/* Runs all jobs. */
+/* Runs all jobs: files first, then what is read from pipes and sockets. */
 void nt_batch_run(nt_batch *batch, const nt_settings *settings, const nt_batch_options *options);
 
 void nt_batch_free(nt_batch *batch);

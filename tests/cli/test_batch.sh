@@ -104,6 +104,25 @@ run -d out --memory=lots m1.obj
 exits 1
 says "'lots' is not a size, as 500M, 2GiB or 2GB"
 
+scene "pipes that nobody writes keep nothing waiting, neither files nor other pipes"
+mkfifo first.obj second.obj third.obj
+cp "$data/quad.obj" a.obj
+cp "$data/quad.obj" b.obj
+timeout 240 "$NMTAN" -d out --jobs=2 first.obj a.obj second.obj third.obj b.obj 2>"$WORK/err.txt" &
+await eval '[ -e out/a.glb ] && [ -e out/b.glb ]' || wrong "files wait for pipes"
+# two are read at a time
+timeout 60 cp "$data/quad.obj" second.obj
+await test -e out/second.glb || wrong "a pipe waits for another"
+timeout 60 cp "$data/quad.obj" third.obj
+await test -e out/third.glb || wrong "a pipe waits for another"
+timeout 60 cp "$data/quad.obj" first.obj
+wait $!
+is $? 0
+is "$(sed -n 's/^nmtan: \([a-z]*\)\.obj -> .*/\1/p' "$WORK/err.txt" | xargs)" "first a second third b"
+for name in first second third b; do
+	same out/a.glb out/$name.glb
+done
+
 scene "two inputs with one output are refused before anything runs"
 mkdir x y
 cp "$data/quad.obj" x/a.obj
