@@ -13,11 +13,11 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "base/clock.h"
 #include "cli/messages.h"
 
 /* A quarter of a second: quick enough for the eye, nothing to the processor. */
-enum { TICK_NANOSECONDS = 250000000, TICKS_BEFORE_FIRST = 4, TICKS_PER_SECOND = 4,
-	TICKS_PER_LOG_LINE = 10 * TICKS_PER_SECOND };
+enum { TICK_NANOSECONDS = 250000000, SECONDS_BEFORE_FIRST = 1, SECONDS_PER_LOG_LINE = 10 };
 
 struct nt_progress {
 	pthread_t thread;
@@ -27,7 +27,7 @@ struct nt_progress {
 	size_t files, ended, failed;
 	uint64_t bytes; /* read and written by those that have ended */
 	nt_stage stage;
-	unsigned ticks;
+	double begin; /* by nt_seconds() */
 	bool terminal;
 	bool drawn; /* the line stands on the terminal */
 	bool stop;
@@ -44,9 +44,8 @@ static void erase(nt_progress *p)
 }
 
 /* How far, how fast, and how long still: as long for each file as so far. */
-static void describe_files(const nt_progress *p, nt_buffer *line)
+static void describe_files(const nt_progress *p, double seconds, nt_buffer *line)
 {
-	const double seconds = (double)p->ticks / TICKS_PER_SECOND;
 	nt_buffer_format(line, "%zu of %zu files", p->ended, p->files);
 	if (p->failed)
 		nt_buffer_format(line, ", %zu failed", p->failed);
@@ -58,8 +57,9 @@ static void describe_files(const nt_progress *p, nt_buffer *line)
 static void draw(nt_progress *p)
 {
 	nt_buffer line = {0};
+	const double seconds = nt_seconds() - p->begin;
 	if (p->files > 1) {
-		describe_files(p, &line);
+		describe_files(p, seconds, &line);
 	} else {
 		nt_buffer_clean(&line, p->label);
 		nt_buffer_format(&line, ": %s", nt_stage_name(p->stage));
@@ -71,7 +71,7 @@ static void draw(nt_progress *p)
 	if (p->terminal) {
 		erase(p);
 		/* One row, however long the name is: a wrapped line could not be erased. */
-		fprintf(stderr, "%.70s, %u s", line.data, p->ticks / TICKS_PER_SECOND);
+		fprintf(stderr, "%.70s, %u s", line.data, (unsigned)seconds);
 		p->drawn = true;
 	} else if (strcmp(p->last, line.data) != 0) {
 		fprintf(stderr, "nmtan: %s\n", line.data);
@@ -80,22 +80,28 @@ static void draw(nt_progress *p)
 	nt_buffer_free(&line);
 }
 
+/* By the clock that nobody sets: pthread_cond_init() has been told so. */
+static void wait_a_tick(nt_progress *p)
+{
+	struct timespec until;
+	clock_gettime(CLOCK_MONOTONIC, &until);
+	until.tv_nsec += TICK_NANOSECONDS;
+	until.tv_sec += until.tv_nsec / 1000000000;
+	until.tv_nsec %= 1000000000;
+	pthread_cond_timedwait(&p->wake, &p->mutex, &until);
+}
+
 static void *watch(void *user)
 {
 	nt_progress *p = user;
+	double next = p->begin + (p->terminal ? SECONDS_BEFORE_FIRST : SECONDS_PER_LOG_LINE);
 	pthread_mutex_lock(&p->mutex);
 	while (!p->stop) {
-		struct timespec until;
-		clock_gettime(CLOCK_REALTIME, &until);
-		until.tv_nsec += TICK_NANOSECONDS;
-		until.tv_sec += until.tv_nsec / 1000000000;
-		until.tv_nsec %= 1000000000;
-		pthread_cond_timedwait(&p->wake, &p->mutex, &until);
-		p->ticks++;
-		const bool due = p->terminal ? p->ticks >= TICKS_BEFORE_FIRST
-					     : p->files > 1 && p->ticks % TICKS_PER_LOG_LINE == 0;
-		if (!p->stop && due)
-			draw(p);
+		wait_a_tick(p);
+		if (p->stop || nt_seconds() < next || (!p->terminal && p->files <= 1))
+			continue;
+		draw(p);
+		next += p->terminal ? 0 : SECONDS_PER_LOG_LINE;
 	}
 	erase(p);
 	pthread_mutex_unlock(&p->mutex);
@@ -113,8 +119,13 @@ nt_progress *nt_progress_start(int mode, const char *label, size_t files)
 	p->label = label;
 	p->files = files;
 	p->terminal = terminal;
+	p->begin = nt_seconds();
 	pthread_mutex_init(&p->mutex, NULL);
-	pthread_cond_init(&p->wake, NULL);
+	pthread_condattr_t monotonic;
+	pthread_condattr_init(&monotonic);
+	pthread_condattr_setclock(&monotonic, CLOCK_MONOTONIC);
+	pthread_cond_init(&p->wake, &monotonic);
+	pthread_condattr_destroy(&monotonic);
 	if (pthread_create(&p->thread, NULL, watch, p) != 0) {
 		pthread_cond_destroy(&p->wake);
 		pthread_mutex_destroy(&p->mutex);
