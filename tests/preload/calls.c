@@ -4,6 +4,8 @@
  *
  *   NT_CALLS_KILL=N             SIGKILL in place of the N-th call, from 1 on
  *   NT_CALLS_FAIL=NAME:ERRNO    the calls of that name fail; with :N behind, the N-th of them alone
+ *   NT_CALLS_KEEP=NAME:NAME     files of these names, in whatever folder, get no other name and no other file gets theirs:
+ *                               what the system says of files that are immutable, or of others in a sticky folder
  *   NT_CALLS_COUNT=FILE         the names of all calls in their order, at the end
  *   NT_CALLS_TRACE=DIR          DIR/log has each call that changes names or makes something lasting, after it
  *                               succeeded; what fsync makes lasting of a file is copied to DIR/NUMBER
@@ -61,6 +63,21 @@ static bool enter(const char *name)
 	if (*end == ':' && strtoul(end + 1, NULL, 10) != matches)
 		return true;
 	errno = (int)number;
+	return false;
+}
+
+/* Whether NT_CALLS_KEEP has a file; errno is set then. */
+static bool is_kept(const char *path)
+{
+	const char *names = getenv("NT_CALLS_KEEP"), *slash = strrchr(path, '/');
+	const char *name = slash ? slash + 1 : path;
+	for (size_t length; names && *names; names += length + (names[length] == ':')) {
+		length = strcspn(names, ":");
+		if (strlen(name) == length && strncmp(names, name, length) == 0) {
+			errno = EPERM;
+			return true;
+		}
+	}
 	return false;
 }
 
@@ -190,7 +207,7 @@ int fsetxattr(int fd, const char *name, const void *value, size_t size, int flag
 
 int rename(const char *from, const char *to)
 {
-	const int result = enter("rename") ? REAL(int, "rename", const char *, const char *)(from, to) : -1;
+	const int result = enter("rename") && !is_kept(from) && !is_kept(to) ? REAL(int, "rename", const char *, const char *)(from, to) : -1;
 	if (result == 0)
 		note("rename\t%s\t%s\n", from, to);
 	return result;
@@ -198,7 +215,7 @@ int rename(const char *from, const char *to)
 
 int renameat2(int from_folder, const char *from, int to_folder, const char *to, unsigned flags)
 {
-	const int result = enter("renameat2") ? REAL(int, "renameat2", int, const char *, int, const char *, unsigned)(
+	const int result = enter("renameat2") && !is_kept(from) && !is_kept(to) ? REAL(int, "renameat2", int, const char *, int, const char *, unsigned)(
 		from_folder, from, to_folder, to, flags) : -1;
 	if (result == 0)
 		note("rename\t%s\t%s\n", from, to);
@@ -207,7 +224,7 @@ int renameat2(int from_folder, const char *from, int to_folder, const char *to, 
 
 int link(const char *from, const char *to)
 {
-	const int result = enter("link") ? REAL(int, "link", const char *, const char *)(from, to) : -1;
+	const int result = enter("link") && !is_kept(from) ? REAL(int, "link", const char *, const char *)(from, to) : -1;
 	if (result == 0)
 		note_name("link", to);
 	return result;
@@ -215,7 +232,7 @@ int link(const char *from, const char *to)
 
 int unlink(const char *path)
 {
-	const int result = enter("unlink") ? REAL(int, "unlink", const char *)(path) : -1;
+	const int result = enter("unlink") && !is_kept(path) ? REAL(int, "unlink", const char *)(path) : -1;
 	if (result == 0)
 		note("unlink\t%s\n", path);
 	return result;
