@@ -6,12 +6,23 @@
 #include <ftw.h>
 #include <unistd.h>
 
-static char folder[64];
+static char folder[300];
+
+char *in_tmpdir(const char *name)
+{
+	static char names[4][sizeof folder];
+	static unsigned turn;
+	char *path = names[turn++ % 4];
+	const char *set = getenv("TMPDIR");
+	const int length = snprintf(path, sizeof names[0], "%s/%s", set && *set ? set : "/tmp", name);
+	assert_in_range(length, 1, sizeof names[0] - 1);
+	return path;
+}
 
 int make_folder(void **state)
 {
 	(void)state;
-	strcpy(folder, "/tmp/nmtan-test-XXXXXX");
+	strcpy(folder, in_tmpdir("nmtan-test-XXXXXX"));
 	return mkdtemp(folder) ? 0 : -1;
 }
 

@@ -7,6 +7,9 @@
 
 #include <stddef.h>
 
+/* A name in $TMPDIR, or in /tmp, as mkstemp() and mkdtemp() take it; good for the next three calls. */
+char *in_tmpdir(const char *name);
+
 /* For cmocka's setup and teardown; the folder goes with all that is in it. */
 int make_folder(void **state);
 int remove_folder(void **state);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "folder.h"
 #include "test.h"
 #include <stdio.h>
 #include <unistd.h>
@@ -7,7 +8,7 @@
 /* Writes `size` bytes in pieces of `piece` and gives the text. */
 static char *encoded(const unsigned char *bytes, size_t size, size_t piece)
 {
-	char path[] = "/tmp/nmtan-base64-XXXXXX";
+	char *path = in_tmpdir("nmtan-base64-XXXXXX");
 	const int fd = mkstemp(path);
 	assert_true(fd >= 0);
 	close(fd);

@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "folder.h"
 #include "test.h"
 #include <stdio.h>
 #include <sys/stat.h>
@@ -101,7 +102,7 @@ static void names_outside_are_refused(void **state)
 static void links_are_followed_only_within_the_folder(void **state)
 {
 	(void)state;
-	char root[] = "/tmp/nmtan-test-uri-XXXXXX";
+	char *root = in_tmpdir("nmtan-test-uri-XXXXXX");
 	assert_non_null(mkdtemp(root));
 	char inner[300], file[300], good[300], bad[300], document[300], path[512];
 	snprintf(inner, sizeof inner, "%s/inner", root);

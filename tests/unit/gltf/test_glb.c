@@ -1,4 +1,5 @@
 /* SPDX-License-Identifier: MIT */
+#include "folder.h"
 #include "test.h"
 #include <stdio.h>
 #include <unistd.h>
@@ -122,7 +123,7 @@ static void faults_have_their_offset(void **state)
 static void written_container_is_padded_and_sized(void **state)
 {
 	(void)state;
-	char path[] = "/tmp/nmtan-test-glb-XXXXXX";
+	char *path = in_tmpdir("nmtan-test-glb-XXXXXX");
 	const int descriptor = mkstemp(path);
 	assert_true(descriptor >= 0);
 	close(descriptor);

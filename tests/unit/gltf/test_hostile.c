@@ -4,6 +4,7 @@
  * out. Whatever comes of it, the run ends with a status, and an error has words; the sanitizers see the
  * rest. NT_MUTATIONS sets the number of mutations; they are the same in every run.
  */
+#include "folder.h"
 #include "test.h"
 #include <stdio.h>
 #include <sys/stat.h>
@@ -37,7 +38,9 @@ static void run_one(const char *path, uint32_t *chance, counts *tally)
 		.output_format = mutate_random(chance, 4) ? NT_FORMAT_GLB : NT_FORMAT_GLTF};
 	nt_summary summary;
 	nt_error error;
-	const nt_status status = nt_run(path, "/tmp/nmtan-hostile-output", &settings, &summary, &error);
+	char output[400];
+	snprintf(output, sizeof output, "%s.output", path);
+	const nt_status status = nt_run(path, output, &settings, &summary, &error);
 	tally->runs++;
 	tally->solved += status == NT_OK;
 	tally->geometry += summary.solved_count > 0 || strstr(error.place.pointer, "/accessors/") ||
@@ -67,7 +70,7 @@ static void damaged_files_end_with_a_status(void **state)
 	(void)state;
 	const char *wanted = getenv("NT_MUTATIONS");
 	const size_t rounds = (wanted ? (size_t)atoi(wanted) : 600) / SEED_COUNT;
-	char folder[] = "/tmp/nmtan-test-hostile-XXXXXX", path[300];
+	char *folder = in_tmpdir("nmtan-test-hostile-XXXXXX"), path[350];
 	assert_non_null(mkdtemp(folder));
 	counts tally = {0};
 	for (size_t s = 0; s < SEED_COUNT; s++) {

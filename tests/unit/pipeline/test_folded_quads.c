@@ -3,6 +3,7 @@
  * Folded quads and normals that are not of unit length in a whole run: what is counted, and that every failed
  * allocation ends it with a status and nothing else. What is written is tests/cli/test_frames.sh's.
  */
+#include "folder.h"
 #include "test.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,7 +44,7 @@ static void write_input(char *path)
 static void odd_normals_and_folded_quads_are_counted(void **state)
 {
 	(void)state;
-	char path[] = "/tmp/nmtan_XXXXXX.obj";
+	char *path = in_tmpdir("nmtan_XXXXXX.obj");
 	write_input(path);
 	nt_summary summary;
 	nt_error error;
@@ -60,7 +61,7 @@ static void odd_normals_and_folded_quads_are_counted(void **state)
 static void failed_allocations_end_the_run(void **state)
 {
 	(void)state;
-	char path[] = "/tmp/nmtan_XXXXXX.obj";
+	char *path = in_tmpdir("nmtan_XXXXXX.obj");
 	write_input(path);
 	size_t failures = 0;
 	for (bool failed = true; failed; failures++) {

@@ -5,6 +5,7 @@
  * each page gets readable, and counted, when it is first read. A dry run, so that nobody copies the rest.
  * NT_HUNDRED_MB says how large the file is to be.
  */
+#include "folder.h"
 #include "test.h"
 #include <signal.h>
 #include <stdio.h>
@@ -55,7 +56,7 @@ static size_t count_touched(size_t begin, size_t end)
 /* Makes the file and runs it. *begin, *end receive the bytes of the 38th primitive. */
 static void run(const char *which, size_t *begin, size_t *end, size_t expected_solved)
 {
-	char path[] = "/tmp/nmtan-test-needed-XXXXXX", command[300];
+	char *path = in_tmpdir("nmtan-test-needed-XXXXXX"), command[500];
 	const char *megabytes = getenv("NT_HUNDRED_MB");
 	const int fd = mkstemp(path);
 	assert_true(fd >= 0);
@@ -75,7 +76,7 @@ static void run(const char *which, size_t *begin, size_t *end, size_t expected_s
 	nt_error error;
 	map = NULL;
 	memset((void *)(uintptr_t)touched, 0, sizeof touched);
-	assert_int_equal(nt_run(path, "/tmp/nmtan-test-needed-output.glb", &settings, &summary, &error), NT_OK);
+	assert_int_equal(nt_run(path, in_tmpdir("nmtan-test-needed-output.glb"), &settings, &summary, &error), NT_OK);
 	sigaction(SIGSEGV, &before, NULL);
 	assert_non_null(map);
 	assert_true(map_size / PAGE < MOST_PAGES);

@@ -5,6 +5,7 @@
  * winding. The authored tangents of SheenCloth and of the pbr sphere obey the same rule, which
  * shows that it is the right one.
  */
+#include "folder.h"
 #include "test.h"
 #include <glob.h>
 #include <math.h>
@@ -154,7 +155,7 @@ static bool judge_file(const char *path, rule_count *count)
 /* Converts a file to a new GLB and judges that. */
 static void judge_conversion(const char *input, rule_count *count)
 {
-	char output[] = "/tmp/nmtan-sign-XXXXXX.glb";
+	char *output = in_tmpdir("nmtan-sign-XXXXXX.glb");
 	const int fd = mkstemps(output, 4);
 	assert_true(fd >= 0);
 	close(fd);
