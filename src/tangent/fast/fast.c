@@ -49,7 +49,8 @@
 
 /* Each thread has cursors of its own for all vertices, which are then gone over together: the more threads, the more
  * triangles each must have. Two need fewer: their halves take 10 to 18 % more processor time than the whole. */
-static const nt_fast_plan usual = {.grain = 65536, .least_two = 30000, .least_borrowed_bytes = 65536, .most_tiny = NT_TINY};
+static const nt_fast_plan usual = {.grain = 65536, .least_two = 30000, .least_borrowed_bytes = 65536,
+	.most_tiny = NT_TINY, .most_narrow = NT_NARROW_LIMIT};
 
 typedef struct run {
 	nt_fast *fast;
@@ -164,11 +165,12 @@ static nmtan_status prepare(nt_fast *fast, const nt_fast_plan *plan, nt_fast_mem
 /* 3 and 4: adjacency, accumulate */
 
 /* Directly to the records. */
-static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, size_t most_places,
+static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, const nt_fast_plan *plan,
 	nt_fast_memory *memory)
 {
 	const nmtan_status status = nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count,
-		most_places ? most_places : NT_ADJACENCY_PLACES, memory->rows, &memory->borrowed, &fast->adjacency);
+		plan->most_places ? plan->most_places : NT_ADJACENCY_PLACES, plan->most_narrow, memory->rows, &memory->borrowed,
+		&fast->adjacency);
 	if (status)
 		return status;
 	fast->scattered = nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
@@ -375,7 +377,7 @@ nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *pl
 	/* each vertex's sums over its corners, one for each orientation */
 	if (!status)
 		status = binned ? fill_bins(&fast, kernels, plan->bin_bits, &memory)
-				: add_to_records(&fast, kernels, plan->most_places, &memory);
+				: add_to_records(&fast, kernels, plan, &memory);
 	if (status)
 		return status;
 	if (!fast.records[0] && !fast.records[1]) {

@@ -21,21 +21,44 @@
 #define UNROLL _Pragma("GCC unroll 8")
 #endif
 
+/* Entries of vertices that follow one another, from the first one's first: these or those. */
+typedef struct vertex_entries {
+	bool are_narrow;
+	const nt_fan_entry *wide;
+	const uint32_t *narrow;
+	size_t step;
+} vertex_entries;
+
+static inline vertex_entries entries_at(const nt_adjacency *a, size_t vertex)
+{
+	if (nt_adjacency_is_narrow(a))
+		return (vertex_entries){.are_narrow = true, .narrow = a->narrow + vertex, .step = a->step};
+	return (vertex_entries){.wide = nt_adjacency_block(a, vertex / NT_FAN_LANES) + vertex % NT_FAN_LANES,
+		.step = NT_FAN_LANES};
+}
+
 /* Corner k of WIDTH vertices of so many corners; where one has fewer, voids above all numbers that accumulate gives to
- * voids. Of an entry the bits of `mask` count. */
-static inline __attribute__((always_inline)) void load_corners(const nt_fan_entry *entries, uint32_t k, lanes degree, lanes mask,
+ * voids. Of an entry the bits of `mask` count. The numbers of narrow entries are in the upper halves. */
+static inline __attribute__((always_inline)) void load_corners(vertex_entries entries, uint32_t k, lanes degree, lanes mask,
 	lanes *next, lanes *previous)
 {
-	const lanes low = load_lanes(entries + k * NT_FAN_LANES), high = load_lanes(entries + k * NT_FAN_LANES + WIDTH / 2);
 	const lanes there = (lanes)(degree > k);
-	*next = __builtin_shufflevector(low, high, EVEN) & mask;
-	*previous = __builtin_shufflevector(low, high, ODD) & mask;
-	*next = (*next & there) | ((NT_ENTRY_VOID | 1u << 28 | k) & ~there);
-	*previous = (*previous & there) | ((NT_ENTRY_VOID | 3u << 28 | k) & ~there);
+	if (entries.are_narrow) {
+		const lanes both = load_lanes(entries.narrow + k * entries.step);
+		*next = both << 16 & mask;
+		*previous = both & 0xffff0000u & mask;
+	} else {
+		const nt_fan_entry *from = entries.wide + k * NT_FAN_LANES;
+		const lanes low = load_lanes(from), high = load_lanes(from + WIDTH / 2);
+		*next = __builtin_shufflevector(low, high, EVEN) & mask;
+		*previous = __builtin_shufflevector(low, high, ODD) & mask;
+	}
+	*next = (*next & there) | ((NT_ENTRY_VOID | 1u << 28 | k << 16 | k) & ~there);
+	*previous = (*previous & there) | ((NT_ENTRY_VOID | 3u << 28 | k << 16 | k) & ~there);
 }
 
 /* -1 for vertices at which a directed edge occurs twice, whatever the orientations in bit 31. */
-static lanes __attribute__((noinline)) find_twice(const nt_fan_entry *entries, uint32_t depth, lanes degree, lanes mask)
+static lanes __attribute__((noinline)) find_twice(vertex_entries entries, uint32_t depth, lanes degree, lanes mask)
 {
 	lanes twice = {0};
 	for (uint32_t b = 1; b < depth; b++) {
@@ -57,18 +80,19 @@ static lanes __attribute__((noinline)) find_twice(const nt_fan_entry *entries, u
  *   degree   corners of each vertex
  *   mask     the bits of entries that count
  */
-static inline __attribute__((always_inline)) lanes count_fans_of(const nt_fan_entry *entries, const uint32_t depth,
+static inline __attribute__((always_inline)) lanes count_fans_of(vertex_entries entries, const uint32_t depth,
 	lanes degree, lanes mask)
 {
 	lanes next[NT_FAN_DEPTH], previous[NT_FAN_DEPTH];
 	lanes linked[NT_FAN_DEPTH]; /* corner i: bit j for each later neighbour j of its orientation */
-	lanes halves[NT_FAN_DEPTH]; /* the low 16 bits of next and of previous */
+	lanes halves[NT_FAN_DEPTH]; /* those of next and of previous in which vertices differ most, without orientation */
 	lanes count = {0};
 	half_set distinct = ALL_HALVES;
 	UNROLL
 	for (uint32_t k = 0; k < depth; k++) {
 		load_corners(entries, k, degree, mask, &next[k], &previous[k]);
-		halves[k] = (next[k] & 0xffff) | previous[k] << 16;
+		halves[k] = entries.are_narrow ? (next[k] >> 16 & 0x7fff) | (previous[k] & 0x7fff0000)
+			: (next[k] & 0xffff) | previous[k] << 16;
 		linked[k] = (degree & 0) | ((1u << depth) - (2u << k));
 	}
 	/* links across shared edges; edges whose low halves differ are not the same */
@@ -95,7 +119,8 @@ static inline __attribute__((always_inline)) lanes count_fans_of(const nt_fan_en
 }
 
 /* The usual depths are worth a loop without branches each. */
-static lanes count_fans(const nt_fan_entry *entries, uint32_t depth, lanes degree, lanes mask)
+static inline __attribute__((always_inline)) lanes count_fans_at(vertex_entries entries, uint32_t depth, lanes degree,
+	lanes mask)
 {
 	switch (depth) {
 #ifndef __wasm__
@@ -109,6 +134,17 @@ static lanes count_fans(const nt_fan_entry *entries, uint32_t depth, lanes degre
 #endif
 	default: return count_fans_of(entries, depth, degree, mask);
 	}
+}
+
+static lanes __attribute__((noinline)) count_wide_fans(const nt_fan_entry *entries, uint32_t depth, lanes degree, lanes mask)
+{
+	return count_fans_at((vertex_entries){.wide = entries}, depth, degree, mask);
+}
+
+static lanes __attribute__((noinline)) count_narrow_fans(const uint32_t *entries, size_t step, uint32_t depth, lanes degree,
+	lanes mask)
+{
+	return count_fans_at((vertex_entries){.are_narrow = true, .narrow = entries, .step = step}, depth, degree, mask);
 }
 
 /* The records of a block by component, in turned places: lane i has the record of vertex turned_place(i). All loops
@@ -243,14 +279,17 @@ static void load_degrees(const nt_adjacency *a, size_t first, size_t count, size
 {
 	const size_t place = first - a->first_vertex;
 	const uint32_t *cursors = a->cursors + (a->ranges - 1) * a->vertex_count + place;
-	const uint32_t begin = a->block_begin[place / NT_FAN_LANES];
+	const uint32_t begin = nt_adjacency_is_narrow(a) ? (uint32_t)place : a->block_begin[place / NT_FAN_LANES];
+	/* places of a block are few enough for floats to be divided as integers are */
+	const float corners_a_place = 1.0f / (float)a->step;
 	for (uint32_t v = 0; v < used; v += WIDTH) {
 		int deepest = 0;
 		for (uint32_t i = v; i < v + WIDTH; i++) {
-			const uint32_t cursor = cursors[i], corners = ((cursor & NT_CURSOR_PLACE) - begin) / NT_FAN_LANES;
+			const uint32_t cursor = cursors[i];
+			const int corners = (int)(((float)(int)((cursor & NT_CURSOR_PLACE) - begin) + 0.5f) * corners_a_place);
 			const uint32_t there = i < (uint32_t)count ? UINT32_MAX : 0;
 			const uint32_t hub = cursor & NT_CURSOR_HUB ? UINT32_MAX : 0;
-			const int known = (int)(corners & there & ~hub);
+			const int known = (int)((uint32_t)corners & there & ~hub);
 			deepest = known > deepest ? known : deepest;
 			degree[i] = (uint32_t)known | (hub & there);
 		}
@@ -262,9 +301,10 @@ static void load_degrees(const nt_adjacency *a, size_t first, size_t count, size
 static void describe_complex(const nt_fast *fast, const nt_adjacency *a, size_t first, size_t used,
 	const uint32_t *complex, const uint32_t *fan_count, nt_settled *settled)
 {
-	const size_t place = first - a->first_vertex, block = place / NT_FAN_LANES;
+	const size_t place = first - a->first_vertex;
 	const uint32_t *cursors = a->cursors + (a->ranges - 1) * a->vertex_count + place;
-	const nt_fan_entry *entries = nt_adjacency_block(a, block);
+	const vertex_entries entries = entries_at(a, place);
+	const size_t begin = nt_adjacency_is_narrow(a) ? place : a->block_begin[place / NT_FAN_LANES];
 	for (size_t i = 0; i < used; i++) {
 		if (!complex[i])
 			continue;
@@ -274,8 +314,8 @@ static void describe_complex(const nt_fast *fast, const nt_adjacency *a, size_t 
 		if (cursors[lane] & NT_CURSOR_HUB)
 			corners = places;
 		else
-			for (size_t e = lane; e < places - a->block_begin[block]; e += NT_FAN_LANES)
-				corners += !(entries[e].next & NT_ENTRY_VOID);
+			for (size_t e = lane; e < places - begin; e += entries.step)
+				corners += !(entries.are_narrow ? entries.narrow[e] & NT_ENTRY_VOID >> 16 : entries.wide[e].next & NT_ENTRY_VOID);
 		for (int o = 0; o < 2; o++)
 			if (fast->records[o])
 				nt_fast_record(fast, o, (uint32_t)(first + lane))->state |= corners | tangled * NT_RESULT_TANGLED;
@@ -290,8 +330,8 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 {
 	const size_t first = block * NT_LANES, left = fast->vertex_count - first;
 	const size_t count = left < NT_LANES ? left : NT_LANES;
-	const nt_fan_entry *entries = nt_adjacency_block(a, block - a->first_vertex / NT_FAN_LANES);
 	const size_t used = whole_lanes(count);
+	const vertex_entries entries = entries_at(a, first - a->first_vertex);
 	uint32_t degree[NT_LANES], mask[NT_LANES], fan_count[NT_LANES], complex[NT_LANES], unsound[NT_LANES];
 	uint32_t depths[NT_LANES / WIDTH], unusable[2][NT_LANES] = {{0}};
 	record_lanes r[2];
@@ -304,8 +344,10 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		mask[i] = r[0].present[i] & r[1].present[i] ? UINT32_MAX : NT_ENTRY_VERTEX;
 	for (size_t i = 0; i < used; i += WIDTH) {
 		const lanes degrees = load_lanes(degree + i), masks = load_lanes(mask + i), hubs = (lanes)(degrees == HUB);
-		const lanes counted = count_fans(entries + i, depths[i / WIDTH], degrees & ~hubs,
-			__builtin_shufflevector(masks, masks, UNTURNED)) | (hubs & DOUBTFUL);
+		const lanes usual = degrees & ~hubs, mask_of = __builtin_shufflevector(masks, masks, UNTURNED);
+		const lanes counted = (hubs & DOUBTFUL) | (nt_adjacency_is_narrow(a)
+			? count_narrow_fans(entries.narrow + i, entries.step, depths[i / WIDTH], usual, mask_of)
+			: count_wide_fans(entries.wide + i, depths[i / WIDTH], usual, mask_of));
 		const lanes turned = __builtin_shufflevector(counted, counted, TURNED);
 		memcpy(fan_count + i, &turned, sizeof turned);
 	}

@@ -94,19 +94,21 @@ static size_t compare_run(const char *name, const nmtan_mesh *mesh, size_t corne
 	return differences;
 }
 
-/* One thread with every instruction set, where few triangles may go a way of their own, then more threads, and places
- * that do not suffice; the same by bins where there is a choice. */
+/* One thread with every instruction set, where few vertices or triangles may go a way of their own, then more threads,
+ * and places that do not suffice; the same by bins where there is a choice. */
 static size_t compare_variants(const char *name, const nmtan_mesh *mesh, size_t corners,
 	const result *expected, bool more)
 {
 	static const unsigned threads[] = {2, 3, 8};
 	static const nt_fast_plan few_places = {.grain = 1, .most_places = 200},
 		bins = {.grain = 1, .bin_bits = 4}, larger_bins = {.grain = 1, .bin_bits = 5},
-		tiny = {.grain = 1, .most_tiny = NT_TINY}, two = {.grain = SIZE_MAX, .least_two = 2};
+		tiny = {.grain = 1, .most_tiny = NT_TINY}, two = {.grain = SIZE_MAX, .least_two = 2},
+		narrow = {.grain = 1, .most_narrow = NT_NARROW_LIMIT};
+	static const nt_fast_plan *const small[3] = {&usual, &narrow, &tiny};
 	size_t differences = 0;
 	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++)
-		for (int small = 0; nt_cpu_has(isa) && small < 2; small++)
-			differences += compare_run(name, mesh, corners, expected, more, isa, 1, small ? &tiny : &usual);
+		for (int i = 0; nt_cpu_has(isa) && i < 3; i++)
+			differences += compare_run(name, mesh, corners, expected, more, isa, 1, small[i]);
 	for (int i = 0; i < 3; i++)
 		differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), threads[i], &usual);
 	differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), 3, &two);
@@ -138,7 +140,8 @@ static void goldens_are_byte_identical(void **state)
 /* With repair, which relies on what the fast path knows of its result, by vertices and by groups. */
 static size_t compare_repairs(const char *name, const nmtan_mesh *mesh, size_t corners)
 {
-	static const nt_fast_plan plans[] = {{.grain = 1}, {.grain = 1, .bin_bits = 4}, {.grain = 1, .most_tiny = NT_TINY}};
+	static const nt_fast_plan plans[] = {{.grain = 1}, {.grain = 1, .bin_bits = 4}, {.grain = 1, .most_tiny = NT_TINY},
+		{.grain = 1, .most_narrow = NT_NARROW_LIMIT}};
 	enum { PLANS = sizeof plans / sizeof *plans };
 	result results[PLANS + 1]; /* the definition's is the last */
 	size_t differences = 0;
