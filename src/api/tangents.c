@@ -232,7 +232,7 @@ nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *opt
 	r.solve.passed = wanted->passed;
 	r.solve.user = wanted->user;
 	r.solve.spare = to.vertex_tangents; /* the split fills it at the end */
-	r.solve.spare_bytes = r.mesh.vertex_count * 4 * sizeof(float);
+	r.solve.spare_bytes = (r.mesh.vertex_count + (wanted->lends_copies ? to.source_capacity : 0)) * 4 * sizeof(float);
 	r.solve.tangents = nt_scratch_alloc(r.solve.scratch, r.solve.corner_count, 4 * sizeof(float));
 	status = r.solve.tangents ? nt_splitter_begin(&splitter, &r.mesh, r.solve.corner_count, &to,
 					    r.solve.scratch)

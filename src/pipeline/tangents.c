@@ -14,6 +14,7 @@
 #include <string.h>
 #include "api/tangents.h"
 #include "base/counts.h"
+#include "base/pages.h"
 #include "base/parallel.h"
 
 /* Corners from which one mesh is worth all threads, whatever else there is, and where the others are less than half of
@@ -192,6 +193,8 @@ static nt_status keep_split(nt_mesh *mesh, const nmtan_split_output *output, nt_
 		split->indices = keep_block(arena, split->indices, mesh->corner_count, sizeof *split->indices);
 	}
 	split->sources = keep_block(arena, split->sources, count, sizeof *split->sources);
+	nt_drop_pages(split->vertex_tangents + 4 * (mesh->vertex_count + count),
+		4 * sizeof(float) * (mesh->corner_count - count));
 	split->vertex_tangents = keep_block(arena, split->vertex_tangents, mesh->vertex_count + count,
 		4 * sizeof(float));
 	if (split->sources && split->vertex_tangents && (split->indices || count == 0))
@@ -257,7 +260,8 @@ static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_option
 		free_corners(mesh);
 	} else if (!(status = make_split(mesh, &mesh->split, &output))) {
 		mesh_bytes bytes = {job->scene, mesh, nt_thread_count(options->threads)};
-		const nt_vertex_request request = {.lazy_indices = true,
+			/* small ones have a workspace, whose pages are there */
+		const nt_vertex_request request = {.lazy_indices = true, .lends_copies = !options->workspace,
 			.passed = job->forgets ? forget_part : NULL, .user = &bytes};
 		status = nt_status_of(nt_vertex_tangents(&view, options, &request, &output, &mesh->counts));
 	}

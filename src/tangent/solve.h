@@ -63,7 +63,7 @@ typedef struct nt_solve {
 	bool repair;             /* a corner that no triangle gives a tangent gets w = 0 for usable.c to find; else
 	                            MikkTSpace's placeholder (1, 0, 0) with w = -1 */
 	bool sparse;             /* rows that known.ids stands for need not be written; not with quads */
-	/* Memory that is filled after the method is done: it may serve as scratch. */
+	/* Memory that is filled or let go of after the method is done: it may serve as scratch. */
 	void *spare;
 	size_t spare_bytes;
 	/* Called when a part of the mesh will hardly be read again; may be NULL. */

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * nmtan_vertex_tangents() against nmtan_tangents() followed by nmtan_split(), which it promises to equal.
+ * nmtan_vertex_tangents(), here with requests, against nmtan_tangents() followed by nmtan_split(), which it promises
+ * to equal.
  */
+#include "api/tangents.h"
 #include "golden.h"
 #include "nasty.h"
 #include "nmtan.h"
@@ -29,14 +31,16 @@ static void split_free(split *s)
 	free(s->out.vertex_tangents);
 }
 
-static void compare(const nmtan_mesh *mesh, size_t corners, const nmtan_options *options)
+/* lent: the room for copies is scratch first. */
+static void compare_one(const nmtan_mesh *mesh, size_t corners, const nmtan_options *options, bool lent)
 {
 	split two = split_make(mesh, corners), one = split_make(mesh, corners);
+	const nt_vertex_request request = {.lends_copies = lent};
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = malloc(16 * corners + 1)};
 	nmtan_counts counts = NMTAN_COUNTS_INIT;
 	assert_int_equal(nmtan_tangents(mesh, options, &output, &counts), NMTAN_OK);
 	assert_int_equal(nmtan_split(mesh, output.tangents, options, &two.out), NMTAN_OK);
-	assert_int_equal(nmtan_vertex_tangents(mesh, options, &one.out, &one.counts), NMTAN_OK);
+	assert_int_equal(nt_vertex_tangents(mesh, options, &request, &one.out, &one.counts), NMTAN_OK);
 	assert_int_equal(one.out.source_count, two.out.source_count);
 	const size_t vertices = mesh->vertex_count + one.out.source_count;
 	assert_memory_equal(one.out.indices, two.out.indices, 4 * corners);
@@ -49,6 +53,12 @@ static void compare(const nmtan_mesh *mesh, size_t corners, const nmtan_options 
 	free(output.tangents);
 	split_free(&one);
 	split_free(&two);
+}
+
+static void compare(const nmtan_mesh *mesh, size_t corners, const nmtan_options *options)
+{
+	compare_one(mesh, corners, options, false);
+	compare_one(mesh, corners, options, true);
 }
 
 static void compare_golden(const char *path, const nt_golden *golden, void *context)
