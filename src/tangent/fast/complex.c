@@ -4,14 +4,18 @@
  * frame between orientations, directions that are on one side of no axis, hubs. The steps are those of the
  * scalar definition, but at these vertices only:
  *
- *   collect   corners of complex vertices, sorted by vertex and then by triangle: settle has counted them
- *   decide    which orientation triangles without a frame take
+ *   collect   corners of complex vertices and the ends of their edges, sorted by vertex and then by triangle: settle
+ *             has counted them
+ *   decide    which orientation triangles without a frame take                      complex_groups.c
  *
- * and then for a few vertices at a time, so that all of it stays in the first-level cache, by several threads:
+ * and then by several threads, vertex by vertex:
  *
  *   pair      edges of triangles that meet at the vertex                            complex_groups.c
  *   groups    corners of one orientation that hang together by such edges           complex_groups.c
  *   sums      a group that is all there is of its orientation has the record        complex_solve.c
+ *
+ * What is left gathers in batches:
+ *
  *   solve     the corners of other groups, in lanes                                 corners.h
  *   average   and write                                                             complex_solve.c
  *
@@ -26,7 +30,6 @@
 
 #include <string.h>
 #include "base/parallel.h"
-#include "tangent/fast/complex_groups.h"
 #include "tangent/fast/complex_solve.h"
 
 /* Vertices for a thread at least. */
@@ -59,79 +62,87 @@ static size_t list_triangles(const nt_complex *c, size_t *t, uint32_t list[LISTE
 	return count;
 }
 
+/* A corner at a complex vertex, and the vertices after and before it in its triangle. */
+typedef struct listed_corner {
+	uint32_t corner, vertex, after, before;
+} listed_corner;
+
+/* Lists the corners of triangles that are at complex vertices: about half, at random, so that there is no branch. */
+static size_t list_corners(const nt_complex *c, const uint32_t *triangles, size_t count,
+	listed_corner corners[3 * (LISTED + STEP) + 1])
+{
+	size_t n = 0;
+	for (size_t i = 0; i < count; i++) {
+		const uint32_t t = triangles[i];
+		const unsigned flags = c->fast->flags[t];
+		const uint32_t any = flags / NT_TRIANGLE_ANY % 2 * NT_COMPLEX_ANY, plus = flags % 2 * NT_COMPLEX_PLUS;
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&c->fast->triangles, t, 1, copy);
+#pragma GCC unroll 3
+		for (uint32_t k = 0; k < 3; k++) {
+			corners[n] = (listed_corner){4 * t + k + any + plus, v[k], v[(k + 1) % 3], v[(k + 2) % 3]};
+			n += nt_fast_record(c->fast, c->orient, v[k])->state / NT_RESULT_COMPLEX % 2;
+		}
+	}
+	return n;
+}
+
 /* Where the next things go. */
 typedef struct cursors {
-	uint32_t *vertex, *order, place;
+	uint32_t *vertex, *welded, *order, place;
 } cursors;
 
-/* Vertices get their places as they come up. */
-static inline void place_corners(const nt_complex *c, size_t t, cursors *at)
+/* A vertex gets its places when it comes up first. */
+static inline void place_corner(const nt_complex *c, const listed_corner *corner, cursors *at)
 {
 	const uint32_t kept = NT_RESULT_SUM | NT_RESULT_TANGLED;
-	uint32_t copy[3];
-	const uint32_t *v = nt_triangle_vertices(&c->fast->triangles, t, 1, copy);
-	for (uint32_t k = 0; k < 3; k++) {
-		uint32_t *state = &nt_fast_record(c->fast, c->orient, v[k])->state;
-		const uint32_t old = *state;
-		if (!(old & NT_RESULT_COMPLEX))
-			continue;
-		uint32_t place = old & NT_RESULT_NUMBER;
-		if (!(old & NT_RESULT_PLACED)) {
-			*at->vertex++ = at->place | (old & kept);
-			const uint32_t corners = place;
-			place = at->place;
-			at->place += corners;
-		}
-		c->corners[place] = (uint32_t)(4 * t) + k;
-		*state = NT_RESULT_COMPLEX | NT_RESULT_PLACED | (old & kept) | (place + 1);
-		if (at->order)
-			*at->order++ = place;
+	uint32_t *state = &nt_fast_record(c->fast, c->orient, corner->vertex)->state;
+	const uint32_t old = *state;
+	uint32_t place = old & NT_RESULT_NUMBER;
+	if (!(old & NT_RESULT_PLACED)) {
+		*at->vertex++ = at->place | (old & kept);
+		*at->welded++ = corner->vertex;
+		const uint32_t corners = place;
+		place = at->place;
+		at->place += corners;
 	}
+	c->corners[place] = corner->corner;
+	c->across[2 * place] = corner->after;
+	c->across[2 * place + 1] = corner->before;
+	*state = NT_RESULT_COMPLEX | NT_RESULT_PLACED | (old & kept) | (place + 1);
+	if (at->order)
+		*at->order++ = place;
 }
 
 static nmtan_status collect(nt_complex *c, size_t places)
 {
 	const nt_fast *fast = c->fast;
 	c->vertices = nt_borrowed_alloc(c->memory, c->vertex_count + 1, sizeof *c->vertices);
+	c->welded = nt_borrowed_alloc(c->memory, c->vertex_count, sizeof *c->welded);
 	c->corners = nt_borrowed_alloc(c->memory, places, sizeof *c->corners);
+	c->across = nt_borrowed_alloc(c->memory, places, 2 * sizeof *c->across);
+	c->group = nt_borrowed_alloc(c->memory, places, sizeof *c->group);
 	/* without a second orientation there is nothing to choose */
 	const bool ordered = !c->single && nt_fast_next_flagged(fast, 0, NT_TRIANGLE_ANY) < fast->triangle_count;
 	if (ordered)
 		c->order = nt_borrowed_alloc(c->memory, places, sizeof *c->order);
-	if (!c->vertices || !c->corners || (ordered && !c->order))
+	if (!c->vertices || !c->welded || !c->corners || !c->across || !c->group || (ordered && !c->order))
 		return NMTAN_ERROR_MEMORY;
-	cursors at = {c->vertices, c->order, 0};
-	for (size_t t = 0, count; t < fast->triangle_count;) {
-		uint32_t list[LISTED + STEP];
-		count = list_triangles(c, &t, list);
+	cursors at = {c->vertices, c->welded, c->order, 0};
+	for (size_t t = 0; t < fast->triangle_count;) {
+		uint32_t triangles[LISTED + STEP];
+		listed_corner corners[3 * (LISTED + STEP) + 1];
+		const size_t count = list_corners(c, triangles, list_triangles(c, &t, triangles), corners);
 		for (size_t i = 0; i < count; i++)
-			place_corners(c, list[i], &at);
+			place_corner(c, &corners[i], &at);
 	}
 	*at.vertex = at.place;
 	c->corner_count = ordered ? (size_t)(at.order - c->order) : 0;
 	return NMTAN_OK;
 }
 
-/* Finds the groups of vertices that have a triangle without a frame, and thereby the orientation of these triangles. */
-static nmtan_status decide(nt_complex *c, size_t places)
-{
-	nt_batch all = {.corners = c->corners, .group = nt_borrowed_alloc(c->memory, places, sizeof *all.group)};
-	const nt_scratch_mark mark = nt_scratch_here(c->memory->scratch);
-	const nt_borrowed memory = *c->memory;
-	all.across = nt_borrowed_alloc(c->memory, places, 2 * sizeof *all.across);
-	if (!all.group || !all.across)
-		return NMTAN_ERROR_MEMORY;
-	if (c->waiting)
-		memset(c->waiting, 0, c->fast->vertex_count * sizeof *c->waiting);
-	nt_find_groups_in_order(c, &all);
-	c->decided = all.group;
-	nt_scratch_back(c->memory->scratch, mark);
-	*c->memory = memory;
-	return NMTAN_OK;
-}
-
-/* Threads own ranges of vertices but for those that are tangled, which wait for the end: these share a table, and
- * hubs may need memory. */
+/* Threads own ranges of vertices but for those that are tangled, which come first: these share a table, and hubs may
+ * need memory. */
 typedef struct work {
 	const nt_complex *c;
 	nt_batch *batches; /* [threads] */
@@ -139,73 +150,52 @@ typedef struct work {
 	nmtan_status status;
 } work;
 
-/* The next vertices of [*v, end) whose turn it is, as many as have NT_BATCH corners together and no place between them
- * without a corner; one that has more is a batch of its own. Moves *v to the first one; returns the one behind all. */
-static size_t take_vertices(const work *w, size_t *v, size_t end, nt_batch *b)
-{
-	const nt_complex *c = w->c;
-	while (*v < end && nt_is_tangled(c, *v) != w->tangled)
-		++*v;
-	size_t behind = *v;
-	uint32_t last = b->first = nt_first_place(c, behind);
-	while (behind < end && nt_is_tangled(c, behind) == w->tangled && nt_first_place(c, behind) == last &&
-		(behind == *v || nt_last_place(c, behind) - b->first <= NT_BATCH))
-		last = nt_last_place(c, behind++);
-	b->corners = c->corners + b->first;
-	b->count = last - b->first;
-	return behind;
-}
-
-static void prefetch_corners(const nt_complex *c, const nt_batch *b)
-{
-	const nt_fast *fast = c->fast;
-	for (uint32_t i = 0; i < b->count && i < NT_BATCH; i++)
-		__builtin_prefetch(fast->solve->tangents +
-			4 * nt_triangle_corner(&fast->triangles, b->corners[i] >> 2, b->corners[i] & 3), 1);
-}
-
 static void solve_range(void *context, size_t begin, size_t end, unsigned slot)
 {
 	work *w = context;
-	const nt_complex *c = w->c;
-	nt_batch *b = &w->batches[slot];
-	for (size_t v = begin, behind; v < end && !w->status; v = behind) {
-		behind = take_vertices(w, &v, end, b);
-		prefetch_corners(c, b);
-		for (size_t i = v; i < behind; i++)
-			nt_find_groups(c, b, i);
-		for (size_t i = v; i < behind && !c->more; i++)
-			nt_write_sums(c, b, i);
-		nt_number_groups(b);
-		nt_list_members(b);
-		const nmtan_status status = nt_solve_batch(c, b);
-		if (status)
-			w->status = status;
+	nmtan_status status = NMTAN_OK;
+	for (size_t v = begin; v < end && !status; v++) {
+		if (nt_is_tangled(w->c, v) != w->tangled)
+			continue;
+		nt_find_groups(w->c, v);
+		status = nt_take_vertex(w->c, &w->batches[slot], v);
+		/* its groups may lie where the next vertices' are to come */
+		if (!status && w->tangled)
+			status = nt_solve_batch(w->c, &w->batches[slot]);
 	}
+	if (!status)
+		status = nt_solve_batch(w->c, &w->batches[slot]);
+	if (status)
+		w->status = status;
+}
+
+static void forget_waiting(const nt_complex *c)
+{
+	if (c->waiting)
+		memset(c->waiting, 0, c->fast->vertex_count * sizeof *c->waiting);
 }
 
 static nmtan_status solve_vertices(const nt_complex *c)
 {
 	const unsigned threads = nt_parallel_slots(c->fast->solve->threads, c->vertex_count, GRAIN);
-	work w = {.c = c, .batches = nt_borrowed_alloc(c->memory, threads, sizeof *w.batches)};
-	for (unsigned i = 0; w.batches && i < threads; i++)
-		if (!nt_batch_alloc(c, NT_BATCH, &w.batches[i]))
-			return NMTAN_ERROR_MEMORY;
-	if (!w.batches)
-		return NMTAN_ERROR_MEMORY;
-	nt_parallel_ranges(threads, c->vertex_count, GRAIN, solve_range, &w);
-	if (!c->waiting)
-		return w.status;
-	size_t most = 0;
-	for (size_t v = 0; v < c->vertex_count; v++) {
+	size_t most = NT_BATCH;
+	for (size_t v = 0; c->waiting && v < c->vertex_count; v++) {
 		const size_t corners = nt_last_place(c, v) - nt_first_place(c, v);
 		most = corners > most ? corners : most;
 	}
-	if (most > NT_BATCH && !nt_batch_alloc(c, most, &w.batches[0]))
+	work w = {.c = c, .batches = nt_borrowed_alloc(c->memory, threads, sizeof *w.batches), .tangled = true};
+	for (unsigned i = 0; w.batches && i < threads; i++)
+		if (!nt_batch_make(c, i == 0 ? most : NT_BATCH, &w.batches[i]))
+			return NMTAN_ERROR_MEMORY;
+	if (!w.batches)
 		return NMTAN_ERROR_MEMORY;
-	memset(c->waiting, 0, c->fast->vertex_count * sizeof *c->waiting);
-	w.tangled = true;
-	solve_range(&w, 0, c->vertex_count, 0);
+	if (c->waiting) {
+		forget_waiting(c);
+		solve_range(&w, 0, c->vertex_count, 0);
+	}
+	w.tangled = false;
+	if (!w.status)
+		nt_parallel_ranges(threads, c->vertex_count, GRAIN, solve_range, &w);
 	return w.status;
 }
 
@@ -220,8 +210,11 @@ nmtan_status nt_fast_complex(nt_fast *fast, const nt_kernels *kernels, const nt_
 		if (!c.waiting)
 			return NMTAN_ERROR_MEMORY;
 	}
-	nmtan_status status = collect(&c, settled->complex_corners);
-	if (!status && c.order)
-		status = decide(&c, settled->complex_corners);
-	return status ? status : solve_vertices(&c);
+	const nmtan_status status = collect(&c, settled->complex_corners);
+	if (status)
+		return status;
+	forget_waiting(&c);
+	if (c.order)
+		nt_find_groups_in_order(&c);
+	return solve_vertices(&c);
 }

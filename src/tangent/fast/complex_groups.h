@@ -11,14 +11,16 @@
 /* No group; no corner. */
 #define NT_NONE UINT32_MAX
 
-/* In place of a group: the corner is written. */
-#define NT_WRITTEN (UINT32_MAX - 1)
+/* A value of nt_complex.across that is no corner: what is left of it is another edge that waits. */
+#define NT_WAITS ((uint32_t)1 << 31)
 
-/* Corners of a batch, but for a vertex that has more; corners that are solved together. */
-enum { NT_BATCH = 512, NT_SOLVED = 128 };
+/* A corner is 4 * triangle + k here, so that parting the two is no division, with what its triangle is above that. */
+#define NT_COMPLEX_CORNER (((uint32_t)1 << 29) - 1)
+#define NT_COMPLEX_SEED ((uint32_t)1 << 29)  /* a group may begin here: see nt_find_groups_in_order() */
+#define NT_COMPLEX_PLUS ((uint32_t)1 << 30)  /* the orientation of its triangle, or group */
+#define NT_COMPLEX_ANY ((uint32_t)1 << 31)   /* the triangle has no frame */
 
-/* A corner is 4 * triangle + k here, so that parting the two is no division. A "place" is an index into all
- * corners of complex vertices, which are sorted by vertex and then by triangle. */
+/* A "place" is an index into all corners of complex vertices, which are sorted by vertex and then by triangle. */
 typedef struct nt_complex {
 	nt_fast *fast;
 	const nt_kernels *kernels;
@@ -26,27 +28,17 @@ typedef struct nt_complex {
 	int orient;          /* of the records whose states have the places of complex vertices */
 	size_t vertex_count;
 	uint32_t *vertices;  /* [vertex_count + 1] first place of each, with NT_RESULT_SUM and NT_RESULT_TANGLED */
+	uint32_t *welded;    /* [vertex_count] their numbers as welded vertices */
 	uint32_t *corners;   /* [places] */
+	uint32_t *across;    /* [2 * places] of each corner the next and the previous vertex of its triangle; then the corners
+	                        beyond these edges: NT_WAITS and above: there is none */
+	uint32_t *group;     /* [places] the place that a corner's group begins with, or NT_NONE */
 	uint32_t *waiting;   /* [welded vertices] see pair_edge(); NULL: no vertex is tangled */
 	uint32_t *order;     /* [corner_count] places in the order of triangles; NULL: the order decides nothing */
 	size_t corner_count;
-	uint32_t *decided;   /* [places] groups that nt_find_groups_in_order() has found; NULL: none */
 	bool single;         /* there are records of this orientation only */
 	bool more;           /* results are whole, not only their u */
 } nt_complex;
-
-/* The corners of some vertices. Their indices are counted from the first place. */
-typedef struct nt_batch {
-	uint32_t first, count;
-	const uint32_t *corners; /* [count] */
-	uint32_t *across;        /* [2 * count + 2] the corner beyond the edge to the next (2 i) and from the previous
-	                            vertex (2 i + 1); NT_WAITS and above: there is none */
-	uint32_t *group;         /* [count] the corner that it begins with, then its number; NT_NONE or NT_WRITTEN */
-	uint32_t group_count;
-	uint32_t *members;       /* [count] corners by group, ascending; the memory of across */
-	uint32_t *bounds;        /* [group_count + 1] first member of each group; the same */
-	nt_corner *results;      /* [count] where the halves of quads have to meet; NULL: there are no quads */
-} nt_batch;
 
 static inline uint32_t nt_first_place(const nt_complex *c, size_t v)
 {
@@ -58,31 +50,25 @@ static inline bool nt_is_tangled(const nt_complex *c, size_t v)
 	return c->vertices[v] & NT_RESULT_TANGLED;
 }
 
+/* The corner of the mesh. */
+static inline size_t nt_complex_corner(const nt_complex *c, uint32_t corner)
+{
+	return nt_triangle_corner(&c->fast->triangles, (corner & NT_COMPLEX_CORNER) >> 2, corner & 3);
+}
+
 /* The place behind the last corner of a vertex; for hubs there may be more places. */
 static inline uint32_t nt_last_place(const nt_complex *c, size_t v)
 {
 	if (!nt_is_tangled(c, v))
 		return nt_first_place(c, v + 1);
-	const uint32_t corner = c->corners[nt_first_place(c, v)];
-	const nt_triangles *triangles = &c->fast->triangles;
-	const uint32_t vertex = triangles->ids[nt_triangle_corner(triangles, corner >> 2, corner & 3)];
-	return nt_fast_record(c->fast, c->orient, vertex)->state & NT_RESULT_NUMBER;
+	return nt_fast_record(c->fast, c->orient, c->welded[v])->state & NT_RESULT_NUMBER;
 }
 
-/* Memory of a batch of `capacity` corners; false: there is none. */
-bool nt_batch_alloc(const nt_complex *c, size_t capacity, nt_batch *batch);
-
-/* Finds the groups of complex vertex v, which the batch has. */
-void nt_find_groups(const nt_complex *c, nt_batch *batch, size_t v);
+/* Finds the groups of complex vertex v, if nt_find_groups_in_order() has not. */
+void nt_find_groups(const nt_complex *c, size_t v);
 
 /* Finds the groups of all vertices that have a triangle without a frame, in the order of triangles: every such triangle
- * takes the orientation of the first group that reaches it. At the other vertices it leaves NT_WRITTEN. */
-void nt_find_groups_in_order(const nt_complex *c, nt_batch *all);
-
-/* Numbers the groups of a batch from 0 in the order in which they begin. Those that are written are none. */
-void nt_number_groups(nt_batch *batch);
-
-/* Lists the members of a batch's groups, in the memory of across. */
-void nt_list_members(nt_batch *batch);
+ * takes the orientation of the first group that reaches it. */
+void nt_find_groups_in_order(nt_complex *c);
 
 #endif

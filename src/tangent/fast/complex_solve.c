@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Averages of groups at complex vertices: steps 7 to 10 of the spec page. Corners are solved NT_SOLVED at a time in the
+ * Averages of groups at complex vertices: steps 7 to 10 of the spec page. Corners are solved SOLVED at a time in the
  * order of groups. Most groups do not split: their members' directions lie within a half-space. Otherwise each
  * direction has a sum of its own, which is that of all members with this direction: 16 directions at a time
  * (part_lanes.h), in large groups by several threads. So it costs directions times members.
@@ -10,10 +10,15 @@
 #include <string.h>
 #include "base/parallel.h"
 #include "base/vec.h"
+#include "tangent/fast/write.h"
+#include "topology/corners.h"
 
-/* Some members of a group. */
+/* Corners that the kernel gets; vertices by which records are prefetched before they are read. */
+enum { SOLVED = 128, AHEAD = 12 };
+
+/* Some members of a group, or of several. */
 typedef struct part {
-	const uint32_t *members; /* [count] */
+	const uint32_t *members; /* [count] places */
 	const nt_corner *solved; /* [count] */
 	size_t count;
 } part;
@@ -38,14 +43,28 @@ static size_t table_size(size_t members)
 
 /* Solving */
 
-static void solve_members(const nt_complex *c, const nt_batch *b, const uint32_t *members, size_t count,
-	nt_corner *solved)
+/* What the kernel is to read of the mesh. */
+static void prefetch_corner(const nt_complex *c, uint32_t corner)
 {
-	uint32_t corners[NT_SOLVED];
-	for (size_t first = 0; first < count; first += NT_SOLVED) {
-		const size_t n = count - first < NT_SOLVED ? count - first : NT_SOLVED;
+	const nmtan_mesh *mesh = c->fast->solve->mesh;
+	for (uint32_t k = 0; k < 3; k++) {
+		const size_t vertex = nt_vertex_of(mesh, nt_complex_corner(c, (corner & ~3u) | k));
+		__builtin_prefetch(nt_position(mesh, vertex));
+		__builtin_prefetch(nt_texcoord(mesh, vertex));
+		if (k == (corner & 3))
+			__builtin_prefetch(nt_normal(mesh, vertex));
+	}
+}
+
+static void solve_members(const nt_complex *c, const uint32_t *members, size_t count, nt_corner *solved)
+{
+	uint32_t corners[SOLVED];
+	for (size_t first = 0; first < count; first += SOLVED) {
+		const size_t n = count - first < SOLVED ? count - first : SOLVED;
 		for (size_t i = 0; i < n; i++)
-			corners[i] = b->corners[members[first + i]];
+			corners[i] = c->corners[members[first + i]] & NT_COMPLEX_CORNER;
+		for (size_t i = 0; i < n; i++)
+			prefetch_corner(c, corners[i]);
 		c->kernels->corners(c->fast, corners, n, solved + first);
 	}
 }
@@ -134,14 +153,11 @@ static bool is_one(const part *p, const nt_corner *axis)
 
 /* Writing */
 
-static size_t mesh_corner(const nt_complex *c, const nt_batch *b, uint32_t i)
-{
-	return nt_triangle_corner(&c->fast->triangles, b->corners[i] >> 2, b->corners[i] & 3);
-}
-
-static void write_corner(const nt_complex *c, size_t corner, const nt_corner *r, float sign)
+static void write_corner(const nt_complex *c, uint32_t place, const nt_corner *r)
 {
 	const nt_solve *solve = c->fast->solve;
+	const size_t corner = nt_complex_corner(c, c->corners[place]);
+	const float sign = c->corners[place] & NT_COMPLEX_PLUS ? 1.0f : -1.0f;
 	memcpy(solve->tangents + 4 * corner, (float[4]){r->u[0], r->u[1], r->u[2], sign}, 4 * sizeof(float));
 	if (solve->bitangents)
 		memcpy(solve->bitangents + 3 * corner, r->v, 3 * sizeof(float));
@@ -149,63 +165,13 @@ static void write_corner(const nt_complex *c, size_t corner, const nt_corner *r,
 		memcpy(solve->magnitudes + 2 * corner, (float[2]){r->mag_s, r->mag_t}, 2 * sizeof(float));
 }
 
-/* The orientation of a corner that a group has: its triangle's, which is its group's. Where only one orientation
- * occurs, triangles without a frame are not decided. */
-static int orientation_of(const nt_complex *c, const nt_batch *b, uint32_t i)
-{
-	return c->single ? c->orient : c->fast->flags[b->corners[i] >> 2] & NT_TRIANGLE_ORIENT;
-}
-
-static float sign_of(const nt_complex *c, const nt_batch *b, uint32_t i)
-{
-	return orientation_of(c, b, i) ? 1.0f : -1.0f;
-}
-
 /* A member's result goes to its corner, or to the batch's results. */
-static void put_result(const nt_complex *c, const nt_batch *b, uint32_t i, const nt_corner *r)
+static void put_result(const nt_complex *c, const nt_batch *b, uint32_t place, const nt_corner *r)
 {
 	if (b->results)
-		b->results[i] = *r;
+		b->results[place - b->first] = *r;
 	else
-		write_corner(c, mesh_corner(c, b, i), r, sign_of(c, b, i));
-}
-
-/* A corner that no group reached keeps the default: step 10. */
-static const nt_corner untouched = {.u = {1, 0, 0}, .mag_s = 1, .v = {0, 1, 0}, .mag_t = 1};
-
-static void write_untouched(const nt_complex *c, const nt_batch *b)
-{
-	for (uint32_t i = 0; i < b->count; i++)
-		if (b->group[i] == NT_NONE)
-			write_corner(c, mesh_corner(c, b, i), &untouched, nt_unassigned_sign(c->fast->solve));
-}
-
-void nt_write_sums(const nt_complex *c, nt_batch *b, size_t v)
-{
-	if (!(c->vertices[v] & NT_RESULT_SUM))
-		return;
-	const nt_fast *fast = c->fast;
-	const uint32_t begin = nt_first_place(c, v) - b->first, end = nt_last_place(c, v) - b->first;
-	/* the first group of each orientation; NT_WRITTEN: there are more */
-	uint32_t groups[2] = {NT_NONE, NT_NONE};
-	for (uint32_t i = begin; i < end; i++) {
-		uint32_t *group = &groups[orientation_of(c, b, i)];
-		if (b->group[i] != NT_NONE)
-			*group = *group == NT_NONE || *group == b->group[i] ? b->group[i] : NT_WRITTEN;
-	}
-	const uint32_t vertex = fast->triangles.ids[mesh_corner(c, b, begin)];
-	for (uint32_t i = begin; i < end; i++) {
-		const int orient = orientation_of(c, b, i);
-		if (b->group[i] == NT_NONE || b->group[i] != groups[orient])
-			continue;
-		/* step 6 has written the record, but for triangles that had no orientation */
-		if (fast->flags[b->corners[i] >> 2] & NT_TRIANGLE_ANY) {
-			nt_record record = *nt_fast_record(fast, orient, vertex);
-			record.state = orient ? NT_RESULT_PLUS : NT_RESULT_MINUS;
-			memcpy(fast->solve->tangents + 4 * mesh_corner(c, b, i), &record, sizeof record);
-		}
-		b->group[i] = NT_WRITTEN;
-	}
+		write_corner(c, place, r);
 }
 
 /* The corner of a quad's diagonal gets two results, one from each half: they are averaged. */
@@ -225,26 +191,27 @@ static nt_corner merge(const nt_corner *a, const nt_corner *b)
 	return r;
 }
 
-/* Writes the corner i, and j (NT_NONE: there is none), the other half's corner of the same face vertex. */
+/* Writes the corner at place i, and j (NT_NONE: there is none), the other half's corner of the same face vertex. */
 static void write_halves(const nt_complex *c, const nt_batch *b, uint32_t i, uint32_t j)
 {
-	const bool first = b->group[i] != NT_NONE, second = j != NT_NONE && b->group[j] != NT_NONE;
-	const size_t corner = mesh_corner(c, b, i);
+	const bool first = c->group[i] != NT_NONE, second = j != NT_NONE && c->group[j] != NT_NONE;
 	if (first && second) {
-		const nt_corner r = merge(&b->results[i], &b->results[j]);
+		const nt_corner r = merge(&b->results[i - b->first], &b->results[j - b->first]);
 		/* the orientation is that of the later group */
-		write_corner(c, corner, &r, sign_of(c, b, b->group[i] > b->group[j] ? i : j));
+		write_corner(c, c->group[i] > c->group[j] ? i : j, &r);
 	} else if (first || second) {
-		write_corner(c, corner, &b->results[first ? i : j], sign_of(c, b, first ? i : j));
+		write_corner(c, first ? i : j, &b->results[(first ? i : j) - b->first]);
 	} else {
-		write_corner(c, corner, &untouched, nt_unassigned_sign(c->fast->solve));
+		nt_fast_write_unassigned(c->fast, nt_complex_corner(c, c->corners[i]));
 	}
 }
 
 static void write_quads(const nt_complex *c, const nt_batch *b)
 {
-	for (uint32_t i = 0; i < b->count; i++) {
-		const bool two = i + 1 < b->count && mesh_corner(c, b, i) == mesh_corner(c, b, i + 1);
+	const uint32_t end = b->first + b->count;
+	for (uint32_t i = b->first; i < end; i++) {
+		const bool two = i + 1 < end &&
+			nt_complex_corner(c, c->corners[i]) == nt_complex_corner(c, c->corners[i + 1]);
 		write_halves(c, b, i, two ? i + 1 : NT_NONE);
 		i += two;
 	}
@@ -322,16 +289,16 @@ static void sum_directions(void *context, size_t begin, size_t end, unsigned slo
 	}
 }
 
-static uint32_t triangle_of(const nt_batch *b, const part *p, size_t i)
+static uint32_t triangle_of(const nt_complex *c, const part *p, size_t i)
 {
-	return b->corners[p->members[i]] >> 2;
+	return (c->corners[p->members[i]] & NT_COMPLEX_CORNER) >> 2;
 }
 
 /* Members of one face belong together whatever their directions are: halves of a quad, which are neighbours, and a
  * member and itself, which a NaN parts. Whether that tells two members from others of their directions. */
-static bool belongs_by_face(const nt_complex *c, const nt_batch *b, const part *p, size_t first, size_t second)
+static bool belongs_by_face(const nt_complex *c, const part *p, size_t first, size_t second)
 {
-	const uint32_t t = triangle_of(b, p, first), other = triangle_of(b, p, second);
+	const uint32_t t = triangle_of(c, p, first), other = triangle_of(c, p, second);
 	return (t == other || (t + 1 == other && c->fast->flags[other] & NT_TRIANGLE_SECOND)) &&
 	       !belong_together(&p->solved[first], &p->solved[second]);
 }
@@ -350,14 +317,13 @@ static nt_corner average_own(const nt_complex *c, const part *p, size_t i, size_
 }
 
 /* A member's result in a group that may split. `whole` is that of a member without a frame, which belongs to all. */
-static nt_corner part_result(const nt_complex *c, const nt_batch *b, const part *p, const directions *d, size_t i,
-	const nt_corner *whole)
+static nt_corner part_result(const nt_complex *c, const part *p, const directions *d, size_t i, const nt_corner *whole)
 {
 	if (p->solved[i].kind == NT_CORNER_ANY)
 		return *whole;
-	const size_t first = i > 0 && belongs_by_face(c, b, p, i - 1, i) ? i - 1 : i;
-	const size_t last = i + 1 < p->count && belongs_by_face(c, b, p, i, i + 1) ? i + 1 : i;
-	if (!NT_SHORT_WAYS || first < last || belongs_by_face(c, b, p, i, i))
+	const size_t first = i > 0 && belongs_by_face(c, p, i - 1, i) ? i - 1 : i;
+	const size_t last = i + 1 < p->count && belongs_by_face(c, p, i, i + 1) ? i + 1 : i;
+	if (!NT_SHORT_WAYS || first < last || belongs_by_face(c, p, i, i))
 		return average_own(c, p, i, first, last + 1);
 	return d->sums[d->number[i]];
 }
@@ -384,28 +350,37 @@ static bool average_whole(const nt_complex *c, const nt_batch *b, const part *p,
 /* Averages a group whose members may split. */
 static void average_parts(const nt_complex *c, const nt_batch *b, const part *p, const nt_corner *whole, directions *d)
 {
-	const unsigned threads = p->count > NT_SOLVED ? c->fast->solve->threads : 1;
+	const unsigned threads = p->count > SOLVED ? c->fast->solve->threads : 1;
 	if (NT_SHORT_WAYS) {
 		list_directions(p, d);
 		nt_parallel_ranges(threads, (d->count + NT_LANES - 1) / NT_LANES, 1, sum_directions, &(sum_context){c, p, d});
 	}
 	for (size_t i = 0; i < p->count; i++) {
-		const nt_corner result = part_result(c, b, p, d, i, whole);
+		const nt_corner result = part_result(c, p, d, i, whole);
 		put_result(c, b, p->members[i], &result);
 	}
 }
 
-/* Groups [first, end), NT_SOLVED members together. */
-static void solve_groups(const nt_complex *c, const nt_batch *b, uint32_t first, uint32_t end)
+/* The end of the group whose first member of all is `first`. */
+static uint32_t end_of_group(const nt_complex *c, const part *all, uint32_t first)
 {
-	nt_corner solved[NT_SOLVED + NT_LANES], sums[NT_SOLVED], whole;
-	uint32_t number[NT_SOLVED], of[NT_SOLVED], table[2 * NT_SOLVED];
+	uint32_t end = first;
+	while (++end < all->count && c->group[all->members[end]] == c->group[all->members[first]])
+		;
+	return end;
+}
+
+/* Whole groups, SOLVED members at most. */
+static void solve_groups(const nt_complex *c, const nt_batch *b, const uint32_t *members, uint32_t count)
+{
+	nt_corner solved[SOLVED + NT_LANES], sums[SOLVED], whole;
+	uint32_t number[SOLVED], of[SOLVED], table[2 * SOLVED];
 	directions d = {number, of, sums, table, 0};
-	const uint32_t begin = b->bounds[first];
-	solve_members(c, b, b->members + begin, b->bounds[end] - begin, solved);
-	for (uint32_t g = first; g < end; g++) {
-		const part p = {b->members + b->bounds[g], solved + (b->bounds[g] - begin),
-			b->bounds[g + 1] - b->bounds[g]};
+	const part all = {members, solved, count};
+	solve_members(c, members, count, solved);
+	for (uint32_t first = 0, end; first < count; first = end) {
+		end = end_of_group(c, &all, first);
+		const part p = {members + first, solved + first, end - first};
 		if (!average_whole(c, b, &p, &whole))
 			average_parts(c, b, &p, &whole, &d);
 	}
@@ -426,35 +401,122 @@ static nmtan_status average_large_parts(const nt_complex *c, const nt_batch *b, 
 }
 
 /* A group of more members. */
-static nmtan_status solve_large_group(const nt_complex *c, const nt_batch *b, uint32_t group)
+static nmtan_status solve_large_group(const nt_complex *c, const nt_batch *b, const uint32_t *members, uint32_t count)
 {
 	const nt_scratch_mark mark = nt_scratch_here(c->memory->scratch);
 	const nt_borrowed memory = *c->memory;
-	const size_t count = b->bounds[group + 1] - b->bounds[group];
 	nt_corner *solved = nt_borrowed_alloc(c->memory, count + NT_LANES, sizeof *solved), whole;
 	if (!solved)
 		return NMTAN_ERROR_MEMORY;
-	const part p = {b->members + b->bounds[group], solved, count};
-	solve_members(c, b, p.members, count, solved);
+	const part p = {members, solved, count};
+	solve_members(c, members, count, solved);
 	const nmtan_status status = average_whole(c, b, &p, &whole) ? NMTAN_OK : average_large_parts(c, b, &p, &whole);
 	nt_scratch_back(c->memory->scratch, mark);
 	*c->memory = memory;
 	return status;
 }
 
-nmtan_status nt_solve_batch(const nt_complex *c, const nt_batch *b)
+/* Batches */
+
+bool nt_batch_make(const nt_complex *c, size_t capacity, nt_batch *b)
 {
-	for (uint32_t g = 0, end; g < b->group_count; g = end) {
-		for (end = g; end < b->group_count && b->bounds[end + 1] - b->bounds[g] <= NT_SOLVED;)
-			end++;
-		if (end > g)
-			solve_groups(c, b, g, end);
-		else if (solve_large_group(c, b, end++))
+	const bool quads = c->fast->triangles.cuts;
+	*b = (nt_batch){.results = quads ? nt_borrowed_alloc(c->memory, capacity, sizeof *b->results) : NULL};
+	return !quads || b->results;
+}
+
+/* The batch's corners by group. Their edges are of no use any more, and are as many as members and groups at most:
+ * these take their memory. */
+static part list_members(const nt_complex *c, const nt_batch *b)
+{
+	uint32_t *members = c->across + 2 * b->first, *at = members + b->count, count = 0;
+	const uint32_t *group = c->group + b->first;
+	memset(at, 0, b->group_count * sizeof *at);
+	for (uint32_t i = 0; i < b->count; i++)
+		if (group[i] != NT_NONE)
+			at[group[i]]++;
+	for (uint32_t g = 0; g < b->group_count; g++) {
+		const uint32_t size = at[g];
+		at[g] = count;
+		count += size;
+	}
+	for (uint32_t i = 0; i < b->count; i++)
+		if (group[i] != NT_NONE)
+			members[at[group[i]]++] = b->first + i;
+	return (part){members, NULL, count};
+}
+
+nmtan_status nt_solve_batch(const nt_complex *c, nt_batch *b)
+{
+	const part all = list_members(c, b);
+	for (uint32_t first = 0, end; first < all.count; first = end) {
+		end = end_of_group(c, &all, first);
+		const bool large = end - first > SOLVED;
+		for (uint32_t next = end; !large && next < all.count; ) {
+			next = end_of_group(c, &all, next);
+			if (next - first > SOLVED)
+				break;
+			end = next;
+		}
+		if (!large)
+			solve_groups(c, b, all.members + first, end - first);
+		else if (solve_large_group(c, b, all.members + first, end - first))
 			return NMTAN_ERROR_MEMORY;
 	}
 	if (b->results)
 		write_quads(c, b);
-	else
-		write_untouched(c, b);
+	b->count = b->group_count = 0;
+	return NMTAN_OK;
+}
+
+/* Moves a corner to the batch. Its group's number stands in the place of an edge, which is of no use any more. */
+static void add_to_batch(const nt_complex *c, nt_batch *b, uint32_t place)
+{
+	const uint32_t group = c->group[place], to = b->first + b->count++;
+	c->corners[to] = c->corners[place];
+	__builtin_prefetch(c->fast->solve->tangents + 4 * nt_complex_corner(c, c->corners[to]), 1);
+	c->group[to] = group == NT_NONE ? NT_NONE : c->across[2 * group];
+}
+
+/* Writes the record of the positive orientation to a corner of a triangle without a frame, to which step 6 has written
+ * that of the negative one. */
+static void write_record(const nt_complex *c, size_t v, uint32_t corner)
+{
+	nt_record record = *nt_fast_record(c->fast, 1, c->welded[v]);
+	record.state = NT_RESULT_PLUS;
+	memcpy(c->fast->solve->tangents + 4 * nt_complex_corner(c, corner), &record, sizeof record);
+}
+
+nmtan_status nt_take_vertex(const nt_complex *c, nt_batch *b, size_t v)
+{
+	const uint32_t begin = nt_first_place(c, v), end = nt_last_place(c, v);
+	if (!c->single && v + AHEAD < c->vertex_count)
+		__builtin_prefetch(nt_fast_record(c->fast, 1, c->welded[v + AHEAD]));
+	uint32_t groups[2] = {0}, kinds = 0;
+	for (uint32_t i = begin; i < end; i++) {
+		groups[(c->corners[i] & NT_COMPLEX_PLUS) != 0] += c->group[i] == i;
+		kinds |= c->corners[i];
+	}
+	const bool sum = !c->more && c->vertices[v] & NT_RESULT_SUM;
+	const bool done[2] = {sum && groups[0] < 2, sum && groups[1] < 2};
+	if (done[0] && done[1] && !(kinds & NT_COMPLEX_ANY))
+		return NMTAN_OK;
+	if (b->count + (end - begin) > NT_BATCH && nt_solve_batch(c, b))
+		return NMTAN_ERROR_MEMORY;
+	if (b->count == 0)
+		b->first = begin;
+	for (uint32_t i = begin; i < end; i++)
+		if (c->group[i] == i && !done[(c->corners[i] & NT_COMPLEX_PLUS) != 0])
+			c->across[2 * i] = b->group_count++;
+	for (uint32_t i = begin; i < end; i++) {
+		const uint32_t corner = c->corners[i];
+		const int orient = (corner & NT_COMPLEX_PLUS) != 0;
+		if (c->group[i] == NT_NONE && !b->results)
+			nt_fast_write_unassigned(c->fast, nt_complex_corner(c, corner));
+		else if (!done[orient])
+			add_to_batch(c, b, i);
+		else if (corner & NT_COMPLEX_ANY && orient && !c->single)
+			write_record(c, v, corner);
+	}
 	return NMTAN_OK;
 }

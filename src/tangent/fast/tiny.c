@@ -267,16 +267,15 @@ static void vouch_for_groups(tiny *s)
 /* Groups that are not their sums. */
 static nmtan_status solve_complex(tiny *s)
 {
-	uint32_t corners[CORNERS], groups[CORNERS], across[2 * CORNERS + 2];
-	const nt_complex c = {.fast = s->fast, .kernels = s->kernels};
-	nt_batch b = {.corners = corners, .group = groups, .across = across, .group_count = s->group_count};
+	uint32_t corners[CORNERS], groups[CORNERS], across[2 * CORNERS];
+	const nt_complex c = {.fast = s->fast, .kernels = s->kernels, .corners = corners, .group = groups, .across = across};
+	nt_batch b = {.group_count = (uint32_t)s->group_count};
 	for (uint32_t i = 0; i < 4 * s->fast->triangle_count; i++) {
 		if (s->group[i] == NOT_ONE || s->results[s->group[i]].state != NT_RESULT_COMPLEX)
 			continue;
 		groups[b.count] = s->group[i];
-		corners[b.count++] = i;
+		corners[b.count++] = i | (s->fast->flags[i / 4] & NT_TRIANGLE_ORIENT ? NT_COMPLEX_PLUS : 0);
 	}
-	nt_list_members(&b);
 	return nt_solve_batch(&c, &b);
 }
 
