@@ -57,7 +57,7 @@ static bool stays(const nt_scene *scene, const nt_write_options *options, const 
 {
 	if (!nt_gltf_is_solved(mesh))
 		return true;
-	return mesh->decision == NT_DECISION_REPAIR && mesh->tangents && !mesh->replaced_tangents && !mesh->late &&
+	return mesh->decision == NT_DECISION_REPAIR && !mesh->normals_made && !mesh->replaced_tangents && !mesh->late &&
 		!mesh->morph_count && options->morphs != NT_MORPH_DROP && !options->bitangents &&
 		options->precision == NT_PRECISION_FLOAT && (options->draco == NT_DRACO_KEEP ||
 		(options->draco == NT_DRACO_OFF && !nt_gltf_draco_of(nt_gltf_primitive_of(scene->source, mesh))));

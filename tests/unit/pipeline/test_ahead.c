@@ -193,6 +193,25 @@ static void the_same_as_all_loaded_first(void **state)
 	nt_summary_free(&first);
 }
 
+/* Tangents that are there, of another type than they would get, and valid: --existing=repair writes none of them. */
+static void what_needs_no_repair_stays(void **state)
+{
+	(void)state;
+	put_scene("in.glb", 2 * KINDS, SIZE_MAX);
+	nt_error error;
+	nt_summary summary;
+	nt_settings settings = {.texcoord_set = -1, .precision = NT_PRECISION_SHORT};
+	assert_int_equal(nt_run(in_folder("in.glb"), in_folder("first.glb"), &settings, &summary, &error), NT_OK);
+	nt_summary_free(&summary);
+	settings = (nt_settings){.texcoord_set = -1, .existing = NT_EXISTING_REPAIR};
+	for (settings.threads = 1; settings.threads <= 2; settings.threads++) {
+		assert_int_equal(nt_run(in_folder("first.glb"), in_folder("again.glb"), &settings, &summary, &error), NT_OK);
+		assert_int_equal(summary.solved_count, 2 * KINDS);
+		nt_summary_free(&summary);
+		assert_same_files(in_folder("first.glb"), in_folder("again.glb"));
+	}
+}
+
 /* Of each mesh, what is left after nt_load_ahead(). */
 static void geometry_is_let_go_of_where_only_results_count(void **state)
 {
@@ -281,6 +300,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(the_same_as_all_loaded_first, make_folder, remove_folder),
+		cmocka_unit_test_setup_teardown(what_needs_no_repair_stays, make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(geometry_is_let_go_of_where_only_results_count, make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(the_first_fault_is_told, make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(exhausted_memory_is_told, make_folder, remove_folder),
