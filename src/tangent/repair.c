@@ -44,25 +44,48 @@ typedef struct surroundings {
 	};
 } surroundings;
 
+/* Vertices with an unusable corner are touched. Of a bare one it is known that there is nothing around it. */
 typedef struct patient {
 	const nt_solve *solve;
 	const uint64_t *faulty; /* a bit for each face */
 	const uint32_t *welded; /* [corner_count] */
 	size_t welded_count;
-	uint32_t *ids;          /* [welded_count] numbers of those that have an unusable corner, the touched ones; NT_NO_ID */
-	size_t id_count;
+	uint32_t *ids;          /* [welded_count] numbers of touched vertices, or one of those below */
+	size_t id_count;        /* of those that are not bare: numbers below it */
 	bool among_suspects;    /* all triangles with a touched vertex are suspects */
 	surroundings *around;   /* [id_count], with room for as many as there can be */
+	size_t first_bare;      /* number of a bare vertex: these are counted from the end of that room */
 } patient;
+
+/* In a number's stead, beside NT_NO_ID, and above all numbers: not touched, and not bare either. */
+#define NOT_BARE (NT_NO_ID - 1)
 
 static unsigned has_bit(const uint64_t *bits, size_t i)
 {
 	return bits[i / 64] >> i % 64 & 1;
 }
 
+/* Whether a corner's vertex is touched, and not bare. */
+static inline bool is_open(const patient *p, size_t c)
+{
+	return p->ids[p->welded[c]] < p->id_count;
+}
+
+/* Whether that of a corner to be mended is bare. */
+static bool is_bare(const patient *p, size_t c)
+{
+	return NT_SHORT_WAYS && !is_open(p, c);
+}
+
 static const surroundings *around_corner(const patient *p, size_t c)
 {
 	return &p->around[p->ids[p->welded[c]]];
+}
+
+/* The tangent at a bare vertex, perpendicular to its normal, by the vertex's number: [3]. */
+static float *bare_tangent(const patient *p, size_t number)
+{
+	return (float *)p->around + 4 * number;
 }
 
 /* Whether a corner of a faulty face is usable. Such a face is a suspect: its rows are there. */
@@ -75,12 +98,20 @@ static bool is_usable(const nt_solve *solve, size_t c)
 static inline int orientation_of(const patient *p, size_t face, size_t first)
 {
 	const nmtan_mesh *mesh = p->solve->mesh;
+	int known;
+	if (!mesh->face_sizes && nt_knows_orientation(p->solve->known, face, &known))
+		return known;
 	const size_t faulty = has_bit(p->faulty, face) ? nt_face_size(mesh, face) : 0;
 	for (size_t c = first; c < first + faulty; c++)
 		if (!is_usable(p->solve, c) && signbit(p->solve->tangents[4 * c + 3]))
 			return 0;
-	const int known = mesh->face_sizes ? 0 : nt_known_orientation(p->solve->known, face);
-	return known ? known : nt_face_orientation(mesh, face, first, true, NULL);
+	return nt_face_orientation(mesh, face, first, true, NULL);
+}
+
+/* The next triangle from t on that has one of these flags; the mesh's number of faces: none. */
+static inline size_t next_flagged(const patient *p, size_t t, unsigned flags)
+{
+	return nt_next_flagged(p->solve->known->flags, t, p->solve->mesh->face_count, flags);
 }
 
 /* Faults */
@@ -133,26 +164,60 @@ static nmtan_status weld(patient *p)
 		   : NMTAN_ERROR_MEMORY;
 }
 
+static void store(nt_dvec3 t, float *to)
+{
+	to[0] = (float)t.x, to[1] = (float)t.y, to[2] = (float)t.z;
+}
+
+/* Whether vertices without a result are bare, for the method tells them: but for those of faces that have an orientation,
+ * though they gave nothing, which are noted. */
+static bool tell_bare(const patient *p)
+{
+	const nt_known *known = p->solve->known;
+	if (!NT_SHORT_WAYS || p->solve->mesh->face_sizes || !known || !known->judged)
+		return false;
+	const unsigned open = known->doubtful | known->degenerate;
+	for (size_t t = next_flagged(p, 0, open); t < p->solve->mesh->face_count; t = next_flagged(p, t + 1, open))
+		for (size_t c = 3 * t; c < 3 * t + 3 && orientation_of(p, t, 3 * t); c++)
+			p->ids[p->welded[c]] = NOT_BARE;
+	return true;
+}
+
+static bool has_result(const nt_known *known, uint32_t vertex)
+{
+	bool has = false;
+	for (int side = 0; side < 2; side++)
+		has |= known->rows[side] && known->rows[side][known->row_step * vertex + 3] != 0.0f;
+	return has;
+}
+
 /* Numbers the welded vertices that have an unusable corner, of which there are `unusable`. Equal vertices of the mesh
  * have equal normals: what is asked for at many corners is made once. */
 static nmtan_status number_vertices(patient *p, size_t unusable)
 {
 	const nt_solve *solve = p->solve;
 	const nmtan_mesh *mesh = solve->mesh;
+	const size_t most = unusable < p->welded_count ? unusable : p->welded_count;
 	p->ids = nt_scratch_alloc(solve->scratch, p->welded_count, sizeof *p->ids);
-	p->around = nt_scratch_alloc(solve->scratch, unusable < p->welded_count ? unusable : p->welded_count,
-		sizeof *p->around);
+	p->around = nt_scratch_alloc(solve->scratch, most, sizeof *p->around);
 	if (!p->ids || !p->around)
 		return NMTAN_ERROR_MEMORY;
+	p->first_bare = most * (sizeof *p->around / (4 * sizeof(float)));
 	memset(p->ids, 0xff, p->welded_count * sizeof *p->ids);
+	const bool tells = tell_bare(p);
 	for (place at = {0, 0}; find_faulty(p, &at); step_over(p, &at)) {
 		for (size_t c = at.first; c < at.first + nt_face_size(mesh, at.face); c++) {
 			uint32_t *id = &p->ids[p->welded[c]];
-			if (*id != NT_NO_ID || is_usable(solve, c))
+			if (*id < NOT_BARE || is_usable(solve, c))
 				continue;
+			const nt_dvec3 n = nt_unit_normal(mesh, nt_vertex_of(mesh, c));
+			if (tells && *id != NOT_BARE && !has_result(solve->known, p->welded[c])) {
+				*id = (uint32_t)--p->first_bare;
+				store(nt_dvec3_perpendicular(n), bare_tangent(p, *id));
+				continue;
+			}
 			*id = (uint32_t)p->id_count++;
-			p->around[*id] = (surroundings){.normal = nt_unit_normal(mesh, nt_vertex_of(mesh, c)),
-				.usable = {NT_NO_ID, NT_NO_ID}};
+			p->around[*id] = (surroundings){.normal = n, .usable = {NT_NO_ID, NT_NO_ID}};
 		}
 	}
 	return NMTAN_OK;
@@ -164,10 +229,9 @@ static nmtan_status number_vertices(patient *p, size_t unusable)
 static inline void visit_face(const patient *p, size_t face, size_t first, unsigned size)
 {
 	const nt_solve *solve = p->solve;
-	surroundings *around[4]; /* of its vertices; NULL: not touched */
+	surroundings *around[4]; /* of its vertices; NULL: not touched, or bare */
 	for (size_t k = 0; k < size; k++) {
-		const uint32_t id = p->ids[p->welded[first + k]];
-		around[k] = id == NT_NO_ID ? NULL : &p->around[id];
+		around[k] = is_open(p, first + k) ? &p->around[p->ids[p->welded[first + k]]] : NULL;
 		const float w = around[k] ? nt_corner_tangent(solve, first + k)[3] : 0.0f;
 		if (w != 0.0f && around[k]->usable[w > 0.0f] == NT_NO_ID)
 			around[k]->usable[w > 0.0f] = (uint32_t)(first + k);
@@ -196,11 +260,6 @@ static bool borrow(const nt_solve *solve, uint32_t c, nt_dvec3 n, nt_dvec3 *tang
 	return nt_dvec3_dot(*tangent, *tangent) > NT_PARALLEL_SINE_SQUARED && nt_dvec3_normalise(tangent);
 }
 
-static void store(nt_dvec3 t, float *to)
-{
-	to[0] = (float)t.x, to[1] = (float)t.y, to[2] = (float)t.z;
-}
-
 static void answer(const nt_solve *solve, surroundings *around)
 {
 	const nt_dvec3 n = around->normal;
@@ -218,40 +277,22 @@ static void answer(const nt_solve *solve, surroundings *around)
 	around->answers = a;
 }
 
-/* Whether the triangle with that first corner has a touched vertex. */
+/* Whether the triangle with that first corner is to be visited. */
 static inline bool is_near(const patient *p, size_t first)
 {
-	const uint32_t *v = p->welded + first;
-	return (p->ids[v[0]] & p->ids[v[1]] & p->ids[v[2]]) != NT_NO_ID;
+	return is_open(p, first) | is_open(p, first + 1) | is_open(p, first + 2);
 }
 
-/* Triangles that are looked at together. */
-enum { STEP = 8 };
-
-/* Whether one of STEP triangles from t on is a suspect. */
-static inline bool has_suspect(const nt_known *known, size_t t)
-{
-	uint64_t flags;
-	memcpy(&flags, known->flags + t, STEP);
-	return flags & (0x0101010101010101u * known->suspect);
-}
-
-/* Visits the triangles with a touched vertex, which are listed without a branch. */
+/* Visits the triangles with a touched vertex. */
 static void visit_triangles(const patient *p)
 {
 	const size_t count = p->solve->mesh->face_count;
-	uint8_t list[STEP];
-	for (size_t begin = 0, end; begin < count; begin = end) {
-		size_t found = 0;
-		end = count - begin < STEP ? count : begin + STEP;
-		if (p->among_suspects && end == begin + STEP && !has_suspect(p->solve->known, begin))
-			continue;
-		for (size_t t = begin; t < end; t++) {
-			list[found] = (uint8_t)(t - begin);
-			found += is_near(p, 3 * t);
-		}
-		for (size_t i = 0; i < found; i++)
-			visit_face(p, begin + list[i], 3 * (begin + list[i]), 3);
+	const unsigned suspect = NT_SHORT_WAYS && p->among_suspects ? p->solve->known->suspect : 0;
+	for (size_t t = 0; t < count; t++) {
+		if (suspect && (t = next_flagged(p, t, suspect)) == count)
+			break;
+		if (is_near(p, 3 * t))
+			visit_face(p, t, 3 * t, 3);
 	}
 }
 
@@ -259,12 +300,14 @@ static void visit_faces(const patient *p)
 {
 	const nmtan_mesh *mesh = p->solve->mesh;
 	for (size_t face = 0, first = 0; face < mesh->face_count; first += nt_face_size(mesh, face++))
-		if (is_near(p, first) || (nt_face_size(mesh, face) == 4 && p->ids[p->welded[first + 3]] != NT_NO_ID))
+		if (is_near(p, first) || (nt_face_size(mesh, face) == 4 && is_open(p, first + 3)))
 			visit_face(p, face, first, nt_face_size(mesh, face));
 }
 
 static void look_around(const patient *p)
 {
+	if (p->id_count == 0)
+		return;
 	if (p->solve->mesh->face_sizes)
 		visit_faces(p);
 	else
@@ -286,10 +329,10 @@ typedef struct face {
 static const float *best_tangent(const patient *p, const face *f, size_t c, float own[3])
 {
 	const nt_solve *solve = p->solve;
-	const answers *a = &around_corner(p, c)->answers;
-	if (solve->faults && !a->averaged[f->side])
+	const answers *a = is_bare(p, c) ? NULL : &around_corner(p, c)->answers;
+	if (solve->faults && !(a && a->averaged[f->side]))
 		solve->faults[c] |= NMTAN_FAULT_NO_AVERAGE;
-	if (a->averaged[f->side] || a->borrowed[f->side])
+	if (a && (a->averaged[f->side] || a->borrowed[f->side]))
 		return a->tangents[f->side];
 	for (size_t k = 0; k < f->size; k++) {
 		nt_dvec3 t;
@@ -299,6 +342,8 @@ static const float *best_tangent(const patient *p, const face *f, size_t c, floa
 			return own;
 		}
 	}
+	if (!a)
+		return bare_tangent(p, p->ids[p->welded[c]]);
 	const bool other = !f->orientation && (a->averaged[!f->side] || a->borrowed[!f->side]);
 	return other ? a->tangents[!f->side] : a->perpendicular;
 }
@@ -313,6 +358,8 @@ static int choose_side(const patient *p, const face *f)
 		if (f->usable[k])
 			return p->solve->tangents[4 * (f->first + k) + 3] > 0.0f;
 	for (size_t k = 0; k < f->size; k++) {
+		if (is_bare(p, f->first + k))
+			continue;
 		const surroundings *around = around_corner(p, f->first + k);
 		votes += around->answers.there[1] - around->answers.there[0];
 		for (int side = 0; side < 2; side++) {

@@ -7,6 +7,7 @@
 #define NT_TANGENT_SOLVE_H
 
 #include <stdbool.h>
+#include <string.h>
 #include "base/cpu.h"
 #include "base/scratch.h"
 #include "nmtan.h"
@@ -20,18 +21,23 @@ enum { NT_SHORT_WAYS = 1 };
 
 /* What a method knows of its result, so that usable.c need not look at all of it. Of a triangle without a bit of
  * `suspect` all corners are usable, it is not degenerate, no half of a folded quad, and its orientation, positive
- * where a bit of `positive` is set, is exact and survives storing.
+ * where a bit of `positive` is set, is exact and survives storing. Where the solve repairs, a method may mark rows of
+ * suspects: NT_W_OPEN.
  *
  * With ids the rows of triangles without a bit of `suspect` may not have been written: the tangent of
  * such a corner is that of its vertex and its triangle's orientation. Meshes with quads have no ids. */
 typedef struct nt_known {
 	const uint8_t *flags; /* [triangle_count], quads count as two; NULL: nothing is known */
 	uint8_t suspect, positive;
-	uint8_t doubtful;     /* bits of `suspect` without which the orientation is known all the same, and that the
-	                         triangle is not degenerate */
+	uint8_t doubtful;     /* bits of `suspect` without which a triangle's orientation is known all the same: 0 with
+	                         a bit of `flat`; it is degenerate with one of `degenerate` */
+	uint8_t flat, degenerate;
+	uint8_t judged;       /* bits of `suspect` that say of a triangle no more than that rows may have NT_W_OPEN. With
+	                         them rows without it are usable by all but w, and `rows` are told; 0: not so */
+	bool open;            /* a row may have NT_W_OPEN; set by any thread */
 	const uint32_t *ids;  /* [corner_count] welded vertices, or NULL */
-	const float *rows[2]; /* [vertex count][4] by orientation, w = 0 where no triangle at the vertex
-	                         has it; NULL: none at all */
+	const float *rows[2]; /* [welded_count][4] by orientation, w = 0 where no triangle at the vertex
+	                         has it; NULL: none at all. Told with ids, and with `judged` */
 	size_t row_step;      /* floats from one row to the next */
 	bool around;          /* where a corner is unusable by more than its sign, all triangles at its vertex are suspects */
 	const uint32_t *welded; /* [corner_count] welded vertices, below welded_count, whatever else is
@@ -39,12 +45,32 @@ typedef struct nt_known {
 	size_t welded_count;
 } nt_known;
 
-/* The exact orientation of triangle t, where its flags tell it; 0: they do not. */
-static inline int nt_known_orientation(const nt_known *known, size_t t)
+/* In the lowest bit of a row's w, where the solve repairs: whether the row is usable has to be looked up, and then the
+ * bit is taken away. No w of a result has it. */
+#define NT_W_OPEN 1u
+
+/* Whether its flags tell the exact orientation of triangle t, and which one it is. */
+static inline bool nt_knows_orientation(const nt_known *known, size_t t, int *orientation)
 {
 	if (!known || !known->flags || known->flags[t] & known->doubtful)
-		return 0;
-	return known->flags[t] & known->positive ? 1 : -1;
+		return false;
+	*orientation = known->flags[t] & known->flat ? 0 : known->flags[t] & known->positive ? 1 : -1;
+	return true;
+}
+
+/* The next of `count` flags from t on that has a bit of `mask`; count: none. Eight at a time, since most have none. */
+static inline size_t nt_next_flagged(const uint8_t *flags, size_t t, size_t count, unsigned mask)
+{
+	for (uint64_t eight; count - t >= sizeof eight; t += sizeof eight) {
+		memcpy(&eight, flags + t, sizeof eight);
+		eight &= 0x0101010101010101u * mask;
+		if (eight)
+			return t + (size_t)(__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? __builtin_clzll(eight)
+										 : __builtin_ctzll(eight)) / 8;
+	}
+	while (t < count && !(flags[t] & mask))
+		t++;
+	return t;
 }
 
 /* Parts of a mesh in the order in which a solve is done with them. */

@@ -2,9 +2,8 @@
 /*
  * The search for unusable tangents: see usable.h. Most faces need no look: a method that has bounded the error of
  * its determinants and checked the vectors it shared out knows that they are usable (nt_solve.known). The others
- * are suspects. Of triangles, those among 64 are listed and asked for first and then checked without a branch on
- * what is found: where suspects are many they lie anywhere, and cache misses and wrong guesses took twice the time
- * of the rest.
+ * are suspects. Of triangles, those among 64 are found and asked for first and then checked: where suspects are many
+ * they lie anywhere, and cache misses took most of the time.
  */
 #include "tangent/usable.h"
 
@@ -60,18 +59,44 @@ static float majority_sign(const float *tangents, size_t size)
 	return sum > 0.0f ? 1.0f : sum < 0.0f ? -1.0f : first;
 }
 
-/* Checks the rows of a face of a known orientation; true: some are unusable. */
-static bool has_unusable(const nt_solve *solve, size_t first, size_t size, int orientation,
+/* Takes NT_W_OPEN away from the rows of a face; whether it was there. */
+static bool take_marks(float *tangents, size_t size)
+{
+	uint32_t marks = 0, w;
+	for (size_t k = 0; k < size; k++) {
+		memcpy(&w, &tangents[4 * k + 3], sizeof w);
+		marks |= w & NT_W_OPEN;
+		w &= ~NT_W_OPEN;
+		memcpy(&tangents[4 * k + 3], &w, sizeof w);
+	}
+	return marks;
+}
+
+/* Whether no row of a face is marked and all have one w, of the face's orientation where it has one. */
+static bool is_sound(const float *tangents, size_t size, int orientation)
+{
+	const float wanted = orientation ? (float)orientation : tangents[3];
+	bool sound = wanted == 1.0f || wanted == -1.0f;
+	for (size_t k = 0; k < size; k++)
+		sound &= tangents[4 * k + 3] == wanted;
+	return sound;
+}
+
+/* Checks the rows of a face of a known orientation; true: some are unusable. `judged`: see nt_known. */
+static bool has_unusable(const nt_solve *solve, size_t first, size_t size, int orientation, bool judged,
 	nmtan_counts *counts)
 {
 	const nmtan_mesh *mesh = solve->mesh;
 	float *t = solve->tangents + 4 * first;
+	if (judged && is_sound(t, size, orientation))
+		return false;
+	const bool open = take_marks(t, size) || !judged;
 	const float w = orientation ? (float)orientation : majority_sign(t, size);
 	const unsigned all = (1u << size) - 1;
 	unsigned bad = w == 0.0f ? all : 0;
 	for (size_t k = 0; k < size; k++)
 		bad |= (unsigned)(t[4 * k + 3] != w) << k;
-	for (size_t k = 0; bad != all && k < size; k++)
+	for (size_t k = 0; open && bad != all && k < size; k++)
 		bad |= (unsigned)!nt_is_frame(t + 4 * k, nt_normal(mesh, nt_vertex_of(mesh, first + k))) << k;
 	if (__builtin_expect(!bad, 1))
 		return false;
@@ -124,56 +149,48 @@ static int count_quad(const nmtan_mesh *mesh, size_t face, size_t first, nmtan_c
 
 /* Suspects */
 
-/* Whether a whole word of triangles has no suspect; then those that are mirrored are counted. Each byte of `positive`
- * counts one of eight columns of flags, at most eight, and the product has the sum of the bytes in its highest one. */
-static bool is_plain_word(const nt_known *known, const uint8_t *flags, size_t *mirrored)
+/* A bit for each of `count` triangles, at most a word of them, that has to be looked at. The others are counted where
+ * they are mirrored: each byte of `plain` counts one of eight columns of flags, at most eight, and the product has the
+ * sum of the bytes in its highest one. */
+static uint64_t find_suspects(const nt_known *known, const uint8_t *flags, size_t count, size_t *mirrored)
 {
 	const uint64_t ones = 0x0101010101010101u;
+	/* moves the lowest bit of byte i, in the order of memory, to bit i of the highest byte */
+	const uint64_t gather = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? 0x8040201008040201u : 0x0102040810204080u;
 	const int shift = __builtin_ctz(known->positive);
-	uint64_t suspect = 0, positive = 0;
-	for (size_t i = 0; i < WORD; i += sizeof suspect) {
+	const unsigned mask = known->suspect & (!NT_SHORT_WAYS || known->open ? ~0u : ~(unsigned)known->judged);
+	uint8_t copy[WORD];
+	if (count < WORD) {
+		memset(copy, known->positive, WORD);
+		flags = memcpy(copy, flags, count);
+	}
+	uint64_t suspects = 0, plain = 0;
+	for (size_t i = 0; i < WORD; i += sizeof plain) {
 		uint64_t eight;
 		memcpy(&eight, flags + i, sizeof eight);
-		suspect |= eight;
-		positive += eight >> shift & ones;
+		uint64_t suspect = eight & ones * mask;
+		suspect |= suspect >> 4;
+		suspect |= suspect >> 2;
+		suspect |= suspect >> 1;
+		suspect &= ones;
+		suspects |= suspect * gather >> 56 << i;
+		plain += ~(eight >> shift | suspect) & ones;
 	}
-	if (suspect & ones * known->suspect)
-		return false;
-	*mirrored += WORD - (positive * ones >> 56);
-	return true;
-}
-
-/* The suspects among `count` triangles, at most a word of them, by their place. The others are counted where they are
- * mirrored. Returns how many suspects there are. */
-static size_t list_suspects(const nt_known *known, const uint8_t *flags, size_t count, uint8_t *list,
-	size_t *mirrored)
-{
-	size_t found = 0, plain = 0;
-	if (count == WORD && is_plain_word(known, flags, mirrored))
-		return 0;
-	for (size_t i = 0; i < count; i++) {
-		const bool is = flags[i] & known->suspect;
-		list[found] = (uint8_t)i;
-		found += is;
-		plain += !is & !(flags[i] & known->positive);
-	}
-	*mirrored += plain;
-	return found;
-}
-
-static size_t list_all(size_t count, uint8_t *list)
-{
-	for (size_t i = 0; i < count; i++)
-		list[i] = (uint8_t)i;
-	return count;
+	*mirrored += plain * ones >> 56;
+	return suspects;
 }
 
 static void ask_for_triangle(const nt_solve *solve, size_t t)
 {
+	int orientation;
+	if (solve->tangents) {
+		__builtin_prefetch(solve->tangents + 12 * t);
+		__builtin_prefetch(solve->tangents + 12 * t + 11);
+	}
+	if (NT_SHORT_WAYS && solve->known && solve->known->judged && nt_knows_orientation(solve->known, t, &orientation))
+		return;
 	for (size_t c = 3 * t; c < 3 * t + 3; c++) {
 		const size_t v = nt_vertex_of(solve->mesh, c);
-		if (solve->tangents)
-			__builtin_prefetch(solve->tangents + 4 * c);
 		__builtin_prefetch(nt_normal(solve->mesh, v));
 		__builtin_prefetch(nt_position(solve->mesh, v));
 		__builtin_prefetch(nt_texcoord(solve->mesh, v));
@@ -184,33 +201,37 @@ static void ask_for_triangle(const nt_solve *solve, size_t t)
 static bool check_triangle(const nt_solve *solve, size_t t, nmtan_counts *counts)
 {
 	const nmtan_mesh *mesh = solve->mesh;
-	int orientation = nt_known_orientation(solve->known, t);
-	if (orientation) {
+	const nt_known *known = solve->known;
+	int orientation;
+	if (nt_knows_orientation(known, t, &orientation)) {
 		counts->mirrored += orientation < 0;
+		counts->degenerate_texcoords += orientation == 0;
+		counts->degenerate_positions += (known->flags[t] & known->degenerate) != 0;
 	} else {
 		const uint32_t c = (uint32_t)(3 * t), corners[3] = {c, c + 1, c + 2};
 		orientation = count_triangle(mesh, corners, counts);
 		counts->degenerate_positions += is_degenerate(mesh, corners);
 	}
-	return solve->repair && has_unusable(solve, 3 * t, 3, orientation, counts);
+	return solve->repair && has_unusable(solve, 3 * t, 3, orientation, NT_SHORT_WAYS && known && known->judged, counts);
 }
 
 static void check_triangles(const search *job, size_t begin, size_t end, nmtan_counts *counts)
 {
 	const nt_solve *solve = job->solve;
 	const bool known = solve->known && solve->known->flags;
-	uint8_t list[WORD];
 	for (size_t word = begin; word < end; word++) {
 		const size_t first = WORD * word, left = solve->mesh->face_count - first;
 		const size_t count = left < WORD ? left : WORD;
-		const size_t found = known
-			? list_suspects(solve->known, solve->known->flags + first, count, list, &counts->mirrored)
-			: list_all(count, list);
+		const uint64_t suspects = known
+			? find_suspects(solve->known, solve->known->flags + first, count, &counts->mirrored)
+			: UINT64_MAX >> (WORD - count);
 		uint64_t faulty = 0;
-		for (size_t i = 0; i < found; i++)
-			ask_for_triangle(solve, first + list[i]);
-		for (size_t i = 0; i < found; i++)
-			faulty |= (uint64_t)check_triangle(solve, first + list[i], counts) << list[i];
+		for (uint64_t bits = suspects; bits; bits &= bits - 1)
+			ask_for_triangle(solve, first + (size_t)__builtin_ctzll(bits));
+		for (uint64_t bits = suspects; bits; bits &= bits - 1) {
+			const int i = __builtin_ctzll(bits);
+			faulty |= (uint64_t)check_triangle(solve, first + (size_t)i, counts) << i;
+		}
 		job->faulty[word] = faulty;
 	}
 }
@@ -239,7 +260,7 @@ static void check_quads(const search *job, size_t begin, size_t end, nmtan_count
 			orientation = count_triangle(mesh, corners, counts);
 			counts->degenerate_positions += is_degenerate(mesh, corners);
 		}
-		if (solve->repair && has_unusable(solve, first, nt_face_size(mesh, face), orientation, counts))
+		if (solve->repair && has_unusable(solve, first, nt_face_size(mesh, face), orientation, false, counts))
 			job->faulty[face / WORD] |= (uint64_t)1 << face % WORD;
 	}
 }

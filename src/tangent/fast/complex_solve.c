@@ -11,6 +11,7 @@
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "tangent/fast/write.h"
+#include "tangent/usable.h"
 #include "topology/corners.h"
 
 /* Corners that the kernel gets; vertices by which records are prefetched before they are read. */
@@ -153,11 +154,14 @@ static bool is_one(const part *p, const nt_corner *axis)
 
 /* Writing */
 
-static void write_corner(const nt_complex *c, uint32_t place, const nt_corner *r)
+/* `mark`: NT_W_OPEN or 0. */
+static void write_corner(const nt_complex *c, uint32_t place, const nt_corner *r, uint32_t mark)
 {
 	const nt_solve *solve = c->fast->solve;
 	const size_t corner = nt_complex_corner(c, c->corners[place]);
-	const float sign = c->corners[place] & NT_COMPLEX_PLUS ? 1.0f : -1.0f;
+	const uint32_t w = (c->corners[place] & NT_COMPLEX_PLUS ? NT_RESULT_PLUS : NT_RESULT_MINUS) | mark;
+	float sign;
+	memcpy(&sign, &w, sizeof sign);
 	memcpy(solve->tangents + 4 * corner, (float[4]){r->u[0], r->u[1], r->u[2], sign}, 4 * sizeof(float));
 	if (solve->bitangents)
 		memcpy(solve->bitangents + 3 * corner, r->v, 3 * sizeof(float));
@@ -165,13 +169,24 @@ static void write_corner(const nt_complex *c, uint32_t place, const nt_corner *r
 		memcpy(solve->magnitudes + 2 * corner, (float[2]){r->mag_s, r->mag_t}, 2 * sizeof(float));
 }
 
+/* The mark of a member's result, and of those of others at its vertex that have the same. */
+static uint32_t __attribute__((noinline)) mark_of(const nt_complex *c, uint32_t place, const nt_corner *r)
+{
+	const nt_solve *solve = c->fast->solve;
+	if (!NT_SHORT_WAYS || !nt_fast_judges(solve) || nt_is_frame(r->u, nt_normal(solve->mesh,
+			nt_vertex_of(solve->mesh, nt_complex_corner(c, c->corners[place])))))
+		return 0;
+	nt_fast_tell_open(solve);
+	return NT_W_OPEN;
+}
+
 /* A member's result goes to its corner, or to the batch's results. */
-static void put_result(const nt_complex *c, const nt_batch *b, uint32_t place, const nt_corner *r)
+static void put_result(const nt_complex *c, const nt_batch *b, uint32_t place, const nt_corner *r, uint32_t mark)
 {
 	if (b->results)
 		b->results[place - b->first] = *r;
 	else
-		write_corner(c, place, r);
+		write_corner(c, place, r, mark);
 }
 
 /* The corner of a quad's diagonal gets two results, one from each half: they are averaged. */
@@ -198,9 +213,9 @@ static void write_halves(const nt_complex *c, const nt_batch *b, uint32_t i, uin
 	if (first && second) {
 		const nt_corner r = merge(&b->results[i - b->first], &b->results[j - b->first]);
 		/* the orientation is that of the later group */
-		write_corner(c, c->group[i] > c->group[j] ? i : j, &r);
+		write_corner(c, c->group[i] > c->group[j] ? i : j, &r, 0);
 	} else if (first || second) {
-		write_corner(c, first ? i : j, &b->results[(first ? i : j) - b->first]);
+		write_corner(c, first ? i : j, &b->results[(first ? i : j) - b->first], 0);
 	} else {
 		nt_fast_write_unassigned(c->fast, nt_complex_corner(c, c->corners[i]));
 	}
@@ -342,8 +357,9 @@ static bool average_whole(const nt_complex *c, const nt_batch *b, const part *p,
 		if (!NT_SHORT_WAYS || !is_one(p, &mean))
 			return false;
 	}
+	const uint32_t mark = mark_of(c, p->members[0], whole);
 	for (size_t i = 0; i < p->count; i++)
-		put_result(c, b, p->members[i], whole);
+		put_result(c, b, p->members[i], whole, mark);
 	return true;
 }
 
@@ -357,7 +373,7 @@ static void average_parts(const nt_complex *c, const nt_batch *b, const part *p,
 	}
 	for (size_t i = 0; i < p->count; i++) {
 		const nt_corner result = part_result(c, p, d, i, whole);
-		put_result(c, b, p->members[i], &result);
+		put_result(c, b, p->members[i], &result, mark_of(c, p->members[i], &result));
 	}
 }
 

@@ -299,18 +299,15 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 /* Tells tangent/usable.c which triangles need no look, and repair.c what is welded. */
 static void tell_known(const nt_fast *fast)
 {
-	*fast->solve->known = (nt_known){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT,
-		.suspect = NT_TRIANGLE_SUSPECT, .doubtful = NT_TRIANGLE_SUSPECT & ~NT_TRIANGLE_COMPLEX,
-		.around = fast->records[0] || fast->records[1], /* of few triangles groups are judged, not vertices */
-		.welded = fast->triangles.ids, .welded_count = fast->vertex_count};
-}
-
-/* The rows that a sparse solve stands for: a record is x, y, z and, as state, the sign. */
-static void tell_rows(const nt_fast *fast)
-{
+	const bool records = fast->records[0] || fast->records[1]; /* of few triangles groups are judged, not vertices */
 	nt_known *known = fast->solve->known;
-	known->ids = fast->triangles.ids;
-	known->row_step = fast->record_step * sizeof(nt_record) / sizeof(float);
+	*known = (nt_known){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT, .suspect = NT_TRIANGLE_SUSPECT,
+		.doubtful = NT_TRIANGLE_UNCERTAIN, .flat = NT_TRIANGLE_ANY, .degenerate = NT_TRIANGLE_DEGENERATE,
+		.judged = NT_SHORT_WAYS && records && nt_fast_judges(fast->solve) ? NT_TRIANGLE_COMPLEX : 0,
+		.open = known->open, .around = records,
+		.welded = fast->triangles.ids, .welded_count = fast->vertex_count,
+		.row_step = fast->record_step * sizeof(nt_record) / sizeof(float)};
+	/* a record is x, y, z and, as state, the sign */
 	for (int orient = 0; orient < 2; orient++)
 		known->rows[orient] = fast->records[orient] ? &fast->records[orient]->x : NULL;
 }
@@ -329,7 +326,7 @@ static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, cons
 	if (fast->sparse && nt_fast_next_flagged(fast, 0, NT_TRIANGLE_COPY) < fast->triangle_count)
 		nt_fast_write_rest(fast);
 	if (fast->sparse)
-		tell_rows(fast);
+		fast->solve->known->ids = fast->triangles.ids;
 	return nt_fast_write_copies(fast);
 }
 

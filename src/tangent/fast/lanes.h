@@ -383,6 +383,19 @@ static void orient_quads(uint8_t *flags, size_t count, const float *area)
 	}
 }
 
+/* Triangles whose UV area is exactly 0 whatever is rounded, as stored too, for two texture coordinates are the same or all
+ * lie along an axis. Where there is another reason they stay uncertain. */
+static void __attribute__((noinline)) clear_flat(const lanes_in *in, uint8_t *flags, size_t count)
+{
+	const float (*a)[NT_LANES] = in->row[0] + 6, (*b)[NT_LANES] = in->row[1] + 6, (*c)[NT_LANES] = in->row[2] + 6;
+	for (size_t i = 0; i < count; i++) {
+		const int ab_u = a[0][i] == b[0][i], ac_u = a[0][i] == c[0][i], bc_u = b[0][i] == c[0][i];
+		const int ab_v = a[1][i] == b[1][i], ac_v = a[1][i] == c[1][i], bc_v = b[1][i] == c[1][i];
+		const int flat = (ab_u & ab_v) | (ac_u & ac_v) | (bc_u & bc_v) | (ab_u & ac_u) | (ab_v & ac_v);
+		flags[i] &= (uint8_t)~(flat ? NT_TRIANGLE_UNCERTAIN : 0);
+	}
+}
+
 /* Flags of the lanes; true where all of them are ordinary triangles with a frame. */
 static bool __attribute__((noinline)) classify_lanes(const nt_fast *fast, size_t first, size_t count, const lanes_in *in,
 	const lanes_out *out)
@@ -397,10 +410,12 @@ static bool __attribute__((noinline)) classify_lanes(const nt_fast *fast, size_t
 		flags[i] = (uint8_t)((flags[i] & NT_TRIANGLE_SECOND) | (out->orient[i] ? NT_TRIANGLE_ORIENT : 0) |
 				     (out->frameless[i] ? NT_TRIANGLE_ANY : 0) |
 				     (out->degenerate[i] ? NT_TRIANGLE_DEGENERATE : 0) |
-				     (out->certain[i] ? 0 : NT_TRIANGLE_UNCERTAIN));
+				     ((out->certain[i] & !out->frameless[i]) ? 0 : NT_TRIANGLE_UNCERTAIN));
 	for (size_t i = 0; odd && i < count; i++)
 		if (!out->sound[i] && !out->frameless[i] && !has_frame(in, (int)i, out->area[i]))
-			flags[i] |= NT_TRIANGLE_ANY;
+			flags[i] |= NT_TRIANGLE_ANY | NT_TRIANGLE_UNCERTAIN;
+	if (NT_SHORT_WAYS && special)
+		clear_flat(in, flags, count);
 	if (fast->triangles.cuts)
 		orient_quads(flags, count, out->area);
 	return !special;

@@ -28,7 +28,7 @@ enum {
 	NT_TRIANGLE_COMPLEX = 16,   /* has a corner at a complex vertex, or one whose result is not usable */
 	NT_TRIANGLE_COPY = 32,      /* degenerate, and copies corners that are written later */
 	NT_TRIANGLE_DECIDED = 64,   /* "any", and a group has a corner of it: ORIENT is that group's */
-	NT_TRIANGLE_UNCERTAIN = 128 /* the exact orientation, as stored too, may differ */
+	NT_TRIANGLE_UNCERTAIN = 128 /* the exact orientation, as stored too, may differ; of an "any" triangle: from 0 */
 };
 
 /* Entries of fans: orientation in bit 31; bit 30 marks a place without a corner, whose numbers differ
@@ -122,6 +122,18 @@ extern const nt_kernels nt_kernels_baseline;
 extern const nt_kernels nt_kernels_avx2, nt_kernels_avx512;
 #endif
 
+/* Whether results are judged, so that usable.c need not. */
+static inline bool nt_fast_judges(const nt_solve *solve)
+{
+	return solve->known && solve->repair;
+}
+
+/* A row gets NT_W_OPEN. */
+static inline void nt_fast_tell_open(const nt_solve *solve)
+{
+	__atomic_store_n(&solve->known->open, true, __ATOMIC_RELAXED);
+}
+
 /* Whether triangle t and t + 1 are halves of one quad. Not read from the flags, which belong to another thread
  * where a range ends. */
 static inline bool nt_fast_quad_begins(const nt_fast *fast, size_t t)
@@ -145,20 +157,10 @@ static inline nt_record *nt_fast_record(const nt_fast *fast, int orient, uint32_
 	return &fast->records[orient][fast->record_step * vertex];
 }
 
-/* The next triangle from t on that has this flag; triangle_count: none. Most have none, eight a step. */
+/* The next triangle from t on that has this flag; triangle_count: none. */
 static inline size_t nt_fast_next_flagged(const nt_fast *fast, size_t t, unsigned flag)
 {
-	const uint64_t pattern = 0x0101010101010101u * flag;
-	for (uint64_t eight; fast->triangle_count - t >= sizeof eight; t += sizeof eight) {
-		memcpy(&eight, fast->flags + t, sizeof eight);
-		eight &= pattern;
-		if (eight)
-			return t + (size_t)(__BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? __builtin_clzll(eight)
-										 : __builtin_ctzll(eight)) / 8;
-	}
-	while (t < fast->triangle_count && !(fast->flags[t] & flag))
-		t++;
-	return t;
+	return nt_next_flagged(fast->flags, t, fast->triangle_count, flag);
 }
 
 /* The triangles whose corners have to be looked at one by one: those that do not have three settled

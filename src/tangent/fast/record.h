@@ -8,6 +8,7 @@
 
 #include <stdint.h>
 #include <string.h>
+#include "tangent/solve.h"
 
 /* Sum over the corners of one orientation at a vertex; later its result. `state` is a set of bits that
  * each corner may only clear: what is left holds for all of them. */
@@ -42,12 +43,12 @@ enum {
 #define NT_RESULT_NONE 0u             /* no corner has this orientation */
 #define NT_RESULT_COMPLEX 0x40000000u /* ask complex.c; no other state has this bit */
 
-/* Beside a sign: the record is the result, but tangent/usable.c would not accept it, or not that of the vertex's other
- * orientation. No corner gets this bit. */
-#define NT_RESULT_UNUSABLE 1u
+/* Beside a sign, where the solve repairs: the record is the result, but tangent/usable.c would not accept it, or not
+ * that of the vertex's other orientation. */
+#define NT_RESULT_UNUSABLE NT_W_OPEN
 
 /* Beside NT_RESULT_COMPLEX: the sums have nothing extreme and do not split, so that an orientation with one group has
- * the record as its result. */
+ * the record as its result; and that is not unusable, where the solve repairs. */
 #define NT_RESULT_SUM 0x20000000u
 
 /* Beside it: a hub, or an edge at the vertex occurs twice in one direction, so that pairs depend on order. */

@@ -363,14 +363,17 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	/* few blocks have vertices of both orientations */
 	const bool there[2] = {any_of(r[0].present, used), any_of(r[1].present, used)};
 	float normals[3][NT_LANES];
-	if (fast->solve->known)
+	const bool judges = nt_fast_judges(fast->solve);
+	if (judges)
 		load_normals(fast->rows + first, count, used, normals);
 	for (int o = 0; o < 2; o++) {
 		if (!there[o])
 			continue;
 		normalise_records(used, &r[o]);
-		if (fast->solve->known)
+		if (judges)
 			find_unusable(normals, &r[o], unusable[o], used);
+		if (NT_SHORT_WAYS && any_of(unusable[o], used))
+			nt_fast_tell_open(fast->solve);
 	}
 	/* from here on the rows may be overwritten */
 	for (int o = 0; o < 2; o++) {
@@ -379,9 +382,9 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		const uint32_t sign = o ? NT_RESULT_PLUS : NT_RESULT_MINUS;
 		/* with masks, since gcc 12 makes branches of the same with conditions */
 		for (size_t i = 0; i < used; i++) {
-			const uint32_t open = NT_RESULT_COMPLEX | ((unsound[i] - 1) & NT_RESULT_SUM);
-			r[o].state[i] = (-complex[i] & open) |
-					((complex[i] - 1) & -r[o].present[i] & (sign | unusable[0][i] | unusable[1][i]));
+			const uint32_t bad = unusable[0][i] | unusable[1][i];
+			const uint32_t open = NT_RESULT_COMPLEX | (((unsound[i] | bad) - 1) & NT_RESULT_SUM);
+			r[o].state[i] = (-complex[i] & open) | ((complex[i] - 1) & -r[o].present[i] & (sign | bad));
 		}
 		store_records(nt_fast_record(fast, o, (uint32_t)first), fast->record_step, count, used, &r[o]);
 		if (fast->wants_more)

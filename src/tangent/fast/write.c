@@ -23,16 +23,21 @@ static void write_corner(const nt_fast *fast, size_t corner, const nt_record *re
 		memcpy(solve->magnitudes + 2 * corner, &more->mag_s, 2 * sizeof(float));
 }
 
-/* The orientation whose records stand for a vertex that has one only. */
-static int single_record(const nt_fast *fast, uint32_t vertex)
+/* The w of a record's row: NT_RESULT_UNUSABLE stays, for usable.c. */
+static inline float sign_of(int orient, uint32_t state)
 {
-	return !fast->records[0] || (fast->records[1] && nt_fast_record(fast, 0, vertex)->state == NT_RESULT_NONE);
+	const uint32_t bits = (orient ? NT_RESULT_PLUS : NT_RESULT_MINUS) |
+			      (state & NT_RESULT_COMPLEX ? 0 : state & NT_RESULT_UNUSABLE);
+	float sign;
+	memcpy(&sign, &bits, sizeof sign);
+	return sign;
 }
 
 static void write_vertex(const nt_fast *fast, size_t corner, int orient, uint32_t vertex)
 {
-	write_corner(fast, corner, nt_fast_record(fast, orient, vertex),
-		fast->wants_more ? &fast->more[orient][vertex] : NULL, orient ? 1.0f : -1.0f);
+	const nt_record *record = nt_fast_record(fast, orient, vertex);
+	write_corner(fast, corner, record, fast->wants_more ? &fast->more[orient][vertex] : NULL,
+		sign_of(orient, record->state));
 }
 
 /* Whether the other half of a triangle's quad is sound. */
@@ -43,11 +48,12 @@ static bool has_sound_half(const nt_fast *fast, size_t t)
 	return nt_fast_quad_begins(fast, t) && !(fast->flags[t + 1] & NT_TRIANGLE_DEGENERATE);
 }
 
+static const nt_record unassigned = {.x = 1.0f};
+static const nt_record_more unassigned_more = {.y = 1.0f, .mag_s = 1.0f, .mag_t = 1.0f};
+
 void nt_fast_write_unassigned(const nt_fast *fast, size_t corner)
 {
-	const nt_record record = {.x = 1.0f};
-	const nt_record_more more = {.y = 1.0f, .mag_s = 1.0f, .mag_t = 1.0f};
-	write_corner(fast, corner, &record, &more, nt_unassigned_sign(fast->solve));
+	write_corner(fast, corner, &unassigned, &unassigned_more, nt_unassigned_sign(fast->solve));
 }
 
 static void write_special(nt_fast *fast, size_t t)
@@ -58,21 +64,27 @@ static void write_special(nt_fast *fast, size_t t)
 		*flags |= NT_TRIANGLE_COPY;
 		return;
 	}
+	const int first = !fast->records[0];
+	const bool both = fast->records[!first];
+	unsigned complex = 0, two = 0; /* two: a vertex of both orientations */
 	for (size_t i = 3 * t; i < 3 * t + 3; i++) {
 		const uint32_t v = nt_fast_vertex(fast, i);
-		const int o = single_record(fast, v);
-		const uint32_t state = nt_fast_record(fast, o, v)->state;
-		const bool two = fast->records[!o] && state != NT_RESULT_NONE &&
-				 nt_fast_record(fast, !o, v)->state != NT_RESULT_NONE;
-		if (state & NT_RESULT_COMPLEX)
-			*flags |= degenerate ? NT_TRIANGLE_COPY : NT_TRIANGLE_COMPLEX;
-		else if (degenerate && two)
-			*flags |= NT_TRIANGLE_COPY;
-		if (state == NT_RESULT_NONE)
-			nt_fast_write_unassigned(fast, nt_fast_corner(fast, i));
-		else
-			write_vertex(fast, nt_fast_corner(fast, i), o, v);
+		const nt_record *record = nt_fast_record(fast, first, v);
+		int o = first;
+		complex |= record->state & NT_RESULT_COMPLEX;
+		if (both) {
+			const nt_record *second = nt_fast_record(fast, 1, v);
+			o = record->state == NT_RESULT_NONE;
+			two |= !o & (second->state != NT_RESULT_NONE);
+			record = o ? second : record;
+		}
+		const bool has = record->state != NT_RESULT_NONE;
+		write_corner(fast, nt_fast_corner(fast, i), has ? record : &unassigned,
+			has && fast->wants_more ? &fast->more[o][v] : &unassigned_more,
+			has ? sign_of(o, record->state) : nt_unassigned_sign(fast->solve));
 	}
+	if (complex || (degenerate && two))
+		*flags |= degenerate ? NT_TRIANGLE_COPY : NT_TRIANGLE_COMPLEX;
 }
 
 /* The records of a later triangle of a scattered mesh; the last ones of the range ask twice. */
@@ -141,8 +153,9 @@ static inline __attribute__((always_inline)) void write_plain(nt_fast *fast, siz
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 1), &b, sizeof b);
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 2), &c, sizeof c);
 		if ((a | b | c)[3] & (int)(NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE)) {
-			for (unsigned k = 0; k < 3; k++)
-				out[4 * nt_triangle_corner(&triangles, t, k) + 3] = (float)(2 * orient - 1);
+			out[4 * nt_triangle_corner(&triangles, t, 0) + 3] = sign_of(orient, (uint32_t)a[3]);
+			out[4 * nt_triangle_corner(&triangles, t, 1) + 3] = sign_of(orient, (uint32_t)b[3]);
+			out[4 * nt_triangle_corner(&triangles, t, 2) + 3] = sign_of(orient, (uint32_t)c[3]);
 			flags[t] |= NT_TRIANGLE_COMPLEX;
 		}
 	}
@@ -201,8 +214,24 @@ static void copy_corner(const nt_solve *solve, size_t to, size_t from)
 		memcpy(solve->magnitudes + 2 * to, solve->magnitudes + 2 * from, 2 * sizeof(float));
 }
 
+/* What a corner of a degenerate triangle has to be copied for, by the vertex's records: nothing where these have been
+ * written; a result of complex.c (COMPLEX); or that of the orientation that comes first (COPY). */
+static unsigned copy_reason(const nt_fast *fast, uint32_t vertex)
+{
+	if (!NT_SHORT_WAYS)
+		return NT_TRIANGLE_COPY;
+	uint32_t state[2] = {NT_RESULT_NONE, NT_RESULT_NONE};
+	for (int o = 0; o < 2; o++)
+		if (fast->records[o])
+			state[o] = nt_fast_record(fast, o, vertex)->state;
+	if ((state[0] | state[1]) & NT_RESULT_COMPLEX)
+		return NT_TRIANGLE_COMPLEX;
+	const bool told = fast->records[0] || fast->records[1]; /* not in tiny.c */
+	return told && (state[0] == NT_RESULT_NONE || state[1] == NT_RESULT_NONE) ? 0 : NT_TRIANGLE_COPY;
+}
+
 /* The first corners, among the sound triangles, of the vertices of all triangles that copy: [vertex_count], UINT32_MAX
- * where there is none. Those of other vertices are not there. */
+ * where there is none, or where there is nothing to copy. Those of other vertices are not there. */
 static uint32_t *find_first_corners(const nt_fast *fast)
 {
 	uint32_t *first = nt_scratch_alloc(fast->solve->scratch, fast->vertex_count, sizeof *first);
@@ -211,14 +240,21 @@ static uint32_t *find_first_corners(const nt_fast *fast)
 		return NULL;
 	memset(wanted, 0, fast->vertex_count);
 	size_t left = 0;
+	unsigned reasons = 0;
 	for (size_t t = next_copy(fast, 0); t < fast->triangle_count; t = next_copy(fast, t + 1))
 		for (size_t i = 3 * t; i < 3 * t + 3; i++) {
 			const uint32_t v = nt_fast_vertex(fast, i);
-			left += !wanted[v];
-			wanted[v] = 1;
+			const unsigned reason = copy_reason(fast, v);
+			left += reason && !wanted[v];
+			wanted[v] = reason != 0;
+			reasons |= reason;
 			first[v] = UINT32_MAX;
 		}
+	/* sound triangles with a complex vertex have the flag */
+	const bool among_complex = !(reasons & NT_TRIANGLE_COPY);
 	for (size_t t = 0; left > 0 && t < fast->triangle_count; t++) {
+		if (among_complex && (t = nt_fast_next_flagged(fast, t, NT_TRIANGLE_COMPLEX)) == fast->triangle_count)
+			break;
 		uint32_t copy[3];
 		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
 		if (!(wanted[v[0]] | wanted[v[1]] | wanted[v[2]]) || fast->flags[t] & NT_TRIANGLE_DEGENERATE)
