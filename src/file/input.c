@@ -129,6 +129,17 @@ nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
 	return result;
 }
 
+nt_status nt_file_open_content(nt_file *file, const char *path, nt_error *error)
+{
+	static const char pointer[] = "version https://git-lfs.github.com/spec/";
+	const nt_status status = nt_file_open(file, path, error);
+	if (status || file->size < sizeof pointer - 1 || memcmp(file->data, pointer, sizeof pointer - 1) != 0)
+		return status;
+	nt_file_close(file);
+	nt_fail(error, NT_ERROR_MISSING, "Git LFS's pointer to the file, not the file itself: git lfs pull brings it");
+	return nt_error_in_file(error, path);
+}
+
 nt_status nt_file_open_untraced(nt_file *file, const char *path, nt_error *error)
 {
 	nt_trace *trace = nt_trace_use(NULL);

@@ -56,7 +56,7 @@ static nt_status open_scene(run *r)
 	begin_stage(r, NT_STAGE_MAP);
 	nt_status status = NT_OK;
 	if (!r->input_is_open)
-		status = nt_file_open(&r->input, r->input_path, r->error);
+		status = nt_file_open_content(&r->input, r->input_path, r->error);
 	if (status)
 		return status;
 	r->input_is_open = true;

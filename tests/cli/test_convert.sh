@@ -164,6 +164,26 @@ run "$data/quad_ascii.ply" a.ply
 LC_ALL=de_DE.UTF-8 LANG=de_DE.UTF-8 run "$data/quad_ascii.ply" b.ply
 same a.ply b.ply
 
+scene "a pointer of Git LFS is not the file"
+printf '%s\n' 'version https://git-lfs.github.com/spec/v1' "oid sha256:$(printf '%064d' 7)" 'size 39043' >pointer
+for format in obj ply glb gltf drc; do
+	cp pointer a.$format
+	run a.$format out.glb
+	exits 2
+	says "a.$format: Git LFS's pointer to the file, not the file itself: git lfs pull brings it"
+done
+cp "$data/plates.gltf" "$data/mirrored_cube.obj" .
+cp pointer plates.bin
+cp pointer mirrored_cube.mtl
+run plates.gltf out.glb
+exits 2
+says "plates.bin: /buffers/0: "
+says "Git LFS's pointer"
+run mirrored_cube.obj out.glb
+exits 0
+says "Git LFS's pointer to the file, not the file itself: git lfs pull brings it [MTL_MISSING]"
+only a.{obj,ply,glb,gltf,drc} pointer plates.gltf plates.bin mirrored_cube.{obj,mtl} out.glb
+
 scene "timing names the stages"
 run --timing "$data/head.obj" head.glb
 exits 0
