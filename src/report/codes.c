@@ -30,7 +30,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"an MTL with \"map_Kd missing.png\""),
 	ROW(IMAGE_TYPE, WARNING, "image has a type that glTF does not carry",
 		"glTF carries PNG and JPEG (others by extension). TGA, BMP, PSD, HDR and TIFF become PNG, unless "
-		"--textures=keep is given; anything else is left out.",
+		"--textures=keep is given; anything else is left out, or stays a file where a glTF refers to it.",
 		"Convert the image to PNG and name that in the material.",
 		"an MTL with \"map_Kd wood.exr\""),
 	ROW(IMAGE_DAMAGED, WARNING, "image cannot be decoded",

@@ -182,7 +182,16 @@ says "Git LFS's pointer"
 run mirrored_cube.obj out.glb
 exits 0
 says "Git LFS's pointer to the file, not the file itself: git lfs pull brings it [MTL_MISSING]"
-only a.{obj,ply,glb,gltf,drc} pointer plates.gltf plates.bin mirrored_cube.{obj,mtl} out.glb
+cp "$data/plates.bin" .
+cp pointer bumps.png
+run plates.gltf out.glb
+exits 0
+says "/images/0: warning: image cannot be read: Git LFS's pointer"
+echo "no image" >bumps.png
+run plates.gltf out.glb
+exits 0
+says "/images/0: warning: image has a type that glTF does not carry: it stays a file [IMAGE_TYPE]"
+only a.{obj,ply,glb,gltf,drc} pointer plates.gltf plates.bin bumps.png mirrored_cube.{obj,mtl} out.glb
 
 scene "timing names the stages"
 run --timing "$data/head.obj" head.glb

@@ -45,6 +45,14 @@ static const char *media_type(const nt_file *file)
 	return NULL;
 }
 
+static void report(moving *m, size_t index, nt_code code, const char *text)
+{
+	nt_place place;
+	nt_place_clear(&place);
+	snprintf(place.pointer, sizeof place.pointer, "/images/%zu", index);
+	nt_finding_add(&m->scene->findings, code, &place, 1, "%s", text);
+}
+
 /* Opens the file of an image; a finding and *file NULL where that is not possible. */
 static nt_status open_image(moving *m, size_t index, const char *uri, size_t length,
 	const nt_file **file)
@@ -57,18 +65,14 @@ static nt_status open_image(moving *m, size_t index, const char *uri, size_t len
 	nt_status status = nt_uri_resolve(&m->edits->arena, m->edits->document->path, uri, length,
 		m->edits->document->allow_outside, &path, &error);
 	if (!status)
-		status = nt_file_open(&opened, path, &error);
+		status = nt_file_open_content(&opened, path, &error);
 	if (status == NT_ERROR_MEMORY || status == NT_ERROR_IO) {
 		*m->error = error;
 		snprintf(m->error->place.pointer, sizeof m->error->place.pointer, "/images/%zu", index);
 		return status;
 	}
 	if (status) {
-		nt_place place;
-		nt_place_clear(&place);
-		snprintf(place.pointer, sizeof place.pointer, "/images/%zu", index);
-		nt_finding_add(&m->scene->findings, NT_CODE_IMAGE_MISSING, &place, 1, "%s",
-			error.message);
+		report(m, index, NT_CODE_IMAGE_MISSING, error.message);
 		return NT_OK;
 	}
 	nt_open_images *images = m->images;
@@ -121,6 +125,8 @@ static nt_status embed_image(moving *m, size_t index, nt_json_value *image)
 	if (status)
 		return status;
 	const char *type = file ? media_type(file) : NULL;
+	if (file && !type)
+		report(m, index, NT_CODE_IMAGE_TYPE, "it stays a file");
 	if (!type)
 		return nt_gltf_link(m->json, image, m->output->link_prefix, m->error);
 	return m->output->options->format == NT_FORMAT_GLB ? embed_in_view(m, image, file, type) :
