@@ -24,8 +24,8 @@ typedef struct vertex_split {
 	size_t *open;            /* [ranges] open vertices */
 } vertex_split;
 
-/* Values of nt_splitter.seen before the corners are taken. */
-enum { SEEN_NOT = 0, SEEN_ONE = 1, SEEN_OPEN = 2 };
+/* Values of nt_splitter.seen before the corners are taken; those of open vertices become 1 then. */
+enum { SEEN_NOT = 0, SEEN_OPEN = 2, SEEN_ONE = 3 };
 
 enum { VERTEX_GRAIN = 32768 }; /* vertices or triangles per thread below which threads do not pay */
 
@@ -157,9 +157,11 @@ static nmtan_status split_open(vertex_split *job)
 	nt_parallel_ranges(solve->threads, solve->mesh->face_count, VERTEX_GRAIN, touch_triangles, job);
 	nmtan_status status = NMTAN_OK;
 	for (size_t t = next_touched(job, 0); !status && t < solve->mesh->face_count; t = next_touched(job, t + 1))
-		for (size_t i = 3 * t; !status && i < 3 * t + 3; i++)
-			status = nt_splitter_take(job->splitter,
-				(uint32_t)nt_vertex_of(solve->mesh, i), nt_corner_tangent(solve, i), i);
+		for (size_t i = 3 * t; !status && i < 3 * t + 3; i++) {
+			const uint32_t vertex = (uint32_t)nt_vertex_of(solve->mesh, i);
+			if (job->splitter->seen[vertex] != SEEN_ONE)
+				status = nt_splitter_take(job->splitter, vertex, nt_corner_tangent(solve, i), i);
+		}
 	return status;
 }
 

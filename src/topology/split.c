@@ -36,12 +36,16 @@ static bool equal_keys(const nt_tangent_key *a, const nt_tangent_key *b)
 
 static uint64_t hash_copy(uint32_t original, const nt_tangent_key *key)
 {
-	uint64_t hash = original * 0x9e3779b97f4a7c15u;
-	for (int i = 0; i < 4; i++) {
-		hash = (hash ^ key->bits[i]) * 0xff51afd7ed558ccdu;
-		hash ^= hash >> 32;
+	/* products that do not wait for each other */
+	uint64_t halves[2];
+	memcpy(halves, key->bits, sizeof halves);
+	uint64_t hash = original * 0xd6e8feb86659fd93u;
+	for (int i = 0; i < 2; i++) {
+		halves[i] *= i ? 0xff51afd7ed558ccdu : 0x9e3779b97f4a7c15u;
+		hash += halves[i] ^ halves[i] >> 32;
 	}
-	return hash;
+	hash *= 0xff51afd7ed558ccdu;
+	return hash ^ hash >> 32;
 }
 
 /* The slot of the table where a copy is or belongs. */
