@@ -19,6 +19,8 @@ static const struct {
 		"(.glb) of the unwrapped model instead"},
 	{"PXR-USDC", ".usd .usdc", "USD is not read: export glTF (.glb) instead; Blender opens USD and exports it"},
 	{"#usda", ".usda .usdz", "USD is not read: export glTF (.glb) instead; Blender opens USD and exports it"},
+	{"b3dm", ".b3dm", "a tile of 3D Tiles is not read: the GLB in it is (b3dmToGlb of 3d-tiles-tools takes it out)"},
+	{"i3dm", ".i3dm", "a tile of 3D Tiles is not read: the GLB in it is (i3dmToGlb of 3d-tiles-tools takes it out)"},
 	{"BLENDER", ".blend", "Blender's own files are not read: export glTF (.glb) from Blender instead"},
 };
 

@@ -181,10 +181,12 @@ printf 'Kaydara FBX Binary  \0' >a.bin
 printf 'solid x\nendsolid\n' >b.stl
 printf '<?xml version="1.0"?><COLLADA/>' >c.dae
 printf '#usda 1.0\n' >d.usda
-for pair in a.bin:FBX b.stl:STL c.dae:COLLADA d.usda:USD; do
+printf 'b3dm\1\0\0\0' >e.tile
+printf 'i3dm\1\0\0\0' >f.tile
+for pair in a.bin:FBX b.stl:STL c.dae:COLLADA d.usda:USD "e.tile:a tile of 3D Tiles" "f.tile:a tile of 3D Tiles"; do
 	run "${pair%:*}" out.glb
 	exits 3
 	says "${pair#*:} is not read"
-	says "glTF"
+	grep -q "glTF\|GLB" "$WORK/err.txt" || wrong "it says nothing to bring instead"
 done
 done_testing
