@@ -123,6 +123,16 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 	}
 }
 
+/* The signs of a triangle whose records have more than signs. Not in line, for the registers of the loop below. */
+static void __attribute__((noinline)) write_signs(const nt_fast *fast, size_t t)
+{
+	const int orient = fast->flags[t] & NT_TRIANGLE_ORIENT;
+	for (size_t i = 3 * t; i < 3 * t + 3; i++)
+		fast->solve->tangents[4 * nt_fast_corner(fast, i) + 3] =
+			sign_of(orient, nt_fast_record(fast, orient, nt_fast_vertex(fast, i))->state);
+	fast->flags[t] |= NT_TRIANGLE_COMPLEX;
+}
+
 /* The same for the usual case, tangents only; `cuts` are those of the triangles. This loop is a fifth of the whole
  * time. */
 static inline __attribute__((always_inline)) void write_plain(nt_fast *fast, size_t begin, size_t end,
@@ -152,12 +162,8 @@ static inline __attribute__((always_inline)) void write_plain(nt_fast *fast, siz
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 0), &a, sizeof a);
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 1), &b, sizeof b);
 		memcpy(out + 4 * nt_triangle_corner(&triangles, t, 2), &c, sizeof c);
-		if ((a | b | c)[3] & (int)(NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE)) {
-			out[4 * nt_triangle_corner(&triangles, t, 0) + 3] = sign_of(orient, (uint32_t)a[3]);
-			out[4 * nt_triangle_corner(&triangles, t, 1) + 3] = sign_of(orient, (uint32_t)b[3]);
-			out[4 * nt_triangle_corner(&triangles, t, 2) + 3] = sign_of(orient, (uint32_t)c[3]);
-			flags[t] |= NT_TRIANGLE_COMPLEX;
-		}
+		if ((a | b | c)[3] & (int)(NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE))
+			write_signs(fast, t);
 	}
 }
 
