@@ -565,6 +565,21 @@ static void end_exhausted(void)
 	_exit(NT_EXIT_INTERNAL);
 }
 
+/* In a signal handler, so that what must not reach a terminal is a question mark. */
+static void end_changed(const char *path, const char *change)
+{
+	const char *const parts[] = {"nmtan: ", path, ": ", change};
+	char line[1024];
+	size_t size = 0;
+	for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
+		for (const char *c = parts[i]; *c && size < sizeof line - 1; c++)
+			line[size++] = (unsigned char)*c < 0x20 || *c == 0x7f ? '?' : *c;
+	line[size++] = '\n';
+	const ssize_t written = write(STDERR_FILENO, line, size);
+	(void)written;
+	_exit(NT_EXIT_IO);
+}
+
 int main(int argc, char **argv)
 {
 	hold_standard_streams();
@@ -574,6 +589,7 @@ int main(int argc, char **argv)
 	signal(SIGXFSZ, SIG_IGN);
 	nt_run_catch_signals();
 	nt_run_catch_exhaustion(end_exhausted);
+	nt_run_catch_faults(end_changed);
 
 	nt_command command;
 	nt_error error;

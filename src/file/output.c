@@ -10,7 +10,9 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdarg.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,6 +21,7 @@
 #include "ext/reserve.h"
 #include "file/litter.h"
 #include "file/trace.h"
+#include "file/watch.h"
 
 static nt_status refuse(nt_error *error, const char *path, const char *why)
 {
@@ -452,4 +455,36 @@ void nt_output_catch_exhaustion(void (*end)(void))
 {
 	end_process = end;
 	nt_on_exhausted(remove_and_end);
+}
+
+static const int faults[] = {SIGSEGV, SIGBUS, SIGFPE, SIGABRT};
+static struct sigaction actions_before[sizeof faults / sizeof *faults];
+static void (*end_changed)(const char *path, const char *change);
+
+static void end_if_changed(int number, siginfo_t *info, void *context)
+{
+	(void)context;
+	static atomic_flag ending = ATOMIC_FLAG_INIT;
+	const char *path, *change = nt_watch_any_change(&path);
+	if (change) {
+		while (atomic_flag_test_and_set(&ending))
+			pause(); /* another thread is about it */
+		nt_temporaries_remove_all();
+		end_changed(path, change);
+	}
+	for (size_t i = 0; i < sizeof faults / sizeof *faults; i++)
+		if (faults[i] == number)
+			sigaction(number, &actions_before[i], NULL);
+	/* an instruction runs into it once more, a process that sent it does not */
+	if (info->si_code <= 0)
+		raise(number);
+}
+
+void nt_output_catch_faults(void (*end)(const char *path, const char *change))
+{
+	end_changed = end;
+	struct sigaction action = {.sa_sigaction = end_if_changed, .sa_flags = SA_SIGINFO};
+	sigemptyset(&action.sa_mask);
+	for (size_t i = 0; i < sizeof faults / sizeof *faults; i++)
+		sigaction(faults[i], &action, &actions_before[i]);
 }

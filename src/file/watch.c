@@ -62,8 +62,10 @@ static void put_zeros(int number, siginfo_t *info, void *context)
 		atomic_store(&map->shortened, true);
 		return;
 	}
-	/* the instruction runs into it once more */
 	sigaction(number, &action_before, NULL);
+	/* an instruction runs into it once more, a process that sent it does not */
+	if (info->si_code <= 0)
+		raise(number);
 }
 
 /* Unless it stands already: who shares the process may have set another one. */
@@ -145,6 +147,18 @@ void nt_watch_end(int watch)
 void nt_watch_forget(void)
 {
 	has_lost = NULL;
+}
+
+const char *nt_watch_any_change(const char **path)
+{
+	const char *change = NULL;
+	const int count = atomic_load(&ever_taken);
+	for (int i = 0; i < count && !change; i++)
+		if (atomic_load(&maps[i].begin) > 1) {
+			*path = maps[i].path;
+			change = change_of(&maps[i]);
+		}
+	return change;
 }
 
 nt_status nt_watch_check(nt_error *error)

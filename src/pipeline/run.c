@@ -332,3 +332,8 @@ void nt_run_catch_exhaustion(void (*end)(void))
 {
 	nt_output_catch_exhaustion(end);
 }
+
+void nt_run_catch_faults(void (*end)(const char *path, const char *change))
+{
+	nt_output_catch_faults(end);
+}

@@ -32,4 +32,7 @@ void nt_run_catch_signals(void);
  * return. */
 void nt_run_catch_exhaustion(void (*end)(void));
 
+/* See nt_output_catch_faults(). */
+void nt_run_catch_faults(void (*end)(const char *path, const char *change));
+
 #endif

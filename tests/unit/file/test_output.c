@@ -438,6 +438,55 @@ static void signals_remove_temporaries_and_end_the_process(void **state)
 	}
 }
 
+static void tell_changed(const char *path, const char *change)
+{
+	_exit(strcmp(path, in_folder("in")) == 0 && strstr(change, "shorter") ? 7 : 1);
+}
+
+/* In a child: a set of one file and a mapped input; a fault after that has become shorter, or not. */
+static void fault(int number, bool shorter)
+{
+	nt_error error;
+	nt_file file;
+	nt_output *output;
+	nt_sink *sink;
+	signal(number, SIG_DFL);
+	nt_output_catch_faults(tell_changed);
+	if (nt_file_open(&file, in_folder("in"), &error) || !file.mapped || nt_output_create(&output, NULL, &error) ||
+		nt_output_add(output, in_folder("a"), NT_ROLE_MAIN, &sink, &error) ||
+		(shorter && truncate(in_folder("in"), 1) != 0))
+		_exit(1);
+	if (number == SIGABRT)
+		abort();
+	raise(number);
+	_exit(2);
+}
+
+/* Only a changed input makes a fault of the process an error of reading. */
+static void faults_after_an_input_has_changed_leave_nothing(void **state)
+{
+	(void)state;
+	const int numbers[] = {SIGSEGV, SIGBUS, SIGFPE, SIGABRT};
+	for (int i = 0; i < 8; i++) {
+		const int number = numbers[i / 2], shorter = i % 2;
+		put_file("in", "four", 4);
+		const size_t files = count_in_folder();
+		const pid_t child = fork();
+		if (child == 0)
+			fault(number, shorter);
+		int code;
+		assert_int_equal(waitpid(child, &code, 0), child);
+		if (shorter) {
+			assert_true(WIFEXITED(code));
+			assert_int_equal(WEXITSTATUS(code), 7);
+			assert_int_equal(count_in_folder(), files);
+		} else {
+			assert_true(WIFSIGNALED(code));
+			assert_int_equal(WTERMSIG(code), number);
+		}
+	}
+}
+
 #define CASE(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
 
 int main(void)
@@ -459,6 +508,7 @@ int main(void)
 		CASE(output_pipe_is_written_through),
 		CASE(output_full_disk_is_an_error),
 		CASE(signals_remove_temporaries_and_end_the_process),
+		CASE(faults_after_an_input_has_changed_leave_nothing),
 	};
 	return cmocka_run_group_tests_name("file/output", tests, NULL, NULL);
 }
