@@ -33,8 +33,8 @@ static void input_is_mapped_and_knows_which_file_it_is(void **state)
 	nt_file_close(&file);
 }
 
-/* How many of the pages from `bytes` on are in our page tables (Documentation/admin-guide/mm/pagemap.rst); as many as are
- * expected where nobody says so, as in some containers. */
+/* How many of the pages from `bytes` on are in our page tables (Documentation/admin-guide/mm/pagemap.rst); as many
+ * as are expected where nobody says so, as in some containers. */
 static unsigned present_pages(const unsigned char *bytes, size_t count, size_t page, unsigned expected)
 {
 	const int fd = open("/proc/self/pagemap", O_RDONLY);
