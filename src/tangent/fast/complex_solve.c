@@ -253,7 +253,34 @@ static uint64_t hash_direction(const nt_corner *m)
 	return hash;
 }
 
-static void list_directions(const part *p, directions *d)
+static uint32_t triangle_of(const nt_complex *c, const part *p, size_t i)
+{
+	return (c->corners[p->members[i]] & NT_COMPLEX_CORNER) >> 2;
+}
+
+/* Members of one face belong together whatever their directions are: halves of a quad, which are neighbours, and a
+ * member and itself, which a NaN parts from all. Whether that tells two members from others of their directions. */
+static bool belongs_by_face(const nt_complex *c, const part *p, size_t first, size_t second)
+{
+	const uint32_t t = triangle_of(c, p, first), other = triangle_of(c, p, second);
+	return (t == other || (t + 1 == other && c->fast->flags[other] & NT_TRIANGLE_SECOND)) &&
+	       !belong_together(&p->solved[first], &p->solved[second]);
+}
+
+/* Members that belong together with member i although their directions do not: of its face. */
+typedef struct own_members {
+	uint32_t first, count; /* indices; 0: there are none but by direction */
+} own_members;
+
+static own_members find_own(const nt_complex *c, const part *p, size_t i)
+{
+	const size_t first = i > 0 && belongs_by_face(c, p, i - 1, i) ? i - 1 : i;
+	const size_t last = i + 1 < p->count && belongs_by_face(c, p, i, i + 1) ? i + 1 : i;
+	const bool none = first == last && !belongs_by_face(c, p, i, i);
+	return (own_members){(uint32_t)first, none ? 0 : (uint32_t)(last + 1 - first)};
+}
+
+static void list_directions(const nt_complex *c, const part *p, directions *d)
 {
 	const size_t mask = table_size(p->count) - 1;
 	memset(d->table, 0xff, (mask + 1) * sizeof *d->table);
@@ -262,14 +289,17 @@ static void list_directions(const part *p, directions *d)
 		const nt_corner *m = &p->solved[i];
 		if (m->kind == NT_CORNER_ANY)
 			continue;
-		size_t at = (size_t)hash_direction(m) & mask;
-		while (d->table[at] != NT_NONE && !have_one_direction(&p->solved[d->of[d->table[at]]], m))
-			at = (at + 1) & mask;
-		if (d->table[at] == NT_NONE) {
-			d->of[d->count] = (uint32_t)i;
-			d->table[at] = (uint32_t)d->count++;
+		d->number[i] = (uint32_t)d->count;
+		if (find_own(c, p, i).count == 0) {
+			size_t at = (size_t)hash_direction(m) & mask;
+			while (d->table[at] != NT_NONE && !have_one_direction(&p->solved[d->of[d->table[at]]], m))
+				at = (at + 1) & mask;
+			if (d->table[at] == NT_NONE)
+				d->table[at] = (uint32_t)d->count;
+			d->number[i] = d->table[at];
 		}
-		d->number[i] = d->table[at];
+		if (d->number[i] == d->count)
+			d->of[d->count++] = (uint32_t)i;
 	}
 }
 
@@ -287,13 +317,16 @@ static void sum_directions(void *context, size_t begin, size_t end, unsigned slo
 	const directions *d = s->d;
 	for (size_t first = NT_LANES * begin; first < NT_LANES * end; first += NT_LANES) {
 		_Alignas(64) float lanes[6][NT_LANES] = {{0}}, sums[NT_CORNER_FLOATS][NT_LANES] = {{0}};
+		uint32_t own[2][NT_LANES] = {{0}};
 		const size_t count = d->count - first < NT_LANES ? d->count - first : NT_LANES;
 		for (size_t lane = 0; lane < count; lane++) {
 			const nt_corner *m = &s->p->solved[d->of[first + lane]];
 			for (size_t i = 0; i < 3; i++)
 				lanes[i][lane] = m->u[i], lanes[3 + i][lane] = m->v[i];
+			const own_members o = find_own(s->c, s->p, d->of[first + lane]);
+			own[0][lane] = o.first, own[1][lane] = o.count;
 		}
-		s->c->kernels->part_sums(s->p->solved, s->p->count, lanes, s->c->more, sums);
+		s->c->kernels->part_sums(s->p->solved, s->p->count, lanes, own, s->c->more, sums);
 		for (size_t lane = 0; lane < count; lane++) {
 			float row[NT_CORNER_FLOATS];
 			for (size_t i = 0; i < NT_CORNER_FLOATS; i++)
@@ -304,43 +337,16 @@ static void sum_directions(void *context, size_t begin, size_t end, unsigned slo
 	}
 }
 
-static uint32_t triangle_of(const nt_complex *c, const part *p, size_t i)
+/* The short code for the same: the average of those that belong together with member i. */
+static nt_corner average_own(const nt_complex *c, const part *p, size_t i)
 {
-	return (c->corners[p->members[i]] & NT_COMPLEX_CORNER) >> 2;
-}
-
-/* Members of one face belong together whatever their directions are: halves of a quad, which are neighbours, and a
- * member and itself, which a NaN parts. Whether that tells two members from others of their directions. */
-static bool belongs_by_face(const nt_complex *c, const part *p, size_t first, size_t second)
-{
-	const uint32_t t = triangle_of(c, p, first), other = triangle_of(c, p, second);
-	return (t == other || (t + 1 == other && c->fast->flags[other] & NT_TRIANGLE_SECOND)) &&
-	       !belong_together(&p->solved[first], &p->solved[second]);
-}
-
-/* The average of those that belong together with member i, where it is not as others of its direction: with [first,
- * end) by face. With a NaN there are no others. */
-static nt_corner average_own(const nt_complex *c, const part *p, size_t i, size_t first, size_t end)
-{
-	const bool alone = !belong_together(&p->solved[i], &p->solved[i]);
-	nt_corner own = {.kind = NT_CORNER_EXTREME};
-	for (size_t j = alone ? first : 0; j < (alone ? end : p->count); j++)
-		if ((j >= first && j < end) || belong_together(&p->solved[i], &p->solved[j]))
-			add_members(&(part){p->members + j, p->solved + j, 1}, &own);
-	finish(c, &own);
-	return own;
-}
-
-/* A member's result in a group that may split. `whole` is that of a member without a frame, which belongs to all. */
-static nt_corner part_result(const nt_complex *c, const part *p, const directions *d, size_t i, const nt_corner *whole)
-{
-	if (p->solved[i].kind == NT_CORNER_ANY)
-		return *whole;
-	const size_t first = i > 0 && belongs_by_face(c, p, i - 1, i) ? i - 1 : i;
-	const size_t last = i + 1 < p->count && belongs_by_face(c, p, i, i + 1) ? i + 1 : i;
-	if (!NT_SHORT_WAYS || first < last || belongs_by_face(c, p, i, i))
-		return average_own(c, p, i, first, last + 1);
-	return d->sums[d->number[i]];
+	const own_members o = find_own(c, p, i);
+	nt_corner sum = {.kind = NT_CORNER_EXTREME};
+	for (size_t j = 0; j < p->count; j++)
+		if (j - o.first < o.count || belong_together(&p->solved[i], &p->solved[j]))
+			add_members(&(part){p->members + j, p->solved + j, 1}, &sum);
+	finish(c, &sum);
+	return sum;
 }
 
 /* Groups */
@@ -368,11 +374,13 @@ static void average_parts(const nt_complex *c, const nt_batch *b, const part *p,
 {
 	const unsigned threads = p->count > SOLVED ? c->fast->solve->threads : 1;
 	if (NT_SHORT_WAYS) {
-		list_directions(p, d);
+		list_directions(c, p, d);
 		nt_parallel_ranges(threads, (d->count + NT_LANES - 1) / NT_LANES, 1, sum_directions, &(sum_context){c, p, d});
 	}
 	for (size_t i = 0; i < p->count; i++) {
-		const nt_corner result = part_result(c, p, d, i, whole);
+		/* a member without a frame belongs to all */
+		const bool any = p->solved[i].kind == NT_CORNER_ANY;
+		const nt_corner result = any ? *whole : NT_SHORT_WAYS ? d->sums[d->number[i]] : average_own(c, p, i);
 		put_result(c, b, p->members[i], &result, mark_of(c, p->members[i], &result));
 	}
 }

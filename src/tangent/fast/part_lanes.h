@@ -16,18 +16,20 @@ typedef float float_lanes __attribute__((vector_size(4 * WIDTH)));
 enum { ADDED = 3 };
 
 /* Sums of floats [from, from + ADDED) for WIDTH lanes from `lane` on, whose directions are u and then v. */
-static void add_part_lanes(const nt_corner *members, size_t count, const float directions[6][NT_LANES], size_t lane,
-	size_t from, float sums[NT_CORNER_FLOATS][NT_LANES])
+static void add_part_lanes(const nt_corner *members, size_t count, const float directions[6][NT_LANES],
+	const uint32_t own[2][NT_LANES], size_t lane, size_t from, float sums[NT_CORNER_FLOATS][NT_LANES])
 {
 	float_lanes d[6], sum[ADDED] = {{0}};
 	for (int i = 0; i < 6; i++)
 		memcpy(&d[i], &directions[i][lane], sizeof d[i]);
-	for (const nt_corner *m = members; m < members + count; m++) {
+	const lanes first = load_lanes(own[0] + lane), own_count = load_lanes(own[1] + lane);
+	for (uint32_t j = 0; j < count; j++) {
+		const nt_corner *m = &members[j];
 		if (m->kind == NT_CORNER_ANY)
 			continue;
 		const float_lanes uu = d[0] * m->u[0] + d[1] * m->u[1] + d[2] * m->u[2];
 		const float_lanes vv = d[3] * m->v[0] + d[4] * m->v[1] + d[5] * m->v[2];
-		const lanes together = (lanes)(uu > -1.0f) & (lanes)(vv > -1.0f);
+		const lanes together = ((lanes)(uu > -1.0f) & (lanes)(vv > -1.0f)) | (lanes)(j - first < own_count);
 		float floats[ADDED];
 		memcpy(floats, (const char *)m + from * sizeof *floats, sizeof floats);
 #pragma GCC unroll 3
@@ -41,12 +43,12 @@ static void add_part_lanes(const nt_corner *members, size_t count, const float d
 		memcpy(&sums[from + i][lane], &sum[i], sizeof sum[i]);
 }
 
-static void part_sums(const nt_corner *members, size_t count, const float directions[6][NT_LANES], bool more,
-	float sums[NT_CORNER_FLOATS][NT_LANES])
+static void part_sums(const nt_corner *members, size_t count, const float directions[6][NT_LANES],
+	const uint32_t own[2][NT_LANES], bool more, float sums[NT_CORNER_FLOATS][NT_LANES])
 {
 	for (size_t lane = 0; lane < NT_LANES; lane += WIDTH)
 		for (size_t from = 0; from < (more ? NT_CORNER_FLOATS : ADDED); from += ADDED)
-			add_part_lanes(members, count, directions, lane, from, sums);
+			add_part_lanes(members, count, directions, own, lane, from, sums);
 }
 
 #endif

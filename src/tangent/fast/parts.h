@@ -106,10 +106,10 @@ typedef struct nt_kernels {
 	/* Solves corners, given as 4 * triangle + k. `solved` has room for a multiple of NT_LANES. */
 	void (*corners)(const nt_fast *fast, const uint32_t *corners, size_t count, nt_corner *solved);
 	/* Sums of a group's members for each of NT_LANES directions, u and then v: of those that belong together with
-	 * it. The first NT_CORNER_FLOATS of an nt_corner are added up, or, without `more`, those of u. NULL without
-	 * short ways. */
-	void (*part_sums)(const nt_corner *members, size_t count, const float directions[6][NT_LANES], bool more,
-		float sums[NT_CORNER_FLOATS][NT_LANES]);
+	 * it, and of the own[1] ones from own[0] on. The first NT_CORNER_FLOATS of an nt_corner are added up, or,
+	 * without `more`, those of u. NULL without short ways. */
+	void (*part_sums)(const nt_corner *members, size_t count, const float directions[6][NT_LANES],
+		const uint32_t own[2][NT_LANES], bool more, float sums[NT_CORNER_FLOATS][NT_LANES]);
 	/* Solves all triangles: their flags, what each corner adds, and the frames. For tiny.c. */
 	void (*few_frames)(const nt_fast *fast, nt_record *add, nt_frames *frames);
 	/* Turns the sums of groups, given with their vertices and orientations, into results: few_lanes.h. */
