@@ -153,18 +153,19 @@ typedef struct work {
 static void solve_range(void *context, size_t begin, size_t end, unsigned slot)
 {
 	work *w = context;
+	nt_batch *batch = &w->batches[slot];
 	nmtan_status status = NMTAN_OK;
 	for (size_t v = begin; v < end && !status; v++) {
-		if (nt_is_tangled(w->c, v) != w->tangled)
-			continue;
-		nt_find_groups(w->c, v);
-		status = nt_take_vertex(w->c, &w->batches[slot], v);
-		/* its groups may lie where the next vertices' are to come */
-		if (!status && w->tangled)
-			status = nt_solve_batch(w->c, &w->batches[slot]);
+		if (nt_is_tangled(w->c, v) == w->tangled) {
+			nt_find_groups(w->c, v);
+			status = nt_take_vertex(w->c, batch, v);
+		} else if (w->tangled && batch->count > 0) {
+			/* the corners of a vertex whose turn comes later stay as they are: others do not move over them */
+			status = nt_solve_batch(w->c, batch);
+		}
 	}
 	if (!status)
-		status = nt_solve_batch(w->c, &w->batches[slot]);
+		status = nt_solve_batch(w->c, batch);
 	if (status)
 		w->status = status;
 }
