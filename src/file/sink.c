@@ -21,9 +21,9 @@
  * files get their room at once: that is a system call of 30 us. */
 enum { KERNEL_COPY_BYTES = 1024 * 1024, MAPPED_COPY_BYTES = 2 * 1024 * 1024, LARGE_FILE_BYTES = 1024 * 1024 };
 
-/* From which size on a second thread fetches pages: 35 MB are written in 6.7 ms instead of 9.5; how much of a map may
+/* From which size on a second thread fetches pages: 35 MB are written in 7.7 ms instead of 9.5; how much of a map may
  * have its pages then, and how long that thread sleeps before it lets go of more of them. */
-enum { SHARED_COPY_BYTES = 8 * 1024 * 1024, MOST_AHEAD_BYTES = 32 * 1024 * 1024, FOLLOW_NS = 100000 };
+enum { SHARED_COPY_BYTES = 8 * 1024 * 1024, MOST_AHEAD_BYTES = 16 * 1024 * 1024, FOLLOW_NS = 100000 };
 
 /* What goes straight through, and takes no memory of the buffer. */
 enum { STRAIGHT_BYTES = 128 * 1024 };
