@@ -26,8 +26,8 @@ nt_status nt_file_open(nt_file *file, const char *path, nt_error *error);
  * NT_ERROR_MISSING says so. */
 nt_status nt_file_open_content(nt_file *file, const char *path, nt_error *error);
 
-/* The same as nt_file_open() for a file that is no source of what is made, such as an output that is compared: not in the trace
- * (trace.h). */
+/* The same as nt_file_open() for a file that is no source of what is made, such as an output that is compared: not in
+ * the trace (trace.h). */
 nt_status nt_file_open_untraced(nt_file *file, const char *path, nt_error *error);
 
 void nt_file_close(nt_file *file);

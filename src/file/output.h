@@ -156,8 +156,8 @@ void nt_output_catch_signals(void);
 void nt_output_catch_exhaustion(void (*end)(void));
 
 /* The same for a fault of the process (SIGSEGV and such) while an input that is mapped has changed, which is where it
- * comes from then: indices, say, are other ones than those that were checked. `end` gets the file's name and what happened
- * to it, in a signal handler. Any other fault ends the process as before. */
+ * comes from then: indices, say, are other ones than those that were checked. `end` gets the file's name and what
+ * happened to it, in a signal handler. Any other fault ends the process as before. */
 void nt_output_catch_faults(void (*end)(const char *path, const char *change));
 
 #endif

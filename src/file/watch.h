@@ -5,8 +5,8 @@
  * time of modification.
  *
  * Of a file that becomes shorter, reading what is gone raises SIGBUS, which would end the
- * process; here the missing pages become zeros, and the reader comes to its end with whatever it makes of them. That may
- * be a fault: what was checked is something else when it is used. nt_output_catch_faults() sees to that.
+ * process; here the missing pages become zeros, and the reader comes to its end with whatever it makes of them. That
+ * may be a fault: what was checked is something else when it is used. nt_output_catch_faults() sees to that.
  *
  * A file belongs to the thread that opened it: what one run of many reads is its own affair. Threads that
  * help it may read the file too.
@@ -31,7 +31,8 @@ void nt_watch_forget(void);
 /* Returns NT_ERROR_IO, with the name, if a file that this thread opened has changed; else NT_OK. */
 nt_status nt_watch_check(nt_error *error);
 
-/* What happened to the first of all open files that has changed, and its name; NULL: none has. Safe in a signal handler. */
+/* What happened to the first of all open files that has changed, and its name; NULL: none has. Safe in a signal
+ * handler. */
 const char *nt_watch_any_change(const char **path);
 
 /* Whether a file has become shorter. */

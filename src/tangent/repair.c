@@ -169,8 +169,8 @@ static void store(nt_dvec3 t, float *to)
 	to[0] = (float)t.x, to[1] = (float)t.y, to[2] = (float)t.z;
 }
 
-/* Whether vertices without a result are bare, for the method tells them: but for those of faces that have an orientation,
- * though they gave nothing, which are noted. */
+/* Whether vertices without a result are bare, for the method tells them: but for those of faces that have an
+ * orientation, though they gave nothing, which are noted. */
 static bool tell_bare(const patient *p)
 {
 	const nt_known *known = p->solve->known;

@@ -4,8 +4,9 @@
  *
  *   NT_CALLS_KILL=N             SIGKILL in place of the N-th call, from 1 on
  *   NT_CALLS_FAIL=NAME:ERRNO    the calls of that name fail; with :N behind, the N-th of them alone
- *   NT_CALLS_KEEP=NAME:NAME     files of these names, in whatever folder, get no other name and no other file gets theirs:
- *                               what the system says of files that are immutable, or of others in a sticky folder
+ *   NT_CALLS_KEEP=NAME:NAME     files of these names, in whatever folder, get no other name and no other file gets
+ *                               theirs: what the system says of files that are immutable, or of others in a sticky
+ *                               folder
  *   NT_CALLS_COUNT=FILE         the names of all calls in their order, at the end
  *   NT_CALLS_TRACE=DIR          DIR/log has each call that changes names or makes something lasting, after it
  *                               succeeded; what fsync makes lasting of a file is copied to DIR/NUMBER

@@ -50,8 +50,8 @@ static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices,
 		out->bytes = (const unsigned char *)indices;
 		return NT_OK;
 	}
-	/* narrower ones take their place where nobody reads the wider ones: what is borrowed of a mesh that has its geometry
-	 * is the scene's */
+	/* narrower ones take their place where nobody reads the wider ones: what is borrowed of a mesh that has its
+	 * geometry is the scene's */
 	const bool fits = (!borrowed || !mesh->positions) && out->size <= mesh->corner_count * sizeof *indices;
 	unsigned char *bytes = fits ? (unsigned char *)indices : nt_arena_alloc(arena, out->count, out->width);
 	if (!bytes)

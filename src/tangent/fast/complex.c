@@ -160,7 +160,7 @@ static void solve_range(void *context, size_t begin, size_t end, unsigned slot)
 			nt_find_groups(w->c, v);
 			status = nt_take_vertex(w->c, batch, v);
 		} else if (w->tangled && batch->count > 0) {
-			/* the corners of a vertex whose turn comes later stay as they are: others do not move over them */
+			/* the corners of a vertex whose turn comes later stay: others do not move over them */
 			status = nt_solve_batch(w->c, batch);
 		}
 	}

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Progress in a log, while the clock of the day stands at 1970: a wait until a time of that clock would end at once, and
- * lines would come by the thousand.
+ * Progress in a log, while the clock of the day stands at 1970: a wait until a time of that clock would end at once,
+ * and lines would come by the thousand.
  */
 #include "folder.h"
 #include "test.h"
