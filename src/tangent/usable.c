@@ -159,15 +159,13 @@ static uint64_t find_suspects(const nt_known *known, const uint8_t *flags, size_
 	const uint64_t gather = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? 0x8040201008040201u : 0x0102040810204080u;
 	const int shift = __builtin_ctz(known->positive);
 	const unsigned mask = known->suspect & (!NT_SHORT_WAYS || known->open ? ~0u : ~(unsigned)known->judged);
-	uint8_t copy[WORD];
-	if (count < WORD) {
-		memset(copy, known->positive, WORD);
-		flags = memcpy(copy, flags, count);
-	}
 	uint64_t suspects = 0, plain = 0;
-	for (size_t i = 0; i < WORD; i += sizeof plain) {
-		uint64_t eight;
-		memcpy(&eight, flags + i, sizeof eight);
+	for (size_t i = 0; i < count; i += sizeof plain) {
+		uint64_t eight = ones * known->positive;
+		if (count - i >= sizeof eight)
+			memcpy(&eight, flags + i, sizeof eight);
+		else
+			memcpy(&eight, flags + i, count - i);
 		uint64_t suspect = eight & ones * mask;
 		suspect |= suspect >> 4;
 		suspect |= suspect >> 2;
