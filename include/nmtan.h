@@ -317,7 +317,7 @@ typedef struct nmtan_split_output {
 /*
  * Finds the vertices whose corners have different tangents and gives each further tangent a copy of
  * the vertex. The tangent of a vertex's first corner keeps its index; copies are appended in corner
- * order. Two tangents are the same when their four floats are equal (0 equals -0) or have equal bits.
+ * order. Two tangents are the same when their four floats are equal (0 equals -0) or both NaN.
  *
  *   mesh      required; texcoords may be NULL, normals too where vertex_tangents is NULL
  *   tangents  [corner count][4], required

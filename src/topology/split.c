@@ -9,6 +9,7 @@
  */
 #include "topology/split.h"
 
+#include <math.h>
 #include <string.h>
 #include "base/dvec.h"
 #include "base/parallel.h"
@@ -19,12 +20,13 @@
 
 enum { COPY_GRAIN = 1 << 18 }; /* indices per thread below which threads do not pay */
 
+/* All zeros are one, and so are all NaN: which one comes of a sum is the compiler's choice. */
 static nt_tangent_key make_key(const float *tangent)
 {
 	float values[4];
 	nt_tangent_key key;
 	for (int i = 0; i < 4; i++)
-		values[i] = tangent[i] + 0.0f;
+		values[i] = tangent[i] == tangent[i] ? tangent[i] + 0.0f : NAN;
 	memcpy(key.bits, values, sizeof key.bits);
 	return key;
 }

@@ -10,7 +10,7 @@
 #include "base/scratch.h"
 #include "nmtan.h"
 
-/* The bits of a tangent's four floats, -0 made +0: equal floats have equal bits. */
+/* The bits of a tangent's four floats, -0 made +0 and all NaN one: equal floats have equal bits. */
 typedef struct nt_tangent_key {
 	uint32_t bits[4];
 } nt_tangent_key;

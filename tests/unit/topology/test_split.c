@@ -46,10 +46,10 @@ static void first_tangent_keeps_the_vertex_and_copies_follow_in_order(void **sta
 	assert_int_equal(copies, 2);
 }
 
-static void zero_signs_do_not_split_and_equal_nans_neither(void **state)
+static void signs_of_zeros_and_nans_do_not_split(void **state)
 {
 	(void)state;
-	const float tangents[4][4] = {{0.0f, 1, 0, 1}, {-0.0f, 1, 0, 1}, {NAN, 1, 0, 1}, {NAN, 1, 0, 1}};
+	const float tangents[4][4] = {{0.0f, 1, 0, 1}, {-0.0f, 1, 0, 1}, {NAN, 1, 0, 1}, {-NAN, 1, 0, 1}};
 	uint32_t hub[4];
 	size_t copies;
 	split_hub(4, tangents, hub, &copies);
@@ -100,7 +100,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(first_tangent_keeps_the_vertex_and_copies_follow_in_order),
-		cmocka_unit_test(zero_signs_do_not_split_and_equal_nans_neither),
+		cmocka_unit_test(signs_of_zeros_and_nans_do_not_split),
 		cmocka_unit_test(hub_of_many_tangents_is_linear),
 		cmocka_unit_test(unused_vertices_get_a_unit_tangent),
 	};
