@@ -260,7 +260,7 @@ static nt_status solve_mesh(const wishes *job, nt_mesh *mesh, const nmtan_option
 		free_corners(mesh);
 	} else if (!(status = make_split(mesh, &mesh->split, &output))) {
 		mesh_bytes bytes = {job->scene, mesh, nt_thread_count(options->threads)};
-			/* small ones have a workspace, whose pages are there */
+		/* small ones have a workspace, whose pages are there */
 		const nt_vertex_request request = {.lazy_indices = true, .lends_copies = !options->workspace,
 			.passed = job->forgets ? forget_part : NULL, .user = &bytes};
 		status = nt_status_of(nt_vertex_tangents(&view, options, &request, &output, &mesh->counts));
