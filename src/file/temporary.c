@@ -4,8 +4,9 @@
  *
  * The list is plain and guarded by a spin lock. Who takes the lock blocks the signals in its own thread
  * first, so the handler never waits for the thread it interrupted; it may wait for others: for those that hold, and
- * for the lock, which it keeps: from then on nobody creates, renames or holds anything. Only unlink, poll, signal
- * calls and lock-free atomics run in the handler; all of them are async-signal-safe.
+ * for the lock, which it keeps: from then on nobody creates, renames or holds anything. A fault cannot be blocked: each
+ * thread knows what it has itself. Only unlink, poll, signal calls and lock-free atomics run in the handler; all of
+ * them are async-signal-safe.
  */
 #include "file/temporary.h"
 
@@ -38,6 +39,8 @@ static atomic_flag list_lock = ATOMIC_FLAG_INIT;
 static nt_temporary *list;
 static atomic_uint holders;
 static atomic_bool ending; /* a signal has come */
+static _Thread_local volatile unsigned own_holds; /* of the holders */
+static _Thread_local volatile bool owns_list;     /* it changes the list */
 
 static void block_signals(sigset_t *before)
 {
@@ -65,10 +68,12 @@ static void lock_list(sigset_t *before)
 {
 	block_signals(before);
 	spin();
+	owns_list = true;
 }
 
 static void unlock_list(const sigset_t *before)
 {
+	owns_list = false;
 	atomic_flag_clear_explicit(&list_lock, memory_order_release);
 	restore_signals(before);
 }
@@ -78,8 +83,10 @@ void nt_temporaries_hold(sigset_t *before)
 	block_signals(before);
 	/* either the handler sees that we hold, or we see that it has come */
 	atomic_fetch_add(&holders, 1);
-	if (!atomic_load(&ending))
+	if (!atomic_load(&ending)) {
+		own_holds++;
 		return;
+	}
 	atomic_fetch_sub(&holders, 1);
 	for (;;)
 		poll(NULL, 0, -1);
@@ -87,6 +94,7 @@ void nt_temporaries_hold(sigset_t *before)
 
 void nt_temporaries_release(const sigset_t *before)
 {
+	own_holds--;
 	atomic_fetch_sub(&holders, 1);
 	restore_signals(before);
 }
@@ -236,8 +244,10 @@ void nt_temporary_discard(nt_temporary *temporary)
 void nt_temporaries_remove_all(void)
 {
 	atomic_store(&ending, true);
-	while (atomic_load(&holders))
+	while (atomic_load(&holders) > own_holds)
 		poll(NULL, 0, 1);
+	if (owns_list)
+		return; /* a fault, with the list half changed: the files are left to litter.c */
 	spin();
 	for (const nt_temporary *entry = list; entry; entry = entry->next)
 		if (!entry->renamed)

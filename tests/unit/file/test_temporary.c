@@ -1,0 +1,112 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * A process that faults removes its temporary files and ends, also where the faulting thread is in the midst of a
+ * commit: it does not wait for itself.
+ */
+#include "file/temporary.h"
+#include "folder.h"
+#include "test.h"
+
+#include <pthread.h>
+#include <stdatomic.h>
+#include <stdbool.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+enum { PATIENCE_SECONDS = 20 };
+
+/* A temporary file in the folder. */
+static nt_temporary *make_file(void)
+{
+	nt_temporary *made = NULL;
+	const int fd = nt_temporary_create(in_folder("out.glb"), 0600, &made);
+	if (fd < 0)
+		_exit(2);
+	close(fd);
+	return made;
+}
+
+/* Whether a child that does this ends by itself, with 0. */
+static bool child_ends(void (*work)(void))
+{
+	const pid_t child = fork();
+	if (child == 0) {
+		alarm(PATIENCE_SECONDS);
+		work();
+		_exit(0);
+	}
+	int status = -1;
+	assert_int_equal(waitpid(child, &status, 0), child);
+	return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+}
+
+static void fault_in_commit(void)
+{
+	sigset_t before;
+	const nt_temporary *made = make_file();
+	nt_temporaries_hold(&before);
+	nt_temporaries_remove_all(); /* as the handler of a fault does */
+	if (access(nt_temporary_path(made), F_OK) == 0)
+		_exit(3);
+}
+
+static void a_fault_in_a_commit_ends_the_process(void **state)
+{
+	(void)state;
+	assert_true(child_ends(fault_in_commit));
+}
+
+static atomic_bool holds, released;
+
+static void *commit(void *unused)
+{
+	sigset_t before;
+	nt_temporaries_hold(&before);
+	atomic_store(&holds, true);
+	usleep(100000);
+	atomic_store(&released, true);
+	nt_temporaries_release(&before);
+	return unused;
+}
+
+static void fault_beside_commit(void)
+{
+	pthread_t other;
+	if (pthread_create(&other, NULL, commit, NULL))
+		_exit(2);
+	while (!atomic_load(&holds))
+		usleep(100);
+	nt_temporaries_remove_all();
+	if (!atomic_load(&released))
+		_exit(3);
+}
+
+static void a_fault_waits_for_the_commit_of_another_thread(void **state)
+{
+	(void)state;
+	assert_true(child_ends(fault_beside_commit));
+}
+
+static void release_and_fault(void)
+{
+	sigset_t before;
+	nt_temporaries_hold(&before);
+	nt_temporaries_release(&before);
+	fault_beside_commit();
+}
+
+static void a_hold_that_is_over_is_no_hold(void **state)
+{
+	(void)state;
+	assert_true(child_ends(release_and_fault));
+}
+
+int main(void)
+{
+	const struct CMUnitTest tests[] = {
+		cmocka_unit_test_setup_teardown(a_fault_in_a_commit_ends_the_process, make_folder, remove_folder),
+		cmocka_unit_test(a_fault_waits_for_the_commit_of_another_thread),
+		cmocka_unit_test(a_hold_that_is_over_is_no_hold),
+	};
+	return cmocka_run_group_tests_name("file/temporary", tests, NULL, NULL);
+}
