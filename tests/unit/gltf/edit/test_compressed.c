@@ -68,24 +68,19 @@ static size_t add_part(nt_buffer *bin, const void *bytes, size_t size)
 	"{" view "\"componentType\":" type ",\"count\":" count ",\"type\":\"" kind "\"" more "}"
 #define BOUNDS ",\"min\":[0,0,0],\"max\":[3,3,0.25]"
 
-static const char *const accessors_with_views = "\"accessors\":["
-	ACCESSOR("\"bufferView\":0,", "5126", "169", "VEC3", BOUNDS) ","
-	ACCESSOR("\"bufferView\":1,", "5126", "169", "VEC3", "") ","
-	ACCESSOR("\"bufferView\":2,", "5126", "169", "VEC2", "") ","
-	ACCESSOR("\"bufferView\":3,", "5121", "169", "VEC4", ",\"normalized\":true") ","
-	ACCESSOR("\"bufferView\":4,", "5125", "864", "SCALAR", "") "],";
-static const char *const accessors_without = "\"accessors\":["
-	ACCESSOR("", "5126", "169", "VEC3", BOUNDS) "," ACCESSOR("", "5126", "169", "VEC3", "") ","
-	ACCESSOR("", "5126", "169", "VEC2", "") ","
-	ACCESSOR("", "5121", "169", "VEC4", ",\"normalized\":true") ","
-	ACCESSOR("", "5125", "864", "SCALAR", "") "],";
-/* The fourth as tangents. */
-static const char *const accessors_with_tangents = "\"accessors\":["
-	ACCESSOR("\"bufferView\":0,", "5126", "169", "VEC3", BOUNDS) ","
-	ACCESSOR("\"bufferView\":1,", "5126", "169", "VEC3", "") ","
-	ACCESSOR("\"bufferView\":2,", "5126", "169", "VEC2", "") ","
-	ACCESSOR("\"bufferView\":3,", "5120", "169", "VEC4", ",\"normalized\":true") ","
-	ACCESSOR("\"bufferView\":4,", "5125", "864", "SCALAR", "") "],";
+/* The fourth has a type of its own: colours, or tangents. */
+#define ACCESSORS(view_0, view_1, view_2, view_3, view_4, type)                                    \
+	"\"accessors\":[" ACCESSOR(view_0, "5126", "169", "VEC3", BOUNDS) ","                      \
+	ACCESSOR(view_1, "5126", "169", "VEC3", "") "," ACCESSOR(view_2, "5126", "169", "VEC2", "") "," \
+	ACCESSOR(view_3, type, "169", "VEC4", ",\"normalized\":true") ","                          \
+	ACCESSOR(view_4, "5125", "864", "SCALAR", "") "],"
+#define ACCESSORS_WITH_VIEWS(type)                                                                 \
+	ACCESSORS("\"bufferView\":0,", "\"bufferView\":1,", "\"bufferView\":2,", "\"bufferView\":3,", \
+		"\"bufferView\":4,", type)
+
+static const char *const accessors_with_views = ACCESSORS_WITH_VIEWS("5121");
+static const char *const accessors_without = ACCESSORS("", "", "", "", "", "5121");
+static const char *const accessors_with_tangents = ACCESSORS_WITH_VIEWS("5120");
 #define PRIMITIVE                                                                                  \
 	"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2," \
 	"\"COLOR_0\":3},\"indices\":4,\"material\":0"
