@@ -126,14 +126,6 @@ bool nt_arena_adopt(nt_arena *arena, void *block)
 	return true;
 }
 
-bool nt_arena_has(const nt_arena *arena, const void *byte)
-{
-	const struct nt_arena_block *block = arena->blocks;
-	while (block && (uintptr_t)byte - (uintptr_t)block >= HEADER_BYTES + block->used)
-		block = block->next;
-	return block;
-}
-
 /* Behind the first block, from which small requests go on being taken; as long as the other's blocks, however many are
  * here: joining many arenas with one takes linear time. */
 void nt_arena_join(nt_arena *arena, nt_arena *other)

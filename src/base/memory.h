@@ -52,9 +52,6 @@ char *nt_arena_text(nt_arena *arena, const char *text, size_t length);
  * at once. NULL is allowed. */
 bool nt_arena_adopt(nt_arena *arena, void *block);
 
-/* Whether the arena's own blocks, those it adopted not counted, have this byte. */
-bool nt_arena_has(const nt_arena *arena, const void *byte);
-
 /* Takes over everything in another arena, which is empty afterwards. */
 void nt_arena_join(nt_arena *arena, nt_arena *other);
 

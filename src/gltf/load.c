@@ -8,6 +8,7 @@
  */
 #include "gltf/load.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -349,29 +350,35 @@ static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 	return NT_OK;
 }
 
+/* The corners that a primitive lists; *count is untouched where it lists none. */
+static nt_status load_chain(nt_gltf *document, const nt_mesh *mesh, const nt_json_value *primitive, unsigned threads,
+	nt_arena *arena, uint32_t **chain, uint64_t *count, nt_error *error)
+{
+	uint64_t index;
+	*chain = NULL;
+	nt_status status = nt_gltf_uint(primitive, nt_gltf_of_mesh(mesh).pointer, "indices", UINT32_MAX - 1, NT_NONE, &index,
+		error);
+	if (status || index == NT_NONE)
+		return status;
+	char pointer[NT_GLTF_POINTER];
+	nt_gltf_put_text(nt_gltf_mesh_pointer(pointer, mesh), "/indices");
+	nt_gltf_accessor accessor;
+	status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
+	if (!status)
+		status = nt_gltf_indices(document, &accessor, mesh->vertex_count, threads, arena, chain, error);
+	*count = accessor.count;
+	return status;
+}
+
 static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 	const nt_json_value *primitive, unsigned threads, nt_error *error)
 {
-	uint64_t mode = NT_GLTF_TRIANGLES, index;
+	uint64_t mode = NT_GLTF_TRIANGLES, count = mesh->vertex_count;
 	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
-	nt_status status = nt_gltf_uint(primitive, nt_gltf_of_mesh(mesh).pointer, "indices", UINT32_MAX - 1,
-		NT_NONE, &index, error);
+	uint32_t *chain;
+	const nt_status status = load_chain(document, mesh, primitive, threads, &scene->arena, &chain, &count, error);
 	if (status)
 		return status;
-	uint32_t *chain = NULL;
-	uint64_t count = mesh->vertex_count;
-	if (index != NT_NONE) {
-		char pointer[NT_GLTF_POINTER];
-		nt_gltf_put_text(nt_gltf_mesh_pointer(pointer, mesh), "/indices");
-		nt_gltf_accessor accessor;
-		status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
-		if (!status)
-			status = nt_gltf_indices(document, &accessor, mesh->vertex_count, threads,
-				&scene->arena, &chain, error);
-		if (status)
-			return status;
-		count = accessor.count;
-	}
 	mesh->face_count = mode == NT_GLTF_TRIANGLES ? (size_t)count / 3 : count < 3 ? 0 : (size_t)count - 2;
 	mesh->corner_count = mesh->face_count * 3;
 	mesh->primitives[0].face_count = mesh->face_count;
@@ -383,6 +390,16 @@ static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 		return nt_fail_memory(error);
 	list_triangles(mode, chain, mesh->face_count, mesh->indices);
 	return NT_OK;
+}
+
+nt_status nt_gltf_load_triangles(nt_gltf *document, const nt_mesh *mesh, nt_arena *arena, uint32_t **indices,
+	nt_error *error)
+{
+	uint64_t count = 0;
+	const nt_status status = load_chain(document, mesh, nt_gltf_primitive_of(document, mesh), 1, arena, indices, &count,
+		error);
+	assert(status || count == mesh->corner_count);
+	return status;
 }
 
 /* What a copy of a vertex costs; attributes that cannot be read are not counted. */

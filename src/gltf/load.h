@@ -5,10 +5,14 @@
 #ifndef NT_GLTF_LOAD_H
 #define NT_GLTF_LOAD_H
 
-#include "scene/scene.h"
+#include "gltf/document.h"
 
 /* Brings the geometry of a mesh of an opened glTF. */
 nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
+	nt_error *error);
+
+/* The triangles of a plain mesh that left them: see nt_mesh_left_triangles(). In the arena, or in the input. */
+nt_status nt_gltf_load_triangles(nt_gltf *document, const nt_mesh *mesh, nt_arena *arena, uint32_t **indices,
 	nt_error *error);
 
 /*

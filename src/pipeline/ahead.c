@@ -6,7 +6,6 @@
 #include "pipeline/stages.h"
 
 #include <stdlib.h>
-#include <string.h>
 #include "base/parallel.h"
 
 /* Faces from which on a mesh has all threads for its load, and those that small ones must have together. */
@@ -37,21 +36,12 @@ static bool is_solved(const ahead *job, const nt_mesh *mesh)
 	return job->solves && mesh->plain && 3 * mesh->face_count < NT_LEAST_ALONE_CORNERS;
 }
 
-/* Leaves the results, and the triangles that they are about where no vertex was split. */
-static nt_status keep_results(nt_mesh *mesh, slot *own)
+/* Leaves the results. Triangles in which no vertex was split are still those of the file. */
+static void keep_results(nt_mesh *mesh)
 {
 	const nt_split split = mesh->split;
-	uint32_t *indices = split.indices ? NULL : mesh->indices;
-	if (nt_arena_has(&own->passing, indices)) {
-		indices = nt_arena_alloc(&own->kept, mesh->corner_count, sizeof *indices);
-		if (!indices)
-			return NT_ERROR_MEMORY;
-		memcpy(indices, mesh->indices, mesh->corner_count * sizeof *indices);
-	}
 	nt_mesh_forget(mesh);
 	mesh->split = split;
-	mesh->indices = indices;
-	return NT_OK;
 }
 
 static void load_small(void *context, size_t item, unsigned number)
@@ -72,7 +62,7 @@ static void load_small(void *context, size_t item, unsigned number)
 	if (!status && solved)
 		status = nt_small_solve(job->solves, mesh, number);
 	if (!status && solved)
-		status = keep_results(mesh, own);
+		keep_results(mesh);
 	if (solved)
 		nt_arena_clear(&own->passing);
 	job->needed[item] = status != NT_OK;

@@ -205,7 +205,7 @@ typedef struct nt_mesh {
 	uint8_t *face_diagonals; /* [face_count] where MikkTSpace cuts a quad (nt_quad_diagonal): 0 gives
 	                            corners 0 1 2, 0 2 3 and 1 gives 0 1 3, 1 2 3; NULL: 0 for all, until the
 	                            pipeline knows */
-	uint32_t *indices;       /* [corner_count]; NULL: corner c is vertex c */
+	uint32_t *indices;       /* [corner_count]; NULL: corner c is vertex c, or nt_mesh_left_triangles() */
 	uint32_t *face_polygon;  /* [face_count] number of the source's polygon; NULL: the face's own */
 	uint32_t *face_smoothing;/* [face_count] smoothing group, 0 flat; NULL: all smooth */
 	uint32_t *face_primitive;/* [face_count] index into primitives; NULL: all 0 */
@@ -311,10 +311,16 @@ static inline bool nt_mesh_is_wanted(const nt_mesh *mesh)
 }
 
 /* Before the stages that make normals and solve: whether a mesh was solved as soon as it was loaded. It has results
- * then, and no geometry but its triangles where no vertex was split. */
+ * then, and no geometry. */
 static inline bool nt_mesh_is_solved_ahead(const nt_mesh *mesh)
 {
 	return mesh->split.vertex_tangents != NULL;
+}
+
+/* Whether nobody keeps the triangles of a solved mesh: it was solved ahead, and none of its vertices was split. */
+static inline bool nt_mesh_left_triangles(const nt_mesh *mesh)
+{
+	return mesh->plain && !mesh->indices && !mesh->split.indices;
 }
 
 /* So many corners of late meshes are solved at once: enough for all threads, and a hundred megabytes or two. */

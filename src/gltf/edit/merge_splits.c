@@ -13,6 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "base/hash_index.h"
+#include "gltf/load.h"
 #include "gltf/pointer.h"
 
 typedef struct merging {
@@ -250,14 +251,14 @@ static uint32_t take_vertex(merging *m, const nt_mesh *mesh, uint32_t set, uint3
 	return pool_vertex;
 }
 
-/* The vertex of a corner after the split. */
-static uint32_t split_vertex(const nt_mesh *mesh, size_t corner)
+/* The vertex of a corner; triangles: NULL: corner c is vertex c. */
+static uint32_t vertex_of(const uint32_t *triangles, size_t corner)
 {
-	const uint32_t *indices = mesh->split.indices ? mesh->split.indices : mesh->indices;
-	return indices ? indices[corner] : (uint32_t)corner;
+	return triangles ? triangles[corner] : (uint32_t)corner;
 }
 
-static bool merge_mesh(merging *m, const nt_mesh *mesh, uint32_t set, uint32_t *indices)
+/* triangles: of the mesh after its split; indices: receives them with the pool's vertices. */
+static bool merge_mesh(merging *m, const nt_mesh *mesh, uint32_t set, const uint32_t *triangles, uint32_t *indices)
 {
 	const size_t vertex_count = mesh->vertex_count + mesh->split.source_count;
 	uint32_t *pool_vertex_of = nt_alloc(vertex_count, sizeof *pool_vertex_of);
@@ -266,7 +267,7 @@ static bool merge_mesh(merging *m, const nt_mesh *mesh, uint32_t set, uint32_t *
 	enum { UNUSED = -1, USED = -2 };
 	memset(pool_vertex_of, 0xFF, vertex_count * sizeof *pool_vertex_of);
 	for (size_t c = 0; c < mesh->corner_count; c++)
-		pool_vertex_of[split_vertex(mesh, c)] = (uint32_t)USED;
+		pool_vertex_of[vertex_of(triangles, c)] = (uint32_t)USED;
 	bool merged = true;
 	for (uint32_t v = 0; merged && v < vertex_count; v++) {
 		if (pool_vertex_of[v] != (uint32_t)USED)
@@ -275,7 +276,7 @@ static bool merge_mesh(merging *m, const nt_mesh *mesh, uint32_t set, uint32_t *
 		merged = pool_vertex_of[v] != NT_NONE;
 	}
 	for (size_t c = 0; merged && c < mesh->corner_count; c++)
-		indices[c] = pool_vertex_of[split_vertex(mesh, c)];
+		indices[c] = pool_vertex_of[vertex_of(triangles, c)];
 	free(pool_vertex_of);
 	return merged;
 }
@@ -337,11 +338,10 @@ static bool keep_vertices(merging *m, nt_arena *arena, nt_arena *tables)
 	return kept;
 }
 
-/* The triangles of a mesh as the source has them. */
-static bool same_triangles(const nt_mesh *mesh, const uint32_t *indices)
+static bool same_triangles(const nt_mesh *mesh, const uint32_t *triangles, const uint32_t *indices)
 {
 	for (size_t c = 0; c < mesh->corner_count; c++)
-		if (indices[c] != (mesh->indices ? mesh->indices[c] : (uint32_t)c))
+		if (indices[c] != vertex_of(triangles, c))
 			return false;
 	return true;
 }
@@ -377,8 +377,17 @@ static uint32_t count_late(const nt_vertex_pool *pool, uint32_t user)
 	return count;
 }
 
+/* The triangles of a mesh after its split: those that it left are read again. NULL: corner c is vertex c. */
+static nt_status find_triangles(const merging *m, const nt_mesh *mesh, nt_arena *passing, uint32_t **triangles,
+	nt_error *error)
+{
+	*triangles = mesh->split.indices ? mesh->split.indices : mesh->indices;
+	return nt_mesh_left_triangles(mesh) ?
+		nt_gltf_load_triangles(m->vertices->pool->scene->source, mesh, passing, triangles, error) : NT_OK;
+}
+
 /* Merges one solved user; what it holds is not needed any more. */
-static bool merge_user(merging *m, uint32_t user, nt_arena *arena)
+static nt_status merge_user(merging *m, uint32_t user, nt_arena *arena, nt_error *error)
 {
 	nt_pool_vertices *vertices = m->vertices;
 	const nt_vertex_pool *pool = vertices->pool;
@@ -387,17 +396,21 @@ static bool merge_user(merging *m, uint32_t user, nt_arena *arena)
 	if (same != NT_NONE && pool->sets.of[same] == set) {
 		vertices->indices[user] = vertices->indices[same];
 		vertices->changed[user] = vertices->changed[same];
-		return true;
+		return NT_OK;
 	}
-	vertices->indices[user] = nt_arena_alloc(arena, mesh->corner_count, sizeof(uint32_t));
-	if (!vertices->indices[user] || !merge_mesh(m, mesh, set, vertices->indices[user]))
-		return false;
-	if (pool->sets.first[set] == user)
+	uint32_t *triangles, *const indices = nt_arena_alloc(arena, mesh->corner_count, sizeof *indices);
+	nt_arena passing = {0};
+	nt_status status = indices ? find_triangles(m, mesh, &passing, &triangles, error) : nt_fail_memory(error);
+	if (!status && !merge_mesh(m, mesh, set, triangles, indices))
+		status = nt_fail_memory(error);
+	if (!status && pool->sets.first[set] == user)
 		set_unused(m, mesh, set);
+	vertices->indices[user] = indices;
 	/* a copy differs from what it copies; normals that were made may have given the mesh indices of its own */
-	vertices->changed[user] = mesh->split.source_count || mesh->vertex_count > mesh->source_vertex_count ||
-		!same_triangles(mesh, vertices->indices[user]);
-	return true;
+	vertices->changed[user] = !status && (mesh->split.source_count || mesh->vertex_count > mesh->source_vertex_count ||
+		!same_triangles(mesh, triangles, indices));
+	nt_arena_free(&passing);
+	return status;
 }
 
 static nt_status merge_users(merging *m, nt_arena *arena, nt_error *error)
@@ -417,8 +430,9 @@ static nt_status merge_users(merging *m, nt_arena *arena, nt_error *error)
 				return status;
 			ready = i + count;
 		}
-		if (!merge_user(m, i, arena))
-			return nt_fail_memory(error);
+		const nt_status status = merge_user(m, i, arena, error);
+		if (status)
+			return status;
 	}
 	for (uint32_t set = 0; set < pool->sets.count; set++)
 		set_unused_copies(m, set);
@@ -442,10 +456,10 @@ static const nt_mesh *lone_mesh(const nt_vertex_pool *pool)
 	return lone;
 }
 
-/* The triangles of a mesh after its split. */
+/* The triangles of a mesh after its split. NULL: memory is exhausted, or nobody asks, since the mesh left them. */
 static uint32_t *split_triangles(const nt_mesh *mesh, nt_arena *tables)
 {
-	if (mesh->split.indices || mesh->indices)
+	if (mesh->split.indices || mesh->indices || nt_mesh_left_triangles(mesh))
 		return mesh->split.indices ? mesh->split.indices : mesh->indices;
 	uint32_t *indices = nt_arena_alloc(tables, mesh->corner_count, sizeof *indices);
 	for (size_t c = 0; indices && c < mesh->corner_count; c++)
@@ -474,7 +488,7 @@ static bool borrow_split(nt_pool_vertices *vertices, const nt_mesh *mesh, nt_are
 		vertices->indices[i] = solved ? triangles : NULL;
 		vertices->changed[i] = solved && mesh->split.source_count > 0;
 	}
-	return triangles != NULL;
+	return triangles || nt_mesh_left_triangles(mesh);
 }
 
 /* All users of a pool have the same number of vertices in a sound document. */
