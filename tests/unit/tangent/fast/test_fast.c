@@ -144,18 +144,19 @@ static size_t compare_repairs(const char *name, const nmtan_mesh *mesh, size_t c
 		{.grain = 1, .most_narrow = NT_NARROW_LIMIT}};
 	enum { PLANS = sizeof plans / sizeof *plans };
 	result results[PLANS + 1]; /* the definition's is the last */
+	nmtan_counts counts[PLANS + 1];
 	size_t differences = 0;
 	for (size_t i = PLANS + 1; i-- > 0;) {
 		results[i] = result_make(corners);
 		nt_scratch scratch;
 		nt_scratch_init(&scratch, NULL);
 		nt_known known = {0};
-		nmtan_counts counts;
 		nt_solve solve = make_solve(mesh, corners, &scratch, &results[i], false);
 		solve.repair = true;
 		solve.known = nt_has_stored_texcoords(mesh) ? NULL : &known;
 		assert_int_equal(i == PLANS ? nt_mikktspace_scalar(&solve) : nt_mikktspace_fast_as(&solve, &plans[i]), NMTAN_OK);
-		assert_int_equal(nt_repair(&solve, &counts), NMTAN_OK);
+		assert_int_equal(nt_repair(&solve, &counts[i]), NMTAN_OK);
+		assert_memory_equal(&counts[i], &counts[PLANS], sizeof *counts);
 		differences += result_differences(&results[PLANS], &results[i], corners, false);
 		nt_scratch_free(&scratch);
 	}
