@@ -8,9 +8,9 @@
 #include "test.h"
 #include <math.h>
 #include <stdio.h>
-#include <unistd.h>
 #include "api/tangents.h"
 #include "base/cpu.h"
+#include "definition.h"
 #include "golden.h"
 #include "nasty.h"
 #include "tangent/fast/bins.h"
@@ -19,114 +19,11 @@
 #include "tangent/repair.h"
 #include "topology/orientation.h"
 
-/* Floats with different bits that are not both NaN. */
-static size_t count_differences(const float *a, const float *b, size_t count)
-{
-	size_t differences = 0;
-	for (size_t i = 0; i < count; i++)
-		differences += memcmp(&a[i], &b[i], sizeof *a) != 0 && !(isnan(a[i]) && isnan(b[i]));
-	return differences;
-}
-
-typedef struct result {
-	float *tangents, *bitangents, *magnitudes;
-} result;
-
-static result result_make(size_t corners)
-{
-	return (result){malloc(corners * 16 + 1), malloc(corners * 12 + 1), malloc(corners * 8 + 1)};
-}
-
-static void result_free(result *r)
-{
-	free(r->tangents);
-	free(r->bitangents);
-	free(r->magnitudes);
-}
-
-static size_t result_differences(const result *a, const result *b, size_t corners, bool more)
-{
-	size_t differences = count_differences(a->tangents, b->tangents, 4 * corners);
-	if (more)
-		differences += count_differences(a->bitangents, b->bitangents, 3 * corners) +
-			       count_differences(a->magnitudes, b->magnitudes, 2 * corners);
-	return differences;
-}
-
-static nmtan_mesh filled(const nmtan_mesh *mesh)
-{
-	nmtan_mesh m = *mesh;
-	m.position_stride_bytes = m.position_stride_bytes ? m.position_stride_bytes : 12;
-	m.normal_stride_bytes = m.normal_stride_bytes ? m.normal_stride_bytes : 12;
-	m.texcoord_stride_bytes = m.texcoord_stride_bytes ? m.texcoord_stride_bytes : 8;
-	return m;
-}
-
-static nt_solve make_solve(const nmtan_mesh *mesh, size_t corners, nt_scratch *scratch, const result *r,
-	bool more)
-{
-	return (nt_solve){.mesh = mesh, .corner_count = corners, .threshold_cos = -1.0f, .threads = 1,
-		.isa = NT_ISA_BASELINE, .scratch = scratch, .tangents = r->tangents,
-		.bitangents = more ? r->bitangents : NULL, .magnitudes = more ? r->magnitudes : NULL};
-}
-
-/* As many threads as are asked for. */
-static const nt_fast_plan usual = {.grain = 1};
-
-/* One run of the fast path against `expected`; prints what differs. */
-static size_t compare_run(const char *name, const nmtan_mesh *mesh, size_t corners, const result *expected,
-	bool more, nt_isa isa, unsigned threads, const nt_fast_plan *plan)
-{
-	result got = result_make(corners);
-	nt_scratch scratch;
-	nt_scratch_init(&scratch, NULL);
-	nt_solve solve = make_solve(mesh, corners, &scratch, &got, more);
-	solve.isa = isa;
-	solve.threads = threads;
-	memset(got.tangents, 0xab, corners * 16);
-	assert_int_equal(nt_mikktspace_fast_as(&solve, plan), NMTAN_OK);
-	const size_t differences = result_differences(expected, &got, corners, more);
-	if (differences)
-		print_error("%s, set %d, %u threads, bins of 2^%u, %zu places: %zu of %zu floats differ\n", name,
-			(int)isa, threads, plan->bin_bits, plan->most_places, differences, corners * (more ? 9 : 4));
-	nt_scratch_free(&scratch);
-	result_free(&got);
-	return differences;
-}
-
-/* One thread with every instruction set, where few vertices or triangles may go a way of their own, then more threads,
- * and places that do not suffice; the same by bins where there is a choice. */
-static size_t compare_variants(const char *name, const nmtan_mesh *mesh, size_t corners,
-	const result *expected, bool more)
-{
-	static const unsigned threads[] = {2, 3, 8};
-	static const nt_fast_plan few_places = {.grain = 1, .most_places = 200},
-		bins = {.grain = 1, .bin_bits = 4}, larger_bins = {.grain = 1, .bin_bits = 5},
-		tiny = {.grain = 1, .most_tiny = NT_TINY}, two = {.grain = SIZE_MAX, .least_two = 2},
-		narrow = {.grain = 1, .most_narrow = NT_NARROW_LIMIT};
-	static const nt_fast_plan *const small[3] = {&usual, &narrow, &tiny};
-	size_t differences = 0;
-	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++)
-		for (int i = 0; nt_cpu_has(isa) && i < 3; i++)
-			differences += compare_run(name, mesh, corners, expected, more, isa, 1, small[i]);
-	for (int i = 0; i < 3; i++)
-		differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), threads[i], &usual);
-	differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), 3, &two);
-	for (unsigned count = 1; count <= 3; count += 2)
-		differences += compare_run(name, mesh, corners, expected, more, nt_cpu_best(), count, &few_places);
-	if (more)
-		return differences;
-	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++)
-		if (nt_cpu_has(isa))
-			differences += compare_run(name, mesh, corners, expected, false, isa, 1, &bins);
-	return differences + compare_run(name, mesh, corners, expected, false, nt_cpu_best(), 3, &larger_bins);
-}
-
 static void compare_golden(const char *path, const nt_golden *golden, void *context)
 {
-	const nmtan_mesh loose = nt_golden_mesh(golden), mesh = filled(&loose);
-	const result expected = {golden->tangents, NULL, NULL};
-	*(size_t *)context += compare_variants(path, &mesh, golden->corner_count, &expected, false);
+	const nmtan_mesh loose = nt_golden_mesh(golden), mesh = nt_filled(&loose);
+	const nt_result expected = {golden->tangents, NULL, NULL};
+	*(size_t *)context += nt_compare_variants(path, &mesh, golden->corner_count, &expected, false);
 }
 
 static void goldens_are_byte_identical(void **state)
@@ -143,25 +40,25 @@ static size_t compare_repairs(const char *name, const nmtan_mesh *mesh, size_t c
 	static const nt_fast_plan plans[] = {{.grain = 1}, {.grain = 1, .bin_bits = 4}, {.grain = 1, .most_tiny = NT_TINY},
 		{.grain = 1, .most_narrow = NT_NARROW_LIMIT}};
 	enum { PLANS = sizeof plans / sizeof *plans };
-	result results[PLANS + 1]; /* the definition's is the last */
+	nt_result results[PLANS + 1]; /* the definition's is the last */
 	nmtan_counts counts[PLANS + 1];
 	size_t differences = 0;
 	for (size_t i = PLANS + 1; i-- > 0;) {
-		results[i] = result_make(corners);
+		results[i] = nt_result_make(corners);
 		nt_scratch scratch;
 		nt_scratch_init(&scratch, NULL);
 		nt_known known = {0};
-		nt_solve solve = make_solve(mesh, corners, &scratch, &results[i], false);
+		nt_solve solve = nt_result_solve(mesh, corners, &scratch, &results[i], false);
 		solve.repair = true;
 		solve.known = nt_has_stored_texcoords(mesh) ? NULL : &known;
 		assert_int_equal(i == PLANS ? nt_mikktspace_scalar(&solve) : nt_mikktspace_fast_as(&solve, &plans[i]), NMTAN_OK);
 		assert_int_equal(nt_repair(&solve, &counts[i]), NMTAN_OK);
 		assert_memory_equal(&counts[i], &counts[PLANS], sizeof *counts);
-		differences += result_differences(&results[PLANS], &results[i], corners, false);
+		differences += nt_result_differences(&results[PLANS], &results[i], corners, false);
 		nt_scratch_free(&scratch);
 	}
 	for (size_t i = 0; i <= PLANS; i++)
-		result_free(&results[i]);
+		nt_result_free(&results[i]);
 	if (differences)
 		print_error("%s, repaired: %zu floats differ\n", name, differences);
 	return differences;
@@ -172,230 +69,15 @@ static size_t compare_nasty(uint64_t seed)
 	char name[64];
 	nt_nasty nasty;
 	nt_nasty_make(seed, &nasty);
-	const nmtan_mesh mesh = filled(&nasty.mesh);
+	const nmtan_mesh mesh = nt_filled(&nasty.mesh);
 	const bool more = seed % 2;
-	result expected = result_make(nasty.corner_count);
-	nt_scratch scratch;
-	nt_scratch_init(&scratch, NULL);
-	const nt_solve solve = make_solve(&mesh, nasty.corner_count, &scratch, &expected, more);
-	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
-	nt_scratch_free(&scratch);
+	nt_result expected = nt_result_define(&mesh, nasty.corner_count, more);
 	snprintf(name, sizeof name, "seed %llu", (unsigned long long)seed);
-	const size_t differences = compare_variants(name, &mesh, nasty.corner_count, &expected, more) +
+	const size_t differences = nt_compare_variants(name, &mesh, nasty.corner_count, &expected, more) +
 		compare_repairs(name, &mesh, nasty.corner_count);
-	result_free(&expected);
+	nt_result_free(&expected);
 	nt_nasty_free(&nasty);
 	return differences;
-}
-
-/* Around a vertex three triangles of a square, from (-1, -1) counterclockwise, with u = x and directions of u
- * (1 - k, 1 + k), (1, 0) and (1 - k, -1 - k), k = 1 - 2^-bits. Those of v are (0, 1). The product of the first and
- * the last is 2^(-2 bits - 1) above -1: step 7 parts them from 12 bits on, where that is 2^-25, half the
- * distance of floats below 1, or less. `turn` exchanges axes. Returns whether the vertex has two results at least. */
-static bool compare_wide_fan(int bits, int turn, bool middle_first, size_t *differences)
-{
-	const float k = 1.0f - ldexpf(1.0f, -bits);
-	const float x[5] = {0, -1, 1, 1, -1}, y[5] = {0, -1, -1, 1, 1}, v[5] = {0, k, -1, 1, -k};
-	float p[5][3] = {{0}}, n[5][3] = {{0}}, t[5][2];
-	for (int i = 0; i < 5; i++) {
-		p[i][turn] = x[i], p[i][(turn + 1) % 3] = y[i], n[i][(turn + 2) % 3] = 1.0f;
-		t[i][0] = x[i], t[i][1] = v[i];
-	}
-	const unsigned in_order[9] = {0, 1, 2, 0, 2, 3, 0, 3, 4}, other[9] = {0, 2, 3, 0, 1, 2, 0, 3, 4};
-	const nmtan_mesh loose = {.struct_bytes = sizeof loose, .face_count = 3, .vertex_count = 5,
-		.positions = p[0], .normals = n[0],
-		.texcoords = t[0], .indices = middle_first ? other : in_order};
-	const nmtan_mesh mesh = filled(&loose);
-	result expected = result_make(9);
-	nt_scratch scratch;
-	nt_scratch_init(&scratch, NULL);
-	const nt_solve solve = make_solve(&mesh, 9, &scratch, &expected, false);
-	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
-	nt_scratch_free(&scratch);
-	*differences += compare_variants("wide fan", &mesh, 9, &expected, false);
-	const bool two = memcmp(expected.tangents + 4 * (middle_first ? 3 : 0), expected.tangents + 4 * 6, 16) != 0;
-	result_free(&expected);
-	return two;
-}
-
-static void antiparallel_directions_are_byte_identical(void **state)
-{
-	(void)state;
-	size_t differences = 0;
-	for (int bits = 1; bits <= 24; bits++)
-		for (int turn = 0; turn < 3; turn++)
-			for (int first = 0; first < 2; first++)
-				assert_int_equal(compare_wide_fan(bits, turn, first, &differences), bits >= 12);
-	assert_int_equal(differences, 0);
-}
-
-/* A fan of three triangles around a vertex, whose directions are nearly its normal: what is left in its plane is so
- * short that its square is a denormal, and a "unit" vector is up to a fifth too long or too short. */
-static size_t compare_short_fan(uint32_t random)
-{
-	enum { RIM = 4, FACES = RIM - 1 };
-	static const float normal[3] = {1, 0, 0};
-	float p[RIM + 1][3] = {{0}}, n[RIM + 1][3], t[RIM + 1][2] = {{0}};
-	unsigned indices[FACES][3];
-	memcpy(n[0], normal, sizeof normal);
-	for (int i = 1; i <= RIM; i++) {
-		memcpy(n[i], normal, sizeof normal);
-		p[i][0] = 1.0f;
-		for (int c = 1; c < 3; c++) {
-			random = random * 1664525 + 1013904223;
-			p[i][c] = ((float)(random >> 8) - 0x1p23f) * 0x1p-23f * 1e-22f;
-		}
-		t[i][0] = (float)(RIM - i), t[i][1] = (float)i;
-	}
-	for (unsigned i = 0; i < FACES; i++)
-		memcpy(indices[i], (unsigned[3]){0, i + 1, i + 2}, sizeof indices[i]);
-	const nmtan_mesh loose = {.struct_bytes = sizeof loose, .face_count = FACES, .vertex_count = RIM + 1,
-		.positions = p[0], .normals = n[0],
-		.texcoords = t[0], .indices = indices[0]};
-	const nmtan_mesh mesh = filled(&loose);
-	result expected = result_make(3 * FACES);
-	nt_scratch scratch;
-	nt_scratch_init(&scratch, NULL);
-	const nt_solve solve = make_solve(&mesh, 3 * FACES, &scratch, &expected, true);
-	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
-	nt_scratch_free(&scratch);
-	const size_t differences = compare_variants("short fan", &mesh, 3 * FACES, &expected, true);
-	result_free(&expected);
-	return differences;
-}
-
-/* Of such directions angles do not tell whether their product is -1. These fans, eight of 70 000, would be solved
- * wrongly if they did. */
-static void short_directions_are_byte_identical(void **state)
-{
-	(void)state;
-	static const uint32_t seeds[] = {2098508433, 921525665, 2118292457, 4254900097, 1290134337, 3088173105,
-		3896388217, 3648777353};
-	size_t differences = 0;
-	for (size_t i = 0; i < sizeof seeds / sizeof *seeds; i++)
-		differences += compare_short_fan(seeds[i]);
-	assert_int_equal(differences, 0);
-}
-
-/* Corners around a vertex whose edges are of a few kinds in space and, always counterclockwise, in texture coordinates.
- * So they have few directions, each often, of which many are opposite in u or in v alone, as those of a quad's halves
- * may be; some triangles have no frame, and some, whose lengths overflow, one of NaN. */
-enum { RIM_MOST = 700 };
-typedef struct hub {
-	float p[RIM_MOST + 1][3], n[RIM_MOST + 1][3], t[RIM_MOST + 1][2];
-	unsigned indices[4 * RIM_MOST];
-	unsigned char face_sizes[RIM_MOST];
-	nmtan_mesh mesh;
-	size_t corners;
-} hub;
-
-static void make_hub(uint32_t random, size_t rim, bool quads, bool large, hub *h)
-{
-	static const float compass[8][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
-	*h = (hub){.n[0] = {0, 0, 1}};
-	uint32_t place = 0, angle = 0;
-	for (size_t i = 1; i <= rim; i++) {
-		random = random * 1664525 + 1013904223;
-		/* never that of the vertex before, so that the fan does not end */
-		place += 1 + (random >> 29) % 7;
-		const float *p = compass[place % 8], scale = large && (random >> 20) % 8 == 0 ? 3e38f : 1.0f;
-		angle += (random >> 26) % 8 ? 1 + (random >> 26) % 3 : 0;
-		memcpy(h->p[i], (float[3]){scale * p[0], scale * p[1], 0}, sizeof h->p[i]);
-		memcpy(h->t[i], compass[angle % 8], sizeof h->t[i]);
-		/* no two vertices of the rim are one */
-		memcpy(h->n[i], (float[3]){(float)i, 1, 0}, sizeof h->n[i]);
-	}
-	unsigned *to = h->indices;
-	size_t faces = 0;
-	for (unsigned i = 1, step; i < rim; i += step) {
-		step = quads && i + 1 < rim && i % 3 ? 2 : 1;
-		*to++ = 0;
-		for (unsigned j = 0; j <= step; j++)
-			*to++ = i + j;
-		h->face_sizes[faces++] = (unsigned char)(step + 2);
-	}
-	h->corners = (size_t)(to - h->indices);
-	h->mesh = filled(&(nmtan_mesh){.struct_bytes = sizeof h->mesh, .face_count = faces, .vertex_count = rim + 1,
-		.positions = h->p[0], .normals = h->n[0], .texcoords = h->t[0], .indices = h->indices,
-		.face_sizes = quads ? h->face_sizes : NULL});
-}
-
-static size_t compare_hub(const hub *h, bool more)
-{
-	result expected = result_make(h->corners);
-	nt_scratch scratch;
-	nt_scratch_init(&scratch, NULL);
-	const nt_solve solve = make_solve(&h->mesh, h->corners, &scratch, &expected, more);
-	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
-	nt_scratch_free(&scratch);
-	const size_t differences = compare_variants("hub", &h->mesh, h->corners, &expected, more);
-	result_free(&expected);
-	return differences;
-}
-
-static void hubs_are_byte_identical(void **state)
-{
-	(void)state;
-	static const size_t rims[] = {8, 13, 100, 300, RIM_MOST};
-	hub *h = malloc(sizeof *h);
-	size_t differences = 0;
-	for (unsigned i = 0; i < 8 * sizeof rims / sizeof *rims; i++) {
-		make_hub(i + 1, rims[i / 8], i & 1, i & 2, h);
-		differences += compare_hub(h, i & 4);
-	}
-	assert_int_equal(differences, 0);
-	free(h);
-}
-
-/* Scratch that a hub takes whose directions turn by so much in all, or, `once`, at one place and back again. */
-static size_t solve_turning_hub(float turn, bool once)
-{
-	enum { SPOKES = 1500 };
-	float (*p)[3] = calloc(SPOKES + 2, sizeof *p), (*n)[3] = calloc(SPOKES + 2, sizeof *n);
-	float (*t)[2] = calloc(SPOKES + 2, sizeof *t);
-	unsigned (*indices)[3] = malloc(SPOKES * sizeof *indices);
-	float turned = 0;
-	n[0][2] = 1;
-	for (unsigned i = 1; i <= SPOKES + 1; i++) {
-		/* at once backwards, then forwards by less than a spoke: texture coordinates stay counterclockwise */
-		turned = !once ? turn * (float)i / SPOKES : i == 6 ? -turn : fminf(turned + 0.2f, 0);
-		const float angle = 0.3f * (float)i, direction = turned + 0.1f * sinf((float)i / 1000) - angle;
-		memcpy(p[i], (float[3]){cosf(angle), sinf(angle), 0}, sizeof *p);
-		memcpy(t[i], (float[2]){cosf(direction), -sinf(direction)}, sizeof *t);
-		memcpy(n[i], (float[3]){(float)i, 1, 0}, sizeof *n);
-		if (i <= SPOKES)
-			memcpy(indices[i - 1], (unsigned[3]){0, i, i + 1}, sizeof *indices);
-	}
-	const nmtan_mesh mesh = filled(&(nmtan_mesh){.struct_bytes = sizeof mesh, .face_count = SPOKES,
-		.vertex_count = SPOKES + 2, .positions = p[0], .normals = n[0], .texcoords = t[0], .indices = indices[0]});
-	result expected = result_make(3 * SPOKES), got = result_make(3 * SPOKES);
-	nt_scratch scratch;
-	nt_scratch_init(&scratch, NULL);
-	nt_solve solve = make_solve(&mesh, 3 * SPOKES, &scratch, &expected, true);
-	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
-	nt_scratch_free(&scratch);
-	nt_scratch_init(&scratch, NULL);
-	solve = make_solve(&mesh, 3 * SPOKES, &scratch, &got, true);
-	assert_int_equal(nt_mikktspace_fast_as(&solve, &usual), NMTAN_OK);
-	const size_t bytes = nt_scratch_bytes(&scratch);
-	nt_scratch_free(&scratch);
-	assert_int_equal(result_differences(&expected, &got, 3 * SPOKES, true), 0);
-	result_free(&expected);
-	result_free(&got);
-	free(p);
-	free(n);
-	free(t);
-	free(indices);
-	return bytes;
-}
-
-/* Sums for each direction, which take quadratic time, take memory, too. */
-static void few_directions_aside_do_not_split_a_hub(void **state)
-{
-	(void)state;
-	const size_t bytes = solve_turning_hub(0, false);
-	assert_int_equal(solve_turning_hub(1.9f, true), bytes);
-	assert_true(solve_turning_hub(6, false) > bytes);
 }
 
 static uint64_t environment(const char *name, uint64_t otherwise)
@@ -440,7 +122,7 @@ static void copy_rows(const float *from, size_t stride_bytes, size_t floats, siz
 
 static void join(joined *j, const nt_nasty *part, float unit)
 {
-	const nmtan_mesh m = filled(&part->mesh);
+	const nmtan_mesh m = nt_filled(&part->mesh);
 	const size_t vertices = j->mesh.vertex_count, faces = j->mesh.face_count;
 	for (int i = 0; i < 3; i++)
 		assert_non_null(j->rows[i] = realloc(j->rows[i], (vertices + m.vertex_count) * 12 + 1));
@@ -474,19 +156,15 @@ static void nasty_meshes_joined_are_byte_identical(void **state)
 	j.mesh.texcoords = j.rows[2];
 	j.mesh.indices = j.indices;
 	j.mesh.face_sizes = j.sizes;
-	const nmtan_mesh mesh = filled(&j.mesh);
-	result expected = result_make(j.corner_count);
-	nt_scratch scratch;
-	nt_scratch_init(&scratch, NULL);
-	const nt_solve solve = make_solve(&mesh, j.corner_count, &scratch, &expected, true);
-	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
-	nt_scratch_free(&scratch);
+	const nmtan_mesh mesh = nt_filled(&j.mesh);
+	nt_result expected = nt_result_define(&mesh, j.corner_count, true);
 	size_t differences = 0;
 	for (int more = 0; more < 2; more++)
 		for (int i = 0; i < 3; i++)
-			differences += compare_run("joined", &mesh, j.corner_count, &expected, more, nt_cpu_best(), threads[i], &usual);
+			differences += nt_compare_run("joined", &mesh, j.corner_count, &expected, more, nt_cpu_best(), threads[i],
+				&nt_usual_plan);
 	assert_int_equal(differences, 0);
-	result_free(&expected);
+	nt_result_free(&expected);
 	for (int i = 0; i < 3; i++)
 		free(j.rows[i]);
 	free(j.indices);
@@ -552,14 +230,14 @@ static void compare_vertices(const nmtan_mesh *mesh, size_t corners, const nmtan
 /* With repair, which relies on what the fast path knows of its result. */
 static void compare_repaired(const nmtan_mesh *mesh, size_t corners, bool lost)
 {
-	result expected = result_make(corners);
+	nt_result expected = nt_result_make(corners);
 	const nmtan_output wanted = {.struct_bytes = sizeof wanted, .tangents = expected.tangents};
 	nmtan_counts wanted_counts = NMTAN_COUNTS_INIT;
 	const nt_implementation scalar = {.scalar = true};
 	assert_int_equal(nt_tangents(mesh, NULL, &scalar, &wanted, &wanted_counts), NMTAN_OK);
 	assert_int_equal(wanted_counts.repaired_parallel > 0, lost);
 	for (unsigned threads = 1; threads <= 2; threads++) {
-		result got = result_make(corners);
+		nt_result got = nt_result_make(corners);
 		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = got.tangents};
 		nmtan_counts counts = NMTAN_COUNTS_INIT;
 		const nmtan_options options = {.struct_bytes = sizeof options, .threads = threads};
@@ -567,9 +245,9 @@ static void compare_repaired(const nmtan_mesh *mesh, size_t corners, bool lost)
 		assert_memory_equal(got.tangents, expected.tangents, corners * 16);
 		assert_memory_equal(&counts, &wanted_counts, sizeof wanted_counts);
 		compare_vertices(mesh, corners, &options, expected.tangents);
-		result_free(&got);
+		nt_result_free(&got);
 	}
-	result_free(&expected);
+	nt_result_free(&expected);
 }
 
 static void compare_scattered(grid g)
@@ -584,19 +262,14 @@ static void compare_scattered(grid g)
 	const nmtan_mesh loose = {.struct_bytes = sizeof loose, .face_count = quads ? CELLS : 2 * CELLS,
 		.vertex_count = GRID_VERTICES, .positions = p,
 		.normals = n, .texcoords = t, .indices = indices, .face_sizes = quads ? sizes : NULL};
-	const nmtan_mesh mesh = filled(&loose);
-	result expected = result_make(corners);
-	nt_scratch scratch;
-	nt_scratch_init(&scratch, NULL);
-	const nt_solve solve = make_solve(&mesh, corners, &scratch, &expected, true);
-	assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
-	nt_scratch_free(&scratch);
+	const nmtan_mesh mesh = nt_filled(&loose);
+	nt_result expected = nt_result_define(&mesh, corners, true);
 	for (unsigned threads = 1; threads <= 2; threads++)
 		for (int more = 0; more < 2; more++)
-			assert_int_equal(compare_run("scattered", &mesh, corners, &expected, more, nt_cpu_best(), threads,
-					&usual), 0);
+			assert_int_equal(nt_compare_run("scattered", &mesh, corners, &expected, more, nt_cpu_best(), threads,
+					&nt_usual_plan), 0);
 	compare_repaired(&mesh, corners, g.lost);
-	result_free(&expected);
+	nt_result_free(&expected);
 	free(sizes);
 	free(p);
 	free(n);
@@ -644,7 +317,7 @@ static void compare_calls(const nmtan_mesh *mesh, nmtan_repair repair)
 {
 	const size_t corners = 3 * mesh->face_count;
 	const nmtan_options options = {.struct_bytes = sizeof options, .threads = 1, .repair = repair};
-	result expected = result_make(corners), got = result_make(corners);
+	nt_result expected = nt_result_make(corners), got = nt_result_make(corners);
 	uint8_t *faults = malloc(2 * corners);
 	nmtan_counts wanted = NMTAN_COUNTS_INIT, counts = NMTAN_COUNTS_INIT;
 	const nmtan_output to_expected = {.struct_bytes = sizeof to_expected, .tangents = expected.tangents,
@@ -664,8 +337,8 @@ static void compare_calls(const nmtan_mesh *mesh, nmtan_repair repair)
 	}
 	compare_vertices(mesh, corners, &options, expected.tangents);
 	free(faults);
-	result_free(&expected);
-	result_free(&got);
+	nt_result_free(&expected);
+	nt_result_free(&got);
 }
 
 static void unusable_vertices_are_byte_identical(void **state)
@@ -675,17 +348,12 @@ static void unusable_vertices_are_byte_identical(void **state)
 	unsigned indices[6 * (HOPELESS_CELLS + 1)];
 	for (hopeless kind = ALONG_U; kind <= ONE_POINT; kind++)
 		for (int mixed = 0; mixed < 2; mixed++) {
-			const nmtan_mesh mesh = make_hopeless(kind, mixed, p, n, t, indices), full = filled(&mesh);
+			const nmtan_mesh mesh = make_hopeless(kind, mixed, p, n, t, indices), full = nt_filled(&mesh);
 			const size_t corners = 3 * mesh.face_count;
-			result expected = result_make(corners);
-			nt_scratch scratch;
-			nt_scratch_init(&scratch, NULL);
-			const nt_solve solve = make_solve(&full, corners, &scratch, &expected, true);
-			assert_int_equal(nt_mikktspace_scalar(&solve), NMTAN_OK);
-			nt_scratch_free(&scratch);
+			nt_result expected = nt_result_define(&full, corners, true);
 			for (int more = 0; more < 2; more++)
-				assert_int_equal(compare_variants("unusable", &full, corners, &expected, more), 0);
-			result_free(&expected);
+				assert_int_equal(nt_compare_variants("unusable", &full, corners, &expected, more), 0);
+			nt_result_free(&expected);
 			compare_calls(&mesh, NMTAN_REPAIR_ON);
 			compare_calls(&mesh, NMTAN_REPAIR_OFF);
 		}
@@ -779,46 +447,6 @@ static void what_gave_nothing_is_around_faults(void **state)
 		.positions = p[0], .normals = n[0], .texcoords = t[0], .indices = indices}, NMTAN_REPAIR_ON);
 }
 
-/* An allocator that fails from the n-th request on. */
-typedef struct budget {
-	size_t left, live;
-} budget;
-
-/* Lines begin where the scratch wants them to, so that what fits a block does not depend on the addresses of
- * threads. */
-static void *spend(void *user, size_t size)
-{
-	budget *b = user;
-	if (b->left == 0)
-		return NULL;
-	b->left--;
-	b->live++;
-	return aligned_alloc(64, (size + 63) / 64 * 64);
-}
-
-static void give_back(void *user, void *block, size_t size)
-{
-	(void)size;
-	((budget *)user)->live--;
-	free(block);
-}
-
-static nmtan_status solve_within(const nmtan_mesh *mesh, size_t corners, const result *r, size_t allowed,
-	unsigned threads, unsigned bin_bits)
-{
-	const nt_fast_plan plan = {.grain = 1, .bin_bits = bin_bits};
-	budget b = {allowed, 0};
-	const nmtan_allocator allocator = {spend, give_back, &b};
-	nt_scratch scratch;
-	nt_scratch_init(&scratch, &allocator);
-	nt_solve solve = make_solve(mesh, corners, &scratch, r, bin_bits == 0);
-	solve.threads = threads;
-	const nmtan_status status = nt_mikktspace_fast_as(&solve, &plan);
-	nt_scratch_free(&scratch);
-	assert_int_equal(b.live, 0);
-	return status;
-}
-
 /* Scratch comes in blocks of 64 KiB, so the meshes are made large enough for many of them: a grid beside
  * which every nasty mesh is placed. */
 static void every_failed_allocation_is_told(void **state)
@@ -841,35 +469,23 @@ static void every_failed_allocation_is_told(void **state)
 	const nmtan_mesh loose = {.struct_bytes = sizeof loose, .face_count = corners / 3,
 		.vertex_count = corners, .positions = p, .normals = n,
 		.texcoords = t};
-	const nmtan_mesh mesh = filled(&loose);
-	result r = result_make(corners);
+	const nmtan_mesh mesh = nt_filled(&loose);
+	nt_result r = nt_result_make(corners);
 	for (unsigned i = 0; i < 4; i++) {
 		const unsigned threads = i % 2 ? 3 : 1, bin_bits = i < 2 ? 0 : 9;
+		const nt_fast_plan plan = {.grain = 1, .bin_bits = bin_bits};
 		size_t allowed = 0;
-		while (solve_within(&mesh, corners, &r, allowed, threads, bin_bits) == NMTAN_ERROR_MEMORY)
+		while (nt_solve_within(&mesh, corners, &r, i < 2, allowed, threads, &plan) == NMTAN_ERROR_MEMORY)
 			allowed++;
-		assert_int_equal(solve_within(&mesh, corners, &r, allowed, threads, bin_bits), NMTAN_OK);
+		assert_int_equal(nt_solve_within(&mesh, corners, &r, i < 2, allowed, threads, &plan), NMTAN_OK);
 		assert_in_range(allowed, 8, 100);
 	}
-	/* a hub whose directions differ */
-	hub *h = malloc(sizeof *h);
-	make_hub(1, RIM_MOST, false, false, h);
-	size_t enough = 0;
-	while (solve_within(&h->mesh, h->corners, &r, enough, 1, 0) == NMTAN_ERROR_MEMORY)
-		enough++;
-	assert_in_range(enough, 2, 100);
-	free(h);
-	/* two of its triangles alone */
+	/* two of the triangles alone */
 	nmtan_mesh few = mesh;
 	few.face_count = 2;
-	budget nothing = {0, 0};
-	const nmtan_allocator allocator = {spend, give_back, &nothing};
-	nt_scratch scratch;
-	nt_scratch_init(&scratch, &allocator);
-	const nt_solve solve = make_solve(&few, 6, &scratch, &r, false);
-	assert_int_equal(nt_mikktspace_fast_as(&solve, &(nt_fast_plan){.grain = 1, .most_tiny = NT_TINY}), NMTAN_ERROR_MEMORY);
-	nt_scratch_free(&scratch);
-	result_free(&r);
+	const nt_fast_plan tiny = {.grain = 1, .most_tiny = NT_TINY};
+	assert_int_equal(nt_solve_within(&few, 6, &r, false, 0, 1, &tiny), NMTAN_ERROR_MEMORY);
+	nt_result_free(&r);
 	free(p);
 	free(n);
 	free(t);
@@ -881,10 +497,6 @@ int main(void)
 		cmocka_unit_test(goldens_are_byte_identical),
 		cmocka_unit_test(nasty_meshes_are_byte_identical),
 		cmocka_unit_test(nasty_meshes_joined_are_byte_identical),
-		cmocka_unit_test(antiparallel_directions_are_byte_identical),
-		cmocka_unit_test(short_directions_are_byte_identical),
-		cmocka_unit_test(hubs_are_byte_identical),
-		cmocka_unit_test(few_directions_aside_do_not_split_a_hub),
 		cmocka_unit_test(scattered_meshes_are_byte_identical),
 		cmocka_unit_test(unusable_vertices_are_byte_identical),
 		cmocka_unit_test(what_is_around_faults_is_seen),
