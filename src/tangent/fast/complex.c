@@ -87,48 +87,64 @@ static size_t list_corners(const nt_complex *c, const uint32_t *triangles, size_
 	return n;
 }
 
-/* Where the next things go. */
+/* Where the next things go, by whether the vertex is tangled. */
 typedef struct cursors {
-	uint32_t *vertex, *welded, *order, place;
+	size_t vertex[2];
+	uint32_t place[2], *order;
 } cursors;
 
 /* A vertex gets its places when it comes up first. */
 static inline void place_corner(const nt_complex *c, const listed_corner *corner, cursors *at)
 {
-	const uint32_t kept = NT_RESULT_SUM | NT_RESULT_TANGLED;
-	uint32_t *state = &nt_fast_record(c->fast, c->orient, corner->vertex)->state;
-	const uint32_t old = *state;
-	uint32_t place = old & NT_RESULT_NUMBER;
-	if (!(old & NT_RESULT_PLACED)) {
-		*at->vertex++ = at->place | (old & kept);
-		*at->welded++ = corner->vertex;
-		const uint32_t corners = place;
-		place = at->place;
-		at->place += corners;
+	uint32_t *state_at = &nt_fast_record(c->fast, c->orient, corner->vertex)->state, state = *state_at;
+	if (!(state & NT_RESULT_PLACED)) {
+		const unsigned tangled = state / NT_RESULT_TANGLED % 2;
+		const size_t v = at->vertex[tangled]++;
+		const uint32_t place = at->place[tangled];
+		c->vertices[v] = place | (state & NT_RESULT_SUM);
+		c->welded[v] = corner->vertex;
+		at->place[tangled] += state & NT_RESULT_NUMBER;
+		state = (state & ~NT_RESULT_NUMBER) | NT_RESULT_PLACED | place;
 	}
+	*state_at = state + 1;
+	const uint32_t place = state & NT_RESULT_NUMBER;
 	c->corners[place] = corner->corner;
-	c->across[2 * place] = corner->after;
-	c->across[2 * place + 1] = corner->before;
-	*state = NT_RESULT_COMPLEX | NT_RESULT_PLACED | (old & kept) | (place + 1);
+	if (!(state & NT_RESULT_TANGLED)) {
+		c->across[2 * place] = corner->after;
+		c->across[2 * place + 1] = corner->before;
+	}
 	if (at->order)
 		*at->order++ = place;
 }
 
-static nmtan_status collect(nt_complex *c, size_t places)
+/* Places of which edges and groups are kept: those of plain vertices, then a few tangled ones, or the largest of these.
+ * Where all groups are found together: all. */
+static size_t room_of(const nt_settled *settled, bool ordered)
+{
+	const size_t plain = settled->complex_corners - settled->tangled_corners;
+	const size_t tangled = settled->most_tangled > NT_BATCH ? settled->most_tangled : NT_BATCH;
+	const size_t room = plain > tangled ? plain : tangled;
+	return ordered || room > settled->complex_corners ? settled->complex_corners : room;
+}
+
+static nmtan_status collect(nt_complex *c, const nt_settled *settled)
 {
 	const nt_fast *fast = c->fast;
+	const size_t places = settled->complex_corners;
+	/* without a second orientation there is nothing to choose */
+	const bool ordered = !c->single && nt_fast_next_flagged(fast, 0, NT_TRIANGLE_ANY) < fast->triangle_count;
+	c->room = (uint32_t)room_of(settled, ordered);
 	c->vertices = nt_borrowed_alloc(c->memory, c->vertex_count + 1, sizeof *c->vertices);
 	c->welded = nt_borrowed_alloc(c->memory, c->vertex_count, sizeof *c->welded);
 	c->corners = nt_borrowed_alloc(c->memory, places, sizeof *c->corners);
-	c->across = nt_borrowed_alloc(c->memory, places, 2 * sizeof *c->across);
-	c->group = nt_borrowed_alloc(c->memory, places, sizeof *c->group);
-	/* without a second orientation there is nothing to choose */
-	const bool ordered = !c->single && nt_fast_next_flagged(fast, 0, NT_TRIANGLE_ANY) < fast->triangle_count;
+	c->across = nt_borrowed_alloc(c->memory, c->room, 2 * sizeof *c->across);
+	c->group = nt_borrowed_alloc(c->memory, c->room, sizeof *c->group);
 	if (ordered)
 		c->order = nt_borrowed_alloc(c->memory, places, sizeof *c->order);
 	if (!c->vertices || !c->welded || !c->corners || !c->across || !c->group || (ordered && !c->order))
 		return NMTAN_ERROR_MEMORY;
-	cursors at = {c->vertices, c->welded, c->order, 0};
+	const uint32_t plain = (uint32_t)(places - settled->tangled_corners);
+	cursors at = {{0, c->plain_count}, {0, plain}, c->order};
 	for (size_t t = 0; t < fast->triangle_count;) {
 		uint32_t triangles[LISTED + STEP];
 		listed_corner corners[3 * (LISTED + STEP) + 1];
@@ -136,17 +152,16 @@ static nmtan_status collect(nt_complex *c, size_t places)
 		for (size_t i = 0; i < count; i++)
 			place_corner(c, &corners[i], &at);
 	}
-	*at.vertex = at.place;
+	c->vertices[c->vertex_count] = at.place[1];
 	c->corner_count = ordered ? (size_t)(at.order - c->order) : 0;
 	return NMTAN_OK;
 }
 
-/* Threads own ranges of vertices but for those that are tangled, which come first: these share a table, and hubs may
+/* Threads own ranges of vertices but for those that are tangled, which come last: these share a table, and hubs may
  * need memory. */
 typedef struct work {
 	const nt_complex *c;
 	nt_batch *batches; /* [threads] */
-	bool tangled;      /* the turn of those that are */
 	nmtan_status status;
 } work;
 
@@ -156,13 +171,8 @@ static void solve_range(void *context, size_t begin, size_t end, unsigned slot)
 	nt_batch *batch = &w->batches[slot];
 	nmtan_status status = NMTAN_OK;
 	for (size_t v = begin; v < end && !status; v++) {
-		if (nt_is_tangled(w->c, v) == w->tangled) {
-			nt_find_groups(w->c, v);
-			status = nt_take_vertex(w->c, batch, v);
-		} else if (w->tangled && batch->count > 0) {
-			/* the corners of a vertex whose turn comes later stay: others do not move over them */
-			status = nt_solve_batch(w->c, batch);
-		}
+		nt_find_groups(w->c, v);
+		status = nt_take_vertex(w->c, batch, v);
 	}
 	if (!status)
 		status = nt_solve_batch(w->c, batch);
@@ -176,33 +186,46 @@ static void forget_waiting(const nt_complex *c)
 		memset(c->waiting, 0, c->fast->vertex_count * sizeof *c->waiting);
 }
 
-static nmtan_status solve_vertices(const nt_complex *c)
+/* Edges and groups of tangled vertices take the place of the others': as many vertices as there is room for are a
+ * window, whose places are counted from its first one. */
+static nmtan_status solve_tangled(const nt_complex *c, nt_batch *batch)
 {
-	const unsigned threads = nt_parallel_slots(c->fast->solve->threads, c->vertex_count, GRAIN);
-	size_t most = NT_BATCH;
-	for (size_t v = 0; c->waiting && v < c->vertex_count; v++) {
-		const size_t corners = nt_last_place(c, v) - nt_first_place(c, v);
-		most = corners > most ? corners : most;
+	nt_complex window = *c;
+	nmtan_status status = NMTAN_OK;
+	for (size_t v = c->plain_count; v < c->vertex_count && !status; v++) {
+		if (nt_last_place(&window, v) > c->room) {
+			status = nt_solve_batch(&window, batch);
+			window.base = nt_first_place(c, v);
+			window.corners = c->corners + window.base;
+		}
+		nt_find_groups(&window, v);
+		status = status ? status : nt_take_vertex(&window, batch, v);
 	}
-	work w = {.c = c, .batches = nt_borrowed_alloc(c->memory, threads, sizeof *w.batches), .tangled = true};
+	return status ? status : nt_solve_batch(&window, batch);
+}
+
+static nmtan_status solve_vertices(const nt_complex *c, size_t most_tangled)
+{
+	const unsigned threads = nt_parallel_slots(c->fast->solve->threads, c->plain_count, GRAIN);
+	const size_t most = most_tangled > NT_BATCH ? most_tangled : NT_BATCH;
+	work w = {.c = c, .batches = nt_borrowed_alloc(c->memory, threads, sizeof *w.batches)};
 	for (unsigned i = 0; w.batches && i < threads; i++)
 		if (!nt_batch_make(c, i == 0 ? most : NT_BATCH, &w.batches[i]))
 			return NMTAN_ERROR_MEMORY;
 	if (!w.batches)
 		return NMTAN_ERROR_MEMORY;
-	if (c->waiting) {
+	nt_parallel_ranges(threads, c->plain_count, GRAIN, solve_range, &w);
+	if (!w.status && c->waiting) {
 		forget_waiting(c);
-		solve_range(&w, 0, c->vertex_count, 0);
+		w.status = solve_tangled(c, &w.batches[0]);
 	}
-	w.tangled = false;
-	if (!w.status)
-		nt_parallel_ranges(threads, c->vertex_count, GRAIN, solve_range, &w);
 	return w.status;
 }
 
 nmtan_status nt_fast_complex(nt_fast *fast, const nt_kernels *kernels, const nt_settled *settled, nt_borrowed *memory)
 {
-	nt_complex c = {.fast = fast, .kernels = kernels, .memory = memory, .vertex_count = settled->complex_count};
+	nt_complex c = {.fast = fast, .kernels = kernels, .memory = memory, .vertex_count = settled->complex_count,
+		.plain_count = settled->complex_count - settled->tangled_count};
 	c.orient = !fast->records[0];
 	c.single = !fast->records[!c.orient];
 	c.more = fast->wants_more || fast->triangles.cuts;
@@ -211,11 +234,12 @@ nmtan_status nt_fast_complex(nt_fast *fast, const nt_kernels *kernels, const nt_
 		if (!c.waiting)
 			return NMTAN_ERROR_MEMORY;
 	}
-	const nmtan_status status = collect(&c, settled->complex_corners);
+	const nmtan_status status = collect(&c, settled);
 	if (status)
 		return status;
-	forget_waiting(&c);
-	if (c.order)
+	if (c.order) {
+		forget_waiting(&c);
 		nt_find_groups_in_order(&c);
-	return solve_vertices(&c);
+	}
+	return solve_vertices(&c, settled->most_tangled);
 }

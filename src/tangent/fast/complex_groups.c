@@ -16,21 +16,21 @@
 /*
  * Edge `e` meets the first edge in the other direction that waits at its far end; if there is none it waits
  * there itself. Those that wait at one vertex all run the same way. They stand in a ring, each with its
- * follower in `across`, and `waiting` knows the last, counted from 1, so that what has waited there since another
- * vertex's turn has a number that is not above `past`.
+ * follower in `across`, and `waiting` knows the last: its number is counted from `zero`, which lies above that of what
+ * has waited there since another window's turn, and is not below `first` unless it has since another vertex's.
  */
-static void pair_edge(uint32_t *across, uint32_t *waiting, uint32_t past, uint32_t e)
+static inline void pair_edge(uint32_t *across, uint32_t *waiting, uint32_t zero, uint32_t first, uint32_t e)
 {
-	if (*waiting <= past) {
+	if (*waiting < zero + first) {
 		across[e] = NT_WAITS | e;
-		*waiting = e + 1;
+		*waiting = zero + e;
 		return;
 	}
-	const uint32_t last = *waiting - 1, head = across[last] & ~NT_WAITS;
+	const uint32_t last = *waiting - zero, head = across[last] & ~NT_WAITS;
 	if ((last ^ e) % 2 == 0) {
 		across[e] = across[last];
 		across[last] = NT_WAITS | e;
-		*waiting = e + 1;
+		*waiting = zero + e;
 		return;
 	}
 	if (head == last)
@@ -43,10 +43,13 @@ static void pair_edge(uint32_t *across, uint32_t *waiting, uint32_t past, uint32
 
 static void pair_tangled(const nt_complex *c, uint32_t begin, uint32_t end)
 {
+	const uint32_t zero = 2 * c->base + 1;
 	for (uint32_t e = 2 * begin; e < 2 * end; e += 2) {
-		const uint32_t after = c->across[e], before = c->across[e + 1];
-		pair_edge(c->across, &c->waiting[after], 2 * begin, e);
-		pair_edge(c->across, &c->waiting[before], 2 * begin, e + 1);
+		const uint32_t corner = c->corners[e / 2] & NT_COMPLEX_CORNER, k = corner & 3;
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&c->fast->triangles, corner >> 2, 1, copy);
+		pair_edge(c->across, &c->waiting[v[k < 2 ? k + 1 : 0]], zero, 2 * begin, e);
+		pair_edge(c->across, &c->waiting[v[k > 0 ? k - 1 : 2]], zero, 2 * begin, e + 1);
 	}
 }
 

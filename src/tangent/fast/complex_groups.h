@@ -20,19 +20,23 @@
 #define NT_COMPLEX_PLUS ((uint32_t)1 << 30)  /* the orientation of its triangle, or group */
 #define NT_COMPLEX_ANY ((uint32_t)1 << 31)   /* the triangle has no frame */
 
-/* A "place" is an index into all corners of complex vertices, which are sorted by vertex and then by triangle. */
+/* A "place" is an index into all corners of complex vertices, which are sorted by vertex and then by triangle; tangled
+ * vertices come last. */
 typedef struct nt_complex {
 	nt_fast *fast;
 	const nt_kernels *kernels;
 	nt_borrowed *memory;
 	int orient;          /* of the records whose states have the places of complex vertices */
 	size_t vertex_count;
-	uint32_t *vertices;  /* [vertex_count + 1] first place of each, with NT_RESULT_SUM and NT_RESULT_TANGLED */
+	size_t plain_count;  /* those that are not tangled */
+	uint32_t *vertices;  /* [vertex_count + 1] first place of each, with NT_RESULT_SUM */
 	uint32_t *welded;    /* [vertex_count] their numbers as welded vertices */
 	uint32_t *corners;   /* [places] */
-	uint32_t *across;    /* [2 * places] of each corner the next and the previous vertex of its triangle; then the corners
-	                        beyond these edges: NT_WAITS and above: there is none */
-	uint32_t *group;     /* [places] the place that a corner's group begins with, or NT_NONE */
+	uint32_t *across;    /* [2 * room] of each corner that is not tangled the next and the previous vertex of its triangle;
+	                        then the corners beyond these edges: NT_WAITS and above: there is none */
+	uint32_t *group;     /* [room] the place that a corner's group begins with, or NT_NONE */
+	uint32_t room;       /* places, or fewer where tangled vertices have theirs one after the other */
+	uint32_t base;       /* places are counted from here: see solve_tangled() */
 	uint32_t *waiting;   /* [welded vertices] see pair_edge(); NULL: no vertex is tangled */
 	uint32_t *order;     /* [corner_count] places in the order of triangles; NULL: the order decides nothing */
 	size_t corner_count;
@@ -42,12 +46,12 @@ typedef struct nt_complex {
 
 static inline uint32_t nt_first_place(const nt_complex *c, size_t v)
 {
-	return c->vertices[v] & NT_RESULT_NUMBER;
+	return (c->vertices[v] & NT_RESULT_NUMBER) - c->base;
 }
 
 static inline bool nt_is_tangled(const nt_complex *c, size_t v)
 {
-	return c->vertices[v] & NT_RESULT_TANGLED;
+	return v >= c->plain_count;
 }
 
 /* The corner of the mesh. */
@@ -61,7 +65,7 @@ static inline uint32_t nt_last_place(const nt_complex *c, size_t v)
 {
 	if (!nt_is_tangled(c, v))
 		return nt_first_place(c, v + 1);
-	return nt_fast_record(c->fast, c->orient, c->welded[v])->state & NT_RESULT_NUMBER;
+	return (nt_fast_record(c->fast, c->orient, c->welded[v])->state & NT_RESULT_NUMBER) - c->base;
 }
 
 /* Finds the groups of complex vertex v, if nt_find_groups_in_order() has not. */

@@ -287,9 +287,12 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 	}
 	*sum = (nt_settled){0};
 	for (unsigned i = 0; i < ranges; i++) {
-		sum->complex_count += r.settled[i].complex_count;
-		sum->complex_corners += r.settled[i].complex_corners;
-		sum->tangled_count += r.settled[i].tangled_count;
+		const nt_settled *s = &r.settled[i];
+		sum->complex_count += s->complex_count;
+		sum->complex_corners += s->complex_corners;
+		sum->tangled_count += s->tangled_count;
+		sum->tangled_corners += s->tangled_corners;
+		sum->most_tangled = s->most_tangled > sum->most_tangled ? s->most_tangled : sum->most_tangled;
 	}
 	return NMTAN_OK;
 }

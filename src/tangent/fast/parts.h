@@ -64,9 +64,10 @@ typedef struct nt_fast {
 	nt_deferred *deferred;       /* [ranges]; NULL: there is one */
 } nt_fast;
 
-/* How many vertices are complex, with how many corners at most, and how many of them are tangled. */
+/* How many vertices are complex, with how many corners at most; of them those that are tangled, and most corners of one
+ * of these. */
 typedef struct nt_settled {
-	size_t complex_count, complex_corners, tangled_count;
+	size_t complex_count, complex_corners, tangled_count, tangled_corners, most_tangled;
 } nt_settled;
 
 /* Makes fast->records[orient], which a triangle needs and which does not exist; false: it cannot be had now. */

@@ -322,6 +322,9 @@ static void describe_complex(const nt_fast *fast, const nt_adjacency *a, size_t 
 		settled->complex_count++;
 		settled->complex_corners += corners;
 		settled->tangled_count += tangled;
+		settled->tangled_corners += tangled * corners;
+		if (tangled && corners > settled->most_tangled)
+			settled->most_tangled = corners;
 	}
 }
 

@@ -151,6 +151,57 @@ static void hubs_are_byte_identical(void **state)
 	free(h);
 }
 
+/* Several hubs in one mesh, each with its own position and the rim of its own. */
+static const size_t rims_of_many[] = {13, RIM_MOST, 40, 600, 14, 20, 300};
+enum { HUBS = sizeof rims_of_many / sizeof *rims_of_many, VERTICES_OF_MANY = HUBS * (RIM_MOST + 1) };
+
+static size_t compare_many_hubs(hub *h, bool quads, bool large, bool more)
+{
+	float (*p)[3] = malloc(VERTICES_OF_MANY * sizeof *p), (*n)[3] = malloc(VERTICES_OF_MANY * sizeof *n);
+	float (*t)[2] = malloc(VERTICES_OF_MANY * sizeof *t);
+	unsigned *indices = malloc(HUBS * sizeof h->indices);
+	unsigned char *sizes = malloc(HUBS * sizeof h->face_sizes);
+	size_t vertices = 0, corners = 0, faces = 0;
+	for (unsigned i = 0; i < HUBS; i++) {
+		make_hub(100 + i, rims_of_many[i], quads, large, h);
+		for (size_t v = 0; v < h->mesh.vertex_count; v++) {
+			memcpy(p[vertices + v], (float[3]){h->p[v][0], h->p[v][1], (float)i}, sizeof *p);
+			memcpy(n[vertices + v], h->n[v], sizeof *n);
+			memcpy(t[vertices + v], h->t[v], sizeof *t);
+		}
+		for (size_t c = 0; c < h->corners; c++)
+			indices[corners + c] = (unsigned)vertices + h->indices[c];
+		memcpy(sizes + faces, h->face_sizes, h->mesh.face_count);
+		vertices += h->mesh.vertex_count;
+		corners += h->corners;
+		faces += h->mesh.face_count;
+	}
+	const nmtan_mesh mesh = nt_filled(&(nmtan_mesh){.struct_bytes = sizeof mesh, .face_count = faces,
+		.vertex_count = vertices, .positions = p[0], .normals = n[0], .texcoords = t[0], .indices = indices,
+		.face_sizes = quads ? sizes : NULL});
+	nt_result expected = nt_result_define(&mesh, corners, more);
+	const size_t differences = nt_compare_variants("hubs", &mesh, corners, &expected, more);
+	nt_result_free(&expected);
+	free(p);
+	free(n);
+	free(t);
+	free(indices);
+	free(sizes);
+	return differences;
+}
+
+/* They come in windows: some together, some alone. */
+static void many_hubs_are_byte_identical(void **state)
+{
+	(void)state;
+	hub *h = malloc(sizeof *h);
+	size_t differences = 0;
+	for (unsigned i = 0; i < 8; i++)
+		differences += compare_many_hubs(h, i & 1, i & 2, i & 4);
+	assert_int_equal(differences, 0);
+	free(h);
+}
+
 /* Scratch that a hub takes whose directions turn by so much in all, or, `once`, at one place and back again. */
 static size_t solve_turning_hub(float turn, bool once)
 {
@@ -223,6 +274,7 @@ int main(void)
 		cmocka_unit_test(antiparallel_directions_are_byte_identical),
 		cmocka_unit_test(short_directions_are_byte_identical),
 		cmocka_unit_test(hubs_are_byte_identical),
+		cmocka_unit_test(many_hubs_are_byte_identical),
 		cmocka_unit_test(few_directions_aside_do_not_split_a_hub),
 		cmocka_unit_test(every_failed_allocation_of_a_hub_is_told),
 	};
