@@ -6,6 +6,7 @@
 
 #define NT_NO_THREADS
 #define nt_pool_processors processors_alone
+#define nt_pool_reserve reserve_alone
 #define nt_pool_run run_alone
 #include "base/pool.c"
 
