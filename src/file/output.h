@@ -122,6 +122,16 @@ nt_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error 
 nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
 	nt_error *error);
 
+/*
+ * Sets the next `size` bytes of a file aside. They are written to *part, while another thread may write to the sink
+ * what comes behind them. *part is NULL where that cannot be: the file is no new one, or has a digest. Then all comes
+ * in its order.
+ */
+nt_status nt_sink_set_aside(nt_sink *sink, uint64_t size, nt_sink **part, nt_error *error);
+
+/* Ends a part, of which all bytes were written or some in vain. */
+nt_status nt_sink_end_part(nt_sink *part, nt_error *error);
+
 /* Flushes the file of the set that will have the name `path` and says where it is for the time being; NULL when
  * the set has no such file or writes it through. */
 nt_status nt_output_written(nt_output *output, const char *path, const char **temporary,

@@ -38,6 +38,8 @@ struct nt_sink {
 	bool shared_fd;           /* standard output: not ours to close */
 	bool no_kernel_copy;      /* it was tried in vain */
 	bool dry;                 /* counts bytes and drops them */
+	bool is_part;             /* of the file of another sink, which has path and fd: nt_sink_set_aside() */
+	off_t at;                 /* of a part: where in the file its next bytes go */
 	unsigned threads;         /* as options.threads has it */
 	bool in_place;            /* the main file: it is the input's */
 	bool placed;              /* its temporary file has a name */

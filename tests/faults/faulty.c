@@ -142,6 +142,7 @@ WATCH(ssize_t, read, (int fd, void *bytes, size_t size), (fd, bytes, size))
 WATCH(ssize_t, pread, (int fd, void *bytes, size_t size, off_t offset), (fd, bytes, size, offset))
 WATCH(ssize_t, write, (int fd, const void *bytes, size_t size), (fd, bytes, size))
 WATCH(ssize_t, writev, (int fd, const struct iovec *pieces, int count), (fd, pieces, count))
+WATCH(ssize_t, pwritev, (int fd, const struct iovec *pieces, int count, off_t offset), (fd, pieces, count, offset))
 WATCH(ssize_t, pwrite, (int fd, const void *bytes, size_t size, off_t offset), (fd, bytes, size, offset))
 WATCH(ssize_t, copy_file_range, (int in, off64_t *from, int out, off64_t *to, size_t size, unsigned flags),
 	(in, from, out, to, size, flags))

@@ -171,6 +171,12 @@ ssize_t write(int fd, const void *bytes, size_t size)
 	return enter("write") ? REAL(ssize_t, "write", int, const void *, size_t)(fd, bytes, size) : -1;
 }
 
+ssize_t pwritev(int fd, const struct iovec *parts, int count, off_t offset)
+{
+	return enter("pwritev") ? REAL(ssize_t, "pwritev", int, const struct iovec *, int, off_t)(fd, parts, count, offset) :
+				  -1;
+}
+
 ssize_t writev(int fd, const struct iovec *parts, int count)
 {
 	return enter("writev") ? REAL(ssize_t, "writev", int, const struct iovec *, int)(fd, parts, count) : -1;
