@@ -86,8 +86,6 @@ static bool separate_primitive(separating *s, nt_json_value *primitive)
 
 nt_status nt_gltf_separate_draco(nt_gltf *document, nt_error *error)
 {
-	if (!nt_gltf_uses(document, "KHR_draco_mesh_compression"))
-		return NT_OK;
 	separating s = {.document = document, .accessors = nt_gltf_root_member(document, "accessors")};
 	s.named_count = nt_json_count(s.accessors);
 	s.given = nt_calloc(s.named_count, sizeof *s.given);

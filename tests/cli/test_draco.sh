@@ -108,12 +108,15 @@ node -e 'const fs = require("fs"), open = (name) => {
 	g.buffers = ["one", "other"].map((name, i) => ({uri: name + ".glb.bin",
 		byteLength: (i ? other : g).buffers[0].byteLength}));
 	g.meshes[0].primitives.push(q, structuredClone(q)); /* the third shares with the second all there is */
-	fs.writeFileSync("three.gltf", JSON.stringify(g))'
+	fs.writeFileSync("three.gltf", JSON.stringify(g));
+	delete g.extensionsUsed, delete g.extensionsRequired; /* blocks are read without */
+	fs.writeFileSync("unlisted.gltf", JSON.stringify(g))'
 row='[rows(p.attributes.POSITION), rows(p.attributes.TEXCOORD_0), rows(p.attributes.TANGENT), rows(p.indices)]'
-for choice in off keep; do
-	run --existing=replace --draco=off --verify one.glb one_plain.glb
-	run --existing=replace --draco=off --verify other.glb other_plain.glb
-	run --existing=replace --draco=$choice --verify three.gltf three.glb
+run --existing=replace --draco=off --verify one.glb one_plain.glb
+run --existing=replace --draco=off --verify other.glb other_plain.glb
+for three in "off three" "keep three" "off unlisted" "keep unlisted"; do
+	choice=${three% *}
+	run --existing=replace --draco=$choice --verify "${three#* }.gltf" three.glb
 	exits 0
 	[ $choice = off ] || { run --draco=off --existing=replace three.glb three.glb.glb; mv three.glb.glb three.glb; }
 	is "$(gltf three.glb "g.meshes[0].primitives.slice(0, 1).map((p) => $row)")" \
