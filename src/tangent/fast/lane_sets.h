@@ -28,6 +28,11 @@ static inline half_set halves_differ(half_set set, lanes a, lanes b)
 	return _mm512_mask_cmpneq_epi16_mask(set, (__m512i)a, (__m512i)b);
 }
 
+static inline half_set common_halves(half_set a, half_set b)
+{
+	return _kand_mask32(a, b);
+}
+
 static inline lane_set having_bit(lanes a, uint32_t bit)
 {
 	return _mm512_test_epi32_mask((__m512i)a, _mm512_set1_epi32((int)bit));
@@ -42,6 +47,20 @@ static inline lanes without_bit(lanes a, lane_set set, uint32_t bit)
 static inline lanes with_bits(lanes a, lane_set set, lanes b)
 {
 	return (lanes)_mm512_mask_or_epi32((__m512i)a, set, (__m512i)a, (__m512i)b);
+}
+
+/* a with the bits of both halves in those halves in which b and c are the same; they were not there. */
+static inline lanes with_bit_where_same(lanes a, lanes b, lanes c, uint32_t halves)
+{
+	return (lanes)_mm512_mask_add_epi16((__m512i)a, _mm512_cmpeq_epi16_mask((__m512i)b, (__m512i)c), (__m512i)a,
+		_mm512_set1_epi32((int)halves));
+}
+
+/* One more where a has none of the bits. */
+static inline lanes one_more_without(lanes count, lanes a, uint32_t bits)
+{
+	const __mmask16 without = _mm512_testn_epi32_mask((__m512i)a, _mm512_set1_epi32((int)bits));
+	return (lanes)_mm512_mask_add_epi32((__m512i)count, without, (__m512i)count, _mm512_set1_epi32(1));
 }
 
 static inline bool all_halves(half_set set)
@@ -71,6 +90,11 @@ static inline half_set halves_differ(half_set set, lanes a, lanes b)
 	return set & (lane_halves)((lane_halves)a != (lane_halves)b);
 }
 
+static inline half_set common_halves(half_set a, half_set b)
+{
+	return a & b;
+}
+
 static inline lane_set having_bit(lanes a, uint32_t bit)
 {
 	return (lanes)((a & bit) != 0);
@@ -84,6 +108,16 @@ static inline lanes without_bit(lanes a, lane_set set, uint32_t bit)
 static inline lanes with_bits(lanes a, lane_set set, lanes b)
 {
 	return a | (set & b);
+}
+
+static inline lanes with_bit_where_same(lanes a, lanes b, lanes c, uint32_t halves)
+{
+	return a | ((lanes)((lane_halves)b == (lane_halves)c) & halves);
+}
+
+static inline lanes one_more_without(lanes count, lanes a, uint32_t bits)
+{
+	return count - (lanes)((a & bits) == 0);
 }
 
 static inline bool all_halves(half_set set)

@@ -73,6 +73,24 @@ static lanes __attribute__((noinline)) find_twice(vertex_entries entries, uint32
 	return twice;
 }
 
+/* The components of corners that are linked: bit j, times `unit`, of linked[i] for each later neighbour j. Those with
+ * a bit of `voids` are none. By elimination: a corner hands its links to the later ones it is linked with; one that has
+ * none when its turn comes is the last of its component. */
+static inline __attribute__((always_inline)) lanes count_components(lanes linked[NT_FAN_DEPTH], uint32_t depth, uint32_t unit,
+	uint32_t voids)
+{
+	lanes count = {0};
+	UNROLL
+	for (uint32_t a = 0; a < depth; a++) {
+		const lanes mine = linked[a];
+		UNROLL
+		for (uint32_t b = a + 1; b < depth; b++)
+			linked[b] = with_bits(linked[b], having_bit(mine, unit << b), mine);
+		count = one_more_without(count, mine, unit * ((1u << depth) - (2u << a)) | voids);
+	}
+	return count;
+}
+
 /*
  * The fans of WIDTH vertices with at most `depth` corners: how many there are, DOUBTFUL added where a directed edge
  * occurs twice, because there pairs depend on order.
@@ -80,20 +98,18 @@ static lanes __attribute__((noinline)) find_twice(vertex_entries entries, uint32
  *   degree   corners of each vertex
  *   mask     the bits of entries that count
  */
-static inline __attribute__((always_inline)) lanes count_fans_of(vertex_entries entries, const uint32_t depth,
+static inline __attribute__((always_inline)) lanes count_wide_fans_of(vertex_entries entries, const uint32_t depth,
 	lanes degree, lanes mask)
 {
 	lanes next[NT_FAN_DEPTH], previous[NT_FAN_DEPTH];
-	lanes linked[NT_FAN_DEPTH]; /* corner i: bit j for each later neighbour j of its orientation */
+	lanes linked[NT_FAN_DEPTH];
 	lanes halves[NT_FAN_DEPTH]; /* those of next and of previous in which vertices differ most, without orientation */
-	lanes count = {0};
 	half_set distinct = ALL_HALVES;
 	UNROLL
 	for (uint32_t k = 0; k < depth; k++) {
 		load_corners(entries, k, degree, mask, &next[k], &previous[k]);
-		halves[k] = entries.are_narrow ? (next[k] >> 16 & 0x7fff) | (previous[k] & 0x7fff0000)
-			: (next[k] & 0xffff) | previous[k] << 16;
-		linked[k] = (degree & 0) | ((1u << depth) - (2u << k));
+		halves[k] = (next[k] & 0xffff) | previous[k] << 16;
+		linked[k] = (next[k] & NT_ENTRY_VOID) | ((1u << depth) - (2u << k));
 	}
 	/* links across shared edges; edges whose low halves differ are not the same */
 	UNROLL
@@ -105,17 +121,48 @@ static inline __attribute__((always_inline)) lanes count_fans_of(vertex_entries 
 			distinct = halves_differ(distinct, halves[a], halves[b]);
 		}
 	}
-	/* components by elimination: a corner hands its links to the later ones it is linked with; one that
-	 * has none when its turn comes is the last of its component */
-	UNROLL
-	for (uint32_t a = 0; a < depth; a++) {
-		const lanes mine = linked[a];
-		UNROLL
-		for (uint32_t b = a + 1; b < depth; b++)
-			linked[b] = with_bits(linked[b], having_bit(mine, 1u << b), mine);
-		count -= (lanes)(mine >> a >> 1 == 0) & (lanes)((next[a] & NT_ENTRY_VOID) == 0);
-	}
+	const lanes count = count_components(linked, depth, 1, NT_ENTRY_VOID);
 	return all_halves(distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
+}
+
+/* The same of narrow entries, as halves of lanes: next and previous of one corner are compared with previous and next
+ * of another at once, and a lane has its links in either half. */
+static inline __attribute__((always_inline)) lanes count_narrow_fans_of(vertex_entries entries, const uint32_t depth,
+	lanes degree, lanes mask)
+{
+	enum { BOTH = 0x10001, VOIDS = BOTH * (NT_ENTRY_VOID >> 16) };
+	lanes entry[NT_FAN_DEPTH], plain[NT_FAN_DEPTH]; /* plain: without orientation */
+	lanes linked[NT_FAN_DEPTH];
+	half_set distinct = ALL_HALVES;
+	const lanes mask_of_halves = (mask & 0xffff0000u) | mask >> 16;
+	UNROLL
+	for (uint32_t k = 0; k < depth; k++) {
+		const lanes there = (lanes)(degree > k);
+		const lanes both = (load_lanes(entries.narrow + k * entries.step) & there) | ((0x70005000u + BOTH * k) & ~there);
+		entry[k] = both & mask_of_halves;
+		plain[k] = both & ~(BOTH * (NT_ENTRY_ORIENT >> 16));
+		linked[k] = both & VOIDS;
+	}
+	UNROLL
+	for (uint32_t b = 1; b < depth; b++) {
+		const lanes other_way = entry[b] << 16 | entry[b] >> 16;
+		half_set from_others = ALL_HALVES; /* short chains: one for all took 15 cycles more */
+		UNROLL
+		for (uint32_t a = 0; a < b; a++) {
+			linked[a] = with_bit_where_same(linked[a], entry[a], other_way, (uint32_t)BOTH << b);
+			from_others = halves_differ(from_others, plain[a], plain[b]);
+		}
+		distinct = common_halves(distinct, from_others);
+	}
+	const lanes count = count_components(linked, depth, BOTH, VOIDS);
+	return all_halves(distinct) ? count : count | (find_twice(entries, depth, degree, mask) & DOUBTFUL);
+}
+
+static inline __attribute__((always_inline)) lanes count_fans_of(vertex_entries entries, const uint32_t depth,
+	lanes degree, lanes mask)
+{
+	return entries.are_narrow ? count_narrow_fans_of(entries, depth, degree, mask)
+		: count_wide_fans_of(entries, depth, degree, mask);
 }
 
 /* The usual depths are worth a loop without branches each. */
