@@ -103,7 +103,7 @@ static inline __attribute__((always_inline)) void finish_groups(const nt_fast *f
 	if (four)
 		store_four_groups(&r, results);
 	else
-		store_records(results, 1, used, used, &r);
+		store_records(results, 1, used, used, &r, r.state);
 }
 
 /* Results of groups from their sums. A group that is not its sum gets the state NT_RESULT_COMPLEX; one that may not be

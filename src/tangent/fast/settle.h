@@ -194,6 +194,16 @@ static lanes __attribute__((noinline)) count_narrow_fans(const uint32_t *entries
 	return count_fans_at((vertex_entries){.are_narrow = true, .narrow = entries, .step = step}, depth, degree, mask);
 }
 
+/* The lanes of records that hold their states, with those bits; 0 in the others. */
+#if WIDTH == 16
+#define STATES(bits) ((lanes){0, 0, 0, bits, 0, 0, 0, bits, 0, 0, 0, bits, 0, 0, 0, bits})
+#elif WIDTH == 8
+#define STATES(bits) ((lanes){0, 0, 0, bits, 0, 0, 0, bits})
+#else
+#define STATES(bits) ((lanes){0, 0, 0, bits})
+#endif
+#define NO_STATE (NT_STATE_BASE | NT_STATE_ALL)
+
 /* The records of a block by component, in turned places: lane i has the record of vertex turned_place(i). All loops
  * over them run up to `used`, whole vectors that hold the block's vertices; lanes behind these have neither records
  * nor corners. */
@@ -222,15 +232,22 @@ static inline void read_states(size_t used, record_lanes *restrict r)
 	}
 }
 
+/* Those of an orientation that no vertex of the block has. */
+static const record_lanes no_records = {.state = {NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE,
+	NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE, NO_STATE}};
+
+/* Whether the records of a block are no_records, as those of one orientation are in most blocks. */
+static inline bool has_no_records(const nt_record *records, size_t used)
+{
+	lanes all = {0};
+	all = ~all;
+	for (size_t i = 0; i < used; i += WIDTH / 4)
+		all &= load_lanes(records + i);
+	return !any_lane((lanes)(~all & STATES(NT_STATE_EMPTY | NT_STATE_LOCAL)));
+}
+
 static void load_records(const nt_record *restrict records, size_t used, record_lanes *restrict r)
 {
-	if (!records) {
-		for (size_t i = 0; i < used; i++) {
-			r->state[i] = NT_STATE_BASE | NT_STATE_ALL;
-			r->present[i] = r->sound[i] = 0;
-		}
-		return;
-	}
 	for (size_t i = 0; i < used; i += WIDTH) {
 		lanes four[4];
 		memcpy(four, records + i, sizeof four);
@@ -287,13 +304,13 @@ static inline void find_unusable(const float (*restrict normals)[NT_LANES], cons
 
 /* Stores `count` records, `step` apart. */
 static void store_records(nt_record *restrict records, size_t step, size_t count, size_t used,
-	const record_lanes *restrict r)
+	const record_lanes *restrict r, const uint32_t *restrict state)
 {
 	nt_record copy[NT_LANES];
 	nt_record *to = count == used && step == 1 ? records : copy;
 	for (size_t i = 0; i < used; i += WIDTH) {
 		lanes four[4] = {load_lanes(r->x + i), load_lanes(r->y + i), load_lanes(r->z + i),
-			load_lanes(r->state + i)};
+			load_lanes(state + i)};
 		turn(four);
 		memcpy(to + i, four, sizeof four);
 	}
@@ -384,14 +401,21 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	const vertex_entries entries = entries_at(a, first - a->first_vertex);
 	uint32_t degree[NT_LANES], mask[NT_LANES], fan_count[NT_LANES], complex[NT_LANES], unsound[NT_LANES];
 	uint32_t depths[NT_LANES / WIDTH], unusable[2][NT_LANES] = {{0}};
-	record_lanes r[2];
+	record_lanes own[2];
+	const record_lanes *r[2];
+	bool there[2];
 	load_degrees(a, first, count, used, degree, depths);
-	for (int o = 0; o < 2; o++)
-		load_records(sums[o] ? sums[o] + first - a->first_vertex : NULL, used, &r[o]);
+	for (int o = 0; o < 2; o++) {
+		const nt_record *from = sums[o] ? sums[o] + first - a->first_vertex : NULL;
+		there[o] = from && !has_no_records(from, used);
+		r[o] = there[o] ? &own[o] : &no_records;
+		if (there[o])
+			load_records(from, used, &own[o]);
+	}
 
 	/* "any" corners join whatever orientation there is: with one only, it need not be compared */
 	for (size_t i = 0; i < used; i++)
-		mask[i] = r[0].present[i] & r[1].present[i] ? UINT32_MAX : NT_ENTRY_VERTEX;
+		mask[i] = r[0]->present[i] & r[1]->present[i] ? UINT32_MAX : NT_ENTRY_VERTEX;
 	for (size_t i = 0; i < used; i += WIDTH) {
 		const lanes degrees = load_lanes(degree + i), masks = load_lanes(mask + i), hubs = (lanes)(degrees == HUB);
 		const lanes usual = degrees & ~hubs, mask_of = __builtin_shufflevector(masks, masks, UNTURNED);
@@ -403,15 +427,13 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	}
 
 	for (size_t i = 0; i < used; i++) {
-		const uint32_t both = r[0].state[i] & r[1].state[i];
-		const uint32_t present = r[0].present[i] + r[1].present[i];
-		unsound[i] = (r[0].present[i] & !r[0].sound[i]) | (r[1].present[i] & !r[1].sound[i]);
+		const uint32_t both = r[0]->state[i] & r[1]->state[i];
+		const uint32_t present = r[0]->present[i] + r[1]->present[i];
+		unsound[i] = (r[0]->present[i] & !r[0]->sound[i]) | (r[1]->present[i] & !r[1]->sound[i]);
 		const uint32_t mixed = present == 2 && !(both & NT_STATE_NO_ANY);
 		complex[i] = present != 0 && 0 != (unsound[i] | mixed | !(both & NT_STATE_LOCAL) |
 						     (fan_count[i] != present));
 	}
-	/* few blocks have vertices of both orientations */
-	const bool there[2] = {any_of(r[0].present, used), any_of(r[1].present, used)};
 	float normals[3][NT_LANES];
 	const bool judges = nt_fast_judges(fast->solve);
 	if (judges)
@@ -419,28 +441,35 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	for (int o = 0; o < 2; o++) {
 		if (!there[o])
 			continue;
-		normalise_records(used, &r[o]);
+		normalise_records(used, &own[o]);
 		if (judges)
-			find_unusable(normals, &r[o], unusable[o], used);
+			find_unusable(normals, &own[o], unusable[o], used);
 		if (NT_SHORT_WAYS && any_of(unusable[o], used))
 			nt_fast_tell_open(fast->solve);
 	}
+	const bool has_complex = any_of(complex, used);
 	/* from here on the rows may be overwritten */
 	for (int o = 0; o < 2; o++) {
 		if (!sums[o])
 			continue;
+		if (!there[o] && !has_complex && count == used && fast->record_step == 1 && !fast->wants_more) {
+			for (size_t i = 0; i < used; i += WIDTH / 4)
+				memcpy(nt_fast_record(fast, o, (uint32_t)(first + i)), &(const lanes){0}, sizeof(lanes));
+			continue;
+		}
 		const uint32_t sign = o ? NT_RESULT_PLUS : NT_RESULT_MINUS;
+		uint32_t state[NT_LANES];
 		/* with masks, since gcc 12 makes branches of the same with conditions */
 		for (size_t i = 0; i < used; i++) {
 			const uint32_t bad = unusable[0][i] | unusable[1][i];
 			const uint32_t open = NT_RESULT_COMPLEX | (((unsound[i] | bad) - 1) & NT_RESULT_SUM);
-			r[o].state[i] = (-complex[i] & open) | ((complex[i] - 1) & -r[o].present[i] & (sign | bad));
+			state[i] = (-complex[i] & open) | ((complex[i] - 1) & -r[o]->present[i] & (sign | bad));
 		}
-		store_records(nt_fast_record(fast, o, (uint32_t)first), fast->record_step, count, used, &r[o]);
+		store_records(nt_fast_record(fast, o, (uint32_t)first), fast->record_step, count, used, r[o], state);
 		if (fast->wants_more)
-			settle_more(fast->more[o] + first, count, r[o].present);
+			settle_more(fast->more[o] + first, count, r[o]->present);
 	}
-	if (any_of(complex, used))
+	if (has_complex)
 		describe_complex(fast, a, first, used, complex, fan_count, settled);
 }
 
