@@ -35,6 +35,13 @@ nt_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_e
 	return draco ? draco->encode(mesh, block, error) : status;
 }
 
+nt_status nt_draco_quantize(const nt_draco_mesh *mesh, float *const *values, nt_error *error)
+{
+	nt_status status;
+	const nt_draco_table *draco = nt_module_open(NT_MODULE_DRACO, &status, error);
+	return draco ? draco->quantize(mesh, values, error) : status;
+}
+
 const nt_draco_attribute *nt_draco_find(const nt_draco_mesh *mesh, uint32_t unique_id)
 {
 	for (size_t i = 0; i < mesh->attribute_count; i++)

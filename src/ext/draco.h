@@ -118,6 +118,17 @@ static inline void nt_draco_block_free(nt_draco_block *block)
  */
 nt_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error);
 
+/*
+ * What a decoder will have of the quantized attributes of a mesh once it is encoded, whichever method that is by, and
+ * whatever else is encoded with them.
+ *
+ *   values  [attribute_count] of each attribute room for [point_count][components] floats, which may be where its data
+ *           is; NULL where its quantization has no bits. Points that no face uses keep their values
+ *
+ * Returns what nt_draco_encode() does for meshes that it refuses; NT_ERROR_MEMORY.
+ */
+nt_status nt_draco_quantize(const nt_draco_mesh *mesh, float *const *values, nt_error *error);
+
 #ifdef __cplusplus
 }
 #endif

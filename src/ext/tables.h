@@ -34,6 +34,7 @@ typedef struct nt_draco_table {
 	__typeof__(nt_draco_free) *free;
 	__typeof__(nt_draco_get) *get;
 	__typeof__(nt_draco_encode) *encode;
+	__typeof__(nt_draco_quantize) *quantize;
 } nt_draco_table;
 
 typedef struct nt_meshopt_table {

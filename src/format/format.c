@@ -11,6 +11,7 @@
 #include "gltf/create/create.h"
 #include "gltf/document.h"
 #include "gltf/draco.h"
+#include "gltf/edit/draco_foresee.h"
 #include "gltf/edit/edit.h"
 #include "gltf/joins.h"
 #include "gltf/late.h"
@@ -38,6 +39,7 @@ static const nt_format_entry table[] = {
 		.find_joins = nt_gltf_find_joins,
 		.find_same = nt_gltf_find_same,
 		.find_late = nt_gltf_find_late,
+		.find_quantized = nt_gltf_find_quantized,
 		.share = nt_gltf_share,
 		.unshare = nt_gltf_unshare,
 		.load = nt_gltf_load,
@@ -61,6 +63,7 @@ static const nt_format_entry table[] = {
 		.find_joins = nt_gltf_find_joins,
 		.find_same = nt_gltf_find_same,
 		.find_late = nt_gltf_find_late,
+		.find_quantized = nt_gltf_find_quantized,
 		.share = nt_gltf_share,
 		.unshare = nt_gltf_unshare,
 		.load = nt_gltf_load,

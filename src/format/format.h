@@ -28,6 +28,9 @@ typedef struct nt_format_entry {
 	/* After that: sets late of meshes whose results need not all be there at once for an edit of the source's
 	 * document; NULL: there are none. */
 	nt_status (*find_late)(nt_scene *scene, nt_error *error);
+	/* After that, for an edit of the source's document: sets quantized of meshes that will be compressed; NULL:
+	 * none can be. */
+	nt_status (*find_quantized)(nt_scene *scene, const nt_read_options *options, nt_error *error);
 	/* After that: from share() to unshare() several threads may load, as gltf/load.h says. needed: [mesh_count],
 	 * which will be loaded. NULL: load() is for one thread. */
 	nt_status (*share)(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error);

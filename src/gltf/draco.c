@@ -18,6 +18,12 @@ nt_json_value *nt_gltf_draco_of(const nt_json_value *primitive)
 	return nt_json_find(nt_json_find(primitive, "extensions"), "KHR_draco_mesh_compression");
 }
 
+int nt_gltf_draco_bits(const int *draco_bits, nt_draco_bits which)
+{
+	static const int defaults[NT_DRACO_BITS_COUNT] = {14, 12, 12, 12};
+	return draco_bits[which] ? draco_bits[which] : defaults[which];
+}
+
 static void free_blocks(nt_gltf *document)
 {
 	for (size_t i = 0; i < document->view_count; i++)

@@ -22,6 +22,9 @@ nt_status nt_gltf_decode_draco(nt_gltf *document, const nt_json_value *primitive
  * NT_ERROR_MEMORY. */
 nt_status nt_gltf_decode_ahead(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error);
 
+/* Quantization of what was not quantized before, as the options have it, or the default. */
+int nt_gltf_draco_bits(const int *draco_bits, nt_draco_bits which);
+
 /* The block of a view; NULL: not decoded. */
 const nt_draco_mesh *nt_gltf_draco_block(const nt_gltf *document, uint64_t view);
 

@@ -16,6 +16,7 @@
 #include "base/parallel.h"
 #include "gltf/accessor.h"
 #include "gltf/draco.h"
+#include "gltf/draco_values.h"
 #include "gltf/materials.h"
 #include "gltf/pointer.h"
 #include "gltf/primitive.h"
@@ -422,6 +423,14 @@ static nt_status find_vertex_bytes(nt_gltf *document, const nt_json_value *primi
 	return NT_OK;
 }
 
+static nt_status quantize(nt_scene *scene, nt_mesh *mesh, const inputs *in, const nt_read_options *options,
+	nt_error *error)
+{
+	const nt_gltf_sources sources = {&in->positions.accessor, in->normals.exists ? &in->normals.accessor : NULL,
+		in->texcoords.exists ? &in->texcoords.accessor : NULL};
+	return nt_gltf_quantize_vertices(scene, mesh, &sources, options, error);
+}
+
 nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 	nt_error *error)
 {
@@ -442,9 +451,11 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	if (!status)
 		status = load_vertices(scene, document, mesh, &in, options->threads, error);
 	if (!status)
-		status = apply_transform(scene, document, mesh, error);
-	if (!status)
 		status = load_faces(scene, document, mesh, primitive, options->threads, error);
+	if (!status && mesh->quantized)
+		status = quantize(scene, mesh, &in, options, error);
+	if (!status)
+		status = apply_transform(scene, document, mesh, error);
 	if (!status && options->report)
 		status = find_vertex_bytes(document, primitive, &mesh->vertex_bytes, error);
 	/* a mesh in the world is written without its targets */

@@ -12,14 +12,6 @@ bool nt_gltf_is_solved(const nt_mesh *mesh)
 	return mesh->split.vertex_tangents != NULL || mesh->late;
 }
 
-bool nt_gltf_has_solved(const nt_scene *scene)
-{
-	for (size_t i = 0; i < scene->mesh_count; i++)
-		if (nt_gltf_is_solved(&scene->meshes[i]))
-			return true;
-	return false;
-}
-
 nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh)
 {
 	const nt_json_value *json =

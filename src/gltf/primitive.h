@@ -10,9 +10,6 @@
 /* Whether a mesh has tangents to be written. */
 bool nt_gltf_is_solved(const nt_mesh *mesh);
 
-/* Whether any of a scene has. */
-bool nt_gltf_has_solved(const nt_scene *scene);
-
 /* The primitive of a mesh in the document. */
 nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh);
 

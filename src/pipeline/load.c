@@ -84,6 +84,15 @@ static bool asks_for_results(const loading *l, const nt_format_entry *writer)
 		!s->list_meshes;
 }
 
+/* Whether an edit of the document compresses what is not compressed: primitives, or normals that are made for some that
+ * are. */
+static bool compresses(const loading *l, const nt_format_entry *writer)
+{
+	const nt_settings *s = l->settings;
+	return writer && !needs_all(l->reader, writer) &&
+		(s->draco > NT_DRACO_OFF || (s->draco == NT_DRACO_KEEP && s->normals != NT_NORMALS_AUTO));
+}
+
 /* Whether a mesh is loaded: to be solved or written, or for the report alone. */
 static bool is_needed(const loading *l, const nt_mesh *mesh, bool all)
 {
@@ -122,6 +131,8 @@ nt_status nt_stage_load(nt_scene *scene, const nt_format_entry *reader, const nt
 		status = find_joins(&l);
 	if (!status && reader->find_late && asks_for_results(&l, writer))
 		status = reader->find_late(scene, error);
+	if (!status && reader->find_quantized && compresses(&l, writer))
+		status = reader->find_quantized(scene, options, error);
 	if (!status && reader->load)
 		status = load_meshes(&l, writer, all);
 	return status ? status : load_copies(&l);

@@ -10,6 +10,7 @@
 #include "file/watch.h"
 #include "format/foreign.h"
 #include "gltf/companion.h"
+#include "gltf/draco_values.h"
 #include "gltf/verify.h"
 #include "pipeline/late.h"
 #include "pipeline/stages.h"
@@ -221,6 +222,8 @@ static nt_status run_stages(run *r)
 		begin_stage(r, NT_STAGE_NORMALS);
 		status = nt_stage_normals(&r->scene, r->settings->normals, r->settings->threads, r->error);
 	}
+	if (!status)
+		status = nt_gltf_quantize_made_normals(&r->scene, &r->read_options, r->error);
 	if (!status) {
 		begin_stage(r, NT_STAGE_TANGENTS);
 		status = nt_stage_tangents_and_textures(&r->scene, r->settings,
@@ -270,7 +273,9 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 		.error = error};
 	r.read_options = (nt_read_options){.texcoord_set = settings->texcoord_set,
 		.allow_outside = settings->allow_outside, .morphs = settings->morphs,
-		.report = settings->report != NULL, .across = settings->across == NT_ACROSS_MESH, .threads = settings->threads};
+		.report = settings->report != NULL, .across = settings->across == NT_ACROSS_MESH, .threads = settings->threads,
+		.draco = settings->draco};
+	memcpy(r.read_options.draco_bits, settings->draco_bits, sizeof r.read_options.draco_bits);
 	const double begin = nt_seconds();
 	r.stage_begin = begin;
 	nt_scene_init(&r.scene, input);

@@ -43,16 +43,6 @@ typedef enum nt_precision {
 	NT_PRECISION_BYTE
 } nt_precision;
 
-typedef struct nt_read_options {
-	int texcoord_set;   /* -1: the set that the material's slot asks for; else TEXCOORD_n */
-	bool allow_outside; /* URIs may leave the folder of the input */
-	bool world;         /* the output is one mesh in the world: instances and colours are wanted too */
-	nt_morph_choice morphs; /* targets are loaded where they are to be baked */
-	bool report;        /* meshes that get no tangents are loaded too, to be checked */
-	bool across;        /* and those that contribute to others: NT_ACROSS_MESH */
-	unsigned threads;
-} nt_read_options;
-
 /* External buffers of a glTF input that nothing changed; changed ones are always written anew: beside a .gltf; in a
  * .glb, the first as BIN chunk, the others beside it where it is to have files. */
 typedef enum nt_buffers {
@@ -86,6 +76,18 @@ typedef enum nt_draco_bits {
 
 /* Draco's level, from 0 (smallest blocks) to 10 (fastest), where nobody says another. */
 enum { NT_DRACO_SPEED = 5 };
+
+typedef struct nt_read_options {
+	int texcoord_set;   /* -1: the set that the material's slot asks for; else TEXCOORD_n */
+	bool allow_outside; /* URIs may leave the folder of the input */
+	bool world;         /* the output is one mesh in the world: instances and colours are wanted too */
+	nt_morph_choice morphs; /* targets are loaded where they are to be baked */
+	bool report;        /* meshes that get no tangents are loaded too, to be checked */
+	bool across;        /* and those that contribute to others: NT_ACROSS_MESH */
+	nt_draco_choice draco; /* of the writer: what it will compress is loaded as a decoder will have it */
+	int draco_bits[NT_DRACO_BITS_COUNT];
+	unsigned threads;
+} nt_read_options;
 
 typedef struct nt_write_options {
 	nt_format format;   /* of the output */

@@ -151,6 +151,13 @@ typedef struct nt_join {
 	size_t target_count;
 } nt_join;
 
+/* Whether a mesh is loaded and solved as a decoder of Draco will have it, since it will be compressed. */
+typedef enum nt_quantized {
+	NT_QUANTIZED_NOT,
+	NT_QUANTIZED,
+	NT_QUANTIZED_WHOLE /* if faces use all of its vertices: otherwise it cannot be compressed */
+} nt_quantized;
+
 typedef struct nt_mesh {
 	/* what it is called and where it stands */
 	const char *name;     /* object or mesh name; "" where there is none */
@@ -179,6 +186,7 @@ typedef struct nt_mesh {
 	                                  NULL: none. That one has none */
 
 	bool plain;              /* of its geometry, an edit of the source's document needs what a solve makes of it alone */
+	nt_quantized quantized;
 	bool late;               /* loaded and solved while the writer asks for it: scene->solve_late */
 	const nt_join *join;     /* it is solved with the others of it; NULL: by itself */
 	const struct nt_mesh *transform_of; /* of a copy in a join: the mesh whose texture transform applies; NULL:

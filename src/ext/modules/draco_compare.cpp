@@ -13,36 +13,8 @@
 
 namespace {
 
-using draco::PointAttribute;
-using nt::is_octahedral;
 using nt::stride_of;
 using nt::value_of;
-
-// What a decoder should return for an attribute, point by point: the values after quantization, as Draco
-// itself computes it.
-std::vector<unsigned char> expected_values(const PointAttribute &attribute,
-	const nt_draco_attribute &a, size_t point_count)
-{
-	const nt_draco_quantization &q = a.quantization;
-	if (!q.bits)
-		return nt::copy_values(attribute, point_count);
-	draco::AttributeOctahedronTransform octahedron;
-	draco::AttributeQuantizationTransform box;
-	draco::AttributeTransform *transform = &box;
-	if (is_octahedral(a)) {
-		octahedron.SetParameters(q.bits);
-		transform = &octahedron;
-	} else if (q.explicit_box) {
-		box.SetParameters(q.bits, q.origin, a.components, q.range);
-	} else {
-		box.ComputeParameters(attribute, q.bits);
-	}
-	const auto portable =
-		transform->InitTransformedAttribute(attribute, static_cast<int>(point_count));
-	if (!transform->TransformAttribute(attribute, {}, portable.get()) || !transform->TransferToAttribute(portable.get()))
-		return {};
-	return nt::restore(*portable, nt::quantization_of(*portable), point_count);
-}
 
 // A number for a corner's values, the same for -0 and +0, which Draco may merge.
 uint64_t hash_point(const nt_draco_mesh &mesh, uint32_t point)
@@ -127,6 +99,30 @@ void sort_attributes(std::vector<nt_draco_attribute> &attributes)
 }
 
 } // namespace
+
+std::vector<unsigned char> nt::expected_values(const draco::PointAttribute &attribute,
+	const nt_draco_attribute &a, size_t point_count)
+{
+	const nt_draco_quantization &q = a.quantization;
+	if (!q.bits)
+		return nt::copy_values(attribute, point_count);
+	draco::AttributeOctahedronTransform octahedron;
+	draco::AttributeQuantizationTransform box;
+	draco::AttributeTransform *transform = &box;
+	if (is_octahedral(a)) {
+		octahedron.SetParameters(q.bits);
+		transform = &octahedron;
+	} else if (q.explicit_box) {
+		box.SetParameters(q.bits, q.origin, a.components, q.range);
+	} else {
+		box.ComputeParameters(attribute, q.bits);
+	}
+	const auto portable =
+		transform->InitTransformedAttribute(attribute, static_cast<int>(point_count));
+	if (!transform->TransformAttribute(attribute, {}, portable.get()) || !transform->TransferToAttribute(portable.get()))
+		return {};
+	return nt::restore(*portable, nt::quantization_of(*portable), point_count);
+}
 
 void nt::expect_back(nt_draco &expected, const nt_draco_mesh &from, const draco::Mesh &made,
 	const std::vector<uint32_t> &numbers)

@@ -110,7 +110,9 @@ nt_status check_positions(const nt_draco_mesh &mesh, nt_error *error)
 		"Edgebreaker cannot encode %zu attributes of positions, expected one", static_cast<size_t>(count));
 }
 
-nt_status check_mesh(const nt_draco_mesh &mesh, nt_error *error)
+} // namespace
+
+nt_status nt::check_mesh(const nt_draco_mesh &mesh, nt_error *error)
 {
 	if (mesh.face_count > 0x7fffffff / 6 || mesh.point_count > 0x7fffffff)
 		return nt_fail(error, NT_ERROR_TOO_LARGE, "%zu faces are too many for Draco",
@@ -131,8 +133,7 @@ nt_status check_mesh(const nt_draco_mesh &mesh, nt_error *error)
 
 // ---- the mesh as Draco wants it ----
 
-// The points that faces use, in their order, and their new numbers.
-std::vector<uint32_t> compact(const nt_draco_mesh &mesh, std::vector<uint32_t> &numbers)
+std::vector<uint32_t> nt::compact(const nt_draco_mesh &mesh, std::vector<uint32_t> &numbers)
 {
 	std::vector<uint32_t> sources;
 	numbers.assign(mesh.point_count, 0);
@@ -146,7 +147,7 @@ std::vector<uint32_t> compact(const nt_draco_mesh &mesh, std::vector<uint32_t> &
 	return sources;
 }
 
-void add_attribute(draco::Mesh &to, const nt_draco_attribute &a, const std::vector<uint32_t> &sources)
+void nt::add_attribute(draco::Mesh &to, const nt_draco_attribute &a, const std::vector<uint32_t> &sources)
 {
 	const size_t width = nt_component_size(a.component_type) * static_cast<size_t>(a.components);
 	draco::GeometryAttribute layout;
@@ -159,6 +160,8 @@ void add_attribute(draco::Mesh &to, const nt_draco_attribute &a, const std::vect
 	for (size_t p = 0; p < sources.size(); p++)
 		std::memcpy(values + width * p, value_of(a, sources[p]), width);
 }
+
+namespace {
 
 std::unique_ptr<draco::Mesh> make_mesh(const nt_draco_mesh &mesh,
 	const std::vector<uint32_t> &sources, const std::vector<uint32_t> &numbers)
@@ -173,7 +176,7 @@ std::unique_ptr<draco::Mesh> make_mesh(const nt_draco_mesh &mesh,
 		made->SetFace(draco::FaceIndex(f), face);
 	}
 	for (size_t i = 0; i < mesh.attribute_count; i++)
-		add_attribute(*made, mesh.attributes[i], sources);
+		nt::add_attribute(*made, mesh.attributes[i], sources);
 	return made;
 }
 
@@ -374,11 +377,11 @@ nt_status hand_over(const draco::EncoderBuffer &buffer, const nt_draco_mesh &mes
 
 nt_status encode(const nt_draco_mesh &mesh, nt_draco_block *block, nt_error *error)
 {
-	nt_status status = check_mesh(mesh, error);
+	nt_status status = nt::check_mesh(mesh, error);
 	if (status != NT_OK)
 		return status;
 	std::vector<uint32_t> numbers;
-	const std::vector<uint32_t> sources = compact(mesh, numbers);
+	const std::vector<uint32_t> sources = nt::compact(mesh, numbers);
 	const auto made = make_mesh(mesh, sources, numbers);
 	nt_draco expected;
 	nt::expect_back(expected, mesh, *made, numbers);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
 // What the files around Draco share: draco_decode.cpp decodes, draco_encode.cpp encodes, draco_compare.cpp tells
-// whether what was encoded comes back.
+// whether what was encoded comes back, draco_quantize.cpp what quantization makes of values.
 #ifndef NT_EXT_MODULES_DRACO_PARTS_HPP
 #define NT_EXT_MODULES_DRACO_PARTS_HPP
 
@@ -51,7 +51,21 @@ void free_decoded(nt_draco *result);
 // nt_draco_encode().
 nt_status encode_draco(const nt_draco_mesh *mesh, nt_draco_block *block, nt_error *error);
 
+// Whether a mesh may go to Draco: see nt_draco_encode().
+nt_status check_mesh(const nt_draco_mesh &mesh, nt_error *error);
+
+// The points that faces use, in their order; receives their new numbers.
+std::vector<uint32_t> compact(const nt_draco_mesh &mesh, std::vector<uint32_t> &numbers);
+
+// An attribute with the values of these points.
+void add_attribute(draco::Mesh &to, const nt_draco_attribute &a, const std::vector<uint32_t> &sources);
+
 // ---- draco_compare.cpp ----
+
+// What a decoder should return for an attribute, point by point: the values after quantization, as Draco itself
+// computes it.
+std::vector<unsigned char> expected_values(const draco::PointAttribute &attribute, const nt_draco_attribute &a,
+	size_t point_count);
 
 // What a decoder should return for a mesh: without points that no face uses, values as quantization leaves them.
 // made: the mesh as the encoder gets it; numbers: of each point of `from` in it.
@@ -60,6 +74,11 @@ void expect_back(nt_draco &expected, const nt_draco_mesh &from, const draco::Mes
 
 // Whether it is what came back. Sorts attributes by their ids on both sides.
 bool came_back(nt_draco &expected, nt_draco &decoded);
+
+// ---- draco_quantize.cpp ----
+
+// nt_draco_quantize().
+nt_status quantize_draco(const nt_draco_mesh *mesh, float *const *values, nt_error *error);
 
 // ---- attributes ----
 

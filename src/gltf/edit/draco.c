@@ -102,7 +102,7 @@ static bool accessors_are_own(const nt_gltf_recoding *r)
 		uint64_t accessor;
 		const char *name = nt_json_key(ids, i, NULL);
 		if (!name || !nt_json_get_uint64(nt_json_find(attributes, name), &accessor) ||
-			r->pools->foreign[r->pools->first_alias[accessor]] ||
+			accessor >= r->pools->accessor_count || r->pools->foreign[r->pools->first_alias[accessor]] ||
 			nt_json_find(nt_json_at(accessors, (size_t)accessor), "bufferView"))
 			return false;
 	}
@@ -170,16 +170,16 @@ static void report_users(const nt_gltf_recoding *r, nt_finding_list *findings, b
 			nt_finding_add(findings, NT_CODE_DRACO_PLAIN, place, 1, "%s", r->obstacle);
 		else if (compressed && r->options->precision != NT_PRECISION_FLOAT)
 			nt_finding_add(findings, NT_CODE_DRACO_PRECISION, place, 1, "%d bits",
-				nt_gltf_draco_bits(r->options, NT_DRACO_BITS_TANGENT));
+				nt_gltf_draco_bits(r->options->draco_bits, NT_DRACO_BITS_TANGENT));
 	}
 }
 
-nt_status nt_gltf_draco_look_up(nt_gltf_recoding *r, nt_buffer_edits *edits, nt_vertex_pools *pools,
+nt_status nt_gltf_draco_foresee(nt_gltf_recoding *r, nt_gltf *document, nt_vertex_pools *pools,
 	nt_pool_vertices *vertices, const nt_write_options *options, nt_arena *arena, nt_error *error)
 {
-	*r = (nt_gltf_recoding){.edits = edits, .document = edits->document, .json = edits->document->json,
-		.arena = arena, .options = options, .pools = pools, .vertices = vertices,
-		.mesh = nt_pool_mesh(vertices->pool, 0), .primitive = nt_pool_primitive(vertices->pool, 0)};
+	*r = (nt_gltf_recoding){.document = document, .json = document->json, .arena = arena, .options = options,
+		.pools = pools, .vertices = vertices, .mesh = nt_pool_mesh(vertices->pool, 0),
+		.primitive = nt_pool_primitive(vertices->pool, 0)};
 	r->extension = nt_gltf_draco_of(r->primitive);
 	nt_status status = NT_OK;
 	if (!is_one_primitive(vertices->pool)) {
@@ -190,11 +190,23 @@ nt_status nt_gltf_draco_look_up(nt_gltf_recoding *r, nt_buffer_edits *edits, nt_
 		!nt_json_get_uint64(nt_json_find(r->extension, "bufferView"), &r->view)) {
 		r->obstacle = "something else uses its accessors";
 	} else {
-		r->source = nt_gltf_draco_block(r->document, r->view);
 		nt_gltf_visit_attributes(r->primitive, pools->accessor_count, note_outside, r);
+	}
+	return status;
+}
+
+nt_status nt_gltf_draco_look_up(nt_gltf_recoding *r, nt_buffer_edits *edits, nt_vertex_pools *pools,
+	nt_pool_vertices *vertices, const nt_write_options *options, nt_arena *arena, nt_error *error)
+{
+	nt_status status = nt_gltf_draco_foresee(r, edits->document, pools, vertices, options, arena, error);
+	r->edits = edits;
+	if (status || r->obstacle)
+		return status;
+	if (r->extension) {
+		r->source = nt_gltf_draco_block(r->document, r->view);
 		status = nt_gltf_draco_gather_block(r, error);
 	}
-	if (!status && !r->obstacle)
+	if (!status)
 		nt_gltf_draco_add_own(r);
 	return status;
 }

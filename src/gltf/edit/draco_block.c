@@ -18,12 +18,6 @@ bool nt_gltf_draco_owns_indices(const nt_gltf_recoding *r, uint64_t accessor)
 		pools->index_users[pools->first_alias[accessor]] == r->vertices->pool->user_count;
 }
 
-int nt_gltf_draco_bits(const nt_write_options *options, nt_draco_bits which)
-{
-	static const int defaults[NT_DRACO_BITS_COUNT] = {14, 12, 12, 12};
-	return options->draco_bits[which] ? options->draco_bits[which] : defaults[which];
-}
-
 void nt_gltf_draco_add(nt_gltf_recoding *r, const char *name, nt_draco_attribute attribute)
 {
 	r->names[r->attribute_count] = name;
@@ -80,10 +74,10 @@ nt_status nt_gltf_draco_gather_block(nt_gltf_recoding *r, nt_error *error)
 void nt_gltf_draco_add_own(nt_gltf_recoding *r)
 {
 	const nt_pool_vertices *vertices = r->vertices;
-	const int bits = nt_gltf_draco_bits(r->options, NT_DRACO_BITS_TANGENT);
+	const int bits = nt_gltf_draco_bits(r->options->draco_bits, NT_DRACO_BITS_TANGENT);
 	if (vertices->normals[0])
 		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, vertices->normals[0],
-			nt_gltf_draco_bits(r->options, NT_DRACO_BITS_NORMAL));
+			nt_gltf_draco_bits(r->options->draco_bits, NT_DRACO_BITS_NORMAL));
 	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, vertices->tangents[0], bits);
 	if (r->options->bitangents)
 		put_floats(r, "_BITANGENT", NT_DRACO_GENERIC, 3, NULL, bits);

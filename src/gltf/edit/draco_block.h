@@ -41,9 +41,6 @@ enum { NT_GLTF_OWN_ATTRIBUTES = 3 };
 /* Whether an accessor is indices of the pool's primitives alone, and nobody's attribute. */
 bool nt_gltf_draco_owns_indices(const nt_gltf_recoding *recoding, uint64_t accessor);
 
-/* Quantization as the options have it, or the default. */
-int nt_gltf_draco_bits(const nt_write_options *options, nt_draco_bits which);
-
 /* There is room for what the primitive has and NT_GLTF_OWN_ATTRIBUTES. The name lives as long as the JSON. */
 void nt_gltf_draco_add(nt_gltf_recoding *recoding, const char *name, nt_draco_attribute attribute);
 

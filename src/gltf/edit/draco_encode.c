@@ -16,15 +16,30 @@ enum { ELEMENT_BYTES = 100 };
 
 /* ---- one ---- */
 
-/* Whether edgebreaker would drop a face: two corners at one position. */
+static const nt_draco_attribute *find_positions(const nt_gltf_recoding *r)
+{
+	for (size_t i = 0; i < r->attribute_count; i++)
+		if (r->attributes[i].kind == NT_DRACO_POSITION)
+			return &r->attributes[i];
+	return NULL;
+}
+
+/* Whether edgebreaker would drop a face: two corners at one position, as Draco gets them. What quantization brings
+ * together it keeps. */
 static bool has_degenerate_face(const nt_gltf_recoding *r)
 {
+	const nt_draco_attribute *positions = find_positions(r);
 	const uint32_t *indices = r->vertices->indices[0];
+	if (!positions)
+		return false;
+	const size_t width = nt_component_size(positions->component_type) * (size_t)positions->components;
+	const size_t stride = positions->stride_bytes ? positions->stride_bytes : width;
+	const char *elements = positions->data;
 	for (size_t c = 0; c + 2 < r->mesh->corner_count; c += 3)
 		for (size_t k = 0; k < 3; k++) {
-			const size_t a = indices[c + k], b = indices[c + (k + 1) % 3];
-			if (memcmp(r->mesh->positions + 3 * nt_vertex_source(r->vertices, a),
-				r->mesh->positions + 3 * nt_vertex_source(r->vertices, b), 3 * sizeof(float)) == 0)
+			const size_t a = nt_vertex_source(r->vertices, indices[c + k]),
+				     b = nt_vertex_source(r->vertices, indices[c + (k + 1) % 3]);
+			if (memcmp(elements + stride * a, elements + stride * b, width) == 0)
 				return true;
 		}
 	return false;

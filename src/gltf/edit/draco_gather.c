@@ -40,14 +40,14 @@ static int bits_of(const nt_write_options *options, const char *name)
 {
 	switch (kind_of(name)) {
 	case NT_DRACO_POSITION:
-		return nt_gltf_draco_bits(options, NT_DRACO_BITS_POSITION);
+		return nt_gltf_draco_bits(options->draco_bits, NT_DRACO_BITS_POSITION);
 	case NT_DRACO_NORMAL:
-		return nt_gltf_draco_bits(options, NT_DRACO_BITS_NORMAL);
+		return nt_gltf_draco_bits(options->draco_bits, NT_DRACO_BITS_NORMAL);
 	case NT_DRACO_TEXCOORD:
-		return nt_gltf_draco_bits(options, NT_DRACO_BITS_TEXCOORD);
+		return nt_gltf_draco_bits(options->draco_bits, NT_DRACO_BITS_TEXCOORD);
 	default:
 		return strcmp(name, "TANGENT") == 0 ?
-			nt_gltf_draco_bits(options, NT_DRACO_BITS_TANGENT) : 0;
+			nt_gltf_draco_bits(options->draco_bits, NT_DRACO_BITS_TANGENT) : 0;
 	}
 }
 

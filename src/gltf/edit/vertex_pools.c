@@ -138,10 +138,18 @@ static void join_primitive(nt_vertex_pools *pools, joining *j)
 	}
 }
 
+static bool any_has_tangents(const nt_scene *scene)
+{
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		if (nt_mesh_is_wanted(&scene->meshes[i]) || nt_gltf_is_solved(&scene->meshes[i]))
+			return true;
+	return false;
+}
+
 nt_status nt_vertex_pools_find(nt_vertex_pools *pools, const nt_scene *scene, nt_arena *arena, nt_error *error)
 {
 	*pools = (nt_vertex_pools){.scene = scene};
-	if (!nt_gltf_has_solved(scene))
+	if (!any_has_tangents(scene))
 		return NT_OK;
 	const size_t mesh_count = scene->mesh_count;
 	joining j = {.pools = pools, .parent = nt_alloc(mesh_count, sizeof *j.parent)};

@@ -15,7 +15,7 @@
 /* All pools of a document. Accessors over the same bytes count as one: the first alias. */
 typedef struct nt_vertex_pools {
 	const nt_scene *scene;
-	size_t accessor_count;     /* 0 where nothing is solved: there are no pools then */
+	size_t accessor_count;     /* 0 where nothing gets tangents: there are no pools then */
 	uint32_t *first_alias;     /* [accessor_count] the first accessor over the same bytes */
 	bool *foreign;             /* [accessor_count] by first alias: used by something else than attributes */
 	uint32_t *attribute_users; /* [accessor_count] by first alias: uses as attribute, of morph targets too */

@@ -333,6 +333,61 @@ static void bounds_are_those_of_the_decoded_values(void **state)
 	nt_draco_block_free(&block);
 }
 
+/* The attributes 0 to 2 of a mesh; values: room for each. */
+static nt_status quantize_grid(const grid *g, float (*values)[3 * POINTS])
+{
+	nt_draco_mesh three = g->mesh;
+	three.attribute_count = 3;
+	float *const to[] = {values[0], values[1], values[2]};
+	nt_error error;
+	return nt_draco_quantize(&three, to, &error);
+}
+
+static void quantized_values_are_those_that_are_decoded(void **state)
+{
+	(void)state;
+	for (int bits = 4; bits <= 14; bits += 5) {
+		grid g;
+		make_grid(&g, NT_DRACO_SEQUENTIAL, bits);
+		/* the last point is the unused one */
+		g.positions[POINTS - 1][0] = 1000;
+		static float values[3][3 * POINTS];
+		assert_int_equal(quantize_grid(&g, values), NT_OK);
+		assert_true(values[0][3 * (POINTS - 1)] == 1000);
+		/* nowhere further than half a cell */
+		const float cell = g.positions[SIDE][0] / (float)((1 << bits) - 1);
+		for (int i = 0; i < 3 * (POINTS - 1); i++)
+			assert_true(fabsf(values[0][i] - g.positions[i / 3][i % 3]) <= 0.5001f * cell);
+
+		/* with all attributes, and by another function of the library */
+		nt_draco_block block = encoded(&g.mesh);
+		nt_draco *result = decoded(&block);
+		for (uint32_t i = 0; i < 3; i++) {
+			const nt_draco_attribute *a = nt_draco_find(nt_draco_get(result), i);
+			const size_t width = (size_t)a->components;
+			for (size_t p = 0; p < block.point_count; p++)
+				assert_memory_equal((const float *)a->data + width * p, values[i] + width * block.sources[p],
+					width * sizeof(float));
+		}
+		nt_draco_free(result);
+		nt_draco_block_free(&block);
+
+		/* in place, and what is refused */
+		float *const own[] = {g.positions[0], g.normals[0], g.texcoords[0]};
+		nt_draco_mesh three = g.mesh;
+		three.attribute_count = 3;
+		nt_error error;
+		assert_int_equal(nt_draco_quantize(&three, own, &error), NT_OK);
+		assert_memory_equal(g.positions, values[0], sizeof g.positions);
+		assert_memory_equal(g.texcoords, values[2], sizeof g.texcoords);
+		g.texcoords[3][0] = INFINITY;
+		assert_int_equal(quantize_grid(&g, values), NT_ERROR_ARGUMENT);
+		g.texcoords[3][0] = 0;
+		g.indices[3][0] = POINTS;
+		assert_int_equal(quantize_grid(&g, values), NT_ERROR_INDEX);
+	}
+}
+
 static nt_status encode_status(const grid *g, nt_error *error)
 {
 	nt_draco_block block;
@@ -565,6 +620,7 @@ int main(void)
 		cmocka_unit_test(copied_points_have_the_values_of_others),
 		cmocka_unit_test(equal_points_are_joined_by_edgebreaker),
 		cmocka_unit_test(bounds_are_those_of_the_decoded_values),
+		cmocka_unit_test(quantized_values_are_those_that_are_decoded),
 		cmocka_unit_test(non_manifold_meshes_survive_edgebreaker),
 		cmocka_unit_test(what_cannot_be_encoded_is_refused),
 		cmocka_unit_test(damaged_streams_are_refused),

@@ -1,0 +1,167 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Vertices on Draco's grid. A plain primitive that will be compressed is loaded with the values that a decoder will
+ * have, so that all that follows (normals, morph targets, the solve, findings) is about what is drawn. The file's own
+ * values go to the encoder, which lays the same grid over them: both look at the vertices that faces use.
+ *
+ * Of a primitive that is compressed already nothing has to be done: its values lie on a grid which it keeps, and
+ * quantizing them again moves none.
+ */
+#include "gltf/draco_values.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include "gltf/draco.h"
+
+/* Whether it is not the mesh that keeps Draco from quantizing. */
+static bool is_beside_mesh(nt_status status)
+{
+	return status == NT_ERROR_MEMORY || status == NT_ERROR_MODULE || status == NT_ERROR_IO;
+}
+
+static void flip_texcoords(nt_mesh *mesh)
+{
+	for (size_t v = 0; v < mesh->vertex_count; v++)
+		mesh->texcoords[2 * v + 1] = -mesh->texcoords[2 * v + 1];
+}
+
+/* Corner by corner where a mesh has no indices of its own, in *own. NULL: memory is exhausted. */
+static const uint32_t *indices_of(const nt_mesh *mesh, uint32_t **own)
+{
+	*own = NULL;
+	if (mesh->indices)
+		return mesh->indices;
+	*own = nt_alloc(mesh->corner_count, sizeof **own);
+	for (size_t c = 0; *own && c < mesh->corner_count; c++)
+		(*own)[c] = (uint32_t)c;
+	return *own;
+}
+
+/* Attributes with the mesh's triangles, to be quantized. values: as nt_draco_quantize() takes them. */
+static nt_status quantize(const nt_mesh *mesh, const nt_draco_attribute *attributes, size_t count,
+	float *const *values, nt_error *error)
+{
+	uint32_t *own;
+	const nt_draco_mesh packed = {.method = NT_DRACO_SEQUENTIAL, .point_count = mesh->vertex_count,
+		.face_count = mesh->face_count, .indices = indices_of(mesh, &own), .attributes = attributes,
+		.attribute_count = count};
+	const nt_status status = packed.indices ? nt_draco_quantize(&packed, values, error) :
+						  nt_fail_memory(error);
+	free(own);
+	return status;
+}
+
+/* Whether faces use all vertices. */
+static nt_status uses_all(const nt_mesh *mesh, bool *all, nt_error *error)
+{
+	bool *used = nt_calloc(mesh->vertex_count, sizeof *used);
+	size_t count = 0;
+	if (!used)
+		return nt_fail_memory(error);
+	for (size_t c = 0; c < mesh->corner_count; c++) {
+		bool *vertex = &used[mesh->indices ? mesh->indices[c] : c];
+		count += !*vertex;
+		*vertex = true;
+	}
+	free(used);
+	*all = count == mesh->vertex_count;
+	return NT_OK;
+}
+
+/* ---- what was loaded ---- */
+
+/* The attributes of a mesh that are plain floats. */
+typedef struct taking {
+	nt_draco_attribute attributes[3];
+	float *values[3];
+	float **loaded[3];
+	size_t count;
+	bool failed; /* memory is exhausted */
+} taking;
+
+/* loaded: where the mesh has the values, which stay as they are. */
+static void take(taking *t, nt_scene *scene, const nt_mesh *mesh, const nt_gltf_accessor *from, nt_draco_kind kind,
+	int bits, float **loaded)
+{
+	if (!from || from->component_type != NT_GLTF_FLOAT || from->decoded)
+		return;
+	const size_t i = t->count++;
+	t->attributes[i] = (nt_draco_attribute){.unique_id = (uint32_t)i, .kind = kind,
+		.component_type = NT_GLTF_FLOAT, .components = (int)from->components, .quantization = {.bits = bits},
+		.data = *loaded};
+	t->values[i] = nt_arena_alloc(&scene->arena, mesh->vertex_count, from->components * sizeof(float));
+	t->failed |= !t->values[i];
+	t->loaded[i] = loaded;
+}
+
+nt_status nt_gltf_quantize_vertices(nt_scene *scene, nt_mesh *mesh, const nt_gltf_sources *sources,
+	const nt_read_options *options, nt_error *error)
+{
+	const int *bits = options->draco_bits;
+	taking t = {.count = 0};
+	bool all = true;
+	nt_status status = mesh->quantized == NT_QUANTIZED_WHOLE ? uses_all(mesh, &all, error) : NT_OK;
+	if (!all)
+		mesh->quantized = NT_QUANTIZED_NOT;
+	if (status || !mesh->quantized)
+		return status;
+	take(&t, scene, mesh, sources->positions, NT_DRACO_POSITION,
+		nt_gltf_draco_bits(bits, NT_DRACO_BITS_POSITION), &mesh->positions);
+	take(&t, scene, mesh, sources->normals, NT_DRACO_NORMAL, nt_gltf_draco_bits(bits, NT_DRACO_BITS_NORMAL),
+		&mesh->normals);
+	take(&t, scene, mesh, sources->texcoords, NT_DRACO_TEXCOORD,
+		nt_gltf_draco_bits(bits, NT_DRACO_BITS_TEXCOORD), &mesh->texcoords);
+	if (t.failed)
+		return nt_fail_memory(error);
+
+	/* texture coordinates lie on the grid as they are stored */
+	if (sources->texcoords)
+		flip_texcoords(mesh);
+	nt_error refused;
+	status = t.count ? quantize(mesh, t.attributes, t.count, t.values, &refused) : NT_OK;
+	if (is_beside_mesh(status)) {
+		*error = refused;
+		return status;
+	}
+	if (status)
+		mesh->quantized = NT_QUANTIZED_NOT;
+	for (size_t i = 0; !status && i < t.count; i++)
+		*t.loaded[i] = t.values[i];
+	if (sources->texcoords)
+		flip_texcoords(mesh);
+	return NT_OK;
+}
+
+/* ---- what was made ---- */
+
+static nt_status quantize_made(nt_scene *scene, nt_mesh *mesh, int bits, nt_error *error)
+{
+	const nt_draco_attribute normals = {.kind = NT_DRACO_NORMAL, .component_type = NT_GLTF_FLOAT, .components = 3,
+		.quantization = {.bits = bits}, .data = mesh->normals};
+	float *values = nt_arena_alloc(&scene->arena, mesh->vertex_count, 3 * sizeof *values);
+	nt_error refused;
+	if (!values)
+		return nt_fail_memory(error);
+	const nt_status status = quantize(mesh, &normals, 1, &values, &refused);
+	if (!status)
+		mesh->solve_normals = values;
+	else if (is_beside_mesh(status))
+		*error = refused;
+	return is_beside_mesh(status) ? status : NT_OK;
+}
+
+nt_status nt_gltf_quantize_made_normals(nt_scene *scene, const nt_read_options *options, nt_error *error)
+{
+	const int bits = nt_gltf_draco_bits(options->draco_bits, NT_DRACO_BITS_NORMAL);
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < scene->mesh_count; i++) {
+		nt_mesh *mesh = &scene->meshes[i];
+		if (!mesh->quantized || !mesh->normals_made)
+			continue;
+		if (mesh->same_as)
+			mesh->solve_normals = mesh->same_as->solve_normals;
+		else
+			status = quantize_made(scene, mesh, bits, error);
+	}
+	return status;
+}

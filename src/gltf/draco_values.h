@@ -1,0 +1,25 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * What a decoder of Draco will have of a mesh that is to be compressed: see draco_values.c.
+ */
+#ifndef NT_GLTF_DRACO_VALUES_H
+#define NT_GLTF_DRACO_VALUES_H
+
+#include "gltf/accessor.h"
+#include "gltf/document.h"
+
+/* The accessors of what a mesh has, of its vertices; NULL: it has none. */
+typedef struct nt_gltf_sources {
+	const nt_gltf_accessor *positions, *normals, *texcoords;
+} nt_gltf_sources;
+
+/* The plain floats of a mesh with ->quantized become what a decoder will have of them; a mesh that Draco would refuse
+ * loses ->quantized instead. After faces are loaded, before texture transforms are applied. Returns NT_OK,
+ * NT_ERROR_MEMORY, NT_ERROR_MODULE or NT_ERROR_IO. */
+nt_status nt_gltf_quantize_vertices(nt_scene *scene, nt_mesh *mesh, const nt_gltf_sources *sources,
+	const nt_read_options *options, nt_error *error);
+
+/* Normals that were made for meshes with ->quantized: tangents will be solved for what a decoder has of them. */
+nt_status nt_gltf_quantize_made_normals(nt_scene *scene, const nt_read_options *options, nt_error *error);
+
+#endif

@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Which primitives will be compressed: see draco_foresee.c.
+ */
+#ifndef NT_GLTF_EDIT_DRACO_FORESEE_H
+#define NT_GLTF_EDIT_DRACO_FORESEE_H
+
+#include "gltf/document.h"
+
+/* After the decisions and before anything is loaded: sets ->quantized of meshes that an edit of the document with
+ * these options will compress by Draco, those of joins excepted. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_gltf_find_quantized(nt_scene *scene, const nt_read_options *options, nt_error *error);
+
+#endif
