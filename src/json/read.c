@@ -17,19 +17,28 @@
 /* NULs behind the text: it ends for every loop, also for those that look at eight bytes at once. */
 enum { PADDING_BYTES = 8 };
 
-/* A container whose end has not been read. */
+/* A container whose end has not been read. The keys of an object mostly are those of the one before it at that depth:
+ * while they are, they are compared and not read. */
 typedef struct opened {
 	const char *begin;
 	size_t first, first_key; /* where its children and keys begin in the stacks */
+	nt_json_shape *guessed;  /* its first keys are the first ones of this, and not in the stack; NULL: they are there */
 	bool is_object;
 	bool foreign; /* duplicate keys and numbers beyond double are no fault */
 	bool foreign_member; /* of the value that comes next */
 } opened;
 
+/* Shapes of the objects of one depth that were read last; NULL: there were none. The accessors of a primitive have two,
+ * one with bounds. */
+typedef struct recent {
+	nt_json_shape *last, *other;
+} recent;
+
 typedef struct reader {
 	nt_json *document;
 	char *at;
 	const char *foreign;
+	size_t foreign_length;
 	nt_error *error;
 	nt_json_value *values; /* [value_count] of the open containers */
 	nt_json_name *keys;     /* [key_count] of those that are objects */
@@ -37,7 +46,7 @@ typedef struct reader {
 	size_t depth, deepest;
 	/* most of both is never touched */
 	opened open[NT_JSON_MAX_DEPTH];             /* [depth] */
-	nt_json_shape *expected[NT_JSON_MAX_DEPTH]; /* [deepest] of the last object of that depth; NULL: there was none */
+	recent expected[NT_JSON_MAX_DEPTH];         /* [deepest] */
 } reader;
 
 /* ---- faults ---- */
@@ -176,16 +185,13 @@ static nt_status read_string(reader *r, nt_json_value *value)
 	*at = '\0';
 	r->at = at + 1;
 	size_t length = (size_t)(at - begin);
-	value->type = NT_JSON_STRING;
-	value->of.text = begin;
-	if (!plain) {
-		value->apart = 1;
-		value->of.said = decode(r, begin, at, &length);
-		if (!value->of.said)
-			return nt_fail_memory(r->error);
-	}
-	value->size = length;
-	return NT_OK;
+	/* values are made as a whole, here and below: a word that was written bit by bit is slow to be read */
+	*value = (nt_json_value){.of.text = begin, .size = length, .type = NT_JSON_STRING};
+	if (plain)
+		return NT_OK;
+	nt_json_said *const said = decode(r, begin, at, &length);
+	*value = (nt_json_value){.of.said = said, .size = length, .type = NT_JSON_STRING, .apart = 1};
+	return said ? NT_OK : nt_fail_memory(r->error);
 }
 
 /* ---- scalars ---- */
@@ -252,56 +258,101 @@ static nt_status read_number(reader *r, bool foreign, nt_json_value *value)
 		return nt_fail_offset(r->error, NT_ERROR_INPUT, (uint64_t)(begin - r->document->text),
 			"JSON: the number %.*s, expected one that a double can hold",
 			r->at - begin < 100 ? (int)(r->at - begin) : 100, begin);
-	value->type = r->at == point && fits_64_bits(begin, point) ? NT_JSON_INTEGER : NT_JSON_REAL;
-	value->of.text = begin;
-	value->size = (uint64_t)(r->at - begin);
+	*value = (nt_json_value){.of.text = begin, .size = (uint64_t)(r->at - begin),
+		.type = r->at == point && fits_64_bits(begin, point) ? NT_JSON_INTEGER : NT_JSON_REAL};
 	return NT_OK;
 }
 
 static nt_status read_word(reader *r, const char *word, nt_json_type type, nt_json_value *value)
 {
+	const char *const begin = r->at;
 	for (const char *letter = word; *letter; letter++, r->at++)
 		if (*r->at != *letter)
 			return fail(r, r->at, word);
-	value->type = type;
-	value->truth = *word == 't';
+	*value = (nt_json_value){.of.text = begin, .type = type, .truth = *word == 't'};
 	return NT_OK;
 }
 
 /* ---- containers ---- */
 
 /* Hands a finished value to the container around it. */
-static nt_status push(reader *r, const nt_json_value *value)
+static nt_status push(reader *r, nt_json_value value)
 {
 	if (!r->depth) {
-		r->document->root = *value;
+		r->document->root = value;
 		return NT_OK;
 	}
-	if (!nt_grow((void **)&r->values, &r->value_capacity, r->value_count + 1, sizeof *r->values))
+	if (r->value_count == r->value_capacity && !nt_grow((void **)&r->values, &r->value_capacity, r->value_count + 1, sizeof *r->values))
 		return nt_fail_memory(r->error);
-	r->values[r->value_count++] = *value;
+	r->values[r->value_count++] = value;
+	return NT_OK;
+}
+
+/* Keys of the object that is read: the children that it has so far. */
+static size_t keys_before(const reader *r, const opened *o)
+{
+	return r->value_count - o->first;
+}
+
+/* Whether the next key is the next one of the guessed shape, spelled as there: it has no escapes then, and was found to
+ * be sound. The text ends with NULs, which no key has that is in it. */
+static bool meets_guess(reader *r, const opened *o, nt_json_name *key)
+{
+	const size_t index = keys_before(r, o);
+	if (index >= o->guessed->count)
+		return false;
+	*key = o->guessed->keys[index];
+	const bool is_spelled_so = (uintptr_t)key->text - (uintptr_t)r->document->text < r->document->size;
+	if (!is_spelled_so || !nt_json_same_bytes(r->at + 1, key->text, key->length) || r->at[1 + key->length] != '"')
+		return false;
+	r->at[1 + key->length] = '\0';
+	r->at += key->length + 2;
+	return true;
+}
+
+/* Puts the keys that were guessed so far into the stack. */
+static nt_status drop_guess(reader *r, opened *o)
+{
+	const size_t count = o->guessed ? keys_before(r, o) : 0;
+	if (!nt_grow((void **)&r->keys, &r->key_capacity, r->key_count + count + 1, sizeof *r->keys))
+		return nt_fail_memory(r->error);
+	if (count)
+		memcpy(r->keys + r->key_count, o->guessed->keys, count * sizeof *r->keys);
+	r->key_count += count;
+	o->guessed = NULL;
+	return NT_OK;
+}
+
+/* A key that is another one than guessed. */
+static nt_status read_other_key(reader *r, opened *o, nt_json_name *key)
+{
+	nt_json_value string;
+	nt_status status = drop_guess(r, o);
+	if (!status)
+		status = read_string(r, &string);
+	if (status)
+		return status;
+	*key = (nt_json_name){nt_json_text(&string), string.size};
+	r->keys[r->key_count++] = *key;
 	return NT_OK;
 }
 
 /* A member's key and the colon. */
 static nt_status read_key(reader *r)
 {
+	opened *const o = &r->open[r->depth - 1];
+	nt_json_name key;
 	if (*r->at != '"')
 		return fail(r, r->at, "a key in quotes");
-	nt_json_value string = {0};
-	const nt_status status = read_string(r, &string);
+	const nt_status status = o->guessed && meets_guess(r, o, &key) ? NT_OK : read_other_key(r, o, &key);
 	if (status)
 		return status;
-	if (!nt_grow((void **)&r->keys, &r->key_capacity, r->key_count + 1, sizeof *r->keys))
-		return nt_fail_memory(r->error);
-	const nt_json_name *const key = &r->keys[r->key_count];
-	r->keys[r->key_count++] = (nt_json_name){nt_json_text(&string), string.size};
 	r->at = (char *)nt_json_skip_space(r->at);
 	if (*r->at != ':')
 		return fail(r, r->at, "':'");
 	r->at++;
-	r->open[r->depth - 1].foreign_member = r->foreign && key->length == strlen(r->foreign) &&
-		memcmp(key->text, r->foreign, key->length) == 0;
+	o->foreign_member = r->foreign && key.length == r->foreign_length &&
+		nt_json_same_bytes(key.text, r->foreign, key.length);
 	return NT_OK;
 }
 
@@ -311,22 +362,24 @@ static bool is_foreign(const reader *r)
 }
 
 /* A container begins; *complete receives whether it ends here too. */
-static nt_status open_container(reader *r, nt_json_value *value, bool *complete)
+static nt_status open_container(reader *r, bool *complete)
 {
-	const bool is_object = *r->at == '{', foreign = is_foreign(r);
+	const char *const begin = r->at;
+	const bool is_object = *begin == '{', foreign = is_foreign(r);
 	if (r->depth == NT_JSON_MAX_DEPTH)
 		return nt_fail_offset(r->error, NT_ERROR_INPUT, (uint64_t)(r->at - r->document->text),
 			"JSON is nested deeper than %d arrays and objects", NT_JSON_MAX_DEPTH);
-	value->type = is_object ? NT_JSON_OBJECT : NT_JSON_ARRAY;
 	r->at = (char *)nt_json_skip_space(r->at + 1);
 	*complete = *r->at == (is_object ? '}' : ']');
 	if (*complete) {
 		r->at++;
-		return push(r, value);
+		return push(r, (nt_json_value){.of.text = begin, .type = is_object ? NT_JSON_OBJECT : NT_JSON_ARRAY});
 	}
 	if (r->depth == r->deepest)
-		r->expected[r->deepest++] = NULL;
-	r->open[r->depth++] = (opened){value->of.text, r->value_count, r->key_count, is_object, foreign, false};
+		r->expected[r->deepest++] = (recent){NULL, NULL};
+	r->open[r->depth] = (opened){begin, r->value_count, r->key_count, r->expected[r->depth].last, is_object,
+		foreign, false};
+	r->depth++;
 	return is_object ? read_key(r) : NT_OK;
 }
 
@@ -341,26 +394,32 @@ static nt_status fail_repeated(const reader *r, const nt_json_value *value, cons
 		"JSON: the key \"%.200s\" occurs twice in one object", key->text);
 }
 
-/* The shape of the object that ends here, which mostly is that of the one before it; NULL: out of memory. */
-static nt_json_shape *find_shape(reader *r, const opened *o)
+/* The shape of the object that ends here; NULL: out of memory. */
+static nt_json_shape *find_shape(reader *r, opened *o)
 {
-	nt_json_shape **const expected = &r->expected[r->depth];
-	const size_t count = r->key_count - o->first_key;
+	recent *const expected = &r->expected[r->depth];
+	const size_t count = keys_before(r, o);
+	if (o->guessed && o->guessed->count == count)
+		return o->guessed;
+	if (o->guessed && drop_guess(r, o))
+		return NULL;
 	const nt_json_name *const keys = r->keys + o->first_key;
-	if (!*expected || !nt_json_has_keys(*expected, keys, count))
-		*expected = nt_json_shape_of(r->document, keys, count);
+	nt_json_shape *shape = expected->other;
+	if (!shape || !nt_json_has_keys(shape, keys, count))
+		shape = nt_json_shape_of(r->document, keys, count);
+	if (shape != expected->last)
+		*expected = (recent){shape, expected->last};
 	r->key_count = o->first_key;
-	return *expected;
+	return shape;
 }
 
 /* The container ends whose bracket was read; its children leave the stack. */
 static nt_status close_container(reader *r)
 {
-	const opened *const o = &r->open[--r->depth];
+	opened *const o = &r->open[--r->depth];
 	const size_t count = r->value_count - o->first;
 	const nt_json_value *const children = r->values + o->first;
-	nt_json_value value = {.type = o->is_object ? NT_JSON_OBJECT : NT_JSON_ARRAY, .size = count, .apart = 1};
-	nt_json_list *const list = value.of.list = nt_json_new_list(r->document, count, o->begin);
+	nt_json_list *const list = nt_json_new_list(r->document, count, o->begin);
 	if (!list)
 		return nt_fail_memory(r->error);
 	if (o->is_object) {
@@ -374,7 +433,8 @@ static nt_status close_container(reader *r)
 	memcpy(list->children, children, count * sizeof *children);
 	list->end = r->at;
 	r->value_count = o->first;
-	return push(r, &value);
+	return push(r, (nt_json_value){.of.list = list, .size = count,
+		.type = o->is_object ? NT_JSON_OBJECT : NT_JSON_ARRAY, .apart = 1});
 }
 
 /* ---- the whole ---- */
@@ -382,13 +442,13 @@ static nt_status close_container(reader *r)
 /* *complete receives false when a container was opened, whose first value comes next. */
 static nt_status read_value(reader *r, bool *complete)
 {
-	nt_json_value value = {.of.text = r->at};
+	nt_json_value value;
 	nt_status status;
 	*complete = true;
 	switch (*r->at) {
 	case '{':
 	case '[':
-		return open_container(r, &value, complete);
+		return open_container(r, complete);
 	case '"':
 		status = read_string(r, &value);
 		break;
@@ -407,7 +467,7 @@ static nt_status read_value(reader *r, bool *complete)
 		status = read_number(r, is_foreign(r), &value);
 		break;
 	}
-	return status ? status : push(r, &value);
+	return status ? status : push(r, value);
 }
 
 /* Behind a value in a container: *complete receives whether this ends too. */
@@ -474,6 +534,7 @@ nt_status nt_json_parse(nt_json **document, const char *text, size_t size, const
 		r->document = parsed;
 		r->at = parsed->text;
 		r->foreign = foreign;
+		r->foreign_length = foreign ? strlen(foreign) : 0;
 		r->error = error;
 		status = read_text(r);
 	} else {

@@ -410,6 +410,62 @@ static void escapes_are_what_they_stand_for(void **state)
 	nt_json_free(document);
 }
 
+/* Each object after each other one: keys that are the same, fewer, more, in another order, longer, shorter, or spelled
+ * otherwise, where an escape and a key that says the same without one are to be told apart. */
+static void objects_after_others_have_their_own_keys(void **state)
+{
+	(void)state;
+	enum { MOST = 4 };
+	static const struct {
+		const char *text;
+		const char *keys[MOST]; /* NULL: no more */
+	} objects[] = {
+		{"{\"bufferView\":0,\"count\":1,\"type\":2}", {"bufferView", "count", "type"}},
+		{"{\"bufferView\":0,\"count\":1,\"type\":2,\"min\":3}", {"bufferView", "count", "type", "min"}},
+		{"{ \"bufferView\" : 0 , \"count\" : { } }", {"bufferView", "count"}},
+		{"{\"count\":0,\"bufferView\":1,\"type\":2}", {"count", "bufferView", "type"}},
+		{"{\"bufferViews\":0,\"coun\":1,\"type\":2}", {"bufferViews", "coun", "type"}},
+		{"{\"bufferView\":0,\"c\\u006Funt\":1,\"type\":2}", {"bufferView", "count", "type"}},
+		{"{\"a\\bc\":0,\"d\":1}", {"a\bc", "d"}},
+		{"{\"a\\\\bc\":0,\"d\":1}", {"a\\bc", "d"}},
+		{"{\"a\\\"\":0,\"\":1}", {"a\"", ""}},
+		{"{\"a\":0,\"\":1}", {"a", ""}},
+		{"{}", {NULL}},
+	};
+	enum { COUNT = sizeof objects / sizeof *objects };
+	for (size_t i = 0; i < COUNT * COUNT * COUNT; i++) {
+		const size_t order[] = {i % COUNT, i / COUNT % COUNT, i / COUNT / COUNT};
+		char text[300];
+		snprintf(text, sizeof text, "[%s,%s,%s]", objects[order[0]].text, objects[order[1]].text, objects[order[2]].text);
+		nt_json *document = parse(text);
+		check_dump(document, text);
+		for (size_t k = 0; k < 3; k++) {
+			nt_json_value *object = nt_json_at(nt_json_root(document), k);
+			const size_t count = nt_json_count(object);
+			nt_json_put(document, object, "new");
+			assert_string_equal(nt_json_key(object, count, NULL), "new");
+			for (size_t m = 0; m < MOST && (m < count || objects[order[k]].keys[m]); m++) {
+				const char *wanted = objects[order[k]].keys[m], *key = nt_json_key(object, m, NULL);
+				assert_non_null(wanted);
+				assert_string_equal(key, wanted);
+				uint64_t number;
+				const bool is_number = nt_json_get_uint64(nt_json_find(object, wanted), &number);
+				assert_true(is_number ? number == m : nt_json_type_of(nt_json_find(object, wanted)) == NT_JSON_OBJECT);
+			}
+		}
+		nt_json_free(document);
+	}
+	/* a text that ends in a key that was expected, or has something else there, and keys that occur twice */
+	static const char alike[] = "[{\"count\":1,\"type\":2},{\"count\":1,\"type\":2}]";
+	for (size_t size = 0; size + 1 < sizeof alike; size++)
+		check_refused(alike, size, size);
+	check_refused("[{\"a\":1,\"b\":2},{\"a\" 1}]", 23, 20);
+	check_refused("[{\"a\":1,\"b\":2},{\"a\":1,b\":2}]", 28, 22);
+	check_refused("[{\"a\":1},{\"a\":1,\"a\":2}]", 23, 19);
+	check_refused("[{\"a\":1,\"b\":2},{\"a\":1,\"a\":2}]", 29, 25);
+	nt_json_free(parse("[{\"extras\":{\"a\":1,\"a\":2}},{\"extras\":{\"a\":1,\"a\":2}}]"));
+}
+
 static void changes_keep_the_order_of_the_rest(void **state)
 {
 	(void)state;
@@ -525,6 +581,7 @@ int main(void)
 		cmocka_unit_test(long_text_comes_in_pieces),
 		cmocka_unit_test(look_ups_of_nothing_give_nothing),
 		cmocka_unit_test(escapes_are_what_they_stand_for),
+		cmocka_unit_test(objects_after_others_have_their_own_keys),
 		cmocka_unit_test(changes_keep_the_order_of_the_rest),
 		cmocka_unit_test(every_allocation_may_fail),
 		cmocka_unit_test(what_is_no_number_becomes_null_and_is_copied),
