@@ -174,7 +174,7 @@ static nt_status check_part(const whole *w, const nt_mesh *part, float *raw, nmt
 	nt_scratch_init(&scratch, NULL);
 	const nt_solve rows = {.mesh = &view, .corner_count = part->corner_count, .threads = 1, .scratch = &scratch,
 		.repair = raw != NULL, .tangents = raw};
-	const uint64_t *faulty;
+	uint64_t *faulty;
 	const nt_status status = nt_status_of(nt_find_unusable(&rows, counts, &faulty));
 	counts->struct_bytes = sizeof *counts;
 	nt_scratch_free(&scratch);

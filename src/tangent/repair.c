@@ -16,6 +16,9 @@
  * A face without orientation takes that of its usable corners, or of what is around its vertices. What is usable
  * keeps its bytes.
  *
+ * Around most vertices of triangles without a UV area there is nothing at all, and the method tells (bare vertices).
+ * Where all unusable corners of a triangle are bare, it is mended before anything is visited, many at a time: across.c.
+ *
  * Apart from what is faulty this costs one look at the numbers of each triangle's vertices.
  */
 #include "tangent/repair.h"
@@ -23,6 +26,7 @@
 #include <math.h>
 #include <string.h>
 #include "base/counts.h"
+#include "tangent/across.h"
 #include "tangent/frames.h"
 #include "tangent/usable.h"
 #include "topology/corners.h"
@@ -47,7 +51,7 @@ typedef struct surroundings {
 /* Vertices with an unusable corner are touched. Of a bare one it is known that there is nothing around it. */
 typedef struct patient {
 	const nt_solve *solve;
-	const uint64_t *faulty; /* a bit for each face */
+	uint64_t *faulty;       /* a bit for each face; cleared where it was mended with what is bare */
 	const uint32_t *welded; /* [corner_count] */
 	size_t welded_count;
 	uint32_t *ids;          /* [welded_count] numbers of touched vertices, or one of those below */
@@ -91,7 +95,9 @@ static float *bare_tangent(const patient *p, size_t number)
 /* Whether a corner of a faulty face is usable. Such a face is a suspect: its rows are there. */
 static bool is_usable(const nt_solve *solve, size_t c)
 {
-	return solve->tangents[4 * c + 3] != 0.0f;
+	uint32_t w;
+	memcpy(&w, &solve->tangents[4 * c + 3], sizeof w);
+	return w << 1;
 }
 
 /* The exact orientation of a face, by what is known of it. */
@@ -183,20 +189,9 @@ static bool tell_bare(const patient *p)
 	return true;
 }
 
-static bool has_result(const nt_known *known, uint32_t vertex)
-{
-	bool has = false;
-	for (int side = 0; side < 2; side++)
-		has |= known->rows[side] && known->rows[side][known->row_step * vertex + 3] != 0.0f;
-	return has;
-}
-
-/* Numbers the welded vertices that have an unusable corner, of which there are `unusable`. Equal vertices of the mesh
- * have equal normals: what is asked for at many corners is made once. */
-static nmtan_status number_vertices(patient *p, size_t unusable)
+static nmtan_status begin_numbers(patient *p, size_t unusable)
 {
 	const nt_solve *solve = p->solve;
-	const nmtan_mesh *mesh = solve->mesh;
 	const size_t most = unusable < p->welded_count ? unusable : p->welded_count;
 	p->ids = nt_scratch_alloc(solve->scratch, p->welded_count, sizeof *p->ids);
 	p->around = nt_scratch_alloc(solve->scratch, most, sizeof *p->around);
@@ -204,23 +199,26 @@ static nmtan_status number_vertices(patient *p, size_t unusable)
 		return NMTAN_ERROR_MEMORY;
 	p->first_bare = most * (sizeof *p->around / (4 * sizeof(float)));
 	memset(p->ids, 0xff, p->welded_count * sizeof *p->ids);
-	const bool tells = tell_bare(p);
-	for (place at = {0, 0}; find_faulty(p, &at); step_over(p, &at)) {
-		for (size_t c = at.first; c < at.first + nt_face_size(mesh, at.face); c++) {
-			uint32_t *id = &p->ids[p->welded[c]];
-			if (*id < NOT_BARE || is_usable(solve, c))
-				continue;
-			const nt_dvec3 n = nt_unit_normal(mesh, nt_vertex_of(mesh, c));
-			if (tells && *id != NOT_BARE && !has_result(solve->known, p->welded[c])) {
-				*id = (uint32_t)--p->first_bare;
-				store(nt_dvec3_perpendicular(n), bare_tangent(p, *id));
-				continue;
-			}
-			*id = (uint32_t)p->id_count++;
-			p->around[*id] = (surroundings){.normal = n, .usable = {NT_NO_ID, NT_NO_ID}};
-		}
-	}
 	return NMTAN_OK;
+}
+
+/* Numbers the vertex of a corner that is not bare. Equal vertices of the mesh have equal normals: what is asked for at
+ * many corners is made once. */
+static void number_open(patient *p, size_t c)
+{
+	const uint32_t id = (uint32_t)p->id_count++;
+	const nt_dvec3 n = nt_unit_normal(p->solve->mesh, nt_vertex_of(p->solve->mesh, c));
+	p->around[id] = (surroundings){.normal = n, .usable = {NT_NO_ID, NT_NO_ID}};
+	p->ids[p->welded[c]] = id;
+}
+
+/* Numbers the welded vertices that have an unusable corner. */
+static void number_vertices(patient *p)
+{
+	for (place at = {0, 0}; find_faulty(p, &at); step_over(p, &at))
+		for (size_t c = at.first; c < at.first + nt_face_size(p->solve->mesh, at.face); c++)
+			if (p->ids[p->welded[c]] == NT_NO_ID && !is_usable(p->solve, c))
+				number_open(p, c);
 }
 
 /* What is around */
@@ -283,16 +281,39 @@ static inline bool is_near(const patient *p, size_t first)
 	return is_open(p, first) | is_open(p, first + 1) | is_open(p, first + 2);
 }
 
-/* Visits the triangles with a touched vertex. */
+/* Which triangles of a word of flags may have a touched vertex. */
+static uint64_t find_candidates(const patient *p, size_t first, size_t count)
+{
+	const nt_known *known = p->solve->known;
+	if (!NT_SHORT_WAYS || !p->among_suspects)
+		return UINT64_MAX >> (NT_FLAG_WORD - count);
+	/* where no row is marked, open vertices are complex ones, or those of doubtful and degenerate triangles: flat
+	 * triangles around them have another bit of `suspect`, too, or give nothing */
+	const unsigned flat = known->judged && !known->open ? known->flat : 0;
+	size_t others;
+	return nt_flagged(known->flags + first, count, (uint8_t)(known->suspect & ~flat), known->positive, &others);
+}
+
+/* Visits the triangles with a touched vertex. They are listed first: which of the candidates they are is as good as
+ * random. */
 static void visit_triangles(const patient *p)
 {
-	const size_t count = p->solve->mesh->face_count;
-	const unsigned suspect = NT_SHORT_WAYS && p->among_suspects ? p->solve->known->suspect : 0;
-	for (size_t t = 0; t < count; t++) {
-		if (suspect && (t = next_flagged(p, t, suspect)) == count)
-			break;
-		if (is_near(p, 3 * t))
-			visit_face(p, t, 3 * t, 3);
+	enum { LISTED = 4 * NT_FLAG_WORD };
+	const size_t total = p->solve->mesh->face_count;
+	uint32_t near[LISTED];
+	size_t listed = 0;
+	for (size_t first = 0; first < total; first += NT_FLAG_WORD) {
+		const size_t count = total - first < NT_FLAG_WORD ? total - first : NT_FLAG_WORD;
+		for (uint64_t bits = find_candidates(p, first, count); bits; bits &= bits - 1) {
+			const size_t t = first + (size_t)__builtin_ctzll(bits);
+			near[listed] = (uint32_t)t;
+			listed += is_near(p, 3 * t);
+		}
+		if (listed <= LISTED - NT_FLAG_WORD && first + count < total)
+			continue;
+		for (size_t i = 0; i < listed; i++)
+			visit_face(p, near[i], 3 * (size_t)near[i], 3);
+		listed = 0;
 	}
 }
 
@@ -399,6 +420,139 @@ static void mend_face(const patient *p, size_t number, size_t first)
 	}
 }
 
+/* Triangles with nothing around */
+
+/* Triangles whose unusable corners are all bare, and bare vertices that are new. A word of faulty bits is added while
+ * no more than half is used; one more than counts may be written. */
+enum { BARE_LISTED = 2 * 64 };
+typedef struct bare_list {
+	uint32_t alone[BARE_LISTED + 1];       /* triangles without a usable corner */
+	nt_beside beside[2 * BARE_LISTED + 1]; /* unusable corners of others, and the first usable one of the triangle */
+	uint32_t fresh[3 * BARE_LISTED];       /* vertices of the mesh, whose numbers go down from `next` */
+	size_t alone_count, beside_count, fresh_count, next;
+} bare_list;
+
+static bool has_result(const nt_known *known, uint32_t vertex)
+{
+	bool has = false;
+	for (int side = 0; side < 2; side++)
+		has |= known->rows[side] && known->rows[side][known->row_step * vertex + 3] != 0.0f;
+	return has;
+}
+
+/* Numbers the vertex of an unusable corner. */
+static void number_listed(patient *p, size_t c, bare_list *list)
+{
+	uint32_t *id = &p->ids[p->welded[c]];
+	if (*id == NOT_BARE || has_result(p->solve->known, p->welded[c])) {
+		number_open(p, c);
+		return;
+	}
+	*id = (uint32_t)--p->first_bare;
+	list->fresh[list->fresh_count++] = (uint32_t)nt_vertex_of(p->solve->mesh, c);
+}
+
+/* Lists a faulty triangle; false: some of its unusable corners are not bare. Which corners are unusable is as good as
+ * random: there is a branch for vertices alone that are new. */
+static inline bool list_bare(patient *p, size_t t, bare_list *list)
+{
+	const uint32_t first = (uint32_t)(3 * t);
+	unsigned lacking = 0, open = 0;
+#pragma GCC unroll 3
+	for (uint32_t k = 0; k < 3; k++) {
+		const unsigned lacks = !is_usable(p->solve, first + k);
+		const uint32_t *id = &p->ids[p->welded[first + k]];
+		if (lacks & (*id >= NOT_BARE))
+			number_listed(p, first + k, list);
+		lacking |= lacks << k;
+		open |= lacks & (*id < p->first_bare);
+	}
+	if (open)
+		return false;
+	const unsigned alone = lacking == 7, usable = ~lacking & 7;
+	list->alone[list->alone_count] = (uint32_t)t;
+	list->alone_count += alone;
+	const uint32_t from = first + (uint32_t)__builtin_ctz(usable | 8), last = first + (usable >> 2 ? 2 : usable >> 1);
+#pragma GCC unroll 3
+	for (uint32_t k = 0; k < 3; k++) {
+		list->beside[list->beside_count] = (nt_beside){first + k, from, last};
+		list->beside_count += lacking >> k & 1 & ~alone;
+	}
+	return true;
+}
+
+/* Gives a corner a tangent and its sign, which are no average: [4]. */
+static inline void write_row(const nt_solve *solve, size_t c, const float *row)
+{
+	if (solve->faults || solve->bitangents || solve->magnitudes) {
+		if (solve->faults)
+			solve->faults[c] |= NMTAN_FAULT_NO_AVERAGE;
+		write_corner(solve, c, row, row[3]);
+		return;
+	}
+	memcpy(solve->tangents + 4 * c, row, 4 * sizeof *row);
+}
+
+/* A corner for which the first usable one of its triangle has no part across the normal. */
+static void mend_parallel(const patient *p, nt_beside at)
+{
+	const nt_solve *solve = p->solve;
+	const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, at.corner));
+	float row[4];
+	nt_dvec3 t;
+	memcpy(row, bare_tangent(p, p->ids[p->welded[at.corner]]), sizeof row);
+	if (at.last != at.from && borrow(solve, at.last, n, &t))
+		store(t, row);
+	row[3] = solve->tangents[4 * at.from + 3];
+	write_row(solve, at.corner, row);
+}
+
+static void mend_listed(const patient *p, bare_list *list)
+{
+	const nt_solve *solve = p->solve;
+	float across[NT_ACROSS_LANES][4];
+	for (size_t i = 0; i < list->fresh_count; i += NT_ACROSS_LANES) {
+		const size_t left = list->fresh_count - i, count = left < NT_ACROSS_LANES ? left : NT_ACROSS_LANES;
+		nt_perpendiculars(solve->mesh, 0, list->fresh + i, count, across);
+		for (size_t k = 0; k < count; k++)
+			memcpy(bare_tangent(p, --list->next), across[k], sizeof *across);
+	}
+	for (size_t i = 0; i < list->alone_count; i++)
+		for (size_t c = 3 * list->alone[i]; c < 3 * (size_t)list->alone[i] + 3; c++)
+			write_row(solve, c, bare_tangent(p, p->ids[p->welded[c]]));
+	for (size_t i = 0; i < list->beside_count; i += NT_ACROSS_LANES) {
+		const size_t left = list->beside_count - i, count = left < NT_ACROSS_LANES ? left : NT_ACROSS_LANES;
+		nt_borrow_tangents(solve->mesh, solve->tangents, list->beside + i, count, across);
+		for (size_t k = 0; k < count; k++) {
+			if (across[k][3] != 0.0f)
+				write_row(solve, list->beside[i + k].corner, across[k]);
+			else
+				mend_parallel(p, list->beside[i + k]);
+		}
+	}
+	list->alone_count = list->beside_count = list->fresh_count = 0;
+}
+
+/* Mends the triangles whose unusable corners are all bare: without an orientation, for a bare vertex has none around
+ * it, they take what a usable corner has, or what normals say. */
+static void mend_bare(patient *p)
+{
+	const size_t words = (p->solve->mesh->face_count + 63) / 64;
+	bare_list list;
+	list.alone_count = list.beside_count = list.fresh_count = 0;
+	list.next = p->first_bare;
+	for (size_t word = 0; word < words; word++) {
+		uint64_t left = p->faulty[word];
+		for (uint64_t bits = left; bits; bits &= bits - 1)
+			if (list_bare(p, 64 * word + (size_t)__builtin_ctzll(bits), &list))
+				left &= ~(bits & -bits);
+		p->faulty[word] = left;
+		if (list.alone_count > BARE_LISTED / 2 || list.beside_count > BARE_LISTED || list.fresh_count > 3 * BARE_LISTED / 2)
+			mend_listed(p, &list);
+	}
+	mend_listed(p, &list);
+}
+
 /* Where there is nothing to repair from */
 
 /* Whether all corners are unusable, and no face has an orientation, as in meshes that nobody has unwrapped. */
@@ -425,33 +579,34 @@ static nmtan_status mend_by_normals(const nt_solve *solve, bool *done)
 	*done = false;
 	if (count > solve->corner_count)
 		return NMTAN_OK;
-	float (*tangents)[3] = nt_scratch_alloc(solve->scratch, count, sizeof *tangents);
+	float (*tangents)[4] = nt_scratch_alloc(solve->scratch, count + NT_ACROSS_LANES, sizeof *tangents);
 	if (!tangents)
 		return NMTAN_ERROR_MEMORY;
-	for (size_t v = 0; v < count; v++) {
+	for (size_t v = 0; v < count; v++)
 		if (has_negative_zero(nt_normal(mesh, v)))
 			return NMTAN_OK;
-		store(nt_dvec3_perpendicular(nt_unit_normal(mesh, v)), tangents[v]);
-	}
-	for (size_t c = 0; c < solve->corner_count; c++) {
-		write_corner(solve, c, tangents[nt_vertex_of(mesh, c)], 1.0f);
-		if (solve->faults)
-			solve->faults[c] |= NMTAN_FAULT_NO_AVERAGE;
-	}
+	for (size_t v = 0; v < count; v += NT_ACROSS_LANES)
+		nt_perpendiculars(mesh, v, NULL, count - v < NT_ACROSS_LANES ? count - v : NT_ACROSS_LANES, tangents + v);
+	for (size_t c = 0; c < solve->corner_count; c++)
+		write_row(solve, c, tangents[nt_vertex_of(mesh, c)]);
 	*done = true;
 	return NMTAN_OK;
 }
 
 /* What nearly all meshes do not need: not in line, since it saves many registers. */
-static nmtan_status __attribute__((noinline)) mend(const nt_solve *solve, const nmtan_counts *counts, const uint64_t *faulty)
+static nmtan_status __attribute__((noinline)) mend(const nt_solve *solve, const nmtan_counts *counts, uint64_t *faulty)
 {
 	patient p = {.solve = solve, .faulty = faulty};
 	nmtan_status status = NMTAN_OK;
 	bool done = false;
 	if (NT_SHORT_WAYS && is_hopeless(solve, counts))
 		status = mend_by_normals(solve, &done);
-	if (status || done || (status = weld(&p)) || (status = number_vertices(&p, nt_counts_repaired(counts))))
+	if (status || done || (status = weld(&p)) || (status = begin_numbers(&p, nt_counts_repaired(counts))))
 		return status;
+	if (tell_bare(&p))
+		mend_bare(&p);
+	else
+		number_vertices(&p);
 	p.among_suspects = solve->known && solve->known->around && counts->repaired_sign == 0;
 	look_around(&p);
 	for (place at = {0, 0}; find_faulty(&p, &at); step_over(&p, &at))
@@ -461,7 +616,7 @@ static nmtan_status __attribute__((noinline)) mend(const nt_solve *solve, const 
 
 nmtan_status nt_repair(const nt_solve *solve, nmtan_counts *counts)
 {
-	const uint64_t *faulty = NULL;
+	uint64_t *faulty = NULL;
 	const nmtan_status status = nt_find_unusable(solve, counts, &faulty);
 	return status || !faulty ? status : mend(solve, counts, faulty);
 }

@@ -149,42 +149,14 @@ static int count_quad(const nmtan_mesh *mesh, size_t face, size_t first, nmtan_c
 
 /* Suspects */
 
-/* Flags that are compared at a time: a vector of SSE2 and of NEON. */
-typedef uint8_t flag_lanes __attribute__((vector_size(16)));
-
 /* A bit for each of `count` triangles, at most a word of them, that has to be looked at. The others are counted where
- * they are mirrored: each byte of `plain` counts one of sixteen columns of flags, at most four, and the product has the
- * sum of the bytes in its highest one. */
+ * they are mirrored. */
 static uint64_t find_suspects(const nt_known *known, const uint8_t *flags, size_t count, size_t *mirrored)
 {
-	const uint64_t ones = 0x0101010101010101u;
-	/* moves the lowest bit of byte i, in the order of memory, to bit i of the highest byte */
-	const uint64_t gather = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__ ? 0x8040201008040201u : 0x0102040810204080u;
 	const uint8_t mask = (uint8_t)(known->suspect & (!NT_SHORT_WAYS || known->open ? ~0u : ~(unsigned)known->judged));
-	uint8_t last[WORD];
-	if (count < WORD) {
-		memset(last, known->positive, sizeof last);
-		flags = memcpy(last, flags, count);
-	}
-	flag_lanes suspect[WORD / sizeof(flag_lanes)], any = {0}, plain = {0};
-#pragma GCC unroll 4
-	for (size_t i = 0; i < WORD / sizeof *suspect; i++) {
-		flag_lanes f;
-		memcpy(&f, flags + sizeof f * i, sizeof f);
-		suspect[i] = (flag_lanes)((f & mask) != 0);
-		any |= suspect[i];
-		plain -= (flag_lanes)((f & known->positive) == 0) & ~suspect[i];
-	}
-	uint64_t halves[2], there[2];
-	memcpy(halves, &plain, sizeof halves);
-	memcpy(there, &any, sizeof there);
-	*mirrored += (halves[0] + halves[1]) * ones >> 56;
-	uint64_t suspects = 0;
-	for (size_t i = 0; (there[0] | there[1]) && i < WORD; i += sizeof ones) {
-		uint64_t eight;
-		memcpy(&eight, (const char *)suspect + i, sizeof eight);
-		suspects |= (eight & ones) * gather >> 56 << i;
-	}
+	size_t plain;
+	const uint64_t suspects = nt_flagged(flags, count, mask, known->positive, &plain);
+	*mirrored += plain;
 	return suspects;
 }
 
@@ -351,7 +323,7 @@ static void check_words(void *context, size_t begin, size_t end, unsigned slot)
 	job->counts[slot] = counts;
 }
 
-nmtan_status nt_find_unusable(const nt_solve *solve, nmtan_counts *counts, const uint64_t **faulty)
+nmtan_status nt_find_unusable(const nt_solve *solve, nmtan_counts *counts, uint64_t **faulty)
 {
 	const size_t words = (solve->mesh->face_count + WORD - 1) / WORD;
 	const unsigned slots = nt_parallel_slots(solve->threads, words, GRAIN);

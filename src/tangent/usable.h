@@ -73,6 +73,6 @@ static inline bool nt_is_frame(const float *t, const float *n)
  *
  * Returns NMTAN_OK or NMTAN_ERROR_MEMORY.
  */
-nmtan_status nt_find_unusable(const nt_solve *solve, nmtan_counts *counts, const uint64_t **faulty);
+nmtan_status nt_find_unusable(const nt_solve *solve, nmtan_counts *counts, uint64_t **faulty);
 
 #endif

@@ -447,6 +447,42 @@ static void what_gave_nothing_is_around_faults(void **state)
 		.positions = p[0], .normals = n[0], .texcoords = t[0], .indices = indices}, NMTAN_REPAIR_ON);
 }
 
+/* Beside a sheet, triangles without a UV area, most of whose corners have nothing around them: these take a tangent of
+ * their triangle's first corner that has one with a part across their normal, or what the normal alone says. */
+static void what_is_bare_takes_from_its_triangle(void **state)
+{
+	(void)state;
+	enum { SIDE = 6, OWN = SIDE * SIDE, VERTICES = OWN + 9 };
+	static const unsigned added[][3] = {{1, 0, OWN}, {OWN, 0, OWN + 1}, {OWN + 1, 0, OWN + 2}, {OWN + 3, OWN + 4, OWN + 5},
+		{OWN + 6, OWN + 7, OWN + 8}, {OWN + 3, OWN + 7, OWN + 8}};
+	enum { ADDED = sizeof added / sizeof *added };
+	float p[VERTICES][3] = {{0}}, n[VERTICES][3] = {{0}}, t[VERTICES][2] = {{0}};
+	unsigned indices[6 * OWN + 3 * ADDED], count = 0;
+	for (unsigned i = 0; i < OWN; i++) {
+		n[i][2] = 1;
+		t[i][0] = p[i][0] = (float)(i % SIDE), t[i][1] = p[i][1] = (float)(i / SIDE);
+		const unsigned cell[6] = {i, i + 1, i + SIDE + 1, i, i + SIDE + 1, i + SIDE};
+		if (i % SIDE + 1 < SIDE && i / SIDE + 1 < SIDE)
+			memcpy(indices + 6 * count++, cell, sizeof cell);
+	}
+	count *= 2;
+	for (unsigned i = OWN; i < VERTICES; i++)
+		memcpy(p[i], (float[3]){(float)i, (float)(i * i), 1}, sizeof *p);
+	n[1][0] = 0.6f, n[1][2] = 0.8f; /* its tangent is (.8, 0, -.6), that of 0 is x */
+	n[OWN][0] = 1, n[OWN + 1][0] = -3; /* along x */
+	n[OWN + 2][1] = 1, n[OWN + 3][2] = -1, n[OWN + 5][0] = NAN, n[OWN + 6][1] = -2, n[OWN + 7][0] = 1e-30f;
+	n[OWN + 8][2] = INFINITY;
+	memcpy(indices + 3 * count, added, sizeof added);
+	count += ADDED;
+	assert_true(count > NT_TINY);
+	for (int turn = 0; turn < 3; turn++) {
+		for (size_t c = 3 * (count - ADDED); c < 3 * count; c += 3)
+			memcpy(indices + c, (unsigned[3]){indices[c + 1], indices[c + 2], indices[c]}, 3 * sizeof *indices);
+		compare_calls(&(nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = count, .vertex_count = VERTICES,
+			.positions = p[0], .normals = n[0], .texcoords = t[0], .indices = indices}, NMTAN_REPAIR_ON);
+	}
+}
+
 /* Scratch comes in blocks of 64 KiB, so the meshes are made large enough for many of them: a grid beside
  * which every nasty mesh is placed. */
 static void every_failed_allocation_is_told(void **state)
@@ -501,6 +537,7 @@ int main(void)
 		cmocka_unit_test(unusable_vertices_are_byte_identical),
 		cmocka_unit_test(what_is_around_faults_is_seen),
 		cmocka_unit_test(what_gave_nothing_is_around_faults),
+		cmocka_unit_test(what_is_bare_takes_from_its_triangle),
 		cmocka_unit_test(every_failed_allocation_is_told),
 	};
 	return cmocka_run_group_tests_name("tangent/fast/fast", tests, NULL, NULL);
