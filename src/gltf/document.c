@@ -229,6 +229,7 @@ void nt_gltf_free(void *source)
 	free(document->views);
 	free(document->kept);
 	free(document->decoded);
+	free(document->grids);
 	free(document->buffers);
 	nt_json_free(document->json);
 	nt_arena_free(&document->arena);

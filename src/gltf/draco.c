@@ -24,6 +24,12 @@ int nt_gltf_draco_bits(const int *draco_bits, nt_draco_bits which)
 	return draco_bits[which] ? draco_bits[which] : defaults[which];
 }
 
+nt_draco_quantization nt_gltf_draco_grid(const nt_gltf *document, uint32_t accessor, int bits)
+{
+	return document->grids && document->grids[accessor].bits ? document->grids[accessor] :
+		(nt_draco_quantization){.bits = bits};
+}
+
 static void free_blocks(nt_gltf *document)
 {
 	for (size_t i = 0; i < document->view_count; i++)

@@ -25,6 +25,9 @@ nt_status nt_gltf_decode_ahead(nt_scene *scene, const bool *needed, const nt_rea
 /* Quantization of what was not quantized before, as the options have it, or the default. */
 int nt_gltf_draco_bits(const int *draco_bits, nt_draco_bits which);
 
+/* How an accessor is quantized that was not: on the document's grid for it, or on its own with these bits. */
+nt_draco_quantization nt_gltf_draco_grid(const nt_gltf *document, uint32_t accessor, int bits);
+
 /* The block of a view; NULL: not decoded. */
 const nt_draco_mesh *nt_gltf_draco_block(const nt_gltf *document, uint64_t view);
 

@@ -2,7 +2,8 @@
 /*
  * Vertices on Draco's grid. A plain primitive that will be compressed is loaded with the values that a decoder will
  * have, so that all that follows (normals, morph targets, the solve, findings) is about what is drawn. The file's own
- * values go to the encoder, which lays the same grid over them: both look at the vertices that faces use.
+ * values go to the encoder, which lays the same grid over them: both look at the vertices that faces use, or take the
+ * grid that edit/draco_foresee.c has for them.
  *
  * Of a primitive that is compressed already nothing has to be done: its values lie on a grid which it keeps, and
  * quantizing them again moves none.
@@ -87,8 +88,8 @@ static void take(taking *t, nt_scene *scene, const nt_mesh *mesh, const nt_gltf_
 		return;
 	const size_t i = t->count++;
 	t->attributes[i] = (nt_draco_attribute){.unique_id = (uint32_t)i, .kind = kind,
-		.component_type = NT_GLTF_FLOAT, .components = (int)from->components, .quantization = {.bits = bits},
-		.data = *loaded};
+		.component_type = NT_GLTF_FLOAT, .components = (int)from->components,
+		.quantization = nt_gltf_draco_grid(scene->source, from->index, bits), .data = *loaded};
 	t->values[i] = nt_arena_alloc(&scene->arena, mesh->vertex_count, from->components * sizeof(float));
 	t->failed |= !t->values[i];
 	t->loaded[i] = loaded;

@@ -408,6 +408,45 @@ for name in grains packed; do
 	is "$(faults $name.made.glb)" ""
 done
 
+scene "--across=mesh: borders of primitives meet in what a decoder has, and their tangents are those of one surface"
+# the large triangle and half of the patch, and the other half
+grains_obj | awk '/^f 442/ {print "usemtl a"} /^f 211\// && !cut++ {print "usemtl b"} {print}' >two.obj
+run -q --normals=smooth --across=mesh two.obj two.glb
+meet='[["POSITION"], ["POSITION", "NORMAL", "TEXCOORD_0", "TANGENT"]].map((names) => {
+	const [a, b] = g.meshes[0].primitives.map((p) => {
+		const all = names.map((name) => rows(p.attributes[name]));
+		return new Set(all[0].map((_, v) => all.map((attribute) => attribute[v].join()).join()));
+	});
+	return [...a].filter((key) => b.has(key)).length;
+}).join()'
+is "$(gltf two.glb "$meet")" 21,21
+for method in sequential edgebreaker; do
+	run --across=mesh --only=all --existing=replace --draco=$method --verify two.glb $method.glb
+	exits 0
+	is "$(compressed $method.glb)" 2
+	is "$(faults $method.glb)" ""
+	run --across=mesh --only=all --existing=replace --draco=off $method.glb plain_$method.glb
+	is "$(gltf plain_$method.glb "$meet")" 21,21
+done
+# a third primitive has the vertices of the second, which both are plain then: no border moves
+node -e 'const fs = require("fs"), b = fs.readFileSync("two.glb"), size = b.readUInt32LE(12);
+	const g = JSON.parse(b.subarray(20, 20 + size)), all = g.meshes[0].primitives, p = structuredClone(all[1]);
+	p.indices = g.accessors.push({...g.accessors[p.indices], count: 6}) - 1;
+	all.push(p);
+	g.buffers[0].uri = "three.bin";
+	fs.writeFileSync("three.bin", b.subarray(28 + size));
+	fs.writeFileSync("three.gltf", JSON.stringify(g))'
+for choice in off sequential; do
+	run --across=mesh --only=all --existing=replace --draco=$choice three.gltf $choice.glb
+	exits 0
+done
+is "$(compressed sequential.glb)" 1
+second='rows(g.meshes[0].primitives[1].attributes.TANGENT)'
+gltf sequential.glb "$second" >sequential.txt
+gltf off.glb "$second" >off.txt
+same sequential.txt off.txt
+exists off.txt
+
 scene "what cannot be compressed for its unused vertices is solved for its own values"
 # without the last triangle one vertex is unused, and morph targets count it
 node -e 'const fs = require("fs"), g = JSON.parse(fs.readFileSync(process.argv[1] + "/plain.gltf"));

@@ -111,7 +111,7 @@ static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_
 	nt_draco_attribute attribute = {.unique_id = (uint32_t)r->attribute_count,
 		.kind = kind_of(name), .component_type = (int)accessor.component_type,
 		.components = (int)accessor.components, .normalized = accessor.normalized,
-		.quantization = {.bits = is_float ? bits_of(r->options, name) : 0},
+		.quantization = nt_gltf_draco_grid(r->document, accessor.index, is_float ? bits_of(r->options, name) : 0),
 		.stride_bytes = accessor.stride, .copied = r->vertices->sources, .own_count = r->vertices->old_count};
 	const unsigned char *elements = NULL;
 	const nt_status status = nt_gltf_elements(r->document, &accessor, &elements, error);
