@@ -238,6 +238,16 @@ static bool join_set(nt_name_table *keys, nt_arena *arena, uint32_t *last, nt_ta
 	return true;
 }
 
+/* Of a pool with one user, as most are: no key is needed. */
+static void find_lone_set(nt_vertex_pool *pool)
+{
+	const bool solved = nt_gltf_is_solved(nt_pool_mesh(pool, 0));
+	pool->sets.count = solved;
+	pool->sets.of[0] = solved ? 0 : NT_NONE;
+	pool->sets.first[0] = 0;
+	pool->sets.next[0] = NT_NONE;
+}
+
 static bool find_sets(nt_vertex_pool *pool, const nt_vertex_pools *pools)
 {
 	uint32_t *last = nt_alloc(pool->user_count, sizeof *last);
@@ -269,6 +279,9 @@ nt_status nt_vertex_pools_get(const nt_vertex_pools *pools, size_t number, nt_ar
 		.sets = {.of = nt_arena_alloc(arena, count, sizeof *pool->sets.of),
 			.first = nt_arena_alloc(arena, count, sizeof *pool->sets.first),
 			.next = nt_arena_alloc(arena, count, sizeof *pool->sets.next)}};
-	const bool room = pool->sets.of && pool->sets.first && pool->sets.next;
-	return room && find_sets(pool, pools) ? NT_OK : nt_fail_memory(error);
+	if (!pool->sets.of || !pool->sets.first || !pool->sets.next)
+		return nt_fail_memory(error);
+	if (count == 1)
+		find_lone_set(pool);
+	return count == 1 || find_sets(pool, pools) ? NT_OK : nt_fail_memory(error);
 }
