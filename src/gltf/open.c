@@ -36,18 +36,10 @@ static uint64_t claimed_count(const nt_gltf *document, const nt_json_value *refe
 	return count;
 }
 
-/* Triangles a primitive claims to have, to tell empty ones; loading counts again. */
-static size_t claimed_faces(const nt_gltf *document, const nt_json_value *primitive,
-	const nt_json_value *attributes, uint64_t mode)
+/* Triangles that so many corners form, to tell empty primitives; loading counts again. */
+static size_t claimed_faces(uint64_t corners, uint64_t mode)
 {
-	const nt_json_value *indices = nt_json_find(primitive, "indices");
-	const nt_json_value *positions = nt_json_find(attributes, "POSITION");
-	if (!positions)
-		return 0;
-	const uint64_t corners = claimed_count(document, indices ? indices : positions);
-	if (corners < 3)
-		return 0;
-	return (size_t)(mode == NT_GLTF_TRIANGLES ? corners / 3 : corners - 2);
+	return corners < 3 ? 0 : (size_t)(mode == NT_GLTF_TRIANGLES ? corners / 3 : corners - 2);
 }
 
 static bool has_texcoords(const nt_json_value *attributes, uint32_t set)
@@ -70,12 +62,12 @@ static uint32_t targets_without_tangents(const nt_json_value *primitive)
 	return count;
 }
 
-/* Whether nothing but its tangents will ever depend on its vertices: whole triangles, since indices that form none
- * stay as they are, with normals, uncompressed, not moved, and texture coordinates as all take them. */
-static bool is_plain(const nt_gltf *document, const nt_json_value *primitive, const nt_mesh *mesh, uint64_t mode)
+/* Whether nothing but its tangents will ever depend on the vertices of a primitive with indices: whole triangles, since
+ * indices that form none stay as they are, with normals, uncompressed, not moved, and texture coordinates as all take
+ * them. */
+static bool is_plain(const nt_json_value *primitive, const nt_mesh *mesh, uint64_t mode, uint64_t corners)
 {
-	const nt_json_value *indices = nt_json_find(primitive, "indices");
-	return mode == NT_GLTF_TRIANGLES && indices && claimed_count(document, indices) % 3 == 0 && mesh->has_normals &&
+	return mode == NT_GLTF_TRIANGLES && corners % 3 == 0 && mesh->has_normals &&
 		!mesh->texcoords_transformed && !nt_json_find(primitive, "targets") && !nt_gltf_draco_of(primitive);
 }
 
@@ -113,13 +105,15 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->texcoords_transformed = shading.transforms_differ || shading.transform.animated || shading.transform.turns;
 	mesh->texcoord_conflict = shading.conflict && options->texcoord_set < 0;
 	mesh->texcoord_other_set = shading.other_set;
-	mesh->has_positions = nt_json_find(attributes, "POSITION") != NULL;
+	const nt_json_value *positions = nt_json_find(attributes, "POSITION"), *indices = nt_json_find(primitive, "indices");
+	const uint64_t corners = positions ? claimed_count(document, indices ? indices : positions) : 0;
+	mesh->has_positions = positions != NULL;
 	mesh->has_normals = nt_json_find(attributes, "NORMAL") != NULL;
 	mesh->has_tangents = nt_json_find(attributes, "TANGENT") != NULL;
 	mesh->has_texcoords = has_texcoords(attributes, mesh->texcoord_set);
 	mesh->targets_without_tangents = targets_without_tangents(primitive);
-	mesh->face_count = claimed_faces(document, primitive, attributes, mode);
-	mesh->plain = is_plain(document, primitive, mesh, mode);
+	mesh->face_count = claimed_faces(corners, mode);
+	mesh->plain = indices && is_plain(primitive, mesh, mode, corners);
 	mesh->primitive_count = 1;
 	mesh->primitives = nt_arena_alloc(&scene->arena, 1, sizeof *mesh->primitives);
 	if (!mesh->primitives)
