@@ -15,6 +15,9 @@
 /* Integers below it are in the value itself. */
 #define COUNTED_LIMIT ((uint64_t)1 << 48)
 
+/* Children that a container which gets some has room for: a new view or accessor has so many. */
+enum { LEAST_CAPACITY = 4 };
+
 static nt_json_value *fail(nt_json *document)
 {
 	document->failed = true;
@@ -32,10 +35,10 @@ static void set(nt_json_value *value, nt_json_value content)
 
 /* ---- containers ---- */
 
-/* An empty container at the same place. */
-static bool set_container(nt_json *document, nt_json_value *value, nt_json_type type)
+/* An empty container at the same place, with room for so many children. */
+static bool set_container(nt_json *document, nt_json_value *value, nt_json_type type, size_t capacity)
 {
-	nt_json_list *list = nt_json_new_list(document, 0, nt_json_begin(value));
+	nt_json_list *list = nt_json_new_list(document, capacity, nt_json_begin(value));
 	if (list && type == NT_JSON_OBJECT)
 		list->shape = nt_json_shape_of(document, NULL, 0);
 	if (!list || (type == NT_JSON_OBJECT && !list->shape))
@@ -50,7 +53,7 @@ static bool grow(nt_json *document, nt_json_value *container)
 	nt_json_list *const old = container->apart ? container->of.list : NULL;
 	if (old && container->size < old->capacity)
 		return true;
-	const size_t capacity = container->size < 4 ? 4 : container->size + container->size / 2;
+	const size_t capacity = container->size < LEAST_CAPACITY ? LEAST_CAPACITY : container->size + container->size / 2;
 	nt_json_list *list = nt_json_new_list(document, capacity, nt_json_begin(container));
 	if (!list)
 		return false;
@@ -74,7 +77,7 @@ static nt_json_value *add(nt_json *document, nt_json_value *container, nt_json_t
 {
 	if (!container) /* one that memory was missing for */
 		return NULL;
-	if (container->type != type && !set_container(document, container, type))
+	if (container->type != type && !set_container(document, container, type, LEAST_CAPACITY))
 		return NULL;
 	if (!grow(document, container))
 		return NULL;
@@ -229,7 +232,7 @@ void nt_json_set_string(nt_json *document, nt_json_value *value, const char *tex
 
 void nt_json_set_object(nt_json *document, nt_json_value *value)
 {
-	if (!set_container(document, value, NT_JSON_OBJECT))
+	if (!set_container(document, value, NT_JSON_OBJECT, 0))
 		fail(document);
 }
 
@@ -255,7 +258,7 @@ void nt_json_set_copy(nt_json *document, nt_json_value *value, const nt_json_val
 	const nt_json_type type = (nt_json_type)from->type;
 	if (nt_json_is_container(from) && from->size)
 		copy_children(document, value, from);
-	else if (nt_json_is_container(from) && !set_container(document, value, type))
+	else if (nt_json_is_container(from) && !set_container(document, value, type, 0))
 		fail(document);
 	else if ((type == NT_JSON_STRING || type == NT_JSON_REAL || type == NT_JSON_INTEGER) && !nt_json_is_counted(from))
 		set_text(document, value, type, nt_json_text(from), from->size);
