@@ -40,6 +40,9 @@ typedef struct editing {
 /* Pools that are prepared together: enough for many threads, few enough for their descriptions to be small. */
 enum { WINDOW = 1024 };
 
+/* Meshes from which on a second thread is worth waking. */
+enum { MANY_MESHES = 256 };
+
 /* One of them. */
 typedef struct pool_edit {
 	nt_vertex_pool pool;
@@ -361,6 +364,30 @@ static nt_status edit_pools(const editing *e)
 	return status;
 }
 
+/* What must be known before anything changes. */
+typedef struct survey {
+	nt_scene *scene;
+	nt_vertex_pools *pools;
+	nt_buffer_edits *edits;
+	nt_arena *arena;
+	nt_status status;
+	nt_error *error;
+} survey;
+
+/* Neither of both looks at what the other finds. */
+static void survey_part(void *context, size_t item, unsigned slot)
+{
+	(void)slot;
+	survey *s = context;
+	if (item == 1) {
+		nt_gltf_find_dangling(s->scene->source);
+		return;
+	}
+	s->status = nt_vertex_pools_find(s->pools, s->scene, s->arena, s->error);
+	if (!s->status)
+		s->status = nt_edits_create(s->edits, s->pools, s->error);
+}
+
 nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_output *output, nt_error *error)
 {
 	/* Nothing to be done: the input as it is. */
@@ -371,17 +398,18 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 	if (status || written)
 		return status;
 
-	/* Who shares what, and which bytes may change. */
-	nt_gltf_find_dangling(scene->source);
-	if (options->morphs == NT_MORPH_DROP)
+	/* Who shares what, which bytes may change, and what refers to nothing: two threads where there is much. */
+	if (options->morphs == NT_MORPH_DROP) {
+		nt_gltf_find_dangling(scene->source);
 		drop_target_tangents(scene);
+	}
 	nt_arena arena = {0}, of_window = {0};
 	nt_vertex_pools pools;
 	nt_buffer_edits edits = {0};
 	nt_geometry_total *totals = NULL;
-	status = nt_vertex_pools_find(&pools, scene, &arena, error);
-	if (!status)
-		status = nt_edits_create(&edits, &pools, error);
+	survey s = {scene, &pools, &edits, &arena, NT_OK, error};
+	nt_parallel_items(scene->mesh_count < MANY_MESHES ? 1 : nt_thread_count(options->threads), 2, survey_part, &s);
+	status = s.status;
 	if (!status && nt_geometry_totals(scene->source, &arena, &totals))
 		status = nt_fail_memory(error);
 
