@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Welding: an indexed mesh by its vertices (weld_sieve.c), and so a soup of triangles that hardly share any; others by
- * their corners, whose rows are looked up in a table (weld_table.c); several threads do so for a range of corners each
- * (weld_threads.c).
+ * Welding: an indexed mesh by its vertices (weld_few.c, weld_sieve.c), and so a soup of triangles that hardly share
+ * any; others by their corners, whose rows are looked up in a table (weld_table.c); several threads do so for a range
+ * of corners each (weld_threads.c).
  */
 #include "topology/weld.h"
 
@@ -33,6 +33,32 @@ static bool is_flat(const nmtan_mesh *mesh, size_t corner_count)
 	return equal <= PLACES / 2;
 }
 
+/* All vertices by the table. */
+static nt_weld_outcome weld_all(nt_welder *w, unsigned ranges)
+{
+	w->row_guess = w->item_count / 2;
+	w->numbers = nt_borrowed_alloc(w->memory, w->item_count, sizeof *w->numbers);
+	return w->numbers && nt_weld_items(w, ranges) ? NT_WELD_DONE : NT_WELD_NO_MEMORY;
+}
+
+/* Returns the number of each corner, which may be the mesh's indices; NULL when out of memory. */
+static const uint32_t *weld_vertices(nt_welder *w, size_t corner_count, unsigned ranges)
+{
+	char *const begin = w->memory->begin, *const row_begin = w->row_memory->begin;
+	const nt_scratch_mark mark = nt_scratch_here(w->memory->scratch);
+	const bool few = NT_WELD_FEW > 0 && ranges == 1 && w->item_count <= NT_WELD_FEW;
+	nt_weld_outcome outcome = few ? nt_weld_few(w) : nt_weld_sieve(w, ranges);
+	/* whoever comes next has the memory of who was before */
+	while (outcome == NT_WELD_LEFT || outcome == NT_WELD_MANY) {
+		w->memory->begin = begin;
+		w->row_memory->begin = row_begin;
+		nt_scratch_back(w->memory->scratch, mark);
+		w->rows = NULL;
+		outcome = NT_WELD_FEW > 0 && outcome == NT_WELD_LEFT ? nt_weld_sieve(w, ranges) : weld_all(w, ranges);
+	}
+	return outcome == NT_WELD_DONE ? nt_weld_number_corners(w, corner_count, ranges) : NULL;
+}
+
 nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_borrowed *row_memory,
 	nt_borrowed *memory, nt_weld *weld)
 {
@@ -47,7 +73,7 @@ nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned 
 		weld->ids = w.numbers && nt_weld_items(&w, ranges) ? w.numbers : NULL;
 	} else {
 		w.item_count = mesh->indices ? mesh->vertex_count : corner_count;
-		weld->ids = nt_weld_vertices(&w, corner_count, ranges);
+		weld->ids = weld_vertices(&w, corner_count, ranges);
 	}
 	if (!weld->ids)
 		return NMTAN_ERROR_MEMORY;

@@ -7,6 +7,9 @@
 
 #include <string.h>
 #include "topology/corners.h"
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 /* Attributes of a welded vertex, -0 made +0. */
 typedef struct nt_weld_row {
@@ -46,19 +49,51 @@ static inline double nt_weld_pair(const float *floats)
 	return pair;
 }
 
-/* Loads a row. -0 becomes +0, so that equal rows have equal bits. Two registers hold it and are stored once: a
- * row that is stored in pieces and read back has to wait for its stores. Returns flags that are all 0 where no
+/* Flags, not 0 where either value is NaN: for gcc 12 that is one comparison by name, and two by operators. */
+static inline nt_weld_flags nt_weld_unordered(nt_weld_floats a, nt_weld_floats b)
+{
+#ifdef __SSE2__
+	return (nt_weld_flags)_mm_cmpunord_ps((__m128)a, (__m128)b);
+#else
+	return (nt_weld_flags)(a != a) | (nt_weld_flags)(b != b);
+#endif
+}
+
+/* The two halves of a row. -0 becomes +0, so that equal rows have equal bits. Returns flags that are all 0 where no
  * value is NaN. */
-static inline nt_weld_flags nt_weld_load(const nmtan_mesh *mesh, size_t vertex, nt_weld_row *row)
+static inline nt_weld_flags nt_weld_fetch(const nmtan_mesh *mesh, size_t vertex, nt_weld_floats *low,
+	nt_weld_floats *high)
 {
 	typedef double double2 __attribute__((vector_size(16)));
 	const float *p = nt_position(mesh, vertex), *n = nt_normal(mesh, vertex), *t = nt_texcoord(mesh, vertex);
 	const double2 joint = (double2)(nt_weld_floats){p[2], n[0], 0.0f, 0.0f};
-	const nt_weld_floats low = (nt_weld_floats)(double2){nt_weld_pair(p), joint[0]} + 0.0f;
-	const nt_weld_floats high = (nt_weld_floats)(double2){nt_weld_pair(n + 1), nt_weld_pair(t)} + 0.0f;
+	*low = (nt_weld_floats)(double2){nt_weld_pair(p), joint[0]} + 0.0f;
+	*high = (nt_weld_floats)(double2){nt_weld_pair(n + 1), nt_weld_pair(t)} + 0.0f;
+	return nt_weld_unordered(*low, *high);
+}
+
+/* Two registers hold a row and are stored once: a row that is stored in pieces and read back has to wait for its
+ * stores. */
+static inline void nt_weld_put(nt_weld_floats low, nt_weld_floats high, nt_weld_row *row)
+{
 	memcpy(row, &low, sizeof low);
 	memcpy((char *)row + sizeof low, &high, sizeof high);
-	return (nt_weld_flags)(low != low) | (nt_weld_flags)(high != high);
+}
+
+/* Where each byte of code is sent to a browser a row is loaded out of line: 240 bytes of the package. */
+#ifdef __wasm__
+#define NT_WELD_INLINE __attribute__((noinline))
+#else
+#define NT_WELD_INLINE inline
+#endif
+
+/* Loads a row. Returns the flags of nt_weld_fetch(). */
+static NT_WELD_INLINE nt_weld_flags nt_weld_load(const nmtan_mesh *mesh, size_t vertex, nt_weld_row *row)
+{
+	nt_weld_floats low, high;
+	const nt_weld_flags unordered = nt_weld_fetch(mesh, vertex, &low, &high);
+	nt_weld_put(low, high, row);
+	return unordered;
 }
 
 static inline bool nt_weld_ordered(nt_weld_flags unordered)
@@ -71,7 +106,7 @@ static inline bool nt_weld_row_ordered(const nt_weld_row *row)
 {
 	nt_weld_floats values[2];
 	memcpy(values, row, sizeof values);
-	return nt_weld_ordered((nt_weld_flags)(values[0] != values[0]) | (nt_weld_flags)(values[1] != values[1]));
+	return nt_weld_ordered(nt_weld_unordered(values[0], values[1]));
 }
 
 static inline bool nt_weld_same(const nt_weld_row *a, const nt_weld_row *b)

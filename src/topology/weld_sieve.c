@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The weld of an indexed mesh, or of one whose corners have a vertex each. Nearly always no vertex is equal to another,
- * and the whole weld is to find that out: a sieve does so without a table of the vertices.
+ * The weld of a large indexed mesh, or of one whose corners have a vertex each. Nearly always no vertex is equal to
+ * another, and the whole weld is to find that out: a sieve does so without a table of the vertices.
  *
  *   load    each vertex's row; its hash marks two bits of a word in a bitmap (a Bloom filter of one word). A
  *           vertex that finds both marked already may equal an earlier one: the bits are marked in a second bitmap
  *   list    the vertices whose bits the second bitmap has: all that are equal to another, those with a NaN,
  *           and some by chance
- *   weld    the listed ones, by the table (weld_table.c)
- *   number  the vertices, where some are equal or hold a NaN; then the corners
+ *   weld    the listed ones, by the table (weld_table.c, weld_number.c)
  *
  * A bitmap is a quarter of the table at most and stays in the second-level cache where the table does not.
  * A mesh that turns out to have many equal vertices is left
@@ -16,6 +15,7 @@
  * counts as marked again. What is equal does not depend on threads, nor on whether a vertex is listed by chance.
  */
 #include "base/parallel.h"
+#include "topology/weld_four.h"
 #include "topology/weld_parts.h"
 
 /* Threads that sieve: each takes up to 8 bytes a vertex for its bitmaps. */
@@ -28,8 +28,8 @@ enum { FEW = 1 << 16 };
  * that of the table. */
 enum { MANY = 4096 };
 
-/* A place has 32 bits: the word of a bitmap above, two of its bits below. Beyond 8 million vertices more than two
- * share a word, and more are listed by chance. */
+/* The place of a vertex is its hash: the word of a bitmap above, two of its bits below. Beyond 8 million vertices more
+ * than two share a word, and more are listed by chance. */
 enum { BIT_BITS = 5, MOST_WORD_BITS = 32 - 2 * BIT_BITS };
 
 typedef struct sieve {
@@ -54,9 +54,9 @@ static inline uint32_t *again_of(const sieve *s, unsigned range)
 	return marked_of(s, range) + ((size_t)1 << s->word_bits);
 }
 
-static inline size_t word_of(uint32_t place)
+static inline size_t word_of(uint32_t place, unsigned word_bits)
 {
-	return place >> 2 * BIT_BITS;
+	return place >> (32 - word_bits);
 }
 
 static inline uint32_t bits_of(uint32_t place)
@@ -65,22 +65,6 @@ static inline uint32_t bits_of(uint32_t place)
 }
 
 /* Load */
-
-/* Rows and places of a batch, and its words on the way. Returns the flags of nt_weld_load(). */
-static inline nt_weld_flags load_batch(const sieve *s, size_t begin, size_t end, const uint32_t *marked)
-{
-	const nmtan_mesh mesh = *s->w->mesh; /* copies, which no store changes */
-	nt_weld_row *const rows = s->w->rows;
-	uint32_t *const places = s->places;
-	const unsigned shift = 64 - s->word_bits - 2 * BIT_BITS;
-	nt_weld_flags unordered = {0};
-	for (size_t v = begin; v < end; v++) {
-		unordered |= nt_weld_load(&mesh, v, &rows[v]);
-		places[v] = (uint32_t)(nt_weld_hash(&rows[v]) >> shift);
-		__builtin_prefetch(&marked[word_of(places[v])], 1);
-	}
-	return unordered;
-}
 
 /* Whoever holds a NaN gets place 0, as if it had been found. */
 static void find_unordered(const sieve *s, size_t begin, size_t end, uint32_t *marked)
@@ -92,11 +76,12 @@ static void find_unordered(const sieve *s, size_t begin, size_t end, uint32_t *m
 }
 
 /* Marks the places of a batch. Returns how many were marked already. */
-static size_t mark_batch(const uint32_t *places, size_t count, uint32_t *marked, uint32_t *again)
+static size_t mark_batch(const sieve *s, const uint32_t *places, size_t count, uint32_t *marked, uint32_t *again)
 {
+	const unsigned word_bits = s->word_bits; /* a copy, which no store changes */
 	size_t found = 0;
 	for (size_t i = 0; i < count; i++) {
-		const size_t at = word_of(places[i]);
+		const size_t at = word_of(places[i], word_bits);
 		const uint32_t bits = bits_of(places[i]), word = marked[at];
 		marked[at] = word | bits;
 		if ((word & bits) == bits) {
@@ -115,9 +100,11 @@ static void load_range(void *context, size_t begin, size_t end, unsigned slot)
 	size_t found = 0;
 	for (size_t first = begin, last; first < end; first = last) {
 		last = end - first < NT_WELD_BATCH ? end : first + NT_WELD_BATCH;
-		if (!nt_weld_ordered(load_batch(s, first, last, marked)))
+		if (!nt_weld_ordered(nt_weld_load_some(s->w->mesh, first, last, s->w->rows, s->places)))
 			find_unordered(s, first, last, marked);
-		found += mark_batch(s->places + first, last - first, marked, again);
+		for (size_t v = first; v < last; v++)
+			__builtin_prefetch(&marked[word_of(s->places[v], s->word_bits)], 1);
+		found += mark_batch(s, s->places + first, last - first, marked, again);
 		if (found > MANY + (last - begin) / 8)
 			__atomic_store_n(&s->many, true, __ATOMIC_RELAXED);
 		if (__atomic_load_n(&s->many, __ATOMIC_RELAXED))
@@ -149,8 +136,9 @@ static void list_range(void *context, size_t begin, size_t end, unsigned slot)
 	sieve *s = context;
 	const uint32_t *const again = again_of(s, 0);
 	uint32_t *const places = s->places, *list = places + begin;
+	const unsigned word_bits = s->word_bits;
 	for (size_t v = begin; v < end; v++) {
-		const uint32_t place = places[v], word = again[word_of(place)];
+		const uint32_t place = places[v], word = again[word_of(place, word_bits)];
 		*list = (uint32_t)v;
 		list += word >> (place & 31) & word >> (place >> BIT_BITS & 31) & 1; /* both of bits_of() */
 	}
@@ -171,74 +159,6 @@ static size_t list_vertices(sieve *s)
 		count += s->listed[r];
 	}
 	return count;
-}
-
-/* Number */
-
-/* Numbers of all vertices: their own, or that of the first of equal ones. Rows stay where they are, and those of the
- * others are nobody's. */
-static void number_vertices(const nt_welder *w, const nt_welder *listed)
-{
-	uint32_t *const firsts = listed->numbers; /* takes the place of what has been read */
-	size_t classes = 0;
-	for (size_t v = 0; v < w->item_count; v++)
-		w->numbers[v] = (uint32_t)v;
-	for (size_t l = 0; l < listed->item_count; l++) {
-		const uint32_t class = listed->numbers[l], v = listed->items[l];
-		if (class == classes)
-			firsts[classes++] = v;
-		w->numbers[v] = firsts[class];
-	}
-}
-
-/* In place of the number of a vertex with a NaN: its row was given to a corner. */
-#define ROW_GIVEN UINT32_MAX
-
-typedef struct copying {
-	const uint32_t *numbers, *indices;
-	uint32_t *ids;
-} copying;
-
-static void copy_numbers(void *context, size_t begin, size_t end, unsigned slot)
-{
-	const copying *job = context;
-	(void)slot;
-	for (size_t c = begin; c < end; c++) {
-		const uint32_t vertex = job->indices ? job->indices[c] : (uint32_t)c;
-		job->ids[c] = job->numbers ? job->numbers[vertex] : vertex;
-	}
-}
-
-/* Gives each corner of a vertex with a NaN a row of its own: the first takes that of the vertex. */
-static bool number_unordered(nt_welder *w, size_t corner_count, uint32_t *ids)
-{
-	size_t unordered = 0;
-	for (size_t c = 0; c < corner_count; c++)
-		unordered += !nt_weld_row_ordered(&w->rows[ids[c]]);
-	if (w->row_count + unordered > w->row_capacity && !nt_weld_grow_rows(w, w->row_count + unordered))
-		return false;
-	for (size_t c = 0; c < corner_count; c++) {
-		if (nt_weld_row_ordered(&w->rows[ids[c]]))
-			continue;
-		const uint32_t vertex = w->mesh->indices[c];
-		if (w->numbers[vertex] == ROW_GIVEN)
-			ids[c] = (uint32_t)w->row_count++;
-		w->numbers[vertex] = ROW_GIVEN;
-		nt_weld_load(w->mesh, vertex, &w->rows[ids[c]]);
-	}
-	return true;
-}
-
-/* Numbers of corners from numbers of vertices, NULL: each its own; without indices likewise. */
-static const uint32_t *number_corners(nt_welder *w, size_t corner_count, unsigned ranges)
-{
-	if (!w->numbers && w->mesh->indices)
-		return w->mesh->indices;
-	uint32_t *ids = nt_scratch_alloc(w->memory->scratch, corner_count, sizeof *ids);
-	if (!ids)
-		return NULL;
-	nt_parallel_ranges(ranges, corner_count, 1, copy_numbers, &(copying){w->numbers, w->mesh->indices, ids});
-	return !w->unordered || !w->mesh->indices || number_unordered(w, corner_count, ids) ? ids : NULL;
 }
 
 /* The whole */
@@ -262,60 +182,21 @@ static bool make_sieve(sieve *s)
 	return s->bitmaps;
 }
 
-/* Welds the listed vertices alone, and numbers all; false when out of memory. Where no number is another than the
- * vertex's own, `numbers` stays NULL. */
-static bool weld_listed(sieve *s, unsigned ranges)
+nt_weld_outcome nt_weld_sieve(nt_welder *w, unsigned ranges)
 {
-	nt_welder *w = s->w;
-	const size_t count = list_vertices(s);
-	w->row_count = w->item_count;
-	if (count == 0)
-		return true;
-	/* a table in fresh pages would be 2 MB more of an output that is hardly begun */
-	if (s->in_room)
-		nt_borrowed_trim(w->memory, s->bitmaps, ((size_t)(s->places - s->bitmaps) + count) * sizeof *s->places);
-	nt_welder listed = {.mesh = w->mesh, .row_memory = w->memory, .memory = w->memory, .items = s->places,
-		.item_count = count, .row_guess = count};
-	listed.numbers = nt_borrowed_alloc(w->memory, count, sizeof *listed.numbers);
-	if (!listed.numbers || !nt_weld_items(&listed, count < FEW ? 1 : ranges))
-		return false;
-	w->unordered = listed.unordered;
-	if (listed.row_count == count && !w->unordered)
-		return true;
-	w->numbers = nt_borrowed_alloc(w->memory, w->item_count, sizeof *w->numbers);
-	if (w->numbers)
-		number_vertices(w, &listed);
-	return w->numbers;
-}
-
-/* Welds all vertices by the table, in the memory that the sieve had. */
-static bool weld_all(nt_welder *w, unsigned ranges)
-{
-	w->row_guess = w->item_count / 2;
-	w->numbers = nt_borrowed_alloc(w->memory, w->item_count, sizeof *w->numbers);
-	return w->numbers && nt_weld_items(w, ranges);
-}
-
-const uint32_t *nt_weld_vertices(nt_welder *w, size_t corner_count, unsigned ranges)
-{
-	char *const begin = w->memory->begin, *const row_begin = w->row_memory->begin;
-	const nt_scratch_mark mark = nt_scratch_here(w->memory->scratch);
 	sieve s;
 	s.w = w;
 	s.many = false;
 	s.ranges = nt_parallel_slots(ranges < MOST_RANGES ? ranges : MOST_RANGES, w->item_count, 1);
 	if (!make_sieve(&s))
-		return NULL;
+		return NT_WELD_NO_MEMORY;
 	nt_parallel_ranges(s.ranges, w->item_count, 1, load_range, &s);
-	if (s.many) {
-		w->memory->begin = begin;
-		w->row_memory->begin = row_begin;
-		nt_scratch_back(w->memory->scratch, mark);
-		w->rows = NULL;
-		if (!weld_all(w, ranges))
-			return NULL;
-	} else if (!weld_listed(&s, ranges)) {
-		return NULL;
-	}
-	return number_corners(w, corner_count, ranges);
+	if (s.many)
+		return NT_WELD_MANY;
+	const size_t count = list_vertices(&s);
+	w->row_count = w->item_count;
+	/* a table in fresh pages would be 2 MB more of an output that is hardly begun */
+	if (s.in_room)
+		nt_borrowed_trim(w->memory, s.bitmaps, ((size_t)(s.places - s.bitmaps) + count) * sizeof *s.places);
+	return nt_weld_list(w, s.places, count, count < FEW ? 1 : ranges) ? NT_WELD_DONE : NT_WELD_NO_MEMORY;
 }

@@ -210,6 +210,49 @@ static void many_equal_vertices_weld_alike(void **state)
 	check_doubles(60000, 90000, 90, NAN);
 }
 
+/* Rows that differ in u alone where v is such that a factor of nt_weld_four.h is 0: they have one hash. `same` of them,
+ * every third of which is equal to the one before, among others. */
+static void check_one_hash(size_t same)
+{
+	enum { VERTICES = 3000, CORNERS = 9000 };
+	const uint32_t bits = 0u - 0xec4e6c89u;
+	vertex_row *rows = calloc(VERTICES, sizeof *rows);
+	uint32_t indices[CORNERS], random = 9;
+	for (size_t v = 0; v < VERTICES; v++)
+		rows[v][0] = (float)v;
+	for (size_t i = 0; i < same; i++) {
+		const size_t v = VERTICES / same * i;
+		rows[v][0] = 0;
+		rows[v][6] = (float)(i - (i % 3 == 2));
+		memcpy(&rows[v][7], &bits, sizeof bits);
+	}
+	for (size_t c = 0; c < CORNERS; c++)
+		indices[c] = next_random(&random) % VERTICES;
+	const nmtan_mesh mesh = mesh_of(rows, VERTICES, indices, CORNERS);
+	check(&mesh, CORNERS, 0);
+	check(&mesh, CORNERS, CORNERS * 16);
+	free(rows);
+}
+
+static void vertices_of_one_hash_weld_alike(void **state)
+{
+	(void)state;
+	check_one_hash(3);
+	check_one_hash(100);
+	check_one_hash(3000); /* more than can be candidates */
+}
+
+/* From none to all vertices that 16 bits can number, and more. */
+static void every_number_of_vertices_welds_alike(void **state)
+{
+	(void)state;
+	static const size_t counts[] = {1, 2, 3, 4, 5, 7, 63, 64, 65, 66, 67, 129, 1000, 65534, 65535, 65536, 65537};
+	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
+		check_doubles(counts[i], 3 * counts[i], 0, -0.0f);
+		check_doubles(counts[i], 3 * counts[i], 5, -0.0f);
+	}
+}
+
 /* Soups whose triangles have vertices of their own but for `equal` of a hundred, in the second half of the soup. */
 static void check_flat_soup(size_t corners, uint32_t equal, float odd)
 {
@@ -331,6 +374,8 @@ int main(void)
 		cmocka_unit_test(few_of_many_vertices_weld_alike),
 		cmocka_unit_test(some_equal_vertices_of_many_weld_alike),
 		cmocka_unit_test(many_equal_vertices_weld_alike),
+		cmocka_unit_test(vertices_of_one_hash_weld_alike),
+		cmocka_unit_test(every_number_of_vertices_welds_alike),
 		cmocka_unit_test(flat_soups_weld_alike),
 		cmocka_unit_test(an_eighth_of_a_million_equal_vertices_weld_alike),
 		cmocka_unit_test(without_doubles_the_indices_of_the_mesh_are_the_numbers),
