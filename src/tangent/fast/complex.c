@@ -12,10 +12,11 @@
  *
  *   pair      edges of triangles that meet at the vertex                            complex_groups.c
  *   groups    corners of one orientation that hang together by such edges           complex_groups.c
- *   sums      a group that is all there is of its orientation has the record        complex_solve.c
+ *   records   a group that is all there is of its orientation has the record        complex_solve.c
  *
  * What is left gathers in batches:
  *
+ *   sums      where no group splits they are the results                            complex_sums.c
  *   solve     the corners of other groups, in lanes                                 corners.h
  *   average   and write                                                             complex_solve.c
  *
@@ -175,7 +176,7 @@ static void solve_range(void *context, size_t begin, size_t end, unsigned slot)
 		status = nt_take_vertex(w->c, batch, v);
 	}
 	if (!status)
-		status = nt_solve_batch(w->c, batch);
+		status = nt_finish_batch(w->c, batch);
 	if (status)
 		w->status = status;
 }
@@ -201,7 +202,7 @@ static nmtan_status solve_tangled(const nt_complex *c, nt_batch *batch)
 		nt_find_groups(&window, v);
 		status = status ? status : nt_take_vertex(&window, batch, v);
 	}
-	return status ? status : nt_solve_batch(&window, batch);
+	return status ? status : nt_finish_batch(&window, batch);
 }
 
 static nmtan_status solve_vertices(const nt_complex *c, size_t most_tangled)

@@ -44,29 +44,16 @@ static size_t table_size(size_t members)
 
 /* Solving */
 
-/* What the kernel is to read of the mesh. */
-static void prefetch_corner(const nt_complex *c, uint32_t corner)
-{
-	const nmtan_mesh *mesh = c->fast->solve->mesh;
-	for (uint32_t k = 0; k < 3; k++) {
-		const size_t vertex = nt_vertex_of(mesh, nt_complex_corner(c, (corner & ~3u) | k));
-		__builtin_prefetch(nt_position(mesh, vertex));
-		__builtin_prefetch(nt_texcoord(mesh, vertex));
-		if (k == (corner & 3))
-			__builtin_prefetch(nt_normal(mesh, vertex));
-	}
-}
-
 static void solve_members(const nt_complex *c, const uint32_t *members, size_t count, nt_corner *solved)
 {
 	uint32_t corners[SOLVED];
+	nt_weld_row rows[3 * SOLVED];
 	for (size_t first = 0; first < count; first += SOLVED) {
 		const size_t n = count - first < SOLVED ? count - first : SOLVED;
 		for (size_t i = 0; i < n; i++)
-			corners[i] = c->corners[members[first + i]] & NT_COMPLEX_CORNER;
-		for (size_t i = 0; i < n; i++)
-			prefetch_corner(c, corners[i]);
-		c->kernels->corners(c->fast, corners, n, solved + first);
+			corners[i] = c->corners[members[first + i]];
+		nt_load_rows(c, corners, n, rows);
+		c->kernels->corners(rows, corners, n, solved + first);
 	}
 }
 
@@ -493,6 +480,13 @@ nmtan_status nt_solve_batch(const nt_complex *c, nt_batch *b)
 	return NMTAN_OK;
 }
 
+nmtan_status nt_finish_batch(const nt_complex *c, nt_batch *b)
+{
+	if (NT_SHORT_WAYS && b->summed.count > 0)
+		nt_write_sums(c, &b->summed);
+	return nt_solve_batch(c, b);
+}
+
 /* Moves a corner to the batch. Its group's number stands in the place of an edge, which is of no use any more. */
 static void add_to_batch(const nt_complex *c, nt_batch *b, uint32_t place)
 {
@@ -511,6 +505,20 @@ static void write_record(const nt_complex *c, size_t v, uint32_t corner)
 	memcpy(c->fast->solve->tangents + 4 * nt_complex_corner(c, corner), &record, sizeof record);
 }
 
+/* Writes what is known of triangles without a frame: that no group has reached them, or the record. */
+static void write_frameless(const nt_complex *c, size_t v, const bool done[2])
+{
+	const uint32_t begin = nt_first_place(c, v), end = nt_last_place(c, v);
+	for (uint32_t i = begin; i < end; i++) {
+		const uint32_t corner = c->corners[i];
+		const bool plus = corner & NT_COMPLEX_PLUS;
+		if (c->group[i] == NT_NONE)
+			nt_fast_write_unassigned(c->fast, nt_complex_corner(c, corner));
+		else if (corner & NT_COMPLEX_ANY && plus && done[1] && !c->single)
+			write_record(c, v, corner);
+	}
+}
+
 nmtan_status nt_take_vertex(const nt_complex *c, nt_batch *b, size_t v)
 {
 	const uint32_t begin = nt_first_place(c, v), end = nt_last_place(c, v);
@@ -523,8 +531,14 @@ nmtan_status nt_take_vertex(const nt_complex *c, nt_batch *b, size_t v)
 	}
 	const bool sum = !c->more && c->vertices[v] & NT_RESULT_SUM;
 	const bool done[2] = {sum && groups[0] < 2, sum && groups[1] < 2};
-	if (done[0] && done[1] && !(kinds & NT_COMPLEX_ANY))
+	if (kinds & NT_COMPLEX_ANY && !b->results)
+		write_frameless(c, v, done);
+	if (done[0] && done[1])
 		return NMTAN_OK;
+	if (NT_SHORT_WAYS && sum && end - begin <= NT_FAN_DEPTH) {
+		nt_take_sums(c, &b->summed, v, done);
+		return NMTAN_OK;
+	}
 	if (b->count + (end - begin) > NT_BATCH && nt_solve_batch(c, b))
 		return NMTAN_ERROR_MEMORY;
 	if (b->count == 0)
@@ -532,15 +546,8 @@ nmtan_status nt_take_vertex(const nt_complex *c, nt_batch *b, size_t v)
 	for (uint32_t i = begin; i < end; i++)
 		if (c->group[i] == i && !done[(c->corners[i] & NT_COMPLEX_PLUS) != 0])
 			c->across[2 * i] = b->group_count++;
-	for (uint32_t i = begin; i < end; i++) {
-		const uint32_t corner = c->corners[i];
-		const int orient = (corner & NT_COMPLEX_PLUS) != 0;
-		if (c->group[i] == NT_NONE && !b->results)
-			nt_fast_write_unassigned(c->fast, nt_complex_corner(c, corner));
-		else if (!done[orient])
+	for (uint32_t i = begin; i < end; i++)
+		if (!done[(c->corners[i] & NT_COMPLEX_PLUS) != 0] && (c->group[i] != NT_NONE || b->results))
 			add_to_batch(c, b, i);
-		else if (corner & NT_COMPLEX_ANY && orient && !c->single)
-			write_record(c, v, corner);
-	}
 	return NMTAN_OK;
 }

@@ -79,7 +79,7 @@ static inline void store_four_groups(const record_lanes *r, nt_record *results)
 }
 
 /* Up to `used` groups: whole vectors, or `four` in vectors of four. */
-static inline __attribute__((always_inline)) void finish_groups(const nt_fast *fast, const uint32_t *vertices, size_t count,
+static inline __attribute__((always_inline)) void finish_groups(const nt_weld_row *rows, const uint32_t *vertices, size_t count,
 	size_t used, bool four, nt_record *results, uint8_t *orients)
 {
 	const float *normals_at[NT_LANES];
@@ -87,7 +87,7 @@ static inline __attribute__((always_inline)) void finish_groups(const nt_fast *f
 	uint32_t unusable[NT_LANES];
 	record_lanes r;
 	for (size_t i = 0; i < used; i++)
-		normals_at[i] = fast->rows[vertices[i < count ? i : count - 1]].normal;
+		normals_at[i] = rows[vertices[i < count ? i : count - 1]].normal;
 	if (four)
 		load_four_groups(results, normals_at, &r, normals);
 	else
@@ -108,15 +108,16 @@ static inline __attribute__((always_inline)) void finish_groups(const nt_fast *f
 
 /* Results of groups from their sums. A group that is not its sum gets the state NT_RESULT_COMPLEX; one that may not be
  * usable, NT_TRIANGLE_COMPLEX in `orients`. Both arrays have room for whole vectors, which hold sums throughout. */
-static void few_results(const nt_fast *fast, const uint32_t *vertices, size_t count, nt_record *results, uint8_t *orients)
+static void few_results(const nt_weld_row *rows, const uint32_t *vertices, size_t count, nt_record *results,
+	uint8_t *orients)
 {
 	if (WIDTH > 4 && count > 0 && count <= 4) {
-		finish_groups(fast, vertices, count, 4, true, results, orients);
+		finish_groups(rows, vertices, count, 4, true, results, orients);
 		return;
 	}
 	for (size_t first = 0; first < count; first += NT_LANES) {
 		const size_t left = count - first < NT_LANES ? count - first : NT_LANES;
-		finish_groups(fast, vertices + first, left, whole_lanes(left), false, results + first, orients + first);
+		finish_groups(rows, vertices + first, left, whole_lanes(left), false, results + first, orients + first);
 	}
 }
 

@@ -9,4 +9,5 @@
 #include "tangent/fast/part_lanes.h"
 #include "tangent/fast/settle.h"
 
-const nt_kernels NT_KERNEL = {accumulate, settle, corners, NT_SHORT_WAYS ? part_sums : NULL, few_frames, few_results};
+const nt_kernels NT_KERNEL = {accumulate, settle, corners, NT_SHORT_WAYS ? corner_sums : NULL,
+	NT_SHORT_WAYS ? part_sums : NULL, few_frames, few_results};

@@ -104,8 +104,11 @@ typedef struct nt_kernels {
 	 * Results may replace the rows of their block and of those before. */
 	void (*settle)(nt_fast *fast, const nt_adjacency *adjacency, nt_record *const sums[2], size_t begin,
 		size_t end, nt_settled *settled);
-	/* Solves corners, given as 4 * triangle + k. `solved` has room for a multiple of NT_LANES. */
-	void (*corners)(const nt_fast *fast, const uint32_t *corners, size_t count, nt_corner *solved);
+	/* Solves corners as nt_complex has them, given with the three rows of each one's triangle. `solved` has room
+	 * for a multiple of NT_LANES. */
+	void (*corners)(const nt_weld_row *rows, const uint32_t *corners, size_t count, nt_corner *solved);
+	/* The same: what they add to their records. NULL without short ways. */
+	void (*corner_sums)(const nt_weld_row *rows, const uint32_t *corners, size_t count, nt_record *add);
 	/* Sums of a group's members for each of NT_LANES directions, u and then v: of those that belong together with
 	 * it, and of the own[1] ones from own[0] on. The first NT_CORNER_FLOATS of an nt_corner are added up, or,
 	 * without `more`, those of u. NULL without short ways. */
@@ -113,8 +116,9 @@ typedef struct nt_kernels {
 		const uint32_t own[2][NT_LANES], bool more, float sums[NT_CORNER_FLOATS][NT_LANES]);
 	/* Solves all triangles: their flags, what each corner adds, and the frames. For tiny.c. */
 	void (*few_frames)(const nt_fast *fast, nt_record *add, nt_frames *frames);
-	/* Turns the sums of groups, given with their vertices and orientations, into results: few_lanes.h. */
-	void (*few_results)(const nt_fast *fast, const uint32_t *vertices, size_t count, nt_record *results,
+	/* Turns the sums of groups, given with the rows of their vertices and orientations, into results:
+	 * few_lanes.h. */
+	void (*few_results)(const nt_weld_row *rows, const uint32_t *vertices, size_t count, nt_record *results,
 		uint8_t *orients);
 } nt_kernels;
 

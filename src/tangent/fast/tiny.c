@@ -274,7 +274,9 @@ static nmtan_status solve_complex(tiny *s)
 		if (s->group[i] == NOT_ONE || s->results[s->group[i]].state != NT_RESULT_COMPLEX)
 			continue;
 		groups[b.count] = s->group[i];
-		corners[b.count++] = i | (s->fast->flags[i / 4] & NT_TRIANGLE_ORIENT ? NT_COMPLEX_PLUS : 0);
+		const unsigned flags = s->fast->flags[i / 4];
+		corners[b.count++] = i | (flags & NT_TRIANGLE_ORIENT ? NT_COMPLEX_PLUS : 0) |
+				     (flags & NT_TRIANGLE_ANY ? NT_COMPLEX_ANY : 0);
 	}
 	return nt_solve_batch(&c, &b);
 }
@@ -321,6 +323,6 @@ nmtan_status nt_fast_tiny(nt_fast *fast, const nt_kernels *kernels, bool *done)
 	find_groups(&s);
 	add_corners(&s);
 	vouch_for_groups(&s);
-	kernels->few_results(fast, s.vertices, s.group_count, s.results, s.orients);
+	kernels->few_results(s.rows, s.vertices, s.group_count, s.results, s.orients);
 	return write_corners(&s);
 }
