@@ -137,8 +137,9 @@ static nmtan_status collect(nt_complex *c, const nt_settled *settled)
 	c->room = (uint32_t)room_of(settled, ordered);
 	c->vertices = nt_borrowed_alloc(c->memory, c->vertex_count + 1, sizeof *c->vertices);
 	c->welded = nt_borrowed_alloc(c->memory, c->vertex_count, sizeof *c->welded);
-	c->corners = nt_borrowed_alloc(c->memory, places, sizeof *c->corners);
-	c->across = nt_borrowed_alloc(c->memory, c->room, 2 * sizeof *c->across);
+	/* nt_take_four() reads four of each */
+	c->corners = nt_borrowed_alloc(c->memory, places + 3, sizeof *c->corners);
+	c->across = nt_borrowed_alloc(c->memory, c->room + 3, 2 * sizeof *c->across);
 	c->group = nt_borrowed_alloc(c->memory, c->room, sizeof *c->group);
 	if (ordered)
 		c->order = nt_borrowed_alloc(c->memory, places, sizeof *c->order);
@@ -172,6 +173,8 @@ static void solve_range(void *context, size_t begin, size_t end, unsigned slot)
 	nt_batch *batch = &w->batches[slot];
 	nmtan_status status = NMTAN_OK;
 	for (size_t v = begin; v < end && !status; v++) {
+		if (nt_is_four(w->c, v) && nt_take_four(w->c, &batch->summed, v))
+			continue;
 		nt_find_groups(w->c, v);
 		status = nt_take_vertex(w->c, batch, v);
 	}

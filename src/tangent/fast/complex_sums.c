@@ -31,6 +31,72 @@ void nt_take_sums(const nt_complex *c, nt_summed *s, size_t v, const bool done[2
 	}
 }
 
+typedef uint32_t four_ids __attribute__((vector_size(16)));
+
+/* Of four corners, by which of the pairs 01, 12, 23, 30, 02 and 13 have an edge together: the first of those that each
+ * one hangs together with, two bits each, and above them which ones are first themselves. */
+static const uint16_t first_of_four[64] = {
+	0xfe4, 0xde0, 0xbd4, 0x9c0, 0x7a4, 0x5a0, 0x354, 0x100, 0x724, 0x520, 0x314, 0x100, 0x304, 0x100, 0x100, 0x100,
+	0xbc4, 0x9c0, 0x9c0, 0x9c0, 0x304, 0x100, 0x100, 0x100, 0x304, 0x100, 0x100, 0x100, 0x304, 0x100, 0x100, 0x100,
+	0x764, 0x520, 0x354, 0x100, 0x354, 0x100, 0x354, 0x100, 0x520, 0x520, 0x100, 0x100, 0x100, 0x100, 0x100, 0x100,
+	0x344, 0x100, 0x100, 0x100, 0x100, 0x100, 0x100, 0x100, 0x100, 0x100, 0x100, 0x100, 0x100, 0x100, 0x100, 0x100,
+};
+
+static inline uint32_t count_of_four(uint32_t set)
+{
+	return (uint32_t)(0x4332322132212110u >> 4 * set) & 7;
+}
+
+/* One bit of each pair of four corners, as above, of each corner's orientation, and of any without a frame. */
+static inline __attribute__((always_inline)) uint32_t look_at_four(const uint32_t *corners, const uint32_t *ends,
+	uint32_t count)
+{
+	const four_ids lane = {0, 1, 2, 3}, there = (four_ids)(lane < count);
+	four_ids flags, low, high;
+	memcpy(&flags, corners, sizeof flags);
+	memcpy(&low, ends, sizeof low);
+	memcpy(&high, ends + 4, sizeof high);
+	/* edges of different orientations are different; where there is no corner nothing is the same */
+	flags &= there & (NT_COMPLEX_PLUS | NT_COMPLEX_ANY);
+	const four_ids plus = flags << 1;
+	const four_ids after = ((__builtin_shufflevector(low, high, 0, 2, 4, 6) | plus) & there) | (~there & ~lane);
+	const four_ids before = ((__builtin_shufflevector(low, high, 1, 3, 5, 7) | plus) & there) | (~there & ~(lane + 4));
+	const four_ids one = (four_ids)(after == __builtin_shufflevector(before, before, 1, 2, 3, 0)) |
+			     (four_ids)(before == __builtin_shufflevector(after, after, 1, 2, 3, 0));
+	const four_ids two = (four_ids)(after == __builtin_shufflevector(before, before, 2, 3, 0, 1)) |
+			     (four_ids)(before == __builtin_shufflevector(after, after, 2, 3, 0, 1));
+	const four_ids bits = (one & (four_ids){1, 2, 4, 8}) | (two & (four_ids){16, 32, 0, 0}) |
+			      ((four_ids)(plus != 0) & (four_ids){64, 128, 256, 512}) | (flags & NT_COMPLEX_ANY);
+	uint64_t halves[2];
+	memcpy(halves, &bits, sizeof halves);
+	halves[0] |= halves[1];
+	return (uint32_t)(halves[0] | halves[0] >> 32);
+}
+
+bool nt_take_four(const nt_complex *c, nt_summed *s, size_t v)
+{
+	const uint32_t begin = nt_first_place(c, v), count = nt_first_place(c, v + 1) - begin;
+	const uint32_t *corners = c->corners + begin, bits = look_at_four(corners, c->across + 2 * begin, count);
+	if (bits & NT_COMPLEX_ANY)
+		return false;
+	const uint32_t first = first_of_four[bits % 64], all = ((uint32_t)1 << count) - 1, plus = bits >> 6;
+	/* an orientation of one group is done */
+	const uint32_t begins = first >> 8 & all, minus_begins = begins & ~plus, plus_begins = begins & plus;
+	const uint32_t kept = all & ((minus_begins & (minus_begins - 1) ? ~plus : 0) | (plus_begins & (plus_begins - 1) ? plus : 0));
+	if (kept == 0)
+		return true;
+	if (s->count + 4 > NT_SUMMED)
+		nt_write_sums(c, s);
+	for (uint32_t i = 0; i < 4; i++) {
+		const uint32_t before = ((uint32_t)1 << (first >> 2 * i & 3)) - 1;
+		s->corners[s->count] = corners[i];
+		s->group[s->count] = (uint8_t)(s->group_count + count_of_four(begins & kept & before));
+		s->count += kept >> i & 1;
+	}
+	s->group_count += count_of_four(begins & kept);
+	return true;
+}
+
 void nt_load_rows(const nt_complex *c, const uint32_t *corners, size_t count, nt_weld_row *rows)
 {
 	/* copies, which no store to a row may change */
