@@ -243,13 +243,14 @@ void nt_add_triangle(const nmtan_mesh *mesh, nt_weight weight, const uint32_t co
 		return;
 	const bool by_doubles = solve_direction(&e, &f);
 	/* a direction from exact differences stays: whether it adds something is known before the rest is */
-	if (by_doubles && e.exact && !find_corners(weight, f.u, normals, sums, adds))
+	const bool stays = by_doubles && e.exact;
+	if (stays && !find_corners(weight, f.u, normals, sums, adds))
 		return;
 	if (!by_doubles || !solve_rest(&e, &f))
 		solve_by_expansions(e.p, e.t, &f);
 	f.u = nt_dvec3_scale(sign, f.u);
 	f.determinant = fabs(f.determinant);
-	if (!find_corners(weight, f.u, normals, sums, adds))
+	if (!stays && !find_corners(weight, f.u, normals, sums, adds))
 		return;
 	const nt_measured m = nt_measure(f.u, f.across);
 	double lengths[3];

@@ -294,6 +294,19 @@ static uint64_t find_candidates(const patient *p, size_t first, size_t count)
 	return nt_flagged(known->flags + first, count, (uint8_t)(known->suspect & ~flat), known->positive, &others);
 }
 
+/* What triangles have is asked for first: cache misses took a twelfth of all visits of ogre. */
+static void visit_listed(const patient *p, const uint32_t *triangles, size_t count)
+{
+	const nmtan_mesh *mesh = p->solve->mesh;
+	for (size_t i = 0; i < count; i++)
+		for (size_t c = 3 * (size_t)triangles[i]; c < 3 * (size_t)triangles[i] + 3; c++) {
+			__builtin_prefetch(nt_position(mesh, nt_vertex_of(mesh, c)));
+			__builtin_prefetch(nt_texcoord(mesh, nt_vertex_of(mesh, c)));
+		}
+	for (size_t i = 0; i < count; i++)
+		visit_face(p, triangles[i], 3 * (size_t)triangles[i], 3);
+}
+
 /* Visits the triangles with a touched vertex. They are listed first: which of the candidates they are is as good as
  * random. */
 static void visit_triangles(const patient *p)
@@ -311,8 +324,7 @@ static void visit_triangles(const patient *p)
 		}
 		if (listed <= LISTED - NT_FLAG_WORD && first + count < total)
 			continue;
-		for (size_t i = 0; i < listed; i++)
-			visit_face(p, near[i], 3 * (size_t)near[i], 3);
+		visit_listed(p, near, listed);
 		listed = 0;
 	}
 }
