@@ -4,6 +4,10 @@
  * order of groups. Most groups do not split: their members' directions lie within a half-space. Otherwise each
  * direction has a sum of its own, which is that of all members with this direction: 16 directions at a time
  * (part_lanes.h), in large groups by several threads. So it costs directions times members.
+ *
+ * Sums of nearly the same members share no work: from the first member on that only one of them has, each adds all the
+ * others again, since floats do not associate. Half of a quad whose halves have opposite directions is such a case: its
+ * other half belongs to it, but to no other member of its direction.
  */
 #include "tangent/fast/complex_solve.h"
 
