@@ -37,6 +37,7 @@ static bool is_flat(const nmtan_mesh *mesh, size_t corner_count)
 static nt_weld_outcome weld_all(nt_welder *w, unsigned ranges)
 {
 	w->row_guess = w->item_count / 2;
+	w->renamed_end = w->item_count;
 	w->numbers = nt_borrowed_alloc(w->memory, w->item_count, sizeof *w->numbers);
 	return w->numbers && nt_weld_items(w, ranges) ? NT_WELD_DONE : NT_WELD_NO_MEMORY;
 }

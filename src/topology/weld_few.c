@@ -135,7 +135,7 @@ static bool number_vertices(nt_welder *w, const few *f)
 	if (f->equal_count > 0 && !w->numbers && !nt_weld_number_own(w))
 		return false;
 	for (size_t i = 0; i < f->equal_count; i++)
-		w->numbers[f->list[i] & UINT16_MAX] = f->list[i] >> 16;
+		nt_weld_rename(w, f->list[i] & UINT16_MAX, f->list[i] >> 16);
 	return true;
 }
 

@@ -35,6 +35,7 @@ typedef struct nt_welder {
 	size_t row_capacity, row_count;
 	uint32_t *table;
 	uint32_t *numbers;   /* [item_count] row of each item */
+	size_t renamed_begin, renamed_end; /* items of welded vertices: those before and behind have their own number */
 	unsigned table_bits; /* log2 of the entries; a number has one bit less */
 	bool rows_borrowed;
 	bool unordered; /* an item holds a NaN */
@@ -105,9 +106,10 @@ typedef enum nt_weld_outcome {
 nt_weld_outcome nt_weld_few(nt_welder *w);
 nt_weld_outcome nt_weld_sieve(nt_welder *w, unsigned ranges);
 
-/* Numbers of vertices whose rows are there: their own, or, of those on a list that has all that are equal to another or
- * hold a NaN, that of the first equal one on the list. False when out of memory. */
+/* Numbers of vertices whose rows are there: their own; then one gets another; or, of those on a list that has all that
+ * are equal to another or hold a NaN, that of the first equal one on the list. False when out of memory. */
 bool nt_weld_number_own(nt_welder *w);
+void nt_weld_rename(nt_welder *w, uint32_t vertex, uint32_t number);
 bool nt_weld_list(nt_welder *w, const uint32_t *list, size_t count, unsigned ranges);
 
 /* Numbers of corners from numbers of vertices, NULL: each its own; without indices likewise. May be the mesh's

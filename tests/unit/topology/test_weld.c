@@ -202,6 +202,30 @@ static void some_equal_vertices_of_many_weld_alike(void **state)
 	check_doubles(30000, 60000, 10, NAN);
 }
 
+/* Equal vertices in one place, as where a seam was appended: most corners keep their vertex. */
+static void equal_vertices_in_one_place_weld_alike(void **state)
+{
+	(void)state;
+	enum { VERTICES = 5000, CORNERS = 3 * 3001 };
+	static const size_t places[] = {1, 2000, VERTICES - 20};
+	uint32_t indices[CORNERS], random = 21;
+	for (size_t c = 0; c < CORNERS; c++)
+		indices[c] = next_random(&random) % VERTICES;
+	for (size_t p = 0; p < 3; p++)
+		for (int odd = 0; odd < 2; odd++) {
+			vertex_row *rows = calloc(VERTICES, sizeof *rows);
+			for (size_t v = 0; v < VERTICES; v++)
+				rows[v][0] = (float)v;
+			for (size_t v = places[p]; v < places[p] + 20; v += 2)
+				rows[v][0] = (float)(v / 3);
+			rows[300][4] = odd ? NAN : 0;
+			const nmtan_mesh mesh = mesh_of(rows, VERTICES, indices, CORNERS);
+			check(&mesh, CORNERS, 0);
+			check(&mesh, CORNERS, CORNERS * 16);
+			free(rows);
+		}
+}
+
 /* More than the sieve bears. */
 static void many_equal_vertices_weld_alike(void **state)
 {
@@ -373,6 +397,7 @@ int main(void)
 		cmocka_unit_test(vertices_weld_alike_on_all_threads),
 		cmocka_unit_test(few_of_many_vertices_weld_alike),
 		cmocka_unit_test(some_equal_vertices_of_many_weld_alike),
+		cmocka_unit_test(equal_vertices_in_one_place_weld_alike),
 		cmocka_unit_test(many_equal_vertices_weld_alike),
 		cmocka_unit_test(vertices_of_one_hash_weld_alike),
 		cmocka_unit_test(every_number_of_vertices_welds_alike),
