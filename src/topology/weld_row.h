@@ -82,7 +82,7 @@ static inline void nt_weld_put(nt_weld_floats low, nt_weld_floats high, nt_weld_
 
 /* Where each byte of code is sent to a browser a row is loaded out of line: 240 bytes of the package. */
 #ifdef __wasm__
-#define NT_WELD_INLINE __attribute__((noinline))
+#define NT_WELD_INLINE __attribute__((noinline, unused))
 #else
 #define NT_WELD_INLINE inline
 #endif
