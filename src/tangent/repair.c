@@ -285,7 +285,7 @@ static inline bool is_near(const patient *p, size_t first)
 static uint64_t find_candidates(const patient *p, size_t first, size_t count)
 {
 	const nt_known *known = p->solve->known;
-	if (!NT_SHORT_WAYS || !p->among_suspects)
+	if (!p->among_suspects)
 		return UINT64_MAX >> (NT_FLAG_WORD - count);
 	/* where no row is marked, open vertices are complex ones, or those of doubtful and degenerate triangles: flat
 	 * triangles around them have another bit of `suspect`, too, or give nothing */
@@ -341,7 +341,7 @@ static void look_around(const patient *p)
 {
 	if (p->id_count == 0)
 		return;
-	if (p->solve->mesh->face_sizes)
+	if (p->solve->mesh->face_sizes || !NT_SHORT_WAYS)
 		visit_faces(p);
 	else
 		visit_triangles(p);

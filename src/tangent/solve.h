@@ -92,7 +92,6 @@ static inline uint64_t nt_flagged(const uint8_t *flags, size_t count, uint8_t ma
 		flags = (const uint8_t *)memcpy(last, flags, count);
 	}
 	nt_flag_lanes has[NT_FLAG_WORD / sizeof(nt_flag_lanes)], any = {0}, plain = {0};
-#pragma GCC unroll 4
 	for (size_t i = 0; i < NT_FLAG_WORD / sizeof *has; i++) {
 		nt_flag_lanes f;
 		memcpy(&f, flags + sizeof f * i, sizeof f);

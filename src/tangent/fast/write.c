@@ -267,7 +267,7 @@ void nt_fast_write_defaults(const nt_fast *fast)
 {
 	for (size_t c = 0; c < fast->solve->corner_count; c++)
 		nt_fast_write_unassigned(fast, c);
-	if (fast->solve->known)
+	if (NT_SHORT_WAYS && fast->solve->known)
 		fast->solve->known->empty = true;
 }
 
