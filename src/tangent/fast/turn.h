@@ -12,6 +12,9 @@
 #include <stdint.h>
 #include <string.h>
 #include "tangent/fast/parts.h"
+#if defined(__AVX512F__)
+#include <immintrin.h>
+#endif
 
 /* Elements of two vectors, one after the other, for shuffles: every other 16-byte part; every other element; one
  * vector's elements in turned places, and out of them. */
@@ -19,6 +22,8 @@
 #define WIDTH 16
 #define IN_PARTS(a, b, c, d) \
 	IN_PART(0, a, b, c, d), IN_PART(4, a, b, c, d), IN_PART(8, a, b, c, d), IN_PART(12, a, b, c, d)
+#define LOW_PAIRS 0, 8, 2, 10, 4, 12, 6, 14
+#define HIGH_PAIRS 1, 9, 3, 11, 5, 13, 7, 15
 #define EVEN_PARTS 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27
 #define ODD_PARTS 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31
 #define EVEN 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30
@@ -28,6 +33,8 @@
 #elif defined(__AVX2__)
 #define WIDTH 8
 #define IN_PARTS(a, b, c, d) IN_PART(0, a, b, c, d), IN_PART(4, a, b, c, d)
+#define LOW_PAIRS 0, 4, 2, 6
+#define HIGH_PAIRS 1, 5, 3, 7
 #define EVEN_PARTS 0, 1, 2, 3, 8, 9, 10, 11
 #define ODD_PARTS 4, 5, 6, 7, 12, 13, 14, 15
 #define EVEN 0, 2, 4, 6, 8, 10, 12, 14
@@ -37,6 +44,8 @@
 #else
 #define WIDTH 4
 #define IN_PARTS(a, b, c, d) a, b, c, d
+#define LOW_PAIRS 0, 2
+#define HIGH_PAIRS 1, 3
 #define EVEN 0, 2, 4, 6
 #define ODD 1, 3, 5, 7
 #define TURNED 0, 1, 2, 3
@@ -48,6 +57,7 @@
 #define FROM(part, i) ((part) + (i) % 4 + (i) / 4 * WIDTH)
 
 typedef uint32_t lanes __attribute__((vector_size(4 * WIDTH)));
+typedef uint64_t lane_pairs __attribute__((vector_size(4 * WIDTH)));
 
 static inline __attribute__((always_inline)) lanes load_lanes(const void *from)
 {
@@ -82,10 +92,10 @@ static inline __attribute__((always_inline)) void turn(lanes rows[4])
 	const lanes ab23 = __builtin_shufflevector(rows[0], rows[1], IN_PARTS(2, 6, 3, 7));
 	const lanes cd01 = __builtin_shufflevector(rows[2], rows[3], IN_PARTS(0, 4, 1, 5));
 	const lanes cd23 = __builtin_shufflevector(rows[2], rows[3], IN_PARTS(2, 6, 3, 7));
-	rows[0] = __builtin_shufflevector(ab01, cd01, IN_PARTS(0, 1, 4, 5));
-	rows[1] = __builtin_shufflevector(ab01, cd01, IN_PARTS(2, 3, 6, 7));
-	rows[2] = __builtin_shufflevector(ab23, cd23, IN_PARTS(0, 1, 4, 5));
-	rows[3] = __builtin_shufflevector(ab23, cd23, IN_PARTS(2, 3, 6, 7));
+	rows[0] = (lanes)__builtin_shufflevector((lane_pairs)ab01, (lane_pairs)cd01, LOW_PAIRS);
+	rows[1] = (lanes)__builtin_shufflevector((lane_pairs)ab01, (lane_pairs)cd01, HIGH_PAIRS);
+	rows[2] = (lanes)__builtin_shufflevector((lane_pairs)ab23, (lane_pairs)cd23, LOW_PAIRS);
+	rows[3] = (lanes)__builtin_shufflevector((lane_pairs)ab23, (lane_pairs)cd23, HIGH_PAIRS);
 }
 
 /* The same for one part alone. */
@@ -162,9 +172,9 @@ static inline __attribute__((always_inline)) lanes load_rows(const nt_weld_row *
 #if WIDTH == 8
 	return first;
 #else
-	one_row second;
-	memcpy(&second, &rows[ids[3 * 4]], sizeof second);
-	return __builtin_shufflevector(first, second, 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
+	/* by name: gcc 12 loads the second row first, and shuffles */
+	return (lanes)_mm512_inserti64x4(_mm512_castsi256_si512((__m256i)first),
+		_mm256_loadu_si256((const __m256i *)&rows[ids[3 * 4]]), 1);
 #endif
 }
 
