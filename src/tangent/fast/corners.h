@@ -153,21 +153,22 @@ static void corners(const nt_weld_row *rows, const uint32_t *list, size_t count,
 static void corner_sums(const nt_weld_row *rows, const uint32_t *list, size_t count, nt_record *add)
 {
 	single_lanes s;
+	lanes_edges edges;
 	lanes_out out;
-	_Alignas(64) float from[3][NT_LANES], to[3][NT_LANES];
-	const corner_lanes corners = {.n = s.n, .u = out.frames.u, .v = out.frames.v, .from = from, .to = to,
-		.sum = out.sum[0], .cosine = out.cosine[0]};
+	_Alignas(64) float e[3][NT_LANES], f[3][NT_LANES];
+	const corner_lanes corners = {.n = s.n, .u = out.frames.u, .v = out.frames.v, .e = e, .f = f, .turned = 1.0f,
+		.sum = out.sum[0]};
 	for (size_t first = 0; first < count; first += NT_LANES) {
 		load_singles(rows + 3 * first, list + first, count - first, &s);
-		solve_frames(&s.in, &out, 0, false, NT_LANES);
-		for (int i = 0; i < NT_LANES; i++)
+		EACH_LANE(NT_LANES) make_edges(&s.in, &edges, i);
+		EACH_LANE(NT_LANES) solve_frames(&s.in, &edges, &out, false, i);
+		EACH_LANE(NT_LANES)
 #pragma GCC unroll 3
 			for (int c = 0; c < 3; c++) {
-				from[c][i] = choose(s.k[i], out.edge[2][c][i], out.edge[0][c][i], out.edge[1][c][i]);
-				to[c][i] = choose(s.k[i], out.edge[0][c][i], out.edge[1][c][i], out.edge[2][c][i]);
+				e[c][i] = choose(s.k[i], edges.of[0][c][i], -edges.of[0][c][i], edges.of[1][c][i]);
+				f[c][i] = choose(s.k[i], edges.of[1][c][i], edges.of[2][c][i], edges.of[2][c][i]);
 			}
-		solve_corners(corners, true, false, NT_LANES);
-		weigh_corners(corners, NULL, NULL, false, NT_LANES);
+		solve_corner(corners, true);
 		interleave(out.sum[0], NT_LANES, out.add[0]);
 		for (size_t i = 0; i < NT_LANES; i++)
 			memcpy(&add[first + i], out.add[0] + 4 * turned_place(i), sizeof *add);

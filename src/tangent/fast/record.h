@@ -27,12 +27,12 @@ typedef struct nt_record_more {
 /* Bits of nt_record.state while it is a sum. All states carry NT_STATE_BASE, which makes them normal
  * floats: the lane takes part in the addition of its record, and a denormal may cost 100 cycles. */
 enum {
-	NT_STATE_U = 0x3f,          /* one bit for each half-space that all u directions lie in; zero lies in all */
-	NT_STATE_V = 0x3f << 6,     /* the same for v */
-	NT_STATE_SOUND = 1 << 12,   /* every value met was well inside float's range */
-	NT_STATE_EMPTY = 1 << 13,   /* no corner was added */
-	NT_STATE_NO_ANY = 1 << 14,  /* no triangle without a frame touches the vertex */
-	NT_STATE_LOCAL = 1 << 15,   /* the order in which groups are seeded does not matter */
+	NT_STATE_SOUND = 1 << 0,    /* every value met was well inside float's range */
+	NT_STATE_EMPTY = 1 << 1,    /* no corner was added */
+	NT_STATE_NO_ANY = 1 << 2,   /* no triangle without a frame touches the vertex */
+	NT_STATE_LOCAL = 1 << 3,    /* the order in which groups are seeded does not matter */
+	NT_STATE_U = 0xf300,        /* one bit for each half-space that all u directions lie in; zero lies in all */
+	NT_STATE_V = 0x0cf0,        /* the same for v; which is which, state_of() in lanes.h knows */
 	NT_STATE_ALL = 0xffff,
 	NT_STATE_BASE = 0x40000000
 };
