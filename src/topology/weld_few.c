@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The weld of an indexed mesh of fewer than 65 536 vertices on one thread. Here a table of 16-bit numbers takes the
+ * The weld of an indexed mesh of up to 32 768 vertices on one thread. Here a table of 16-bit numbers takes the
  * place of the sieve's bitmaps (weld_sieve.c). A hash has one place in it, which belongs to the vertex that comes
  * first; those that find it taken are candidates, 11 to 20 of a hundred vertices by chance alone. They are found and
  * looked at in loops of few instructions and without branches, which could not be predicted:
