@@ -46,6 +46,7 @@ typedef struct lanes_in {
 
 typedef struct lanes_out {
 	_Alignas(64) nt_frames frames;
+	float length_u[NT_LANES], length_v[NT_LANES]; /* of the directions before they are made unit vectors */
 	float mag_u[NT_LANES], mag_v[NT_LANES];
 	float sum[3][4][NT_LANES];      /* corner, float of its nt_record */
 	float extra[3][8][NT_LANES];    /* corner, float of its nt_record_more */
@@ -153,6 +154,7 @@ static inline __attribute__((always_inline)) void solve_frames(const lanes_in *r
 #pragma GCC unroll 3
 	for (int c = 0; c < 3; c++)
 		out->frames.u[c][i] = rs * d.s[c], out->frames.v[c][i] = rt * d.t[c];
+	out->length_u[i] = d.s_length, out->length_v[i] = d.t_length;
 	if (more)
 		out->mag_u[i] = d.s_length / fabsf(area), out->mag_v[i] = d.t_length / fabsf(area);
 	out->area[i] = area;
@@ -161,28 +163,21 @@ static inline __attribute__((always_inline)) void solve_frames(const lanes_in *r
 }
 
 /* Storing moves each v by u |v + offset| at most, an edge by twice that. */
-static inline __attribute__((always_inline)) void doubt_stored(const lanes_in *restrict in, lanes_out *restrict out,
-	const uv_directions *d, float offset, int i)
+static void __attribute__((noinline)) doubt_stored(const lanes_in *restrict in, lanes_out *restrict out, float offset, int count)
 {
 	const float slack = offset != 0.0f ? 3 * HALF_ULP : 0.0f;
-	const float stored = fabsf(in->row[0][7][i]) + fabsf(in->row[1][7][i]) + fabsf(in->row[2][7][i]) + fabsf(offset);
-	out->doubt[i] = area_rounding(d) + slack * stored * (fabsf(d->t21x) + fabsf(d->t31x)) - fabsf(out->area[i]);
-}
-
-static void __attribute__((noinline)) doubt_plain(const lanes_in *restrict in, lanes_out *restrict out, float offset, int count)
-{
 	lanes_edges edges;
 	EACH_LANE(count) {
 		make_edges(in, &edges, i);
 		const uv_directions d = directions_of(in, &edges, i);
-		doubt_stored(in, out, &d, offset, i);
+		const float stored = fabsf(in->row[0][7][i]) + fabsf(in->row[1][7][i]) + fabsf(in->row[2][7][i]) + fabsf(offset);
+		out->doubt[i] = area_rounding(&d) + slack * stored * (fabsf(d.t21x) + fabsf(d.t31x)) - fabsf(out->area[i]);
 	}
 }
 
 /* Tells triangles apart where not all of them are plain. */
-static void __attribute__((noinline)) tell_apart(const lanes_in *restrict in, lanes_out *restrict out, float offset, int count)
+static void __attribute__((noinline)) tell_apart(const lanes_in *restrict in, lanes_out *restrict out, int count)
 {
-	lanes_edges edges;
 	EACH_LANE(count) {
 		int same[3];
 #pragma GCC unroll 3
@@ -190,9 +185,7 @@ static void __attribute__((noinline)) tell_apart(const lanes_in *restrict in, la
 			const float (*const a)[NT_LANES] = in->row[k], (*const b)[NT_LANES] = in->row[(k + 1) % 3];
 			same[k] = (a[0][i] == b[0][i]) & (a[1][i] == b[1][i]) & (a[2][i] == b[2][i]);
 		}
-		make_edges(in, &edges, i);
-		const uv_directions d = directions_of(in, &edges, i);
-		const float size = fabsf(out->area[i]), ls = d.s_length, lt = d.t_length;
+		const float size = fabsf(out->area[i]), ls = out->length_u[i], lt = out->length_v[i];
 		out->degenerate[i] = same[0] | same[1] | same[2];
 		const int sound = (size > FLT_MIN) & (ls > FLT_MIN) & (lt > FLT_MIN) &
 				  (ls > LEAST_RATIO * size) & (lt > LEAST_RATIO * size) &
@@ -201,7 +194,6 @@ static void __attribute__((noinline)) tell_apart(const lanes_in *restrict in, la
 		const int framed = (ls / size > FLT_MIN) & (lt / size > FLT_MIN);
 		out->sound[i] = sound;
 		out->frameless[i] = !(size > FLT_MIN) || !(sound | framed);
-		doubt_stored(in, out, &d, offset, i);
 	}
 }
 
@@ -481,9 +473,9 @@ static inline void judge(const lanes_in *restrict in, lanes_out *restrict out, f
 {
 	out->plain = NT_SHORT_WAYS && corners > 0 && are_plain(out, corners, lane_count);
 	if (!out->plain)
-		tell_apart(in, out, offset, (int)lane_count);
-	else if (offset != 0.0f)
-		doubt_plain(in, out, offset, (int)lane_count);
+		tell_apart(in, out, (int)lane_count);
+	if (!NT_SHORT_WAYS || offset != 0.0f)
+		doubt_stored(in, out, offset, (int)lane_count);
 }
 
 static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *restrict in, lanes_out *restrict out, float offset,
