@@ -123,7 +123,8 @@ nt_status nt_draco_encode(const nt_draco_mesh *mesh, nt_draco_block *block, nt_e
  * whatever else is encoded with them.
  *
  *   values  [attribute_count] of each attribute room for [point_count][components] floats, which may be where its data
- *           is; NULL where its quantization has no bits. Points that no face uses keep their values
+ *           is; NULL: it is only looked at, as where its quantization has no bits. Points that no face uses keep
+ *           their values
  *
  * Returns what nt_draco_encode() does for meshes that it refuses; NT_ERROR_MEMORY.
  */

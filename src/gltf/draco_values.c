@@ -6,13 +6,14 @@
  * grid that edit/draco_foresee.c has for them.
  *
  * Of a primitive that is compressed already nothing has to be done: its values lie on a grid which it keeps, and
- * quantizing them again moves none.
+ * quantizing them again moves none; what is beside its block stays there as it is.
  */
 #include "gltf/draco_values.h"
 
 #include <stdlib.h>
 #include <string.h>
 #include "gltf/draco.h"
+#include "gltf/primitive.h"
 
 /* Whether it is not the mesh that keeps Draco from quantizing. */
 static bool is_beside_mesh(nt_status status)
@@ -71,10 +72,10 @@ static nt_status uses_all(const nt_mesh *mesh, bool *all, nt_error *error)
 
 /* ---- what was loaded ---- */
 
-/* The attributes of a mesh that are plain floats. */
+/* The attributes of a mesh that are plain floats, and others that Draco may refuse. */
 typedef struct taking {
-	nt_draco_attribute attributes[3];
-	float *values[3];
+	nt_draco_attribute *attributes;
+	float **values; /* NULL: it is only looked at */
 	float **loaded[3];
 	size_t count;
 	bool failed; /* memory is exhausted */
@@ -84,7 +85,7 @@ typedef struct taking {
 static void take(taking *t, nt_scene *scene, const nt_mesh *mesh, const nt_gltf_accessor *from, nt_draco_kind kind,
 	int bits, float **loaded)
 {
-	if (!from || from->component_type != NT_GLTF_FLOAT || from->decoded)
+	if (!from || from->component_type != NT_GLTF_FLOAT || t->failed)
 		return;
 	const size_t i = t->count++;
 	t->attributes[i] = (nt_draco_attribute){.unique_id = (uint32_t)i, .kind = kind,
@@ -95,17 +96,65 @@ static void take(taking *t, nt_scene *scene, const nt_mesh *mesh, const nt_gltf_
 	t->loaded[i] = loaded;
 }
 
-nt_status nt_gltf_quantize_vertices(nt_scene *scene, nt_mesh *mesh, const nt_gltf_sources *sources,
-	const nt_read_options *options, nt_error *error)
+/* Attributes that a load does not read: a value in them with which Draco refuses the mesh. */
+static nt_status look_at_others(taking *t, nt_gltf *document, const nt_json_value *attributes,
+	const nt_gltf_sources *sources, int bits, nt_error *error)
 {
-	const int *bits = options->draco_bits;
-	taking t = {.count = 0};
-	bool all = true;
-	nt_status status = mesh->quantized == NT_QUANTIZED_WHOLE ? uses_all(mesh, &all, error) : NT_OK;
-	if (!all)
-		mesh->quantized = NT_QUANTIZED_NOT;
-	if (status || !mesh->quantized)
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < nt_json_count(attributes); i++) {
+		const char *name = nt_json_key(attributes, i, NULL);
+		const bool is_texcoord = strncmp(name, "TEXCOORD_", 9) == 0;
+		uint64_t index;
+		nt_gltf_accessor a;
+		const unsigned char *elements = NULL;
+		if (!nt_json_get_uint64(nt_json_at(attributes, i), &index) ||
+			nt_gltf_get_accessor(document, index, "", &a, NULL) != NT_OK || a.components > 4 ||
+			(sources->texcoords && sources->texcoords->index == a.index))
+			continue;
+		if (a.component_type == NT_GLTF_FLOAT ? !is_texcoord : a.component_type != NT_GLTF_UINT)
+			continue;
+		status = nt_gltf_elements(document, &a, &elements, error);
+		t->attributes[t->count] = (nt_draco_attribute){.unique_id = (uint32_t)t->count,
+			.kind = is_texcoord ? NT_DRACO_TEXCOORD : NT_DRACO_GENERIC, .component_type = (int)a.component_type,
+			.components = (int)a.components, .stride_bytes = a.stride, .data = elements,
+			.quantization = nt_gltf_draco_grid(document, a.index, a.component_type == NT_GLTF_FLOAT ? bits : 0)};
+		t->count++;
+	}
+	return status;
+}
+
+/* Quantizes what was taken; a mesh that is refused loses ->quantized. */
+static nt_status quantize_taken(const taking *t, nt_mesh *mesh, nt_error *error)
+{
+	/* texture coordinates lie on the grid as they are stored */
+	if (mesh->texcoords)
+		flip_texcoords(mesh);
+	nt_error refused;
+	const nt_status status = t->count ? quantize(mesh, t->attributes, t->count, t->values, &refused) : NT_OK;
+	if (is_beside_mesh(status)) {
+		*error = refused;
 		return status;
+	}
+	if (status)
+		mesh->quantized = NT_QUANTIZED_NOT;
+	for (size_t i = 0; !status && i < t->count; i++)
+		if (t->values[i])
+			*t->loaded[i] = t->values[i];
+	if (mesh->texcoords)
+		flip_texcoords(mesh);
+	return NT_OK;
+}
+
+/* arena: of what is not needed afterwards. */
+static nt_status quantize_plain(nt_scene *scene, nt_mesh *mesh, const nt_json_value *attributes,
+	const nt_gltf_sources *sources, const int *bits, nt_arena *arena, nt_error *error)
+{
+	const size_t most = 3 + nt_json_count(attributes);
+	taking t = {.attributes = nt_arena_alloc(arena, most, sizeof *t.attributes),
+		.values = nt_arena_alloc(arena, most, sizeof *t.values)};
+	if (!t.attributes || !t.values)
+		return nt_fail_memory(error);
+	memset(t.values, 0, most * sizeof *t.values);
 	take(&t, scene, mesh, sources->positions, NT_DRACO_POSITION,
 		nt_gltf_draco_bits(bits, NT_DRACO_BITS_POSITION), &mesh->positions);
 	take(&t, scene, mesh, sources->normals, NT_DRACO_NORMAL, nt_gltf_draco_bits(bits, NT_DRACO_BITS_NORMAL),
@@ -114,23 +163,26 @@ nt_status nt_gltf_quantize_vertices(nt_scene *scene, nt_mesh *mesh, const nt_glt
 		nt_gltf_draco_bits(bits, NT_DRACO_BITS_TEXCOORD), &mesh->texcoords);
 	if (t.failed)
 		return nt_fail_memory(error);
+	const nt_status status = look_at_others(&t, scene->source, attributes, sources,
+		nt_gltf_draco_bits(bits, NT_DRACO_BITS_TEXCOORD), error);
+	return status ? status : quantize_taken(&t, mesh, error);
+}
 
-	/* texture coordinates lie on the grid as they are stored */
-	if (sources->texcoords)
-		flip_texcoords(mesh);
-	nt_error refused;
-	status = t.count ? quantize(mesh, t.attributes, t.count, t.values, &refused) : NT_OK;
-	if (is_beside_mesh(status)) {
-		*error = refused;
-		return status;
-	}
-	if (status)
+nt_status nt_gltf_quantize_vertices(nt_scene *scene, nt_mesh *mesh, const nt_gltf_sources *sources,
+	const nt_read_options *options, nt_error *error)
+{
+	bool all = true;
+	nt_status status = mesh->quantized == NT_QUANTIZED_WHOLE ? uses_all(mesh, &all, error) : NT_OK;
+	if (!all)
 		mesh->quantized = NT_QUANTIZED_NOT;
-	for (size_t i = 0; !status && i < t.count; i++)
-		*t.loaded[i] = t.values[i];
-	if (sources->texcoords)
-		flip_texcoords(mesh);
-	return NT_OK;
+	const nt_json_value *primitive = nt_gltf_primitive_of(scene->source, mesh);
+	if (status || !mesh->quantized || nt_gltf_draco_of(primitive))
+		return status;
+	nt_arena arena = {0};
+	status = quantize_plain(scene, mesh, nt_json_find(primitive, "attributes"), sources, options->draco_bits,
+		&arena, error);
+	nt_arena_free(&arena);
+	return status;
 }
 
 /* ---- what was made ---- */

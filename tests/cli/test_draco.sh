@@ -459,6 +459,66 @@ exits 0
 says "no face uses some of its vertices, whose order matters [DRACO_PLAIN]"
 same out.glb off.glb
 
+# Writes NAME.gltf: the primitive of a .glb without TANGENT and with other texture coordinates, which are not compressed
+# and on no grid: those of FROM.glb moved by up to 0.00005, as the attribute SET. The value that the first one gets may
+# be given, too.
+with_texcoords() {
+	node -e 'const fs = require("fs"), [input, name, from, set, first] = process.argv.slice(1);
+		const read = (path) => { const b = fs.readFileSync(path), size = b.readUInt32LE(12);
+			return [JSON.parse(b.subarray(20, 20 + size)), b.subarray(28 + size)]; };
+		const [g, bin] = read(input), [h, other] = read(from), [p] = g.meshes[0].primitives;
+		const a = h.accessors[h.meshes[0].primitives[0].attributes.TEXCOORD_0], view = h.bufferViews[a.bufferView];
+		const old = (view.byteOffset ?? 0) + (a.byteOffset ?? 0), stride = view.byteStride ?? 8;
+		const count = g.accessors[p.attributes.POSITION].count, texcoords = Buffer.alloc(8 * count);
+		let seed = 1;
+		for (let i = 0; i < 2 * count; i++) {
+			seed = (seed * 421 + 1663) % 7875;
+			texcoords.writeFloatLE(other.readFloatLE(old + stride * (i >> 1) + 4 * (i & 1)) + 0.0001 * (seed / 7875 - 0.5), 4 * i);
+		}
+		if (first)
+			texcoords.writeFloatLE(Number(first), 0);
+		const draco = p.extensions?.KHR_draco_mesh_compression.attributes;
+		for (const gone of ["TANGENT", set]) {
+			delete p.attributes[gone];
+			delete draco?.[gone];
+		}
+		const begin = bin.length + 3 & ~3, all = Buffer.alloc(begin + texcoords.length);
+		bin.copy(all);
+		texcoords.copy(all, begin);
+		p.attributes[set] = g.accessors.push({bufferView: g.bufferViews.length, componentType: 5126, count, type: "VEC2"}) - 1;
+		g.bufferViews.push({buffer: 0, byteOffset: begin, byteLength: texcoords.length});
+		g.buffers = [{uri: name + ".bin", byteLength: all.length}];
+		fs.writeFileSync(name + ".bin", all);
+		fs.writeFileSync(name + ".gltf", JSON.stringify(g))' "$@"
+}
+
+scene "what is beside a block is not quantized, nor is it for the solve"
+grains_obj >grains.obj
+run -q --normals=smooth grains.obj grains.glb
+run -q --only=all --existing=replace --draco=sequential grains.glb packed.glb
+run -q --only=all --existing=replace --draco=off packed.glb plain.glb
+with_texcoords packed.glb beside plain.glb TEXCOORD_0
+run --only=all --draco=keep beside.gltf keep.glb
+exits 0
+is "$(gltf keep.glb 'Object.keys(g.meshes[0].primitives[0].extensions.KHR_draco_mesh_compression.attributes).sort()')" '["NORMAL","POSITION","TANGENT"]'
+is "$(faults keep.glb)" ""
+run --only=all --draco=sequential beside.gltf out.glb
+exits 0
+same keep.glb out.glb
+
+scene "a primitive that is refused for an attribute which no tangents need is solved for its own values"
+grains_obj >grains.obj
+run -q --normals=smooth grains.obj grains.glb
+with_texcoords grains.glb nan grains.glb TEXCOORD_1 NaN
+run --only=all --draco=off nan.gltf off.glb
+exits 0
+for method in sequential edgebreaker; do
+	run --only=all --draco=$method nan.gltf out.glb
+	exits 0
+	says "Draco does not give it back [DRACO_PLAIN]"
+	same out.glb off.glb
+done
+
 scene "only a glTF made from a glTF is compressed"
 run --draco=edgebreaker "$data/quad.obj" quad.glb
 exits 1

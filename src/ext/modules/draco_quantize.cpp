@@ -16,7 +16,7 @@ static nt_status quantize(const nt_draco_mesh &mesh, float *const *values, nt_er
 	const std::vector<uint32_t> sources = nt::compact(mesh, numbers);
 	for (size_t i = 0; i < mesh.attribute_count; i++) {
 		const nt_draco_attribute &a = mesh.attributes[i];
-		if (!a.quantization.bits)
+		if (!values[i])
 			continue;
 		draco::Mesh alone;
 		alone.set_num_points(static_cast<uint32_t>(sources.size()));
