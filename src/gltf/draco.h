@@ -28,6 +28,12 @@ int nt_gltf_draco_bits(const int *draco_bits, nt_draco_bits which);
 /* How an accessor is quantized that was not: on the document's grid for it, or on its own with these bits. */
 nt_draco_quantization nt_gltf_draco_grid(const nt_gltf *document, uint32_t accessor, int bits);
 
+/* Whether it is not the mesh that keeps Draco from quantizing or encoding it. */
+static inline bool nt_gltf_is_beside_mesh(nt_status status)
+{
+	return status == NT_ERROR_MEMORY || status == NT_ERROR_MODULE || status == NT_ERROR_IO;
+}
+
 /* The block of a view; NULL: not decoded. */
 const nt_draco_mesh *nt_gltf_draco_block(const nt_gltf *document, uint64_t view);
 

@@ -15,12 +15,6 @@
 #include "gltf/draco.h"
 #include "gltf/primitive.h"
 
-/* Whether it is not the mesh that keeps Draco from quantizing. */
-static bool is_beside_mesh(nt_status status)
-{
-	return status == NT_ERROR_MEMORY || status == NT_ERROR_MODULE || status == NT_ERROR_IO;
-}
-
 static void flip_texcoords(nt_mesh *mesh)
 {
 	for (size_t v = 0; v < mesh->vertex_count; v++)
@@ -131,7 +125,7 @@ static nt_status quantize_taken(const taking *t, nt_mesh *mesh, nt_error *error)
 		flip_texcoords(mesh);
 	nt_error refused;
 	const nt_status status = t->count ? quantize(mesh, t->attributes, t->count, t->values, &refused) : NT_OK;
-	if (is_beside_mesh(status)) {
+	if (nt_gltf_is_beside_mesh(status)) {
 		*error = refused;
 		return status;
 	}
@@ -198,9 +192,9 @@ static nt_status quantize_made(nt_scene *scene, nt_mesh *mesh, int bits, nt_erro
 	const nt_status status = quantize(mesh, &normals, 1, &values, &refused);
 	if (!status)
 		mesh->solve_normals = values;
-	else if (is_beside_mesh(status))
+	else if (nt_gltf_is_beside_mesh(status))
 		*error = refused;
-	return is_beside_mesh(status) ? status : NT_OK;
+	return nt_gltf_is_beside_mesh(status) ? status : NT_OK;
 }
 
 nt_status nt_gltf_quantize_made_normals(nt_scene *scene, const nt_read_options *options, nt_error *error)

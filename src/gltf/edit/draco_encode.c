@@ -64,12 +64,6 @@ static bool order_is_kept(const nt_gltf_recoding *r)
 	return true;
 }
 
-/* Whether it is not the mesh that keeps Draco from encoding. */
-static bool is_beside_mesh(nt_status status)
-{
-	return status == NT_ERROR_MEMORY || status == NT_ERROR_MODULE || status == NT_ERROR_IO;
-}
-
 /* Edgebreaker does not give every mesh back; the other method has nothing to lose. */
 static nt_status encode(nt_gltf_recoding *r, nt_error *error)
 {
@@ -83,7 +77,7 @@ static nt_status encode(nt_gltf_recoding *r, nt_error *error)
 		.speed = r->options->draco_speed,
 	};
 	nt_status status = nt_draco_encode(&mesh, &r->block, error);
-	if (status && !is_beside_mesh(status) && mesh.method != NT_DRACO_SEQUENTIAL) {
+	if (status && !nt_gltf_is_beside_mesh(status) && mesh.method != NT_DRACO_SEQUENTIAL) {
 		mesh.method = NT_DRACO_SEQUENTIAL;
 		status = nt_draco_encode(&mesh, &r->block, error);
 	}
@@ -106,7 +100,7 @@ nt_status nt_gltf_draco_encode(nt_gltf_recoding *r, nt_error *error)
 	if (made)
 		made->data = NULL;
 	nt_arena_free(&arena);
-	if (is_beside_mesh(status)) {
+	if (nt_gltf_is_beside_mesh(status)) {
 		*error = failure;
 		return status;
 	}

@@ -6,8 +6,8 @@
  * have them (gltf/draco_values.c). Of 19 public models compressed by sequential with 14, 12, 12 and 12 bits, tangents
  * of the file's values gave --check 3 480 findings; 20, 14, 18 and 12 bits left 1 266 and took 9 % more bytes.
  *
- * What stands in the way of compression is found by the function that finds it when the document is edited, from the
- * JSON alone. What values have against it is left for the load.
+ * What stands in the way of compression is found by the function that finds it when the document is edited, without a
+ * look at values. What these have against it is left for the load.
  *
  * On grids of their own the borders of primitives that are solved together (--across=mesh) would not meet any more.
  * They get one grid; where some of them will not be compressed, all stay as the file has them.
