@@ -90,8 +90,8 @@ static void write_special(nt_fast *fast, size_t t)
 		*flags |= degenerate ? NT_TRIANGLE_COPY : NT_TRIANGLE_COMPLEX;
 }
 
-/* The records of a later triangle of a scattered mesh; the last ones of the range ask twice. Always in line: gcc 12 drops
- * a call of what does nothing but prefetch. */
+/* The records of a later triangle of a scattered mesh; the last ones of the range ask twice. Always in line: gcc 12
+ * drops a call of what does nothing but prefetch. */
 static inline __attribute__((always_inline)) void prefetch_records(const nt_fast *fast, size_t t, size_t end)
 {
 	const size_t later = t + WRITE_AHEAD < end ? t + WRITE_AHEAD : end - 1;
