@@ -144,23 +144,32 @@ static inline __attribute__((always_inline)) void write_signs(const nt_fast *fas
 /* The same for the usual case, tangents only. */
 static void write_tangents(nt_fast *fast, size_t begin, size_t end)
 {
+	/* copies, which no store changes */
+	const nt_triangles triangles = {.ids = fast->triangles.ids, .cuts = fast->triangles.cuts};
+	const nt_record *const records[2] = {fast->records[0], fast->records[1]};
+	const uint8_t *const flags = fast->flags;
+	float *const tangents = fast->solve->tangents;
+	const size_t step = fast->record_step;
+	const bool scattered = fast->scattered;
 	for (size_t t = begin; t < end; t++) {
-		if (fast->scattered)
+		if (scattered)
 			prefetch_records(fast, t, end);
-		if (fast->flags[t] & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
+		if (flags[t] & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
 			write_special(fast, t);
 			continue;
 		}
-		const int orient = fast->flags[t] & NT_TRIANGLE_ORIENT;
-		uint32_t copy[3], states = 0;
-		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
-		for (unsigned k = 0; k < 3; k++) {
-			const nt_record *record = nt_fast_record(fast, orient, v[k]);
-			memcpy(fast->solve->tangents + 4 * nt_triangle_corner(&fast->triangles, t, k), record, sizeof *record);
-			states |= record->state;
-		}
-		if (states & (NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE))
-			write_signs(fast, &fast->triangles, t);
+		const nt_record *const from = records[flags[t] & NT_TRIANGLE_ORIENT];
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&triangles, t, 1, copy);
+		nt_int4 a, b, c;
+		memcpy(&a, &from[step * v[0]], sizeof a);
+		memcpy(&b, &from[step * v[1]], sizeof b);
+		memcpy(&c, &from[step * v[2]], sizeof c);
+		memcpy(tangents + 4 * nt_triangle_corner(&triangles, t, 0), &a, sizeof a);
+		memcpy(tangents + 4 * nt_triangle_corner(&triangles, t, 1), &b, sizeof b);
+		memcpy(tangents + 4 * nt_triangle_corner(&triangles, t, 2), &c, sizeof c);
+		if ((uint32_t)(a | b | c)[3] & (NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE))
+			write_signs(fast, &triangles, t);
 	}
 }
 
