@@ -5,7 +5,7 @@
  */
 #include "tangent/across.h"
 
-#include <string.h>
+#include <math.h>
 #include "tangent/usable.h"
 #include "tangent/weigh.h"
 #include "topology/corners.h"
@@ -14,14 +14,13 @@ enum { LANES = NT_ACROSS_LANES };
 
 typedef double lane_vectors[3][LANES];
 
-/* Normals in lanes, made unit vectors, or zero where they are not finite. */
+/* Normals in lanes, made unit vectors, or zero where they are not finite. Squares of finite floats do not overflow. */
 static void make_unit(lane_vectors n)
 {
 	for (int i = 0; i < LANES; i++) {
-		const double squared = n[0][i] * n[0][i] + n[1][i] * n[1][i] + n[2][i] * n[2][i];
-		const double scale = squared <= 3 * 3.4028235e38 * 3.4028235e38 ? nt_rsqrt(squared) : 0.0;
+		const double squared = n[0][i] * n[0][i] + n[1][i] * n[1][i] + n[2][i] * n[2][i], scale = nt_rsqrt(squared);
 		for (int c = 0; c < 3; c++)
-			n[c][i] = squared <= 3 * 3.4028235e38 * 3.4028235e38 ? scale * n[c][i] : 0.0;
+			n[c][i] = isfinite(squared) ? scale * n[c][i] : 0.0;
 	}
 }
 
@@ -36,6 +35,16 @@ static void normalise(lane_vectors t)
 	}
 }
 
+/* The rows (T, w) of the lanes. */
+static void store_rows(lane_vectors t, const float w[LANES], float rows[LANES][4])
+{
+	for (int i = 0; i < LANES; i++) {
+		for (int c = 0; c < 3; c++)
+			rows[i][c] = (float)t[c][i];
+		rows[i][3] = w[i];
+	}
+}
+
 static void load_normal(const nmtan_mesh *mesh, size_t vertex, lane_vectors n, size_t lane)
 {
 	const float *from = nt_normal(mesh, vertex);
@@ -46,6 +55,7 @@ void nt_perpendiculars(const nmtan_mesh *mesh, size_t first, const uint32_t *ver
 	float across[NT_ACROSS_LANES][4])
 {
 	lane_vectors n = {{0}}, t;
+	float w[LANES];
 	for (size_t i = 0; i < count; i++)
 		load_normal(mesh, vertices ? vertices[i] : first + i, n, i);
 	make_unit(n);
@@ -54,10 +64,10 @@ void nt_perpendiculars(const nmtan_mesh *mesh, size_t first, const uint32_t *ver
 		t[0][i] = 1.0 + sign * n[0][i] * n[0][i] * a;
 		t[1][i] = sign * n[0][i] * n[1][i] * a;
 		t[2][i] = -sign * n[0][i];
+		w[i] = 1.0f;
 	}
 	normalise(t);
-	for (int i = 0; i < LANES; i++)
-		across[i][0] = (float)t[0][i], across[i][1] = (float)t[1][i], across[i][2] = (float)t[2][i], across[i][3] = 1.0f;
+	store_rows(t, w, across);
 }
 
 void nt_borrow_tangents(const nmtan_mesh *mesh, const float *tangents, const nt_beside *corners, size_t count,
@@ -79,6 +89,5 @@ void nt_borrow_tangents(const nmtan_mesh *mesh, const float *tangents, const nt_
 		w[i] = squared > NT_PARALLEL_SINE_SQUARED ? w[i] : 0.0f;
 	}
 	normalise(t);
-	for (int i = 0; i < LANES; i++)
-		across[i][0] = (float)t[0][i], across[i][1] = (float)t[1][i], across[i][2] = (float)t[2][i], across[i][3] = w[i];
+	store_rows(t, w, across);
 }

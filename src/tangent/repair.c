@@ -275,10 +275,11 @@ static void answer(const nt_solve *solve, surroundings *around)
 	around->answers = a;
 }
 
-/* Whether the triangle with that first corner is to be visited. */
+/* Whether the triangle with that first corner is to be visited; without a branch. */
 static inline bool is_near(const patient *p, size_t first)
 {
-	return is_open(p, first) | is_open(p, first + 1) | is_open(p, first + 2);
+	const bool a = is_open(p, first), b = is_open(p, first + 1), c = is_open(p, first + 2);
+	return a | b | c;
 }
 
 /* Which triangles of a word of flags may have a touched vertex. */

@@ -10,6 +10,7 @@
 #ifndef NT_TANGENT_USABLE_H
 #define NT_TANGENT_USABLE_H
 
+#include <float.h>
 #include <math.h>
 #include "tangent/solve.h"
 
@@ -38,7 +39,7 @@ static inline float nt_squared(const float *v)
 /* (T . N)^2 from which on T and N are parallel; none where the normal is zero or not finite. */
 static inline float nt_parallel_from(float tangent_squared, float normal_squared)
 {
-	const bool has_length = (normal_squared > 0.0f) & (normal_squared <= 3.4028235e38f);
+	const bool has_length = (normal_squared > 0.0f) & (normal_squared <= FLT_MAX);
 	return has_length ? NT_PARALLEL_COSINE_SQUARED * normal_squared * tangent_squared : INFINITY;
 }
 

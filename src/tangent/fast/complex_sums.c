@@ -115,7 +115,7 @@ void nt_write_sums(const nt_complex *c, nt_summed *s)
 	nt_weld_row rows[3 * NT_SUMMED];
 	nt_record add[NT_SUMMED], sums[NT_SUMMED];
 	uint32_t vertices[NT_SUMMED];
-	uint8_t orients[NT_SUMMED];
+	uint8_t orients[NT_SUMMED] = {0};
 	nt_load_rows(c, s->corners, s->count, rows);
 	c->kernels->corner_sums(rows, s->corners, s->count, add);
 	/* lanes behind the last group, too */
