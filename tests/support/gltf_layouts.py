@@ -123,7 +123,7 @@ class Document:
                 out[n] = self.accessor(attributes[n], view, offsets[n], **self.more(n, attributes[n]))
         return out
 
-    def interleaved(self, attributes, views_overlap=False, gap=0, cut=False):
+    def interleaved(self, attributes, views_overlap=False, gap=0, cut=False, views_cut=False):
         offsets, size = {}, 0
         for n, a in attributes.items():
             offsets[n] = size
@@ -140,7 +140,8 @@ class Document:
             if views_overlap:
                 base = self.json['bufferViews'][view]['byteOffset']
                 self.json['bufferViews'].append({'buffer': 0, 'byteOffset': base + offsets[n],
-                                                 'byteLength': len(data) - offsets[n], 'byteStride': stride})
+                                                 'byteLength': (rows - 1) * stride + self.row_size(a) if views_cut
+                                                 else len(data) - offsets[n], 'byteStride': stride})
                 out[n] = self.accessor(a, len(self.json['bufferViews']) - 1, **self.more(n, a))
             else:
                 out[n] = self.accessor(a, view, offsets[n], **self.more(n, a))
@@ -222,6 +223,11 @@ d.write('interleaved_gap.glb', 'glb', [(0x41525458, b'extra chunk.')])
 d = Document()
 d.primitive(d.interleaved(attributes, views_overlap=True), d.indices(triangles(), USHORT))
 d.write('overlapping_views.gltf')
+
+# each view ends with its last element, as Magnum writes them
+d = Document()
+d.primitive(d.interleaved(attributes, views_overlap=True, views_cut=True), d.indices(triangles(), USHORT))
+d.write('overlapping_cut_views.gltf')
 
 d = Document()
 flat = triangles()
@@ -312,6 +318,10 @@ d = Document()
 tangents = (FLOAT, False, [(0.0, 1.0, 0.0, 1.0)] * len(positions[2]))
 d.primitive(d.interleaved({**attributes, 'TANGENT': tangents}), d.indices(triangles(), USHORT))
 d.write('tangents_interleaved.gltf')
+
+d = Document()
+d.primitive(d.interleaved({'TANGENT': tangents, **attributes}, views_overlap=True, views_cut=True), d.indices(triangles(), USHORT))
+d.write('tangents_cut_views.gltf')
 
 # the same in views of their own: as floats, as integers, and sparse over zeros
 d = Document()

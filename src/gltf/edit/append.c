@@ -219,6 +219,22 @@ static nt_status block_bytes(nt_appending *job, const block *b, const unsigned c
 	return status;
 }
 
+/* Vertices come in behind the block: views that end before its last vertex does go on to its end, to have them too.
+ * So it is where each accessor of a block has a view that ends with its last element. */
+static void lengthen_views(nt_appending *job, const block *b)
+{
+	for (size_t i = 0; i < b->count; i++) {
+		const uint32_t index = b->targets[i].accessor.view;
+		nt_gltf_view view;
+		if (nt_gltf_get_view(job->document, index, "", &view, NULL) != NT_OK || view.buffer >= NT_GLTF_VIRTUAL ||
+			view.offset + view.length >= b->end)
+			continue;
+		nt_json_value *object = nt_json_at(nt_gltf_root_member(job->document, "bufferViews"), index);
+		nt_json_set_uint64(job->json, nt_json_put(job->json, object, "byteLength"), b->end - view.offset);
+		nt_gltf_view_changed(job->document, index);
+	}
+}
+
 /* Inserts the copied vertices behind the block. */
 static nt_status insert_vertices(nt_appending *job, const block *b, const unsigned char *elements)
 {
@@ -277,6 +293,8 @@ static nt_status append_to_block(nt_appending *job, const block *b, uint64_t pre
 		status = nt_fail_memory(job->error);
 	if (status)
 		return status;
+	if (nt_appended_count(job))
+		lengthen_views(job, b);
 	return b->overridden ? replace_vertices(job, b, elements) : insert_vertices(job, b, elements);
 }
 
