@@ -286,11 +286,9 @@ typedef struct nmtan_output {
  *   output   required; output->tangents too
  *   counts   may be NULL
  *
- * Time is linear in the number of corners, whatever the mesh looks like, but for two things. Where tangents around a
+ * Time is linear in the number of corners, whatever the mesh looks like, but for one thing: where tangents around a
  * vertex are opposite, MikkTSpace may have a sum of its own for each direction among them, so that their number counts
- * times that of the vertex's corners; so it may, here, where many are more than a right angle apart. And equal vertices
- * are found by a hash without a secret: many different vertices that were computed so that it is the same for all of
- * them are each compared with the others. 30 000 take seconds.
+ * times that of the vertex's corners; so it may, here, where many are more than a right angle apart.
  *
  * Returns NMTAN_OK, NMTAN_ERROR_ARGUMENT, NMTAN_ERROR_INDEX, NMTAN_ERROR_FACE_SIZE,
  * NMTAN_ERROR_TOO_LARGE or NMTAN_ERROR_MEMORY.

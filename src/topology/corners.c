@@ -2,12 +2,13 @@
 /*
  * Corners: the check of faces and indices that lets every later stage trust them, and welding by hash.
  * A vertex of an indexed mesh is hashed once, further corners take its number. The table is
- * open-addressed and at most half full.
+ * open-addressed and at most half full. Vertices that were made to have one hash are welded without it.
  */
 #include "topology/corners.h"
 
 #include <string.h>
 #include "base/largest.h"
+#include "topology/weld_parts.h"
 
 /* Counts the corners; every face must have 3 or 4. */
 static nmtan_status count_corners(const nmtan_mesh *mesh, size_t *corner_count)
@@ -74,22 +75,13 @@ static size_t table_size(size_t entries)
 	return size;
 }
 
-nmtan_status nt_weld_corners(const nmtan_mesh *mesh, size_t corner_count, nt_scratch *scratch,
-	uint32_t *ids, size_t *count)
+/* Numbers corners in order of first appearance; returns how many numbers, or SIZE_MAX where the table is crowded.
+ * `table` and `number` are all EMPTY. */
+static size_t weld_by_table(const nmtan_mesh *mesh, size_t corner_count, int64_t *table, size_t size, int64_t *number,
+	uint32_t *ids)
 {
-	const nt_scratch_mark mark = nt_scratch_here(scratch);
-	const size_t size = table_size(mesh->vertex_count < corner_count ? mesh->vertex_count
-									: corner_count);
-	int64_t *table = nt_scratch_alloc(scratch, size, sizeof *table); /* vertex, or EMPTY */
-	int64_t *number = nt_scratch_alloc(scratch, mesh->vertex_count, sizeof *number);
-	if (!table || !number) {
-		nt_scratch_back(scratch, mark);
-		return NMTAN_ERROR_MEMORY;
-	}
-	memset(table, 0xff, size * sizeof *table);
-	memset(number, 0xff, mesh->vertex_count * sizeof *number);
-
 	uint32_t next = 0;
+	size_t steps = 0;
 	for (size_t corner = 0; corner < corner_count; corner++) {
 		const size_t vertex = nt_vertex_of(mesh, corner);
 		uint32_t row[ROW_FLOATS];
@@ -102,12 +94,14 @@ nmtan_status nt_weld_corners(const nmtan_mesh *mesh, size_t corner_count, nt_scr
 			continue;
 		}
 		size_t at = hash_row(row) & (size - 1);
-		for (; table[at] != EMPTY; at = (at + 1) & (size - 1)) {
+		for (; table[at] != EMPTY; at = (at + 1) & (size - 1), steps++) {
 			uint32_t other[ROW_FLOATS];
 			gather_row(mesh, (size_t)table[at], other);
 			if (memcmp(row, other, sizeof row) == 0)
 				break;
 		}
+		if (nt_weld_too_many(steps, corner_count))
+			return SIZE_MAX;
 		if (table[at] == EMPTY) {
 			table[at] = (int64_t)vertex;
 			number[vertex] = next++;
@@ -116,7 +110,31 @@ nmtan_status nt_weld_corners(const nmtan_mesh *mesh, size_t corner_count, nt_scr
 		}
 		ids[corner] = (uint32_t)number[vertex];
 	}
-	*count = next;
+	return next;
+}
+
+nmtan_status nt_weld_corners(const nmtan_mesh *mesh, size_t corner_count, nt_scratch *scratch,
+	uint32_t *ids, size_t *count)
+{
+	const nt_scratch_mark mark = nt_scratch_here(scratch);
+	const size_t size = table_size(mesh->vertex_count < corner_count ? mesh->vertex_count
+									: corner_count);
+	int64_t *table = nt_scratch_alloc(scratch, size, sizeof *table); /* vertex, or EMPTY */
+	int64_t *number = nt_scratch_alloc(scratch, mesh->vertex_count, sizeof *number);
+	bool done = table && number;
+	if (done) {
+		memset(table, 0xff, size * sizeof *table);
+		memset(number, 0xff, mesh->vertex_count * sizeof *number);
+		*count = weld_by_table(mesh, corner_count, table, size, number, ids);
+	}
 	nt_scratch_back(scratch, mark);
-	return NMTAN_OK;
+	if (done && *count == SIZE_MAX) {
+		nt_borrowed memory = nt_borrow(NULL, 0, scratch);
+		nt_welder w = {.mesh = mesh, .row_memory = &memory, .memory = &memory, .items = mesh->indices,
+			.item_count = corner_count, .numbers = ids};
+		done = nt_weld_by_bits(&w);
+		*count = w.row_count;
+		nt_scratch_back(scratch, mark);
+	}
+	return done ? NMTAN_OK : NMTAN_ERROR_MEMORY;
 }

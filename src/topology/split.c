@@ -4,8 +4,8 @@
  *
  * Corners are visited in order. The tangent of a vertex's first corner stays with the vertex; only a
  * corner that differs from it asks a hash table of (vertex, tangent) for the copy that has its tangent, so
- * that meshes without splits pay one comparison a corner and a hub with many tangents stays linear. Indices
- * are not written before the first copy.
+ * that meshes without splits pay one comparison a corner and a hub with many tangents stays linear. A tree takes
+ * the table's place where tangents were made to have one hash. Indices are not written before the first copy.
  */
 #include "topology/split.h"
 
@@ -51,16 +51,46 @@ static uint64_t hash_copy(uint32_t original, const nt_tangent_key *key)
 }
 
 /* The slot of the table where a copy is or belongs. */
-static size_t find_slot(const nt_splitter *s, uint32_t original, const nt_tangent_key *key)
+static size_t find_slot(nt_splitter *s, const nt_vertex_copy *copy)
 {
-	size_t at = hash_copy(original, key) & (s->table_size - 1);
+	size_t at = hash_copy(copy->original, &copy->tangent) & (s->table_size - 1);
 	while (s->table[at] != NO_COPY) {
 		const nt_vertex_copy *other = &s->copies[s->table[at]];
-		if (other->original == original && equal_keys(&other->tangent, key))
+		if (other->original == copy->original && equal_keys(&other->tangent, &copy->tangent))
 			break;
 		at = (at + 1) & (s->table_size - 1);
+		s->steps++;
 	}
 	return at;
+}
+
+/* Whether tangents were made to have one hash: half a step a corner is usual. */
+static bool is_crowded(const nt_splitter *s)
+{
+	return s->steps / 16 > s->corner_count;
+}
+
+static bool make_tree(nt_splitter *s)
+{
+	nt_crit_bit_node *nodes = nt_scratch_alloc(s->scratch, s->copy_capacity, sizeof *nodes);
+	if (!nodes)
+		return false;
+	s->tree = (nt_crit_bit){(const nt_crit_bit_word *)s->copies, sizeof *s->copies / sizeof *s->tree.keys, nodes, 0};
+	for (size_t i = 0; i < s->copy_count; i++)
+		nt_crit_bit_add(&s->tree, (uint32_t)i);
+	return true;
+}
+
+static bool make_table(nt_splitter *s)
+{
+	s->table_size = 2 * s->copy_capacity;
+	s->table = nt_scratch_alloc(s->scratch, s->table_size, sizeof *s->table);
+	if (!s->table)
+		return false;
+	memset(s->table, 0xff, s->table_size * sizeof *s->table);
+	for (size_t i = 0; i < s->copy_count; i++)
+		s->table[find_slot(s, &s->copies[i])] = (uint32_t)i;
+	return true;
 }
 
 /* Doubles the room for copies. The old arrays stay in the scratch until the call ends. */
@@ -68,19 +98,25 @@ static bool grow(nt_splitter *s)
 {
 	const size_t capacity = s->copy_capacity ? 2 * s->copy_capacity : 256;
 	nt_vertex_copy *copies = nt_scratch_alloc(s->scratch, capacity, sizeof *copies);
-	uint32_t *table = nt_scratch_alloc(s->scratch, 2 * capacity, sizeof *table);
-	if (!copies || !table)
+	if (!copies)
 		return false;
 	if (s->copy_count)
 		memcpy(copies, s->copies, s->copy_count * sizeof *copies);
 	s->copies = copies;
 	s->copy_capacity = capacity;
-	s->table = table;
-	s->table_size = 2 * capacity;
-	memset(table, 0xff, s->table_size * sizeof *table);
-	for (size_t i = 0; i < s->copy_count; i++)
-		table[find_slot(s, copies[i].original, &copies[i].tangent)] = (uint32_t)i;
-	return true;
+	return is_crowded(s) ? make_tree(s) : make_table(s);
+}
+
+/* The number of the copy that equals the one behind the last, which may be its own. */
+static uint32_t find_copy(nt_splitter *s)
+{
+	const uint32_t next = (uint32_t)s->copy_count;
+	if (s->tree.nodes)
+		return nt_crit_bit_add(&s->tree, next);
+	uint32_t *entry = &s->table[find_slot(s, &s->copies[next])];
+	if (*entry == NO_COPY)
+		*entry = next;
+	return *entry;
 }
 
 /* The copy of a vertex that has this tangent, made where there is none yet. */
@@ -88,8 +124,11 @@ static nmtan_status take_copy(nt_splitter *s, uint32_t original, const nt_tangen
 {
 	if (s->copy_count == s->copy_capacity && !grow(s))
 		return NMTAN_ERROR_MEMORY;
-	const size_t at = find_slot(s, original, key);
-	if (s->table[at] == NO_COPY) {
+	if (is_crowded(s) && !s->tree.nodes && !make_tree(s))
+		return NMTAN_ERROR_MEMORY;
+	s->copies[s->copy_count] = (nt_vertex_copy){original, *key};
+	const uint32_t copy = find_copy(s);
+	if (copy == s->copy_count) {
 		if ((s->output->indices && s->copy_count >= s->output->source_capacity) ||
 			s->mesh->vertex_count + s->copy_count >= UINT32_MAX)
 			return NMTAN_ERROR_TOO_LARGE;
@@ -97,10 +136,9 @@ static nmtan_status take_copy(nt_splitter *s, uint32_t original, const nt_tangen
 			s->output->sources[s->copy_count] = original;
 		if (s->output->copy_counts)
 			s->output->copy_counts[original]++;
-		s->copies[s->copy_count] = (nt_vertex_copy){original, *key};
-		s->table[at] = (uint32_t)s->copy_count++;
+		s->copy_count++;
 	}
-	*vertex = (uint32_t)(s->mesh->vertex_count + s->table[at]);
+	*vertex = (uint32_t)(s->mesh->vertex_count + copy);
 	return NMTAN_OK;
 }
 

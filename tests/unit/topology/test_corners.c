@@ -1,6 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 #include "topology/corners.h"
 
 /* Rows of position, normal, texture coordinates; corner c is vertex c. */
@@ -59,12 +61,47 @@ static void indexed_corners_take_their_vertex(void **state)
 	nt_scratch_free(&scratch);
 }
 
+/* Each of so many rows would be compared with all before it: 5 thousand million steps. hash_row() is undone from
+ * behind: its last step, hash ^= hash >> 32, undoes itself, and the factor is odd. */
+static void rows_of_one_hash_are_numbered_without_it(void **state)
+{
+	(void)state;
+	enum { COUNT = 99999 };
+	const uint64_t factor = 0xff51afd7ed558ccdu, wanted = 0x123456789abcdef0u;
+	uint64_t inverse = factor; /* to 3 bits; each step doubles them */
+	for (int i = 0; i < 5; i++)
+		inverse *= 2 - factor * inverse;
+	float (*rows)[8] = calloc(COUNT, sizeof *rows);
+	uint32_t *ids = malloc(COUNT * sizeof *ids);
+	for (uint32_t i = 0, number = 1; i < COUNT; number++) {
+		uint64_t hash = 0x9e3779b97f4a7c15u, words[4] = {number, 7, 7};
+		for (int k = 0; k < 3; k++) {
+			hash = (hash ^ words[k]) * factor;
+			hash ^= hash >> 32;
+		}
+		words[3] = (wanted ^ wanted >> 32) * inverse ^ hash;
+		memcpy(rows[i], words, sizeof words);
+		i += rows[i][6] == rows[i][6] && rows[i][7] == rows[i][7]; /* no NaN */
+	}
+	memcpy(rows[COUNT - 1], rows[77], sizeof *rows);
+	rows[5][1] = NAN;
+	size_t welded;
+	weld(rows, COUNT, ids, &welded);
+	for (uint32_t i = 0; i + 1 < COUNT; i++)
+		assert_int_equal(ids[i], i);
+	assert_int_equal(ids[COUNT - 1], 77);
+	assert_int_equal(welded, COUNT - 1);
+	free(rows);
+	free(ids);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(equal_rows_are_one_and_zero_signs_do_not_matter),
 		cmocka_unit_test(nan_equals_nothing),
 		cmocka_unit_test(indexed_corners_take_their_vertex),
+		cmocka_unit_test(rows_of_one_hash_are_numbered_without_it),
 	};
 	return cmocka_run_group_tests_name("topology/corners", tests, NULL, NULL);
 }

@@ -1,7 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 #include "test.h"
 #include <math.h>
-#include "nmtan.h"
+#include <stdlib.h>
+#include <string.h>
+#include "topology/split.h"
 
 /* A fan of n triangles around vertex 0; the hub's corner in triangle t has the tangent given by it. */
 static void split_hub(size_t n, const float (*hub_tangents)[4], uint32_t *hub_indices,
@@ -76,6 +78,62 @@ static void hub_of_many_tangents_is_linear(void **state)
 	free(hub);
 }
 
+static uint64_t inverse_of(uint64_t odd)
+{
+	uint64_t inverse = odd; /* to 3 bits; each step doubles them */
+	for (int i = 0; i < 5; i++)
+		inverse *= 2 - odd * inverse;
+	return inverse;
+}
+
+/* Bits of floats that are neither NaN nor -0, which stand for themselves. */
+static bool is_plain(uint64_t pair)
+{
+	for (; pair; pair >>= 32)
+		if ((uint32_t)pair == 0x80000000u || ((uint32_t)pair & 0x7fffffffu) > 0x7f800000u)
+			return false;
+	return true;
+}
+
+/* Tangents of one hash at one vertex, of which each would be compared with all before it: 200 million steps. A hash is
+ * a sum of one number for each half, the half times a factor with the upper bits added to the lower ones by XOR, which
+ * undoes itself: whatever the first half is, the second one can make up for it. */
+static void tangents_of_one_hash_take_few_steps(void **state)
+{
+	(void)state;
+	enum { COUNT = 20001, TWICE = 2 * COUNT };
+	float (*tangents)[4] = malloc(COUNT * sizeof *tangents);
+	for (uint32_t i = 0, number = 1; i < COUNT; number++) {
+		const uint64_t part = number * 0x9e3779b97f4a7c15u, left = 0x123456789abcdef0u - (part ^ part >> 32);
+		const uint64_t halves[2] = {number, (left ^ left >> 32) * inverse_of(0xff51afd7ed558ccdu)};
+		memcpy(tangents[i], halves, sizeof halves);
+		i += is_plain(halves[0]) && is_plain(halves[1]);
+	}
+	uint32_t *indices = calloc(TWICE, sizeof *indices), *out = malloc(TWICE * sizeof *out);
+	uint32_t *sources = malloc(TWICE * sizeof *sources);
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = TWICE / 3, .vertex_count = 1, .indices = indices};
+	nmtan_split_output output = {.struct_bytes = sizeof output, .indices = out, .sources = sources,
+		.source_capacity = TWICE};
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	nt_splitter s;
+	assert_int_equal(nt_splitter_begin(&s, &mesh, TWICE, &output, &scratch), NMTAN_OK);
+	for (uint32_t c = 0; c < TWICE; c++)
+		assert_int_equal(nt_splitter_take(&s, 0, tangents[c % COUNT], c), NMTAN_OK);
+	nt_splitter_end(&s);
+	assert_non_null(s.tree.nodes);
+	/* those that are too many, those of one search, and those of making the table anew */
+	assert_in_range(s.steps, 16 * TWICE, 18 * TWICE + 2 * 16 * TWICE);
+	assert_int_equal(output.source_count, COUNT - 1);
+	for (uint32_t c = 0; c < TWICE; c++)
+		assert_int_equal(out[c], c % COUNT);
+	nt_scratch_free(&scratch);
+	free(tangents);
+	free(indices);
+	free(out);
+	free(sources);
+}
+
 static void unused_vertices_get_a_unit_tangent(void **state)
 {
 	(void)state;
@@ -102,6 +160,7 @@ int main(void)
 		cmocka_unit_test(first_tangent_keeps_the_vertex_and_copies_follow_in_order),
 		cmocka_unit_test(signs_of_zeros_and_nans_do_not_split),
 		cmocka_unit_test(hub_of_many_tangents_is_linear),
+		cmocka_unit_test(tangents_of_one_hash_take_few_steps),
 		cmocka_unit_test(unused_vertices_get_a_unit_tangent),
 	};
 	return cmocka_run_group_tests_name("topology/split", tests, NULL, NULL);

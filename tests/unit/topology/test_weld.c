@@ -9,6 +9,7 @@
 #include <string.h>
 #include "topology/corners.h"
 #include "topology/weld.h"
+#include "topology/weld_parts.h"
 
 static const unsigned thread_counts[] = {1, 2, 3, 8};
 enum { THREAD_COUNTS = 4 };
@@ -266,6 +267,94 @@ static void vertices_of_one_hash_weld_alike(void **state)
 	check_one_hash(3000); /* more than can be candidates */
 }
 
+/* A row with that hash and number. nt_weld_hash() adds the products of its first and of its last two words, each with a
+ * key added by XOR: where the first is 1 then, and the third 0, the sum is the second, which is folded to itself and
+ * multiplied by an odd number; the fourth is free. */
+static void make_row_of_hash(uint64_t hash, uint32_t number, nt_weld_row *row)
+{
+	const uint64_t factor = 0x9e3779b97f4a7c15u;
+	uint64_t inverse = factor; /* to 3 bits; each step doubles them */
+	for (int i = 0; i < 5; i++)
+		inverse *= 2 - factor * inverse;
+	const float u = (float)number;
+	uint32_t bits;
+	memcpy(&bits, &u, sizeof bits);
+	memcpy(row, (uint64_t[4]){0x243f6a8885a308d3u ^ 1, hash * inverse ^ 0x13198a2e03707344u, 0xa4093822299f31d0u, bits},
+		sizeof *row);
+}
+
+/* Welds rows that are all different by the table. Returns its steps; w->crowded: it has given up. */
+static size_t steps_of(const nt_weld_row *rows, size_t count, unsigned ranges, bool *crowded)
+{
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	nt_borrowed memory = nt_borrow(NULL, 0, &scratch);
+	const nmtan_mesh mesh = mesh_of((const vertex_row *)rows, count, NULL, count);
+	nt_welder w = {.mesh = &mesh, .row_memory = &memory, .memory = &memory, .item_count = count, .row_guess = count,
+		.numbers = nt_scratch_alloc(&scratch, count, sizeof *w.numbers)};
+	assert_true(nt_weld_items(&w, ranges));
+	assert_int_equal(w.row_count, count);
+	for (size_t i = 0; i < count; i++)
+		assert_int_equal(w.numbers[i], i);
+	assert_memory_equal(w.rows, rows, count * sizeof *rows);
+	*crowded = w.crowded;
+	nt_scratch_free(&scratch);
+	return w.steps;
+}
+
+/* Each of so many rows would be compared with all before it: 200 million steps. */
+static void rows_of_one_hash_take_few_steps(void **state)
+{
+	(void)state;
+	enum { COUNT = 20000 };
+	nt_weld_row *rows = malloc(COUNT * sizeof *rows);
+	for (uint32_t i = 0; i < COUNT; i++) {
+		make_row_of_hash(0x123456789abcdef0u, i, &rows[i]);
+		assert_true(nt_weld_row_ordered(&rows[i]));
+		assert_true(nt_weld_hash(&rows[i]) == 0x123456789abcdef0u);
+	}
+	bool crowded;
+	/* 16 a row, and those of the batch in which it gives up */
+	assert_in_range(steps_of(rows, COUNT, 1, &crowded), 16 * COUNT, 17 * COUNT + NT_WELD_BATCH * COUNT);
+	assert_true(crowded);
+	for (unsigned ranges = 2; ranges < 5; ranges++) {
+		steps_of(rows, COUNT, ranges, &crowded);
+		assert_true(crowded);
+	}
+	/* doubles and odd values among them */
+	for (uint32_t i = 0; i < COUNT; i++) {
+		if (i % 5 == 4)
+			rows[i] = rows[i / 2];
+		if (i % 999 == 0)
+			rows[i].texcoord[1] = i % 2 ? NAN : -0.0f;
+	}
+	const nmtan_mesh mesh = mesh_of((const vertex_row *)rows, COUNT, NULL, COUNT / 3 * 3);
+	check(&mesh, COUNT / 3 * 3, 0);
+	check(&mesh, COUNT / 3 * 3, COUNT * 48);
+	free(rows);
+}
+
+/* Two threads' tables have no steps, their rows fill one slot after the other; but each row of the second is sought in
+ * the first from the slot on where its own is, up to the end of all: 32 million steps. */
+static void rows_in_a_row_of_slots_take_few_steps(void **state)
+{
+	(void)state;
+	enum { COUNT = 8000, BITS = 14 }; /* 2 * COUNT < 2^BITS */
+	nt_weld_row *rows = malloc(2 * COUNT * sizeof *rows);
+	for (uint32_t i = 0; i < 2 * COUNT; i++) {
+		uint64_t hash = (uint64_t)(i % COUNT) << (64 - BITS);
+		do /* some would hold a NaN */
+			make_row_of_hash(hash++, i / COUNT, &rows[i]);
+		while (!nt_weld_row_ordered(&rows[i]));
+	}
+	bool crowded;
+	assert_int_equal(steps_of(rows, COUNT, 1, &crowded), 0);
+	assert_false(crowded);
+	steps_of(rows, 2 * COUNT, 2, &crowded);
+	assert_true(crowded);
+	free(rows);
+}
+
 /* From one to all vertices of the weld of few, and more. */
 static void every_number_of_vertices_welds_alike(void **state)
 {
@@ -400,6 +489,8 @@ int main(void)
 		cmocka_unit_test(equal_vertices_in_one_place_weld_alike),
 		cmocka_unit_test(many_equal_vertices_weld_alike),
 		cmocka_unit_test(vertices_of_one_hash_weld_alike),
+		cmocka_unit_test(rows_of_one_hash_take_few_steps),
+		cmocka_unit_test(rows_in_a_row_of_slots_take_few_steps),
 		cmocka_unit_test(every_number_of_vertices_welds_alike),
 		cmocka_unit_test(flat_soups_weld_alike),
 		cmocka_unit_test(an_eighth_of_a_million_equal_vertices_weld_alike),
