@@ -18,6 +18,13 @@ static inline nt_dvec3 nt_dvec3_load(const float *p)
 	return (nt_dvec3){p[0], p[1], p[2]};
 }
 
+static inline void nt_dvec3_store(nt_dvec3 v, float *to)
+{
+	to[0] = (float)v.x;
+	to[1] = (float)v.y;
+	to[2] = (float)v.z;
+}
+
 static inline nt_dvec3 nt_dvec3_add(nt_dvec3 a, nt_dvec3 b)
 {
 	return (nt_dvec3){a.x + b.x, a.y + b.y, a.z + b.z};

@@ -87,9 +87,7 @@ void nt_restore_authored(nt_mesh *mesh, float *corner_tangents)
 
 static void store(nt_dvec3 t, float w, float *to)
 {
-	to[0] = (float)t.x;
-	to[1] = (float)t.y;
-	to[2] = (float)t.z;
+	nt_dvec3_store(t, to);
 	to[3] = w;
 }
 

@@ -62,9 +62,7 @@ static void normalise_rows(float *rows, size_t count)
 	for (size_t i = 0; i < count; i++) {
 		nt_dvec3 n = nt_dvec3_load(rows + 3 * i);
 		nt_dvec3_normalise(&n);
-		rows[3 * i] = (float)n.x;
-		rows[3 * i + 1] = (float)n.y;
-		rows[3 * i + 2] = (float)n.z;
+		nt_dvec3_store(n, rows + 3 * i);
 	}
 }
 

@@ -122,9 +122,7 @@ nt_status nt_make_unit_normals(nt_scene *scene, nt_mesh *mesh, unsigned threads)
 			directionless++;
 			continue;
 		}
-		n[0] = (float)d.x;
-		n[1] = (float)d.y;
-		n[2] = (float)d.z;
+		nt_dvec3_store(d, n);
 		mesh->scaled_normals++;
 	}
 	return directionless ? replace_directionless(mesh) : NT_OK;

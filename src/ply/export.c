@@ -133,19 +133,12 @@ static nt_dvec3 combine(const nt_dvec3 *columns, const float *v)
 		nt_dvec3_scale(v[2], columns[2]));
 }
 
-static void store(nt_dvec3 v, float *to)
-{
-	to[0] = (float)v.x;
-	to[1] = (float)v.y;
-	to[2] = (float)v.z;
-}
-
 static void place_position(const placement *p, const float *from, float *to)
 {
 	if (p->identity)
 		memcpy(to, from, 3 * sizeof *to);
 	else
-		store(nt_dvec3_add(combine(p->columns, from), p->columns[3]), to);
+		nt_dvec3_store(nt_dvec3_add(combine(p->columns, from), p->columns[3]), to);
 }
 
 /* A matrix that flattens leaves some normals without a direction: they stay what they are. */
@@ -155,7 +148,7 @@ static void place_normal(const placement *p, const float *from, float *to)
 	if (p->identity || !nt_dvec3_normalise(&n))
 		memcpy(to, from, 3 * sizeof *to);
 	else
-		store(n, to);
+		nt_dvec3_store(n, to);
 }
 
 /* n: the normal as written, NULL: none. */
@@ -169,7 +162,7 @@ static void place_tangent(const placement *p, const float *n, const float *from,
 		t = nt_dvec3_reject(nt_dvec3_load(n), t);
 	if (!nt_dvec3_normalise(&t) && n)
 		t = nt_dvec3_perpendicular(nt_dvec3_load(n));
-	store(t, to);
+	nt_dvec3_store(t, to);
 	to[3] = p->mirrored ? -from[3] : from[3];
 }
 

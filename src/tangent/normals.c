@@ -253,11 +253,8 @@ static void write_normals(const nmtan_mesh *mesh, const uint32_t *smoothing, nor
 			nt_dvec3 n = group != 0 ? find_entry(table, mesh, first + k, group)->sum : (nt_dvec3){0, 0, 0};
 			if (is_zero(n) && !face_normal(mesh, first, size, &n))
 				n = (nt_dvec3){0, 0, 1};
-			float *out = normals[first + k];
-			out[0] = (float)n.x;
-			out[1] = (float)n.y;
-			out[2] = (float)n.z;
-			out[3] = 0.0f;
+			nt_dvec3_store(n, normals[first + k]);
+			normals[first + k][3] = 0.0f;
 		}
 		first += size;
 	}

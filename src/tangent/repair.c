@@ -170,11 +170,6 @@ static nmtan_status weld(patient *p)
 		   : NMTAN_ERROR_MEMORY;
 }
 
-static void store(nt_dvec3 t, float *to)
-{
-	to[0] = (float)t.x, to[1] = (float)t.y, to[2] = (float)t.z;
-}
-
 /* Whether vertices without a result are bare, for the method tells them: but for those of faces that have an
  * orientation, though they gave nothing, which are noted. */
 static bool tell_bare(const patient *p)
@@ -269,9 +264,9 @@ static void answer(const nt_solve *solve, surroundings *around)
 		a.averaged[side] = weighs && nt_sum_tangent(&around->sums[side], n, &t);
 		a.borrowed[side] = !a.averaged[side] && usable && borrow(solve, around->usable[side], n, &t);
 		if (a.averaged[side] || a.borrowed[side])
-			store(t, a.tangents[side]);
+			nt_dvec3_store(t, a.tangents[side]);
 	}
-	store(nt_dvec3_perpendicular(n), a.perpendicular);
+	nt_dvec3_store(nt_dvec3_perpendicular(n), a.perpendicular);
 	around->answers = a;
 }
 
@@ -372,7 +367,7 @@ static const float *best_tangent(const patient *p, const face *f, size_t c, floa
 		nt_dvec3 t;
 		if (f->usable[k] && borrow(solve, (uint32_t)(f->first + k),
 					    nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c)), &t)) {
-			store(t, own);
+			nt_dvec3_store(t, own);
 			return own;
 		}
 	}
@@ -411,8 +406,7 @@ static void write_corner(const nt_solve *solve, size_t c, const float *t, float 
 	if (solve->bitangents) {
 		const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
 		const nt_dvec3 b = nt_dvec3_scale(w, nt_dvec3_cross(n, nt_dvec3_load(tangent)));
-		const float bitangent[3] = {(float)b.x, (float)b.y, (float)b.z};
-		memcpy(solve->bitangents + 3 * c, bitangent, sizeof bitangent);
+		nt_dvec3_store(b, solve->bitangents + 3 * c);
 	}
 	if (solve->magnitudes)
 		solve->magnitudes[2 * c] = solve->magnitudes[2 * c + 1] = 1.0f;
@@ -515,7 +509,7 @@ static void mend_parallel(const patient *p, nt_beside at)
 	nt_dvec3 t;
 	memcpy(row, bare_tangent(p, p->ids[p->welded[at.corner]]), sizeof row);
 	if (at.last != at.from && borrow(solve, at.last, n, &t))
-		store(t, row);
+		nt_dvec3_store(t, row);
 	row[3] = solve->tangents[4 * at.from + 3];
 	write_row(solve, at.corner, row);
 }
