@@ -317,7 +317,7 @@ static void tell_known(const nt_fast *fast)
 
 static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, const nt_settled *settled)
 {
-	nt_fast_write(fast);
+	nt_fast_write(fast, settled);
 	nt_borrowed left = nt_fast_left_memory(fast);
 	const nmtan_status status = settled->complex_count > 0
 		? nt_fast_complex(fast, kernels, settled, &left) : NMTAN_OK;

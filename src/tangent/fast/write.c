@@ -249,19 +249,36 @@ static void write_plain(nt_fast *fast, size_t begin, size_t end)
 	write_tangents(fast, t, end);
 }
 
+/* For a sparse solve where each record is the result, and usable: suspects have their flags from step 4. Looking at all
+ * triangles' records takes 6 of the 68 ms of processor time of a conversion of 980 000 triangles. */
+static void write_suspects(nt_fast *fast, size_t begin, size_t end)
+{
+	for (size_t t = begin; (t = nt_next_flagged(fast->flags, t, end, NT_TRIANGLE_SUSPECT)) < end; t++)
+		write_triangles(fast, t, t + 1);
+}
+
+typedef struct writing {
+	nt_fast *fast;
+	bool has_open; /* a record that is not the result, or not usable */
+} writing;
+
 static void write_ranges(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)slot;
-	nt_fast *fast = context;
-	void (*write)(nt_fast *, size_t, size_t) = fast->wants_more || fast->sparse
-		? write_triangles : fast->triangles.cuts || fast->scattered ? write_tangents : write_plain;
+	const writing *w = context;
+	nt_fast *fast = w->fast;
+	void (*write)(nt_fast *, size_t, size_t) = NT_SHORT_WAYS && fast->sparse && !w->has_open ? write_suspects
+		: fast->wants_more || fast->sparse ? write_triangles
+		: fast->triangles.cuts || fast->scattered ? write_tangents : write_plain;
 	for (size_t range = begin; range < end; range++)
 		write(fast, fast->ranges.bounds[range], fast->ranges.bounds[range + 1]);
 }
 
-void nt_fast_write(nt_fast *fast)
+void nt_fast_write(nt_fast *fast, const nt_settled *settled)
 {
-	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, write_ranges, fast);
+	const nt_known *known = fast->solve->known;
+	writing w = {fast, .has_open = settled->complex_count > 0 || (known && known->open)};
+	nt_parallel_ranges(fast->ranges.count, fast->ranges.count, 1, write_ranges, &w);
 }
 
 void nt_fast_write_rest(nt_fast *fast)

@@ -9,7 +9,7 @@
 
 /* Every corner gets the result of its vertex; with fast->sparse those of suspects only. Marks triangles COMPLEX
  * and COPY. */
-void nt_fast_write(nt_fast *fast);
+void nt_fast_write(nt_fast *fast, const nt_settled *settled);
 
 /* Writes what a sparse solve left out. */
 void nt_fast_write_rest(nt_fast *fast);
