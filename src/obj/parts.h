@@ -135,7 +135,7 @@ typedef struct obj_file {
 	size_t row_counts[OBJ_KIND_COUNT];
 	uint32_t *guides[OBJ_KIND_COUNT];
 	bool has_colors;
-	bool lacks_normals; /* corners refer to vn, of which there is none */
+	bool lacks[OBJ_KIND_COUNT]; /* corners refer to vt or vn, of which there is none */
 
 	/* Joined arrays. */
 	uint8_t *face_sizes;

@@ -305,6 +305,14 @@ static void free_file(obj_file *file)
 	free(file->vertices);
 }
 
+static void add_file_finding(nt_scene *scene, nt_code code)
+{
+	nt_place place;
+	nt_place_clear(&place);
+	snprintf(place.file, sizeof place.file, "%s", scene->path);
+	nt_finding_add(&scene->findings, code, &place, 1, NULL);
+}
+
 nt_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
 	/* a file of a chunk or two is read before a second thread has begun */
@@ -322,12 +330,10 @@ nt_status nt_obj_open(nt_scene *scene, const nt_read_options *options, nt_error 
 	if (!status)
 		status = obj_make_vertices(&file, error);
 	scene->index_seconds = nt_seconds() - begin;
-	if (!status && file.lacks_normals) {
-		nt_place place;
-		nt_place_clear(&place);
-		snprintf(place.file, sizeof place.file, "%s", scene->path);
-		nt_finding_add(&scene->findings, NT_CODE_NORMALS_NOT_THERE, &place, 1, NULL);
-	}
+	if (!status && file.lacks[OBJ_VT])
+		add_file_finding(scene, NT_CODE_UV_NOT_THERE);
+	if (!status && file.lacks[OBJ_VN])
+		add_file_finding(scene, NT_CODE_NORMALS_NOT_THERE);
 	if (!status)
 		status = obj_make_meshes(&file, error);
 	if (!status && (scene->findings.failed || !obj_keep_places(&file)))

@@ -176,23 +176,26 @@ static nt_status read_name(obj_reader *r, obj_event_kind kind)
 	return store_event(r, (obj_event){.kind = kind, .text = begin, .length = (size_t)(p - begin)});
 }
 
-/* s off, s on or s N: a group of faces that are shaded as one; 0 and off mean flat. */
+/* s off, s on or s N: a group of faces that are shaded as one; 0 and off mean flat. N has up to 32 bits, one of which
+ * 3ds Max sets for each of its groups. Of ZBrush there is s alone, which is on; others write null for off. */
 static nt_status read_smoothing(obj_reader *r)
 {
 	skip_blanks(r);
 	const char *p = r->p;
-	uint32_t group = 0;
-	unsigned length = nt_read_digits(p, &group);
-	if (strncmp(p, "off", 3) == 0) {
-		length = 3;
-	} else if (strncmp(p, "on", 2) == 0) {
-		length = 2;
+	const bool alone = is_line_end(*p) || *p == '#';
+	uint64_t group = alone;
+	for (; is_digit(*p) && group <= UINT32_MAX; p++)
+		group = group * 10 + (uint64_t)(*p - '0');
+	if (p == r->p && strncmp(p, "on", 2) == 0) {
+		p += 2;
 		group = 1;
+	} else if (p == r->p) {
+		p += strncmp(p, "off", 3) == 0 ? 3 : strncmp(p, "null", 4) == 0 ? 4 : 0;
 	}
-	if (length == 0 || length == 8 || !is_word_end(p + length))
+	if (!alone && (p == r->p || !is_word_end(p) || group > UINT32_MAX))
 		return obj_fail_expected(r, "a smoothing group, on or off");
-	r->p = p + length;
-	return store_event(r, (obj_event){.kind = OBJ_EVENT_SMOOTHING, .group = group});
+	r->p = p;
+	return store_event(r, (obj_event){.kind = OBJ_EVENT_SMOOTHING, .group = (uint32_t)group});
 }
 
 /* ---- lines ---- */

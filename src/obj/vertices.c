@@ -170,7 +170,7 @@ static nt_status fail_index(const obj_file *file, const obj_chunk *chunk, size_t
 	};
 	int k = 0;
 	uint32_t row = parts[0].index;
-	while (k < 2 && resolve(&row, parts[k].first, parts[k].count))
+	while (k < 2 && ((k && !parts[k].count) || resolve(&row, parts[k].first, parts[k].count)))
 		row = parts[++k].index;
 	const uint32_t index = parts[k].index;
 	if (index & OBJ_RELATIVE)
@@ -183,6 +183,15 @@ static nt_status fail_index(const obj_file *file, const obj_chunk *chunk, size_t
 		parts[k].count);
 }
 
+/* Corners that refer to a kind of which the file has none are read as if they did not, and a finding says so. */
+static inline void drop_unless_any(uint32_t *index, obj_file *file, int kind)
+{
+	if (*index != OBJ_ABSENT && file->row_counts[kind] == 0) {
+		file->lacks[kind] = true;
+		*index = OBJ_ABSENT;
+	}
+}
+
 /* Gives distinct corners [begin, end) of a chunk their vertices in the mesh whose vertices begin at
  * `base`: the number takes the place of v. */
 static nt_status number_distinct(obj_file *file, obj_chunk *chunk, size_t begin, size_t end,
@@ -190,10 +199,8 @@ static nt_status number_distinct(obj_file *file, obj_chunk *chunk, size_t begin,
 {
 	for (size_t i = begin; i < end; i++) {
 		obj_corner c = chunk->distinct[i];
-		if (c.n != OBJ_ABSENT && file->row_counts[OBJ_VN] == 0) {
-			file->lacks_normals = true;
-			c.n = OBJ_ABSENT;
-		}
+		drop_unless_any(&c.t, file, OBJ_VT);
+		drop_unless_any(&c.n, file, OBJ_VN);
 		if (!resolve(&c.v, chunk->rows[OBJ_V].first, file->row_counts[OBJ_V]) ||
 			!resolve(&c.t, chunk->rows[OBJ_VT].first, file->row_counts[OBJ_VT]) ||
 			!resolve(&c.n, chunk->rows[OBJ_VN].first, file->row_counts[OBJ_VN]))

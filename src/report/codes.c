@@ -236,6 +236,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"that is TAN_NO_UV.",
 		"Unwrap the mesh if it is to be normal mapped; else --only=needed, or --ignore=UV_MISSING.",
 		"an OBJ with two objects of which one has faces like 1 2 3"),
+	ROW(UV_NOT_THERE, WARNING, "faces refer to texture coordinates, but the file has none",
+		"The file has faces with numbers of texture coordinates and not a single vt. It is read as if the numbers were not "
+		"there, so that it gets no tangents.",
+		"Export the texture coordinates, or faces without them.",
+		"an OBJ triangle of corners like 1/1 without vt"),
 
 	ROW(POS_DEGENERATE_TRIANGLE, INFO, "{count} {triangle has|triangles have} no area",
 		"Corners coincide or are collinear. The triangle cannot be seen, and MikkTSpace gives its "

@@ -60,6 +60,7 @@ typedef enum nt_code {
 	NT_CODE_UV_ROUNDED_AWAY,
 	NT_CODE_UV_NOT_FINITE,
 	NT_CODE_UV_MISSING,
+	NT_CODE_UV_NOT_THERE,
 	/* positions, normals, connectivity */
 	NT_CODE_POS_DEGENERATE_TRIANGLE,
 	NT_CODE_POS_NOT_FINITE,

@@ -56,6 +56,26 @@ printf 'vn 0 0 1\n' >>n.obj
 run n.obj n.glb
 exits 3
 
+scene "an OBJ whose faces refer to vt, of which it has none, has no texture coordinates, and a warning says why"
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nf 1/1/1 2/2/1 3/-1/1\n' >t.obj
+run --normals=auto t.obj t.glb
+exits 0
+says UV_NOT_THERE
+says_not NORMALS_NOT_THERE
+is "$(gltf t.glb 'Object.keys(g.meshes[0].primitives[0].attributes).sort().join(" ")')" "NORMAL POSITION"
+sed '/^vn/d' t.obj >tn.obj
+run tn.obj t.glb
+exits 0
+says UV_NOT_THERE
+says NORMALS_NOT_THERE
+sed 's/^f.*/f 1\/1\/1 2\/2\/2 3\/3\/1/' t.obj >tn.obj
+run tn.obj t.glb
+exits 3
+says 'face refers to "vn" number 2, but the file has 1'
+printf 'vt 0 0\n' >>t.obj
+run t.obj t.glb
+exits 3
+
 scene "a restart of KHR_mesh_primitive_restart is said to be unsupported, without the extension it is an error"
 python3 - <<'END'
 import base64, json, struct

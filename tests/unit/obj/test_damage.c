@@ -33,6 +33,7 @@ static void damaged_lines_are_named(void **state)
 	assert_fails("vt 0 0 0 0\n", 1, "found \"0\", expected at most 3 texture coordinates");
 	assert_fails("vn 0 0\n", 1, "found the end of the line, expected 3 components of a normal");
 	assert_fails("\n\ns x\n", 3, "found \"x\", expected a smoothing group, on or off");
+	assert_fails("s 4294967296\n", 1, "found \"4294967296\", expected a smoothing group, on or off");
 	assert_fails(TRIANGLE "f 1 2 x\n", 4,
 		"found \"x\", expected the number of a vertex, as in 3, 3/1, 3//2 or 3/1/2");
 	assert_fails(TRIANGLE "f 1/x 2 3\n", 4,

@@ -285,6 +285,11 @@ static void smoothing_groups_are_kept_where_normals_lack(void **state)
 		TRIANGLE "f 1 2 3\ns 1\nf 1 2 3\ns off\nf 1 2 3\ns 17\nf 1 2 3 1 2\ns on\nf 1 2 3\ns 0\nf 1 2 3\n");
 	assert_numbers(mesh->face_smoothing, (const uint32_t[]){0, 1, 0, 17, 17, 17, 1, 0}, 8);
 	close_reading(&r);
+	/* 3ds Max has 32 groups, which are bits; ZBrush writes no number; null stands for off in some files */
+	mesh = only_mesh(&r, TRIANGLE "s 16777216\nf 1 2 3\ns 2147483648\nf 1 2 3\ns 4294967295\nf 1 2 3\ns\nf 1 2 3\n"
+				      "s null\nf 1 2 3\ns # none\nf 1 2 3\n");
+	assert_numbers(mesh->face_smoothing, (const uint32_t[]){16777216, 2147483648, 4294967295, 1, 0, 1}, 6);
+	close_reading(&r);
 	mesh = only_mesh(&r, TRIANGLE "vn 0 0 1\ns 1\nf 1//1 2//1 3//1\n");
 	assert_null(mesh->face_smoothing);
 	close_reading(&r);
