@@ -64,18 +64,29 @@ static nt_status uses_all(const nt_mesh *mesh, bool *all, nt_error *error)
 	return NT_OK;
 }
 
+nt_status nt_gltf_draco_takes(const nt_mesh *mesh, const nt_draco_attribute *attributes, size_t count, bool whole,
+	nt_error *error)
+{
+	bool all = true;
+	float **nothing = nt_calloc(count, sizeof *nothing);
+	nt_status status = nothing ? quantize(mesh, attributes, count, nothing, error) : nt_fail_memory(error);
+	free(nothing);
+	if (!status && whole)
+		status = uses_all(mesh, &all, error);
+	return all ? status : nt_fail(error, NT_ERROR_INPUT, "faces do not use all vertices");
+}
+
 /* ---- what was loaded ---- */
 
-/* The attributes of a mesh that are plain floats, and others that Draco may refuse. */
+/* The attributes of a mesh that are plain floats. */
 typedef struct taking {
-	nt_draco_attribute *attributes;
-	float **values; /* NULL: it is only looked at */
-	float **loaded[3];
+	nt_draco_attribute attributes[3];
+	float *values[3];
+	float **loaded[3]; /* where the mesh has them */
 	size_t count;
 	bool failed; /* memory is exhausted */
 } taking;
 
-/* loaded: where the mesh has the values, which stay as they are. */
 static void take(taking *t, nt_scene *scene, const nt_mesh *mesh, const nt_gltf_accessor *from, nt_draco_kind kind,
 	int bits, float **loaded)
 {
@@ -90,65 +101,10 @@ static void take(taking *t, nt_scene *scene, const nt_mesh *mesh, const nt_gltf_
 	t->loaded[i] = loaded;
 }
 
-/* Attributes that a load does not read: a value in them with which Draco refuses the mesh. */
-static nt_status look_at_others(taking *t, nt_gltf *document, const nt_json_value *attributes,
-	const nt_gltf_sources *sources, int bits, nt_error *error)
+static nt_status quantize_plain(nt_scene *scene, nt_mesh *mesh, const nt_gltf_sources *sources, const int *bits,
+	nt_error *error)
 {
-	nt_status status = NT_OK;
-	for (size_t i = 0; !status && i < nt_json_count(attributes); i++) {
-		const char *name = nt_json_key(attributes, i, NULL);
-		const bool is_texcoord = strncmp(name, "TEXCOORD_", 9) == 0;
-		uint64_t index;
-		nt_gltf_accessor a;
-		const unsigned char *elements = NULL;
-		if (!nt_json_get_uint64(nt_json_at(attributes, i), &index) ||
-			nt_gltf_get_accessor(document, index, "", &a, NULL) != NT_OK || a.components > 4 ||
-			(sources->texcoords && sources->texcoords->index == a.index))
-			continue;
-		if (a.component_type == NT_GLTF_FLOAT ? !is_texcoord : a.component_type != NT_GLTF_UINT)
-			continue;
-		status = nt_gltf_elements(document, &a, &elements, error);
-		t->attributes[t->count] = (nt_draco_attribute){.unique_id = (uint32_t)t->count,
-			.kind = is_texcoord ? NT_DRACO_TEXCOORD : NT_DRACO_GENERIC, .component_type = (int)a.component_type,
-			.components = (int)a.components, .stride_bytes = a.stride, .data = elements,
-			.quantization = nt_gltf_draco_grid(document, a.index, a.component_type == NT_GLTF_FLOAT ? bits : 0)};
-		t->count++;
-	}
-	return status;
-}
-
-/* Quantizes what was taken; a mesh that is refused loses ->quantized. */
-static nt_status quantize_taken(const taking *t, nt_mesh *mesh, nt_error *error)
-{
-	/* texture coordinates lie on the grid as they are stored */
-	if (mesh->texcoords)
-		flip_texcoords(mesh);
-	nt_error refused;
-	const nt_status status = t->count ? quantize(mesh, t->attributes, t->count, t->values, &refused) : NT_OK;
-	if (nt_gltf_is_beside_mesh(status)) {
-		*error = refused;
-		return status;
-	}
-	if (status)
-		mesh->quantized = NT_QUANTIZED_NOT;
-	for (size_t i = 0; !status && i < t->count; i++)
-		if (t->values[i])
-			*t->loaded[i] = t->values[i];
-	if (mesh->texcoords)
-		flip_texcoords(mesh);
-	return NT_OK;
-}
-
-/* arena: of what is not needed afterwards. */
-static nt_status quantize_plain(nt_scene *scene, nt_mesh *mesh, const nt_json_value *attributes,
-	const nt_gltf_sources *sources, const int *bits, nt_arena *arena, nt_error *error)
-{
-	const size_t most = 3 + nt_json_count(attributes);
-	taking t = {.attributes = nt_arena_alloc(arena, most, sizeof *t.attributes),
-		.values = nt_arena_alloc(arena, most, sizeof *t.values)};
-	if (!t.attributes || !t.values)
-		return nt_fail_memory(error);
-	memset(t.values, 0, most * sizeof *t.values);
+	taking t = {.count = 0};
 	take(&t, scene, mesh, sources->positions, NT_DRACO_POSITION,
 		nt_gltf_draco_bits(bits, NT_DRACO_BITS_POSITION), &mesh->positions);
 	take(&t, scene, mesh, sources->normals, NT_DRACO_NORMAL, nt_gltf_draco_bits(bits, NT_DRACO_BITS_NORMAL),
@@ -157,25 +113,26 @@ static nt_status quantize_plain(nt_scene *scene, nt_mesh *mesh, const nt_json_va
 		nt_gltf_draco_bits(bits, NT_DRACO_BITS_TEXCOORD), &mesh->texcoords);
 	if (t.failed)
 		return nt_fail_memory(error);
-	const nt_status status = look_at_others(&t, scene->source, attributes, sources,
-		nt_gltf_draco_bits(bits, NT_DRACO_BITS_TEXCOORD), error);
-	return status ? status : quantize_taken(&t, mesh, error);
+	/* texture coordinates lie on the grid as they are stored */
+	if (mesh->texcoords)
+		flip_texcoords(mesh);
+	const nt_status status = t.count ? quantize(mesh, t.attributes, t.count, t.values, error) : NT_OK;
+	for (size_t i = 0; !status && i < t.count; i++)
+		*t.loaded[i] = t.values[i];
+	if (mesh->texcoords)
+		flip_texcoords(mesh);
+	return status;
 }
 
 nt_status nt_gltf_quantize_vertices(nt_scene *scene, nt_mesh *mesh, const nt_gltf_sources *sources,
 	const nt_read_options *options, nt_error *error)
 {
+	if (!nt_gltf_draco_of(nt_gltf_primitive_of(scene->source, mesh)))
+		return quantize_plain(scene, mesh, sources, options->draco_bits, error);
 	bool all = true;
-	nt_status status = mesh->quantized == NT_QUANTIZED_WHOLE ? uses_all(mesh, &all, error) : NT_OK;
+	const nt_status status = mesh->quantized == NT_QUANTIZED_WHOLE ? uses_all(mesh, &all, error) : NT_OK;
 	if (!all)
 		mesh->quantized = NT_QUANTIZED_NOT;
-	const nt_json_value *primitive = nt_gltf_primitive_of(scene->source, mesh);
-	if (status || !mesh->quantized || nt_gltf_draco_of(primitive))
-		return status;
-	nt_arena arena = {0};
-	status = quantize_plain(scene, mesh, nt_json_find(primitive, "attributes"), sources, options->draco_bits,
-		&arena, error);
-	nt_arena_free(&arena);
 	return status;
 }
 

@@ -155,7 +155,7 @@ typedef struct nt_join {
 typedef enum nt_quantized {
 	NT_QUANTIZED_NOT,
 	NT_QUANTIZED,
-	NT_QUANTIZED_WHOLE /* if faces use all of its vertices: otherwise it cannot be compressed */
+	NT_QUANTIZED_WHOLE /* if faces use all vertices of its block: otherwise it cannot be compressed again */
 } nt_quantized;
 
 typedef struct nt_mesh {

@@ -519,6 +519,57 @@ for method in sequential edgebreaker; do
 	same out.glb off.glb
 done
 
+scene "--across=mesh: where Draco refuses a primitive, all are solved for the values of the input, and borders of the others meet"
+# the large triangle and half of the patch, and two quarters; the first has the NaN
+grains_obj | awk '/^f 442/ {print "usemtl a"} /^f 211\// && !b++ {print "usemtl b"} /^f 316\// && !c++ {print "usemtl c"} {print}' >three.obj
+run -q --normals=smooth --across=mesh three.obj three.glb
+with_texcoords three.glb nan three.glb TEXCOORD_1 NaN
+run --across=mesh --only=all --existing=replace --draco=off nan.gltf off.glb
+exits 0
+gltf off.glb 'rows(g.meshes[0].primitives[0].attributes.TANGENT)' >off.txt
+for method in sequential edgebreaker; do
+	run --across=mesh --only=all --existing=replace --draco=$method --verify nan.gltf $method.glb
+	exits 0
+	is "$(compressed $method.glb)" 2
+	gltf $method.glb 'rows(g.meshes[0].primitives[0].attributes.TANGENT)' >$method.txt
+	same $method.txt off.txt
+	run --only=all --existing=replace --draco=off $method.glb plain.glb
+	is "$(gltf plain.glb "${meet/primitives.map/primitives.slice(1).map}" | cut -d, -f1)" 21
+done
+exists off.txt
+
+scene "--across=mesh: integers are on no grid, and need none"
+# 1/1024 of the patch, which the large triangle is left out of
+grains_obj | awk '/^v / {$2 *= 1024; $3 *= 1024; $4 *= 1024} /^f 442/ {print "usemtl a"; next}
+	/^f 211\// && !cut++ {print "usemtl b"} {print}' >two.obj
+run -q --normals=smooth two.obj two.glb
+node -e 'const fs = require("fs"), b = fs.readFileSync("two.glb"), size = b.readUInt32LE(12);
+	const g = JSON.parse(b.subarray(20, 20 + size)), parts = [b.subarray(28 + size)];
+	let length = parts[0].length;
+	g.extensionsUsed = g.extensionsRequired = ["KHR_mesh_quantization"];
+	for (const p of g.meshes[0].primitives) {
+		const a = g.accessors[p.attributes.POSITION], v = g.bufferViews[a.bufferView], rows = Buffer.alloc(8 * a.count);
+		for (let i = 0; i < 3 * a.count; i++)
+			rows.writeInt16LE(Math.round(1024 * parts[0].readFloatLE((v.byteOffset ?? 0) + (a.byteOffset ?? 0) +
+				Math.floor(i / 3) * (v.byteStride ?? 12) + i % 3 * 4)), Math.floor(i / 3) * 8 + i % 3 * 2);
+		a.bufferView = g.bufferViews.push({buffer: 0, byteOffset: length, byteLength: rows.length, byteStride: 8}) - 1;
+		delete a.byteOffset;
+		a.componentType = 5122;
+		for (const bound of ["min", "max"]) a[bound] = a[bound].map((x) => Math.round(1024 * x));
+		parts.push(rows);
+		length += rows.length;
+	}
+	g.buffers = [{uri: "two.bin", byteLength: length}];
+	fs.writeFileSync("two.bin", Buffer.concat(parts));
+	fs.writeFileSync("two.gltf", JSON.stringify(g))'
+for method in sequential edgebreaker; do
+	run --across=mesh --only=all --existing=replace --draco=$method --draco-bits=14,12,4,12 --verify two.gltf $method.glb
+	exits 0
+	is "$(compressed $method.glb)" 2
+	run --check --across=mesh $method.glb
+	is "$(grep -o 'TAN_[A-Z_]*' "$WORK/out.txt" | grep -v TAN_UNUSED)" ""
+done
+
 scene "only a glTF made from a glTF is compressed"
 run --draco=edgebreaker "$data/quad.obj" quad.glb
 exits 1

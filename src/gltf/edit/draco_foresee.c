@@ -6,11 +6,13 @@
  * have them (gltf/draco_values.c). Of 19 public models compressed by sequential with 14, 12, 12 and 12 bits, tangents
  * of the file's values gave --check 3 480 findings; 20, 14, 18 and 12 bits left 1 266 and took 9 % more bytes.
  *
- * What stands in the way of compression is found by the function that finds it when the document is edited, without a
- * look at values. What these have against it is left for the load.
+ * What stands in the way of compression is found by the functions that find it when the document is edited: one that
+ * looks at no values, and Draco's own check of them. Only of the vertices of a block, which is not decoded yet, is it
+ * left for the load whether faces use them all.
  *
  * On grids of their own the borders of primitives that are solved together (--across=mesh) would not meet any more.
- * They get one grid; where some of them will not be compressed, all stay as the file has them.
+ * Those that are compressed get one grid; where some are not, all are solved for what the file has, so that tangents
+ * meet at the least.
  */
 #include "gltf/edit/draco_foresee.h"
 
@@ -18,6 +20,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "gltf/accessor.h"
+#include "gltf/draco_values.h"
 #include "gltf/edit/draco.h"
 
 typedef struct foreseeing {
@@ -47,6 +50,44 @@ static bool gets_tangents(const nt_vertex_pool *pool)
 	return true;
 }
 
+/* The faces of a plain primitive. */
+static nt_status find_faces(foreseeing *f, const nt_gltf_recoding *r, nt_mesh *mesh, nt_error *error)
+{
+	uint64_t index;
+	nt_gltf_accessor accessor = {.count = mesh->vertex_count};
+	uint32_t *indices = NULL;
+	nt_status status = NT_OK;
+	if (nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &index)) {
+		status = nt_gltf_get_accessor(r->document, index, "", &accessor, error);
+		if (!status)
+			status = nt_gltf_indices(r->document, &accessor, mesh->vertex_count, f->options.threads, &f->of_pool,
+				&indices, error);
+	}
+	mesh->indices = indices;
+	mesh->face_count = (size_t)accessor.count / 3;
+	mesh->corner_count = 3 * mesh->face_count;
+	return status;
+}
+
+/* Whether Draco takes the values of a plain primitive, and all of its vertices where something beside the block counts
+ * them. What is wrong with the file is found again when it is loaded. */
+static nt_status look_at_values(foreseeing *f, const nt_gltf_recoding *r, bool *takes, nt_error *error)
+{
+	nt_mesh mesh = {.vertex_count = r->vertices->old_count};
+	nt_draco_attribute *attributes = nt_arena_alloc(&f->of_pool, r->attribute_count, sizeof *attributes);
+	size_t count = 0;
+	if (!attributes)
+		return nt_fail_memory(error);
+	for (size_t i = 0; i < r->attribute_count; i++)
+		if (strcmp(r->names[i], "TANGENT") != 0) /* ours takes its place */
+			attributes[count++] = r->attributes[i];
+	nt_status status = find_faces(f, r, &mesh, error);
+	if (!status)
+		status = nt_gltf_draco_takes(&mesh, attributes, count, r->outside, error);
+	*takes = !status;
+	return status == NT_ERROR_MEMORY ? status : NT_OK;
+}
+
 static nt_status look_at_pool(foreseeing *f, size_t number, nt_error *error)
 {
 	nt_gltf *document = f->scene->source;
@@ -65,8 +106,12 @@ static nt_status look_at_pool(foreseeing *f, size_t number, nt_error *error)
 	status = nt_gltf_draco_foresee(&recoding, document, &f->pools, &vertices, &f->options, &f->of_pool, &ignored);
 	if (status == NT_ERROR_MEMORY)
 		return nt_fail_memory(error);
-	for (size_t i = 0; !status && !recoding.obstacle && i < pool.user_count; i++)
-		f->scene->meshes[pool.users[i]].quantized = recoding.outside ? NT_QUANTIZED_WHOLE : NT_QUANTIZED;
+	bool takes = !status && !recoding.obstacle;
+	if (takes && !compressed && look_at_values(f, &recoding, &takes, &ignored))
+		return nt_fail_memory(error);
+	for (size_t i = 0; takes && i < pool.user_count; i++)
+		f->scene->meshes[pool.users[i]].quantized =
+			compressed && recoding.outside ? NT_QUANTIZED_WHOLE : NT_QUANTIZED;
 	return NT_OK;
 }
 
@@ -89,15 +134,15 @@ typedef struct box {
 } box;
 
 /* An attribute of plain floats, and its elements. */
-static bool find_floats(nt_gltf *document, const nt_mesh *mesh, const char *name, nt_gltf_accessor *accessor,
-	const unsigned char **elements)
+static bool find_floats(nt_gltf *document, const nt_mesh *mesh, const char *name, uint32_t components,
+	nt_gltf_accessor *accessor, const unsigned char **elements)
 {
 	const nt_json_value *attributes = nt_json_find(nt_gltf_primitive_of(document, mesh), "attributes");
 	uint64_t index;
 	nt_error ignored;
 	return nt_json_get_uint64(nt_json_find(attributes, name), &index) &&
 		nt_gltf_get_accessor(document, index, "", accessor, &ignored) == NT_OK &&
-		accessor->component_type == NT_GLTF_FLOAT && accessor->components <= 3 &&
+		accessor->component_type == NT_GLTF_FLOAT && accessor->components == components &&
 		nt_gltf_elements(document, accessor, elements, &ignored) == NT_OK && *elements;
 }
 
@@ -121,7 +166,14 @@ static const char *name_of(const nt_mesh *mesh, bool texcoords, char (*name)[32]
 	return *name;
 }
 
-/* One grid for the positions, or the texture coordinates, of all parts; false: there is none. */
+/* Whether a part is plain and will be compressed. */
+static bool is_new(const foreseeing *f, const nt_mesh *part)
+{
+	return part->quantized && !nt_gltf_draco_of(nt_gltf_primitive_of(f->scene->source, part));
+}
+
+/* One grid for the positions, or the texture coordinates, of the parts that will be compressed; integers need none, as
+ * they stay what they are. Whether equal values of these parts remain equal. */
 static bool lay_grid(const foreseeing *f, const nt_join *join, bool texcoords)
 {
 	nt_gltf *document = f->scene->source;
@@ -130,12 +182,20 @@ static bool lay_grid(const foreseeing *f, const nt_join *join, bool texcoords)
 	nt_gltf_accessor accessor;
 	const unsigned char *elements;
 	box b = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+	size_t others = 0, floats = 0;
 	for (size_t i = 0; i < join->part_count; i++) {
-		if (!find_floats(document, join->parts[i], name_of(join->parts[i], texcoords, &name), &accessor, &elements) ||
-			accessor.components != components)
-			return false;
+		const nt_mesh *part = join->parts[i];
+		if (!is_new(f, part))
+			continue;
+		if (!find_floats(document, part, name_of(part, texcoords, &name), components, &accessor, &elements)) {
+			others++;
+			continue;
+		}
 		grow_box(&b, &accessor, elements);
+		floats++;
 	}
+	if (floats == 0)
+		return true;
 	nt_draco_quantization grid = {.bits = nt_gltf_draco_bits(f->options.draco_bits,
 		texcoords ? NT_DRACO_BITS_TEXCOORD : NT_DRACO_BITS_POSITION), .explicit_box = true};
 	for (uint32_t k = 0; k < components; k++) {
@@ -144,27 +204,27 @@ static bool lay_grid(const foreseeing *f, const nt_join *join, bool texcoords)
 	}
 	if (grid.range == 0) /* as Draco has it */
 		grid.range = 1;
-	for (size_t i = 0; isfinite(grid.range) && i < join->part_count; i++)
-		if (find_floats(document, join->parts[i], name_of(join->parts[i], texcoords, &name), &accessor, &elements))
+	/* what Draco has to say of its cells */
+	if (!isfinite(grid.range) || !isfinite((float)(1u << grid.bits) / grid.range))
+		return false;
+	for (size_t i = 0; i < join->part_count; i++) {
+		const nt_mesh *part = join->parts[i];
+		if (is_new(f, part) &&
+			find_floats(document, part, name_of(part, texcoords, &name), components, &accessor, &elements))
 			document->grids[accessor.index] = grid;
-	return isfinite(grid.range);
-}
-
-/* Whether all parts are plain and will be compressed. */
-static bool is_quantized(const foreseeing *f, const nt_join *join)
-{
-	for (size_t i = 0; i < join->part_count; i++)
-		if (!join->parts[i]->quantized || nt_gltf_draco_of(nt_gltf_primitive_of(f->scene->source, join->parts[i])))
-			return false;
-	return true;
+	}
+	return others == 0;
 }
 
 static void look_at_join(const foreseeing *f, const nt_join *join)
 {
-	if (is_quantized(f, join) && lay_grid(f, join, false) && lay_grid(f, join, true))
-		return;
+	bool all = true;
 	for (size_t i = 0; i < join->part_count; i++)
-		if (!nt_gltf_draco_of(nt_gltf_primitive_of(f->scene->source, join->parts[i])))
+		all &= is_new(f, join->parts[i]);
+	all &= lay_grid(f, join, false);
+	all &= lay_grid(f, join, true);
+	for (size_t i = 0; !all && i < join->part_count; i++)
+		if (is_new(f, join->parts[i]))
 			join->parts[i]->quantized = NT_QUANTIZED_NOT;
 }
 
@@ -189,7 +249,7 @@ static nt_status look_at_joins(const foreseeing *f, nt_error *error)
 nt_status nt_gltf_find_quantized(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
 	nt_arena arena = {0};
-	foreseeing f = {.scene = scene, .options = {.draco = options->draco}};
+	foreseeing f = {.scene = scene, .options = {.draco = options->draco, .threads = options->threads}};
 	for (size_t i = 0; i < NT_DRACO_BITS_COUNT; i++)
 		f.options.draco_bits[i] = options->draco_bits[i];
 	nt_status status = nt_vertex_pools_find(&f.pools, scene, &arena, error);
