@@ -224,9 +224,9 @@ static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t beg
 	for (size_t i = begin; i < end;) {
 		if (!fast->wants_more)
 			i = (nt_adjacency_is_narrow(&fast->adjacency) ? add_narrow : add_here)(fast, range, first, i, end, ids, out);
-		if (!fast->wants_more && fast->deferred)
+		if (i < end && !fast->wants_more && fast->deferred)
 			i = add_shared(fast, range, first, i, end, ids, out);
-		if (!fast->wants_more && fast->adjacency.rest)
+		if (i < end && !fast->wants_more && fast->adjacency.rest)
 			i = add_elsewhere(fast, range, first, i, end, ids, out);
 		if (i == end)
 			return;
@@ -253,7 +253,9 @@ static void __attribute__((noinline)) bin_ordinary(const nt_fast *fast, unsigned
 		bin_corner(&bins, cursors, v[2], orient, v[0], v[1], out->add[2] + place);
 		seen |= NT_SEEN(orient);
 	}
-	bins.seen[range] |= (uint8_t)seen;
+	/* stored where it changes: those of other ranges are in the same cache line */
+	if (seen & ~(unsigned)bins.seen[range])
+		bins.seen[range] |= (uint8_t)seen;
 }
 
 /* Orientation of the record that takes note of an "any" triangle: any that exists. */

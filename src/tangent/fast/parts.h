@@ -37,9 +37,10 @@ enum {
 #define NT_ENTRY_VOID ((uint32_t)1 << 30)
 #define NT_ENTRY_VERTEX (NT_ENTRY_ORIENT - 1)
 
-/* Contributions of a range that have to wait for earlier ranges'. */
+/* Contributions of a range that have to wait for earlier ranges'. Each has a cache line of its own, which no other
+ * thread writes to. */
 typedef struct nt_deferred {
-	uint32_t *to; /* vertices, with NT_ENTRY_ORIENT; one more than can be counted may be written */
+	_Alignas(64) uint32_t *to; /* vertices, with NT_ENTRY_ORIENT; one more than can be counted may be written */
 	nt_record *add;
 	nt_record_more *more; /* or NULL */
 	size_t count;
