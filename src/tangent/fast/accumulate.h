@@ -6,6 +6,7 @@
 #ifndef NT_TANGENT_FAST_ACCUMULATE_H
 #define NT_TANGENT_FAST_ACCUMULATE_H
 
+#include "tangent/fast/flag_lanes.h"
 #include "tangent/fast/lanes.h"
 #include "topology/corners.h"
 

@@ -1,0 +1,216 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The weighted u direction of one corner in each of 16 lanes (spec page, step 8), and the bits of its record's state.
+ * Steps of a loop each: lanes.h has them in order. The arithmetic is that of the scalar definition wherever a value
+ * reaches the output. Included by lanes.h.
+ */
+#ifndef NT_TANGENT_FAST_CORNER_LANES_H
+#define NT_TANGENT_FAST_CORNER_LANES_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+#include "tangent/acos.h"
+#include "tangent/fast/frame_lanes.h"
+
+/* A component is beyond 2^-7 or -2^-7 if this, added to its upper half, sets the bit below the sign's; so it does up to
+ * 2^121. Two unit vectors that both are, along one axis and on one side, have a dot product of at least
+ * 2 * 2^-14 - 1 = -0.99988, well away from the -1 at which step 7 parts them: rounding moves it by 1e-6. The smaller
+ * the distance is, the fewer vertices fail the test.
+ *
+ * Lengths in here are normalised without loss: their squares neither overflow nor lose bits. Across a normal of unit
+ * length a unit vector becomes shorter. So v need not be divided by its length before the test; across long
+ * normals, where its components are below 2 and its length is below 3.5, the product is still above 1.0e-5 - 1. */
+#define BEYOND 0x0400u
+
+/* The same for whole floats from 2^-100 up to 2^28. */
+#define WELL_INSIDE 0x32800000u
+
+/* Below the sign of a float: it is 2 or more, infinite, or NaN. */
+#define TWO 0x40000000u
+
+/* A state with that bit where `there`: one masked operation, or two without masks. */
+static inline __attribute__((always_inline)) uint32_t set_where(uint32_t state, bool there, uint32_t bit)
+{
+#if WIDTH == 16
+	return there ? state | bit : state;
+#else
+	return state | (there ? bit : 0);
+#endif
+}
+
+static inline __attribute__((always_inline)) uint32_t bits_of(float x)
+{
+	uint32_t bits;
+	memcpy(&bits, &x, sizeof bits);
+	return bits;
+}
+
+/* The upper halves of two floats. */
+static inline __attribute__((always_inline)) uint32_t halves_of(float low, float high)
+{
+	return bits_of(low) >> 16 | (bits_of(high) & 0xffff0000u);
+}
+
+/* The bits of a state that vectors u and v have, and NT_STATE_SOUND where v is beyond somewhere and `sound` has the bit
+ * of TWO. Comparisons would take the ports that multiply, which are the busiest here. */
+static inline __attribute__((always_inline)) uint32_t state_of(const float u[3], const float v[3], uint32_t sound)
+{
+	const uint32_t both = BEYOND << 16 | BEYOND;
+	const uint32_t a = halves_of(u[0], u[1]) + both, b = halves_of(u[2], v[0]) + both, c = halves_of(v[1], v[2]) + both;
+	/* sign and beyond, six times two bits */
+	const uint32_t all = (a & 0xc000c000u) | (b >> 2 & 0x30003000u) | (c >> 4 & 0x0c000c00u);
+	const uint32_t beyond = all & 0x54005400u, sides = beyond + (all >> 1 & beyond);
+	return NT_STATE_BASE | NT_STATE_NO_ANY | NT_STATE_LOCAL | (sides & 0xfc00u) | (sides >> 22 & 0x03ffu) |
+	       ((sound & (b | c | c << 16)) >> 30 & NT_STATE_SOUND);
+}
+
+static inline __attribute__((always_inline)) int is_zero(float x, float y, float z)
+{
+	return (x == 0.0f) & (y == 0.0f) & (z == 0.0f);
+}
+
+/* Corners in lanes, by component. */
+typedef struct corner_lanes {
+	const float (*n)[NT_LANES];                 /* normal */
+	const float (*u)[NT_LANES], (*v)[NT_LANES]; /* directions of the triangle's frame */
+	const float (*e)[NT_LANES], (*f)[NT_LANES]; /* edges at the corner */
+	float turned;                               /* -1 where one of them runs towards it, or 1 */
+	float (*sum)[NT_LANES], (*extra)[NT_LANES]; /* as in lanes_out */
+} corner_lanes;
+
+/* What is made of them on the way. Narrow vectors do not need it for longer than a corner takes: see solve_lanes(). */
+#define KEPT (WIDTH > 4 ? NT_LANES : 1)
+#define KEPT_AT(i) (WIDTH > 4 ? (i) : 0)
+typedef struct corner_parts {
+	_Alignas(64) float u[3][KEPT], e[3][KEPT], f[3][KEPT]; /* across the normal */
+	float of_u[KEPT], of_e[KEPT], of_f[KEPT];              /* reciprocals of their lengths */
+	uint32_t sound[KEPT];
+} corner_parts;
+
+/* The angle between e and f: first its cosine; in the widest vectors then what tangent/acos.h calls z and s. */
+typedef struct corner_angles {
+	_Alignas(64) float cosine[NT_LANES];
+#if WIDTH == 16
+	double z[NT_LANES], s[NT_LANES], begin[NT_LANES];
+#else
+	float clamped[NT_LANES];
+#endif
+} corner_angles;
+
+/* Each corner's edges without their part along n, and what makes them unit vectors; `along`: directions and edges
+ * along the normal, of which nothing is left but zero, are sound as well. */
+static inline __attribute__((always_inline)) void project_edges(corner_lanes a, corner_parts *restrict p, bool along, int i)
+{
+	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
+	const float e[3] = {a.e[0][i], a.e[1][i], a.e[2][i]};
+	const float f[3] = {a.f[0][i], a.f[1][i], a.f[2][i]};
+	const float ne = n[0] * e[0] + n[1] * e[1] + n[2] * e[2];
+	const float nf = n[0] * f[0] + n[1] * f[1] + n[2] * f[2];
+	const float ex = e[0] - ne * n[0], ey = e[1] - ne * n[1], ez = e[2] - ne * n[2];
+	const float fx = f[0] - nf * n[0], fy = f[1] - nf * n[1], fz = f[2] - nf * n[2];
+	p->of_e[KEPT_AT(i)] = along && is_zero(ex, ey, ez) ? 1.0f : a.turned / sqrtf(ex * ex + ey * ey + ez * ez);
+	p->of_f[KEPT_AT(i)] = along && is_zero(fx, fy, fz) ? 1.0f : 1.0f / sqrtf(fx * fx + fy * fy + fz * fz);
+	p->e[0][KEPT_AT(i)] = ex, p->e[1][KEPT_AT(i)] = ey, p->e[2][KEPT_AT(i)] = ez;
+	p->f[0][KEPT_AT(i)] = fx, p->f[1][KEPT_AT(i)] = fy, p->f[2][KEPT_AT(i)] = fz;
+}
+
+/* The same of the u directions. */
+static inline __attribute__((always_inline)) void project_u(corner_lanes a, corner_parts *restrict p, bool along, int i)
+{
+	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
+	const float os[3] = {a.u[0][i], a.u[1][i], a.u[2][i]};
+	const float nu = n[0] * os[0] + n[1] * os[1] + n[2] * os[2];
+	const float ux = os[0] - nu * n[0], uy = os[1] - nu * n[1], uz = os[2] - nu * n[2];
+	const float uu = along && is_zero(ux, uy, uz) ? 1.0f : ux * ux + uy * uy + uz * uz;
+	p->of_u[KEPT_AT(i)] = 1.0f / sqrtf(uu);
+	p->sound[KEPT_AT(i)] = bits_of(uu) + WELL_INSIDE;
+	p->u[0][KEPT_AT(i)] = ux, p->u[1][KEPT_AT(i)] = uy, p->u[2][KEPT_AT(i)] = uz;
+}
+
+/* The cosine of each corner's angle, as seen along n. */
+static inline __attribute__((always_inline)) void find_cosine(const corner_parts *restrict p, corner_angles *restrict angles, int i)
+{
+	const float er = p->of_e[KEPT_AT(i)], ex = er * p->e[0][KEPT_AT(i)], ey = er * p->e[1][KEPT_AT(i)], ez = er * p->e[2][KEPT_AT(i)];
+	const float fr = p->of_f[KEPT_AT(i)], fx = fr * p->f[0][KEPT_AT(i)], fy = fr * p->f[1][KEPT_AT(i)], fz = fr * p->f[2][KEPT_AT(i)];
+	angles->cosine[i] = ex * fx + ey * fy + ez * fz;
+}
+
+/* The angle up to what takes the square root, and the rest. In the widest vectors, nt_acos() as begin + asin(s), with
+ * the signs and factors of its three cases in `begin` and s, which changes no bits: 40 of 530 cycles. In others stores
+ * would cost more. NaN may become a number: of a corner that is not sound nothing is used. */
+static inline __attribute__((always_inline)) void begin_angle(corner_angles *restrict a, int i)
+{
+	const float c = a->cosine[i], size = fabsf(c) < 1.0f ? fabsf(c) : 1.0f;
+#if WIDTH == 16
+	const double pi = 3.14159265358979323846;
+	const double x = c, z = (1.0f - size) * 0.5f, root = sqrt(z);
+	a->z[i] = size > 0.5f ? z : x * x;
+	a->s[i] = size > 0.5f ? copysign(root + root, x) : -x;
+	a->begin[i] = size > 0.5f ? (c < 0.0f ? pi : 0.0) : pi * 0.5;
+#else
+	a->clamped[i] = copysignf(size, c);
+#endif
+}
+
+static inline __attribute__((always_inline)) float end_angle(const corner_angles *restrict a, int i)
+{
+#if WIDTH == 16
+	return (float)(a->begin[i] + NT_ACOS_TERM(a->s[i] * a->z[i], nt_acos_terms(a->z[i]), a->s[i]));
+#else
+	return nt_acos(a->clamped[i]);
+#endif
+}
+
+/* Each corner's unit directions and the bits of what holds for it. */
+static inline __attribute__((always_inline)) void finish_directions(corner_lanes a, const corner_parts *restrict p,
+	const corner_angles *restrict angles, bool along, bool more, int i)
+{
+	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
+	const float ot[3] = {a.v[0][i], a.v[1][i], a.v[2][i]};
+	const float nv = n[0] * ot[0] + n[1] * ot[1] + n[2] * ot[2];
+	const float v[3] = {ot[0] - nv * n[0], ot[1] - nv * n[1], ot[2] - nv * n[2]};
+	const float ur = p->of_u[KEPT_AT(i)], whole[3] = {p->u[0][KEPT_AT(i)], p->u[1][KEPT_AT(i)], p->u[2][KEPT_AT(i)]};
+	const float u[3] = {ur * whole[0], ur * whole[1], ur * whole[2]};
+	/* with this square of u the definition normalises as well; the product of an edge without length is NaN; v is
+	 * as long as it is: see BEYOND */
+	const uint32_t sound = p->sound[KEPT_AT(i)] & ~(bits_of(v[0]) | bits_of(v[1]) | bits_of(v[2]) | bits_of(angles->cosine[i]));
+	uint32_t state = state_of(u, v, sound);
+	const int no_v = along && is_zero(v[0], v[1], v[2]);
+	if (along) {
+		state = set_where(state, is_zero(whole[0], whole[1], whole[2]), NT_STATE_U);
+		state = set_where(state, no_v, NT_STATE_V | (sound >> 30 & NT_STATE_SOUND));
+	}
+	a.sum[0][i] = u[0];
+	a.sum[1][i] = u[1];
+	a.sum[2][i] = u[2];
+	memcpy(&a.sum[3][i], &state, sizeof state);
+	if (more) {
+		const float vr = no_v ? 1.0f : 1.0f / sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+		a.extra[0][i] = vr * v[0];
+		a.extra[1][i] = vr * v[1];
+		a.extra[2][i] = vr * v[2];
+	}
+}
+
+/* Directions are weighted by the angle. */
+static inline __attribute__((always_inline)) void weigh_corner(corner_lanes a, const corner_angles *restrict angles,
+	const lanes_out *out, bool more, int i)
+{
+	const float w = end_angle(angles, i);
+	a.sum[0][i] *= w;
+	a.sum[1][i] *= w;
+	a.sum[2][i] *= w;
+	if (more) {
+		a.extra[0][i] *= w;
+		a.extra[1][i] *= w;
+		a.extra[2][i] *= w;
+		a.extra[3][i] = w;
+		a.extra[4][i] = w * out->mag_u[i];
+		a.extra[5][i] = w * out->mag_v[i];
+		a.extra[6][i] = 0.0f;
+		a.extra[7][i] = 0.0f;
+	}
+}
+
+#endif
