@@ -89,7 +89,8 @@ void *nt_arena_alloc(nt_arena *arena, size_t count, size_t size)
 	if (!block || block->capacity - block->used < bytes) {
 		const size_t last = arena->block_bytes, next = !last ? LEAST_BLOCK_BYTES :
 			last < MOST_BLOCK_BYTES ? 2 * last : MOST_BLOCK_BYTES;
-		const bool small = bytes <= (next > LARGE_SHARE * LEAST_LARGE_BYTES ? next / LARGE_SHARE : LEAST_LARGE_BYTES);
+		const bool small =
+			bytes <= (next > LARGE_SHARE * LEAST_LARGE_BYTES ? next / LARGE_SHARE : LEAST_LARGE_BYTES);
 		block = add_block(arena, small && bytes <= next - HEADER_BYTES ? next - HEADER_BYTES : bytes, small);
 		if (!block)
 			return NULL;

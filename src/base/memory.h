@@ -39,7 +39,8 @@ bool nt_grow(void **block, size_t *capacity, size_t needed, size_t size);
 /* An arena owns blocks that live equally long. A zeroed arena is empty. */
 typedef struct nt_arena {
 	struct nt_arena_block *blocks;
-	size_t block_bytes; /* of the last block that small requests were taken from; begins at 4 MiB where much will come */
+	size_t block_bytes; /* of the last block that small requests were taken from; begins at 4 MiB where much
+	                       will come */
 } nt_arena;
 
 /* count * size bytes, aligned for any type, not cleared. NULL on overflow or exhaustion. */

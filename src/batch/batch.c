@@ -36,7 +36,8 @@ typedef struct progress {
 static bool is_stream(const char *input)
 {
 	struct stat info;
-	return strcmp(input, "-") == 0 || (stat(input, &info) == 0 && (S_ISFIFO(info.st_mode) || S_ISSOCK(info.st_mode)));
+	return strcmp(input, "-") == 0 ||
+		(stat(input, &info) == 0 && (S_ISFIFO(info.st_mode) || S_ISSOCK(info.st_mode)));
 }
 
 /* A run that goes through the gate once its input has been read. */

@@ -61,8 +61,8 @@ static nt_status append_name(nt_depfile *depfile, const char *path, bool relativ
 }
 
 /* The files that were read, each with `before` and `after` around it; without the first, which is the input. */
-static nt_status append_read(nt_depfile *depfile, const nt_trace *trace, bool relative, bool with_input, const char *before,
-	const char *after, nt_error *error)
+static nt_status append_read(nt_depfile *depfile, const nt_trace *trace, bool relative, bool with_input,
+	const char *before, const char *after, nt_error *error)
 {
 	nt_status status = NT_OK;
 	bool first = true;

@@ -6,7 +6,8 @@
 
 void nt_gate_init(nt_gate *gate, uint64_t limit)
 {
-	*gate = (nt_gate){.limit = limit ? limit : 1, .lock = PTHREAD_MUTEX_INITIALIZER, .changed = PTHREAD_COND_INITIALIZER};
+	*gate = (nt_gate){.limit = limit ? limit : 1, .lock = PTHREAD_MUTEX_INITIALIZER,
+		.changed = PTHREAD_COND_INITIALIZER};
 }
 
 void nt_gate_end(nt_gate *gate)

@@ -29,7 +29,8 @@ typedef struct walk {
 /* Takes a name that stays. */
 static nt_status add(nt_inputs *inputs, const char *name, nt_error *error)
 {
-	if (!name || !nt_grow((void **)(uintptr_t)&inputs->names, &inputs->capacity, inputs->count + 1, sizeof *inputs->names))
+	if (!name || !nt_grow((void **)(uintptr_t)&inputs->names, &inputs->capacity, inputs->count + 1,
+		sizeof *inputs->names))
 		return nt_fail_memory(error);
 	inputs->names[inputs->count++] = name;
 	return NT_OK;

@@ -28,7 +28,8 @@ enum { LEAST = 1 << 20, MOST_BYTE_COST = 256 };
 static uint64_t plus(uint64_t sum, uint64_t cost, uint64_t count)
 {
 	uint64_t product;
-	return __builtin_mul_overflow(cost, count, &product) || __builtin_add_overflow(sum, product, &sum) ? UINT64_MAX : sum;
+	return __builtin_mul_overflow(cost, count, &product) || __builtin_add_overflow(sum, product, &sum)
+		? UINT64_MAX : sum;
 }
 
 /* A number after a key and what may stand between them; 0: none. */

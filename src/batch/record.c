@@ -315,8 +315,8 @@ static nt_status digest_of(const nt_trace_file *file, char digest[NT_DIGEST_TEXT
 	return status;
 }
 
-static nt_status append_file(nt_record *record, const nt_trace_file *file, nt_update_by by, nt_buffer *line, bool *known,
-	nt_error *error)
+static nt_status append_file(nt_record *record, const nt_trace_file *file, nt_update_by by, nt_buffer *line,
+	bool *known, nt_error *error)
 {
 	char digest[NT_DIGEST_TEXT];
 	nt_buffer_text(line, "{\"uri\":\"");

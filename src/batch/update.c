@@ -43,7 +43,8 @@ static nt_record *find(const nt_update *update, uint64_t hash, const char *path)
 static nt_status open_one(nt_update *update, uint64_t hash, char *path, nt_record **record, nt_error *error)
 {
 	nt_status status = nt_record_open(record, path, !update->options.dry_run, error);
-	if (!status && (!nt_grow((void **)&update->records, &update->capacity, update->count + 1, sizeof *update->records) ||
+	if (!status &&
+		(!nt_grow((void **)&update->records, &update->capacity, update->count + 1, sizeof *update->records) ||
 			       !nt_hash_index_add(&update->index, hash, (uint32_t)update->count))) {
 		nt_record_close(*record);
 		status = nt_fail_memory(error);
@@ -89,8 +90,8 @@ static nt_status get_of_output(nt_update *update, const char *output, nt_record 
 		return path ? get(update, path, record, error) : nt_fail_memory(error);
 	}
 	const char *slash = strrchr(output, '/'), *folder = o->folder ? o->folder : output;
-	return get_of_folder(update, folder, o->folder ? strlen(folder) : slash ? (size_t)(slash - output) + 1 : 0, record,
-		error);
+	return get_of_folder(update, folder,
+		o->folder ? strlen(folder) : slash ? (size_t)(slash - output) + 1 : 0, record, error);
 }
 
 static nt_status find_folder_of(const char *path, nt_error *error)
@@ -141,8 +142,8 @@ static nt_status append(void *user, const nt_trace *trace, nt_error *error)
 }
 
 /* What a record can be about: regular files, of which the output need not be there yet. */
-static nt_status look_at_files(const nt_making *making, struct stat *input, struct stat *output, bool *regular, bool *made,
-	nt_error *error)
+static nt_status look_at_files(const nt_making *making, struct stat *input, struct stat *output, bool *regular,
+	bool *made, nt_error *error)
 {
 	*regular = *made = false;
 	if (strcmp(making->input, "-") == 0 || strcmp(making->output, "-") == 0)
@@ -187,7 +188,8 @@ nt_status nt_update_look(nt_update *update, const char *input, const char *outpu
 	if (status)
 		return status;
 	const bool unknown = freshness == NT_FRESH_UNKNOWN;
-	*current = o->look && (freshness == NT_FRESH_CURRENT || (unknown && !o->whole && is_younger(&job->making, &output_info, trace)));
+	*current = o->look && (freshness == NT_FRESH_CURRENT ||
+		(unknown && !o->whole && is_younger(&job->making, &output_info, trace)));
 	if (o->look && settings->equal == NT_EQUAL_REPLACE)
 		settings->equal = unknown ? NT_EQUAL_TOUCH : NT_EQUAL_KEEP;
 	settings->placing = append;

@@ -188,7 +188,8 @@ static void tell_current(session *s, const nt_job *job)
 /* How a job that has ended, and still has its report, counts. */
 static int exit_code_of(const session *s, const nt_job *job)
 {
-	if (job->status || !job->outcome || s->command->diff || !findings_fail(&job->outcome->summary, s->plan->target.style.least_failure))
+	if (job->status || !job->outcome || s->command->diff ||
+		!findings_fail(&job->outcome->summary, s->plan->target.style.least_failure))
 		return nt_exit_code(job->status);
 	return NT_EXIT_FINDINGS;
 }
@@ -225,7 +226,8 @@ static void refuse_own(session *s, const nt_job *job, const char *path, bool *re
 static void add_rule(session *s, const nt_job *job, int *code)
 {
 	nt_error error;
-	if (!s->command->depfile || s->command->settings.dry_run || job->status || job->end == NT_JOB_UNTRIED || !job->outcome ||
+	if (!s->command->depfile || s->command->settings.dry_run || job->status || job->end == NT_JOB_UNTRIED ||
+		!job->outcome ||
 		!nt_depfile_add(&s->depfile, job->output, &job->outcome->summary.trace, &error))
 		return;
 	nt_message_error(&s->text, &error, s->style);
@@ -295,7 +297,8 @@ static void tell_diff(session *s)
 	nt_report_target target = s->plan->target;
 	nt_report_diff diff = {0};
 	nt_error error;
-	if (s->report_count != 2 || !s->reports[0] || !s->reports[1] || s->reports[0]->failure || s->reports[1]->failure)
+	if (s->report_count != 2 || !s->reports[0] || !s->reports[1] || s->reports[0]->failure ||
+		s->reports[1]->failure)
 		return;
 	if (nt_report_compare(&diff, s->reports[0], s->reports[1], target.format == NT_REPORT_HTML)) {
 		nt_fail_memory(&error);
@@ -339,7 +342,8 @@ static void tell_files(session *s)
 	if (c->manifest && nt_manifest_close(&s->manifest, &error))
 		tell_report_error(s, &error, c->manifest);
 	if (c->depfile && s->depfile.text.size && !s->no_depfile &&
-		nt_depfile_write(&s->depfile, c->depfile, c->operands, nt_command_is_many(c) ? c->operand_count : 1, &error))
+		nt_depfile_write(&s->depfile, c->depfile, c->operands,
+			nt_command_is_many(c) ? c->operand_count : 1, &error))
 		tell_report_error(s, &error, c->depfile);
 }
 
@@ -396,7 +400,8 @@ static nt_status begin_update(session *s, nt_error *error)
 	if (!c->update && !c->record)
 		return NT_OK;
 	const nt_update_options options = {.look = c->update, .by = (nt_update_by)c->update_by, .record = c->record,
-		.folder = c->directory, .dry_run = c->settings.dry_run, .whole = c->depfile != NULL, .options = s->shaping.data ? s->shaping.data : ""};
+		.folder = c->directory, .dry_run = c->settings.dry_run, .whole = c->depfile != NULL,
+		.options = s->shaping.data ? s->shaping.data : ""};
 	return nt_update_begin(&s->update, &options, error);
 }
 
@@ -470,7 +475,8 @@ static void end_session(session *s)
 static int run_batch(const nt_command *command, nt_style style, const nt_report_plan *plan,
 	nt_batch *batch, nt_report_folder *folder)
 {
-	session s = {.command = command, .plan = plan, .folder = folder, .style = style, .count = batch->count, .manifest = {.fd = -1}};
+	session s = {.command = command, .plan = plan, .folder = folder, .style = style, .count = batch->count,
+		.manifest = {.fd = -1}};
 	nt_error error;
 	if (begin_session(&s, batch, &error)) {
 		end_session(&s);

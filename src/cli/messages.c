@@ -112,7 +112,8 @@ void nt_message_failure(nt_buffer *out, const nt_job *job, int least_failure, nt
 		if (found->known || (int)found->severity < least_failure)
 			continue;
 		if (shown++ < PLACES_SHOWN || style.verbosity > 0)
-			append_sentence(out, &found->place, job->input, found->code, found->severity, found->message, style);
+			append_sentence(out, &found->place, job->input, found->code, found->severity,
+				found->message, style);
 		else
 			more++;
 	}

@@ -50,7 +50,8 @@ const nt_option_row nt_option_rows[] = {
 	{"files0-from", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL, "the same, with a NUL after each name",
 		FIELD(files0_from), false},
 	{"recursive", 'r', NT_OPTION_FLAG, NULL, 0, 0, NULL,
-		"a folder stands for the meshes in it and below, by the endings of their names", FIELD(recursive), false},
+		"a folder stands for the meshes in it and below, by the endings of their names",
+		FIELD(recursive), false},
 	{"include", 0, NT_OPTION_LIST, "GLOB", 0, 0, NULL,
 		"with -r: only files that match GLOB, or one of several", FIELD(include), false},
 	{"exclude", 0, NT_OPTION_LIST, "GLOB", 0, 0, NULL,
@@ -62,8 +63,8 @@ const nt_option_row nt_option_rows[] = {
 	{"jobs", 0, NT_OPTION_NUMBER, "N", 0, 1024, "0",
 		"how many inputs at a time, which share the threads; 0: as many as threads", FIELD(jobs), false},
 	{"memory", 0, NT_OPTION_SIZE, "SIZE", 0, 0, "0",
-		"begin with an input when what it may need is left of SIZE (64M, 2G); a larger one runs alone; 0: half of what "
-		"is available",
+		"begin with an input when what it may need is left of SIZE (64M, 2G); a larger one runs alone; "
+		"0: half of what is available",
 		FIELD(memory), false},
 
 	{.kind = NT_OPTION_HEADING, .name = "Only what is needed"},
@@ -99,20 +100,21 @@ const nt_option_row nt_option_rows[] = {
 		"link for .gltf, embed for .glb", "how the output comes by its images", SETTING(images),
 		true},
 	{"textures", 0, NT_OPTION_CHOICE, "auto|keep|png", NT_TEXTURES_AUTO, 0, "auto",
-		"images of an OBJ; auto: what glTF does not carry becomes PNG; keep: it is left out; png: all that can be "
-		"decoded becomes PNG",
+		"images of an OBJ; auto: what glTF does not carry becomes PNG; keep: it is left out; png: all "
+		"that can be decoded becomes PNG",
 		SETTING(textures), true},
 	{"texture-path", 0, NT_OPTION_LIST, "DIR", 0, 0, NULL,
 		"where images of an OBJ are looked for, too; may be given several times", FIELD(texture_paths), false},
 	{"bump", 0, NT_OPTION_CHOICE, "auto|height|normal|ignore", NT_BUMP_AUTO, 0, "auto",
-		"what map_Bump and bump name; auto: a height map where all pixels are grey, else a normal map; height: made a "
-		"normal map; ignore: left out",
+		"what map_Bump and bump name; auto: a height map where all pixels are grey, else a normal map; "
+		"height: made a normal map; ignore: left out",
 		SETTING(bump), false},
 	{"bump-height", 0, NT_OPTION_TEXT, "SHARE", 0, 0, "1/64",
-		"how far white is above black in a height map, as a share of its width; times -bm", FIELD(bump_height), true},
+		"how far white is above black in a height map, as a share of its width; times -bm",
+		FIELD(bump_height), true},
 	{"flip-green", 0, NT_OPTION_CHOICE, "off|auto|on", NT_FLIP_OFF, 0, "off",
-		"normal maps of an OBJ whose green points down are turned to glTF's convention; auto: where that is certain; on: "
-		"all",
+		"normal maps of an OBJ whose green points down are turned to glTF's convention; auto: where "
+		"that is certain; on: all",
 		SETTING(flip_green), true},
 	{"draco", 0, NT_OPTION_CHOICE, "keep|off|sequential|edgebreaker", NT_DRACO_KEEP, 0, "keep",
 		"glTF primitives that get tangents; keep: compressed ones are compressed again; off: "
@@ -133,7 +135,8 @@ const nt_option_row nt_option_rows[] = {
 		"write bitangents too: bx by bz in PLY, _BITANGENT in glTF", SETTING(bitangents), true},
 	{"no-clobber", 'n', NT_OPTION_FLAG, NULL, 0, 0, NULL, "never replace a file",
 		SETTING(no_clobber), true},
-	{"sync", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL, "fsync files and folders, so that a power cut leaves the old or the new output",
+	{"sync", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
+		"fsync files and folders, so that a power cut leaves the old or the new output",
 		SETTING(sync), true},
 	{"verify", 0, NT_OPTION_FLAG, NULL, 0, 0, NULL,
 		"read a glTF output back with tinygltf before it takes its name", SETTING(verify), true},
@@ -150,12 +153,14 @@ const nt_option_row nt_option_rows[] = {
 		"with --check OLD NEW: what changed in tangents, seams and findings; what is new decides the exit code",
 		FIELD(diff), false},
 	{"check-maps", 0, NT_OPTION_CHOICE, "auto|on|off", NT_CHECK_MAPS_AUTO, 0, "auto",
-		"decode normal maps and examine them; auto: for a report, files of at most 16 MB", SETTING(check_maps), false},
+		"decode normal maps and examine them; auto: for a report, files of at most 16 MB",
+		SETTING(check_maps), false},
 	{"fail-on", 0, NT_OPTION_CHOICE, "error|warning|info|never", NT_FAIL_ON_ERROR, 0,
 		"error with --check, else never", "exit with 6 on findings of this severity or above",
 		FIELD(fail_on), false},
 	{"report", 0, NT_OPTION_TEXT, "FILE", 0, 0, NULL,
-		"write a report of what was found to FILE; - is standard output, DIR/ gets a page of each input", FIELD(report), false},
+		"write a report of what was found to FILE; - is standard output, DIR/ gets a page of each "
+		"input", FIELD(report), false},
 	{"report-format", 0, NT_OPTION_CHOICE,
 		"text|json|sarif|junit|csv|markdown|html", 1, 0,
 		"by name", "format of the report", FIELD(report_format), false},

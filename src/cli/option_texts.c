@@ -239,8 +239,13 @@ static void append_shaping(nt_buffer *out, const nt_option_row *row, const void 
 /* How many bytes of the command a row's value takes. */
 static size_t field_bytes(const nt_option_row *row)
 {
-	return row->kind == NT_OPTION_FLAG ? sizeof(bool) : row->kind == NT_OPTION_TEXT ? sizeof(char *) :
-	       row->kind == NT_OPTION_LIST ? sizeof(nt_words) : row->kind == NT_OPTION_SIZE ? sizeof(uint64_t) : sizeof(int);
+	switch (row->kind) {
+	case NT_OPTION_FLAG: return sizeof(bool);
+	case NT_OPTION_TEXT: return sizeof(char *);
+	case NT_OPTION_LIST: return sizeof(nt_words);
+	case NT_OPTION_SIZE: return sizeof(uint64_t);
+	default: return sizeof(int);
+	}
 }
 
 /* Options about the output that change when and how it is written, but not what. */

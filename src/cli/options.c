@@ -112,7 +112,8 @@ static nt_status refuse_value(parser *p, const nt_option_row *row, const char *w
 			list);
 	}
 	if (row->kind == NT_OPTION_SIZE)
-		return nt_fail(p->error, NT_ERROR_USAGE, "--%s: '%s' is not a size, as 500M, 2GiB or 2GB", row->name, word);
+		return nt_fail(p->error, NT_ERROR_USAGE, "--%s: '%s' is not a size, as 500M, 2GiB or 2GB",
+			row->name, word);
 	return nt_fail(p->error, NT_ERROR_USAGE, "--%s: '%s' is not %sa number from 0 to %d",
 		row->name, word, row->kind == NT_OPTION_AUTO_NUMBER ? "auto or " : "", row->most);
 }
@@ -363,7 +364,8 @@ static nt_status check_clashes(parser *p)
 		if (p->command->settings.check && nt_option_rows[i].writes && p->given[i])
 			return nt_fail(p->error, NT_ERROR_USAGE,
 				"--check writes no mesh, so --%s has no meaning", nt_option_rows[i].name);
-	static const char *const needs[][2] = {{"mirror", "directory"}, {"include", "recursive"}, {"exclude", "recursive"}, {"update-by", "update"}};
+	static const char *const needs[][2] = {{"mirror", "directory"}, {"include", "recursive"},
+		{"exclude", "recursive"}, {"update-by", "update"}};
 	for (size_t i = 0; i < sizeof needs / sizeof *needs; i++)
 		if (given(p, needs[i][0]) && !given(p, needs[i][1]))
 			return nt_fail(p->error, NT_ERROR_USAGE, "--%s needs --%s", needs[i][0], needs[i][1]);

@@ -92,7 +92,8 @@ static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool c
 	const bool dash = strcmp(target->path, "-") == 0;
 	target->folder = c->report && !dash && is_folder(c->report);
 	if (target->folder && c->report_format && c->report_format - 1 != NT_REPORT_HTML)
-		return nt_fail(error, NT_ERROR_USAGE, "a report in a folder is HTML; for another format, --report names a file");
+		return nt_fail(error, NT_ERROR_USAGE,
+			"a report in a folder is HTML; for another format, --report names a file");
 	if (target->folder)
 		target->format = NT_REPORT_HTML;
 	else if (c->report_format)
@@ -161,7 +162,8 @@ nt_status nt_report_plan_make(nt_report_plan *plan, const nt_command *command, b
 		status = nt_baseline_open(&plan->baseline, command->baseline, error);
 		plan->options.baseline = &plan->baseline;
 	}
-	if (!status && plan->target.path && plan->target.format == NT_REPORT_HTML && strcmp(plan->target.path, "-") != 0) {
+	if (!status && plan->target.path && plan->target.format == NT_REPORT_HTML &&
+		strcmp(plan->target.path, "-") != 0) {
 		nt_buffer page = {0};
 		nt_buffer_text(&page, plan->target.path);
 		while (plan->target.folder && page.size > 1 && page.data[page.size - 1] == '/')

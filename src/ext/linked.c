@@ -17,7 +17,8 @@ const nt_linked_library *nt_linked_libraries(size_t *count)
 		{"libjpeg-turbo", TEXT(LIBJPEG_TURBO_VERSION), "IJG AND BSD-3-Clause AND Zlib"},
 		{"libstdc++", NULL, "GPL-3.0-or-later WITH GCC-exception-3.1"},
 		{"stb_image", NULL, "MIT OR Unlicense"},
-		{"xxHash", TEXT(XXH_VERSION_MAJOR) "." TEXT(XXH_VERSION_MINOR) "." TEXT(XXH_VERSION_RELEASE), "BSD-2-Clause"},
+		{"xxHash", TEXT(XXH_VERSION_MAJOR) "." TEXT(XXH_VERSION_MINOR) "." TEXT(XXH_VERSION_RELEASE),
+			"BSD-2-Clause"},
 	};
 	*count = sizeof libraries / sizeof *libraries;
 	return libraries;

@@ -39,9 +39,12 @@ typedef struct row {
 
 static const row rows[NT_MODULE_COUNT] = {
 	[NT_MODULE_DRACO] = {"draco", "Draco compression", sizeof(nt_draco_table), &nt_draco_module.head},
-	[NT_MODULE_MESHOPT] = {"meshopt", "compression by meshoptimizer", sizeof(nt_meshopt_table), &nt_meshopt_module.head},
-	[NT_MODULE_OPENMESH] = {"openmesh", "a report on seams or boundaries that fork", sizeof(nt_openmesh_table), &nt_openmesh_module.head},
-	[NT_MODULE_TINYGLTF] = {"tinygltf", "verifying what was written", sizeof(nt_tinygltf_table), &nt_tinygltf_module.head},
+	[NT_MODULE_MESHOPT] = {"meshopt", "compression by meshoptimizer", sizeof(nt_meshopt_table),
+		&nt_meshopt_module.head},
+	[NT_MODULE_OPENMESH] = {"openmesh", "a report on seams or boundaries that fork",
+		sizeof(nt_openmesh_table), &nt_openmesh_module.head},
+	[NT_MODULE_TINYGLTF] = {"tinygltf", "verifying what was written", sizeof(nt_tinygltf_table),
+		&nt_tinygltf_module.head},
 	[NT_MODULE_PNG] = {"png", "PNG", sizeof(nt_codec_table), &nt_png_module.head},
 	[NT_MODULE_TIFF] = {"tiff", "TIFF", sizeof(nt_codec_table), &nt_tiff_module.head},
 };
@@ -61,7 +64,8 @@ static nt_status find_program(char folder[PATH_MAX], nt_error *error)
 {
 	const ssize_t length = readlink("/proc/self/exe", folder, PATH_MAX - 1);
 	if (length < 0 && errno != ENOENT && errno != EACCES)
-		return nt_fail(error, NT_ERROR_IO, "cannot find the folder of the running program: %s", strerror(errno));
+		return nt_fail(error, NT_ERROR_IO, "cannot find the folder of the running program: %s",
+			strerror(errno));
 	folder[length < 0 ? 0 : length] = 0;
 	char *slash = strrchr(folder, '/');
 	if (slash)
@@ -118,7 +122,8 @@ static nt_status check(const row *module, const char *path, const nt_module_head
 		return nt_fail(error, NT_ERROR_MODULE, "%s is a module of nmtan %s, expected one of nmtan %s", path,
 			head->version, NMTAN_VERSION_STRING);
 	if (head->struct_bytes != module->struct_bytes)
-		return nt_fail(error, NT_ERROR_MODULE, "%s is a module of another build of nmtan %s", path, head->version);
+		return nt_fail(error, NT_ERROR_MODULE, "%s is a module of another build of nmtan %s", path,
+			head->version);
 	return NT_OK;
 }
 
@@ -170,7 +175,8 @@ void nt_module_describe(nt_module module, char *line, size_t size)
 	nt_error error;
 	const nt_module_head *head = nt_module_open(module, &status, &error);
 	if (head)
-		snprintf(line, size, "%s: %s%s%s, %s", rows[module].name, head->library, head->library_version ? " " : "",
+		snprintf(line, size, "%s: %s%s%s, %s", rows[module].name, head->library,
+			head->library_version ? " " : "",
 			head->library_version ? head->library_version : "", head->licence);
 	else
 		snprintf(line, size, "%s: %s", rows[module].name, error.message);

@@ -69,7 +69,8 @@ typedef struct nt_codec_table {
 	nt_module_head head;
 	nt_status (*decode)(const unsigned char *bytes, size_t size, uint32_t rows, struct nt_pixels *pixels,
 		nt_error *error);
-	nt_status (*encode)(const struct nt_pixels *pixels, unsigned char **bytes, size_t *size, nt_error *error); /* or NULL */
+	/* or NULL */
+	nt_status (*encode)(const struct nt_pixels *pixels, unsigned char **bytes, size_t *size, nt_error *error);
 } nt_codec_table;
 
 /* The tables by name, as the loader finds them. Weak: a program may have them linked in (unit tests do) or not. */

@@ -15,12 +15,15 @@ static const struct {
 	{"Kaydara FBX Binary", ".fbx", "FBX is not read: export glTF (.glb) instead; Blender opens FBX and exports it"},
 	{"; FBX", ".fbx", "FBX is not read: export glTF (.glb) instead; Blender opens FBX and exports it"},
 	{"", ".dae", "COLLADA is not read: export glTF (.glb) instead, or OBJ"},
-	{"solid ", ".stl", "STL is not read, and has no texture coordinates that tangents could follow: export OBJ or glTF "
+	{"solid ", ".stl",
+		"STL is not read, and has no texture coordinates that tangents could follow: export OBJ or glTF "
 		"(.glb) of the unwrapped model instead"},
 	{"PXR-USDC", ".usd .usdc", "USD is not read: export glTF (.glb) instead; Blender opens USD and exports it"},
 	{"#usda", ".usda .usdz", "USD is not read: export glTF (.glb) instead; Blender opens USD and exports it"},
-	{"b3dm", ".b3dm", "a tile of 3D Tiles is not read: the GLB in it is (b3dmToGlb of 3d-tiles-tools takes it out)"},
-	{"i3dm", ".i3dm", "a tile of 3D Tiles is not read: the GLB in it is (i3dmToGlb of 3d-tiles-tools takes it out)"},
+	{"b3dm", ".b3dm",
+		"a tile of 3D Tiles is not read: the GLB in it is (b3dmToGlb of 3d-tiles-tools takes it out)"},
+	{"i3dm", ".i3dm",
+		"a tile of 3D Tiles is not read: the GLB in it is (i3dmToGlb of 3d-tiles-tools takes it out)"},
 	{"BLENDER", ".blend", "Blender's own files are not read: export glTF (.glb) from Blender instead"},
 };
 

@@ -99,7 +99,8 @@ static const nt_json_value *element(const nt_json_value *array, const nt_json_va
 /* The image that every reader has comes first. */
 static const nt_json_value *source_of(const nt_json_value *texture)
 {
-	const nt_json_value *source = nt_json_find(texture, "source"), *extensions = nt_json_find(texture, "extensions");
+	const nt_json_value *source = nt_json_find(texture, "source"),
+		*extensions = nt_json_find(texture, "extensions");
 	for (nt_image_type type = NT_IMAGE_KTX2; !source && type <= NT_IMAGE_WEBP; type++)
 		source = nt_json_find(nt_json_find(extensions, nt_image_extension(type)), "source");
 	return source;
@@ -157,7 +158,8 @@ static uint64_t set_of(const nt_json_value *info)
 {
 	uint64_t set = 0;
 	nt_json_get_uint64(nt_json_find(info, "texCoord"), &set);
-	nt_json_get_uint64(nt_json_find(nt_json_find(nt_json_find(info, "extensions"), "KHR_texture_transform"), "texCoord"), &set);
+	nt_json_get_uint64(nt_json_find(nt_json_find(nt_json_find(info, "extensions"), "KHR_texture_transform"),
+		"texCoord"), &set);
 	return set;
 }
 

@@ -21,7 +21,8 @@ enum { UNBACKED_INDICES = 65536 };
 
 uint32_t nt_gltf_component_bytes(uint64_t component_type)
 {
-	return component_type == NT_GLTF_INT || component_type > NT_GLTF_FLOAT ? 0 : nt_component_size((int)component_type);
+	return component_type == NT_GLTF_INT || component_type > NT_GLTF_FLOAT
+		? 0 : nt_component_size((int)component_type);
 }
 
 uint32_t nt_gltf_index_type(uint64_t most, uint32_t least)
@@ -255,7 +256,8 @@ static void take(const nt_gltf_kept_accessor *kept, uint32_t index, nt_gltf_acce
 	const uint32_t type = NT_GLTF_BYTE + kept->type % NORMALIZED, bytes = nt_gltf_component_bytes(type);
 	*a = (nt_gltf_accessor){.index = index, .component_type = type, .component_bytes = bytes,
 		.components = kept->components, .element_bytes = bytes * kept->components,
-		.normalized = kept->type >= NORMALIZED, .count = kept->count, .view = kept->view, .offset = kept->offset,
+		.normalized = kept->type >= NORMALIZED, .count = kept->count, .view = kept->view,
+		.offset = kept->offset,
 		.stride = kept->stride};
 }
 
@@ -458,8 +460,8 @@ nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, s
 	for (size_t i = 0; !sound && i < count; i++)
 		if (out[i] == reserved && nt_gltf_uses(document, "KHR_mesh_primitive_restart"))
 			return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
-				"index %zu restarts the primitive (KHR_mesh_primitive_restart), which nmtan does not do: "
-				"write a list of triangles", i);
+				"index %zu restarts the primitive (KHR_mesh_primitive_restart), which nmtan "
+				"does not do: write a list of triangles", i);
 		else if (out[i] >= vertex_count || out[i] == reserved)
 			return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 				"index %zu is %u%s, there are %zu vertices", i, out[i],

@@ -41,7 +41,8 @@ static const place places[] = {
 	{"meshes/*/primitives/*/extensions/CESIUM_primitive_outline/indices", NT_GLTF_ACCESSORS},
 	{"meshes/*/primitives/*/extensions/EXT_mesh_primitive_edge_visibility/visibility", NT_GLTF_ACCESSORS},
 	{"meshes/*/primitives/*/extensions/EXT_mesh_primitive_edge_visibility/silhouetteNormals", NT_GLTF_ACCESSORS},
-	{"meshes/*/primitives/*/extensions/EXT_mesh_primitive_edge_visibility/lineStrings/*/indices", NT_GLTF_ACCESSORS},
+	{"meshes/*/primitives/*/extensions/EXT_mesh_primitive_edge_visibility/lineStrings/*/indices",
+		NT_GLTF_ACCESSORS},
 	{"meshes/*/primitives/*/extensions/KHR_draco_mesh_compression/bufferView", NT_GLTF_VIEWS},
 	{"meshes/*/primitives/*/extensions/KHR_gaussian_splatting/extensions/KHR_gaussian_splatting_compression_spz_2/"
 		"bufferView", NT_GLTF_VIEWS},
@@ -119,7 +120,8 @@ static void look_at(nt_gltf *document, const nt_json_value *value, const place *
 		const bool is_star = *key == '*';
 		const size_t count = is_star ? nt_json_count(value) : 1;
 		for (size_t i = 0; i < count; i++) {
-			const nt_json_value *child = is_star ? nt_json_at(value, i) : nt_json_find_key(value, key, length);
+			const nt_json_value *child = is_star
+				? nt_json_at(value, i) : nt_json_find_key(value, key, length);
 			if (is_star)
 				numbers[star] = nt_json_type_of(value) == NT_JSON_ARRAY ? i : MEMBER;
 			if (!key[length])
@@ -147,7 +149,8 @@ nt_status nt_gltf_check_dangling(const nt_gltf *document, nt_error *error)
 	for (nt_gltf_growing kind = 0; document->dangling_known && kind < NT_GLTF_GROWING; kind++) {
 		const nt_gltf_dangling *lowest = &document->dangling[kind];
 		if (lowest->number < nt_json_count(nt_gltf_root_member(document, arrays[kind])))
-			return nt_fail_pointer(error, NT_ERROR_INPUT, lowest->pointer, "refers to %s[%llu], there are %zu",
+			return nt_fail_pointer(error, NT_ERROR_INPUT, lowest->pointer,
+				"refers to %s[%llu], there are %zu",
 				arrays[kind], (unsigned long long)lowest->number, count_in_file(document, kind));
 	}
 	return NT_OK;

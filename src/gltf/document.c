@@ -379,7 +379,8 @@ void nt_gltf_note_read(nt_gltf *document, nt_gltf_buffer *buffer, uint64_t begin
 	for (uint64_t page = begin / NT_GLTF_PAGE; page <= (begin + length - 1) / NT_GLTF_PAGE; page++) {
 		uint64_t *const word = &buffer->pages[page / 64];
 		const uint64_t bit = (uint64_t)1 << page % 64;
-		if (__atomic_load_n(word, __ATOMIC_RELAXED) & bit || __atomic_fetch_or(word, bit, __ATOMIC_RELAXED) & bit)
+		if (__atomic_load_n(word, __ATOMIC_RELAXED) & bit ||
+			__atomic_fetch_or(word, bit, __ATOMIC_RELAXED) & bit)
 			continue;
 		const uint64_t left = buffer->size - page * NT_GLTF_PAGE;
 		__atomic_fetch_add(&document->bytes_read, left < NT_GLTF_PAGE ? left : NT_GLTF_PAGE, __ATOMIC_RELAXED);

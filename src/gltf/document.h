@@ -101,12 +101,13 @@ typedef struct nt_gltf {
 	size_t accessor_count;
 	struct nt_draco **draco_blocks; /* [view_count] decoded blocks: draco.c; NULL until there is something */
 	void (*free_blocks)(struct nt_gltf *document); /* set with them */
-	struct nt_draco_quantization *grids; /* [accessors of the source] on which accessors will be compressed: those of
-	                                        joins (edit/draco_foresee.c), bits 0: on their own. NULL: all of them */
+	struct nt_draco_quantization *grids; /* [accessors of the source] on which accessors will be compressed: those
+	                                        of joins (edit/draco_foresee.c),
+	                                        bits 0: on their own. NULL: all of them */
 	bool dangling_known;     /* then these are, as the file had them: dangling.h */
 	nt_gltf_dangling dangling[NT_GLTF_GROWING];
-	bool is_shared;          /* several threads load: nothing is opened, decompressed or decoded, what would have to be
-	                            fails */
+	bool is_shared;          /* several threads load: nothing is opened, decompressed or decoded, what would have
+	                            to be fails */
 	uint64_t bytes_read;     /* of buffers */
 	uint64_t bytes_opened;   /* of external files and data URIs */
 } nt_gltf;

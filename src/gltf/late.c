@@ -98,8 +98,8 @@ static nt_status mark_all(const search *s, nt_error *error)
 		mesh->late = is_late(s, mesh);
 		if (!mesh->late)
 			continue;
-		status = nt_gltf_get_accessor(s->document, positions_of(s, mesh), nt_gltf_of_mesh(mesh).pointer, &positions,
-			error);
+		status = nt_gltf_get_accessor(s->document, positions_of(s, mesh), nt_gltf_of_mesh(mesh).pointer,
+			&positions, error);
 		if (!status)
 			mesh->vertex_count = mesh->source_vertex_count = (size_t)positions.count;
 	}

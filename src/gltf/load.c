@@ -239,7 +239,8 @@ static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *me
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UVSET_CONFLICT, nt_mesh_place(mesh, &(nt_place){0}), 1,
 			"set %u with different texture transforms", mesh->texcoord_set);
 	if (own && shading.transform.animated)
-		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED, nt_mesh_place(mesh, &(nt_place){0}), 1, NULL);
+		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED,
+			nt_mesh_place(mesh, &(nt_place){0}), 1, NULL);
 	return shading.transform.turns && !mesh->same_as
 		? nt_mesh_transform(mesh, &shading.transform.uv, &scene->arena, error) : NT_OK;
 }
@@ -357,8 +358,8 @@ static nt_status load_chain(nt_gltf *document, const nt_mesh *mesh, const nt_jso
 {
 	uint64_t index;
 	*chain = NULL;
-	nt_status status = nt_gltf_uint(primitive, nt_gltf_of_mesh(mesh).pointer, "indices", UINT32_MAX - 1, NT_NONE, &index,
-		error);
+	nt_status status = nt_gltf_uint(primitive, nt_gltf_of_mesh(mesh).pointer, "indices", UINT32_MAX - 1,
+		NT_NONE, &index, error);
 	if (status || index == NT_NONE)
 		return status;
 	char pointer[NT_GLTF_POINTER];
@@ -397,8 +398,8 @@ nt_status nt_gltf_load_triangles(nt_gltf *document, const nt_mesh *mesh, nt_aren
 	nt_error *error)
 {
 	uint64_t count = 0;
-	const nt_status status = load_chain(document, mesh, nt_gltf_primitive_of(document, mesh), 1, arena, indices, &count,
-		error);
+	const nt_status status = load_chain(document, mesh, nt_gltf_primitive_of(document, mesh), 1, arena,
+		indices, &count, error);
 	assert(status || count == mesh->corner_count);
 	return status;
 }

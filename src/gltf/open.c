@@ -102,10 +102,12 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 			shading.wrap[axis] == NT_WRAP_MIRRORED ? (float)shading.transform.uv.offset[axis] : 0;
 	}
 	mesh->texcoord_set = options->texcoord_set >= 0 ? (uint32_t)options->texcoord_set : shading.set;
-	mesh->texcoords_transformed = shading.transforms_differ || shading.transform.animated || shading.transform.turns;
+	mesh->texcoords_transformed = shading.transforms_differ || shading.transform.animated ||
+		shading.transform.turns;
 	mesh->texcoord_conflict = shading.conflict && options->texcoord_set < 0;
 	mesh->texcoord_other_set = shading.other_set;
-	const nt_json_value *positions = nt_json_find(attributes, "POSITION"), *indices = nt_json_find(primitive, "indices");
+	const nt_json_value *positions = nt_json_find(attributes, "POSITION"),
+		*indices = nt_json_find(primitive, "indices");
 	const uint64_t corners = positions ? claimed_count(document, indices ? indices : positions) : 0;
 	mesh->has_positions = positions != NULL;
 	mesh->has_normals = nt_json_find(attributes, "NORMAL") != NULL;

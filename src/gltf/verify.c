@@ -443,7 +443,8 @@ static nt_status open_checks(verification *v, nt_error *error)
 		if (v->edited ? !mesh->split.vertex_tangents : !mesh->face_count)
 			continue;
 		mesh_check *check = &v->checks[v->count];
-		*check = (mesh_check){.mesh = mesh, .view_count = !v->edited && mesh->primitive_count ? mesh->primitive_count : 1};
+		*check = (mesh_check){.mesh = mesh,
+			.view_count = !v->edited && mesh->primitive_count ? mesh->primitive_count : 1};
 		check->views = nt_calloc(check->view_count, sizeof *check->views);
 		if (!check->views)
 			return nt_fail_memory(error);

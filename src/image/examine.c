@@ -184,7 +184,8 @@ static block sum_block(const slopes *s, size_t column, size_t row)
 				continue;
 			const float *here = s->rows[y * s->width + x], *left = here - 3, *right = here + 3,
 				    *above = here - 3 * s->width, *below = here + 3 * s->width;
-			if (here[2] == 0 || !are_close(here, left) || !are_close(here, right) || !are_close(here, above) ||
+			if (here[2] == 0 || !are_close(here, left) || !are_close(here, right) ||
+				!are_close(here, above) ||
 				!are_close(here, below))
 				continue;
 			const double dp = (double)(below[0] - above[0]) / 2, dq = (double)(right[1] - left[1]) / 2;
@@ -232,7 +233,8 @@ static voice ask(const slopes *s)
 
 static bool is_sure(const voice *v)
 {
-	return v->blocks >= LEAST_BLOCKS && fabs(v->correlation) >= least_correlation && v->agreement >= least_agreement;
+	return v->blocks >= LEAST_BLOCKS && fabs(v->correlation) >= least_correlation &&
+		v->agreement >= least_agreement;
 }
 
 /* Asks at every size. The figures are those of the size that is surest. */

@@ -19,7 +19,8 @@ typedef struct nt_normal_facts {
 	double agreement;   /* share of the blocks, by weight, whose sign is that of the correlation; 0 without any */
 	double not_unit;    /* share of the pixels whose length is more than a tenth from 1 */
 	double blue_below;  /* share of the pixels that point into the surface */
-	double banded;      /* share of the sloped pixels that lie in steps of one level: an 8-bit map of a smooth surface */
+	double banded;      /* share of the sloped pixels that lie in steps of one level: an 8-bit map of a
+	                       smooth surface */
 	bool constant;      /* all pixels are alike */
 	bool object_space;  /* unit vectors into all directions */
 	bool heights;       /* grey pixels alone: a height map, of which nothing else is told */

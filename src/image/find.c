@@ -225,7 +225,8 @@ nt_status nt_image_find(const nt_image_places *places, const char *name, nt_buff
 			nt_trace_unsure(); /* any case will do */
 			*found = s.outside ? NT_IMAGE_OUTSIDE : NT_IMAGE_MISSING;
 			path->size = 0;
-			nt_link_join(path, folder.size ? folder.data : "/", nt_link_is_absolute(name) ? nt_last_part(part) : name);
+			nt_link_join(path, folder.size ? folder.data : "/",
+				nt_link_is_absolute(name) ? nt_last_part(part) : name);
 			status = path->failed ? nt_fail_memory(error) : NT_OK;
 		}
 		free(part);

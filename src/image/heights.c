@@ -56,10 +56,12 @@ nt_status nt_heights_to_normals(const nt_pixels *heights, double height, bool cl
 	for (uint32_t y = 0; y <= last; y++) {
 		read_row(heights, step(y, 1, last, clamp), below);
 		for (uint32_t x = 0; x < width; x++) {
-			const float left = here[step(x, -1, width - 1, clamp)], right = here[step(x, 1, width - 1, clamp)];
+			const float left = here[step(x, -1, width - 1, clamp)],
+				right = here[step(x, 1, width - 1, clamp)];
 			const double dx = scale * ((double)right - left), dy = scale * ((double)below[x] - above[x]);
 			const double length = sqrt(dx * dx + dy * dy + 1);
-			write_pixel(normals, (size_t)y * width + x, (const double[]){-dx / length, dy / length, 1 / length});
+			write_pixel(normals, (size_t)y * width + x,
+				(const double[]){-dx / length, dy / length, 1 / length});
 		}
 		float *free_row = above;
 		above = here;

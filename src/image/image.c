@@ -48,7 +48,8 @@ bool nt_pixels_are_grey(const nt_pixels *pixels, nt_image_type type)
 	const uint8_t *narrow = pixels->samples;
 	const uint16_t *wide = pixels->samples;
 	for (size_t i = 0; i < count * step; i += step) {
-		const int r = pixels->bits == 8 ? narrow[i] : wide[i], g = pixels->bits == 8 ? narrow[i + 1] : wide[i + 1],
+		const int r = pixels->bits == 8 ? narrow[i] : wide[i],
+			g = pixels->bits == 8 ? narrow[i + 1] : wide[i + 1],
 			  b = pixels->bits == 8 ? narrow[i + 2] : wide[i + 2];
 		if (abs(r - g) > tolerance || abs(g - b) > tolerance || abs(r - b) > tolerance)
 			return false;

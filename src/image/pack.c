@@ -94,7 +94,8 @@ static between locate(uint32_t i, uint32_t to, uint32_t from, bool clamp)
 	const double at = (i + 0.5) * from / to - 0.5, below = floor(at);
 	const int64_t first = (int64_t)below, second = first + 1, last = (int64_t)from - 1;
 	if (clamp)
-		return (between){(uint32_t)(first < 0 ? 0 : first), (uint32_t)(second > last ? last : second), at - below};
+		return (between){(uint32_t)(first < 0 ? 0 : first), (uint32_t)(second > last ? last : second),
+			at - below};
 	return (between){(uint32_t)(first < 0 ? last : first), (uint32_t)(second > last ? 0 : second), at - below};
 }
 

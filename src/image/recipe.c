@@ -32,7 +32,8 @@ bool nt_recipe_equal(const nt_recipe *a, const nt_recipe *b)
 /* Adding 0 makes 0 of -0. */
 uint64_t nt_recipe_hash(const nt_recipe *how)
 {
-	double numbers[5 + 4 * 7] = {how->packed, how->png, how->flip, how->height + 0.0, 2 * how->heights + how->clamp};
+	double numbers[5 + 4 * 7] = {how->packed, how->png, how->flip, how->height + 0.0,
+		2 * how->heights + how->clamp};
 	for (int k = 0; k < 4; k++) {
 		const nt_ingredient *i = &how->channels[k];
 		const double of_channel[] = {i->used, i->source, i->map.channel, i->map.base + 0.0, i->map.gain + 0.0,
@@ -197,8 +198,10 @@ static bool is_there(const packing *p, const nt_file *const files[4])
 	const bool grey = nt_pixels_are_grey(pixels_of(p, first), type);
 	for (int k = first; k < 4; k++) {
 		const nt_ingredient *i = &p->how.channels[k];
-		const bool same = i->map.channel == (nt_channel)k || (grey && k < 3 && i->map.channel != NT_CHANNEL_ALPHA);
-		if (i->used && (i->source != p->how.channels[first].source || !same || !nt_channel_map_is_identity(&i->map)))
+		const bool same = i->map.channel == (nt_channel)k ||
+			(grey && k < 3 && i->map.channel != NT_CHANNEL_ALPHA);
+		if (i->used &&
+			(i->source != p->how.channels[first].source || !same || !nt_channel_map_is_identity(&i->map)))
 			return false;
 	}
 	return nt_image_is_carried(type);
@@ -238,7 +241,8 @@ static nt_status put_together(const packing *p, nt_pixels *to, nt_error *error)
 	for (int k = 0; k < 4 && !status; k++)
 		if (is_taken(p, k)) {
 			const unsigned channel = k == 3 ? channels - 1 : channels < 3 ? 0 : (unsigned)k;
-			status = nt_pack_channel(pixels_of(p, k), &p->how.channels[k].map, p->how.clamp, to, channel, error);
+			status = nt_pack_channel(pixels_of(p, k), &p->how.channels[k].map, p->how.clamp, to,
+				channel, error);
 		}
 	return status;
 }

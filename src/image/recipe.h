@@ -25,7 +25,8 @@ typedef struct nt_ingredient {
 } nt_ingredient;
 
 typedef struct nt_recipe {
-	nt_ingredient channels[4]; /* without `packed` the source of the first is the image; with `heights` its map is applied */
+	nt_ingredient channels[4]; /* without `packed` the source of the first is the image; with `heights` its
+	                              map is applied */
 	bool packed;
 	bool png;        /* the result is a PNG, whatever the file is */
 	nt_flip flip;

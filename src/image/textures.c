@@ -310,7 +310,8 @@ static char *name_of(const nt_recipe *how, const nt_texture *texture)
 	nt_buffer_append(&text, name, texture->bytes && dot > name ? (size_t)(dot - name) : strlen(name));
 	if (texture->bytes)
 		nt_buffer_format(&text, "%s.png",
-			how->packed ? how->suffix : texture->from_heights ? "-normal" : texture->flipped ? "-green-up" : "");
+			how->packed ? how->suffix
+			: texture->from_heights ? "-normal" : texture->flipped ? "-green-up" : "");
 	if (text.failed)
 		nt_buffer_free(&text);
 	return text.data;
@@ -321,7 +322,8 @@ static void list_sources(const nt_textures *t, const nt_recipe *how, nt_texture 
 {
 	for (int k = 0; k < 4; k++) {
 		const uint32_t from = how->channels[k].source;
-		const nt_texture_source *s = how->channels[k].used && from != UINT32_MAX ? &t->sources[from]->file : NULL;
+		const nt_texture_source *s = how->channels[k].used && from != UINT32_MAX
+			? &t->sources[from]->file : NULL;
 		bool known = !s;
 		for (size_t i = 0; i < texture->source_count && !known; i++)
 			known = texture->sources[i] == s;
@@ -466,7 +468,8 @@ static void make_result(void *context, size_t item, unsigned slot)
 /* Passes on what is not the image's fault. */
 static nt_status fatal(const nt_error *failure, nt_error *error)
 {
-	if (failure->status != NT_ERROR_MEMORY && failure->status != NT_ERROR_IO && failure->status != NT_ERROR_MISSING &&
+	if (failure->status != NT_ERROR_MEMORY && failure->status != NT_ERROR_IO &&
+		failure->status != NT_ERROR_MISSING &&
 		failure->status != NT_ERROR_MODULE)
 		return NT_OK;
 	*error = *failure;

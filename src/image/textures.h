@@ -39,8 +39,8 @@ typedef struct nt_texture_channel {
 /* What an image is, and how it is used. */
 typedef struct nt_texture_wish {
 	nt_texture_kind kind;
-	nt_texture_channel channels[4]; /* red, green, blue, alpha; if not packed the first alone, of which the map counts for
-	                                   heights */
+	nt_texture_channel channels[4]; /* red, green, blue, alpha; if not packed the first alone, of which the map
+	                                   counts for heights */
 	double height;      /* of heights: see image/heights.h */
 	bool clamp;         /* of heights and what is packed */
 	const char *suffix; /* of the name of what is packed; stays */
@@ -62,7 +62,8 @@ typedef struct nt_texture_source {
 
 /* One result. Texts and bytes belong to the textures. */
 typedef struct nt_texture {
-	const nt_texture_source *sources[4]; /* [source_count] that it was made of; the first is it where bytes are NULL */
+	const nt_texture_source *sources[4]; /* [source_count] that it was made of; the first is it where bytes
+	                                        are NULL */
 	size_t source_count;
 	nt_image_type type;        /* of the result; NT_IMAGE_OTHER: there is none */
 	bool from_heights;         /* a height map became a normal map */

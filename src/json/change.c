@@ -53,7 +53,8 @@ static bool grow(nt_json *document, nt_json_value *container)
 	nt_json_list *const old = container->apart ? container->of.list : NULL;
 	if (old && container->size < old->capacity)
 		return true;
-	const size_t capacity = container->size < LEAST_CAPACITY ? LEAST_CAPACITY : container->size + container->size / 2;
+	const size_t capacity = container->size < LEAST_CAPACITY
+		? LEAST_CAPACITY : container->size + container->size / 2;
 	nt_json_list *list = nt_json_new_list(document, capacity, nt_json_begin(container));
 	if (!list)
 		return false;
@@ -260,7 +261,8 @@ void nt_json_set_copy(nt_json *document, nt_json_value *value, const nt_json_val
 		copy_children(document, value, from);
 	else if (nt_json_is_container(from) && !set_container(document, value, type, 0))
 		fail(document);
-	else if ((type == NT_JSON_STRING || type == NT_JSON_REAL || type == NT_JSON_INTEGER) && !nt_json_is_counted(from))
+	else if ((type == NT_JSON_STRING || type == NT_JSON_REAL || type == NT_JSON_INTEGER) &&
+		!nt_json_is_counted(from))
 		set_text(document, value, type, nt_json_text(from), from->size);
 	else if (!nt_json_is_container(from))
 		set(value, *from);

@@ -22,7 +22,8 @@ enum { PADDING_BYTES = 8 };
 typedef struct opened {
 	const char *begin;
 	size_t first, first_key; /* where its children and keys begin in the stacks */
-	nt_json_shape *guessed;  /* its first keys are the first ones of this, and not in the stack; NULL: they are there */
+	nt_json_shape *guessed;  /* its first keys are the first ones of this, and not in the stack; NULL: they
+	                            are there */
 	bool is_object;
 	bool foreign; /* duplicate keys and numbers beyond double are no fault */
 	bool foreign_member; /* of the value that comes next */
@@ -74,7 +75,8 @@ static char *skip_plain(char *at)
 		const uint64_t quotes = bytes ^ ones * '"', slashes = bytes ^ ones * '\\';
 		/* a high bit wherever a byte is a quote, a backslash, below 0x20 or above 0x7f; some more above the
 		 * first */
-		if ((((quotes - ones) & ~quotes) | ((slashes - ones) & ~slashes) | ((bytes - ones * 0x20) & ~bytes) | bytes) & high)
+		if ((((quotes - ones) & ~quotes) | ((slashes - ones) & ~slashes) |
+			((bytes - ones * 0x20) & ~bytes) | bytes) & high)
 			break;
 	}
 	while (*at != '"' && *at != '\\' && (unsigned char)*at >= 0x20 && (unsigned char)*at < 0x80)
@@ -219,7 +221,8 @@ static bool fits_64_bits(const char *at, const char *end)
 	if (end - at < 19)
 		return true;
 	for (at += negative; at < end; at++)
-		if (__builtin_mul_overflow(value, 10u, &value) || __builtin_add_overflow(value, (uint64_t)(*at - '0'), &value))
+		if (__builtin_mul_overflow(value, 10u, &value) ||
+			__builtin_add_overflow(value, (uint64_t)(*at - '0'), &value))
 			return false;
 	return !negative || value <= (uint64_t)1 << 63;
 }
@@ -282,7 +285,8 @@ static nt_status push(reader *r, nt_json_value value)
 		r->document->root = value;
 		return NT_OK;
 	}
-	if (r->value_count == r->value_capacity && !nt_grow((void **)&r->values, &r->value_capacity, r->value_count + 1, sizeof *r->values))
+	if (r->value_count == r->value_capacity &&
+		!nt_grow((void **)&r->values, &r->value_capacity, r->value_count + 1, sizeof *r->values))
 		return nt_fail_memory(r->error);
 	r->values[r->value_count++] = value;
 	return NT_OK;

@@ -27,7 +27,8 @@ typedef struct nt_json_said {
 
 struct nt_json_value {
 	union {
-		const char *text;   /* where it stands, or stood, in the text, strings behind the quote; NULL: it was added */
+		const char *text;   /* where it stands, or stood, in the text, strings behind the quote; NULL:
+		                       it was added */
 		nt_json_said *said; /* apart: strings with escapes, and numbers and strings that were made */
 		nt_json_list *list; /* apart: containers that have children, or had some */
 	} of;

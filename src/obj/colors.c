@@ -140,7 +140,8 @@ static nt_status end_block(painter *p, nt_error *error)
 		if (!colors)
 			return nt_fail_memory(error);
 		for (int k = 0; k < 3; k++)
-			colors[4 * (number - chunk->rows[OBJ_V].first) + (size_t)k] = (float)(color >> (16 - 8 * k) & 255) / 255;
+			colors[4 * (number - chunk->rows[OBJ_V].first) + (size_t)k] =
+				(float)(color >> (16 - 8 * k) & 255) / 255;
 	}
 	p->before = p->vertex;
 	p->line = p->count = 0;

@@ -148,7 +148,8 @@ static nt_status read_map(const reader *r, mtl_map which)
 		return nt_fail_memory(r->error);
 	if (!*name)
 		return NT_OK; /* "" is none, too */
-	r->said->maps[which].map = (nt_map){.name = name, .line = r->line, .placement = read.placement, .channel = read.channel, .base = read.base,
+	r->said->maps[which].map = (nt_map){.name = name, .line = r->line, .placement = read.placement,
+		.channel = read.channel, .base = read.base,
 		.gain = read.gain};
 	r->said->maps[which].word = word;
 	r->said->maps[which].scale = read.bump_scale;
@@ -179,7 +180,8 @@ static const struct {
 	enum action action;
 	int which;
 } statements[] = {
-	{"Ka", HINT_COLOR, MTL_KA}, {"Kd", COLOR, MTL_KD}, {"Ke", COLOR, MTL_KE}, {"Ks", HINT_COLOR, MTL_KS}, {"Tf", HINT_COLOR, MTL_TF},
+	{"Ka", HINT_COLOR, MTL_KA}, {"Kd", COLOR, MTL_KD}, {"Ke", COLOR, MTL_KE}, {"Ks", HINT_COLOR, MTL_KS},
+	{"Tf", HINT_COLOR, MTL_TF},
 	{"d", NUMBER, MTL_D}, {"Tr", NUMBER, MTL_TR}, {"Pr", NUMBER, MTL_PR}, {"Pm", NUMBER, MTL_PM},
 	{"Ns", HINT_NUMBER, MTL_NS}, {"Ni", HINT_NUMBER, MTL_NI}, {"illum", HINT_NUMBER, MTL_ILLUM},
 	{"Ps", HINT_NUMBER, MTL_PS}, {"Pc", HINT_NUMBER, MTL_PC}, {"Pcr", HINT_NUMBER, MTL_PCR},

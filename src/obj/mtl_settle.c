@@ -81,7 +81,8 @@ static void find(const settling *s, nt_code code, size_t line, const char *forma
 static void lose_map(const settling *s, mtl_map which, const char *why)
 {
 	if (has_map(s, which))
-		find(s, NT_CODE_MATERIAL_LOST, s->said->maps[which].map.line, "MTL: %s%s", s->said->maps[which].word, why);
+		find(s, NT_CODE_MATERIAL_LOST, s->said->maps[which].map.line, "MTL: %s%s",
+			s->said->maps[which].word, why);
 }
 
 /* ---- maps ---- */
@@ -143,7 +144,8 @@ static void settle_colors(const settling *s)
 	take_color_map(s, MTL_MAP_KD, &m->base_color_map);
 	take_color_map(s, MTL_MAP_KE, &m->emissive_map);
 	if (m->base_color_map.name && is_black(m->base_color))
-		find(s, NT_CODE_MATERIAL_DOUBTFUL, s->said->colors[MTL_KD].line, "MTL: black Kd beside a map: the map counts");
+		find(s, NT_CODE_MATERIAL_DOUBTFUL, s->said->colors[MTL_KD].line,
+			"MTL: black Kd beside a map: the map counts");
 	const char *ambient = s->said->maps[MTL_MAP_KA].map.name;
 	const bool unlit = s->said->colors[MTL_KA].line && is_black(s->said->colors[MTL_KA].value);
 	if (ambient && !unlit && !(m->base_color_map.name && strcmp(ambient, m->base_color_map.name) == 0))
@@ -250,7 +252,8 @@ static void settle_layers(const settling *s)
 		take_scaled(s, MTL_MAP_PS, MTL_PS, &m->sheen_map);
 	m->anisotropy = unit(s, MTL_ANISO, 0);
 	/* whole turns change nothing, and many would not be a float */
-	m->anisotropy_rotation = (float)(2 * 3.14159265358979323846 * fmod((double)s->said->numbers[MTL_ANISOR].value, 1));
+	m->anisotropy_rotation =
+		(float)(2 * 3.14159265358979323846 * fmod((double)s->said->numbers[MTL_ANISOR].value, 1));
 }
 
 /* Ni 1 (and 0) is what programs write that know no refraction. */
@@ -260,7 +263,8 @@ static void settle_refraction(const settling *s)
 	if (ni > 1)
 		s->m->ior = ni;
 	else if (ni != 0 && ni < 1)
-		find(s, NT_CODE_MATERIAL_DOUBTFUL, s->said->numbers[MTL_NI].line, "MTL: Ni %g is below 1: not used", (double)ni);
+		find(s, NT_CODE_MATERIAL_DOUBTFUL, s->said->numbers[MTL_NI].line,
+			"MTL: Ni %g is below 1: not used", (double)ni);
 	const float *filter = s->said->colors[MTL_TF].value;
 	if (filter[0] != filter[1] || filter[0] != filter[2])
 		find(s, NT_CODE_MATERIAL_LOST, s->said->colors[MTL_TF].line, "MTL: Tf");

@@ -16,7 +16,8 @@ typedef enum mtl_color { MTL_KA, MTL_KD, MTL_KE, MTL_KS, MTL_TF, MTL_COLOR_COUNT
 
 /* ORM, RMA: one image of occlusion, roughness and metallic in the order of the letters. */
 typedef enum mtl_map {
-	MTL_MAP_KD, MTL_MAP_KA, MTL_MAP_KE, MTL_MAP_D, MTL_MAP_TR, MTL_MAP_KS, MTL_MAP_NS, MTL_MAP_PR, MTL_MAP_PM, MTL_MAP_PS,
+	MTL_MAP_KD, MTL_MAP_KA, MTL_MAP_KE, MTL_MAP_D, MTL_MAP_TR, MTL_MAP_KS, MTL_MAP_NS, MTL_MAP_PR,
+	MTL_MAP_PM, MTL_MAP_PS,
 	MTL_MAP_PC, MTL_MAP_PCR, MTL_MAP_AO, MTL_MAP_ORM, MTL_MAP_RMA, MTL_MAP_REFL, MTL_MAP_NORM, MTL_MAP_BUMP,
 	MTL_MAP_COUNT
 } mtl_map;
@@ -46,6 +47,7 @@ typedef struct mtl_values {
 void nt_mtl_settle(const mtl_values *said, nt_scene *scene, nt_material *m);
 
 /* Adds a finding; material: its name, NULL: of none. */
-void nt_mtl_find(nt_scene *scene, nt_code code, const char *path, size_t line, const char *material, const char *detail);
+void nt_mtl_find(nt_scene *scene, nt_code code, const char *path, size_t line, const char *material,
+	const char *detail);
 
 #endif

@@ -29,7 +29,8 @@ static void list_arrays(obj_chunk *chunk, array list[ARRAY_COUNT])
 {
 	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++) {
 		obj_rows *rows = &chunk->rows[kind];
-		list[kind] = (array){(void **)&rows->data, &rows->capacity, rows->count * obj_widths[kind] * sizeof(float)};
+		list[kind] =
+			(array){(void **)&rows->data, &rows->capacity, rows->count * obj_widths[kind] * sizeof(float)};
 	}
 	list[OBJ_KIND_COUNT] = (array){(void **)&chunk->distinct, &chunk->distinct_capacity,
 		chunk->distinct_count * sizeof *chunk->distinct};

@@ -263,7 +263,8 @@ static nt_status divide_meshes(state *s)
 			s->object = before.mesh_objects[mesh];
 			s->object_line = before.mesh_lines[mesh++];
 		}
-		if (!begins && mirrored_axes(file->scene, span->material) == mirrored_axes(file->scene, span[-1].material))
+		if (!begins &&
+			mirrored_axes(file->scene, span->material) == mirrored_axes(file->scene, span[-1].material))
 			continue;
 		s->face = span->face;
 		s->corner = span->corner;

@@ -212,7 +212,8 @@ static nt_status count_parts(const whole *w)
 	}
 	/* the method tells how many corners are ill-conditioned, not which: the first mesh has them */
 	size_t ill_conditioned = w->counts.ill_conditioned;
-	for (size_t i = 0, corner = 0; !status && i < w->join->part_count; corner += w->join->parts[i++]->corner_count) {
+	for (size_t i = 0, corner = 0; !status && i < w->join->part_count;
+		corner += w->join->parts[i++]->corner_count) {
 		nt_mesh *part = w->join->parts[i];
 		if (!is_solved_here(w, part) || part->corner_count == 0)
 			continue;
@@ -278,7 +279,8 @@ static nt_status measure_halfway(const whole *w, uint32_t target, const float *p
 {
 	float *halfway;
 	const nt_status status = nt_morphs_solve_halfway(&w->mesh, positions, normals, w->options, &halfway);
-	for (size_t i = 0, corner = 0; !status && i < w->join->part_count; corner += w->join->parts[i++]->corner_count) {
+	for (size_t i = 0, corner = 0; !status && i < w->join->part_count;
+		corner += w->join->parts[i++]->corner_count) {
 		const nt_mesh *part = w->join->parts[i];
 		nt_morph *morph = is_solved_here(w, part) ? find_morph(part, target) : NULL;
 		nmtan_stored_uv stored;
@@ -324,7 +326,8 @@ static bool has_morphs(const whole *w)
 static nt_status hand_out(const whole *w)
 {
 	nt_status status = NT_OK;
-	for (size_t i = 0, corner = 0; !status && i < w->join->part_count; corner += w->join->parts[i++]->corner_count) {
+	for (size_t i = 0, corner = 0; !status && i < w->join->part_count;
+		corner += w->join->parts[i++]->corner_count) {
 		nt_mesh *part = w->join->parts[i];
 		if (is_solved_here(w, part))
 			status = take_rows(part, w->tangents + 4 * corner, &part->corner_tangents);
@@ -393,7 +396,8 @@ static void compare_part(nt_scene *scene, const nt_mesh *mesh, const float *join
 		least = fmin(least, cosine);
 	}
 	if (count)
-		nt_finding_add(&scene->findings, NT_CODE_TAN_PRIMITIVE_BORDER, nt_mesh_place(mesh, &(nt_place){0}), count,
+		nt_finding_add(&scene->findings, NT_CODE_TAN_PRIMITIVE_BORDER,
+			nt_mesh_place(mesh, &(nt_place){0}), count,
 			"by up to %.1f degrees", nt_angle(sqrt(fmax(0, 1 - least * least)), least) * degrees);
 }
 

@@ -108,7 +108,8 @@ static nt_status load_meshes(const loading *l, const nt_format_entry *writer, bo
 		return nt_fail_memory(l->error);
 	for (size_t i = 0; i < scene->mesh_count; i++)
 		needed[i] = is_needed(l, &scene->meshes[i], all);
-	nt_status status = l->reader->share ? nt_load_ahead(scene, l->reader, asks_for_results(l, writer) ? writer : NULL,
+	nt_status status = l->reader->share
+		? nt_load_ahead(scene, l->reader, asks_for_results(l, writer) ? writer : NULL,
 		l->settings, l->options, needed, l->error) : NT_OK;
 	for (size_t i = 0; !status && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];

@@ -65,7 +65,8 @@ static bool fits(const nt_map *map, const nt_map *first)
 
 static void wish_for_colors(nt_map *colors, nt_map *alpha, nt_map_wish *wishes, size_t *count)
 {
-	const bool with_alpha = alpha && fits(alpha, colors), packed = with_alpha || (has(colors) && !nt_map_is_plain(colors));
+	const bool with_alpha = alpha && fits(alpha, colors),
+		packed = with_alpha || (has(colors) && !nt_map_is_plain(colors));
 	if (!packed && !has(colors))
 		return;
 	nt_map_wish *w = begin(wishes, count, packed ? NT_TEXTURE_PACKED : NT_TEXTURE_COLOR,

@@ -46,7 +46,8 @@ static void examine(void *context, size_t item, unsigned slot)
 	examined *x = &e->open[item];
 	nt_error_clear(&x->error);
 	if (is_wanted(e, &x->map))
-		x->decoded = nt_examine_image(x->map.bytes, x->map.size, &x->facts, &x->error) == NT_OK && !x->facts.heights;
+		x->decoded = nt_examine_image(x->map.bytes, x->map.size, &x->facts, &x->error) == NT_OK &&
+			!x->facts.heights;
 }
 
 /* ---- what is to be said ---- */
@@ -58,12 +59,13 @@ static void tell_facts(nt_finding_list *findings, const nt_place *place, const n
 	if (f->object_space)
 		nt_finding_add(findings, NT_CODE_NMAP_OBJECT_SPACE, place, 1, NULL);
 	else if (f->blue_below > 0.001)
-		nt_finding_add(findings, NT_CODE_NMAP_BLUE_BELOW_HALF, place, 1, "%.2g %% of the pixels", 100 * f->blue_below);
+		nt_finding_add(findings, NT_CODE_NMAP_BLUE_BELOW_HALF, place, 1, "%.2g %% of the pixels",
+			100 * f->blue_below);
 	if (f->not_unit > 0.01)
 		nt_finding_add(findings, NT_CODE_NMAP_NOT_UNIT, place, 1, "%.2g %% of the pixels", 100 * f->not_unit);
 	if (f->green == NT_GREEN_DOWN)
-		nt_finding_add(findings, NT_CODE_NMAP_GREEN_DOWN, place, 1, "correlation %.2f, %.0f %% agree", f->correlation,
-			100 * f->agreement);
+		nt_finding_add(findings, NT_CODE_NMAP_GREEN_DOWN, place, 1, "correlation %.2f, %.0f %% agree",
+			f->correlation, 100 * f->agreement);
 	if (f->banded > 0.5)
 		nt_finding_add(findings, NT_CODE_NMAP_BANDED, place, 1, "%.0f %% of the slopes", 100 * f->banded);
 }

@@ -147,7 +147,8 @@ static nt_status join_close(const nt_mesh *mesh, normal_job *job)
 	for (size_t c = 0; last && before && c < mesh->corner_count; c++) {
 		const size_t vertex = vertex_of(mesh, c);
 		uint32_t other = last[vertex];
-		for (int i = 0; i < MOST_COMPARED && other != NT_NONE && !are_close(job->rows[c], job->rows[other]); i++)
+		for (int i = 0;
+			i < MOST_COMPARED && other != NT_NONE && !are_close(job->rows[c], job->rows[other]); i++)
 			other = i + 1 < MOST_COMPARED ? before[other] : NT_NONE;
 		if (other != NT_NONE) {
 			memcpy(job->rows[c], job->rows[other], sizeof job->rows[c]);
@@ -187,7 +188,8 @@ static nt_status split_by_normal(nt_scene *scene, nt_mesh *mesh, normal_job *job
 static void report_normals(nt_scene *scene, const nt_mesh *mesh)
 {
 	if (mesh->made_normal_corners)
-		nt_finding_add(&scene->findings, NT_CODE_NORMALS_MADE, nt_mesh_place(mesh, &(nt_place){0}), mesh->made_normal_corners, NULL);
+		nt_finding_add(&scene->findings, NT_CODE_NORMALS_MADE, nt_mesh_place(mesh, &(nt_place){0}),
+			mesh->made_normal_corners, NULL);
 	if (mesh->replaced_normal_corners)
 		nt_finding_add(&scene->findings, NT_CODE_NORMALS_REPLACED, nt_mesh_place(mesh, &(nt_place){0}),
 			mesh->replaced_normal_corners, NULL);

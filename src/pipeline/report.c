@@ -25,7 +25,8 @@ static const nt_texture *find_converted(const nt_textures *textures, const nt_ma
 	return made->bytes ? made : NULL;
 }
 
-static nt_status copy_image(nt_arena *arena, const unsigned char *bytes, size_t size, nt_image_type type, nt_image *image)
+static nt_status copy_image(nt_arena *arena, const unsigned char *bytes, size_t size, nt_image_type type,
+	nt_image *image)
 {
 	void *copy = nt_arena_alloc(arena, size, 1);
 	if (!copy)
@@ -70,7 +71,8 @@ static nt_status find_picture(const void *user, nt_arena *arena, const nt_scene 
 	nt_normal_map_transform(scene, mesh, slot, image->transform);
 	const nt_texture *made = find_converted(f->textures, nt_normal_map_named(scene, mesh, slot));
 	if (made)
-		return made->size <= most_bytes ? copy_image(arena, made->bytes, made->size, NT_IMAGE_PNG, image) : NT_OK;
+		return made->size <= most_bytes
+			? copy_image(arena, made->bytes, made->size, NT_IMAGE_PNG, image) : NT_OK;
 	nt_normal_map map;
 	nt_error error;
 	nt_status status = nt_normal_map_open(&map, scene, mesh, slot, NULL, &error);

@@ -34,7 +34,8 @@ static void append_stem(nt_buffer *name, const char *input)
 			length--;
 	for (size_t i = 0; i < length; i++) {
 		const unsigned char c = (unsigned char)stem[i];
-		const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_' ||
+		const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+			c == '_' ||
 			c >= 0x80 || (i > 0 && (c == '.' || c == '-'));
 		nt_buffer_append(name, plain ? stem + i : "_", 1);
 	}
@@ -164,9 +165,11 @@ static nt_status check_page(const nt_report_folder *folder, const char *path, nt
 static nt_status check_pages(const nt_report_folder *folder, nt_error *error)
 {
 	nt_buffer path = {0};
-	nt_status status = append_path(folder, index_name, &path) ? check_page(folder, path.data, error) : nt_fail_memory(error);
+	nt_status status = append_path(folder, index_name, &path)
+		? check_page(folder, path.data, error) : nt_fail_memory(error);
 	for (size_t i = 0; i < folder->target->input_count && !status; i++)
-		status = append_path(folder, folder->pages[i], &path) ? check_page(folder, path.data, error) : nt_fail_memory(error);
+		status = append_path(folder, folder->pages[i], &path)
+			? check_page(folder, path.data, error) : nt_fail_memory(error);
 	nt_buffer_free(&path);
 	return status;
 }
@@ -178,7 +181,8 @@ static nt_status write_page(const nt_report_folder *folder, const char *page, co
 {
 	nt_report_target target = *what;
 	nt_buffer path = {0};
-	nt_status status = append_path(folder, page, &path) ? check_page(folder, path.data, error) : nt_fail_memory(error);
+	nt_status status = append_path(folder, page, &path)
+		? check_page(folder, path.data, error) : nt_fail_memory(error);
 	target.path = path.data;
 	target.input_count = 0; /* check_page() knows them */
 	if (!status)
@@ -238,7 +242,8 @@ nt_status nt_report_folder_begin(nt_report_folder *folder, const nt_report_targe
 	if (!status)
 		status = put_parts(folder, false, error);
 	if (!status && mkdir(target->path, 0777) && errno != EEXIST)
-		status = nt_fail(error, NT_ERROR_IO, "cannot make the folder \"%s\": %s", target->path, strerror(errno));
+		status = nt_fail(error, NT_ERROR_IO, "cannot make the folder \"%s\": %s", target->path,
+			strerror(errno));
 	return status ? status : put_parts(folder, true, error);
 }
 

@@ -100,7 +100,8 @@ static nt_status tell_placing(void *user, nt_error *error)
 	const run *r = user;
 	if (r->summary->trace.failed)
 		return nt_fail_memory(error);
-	return r->settings->placing ? r->settings->placing(r->settings->placing_user, &r->summary->trace, error) : NT_OK;
+	return r->settings->placing
+		? r->settings->placing(r->settings->placing_user, &r->summary->trace, error) : NT_OK;
 }
 
 static nt_output_options output_options_of(run *r)
@@ -273,7 +274,8 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 		.error = error};
 	r.read_options = (nt_read_options){.texcoord_set = settings->texcoord_set,
 		.allow_outside = settings->allow_outside, .morphs = settings->morphs,
-		.report = settings->report != NULL, .across = settings->across == NT_ACROSS_MESH, .threads = settings->threads,
+		.report = settings->report != NULL, .across = settings->across == NT_ACROSS_MESH,
+		.threads = settings->threads,
 		.draco = settings->draco};
 	memcpy(r.read_options.draco_bits, settings->draco_bits, sizeof r.read_options.draco_bits);
 	const double begin = nt_seconds();
@@ -293,8 +295,8 @@ nt_status nt_run(const char *input, const char *output, const nt_settings *setti
 	summary->note = r.result.note.data;
 	if (settings->report) {
 		begin_stage(&r, NT_STAGE_REPORT);
-		status = nt_stage_report(&r.scene, settings, r.writer ? r.writer->format : NT_FORMAT_UNKNOWN, r.textures,
-			status, summary, error);
+		status = nt_stage_report(&r.scene, settings, r.writer ? r.writer->format : NT_FORMAT_UNKNOWN,
+			r.textures, status, summary, error);
 	}
 
 	/* what was found belongs to the caller, also after a failure */

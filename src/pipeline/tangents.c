@@ -50,7 +50,8 @@ typedef struct tangent_job {
 	nt_mesh **meshes;   /* the ones to solve */
 	nt_status *statuses;
 	size_t count;
-	bool *is_large;     /* [count] solved by all threads: LARGE_CORNERS, or one for which other threads would wait */
+	bool *is_large;     /* [count] solved by all threads: LARGE_CORNERS, or one for which other threads
+	                       would wait */
 	size_t small_corners; /* of the others together */
 	nt_small_solves *small; /* while these are solved */
 	nmtan_timing timing;    /* of the large meshes */
@@ -59,7 +60,8 @@ typedef struct tangent_job {
 static wishes wishes_of(nt_scene *scene, const nt_settings *settings, nt_format output)
 {
 	return (wishes){.scene = scene, .settings = settings,
-		.round_trip = output != NT_FORMAT_UNKNOWN && nt_format_is_gltf(scene->format) != nt_format_is_gltf(output),
+		.round_trip = output != NT_FORMAT_UNKNOWN &&
+		nt_format_is_gltf(scene->format) != nt_format_is_gltf(output),
 		.triangulates = nt_format_is_gltf(output), .splits = output != NT_FORMAT_UNKNOWN,
 		.forgets = scene->forget && nt_format_is_gltf(output) && !settings->report && !settings->verify};
 }
@@ -412,7 +414,8 @@ static bool keep_results(nt_scene *scene, nt_mesh *mesh)
 static void add_halfway(nt_finding_list *list, const nt_mesh *mesh, const nt_morph *morph)
 {
 	if (morph->halfway_triangles)
-		nt_finding_add(list, NT_CODE_TAN_MORPH_HALFWAY, nt_mesh_place(mesh, &(nt_place){0}), morph->halfway_triangles,
+		nt_finding_add(list, NT_CODE_TAN_MORPH_HALFWAY, nt_mesh_place(mesh, &(nt_place){0}),
+			morph->halfway_triangles,
 			morph->name[0] ? "target %u \"%.80s\", %.1f degrees" : "target %u%s, %.1f degrees",
 			morph->target, morph->name, morph->halfway_degrees);
 }

@@ -79,7 +79,8 @@ static nt_status check_folders(const nt_settings *settings, nt_error *error)
 		bool found;
 		status = nt_lookup_found(settings->texture_paths[i], &info, &found, error);
 		if (!status && !(found && S_ISDIR(info.st_mode)))
-			status = nt_fail(error, NT_ERROR_USAGE, "--texture-path: '%s' is no folder", settings->texture_paths[i]);
+			status = nt_fail(error, NT_ERROR_USAGE, "--texture-path: '%s' is no folder",
+				settings->texture_paths[i]);
 	}
 	return status;
 }
@@ -96,7 +97,8 @@ nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, const 
 			scene->materials[i].maps[k].wish = NT_NONE;
 	wishing w = {*textures, settings};
 	const nt_status status = check_folders(settings, error);
-	return status || settings->images == NT_IMAGES_NONE ? status : each_material(scene, &w, error, wish_for_material);
+	return status || settings->images == NT_IMAGES_NONE
+		? status : each_material(scene, &w, error, wish_for_material);
 }
 
 /* ---- making ---- */
@@ -176,7 +178,8 @@ static void tell_source(const telling *t, const nt_map *map, int channel, const 
 	else if (source->found == NT_IMAGE_MISSING)
 		nt_finding_add(findings, NT_CODE_IMAGE_MISSING, &place, 1, "%.120s", map->name);
 	else if (failed)
-		nt_finding_add(findings, NT_CODE_IMAGE_DAMAGED, &place, 1, "%.100s (%.120s)", map->name, image->failure);
+		nt_finding_add(findings, NT_CODE_IMAGE_DAMAGED, &place, 1, "%.100s (%.120s)", map->name,
+			image->failure);
 	else if (lost)
 		nt_finding_add(findings, NT_CODE_IMAGE_TYPE, &place, 1, "%.120s", map->name);
 	if (source->found == NT_IMAGE_FOUND_ELSEWHERE)
@@ -188,7 +191,8 @@ static void tell_made(const telling *t, const nt_map *map, const nt_texture *ima
 	const nt_place place = place_of(t->scene, t->material, map->line ? map->line : t->material->line);
 	nt_finding_list *findings = &t->scene->findings;
 	if (image->packed)
-		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "%.100s: channels to %.120s", map->name, image->name);
+		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "%.100s: channels to %.120s",
+			map->name, image->name);
 	else
 		nt_finding_add(findings, NT_CODE_IMAGE_CONVERTED, &place, 1, "%.100s: %s to %s%s", map->name,
 			image->from_heights ? "height map" : nt_image_type_name(image->sources[0]->type),

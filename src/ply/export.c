@@ -186,8 +186,8 @@ static bool are_finite(const float *values, size_t count)
 /* glTF may hold, or make of what it holds, numbers that no reader of PLY takes, this one included. */
 static nt_status fail_not_finite(const nt_mesh *mesh, const char *what, size_t vertex, bool placed, nt_error *error)
 {
-	nt_fail(error, NT_ERROR_INPUT, "the %s of vertex %zu is not finite%s, expected finite numbers for PLY", what, vertex,
-		placed ? " where the node places it" : "");
+	nt_fail(error, NT_ERROR_INPUT, "the %s of vertex %zu is not finite%s, expected finite numbers for PLY",
+		what, vertex, placed ? " where the node places it" : "");
 	nt_mesh_place(mesh, &error->place);
 	return NT_ERROR_INPUT;
 }

@@ -35,7 +35,8 @@ typedef struct ply_header {
 	size_t element_count, element_capacity;
 	char **textures; /* names after "comment TextureFile" */
 	size_t texture_count, texture_capacity;
-	size_t unknown_lines, unknown_line; /* lines before the first element that are no statements: how many, the first */
+	size_t unknown_lines, unknown_line; /* lines before the first element that are no statements: how many,
+	                                       the first */
 	size_t body;        /* offset of the first byte after the header */
 	size_t body_line;   /* its line, 1-based */
 	const char *newline; /* as the header has it: "\n", "\r\n" or "\r" */

@@ -553,7 +553,8 @@ static void report_cuts(const plan *p)
 {
 	const nt_mesh *mesh = p->mesh;
 	if (p->n.cut_polygons > 0)
-		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, nt_mesh_place(mesh, &(nt_place){0}), p->n.cut_polygons, NULL);
+		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, nt_mesh_place(mesh, &(nt_place){0}),
+			p->n.cut_polygons, NULL);
 	if (replaces_strips(p))
 		nt_finding_add(&p->scene->findings, NT_CODE_POLYGON_CUT, nt_mesh_place(mesh, &(nt_place){0}),
 			p->source->strips->count, "triangle strips");

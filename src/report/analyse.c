@@ -122,7 +122,8 @@ static nt_status solve_for_picture(const nt_check *check, picture_vertices *pict
 	const nt_mesh *mesh = check->mesh;
 	uint32_t *indices = nt_scratch_alloc(check->scratch, mesh->corner_count, sizeof *indices);
 	uint32_t *sources = nt_scratch_alloc(check->scratch, mesh->corner_count, sizeof *sources);
-	float *tangents = nt_scratch_alloc(check->scratch, mesh->vertex_count + mesh->corner_count, 4 * sizeof *tangents);
+	float *tangents =
+		nt_scratch_alloc(check->scratch, mesh->vertex_count + mesh->corner_count, 4 * sizeof *tangents);
 	if (!indices || !sources || !tangents)
 		return NT_ERROR_MEMORY;
 	nmtan_stored_uv stored;

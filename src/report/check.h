@@ -43,7 +43,8 @@ typedef struct nt_check {
 
 	/* by edges.c */
 	uint64_t *boundary;       /* [3 * triangle_count] bits: sides without a neighbour */
-	uint64_t *mirrors;        /* [3 * triangle_count] bits: unmirrored sides of mirror edges; NULL: there are none */
+	uint64_t *mirrors;        /* [3 * triangle_count] bits: unmirrored sides of mirror edges; NULL: there
+	                             are none */
 	uint64_t *mirrors_against; /* of these, sides that run against the lowest one of their edge */
 	uint32_t *mirror_ranks;
 	nt_mirror_edge *mirror_edges; /* [mirror_edge_count] by their unmirrored sides, ascending */
@@ -170,7 +171,8 @@ static inline const float *nt_stored_tangent(const nt_check *check, uint32_t cor
 }
 
 /* The checks, in the order in which they run. */
-nt_status nt_check_geometry(nt_check *check); /* geometry.c: the surface's triangles; positions, normals, UV triangles */
+nt_status nt_check_geometry(nt_check *check); /* geometry.c: the surface's triangles; positions, normals, UV
+                                                 triangles */
 nt_status nt_check_edges(nt_check *check);    /* edges.c: boundary, non-manifold, winding, islands' numbers */
 nt_status nt_check_islands(nt_check *check);  /* islands.c */
 nt_status nt_check_seams(nt_check *check);    /* seams.c */

@@ -34,13 +34,14 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Convert the image to PNG and name that in the material.",
 		"an MTL with \"map_Kd wood.exr\""),
 	ROW(IMAGE_DAMAGED, WARNING, "image cannot be decoded",
-		"An image had to be decoded, to be converted or to see whether it is a height map, and that failed. What glTF "
-		"carries is used as it is, anything else is left out.",
+		"An image had to be decoded, to be converted or to see whether it is a height map, and that "
+		"failed. What glTF carries is used as it is, anything else is left out.",
 		"Write the image again.",
 		"a TGA that ends before its last pixel"),
 	ROW(IMAGE_ELSEWHERE, WARNING, "image was found elsewhere",
-		"The file that a material names is not there, but one whose path ends alike is: in the folder of the material "
-		"library or of the OBJ, in a folder of --texture-path, or under a name in another case.",
+		"The file that a material names is not there, but one whose path ends alike is: in the folder "
+		"of the material library or of the OBJ, in a folder of --texture-path, or under a name in "
+		"another case.",
 		"If it is the wrong one, correct the name in the material.",
 		"an MTL with \"map_Kd C:/art/wood.png\" beside wood.png"),
 	ROW(IMAGE_CONVERTED, INFO, "image was converted",
@@ -48,38 +49,43 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Nothing. --textures and --bump say what is converted, --bump-height how high heights are.",
 		"an MTL with \"map_Kd wood.tga\""),
 	ROW(BUMP_AS_NORMAL, WARNING, "bump map was taken as a normal map",
-		"map_Bump and bump are height maps by definition, but most files put a normal map there. An image whose "
-		"pixels are not all grey is taken as one.",
-		"If it is a normal map, write norm instead, or use --bump=normal; if it is a height map, use --bump=height.",
+		"map_Bump and bump are height maps by definition, but most files put a normal map there. An "
+		"image whose pixels are not all grey is taken as one.",
+		"If it is a normal map, write norm instead, or use --bump=normal; if it is a height map, use "
+		"--bump=height.",
 		"an MTL with \"map_Bump n.png\""),
 	ROW(MATERIAL_LOST, WARNING, "{count} {property of a material is|properties of materials are} not carried over",
-		"A texture, a texture's place or a layer that a material names is not in the output, which will look different. "
-		"The detail names the statement.",
+		"A texture, a texture's place or a layer that a material names is not in the output, which "
+		"will look different. The detail names the statement.",
 		"Set it again in the output, or bake it into a texture that is carried over.",
 		"an MTL with \"disp height.png\""),
-	ROW(MATERIAL_DOUBTFUL, WARNING, "{count} {property of a material is|properties of materials are} not taken at {its|their} word",
-		"Properties of a material contradict each other, or say what programs write without meaning it: d 0, which would "
-		"make all of it invisible, a black Kd beside a map. The detail says what was taken instead.",
+	ROW(MATERIAL_DOUBTFUL, WARNING,
+		"{count} {property of a material is|properties of materials are} not taken at {its|their} word",
+		"Properties of a material contradict each other, or say what programs write without meaning "
+		"it: d 0, which would make all of it invisible, a black Kd beside a map. The detail says what "
+		"was taken instead.",
 		"Correct the material where that is not what was meant.",
 		"an MTL with \"d 0\""),
 	ROW(NMAP_GREEN_DOWN, WARNING, "normal map whose green points down",
-		"glTF's normal maps have green up. Of a surface's map the slopes p = -x/z and q = y/z have equal mixed derivatives, "
-		"dp/dv = dq/du with rows counted down; in this one they are opposite. The figures are their correlation (-1: green "
-		"down, 1: up) and the share of the map that agrees. Bumps and dents are exchanged along one direction.",
+		"glTF's normal maps have green up. Of a surface's map the slopes p = -x/z and q = y/z have "
+		"equal mixed derivatives, dp/dv = dq/du with rows counted down; in this one they are opposite. "
+		"The figures are their correlation (-1: green down, 1: up) and the share of the map that "
+		"agrees. Bumps and dents are exchanged along one direction.",
 		"Invert the green channel; of an OBJ, --flip-green=auto does it.",
 		"a map baked for DirectX"),
 	ROW(NMAP_NOT_UNIT, INFO, "normal map whose vectors are not of unit length",
-		"More than a hundredth of the pixels have a length that differs from 1 by more than a tenth: padding, a map that "
-		"was painted or blended, or no normal map at all. Renderers normalize them.",
+		"More than a hundredth of the pixels have a length that differs from 1 by more than a tenth: "
+		"padding, a map that was painted or blended, or no normal map at all. Renderers normalize them.",
 		"Normalize the map after editing.",
 		"a normal map whose blue channel was overwritten"),
 	ROW(NMAP_BLUE_BELOW_HALF, WARNING, "normal map with vectors that point into the surface",
-		"Pixels of a tangent-space map point out of the surface: blue is above one half. More than one in a thousand do not.",
+		"Pixels of a tangent-space map point out of the surface: blue is above one half. More than one "
+		"in a thousand do not.",
 		"Bake the map again with a larger cage, or look for painted pixels.",
 		"a map with a pixel of (128, 128, 0)"),
 	ROW(NMAP_OBJECT_SPACE, WARNING, "normal map in object space",
-		"The vectors have unit length and point into all directions, as in a map that was baked in object space. glTF's are "
-		"in tangent space.",
+		"The vectors have unit length and point into all directions, as in a map that was baked in "
+		"object space. glTF's are in tangent space.",
 		"Bake the map in tangent space.",
 		"a map whose vectors are the normals of a sphere"),
 	ROW(NMAP_CONSTANT, INFO, "normal map of one colour",
@@ -87,12 +93,13 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Take it out of the material.",
 		"a map of (128, 128, 255) alone"),
 	ROW(NMAP_BANDED, INFO, "normal map of 8 bits on a smooth surface",
-		"Most of the sloped pixels lie in runs of one value with steps of one level between them: reflections show bands.",
+		"Most of the sloped pixels lie in runs of one value with steps of one level between them: "
+		"reflections show bands.",
 		"Bake with 16 bits, or with dithering.",
 		"an 8-bit map of a large sphere"),
 	ROW(NMAP_SRGB, INFO, "normal map that is marked as sRGB",
-		"The PNG says that its samples are sRGB. glTF's loaders ignore it; others convert the values, which bends every "
-		"normal.",
+		"The PNG says that its samples are sRGB. glTF's loaders ignore it; others convert the values, "
+		"which bends every normal.",
 		"Export the map as linear, or raw, data.",
 		"a PNG with an sRGB chunk in normalTexture"),
 	ROW(NMAP_JPEG, INFO, "normal map compressed as JPEG",
@@ -108,8 +115,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Nothing, unless you expected it to matter.",
 		"an OBJ with a \"curv\" line"),
 	ROW(COLORS_DOUBTFUL, WARNING, "colours of vertices are not what they should be",
-		"A block of #MRGB comments in an OBJ has more or fewer colours than there are vertices before it, or something that is "
-		"no colour. The last vertices before it got them; what is missing or malformed is white.",
+		"A block of #MRGB comments in an OBJ has more or fewer colours than there are vertices before "
+		"it, or something that is no colour. The last vertices before it got them; what is missing or "
+		"malformed is white.",
 		"Export the mesh again.",
 		"#MRGB ff0000 (six digits) in an OBJ"),
 	ROW(POLYGON_DEGENERATE, WARNING, "{count} {polygon|polygons} could not be triangulated properly",
@@ -133,14 +141,14 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Nothing; --normals=flat and smooth make only those that are missing.",
 		"a PLY triangle with nx, ny, nz and --normals=replace-flat"),
 	ROW(NORMALS_NOT_THERE, WARNING, "faces refer to normals, but the file has none",
-		"The file has faces with numbers of normals and not a single vn. Normals are made as if the numbers were not "
-		"there.",
+		"The file has faces with numbers of normals and not a single vn. Normals are made as if the "
+		"numbers were not there.",
 		"Export the normals, or faces without them.",
 		"an OBJ triangle of corners like 1/1/1 without vn"),
 	ROW(NORMALS_SCALED, INFO, "{count} {normal was|normals were} made unit for the tangents",
 		"The length differs from 1 by more than 2^-12. Tangents lie across the unit normal, which is what "
-		"renderers make of it. An OBJ's or PLY's normals are stored unit in a new glTF, a glTF keeps those that "
-		"it has.",
+		"renderers make of it. An OBJ's or PLY's normals are stored unit in a new glTF, a glTF keeps "
+		"those that it has.",
 		"Nothing; normalise the normals on export to be rid of the finding.",
 		"an OBJ triangle with \"vn 0 0 .5\""),
 	ROW(REFERENCE_LOST, WARNING, "{count} {reference is|references are} not in the output",
@@ -149,8 +157,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a glTF with animations that is written as PLY"),
 
 	ROW(EXTENSION_STALE, WARNING, "{detail} refers to vertices, and vertices were copied",
-		"Vertices that need several tangents are copied, and attributes and indices follow. This extension seems "
-		"to refer to vertices as well, in a way that nmtan does not know or cannot follow, and was left as it is.",
+		"Vertices that need several tangents are copied, and attributes and indices follow. This "
+		"extension seems to refer to vertices as well, in a way that nmtan does not know or cannot "
+		"follow, and was left as it is.",
 		"Make what the extension holds again from the output, or split the vertices before nmtan does.",
 		"a primitive whose extension names an accessor with one element for each vertex"),
 	ROW(DRACO_PLAIN, WARNING, "the primitive is written without Draco compression",
@@ -182,8 +191,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 	ROW(UV_MIRROR_OVERLAP, INFO,
 		"mirrored island of {count} {triangle|triangles} lies on an unmirrored one",
 		"A mirrored island that shares its texture with its twin: the usual way to texture a symmetric "
-		"model at half the cost. Judged as the sampler wraps: repeated coordinates modulo 1, mirrored ones folded, "
-		"clamped ones as they stand.",
+		"model at half the cost. Judged as the sampler wraps: repeated coordinates modulo 1, mirrored "
+		"ones folded, clamped ones as they stand.",
 		"Nothing. When baking, move the mirrored island by a whole tile so that only one is baked.",
 		"two separate quads with the same four UVs, the second one wound the other way"),
 	ROW(UV_MIRROR_LONE, WARNING,
@@ -214,9 +223,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a triangle with UVs (1000,0), (1001,0), (1000,0.0001)"),
 	ROW(UV_FOLDED_QUAD, WARNING,
 		"{count} {quad has|quads have} halves that are wound differently in UV space",
-		"A quad whose outline crosses itself or is folded in UV space. Written as two triangles, in a glTF, each "
-		"gets its own sign and vertices of its own. PLY keeps the quad: both halves take the sign of the larger "
-		"one, and the smaller one is lit from the wrong side.",
+		"A quad whose outline crosses itself or is folded in UV space. Written as two triangles, in a "
+		"glTF, each gets its own sign and vertices of its own. PLY keeps the quad: both halves take "
+		"the sign of the larger one, and the smaller one is lit from the wrong side.",
 		"Straighten the quad in the UV editor, or triangulate it.",
 		"a quad with UVs (0,0), (1,1), (1,0), (0,1): a bowtie"),
 	ROW(UV_ROUNDED_AWAY, INFO,
@@ -231,8 +240,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Export the mesh again.",
 		"a PLY vertex with s = nan"),
 	ROW(UV_MISSING, WARNING, "the mesh has no texture coordinates and gets no tangents",
-		"OBJ, PLY and Draco meshes get tangents wherever there are texture coordinates; other meshes of the file have "
-		"some. Where no mesh has, or a material's normal map needs them, "
+		"OBJ, PLY and Draco meshes get tangents wherever there are texture coordinates; other meshes "
+		"of the file have some. Where no mesh has, or a material's normal map needs them, "
 		"that is TAN_NO_UV.",
 		"Unwrap the mesh if it is to be normal mapped; else --only=needed, or --ignore=UV_MISSING.",
 		"an OBJ with two objects of which one has faces like 1 2 3"),
@@ -357,8 +366,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a glTF primitive with POSITION, TEXCOORD_0 and a normal-mapped material"),
 	ROW(TAN_NO_UV, ERROR, "tangents are needed but there are no texture coordinates",
 		"A normal map is asked for, but the mesh lacks the texture coordinates that the map is to be "
-		"looked up with; or tangents were to be made for an OBJ, PLY or Draco file, and no mesh of it has texture "
-		"coordinates.",
+		"looked up with; or tangents were to be made for an OBJ, PLY or Draco file, and no mesh of it "
+		"has texture coordinates.",
 		"Unwrap the mesh, or choose a set that exists with --uv.",
 		"a normal-mapped glTF primitive without TEXCOORD_0"),
 	ROW(TAN_UVSET_CONFLICT, WARNING, "two textures want tangents of different texture coordinates",
@@ -384,18 +393,19 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"a flat triangle with normals along z and a target that moves x to -x"),
 	ROW(TAN_MORPH_HALFWAY, WARNING,
 		"{count} {triangle has|triangles have} wrong tangents when a morph target acts by half",
-		"Clients add the deltas of TANGENT times the weight. That is exact at weights 0 and 1; between them it is "
-		"not where a target stretches what it turns. At weight 0.5 it is more than 5 degrees from the tangents of "
-		"the mesh as it then is. The detail names the target and the largest angle; 90 degrees means that a "
-		"tangent and its delta cancel. Targets that turn no tangent by more than 5 degrees are not looked at.",
+		"Clients add the deltas of TANGENT times the weight. That is exact at weights 0 and 1; between "
+		"them it is not where a target stretches what it turns. At weight 0.5 it is more than 5 "
+		"degrees from the tangents of the mesh as it then is. The detail names the target and the "
+		"largest angle; 90 degrees means that a tangent and its delta cancel. Targets that turn no "
+		"tangent by more than 5 degrees are not looked at.",
 		"Add a target for the pose in between, so that none turns the surface far.",
 		"a square whose target turns it by a quarter and doubles its width"),
 	ROW(TAN_PRIMITIVE_BORDER, INFO,
 		"{count} {tangent|tangents} at borders to other primitives would turn if the mesh were solved as one",
-		"glTF defines tangents per primitive. A baker computes them over the whole object, so that a mesh which is "
-		"divided by material shows a seam where the surface goes on with the same normals and texture "
-		"coordinates. The finding counts corners whose tangents differ by more than 5 degrees between the two, "
-		"and tells the largest angle.",
+		"glTF defines tangents per primitive. A baker computes them over the whole object, so that a "
+		"mesh which is divided by material shows a seam where the surface goes on with the same "
+		"normals and texture coordinates. The finding counts corners whose tangents differ by more "
+		"than 5 degrees between the two, and tells the largest angle.",
 		"If the normal map was baked for the whole mesh, use --across=mesh.",
 		"two squares of one mesh, of which the second's texture is sheared, with a material each"),
 	ROW(TAN_VERTEX_GROWTH, INFO, "{count} {vertex was|vertices were} added",
@@ -420,9 +430,9 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"converting a normal-mapped glTF with a tangent (0,0,0,1)"),
 	ROW(TAN_EXISTING_REPAIRED, INFO, "{count} {corner|corners} got another tangent than the input has",
 		"With --existing=repair a face with an invalid tangent gets those that are computed. Without texture "
-		"coordinates nothing can be computed: what is invalid becomes the unit vector across the normal that is "
-		"nearest to it, or any across the normal where it has no direction, and w becomes 1 where the corners "
-		"of a triangle do not agree; --existing=replace does the same there.",
+		"coordinates nothing can be computed: what is invalid becomes the unit vector across the "
+		"normal that is nearest to it, or any across the normal where it has no direction, and w "
+		"becomes 1 where the corners of a triangle do not agree; --existing=replace does the same there.",
 		"Nothing; --existing=keep leaves them as they are.",
 		"a triangle whose TANGENT is its NORMAL, converted with --existing=repair --only=all"),
 };

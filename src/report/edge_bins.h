@@ -51,6 +51,7 @@ nt_status nt_edge_bins_make(nt_edge_bins *bins, const nt_surface *surface, unsig
 /* Calls visit once for each bin, several at a time: calls with one `slot`, which is below `slots`, never run beside
  * each other. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_edge_bins_visit(const nt_edge_bins *bins, nt_scratch *scratch,
-	void (*visit)(void *context, size_t bin, const nt_edge_side *sides, size_t count, unsigned slot), void *context);
+	void (*visit)(void *context, size_t bin, const nt_edge_side *sides, size_t count, unsigned slot),
+	void *context);
 
 #endif

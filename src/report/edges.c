@@ -287,7 +287,8 @@ nt_status nt_check_edges(nt_check *check)
 	nt_status status = allocate(check);
 	nt_edge_bins bins;
 	if (!status)
-		status = nt_edge_bins_make(&bins, &check->surface, nt_thread_count(check->options->threads), check->scratch);
+		status = nt_edge_bins_make(&bins, &check->surface, nt_thread_count(check->options->threads),
+			check->scratch);
 	if (!status)
 		status = check_bins(check, &bins);
 	if (!status)

@@ -96,7 +96,8 @@ static double rounding_bound(const uv_frame *f)
 static bool is_far_from_degenerate(const uv_frame *f)
 {
 	const double left = 8.0 * 0x1p-48 * f->size * f->size * (f->n1 + f->n2) * (f->uu + f->vv);
-	const double right = 0.9 * NEAR_DEGENERATE_SINE * NEAR_DEGENERATE_SINE * f->determinant * f->determinant * f->uu;
+	const double right =
+		0.9 * NEAR_DEGENERATE_SINE * NEAR_DEGENERATE_SINE * f->determinant * f->determinant * f->uu;
 	return left < right && right > 1e-200;
 }
 
@@ -283,7 +284,8 @@ static void sort_determinants(nt_report_mesh *facts, float *determinants, size_t
 static nt_status count_determinants(nt_check *check, const float *determinants)
 {
 	const size_t count = check->surface.triangle_count;
-	const unsigned threads = nt_thread_count(check->options->threads), slots = nt_parallel_slots(threads, count, GRAIN);
+	const unsigned threads = nt_thread_count(check->options->threads),
+		slots = nt_parallel_slots(threads, count, GRAIN);
 	histogram h = {.values = determinants, .shift = 16,
 		.counts = nt_scratch_alloc(check->scratch, (size_t)slots * 65536, sizeof *h.counts),
 		.ranges = nt_scratch_alloc(check->scratch, 2 * (size_t)slots, sizeof *h.ranges)};

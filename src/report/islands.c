@@ -287,7 +287,8 @@ static bool move_tile(double x[3], double tile, nt_wrap wrap)
 
 static void search_tile(grid *g, uv_triangle t, double tile_u, double tile_v)
 {
-	const bool folded_u = move_tile(t.u, tile_u, g->mesh->wrap[0]), folded_v = move_tile(t.v, tile_v, g->mesh->wrap[1]);
+	const bool folded_u = move_tile(t.u, tile_u, g->mesh->wrap[0]),
+		folded_v = move_tile(t.v, tile_v, g->mesh->wrap[1]);
 	g->visits++;
 	if (folded_u != folded_v) {
 		const double u = t.u[1], v = t.v[1];
@@ -335,7 +336,8 @@ static nt_status find_covered(nt_check *check, size_t mirrored_count)
 	g->samples = samples;
 	g->sample_count = g->visits = 0;
 	const size_t triangles = check->surface.triangle_count;
-	g->most_visits = triangles < MOST_VISITS / TRIANGLE_VISITS ? MESH_VISITS + TRIANGLE_VISITS * triangles : MOST_VISITS;
+	g->most_visits = triangles < MOST_VISITS / TRIANGLE_VISITS
+		? MESH_VISITS + TRIANGLE_VISITS * triangles : MOST_VISITS;
 	g->mesh = check->mesh;
 	take_samples(check, g, mirrored_count, met);
 	fill_grid(g);

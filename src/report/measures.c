@@ -71,7 +71,8 @@ static double median_of(weighed *items, size_t count)
 
 static bool is_measured(const nt_check *check, size_t t)
 {
-	return check->islands[t] != NT_NONE && check->surface.orientation[t] != 0 && check->surface.flatness[t] == NT_SOUND;
+	return check->islands[t] != NT_NONE && check->surface.orientation[t] != 0 &&
+		check->surface.flatness[t] == NT_SOUND;
 }
 
 /* Triangles by island: list[first[i]] to list[first[i + 1] - 1]. */

@@ -56,8 +56,8 @@ typedef struct nt_report_options {
 	size_t max_findings;          /* findings kept; 0: all */
 	const nt_baseline *baseline;  /* NULL: none */
 	bool keep_geometry;           /* for pictures: SVG and HTML */
-	bool keep_frames;             /* with geometry: the file's tangents, and computed ones, which are solved where no
-	                                 stage did */
+	bool keep_frames;             /* with geometry: the file's tangents, and computed ones, which are solved where
+	                                 no stage did */
 	bool measures;                /* texel density and stretch of islands, and what splitting costs */
 	const void *find_user; /* what the next ones get first */
 	/* Gives the size of a mesh's normal map in pixels, 0 0 where it is not known. NULL: nobody can. */
@@ -148,7 +148,8 @@ typedef struct nt_island {
 	size_t triangles[3];  /* mirrored, degenerate, normal: [orientation + 1] */
 	double area;          /* in space */
 	double covered;       /* share of the mirrored triangles that lie on unmirrored ones, NaN: none */
-	double texel_density[2]; /* texels per unit: median by area, least; NaN: not measured, or the size is not known */
+	double texel_density[2]; /* texels per unit: median by area, least; NaN: not measured, or the size is
+	                            not known */
 	double stretch[2];       /* longest to shortest texel: median by area, greatest; NaN: not measured */
 	bool twin;            /* mixed, but the mirrored part lies point by point on its twin */
 	float minimum[2], maximum[2]; /* in the source's UV */

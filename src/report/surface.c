@@ -114,7 +114,8 @@ static nt_flatness flatness_of(const float *a, const float *b, const float *c, d
 		return NT_NOT_FINITE;
 	if (area > 0.0)
 		return NT_SOUND;
-	return is_same_position(a, b) || is_same_position(b, c) || is_same_position(c, a) ? NT_COINCIDENT : NT_COLLINEAR;
+	return is_same_position(a, b) || is_same_position(b, c) || is_same_position(c, a)
+		? NT_COINCIDENT : NT_COLLINEAR;
 }
 
 static void measure_triangle(nt_surface *s, size_t t, nt_block *block)

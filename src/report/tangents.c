@@ -314,8 +314,8 @@ static bool fits_untransformed(const nt_check *check, size_t t, float w)
 	const float *uv = check->mesh->texcoords;
 	if (!check->mesh->solve_texcoords)
 		return false;
-	const int sign = nt_orientation(uv + 2 * (size_t)nt_side_vertex(s, 3 * t), uv + 2 * (size_t)nt_side_vertex(s, 3 * t + 1),
-		uv + 2 * (size_t)nt_side_vertex(s, 3 * t + 2));
+	const int sign = nt_orientation(uv + 2 * (size_t)nt_side_vertex(s, 3 * t),
+		uv + 2 * (size_t)nt_side_vertex(s, 3 * t + 1), uv + 2 * (size_t)nt_side_vertex(s, 3 * t + 2));
 	return sign != 0 && (w > 0.0f) == (sign > 0);
 }
 

@@ -143,8 +143,8 @@ typedef struct nt_split {
 
 /* Primitives of one glTF mesh with the same texture coordinates and the same texture transform, in their order. */
 typedef struct nt_join {
-	struct nt_mesh **parts; /* [part_count] at least two: meshes of the scene that get tangents (or whose kept ones are
-	                           checked), and copies of others, which the join alone has */
+	struct nt_mesh **parts; /* [part_count] at least two: meshes of the scene that get tangents (or whose kept
+	                           ones are checked), and copies of others, which the join alone has */
 	size_t part_count;
 	struct nt_mesh *first;  /* the first of them that gets tangents */
 	bool *moves;            /* [target_count] morph targets that move any of them */
@@ -177,7 +177,8 @@ typedef struct nt_mesh {
 	uint32_t texcoord_set;   /* number of that set */
 	nt_wrap wrap[2];         /* along u and v, of the texture that tangents serve */
 	float wrap_offset[2];    /* of its transform, v up, where it is mirrored: elsewhere an offset moves all alike */
-	bool texcoords_transformed; /* textures may be looked up elsewhere than the set says: glTF's texture transforms */
+	bool texcoords_transformed; /* textures may be looked up elsewhere than the set says: glTF's texture
+	                               transforms */
 	bool texcoord_conflict;  /* another slot of it asks for another set: texcoord_other_set */
 	uint32_t texcoord_other_set;
 	uint32_t targets_without_tangents; /* morph targets that move it and have no TANGENT */
@@ -185,7 +186,8 @@ typedef struct nt_mesh {
 	const struct nt_mesh *same_as; /* an earlier mesh with the same geometry, which is loaded and solved once;
 	                                  NULL: none. That one has none */
 
-	bool plain;              /* of its geometry, an edit of the source's document needs what a solve makes of it alone */
+	bool plain;              /* of its geometry, an edit of the source's document needs what a solve makes
+	                            of it alone */
 	nt_quantized quantized;
 	bool late;               /* loaded and solved while the writer asks for it: scene->solve_late */
 	const nt_join *join;     /* it is solved with the others of it; NULL: by itself */
@@ -234,11 +236,12 @@ typedef struct nt_mesh {
 	                             serves them with and without it; counted once for each target */
 
 	/* results */
-	void *cut_arrays;         /* the block of indices and face arrays, where folded quads were cut; NULL: none were */
+	void *cut_arrays;         /* the block of indices and face arrays, where folded quads were cut; NULL:
+	                             none were */
 	float *corner_tangents;   /* [corner_count][4]; NULL until solved or after split */
 	nmtan_counts counts;
-	size_t replaced_tangents; /* corners whose authored tangent was invalid, or is beside one that was, and is another
-	                             now */
+	size_t replaced_tangents; /* corners whose authored tangent was invalid, or is beside one that was, and is
+	                             another now */
 	nt_split split;
 } nt_mesh;
 

@@ -53,10 +53,11 @@ static void report_no_texcoords(nt_scene *scene, const nt_mesh *mesh, bool other
 	if (!needs_tangents(mesh) && nt_format_is_gltf(scene->format))
 		return;
 	if (needs_tangents(mesh))
-		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, nt_mesh_place(mesh, &(nt_place){0}), 1, "texture coordinate set %u",
-			mesh->texcoord_set);
+		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, nt_mesh_place(mesh, &(nt_place){0}), 1,
+			"texture coordinate set %u", mesh->texcoord_set);
 	else if (!others_have)
-		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, nt_mesh_place(mesh, &(nt_place){0}), 1, "the file has none at all");
+		nt_finding_add(&scene->findings, NT_CODE_TAN_NO_UV, nt_mesh_place(mesh, &(nt_place){0}), 1,
+			"the file has none at all");
 	else
 		nt_finding_add(&scene->findings, NT_CODE_UV_MISSING, nt_mesh_place(mesh, &(nt_place){0}), 1, NULL);
 }

@@ -18,7 +18,8 @@ typedef double lane_vectors[3][LANES];
 static void make_unit(lane_vectors n)
 {
 	for (int i = 0; i < LANES; i++) {
-		const double squared = n[0][i] * n[0][i] + n[1][i] * n[1][i] + n[2][i] * n[2][i], scale = nt_rsqrt(squared);
+		const double squared = n[0][i] * n[0][i] + n[1][i] * n[1][i] + n[2][i] * n[2][i],
+			scale = nt_rsqrt(squared);
 		for (int c = 0; c < 3; c++)
 			n[c][i] = isfinite(squared) ? scale * n[c][i] : 0.0;
 	}

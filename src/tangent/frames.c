@@ -33,7 +33,8 @@ int nt_triangle_orientation(const nmtan_mesh *mesh, const uint32_t corners[3], b
 {
 	if (!stored || !nt_has_stored(mesh))
 		return nt_orientation(nt_texcoord(mesh, nt_vertex_of(mesh, corners[0])),
-			nt_texcoord(mesh, nt_vertex_of(mesh, corners[1])), nt_texcoord(mesh, nt_vertex_of(mesh, corners[2])));
+			nt_texcoord(mesh, nt_vertex_of(mesh, corners[1])),
+			nt_texcoord(mesh, nt_vertex_of(mesh, corners[2])));
 	float t[3][2];
 	load_texcoords(mesh, corners, stored, t);
 	const int sign = nt_orientation(t[0], t[1], t[2]);
@@ -210,7 +211,8 @@ static int make_edges(const nmtan_mesh *mesh, const uint32_t corners[3], edges *
 }
 
 /* Which corners a direction adds to; what has no weight adds no condition either. False: to none. */
-static bool find_corners(nt_weight weight, nt_dvec3 u, const nt_dvec3 normals[3], nt_frame_sum *const sums[3], bool adds[3])
+static bool find_corners(nt_weight weight, nt_dvec3 u, const nt_dvec3 normals[3], nt_frame_sum *const sums[3],
+	bool adds[3])
 {
 	const nt_measured m = {.u = u, .squared = nt_dvec3_dot(u, u)};
 	for (int k = 0; k < 3; k++)

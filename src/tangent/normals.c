@@ -56,7 +56,8 @@ static void normalise(double *restrict x, double *restrict y, double *restrict z
 	for (size_t i = 0; i < count; i++) {
 		const nt_dvec3 v = {x[i], y[i], z[i]};
 		const double largest = nt_dvec3_largest(v), sum = fabs(v.x + v.y + v.z);
-		const double ok = (largest > 0.0 ? 1.0 : 0.0) * (largest <= DBL_MAX ? 1.0 : 0.0) * (sum <= DBL_MAX ? 1.0 : 0.0);
+		const double ok =
+			(largest > 0.0 ? 1.0 : 0.0) * (largest <= DBL_MAX ? 1.0 : 0.0) * (sum <= DBL_MAX ? 1.0 : 0.0);
 		const nt_dvec3 scaled = {v.x / largest, v.y / largest, v.z / largest};
 		const double inverse = 1.0 / sqrt(nt_dvec3_dot(scaled, scaled));
 		x[i] = inverse * scaled.x;
@@ -68,7 +69,8 @@ static void normalise(double *restrict x, double *restrict y, double *restrict z
 
 static void measure_angles(face_block *restrict b, size_t corners)
 {
-	double sine[CORNERS], cosine[CORNERS], t[CORNERS], base[CORNERS], arc[CORNERS]; /* both times the edges' lengths */
+	/* both times the edges' lengths */
+	double sine[CORNERS], cosine[CORNERS], t[CORNERS], base[CORNERS], arc[CORNERS];
 	for (size_t i = 0; i < corners; i++) {
 		const nt_dvec3 e = lane(b->edges[0][0], b->edges[0][1], b->edges[0][2], i);
 		const nt_dvec3 f = lane(b->edges[1][0], b->edges[1][1], b->edges[1][2], i);

@@ -170,12 +170,14 @@ static void repair_face(const nt_repair_state *r, size_t number, size_t first)
 	for (size_t k = 0; k < f.size; k++) {
 		float own[3];
 		if (!f.usable[k])
-			nt_repair_corner(r->solve, first + k, best_tangent(r, &f, first + k, own), f.side ? 1.0f : -1.0f);
+			nt_repair_corner(r->solve, first + k, best_tangent(r, &f, first + k, own),
+				f.side ? 1.0f : -1.0f);
 	}
 }
 
 /* What nearly all meshes do not need: not in line, since it saves many registers. */
-static nmtan_status __attribute__((noinline)) repair(const nt_solve *solve, const nmtan_counts *counts, uint64_t *faulty)
+static nmtan_status __attribute__((noinline)) repair(const nt_solve *solve, const nmtan_counts *counts,
+	uint64_t *faulty)
 {
 	nt_repair_state r = {.solve = solve, .faulty = faulty};
 	nmtan_status status = NMTAN_OK;

@@ -36,7 +36,8 @@ static bool tell_bare(const nt_repair_state *r)
 enum { BARE_LISTED = 2 * 64 };
 typedef struct bare_list {
 	uint32_t alone[BARE_LISTED + 1];       /* triangles without a usable corner */
-	nt_beside beside[2 * BARE_LISTED + 1]; /* unusable corners of others, and the first usable one of the triangle */
+	nt_beside beside[2 * BARE_LISTED + 1]; /* unusable corners of others, and the first usable one of the
+	                                          triangle */
 	uint32_t fresh[3 * BARE_LISTED];       /* vertices of the mesh, whose numbers go down from `next` */
 	size_t alone_count, beside_count, fresh_count, next;
 } bare_list;
@@ -82,7 +83,8 @@ static inline bool list_bare(nt_repair_state *r, size_t t, bare_list *list)
 	const unsigned alone = lacking == 7, usable = ~lacking & 7;
 	list->alone[list->alone_count] = (uint32_t)t;
 	list->alone_count += alone;
-	const uint32_t from = first + (uint32_t)__builtin_ctz(usable | 8), last = first + (usable >> 2 ? 2 : usable >> 1);
+	const uint32_t from = first + (uint32_t)__builtin_ctz(usable | 8),
+		last = first + (usable >> 2 ? 2 : usable >> 1);
 #pragma GCC unroll 3
 	for (uint32_t k = 0; k < 3; k++) {
 		list->beside[list->beside_count] = (nt_beside){first + k, from, last};
@@ -216,7 +218,8 @@ nmtan_status nt_repair_by_normals(const nt_solve *solve, const nmtan_counts *cou
 		if (has_negative_zero(nt_normal(mesh, v)))
 			return NMTAN_OK;
 	for (size_t v = 0; v < count; v += NT_ACROSS_LANES)
-		nt_perpendiculars(mesh, v, NULL, count - v < NT_ACROSS_LANES ? count - v : NT_ACROSS_LANES, tangents + v);
+		nt_perpendiculars(mesh, v, NULL, count - v < NT_ACROSS_LANES ? count - v : NT_ACROSS_LANES,
+			tangents + v);
 	for (size_t c = 0; c < solve->corner_count; c++)
 		write_row(solve, c, tangents[nt_vertex_of(mesh, c)]);
 	*done = true;

@@ -159,7 +159,8 @@ static int count_quad(const nmtan_mesh *mesh, size_t face, size_t first, nmtan_c
  * they are mirrored. */
 static uint64_t find_suspects(const nt_known *known, const uint8_t *flags, size_t count, size_t *mirrored)
 {
-	const uint8_t mask = (uint8_t)(known->suspect & (!NT_SHORT_WAYS || known->open ? ~0u : ~(unsigned)known->judged));
+	const uint8_t mask =
+		(uint8_t)(known->suspect & (!NT_SHORT_WAYS || known->open ? ~0u : ~(unsigned)known->judged));
 	size_t plain;
 	const uint64_t suspects = nt_flagged(flags, count, mask, known->positive, &plain);
 	*mirrored += plain;
@@ -173,7 +174,8 @@ static void ask_for_triangle(const nt_solve *solve, size_t t)
 		__builtin_prefetch(solve->tangents + 12 * t);
 		__builtin_prefetch(solve->tangents + 12 * t + 11);
 	}
-	if (NT_SHORT_WAYS && solve->known && solve->known->judged && nt_knows_orientation(solve->known, t, &orientation))
+	if (NT_SHORT_WAYS && solve->known && solve->known->judged &&
+		nt_knows_orientation(solve->known, t, &orientation))
 		return;
 	for (size_t c = 3 * t; c < 3 * t + 3; c++) {
 		const size_t v = nt_vertex_of(solve->mesh, c);
@@ -198,7 +200,8 @@ static bool check_triangle(const nt_solve *solve, size_t t, nmtan_counts *counts
 		orientation = count_triangle(mesh, corners, counts);
 		counts->degenerate_positions += is_degenerate(mesh, corners);
 	}
-	return solve->repair && has_unusable(solve, 3 * t, 3, orientation, NT_SHORT_WAYS && known && known->judged, counts);
+	return solve->repair &&
+		has_unusable(solve, 3 * t, 3, orientation, NT_SHORT_WAYS && known && known->judged, counts);
 }
 
 /* What triangles that were judged add to the counts. */
@@ -221,7 +224,8 @@ static inline bool is_judged(const nt_solve *solve, size_t t)
 static inline bool check_judged(const nt_solve *solve, size_t t, judged_counts *counts)
 {
 	const nt_known *known = solve->known;
-	const uint32_t flat = (known->flags[t] & known->flat) != 0, mirrored = !flat & !(known->flags[t] & known->positive);
+	const uint32_t flat = (known->flags[t] & known->flat) != 0,
+		mirrored = !flat & !(known->flags[t] & known->positive);
 	float *const tangents = solve->tangents + 12 * t;
 	uint32_t w[3], given[3];
 	int sum = 0; /* of w */

@@ -103,7 +103,8 @@ static size_t place_blocks(nt_adjacency *a, size_t most_places)
 		const size_t left = a->vertex_count - first, count = left < NT_FAN_LANES ? left : NT_FAN_LANES;
 		a->block_begin[first / NT_FAN_LANES] = (uint32_t)place;
 		const uint32_t most = place + NT_FAN_LANES * NT_FAN_DEPTH <= most_places ? NT_FAN_DEPTH : 0;
-		const uint32_t depth = count < NT_FAN_LANES ? place_block(a, first, (uint32_t)place, most, count, a->ranges)
+		const uint32_t depth = count < NT_FAN_LANES
+			? place_block(a, first, (uint32_t)place, most, count, a->ranges)
 			: a->ranges == 1 ? place_block(a, first, (uint32_t)place, most, NT_FAN_LANES, 1)
 			: place_block(a, first, (uint32_t)place, most, NT_FAN_LANES, a->ranges);
 		place += (size_t)depth * NT_FAN_LANES;

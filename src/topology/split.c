@@ -75,7 +75,8 @@ static bool make_tree(nt_splitter *s)
 	nt_crit_bit_node *nodes = nt_scratch_alloc(s->scratch, s->copy_capacity, sizeof *nodes);
 	if (!nodes)
 		return false;
-	s->tree = (nt_crit_bit){(const nt_crit_bit_word *)s->copies, sizeof *s->copies / sizeof *s->tree.keys, nodes, 0};
+	s->tree = (nt_crit_bit){(const nt_crit_bit_word *)s->copies, sizeof *s->copies / sizeof *s->tree.keys,
+		nodes, 0};
 	for (size_t i = 0; i < s->copy_count; i++)
 		nt_crit_bit_add(&s->tree, (uint32_t)i);
 	return true;

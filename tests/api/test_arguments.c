@@ -165,7 +165,8 @@ static void vertex_tangents_check_their_arguments_too(void **state)
 static void split_checks_the_stride_of_normals(void **state)
 {
 	(void)state;
-	const float tangents[6][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}};
+	const float tangents[6][4] = {{1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1}, {1, 0, 0, 1},
+		{1, 0, 0, 1}};
 	float vertex_tangents[4][4];
 	uint32_t out[6];
 	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = out,

@@ -102,7 +102,8 @@ static void a_solve_with_split_counts_copies(void **state)
 {
 	uint32_t indices[12], sources[12], copy_counts[6];
 	float vertex_tangents[18][4];
-	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = indices, .sources = sources, .source_capacity = 12,
+	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = indices, .sources = sources,
+		.source_capacity = 12,
 		.vertex_tangents = &vertex_tangents[0][0], .copy_counts = copy_counts};
 	memset(copy_counts, 0xff, sizeof copy_counts);
 	assert_int_equal(nmtan_vertex_tangents(&mesh, *state, &split, NULL), NMTAN_OK);

@@ -178,8 +178,8 @@ int main(int argument_count, char **arguments)
 
 	print_machine();
 	core_real_table(arguments + 1, (size_t)argument_count - 1, getenv("PEERS"));
-	printf("Families of meshes, million triangles a second, best of %d interleaved runs; the definition on %d triangles "
-		"(hubs: %d)\n\n| mesh, triangles |", RUNS, DEFINITION_SIZE, DEFINITION_HUB);
+	printf("Families of meshes, million triangles a second, best of %d interleaved runs; the definition on "
+		"%d triangles (hubs: %d)\n\n| mesh, triangles |", RUNS, DEFINITION_SIZE, DEFINITION_HUB);
 	for (size_t c = 0; c < n; c++)
 		printf(" %s |", columns[c].name);
 	printf(" bytes |\n|---|");
@@ -188,7 +188,8 @@ int main(int argument_count, char **arguments)
 	printf("\n");
 	for (size_t i = 0; i < NT_FAMILY_COUNT; i++) {
 		workload w = make_workload((nt_family)i, 1, sizes[i]);
-		workload smaller = make_workload((nt_family)i, 1, i == NT_FAMILY_HUB ? DEFINITION_HUB : DEFINITION_SIZE);
+		workload smaller =
+			make_workload((nt_family)i, 1, i == NT_FAMILY_HUB ? DEFINITION_HUB : DEFINITION_SIZE);
 		time_row(nt_family_names[i], &w, &smaller, columns, n);
 		free_workload(&w);
 		free_workload(&smaller);

@@ -38,7 +38,8 @@ static void solve(const way *w, const nt_owned *mesh, nmtan_workspace *workspace
 	const nmtan_options options = {.struct_bytes = sizeof options, .method = w->method, .threads = w->threads,
 		.workspace = w->warm ? workspace : NULL};
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0]};
-	if (w->peer ? !native_solve(w->peer, mesh, tangents) : nmtan_tangents(&mesh->mesh, &options, &output, NULL) != 0) {
+	if (w->peer ? !native_solve(w->peer, mesh, tangents)
+		: nmtan_tangents(&mesh->mesh, &options, &output, NULL) != 0) {
 		fprintf(stderr, "core: %s failed\n", w->name);
 		exit(1);
 	}
@@ -148,9 +149,10 @@ void core_real_table(char *const *files, size_t count, const char *folder)
 		time_model(&models[m], ways, way_count, workspace, best[m]);
 	nmtan_workspace_destroy(workspace);
 
-	printf("Million triangles a second of nmtan's default without and with a workspace, on one thread and on all (%u); what "
-		"robust takes of the default's time; the peers, and how many times as fast the default without a workspace "
-		"is. Best of %d interleaved rounds.\n\n| mesh | triangles | default | workspace | all threads | both | robust |",
+	printf("Million triangles a second of nmtan's default without and with a workspace, on one thread and "
+		"on all (%u); what robust takes of the default's time; the peers, and how many times as fast "
+		"the default without a workspace is. Best of %d interleaved rounds.\n\n| mesh | triangles | "
+		"default | workspace | all threads | both | robust |",
 		nt_thread_count(0), ROUNDS);
 	for (size_t w = FIRST_PEER; w < way_count; w++)
 		printf(" %s |", ways[w].name);

@@ -79,7 +79,8 @@ bool faults_add_files(const char *const *files, size_t count, faults *sum)
 		length += (size_t)snprintf(command + length, sizeof command - length, " '%s'", files[i]);
 	FILE *f = length < sizeof command ? popen(command, "r") : NULL;
 	size_t corners, leaning, unit, w, mixed, wrong;
-	while (f && fscanf(f, " corners %zu degree %*u lean %zu unit %zu w %zu mixed %zu wrong %zu", &corners, &leaning, &unit,
+	while (f && fscanf(f, " corners %zu degree %*u lean %zu unit %zu w %zu mixed %zu wrong %zu", &corners,
+		&leaning, &unit,
 				&w, &mixed, &wrong) == 6) {
 		sum->corners += corners;
 		sum->wrong += mixed + wrong;

@@ -76,17 +76,18 @@ static int print_document(const nt_owned *mesh, char *text, size_t size)
 	const size_t n = mesh->mesh.vertex_count, corners = mesh->corner_count;
 	return snprintf(text, size,
 		"{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
-		"\"images\":[{\"uri\":\"data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADh"
-		"gGAWjR9awAAAABJRU5ErkJggg==\"}],\"textures\":[{\"source\":0}],"
-		"\"materials\":[{\"normalTexture\":{\"index\":0}}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
-		"\"NORMAL\":1,\"TEXCOORD_0\":2},\"indices\":3,\"material\":0}]}],\"buffers\":[{\"byteLength\":%zu}],"
-		"\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu,\"target\":34962},{\"buffer\":0,\"byteOffset\":%zu,"
-		"\"byteLength\":%zu,\"target\":34962},{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,\"target\":34962},"
-		"{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,\"target\":34963}],\"accessors\":["
-		"{\"bufferView\":0,\"componentType\":5126,\"count\":%zu,\"type\":\"VEC3\",\"min\":[%.9g,%.9g,%.9g],"
-		"\"max\":[%.9g,%.9g,%.9g]},{\"bufferView\":1,\"componentType\":5126,\"count\":%zu,\"type\":\"VEC3\"},"
-		"{\"bufferView\":2,\"componentType\":5126,\"count\":%zu,\"type\":\"VEC2\"},"
-		"{\"bufferView\":3,\"componentType\":5125,\"count\":%zu,\"type\":\"SCALAR\"}]}",
+		"\"images\":[{\"uri\":\"data:image/png;base64,"
+		"iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg==\"}],"
+		"\"textures\":[{\"source\":0}],\"materials\":[{\"normalTexture\":{\"index\":0}}],"
+		"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},"
+		"\"indices\":3,\"material\":0}]}],\"buffers\":[{\"byteLength\":%zu}],\"bufferViews\":[{\"buffer\":0,"
+		"\"byteLength\":%zu,\"target\":34962},{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,"
+		"\"target\":34962},{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,\"target\":34962},"
+		"{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu,\"target\":34963}],"
+		"\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":%zu,\"type\":\"VEC3\","
+		"\"min\":[%.9g,%.9g,%.9g],\"max\":[%.9g,%.9g,%.9g]},{\"bufferView\":1,\"componentType\":5126,"
+		"\"count\":%zu,\"type\":\"VEC3\"},{\"bufferView\":2,\"componentType\":5126,\"count\":%zu,"
+		"\"type\":\"VEC2\"},{\"bufferView\":3,\"componentType\":5125,\"count\":%zu,\"type\":\"SCALAR\"}]}",
 		32 * n + 4 * corners, 12 * n, 12 * n, 12 * n, 24 * n, 8 * n, 32 * n, 4 * corners, n, (double)low[0],
 		(double)low[1], (double)low[2], (double)high[0], (double)high[1], (double)high[2], n, n, corners);
 }
@@ -177,7 +178,8 @@ static void make_table(result *r)
 }
 
 /* How far corner k of a triangle is from corner (k + turn) of another, at most, along an axis. */
-static double triangle_distance(const nt_owned *mesh, size_t triangle, const nt_owned *other_mesh, size_t other, size_t turn)
+static double triangle_distance(const nt_owned *mesh, size_t triangle, const nt_owned *other_mesh, size_t other,
+	size_t turn)
 {
 	double most = 0;
 	for (size_t k = 0; k < 3; k++) {
@@ -191,7 +193,8 @@ static double triangle_distance(const nt_owned *mesh, size_t triangle, const nt_
 
 /* The nearest triangle of the result, turned as it has to be; false: none is nearer than `most`, which is at most a
  * cell. */
-static bool find_triangle(const nt_owned *mesh, size_t triangle, const result *r, double most, size_t *found, size_t *turn)
+static bool find_triangle(const nt_owned *mesh, size_t triangle, const result *r, double most, size_t *found,
+	size_t *turn)
 {
 	int64_t middle[3];
 	find_cell(mesh, triangle, r->cell, middle);

@@ -31,7 +31,8 @@ static double draw(void)
 static void hills(double *h, int waves, int shortest)
 {
 	for (int w = 0; w < waves; w++) {
-		const double fx = floor((draw() * 2 - 1) * shortest), fy = floor((draw() * 2 - 1) * shortest), phase = draw() * 6.28,
+		const double fx = floor((draw() * 2 - 1) * shortest), fy = floor((draw() * 2 - 1) * shortest),
+			phase = draw() * 6.28,
 			     amount = 1 / (1 + fx * fx + fy * fy);
 		for (int i = 0; i < SIDE * SIDE; i++)
 			h[i] += amount * sin(6.283185307179586 * (fx * (i % SIDE) + fy * (i / SIDE)) / SIDE + phase);
@@ -114,15 +115,18 @@ static void synthetic(void)
 			nt_pixels_free(&map);
 		}
 		const size_t wrong = counts[0][NT_GREEN_DOWN] + counts[1][NT_GREEN_UP];
-		printf("%-10s %5d %6zu/%d %7zu/%d %11zu %7zu\n", names[family], 2 * PER_FAMILY, counts[1][NT_GREEN_DOWN], PER_FAMILY,
-			counts[0][NT_GREEN_UP], PER_FAMILY, counts[0][NT_GREEN_UNKNOWN] + counts[1][NT_GREEN_UNKNOWN], wrong);
+		printf("%-10s %5d %6zu/%d %7zu/%d %11zu %7zu\n", names[family], 2 * PER_FAMILY,
+			counts[1][NT_GREEN_DOWN], PER_FAMILY,
+			counts[0][NT_GREEN_UP], PER_FAMILY,
+			counts[0][NT_GREEN_UNKNOWN] + counts[1][NT_GREEN_UNKNOWN], wrong);
 		wrong_all += wrong;
 		if (family < FAMILIES - 1) {
 			found_all += counts[1][NT_GREEN_DOWN];
 			down_all += PER_FAMILY;
 		}
 	}
-	printf("green down: recall %.0f %% (grooves aside, of which nothing can be told), false alarms and misses told wrongly %zu\n",
+	printf("green down: recall %.0f %% (grooves aside, of which nothing can be told), false alarms and "
+		"misses told wrongly %zu\n",
 		100.0 * (double)found_all / (double)down_all, wrong_all);
 }
 

@@ -110,8 +110,8 @@ static void decode(const frame *f, const double texel[3], double shown[3])
 	normalise(shown);
 }
 
-double image_error(const image_triangle *baker, const image_triangle *shader, const double weights[3], const double m[3],
-	const image_convention *convention)
+double image_error(const image_triangle *baker, const image_triangle *shader, const double weights[3],
+	const double m[3], const image_convention *convention)
 {
 	const frame baked = interpolate(baker, weights, convention), shading = interpolate(shader, weights, convention);
 	double texel[3], shown[3], across[3];
@@ -164,7 +164,8 @@ bool image_check(void)
 		}
 		const double rms = sqrt(squares / POINTS), expected = step / sqrt(6) * DEGREES;
 		if (!(worst <= most) || !(fabs(rms / expected - 1) < 0.05)) {
-			fprintf(stderr, "bench: the image error departs from theory: %s: by %g degrees (at most %g), rms %g for %g\n",
+			fprintf(stderr, "bench: the image error departs from theory: %s: by %g degrees (at "
+				"most %g), rms %g for %g\n",
 				convention->name, worst, most, rms, expected);
 			return false;
 		}

@@ -36,8 +36,8 @@ typedef struct image_triangle {
 void image_field(const double p[3], const double n[3], double m[3]);
 
 /* The error at the point with these barycentric weights, in degrees; NaN where the baker's frame is singular. */
-double image_error(const image_triangle *baker, const image_triangle *shader, const double weights[3], const double m[3],
-	const image_convention *convention);
+double image_error(const image_triangle *baker, const image_triangle *shader, const double weights[3],
+	const double m[3], const image_convention *convention);
 
 /*
  * Holds the measure against theory: a frame turned by a around N errs by 2 asin(sin f sin(a / 2)) where f is the angle

@@ -115,7 +115,8 @@ size_t native_open(const char *folder, native *peers)
 		peers[n] = (native){.function = function, .flags = MESHOPT_COMPATIBLE};
 		snprintf(peers[n++].name, sizeof peers->name, "%.48s compatible", name);
 	} else {
-		printf("bench: %s %s, skipped\n", name, library ? "makes no tangents (Debian's 0.18 does not)" : "is not there");
+		printf("bench: %s %s, skipped\n", name,
+			library ? "makes no tangents (Debian's 0.18 does not)" : "is not there");
 	}
 	library = open_library(folder, "mikktspace", name);
 	if (library && (*(void **)&function = dlsym(library, "genTangSpaceDefault"))) {
@@ -130,7 +131,8 @@ size_t native_open(const char *folder, native *peers)
 bool native_solve(const native *peer, const nt_owned *mesh, float (*tangents)[4])
 {
 	if (peer->flags != ~0u) {
-		((meshopt_tangents *)peer->function)(&tangents[0][0], mesh->indices, mesh->corner_count, mesh->mesh.positions,
+		((meshopt_tangents *)peer->function)(&tangents[0][0], mesh->indices, mesh->corner_count,
+			mesh->mesh.positions,
 			mesh->mesh.vertex_count, 12, mesh->mesh.normals, 12, mesh->mesh.texcoords, 8, peer->flags);
 		return true;
 	}

@@ -147,7 +147,8 @@ static void list_runs(bench *b)
 		for (int o = 0; o < 4; o++) {
 			row *r = add_row(b, RUN_TOOL, m == 0 && o < 3);
 			snprintf(r->name, sizeof r->name, "nmtan %s, %s", method_names[m], outputs[o].name);
-			const char *const arguments[] = {b->nmtan, "-q", "--threads=1", methods[m], outputs[o].option, NULL};
+			const char *const arguments[] = {b->nmtan, "-q", "--threads=1", methods[m],
+				outputs[o].option, NULL};
 			memcpy(r->arguments, arguments, sizeof arguments);
 		}
 	}
@@ -373,7 +374,8 @@ static void count_files(const bench *b, row *r)
 	if (!faults_add_files(files, n, &r->faults))
 		r->nasty = false;
 	if (r->faults.corners != b->nasty_corners)
-		printf("bench: %s: its files have %zu of %zu nasty corners\n", r->name, r->faults.corners, b->nasty_corners);
+		printf("bench: %s: its files have %zu of %zu nasty corners\n", r->name, r->faults.corners,
+			b->nasty_corners);
 }
 
 static void count_calls(const bench *b, row *r)
@@ -441,7 +443,8 @@ static void print_machine(const bench *b)
 			name[strcspn(name, "\n")] = 0;
 	if (f)
 		fclose(f);
-	printf("\n%s, %u processors, gcc %s. Models:", name ? name + 2 : "A processor", nt_thread_count(0), __VERSION__);
+	printf("\n%s, %u processors, gcc %s. Models:", name ? name + 2 : "A processor", nt_thread_count(0),
+		__VERSION__);
 	for (size_t m = 0; m < b->model_count; m++)
 		printf("%s %s (%zu)", m ? "," : "", b->models[m].name, b->models[m].mesh.mesh.face_count);
 	printf(".\n\n");
@@ -452,13 +455,14 @@ static void print_times(const bench *b, const row *r)
 	if (r->variant_count == 1)
 		printf(" %.0f |", r->ns[0]);
 	for (size_t v = 0; r->variant_count > 1 && v < r->variant_count; v++)
-		printf("%s%s %.0f%s", v ? ", " : " ", b->variants[v].name, r->ns[v], v + 1 == r->variant_count ? " |" : "");
+		printf("%s%s %.0f%s", v ? ", " : " ", b->variants[v].name, r->ns[v],
+			v + 1 == r->variant_count ? " |" : "");
 }
 
 static void print_rows(const bench *b)
 {
-	printf("| # | method | ns a triangle | 16 bits: median, 99.9 %% | 8 bits: median, 99.9 %% | nasty: wrong w | not unit | "
-		"not perpendicular |\n|---|---|---|---|---|---|---|---|\n");
+	printf("| # | method | ns a triangle | 16 bits: median, 99.9 %% | 8 bits: median, 99.9 %% | nasty: "
+		"wrong w | not unit | not perpendicular |\n|---|---|---|---|---|---|---|---|\n");
 	size_t number = 0;
 	for (const row *r = b->rows; r < b->rows + b->row_count; r++) {
 		if (!r->present)
@@ -540,9 +544,10 @@ static void write_chart(bench *b, const char *path)
 			i % 2 ? CHART_DASHED_STEPS : CHART_STEPS, NULL};
 	}
 	const chart c = {.title = "Run time against the error of a normal map's round trip",
-		.subtitle = "full: median, hollow: 99.9 %, 16 bits. nmtan's calls: instruction sets from right to left, "
-			"then all threads",
-		.x_label = "nanoseconds a triangle: of a call (arrays), or of a run from file to file", .y_label = "degrees",
+		.subtitle = "full: median, hollow: 99.9 %, 16 bits. nmtan's calls: instruction sets from right "
+		"to left, then all threads",
+		.x_label = "nanoseconds a triangle: of a call (arrays), or of a run from file to file",
+		.y_label = "degrees",
 		.log_x = true, .log_y = true, .series = series, .series_count = count};
 	if (!chart_write(path, &c)) {
 		fprintf(stderr, "bench: cannot write %s\n", path);
@@ -576,8 +581,9 @@ static void judge(bench *b, const char *svg)
 		r->front_high = r->present && on_front(b, r, true);
 	}
 	print_machine(b);
-	printf("Degrees at %zu points; of %zu corners around them the baker has MikkTSpace's own frame at %zu. Nasty: %zu meshes "
-		"with %zu corners. *: on a front.\n\n", points, 3 * (points / POINTS), own, b->nasty_count, b->nasty_corners);
+	printf("Degrees at %zu points; of %zu corners around them the baker has MikkTSpace's own frame at %zu. "
+		"Nasty: %zu meshes with %zu corners. *: on a front.\n\n", points, 3 * (points / POINTS), own,
+		b->nasty_count, b->nasty_corners);
 	print_rows(b);
 	print_conventions(b);
 	write_chart(b, svg);

@@ -133,7 +133,8 @@ void round_trip_judge(const round_trip *r, const shading *shader, measure_pool p
 			double weights[3];
 			weights_of(point, weights);
 			for (int c = 0; c < IMAGE_CONVENTIONS; c++) {
-				const double error = image_error(&at->baker, &triangle, weights, at->m[point], &image_conventions[c]);
+				const double error = image_error(&at->baker, &triangle, weights, at->m[point],
+					&image_conventions[c]);
 				if (!isnan(error))
 					measure_pool_add(&pools[c], error);
 			}

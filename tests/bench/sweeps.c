@@ -57,8 +57,9 @@ static void sweep_convergence(void)
 			worst[m][l] = wor[m];
 		}
 	}
-	printf("\nConvergence to the analytic dP/du: sphere, torus, twisted strip, sheared saddle and noise, vertices moved by up "
-		"to a quarter of a cell; median / worst degrees. The order is the slope of the median from 16 to 128 cells.\n\n"
+	printf("\nConvergence to the analytic dP/du: sphere, torus, twisted strip, sheared saddle and noise, "
+		"vertices moved by up to a quarter of a cell; median / worst degrees. The order is the slope "
+		"of the median from 16 to 128 cells.\n\n"
 		"| cells |");
 	for (int l = 0; l < LEVELS; l++)
 		printf(" %d |", 8 << l);
@@ -177,8 +178,9 @@ static void sweep_cells(void)
 static void sweep_bevels(void)
 {
 	static const double widths[WIDTHS] = {0.0001, 0.0003, 0.001, 0.003, 0.01, 0.03, 0.1, 0.3, 1};
-	printf("\nThin bevels: tilt in degrees of the tangents of a plane beside a bevel of the given width whose texture is sheared by "
-		"4/3; cells of %g, vertices away from the ends of the edge.\n\n| width |", 1.0 / CELLS);
+	printf("\nThin bevels: tilt in degrees of the tangents of a plane beside a bevel of the given width "
+		"whose texture is sheared by 4/3; cells of %g, vertices away from the ends of the edge.\n\n| "
+		"width |", 1.0 / CELLS);
 	for (int w = 0; w < WIDTHS; w++)
 		printf(" %g |", widths[w]);
 	printf("\n|---|");

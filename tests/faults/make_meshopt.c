@@ -56,8 +56,8 @@ int main(int count, char **arguments)
 			views[i].count, views[i].mode);
 	}
 	length += snprintf(json + length, sizeof json - (size_t)length, "],\"accessors\":["
-		"{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":4,\"min\":[0,0,0],\"max\":[1,1,0]},"
-		"{\"bufferView\":1,\"componentType\":5126,\"type\":\"VEC3\",\"count\":4},"
+		"{\"bufferView\":0,\"componentType\":5126,\"type\":\"VEC3\",\"count\":4,\"min\":[0,0,0],"
+		"\"max\":[1,1,0]},{\"bufferView\":1,\"componentType\":5126,\"type\":\"VEC3\",\"count\":4},"
 		"{\"bufferView\":2,\"componentType\":5126,\"type\":\"VEC2\",\"count\":4},"
 		"{\"bufferView\":3,\"componentType\":5125,\"type\":\"SCALAR\",\"count\":6}],"
 		"\"images\":[{\"uri\":\"bumps.png\"}],\"textures\":[{\"source\":0}],"

@@ -195,7 +195,8 @@ static void strip_times(bytes *b)
 	char *to = b->data;
 	for (const char *from = b->data; *from;) {
 		char *end;
-		if (isdigit((unsigned char)*from) && (strtod(from, &end), *end == ' ' && end[1] == 's' && !isalpha((unsigned char)end[2])))
+		if (isdigit((unsigned char)*from) &&
+			(strtod(from, &end), *end == ' ' && end[1] == 's' && !isalpha((unsigned char)end[2])))
 			from = end;
 		else
 			*to++ = *from++;
@@ -250,7 +251,8 @@ static const char *judge_files(const expectations *rules, const folder *before, 
 {
 	for (size_t i = 0; i < now->count; i++) {
 		const entry *is = &now->entries[i], *should = find(clean, is->path), *was = find(before, is->path);
-		if (is->is_folder || has_times(is->path) || (rules->shortened && strcmp(is->path + 2, rules->shortened) == 0))
+		if (is->is_folder || has_times(is->path) ||
+			(rules->shortened && strcmp(is->path + 2, rules->shortened) == 0))
 			continue;
 		const bool right = should && same(is->content, should->content);
 		if (!right && !whole && rules->report && strstr(is->path, rules->report) &&
@@ -275,7 +277,8 @@ static bool makes_files(const expectations *rules, const folder *before, const f
 {
 	for (size_t i = 0; i < clean->count; i++) {
 		const entry *is = &clean->entries[i], *was = find(before, is->path);
-		if (has_times(is->path) || is->is_folder || (rules->shortened && strcmp(is->path + 2, rules->shortened) == 0))
+		if (has_times(is->path) || is->is_folder ||
+			(rules->shortened && strcmp(is->path + 2, rules->shortened) == 0))
 			continue;
 		if (!was || !same(is->content, was->content))
 			return true;
@@ -313,8 +316,10 @@ static const char *judge(const expectations *rules, const folder *before, const 
 		return "it says nothing";
 	if (lines != 1 && !rules->many)
 		return "it says more than one line";
-	if (makes_files(rules, before, &clean->files) && same(r->out, clean->out) && !blames_one_with_times(&clean->files, r->err) &&
-		!strstr(r->err.data, "the output stands") && !judge_files(rules, before, &clean->files, &r->files, true, r->err))
+	if (makes_files(rules, before, &clean->files) && same(r->out, clean->out) &&
+		!blames_one_with_times(&clean->files, r->err) &&
+		!strstr(r->err.data, "the output stands") &&
+		!judge_files(rules, before, &clean->files, &r->files, true, r->err))
 		return "it fails although its files stand";
 	return judge_files(rules, before, &clean->files, &r->files, false, r->err);
 }
@@ -375,7 +380,8 @@ int main(int count, char **arguments)
 	*shared = (faulty){.kind = rules.kind, .target = SIZE_MAX};
 	run(command, library, file, scratch, &clean);
 	strip_times(&clean.err);
-	if (!WIFEXITED(clean.status) || (WEXITSTATUS(clean.status) != 0 && WEXITSTATUS(clean.status) != 6) || shared->count == 0) {
+	if (!WIFEXITED(clean.status) || (WEXITSTATUS(clean.status) != 0 && WEXITSTATUS(clean.status) != 6) ||
+		shared->count == 0) {
 		printf("the command fails without a fault: %s\n", clean.err.data);
 		return 1;
 	}

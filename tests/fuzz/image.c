@@ -26,7 +26,8 @@ static void check_grey(const uint8_t *bytes, size_t size, const nt_pixels *pixel
 	bool grey, alike = true;
 	nt_error error;
 	nt_error_clear(&error);
-	require(nt_image_is_grey(bytes, size, &grey, &error) == NT_OK, "an image that is decoded is not looked at", &error);
+	require(nt_image_is_grey(bytes, size, &grey, &error) == NT_OK,
+		"an image that is decoded is not looked at", &error);
 	const size_t sample = pixels->bits / 8, step = pixels->channels * sample;
 	const unsigned char *at = pixels->samples, *end = at + step * pixels->width * pixels->height;
 	for (; pixels->channels >= 3 && at < end; at += step)

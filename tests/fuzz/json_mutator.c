@@ -185,9 +185,11 @@ static size_t replace_by_value(document *d, int to, int from)
 
 static size_t change_number(document *d)
 {
-	static const char *const numbers[] = {"0", "-1", "1", "2", "3", "4", "5", "6", "7", "8", "12", "16", "36", "252",
+	static const char *const numbers[] = {"0", "-1", "1", "2", "3", "4", "5", "6", "7", "8", "12", "16",
+		"36", "252",
 		"255", "256", "65535", "65536", "2147483647", "4294967295", "4294967296", "9007199254740993",
-		"18446744073709551615", "1e308", "1e400", "0.5", "-0", "1.0", "3e0", "5120", "5121", "5122", "5123", "5125",
+		"18446744073709551615", "1e308", "1e400", "0.5", "-0", "1.0", "3e0", "5120", "5121", "5122",
+		"5123", "5125",
 		"5126", "34962", "34963"};
 	const int i = choose(d, '0', NO_VALUE);
 	if (i == NO_VALUE)
@@ -246,9 +248,11 @@ static size_t change_data(document *d, int i)
 
 static size_t change_string(document *d)
 {
-	static const char *const strings[] = {"\"\"", "\"../plates.bin\"", "\"plates.bin\"", "\"bumps.png\"", "\"a%20b\"",
+	static const char *const strings[] = {"\"\"", "\"../plates.bin\"", "\"plates.bin\"", "\"bumps.png\"",
+		"\"a%20b\"",
 		"\"a\\u0000b\"", "\"\\ud800\"", "\"\\u00e9\"", "\"data:;base64,AAAA\"", "\"data:,x\"", "\"SCALAR\"",
-		"\"VEC2\"", "\"VEC3\"", "\"VEC4\"", "\"MAT4\"", "\"BLEND\"", "\"MASK\"", "\"ATTRIBUTES\"", "\"TRIANGLES\"",
+		"\"VEC2\"", "\"VEC3\"", "\"VEC4\"", "\"MAT4\"", "\"BLEND\"", "\"MASK\"", "\"ATTRIBUTES\"",
+		"\"TRIANGLES\"",
 		"\"INDICES\"", "\"OCTAHEDRAL\"", "\"QUATERNION\"", "\"EXPONENTIAL\"", "\"image/png\"",
 		"\"KHR_mesh_quantization\"", "\"KHR_draco_mesh_compression\"", "\"EXT_meshopt_compression\"",
 		"\"KHR_texture_transform\"", "\"EXT_mesh_gpu_instancing\""};
@@ -329,7 +333,8 @@ static size_t copy_value(document *d)
 
 static size_t change_kind(document *d)
 {
-	static const char *const values[] = {"null", "true", "{}", "[]", "\"x\"", "0", "[0,0,0]", "{\"x\":1}", "[[[[0]]]]"};
+	static const char *const values[] = {"null", "true", "{}", "[]", "\"x\"", "0", "[0,0,0]", "{\"x\":1}",
+		"[[[[0]]]]"};
 	const int i = choose(d, 0, NO_VALUE);
 	const char *by = ONE_OF(values);
 	return i == NO_VALUE ? d->size : replace(d, i, by, strlen(by));
@@ -354,8 +359,10 @@ static const struct {
 	{"primitives", "\"indices\":0"},
 	{"primitives", "\"material\":0"},
 	{"primitives", "\"targets\":[{\"POSITION\":0,\"NORMAL\":1,\"TANGENT\":1}]"},
-	{"primitives", "\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":0,\"attributes\":{\"POSITION\":0}}}"},
-	{"primitives", "\"extensions\":{\"KHR_materials_variants\":{\"mappings\":[{\"material\":0,\"variants\":[0]}]}}"},
+	{"primitives",
+		"\"extensions\":{\"KHR_draco_mesh_compression\":{\"bufferView\":0,\"attributes\":{\"POSITION\":0}}}"},
+	{"primitives",
+		"\"extensions\":{\"KHR_materials_variants\":{\"mappings\":[{\"material\":0,\"variants\":[0]}]}}"},
 	{"primitives", "\"extensions\":{\"CESIUM_primitive_outline\":{\"indices\":0}}"},
 	{"primitives", "\"extensions\":{\"EXT_x\":{\"indices\":0,\"POSITION\":0}}"},
 	{"attributes", "\"TANGENT\":0"},
@@ -365,7 +372,8 @@ static const struct {
 	{"materials", "\"normalTexture\":{\"index\":0,\"texCoord\":0,\"scale\":-1}"},
 	{"materials", "\"extensions\":{\"KHR_materials_anisotropy\":{\"anisotropyStrength\":1}}"},
 	{"materials", "\"extensions\":{\"KHR_materials_clearcoat\":{\"clearcoatNormalTexture\":{\"index\":0}}}"},
-	{"normalTexture", "\"extensions\":{\"KHR_texture_transform\":{\"scale\":[2,-2],\"rotation\":1,\"texCoord\":1}}"},
+	{"normalTexture",
+		"\"extensions\":{\"KHR_texture_transform\":{\"scale\":[2,-2],\"rotation\":1,\"texCoord\":1}}"},
 	{"meshes", "\"weights\":[0.5]"},
 	{"nodes", "\"mesh\":0"},
 	{"nodes", "\"matrix\":[1,0,0,0,0,-1,0,0,0,0,1,0,0,0,0,1]"},
@@ -406,8 +414,8 @@ static size_t add_member(document *d)
 size_t mutate_json(char *text, size_t size, size_t room, uint32_t *seed)
 {
 	static size_t (*const changes[])(document *) = {change_number, change_number, change_number, change_number,
-		change_string, change_string, copy_value, copy_value, add_member, add_member, remove_value, double_element,
-		change_name, change_kind};
+		change_string, change_string, copy_value, copy_value, add_member, add_member, remove_value,
+		double_element, change_name, change_kind};
 	static document d;
 	for (uint32_t k = 1 + mutate_random(seed, 3); k-- > 0;) {
 		d.text = text, d.size = size, d.room = room, d.seed = seed;

@@ -138,9 +138,12 @@ static nt_status run(const char *path, const char *output, const nt_settings *se
 	nt_error_clear(error);
 	const nt_status status = nt_run(path, output, settings, summary, error);
 	if (verbose)
-		fprintf(stderr, "%s: check %d format %d only %d existing %d normals %d across %d draco %d morphs %d method "
-			"%d images %d buffers %d precision %d embed %d bitangents %d verify %d threads %u: status %d %s:%zu:%lld %s: %s\n",
-			path, settings->check, (int)settings->output_format, (int)settings->only, (int)settings->existing,
+		fprintf(stderr,
+			"%s: check %d format %d only %d existing %d normals %d across %d draco %d morphs %d method "
+			"%d images %d buffers %d precision %d embed %d bitangents %d verify %d threads %u: "
+			"status %d %s:%zu:%lld %s: %s\n",
+			path, settings->check, (int)settings->output_format, (int)settings->only,
+			(int)settings->existing,
 			(int)settings->normals, (int)settings->across, (int)settings->draco, (int)settings->morphs,
 			(int)settings->method, (int)settings->images, (int)settings->buffers, (int)settings->precision,
 			settings->embed, settings->bitangents, settings->verify, settings->threads, (int)status,
@@ -163,7 +166,8 @@ static void check_report(const nt_report *report)
 	nt_error error;
 	for (int format = 0; format < NT_REPORT_FORMAT_COUNT; format++) {
 		nt_buffer text = {0};
-		if (nt_report_write(&report, 1, (nt_report_format)format, NULL, to_buffer, &text, &error) || text.size == 0)
+		if (nt_report_write(&report, 1, (nt_report_format)format, NULL, to_buffer, &text, &error) ||
+			text.size == 0)
 			wrong("report format %d: %s", format, error.message);
 		nt_baseline baseline = {0};
 		if (format == NT_REPORT_JSON && nt_baseline_read(&baseline, text.data, text.size, &error))

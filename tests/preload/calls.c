@@ -105,7 +105,8 @@ static void note(const char *format, ...)
 	const int kept = errno;
 	if (log_fd < 0) {
 		snprintf(line, sizeof line, "%s/log", folder);
-		log_fd = REAL(int, "open", const char *, int, ...)(line, O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
+		log_fd = REAL(int, "open", const char *, int, ...)(line,
+			O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
 	}
 	va_start(arguments, format);
 	const int length = vsnprintf(line, sizeof line, format, arguments);
@@ -173,7 +174,8 @@ ssize_t write(int fd, const void *bytes, size_t size)
 
 ssize_t pwritev(int fd, const struct iovec *parts, int count, off_t offset)
 {
-	return enter("pwritev") ? REAL(ssize_t, "pwritev", int, const struct iovec *, int, off_t)(fd, parts, count, offset) :
+	return enter("pwritev")
+		? REAL(ssize_t, "pwritev", int, const struct iovec *, int, off_t)(fd, parts, count, offset) :
 				  -1;
 }
 
@@ -208,13 +210,15 @@ int fchown(int fd, uid_t user, gid_t group)
 
 int fsetxattr(int fd, const char *name, const void *value, size_t size, int flags)
 {
-	return enter("fsetxattr") ? REAL(int, "fsetxattr", int, const char *, const void *, size_t, int)(fd, name, value,
+	return enter("fsetxattr")
+		? REAL(int, "fsetxattr", int, const char *, const void *, size_t, int)(fd, name, value,
 		size, flags) : -1;
 }
 
 int rename(const char *from, const char *to)
 {
-	const int result = enter("rename") && !is_kept(from) && !is_kept(to) ? REAL(int, "rename", const char *, const char *)(from, to) : -1;
+	const int result = enter("rename") && !is_kept(from) && !is_kept(to)
+		? REAL(int, "rename", const char *, const char *)(from, to) : -1;
 	if (result == 0)
 		note("rename\t%s\t%s\n", from, to);
 	return result;
@@ -222,7 +226,8 @@ int rename(const char *from, const char *to)
 
 int renameat2(int from_folder, const char *from, int to_folder, const char *to, unsigned flags)
 {
-	const int result = enter("renameat2") && !is_kept(from) && !is_kept(to) ? REAL(int, "renameat2", int, const char *, int, const char *, unsigned)(
+	const int result = enter("renameat2") && !is_kept(from) && !is_kept(to)
+		? REAL(int, "renameat2", int, const char *, int, const char *, unsigned)(
 		from_folder, from, to_folder, to, flags) : -1;
 	if (result == 0)
 		note("rename\t%s\t%s\n", from, to);
@@ -231,7 +236,8 @@ int renameat2(int from_folder, const char *from, int to_folder, const char *to, 
 
 int link(const char *from, const char *to)
 {
-	const int result = enter("link") && !is_kept(from) ? REAL(int, "link", const char *, const char *)(from, to) : -1;
+	const int result = enter("link") && !is_kept(from)
+		? REAL(int, "link", const char *, const char *)(from, to) : -1;
 	if (result == 0)
 		note_name("link", to);
 	return result;

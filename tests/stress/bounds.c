@@ -267,7 +267,8 @@ static size_t find_original(const work *w, const nmtan_mesh *mesh, size_t t, siz
 }
 
 /* A triangle without size takes the answer of another corner: within the cap of all at its vertex. */
-static void bound_copies(work *w, const nmtan_mesh *mesh, const oracle_corner *exact, size_t corner_count, bound *bounds)
+static void bound_copies(work *w, const nmtan_mesh *mesh, const oracle_corner *exact, size_t corner_count,
+	bound *bounds)
 {
 	group *all = calloc(2 * (corner_count + 1), sizeof *all);
 	for (size_t t = 0; all && t < w->count; t++)
@@ -297,7 +298,8 @@ static void bound_copies(work *w, const nmtan_mesh *mesh, const oracle_corner *e
 			if (original != SIZE_MAX)
 				bounds[c] = bounds[original];
 			else
-				bounds[c] = bound_of(&all[2 * at->vertex[k] + copied_side(&all[2 * at->vertex[k]], exact[c].sign)],
+				bounds[c] = bound_of(&all[2 * at->vertex[k] +
+					copied_side(&all[2 * at->vertex[k]], exact[c].sign)],
 					at, k, true);
 		}
 	free(all);

@@ -165,13 +165,15 @@ static size_t count_altered(const nmtan_mesh *mesh, const oracle_corner *exact, 
 
 /* The default has two kinds of corners: what repair replaced is the exact formula's value, what it kept is within its
  * bound. */
-static void score_default(const oracle_corner *exact, const bound *bounds, const float *raw, const float *repaired, score *s)
+static void score_default(const oracle_corner *exact, const bound *bounds, const float *raw,
+	const float *repaired, score *s)
 {
 	for (size_t c = 0; c < s->corners; c++) {
 		const float *t = repaired + 4 * c;
 		if (memcmp(raw + 4 * c, t, 16) != 0) {
 			s->replaced++;
-			s->inexact += exact[c].sign != 0 && exact[c].condition < WELL_CONDITIONED && is_off(t, &exact[c]);
+			s->inexact += exact[c].sign != 0 && exact[c].condition < WELL_CONDITIONED &&
+				is_off(t, &exact[c]);
 		} else if (bounds[c].degrees == INFINITY) {
 			s->unbounded++;
 			if (exact[c].condition < WELL_CONDITIONED)

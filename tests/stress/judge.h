@@ -42,7 +42,8 @@ typedef struct score {
 	size_t unbounded;   /* corners with MikkTSpace's own bytes that have none */
 	double kept_degrees, kept_share, kept_units; /* of those with a bound: the worst angle, angle over bound, and
 	                                                angle over 2^-24 times the condition */
-	double unbounded_degrees; /* of the others: the worst angle to the average of all triangles of the orientation */
+	double unbounded_degrees; /* of the others: the worst angle to the average of all triangles of the
+	                             orientation */
 	size_t twins[TWIN_COUNT]; /* the default and robust: corners at which the twin's answer differs */
 	size_t altered;     /* usable MikkTSpace corners whose bytes repair changed */
 	double worst_degrees, median_degrees, high_degrees; /* over judged corners; high: 99.9 % */

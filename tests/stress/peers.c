@@ -62,9 +62,11 @@ void peers_add(const peers *p, const nt_owned *mesh, peer_counts *counts)
 
 void peers_write_head(const peers *p, FILE *md)
 {
-	fprintf(md, "\n## What a renderer cannot use\n\nTriangles with two values of w or one that is not their orientation's / corners "
-		"whose tangent is not a unit vector / corners more than 2^-10 off perpendicular, on the meshes of triangles with at "
-		"most %d corners, all levels together; a normal that is not finite has nothing across it. (n): a peer ended, or did not end in %d seconds, on n meshes.\n\n| family |",
+	fprintf(md, "\n## What a renderer cannot use\n\nTriangles with two values of w or one that is not "
+		"their orientation's / corners whose tangent is not a unit vector / corners more than 2^-10 "
+		"off perpendicular, on the meshes of triangles with at most %d corners, all levels together; a "
+		"normal that is not finite has nothing across it. (n): a peer ended, or did not end in %d "
+		"seconds, on n meshes.\n\n| family |",
 		MOST_CORNERS, SECONDS);
 	for (size_t i = 0; i < PEERS_OURS + p->native_count; i++)
 		fprintf(md, " %s |", i < PEERS_OURS ? ours[i].name : p->native[i - PEERS_OURS].name);

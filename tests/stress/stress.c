@@ -102,7 +102,8 @@ static void write_csv(FILE *csv, const family *f, size_t l, const score scores[C
 {
 	for (int c = 0; c < COLUMN_COUNT; c++) {
 		const score *s = &scores[c];
-		fprintf(csv, "%s,%g,%s,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%.3g,%zu,%.4g,%.4g,%.4g,%.1f\n", f->name,
+		fprintf(csv, "%s,%g,%s,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%zu,%.3g,%zu,%.4g,%.4g,"
+			"%.4g,%.1f\n", f->name,
 			f->levels[l], columns[c].name, s->faces, s->oriented, s->wrong_sign, s->mixed_sign,
 			s->corners, s->zero, s->parallel, s->judged, s->beyond, s->off, s->leaning, s->inexact,
 			s->kept, s->kept_units, s->altered,
@@ -173,8 +174,8 @@ static void write_default(FILE *md, const family *f, const family_scores *scores
 		for (int k = 0; k < TWIN_COUNT; k++)
 			differing += s->twins[k];
 	}
-	fprintf(md, "| %s | %zu | %zu | %zu | %zu | %.2g | %.2f | %.2g | %zu | ", f->name, corners, replaced, leaning[0],
-		leaning[1], degrees, share, units, unbounded);
+	fprintf(md, "| %s | %zu | %zu | %zu | %zu | %.2g | %.2f | %.2g | %zu | ", f->name, corners, replaced,
+		leaning[0], leaning[1], degrees, share, units, unbounded);
 	if (unbounded)
 		fprintf(md, "%.3g", unbounded_degrees);
 	else
@@ -256,7 +257,8 @@ int main(int argc, char **argv)
 	if (!csv || !md || !samples || !scores)
 		return 2;
 	fprintf(csv, "family,level,method,faces,oriented,wrong_sign,mixed_sign,corners,zero,parallel,judged,"
-		"beyond,off,leaning,inexact,kept,kept_units,altered,median_degrees,high_degrees,worst_degrees,ns_per_triangle\n");
+		"beyond,off,leaning,inexact,kept,kept_units,altered,median_degrees,high_degrees,worst_degrees,"
+		"ns_per_triangle\n");
 	bool done = true;
 	peers p;
 	peers_open(&p);
@@ -273,14 +275,15 @@ int main(int argc, char **argv)
 	for (size_t i = 0; i < family_count; i++)
 		if (scores[i].at[0][0].faces)
 			write_summary(md, &families[i], &scores[i]);
-	fprintf(md, "\n## The default against MikkTSpace's formula\n\nCorners over all levels: repaired; more than 2^-10 off "
-		"perpendicular to a unit normal, raw and repaired. Of those that keep MikkTSpace's bytes and have a bound "
-		"(bounds.h): the worst angle to the exact average of their group, the largest share of a bound that was used, "
-		"and in units of 2^-24 times the condition (%d allowed). Of those without a bound, on which float arithmetic "
-		"leaves MikkTSpace itself undetermined: how many, and the worst angle to the average of all triangles of the "
+	fprintf(md, "\n## The default against MikkTSpace's formula\n\nCorners over all levels: repaired; more "
+		"than 2^-10 off perpendicular to a unit normal, raw and repaired. Of those that keep "
+		"MikkTSpace's bytes and have a bound (bounds.h): the worst angle to the exact average of their "
+		"group, the largest share of a bound that was used, and in units of 2^-24 times the condition "
+		"(%d allowed). Of those without a bound, on which float arithmetic leaves MikkTSpace itself "
+		"undetermined: how many, and the worst angle to the average of all triangles of the "
 		"orientation. Corners whose mirrored, scaled or turned twin differs.\n\n"
-		"| family | corners | repaired | leaning, raw | leaning | kept, degrees | of the bound | units | no bound | "
-		"degrees there | twins |\n|---|---|---|---|---|---|---|---|---|---|---|\n", MOST_UNITS);
+		"| family | corners | repaired | leaning, raw | leaning | kept, degrees | of the bound | units "
+		"| no bound | degrees there | twins |\n|---|---|---|---|---|---|---|---|---|---|---|\n", MOST_UNITS);
 	for (size_t i = 0; i < family_count; i++)
 		if (scores[i].at[0][0].faces)
 			write_default(md, &families[i], &scores[i]);

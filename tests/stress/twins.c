@@ -80,7 +80,8 @@ static void free_twin(nt_owned *t)
 
 static bool solve(const nt_owned *mesh, nmtan_method method, nmtan_repair repair, float *tangents)
 {
-	const nmtan_options options = {.struct_bytes = sizeof options, .method = method, .repair = repair, .threads = 1};
+	const nmtan_options options = {.struct_bytes = sizeof options, .method = method, .repair = repair,
+		.threads = 1};
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = tangents};
 	return nmtan_tangents(&mesh->mesh, &options, &output, NULL) == NMTAN_OK;
 }
@@ -118,7 +119,8 @@ static bool differs(const twin *kind, nmtan_method method, const answers *a, siz
 	if (!is_framed(a->raw[c], a->t[c], exact) || !is_framed(a->twin_raw[c], t, exact))
 		return false;
 	if (!kind->exact || (kind->scale != 1 && !b->scalable))
-		return !is_near(kind, t, method == NMTAN_METHOD_MIKKTSPACE && memcmp(a->twin_raw[c], t, 16) == 0, exact, b);
+		return !is_near(kind, t,
+			method == NMTAN_METHOD_MIKKTSPACE && memcmp(a->twin_raw[c], t, 16) == 0, exact, b);
 	return !(t[0] == expected[0] && t[1] == expected[1] && t[2] == expected[2]);
 }
 

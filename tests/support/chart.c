@@ -38,7 +38,8 @@ static void widen(axis *a, const double *values, size_t count)
 
 static axis make_axis(const chart *c, bool vertical, int bottom)
 {
-	axis a = {INFINITY, -INFINITY, vertical ? c->log_y : c->log_x, vertical ? bottom : LEFT, vertical ? TOP : RIGHT};
+	axis a = {INFINITY, -INFINITY, vertical ? c->log_y : c->log_x, vertical ? bottom : LEFT,
+		vertical ? TOP : RIGHT};
 	for (size_t s = 0; s < c->series_count; s++) {
 		widen(&a, vertical ? c->series[s].y : c->series[s].x, c->series[s].count);
 		widen(&a, vertical ? c->series[s].high : NULL, c->series[s].count);
@@ -161,7 +162,8 @@ static void draw_series(FILE *f, const chart *c, size_t s, const axis *ax, const
 		const double x = place(ax, series->x[i]), y = place(ay, series->y[i]);
 		if (series->high && shown(series->high[i], c->log_y)) {
 			const double top = place(ay, series->high[i]);
-			fprintf(f, "<path stroke=\"%s\" stroke-opacity=\"0.4\" d=\"M%.1f %.1fV%.1f\"/>\n", colour, x, y, top);
+			fprintf(f, "<path stroke=\"%s\" stroke-opacity=\"0.4\" d=\"M%.1f %.1fV%.1f\"/>\n",
+				colour, x, y, top);
 			draw_mark(f, x, top, shape, true, colour);
 		}
 		draw_mark(f, x, y, shape, false, colour);
@@ -190,7 +192,8 @@ bool chart_write(const char *path, const chart *c)
 	FILE *f = fopen(path, "w");
 	if (!f)
 		return false;
-	const int legend = LEGEND_LINE * (int)c->series_count, bottom = TOP + (legend > LEAST_HEIGHT ? legend : LEAST_HEIGHT);
+	const int legend = LEGEND_LINE * (int)c->series_count,
+		bottom = TOP + (legend > LEAST_HEIGHT ? legend : LEAST_HEIGHT);
 	const axis ax = make_axis(c, false, bottom), ay = make_axis(c, true, bottom);
 	fprintf(f, "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\""
 		" font-family=\"sans-serif\" font-size=\"12\">\n<style>.grid{stroke:#ddd}</style>\n"

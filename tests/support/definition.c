@@ -100,7 +100,8 @@ size_t nt_compare_variants(const char *name, const nmtan_mesh *mesh, size_t corn
 		for (int i = 0; nt_cpu_has(isa) && i < 3; i++)
 			differences += nt_compare_run(name, mesh, corners, expected, more, isa, 1, small[i]);
 	for (int i = 0; i < 3; i++)
-		differences += nt_compare_run(name, mesh, corners, expected, more, nt_cpu_best(), threads[i], &nt_usual_plan);
+		differences += nt_compare_run(name, mesh, corners, expected, more, nt_cpu_best(), threads[i],
+			&nt_usual_plan);
 	differences += nt_compare_run(name, mesh, corners, expected, more, nt_cpu_best(), 3, &two);
 	for (unsigned count = 1; count <= 3; count += 2)
 		differences += nt_compare_run(name, mesh, corners, expected, more, nt_cpu_best(), count, &few_places);

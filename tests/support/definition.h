@@ -18,7 +18,8 @@ void nt_result_free(nt_result *result);
 size_t nt_result_differences(const nt_result *a, const nt_result *b, size_t corners, bool more);
 
 /* A solve on one thread and with the baseline set, to be changed, that writes a result. */
-nt_solve nt_result_solve(const nmtan_mesh *mesh, size_t corners, nt_scratch *scratch, const nt_result *result, bool more);
+nt_solve nt_result_solve(const nmtan_mesh *mesh, size_t corners, nt_scratch *scratch, const nt_result *result,
+	bool more);
 
 /* What the definition gives. */
 nt_result nt_result_define(const nmtan_mesh *mesh, size_t corners, bool more);
@@ -35,7 +36,8 @@ size_t nt_compare_run(const char *name, const nmtan_mesh *mesh, size_t corners, 
 
 /* One thread with every instruction set, where few vertices or triangles may go a way of their own, then more threads,
  * and places that do not suffice; the same by bins where there is a choice. */
-size_t nt_compare_variants(const char *name, const nmtan_mesh *mesh, size_t corners, const nt_result *expected, bool more);
+size_t nt_compare_variants(const char *name, const nmtan_mesh *mesh, size_t corners, const nt_result *expected,
+	bool more);
 
 /* A solve with an allocator that fails after `allowed` requests. */
 nmtan_status nt_solve_within(const nmtan_mesh *mesh, size_t corners, const nt_result *result, bool more, size_t allowed,

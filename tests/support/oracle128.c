@@ -376,7 +376,8 @@ static void judge_float(const float *const p[3], const float *const t[3], quad u
 			e[k][i] = fabs((double)t[k + 1][i] - t[0][i]);
 	for (int i = 0; i < 2; i++)
 		products[i] = e[1][1 - i] * square_root(d[0]) + e[0][1 - i] * square_root(d[2]);
-	const quad formed[] = {det, u, v, det > 0 ? u / det : 0, det > 0 ? v / det : 0}, squares[] = {d[0], d[1], d[2], u * u};
+	const quad formed[] = {det, u, v, det > 0 ? u / det : 0, det > 0 ? v / det : 0},
+		squares[] = {d[0], d[1], d[2], u * u};
 	find_range(formed, sizeof formed / sizeof *formed, &to->least, &to->largest);
 	find_range(squares, sizeof squares / sizeof *squares, &to->least_square, &to->largest_square);
 }
@@ -394,8 +395,8 @@ static double give_direction(vec direction, vec n, double off_unit, quad product
 
 /* What it gives corner k. off_unit: |n|^2 - 1 in units of 2^-24. Weights are acos() of the cosine of two unit vectors:
  * 1 / sine, but for what is left near 0 and pi, half of the bits. */
-static void give_corner(oracle_triangle *to, int k, const vec directions[2], vec n, double off_unit, const quad products[2],
-	quad angle, quad sine, quad squares, quad edges)
+static void give_corner(oracle_triangle *to, int k, const vec directions[2], vec n, double off_unit,
+	const quad products[2], quad angle, quad sine, quad squares, quad edges)
 {
 	const quad worst = 4096, inverse = sine > 0 ? square_root(squares) / sine : worst;
 	to->at[k].t_condition = give_direction(directions[0], n, off_unit, products[0], to->at[k].t);
@@ -497,8 +498,8 @@ static void add_triangle(oracle *o, const size_t c[3], int side)
 		const float *raw = normal(m, c[k]);
 		const double off = (double)raw[0] * raw[0] + (double)raw[1] * raw[1] + (double)raw[2] * raw[2] - 1;
 		if (given)
-			give_corner(given, k, directions, n, isfinite(off) ? fabs(off) * 0x1p24 : 0, products, angle, sine,
-				squares, length(e) * length(g));
+			give_corner(given, k, directions, n, isfinite(off) ? fabs(off) * 0x1p24 : 0, products,
+				angle, sine, squares, length(e) * length(g));
 	}
 }
 

@@ -31,14 +31,15 @@ typedef struct oracle_triangle {
 	size_t corner[3], vertex[3]; /* of the mesh; welded: the first corner with the same eight floats */
 	int sign, side;              /* exact orientation: its own; that of its face */
 	bool sound;                  /* no two positions are equal */
-	int float_sign;      /* of its UV determinant in MikkTSpace's arithmetic; 0: below the smallest normal float, or NaN */
+	int float_sign;      /* of its UV determinant in MikkTSpace's arithmetic; 0: below the smallest normal
+	                        float, or NaN */
 	double least, largest; /* of the determinant, the lengths of dP/du and dP/dv, and these times the determinant */
 	double least_square, largest_square; /* of the lengths of edges, and of dP/du times the determinant */
 	struct {
 		double t[3], b[3]; /* dP/du and dP/dv across the normal, unit; zero where they have no such part */
 		double angle;
-		double t_condition, b_condition; /* when differences and products are rounded to float: relative errors of
-		                                    2^-24 */
+		double t_condition, b_condition; /* when differences and products are rounded to float: relative
+		                                    errors of 2^-24 */
 		double angle_condition; /* of the angle as acos() of a cosine, in radians */
 	} at[3];
 } oracle_triangle;

@@ -15,8 +15,8 @@ nt_status nt_pixels_check(uint64_t width, uint64_t height, unsigned channels, un
 	const unsigned pixel_bytes = channels * (bits / 8);
 	if (width > UINT32_MAX || height > UINT32_MAX || width > NT_PIXELS_MOST / height ||
 		width * height > NT_PIXELS_MOST_BYTES / pixel_bytes)
-		return nt_fail(error, NT_ERROR_UNSUPPORTED, "%llu x %llu pixels of %u bytes, more than nmtan decodes", w, h,
-			pixel_bytes);
+		return nt_fail(error, NT_ERROR_UNSUPPORTED,
+			"%llu x %llu pixels of %u bytes, more than nmtan decodes", w, h, pixel_bytes);
 	return NT_OK;
 }
 

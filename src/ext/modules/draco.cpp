@@ -12,5 +12,6 @@ static const nt_draco_mesh *get(const nt_draco *result)
 	return &result->mesh;
 }
 
-const nt_draco_table nt_draco_module = {NT_MODULE_HEAD(nt_draco_table, "Draco", draco::kDracoVersion, "Apache-2.0", &nt::cxx),
+const nt_draco_table nt_draco_module = {NT_MODULE_HEAD(nt_draco_table, "Draco", draco::kDracoVersion,
+	"Apache-2.0", &nt::cxx),
 	nt::decode_checked, nt::free_decoded, get, nt::encode_draco, nt::quantize_draco};

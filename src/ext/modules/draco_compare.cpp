@@ -119,7 +119,8 @@ std::vector<unsigned char> nt::expected_values(const draco::PointAttribute &attr
 	}
 	const auto portable =
 		transform->InitTransformedAttribute(attribute, static_cast<int>(point_count));
-	if (!transform->TransformAttribute(attribute, {}, portable.get()) || !transform->TransferToAttribute(portable.get()))
+	if (!transform->TransformAttribute(attribute, {}, portable.get()) ||
+		!transform->TransferToAttribute(portable.get()))
 		return {};
 	return nt::restore(*portable, nt::quantization_of(*portable), point_count);
 }

@@ -41,7 +41,8 @@ nt_status guard(nt_error *error, const char *library, Body &&body) noexcept
 	} catch (const std::bad_alloc &) {
 		return nt_fail_memory(error);
 	} catch (const std::exception &thrown) {
-		return memory.was_needed() ? nt_fail_memory(error) : nt_fail(error, NT_ERROR_INTERNAL, "%s: %s", library, thrown.what());
+		return memory.was_needed()
+			? nt_fail_memory(error) : nt_fail(error, NT_ERROR_INTERNAL, "%s: %s", library, thrown.what());
 	} catch (...) {
 		return nt_fail(error, NT_ERROR_INTERNAL, "%s: unknown exception", library);
 	}

@@ -61,8 +61,8 @@ static nt_status unpack(const nt_meshopt_view *v, const unsigned char *packed, u
 	if (attributes) {
 		if (size && packed[0] == 0xA1)
 			return nt_fail_pointer(error, NT_ERROR_UNSUPPORTED, pointer,
-				"version 1 of the vertex codec, which nmtan does not decode: write the file without this "
-				"compression, or with EXT_meshopt_compression, which has version 0");
+				"version 1 of the vertex codec, which nmtan does not decode: write the file "
+				"without this compression, or with EXT_meshopt_compression, which has version 0");
 		result = meshopt_decodeVertexBuffer(bytes, count, stride, packed, size);
 	} else if (strcmp(v->mode, "TRIANGLES") == 0) {
 		result = meshopt_decodeIndexBuffer(bytes, count, stride, packed, size);
@@ -78,4 +78,5 @@ static nt_status unpack(const nt_meshopt_view *v, const unsigned char *packed, u
 static const char version[] = {'0' + MESHOPTIMIZER_VERSION / 1000, '.', '0' + MESHOPTIMIZER_VERSION / 100 % 10,
 	'0' + MESHOPTIMIZER_VERSION / 10 % 10, 0};
 
-const nt_meshopt_table nt_meshopt_module = {NT_MODULE_HEAD(nt_meshopt_table, "meshoptimizer", version, "MIT", NULL), check, unpack};
+const nt_meshopt_table nt_meshopt_module = {NT_MODULE_HEAD(nt_meshopt_table, "meshoptimizer", version, "MIT",
+	NULL), check, unpack};

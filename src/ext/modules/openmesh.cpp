@@ -450,5 +450,5 @@ nt_status trace_chains(const nt_halfedges *mesh, const uint8_t *marked, nt_walks
 
 static const char version[] = {'0' + OM_GET_VER, '.', '0' + OM_GET_MAJ, 0};
 
-const nt_openmesh_table nt_openmesh_module = {NT_MODULE_HEAD(nt_openmesh_table, "OpenMesh", version, "BSD-3-Clause", &nt::cxx),
-	build_mesh, free_mesh, left_out, trace_chains};
+const nt_openmesh_table nt_openmesh_module = {NT_MODULE_HEAD(nt_openmesh_table, "OpenMesh", version,
+	"BSD-3-Clause", &nt::cxx), build_mesh, free_mesh, left_out, trace_chains};

@@ -106,8 +106,8 @@ static nt_status decode(spng_ctx *png, size_t size, uint32_t rows, nt_pixels *pi
 			header.height);
 	const form wanted = form_of(&header, !found);
 	const bool all = rows >= header.height || header.interlace_method;
-	nt_status status = nt_pixels_create(pixels, header.width, all ? header.height : rows, wanted.channels, wanted.bits,
-		error);
+	nt_status status = nt_pixels_create(pixels, header.width, all ? header.height : rows, wanted.channels,
+		wanted.bits, error);
 	if (status)
 		return status;
 	pixels->srgb = spng_get_srgb(png, &intent) == 0;
@@ -146,8 +146,8 @@ static nt_status encode_png(const nt_pixels *pixels, unsigned char **bytes, size
 	spng_set_option(png, SPNG_IMG_COMPRESSION_LEVEL, LEVEL);
 	int code = spng_set_ihdr(png, &header);
 	if (!code)
-		code = spng_encode_image(png, pixels->samples, nt_pixels_row_bytes(pixels) * pixels->height, SPNG_FMT_PNG,
-			SPNG_ENCODE_FINALIZE);
+		code = spng_encode_image(png, pixels->samples, nt_pixels_row_bytes(pixels) * pixels->height,
+			SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE);
 	*bytes = code ? NULL : spng_get_png_buffer(png, size, &code);
 	spng_ctx_free(png);
 	if (!code)
@@ -156,6 +156,8 @@ static nt_status encode_png(const nt_pixels *pixels, unsigned char **bytes, size
 	return status == NT_ERROR_MEMORY ? status : (error->status = NT_ERROR_INTERNAL);
 }
 
-static const char version[] = {'0' + SPNG_VERSION_MAJOR, '.', '0' + SPNG_VERSION_MINOR, '.', '0' + SPNG_VERSION_PATCH, 0};
+static const char version[] = {'0' + SPNG_VERSION_MAJOR, '.', '0' + SPNG_VERSION_MINOR, '.',
+	'0' + SPNG_VERSION_PATCH, 0};
 
-const nt_codec_table nt_png_module = {NT_MODULE_HEAD(nt_codec_table, "libspng", version, "BSD-2-Clause", NULL), decode_png, encode_png};
+const nt_codec_table nt_png_module = {NT_MODULE_HEAD(nt_codec_table, "libspng", version, "BSD-2-Clause", NULL),
+	decode_png, encode_png};

@@ -100,8 +100,8 @@ static uint16_t field(TIFF *tiff, uint32_t tag)
 
 static nt_status check_compression(uint16_t compression, nt_error *error)
 {
-	static const uint16_t known[] = {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE, COMPRESSION_DEFLATE,
-		COMPRESSION_PACKBITS, COMPRESSION_JPEG, COMPRESSION_ZSTD};
+	static const uint16_t known[] = {COMPRESSION_NONE, COMPRESSION_LZW, COMPRESSION_ADOBE_DEFLATE,
+		COMPRESSION_DEFLATE, COMPRESSION_PACKBITS, COMPRESSION_JPEG, COMPRESSION_ZSTD};
 	for (size_t i = 0; i < sizeof known / sizeof *known; i++)
 		if (known[i] == compression)
 			return NT_OK;
@@ -198,12 +198,14 @@ static nt_status decode(TIFF *tiff, source *s, nt_pixels *pixels, nt_error *erro
 		return status;
 	const bool direct = is_direct(tiff, channels, bits);
 	if ((uint64_t)width * height / 8 / MOST_RATIO > (uint64_t)s->size + SLACK_BYTES)
-		return nt_fail(error, NT_ERROR_INPUT, "TIFF: %zu bytes cannot hold %u x %u pixels", s->size, width, height);
+		return nt_fail(error, NT_ERROR_INPUT, "TIFF: %zu bytes cannot hold %u x %u pixels", s->size,
+			width, height);
 	status = nt_pixels_create(pixels, width, height, direct ? channels : 4, direct ? bits : 8, error);
 	if (status)
 		return status;
 	const bool read = !direct ? read_shown(tiff, pixels)
-				  : TIFFIsTiled(tiff) ? read_tiles(tiff, pixels, &s->exhausted) : read_scanlines(tiff, pixels);
+		: TIFFIsTiled(tiff) ? read_tiles(tiff, pixels, &s->exhausted)
+		: read_scanlines(tiff, pixels);
 	return read && !s->exhausted ? NT_OK : fail(s, error);
 }
 
@@ -235,4 +237,5 @@ static nt_status decode_tiff(const unsigned char *bytes, size_t size, uint32_t r
 static const char version[] = {'0' + TIFFLIB_MAJOR_VERSION, '.', '0' + TIFFLIB_MINOR_VERSION, '.',
 	'0' + TIFFLIB_MICRO_VERSION, 0};
 
-const nt_codec_table nt_tiff_module = {NT_MODULE_HEAD(nt_codec_table, "libtiff", version, "libtiff", NULL), decode_tiff, NULL};
+const nt_codec_table nt_tiff_module = {NT_MODULE_HEAD(nt_codec_table, "libtiff", version, "libtiff", NULL),
+	decode_tiff, NULL};

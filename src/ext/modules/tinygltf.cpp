@@ -376,5 +376,5 @@ bool block_id(const nt_reread *model, size_t mesh, size_t primitive, const char 
 
 } // namespace
 
-const nt_tinygltf_table nt_tinygltf_module = {NT_MODULE_HEAD(nt_tinygltf_table, "tinygltf", nullptr, "MIT", &nt::cxx), open, free_model,
-	mesh_count, primitive_count, attribute, target, block, block_id};
+const nt_tinygltf_table nt_tinygltf_module = {NT_MODULE_HEAD(nt_tinygltf_table, "tinygltf", nullptr, "MIT",
+	&nt::cxx), open, free_model, mesh_count, primitive_count, attribute, target, block, block_id};

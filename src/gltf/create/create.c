@@ -208,7 +208,8 @@ static size_t list_attributes(const primitive_record *record, nt_model_attribute
 	size_t count = 0;
 	for (int i = 0; i < NT_ATTRIBUTE_COUNT; i++)
 		if (record->attributes[order[i]] != NT_MODEL_NONE)
-			attributes[count++] = (nt_model_attribute){nt_attribute_name(order[i]), record->attributes[order[i]]};
+			attributes[count++] =
+				(nt_model_attribute){nt_attribute_name(order[i]), record->attributes[order[i]]};
 	return count;
 }
 

@@ -56,7 +56,8 @@ nt_status nt_image_set_create(nt_image_set **set, const nt_write_options *option
 		return nt_fail_memory(error);
 	const bool alone = options->format == NT_FORMAT_GLB || options->embed;
 	(*set)->options = *options;
-	(*set)->choice = options->images != NT_IMAGES_DEFAULT ? options->images : alone ? NT_IMAGES_EMBED : NT_IMAGES_LINK;
+	(*set)->choice = options->images != NT_IMAGES_DEFAULT
+		? options->images : alone ? NT_IMAGES_EMBED : NT_IMAGES_LINK;
 	const nt_status status = fill(*set, error);
 	if (status) {
 		nt_image_set_free(*set);
@@ -136,7 +137,8 @@ static nt_status write_file(nt_image_set *set, image_entry *entry, nt_output *ou
 	nt_sink *sink;
 	nt_file file;
 	nt_status status = path.failed ? nt_fail_memory(error) : NT_OK;
-	if (status || (!entry->image->bytes && nt_file_is(&entry->image->sources[0]->identity, path.data))) { /* it is there: a link does */
+	/* it is there: a link does */
+	if (status || (!entry->image->bytes && nt_file_is(&entry->image->sources[0]->identity, path.data))) {
 		nt_buffer_free(&path);
 		return status;
 	}

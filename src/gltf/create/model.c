@@ -309,7 +309,8 @@ static void put_reflection(nt_model *model, nt_buffer *out, const nt_model_mater
 {
 	const float *color = m->base_color;
 	const bool white = color[0] == 1 && color[1] == 1 && color[2] == 1 && color[3] == 1;
-	if (white && m->base_color_texture.texture == NT_MODEL_NONE && m->metallic_roughness_texture.texture == NT_MODEL_NONE &&
+	if (white && m->base_color_texture.texture == NT_MODEL_NONE &&
+		m->metallic_roughness_texture.texture == NT_MODEL_NONE &&
 		m->metallic == 1 && m->roughness == 1)
 		return;
 	put_key(out, "pbrMetallicRoughness");

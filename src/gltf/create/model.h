@@ -68,7 +68,8 @@ typedef struct nt_model_material {
 	float sheen, sheen_roughness;         /* of white; 0: without KHR_materials_sheen */
 	float anisotropy, anisotropy_rotation; /* 0: without KHR_materials_anisotropy */
 	float ior;                            /* 0: without KHR_materials_ior */
-	nt_model_use base_color_texture, emissive_texture, normal_texture, metallic_roughness_texture, occlusion_texture;
+	nt_model_use base_color_texture, emissive_texture, normal_texture, metallic_roughness_texture,
+		occlusion_texture;
 	nt_model_use clearcoat_texture, clearcoat_roughness_texture, sheen_texture;
 } nt_model_material;
 uint32_t nt_model_add_material(nt_model *model, const nt_model_material *material);

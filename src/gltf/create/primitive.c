@@ -237,7 +237,8 @@ void nt_new_primitive_bounds(const nt_new_primitive *primitive, float min[3], fl
 	const size_t count = primitive->vertices || primitive->vertex_count < primitive->mesh->vertex_count
 		? primitive->vertex_count : primitive->mesh->vertex_count;
 	for (size_t i = 0; i < count; i++) {
-		const float *p = primitive->mesh->positions + 3 * (primitive->vertices ? source_vertex(primitive, i) : i);
+		const float *p =
+			primitive->mesh->positions + 3 * (primitive->vertices ? source_vertex(primitive, i) : i);
 		for (int k = 0; k < 3; k++) {
 			low[k] = p[k] < low[k] ? p[k] : low[k];
 			high[k] = p[k] > high[k] ? p[k] : high[k];

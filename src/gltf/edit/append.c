@@ -226,7 +226,8 @@ static void lengthen_views(nt_appending *job, const block *b)
 	for (size_t i = 0; i < b->count; i++) {
 		const uint32_t index = b->targets[i].accessor.view;
 		nt_gltf_view view;
-		if (nt_gltf_get_view(job->document, index, "", &view, NULL) != NT_OK || view.buffer >= NT_GLTF_VIRTUAL ||
+		if (nt_gltf_get_view(job->document, index, "", &view, NULL) != NT_OK ||
+			view.buffer >= NT_GLTF_VIRTUAL ||
 			view.offset + view.length >= b->end)
 			continue;
 		nt_json_value *object = nt_json_at(nt_gltf_root_member(job->document, "bufferViews"), index);
@@ -280,7 +281,8 @@ static nt_status append_to_block(nt_appending *job, const block *b, uint64_t pre
 	const nt_append_target *next)
 {
 	nt_status status = NT_OK;
-	if (b->begin < previous_end || is_crowded(b, next) || nt_byte_users_foreign(&job->edits->users, b->buffer, b->begin, b->end,
+	if (b->begin < previous_end || is_crowded(b, next) ||
+		nt_byte_users_foreign(&job->edits->users, b->buffer, b->begin, b->end,
 					       job->edits->appended_by, nt_append_owner(job))) {
 		for (size_t i = 0; !status && i < b->count; i++)
 			if (nt_appended_count(job) || b->targets[i].override)
@@ -380,7 +382,8 @@ nt_status nt_append_vertices(nt_buffer_edits *edits, uint32_t buffer, const nt_v
 	nt_error *error)
 {
 	nt_appending job = {.edits = edits, .document = edits->document,
-		.json = edits->document->json, .arena = &edits->arena, .buffer = buffer, .pools = pools, .vertices = vertices,
+		.json = edits->document->json, .arena = &edits->arena, .buffer = buffer, .pools = pools,
+		.vertices = vertices,
 		.decoded_too = decoded_too, .error = error};
 	nt_status status = nt_append_collect(&job, overrides, override_count);
 	if (!status && nt_appended_count(&job) && must_pin(&job))

@@ -57,7 +57,8 @@ typedef struct nt_buffer_edits {
 	 * nothing has to be emptied in between; bytes may be another pool's too. */
 	bool *seen;                 /* [accessor_count] */
 	bool *pinned;               /* [accessor_count] used by an unsolved user */
-	uint32_t *appended_by;      /* [accessor_count] by first alias: the pool that appends to it, by its first user */
+	uint32_t *appended_by;      /* [accessor_count] by first alias: the pool that appends to it, by its
+	                               first user */
 } nt_buffer_edits;
 
 /*

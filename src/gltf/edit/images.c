@@ -145,8 +145,8 @@ static nt_status copy_image(moving *m, size_t index, nt_json_value *image)
 	if (status || !file)
 		return status ? status : nt_gltf_link(m->json, image, m->output->link_prefix, m->error);
 	const char *source;
-	status = nt_uri_resolve(&m->edits->arena, m->edits->document->path, uri, length, m->edits->document->allow_outside,
-		&source, m->error);
+	status = nt_uri_resolve(&m->edits->arena, m->edits->document->path, uri, length,
+		m->edits->document->allow_outside, &source, m->error);
 	if (status)
 		return status;
 	const char *slash = strrchr(source, '/'), *name = slash ? slash + 1 : source;

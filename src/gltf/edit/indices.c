@@ -232,8 +232,8 @@ static nt_status write_user(nt_buffer_edits *edits, uint32_t buffer, const nt_ve
 	bool done = false;
 	nt_status status = find_old(edits->document, mesh, leader->index, &old, error);
 	if (!status)
-		status = encode(&edits->arena, mesh, vertices->indices[user], vertices->borrowed, tail_of(mesh, mode, old.count),
-			vertices->new_count, old.component_type, &new, error);
+		status = encode(&edits->arena, mesh, vertices->indices[user], vertices->borrowed,
+			tail_of(mesh, mode, old.count), vertices->new_count, old.component_type, &new, error);
 	if (!status && all_users_agree(pools, leader)) {
 		if (old.decoded)
 			status = give_view(edits, buffer, &old, &new, error);

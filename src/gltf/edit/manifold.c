@@ -105,14 +105,16 @@ static nt_status move_manifold(nt_buffer_edits *edits, uint32_t buffer, const nt
 	if (nt_manifold_merges(m, &edits->arena, &corners, &vertices, &count))
 		return nt_fail_memory(error);
 	const uint32_t manifold = nt_gltf_new_accessor(json, view, type, "SCALAR", m->corner_count, false);
-	nt_json_set_uint64(json, nt_json_put(json, nt_json_put(json, m->extension, "manifoldPrimitive"), "indices"), manifold);
+	nt_json_set_uint64(json,
+		nt_json_put(json, nt_json_put(json, m->extension, "manifoldPrimitive"), "indices"), manifold);
 	if (!count) {
 		nt_json_remove(json, m->extension, "mergeIndices");
 		nt_json_remove(json, m->extension, "mergeValues");
 		return NT_OK;
 	}
 	const uint32_t corner_type = nt_gltf_index_type(m->corner_count, NT_GLTF_USHORT);
-	nt_status status = add_numbers(edits, buffer, corners, count, corner_type, NT_GLTF_NO_TARGET, &corner_view, error);
+	nt_status status =
+		add_numbers(edits, buffer, corners, count, corner_type, NT_GLTF_NO_TARGET, &corner_view, error);
 	if (!status)
 		status = add_numbers(edits, buffer, vertices, count, type, NT_GLTF_NO_TARGET, &vertex_view, error);
 	if (status)

@@ -407,7 +407,8 @@ static nt_status merge_user(merging *m, uint32_t user, nt_arena *arena, nt_error
 		set_unused(m, mesh, set);
 	vertices->indices[user] = indices;
 	/* a copy differs from what it copies; normals that were made may have given the mesh indices of its own */
-	vertices->changed[user] = !status && (mesh->split.source_count || mesh->vertex_count > mesh->source_vertex_count ||
+	vertices->changed[user] = !status &&
+		(mesh->split.source_count || mesh->vertex_count > mesh->source_vertex_count ||
 		!same_triangles(mesh, triangles, indices));
 	nt_arena_free(&passing);
 	return status;

@@ -50,10 +50,13 @@ static nt_status follow_outline(nt_buffer_edits *edits, uint32_t buffer, const n
 	size_t count;
 	if (!nt_json_get_uint64(nt_json_find(outline, "indices"), &number))
 		return NT_OK;
-	nt_status status = nt_gltf_get_accessor(edits->document, number, nt_gltf_of_mesh(mesh).pointer, &accessor, error);
+	nt_status status =
+		nt_gltf_get_accessor(edits->document, number, nt_gltf_of_mesh(mesh).pointer, &accessor, error);
 	if (!status)
-		status = nt_gltf_indices(edits->document, &accessor, vertices->old_count, 1, &edits->arena, &edges, error);
-	if (!status && nt_outline_follow(edges, (size_t)accessor.count / 2, &triangles, &edits->arena, &followed, &count))
+		status = nt_gltf_indices(edits->document, &accessor, vertices->old_count, 1, &edits->arena,
+			&edges, error);
+	if (!status &&
+		nt_outline_follow(edges, (size_t)accessor.count / 2, &triangles, &edits->arena, &followed, &count))
 		status = nt_fail_memory(error);
 	if (!status)
 		status = add_numbers(edits, buffer, followed, 2 * count, &new_accessor, error);
@@ -65,7 +68,8 @@ static nt_status follow_outline(nt_buffer_edits *edits, uint32_t buffer, const n
 
 static void report_outline(nt_scene *scene, const nt_mesh *mesh)
 {
-	nt_finding_add(&scene->findings, NT_CODE_EXTENSION_STALE, nt_mesh_place(mesh, &(nt_place){0}), 1, "%s", outline_name);
+	nt_finding_add(&scene->findings, NT_CODE_EXTENSION_STALE, nt_mesh_place(mesh, &(nt_place){0}), 1, "%s",
+		outline_name);
 }
 
 nt_status nt_gltf_follow_vertices(nt_buffer_edits *edits, uint32_t buffer, nt_scene *scene,

@@ -55,7 +55,8 @@ static nt_geometry_total total_of_mesh(const nt_gltf *document, const nt_json_va
 	const nt_json_value *primitives = nt_json_find(mesh, "primitives");
 	nt_geometry_total sum = {0};
 	for (size_t i = 0; i < nt_json_count(primitives); i++) {
-		const nt_json_value *primitive = nt_json_at(primitives, i), *indices = nt_json_find(primitive, "indices");
+		const nt_json_value *primitive = nt_json_at(primitives, i),
+			*indices = nt_json_find(primitive, "indices");
 		const uint64_t vertices = accessor_count(accessors,
 			nt_json_find(nt_json_find(primitive, "attributes"), "POSITION"));
 		uint64_t mode = 4;
@@ -93,7 +94,8 @@ static void add(nt_geometry_total *to, nt_geometry_total part)
 static size_t node_at(const adding *a, const nt_json_value *list, size_t index)
 {
 	uint64_t node;
-	return nt_json_get_uint64(nt_json_at(list, index), &node) && node < a->node_count ? (size_t)node : a->node_count;
+	return nt_json_get_uint64(nt_json_at(list, index), &node) && node < a->node_count
+		? (size_t)node : a->node_count;
 }
 
 static bool enter(adding *a, size_t node, const nt_geometry_total *meshes, size_t mesh_count)
@@ -212,7 +214,8 @@ nt_status nt_geometry_metadata_follow(nt_scene *scene, const nt_geometry_total *
 	const nt_status status = nt_geometry_totals(document, arena, &now);
 	for (size_t i = 0; !status && i < nt_json_count(scenes); i++) {
 		nt_json_value *metadata = metadata_of(nt_json_at(scenes, i));
-		const bool vertices = follow(document->json, metadata, "vertexCount", before[i].vertices, now[i].vertices);
+		const bool vertices =
+			follow(document->json, metadata, "vertexCount", before[i].vertices, now[i].vertices);
 		const bool primitives = follow(document->json, metadata, "primitiveCount", before[i].primitives,
 			now[i].primitives);
 		if (vertices && primitives)

@@ -75,7 +75,8 @@ static nt_status check_cover(nt_manifold *m, size_t corner_count, nt_arena *aren
 			taken[c] = true;
 		}
 	}
-	return covered && sum == corner_count ? NT_OK : obstruct(m, NT_OK, "whose manifold has other triangles than its primitives");
+	return covered && sum == corner_count
+		? NT_OK : obstruct(m, NT_OK, "whose manifold has other triangles than its primitives");
 }
 
 /* The corners of the manifold, before and after its merges. */

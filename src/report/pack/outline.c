@@ -23,7 +23,8 @@ typedef struct outline_edge {
 typedef struct outlining {
 	const nt_outlined *mesh;
 	uint32_t *points;      /* [vertex_count] the first vertex with the same texture coordinates */
-	uint32_t *first;       /* [vertex_count + 1] where a point's half edges begin; then, in put_loops(), its edges */
+	uint32_t *first;       /* [vertex_count + 1] where a point's half edges begin; then, in put_loops(), its
+	                          edges */
 	half_edge *halves;     /* [3 * triangle_count] */
 	nt_buffer edges;       /* outline_edge */
 } outlining;
@@ -156,8 +157,8 @@ static int compare_edges(const void *a, const void *b)
 
 /* Walks once around, from an edge that was not used. leaving[p]: the first of the region's edges that begin at point p.
  * used[i]: how many of the edges that begin where edge i begins are used, at the first of them. */
-static void put_loop(const outline_edge *edges, const uint32_t *leaving, uint32_t *used, uint32_t start, uint32_t *before,
-	nt_buffer *out)
+static void put_loop(const outline_edge *edges, const uint32_t *leaving, uint32_t *used, uint32_t start,
+	uint32_t *before, nt_buffer *out)
 {
 	nt_buffer points = {0};
 	uint32_t point_count = 0;
@@ -175,8 +176,8 @@ static void put_loop(const outline_edge *edges, const uint32_t *leaving, uint32_
 	nt_buffer_free_into(&points, out);
 }
 
-static uint32_t put_loops(const outline_edge *edges, uint32_t count, uint32_t *leaving, uint32_t *used, uint32_t *before,
-	nt_buffer *out)
+static uint32_t put_loops(const outline_edge *edges, uint32_t count, uint32_t *leaving, uint32_t *used,
+	uint32_t *before, nt_buffer *out)
 {
 	uint32_t loops = 0;
 	for (uint32_t i = count; i-- > 0;)
@@ -207,7 +208,8 @@ static nt_status put_regions(outlining *o, nt_buffer *out)
 		nt_buffer loops = {0};
 		for (next = i; next < count && edges[next].region == edges[i].region; next++)
 			;
-		const uint32_t loop_count = put_loops(edges + i, (uint32_t)(next - i), o->first, used + i, &before, &loops);
+		const uint32_t loop_count =
+			put_loops(edges + i, (uint32_t)(next - i), o->first, used + i, &before, &loops);
 		nt_put_varint(nt_zigzag(edges[i].region - region), &regions);
 		nt_put_varint(loop_count, &regions);
 		nt_buffer_append(&regions, loops.data, loops.size);

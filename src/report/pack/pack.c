@@ -138,7 +138,8 @@ static void put_positions(packing *p, uint32_t *codes)
 		p->packed->position_origin[axis] = range[0];
 		p->packed->position_step[axis] = step;
 		for (size_t v = 0; v < p->packed->vertex_count; v++)
-			codes[v] = quantise(positions[3 * (size_t)p->vertices[v] + axis], range[0], step, POSITION_CODES);
+			codes[v] = quantise(positions[3 * (size_t)p->vertices[v] + axis], range[0], step,
+				POSITION_CODES);
 		put_planes(p, codes, 2);
 	}
 	end_stream(p);

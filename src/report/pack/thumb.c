@@ -69,7 +69,8 @@ static size_t put_loop(const frame *f, const unsigned char **at, uint32_t *verte
 		if (!is_finite(uv))
 			continue;
 		const double x = (uv[0] - f->middle[0]) * f->scale, y = (uv[1] - f->middle[1]) * f->scale;
-		const long point[2] = {lround(NT_THUMB_WIDTH / 2 + x), lround(NT_THUMB_HEIGHT / 2 + (f->v_down ? y : -y))};
+		const long point[2] = {lround(NT_THUMB_WIDTH / 2 + x),
+			lround(NT_THUMB_HEIGHT / 2 + (f->v_down ? y : -y))};
 		if (count && point[0] == last[0] && point[1] == last[1])
 			continue;
 		nt_buffer_format(path, "%s%ld %ld", count++ ? " " : "M", point[0], point[1]);
@@ -88,7 +89,8 @@ nt_status nt_thumb(const nt_report_geometry *g, bool v_down, nt_buffer paths[2])
 {
 	if (!g->texcoords || !g->triangle_count)
 		return NT_OK;
-	const nt_outlined outlined = {g->vertex_count, g->triangle_count, g->indices, g->texcoords, g->orientation, g->islands};
+	const nt_outlined outlined = {g->vertex_count, g->triangle_count, g->indices, g->texcoords,
+		g->orientation, g->islands};
 	nt_buffer outlines = {0};
 	const nt_status status = nt_outline_islands(&outlined, &outlines);
 	if (status || outlines.failed) {

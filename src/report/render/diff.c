@@ -103,8 +103,8 @@ static void text_mesh(const nt_report_diff *diff, const nt_mesh_change *change, 
 	}
 	nt_buffer_text(out, ": triangles ");
 	put_pair(a->triangle_count, b->triangle_count, out);
-	nt_buffer_format(out, ", %zu of them in place, %zu corners with other texture coordinates\n    ", change->matched,
-		change->moved_texcoords);
+	nt_buffer_format(out, ", %zu of them in place, %zu corners with other texture coordinates\n    ",
+		change->matched, change->moved_texcoords);
 	put_tangents(diff, change, out);
 	if (change->turned)
 		nt_buffer_format(out, " at (%.6g %.6g %.6g)", (double)change->worst_position[0],
@@ -163,7 +163,8 @@ static void markdown_findings(const nt_report_diff *diff, int version, nt_buffer
 	const nt_report *report = diff->reports[version];
 	if (!total(diff->by_severity[version]))
 		return;
-	nt_buffer_format(out, "\n| %s | code | where | finding |\n|---|---|---|---|\n", version == NEW ? "new" : "gone");
+	nt_buffer_format(out, "\n| %s | code | where | finding |\n|---|---|---|---|\n",
+		version == NEW ? "new" : "gone");
 	size_t shown = 0;
 	for (size_t i = 0; i < report->finding_count; i++)
 		if (!diff->known[version][i] && shown++ < SHOWN_FINDINGS)
@@ -291,7 +292,8 @@ static void json_findings(const nt_report_diff *diff, int version, const char *n
 
 static void write_json(const nt_report_diff *diff, nt_buffer *out)
 {
-	nt_buffer_format(out, "{\n\t\"report\":\"nmtan-diff\",\n\t\"report_version\":1,\n\t\"generator\":\"nmtan %s\",\n\t",
+	nt_buffer_format(out,
+		"{\n\t\"report\":\"nmtan-diff\",\n\t\"report_version\":1,\n\t\"generator\":\"nmtan %s\",\n\t",
 		NMTAN_VERSION_STRING);
 	json_member("old", nt_shown_path(diff->reports[OLD]->path), out);
 	nt_buffer_text(out, ",\n\t");
@@ -313,7 +315,8 @@ static void page_rows(const nt_report_diff *diff, const nt_mesh_change *change, 
 {
 	const nt_report_mesh *a = mesh_of(diff, change, OLD), *b = mesh_of(diff, change, NEW);
 	if (!a || !b) {
-		nt_buffer_format(out, "[\"mesh\",\"%s, %zu triangles\"]", a ? "gone" : "new", (a ? a : b)->triangle_count);
+		nt_buffer_format(out, "[\"mesh\",\"%s, %zu triangles\"]", a ? "gone" : "new",
+			(a ? a : b)->triangle_count);
 		return;
 	}
 	nt_buffer_text(out, "[\"tangents\",\"");

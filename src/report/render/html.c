@@ -414,7 +414,8 @@ static void put_part(nt_html_part_kind kind, bool in_folder, nt_buffer *out)
 	nt_buffer name = {0};
 	const char *text = nt_html_part(kind, &name);
 	if (in_folder)
-		nt_buffer_format(out, style ? "<link rel=\"stylesheet\" href=\"%s\">\n" : "<script src=\"%s\"></script>\n",
+		nt_buffer_format(out,
+			style ? "<link rel=\"stylesheet\" href=\"%s\">\n" : "<script src=\"%s\"></script>\n",
 			name.data ? name.data : "");
 	else
 		nt_buffer_format(out, style ? "<style>\n%s</style>\n" : "<script>\n%s</script>\n", text);
@@ -429,8 +430,8 @@ static void begin_page(bool in_folder, nt_buffer *out)
 	nt_buffer_text(out, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
 	nt_buffer_text(out, nt_html_mark);
 	nt_buffer_format(out,
-		"<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: blob: 'self' file:; "
-		"style-src %s; script-src %s\">\n"
+		"<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data: "
+		"blob: 'self' file:; style-src %s; script-src %s\">\n"
 		"<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
 		"<link rel=\"icon\" href=\"data:,\">\n<title>nmtan report</title>\n", parts, parts);
 	put_part(NT_HTML_STYLE, in_folder, out);
@@ -465,7 +466,8 @@ static void put_thumb(const nt_report *report, nt_buffer *out)
 		m++;
 	if (m < report->mesh_count && nt_thumb(report->meshes[m].geometry, v_down, paths))
 		out->failed = true;
-	nt_buffer_format(out, "[\"%s\",\"%s\"]", paths[0].data ? paths[0].data : "", paths[1].data ? paths[1].data : "");
+	nt_buffer_format(out, "[\"%s\",\"%s\"]", paths[0].data ? paths[0].data : "",
+		paths[1].data ? paths[1].data : "");
 	nt_buffer_free_into(&paths[0], out);
 	nt_buffer_free_into(&paths[1], out);
 }
@@ -483,7 +485,8 @@ void nt_report_index_row(const nt_report *report, const char *page, nt_buffer *r
 	put_head(report, rows);
 	nt_buffer_text(rows, ",\"page\":");
 	put_string(page, rows);
-	nt_buffer_format(rows, ",\"triangles\":%zu,\"islands\":%zu,\"seams\":%zu,\"layout\":", triangles, islands, seams);
+	nt_buffer_format(rows, ",\"triangles\":%zu,\"islands\":%zu,\"seams\":%zu,\"layout\":", triangles,
+		islands, seams);
 	put_thumb(report, rows);
 	nt_buffer_text(rows, ",\"meshes\":[],\"findings\":[");
 	for (size_t i = 0, any = 0; i < report->finding_count; i++) {

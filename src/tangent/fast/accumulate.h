@@ -115,8 +115,8 @@ static void add_triangle(nt_fast *fast, unsigned range, size_t t, const uint32_t
 /* Triangles with frames, lanes [i, end), up to the first with a corner whose cursor has a flag, but for ELSEWHERE if
  * `elsewhere` says so, or that has no narrow entry left: its lane, or `end`. Entries are moved as words, and nothing is
  * called, so that nearly all the loop needs is in registers. */
-static inline __attribute__((always_inline)) size_t add_usual(const nt_fast *fast, unsigned range, size_t first, size_t i,
-	size_t end, const uint32_t *ids, const lanes_out *out, bool elsewhere, bool is_narrow)
+static inline __attribute__((always_inline)) size_t add_usual(const nt_fast *fast, unsigned range, size_t first,
+	size_t i, size_t end, const uint32_t *ids, const lanes_out *out, bool elsewhere, bool is_narrow)
 {
 	const nt_adjacency *const adjacency = &fast->adjacency;
 	const uint32_t step = is_narrow ? adjacency->step : NT_FAN_LANES, full = NT_FAN_DEPTH * step;
@@ -161,8 +161,8 @@ static inline __attribute__((always_inline)) size_t add_usual(const nt_fast *fas
 	return i;
 }
 
-static size_t __attribute__((noinline)) add_here(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
-	const uint32_t *ids, const lanes_out *out)
+static size_t __attribute__((noinline)) add_here(const nt_fast *fast, unsigned range, size_t first, size_t i,
+	size_t end, const uint32_t *ids, const lanes_out *out)
 {
 	return add_usual(fast, range, first, i, end, ids, out, false, false);
 }
@@ -181,8 +181,8 @@ static size_t __attribute__((noinline)) add_elsewhere(const nt_fast *fast, unsig
 
 /* The same up to a corner of a hub or elsewhere. What is added to a vertex that an earlier range adds to is put aside,
  * without a branch: where triangles do not come in order such vertices are anywhere. */
-static size_t __attribute__((noinline)) add_shared(const nt_fast *fast, unsigned range, size_t first, size_t i, size_t end,
-	const uint32_t *ids, const lanes_out *out)
+static size_t __attribute__((noinline)) add_shared(const nt_fast *fast, unsigned range, size_t first, size_t i,
+	size_t end, const uint32_t *ids, const lanes_out *out)
 {
 	static const nt_record nothing = {0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
 	uint32_t *const cursors = fast->adjacency.cursors + range * fast->adjacency.vertex_count;
@@ -199,7 +199,8 @@ static size_t __attribute__((noinline)) add_shared(const nt_fast *fast, unsigned
 			cursors[vertex] = place + NT_FAN_LANES;
 			fast->adjacency.entries[place & NT_CURSOR_PLACE] =
 				(nt_fan_entry){ids[(k + 1) % 3] | bit, ids[(k + 2) % 3] | bit};
-			nt_record *const own = &fast->records[orient][vertex], *const to = shared ? &deferred->add[count] : own;
+			nt_record *const own = &fast->records[orient][vertex],
+				*const to = shared ? &deferred->add[count] : own;
 			nt_record sum = *(shared ? &nothing : own);
 			add_record(&sum, out->add[k] + turned_rows[i]);
 			*to = sum;
@@ -224,7 +225,8 @@ static void add_ordinary(nt_fast *fast, unsigned range, size_t first, size_t beg
 {
 	for (size_t i = begin; i < end;) {
 		if (!fast->wants_more)
-			i = (nt_adjacency_is_narrow(&fast->adjacency) ? add_narrow : add_here)(fast, range, first, i, end, ids, out);
+			i = (nt_adjacency_is_narrow(&fast->adjacency) ? add_narrow : add_here)(fast, range,
+				first, i, end, ids, out);
 		if (i < end && !fast->wants_more && fast->deferred)
 			i = add_shared(fast, range, first, i, end, ids, out);
 		if (i < end && !fast->wants_more && fast->adjacency.rest)
@@ -355,8 +357,8 @@ static inline __attribute__((always_inline)) void prefetch_places(const nt_fast 
 }
 
 /* The cursors of a batch. */
-static inline __attribute__((always_inline)) void prefetch_cursors(const nt_fast *fast, const uint32_t *cursors, size_t first,
-	size_t end)
+static inline __attribute__((always_inline)) void prefetch_cursors(const nt_fast *fast, const uint32_t *cursors,
+	size_t first, size_t end)
 {
 	const size_t count = end - first < NT_LANES ? end - first : NT_LANES;
 	uint32_t copy[3 * NT_LANES];

@@ -32,8 +32,8 @@ typedef struct nt_complex {
 	uint32_t *vertices;  /* [vertex_count + 1] first place of each, with NT_RESULT_SUM */
 	uint32_t *welded;    /* [vertex_count] their numbers as welded vertices */
 	uint32_t *corners;   /* [places] */
-	uint32_t *across;    /* [2 * room] of each corner that is not tangled the next and the previous vertex of its triangle;
-	                        then the corners beyond these edges: NT_WAITS and above: there is none */
+	uint32_t *across;    /* [2 * room] of each corner that is not tangled the next and the previous vertex of its
+	                        triangle; then the corners beyond these edges: NT_WAITS and above: there is none */
 	uint32_t *group;     /* [room] the place that a corner's group begins with, or NT_NONE */
 	uint32_t room;       /* places, or fewer where tangled vertices have theirs one after the other */
 	uint32_t base;       /* places are counted from here: see solve_tangled() */

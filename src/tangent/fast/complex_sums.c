@@ -60,7 +60,8 @@ static inline __attribute__((always_inline)) uint32_t look_at_four(const uint32_
 	flags &= there & (NT_COMPLEX_PLUS | NT_COMPLEX_ANY);
 	const four_ids plus = flags << 1;
 	const four_ids after = ((__builtin_shufflevector(low, high, 0, 2, 4, 6) | plus) & there) | (~there & ~lane);
-	const four_ids before = ((__builtin_shufflevector(low, high, 1, 3, 5, 7) | plus) & there) | (~there & ~(lane + 4));
+	const four_ids before =
+		((__builtin_shufflevector(low, high, 1, 3, 5, 7) | plus) & there) | (~there & ~(lane + 4));
 	const four_ids one = (four_ids)(after == __builtin_shufflevector(before, before, 1, 2, 3, 0)) |
 			     (four_ids)(before == __builtin_shufflevector(after, after, 1, 2, 3, 0));
 	const four_ids two = (four_ids)(after == __builtin_shufflevector(before, before, 2, 3, 0, 1)) |
@@ -82,7 +83,8 @@ bool nt_take_four(const nt_complex *c, nt_summed *s, size_t v)
 	const uint32_t first = first_of_four[bits % 64], all = ((uint32_t)1 << count) - 1, plus = bits >> 6;
 	/* an orientation of one group is done */
 	const uint32_t begins = first >> 8 & all, minus_begins = begins & ~plus, plus_begins = begins & plus;
-	const uint32_t kept = all & ((minus_begins & (minus_begins - 1) ? ~plus : 0) | (plus_begins & (plus_begins - 1) ? plus : 0));
+	const uint32_t kept =
+		all & ((minus_begins & (minus_begins - 1) ? ~plus : 0) | (plus_begins & (plus_begins - 1) ? plus : 0));
 	if (kept == 0)
 		return true;
 	if (s->count + 4 > NT_SUMMED)
@@ -106,7 +108,8 @@ void nt_load_rows(const nt_complex *c, const uint32_t *corners, size_t count, nt
 		const size_t t = (corners[i] & NT_COMPLEX_CORNER) >> 2;
 #pragma GCC unroll 3
 		for (unsigned k = 0; k < 3; k++)
-			nt_weld_load(&mesh, nt_vertex_of(&mesh, nt_triangle_corner(&triangles, t, k)), &rows[3 * i + k]);
+			nt_weld_load(&mesh, nt_vertex_of(&mesh, nt_triangle_corner(&triangles, t, k)),
+				&rows[3 * i + k]);
 	}
 }
 
@@ -137,6 +140,7 @@ void nt_write_sums(const nt_complex *c, nt_summed *s)
 			nt_fast_tell_open(c->fast->solve);
 		}
 	for (size_t i = 0; i < s->count; i++)
-		memcpy(c->fast->solve->tangents + 4 * nt_complex_corner(c, s->corners[i]), &sums[s->group[i]], sizeof *sums);
+		memcpy(c->fast->solve->tangents + 4 * nt_complex_corner(c, s->corners[i]), &sums[s->group[i]],
+			sizeof *sums);
 	s->count = s->group_count = 0;
 }

@@ -57,7 +57,8 @@ static inline __attribute__((always_inline)) uint32_t halves_of(float low, float
 static inline __attribute__((always_inline)) uint32_t state_of(const float u[3], const float v[3], uint32_t sound)
 {
 	const uint32_t both = BEYOND << 16 | BEYOND;
-	const uint32_t a = halves_of(u[0], u[1]) + both, b = halves_of(u[2], v[0]) + both, c = halves_of(v[1], v[2]) + both;
+	const uint32_t a = halves_of(u[0], u[1]) + both, b = halves_of(u[2], v[0]) + both,
+		c = halves_of(v[1], v[2]) + both;
 	/* sign and beyond, six times two bits */
 	const uint32_t all = (a & 0xc000c000u) | (b >> 2 & 0x30003000u) | (c >> 4 & 0x0c000c00u);
 	const uint32_t beyond = all & 0x54005400u, sides = beyond + (all >> 1 & beyond);
@@ -100,7 +101,8 @@ typedef struct corner_angles {
 
 /* Each corner's edges without their part along n, and what makes them unit vectors; `along`: directions and edges
  * along the normal, of which nothing is left but zero, are sound as well. */
-static inline __attribute__((always_inline)) void project_edges(corner_lanes a, corner_parts *restrict p, bool along, int i)
+static inline __attribute__((always_inline)) void project_edges(corner_lanes a, corner_parts *restrict p,
+	bool along, int i)
 {
 	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
 	const float e[3] = {a.e[0][i], a.e[1][i], a.e[2][i]};
@@ -129,10 +131,13 @@ static inline __attribute__((always_inline)) void project_u(corner_lanes a, corn
 }
 
 /* The cosine of each corner's angle, as seen along n. */
-static inline __attribute__((always_inline)) void find_cosine(const corner_parts *restrict p, corner_angles *restrict angles, int i)
+static inline __attribute__((always_inline)) void find_cosine(const corner_parts *restrict p,
+	corner_angles *restrict angles, int i)
 {
-	const float er = p->of_e[KEPT_AT(i)], ex = er * p->e[0][KEPT_AT(i)], ey = er * p->e[1][KEPT_AT(i)], ez = er * p->e[2][KEPT_AT(i)];
-	const float fr = p->of_f[KEPT_AT(i)], fx = fr * p->f[0][KEPT_AT(i)], fy = fr * p->f[1][KEPT_AT(i)], fz = fr * p->f[2][KEPT_AT(i)];
+	const float er = p->of_e[KEPT_AT(i)], ex = er * p->e[0][KEPT_AT(i)], ey = er * p->e[1][KEPT_AT(i)],
+		ez = er * p->e[2][KEPT_AT(i)];
+	const float fr = p->of_f[KEPT_AT(i)], fx = fr * p->f[0][KEPT_AT(i)], fy = fr * p->f[1][KEPT_AT(i)],
+		fz = fr * p->f[2][KEPT_AT(i)];
 	angles->cosine[i] = ex * fx + ey * fy + ez * fz;
 }
 
@@ -170,11 +175,13 @@ static inline __attribute__((always_inline)) void finish_directions(corner_lanes
 	const float ot[3] = {a.v[0][i], a.v[1][i], a.v[2][i]};
 	const float nv = n[0] * ot[0] + n[1] * ot[1] + n[2] * ot[2];
 	const float v[3] = {ot[0] - nv * n[0], ot[1] - nv * n[1], ot[2] - nv * n[2]};
-	const float ur = p->of_u[KEPT_AT(i)], whole[3] = {p->u[0][KEPT_AT(i)], p->u[1][KEPT_AT(i)], p->u[2][KEPT_AT(i)]};
+	const float ur = p->of_u[KEPT_AT(i)],
+		whole[3] = {p->u[0][KEPT_AT(i)], p->u[1][KEPT_AT(i)], p->u[2][KEPT_AT(i)]};
 	const float u[3] = {ur * whole[0], ur * whole[1], ur * whole[2]};
 	/* with this square of u the definition normalises as well; the product of an edge without length is NaN; v is
 	 * as long as it is: see BEYOND */
-	const uint32_t sound = p->sound[KEPT_AT(i)] & ~(bits_of(v[0]) | bits_of(v[1]) | bits_of(v[2]) | bits_of(angles->cosine[i]));
+	const uint32_t sound =
+		p->sound[KEPT_AT(i)] & ~(bits_of(v[0]) | bits_of(v[1]) | bits_of(v[2]) | bits_of(angles->cosine[i]));
 	uint32_t state = state_of(u, v, sound);
 	const int no_v = along && is_zero(v[0], v[1], v[2]);
 	if (along) {

@@ -50,7 +50,8 @@ static void load_singles(const nt_weld_row *rows, const uint32_t *corners, size_
 	for (int i = 0; NT_SHORT_WAYS && i < NT_LANES; i++)
 #pragma GCC unroll 3
 		for (int c = 0; c < 3; c++)
-			s->n[c][i] = choose(s->k[i], s->in.row[0][3 + c][i], s->in.row[1][3 + c][i], s->in.row[2][3 + c][i]);
+			s->n[c][i] =
+				choose(s->k[i], s->in.row[0][3 + c][i], s->in.row[1][3 + c][i], s->in.row[2][3 + c][i]);
 }
 
 /* v without its part along the unit normal n, normalised where it is not zero. */
@@ -71,13 +72,16 @@ static inline __attribute__((always_inline)) void project3(const float n[3], flo
 static void solve_single_frames(single_lanes *restrict s)
 {
 	for (int i = 0; i < NT_LANES; i++) {
-		const float t21x = s->in.row[1][6][i] - s->in.row[0][6][i], t21y = s->in.row[1][7][i] - s->in.row[0][7][i];
-		const float t31x = s->in.row[2][6][i] - s->in.row[0][6][i], t31y = s->in.row[2][7][i] - s->in.row[0][7][i];
+		const float t21x = s->in.row[1][6][i] - s->in.row[0][6][i],
+			t21y = s->in.row[1][7][i] - s->in.row[0][7][i];
+		const float t31x = s->in.row[2][6][i] - s->in.row[0][6][i],
+			t31y = s->in.row[2][7][i] - s->in.row[0][7][i];
 		const float area = t21x * t31y - t21y * t31x, size = fabsf(area), sign = area > 0.0f ? 1.0f : -1.0f;
 		float os[3], ot[3];
 #pragma GCC unroll 3
 		for (int c = 0; c < 3; c++) {
-			const float d1 = s->in.row[1][c][i] - s->in.row[0][c][i], d2 = s->in.row[2][c][i] - s->in.row[0][c][i];
+			const float d1 = s->in.row[1][c][i] - s->in.row[0][c][i],
+				d2 = s->in.row[2][c][i] - s->in.row[0][c][i];
 			os[c] = t31y * d1 - t21y * d2;
 			ot[c] = -t31x * d1 + t21x * d2;
 		}

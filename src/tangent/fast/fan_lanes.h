@@ -38,8 +38,8 @@ static inline vertex_entries entries_at(const nt_adjacency *a, size_t vertex)
 
 /* Corner k of WIDTH vertices of so many corners; where one has fewer, voids above all numbers that accumulate gives to
  * voids. Of an entry the bits of `mask` count. The numbers of narrow entries are in the upper halves. */
-static inline __attribute__((always_inline)) void load_corners(vertex_entries entries, uint32_t k, lanes degree, lanes mask,
-	lanes *next, lanes *previous)
+static inline __attribute__((always_inline)) void load_corners(vertex_entries entries, uint32_t k, lanes degree,
+	lanes mask, lanes *next, lanes *previous)
 {
 	const lanes there = (lanes)(degree > k);
 	if (entries.are_narrow) {
@@ -75,8 +75,8 @@ static lanes __attribute__((noinline)) find_twice(vertex_entries entries, uint32
 /* The components of corners that are linked: bit j, times `unit`, of linked[i] for each later neighbour j. Those with
  * a bit of `voids` are none. By elimination: a corner hands its links to the later ones it is linked with; one that has
  * none when its turn comes is the last of its component. */
-static inline __attribute__((always_inline)) lanes count_components(lanes linked[NT_FAN_DEPTH], uint32_t depth, uint32_t unit,
-	uint32_t voids)
+static inline __attribute__((always_inline)) lanes count_components(lanes linked[NT_FAN_DEPTH], uint32_t depth,
+	uint32_t unit, uint32_t voids)
 {
 	lanes count = {0};
 	UNROLL
@@ -102,7 +102,8 @@ static inline __attribute__((always_inline)) lanes count_wide_fans_of(vertex_ent
 {
 	lanes next[NT_FAN_DEPTH], previous[NT_FAN_DEPTH];
 	lanes linked[NT_FAN_DEPTH];
-	lanes halves[NT_FAN_DEPTH]; /* those of next and of previous in which vertices differ most, without orientation */
+	lanes halves[NT_FAN_DEPTH]; /* those of next and of previous in which vertices differ most, without
+	                               orientation */
 	half_set distinct = ALL_HALVES;
 	UNROLL
 	for (uint32_t k = 0; k < depth; k++) {
@@ -139,7 +140,8 @@ static inline __attribute__((always_inline)) lanes count_narrow_fans_of(vertex_e
 	UNROLL
 	for (uint32_t k = 0; k < depth; k++) {
 		const lanes there = (lanes)(degree > k);
-		const lanes both = (load_lanes(entries.narrow + k * entries.step) & there) | ((0x70005000u + BOTH * k) & ~there);
+		const lanes both =
+			(load_lanes(entries.narrow + k * entries.step) & there) | ((0x70005000u + BOTH * k) & ~there);
 		entry[k] = both & mask_of_halves;
 		plain[k] = both & ~(BOTH * (NT_ENTRY_ORIENT >> 16));
 		linked[k] = both & VOIDS;
@@ -184,15 +186,17 @@ static inline __attribute__((always_inline)) lanes count_fans_at(vertex_entries 
 	}
 }
 
-static lanes __attribute__((noinline)) count_wide_fans(const nt_fan_entry *entries, uint32_t depth, lanes degree, lanes mask)
+static lanes __attribute__((noinline)) count_wide_fans(const nt_fan_entry *entries, uint32_t depth,
+	lanes degree, lanes mask)
 {
 	return count_fans_at((vertex_entries){.wide = entries}, depth, degree, mask);
 }
 
-static lanes __attribute__((noinline)) count_narrow_fans(const uint32_t *entries, size_t step, uint32_t depth, lanes degree,
-	lanes mask)
+static lanes __attribute__((noinline)) count_narrow_fans(const uint32_t *entries, size_t step, uint32_t depth,
+	lanes degree, lanes mask)
 {
-	return count_fans_at((vertex_entries){.are_narrow = true, .narrow = entries, .step = step}, depth, degree, mask);
+	return count_fans_at((vertex_entries){.are_narrow = true, .narrow = entries, .step = step}, depth,
+		degree, mask);
 }
 
 #endif

@@ -169,8 +169,8 @@ static nmtan_status add_to_records(nt_fast *fast, const nt_kernels *kernels, con
 	nt_fast_memory *memory)
 {
 	const nmtan_status status = nt_adjacency_make(&fast->triangles, &fast->ranges, fast->vertex_count,
-		plan->most_places ? plan->most_places : NT_ADJACENCY_PLACES, plan->most_narrow, memory->rows, &memory->borrowed,
-		&fast->adjacency);
+		plan->most_places ? plan->most_places : NT_ADJACENCY_PLACES, plan->most_narrow, memory->rows,
+		&memory->borrowed, &fast->adjacency);
 	if (status)
 		return status;
 	fast->scattered = nt_is_scattered(fast->triangles.ids, fast->solve->corner_count, fast->vertex_count);
@@ -200,7 +200,8 @@ static void fill_ranges(void *context, size_t begin, size_t end, unsigned slot)
 static nmtan_status fill_bins(nt_fast *fast, const nt_kernels *kernels, unsigned bin_bits, nt_fast_memory *memory)
 {
 	const nmtan_status status = nt_bins_make(fast->triangles.ids, &fast->ranges, fast->vertex_count,
-		bin_bits ? bin_bits : nt_bins_bits(fast->vertex_count), memory->bin_sums, &memory->borrowed, &fast->bins);
+		bin_bits ? bin_bits : nt_bins_bits(fast->vertex_count), memory->bin_sums, &memory->borrowed,
+		&fast->bins);
 	if (status)
 		return status;
 	fast->scattered = true;
@@ -302,7 +303,8 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 /* Tells tangent/usable.c which triangles need no look, and repair.c what is welded. */
 static void tell_known(const nt_fast *fast)
 {
-	const bool records = fast->records[0] || fast->records[1]; /* of few triangles groups are judged, not vertices */
+	/* of few triangles groups are judged, not vertices */
+	const bool records = fast->records[0] || fast->records[1];
 	nt_known *known = fast->solve->known;
 	*known = (nt_known){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT, .suspect = NT_TRIANGLE_SUSPECT,
 		.doubtful = NT_TRIANGLE_UNCERTAIN, .flat = NT_TRIANGLE_ANY, .degenerate = NT_TRIANGLE_DEGENERATE,

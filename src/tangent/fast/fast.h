@@ -10,7 +10,8 @@
 /* What depends on a mesh's size and order; tests choose it themselves, so that small meshes go every way. */
 typedef struct nt_fast_plan {
 	size_t grain;      /* least triangles for a thread */
-	size_t least_two;  /* triangles from which on two threads share a mesh that is too small for the grain; 0: none */
+	size_t least_two;  /* triangles from which on two threads share a mesh that is too small for the grain;
+	                      0: none */
 	unsigned bin_bits; /* log2 of the vertices of a bin, from 4 on; 0: bins where the mesh is scattered */
 	size_t least_borrowed_bytes; /* smaller outputs do not serve as scratch */
 	size_t most_tiny;  /* triangles of a mesh that goes the way of tiny.c; up to NT_TINY */

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The flags of 16 triangles (parts.h), of their frames: orientation, "any", degenerate, uncertain. Included by kernel.h.
+ * The flags of 16 triangles (parts.h), of their frames: orientation, "any", degenerate,
+     uncertain. Included by kernel.h.
  */
 #ifndef NT_TANGENT_FAST_FLAG_LANES_H
 #define NT_TANGENT_FAST_FLAG_LANES_H
@@ -39,7 +40,8 @@ static void __attribute__((noinline)) clear_flat(const lanes_in *in, uint8_t *fl
 }
 
 /* Flags of lanes that are not plain; true where all of them are ordinary triangles with a frame. */
-static bool __attribute__((noinline)) classify_special(uint8_t *flags, size_t count, const lanes_in *in, const lanes_out *out)
+static bool __attribute__((noinline)) classify_special(uint8_t *flags, size_t count, const lanes_in *in,
+	const lanes_out *out)
 {
 	int special = 0;
 	for (size_t i = 0; i < count; i++)
@@ -58,12 +60,14 @@ static inline __attribute__((always_inline)) void classify_plain(uint8_t *restri
 	const lanes_out *restrict out)
 {
 	for (size_t i = 0; i < count; i++)
-		flags[i] = (uint8_t)((flags[i] & NT_TRIANGLE_SECOND) | (bits_of(out->area[i]) >> 31 ^ NT_TRIANGLE_ORIENT) |
+		flags[i] = (uint8_t)((flags[i] & NT_TRIANGLE_SECOND) |
+			(bits_of(out->area[i]) >> 31 ^ NT_TRIANGLE_ORIENT) |
 				     (~bits_of(out->doubt[i]) >> 24 & NT_TRIANGLE_UNCERTAIN));
 }
 
 /* Flags of the lanes; true where all of them are ordinary triangles with a frame. */
-static inline bool classify_lanes(const nt_fast *fast, size_t first, size_t count, const lanes_in *in, const lanes_out *out)
+static inline bool classify_lanes(const nt_fast *fast, size_t first, size_t count, const lanes_in *in,
+	const lanes_out *out)
 {
 	uint8_t *flags = fast->flags + first;
 	bool ordinary = out->plain;

@@ -48,7 +48,8 @@ typedef struct lanes_edges {
 	_Alignas(64) float of[3][3][NT_LANES];
 } lanes_edges;
 
-static inline __attribute__((always_inline)) void make_edges(const lanes_in *restrict in, lanes_edges *restrict edges, int i)
+static inline __attribute__((always_inline)) void make_edges(const lanes_in *restrict in,
+	lanes_edges *restrict edges, int i)
 {
 #pragma GCC unroll 3
 	for (int c = 0; c < 3; c++) {
@@ -89,8 +90,8 @@ static inline __attribute__((always_inline)) float area_rounding(const uv_direct
 }
 
 /* The frames of lanes [0, count). */
-static inline __attribute__((always_inline)) void solve_frames(const lanes_in *restrict in, const lanes_edges *restrict edges,
-	lanes_out *restrict out, bool more, int i)
+static inline __attribute__((always_inline)) void solve_frames(const lanes_in *restrict in,
+	const lanes_edges *restrict edges, lanes_out *restrict out, bool more, int i)
 {
 	const uv_directions d = directions_of(in, edges, i);
 	const float area = d.t21x * d.t31y - d.t21y * d.t31x, sign = copysignf(1.0f, area);
@@ -107,15 +108,18 @@ static inline __attribute__((always_inline)) void solve_frames(const lanes_in *r
 }
 
 /* Storing moves each v by u |v + offset| at most, an edge by twice that. */
-static void __attribute__((noinline)) doubt_stored(const lanes_in *restrict in, lanes_out *restrict out, float offset, int count)
+static void __attribute__((noinline)) doubt_stored(const lanes_in *restrict in, lanes_out *restrict out,
+	float offset, int count)
 {
 	const float slack = offset != 0.0f ? 3 * HALF_ULP : 0.0f;
 	lanes_edges edges;
 	EACH_LANE(count) {
 		make_edges(in, &edges, i);
 		const uv_directions d = directions_of(in, &edges, i);
-		const float stored = fabsf(in->row[0][7][i]) + fabsf(in->row[1][7][i]) + fabsf(in->row[2][7][i]) + fabsf(offset);
-		out->doubt[i] = area_rounding(&d) + slack * stored * (fabsf(d.t21x) + fabsf(d.t31x)) - fabsf(out->area[i]);
+		const float stored =
+			fabsf(in->row[0][7][i]) + fabsf(in->row[1][7][i]) + fabsf(in->row[2][7][i]) + fabsf(offset);
+		out->doubt[i] =
+			area_rounding(&d) + slack * stored * (fabsf(d.t21x) + fabsf(d.t31x)) - fabsf(out->area[i]);
 	}
 }
 

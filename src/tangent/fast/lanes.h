@@ -13,11 +13,13 @@
 #include "tangent/fast/lane_sets.h"
 
 /* Corner k of 16 triangles. */
-static inline __attribute__((always_inline)) corner_lanes corner_of(const lanes_in *in, const lanes_edges *edges, lanes_out *out,
-	int k)
+static inline __attribute__((always_inline)) corner_lanes corner_of(const lanes_in *in,
+	const lanes_edges *edges, lanes_out *out, int k)
 {
-	return (corner_lanes){.n = in->row[k] + 3, .u = out->frames.u, .v = out->frames.v, .e = edges->of[k == 2 ? 1 : 0],
-		.f = edges->of[k == 0 ? 1 : 2], .turned = k == 1 ? -1.0f : 1.0f, .sum = out->sum[k], .extra = out->extra[k]};
+	return (corner_lanes){.n = in->row[k] + 3, .u = out->frames.u, .v = out->frames.v,
+		.e = edges->of[k == 2 ? 1 : 0],
+		.f = edges->of[k == 0 ? 1 : 2], .turned = k == 1 ? -1.0f : 1.0f, .sum = out->sum[k],
+		.extra = out->extra[k]};
 }
 
 /* Lanes [0, count); the frames too, if `frames`. In wide vectors there is one loop for each idea, and each of them
@@ -31,7 +33,8 @@ static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *re
 		__builtin_unreachable(); /* keeps gcc 12 from warning of loops that are not entered */
 	lanes_edges edges;
 	corner_angles angles[3];
-	const corner_lanes a = corner_of(in, &edges, out, 0), b = corner_of(in, &edges, out, 1), c = corner_of(in, &edges, out, 2);
+	const corner_lanes a = corner_of(in, &edges, out, 0), b = corner_of(in, &edges, out, 1),
+		c = corner_of(in, &edges, out, 2);
 #if WIDTH > 4
 	corner_parts p[3];
 	EACH_LANE(count) make_edges(in, &edges, i);
@@ -123,7 +126,8 @@ static inline __attribute__((always_inline)) bool has_extremes(const lanes_out *
 {
 	lanes extreme = {0};
 	for (size_t i = 0; i < count; i += WIDTH) {
-		const lanes states = load_lanes(out->sum[0][3] + i) & load_lanes(out->sum[1][3] + i) & load_lanes(out->sum[2][3] + i);
+		const lanes states = load_lanes(out->sum[0][3] + i) & load_lanes(out->sum[1][3] + i) &
+			load_lanes(out->sum[2][3] + i);
 		extreme |= load_lanes(out->sound + i) & ~load_lanes(out->degenerate + i) & ~(states / NT_STATE_SOUND);
 	}
 	return any_lane(extreme);
@@ -136,7 +140,8 @@ static void __attribute__((noinline)) solve_along(const lanes_in *in, lanes_out 
 }
 
 /* What is to be known of lanes that are solved: so many corners' sums say whether they are plain. */
-static inline void judge(const lanes_in *restrict in, lanes_out *restrict out, float offset, size_t corners, size_t lane_count)
+static inline void judge(const lanes_in *restrict in, lanes_out *restrict out, float offset, size_t corners,
+	size_t lane_count)
 {
 	out->plain = NT_SHORT_WAYS && corners > 0 && are_plain(out, corners, lane_count);
 	if (!out->plain)
@@ -145,8 +150,8 @@ static inline void judge(const lanes_in *restrict in, lanes_out *restrict out, f
 		doubt_stored(in, out, offset, (int)lane_count);
 }
 
-static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *restrict in, lanes_out *restrict out, float offset,
-	size_t count)
+static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *restrict in, lanes_out *restrict out,
+	float offset, size_t count)
 {
 	const size_t lane_count = whole_lanes(count);
 	solve_lanes(in, out, true, false, false, (int)lane_count);

@@ -43,7 +43,8 @@ static void load_degrees(const nt_adjacency *a, size_t first, size_t count, size
 		int deepest = 0;
 		for (uint32_t i = v; i < v + WIDTH; i++) {
 			const uint32_t cursor = cursors[i];
-			const int corners = (int)(((float)(int)((cursor & NT_CURSOR_PLACE) - begin) + 0.5f) * corners_a_place);
+			const int corners =
+				(int)(((float)(int)((cursor & NT_CURSOR_PLACE) - begin) + 0.5f) * corners_a_place);
 			const uint32_t there = i < (uint32_t)count ? UINT32_MAX : 0;
 			const uint32_t hub = cursor & NT_CURSOR_HUB ? UINT32_MAX : 0;
 			const int known = (int)((uint32_t)corners & there & ~hub);
@@ -72,10 +73,12 @@ static void describe_complex(const nt_fast *fast, const nt_adjacency *a, size_t 
 			corners = places;
 		else
 			for (size_t e = lane; e < places - begin; e += entries.step)
-				corners += !(entries.are_narrow ? entries.narrow[e] & NT_ENTRY_VOID >> 16 : entries.wide[e].next & NT_ENTRY_VOID);
+				corners += !(entries.are_narrow ? entries.narrow[e] & NT_ENTRY_VOID >> 16
+					: entries.wide[e].next & NT_ENTRY_VOID);
 		for (int o = 0; o < 2; o++)
 			if (fast->records[o])
-				nt_fast_record(fast, o, (uint32_t)(first + lane))->state |= corners | tangled * NT_RESULT_TANGLED;
+				nt_fast_record(fast, o, (uint32_t)(first + lane))->state |= corners | tangled *
+					NT_RESULT_TANGLED;
 		settled->complex_count++;
 		settled->complex_corners += corners;
 		settled->tangled_count += tangled;
@@ -110,7 +113,8 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	for (size_t i = 0; i < used; i++)
 		mask[i] = r[0]->present[i] & r[1]->present[i] ? UINT32_MAX : NT_ENTRY_VERTEX;
 	for (size_t i = 0; i < used; i += WIDTH) {
-		const lanes degrees = load_lanes(degree + i), masks = load_lanes(mask + i), hubs = (lanes)(degrees == HUB);
+		const lanes degrees = load_lanes(degree + i), masks = load_lanes(mask + i),
+			hubs = (lanes)(degrees == HUB);
 		const lanes usual = degrees & ~hubs, mask_of = __builtin_shufflevector(masks, masks, UNTURNED);
 		const lanes counted = (hubs & DOUBTFUL) | (nt_adjacency_is_narrow(a)
 			? count_narrow_fans(entries.narrow + i, entries.step, depths[i / WIDTH], usual, mask_of)
@@ -147,7 +151,8 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 			continue;
 		if (!there[o] && !has_complex && count == used && fast->record_step == 1 && !fast->wants_more) {
 			for (size_t i = 0; i < used; i += WIDTH / 4)
-				memcpy(nt_fast_record(fast, o, (uint32_t)(first + i)), &(const lanes){0}, sizeof(lanes));
+				memcpy(nt_fast_record(fast, o, (uint32_t)(first + i)), &(const lanes){0},
+					sizeof(lanes));
 			continue;
 		}
 		const uint32_t sign = o ? NT_RESULT_PLUS : NT_RESULT_MINUS;

@@ -128,7 +128,8 @@ static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 }
 
 /* The signs of a triangle whose records have more than signs. */
-static inline __attribute__((always_inline)) void write_signs(const nt_fast *fast, const nt_triangles *triangles, size_t t)
+static inline __attribute__((always_inline)) void write_signs(const nt_fast *fast,
+	const nt_triangles *triangles, size_t t)
 {
 	const int orient = fast->flags[t] & NT_TRIANGLE_ORIENT;
 	const nt_record *const records = fast->records[orient];
@@ -233,9 +234,12 @@ static void write_plain(nt_fast *fast, size_t begin, size_t end)
 		uint64_t others = 0;
 		for (; t < last; t += 4, v += 12, out += 48) {
 			const nt_int4 a = copy_records(records[flags[t] & NT_TRIANGLE_ORIENT], shift, v, out);
-			const nt_int4 b = copy_records(records[flags[t + 1] & NT_TRIANGLE_ORIENT], shift, v + 3, out + 12);
-			const nt_int4 c = copy_records(records[flags[t + 2] & NT_TRIANGLE_ORIENT], shift, v + 6, out + 24);
-			const nt_int4 d = copy_records(records[flags[t + 3] & NT_TRIANGLE_ORIENT], shift, v + 9, out + 36);
+			const nt_int4 b =
+				copy_records(records[flags[t + 1] & NT_TRIANGLE_ORIENT], shift, v + 3, out + 12);
+			const nt_int4 c =
+				copy_records(records[flags[t + 2] & NT_TRIANGLE_ORIENT], shift, v + 6, out + 24);
+			const nt_int4 d =
+				copy_records(records[flags[t + 3] & NT_TRIANGLE_ORIENT], shift, v + 9, out + 36);
 			others |= (uint64_t)(find_open(a, b, c, d) | find_special(flags + t)) << (t - first);
 		}
 		for (; others; others &= others - 1) {

@@ -35,8 +35,10 @@ static void the_least_limit_of_the_groups_above_counts(void **state)
 	static const struct {
 		const char *list;
 		uint64_t expected;
-	} cases[] = {{"0::/\n", UINT64_MAX}, {"0::/a\n", 3000}, {"0::/a/b\n", 3000}, {"0::/a/c\n", 2000}, {"0::/unknown/x\n", UINT64_MAX},
-		{"9:cpu:/a\n4:memory:/a\n0::/\n", 1000}, {"4:memory:/none\n", 5000}, {"no list", UINT64_MAX}, {"", UINT64_MAX}};
+	} cases[] = {{"0::/\n", UINT64_MAX}, {"0::/a\n", 3000}, {"0::/a/b\n", 3000}, {"0::/a/c\n", 2000},
+		{"0::/unknown/x\n", UINT64_MAX},
+		{"9:cpu:/a\n4:memory:/a\n0::/\n", 1000}, {"4:memory:/none\n", 5000}, {"no list", UINT64_MAX},
+		{"", UINT64_MAX}};
 	const char *const folders[] = {"a", "a/b", "a/c", "memory", "memory/a"};
 	for (size_t i = 0; i < sizeof folders / sizeof *folders; i++)
 		assert_int_equal(mkdir(in_folder(folders[i]), 0700), 0);

@@ -29,7 +29,8 @@ static void the_kernel_says_the_same(void **state)
 	assert_true(nt_cpu_has(NT_ISA_AUTO) && nt_cpu_has(NT_ISA_BASELINE));
 	assert_int_equal(nt_cpu_has(NT_ISA_AVX2), linux_names(avx2));
 	assert_int_equal(nt_cpu_has(NT_ISA_AVX512), linux_names(avx512));
-	assert_int_equal(nt_cpu_best(), linux_names(avx512) ? NT_ISA_AVX512 : linux_names(avx2) ? NT_ISA_AVX2 : NT_ISA_BASELINE);
+	assert_int_equal(nt_cpu_best(),
+		linux_names(avx512) ? NT_ISA_AVX512 : linux_names(avx2) ? NT_ISA_AVX2 : NT_ISA_BASELINE);
 }
 
 int main(void)

@@ -27,7 +27,8 @@ int __wrap_pthread_create(pthread_t *thread, const pthread_attr_t *attributes, v
 		return EAGAIN;
 #ifdef __GLIBC__
 	cpu_set_t set; /* all there can be where none was chosen */
-	if (affinity_fails && pthread_attr_getaffinity_np(attributes, sizeof set, &set) == 0 && CPU_COUNT(&set) < CPU_SETSIZE)
+	if (affinity_fails && pthread_attr_getaffinity_np(attributes, sizeof set, &set) == 0 &&
+		CPU_COUNT(&set) < CPU_SETSIZE)
 		return EPERM;
 #endif
 	threads_made++;
@@ -144,7 +145,8 @@ static void solve_strip(size_t squares, unsigned threads, float *tangents)
 	}
 	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = 2 * squares,
 		.vertex_count = 2 * columns,
-		.indices = corners, .positions = values, .position_stride_bytes = 32, .normals = values + 3, .normal_stride_bytes = 32,
+		.indices = corners, .positions = values, .position_stride_bytes = 32, .normals = values + 3,
+		.normal_stride_bytes = 32,
 		.texcoords = values + 6, .texcoord_stride_bytes = 32};
 	const nmtan_options options = {.struct_bytes = sizeof options, .threads = threads};
 	const nmtan_output output = {.struct_bytes = sizeof output, .tangents = tangents};

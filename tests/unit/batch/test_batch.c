@@ -238,9 +238,11 @@ static void the_bound_of_memory_keeps_jobs_waiting(void **state)
 		most_bytes = 0;
 		awaited = cases[i].beside;
 		assert_int_equal(nt_batch_check(&batch, inputs, 12, &error), NT_OK);
-		nt_batch_run(&batch, &settings, &(nt_batch_options){.run = watched_run, .jobs = 4, .memory = cases[i].memory,
+		nt_batch_run(&batch, &settings,
+			&(nt_batch_options){.run = watched_run, .jobs = 4, .memory = cases[i].memory,
 						       .done = note, .user = &l});
-		assert_string_equal(l.names, "m00.objm01.objm02.objm03.objm04.objm05.objm06.objm07.objm08.objm09.objm10.objm11.obj");
+		assert_string_equal(l.names,
+			"m00.objm01.objm02.objm03.objm04.objm05.objm06.objm07.objm08.objm09.objm10.objm11.obj");
 		assert_in_range(most_running, cases[i].beside, 4);
 		assert_in_range(most_bytes, 0, cases[i].memory);
 		assert_int_equal(wide_runs, cases[i].wide);
@@ -257,7 +259,8 @@ static void after_a_failure_no_further_job_begins_if_so_wished(void **state)
 	const nt_settings settings = {.threads = 1, .check = true};
 	size_t ran = 0;
 	assert_int_equal(nt_batch_check(&batch, INPUTS("a", "bx", "c", "d"), &error), NT_OK);
-	nt_batch_run(&batch, &settings, &(nt_batch_options){.run = fake_run, .fail_fast = true, .done = pass, .user = &ran});
+	nt_batch_run(&batch, &settings,
+		&(nt_batch_options){.run = fake_run, .fail_fast = true, .done = pass, .user = &ran});
 	assert_int_equal(ran, 4);
 	assert_int_equal(batch.jobs[0].end, NT_JOB_RAN);
 	assert_int_equal(batch.jobs[1].status, NT_ERROR_INPUT);

@@ -54,7 +54,8 @@ static void an_output_depends_on_what_was_read_and_that_on_nothing(void **state)
 {
 	(void)state;
 	becomes("o.glb", READ("a.obj"), "o.glb: \\\n a.obj\n");
-	becomes("o.glb", READ("a.obj", "a.mtl", "t/n.png"), "o.glb: \\\n a.obj \\\n a.mtl \\\n t/n.png\na.mtl:\nt/n.png:\n");
+	becomes("o.glb", READ("a.obj", "a.mtl", "t/n.png"),
+		"o.glb: \\\n a.obj \\\n a.mtl \\\n t/n.png\na.mtl:\nt/n.png:\n");
 }
 
 static void names_are_escaped(void **state)

@@ -47,7 +47,8 @@ static void names_are_taken_as_they_are_and_folders_only_if_wished(void **state)
 	assert_int_equal(symlink("a.obj", "d/link.OBJ"), 0);
 	assert_int_equal(symlink("nowhere", "d/broken.obj"), 0);
 	for (size_t i = 0; i < 5; i++)
-		put_text_file(((const char *const[]){"d/a.obj", "d/notes.txt", "d/B/z.glb", "d/B/c.ply", "d/out/a.glb"})[i], "");
+		put_text_file(((const char *const[]){"d/a.obj", "d/notes.txt", "d/B/z.glb", "d/B/c.ply",
+			"d/out/a.glb"})[i], "");
 	assert_int_equal(nt_inputs_add(&inputs, "missing", &files_only, &error), NT_OK);
 	assert_int_equal(nt_inputs_add(&inputs, "d", &files_only, &error), NT_OK);
 	are(&inputs, "missing d ");

@@ -44,7 +44,8 @@ static void gltf_counts_by_its_accessors_wherever_their_bytes_are(void **state)
 {
 	(void)state;
 	static const char plain[] = "{\"accessors\":[{\"count\": 600 },{ \"count\"\n:30}],\"bufferViews\":[]}";
-	static const char draco[] = "{\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],\"accessors\":[{\"count\":600}]}";
+	static const char draco[] =
+		"{\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],\"accessors\":[{\"count\":600}]}";
 	put_text_file("a.gltf", plain);
 	assert_int_equal(need_of("a.gltf"), MB + 12 * strlen(plain) + 40 * 630);
 	put_text_file("d.gltf", draco);

@@ -31,7 +31,8 @@ static void the_last_whole_line_of_a_key_counts(void **state)
 	finds(&file, "a", NULL);
 	nt_record_file_close(&file);
 
-	put_text_file("r", "{\"k\":\"a\",1}\n\nnonsense\n{\"k\":\"b\",2}\n{\"k\":\"a\",3}\n{\"k\":\"\",4}\n{\"k\":\"b\",5");
+	put_text_file("r",
+		"{\"k\":\"a\",1}\n\nnonsense\n{\"k\":\"b\",2}\n{\"k\":\"a\",3}\n{\"k\":\"\",4}\n{\"k\":\"b\",5");
 	assert_int_equal(nt_record_file_open(&file, in_folder("r"), prefix, true, &error), NT_OK);
 	finds(&file, "a", "{\"k\":\"a\",3}");
 	finds(&file, "b", "{\"k\":\"b\",2}");

@@ -128,11 +128,12 @@ static void streams_and_pipes_have_no_record(void **state)
 	assert_int_equal(mkfifo("pipe.obj", 0600), 0);
 	put_at("a.obj", 2000);
 	assert_int_equal(nt_update_begin(&update, &usual, &error), NT_OK);
-	const char *const pairs[][2] = {{"-", "a.glb"}, {"a.obj", "-"}, {"pipe.obj", "a.glb"}, {"missing.obj", "a.glb"}};
+	const char *const pairs[][2] = {{"-", "a.glb"}, {"a.obj", "-"}, {"pipe.obj", "a.glb"},
+		{"missing.obj", "a.glb"}};
 	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
 		nt_settings settings = {0};
-		assert_int_equal(nt_update_look(update, pairs[i][0], pairs[i][1], &job, &settings, &current, &trace, &error),
-			NT_OK);
+		assert_int_equal(nt_update_look(update, pairs[i][0], pairs[i][1], &job, &settings, &current,
+			&trace, &error), NT_OK);
 		assert_false(current);
 		assert_null(settings.placing);
 	}

@@ -53,7 +53,8 @@ static const char *line_of(const nt_job *job, int exit_code)
 
 #define BEGIN(name, status, code) "{\"input\":\"" name "\",\"status\":\"" status "\",\"exit_code\":" #code \
 	",\"nmtan\":\"" NMTAN_VERSION_STRING "\",\"options\":\"--method=area\","
-#define FILES "\"outputs\":[{\"path\":\"o\\n.glb\",\"bytes\":7}],\"dependencies\":[{\"path\":\"a\\\".obj\",\"bytes\":7}]," \
+#define FILES "\"outputs\":[{\"path\":\"o\\n.glb\",\"bytes\":7}]," \
+	"\"dependencies\":[{\"path\":\"a\\\".obj\",\"bytes\":7}]," \
 	"\"missing\":[\"a.mtl\"]"
 #define NO_FILES "\"outputs\":[],\"dependencies\":[],\"missing\":[]"
 
@@ -61,7 +62,8 @@ static void a_job_that_ran_has_its_files_and_numbers(void **state)
 {
 	(void)state;
 	nt_outcome outcome = {.summary = {.triangle_count = 8, .vertex_count = 12, .appended_normals = 1,
-				      .appended_tangents = 2, .bytes_read = 100, .bytes_written = 200, .total_seconds = 0.5}};
+				      .appended_tangents = 2, .bytes_read = 100, .bytes_written = 200,
+				      .total_seconds = 0.5}};
 	nt_job job = {.input = "a\".obj", .outcome = &outcome, .end = NT_JOB_RAN};
 	note(&outcome.summary.trace);
 	const char *line = line_of(&job, 0);
@@ -94,9 +96,11 @@ static void a_failure_has_its_place(void **state)
 {
 	(void)state;
 	nt_outcome outcome = {.error = {.status = NT_ERROR_INPUT, .message = "no \"v\"",
-				      .place = {.file = "a.mtl", .line = 3, .offset = 0, .pointer = "/a", .object = "mesh"}}};
+				      .place = {.file = "a.mtl", .line = 3, .offset = 0, .pointer = "/a",
+				      	.object = "mesh"}}};
 	const nt_job job = {.input = "a", .outcome = &outcome, .status = NT_ERROR_INPUT, .end = NT_JOB_RAN};
-	assert_non_null(strstr(line_of(&job, 3), ",\"error\":{\"message\":\"no \\\"v\\\"\",\"file\":\"a.mtl\",\"line\":3,"
+	assert_non_null(strstr(line_of(&job, 3),
+		",\"error\":{\"message\":\"no \\\"v\\\"\",\"file\":\"a.mtl\",\"line\":3,"
 						 "\"offset\":0,\"pointer\":\"/a\",\"object\":\"mesh\"}"));
 	outcome.error = (nt_error){.status = NT_ERROR_INPUT, .message = "bad", .place = {.offset = NT_NO_OFFSET}};
 	assert_non_null(strstr(line_of(&job, 3), ",\"error\":{\"message\":\"bad\"},"));

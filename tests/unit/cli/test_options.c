@@ -74,7 +74,8 @@ static void every_option_sets_its_field(void **state)
 	assert_int_equal(c.progress, NT_PROGRESS_OFF);
 	assert_true(c.settings.allow_outside && c.settings.bitangents && c.settings.embed);
 	assert_true(c.settings.sync && c.settings.verify && c.settings.dry_run && c.timing);
-	accepts(&c, WORDS("--textures=png", "--bump=ignore", "--bump-height=1/32", "--texture-path=x", "--texture-path", "y",
+	accepts(&c, WORDS("--textures=png", "--bump=ignore", "--bump-height=1/32", "--texture-path=x",
+		"--texture-path", "y",
 			    "a", "b"));
 	assert_int_equal(c.settings.textures, NT_TEXTURES_PNG);
 	assert_int_equal(c.settings.bump, NT_BUMP_IGNORE);
@@ -349,10 +350,12 @@ static void options_that_shape_outputs_are_spelled_in_one_way(void **state)
 {
 	(void)state;
 	shapes("", WORDS("a", "b.glb"));
-	shapes("", WORDS("-j3", "--method=mikktspace", "--uv=auto", "--in-place", "--sync", "--verify", "--update", "-v",
+	shapes("", WORDS("-j3", "--method=mikktspace", "--uv=auto", "--in-place", "--sync", "--verify",
+		"--update", "-v",
 			   "--jobs=2", "a"));
 	shapes("--method=robust --allow-outside --output-format=glb --draco-bits=12,12,12,12",
-		WORDS("--draco-bits", "12,12,12,12", "a", "--output-format=gltf", "--output-format=glb", "b", "--allow-outside",
+		WORDS("--draco-bits", "12,12,12,12", "a", "--output-format=gltf", "--output-format=glb", "b",
+			"--allow-outside",
 			"--method=robust"));
 	shapes("--uv=0 --bitangents", WORDS("--bitangents", "--uv=0", "--bitangents", "a", "b.glb"));
 }

@@ -292,7 +292,8 @@ static void equal_points_are_joined_by_edgebreaker(void **state)
 	}
 	const nt_draco_attribute attributes[] = {
 		{.kind = NT_DRACO_POSITION, .component_type = NT_GLTF_FLOAT, .components = 3, .data = positions},
-		{.unique_id = 1, .kind = NT_DRACO_TEXCOORD, .component_type = NT_GLTF_FLOAT, .components = 2, .data = texcoords}};
+		{.unique_id = 1, .kind = NT_DRACO_TEXCOORD, .component_type = NT_GLTF_FLOAT, .components = 2,
+			.data = texcoords}};
 	const nt_draco_mesh mesh = {.method = NT_DRACO_EDGEBREAKER, .point_count = SOUP, .face_count = FACES - 1,
 		.indices = indices, .attributes = attributes, .attribute_count = 2};
 	size_t distinct = 0;
@@ -366,8 +367,8 @@ static void quantized_values_are_those_that_are_decoded(void **state)
 			const nt_draco_attribute *a = nt_draco_find(nt_draco_get(result), i);
 			const size_t width = (size_t)a->components;
 			for (size_t p = 0; p < block.point_count; p++)
-				assert_memory_equal((const float *)a->data + width * p, values[i] + width * block.sources[p],
-					width * sizeof(float));
+				assert_memory_equal((const float *)a->data + width * p,
+					values[i] + width * block.sources[p], width * sizeof(float));
 		}
 		nt_draco_free(result);
 		nt_draco_block_free(&block);

@@ -169,7 +169,8 @@ static void numbers_beyond_double_are_taken(void **state)
 	(void)state;
 	static const char *const texts[] = {
 		"{\"asset\":{\"version\":\"2.0\"},\"extras\":{\"n\":1e400,\"m\":[-1E+999,1e-999],\"s\":\"\\\"1e400\"}}",
-		"{\"asset\":{\"version\":\"2.0\"},\"extras\":1e400,\"extensionsUsed\":[\"KHR_draco_mesh_compression\"]}",
+		"{\"asset\":{\"version\":\"2.0\"},\"extras\":1e400,"
+		"\"extensionsUsed\":[\"KHR_draco_mesh_compression\"]}",
 	};
 	for (size_t i = 0; i < 2; i++) {
 		nt_reread *reread;

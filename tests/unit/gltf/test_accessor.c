@@ -23,11 +23,14 @@ static const char document_text[] = "{\"asset\":{\"version\":\"2.0\"}," VIEWS ",
 
 /* As the specification has it: columns of matrices begin at multiples of 4 bytes. */
 static const nt_gltf_accessor expected[] = {
-	{.component_type = 5126, .component_bytes = 4, .components = 3, .element_bytes = 12, .count = 7, .offset = 12, .stride = 12},
+	{.component_type = 5126, .component_bytes = 4, .components = 3, .element_bytes = 12, .count = 7,
+		.offset = 12, .stride = 12},
 	{.component_type = 5121, .component_bytes = 1, .components = 4, .element_bytes = 8, .count = 3, .stride = 8},
-	{.component_type = 5126, .component_bytes = 4, .components = 2, .element_bytes = 8, .count = 2, .offset = 5000000000,
+	{.component_type = 5126, .component_bytes = 4, .components = 2, .element_bytes = 8, .count = 2,
+		.offset = 5000000000,
 		.stride = 8},
-	{.component_type = 5123, .component_bytes = 2, .components = 4, .element_bytes = 8, .normalized = true, .count = 2,
+	{.component_type = 5123, .component_bytes = 2, .components = 4, .element_bytes = 8, .normalized = true,
+		.count = 2,
 		.view = 1, .stride = 400},
 	{.component_type = 5125, .component_bytes = 4, .components = 1, .element_bytes = 4, .count = 9, .view = NT_NONE,
 		.stride = 4},
@@ -100,9 +103,11 @@ static void indices_are_stored_and_read(void **state)
 				assert_int_equal(bytes[i], 0xEE);
 			nt_arena arena = {0};
 			nt_gltf document = {.json = NULL};
-			const nt_gltf_accessor accessor = {.component_type = types[k], .component_bytes = widths[k], .components = 1,
+			const nt_gltf_accessor accessor = {.component_type = types[k],
+				.component_bytes = widths[k], .components = 1,
 				.element_bytes = widths[k], .stride = widths[k], .count = count, .decoded = bytes + at};
-			assert_int_equal(nt_gltf_indices(&document, &accessor, UINT32_MAX, 1, &arena, &read, NULL), NT_OK);
+			assert_int_equal(nt_gltf_indices(&document, &accessor, UINT32_MAX, 1, &arena, &read,
+				NULL), NT_OK);
 			for (size_t i = 0; i < count; i++)
 				assert_int_equal(read[i], numbers[i]);
 			nt_arena_free(&arena);

@@ -65,7 +65,8 @@ static const struct {
 	{NT_GLTF_ACCESSORS, "/meshes/0/primitives/0/targets/0", "/NORMAL"},
 	{NT_GLTF_ACCESSORS, "/meshes/0/primitives/0/extensions/CESIUM_primitive_outline/indices", ""},
 	{NT_GLTF_ACCESSORS, "/meshes/0/primitives/0/extensions/EXT_mesh_primitive_edge_visibility/visibility", ""},
-	{NT_GLTF_ACCESSORS, "/meshes/0/primitives/0/extensions/EXT_mesh_primitive_edge_visibility/silhouetteNormals", ""},
+	{NT_GLTF_ACCESSORS,
+		"/meshes/0/primitives/0/extensions/EXT_mesh_primitive_edge_visibility/silhouetteNormals", ""},
 	{NT_GLTF_ACCESSORS,
 		"/meshes/0/primitives/0/extensions/EXT_mesh_primitive_edge_visibility/lineStrings/0/indices", ""},
 	{NT_GLTF_VIEWS, "/meshes/0/primitives/0/extensions/KHR_draco_mesh_compression/bufferView", ""},
@@ -85,8 +86,10 @@ static const struct {
 	{NT_GLTF_ACCESSORS, "/skins/0/inverseBindMatrices", ""},
 	{NT_GLTF_ACCESSORS, "/textures/0/extensions/MPEG_texture_video/accessor", ""},
 	{NT_GLTF_VIEWS, "/extensions/EXT_feature_metadata/featureTables", "/trees/properties/height/bufferView"},
-	{NT_GLTF_VIEWS, "/extensions/EXT_feature_metadata/featureTables", "/trees/properties/height/arrayOffsetBufferView"},
-	{NT_GLTF_VIEWS, "/extensions/EXT_feature_metadata/featureTables", "/trees/properties/name/stringOffsetBufferView"},
+	{NT_GLTF_VIEWS, "/extensions/EXT_feature_metadata/featureTables",
+		"/trees/properties/height/arrayOffsetBufferView"},
+	{NT_GLTF_VIEWS, "/extensions/EXT_feature_metadata/featureTables",
+		"/trees/properties/name/stringOffsetBufferView"},
 	{NT_GLTF_VIEWS, "/extensions/EXT_lights_ies/lights/0/bufferView", ""},
 	{NT_GLTF_VIEWS, "/extensions/EXT_structural_metadata/propertyTables/0/properties", "/height/values"},
 	{NT_GLTF_VIEWS, "/extensions/EXT_structural_metadata/propertyTables/0/properties", "/height/arrayOffsets"},
@@ -113,7 +116,8 @@ static void references_are_found_with_kind_and_place(void **state)
 		const nt_gltf *document = find_dangling(&scene, &text, path);
 		for (nt_gltf_growing kind = 0; kind < NT_GLTF_GROWING; kind++)
 			if (document->dangling[kind].number != (kind == references[i].kind ? 9 : UINT64_MAX))
-				fail_msg("%s: %llu of kind %d", path, (unsigned long long)document->dangling[kind].number, kind);
+				fail_msg("%s: %llu of kind %d", path,
+					(unsigned long long)document->dangling[kind].number, kind);
 		assert_string_equal(document->dangling[references[i].kind].pointer, references[i].pointer);
 		nt_scene_free(&scene);
 		nt_buffer_free(&text);
@@ -147,7 +151,8 @@ static void an_added_buffer_is_not_what_the_file_refers_to(void **state)
 	nt_gltf *document = NULL;
 	nt_scene scene;
 	nt_scene_init(&scene, "test.gltf");
-	scene.bytes = (const unsigned char *)"{\"asset\":{\"version\":\"2.0\"},\"bufferViews\":[{\"buffer\":0,\"byteLength\":4}]}";
+	scene.bytes = (const unsigned char *)"{\"asset\":{\"version\":\"2.0\"},\"bufferViews\":[{\"buffer\":0,"
+		"\"byteLength\":4}]}";
 	scene.byte_count = strlen((const char *)scene.bytes);
 	nt_error error;
 	assert_int_equal(nt_gltf_create(&document, &scene, false, &error), NT_OK);

@@ -179,7 +179,8 @@ static void many_kinds_cost_linear_time(void **state)
 			"{\"rotation\":%d}}}}", i + 1);
 	nt_buffer_text(&json, "],\"meshes\":[{\"primitives\":[");
 	for (int i = 0; i < 2 * KINDS; i++)
-		nt_buffer_format(&json, "%s{\"attributes\":{\"POSITION\":0,\"NORMAL\":0,\"TEXCOORD_0\":0},\"material\":%d}",
+		nt_buffer_format(&json,
+			"%s{\"attributes\":{\"POSITION\":0,\"NORMAL\":0,\"TEXCOORD_0\":0},\"material\":%d}",
 			i ? "," : "", i < KINDS ? i + 1 : 0);
 	nt_buffer_text(&json, "]}]}");
 	const clock_t begin = clock();

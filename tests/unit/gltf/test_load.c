@@ -98,7 +98,8 @@ static void check_with(unsigned threads)
 	/* what is left is loaded as if nobody had tried, and says what is wrong */
 	for (size_t i = 0; i < MESHES; i++) {
 		nt_mesh *mesh = &scene.meshes[i];
-		const nt_status status = needed[i] || i == UNASKED ? nt_gltf_load(&scene, mesh, &options, &error) : NT_OK;
+		const nt_status status = needed[i] || i == UNASKED
+			? nt_gltf_load(&scene, mesh, &options, &error) : NT_OK;
 		assert_int_equal(status, i == DAMAGED ? NT_ERROR_INPUT : NT_OK);
 		if (i == DAMAGED) {
 			assert_string_equal(error.place.pointer, "/accessors/3");

@@ -116,8 +116,10 @@ static void hemisphere_relit_is_the_hemisphere(void **state)
 	nt_pixels heights = make(SIDE, SIDE, 1, 16);
 	for (int y = 0; y < SIDE; y++)
 		for (int x = 0; x < SIDE; x++) {
-			const double dx = x - SIDE / 2, dy = y - SIDE / 2, rest = 1 - (dx * dx + dy * dy) / RADIUS / RADIUS;
-			((uint16_t *)heights.samples)[y * SIDE + x] = (uint16_t)(rest > 0 ? sqrt(rest) * 65535 + 0.5 : 0);
+			const double dx = x - SIDE / 2, dy = y - SIDE / 2,
+				rest = 1 - (dx * dx + dy * dy) / RADIUS / RADIUS;
+			((uint16_t *)heights.samples)[y * SIDE + x] =
+				(uint16_t)(rest > 0 ? sqrt(rest) * 65535 + 0.5 : 0);
 		}
 	nt_pixels normals = convert(&heights, (double)RADIUS / SIDE, false);
 	double worst = 0;
@@ -131,7 +133,8 @@ static void hemisphere_relit_is_the_hemisphere(void **state)
 				const double *light = lights[l];
 				double seen = 0;
 				for (unsigned c = 0; c < 3; c++)
-					seen += (at(&normals, (uint32_t)x, (uint32_t)y, c) / 65535.0 * 2 - 1) * light[c];
+					seen += (at(&normals, (uint32_t)x, (uint32_t)y, c) / 65535.0 * 2 - 1) *
+						light[c];
 				worst = fmax(worst, fabs(seen - (dx * light[0] - dy * light[1] + z * light[2])));
 			}
 		}

@@ -456,7 +456,8 @@ static void decode_refuses_sizes_before_it_asks_for_memory(void **state)
 
 	}
 	/* the head of a PNG of 42 x 5963792 pixels */
-	static const unsigned char png[] = "\211PNG\r\n\032\n\0\0\0\rIHDR\0\0\0\052\0\133\0\020\010\002\0\0\0\347\014\225\127"
+	static const unsigned char png[] =
+		"\211PNG\r\n\032\n\0\0\0\rIHDR\0\0\0\052\0\133\0\020\010\002\0\0\0\347\014\225\127"
 					   "\0\0\002lIDATx`";
 	nt_pixels p;
 	nt_error error;

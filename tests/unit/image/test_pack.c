@@ -38,7 +38,8 @@ static void channels_are_taken(void **state)
 	(void)state;
 	static const uint8_t rgba[] = {10, 20, 30, 40, 200, 200, 200, 255}, grey[] = {7, 250};
 	static const uint8_t expected[][2] = {{10, 200}, {20, 200}, {30, 200}, {40, 255}, {19, 200}};
-	nt_pixels color = make_row(4, rgba, sizeof rgba), narrow = make_row(1, grey, sizeof grey), to = make(2, 1, 1, 8);
+	nt_pixels color = make_row(4, rgba, sizeof rgba), narrow = make_row(1, grey, sizeof grey),
+		to = make(2, 1, 1, 8);
 	const uint8_t *out = to.samples;
 	for (nt_channel c = NT_CHANNEL_RED; c <= NT_CHANNEL_LUMINANCE; c++) {
 		pack(&color, (nt_channel_map){.channel = c, .gain = 1}, &to);

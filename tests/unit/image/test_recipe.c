@@ -70,7 +70,8 @@ static void channels_come_from_their_images(void **state)
 {
 	(void)state;
 	unsigned char first[TGA_SIZE], second[TGA_SIZE];
-	const nt_file a = make_tga(first, (const unsigned char[]){10, 20, 30}), b = make_tga(second, (const unsigned char[]){40, 50, 60});
+	const nt_file a = make_tga(first, (const unsigned char[]){10, 20, 30}),
+		b = make_tga(second, (const unsigned char[]){40, 50, 60});
 	const nt_recipe how = {.packed = true, .channels = {take(1, NT_CHANNEL_BLUE), take(0, NT_CHANNEL_GREEN),
 		{.used = true, .source = UINT32_MAX}, take(1, NT_CHANNEL_RED)}};
 	nt_made made;
@@ -120,7 +121,8 @@ static void recipes_without_memory_are_an_error(void **state)
 {
 	(void)state;
 	unsigned char first[TGA_SIZE], second[TGA_SIZE];
-	const nt_file a = make_tga(first, (const unsigned char[]){10, 20, 30}), b = make_tga(second, (const unsigned char[]){40, 50, 60});
+	const nt_file a = make_tga(first, (const unsigned char[]){10, 20, 30}),
+		b = make_tga(second, (const unsigned char[]){40, 50, 60});
 	const nt_file *const files[4] = {&a, &a, &b, &b};
 	const nt_recipe how = {.packed = true, .channels = {take(0, NT_CHANNEL_GREEN), take(0, NT_CHANNEL_RED),
 		take(1, NT_CHANNEL_GREEN), take(1, NT_CHANNEL_LUMINANCE)}};

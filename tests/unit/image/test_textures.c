@@ -55,10 +55,12 @@ static void equal_results_are_made_once(void **state)
 	nt_error error;
 	/* a normal map is the same at any height, a height map is not */
 	const uint32_t n1 = wish(t, "n.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1),
-		       n2 = wish(t, "./n.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.2), n3 = wish(t, "n.tga", NT_TEXTURE_COLOR, 0),
+		       n2 = wish(t, "./n.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.2),
+		       n3 = wish(t, "n.tga", NT_TEXTURE_COLOR, 0),
 		       h1 = wish(t, "grey.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1),
 		       h2 = wish(t, "grey.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.2),
-		       h3 = wish(t, "grey.tga", NT_TEXTURE_HEIGHTS, 0.2), color = wish(t, "grey.tga", NT_TEXTURE_COLOR, 0);
+		       h3 = wish(t, "grey.tga", NT_TEXTURE_HEIGHTS, 0.2),
+		       color = wish(t, "grey.tga", NT_TEXTURE_COLOR, 0);
 	assert_int_equal(make(t, &error), NT_OK);
 	assert_ptr_equal(result(t, n1), result(t, n2));
 	assert_ptr_equal(result(t, n1), result(t, n3));

@@ -229,7 +229,8 @@ static void edits_change_their_members_alone(void **state)
 		nt_json *document = parse(e->text);
 		nt_json_value *object = walk(document, e->path);
 		if (e->value)
-			nt_json_set_uint64(document, nt_json_put(document, object, e->key), strtoull(e->value, NULL, 10));
+			nt_json_set_uint64(document, nt_json_put(document, object, e->key),
+				strtoull(e->value, NULL, 10));
 		else
 			nt_json_remove(document, object, e->key);
 		check_dump(document, e->expected);
@@ -249,7 +250,8 @@ static void several_edits_of_one_container(void **state)
 	nt_json_set_string(document, nt_json_put(document, object, "s"), "\xC3\xA9/\x01", 4);
 	nt_json_set_object(document, nt_json_put(document, object, "e"));
 	nt_json_append(document, nt_json_put(document, object, "n"));
-	check_dump(document, "{\n  \"a\": [\n    1E0,\n    5,\n    {\n      \"s\": \"\xC3\xA9/\\u0001\",\n      \"e\": {},\n"
+	check_dump(document,
+		"{\n  \"a\": [\n    1E0,\n    5,\n    {\n      \"s\": \"\xC3\xA9/\\u0001\",\n      \"e\": {},\n"
 		"      \"n\": [\n        null\n      ]\n    }\n  ]\n}\n");
 	nt_json_remove_at(document, a, 0);
 	nt_json_remove_at(document, a, 0);
@@ -259,7 +261,8 @@ static void several_edits_of_one_container(void **state)
 	check_dump(document, "{\n  \"a\": []\n}\n");
 	nt_json_free(document);
 	document = parse("[{\"n\":1E0,\"s\":\"\\u0041\",\"extras\":{\"d\":1e400,\"d\":[]}} ]");
-	nt_json_set_copy(document, nt_json_append(document, nt_json_root(document)), nt_json_at(nt_json_root(document), 0));
+	nt_json_set_copy(document, nt_json_append(document, nt_json_root(document)),
+		nt_json_at(nt_json_root(document), 0));
 	check_dump(document, "[{\"n\":1E0,\"s\":\"\\u0041\",\"extras\":{\"d\":1e400,\"d\":[]}},"
 		"{\"n\":1E0,\"s\":\"A\",\"extras\":{\"d\":1e400,\"d\":[]}} ]");
 	nt_json_free(document);
@@ -288,7 +291,8 @@ static void long_white_space_is_not_repeated(void **state)
 static void numbers_have_checked_types(void **state)
 {
 	(void)state;
-	nt_json *document = parse("[-1,9223372036854775807,9223372036854775808,1.0,1.5,\"1\",1e19,true,2e1,18446744073709551616]");
+	nt_json *document =
+		parse("[-1,9223372036854775807,9223372036854775808,1.0,1.5,\"1\",1e19,true,2e1,18446744073709551616]");
 	const nt_json_value *root = nt_json_root(document);
 	uint64_t unsigned_value = 77;
 	double real = 77;
@@ -336,7 +340,8 @@ static void integers_of_all_sizes_are_set(void **state)
 	nt_json_set_uint64(document, nt_json_find(root, "copy"), 5);
 	nt_json_set_bool(document, nt_json_find(root, "end"), true);
 	nt_json_remove(document, root, "new");
-	check_dump(document, "{\"old\":[0,7,281474976710655,281474976710656,18446744073709551615],\"end\":true,\"copy\":5}");
+	check_dump(document,
+		"{\"old\":[0,7,281474976710655,281474976710656,18446744073709551615],\"end\":true,\"copy\":5}");
 	nt_json_free(document);
 }
 
@@ -360,7 +365,8 @@ static void long_text_comes_in_pieces(void **state)
 	nt_buffer text = {0};
 	nt_buffer_text(&text, "[");
 	for (unsigned i = 0; i < 30000; i++)
-		nt_buffer_format(&text, "%s{\"%.*s\":\"\xC3\xA9%u\"}", i ? "," : "", (int)(1 + i % 11), "abcdefghijkl", i);
+		nt_buffer_format(&text, "%s{\"%.*s\":\"\xC3\xA9%u\"}", i ? "," : "", (int)(1 + i % 11),
+			"abcdefghijkl", i);
 	nt_buffer_text(&text, "]");
 	nt_json *document = parse(text.data);
 	check_dump(document, text.data);
@@ -398,7 +404,8 @@ static void look_ups_of_nothing_give_nothing(void **state)
 static void escapes_are_what_they_stand_for(void **state)
 {
 	(void)state;
-	nt_json *document = parse("{\"\\u006be\\u0000y\":\"\\\"\\\\\\/\\b\\f\\n\\r\\t|\\u0041\\u00e9\\uA041\\ud83d\\uDE00\\uffff\\u0000.\"}");
+	nt_json *document = parse("{\"\\u006be\\u0000y\":\""
+		"\\\"\\\\\\/\\b\\f\\n\\r\\t|\\u0041\\u00e9\\uA041\\ud83d\\uDE00\\uffff\\u0000.\"}");
 	static const char expected[] = "\"\\/\b\f\n\r\t|A\xC3\xA9\xEA\x81\x81\xF0\x9F\x98\x80\xEF\xBF\xBF\0.";
 	size_t length;
 	const char *text = nt_json_get_string(nt_json_at(nt_json_root(document), 0), &length);
@@ -436,7 +443,8 @@ static void objects_after_others_have_their_own_keys(void **state)
 	for (size_t i = 0; i < COUNT * COUNT * COUNT; i++) {
 		const size_t order[] = {i % COUNT, i / COUNT % COUNT, i / COUNT / COUNT};
 		char text[300];
-		snprintf(text, sizeof text, "[%s,%s,%s]", objects[order[0]].text, objects[order[1]].text, objects[order[2]].text);
+		snprintf(text, sizeof text, "[%s,%s,%s]", objects[order[0]].text, objects[order[1]].text,
+			objects[order[2]].text);
 		nt_json *document = parse(text);
 		check_dump(document, text);
 		for (size_t k = 0; k < 3; k++) {
@@ -450,7 +458,8 @@ static void objects_after_others_have_their_own_keys(void **state)
 				assert_string_equal(key, wanted);
 				uint64_t number;
 				const bool is_number = nt_json_get_uint64(nt_json_find(object, wanted), &number);
-				assert_true(is_number ? number == m : nt_json_type_of(nt_json_find(object, wanted)) == NT_JSON_OBJECT);
+				assert_true(is_number ? number == m
+					: nt_json_type_of(nt_json_find(object, wanted)) == NT_JSON_OBJECT);
 			}
 		}
 		nt_json_free(document);
@@ -506,7 +515,8 @@ static void equality_looks_at_values_and_order(void **state)
 
 static nt_status edit_all(nt_buffer *out, nt_error *error)
 {
-	static const char text[] = "{\"a\":[1,2,{\"\\u0061\":\"\\n\"}],\"k0\":0,\"k1\":0,\"k2\":0,\"k3\":0,\"k4\":0,\"k5\":0,"
+	static const char text[] =
+		"{\"a\":[1,2,{\"\\u0061\":\"\\n\"}],\"k0\":0,\"k1\":0,\"k2\":0,\"k3\":0,\"k4\":0,\"k5\":0,"
 		"\"k6\":0,\"k7\":0,\"k8\":0,\"k9\":0,\"l0\":0,\"l1\":0,\"l2\":0,\"l3\":0,\"l4\":0,\"l5\":0,\"l6\":0}";
 	nt_json *document;
 	nt_status status = nt_json_parse(&document, text, sizeof text - 1, NULL, error);
@@ -540,7 +550,8 @@ static void every_allocation_may_fail(void **state)
 		if (status)
 			assert_int_equal(error.status, NT_ERROR_MEMORY);
 		else
-			assert_non_null(strstr(out.data, ",\"copy\":[1,2,{\"a\":\"\\n\"}],\"new\":[0.5],\"text\":\"t\"}"));
+			assert_non_null(strstr(out.data,
+				",\"copy\":[1,2,{\"a\":\"\\n\"}],\"new\":[0.5],\"text\":\"t\"}"));
 		nt_buffer_free(&out);
 	}
 	assert_true(count > 6);

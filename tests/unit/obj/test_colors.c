@@ -38,7 +38,8 @@ static void colors_of_vertices_come_first(void **state)
 {
 	(void)state;
 	reading r;
-	const nt_mesh *mesh = only_mesh(&r, "v 0 0 0 1 0 1\nv 1 0 0\nv 0 1 0\n#MRGB ff00ff00ff00ff00ff00ff00\nf 1 2 3\n");
+	const nt_mesh *mesh =
+		only_mesh(&r, "v 0 0 0 1 0 1\nv 1 0 0\nv 0 1 0\n#MRGB ff00ff00ff00ff00ff00ff00\nf 1 2 3\n");
 	assert_color(mesh, 0, 1, 0, 1);
 	assert_color(mesh, 1, 1, 1, 1);
 	close_reading(&r);
@@ -62,9 +63,11 @@ static void what_is_malformed_is_doubtful_and_white(void **state)
 		const char *lines, *detail;
 		float color[3][3];
 	} cases[] = {
-		{"#MRGB ffff0000ff00xx00ff0000ff\n", "#MRGB: found something else, expected 8 hexadecimal digits for each vertex",
+		{"#MRGB ffff0000ff00xx00ff0000ff\n",
+			"#MRGB: found something else, expected 8 hexadecimal digits for each vertex",
 			{{1, 0, 0}, {1, 1, 1}, {0, 0, 1}}},
-		{"#MRGB ffff0000ff00ff00ff0000\n", "#MRGB: found something else, expected 8 hexadecimal digits for each vertex",
+		{"#MRGB ffff0000ff00ff00ff0000\n",
+			"#MRGB: found something else, expected 8 hexadecimal digits for each vertex",
 			{{1, 0, 0}, {0, 1, 0}, {1, 1, 1}}},
 		{"#MRGB ff00ff00ff0000ff\n", "#MRGB: 2 colours for 3 vertices", {{1, 1, 1}, {0, 1, 0}, {0, 0, 1}}},
 		{"#MRGB ffff0000ff00ff00ff0000ffff123456\n", "#MRGB: 4 colours for 3 vertices",
@@ -114,7 +117,8 @@ static void colors_reach_over_chunks(void **state)
 	for (int i = 0; i < COUNT; i++)
 		to += sprintf(to, "v %d %d 0.000001\n", i, i % 7);
 	for (int i = 0; i < COUNT; i++)
-		to += sprintf(to, "%sff%06x%s", i % OF_LINE ? "" : "#MRGB ", (unsigned)i, i % OF_LINE == OF_LINE - 1 ? "\n" : "");
+		to += sprintf(to, "%sff%06x%s", i % OF_LINE ? "" : "#MRGB ", (unsigned)i,
+			i % OF_LINE == OF_LINE - 1 ? "\n" : "");
 	to += sprintf(to, "\n");
 	for (int i = 1; i + 2 <= COUNT; i++)
 		to += sprintf(to, "f %d %d %d\n", i, i + 1, i + 2);

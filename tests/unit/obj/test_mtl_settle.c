@@ -19,12 +19,12 @@ static const nt_material *settle(reading *r, const char *lines)
 {
 	char text[1000];
 	*r = (reading){0};
-	snprintf(text, sizeof text, "%snewmtl a\n%s", strncmp(lines, "# ", 2) == 0 ? "# Blender 3.6.5 MTL File: 'x'\n" : "",
-		lines);
+	snprintf(text, sizeof text, "%snewmtl a\n%s",
+		strncmp(lines, "# ", 2) == 0 ? "# Blender 3.6.5 MTL File: 'x'\n" : "", lines);
 	nt_scene_init(&r->scene, "a.obj");
 	nt_error_clear(&r->error);
-	assert_int_equal(nt_mtl_parse(&r->scene, "a.mtl", (const unsigned char *)text, strlen(text), &r->mtl, &r->error),
-		NT_OK);
+	assert_int_equal(nt_mtl_parse(&r->scene, "a.mtl", (const unsigned char *)text, strlen(text), &r->mtl,
+		&r->error), NT_OK);
 	assert_int_equal(r->mtl.count, 1);
 	return &r->mtl.definitions[0].material;
 }
@@ -57,7 +57,8 @@ static void roughness_of_highlights(void **state)
 		float roughness;
 	} cases[] = {
 		{"", 1}, {"Ns 30", 0.5f}, {"Ns 510", 0.25f}, {"Ns 0", 1}, {"Ns -5", 1}, {"Ks 1 1 1", 1},
-		{"Ns 30\nKs 0.2 0 0\nillum 2", 0.5f}, {"Ns 30\nKs 0 0 0", 1}, {"illum 1\nNs 30", 1}, {"illum 0\nNs 30", 1},
+		{"Ns 30\nKs 0.2 0 0\nillum 2", 0.5f}, {"Ns 30\nKs 0 0 0", 1}, {"illum 1\nNs 30", 1},
+		{"illum 0\nNs 30", 1},
 		{"Ns 30\nPr 0.125", 0.125f}, {"Pr 2", 1}, {"Ns big\nillum none", 1},
 		{"# \nNs 250", 0.5f}, {"# \nNs 0", 1}, {"# \nNs 2000", 0}, {"# \nNs 250\nKs 0 0 0\nillum 1", 0.5f},
 	};
@@ -133,7 +134,8 @@ static void maps_have_their_numbers(void **state)
 {
 	(void)state;
 	reading r;
-	const nt_material *m = settle(&r, "Pr 0.5\nmap_Pr -imfchan g -mm 0.25 0.5 r.png\nPm 0\nmap_Pm m.png\nmap_ao o.png\n"
+	const nt_material *m = settle(&r,
+		"Pr 0.5\nmap_Pr -imfchan g -mm 0.25 0.5 r.png\nPm 0\nmap_Pm m.png\nmap_ao o.png\n"
 		"map_Pc c.png\nPcr 0.5\nmap_Pcr cr.png\nmap_Ps s.png\nmap_Tr t.png");
 	check_map(&m->roughness_map, "r.png", 'g', 0.25f, 0.5f, 0.5f);
 	check_map(&m->metallic_map, "m.png", 0, 0, 1, 1); /* 0 would hide it */
@@ -195,10 +197,12 @@ static void what_is_lost_is_named(void **state)
 	static const struct {
 		const char *lines, *detail;
 	} cases[] = {
-		{"map_Ks s.png", "MTL: map_Ks"}, {"map_Kd a.png\nmap_Ka b.png", "MTL: map_Ka"}, {"map_Kd a.png\nmap_Ka a.png", NULL},
+		{"map_Ks s.png", "MTL: map_Ks"}, {"map_Kd a.png\nmap_Ka b.png", "MTL: map_Ka"},
+		{"map_Kd a.png\nmap_Ka a.png", NULL},
 		{"Ka 0 0 0\nmap_Ka b.png", NULL},
 		{"Tf 1 0.5 1", "MTL: Tf"}, {"map_refl r.png", "MTL: map_refl"}, {"map_disp r.png", "MTL: map_disp"},
-		{"map_Kd -imfchan g a.png", "MTL: -imfchan of map_Kd"}, {"map_Pr -imfchan z a.png", "MTL: -imfchan z of map_Pr"},
+		{"map_Kd -imfchan g a.png", "MTL: -imfchan of map_Kd"},
+		{"map_Pr -imfchan z a.png", "MTL: -imfchan z of map_Pr"},
 		{"map_ORM a.png\nmap_RMA b.png", "MTL: map_RMA beside map_ORM"}, {"map_Ns n.png\nPr 1", "MTL: map_Ns"},
 		{"map_aniso r.png", "MTL: map_aniso"},
 	};

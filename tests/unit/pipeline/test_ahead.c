@@ -57,7 +57,8 @@ static size_t put_vertices(file *f, int number, bool mirrored, float length, con
 		const float tilt = 0.3f * sinf(x + (float)number), up = sqrtf(1 - tilt * tilt);
 		memcpy(positions[i], (float[]){x, y, 0.4f * sinf(y + 0.1f * (float)number)}, sizeof positions[i]);
 		memcpy(normals[i], (float[]){length * tilt, 0, length * up}, sizeof normals[i]);
-		memcpy(texcoords[i], (float[]){mirrored ? fabsf(x - SIDE / 2) : x, y + 0.2f * sinf(x)}, sizeof texcoords[i]);
+		memcpy(texcoords[i], (float[]){mirrored ? fabsf(x - SIDE / 2) : x, y + 0.2f * sinf(x)},
+			sizeof texcoords[i]);
 	}
 	if (length != 1)
 		memset(normals[SIDE], 0, sizeof normals[SIDE]);
@@ -71,7 +72,8 @@ static void make_corners(uint32_t *corners, bool reversed)
 {
 	for (uint32_t y = 0; y < SIDE; y++)
 		for (uint32_t x = 0; x < SIDE; x++) {
-			const uint32_t a = y * (SIDE + 1) + x, b = a + SIDE + 1, quad[6] = {a, a + 1, b + 1, a, b + 1, b};
+			const uint32_t a = y * (SIDE + 1) + x, b = a + SIDE + 1,
+				quad[6] = {a, a + 1, b + 1, a, b + 1, b};
 			memcpy(corners + 6 * (y * SIDE + x), quad, sizeof quad);
 		}
 	for (size_t c = 0; reversed && 2 * c < CORNERS; c++) {
@@ -106,7 +108,8 @@ static void put_primitive(file *f, kind which, bool faulty)
 	const bool shares = which == REVERSED || which == BESIDE, same = which == SAME || which == CONFLICT;
 	const size_t first = same ? 0 : shares ? f->accessor_count - 4 :
 		which == CUT ? put_vertices(f, number, mirrored, 1, few, 5) :
-		put_vertices(f, number, mirrored, which == LONG ? 2 : 1, lists ? corners : NULL, lists ? CORNERS : VERTICES);
+		put_vertices(f, number, mirrored, which == LONG ? 2 : 1, lists ? corners : NULL,
+			lists ? CORNERS : VERTICES);
 	const size_t count = which == CUT ? 6 : which == BESIDE ? 3 : which == TAIL ? CORNERS + 2 : CORNERS;
 	const size_t indices = same ? 3 : lists ? 0 :
 		put_indices(f, which == CUT ? cut : which == BESIDE ? cut + 3 : corners, count, which == WIDE);
@@ -205,7 +208,8 @@ static void what_needs_no_repair_stays(void **state)
 	nt_summary_free(&summary);
 	settings = (nt_settings){.texcoord_set = -1, .existing = NT_EXISTING_REPAIR};
 	for (settings.threads = 1; settings.threads <= 2; settings.threads++) {
-		assert_int_equal(nt_run(in_folder("first.glb"), in_folder("again.glb"), &settings, &summary, &error), NT_OK);
+		assert_int_equal(nt_run(in_folder("first.glb"), in_folder("again.glb"), &settings, &summary,
+			&error), NT_OK);
 		assert_int_equal(summary.solved_count, 2 * KINDS);
 		nt_summary_free(&summary);
 		assert_same_files(in_folder("first.glb"), in_folder("again.glb"));
@@ -233,11 +237,13 @@ static void geometry_is_let_go_of_where_only_results_count(void **state)
 		assert_int_equal(glb->find_same(&scene, &options, &error), NT_OK);
 		bool needed[KINDS];
 		memset(needed, true, sizeof needed);
-		assert_int_equal(nt_load_ahead(&scene, glb, solves ? glb : NULL, &settings, &options, needed, &error), NT_OK);
+		assert_int_equal(nt_load_ahead(&scene, glb, solves ? glb : NULL, &settings, &options, needed,
+			&error), NT_OK);
 		for (size_t i = 0; i < KINDS; i++) {
 			const nt_mesh *mesh = &scene.meshes[i];
 			/* the first is shared by one whose texture transform is to be looked at */
-			const bool solved = solves && i != MIRRORED && i != TAIL && i != SAME && i != CONFLICT && i != CHAIN &&
+			const bool solved = solves && i != MIRRORED && i != TAIL && i != SAME &&
+				i != CONFLICT && i != CHAIN &&
 				i != LISTED;
 			const bool shares = i == SAME || i == CONFLICT;
 			assert_int_equal(needed[i], shares);
@@ -299,7 +305,8 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(the_same_as_all_loaded_first, make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(what_needs_no_repair_stays, make_folder, remove_folder),
-		cmocka_unit_test_setup_teardown(geometry_is_let_go_of_where_only_results_count, make_folder, remove_folder),
+		cmocka_unit_test_setup_teardown(geometry_is_let_go_of_where_only_results_count, make_folder,
+			remove_folder),
 		cmocka_unit_test_setup_teardown(the_first_fault_is_told, make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(exhausted_memory_is_told, make_folder, remove_folder),
 	};

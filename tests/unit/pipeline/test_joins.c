@@ -114,17 +114,19 @@ static size_t put_part(file *f, const part *p)
 /* What stands in a primitive behind its attributes; a for attributes. */
 static void put_primitive(nt_buffer *json, size_t first, const char *attributes, const char *rest)
 {
-	nt_buffer_format(json, "{\"attributes\":{\"POSITION\":%zu,\"NORMAL\":%zu,\"TEXCOORD_0\":%zu%s},\"indices\":%zu%s}",
+	nt_buffer_format(json,
+		"{\"attributes\":{\"POSITION\":%zu,\"NORMAL\":%zu,\"TEXCOORD_0\":%zu%s},\"indices\":%zu%s}",
 		first, first + 1, first + 2, attributes, first + 3, rest);
 }
 
 /* Materials: 0 and 1 have a normal map, 2 has none, 3 to 5 have one that is turned and scaled, 5 another way round. */
 static const char materials[] =
 	"{\"normalTexture\":{\"index\":0}},{\"normalTexture\":{\"index\":0,\"scale\":2}},{\"name\":\"plain\"},"
-	"{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"rotation\":0.5,\"scale\":[2,1]}}}},"
-	"{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"scale\":[2,1],\"rotation\":0.5,"
-	"\"offset\":[3,4]}}}},"
-	"{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"rotation\":-0.5,\"scale\":[2,1]}}}}";
+	"{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"rotation\":0.5,"
+	"\"scale\":[2,1]}}}},{\"normalTexture\":{\"index\":0,"
+	"\"extensions\":{\"KHR_texture_transform\":{\"scale\":[2,1],\"rotation\":0.5,\"offset\":[3,4]}}}},"
+	"{\"normalTexture\":{\"index\":0,\"extensions\":{\"KHR_texture_transform\":{\"rotation\":-0.5,"
+	"\"scale\":[2,1]}}}}";
 
 static void put_glb(const char *name, file *f, const char *meshes)
 {
@@ -302,7 +304,8 @@ static void texture_transforms_divide(void **state)
 	convert(&r, "three.glb", across);
 	const nt_mesh *meshes = r.scene.meshes;
 	assert_int_equal(differing(&meshes[0], &one.scene.meshes[0], 0), 0);
-	assert_int_equal(differing(&meshes[2], &one.scene.meshes[0], meshes[0].corner_count + meshes[1].corner_count), 0);
+	assert_int_equal(differing(&meshes[2], &one.scene.meshes[0],
+		meshes[0].corner_count + meshes[1].corner_count), 0);
 	close_result(&one);
 	close_result(&r);
 	/* 0 and 5 are not: each is alone */
@@ -419,7 +422,8 @@ static void shared_vertices_are_not_split_at_borders(void **state)
 			put_vertex(&joined, (size_t)(y * (SIDE + 1) + x), x, y, false);
 	for (uint32_t i = 0; i < CELLS; i++) {
 		const uint32_t a = i / SIDE * (SIDE + 1) + i % SIDE, b = a + SIDE + 1;
-		memcpy(joined.indices + 6 * (size_t)i, (uint32_t[]){a, a + 1, b + 1, a, b + 1, b}, 6 * sizeof(uint32_t));
+		memcpy(joined.indices + 6 * (size_t)i, (uint32_t[]){a, a + 1, b + 1, a, b + 1, b},
+			6 * sizeof(uint32_t));
 	}
 	put_part(&f, &joined);
 	/* the first two thirds of the rows, and the rest */
@@ -574,7 +578,8 @@ static void a_report_tells_borders_that_would_change(void **state)
 static size_t mismatches(nt_across how)
 {
 	const nt_report_options report = {0};
-	const nt_settings settings = {.texcoord_set = -1, .check = true, .report = &report, .across = how, .threads = 1};
+	const nt_settings settings = {.texcoord_set = -1, .check = true, .report = &report, .across = how,
+		.threads = 1};
 	nt_summary summary;
 	nt_error error;
 	if (nt_run(in_folder("out.glb"), NULL, &settings, &summary, &error))

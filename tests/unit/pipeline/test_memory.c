@@ -68,13 +68,14 @@ static void make_glb(const char *path, int side)
 		"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},"
 		"\"indices\":3,\"material\":0}]}],\"materials\":[{\"normalTexture\":{\"index\":0}}],"
 		"\"textures\":[{}],\"accessors\":["
-		"{\"bufferView\":0,\"componentType\":5126,\"count\":%u,\"type\":\"VEC3\",\"min\":[0,0,-1],\"max\":[1,1,1]},"
-		"{\"bufferView\":1,\"componentType\":5126,\"count\":%u,\"type\":\"VEC3\"},"
+		"{\"bufferView\":0,\"componentType\":5126,\"count\":%u,\"type\":\"VEC3\",\"min\":[0,0,-1],"
+		"\"max\":[1,1,1]},{\"bufferView\":1,\"componentType\":5126,\"count\":%u,\"type\":\"VEC3\"},"
 		"{\"bufferView\":2,\"componentType\":5126,\"count\":%u,\"type\":\"VEC2\"},"
 		"{\"bufferView\":3,\"componentType\":5125,\"count\":%u,\"type\":\"SCALAR\"}],\"bufferViews\":["
 		"{\"buffer\":0,\"byteLength\":%u},{\"buffer\":0,\"byteOffset\":%u,\"byteLength\":%u},"
-		"{\"buffer\":0,\"byteOffset\":%u,\"byteLength\":%u},{\"buffer\":0,\"byteOffset\":%u,\"byteLength\":%u}],"
-		"\"buffers\":[{\"byteLength\":%u}]}", vertices, vertices, vertices, corners, 12 * vertices,
+		"{\"buffer\":0,\"byteOffset\":%u,\"byteLength\":%u},{\"buffer\":0,\"byteOffset\":%u,"
+		"\"byteLength\":%u}],\"buffers\":[{\"byteLength\":%u}]}", vertices, vertices, vertices, corners,
+		12 * vertices,
 		12 * vertices, 12 * vertices, 24 * vertices, 8 * vertices, 32 * vertices, 4 * corners,
 		32 * vertices + 4 * corners);
 	while (length % 4)

@@ -174,8 +174,8 @@ static void judge_conversion(const char *input, rule_count *count)
 	/* the smaller half of a folded quad has the sign of the larger one */
 	own.bad_w -= own.bad_w == 3 * folded ? own.bad_w : 0;
 	if (own.bad_w || own.mixed || own.wrong)
-		print_error("%s: %zu wrong of %zu, %zu corners with the wrong w, %zu triangles mixed\n", input, own.wrong, own.judged, own.bad_w,
-			own.mixed);
+		print_error("%s: %zu wrong of %zu, %zu corners with the wrong w, %zu triangles mixed\n", input,
+			own.wrong, own.judged, own.bad_w, own.mixed);
 	count->triangles += own.triangles;
 	count->judged += own.judged;
 	count->wrong += own.wrong;

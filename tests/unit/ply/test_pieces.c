@@ -45,7 +45,8 @@ static void check_values(const nt_mesh *mesh)
 		wrong += mesh->positions[3 * i] != (float)i || mesh->positions[3 * i + 1] != 0.5f ||
 			mesh->positions[3 * i + 2] != (float)-i;
 	for (uint32_t i = 0; i < FACES; i++)
-		wrong += mesh->indices[3 * i] != i || mesh->indices[3 * i + 1] != i + 1 || mesh->indices[3 * i + 2] != i + 2;
+		wrong += mesh->indices[3 * i] != i || mesh->indices[3 * i + 1] != i + 1 ||
+			mesh->indices[3 * i + 2] != i + 2;
 	assert_int_equal(wrong, 0);
 }
 

@@ -15,7 +15,8 @@
 
 static nt_status try_write(nt_scene *scene, bool bitangents, nt_error *error)
 {
-	const nt_write_options options = {.format = NT_FORMAT_PLY, .path = in_folder("out.ply"), .bitangents = bitangents};
+	const nt_write_options options = {.format = NT_FORMAT_PLY, .path = in_folder("out.ply"),
+		.bitangents = bitangents};
 	nt_output *output = NULL;
 	nt_error_clear(error);
 	nt_status status = nt_output_create(&output, NULL, error);

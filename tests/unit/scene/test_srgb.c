@@ -28,7 +28,8 @@ static void values_are_those_of_the_standard(void **state)
 	(void)state;
 	nt_srgb srgb;
 	nt_srgb_init(&srgb);
-	static const float pairs[][2] = {{0, 0}, {1, 1}, {0.5f, 0.21404114f}, {0.04045f, 0.0031308f}, {0.04f, 0.0030959752f},
+	static const float pairs[][2] = {{0, 0}, {1, 1}, {0.5f, 0.21404114f}, {0.04045f, 0.0031308f},
+		{0.04f, 0.0030959752f},
 		{1.353256f, 2}};
 	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
 		assert_true(fabsf(nt_linear_from_srgb(&srgb, pairs[i][0]) - pairs[i][1]) < 1e-6f);
@@ -37,7 +38,8 @@ static void values_are_those_of_the_standard(void **state)
 	assert_true(isnan(nt_linear_from_srgb(&srgb, NAN)));
 	float colors[] = {0.5f, 1, 0, 0.5f};
 	nt_linearise(colors, 1);
-	assert_true(colors[0] == nt_linear_from_srgb(&srgb, 0.5f) && colors[1] == 1 && colors[2] == 0 && colors[3] == 0.5f);
+	assert_true(colors[0] == nt_linear_from_srgb(&srgb, 0.5f) && colors[1] == 1 && colors[2] == 0 &&
+		colors[3] == 0.5f);
 }
 
 /* 12.92 * -1.7e38 and ((1e20 + 0.055) / 1.055)^2.4 are no floats: PLY and glTF allow no infinite colour. */

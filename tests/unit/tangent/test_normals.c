@@ -137,7 +137,8 @@ static void many_faces_are_what_the_formula_says(void **state)
 	uint64_t random = 1;
 	size_t corners = 0;
 	for (size_t i = 0; i < 3 * VERTICES; i++)
-		p[i / 3][i % 3] = (float)((random = random * 6364136223846793005u + 1442695040888963407u) >> 48) / 65536;
+		p[i / 3][i % 3] =
+			(float)((random = random * 6364136223846793005u + 1442695040888963407u) >> 48) / 65536;
 	memcpy(p[VERTICES - 1], p[0], sizeof p[0]); /* one position, two vertices */
 	for (size_t face = 0; face < FACES; face++) {
 		sizes[face] = face % 3 ? 3 : 4;
@@ -145,7 +146,8 @@ static void many_faces_are_what_the_formula_says(void **state)
 		for (size_t k = 0; k < sizes[face]; k++)
 			indices[corners++] = (uint32_t)((face * 7 + k * 13 + face / 11) % VERTICES);
 	}
-	const nmtan_mesh m = {.struct_bytes = sizeof m, .face_count = FACES, .face_sizes = sizes, .vertex_count = VERTICES,
+	const nmtan_mesh m = {.struct_bytes = sizeof m, .face_count = FACES, .face_sizes = sizes,
+		.vertex_count = VERTICES,
 		.indices = indices, .positions = &p[0][0], .position_stride_bytes = 12};
 	float n[4 * FACES][4];
 	nt_scratch scratch;

@@ -206,7 +206,8 @@ static bool tiny_meshes_have_the_exact_frame(const soup *s, nmtan_method method)
 		solution b = solve(&tiny, method);
 		for (size_t c = 0; fits && c < s->corner_count; c++)
 			if (exact[c].sign != 0 && exact[c].condition < 1e6)
-				holds = holds && within(b.t[c], exact[c].t, 1.2e-7) && b.t[c][3] == (float)exact[c].sign;
+				holds = holds && within(b.t[c], exact[c].t, 1.2e-7) &&
+					b.t[c][3] == (float)exact[c].sign;
 		release(&b);
 		soup_free(&tiny);
 	}
@@ -359,7 +360,8 @@ static bool swapping_u_and_v_swaps_t_and_b(const soup *s, nmtan_method method)
 		if (exact[c].sign != 0)
 			holds = holds && b.t[c][3] == -a.t[c][3];
 		const bool untouched = memcmp(a.raw[c], a.t[c], 16) == 0 && memcmp(b.raw[c], b.t[c], 16) == 0;
-		if (method == NMTAN_METHOD_MIKKTSPACE && untouched && is_framed(&a, exact, c) && is_framed(&b, exact, c))
+		if (method == NMTAN_METHOD_MIKKTSPACE && untouched && is_framed(&a, exact, c) &&
+			is_framed(&b, exact, c))
 			holds = holds && equal3(b.t[c], a.b[c][0], a.b[c][1], a.b[c][2]) &&
 				equal3(a.t[c], b.b[c][0], b.b[c][1], b.b[c][2]);
 		if (method != NMTAN_METHOD_MIKKTSPACE && exact[c].sign != 0 &&

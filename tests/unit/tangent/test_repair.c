@@ -225,7 +225,8 @@ static void missing_texture_space_gives_equal_vertices_one_tangent(void **state)
 			.indices = indices};
 		float tangents[6][4];
 		uint8_t faults[6];
-		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0], .corner_faults = faults};
+		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = &tangents[0][0],
+			.corner_faults = faults};
 		assert_int_equal(nmtan_tangents(&mesh, NULL, &output, NULL), NMTAN_OK);
 		for (int c = 0; c < 6; c++) {
 			const float *n = normals[c == 3 ? 0 : indices[c]];

@@ -72,7 +72,8 @@ static size_t check(unsigned ranges, size_t bytes, size_t *scratch_bytes)
 	const nt_triangles triangles = {.ids = ids};
 	const nt_triangle_ranges cut = {ranges, bounds[ranges]};
 	nt_adjacency a;
-	assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, NT_ADJACENCY_PLACES, 0, &none, &memory, &a), NMTAN_OK);
+	assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, NT_ADJACENCY_PLACES, 0, &none, &memory,
+		&a), NMTAN_OK);
 	for (unsigned r = 0; r < ranges; r++)
 		fill(&a, r, cut.bounds[r], cut.bounds[r + 1]);
 	assert_in_range(check_entries(&a, NT_ADJACENCY_PLACES), 1, VERTICES - 1);
@@ -115,7 +116,8 @@ static void places_that_do_not_suffice_leave_hubs(void **state)
 		const nt_triangles triangles = {.ids = ids};
 		const nt_triangle_ranges cut = {3, bounds};
 		nt_adjacency a;
-		assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, most, 0, &memory, &memory, &a), NMTAN_OK);
+		assert_int_equal(nt_adjacency_make(&triangles, &cut, VERTICES, most, 0, &memory, &memory, &a),
+			NMTAN_OK);
 		assert_in_range(a.block_begin[BLOCKS], 0, most);
 		for (unsigned r = 0; r < 3; r++)
 			fill(&a, r, bounds[r], bounds[r + 1]);
@@ -145,8 +147,8 @@ static void few_vertices_need_not_be_counted(void **state)
 	assert_int_equal(nt_adjacency_make(&triangles, &whole, VERTICES, NT_ADJACENCY_PLACES, VERTICES - 1, &memory,
 		&memory, &a), NMTAN_OK);
 	assert_null(a.narrow); /* a vertex too many */
-	assert_int_equal(nt_adjacency_make(&triangles, &whole, VERTICES, NT_ADJACENCY_PLACES, VERTICES, &memory, &memory,
-		&a), NMTAN_OK);
+	assert_int_equal(nt_adjacency_make(&triangles, &whole, VERTICES, NT_ADJACENCY_PLACES, VERTICES, &memory,
+		&memory, &a), NMTAN_OK);
 	assert_non_null(a.narrow);
 	assert_true(a.step >= VERTICES && a.step / NT_FAN_LANES % 2 == 1);
 	uint32_t degrees[VERTICES] = {0}, hubs = 0;

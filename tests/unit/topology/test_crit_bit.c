@@ -40,7 +40,8 @@ static void keys_are_numbered_by_the_first_equal_one(void **state)
 		for (size_t i = 0; i < COUNT; i++) {
 			random = random * 1664525u + 1013904223u;
 			const uint32_t kind = (random >> 8) % kinds;
-			memcpy(keys[i], (uint32_t[WORDS]){kind % 3, kind * 0x9e3779b1u, kind / 100 << 31}, sizeof keys[i]);
+			memcpy(keys[i], (uint32_t[WORDS]){kind % 3, kind * 0x9e3779b1u, kind / 100 << 31},
+				sizeof keys[i]);
 		}
 		assert_true(add_all(keys, COUNT) < 32 * WORDS);
 	}

@@ -111,7 +111,8 @@ static void tangents_of_one_hash_take_few_steps(void **state)
 	}
 	uint32_t *indices = calloc(TWICE, sizeof *indices), *out = malloc(TWICE * sizeof *out);
 	uint32_t *sources = malloc(TWICE * sizeof *sources);
-	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = TWICE / 3, .vertex_count = 1, .indices = indices};
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = TWICE / 3, .vertex_count = 1,
+		.indices = indices};
 	nmtan_split_output output = {.struct_bytes = sizeof output, .indices = out, .sources = sources,
 		.source_capacity = TWICE};
 	nt_scratch scratch;

@@ -5,8 +5,9 @@
 static const nt_model_use none = {.texture = NT_MODEL_NONE};
 
 #define NO_TEXTURES \
-	.base_color_texture = none, .emissive_texture = none, .normal_texture = none, .metallic_roughness_texture = none, \
-	.occlusion_texture = none, .clearcoat_texture = none, .clearcoat_roughness_texture = none, .sheen_texture = none
+	.base_color_texture = none, .emissive_texture = none, .normal_texture = none, \
+	.metallic_roughness_texture = none, .occlusion_texture = none, .clearcoat_texture = none, \
+	.clearcoat_roughness_texture = none, .sheen_texture = none
 
 static nt_model *new_model(void)
 {
@@ -99,7 +100,8 @@ static void control_characters_are_escaped(void **state)
 {
 	(void)state;
 	nt_model *model = new_model();
-	const nt_model_material material = {.name = "a\b\t\n\f\r\x01\x1f\x7f", .base_color = {1, 1, 1, 1}, .metallic = 1,
+	const nt_model_material material = {.name = "a\b\t\n\f\r\x01\x1f\x7f", .base_color = {1, 1, 1, 1},
+		.metallic = 1,
 		.roughness = 1, .normal_scale = 1, NO_TEXTURES};
 	nt_model_add_material(model, &material);
 	char *text = text_of(model, 0, NT_MODEL_CHUNK, NULL);
@@ -220,7 +222,8 @@ static void what_is_moved_or_clamped_says_so(void **state)
 	nt_model_add_material(model, &material);
 	char *text = text_of(model, 0, NT_MODEL_CHUNK, NULL);
 	assert_non_null(strstr(text, "\"extensionsUsed\":[\"EXT_texture_webp\",\"KHR_texture_transform\"]"));
-	assert_non_null(strstr(text, "\"normalTexture\":{\"extensions\":{\"KHR_texture_transform\":{\"offset\":[0.25,-3.0],"
+	assert_non_null(strstr(text,
+		"\"normalTexture\":{\"extensions\":{\"KHR_texture_transform\":{\"offset\":[0.25,-3.0],"
 		"\"scale\":[-1.0,2.0]}},\"index\":1,\"scale\":0.5}"));
 	assert_non_null(strstr(text, "\"baseColorTexture\":{\"index\":0}"));
 	assert_non_null(strstr(text, "\"samplers\":[{\"wrapS\":33071,\"wrapT\":33071}]"));

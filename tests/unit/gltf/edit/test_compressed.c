@@ -337,7 +337,8 @@ static void packed_tangents_that_are_valid_stay_packed(void **state)
 		settings.precision = i == 2 ? NT_PRECISION_SHORT : NT_PRECISION_FLOAT;
 		nt_summary summary;
 		nt_error error;
-		assert_int_equal(nt_run(in_folder("packed.glb"), in_folder("packed_out.glb"), &settings, &summary, &error), NT_OK);
+		assert_int_equal(nt_run(in_folder("packed.glb"), in_folder("packed_out.glb"), &settings,
+			&summary, &error), NT_OK);
 		assert_int_equal(summary.solved_count, 1);
 		nt_summary_free(&summary);
 		assert_int_equal(same_files(in_folder("packed.glb"), in_folder("packed_out.glb")), i == 0);

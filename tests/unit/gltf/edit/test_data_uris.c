@@ -22,8 +22,8 @@ static void put_triangle(const char *name)
 		"\"min\":[0,0,0],\"max\":[1,1,0]},{\"bufferView\":1,\"componentType\":5126,\"count\":3,"
 		"\"type\":\"VEC3\"},{\"bufferView\":2,\"componentType\":5126,\"count\":3,\"type\":\"VEC2\"}],"
 		"\"bufferViews\":[{\"buffer\":1,\"byteLength\":36},{\"buffer\":0,\"byteLength\":36},"
-		"{\"buffer\":0,\"byteOffset\":36,\"byteLength\":24}],\"buffers\":[{\"byteLength\":60,\"uri\":\"in.bin\"},"
-		"{\"byteLength\":36,\"uri\":\"data:application/gltf-buffer;base64,", name);
+		"{\"buffer\":0,\"byteOffset\":36,\"byteLength\":24}],\"buffers\":[{\"byteLength\":60,"
+		"\"uri\":\"in.bin\"},{\"byteLength\":36,\"uri\":\"data:application/gltf-buffer;base64,", name);
 	nt_base64_append(&json, positions, sizeof positions);
 	nt_buffer_text(&json, "\"}],\"materials\":[{\"normalTexture\":{\"index\":0}}],\"textures\":[{}]}");
 	put_file("in.gltf", json.data, json.size);

@@ -25,7 +25,8 @@ int fallocate(int fd, int mode, off_t offset, off_t size)
 /* A triangle in a file of FILE_BYTES, which is said to have `length`. */
 static void put_triangle(unsigned long long length)
 {
-	static const float values[FILE_BYTES / 4] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 1};
+	static const float values[FILE_BYTES / 4] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0,
+		1, 0, 0, 1};
 	nt_buffer json = {0};
 	put_file("in.bin", values, sizeof values);
 	nt_buffer_format(&json, "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{"
@@ -34,8 +35,8 @@ static void put_triangle(unsigned long long length)
 		"\"min\":[0,0,0],\"max\":[1,1,0]},{\"bufferView\":1,\"componentType\":5126,\"count\":3,"
 		"\"type\":\"VEC3\"},{\"bufferView\":2,\"componentType\":5126,\"count\":3,\"type\":\"VEC2\"}],"
 		"\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":36},"
-		"{\"buffer\":0,\"byteOffset\":72,\"byteLength\":24}],\"buffers\":[{\"byteLength\":%llu,\"uri\":\"in.bin\"}],"
-		"\"materials\":[{\"normalTexture\":{\"index\":0}}],\"textures\":[{}]}", length);
+		"{\"buffer\":0,\"byteOffset\":72,\"byteLength\":24}],\"buffers\":[{\"byteLength\":%llu,"
+		"\"uri\":\"in.bin\"}],\"materials\":[{\"normalTexture\":{\"index\":0}}],\"textures\":[{}]}", length);
 	put_file("in.gltf", json.data, json.size);
 	nt_buffer_free(&json);
 }
@@ -44,8 +45,8 @@ static nt_status run(const char *to, nt_error *error)
 {
 	nt_summary summary;
 	asked_for = 0;
-	const nt_status status = nt_run(in_folder("in.gltf"), in_folder(to), &(nt_settings){.texcoord_set = -1}, &summary,
-		error);
+	const nt_status status = nt_run(in_folder("in.gltf"), in_folder(to), &(nt_settings){.texcoord_set = -1},
+		&summary, error);
 	nt_summary_free(&summary);
 	return status;
 }

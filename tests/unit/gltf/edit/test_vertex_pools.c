@@ -45,7 +45,8 @@ static void write_input(void)
 		const bool turned = i == TURNED_A || i == TURNED_B;
 		if (i < 2 || i > 3)
 			nt_buffer_append(&bin, i < 2 ? corners[i] : turned ? corners[2] : zeros, sizeof zeros);
-		nt_buffer_format(&json, i == 2 ? "{\"bufferView\":1,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"}," :
+		nt_buffer_format(&json,
+			i == 2 ? "{\"bufferView\":1,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"}," :
 			i == 3 ? "{\"bufferView\":2,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}," :
 			"{\"bufferView\":0,\"byteOffset\":%d,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"}%s",
 			(i < 2 ? i : i - 2) * (int)sizeof zeros, i == ACCESSORS - 1 ? "" : ",");
@@ -54,10 +55,11 @@ static void write_input(void)
 	nt_buffer_append(&bin, texcoords, sizeof texcoords);
 	nt_buffer_append(&bin, indices, sizeof indices);
 	nt_buffer_format(&json, "],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu},"
-		"{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":32},{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":12}],"
-		"\"buffers\":[{\"byteLength\":%zu}],\"meshes\":[", rows, rows, rows + 32, bin.size);
+		"{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":32},{\"buffer\":0,\"byteOffset\":%zu,"
+		"\"byteLength\":12}],\"buffers\":[{\"byteLength\":%zu}],\"meshes\":[", rows, rows, rows + 32, bin.size);
 	for (int p = 0; p < 2; p++) {
-		nt_buffer_format(&json, "%s{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},"
+		nt_buffer_format(&json,
+			"%s{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":2},"
 			"\"indices\":3,\"material\":0,\"targets\":[", p ? "," : "");
 		for (int t = 0; t < 3; t++)
 			nt_buffer_format(&json, "%s{\"POSITION\":%u,\"NORMAL\":%u}", t ? "," : "",

@@ -197,12 +197,14 @@ static void every_number_is_as_near_as_its_code(void **state)
 	for (size_t c = 0; c < 3 * g->triangle_count; c++) {
 		const size_t from = g->indices[c], v = u.indices[c];
 		for (size_t i = 0; i < 3; i++) {
-			const double x = u.packed.position_origin[i] + code_of(&u, POSITIONS, i, 2, v) * u.packed.position_step[i];
+			const double x = u.packed.position_origin[i] + code_of(&u, POSITIONS, i, 2, v) *
+				u.packed.position_step[i];
 			assert_true(fabs(x - g->positions[3 * from + i]) <= 0.5001 * u.packed.position_step[i]);
 		}
 		for (size_t i = 0; i < 2; i++) {
 			const double wanted = i ? 1.0 - g->texcoords[2 * from + 1] : g->texcoords[2 * from];
-			const double x = u.packed.texcoord_origin[i] + code_of(&u, TEXCOORDS, i, 3, v) * u.packed.texcoord_step;
+			const double x =
+				u.packed.texcoord_origin[i] + code_of(&u, TEXCOORDS, i, 3, v) * u.packed.texcoord_step;
 			assert_true(fabs(x - wanted) <= 0.51 * u.packed.texcoord_step);
 		}
 		const float *n = g->normals + 3 * from;
@@ -216,7 +218,8 @@ static void every_number_is_as_near_as_its_code(void **state)
 			const double cosine = (d[0] * n[0] + d[1] * n[1] + d[2] * n[2]) / length;
 			assert_true(cosine > cos(sqrt(2.0) / 4094 * 3));
 		}
-		assert_int_equal(u.streams[COMPUTED][4 * u.packed.vertex_count + v], g->computed[4 * from + 3] > 0 ? 1 : 2);
+		assert_int_equal(u.streams[COMPUTED][4 * u.packed.vertex_count + v],
+			g->computed[4 * from + 3] > 0 ? 1 : 2);
 	}
 	assert_int_equal(u.sizes[AUTHORED], 0);
 	assert_int_equal(u.sizes[NUMBERS], 0);

@@ -69,7 +69,8 @@ static void v_points_up_or_down(void **state)
 	float corner[] = {0, 0, 1, 0, 0, 1};
 	uint32_t one[] = {0, 1, 2};
 	int8_t plain[] = {1};
-	const nt_report_geometry g = {.vertex_count = 3, .triangle_count = 1, .texcoords = corner, .indices = one, .orientation = plain};
+	const nt_report_geometry g = {.vertex_count = 3, .triangle_count = 1, .texcoords = corner,
+		.indices = one, .orientation = plain};
 	nt_buffer paths[2];
 	for (int v_down = 0; v_down < 2; v_down++) {
 		draw(&g, v_down, paths);
@@ -92,7 +93,8 @@ static void nothing_to_draw_is_nothing(void **state)
 	float far[] = {0, 0, 1e-6f, 0, 0, 1e-6f, 1, 1, 2, 1, 1, 2};
 	uint32_t two[] = {0, 1, 2, 3, 4, 5}, apart[] = {0, 1};
 	int8_t plain[] = {1, 1};
-	g = (nt_report_geometry){.vertex_count = 6, .triangle_count = 2, .texcoords = far, .indices = two, .orientation = plain,
+	g = (nt_report_geometry){.vertex_count = 6, .triangle_count = 2, .texcoords = far, .indices = two,
+		.orientation = plain,
 		.islands = apart};
 	draw(&g, false, paths);
 	assert_int_equal(strchr(paths[0].data, 'M') - paths[0].data, 0);

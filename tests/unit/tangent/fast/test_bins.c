@@ -25,7 +25,8 @@ static nt_fan_entry entry_of(size_t corner, uint32_t vertex)
 static uint32_t state_of(size_t triangle)
 {
 	const uint32_t bits = NT_STATE_BASE | (NT_STATE_ALL & ~NT_STATE_EMPTY);
-	return triangle % 7 == 0 ? bits & ~(uint32_t)NT_STATE_NO_ANY : bits & ~(uint32_t)(triangle % 2 ? NT_STATE_U : NT_STATE_V);
+	return triangle % 7 == 0
+		? bits & ~(uint32_t)NT_STATE_NO_ANY : bits & ~(uint32_t)(triangle % 2 ? NT_STATE_U : NT_STATE_V);
 }
 
 typedef struct expected {
