@@ -277,6 +277,11 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 	if (!r.settled)
 		return NMTAN_ERROR_MEMORY;
 	memset(r.settled, 0, ranges * sizeof *r.settled);
+	if (NT_SHORT_WAYS && fast->sparse) {
+		fast->open = nt_scratch_alloc(fast->solve->scratch, (fast->vertex_count + NT_LANES - 1) / NT_LANES, 1);
+		if (!fast->open)
+			return NMTAN_ERROR_MEMORY;
+	}
 	if (fast->bins.cursors) {
 		if (!make_bins(&r, ranges))
 			return NMTAN_ERROR_MEMORY;

@@ -99,7 +99,7 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 	uint32_t depths[NT_LANES / WIDTH], unusable[2][NT_LANES] = {{0}};
 	record_lanes own[2];
 	const record_lanes *r[2];
-	bool there[2];
+	bool there[2], has_unusable = false;
 	load_degrees(a, first, count, used, degree, depths);
 	for (int o = 0; o < 2; o++) {
 		const nt_record *from = sums[o] ? sums[o] + first - a->first_vertex : NULL;
@@ -141,10 +141,13 @@ static void settle_block(nt_fast *fast, const nt_adjacency *a, nt_record *const 
 		normalise_records(used, &own[o]);
 		if (judges)
 			find_unusable(normals, &own[o], unusable[o], used);
-		if (NT_SHORT_WAYS && any_of(unusable[o], used))
-			nt_fast_tell_open(fast->solve);
+		has_unusable |= NT_SHORT_WAYS && any_of(unusable[o], used);
 	}
 	const bool has_complex = any_of(complex, used);
+	if (has_unusable)
+		nt_fast_tell_open(fast->solve);
+	if (NT_SHORT_WAYS && fast->open)
+		fast->open[block] = has_complex | has_unusable;
 	/* from here on the rows may be overwritten */
 	for (int o = 0; o < 2; o++) {
 		if (!sums[o])

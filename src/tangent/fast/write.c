@@ -102,20 +102,29 @@ static inline __attribute__((always_inline)) void prefetch_records(const nt_fast
 		__builtin_prefetch(nt_fast_record(fast, orient, v[k]));
 }
 
+/* Whether a corner is in a block of vertices with an open record. The blocks fit the first-level cache, or nearly so,
+ * where records do not. */
+static inline bool is_near_open(const nt_fast *fast, const uint32_t *v)
+{
+	return fast->open[v[0] / NT_LANES] | fast->open[v[1] / NT_LANES] | fast->open[v[2] / NT_LANES];
+}
+
 /* Every corner of [begin, end) gets its vertex's record and its orientation's sign, which complex.c takes as they are
  * where that is the result; in a sparse solve those of suspects only. */
 static void write_triangles(nt_fast *fast, size_t begin, size_t end)
 {
 	for (size_t t = begin; t < end; t++) {
 		uint8_t *flags = &fast->flags[t];
+		uint32_t copy[3];
+		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
+		if (NT_SHORT_WAYS && fast->sparse && !(*flags & NT_TRIANGLE_SUSPECT) && !is_near_open(fast, v))
+			continue;
 		if (fast->scattered)
 			prefetch_records(fast, t, end);
 		if (*flags & (NT_TRIANGLE_ANY | NT_TRIANGLE_DEGENERATE)) {
 			write_special(fast, t);
 			continue;
 		}
-		uint32_t copy[3];
-		const uint32_t *v = nt_triangle_vertices(&fast->triangles, t, 1, copy);
 		const int orient = *flags & NT_TRIANGLE_ORIENT;
 		for (int k = 0; k < 3; k++)
 			if (nt_fast_record(fast, orient, v[k])->state & (NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE))
