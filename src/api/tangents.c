@@ -72,7 +72,7 @@ enum { SMALL_BYTES = 8192 };
  * the time of a mesh of 15 000 triangles. */
 enum { ONE_BLOCK_CORNERS = 3 * 32768, ONE_BLOCK_BYTES = 22 };
 
-/* One call: the checked input, and the scratch where the caller gave none. */
+/* One call: the checked input, and the scratch where the caller gave none. begin_request() sets what is needed. */
 typedef struct request {
 	nmtan_options options;
 	nmtan_mesh mesh;
@@ -89,6 +89,8 @@ typedef struct request {
 /* Copies of what the caller gave, of whatever version; false where a size is none. */
 static bool read_arguments(request *r, const nmtan_mesh *mesh, const nmtan_options *options)
 {
+	if (!options)
+		r->options = (nmtan_options)NMTAN_OPTIONS_INIT;
 	if (!nt_struct_read(&r->mesh, sizeof r->mesh, mesh) ||
 		(options && !nt_struct_read(&r->options, sizeof r->options, options)) ||
 		(r->options.timing && !nt_struct_read(&r->timing, sizeof r->timing, r->options.timing)))
@@ -104,37 +106,38 @@ static bool read_arguments(request *r, const nmtan_mesh *mesh, const nmtan_optio
 static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_implementation *implementation)
 {
-	memset(r, 0, offsetof(request, memory));
 	if (!read_arguments(r, mesh, options))
 		return NMTAN_ERROR_ARGUMENT;
 	r->timing = (nmtan_timing)NMTAN_TIMING_INIT;
 	if (r->options.timing)
 		r->begin = nt_seconds();
+	size_t corner_count;
 	nmtan_status status = check_options(&r->options);
 	if (!status)
 		status = check_attributes(&r->mesh);
 	if (!status)
-		status = nt_check_faces(&r->mesh, r->options.threads, &r->solve.corner_count);
+		status = nt_check_faces(&r->mesh, r->options.threads, &corner_count);
 	if (status)
 		return status;
 	nt_scratch_init(&r->own, r->options.allocator);
 	nt_scratch_lend(&r->own, r->memory, sizeof r->memory);
-	if (!r->options.allocator && r->solve.corner_count < ONE_BLOCK_CORNERS)
-		nt_scratch_expect(&r->own, ONE_BLOCK_BYTES * r->solve.corner_count);
-	nt_solve *solve = &r->solve;
-	solve->mesh = &r->mesh;
-	/* bounds on the error of the determinants of `texcoords` say nothing about those of others */
-	solve->known = nt_has_stored_texcoords(&r->mesh) ? NULL : &r->known;
-	solve->timing = r->options.timing ? &r->timing : NULL;
-	solve->scratch = r->options.workspace ? &r->options.workspace->scratch : &r->own;
-	solve->threshold_cos = r->options.angular_threshold_degrees > 0.0f
-		? threshold_cos(r->options.angular_threshold_degrees) : -1.0f;
-	/* asking how many processors there are is a system call */
-	solve->threads = solve->corner_count < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(r->options.threads);
-	solve->repair = r->options.repair == NMTAN_REPAIR_ON;
-	solve->one_by_one = implementation->scalar;
-	solve->isa = implementation->isa == NT_ISA_AUTO ? nt_cpu_best() : implementation->isa;
-	r->mark = nt_scratch_here(solve->scratch);
+	if (!r->options.allocator && corner_count < ONE_BLOCK_CORNERS)
+		nt_scratch_expect(&r->own, ONE_BLOCK_BYTES * corner_count);
+	r->known = (nt_known){.flags = NULL};
+	r->solve = (nt_solve){.mesh = &r->mesh,
+		.corner_count = corner_count,
+		.threshold_cos = r->options.angular_threshold_degrees > 0.0f
+			? threshold_cos(r->options.angular_threshold_degrees) : -1.0f,
+		/* asking how many processors there are is a system call */
+		.threads = corner_count < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(r->options.threads),
+		.isa = implementation->isa == NT_ISA_AUTO ? nt_cpu_best() : implementation->isa,
+		.one_by_one = implementation->scalar,
+		.scratch = r->options.workspace ? &r->options.workspace->scratch : &r->own,
+		.timing = r->options.timing ? &r->timing : NULL,
+		/* bounds on the error of the determinants of `texcoords` say nothing about those of others */
+		.known = nt_has_stored_texcoords(&r->mesh) ? NULL : &r->known,
+		.repair = r->options.repair == NMTAN_REPAIR_ON};
+	r->mark = nt_scratch_here(r->solve.scratch);
 	return NMTAN_OK;
 }
 

@@ -41,9 +41,14 @@ bool nt_cpu_has(nt_isa isa)
 	return false;
 }
 
+/* Asked once: that is five calls of another library. Threads that ask at the same time find the same. */
 nt_isa nt_cpu_best(void)
 {
-	if (nt_cpu_has(NT_ISA_AVX512))
-		return NT_ISA_AVX512;
-	return nt_cpu_has(NT_ISA_AVX2) ? NT_ISA_AVX2 : NT_ISA_BASELINE;
+	static nt_isa found = NT_ISA_AUTO;
+	nt_isa best = __atomic_load_n(&found, __ATOMIC_RELAXED);
+	if (best != NT_ISA_AUTO)
+		return best;
+	best = nt_cpu_has(NT_ISA_AVX512) ? NT_ISA_AVX512 : nt_cpu_has(NT_ISA_AVX2) ? NT_ISA_AVX2 : NT_ISA_BASELINE;
+	__atomic_store_n(&found, best, __ATOMIC_RELAXED);
+	return best;
 }

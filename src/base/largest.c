@@ -25,6 +25,13 @@ static inline four larger(four a, four b)
 	return (a & mask) | (b & ~mask);
 }
 
+static inline four load_four(const uint32_t *values)
+{
+	four result;
+	memcpy(&result, values, sizeof result);
+	return result ^ (int32_t)half;
+}
+
 static void search_range(void *context, size_t begin, size_t end, unsigned slot)
 {
 	search *s = context;
@@ -32,16 +39,18 @@ static void search_range(void *context, size_t begin, size_t end, unsigned slot)
 	most[1] = most[2] = most[3] = most[0];
 	size_t i = begin;
 	for (; end - i >= 16; i += 16)
-		for (size_t j = 0; j < 4; j++) {
-			four values;
-			memcpy(&values, s->values + i + 4 * j, sizeof values);
-			most[j] = larger(values ^ (int32_t)half, most[j]);
-		}
-	const four largest = larger(larger(most[0], most[1]), larger(most[2], most[3]));
+		for (size_t j = 0; j < 4; j++)
+			most[j] = larger(load_four(s->values + i + 4 * j), most[j]);
+	four largest = larger(larger(most[0], most[1]), larger(most[2], most[3]));
+	for (; end - i >= 4; i += 4)
+		largest = larger(load_four(s->values + i), largest);
+	/* the last ones again, where there are four */
+	if (end - begin >= 4)
+		largest = larger(load_four(s->values + end - 4), largest);
 	uint32_t result = 0;
 	for (size_t j = 0; j < 4; j++)
 		result = ((uint32_t)largest[j] ^ half) > result ? (uint32_t)largest[j] ^ half : result;
-	for (; i < end; i++)
+	for (; end - begin < 4 && i < end; i++)
 		result = s->values[i] > result ? s->values[i] : result;
 	s->largest[slot] = result;
 }

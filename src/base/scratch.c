@@ -18,9 +18,18 @@ struct nt_scratch_block {
 	struct nt_scratch_block *next;
 	char *memory;
 	size_t size_bytes;
-	size_t used; /* offset of the first free byte */
+	char *first; /* aligned byte of memory */
+	size_t room; /* from there on; it and `used` are multiples of ALIGNMENT */
+	size_t used;
 	bool lent;   /* the caller's, this header too */
 };
+
+static void begin_block(struct nt_scratch_block *block, void *memory, size_t size_bytes, bool lent)
+{
+	const size_t gap = (ALIGNMENT - (uintptr_t)memory % ALIGNMENT) % ALIGNMENT;
+	*block = (struct nt_scratch_block){.memory = memory, .size_bytes = size_bytes, .first = (char *)memory + gap,
+		.room = (size_bytes - gap) / ALIGNMENT * ALIGNMENT, .lent = lent};
+}
 
 static void *default_allocate(void *user, size_t size_bytes)
 {
@@ -46,31 +55,23 @@ void nt_scratch_lend(nt_scratch *scratch, void *memory, size_t size_bytes)
 {
 	const size_t gap = (ALIGNMENT - (uintptr_t)memory % ALIGNMENT) % ALIGNMENT;
 	struct nt_scratch_block *block = (struct nt_scratch_block *)((char *)memory + gap);
-	*block = (struct nt_scratch_block){.memory = (char *)(block + 1), .size_bytes = size_bytes - gap - sizeof *block,
-		.lent = true};
-	scratch->first = block;
+	begin_block(block, block + 1, size_bytes - gap - sizeof *block, true);
+	scratch->first = scratch->current = block;
 }
 
-/* Offset of the next aligned byte of a block. */
-static size_t aligned_offset(const struct nt_scratch_block *block)
+static inline void *take(struct nt_scratch_block *block, size_t bytes)
 {
-	const uintptr_t at = (uintptr_t)block->memory + block->used;
-	return block->used + (ALIGNMENT - at % ALIGNMENT) % ALIGNMENT;
-}
-
-static void *take(struct nt_scratch_block *block, size_t bytes)
-{
-	const size_t offset = aligned_offset(block);
-	if (offset > block->size_bytes || block->size_bytes - offset < bytes)
+	if (block->room - block->used < bytes)
 		return NULL;
-	block->used = offset + bytes;
-	return block->memory + offset;
+	void *result = block->first + block->used;
+	block->used += (bytes + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+	return result;
 }
 
 static struct nt_scratch_block *insert_block(nt_scratch *scratch, size_t bytes)
 {
 	size_t size_bytes;
-	if (!nt_size_add(bytes, ALIGNMENT, &size_bytes))
+	if (!nt_size_add(bytes, 2 * ALIGNMENT, &size_bytes)) /* of which nothing is used before and behind */
 		return NULL;
 	if (size_bytes < LEAST_BLOCK_BYTES)
 		size_bytes = LEAST_BLOCK_BYTES;
@@ -81,12 +82,12 @@ static struct nt_scratch_block *insert_block(nt_scratch *scratch, size_t bytes)
 	struct nt_scratch_block *block = from->allocate(from->user, sizeof *block);
 	if (!block)
 		return NULL;
-	*block = (struct nt_scratch_block){.memory = from->allocate(from->user, size_bytes),
-		.size_bytes = size_bytes};
-	if (!block->memory) {
+	void *memory = from->allocate(from->user, size_bytes);
+	if (!memory) {
 		from->release(from->user, block, sizeof *block);
 		return NULL;
 	}
+	begin_block(block, memory, size_bytes, false);
 	if (scratch->current) {
 		block->next = scratch->current->next;
 		scratch->current->next = block;
@@ -97,17 +98,12 @@ static struct nt_scratch_block *insert_block(nt_scratch *scratch, size_t bytes)
 	return block;
 }
 
-void *nt_scratch_alloc(nt_scratch *scratch, size_t count, size_t size)
+/* Not in line: it needs many registers, which all requests would have to save. */
+static void *__attribute__((noinline)) alloc_behind(nt_scratch *scratch, size_t bytes)
 {
-	size_t bytes;
-	if (!nt_size_mul(count, size, &bytes))
-		return NULL;
-	void *result = scratch->current ? take(scratch->current, bytes) : NULL;
-	if (result)
-		return result;
 	struct nt_scratch_block *block = scratch->current ? scratch->current->next : scratch->first;
 	for (; block; block = block->next) {
-		result = take(block, bytes);
+		void *result = take(block, bytes);
 		if (result) {
 			scratch->current = block;
 			return result;
@@ -118,6 +114,15 @@ void *nt_scratch_alloc(nt_scratch *scratch, size_t count, size_t size)
 		return NULL;
 	scratch->current = block;
 	return take(block, bytes);
+}
+
+void *nt_scratch_alloc(nt_scratch *scratch, size_t count, size_t size)
+{
+	size_t bytes;
+	if (!nt_size_mul(count, size, &bytes))
+		return NULL;
+	void *result = scratch->current ? take(scratch->current, bytes) : NULL;
+	return result ? result : alloc_behind(scratch, bytes);
 }
 
 void nt_scratch_expect(nt_scratch *scratch, size_t bytes)
