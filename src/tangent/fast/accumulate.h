@@ -392,15 +392,17 @@ static void accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, 
 			prefetch_rows(fast, first, end, 0);
 		uint32_t copy[3 * NT_LANES];
 		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
-		gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : lanes_of(count), in.row);
+		const bool solved = !fast->wants_more && solve_few(fast->rows, ids, count, offset, &out);
+		if (!solved)
+			gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : whole_lanes(count), in.row);
 		if (scattered && direct)
 			prefetch_places(fast, cursors, ids, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 1);
 		if (fast->wants_more)
 			solve_lanes_more(&in, &out, offset);
-		else
-			solve_few(&in, &out, offset, count);
+		else if (!solved)
+			solve_lanes_plain(&in, &out, offset, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 2);
 		if (scattered && direct)

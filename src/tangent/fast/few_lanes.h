@@ -8,28 +8,40 @@
 #include "tangent/fast/accumulate.h"
 #include "tangent/fast/settle.h"
 
-/* Frames as accumulate() makes them: flags, and what each corner adds, in order. */
-static void few_frames(const nt_fast *fast, nt_record *add, nt_frames *frames)
+/* Triangles [first, first + count), at most NT_LANES, as accumulate() solves them. */
+static void __attribute__((noinline)) solve_some(const nt_fast *fast, size_t first, size_t count, float offset,
+	nt_record *add, nt_frames *frames)
 {
 	lanes_in in;
+	lanes_out out;
+	gather_lanes(fast->rows, fast->triangles.ids + 3 * first, count, whole_lanes(count), in.row);
+	solve_lanes_plain(&in, &out, offset, count);
+	const bool ordinary = classify_lanes(fast, first, count, &in, &out);
+	for (size_t c = 0; c < 3; c++) { /* as a whole it would be copied by "rep movs", which takes long to begin */
+		memcpy(frames->u[c], out.frames.u[c], sizeof out.frames.u[c]);
+		memcpy(frames->v[c], out.frames.v[c], sizeof out.frames.v[c]);
+	}
+	for (size_t i = 0; i < count; i++)
+		for (size_t k = 0; k < 3; k++)
+			memcpy(&add[3 * i + k], out.add[k] + 4 * turned_place(i), sizeof *add);
+	for (size_t i = 0; !ordinary && i < count; i++)
+		for (size_t k = 0; k < 3 && !out.sound[i]; k++)
+			add[3 * i + k].state = NT_STATE_BASE;
+}
+
+/* Frames: flags, and what each corner adds, in order, and one record more. */
+static void few_frames(const nt_fast *fast, nt_record *add, nt_frames *frames)
+{
 	lanes_out out;
 	const float offset = nt_stored_v_offset(fast->solve->mesh);
 	for (size_t first = 0, count; first < fast->triangle_count; first += count) {
 		const size_t left = fast->triangle_count - first;
 		count = left < NT_LANES ? left : NT_LANES;
-		gather_lanes(fast->rows, fast->triangles.ids + 3 * first, count, lanes_of(count), in.row);
-		solve_few(&in, &out, offset, count);
-		const bool ordinary = classify_lanes(fast, first, count, &in, &out);
-		for (size_t c = 0; c < 3; c++) { /* as a whole it would be copied by "rep movs", which takes long to begin */
-			memcpy(frames[first / NT_LANES].u[c], out.frames.u[c], sizeof out.frames.u[c]);
-			memcpy(frames[first / NT_LANES].v[c], out.frames.v[c], sizeof out.frames.v[c]);
-		}
-		for (size_t i = 0; i < count; i++)
-			for (size_t k = 0; k < 3; k++)
-				memcpy(&add[3 * (first + i) + k], out.add[k] + 4 * turned_place(i), sizeof *add);
-		for (size_t i = 0; !ordinary && i < count; i++)
-			for (size_t k = 0; k < 3 && !out.sound[i]; k++)
-				add[3 * (first + i) + k].state = NT_STATE_BASE;
+		const uint32_t *ids = fast->triangles.ids + 3 * first;
+		if (count <= 4 && offset == 0.0f && solve_four(fast->rows, ids, count, add + 3 * first, frames + first / NT_LANES, &out))
+			classify_plain(fast->flags + first, count, &out);
+		else
+			solve_some(fast, first, count, offset, add + 3 * first, frames + first / NT_LANES);
 	}
 }
 

@@ -161,61 +161,89 @@ static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *restrict
 }
 
 #if WIDTH > 4
-/* Four lanes from each of four places. */
-static inline __attribute__((always_inline)) void spread(const float *a, const float *b, const float *c, const float *d,
+/* Of vectors whose parts are all the same, parts of four different ones. */
+static inline __attribute__((always_inline)) void join_parts(const float *a, const float *b, const float *c, const float *d,
 	float to[NT_LANES])
 {
-	const float *const from[NT_LANES / 4] = {a, b, c, d};
-	for (size_t i = 0; i < NT_LANES / 4; i += WIDTH / 4) {
-		const lanes parts = load_parts(from + i);
-		memcpy(to + 4 * i, &parts, sizeof parts);
-	}
+	const lanes from[4] = {load_lanes(a), load_lanes(b), load_lanes(c), load_lanes(d)};
+#if WIDTH == 16
+	const lanes ab = __builtin_shufflevector(from[0], from[1], 0, 1, 2, 3, 20, 21, 22, 23, 8, 9, 10, 11, 12, 13, 14, 15);
+	const lanes cd = __builtin_shufflevector(from[2], from[3], 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 28, 29, 30, 31);
+	const lanes joined[] = {__builtin_shufflevector(ab, cd, 0, 1, 2, 3, 4, 5, 6, 7, 24, 25, 26, 27, 28, 29, 30, 31)};
+#else
+	const lanes joined[] = {__builtin_shufflevector(from[0], from[1], 0, 1, 2, 3, 12, 13, 14, 15),
+		__builtin_shufflevector(from[2], from[3], 0, 1, 2, 3, 12, 13, 14, 15)};
+#endif
+	memcpy(to, joined, sizeof joined);
 }
 
-/* Four triangles: lane 4 k + i has corner k of triangle i, and all four parts have the frames. The last part repeats
- * the first one. */
-static void __attribute__((noinline)) solve_four(const lanes_in *restrict in, lanes_out *restrict out, float offset)
+/* Up to four triangles: lane 4 k + i has corner k of triangle i, and all four parts have the frames. The last part
+ * repeats the first one, and triangles behind the last one repeat it. False where not all of them are plain. `add`
+ * receives what corners add, in order, and one record more; `out` areas and doubts alone. */
+static bool __attribute__((noinline)) solve_four(const nt_weld_row *rows, const uint32_t *ids, size_t count, nt_record *add,
+	nt_frames *frames, lanes_out *restrict out)
 {
-	lanes_in frames;
+	lanes_in in;
 	lanes_edges edges;
-	_Alignas(64) float n[3][NT_LANES], e[3][NT_LANES], f[3][NT_LANES], add[4 * NT_LANES];
-#pragma GCC unroll 8
-	for (int c = 0; c < 8; c++)
-#pragma GCC unroll 3
-		for (int k = 0; k < 3; k++)
-			spread(in->row[k][c], in->row[k][c], in->row[k][c], in->row[k][c], frames.row[k][c]);
-	EACH_LANE(NT_LANES) make_edges(&frames, &edges, i);
-	EACH_LANE(NT_LANES) solve_frames(&frames, &edges, out, false, i);
+	lanes_out all;
+	_Alignas(64) float n[3][NT_LANES], e[3][NT_LANES], f[3][NT_LANES], back[NT_LANES];
+	gather_four(rows, ids, count, in.row);
+	EACH_LANE(NT_LANES) make_edges(&in, &edges, i);
+	EACH_LANE(NT_LANES) solve_frames(&in, &edges, &all, false, i);
 #pragma GCC unroll 3
 	for (int c = 0; c < 3; c++) {
 		const float *const d1 = edges.of[0][c], *const d2 = edges.of[1][c], *const d3 = edges.of[2][c];
-		spread(in->row[0][3 + c], in->row[1][3 + c], in->row[2][3 + c], in->row[0][3 + c], n[c]);
-		spread(d1, d1, d2, d1, e[c]);
-		spread(d2, d3, d3, d2, f[c]);
-		for (int i = 4; i < 8; i++)
-			e[c][i] = -e[c][i]; /* it runs towards corner 1 */
+		EACH_LANE(NT_LANES) back[i] = -d1[i]; /* the edge runs towards corner 1 */
+		join_parts(in.row[0][3 + c], in.row[1][3 + c], in.row[2][3 + c], in.row[0][3 + c], n[c]);
+		join_parts(d1, back, d2, d1, e[c]);
+		join_parts(d2, d3, d3, d2, f[c]);
 	}
-	solve_corner((corner_lanes){.n = n, .u = out->frames.u, .v = out->frames.v, .e = e, .f = f, .turned = 1.0f,
-		.sum = out->sum[0]}, false);
-	interleave(out->sum[0], NT_LANES, add);
-	for (size_t k = 0; k < 3; k++)
-		for (size_t i = 0; i < 4; i++)
-			memcpy(out->add[k] + 4 * turned_place(i), add + 4 * turned_place(4 * k + i), 4 * sizeof *add);
-	judge(&frames, out, offset, 1, NT_LANES);
+	solve_corner((corner_lanes){.n = n, .u = all.frames.u, .v = all.frames.v, .e = e, .f = f, .turned = 1.0f,
+		.sum = all.sum[0]}, false);
+	/* turned in parts, the corners of a triangle are neighbours */
+	lanes sums[NT_LANES / WIDTH][4];
+	for (size_t i = 0; i < NT_LANES; i += WIDTH) {
+		for (size_t c = 0; c < 4; c++)
+			sums[i / WIDTH][c] = load_lanes(all.sum[0][c] + i);
+		turn(sums[i / WIDTH]);
+	}
+	for (size_t t = 0; t < count; t++)
+		for (size_t i = 0; i < NT_LANES / WIDTH; i++)
+			memcpy(add + 3 * t + WIDTH / 4 * i, &sums[i][t], sizeof sums[i][t]);
+	memcpy(out->area, all.area, 4 * sizeof *all.area);
+	memcpy(out->doubt, all.doubt, 4 * sizeof *all.doubt);
+	for (size_t c = 0; c < 3; c++) {
+		memcpy(frames->u[c], all.frames.u[c], 4 * sizeof *all.area);
+		memcpy(frames->v[c], all.frames.v[c], 4 * sizeof *all.area);
+	}
+	out->plain = are_plain(&all, 1, NT_LANES);
+	return out->plain;
 }
-#endif
 
-/* As many lanes as `count` triangles take: see lanes_of(). */
-static inline void solve_few(const lanes_in *in, lanes_out *out, float offset, size_t count)
+/* Solves triangles that are few enough; false where others have to be gathered and solved. */
+static inline bool solve_few(const nt_weld_row *rows, const uint32_t *ids, size_t count, float offset, lanes_out *out)
 {
-#if WIDTH > 4
-	if (count <= 4) {
-		solve_four(in, out, offset);
-		return;
-	}
-#endif
-	solve_lanes_plain(in, out, offset, count);
+	nt_record add[3 * 4 + 1];
+	if (count > 4 || offset != 0.0f || !solve_four(rows, ids, count, add, &out->frames, out))
+		return false;
+	for (size_t i = 0; i < 3 * count; i++)
+		memcpy(out->add[i % 3] + 4 * turned_place(i / 3), &add[i], sizeof *add);
+	return true;
 }
+#else
+static inline bool solve_four(const nt_weld_row *rows, const uint32_t *ids, size_t count, nt_record *add, nt_frames *frames,
+	lanes_out *out)
+{
+	(void)rows, (void)ids, (void)count, (void)add, (void)frames, (void)out;
+	return false;
+}
+
+static inline bool solve_few(const nt_weld_row *rows, const uint32_t *ids, size_t count, float offset, lanes_out *out)
+{
+	(void)rows, (void)ids, (void)count, (void)offset, (void)out;
+	return false;
+}
+#endif
 
 static void __attribute__((noinline)) solve_lanes_more(const lanes_in *in, lanes_out *out, float offset)
 {

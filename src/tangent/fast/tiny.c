@@ -30,7 +30,7 @@ typedef struct tiny {
 	const nt_kernels *kernels;
 	const uint32_t *ids;
 	nt_weld_row rows[CORNERS];
-	nt_record add[CORNERS];        /* of corner 3 t + k */
+	nt_record add[CORNERS + 1];    /* of corner 3 t + k */
 	nt_frames frames[(NT_TINY + NT_LANES - 1) / NT_LANES];
 	uint8_t forward[SLOTS], backward[SLOTS]; /* the corner beyond the edge to the next, from the previous vertex, or
 	                                            NOT_ONE */

@@ -12,7 +12,7 @@
 #include <stdint.h>
 #include <string.h>
 #include "tangent/fast/parts.h"
-#if defined(__AVX512F__)
+#if defined(__AVX2__)
 #include <immintrin.h>
 #endif
 
@@ -85,6 +85,18 @@ static inline __attribute__((always_inline)) lanes load_parts(const float *const
 #endif
 }
 
+#if WIDTH > 4
+/* The same vector of four floats in each part. */
+static inline __attribute__((always_inline)) lanes load_same(const float *from)
+{
+#if WIDTH == 8
+	return (lanes)_mm256_broadcast_ps((const __m128 *)from);
+#else
+	return (lanes)_mm512_broadcast_f32x4(_mm_loadu_ps(from));
+#endif
+}
+#endif
+
 /* Four rows of four floats, turned, in each part. */
 static inline __attribute__((always_inline)) void turn(lanes rows[4])
 {
@@ -127,12 +139,6 @@ static const uint8_t turned_rows[NT_LANES] = {ROW(0), ROW(1), ROW(2), ROW(3), RO
 static inline size_t whole_lanes(size_t count)
 {
 	return WIDTH == NT_LANES ? NT_LANES : (count + WIDTH - 1) / WIDTH * WIDTH;
-}
-
-/* Lanes that `count` triangles take: whole vectors, or four in vectors of four where the set has them. */
-static inline size_t lanes_of(size_t count)
-{
-	return count <= 4 ? 4 : whole_lanes(count);
 }
 
 /* Four components of whole vectors of lanes become rows in turned places. */
@@ -199,18 +205,25 @@ static inline __attribute__((always_inline)) void gather_corner(const nt_weld_ro
 #endif
 
 #if WIDTH > 4
-/* The same for four triangles. */
-static inline __attribute__((always_inline)) void gather_four(const nt_weld_row *rows, const uint32_t *ids,
-	float (*out)[NT_LANES])
+/* The rows of the corners of `count` triangles of one to four, by component, the same ones in each part. */
+static inline __attribute__((always_inline)) void gather_four(const nt_weld_row *rows, const uint32_t *ids, size_t count,
+	float (*restrict out)[8][NT_LANES])
 {
-	for (size_t half = 0; half < 8; half += 4) {
-		nt_float4 four[4];
-		for (size_t j = 0; j < 4; j++)
-			memcpy(&four[j], (const float *)&rows[ids[3 * j]] + half, sizeof four[j]);
-		turn_four(four);
-		for (size_t j = 0; j < 4; j++)
-			memcpy(out[half + j], &four[j], sizeof four[j]);
-	}
+	const float *at[3][4];
+	for (size_t i = 0; i < 4; i++)
+		for (size_t k = 0; k < 3; k++)
+			at[k][i] = (const float *)&rows[ids[3 * (i < count ? i : count - 1) + k]];
+#pragma GCC unroll 3
+	for (size_t k = 0; k < 3; k++)
+		for (size_t half = 0; half < 8; half += 4) {
+			lanes four[4];
+			for (size_t i = 0; i < 4; i++)
+				four[i] = load_same(at[k][i] + half);
+			turn(four);
+			for (size_t j = 0; j < 4; j++)
+				for (size_t lane = 0; lane < NT_LANES; lane += WIDTH)
+					memcpy(out[k][half + j] + lane, &four[j], sizeof four[j]);
+		}
 }
 #endif
 
@@ -224,10 +237,6 @@ static void __attribute__((noinline)) gather_lanes(const nt_weld_row *rows, cons
 			memcpy(padded + 3 * i, ids + 3 * (i < count ? i : count - 1), 3 * sizeof *ids);
 		ids = padded;
 	}
-#if WIDTH > 4
-	for (size_t k = 0; lane_count == 4 && k < 3; k++)
-		gather_four(rows, ids + k, out[k]);
-#endif
 	for (size_t k = 0; k < 3; k++)
 		for (size_t lane = 0; lane + WIDTH <= lane_count; lane += WIDTH)
 			gather_corner(rows, ids + 3 * lane + k, lane, out[k]);
