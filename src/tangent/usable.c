@@ -335,6 +335,12 @@ static void check_words(void *context, size_t begin, size_t end, unsigned slot)
 
 nmtan_status nt_find_unusable(const nt_solve *solve, nmtan_counts *counts, uint64_t **faulty)
 {
+	memset(counts, 0, sizeof *counts);
+	*faulty = NULL;
+	if (solve->known && solve->known->sound) {
+		counts->mirrored = solve->known->mirrored;
+		return NMTAN_OK;
+	}
 	const size_t words = (solve->mesh->face_count + WORD - 1) / WORD;
 	const unsigned slots = nt_parallel_slots(solve->threads, words, GRAIN);
 	search job = {solve, nt_scratch_alloc(solve->scratch, slots, sizeof *job.counts),
@@ -342,9 +348,9 @@ nmtan_status nt_find_unusable(const nt_solve *solve, nmtan_counts *counts, uint6
 	if (!job.counts || !job.faulty)
 		return NMTAN_ERROR_MEMORY;
 	nt_parallel_ranges(solve->threads, words, GRAIN, check_words, &job);
-	memset(counts, 0, sizeof *counts);
 	for (unsigned slot = 0; slot < slots; slot++)
 		nt_counts_add(counts, &job.counts[slot]);
-	*faulty = nt_counts_repaired(counts) ? job.faulty : NULL;
+	if (nt_counts_repaired(counts))
+		*faulty = job.faulty;
 	return NMTAN_OK;
 }

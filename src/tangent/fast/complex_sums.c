@@ -118,7 +118,7 @@ void nt_write_sums(const nt_complex *c, nt_summed *s)
 	nt_weld_row rows[3 * NT_SUMMED];
 	nt_record add[NT_SUMMED], sums[NT_SUMMED];
 	uint32_t vertices[NT_SUMMED];
-	uint8_t orients[NT_SUMMED] = {0};
+	uint32_t signs[NT_SUMMED];
 	nt_load_rows(c, s->corners, s->count, rows);
 	c->kernels->corner_sums(rows, s->corners, s->count, add);
 	/* lanes behind the last group, too */
@@ -131,14 +131,15 @@ void nt_write_sums(const nt_complex *c, nt_summed *s)
 		if (!(corner & NT_COMPLEX_ANY))
 			nt_record_add(&sums[group], sum);
 		vertices[group] = 3 * i + (corner & 3);
-		orients[group] = corner & NT_COMPLEX_PLUS ? NT_TRIANGLE_ORIENT : 0;
+		signs[group] = corner & NT_COMPLEX_PLUS ? 0 : NT_RESULT_PLUS ^ NT_RESULT_MINUS;
 	}
-	c->kernels->few_results(rows, vertices, s->group_count, sums, orients);
-	for (size_t g = 0; nt_fast_judges(c->fast->solve) && g < s->group_count; g++)
-		if (orients[g] & NT_TRIANGLE_COMPLEX) {
-			sums[g].state |= NT_W_OPEN;
+	c->kernels->few_results(rows, vertices, s->group_count, sums);
+	const bool judges = nt_fast_judges(c->fast->solve);
+	for (size_t g = 0; g < s->group_count; g++) {
+		if (judges && (sums[g].state & NT_RESULT_UNUSABLE))
 			nt_fast_tell_open(c->fast->solve);
-		}
+		sums[g].state = (sums[g].state & (judges ? ~0u : ~NT_RESULT_UNUSABLE)) | signs[g];
+	}
 	for (size_t i = 0; i < s->count; i++)
 		memcpy(c->fast->solve->tangents + 4 * nt_complex_corner(c, s->corners[i]), &sums[s->group[i]],
 			sizeof *sums);

@@ -314,7 +314,7 @@ static void tell_known(const nt_fast *fast)
 	*known = (nt_known){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT, .suspect = NT_TRIANGLE_SUSPECT,
 		.doubtful = NT_TRIANGLE_UNCERTAIN, .flat = NT_TRIANGLE_ANY, .degenerate = NT_TRIANGLE_DEGENERATE,
 		.judged = NT_SHORT_WAYS && records && nt_fast_judges(fast->solve) ? NT_TRIANGLE_COMPLEX : 0,
-		.open = known->open, .around = records,
+		.open = known->open, .sound = fast->sound, .mirrored = fast->mirrored, .around = records,
 		.welded = fast->triangles.ids, .welded_count = fast->vertex_count,
 		.row_step = fast->record_step * sizeof(nt_record) / sizeof(float)};
 	/* a record is x, y, z and, as state, the sign */

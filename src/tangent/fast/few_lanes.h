@@ -92,7 +92,7 @@ static inline void store_four_groups(const record_lanes *r, nt_record *results)
 
 /* Up to `used` groups: whole vectors, or `four` in vectors of four. */
 static inline __attribute__((always_inline)) void finish_groups(const nt_weld_row *rows, const uint32_t *vertices, size_t count,
-	size_t used, bool four, nt_record *results, uint8_t *orients)
+	size_t used, bool four, nt_record *results)
 {
 	const float *normals_at[NT_LANES];
 	float normals[3][NT_LANES];
@@ -106,30 +106,26 @@ static inline __attribute__((always_inline)) void finish_groups(const nt_weld_ro
 		load_groups(results, normals_at, used, &r, normals);
 	normalise_records(used, &r);
 	find_unusable(normals, &r, unusable, used);
-	for (size_t i = 0; i < used; i++) {
-		const size_t g = four ? i : turned_place(i);
-		const uint32_t sign = orients[g] & NT_TRIANGLE_ORIENT ? NT_RESULT_PLUS : NT_RESULT_MINUS;
-		r.state[i] = r.sound[i] ? sign : NT_RESULT_COMPLEX;
-		orients[g] = (uint8_t)(orients[g] | (r.sound[i] && !unusable[i] ? 0 : NT_TRIANGLE_COMPLEX));
-	}
+	for (size_t i = 0; i < used; i++)
+		r.state[i] = r.sound[i] ? NT_RESULT_PLUS | unusable[i] : NT_RESULT_COMPLEX | NT_RESULT_UNUSABLE;
 	if (four)
 		store_four_groups(&r, results);
 	else
 		store_records(results, 1, used, used, &r, r.state);
 }
 
-/* Results of groups from their sums. A group that is not its sum gets the state NT_RESULT_COMPLEX; one that may not be
- * usable, NT_TRIANGLE_COMPLEX in `orients`. Both arrays have room for whole vectors, which hold sums throughout. */
-static void few_results(const nt_weld_row *rows, const uint32_t *vertices, size_t count, nt_record *results,
-	uint8_t *orients)
+/* Results of groups from their sums. One that is its sum has the state NT_RESULT_PLUS, whatever its orientation, and
+ * NT_RESULT_UNUSABLE where it is that; others have NT_RESULT_COMPLEX and NT_RESULT_UNUSABLE. There is room for whole
+ * vectors, which hold sums throughout. */
+static void few_results(const nt_weld_row *rows, const uint32_t *vertices, size_t count, nt_record *results)
 {
 	if (WIDTH > 4 && count > 0 && count <= 4) {
-		finish_groups(rows, vertices, count, 4, true, results, orients);
+		finish_groups(rows, vertices, count, 4, true, results);
 		return;
 	}
 	for (size_t first = 0; first < count; first += NT_LANES) {
 		const size_t left = count - first < NT_LANES ? count - first : NT_LANES;
-		finish_groups(rows, vertices + first, left, whole_lanes(left), false, results + first, orients + first);
+		finish_groups(rows, vertices + first, left, whole_lanes(left), false, results + first);
 	}
 }
 

@@ -61,6 +61,8 @@ typedef struct nt_fast {
 	bool sparse;             /* step 6 leaves out corners whose result is their record */
 	uint8_t *open;           /* [blocks] of NT_LANES vertices, of a sparse solve: whether a record is not the result, or
 	                            not usable */
+	bool sound;              /* of few triangles: none is a suspect, and so many are mirrored: */
+	size_t mirrored;
 	bool scattered;          /* neighbouring triangles have vertices far apart: prefetch */
 	nt_bins bins;            /* of a scattered mesh: its corners on their way to the records */
 	nt_triangle_ranges ranges;
@@ -117,12 +119,10 @@ typedef struct nt_kernels {
 	 * without `more`, those of u. NULL without short ways. */
 	void (*part_sums)(const nt_corner *members, size_t count, const float directions[6][NT_LANES],
 		const uint32_t own[2][NT_LANES], bool more, float sums[NT_CORNER_FLOATS][NT_LANES]);
-	/* Solves all triangles: their flags, what each corner adds, and the frames. For tiny.c. */
+	/* Solves all triangles: their flags, what each corner adds, one record more, and the frames. For tiny.c. */
 	void (*few_frames)(const nt_fast *fast, nt_record *add, nt_frames *frames);
-	/* Turns the sums of groups, given with the rows of their vertices and orientations, into results:
-	 * few_lanes.h. */
-	void (*few_results)(const nt_weld_row *rows, const uint32_t *vertices, size_t count, nt_record *results,
-		uint8_t *orients);
+	/* Turns the sums of groups, given with the rows of their vertices, into results: few_lanes.h. */
+	void (*few_results)(const nt_weld_row *rows, const uint32_t *vertices, size_t count, nt_record *results);
 } nt_kernels;
 
 extern const nt_kernels nt_kernels_baseline;

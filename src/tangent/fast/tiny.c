@@ -25,6 +25,14 @@
 enum { CORNERS = 3 * NT_TINY, SLOTS = 4 * NT_TINY, NOT_ONE = UINT8_MAX };
 _Static_assert(SLOTS <= NOT_ONE, "a byte holds a corner, a vertex, a group, or none");
 
+/* What is found out of corners, and of the edges that begin there. Each triangle's bytes are set when it comes. */
+typedef struct corner_table {
+	uint8_t forward[SLOTS], backward[SLOTS]; /* the corner beyond the edge to the next, from the previous vertex, or
+	                                            NOT_ONE */
+	uint8_t group[SLOTS];                    /* or NOT_ONE */
+	uint8_t behind[SLOTS];                   /* the edge that waits behind this one, and 1, or 0 */
+} corner_table;
+
 typedef struct tiny {
 	nt_fast *fast;
 	const nt_kernels *kernels;
@@ -32,12 +40,9 @@ typedef struct tiny {
 	nt_weld_row rows[CORNERS];
 	nt_record add[CORNERS + 1];    /* of corner 3 t + k */
 	nt_frames frames[(NT_TINY + NT_LANES - 1) / NT_LANES];
-	uint8_t forward[SLOTS], backward[SLOTS]; /* the corner beyond the edge to the next, from the previous vertex, or
-	                                            NOT_ONE */
-	uint8_t group[SLOTS];          /* of a corner, or NOT_ONE */
+	corner_table corners;
 	nt_record results[CORNERS + NT_LANES]; /* of groups: sums, then results */
 	uint32_t vertices[CORNERS + NT_LANES]; /* of groups */
-	uint8_t orients[CORNERS + NT_LANES];   /* of groups: NT_TRIANGLE_ORIENT */
 	uint32_t group_count;
 } tiny;
 
@@ -85,11 +90,12 @@ static nmtan_status weld(tiny *s, bool *done)
 	const size_t corners = fast->solve->corner_count;
 	const bool by_vertex = mesh->indices && mesh->vertex_count <= corners;
 	uint32_t numbers[CORNERS];
-	uint32_t *ids = nt_scratch_alloc(fast->solve->scratch, corners, sizeof *ids);
-	fast->flags = nt_scratch_alloc(fast->solve->scratch, fast->triangle_count, 1);
-	if (!ids || !fast->flags)
+	uint32_t *ids = nt_scratch_alloc(fast->solve->scratch, corners, sizeof *ids + 1);
+	if (!ids)
 		return NMTAN_ERROR_MEMORY;
-	memset(fast->flags, 0, fast->triangle_count);
+	fast->flags = (uint8_t *)(ids + corners);
+	for (size_t t = 0; t < fast->triangle_count; t++)
+		fast->flags[t] = 0;
 	*done = by_vertex ? number_items(s, NULL, mesh->vertex_count, numbers)
 			  : number_items(s, mesh->indices, corners, ids);
 	for (size_t c = 0; by_vertex && c < corners; c++)
@@ -107,19 +113,19 @@ typedef struct edge {
 
 /* An edge meets the first that waits between its vertices and runs the other way; if there is none it waits behind
  * those that run its own. */
-static inline void pair_edge(tiny *s, uint8_t *here, uint8_t *there, uint8_t *behind, edge e)
+static inline void pair_edge(corner_table *c, uint8_t *here, uint8_t *there, edge e)
 {
 	if (*there) {
 		const uint8_t other = (uint8_t)(*there - 1), other_end = next_of(other);
-		s->forward[e.begin] = other_end;
-		s->forward[other] = e.end;
-		s->backward[e.end] = other;
-		s->backward[other_end] = e.begin;
-		*there = behind[other];
+		c->forward[e.begin] = other_end;
+		c->forward[other] = e.end;
+		c->backward[e.end] = other;
+		c->backward[other_end] = e.begin;
+		*there = c->behind[other];
 		return;
 	}
 	while (*here)
-		here = &behind[*here - 1];
+		here = &c->behind[*here - 1];
 	*here = (uint8_t)(e.begin + 1);
 }
 
@@ -127,19 +133,21 @@ static void pair_edges(tiny *s)
 {
 	const nt_fast *fast = s->fast;
 	const size_t n = fast->vertex_count;
-	uint8_t waiting[CORNERS * CORNERS], behind[SLOTS]; /* by vertices, by edge: an edge and 1, or 0 */
+	corner_table *const c = &s->corners;
+	uint8_t waiting[CORNERS * CORNERS]; /* by vertices: an edge and 1, or 0 */
 	memset(waiting, 0, n * n);
-	memset(behind, 0, sizeof behind);
-	memset(s->forward, NOT_ONE, sizeof s->forward);
-	memset(s->backward, NOT_ONE, sizeof s->backward);
 	for (size_t t = 0; t < fast->triangle_count; t++) {
+		memset(c->forward + 4 * t, NOT_ONE, 4);
+		memset(c->backward + 4 * t, NOT_ONE, 4);
+		memset(c->group + 4 * t, NOT_ONE, 4);
+		memset(c->behind + 4 * t, 0, 4);
 		if (fast->flags[t] & NT_TRIANGLE_DEGENERATE)
 			continue;
-		const uint8_t c = (uint8_t)(4 * t);
+		const uint8_t first = (uint8_t)(4 * t);
 		const size_t u = s->ids[3 * t], v = s->ids[3 * t + 1], w = s->ids[3 * t + 2];
-		pair_edge(s, &waiting[u * n + v], &waiting[v * n + u], behind, (edge){c, (uint8_t)(c + 1)});
-		pair_edge(s, &waiting[v * n + w], &waiting[w * n + v], behind, (edge){(uint8_t)(c + 1), (uint8_t)(c + 2)});
-		pair_edge(s, &waiting[w * n + u], &waiting[u * n + w], behind, (edge){(uint8_t)(c + 2), c});
+		pair_edge(c, &waiting[u * n + v], &waiting[v * n + u], (edge){first, (uint8_t)(first + 1)});
+		pair_edge(c, &waiting[v * n + w], &waiting[w * n + v], (edge){(uint8_t)(first + 1), (uint8_t)(first + 2)});
+		pair_edge(c, &waiting[w * n + u], &waiting[u * n + w], (edge){(uint8_t)(first + 2), first});
 	}
 }
 
@@ -149,13 +157,13 @@ static void pair_edges(tiny *s)
 static inline bool join_group(tiny *s, uint8_t *flags, uint8_t c, unsigned orient)
 {
 	uint8_t *f = &flags[c >> 2];
-	if (s->group[c] != NOT_ONE)
+	if (s->corners.group[c] != NOT_ONE)
 		return false;
 	if ((*f & NT_TRIANGLE_ANY) && !(*f & NT_TRIANGLE_DECIDED))
 		*f = (uint8_t)((*f & ~NT_TRIANGLE_ORIENT) | orient | NT_TRIANGLE_DECIDED);
 	if ((*f & NT_TRIANGLE_ORIENT) != orient)
 		return false;
-	s->group[c] = (uint8_t)s->group_count;
+	s->corners.group[c] = (uint8_t)s->group_count;
 	return true;
 }
 
@@ -163,38 +171,37 @@ static inline bool join_group(tiny *s, uint8_t *flags, uint8_t c, unsigned orien
 static inline void flood_group(tiny *s, uint8_t *flags, uint8_t seed)
 {
 	const unsigned orient = flags[seed >> 2] & NT_TRIANGLE_ORIENT;
-	s->group[seed] = (uint8_t)s->group_count;
+	s->corners.group[seed] = (uint8_t)s->group_count;
 	uint8_t c;
-	for (c = s->forward[seed]; c != NOT_ONE && join_group(s, flags, c, orient);)
-		c = s->forward[c];
-	for (c = s->backward[seed]; c != NOT_ONE && join_group(s, flags, c, orient);)
-		c = s->backward[c];
-	s->vertices[s->group_count] = s->ids[3 * (seed >> 2) + (seed & 3)];
-	s->orients[s->group_count++] = (uint8_t)orient;
+	for (c = s->corners.forward[seed]; c != NOT_ONE && join_group(s, flags, c, orient);)
+		c = s->corners.forward[c];
+	for (c = s->corners.backward[seed]; c != NOT_ONE && join_group(s, flags, c, orient);)
+		c = s->corners.backward[c];
+	s->vertices[s->group_count++] = s->ids[3 * (seed >> 2) + (seed & 3)];
 }
 
 static void find_groups(tiny *s)
 {
 	uint8_t *flags = s->fast->flags;
-	memset(s->group, NOT_ONE, sizeof s->group);
 	for (size_t t = 0; t < s->fast->triangle_count; t++)
 		for (size_t k = 0; k < 3 && !(flags[t] & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY)); k++)
-			if (s->group[4 * t + k] == NOT_ONE)
+			if (s->corners.group[4 * t + k] == NOT_ONE)
 				flood_group(s, flags, (uint8_t)(4 * t + k));
 }
 
 static void add_corners(tiny *s)
 {
+	static const nt_record nothing = {0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
 	const nt_fast *fast = s->fast;
 	/* lanes behind the last group, too: denormals that lie there take a microsecond */
 	const size_t lanes = s->group_count <= 4 ? 4 : (s->group_count + NT_LANES - 1) / NT_LANES * NT_LANES;
 	for (size_t g = 0; g < lanes; g++)
-		s->results[g] = (nt_record){0, 0, 0, NT_STATE_BASE | NT_STATE_ALL};
+		memcpy(&s->results[g], &nothing, sizeof nothing); /* in one store, which can be read before it is done */
 	for (size_t t = 0; t < fast->triangle_count; t++)
 		for (size_t k = 0; k < 3 && !(fast->flags[t] & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY)); k++) {
 			nt_int4 add;
 			memcpy(&add, &s->add[3 * t + k], sizeof add);
-			nt_record_add(&s->results[s->group[4 * t + k]], add);
+			nt_record_add(&s->results[s->corners.group[4 * t + k]], add);
 		}
 }
 
@@ -212,7 +219,7 @@ static void list_corners(const tiny *s, lists *l)
 {
 	memset(l->first, NOT_ONE, sizeof l->first);
 	for (size_t c = 0; c < 4 * s->fast->triangle_count; c++) {
-		const uint8_t g = s->group[c];
+		const uint8_t g = s->corners.group[c];
 		if (g == NOT_ONE || (s->fast->flags[c / 4] & NT_TRIANGLE_ANY))
 			continue;
 		l->next[c] = l->first[g];
@@ -271,9 +278,10 @@ static nmtan_status solve_complex(tiny *s)
 	const nt_complex c = {.fast = s->fast, .kernels = s->kernels, .corners = corners, .group = groups, .across = across};
 	nt_batch b = {.group_count = (uint32_t)s->group_count};
 	for (uint32_t i = 0; i < 4 * s->fast->triangle_count; i++) {
-		if (s->group[i] == NOT_ONE || s->results[s->group[i]].state != NT_RESULT_COMPLEX)
+		const uint8_t g = s->corners.group[i];
+		if (g == NOT_ONE || !(s->results[g].state & NT_RESULT_COMPLEX))
 			continue;
-		groups[b.count] = s->group[i];
+		groups[b.count] = g;
 		const unsigned flags = s->fast->flags[i / 4];
 		corners[b.count++] = i | (flags & NT_TRIANGLE_ORIENT ? NT_COMPLEX_PLUS : 0) |
 				     (flags & NT_TRIANGLE_ANY ? NT_COMPLEX_ANY : 0);
@@ -281,29 +289,46 @@ static nmtan_status solve_complex(tiny *s)
 	return nt_solve_batch(&c, &b);
 }
 
-/* Every corner gets its group's result. */
+/* The corners of a triangle get the results of their groups, and its orientation's sign; returns the union of the
+ * results' states. */
+static uint32_t write_triangle(const tiny *s, size_t t, float *out)
+{
+	const uint32_t minus = s->fast->flags[t] & NT_TRIANGLE_ORIENT ? 0 : NT_RESULT_PLUS ^ NT_RESULT_MINUS;
+	const nt_int4 sign = {0, 0, 0, (int)minus}, kept = {-1, -1, -1, ~(int)NT_RESULT_UNUSABLE};
+	uint32_t states = 0;
+	for (size_t k = 0; k < 3; k++, out += 4) {
+		const uint8_t g = s->corners.group[4 * t + k];
+		if (g == NOT_ONE) {
+			nt_fast_write_unassigned(s->fast, 3 * t + k);
+			continue;
+		}
+		nt_int4 result;
+		memcpy(&result, &s->results[g], sizeof result);
+		result = (result & kept) | sign;
+		memcpy(out, &result, sizeof result);
+		states |= s->results[g].state;
+	}
+	return states;
+}
+
 static nmtan_status write_corners(tiny *s)
 {
-	const nt_fast *fast = s->fast;
-	float *out = fast->solve->tangents;
-	bool complex = false;
+	nt_fast *fast = s->fast;
+	uint32_t states = 0;
 	unsigned seen = 0;
+	fast->mirrored = 0;
 	for (size_t t = 0; t < fast->triangle_count; t++) {
-		for (size_t k = 0; k < 3; k++) {
-			const uint8_t g = s->group[4 * t + k];
-			if (g == NOT_ONE) {
-				nt_fast_write_unassigned(fast, 3 * t + k);
-				continue;
-			}
-			memcpy(out + 4 * (3 * t + k), &s->results[g], sizeof *s->results);
-			complex |= s->results[g].state == NT_RESULT_COMPLEX;
-			fast->flags[t] |= s->orients[g] & NT_TRIANGLE_COMPLEX;
-		}
-		if (fast->flags[t] & NT_TRIANGLE_DEGENERATE)
-			fast->flags[t] |= NT_TRIANGLE_COPY;
-		seen |= fast->flags[t];
+		const uint32_t of_triangle = write_triangle(s, t, fast->solve->tangents + 12 * t);
+		unsigned flags = fast->flags[t];
+		flags |= of_triangle & NT_RESULT_UNUSABLE ? NT_TRIANGLE_COMPLEX : 0;
+		flags |= flags & NT_TRIANGLE_DEGENERATE ? NT_TRIANGLE_COPY : 0;
+		fast->flags[t] = (uint8_t)flags;
+		fast->mirrored += !(flags & NT_TRIANGLE_ORIENT);
+		states |= of_triangle;
+		seen |= flags;
 	}
-	if (complex && solve_complex(s))
+	fast->sound = !(seen & NT_TRIANGLE_SUSPECT);
+	if ((states & NT_RESULT_COMPLEX) && solve_complex(s))
 		return NMTAN_ERROR_MEMORY;
 	return seen & NT_TRIANGLE_COPY ? nt_fast_write_copies(s->fast) : NMTAN_OK;
 }
@@ -323,6 +348,6 @@ nmtan_status nt_fast_tiny(nt_fast *fast, const nt_kernels *kernels, bool *done)
 	find_groups(&s);
 	add_corners(&s);
 	vouch_for_groups(&s);
-	kernels->few_results(s.rows, s.vertices, s.group_count, s.results, s.orients);
+	kernels->few_results(s.rows, s.vertices, s.group_count, s.results);
 	return write_corners(&s);
 }
