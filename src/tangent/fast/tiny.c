@@ -53,6 +53,14 @@ static uint8_t next_of(uint8_t c)
 
 /* Weld */
 
+/* Ten bits, which are enough to tell most rows apart: products modulo 2^64, whose highest bits depend on all bits of a
+ * row. */
+static inline unsigned bits_of_row(const nt_weld_row *row)
+{
+	return (unsigned)((nt_weld_word(row, 0) * 0x9e3779b97f4a7c15u + nt_weld_word(row, 1) * 0xa4093822299f31d1u +
+		nt_weld_word(row, 2) * 0x13198a2e03707345u + nt_weld_word(row, 3) * 0x082efa98ec4e6c89u) >> 54);
+}
+
 static size_t find_row(const nt_weld_row *rows, size_t count, const nt_weld_row *row)
 {
 	size_t i = 0;
@@ -72,8 +80,9 @@ static bool number_items(tiny *s, const uint32_t *vertices, size_t count, uint32
 	for (size_t i = 0; i < count; i++) {
 		nt_weld_row *row = &s->rows[rows];
 		unordered |= nt_weld_load(&mesh, vertices ? vertices[i] : i, row);
-		const uint64_t hash = nt_weld_hash(row), bit = (uint64_t)1 << (hash >> 58);
-		uint64_t *word = &seen[hash >> 54 & 15];
+		const unsigned bits = bits_of_row(row);
+		const uint64_t bit = (uint64_t)1 << bits / 16;
+		uint64_t *word = &seen[bits % 16];
 		const size_t number = *word & bit ? find_row(s->rows, rows, row) : rows;
 		*word |= bit;
 		numbers[i] = (uint32_t)number;
@@ -135,7 +144,10 @@ static void pair_edges(tiny *s)
 	const size_t n = fast->vertex_count;
 	corner_table *const c = &s->corners;
 	uint8_t waiting[CORNERS * CORNERS]; /* by vertices: an edge and 1, or 0 */
-	memset(waiting, 0, n * n);
+	_Static_assert(sizeof waiting % sizeof(nt_int4) == 0, "whole vectors are cleared");
+	const nt_int4 none = {0};
+	for (size_t i = 0; i < n * n; i += sizeof none) /* memset() is a call, which takes longer for few vertices */
+		memcpy(waiting + i, &none, sizeof none);
 	for (size_t t = 0; t < fast->triangle_count; t++) {
 		memset(c->forward + 4 * t, NOT_ONE, 4);
 		memset(c->backward + 4 * t, NOT_ONE, 4);
