@@ -102,6 +102,15 @@ static bool read_arguments(request *r, const nmtan_mesh *mesh, const nmtan_optio
 	return read;
 }
 
+static nt_scratch *begin_own_scratch(request *r, size_t corner_count)
+{
+	nt_scratch_init(&r->own, r->options.allocator);
+	nt_scratch_lend(&r->own, r->memory, sizeof r->memory);
+	if (!r->options.allocator && corner_count < ONE_BLOCK_CORNERS)
+		nt_scratch_expect(&r->own, ONE_BLOCK_BYTES * corner_count);
+	return &r->own;
+}
+
 /* Checks everything before anything is computed, and fills in what was left to defaults. */
 static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmtan_options *options,
 	const nt_implementation *implementation)
@@ -119,10 +128,7 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 		status = nt_check_faces(&r->mesh, r->options.threads, &corner_count);
 	if (status)
 		return status;
-	nt_scratch_init(&r->own, r->options.allocator);
-	nt_scratch_lend(&r->own, r->memory, sizeof r->memory);
-	if (!r->options.allocator && corner_count < ONE_BLOCK_CORNERS)
-		nt_scratch_expect(&r->own, ONE_BLOCK_BYTES * corner_count);
+	nt_scratch *scratch = r->options.workspace ? &r->options.workspace->scratch : begin_own_scratch(r, corner_count);
 	r->known = (nt_known){.flags = NULL};
 	r->solve = (nt_solve){.mesh = &r->mesh,
 		.corner_count = corner_count,
@@ -132,12 +138,12 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 		.threads = corner_count < LEAST_SHARED_CORNERS ? 1 : nt_thread_count(r->options.threads),
 		.isa = implementation->isa == NT_ISA_AUTO ? nt_cpu_best() : implementation->isa,
 		.one_by_one = implementation->scalar,
-		.scratch = r->options.workspace ? &r->options.workspace->scratch : &r->own,
+		.scratch = scratch,
 		.timing = r->options.timing ? &r->timing : NULL,
 		/* bounds on the error of the determinants of `texcoords` say nothing about those of others */
 		.known = nt_has_stored_texcoords(&r->mesh) ? NULL : &r->known,
 		.repair = r->options.repair == NMTAN_REPAIR_ON};
-	r->mark = nt_scratch_here(r->solve.scratch);
+	r->mark = nt_scratch_here(scratch);
 	return NMTAN_OK;
 }
 
@@ -151,7 +157,8 @@ static void end_request(request *r)
 		nt_struct_write(r->options.timing, &sum, sizeof sum);
 	}
 	nt_scratch_back(r->solve.scratch, r->mark);
-	nt_scratch_free(&r->own);
+	if (r->solve.scratch == &r->own)
+		nt_scratch_free(&r->own);
 }
 
 /* Counts of this call, all zero; false where the caller's struct has no size. */
