@@ -129,6 +129,20 @@ static nt_status read_number(const reader *r, mtl_number which)
 	return NT_OK;
 }
 
+/* Of two maps for one purpose that name different images the first is lost: Substance Painter writes heights as bump
+ * and normals as map_Bump. */
+static void lose_earlier(const reader *r, mtl_map which, const char *name)
+{
+	const nt_map *earlier = &r->said->maps[which].map;
+	if (!earlier->name || strcmp(earlier->name, name) == 0)
+		return;
+	char detail[160];
+	snprintf(detail, sizeof detail, "%.64s before ", r->said->maps[which].word);
+	reader at = *r;
+	at.line = earlier->line;
+	find(&at, NT_CODE_MATERIAL_LOST, detail);
+}
+
 /* A map: its options, then its file name. */
 static nt_status read_map(const reader *r, mtl_map which)
 {
@@ -148,6 +162,7 @@ static nt_status read_map(const reader *r, mtl_map which)
 		return nt_fail_memory(r->error);
 	if (!*name)
 		return NT_OK; /* "" is none, too */
+	lose_earlier(r, which, name);
 	r->said->maps[which].map = (nt_map){.name = name, .line = r->line, .placement = read.placement,
 		.channel = read.channel, .base = read.base,
 		.gain = read.gain};
