@@ -164,8 +164,7 @@ static nt_status read_map(const reader *r, mtl_map which)
 		return NT_OK; /* "" is none, too */
 	lose_earlier(r, which, name);
 	r->said->maps[which].map = (nt_map){.name = name, .line = r->line, .placement = read.placement,
-		.channel = read.channel, .base = read.base,
-		.gain = read.gain};
+		.channel = read.channel, .base = read.base, .gain = read.gain};
 	r->said->maps[which].word = word;
 	r->said->maps[which].scale = read.bump_scale;
 	return NT_OK;

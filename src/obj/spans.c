@@ -319,7 +319,7 @@ static void report_ignored(const obj_file *file)
 	}
 }
 
-/* A file without faces has nothing to put tangents on. */
+/* A file without faces has nothing to put tangents on: points and lines are sound, nothing at all is no OBJ. */
 static nt_status fail_empty(const obj_file *file, nt_error *error)
 {
 	size_t count;
@@ -328,7 +328,8 @@ static nt_status fail_empty(const obj_file *file, nt_error *error)
 		return nt_fail_line(error, NT_ERROR_INPUT, ignored_line(small, OBJ_SMALL_FACE),
 			"found a face of %zu corners and no larger one in the file, expected at least 3",
 			small->small_size);
-	return nt_fail(error, NT_ERROR_INPUT, "found no faces, expected a mesh");
+	return nt_fail(error, file->row_counts[OBJ_V] ? NT_ERROR_UNSUPPORTED : NT_ERROR_INPUT,
+		"found no faces, expected a mesh");
 }
 
 nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_error *error)
