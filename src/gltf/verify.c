@@ -335,8 +335,10 @@ static nt_status compare_block_targets(const nt_mesh *mesh, const primitive_view
 {
 	for (size_t c = 0; c < mesh->corner_count; c++) {
 		size_t source;
-		const size_t split = split_vertex(mesh, c, &source);
-		if (!targets_match(mesh, view, vertex_at(view, c), split, mesh->split.vertex_tangents + 4 * split))
+		float stored[4];
+		const size_t split = split_vertex(mesh, c, &source), vertex = vertex_at(view, c);
+		memcpy(stored, element_at(&view->tangents, vertex), sizeof stored); /* found_corner() saw that it is there */
+		if (!targets_match(mesh, view, vertex, split, stored))
 			return fail_corner(mesh, c, error);
 	}
 	return NT_OK;

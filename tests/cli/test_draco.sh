@@ -58,6 +58,20 @@ run "$WORK/layouts/plain.gltf" plain.glb
 moves='g.meshes[0].primitives[0].targets.map((t) => rows(t.POSITION))'
 is "$(gltf packed.glb "$moves")" "$(gltf plain.glb "$moves")"
 
+scene "targets add to what a decoder has of the tangents"
+for choice in sequential edgebreaker; do
+	run --draco=$choice --verify "$WORK/layouts/plain.gltf" packed.glb
+	exits 0
+	# valid tangents stay as they are decoded; what leads from them to those of the targets is made again
+	run --existing=repair --draco=off packed.glb plain.glb
+	exits 0
+	turns='g.meshes[0].primitives[0].targets.map((t) => rows(t.TANGENT))'
+	gltf packed.glb "$turns" >packed.txt
+	gltf plain.glb "$turns" >plain.txt
+	same packed.txt plain.txt
+	exists packed.txt
+done
+
 scene "a compressed primitive that becomes plain without being told so is a finding"
 run --draco=sequential "$WORK/layouts/plain.gltf" packed.glb
 exits 0

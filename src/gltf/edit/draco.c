@@ -111,6 +111,23 @@ static bool accessors_are_own(const nt_gltf_recoding *r)
 		nt_gltf_draco_owns_indices(r, indices) && !nt_json_find(nt_json_at(accessors, (size_t)indices), "bufferView");
 }
 
+/* Targets add to what a decoder has of the tangents. They keep the order of the vertices. */
+static nt_status quantize_tangents(const nt_gltf_recoding *r, nt_error *error)
+{
+	nt_pool_vertices *vertices = r->vertices;
+	const nt_draco_attribute *tangents = r->attributes;
+	float *quantized = nt_arena_alloc(&r->edits->arena, vertices->new_count, 4 * sizeof *quantized);
+	if (!quantized)
+		return nt_fail_memory(error);
+	while (tangents->data != vertices->tangents[0])
+		tangents++;
+	const nt_draco_mesh mesh = {.method = NT_DRACO_SEQUENTIAL, .point_count = vertices->new_count,
+		.face_count = r->mesh->face_count, .indices = vertices->indices[0], .attributes = tangents,
+		.attribute_count = 1};
+	vertices->tangents[0] = quantized;
+	return nt_draco_quantize(&mesh, &quantized, error);
+}
+
 /* What is in the block leaves the buffers, and what is not grows beside it. */
 static nt_status store(nt_gltf_recoding *r, uint32_t buffer, nt_error *error)
 {
@@ -121,6 +138,8 @@ static nt_status store(nt_gltf_recoding *r, uint32_t buffer, nt_error *error)
 		nt_gltf_draco_describe(r);
 		status = nt_gltf_draco_store(r, buffer, error);
 	}
+	if (!status && r->mesh->morph_count)
+		status = quantize_tangents(r, error);
 	return status ? status : nt_gltf_add_morphs(r->edits, buffer, r->vertices, 0, error);
 }
 
