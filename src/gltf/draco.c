@@ -130,7 +130,7 @@ nt_status nt_gltf_decode_ahead(nt_scene *scene, const bool *needed, const nt_rea
 {
 	nt_gltf *document = scene->source;
 	const unsigned threads = nt_thread_count(options->threads);
-	if (threads == 1 || !nt_gltf_uses(document, "KHR_draco_mesh_compression"))
+	if (threads == 1)
 		return NT_OK;
 	const decoding d = {document, nt_calloc(document->view_count, sizeof *d.blocks)};
 	if (!d.blocks)

@@ -161,6 +161,17 @@ if [ -f "$cube" ]; then
 	is "$(tangents kept.glb)" "$(tangents repair.glb)"
 fi
 
+scene "--morph=drop: a TANGENT that refers to nothing is gone like any other"
+node -e 'const g = JSON.parse(require("fs").readFileSync(process.argv[1]));
+	g.meshes[0].primitives[0].targets[0].TANGENT = g.accessors.length;
+	require("fs").writeFileSync("nothing.gltf", JSON.stringify(g))' "$ROOT/data/morph.gltf"
+run --morph=keep nothing.gltf out.glb
+exits 3
+says "refers to accessors["
+run --morph=drop nothing.gltf out.glb
+exits 0
+is "$(gltf out.glb 'g.meshes[0].primitives[0].targets.some((t) => "TANGENT" in t)')" false
+
 scene "one geometry with other morph targets is solved once, and both primitives have its tangents"
 python3 - "$ROOT/data/morph.gltf" twice.gltf <<'PY'
 import json, sys

@@ -300,7 +300,7 @@ static nt_status edit_pool(const editing *e, pool_edit *p, bool *plain)
 
 /* ---- the whole ---- */
 
-/* --morph=drop: before anything asks who uses which accessor. The accessors keep their numbers. */
+/* --morph=drop: before anything asks which accessors are used, and which are not there. They keep their numbers. */
 static void drop_target_tangents(const nt_scene *scene)
 {
 	const nt_gltf *document = scene->source;
@@ -399,10 +399,8 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 		return status;
 
 	/* Who shares what, which bytes may change, and what refers to nothing: two threads where there is much. */
-	if (options->morphs == NT_MORPH_DROP) {
-		nt_gltf_find_dangling(scene->source);
+	if (options->morphs == NT_MORPH_DROP)
 		drop_target_tangents(scene);
-	}
 	nt_arena arena = {0}, of_window = {0};
 	nt_vertex_pools pools;
 	nt_buffer_edits edits = {0};
