@@ -136,7 +136,8 @@ static nt_status check_inputs(const nt_mesh *mesh, const inputs *in, nt_error *e
 	return status;
 }
 
-/* Integer normals are normalised; float ones are taken as they are. */
+/* Integer normals are normalised, after morph targets have added to what they stand for; float ones are taken as they
+ * are. */
 static void normalise_quantized(const nt_gltf_accessor *accessor, float *normals)
 {
 	if (accessor->component_type == NT_GLTF_FLOAT)
@@ -200,11 +201,8 @@ static nt_status load_vertices(nt_scene *scene, nt_gltf *document, nt_mesh *mesh
 	nt_arena *arena = &scene->arena;
 	nt_status status = nt_gltf_floats(document, &in->positions.accessor, 3, 0, arena,
 		&mesh->positions, error);
-	if (!status && in->normals.exists) {
+	if (!status && in->normals.exists)
 		status = nt_gltf_floats(document, &in->normals.accessor, 3, 0, arena, &mesh->normals, error);
-		if (!status)
-			normalise_quantized(&in->normals.accessor, mesh->normals);
-	}
 	if (!status && in->tangents.exists)
 		status = nt_gltf_floats(document, &in->tangents.accessor, 4, 0, arena, &mesh->tangents,
 			error);
@@ -462,6 +460,8 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	/* a mesh in the world is written without its targets */
 	if (!status && !options->world && options->morphs == NT_MORPH_BAKE)
 		status = load_morphs(scene, document, mesh, primitive, error);
+	if (!status && in.normals.exists)
+		normalise_quantized(&in.normals.accessor, mesh->normals);
 	if (status && error && !error->place.object[0]) {
 		nt_place place;
 		memcpy(error->place.object, nt_mesh_place(mesh, &place)->object, sizeof error->place.object);

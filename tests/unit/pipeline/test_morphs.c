@@ -28,20 +28,30 @@ static const float rows[6][4][3] = {
 static const float texcoords[4][2] = {{0, 0}, {1, 0}, {1, -1}, {0, -1}};
 static const uint16_t indices[6] = {0, 1, 2, 0, 2, 3};
 
-static void write_input(void)
+/* integers: normals are stored as (0, 0, 64 / 127), and target 0 adds -64 / 127 to x, which is 45 degrees, too. */
+static void write_input(bool integers)
 {
+	static const int8_t short_normals[4][4] = {{0, 0, 64}, {0, 0, 64}, {0, 0, 64}, {0, 0, 64}};
+	float values[6][4][3];
+	memcpy(values, rows, sizeof values);
+	if (integers)
+		memcpy(values[1], short_normals, sizeof short_normals);
+	for (int i = 0; integers && i < 4; i++)
+		values[3][i][0] = -64 / 127.0f;
 	nt_buffer bin = {0}, json = {0};
-	nt_buffer_append(&bin, rows, 6 * sizeof rows[0]);
+	nt_buffer_append(&bin, values, sizeof values);
 	nt_buffer_append(&bin, texcoords, sizeof texcoords);
 	nt_buffer_append(&bin, indices, sizeof indices);
 	nt_buffer_text(&json, "{\"asset\":{\"version\":\"2.0\"},\"materials\":[{\"normalTexture\":{\"index\":0}}],"
 		"\"textures\":[{}],\"bufferViews\":[");
 	for (int i = 0; i < 6; i++)
-		nt_buffer_format(&json, "{\"buffer\":0,\"byteOffset\":%d,\"byteLength\":48},", 48 * i);
+		nt_buffer_format(&json, "{\"buffer\":0,\"byteOffset\":%d,\"byteLength\":48%s},", 48 * i,
+			integers && i == 1 ? ",\"byteStride\":4" : "");
 	nt_buffer_text(&json, "{\"buffer\":0,\"byteOffset\":288,\"byteLength\":32},"
 		"{\"buffer\":0,\"byteOffset\":320,\"byteLength\":12}],\"accessors\":[");
 	for (int i = 0; i < 6; i++)
-		nt_buffer_format(&json, "{\"bufferView\":%d,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},", i);
+		nt_buffer_format(&json, "{\"bufferView\":%d,\"componentType\":%s,\"count\":4,\"type\":\"VEC3\"},", i,
+			integers && i == 1 ? "5120,\"normalized\":true" : "5126");
 	nt_buffer_format(&json, "{\"bufferView\":6,\"componentType\":5126,\"count\":4,\"type\":\"VEC2\"},"
 		"{\"bufferView\":7,\"componentType\":5123,\"count\":6,\"type\":\"SCALAR\"}],"
 		"\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"TEXCOORD_0\":6},"
@@ -113,9 +123,8 @@ static void rows_are(const result *r, uint32_t index, uint32_t width, const floa
 		assert_true(fabsf(found[i] - expected[i % width]) <= 1.2e-7f);
 }
 
-static void baked_deltas_lead_to_the_moved_mesh(void **state)
+static void check_baked(void)
 {
-	(void)state;
 	const float half = sqrtf(0.5f);
 	result r;
 	convert(&r, NT_MORPH_BAKE);
@@ -123,6 +132,21 @@ static void baked_deltas_lead_to_the_moved_mesh(void **state)
 	rows_are(&r, tangent_of(&r, 0), 3, (float[]){half - 1, 0, half});
 	rows_are(&r, tangent_of(&r, 1), 3, (float[]){-2, 0, 0});
 	close_result(&r);
+}
+
+static void baked_deltas_lead_to_the_moved_mesh(void **state)
+{
+	(void)state;
+	check_baked();
+}
+
+/* A renderer adds deltas to what the integers stand for, and then makes the sum unit. */
+static void deltas_are_added_to_integer_normals_as_they_are(void **state)
+{
+	(void)state;
+	write_input(true);
+	check_baked();
+	write_input(false);
 }
 
 static void kept_targets_are_as_they_were(void **state)
@@ -231,7 +255,7 @@ static int set_up(void **state)
 {
 	if (make_folder(state))
 		return -1;
-	write_input();
+	write_input(false);
 	return 0;
 }
 
@@ -239,6 +263,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(baked_deltas_lead_to_the_moved_mesh),
+		cmocka_unit_test(deltas_are_added_to_integer_normals_as_they_are),
 		cmocka_unit_test(kept_targets_are_as_they_were),
 		cmocka_unit_test(a_hub_of_a_hundred_thousand_tangents_is_no_burden),
 		cmocka_unit_test(dropped_targets_have_none),
