@@ -95,6 +95,18 @@ static vertex_row *random_rows(size_t count, uint32_t kinds, float odd)
 	return rows;
 }
 
+/* The same with the corners of random triangles, in borrowed memory and without. */
+static void check_corners(const vertex_row *rows, size_t vertices, size_t corners, uint32_t seed)
+{
+	uint32_t *indices = malloc(corners * sizeof *indices);
+	for (size_t c = 0; c < corners; c++)
+		indices[c] = next_random(&seed) % (uint32_t)vertices;
+	const nmtan_mesh mesh = mesh_of(rows, vertices, indices, corners);
+	check(&mesh, corners, 0);
+	check(&mesh, corners, corners * 16);
+	free(indices);
+}
+
 static void corners_weld_alike_on_all_threads(void **state)
 {
 	(void)state;
@@ -147,15 +159,10 @@ static void vertices_weld_alike_on_all_threads(void **state)
 	(void)state;
 	enum { VERTICES = 5000, CORNERS = 9000 };
 	static const uint32_t kinds[] = {1, 5, 1500, 4000, 1 << 24};
-	uint32_t indices[CORNERS], random = 7;
 	for (int k = 0; k < 5; k++)
 		for (int odd = 0; odd < 2; odd++) {
 			vertex_row *rows = random_rows(VERTICES, kinds[k], odd ? NAN : -0.0f);
-			for (size_t c = 0; c < CORNERS; c++)
-				indices[c] = next_random(&random) % VERTICES;
-			const nmtan_mesh mesh = mesh_of(rows, VERTICES, indices, CORNERS);
-			check(&mesh, CORNERS, 0);
-			check(&mesh, CORNERS, CORNERS * 16);
+			check_corners(rows, VERTICES, CORNERS, 7);
 			free(rows);
 		}
 }
@@ -165,12 +172,8 @@ static void few_of_many_vertices_weld_alike(void **state)
 {
 	(void)state;
 	enum { VERTICES = 5000, CORNERS = 900 };
-	uint32_t indices[CORNERS], random = 7;
 	vertex_row *rows = random_rows(VERTICES, 300, -0.0f);
-	for (size_t c = 0; c < CORNERS; c++)
-		indices[c] = next_random(&random) % VERTICES;
-	const nmtan_mesh mesh = mesh_of(rows, VERTICES, indices, CORNERS);
-	check(&mesh, CORNERS, CORNERS * 16);
+	check_corners(rows, VERTICES, CORNERS, 7);
 	free(rows);
 }
 
@@ -178,7 +181,7 @@ static void few_of_many_vertices_weld_alike(void **state)
 static void check_doubles(size_t vertices, size_t corners, uint32_t equal, float odd)
 {
 	vertex_row *rows = malloc(vertices * sizeof *rows);
-	uint32_t *indices = malloc(corners * sizeof *indices), random = 3 + equal;
+	uint32_t random = 3 + equal;
 	for (size_t v = 0; v < vertices; v++) {
 		memcpy(rows[v], (float[8]){(float)v, 1, 0, 0, 0, 1, 0, 0}, sizeof *rows);
 		if (v > 0 && next_random(&random) % 100 < equal)
@@ -186,13 +189,8 @@ static void check_doubles(size_t vertices, size_t corners, uint32_t equal, float
 		if (next_random(&random) % 999 == 0)
 			rows[v][3] = odd;
 	}
-	for (size_t c = 0; c < corners; c++)
-		indices[c] = next_random(&random) % (uint32_t)vertices;
-	const nmtan_mesh mesh = mesh_of(rows, vertices, indices, corners);
-	check(&mesh, corners, 0);
-	check(&mesh, corners, corners * 16);
+	check_corners(rows, vertices, corners, random);
 	free(rows);
-	free(indices);
 }
 
 static void some_equal_vertices_of_many_weld_alike(void **state)
@@ -209,9 +207,6 @@ static void equal_vertices_in_one_place_weld_alike(void **state)
 	(void)state;
 	enum { VERTICES = 5000, CORNERS = 3 * 3001 };
 	static const size_t places[] = {1, 2000, VERTICES - 20};
-	uint32_t indices[CORNERS], random = 21;
-	for (size_t c = 0; c < CORNERS; c++)
-		indices[c] = next_random(&random) % VERTICES;
 	for (size_t p = 0; p < 3; p++)
 		for (int odd = 0; odd < 2; odd++) {
 			vertex_row *rows = calloc(VERTICES, sizeof *rows);
@@ -220,9 +215,7 @@ static void equal_vertices_in_one_place_weld_alike(void **state)
 			for (size_t v = places[p]; v < places[p] + 20; v += 2)
 				rows[v][0] = (float)(v / 3);
 			rows[300][4] = odd ? NAN : 0;
-			const nmtan_mesh mesh = mesh_of(rows, VERTICES, indices, CORNERS);
-			check(&mesh, CORNERS, 0);
-			check(&mesh, CORNERS, CORNERS * 16);
+			check_corners(rows, VERTICES, CORNERS, 21);
 			free(rows);
 		}
 }
@@ -242,7 +235,6 @@ static void check_one_hash(size_t same)
 	enum { VERTICES = 3000, CORNERS = 9000 };
 	const uint32_t bits = 0u - 0xec4e6c89u;
 	vertex_row *rows = calloc(VERTICES, sizeof *rows);
-	uint32_t indices[CORNERS], random = 9;
 	for (size_t v = 0; v < VERTICES; v++)
 		rows[v][0] = (float)v;
 	for (size_t i = 0; i < same; i++) {
@@ -251,11 +243,7 @@ static void check_one_hash(size_t same)
 		rows[v][6] = (float)(i - (i % 3 == 2));
 		memcpy(&rows[v][7], &bits, sizeof bits);
 	}
-	for (size_t c = 0; c < CORNERS; c++)
-		indices[c] = next_random(&random) % VERTICES;
-	const nmtan_mesh mesh = mesh_of(rows, VERTICES, indices, CORNERS);
-	check(&mesh, CORNERS, 0);
-	check(&mesh, CORNERS, CORNERS * 16);
+	check_corners(rows, VERTICES, CORNERS, 9);
 	free(rows);
 }
 
