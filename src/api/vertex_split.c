@@ -12,7 +12,6 @@
 #include <string.h>
 #include "base/clock.h"
 #include "base/parallel.h"
-#include "tangent/usable.h"
 #include "topology/corners.h"
 
 typedef struct vertex_split {

@@ -11,7 +11,6 @@
 #define NT_CLI_MESSAGES_H
 
 #include "base/buffer.h"
-#include "cli/options.h"
 #include "batch/batch.h"
 
 typedef struct nt_style {

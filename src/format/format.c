@@ -10,7 +10,6 @@
 #include "format/drc.h"
 #include "gltf/create/create.h"
 #include "gltf/document.h"
-#include "gltf/draco.h"
 #include "gltf/edit/draco_foresee.h"
 #include "gltf/edit/edit.h"
 #include "gltf/joins.h"

@@ -227,7 +227,6 @@ static void choose_set(const wishes *all, nt_gltf_shading *shading)
 		if (!shading->has_set) {
 			shading->has_set = true;
 			shading->set = all->set[slot];
-			shading->set_slot = 1u << slot;
 			shading->transform = all->transform[slot];
 			memcpy(shading->wrap, all->wrap[slot], sizeof shading->wrap);
 			shading->transforms_differ = all->mixed_transform[slot];

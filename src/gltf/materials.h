@@ -21,7 +21,6 @@ typedef struct nt_gltf_shading {
 	bool unlit;     /* all of its materials are */
 	bool has_set;
 	uint32_t set;   /* texture coordinates of the first slot in the order of enum nt_slot */
-	unsigned set_slot;
 	bool conflict;  /* another slot wants other_set */
 	uint32_t other_set;
 	uint32_t material; /* the primitive's own; NT_NONE: none */

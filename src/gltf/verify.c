@@ -12,7 +12,6 @@
 #include "base/parallel.h"
 #include "ext/draco.h"
 #include "ext/tinygltf.h"
-#include "file/relative_path.h"
 #include "gltf/document.h"
 #include "gltf/normalized.h"
 #include "gltf/primitive.h"

@@ -11,7 +11,6 @@
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
-#include "base/memory.h"
 #include "file/lookup.h"
 #include "file/relative_path.h"
 #include "file/trace.h"

@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include "report/pack/outline.h"
-#include "report/pack/varint.h"
 
 enum { MOST_POINTS = 3000 };
 

@@ -7,7 +7,6 @@
 #ifndef NT_TANGENT_FAST_PART_LANES_H
 #define NT_TANGENT_FAST_PART_LANES_H
 
-#include "base/vec.h"
 #include "tangent/fast/turn.h"
 
 typedef float float_lanes __attribute__((vector_size(4 * WIDTH)));
