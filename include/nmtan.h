@@ -32,9 +32,9 @@
  * glTF have v pointing down: pass (u, -v), which is exact, and store the w you get.
  *
  * Results: the default method is byte-identical to MikkTSpace (M. Mikkelsen, "Simulation of Wrinkled
- * Surfaces Revisited", 2008, and the reference implementation, with its edge sort completed) wherever
- * MikkTSpace's answer is usable; where it is not, it is repaired (see nmtan_repair). The same input
- * gives the same bytes on every machine, thread count and instruction set.
+ * Surfaces Revisited", 2008, and the reference implementation, whose sort of edges leaves some of them
+ * unsorted: here all are sorted) wherever MikkTSpace's answer is usable; where it is not, it is repaired (see
+ * nmtan_repair). The same input gives the same bytes on every machine, thread count and instruction set.
  *
  * Structs: one that begins with struct_bytes may gain members at its end in a later version. Initialise it
  * with its macro (NMTAN_MESH_INIT and so on), or set struct_bytes to its sizeof and all else to zero: zero is
@@ -46,8 +46,8 @@
  *
  * Memory: a call keeps no pointer to the caller's data. Inputs are only read. Outputs belong to the
  * caller and have the room that their comments state; they may not overlap inputs or each other unless a
- * comment allows it. Scratch comes from options->allocator, or malloc, and what a few triangles need
- * from the stack; it is released before the call returns, unless a workspace keeps it warm.
+ * comment allows it. Scratch comes from options->allocator, or malloc, but that of a few triangles from the
+ * stack; it is released before the call returns, unless a workspace keeps it for the next one.
  *
  * Threads: every function may be called from several threads at once, as long as they do not share
  * outputs, counts, timing or a workspace. There is no global state but a pool of threads: the first call that
@@ -135,8 +135,8 @@ typedef struct nmtan_stored_uv {
  *
  * Attribute arrays hold vertex_count rows; stride_bytes is the distance between rows, a multiple of
  * 4 and at least the row's size; 0 means tightly packed. Any float value is accepted, NaN and
- * infinities too. Normals are used as given and should have unit length: T lies across them as they are, and
- * repair asks for that only of normals with |n|^2 within 2^-11 of 1.
+ * infinities too. Normals are used as given and should have unit length. With repair T is within 2^-10 of
+ * perpendicular to a normal with |n|^2 within 2^-11 of 1; of any other it is only known not to be parallel.
  */
 typedef struct nmtan_mesh {
 	size_t struct_bytes;       /* sizeof(nmtan_mesh): see "Structs" */
@@ -188,7 +188,7 @@ typedef struct nmtan_allocator {
 	void *user;
 } nmtan_allocator;
 
-/* Scratch memory that stays warm between calls. One call at a time may use a workspace. */
+/* Scratch memory that is kept between calls. One call at a time may use a workspace. */
 typedef struct nmtan_workspace nmtan_workspace;
 
 /* A new, empty workspace that grows on use. allocator may be NULL (malloc) and is copied; what its `user`
@@ -228,7 +228,7 @@ typedef struct nmtan_options {
 /* What a solve met and what repair did, in corners unless it says otherwise. Each call writes it anew. */
 typedef struct nmtan_counts {
 	size_t struct_bytes;         /* sizeof(nmtan_counts): see "Structs" */
-	size_t degenerate_positions; /* faces with two corners at one position in each half */
+	size_t degenerate_positions; /* faces each triangle of which has two corners at one position */
 	size_t degenerate_texcoords; /* triangles whose exact UV determinant is zero */
 	size_t mirrored;             /* triangles whose exact UV determinant is negative (v up) */
 	size_t stored_differently;   /* triangles whose orientation changes when v is stored (see
