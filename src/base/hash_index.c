@@ -10,21 +10,6 @@
 
 enum { FIRST_SIZE = 64 };
 
-uint64_t nt_hash_bytes(uint64_t seed, const void *bytes, size_t size)
-{
-	const unsigned char *at = bytes;
-	uint64_t hash = seed ^ 0x9e3779b97f4a7c15u ^ size;
-	for (; size; at += 4) {
-		uint32_t word = 0;
-		const size_t part = size < sizeof word ? size : sizeof word;
-		memcpy(&word, at, part);
-		hash = (hash ^ word) * 0xff51afd7ed558ccdu;
-		hash ^= hash >> 32;
-		size -= part;
-	}
-	return hash;
-}
-
 /* Linear probing keeps numbers of one hash in the order they came, also when they are put in again in the
  * order of the old table, as long as that is read from behind a free place. */
 static void put(nt_hash_index *index, uint64_t hash, uint32_t number)

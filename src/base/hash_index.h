@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include "base/hash.h"
 
 /* Zeroed: empty. */
 typedef struct nt_hash_index {
@@ -16,9 +17,6 @@ typedef struct nt_hash_index {
 	uint32_t *numbers; /* [size] UINT32_MAX: free */
 	size_t size, count; /* size: 0 or a power of two, at least twice the count */
 } nt_hash_index;
-
-/* The hash of `size` bytes that follow those of `seed`; 0 begins. */
-uint64_t nt_hash_bytes(uint64_t seed, const void *bytes, size_t size);
 
 /* Adds a number, which is not UINT32_MAX. False, and everything as it was, when memory is exhausted. */
 bool nt_hash_index_add(nt_hash_index *index, uint64_t hash, uint32_t number);

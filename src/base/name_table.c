@@ -1,25 +1,18 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Names by number: an open-addressing hash table (FNV-1a), at most half full.
+ * Names by number: an open-addressing hash table, at most half full.
  */
 #include "base/name_table.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include "base/hash.h"
 #include "base/utf8.h"
-
-static size_t hash_text(const char *text, size_t length)
-{
-	uint64_t h = UINT64_C(0xCBF29CE484222325);
-	for (size_t i = 0; i < length; i++)
-		h = (h ^ (unsigned char)text[i]) * UINT64_C(0x100000001B3);
-	return (size_t)(h ^ h >> 32);
-}
 
 /* The slot that holds the name, or the free one where it belongs. */
 static size_t find_slot(const nt_name_table *table, const char *text, size_t length)
 {
-	size_t slot = hash_text(text, length) & (table->slot_count - 1);
+	size_t slot = (size_t)nt_hash_bytes(0, text, length) & (table->slot_count - 1);
 	while (table->slots[slot]) {
 		const nt_name *name = &table->names[table->slots[slot] - 1];
 		if (name->length == length && memcmp(name->text, text, length) == 0)

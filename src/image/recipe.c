@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/hash_index.h"
+#include "base/hash.h"
 #include "image/examine.h"
 #include "image/heights.h"
 

@@ -16,6 +16,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "base/hash.h"
 #include "base/parallel.h"
 
 enum { LINK_MOST = 8 };
@@ -30,10 +31,7 @@ typedef struct table {
 
 static size_t hash_vertex(const obj_vertex *x)
 {
-	uint64_t h = x->v * UINT64_C(0x9E3779B97F4A7C15);
-	h = (h ^ h >> 32 ^ x->t) * UINT64_C(0xD6E8FEB86659FD93);
-	h = (h ^ h >> 32 ^ x->n) * UINT64_C(0x9E3779B97F4A7C15);
-	return (size_t)(h ^ h >> 32);
+	return (size_t)nt_hash_words((uint64_t)x->v << 32 | x->t, x->n);
 }
 
 static bool same_corner(const obj_vertex *a, uint32_t v, uint32_t t, uint32_t n)

@@ -47,7 +47,7 @@ static char *page_name(const char *input, unsigned attempt)
 	nt_buffer name = {0};
 	append_stem(&name, input);
 	if (attempt)
-		nt_buffer_format(&name, "-%08x", (unsigned)(nt_hash_bytes(attempt, input, strlen(input)) >> 32));
+		nt_buffer_format(&name, "-%08x", (unsigned)(nt_hash_name(attempt, input) >> 32));
 	nt_buffer_text(&name, ".html");
 	if (name.failed)
 		nt_buffer_free(&name);

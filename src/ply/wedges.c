@@ -7,6 +7,7 @@
 #include "ply/wedges.h"
 
 #include <stdlib.h>
+#include "base/hash.h"
 
 enum wedge_state { WEDGE_UNUSED, WEDGE_HAS, WEDGE_LACKS };
 enum { FIRST_SLOTS = 1024 };
@@ -34,12 +35,9 @@ void ply_wedges_free(ply_wedges *wedges)
 
 static size_t hash_wedge(uint32_t row, const float uv[2])
 {
-	uint32_t bits[2];
-	memcpy(bits, uv, sizeof bits);
-	uint64_t h = row * UINT64_C(0x9E3779B97F4A7C15);
-	h = (h ^ h >> 32 ^ bits[0]) * UINT64_C(0xD6E8FEB86659FD93);
-	h = (h ^ h >> 32 ^ bits[1]) * UINT64_C(0xD6E8FEB86659FD93);
-	return (size_t)(h ^ h >> 32);
+	uint64_t bits;
+	memcpy(&bits, uv, sizeof bits);
+	return (size_t)nt_hash_words(bits, row);
 }
 
 static void insert_slot(ply_wedges *w, uint32_t copy)

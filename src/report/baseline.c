@@ -7,7 +7,7 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/hash_index.h"
+#include "base/hash.h"
 #include "json/json.h"
 
 static int by_number(const void *a, const void *b)

@@ -11,7 +11,7 @@
 #include <string.h>
 #include "base/angle.h"
 #include "base/dvec.h"
-#include "base/hash_index.h"
+#include "base/hash.h"
 
 static const double DEGREES = 57.29577951308232;
 

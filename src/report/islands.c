@@ -17,6 +17,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "base/hash.h"
 #include "base/parallel.h"
 
 enum { SAMPLE_COUNT = 16384, GRID_SIZE = 128 };
@@ -367,12 +368,7 @@ typedef struct uv_key {
 
 static size_t hash_key(const float *uv, uint32_t island)
 {
-	uint32_t bits[2];
-	const float normal[2] = {uv[0] + 0.0f, uv[1] + 0.0f};
-	memcpy(bits, normal, sizeof bits);
-	uint64_t hash = ((uint64_t)bits[0] << 32 | bits[1]) * UINT64_C(0x9e3779b97f4a7c15);
-	hash ^= hash >> 32;
-	return (size_t)((hash ^ island) * UINT64_C(0xd6e8feb86659fd93) >> 20);
+	return (size_t)nt_hash_words(nt_hash_floats(uv[0], uv[1]), island);
 }
 
 /* The entry of a key, or the free one where it belongs. NaN is found nowhere. */

@@ -10,6 +10,7 @@
 #include "report/surface.h"
 
 #include <string.h>
+#include "base/hash.h"
 #include "base/parallel.h"
 
 enum {
@@ -48,17 +49,9 @@ static bool same_position(const float *p, const float *q)
 	return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
 }
 
-/* All bits of a position reach the upper ones. */
 static uint32_t hash_position(const float *p)
 {
-	uint32_t bits[3];
-	for (int i = 0; i < 3; i++) {
-		const float value = p[i] + 0.0f; /* -0 becomes 0 */
-		memcpy(&bits[i], &value, sizeof bits[i]);
-	}
-	uint64_t hash = ((uint64_t)bits[0] << 32 | bits[1]) * UINT64_C(0x9e3779b97f4a7c15);
-	hash = (hash ^ hash >> 32 ^ bits[2]) * UINT64_C(0xd6e8feb86659fd93);
-	return (uint32_t)((hash ^ hash >> 32) * UINT64_C(0x9e3779b97f4a7c15) >> 32);
+	return (uint32_t)(nt_hash_words(nt_hash_floats(p[0], p[1]), nt_hash_floats(p[2], 0)) >> 32);
 }
 
 /* The upper bits of a hash; none of them are 0. */

@@ -11,6 +11,7 @@
 #include <string.h>
 #include "base/angle.h"
 #include "base/dvec.h"
+#include "base/hash.h"
 #include "topology/corners.h"
 
 /* The sum for one position and smoothing group. */
@@ -136,14 +137,7 @@ static bool face_normal(const nmtan_mesh *mesh, size_t first, size_t size, nt_dv
 
 static uint64_t hash_position(const float position[3], uint32_t group)
 {
-	uint64_t hash = group * 0x9e3779b97f4a7c15u;
-	for (int i = 0; i < 3; i++) {
-		uint32_t bits;
-		memcpy(&bits, &position[i], sizeof bits);
-		hash = (hash ^ bits) * 0xff51afd7ed558ccdu;
-		hash ^= hash >> 32;
-	}
-	return hash;
+	return nt_hash_words(nt_hash_floats(position[0], position[1]), nt_hash_floats(position[2], 0) << 32 | group);
 }
 
 static uint32_t look_up(normal_table *table, const float *p, uint32_t group)

@@ -3,6 +3,7 @@
 // Encoding with Draco. What would kill the encoder (values that are not finite), take it beyond memory, or could
 // not be decoded again (more than three points per face) is refused before; and its result is decoded and
 // compared with the input after quantization (draco_compare.cpp), since what it cannot keep it does not tell.
+#include "base/hash.h"
 #include "ext/modules/draco_parts.hpp"
 #include "ext/modules/guard.hpp"
 
@@ -180,18 +181,6 @@ std::unique_ptr<draco::Mesh> make_mesh(const nt_draco_mesh &mesh,
 	return made;
 }
 
-uint64_t hash_value(const unsigned char *bytes, size_t width)
-{
-	uint64_t hash = 0x9e3779b97f4a7c15;
-	for (size_t i = 0; i < width; i += 4) {
-		uint32_t word = 0;
-		std::memcpy(&word, bytes + i, std::min<size_t>(width - i, 4));
-		hash = (hash ^ word) * 0xff51afd7ed558ccd;
-		hash ^= hash >> 32;
-	}
-	return hash;
-}
-
 // Numbers things by their first equal, in the order in which they come. Half of the hash stands beside each number, so
 // that hardly a thing is looked at that is not equal; slots are asked for some things ahead, since each is a cache
 // miss.
@@ -254,7 +243,7 @@ bool join_values(PointAttribute &attribute, uint32_t count)
 				std::memcpy(values + width * ids[here], value, width);
 		}
 		if (p < count) {
-			hash = hash_value(values + width * p, width);
+			hash = nt_hash_bytes(0, values + width * p, width);
 			numbers.prefetch(hash);
 		}
 	}
@@ -275,8 +264,7 @@ bool points_differ(const draco::Mesh &mesh)
 	for (int i = 0; i < mesh.num_attributes(); i++)
 		for (uint32_t p = 0; p < mesh.num_points(); p++) {
 			const uint32_t id = mesh.attribute(i)->mapped_index(draco::PointIndex(p)).value();
-			hashes[p] = (hashes[p] ^ id) * 0xff51afd7ed558ccd;
-			hashes[p] ^= hashes[p] >> 32;
+			hashes[p] = nt_hash_words(hashes[p], id);
 		}
 	for (uint32_t p = 0; p < mesh.num_points(); p++) {
 		if (p + numbering::AHEAD < mesh.num_points())

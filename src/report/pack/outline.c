@@ -8,6 +8,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include "base/hash.h"
 #include "report/pack/varint.h"
 
 /* An edge at its lower point. */
@@ -31,13 +32,6 @@ typedef struct outlining {
 
 /* ---- points ---- */
 
-static size_t hash_uv(const uint32_t bits[2])
-{
-	uint64_t hash = ((uint64_t)bits[0] << 32 | bits[1]) * UINT64_C(0x9e3779b97f4a7c15);
-	hash = (hash ^ hash >> 29) * UINT64_C(0xbf58476d1ce4e5b9);
-	return (size_t)(hash >> 20);
-}
-
 /* Coordinates as bits that are equal where they are: 0 for -0. NaN equals itself here. */
 static void uv_bits(const float *uv, uint32_t bits[2])
 {
@@ -58,7 +52,7 @@ static nt_status weld_points(outlining *o)
 	for (size_t v = 0; v < count; v++) {
 		uint32_t own[2], other[2];
 		uv_bits(o->mesh->texcoords + 2 * v, own);
-		size_t slot = hash_uv(own) & (capacity - 1);
+		size_t slot = (size_t)nt_hash_words(own[0], own[1]) & (capacity - 1);
 		for (; table[slot] != NT_NONE; slot = (slot + 1) & (capacity - 1)) {
 			uv_bits(o->mesh->texcoords + 2 * (size_t)table[slot], other);
 			if (own[0] == other[0] && own[1] == other[1])

@@ -30,7 +30,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include "base/hash_index.h"
+#include "base/hash.h"
 #include "base/name_table.h"
 #include "report/pack/pack.h"
 #include "report/pack/thumb.h"
@@ -402,7 +402,7 @@ const char nt_html_mark[] = "<meta name=\"generator\" content=\"nmtan\">\n";
 const char *nt_html_part(nt_html_part_kind kind, nt_buffer *name)
 {
 	const char *text = kind == NT_HTML_STYLE ? nt_page_style : nt_page_script;
-	nt_buffer_format(name, "nmtan-%016llx.%s", (unsigned long long)nt_hash_bytes(0, text, strlen(text)),
+	nt_buffer_format(name, "nmtan-%016llx.%s", (unsigned long long)nt_hash_name(0, text),
 		kind == NT_HTML_STYLE ? "css" : "js");
 	return text;
 }

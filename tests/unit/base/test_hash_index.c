@@ -28,24 +28,11 @@ static void an_empty_index_has_nothing(void **state)
 	assert_int_equal(nt_hash_index_next(&index, 7, &at), UINT32_MAX);
 }
 
-static void hashes_tell_texts_and_lengths_apart(void **state)
-{
-	(void)state;
-	const uint64_t a = nt_hash_bytes(0, "abcde", 5);
-	assert_true(a == nt_hash_bytes(0, "abcdeX", 5));
-	assert_true(a != nt_hash_bytes(0, "abcdf", 5));
-	assert_true(a != nt_hash_bytes(1, "abcde", 5));
-	/* a zero more is another text */
-	assert_true(a != nt_hash_bytes(0, "abcde\0", 6));
-	assert_true(nt_hash_bytes(0, "", 0) != nt_hash_bytes(0, "\0", 1));
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(numbers_of_a_hash_come_in_the_order_of_adding),
 		cmocka_unit_test(an_empty_index_has_nothing),
-		cmocka_unit_test(hashes_tell_texts_and_lengths_apart),
 	};
 	return cmocka_run_group_tests_name("base/hash_index", tests, NULL, NULL);
 }

@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * Hashes for tables of what files hold: numbers and texts. Words have a key added by XOR and are multiplied to 128
+ * bits, twice (as in wyhash). The key is another in each process, so that nobody can make a file whose contents have
+ * one hash and would each be compared with all others. For tables only: what is written must not depend on it.
+ */
+#ifndef NT_BASE_HASH_H
+#define NT_BASE_HASH_H
+
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#ifdef __cplusplus
+extern "C" { /* for src/ext */
+#endif
+
+enum { NT_HASH_KEY_WORDS = 2 };
+
+extern uint64_t nt_hash_key_words[NT_HASH_KEY_WORDS];
+const uint64_t *nt_hash_make_key(void);
+
+/* The key of this process. */
+static inline const uint64_t *nt_hash_key(void)
+{
+	/* the last word is stored last, and never 0 */
+	return __atomic_load_n(&nt_hash_key_words[NT_HASH_KEY_WORDS - 1], __ATOMIC_ACQUIRE) ? nt_hash_key_words
+											      : nt_hash_make_key();
+}
+
+/* The hash of two words. Slots may be made of any of its bits: after one product grids still have up to twice as many
+ * probes as what is random (test_hash.c). */
+static inline uint64_t nt_hash_words_by(const uint64_t *key, uint64_t a, uint64_t b)
+{
+	const unsigned __int128 product = (unsigned __int128)(a ^ key[0]) * (b ^ key[1]);
+	a = (uint64_t)product ^ key[0];
+	b = (uint64_t)(product >> 64) ^ key[1];
+	const unsigned __int128 second = (unsigned __int128)a * b;
+	return (uint64_t)second ^ (uint64_t)(second >> 64);
+}
+
+static inline uint64_t nt_hash_words(uint64_t a, uint64_t b)
+{
+	return nt_hash_words_by(nt_hash_key(), a, b);
+}
+
+/* The hash of `size` bytes that follow those of `seed`; 0 begins. */
+uint64_t nt_hash_bytes(uint64_t seed, const void *bytes, size_t size);
+
+/* The bits of two floats, -0 made +0: equal floats have equal bits. */
+static inline uint64_t nt_hash_floats(float a, float b)
+{
+	const float values[2] = {a + 0.0f, b + 0.0f};
+	uint64_t bits;
+	memcpy(&bits, values, sizeof bits);
+	return bits;
+}
+
+/* A hash without a key, for names that are written. */
+uint64_t nt_hash_name(uint64_t seed, const char *name);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
