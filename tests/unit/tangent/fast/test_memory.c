@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What the fast path takes besides its output, one thread: at most 16 bytes a triangle on clean meshes, 40 on
- * others.
+ * others, and as much a face whatever quads do at a hub.
  */
 #include "test.h"
 #include <math.h>
@@ -15,12 +15,13 @@ typedef struct shape {
 	float *p, *n, *t;
 	unsigned *indices;
 	size_t vertex_count, triangle_count;
+	uint8_t *face_sizes; /* all 4, of half as many faces; NULL: triangles */
 } shape;
 
 static shape shape_make(size_t vertices, size_t triangles)
 {
 	return (shape){malloc(vertices * 12), malloc(vertices * 12), malloc(vertices * 8), malloc(triangles * 12),
-		vertices, triangles};
+		vertices, triangles, NULL};
 }
 
 static void put_vertex(shape *s, size_t v, float x, float y, float u, float v_up)
@@ -33,14 +34,15 @@ static void put_vertex(shape *s, size_t v, float x, float y, float u, float v_up
 /* Bytes a triangle; frees the shape. */
 static double solve_bytes(shape *s)
 {
-	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = s->triangle_count,
+	const size_t faces = s->face_sizes ? s->triangle_count / 2 : s->triangle_count;
+	const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = faces, .face_sizes = s->face_sizes,
 		.vertex_count = s->vertex_count, .positions = s->p,
 		.normals = s->n, .texcoords = s->t, .indices = s->indices, .position_stride_bytes = 12,
 		.normal_stride_bytes = 12, .texcoord_stride_bytes = 8};
 	float *tangents = malloc(s->triangle_count * 48);
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);
-	const nt_solve solve = {.mesh = &mesh, .corner_count = 3 * s->triangle_count, .threshold_cos = -1.0f,
+	const nt_solve solve = {.mesh = &mesh, .corner_count = (s->face_sizes ? 4 : 3) * faces, .threshold_cos = -1.0f,
 		.threads = 1, .isa = nt_cpu_best(), .scratch = &scratch, .tangents = tangents};
 	assert_int_equal(nt_mikktspace_fast(&solve), NMTAN_OK);
 	const double bytes = (double)nt_scratch_bytes(&scratch) / (double)s->triangle_count;
@@ -50,6 +52,7 @@ static double solve_bytes(shape *s)
 	free(s->n);
 	free(s->t);
 	free(s->indices);
+	free(s->face_sizes);
 	return bytes;
 }
 
@@ -76,6 +79,39 @@ static void hubs_take_at_most_40_bytes_a_triangle(void **state)
 	for (size_t flat = 0; flat < 1000; flat += 300) {
 		shape hub = make_hub(flat);
 		assert_true(solve_bytes(&hub) <= 40);
+	}
+}
+
+/* Quads at one hub whose halves have opposite directions: from the hub, the ends of both are in the direction of x, one
+ * at u = 1 and the other at u = -1; their diagonal's are at v = 1 and v = -1 by turns. */
+static shape make_opposite_quads(size_t quads)
+{
+	shape s = shape_make(2 * quads + 2, 2 * quads);
+	s.face_sizes = malloc(quads);
+	memset(s.face_sizes, 4, quads);
+	put_vertex(&s, 0, 0, 0, 0, 0);
+	for (size_t i = 0; i <= quads; i++) {
+		const float side = i % 2 ? -1 : 1;
+		put_vertex(&s, 2 * i + 1, 1 + (float)i / 65536, 0, side, 0);
+		const unsigned end = (unsigned)(2 * i + 1);
+		if (i < quads) {
+			put_vertex(&s, end + 1, (float)(i % 7), 1 + (float)i / 65536, 0, side);
+			memcpy(s.indices + 4 * i, (unsigned[4]){0, end, end + 1, end + 2}, 16);
+		}
+	}
+	return s;
+}
+
+/* Each half has a sum of its own, of half the hub's corners: that takes time, but no memory, where MikkTSpace has a
+ * list of these corners for each. Beside the 40 bytes there are a vertex a triangle (a row of 32), the directions of
+ * members, their sums and the results of halves (40 each), numbers (24 at most), and what the scratch's blocks have
+ * left. */
+static void opposite_quads_take_memory_by_their_number(void **state)
+{
+	(void)state;
+	for (size_t quads = 4000; quads < 10000; quads *= 2) {
+		shape hub = make_opposite_quads(quads);
+		assert_true(solve_bytes(&hub) <= 40 + 32 + 3 * 40 + 24 + 40);
 	}
 }
 
@@ -118,6 +154,7 @@ int main(void)
 		cmocka_unit_test(hubs_take_at_most_40_bytes_a_triangle),
 		cmocka_unit_test(clean_meshes_take_at_most_16_bytes_a_triangle),
 		cmocka_unit_test(mirrored_meshes_take_at_most_40_bytes_a_triangle),
+		cmocka_unit_test(opposite_quads_take_memory_by_their_number),
 	};
 	return cmocka_run_group_tests_name("tangent/fast/memory", tests, NULL, NULL);
 }
