@@ -437,9 +437,11 @@ static void every_failed_allocation_is_told(void **state)
 {
 	(void)state;
 	enum { COUNT = 60000 };
-	static const uint32_t kinds[] = {5, 20000, 1 << 26};
-	for (int k = 0; k < 3; k++) {
+	static const uint32_t kinds[] = {5, 20000, 1 << 26, 1 << 26};
+	for (int k = 0; k < 4; k++) {
 		vertex_row *rows = random_rows(COUNT, kinds[k], NAN);
+		for (uint32_t i = 0; i < COUNT && k == 3; i++) /* of one hash, a third twice */
+			make_row_of_hash(0x123456789abcdef0u, i - (i % 3 == 2), (nt_weld_row *)&rows[i]);
 		uint32_t *indices = malloc(COUNT * sizeof *indices);
 		for (uint32_t c = 0; c < COUNT; c++)
 			indices[c] = c;
