@@ -174,10 +174,11 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"to them.",
 		"Set their precision with --draco-bits, or use --draco=off.",
 		"converting any glTF with --draco=sequential --precision=byte"),
-	ROW(NOT_VERIFIED, WARNING, "the output could not be verified, since the input has a fault",
-		"--verify reads the output with tinygltf, which refuses it. It refuses the input too, so the fault was "
-		"there before; nmtan keeps what has nothing to do with tangents. The detail has tinygltf's message.",
-		"Correct the input if programs that use tinygltf are to read it.",
+	ROW(NOT_VERIFIED, WARNING, "the output could not be verified, since tinygltf refuses the input, too",
+		"--verify reads the output with tinygltf, which refuses it. It refuses the input too, so the reason was "
+		"there before; nmtan keeps what has nothing to do with tangents. The detail has tinygltf's message. It refuses "
+		"some valid documents as well, such as those with KHR_animation_pointer.",
+		"Correct the input if it has a fault and programs that use tinygltf are to read it.",
 		"a glTF with a skin without inverseBindMatrices, --verify"),
 
 	ROW(UV_MIRROR_SEAM, INFO,
@@ -385,7 +386,7 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Convert the file with nmtan, which writes the deltas.",
 		"a primitive with TANGENT and a target with POSITION only"),
 	ROW(TAN_MORPH_TURNED, WARNING,
-		"{count} {triangle is|triangles are} turned to the other side of their normals by a morph target",
+		"{count} {triangle is|triangles are} turned to the other side of {its|their} normals by a morph target",
 		"Morph targets have no w of their own. Where one turns a triangle over and its normals do not follow, "
 		"the bitangent that w gives runs the wrong way, and bumps look like dents while the target acts. The "
 		"finding counts a triangle once for each target that turns it.",
