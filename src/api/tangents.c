@@ -54,7 +54,8 @@ static nmtan_status run_method(const nt_solve *solve, nmtan_method method, size_
 {
 	switch (method) {
 	case NMTAN_METHOD_MIKKTSPACE:
-		return solve->one_by_one || !nt_fast_can(solve) ? nt_mikktspace_scalar(solve) : nt_mikktspace_fast(solve);
+		return solve->one_by_one || !nt_fast_can(solve)
+			? nt_mikktspace_scalar(solve) : nt_mikktspace_fast(solve);
 	case NMTAN_METHOD_AREA:
 		return nt_area(solve);
 	case NMTAN_METHOD_LENGYEL:
@@ -128,7 +129,8 @@ static nmtan_status begin_request(request *r, const nmtan_mesh *mesh, const nmta
 		status = nt_check_faces(&r->mesh, r->options.threads, &corner_count);
 	if (status)
 		return status;
-	nt_scratch *scratch = r->options.workspace ? &r->options.workspace->scratch : begin_own_scratch(r, corner_count);
+	nt_scratch *scratch = r->options.workspace
+		? &r->options.workspace->scratch : begin_own_scratch(r, corner_count);
 	r->known = (nt_known){.flags = NULL};
 	r->solve = (nt_solve){.mesh = &r->mesh,
 		.corner_count = corner_count,
@@ -242,7 +244,8 @@ nmtan_status nt_vertex_tangents(const nmtan_mesh *mesh, const nmtan_options *opt
 	r.solve.passed = wanted->passed;
 	r.solve.user = wanted->user;
 	r.solve.spare = to.vertex_tangents; /* the split fills it at the end */
-	r.solve.spare_bytes = (r.mesh.vertex_count + (wanted->lends_copies ? to.source_capacity : 0)) * 4 * sizeof(float);
+	r.solve.spare_bytes =
+		(r.mesh.vertex_count + (wanted->lends_copies ? to.source_capacity : 0)) * 4 * sizeof(float);
 	r.solve.tangents = nt_scratch_alloc(r.solve.scratch, r.solve.corner_count, 4 * sizeof(float));
 	status = r.solve.tangents ? nt_splitter_begin(&splitter, &r.mesh, r.solve.corner_count, &to,
 					    r.solve.scratch)

@@ -108,7 +108,8 @@ const char *nt_sink_name(const nt_sink *sink, bool interim)
 
 nt_status nt_output_claim(nt_output *output, const char *name, const char *digest, const char *before, nt_error *error)
 {
-	if (!nt_grow((void **)&output->claims, &output->claim_capacity, output->claim_count + 1, sizeof *output->claims))
+	if (!nt_grow((void **)&output->claims, &output->claim_capacity, output->claim_count + 1,
+		sizeof *output->claims))
 		return nt_fail_memory(error);
 	nt_output_claim_row *row = &output->claims[output->claim_count++];
 	*row = (nt_output_claim_row){strdup(name), strdup(digest), before ? strdup(before) : NULL};
@@ -229,7 +230,8 @@ static void note_superseded(const nt_output *output, nt_sink *sink)
 	const char *chosen = nt_last_part(sink->target);
 	for (size_t i = 0; i < output->claim_count && !output->main->in_place; i++) {
 		const nt_output_claim_row *claim = &output->claims[i];
-		if (!is_made_for(claim, sink) || strcmp(claim->name, chosen) == 0 || strlen(claim->digest) >= NT_DIGEST_TEXT)
+		if (!is_made_for(claim, sink) || strcmp(claim->name, chosen) == 0 ||
+			strlen(claim->digest) >= NT_DIGEST_TEXT)
 			continue;
 		sink->supersedes = true;
 		strcpy(sink->before, claim->digest);
@@ -244,8 +246,10 @@ typedef enum verdict { FREE, EQUAL, OTHER } verdict;
 static const nt_sink *find_in_set(const nt_output *output, const nt_sink *sink, const char *name)
 {
 	for (const nt_sink *other = output->first; other; other = other->next) {
-		const bool named = nt_sink_is_companion(other) ? other->settled && other != sink : other->target != NULL;
-		if (named && (strcmp(nt_last_part(nt_sink_is_companion(other) ? other->target : other->path), name) == 0 ||
+		const bool named = nt_sink_is_companion(other)
+			? other->settled && other != sink : other->target != NULL;
+		if (named &&
+			(strcmp(nt_last_part(nt_sink_is_companion(other) ? other->target : other->path), name) == 0 ||
 				     (other->interim && strcmp(nt_last_part(other->interim), name) == 0)))
 			return other;
 	}

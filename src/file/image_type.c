@@ -54,7 +54,8 @@ static bool is_tga(const unsigned char *bytes, size_t size)
 		return false;
 	const unsigned map = bytes[1], type = bytes[2] & ~8u, depth = bytes[16];
 	const bool mapped = type == 1;
-	return (bytes[2] == type || bytes[2] == (type | 8)) && type >= 1 && type <= 3 && map <= 1 && (!mapped || map == 1) &&
+	return (bytes[2] == type || bytes[2] == (type | 8)) && type >= 1 && type <= 3 && map <= 1 &&
+		(!mapped || map == 1) &&
 	       (bytes[12] | bytes[13]) && (bytes[14] | bytes[15]) && (bytes[17] & 0xc0) == 0 &&
 	       (depth == 8 || depth == 15 || depth == 16 || ((depth == 24 || depth == 32) && !mapped));
 }

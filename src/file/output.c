@@ -343,7 +343,8 @@ static nt_status note_names(const nt_output *output, nt_error *error)
 		const char *wanted = nt_last_part(sink->path);
 		if (nt_sink_is_companion(sink) && strcmp(wanted, nt_sink_name(sink, false)) != 0 &&
 			count++ < NAMES_SHOWN)
-			nt_buffer_format(note, "; %s is another file, so ours is %s", wanted, nt_sink_name(sink, false));
+			nt_buffer_format(note, "; %s is another file, so ours is %s", wanted,
+				nt_sink_name(sink, false));
 		if (sink->interim)
 			later += strlen(nt_sink_name(sink, false)) + strlen(nt_sink_name(sink, true)) + OTHER_WORDS;
 	}
@@ -388,7 +389,8 @@ static void note_written(const nt_output *output)
 	struct stat status;
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
 		if (sink->target && sink->role != NT_ROLE_INTERIM && stat(present_path(sink), &status) == 0)
-			nt_trace_written(nt_sink_is_companion(sink) ? sink->target : sink->path, present_path(sink), &status);
+			nt_trace_written(nt_sink_is_companion(sink) ? sink->target : sink->path,
+				present_path(sink), &status);
 }
 
 nt_status nt_output_commit(nt_output *output, nt_error *error)

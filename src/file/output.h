@@ -27,7 +27,8 @@ typedef enum nt_role {
 
 /* What became of a set, beyond its status. */
 typedef struct nt_output_result {
-	bool again;     /* the commit failed because a name was taken meanwhile: with the names chosen anew it would not */
+	bool again;     /* the commit failed because a name was taken meanwhile: with the names chosen anew it
+	                   would not */
 	bool left;      /* the main file had these bytes already and was left as it is */
 	nt_buffer note; /* which companions do not have their own names, and why: "; ..." */
 } nt_output_result;
@@ -45,7 +46,8 @@ typedef struct nt_output_options {
 	bool sync;       /* whatever a power cut leaves, the main file is whole: files and folders are synchronised */
 	bool dry_run;    /* refuse what would be refused, count what would be written, write nothing */
 	unsigned threads; /* that may take part in writing; 0: one per processor */
-	const char *in_place; /* this file may be replaced by a main file, and keeps its mode, owner and attributes; NULL: none */
+	const char *in_place; /* this file may be replaced by a main file, and keeps its mode, owner and
+	                         attributes; NULL: none */
 	nt_output_result *result; /* NULL: not wanted */
 	/* Calls nt_output_claim() for what the main file at `path`, which is about to be replaced, says of its
 	 * companions; NULL: nothing is known. NT_OK, also when it says nothing or cannot be read, or

@@ -71,7 +71,8 @@ static nt_status write_parts(nt_sink *sink, struct iovec parts[2], nt_error *err
 	while (parts[0].iov_len || parts[1].iov_len) {
 		const struct iovec *const first = parts[0].iov_len ? parts : parts + 1;
 		const int left = parts[0].iov_len ? 2 : 1;
-		const ssize_t count = sink->is_part ? pwritev(sink->fd, first, left, sink->at) : writev(sink->fd, first, left);
+		const ssize_t count = sink->is_part
+			? pwritev(sink->fd, first, left, sink->at) : writev(sink->fd, first, left);
 		if (count >= 0) {
 			advance(parts, (size_t)count);
 			sink->at += count;
@@ -284,7 +285,8 @@ nt_status nt_sink_set_aside(nt_sink *sink, uint64_t size, nt_sink **part, nt_err
 		free(buffer);
 		return nt_fail_memory(error);
 	}
-	*added = (nt_sink){.fd = sink->fd, .shared_fd = true, .is_part = true, .at = (off_t)sink->size, .path = sink->path,
+	*added = (nt_sink){.fd = sink->fd, .shared_fd = true, .is_part = true, .at = (off_t)sink->size,
+		.path = sink->path,
 		.buffer = buffer};
 	*part = added;
 	sink->size += size;

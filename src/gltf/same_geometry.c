@@ -140,7 +140,8 @@ static size_t find_sharing(const same_job *job, uint32_t *positions, uint32_t *u
 	const nt_scene *scene = job->scene;
 	size_t count = 0;
 	for (size_t i = 0; i < scene->mesh_count; i++) {
-		positions[i] = is_wanted(&scene->meshes[i], job->options) ? positions_of(job, &scene->meshes[i]) : NT_NONE;
+		positions[i] = is_wanted(&scene->meshes[i], job->options)
+			? positions_of(job, &scene->meshes[i]) : NT_NONE;
 		if (positions[i] != NT_NONE)
 			users[positions[i]]++;
 	}

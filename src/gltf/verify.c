@@ -336,7 +336,8 @@ static nt_status compare_block_targets(const nt_mesh *mesh, const primitive_view
 		size_t source;
 		float stored[4];
 		const size_t split = split_vertex(mesh, c, &source), vertex = vertex_at(view, c);
-		memcpy(stored, element_at(&view->tangents, vertex), sizeof stored); /* found_corner() saw that it is there */
+		/* found_corner() saw that it is there */
+		memcpy(stored, element_at(&view->tangents, vertex), sizeof stored);
 		if (!targets_match(mesh, view, vertex, split, stored))
 			return fail_corner(mesh, c, error);
 	}

@@ -175,9 +175,10 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Set their precision with --draco-bits, or use --draco=off.",
 		"converting any glTF with --draco=sequential --precision=byte"),
 	ROW(NOT_VERIFIED, WARNING, "the output could not be verified, since tinygltf refuses the input, too",
-		"--verify reads the output with tinygltf, which refuses it. It refuses the input too, so the reason was "
-		"there before; nmtan keeps what has nothing to do with tangents. The detail has tinygltf's message. It refuses "
-		"some valid documents as well, such as those with KHR_animation_pointer.",
+		"--verify reads the output with tinygltf, which refuses it. It refuses the input too, so the "
+		"reason was there before; nmtan keeps what has nothing to do with tangents. The detail has "
+		"tinygltf's message. It refuses some valid documents as well, such as those with "
+		"KHR_animation_pointer.",
 		"Correct the input if it has a fault and programs that use tinygltf are to read it.",
 		"a glTF with a skin without inverseBindMatrices, --verify"),
 
@@ -247,8 +248,8 @@ static const nt_code_row code_table[NT_CODE_COUNT] = {
 		"Unwrap the mesh if it is to be normal mapped; else --only=needed, or --ignore=UV_MISSING.",
 		"an OBJ with two objects of which one has faces like 1 2 3"),
 	ROW(UV_NOT_THERE, WARNING, "faces refer to texture coordinates, but the file has none",
-		"The file has faces with numbers of texture coordinates and not a single vt. It is read as if the numbers were not "
-		"there, so that it gets no tangents.",
+		"The file has faces with numbers of texture coordinates and not a single vt. It is read as if "
+		"the numbers were not there, so that it gets no tangents.",
 		"Export the texture coordinates, or faces without them.",
 		"an OBJ triangle of corners like 1/1 without vt"),
 

@@ -122,7 +122,8 @@ static bool make_few(nt_welder *w, few *f, unsigned bits)
 	if (!memory)
 		return false;
 	*f = (few){.rows = w->rows, .firsts = (uint16_t *)memory, .hashes = (uint32_t *)(memory + places),
-		.list = (uint32_t *)(memory + places + hashes), .others = (uint32_t *)(memory + places + hashes + listed)};
+		.list = (uint32_t *)(memory + places + hashes),
+		.others = (uint32_t *)(memory + places + hashes + listed)};
 	clear(f, 0, bits);
 	return true;
 }

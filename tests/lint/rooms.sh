@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: MIT
 #
 # rooms.sh [BUILD_DIR]: make lint. Who may use whom (rooms.py), SPDX lines, nothing that prints or exits outside
-# src/cli, C++ in src/ext alone, comments of at most 120 columns, no addresses of package registries or paths of
-# one machine, and with BUILD_DIR what the libraries show and need. Prints one line per fault.
+# src/cli, C++ in src/ext alone, lines of C and C++ of at most 120 columns, no addresses of package registries or
+# paths of one machine, and with BUILD_DIR what the libraries show and need. Prints one line per fault.
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 faults=0
@@ -20,9 +20,9 @@ while IFS= read -r file; do
 done < <(find src -name '*.[ch]pp' ! -path 'src/ext/*' | sort)
 
 while IFS= read -r place; do
-	fault "$place: a comment of more than 120 columns"
+	fault "$place: a line of more than 120 columns"
 done < <(git ls-files -z '*.c' '*.h' '*.cpp' '*.hpp' 2>/dev/null | xargs -0r awk '
-	length > 64 { gsub(/\t/, "        "); if (length > 120 && /^ *(\/\*|\*[ \/]|\/\/)/) print FILENAME ":" FNR }')
+	length > 64 { gsub(/\t/, "        "); if (length > 120) print FILENAME ":" FNR }')
 
 calls='(^|[^a-zA-Z0-9_.>])(abort|exit|_exit|_Exit|quick_exit|printf|puts|putchar|perror|vprintf)[[:space:]]*\(|fprintf[[:space:]]*\([[:space:]]*std|std::(cout|cerr)'
 while IFS= read -r file; do

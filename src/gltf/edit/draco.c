@@ -108,7 +108,8 @@ static bool accessors_are_own(const nt_gltf_recoding *r)
 	}
 	uint64_t indices;
 	return nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &indices) &&
-		nt_gltf_draco_owns_indices(r, indices) && !nt_json_find(nt_json_at(accessors, (size_t)indices), "bufferView");
+		nt_gltf_draco_owns_indices(r, indices) &&
+		!nt_json_find(nt_json_at(accessors, (size_t)indices), "bufferView");
 }
 
 /* Targets add to what a decoder has of the tangents. They keep the order of the vertices. */

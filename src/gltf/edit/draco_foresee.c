@@ -60,8 +60,8 @@ static nt_status find_faces(foreseeing *f, const nt_gltf_recoding *r, nt_mesh *m
 	if (nt_json_get_uint64(nt_json_find(r->primitive, "indices"), &index)) {
 		status = nt_gltf_get_accessor(r->document, index, "", &accessor, error);
 		if (!status)
-			status = nt_gltf_indices(r->document, &accessor, mesh->vertex_count, f->options.threads, &f->of_pool,
-				&indices, error);
+			status = nt_gltf_indices(r->document, &accessor, mesh->vertex_count, f->options.threads,
+				&f->of_pool, &indices, error);
 	}
 	mesh->indices = indices;
 	mesh->face_count = (size_t)accessor.count / 3;
@@ -121,7 +121,8 @@ static void clear_shared(nt_scene *scene)
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
 		/* a copy in a join is none of the scene's, and is not marked */
-		if (mesh->same_as >= scene->meshes && mesh->same_as < scene->meshes + scene->mesh_count && !mesh->quantized)
+		if (mesh->same_as >= scene->meshes && mesh->same_as < scene->meshes + scene->mesh_count &&
+			!mesh->quantized)
 			scene->meshes[mesh->same_as - scene->meshes].quantized = NT_QUANTIZED_NOT;
 	}
 }

@@ -111,7 +111,8 @@ static nt_status gather_attribute(nt_gltf_recoding *r, const char *name, uint64_
 	nt_draco_attribute attribute = {.unique_id = (uint32_t)r->attribute_count,
 		.kind = kind_of(name), .component_type = (int)accessor.component_type,
 		.components = (int)accessor.components, .normalized = accessor.normalized,
-		.quantization = nt_gltf_draco_grid(r->document, accessor.index, is_float ? bits_of(r->options, name) : 0),
+		.quantization = nt_gltf_draco_grid(r->document, accessor.index,
+			is_float ? bits_of(r->options, name) : 0),
 		.stride_bytes = accessor.stride, .copied = r->vertices->sources, .own_count = r->vertices->old_count};
 	const unsigned char *elements = NULL;
 	const nt_status status = nt_gltf_elements(r->document, &accessor, &elements, error);
@@ -271,7 +272,8 @@ static nt_status remove_runs(const nt_gltf_recoding *r, run *runs, size_t count,
 		for (next = first + 1; next < count && runs[next].buffer == runs[first].buffer &&
 			runs[next].begin < end; next++)
 			end = runs[next].end > end ? runs[next].end : end;
-		if (!r->edits->is_free[runs[first].view] && can_go(&r->edits->users, runs + first, next - first, begin, end))
+		if (!r->edits->is_free[runs[first].view] &&
+			can_go(&r->edits->users, runs + first, next - first, begin, end))
 			status = nt_edits_replace(r->edits, runs[first].buffer, begin, end - begin,
 				(const unsigned char *)"", 0, error);
 	}

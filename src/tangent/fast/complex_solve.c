@@ -368,7 +368,8 @@ static void average_parts(const nt_complex *c, const nt_batch *b, const part *p,
 	const unsigned threads = p->count > SOLVED ? c->fast->solve->threads : 1;
 	if (NT_SHORT_WAYS) {
 		list_directions(c, p, d);
-		nt_parallel_ranges(threads, (d->count + NT_LANES - 1) / NT_LANES, 1, sum_directions, &(sum_context){c, p, d});
+		nt_parallel_ranges(threads, (d->count + NT_LANES - 1) / NT_LANES, 1, sum_directions,
+			&(sum_context){c, p, d});
 	}
 	for (size_t i = 0; i < p->count; i++) {
 		/* a member without a frame belongs to all */

@@ -38,7 +38,8 @@ static void few_frames(const nt_fast *fast, nt_record *add, nt_frames *frames)
 		const size_t left = fast->triangle_count - first;
 		count = left < NT_LANES ? left : NT_LANES;
 		const uint32_t *ids = fast->triangles.ids + 3 * first;
-		if (count <= 4 && offset == 0.0f && solve_four(fast->rows, ids, count, add + 3 * first, frames + first / NT_LANES, &out))
+		if (count <= 4 && offset == 0.0f &&
+			solve_four(fast->rows, ids, count, add + 3 * first, frames + first / NT_LANES, &out))
 			classify_plain(fast->flags + first, count, &out);
 		else
 			solve_some(fast, first, count, offset, add + 3 * first, frames + first / NT_LANES);
@@ -91,8 +92,8 @@ static inline void store_four_groups(const record_lanes *r, nt_record *results)
 }
 
 /* Up to `used` groups: whole vectors, or `four` in vectors of four. */
-static inline __attribute__((always_inline)) void finish_groups(const nt_weld_row *rows, const uint32_t *vertices, size_t count,
-	size_t used, bool four, nt_record *results)
+static inline __attribute__((always_inline)) void finish_groups(const nt_weld_row *rows,
+	const uint32_t *vertices, size_t count, size_t used, bool four, nt_record *results)
 {
 	const float *normals_at[NT_LANES];
 	float normals[3][NT_LANES];

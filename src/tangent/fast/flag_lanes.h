@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The flags of 16 triangles (parts.h), of their frames: orientation, "any", degenerate,
-     uncertain. Included by kernel.h.
+ * The flags of 16 triangles (parts.h), of their frames: orientation, "any", degenerate, uncertain. Included by
+ * kernel.h.
  */
 #ifndef NT_TANGENT_FAST_FLAG_LANES_H
 #define NT_TANGENT_FAST_FLAG_LANES_H

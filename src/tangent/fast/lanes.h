@@ -162,14 +162,17 @@ static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *restrict
 
 #if WIDTH > 4
 /* Of vectors whose parts are all the same, parts of four different ones. */
-static inline __attribute__((always_inline)) void join_parts(const float *a, const float *b, const float *c, const float *d,
-	float to[NT_LANES])
+static inline __attribute__((always_inline)) void join_parts(const float *a, const float *b, const float *c,
+	const float *d, float to[NT_LANES])
 {
 	const lanes from[4] = {load_lanes(a), load_lanes(b), load_lanes(c), load_lanes(d)};
 #if WIDTH == 16
-	const lanes ab = __builtin_shufflevector(from[0], from[1], 0, 1, 2, 3, 20, 21, 22, 23, 8, 9, 10, 11, 12, 13, 14, 15);
-	const lanes cd = __builtin_shufflevector(from[2], from[3], 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 28, 29, 30, 31);
-	const lanes joined[] = {__builtin_shufflevector(ab, cd, 0, 1, 2, 3, 4, 5, 6, 7, 24, 25, 26, 27, 28, 29, 30, 31)};
+	const lanes ab =
+		__builtin_shufflevector(from[0], from[1], 0, 1, 2, 3, 20, 21, 22, 23, 8, 9, 10, 11, 12, 13, 14, 15);
+	const lanes cd =
+		__builtin_shufflevector(from[2], from[3], 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 28, 29, 30, 31);
+	const lanes joined[] = {__builtin_shufflevector(ab, cd, 0, 1, 2, 3, 4, 5, 6, 7, 24, 25, 26, 27, 28, 29,
+		30, 31)};
 #else
 	const lanes joined[] = {__builtin_shufflevector(from[0], from[1], 0, 1, 2, 3, 12, 13, 14, 15),
 		__builtin_shufflevector(from[2], from[3], 0, 1, 2, 3, 12, 13, 14, 15)};
@@ -180,8 +183,8 @@ static inline __attribute__((always_inline)) void join_parts(const float *a, con
 /* Up to four triangles: lane 4 k + i has corner k of triangle i, and all four parts have the frames. The last part
  * repeats the first one, and triangles behind the last one repeat it. False where not all of them are plain. `add`
  * receives what corners add, in order, and one record more; `out` areas and doubts alone. */
-static bool __attribute__((noinline)) solve_four(const nt_weld_row *rows, const uint32_t *ids, size_t count, nt_record *add,
-	nt_frames *frames, lanes_out *restrict out)
+static bool __attribute__((noinline)) solve_four(const nt_weld_row *rows, const uint32_t *ids, size_t count,
+	nt_record *add, nt_frames *frames, lanes_out *restrict out)
 {
 	lanes_in in;
 	lanes_edges edges;
@@ -231,8 +234,8 @@ static inline bool solve_few(const nt_weld_row *rows, const uint32_t *ids, size_
 	return true;
 }
 #else
-static inline bool solve_four(const nt_weld_row *rows, const uint32_t *ids, size_t count, nt_record *add, nt_frames *frames,
-	lanes_out *out)
+static inline bool solve_four(const nt_weld_row *rows, const uint32_t *ids, size_t count, nt_record *add,
+	nt_frames *frames, lanes_out *out)
 {
 	(void)rows, (void)ids, (void)count, (void)add, (void)frames, (void)out;
 	return false;

@@ -59,8 +59,8 @@ typedef struct nt_fast {
 	nt_record_more *more[2];     /* [vertex_count] the same for the optional outputs */
 	bool wants_more;
 	bool sparse;             /* step 6 leaves out corners whose result is their record */
-	uint8_t *open;           /* [blocks] of NT_LANES vertices, of a sparse solve: whether a record is not the result, or
-	                            not usable */
+	uint8_t *open;           /* [blocks] of NT_LANES vertices, of a sparse solve: whether a record is not the
+	                            result, or not usable */
 	bool sound;              /* of few triangles: none is a suspect, and so many are mirrored: */
 	size_t mirrored;
 	bool scattered;          /* neighbouring triangles have vertices far apart: prefetch */

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * 16 records by component: loaded, normalised, judged by the rules of tangent/usable.h,
-     stored. Included by settle.h and
- * few_lanes.h.
+ * 16 records by component: loaded, normalised, judged by the rules of tangent/usable.h, stored. Included by settle.h
+ * and few_lanes.h.
  */
 #ifndef NT_TANGENT_FAST_RECORD_LANES_H
 #define NT_TANGENT_FAST_RECORD_LANES_H

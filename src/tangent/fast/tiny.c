@@ -158,7 +158,8 @@ static void pair_edges(tiny *s)
 		const uint8_t first = (uint8_t)(4 * t);
 		const size_t u = s->ids[3 * t], v = s->ids[3 * t + 1], w = s->ids[3 * t + 2];
 		pair_edge(c, &waiting[u * n + v], &waiting[v * n + u], (edge){first, (uint8_t)(first + 1)});
-		pair_edge(c, &waiting[v * n + w], &waiting[w * n + v], (edge){(uint8_t)(first + 1), (uint8_t)(first + 2)});
+		pair_edge(c, &waiting[v * n + w], &waiting[w * n + v],
+			(edge){(uint8_t)(first + 1), (uint8_t)(first + 2)});
 		pair_edge(c, &waiting[w * n + u], &waiting[u * n + w], (edge){(uint8_t)(first + 2), first});
 	}
 }
@@ -208,7 +209,8 @@ static void add_corners(tiny *s)
 	/* lanes behind the last group, too: denormals that lie there take a microsecond */
 	const size_t lanes = s->group_count <= 4 ? 4 : (s->group_count + NT_LANES - 1) / NT_LANES * NT_LANES;
 	for (size_t g = 0; g < lanes; g++)
-		memcpy(&s->results[g], &nothing, sizeof nothing); /* in one store, which can be read before it is done */
+		/* in one store, which can be read before it is done */
+		memcpy(&s->results[g], &nothing, sizeof nothing);
 	for (size_t t = 0; t < fast->triangle_count; t++)
 		for (size_t k = 0; k < 3 && !(fast->flags[t] & (NT_TRIANGLE_DEGENERATE | NT_TRIANGLE_ANY)); k++) {
 			nt_int4 add;
@@ -287,7 +289,8 @@ static void vouch_for_groups(tiny *s)
 static nmtan_status solve_complex(tiny *s)
 {
 	uint32_t corners[CORNERS], groups[CORNERS], across[2 * CORNERS];
-	const nt_complex c = {.fast = s->fast, .kernels = s->kernels, .corners = corners, .group = groups, .across = across};
+	const nt_complex c = {.fast = s->fast, .kernels = s->kernels, .corners = corners, .group = groups,
+		.across = across};
 	nt_batch b = {.group_count = (uint32_t)s->group_count};
 	for (uint32_t i = 0; i < 4 * s->fast->triangle_count; i++) {
 		const uint8_t g = s->corners.group[i];

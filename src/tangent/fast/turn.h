@@ -206,8 +206,8 @@ static inline __attribute__((always_inline)) void gather_corner(const nt_weld_ro
 
 #if WIDTH > 4
 /* The rows of the corners of `count` triangles of one to four, by component, the same ones in each part. */
-static inline __attribute__((always_inline)) void gather_four(const nt_weld_row *rows, const uint32_t *ids, size_t count,
-	float (*restrict out)[8][NT_LANES])
+static inline __attribute__((always_inline)) void gather_four(const nt_weld_row *rows, const uint32_t *ids,
+	size_t count, float (*restrict out)[8][NT_LANES])
 {
 	const float *at[3][4];
 	for (size_t i = 0; i < 4; i++)

@@ -54,12 +54,15 @@ static void a_second_call_has_no_fresh_pages(void **state)
 	float *rows = calloc(MOST + 2, 8 * sizeof *rows), *tangents = malloc((size_t)MOST * 48);
 	uint32_t *corners = malloc((size_t)MOST * 12);
 	for (uint32_t i = 0; i < MOST + 2; i++)
-		memcpy(rows + 8 * i, (float[8]){(float)(i / 2), (float)(i % 2), 0, 0, 0, 1, (float)(i / 2 % 2), (float)(i % 2)}, 32);
+		memcpy(rows + 8 * i,
+			(float[8]){(float)(i / 2), (float)(i % 2), 0, 0, 0, 1, (float)(i / 2 % 2), (float)(i % 2)}, 32);
 	for (uint32_t i = 0; i < MOST; i++)
 		memcpy(corners + 3 * i, (uint32_t[3]){i, i % 2 ? i + 2 : i + 1, i % 2 ? i + 1 : i + 2}, 12);
 	for (size_t triangles = 500; triangles <= MOST; triangles = triangles * 3 / 2) {
-		const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = triangles, .vertex_count = triangles + 2,
-			.indices = corners, .positions = rows, .position_stride_bytes = 32, .normals = rows + 3, .normal_stride_bytes = 32,
+		const nmtan_mesh mesh = {.struct_bytes = sizeof mesh, .face_count = triangles,
+			.vertex_count = triangles + 2,
+			.indices = corners, .positions = rows, .position_stride_bytes = 32, .normals = rows + 3,
+			.normal_stride_bytes = 32,
 			.texcoords = rows + 6, .texcoord_stride_bytes = 32};
 		const nmtan_options options = {.struct_bytes = sizeof options, .threads = 1};
 		const nmtan_output output = {.struct_bytes = sizeof output, .tangents = tangents};

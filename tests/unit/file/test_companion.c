@@ -23,7 +23,8 @@ static nt_status claim_old(nt_output *output, const char *path, nt_error *error)
 static nt_status claim_interim(nt_output *output, const char *path, nt_error *error)
 {
 	(void)path;
-	return nt_output_claim(output, "a.new-0123456789abcdef.bin", "0123456789abcdef0123456789abcdef", SOMEBODY, error);
+	return nt_output_claim(output, "a.new-0123456789abcdef.bin", "0123456789abcdef0123456789abcdef",
+		SOMEBODY, error);
 }
 
 static nt_output *start(const nt_output_options *options, nt_sink **main)

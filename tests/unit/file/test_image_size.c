@@ -4,12 +4,12 @@
 
 #include <string.h>
 
-static const unsigned char png[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D', 'R', 0, 0, 1,
-	2, 0, 0, 3, 4};
+static const unsigned char png[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D',
+	'R', 0, 0, 1, 2, 0, 0, 3, 4};
 
 /* An APP0 of 4 bytes, a fill byte, a table (C4, which is no frame) of 2, then a progressive frame. */
-static const unsigned char jpeg[] = {0xFF, 0xD8, 0xFF, 0xE0, 0, 4, 1, 2, 0xFF, 0xFF, 0xC4, 0, 2, 0xFF, 0xC2, 0, 17, 8, 0x02,
-	0x58, 0x03, 0x20, 3};
+static const unsigned char jpeg[] = {0xFF, 0xD8, 0xFF, 0xE0, 0, 4, 1, 2, 0xFF, 0xFF, 0xC4, 0, 2, 0xFF, 0xC2, 0,
+	17, 8, 0x02, 0x58, 0x03, 0x20, 3};
 
 static void sizes_stand_in_headers(void **state)
 {

@@ -23,7 +23,8 @@ static const char *altered(const char *text, const char *start, const char *pid,
 		fields[i] = dash + 1;
 	}
 	snprintf(result, sizeof result, "%s-%s-%s-%s-%s", copy, others[3] ? others[3] : fields[3],
-		others[2] ? others[2] : fields[2], others[1] ? others[1] : fields[1], others[0] ? others[0] : fields[0]);
+		others[2] ? others[2] : fields[2], others[1] ? others[1] : fields[1],
+		others[0] ? others[0] : fields[0]);
 	return result;
 }
 

@@ -42,7 +42,8 @@ static nt_buffer make_document(void)
 		nt_buffer_format(&views, "%s{\"buffer\":%d,\"byteLength\":%zu}", comma, i, block.size);
 		nt_buffer_format(&accessors, "%s{\"componentType\":5126,\"type\":\"VEC3\",\"count\":3}", comma);
 		nt_buffer_format(&primitives, "%s{\"attributes\":{\"POSITION\":%d},\"extensions\":"
-			"{\"KHR_draco_mesh_compression\":{\"bufferView\":%d,\"attributes\":{\"POSITION\":0}}}}", comma, i, i);
+			"{\"KHR_draco_mesh_compression\":{\"bufferView\":%d,\"attributes\":{\"POSITION\":0}}}}",
+			comma, i, i);
 		nt_draco_block_free(&block);
 	}
 	nt_buffer_format(&json, "],\"bufferViews\":[%s],\"accessors\":[%s],\"meshes\":[{\"primitives\":[%s]}],"

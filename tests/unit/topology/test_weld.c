@@ -135,7 +135,8 @@ static void no_corners_weld_to_nothing(void **state)
 			const nmtan_mesh mesh = mesh_of(rows, vertices, indexed ? (uint32_t[1]){0} : NULL, 0);
 			nt_weld weld;
 			for (int i = 0; i < THREAD_COUNTS; i++)
-				assert_int_equal(nt_weld_mesh(&mesh, 0, thread_counts[i], &memory, &memory, &weld), NMTAN_OK);
+				assert_int_equal(nt_weld_mesh(&mesh, 0, thread_counts[i], &memory, &memory,
+					&weld), NMTAN_OK);
 			assert_in_range(weld.count, 0, vertices);
 			nt_scratch_free(&scratch);
 		}
@@ -267,8 +268,8 @@ static void make_row_of_hash(uint64_t hash, uint32_t number, nt_weld_row *row)
 	const float u = (float)number;
 	uint32_t bits;
 	memcpy(&bits, &u, sizeof bits);
-	memcpy(row, (uint64_t[4]){0x243f6a8885a308d3u ^ 1, hash * inverse ^ 0x13198a2e03707344u, 0xa4093822299f31d0u, bits},
-		sizeof *row);
+	memcpy(row, (uint64_t[4]){0x243f6a8885a308d3u ^ 1, hash * inverse ^ 0x13198a2e03707344u,
+		0xa4093822299f31d0u, bits}, sizeof *row);
 }
 
 /* Welds rows that are all different by the table. Returns its steps; w->crowded: it has given up. */
@@ -347,7 +348,8 @@ static void rows_in_a_row_of_slots_take_few_steps(void **state)
 static void every_number_of_vertices_welds_alike(void **state)
 {
 	(void)state;
-	static const size_t counts[] = {1, 2, 3, 4, 5, 7, 63, 64, 65, 66, 67, 129, 1000, 32767, 32768, 32769, 65535, 65536};
+	static const size_t counts[] = {1, 2, 3, 4, 5, 7, 63, 64, 65, 66, 67, 129, 1000, 32767, 32768, 32769,
+		65535, 65536};
 	for (size_t i = 0; i < sizeof counts / sizeof *counts; i++) {
 		check_doubles(counts[i], 3 * counts[i], 0, -0.0f);
 		check_doubles(counts[i], 3 * counts[i], 5, -0.0f);

@@ -140,7 +140,8 @@ static void hashes_of_four_rows(make_row *make, uint64_t *hashes)
 	nt_weld_load_some(&mesh, 0, COUNT, rows, four);
 	assert_memory_equal(rows, values, COUNT * sizeof *rows);
 	for (unsigned i = 0; i < COUNT; i++)
-		hashes[i] = (uint64_t)(four[i] >> TAG_BITS) << (32 + TAG_BITS) | (uint64_t)(four[i] & ((1 << TAG_BITS) - 1)) << 20;
+		hashes[i] = (uint64_t)(four[i] >> TAG_BITS) << (32 + TAG_BITS) |
+			(uint64_t)(four[i] & ((1 << TAG_BITS) - 1)) << 20;
 	free(values);
 	free(rows);
 	free(four);

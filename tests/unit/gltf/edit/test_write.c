@@ -26,10 +26,12 @@ static void put_triangle(void)
 	for (size_t i = 24; i < BIN_BYTES / 4; i++)
 		values[i] = (float)i;
 	nt_buffer json = {0}, glb = {0};
-	nt_buffer_text(&json, "{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
-		"\"NORMAL\":1,\"TEXCOORD_0\":2},\"material\":0}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,"
-		"\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,0]},{\"bufferView\":1,\"componentType\":5126,"
-		"\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":2,\"componentType\":5126,\"count\":3,\"type\":\"VEC2\"}],"
+	nt_buffer_text(&json,
+		"{\"asset\":{\"version\":\"2.0\"},\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
+		"\"NORMAL\":1,\"TEXCOORD_0\":2},\"material\":0}]}],\"accessors\":[{\"bufferView\":0,"
+		"\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[1,1,0]},"
+		"{\"bufferView\":1,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":2,"
+		"\"componentType\":5126,\"count\":3,\"type\":\"VEC2\"}],"
 		"\"materials\":[{\"normalTexture\":{\"index\":0}}],\"textures\":[{}],");
 	nt_buffer_format(&json, "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,"
 		"\"byteLength\":36},{\"buffer\":0,\"byteOffset\":72,\"byteLength\":24},{\"buffer\":0,\"byteOffset\":96,"
@@ -137,8 +139,10 @@ static void exhausted_memory_is_told(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(a_long_json_is_the_same_for_any_number_of_threads, make_folder, remove_folder),
-		cmocka_unit_test_setup_teardown(a_file_that_may_not_grow_is_an_error_of_either_thread, make_folder, remove_folder),
+		cmocka_unit_test_setup_teardown(a_long_json_is_the_same_for_any_number_of_threads, make_folder,
+			remove_folder),
+		cmocka_unit_test_setup_teardown(a_file_that_may_not_grow_is_an_error_of_either_thread,
+			make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(exhausted_memory_is_told, make_folder, remove_folder),
 	};
 	return cmocka_run_group_tests_name("gltf/edit/write", tests, NULL, NULL);

@@ -222,7 +222,8 @@ static size_t solve_turning_hub(float turn, bool once)
 			memcpy(indices[i - 1], (unsigned[3]){0, i, i + 1}, sizeof *indices);
 	}
 	const nmtan_mesh mesh = nt_filled(&(nmtan_mesh){.struct_bytes = sizeof mesh, .face_count = SPOKES,
-		.vertex_count = SPOKES + 2, .positions = p[0], .normals = n[0], .texcoords = t[0], .indices = indices[0]});
+		.vertex_count = SPOKES + 2, .positions = p[0], .normals = n[0], .texcoords = t[0],
+		.indices = indices[0]});
 	nt_result expected = nt_result_make(3 * SPOKES), got = nt_result_make(3 * SPOKES);
 	nt_scratch scratch;
 	nt_scratch_init(&scratch, NULL);

@@ -37,7 +37,8 @@ static void goldens_are_byte_identical(void **state)
 /* With repair, which relies on what the fast path knows of its result, by vertices and by groups. */
 static size_t compare_repairs(const char *name, const nmtan_mesh *mesh, size_t corners)
 {
-	static const nt_fast_plan plans[] = {{.grain = 1}, {.grain = 1, .bin_bits = 4}, {.grain = 1, .most_tiny = NT_TINY},
+	static const nt_fast_plan plans[] = {{.grain = 1}, {.grain = 1, .bin_bits = 4},
+		{.grain = 1, .most_tiny = NT_TINY},
 		{.grain = 1, .most_narrow = NT_NARROW_LIMIT}};
 	enum { PLANS = sizeof plans / sizeof *plans };
 	nt_result results[PLANS + 1]; /* the definition's is the last */
@@ -51,7 +52,8 @@ static size_t compare_repairs(const char *name, const nmtan_mesh *mesh, size_t c
 		nt_solve solve = nt_result_solve(mesh, corners, &scratch, &results[i], false);
 		solve.repair = true;
 		solve.known = nt_has_stored_texcoords(mesh) ? NULL : &known;
-		assert_int_equal(i == PLANS ? nt_mikktspace_scalar(&solve) : nt_mikktspace_fast_as(&solve, &plans[i]), NMTAN_OK);
+		assert_int_equal(i == PLANS
+			? nt_mikktspace_scalar(&solve) : nt_mikktspace_fast_as(&solve, &plans[i]), NMTAN_OK);
 		assert_int_equal(nt_repair(&solve, &counts[i]), NMTAN_OK);
 		assert_memory_equal(&counts[i], &counts[PLANS], sizeof *counts);
 		differences += nt_result_differences(&results[PLANS], &results[i], corners, false);
@@ -126,7 +128,8 @@ static void join(joined *j, const nt_nasty *part, float unit)
 	const size_t vertices = j->mesh.vertex_count, faces = j->mesh.face_count;
 	for (int i = 0; i < 3; i++)
 		assert_non_null(j->rows[i] = realloc(j->rows[i], (vertices + m.vertex_count) * 12 + 1));
-	assert_non_null(j->indices = realloc(j->indices, (j->corner_count + part->corner_count) * sizeof *j->indices + 1));
+	assert_non_null(j->indices =
+		realloc(j->indices, (j->corner_count + part->corner_count) * sizeof *j->indices + 1));
 	assert_non_null(j->sizes = realloc(j->sizes, faces + m.face_count + 1));
 	copy_rows(m.positions, m.position_stride_bytes, 3, m.vertex_count, 1, j->rows[0] + 3 * vertices);
 	copy_rows(m.normals, m.normal_stride_bytes, 3, m.vertex_count, 1, j->rows[1] + 3 * vertices);
@@ -161,8 +164,8 @@ static void nasty_meshes_joined_are_byte_identical(void **state)
 	size_t differences = 0;
 	for (int more = 0; more < 2; more++)
 		for (int i = 0; i < 3; i++)
-			differences += nt_compare_run("joined", &mesh, j.corner_count, &expected, more, nt_cpu_best(), threads[i],
-				&nt_usual_plan);
+			differences += nt_compare_run("joined", &mesh, j.corner_count, &expected, more,
+				nt_cpu_best(), threads[i], &nt_usual_plan);
 	assert_int_equal(differences, 0);
 	nt_result_free(&expected);
 	for (int i = 0; i < 3; i++)
@@ -190,7 +193,8 @@ static void fill_vertices(grid g, float *p, float *n, float *t)
 		const float x = (float)(i % GRID_SIDE), y = (float)(i / GRID_SIDE);
 		memcpy(p + 3 * v, (float[3]){x, y, x > 200.0f ? 0.0f : 0.3f * sinf(x) * cosf(2 * y)}, 12);
 		memcpy(n + 3 * v, g.lost && i % 1009 == 5 ? (float[3]){0.5f, 0, 0} : (float[3]){0, 0, 1}, 12);
-		memcpy(t + 2 * v, g.mixed ? (float[2]){fabsf(x - 150.0f), i % 97 == 0 ? 0.0f : y} : (float[2]){x, y}, 8);
+		memcpy(t + 2 * v,
+			g.mixed ? (float[2]){fabsf(x - 150.0f), i % 97 == 0 ? 0.0f : y} : (float[2]){x, y}, 8);
 	}
 }
 
@@ -212,7 +216,8 @@ static size_t fill_faces(bool quads, unsigned *indices)
 }
 
 /* Tangents by vertex, which the split of a sparse solve reads from the records. */
-static void compare_vertices(const nmtan_mesh *mesh, size_t corners, const nmtan_options *options, const float *expected)
+static void compare_vertices(const nmtan_mesh *mesh, size_t corners, const nmtan_options *options,
+	const float *expected)
 {
 	nmtan_split_output split = {.struct_bytes = sizeof split, .indices = malloc(corners * 4),
 		.sources = malloc(corners * 4),
@@ -266,7 +271,8 @@ static void compare_scattered(grid g)
 	nt_result expected = nt_result_define(&mesh, corners, true);
 	for (unsigned threads = 1; threads <= 2; threads++)
 		for (int more = 0; more < 2; more++)
-			assert_int_equal(nt_compare_run("scattered", &mesh, corners, &expected, more, nt_cpu_best(), threads,
+			assert_int_equal(nt_compare_run("scattered", &mesh, corners, &expected, more,
+				nt_cpu_best(), threads,
 					&nt_usual_plan), 0);
 	compare_repaired(&mesh, corners, g.lost);
 	nt_result_free(&expected);
@@ -292,7 +298,8 @@ static void scattered_meshes_are_byte_identical(void **state)
 typedef enum hopeless { ALONG_U, ALONG_V, ONE_POINT } hopeless;
 enum { ROW = 10, HOPELESS_CELLS = (ROW - 1) * (ROW - 1), HOPELESS_VERTICES = ROW * ROW + 4 };
 
-static nmtan_mesh make_hopeless(hopeless kind, bool mixed, float (*p)[3], float (*n)[3], float (*t)[2], unsigned *indices)
+static nmtan_mesh make_hopeless(hopeless kind, bool mixed, float (*p)[3], float (*n)[3], float (*t)[2],
+	unsigned *indices)
 {
 	size_t v = 0, corner = 0;
 	for (; v < HOPELESS_VERTICES; v++) {
@@ -300,7 +307,8 @@ static nmtan_mesh make_hopeless(hopeless kind, bool mixed, float (*p)[3], float 
 		const float a = (float)(i % width) / 9, b = (float)(i / width) / 9;
 		memcpy(n[v], (float[3]){0, 0, 1}, 12);
 		memcpy(t[v], v < own && kind == ONE_POINT ? (float[2]){0.5f, 0.5f} : (float[2]){a, b}, 8);
-		memcpy(p[v], v >= own ? (float[3]){a, b, 2} : kind == ALONG_U ? (float[3]){b, 0, a} : (float[3]){a, 0, b}, 12);
+		memcpy(p[v], v >= own
+			? (float[3]){a, b, 2} : kind == ALONG_U ? (float[3]){b, 0, a} : (float[3]){a, 0, b}, 12);
 	}
 	for (unsigned cell = 0; cell < HOPELESS_CELLS + (mixed ? 1u : 0); cell++) {
 		const bool last = cell == HOPELESS_CELLS;
@@ -308,7 +316,8 @@ static nmtan_mesh make_hopeless(hopeless kind, bool mixed, float (*p)[3], float 
 		memcpy(indices + corner, (unsigned[6]){i, i + 1, i + up + 1, i, i + up + 1, i + up}, 24);
 		corner += 6;
 	}
-	return (nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = corner / 3, .vertex_count = HOPELESS_VERTICES,
+	return (nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = corner / 3,
+		.vertex_count = HOPELESS_VERTICES,
 		.positions = p[0], .normals = n[0], .texcoords = t[0], .indices = indices};
 }
 
@@ -322,7 +331,8 @@ static void compare_calls(const nmtan_mesh *mesh, nmtan_repair repair)
 	nmtan_counts wanted = NMTAN_COUNTS_INIT, counts = NMTAN_COUNTS_INIT;
 	const nmtan_output to_expected = {.struct_bytes = sizeof to_expected, .tangents = expected.tangents,
 		.corner_faults = faults};
-	const nmtan_output to_got = {.struct_bytes = sizeof to_got, .tangents = got.tangents, .corner_faults = faults + corners};
+	const nmtan_output to_got = {.struct_bytes = sizeof to_got, .tangents = got.tangents,
+		.corner_faults = faults + corners};
 	const nt_implementation definition = {.scalar = true};
 	assert_int_equal(nt_tangents(mesh, &options, &definition, &to_expected, &wanted), NMTAN_OK);
 	for (nt_isa isa = NT_ISA_BASELINE; isa <= NT_ISA_AVX512; isa++) {
@@ -378,8 +388,10 @@ static void what_is_around_faults_is_seen(void **state)
 			const float beside = fabsf((float)(x - MIDDLE)), lean = by_sign ? 0.033f : 0.0f;
 			memcpy(p[i], (float[3]){(float)(x - beyond), (float)y, (float)-beyond}, sizeof p[i]);
 			n[i][0] = n[i][2] = sqrtf(0.5f); /* across neither side */
-			memcpy(t[i], (float[2]){0.08f * (beside - 1), lean * (beside - 1) + 0.05f * (float)(y - MIDDLE)}, sizeof t[i]);
-			const unsigned at = (unsigned)i, cell[6] = {at, at + 1, at + SHEET + 1, at, at + SHEET + 1, at + SHEET};
+			memcpy(t[i], (float[2]){0.08f * (beside - 1),
+				lean * (beside - 1) + 0.05f * (float)(y - MIDDLE)}, sizeof t[i]);
+			const unsigned at = (unsigned)i,
+				cell[6] = {at, at + 1, at + SHEET + 1, at, at + SHEET + 1, at + SHEET};
 			if (x + 1 < SHEET && y + 1 < SHEET)
 				memcpy(indices + 6 * count++, cell, sizeof cell);
 		}
@@ -453,7 +465,8 @@ static void what_is_bare_takes_from_its_triangle(void **state)
 {
 	(void)state;
 	enum { SIDE = 6, OWN = SIDE * SIDE, VERTICES = OWN + 9 };
-	static const unsigned added[][3] = {{1, 0, OWN}, {OWN, 0, OWN + 1}, {OWN + 1, 0, OWN + 2}, {OWN + 3, OWN + 4, OWN + 5},
+	static const unsigned added[][3] = {{1, 0, OWN}, {OWN, 0, OWN + 1}, {OWN + 1, 0, OWN + 2},
+		{OWN + 3, OWN + 4, OWN + 5},
 		{OWN + 6, OWN + 7, OWN + 8}, {OWN + 3, OWN + 7, OWN + 8}};
 	enum { ADDED = sizeof added / sizeof *added };
 	float p[VERTICES][3] = {{0}}, n[VERTICES][3] = {{0}}, t[VERTICES][2] = {{0}};
@@ -477,8 +490,10 @@ static void what_is_bare_takes_from_its_triangle(void **state)
 	assert_true(count > NT_TINY);
 	for (int turn = 0; turn < 3; turn++) {
 		for (size_t c = 3 * (count - ADDED); c < 3 * count; c += 3)
-			memcpy(indices + c, (unsigned[3]){indices[c + 1], indices[c + 2], indices[c]}, 3 * sizeof *indices);
-		compare_calls(&(nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = count, .vertex_count = VERTICES,
+			memcpy(indices + c, (unsigned[3]){indices[c + 1], indices[c + 2], indices[c]},
+				3 * sizeof *indices);
+		compare_calls(&(nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = count,
+			.vertex_count = VERTICES,
 			.positions = p[0], .normals = n[0], .texcoords = t[0], .indices = indices}, NMTAN_REPAIR_ON);
 	}
 }
