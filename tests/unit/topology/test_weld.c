@@ -320,6 +320,17 @@ static void rows_of_one_hash_take_few_steps(void **state)
 	const nmtan_mesh mesh = mesh_of((const vertex_row *)rows, COUNT, NULL, COUNT / 3 * 3);
 	check(&mesh, COUNT / 3 * 3, 0);
 	check(&mesh, COUNT / 3 * 3, COUNT * 48);
+	/* the same by vertices, which have several corners each; so many are equal that the table takes all */
+	uint32_t *indices = malloc(3 * COUNT * sizeof *indices), random = 3;
+	for (size_t c = 0; c < 3 * COUNT; c++)
+		indices[c] = next_random(&random) % COUNT;
+	for (uint32_t i = 0; i < COUNT; i++)
+		if (i % 2 && i % 999)
+			rows[i] = rows[i / 2];
+	const nmtan_mesh indexed = mesh_of((const vertex_row *)rows, COUNT, indices, 3 * COUNT);
+	check(&indexed, 3 * COUNT, 0);
+	check(&indexed, 3 * COUNT, COUNT * 48);
+	free(indices);
 	free(rows);
 }
 
