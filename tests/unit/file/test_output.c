@@ -528,10 +528,10 @@ static void faults_after_an_input_has_changed_leave_nothing(void **state)
 {
 	(void)state;
 	const int numbers[] = {SIGSEGV, SIGBUS, SIGFPE, SIGABRT};
+	/* files of those that end by a signal stay */
 	for (int i = 0; i < 8; i++) {
-		const int number = numbers[i / 2], shorter = i % 2;
+		const int number = numbers[i % 4], shorter = i < 4;
 		put_file("in", "four", 4);
-		const size_t files = count_in_folder();
 		const pid_t child = fork();
 		if (child == 0)
 			fault(number, shorter);
@@ -540,7 +540,7 @@ static void faults_after_an_input_has_changed_leave_nothing(void **state)
 		if (shorter) {
 			assert_true(WIFEXITED(code));
 			assert_int_equal(WEXITSTATUS(code), 7);
-			assert_int_equal(count_in_folder(), files);
+			assert_int_equal(count_in_folder(), 1);
 		} else {
 			assert_true(WIFSIGNALED(code));
 			assert_int_equal(WTERMSIG(code), number);
@@ -553,6 +553,9 @@ static void faults_after_an_input_has_changed_leave_nothing(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
+		/* before there are threads: with them the thread sanitizer hands no signal on in children */
+		CASE(signals_remove_temporaries_and_end_the_process),
+		CASE(faults_after_an_input_has_changed_leave_nothing),
 		CASE(output_appears_at_commit_only),
 		CASE(output_abort_leaves_nothing),
 		CASE(output_bytes_are_the_same_for_small_and_large_writes),
@@ -570,8 +573,6 @@ int main(void)
 		CASE(output_dry_run_counts_and_refuses_but_writes_nothing),
 		CASE(output_pipe_is_written_through),
 		CASE(output_full_disk_is_an_error),
-		CASE(signals_remove_temporaries_and_end_the_process),
-		CASE(faults_after_an_input_has_changed_leave_nothing),
 	};
 	return cmocka_run_group_tests_name("file/output", tests, NULL, NULL);
 }

@@ -77,7 +77,7 @@ static void fault_beside_commit(void)
 	while (!atomic_load(&holds))
 		usleep(100);
 	nt_temporaries_remove_all();
-	if (!atomic_load(&released))
+	if (!atomic_load(&released) || pthread_join(other, NULL))
 		_exit(3);
 }
 
