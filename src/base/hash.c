@@ -15,7 +15,7 @@ static const uint64_t digits[2 * NT_HASH_KEY_WORDS] = {0x243f6a8885a308d3u, 0x13
 	0x082efa98ec4e6c89u};
 
 /* All threads that come here make the same. */
-const uint64_t *nt_hash_make_key(void)
+void nt_hash_make_key(void)
 {
 	uint64_t chance[2] = {(uintptr_t)&nt_hash_key_words, (uintptr_t)&memcpy};
 #ifdef AT_RANDOM
@@ -27,12 +27,12 @@ const uint64_t *nt_hash_make_key(void)
 		const uint64_t word = nt_hash_words_by(digits + 2 * i, chance[0], chance[1]);
 		__atomic_store_n(&nt_hash_key_words[i], word | 1, __ATOMIC_RELEASE);
 	}
-	return nt_hash_key_words;
 }
 
 uint64_t nt_hash_bytes(uint64_t seed, const void *bytes, size_t size)
 {
-	const uint64_t *key = nt_hash_key();
+	uint64_t key[NT_HASH_KEY_WORDS];
+	nt_hash_key(key);
 	const unsigned char *at = bytes;
 	uint64_t hash = seed + 0x9e3779b97f4a7c15u * (size + 1);
 	do {

@@ -18,14 +18,16 @@ extern "C" { /* for src/ext */
 enum { NT_HASH_KEY_WORDS = 2 };
 
 extern uint64_t nt_hash_key_words[NT_HASH_KEY_WORDS];
-const uint64_t *nt_hash_make_key(void);
+void nt_hash_make_key(void);
 
-/* The key of this process. */
-static inline const uint64_t *nt_hash_key(void)
+/* The key of this process, in memory of the caller: threads may make it at once, all the same. */
+static inline void nt_hash_key(uint64_t key[NT_HASH_KEY_WORDS])
 {
 	/* the last word is stored last, and never 0 */
-	return __atomic_load_n(&nt_hash_key_words[NT_HASH_KEY_WORDS - 1], __ATOMIC_ACQUIRE) ? nt_hash_key_words
-											      : nt_hash_make_key();
+	if (!__atomic_load_n(&nt_hash_key_words[NT_HASH_KEY_WORDS - 1], __ATOMIC_ACQUIRE))
+		nt_hash_make_key();
+	for (size_t i = 0; i < NT_HASH_KEY_WORDS; i++)
+		key[i] = __atomic_load_n(&nt_hash_key_words[i], __ATOMIC_RELAXED);
 }
 
 /* The hash of two words. Slots may be made of any of its bits: after one product grids still have up to twice as many
@@ -41,7 +43,9 @@ static inline uint64_t nt_hash_words_by(const uint64_t *key, uint64_t a, uint64_
 
 static inline uint64_t nt_hash_words(uint64_t a, uint64_t b)
 {
-	return nt_hash_words_by(nt_hash_key(), a, b);
+	uint64_t key[NT_HASH_KEY_WORDS];
+	nt_hash_key(key);
+	return nt_hash_words_by(key, a, b);
 }
 
 /* The hash of `size` bytes that follow those of `seed`; 0 begins. */
