@@ -2,10 +2,12 @@
 #include "fail_alloc.h"
 
 #include <errno.h>
+#include <stdatomic.h>
 #include <stdint.h>
 
-static size_t left = SIZE_MAX; /* allocations that succeed; SIZE_MAX: all */
-static bool failed;
+/* of all threads */
+static atomic_size_t left = SIZE_MAX; /* allocations that succeed; SIZE_MAX: all */
+static atomic_bool failed;
 
 void fail_allocations_from(size_t n)
 {
@@ -21,12 +23,11 @@ bool stop_failing_allocations(void)
 
 static bool fails(void)
 {
-	if (left == SIZE_MAX)
+	size_t now = left;
+	while (now > 0 && now < SIZE_MAX && !atomic_compare_exchange_weak(&left, &now, now - 1))
+		;
+	if (now > 0)
 		return false;
-	if (left > 0) {
-		left--;
-		return false;
-	}
 	failed = true;
 	errno = ENOMEM;
 	return true;
