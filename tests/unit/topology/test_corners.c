@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "budget.h"
 #include "topology/corners.h"
 
 /* Rows of position, normal, texture coordinates; corner c is vertex c. */
@@ -59,23 +60,6 @@ static void indexed_corners_take_their_vertex(void **state)
 	const uint32_t expected[6] = {0, 1, 2, 1, 0, 3};
 	assert_memory_equal(ids, expected, sizeof ids);
 	nt_scratch_free(&scratch);
-}
-
-typedef struct budget {
-	size_t allowed;
-} budget;
-
-static void *take_budget(void *user, size_t bytes)
-{
-	budget *b = user;
-	return b->allowed > 0 ? b->allowed--, malloc(bytes) : NULL;
-}
-
-static void give_back(void *user, void *block, size_t bytes)
-{
-	(void)user;
-	(void)bytes;
-	free(block);
 }
 
 /* The weld of rows as it is, and with ever fewer allocations. */

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "budget.h"
 #include "topology/split.h"
 
 /* A fan of n triangles around vertex 0; the hub's corner in triangle t has the tangent given by it. */
@@ -93,23 +94,6 @@ static bool is_plain(uint64_t pair)
 		if ((uint32_t)pair == 0x80000000u || ((uint32_t)pair & 0x7fffffffu) > 0x7f800000u)
 			return false;
 	return true;
-}
-
-typedef struct budget {
-	size_t allowed;
-} budget;
-
-static void *take_budget(void *user, size_t bytes)
-{
-	budget *b = user;
-	return b->allowed > 0 ? b->allowed--, malloc(bytes) : NULL;
-}
-
-static void give_back(void *user, void *block, size_t bytes)
-{
-	(void)user;
-	(void)bytes;
-	free(block);
 }
 
 /* Gives each corner its tangent, of `count` that come again and again. */

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "budget.h"
 #include "topology/corners.h"
 #include "topology/weld.h"
 #include "topology/weld_parts.h"
@@ -424,26 +425,6 @@ static void without_doubles_the_indices_of_the_mesh_are_the_numbers(void **state
 		nt_scratch_free(&scratch);
 	}
 	free(rows);
-}
-
-typedef struct budget {
-	size_t allowed;
-} budget;
-
-static void *take_budget(void *user, size_t bytes)
-{
-	budget *b = user;
-	if (b->allowed == 0)
-		return NULL;
-	b->allowed--;
-	return malloc(bytes);
-}
-
-static void give_back(void *user, void *block, size_t bytes)
-{
-	(void)user;
-	(void)bytes;
-	free(block);
 }
 
 static void every_failed_allocation_is_told(void **state)
