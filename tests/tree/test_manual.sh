@@ -44,6 +44,15 @@ for code in 0 1 2 3 4 5 6; do
 	sed -n '/^\.SH EXIT/,/^\.SH ENV/p' "$page" | grep -q "^\.B $code$" || wrong "$code is missing"
 done
 
+scene "the page about materials is well formed, and has each option that it names"
+mtl=$ROOT/man/nmtan-mtl.7
+if command -v man >/dev/null 2>&1; then
+	is "$(LC_ALL=C.UTF-8 man --warnings -l "$mtl" 2>&1 >/dev/null)" ""
+fi
+sed -e 's/\\-/-/g' "$mtl" | grep -oE -- '--[a-z-]+' | sort -u >named
+"$NMTAN" --help | grep -oE -- '--[a-z-]+' | sort -u >options
+is "$(comm -23 named options)" ""
+
 scene "the page about many machines has each file and command of the recipes, and no other"
 farm=$ROOT/man/nmtan-farm.7
 text() { sed -e 's/\\f[BIRP]//g' -e 's/\\-/-/g' "$1"; }

@@ -39,7 +39,8 @@ scene "they are installed, run and removed in an empty root directory"
 mkdir -p root/var/lib/dpkg/info root/var/lib/dpkg/updates root/tmp
 touch root/var/lib/dpkg/status root/var/lib/dpkg/available
 in_root -i "$deb"/nmtan_*.deb "$deb"/nmtan-farm_*.deb "$deb"/libnmtan0_*.deb "$deb"/libnmtan-dev_*.deb
-exists root/usr/bin/nmtan root/usr/share/man/man1/nmtan.1.gz root/usr/share/doc/nmtan/copyright \
+exists root/usr/bin/nmtan root/usr/share/man/man1/nmtan.1.gz \
+	root/usr/share/man/man7/nmtan-mtl.7.gz root/usr/share/doc/nmtan/copyright \
 	root/usr/share/bash-completion/completions/nmtan root/usr/share/zsh/vendor-completions/_nmtan
 # shellcheck disable=SC2046
 with_libraries root/usr/bin/nmtan $(find root/usr/lib -name '*.so*' -type f)
