@@ -39,6 +39,12 @@ if command -v man >/dev/null 2>&1; then
 	is "$(LC_ALL=C.UTF-8 man --warnings -l "$page" 2>&1 >/dev/null)" ""
 fi
 
+scene "the report in the manual is what --check prints"
+(cd "$ROOT" && "$NMTAN" --check data/plates.gltf 2>"$WORK/err.txt") >printed
+plain | sed -n '/^nmtan --check data\/plates.gltf$/,/^\.fi$/p' | sed '1,/^\.nf$/d;/^\.fi$/d' >expected
+exists expected printed
+diff expected printed || wrong "prints something else"
+
 scene "every exit code of help is in the manual"
 for code in 0 1 2 3 4 5 6; do
 	sed -n '/^\.SH EXIT/,/^\.SH ENV/p' "$page" | grep -q "^\.B $code$" || wrong "$code is missing"

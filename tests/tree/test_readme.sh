@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # README.md tells the truth: its C program compiles and prints what it says, its commands print what
-# stands below them, its links lead somewhere.
+# stands below them, its links lead somewhere, and it can be read in five minutes.
 . "$ROOT/tests/support/cli.sh"
 readme=$ROOT/README.md
 
@@ -35,17 +35,28 @@ sed -n '/^\$ make demo$/,/^```$/p' "$readme" | sed '1d;$d' | clean >expected
 exists expected printed
 diff expected printed || wrong "prints something else"
 
-scene "the report in the README is what --check prints"
-(cd "$ROOT" && "$NMTAN" --check data/plates.gltf 2>"$WORK/err.txt") >printed
-sed -n '/^\$ nmtan --check data\/plates.gltf$/,/^```$/p' "$readme" | sed '1d;$d' >expected
-exists expected printed
-diff expected printed || wrong "prints something else"
+# The anchors of a page's headings, as renderers make them.
+anchors() {
+	sed -n 's/^##* //p' "$1" | tr '[:upper:] ' '[:lower:]-' | sed "s/[^a-z0-9_-]//g"
+}
 
-scene "the links of the README lead to files of the tree"
-grep -oE '\]\([^)#]+\)' "$readme" | tr -d '])(' | sed 's/^\[//' | while IFS= read -r target; do
-	case $target in http*) continue ;; esac
-	[ -e "$ROOT/$target" ] || echo "$target"
+scene "the links of README and measurements lead to files of the tree, and to headings in them"
+for page in "$readme" "$ROOT/tests/bench/README.md"; do
+	grep -oE '\]\([^)]+\)' "$page" | sed 's/^](//; s/)$//' | while IFS= read -r link; do
+		case $link in http*) continue ;; \#*) target=$page ;; *) target=$(dirname "$page")/${link%%#*} ;; esac
+		[ -e "$target" ] || echo "$link"
+		case $link in *\#*) anchors "$target" | grep -qxF -e "${link#*#}" || echo "$link" ;; esac
+	done
 done >missing
 is "$(cat missing)" ""
+
+scene "every target of make that README and measurements name is there"
+grep -ohE '(`|^    |^\$ )make [a-z]+(-[a-z]+)*' "$readme" "$ROOT/tests/bench/README.md" | sed "s/.*make //" | sort -u | while read -r target; do
+	grep -qE "^(\.PHONY:.* )?$target( |:|\$)" "$ROOT/Makefile" "$ROOT"/tests/tests.mk "$ROOT"/src/bindings/bindings.mk || echo "$target"
+done >missing
+is "$(cat missing)" ""
+
+scene "the README is read in five minutes: at most 2500 words"
+[ "$(wc -w <"$readme")" -le 2500 ] || wrong "$(wc -w <"$readme") words"
 
 done_testing
