@@ -9,23 +9,15 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
-#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/uio.h>
-#include <time.h>
 #include <unistd.h>
 #include "base/memory.h"
-#include "base/parallel.h"
-#include "base/pool.h"
 
 /* From which size on the kernel copies better than write() does, how much of a map is looked at at a time, and which
  * files get their room at once: that is a system call of 30 us. */
 enum { KERNEL_COPY_BYTES = 1024 * 1024, MAPPED_COPY_BYTES = 2 * 1024 * 1024, LARGE_FILE_BYTES = 1024 * 1024 };
-
-/* From which size on a second thread fetches pages: 35 MB are written in 7.7 ms instead of 9.5; how much of a map may
- * have its pages then, and how long that thread sleeps before it lets go of more of them. */
-enum { SHARED_COPY_BYTES = 8 * 1024 * 1024, MOST_AHEAD_BYTES = 16 * 1024 * 1024, FOLLOW_NS = 100000 };
 
 /* What goes straight through, and takes no memory of the buffer. */
 enum { STRAIGHT_BYTES = 128 * 1024 };
@@ -153,82 +145,15 @@ static bool pages_meet(const nt_sink *sink, size_t offset)
 	return (sink->size - offset) % (size_t)sysconf(_SC_PAGESIZE) == 0;
 }
 
-/* A range of a map on its way into a sink. */
-typedef struct mapped_copy {
-	nt_sink *sink;
-	const nt_file *from;
-	size_t offset, size;
-	atomic_size_t fetched; /* parts before it have their pages, or somebody is about it */
-	atomic_size_t written;
-	size_t released;       /* pages that were let go of again */
-	nt_status status;
-	nt_error *error;
-} mapped_copy;
-
-static size_t part_at(const mapped_copy *c, size_t at)
-{
-	return c->size - at < MAPPED_COPY_BYTES ? c->size - at : MAPPED_COPY_BYTES;
-}
-
-/* The pages of the next part; false: there is none. */
-static bool fetch_part(mapped_copy *c)
-{
-	const size_t at = atomic_fetch_add(&c->fetched, MAPPED_COPY_BYTES);
-	if (at < c->size)
-		nt_file_fetch(c->from, c->offset + at, part_at(c, at));
-	return at < c->size;
-}
-
-static void release_written(mapped_copy *c)
-{
-	const size_t end = atomic_load(&c->written);
-	nt_file_release(c->from, c->offset + c->released, end - c->released);
-	c->released = end;
-}
-
-/* Fetches what nobody has fetched, and writes. */
-static void write_parts_of(mapped_copy *c)
-{
-	for (size_t at = 0, part; at < c->size && !c->status; at += part) {
-		while (atomic_load(&c->fetched) <= at)
-			fetch_part(c);
-		part = part_at(c, at);
-		c->status = write_bytes(c->sink, c->from->data + c->offset + at, part, c->error);
-		atomic_store(&c->written, at + part);
-	}
-	atomic_store(&c->written, c->size);
-}
-
-/* Fetches ahead of who writes, then follows it, but for the last parts: who writes does not wait for a sleeper. */
-static void fetch_and_follow(mapped_copy *c)
-{
-	while (fetch_part(c))
-		continue;
-	for (release_written(c); c->size - c->released > 2 * MAPPED_COPY_BYTES; release_written(c))
-		nanosleep(&(struct timespec){.tv_nsec = FOLLOW_NS}, NULL);
-}
-
-static void copy_slot(void *context, unsigned slot)
-{
-	if (slot == 0)
-		write_parts_of(context);
-	else
-		fetch_and_follow(context);
-}
-
 /* From the map, some of it at a time, which is let go of again. */
-static nt_status copy_mapped(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
-	nt_error *error)
+static nt_status copy_mapped(nt_sink *sink, const nt_file *from, size_t offset, size_t size, nt_error *error)
 {
-	const bool shared = size >= SHARED_COPY_BYTES && nt_thread_count(sink->threads) > 1;
-	const size_t most = shared ? MOST_AHEAD_BYTES : MAPPED_COPY_BYTES;
 	nt_status status = NT_OK;
 	for (size_t left = size, part; left && !status; left -= part, offset += part) {
-		part = left < most ? left : most;
-		mapped_copy c = {.sink = sink, .from = from, .offset = offset, .size = part, .error = error};
-		nt_pool_run(shared ? 2 : 1, copy_slot, &c);
-		release_written(&c);
-		status = c.status;
+		part = left < MAPPED_COPY_BYTES ? left : MAPPED_COPY_BYTES;
+		nt_file_fetch(from, offset, part);
+		status = write_bytes(sink, from->data + offset, part, error);
+		nt_file_release(from, offset, part);
 	}
 	return status;
 }
