@@ -2,7 +2,7 @@
 /*
  * Digests by xxHash (libxxhash-dev), whose functions are compiled in here: nothing is to be linked.
  *
- * Why this one: an output of 200 MB that the kernel copies takes 52 ms, so the digest has to come at the speed of
+ * Why this one: copying 200 MB takes 52 ms, so the digest has to come at the speed of
  * memory, and users can check it with a program that every distribution has.
  */
 #include "ext/digest.h"

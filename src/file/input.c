@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Inputs: a regular file is mapped, anything else (pipe, terminal, device, a file without a size as
- * /proc has them) is read to its end. The descriptor of a mapped file stays open, so that the writer
- * can let the kernel copy ranges of it.
+ * /proc has them) is read to its end. The descriptor of a mapped file stays open: watch.c asks it for changes.
  *
  * A file that another process changes while it is mapped is no input: see watch.h.
  */

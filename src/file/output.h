@@ -119,10 +119,8 @@ void nt_sink_expect(nt_sink *sink, uint64_t size);
 /* Appends bytes. Small writes are buffered, large ones go straight to the file. */
 nt_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error *error);
 
-/* Appends a range of an input: by copy_file_range where the kernel can and the pages of both
- * files meet, else like nt_sink_write. */
-nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
-	nt_error *error);
+/* Appends a range of an input. */
+nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size, nt_error *error);
 
 /*
  * Sets the next `size` bytes of a file aside. They are written to *part, while another thread may write to the sink

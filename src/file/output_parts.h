@@ -36,7 +36,6 @@ struct nt_sink {
 	int fd;
 	nt_role role;
 	bool shared_fd;           /* standard output: not ours to close */
-	bool no_kernel_copy;      /* it was tried in vain */
 	bool dry;                 /* counts bytes and drops them */
 	bool is_part;             /* of the file of another sink, which has path and fd: nt_sink_set_aside() */
 	off_t at;                 /* of a part: where in the file its next bytes go */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Writing the bytes of one file of an output set: see output.h. Small pieces are gathered, large ones go straight
- * through, and what only moves from an input to the output is left to the kernel where that is faster.
+ * through.
  */
 #include "file/output_parts.h"
 #include "file/watch.h"
@@ -15,9 +15,8 @@
 #include <unistd.h>
 #include "base/memory.h"
 
-/* From which size on the kernel copies better than write() does, how much of a map is looked at at a time, and which
- * files get their room at once: that is a system call of 30 us. */
-enum { KERNEL_COPY_BYTES = 1024 * 1024, MAPPED_COPY_BYTES = 2 * 1024 * 1024, LARGE_FILE_BYTES = 1024 * 1024 };
+/* How much of a map is copied at a time, and which files get their room at once: that is a system call of 30 us. */
+enum { COPIED_BYTES = 2 * 1024 * 1024, LARGE_FILE_BYTES = 1024 * 1024 };
 
 /* What goes straight through, and takes no memory of the buffer. */
 enum { STRAIGHT_BYTES = 128 * 1024 };
@@ -93,9 +92,10 @@ nt_status nt_sink_flush(nt_sink *sink, nt_error *error)
 	return flush_with(sink, NULL, 0, error);
 }
 
-/* Without the digest. */
-static nt_status write_bytes(nt_sink *sink, const void *bytes, size_t size, nt_error *error)
+nt_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error *error)
 {
+	if (sink->digest)
+		nt_digest_add(sink->digest, bytes, size);
 	sink->size += size;
 	if (sink->dry)
 		return NT_OK;
@@ -112,85 +112,22 @@ static nt_status write_bytes(nt_sink *sink, const void *bytes, size_t size, nt_e
 	return NT_OK;
 }
 
-nt_status nt_sink_write(nt_sink *sink, const void *bytes, size_t size, nt_error *error)
-{
-	if (sink->digest)
-		nt_digest_add(sink->digest, bytes, size);
-	return write_bytes(sink, bytes, size, error);
-}
-
-/* Lets the kernel copy what it can; *done receives how much that was. Falling short is no error: the
- * rest is written, and a fault of the disk shows itself there. */
-static void copy_in_kernel(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
-	size_t *done)
-{
-	*done = 0;
-	while (*done < size) {
-		off64_t begin = (off64_t)(offset + *done);
-		const ssize_t count = copy_file_range(from->fd, &begin, sink->fd, NULL, size - *done, 0);
-		if (count < 0 && errno == EINTR)
-			continue;
-		if (count <= 0) {
-			sink->no_kernel_copy = true;
-			return;
-		}
-		*done += (size_t)count;
-	}
-}
-
-/* Whether pages of a range fall on pages of the output. Where they do not, the kernel would write every page of the
- * output in two pieces: 62 ms for 197 MB, where pages that are fetched and written take 52. */
-static bool pages_meet(const nt_sink *sink, size_t offset)
-{
-	return (sink->size - offset) % (size_t)sysconf(_SC_PAGESIZE) == 0;
-}
-
-/* From the map, some of it at a time, which is let go of again. */
-static nt_status copy_mapped(nt_sink *sink, const nt_file *from, size_t offset, size_t size, nt_error *error)
-{
-	nt_status status = NT_OK;
-	for (size_t left = size, part; left && !status; left -= part, offset += part) {
-		part = left < MAPPED_COPY_BYTES ? left : MAPPED_COPY_BYTES;
-		nt_file_fetch(from, offset, part);
-		status = write_bytes(sink, from->data + offset, part, error);
-		nt_file_release(from, offset, part);
-	}
-	return status;
-}
-
-/* For the copy afterwards, of which the kernel shows nothing, the bytes are in memory then. */
-static void digest_range(nt_sink *sink, const nt_file *from, size_t offset, size_t size)
-{
-	if (sink->digest && (size < KERNEL_COPY_BYTES || !from->mapped)) {
-		nt_digest_add(sink->digest, from->data + offset, size);
-		return;
-	}
-	for (size_t left = size, part; left && sink->digest; left -= part, offset += part) {
-		part = left < MAPPED_COPY_BYTES ? left : MAPPED_COPY_BYTES;
-		nt_file_fetch(from, offset, part);
-		nt_digest_add(sink->digest, from->data + offset, part);
-		nt_file_release(from, offset, part);
-	}
-}
-
-nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size,
-	nt_error *error)
+/* A large range of a map comes and goes in parts, so that it does not fill the memory. */
+nt_status nt_sink_copy(nt_sink *sink, const nt_file *from, size_t offset, size_t size, nt_error *error)
 {
 	if (offset > from->size || size > from->size - offset)
 		return nt_fail(error, NT_ERROR_INTERNAL, "a range to copy is outside of its file");
 	sink->copied += size;
-	digest_range(sink, from, offset, size);
-	if (size < KERNEL_COPY_BYTES || !from->mapped || !sink->temporary || sink->no_kernel_copy)
-		return write_bytes(sink, from->data + offset, size, error);
-	if (!pages_meet(sink, offset))
-		return copy_mapped(sink, from, offset, size, error);
-	const nt_status status = flush_with(sink, NULL, 0, error);
-	if (status)
-		return status;
-	size_t done;
-	copy_in_kernel(sink, from, offset, size, &done);
-	sink->size += done;
-	return write_bytes(sink, from->data + offset + done, size - done, error);
+	if (size < COPIED_BYTES || !from->mapped || sink->dry)
+		return nt_sink_write(sink, from->data + offset, size, error);
+	nt_status status = NT_OK;
+	for (size_t left = size, part; left && !status; left -= part, offset += part) {
+		part = left < COPIED_BYTES ? left : COPIED_BYTES;
+		nt_file_fetch(from, offset, part);
+		status = nt_sink_write(sink, from->data + offset, part, error);
+		nt_file_release(from, offset, part);
+	}
+	return status;
 }
 
 nt_status nt_sink_set_aside(nt_sink *sink, uint64_t size, nt_sink **part, nt_error *error)
