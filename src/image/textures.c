@@ -11,11 +11,16 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 #include "base/hash_index.h"
 #include "base/name_table.h"
 #include "base/parallel.h"
 #include "file/relative_path.h"
-#include "file/spill.h"
+#include "file/temporary.h"
+
+/* Results that are larger wait in files: a thousand smaller ones take less memory than one image being decoded. */
+enum { FILED_BYTES = 256 * 1024 };
 
 typedef struct source {
 	nt_texture_source file;
@@ -53,18 +58,15 @@ struct nt_textures {
 	size_t result_count, result_capacity;
 	nt_hash_index by_path, by_wish, by_recipe; /* sources, wishes and results */
 	nt_texture_rules rules;
-	nt_spill *spill;
+	const char *beside; /* path next to which large results are in files; NULL: all are in memory */
 };
 
 nt_textures *nt_textures_create(const char *beside)
 {
 	nt_textures *t = nt_calloc(1, sizeof *t);
 	if (t)
-		t->spill = nt_spill_create(beside);
-	if (!t || t->spill)
-		return t;
-	free(t);
-	return NULL;
+		t->beside = beside;
+	return t;
 }
 
 void nt_textures_free(nt_textures *t)
@@ -75,9 +77,14 @@ void nt_textures_free(nt_textures *t)
 		free(t->sources[i]->path);
 		free(t->sources[i]);
 	}
-	for (size_t i = 0; i < t->result_count; i++)
+	for (size_t i = 0; i < t->result_count; i++) {
+		const nt_texture *texture = &t->results[i].texture;
+		if (texture->mapped)
+			munmap((void *)(uintptr_t)texture->bytes, texture->size);
+		else
+			free((void *)(uintptr_t)texture->bytes);
 		free(t->results[i].name);
-	nt_spill_free(t->spill);
+	}
 	free(t->sources);
 	free(t->wishes);
 	free(t->results);
@@ -420,6 +427,23 @@ static void note_failure(result *r)
 	texture->failure = r->error.message;
 }
 
+/* The bytes in a file that has lost its name, so that they take no memory and nobody has to remove it. NULL: the system
+ * refuses one. */
+static void *map_in_file(const char *beside, const unsigned char *bytes, size_t size)
+{
+	nt_temporary *temporary;
+	const int fd = beside ? nt_temporary_create(beside, 0600, &temporary) : -1;
+	if (fd < 0)
+		return NULL;
+	nt_temporary_discard(temporary);
+	size_t done = 0;
+	for (ssize_t count; done < size && (count = write(fd, bytes + done, size - done)) > 0; done += (size_t)count)
+		continue;
+	void *map = done == size ? mmap(NULL, size, PROT_READ, MAP_PRIVATE, fd, 0) : MAP_FAILED;
+	close(fd);
+	return map == MAP_FAILED ? NULL : map;
+}
+
 static void decode_result(const nt_textures *t, result *r)
 {
 	nt_texture *texture = &r->texture;
@@ -429,11 +453,12 @@ static void decode_result(const nt_textures *t, result *r)
 	if (!status)
 		status = nt_recipe_make(&r->how, files.of_channels, &made, &r->error);
 	status = close_sources(texture, &files, status, &r->error);
-	texture->bytes = made.bytes ? nt_spill_take(t->spill, made.bytes, made.size) : NULL;
-	if (made.bytes && !texture->bytes) {
+	void *map = made.size >= FILED_BYTES ? map_in_file(t->beside, made.bytes, made.size) : NULL;
+	texture->mapped = map != NULL;
+	texture->bytes = map ? map : made.bytes;
+	texture->size = made.size;
+	if (map)
 		free(made.bytes);
-		status = nt_fail_memory(&r->error);
-	}
 	texture->damaged = made.damaged;
 	texture->lost |= made.damaged;
 	if (status) {
@@ -446,7 +471,6 @@ static void decode_result(const nt_textures *t, result *r)
 		nt_error_clear(&r->error);
 	texture->flipped = made.flipped;
 	texture->alpha = made.alpha;
-	texture->size = made.size;
 	texture->type = made.bytes ? NT_IMAGE_PNG : texture->sources[0]->type;
 }
 
@@ -549,6 +573,7 @@ const nt_texture_source *nt_textures_source(const nt_textures *t, uint32_t numbe
 
 void nt_textures_forget(const nt_textures *t, const nt_texture *texture)
 {
-	if (texture->bytes)
-		nt_spill_forget(t->spill, texture->bytes);
+	(void)t;
+	if (texture->mapped)
+		madvise((void *)(uintptr_t)texture->bytes, texture->size, MADV_DONTNEED); /* a refusal changes nothing */
 }

@@ -74,11 +74,12 @@ typedef struct nt_texture {
 	unsigned damaged;          /* of these, damaged ones */
 	const char *name;          /* what a file of it is called */
 	const unsigned char *bytes; /* [size] of a PNG that was made; NULL: the first source is the result */
+	bool mapped;                /* bytes are in a file */
 	size_t size;
 	const char *failure;       /* why something was not decoded; NULL: it was, or did not have to be */
 } nt_texture;
 
-/* beside: a path, which stays; large PNGs wait in a file beside it (file/spill.h). NULL: in memory. Returns NULL when
+/* beside: a path, which stays; large PNGs wait in files without a name beside it. NULL: in memory. Returns NULL when
  * memory is exhausted. */
 nt_textures *nt_textures_create(const char *beside);
 void nt_textures_free(nt_textures *textures); /* NULL is allowed */

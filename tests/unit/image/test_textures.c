@@ -75,6 +75,40 @@ static void equal_results_are_made_once(void **state)
 	nt_textures_free(t);
 }
 
+/* A grey TGA of noise, whose PNG is larger than 256 KB; where no file can be had, it stays in memory. */
+static void large_results_are_in_a_file(void **state)
+{
+	(void)state;
+	enum { SIDE = 600, BYTES = 18 + SIDE * SIDE };
+	static unsigned char tga[BYTES] = {[2] = 3, [12] = SIDE % 256, [13] = SIDE / 256, [14] = SIDE % 256,
+		[15] = SIDE / 256, [16] = 8, [17] = 0x20};
+	char here[300], nowhere[300];
+	uint32_t noise = 1;
+	for (size_t i = 18; i < BYTES; i++) {
+		noise = noise * 1664525 + 1013904223;
+		tga[i] = (unsigned char)(noise >> 24);
+	}
+	put_file("noise.tga", tga, BYTES);
+	snprintf(here, sizeof here, "%s", in_folder("out.glb"));
+	snprintf(nowhere, sizeof nowhere, "%s", in_folder("none/out.glb"));
+	const char *const beside[] = {here, nowhere, NULL};
+	for (size_t i = 0; i < 3; i++) {
+		nt_textures *t = nt_textures_create(beside[i]);
+		nt_error error;
+		const uint32_t number = wish(t, "noise.tga", NT_TEXTURE_COLOR, 0);
+		assert_int_equal(make(t, &error), NT_OK);
+		const nt_texture *texture = result(t, number);
+		assert_true(texture->size > 256 * 1024);
+		assert_int_equal(texture->mapped, i == 0);
+		nt_textures_forget(t, texture);
+		nt_pixels pixels;
+		assert_int_equal(nt_image_decode(texture->bytes, texture->size, &pixels, &error), NT_OK);
+		assert_memory_equal(pixels.samples, tga + 18, SIDE * SIDE);
+		nt_pixels_free(&pixels);
+		nt_textures_free(t);
+	}
+}
+
 static void file_that_is_not_what_it_was_is_an_error(void **state)
 {
 	(void)state;
@@ -122,6 +156,7 @@ int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(equal_results_are_made_once),
+		cmocka_unit_test(large_results_are_in_a_file),
 		cmocka_unit_test(file_that_is_not_what_it_was_is_an_error),
 		cmocka_unit_test(textures_without_memory_are_an_error),
 	};
