@@ -2,6 +2,7 @@
 # Small files that ask for much work: time, memory and output stay in proportion to what is read, with the bounds that
 # the manual states under LIMITS. Time is that of the processor, so that other programs are not counted but for what
 # they take of its caches, generous, and asked of one of three runs: what is quadratic misses it by far.
+# Runs alone.
 . "$ROOT/tests/support/cli.sh"
 
 # inputs KIND COUNT FILE [SIDE]: what is asked for again, in another scene or by another build, is the same file.

@@ -10,7 +10,7 @@ scene "Debian's tools make packages that lintian accepts"
 tree=$deb/nmtan-$version
 mkdir -p "$tree/build/release"
 (cd "$ROOT" && cp -a Makefile README.md LICENSE src include man tests data "$tree" &&
-	tar -cf - --format=posix --exclude=build/release/tests build/release | tar -xf - -C "$tree")
+	tar -cf - --format=posix --exclude=build/release/tests --exclude=build/release/installed build/release | tar -xf - -C "$tree")
 mv "$tree/data/debian" "$tree/debian"
 rm "$tree/debian/build.sh"
 (cd "$tree" && MAKEFLAGS= dpkg-buildpackage --build=binary --unsigned-changes --no-pre-clean) >"$WORK/out.txt" 2>&1 ||
