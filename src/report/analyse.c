@@ -300,8 +300,7 @@ static nt_status run_checks(nt_check *check)
 /* most_image_bytes: how much of images may still be kept. */
 static nt_status check_mesh(nt_check *check, size_t most_image_bytes[NT_PICTURE_COUNT])
 {
-	nt_status status = nt_surface_build(&check->surface, check->mesh, nt_thread_count(check->options->threads),
-		check->scratch);
+	nt_status status = nt_surface_build(&check->surface, check->mesh, check->scratch);
 	if (status || check->surface.triangle_count == 0)
 		return status;
 	describe_surface(check);

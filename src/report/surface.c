@@ -166,7 +166,7 @@ void nt_surface_measure(nt_surface *s, size_t b)
 	s->blocks[b] = block;
 }
 
-nt_status nt_surface_build(nt_surface *s, const nt_mesh *mesh, unsigned threads, nt_scratch *scratch)
+nt_status nt_surface_build(nt_surface *s, const nt_mesh *mesh, nt_scratch *scratch)
 {
 	*s = (nt_surface){.mesh = mesh, .texcoords = mesh->solve_texcoords ? mesh->solve_texcoords : mesh->texcoords};
 	const nt_status status = list_triangles(s, scratch);
@@ -177,5 +177,5 @@ nt_status nt_surface_build(nt_surface *s, const nt_mesh *mesh, unsigned threads,
 	s->blocks = nt_scratch_alloc(scratch, nt_block_count(s), sizeof *s->blocks);
 	if (!s->orientation || !s->flatness || !s->blocks)
 		return NT_ERROR_MEMORY;
-	return nt_surface_weld(s, threads, scratch);
+	return nt_surface_weld(s, scratch);
 }

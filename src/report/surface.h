@@ -51,12 +51,12 @@ typedef struct nt_surface {
 	nt_block *blocks;     /* [nt_block_count(triangle_count)] */
 } nt_surface;
 
-/* Builds the surface of a loaded mesh, but for orientation, flatness and blocks, on up to `threads` threads; it does
- * not depend on how many. Everything is in scratch or the mesh's own. Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, unsigned threads, nt_scratch *scratch);
+/* Builds the surface of a loaded mesh, but for orientation, flatness and blocks. Everything is in scratch or the mesh's
+ * own. Returns NT_OK or NT_ERROR_MEMORY. */
+nt_status nt_surface_build(nt_surface *surface, const nt_mesh *mesh, nt_scratch *scratch);
 
 /* Of that: sets points, point_count and joints. points.c */
-nt_status nt_surface_weld(nt_surface *surface, unsigned threads, nt_scratch *scratch);
+nt_status nt_surface_weld(nt_surface *surface, nt_scratch *scratch);
 
 /* Sets the orientation and flatness of a block's triangles, and the block. The triangles are then in the cache. */
 void nt_surface_measure(nt_surface *surface, size_t block);

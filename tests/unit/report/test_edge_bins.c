@@ -67,7 +67,7 @@ static void edges_come_in_order(void **state)
 		nt_scratch_init(&scratch, NULL);
 		nt_surface s;
 		nt_edge_bins bins;
-		assert_int_equal(nt_surface_build(&s, &l->mesh, threads, &scratch), NT_OK);
+		assert_int_equal(nt_surface_build(&s, &l->mesh, &scratch), NT_OK);
 		for (size_t b = 0; b < nt_block_count(&s); b++)
 			nt_surface_measure(&s, b);
 		assert_int_equal(nt_edge_bins_make(&bins, &s, threads, &scratch), NT_OK);

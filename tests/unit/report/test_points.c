@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Points are what a table of all places says, numbered by first use, for any number of threads. */
+/* Points are what a table of all places says, numbered by first use. */
 #include "lattice.h"
 
 enum { PLACES = LATTICE_SIDE * LATTICE_SIDE * LATTICE_SIDE };
@@ -34,17 +34,15 @@ static void compare(bool indexed)
 {
 	lattice *l = lattice_new(indexed);
 	expected *e = expect(l);
-	for (unsigned threads = 1; threads <= 8; threads++) {
-		nt_scratch scratch;
-		nt_scratch_init(&scratch, NULL);
-		nt_surface s;
-		assert_int_equal(nt_surface_build(&s, &l->mesh, threads, &scratch), NT_OK);
-		assert_int_equal(s.point_count, e->point_count);
-		assert_memory_equal(s.points, e->points, l->mesh.vertex_count * sizeof *s.points);
-		for (size_t p = 0; p < s.point_count; p++)
-			assert_int_equal(nt_bit(s.joints, p), e->joints[p]);
-		nt_scratch_free(&scratch);
-	}
+	nt_scratch scratch;
+	nt_scratch_init(&scratch, NULL);
+	nt_surface s;
+	assert_int_equal(nt_surface_build(&s, &l->mesh, &scratch), NT_OK);
+	assert_int_equal(s.point_count, e->point_count);
+	assert_memory_equal(s.points, e->points, l->mesh.vertex_count * sizeof *s.points);
+	for (size_t p = 0; p < s.point_count; p++)
+		assert_int_equal(nt_bit(s.joints, p), e->joints[p]);
+	nt_scratch_free(&scratch);
 	free(e);
 	free(l);
 }
