@@ -198,124 +198,47 @@ static void join_part(triangle_part *all, const triangle_part *part)
 
 /* ---- least, median and greatest determinant ---- */
 
-/* Up to which sorting is faster than counting. */
-enum { FEW = 2048 };
-
-/* Counts of determinants whose bits above `shift + 16` are `upper`, by the 16 below. */
-typedef struct histogram {
-	const float *values;
-	uint32_t upper;
-	unsigned shift;
-	uint32_t *counts; /* [slots][65536] */
-	float *ranges;    /* [slots][2] least and greatest */
-} histogram;
-
-static uint32_t bits_of(float value)
+/* Of those that are known. Puts them in another order: quickselect, with pivots of a fixed random sequence. */
+static void find_determinants(nt_report_mesh *facts, float *values, size_t count)
 {
-	uint32_t bits;
-	memcpy(&bits, &value, sizeof bits);
-	return bits;
-}
-
-static void count_range(void *context, size_t begin, size_t end, unsigned slot)
-{
-	const histogram *h = context;
-	uint32_t *counts = h->counts + (size_t)slot * 65536;
 	float least = INFINITY, greatest = -INFINITY;
-	memset(counts, 0, 65536 * sizeof *counts);
-	for (size_t i = begin; i < end; i++) {
-		const float value = h->values[i];
+	size_t known = 0;
+	for (size_t t = 0; t < count; t++) {
+		const float value = values[t];
 		if (value != value)
 			continue;
+		values[known++] = value;
 		least = value < least ? value : least;
 		greatest = value > greatest ? value : greatest;
-		const uint32_t bits = bits_of(value);
-		if ((uint64_t)bits >> (h->shift + 16) == h->upper)
-			counts[bits >> h->shift & 65535]++;
 	}
-	h->ranges[2 * (size_t)slot] = least;
-	h->ranges[2 * (size_t)slot + 1] = greatest;
-}
-
-/* Adds up the slots, in the first. Returns the sum of all. */
-static size_t join_counts(histogram *h, unsigned slots)
-{
-	size_t sum = 0;
-	for (size_t i = 0; i < 65536; i++) {
-		for (unsigned slot = 1; slot < slots; slot++)
-			h->counts[i] += h->counts[(size_t)slot * 65536 + i];
-		sum += h->counts[i];
-	}
-	for (unsigned slot = 1; slot < slots; slot++) {
-		h->ranges[0] = fminf(h->ranges[0], h->ranges[2 * (size_t)slot]);
-		h->ranges[1] = fmaxf(h->ranges[1], h->ranges[2 * (size_t)slot + 1]);
-	}
-	return sum;
-}
-
-static void set_determinants(nt_report_mesh *facts, float least, float median, float greatest)
-{
-	facts->relative_determinant[0] = least;
-	facts->relative_determinant[1] = median;
-	facts->relative_determinant[2] = greatest;
-}
-
-static int by_value(const void *a, const void *b)
-{
-	const float x = *(const float *)a, y = *(const float *)b;
-	return x < y ? -1 : x > y;
-}
-
-/* Of few. They are put in order. */
-static void sort_determinants(nt_report_mesh *facts, float *determinants, size_t count)
-{
-	size_t known = 0;
-	for (size_t t = 0; t < count; t++)
-		if (determinants[t] == determinants[t])
-			determinants[known++] = determinants[t];
 	if (!known)
 		return;
-	qsort(determinants, known, sizeof *determinants, by_value);
-	set_determinants(facts, determinants[0], determinants[known / 2], determinants[known - 1]);
-}
-
-/* Of many, whose bits are in the order of their values since none is negative: a count of upper halves, then of the
- * lower halves in the one that holds the median. Linear whatever the values, which quickselect is not. */
-static nt_status count_determinants(nt_check *check, const float *determinants)
-{
-	const size_t count = check->surface.triangle_count;
-	const unsigned threads = nt_thread_count(check->options->threads),
-		slots = nt_parallel_slots(threads, count, GRAIN);
-	histogram h = {.values = determinants, .shift = 16,
-		.counts = nt_scratch_alloc(check->scratch, (size_t)slots * 65536, sizeof *h.counts),
-		.ranges = nt_scratch_alloc(check->scratch, 2 * (size_t)slots, sizeof *h.ranges)};
-	if (!h.counts || !h.ranges)
-		return NT_ERROR_MEMORY;
-	size_t k = 0;
-	for (int pass = 0; pass < 2; pass++, h.shift = 0) {
-		nt_parallel_ranges(threads, count, GRAIN, count_range, &h);
-		const size_t known = join_counts(&h, slots);
-		if (known == 0)
-			return NT_OK;
-		k = pass ? k : known / 2;
-		uint32_t at = 0;
-		while (at < 65535 && k >= h.counts[at])
-			k -= h.counts[at++];
-		h.upper = h.upper << 16 | at;
+	const size_t middle = known / 2;
+	uint64_t random = 1;
+	for (size_t low = 0, high = known - 1; low < high;) {
+		random = random * 6364136223846793005u + 1442695040888963407u;
+		const float pivot = values[low + (size_t)(random >> 32) % (high - low)];
+		size_t i = low, j = high;
+		for (;; i++, j--) {
+			while (values[i] < pivot)
+				i++;
+			while (values[j] > pivot)
+				j--;
+			if (i >= j)
+				break;
+			const float value = values[i];
+			values[i] = values[j];
+			values[j] = value;
+		}
+		/* nothing up to j is above the pivot, nothing behind it below */
+		if (middle <= j)
+			high = j;
+		else
+			low = j + 1;
 	}
-	float median;
-	memcpy(&median, &h.upper, sizeof median);
-	set_determinants(check->facts, h.ranges[0], median, h.ranges[1]);
-	return NT_OK;
-}
-
-static nt_status find_determinants(nt_check *check, float *determinants)
-{
-	const size_t count = check->surface.triangle_count;
-	if (count > FEW)
-		return count_determinants(check, determinants);
-	sort_determinants(check->facts, determinants, count);
-	return NT_OK;
+	facts->relative_determinant[0] = least;
+	facts->relative_determinant[1] = values[middle];
+	facts->relative_determinant[2] = greatest;
 }
 
 static nt_severity severity_by_share(const nt_check *check, double area)
@@ -338,21 +261,6 @@ static void sum_blocks(nt_check *check)
 		check->total_area += facts->areas[i];
 }
 
-typedef struct sound_search {
-	const nt_surface *s;
-	uint64_t *vertices;
-} sound_search;
-
-static void find_sound(void *context, size_t begin, size_t end, unsigned slot)
-{
-	const sound_search *search = context;
-	const nt_surface *s = search->s;
-	(void)slot;
-	for (size_t c = 3 * begin; c < 3 * end; c++)
-		if (s->orientation[c / 3] && s->flatness[c / 3] != NT_COINCIDENT)
-			nt_bit_set(search->vertices, nt_side_vertex(s, c));
-}
-
 /* How many corners of degenerate triangles share their vertex with a sound one, whose tangent they take; the others get
  * a vector perpendicular to their normal. */
 static nt_status count_neighbours(const nt_check *check, size_t *count)
@@ -362,13 +270,15 @@ static nt_status count_neighbours(const nt_check *check, size_t *count)
 	*count = 0;
 	if (!check->mesh->texcoords || !check->facts->triangles[1])
 		return NT_OK;
-	sound_search search = {s, nt_scratch_alloc(check->scratch, words, sizeof *search.vertices)};
-	if (!search.vertices)
+	uint64_t *sound = nt_scratch_alloc(check->scratch, words, sizeof *sound);
+	if (!sound)
 		return NT_ERROR_MEMORY;
-	memset(search.vertices, 0, words * sizeof *search.vertices);
-	nt_parallel_ranges(nt_thread_count(check->options->threads), s->triangle_count, GRAIN, find_sound, &search);
+	memset(sound, 0, words * sizeof *sound);
 	for (size_t c = 0; c < 3 * s->triangle_count; c++)
-		*count += !s->orientation[c / 3] && nt_bit(search.vertices, nt_side_vertex(s, c));
+		if (s->orientation[c / 3] && s->flatness[c / 3] != NT_COINCIDENT)
+			nt_bit_set(sound, nt_side_vertex(s, c));
+	for (size_t c = 0; c < 3 * s->triangle_count; c++)
+		*count += !s->orientation[c / 3] && nt_bit(sound, nt_side_vertex(s, c));
 	return NT_OK;
 }
 
@@ -415,9 +325,9 @@ static nt_status check_triangles(nt_check *check)
 		join_part(&work.parts[0], &work.parts[i]);
 	sum_blocks(check);
 	size_t from_neighbour;
-	nt_status status = count_neighbours(check, &from_neighbour);
-	if (!status && check->mesh->texcoords)
-		status = find_determinants(check, work.determinants);
+	const nt_status status = count_neighbours(check, &from_neighbour);
+	if (check->mesh->texcoords)
+		find_determinants(check->facts, work.determinants, triangles);
 	if (!status)
 		report_triangles(check, &work.parts[0], from_neighbour);
 	return status;
