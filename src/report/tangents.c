@@ -29,9 +29,8 @@ const double nt_angle_bins[NT_ANGLE_BINS] = {1.0, 5.0, 15.0, 30.0, 60.0, 180.0};
 
 static const double DEGREES = 57.29577951308232;
 
-/* Triangles that a thread takes at a time, and items of which fewer are not worth one. What is found in parts is joined
- * in their order. */
-enum { PART = 16384, GRAIN = 32768 };
+/* Triangles that a thread takes at a time. What is found in parts is joined in their order. */
+enum { PART = 16384 };
 
 static size_t part_count(const nt_check *check)
 {
@@ -47,6 +46,7 @@ static size_t part_end(const nt_check *check, size_t part)
 typedef struct tangent_tallies {
 	nt_tally not_finite, zero, non_unit, bad_w, parallel, not_orthogonal;
 	double worst_length;
+	double worst_square; /* sin^2 of the angle off perpendicular that is the worst */
 } tangent_tallies;
 
 static double length_of(nt_dvec3 v)
@@ -59,23 +59,29 @@ static double degrees_between(nt_dvec3 a, nt_dvec3 b)
 	return nt_angle(length_of(nt_dvec3_cross(a, b)), nt_dvec3_dot(a, b)) * DEGREES;
 }
 
-/* From perpendicular. */
-static double degrees_off(nt_dvec3 a, nt_dvec3 b)
-{
-	return fabs(degrees_between(a, b) - 90.0);
-}
+/* sin^2 of 0.99 degrees: what is less off perpendicular is no finding. If it is less than the worst, too, and that is
+ * not noise, the angle itself does not matter. */
+static const double NEARLY_ORTHOGONAL = 0.000298, NOISE = 1e-16, SURELY_LESS = 1.0 - 1e-6;
 
 static void check_angle(nt_check *check, tangent_tallies *tt, uint32_t vertex, nt_dvec3 tangent)
 {
 	if (!check->mesh->normals)
 		return;
 	nt_dvec3 normal = nt_dvec3_load(check->mesh->normals + 3 * (size_t)vertex);
+	const double dot = nt_dvec3_dot(normal, tangent), square = dot * dot;
+	const double both = nt_dvec3_dot(normal, normal) * nt_dvec3_dot(tangent, tangent);
+	if (tt->worst_square > NOISE && square < tt->worst_square * SURELY_LESS * both &&
+		square < NEARLY_ORTHOGONAL * both)
+		return;
 	if (!nt_dvec3_normalise(&normal))
 		return;
-	const double off = degrees_off(normal, tangent);
+	/* degrees from perpendicular */
+	const double off = fabs(degrees_between(normal, tangent) - 90.0);
 	nt_report_mesh *facts = check->facts;
-	if (!(facts->worst_orthogonality >= off))
+	if (!(facts->worst_orthogonality >= off)) {
 		facts->worst_orthogonality = off;
+		tt->worst_square = square / both;
+	}
 	if (off > 90.0 - PARALLEL_DEGREES)
 		nt_tally_vertex(check, &tt->parallel, vertex, off);
 	else if (off > ORTHOGONAL_DEGREES)
@@ -133,112 +139,25 @@ static void report_kept(nt_check *check, const nt_tally *const *invalid, size_t 
 		nt_check_report(check, &kept, NULL);
 }
 
-/* ---- each tangent, once ---- */
-
-/* sin^2 of 0.99 degrees: what is less off perpendicular is no finding. The greatest such measure that is known says of
- * others that they are not the worst, without an angle, unless it is noise itself. */
-static const double NEARLY_ORTHOGONAL = 0.000298, NOISE = 1e-16, SURELY_LESS = 1.0 - 1e-6;
-
-typedef struct tangent_search {
-	nt_check *check;
-	uint64_t *used, *odd; /* [tangent_count] bits: of triangles; there may be something to say about */
-	double *worst;        /* [slots] degrees off perpendicular; NaN: none */
-} tangent_search;
-
-static void find_used(void *context, size_t begin, size_t end, unsigned slot)
-{
-	const tangent_search *search = context;
-	(void)slot;
-	for (size_t c = begin; c < end; c++)
-		nt_bit_set(search->used, nt_tangent_index(search->check, nt_side_corner(&search->check->surface, c)));
-}
-
-/* The vertex of a stored tangent. */
-static size_t vertex_of(const nt_check *check, size_t index)
-{
-	const nt_mesh *mesh = check->mesh;
-	if (check->stored == NT_STORED_CORNERS)
-		return mesh->indices ? mesh->indices[index] : index;
-	return index < mesh->vertex_count ? index : mesh->split.sources[index - mesh->vertex_count];
-}
-
-/* Whether a tangent has unit length, w and a normal that it is perpendicular to, or none. most: the greatest sin^2 off
- * perpendicular so far, and worst its degrees. */
-static bool is_sound(const nt_check *check, size_t index, double *most, double *worst)
-{
-	const float *stored = nt_stored_tangents(check) + 4 * index;
-	const nt_dvec3 tangent = nt_dvec3_load(stored);
-	const double length = length_of(tangent);
-	if (fabsf(stored[3]) != 1.0f || !(fabs(length - 1.0) <= UNIT_TOLERANCE))
-		return false;
-	if (!check->mesh->normals)
-		return true;
-	nt_dvec3 normal = nt_dvec3_load(check->mesh->normals + 3 * vertex_of(check, index));
-	const double dot = nt_dvec3_dot(normal, tangent), both = nt_dvec3_dot(normal, normal) * length * length;
-	if (*most > NOISE && dot * dot < *most * SURELY_LESS * both)
-		return true;
-	if (!nt_dvec3_normalise(&normal))
-		return true;
-	const double off = degrees_off(normal, tangent);
-	if (dot * dot > NEARLY_ORTHOGONAL * both)
-		return false;
-	if (!(*worst >= off)) {
-		*worst = off;
-		*most = dot * dot / both;
-	}
-	return true;
-}
-
-static void find_odd(void *context, size_t begin, size_t end, unsigned slot)
-{
-	const tangent_search *search = context;
-	double most = 0.0, worst = NAN;
-	for (size_t i = begin; (i = nt_bit_next(search->used, i, end)) < end; i++)
-		if (!is_sound(search->check, i, &most, &worst))
-			nt_bit_set(search->odd, i);
-	search->worst[slot] = worst;
-}
-
-/* Marks the tangents that there may be something to say about. */
-static nt_status search_tangents(tangent_search *search, unsigned threads)
-{
-	nt_check *check = search->check;
-	const size_t count = tangent_count(check), words = nt_bit_words(count);
-	const unsigned slots = nt_parallel_slots(threads, count, GRAIN);
-	search->used = nt_scratch_alloc(check->scratch, words, sizeof *search->used);
-	search->odd = nt_scratch_alloc(check->scratch, words, sizeof *search->odd);
-	search->worst = nt_scratch_alloc(check->scratch, slots, sizeof *search->worst);
-	if (!search->used || !search->odd || !search->worst)
-		return NT_ERROR_MEMORY;
-	memset(search->used, 0, words * sizeof *search->used);
-	memset(search->odd, 0, words * sizeof *search->odd);
-	nt_parallel_ranges(threads, 3 * check->surface.triangle_count, GRAIN, find_used, search);
-	nt_parallel_ranges(threads, count, GRAIN, find_odd, search);
-	for (unsigned slot = 0; slot < slots; slot++)
-		if (!(check->facts->worst_orthogonality >= search->worst[slot]) && !isnan(search->worst[slot]))
-			check->facts->worst_orthogonality = search->worst[slot];
-	return NT_OK;
-}
-
-/* In the order of corners. */
+/* Each tangent once, in the order of corners. */
 static nt_status check_each(nt_check *check)
 {
 	const nt_surface *s = &check->surface;
-	tangent_search search = {.check = check};
+	const size_t count = tangent_count(check);
 	tangent_tallies *tt = nt_scratch_alloc(check->scratch, 1, sizeof *tt);
-	if (!tt || search_tangents(&search, nt_thread_count(check->options->threads)))
+	uint8_t *met = nt_scratch_alloc(check->scratch, count, 1);
+	if (!tt || !met)
 		return NT_ERROR_MEMORY;
+	memset(met, 0, count);
 	*tt = (tangent_tallies){.not_finite = {.code = NT_CODE_TAN_NOT_FINITE},
 		.zero = {.code = NT_CODE_TAN_ZERO}, .non_unit = {.code = NT_CODE_TAN_NON_UNIT},
 		.bad_w = {.code = NT_CODE_TAN_BAD_W}, .parallel = {.code = NT_CODE_TAN_PARALLEL_NORMAL},
 		.not_orthogonal = {.code = NT_CODE_TAN_NOT_ORTHOGONAL}, .worst_length = 1.0};
-	const size_t sides = 3 * s->triangle_count, count = tangent_count(check);
-	const bool any = nt_bit_next(search.odd, 0, count) < count;
-	for (size_t c = 0; any && c < sides; c++) {
+	for (size_t c = 0; c < 3 * s->triangle_count; c++) {
 		const size_t index = nt_tangent_index(check, nt_side_corner(s, c));
-		if (!nt_bit(search.odd, index))
+		if (met[index])
 			continue;
-		nt_bit_clear(search.odd, index);
+		met[index] = 1;
 		check_tangent(check, tt, nt_side_vertex(s, c), nt_stored_tangents(check) + 4 * index);
 	}
 	nt_tally_number(&tt->non_unit, "worst_length", tt->worst_length);
@@ -258,8 +177,8 @@ static nt_status check_each(nt_check *check)
  * averaging does. One of them alone says little: it may be far off where u and v grow almost the same way. */
 static const double REVERSED_COSINE = -0.5;
 
-/* dP/du and dP/dv of a triangle, scaled to unit length; false where one has no direction. */
-static bool directions_of_uv(const nt_surface *s, size_t t, nt_dvec3 *u, nt_dvec3 *v)
+/* dP/du and dP/dv of a triangle, but for their lengths. */
+static void directions_of_uv(const nt_surface *s, size_t t, nt_dvec3 *u, nt_dvec3 *v)
 {
 	const uint32_t c = (uint32_t)(3 * t);
 	const float *ta = nt_side_texcoord(s, c);
@@ -272,7 +191,6 @@ static bool directions_of_uv(const nt_surface *s, size_t t, nt_dvec3 *u, nt_dvec
 		nt_dvec3_scale(sign * ((double)tc[0] - ta[0]), d1));
 	*u = nt_dvec3_sub(nt_dvec3_scale(sign * ((double)tc[1] - ta[1]), d1),
 		nt_dvec3_scale(sign * ((double)tb[1] - ta[1]), d2));
-	return nt_dvec3_normalise(u) && nt_dvec3_normalise(v);
 }
 
 /* Whether all three tangents run against growing u and all bitangents against growing v although the normals agree with
@@ -281,7 +199,12 @@ static bool is_reversed(const nt_check *check, size_t t)
 {
 	const nt_surface *s = &check->surface;
 	nt_dvec3 u, v;
-	if (check->stored != NT_STORED_AUTHORED || !check->mesh->normals || !directions_of_uv(s, t, &u, &v))
+	if (check->stored != NT_STORED_AUTHORED || !check->mesh->normals)
+		return false;
+	directions_of_uv(s, t, &u, &v);
+	/* nearly all triangles end here, without a root */
+	if (nt_dvec3_dot(nt_dvec3_load(nt_stored_tangent(check, nt_side_corner(s, 3 * t))), u) > 0.0 ||
+		!nt_dvec3_normalise(&u) || !nt_dvec3_normalise(&v))
 		return false;
 	const nt_dvec3 a = nt_dvec3_load(nt_side_position(s, (uint32_t)(3 * t)));
 	const nt_dvec3 face = nt_dvec3_cross(
