@@ -48,17 +48,46 @@ static texel measure_texel(const nt_surface *s, size_t t, double width, double h
 	return (texel){longest, product / longest};
 }
 
+static uint32_t bits_of(float value)
+{
+	uint32_t bits;
+	memcpy(&bits, &value, sizeof bits);
+	return bits;
+}
+
 static int by_value(const void *a, const void *b)
 {
 	const weighed *x = a, *y = b;
 	return x->value < y->value ? -1 : x->value > y->value;
 }
 
-/* Sorts. Up to which value half the area lies. */
-static double median_of(weighed *items, size_t count)
+/* Sorts by value; the bits of floats that are not negative are in the order of their values. Of many triangles qsort()
+ * takes a third of a whole run. other: [count] */
+static void sort_weighed(weighed *items, size_t count, weighed *other)
+{
+	enum { FEW = 256 };
+	if (count < FEW) {
+		qsort(items, count, sizeof *items, by_value);
+		return;
+	}
+	for (unsigned shift = 0; shift < 32; shift += 8) {
+		size_t places[257] = {0};
+		for (size_t i = 0; i < count; i++)
+			places[(bits_of(items[i].value) >> shift & 255) + 1]++;
+		for (size_t i = 0; i < 256; i++)
+			places[i + 1] += places[i];
+		for (size_t i = 0; i < count; i++)
+			other[places[bits_of(items[i].value) >> shift & 255]++] = items[i];
+		weighed *const sorted = other;
+		other = items;
+		items = sorted;
+	}
+}
+
+/* Of sorted ones: up to which value half the area lies. */
+static double median_of(const weighed *items, size_t count)
 {
 	double total = 0.0, sum = 0.0;
-	qsort(items, count, sizeof *items, by_value);
 	for (size_t i = 0; i < count; i++)
 		total += items[i].area;
 	for (size_t i = 0; i < count; i++) {
@@ -90,9 +119,9 @@ static void list_triangles(const nt_check *check, uint32_t *first, uint32_t *lis
 			list[first[check->islands[t] + 1]++] = (uint32_t)t;
 }
 
-/* density: whether the texture's size is known. */
+/* density: whether the texture's size is known. items, other: [count] */
 static void measure_island(const nt_check *check, nt_island *island, const uint32_t *list, size_t count,
-	bool density, weighed *items)
+	bool density, weighed *items, weighed *other)
 {
 	const uint32_t *size = check->facts->texture_size;
 	const double width = density ? size[0] : 1.0, height = density ? size[1] : 1.0;
@@ -102,6 +131,7 @@ static void measure_island(const nt_check *check, nt_island *island, const uint3
 			const double value = pass ? x.longest / x.shortest : 1.0 / sqrt(x.longest * x.shortest);
 			items[i] = (weighed){(float)value, (float)nt_triangle_area(&check->surface, list[i])};
 		}
+		sort_weighed(items, count, other);
 		const double median = median_of(items, count);
 		if (pass) {
 			island->stretch[0] = median;
@@ -144,12 +174,13 @@ nt_status nt_check_measures(nt_check *check)
 	uint32_t *first = nt_scratch_alloc(check->scratch, islands + 2, sizeof *first);
 	uint32_t *list = nt_scratch_alloc(check->scratch, triangles, sizeof *list);
 	weighed *items = nt_scratch_alloc(check->scratch, triangles, sizeof *items);
-	if (!first || !list || !items)
+	weighed *other = nt_scratch_alloc(check->scratch, triangles, sizeof *other);
+	if (!first || !list || !items || !other)
 		return NT_ERROR_MEMORY;
 	list_triangles(check, first, list);
 	for (size_t i = 0; i < islands; i++)
 		measure_island(check, &check->facts->islands[i], list + first[i], first[i + 1] - first[i],
-			check->facts->texture_size[0] > 0, items);
+			check->facts->texture_size[0] > 0, items, other);
 	nt_scratch_back(check->scratch, mark);
 	return NT_OK;
 }
