@@ -12,7 +12,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/parallel.h"
 #include "scene/select.h"
 
 /* ---- facts that need no check ---- */
@@ -214,87 +213,14 @@ static nt_status keep_pictures(nt_check *check, size_t most_bytes[NT_PICTURE_COU
 
 /* ---- one mesh ---- */
 
-/* Checks that follow each other, with findings, texts and memory of their own: branches run side by side. Sorting puts
- * findings in one order whoever was first, since each code is one check's. */
-typedef struct branch {
-	nt_status (*checks[3])(nt_check *); /* up to NULL */
-	nt_check check;
-	nt_report found;
-	size_t finding_capacity;
-	nt_scratch scratch;
-	nt_status status;
-} branch;
-
-static void run_branch(void *context, size_t item, unsigned slot)
+static nt_status run_checks(nt_check *check)
 {
-	(void)slot;
-	branch *b = (branch *)context + item;
-	for (size_t i = 0; i < 3 && b->checks[i] && !b->status; i++)
-		b->status = b->checks[i](&b->check);
-}
-
-/* Moves a branch's findings and texts into the report. */
-static nt_status join_branch(nt_check *check, branch *b)
-{
-	nt_report *report = check->report;
-	const size_t count = b->found.finding_count;
-	nt_arena_join(&report->arena, &b->found.arena);
-	nt_status status = b->status ? b->status : b->check.failed ? NT_ERROR_MEMORY : NT_OK;
-	if (!status && count && !nt_grow((void **)&report->findings, check->finding_capacity,
-			report->finding_count + count, sizeof *report->findings))
-		status = NT_ERROR_MEMORY;
-	if (!status && count) {
-		memcpy(report->findings + report->finding_count, b->found.findings, count * sizeof *report->findings);
-		report->finding_count += count;
-	}
-	free(b->found.findings);
-	return status;
-}
-
-/* What the branches do, into the report itself: a scene may have a hundred thousand small meshes. */
-static nt_status run_one_by_one(nt_check *check)
-{
-	static nt_status (*const checks[])(nt_check *) = {nt_check_islands, nt_check_seams, nt_check_measures,
-		nt_check_tangents, nt_check_growth};
+	static nt_status (*const checks[])(nt_check *) = {nt_check_geometry, nt_check_edges, nt_check_islands,
+		nt_check_seams, nt_check_measures, nt_check_tangents, nt_check_growth};
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < sizeof checks / sizeof *checks && !status; i++)
 		status = checks[i](check);
 	return status ? status : check->failed ? NT_ERROR_MEMORY : NT_OK;
-}
-
-/* First what all threads can do together, then what they cannot, side by side. */
-static nt_status run_checks(nt_check *check)
-{
-	nt_status status = nt_check_geometry(check);
-	if (!status)
-		status = nt_check_edges(check);
-	if (status)
-		return status;
-	/* triangles from which on threads pay, and lists of their own */
-	enum { LARGE = 65536 };
-	if (check->surface.triangle_count < LARGE)
-		return run_one_by_one(check);
-	branch branches[2] = {
-		{.checks = {nt_check_islands, nt_check_seams, nt_check_measures}},
-		{.checks = {nt_check_tangents, nt_check_growth}}};
-	for (int i = 0; i < 2; i++) {
-		branch *b = &branches[i];
-		b->found = (nt_report){.meshes = check->report->meshes, .mesh_count = check->report->mesh_count};
-		b->check = *check;
-		b->check.report = &b->found;
-		b->check.finding_capacity = &b->finding_capacity;
-		nt_scratch_init(&b->scratch, NULL);
-		/* the first one's lists are asked for later */
-		if (i > 0)
-			b->check.scratch = &b->scratch;
-	}
-	nt_parallel_items(nt_thread_count(check->options->threads), 2, run_branch, branches);
-	for (int i = 0; i < 2; i++) {
-		const nt_status joined = join_branch(check, &branches[i]);
-		nt_scratch_free(&branches[i].scratch);
-		status = status ? status : joined;
-	}
-	return status;
 }
 
 /* most_image_bytes: how much of images may still be kept. */
