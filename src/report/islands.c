@@ -17,13 +17,9 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include "base/hash.h"
-#include "base/parallel.h"
+#include "base/hash_index.h"
 
 enum { SAMPLE_COUNT = 16384, GRID_SIZE = 128 };
-
-/* Blocks that are worth a thread. */
-enum { GRAIN = 128 };
 
 /* Cells that the streaming triangles may visit: some 10 ms for a mesh and 3 us for each of its triangles, at most 0.3
  * s. Beyond, points count as not found. */
@@ -33,13 +29,6 @@ static const size_t MESH_VISITS = 1 << 22, TRIANGLE_VISITS = 1 << 10, MOST_VISIT
 static const double COVERED_SHARE = 0.5, TWIN_SHARE = 0.95;
 
 /* ---- what each island is made of ---- */
-
-typedef struct measuring {
-	const nt_check *check;
-	nt_island *islands;
-	const uint64_t *mixed; /* bits: blocks with triangles of several islands, or of none */
-	unsigned owners;
-} measuring;
 
 static void add_triangle(const nt_check *check, nt_island *island, size_t t)
 {
@@ -79,53 +68,30 @@ static uint32_t island_of_block(const nt_check *check, size_t b)
 	return island;
 }
 
-/* Adds the triangles of mixed blocks that belong to an owner's islands. */
-static void add_owned(void *context, size_t owner, unsigned slot)
-{
-	const measuring *m = context;
-	const size_t blocks = nt_block_count(&m->check->surface);
-	(void)slot;
-	for (size_t b = 0; (b = nt_bit_next(m->mixed, b, blocks)) < blocks; b++)
-		for (size_t t = b * NT_BLOCK; t < nt_block_end(&m->check->surface, b); t++) {
-			const uint32_t island = m->check->islands[t];
-			if (island != NT_NONE && island % m->owners == owner)
-				add_triangle(m->check, &m->islands[island], t);
-		}
-}
-
-/* Blocks of one island are added as they are, in their order; the triangles of others by the thread that owns their
- * island, in theirs. */
-static nt_status measure_islands(nt_check *check)
+/* Blocks of one island are added as they are, then the triangles of the others. */
+static void measure_islands(nt_check *check)
 {
 	nt_report_mesh *facts = check->facts;
 	const size_t blocks = nt_block_count(&check->surface);
-	const nt_scratch_mark mark = nt_scratch_here(check->scratch);
-	uint64_t *mixed = nt_scratch_alloc(check->scratch, nt_bit_words(blocks), sizeof *mixed);
-	if (!mixed)
-		return NT_ERROR_MEMORY;
-	memset(mixed, 0, nt_bit_words(blocks) * sizeof *mixed);
 	for (size_t i = 0; i < facts->island_count; i++)
 		facts->islands[i] = (nt_island){.minimum = {INFINITY, INFINITY},
 			.maximum = {-INFINITY, -INFINITY}, .covered = NAN, .texel_density = {NAN, NAN},
 			.stretch = {NAN, NAN}, .first_triangle = NT_NONE,
 			.box = nt_box_empty()};
-	size_t mixed_count = 0;
 	for (size_t b = 0; b < blocks; b++) {
 		const uint32_t island = island_of_block(check, b);
-		if (island != NT_NONE) {
+		if (island != NT_NONE)
 			add_block(check, &facts->islands[island], b);
-		} else {
-			nt_bit_set(mixed, b);
-			mixed_count++;
-		}
 	}
-	measuring m = {check, facts->islands, mixed,
-		mixed_count < GRAIN ? 1 : nt_thread_count(check->options->threads)};
-	nt_parallel_items(m.owners, m.owners, add_owned, &m);
+	for (size_t b = 0; b < blocks; b++) {
+		if (island_of_block(check, b) != NT_NONE)
+			continue;
+		for (size_t t = b * NT_BLOCK; t < nt_block_end(&check->surface, b); t++)
+			if (check->islands[t] != NT_NONE)
+				add_triangle(check, &facts->islands[check->islands[t]], t);
+	}
 	for (size_t i = 0; i < facts->island_count; i++)
 		nt_source_range(check->scene, facts->islands[i].minimum, facts->islands[i].maximum);
-	nt_scratch_back(check->scratch, mark);
-	return NT_OK;
 }
 
 static nt_island_kind kind_of(const nt_island *island)
@@ -359,75 +325,72 @@ static nt_status find_covered(nt_check *check, size_t mirrored_count)
 
 /* ---- folds and twins ---- */
 
-/* Texture coordinates of an island, in a hash table, and the point that has them. */
+/* Texture coordinates of an island, and the point that has them. */
 typedef struct uv_key {
 	float uv[2];
-	uint32_t island; /* NT_NONE: free */
-	uint32_t point;  /* NT_NONE: several */
+	uint32_t island;
+	uint32_t point; /* NT_NONE: several */
 } uv_key;
 
-static size_t hash_key(const float *uv, uint32_t island)
-{
-	return (size_t)nt_hash_words(nt_hash_floats(uv[0], uv[1]), island);
-}
+typedef struct uv_table {
+	nt_hash_index index;
+	uv_key *keys;
+	size_t count, capacity;
+	bool failed; /* out of memory */
+} uv_table;
 
-/* The entry of a key, or the free one where it belongs. NaN is found nowhere. */
-static uv_key *look_up(uv_key *table, size_t mask, const float *uv, uint32_t island)
+/* NULL: there is none. NaN is found nowhere. */
+static uv_key *find_key(const uv_table *table, uint64_t hash, const float *uv, uint32_t island)
 {
-	size_t slot = hash_key(uv, island) & mask;
-	for (; table[slot].island != NT_NONE; slot = (slot + 1) & mask)
-		if (table[slot].island == island && table[slot].uv[0] == uv[0] && table[slot].uv[1] == uv[1])
-			break;
-	return &table[slot];
-}
-
-static bool is_mixed(const nt_check *check, size_t t)
-{
-	return check->islands[t] != NT_NONE &&
-		check->facts->islands[check->islands[t]].kind == NT_ISLAND_MIXED;
+	size_t at = NT_HASH_BEGIN;
+	for (uint32_t number; (number = nt_hash_index_next(&table->index, hash, &at)) != NT_NONE;) {
+		uv_key *key = &table->keys[number];
+		if (key->island == island && key->uv[0] == uv[0] && key->uv[1] == uv[1])
+			return key;
+	}
+	return NULL;
 }
 
 /* Notes an unmirrored corner, or counts a mirrored one: in counts[1] when an unmirrored corner at another
  * point has its coordinates, in counts[0] when none has. Points of the fold itself say nothing. */
-static void meet_corner(const nt_surface *s, uint32_t side, uint32_t island, uv_key *entry, bool mirrored,
+static void meet_corner(const nt_surface *s, uint32_t side, uint32_t island, bool mirrored, uv_table *table,
 	size_t *counts)
 {
 	const uint32_t point = nt_side_point(s, side);
 	const float *uv = nt_side_texcoord(s, side);
+	const uint64_t hash = nt_hash_words(nt_hash_floats(uv[0], uv[1]), island);
+	uv_key *key = find_key(table, hash, uv, island);
 	if (mirrored) {
-		if (entry->island == NT_NONE || entry->point != point)
-			counts[2 * island + (entry->island != NT_NONE)]++;
-	} else if (entry->island == NT_NONE) {
-		*entry = (uv_key){{uv[0], uv[1]}, island, point};
-	} else if (entry->point != point) {
-		entry->point = NT_NONE;
+		if (!key || key->point != point)
+			counts[2 * island + (key != NULL)]++;
+	} else if (key) {
+		key->point = key->point == point ? point : NT_NONE;
+	} else if (nt_grow((void **)&table->keys, &table->capacity, table->count + 1, sizeof *table->keys) &&
+		nt_hash_index_add(&table->index, hash, (uint32_t)table->count)) {
+		table->keys[table->count++] = (uv_key){{uv[0], uv[1]}, island, point};
+	} else {
+		table->failed = true;
 	}
 }
 
-/* Calls meet_corner, or only counts where table is NULL, for the triangles of one orientation in mixed
- * islands: once for each vertex and island, as long as the island's triangles follow each other. */
-static size_t visit_vertices(nt_check *check, bool mirrored, uv_key *table, size_t mask, uint32_t *last,
-	size_t *counts)
+/* Calls meet_corner for the triangles of one orientation in mixed islands: once for each vertex and island, as long as
+ * the island's triangles follow each other. */
+static void visit_vertices(const nt_check *check, bool mirrored, uint32_t *last, uv_table *table, size_t *counts)
 {
 	const nt_surface *s = &check->surface;
-	size_t visits = 0;
 	memset(last, 0xff, check->mesh->vertex_count * sizeof *last);
 	for (size_t t = 0; t < s->triangle_count; t++) {
-		if (s->orientation[t] != (mirrored ? -1 : 1) || !is_mixed(check, t))
-			continue;
 		const uint32_t island = check->islands[t];
+		if (s->orientation[t] != (mirrored ? -1 : 1) || island == NT_NONE ||
+			check->facts->islands[island].kind != NT_ISLAND_MIXED)
+			continue;
 		for (uint32_t side = (uint32_t)(3 * t); side < 3 * t + 3; side++) {
 			uint32_t *met = &last[nt_side_vertex(s, side)];
-			if (*met == island)
-				continue;
+			if (*met != island)
+				meet_corner(s, side, island, mirrored, table, counts);
 			*met = island;
-			visits++;
-			if (table)
-				meet_corner(s, side, island,
-					look_up(table, mask, nt_side_texcoord(s, side), island), mirrored, counts);
 		}
 	}
-	return visits;
 }
 
 /* Sets `twin` of mixed islands: mirrored corners lie on unmirrored corners of the same island, and the
@@ -440,26 +403,20 @@ static nt_status find_twins(nt_check *check)
 	size_t *counts = nt_scratch_alloc(check->scratch, 2 * islands, sizeof *counts);
 	if (!last || !counts)
 		return NT_ERROR_MEMORY;
-	size_t capacity = 16;
-	const size_t unmirrored = visit_vertices(check, false, NULL, 0, last, NULL);
-	while (capacity < 2 * unmirrored)
-		capacity *= 2;
-	uv_key *table = nt_scratch_alloc(check->scratch, capacity, sizeof *table);
-	if (!table)
-		return NT_ERROR_MEMORY;
 	memset(counts, 0, 2 * islands * sizeof *counts);
-	for (size_t i = 0; i < capacity; i++)
-		table[i].island = NT_NONE;
-	visit_vertices(check, false, table, capacity - 1, last, counts);
-	visit_vertices(check, true, table, capacity - 1, last, counts);
+	uv_table table = {0};
+	visit_vertices(check, false, last, &table, counts);
+	visit_vertices(check, true, last, &table, counts);
 	for (size_t i = 0; i < islands; i++) {
 		nt_island *island = &check->facts->islands[i];
 		const double corners = (double)(counts[2 * i] + counts[2 * i + 1]);
 		island->twin = island->kind == NT_ISLAND_MIXED && island->covered >= TWIN_SHARE &&
 			counts[2 * i + 1] > 0 && (double)counts[2 * i + 1] >= TWIN_SHARE * corners;
 	}
+	nt_hash_index_free(&table.index);
+	free(table.keys);
 	nt_scratch_back(check->scratch, mark);
-	return NT_OK;
+	return table.failed ? NT_ERROR_MEMORY : NT_OK;
 }
 
 /* ---- findings ---- */
@@ -533,9 +490,7 @@ nt_status nt_check_islands(nt_check *check)
 		sizeof *facts->islands);
 	if (!facts->islands)
 		return NT_ERROR_MEMORY;
-	nt_status status = measure_islands(check);
-	if (status)
-		return status;
+	measure_islands(check);
 	size_t mirrored = 0;
 	for (size_t i = 0; i < facts->island_count; i++) {
 		nt_island *island = &facts->islands[i];
@@ -543,8 +498,7 @@ nt_status nt_check_islands(nt_check *check)
 		facts->island_kinds[island->kind]++;
 		mirrored += island->triangles[0];
 	}
-	if (mirrored)
-		status = find_covered(check, mirrored);
+	nt_status status = mirrored ? find_covered(check, mirrored) : NT_OK;
 	if (!status && facts->island_kinds[NT_ISLAND_MIXED])
 		status = find_twins(check);
 	if (!status)
