@@ -8,7 +8,7 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/hash.h"
+#include "base/hash_index.h"
 #include "report/pack/varint.h"
 
 /* An edge at its lower point. */
@@ -32,38 +32,25 @@ typedef struct outlining {
 
 /* ---- points ---- */
 
-/* Coordinates as bits that are equal where they are: 0 for -0. NaN equals itself here. */
-static void uv_bits(const float *uv, uint32_t bits[2])
-{
-	const float plain[2] = {uv[0] + 0.0f, uv[1] + 0.0f};
-	memcpy(bits, plain, sizeof plain);
-}
-
 static nt_status weld_points(outlining *o)
 {
-	const size_t count = o->mesh->vertex_count;
-	size_t capacity = 16;
-	while (capacity < 2 * count)
-		capacity *= 2;
-	uint32_t *table = nt_alloc(capacity, sizeof *table);
-	if (!table)
-		return NT_ERROR_MEMORY;
-	memset(table, 0xff, capacity * sizeof *table);
-	for (size_t v = 0; v < count; v++) {
-		uint32_t own[2], other[2];
-		uv_bits(o->mesh->texcoords + 2 * v, own);
-		size_t slot = (size_t)nt_hash_words(own[0], own[1]) & (capacity - 1);
-		for (; table[slot] != NT_NONE; slot = (slot + 1) & (capacity - 1)) {
-			uv_bits(o->mesh->texcoords + 2 * (size_t)table[slot], other);
-			if (own[0] == other[0] && own[1] == other[1])
+	nt_hash_index index = {0};
+	bool added = true;
+	for (uint32_t v = 0; v < o->mesh->vertex_count && added; v++) {
+		const float *uv = o->mesh->texcoords + 2 * (size_t)v;
+		const uint64_t bits = nt_hash_floats(uv[0], uv[1]), hash = nt_hash_words(bits, 0);
+		uint32_t other;
+		for (size_t at = NT_HASH_BEGIN; (other = nt_hash_index_next(&index, hash, &at)) != NT_NONE;) {
+			/* as bits: NaN equals itself here */
+			const float *known = o->mesh->texcoords + 2 * (size_t)other;
+			if (nt_hash_floats(known[0], known[1]) == bits)
 				break;
 		}
-		if (table[slot] == NT_NONE)
-			table[slot] = (uint32_t)v;
-		o->points[v] = table[slot];
+		o->points[v] = other == NT_NONE ? v : other;
+		added = other != NT_NONE || nt_hash_index_add(&index, hash, v);
 	}
-	free(table);
-	return NT_OK;
+	nt_hash_index_free(&index);
+	return added ? NT_OK : NT_ERROR_MEMORY;
 }
 
 /* ---- edges ---- */
