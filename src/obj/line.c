@@ -25,6 +25,25 @@ char *obj_copy_padded(const char *begin, const char *end, const char **padded_en
 	return copy;
 }
 
+void obj_chunk_free_rest(obj_chunk *chunk)
+{
+	free(chunk->colors);
+	free(chunk->mrgb);
+	free(chunk->mrgb_lines);
+	free(chunk->polygons);
+	free(chunk->events);
+}
+
+void obj_chunk_free(obj_chunk *chunk)
+{
+	obj_chunk_free_rest(chunk);
+	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
+		free(chunk->rows[kind].data);
+	free(chunk->distinct);
+	free(chunk->corners);
+	free(chunk->face_sizes);
+}
+
 nt_status obj_reader_init(obj_reader *r, obj_chunk *chunk)
 {
 	*r = (obj_reader){.chunk = chunk, .p = chunk->begin};

@@ -36,7 +36,6 @@ size_t obj_face_line(const obj_file *file, size_t face, obj_corner *before)
 	*before = (obj_corner){(uint32_t)again.rows[OBJ_V].count, (uint32_t)again.rows[OBJ_VT].count,
 		(uint32_t)again.rows[OBJ_VN].count};
 	obj_reader_free(&r);
-	obj_chunk_free_arrays(&again);
 	obj_chunk_free(&again);
 	return status ? 0 : chunk->first_line + r.statement_line + 1;
 }
@@ -92,7 +91,6 @@ static nt_status locate_in(const places *kept, const stretch *lines, const char 
 			status = NT_ERROR_MEMORY;
 	}
 	obj_reader_free(&r);
-	obj_chunk_free_arrays(&again);
 	obj_chunk_free(&again);
 	return status;
 }

@@ -113,13 +113,11 @@ typedef struct obj_chunk {
 	nt_error error; /* its line is within the chunk, from 1 */
 } obj_chunk;
 
-/* Where a thread keeps the arrays of its chunks: shelf.c. */
-typedef struct obj_shelf {
-	bool copies;      /* what is kept is copied, and the array goes back to the desk */
-	obj_chunk desk;   /* arrays with room for the next chunk */
+/* Where a thread keeps what it has read. */
+typedef struct obj_memory {
 	nt_arena rows;    /* of vertices */
 	nt_arena corners; /* distinct corners, corners, sizes of faces */
-} obj_shelf;
+} obj_memory;
 
 /* The whole file. */
 typedef struct obj_file {
@@ -127,7 +125,8 @@ typedef struct obj_file {
 	unsigned threads;
 	obj_chunk *chunks;
 	size_t chunk_count;
-	obj_shelf *shelves; /* [threads] */
+	bool copies;        /* chunks have their arrays in memory, else of their own */
+	obj_memory *memory; /* [threads] */
 	char *tail; /* the last lines, padded */
 	const char *tail_begin, *tail_end; /* where they stand in the input */
 
@@ -184,26 +183,9 @@ typedef struct obj_vertex {
 	uint32_t next; /* for finding it: another vertex of the same v, plus 1; 0 none */
 } obj_vertex;
 
-/* Reads the lines of a chunk, which ends behind a line feed, with 8 readable bytes behind it, onto a shelf. On failure
- * chunk->error is set. */
-nt_status obj_parse_chunk(obj_chunk *chunk, obj_shelf *shelf);
-
-/* Frees what a chunk has beside its shelf; the arrays of a chunk, or of a desk, that are on no shelf. */
+/* Frees the arrays of a chunk: all of them, or those that are in no arena. */
 void obj_chunk_free(obj_chunk *chunk);
-void obj_chunk_free_arrays(obj_chunk *chunk);
-
-/* Shelves for the threads; false: out of memory. */
-bool obj_shelves_make(obj_file *file);
-
-/* A chunk that is going to be read takes the arrays from the desk. */
-void obj_shelf_lend(obj_shelf *shelf, obj_chunk *chunk);
-
-/* The arrays of a chunk that has been read go onto the shelf; false: out of memory. */
-bool obj_shelf_keep(obj_shelf *shelf, obj_chunk *chunk);
-
-/* Corners have done their work; so has everything. */
-void obj_shelves_clear_corners(obj_file *file);
-void obj_shelves_free(obj_file *file);
+void obj_chunk_free_rest(obj_chunk *chunk);
 
 /* Gives the vertices of the file the colours that stand in comments; what is wrong with those is a finding. Needs
  * guides. Returns NT_OK or NT_ERROR_MEMORY. */

@@ -4,7 +4,7 @@
  * bytes, in chunks of whole lines that threads take one after the other; then the chunks are joined.
  *
  *   split     the file into chunks of 1 MiB, whatever the number of threads, so that it cannot show
- *   parse     statements.c, faces.c: numbers, corners, and the statements between faces; kept by shelf.c
+ *   parse     statements.c, faces.c: numbers, corners, and the statements between faces
  *   join      what was counted; rows of numbers stay in their chunks and are found there
  *   events    spans.c: objects, materials and smoothing groups, in order
  *   vertices  vertices.c: equal v/vt/vn of one object become one vertex
@@ -31,6 +31,8 @@
 
 enum {
 	CHUNK_BYTES = 1 << 20,
+	FEW_CHUNKS = 4,       /* of more, arrays are copied to blocks in which 1 MiB of text is no large request */
+	BLOCK_BYTES = 4 << 20,
 	TAIL_BYTES = 16,      /* at least so many bytes of the file go through the padded copy */
 	RECOGNISE_BYTES = 1 << 16
 };
@@ -162,6 +164,44 @@ static nt_status split(obj_file *file, nt_error *error)
 
 /* ---- parse ---- */
 
+static void *copy_array(nt_arena *arena, const void *array, size_t count, size_t size, bool *failed)
+{
+	void *copy = nt_arena_alloc(arena, count, size);
+	*failed |= !copy;
+	return copy && count ? memcpy(copy, array, count * size) : copy;
+}
+
+/* What has been read goes from `work` to the chunk. The large arrays are copied, without the room that was left, into
+ * blocks large enough for huge pages, and stay where they are for the next chunk: their pages are there and in the
+ * cache. With arrays of its own for each chunk, 106 MB of text take 193 ms on one thread instead of 172, and 120 MB of
+ * memory instead of 88 (nmtan --threads=1 --timing; perf stat -e minor-faults: 18 300 faults instead of 6 500). A file
+ * of few chunks has no such blocks, and keeps its arrays. */
+static void keep_chunk(const obj_file *file, obj_memory *memory, obj_chunk *work, obj_chunk *chunk)
+{
+	bool failed = false;
+	*chunk = *work;
+	if (!file->copies) {
+		*work = (obj_chunk){0};
+		return;
+	}
+	*work = (obj_chunk){.distinct = chunk->distinct, .distinct_capacity = chunk->distinct_capacity,
+		.corners = chunk->corners, .corner_capacity = chunk->corner_capacity,
+		.face_sizes = chunk->face_sizes, .face_capacity = chunk->face_capacity};
+	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++) {
+		obj_rows *rows = &chunk->rows[kind];
+		work->rows[kind] = (obj_rows){.data = rows->data, .capacity = rows->capacity};
+		rows->data = copy_array(&memory->rows, rows->data, rows->count, obj_widths[kind] * sizeof *rows->data,
+			&failed);
+	}
+	chunk->distinct = copy_array(&memory->corners, chunk->distinct, chunk->distinct_count,
+		sizeof *chunk->distinct, &failed);
+	chunk->corners = copy_array(&memory->corners, chunk->corners, chunk->corner_count, sizeof *chunk->corners,
+		&failed);
+	chunk->face_sizes = copy_array(&memory->corners, chunk->face_sizes, chunk->face_count, 1, &failed);
+	if (failed)
+		nt_fail_memory(&chunk->error);
+}
+
 typedef struct parse_job {
 	obj_file *file;
 	atomic_size_t next;   /* the chunk to take */
@@ -174,26 +214,38 @@ static void parse_chunks(void *context, size_t begin, size_t end, unsigned slot)
 {
 	(void)begin, (void)end;
 	parse_job *job = context;
-	obj_shelf *shelf = &job->file->shelves[slot];
+	obj_file *file = job->file;
+	obj_chunk work = {0};
+	obj_reader r;
 	while (!atomic_load(&job->failed)) {
 		const size_t c = atomic_fetch_add(&job->next, 1);
-		if (c >= job->file->chunk_count)
+		if (c >= file->chunk_count)
 			break;
-		const obj_chunk *chunk = &job->file->chunks[c];
-		if (obj_parse_chunk(&job->file->chunks[c], shelf))
+		obj_chunk *chunk = &file->chunks[c];
+		work.begin = chunk->begin;
+		work.end = chunk->end;
+		if (!obj_reader_init(&r, &work))
+			obj_read_lines(&r, SIZE_MAX);
+		obj_reader_free(&r);
+		keep_chunk(file, &file->memory[slot], &work, chunk);
+		if (chunk->error.status)
 			atomic_store(&job->failed, true);
 		/* text is half of what a conversion would hold, and only names are read again */
-		if (job->file->scene->file)
-			nt_file_forget(job->file->scene->file, chunk->begin, (size_t)(chunk->end - chunk->begin));
+		if (file->scene->file)
+			nt_file_forget(file->scene->file, chunk->begin, (size_t)(chunk->end - chunk->begin));
 	}
-	obj_chunk_free_arrays(&shelf->desk);
+	obj_chunk_free(&work);
 }
 
 static nt_status parse(obj_file *file, nt_error *error)
 {
 	parse_job job = {.file = file};
-	if (!obj_shelves_make(file))
+	file->memory = nt_calloc(file->threads, sizeof *file->memory);
+	if (!file->memory)
 		return nt_fail_memory(error);
+	file->copies = file->chunk_count > FEW_CHUNKS;
+	for (unsigned i = 0; i < file->threads; i++)
+		file->memory[i].rows.block_bytes = file->memory[i].corners.block_bytes = BLOCK_BYTES;
 	nt_parallel_ranges(file->threads, file->chunk_count, 1, parse_chunks, &job);
 	size_t line = 0;
 	for (size_t c = 0; c < file->chunk_count; c++) {
@@ -288,9 +340,17 @@ static nt_status join(obj_file *file, nt_error *error)
 
 static void free_file(obj_file *file)
 {
-	for (size_t c = 0; c < file->chunk_count; c++)
-		obj_chunk_free(&file->chunks[c]);
-	obj_shelves_free(file);
+	for (size_t c = 0; c < file->chunk_count; c++) {
+		if (file->copies)
+			obj_chunk_free_rest(&file->chunks[c]);
+		else
+			obj_chunk_free(&file->chunks[c]);
+	}
+	for (unsigned i = 0; file->memory && i < file->threads; i++) {
+		nt_arena_free(&file->memory[i].corners);
+		nt_arena_free(&file->memory[i].rows);
+	}
+	free(file->memory);
 	free(file->chunks);
 	free(file->tail);
 	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)

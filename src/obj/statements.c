@@ -319,25 +319,3 @@ nt_status obj_read_lines(obj_reader *r, size_t last)
 	chunk->line_count = r->line;
 	return NT_OK;
 }
-
-nt_status obj_parse_chunk(obj_chunk *chunk, obj_shelf *shelf)
-{
-	obj_reader r;
-	obj_shelf_lend(shelf, chunk);
-	nt_status status = obj_reader_init(&r, chunk);
-	if (!status)
-		status = obj_read_lines(&r, SIZE_MAX);
-	if (!obj_shelf_keep(shelf, chunk) && !status)
-		status = obj_fail_memory(&r);
-	obj_reader_free(&r);
-	return status;
-}
-
-void obj_chunk_free(obj_chunk *chunk)
-{
-	free(chunk->colors);
-	free(chunk->mrgb);
-	free(chunk->mrgb_lines);
-	free(chunk->polygons);
-	free(chunk->events);
-}

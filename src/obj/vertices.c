@@ -296,7 +296,8 @@ nt_status obj_make_vertices(obj_file *file, nt_error *error)
 		status = nt_fail_memory(error);
 	if (!status)
 		nt_parallel_ranges(file->threads, file->chunk_count, 1, write_corners, file);
-	obj_shelves_clear_corners(file);
+	for (unsigned i = 0; i < file->threads; i++)
+		nt_arena_free(&file->memory[i].corners);
 	file->vertices = vertices.vertices;
 	file->vertex_count = vertices.count;
 	free(vertices.heads);
