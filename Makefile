@@ -51,12 +51,6 @@ COMMON := $(flags_$(config)) -ffp-contract=off -fno-tree-slp-vectorize -fno-math
 	-Iinclude -Isrc -Wall -Wextra -MMD -MP
 NT_CFLAGS := -std=c11 -D_GNU_SOURCE $(COMMON) -Wshadow -Wstrict-prototypes -Wmissing-prototypes \
 	-Wvla $(CPPFLAGS) $(CFLAGS)
-# gcc clears some hundred bytes by "rep stos", which takes 5 to 10 ns to begin. A mesh of two triangles had seven of these.
-# Other compilers, and gcc for other processors, do not know the option.
-memset_strategy := -mmemset-strategy=vector_loop:1024:noalign,libcall:-1:noalign
-ifneq ($(shell $(CC) $(memset_strategy) -E -x c /dev/null 2>/dev/null),)
-NT_CFLAGS += $(memset_strategy)
-endif
 NT_CXXFLAGS := -std=c++17 -fvisibility-inlines-hidden $(COMMON) $(CPPFLAGS) $(CXXFLAGS)
 NT_LDFLAGS := $(flags_$(config)) -pthread $(LDFLAGS)
 TOOL_LIBS := -Wl,-Bstatic -ljpeg -ldeflate -Wl,-Bdynamic -lm -ldl

@@ -36,8 +36,6 @@ typedef struct nt_known {
 	                         With them rows without it are usable by all but w, and `rows` are told; 0: not so */
 	bool open;            /* a row may have NT_W_OPEN; set by any thread */
 	bool empty;           /* no triangle gave a tangent: where the solve repairs, each w is 0 */
-	bool sound;           /* no triangle has a bit of `suspect`, and so many are mirrored: */
-	size_t mirrored;
 	const uint32_t *ids;  /* [corner_count] welded vertices, or NULL */
 	const float *rows[2]; /* [welded_count][4] by orientation, w = 0 where no triangle at the vertex
 	                         has it; NULL: none at all. Told with ids, and with `judged` */

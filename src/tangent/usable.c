@@ -337,10 +337,6 @@ nmtan_status nt_find_unusable(const nt_solve *solve, nmtan_counts *counts, uint6
 {
 	memset(counts, 0, sizeof *counts);
 	*faulty = NULL;
-	if (solve->known && solve->known->sound) {
-		counts->mirrored = solve->known->mirrored;
-		return NMTAN_OK;
-	}
 	const size_t words = (solve->mesh->face_count + WORD - 1) / WORD;
 	const unsigned slots = nt_parallel_slots(solve->threads, words, GRAIN);
 	search job = {solve, nt_scratch_alloc(solve->scratch, slots, sizeof *job.counts),

@@ -393,16 +393,14 @@ static void accumulate(nt_fast *fast, size_t begin, size_t end, unsigned range, 
 			prefetch_rows(fast, first, end, 0);
 		uint32_t copy[3 * NT_LANES];
 		const uint32_t *ids = nt_triangle_vertices(&fast->triangles, first, count, copy);
-		const bool solved = !fast->wants_more && solve_few(fast->rows, ids, count, offset, &out);
-		if (!solved)
-			gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : whole_lanes(count), in.row);
+		gather_lanes(fast->rows, ids, count, fast->wants_more ? NT_LANES : whole_lanes(count), in.row);
 		if (scattered && direct)
 			prefetch_places(fast, cursors, ids, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 1);
 		if (fast->wants_more)
 			solve_lanes_more(&in, &out, offset);
-		else if (!solved)
+		else
 			solve_lanes_plain(&in, &out, offset, count);
 		if (scattered)
 			prefetch_rows(fast, first, end, 2);

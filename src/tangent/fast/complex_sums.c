@@ -133,7 +133,7 @@ void nt_write_sums(const nt_complex *c, nt_summed *s)
 		vertices[group] = 3 * i + (corner & 3);
 		signs[group] = corner & NT_COMPLEX_PLUS ? 0 : NT_RESULT_PLUS ^ NT_RESULT_MINUS;
 	}
-	c->kernels->few_results(rows, vertices, s->group_count, sums);
+	c->kernels->group_results(rows, vertices, s->group_count, sums);
 	const bool judges = nt_fast_judges(c->fast->solve);
 	for (size_t g = 0; g < s->group_count; g++) {
 		if (judges && (sums[g].state & NT_RESULT_UNUSABLE))

@@ -160,7 +160,7 @@ static void corner_sums(const nt_weld_row *rows, const uint32_t *list, size_t co
 	lanes_edges edges;
 	lanes_out out;
 	_Alignas(64) float e[3][NT_LANES], f[3][NT_LANES];
-	const corner_lanes corners = {.n = s.n, .u = out.frames.u, .v = out.frames.v, .e = e, .f = f, .turned = 1.0f,
+	const corner_lanes corners = {.n = s.n, .u = out.u, .v = out.v, .e = e, .f = f, .turned = 1.0f,
 		.sum = out.sum[0]};
 	for (size_t first = 0; first < count; first += NT_LANES) {
 		load_singles(rows + 3 * first, list + first, count - first, &s);

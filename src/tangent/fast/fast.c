@@ -16,8 +16,7 @@
  *
  * Step 4 takes about half of the time on a clean mesh. Where neighbouring triangles have vertices far apart there is
  * no step 3, step 4 writes corners down in bins of vertices, and step 5 adds up and settles one bin after the other
- * (bins.h). Meshes of a few triangles go another way (tiny.c). Threads own ranges of triangles, and every sum is in
- * triangle order whatever their number.
+ * (bins.h). Threads own ranges of triangles, and every sum is in triangle order whatever their number.
  *
  * Words of these files:
  *
@@ -43,14 +42,13 @@
 #include "tangent/fast/complex.h"
 #include "tangent/fast/memory.h"
 #include "tangent/fast/records.h"
-#include "tangent/fast/tiny.h"
 #include "tangent/fast/write.h"
 #include "topology/corners.h"
 
 /* Each thread has cursors of its own for all vertices, which are then gone over together: the more threads, the more
  * triangles each must have. Two need fewer: their halves take 10 to 18 % more processor time than the whole. */
 static const nt_fast_plan usual = {.grain = 65536, .least_two = 30000, .least_borrowed_bytes = 65536,
-	.most_tiny = NT_TINY, .most_narrow = NT_NARROW_LIMIT};
+	.most_narrow = NT_NARROW_LIMIT};
 
 typedef struct run {
 	nt_fast *fast;
@@ -308,14 +306,11 @@ static nmtan_status settle(nt_fast *fast, const nt_kernels *kernels, nt_settled 
 /* Tells tangent/usable.c which triangles need no look, and repair.c what is welded. */
 static void tell_known(const nt_fast *fast)
 {
-	/* of few triangles groups are judged, not vertices */
-	const bool records = fast->records[0] || fast->records[1];
 	nt_known *known = fast->solve->known;
 	*known = (nt_known){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT, .suspect = NT_TRIANGLE_SUSPECT,
 		.doubtful = NT_TRIANGLE_UNCERTAIN, .flat = NT_TRIANGLE_ANY, .degenerate = NT_TRIANGLE_DEGENERATE,
-		.judged = NT_SHORT_WAYS && records && nt_fast_judges(fast->solve) ? NT_TRIANGLE_COMPLEX : 0,
-		.open = known->open, .sound = fast->sound, .mirrored = fast->mirrored, .around = records,
-		.welded = fast->triangles.ids, .welded_count = fast->vertex_count,
+		.judged = NT_SHORT_WAYS && nt_fast_judges(fast->solve) ? NT_TRIANGLE_COMPLEX : 0,
+		.open = known->open, .around = true, .welded = fast->triangles.ids, .welded_count = fast->vertex_count,
 		.row_step = fast->record_step * sizeof(nt_record) / sizeof(float)};
 	/* a record is x, y, z and, as state, the sign */
 	for (int orient = 0; orient < 2; orient++)
@@ -342,18 +337,6 @@ static nmtan_status write_results(nt_fast *fast, const nt_kernels *kernels, cons
 
 /* The whole */
 
-/* Few triangles, in one go; `done` becomes false where they have to go the usual way. */
-static nmtan_status solve_tiny(nt_fast *fast, const nt_kernels *kernels, size_t most, bool *done)
-{
-	*done = false;
-	if (fast->triangle_count > most || fast->wants_more || fast->triangle_count != fast->solve->mesh->face_count)
-		return NMTAN_OK;
-	const nmtan_status status = nt_fast_tiny(fast, kernels, done);
-	if (!status && *done && fast->solve->known)
-		tell_known(fast);
-	return status;
-}
-
 bool nt_fast_can(const nt_solve *solve)
 {
 	return solve->threshold_cos == -1.0f && solve->mesh->vertex_count < NT_WELD_LIMIT &&
@@ -367,10 +350,6 @@ nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *pl
 	nt_fast fast = {.solve = solve, .sparse = solve->sparse,
 		.wants_more = solve->bitangents || solve->magnitudes,
 		.triangle_count = nt_triangle_count(solve->mesh, solve->corner_count)};
-	bool done;
-	nmtan_status status = solve_tiny(&fast, kernels, plan->most_tiny, &done);
-	if (status || done)
-		return status;
 	if (NT_SHORT_WAYS && !has_areas(solve)) {
 		nt_fast_write_defaults(&fast);
 		return NMTAN_OK;
@@ -380,7 +359,7 @@ nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *pl
 	nt_fast_plan_memory(&fast, binned, plan->least_borrowed_bytes, &memory);
 
 	/* which corners are one vertex, and which triangles each thread does */
-	status = prepare(&fast, plan, &memory);
+	nmtan_status status = prepare(&fast, plan, &memory);
 	/* each vertex's sums over its corners, one for each orientation */
 	if (!status)
 		status = binned ? fill_bins(&fast, kernels, plan->bin_bits, &memory)

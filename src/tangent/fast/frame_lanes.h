@@ -25,7 +25,7 @@ typedef struct lanes_in {
 } lanes_in;
 
 typedef struct lanes_out {
-	_Alignas(64) nt_frames frames;
+	_Alignas(64) float u[3][NT_LANES], v[3][NT_LANES]; /* unit directions of the frames */
 	float length_u[NT_LANES], length_v[NT_LANES]; /* of the directions before they are made unit vectors */
 	float mag_u[NT_LANES], mag_v[NT_LANES];
 	float sum[3][4][NT_LANES];      /* corner, float of its nt_record */
@@ -98,7 +98,7 @@ static inline __attribute__((always_inline)) void solve_frames(const lanes_in *r
 	const float rs = sign / d.s_length, rt = sign / d.t_length;
 #pragma GCC unroll 3
 	for (int c = 0; c < 3; c++)
-		out->frames.u[c][i] = rs * d.s[c], out->frames.v[c][i] = rt * d.t[c];
+		out->u[c][i] = rs * d.s[c], out->v[c][i] = rt * d.t[c];
 	out->length_u[i] = d.s_length, out->length_v[i] = d.t_length;
 	if (more)
 		out->mag_u[i] = d.s_length / fabsf(area), out->mag_v[i] = d.t_length / fabsf(area);

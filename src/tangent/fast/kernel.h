@@ -5,9 +5,8 @@
  */
 #include "tangent/fast/accumulate.h"
 #include "tangent/fast/corners.h"
-#include "tangent/fast/few_lanes.h"
 #include "tangent/fast/part_lanes.h"
 #include "tangent/fast/settle.h"
 
 const nt_kernels NT_KERNEL = {accumulate, settle, corners, NT_SHORT_WAYS ? corner_sums : NULL,
-	NT_SHORT_WAYS ? part_sums : NULL, few_frames, few_results};
+	NT_SHORT_WAYS ? part_sums : NULL, NT_SHORT_WAYS ? group_results : NULL};

@@ -16,7 +16,7 @@
 static inline __attribute__((always_inline)) corner_lanes corner_of(const lanes_in *in,
 	const lanes_edges *edges, lanes_out *out, int k)
 {
-	return (corner_lanes){.n = in->row[k] + 3, .u = out->frames.u, .v = out->frames.v,
+	return (corner_lanes){.n = in->row[k] + 3, .u = out->u, .v = out->v,
 		.e = edges->of[k == 2 ? 1 : 0],
 		.f = edges->of[k == 0 ? 1 : 2], .turned = k == 1 ? -1.0f : 1.0f, .sum = out->sum[k],
 		.extra = out->extra[k]};
@@ -159,94 +159,6 @@ static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *restrict
 	if (NT_SHORT_WAYS && !out->plain && has_extremes(out, lane_count))
 		solve_along(in, out, lane_count);
 }
-
-#if WIDTH > 4
-/* Of vectors whose parts are all the same, parts of four different ones. */
-static inline __attribute__((always_inline)) void join_parts(const float *a, const float *b, const float *c,
-	const float *d, float to[NT_LANES])
-{
-	const lanes from[4] = {load_lanes(a), load_lanes(b), load_lanes(c), load_lanes(d)};
-#if WIDTH == 16
-	const lanes ab =
-		__builtin_shufflevector(from[0], from[1], 0, 1, 2, 3, 20, 21, 22, 23, 8, 9, 10, 11, 12, 13, 14, 15);
-	const lanes cd =
-		__builtin_shufflevector(from[2], from[3], 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 28, 29, 30, 31);
-	const lanes joined[] = {__builtin_shufflevector(ab, cd, 0, 1, 2, 3, 4, 5, 6, 7, 24, 25, 26, 27, 28, 29,
-		30, 31)};
-#else
-	const lanes joined[] = {__builtin_shufflevector(from[0], from[1], 0, 1, 2, 3, 12, 13, 14, 15),
-		__builtin_shufflevector(from[2], from[3], 0, 1, 2, 3, 12, 13, 14, 15)};
-#endif
-	memcpy(to, joined, sizeof joined);
-}
-
-/* Up to four triangles: lane 4 k + i has corner k of triangle i, and all four parts have the frames. The last part
- * repeats the first one, and triangles behind the last one repeat it. False where not all of them are plain. `add`
- * receives what corners add, in order, and one record more; `out` areas and doubts alone. */
-static bool __attribute__((noinline)) solve_four(const nt_weld_row *rows, const uint32_t *ids, size_t count,
-	nt_record *add, nt_frames *frames, lanes_out *restrict out)
-{
-	lanes_in in;
-	lanes_edges edges;
-	lanes_out all;
-	_Alignas(64) float n[3][NT_LANES], e[3][NT_LANES], f[3][NT_LANES], back[NT_LANES];
-	gather_four(rows, ids, count, in.row);
-	EACH_LANE(NT_LANES) make_edges(&in, &edges, i);
-	EACH_LANE(NT_LANES) solve_frames(&in, &edges, &all, false, i);
-#pragma GCC unroll 3
-	for (int c = 0; c < 3; c++) {
-		const float *const d1 = edges.of[0][c], *const d2 = edges.of[1][c], *const d3 = edges.of[2][c];
-		EACH_LANE(NT_LANES) back[i] = -d1[i]; /* the edge runs towards corner 1 */
-		join_parts(in.row[0][3 + c], in.row[1][3 + c], in.row[2][3 + c], in.row[0][3 + c], n[c]);
-		join_parts(d1, back, d2, d1, e[c]);
-		join_parts(d2, d3, d3, d2, f[c]);
-	}
-	solve_corner((corner_lanes){.n = n, .u = all.frames.u, .v = all.frames.v, .e = e, .f = f, .turned = 1.0f,
-		.sum = all.sum[0]}, false);
-	/* turned in parts, the corners of a triangle are neighbours */
-	lanes sums[NT_LANES / WIDTH][4];
-	for (size_t i = 0; i < NT_LANES; i += WIDTH) {
-		for (size_t c = 0; c < 4; c++)
-			sums[i / WIDTH][c] = load_lanes(all.sum[0][c] + i);
-		turn(sums[i / WIDTH]);
-	}
-	for (size_t t = 0; t < count; t++)
-		for (size_t i = 0; i < NT_LANES / WIDTH; i++)
-			memcpy(add + 3 * t + WIDTH / 4 * i, &sums[i][t], sizeof sums[i][t]);
-	memcpy(out->area, all.area, 4 * sizeof *all.area);
-	memcpy(out->doubt, all.doubt, 4 * sizeof *all.doubt);
-	for (size_t c = 0; c < 3; c++) {
-		memcpy(frames->u[c], all.frames.u[c], 4 * sizeof *all.area);
-		memcpy(frames->v[c], all.frames.v[c], 4 * sizeof *all.area);
-	}
-	out->plain = are_plain(&all, 1, NT_LANES);
-	return out->plain;
-}
-
-/* Solves triangles that are few enough; false where others have to be gathered and solved. */
-static inline bool solve_few(const nt_weld_row *rows, const uint32_t *ids, size_t count, float offset, lanes_out *out)
-{
-	nt_record add[3 * 4 + 1];
-	if (count > 4 || offset != 0.0f || !solve_four(rows, ids, count, add, &out->frames, out))
-		return false;
-	for (size_t i = 0; i < 3 * count; i++)
-		memcpy(out->add[i % 3] + 4 * turned_place(i / 3), &add[i], sizeof *add);
-	return true;
-}
-#else
-static inline bool solve_four(const nt_weld_row *rows, const uint32_t *ids, size_t count, nt_record *add,
-	nt_frames *frames, lanes_out *out)
-{
-	(void)rows, (void)ids, (void)count, (void)add, (void)frames, (void)out;
-	return false;
-}
-
-static inline bool solve_few(const nt_weld_row *rows, const uint32_t *ids, size_t count, float offset, lanes_out *out)
-{
-	(void)rows, (void)ids, (void)count, (void)offset, (void)out;
-	return false;
-}
-#endif
 
 static void __attribute__((noinline)) solve_lanes_more(const lanes_in *in, lanes_out *out, float offset)
 {

@@ -16,9 +16,6 @@
 
 enum { NT_LANES = 16 };
 
-/* Triangles of the largest mesh for tiny.c. */
-enum { NT_TINY = 32 };
-
 /* Bits of nt_fast.flags */
 enum {
 	NT_TRIANGLE_ORIENT = 1,     /* UV determinant positive (after a quad's halves agreed) */
@@ -61,8 +58,6 @@ typedef struct nt_fast {
 	bool sparse;             /* step 6 leaves out corners whose result is their record */
 	uint8_t *open;           /* [blocks] of NT_LANES vertices, of a sparse solve: whether a record is not the
 	                            result, or not usable */
-	bool sound;              /* of few triangles: none is a suspect, and so many are mirrored: */
-	size_t mirrored;
 	bool scattered;          /* neighbouring triangles have vertices far apart: prefetch */
 	nt_bins bins;            /* of a scattered mesh: its corners on their way to the records */
 	nt_triangle_ranges ranges;
@@ -92,11 +87,6 @@ enum { NT_CORNER_UNIT, NT_CORNER_EXTREME, NT_CORNER_ANY };
 /* Floats of an nt_corner, the weight last: they come before its kind. */
 enum { NT_CORNER_FLOATS = 9 };
 
-/* The unit directions of 16 triangles' frames, by component. */
-typedef struct nt_frames {
-	float u[3][NT_LANES], v[3][NT_LANES];
-} nt_frames;
-
 /* The passes of one instruction set. */
 typedef struct nt_kernels {
 	/* Solves triangles [begin, end) of a range and adds them to their vertices, or to the bins where
@@ -119,10 +109,8 @@ typedef struct nt_kernels {
 	 * without `more`, those of u. NULL without short ways. */
 	void (*part_sums)(const nt_corner *members, size_t count, const float directions[6][NT_LANES],
 		const uint32_t own[2][NT_LANES], bool more, float sums[NT_CORNER_FLOATS][NT_LANES]);
-	/* Solves all triangles: their flags, what each corner adds, one record more, and the frames. For tiny.c. */
-	void (*few_frames)(const nt_fast *fast, nt_record *add, nt_frames *frames);
-	/* Turns the sums of groups, given with the rows of their vertices, into results: few_lanes.h. */
-	void (*few_results)(const nt_weld_row *rows, const uint32_t *vertices, size_t count, nt_record *results);
+	/* Turns the sums of groups, given with the rows of their vertices, into results. NULL without short ways. */
+	void (*group_results)(const nt_weld_row *rows, const uint32_t *vertices, size_t count, nt_record *results);
 } nt_kernels;
 
 extern const nt_kernels nt_kernels_baseline;

@@ -85,18 +85,6 @@ static inline __attribute__((always_inline)) lanes load_parts(const float *const
 #endif
 }
 
-#if WIDTH > 4
-/* The same vector of four floats in each part. */
-static inline __attribute__((always_inline)) lanes load_same(const float *from)
-{
-#if WIDTH == 8
-	return (lanes)_mm256_broadcast_ps((const __m128 *)from);
-#else
-	return (lanes)_mm512_broadcast_f32x4(_mm_loadu_ps(from));
-#endif
-}
-#endif
-
 /* Four rows of four floats, turned, in each part. */
 static inline __attribute__((always_inline)) void turn(lanes rows[4])
 {
@@ -108,19 +96,6 @@ static inline __attribute__((always_inline)) void turn(lanes rows[4])
 	rows[1] = (lanes)__builtin_shufflevector((lane_pairs)ab01, (lane_pairs)cd01, HIGH_PAIRS);
 	rows[2] = (lanes)__builtin_shufflevector((lane_pairs)ab23, (lane_pairs)cd23, LOW_PAIRS);
 	rows[3] = (lanes)__builtin_shufflevector((lane_pairs)ab23, (lane_pairs)cd23, HIGH_PAIRS);
-}
-
-/* The same for one part alone. */
-static inline __attribute__((always_inline)) void turn_four(nt_float4 rows[4])
-{
-	const nt_float4 ab01 = __builtin_shufflevector(rows[0], rows[1], 0, 4, 1, 5);
-	const nt_float4 ab23 = __builtin_shufflevector(rows[0], rows[1], 2, 6, 3, 7);
-	const nt_float4 cd01 = __builtin_shufflevector(rows[2], rows[3], 0, 4, 1, 5);
-	const nt_float4 cd23 = __builtin_shufflevector(rows[2], rows[3], 2, 6, 3, 7);
-	rows[0] = __builtin_shufflevector(ab01, cd01, 0, 1, 4, 5);
-	rows[1] = __builtin_shufflevector(ab01, cd01, 2, 3, 6, 7);
-	rows[2] = __builtin_shufflevector(ab23, cd23, 0, 1, 4, 5);
-	rows[3] = __builtin_shufflevector(ab23, cd23, 2, 3, 6, 7);
 }
 
 /* Where turn() leaves the row of a lane, and from where it takes it. */
@@ -201,29 +176,6 @@ static inline __attribute__((always_inline)) void gather_corner(const nt_weld_ro
 		memcpy(out[j] + lane, &first, sizeof first);
 		memcpy(out[4 + j] + lane, &second, sizeof second);
 	}
-}
-#endif
-
-#if WIDTH > 4
-/* The rows of the corners of `count` triangles of one to four, by component, the same ones in each part. */
-static inline __attribute__((always_inline)) void gather_four(const nt_weld_row *rows, const uint32_t *ids,
-	size_t count, float (*restrict out)[8][NT_LANES])
-{
-	const float *at[3][4];
-	for (size_t i = 0; i < 4; i++)
-		for (size_t k = 0; k < 3; k++)
-			at[k][i] = (const float *)&rows[ids[3 * (i < count ? i : count - 1) + k]];
-#pragma GCC unroll 3
-	for (size_t k = 0; k < 3; k++)
-		for (size_t half = 0; half < 8; half += 4) {
-			lanes four[4];
-			for (size_t i = 0; i < 4; i++)
-				four[i] = load_same(at[k][i] + half);
-			turn(four);
-			for (size_t j = 0; j < 4; j++)
-				for (size_t lane = 0; lane < NT_LANES; lane += WIDTH)
-					memcpy(out[k][half + j] + lane, &four[j], sizeof four[j]);
-		}
 }
 #endif
 

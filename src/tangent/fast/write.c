@@ -338,8 +338,7 @@ static unsigned copy_reason(const nt_fast *fast, uint32_t vertex)
 			state[o] = nt_fast_record(fast, o, vertex)->state;
 	if ((state[0] | state[1]) & NT_RESULT_COMPLEX)
 		return NT_TRIANGLE_COMPLEX;
-	const bool told = fast->records[0] || fast->records[1]; /* not in tiny.c */
-	return told && (state[0] == NT_RESULT_NONE || state[1] == NT_RESULT_NONE) ? 0 : NT_TRIANGLE_COPY;
+	return (state[0] == NT_RESULT_NONE || state[1] == NT_RESULT_NONE) ? 0 : NT_TRIANGLE_COPY;
 }
 
 /* The first corners, among the sound triangles, of the vertices of all triangles that copy: [vertex_count], UINT32_MAX

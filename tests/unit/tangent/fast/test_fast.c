@@ -38,7 +38,6 @@ static void goldens_are_byte_identical(void **state)
 static size_t compare_repairs(const char *name, const nmtan_mesh *mesh, size_t corners)
 {
 	static const nt_fast_plan plans[] = {{.grain = 1}, {.grain = 1, .bin_bits = 4},
-		{.grain = 1, .most_tiny = NT_TINY},
 		{.grain = 1, .most_narrow = NT_NARROW_LIMIT}};
 	enum { PLANS = sizeof plans / sizeof *plans };
 	nt_result results[PLANS + 1]; /* the definition's is the last */
@@ -454,7 +453,6 @@ static void what_gave_nothing_is_around_faults(void **state)
 	memcpy(n[OWN + 15], (float[3]){0, 1, 0}, sizeof *n);
 	memcpy(t[OWN + 14], (float[2]){t[MID][0] + 1, t[MID][1]}, sizeof *t);
 	memcpy(t[OWN + 15], (float[2]){t[MID][0], t[MID][1] + 1}, sizeof *t);
-	assert_true(count > NT_TINY);
 	compare_calls(&(nmtan_mesh){.struct_bytes = sizeof(nmtan_mesh), .face_count = count, .vertex_count = VERTICES,
 		.positions = p[0], .normals = n[0], .texcoords = t[0], .indices = indices}, NMTAN_REPAIR_ON);
 }
@@ -487,7 +485,6 @@ static void what_is_bare_takes_from_its_triangle(void **state)
 	n[OWN + 8][2] = INFINITY;
 	memcpy(indices + 3 * count, added, sizeof added);
 	count += ADDED;
-	assert_true(count > NT_TINY);
 	for (int turn = 0; turn < 3; turn++) {
 		for (size_t c = 3 * (count - ADDED); c < 3 * count; c += 3)
 			memcpy(indices + c, (unsigned[3]){indices[c + 1], indices[c + 2], indices[c]},
@@ -531,11 +528,6 @@ static void every_failed_allocation_is_told(void **state)
 		assert_int_equal(nt_solve_within(&mesh, corners, &r, i < 2, allowed, threads, &plan), NMTAN_OK);
 		assert_in_range(allowed, 8, 100);
 	}
-	/* two of the triangles alone */
-	nmtan_mesh few = mesh;
-	few.face_count = 2;
-	const nt_fast_plan tiny = {.grain = 1, .most_tiny = NT_TINY};
-	assert_int_equal(nt_solve_within(&few, 6, &r, false, 0, 1, &tiny), NMTAN_ERROR_MEMORY);
 	nt_result_free(&r);
 	free(p);
 	free(n);
