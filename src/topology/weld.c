@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Welding: an indexed mesh by its vertices (weld_few.c, weld_sieve.c), and so a soup of triangles that hardly share
- * any; others by their corners, whose rows are looked up in a table (weld_table.c); several threads do so for a range
- * of corners each (weld_threads.c).
+ * Welding: an indexed mesh by its vertices (weld_sieve.c), and so a soup of triangles that hardly share any; others by
+ * their corners, whose rows are looked up in a table (weld_table.c); several threads do so for a range of corners each
+ * (weld_threads.c).
  */
 #include "topology/weld.h"
 
@@ -47,15 +47,14 @@ static const uint32_t *weld_vertices(nt_welder *w, size_t corner_count, unsigned
 {
 	char *const begin = w->memory->begin, *const row_begin = w->row_memory->begin;
 	const nt_scratch_mark mark = nt_scratch_here(w->memory->scratch);
-	const bool few = NT_WELD_FEW > 0 && ranges == 1 && w->item_count <= NT_WELD_FEW;
-	nt_weld_outcome outcome = few ? nt_weld_few(w) : nt_weld_sieve(w, ranges);
-	/* whoever comes next has the memory of who was before */
-	while (outcome == NT_WELD_LEFT || outcome == NT_WELD_MANY) {
+	nt_weld_outcome outcome = nt_weld_sieve(w, ranges);
+	if (outcome == NT_WELD_MANY) {
+		/* the table takes the memory that the sieve had */
 		w->memory->begin = begin;
 		w->row_memory->begin = row_begin;
 		nt_scratch_back(w->memory->scratch, mark);
 		w->rows = NULL;
-		outcome = NT_WELD_FEW > 0 && outcome == NT_WELD_LEFT ? nt_weld_sieve(w, ranges) : weld_all(w, ranges);
+		outcome = weld_all(w, ranges);
 	}
 	return outcome == NT_WELD_DONE ? nt_weld_number_corners(w, corner_count, ranges) : NULL;
 }

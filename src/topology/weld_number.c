@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Numbers of vertices and of corners, once it is known which vertices may be equal to another (weld_few.c,
- * weld_sieve.c).
+ * Numbers of vertices and of corners, once it is known which vertices may be equal to another (weld_sieve.c).
  */
 #include "base/parallel.h"
 #include "topology/weld_parts.h"
 
 /* Vertices */
 
-bool nt_weld_number_own(nt_welder *w)
+static bool number_own(nt_welder *w)
 {
 	w->numbers = nt_borrowed_alloc(w->memory, w->item_count, sizeof *w->numbers);
 	for (size_t v = 0; w->numbers && v < w->item_count; v++)
@@ -18,7 +17,7 @@ bool nt_weld_number_own(nt_welder *w)
 	return w->numbers;
 }
 
-void nt_weld_rename(nt_welder *w, uint32_t vertex, uint32_t number)
+static void rename_vertex(nt_welder *w, uint32_t vertex, uint32_t number)
 {
 	w->numbers[vertex] = number;
 	w->renamed_begin = vertex < w->renamed_begin ? vertex : w->renamed_begin;
@@ -36,7 +35,7 @@ static void number_listed(nt_welder *w, const nt_welder *listed)
 		if (class == classes)
 			firsts[classes++] = v;
 		if (v != firsts[class])
-			nt_weld_rename(w, v, firsts[class]);
+			rename_vertex(w, v, firsts[class]);
 	}
 }
 
@@ -52,7 +51,7 @@ bool nt_weld_list(nt_welder *w, const uint32_t *list, size_t count, unsigned ran
 	w->unordered = listed.unordered;
 	if (listed.row_count == count && !w->unordered)
 		return true;
-	if (!nt_weld_number_own(w))
+	if (!number_own(w))
 		return false;
 	number_listed(w, &listed);
 	return true;
@@ -143,7 +142,7 @@ const uint32_t *nt_weld_number_corners(nt_welder *w, size_t corner_count, unsign
 	if (!ids)
 		return NULL;
 	const size_t renamed = w->renamed_end - w->renamed_begin;
-	const bool blocks = NT_WELD_FEW > 0 && w->mesh->indices && renamed < w->item_count / 2;
+	const bool blocks = w->mesh->indices && renamed < w->item_count / 2;
 	nt_parallel_ranges(ranges, corner_count, 1, !w->numbers ? copy_own : blocks ? copy_blocks : copy_numbers,
 		&(copying){w->numbers, w->mesh->indices, (uint32_t)w->renamed_begin, (uint32_t)renamed, ids});
 	return !w->unordered || !w->mesh->indices || number_unordered(w, corner_count, ids) ? ids : NULL;

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What the table of rows (weld_table.c), its use on several threads (weld_threads.c) and the welds of vertices
- * (weld_few.c, weld_sieve.c, weld_number.c) share: the entries of that table. For these files and weld.c only.
+ * (weld_sieve.c, weld_number.c) share: the entries of that table. For these files and weld.c only.
  *
  * An entry of 4 bytes holds a number and, in the bits that the number leaves free, a tag of the hash, so that
  * the row of another key is read about once in 2^tag probes. Tables are open-addressing and at most half full.
@@ -16,15 +16,6 @@
 enum { NT_WELD_BATCH = 32 };
 
 #define NT_WELD_EMPTY UINT32_MAX
-
-/* Vertices for nt_weld_few(), whose numbers have 16 bits. With twice as many its table takes 256 KB of the second-level
- * cache, which the steps after it then lack: 2 to 3 % of the whole. None where each byte of its code is sent to a
- * browser. */
-#ifdef __wasm__
-enum { NT_WELD_FEW = 0 };
-#else
-enum { NT_WELD_FEW = 1 << 15 };
-#endif
 
 typedef struct nt_welder {
 	const nmtan_mesh *mesh;
@@ -105,24 +96,19 @@ bool nt_weld_items(nt_welder *w, unsigned ranges);
 /* The same without a table, on one thread (weld_bits.c). */
 bool nt_weld_by_bits(nt_welder *w);
 
-/* How a weld of vertices ends: they are left to another one, or to the table because many of them are equal. */
+/* How a weld of vertices ends. MANY of them are equal: it is left to the table. */
 typedef enum nt_weld_outcome {
 	NT_WELD_DONE,
-	NT_WELD_LEFT,
 	NT_WELD_MANY,
 	NT_WELD_NO_MEMORY
 } nt_weld_outcome;
 
-/* Weld vertices, which are the items of `w`, those of corners where the mesh has no indices: rows, row_count and, where
- * a number is another than the vertex's own, numbers come to be. The first takes up to NT_WELD_FEW of them, on one
- * thread, and leaves them where one holds a NaN. */
-nt_weld_outcome nt_weld_few(nt_welder *w);
+/* Welds vertices, which are the items of `w`, those of corners where the mesh has no indices: makes rows, row_count and,
+ * where a number is another than the vertex's own, numbers. */
 nt_weld_outcome nt_weld_sieve(nt_welder *w, unsigned ranges);
 
-/* Numbers of vertices whose rows are there: their own; then one gets another; or, of those on a list that has all that
- * are equal to another or hold a NaN, that of the first equal one on the list. False when out of memory. */
-bool nt_weld_number_own(nt_welder *w);
-void nt_weld_rename(nt_welder *w, uint32_t vertex, uint32_t number);
+/* Numbers vertices whose rows are there: a vertex on the list, which has all that are equal to another or hold a NaN,
+ * gets the number of the first equal one on it; the others keep their own. False when out of memory. */
 bool nt_weld_list(nt_welder *w, const uint32_t *list, size_t count, unsigned ranges);
 
 /* Numbers of corners from numbers of vertices, NULL: each its own; without indices likewise. May be the mesh's
