@@ -150,7 +150,7 @@ endif
 $(foreach set,baseline avx2 avx512,$(call objects_of,tangent/fast/kernel_$(set).c)): FILE_FLAGS += -ftree-slp-vectorize
 $(call objects_of,topology/adjacency.c topology/weld_number.c topology/weld_sieve.c \
 	topology/weld_table.c topology/weld_threads.c): FILE_FLAGS := $(lanes)
-$(call objects_of,base/largest.c tangent/across.c tangent/normals.c): FILE_FLAGS := $(lanes)
+$(call objects_of,base/largest.c tangent/normals.c): FILE_FLAGS := $(lanes)
 
 # An exception passes operator new, but what it and number.cpp do throws nothing, so they need no C++ library.
 $(call objects_of,ext/reserve.cpp ext/number.cpp): FILE_FLAGS := -fno-exceptions

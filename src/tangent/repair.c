@@ -4,7 +4,7 @@
  *
  * The check (usable.c) finds nothing on most meshes, and then nothing is done here. Where it finds something it has
  * marked the corners concerned with w = 0. They are collected by welded vertex, the triangles around these vertices
- * are visited once (repair_around.c), and each corner gets, in this order:
+ * are visited once, and each corner gets, in this order:
  *
  *   1 the robust average of the triangles of its face's orientation around its vertex: the exact value of what the
  *     methods approximate
@@ -16,16 +16,93 @@
  * A face without orientation takes that of its usable corners, or of what is around its vertices. What is usable
  * keeps its bytes.
  *
- * Around most vertices of triangles without a UV area there is nothing at all, and the method tells (bare vertices).
- * Where all unusable corners of a triangle are bare, it is repaired before anything is visited: repair_bare.c.
- *
  * Apart from what is faulty this costs one look at the numbers of each triangle's vertices.
  */
 #include "tangent/repair.h"
 
+#include <math.h>
 #include <string.h>
 #include "base/counts.h"
-#include "tangent/repair_parts.h"
+#include "tangent/frames.h"
+#include "tangent/usable.h"
+#include "topology/corners.h"
+
+/* What the sums at a vertex and its usable corners come to, for orientation -1 and +1. */
+typedef struct answers {
+	float tangents[2][3], perpendicular[3]; /* unit; perpendicular to the normal */
+	bool averaged[2], borrowed[2];          /* 1 or 2 of the list above; neither: there is no tangent */
+	bool there[2];                          /* triangles or usable corners */
+} answers;
+
+/* What is around a vertex with an unusable corner, for orientation -1 and +1. */
+typedef struct surroundings {
+	nt_dvec3 normal;    /* unit or zero: of the first unusable corner */
+	uint32_t usable[2]; /* the first usable corners, or NT_NO_ID */
+	union {
+		nt_frame_sum sums[2]; /* until all around is visited */
+		answers answers;
+	};
+} surroundings;
+
+/* A repair. Welded vertices with an unusable corner are open. */
+typedef struct repair_state {
+	const nt_solve *solve;
+	const uint64_t *faulty; /* a bit for each face */
+	const uint32_t *welded; /* [corner_count] */
+	size_t welded_count;
+	uint32_t *ids;          /* [welded_count] numbers of open vertices, or NT_NO_ID */
+	size_t id_count;
+	surroundings *around;   /* [id_count], with room for as many as there can be */
+} repair_state;
+
+/* Whether a corner's vertex is open. */
+static bool is_open(const repair_state *r, size_t c)
+{
+	return r->ids[r->welded[c]] != NT_NO_ID;
+}
+
+/* Whether a corner of a faulty face is usable. Such a face is a suspect: its rows are there. */
+static bool is_usable(const nt_solve *solve, size_t c)
+{
+	uint32_t w;
+	memcpy(&w, &solve->tangents[4 * c + 3], sizeof w);
+	return w << 1;
+}
+
+/* The exact orientation of a face with that first corner, by what is known of it. */
+static int orientation_of(const repair_state *r, size_t face, size_t first)
+{
+	const nmtan_mesh *mesh = r->solve->mesh;
+	int known;
+	if (!mesh->face_sizes && nt_knows_orientation(r->solve->known, face, &known))
+		return known;
+	const size_t faulty = r->faulty[face / 64] >> face % 64 & 1 ? nt_face_size(mesh, face) : 0;
+	for (size_t c = first; c < first + faulty; c++)
+		if (!is_usable(r->solve, c) && signbit(r->solve->tangents[4 * c + 3]))
+			return 0;
+	return nt_face_orientation(mesh, face, first, true, NULL);
+}
+
+/* A usable corner's tangent, perpendicular to n; false where it has no such part. */
+static bool borrow_tangent(const nt_solve *solve, uint32_t c, nt_dvec3 n, nt_dvec3 *tangent)
+{
+	*tangent = nt_dvec3_reject(n, nt_dvec3_load(nt_corner_tangent(solve, c)));
+	return nt_dvec3_dot(*tangent, *tangent) > NT_PARALLEL_SINE_SQUARED && nt_dvec3_normalise(tangent);
+}
+
+/* Gives a corner the tangent t and its sign. */
+static void write_corner(const nt_solve *solve, size_t c, const float *t, float w)
+{
+	const float tangent[4] = {t[0], t[1], t[2], w};
+	memcpy(solve->tangents + 4 * c, tangent, sizeof tangent);
+	if (solve->bitangents) {
+		const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
+		const nt_dvec3 b = nt_dvec3_scale(w, nt_dvec3_cross(n, nt_dvec3_load(tangent)));
+		nt_dvec3_store(b, solve->bitangents + 3 * c);
+	}
+	if (solve->magnitudes)
+		solve->magnitudes[2 * c] = solve->magnitudes[2 * c + 1] = 1.0f;
+}
 
 /* Faults */
 
@@ -35,7 +112,7 @@ typedef struct place {
 } place;
 
 /* The next faulty face from at->face on; false: there is none. */
-static bool find_faulty(const nt_repair_state *r, place *at)
+static bool find_faulty(const repair_state *r, place *at)
 {
 	const nmtan_mesh *mesh = r->solve->mesh;
 	size_t face = at->face;
@@ -57,13 +134,13 @@ static bool find_faulty(const nt_repair_state *r, place *at)
 	return true;
 }
 
-static void step_over(const nt_repair_state *r, place *at)
+static void step_over(const repair_state *r, place *at)
 {
 	at->first += nt_face_size(r->solve->mesh, at->face++);
 }
 
 /* The welded vertices of all corners: the method's, if it tells. */
-static nmtan_status weld(nt_repair_state *r)
+static nmtan_status weld(repair_state *r)
 {
 	const nt_solve *solve = r->solve;
 	if (solve->known && solve->known->welded) {
@@ -77,7 +154,9 @@ static nmtan_status weld(nt_repair_state *r)
 		   : NMTAN_ERROR_MEMORY;
 }
 
-static nmtan_status begin_numbers(nt_repair_state *r, size_t unusable)
+/* Numbers the welded vertices that have an unusable corner. Equal vertices of the mesh have equal normals, so a unit
+ * normal is made once for all corners at a vertex. */
+static nmtan_status number_vertices(repair_state *r, size_t unusable)
 {
 	const nt_solve *solve = r->solve;
 	const size_t most = unusable < r->welded_count ? unusable : r->welded_count;
@@ -85,18 +164,83 @@ static nmtan_status begin_numbers(nt_repair_state *r, size_t unusable)
 	r->around = nt_scratch_alloc(solve->scratch, most, sizeof *r->around);
 	if (!r->ids || !r->around)
 		return NMTAN_ERROR_MEMORY;
-	r->first_bare = most * (sizeof *r->around / (4 * sizeof(float)));
 	memset(r->ids, 0xff, r->welded_count * sizeof *r->ids);
+	for (place at = {0, 0}; find_faulty(r, &at); step_over(r, &at))
+		for (size_t c = at.first; c < at.first + nt_face_size(solve->mesh, at.face); c++) {
+			if (is_open(r, c) || is_usable(solve, c))
+				continue;
+			const nt_dvec3 n = nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c));
+			r->ids[r->welded[c]] = (uint32_t)r->id_count;
+			r->around[r->id_count++] = (surroundings){.normal = n, .usable = {NT_NO_ID, NT_NO_ID}};
+		}
 	return NMTAN_OK;
 }
 
-/* Numbers the welded vertices that have an unusable corner. */
-static void number_vertices(nt_repair_state *r)
+/* What is around */
+
+/* Adds a face of 3 or 4 corners with an open vertex to what is around these. */
+static inline void visit_face(const repair_state *r, size_t face, size_t first, unsigned size)
 {
-	for (place at = {0, 0}; find_faulty(r, &at); step_over(r, &at))
-		for (size_t c = at.first; c < at.first + nt_face_size(r->solve->mesh, at.face); c++)
-			if (r->ids[r->welded[c]] == NT_NO_ID && !nt_is_usable(r->solve, c))
-				nt_number_open(r, c);
+	const nt_solve *solve = r->solve;
+	surroundings *around[4]; /* of its vertices; NULL: not open */
+	for (size_t k = 0; k < size; k++) {
+		around[k] = is_open(r, first + k) ? &r->around[r->ids[r->welded[first + k]]] : NULL;
+		const float w = around[k] ? nt_corner_tangent(solve, first + k)[3] : 0.0f;
+		if (w != 0.0f && around[k]->usable[w > 0.0f] == NT_NO_ID)
+			around[k]->usable[w > 0.0f] = (uint32_t)(first + k);
+	}
+	const int orientation = orientation_of(r, face, first);
+	if (!orientation)
+		return; /* no triangle of it has a frame */
+	uint32_t corners[2][3] = {{(uint32_t)first, (uint32_t)first + 1, (uint32_t)first + 2}};
+	const unsigned count = size == 3 ? 1 : nt_face_triangles(solve->mesh, face, first, corners);
+	for (unsigned i = 0; i < count; i++) {
+		nt_frame_sum *to[3];
+		nt_dvec3 normals[3];
+		for (int k = 0; k < 3; k++) {
+			surroundings *at = around[corners[i][k] - first];
+			to[k] = at ? &at->sums[orientation > 0] : NULL;
+			normals[k] = at ? at->normal : (nt_dvec3){0, 0, 0};
+		}
+		nt_add_triangle(solve->mesh, NT_WEIGHT_ANGLE, corners[i], normals, to);
+	}
+}
+
+/* Sums become answers. */
+static void answer(const nt_solve *solve, surroundings *around)
+{
+	const nt_dvec3 n = around->normal;
+	answers a = {0};
+	for (int side = 0; side < 2; side++) {
+		const bool weighs = around->sums[side].weights > 0.0, usable = around->usable[side] != NT_NO_ID;
+		nt_dvec3 t;
+		a.there[side] = usable || weighs;
+		a.averaged[side] = weighs && nt_sum_tangent(&around->sums[side], n, &t);
+		a.borrowed[side] = !a.averaged[side] && usable && borrow_tangent(solve, around->usable[side], n, &t);
+		if (a.averaged[side] || a.borrowed[side])
+			nt_dvec3_store(t, a.tangents[side]);
+	}
+	nt_dvec3_store(nt_dvec3_perpendicular(n), a.perpendicular);
+	around->answers = a;
+}
+
+/* Visits the faces with an open vertex. */
+static void visit_faces(const repair_state *r)
+{
+	const nmtan_mesh *mesh = r->solve->mesh;
+	for (size_t face = 0, first = 0; face < mesh->face_count; first += nt_face_size(mesh, face++)) {
+		const bool a = is_open(r, first), b = is_open(r, first + 1), c = is_open(r, first + 2);
+		if (a | b | c || (nt_face_size(mesh, face) == 4 && is_open(r, first + 3)))
+			visit_face(r, face, first, nt_face_size(mesh, face));
+	}
+}
+
+/* Finds what is around open vertices: `answers`. */
+static void look_around(const repair_state *r)
+{
+	visit_faces(r);
+	for (size_t i = 0; i < r->id_count; i++)
+		answer(r->solve, &r->around[i]);
 }
 
 /* Repairs */
@@ -108,37 +252,35 @@ typedef struct face {
 	int orientation, side;
 } face;
 
-static const nt_surroundings *around_corner(const nt_repair_state *r, size_t c)
+static const surroundings *around_corner(const repair_state *r, size_t c)
 {
 	return &r->around[r->ids[r->welded[c]]];
 }
 
 /* The best tangent that can be had at an unusable corner c of a face; it may lie in `own`. */
-static const float *best_tangent(const nt_repair_state *r, const face *f, size_t c, float own[3])
+static const float *best_tangent(const repair_state *r, const face *f, size_t c, float own[3])
 {
 	const nt_solve *solve = r->solve;
-	const nt_answers *a = nt_is_bare(r, c) ? NULL : &around_corner(r, c)->answers;
-	if (solve->faults && !(a && a->averaged[f->side]))
+	const surroundings *around = around_corner(r, c);
+	const answers *a = &around->answers;
+	if (solve->faults && !a->averaged[f->side])
 		solve->faults[c] |= NMTAN_FAULT_NO_AVERAGE;
-	if (a && (a->averaged[f->side] || a->borrowed[f->side]))
+	if (a->averaged[f->side] || a->borrowed[f->side])
 		return a->tangents[f->side];
 	for (size_t k = 0; k < f->size; k++) {
 		nt_dvec3 t;
-		if (f->usable[k] && nt_borrow(solve, (uint32_t)(f->first + k),
-					    nt_unit_normal(solve->mesh, nt_vertex_of(solve->mesh, c)), &t)) {
+		if (f->usable[k] && borrow_tangent(solve, (uint32_t)(f->first + k), around->normal, &t)) {
 			nt_dvec3_store(t, own);
 			return own;
 		}
 	}
-	if (!a)
-		return nt_bare_tangent(r, r->ids[r->welded[c]]);
 	const bool other = !f->orientation && (a->averaged[!f->side] || a->borrowed[!f->side]);
 	return other ? a->tangents[!f->side] : a->perpendicular;
 }
 
 /* The side of a face without orientation: that of a usable corner, all of which agree; else what most of its vertices
  * have around them; of the first usable corner around where that is even; +1 where there is nothing. */
-static int choose_side(const nt_repair_state *r, const face *f)
+static int choose_side(const repair_state *r, const face *f)
 {
 	int votes = 0, nearest = 1;
 	uint32_t least = NT_NO_ID;
@@ -146,9 +288,7 @@ static int choose_side(const nt_repair_state *r, const face *f)
 		if (f->usable[k])
 			return r->solve->tangents[4 * (f->first + k) + 3] > 0.0f;
 	for (size_t k = 0; k < f->size; k++) {
-		if (nt_is_bare(r, f->first + k))
-			continue;
-		const nt_surroundings *around = around_corner(r, f->first + k);
+		const surroundings *around = around_corner(r, f->first + k);
 		votes += around->answers.there[1] - around->answers.there[0];
 		for (int side = 0; side < 2; side++) {
 			nearest = around->usable[side] < least ? side : nearest;
@@ -160,38 +300,32 @@ static int choose_side(const nt_repair_state *r, const face *f)
 
 /* Repairs one face. What is read of its own corners and of those around are usable ones, which are never written: the
  * order of corners and of faces does not matter. */
-static void repair_face(const nt_repair_state *r, size_t number, size_t first)
+static void repair_face(const repair_state *r, size_t number, size_t first)
 {
 	face f = {.first = first, .size = nt_face_size(r->solve->mesh, number)};
 	for (size_t k = 0; k < f.size; k++)
-		f.usable[k] = nt_is_usable(r->solve, first + k);
-	f.orientation = nt_orientation_of(r, number, first);
+		f.usable[k] = is_usable(r->solve, first + k);
+	f.orientation = orientation_of(r, number, first);
 	f.side = f.orientation ? f.orientation > 0 : choose_side(r, &f);
 	for (size_t k = 0; k < f.size; k++) {
 		float own[3];
 		if (!f.usable[k])
-			nt_repair_corner(r->solve, first + k, best_tangent(r, &f, first + k, own),
+			write_corner(r->solve, first + k, best_tangent(r, &f, first + k, own),
 				f.side ? 1.0f : -1.0f);
 	}
 }
 
 /* What nearly all meshes do not need: not in line, since it saves many registers. */
 static nmtan_status __attribute__((noinline)) repair(const nt_solve *solve, const nmtan_counts *counts,
-	uint64_t *faulty)
+	const uint64_t *faulty)
 {
-	nt_repair_state r = {.solve = solve, .faulty = faulty};
-	nmtan_status status = NMTAN_OK;
-	bool done = false;
-	/* meshes that nobody has unwrapped */
-	if (NT_SHORT_WAYS)
-		status = nt_repair_by_normals(solve, counts, &done);
-	if (status || done || (status = weld(&r)) || (status = begin_numbers(&r, nt_counts_repaired(counts))))
+	repair_state r = {.solve = solve, .faulty = faulty};
+	nmtan_status status = weld(&r);
+	if (!status)
+		status = number_vertices(&r, nt_counts_repaired(counts));
+	if (status)
 		return status;
-	/* most of what triangles without a UV area leave */
-	if (!NT_SHORT_WAYS || !nt_repair_bare(&r))
-		number_vertices(&r);
-	/* all that has something around it */
-	nt_look_around(&r, solve->known && solve->known->around && counts->repaired_sign == 0);
+	look_around(&r);
 	for (place at = {0, 0}; find_faulty(&r, &at); step_over(&r, &at))
 		repair_face(&r, at.face, at.first);
 	return NMTAN_OK;

@@ -35,13 +35,10 @@ typedef struct nt_known {
 	uint8_t judged;       /* bits of `suspect` that say of a triangle no more than that rows may have NT_W_OPEN.
 	                         With them rows without it are usable by all but w, and `rows` are told; 0: not so */
 	bool open;            /* a row may have NT_W_OPEN; set by any thread */
-	bool empty;           /* no triangle gave a tangent: where the solve repairs, each w is 0 */
 	const uint32_t *ids;  /* [corner_count] welded vertices, or NULL */
 	const float *rows[2]; /* [welded_count][4] by orientation, w = 0 where no triangle at the vertex
 	                         has it; NULL: none at all. Told with ids, and with `judged` */
 	size_t row_step;      /* floats from one row to the next */
-	bool around;          /* where a corner is unusable by more than its sign, all triangles at its vertex
-	                         are suspects */
 	const uint32_t *welded; /* [corner_count] welded vertices, below welded_count, whatever else is
 	                           known; NULL: ask nt_weld_corners() */
 	size_t welded_count;

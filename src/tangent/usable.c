@@ -88,12 +88,6 @@ static bool has_unusable(const nt_solve *solve, size_t first, size_t size, int o
 {
 	const nmtan_mesh *mesh = solve->mesh;
 	float *t = solve->tangents + 4 * first;
-	if (NT_SHORT_WAYS && solve->known && solve->known->empty) {
-		for (size_t k = 0; k < size; k++)
-			mark_fault(solve, first + k, orientation, NMTAN_FAULT_UNASSIGNED);
-		counts->repaired_unassigned += size;
-		return true;
-	}
 	if (judged && is_sound(t, size, orientation))
 		return false;
 	const bool open = take_marks(t, size) || !judged;

@@ -103,8 +103,8 @@ typedef enum nt_weld_outcome {
 	NT_WELD_NO_MEMORY
 } nt_weld_outcome;
 
-/* Welds vertices, which are the items of `w`, those of corners where the mesh has no indices: makes rows, row_count and,
- * where a number is another than the vertex's own, numbers. */
+/* Welds vertices, which are the items of `w`: those of corners where the mesh has no indices. Makes rows, row_count
+ * and, where a number is another than the vertex's own, numbers. */
 nt_weld_outcome nt_weld_sieve(nt_welder *w, unsigned ranges);
 
 /* Numbers vertices whose rows are there: a vertex on the list, which has all that are equal to another or hold a NaN,

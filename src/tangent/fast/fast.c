@@ -38,7 +38,6 @@
 #include "base/clock.h"
 #include "base/cpu.h"
 #include "base/parallel.h"
-#include "base/vec.h"
 #include "tangent/fast/complex.h"
 #include "tangent/fast/memory.h"
 #include "tangent/fast/records.h"
@@ -56,26 +55,6 @@ typedef struct run {
 	nt_settled *settled;       /* [ranges] */
 	nt_bin *bins;              /* [ranges] each for one after the other */
 } run;
-
-/* Before all */
-
-/* Whether a triangle may have an area in UV space, as step 4 computes it; nearly always the first one has. Where none
- * has, no triangle has a frame, and no corner gets a tangent. Quads are not looked at. */
-static bool has_areas(const nt_solve *solve)
-{
-	const nmtan_mesh *mesh = solve->mesh;
-	size_t c = mesh->face_sizes ? solve->corner_count + 1 : 0;
-	for (; c < solve->corner_count; c += 3) {
-		const float *t[3];
-		for (size_t k = 0; k < 3; k++)
-			t[k] = nt_texcoord(mesh, nt_vertex_of(mesh, c + k));
-		const float t21x = t[1][0] - t[0][0], t21y = t[1][1] - t[0][1];
-		const float t31x = t[2][0] - t[0][0], t31y = t[2][1] - t[0][1];
-		if (nt_not_zero(t21x * t31y - t21y * t31x))
-			break;
-	}
-	return c != solve->corner_count;
-}
 
 /* 1 and 2: weld, cut */
 
@@ -310,7 +289,7 @@ static void tell_known(const nt_fast *fast)
 	*known = (nt_known){.flags = fast->flags, .positive = NT_TRIANGLE_ORIENT, .suspect = NT_TRIANGLE_SUSPECT,
 		.doubtful = NT_TRIANGLE_UNCERTAIN, .flat = NT_TRIANGLE_ANY, .degenerate = NT_TRIANGLE_DEGENERATE,
 		.judged = NT_SHORT_WAYS && nt_fast_judges(fast->solve) ? NT_TRIANGLE_COMPLEX : 0,
-		.open = known->open, .around = true, .welded = fast->triangles.ids, .welded_count = fast->vertex_count,
+		.open = known->open, .welded = fast->triangles.ids, .welded_count = fast->vertex_count,
 		.row_step = fast->record_step * sizeof(nt_record) / sizeof(float)};
 	/* a record is x, y, z and, as state, the sign */
 	for (int orient = 0; orient < 2; orient++)
@@ -350,10 +329,6 @@ nmtan_status nt_mikktspace_fast_as(const nt_solve *solve, const nt_fast_plan *pl
 	nt_fast fast = {.solve = solve, .sparse = solve->sparse,
 		.wants_more = solve->bitangents || solve->magnitudes,
 		.triangle_count = nt_triangle_count(solve->mesh, solve->corner_count)};
-	if (NT_SHORT_WAYS && !has_areas(solve)) {
-		nt_fast_write_defaults(&fast);
-		return NMTAN_OK;
-	}
 	const bool binned = is_binned(&fast, plan->bin_bits);
 	nt_fast_memory memory;
 	nt_fast_plan_memory(&fast, binned, plan->least_borrowed_bytes, &memory);

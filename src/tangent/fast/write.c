@@ -307,8 +307,6 @@ void nt_fast_write_defaults(const nt_fast *fast)
 {
 	for (size_t c = 0; c < fast->solve->corner_count; c++)
 		nt_fast_write_unassigned(fast, c);
-	if (NT_SHORT_WAYS && fast->solve->known)
-		fast->solve->known->empty = true;
 }
 
 /* The next triangle from t on that copies corners. */
