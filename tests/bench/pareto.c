@@ -49,7 +49,7 @@ typedef struct variant {
 } variant;
 
 typedef struct row {
-	char name[96];
+	char name[96], label[64]; /* in the table; in the chart, empty: not there */
 	kind kind;
 	nmtan_method method;                   /* CALL_NMTAN */
 	const native *peer;                    /* CALL_NATIVE */
@@ -123,6 +123,8 @@ static void list_calls(bench *b)
 	for (int m = NMTAN_METHOD_MIKKTSPACE; m <= NMTAN_METHOD_ROBUST; m++) {
 		row *r = add_row(b, CALL_NMTAN, true);
 		snprintf(r->name, sizeof r->name, "nmtan %s", method_names[m]);
+		snprintf(r->label, sizeof r->label, "%s",
+			m == NMTAN_METHOD_MIKKTSPACE ? "nmtan" : "");
 		r->method = (nmtan_method)m;
 		r->variant_count = b->variant_count;
 		r->one_thread_count = one_thread_count;
@@ -131,6 +133,7 @@ static void list_calls(bench *b)
 	for (size_t i = 0; i < peers; i++) {
 		row *r = add_row(b, CALL_NATIVE, true);
 		snprintf(r->name, sizeof r->name, "%s", b->peers[i].name);
+		snprintf(r->label, sizeof r->label, "%s", b->peers[i].name);
 		r->peer = &b->peers[i];
 	}
 }
@@ -147,6 +150,9 @@ static void list_runs(bench *b)
 		for (int o = 0; o < 4; o++) {
 			row *r = add_row(b, RUN_TOOL, m == 0 && o < 3);
 			snprintf(r->name, sizeof r->name, "nmtan %s, %s", method_names[m], outputs[o].name);
+			if (m == 0)
+				snprintf(r->label, sizeof r->label, "nmtan%s%s", o ? ", " : "",
+					o ? outputs[o].name : "");
 			const char *const arguments[] = {b->nmtan, "-q", "--threads=1", methods[m],
 				outputs[o].option, NULL};
 			memcpy(r->arguments, arguments, sizeof arguments);
@@ -170,6 +176,8 @@ static void list_runs(bench *b)
 	for (int quantised = 0; quantised < 2; quantised++) {
 		row *r = add_row(b, RUN_TOOL, true);
 		snprintf(r->name, sizeof r->name, "gltfpack %s -gt %s", version, quantised ? "-vtf" : "-noq");
+		if (!quantised)
+			snprintf(r->label, sizeof r->label, "gltfpack %s -gt -noq", version);
 		const char *const arguments[] = {b->gltfpack, "-gt", quantised ? "-vtf" : "-noq", NULL};
 		memcpy(r->arguments, arguments, sizeof arguments);
 		r->output_by_option = true;
@@ -190,6 +198,7 @@ static void list_others(bench *b)
 			r = add_row(b, strcmp(id, "gltf-transform") == 0 ? RUN_OTHER : CALL_OTHER, true);
 			snprintf(r->id, sizeof r->id, "%s", id);
 			snprintf(r->name, sizeof r->name, "%s", id);
+			snprintf(r->label, sizeof r->label, "%s", id);
 		}
 		if (mesh[0] == 'm' && (size_t)atoi(mesh + 1) < b->model_count)
 			r->seconds[atoi(mesh + 1)][0] = seconds;
@@ -200,8 +209,10 @@ static void list_others(bench *b)
 	char version[32];
 	while (f && fscanf(f, "%63s %31s", id, version) == 2)
 		for (row *r = b->rows; r < b->rows + b->row_count; r++)
-			if (r->id[0] && strncmp(r->id, id, strlen(id)) == 0)
+			if (r->id[0] && strncmp(r->id, id, strlen(id)) == 0) {
 				snprintf(r->name, sizeof r->name, "%s %.16s (npm)", r->id, version);
+				snprintf(r->label, sizeof r->label, "%.56s (npm)", r->id);
+			}
 	if (f)
 		fclose(f);
 }
@@ -499,56 +510,31 @@ static void print_conventions(const bench *b)
 
 /* Chart */
 
-static int compare_rows(const void *a, const void *b)
+/* The programs that a user chooses between, calls and runs each in a panel of their own: what has a label. */
+static void write_chart(const bench *b, const char *path)
 {
-	const double x = fastest(*(const row *const *)a), y = fastest(*(const row *const *)b);
-	return (x > y) - (x < y);
-}
-
-/* The points of one front in the order of time; their number. */
-static size_t front_points(bench *b, bool runs, bool high, double *x, double *y)
-{
-	const row *on[MOST_ROWS];
-	size_t n = 0;
-	for (const row *r = b->rows; r < b->rows + b->row_count; r++)
-		if (r->present && (r->kind >= RUN_TOOL) == runs && (high ? r->front_high : r->front_median))
-			on[n++] = r;
-	qsort(on, n, sizeof *on, compare_rows);
-	for (size_t i = 0; i < n; i++) {
-		x[i] = fastest(on[i]);
-		y[i] = high ? on[i]->bits16.high : on[i]->bits16.median;
-	}
-	return n;
-}
-
-static void write_chart(bench *b, const char *path)
-{
-	static double y[MOST_ROWS][MOST_VARIANTS], high[MOST_ROWS][MOST_VARIANTS], fronts[4][2][MOST_ROWS];
-	static const char *const front_names[4] = {"front of calls: median", "front of calls: 99.9 %",
-		"front of runs: median", "front of runs: 99.9 %"};
-	chart_series series[MOST_ROWS + 4];
-	size_t count = 0;
-	for (row *r = b->rows; r < b->rows + b->row_count; r++) {
-		if (!r->present)
+	static double x[MOST_ROWS];
+	static chart_series series[2][MOST_ROWS];
+	chart_panel panels[2] = {{"calls: arrays in, arrays out", series[0], 0},
+		{"runs: from file to file", series[1], 0}};
+	for (const row *r = b->rows; r < b->rows + b->row_count; r++) {
+		if (!r->present || !r->label[0])
 			continue;
-		for (size_t v = 0; v < r->variant_count; v++) {
-			y[count][v] = r->bits16.median;
-			high[count][v] = r->bits16.high;
-		}
-		series[count] = (chart_series){r->name, r->ns, y[count], r->variant_count, CHART_RANGES, high[count]};
-		count++;
-	}
-	for (int i = 0; i < 4; i++) {
-		const size_t n = front_points(b, i / 2, i % 2, fronts[i][0], fronts[i][1]);
-		series[count++] = (chart_series){front_names[i], fronts[i][0], fronts[i][1], n,
-			i % 2 ? CHART_DASHED_STEPS : CHART_STEPS, NULL};
+		x[r - b->rows] = fastest(r);
+		chart_panel *p = &panels[r->kind >= RUN_TOOL];
+		series[r->kind >= RUN_TOOL][p->series_count++] = (chart_series){
+			r->label, &x[r - b->rows], &r->bits16.median, 1, &r->bits16.high};
 	}
 	const chart c = {.title = "Run time against the error of a normal map's round trip",
-		.subtitle = "full: median, hollow: 99.9 %, 16 bits. nmtan's calls: instruction sets from right "
-		"to left, then all threads",
-		.x_label = "nanoseconds a triangle: of a call (arrays), or of a run from file to file",
+		.subtitle = "One thread, a map of 16 bits. Full marks: median, hollow ones: 99.9 % "
+			    "of the points. Left and low is good.",
+		.x_label = "nanoseconds a triangle",
 		.y_label = "degrees",
-		.log_x = true, .log_y = true, .series = series, .series_count = count};
+		.log_x = true,
+		.log_y = true,
+		.in_place = true,
+		.panels = panels,
+		.panel_count = 2};
 	if (!chart_write(path, &c)) {
 		fprintf(stderr, "bench: cannot write %s\n", path);
 		exit(2);

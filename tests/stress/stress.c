@@ -194,15 +194,16 @@ static void write_chart(const char *folder, const family *f, const family_scores
 					 : fmax(percent(s->wrong_sign, s->oriented),
 						   percent(s->zero + s->parallel, s->corners));
 		}
-		series[c] = (chart_series){columns[c].name, f->levels, y[c], f->level_count, CHART_LINE, NULL};
+		series[c] = (chart_series){columns[c].name, f->levels, y[c], f->level_count, NULL};
 	}
 	char path[512], title[128];
 	snprintf(title, sizeof title, angles ? "%s: worst angle" : "%s: wrong sign or unusable", f->name);
+	const chart_panel panel = {NULL, series, COLUMN_COUNT};
 	const chart ch = {.title = title, .subtitle = angles
 			? "against the 113-bit formula, where its condition is below 2^24 (1e-7 stands for less)"
 			: "the larger share: faces with a wrong w, corners that are not a unit vector beside N",
 		.x_label = f->level_name, .y_label = angles ? "degrees" : "per cent", .log_x = f->logarithmic,
-		.log_y = angles, .series = series, .series_count = COLUMN_COUNT};
+		.log_y = angles, .panels = &panel, .panel_count = 1};
 	snprintf(path, sizeof path, "%s/%s-%s.svg", folder, f->name, angles ? "angle" : "unusable");
 	for (char *p = path + strlen(folder); *p; p++)
 		*p = *p == ' ' ? '-' : *p;

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Charts as small SVG files: lines, ranges and steps over linear or logarithmic axes.
+ * Charts as small SVG files: panels over the same linear or logarithmic axes, one below the other.
  */
 #ifndef NT_CHART_H
 #define NT_CHART_H
@@ -8,27 +8,27 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-typedef enum chart_style {
-	CHART_LINE,        /* marks, joined */
-	CHART_RANGES,      /* the same, numbered, each with a bar up to `high`, which has a hollow mark */
-	CHART_STEPS,       /* no marks; right, then up or down */
-	CHART_DASHED_STEPS
-} chart_style;
-
 typedef struct chart_series {
 	const char *name;
 	const double *x, *y; /* [count]; a value that is not finite, or not positive on a logarithmic axis,
 	                        leaves a gap */
 	size_t count;
-	chart_style style;
-	const double *high; /* [count]; NULL: no bars */
+	const double *
+		high; /* [count]: each mark has a bar up to here, where a hollow mark is; NULL: no bars */
 } chart_series;
+
+typedef struct chart_panel {
+	const char *title; /* NULL: none */
+	const chart_series *series;
+	size_t series_count;
+} chart_panel;
 
 typedef struct chart {
 	const char *title, *subtitle, *x_label, *y_label;
 	bool log_x, log_y;
-	const chart_series *series;
-	size_t series_count;
+	bool in_place; /* names stand at the first mark of their series, not in a legend */
+	const chart_panel *panels;
+	size_t panel_count;
 } chart;
 
 /* False where the file cannot be written. */
