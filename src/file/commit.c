@@ -25,7 +25,7 @@
  *
  * Until step 2 everything can be taken back, and is. From step 3 on a failure leaves a whole new set, under names
  * that say what they are: where link(2) or a rename is refused, the interim main file stays and the result says so.
- * A run that is killed in between leaves at most files that the next one knows: temporary ones by their maker, a.bin
+ * A run that is killed in between leaves at most files that the next one knows: temporary ones by their locks, a.bin
  * and a.new-D.bin by what the main file says of them or by their bytes. Buffers that step 1 named are taken back when
  * step 2 fails; images are not, since another run may have found and used them meanwhile.
  *

@@ -378,7 +378,6 @@ nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error)
 		status = check_used(output, sink, error);
 		nt_temporary_discard(sink->temporary);
 		sink->temporary = NULL;
-		close(sink->fd);
 		sink->fd = -1;
 	}
 	sink->settled = true;

@@ -19,7 +19,6 @@
 #include <unistd.h>
 #include "base/memory.h"
 #include "ext/reserve.h"
-#include "file/litter.h"
 #include "file/trace.h"
 #include "file/watch.h"
 
@@ -146,7 +145,7 @@ static nt_status open_temporary(nt_sink *sink, const char *beside, nt_error *err
 	sink->fd = nt_temporary_create(beside, sink->in_place ? 0600 : 0666, &sink->temporary);
 	const int number = errno;
 	if (sink->fd >= 0) {
-		nt_litter_clean(folder);
+		nt_temporaries_clean(folder);
 		free(folder);
 		return NT_OK;
 	}
@@ -227,7 +226,7 @@ static nt_status open_companion(nt_sink *sink, nt_error *error)
 
 static void free_sink(nt_sink *sink)
 {
-	if (sink->fd >= 0 && !sink->shared_fd)
+	if (sink->fd >= 0 && !sink->shared_fd && !sink->temporary)
 		close(sink->fd);
 	nt_temporary_discard(sink->temporary);
 	nt_digest_free(sink->digest);
@@ -370,6 +369,7 @@ static nt_status leave_equal(nt_output *output, nt_error *error)
 	if (!status && same && (choice == NT_EQUAL_KEEP || utimensat(AT_FDCWD, main->target, NULL, 0) == 0)) {
 		nt_temporary_discard(main->temporary);
 		main->temporary = NULL;
+		main->fd = -1;
 		nt_output_leave(output);
 	}
 	return status;

@@ -172,7 +172,9 @@ nt_status nt_sink_finish(nt_sink *sink, bool sync, nt_error *error)
 		return nt_sink_fail(error, sink->path, errno);
 	if (sink->shared_fd || sink->fd < 0)
 		return NT_OK;
-	const int fd = sink->fd;
-	sink->fd = -1;
-	return close(fd) != 0 && errno != EINTR ? nt_sink_fail(error, sink->path, errno) : NT_OK;
+	/* closing tells what the disk refused (NFS); a temporary file keeps its lock */
+	const int fd = sink->temporary ? fcntl(sink->fd, F_DUPFD_CLOEXEC, 0) : sink->fd;
+	if (!sink->temporary)
+		sink->fd = -1;
+	return fd < 0 || (close(fd) != 0 && errno != EINTR) ? nt_sink_fail(error, sink->path, errno) : NT_OK;
 }

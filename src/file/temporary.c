@@ -10,23 +10,27 @@
  */
 #include "file/temporary.h"
 
+#include <ctype.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <poll.h>
+#include <pthread.h>
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
-#include "file/maker.h"
 
 /* What is tried before giving up on a free name: names of ended processes with our number are rare. */
-enum { MOST_ATTEMPTS = 1000 };
+enum { MOST_ATTEMPTS = 1000, BOOT_DIGITS = 32 };
 
 struct nt_temporary {
 	nt_temporary *next, *previous;
 	bool renamed;
+	int fd; /* holds the lock */
 	char path[];
 };
 
@@ -101,75 +105,112 @@ void nt_temporaries_release(const sigset_t *before)
 
 /* ---- names ---- */
 
+/* The kernel's number for this boot, without its dashes; zeros where there is none. */
+static const char *boot_number(void)
+{
+	static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+	static char boot[BOOT_DIGITS + 1];
+	pthread_mutex_lock(&lock);
+	if (!*boot) {
+		char text[64] = "";
+		FILE *file = fopen("/proc/sys/kernel/random/boot_id", "re");
+		if (file && fgets(text, sizeof text, file) == NULL)
+			*text = '\0';
+		if (file)
+			fclose(file);
+		size_t count = 0;
+		for (const char *c = text; isxdigit((unsigned char)*c) || *c == '-'; c++)
+			if (*c != '-' && count < BOOT_DIGITS)
+				boot[count++] = *c;
+		memset(boot + count, '0', BOOT_DIGITS - count);
+	}
+	pthread_mutex_unlock(&lock);
+	return boot;
+}
+
 /* Name `attempt` beside target: hidden, of a length that any file system has, the target's own name left out. */
 static void name_beside(char *path, size_t capacity, const char *target, unsigned attempt)
 {
 	static atomic_uint counter;
-	char maker[NT_MAKER_TEXT];
 	const char *slash = strrchr(target, '/');
 	const int folder_length = slash ? (int)(slash - target) + 1 : 0;
-	nt_maker_text(maker);
-	snprintf(path, capacity, "%.*s%s%s-%u.%u%s", folder_length, target, name_head, maker,
-		atomic_fetch_add(&counter, 1), attempt, name_tail);
+	snprintf(path, capacity, "%.*s%s%s-%ld-%u.%u%s", folder_length, target, name_head, boot_number(),
+		(long)getpid(), atomic_fetch_add(&counter, 1), attempt, name_tail);
 }
 
-const char *nt_temporary_maker(const char *name, size_t *length)
+bool nt_temporary_is_lockable(const char *name, bool local)
 {
 	const size_t head = strlen(name_head), tail = strlen(name_tail), whole = strlen(name);
-	if (whole < head + tail || strncmp(name, name_head, head) != 0 ||
+	const char *boot = name + head;
+	if (whole <= head + BOOT_DIGITS + tail || strncmp(name, name_head, head) != 0 ||
+		strspn(boot, "0123456789abcdef") != BOOT_DIGITS || boot[BOOT_DIGITS] != '-' ||
 		strcmp(name + whole - tail, name_tail) != 0)
-		return NULL;
-	size_t end = whole - tail;
-	while (end > head && name[end - 1] != '-')
-		end--;
-	if (end <= head + 1)
-		return NULL;
-	*length = end - 1 - head;
-	return name + head;
+		return false;
+	const char *own = boot_number();
+	return local || (strncmp(boot, own, BOOT_DIGITS) == 0 && strspn(own, "0") != BOOT_DIGITS);
 }
 
 /* ---- files ---- */
 
-/* Makes the file, or the link to `from`, and lists it. Returns the file's descriptor, 0 for a link; -1 with errno. */
-static int make_listed(nt_temporary *entry, const char *from, unsigned mode)
+/* Opens and locks the file, or `from`, for which it is to be another name. False, with errno; EEXIST: the name is
+ * taken, or a run that looked for stale files was faster. */
+static bool open_locked(nt_temporary *entry, const char *from, unsigned mode)
+{
+	struct stat status;
+	entry->fd = from ? open(from, O_RDONLY | O_CLOEXEC)
+			 : open(entry->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, (mode_t)mode);
+	if (entry->fd < 0)
+		return false;
+	/* where there are no locks, nobody takes the file for stale; `from` is this run's mostly, which has its lock */
+	const bool refused = flock(entry->fd, LOCK_EX | LOCK_NB) != 0;
+	if (from ? link(from, entry->path) == 0
+		 : !(refused && errno == EWOULDBLOCK) && fstat(entry->fd, &status) == 0 && status.st_nlink > 0)
+		return true;
+	const int number = from ? errno : EEXIST;
+	close(entry->fd);
+	errno = number;
+	return false;
+}
+
+/* Makes the file, or the link to `from`, and lists it. False, with errno. */
+static bool make_listed(nt_temporary *entry, const char *from, unsigned mode)
 {
 	sigset_t before;
 	lock_list(&before);
-	const int fd = from ? link(from, entry->path)
-			    : open(entry->path, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, (mode_t)mode);
-	if (fd >= 0) {
+	const bool made = open_locked(entry, from, mode);
+	if (made) {
 		entry->next = list;
 		if (list)
 			list->previous = entry;
 		list = entry;
 	}
 	unlock_list(&before);
-	return fd;
+	return made;
 }
 
 static int make(const char *target, const char *from, unsigned mode, nt_temporary **temporary)
 {
-	const size_t capacity = strlen(target) + NT_MAKER_TEXT + 48;
+	const size_t capacity = strlen(target) + BOOT_DIGITS + 80;
 	nt_temporary *entry = calloc(1, sizeof *entry + capacity);
 	if (!entry) {
 		errno = ENOMEM;
 		return -1;
 	}
-	int fd = -1;
-	for (unsigned attempt = 0; attempt < MOST_ATTEMPTS; attempt++) {
+	bool made = false;
+	for (unsigned attempt = 0; !made && attempt < MOST_ATTEMPTS; attempt++) {
 		name_beside(entry->path, capacity, target, attempt);
-		fd = make_listed(entry, from, mode);
-		if (fd >= 0 || errno != EEXIST)
+		made = make_listed(entry, from, mode);
+		if (!made && errno != EEXIST)
 			break;
 	}
-	if (fd < 0) {
+	if (!made) {
 		const int kept = errno;
 		free(entry);
 		errno = kept;
 		return -1;
 	}
 	*temporary = entry;
-	return fd;
+	return entry->fd;
 }
 
 int nt_temporary_create(const char *target, unsigned mode, nt_temporary **temporary)
@@ -238,6 +279,7 @@ void nt_temporary_discard(nt_temporary *temporary)
 	if (temporary->next)
 		temporary->next->previous = temporary->previous;
 	unlock_list(&before);
+	close(temporary->fd);
 	free(temporary);
 }
 
@@ -247,7 +289,7 @@ void nt_temporaries_remove_all(void)
 	while (atomic_load(&holders) > own_holds)
 		poll(NULL, 0, 1);
 	if (owns_list)
-		return; /* a fault, with the list half changed: the files are left to litter.c */
+		return; /* a fault, with the list half changed: the files are stale now */
 	spin();
 	for (const nt_temporary *entry = list; entry; entry = entry->next)
 		if (!entry->renamed)

@@ -1,8 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Temporary files that a signal removes, or, where nothing could (SIGKILL, a power cut), a later run: their names
- * say who made them (maker.h). A file is on the list from the moment it exists until it has its name or is gone,
- * without a gap in between.
+ * Temporary files that a signal removes, or, where nothing could (SIGKILL, a power cut), a later run (stale.c). A file
+ * is on the list from the moment it exists until it has its name or is gone, without a gap in between.
  */
 #ifndef NT_FILE_TEMPORARY_H
 #define NT_FILE_TEMPORARY_H
@@ -13,8 +12,8 @@
 
 typedef struct nt_temporary nt_temporary;
 
-/* Creates a new file beside `target`, open for reading and writing; its mode is less the umask. Returns its descriptor;
- * -1 with errno set otherwise (ENOMEM included). */
+/* Creates a new file beside `target`, open for reading and writing; its mode is less the umask. Returns its descriptor,
+ * which nt_temporary_discard() closes; -1 with errno set otherwise (ENOMEM included). */
 int nt_temporary_create(const char *target, unsigned mode, nt_temporary **temporary);
 
 /* A second name beside `target` for the file `from`. False, with errno, where the file system has no links. */
@@ -23,8 +22,13 @@ bool nt_temporary_link(const char *from, const char *target, nt_temporary **temp
 /* Where it is. */
 const char *nt_temporary_path(const nt_temporary *temporary);
 
-/* The text of the maker in the name of a temporary file; NULL: it is not the name of one. */
-const char *nt_temporary_maker(const char *name, size_t *length);
+/* Whether a name is that of a temporary file, and its owner, if it still runs, has a lock that this process meets: on a
+ * disk of this machine alone (`local`), or of this boot. */
+bool nt_temporary_is_lockable(const char *name, bool local);
+
+/* Removes stale temporary files from a folder, which each process looks through once. What goes wrong is no matter: the
+ * next run looks again. */
+void nt_temporaries_clean(const char *folder);
 
 /* Between hold and release no signal ends the process, so that the steps of a set happen all or not at all. Several
  * threads may hold. `before` keeps the thread's signals. */

@@ -427,20 +427,18 @@ static void note_failure(result *r)
 	texture->failure = r->error.message;
 }
 
-/* The bytes in a file that has lost its name, so that they take no memory and nobody has to remove it. NULL: the system
- * refuses one. */
+/* The bytes in a file without a name, which take no memory. NULL: the system refuses one. */
 static void *map_in_file(const char *beside, const unsigned char *bytes, size_t size)
 {
 	nt_temporary *temporary;
 	const int fd = beside ? nt_temporary_create(beside, 0600, &temporary) : -1;
 	if (fd < 0)
 		return NULL;
-	nt_temporary_discard(temporary);
 	size_t done = 0;
-	for (ssize_t count; done < size && (count = write(fd, bytes + done, size - done)) > 0; done += (size_t)count)
-		continue;
+	for (ssize_t count = 1; done < size && count > 0; done += count > 0 ? (size_t)count : 0)
+		count = write(fd, bytes + done, size - done);
 	void *map = done == size ? mmap(NULL, size, PROT_READ, MAP_PRIVATE, fd, 0) : MAP_FAILED;
-	close(fd);
+	nt_temporary_discard(temporary);
 	return map == MAP_FAILED ? NULL : map;
 }
 
@@ -575,5 +573,5 @@ void nt_textures_forget(const nt_textures *t, const nt_texture *texture)
 {
 	(void)t;
 	if (texture->mapped)
-		madvise((void *)(uintptr_t)texture->bytes, texture->size, MADV_DONTNEED); /* a refusal changes nothing */
+		madvise((void *)(uintptr_t)texture->bytes, texture->size, MADV_DONTNEED);
 }

@@ -355,40 +355,37 @@ sweep kill before o.glb -q -j1 --buffers=copy "$PWD/in/m.gltf" o.glb
 sweep power before o.glb -q -j1 --sync --buffers=copy "$PWD/in/m.gltf" o.glb
 
 # A temporary file as a killed run leaves it.
-litter() {
+stale() {
 	NT_CALLS_KILL=2 LD_PRELOAD=$calls ASAN_OPTIONS=${ASAN_OPTIONS-}:verify_asan_link_order=0 \
 		"$NMTAN" -q "$data/quad.obj" out.glb 2>/dev/null
 	ls -A | grep '^\.nmtan-' | head -1
 }
 
 scene "what a dead run left goes with the next run in that folder"
-name=$(litter)
+name=$(stale)
 [ -n "$name" ] || wrong "nothing was left behind"
 run "$data/quad.obj" out.glb
 exits 0
 only out.glb
 
 scene "what others may still be writing stays"
-name=$(litter)
+name=$(stale)
 rm -f "$name"
-# .nmtan-HOST-BOOT-SPACE-PID-START-NUMBER.tmp
-fields=${name#.nmtan-} number=${name##*-}
-fields=${fields%-*}
-start=${fields##*-} fields=${fields%-*}
-pid=${fields##*-} fields=${fields%-*}
-space=${fields##*-} fields=${fields%-*}
-boot=${fields##*-} host=${fields%-*}
-mine=$(sed 's/.*) //' /proc/$$/stat | cut -d' ' -f20)
-stay=".nmtan-$host-$boot-$space-$$-$mine-$number .nmtan-elsewhere-$boot-$space-$pid-$start-$number \
-	.nmtan-$host-$boot-1$space-$pid-$start-$number .nmtan-$pid-0-0.tmp .nmtan-$host-$boot-$space-$pid-0-$number .nmtan-x"
-go=".nmtan-$host-$boot-$space-$$-1$mine-$number .nmtan-$host-$boot-$space-$pid-$start-1$number"
+# .nmtan-BOOT-PID-NUMBER.tmp
+boot=${name#.nmtan-} rest=${name#.nmtan-*-}
+boot=${boot%%-*}
+stay=".nmtan-$boot-1-$rest .nmtan-$$-0-0.tmp .nmtan-x"
+go=".nmtan-$boot-2-$rest .nmtan-$boot-3-$rest"
 touch $stay $go
+exec 9<".nmtan-$boot-1-$rest"
+flock -n 9 || wrong "no lock"
 run "$data/quad.obj" out.glb
 exits 0
 only $stay out.glb
+exec 9<&-
 rm $stay
 # another boot of this machine: certain only where no other machine can write
-other=.nmtan-$host-$(echo $boot | tr 0-9a-f 1-9a-f0)-$space-$pid-$start-$number
+other=.nmtan-$(echo $boot | tr 0-9a-f 1-9a-f0)-2-$rest
 touch "$other"
 run "$data/quad.obj" out.glb
 case $(stat -f -c %T .) in

@@ -19,10 +19,8 @@ enum { PATIENCE_SECONDS = 20 };
 static nt_temporary *make_file(void)
 {
 	nt_temporary *made = NULL;
-	const int fd = nt_temporary_create(in_folder("out.glb"), 0600, &made);
-	if (fd < 0)
+	if (nt_temporary_create(in_folder("out.glb"), 0600, &made) < 0)
 		_exit(2);
-	close(fd);
 	return made;
 }
 
@@ -101,12 +99,53 @@ static void a_hold_that_is_over_is_no_hold(void **state)
 	assert_true(child_ends(release_and_fault));
 }
 
+/* Ends without removing its file, of which the parent gets the path. */
+static void stale_files_are_those_that_nobody_has_locked(void **state)
+{
+	(void)state;
+	int ends[2];
+	char path[400] = "";
+	assert_int_equal(pipe(ends), 0);
+	const pid_t child = fork();
+	if (child == 0) {
+		nt_temporary *dead = make_file();
+		if (write(ends[1], nt_temporary_path(dead), strlen(nt_temporary_path(dead)) + 1) < 0)
+			_exit(1);
+		_exit(0);
+	}
+	assert_int_equal(waitpid(child, NULL, 0), child);
+	assert_true(read(ends[0], path, sizeof path) > 0);
+	close(ends[0]);
+	close(ends[1]);
+	assert_int_equal(access(path, F_OK), 0);
+	nt_temporary *alive = make_file(), *second = NULL;
+	put_file("linked", "x", 1);
+	assert_true(nt_temporary_link(in_folder("linked"), in_folder("out.bin"), &second));
+	put_file(".nmtan-x", "x", 1);
+	nt_temporaries_clean(in_folder(""));
+	assert_int_equal(access(path, F_OK), -1);
+	assert_int_equal(access(nt_temporary_path(alive), F_OK), 0);
+	assert_int_equal(access(nt_temporary_path(second), F_OK), 0);
+	assert_int_equal(access(in_folder(".nmtan-x"), F_OK), 0);
+	const char *name = strrchr(path, '/') + 1;
+	char other[400];
+	assert_true(nt_temporary_is_lockable(name, false));
+	snprintf(other, sizeof other, ".nmtan-0123456789abcdef0123456789abcdef%s", name + 39);
+	assert_true(nt_temporary_is_lockable(other, true));
+	assert_false(nt_temporary_is_lockable(other, false));
+	assert_false(nt_temporary_is_lockable(".nmtan-1-0-0.tmp", true));
+	nt_temporary_discard(alive);
+	nt_temporary_discard(second);
+}
+
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test_setup_teardown(a_fault_in_a_commit_ends_the_process, make_folder, remove_folder),
 		cmocka_unit_test(a_fault_waits_for_the_commit_of_another_thread),
 		cmocka_unit_test(a_hold_that_is_over_is_no_hold),
+		cmocka_unit_test_setup_teardown(stale_files_are_those_that_nobody_has_locked, make_folder,
+			remove_folder),
 	};
 	return cmocka_run_group_tests_name("file/temporary", tests, NULL, NULL);
 }

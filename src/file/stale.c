@@ -1,21 +1,24 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Removing what killed processes left in a folder: see litter.h.
+ * Removing what killed processes left in a folder: see temporary.h. Whoever makes a temporary file keeps a lock of it
+ * (flock) until it has its name; the system takes the lock of a process that is gone. So a file that can be locked is
+ * stale, if its owner's lock would be seen here: the folder is on a disk of this machine alone, or the owner ran on
+ * this very kernel, whose number for its boot is in the name.
  */
-#include "file/litter.h"
+#include "file/temporary.h"
 
 #include <dirent.h>
+#include <fcntl.h>
 #include <poll.h>
 #include <stdatomic.h>
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <sys/vfs.h>
 #include <unistd.h>
-#include "file/maker.h"
-#include "file/temporary.h"
 
 /* File systems that one machine has to itself. */
 static bool is_local(int folder)
@@ -55,7 +58,16 @@ static bool is_first_look(const struct stat *status)
 	return !known;
 }
 
-void nt_litter_clean(const char *path)
+static void remove_stale(int folder, const char *name)
+{
+	const int fd = openat(folder, name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+	if (fd >= 0 && flock(fd, LOCK_EX | LOCK_NB) == 0)
+		unlinkat(folder, name, 0);
+	if (fd >= 0)
+		close(fd);
+}
+
+void nt_temporaries_clean(const char *path)
 {
 	/* mostly that of the file before: not asked for again, which over a network would cost as much as a file */
 	static _Thread_local char latest[256];
@@ -69,11 +81,8 @@ void nt_litter_clean(const char *path)
 	if (!folder)
 		return;
 	const bool local = is_local(dirfd(folder));
-	for (const struct dirent *entry; (entry = readdir(folder));) {
-		size_t length;
-		const char *text = nt_temporary_maker(entry->d_name, &length);
-		if (text && nt_maker_is_gone(text, length, local))
-			unlinkat(dirfd(folder), entry->d_name, 0);
-	}
+	for (const struct dirent *entry; (entry = readdir(folder));)
+		if (nt_temporary_is_lockable(entry->d_name, local))
+			remove_stale(dirfd(folder), entry->d_name);
 	closedir(folder);
 }
