@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The largest of many numbers: see largest.h. Sixteen at a time, in four vectors of which none waits for the one before:
- * 3 million take 0.44 ms instead of 1.5.
+ * The largest of many numbers: see largest.h. Sixteen at a time, in four vectors of which none waits for the one
+ * before: 3 million take 0.44 ms instead of 1.5.
  */
 #include "base/largest.h"
 

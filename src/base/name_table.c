@@ -1,66 +1,41 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Names by number: an open-addressing hash table, at most half full.
+ * Names by number: see name_table.h.
  */
 #include "base/name_table.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/hash.h"
 #include "base/utf8.h"
-
-/* The slot that holds the name, or the free one where it belongs. */
-static size_t find_slot(const nt_name_table *table, const char *text, size_t length)
-{
-	size_t slot = (size_t)nt_hash_bytes(0, text, length) & (table->slot_count - 1);
-	while (table->slots[slot]) {
-		const nt_name *name = &table->names[table->slots[slot] - 1];
-		if (name->length == length && memcmp(name->text, text, length) == 0)
-			break;
-		slot = (slot + 1) & (table->slot_count - 1);
-	}
-	return slot;
-}
-
-static bool grow_slots(nt_name_table *table)
-{
-	if (2 * (table->count + 1) <= table->slot_count)
-		return true;
-	const size_t slot_count = table->slot_count ? 2 * table->slot_count : 16;
-	uint32_t *slots = nt_calloc(slot_count, sizeof *slots);
-	if (!slots)
-		return false;
-	free(table->slots);
-	table->slots = slots;
-	table->slot_count = slot_count;
-	for (size_t i = 0; i < table->count; i++)
-		slots[find_slot(table, table->names[i].text, table->names[i].length)] = (uint32_t)i + 1;
-	return true;
-}
 
 uint32_t nt_name_find(const nt_name_table *table, const char *text, size_t length)
 {
-	return table->count ? table->slots[find_slot(table, text, length)] - 1 : UINT32_MAX;
+	const uint64_t hash = nt_hash_bytes(0, text, length);
+	size_t at = NT_HASH_BEGIN;
+	uint32_t number;
+	while ((number = nt_hash_index_next(&table->index, hash, &at)) != UINT32_MAX)
+		if (table->names[number].length == length && memcmp(table->names[number].text, text, length) == 0)
+			break;
+	return number;
 }
 
 uint32_t nt_name_add(nt_name_table *table, const char *text, size_t length)
 {
-	if (table->count >= UINT32_MAX - 1 || !grow_slots(table))
-		return UINT32_MAX;
-	const size_t slot = find_slot(table, text, length);
-	if (table->slots[slot])
-		return table->slots[slot] - 1;
-	if (!nt_grow((void **)&table->names, &table->capacity, table->count + 1, sizeof *table->names))
+	const uint32_t known = nt_name_find(table, text, length);
+	if (known != UINT32_MAX)
+		return known;
+	if (table->count >= UINT32_MAX - 1 ||
+		!nt_grow((void **)&table->names, &table->capacity, table->count + 1, sizeof *table->names) ||
+		!nt_hash_index_add(&table->index, nt_hash_bytes(0, text, length), (uint32_t)table->count))
 		return UINT32_MAX;
 	table->names[table->count] = (nt_name){text, length};
-	table->slots[slot] = (uint32_t)++table->count;
-	return (uint32_t)table->count - 1;
+	return (uint32_t)table->count++;
 }
 
 void nt_name_table_free(nt_name_table *table)
 {
 	free(table->names);
-	free(table->slots);
+	nt_hash_index_free(&table->index);
 	*table = (nt_name_table){0};
 }
 

@@ -5,9 +5,7 @@
 #ifndef NT_BASE_NAME_TABLE_H
 #define NT_BASE_NAME_TABLE_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "base/hash_index.h"
 #include "base/memory.h"
 
 typedef struct nt_name {
@@ -19,8 +17,7 @@ typedef struct nt_name {
 typedef struct nt_name_table {
 	nt_name *names;
 	size_t count, capacity;
-	uint32_t *slots; /* number + 1; 0 free */
-	size_t slot_count;
+	nt_hash_index index;
 } nt_name_table;
 
 /* The number of a name that is there; UINT32_MAX: it is not. */
