@@ -4,11 +4,13 @@
  */
 #include "base/struct_bytes.h"
 
+#include <string.h>
+
 /* Far more than any struct will ever need: what is larger has not been initialised, and its tail may not be
  * there to be looked at. */
 enum { MOST_BYTES = 4096 };
 
-bool nt_struct_read_other(void *ours, size_t our_bytes, const void *given)
+bool nt_struct_read(void *ours, size_t our_bytes, const void *given)
 {
 	size_t bytes;
 	memcpy(&bytes, given, sizeof bytes);
@@ -25,7 +27,7 @@ bool nt_struct_read_other(void *ours, size_t our_bytes, const void *given)
 	return true;
 }
 
-void nt_struct_write_other(void *given, const void *ours, size_t our_bytes)
+void nt_struct_write(void *given, const void *ours, size_t our_bytes)
 {
 	size_t bytes;
 	memcpy(&bytes, given, sizeof bytes);
