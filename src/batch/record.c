@@ -12,7 +12,7 @@
 
 #include "base/buffer.h"
 #include "batch/record_file.h"
-#include "file/contents.h"
+#include "file/input.h"
 #include "file/lookup.h"
 #include "file/relative_path.h"
 #include "file/uri.h"

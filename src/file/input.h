@@ -6,6 +6,7 @@
 #define NT_FILE_INPUT_H
 
 #include "base/error.h"
+#include "ext/digest.h"
 
 /* An input's bytes. */
 typedef struct nt_file {
@@ -50,5 +51,14 @@ bool nt_file_is_intact(const nt_file *file);
 
 /* Whether path names the file that was opened. */
 bool nt_file_is(const nt_file *file, const char *path);
+
+/* ---- files that may be somebody else's ---- */
+
+/* Whether two files hold the same bytes. False too where one of them cannot be read; NT_ERROR_MEMORY or
+ * NT_ERROR_IO where that is the system's fault. */
+nt_status nt_same_bytes(const char *a, const char *b, bool *same, nt_error *error);
+
+/* The digest of a file's bytes; empty where it cannot be read. Returns as nt_same_bytes(). */
+nt_status nt_digest_of_file(const char *path, char text[NT_DIGEST_TEXT], nt_error *error);
 
 #endif

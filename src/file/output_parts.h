@@ -7,7 +7,6 @@
 #define NT_FILE_OUTPUT_PARTS_H
 
 #include <sys/stat.h>
-#include "file/contents.h"
 #include "file/output.h"
 #include "file/relative_path.h"
 #include "file/temporary.h"
