@@ -14,7 +14,6 @@
 
 #include "batch/depfile.h"
 #include "batch/inputs.h"
-#include "cli/exit_code.h"
 #include "cli/failures.h"
 #include "cli/manifest.h"
 #include "cli/messages.h"
@@ -22,7 +21,6 @@
 #include "cli/progress.h"
 #include "cli/report_options.h"
 #include "cli/say.h"
-#include "ext/linked.h"
 #include "ext/module.h"
 #include "file/output.h"
 #include "file/relative_path.h"

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Standard error, also when there is no memory to build a message in.
+ * What people and scripts get to know of a run: standard error, also when there is no memory to build a message in, and
+ * exit codes, which are part of the tool's interface (nmtan.1).
  */
 #ifndef NT_CLI_SAY_H
 #define NT_CLI_SAY_H
@@ -14,5 +15,21 @@ bool nt_say(nt_buffer *text);
 
 /* Prints "nmtan: place: message". */
 void nt_say_error(const nt_error *error, nt_style style);
+
+enum nt_exit {
+	NT_EXIT_DONE = 0,
+	NT_EXIT_USAGE = 1,
+	NT_EXIT_IO = 2,
+	NT_EXIT_INPUT = 3,
+	NT_EXIT_INTERNAL = 4, /* out of memory too */
+	NT_EXIT_UNSUPPORTED = 5,
+	NT_EXIT_FINDINGS = 6
+};
+
+/* The exit code of a status. */
+int nt_exit_code(nt_status status);
+
+/* Of two exit codes the worse one, in the order 4, 2, 3, 5, 1, 6, 0. */
+int nt_exit_worse(int a, int b);
 
 #endif

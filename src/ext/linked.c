@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: MIT */
-#include "ext/linked.h"
+/*
+ * The foreign libraries in the tool itself: see module.h.
+ */
+#include "ext/module.h"
 
 #include <stdio.h> /* before jpeglib.h, which does not include it */
 #include <jpeglib.h>

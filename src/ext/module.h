@@ -34,4 +34,14 @@ const void *nt_module_opened(nt_module module);
 /* One line about a module: the library behind it and its licence, or why it cannot be opened. */
 void nt_module_describe(nt_module module, char *line, size_t size);
 
+/* A foreign library that is in the tool itself, and in no module. What their licences say is installed with it:
+ * licences.sh. */
+typedef struct nt_linked_library {
+	const char *name, *version; /* version NULL: the library does not say */
+	const char *licence;        /* an SPDX expression */
+} nt_linked_library;
+
+/* All of them, by name. */
+const nt_linked_library *nt_linked_libraries(size_t *count);
+
 #endif

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-#include "cli/exit_code.h"
+#include "cli/say.h"
 #include "cli/messages.h"
 #include "test.h"
 
