@@ -132,14 +132,6 @@ static nt_status place_companion(nt_output *output, nt_sink *sink, nt_error *err
 	}
 }
 
-/* Buffers that have a name go again; the main file that would refer to them is not there. */
-static void take_back(const nt_output *output)
-{
-	for (const nt_sink *sink = output->first; sink; sink = sink->next)
-		if (sink->role == NT_ROLE_BUFFER && sink->placed)
-			unlink(sink->interim ? sink->interim : sink->target);
-}
-
 /* ---- step 2, and 4 ---- */
 
 static nt_status place_main(const nt_output *output, nt_sink *sink, nt_error *error)
@@ -168,9 +160,13 @@ static nt_status place_all(nt_output *output, nt_error *error)
 	nt_sink *first = output->interim ? output->interim : output->main;
 	if (!status && first)
 		status = place_main(output, first, error);
-	if (status)
-		take_back(output);
-	return status ? status : sync_step(output, error);
+	if (!status)
+		return sync_step(output, error);
+	/* buffers that have a name go again; the main file that would refer to them is not there */
+	for (const nt_sink *sink = output->first; sink; sink = sink->next)
+		if (sink->role == NT_ROLE_BUFFER && sink->placed)
+			unlink(sink->interim ? sink->interim : sink->target);
+	return status;
 }
 
 /* ---- steps 3 to 5 ---- */
@@ -199,21 +195,6 @@ static void note_interim(const nt_output *output, int number)
 		if (sink->interim)
 			nt_buffer_format(note, "; the data of %s stays in %s (%s)", nt_sink_name(sink, false),
 				nt_sink_name(sink, true), strerror(number));
-}
-
-static bool link_all(const nt_output *output)
-{
-	for (const nt_sink *sink = output->first; sink; sink = sink->next)
-		if (sink->interim && !link_stable(sink))
-			return false;
-	return true;
-}
-
-static void unlink_interim(const nt_output *output)
-{
-	for (const nt_sink *sink = output->first; sink; sink = sink->next)
-		if (sink->interim)
-			unlink(sink->interim);
 }
 
 /* The interim name by which a run that was killed before step 5 left the file that has the name now, or had it. */
@@ -245,7 +226,9 @@ static void remove_superseded(const nt_output *output)
 static nt_status settle_names(nt_output *output, nt_error *error)
 {
 	nt_error ignored;
-	const bool linked = link_all(output);
+	bool linked = true;
+	for (const nt_sink *sink = output->first; sink && linked; sink = sink->next)
+		linked = !sink->interim || link_stable(sink);
 	const int number = errno;
 	nt_status status = sync_step(output, error);
 	if (!status)
@@ -259,7 +242,9 @@ static nt_status settle_names(nt_output *output, nt_error *error)
 		return NT_OK;
 	}
 	status = sync_step(output, error);
-	unlink_interim(output);
+	for (const nt_sink *sink = output->first; sink; sink = sink->next)
+		if (sink->interim)
+			unlink(sink->interim);
 	return status;
 }
 

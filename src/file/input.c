@@ -79,21 +79,6 @@ static bool map_all(nt_file *file, int fd, const char *path, const struct stat *
 	return true;
 }
 
-/* A file system over a network may be interrupted. */
-static int open_patiently(const char *path)
-{
-	int fd;
-	do
-		fd = open(path, O_RDONLY | O_CLOEXEC);
-	while (fd < 0 && errno == EINTR);
-	return fd;
-}
-
-static bool is_readable(const struct stat *status)
-{
-	return S_ISREG(status->st_mode) || S_ISFIFO(status->st_mode) || S_ISSOCK(status->st_mode);
-}
-
 static nt_status fail_kind(const struct stat *status, const char *path, nt_error *error)
 {
 	if (S_ISDIR(status->st_mode))
@@ -106,7 +91,10 @@ nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
 {
 	*file = (nt_file){.data = no_bytes, .fd = -1};
 	const bool standard = strcmp(path, "-") == 0;
-	const int fd = standard ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0) : open_patiently(path);
+	int fd;
+	do /* a file system over a network may be interrupted */
+		fd = standard ? fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 0) : open(path, O_RDONLY | O_CLOEXEC);
+	while (fd < 0 && errno == EINTR);
 	struct stat status;
 	if (fd < 0 || fstat(fd, &status) != 0) {
 		const int number = errno;
@@ -117,13 +105,13 @@ nt_status nt_file_open(nt_file *file, const char *path, nt_error *error)
 	if (!standard) {
 		file->device = (uint64_t)status.st_dev;
 		file->inode = (uint64_t)status.st_ino;
-	}
-	if (!standard)
 		nt_trace_read(path, &status);
+	}
 	if (map_all(file, fd, path, &status))
 		return NT_OK;
-	const nt_status result = standard || is_readable(&status) ? read_all(file, fd, path, error)
-								  : fail_kind(&status, path, error);
+	const bool readable = standard || S_ISREG(status.st_mode) || S_ISFIFO(status.st_mode) ||
+		S_ISSOCK(status.st_mode);
+	const nt_status result = readable ? read_all(file, fd, path, error) : fail_kind(&status, path, error);
 	close(fd);
 	return result;
 }

@@ -209,21 +209,6 @@ static nt_status open_main(const nt_output *output, nt_sink *sink, nt_error *err
 	return checked || sink->dry ? checked : open_temporary(sink, sink->target, error);
 }
 
-/* The same file as the main file, so it was checked with that. */
-static nt_status open_interim(const nt_output *output, nt_sink *sink, nt_error *error)
-{
-	sink->target = strdup(output->main->target);
-	return sink->target ? open_temporary(sink, sink->target, error) : nt_fail_memory(error);
-}
-
-static nt_status open_companion(nt_sink *sink, nt_error *error)
-{
-	sink->digest = nt_digest_create();
-	if (!sink->digest)
-		return nt_fail_memory(error);
-	return sink->dry ? NT_OK : open_temporary(sink, sink->path, error);
-}
-
 static void free_sink(nt_sink *sink)
 {
 	if (sink->fd >= 0 && !sink->shared_fd && !sink->temporary)
@@ -239,9 +224,17 @@ static void free_sink(nt_sink *sink)
 
 static nt_status open_sink(const nt_output *output, nt_sink *sink, nt_error *error)
 {
-	if (nt_sink_is_companion(sink))
-		return open_companion(sink, error);
-	return sink->role == NT_ROLE_INTERIM ? open_interim(output, sink, error) : open_main(output, sink, error);
+	if (nt_sink_is_companion(sink)) {
+		sink->digest = nt_digest_create();
+		if (!sink->digest)
+			return nt_fail_memory(error);
+		return sink->dry ? NT_OK : open_temporary(sink, sink->path, error);
+	}
+	if (sink->role != NT_ROLE_INTERIM)
+		return open_main(output, sink, error);
+	/* the same file as the main file, so it was checked with that */
+	sink->target = strdup(output->main->target);
+	return sink->target ? open_temporary(sink, sink->target, error) : nt_fail_memory(error);
 }
 
 static void append_sink(nt_output *output, nt_sink *sink)

@@ -39,13 +39,6 @@ static nt_status fail_keeping(nt_error *error, const char *what, const char *tar
 	return nt_error_in_file(error, target);
 }
 
-/* Whether an attribute belongs to the file and not to its old content. */
-static bool is_kept(const char *name)
-{
-	return strcmp(name, "security.capability") != 0 && strcmp(name, "security.ima") != 0 &&
-	       strcmp(name, "security.evm") != 0;
-}
-
 static bool has_no_attributes(void)
 {
 	return errno == ENOTSUP || errno == ENOSYS;
@@ -100,7 +93,10 @@ static nt_status keep_extended(int fd, const char *target, nt_error *error)
 		const char *name = names + at;
 		const bool is_list = strcmp(name, access_list) == 0;
 		listed |= is_list;
-		if (is_kept(name) && !copy_attribute(fd, target, name))
+		/* those belong to the old content */
+		const bool kept = strcmp(name, "security.capability") != 0 && strcmp(name, "security.ima") != 0 &&
+			strcmp(name, "security.evm") != 0;
+		if (kept && !copy_attribute(fd, target, name))
 			status = fail_keeping(error, is_list ? "access list" : "attributes", target);
 	}
 	free(names);

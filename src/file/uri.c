@@ -143,11 +143,6 @@ void nt_uri_append_data(nt_buffer *buffer, const char *media_type, const void *b
 
 /* ---- files ---- */
 
-static bool is_slash(char c)
-{
-	return c == '/' || c == '\\';
-}
-
 /* "http:", "file:", and with one letter a drive. */
 static bool has_scheme(const char *name)
 {
@@ -180,7 +175,7 @@ static const char *check_text(const char *name, size_t length, bool allow_outsid
 		return "contains a NUL";
 	if (allow_outside)
 		return NULL;
-	if (is_slash(name[0]))
+	if (name[0] == '/' || name[0] == '\\')
 		return "is an absolute path (refused unless --allow-outside)";
 	if (has_parent_step(name))
 		return "leaves the folder of the file (refused unless --allow-outside)";

@@ -81,13 +81,6 @@ static void install(void)
 	pthread_mutex_unlock(&lock);
 }
 
-static void take(int number)
-{
-	int count = atomic_load(&ever_taken);
-	while (count <= number && !atomic_compare_exchange_weak(&ever_taken, &count, number + 1))
-		;
-}
-
 int nt_watch_begin(const void *map, const struct stat *status, int fd, const char *path)
 {
 	install();
@@ -96,7 +89,9 @@ int nt_watch_begin(const void *map, const struct stat *status, int fd, const cha
 		uintptr_t none = 0;
 		if (!atomic_compare_exchange_strong(&w->begin, &none, 1))
 			continue;
-		take(i);
+		int count = atomic_load(&ever_taken);
+		while (count <= i && !atomic_compare_exchange_weak(&ever_taken, &count, i + 1))
+			continue;
 		atomic_store(&w->owner, &has_lost);
 		w->fd = fd;
 		w->modified = status->st_mtim;

@@ -197,12 +197,6 @@ static block sum_block(const slopes *s, size_t column, size_t row)
 	return b;
 }
 
-/* How strong a block speaks: a few sharp edges must not outvote the rest. */
-static double weight_of(const block *b)
-{
-	return sqrt(sqrt(b->aa * b->bb) * (double)b->count);
-}
-
 /* What one size says. */
 typedef struct voice {
 	double correlation, agreement;
@@ -218,7 +212,8 @@ static voice ask(const slopes *s)
 			const block b = sum_block(s, column, row);
 			if (b.count < 9 || sqrt(sqrt(b.aa * b.bb) / (double)b.count) < least_curvature)
 				continue;
-			const double w = weight_of(&b);
+			/* a few sharp edges must not outvote the rest */
+			const double w = sqrt(sqrt(b.aa * b.bb) * (double)b.count);
 			weight += w;
 			positive += b.ab > 0 ? w : 0;
 			sum += w * b.ab / sqrt(b.aa * b.bb);

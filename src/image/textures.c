@@ -171,15 +171,11 @@ static nt_status find_source(nt_textures *t, const nt_image_places *places, cons
 	return status;
 }
 
-static bool is_for_heights(nt_texture_kind kind)
-{
-	return kind == NT_TEXTURE_HEIGHTS || kind == NT_TEXTURE_NORMALS_OR_HEIGHTS;
-}
-
 /* What of a wish makes a difference. */
 static nt_recipe wanted(const nt_texture_wish *what, const uint32_t sources[4])
 {
-	const bool packed = what->kind == NT_TEXTURE_PACKED, heights = is_for_heights(what->kind);
+	const bool packed = what->kind == NT_TEXTURE_PACKED;
+	const bool heights = what->kind == NT_TEXTURE_HEIGHTS || what->kind == NT_TEXTURE_NORMALS_OR_HEIGHTS;
 	nt_recipe how = {.packed = packed, .heights = heights, .height = heights ? what->height : 0,
 		.clamp = (packed || heights) && what->clamp, .suffix = what->suffix};
 	for (int k = 0; k < (packed ? 4 : 1); k++) {
@@ -218,14 +214,9 @@ nt_status nt_textures_wish(nt_textures *t, const nt_image_places *places, const 
 
 /* ---- sources ---- */
 
-static bool is_there(const nt_texture_source *s)
-{
-	return s->found <= NT_IMAGE_FOUND_ELSEWHERE;
-}
-
 static bool can_decode(const nt_texture_source *s)
 {
-	return is_there(s) && nt_image_is_decoded(s->type);
+	return s->found <= NT_IMAGE_FOUND_ELSEWHERE && nt_image_is_decoded(s->type);
 }
 
 /* Opens a source that was looked at before. What becomes shorter while it is read has to be asked for: see
@@ -408,13 +399,6 @@ static nt_status open_sources(const nt_texture *texture, const nt_textures *t, c
 	return status;
 }
 
-static nt_status close_sources(const nt_texture *texture, opened *o, nt_status status, nt_error *error)
-{
-	for (size_t i = 0; i < o->count; i++)
-		status = close_source(texture->sources[i], &o->files[i], status, error);
-	return status;
-}
-
 static void note_failure(result *r)
 {
 	nt_texture *texture = &r->texture;
@@ -450,7 +434,8 @@ static void decode_result(const nt_textures *t, result *r)
 	nt_status status = open_sources(texture, t, &r->how, &files, &r->error);
 	if (!status)
 		status = nt_recipe_make(&r->how, files.of_channels, &made, &r->error);
-	status = close_sources(texture, &files, status, &r->error);
+	for (size_t i = 0; i < files.count; i++)
+		status = close_source(texture->sources[i], &files.files[i], status, &r->error);
 	void *map = made.size >= FILED_BYTES ? map_in_file(t->beside, made.bytes, made.size) : NULL;
 	texture->mapped = map != NULL;
 	texture->bytes = map ? map : made.bytes;

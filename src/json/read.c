@@ -227,13 +227,6 @@ static bool fits_64_bits(const char *at, const char *end)
 	return !negative || value <= (uint64_t)1 << 63;
 }
 
-static bool is_beyond_double(const char *begin, const char *end)
-{
-	double value = 0;
-	nt_read_double(begin, end, &value);
-	return isinf(value);
-}
-
 static nt_status read_number(reader *r, bool foreign, nt_json_value *value)
 {
 	const char *const begin = r->at;
@@ -257,7 +250,10 @@ static nt_status read_number(reader *r, bool foreign, nt_json_value *value)
 	}
 	if (status)
 		return status;
-	if (!foreign && (has_exponent || point - whole > 308) && is_beyond_double(begin, r->at))
+	double number = 0;
+	if (!foreign && (has_exponent || point - whole > 308))
+		nt_read_double(begin, r->at, &number);
+	if (isinf(number))
 		return nt_fail_offset(r->error, NT_ERROR_INPUT, (uint64_t)(begin - r->document->text),
 			"JSON: the number %.*s, expected one that a double can hold",
 			r->at - begin < 100 ? (int)(r->at - begin) : 100, begin);

@@ -133,11 +133,6 @@ const char *nt_json_get_string(const nt_json_value *value, size_t *length)
 
 /* ---- equality ---- */
 
-static bool equal_texts(const nt_json_value *a, const nt_json_value *b)
-{
-	return a->size == b->size && memcmp(nt_json_text(a), nt_json_text(b), a->size) == 0;
-}
-
 static bool equal_numbers(const nt_json_value *a, const nt_json_value *b)
 {
 	if (a->type != NT_JSON_INTEGER || b->type != NT_JSON_INTEGER)
@@ -172,5 +167,7 @@ bool nt_json_equal(const nt_json_value *a, const nt_json_value *b)
 		return false;
 	if (nt_json_is_container(a))
 		return equal_children(a, b);
-	return a->type == NT_JSON_STRING ? equal_texts(a, b) : a->truth == b->truth;
+	if (a->type == NT_JSON_STRING)
+		return a->size == b->size && memcmp(nt_json_text(a), nt_json_text(b), a->size) == 0;
+	return a->truth == b->truth;
 }
