@@ -32,14 +32,6 @@ typedef struct progress {
 	bool stop;            /* no further job begins */
 } progress;
 
-/* Whether an input waits for who writes it, perhaps for ever. */
-static bool is_stream(const char *input)
-{
-	struct stat info;
-	return strcmp(input, "-") == 0 ||
-		(stat(input, &info) == 0 && (S_ISFIFO(info.st_mode) || S_ISSOCK(info.st_mode)));
-}
-
 /* A run that goes through the gate once its input has been read. */
 typedef struct stream_run {
 	nt_gate *gate;
@@ -112,24 +104,6 @@ static nt_status run_if_needed(progress *p, nt_job *job)
 	return run_with_memory(p, job, &own);
 }
 
-static void run_job(progress *p, nt_job *job)
-{
-	job->outcome = nt_calloc(1, sizeof *job->outcome);
-	if (!job->outcome) {
-		job->status = NT_ERROR_MEMORY;
-		return;
-	}
-	job->status = run_if_needed(p, job);
-}
-
-static void free_outcome(nt_job *job)
-{
-	if (job->outcome)
-		nt_summary_free(&job->outcome->summary);
-	free(job->outcome);
-	job->outcome = NULL;
-}
-
 static void tell(progress *p, nt_job *ended)
 {
 	pthread_mutex_lock(&p->lock);
@@ -140,25 +114,25 @@ static void tell(progress *p, nt_job *ended)
 	for (; p->told < p->batch->count && p->batch->jobs[p->told].ended; p->told++) {
 		nt_job *job = &p->batch->jobs[p->told];
 		p->options->done(p->options->user, job);
-		free_outcome(job);
+		if (job->outcome)
+			nt_summary_free(&job->outcome->summary);
+		free(job->outcome);
+		job->outcome = NULL;
 	}
 	pthread_mutex_unlock(&p->lock);
 }
 
-static bool is_stopped(progress *p)
+static void run_one(progress *p, nt_job *job)
 {
 	pthread_mutex_lock(&p->lock);
 	const bool stopped = p->stop;
 	pthread_mutex_unlock(&p->lock);
-	return stopped;
-}
-
-static void run_one(progress *p, nt_job *job)
-{
-	if (is_stopped(p))
+	if (stopped)
 		job->end = NT_JOB_UNTRIED;
 	else
-		run_job(p, job);
+		job->outcome = nt_calloc(1, sizeof *job->outcome);
+	if (!stopped)
+		job->status = job->outcome ? run_if_needed(p, job) : NT_ERROR_MEMORY;
 	tell(p, job);
 }
 
@@ -167,7 +141,10 @@ static void run_file(void *context, size_t item, unsigned slot)
 	(void)slot;
 	progress *p = context;
 	nt_job *job = &p->batch->jobs[item];
-	job->deferred = p->batch->count > 1 && is_stream(job->input);
+	struct stat info;
+	/* a stream waits for who writes it, perhaps for ever */
+	job->deferred = p->batch->count > 1 && (strcmp(job->input, "-") == 0 ||
+		(stat(job->input, &info) == 0 && (S_ISFIFO(info.st_mode) || S_ISSOCK(info.st_mode))));
 	if (!job->deferred) {
 		run_one(p, job);
 		return;
@@ -185,18 +162,6 @@ static void run_deferred(void *context, size_t item, unsigned slot)
 		run_one(p, &p->batch->jobs[item]);
 }
 
-/* malloc() has a heap for each thread, which may keep up to 64 MB of what that has freed, while the next job's thread
- * takes new: four jobs in turn took twice as much as one. It begins with giving back every 128 KB, and with asking the
- * system for each larger block: three calls for a small file, and a page fault of a microsecond for every page that is
- * new again, which were a tenth of the time of a mesh with 6000 triangles. */
-static void return_freed_memory(void)
-{
-#ifdef M_TRIM_THRESHOLD
-	mallopt(M_MMAP_THRESHOLD, 4 << 20);
-	mallopt(M_TRIM_THRESHOLD, 1 << 20);
-#endif
-}
-
 void nt_batch_run(nt_batch *batch, const nt_settings *settings, const nt_batch_options *options)
 {
 	const unsigned threads = nt_thread_count(settings->threads);
@@ -208,7 +173,13 @@ void nt_batch_run(nt_batch *batch, const nt_settings *settings, const nt_batch_o
 		each.threads = threads / jobs ? threads / jobs : 1;
 	progress p = {.batch = batch, .settings = &each, .options = options, .threads = threads, .jobs = jobs,
 		.lock = PTHREAD_MUTEX_INITIALIZER};
-	return_freed_memory();
+#ifdef M_TRIM_THRESHOLD
+	/* malloc() has a heap for each thread, which may keep up to 64 MB of what that has freed, while the next job's
+	 * thread takes new: four jobs in turn took twice as much as one. Its default, which gives back every 128 KB,
+	 * costs a mesh of 6000 triangles a tenth of its time. */
+	mallopt(M_MMAP_THRESHOLD, 4 << 20);
+	mallopt(M_TRIM_THRESHOLD, 1 << 20);
+#endif
 	/* one job at a time needs no gate: what is available is in six files of the system */
 	nt_gate_init(&p.gate, options->memory ? options->memory : jobs > 1 ? nt_memory_available() / 2 : 0);
 	/* streams come last: a job for each could wait while no file is done */

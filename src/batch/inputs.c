@@ -55,18 +55,6 @@ static bool matches(const char *const *patterns, size_t count, const char *below
 	return false;
 }
 
-static bool is_taken(const nt_folder_rules *rules, const char *below)
-{
-	return nt_format_of_path(below) && !matches(rules->exclude, rules->exclude_count, below) &&
-	       (!rules->include_count || matches(rules->include, rules->include_count, below));
-}
-
-static bool is_left_out(const walk *w, const char *below, const struct stat *info)
-{
-	return matches(w->rules->exclude, w->rules->exclude_count, below) ||
-	       (w->has_leave_out && info->st_dev == w->leave_out.st_dev && info->st_ino == w->leave_out.st_ino);
-}
-
 /* ---- folders ---- */
 
 static int compare_names(const void *a, const void *b)
@@ -116,9 +104,16 @@ static nt_status visit(walk *w, nt_buffer *path)
 	const char *below = path->data + w->root_length;
 	if (lstat(path->data, &info) != 0)
 		return errno == ENOENT ? NT_OK : fail_folder(path->data, errno, w->error);
-	if (S_ISDIR(info.st_mode))
-		return is_left_out(w, below, &info) ? NT_OK : look_through(w, path);
-	if (!is_taken(w->rules, below))
+	const nt_folder_rules *rules = w->rules;
+	if (matches(rules->exclude, rules->exclude_count, below))
+		return NT_OK;
+	if (S_ISDIR(info.st_mode)) {
+		const bool left_out = w->has_leave_out && info.st_dev == w->leave_out.st_dev &&
+			info.st_ino == w->leave_out.st_ino;
+		return left_out ? NT_OK : look_through(w, path);
+	}
+	if (!nt_format_of_path(below) ||
+		(rules->include_count && !matches(rules->include, rules->include_count, below)))
 		return NT_OK;
 	if (S_ISLNK(info.st_mode) && stat(path->data, &info) != 0)
 		return errno == EIO || errno == ENOMEM ? fail_folder(path->data, errno, w->error) : NT_OK;

@@ -14,7 +14,7 @@
 #include "file/relative_path.h"
 #include "format/format.h"
 
-static nt_status make_jobs(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
+nt_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
 {
 	*batch = (nt_batch){.jobs = nt_calloc(count, sizeof *batch->jobs)};
 	if (!batch->jobs)
@@ -25,14 +25,9 @@ static nt_status make_jobs(nt_batch *batch, const char *const *inputs, size_t co
 	return NT_OK;
 }
 
-nt_status nt_batch_check(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
-{
-	return make_jobs(batch, inputs, count, error);
-}
-
 nt_status nt_batch_pair(nt_batch *batch, const char *input, const char *output, nt_error *error)
 {
-	const nt_status status = make_jobs(batch, &input, 1, error);
+	const nt_status status = nt_batch_check(batch, &input, 1, error);
 	if (status)
 		return status;
 	batch->jobs[0].output = strdup(output);
@@ -67,17 +62,11 @@ static const char *output_ending(const char *input, nt_format wanted)
 	}
 }
 
-static const char *last_part(const char *path)
-{
-	const char *slash = strrchr(path, '/');
-	return slash ? slash + 1 : path;
-}
-
 /* DIR/below.ending: the input's ending goes if it is one of a format ("head.v2" keeps its own). `below` is the end of
  * the input's name that is kept. */
 static char *output_name(const char *input, const char *below, const char *directory, nt_format wanted)
 {
-	const char *base = last_part(below), *dot = strrchr(base, '.');
+	const char *base = nt_last_part(below), *dot = strrchr(base, '.');
 	const size_t stem = dot && dot != base && nt_format_of_path(base) ? (size_t)(dot - below) : strlen(below);
 	const size_t length = strlen(directory);
 	nt_buffer name = {0};
@@ -220,7 +209,7 @@ static nt_status name_outputs(nt_batch *batch, const char *directory, const char
 		return name_mirrored(batch, directory, mirror, wanted, error);
 	for (size_t i = 0; i < batch->count; i++) {
 		nt_job *job = &batch->jobs[i];
-		job->output = output_name(job->input, last_part(job->input), directory, wanted);
+		job->output = output_name(job->input, nt_last_part(job->input), directory, wanted);
 		if (!job->output)
 			return nt_fail_memory(error);
 	}
@@ -246,7 +235,7 @@ static nt_status make_folders(const nt_batch *batch, const char *directory, bool
 	const char *last = "";
 	for (size_t i = 0; i < batch->count && mirrored && !settings->dry_run && !status; i++) {
 		char *output = batch->jobs[i].output;
-		const size_t length = (size_t)(last_part(output) - output);
+		const size_t length = (size_t)(nt_last_part(output) - output);
 		/* neighbours are mostly of one folder */
 		if (strncmp(last, output, length) != 0 || strchr(last + length, '/'))
 			status = make_folders_below(output, strlen(directory) + 1, settings, error);
@@ -258,7 +247,7 @@ static nt_status make_folders(const nt_batch *batch, const char *directory, bool
 nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count, const char *directory,
 	const char *mirror, const nt_settings *settings, nt_error *error)
 {
-	nt_status status = make_jobs(batch, inputs, count, error);
+	nt_status status = nt_batch_check(batch, inputs, count, error);
 	if (!status)
 		status = name_outputs(batch, directory, mirror, settings->output_format, error);
 	if (!status)
@@ -270,7 +259,7 @@ nt_status nt_batch_into(nt_batch *batch, const char *const *inputs, size_t count
 
 nt_status nt_batch_in_place(nt_batch *batch, const char *const *inputs, size_t count, nt_error *error)
 {
-	nt_status status = make_jobs(batch, inputs, count, error);
+	nt_status status = nt_batch_check(batch, inputs, count, error);
 	for (size_t i = 0; i < count && !status; i++) {
 		batch->jobs[i].output = strdup(inputs[i]);
 		status = batch->jobs[i].output ? NT_OK : nt_fail_memory(error);

@@ -117,21 +117,14 @@ static nt_status load(nt_record_file *file, nt_error *error)
 
 /* ---- the lock ---- */
 
-static bool lock_whole(int fd, int command)
+static bool lock_whole(int fd)
 {
 	struct flock lock = {.l_type = F_WRLCK, .l_whence = SEEK_SET};
 	int result;
 	do
-		result = fcntl(fd, command, &lock);
+		result = fcntl(fd, F_OFD_SETLKW, &lock);
 	while (result < 0 && errno == EINTR);
 	return result == 0;
-}
-
-static bool is_still(int fd, const char *path)
-{
-	struct stat here, there;
-	return fstat(fd, &here) == 0 && stat(path, &there) == 0 && here.st_ino == there.st_ino &&
-	       here.st_dev == there.st_dev;
 }
 
 /* Opens the file for appending, made where it is not there, and waits for its lock. *locked: it was to be had. Below
@@ -142,8 +135,10 @@ static int open_locked(const nt_record_file *file, bool *locked)
 		const int fd = open(file->path, O_RDWR | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
 		if (fd < 0)
 			return fd;
-		*locked = lock_whole(fd, F_OFD_SETLKW);
-		if (!*locked || is_still(fd, file->path))
+		struct stat here, there;
+		*locked = lock_whole(fd);
+		if (!*locked || (fstat(fd, &here) == 0 && stat(file->path, &there) == 0 &&
+			here.st_ino == there.st_ino && here.st_dev == there.st_dev))
 			return fd;
 		close(fd);
 	}
@@ -152,13 +147,6 @@ static int open_locked(const nt_record_file *file, bool *locked)
 }
 
 /* ---- writing ---- */
-
-/* A line that was cut short must not become the beginning of the next one. */
-static bool ends_line(int fd, off_t size)
-{
-	char last = '\n';
-	return size == 0 || pread(fd, &last, 1, size - 1) != 1 || last == '\n';
-}
 
 /* In one piece: what was written of it only in part is taken back. */
 static bool append_whole(int fd, const char *bytes, size_t size, off_t before)
@@ -184,7 +172,11 @@ nt_status nt_record_file_append(const nt_record_file *file, const void *lines, s
 	const int fd = open_locked(file, &locked);
 	if (fd < 0)
 		return fail(file, errno, error);
-	bool done = fstat(fd, &info) == 0 && (ends_line(fd, info.st_size) || write(fd, "\n", 1) == 1);
+	bool done = fstat(fd, &info) == 0;
+	/* a line that was cut short must not become the beginning of this one */
+	char last = '\n';
+	if (done && info.st_size > 0 && pread(fd, &last, 1, info.st_size - 1) == 1 && last != '\n')
+		done = write(fd, "\n", 1) == 1;
 	if (done)
 		done = append_whole(fd, lines, size, info.st_size);
 	const int number = errno;

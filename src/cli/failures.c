@@ -7,12 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *reason_of(const nt_job *job)
-{
-	const nt_error *error = job->outcome ? &job->outcome->error : NULL;
-	return error && error->message[0] ? error->message : nt_status_text(job->status);
-}
-
 static nt_failure_group *group_of(nt_failures *failures, const char *reason)
 {
 	for (size_t i = 0; i < failures->group_count; i++)
@@ -29,7 +23,9 @@ static nt_failure_group *group_of(nt_failures *failures, const char *reason)
 void nt_failures_add(nt_failures *failures, const nt_job *job)
 {
 	failures->count++;
-	nt_failure_group *group = group_of(failures, reason_of(job));
+	const nt_error *error = job->outcome ? &job->outcome->error : NULL;
+	nt_failure_group *group =
+		group_of(failures, error && error->message[0] ? error->message : nt_status_text(job->status));
 	if (!group)
 		return;
 	if (group->count < NT_FAILURE_NAMES)

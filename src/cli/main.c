@@ -175,28 +175,13 @@ static int tell_run(session *s, nt_job *job)
 	return code;
 }
 
-/* One that was up to date is counted, and named where one is named by one. */
-static void tell_current(session *s, const nt_job *job)
-{
-	s->current++;
-	if (s->style.verbosity + (s->count == 1) > 0)
-		nt_message_current(&s->text, job);
-}
-
-/* How a job that has ended, and still has its report, counts. */
-static int exit_code_of(const session *s, const nt_job *job)
-{
-	if (job->status || !job->outcome || s->command->diff ||
-		!findings_fail(&job->outcome->summary, s->plan->target.style.least_failure))
-		return nt_exit_code(job->status);
-	return NT_EXIT_FINDINGS;
-}
-
-/* Called once per job, as soon as it ends. */
+/* Called once per job, as soon as it ends and still has its report. */
 static void note_end(void *user, const nt_job *job)
 {
 	session *s = user;
-	nt_manifest_add(&s->manifest, job, exit_code_of(s, job));
+	const bool fails = !job->status && job->outcome && !s->command->diff &&
+		findings_fail(&job->outcome->summary, s->plan->target.style.least_failure);
+	nt_manifest_add(&s->manifest, job, fails ? NT_EXIT_FINDINGS : nt_exit_code(job->status));
 }
 
 /* What a job has read or written is not replaced by what is said about it. */
@@ -254,11 +239,13 @@ static void tell_job(void *user, nt_job *job)
 	if (job->end == NT_JOB_UNTRIED)
 		s->untried++;
 	else if (job->end == NT_JOB_CURRENT)
-		tell_current(s, job);
+		s->current++;
 	else if (job->outcome)
 		code = tell_run(s, job);
 	else
 		s->no_report = true;
+	if (job->end == NT_JOB_CURRENT && s->style.verbosity + (s->count == 1) > 0)
+		nt_message_current(&s->text, job);
 	refuse_own(s, job, s->command->depfile, &s->no_depfile, &code);
 	refuse_own(s, job, s->command->report, &s->no_report, &code);
 	add_rule(s, job, &code);
@@ -366,13 +353,6 @@ static void tell_end(session *s)
 		s->exit_code = nt_exit_worse(s->exit_code, NT_EXIT_INTERNAL);
 }
 
-static bool same_file(const char *a, const char *b)
-{
-	struct stat first, second;
-	return strcmp(a, b) == 0 || (stat(a, &first) == 0 && stat(b, &second) == 0 &&
-					    first.st_dev == second.st_dev && first.st_ino == second.st_ino);
-}
-
 static nt_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
 {
 	if (c->settings.check)
@@ -382,7 +362,9 @@ static nt_status prepare(nt_batch *batch, const nt_command *c, nt_error *error)
 			error);
 	const char *input = c->operands[0], *output = c->operands[c->operand_count - 1];
 	/* the same file twice says the same thing */
-	const bool twice = c->operand_count == 2 && same_file(input, output);
+	struct stat first, second;
+	const bool twice = c->operand_count == 2 && (strcmp(input, output) == 0 || (stat(input, &first) == 0 &&
+		stat(output, &second) == 0 && nt_same_file(&first, &second)));
 	if (c->settings.in_place && !twice)
 		return nt_batch_in_place(batch, c->operands, c->operand_count, error);
 	if (strcmp(output, "-") == 0 && !c->settings.dry_run && isatty(STDOUT_FILENO))
@@ -551,16 +533,6 @@ static int run(nt_command *command, nt_style style, bool colour_on_stdout)
 	return code;
 }
 
-/* A standard stream that the caller closed must not become an output file, into which messages would
- * go. Reading and writing fails on what stands in for the first two; messages may vanish. */
-static void hold_standard_streams(void)
-{
-	static const int flags[] = {O_WRONLY, O_RDONLY, O_WRONLY};
-	for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
-		if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", flags[fd]) < 0)
-			return;
-}
-
 static void end_exhausted(void)
 {
 	static const char line[] = "nmtan: out of memory\n";
@@ -586,7 +558,12 @@ static void end_changed(const char *path, const char *change)
 
 int main(int argc, char **argv)
 {
-	hold_standard_streams();
+	/* A standard stream that the caller closed must not become an output file, into which messages would go.
+	 * Reading and writing fails on what stands in for the first two; messages may vanish. */
+	static const int flags[] = {O_WRONLY, O_RDONLY, O_WRONLY};
+	for (int fd = STDIN_FILENO; fd <= STDERR_FILENO; fd++)
+		if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", flags[fd]) < 0)
+			break;
 	/* A reader that goes away, or a file beyond the limit, is an error of writing like any other, after
 	 * which temporary files are removed. */
 	signal(SIGPIPE, SIG_IGN);

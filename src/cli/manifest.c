@@ -104,14 +104,6 @@ static void append_findings(nt_buffer *out, const nt_finding_list *findings)
 	nt_buffer_text(out, "}");
 }
 
-static void append_seconds(nt_buffer *out, const nt_summary *s)
-{
-	nt_buffer_text(out, ",\"seconds\":{");
-	for (int stage = 0; stage < NT_STAGE_COUNT; stage++)
-		nt_buffer_format(out, "\"%s\":%.6f,", nt_stage_name((nt_stage)stage), s->seconds[stage]);
-	nt_buffer_format(out, "\"total\":%.6f}", s->total_seconds);
-}
-
 /* What a run found and did. */
 static void append_run(nt_buffer *out, const nt_summary *s)
 {
@@ -123,7 +115,10 @@ static void append_run(nt_buffer *out, const nt_summary *s)
 	append_number(out, "repaired", nt_counts_repaired(&s->counts));
 	append_number(out, "bytes_read", s->bytes_read);
 	append_number(out, "bytes_written", s->bytes_written);
-	append_seconds(out, s);
+	nt_buffer_text(out, ",\"seconds\":{");
+	for (int stage = 0; stage < NT_STAGE_COUNT; stage++)
+		nt_buffer_format(out, "\"%s\":%.6f,", nt_stage_name((nt_stage)stage), s->seconds[stage]);
+	nt_buffer_format(out, "\"total\":%.6f}", s->total_seconds);
 }
 
 static void append_job(nt_buffer *out, const nt_job *job, const char *options, int exit_code)

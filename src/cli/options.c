@@ -21,11 +21,6 @@ typedef struct parser {
 	bool given[NT_MOST_OPTIONS];
 } parser;
 
-static bool takes_value(const nt_option_row *row)
-{
-	return row->values != NULL;
-}
-
 static const nt_option_row *find_long(const char *name, size_t length)
 {
 	for (size_t i = 0; i < nt_option_row_count; i++) {
@@ -229,23 +224,19 @@ static const nt_option_row *find_nearest(const char *name, size_t length)
 	return nearest;
 }
 
-static nt_status refuse_unknown(parser *p, const char *word, size_t length)
-{
-	const nt_option_row *nearest = find_nearest(word + 2, length);
-	return nt_fail(p->error, NT_ERROR_USAGE, "unknown option '%.*s'%s%s%s", (int)length + 2, word,
-		nearest ? "; did you mean --" : "", nearest ? nearest->name : "", nearest ? "?" : "");
-}
-
 /* --name, --name=value, --name value. *used becomes 2 where the next word belongs to it. */
 static nt_status parse_long(parser *p, const char *word, const char *next, int *used)
 {
 	const char *name = word + 2;
 	const size_t length = strcspn(name, "=");
 	const nt_option_row *row = find_long(name, length);
-	if (!row)
-		return refuse_unknown(p, word, length);
+	if (!row) {
+		const nt_option_row *nearest = find_nearest(name, length);
+		return nt_fail(p->error, NT_ERROR_USAGE, "unknown option '%.*s'%s%s%s", (int)length + 2, word,
+			nearest ? "; did you mean --" : "", nearest ? nearest->name : "", nearest ? "?" : "");
+	}
 	const char *value = name[length] ? name + length + 1 : NULL;
-	if (!takes_value(row)) {
+	if (!row->values) {
 		if (value)
 			return nt_fail(p->error, NT_ERROR_USAGE, "--%s takes no value, here it has '%s'",
 				row->name, value);
@@ -274,7 +265,7 @@ static nt_status parse_short(parser *p, const char *word, const char *next, int 
 			return nt_fail(p->error, NT_ERROR_USAGE, "unknown option '-%.*s'%s%s%s", bytes, letter,
 				word[2] ? " in '" : "", word[2] ? word : "", word[2] ? "'" : "");
 		}
-		if (!takes_value(row)) {
+		if (!row->values) {
 			if (apply(p, row, NULL))
 				return p->error->status;
 			continue;

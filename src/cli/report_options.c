@@ -59,15 +59,6 @@ static nt_status read_severities(nt_report_options *options, const char *list, n
 	return NT_OK;
 }
 
-/* What fails a run fails its tests. */
-static int least_failure(const nt_command *c)
-{
-	static const int least[] = {[NT_FAIL_ON_ERROR] = NT_SEVERITY_ERROR,
-		[NT_FAIL_ON_WARNING] = NT_SEVERITY_WARNING, [NT_FAIL_ON_INFO] = NT_SEVERITY_INFO,
-		[NT_FAIL_ON_NEVER] = NT_SEVERITY_ERROR + 1};
-	return least[c->fail_on];
-}
-
 static bool is_folder(const char *path)
 {
 	struct stat info;
@@ -83,7 +74,11 @@ static nt_status choose_target(nt_report_plan *plan, const nt_command *c, bool c
 	target->inputs = c->operands;
 	target->input_count = nt_command_is_many(c) ? c->operand_count : 1;
 	target->path = c->report;
-	target->style.least_failure = least_failure(c);
+	/* what fails a run fails its tests */
+	static const int least[] = {[NT_FAIL_ON_ERROR] = NT_SEVERITY_ERROR,
+		[NT_FAIL_ON_WARNING] = NT_SEVERITY_WARNING, [NT_FAIL_ON_INFO] = NT_SEVERITY_INFO,
+		[NT_FAIL_ON_NEVER] = NT_SEVERITY_ERROR + 1};
+	target->style.least_failure = least[c->fail_on];
 	/* who names a format wants to see it */
 	if (!target->path && c->settings.check && (c->verbosity >= 0 || c->report_format))
 		target->path = "-";
