@@ -16,7 +16,7 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include "base/hash.h"
+#include "base/hash_index.h"
 #include "base/parallel.h"
 
 enum { LINK_MOST = 8 };
@@ -25,94 +25,51 @@ typedef struct table {
 	uint32_t *heads;      /* [position_count] vertex + 1; 0 or of an earlier mesh: none */
 	obj_vertex *vertices; /* room for one of each distinct corner */
 	size_t count;
-	uint32_t *slots;      /* hash table of vertices + 1 that are not linked */
-	size_t slot_count, slot_used; /* slot_count is a power of two or 0 */
+	nt_hash_index index;  /* of vertices that are not linked */
 } table;
 
-static size_t hash_vertex(const obj_vertex *x)
+static bool same_corner(const obj_vertex *a, const obj_corner *b)
 {
-	return (size_t)nt_hash_words((uint64_t)x->v << 32 | x->t, x->n);
+	return a->v == b->v && a->t == b->t && a->n == b->n;
 }
 
-static bool same_corner(const obj_vertex *a, uint32_t v, uint32_t t, uint32_t n)
+static uint32_t append(table *s, const obj_corner *c)
 {
-	return a->v == v && a->t == t && a->n == n;
-}
-
-/* The slot of a vertex, or the free one where it belongs. Vertices before `base` are of other meshes. */
-static size_t find_slot(const table *s, const obj_vertex *wanted, size_t base)
-{
-	size_t slot = hash_vertex(wanted) & (s->slot_count - 1);
-	while (s->slots[slot]) {
-		const size_t vertex = s->slots[slot] - 1;
-		if (vertex >= base && same_corner(&s->vertices[vertex], wanted->v, wanted->t, wanted->n))
-			break;
-		slot = (slot + 1) & (s->slot_count - 1);
-	}
-	return slot;
-}
-
-static bool grow_slots(table *s)
-{
-	if (2 * (s->slot_used + 1) <= s->slot_count)
-		return true;
-	table larger = *s;
-	larger.slot_count = s->slot_count ? 2 * s->slot_count : 1024;
-	larger.slots = nt_calloc(larger.slot_count, sizeof *larger.slots);
-	if (!larger.slots)
-		return false;
-	for (size_t i = 0; i < s->slot_count; i++)
-		if (s->slots[i]) {
-			size_t slot = hash_vertex(&s->vertices[s->slots[i] - 1]) & (larger.slot_count - 1);
-			while (larger.slots[slot])
-				slot = (slot + 1) & (larger.slot_count - 1);
-			larger.slots[slot] = s->slots[i];
-		}
-	free(s->slots);
-	*s = larger;
-	return true;
-}
-
-static uint32_t append(table *s, uint32_t v, uint32_t t, uint32_t n)
-{
-	s->vertices[s->count] = (obj_vertex){v, t, n, 0};
+	s->vertices[s->count] = (obj_vertex){c->v, c->t, c->n, 0};
 	return (uint32_t)s->count++;
 }
 
 /* Behind the last link. */
-static uint32_t find_in_slots(table *s, uint32_t v, uint32_t t, uint32_t n, size_t base)
+static uint32_t find_in_index(table *s, const obj_corner *c, size_t base)
 {
-	if (!grow_slots(s))
-		return NT_NONE;
-	const obj_vertex wanted = {v, t, n, 0};
-	const size_t slot = find_slot(s, &wanted, base);
-	if (s->slots[slot])
-		return s->slots[slot] - 1;
-	s->slot_used++;
-	s->slots[slot] = append(s, v, t, n) + 1;
-	return s->slots[slot] - 1;
+	const uint64_t hash = nt_hash_words(nt_hash_words((uint64_t)c->v << 32 | c->t, c->n), base);
+	size_t at = NT_HASH_BEGIN;
+	for (uint32_t vertex; (vertex = nt_hash_index_next(&s->index, hash, &at)) != NT_NONE;)
+		if (vertex >= base && same_corner(&s->vertices[vertex], c))
+			return vertex;
+	return nt_hash_index_add(&s->index, hash, (uint32_t)s->count) ? append(s, c) : NT_NONE;
 }
 
 /* The vertex of a corner in the mesh whose vertices begin at base; it is made where there is none.
  * NT_NONE: out of memory. */
-static uint32_t find_vertex(table *s, uint32_t v, uint32_t t, uint32_t n, size_t base)
+static uint32_t find_vertex(table *s, const obj_corner *c, size_t base)
 {
-	const uint32_t head = s->heads[v];
+	const uint32_t head = s->heads[c->v];
 	if (head <= base) {
-		s->heads[v] = append(s, v, t, n) + 1;
-		return s->heads[v] - 1;
+		s->heads[c->v] = append(s, c) + 1;
+		return s->heads[c->v] - 1;
 	}
 	uint32_t at = head - 1;
 	for (int links = 0;; links++) {
-		if (same_corner(&s->vertices[at], v, t, n))
+		if (same_corner(&s->vertices[at], c))
 			return at;
 		if (links == LINK_MOST)
-			return find_in_slots(s, v, t, n, base);
+			return find_in_index(s, c, base);
 		if (!s->vertices[at].next)
 			break;
 		at = s->vertices[at].next - 1;
 	}
-	s->vertices[at].next = append(s, v, t, n) + 1;
+	s->vertices[at].next = append(s, c) + 1;
 	return s->vertices[at].next - 1;
 }
 
@@ -203,7 +160,7 @@ static nt_status number_distinct(obj_file *file, obj_chunk *chunk, size_t begin,
 			!resolve(&c.t, chunk->rows[OBJ_VT].first, file->row_counts[OBJ_VT]) ||
 			!resolve(&c.n, chunk->rows[OBJ_VN].first, file->row_counts[OBJ_VN]))
 			return fail_index(file, chunk, i, error);
-		chunk->distinct[i].v = find_vertex(vertices, c.v, c.t, c.n, base);
+		chunk->distinct[i].v = find_vertex(vertices, &c, base);
 		if (chunk->distinct[i].v == NT_NONE)
 			return nt_fail_memory(error);
 	}
@@ -301,6 +258,6 @@ nt_status obj_make_vertices(obj_file *file, nt_error *error)
 	file->vertices = vertices.vertices;
 	file->vertex_count = vertices.count;
 	free(vertices.heads);
-	free(vertices.slots);
+	nt_hash_index_free(&vertices.index);
 	return status;
 }
