@@ -7,19 +7,15 @@
 #include "ply/wedges.h"
 
 #include <stdlib.h>
-#include "base/hash.h"
 
 enum wedge_state { WEDGE_UNUSED, WEDGE_HAS, WEDGE_LACKS };
-enum { FIRST_SLOTS = 1024 };
 
 bool ply_wedges_init(ply_wedges *wedges, size_t row_count)
 {
 	*wedges = (ply_wedges){.row_count = row_count};
 	wedges->row_uvs = nt_calloc(row_count, sizeof *wedges->row_uvs);
 	wedges->row_states = nt_calloc(row_count, sizeof *wedges->row_states);
-	wedges->slots = nt_calloc(FIRST_SLOTS, sizeof *wedges->slots);
-	wedges->slot_count = FIRST_SLOTS;
-	return wedges->row_uvs && wedges->row_states && wedges->slots;
+	return wedges->row_uvs && wedges->row_states;
 }
 
 void ply_wedges_free(ply_wedges *wedges)
@@ -29,52 +25,23 @@ void ply_wedges_free(ply_wedges *wedges)
 	free(wedges->copy_uvs);
 	free(wedges->copy_rows);
 	free(wedges->copy_states);
-	free(wedges->slots);
+	nt_hash_index_free(&wedges->index);
 	*wedges = (ply_wedges){0};
 }
 
-static size_t hash_wedge(uint32_t row, const float uv[2])
-{
-	uint64_t bits;
-	memcpy(&bits, uv, sizeof bits);
-	return (size_t)nt_hash_words(bits, row);
-}
-
-static void insert_slot(ply_wedges *w, uint32_t copy)
-{
-	size_t slot = hash_wedge(w->copy_rows[copy], w->copy_uvs[copy]);
-	while (w->slots[slot & (w->slot_count - 1)])
-		slot++;
-	w->slots[slot & (w->slot_count - 1)] = copy + 1;
-}
-
-static bool grow_slots(ply_wedges *w)
-{
-	uint32_t *slots = nt_calloc(w->slot_count * 2, sizeof *slots);
-	if (!slots)
-		return false;
-	free(w->slots);
-	w->slots = slots;
-	w->slot_count *= 2;
-	for (uint32_t copy = 0; copy < w->copy_count; copy++)
-		insert_slot(w, copy);
-	return true;
-}
-
-static uint32_t append_copy(ply_wedges *w, uint32_t row, const float uv[2], uint8_t state)
+static uint32_t append_copy(ply_wedges *w, uint64_t hash, uint32_t row, const float uv[2], uint8_t state)
 {
 	const size_t count = w->copy_count + 1;
 	if (w->row_count + count >= NT_NONE ||
 		!nt_grow((void **)&w->copy_uvs, &w->uv_capacity, count, sizeof *w->copy_uvs) ||
 		!nt_grow((void **)&w->copy_rows, &w->row_capacity, count, sizeof *w->copy_rows) ||
 		!nt_grow((void **)&w->copy_states, &w->state_capacity, count, 1) ||
-		(2 * count > w->slot_count && !grow_slots(w)))
+		!nt_hash_index_add(&w->index, hash, (uint32_t)w->copy_count))
 		return NT_NONE;
 	const uint32_t copy = (uint32_t)w->copy_count++;
 	memcpy(w->copy_uvs[copy], uv, sizeof w->copy_uvs[copy]);
 	w->copy_rows[copy] = row;
 	w->copy_states[copy] = state;
-	insert_slot(w, copy);
 	return (uint32_t)(w->row_count + copy);
 }
 
@@ -92,15 +59,15 @@ uint32_t ply_wedges_vertex(ply_wedges *w, uint32_t row, const float *uv)
 	}
 	if (w->row_states[row] == state && memcmp(w->row_uvs[row], pair, sizeof w->row_uvs[row]) == 0)
 		return row;
-	for (size_t slot = hash_wedge(row, pair);; slot++) {
-		const uint32_t entry = w->slots[slot & (w->slot_count - 1)];
-		if (!entry)
-			return append_copy(w, row, pair, state);
-		const uint32_t copy = entry - 1;
+	uint64_t bits;
+	memcpy(&bits, pair, sizeof bits);
+	const uint64_t hash = nt_hash_words(bits, row);
+	size_t at = NT_HASH_BEGIN;
+	for (uint32_t copy; (copy = nt_hash_index_next(&w->index, hash, &at)) != NT_NONE;)
 		if (w->copy_rows[copy] == row && w->copy_states[copy] == state &&
 			memcmp(w->copy_uvs[copy], pair, sizeof w->copy_uvs[copy]) == 0)
 			return (uint32_t)(w->row_count + copy);
-	}
+	return append_copy(w, hash, row, pair, state);
 }
 
 /* A copy of an array of rows with the copies' rows behind it. */

@@ -7,6 +7,7 @@
 #ifndef NT_PLY_WEDGES_H
 #define NT_PLY_WEDGES_H
 
+#include "base/hash_index.h"
 #include "ply/source.h"
 #include "scene/scene.h"
 
@@ -18,8 +19,7 @@ typedef struct ply_wedges {
 	uint32_t *copy_rows;
 	uint8_t *copy_states;
 	size_t copy_count, uv_capacity, row_capacity, state_capacity;
-	uint32_t *slots;       /* hash of copies: number + 1, 0 is free */
-	size_t slot_count;     /* power of two */
+	nt_hash_index index;   /* of copies */
 	bool any, any_lacks;   /* some corner has, some has no coordinates */
 } ply_wedges;
 
