@@ -133,7 +133,8 @@ bool obj_keep_places(const obj_file *file)
 	}
 	stretches[file->chunk_count - 1].begin = file->tail_begin;
 	stretches[file->chunk_count - 1].end = file->tail_end;
-	memcpy(mesh_faces, file->mesh_faces, file->mesh_count * sizeof *mesh_faces);
+	for (size_t m = 0; m < file->mesh_count; m++)
+		mesh_faces[m] = file->meshes[m].face;
 	*kept = (places){stretches, file->chunk_count, mesh_faces};
 	scene->source = kept;
 	scene->locate_faces = locate_faces;

@@ -291,10 +291,10 @@ static nt_status set_faces(builder *b, nt_mesh *mesh, size_t m)
 {
 	obj_file *file = b->file;
 	nt_arena *arena = &file->scene->arena;
-	const size_t begin = file->mesh_faces[m], end = file->mesh_faces[m + 1];
-	uint32_t *const source = file->corner_vertices + file->mesh_corners[m];
+	const size_t begin = file->meshes[m].face, end = file->meshes[m + 1].face;
+	uint32_t *const source = file->corner_vertices + file->meshes[m].corner;
 	const face_counts n =
-		count_faces(b, begin, end, file->mesh_corners[m + 1] - file->mesh_corners[m]);
+		count_faces(b, begin, end, file->meshes[m + 1].corner - file->meshes[m].corner);
 	if (n.faces > NMTAN_MAX_FACES)
 		return nt_fail_line(b->error, NT_ERROR_TOO_LARGE, mesh->line,
 			"object of %zu faces, at most %zu can be solved together", n.faces, NMTAN_MAX_FACES);
@@ -333,12 +333,12 @@ static nt_status set_faces(builder *b, nt_mesh *mesh, size_t m)
 static nt_status set_name(builder *b, nt_mesh *mesh, size_t m)
 {
 	const obj_file *file = b->file;
-	const obj_event *object = file->mesh_objects[m];
+	const obj_event *object = file->meshes[m].object;
 	mesh->name = object ? nt_utf8_text(&file->scene->arena, object->text, object->length) : "";
 	if (!mesh->name)
 		return nt_fail_memory(b->error);
 	mesh->file = file->scene->path;
-	mesh->line = file->mesh_lines[m];
+	mesh->line = file->meshes[m].line;
 	return NT_OK;
 }
 
@@ -393,13 +393,13 @@ static nt_status make_mesh(builder *b, size_t m)
 		.gltf_primitive = NT_NONE,
 		.triangles = true,
 		.reachable = true,
-		.vertex_count = file->mesh_vertices[m + 1] - file->mesh_vertices[m],
+		.vertex_count = file->meshes[m + 1].vertex - file->meshes[m].vertex,
 	};
 	mesh->source_vertex_count = mesh->vertex_count;
 	const nt_status status = set_name(b, mesh, m);
 	if (status)
 		return status;
-	set_vertices(b, mesh, file->mesh_vertices[m]);
+	set_vertices(b, mesh, file->meshes[m].vertex);
 	const nt_status face_status = set_faces(b, mesh, m);
 	if (face_status)
 		return face_status;

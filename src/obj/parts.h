@@ -119,6 +119,13 @@ typedef struct obj_memory {
 	nt_arena corners; /* distinct corners, corners, sizes of faces */
 } obj_memory;
 
+/* Faces of one `o`, or some of them. It ends where the next mesh begins. */
+typedef struct obj_mesh {
+	const obj_event *object; /* NULL: none */
+	size_t line;             /* its line */
+	size_t face, corner, vertex; /* of the file: the first ones */
+} obj_mesh;
+
 /* The whole file. */
 typedef struct obj_file {
 	nt_scene *scene;
@@ -143,12 +150,8 @@ typedef struct obj_file {
 	size_t polygon_count;
 	bool uses_smoothing;
 
-	/* Mesh m has the faces [mesh_faces[m], mesh_faces[m + 1]) of the file, and corners and vertices
-	 * likewise; mesh_count + 1 entries each. */
+	obj_mesh *meshes; /* [mesh_count + 1]: behind the last one, where the file ends */
 	size_t mesh_count;
-	const obj_event **mesh_objects; /* the `o` of each; NULL: none */
-	size_t *mesh_lines;             /* its line */
-	size_t *mesh_faces, *mesh_corners, *mesh_vertices;
 
 	/* Stretches of faces of one material and smoothing group, in order. */
 	struct obj_span *spans;
@@ -175,6 +178,9 @@ typedef struct obj_span {
 	size_t face, corner; /* the first ones; the span ends where the next begins */
 	uint32_t material;
 	uint32_t smoothing;
+	bool begins_object;
+	const obj_event *object; /* NULL: none */
+	size_t line;             /* its line, else 0 */
 } obj_span;
 
 /* A distinct corner of a mesh: rows of the joined arrays, OBJ_ABSENT where it has none. */
@@ -198,7 +204,7 @@ size_t obj_face_line(const obj_file *file, size_t face, obj_corner *before);
 /* Leaves in the scene what its locate_faces needs; false: out of memory. */
 bool obj_keep_places(const obj_file *file);
 
-/* Fills corner_vertices, vertices and mesh_vertices. */
+/* Fills corner_vertices, vertices and the first vertices of meshes. */
 nt_status obj_make_vertices(obj_file *file, nt_error *error);
 
 /* Meshes, spans and materials from the events; findings for what was ignored. */

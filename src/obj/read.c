@@ -356,11 +356,7 @@ static void free_file(obj_file *file)
 	for (int kind = 0; kind < OBJ_KIND_COUNT; kind++)
 		free(file->guides[kind]);
 	free(file->polygons);
-	free(file->mesh_objects);
-	free(file->mesh_lines);
-	free(file->mesh_faces);
-	free(file->mesh_corners);
-	free(file->mesh_vertices);
+	free(file->meshes);
 	free(file->spans);
 	free(file->vertices);
 }

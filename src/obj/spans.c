@@ -31,43 +31,10 @@ typedef struct state {
 	size_t material_line;
 	uint32_t smoothing;
 	bool object_is_new;      /* the next face begins a mesh */
-	size_t mesh_capacity;
 	size_t face, corner;     /* where the stretch that is under way began */
 } state;
 
-/* ---- meshes and spans ---- */
-
-/* Room for one more mesh and the end of the last. */
-static bool reserve_mesh(obj_file *file, size_t *capacity)
-{
-	if (file->mesh_count + 2 <= *capacity)
-		return true;
-	size_t capacities[5] = {*capacity, *capacity, *capacity, *capacity, *capacity};
-	const size_t needed = file->mesh_count + 2;
-	if (!nt_grow((void **)&file->mesh_objects, &capacities[0], needed, sizeof *file->mesh_objects) ||
-		!nt_grow((void **)&file->mesh_lines, &capacities[1], needed, sizeof *file->mesh_lines) ||
-		!nt_grow((void **)&file->mesh_faces, &capacities[2], needed, sizeof *file->mesh_faces) ||
-		!nt_grow((void **)&file->mesh_corners, &capacities[3], needed, sizeof *file->mesh_corners) ||
-		!nt_grow((void **)&file->mesh_vertices, &capacities[4], needed, sizeof *file->mesh_vertices))
-		return false;
-	*capacity = capacities[0]; /* all grew alike */
-	return true;
-}
-
-static bool begin_mesh(state *s)
-{
-	obj_file *file = s->file;
-	if (!reserve_mesh(file, &s->mesh_capacity))
-		return false;
-	const size_t m = file->mesh_count++;
-	file->mesh_objects[m] = s->object;
-	file->mesh_lines[m] = s->object ? s->object_line : 0;
-	file->mesh_faces[m] = s->face;
-	file->mesh_corners[m] = s->corner;
-	file->mesh_vertices[m] = 0;
-	s->object_is_new = false;
-	return true;
-}
+/* ---- spans ---- */
 
 /* The number of the current material; *number is NT_NONE where there is none. */
 static bool number_material(state *s, uint32_t *number)
@@ -92,11 +59,13 @@ static bool end_stretch(state *s, size_t face, size_t corner)
 	obj_file *file = s->file;
 	if (face > s->face) {
 		uint32_t material;
-		if ((s->object_is_new && !begin_mesh(s)) || !number_material(s, &material) ||
+		if (!number_material(s, &material) ||
 			!nt_grow((void **)&file->spans, &file->span_capacity, file->span_count + 1,
 				sizeof *file->spans))
 			return false;
-		file->spans[file->span_count++] = (obj_span){s->face, s->corner, material, s->smoothing};
+		file->spans[file->span_count++] = (obj_span){s->face, s->corner, material, s->smoothing, s->object_is_new,
+			s->object, s->object_line};
+		s->object_is_new = false;
 	}
 	s->face = face;
 	s->corner = corner;
@@ -124,27 +93,14 @@ static bool read_event(state *s, const obj_chunk *chunk, const obj_event *event)
 	return true;
 }
 
-/* The last one ends with the file. */
-static void end_meshes(obj_file *file)
-{
-	file->mesh_faces[file->mesh_count] = file->face_count;
-	file->mesh_corners[file->mesh_count] = file->corner_count;
-	file->mesh_vertices[file->mesh_count] = 0;
-}
-
 static bool read_stretches(state *s)
 {
 	obj_file *file = s->file;
-	if (!reserve_mesh(file, &s->mesh_capacity))
-		return false;
 	for (size_t c = 0; c < file->chunk_count; c++)
 		for (size_t i = 0; i < file->chunks[c].event_count; i++)
 			if (!read_event(s, &file->chunks[c], &file->chunks[c].events[i]))
 				return false;
-	if (!end_stretch(s, file->face_count, file->corner_count))
-		return false;
-	end_meshes(file);
-	return true;
+	return end_stretch(s, file->face_count, file->corner_count);
 }
 
 /* ---- materials ---- */
@@ -229,7 +185,7 @@ static nt_status make_materials(state *s, const nt_mtl *mtl)
 	return NT_OK;
 }
 
-/* ---- objects whose materials lie on them in different ways ---- */
+/* ---- meshes ---- */
 
 /* How a material's normal map is mirrored, as bits for u and v: tangents follow it as it is sampled. */
 static unsigned mirrored_axes(const nt_scene *scene, uint32_t material)
@@ -239,45 +195,20 @@ static unsigned mirrored_axes(const nt_scene *scene, uint32_t material)
 		: (map->placement.scale[0] < 0 ? 1u : 0) | (map->placement.scale[1] < 0 ? 2u : 0);
 }
 
-/* A mesh has one sign for all of its faces, so that it ends where the mirroring changes. Tangents have nothing in
- * common there: they point the opposite way along u, or have the other w. */
-static nt_status divide_meshes(state *s)
+/* One mesh for each object that has faces. It has one sign for all of them, so that it ends where the mirroring changes.
+ * Tangents have nothing in common there: they point the opposite way along u, or have the other w. */
+static nt_status make_meshes(obj_file *file, nt_error *error)
 {
-	obj_file *file = s->file;
-	const obj_file before = *file;
-	bool divides = false;
-	for (size_t i = 1; i < file->span_count && !divides; i++)
-		divides = mirrored_axes(file->scene, file->spans[i].material) !=
-			mirrored_axes(file->scene, file->spans[i - 1].material);
-	if (!divides)
-		return NT_OK;
-	file->mesh_objects = NULL;
-	file->mesh_lines = file->mesh_faces = file->mesh_corners = file->mesh_vertices = NULL;
-	file->mesh_count = s->mesh_capacity = 0;
-	size_t mesh = 0; /* the next one, as it was */
-	bool done = true;
-	for (size_t i = 0; i < file->span_count && done; i++) {
-		const obj_span *span = &file->spans[i];
-		const bool begins = mesh < before.mesh_count && before.mesh_faces[mesh] == span->face;
-		if (begins) {
-			s->object = before.mesh_objects[mesh];
-			s->object_line = before.mesh_lines[mesh++];
-		}
-		if (!begins &&
-			mirrored_axes(file->scene, span->material) == mirrored_axes(file->scene, span[-1].material))
-			continue;
-		s->face = span->face;
-		s->corner = span->corner;
-		done = begin_mesh(s);
-	}
-	if (done)
-		end_meshes(file);
-	free(before.mesh_objects);
-	free(before.mesh_lines);
-	free(before.mesh_faces);
-	free(before.mesh_corners);
-	free(before.mesh_vertices);
-	return done ? NT_OK : nt_fail_memory(s->error);
+	file->meshes = nt_alloc(file->span_count + 1, sizeof *file->meshes);
+	if (!file->meshes)
+		return nt_fail_memory(error);
+	for (const obj_span *span = file->spans; span < file->spans + file->span_count; span++)
+		if (span->begins_object ||
+			mirrored_axes(file->scene, span->material) != mirrored_axes(file->scene, span[-1].material))
+			file->meshes[file->mesh_count++] =
+				(obj_mesh){span->object, span->line, span->face, span->corner, 0};
+	file->meshes[file->mesh_count] = (obj_mesh){.face = file->face_count, .corner = file->corner_count};
+	return NT_OK;
 }
 
 /* ---- what was ignored ---- */
@@ -344,7 +275,7 @@ nt_status obj_read_events(obj_file *file, const nt_read_options *options, nt_err
 	if (!status)
 		status = make_materials(&s, &mtl);
 	if (!status)
-		status = divide_meshes(&s);
+		status = make_meshes(file, error);
 	if (!status)
 		report_ignored(file);
 	nt_mtl_free(&mtl);

@@ -173,18 +173,18 @@ static nt_status number_chunk(obj_file *file, obj_chunk *chunk, table *vertices,
 {
 	const size_t end_corner = chunk->first_corner + chunk->corner_count;
 	size_t begin = 0;
-	while (*mesh + 1 < file->mesh_count && file->mesh_corners[*mesh + 1] < end_corner) {
+	while (*mesh + 1 < file->mesh_count && file->meshes[*mesh + 1].corner < end_corner) {
 		/* The first corner of a mesh is a distinct one of its own. */
-		const size_t end = chunk->corners[file->mesh_corners[*mesh + 1] - chunk->first_corner];
+		const size_t end = chunk->corners[file->meshes[*mesh + 1].corner - chunk->first_corner];
 		const nt_status status = number_distinct(file, chunk, begin, end, vertices,
-			file->mesh_vertices[*mesh], error);
+			file->meshes[*mesh].vertex, error);
 		if (status)
 			return status;
-		file->mesh_vertices[++*mesh] = vertices->count;
+		file->meshes[++*mesh].vertex = vertices->count;
 		begin = end;
 	}
 	return number_distinct(file, chunk, begin, chunk->distinct_count, vertices,
-		file->mesh_vertices[*mesh], error);
+		file->meshes[*mesh].vertex, error);
 }
 
 static nt_status number_all(obj_file *file, table *vertices, nt_error *error)
@@ -202,7 +202,7 @@ static nt_status number_all(obj_file *file, table *vertices, nt_error *error)
 		if (status)
 			return status;
 	}
-	file->mesh_vertices[file->mesh_count] = vertices->count;
+	file->meshes[file->mesh_count].vertex = vertices->count;
 	return NT_OK;
 }
 
@@ -214,7 +214,7 @@ static size_t mesh_of_corner(const obj_file *file, size_t corner)
 	size_t low = 0, high = file->mesh_count;
 	while (high - low > 1) {
 		const size_t middle = low + (high - low) / 2;
-		if (file->mesh_corners[middle] <= corner)
+		if (file->meshes[middle].corner <= corner)
 			low = middle;
 		else
 			high = middle;
@@ -232,11 +232,11 @@ static void write_corners(void *context, size_t begin, size_t end, unsigned slot
 		obj_chunk *chunk = &file->chunks[k];
 		uint32_t *to = file->corner_vertices + chunk->first_corner;
 		for (size_t i = 0; i < chunk->corner_count;) {
-			while (file->mesh_corners[mesh + 1] <= chunk->first_corner + i)
+			while (file->meshes[mesh + 1].corner <= chunk->first_corner + i)
 				mesh++;
-			const size_t left = file->mesh_corners[mesh + 1] - chunk->first_corner;
+			const size_t left = file->meshes[mesh + 1].corner - chunk->first_corner;
 			const size_t stop = left < chunk->corner_count ? left : chunk->corner_count;
-			const uint32_t base = (uint32_t)file->mesh_vertices[mesh];
+			const uint32_t base = (uint32_t)file->meshes[mesh].vertex;
 			for (; i < stop; i++)
 				to[i] = chunk->distinct[chunk->corners[i]].v - base;
 		}
