@@ -19,26 +19,13 @@ static const uint32_t white = 0xffffff;
 
 /* ---- reading ---- */
 
-static int hex_digit(char c)
-{
-	if (is_digit(c))
-		return c - '0';
-	const char lower = (char)(c | 0x20);
-	return lower >= 'a' && lower <= 'f' ? lower - 'a' + 10 : -1;
-}
-
 /* One colour; false: these are no 8 digits. */
 static bool read_entry(const char *p, uint32_t *color)
 {
-	uint32_t value = 0;
-	for (int i = 0; i < MRGB_DIGITS; i++) {
-		const int digit = hex_digit(p[i]);
-		if (digit < 0)
-			return false;
-		value = value << 4 | (uint32_t)digit;
-	}
-	*color = value & white;
-	return true;
+	char digits[MRGB_DIGITS + 1] = "";
+	memcpy(digits, p, MRGB_DIGITS);
+	*color = (uint32_t)strtoul(digits, NULL, 16) & white;
+	return strspn(digits, "0123456789ABCDEFabcdef") == MRGB_DIGITS;
 }
 
 nt_status obj_read_mrgb(obj_reader *r)
@@ -55,8 +42,11 @@ nt_status obj_read_mrgb(obj_reader *r)
 	while (end > p && is_blank(end[-1]))
 		end--;
 	for (; p < end; p += MRGB_DIGITS) {
-		uint32_t color = white;
-		sound &= end - p >= MRGB_DIGITS && read_entry(p, &color);
+		uint32_t color;
+		if (end - p < MRGB_DIGITS || !read_entry(p, &color)) {
+			color = white;
+			sound = false;
+		}
 		if (!obj_reserve(chunk, (void **)&chunk->mrgb, &chunk->mrgb_capacity, chunk->mrgb_count, sizeof color))
 			return obj_fail_memory(r);
 		chunk->mrgb[chunk->mrgb_count++] = color;
@@ -84,10 +74,7 @@ typedef struct painter {
 
 static void doubt(const obj_file *file, size_t line, const char *what)
 {
-	nt_place place;
-	nt_place_clear(&place);
-	strncpy(place.file, file->scene->path, sizeof place.file - 1);
-	place.line = line;
+	const nt_place place = nt_line_place(file->scene->path, line);
 	nt_finding_add(&file->scene->findings, NT_CODE_COLORS_DOUBTFUL, &place, 1, "#MRGB: %s", what);
 }
 

@@ -66,11 +66,6 @@ static inline bool obj_reserve(obj_chunk *chunk, void **block, size_t *capacity,
 	return count < *capacity || obj_grow(chunk, block, capacity, count, row_size);
 }
 
-static inline bool is_blank(char c)
-{
-	return c == ' ' || c == '\t';
-}
-
 static inline bool is_line_end(char c)
 {
 	return c == '\n' || c == '\r';

@@ -278,14 +278,6 @@ static nt_status write_spans(builder *b, nt_mesh *mesh, size_t begin, size_t end
 	return NT_OK;
 }
 
-static size_t count_spans(const builder *b, size_t end)
-{
-	size_t span = b->span;
-	while (span < b->file->span_count && b->file->spans[span].face < end)
-		span++;
-	return span - b->span;
-}
-
 /* Indices, sizes, polygons, primitives and smoothing groups. */
 static nt_status set_faces(builder *b, nt_mesh *mesh, size_t m)
 {
@@ -311,7 +303,9 @@ static nt_status set_faces(builder *b, nt_mesh *mesh, size_t m)
 		if (!mesh->indices || !mesh->face_polygon || (n.quads && !mesh->face_sizes))
 			return nt_fail_memory(b->error);
 	}
-	const size_t spans = count_spans(b, end);
+	size_t spans = 0;
+	while (b->span + spans < file->span_count && file->spans[b->span + spans].face < end)
+		spans++;
 	mesh->primitives = nt_arena_alloc(arena, spans, sizeof *mesh->primitives);
 	if (spans > 1)
 		mesh->face_primitive = nt_arena_alloc(arena, n.faces, sizeof *mesh->face_primitive);
@@ -342,20 +336,6 @@ static nt_status set_name(builder *b, nt_mesh *mesh, size_t m)
 	return NT_OK;
 }
 
-/* The normal map of one of its materials; NULL: none. */
-static const nt_map *normal_map_of(const nt_scene *scene, const nt_mesh *mesh, size_t primitive)
-{
-	const uint32_t material = mesh->primitives[primitive].material;
-	const nt_map *map = material == NT_NONE ? NULL : &scene->materials[material].normal_map;
-	return map && map->name ? map : NULL;
-}
-
-static bool has_anisotropy(const nt_scene *scene, const nt_mesh *mesh, size_t primitive)
-{
-	const uint32_t material = mesh->primitives[primitive].material;
-	return material != NT_NONE && scene->materials[material].anisotropy != 0;
-}
-
 /* What its materials ask for: slots, how normal maps are sampled. Where several differ, they are mirrored alike (see
  * spans.c), which is all that tangents know of. */
 static nt_status set_slots(nt_scene *scene, nt_mesh *mesh, nt_error *error)
@@ -363,10 +343,13 @@ static nt_status set_slots(nt_scene *scene, nt_mesh *mesh, nt_error *error)
 	nt_uv_transform transform = {.scale = {1, 1}};
 	bool clamps = false, repeats = false;
 	for (size_t i = 0, maps = 0; i < mesh->primitive_count; i++) {
-		const nt_map *map = normal_map_of(scene, mesh, i);
-		if (has_anisotropy(scene, mesh, i))
+		const uint32_t material = mesh->primitives[i].material;
+		if (material == NT_NONE)
+			continue;
+		const nt_map *map = &scene->materials[material].normal_map;
+		if (scene->materials[material].anisotropy != 0)
 			mesh->slots |= NT_SLOT_ANISOTROPY;
-		if (!map)
+		if (!map->name)
 			continue;
 		mesh->slots |= NT_SLOT_NORMAL;
 		clamps |= map->placement.clamp;

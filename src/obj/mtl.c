@@ -14,8 +14,6 @@
 #include <strings.h>
 #include "base/name_table.h"
 #include "ext/number.h"
-#include "obj/mtl_map.h"
-#include "obj/mtl_values.h"
 
 typedef struct reader {
 	nt_scene *scene;
@@ -30,28 +28,18 @@ typedef struct reader {
 	nt_error *error;
 } reader;
 
-static const char *material_name(const reader *r)
-{
-	return r->current ? r->current->name : NULL;
-}
-
 /* Of the statement. */
 static void find(const reader *r, nt_code code, const char *detail)
 {
 	char text[256];
 	snprintf(text, sizeof text, "MTL: %s%.*s", detail, (int)(r->word_length < 64 ? r->word_length : 64), r->word);
-	nt_mtl_find(r->scene, code, r->path, r->line, code == NT_CODE_MATERIAL_LOST ? material_name(r) : NULL, text);
+	const bool named = code == NT_CODE_MATERIAL_LOST && r->current;
+	nt_mtl_find(r->scene, code, r->path, r->line, named ? r->current->name : NULL, text);
 }
 
 static void ignore(const reader *r)
 {
 	find(r, NT_CODE_STATEMENT_IGNORED, "");
-}
-
-/* Of what would be seen. */
-static void lose(const reader *r)
-{
-	find(r, NT_CODE_MATERIAL_LOST, "");
 }
 
 /* Fails with "found WORD, expected EXPECTED" at a line of the MTL. */
@@ -156,7 +144,7 @@ static nt_status read_map(const reader *r, mtl_map which)
 		find(r, NT_CODE_MATERIAL_LOST, "-imfchan z of ");
 		read.channel = 0;
 	}
-	char *name = nt_mtl_map_name(&r->scene->arena, &read);
+	char *name = nt_mtl_file_name(&r->scene->arena, read.name_begin, read.name_end);
 	char *word = nt_arena_text(&r->scene->arena, r->word, r->word_length);
 	if (!name || !word)
 		return nt_fail_memory(r->error);
@@ -176,7 +164,7 @@ static void lose_map(const reader *r)
 	nt_mtl_map read;
 	nt_mtl_map_read(r->text, r->end, &read);
 	if (read.name_begin != read.name_end)
-		lose(r);
+		find(r, NT_CODE_MATERIAL_LOST, "");
 }
 
 /* ---- statements ---- */

@@ -3,7 +3,7 @@
  * Options come first by the format, "-bm 0.5 name.png"; some exporters put -bm behind the name. An
  * option that is not known begins the file name: names may begin with a dash.
  */
-#include "obj/mtl_map.h"
+#include "obj/mtl.h"
 
 #include <math.h>
 #include <string.h>
@@ -73,11 +73,6 @@ static void use_number(enum use use, int i, float value, nt_mtl_map *map)
 	(use == SCALE ? p->scale : p->offset)[i] = value;
 }
 
-static bool is_word(word w, const char *text)
-{
-	return strlen(text) == (size_t)(w.end - w.begin) && strncasecmp(w.begin, text, strlen(text)) == 0;
-}
-
 /* Takes an option's arguments. Those beyond the least have to be numbers and must leave a word, which
  * is the file name. Returns where the next word may begin. */
 static const char *take_arguments(size_t option, const char *p, const char *end, nt_mtl_map *map)
@@ -92,7 +87,8 @@ static const char *take_arguments(size_t option, const char *p, const char *end,
 		if (number)
 			use_number(options[option].use, i, value, map);
 		else if (options[option].use == CLAMP)
-			map->placement.clamp = is_word(argument, "on");
+			map->placement.clamp =
+				argument.end - argument.begin == 2 && strncasecmp(argument.begin, "on", 2) == 0;
 		else if (options[option].use == CHANNEL && argument.end - argument.begin == 1 &&
 			strchr("rgbmlz", *argument.begin))
 			map->channel = *argument.begin;
@@ -134,14 +130,13 @@ void nt_mtl_map_read(const char *text, const char *end, nt_mtl_map *map)
 	p->moved = p->moved && (p->scale[0] != 1 || p->scale[1] != 1 || p->offset[0] != 0 || p->offset[1] != 0);
 }
 
-char *nt_mtl_map_name(nt_arena *arena, const nt_mtl_map *map)
+char *nt_mtl_file_name(nt_arena *arena, const char *text, const char *end)
 {
-	const char *begin = map->name_begin, *end = map->name_end;
-	if (end - begin >= 2 && begin[0] == '"' && end[-1] == '"') {
-		begin++;
+	if (end - text >= 2 && text[0] == '"' && end[-1] == '"') {
+		text++;
 		end--;
 	}
-	char *name = nt_arena_text(arena, begin, (size_t)(end - begin));
+	char *name = nt_arena_text(arena, text, (size_t)(end - text));
 	for (char *p = name; p && *p; p++)
 		if (*p == '\\')
 			*p = '/';

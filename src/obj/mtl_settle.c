@@ -13,7 +13,7 @@
  * Exporters write 0 for what they do not mean: d 0 (Tr 1), which would make all of it invisible, and 0 for the number
  * of a map, which would make the map invisible. Both become 1, as in obj2gltf.
  */
-#include "obj/mtl_values.h"
+#include "obj/mtl.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -34,10 +34,7 @@ enum { NAMED_FINDINGS_MOST = 1000 };
 
 void nt_mtl_find(nt_scene *scene, nt_code code, const char *path, size_t line, const char *material, const char *detail)
 {
-	nt_place place;
-	nt_place_clear(&place);
-	snprintf(place.file, sizeof place.file, "%s", path);
-	place.line = line;
+	nt_place place = nt_line_place(path, line);
 	const bool named = scene->findings.count <= NAMED_FINDINGS_MOST;
 	if (named && material)
 		snprintf(place.object, sizeof place.object, "material \"%.200s\"", material);

@@ -10,7 +10,6 @@
 #include "file/lookup.h"
 #include "file/relative_path.h"
 #include "obj/mtl.h"
-#include "obj/mtl_map.h"
 
 /* What mtllib statements are read for. */
 typedef struct request {
@@ -23,10 +22,7 @@ typedef struct request {
 
 static void report_missing(const request *q, const char *name, const char *reason)
 {
-	nt_place place;
-	nt_place_clear(&place);
-	strncpy(place.file, q->scene->path, sizeof place.file - 1);
-	place.line = q->line;
+	const nt_place place = nt_line_place(q->scene->path, q->line);
 	nt_finding_add(&q->scene->findings, NT_CODE_MTL_MISSING, &place, 1, "%.120s: %.120s", name, reason);
 	q->mtl->incomplete = true;
 }
@@ -59,20 +55,6 @@ static char *path_beside(nt_scene *scene, const char *name)
 		strcpy(path + folder, name);
 	}
 	return path;
-}
-
-/* A file name as this system spells it: without quotes around it, `\` as `/`. */
-static char *file_name(nt_scene *scene, const char *text, size_t length)
-{
-	if (length >= 2 && text[0] == '"' && text[length - 1] == '"') {
-		text++;
-		length -= 2;
-	}
-	char *name = nt_arena_text(&scene->arena, text, length);
-	for (char *p = name; p && *p; p++)
-		if (*p == '\\')
-			*p = '/';
-	return name;
 }
 
 /* Whether a path that does not say so leaves the folder of the OBJ by a symbolic link. */
@@ -115,7 +97,7 @@ static nt_status read_library(const request *q, const char *text, size_t length,
 	bool *found)
 {
 	*found = false;
-	const char *name = file_name(q->scene, text, length);
+	const char *name = nt_mtl_file_name(&q->scene->arena, text, text + length);
 	char *path = name ? path_beside(q->scene, name) : NULL;
 	if (!path)
 		return nt_fail_memory(q->error);

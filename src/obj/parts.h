@@ -7,7 +7,7 @@
 #ifndef NT_OBJ_PARTS_H
 #define NT_OBJ_PARTS_H
 
-#include "scene/scene.h"
+#include "obj/mtl.h"
 
 /* The numbers of a face corner, as they are kept until the file has been read. Bit 31 clear: counted
  * from 0. Bit 31 set: counted back, the low bits are OBJ_BIAS plus the number relative to the chunk's

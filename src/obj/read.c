@@ -105,16 +105,6 @@ static bool add_chunk(obj_file *file, size_t *capacity, const char *begin, const
 	return true;
 }
 
-/* The last lines, from a copy with line feeds and readable bytes behind it. */
-static bool add_tail(obj_file *file, size_t *capacity, const char *begin, const char *end)
-{
-	const char *padded_end;
-	file->tail_begin = begin;
-	file->tail_end = end;
-	file->tail = obj_copy_padded(begin, end, &padded_end);
-	return file->tail && add_chunk(file, capacity, file->tail, padded_end);
-}
-
 /* The end of the text: some exporters write zero bytes behind it, which are a finding. */
 static const char *end_of_text(nt_scene *scene)
 {
@@ -123,9 +113,7 @@ static const char *end_of_text(nt_scene *scene)
 	while (size > 0 && begin[size - 1] == '\0')
 		size--;
 	if (size < scene->byte_count) {
-		nt_place place;
-		nt_place_clear(&place);
-		snprintf(place.file, sizeof place.file, "%s", scene->path);
+		nt_place place = nt_line_place(scene->path, 0);
 		place.offset = size;
 		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1,
 			"OBJ: %zu zero bytes at the end", scene->byte_count - size);
@@ -157,9 +145,12 @@ static nt_status split(obj_file *file, nt_error *error)
 			return nt_fail_memory(error);
 		p = next;
 	}
-	if (!add_tail(file, &capacity, tail, end))
-		return nt_fail_memory(error);
-	return NT_OK;
+	/* the last lines from a copy with line feeds and readable bytes behind it */
+	const char *padded_end;
+	file->tail_begin = tail;
+	file->tail_end = end;
+	file->tail = obj_copy_padded(tail, end, &padded_end);
+	return file->tail && add_chunk(file, &capacity, file->tail, padded_end) ? NT_OK : nt_fail_memory(error);
 }
 
 /* ---- parse ---- */
@@ -363,9 +354,7 @@ static void free_file(obj_file *file)
 
 static void add_file_finding(nt_scene *scene, nt_code code)
 {
-	nt_place place;
-	nt_place_clear(&place);
-	snprintf(place.file, sizeof place.file, "%s", scene->path);
+	const nt_place place = nt_line_place(scene->path, 0);
 	nt_finding_add(&scene->findings, code, &place, 1, NULL);
 }
 

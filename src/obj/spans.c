@@ -10,9 +10,7 @@
 #include "obj/parts.h"
 
 #include <stdlib.h>
-#include <string.h>
 #include "base/name_table.h"
-#include "obj/mtl.h"
 
 /* Materials that no library defines are named one by one up to this many. */
 enum { NAMED_UNKNOWN_MOST = 100 };
@@ -105,15 +103,6 @@ static bool read_stretches(state *s)
 
 /* ---- materials ---- */
 
-static nt_place line_place(const nt_scene *scene, size_t line)
-{
-	nt_place place;
-	nt_place_clear(&place);
-	strncpy(place.file, scene->path, sizeof place.file - 1);
-	place.line = line;
-	return place;
-}
-
 /* Reads every library once. */
 static nt_status read_libraries(state *s, const nt_read_options *options, nt_mtl *mtl)
 {
@@ -142,10 +131,7 @@ static nt_status read_libraries(state *s, const nt_read_options *options, nt_mtl
 static void define(nt_scene *scene, uint32_t number, const nt_mtl_definition *d)
 {
 	nt_material *material = &scene->materials[number];
-	nt_place place;
-	nt_place_clear(&place);
-	strncpy(place.file, d->material.library, sizeof place.file - 1);
-	place.line = d->material.line;
+	const nt_place place = nt_line_place(d->material.library, d->material.line);
 	if (material->library) {
 		nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, 1,
 			"MTL: newmtl of a name that was defined before: %.120s", d->material.name);
@@ -178,7 +164,7 @@ static nt_status make_materials(state *s, const nt_mtl *mtl)
 	size_t unknown = 0;
 	for (size_t i = 0; i < s->names.count && !mtl->incomplete; i++)
 		if (!scene->materials[i].library) {
-			const nt_place place = line_place(scene, s->name_lines[i]);
+			const nt_place place = nt_line_place(scene->path, s->name_lines[i]);
 			nt_finding_add(&scene->findings, NT_CODE_MATERIAL_UNKNOWN, &place, 1, "%.200s",
 				unknown++ < NAMED_UNKNOWN_MOST ? scene->materials[i].name : "and others");
 		}
@@ -239,7 +225,7 @@ static void report_ignored(const obj_file *file)
 		const obj_chunk *first = find_ignored(file, which, &count);
 		if (!first)
 			continue;
-		const nt_place place = line_place(scene, ignored_line(first, which));
+		const nt_place place = nt_line_place(scene->path, ignored_line(first, which));
 		if (which == OBJ_UNKNOWN)
 			nt_finding_add(&scene->findings, NT_CODE_STATEMENT_IGNORED, &place, count,
 				"OBJ: %s, the first is %.*s", obj_ignored_names[which],

@@ -8,7 +8,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 #include "obj/mtl.h"
-#include "obj/mtl_map.h"
 #include "obj/read.h"
 
 typedef struct reading {
@@ -163,7 +162,7 @@ static void map_options_are_skipped_by_their_arguments(void **state)
 		nt_arena arena = {0};
 		nt_mtl_map map;
 		nt_mtl_map_read(cases[i].text, cases[i].text + strlen(cases[i].text), &map);
-		assert_string_equal(nt_mtl_map_name(&arena, &map), cases[i].name);
+		assert_string_equal(nt_mtl_file_name(&arena, map.name_begin, map.name_end), cases[i].name);
 		assert_true(map.bump_scale == cases[i].scale);
 		assert_int_equal(map.turbulent, cases[i].turbulent);
 		nt_arena_free(&arena);
