@@ -61,8 +61,8 @@ static bool end_stretch(state *s, size_t face, size_t corner)
 			!nt_grow((void **)&file->spans, &file->span_capacity, file->span_count + 1,
 				sizeof *file->spans))
 			return false;
-		file->spans[file->span_count++] = (obj_span){s->face, s->corner, material, s->smoothing, s->object_is_new,
-			s->object, s->object_line};
+		file->spans[file->span_count++] = (obj_span){s->face, s->corner, material, s->smoothing,
+			s->object_is_new, s->object, s->object_line};
 		s->object_is_new = false;
 	}
 	s->face = face;
@@ -181,7 +181,7 @@ static unsigned mirrored_axes(const nt_scene *scene, uint32_t material)
 		: (map->placement.scale[0] < 0 ? 1u : 0) | (map->placement.scale[1] < 0 ? 2u : 0);
 }
 
-/* One mesh for each object that has faces. It has one sign for all of them, so that it ends where the mirroring changes.
+/* One mesh for each object that has faces. A mesh has one sign, so that another one begins where the mirroring changes.
  * Tangents have nothing in common there: they point the opposite way along u, or have the other w. */
 static nt_status make_meshes(obj_file *file, nt_error *error)
 {
