@@ -6,6 +6,7 @@
 #define NT_REPORT_BOX_H
 
 #include <float.h>
+#include <math.h>
 
 typedef struct nt_box {
 	float minimum[3], maximum[3];
@@ -33,7 +34,16 @@ static inline void nt_box_join(nt_box *box, const nt_box *other)
 	}
 }
 
-/* The same for ranges of texture coordinates; NaN is passed over. */
+/* The largest of its sides. */
+static inline double nt_box_extent(const nt_box *box)
+{
+	double extent = 0.0;
+	for (int i = 0; i < 3; i++)
+		extent = fmax(extent, (double)box->maximum[i] - box->minimum[i]);
+	return extent;
+}
+
+/* As nt_box_add() for ranges of texture coordinates; NaN is passed over. */
 static inline void nt_range_add(float minimum[2], float maximum[2], const float *uv)
 {
 	for (int i = 0; i < 2; i++) {

@@ -117,9 +117,7 @@ static uint64_t fingerprint_of(const nt_report_finding *finding, const nt_report
 	hash = hash_text(hash, mesh ? mesh->name : "");
 	if (!mesh || !(finding->box.minimum[0] <= finding->box.maximum[0]))
 		return hash_text(hash, detail);
-	double extent = 0.0;
-	for (int i = 0; i < 3; i++)
-		extent = fmax(extent, (double)mesh->box.maximum[i] - mesh->box.minimum[i]);
+	const double extent = nt_box_extent(&mesh->box);
 	for (int i = 0; i < 6; i++) {
 		const double value = i < 3 ? finding->box.minimum[i] : finding->box.maximum[i - 3];
 		const double steps = extent > 0.0 ? (value - mesh->box.minimum[i % 3]) / extent * 128.0 : 0.0;
@@ -153,6 +151,7 @@ static void add_finding(nt_check *check, nt_report_finding *finding, nt_severity
 		check->failed = true;
 		return;
 	}
+	finding->order = report->finding_count;
 	report->findings[report->finding_count++] = *finding;
 }
 
@@ -274,30 +273,9 @@ static int by_severity(const void *a, const void *b)
 		return x->severity > y->severity ? -1 : 1;
 	if (x->mesh != y->mesh)
 		return x->mesh + 1 < y->mesh + 1 ? -1 : 1; /* the file as a whole first */
-	return x->code < y->code ? -1 : x->code > y->code;
-}
-
-/* Merge sort: findings of one code stay in the order in which they were found. */
-static bool sort_findings(nt_report_finding *findings, size_t count)
-{
-	nt_report_finding *other = nt_alloc(count, sizeof *other);
-	if (!other)
-		return false;
-	for (size_t width = 1; width < count; width *= 2) {
-		for (size_t begin = 0; begin < count; begin += 2 * width) {
-			const size_t middle = begin + width < count ? begin + width : count;
-			const size_t end = middle + width < count ? middle + width : count;
-			size_t a = begin, b = middle;
-			for (size_t i = begin; i < end; i++) {
-				const bool left = b == end ||
-					(a < middle && by_severity(&findings[a], &findings[b]) <= 0);
-				other[i] = findings[left ? a++ : b++];
-			}
-		}
-		memcpy(findings, other, count * sizeof *findings);
-	}
-	free(other);
-	return true;
+	if (x->code != y->code)
+		return x->code < y->code ? -1 : 1;
+	return x->order < y->order ? -1 : x->order > y->order;
 }
 
 /* Marks findings that the baseline has, each of its entries once. */
@@ -330,8 +308,8 @@ static bool apply_baseline(nt_report *report, const nt_baseline *baseline)
 
 nt_status nt_report_complete(nt_report *report, const nt_report_options *options)
 {
-	if (!sort_findings(report->findings, report->finding_count))
-		return NT_ERROR_MEMORY;
+	if (report->finding_count)
+		qsort(report->findings, report->finding_count, sizeof *report->findings, by_severity);
 	report->compared = options->baseline != NULL;
 	if (options->baseline && !apply_baseline(report, options->baseline))
 		return NT_ERROR_MEMORY;

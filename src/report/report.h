@@ -94,6 +94,7 @@ typedef struct nt_report_finding {
 	nt_severity severity;
 	uint32_t mesh;        /* index into the report's meshes, NT_NONE: the file as a whole */
 	size_t count;         /* occurrences */
+	size_t order;         /* in which it was found */
 	size_t alike;         /* meshes of this geometry that it holds for, the mesh itself included; 0: no mesh */
 	const char *message;  /* one sentence */
 	nt_place_view place;  /* texts in the report's arena */

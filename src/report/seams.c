@@ -207,19 +207,6 @@ static bool plane_holds(const nt_check *check, const nt_chains *chains, size_t c
 	return true;
 }
 
-static double extent_of(const nt_box *box)
-{
-	double extent = 0.0;
-	for (int i = 0; i < 3; i++)
-		extent = fmax(extent, (double)box->maximum[i] - box->minimum[i]);
-	return extent;
-}
-
-static double clean_zero(double value, double tolerance)
-{
-	return fabs(value) <= tolerance ? 0.0 : value;
-}
-
 /*
  * The plane across which the triangles beside the seam are each other's image, if the seam lies in it: its
  * normal is the mean direction from one side to the other. A plane along two axes is tried first, since
@@ -228,7 +215,7 @@ static double clean_zero(double value, double tolerance)
 static void fit_plane(const nt_check *check, const nt_chains *chains, size_t chain, nt_seam *seam,
 	const plane_sums *sums)
 {
-	const double tolerance = PLANE_TOLERANCE * extent_of(&check->facts->box);
+	const double tolerance = PLANE_TOLERANCE * nt_box_extent(&check->facts->box);
 	const nt_dvec3 centre = nt_dvec3_scale(1.0 / (double)sums->count, sums->points);
 	const double at[3] = {centre.x, centre.y, centre.z};
 	const nt_dvec3 axes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
@@ -239,7 +226,7 @@ static void fit_plane(const nt_check *check, const nt_chains *chains, size_t cha
 	if (fabs(across.z) > fabs(axis ? across.y : across.x))
 		axis = 2;
 	if (plane_holds(check, chains, chain, axes[axis], at[axis], tolerance)) {
-		const double d = clean_zero(at[axis], tolerance);
+		const double d = fabs(at[axis]) <= tolerance ? 0.0 : at[axis];
 		seam->has_plane = true;
 		memcpy(seam->plane, (double[4]){axes[axis].x, axes[axis].y, axes[axis].z, d},
 			sizeof seam->plane);

@@ -44,18 +44,17 @@ static void put_spot(const nt_report_finding *finding, nt_buffer *out)
 
 static void put_row(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
-	nt_buffer label = {0};
-	if (finding->mesh != NT_NONE)
-		nt_mesh_label(report, finding->mesh, &label);
 	put_cell(nt_shown_path(report->path), out);
-	put_cell(label.data ? label.data : "", out);
+	if (finding->mesh != NT_NONE)
+		nt_put_label(report, finding->mesh, put_cell, out);
+	else
+		put_cell("", out);
 	nt_buffer_format(out, "%s,%s,%zu,", nt_code_info(finding->code)->name,
 		nt_severity_name(finding->severity), finding->count);
 	put_cell(finding->message, out);
 	put_spot(finding, out);
 	nt_buffer_format(out, "%016llx,%s\r\n", (unsigned long long)finding->fingerprint,
 		finding->known ? "known" : "new");
-	nt_buffer_free_into(&label, out);
 }
 
 void nt_write_csv(const nt_report_list *reports, nt_buffer *out)

@@ -26,18 +26,11 @@ static bool is_changed(const nt_report_diff *diff, const nt_mesh_change *change)
 		a->checked_tangents != b->checked_tangents || a->vertices_after != b->vertices_after;
 }
 
-static size_t count_changed(const nt_report_diff *diff)
-{
-	size_t count = 0;
-	for (size_t i = 0; i < diff->mesh_count; i++)
-		count += is_changed(diff, &diff->meshes[i]);
-	return count;
-}
-
-static void put_label(const nt_report_diff *diff, const nt_mesh_change *change, nt_buffer *out)
+static void put_label(const nt_report_diff *diff, const nt_mesh_change *change,
+	void (*put)(const char *text, nt_buffer *out), nt_buffer *out)
 {
 	const int version = change->meshes[NEW] == NT_NONE ? OLD : NEW;
-	nt_mesh_label(diff->reports[version], change->meshes[version], out);
+	nt_put_label(diff->reports[version], change->meshes[version], put, out);
 }
 
 static size_t total(const size_t by_severity[3])
@@ -51,6 +44,9 @@ static void put_summary(const nt_report_diff *diff, nt_buffer *out)
 	nt_totals totals = {0};
 	for (int i = 0; i < 3; i++)
 		totals.by_severity[i] = diff->by_severity[NEW][i];
+	size_t changed = 0;
+	for (size_t i = 0; i < diff->mesh_count; i++)
+		changed += is_changed(diff, &diff->meshes[i]);
 	const size_t new = total(diff->by_severity[NEW]), gone = total(diff->by_severity[OLD]);
 	nt_buffer_format(out, "%zu new finding%s", new, new == 1 ? "" : "s");
 	if (new) {
@@ -58,8 +54,8 @@ static void put_summary(const nt_report_diff *diff, nt_buffer *out)
 		nt_totals_text(&totals, out);
 		nt_buffer_text(out, ")");
 	}
-	nt_buffer_format(out, ", %zu gone, %zu unchanged; %zu of %zu meshes changed", gone, diff->unchanged,
-		count_changed(diff), diff->mesh_count);
+	nt_buffer_format(out, ", %zu gone, %zu unchanged; %zu of %zu meshes changed", gone, diff->unchanged, changed,
+		diff->mesh_count);
 }
 
 /* "1200 -> 1210" or "1200" */
@@ -92,11 +88,8 @@ static void put_tangents(const nt_report_diff *diff, const nt_mesh_change *chang
 static void text_mesh(const nt_report_diff *diff, const nt_mesh_change *change, nt_buffer *out)
 {
 	const nt_report_mesh *a = mesh_of(diff, change, OLD), *b = mesh_of(diff, change, NEW);
-	nt_buffer label = {0};
-	put_label(diff, change, &label);
 	nt_buffer_text(out, "  ");
-	nt_buffer_clean(out, label.data ? label.data : "");
-	nt_buffer_free_into(&label, out);
+	put_label(diff, change, nt_plain_text, out);
 	if (!a || !b) {
 		nt_buffer_format(out, ": %s, %zu triangles\n", a ? "gone" : "new", (a ? a : b)->triangle_count);
 		return;
@@ -128,11 +121,8 @@ static void text_findings(const nt_report_diff *diff, int version, nt_buffer *ou
 			nt_severity_name(finding->severity), nt_code_info(finding->code)->name);
 		nt_buffer_clean(out, finding->message);
 		if (finding->mesh != NT_NONE && report->mesh_count > 1) {
-			nt_buffer label = {0};
-			nt_mesh_label(report, finding->mesh, &label);
 			nt_buffer_text(out, ", in ");
-			nt_buffer_clean(out, label.data ? label.data : "");
-			nt_buffer_free_into(&label, out);
+			nt_put_label(report, finding->mesh, nt_plain_text, out);
 		}
 		nt_buffer_text(out, "\n");
 	}
@@ -176,11 +166,8 @@ static void markdown_findings(const nt_report_diff *diff, int version, nt_buffer
 static void markdown_mesh(const nt_report_diff *diff, const nt_mesh_change *change, nt_buffer *out)
 {
 	const nt_report_mesh *a = mesh_of(diff, change, OLD), *b = mesh_of(diff, change, NEW);
-	nt_buffer label = {0};
-	put_label(diff, change, &label);
 	nt_buffer_text(out, "| ");
-	nt_markdown_text(label.data ? label.data : "", out);
-	nt_buffer_free_into(&label, out);
+	put_label(diff, change, nt_markdown_text, out);
 	if (!a || !b) {
 		nt_buffer_format(out, " | %s | %zu | | |\n", a ? "gone" : "new", (a ? a : b)->triangle_count);
 		return;
@@ -255,11 +242,8 @@ static void json_mesh(const nt_report_diff *diff, const nt_mesh_change *change, 
 	nt_json_float(change->worst_degrees, out);
 	nt_buffer_text(out, ",\"worst_position\":");
 	if (change->compared)
-		for (int i = 0; i < 3; i++) {
-			nt_buffer_text(out, i ? "," : "[");
-			nt_json_float(change->worst_position[i], out);
-		}
-	nt_buffer_text(out, change->compared ? "],\"histogram\":[" : "null,\"histogram\":[");
+		nt_json_floats(change->worst_position, 3, out);
+	nt_buffer_text(out, change->compared ? ",\"histogram\":[" : "null,\"histogram\":[");
 	for (int i = 0; i < NT_ANGLE_BINS; i++)
 		nt_buffer_format(out, "%s{\"up_to_degrees\":%g,\"corners\":%zu}", i ? "," : "", nt_angle_bins[i],
 			change->histogram[i]);
@@ -341,28 +325,17 @@ static void page_json(const nt_report_diff *diff, nt_buffer *out)
 	nt_buffer_format(out, "{\"unchanged\":%zu,\"meshes\":[", diff->unchanged);
 	for (size_t i = 0; i < diff->mesh_count; i++) {
 		const nt_mesh_change *change = &diff->meshes[i];
-		nt_buffer label = {0};
-		put_label(diff, change, &label);
 		nt_buffer_text(out, i ? ",\n{\"old\":" : "\n{\"old\":");
 		nt_json_index(change->meshes[OLD], out);
 		nt_buffer_text(out, ",\"new\":");
 		nt_json_index(change->meshes[NEW], out);
-		nt_buffer_text(out, ",");
-		json_member("label", label.data ? label.data : "", out);
-		nt_buffer_free_into(&label, out);
+		nt_buffer_text(out, ",\"label\":");
+		put_label(diff, change, nt_json_string, out);
 		nt_buffer_format(out, ",\"changed\":%s,\"rows\":[", is_changed(diff, change) ? "true" : "false");
 		page_rows(diff, change, out);
 		nt_buffer_text(out, "]}");
 	}
 	nt_buffer_text(out, "]}");
-}
-
-static void write_html(const nt_report_diff *diff, nt_report_list *versions, nt_buffer *out)
-{
-	nt_buffer changes = {0};
-	page_json(diff, &changes);
-	versions->changes = &changes;
-	nt_write_html(versions, out);
 }
 
 /* ---- entry ---- */
@@ -378,15 +351,18 @@ nt_status nt_diff_write(const nt_report_diff *diff, nt_report_format format, nt_
 {
 	nt_report_stream stream = {.sink = sink, .user = user, .error = error};
 	nt_report_list versions = {.items = diff->reports, .count = 2, .stream = &stream, .diff = diff};
-	nt_buffer out = {0};
-	if (format == NT_REPORT_HTML)
-		write_html(diff, &versions, &out);
-	else if (format == NT_REPORT_JSON)
+	nt_buffer out = {0}, changes = {0};
+	if (format == NT_REPORT_HTML) {
+		page_json(diff, &changes);
+		versions.changes = &changes;
+		nt_write_html(&versions, &out);
+	} else if (format == NT_REPORT_JSON) {
 		write_json(diff, &out);
-	else if (format == NT_REPORT_MARKDOWN)
+	} else if (format == NT_REPORT_MARKDOWN) {
 		write_markdown(diff, &out);
-	else
+	} else {
 		write_text(diff, &out);
+	}
 	nt_list_flush(&versions, 0, &out);
 	if (out.failed && !stream.status)
 		stream.status = nt_fail_memory(error);

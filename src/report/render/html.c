@@ -93,28 +93,6 @@ static void put_string(const char *text, nt_buffer *out)
 	put_safe(&plain, out);
 }
 
-static void put_floats(const float *values, size_t count, nt_buffer *out)
-{
-	for (size_t i = 0; i < count; i++) {
-		if (i)
-			nt_buffer_text(out, ",");
-		nt_json_float(values[i], out);
-	}
-}
-
-static void put_box(const nt_box *box, nt_buffer *out)
-{
-	if (!(box->minimum[0] <= box->maximum[0])) {
-		nt_buffer_text(out, "null");
-		return;
-	}
-	nt_buffer_text(out, "[[");
-	put_floats(box->minimum, 3, out);
-	nt_buffer_text(out, "],[");
-	put_floats(box->maximum, 3, out);
-	nt_buffer_text(out, "]]");
-}
-
 /* Three numbers that read back as doubles. */
 static void put_doubles(const char *name, const double *values, size_t count, nt_buffer *out)
 {
@@ -128,12 +106,6 @@ static void put_index(const char *name, uint32_t index, nt_buffer *out)
 {
 	nt_buffer_format(out, ",\"%s\":", name);
 	nt_json_index(index, out);
-}
-
-/* Whether an element of an array stands before. */
-static bool ends_in_bracket(const nt_buffer *out)
-{
-	return out->size && out->data[out->size - 1] == ']';
 }
 
 /* ---- meshes ---- */
@@ -157,9 +129,7 @@ static void put_seam(const nt_seam *seam, nt_buffer *out)
 
 static void begin_fact(const char *name, nt_buffer *out)
 {
-	if (ends_in_bracket(out))
-		nt_buffer_text(out, ",");
-	nt_buffer_format(out, "[\"%s\",\"", name);
+	nt_buffer_format(out, "%s[\"%s\",\"", out->size && out->data[out->size - 1] == ']' ? "," : "", name);
 }
 
 static void put_facts(const nt_report_mesh *m, nt_buffer *out)
@@ -207,9 +177,9 @@ static void put_image(const nt_image *image, size_t *bytes_left, budget *left, n
 	left->sources.failed |= first && number == NT_NONE;
 	nt_buffer_text(out, "{\"image\":");
 	nt_json_index(number, out);
-	nt_buffer_text(out, ",\"map\":[");
-	put_floats(image->transform, 6, out);
-	nt_buffer_text(out, "],\"file\":");
+	nt_buffer_text(out, ",\"map\":");
+	nt_json_floats(image->transform, 6, out);
+	nt_buffer_text(out, ",\"file\":");
 	if (image->file)
 		put_string(image->file, out);
 	else
@@ -226,17 +196,14 @@ static void put_image(const nt_image *image, size_t *bytes_left, budget *left, n
 static void put_mesh(const nt_report *report, uint32_t mesh, budget *left, nt_buffer *out)
 {
 	const nt_report_mesh *m = &report->meshes[mesh];
-	nt_buffer label = {0};
-	nt_mesh_label(report, mesh, &label);
 	nt_buffer_text(out, "{\"label\":");
-	put_string(label.data ? label.data : "", out);
-	nt_buffer_free_into(&label, out);
+	nt_put_label(report, mesh, put_string, out);
 	nt_buffer_text(out, ",\"why\":");
 	put_string(m->why, out);
 	put_index("same_as", m->same_as, out);
 	nt_buffer_format(out, ",\"triangles\":%zu,\"vertices\":%zu,\"islands\":%zu,\"geometry\":%s,\"box\":",
 		m->triangle_count, m->vertices_before, m->island_count, has_geometry(m) ? "true" : "false");
-	put_box(&m->box, out);
+	nt_json_box(&m->box, out);
 	put_facts(m, out);
 	for (int p = 0; p < NT_PICTURE_COUNT; p++) {
 		nt_buffer_text(out, p ? "," : ",\"images\":[");
@@ -263,7 +230,7 @@ static void put_finding(const nt_report_finding *finding, bool known, nt_buffer 
 	put_index("island", finding->island, out);
 	const nt_spot *spot = finding->spot_count ? &finding->spots[0] : NULL;
 	nt_buffer_format(out, ",\"line\":%zu,\"box\":", spot && spot->line ? spot->line : finding->place.line);
-	put_box(&finding->box, out);
+	nt_json_box(&finding->box, out);
 	nt_buffer_text(out, ",\"at\":[");
 	for (unsigned i = 0, any = 0; i < finding->spot_count; i++)
 		if (finding->spots[i].triangle != NT_NONE)
@@ -439,11 +406,6 @@ static void begin_page(bool in_folder, nt_buffer *out)
 	nt_buffer_text(out, nt_page_body);
 }
 
-static void end_page(nt_buffer *out)
-{
-	nt_buffer_text(out, "</body>\n</html>\n");
-}
-
 void nt_write_html(const nt_report_list *reports, nt_buffer *out)
 {
 	const bool in_folder = reports->style.index;
@@ -451,7 +413,7 @@ void nt_write_html(const nt_report_list *reports, nt_buffer *out)
 	put_data(reports, out);
 	put_part(NT_HTML_SCRIPT, in_folder, out);
 	put_geometries(reports, out);
-	end_page(out);
+	nt_buffer_text(out, "</body>\n</html>\n");
 }
 
 /* ---- the index of many pages ---- */
@@ -507,5 +469,5 @@ void nt_write_html_index(const nt_buffer *rows, nt_buffer *out)
 	nt_buffer_append(out, rows->data, rows->size);
 	nt_buffer_text(out, "]}</script>\n");
 	put_part(NT_HTML_SCRIPT, true, out);
-	end_page(out);
+	nt_buffer_text(out, "</body>\n</html>\n");
 }

@@ -30,6 +30,13 @@ static void key(nt_buffer *out, int indent, const char *name)
 	nt_buffer_format(out, "\"%s\":", name);
 }
 
+/* An object or array as a member. */
+static void open(nt_buffer *out, const char *name, const char *bracket)
+{
+	key(out, SAME_LINE, name);
+	nt_buffer_text(out, bracket);
+}
+
 static void close_with(nt_buffer *out, int indent, const char *bracket)
 {
 	nt_buffer_text(out, "\n");
@@ -72,45 +79,19 @@ static void put_float(nt_buffer *out, const char *name, double value)
 	nt_json_float(value, out);
 }
 
-static void floats(nt_buffer *out, const float *values, size_t count)
-{
-	nt_buffer_text(out, "[");
-	for (size_t i = 0; i < count; i++) {
-		separate(out, SAME_LINE);
-		nt_json_float(values[i], out);
-	}
-	nt_buffer_text(out, "]");
-}
-
 static void put_doubles(nt_buffer *out, const char *name, const double *values, size_t count)
 {
-	key(out, SAME_LINE, name);
-	nt_buffer_text(out, "[");
+	open(out, name, "[");
 	for (size_t i = 0; i < count; i++) {
 		separate(out, SAME_LINE);
 		nt_json_float(values[i], out);
 	}
-	nt_buffer_text(out, "]");
-}
-
-static void put_box(nt_buffer *out, const nt_box *box)
-{
-	key(out, SAME_LINE, "box");
-	if (!(box->minimum[0] <= box->maximum[0])) {
-		nt_buffer_text(out, "null");
-		return;
-	}
-	nt_buffer_text(out, "[");
-	floats(out, box->minimum, 3);
-	separate(out, SAME_LINE);
-	floats(out, box->maximum, 3);
 	nt_buffer_text(out, "]");
 }
 
 static void put_place(nt_buffer *out, const char *name, const nt_place_view *place)
 {
-	key(out, SAME_LINE, name);
-	nt_buffer_text(out, "{");
+	open(out, name, "{");
 	put_text(out, "file", place->file[0] ? nt_shown_path(place->file) : NULL);
 	key(out, SAME_LINE, "line");
 	nt_buffer_format(out, place->line ? "%zu" : "null", place->line);
@@ -151,8 +132,7 @@ static void area_shares(nt_buffer *out, const double areas[3])
 {
 	const double total = areas[0] + areas[1] + areas[2];
 	const double scale = total > 0.0 ? 1.0 / total : 0.0;
-	key(out, SAME_LINE, "area_share");
-	nt_buffer_text(out, "{");
+	open(out, "area_share", "{");
 	put_float(out, "normal", areas[2] * scale);
 	put_float(out, "mirrored", areas[0] * scale);
 	put_float(out, "degenerate", areas[1] * scale);
@@ -184,11 +164,8 @@ static void put_island(nt_buffer *out, const nt_island *island)
 	put_measure(out, "texel_density", island->texel_density);
 	put_measure(out, "stretch", island->stretch);
 	key(out, SAME_LINE, "uv_box");
-	nt_buffer_text(out, "[");
-	floats(out, island->minimum, 2);
-	separate(out, SAME_LINE);
-	floats(out, island->maximum, 2);
-	nt_buffer_text(out, "]");
+	nt_json_rows((const float[]){island->minimum[0], island->minimum[1], island->maximum[0], island->maximum[1]},
+		2, 2, out);
 	nt_buffer_text(out, "}");
 }
 
@@ -206,21 +183,11 @@ static void put_edge(nt_buffer *out, const nt_seam_edge *edge)
 	put_pairs(out, "vertices", edge->vertices);
 	put_pairs(out, "output_vertices", edge->output);
 	key(out, SAME_LINE, "positions");
-	nt_buffer_text(out, "[");
-	floats(out, edge->positions[0], 3);
+	nt_json_rows(edge->positions[0], 2, 3, out);
+	open(out, "texcoords", "[");
+	nt_json_rows(edge->texcoords[0][0], 2, 2, out);
 	separate(out, SAME_LINE);
-	floats(out, edge->positions[1], 3);
-	nt_buffer_text(out, "]");
-	key(out, SAME_LINE, "texcoords");
-	nt_buffer_text(out, "[");
-	for (int side = 0; side < 2; side++) {
-		separate(out, SAME_LINE);
-		nt_buffer_text(out, "[");
-		floats(out, edge->texcoords[side][0], 2);
-		separate(out, SAME_LINE);
-		floats(out, edge->texcoords[side][1], 2);
-		nt_buffer_text(out, "]");
-	}
+	nt_json_rows(edge->texcoords[1][0], 2, 2, out);
 	nt_buffer_text(out, "]");
 	put_float(out, "dihedral_degrees", edge->dihedral);
 	put_float(out, "tangent_angle_degrees", edge->tangent_angle);
@@ -235,8 +202,7 @@ static void put_seam(nt_buffer *out, const nt_seam *seam)
 	put_float(out, "length", seam->length);
 	put_doubles(out, "dihedral_degrees", seam->dihedral, 2);
 	put_doubles(out, "tangent_angle_degrees", seam->tangent_angle, 2);
-	key(out, SAME_LINE, "islands");
-	nt_buffer_text(out, "{");
+	open(out, "islands", "{");
 	put_index(out, "normal", seam->islands[0]);
 	put_index(out, "mirrored", seam->islands[1]);
 	nt_buffer_text(out, "}");
@@ -255,10 +221,10 @@ static void put_seam(nt_buffer *out, const nt_seam *seam)
 	} else {
 		nt_buffer_text(out, "null");
 	}
-	put_box(out, &seam->box);
+	key(out, SAME_LINE, "box");
+	nt_json_box(&seam->box, out);
 	put_bool(out, "edges_truncated", seam->edge_count > NT_SEAM_EDGES);
-	key(out, SAME_LINE, "edges");
-	nt_buffer_text(out, "[");
+	open(out, "edges", "[");
 	for (size_t i = 0; i < seam->edge_count && i < NT_SEAM_EDGES; i++) {
 		separate(out, SAME_LINE);
 		put_edge(out, &seam->edges[i]);
@@ -269,8 +235,7 @@ static void put_seam(nt_buffer *out, const nt_seam *seam)
 static void put_slots(nt_buffer *out, unsigned slots)
 {
 	static const char *const names[3] = {"normal", "clearcoat_normal", "anisotropy"};
-	key(out, SAME_LINE, "slots");
-	nt_buffer_text(out, "[");
+	open(out, "slots", "[");
 	for (unsigned i = 0; i < 3; i++) {
 		if (slots >> i & 1u) {
 			separate(out, SAME_LINE);
@@ -282,8 +247,7 @@ static void put_slots(nt_buffer *out, unsigned slots)
 
 static void put_histogram(nt_buffer *out, const nt_report_mesh *mesh)
 {
-	key(out, SAME_LINE, "direction_histogram");
-	nt_buffer_text(out, "[");
+	open(out, "direction_histogram", "[");
 	for (int i = 0; i < NT_ANGLE_BINS; i++) {
 		separate(out, SAME_LINE);
 		nt_buffer_format(out, "{\"up_to_degrees\":%g,\"corners\":%zu}", nt_angle_bins[i],
@@ -314,8 +278,7 @@ static void put_counts(nt_buffer *out, const nt_report_mesh *mesh)
 	put_count(out, "faces", mesh->face_count);
 	by_orientation(out, "triangles", mesh->triangles);
 	area_shares(out, mesh->areas);
-	key(out, SAME_LINE, "vertices");
-	nt_buffer_text(out, "{");
+	open(out, "vertices", "{");
 	put_count(out, "before", mesh->vertices_before);
 	put_count(out, "added_normals", mesh->added_normals);
 	put_count(out, "added_mirror", mesh->added_mirror);
@@ -323,8 +286,7 @@ static void put_counts(nt_buffer *out, const nt_report_mesh *mesh)
 	put_count(out, "after", mesh->vertices_after);
 	nt_buffer_text(out, "}");
 	put_costs(out, mesh);
-	key(out, SAME_LINE, "edges");
-	nt_buffer_text(out, "{");
+	open(out, "edges", "{");
 	put_count(out, "all", mesh->edge_count);
 	put_count(out, "boundary", mesh->boundary_edges);
 	put_count(out, "boundary_loops", mesh->boundary_loops);
@@ -335,8 +297,7 @@ static void put_counts(nt_buffer *out, const nt_report_mesh *mesh)
 	put_count(out, "mirror", mesh->seam_edges);
 	nt_buffer_text(out, "}");
 	put_count(out, "triangles_left_out", mesh->left_out);
-	key(out, SAME_LINE, "islands_by_kind");
-	nt_buffer_text(out, "{");
+	open(out, "islands_by_kind", "{");
 	for (unsigned kind = 0; kind < 4; kind++)
 		put_count(out, nt_island_kind_name((nt_island_kind)kind), mesh->island_kinds[kind]);
 	nt_buffer_text(out, "}");
@@ -365,18 +326,17 @@ static void put_mesh(nt_buffer *out, const nt_report_mesh *mesh)
 	put_histogram(out, mesh);
 	put_count(out, "instances", mesh->instance_count);
 	put_count(out, "negative_instances", mesh->negative_instances);
-	put_box(out, &mesh->box);
+	key(out, SAME_LINE, "box");
+	nt_json_box(&mesh->box, out);
 	put_bool(out, "islands_truncated", mesh->island_count > SHOWN_ISLANDS);
-	key(out, SAME_LINE, "islands");
-	nt_buffer_text(out, "[");
+	open(out, "islands", "[");
 	for (size_t i = 0; mesh->islands && i < mesh->island_count && i < SHOWN_ISLANDS; i++) {
 		separate(out, 4);
 		put_island(out, &mesh->islands[i]);
 	}
 	nt_buffer_text(out, "]");
 	put_bool(out, "seams_truncated", mesh->seam_count > SHOWN_SEAMS);
-	key(out, SAME_LINE, "seams");
-	nt_buffer_text(out, "[");
+	open(out, "seams", "[");
 	for (size_t i = 0; mesh->seams && i < mesh->seam_count && i < SHOWN_SEAMS; i++) {
 		separate(out, 4);
 		put_seam(out, &mesh->seams[i]);
@@ -395,27 +355,17 @@ static void put_spot(nt_buffer *out, const nt_spot *spot)
 	nt_buffer_format(out, spot->line ? "%zu" : "null", spot->line);
 	put_text(out, "source", spot->source);
 	put_float(out, "value", spot->value);
-	key(out, SAME_LINE, "vertices");
-	nt_buffer_text(out, "[");
+	open(out, "vertices", "[");
 	for (unsigned k = 0; k < spot->corner_count; k++) {
 		separate(out, SAME_LINE);
 		nt_buffer_format(out, "%u", spot->vertices[k]);
 	}
 	nt_buffer_text(out, "]");
 	key(out, SAME_LINE, "positions");
-	nt_buffer_text(out, "[");
-	for (unsigned k = 0; k < spot->corner_count; k++) {
-		separate(out, SAME_LINE);
-		floats(out, spot->positions[k], 3);
-	}
-	nt_buffer_text(out, "]");
+	nt_json_rows(spot->positions[0], spot->corner_count, 3, out);
 	key(out, SAME_LINE, "texcoords");
-	nt_buffer_text(out, "[");
-	for (unsigned k = 0; spot->has_texcoords && k < spot->corner_count; k++) {
-		separate(out, SAME_LINE);
-		floats(out, spot->texcoords[k], 2);
-	}
-	nt_buffer_text(out, "]}");
+	nt_json_rows(spot->texcoords[0], spot->has_texcoords ? spot->corner_count : 0, 2, out);
+	nt_buffer_text(out, "}");
 }
 
 static void put_finding(nt_buffer *out, const nt_report_finding *finding)
@@ -433,14 +383,13 @@ static void put_finding(nt_buffer *out, const nt_report_finding *finding)
 	put_index(out, "seam", finding->seam);
 	put_index(out, "island", finding->island);
 	put_place(out, "place", &finding->place);
-	put_box(out, &finding->box);
-	key(out, SAME_LINE, "numbers");
-	nt_buffer_text(out, "{");
+	key(out, SAME_LINE, "box");
+	nt_json_box(&finding->box, out);
+	open(out, "numbers", "{");
 	for (unsigned i = 0; i < finding->number_count; i++)
 		put_float(out, finding->numbers[i].name, finding->numbers[i].value);
 	nt_buffer_text(out, "}");
-	key(out, SAME_LINE, "spots");
-	nt_buffer_text(out, "[");
+	open(out, "spots", "[");
 	for (unsigned i = 0; i < finding->spot_count; i++) {
 		separate(out, 5);
 		put_spot(out, &finding->spots[i]);

@@ -22,11 +22,8 @@ static void put_findings(const nt_report_list *reports, const nt_report *report,
 		nt_buffer_format(out, "%s: ", nt_severity_name(finding->severity));
 		nt_xml_text(finding->message, out);
 		if (finding->mesh != NT_NONE) {
-			nt_buffer label = {0};
-			nt_mesh_label(report, finding->mesh, &label);
 			nt_buffer_text(out, ", in ");
-			nt_xml_text(label.data ? label.data : "", out);
-			nt_buffer_free_into(&label, out);
+			nt_put_label(report, finding->mesh, nt_xml_text, out);
 		}
 		if (finding->spot_count && finding->spots[0].line)
 			nt_buffer_format(out, ", line %zu", finding->spots[0].line);

@@ -51,18 +51,15 @@ static void put_file_row(const nt_report *report, nt_buffer *out)
 
 void nt_markdown_finding(const nt_report *report, const nt_report_finding *finding, nt_buffer *out)
 {
-	nt_buffer label = {0};
-	if (finding->mesh != NT_NONE)
-		nt_mesh_label(report, finding->mesh, &label);
 	nt_buffer_format(out, "| %s%s | `%s` | ", nt_severity_name(finding->severity),
 		finding->known ? " (known)" : "", nt_code_info(finding->code)->name);
-	nt_markdown_text(label.data ? label.data : "", out);
+	if (finding->mesh != NT_NONE)
+		nt_put_label(report, finding->mesh, nt_markdown_text, out);
 	if (finding->spot_count && finding->spots[0].line)
 		nt_buffer_format(out, ", line %zu", finding->spots[0].line);
 	nt_buffer_text(out, " | ");
 	nt_markdown_text(finding->message, out);
 	nt_buffer_text(out, " |\n");
-	nt_buffer_free_into(&label, out);
 }
 
 /* Of one code in one file few are shown, the first of them the worst. */

@@ -172,14 +172,11 @@ bool nt_write_uv_svg(const nt_report *report, uint32_t mesh, nt_buffer *out)
 	measure(&c);
 	const double width = (c.maximum[0] - c.minimum[0]) * c.factor;
 	const double height = (c.maximum[1] - c.minimum[1]) * c.factor;
-	nt_buffer label = {0};
-	nt_mesh_label(report, mesh, &label);
 	nt_buffer_format(out, "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 %.1f %.1f\" "
 		"data-origin=\"%.9g %.9g\" data-factor=\"%.9g\" role=\"img\">\n<title>UV layout of ",
 		width, height, c.minimum[0], c.minimum[1], c.factor);
-	nt_xml_text(label.data ? label.data : "", out);
+	nt_put_label(report, mesh, nt_xml_text, out);
 	nt_buffer_text(out, "</title>\n");
-	nt_buffer_free_into(&label, out);
 	nt_buffer_text(out, style);
 	draw_grid(&c);
 	draw_triangles(&c, 1, "normal");

@@ -48,11 +48,8 @@ static void write_islands(const nt_report_mesh *mesh, nt_buffer *out)
 static void write_mesh(const nt_report *report, uint32_t index, nt_buffer *out)
 {
 	const nt_report_mesh *mesh = &report->meshes[index];
-	nt_buffer label = {0};
-	nt_mesh_label(report, index, &label);
 	nt_buffer_text(out, "  ");
-	nt_buffer_clean(out, label.data ? label.data : "");
-	nt_buffer_free_into(&label, out);
+	nt_put_label(report, index, nt_plain_text, out);
 	if (!mesh->analysed) {
 		nt_buffer_format(out, ": %s\n", mesh->why);
 		return;
@@ -119,12 +116,9 @@ static void write_finding(const nt_report_list *reports, const nt_report *report
 	nt_buffer_clean(out, finding->message);
 	nt_buffer_text(out, finding->known ? " (known)\n" : "\n");
 	if (finding->mesh != NT_NONE && report->mesh_count > 1) {
-		nt_buffer label = {0};
-		nt_mesh_label(report, finding->mesh, &label);
 		nt_buffer_text(out, "            in ");
-		nt_buffer_clean(out, label.data ? label.data : "");
+		nt_put_label(report, finding->mesh, nt_plain_text, out);
 		nt_buffer_text(out, "\n");
-		nt_buffer_free_into(&label, out);
 	}
 	for (unsigned i = 0; i < finding->spot_count && i < SHOWN_SPOTS; i++)
 		write_spot(&finding->spots[i], out);

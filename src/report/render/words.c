@@ -71,6 +71,15 @@ void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out)
 		nt_buffer_format(out, "mesh %u", mesh);
 }
 
+void nt_put_label(const nt_report *report, uint32_t mesh, void (*put)(const char *text, nt_buffer *out),
+	nt_buffer *out)
+{
+	nt_buffer label = {0};
+	nt_mesh_label(report, mesh, &label);
+	put(label.data ? label.data : "", out);
+	nt_buffer_free_into(&label, out);
+}
+
 size_t nt_put_utf8(const char *text, nt_buffer *out)
 {
 	const size_t length = nt_utf8_length(text, SIZE_MAX);
@@ -116,6 +125,42 @@ void nt_json_index(uint32_t index, nt_buffer *out)
 		nt_buffer_text(out, "null");
 	else
 		nt_buffer_format(out, "%u", index);
+}
+
+void nt_json_floats(const float *values, size_t count, nt_buffer *out)
+{
+	for (size_t i = 0; i < count; i++) {
+		nt_buffer_text(out, i ? "," : "[");
+		nt_json_float(values[i], out);
+	}
+	nt_buffer_text(out, count ? "]" : "[]");
+}
+
+void nt_json_rows(const float *values, size_t count, size_t width, nt_buffer *out)
+{
+	for (size_t i = 0; i < count; i++) {
+		nt_buffer_text(out, i ? "," : "[");
+		nt_json_floats(values + i * width, width, out);
+	}
+	nt_buffer_text(out, count ? "]" : "[]");
+}
+
+void nt_json_box(const nt_box *box, nt_buffer *out)
+{
+	if (!(box->minimum[0] <= box->maximum[0])) {
+		nt_buffer_text(out, "null");
+		return;
+	}
+	nt_buffer_text(out, "[");
+	nt_json_floats(box->minimum, 3, out);
+	nt_buffer_text(out, ",");
+	nt_json_floats(box->maximum, 3, out);
+	nt_buffer_text(out, "]");
+}
+
+void nt_plain_text(const char *text, nt_buffer *out)
+{
+	nt_buffer_clean(out, text);
 }
 
 void nt_xml_text(const char *text, nt_buffer *out)

@@ -53,6 +53,10 @@ void nt_totals_text(const nt_totals *totals, nt_buffer *out);
 /* The name a mesh is shown with: its object in words, its name or its number. Never empty. */
 void nt_mesh_label(const nt_report *report, uint32_t mesh, nt_buffer *out);
 
+/* The same, as `put` writes a text of any bytes. */
+void nt_put_label(const nt_report *report, uint32_t mesh, void (*put)(const char *text, nt_buffer *out),
+	nt_buffer *out);
+
 /* One character of a text that may be any bytes: as it is where it is UTF-8, else U+FFFD. Returns its length in the
  * text, which is not at its end. */
 size_t nt_put_utf8(const char *text, nt_buffer *out);
@@ -65,6 +69,14 @@ void nt_json_float(double value, nt_buffer *out);
 
 /* A JSON number; null for NT_NONE. */
 void nt_json_index(uint32_t index, nt_buffer *out);
+
+/* JSON arrays: of numbers, of `count` rows of `width` numbers, of the corners of a box; null for an empty box. */
+void nt_json_floats(const float *values, size_t count, nt_buffer *out);
+void nt_json_rows(const float *values, size_t count, size_t width, nt_buffer *out);
+void nt_json_box(const nt_box *box, nt_buffer *out);
+
+/* Text for a terminal: nt_buffer_clean(). */
+void nt_plain_text(const char *text, nt_buffer *out);
 
 /* Text for XML and HTML: markup escaped, control characters and bytes that are no UTF-8 replaced. */
 void nt_xml_text(const char *text, nt_buffer *out);
