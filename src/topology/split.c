@@ -4,8 +4,8 @@
  *
  * Corners are visited in order. The tangent of a vertex's first corner stays with the vertex; only a
  * corner that differs from it asks a hash table of (vertex, tangent) for the copy that has its tangent, so
- * that meshes without splits pay one comparison a corner and a hub with many tangents stays linear. A tree takes
- * the table's place where tangents were made to have one hash. Indices are not written before the first copy.
+ * that meshes without splits pay one comparison a corner and a hub with many tangents stays linear. The hash has the
+ * key of the process. Indices are not written before the first copy.
  */
 #include "topology/split.h"
 
@@ -36,50 +36,28 @@ static bool equal_keys(const nt_tangent_key *a, const nt_tangent_key *b)
 	return memcmp(a, b, sizeof *a) == 0;
 }
 
-static uint64_t hash_copy(uint32_t original, const nt_tangent_key *key)
+/* Two products instead of the four of nt_hash_words() for three words: 4 % of nmtan_vertex_tangents(). */
+static size_t hash_copy(const nt_splitter *s, const nt_vertex_copy *copy)
 {
-	/* products that do not wait for each other */
 	uint64_t halves[2];
-	memcpy(halves, key->bits, sizeof halves);
-	uint64_t hash = original * 0xd6e8feb86659fd93u;
-	for (int i = 0; i < 2; i++) {
-		halves[i] *= i ? 0xff51afd7ed558ccdu : 0x9e3779b97f4a7c15u;
-		hash += halves[i] ^ halves[i] >> 32;
-	}
-	hash *= 0xff51afd7ed558ccdu;
-	return hash ^ hash >> 32;
+	memcpy(halves, copy->tangent.bits, sizeof halves);
+	const unsigned __int128 first = (unsigned __int128)(halves[0] ^ s->key[0]) * (halves[1] ^ s->key[1]);
+	const unsigned __int128 second =
+		(unsigned __int128)((uint64_t)first ^ (uint64_t)(first >> 64) ^ copy->original) * s->key[1];
+	return (size_t)((uint64_t)second ^ (uint64_t)(second >> 64));
 }
 
 /* The slot of the table where a copy is or belongs. */
-static size_t find_slot(nt_splitter *s, const nt_vertex_copy *copy)
+static size_t find_slot(const nt_splitter *s, const nt_vertex_copy *copy)
 {
-	size_t at = hash_copy(copy->original, &copy->tangent) & (s->table_size - 1);
+	size_t at = hash_copy(s, copy) & (s->table_size - 1);
 	while (s->table[at] != NO_COPY) {
 		const nt_vertex_copy *other = &s->copies[s->table[at]];
 		if (other->original == copy->original && equal_keys(&other->tangent, &copy->tangent))
 			break;
 		at = (at + 1) & (s->table_size - 1);
-		s->steps++;
 	}
 	return at;
-}
-
-/* Whether tangents were made to have one hash: half a step a corner is usual. */
-static bool is_crowded(const nt_splitter *s)
-{
-	return s->steps / 16 > s->corner_count;
-}
-
-static bool make_tree(nt_splitter *s)
-{
-	nt_crit_bit_node *nodes = nt_scratch_alloc(s->scratch, s->copy_capacity, sizeof *nodes);
-	if (!nodes)
-		return false;
-	s->tree = (nt_crit_bit){(const nt_crit_bit_word *)s->copies, sizeof *s->copies / sizeof *s->tree.keys,
-		nodes, 0};
-	for (size_t i = 0; i < s->copy_count; i++)
-		nt_crit_bit_add(&s->tree, (uint32_t)i);
-	return true;
 }
 
 static bool make_table(nt_splitter *s)
@@ -105,19 +83,7 @@ static bool grow(nt_splitter *s)
 		memcpy(copies, s->copies, s->copy_count * sizeof *copies);
 	s->copies = copies;
 	s->copy_capacity = capacity;
-	return is_crowded(s) ? make_tree(s) : make_table(s);
-}
-
-/* The number of the copy that equals the one behind the last, which may be its own. */
-static uint32_t find_copy(nt_splitter *s)
-{
-	const uint32_t next = (uint32_t)s->copy_count;
-	if (s->tree.nodes)
-		return nt_crit_bit_add(&s->tree, next);
-	uint32_t *entry = &s->table[find_slot(s, &s->copies[next])];
-	if (*entry == NO_COPY)
-		*entry = next;
-	return *entry;
+	return make_table(s);
 }
 
 /* The copy of a vertex that has this tangent, made where there is none yet. */
@@ -125,11 +91,9 @@ static nmtan_status take_copy(nt_splitter *s, uint32_t original, const nt_tangen
 {
 	if (s->copy_count == s->copy_capacity && !grow(s))
 		return NMTAN_ERROR_MEMORY;
-	if (is_crowded(s) && !s->tree.nodes && !make_tree(s))
-		return NMTAN_ERROR_MEMORY;
 	s->copies[s->copy_count] = (nt_vertex_copy){original, *key};
-	const uint32_t copy = find_copy(s);
-	if (copy == s->copy_count) {
+	uint32_t *copy = &s->table[find_slot(s, &s->copies[s->copy_count])];
+	if (*copy == NO_COPY) {
 		if ((s->output->indices && s->copy_count >= s->output->source_capacity) ||
 			s->mesh->vertex_count + s->copy_count >= UINT32_MAX)
 			return NMTAN_ERROR_TOO_LARGE;
@@ -137,9 +101,9 @@ static nmtan_status take_copy(nt_splitter *s, uint32_t original, const nt_tangen
 			s->output->sources[s->copy_count] = original;
 		if (s->output->copy_counts)
 			s->output->copy_counts[original]++;
-		s->copy_count++;
+		*copy = (uint32_t)s->copy_count++;
 	}
-	*vertex = (uint32_t)(s->mesh->vertex_count + copy);
+	*vertex = (uint32_t)(s->mesh->vertex_count + *copy);
 	return NMTAN_OK;
 }
 
@@ -158,6 +122,7 @@ nmtan_status nt_splitter_begin(nt_splitter *s, const nmtan_mesh *mesh, size_t co
 	nmtan_split_output *output, nt_scratch *scratch)
 {
 	*s = (nt_splitter){.mesh = mesh, .corner_count = corner_count, .output = output, .scratch = scratch};
+	nt_hash_key(s->key);
 	s->tangents = output->vertex_tangents
 		? output->vertex_tangents
 		: nt_scratch_alloc(scratch, mesh->vertex_count, 4 * sizeof *s->tangents);

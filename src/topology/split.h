@@ -7,9 +7,9 @@
 
 #include <stdbool.h>
 #include <string.h>
+#include "base/hash.h"
 #include "base/scratch.h"
 #include "nmtan.h"
-#include "topology/crit_bit.h"
 
 /* The bits of a tangent's four floats, -0 made +0 and all NaN one: equal floats have equal bits. */
 typedef struct nt_tangent_key {
@@ -34,10 +34,9 @@ typedef struct nt_splitter {
 	uint8_t *seen;          /* [vertex_count] tangents is set */
 	nt_vertex_copy *copies; /* [copy_capacity] */
 	size_t copy_count, copy_capacity;
+	uint64_t key[NT_HASH_KEY_WORDS];
 	uint32_t *table;        /* [table_size] numbers of copies; at most half full */
 	size_t table_size;
-	size_t steps;           /* to the next slot of the table, all together */
-	nt_crit_bit tree;       /* of the copies, in place of the table once there were too many; no nodes: not yet */
 } nt_splitter;
 
 /* Begins a split. mesh and output stay the caller's. Returns NMTAN_OK or NMTAN_ERROR_MEMORY. */

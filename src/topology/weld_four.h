@@ -4,7 +4,8 @@
  *
  * That hash is a sum of products of pairs of words that have a key added (NH, of UMAC: Black et al. 1999), folded, and
  * multiplied once more so that the upper bits depend on all. Four rows take as many instructions as two with the
- * products of 128 bits of nt_weld_hash(), which the table of rows has.
+ * products of 128 bits of nt_weld_hash(), which the table of rows has. It needs no secret key: where many vertices have
+ * one hash the sieve leaves them to the table.
  */
 #ifndef NT_TOPOLOGY_WELD_FOUR_H
 #define NT_TOPOLOGY_WELD_FOUR_H
@@ -82,10 +83,11 @@ static inline nt_weld_flags nt_weld_load_some(const nmtan_mesh *mesh, size_t beg
 	uint32_t *hashes)
 {
 	const nmtan_mesh local = *mesh; /* a copy, which no store changes */
+	const nt_weld_key key = nt_weld_make_key();
 	nt_weld_flags unordered = {0};
 	for (size_t v = begin; v < end; v++) {
 		unordered |= nt_weld_load(&local, v, &rows[v]);
-		hashes[v] = (uint32_t)(nt_weld_hash(&rows[v]) >> 32);
+		hashes[v] = (uint32_t)(nt_weld_hash(&key, &rows[v]) >> 32);
 	}
 	return unordered;
 }

@@ -19,6 +19,7 @@ enum { NT_WELD_BATCH = 32 };
 
 typedef struct nt_welder {
 	const nmtan_mesh *mesh;
+	nt_weld_key key;       /* nt_weld_items() makes it */
 	nt_borrowed *row_memory, *memory; /* for the rows, for everything else */
 	const uint32_t *items; /* vertex of item i; NULL: first_vertex + i */
 	size_t first_vertex, item_count;
@@ -29,10 +30,8 @@ typedef struct nt_welder {
 	uint32_t *numbers;   /* [item_count] row of each item */
 	size_t renamed_begin, renamed_end; /* items of welded vertices: those before and behind have their own number */
 	unsigned table_bits; /* log2 of the entries; a number has one bit less */
-	size_t steps;        /* probes of slots that were taken by another row */
 	bool rows_borrowed;
 	bool unordered; /* an item holds a NaN */
-	bool crowded;   /* of steps there were too many: nobody goes on */
 } nt_welder;
 
 static inline size_t nt_weld_slot(const nt_welder *w, uint64_t hash)
@@ -55,19 +54,13 @@ static inline unsigned nt_weld_bits_for(size_t entries)
 	return bits;
 }
 
-/* Whether that many steps for `rows` rows are no chance: usual are up to half a step a row (test_weld_hash.c). */
-static inline bool nt_weld_too_many(size_t steps, size_t rows)
-{
-	return steps / 16 > rows;
-}
-
-/* The slot of a row: where the entry of an equal one is, or none. Adds the steps to it. */
-static inline size_t nt_weld_probe(const nt_welder *w, const nt_weld_row *row, uint64_t hash, size_t *steps)
+/* The slot of a row: where the entry of an equal one is, or none. */
+static inline size_t nt_weld_probe(const nt_welder *w, const nt_weld_row *row, uint64_t hash)
 {
 	const size_t mask = ((size_t)1 << w->table_bits) - 1;
 	const uint32_t number_mask = (uint32_t)(mask >> 1);
 	const uint32_t tag = nt_weld_entry(w, hash, 0);
-	for (size_t at = nt_weld_slot(w, hash);; at = (at + 1) & mask, ++*steps) {
+	for (size_t at = nt_weld_slot(w, hash);; at = (at + 1) & mask) {
 		const uint32_t entry = w->table[at];
 		if (entry == NT_WELD_EMPTY ||
 			((entry & ~number_mask) == tag && nt_weld_same(&w->rows[entry & number_mask], row)))
@@ -80,8 +73,7 @@ static inline size_t nt_weld_probe(const nt_welder *w, const nt_weld_row *row, u
  *
  *   start     table as row_guess says, and room for as many rows or for `capacity`, whichever is more; false when
  *             out of memory
- *   some      items from `item` on, until all have numbers, memory runs short or the table is crowded; returns the
- *             first without
+ *   some      items from `item` on, until all have numbers or memory runs short; returns the first without
  *   reserve   more memory, for as many rows as the items before `done` lead to expect; false when out of memory */
 bool nt_weld_start(nt_welder *w, size_t capacity);
 size_t nt_weld_some(nt_welder *w, size_t item);
@@ -92,9 +84,6 @@ bool nt_weld_grow_rows(nt_welder *w, size_t capacity);
 
 /* All items, on one thread or several. False when out of memory. */
 bool nt_weld_items(nt_welder *w, unsigned ranges);
-
-/* The same without a table, on one thread (weld_bits.c). */
-bool nt_weld_by_bits(nt_welder *w);
 
 /* How a weld of vertices ends. MANY of them are equal: it is left to the table. */
 typedef enum nt_weld_outcome {

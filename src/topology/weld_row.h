@@ -6,6 +6,7 @@
 #define NT_TOPOLOGY_WELD_ROW_H
 
 #include <string.h>
+#include "base/hash.h"
 #include "topology/corners.h"
 #ifdef __SSE2__
 #include <emmintrin.h>
@@ -24,16 +25,25 @@ static inline uint64_t nt_weld_word(const nt_weld_row *row, size_t index)
 	return word;
 }
 
+/* The key of this process (base/hash.h), so that nobody can make rows of one hash. */
+typedef struct nt_weld_key {
+	uint64_t words[4];
+} nt_weld_key;
+
+static inline nt_weld_key nt_weld_make_key(void)
+{
+	uint64_t key[NT_HASH_KEY_WORDS];
+	nt_hash_key(key);
+	return (nt_weld_key){{key[0], key[1], key[0] * 0xa4093822299f31d1u, key[1] * 0x082efa98ec4e6c89u}};
+}
+
 /* Two products of 128 bits are added and the halves of the sum folded, so that every input bit has reached
  * others above and below it; the last factor carries what is in the low bits to the top, where slots come from.
  * Without it grids of whole numbers need up to 11 probes for a row instead of 1.5 (test_weld_hash.c). */
-static inline uint64_t nt_weld_hash(const nt_weld_row *row)
+static inline uint64_t nt_weld_hash(const nt_weld_key *key, const nt_weld_row *row)
 {
-	/* digits of pi and of the golden ratio: numbers of no structure */
-	const uint64_t a = nt_weld_word(row, 0) ^ 0x243f6a8885a308d3u;
-	const uint64_t b = nt_weld_word(row, 1) ^ 0x13198a2e03707344u;
-	const uint64_t c = nt_weld_word(row, 2) ^ 0xa4093822299f31d0u;
-	const uint64_t d = nt_weld_word(row, 3) ^ 0x082efa98ec4e6c89u;
+	const uint64_t a = nt_weld_word(row, 0) ^ key->words[0], b = nt_weld_word(row, 1) ^ key->words[1];
+	const uint64_t c = nt_weld_word(row, 2) ^ key->words[2], d = nt_weld_word(row, 3) ^ key->words[3];
 	const unsigned __int128 sum = (unsigned __int128)a * b + (unsigned __int128)c * d;
 	return ((uint64_t)sum ^ (uint64_t)(sum >> 64)) * 0x9e3779b97f4a7c15u;
 }

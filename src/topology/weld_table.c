@@ -37,7 +37,7 @@ static bool grow_table(nt_welder *w, unsigned bits)
 	for (size_t begin = 0; begin < w->row_count; begin += NT_WELD_BATCH) {
 		const size_t left = w->row_count - begin, count = left < NT_WELD_BATCH ? left : NT_WELD_BATCH;
 		for (size_t i = 0; i < count; i++) {
-			hashes[i] = nt_weld_hash(&w->rows[begin + i]);
+			hashes[i] = nt_weld_hash(&w->key, &w->rows[begin + i]);
 			__builtin_prefetch(&w->table[nt_weld_slot(w, hashes[i])], 1);
 		}
 		for (size_t i = 0; i < count; i++) {
@@ -104,7 +104,7 @@ static inline nt_weld_flags load_item(const nt_welder *w, const nmtan_mesh *mesh
 	uint64_t *hash)
 {
 	const nt_weld_flags unordered = nt_weld_load(mesh, vertex, row);
-	*hash = nt_weld_hash(row);
+	*hash = nt_weld_hash(&w->key, row);
 	__builtin_prefetch(&w->table[nt_weld_slot(w, *hash)], 1);
 	return unordered;
 }
@@ -143,7 +143,7 @@ static inline uint32_t keep_row(nt_welder *w, const nt_weld_row *row)
 static inline uint32_t find_or_add(nt_welder *w, const nt_weld_row *row, uint64_t hash)
 {
 	const uint32_t number_mask = ((uint32_t)1 << (w->table_bits - 1)) - 1;
-	uint32_t *entry = &w->table[nt_weld_probe(w, row, hash, &w->steps)];
+	uint32_t *entry = &w->table[nt_weld_probe(w, row, hash)];
 	if (*entry == NT_WELD_EMPTY)
 		*entry = nt_weld_entry(w, hash, keep_row(w, row));
 	return *entry & number_mask;
@@ -158,8 +158,6 @@ static void number_batch(nt_welder *w, const batch *b)
 			? find_or_add(&local, &b->rows[i], b->hashes[i])
 			: keep_row(&local, &b->rows[i]);
 	w->row_count = local.row_count;
-	w->steps = local.steps;
-	w->crowded = nt_weld_too_many(w->steps, w->item_count);
 	w->unordered = local.unordered || !b->ordered;
 }
 
@@ -183,7 +181,7 @@ size_t nt_weld_some(nt_welder *w, size_t item)
 		if (item < w->item_count)
 			load_batch(w, item, next_place(w, now), &batches[i ^ 1]);
 		number_batch(w, now);
-		if (item < w->item_count && (is_tight(w) || w->crowded))
+		if (item < w->item_count && is_tight(w))
 			break; /* everything moves: the next batch will be loaded again */
 	}
 	return item;

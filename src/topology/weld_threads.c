@@ -73,19 +73,18 @@ static bool make_ranges(joint *j)
 	return j->ranges;
 }
 
-/* Whether all items are welded, or a table is crowded; where they are not, there is more memory after it. */
+/* Whether all items are welded; where they are not, there is more memory after it. */
 static bool are_done(joint *j, bool *failed)
 {
 	bool done = true;
 	for (unsigned r = 0; r < j->count && !*failed; r++) {
 		range *here = &j->ranges[r];
-		j->w->crowded |= here->welder.crowded;
 		if (here->done == here->welder.item_count)
 			continue;
 		done = false;
 		*failed = !nt_weld_reserve(&here->welder, here->done);
 	}
-	return done || j->w->crowded;
+	return done;
 }
 
 static bool weld_ranges(joint *j)
@@ -101,7 +100,7 @@ static bool weld_ranges(joint *j)
 
 /* The places of a batch of rows in the range `in`, for those that are NEW so far. */
 static void seek_batch(const range *in, const nt_weld_row *rows, const uint64_t *hashes, size_t count,
-	uint32_t *places, size_t *steps)
+	uint32_t *places)
 {
 	const nt_welder *w = &in->welder;
 	const uint32_t number_mask = ((uint32_t)1 << (w->table_bits - 1)) - 1;
@@ -110,7 +109,7 @@ static void seek_batch(const range *in, const nt_weld_row *rows, const uint64_t 
 	for (size_t i = 0; i < count; i++) {
 		if (places[i] != NEW)
 			continue;
-		const uint32_t entry = w->table[nt_weld_probe(w, &rows[i], hashes[i], steps)];
+		const uint32_t entry = w->table[nt_weld_probe(w, &rows[i], hashes[i])];
 		if (entry != NT_WELD_EMPTY)
 			places[i] = (uint32_t)in->place + (entry & number_mask);
 	}
@@ -120,7 +119,7 @@ static void seek_rows(void *context, size_t begin, size_t end, unsigned slot)
 {
 	const joint *j = context;
 	range *here = &j->ranges[j->sought];
-	size_t new_count = 0, steps = 0;
+	size_t new_count = 0;
 	(void)slot;
 	for (size_t first = begin, count; first < end; first += count) {
 		const nt_weld_row *rows = here->welder.rows + first;
@@ -128,17 +127,13 @@ static void seek_rows(void *context, size_t begin, size_t end, unsigned slot)
 		uint64_t hashes[NT_WELD_BATCH];
 		count = end - first < NT_WELD_BATCH ? end - first : NT_WELD_BATCH;
 		for (size_t i = 0; i < count; i++) {
-			hashes[i] = nt_weld_hash(&rows[i]);
+			hashes[i] = nt_weld_hash(&j->w->key, &rows[i]);
 			places[i] = NEW;
 		}
 		for (unsigned r = 0; r < j->sought; r++)
-			seek_batch(&j->ranges[r], rows, hashes, count, places, &steps);
+			seek_batch(&j->ranges[r], rows, hashes, count, places);
 		for (size_t i = 0; i < count; i++)
 			new_count += places[i] == NEW;
-		if (nt_weld_too_many(steps, j->sought * (end - begin)))
-			__atomic_store_n(&j->w->crowded, true, __ATOMIC_RELAXED);
-		if (__atomic_load_n(&j->w->crowded, __ATOMIC_RELAXED))
-			break;
 	}
 	__atomic_add_fetch(&here->new_count, new_count, __ATOMIC_RELAXED);
 }
@@ -231,11 +226,7 @@ static void resolve_items(void *context, size_t begin, size_t end, unsigned slot
 static bool weld_items_threads(nt_welder *w, unsigned ranges)
 {
 	joint j = {.w = w, .count = nt_parallel_slots(ranges, w->item_count, 1)};
-	if (!make_ranges(&j) || !weld_ranges(&j) || (!w->crowded && !seek_all(&j)))
-		return false;
-	if (w->crowded)
-		return true;
-	if (!number_rows(&j))
+	if (!make_ranges(&j) || !weld_ranges(&j) || !seek_all(&j) || !number_rows(&j))
 		return false;
 	const size_t first_count = j.ranges[0].welder.row_count, first_end = j.ranges[0].welder.item_count;
 	const range *last = &j.ranges[j.count - 1];
@@ -248,7 +239,7 @@ static bool weld_items_alone(nt_welder *w)
 {
 	if (!nt_weld_start(w, 0))
 		return false;
-	for (size_t done = 0; (done = nt_weld_some(w, done)) < w->item_count && !w->crowded;)
+	for (size_t done = 0; (done = nt_weld_some(w, done)) < w->item_count;)
 		if (!nt_weld_reserve(w, done))
 			return false;
 	return true;
@@ -256,14 +247,6 @@ static bool weld_items_alone(nt_welder *w)
 
 bool nt_weld_items(nt_welder *w, unsigned ranges)
 {
-	char *const begin = w->memory->begin, *const row_begin = w->row_memory->begin;
-	const nt_scratch_mark mark = nt_scratch_here(w->memory->scratch);
-	if (!(HAS_THREADS && ranges > 1 && w->item_count > 1 ? weld_items_threads(w, ranges) : weld_items_alone(w)))
-		return false;
-	if (!w->crowded)
-		return true;
-	w->memory->begin = begin;
-	w->row_memory->begin = row_begin;
-	nt_scratch_back(w->memory->scratch, mark);
-	return nt_weld_by_bits(w);
+	w->key = nt_weld_make_key();
+	return HAS_THREADS && ranges > 1 && w->item_count > 1 ? weld_items_threads(w, ranges) : weld_items_alone(w);
 }

@@ -36,7 +36,10 @@ function fail(status) {
 function withMemory(body) {
 	if (!module)
 		throw new Error('nmtan: not ready: wait for the promise `ready`');
-	wasm ??= new WebAssembly.Instance(module).exports;
+	if (!wasm) {
+		wasm = new WebAssembly.Instance(module).exports;
+		wasm.set_key(...Array.from({length: 4}, () => Math.random() * 2 ** 32));
+	}
 	let done = false;
 	try {
 		const result = body();

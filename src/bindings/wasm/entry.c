@@ -4,6 +4,7 @@
  * and takes the results out of it. One thread.
  */
 #include <stdint.h>
+#include "base/hash.h"
 #include "nmtan.h"
 
 /* Words of 32 bits in this order: core.js writes and reads them by their number. */
@@ -29,6 +30,13 @@ static nt_wasm_job job;
 __attribute__((export_name("job"))) nt_wasm_job *nt_wasm_get_job(void)
 {
 	return &job;
+}
+
+/* The key of tables, made of random numbers by core.js before the first job: the module imports nothing that is random. */
+__attribute__((export_name("set_key"))) void nt_wasm_set_key(uint32_t a, uint32_t b, uint32_t c, uint32_t d)
+{
+	nt_hash_key_words[0] = (uint64_t)a << 32 | b;
+	nt_hash_key_words[1] = (uint64_t)c << 32 | d | 1; /* not 0: there is a key */
 }
 
 static nmtan_mesh job_mesh(void)

@@ -14,6 +14,7 @@
 #include "tangent/fast/complex_solve.h"
 
 #include <string.h>
+#include "base/hash.h"
 #include "base/parallel.h"
 #include "base/vec.h"
 #include "tangent/fast/write.h"
@@ -235,15 +236,10 @@ static bool have_one_direction(const nt_corner *a, const nt_corner *b)
 
 static uint64_t hash_direction(const nt_corner *m)
 {
-	uint32_t bits[6];
-	memcpy(bits, m->u, sizeof m->u);
-	memcpy(bits + 3, m->v, sizeof m->v);
-	uint64_t hash = 0;
-	for (int i = 0; i < 6; i++) {
-		hash = (hash ^ bits[i]) * 0xff51afd7ed558ccdu;
-		hash ^= hash >> 32;
-	}
-	return hash;
+	uint64_t words[3];
+	memcpy(words, m->u, sizeof m->u);
+	memcpy((char *)words + sizeof m->u, m->v, sizeof m->v);
+	return nt_hash_words(nt_hash_words(words[0], words[1]), words[2]);
 }
 
 static uint32_t triangle_of(const nt_complex *c, const part *p, size_t i)
