@@ -30,6 +30,12 @@ nt_status ply_fail_at(const ply_cursor *cursor, const unsigned char *at, nt_erro
 	return nt_fail_offset(error, NT_ERROR_INPUT, (uint64_t)(at - cursor->begin), "%s", message);
 }
 
+nt_status ply_fail_end(const ply_cursor *cursor, const ply_element *element, size_t row, nt_error *error)
+{
+	return ply_fail_at(cursor, cursor->at, error, "the file ends where %s %zu of %zu was expected", element->name,
+		row, element->count);
+}
+
 const char *ply_show(const ply_cursor *cursor, const unsigned char *at, char text[40])
 {
 	size_t length = 0;
@@ -107,9 +113,7 @@ static nt_status skip_lines(ply_cursor *cursor, const ply_element *element, nt_e
 	for (size_t row = 0; row < element->count; row++) {
 		ply_next_row(cursor);
 		if (cursor->at == cursor->end)
-			return ply_fail_at(cursor, cursor->at, error,
-				"the file ends where %s %zu of %zu was expected", element->name, row,
-				element->count);
+			return ply_fail_end(cursor, element, row, error);
 		while (cursor->at < cursor->end && !ply_is_line_end(*cursor->at))
 			cursor->at++;
 	}

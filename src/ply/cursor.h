@@ -23,6 +23,9 @@ size_t ply_line_of(const ply_cursor *cursor, const unsigned char *at);
 nt_status ply_fail_at(const ply_cursor *cursor, const unsigned char *at, nt_error *error,
 	const char *format, ...) NT_PRINTF(4, 5);
 
+/* An error for a row that is not there. */
+nt_status ply_fail_end(const ply_cursor *cursor, const ply_element *element, size_t row, nt_error *error);
+
 /* "the rest of the line, shortened", for messages: fills text. */
 const char *ply_show(const ply_cursor *cursor, const unsigned char *at, char text[40]);
 

@@ -8,6 +8,7 @@
 #include "base/buffer.h"
 #include "file/output.h"
 #include "ply/value.h"
+#include "scene/scene.h"
 
 typedef struct ply_output {
 	nt_buffer buffer; /* what has not been written yet */
@@ -29,5 +30,13 @@ nt_status ply_drain(ply_output *out, nt_error *error);
 
 /* Writes the buffer and then these bytes. */
 nt_status ply_put_bytes(ply_output *out, const void *bytes, size_t size, nt_error *error);
+
+/* Writes a scene that was read from a PLY as the file was, with the tangents added. Sets out->encoding. rewrite.c */
+nt_status ply_write_source(nt_scene *scene, const nt_write_options *options, ply_output *out,
+	nt_error *error);
+
+/* Writes any other scene, binary, little endian, in world space. export.c */
+nt_status ply_write_scene(nt_scene *scene, const nt_write_options *options, ply_output *out,
+	nt_error *error);
 
 #endif

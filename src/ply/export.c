@@ -8,7 +8,7 @@
  *
  * v points up in PLY: the scene has it so, but what came from glTF is -v there and becomes 1 - v.
  */
-#include "ply/export.h"
+#include "ply/encode.h"
 
 #include <math.h>
 #include "base/dvec.h"

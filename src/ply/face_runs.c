@@ -4,9 +4,8 @@
  * little else. They are read here in tight loops that stop at the first row that is anything else, be
  * it wrong or only unusual, and leave it to faces.c.
  */
-#include "ply/face_runs.h"
+#include "ply/source.h"
 
-#include "ply/pieces.h"
 
 /* Bytes that a short row of text and the eight-byte steps of decimal.h may touch. */
 enum { TEXT_MARGIN = 64 };

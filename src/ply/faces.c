@@ -5,11 +5,10 @@
  * become triangles. Lists are measured against the file before room is made for them, so that memory
  * stays in proportion to the file whatever its counts say.
  */
-#include "ply/faces.h"
+#include "ply/source.h"
 
 #include <math.h>
 #include <stdlib.h>
-#include "ply/face_runs.h"
 #include "ply/wedges.h"
 #include "scene/polygon.h"
 
@@ -45,19 +44,6 @@ typedef struct builder {
 	size_t skipped;
 	nt_place first_skipped;
 } builder;
-
-static nt_status fail_row(const builder *b, const unsigned char *at, const char *text, long long found)
-{
-	return ply_fail_at(b->cursor, at, b->error, "%s %zu: %s %lld", b->element->name, b->row, text,
-		found);
-}
-
-static nt_status fail_index(const builder *b, const unsigned char *at, long long index)
-{
-	return ply_fail_at(b->cursor, at, b->error,
-		"%s %zu: vertex index %lld is out of range, the file has %zu vertices", b->element->name,
-		b->row, index, b->source->vertex->count);
-}
 
 static nt_place place_of_row(const builder *b)
 {
@@ -221,29 +207,21 @@ static nt_status add_strips(builder *b)
 
 /* Rows. */
 
-static bool room_for_corners(builder *b, size_t count)
-{
-	return nt_grow((void **)&b->corners, &b->corner_capacity, count, sizeof *b->corners);
-}
-
-static bool room_for_uvs(builder *b, size_t count)
-{
-	return nt_grow((void **)&b->uvs, &b->uv_capacity, count, sizeof *b->uvs);
-}
-
 /* Checks a vertex index; -1 restarts strips. */
 static nt_status take_index(builder *b, size_t k, int64_t index, const unsigned char *at)
 {
 	const bool restart = b->element == b->source->strips && (index == -1 || index == UINT32_MAX);
 	if (!restart && (uint64_t)index >= b->source->vertex->count)
-		return fail_index(b, at, index);
+		return ply_fail_at(b->cursor, at, b->error,
+			"%s %zu: vertex index %lld is out of range, the file has %zu vertices", b->element->name,
+			b->row, (long long)index, b->source->vertex->count);
 	b->corners[k] = restart ? NT_NONE : (uint32_t)index;
 	return NT_OK;
 }
 
 static nt_status load_corners(builder *b, const unsigned char *at, size_t count, ply_type type)
 {
-	if (!room_for_corners(b, count))
+	if (!nt_grow((void **)&b->corners, &b->corner_capacity, count, sizeof *b->corners))
 		return nt_fail_memory(b->error);
 	b->corner_count = count;
 	const size_t size = ply_size(type);
@@ -257,7 +235,7 @@ static nt_status load_corners(builder *b, const unsigned char *at, size_t count,
 
 static nt_status load_uvs(builder *b, const unsigned char *at, size_t count, ply_type type)
 {
-	if (!room_for_uvs(b, count))
+	if (!nt_grow((void **)&b->uvs, &b->uv_capacity, count, sizeof *b->uvs))
 		return nt_fail_memory(b->error);
 	b->uv_count = count;
 	for (size_t k = 0; k < count; k++) {
@@ -298,12 +276,8 @@ static nt_status load_row(builder *b)
 	nt_status status = ply_skip_binary_row(b->cursor, b->element, b->row, b->error);
 	const unsigned char *at = b->row_begin;
 	for (size_t i = 0; !status && i < b->element->property_count; i++) {
-		const ply_property *property = &b->element->properties[i];
 		status = load_property(b, (int)i, at);
-		at += ply_size(property->list ? property->count_type : property->type);
-		if (property->list)
-			at += ply_size(property->type) * (size_t)ply_load_integer(
-				at - ply_size(property->count_type), property->count_type, b->swap);
+		at += ply_value_bytes(&b->element->properties[i], at, b->swap);
 	}
 	return status;
 }
@@ -355,15 +329,17 @@ static nt_status read_list(builder *b, int number, const unsigned char **at)
 	if (!after)
 		return fail_text(b, begin, "the length of list", property);
 	if (count < 0 || (uint64_t)count > (uint64_t)(b->cursor->end - after) / 2 + 1)
-		return fail_row(b, begin, "the length of a list does not fit the file:", count);
+		return ply_fail_at(b->cursor, begin, b->error,
+			"%s %zu: the length of a list does not fit the file: %lld", b->element->name, b->row,
+			(long long)count);
 	const size_t length = (size_t)count;
 	if (number == b->indices_property) {
 		b->corner_count = length;
-		if (!room_for_corners(b, length))
+		if (!nt_grow((void **)&b->corners, &b->corner_capacity, length, sizeof *b->corners))
 			return nt_fail_memory(b->error);
 	} else if (number == b->texcoords_property) {
 		b->uv_count = length;
-		if (!room_for_uvs(b, length))
+		if (!nt_grow((void **)&b->uvs, &b->uv_capacity, length, sizeof *b->uvs))
 			return nt_fail_memory(b->error);
 	}
 	*at = after;
@@ -414,9 +390,7 @@ static nt_status read_any_row(builder *b)
 	const bool ascii = b->cursor->encoding == PLY_ASCII;
 	b->row_begin = b->cursor->at;
 	if (b->cursor->at == b->cursor->end)
-		return ply_fail_at(b->cursor, b->cursor->at, b->error,
-			"the file ends where %s %zu of %zu was expected", b->element->name, b->row,
-			b->element->count);
+		return ply_fail_end(b->cursor, b->element, b->row, b->error);
 	nt_status status = ascii ? read_row(b) : load_row(b);
 	if (!status)
 		status = b->element == b->source->strips ? add_strips(b) : add_polygon(b);
@@ -489,17 +463,6 @@ static nt_status finish(builder *b)
 	return status;
 }
 
-/* The arrays belong to the arena from now on, after an error too. */
-static bool hand_over(builder *b)
-{
-	nt_arena *arena = &b->scene->arena;
-	void *const blocks[] = {b->indices, b->sizes, b->polygons, b->primitives};
-	bool kept = true;
-	for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
-		kept = nt_arena_adopt(arena, blocks[i]) && kept;
-	return kept;
-}
-
 static nt_status prepare(builder *b)
 {
 	const ply_element *element = b->element;
@@ -538,8 +501,11 @@ nt_status ply_read_faces(nt_scene *scene, nt_mesh *mesh, ply_source *source, ply
 		status = read_rows(&b);
 	if (!status)
 		status = finish(&b);
-	if (!hand_over(&b) && !status)
-		status = nt_fail_memory(error);
+	/* the arrays belong to the arena from now on, after an error too */
+	void *const blocks[] = {b.indices, b.sizes, b.polygons, b.primitives};
+	for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++)
+		if (!nt_arena_adopt(&scene->arena, blocks[i]) && !status)
+			status = nt_fail_memory(error);
 	ply_wedges_free(&b.wedges);
 	free(b.corners);
 	free(b.uvs);

@@ -112,11 +112,6 @@ static nt_status expect_end(parser *p)
 	return w.length ? fail_word(p, w, "the end of the line") : NT_OK;
 }
 
-static char *copy_text(const char *text, size_t length)
-{
-	return strndup(text, length);
-}
-
 static nt_status parse_format(parser *p)
 {
 	static const char *const names[] = {"ascii", "binary_little_endian", "binary_big_endian"};
@@ -151,12 +146,10 @@ static nt_status parse_comment(parser *p)
 	if (name.length == 0)
 		return NT_OK;
 	ply_header *header = p->header;
-	char *copy = copy_text(name.text, (size_t)(end - name.text));
+	const char *copy = nt_arena_text(&header->texts, name.text, (size_t)(end - name.text));
 	if (!copy || !nt_grow((void **)&header->textures, &header->texture_capacity,
-			     header->texture_count + 1, sizeof *header->textures)) {
-		free(copy);
+			     header->texture_count + 1, sizeof *header->textures))
 		return nt_fail_memory(p->error);
-	}
 	header->textures[header->texture_count++] = copy;
 	return NT_OK;
 }
@@ -189,12 +182,10 @@ static nt_status parse_element(parser *p)
 		return nt_fail_line(p->error, NT_ERROR_INPUT, p->line,
 			"a second element \"%.*s\": the first is on line %zu", shown(name),
 			name.text, header->elements[first].line);
-	element.name = copy_text(name.text, name.length);
+	element.name = nt_arena_text(&header->texts, name.text, name.length);
 	if (!element.name || !nt_grow((void **)&header->elements, &header->element_capacity,
-				     header->element_count + 1, sizeof element)) {
-		free((void *)(uintptr_t)element.name);
+				     header->element_count + 1, sizeof element))
 		return nt_fail_memory(p->error);
-	}
 	header->elements[header->element_count++] = element;
 	return expect_end(p);
 }
@@ -241,25 +232,14 @@ static nt_status parse_property(parser *p)
 	const word name = next_word(p);
 	if (name.length == 0)
 		return fail_word(p, name, "the property's name");
-	property.name = copy_text(name.text, name.length);
+	property.name = nt_arena_text(&header->texts, name.text, name.length);
 	if (!property.name || !nt_grow((void **)&element->properties, &element->property_capacity,
-				      element->property_count + 1, sizeof property)) {
-		free((void *)(uintptr_t)property.name);
+				      element->property_count + 1, sizeof property))
 		return nt_fail_memory(p->error);
-	}
 	element->properties[element->property_count++] = property;
 	element->has_list |= property.list;
 	element->row_bytes += ply_size(property.list ? property.count_type : property.type);
 	return expect_end(p);
-}
-
-/* A line that some exporter wrote without "comment" before it. Behind the first element it could be a misspelt
- * property, without which rows would be read as what they are not. */
-static nt_status pass_over(parser *p)
-{
-	if (p->header->unknown_lines++ == 0)
-		p->header->unknown_line = p->line;
-	return NT_OK;
 }
 
 static nt_status parse_line(parser *p, bool *finished)
@@ -275,8 +255,13 @@ static nt_status parse_line(parser *p, bool *finished)
 		return parse_element(p);
 	if (is(keyword, "property"))
 		return parse_property(p);
-	if (p->header->element_count == 0 && !is(keyword, "end_header"))
-		return pass_over(p);
+	/* A line that some exporter wrote without "comment" before it. Behind the first element it could be a
+	 * misspelt property, without which rows would be read as what they are not. */
+	if (p->header->element_count == 0 && !is(keyword, "end_header")) {
+		if (p->header->unknown_lines++ == 0)
+			p->header->unknown_line = p->line;
+		return NT_OK;
+	}
 	if (!is(keyword, "end_header"))
 		return fail_word(p, keyword,
 			"comment, obj_info, element, property or end_header");
@@ -325,17 +310,11 @@ nt_status ply_parse_header(ply_header *header, const unsigned char *bytes, size_
 
 void ply_free_header(ply_header *header)
 {
-	for (size_t i = 0; i < header->element_count; i++) {
-		ply_element *element = &header->elements[i];
-		for (size_t k = 0; k < element->property_count; k++)
-			free((void *)(uintptr_t)element->properties[k].name);
-		free(element->properties);
-		free((void *)(uintptr_t)element->name);
-	}
+	for (size_t i = 0; i < header->element_count; i++)
+		free(header->elements[i].properties);
 	free(header->elements);
-	for (size_t i = 0; i < header->texture_count; i++)
-		free(header->textures[i]);
-	free(header->textures);
+	free((void *)header->textures);
+	nt_arena_free(&header->texts);
 	*header = (ply_header){0};
 }
 

@@ -6,6 +6,7 @@
 #define NT_PLY_HEADER_H
 
 #include "base/error.h"
+#include "base/memory.h"
 #include "ply/value.h"
 
 enum { PLY_NO_PROPERTY = -1 };
@@ -33,13 +34,14 @@ typedef struct ply_header {
 	ply_encoding encoding;
 	ply_element *elements;
 	size_t element_count, element_capacity;
-	char **textures; /* names after "comment TextureFile" */
+	const char **textures; /* names after "comment TextureFile" */
 	size_t texture_count, texture_capacity;
 	size_t unknown_lines, unknown_line; /* lines before the first element that are no statements: how many,
 	                                       the first */
 	size_t body;        /* offset of the first byte after the header */
 	size_t body_line;   /* its line, 1-based */
 	const char *newline; /* as the header has it: "\n", "\r\n" or "\r" */
+	nt_arena texts;
 } ply_header;
 
 /* Reads the header of scene->bytes. */
@@ -50,6 +52,13 @@ void ply_free_header(ply_header *header);
 /* The element of that name, NULL: none; the property, PLY_NO_PROPERTY: none. */
 const ply_element *ply_find_element(const ply_header *header, const char *name);
 int ply_find_property(const ply_element *element, const char *name);
+
+/* Bytes of the value at `at` of a binary row, of which that many are there. */
+static inline size_t ply_value_bytes(const ply_property *property, const unsigned char *at, bool swap)
+{
+	return !property->list ? ply_size(property->type) : ply_size(property->count_type) +
+		ply_size(property->type) * (size_t)ply_load_integer(at, property->count_type, swap);
+}
 
 /* "float", "uchar" ... */
 const char *ply_type_name(ply_type type);

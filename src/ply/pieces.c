@@ -7,7 +7,7 @@
  *
  * The size of pieces does not depend on the number of threads, and none of it shows in what is read.
  */
-#include "ply/pieces.h"
+#include "ply/source.h"
 
 #include <stdlib.h>
 #include "base/memory.h"

@@ -14,8 +14,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include "base/parallel.h"
-#include "ply/faces.h"
-#include "ply/vertices.h"
+#include "ply/source.h"
 
 bool nt_ply_recognise(const unsigned char *bytes, size_t size)
 {
@@ -219,16 +218,6 @@ static nt_status make_scene(nt_scene *scene, nt_error *error)
 	return NT_OK;
 }
 
-static void describe_mesh(nt_mesh *mesh, const ply_source *source)
-{
-	mesh->triangles = source->face || source->strips;
-	mesh->has_positions = true;
-	mesh->has_normals = mesh->normals != NULL;
-	mesh->has_texcoords = mesh->texcoords != NULL;
-	mesh->has_tangents = mesh->tangents != NULL;
-	mesh->source_vertex_count = mesh->vertex_count;
-}
-
 nt_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
 	scene->format = NT_FORMAT_PLY;
@@ -250,7 +239,14 @@ nt_status nt_ply_open(nt_scene *scene, const nt_read_options *options, nt_error 
 		report_unused(scene, source);
 		status = read_body(scene, scene->meshes, source, options->threads, error);
 	}
-	if (!status)
-		describe_mesh(scene->meshes, source);
+	if (!status) {
+		nt_mesh *mesh = scene->meshes;
+		mesh->triangles = source->face || source->strips;
+		mesh->has_positions = true;
+		mesh->has_normals = mesh->normals != NULL;
+		mesh->has_texcoords = mesh->texcoords != NULL;
+		mesh->has_tangents = mesh->tangents != NULL;
+		mesh->source_vertex_count = mesh->vertex_count;
+	}
 	return status ? nt_error_in_file(error, scene->path) : NT_OK;
 }

@@ -9,7 +9,7 @@
  * coordinates stay where they are: vertices that were told apart only by them become one again where
  * their tangents are equal.
  */
-#include "ply/rewrite.h"
+#include "ply/encode.h"
 
 #include <stdlib.h>
 #include "base/vec.h"
@@ -113,13 +113,6 @@ static void write_element_line(const plan *p, const char *name, size_t count)
 	nt_buffer_format(&p->out->buffer, "element %s %zu%s", name, count, p->source->header.newline);
 }
 
-static void write_extra_lines(const plan *p)
-{
-	for (size_t i = 0; i < p->extra_count; i++)
-		nt_buffer_format(&p->out->buffer, "property float %s%s", p->extra_names[i],
-			p->source->header.newline);
-}
-
 /* An element line: true when its properties are to be left out. */
 static bool write_changed_element(const plan *p, const ply_element *element, const char *line, size_t size)
 {
@@ -155,7 +148,9 @@ static void write_property(const plan *p, const ply_element *element, size_t num
 	else if (element != p->source->vertex || !p->dropped[number])
 		nt_buffer_append(&p->out->buffer, line, size);
 	if (element == p->source->vertex && number + 1 == element->property_count)
-		write_extra_lines(p);
+		for (size_t i = 0; i < p->extra_count; i++)
+			nt_buffer_format(&p->out->buffer, "property float %s%s", p->extra_names[i],
+				p->source->header.newline);
 }
 
 /* Walks the lines of the source's header once more. */
@@ -194,23 +189,14 @@ static nt_status fail_changed(const plan *p)
 
 static bool span_binary_row(plan *p, const ply_element *element)
 {
-	const bool swap = ply_swaps(p->cursor.encoding);
 	const unsigned char *at = p->cursor.at;
+	if (ply_skip_binary_row(&p->cursor, element, 0, p->error))
+		return false;
 	for (size_t i = 0; i < element->property_count; i++) {
-		const ply_property *property = &element->properties[i];
-		size_t bytes = ply_size(property->list ? property->count_type : property->type);
-		if (bytes > (size_t)(p->cursor.end - at))
-			return false;
-		if (property->list) {
-			const int64_t count = ply_load_integer(at, property->count_type, swap);
-			bytes += (size_t)count * ply_size(property->type);
-			if (count < 0 || bytes > (size_t)(p->cursor.end - at))
-				return false;
-		}
+		const size_t bytes = ply_value_bytes(&element->properties[i], at, ply_swaps(p->cursor.encoding));
 		p->spans[i] = (span){at, at + bytes};
 		at += bytes;
 	}
-	p->cursor.at = at;
 	return true;
 }
 
@@ -299,13 +285,6 @@ static void write_kept(const plan *p, const unsigned char *begin, const unsigned
 	}
 }
 
-static const unsigned char *find_line_end(const unsigned char *at, const unsigned char *end)
-{
-	while (at < end && !ply_is_line_end(*at))
-		at++;
-	return at;
-}
-
 static nt_status write_vertex(plan *p, size_t vertex)
 {
 	const ply_element *element = p->source->vertex;
@@ -314,7 +293,10 @@ static nt_status write_vertex(plan *p, size_t vertex)
 		ply_next_row(&p->cursor);
 	const unsigned char *begin = p->cursor.at, *end;
 	if (ascii && !p->drops_any) {
-		p->cursor.at = end = find_line_end(begin, p->cursor.end);
+		end = begin;
+		while (end < p->cursor.end && !ply_is_line_end(*end))
+			end++;
+		p->cursor.at = end;
 		while (end > begin && ply_is_blank(end[-1]))
 			end--;
 	} else if (!ascii && !element->has_list && !p->drops_any) {
@@ -480,16 +462,6 @@ static nt_status write_polygon(plan *p, face_progress *done)
 	return status;
 }
 
-static nt_status write_faces(plan *p)
-{
-	face_progress done = {0};
-	nt_status status = NT_OK;
-	for (size_t row = 0; !status && row < p->source->face->count; row++)
-		status = write_polygon(p, &done);
-	free(done.vertices);
-	return status;
-}
-
 static nt_status write_strip_faces(plan *p)
 {
 	nt_status status = NT_OK;
@@ -531,17 +503,20 @@ static nt_status write_body(plan *p)
 {
 	const ply_header *header = &p->source->header;
 	nt_status status = NT_OK;
+	face_progress done = {0};
 	for (size_t i = 0; !status && i < header->element_count; i++) {
 		const ply_element *element = &header->elements[i];
 		if (element == p->source->vertex)
 			status = write_vertices(p);
 		else if (element == p->source->face && faces_change(p))
-			status = write_faces(p);
+			for (size_t row = 0; !status && row < element->count; row++)
+				status = write_polygon(p, &done);
 		else if (element == p->source->strips && faces_change(p))
 			status = write_strip_faces(p);
 		else
 			status = copy_element(p, element);
 	}
+	free(done.vertices);
 	if (p->cursor.encoding == PLY_ASCII)
 		ply_next_row(&p->cursor);
 	if (!status)

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What reading a PLY leaves to whoever writes a PLY from it.
+ * What reading a PLY leaves to whoever writes a PLY from it, and the steps of reading.
  */
 #ifndef NT_PLY_SOURCE_H
 #define NT_PLY_SOURCE_H
 
-#include "ply/header.h"
+#include "ply/cursor.h"
+#include "scene/scene.h"
 
 /* Which property of the vertex element has which role. */
 typedef struct ply_roles {
@@ -31,5 +32,41 @@ typedef struct ply_source {
 	size_t wedge_count;
 	ply_cuts cuts;
 } ply_source;
+
+/* Reads the rows of the vertex element at the cursor into the mesh. vertices.c */
+nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *source,
+	ply_cursor *cursor, nt_error *error);
+
+/* Reads the faces (or strips) at the cursor into the mesh, whose positions are there. faces.c */
+nt_status ply_read_faces(nt_scene *scene, nt_mesh *mesh, ply_source *source, ply_cursor *cursor,
+	nt_error *error);
+
+/* ---- plain rows of text, by several threads: pieces.c ---- */
+
+/* Reads plain rows, each a line, at the cursor: at most `rows`, of which the first is row `first` of the run. The
+ * cursor moves behind those that were read, whose number is returned; the row there is another one, or wrong. Several
+ * threads call it, for rows that are not the same. */
+typedef size_t (*ply_take_rows)(void *user, ply_cursor *cursor, size_t first, size_t rows);
+
+/* The same for rows from 0 on, with cursor->threads. */
+size_t ply_take_pieces(ply_cursor *cursor, size_t rows, ply_take_rows take, void *user);
+
+/* ---- rows of plain triangles or quads, many at a time: face_runs.c ---- */
+
+typedef struct ply_run_layout {
+	bool possible;     /* the element's rows can be read so */
+	ply_encoding encoding;
+	size_t lead, tail; /* binary: bytes of scalars before and after the list */
+} ply_run_layout;
+
+ply_run_layout ply_find_run_layout(const ply_element *element, int indices, ply_encoding encoding);
+
+/* The size, 3 or 4, that the row at the cursor seems to have; 0: read it the general way. */
+size_t ply_run_size(const ply_run_layout *layout, const ply_cursor *cursor);
+
+/* Reads at most `rows` faces of that size, up to the first that is not plain and sound; moves the
+ * cursor behind them and returns their number. indices has room for rows * size. */
+size_t ply_take_run(const ply_run_layout *layout, ply_cursor *cursor, size_t rows, size_t size,
+	size_t vertex_count, uint32_t *indices);
 
 #endif

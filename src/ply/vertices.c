@@ -7,12 +7,11 @@
  * A mesh must be finite, as in OBJ: there is no tangent at NaN and glTF cannot store it. Points are
  * passed through as they are, and so are tangents, which the caller may want to check.
  */
-#include "ply/vertices.h"
+#include "ply/source.h"
 
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include "ply/pieces.h"
 #include "scene/srgb.h"
 
 /* Positions, normals, texture coordinates, colours, tangents. */
@@ -39,15 +38,6 @@ static bool is_finite(float value)
 	return fabsf(value) <= FLT_MAX;
 }
 
-/* Integer colours become 0 to 1, float ones are taken as they are. */
-static float colour_divisor(const ply_element *element, int property)
-{
-	static const float largest[] = {[PLY_INT8] = 127.0f, [PLY_UINT8] = 255.0f,
-		[PLY_INT16] = 32767.0f, [PLY_UINT16] = 65535.0f, [PLY_INT32] = 2147483647.0f,
-		[PLY_UINT32] = 4294967295.0f, [PLY_FLOAT32] = 1.0f, [PLY_FLOAT64] = 1.0f};
-	return largest[element->properties[property].type];
-}
-
 /* Allocates an array of `width` floats per row and makes it the target of as many properties. */
 static bool add_attribute(reader *r, nt_arena *arena, const int *properties, size_t width,
 	bool finite, float **array)
@@ -63,22 +53,6 @@ static bool add_attribute(reader *r, nt_arena *arena, const int *properties, siz
 	return *array != NULL;
 }
 
-/* Targets from `first` on are colours. */
-static void scale_colors(reader *r, size_t first)
-{
-	for (size_t i = first; i < r->target_count; i++)
-		r->targets[i].divisor = colour_divisor(r->element, r->targets[i].property);
-}
-
-static void decode_floats(const unsigned char *from, size_t row_bytes, bool swap, size_t count,
-	float *to, size_t stride)
-{
-	for (size_t i = 0; i < count; i++) {
-		const uint32_t bits = ply_load32(from + i * row_bytes, swap);
-		memcpy(to + i * stride, &bits, sizeof bits);
-	}
-}
-
 static void decode_column(const reader *r, const target *t, const unsigned char *rows, size_t first,
 	size_t count)
 {
@@ -88,12 +62,14 @@ static void decode_column(const reader *r, const target *t, const unsigned char 
 	const unsigned char *from = rows + first * row_bytes + property->offset;
 	float *to = t->values + first * t->stride;
 	if (property->type == PLY_FLOAT32 && t->divisor == 1.0f) {
-		decode_floats(from, row_bytes, swap, count, to, t->stride);
+		for (size_t i = 0; i < count; i++) {
+			const uint32_t bits = ply_load32(from + i * row_bytes, swap);
+			memcpy(to + i * t->stride, &bits, sizeof bits);
+		}
 		return;
 	}
 	for (size_t i = 0; i < count; i++)
-		to[i * t->stride] =
-			ply_load_float(from + i * row_bytes, property->type, swap) / t->divisor;
+		to[i * t->stride] = ply_load_float(from + i * row_bytes, property->type, swap) / t->divisor;
 }
 
 static nt_status fail_not_finite(const reader *r, size_t row, const ply_property *property,
@@ -167,13 +143,9 @@ static nt_status decode_listed(const reader *r)
 		status = ply_skip_binary_row(r->cursor, element, row, r->error);
 		for (size_t i = 0; !status && i < element->property_count; i++) {
 			const ply_property *property = &element->properties[i];
-			if (property->list) {
-				at += ply_size(property->count_type) + ply_size(property->type) *
-					(size_t)ply_load_integer(at, property->count_type, swap);
-				continue;
-			}
-			status = decode_value(r, row, i, at);
-			at += ply_size(property->type);
+			if (!property->list)
+				status = decode_value(r, row, i, at);
+			at += ply_value_bytes(property, at, swap);
 		}
 	}
 	return status;
@@ -206,14 +178,14 @@ static nt_status skip_list(const reader *r, size_t row, const ply_property *prop
 	return NT_OK;
 }
 
-/* One line. `by_property` has the target of each property or NULL. */
-static nt_status read_line(const reader *r, size_t row, const target *const *by_property)
+/* One line. by_property: of properties that nobody wants the values are NULL. */
+static nt_status read_line(const reader *r, size_t row, const target *by_property)
 {
 	const unsigned char *at = r->cursor->at;
 	const unsigned char *const end = r->cursor->end;
 	for (size_t i = 0; i < r->element->property_count; i++) {
 		const ply_property *property = &r->element->properties[i];
-		const target *t = by_property[i];
+		const target *t = &by_property[i];
 		at = ply_skip_blanks(at, end);
 		if (property->list) {
 			const nt_status status = skip_list(r, row, property, &at);
@@ -222,12 +194,12 @@ static nt_status read_line(const reader *r, size_t row, const target *const *by_
 			continue;
 		}
 		float value;
-		const unsigned char *after = t ? ply_read_float(at, end, &value) : ply_skip_value(at, end);
+		const unsigned char *after = t->values ? ply_read_float(at, end, &value) : ply_skip_value(at, end);
 		if (!after || after == at)
 			return fail_value(r, row, property, at, "a number for property");
-		if (t && t->finite && !is_finite(value))
+		if (t->finite && !is_finite(value))
 			return fail_value(r, row, property, at, "a finite number for property");
-		if (t)
+		if (t->values)
 			t->values[row * t->stride] = t->divisor == 1.0f ? value : value / t->divisor;
 		at = after;
 	}
@@ -235,18 +207,10 @@ static nt_status read_line(const reader *r, size_t row, const target *const *by_
 	return NT_OK;
 }
 
-/* Where the number of a column goes. */
-typedef struct column {
-	float *to; /* NULL: nowhere */
-	size_t stride;
-	float divisor;
-	bool finite;
-} column;
-
 /* One line of numbers with single blanks between them, far enough from the end of the file; the place
  * behind it, or NULL: read it the general way. */
 static inline const char *read_plain_line(const char *at, const char *end, size_t row,
-	const column *columns, size_t count)
+	const target *by_property, size_t count)
 {
 	for (size_t i = 0; i < count; i++) {
 		if (end - at <= PLY_DECIMAL_MARGIN)
@@ -255,11 +219,11 @@ static inline const char *read_plain_line(const char *at, const char *end, size_
 		at = nt_read_decimal(at, end, &value);
 		if (!at || at == end)
 			return NULL;
-		const column *c = &columns[i];
-		if (c->finite && !is_finite(value))
+		const target *t = &by_property[i];
+		if (t->finite && !is_finite(value))
 			return NULL;
-		if (c->to)
-			c->to[row * c->stride] = c->divisor == 1.0f ? value : value / c->divisor;
+		if (t->values)
+			t->values[row * t->stride] = t->divisor == 1.0f ? value : value / t->divisor;
 		if (i + 1 < count && *at++ != ' ')
 			return NULL;
 	}
@@ -269,8 +233,8 @@ static inline const char *read_plain_line(const char *at, const char *end, size_
 
 /* Plain lines from a row of the element on. */
 typedef struct plain_lines {
-	const column *columns;
-	size_t column_count, row;
+	const target *by_property;
+	size_t property_count, row;
 } plain_lines;
 
 static size_t take_plain_lines(void *user, ply_cursor *cursor, size_t first, size_t rows)
@@ -280,7 +244,7 @@ static size_t take_plain_lines(void *user, ply_cursor *cursor, size_t first, siz
 	const char *const end = (const char *)cursor->end;
 	size_t taken = 0;
 	for (const char *next; taken < rows; at = next, taken++) {
-		next = read_plain_line(at, end, lines->row + first + taken, lines->columns, lines->column_count);
+		next = read_plain_line(at, end, lines->row + first + taken, lines->by_property, lines->property_count);
 		if (!next)
 			break;
 	}
@@ -288,47 +252,32 @@ static size_t take_plain_lines(void *user, ply_cursor *cursor, size_t first, siz
 	return taken;
 }
 
-static nt_status read_any_line(const reader *r, size_t row, const target *const *by_property)
-{
-	ply_next_row(r->cursor);
-	if (r->cursor->at == r->cursor->end)
-		return ply_fail_at(r->cursor, r->cursor->at, r->error,
-			"the file ends where %s %zu of %zu was expected", r->element->name, row,
-			r->element->count);
-	const nt_status status = read_line(r, row, by_property);
-	return status ? status : ply_check_row_end(r->cursor, r->element, row, r->error);
-}
-
 /* Plain lines as long as there are any, then one in the general way, and so on. */
-static nt_status read_lines_into(const reader *r, const target **by_property, column *columns)
-{
-	for (size_t i = 0; i < r->target_count; i++) {
-		const target *t = &r->targets[i];
-		by_property[t->property] = t;
-		columns[t->property] = (column){t->values, t->stride, t->divisor, t->finite};
-	}
-	nt_status status = NT_OK;
-	for (size_t row = 0; !status && row < r->element->count;) {
-		if (!r->element->has_list) {
-			ply_next_row(r->cursor);
-			plain_lines lines = {columns, r->element->property_count, row};
-			row += ply_take_pieces(r->cursor, r->element->count - row, take_plain_lines, &lines);
-		}
-		if (row < r->element->count)
-			status = read_any_line(r, row++, by_property);
-	}
-	return status;
-}
-
 static nt_status read_lines(const reader *r)
 {
-	const size_t count = r->element->property_count;
-	const target **by_property = nt_calloc(count, sizeof *by_property);
-	column *columns = nt_calloc(count, sizeof *columns);
-	const nt_status status = by_property && columns ? read_lines_into(r, by_property, columns)
-							   : nt_fail_memory(r->error);
-	free((void *)by_property);
-	free(columns);
+	ply_cursor *cursor = r->cursor;
+	const ply_element *element = r->element;
+	target *by_property = nt_calloc(element->property_count, sizeof *by_property);
+	if (!by_property)
+		return nt_fail_memory(r->error);
+	for (size_t i = 0; i < r->target_count; i++)
+		by_property[r->targets[i].property] = r->targets[i];
+	nt_status status = NT_OK;
+	for (size_t row = 0; !status && row < element->count;) {
+		if (!element->has_list) {
+			ply_next_row(cursor);
+			plain_lines lines = {by_property, element->property_count, row};
+			row += ply_take_pieces(cursor, element->count - row, take_plain_lines, &lines);
+		}
+		if (row == element->count)
+			break;
+		ply_next_row(cursor);
+		status = cursor->at == cursor->end ? ply_fail_end(cursor, element, row, r->error)
+						   : read_line(r, row, by_property);
+		if (!status)
+			status = ply_check_row_end(cursor, element, row++, r->error);
+	}
+	free(by_property);
 	return status;
 }
 
@@ -351,7 +300,12 @@ nt_status ply_read_vertices(nt_scene *scene, nt_mesh *mesh, const ply_source *so
 	const size_t first_color = r.target_count;
 	if (!add_attribute(&r, arena, roles->color, 4, finite, &mesh->colors))
 		return nt_fail_memory(error);
-	scale_colors(&r, first_color);
+	/* integer colours become 0 to 1, float ones are taken as they are */
+	static const float largest[] = {[PLY_INT8] = 127.0f, [PLY_UINT8] = 255.0f,
+		[PLY_INT16] = 32767.0f, [PLY_UINT16] = 65535.0f, [PLY_INT32] = 2147483647.0f,
+		[PLY_UINT32] = 4294967295.0f, [PLY_FLOAT32] = 1.0f, [PLY_FLOAT64] = 1.0f};
+	for (size_t i = first_color; i < r.target_count; i++)
+		r.targets[i].divisor = largest[element->properties[r.targets[i].property].type];
 	if (mesh->colors && roles->color[3] == PLY_NO_PROPERTY)
 		for (size_t i = 0; i < element->count; i++)
 			mesh->colors[4 * i + 3] = 1.0f;

@@ -4,8 +4,7 @@
  */
 #include "ply/write.h"
 
-#include "ply/export.h"
-#include "ply/rewrite.h"
+#include "ply/encode.h"
 
 nt_status nt_ply_write(nt_scene *scene, const nt_write_options *options, nt_output *output,
 	nt_error *error)

@@ -6,7 +6,7 @@
 #include "test.h"
 #include <stdlib.h>
 #include "base/buffer.h"
-#include "ply/pieces.h"
+#include "ply/source.h"
 #include "ply/read.h"
 
 enum { VERTICES = 260000, FACES = 150000, MIDDLE = 130001 };
