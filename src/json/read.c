@@ -14,9 +14,6 @@
 #include "ext/number.h"
 #include "json/tree.h"
 
-/* NULs behind the text: it ends for every loop, also for those that look at eight bytes at once. */
-enum { PADDING_BYTES = 8 };
-
 /* A container whose end has not been read. The keys of an object mostly are those of the one before it at that depth:
  * while they are, they are compared and not read. */
 typedef struct opened {
@@ -68,17 +65,6 @@ static nt_status fail(const reader *r, const char *at, const char *expected)
 /* Behind the bytes that stand for themselves. */
 static char *skip_plain(char *at)
 {
-	static const uint64_t ones = 0x0101010101010101u, high = 0x8080808080808080u;
-	for (;; at += 8) {
-		uint64_t bytes;
-		memcpy(&bytes, at, sizeof bytes);
-		const uint64_t quotes = bytes ^ ones * '"', slashes = bytes ^ ones * '\\';
-		/* a high bit wherever a byte is a quote, a backslash, below 0x20 or above 0x7f; some more above the
-		 * first */
-		if ((((quotes - ones) & ~quotes) | ((slashes - ones) & ~slashes) |
-			((bytes - ones * 0x20) & ~bytes) | bytes) & high)
-			break;
-	}
 	while (*at != '"' && *at != '\\' && (unsigned char)*at >= 0x20 && (unsigned char)*at < 0x80)
 		at++;
 	return at;
@@ -295,7 +281,7 @@ static size_t keys_before(const reader *r, const opened *o)
 }
 
 /* Whether the next key is the next one of the guessed shape, spelled as there: it has no escapes then, and was found to
- * be sound. The text ends with NULs, which no key has that is in it. */
+ * be sound. The text ends with a NUL, which no key has that is in it. */
 static bool meets_guess(reader *r, const opened *o, nt_json_name *key)
 {
 	const size_t index = keys_before(r, o);
@@ -303,7 +289,7 @@ static bool meets_guess(reader *r, const opened *o, nt_json_name *key)
 		return false;
 	*key = o->guessed->keys[index];
 	const bool is_spelled_so = (uintptr_t)key->text - (uintptr_t)r->document->text < r->document->size;
-	if (!is_spelled_so || !nt_json_same_bytes(r->at + 1, key->text, key->length) || r->at[1 + key->length] != '"')
+	if (!is_spelled_so || strncmp(r->at + 1, key->text, key->length) != 0 || r->at[1 + key->length] != '"')
 		return false;
 	r->at[1 + key->length] = '\0';
 	r->at += key->length + 2;
@@ -352,7 +338,7 @@ static nt_status read_key(reader *r)
 		return fail(r, r->at, "':'");
 	r->at++;
 	o->foreign_member = r->foreign && key.length == r->foreign_length &&
-		nt_json_same_bytes(key.text, r->foreign, key.length);
+		memcmp(key.text, r->foreign, key.length) == 0;
 	return NT_OK;
 }
 
@@ -524,12 +510,12 @@ nt_status nt_json_parse(nt_json **document, const char *text, size_t size, const
 	nt_status status = NT_ERROR_MEMORY;
 	if (r)
 		memset(r, 0, offsetof(reader, open));
-	if (parsed && r && nt_size_add(size, PADDING_BYTES, &bytes))
+	if (parsed && r && nt_size_add(size, 1, &bytes))
 		parsed->text = nt_alloc(bytes, 1);
 	if (parsed && parsed->text) {
 		if (size)
 			memcpy(parsed->text, text, size);
-		memset(parsed->text + size, 0, PADDING_BYTES);
+		parsed->text[size] = '\0';
 		parsed->size = size;
 		r->document = parsed;
 		r->at = parsed->text;

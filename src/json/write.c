@@ -125,31 +125,15 @@ static bool is_closing(char c)
 	return c == '}' || c == ']';
 }
 
-/* Copies old text; closing quotes were NULs. */
-static void restore_quotes(char *to, const char *from, size_t size)
-{
-	static const uint64_t low = 0x7F7F7F7F7F7F7F7Fu;
-	size_t i = 0;
-	for (; i + 8 <= size; i += 8) {
-		uint64_t bytes;
-		memcpy(&bytes, from + i, sizeof bytes);
-		/* 1 in each byte that is 0 */
-		const uint64_t zeros = ~(((bytes & low) + low) | bytes | low) >> 7;
-		bytes |= zeros * '"';
-		memcpy(to + i, &bytes, sizeof bytes);
-	}
-	for (; i < size; i++)
-		to[i] = from[i] ? from[i] : '"';
-}
-
-/* Copies the old text up to there. */
+/* Copies the old text up to there; closing quotes were NULs. */
 static void copy_to(writer *w, const char *end)
 {
 	size_t size = (size_t)(end - w->copied);
 	w->size += size;
 	for (size_t part; w->take && size; w->copied += part, size -= part) {
 		char *const to = extend(w, size, &part);
-		restore_quotes(to, w->copied, part);
+		for (size_t i = 0; i < part; i++)
+			to[i] = w->copied[i] ? w->copied[i] : '"';
 	}
 	w->copied = end;
 }
