@@ -25,7 +25,7 @@ static nt_json_value *fail(nt_json *document)
 	return &document->scratch;
 }
 
-/* Another content at the same place, but for containers and what is said apart. */
+/* Another content at the same place, but for containers and override texts. */
 static void set(nt_json_value *value, nt_json_value content)
 {
 	content.of.text = nt_json_begin(value);
@@ -176,15 +176,15 @@ void nt_json_remove(nt_json *document, nt_json_value *object, const char *key)
 
 static void set_text(nt_json *document, nt_json_value *value, nt_json_type type, const char *text, size_t length)
 {
-	nt_json_said *said = nt_arena_alloc(&document->arena, sizeof *said + length + 1, 1);
-	if (!said) {
+	nt_json_override *override = nt_arena_alloc(&document->arena, sizeof *override + length + 1, 1);
+	if (!override) {
 		fail(document);
 		return;
 	}
-	said->begin = nt_json_begin(value);
-	memcpy(said->text, text, length);
-	said->text[length] = '\0';
-	*value = (nt_json_value){.of.said = said, .size = length, .type = type, .made = 1, .apart = 1};
+	override->begin = nt_json_begin(value);
+	memcpy(override->text, text, length);
+	override->text[length] = '\0';
+	*value = (nt_json_value){.of.override = override, .size = length, .type = type, .made = 1, .apart = 1};
 }
 
 void nt_json_set_bool(nt_json *document, nt_json_value *value, bool content)

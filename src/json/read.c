@@ -126,13 +126,14 @@ static char *put_utf8(char *to, uint32_t code)
 }
 
 /* What a checked string with escapes says, in the arena; NULL: out of memory. */
-static nt_json_said *decode(reader *r, const char *at, const char *end, size_t *length)
+static nt_json_override *decode(reader *r, const char *at, const char *end, size_t *length)
 {
-	nt_json_said *const said = nt_arena_alloc(&r->document->arena, sizeof *said + (size_t)(end - at) + 1, 1);
-	if (!said)
+	const size_t bytes = sizeof(nt_json_override) + (size_t)(end - at) + 1;
+	nt_json_override *const override = nt_arena_alloc(&r->document->arena, bytes, 1);
+	if (!override)
 		return NULL;
-	said->begin = at - 1;
-	char *to = said->text;
+	override->begin = at - 1;
+	char *to = override->text;
 	while (at < end) {
 		uint32_t code;
 		if (*at != '\\') {
@@ -143,8 +144,8 @@ static nt_json_said *decode(reader *r, const char *at, const char *end, size_t *
 		to = put_utf8(to, code);
 	}
 	*to = '\0';
-	*length = (size_t)(to - said->text);
-	return said;
+	*length = (size_t)(to - override->text);
+	return override;
 }
 
 /* The string that begins here; its closing quote becomes a NUL. */
@@ -177,9 +178,9 @@ static nt_status read_string(reader *r, nt_json_value *value)
 	*value = (nt_json_value){.of.text = begin, .size = length, .type = NT_JSON_STRING};
 	if (plain)
 		return NT_OK;
-	nt_json_said *const said = decode(r, begin, at, &length);
-	*value = (nt_json_value){.of.said = said, .size = length, .type = NT_JSON_STRING, .apart = 1};
-	return said ? NT_OK : nt_fail_memory(r->error);
+	nt_json_override *const override = decode(r, begin, at, &length);
+	*value = (nt_json_value){.of.override = override, .size = length, .type = NT_JSON_STRING, .apart = 1};
+	return override ? NT_OK : nt_fail_memory(r->error);
 }
 
 /* ---- scalars ---- */

@@ -19,17 +19,17 @@
 
 typedef struct nt_json_list nt_json_list;
 
-/* What a value says that the text does not say so, or no more. */
-typedef struct nt_json_said {
+/* Decoded or replaced text of a value. */
+typedef struct nt_json_override {
 	const char *begin; /* where it stands, or stood, in the text; NULL: it was added */
 	char text[];       /* NUL-terminated */
-} nt_json_said;
+} nt_json_override;
 
 struct nt_json_value {
 	union {
 		const char *text;   /* where it stands, or stood, in the text, strings behind the quote; NULL:
 		                       it was added */
-		nt_json_said *said; /* apart: strings with escapes, and numbers and strings that were made */
+		nt_json_override *override; /* apart: strings with escapes, numbers and strings that were set */
 		nt_json_list *list; /* apart: containers that have children, or had some */
 	} of;
 	uint64_t size : 48; /* bytes of text, NUL not counted; children; the number of a counted one */
@@ -67,7 +67,7 @@ struct nt_json {
 	size_t size;
 	nt_json_value root;
 	nt_json_value scratch; /* what changing functions hand out once memory is exhausted */
-	nt_arena arena;        /* lists, shapes, what is said apart */
+	nt_arena arena;        /* lists, shapes, override texts */
 	nt_hash_index known;   /* shapes by keys */
 	nt_json_shape **shapes;
 	size_t shape_count, shape_capacity;
@@ -83,7 +83,7 @@ static inline bool nt_json_is_container(const nt_json_value *value)
 static inline const char *nt_json_begin(const nt_json_value *value)
 {
 	if (value->apart)
-		return nt_json_is_container(value) ? value->of.list->begin : value->of.said->begin;
+		return nt_json_is_container(value) ? value->of.list->begin : value->of.override->begin;
 	return value->type == NT_JSON_STRING ? value->of.text - 1 : value->of.text;
 }
 
@@ -96,7 +96,7 @@ static inline bool nt_json_is_counted(const nt_json_value *value)
 /* [size] what a string says, or how a number that is not counted is spelled. */
 static inline const char *nt_json_text(const nt_json_value *value)
 {
-	return value->apart ? value->of.said->text : value->of.text;
+	return value->apart ? value->of.override->text : value->of.text;
 }
 
 /* The children of a container that has some. */
