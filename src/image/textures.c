@@ -30,15 +30,15 @@ typedef struct source {
 	nt_error error;   /* of looking whether it is grey */
 } source;
 
-/* In the recipe stand the sources; whether it is one for heights is said by the kind. */
+/* In the conversion stand the sources; whether it is one for heights is said by the kind. */
 typedef struct wish {
 	nt_texture_kind kind;
-	nt_recipe how;
+	nt_conversion how;
 	uint32_t result;
 } wish;
 
 typedef struct result {
-	nt_recipe how;
+	nt_conversion how;
 	nt_texture texture;
 	char *name;
 	nt_error error;
@@ -56,7 +56,7 @@ struct nt_textures {
 	size_t wish_count, wish_capacity;
 	result *results;
 	size_t result_count, result_capacity;
-	nt_hash_index by_path, by_wish, by_recipe; /* sources, wishes and results */
+	nt_hash_index by_path, by_wish, by_conversion; /* sources, wishes and results */
 	nt_texture_rules rules;
 	const char *beside; /* path next to which large results are in files; NULL: all are in memory */
 };
@@ -91,7 +91,7 @@ void nt_textures_free(nt_textures *t)
 	free(t->name_sources);
 	nt_hash_index_free(&t->by_path);
 	nt_hash_index_free(&t->by_wish);
-	nt_hash_index_free(&t->by_recipe);
+	nt_hash_index_free(&t->by_conversion);
 	nt_name_table_free(&t->names);
 	nt_arena_free(&t->arena);
 	free(t);
@@ -172,15 +172,15 @@ static nt_status find_source(nt_textures *t, const nt_image_places *places, cons
 }
 
 /* What of a wish makes a difference. */
-static nt_recipe wanted(const nt_texture_wish *what, const uint32_t sources[4])
+static nt_conversion wanted(const nt_texture_wish *what, const uint32_t sources[4])
 {
 	const bool packed = what->kind == NT_TEXTURE_PACKED;
 	const bool heights = what->kind == NT_TEXTURE_HEIGHTS || what->kind == NT_TEXTURE_NORMALS_OR_HEIGHTS;
-	nt_recipe how = {.packed = packed, .heights = heights, .height = heights ? what->height : 0,
+	nt_conversion how = {.packed = packed, .heights = heights, .height = heights ? what->height : 0,
 		.clamp = (packed || heights) && what->clamp, .suffix = what->suffix};
 	for (int k = 0; k < (packed ? 4 : 1); k++) {
 		const nt_texture_channel *c = &what->channels[k];
-		how.channels[k] = (nt_ingredient){.used = c->used || !packed, .source = sources[k]};
+		how.channels[k] = (nt_conversion_channel){.used = c->used || !packed, .source = sources[k]};
 		if (packed || heights)
 			how.channels[k].map = c->map;
 	}
@@ -197,12 +197,12 @@ nt_status nt_textures_wish(nt_textures *t, const nt_image_places *places, const 
 			status = find_source(t, places, what->channels[k].name, &sources[k], error);
 	if (status)
 		return status;
-	const nt_recipe how = wanted(what, sources);
+	const nt_conversion how = wanted(what, sources);
 	if (what->kind == NT_TEXTURE_NORMALS_OR_HEIGHTS)
 		t->sources[sources[0]]->in_question = true;
-	const uint64_t hash = nt_recipe_hash(&how) + (uint64_t)what->kind;
+	const uint64_t hash = nt_conversion_hash(&how) + (uint64_t)what->kind;
 	for (size_t at = NT_HASH_BEGIN; (*number = nt_hash_index_next(&t->by_wish, hash, &at)) != UINT32_MAX;)
-		if (t->wishes[*number].kind == what->kind && nt_recipe_equal(&t->wishes[*number].how, &how))
+		if (t->wishes[*number].kind == what->kind && nt_conversion_equal(&t->wishes[*number].how, &how))
 			return NT_OK;
 	*number = (uint32_t)t->wish_count;
 	if (!nt_grow((void **)&t->wishes, &t->wish_capacity, t->wish_count + 1, sizeof *t->wishes) ||
@@ -258,8 +258,8 @@ static void look_for_grey(void *context, size_t item, unsigned slot)
 
 /* ---- results ---- */
 
-/* A recipe of one image, which is what it is wished for or heights. */
-static nt_recipe recipe_of_one(const nt_textures *t, nt_texture_kind kind, const nt_recipe *wanted)
+/* A conversion of one image, which is what it is wished for or heights. */
+static nt_conversion conversion_of_one(const nt_textures *t, nt_texture_kind kind, const nt_conversion *wanted)
 {
 	const uint32_t from = wanted->channels[0].source;
 	const nt_texture_source *s = &t->sources[from]->file;
@@ -268,7 +268,7 @@ static nt_recipe recipe_of_one(const nt_textures *t, nt_texture_kind kind, const
 	const bool heights = decodable &&
 		(kind == NT_TEXTURE_HEIGHTS || (kind == NT_TEXTURE_NORMALS_OR_HEIGHTS && t->sources[from]->grey));
 	if (heights) {
-		nt_recipe how = *wanted;
+		nt_conversion how = *wanted;
 		how.png = choice != NT_TEXTURES_KEEP;
 		return how;
 	}
@@ -276,19 +276,19 @@ static nt_recipe recipe_of_one(const nt_textures *t, nt_texture_kind kind, const
 		(choice == NT_TEXTURES_PNG ? s->type != NT_IMAGE_PNG : !nt_image_is_carried(s->type));
 	const bool normals = kind == NT_TEXTURE_NORMALS || kind == NT_TEXTURE_NORMALS_OR_HEIGHTS;
 	const bool may_flip = decodable && normals && (png || nt_image_is_carried(s->type));
-	return (nt_recipe){.channels = {{.used = true, .source = from}}, .png = png,
+	return (nt_conversion){.channels = {{.used = true, .source = from}}, .png = png,
 		.flip = may_flip ? t->rules.flip : NT_FLIP_OFF};
 }
 
 /* What a wish comes to; *lost receives the channels whose image there is not. */
-static nt_recipe recipe_of(const nt_textures *t, const wish *w, unsigned *lost)
+static nt_conversion conversion_of(const nt_textures *t, const wish *w, unsigned *lost)
 {
 	*lost = 0;
 	if (w->kind != NT_TEXTURE_PACKED)
-		return recipe_of_one(t, w->kind, &w->how);
-	if (nt_recipe_is_image(&w->how))
-		return recipe_of_one(t, NT_TEXTURE_COLOR, &w->how);
-	nt_recipe how = w->how;
+		return conversion_of_one(t, w->kind, &w->how);
+	if (nt_conversion_is_identity(&w->how))
+		return conversion_of_one(t, NT_TEXTURE_COLOR, &w->how);
+	nt_conversion how = w->how;
 	how.png = t->rules.choice == NT_TEXTURES_PNG;
 	for (int k = 0; k < 4; k++) {
 		const uint32_t from = how.channels[k].source;
@@ -301,7 +301,7 @@ static nt_recipe recipe_of(const nt_textures *t, const wish *w, unsigned *lost)
 }
 
 /* The file's name; of what was made, with another ending. NULL: out of memory. */
-static char *name_of(const nt_recipe *how, const nt_texture *texture)
+static char *name_of(const nt_conversion *how, const nt_texture *texture)
 {
 	const char *name = nt_last_part(texture->sources[0]->path), *dot = strrchr(name, '.');
 	nt_buffer text = {0};
@@ -316,7 +316,7 @@ static char *name_of(const nt_recipe *how, const nt_texture *texture)
 }
 
 /* The files that it takes, each once, in the order of the channels. */
-static void list_sources(const nt_textures *t, const nt_recipe *how, nt_texture *texture)
+static void list_sources(const nt_textures *t, const nt_conversion *how, nt_texture *texture)
 {
 	for (int k = 0; k < 4; k++) {
 		const uint32_t from = how->channels[k].source;
@@ -330,7 +330,7 @@ static void list_sources(const nt_textures *t, const nt_recipe *how, nt_texture 
 	}
 }
 
-static nt_status add_result(nt_textures *t, const nt_recipe *how, unsigned lost, nt_error *error)
+static nt_status add_result(nt_textures *t, const nt_conversion *how, unsigned lost, nt_error *error)
 {
 	if (!nt_grow((void **)&t->results, &t->result_capacity, t->result_count + 1, sizeof *t->results))
 		return nt_fail_memory(error);
@@ -357,17 +357,19 @@ static nt_status plan_results(nt_textures *t, nt_error *error)
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < t->wish_count && !status; i++) {
 		unsigned lost;
-		const nt_recipe how = recipe_of(t, &t->wishes[i], &lost);
+		const nt_conversion how = conversion_of(t, &t->wishes[i], &lost);
 		uint32_t *number = &t->wishes[i].result;
-		const uint64_t hash = nt_recipe_hash(&how);
-		for (size_t at = NT_HASH_BEGIN; (*number = nt_hash_index_next(&t->by_recipe, hash, &at)) != UINT32_MAX;)
-			if (nt_recipe_equal(&t->results[*number].how, &how) && t->results[*number].texture.lost == lost)
+		const uint64_t hash = nt_conversion_hash(&how);
+		size_t at = NT_HASH_BEGIN;
+		while ((*number = nt_hash_index_next(&t->by_conversion, hash, &at)) != UINT32_MAX)
+			if (nt_conversion_equal(&t->results[*number].how, &how) &&
+				t->results[*number].texture.lost == lost)
 				break;
 		if (*number != UINT32_MAX)
 			continue;
 		*number = (uint32_t)t->result_count;
 		status = add_result(t, &how, lost, error);
-		if (!status && !nt_hash_index_add(&t->by_recipe, hash, *number))
+		if (!status && !nt_hash_index_add(&t->by_conversion, hash, *number))
 			status = nt_fail_memory(error);
 	}
 	return status;
@@ -382,7 +384,7 @@ typedef struct opened {
 	size_t count;
 } opened;
 
-static nt_status open_sources(const nt_texture *texture, const nt_textures *t, const nt_recipe *how, opened *o,
+static nt_status open_sources(const nt_texture *texture, const nt_textures *t, const nt_conversion *how, opened *o,
 	nt_error *error)
 {
 	*o = (opened){.count = 0};
@@ -429,11 +431,11 @@ static void *map_in_file(const char *beside, const unsigned char *bytes, size_t 
 static void decode_result(const nt_textures *t, result *r)
 {
 	nt_texture *texture = &r->texture;
-	nt_made made = {0};
+	nt_converted made = {0};
 	opened files;
 	nt_status status = open_sources(texture, t, &r->how, &files, &r->error);
 	if (!status)
-		status = nt_recipe_make(&r->how, files.of_channels, &made, &r->error);
+		status = nt_conversion_make(&r->how, files.of_channels, &made, &r->error);
 	for (size_t i = 0; i < files.count; i++)
 		status = close_source(texture->sources[i], &files.files[i], status, &r->error);
 	void *map = made.size >= FILED_BYTES ? map_in_file(t->beside, made.bytes, made.size) : NULL;
@@ -463,7 +465,7 @@ static void make_result(void *context, size_t item, unsigned slot)
 	nt_textures *t = context;
 	result *r = &t->results[item];
 	nt_error_clear(&r->error);
-	if (nt_recipe_decodes(&r->how) && r->texture.source_count)
+	if (nt_conversion_decodes(&r->how) && r->texture.source_count)
 		decode_result(t, r);
 	if (!r->texture.source_count)
 		return;

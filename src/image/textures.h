@@ -10,7 +10,7 @@
 #define NT_IMAGE_TEXTURES_H
 
 #include "image/find.h"
-#include "image/recipe.h"
+#include "image/conversion.h"
 
 /* Images that a new document gets from its materials. */
 typedef enum nt_texture_choice {

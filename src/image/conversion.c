@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Making one image: see recipe.h. What is put together holds the samples of all its images at once, and those of the
- * result; each image is decoded once.
+ * Making one image: see conversion.h. What is put together holds the samples of all its images at once, and those
+ * of the result; each image is decoded once.
  */
-#include "image/recipe.h"
+#include "image/conversion.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -11,7 +11,7 @@
 #include "image/examine.h"
 #include "image/heights.h"
 
-/* ---- recipes ---- */
+/* ---- conversions ---- */
 
 static bool equal_maps(const nt_channel_map *a, const nt_channel_map *b)
 {
@@ -19,7 +19,7 @@ static bool equal_maps(const nt_channel_map *a, const nt_channel_map *b)
 	       a->srgb == b->srgb;
 }
 
-bool nt_recipe_equal(const nt_recipe *a, const nt_recipe *b)
+bool nt_conversion_equal(const nt_conversion *a, const nt_conversion *b)
 {
 	for (int k = 0; k < 4; k++)
 		if (a->channels[k].used != b->channels[k].used || a->channels[k].source != b->channels[k].source ||
@@ -30,12 +30,12 @@ bool nt_recipe_equal(const nt_recipe *a, const nt_recipe *b)
 }
 
 /* Adding 0 makes 0 of -0. */
-uint64_t nt_recipe_hash(const nt_recipe *how)
+uint64_t nt_conversion_hash(const nt_conversion *how)
 {
 	double numbers[5 + 4 * 7] = {how->packed, how->png, how->flip, how->height + 0.0,
 		2 * how->heights + how->clamp};
 	for (int k = 0; k < 4; k++) {
-		const nt_ingredient *i = &how->channels[k];
+		const nt_conversion_channel *i = &how->channels[k];
 		const double of_channel[] = {i->used, i->source, i->map.channel, i->map.base + 0.0, i->map.gain + 0.0,
 			i->map.exponent, i->map.srgb};
 		memcpy(numbers + 5 + 7 * k, of_channel, sizeof of_channel);
@@ -43,16 +43,16 @@ uint64_t nt_recipe_hash(const nt_recipe *how)
 	return nt_hash_bytes(0, numbers, sizeof numbers);
 }
 
-bool nt_recipe_decodes(const nt_recipe *how)
+bool nt_conversion_decodes(const nt_conversion *how)
 {
 	return how->packed || how->png || how->heights || how->flip != NT_FLIP_OFF;
 }
 
-bool nt_recipe_is_image(const nt_recipe *how)
+bool nt_conversion_is_identity(const nt_conversion *how)
 {
 	const uint32_t source = how->channels[0].source;
 	for (int k = 0; k < 4; k++) {
-		const nt_ingredient *i = &how->channels[k];
+		const nt_conversion_channel *i = &how->channels[k];
 		if (i->used && (k == 3 || i->source != source || i->map.channel != (nt_channel)k ||
 			!nt_channel_map_is_identity(&i->map)))
 			return false;
@@ -72,8 +72,8 @@ static void flip_green(nt_pixels *p)
 			((uint16_t *)p->samples)[i] = (uint16_t)(UINT16_MAX - ((uint16_t *)p->samples)[i]);
 }
 
-/* Turns green around if the recipe says so. */
-static nt_status flip(const nt_recipe *how, nt_pixels *pixels, bool *flipped, nt_error *error)
+/* Turns green around if the conversion says so. */
+static nt_status flip(const nt_conversion *how, nt_pixels *pixels, bool *flipped, nt_error *error)
 {
 	nt_normal_facts facts;
 	nt_status status = NT_OK;
@@ -87,7 +87,7 @@ static nt_status flip(const nt_recipe *how, nt_pixels *pixels, bool *flipped, nt
 	return status;
 }
 
-/* Pixels become those of what the recipe makes of them; they stay on failure. */
+/* Pixels become those of what the conversion makes of them; they stay on failure. */
 static nt_status replace(nt_pixels *pixels, const nt_pixels *by, nt_status status)
 {
 	if (!status) {
@@ -97,7 +97,7 @@ static nt_status replace(nt_pixels *pixels, const nt_pixels *by, nt_status statu
 	return status;
 }
 
-static nt_status make_normals(const nt_recipe *how, nt_pixels *pixels, nt_error *error)
+static nt_status make_normals(const nt_conversion *how, nt_pixels *pixels, nt_error *error)
 {
 	nt_channel_map map = how->channels[0].map;
 	nt_pixels made = {0};
@@ -114,7 +114,7 @@ static nt_status make_normals(const nt_recipe *how, nt_pixels *pixels, nt_error 
 	return status;
 }
 
-static nt_status make_of_one(const nt_recipe *how, const nt_file *file, nt_made *made, nt_error *error)
+static nt_status make_of_one(const nt_conversion *how, const nt_file *file, nt_converted *made, nt_error *error)
 {
 	nt_pixels pixels;
 	nt_status status = nt_image_decode(file->data, file->size, &pixels, error);
@@ -132,7 +132,7 @@ static nt_status make_of_one(const nt_recipe *how, const nt_file *file, nt_made 
 
 /* The images of what is put together; channels of one source share its samples. */
 typedef struct packing {
-	nt_recipe how;       /* as it comes to be */
+	nt_conversion how;       /* as it comes to be */
 	nt_pixels pixels[4];
 	int owner[4];        /* channel whose pixels these are */
 } packing;
@@ -143,9 +143,9 @@ static bool is_taken(const packing *p, int k)
 }
 
 /* Decodes the image of a channel; one that is damaged makes it white. */
-static nt_status take_image(packing *p, int k, const nt_file *file, nt_made *made, nt_error *error)
+static nt_status take_image(packing *p, int k, const nt_file *file, nt_converted *made, nt_error *error)
 {
-	nt_ingredient *i = &p->how.channels[k];
+	nt_conversion_channel *i = &p->how.channels[k];
 	p->owner[k] = k;
 	for (int j = 0; j < k; j++)
 		if (is_taken(p, j) && p->how.channels[j].source == i->source)
@@ -166,14 +166,14 @@ static const nt_pixels *pixels_of(const packing *p, int k)
 }
 
 /* What alpha does; where it does nothing it is not used. */
-static nt_status judge_alpha(packing *p, nt_made *made, nt_error *error)
+static nt_status judge_alpha(packing *p, nt_converted *made, nt_error *error)
 {
 	if (!is_taken(p, 3)) {
 		p->how.channels[3].used = false;
 		return NT_OK;
 	}
 	const nt_pixels *from = pixels_of(p, 3);
-	nt_ingredient *i = &p->how.channels[3];
+	nt_conversion_channel *i = &p->how.channels[3];
 	nt_pixels alpha;
 	nt_status status = nt_pixels_create(&alpha, from->width, from->height, 1, from->bits, error);
 	if (status)
@@ -197,7 +197,7 @@ static bool is_there(const packing *p, const nt_file *const files[4])
 	const nt_image_type type = nt_image_type_of_bytes(files[first]->data, files[first]->size);
 	const bool grey = nt_pixels_are_grey(pixels_of(p, first), type);
 	for (int k = first; k < 4; k++) {
-		const nt_ingredient *i = &p->how.channels[k];
+		const nt_conversion_channel *i = &p->how.channels[k];
 		const bool same = i->map.channel == (nt_channel)k ||
 			(grey && k < 3 && i->map.channel != NT_CHANNEL_ALPHA);
 		if (i->used &&
@@ -210,10 +210,10 @@ static bool is_there(const packing *p, const nt_file *const files[4])
 /* Grey, where red, green and blue are the same or of no use; else RGB; and alpha. */
 static unsigned count_channels(const packing *p)
 {
-	const nt_ingredient *known = NULL;
+	const nt_conversion_channel *known = NULL;
 	bool grey = true;
 	for (int k = 0; k < 3; k++) {
-		const nt_ingredient *i = &p->how.channels[k];
+		const nt_conversion_channel *i = &p->how.channels[k];
 		if (!i->used)
 			continue;
 		grey &= !known || (known->source == i->source && equal_maps(&known->map, &i->map));
@@ -247,7 +247,8 @@ static nt_status put_together(const packing *p, nt_pixels *to, nt_error *error)
 	return status;
 }
 
-static nt_status make_of_several(const nt_recipe *how, const nt_file *const files[4], nt_made *made, nt_error *error)
+static nt_status make_of_several(const nt_conversion *how, const nt_file *const files[4], nt_converted *made,
+	nt_error *error)
 {
 	packing p = {.how = *how};
 	nt_pixels result = {0};
@@ -273,8 +274,9 @@ static nt_status make_of_several(const nt_recipe *how, const nt_file *const file
 	return status;
 }
 
-nt_status nt_recipe_make(const nt_recipe *how, const nt_file *const files[4], nt_made *made, nt_error *error)
+nt_status nt_conversion_make(const nt_conversion *how, const nt_file *const files[4], nt_converted *made,
+	nt_error *error)
 {
-	*made = (nt_made){0};
+	*made = (nt_converted){0};
 	return how->packed ? make_of_several(how, files, made, error) : make_of_one(how, files[0], made, error);
 }

@@ -3,8 +3,8 @@
  * How one image of an output comes from files: as it is, converted, a height map made a normal map, green turned
  * around, or put together of channels of several. Knows bytes and pixels; which files there are is textures.c's.
  */
-#ifndef NT_IMAGE_RECIPE_H
-#define NT_IMAGE_RECIPE_H
+#ifndef NT_IMAGE_CONVERSION_H
+#define NT_IMAGE_CONVERSION_H
 
 #include "file/input.h"
 #include "image/image.h"
@@ -18,14 +18,14 @@ typedef enum nt_flip {
 } nt_flip;
 
 /* One channel of what is put together, in the order red, green, blue, alpha. */
-typedef struct nt_ingredient {
+typedef struct nt_conversion_channel {
 	bool used;           /* somebody samples it */
 	uint32_t source;     /* number of the image; UINT32_MAX: none, it is white */
 	nt_channel_map map;
-} nt_ingredient;
+} nt_conversion_channel;
 
-typedef struct nt_recipe {
-	nt_ingredient channels[4]; /* without `packed` the source of the first is the image; with `heights` its
+typedef struct nt_conversion {
+	nt_conversion_channel channels[4]; /* without `packed` the source of the first is the image; with `heights` its
 	                              map is applied */
 	bool packed;
 	bool png;        /* the result is a PNG, whatever the file is */
@@ -34,25 +34,25 @@ typedef struct nt_recipe {
 	double height;   /* these two only with heights; clamp with packed, too */
 	bool clamp;
 	const char *suffix; /* of the name of what is made; only with packed */
-} nt_recipe;
+} nt_conversion;
 
 /* What it came to. */
-typedef struct nt_made {
+typedef struct nt_converted {
 	unsigned char *bytes; /* a PNG in a malloc'ed block; NULL: the file of the first channel is the result */
 	size_t size;
 	bool flipped;
 	nt_alpha_mode alpha;
 	unsigned damaged;     /* bits: channels whose image cannot be decoded, which are white */
-} nt_made;
+} nt_converted;
 
-bool nt_recipe_equal(const nt_recipe *a, const nt_recipe *b);
-uint64_t nt_recipe_hash(const nt_recipe *how);
+bool nt_conversion_equal(const nt_conversion *a, const nt_conversion *b);
+uint64_t nt_conversion_hash(const nt_conversion *how);
 
 /* Whether it takes decoding at all. */
-bool nt_recipe_decodes(const nt_recipe *how);
+bool nt_conversion_decodes(const nt_conversion *how);
 
 /* Whether packed channels are those of one image in their order, as they are. */
-bool nt_recipe_is_image(const nt_recipe *how);
+bool nt_conversion_is_identity(const nt_conversion *how);
 
 /*
  * Makes it.
@@ -62,6 +62,7 @@ bool nt_recipe_is_image(const nt_recipe *how);
  * Returns NT_OK, also with damaged channels, as long as one that is used is left (the error says what is wrong with the
  * last of them), or what nt_image_decode() and nt_encode_png() do.
  */
-nt_status nt_recipe_make(const nt_recipe *how, const nt_file *const files[4], nt_made *made, nt_error *error);
+nt_status nt_conversion_make(const nt_conversion *how, const nt_file *const files[4], nt_converted *made,
+	nt_error *error);
 
 #endif
