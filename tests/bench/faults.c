@@ -74,7 +74,7 @@ void faults_add(const nt_owned *mesh, const float (*tangents)[4], faults *sum)
 bool faults_add_files(const char *const *files, size_t count, faults *sum)
 {
 	char command[32768];
-	size_t length = (size_t)snprintf(command, sizeof command, "node tests/support/frames.mjs");
+	size_t length = (size_t)snprintf(command, sizeof command, "node tests/support/answer.mjs frames");
 	for (size_t i = 0; i < count && length < sizeof command; i++)
 		length += (size_t)snprintf(command + length, sizeof command - length, " '%s'", files[i]);
 	FILE *f = length < sizeof command ? popen(command, "r") : NULL;

@@ -5,9 +5,9 @@
 # Runs alone.
 . "$ROOT/tests/support/cli.sh"
 
-# inputs KIND COUNT FILE [SIDE]: what is asked for again, in another scene or by another build, is the same file.
+# inputs KIND COUNT FILE [SIDE]: what is asked for again, in another scene, is the same file.
 inputs() {
-	local made=${ANSWERS:-$WORK}/$1.$2.${4-}
+	local made=$WORK/$1.$2.${4-}
 	[ -e "$made" ] || python3 "$ROOT/tests/support/cost_inputs.py" "$1" "$2" "$made" ${4+"$4"}
 	ln "$made" "$3"
 }

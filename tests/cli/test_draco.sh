@@ -3,7 +3,7 @@
 # JSON and Draco for the blocks, when the output is read again.
 . "$ROOT/tests/support/cli.sh"
 mkdir -p "$WORK/layouts" "$WORK/outputs"
-PYTHONDONTWRITEBYTECODE=1 python3 "$ROOT/tests/support/gltf_layouts.py" "$WORK/layouts" || exit 1
+python3 "$ROOT/tests/support/gltf_layouts.py" "$WORK/layouts" || exit 1
 
 compressed() {
 	gltf "$1" 'g.meshes.flatMap((m) => m.primitives).filter((p) =>

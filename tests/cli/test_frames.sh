@@ -17,8 +17,8 @@ normals() {
 
 # No fault in a file, and it stays when it is converted again.
 sound() {
-	local counts existing folders=(.)
-	counts=$(answer folders node "$ROOT/tests/support/frames.mjs" "$1") || wrong "$1 cannot be read"
+	local counts existing
+	counts=$(ask answer.mjs frames "$1") || wrong "$1 cannot be read"
 	[[ $counts =~ ^corners\ [1-9] && ! $counts =~ \ (degree|lean|unit|w|mixed|wrong)\ [1-9] ]] || wrong "$1: $counts"
 	for existing in keep repair; do
 		"$NMTAN" -q --existing=$existing --only=all "$1" again.glb >/dev/null 2>&1

@@ -15,8 +15,8 @@ node "$here/make_tile.mjs" "$dir"
 node "$dir/node_modules/gltfpack/cli.js" -noq -gt -i "$dir/ours.glb" -o "$dir/theirs.glb"
 
 # What the README says: the validator finds nothing in either file, --check finds the wrong sign in one.
-node tests/support/validate.mjs "$dir/ours.glb"
-node tests/support/validate.mjs "$dir/theirs.glb"
+node tests/support/answer.mjs validate "$dir/ours.glb"
+node tests/support/answer.mjs validate "$dir/theirs.glb"
 "$nmtan" --check -q --report-format=text --fail-on=info "$dir/ours.glb" >"$dir/ours.txt"
 "$nmtan" --check -q --report-format=text "$dir/theirs.glb" | grep 'TAN_SIGN_MISMATCH.* 100 % ' || {
 	echo "run.sh: the tangents of gltfpack have the right sign: the picture needs another text" >&2

@@ -44,7 +44,7 @@ way() {
 			"$nmtan" -q --check --fail-on=never "$output" >"$work/said" 2>&1 ||
 				bad "$label: $input: its PLY cannot be read: $(tail -1 "$work/said")"
 		done <"$work/pairs"
-	elif ! node tests/support/validate.mjs --pairs "$work/pairs" >"$work/said"; then
+	elif ! node tests/support/answer.mjs validate --pairs "$work/pairs" >"$work/said"; then
 		cat "$work/said"
 		bad "$label: new errors in the validator"
 	fi
@@ -56,7 +56,7 @@ find "$shared/models" "$shared/corpus" -type f \( -name '*.obj' -o -name '*.ply'
 	-o -name '*.gltf' -o -name '*.glb' \) | sort | while IFS= read -r input; do
 	case $input in
 	*.gltf)
-		placed=$(node tests/support/gltf.mjs "$input" '(g.buffers ?? []).every((b) => b.uri)' 2>&1)
+		placed=$(node tests/support/answer.mjs gltf "$input" '(g.buffers ?? []).every((b) => b.uri)' 2>&1)
 		[ "$placed" = false ] || printf '%s\n' "$input"
 		;;
 	*) printf '%s\n' "$input" ;;

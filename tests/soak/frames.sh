@@ -18,7 +18,7 @@ fault() {
 
 while IFS= read -r file; do
 	"$nmtan" -q --images=none --existing=replace --only=all "$file" "$t/o.glb" >/dev/null 2>&1 || continue
-	counts=$(node tests/support/frames.mjs "$t/o.glb") || { fault "$file" "cannot be read back"; continue; }
+	counts=$(node tests/support/answer.mjs frames "$t/o.glb") || { fault "$file" "cannot be read back"; continue; }
 	[[ $counts == "corners 0 "* ]] && continue
 	files=$((files + 1))
 	total+=$counts$'\n'

@@ -94,34 +94,43 @@ is() {
 	[ "$1" = "$2" ] || wrong "got '$1', expected '$2'"
 }
 
-# answer FOLDERS COMMAND...: a command whose answer depends on its words and on the files in folders (an array's name) alone.
-# Another build's files should have the same bytes: for these tests/run keeps the answers of the first one.
-answer() {
-	local -n of=$1
-	local folder file files=() kept rest
-	shift
-	[ -n "${ANSWERS-}" ] || { "$@"; return; }
-	for folder in "${of[@]}"; do
-		for file in "$folder"/* "$folder"/*/*; do [ ! -f "$file" ] || files+=("$file"); done
-	done
-	read -r kept rest < <({ printf '%s\0' "$PWD" "$@" "${files[@]}" && cat -- /dev/null "${files[@]}"; } | sha256sum)
-	kept=$ANSWERS/$kept
-	[ -e "$kept" ] || { "$@" >"$kept.new" && mv "$kept.new" "$kept"; } || { rest=$? && cat "$kept.new" && return $rest; }
-	cat "$kept"
+# ask FILE WORDS...: what one process says that answers all questions of this script, since Python and Node take long to begin.
+# Two at the same time are two processes.
+ask() {
+	local folder=$WORK/.ask/$1 program=(node "$ROOT/tests/support/$1") command status
+	command=("${program[@]}")
+	[[ $1 != *.py ]] || { program[0]=python3 command=(python3); }
+	if [ ! -d "$folder" ]; then
+		mkdir -p "$folder" && mkfifo "$folder/ask" "$folder/said" || return 1
+		(cd / && setsid --fork "${program[@]}" --serve "$folder" </dev/null >/dev/null 2>"$folder/fault")
+	fi
+	set -C
+	{ : >"$folder/busy"; } 2>/dev/null
+	status=$?
+	set +C
+	[ $status = 0 ] || { command "${command[@]}" "${@:2}"; return; }
+	printf '%s\0' "$BASHPID" "$PWD" "${@:2}" >"$folder/ask"
+	read -r status <"$folder/said"
+	[ ! -s "$folder/out" ] || cat "$folder/out"
+	[ ! -s "$folder/err" ] || cat "$folder/err" >&2
+	rm "$folder/busy"
+	return "$status"
+}
+trap 'for pid in "$WORK"/.ask/*/pid; do kill "$(<"$pid")"; done 2>/dev/null' EXIT
+python3() {
+	case $1 in
+	- | -c | *.py) ask answer.py "$@" ;;
+	*) command python3 "$@" ;;
+	esac
 }
 
 # The value of a JavaScript expression over a glTF file: see gltf.mjs.
-gltf() {
-	local folders=("$(dirname "$1")")
-	answer folders node "$ROOT/tests/support/gltf.mjs" "$@"
-}
+gltf() { ask answer.mjs gltf "$@"; }
 
 # The output has no error in the Khronos validator that its input (if any) did not have.
 valid() {
-	local folders=("$(dirname -- "$1")")
-	[ "$1" != --pairs ] || mapfile -t folders < <(cut -f1 "$2" | sed 's|/[^/]*$||' | sort -u)
 	if [ -f "$ROOT/build/node/node_modules/gltf-validator/package.json" ]; then
-		answer folders node "$ROOT/tests/support/validate.mjs" "$@" || wrong "$1 is not valid"
+		ask answer.mjs validate "$@" || wrong "$1 is not valid"
 	else
 		skip_case "gltf-validator is not installed (no network?)"
 	fi

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 //
-// node frames.mjs FILE...: reads the tangents of .glb and .gltf files by itself and counts what a renderer would see,
+// answer.mjs frames FILE...: reads the tangents of .glb and .gltf files by itself and counts what a renderer would see,
 // one line a file. Nothing of nmtan takes part, and w is held against the exact determinant of the stored texture
 // coordinates (V points down, so that w is +1 where it is negative).
 //
@@ -11,24 +11,7 @@
 //   w         w neither 1 nor -1
 //   mixed     triangles with two values of w
 //   wrong     triangles with one, but not that of their orientation
-import { readFileSync } from 'node:fs';
-import { dirname, join } from 'node:path';
-
-function load(path) {
-	const bytes = readFileSync(path);
-	if (bytes.toString('latin1', 0, 4) !== 'glTF')
-		return { g: JSON.parse(bytes.toString('utf8')), folder: dirname(path) };
-	const size = bytes.readUInt32LE(12);
-	return { g: JSON.parse(bytes.toString('utf8', 20, 20 + size)), chunk: bytes.subarray(20 + size + 8), folder: dirname(path) };
-}
-
-function bufferOf(file, index) {
-	file.buffers ??= [];
-	const uri = file.g.buffers[index].uri;
-	return file.buffers[index] ??= uri === undefined ? file.chunk
-		: uri.startsWith('data:') ? Buffer.from(uri.slice(uri.indexOf(',') + 1), 'base64')
-			: readFileSync(join(file.folder, decodeURIComponent(uri)));
-}
+import { open } from './gltf.mjs';
 
 const widths = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
 const readers = { 5120: ['readInt8', 1, 127], 5121: ['readUInt8', 1, 255], 5122: ['readInt16LE', 2, 32767],
@@ -40,7 +23,7 @@ function values(file, number) {
 	if (accessor.sparse || !view || view.extensions?.EXT_meshopt_compression)
 		return null;
 	const [method, size, most] = readers[accessor.componentType], width = widths[accessor.type];
-	const data = bufferOf(file, view.buffer), stride = view.byteStride ?? width * size;
+	const data = file.bytes[view.buffer], stride = view.byteStride ?? width * size;
 	const start = (view.byteOffset ?? 0) + (accessor.byteOffset ?? 0), out = new Float64Array(accessor.count * width);
 	const scale = accessor.normalized ? most : 1;
 	for (let row = 0, to = 0; row < accessor.count; row++)
@@ -110,10 +93,13 @@ function countPrimitive(file, primitive, n) {
 	}
 }
 
-for (const path of process.argv.slice(2)) {
-	const file = load(path), n = { corners: 0, degree: 0, lean: 0, unit: 0, w: 0, mixed: 0, wrong: 0 };
-	for (const mesh of file.g.meshes ?? [])
-		for (const primitive of mesh.primitives)
-			countPrimitive(file, primitive, n);
-	console.log(Object.entries(n).map(([name, count]) => `${name} ${count}`).join(' '));
+export default function answer(paths, say) {
+	for (const path of paths) {
+		const file = open(path), n = { corners: 0, degree: 0, lean: 0, unit: 0, w: 0, mixed: 0, wrong: 0 };
+		for (const mesh of file.g.meshes ?? [])
+			for (const primitive of mesh.primitives)
+				countPrimitive(file, primitive, n);
+		say(Object.entries(n).map(([name, count]) => `${name} ${count}`).join(' '));
+	}
+	return true;
 }

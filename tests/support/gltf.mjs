@@ -1,40 +1,61 @@
 // SPDX-License-Identifier: MIT
 //
-// node gltf.mjs FILE EXPRESSION: prints the value of a JavaScript expression over a .gltf or .glb, with
-// g the document and rows(accessor) an accessor's rows of numbers.
-import { readFileSync } from 'node:fs';
+// answer.mjs gltf FILE EXPRESSION           prints the value of a JavaScript expression over a .gltf or .glb
+// answer.mjs gltf FILE NAME STATEMENTS...   writes NAME.gltf, with its buffers beside it, after the statements
+//
+// They see g, the document; bytes, the buffers, which they may change and replace; rows(accessor), an accessor's rows of
+// numbers; at(accessor, row), where one begins in its buffer; and open(FILE), another file with all of these.
+import { readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 
-const [path, expression] = process.argv.slice(2);
-const bytes = readFileSync(path);
-let g, chunk;
-if (bytes.toString('latin1', 0, 4) === 'glTF') {
-	const size = bytes.readUInt32LE(12);
-	g = JSON.parse(bytes.toString('utf8', 20, 20 + size));
-	chunk = bytes.subarray(20 + size + 8);
-} else {
-	g = JSON.parse(bytes.toString('utf8'));
-}
-
-function bufferBytes(index) {
-	const uri = g.buffers[index].uri;
-	if (uri === undefined)
-		return chunk;
-	return uri.startsWith('data:') ? Buffer.from(uri.slice(uri.indexOf(',') + 1), 'base64')
-		: readFileSync(join(dirname(path), decodeURIComponent(uri)));
-}
-
-const widths = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4 };
+const widths = { SCALAR: 1, VEC2: 2, VEC3: 3, VEC4: 4, MAT4: 16 };
 const readers = { 5120: ['readInt8', 1], 5122: ['readInt16LE', 2], 5121: ['readUInt8', 1], 5123: ['readUInt16LE', 2], 5125: ['readUInt32LE', 4], 5126: ['readFloatLE', 4] };
 
-function rows(number) {
-	const accessor = g.accessors[number], view = g.bufferViews[accessor.bufferView];
-	const [method, size] = readers[accessor.componentType], width = widths[accessor.type];
-	const data = bufferBytes(view.buffer), stride = view.byteStride ?? width * size;
-	const start = (view.byteOffset ?? 0) + (accessor.byteOffset ?? 0);
-	return Array.from({ length: accessor.count }, (_, row) =>
-		Array.from({ length: width }, (_, k) => data[method](start + row * stride + k * size)));
+export function open(path) {
+	const file = readFileSync(path), binary = file.toString('latin1', 0, 4) === 'glTF';
+	const size = binary ? file.readUInt32LE(12) : 0;
+	const g = JSON.parse(binary ? file.toString('utf8', 20, 20 + size) : file.toString('utf8'));
+	const chunk = binary ? file.subarray(20 + size + 8) : undefined;
+	const loaded = [];
+	const bytes = new Proxy(loaded, { get: (target, name) => {
+		if (typeof name !== 'string' || !/^\d+$/.test(name))
+			return target[name];
+		const uri = g.buffers[name].uri;
+		return target[name] ??= uri === undefined ? chunk
+			: uri.startsWith('data:') ? Buffer.from(uri.slice(uri.indexOf(',') + 1), 'base64')
+				: readFileSync(join(dirname(path), decodeURIComponent(uri)));
+	} });
+	const shape = (accessor) => {
+		const [method, size] = readers[accessor.componentType], width = widths[accessor.type];
+		return { method, size, width, stride: g.bufferViews[accessor.bufferView].byteStride ?? width * size };
+	};
+	const at = (number, row = 0) => {
+		const accessor = g.accessors[number], view = g.bufferViews[accessor.bufferView];
+		return (view.byteOffset ?? 0) + (accessor.byteOffset ?? 0) + row * shape(accessor).stride;
+	};
+	const rows = (number) => {
+		const accessor = g.accessors[number], { method, size, width } = shape(accessor);
+		const data = bytes[g.bufferViews[accessor.bufferView].buffer];
+		return Array.from({ length: accessor.count }, (_, row) =>
+			Array.from({ length: width }, (_, k) => data[method](at(number, row) + k * size)));
+	};
+	return { g, bytes, rows, at };
 }
 
-const value = new Function('g', 'rows', `return (${expression});`)(g, rows);
-console.log(typeof value === 'string' ? value : JSON.stringify(value));
+export default function answer([path, expression, ...statements], say) {
+	const file = open(path);
+	const run = (text) => new Function(...Object.keys(file), 'open', text)(...Object.values(file), open);
+	if (statements.length === 0) {
+		const value = run(`return (${expression});`);
+		say(typeof value === 'string' ? value : JSON.stringify(value));
+		return true;
+	}
+	run(statements.join('\n'));
+	for (const [i, buffer] of (file.g.buffers ?? []).entries()) {
+		const name = `${expression}${i ? `-${i}` : ''}.bin`, data = file.bytes[i];
+		Object.assign(buffer, { uri: name.replace(/.*\//, ''), byteLength: data.length });
+		writeFileSync(name, data);
+	}
+	writeFileSync(`${expression}.gltf`, JSON.stringify(file.g));
+	return true;
+}

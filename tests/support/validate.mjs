@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// node validate.mjs OUTPUT [INPUT]   one pair
-// node validate.mjs --pairs FILE     a list: one "OUTPUT<tab>INPUT" or "OUTPUT" per line
+// answer.mjs validate OUTPUT [INPUT]   one pair
+// answer.mjs validate --pairs FILE     a list: one "OUTPUT<tab>INPUT" or "OUTPUT" per line
 //
 // Runs the Khronos validator (npm gltf-validator, installed by `make check` into build/node) and fails
 // when an output has an error its input did not have. Errors are told apart by code and number: an
@@ -34,7 +34,7 @@ function countCodes(messages) {
 }
 
 // An input is looked at only where its output has errors that it may have had.
-async function judge(output, input) {
+async function judge(output, input, say) {
 	const after = await errorsOf(output);
 	const before = after.length && input && /\.(gltf|glb)$/i.test(input) ? await errorsOf(input) : [];
 	const allowed = countCodes(before);
@@ -50,24 +50,24 @@ async function judge(output, input) {
 			fresh.push(message);
 	}
 	for (const { code, pointer, message } of fresh.slice(0, 5))
-		console.log(`# ${output}: ${code} ${pointer ?? ''}: ${message}`);
+		say(`# ${output}: ${code} ${pointer ?? ''}: ${message}`);
 	if (fresh.length > 5)
-		console.log(`# ${output}: ${fresh.length - 5} more`);
+		say(`# ${output}: ${fresh.length - 5} more`);
 	return fresh.length === 0;
 }
 
-const words = process.argv.slice(2);
-const pairs = words[0] === '--pairs'
-	? readFileSync(words[1], 'utf8').split('\n').filter(Boolean).map((line) => line.split('\t'))
-	: [words];
-let bad = 0;
-for (const [output, input] of pairs) {
-	try {
-		if (!(await judge(output, input)))
-			bad++;
-	} catch (error) {
-		console.log(`# ${output}: the validator could not read it: ${error}`);
-		bad++;
+export default async function answer(words, say) {
+	const pairs = words[0] === '--pairs'
+		? readFileSync(words[1], 'utf8').split('\n').filter(Boolean).map((line) => line.split('\t'))
+		: [words];
+	let good = true;
+	for (const [output, input] of pairs) {
+		try {
+			good = await judge(output, input, say) && good;
+		} catch (error) {
+			say(`# ${output}: the validator could not read it: ${error}`);
+			good = false;
+		}
 	}
+	return good;
 }
-process.exit(bad ? 1 : 0);
