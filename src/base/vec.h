@@ -88,4 +88,14 @@ static inline nt_vec3 nt_vec3_project(nt_vec3 n, nt_vec3 v)
 	return nt_vec3_normalise_safe(nt_vec3_sub(v, nt_vec3_scale(nt_vec3_dot(n, v), n)));
 }
 
+/* |N|^2 of a normal of unit length may differ from 1 by this much: floats that were rounded to 12 bits pass, and
+ * T . N then says the sine of the angle to within 2^-12 of itself. */
+#define NT_UNIT_NORMAL_TOLERANCE 0x1p-11f
+
+/* Whether |N| counts as 1. */
+static inline bool nt_is_unit_normal(const float n[3])
+{
+	return fabsf(nt_dot3(n, n) - 1.0f) <= NT_UNIT_NORMAL_TOLERANCE;
+}
+
 #endif

@@ -10,13 +10,11 @@
 #include "format/drc.h"
 #include "gltf/create/create.h"
 #include "gltf/document.h"
-#include "gltf/edit/draco_foresee.h"
 #include "gltf/edit/edit.h"
-#include "gltf/joins.h"
-#include "gltf/late.h"
+#include "gltf/edit/merge_splits.h"
+#include "gltf/edit/plan.h"
 #include "gltf/load.h"
 #include "gltf/open.h"
-#include "gltf/same_geometry.h"
 #include "obj/read.h"
 #include "ply/read.h"
 #include "ply/write.h"
@@ -35,13 +33,11 @@ static const nt_format_entry table[] = {
 		.extensions = ".glb",
 		.recognise = nt_glb_recognise,
 		.open = nt_gltf_open,
-		.find_joins = nt_gltf_find_joins,
-		.find_same = nt_gltf_find_same,
-		.find_late = nt_gltf_find_late,
-		.find_quantized = nt_gltf_find_quantized,
+		.plan = nt_gltf_plan,
 		.share = nt_gltf_share,
 		.unshare = nt_gltf_unshare,
 		.load = nt_gltf_load,
+		.merge = nt_gltf_merge,
 		.write = write_gltf},
 	{.format = NT_FORMAT_DRC,
 		.name = "drc",
@@ -59,13 +55,11 @@ static const nt_format_entry table[] = {
 		.extensions = ".gltf",
 		.recognise = nt_gltf_recognise,
 		.open = nt_gltf_open,
-		.find_joins = nt_gltf_find_joins,
-		.find_same = nt_gltf_find_same,
-		.find_late = nt_gltf_find_late,
-		.find_quantized = nt_gltf_find_quantized,
+		.plan = nt_gltf_plan,
 		.share = nt_gltf_share,
 		.unshare = nt_gltf_unshare,
 		.load = nt_gltf_load,
+		.merge = nt_gltf_merge,
 		.write = write_gltf},
 	{.format = NT_FORMAT_OBJ,
 		.name = "obj",

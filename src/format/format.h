@@ -19,18 +19,8 @@ typedef struct nt_format_entry {
 	bool (*recognise)(const unsigned char *bytes, size_t size);
 	/* Describes the meshes of scene->bytes (and loads them, where that is one step). */
 	nt_status (*open)(nt_scene *scene, const nt_read_options *options, nt_error *error);
-	/* After the decisions: sets same_as of meshes that have the geometry of an earlier one; NULL: no two have the
-	 * same. */
-	nt_status (*find_same)(nt_scene *scene, const nt_read_options *options, nt_error *error);
-	/* After that: fills scene->joins, to be solved or compared, also of meshes whose kept tangents will be checked;
-	 * NULL: there are none. */
-	nt_status (*find_joins)(nt_scene *scene, bool solved, bool kept, nt_error *error);
-	/* After that: sets late of meshes whose results need not all be there at once for an edit of the source's
-	 * document; NULL: there are none. */
-	nt_status (*find_late)(nt_scene *scene, nt_error *error);
-	/* After that, for an edit of the source's document: sets quantized of meshes that will be compressed; NULL:
-	 * none can be. */
-	nt_status (*find_quantized)(nt_scene *scene, const nt_read_options *options, nt_error *error);
+	/* After the decisions: fills what nt_mesh says of the plan, and scene->joins. NULL: each mesh is by itself. */
+	nt_status (*plan)(nt_scene *scene, const nt_read_options *options, nt_error *error);
 	/* After that: from share() to unshare() several threads may load, as gltf/load.h says. needed: [mesh_count],
 	 * which will be loaded. NULL: load() is for one thread. */
 	nt_status (*share)(nt_scene *scene, const bool *needed, const nt_read_options *options, nt_error *error);
@@ -38,6 +28,8 @@ typedef struct nt_format_entry {
 	/* Brings the geometry of one mesh; NULL: open did. */
 	nt_status (*load)(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 		nt_error *error);
+	/* Merges the results of a pooled mesh with those of the meshes before it, for write(); NULL: none is pooled. */
+	nt_status (*merge)(nt_scene *scene, nt_mesh *mesh, nt_error *error);
 	/* Stores the annotated scene. Any scene may come; a scene of the same format carries its
 	 * source document. */
 	nt_status (*write)(nt_scene *scene, const nt_write_options *options, nt_output *output,

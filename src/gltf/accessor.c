@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 #include "base/largest.h"
+#include "base/lock.h"
 #include "gltf/normalized.h"
 #include "gltf/pointer.h"
 #include "gltf/view.h"
@@ -371,6 +372,17 @@ static void decode_elements(const nt_gltf_accessor *accessor, const unsigned cha
 	}
 }
 
+/* The elements of an accessor, where they are what is wanted; else NULL. */
+static float *floats_as_stored(const nt_gltf_accessor *accessor, uint32_t width, const unsigned char *elements)
+{
+	float *floats = NULL;
+	if (elements && accessor->component_type == NT_GLTF_FLOAT && accessor->components == width &&
+		accessor->stride == width * sizeof(float) && (uintptr_t)elements % sizeof(float) == 0 &&
+		!accessor->sparse_count)
+		memcpy(&floats, &elements, sizeof floats);
+	return floats;
+}
+
 nt_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width,
 	float fill, nt_arena *arena, float **floats, nt_error *error)
 {
@@ -378,13 +390,9 @@ nt_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, ui
 	nt_status status = nt_gltf_elements(document, accessor, &elements, error);
 	if (status)
 		return status;
-	const bool as_wanted = elements && accessor->component_type == NT_GLTF_FLOAT &&
-		accessor->components == width && accessor->stride == width * sizeof(float) &&
-		(uintptr_t)elements % sizeof(float) == 0 && !accessor->sparse_count;
-	if (as_wanted) {
-		memcpy(floats, &(const unsigned char *){elements}, sizeof *floats);
+	*floats = floats_as_stored(accessor, width, elements);
+	if (*floats)
 		return NT_OK;
-	}
 	float *out = nt_arena_alloc(arena, (size_t)accessor->count, width * sizeof *out);
 	if (!out)
 		return nt_fail_memory(error);
@@ -401,6 +409,34 @@ nt_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, ui
 	}
 	*floats = out;
 	return NT_OK;
+}
+
+nt_status nt_gltf_shared_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width, float fill,
+	float **floats, nt_error *error)
+{
+	static nt_lock lock = NT_LOCK_INIT;
+	const unsigned char *elements;
+	nt_status status = nt_gltf_elements(document, accessor, &elements, error);
+	if (status)
+		return status;
+	*floats = floats_as_stored(accessor, width, elements);
+	if (*floats)
+		return NT_OK;
+	nt_lock_take(&lock);
+	if (!document->floats)
+		document->floats = nt_calloc(nt_json_count(nt_gltf_root_member(document, "accessors")),
+			sizeof *document->floats);
+	nt_gltf_floats_of *known = document->floats ? &document->floats[accessor->index] : NULL;
+	if (!known)
+		status = nt_fail_memory(error);
+	else if (!known->values || known->width != width || known->fill != fill)
+		status = nt_gltf_floats(document, accessor, width, fill, &document->arena, floats, error);
+	else
+		*floats = known->values;
+	if (!status)
+		*known = (nt_gltf_floats_of){*floats, width, fill};
+	nt_lock_give(&lock);
+	return status;
 }
 
 /* elements: NULL gives zeros. */

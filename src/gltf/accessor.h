@@ -48,6 +48,11 @@ nt_status nt_gltf_sparse(nt_gltf *document, const nt_gltf_accessor *accessor, nt
 nt_status nt_gltf_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width,
 	float fill, nt_arena *arena, float **floats, nt_error *error);
 
+/* The same, not to be written to: an accessor that several primitives use is decoded once, and lives as long as the
+ * document. Several threads may call this. */
+nt_status nt_gltf_shared_floats(nt_gltf *document, const nt_gltf_accessor *accessor, uint32_t width, float fill,
+	float **floats, nt_error *error);
+
 /* An accessor of unsigned scalars as 32-bit indices, each below `vertex_count` and not the value that
  * is reserved for restarts. Points into the input where it already is that. */
 nt_status nt_gltf_indices(nt_gltf *document, const nt_gltf_accessor *accessor, size_t vertex_count,

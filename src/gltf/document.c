@@ -222,6 +222,8 @@ void nt_gltf_free(void *source)
 	}
 	for (size_t i = 0; i < document->virtual_count; i++)
 		free(document->virtuals[i].decoded);
+	if (document->free_pools)
+		document->free_pools(document->pools);
 	if (document->free_blocks)
 		document->free_blocks(document);
 	free(document->virtuals);
@@ -229,6 +231,7 @@ void nt_gltf_free(void *source)
 	free(document->views);
 	free(document->kept);
 	free(document->decoded);
+	free(document->floats);
 	free(document->grids);
 	free(document->buffers);
 	nt_json_free(document->json);

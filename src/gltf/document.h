@@ -44,6 +44,13 @@ typedef struct nt_gltf_decoded {
 	uint32_t component_type;
 } nt_gltf_decoded;
 
+/* An accessor that several primitives share, as floats. */
+typedef struct nt_gltf_floats_of {
+	float *values; /* in the document's arena; NULL: nobody asked yet */
+	uint32_t width;
+	float fill;
+} nt_gltf_floats_of;
+
 /* Numbers of buffers that are no buffers of the document: each holds one decompressed view. */
 #define NT_GLTF_VIRTUAL ((uint32_t)1 << 30)
 
@@ -99,11 +106,14 @@ typedef struct nt_gltf {
 	size_t kept_count;
 	nt_gltf_decoded *decoded;  /* [accessor_count] what Draco gave; NULL until there is something */
 	size_t accessor_count;
+	nt_gltf_floats_of *floats; /* [accessors] NULL until one is asked for */
 	struct nt_draco **draco_blocks; /* [view_count] decoded blocks: draco.c; NULL until there is something */
 	void (*free_blocks)(struct nt_gltf *document); /* set with them */
 	struct nt_draco_quantization *grids; /* [accessors of the source] on which accessors will be compressed: those
-	                                        of joins (edit/draco_foresee.c),
+	                                        of joins (edit/draco_plan.c),
 	                                        bits 0: on their own. NULL: all of them */
+	struct nt_vertex_pools *pools; /* who shares vertices: edit/vertex_pools.h; NULL until that is found */
+	void (*free_pools)(void *pools); /* set with them */
 	bool dangling_known;     /* then these are, as the file had them: dangling.h */
 	nt_gltf_dangling dangling[NT_GLTF_GROWING];
 	bool is_shared;          /* several threads load: nothing is opened, decompressed or decoded, what would have

@@ -3,7 +3,7 @@
  * Vertices on Draco's grid. A plain primitive that will be compressed is loaded with the values that a decoder will
  * have, so that all that follows (normals, morph targets, the solve, findings) is about what is drawn. The file's own
  * values go to the encoder, which lays the same grid over them: both look at the vertices that faces use, or take the
- * grid that edit/draco_foresee.c has for them.
+ * grid that edit/draco_plan.c has for them.
  *
  * Of a primitive that is compressed already nothing has to be done: its values lie on a grid which it keeps, and
  * quantizing them again moves none; what is beside its block stays there as it is.

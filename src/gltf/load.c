@@ -8,13 +8,13 @@
  */
 #include "gltf/load.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include "base/parallel.h"
 #include "gltf/accessor.h"
+#include "gltf/compact.h"
 #include "gltf/draco.h"
 #include "gltf/draco_values.h"
 #include "gltf/materials.h"
@@ -138,11 +138,9 @@ static nt_status check_inputs(const nt_mesh *mesh, const inputs *in, nt_error *e
 
 /* Integer normals are normalised, after morph targets have added to what they stand for; float ones are taken as they
  * are. */
-static void normalise_quantized(const nt_gltf_accessor *accessor, float *normals)
+static void normalise_quantized(const nt_gltf_accessor *accessor, float *normals, size_t count)
 {
-	if (accessor->component_type == NT_GLTF_FLOAT)
-		return;
-	for (size_t i = 0; i < accessor->count; i++) {
+	for (size_t i = 0; accessor->component_type != NT_GLTF_FLOAT && i < count; i++) {
 		float *n = normals + i * 3;
 		const double x = n[0], y = n[1], z = n[2], length = x * x + y * y + z * z;
 		if (!(length > 0))
@@ -181,39 +179,77 @@ static void flip_range(void *context, size_t begin, size_t end, unsigned slot)
 }
 
 /* v points down in glTF. The copy is needed: the input stays as it is. */
-static nt_status flip_texcoords(nt_scene *scene, nt_mesh *mesh, const float *stored, unsigned threads,
-	nt_error *error)
+static nt_status flip_texcoords(nt_scene *scene, nt_mesh *mesh, unsigned threads, nt_error *error)
 {
 	enum { GRAIN = 1 << 16 };
 	const size_t count = mesh->vertex_count;
-	mesh->texcoords = nt_arena_alloc(&scene->arena, count, 2 * sizeof(float));
+	const float *stored = mesh->texcoords;
+	mesh->texcoords = nt_arena_alloc(nt_mesh_arena(scene, mesh), count, 2 * sizeof(float));
 	if (!mesh->texcoords)
 		return nt_fail_memory(error);
 	flipping f = {stored, mesh->texcoords};
 	nt_parallel_ranges(count < 2 * GRAIN ? 1 : nt_thread_count(threads), count, GRAIN, flip_range, &f);
-	nt_gltf_forget(scene, stored, count * 2 * sizeof(float));
+	if (!mesh->pooled)
+		nt_gltf_forget(scene, stored, count * 2 * sizeof(float));
 	return NT_OK;
 }
 
-static nt_status load_vertices(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const inputs *in,
-	unsigned threads, nt_error *error)
+/* An attribute as floats. What primitives share is decoded once. */
+static nt_status load_floats(nt_scene *scene, const nt_mesh *mesh, const nt_gltf_accessor *accessor, uint32_t width,
+	float fill, float **floats, nt_error *error)
 {
-	nt_arena *arena = &scene->arena;
-	nt_status status = nt_gltf_floats(document, &in->positions.accessor, 3, 0, arena,
-		&mesh->positions, error);
-	if (!status && in->normals.exists)
-		status = nt_gltf_floats(document, &in->normals.accessor, 3, 0, arena, &mesh->normals, error);
-	if (!status && in->tangents.exists)
-		status = nt_gltf_floats(document, &in->tangents.accessor, 4, 0, arena, &mesh->tangents,
-			error);
-	if (!status && in->colors.exists)
-		status = nt_gltf_floats(document, &in->colors.accessor, 4, 1, arena, &mesh->colors, error);
-	if (status || !in->texcoords.exists)
-		return status;
+	return mesh->pooled ? nt_gltf_shared_floats(scene->source, accessor, width, fill, floats, error)
+			    : nt_gltf_floats(scene->source, accessor, width, fill, nt_mesh_arena(scene, mesh),
+				      floats, error);
+}
 
-	float *stored;
-	status = nt_gltf_floats(document, &in->texcoords.accessor, 2, 0, arena, &stored, error);
-	return status ? status : flip_texcoords(scene, mesh, stored, threads, error);
+/* As they are stored, of all vertices of the pool. */
+static nt_status load_vertices(nt_scene *scene, nt_mesh *mesh, const inputs *in, nt_error *error)
+{
+	nt_status status = load_floats(scene, mesh, &in->positions.accessor, 3, 0, &mesh->positions, error);
+	if (!status && in->normals.exists)
+		status = load_floats(scene, mesh, &in->normals.accessor, 3, 0, &mesh->normals, error);
+	if (!status && in->tangents.exists)
+		status = load_floats(scene, mesh, &in->tangents.accessor, 4, 0, &mesh->tangents, error);
+	if (!status && in->colors.exists)
+		status = load_floats(scene, mesh, &in->colors.accessor, 4, 1, &mesh->colors, error);
+	if (!status && in->texcoords.exists)
+		status = load_floats(scene, mesh, &in->texcoords.accessor, 2, 0, &mesh->texcoords, error);
+	return status;
+}
+
+/* What others share is not written to. */
+static nt_status copy_normals(nt_scene *scene, nt_mesh *mesh, nt_error *error)
+{
+	float *own = nt_arena_alloc(nt_mesh_arena(scene, mesh), mesh->vertex_count, 3 * sizeof *own);
+	if (!own)
+		return nt_fail_memory(error);
+	mesh->normals = memcpy(own, mesh->normals, mesh->vertex_count * 3 * sizeof *own);
+	return NT_OK;
+}
+
+/* Of a pooled mesh, the vertices that it uses. *view has the pool's numbers where it uses all, or has no indices. */
+static nt_status make_compact(nt_scene *scene, nt_mesh *mesh, const inputs *in, size_t index_count, nt_compact *view,
+	nt_error *error)
+{
+	nt_arena *arena = nt_mesh_arena(scene, mesh);
+	const size_t pool_count = mesh->vertex_count;
+	*view = (nt_compact){.count = pool_count};
+	if (mesh->pooled && mesh->indices && nt_compact_vertices(mesh->indices, index_count, pool_count, arena, view))
+		return nt_fail_memory(error);
+	if (!view->vertices)
+		return mesh->pooled && in->normals.exists && in->normals.accessor.component_type != NT_GLTF_FLOAT
+			? copy_normals(scene, mesh, error) : NT_OK;
+	float **const rows[] = {&mesh->positions, &mesh->normals, &mesh->tangents, &mesh->colors, &mesh->texcoords};
+	static const size_t floats[] = {3, 3, 4, 4, 2};
+	for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+		if (*rows[i] && !(*rows[i] = nt_compact_rows(view, *rows[i], floats[i], arena)))
+			return nt_fail_memory(error);
+	mesh->pool_vertices = view->vertices;
+	mesh->unused_vertices = pool_count - view->count;
+	mesh->vertex_count = mesh->source_vertex_count = view->count;
+	mesh->indices = view->indices;
+	return NT_OK;
 }
 
 /* The transform of the texture that tangents serve; what cannot be served is a finding. A mesh that shares
@@ -240,7 +276,7 @@ static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *me
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED,
 			nt_mesh_place(mesh, &(nt_place){0}), 1, NULL);
 	return shading.transform.turns && !mesh->same_as
-		? nt_mesh_transform(mesh, &shading.transform.uv, &scene->arena, error) : NT_OK;
+		? nt_mesh_transform(mesh, &shading.transform.uv, nt_mesh_arena(scene, mesh), error) : NT_OK;
 }
 
 /* Triangles of a strip or fan, in the order and with the first corners that the specification gives. */
@@ -262,10 +298,11 @@ static void list_triangles(uint64_t mode, const uint32_t *chain, size_t face_cou
 /* ---- morph targets ---- */
 
 /* Base and delta; NULL where the target does not move it. */
-static nt_status add_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *mesh,
+static nt_status add_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *mesh, const nt_compact *view,
 	const nt_json_value *target, const char *name, const char *pointer, const float *base,
 	float **moved, nt_error *error)
 {
+	const size_t pool_count = mesh->vertex_count + mesh->unused_vertices;
 	*moved = NULL;
 	const nt_json_value *reference = nt_json_find(target, name);
 	if (!reference || !base)
@@ -278,17 +315,18 @@ static nt_status add_delta(nt_scene *scene, nt_gltf *document, const nt_mesh *me
 		status = nt_gltf_get_accessor(document, index, pointer, &accessor, error);
 	if (status)
 		return status;
-	if (accessor.components != 3 || accessor.count != mesh->vertex_count)
+	if (accessor.components != 3 || accessor.count != pool_count)
 		return nt_fail_pointer(error, NT_ERROR_INPUT, pointer,
 			"%s: accessor %llu has %llu elements of %u components, expected %zu of 3", name,
 			(unsigned long long)index, (unsigned long long)accessor.count,
-			accessor.components, mesh->vertex_count);
-	float *delta, *sum = nt_arena_alloc(&scene->arena, mesh->vertex_count, 3 * sizeof *sum);
+			accessor.components, pool_count);
+	float *delta, *sum = nt_arena_alloc(nt_mesh_arena(scene, mesh), mesh->vertex_count, 3 * sizeof *sum);
 	if (!sum)
 		return nt_fail_memory(error);
-	status = nt_gltf_floats(document, &accessor, 3, 0, &scene->arena, &delta, error);
-	for (size_t i = 0; !status && i < 3 * mesh->vertex_count; i++)
-		sum[i] = base[i] + delta[i];
+	status = load_floats(scene, mesh, &accessor, 3, 0, &delta, error);
+	for (size_t v = 0; !status && v < mesh->vertex_count; v++)
+		for (size_t k = 0, from = 3 * (view->vertices ? view->vertices[v] : v); k < 3; k++)
+			sum[3 * v + k] = base[3 * v + k] + delta[from + k];
 	*moved = sum;
 	return status;
 }
@@ -311,11 +349,11 @@ static const char *name_of_target(nt_scene *scene, const nt_gltf *document, cons
 	size_t length = 0;
 	const char *name = nt_json_get_string(nt_json_at(nt_json_find(nt_json_find(json, "extras"),
 		"targetNames"), target), &length);
-	return nt_arena_text(&scene->arena, name ? name : "", name ? length : 0);
+	return nt_arena_text(nt_mesh_arena(scene, mesh), name ? name : "", name ? length : 0);
 }
 
 /* The mesh as each target moves it: their tangents differ from the base's. */
-static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
+static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const nt_compact *view,
 	const nt_json_value *primitive, nt_error *error)
 {
 	const nt_json_value *targets = nt_json_find(primitive, "targets");
@@ -323,7 +361,7 @@ static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 	mesh->morph_count = 0;
 	if (count == 0)
 		return NT_OK;
-	mesh->morphs = nt_arena_alloc(&scene->arena, count, sizeof *mesh->morphs);
+	mesh->morphs = nt_arena_alloc(nt_mesh_arena(scene, mesh), count, sizeof *mesh->morphs);
 	if (!mesh->morphs)
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < count; i++) {
@@ -333,10 +371,10 @@ static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
 		if (!morph.name)
 			return nt_fail_memory(error);
 		const nt_json_value *target = nt_json_at(targets, i);
-		nt_status status = add_delta(scene, document, mesh, target, "POSITION", pointer,
+		nt_status status = add_delta(scene, document, mesh, view, target, "POSITION", pointer,
 			mesh->positions, &morph.positions, error);
 		if (!status)
-			status = add_delta(scene, document, mesh, target, "NORMAL", pointer, mesh->normals,
+			status = add_delta(scene, document, mesh, view, target, "NORMAL", pointer, mesh->normals,
 				&morph.normals, error);
 		if (status)
 			return status;
@@ -370,36 +408,29 @@ static nt_status load_chain(nt_gltf *document, const nt_mesh *mesh, const nt_jso
 	return status;
 }
 
-static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh,
-	const nt_json_value *primitive, unsigned threads, nt_error *error)
+/* Faces, of compact vertices where the mesh shares them. */
+static nt_status load_faces(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, const nt_json_value *primitive,
+	const inputs *in, unsigned threads, nt_compact *view, nt_error *error)
 {
 	uint64_t mode = NT_GLTF_TRIANGLES, count = mesh->vertex_count;
 	nt_json_get_uint64(nt_json_find(primitive, "mode"), &mode);
-	uint32_t *chain;
-	const nt_status status = load_chain(document, mesh, primitive, threads, &scene->arena, &chain, &count, error);
+	nt_status status = load_chain(document, mesh, primitive, threads, nt_mesh_arena(scene, mesh), &mesh->indices,
+		&count, error);
+	if (!status)
+		status = make_compact(scene, mesh, in, (size_t)count, view, error);
 	if (status)
 		return status;
 	mesh->face_count = mode == NT_GLTF_TRIANGLES ? (size_t)count / 3 : count < 3 ? 0 : (size_t)count - 2;
 	mesh->corner_count = mesh->face_count * 3;
 	mesh->primitives[0].face_count = mesh->face_count;
-	mesh->indices = chain;
 	if (mode == NT_GLTF_TRIANGLES)
 		return NT_OK;
-	mesh->indices = nt_arena_alloc(&scene->arena, mesh->corner_count, sizeof *mesh->indices);
+	const uint32_t *chain = mesh->indices;
+	mesh->indices = nt_arena_alloc(nt_mesh_arena(scene, mesh), mesh->corner_count, sizeof *mesh->indices);
 	if (!mesh->indices)
 		return nt_fail_memory(error);
 	list_triangles(mode, chain, mesh->face_count, mesh->indices);
 	return NT_OK;
-}
-
-nt_status nt_gltf_load_triangles(nt_gltf *document, const nt_mesh *mesh, nt_arena *arena, uint32_t **indices,
-	nt_error *error)
-{
-	uint64_t count = 0;
-	const nt_status status = load_chain(document, mesh, nt_gltf_primitive_of(document, mesh), 1, arena,
-		indices, &count, error);
-	assert(status || count == mesh->corner_count);
-	return status;
 }
 
 /* What a copy of a vertex costs; attributes that cannot be read are not counted. */
@@ -441,6 +472,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 	}
 	nt_status status = find_primitive(document, mesh, &primitive, error);
 	inputs in;
+	nt_compact view;
 	if (!status)
 		status = find_inputs(document, mesh, primitive, options, &in, error);
 	if (!status) {
@@ -448,9 +480,11 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 		status = check_inputs(mesh, &in, error);
 	}
 	if (!status)
-		status = load_vertices(scene, document, mesh, &in, options->threads, error);
+		status = load_vertices(scene, mesh, &in, error);
 	if (!status)
-		status = load_faces(scene, document, mesh, primitive, options->threads, error);
+		status = load_faces(scene, document, mesh, primitive, &in, options->threads, &view, error);
+	if (!status && mesh->texcoords)
+		status = flip_texcoords(scene, mesh, options->threads, error);
 	if (!status && mesh->quantized)
 		status = quantize(scene, mesh, &in, options, error);
 	if (!status)
@@ -459,14 +493,33 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 		status = find_vertex_bytes(document, primitive, &mesh->vertex_bytes, error);
 	/* a mesh in the world is written without its targets */
 	if (!status && !options->world && options->morphs == NT_MORPH_BAKE)
-		status = load_morphs(scene, document, mesh, primitive, error);
+		status = load_morphs(scene, document, mesh, &view, primitive, error);
 	if (!status && in.normals.exists)
-		normalise_quantized(&in.normals.accessor, mesh->normals);
+		normalise_quantized(&in.normals.accessor, mesh->normals, mesh->vertex_count);
 	if (status && error && !error->place.object[0]) {
 		nt_place place;
 		memcpy(error->place.object, nt_mesh_place(mesh, &place)->object, sizeof error->place.object);
 	}
 	return status;
+}
+
+nt_status nt_gltf_load_normals(nt_gltf *document, const nt_mesh *mesh, nt_arena *arena, float **normals,
+	nt_error *error)
+{
+	attribute found;
+	nt_status status = find_attribute(document, mesh, nt_json_find(nt_gltf_primitive_of(document, mesh),
+		"attributes"), "NORMAL", 3, 3, &found, error);
+	if (!status)
+		status = nt_gltf_shared_floats(document, &found.accessor, 3, 0, normals, error);
+	if (status || found.accessor.component_type == NT_GLTF_FLOAT)
+		return status;
+	const size_t count = (size_t)found.accessor.count;
+	float *own = nt_arena_alloc(arena, count, 3 * sizeof *own);
+	if (!own)
+		return nt_fail_memory(error);
+	*normals = memcpy(own, *normals, count * 3 * sizeof *own);
+	normalise_quantized(&found.accessor, own, count);
+	return NT_OK;
 }
 
 /* ---- several at a time ---- */

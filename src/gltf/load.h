@@ -11,8 +11,9 @@
 nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *options,
 	nt_error *error);
 
-/* The triangles of a plain mesh that left them: see nt_mesh_left_triangles(). In the arena, or in the input. */
-nt_status nt_gltf_load_triangles(nt_gltf *document, const nt_mesh *mesh, nt_arena *arena, uint32_t **indices,
+/* The normals of all vertices of the pool of a mesh that has some, as a load has them; not to be written to. What is
+ * made for that is in the arena. */
+nt_status nt_gltf_load_normals(nt_gltf *document, const nt_mesh *mesh, nt_arena *arena, float **normals,
 	nt_error *error);
 
 /*

@@ -9,7 +9,7 @@
 
 bool nt_gltf_is_solved(const nt_mesh *mesh)
 {
-	return mesh->split.vertex_tangents != NULL || mesh->late;
+	return mesh->split.vertex_tangents != NULL || mesh->merged;
 }
 
 nt_json_value *nt_gltf_primitive_of(const nt_gltf *document, const nt_mesh *mesh)

@@ -15,7 +15,7 @@
 #include "base/name_table.h"
 #include "gltf/materials.h"
 #include "gltf/pointer.h"
-#include "gltf/primitive.h"
+#include "gltf/vertex_pools.h"
 
 /* Numbers that are no accessors. */
 #define MISSING UINT64_MAX
@@ -25,7 +25,7 @@ typedef struct same_job {
 	const nt_scene *scene;
 	nt_gltf *document;
 	const nt_read_options *options;
-	uint32_t *first_alias; /* [accessor_count] */
+	const uint32_t *first_alias; /* [accessor_count] */
 	size_t accessor_count;
 	nt_buffer key;       /* of the mesh at hand */
 } same_job;
@@ -202,12 +202,8 @@ nt_status nt_gltf_find_same(nt_scene *scene, const nt_read_options *options, nt_
 		wanted += is_wanted(&scene->meshes[i], options);
 	if (wanted < 2)
 		return NT_OK;
-	same_job job = {.scene = scene, .document = scene->source, .options = options};
-	job.accessor_count = nt_json_count(nt_gltf_root_member(job.document, "accessors"));
-	job.first_alias = nt_alloc(job.accessor_count, sizeof *job.first_alias);
-	const bool ready = job.first_alias &&
-		nt_gltf_find_first_aliases(job.document, job.first_alias, job.accessor_count);
-	const nt_status status = ready ? find_among(&job, scene, error) : nt_fail_memory(error);
-	free(job.first_alias);
-	return status;
+	nt_gltf *document = scene->source;
+	same_job job = {.scene = scene, .document = document, .options = options,
+		.first_alias = document->pools->first_alias, .accessor_count = document->pools->accessor_count};
+	return find_among(&job, scene, error);
 }

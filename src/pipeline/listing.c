@@ -28,7 +28,7 @@ nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error 
 		nt_mesh_line *line = &summary->lines[i];
 		*line = (nt_mesh_line){.decision = mesh->decision,
 			.same = mesh->same_as && nt_mesh_is_wanted(mesh), .triangle_count = triangles_of(solved),
-			.vertex_count = solved->source_vertex_count};
+			.vertex_count = solved->unused_vertices + solved->source_vertex_count};
 		nt_mesh_place(mesh, &line->place);
 		if (solved->vertex_count > solved->source_vertex_count)
 			line->appended = solved->vertex_count - solved->source_vertex_count;

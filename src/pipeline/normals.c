@@ -175,7 +175,7 @@ static nt_status split_by_normal(nt_scene *scene, nt_mesh *mesh, normal_job *job
 		return status;
 	const size_t vertex_count = mesh->vertex_count + split.source_count;
 	job->normals = nt_calloc(vertex_count, 3 * sizeof(float));
-	if (!job->normals || !grow_mesh(&scene->arena, mesh, job->sources, split.source_count))
+	if (!job->normals || !grow_mesh(nt_mesh_arena(scene, mesh), mesh, job->sources, split.source_count))
 		return NT_ERROR_MEMORY;
 	for (size_t v = 0; v < vertex_count; v++)
 		job->normals[3 * v + 2] = 1.0f; /* for vertices that no face uses */
@@ -211,9 +211,9 @@ static nt_status adopt(nt_scene *scene, nt_mesh *mesh, normal_job *job)
 	job->normals = NULL;
 	report_normals(scene, mesh);
 	/* each, whatever became of the others: the arena frees what it cannot keep */
-	bool kept = nt_arena_adopt(&scene->arena, indices);
-	kept &= nt_arena_adopt(&scene->arena, sources);
-	kept &= nt_arena_adopt(&scene->arena, normals);
+	bool kept = nt_arena_adopt(nt_mesh_arena(scene, mesh), indices);
+	kept &= nt_arena_adopt(nt_mesh_arena(scene, mesh), sources);
+	kept &= nt_arena_adopt(nt_mesh_arena(scene, mesh), normals);
 	return kept ? NT_OK : NT_ERROR_MEMORY;
 }
 
@@ -271,7 +271,7 @@ nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, unsigned threads, n
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
-		if (!nt_mesh_is_wanted(mesh) || mesh->late || (!mesh->same_as && nt_mesh_is_solved_ahead(mesh)))
+		if (!nt_mesh_is_wanted(mesh) || (!mesh->same_as && nt_mesh_is_solved_ahead(mesh)))
 			continue;
 		if (!mesh->same_as) {
 			status = make_normals(scene, mesh, mode, threads, error);

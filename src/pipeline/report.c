@@ -2,6 +2,7 @@
 /*
  * The report of a run: see stages.h.
  */
+#include "file/watch.h"
 #include "pipeline/stages.h"
 
 #include <string.h>
@@ -118,6 +119,16 @@ static nt_status build_report(nt_scene *scene, const nt_settings *settings, cons
 	nt_report_free(summary->report);
 	summary->report = nt_report_of_error(scene->path, error);
 	return status;
+}
+
+nt_status nt_check_inputs(nt_scene *scene, nt_status status, nt_error *error)
+{
+	const nt_status watched = nt_watch_check(error);
+	if (!watched)
+		return status;
+	nt_finding_list_free(&scene->findings);
+	scene->findings = (nt_finding_list){0};
+	return watched;
 }
 
 nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_format written, const nt_textures *textures,

@@ -10,9 +10,7 @@
 #include "file/watch.h"
 #include "format/foreign.h"
 #include "gltf/companion.h"
-#include "gltf/draco_values.h"
 #include "gltf/verify.h"
-#include "pipeline/late.h"
 #include "pipeline/stages.h"
 
 /* What the stages of one run share. */
@@ -114,6 +112,20 @@ static nt_output_options output_options_of(run *r)
 		.placing = tell_placing, .placing_user = r};
 }
 
+/* What the plan depends on, now that reader and writer are known. */
+static void plan_options_of(run *r)
+{
+	const nt_settings *s = r->settings;
+	nt_read_options *o = &r->read_options;
+	o->edits = nt_writer_edits(r->reader, r->writer);
+	o->checks_kept = o->across && s->check && s->report;
+	o->only_results = o->edits && !s->check && !s->report && !s->verify && !s->bitangents && !o->across &&
+		s->draco <= NT_DRACO_OFF && s->normals == NT_NORMALS_AUTO && !s->list_meshes;
+	/* primitives, or normals that are made for some that are compressed */
+	o->compresses = o->edits && (s->draco > NT_DRACO_OFF ||
+		(s->draco == NT_DRACO_KEEP && s->normals != NT_NORMALS_AUTO));
+}
+
 static nt_status read_scene(run *r)
 {
 	nt_status status = open_scene(r);
@@ -134,7 +146,8 @@ static nt_status read_scene(run *r)
 			return status;
 	}
 	begin_stage(r, NT_STAGE_DECODE);
-	status = nt_stage_load(&r->scene, r->reader, r->writer, r->settings, &r->read_options, r->error);
+	plan_options_of(r);
+	status = r->reader->plan ? r->reader->plan(&r->scene, &r->read_options, r->error) : NT_OK;
 	return status ? nt_error_in_file(r->error, r->input_path) : NT_OK;
 }
 
@@ -161,10 +174,6 @@ static nt_status write_scene(run *r)
 		.threads = s->threads,
 		.textures = r->textures,
 	};
-	nt_late late = {.scene = &r->scene, .reader = r->reader, .settings = s, .options = &r->read_options,
-		.output = r->writer->format, .summary = r->summary, .begin_stage = begin_stage, .run = r};
-	r->scene.solve_late = nt_late_solve;
-	r->scene.late = &late;
 	nt_output *output = NULL;
 	nt_status status = nt_output_create(&output, &output_options, r->error);
 	if (!status && r->writer->format != NT_FORMAT_PLY)
@@ -173,7 +182,6 @@ static nt_status write_scene(run *r)
 		status = nt_output_protect(output, r->input_path, "--in-place allows that", r->error);
 	if (!status)
 		status = r->writer->write(&r->scene, &options, output, r->error);
-	nt_late_free(&late);
 	/* the input may still be read here, and its faults are its own */
 	if (status && r->error->place.pointer[0])
 		nt_error_in_file(r->error, r->input_path);
@@ -219,16 +227,11 @@ static nt_status run_stages(run *r)
 		begin_stage(r, NT_STAGE_TEXTURES);
 		status = nt_stage_textures(&r->scene, r->settings, r->output_path, &r->textures, r->error);
 	}
+	const nt_tasks tasks = {.scene = &r->scene, .reader = r->reader, .writer = r->writer, .settings = r->settings,
+		.options = &r->read_options, .textures = r->textures, .summary = r->summary,
+		.begin_stage = begin_stage, .run = r};
 	if (!status) {
-		begin_stage(r, NT_STAGE_NORMALS);
-		status = nt_stage_normals(&r->scene, r->settings->normals, r->settings->threads, r->error);
-	}
-	if (!status)
-		status = nt_gltf_quantize_made_normals(&r->scene, &r->read_options, r->error);
-	if (!status) {
-		begin_stage(r, NT_STAGE_TANGENTS);
-		status = nt_stage_tangents_and_textures(&r->scene, r->settings,
-			r->writer ? r->writer->format : NT_FORMAT_UNKNOWN, r->textures, r->summary, r->error);
+		status = nt_tasks_do(&tasks, r->error);
 		nt_error_in_file(r->error, r->input_path);
 	}
 	if (!status)

@@ -15,14 +15,24 @@
 nt_status nt_choose_writer(const nt_settings *settings, const char *path, const nt_format_entry *reader,
 	const nt_format_entry **writer, nt_error *error);
 
-/* After the decisions: finds joins and equal meshes, and loads whatever will be solved, written or reported. Small
- * meshes whose geometry nobody else asks for are solved too. */
-nt_status nt_stage_load(nt_scene *scene, const nt_format_entry *reader, const nt_format_entry *writer,
-	const nt_settings *settings, const nt_read_options *options, nt_error *error);
+/* Whether a writer changes the document that the reader read. */
+bool nt_writer_edits(const nt_format_entry *reader, const nt_format_entry *writer);
 
-/* What is wrong with an input that changed is that, whatever was made of it and found in it: returns that, or
- * `status`. */
-nt_status nt_check_inputs(nt_scene *scene, nt_status status, nt_error *error);
+/* What the tasks of a run take. */
+typedef struct nt_tasks {
+	nt_scene *scene;
+	const nt_format_entry *reader, *writer; /* writer: NULL: the input is judged as it is */
+	const nt_settings *settings;
+	const nt_read_options *options;
+	nt_textures *textures; /* to be made beside the solve; NULL: none */
+	nt_summary *summary;
+	void (*begin_stage)(void *run, nt_stage stage);
+	void *run;
+} nt_tasks;
+
+/* tasks.c. After the plan: loads whatever will be solved, written or reported, makes normals, solves, splits, and hands
+ * the writer what it merges. */
+nt_status nt_tasks_do(const nt_tasks *tasks, nt_error *error);
 
 /* Makes the normals that meshes lack (all of them when `mode` says replace); vertices whose corners get
  * different normals are split, copies appended. Sets mesh->normals_made where something was made. Then gives each mesh
@@ -52,6 +62,10 @@ nt_status nt_tell_textures(nt_scene *scene, const nt_settings *settings, const n
  * NT_ERROR_IO or NT_ERROR_MEMORY. */
 nt_status nt_stage_maps(nt_scene *scene, const nt_settings *settings, nt_error *error);
 
+/* What is wrong with an input that changed is that, whatever was made of it and found in it: returns that, or
+ * `status`. */
+nt_status nt_check_inputs(nt_scene *scene, nt_status status, nt_error *error);
+
 /* Fills summary->report: of the scene as it now is, or of what went wrong. written: the format that is judged,
  * NT_FORMAT_UNKNOWN: the input as it is. textures: what its images become, NULL: nothing. */
 nt_status nt_stage_report(nt_scene *scene, const nt_settings *settings, nt_format written, const nt_textures *textures,
@@ -63,18 +77,7 @@ nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error 
 /* Says of every mesh with quads where they are cut (face_diagonals). For writers of triangles. */
 nt_status nt_stage_quads(nt_scene *scene, nt_error *error);
 
-/* ahead.c, for load.c. Several threads load small meshes, each as if it were alone; all that fails is left for the load
- * of one after the other, so that findings and faults come in order.
- *
- *   writer  who asks for nothing of the meshes but their results, so that those that are plain are solved and their
- *           geometry is let go of; NULL: only loaded
- *   needed  [mesh_count] meshes that will be loaded; receives false for those that are
- *
- * Returns NT_OK or NT_ERROR_MEMORY. */
-nt_status nt_load_ahead(nt_scene *scene, const nt_format_entry *reader, const nt_format_entry *writer,
-	const nt_settings *settings, const nt_read_options *options, bool *needed, nt_error *error);
-
-/* tangents.c, for ahead.c too: small meshes, of which up to `slots` threads at a time solve one each. NULL: memory is
+/* tangents.c, for tasks.c too: small meshes, of which up to `slots` threads at a time solve one each. NULL: memory is
  * exhausted. */
 typedef struct nt_small_solves nt_small_solves;
 nt_small_solves *nt_small_solves_begin(nt_scene *scene, const nt_settings *settings, nt_format output, unsigned slots);

@@ -36,6 +36,7 @@ typedef struct wishes {
 typedef struct solver {
 	nmtan_workspace *workspace; /* NULL: none */
 	nt_arena arena;             /* results, until the scene takes them over */
+	nt_arena temporary;         /* the same of temporary meshes */
 	size_t corners;             /* that it solved */
 } solver;
 
@@ -68,7 +69,7 @@ static wishes wishes_of(nt_scene *scene, const nt_settings *settings, nt_format 
 
 static bool is_solved(const nt_mesh *mesh)
 {
-	return nt_mesh_is_wanted(mesh) && !mesh->same_as && !mesh->late;
+	return nt_mesh_is_wanted(mesh) && !mesh->same_as;
 }
 
 /* Whether a mesh is solved by itself, or stands for its join. */
@@ -341,7 +342,7 @@ static void solve_large(tangent_job *job)
 	for (size_t i = 0; i < job->count; i++)
 		if (job->is_large[i])
 			job->statuses[i] = solve_item(&job->wishes, job->meshes[i], job->wishes.settings->threads, NULL,
-				&job->wishes.scene->arena, &job->timing);
+				nt_mesh_arena(job->wishes.scene, job->meshes[i]), &job->timing);
 }
 
 nt_small_solves *nt_small_solves_begin(nt_scene *scene, const nt_settings *settings, nt_format output, unsigned slots)
@@ -361,7 +362,8 @@ nt_status nt_small_solve(nt_small_solves *small, nt_mesh *mesh, unsigned slot)
 	if (!own->workspace)
 		own->workspace = nmtan_workspace_create(NULL);
 	own->corners += corners_of(mesh);
-	return solve_item(&small->wishes, mesh, 1, own->workspace, &own->arena, NULL);
+	return solve_item(&small->wishes, mesh, 1, own->workspace, mesh->temporary ? &own->temporary : &own->arena,
+		NULL);
 }
 
 void nt_small_solves_end(nt_small_solves *small)
@@ -372,6 +374,7 @@ void nt_small_solves_end(nt_small_solves *small)
 		corners += small->solvers[i].corners;
 		nmtan_workspace_destroy(small->solvers[i].workspace);
 		nt_arena_join(&job->scene->arena, &small->solvers[i].arena);
+		nt_arena_join(&job->scene->temporary, &small->solvers[i].temporary);
 	}
 	/* what passed while they were solved is too little each time to be let go of */
 	if (job->forgets && corners >= LARGE_CORNERS)
@@ -403,10 +406,10 @@ static bool keep_results(nt_scene *scene, nt_mesh *mesh)
 {
 	bool kept = true;
 	for (size_t m = 0; m < mesh->morph_count; m++)
-		kept &= nt_arena_adopt(&scene->arena, mesh->morphs[m].vertex_tangents);
+		kept &= nt_arena_adopt(nt_mesh_arena(scene, mesh), mesh->morphs[m].vertex_tangents);
 	/* all of them are tried: what is not kept is freed */
-	kept &= nt_arena_adopt(&scene->arena, mesh->cut_arrays);
-	kept &= nt_arena_adopt(&scene->arena, mesh->corner_tangents);
+	kept &= nt_arena_adopt(nt_mesh_arena(scene, mesh), mesh->cut_arrays);
+	kept &= nt_arena_adopt(nt_mesh_arena(scene, mesh), mesh->corner_tangents);
 	return kept;
 }
 
@@ -449,7 +452,7 @@ static void add_counts(nt_summary *summary, const nt_mesh *mesh)
 	const size_t quads = mesh->corner_count - 3 * mesh->face_count;
 	summary->solved_count++;
 	summary->triangle_count += mesh->face_count + quads;
-	summary->vertex_count += mesh->source_vertex_count;
+	summary->vertex_count += mesh->unused_vertices + mesh->source_vertex_count;
 	summary->appended_normals += mesh->vertex_count - mesh->source_vertex_count;
 	summary->appended_tangents += mesh->split.source_count;
 	nt_counts_add(&summary->counts, &mesh->counts);
@@ -476,7 +479,7 @@ static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *e
 	}
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
-		if (!nt_mesh_is_wanted(mesh) || mesh->late)
+		if (!nt_mesh_is_wanted(mesh))
 			continue;
 		if (mesh->same_as) {
 			nt_mesh_share(mesh);

@@ -60,7 +60,7 @@ nt_status nt_mark_directionless(nt_scene *scene, nt_mesh *mesh, unsigned threads
 		if (has_direction(mesh->normals + 3 * v))
 			continue;
 		if (!mesh->vertex_lacks) {
-			mesh->vertex_lacks = nt_arena_alloc(&scene->arena, mesh->vertex_count, 1);
+			mesh->vertex_lacks = nt_arena_alloc(nt_mesh_arena(scene, mesh), mesh->vertex_count, 1);
 			if (!mesh->vertex_lacks)
 				return NT_ERROR_MEMORY;
 			memset(mesh->vertex_lacks, 0, mesh->vertex_count);
@@ -108,7 +108,7 @@ nt_status nt_make_unit_normals(nt_scene *scene, nt_mesh *mesh, unsigned threads)
 {
 	if (!has_odd(mesh, threads))
 		return NT_OK;
-	mesh->solve_normals = nt_arena_alloc(&scene->arena, mesh->vertex_count, 3 * sizeof(float));
+	mesh->solve_normals = nt_arena_alloc(nt_mesh_arena(scene, mesh), mesh->vertex_count, 3 * sizeof(float));
 	if (!mesh->solve_normals)
 		return NT_ERROR_MEMORY;
 	memcpy(mesh->solve_normals, mesh->normals, mesh->vertex_count * 3 * sizeof(float));

@@ -89,8 +89,8 @@ static void describe_surface(nt_check *check)
 	nt_report_mesh *facts = check->facts;
 	facts->face_count = check->mesh->face_count;
 	facts->triangle_count = check->surface.triangle_count;
-	facts->vertices_before = check->mesh->vertex_sources ? check->mesh->source_vertex_count
-							     : check->mesh->vertex_count;
+	facts->vertices_before = check->mesh->unused_vertices + (check->mesh->vertex_sources
+		? check->mesh->source_vertex_count : check->mesh->vertex_count);
 	check->stored = stored_tangents(check->mesh, nt_is_written(check));
 	facts->checked_tangents = check->stored != NT_STORED_NONE;
 	facts->analysed = true;

@@ -103,9 +103,9 @@ static inline bool nt_is_gltf(const nt_check *check)
 /* The vertex as the source numbers it: copies that making normals appended are mapped back. */
 static inline uint32_t nt_source_vertex(const nt_mesh *mesh, uint32_t vertex)
 {
-	return mesh->vertex_sources && vertex >= mesh->source_vertex_count
+	return nt_mesh_pool_vertex(mesh, mesh->vertex_sources && vertex >= mesh->source_vertex_count
 		? mesh->vertex_sources[vertex - mesh->source_vertex_count]
-		: vertex;
+		: vertex);
 }
 
 /* Texture coordinates as the source has them: v down in glTF. */

@@ -41,7 +41,7 @@ static void check_copies(nt_check *check)
 	const nt_mesh *mesh = check->mesh;
 	nt_report_mesh *facts = check->facts;
 	nt_tally growth = {.code = NT_CODE_TAN_VERTEX_GROWTH};
-	for (size_t v = facts->vertices_before; v < mesh->vertex_count; v++)
+	for (size_t v = facts->vertices_before - mesh->unused_vertices; v < mesh->vertex_count; v++)
 		nt_tally_vertex(check, &growth, (uint32_t)v, NAN);
 	facts->added_normals = growth.count;
 	const float *tangents = mesh->split.vertex_tangents;
@@ -53,7 +53,7 @@ static void check_copies(nt_check *check)
 		*(mirror ? &facts->added_mirror : &facts->added_direction) += 1;
 		nt_tally_vertex(check, &growth, (uint32_t)source, NAN);
 	}
-	facts->vertices_after = mesh->vertex_count + copies;
+	facts->vertices_after = mesh->unused_vertices + mesh->vertex_count + copies;
 	if (!nt_is_written(check))
 		return;
 	nt_tally_number(&growth, "mirrored", (double)facts->added_mirror);

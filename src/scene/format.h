@@ -84,6 +84,10 @@ typedef struct nt_read_options {
 	nt_morph_choice morphs; /* targets are loaded where they are to be baked */
 	bool report;        /* meshes that get no tangents are loaded too, to be checked */
 	bool across;        /* and those that contribute to others: NT_ACROSS_MESH */
+	bool checks_kept;   /* kept tangents are checked against a solve with others */
+	bool edits;         /* the output is the source's document, edited */
+	bool only_results;  /* and nobody asks for geometry once it is solved */
+	bool compresses;    /* and it gets compressed content that is not compressed in the source */
 	nt_draco_choice draco; /* of the writer: what it will compress is loaded as a decoder will have it */
 	int draco_bits[NT_DRACO_BITS_COUNT];
 	unsigned threads;

@@ -20,6 +20,7 @@ void nt_scene_free(nt_scene *scene)
 		scene->unmap(scene);
 	nt_finding_list_free(&scene->findings);
 	nt_arena_free(&scene->arena);
+	nt_arena_free(&scene->temporary);
 	memset(scene, 0, sizeof *scene);
 }
 
@@ -76,7 +77,6 @@ void nt_mesh_share(nt_mesh *mesh)
 	mesh->targets_without_tangents = own.targets_without_tangents;
 	mesh->decision = own.decision;
 	mesh->same_as = own.same_as;
-	mesh->late = own.late;
 	mesh->join = own.join;
 	mesh->transform_of = own.transform_of;
 	mesh->primitives = own.primitives;
@@ -89,7 +89,7 @@ void nt_mesh_forget(nt_mesh *mesh)
 {
 	mesh->positions = mesh->normals = mesh->solve_normals = mesh->colors = mesh->tangents = NULL;
 	mesh->texcoords = mesh->solve_texcoords = mesh->corner_tangents = mesh->split.vertex_tangents = NULL;
-	mesh->indices = mesh->vertex_sources = mesh->split.indices = mesh->split.sources = NULL;
+	mesh->pool_vertices = mesh->indices = mesh->vertex_sources = mesh->split.indices = mesh->split.sources = NULL;
 	mesh->face_polygon = mesh->face_smoothing = mesh->face_primitive = NULL;
 	mesh->vertex_lacks = mesh->face_sizes = mesh->face_diagonals = NULL;
 	mesh->cut_arrays = NULL;

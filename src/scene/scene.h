@@ -189,13 +189,18 @@ typedef struct nt_mesh {
 	bool plain;              /* of its geometry, an edit of the source's document needs what a solve makes
 	                            of it alone */
 	nt_quantized quantized;
-	bool late;               /* loaded and solved while the writer asks for it: scene->solve_late */
+	bool pooled;             /* others have its vertices and other triangles: it is loaded with the vertices that
+	                            it uses */
+	bool temporary;          /* what it holds lies in scene->temporary, and is gone once the writer has merged it */
 	const nt_join *join;     /* it is solved with the others of it; NULL: by itself */
 	const struct nt_mesh *transform_of; /* of a copy in a join: the mesh whose texture transform applies; NULL:
 	                                       its own */
 
 	/* geometry: filled by load(). Arrays belong to the scene's arena or point into the input. */
 	size_t vertex_count;
+	uint32_t *pool_vertices; /* [source_vertex_count] of a pooled mesh: the source's number of each vertex,
+	                            ascending; NULL: the source's own numbers */
+	size_t unused_vertices;  /* then: vertices of the source that it does not use */
 	size_t vertex_bytes;     /* of a vertex with all its attributes and a tangent, as it is stored; 0: not known */
 	float *positions;        /* [vertex_count][3] */
 	float *normals;          /* [vertex_count][3]; NULL: none */
@@ -243,6 +248,7 @@ typedef struct nt_mesh {
 	size_t replaced_tangents; /* corners whose authored tangent was invalid, or is beside one that was, and is
 	                             another now */
 	nt_split split;
+	bool merged;              /* the writer has merged them with those of the meshes that share its vertices */
 } nt_mesh;
 
 /* What a vertex of an OBJ does not have although others do. */
@@ -269,6 +275,7 @@ typedef struct nt_face_place {
 
 typedef struct nt_scene {
 	nt_arena arena;
+	nt_arena temporary; /* of meshes that are */
 	nt_format format;
 	const char *path; /* for messages and to find companions; "-" is standard input */
 	nt_mesh *meshes;
@@ -281,11 +288,6 @@ typedef struct nt_scene {
 	size_t join_count;
 	nt_finding_list findings;
 	nt_rounding rounding; /* of all meshes that were written */
-
-	/* Meshes that are late: the writer has a run of them loaded and solved when it needs them, and what they hold
-	 * is gone when it asks for the next run. */
-	nt_status (*solve_late)(void *late, size_t first, size_t count, nt_error *error);
-	void *late;
 
 	/* What a reader keeps for the writer of the same format, and the input's bytes. */
 	void *source;
@@ -334,11 +336,20 @@ static inline bool nt_mesh_left_triangles(const nt_mesh *mesh)
 	return mesh->plain && !mesh->indices && !mesh->split.indices;
 }
 
-/* So many corners of late meshes are solved at once: enough for all threads, and a hundred megabytes or two. */
-enum { NT_LATE_CORNERS = 4 << 20 };
+/* The arena of what a mesh holds. */
+static inline nt_arena *nt_mesh_arena(nt_scene *scene, const nt_mesh *mesh)
+{
+	return mesh->temporary ? &scene->temporary : &scene->arena;
+}
 
 /* Makes NULL of what a mesh holds in an arena that is gone: geometry and results, but not what is counted of them. */
 void nt_mesh_forget(nt_mesh *mesh);
+
+/* How the source numbers a vertex of it; not one that was appended. */
+static inline uint32_t nt_mesh_pool_vertex(const nt_mesh *mesh, uint32_t vertex)
+{
+	return mesh->pool_vertices ? mesh->pool_vertices[vertex] : vertex;
+}
 
 /* Whether anything of a material takes texture coordinates: maps and anisotropy. */
 bool nt_material_takes_texcoords(const nt_material *material);

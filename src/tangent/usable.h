@@ -12,14 +12,11 @@
 
 #include <float.h>
 #include <math.h>
+#include "base/vec.h"
 #include "tangent/solve.h"
 
 /* |T|^2 may differ from 1 by this much: 32 units in the last place. Normalising in float is good to 4. */
 #define NT_UNIT_TOLERANCE (32 * 1.1920929e-7f)
-
-/* |N|^2 of a normal of unit length may differ from 1 by this much: floats that were rounded to 12 bits pass, and
- * T . N then says the sine of the angle to within 2^-12 of itself. */
-#define NT_UNIT_NORMAL_TOLERANCE 0x1p-11f
 
 /* The largest (T . N)^2 there: a sine of 2^-10, 0.056 degrees. Where a projection in float is well-conditioned it is
  * good to 2^-22, so that beyond this a direction has lost more than half of its bits along the normal. */
@@ -48,12 +45,6 @@ static inline bool nt_is_parallel(const float *t, const float *n)
 {
 	const float along = t[0] * n[0] + t[1] * n[1] + t[2] * n[2];
 	return along * along > nt_parallel_from(nt_squared(t), nt_squared(n));
-}
-
-/* Whether |N| counts as 1. */
-static inline bool nt_is_unit_normal(const float *n)
-{
-	return fabsf(nt_squared(n) - 1.0f) <= NT_UNIT_NORMAL_TOLERANCE;
 }
 
 /* Whether T is a unit vector across N. */

@@ -5,7 +5,7 @@
 #ifndef NT_GLTF_EDIT_BYTE_USERS_H
 #define NT_GLTF_EDIT_BYTE_USERS_H
 
-#include "gltf/edit/vertex_pools.h"
+#include "gltf/vertex_pools.h"
 
 /* Bytes of a source buffer that something in the document refers to. */
 typedef struct nt_byte_user {

@@ -120,12 +120,12 @@ static nt_status quantize_tangents(const nt_gltf_recoding *r, nt_error *error)
 	float *quantized = nt_arena_alloc(&r->edits->arena, vertices->new_count, 4 * sizeof *quantized);
 	if (!quantized)
 		return nt_fail_memory(error);
-	while (tangents->data != vertices->tangents[0])
+	while (tangents->data != vertices->sets[0].tangents)
 		tangents++;
 	const nt_draco_mesh mesh = {.method = NT_DRACO_SEQUENTIAL, .point_count = vertices->new_count,
 		.face_count = r->mesh->face_count, .indices = vertices->indices[0], .attributes = tangents,
 		.attribute_count = 1};
-	vertices->tangents[0] = quantized;
+	vertices->sets[0].tangents = quantized;
 	return nt_draco_quantize(&mesh, &quantized, error);
 }
 
@@ -194,7 +194,7 @@ static void report_users(const nt_gltf_recoding *r, nt_finding_list *findings, b
 	}
 }
 
-nt_status nt_gltf_draco_foresee(nt_gltf_recoding *r, nt_gltf *document, nt_vertex_pools *pools,
+nt_status nt_gltf_draco_begin(nt_gltf_recoding *r, nt_gltf *document, nt_vertex_pools *pools,
 	nt_pool_vertices *vertices, const nt_write_options *options, nt_arena *arena, nt_error *error)
 {
 	*r = (nt_gltf_recoding){.document = document, .json = document->json, .arena = arena, .options = options,
@@ -218,7 +218,7 @@ nt_status nt_gltf_draco_foresee(nt_gltf_recoding *r, nt_gltf *document, nt_verte
 nt_status nt_gltf_draco_look_up(nt_gltf_recoding *r, nt_buffer_edits *edits, nt_vertex_pools *pools,
 	nt_pool_vertices *vertices, const nt_write_options *options, nt_arena *arena, nt_error *error)
 {
-	nt_status status = nt_gltf_draco_foresee(r, edits->document, pools, vertices, options, arena, error);
+	nt_status status = nt_gltf_draco_begin(r, edits->document, pools, vertices, options, arena, error);
 	r->edits = edits;
 	if (status || r->obstacle)
 		return status;

@@ -75,10 +75,10 @@ void nt_gltf_draco_add_own(nt_gltf_recoding *r)
 {
 	const nt_pool_vertices *vertices = r->vertices;
 	const int bits = nt_gltf_draco_bits(r->options->draco_bits, NT_DRACO_BITS_TANGENT);
-	if (vertices->normals[0])
-		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, vertices->normals[0],
+	if (vertices->sets[0].normals)
+		put_floats(r, "NORMAL", NT_DRACO_NORMAL, 3, vertices->sets[0].normals,
 			nt_gltf_draco_bits(r->options->draco_bits, NT_DRACO_BITS_NORMAL));
-	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, vertices->tangents[0], bits);
+	put_floats(r, "TANGENT", NT_DRACO_GENERIC, 4, vertices->sets[0].tangents, bits);
 	if (r->options->bitangents)
 		put_floats(r, "_BITANGENT", NT_DRACO_GENERIC, 3, NULL, bits);
 }

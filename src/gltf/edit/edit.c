@@ -40,11 +40,9 @@ typedef struct editing {
 /* Pools that are prepared together: enough for many threads, few enough for their descriptions to be small. */
 enum { WINDOW = 1024 };
 
-/* Meshes from which on a second thread is worth waking. */
-enum { MANY_MESHES = 256 };
-
 /* One of them. */
 typedef struct pool_edit {
+	size_t number;
 	nt_vertex_pool pool;
 	bool stays;                /* as it is */
 	bool for_draco;            /* what follows is there */
@@ -60,7 +58,7 @@ static bool stays(const nt_scene *scene, const nt_write_options *options, const 
 {
 	if (!nt_gltf_is_solved(mesh))
 		return true;
-	return mesh->decision == NT_DECISION_REPAIR && !mesh->normals_made && !mesh->replaced_tangents && !mesh->late &&
+	return mesh->decision == NT_DECISION_REPAIR && !mesh->normals_made && !mesh->replaced_tangents &&
 		!mesh->morph_count && options->morphs != NT_MORPH_DROP && !options->bitangents &&
 		options->precision == NT_PRECISION_FLOAT && (options->draco == NT_DRACO_KEEP ||
 		(options->draco == NT_DRACO_OFF && !nt_gltf_draco_of(nt_gltf_primitive_of(scene->source, mesh))));
@@ -95,9 +93,9 @@ static nt_status round_tangents(const editing *e, nt_pool_vertices *vertices)
 			float *own = nt_arena_alloc(&e->edits->arena, count, 4 * sizeof *own);
 			if (!own)
 				return nt_fail_memory(e->error);
-			vertices->tangents[set] = memcpy(own, vertices->tangents[set], count * 4 * sizeof *own);
+			vertices->sets[set].tangents = memcpy(own, vertices->sets[set].tangents, count * 4 * sizeof *own);
 		}
-		nt_precision_round(precision, vertices->tangents[set], count, &cost);
+		nt_precision_round(precision, vertices->sets[set].tangents, count, &cost);
 		nt_precision_report(e->scene, precision, &cost, 
 			nt_mesh_place(nt_pool_set_mesh(vertices->pool, set), &(nt_place){0}));
 	}
@@ -109,13 +107,13 @@ static nt_status stored_tangents(const editing *e, const nt_pool_vertices *verti
 	const unsigned char **bytes)
 {
 	const nt_precision precision = e->options->precision;
-	*bytes = (const unsigned char *)vertices->tangents[set];
+	*bytes = (const unsigned char *)vertices->sets[set].tangents;
 	if (precision == NT_PRECISION_FLOAT)
 		return NT_OK;
 	unsigned char *out = nt_arena_alloc(&e->edits->arena, vertices->new_count, nt_precision_bytes(precision));
 	if (!out)
 		return nt_fail_memory(e->error);
-	nt_precision_encode(precision, vertices->tangents[set], vertices->new_count, out);
+	nt_precision_encode(precision, vertices->sets[set].tangents, vertices->new_count, out);
 	*bytes = out;
 	return NT_OK;
 }
@@ -175,8 +173,8 @@ static nt_status add_set(const editing *e, uint32_t buffer, const nt_pool_vertic
 {
 	nt_status status = NT_OK;
 	float *bitangents = NULL;
-	if (vertices->normals[set])
-		status = add_vectors(e, buffer, vertices, set, "NORMAL", vertices->normals[set]);
+	if (vertices->sets[set].normals)
+		status = add_vectors(e, buffer, vertices, set, "NORMAL", vertices->sets[set].normals);
 	if (!status && !old->in_place)
 		status = add_tangents(e, buffer, vertices, set, old);
 	if (!status && old->in_place)
@@ -261,14 +259,14 @@ static nt_status edit_plain(const editing *e, uint32_t buffer, nt_pool_vertices 
 /* The pool, and where Draco has to do with it what its block will hold. Changes nothing in the document. */
 static nt_status prepare_pool(const editing *e, size_t number, pool_edit *p)
 {
-	*p = (pool_edit){.for_draco = false};
+	*p = (pool_edit){.number = number};
 	nt_status status = nt_vertex_pools_get(e->pools, number, e->of_window, &p->pool, e->error);
 	p->stays = !status && pool_stays(e, &p->pool);
 	if (status || p->stays || e->options->draco == NT_DRACO_OFF ||
 		(e->options->draco == NT_DRACO_KEEP && !nt_gltf_has_draco(&p->pool)))
 		return status;
 	p->for_draco = true;
-	status = nt_merge_splits(&p->vertices, &p->pool, &e->edits->arena, e->of_window, e->error);
+	status = nt_pool_vertices_get(e->pools, number, &p->pool, e->of_window, &p->vertices, e->error);
 	return status ? status : nt_gltf_draco_look_up(&p->recoding, e->edits, e->pools, &p->vertices, e->options,
 		e->of_window, e->error);
 }
@@ -279,7 +277,7 @@ static nt_status edit_pool(const editing *e, pool_edit *p, bool *plain)
 	/* One vertex for each tangent that a vertex has. */
 	uint32_t buffer = 0;
 	nt_status status = p->for_draco ? NT_OK :
-		nt_merge_splits(&p->vertices, &p->pool, &e->edits->arena, e->of_window, e->error);
+		nt_pool_vertices_get(e->pools, p->number, &p->pool, e->of_window, &p->vertices, e->error);
 	if (!status)
 		status = choose_buffer(e, &p->pool, &buffer);
 
@@ -299,20 +297,6 @@ static nt_status edit_pool(const editing *e, pool_edit *p, bool *plain)
 }
 
 /* ---- the whole ---- */
-
-/* --morph=drop: before anything asks which accessors are used, and which are not there. They keep their numbers. */
-static void drop_target_tangents(const nt_scene *scene)
-{
-	const nt_gltf *document = scene->source;
-	for (size_t i = 0; i < scene->mesh_count; i++) {
-		const nt_mesh *mesh = &scene->meshes[i];
-		if (!nt_gltf_is_solved(mesh))
-			continue;
-		nt_json_value *targets = nt_json_find(nt_gltf_primitive_of(document, mesh), "targets");
-		for (size_t t = 0; t < nt_json_count(targets); t++)
-			nt_json_remove(document->json, nt_json_at(targets, t), "TANGENT");
-	}
-}
 
 /* The blocks of prepared pools, as far as they can be encoded. list: room for all. */
 static void encode_pools(const editing *e, pool_edit *window, size_t count, nt_gltf_recoding **list)
@@ -364,30 +348,6 @@ static nt_status edit_pools(const editing *e)
 	return status;
 }
 
-/* What must be known before anything changes. */
-typedef struct survey {
-	nt_scene *scene;
-	nt_vertex_pools *pools;
-	nt_buffer_edits *edits;
-	nt_arena *arena;
-	nt_status status;
-	nt_error *error;
-} survey;
-
-/* Neither of both looks at what the other finds. */
-static void survey_part(void *context, size_t item, unsigned slot)
-{
-	(void)slot;
-	survey *s = context;
-	if (item == 1) {
-		nt_gltf_find_dangling(s->scene->source);
-		return;
-	}
-	s->status = nt_vertex_pools_find(s->pools, s->scene, s->arena, s->error);
-	if (!s->status)
-		s->status = nt_edits_create(s->edits, s->pools, s->error);
-}
-
 nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_output *output, nt_error *error)
 {
 	/* Nothing to be done: the input as it is. */
@@ -398,21 +358,21 @@ nt_status nt_gltf_edit(nt_scene *scene, const nt_write_options *options, nt_outp
 	if (status || written)
 		return status;
 
-	/* Who shares what, which bytes may change, and what refers to nothing: two threads where there is much. */
-	if (options->morphs == NT_MORPH_DROP)
-		drop_target_tangents(scene);
+	/* Which bytes may change, and what refers to nothing. */
+	nt_gltf *document = scene->source;
 	nt_arena arena = {0}, of_window = {0};
-	nt_vertex_pools pools;
 	nt_buffer_edits edits = {0};
 	nt_geometry_total *totals = NULL;
-	survey s = {scene, &pools, &edits, &arena, NT_OK, error};
-	nt_parallel_items(scene->mesh_count < MANY_MESHES ? 1 : nt_thread_count(options->threads), 2, survey_part, &s);
-	status = s.status;
+	nt_gltf_find_dangling(document);
+	if (!document->pools)
+		status = nt_vertex_pools_find(scene, &(nt_read_options){.morphs = options->morphs}, error);
+	if (!status)
+		status = nt_edits_create(&edits, document->pools, error);
 	if (!status && nt_geometry_totals(scene->source, &arena, &totals))
 		status = nt_fail_memory(error);
 
 	/* The edits, and with them the document. */
-	const editing e = {.scene = scene, .options = options, .pools = &pools, .edits = &edits,
+	const editing e = {.scene = scene, .options = options, .pools = document->pools, .edits = &edits,
 		.of_window = &of_window, .error = error};
 	if (!status)
 		status = edit_pools(&e);

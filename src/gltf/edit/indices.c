@@ -31,22 +31,25 @@ static size_t tail_of(const nt_mesh *mesh, uint64_t mode, uint64_t old_count)
 }
 
 /* most: all indices are below it. */
-static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices, bool borrowed, size_t tail,
+static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices, bool borrowed, size_t tail_count,
 	uint64_t most, uint32_t least, encoded *out, nt_error *error)
 {
-	out->count = mesh->corner_count + tail;
+	uint32_t tail[2];
+	for (size_t i = 0; i < tail_count; i++)
+		tail[i] = nt_mesh_pool_vertex(mesh, mesh->indices[mesh->corner_count + i]);
+	out->count = mesh->corner_count + tail_count;
 	/* those of few vertices fit, whatever they are */
 	if (nt_gltf_index_type(most, least) != least) {
 		uint32_t highest = nt_largest(indices, mesh->corner_count, 1);
-		for (size_t c = mesh->corner_count; c < out->count; c++)
-			highest = mesh->indices[c] > highest ? mesh->indices[c] : highest;
+		for (size_t i = 0; i < tail_count; i++)
+			highest = tail[i] > highest ? tail[i] : highest;
 		most = (uint64_t)highest + 1;
 	}
 	out->type = nt_gltf_index_type(most, least);
 	out->width = nt_gltf_component_bytes(out->type);
 	out->size = out->count * out->width;
 	/* they live as long as the scene: nothing to be encoded */
-	if (out->width == sizeof *indices && tail == 0 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__) {
+	if (out->width == sizeof *indices && tail_count == 0 && __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__) {
 		out->bytes = (const unsigned char *)indices;
 		return NT_OK;
 	}
@@ -57,9 +60,7 @@ static nt_status encode(nt_arena *arena, const nt_mesh *mesh, uint32_t *indices,
 	if (!bytes)
 		return nt_fail_memory(error);
 	nt_gltf_store_indices(indices, mesh->corner_count, out->width, bytes);
-	if (tail)
-		nt_gltf_store_indices(mesh->indices + mesh->corner_count, tail, out->width,
-			bytes + mesh->corner_count * out->width);
+	nt_gltf_store_indices(tail, tail_count, out->width, bytes + mesh->corner_count * out->width);
 	out->bytes = bytes;
 	return NT_OK;
 }
@@ -210,7 +211,7 @@ static bool all_users_agree(const nt_vertex_pools *pools, const written *leader)
 static nt_status find_old(nt_gltf *document, const nt_mesh *mesh, uint32_t index, nt_gltf_accessor *old,
 	nt_error *error)
 {
-	*old = (nt_gltf_accessor){.count = mesh->source_vertex_count, .component_type = NT_GLTF_USHORT};
+	*old = (nt_gltf_accessor){.count = mesh->source_vertex_count + mesh->unused_vertices, .component_type = NT_GLTF_USHORT};
 	if (index == NT_NONE)
 		return NT_OK;
 	const nt_status status = nt_gltf_get_accessor(document, index, nt_gltf_of_mesh(mesh).pointer, old, error);

@@ -5,16 +5,25 @@
 #ifndef NT_GLTF_EDIT_MERGE_SPLITS_H
 #define NT_GLTF_EDIT_MERGE_SPLITS_H
 
-#include "gltf/edit/vertex_pools.h"
+#include "gltf/vertex_pools.h"
+
+/* What the meshes of a tangent set have together, for all vertices of their pool. */
+typedef struct nt_pool_set {
+	float *tangents;      /* [new_count][4] */
+	float *normals;       /* [new_count][3]: NULL where normals were not made */
+	float **morphs;       /* [morph_count][new_count][3] */
+	size_t morph_count;
+	bool *defined;        /* [vertex] while splits are merged: whether a corner of the set has it */
+	uint32_t *first_free; /* [old_count] while splits are merged: before this one the set has tangents for all
+	                         copies of a vertex */
+} nt_pool_set;
 
 typedef struct nt_pool_vertices {
 	const nt_vertex_pool *pool;
 	size_t old_count;   /* of the source */
 	size_t new_count;
 	uint32_t *sources;  /* [new_count - old_count] vertex of the source */
-	float **tangents;   /* [set][new_count][4] */
-	float **normals;    /* [set][new_count][3]: NULL where normals were not made */
-	float ***morphs;    /* [set][morph count of its meshes][new_count][3] */
+	nt_pool_set *sets;  /* [pool->sets.count] */
 	uint32_t **indices; /* [user][corner count]; NULL: not solved */
 	bool *changed;      /* [user] indices differ from the source's triangles */
 	bool borrowed;      /* sources, tangents and indices are the scene's: do not write to them */
@@ -26,10 +35,14 @@ static inline size_t nt_vertex_source(const nt_pool_vertices *vertices, size_t v
 	return vertex < vertices->old_count ? vertex : vertices->sources[vertex - vertices->old_count];
 }
 
-/* Merges the splits of a pool's users: a vertex of the source becomes one for each tangent (and made normal)
- * that any of them wants. The pool has a set. What edits may refer to is in `arena`, or borrowed from the scene; tables
- * of it are in `tables`. */
-nt_status nt_merge_splits(nt_pool_vertices *vertices, const nt_vertex_pool *pool, nt_arena *arena, nt_arena *tables,
-	nt_error *error);
+/* For the table of formats. Merges the split of a pooled mesh, in the order of the scene's meshes, with those of its
+ * pool before it: a vertex of the source becomes one for each tangent (and made normal) that any of them wants. The
+ * mesh is `merged` then; what it holds is not asked for again. */
+nt_status nt_gltf_merge(nt_scene *scene, nt_mesh *mesh, nt_error *error);
+
+/* The vertices of a pool, all of whose solved meshes are there; it has a set. What edits may refer to lives as long as
+ * the document, or is borrowed from the scene; tables of it are in `tables`. */
+nt_status nt_pool_vertices_get(nt_vertex_pools *pools, size_t number, const nt_vertex_pool *pool, nt_arena *tables,
+	nt_pool_vertices *vertices, nt_error *error);
 
 #endif

@@ -8,6 +8,7 @@
 #include <string.h>
 #include "base/vec.h"
 #include "gltf/accessor.h"
+#include "gltf/load.h"
 
 uint32_t nt_gltf_new_accessor(nt_json *json, uint32_t view, uint32_t component_type, const char *type,
 	size_t count, bool normalized)
@@ -55,15 +56,17 @@ void nt_gltf_set_attribute(nt_json *json, const nt_vertex_pool *pool, uint32_t s
 nt_status nt_gltf_bitangents(const nt_pool_vertices *vertices, uint32_t set, nt_arena *arena, float **result,
 	nt_error *error)
 {
-	const float *made = vertices->normals[set], *loaded = nt_pool_set_mesh(vertices->pool, set)->normals;
-	float *out = nt_arena_alloc(arena, vertices->new_count, 3 * sizeof *out);
+	const nt_pool_set *of = &vertices->sets[set];
+	const nt_mesh *mesh = nt_pool_set_mesh(vertices->pool, set);
+	float *out = nt_arena_alloc(arena, vertices->new_count, 3 * sizeof *out), *loaded = mesh->normals;
+	nt_status status = out ? NT_OK : nt_fail_memory(error);
 	*result = out;
-	if (!out)
-		return nt_fail_memory(error);
-	for (size_t v = 0; v < vertices->new_count; v++)
-		nt_bitangent(made ? made + 3 * v : loaded + 3 * nt_vertex_source(vertices, v),
-			vertices->tangents[set] + 4 * v, out + 3 * v);
-	return NT_OK;
+	if (!status && !of->normals && mesh->pool_vertices)
+		status = nt_gltf_load_normals(vertices->pool->scene->source, mesh, arena, &loaded, error);
+	for (size_t v = 0; !status && v < vertices->new_count; v++)
+		nt_bitangent(of->normals ? of->normals + 3 * v : loaded + 3 * nt_vertex_source(vertices, v),
+			of->tangents + 4 * v, out + 3 * v);
+	return status;
 }
 
 /* A target of every mesh of the set gets an attribute. */
@@ -105,10 +108,10 @@ nt_status nt_gltf_add_morphs(nt_buffer_edits *edits, uint32_t buffer, const nt_p
 	uint32_t set, nt_error *error)
 {
 	const nt_mesh *mesh = nt_pool_set_mesh(vertices->pool, set);
-	const float *base = vertices->tangents[set];
+	const float *base = vertices->sets[set].tangents;
 	nt_status status = NT_OK;
 	for (size_t m = 0; !status && m < mesh->morph_count; m++) {
-		const float *moved = vertices->morphs[set][m];
+		const float *moved = vertices->sets[set].morphs[m];
 		float *delta = nt_arena_alloc(&edits->arena, vertices->new_count, 3 * sizeof *delta);
 		uint32_t accessor = 0;
 		if (!delta)

@@ -10,6 +10,7 @@
 #include "gltf/joins.h"
 #include "gltf/open.h"
 #include "gltf/same_geometry.h"
+#include "gltf/vertex_pools.h"
 #include "scene/select.h"
 
 /* How the joins of a test are found. */
@@ -26,6 +27,8 @@ static void open_text(nt_scene *scene, const nt_buffer *json)
 	if (nt_gltf_open(scene, &options, &error))
 		fail_msg("%s: %s", error.place.pointer, error.message);
 	nt_select(scene, NT_ONLY_AUTO, NT_EXISTING_KEEP, false);
+	if (shared)
+		assert_int_equal(nt_vertex_pools_find(scene, &options, &error), NT_OK);
 	if (shared)
 		assert_int_equal(nt_gltf_find_same(scene, &options, &error), NT_OK);
 	assert_int_equal(nt_gltf_find_joins(scene, !compared, false, &error), NT_OK);

@@ -7,6 +7,7 @@
 #include "gltf/load.h"
 #include "gltf/open.h"
 #include "gltf/same_geometry.h"
+#include "gltf/vertex_pools.h"
 #include "pipeline/run.h"
 #include "test.h"
 
@@ -56,7 +57,7 @@ static void open_with(const char *primitives, const nt_read_options *options)
 	if (nt_gltf_open(&scene, options, &error))
 		fail_msg("%s: %s", error.place.pointer, error.message);
 	nt_select(&scene, NT_ONLY_AUTO, NT_EXISTING_REPLACE, true);
-	if (nt_gltf_find_same(&scene, options, &error))
+	if (nt_vertex_pools_find(&scene, options, &error) || nt_gltf_find_same(&scene, options, &error))
 		fail_msg("%s: %s", error.place.pointer, error.message);
 }
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Small meshes that are solved as soon as they are loaded: the output and what is said are those of a run that loads
- * all of them first, as --verify makes it, whatever the number of threads. A scene of primitives of all kinds: grids of
+ * Meshes of which only results are asked for: the output and what is said are those of a run that keeps the geometry of
+ * all of them, as --verify makes it, whatever the number of threads. A scene of primitives of all kinds: grids of
  * SIDE x SIDE quads.
  */
 #include "fail_alloc.h"
@@ -164,12 +164,12 @@ static void assert_same_files(const char *a, const char *b)
 	nt_file_close(&y);
 }
 
-static void the_same_as_all_loaded_first(void **state)
+static void the_same_as_where_geometry_is_kept(void **state)
 {
 	(void)state;
 	put_scene("in.glb", 2 * KINDS, SIZE_MAX);
 	nt_error error;
-	nt_summary first, ahead;
+	nt_summary first, results;
 	const nt_settings loads = {.texcoord_set = -1, .verify = true, .threads = 1};
 	assert_int_equal(nt_run(in_folder("in.glb"), in_folder("first.glb"), &loads, &first, &error), NT_OK);
 	assert_int_equal(first.solved_count, 2 * KINDS);
@@ -182,16 +182,17 @@ static void the_same_as_all_loaded_first(void **state)
 	static const unsigned threads[] = {1, 2, 4};
 	for (size_t i = 0; i < sizeof threads / sizeof *threads; i++) {
 		const nt_settings settings = {.texcoord_set = -1, .threads = threads[i]};
-		assert_int_equal(nt_run(in_folder("in.glb"), in_folder("ahead.glb"), &settings, &ahead, &error), NT_OK);
-		assert_same_files(in_folder("first.glb"), in_folder("ahead.glb"));
-		assert_same_findings(&first.findings, &ahead.findings);
-		assert_memory_equal(&first.counts, &ahead.counts, sizeof first.counts);
-		assert_int_equal(first.solved_count, ahead.solved_count);
-		assert_int_equal(first.same_count, ahead.same_count);
-		assert_int_equal(first.triangle_count, ahead.triangle_count);
-		assert_int_equal(first.vertex_count, ahead.vertex_count);
-		assert_int_equal(first.appended_tangents, ahead.appended_tangents);
-		nt_summary_free(&ahead);
+		assert_int_equal(nt_run(in_folder("in.glb"), in_folder("results.glb"), &settings, &results, &error),
+			NT_OK);
+		assert_same_files(in_folder("first.glb"), in_folder("results.glb"));
+		assert_same_findings(&first.findings, &results.findings);
+		assert_memory_equal(&first.counts, &results.counts, sizeof first.counts);
+		assert_int_equal(first.solved_count, results.solved_count);
+		assert_int_equal(first.same_count, results.same_count);
+		assert_int_equal(first.triangle_count, results.triangle_count);
+		assert_int_equal(first.vertex_count, results.vertex_count);
+		assert_int_equal(first.appended_tangents, results.appended_tangents);
+		nt_summary_free(&results);
 	}
 	nt_summary_free(&first);
 }
@@ -216,17 +217,25 @@ static void what_needs_no_repair_stays(void **state)
 	}
 }
 
-/* Of each mesh, what is left after nt_load_ahead(). */
+static void begin_stage(void *run, nt_stage stage)
+{
+	(void)run;
+	(void)stage;
+}
+
+/* What each mesh holds after its window: of those that share vertices with others the writer has the results. */
 static void geometry_is_let_go_of_where_only_results_count(void **state)
 {
 	(void)state;
 	put_scene("in.glb", KINDS, SIZE_MAX);
-	for (int solves = 0; solves < 2; solves++) {
+	for (int only_results = 0; only_results < 2; only_results++) {
 		const nt_settings settings = {.texcoord_set = -1, .threads = 2};
-		const nt_read_options options = {.texcoord_set = -1, .threads = 2};
+		const nt_read_options options = {.texcoord_set = -1, .threads = 2, .edits = true,
+			.only_results = only_results};
 		nt_error error;
 		nt_file input;
 		nt_scene scene;
+		nt_summary summary = {.mesh_count = 0};
 		nt_scene_init(&scene, in_folder("in.glb"));
 		assert_int_equal(nt_file_open(&input, scene.path, &error), NT_OK);
 		scene.bytes = input.data;
@@ -234,24 +243,22 @@ static void geometry_is_let_go_of_where_only_results_count(void **state)
 		const nt_format_entry *glb = nt_format_find(NT_FORMAT_GLB);
 		assert_int_equal(glb->open(&scene, &options, &error), NT_OK);
 		nt_select(&scene, NT_ONLY_NEEDED, NT_EXISTING_KEEP, false);
-		assert_int_equal(glb->find_same(&scene, &options, &error), NT_OK);
-		bool needed[KINDS];
-		memset(needed, true, sizeof needed);
-		assert_int_equal(nt_load_ahead(&scene, glb, solves ? glb : NULL, &settings, &options, needed,
-			&error), NT_OK);
+		assert_int_equal(glb->plan(&scene, &options, &error), NT_OK);
+		const nt_tasks tasks = {.scene = &scene, .reader = glb, .writer = glb, .settings = &settings,
+			.options = &options, .summary = &summary, .begin_stage = begin_stage};
+		assert_int_equal(nt_tasks_do(&tasks, &error), NT_OK);
 		for (size_t i = 0; i < KINDS; i++) {
 			const nt_mesh *mesh = &scene.meshes[i];
-			/* the first is shared by one whose texture transform is to be looked at */
-			const bool solved = solves && i != MIRRORED && i != TAIL && i != SAME &&
-				i != CONFLICT && i != CHAIN &&
-				i != LISTED;
-			const bool shares = i == SAME || i == CONFLICT;
-			assert_int_equal(needed[i], shares);
-			assert_int_equal(mesh->split.vertex_tangents != NULL, solved);
-			assert_int_equal(mesh->positions == NULL, solved || shares);
-			assert_int_equal(mesh->indices == NULL, shares || i == LISTED || solved);
-			assert_int_equal(solved && mesh->split.indices, i == REVERSED || i == CUT ? solved : 0);
+			const bool shares = i == TAIL || i == REVERSED || i == CUT || i == BESIDE;
+			/* a tail that forms no triangle stays, and so do triangles that a strip or a list without
+			 * indices had; the first mesh is shared by one whose texture transform is to be looked at */
+			const bool let_go = only_results && i != MIRRORED && i != TAIL && i != SAME && i != CONFLICT &&
+				i != CHAIN && i != LISTED;
+			assert_int_equal(mesh->merged, shares);
+			assert_int_equal(mesh->positions == NULL, let_go);
+			assert_int_equal(mesh->split.vertex_tangents == NULL, let_go && shares);
 		}
+		nt_summary_free(&summary);
 		nt_scene_free(&scene);
 		nt_file_close(&input);
 	}
@@ -303,12 +310,12 @@ static void exhausted_memory_is_told(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test_setup_teardown(the_same_as_all_loaded_first, make_folder, remove_folder),
+		cmocka_unit_test_setup_teardown(the_same_as_where_geometry_is_kept, make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(what_needs_no_repair_stays, make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(geometry_is_let_go_of_where_only_results_count, make_folder,
 			remove_folder),
 		cmocka_unit_test_setup_teardown(the_first_fault_is_told, make_folder, remove_folder),
 		cmocka_unit_test_setup_teardown(exhausted_memory_is_told, make_folder, remove_folder),
 	};
-	return cmocka_run_group_tests_name("pipeline/ahead", tests, NULL, NULL);
+	return cmocka_run_group_tests_name("pipeline/tasks", tests, NULL, NULL);
 }

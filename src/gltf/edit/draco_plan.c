@@ -14,7 +14,7 @@
  * Those that are compressed get one grid; where some are not, all are solved for what the file has, so that tangents
  * meet at the least.
  */
-#include "gltf/edit/draco_foresee.h"
+#include "gltf/edit/draco_plan.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -23,12 +23,12 @@
 #include "gltf/draco_values.h"
 #include "gltf/edit/draco.h"
 
-typedef struct foreseeing {
+typedef struct planning {
 	nt_scene *scene;
-	nt_vertex_pools pools;
+	nt_vertex_pools *pools;
 	nt_write_options options;
 	nt_arena of_pool;
-} foreseeing;
+} planning;
 
 /* How many vertices the primitive has; false: it will not be loaded. */
 static bool count_vertices(nt_gltf *document, const nt_vertex_pool *pool, size_t *count)
@@ -51,7 +51,7 @@ static bool gets_tangents(const nt_vertex_pool *pool)
 }
 
 /* The faces of a plain primitive. */
-static nt_status find_faces(foreseeing *f, const nt_gltf_recoding *r, nt_mesh *mesh, nt_error *error)
+static nt_status find_faces(planning *f, const nt_gltf_recoding *r, nt_mesh *mesh, nt_error *error)
 {
 	uint64_t index;
 	nt_gltf_accessor accessor = {.count = mesh->vertex_count};
@@ -71,7 +71,7 @@ static nt_status find_faces(foreseeing *f, const nt_gltf_recoding *r, nt_mesh *m
 
 /* Whether Draco takes the values of a plain primitive, and all of its vertices where something beside the block counts
  * them. What is wrong with the file is found again when it is loaded. */
-static nt_status look_at_values(foreseeing *f, const nt_gltf_recoding *r, bool *takes, nt_error *error)
+static nt_status look_at_values(planning *f, const nt_gltf_recoding *r, bool *takes, nt_error *error)
 {
 	nt_mesh mesh = {.vertex_count = r->vertices->old_count};
 	nt_draco_attribute *attributes = nt_arena_alloc(&f->of_pool, r->attribute_count, sizeof *attributes);
@@ -88,14 +88,14 @@ static nt_status look_at_values(foreseeing *f, const nt_gltf_recoding *r, bool *
 	return status == NT_ERROR_MEMORY ? status : NT_OK;
 }
 
-static nt_status look_at_pool(foreseeing *f, size_t number, nt_error *error)
+static nt_status look_at_pool(planning *f, size_t number, nt_error *error)
 {
 	nt_gltf *document = f->scene->source;
 	nt_vertex_pool pool;
 	nt_pool_vertices vertices = {.pool = &pool};
 	nt_gltf_recoding recoding;
 	nt_arena_clear(&f->of_pool);
-	nt_status status = nt_vertex_pools_get(&f->pools, number, &f->of_pool, &pool, error);
+	nt_status status = nt_vertex_pools_get(f->pools, number, &f->of_pool, &pool, error);
 	if (status || !gets_tangents(&pool) || !count_vertices(document, &pool, &vertices.old_count))
 		return status;
 	const bool compressed = nt_gltf_draco_of(nt_pool_primitive(&pool, 0)) != NULL;
@@ -103,7 +103,7 @@ static nt_status look_at_pool(foreseeing *f, size_t number, nt_error *error)
 		return NT_OK;
 	/* what is wrong with the file is found again when it is loaded */
 	nt_error ignored;
-	status = nt_gltf_draco_foresee(&recoding, document, &f->pools, &vertices, &f->options, &f->of_pool, &ignored);
+	status = nt_gltf_draco_begin(&recoding, document, f->pools, &vertices, &f->options, &f->of_pool, &ignored);
 	if (status == NT_ERROR_MEMORY)
 		return nt_fail_memory(error);
 	bool takes = !status && !recoding.obstacle;
@@ -168,14 +168,14 @@ static const char *name_of(const nt_mesh *mesh, bool texcoords, char (*name)[32]
 }
 
 /* Whether a part is plain and will be compressed. */
-static bool is_new(const foreseeing *f, const nt_mesh *part)
+static bool is_new(const planning *f, const nt_mesh *part)
 {
 	return part->quantized && !nt_gltf_draco_of(nt_gltf_primitive_of(f->scene->source, part));
 }
 
 /* One grid for the positions, or the texture coordinates, of the parts that will be compressed; integers need none, as
  * they stay what they are. Whether equal values of these parts remain equal. */
-static bool lay_grid(const foreseeing *f, const nt_join *join, bool texcoords)
+static bool lay_grid(const planning *f, const nt_join *join, bool texcoords)
 {
 	nt_gltf *document = f->scene->source;
 	const uint32_t components = texcoords ? 2 : 3;
@@ -217,7 +217,7 @@ static bool lay_grid(const foreseeing *f, const nt_join *join, bool texcoords)
 	return others == 0;
 }
 
-static void look_at_join(const foreseeing *f, const nt_join *join)
+static void look_at_join(const planning *f, const nt_join *join)
 {
 	bool all = true;
 	for (size_t i = 0; i < join->part_count; i++)
@@ -229,7 +229,7 @@ static void look_at_join(const foreseeing *f, const nt_join *join)
 			join->parts[i]->quantized = NT_QUANTIZED_NOT;
 }
 
-static nt_status look_at_joins(const foreseeing *f, nt_error *error)
+static nt_status look_at_joins(const planning *f, nt_error *error)
 {
 	nt_gltf *document = f->scene->source;
 	for (size_t i = 0; i < f->scene->join_count; i++) {
@@ -237,7 +237,7 @@ static nt_status look_at_joins(const foreseeing *f, nt_error *error)
 		if (join->parts[0]->join != join) /* only compared */
 			continue;
 		if (!document->grids)
-			document->grids = nt_calloc(f->pools.accessor_count, sizeof *document->grids);
+			document->grids = nt_calloc(f->pools->accessor_count, sizeof *document->grids);
 		if (!document->grids)
 			return nt_fail_memory(error);
 		look_at_join(f, join);
@@ -249,17 +249,17 @@ static nt_status look_at_joins(const foreseeing *f, nt_error *error)
 
 nt_status nt_gltf_find_quantized(nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
-	nt_arena arena = {0};
-	foreseeing f = {.scene = scene, .options = {.draco = options->draco, .threads = options->threads}};
+	nt_gltf *document = scene->source;
+	planning f = {.scene = scene, .pools = document->pools,
+		.options = {.draco = options->draco, .threads = options->threads}};
+	nt_status status = NT_OK;
 	for (size_t i = 0; i < NT_DRACO_BITS_COUNT; i++)
 		f.options.draco_bits[i] = options->draco_bits[i];
-	nt_status status = nt_vertex_pools_find(&f.pools, scene, &arena, error);
-	for (size_t i = 0; !status && i < f.pools.count; i++)
+	for (size_t i = 0; !status && i < f.pools->count; i++)
 		status = look_at_pool(&f, i, error);
 	clear_shared(scene);
-	if (!status && f.pools.count)
+	if (!status)
 		status = look_at_joins(&f, error);
 	nt_arena_free(&f.of_pool);
-	nt_arena_free(&arena);
 	return status;
 }

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Which primitives will be compressed: see draco_foresee.c.
+ * Which primitives will be compressed: see draco_plan.c.
  */
-#ifndef NT_GLTF_EDIT_DRACO_FORESEE_H
-#define NT_GLTF_EDIT_DRACO_FORESEE_H
+#ifndef NT_GLTF_EDIT_DRACO_PLAN_H
+#define NT_GLTF_EDIT_DRACO_PLAN_H
 
 #include "gltf/document.h"
 

@@ -2,7 +2,7 @@
 /*
  * Pools are found with a union-find over the accessors; tangent sets by a key of all that decides a tangent.
  */
-#include "gltf/edit/vertex_pools.h"
+#include "gltf/vertex_pools.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +10,7 @@
 #include "base/buffer.h"
 #include "base/name_table.h"
 #include "gltf/draco.h"
+#include "gltf/materials.h"
 
 /* ---- other users ---- */
 
@@ -80,9 +81,10 @@ static nt_status join_user(void *context, nt_json_value *attributes, const char 
 	return NT_OK;
 }
 
-/* Numbers pools in the order of their first mesh and lists their meshes. pool_of: [mesh_count] scratch. */
-static void list_pools(nt_vertex_pools *pools, uint32_t *parent, uint32_t *pool_of, size_t mesh_count)
+/* Numbers pools in the order of their first mesh and lists their meshes. */
+static void list_pools(nt_vertex_pools *pools, uint32_t *parent, size_t mesh_count)
 {
+	uint32_t *const pool_of = pools->of;
 	for (uint32_t i = 0; i < mesh_count; i++) {
 		const uint32_t root = find_root(parent, i);
 		pool_of[i] = root == i ? (uint32_t)pools->count++ : pool_of[root];
@@ -114,12 +116,13 @@ static bool allocate(nt_vertex_pools *pools, nt_arena *arena)
 	pools->attribute_users = zeroed(arena, pools->accessor_count);
 	pools->index_users = zeroed(arena, pools->accessor_count);
 	pools->block_users = zeroed(arena, document->view_count);
+	pools->of = zeroed(arena, mesh_count);
 	pools->order = zeroed(arena, mesh_count);
 	pools->first = zeroed(arena, mesh_count + 1);
 	if (pools->foreign)
 		memset(pools->foreign, 0, pools->accessor_count * sizeof *pools->foreign);
 	return pools->first_alias && pools->foreign && pools->attribute_users && pools->index_users &&
-		pools->block_users && pools->order && pools->first;
+		pools->block_users && pools->of && pools->order && pools->first;
 }
 
 /* What a primitive uses. */
@@ -138,24 +141,25 @@ static void join_primitive(nt_vertex_pools *pools, joining *j)
 	}
 }
 
-static bool any_has_tangents(const nt_scene *scene)
+static void free_pools(void *pools)
 {
-	for (size_t i = 0; i < scene->mesh_count; i++)
-		if (nt_mesh_is_wanted(&scene->meshes[i]) || nt_gltf_is_solved(&scene->meshes[i]))
-			return true;
-	return false;
+	nt_vertex_pools *all = pools;
+	if (all->free_merges)
+		all->free_merges(all);
 }
 
-nt_status nt_vertex_pools_find(nt_vertex_pools *pools, const nt_scene *scene, nt_arena *arena, nt_error *error)
+nt_status nt_vertex_pools_find(const nt_scene *scene, const nt_read_options *options, nt_error *error)
 {
-	*pools = (nt_vertex_pools){.scene = scene};
-	if (!any_has_tangents(scene))
-		return NT_OK;
+	nt_gltf *document = scene->source;
 	const size_t mesh_count = scene->mesh_count;
+	nt_vertex_pools *pools = nt_arena_alloc(&document->arena, 1, sizeof *pools);
+	if (!pools)
+		return nt_fail_memory(error);
+	*pools = (nt_vertex_pools){.scene = scene,
+		.bakes_morphs = !options->world && options->morphs == NT_MORPH_BAKE};
 	joining j = {.pools = pools, .parent = nt_alloc(mesh_count, sizeof *j.parent)};
-	uint32_t *pool_of = nt_alloc(mesh_count, sizeof *pool_of);
-	bool found = allocate(pools, arena) && j.parent && pool_of &&
-		nt_gltf_find_first_aliases(scene->source, pools->first_alias, pools->accessor_count);
+	bool found = allocate(pools, &document->arena) && j.parent &&
+		nt_gltf_find_first_aliases(document, pools->first_alias, pools->accessor_count);
 	j.first_user = nt_alloc(pools->accessor_count, sizeof *j.first_user);
 	found = found && j.first_user;
 	if (found) {
@@ -165,11 +169,12 @@ nt_status nt_vertex_pools_find(nt_vertex_pools *pools, const nt_scene *scene, nt
 		find_foreign(pools);
 		for (j.mesh = 0; j.mesh < mesh_count; j.mesh++)
 			join_primitive(pools, &j);
-		list_pools(pools, j.parent, pool_of, mesh_count);
+		list_pools(pools, j.parent, mesh_count);
+		document->pools = pools;
+		document->free_pools = free_pools;
 	}
 	free(j.parent);
 	free(j.first_user);
-	free(pool_of);
 	return found ? NT_OK : nt_fail_memory(error);
 }
 
@@ -190,6 +195,32 @@ static void put_accessor(nt_buffer *key, const nt_vertex_pools *pools, const nt_
 	put_number(key, known ? pools->first_alias[accessor] : NT_NONE);
 }
 
+/* How many morph targets get tangents. */
+static size_t count_morphs(const nt_vertex_pools *pools, const nt_json_value *primitive, const nt_join *join)
+{
+	const bool has_normals = nt_json_find(nt_json_find(primitive, "attributes"), "NORMAL");
+	const nt_json_value *targets = nt_json_find(primitive, "targets");
+	size_t count = 0;
+	for (size_t i = 0; pools->bakes_morphs && i < nt_json_count(targets); i++) {
+		const nt_json_value *target = nt_json_at(targets, i);
+		count += nt_json_find(target, "POSITION") || (has_normals && nt_json_find(target, "NORMAL")) ||
+			(join && i < join->target_count && join->moves[i]);
+	}
+	return count;
+}
+
+/* The texture transform that turns the texture coordinates. */
+static void put_transform(nt_buffer *key, const nt_vertex_pools *pools, const nt_mesh *mesh,
+	const nt_json_value *primitive)
+{
+	nt_gltf_shading shading = {.has_set = false};
+	if (!mesh->texcoords_transformed || nt_gltf_find_slots(pools->scene->source, primitive, "", &shading, NULL) ||
+		!shading.has_set || shading.set != mesh->texcoord_set || !shading.transform.turns)
+		return;
+	nt_buffer_append(key, &shading.transform.uv.rotation, sizeof shading.transform.uv.rotation);
+	nt_buffer_append(key, shading.transform.uv.scale, sizeof shading.transform.uv.scale);
+}
+
 /*
  * Writes down what decides a tangent: meshes with equal keys form a set. Texture coordinates count as texture
  * transforms turn them; where those do not agree, hardly a tangent does, and a TANGENT for each is less than a copy of
@@ -208,16 +239,15 @@ static void put_key(nt_buffer *key, const nt_vertex_pools *pools, const nt_mesh 
 	/* what is solved with others has other tangents than alone */
 	const nt_join *join = mesh->same_as ? mesh->same_as->join : mesh->join;
 	put_number(key, join ? (uint64_t)(join - pools->scene->joins) + 1 : 0);
-	put_number(key, mesh->morph_count);
-	const size_t target_count = mesh->morph_count ? nt_json_count(targets) : 0; /* else they move no tangent */
+	const size_t morph_count = count_morphs(pools, primitive, join);
+	put_number(key, morph_count);
+	const size_t target_count = morph_count ? nt_json_count(targets) : 0; /* else they move no tangent */
 	put_number(key, target_count);
 	for (size_t i = 0; i < target_count; i++) {
 		put_accessor(key, pools, nt_json_at(targets, i), "POSITION");
 		put_accessor(key, pools, nt_json_at(targets, i), "NORMAL");
 	}
-	if (mesh->solve_texcoords)
-		nt_buffer_append(key, mesh->solve_texcoords,
-			mesh->vertex_count * 2 * sizeof *mesh->solve_texcoords);
+	put_transform(key, pools, mesh, primitive);
 }
 
 /* Appends a user to its set, which may be a new one. keys: their numbers are those of the sets; last: [set] its last
@@ -238,10 +268,16 @@ static bool join_set(nt_name_table *keys, nt_arena *arena, uint32_t *last, nt_ta
 	return true;
 }
 
+/* Sets are known before the solve. */
+static bool gets_tangents(const nt_mesh *mesh)
+{
+	return nt_mesh_is_wanted(mesh) || nt_gltf_is_solved(mesh);
+}
+
 /* Of a pool with one user, as most are: no key is needed. */
 static void find_lone_set(nt_vertex_pool *pool)
 {
-	const bool solved = nt_gltf_is_solved(nt_pool_mesh(pool, 0));
+	const bool solved = gets_tangents(nt_pool_mesh(pool, 0));
 	pool->sets.count = solved;
 	pool->sets.of[0] = solved ? 0 : NT_NONE;
 	pool->sets.first[0] = 0;
@@ -257,7 +293,7 @@ static bool find_sets(nt_vertex_pool *pool, const nt_vertex_pools *pools)
 	bool found = last != NULL;
 	for (uint32_t i = 0; found && i < pool->user_count; i++) {
 		pool->sets.of[i] = pool->sets.next[i] = NT_NONE;
-		if (!nt_gltf_is_solved(nt_pool_mesh(pool, i)))
+		if (!gets_tangents(nt_pool_mesh(pool, i)))
 			continue;
 		key.size = 0;
 		put_key(&key, pools, nt_pool_mesh(pool, i));

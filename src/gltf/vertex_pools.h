@@ -7,8 +7,8 @@
  * texture coordinates (as texture transforms turn them) and morph targets form a tangent set: they have one
  * TANGENT.
  */
-#ifndef NT_GLTF_EDIT_VERTEX_POOLS_H
-#define NT_GLTF_EDIT_VERTEX_POOLS_H
+#ifndef NT_GLTF_VERTEX_POOLS_H
+#define NT_GLTF_VERTEX_POOLS_H
 
 #include "gltf/primitive.h"
 
@@ -22,8 +22,12 @@ typedef struct nt_vertex_pools {
 	uint32_t *index_users;     /* [accessor_count] by first alias: primitives that have it as indices */
 	uint32_t *block_users;     /* [view_count] primitives that are compressed in it */
 	size_t count;
+	uint32_t *of;              /* [mesh count] the pool of each mesh */
 	uint32_t *order;           /* [mesh count] numbers of meshes, those of one pool together */
 	uint32_t *first;           /* [count + 1] where each pool begins in order */
+	bool bakes_morphs;         /* morph targets get tangents */
+	struct nt_pool_merge **merges; /* [count] of pools whose splits are merged: merge_splits.c; NULL: none yet */
+	void (*free_merges)(struct nt_vertex_pools *pools); /* set with them */
 } nt_vertex_pools;
 
 /* Sets are lists of users, so that one is gone through without the others. */
@@ -41,10 +45,10 @@ typedef struct nt_vertex_pool {
 	nt_tangent_sets sets;
 } nt_vertex_pool;
 
-/* Everything is in the arena. */
-nt_status nt_vertex_pools_find(nt_vertex_pools *pools, const nt_scene *scene, nt_arena *arena, nt_error *error);
+/* Finds the pools of a document that is read with these options, once the decisions are made: document->pools. */
+nt_status nt_vertex_pools_find(const nt_scene *scene, const nt_read_options *options, nt_error *error);
 
-/* One of them, with its sets. */
+/* One of them, with its sets, in the arena. */
 nt_status nt_vertex_pools_get(const nt_vertex_pools *pools, size_t number, nt_arena *arena, nt_vertex_pool *pool,
 	nt_error *error);
 

@@ -1,0 +1,102 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The plan of a document, made from its JSON before any geometry is read. It says of each primitive with whom it shares
+ * vertices (its pool), whose geometry it has, with whom it is solved, whether it is solved as a decoder of Draco will
+ * have it, and whether what it holds may go once its pool has its results. Reader, stages and writer keep to it.
+ */
+#include "gltf/edit/plan.h"
+
+#include <stdlib.h>
+#include "gltf/draco.h"
+#include "gltf/edit/draco_plan.h"
+#include "gltf/joins.h"
+#include "gltf/same_geometry.h"
+#include "gltf/vertex_pools.h"
+
+/* Whether a mesh will be loaded: to be solved, or only to be checked, or for others. */
+static bool is_loaded(const nt_mesh *mesh, const nt_read_options *options)
+{
+	return nt_mesh_is_wanted(mesh) ||
+		((options->report || options->across) && mesh->triangles && mesh->has_positions);
+}
+
+static bool any_is_loaded(const nt_scene *scene, const nt_read_options *options)
+{
+	for (size_t i = 0; i < scene->mesh_count; i++)
+		if (is_loaded(&scene->meshes[i], options))
+			return true;
+	return false;
+}
+
+/* --morph=drop: before anything asks which accessors are used, and which are not there. They keep their numbers. */
+static void drop_target_tangents(const nt_scene *scene)
+{
+	const nt_gltf *document = scene->source;
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[i];
+		if (!nt_mesh_is_wanted(mesh))
+			continue;
+		nt_json_value *targets = nt_json_find(nt_gltf_primitive_of(document, mesh), "targets");
+		for (size_t t = 0; t < nt_json_count(targets); t++)
+			nt_json_remove(document->json, nt_json_at(targets, t), "TANGENT");
+	}
+}
+
+/* Solves what is solved together as one; what is only compared is not said of the meshes. */
+static void join_parts(const nt_scene *scene)
+{
+	for (size_t i = 0; i < scene->join_count; i++)
+		for (size_t k = 0; k < scene->joins[i].part_count; k++)
+			scene->joins[i].parts[k]->join = &scene->joins[i];
+}
+
+/* Meshes of one pool with different triangles are loaded with the vertices that each uses. A writer of one mesh in the
+ * world takes all vertices. */
+static void find_pooled(const nt_scene *scene, const nt_read_options *options)
+{
+	const nt_gltf *document = scene->source;
+	const nt_vertex_pools *pools = document->pools;
+	for (size_t p = 0; p < pools->count && !options->world; p++) {
+		size_t count = 0;
+		for (uint32_t i = pools->first[p]; i < pools->first[p + 1]; i++)
+			count += is_loaded(&scene->meshes[pools->order[i]], options) &&
+				!scene->meshes[pools->order[i]].same_as;
+		for (uint32_t i = pools->first[p]; count > 1 && i < pools->first[p + 1]; i++)
+			scene->meshes[pools->order[i]].pooled = true;
+	}
+}
+
+/* What a mesh holds is temporary where only its results are asked for, and go to its pool. One that others with a
+ * texture transform to be looked at share keeps its texture coordinates. */
+static void find_temporary(const nt_scene *scene, const nt_read_options *options)
+{
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		const nt_mesh *mesh = &scene->meshes[i];
+		if (mesh->same_as && mesh->texcoords_transformed)
+			scene->meshes[mesh->same_as - scene->meshes].plain = false;
+	}
+	for (size_t i = 0; i < scene->mesh_count; i++) {
+		nt_mesh *mesh = &scene->meshes[i];
+		mesh->temporary = options->only_results && mesh->pooled && mesh->plain && nt_mesh_is_wanted(mesh);
+	}
+}
+
+nt_status nt_gltf_plan(nt_scene *scene, const nt_read_options *options, nt_error *error)
+{
+	if (!any_is_loaded(scene, options))
+		return NT_OK;
+	if (options->edits && options->morphs == NT_MORPH_DROP)
+		drop_target_tangents(scene);
+	nt_status status = nt_vertex_pools_find(scene, options, error);
+	if (!status)
+		status = nt_gltf_find_same(scene, options, error);
+	if (!status && (options->across || options->report))
+		status = nt_gltf_find_joins(scene, options->across, options->checks_kept, error);
+	if (status)
+		return status;
+	if (options->across)
+		join_parts(scene);
+	find_pooled(scene, options);
+	find_temporary(scene, options);
+	return options->compresses ? nt_gltf_find_quantized(scene, options, error) : NT_OK;
+}

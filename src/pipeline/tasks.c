@@ -1,0 +1,261 @@
+/* SPDX-License-Identifier: MIT */
+/*
+ * The queue of tasks over the meshes of a scene: load, make normals, solve, split, merge. Meshes go through it in
+ * windows, one after the other in the order of the file. What a mesh holds that only its pool asks for is gone at the
+ * end of its window, so that memory follows the largest window and not the sum of all meshes. Most scenes are one
+ * window.
+ *
+ * Small meshes are loaded by several threads, each as if it were alone. Those of which nothing but results is asked for
+ * are solved by the same thread at once, while their geometry is in the cache, and hold no geometry afterwards. What
+ * fails there is loaded again where it stands, so that findings and faults come in the order of the file.
+ */
+#include "pipeline/stages.h"
+
+#include <stdlib.h>
+#include "base/parallel.h"
+#include "gltf/draco_values.h"
+
+enum {
+	LARGE_FACES = 128 * 1024,    /* from here on a mesh has all threads for its load */
+	LEAST_SHARED_FACES = 4096,   /* that small meshes have together where threads are worth it */
+	WINDOW_CORNERS = 4 << 20     /* of temporary meshes: enough for all threads, and some hundred megabytes */
+};
+
+/* What a thread loads into. */
+typedef struct slot {
+	nt_arena kept;      /* until the scene takes it over */
+	nt_arena temporary; /* the same of temporary meshes */
+	nt_arena passing;   /* of the mesh that it is about to solve */
+} slot;
+
+/* One window. */
+typedef struct window {
+	const nt_tasks *tasks;
+	nt_scene scene;          /* the meshes of the window, as if they were all */
+	bool *needed;            /* [mesh_count] still to be loaded */
+	nt_read_options alone;   /* of a load by one thread */
+	nt_small_solves *solves; /* NULL: small meshes are only loaded */
+	slot *slots;
+	nt_error *error;
+} window;
+
+/* ---- what is loaded ---- */
+
+bool nt_writer_edits(const nt_format_entry *reader, const nt_format_entry *writer)
+{
+	return writer && nt_format_is_gltf(reader->format) && nt_format_is_gltf(writer->format);
+}
+
+/* Writers of other formats than the input's need every mesh, solved or not. */
+static bool needs_all(const nt_tasks *t)
+{
+	return t->writer && !nt_writer_edits(t->reader, t->writer) && t->reader->format != t->writer->format;
+}
+
+/* For the report alone: a mesh that cannot be read fails a check, but no conversion that does not need it. */
+static nt_status load_for_report(window *w, nt_mesh *mesh)
+{
+	if (mesh->same_as && !mesh->same_as->positions) /* that one could not be read */
+		return NT_OK;
+	const nt_status status = w->tasks->reader->load(&w->scene, mesh, w->tasks->options, w->error);
+	if (!status || w->tasks->settings->check || status == NT_ERROR_MEMORY)
+		return status;
+	mesh->positions = NULL;
+	nt_error_clear(w->error);
+	return NT_OK;
+}
+
+/* Loads the copies in joins. For a report alone, what cannot be read is left out. */
+static nt_status load_copies(window *w)
+{
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && i < w->scene.join_count; i++)
+		for (size_t k = 0; !status && k < w->scene.joins[i].part_count; k++) {
+			nt_mesh *mesh = w->scene.joins[i].parts[k];
+			if (!mesh->transform_of)
+				continue;
+			if (mesh->same_as && !mesh->same_as->positions) /* that one was not loaded */
+				mesh->same_as = NULL;
+			status = w->tasks->reader->load(&w->scene, mesh, w->tasks->options, w->error);
+			if (!status || mesh->join || status == NT_ERROR_MEMORY)
+				continue;
+			mesh->positions = NULL;
+			nt_error_clear(w->error);
+			status = NT_OK;
+		}
+	return status;
+}
+
+/* ---- small meshes ---- */
+
+static bool is_small(const nt_mesh *mesh)
+{
+	return !mesh->same_as && mesh->face_count < LARGE_FACES;
+}
+
+/* The geometry of a mesh that nobody asks for goes; its results stay, of a pooled one until they are merged. */
+static void drop_geometry(nt_mesh *mesh)
+{
+	const nt_split split = mesh->split;
+	if (mesh->temporary)
+		return;
+	nt_mesh_forget(mesh);
+	mesh->split = split;
+}
+
+static void load_small(void *context, size_t item, unsigned number)
+{
+	const window *w = context;
+	nt_mesh *mesh = &w->scene.meshes[item];
+	if (!w->needed[item] || !is_small(mesh))
+		return;
+	slot *own = &w->slots[number];
+	const bool solved = w->solves && mesh->plain && 3 * mesh->face_count < NT_LEAST_ALONE_CORNERS;
+	const nt_mesh before = *mesh;
+	nt_arena *arena = solved ? &own->passing : &own->kept;
+	nt_scene part = w->scene;
+	part.arena = *arena;
+	part.temporary = own->temporary;
+	nt_status status = w->tasks->reader->load(&part, mesh, &w->alone, NULL);
+	if (!status && solved)
+		status = nt_make_unit_normals(&part, mesh, 1);
+	*arena = part.arena;
+	own->temporary = part.temporary;
+	if (!status && solved)
+		status = nt_small_solve(w->solves, mesh, number);
+	if (!status && solved)
+		drop_geometry(mesh);
+	if (solved)
+		nt_arena_clear(&own->passing);
+	w->needed[item] = status != NT_OK;
+	if (status)
+		*mesh = before;
+}
+
+static bool are_many(const window *w)
+{
+	size_t faces = 0;
+	for (size_t i = 0; i < w->scene.mesh_count; i++)
+		faces += w->needed[i] && is_small(&w->scene.meshes[i]) ? w->scene.meshes[i].face_count : 0;
+	return faces >= LEAST_SHARED_FACES;
+}
+
+static nt_status load_all_small(window *w)
+{
+	const nt_tasks *t = w->tasks;
+	nt_status status = t->reader->share(&w->scene, w->needed, t->options, w->error);
+	if (status)
+		return status;
+	const unsigned threads = nt_thread_count(t->options->threads);
+	if ((t->options->only_results || threads > 1) && are_many(w)) {
+		w->slots = nt_calloc(threads, sizeof *w->slots);
+		w->solves = t->options->only_results
+			? nt_small_solves_begin(&w->scene, t->settings, t->writer->format, threads) : NULL;
+		if (!w->slots || (t->options->only_results && !w->solves))
+			status = nt_fail_memory(w->error);
+		else
+			nt_parallel_items(threads, w->scene.mesh_count, load_small, w);
+		if (w->solves)
+			nt_small_solves_end(w->solves);
+	}
+	for (unsigned i = 0; w->slots && i < threads; i++) {
+		nt_arena_join(&w->scene.arena, &w->slots[i].kept);
+		nt_arena_join(&w->scene.temporary, &w->slots[i].temporary);
+		nt_arena_free(&w->slots[i].passing);
+	}
+	free(w->slots);
+	t->reader->unshare(&w->scene);
+	return status;
+}
+
+/* ---- one window ---- */
+
+static nt_status load_meshes(window *w)
+{
+	const nt_tasks *t = w->tasks;
+	const bool all = needs_all(t);
+	for (size_t i = 0; i < w->scene.mesh_count; i++) {
+		const nt_mesh *mesh = &w->scene.meshes[i];
+		w->needed[i] = nt_mesh_is_wanted(mesh) ||
+			((all || t->settings->report) && mesh->triangles && mesh->has_positions);
+	}
+	nt_status status = t->reader->share ? load_all_small(w) : NT_OK;
+	for (size_t i = 0; !status && i < w->scene.mesh_count; i++) {
+		nt_mesh *mesh = &w->scene.meshes[i];
+		if (w->needed[i] && (nt_mesh_is_wanted(mesh) || all))
+			status = t->reader->load(&w->scene, mesh, t->options, w->error);
+		else if (w->needed[i])
+			status = load_for_report(w, mesh);
+	}
+	return status ? status : load_copies(w);
+}
+
+/* Gives pools the results of their meshes, and what these hold back. */
+static nt_status merge_meshes(window *w)
+{
+	const nt_tasks *t = w->tasks;
+	nt_status status = NT_OK;
+	for (size_t i = 0; !status && t->options->edits && i < w->scene.mesh_count; i++)
+		if (w->scene.meshes[i].pooled && nt_mesh_is_wanted(&w->scene.meshes[i]))
+			status = t->writer->merge(t->scene, &w->scene.meshes[i], w->error);
+	for (size_t i = 0; i < w->scene.mesh_count; i++)
+		if (w->scene.meshes[i].temporary)
+			nt_mesh_forget(&w->scene.meshes[i]);
+	nt_arena_free(&w->scene.temporary);
+	return status;
+}
+
+static nt_status do_window(window *w)
+{
+	const nt_tasks *t = w->tasks;
+	nt_status status = NT_OK;
+	t->begin_stage(t->run, NT_STAGE_DECODE);
+	if (t->reader->load)
+		status = load_meshes(w);
+	t->begin_stage(t->run, NT_STAGE_NORMALS);
+	if (!status)
+		status = nt_stage_normals(&w->scene, t->settings->normals, t->settings->threads, w->error);
+	if (!status)
+		status = nt_gltf_quantize_made_normals(&w->scene, t->options, w->error);
+	t->begin_stage(t->run, NT_STAGE_TANGENTS);
+	if (!status)
+		status = nt_stage_tangents_and_textures(&w->scene, t->settings,
+			t->writer ? t->writer->format : NT_FORMAT_UNKNOWN, t->textures, t->summary, w->error);
+	return status ? status : merge_meshes(w);
+}
+
+/* ---- all ---- */
+
+/* Where the window ends that begins at a mesh. */
+static size_t find_end(const nt_scene *scene, size_t first)
+{
+	size_t corners = 0, end = first;
+	while (end < scene->mesh_count && corners <= WINDOW_CORNERS) {
+		const nt_mesh *mesh = &scene->meshes[end++];
+		corners += mesh->temporary && !mesh->same_as ? 3 * mesh->face_count : 0;
+	}
+	return end;
+}
+
+nt_status nt_tasks_do(const nt_tasks *t, nt_error *error)
+{
+	nt_scene *scene = t->scene;
+	bool *needed = nt_alloc(scene->mesh_count, sizeof *needed);
+	nt_status status = needed ? NT_OK : nt_fail_memory(error);
+	size_t first = 0;
+	do {
+		const size_t end = find_end(scene, first);
+		window w = {.tasks = t, .scene = *scene, .needed = needed, .alone = *t->options, .error = error};
+		w.alone.threads = 1;
+		w.scene.meshes += first;
+		w.scene.mesh_count = end - first;
+		if (!status)
+			status = do_window(&w);
+		scene->arena = w.scene.arena;
+		scene->temporary = w.scene.temporary;
+		scene->findings = w.scene.findings;
+		first = end;
+	} while (!status && first < scene->mesh_count);
+	free(needed);
+	return status;
+}
