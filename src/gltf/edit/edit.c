@@ -93,7 +93,8 @@ static nt_status round_tangents(const editing *e, nt_pool_vertices *vertices)
 			float *own = nt_arena_alloc(&e->edits->arena, count, 4 * sizeof *own);
 			if (!own)
 				return nt_fail_memory(e->error);
-			vertices->sets[set].tangents = memcpy(own, vertices->sets[set].tangents, count * 4 * sizeof *own);
+			vertices->sets[set].tangents =
+				memcpy(own, vertices->sets[set].tangents, count * 4 * sizeof *own);
 		}
 		nt_precision_round(precision, vertices->sets[set].tangents, count, &cost);
 		nt_precision_report(e->scene, precision, &cost, 

@@ -211,7 +211,8 @@ static bool all_users_agree(const nt_vertex_pools *pools, const written *leader)
 static nt_status find_old(nt_gltf *document, const nt_mesh *mesh, uint32_t index, nt_gltf_accessor *old,
 	nt_error *error)
 {
-	*old = (nt_gltf_accessor){.count = mesh->source_vertex_count + mesh->unused_vertices, .component_type = NT_GLTF_USHORT};
+	*old = (nt_gltf_accessor){.count = mesh->source_vertex_count + mesh->unused_vertices,
+		.component_type = NT_GLTF_USHORT};
 	if (index == NT_NONE)
 		return NT_OK;
 	const nt_status status = nt_gltf_get_accessor(document, index, nt_gltf_of_mesh(mesh).pointer, old, error);
