@@ -124,12 +124,15 @@ static void compare_frames(const nt_check *check, const nt_mirror_edge *edge, ui
 
 /* ---- the edge's other numbers ---- */
 
-/* The vertex that stands for a corner in the output. */
+/* The vertex that stands for a corner in the output, as the mesh by itself numbers it: copies come behind the vertices
+ * of the source. */
 static uint32_t output_vertex(const nt_check *check, uint32_t side)
 {
 	const nt_mesh *mesh = check->mesh;
-	return nt_is_written(check) && mesh->split.indices ? mesh->split.indices[nt_side_corner(&check->surface, side)]
-				   : nt_side_vertex(&check->surface, side);
+	const uint32_t vertex = nt_is_written(check) && mesh->split.indices
+		? mesh->split.indices[nt_side_corner(&check->surface, side)] : nt_side_vertex(&check->surface, side);
+	return vertex < mesh->source_vertex_count ? nt_mesh_pool_vertex(mesh, vertex)
+						  : vertex + (uint32_t)mesh->unused_vertices;
 }
 
 /* An edge as seen in walking direction, from the point `from`. */
