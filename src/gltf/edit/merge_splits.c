@@ -278,10 +278,8 @@ static void set_any_tangent(nt_pool_set *set, size_t vertex, const float *normal
 static nt_status set_unused(nt_pool_merge *m, const nt_mesh *mesh, nt_pool_set *set, nt_error *error)
 {
 	static const float up[3] = {0, 0, 1}; /* what making normals gives them */
-	nt_arena temporary = {0};
-	float *normals = NULL;
 	nt_status status = mesh->pool_vertices && !set->normals
-		? nt_gltf_load_normals(m->pool.scene->source, mesh, &temporary, &normals, error) : NT_OK;
+		? nt_gltf_load_normals(m->pool.scene->source, mesh, m->arena, &set->source_normals, error) : NT_OK;
 	for (size_t v = 0; !status && v < m->vertices.old_count; v++) {
 		if (set->defined[v])
 			continue;
@@ -289,11 +287,10 @@ static nt_status set_unused(nt_pool_merge *m, const nt_mesh *mesh, nt_pool_set *
 			set_vertex(set, (uint32_t)v, mesh, (uint32_t)v, set->normals ? mesh->normals + 3 * v : NULL);
 			continue;
 		}
-		set_any_tangent(set, v, set->normals ? up : normals + 3 * v);
+		set_any_tangent(set, v, set->normals ? up : set->source_normals + 3 * v);
 		if (set->normals)
 			memcpy(set->normals + 3 * v, up, sizeof up);
 	}
-	nt_arena_free(&temporary);
 	return status;
 }
 

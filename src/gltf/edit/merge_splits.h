@@ -11,6 +11,7 @@
 typedef struct nt_pool_set {
 	float *tangents;      /* [new_count][4] */
 	float *normals;       /* [new_count][3]: NULL where normals were not made */
+	float *source_normals; /* [old_count][3] of pooled meshes whose normals were not made; not to be written to */
 	float **morphs;       /* [morph_count][new_count][3] */
 	size_t morph_count;
 	bool *defined;        /* [vertex] while splits are merged: whether a corner of the set has it */

@@ -8,7 +8,6 @@
 #include <string.h>
 #include "base/vec.h"
 #include "gltf/accessor.h"
-#include "gltf/load.h"
 
 uint32_t nt_gltf_new_accessor(nt_json *json, uint32_t view, uint32_t component_type, const char *type,
 	size_t count, bool normalized)
@@ -58,15 +57,15 @@ nt_status nt_gltf_bitangents(const nt_pool_vertices *vertices, uint32_t set, nt_
 {
 	const nt_pool_set *of = &vertices->sets[set];
 	const nt_mesh *mesh = nt_pool_set_mesh(vertices->pool, set);
-	float *out = nt_arena_alloc(arena, vertices->new_count, 3 * sizeof *out), *loaded = mesh->normals;
-	nt_status status = out ? NT_OK : nt_fail_memory(error);
+	const float *loaded = of->source_normals ? of->source_normals : mesh->normals;
+	float *out = nt_arena_alloc(arena, vertices->new_count, 3 * sizeof *out);
 	*result = out;
-	if (!status && !of->normals && mesh->pool_vertices)
-		status = nt_gltf_load_normals(vertices->pool->scene->source, mesh, arena, &loaded, error);
-	for (size_t v = 0; !status && v < vertices->new_count; v++)
+	if (!out)
+		return nt_fail_memory(error);
+	for (size_t v = 0; v < vertices->new_count; v++)
 		nt_bitangent(of->normals ? of->normals + 3 * v : loaded + 3 * nt_vertex_source(vertices, v),
 			of->tangents + 4 * v, out + 3 * v);
-	return status;
+	return NT_OK;
 }
 
 /* A target of every mesh of the set gets an attribute. */

@@ -50,13 +50,12 @@ static void join_parts(const nt_scene *scene)
 			scene->joins[i].parts[k]->join = &scene->joins[i];
 }
 
-/* Meshes of one pool with different triangles are loaded with the vertices that each uses. A writer of one mesh in the
- * world takes all vertices. */
+/* Meshes of one pool with different triangles are loaded with the vertices that each uses. */
 static void find_pooled(const nt_scene *scene, const nt_read_options *options)
 {
 	const nt_gltf *document = scene->source;
 	const nt_vertex_pools *pools = document->pools;
-	for (size_t p = 0; p < pools->count && !options->world; p++) {
+	for (size_t p = 0; p < pools->count; p++) {
 		size_t count = 0;
 		for (uint32_t i = pools->first[p]; i < pools->first[p + 1]; i++)
 			count += is_loaded(&scene->meshes[pools->order[i]], options) &&
