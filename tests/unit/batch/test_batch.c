@@ -142,14 +142,14 @@ static nt_status fake_run(const char *input, const char *output, const nt_settin
 	return NT_OK;
 }
 
-typedef struct log {
+typedef struct run_log {
 	char names[128];
 	size_t meshes, failures;
-} log;
+} run_log;
 
 static void note(void *user, nt_job *job)
 {
-	log *l = user;
+	run_log *l = user;
 	strcat(l->names, job->input);
 	l->meshes += job->outcome->summary.mesh_count;
 	if (job->status) {
@@ -171,7 +171,7 @@ static void every_input_runs_and_is_told_about_in_order(void **state)
 	nt_error error;
 	for (unsigned threads = 1; threads <= 8; threads += 3) {
 		const nt_settings settings = {.threads = threads, .check = true};
-		log l = {0};
+		run_log l = {0};
 		assert_int_equal(nt_batch_check(&batch, INPUTS("h1 ", "ax ", "c ", "gx ", "b ", "d ", "a "),
 					 &error),
 			NT_OK);
@@ -232,7 +232,7 @@ static void the_bound_of_memory_keeps_jobs_waiting(void **state)
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
 		nt_batch batch;
 		nt_error error;
-		log l = {0};
+		run_log l = {0};
 		const nt_settings settings = {.threads = 4, .check = true};
 		most_running = wide_runs = wide_beside = 0;
 		most_bytes = 0;
@@ -274,7 +274,7 @@ static void one_input_has_all_threads(void **state)
 	(void)state;
 	nt_batch batch;
 	nt_error error;
-	log l = {0};
+	run_log l = {0};
 	const nt_settings settings = {.threads = 5};
 	assert_int_equal(nt_batch_pair(&batch, "a", "b", &error), NT_OK);
 	assert_string_equal(batch.jobs[0].output, "b");
