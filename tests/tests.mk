@@ -115,17 +115,16 @@ fuzz:
 	@$(MAKE) -s $(JOBS) config=fuzz build/fuzz/tests/fuzz/target
 	@bash tests/fuzz/run.sh build/release build/fuzz $(SECONDS) $(TARGET)
 
-# make stress: numerical stability at the edges of floating point; tables and charts in build/stress. $PEERS as below.
-stress_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/stress/*.c)) \
-	$(addprefix $(B)/tests/bench/,faults.o native.o)
+# make stress: numerical stability at the edges of floating point.
+stress_obj := $(patsubst tests/%.c,$(B)/tests/%.o,$(wildcard tests/stress/*.c))
 
 measure_obj := $(patsubst %,$(B)/tests/support/%.o,oracle128 surfaces soup chart golden measure)
 $(B)/tests/stress/stress: $(stress_obj) $(measure_obj) $(B)/libnmtan.a
-	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm -ldl $(QUADMATH)
+	$(CC) $(NT_LDFLAGS) -o $@ $^ -lm $(QUADMATH)
 
 .PHONY: stress
 stress: $(B)/tests/stress/stress
-	@sh tests/stress/run.sh $< build/stress
+	@$<
 
 # make bench: run time against error, with the peers that the machine has; tables, and data/charts/pareto.svg.
 pareto_obj := $(patsubst %,$(B)/tests/%.o,$(addprefix bench/,pareto image round_trip faults files models native) \

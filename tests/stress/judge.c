@@ -113,7 +113,7 @@ static void score_signs(const nmtan_mesh *mesh, const oracle_corner *exact, cons
 }
 
 static void score_vectors(const nmtan_mesh *mesh, const oracle_corner *exact, bool oracle,
-	const float *tangents, const uint8_t *faults, double *angles, score *s)
+	const float *tangents, const uint8_t *faults, score *s)
 {
 	for (size_t c = 0; c < s->corners; c++) {
 		const float *t = tangents + 4 * c;
@@ -132,14 +132,9 @@ static void score_vectors(const nmtan_mesh *mesh, const oracle_corner *exact, bo
 			continue;
 		}
 		s->off += is_off(t, &exact[c]);
-		angles[s->judged++] = measure_degrees(t, exact[c].t);
+		s->judged++;
+		s->worst_degrees = fmax(s->worst_degrees, measure_degrees(t, exact[c].t));
 	}
-	if (s->judged == 0)
-		return;
-	qsort(angles, s->judged, sizeof *angles, measure_compare);
-	s->worst_degrees = angles[s->judged - 1];
-	s->median_degrees = angles[s->judged / 2];
-	s->high_degrees = angles[(size_t)((double)(s->judged - 1) * 0.999)];
 }
 
 /* MikkTSpace's bytes stay where they are usable: a finite unit vector across N, not the placeholder, in a face whose
@@ -196,13 +191,12 @@ bool judge_mesh(const nt_owned *owned, bool oracle, score scores[COLUMN_COUNT])
 	const nmtan_mesh *mesh = &owned->mesh;
 	const size_t corner_count = owned->corner_count;
 	float *tangents[2] = {malloc(16 * corner_count), malloc(16 * corner_count)}; /* raw, others */
-	double *angles = malloc(corner_count * sizeof *angles);
 	oracle_corner *exact = malloc(corner_count * sizeof *exact);
 	oracle_triangle *triangles = malloc(oracle_triangle_count(mesh) * sizeof *triangles);
 	bound *bounds = malloc(corner_count * sizeof *bounds);
 	uint8_t *faults = malloc(corner_count);
 	nmtan_workspace *workspace = nmtan_workspace_create(NULL);
-	bool done = tangents[0] && tangents[1] && angles && exact && triangles && bounds && faults && workspace;
+	bool done = tangents[0] && tangents[1] && exact && triangles && bounds && faults && workspace;
 	oracle_weight filled = ORACLE_ANGLE;
 	if (done && oracle)
 		done = oracle_solve_triangles(mesh, exact, triangles) &&
@@ -226,7 +220,7 @@ bool judge_mesh(const nt_owned *owned, bool oracle, score scores[COLUMN_COUNT])
 		if (!done)
 			break;
 		score_signs(mesh, exact, to, s);
-		score_vectors(mesh, exact, oracle, to, faults, angles, s);
+		score_vectors(mesh, exact, oracle, to, faults, s);
 		if (at == COLUMN_REPAIRED)
 			s->altered = count_altered(mesh, exact, tangents[0], to);
 		if (at == COLUMN_REPAIRED && oracle)
@@ -237,7 +231,6 @@ bool judge_mesh(const nt_owned *owned, bool oracle, score scores[COLUMN_COUNT])
 	nmtan_workspace_destroy(workspace);
 	free(tangents[0]);
 	free(tangents[1]);
-	free(angles);
 	free(exact);
 	free(triangles);
 	free(bounds);

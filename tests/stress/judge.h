@@ -46,7 +46,7 @@ typedef struct score {
 	                             orientation */
 	size_t twins[TWIN_COUNT]; /* the default and robust: corners at which the twin's answer differs */
 	size_t altered;     /* usable MikkTSpace corners whose bytes repair changed */
-	double worst_degrees, median_degrees, high_degrees; /* over judged corners; high: 99.9 % */
+	double worst_degrees; /* over judged corners */
 	double ns_per_triangle;
 } score;
 
