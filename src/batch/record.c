@@ -26,7 +26,7 @@ static const int64_t fine_tick = 20 * 1000000, coarse_tick = INT64_C(2000) * 100
 
 static const char line_begin[] = "{\"output\":\"";
 
-/* An input's, an output's, and those of two companions. */
+/* An input's, an output's, and those of two sidecars. */
 enum { KNOWN_FOLDERS = 4 };
 
 struct nt_record {

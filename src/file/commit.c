@@ -3,7 +3,7 @@
  * Putting a set in place, so that one rename switches from the old set to the new one.
  *
  * After each step the process may be killed, and with options.sync the power may go; the folders are synchronised
- * between the steps. "M" is the main file, "a.bin" a companion, "tmp" a temporary name (temporary.h).
+ * between the steps. "M" is the main file, "a.bin" a sidecar, "tmp" a temporary name (temporary.h).
  *
  *   step                                   who refers to what           reading M gives
  *   0  all bytes under tmp names           M -> the old a.bin           old set, or nothing
@@ -12,7 +12,7 @@
  *      it is free, else a.new-D.bin
  *   2  rename tmp onto M: the switch       M -> a.bin, a.new-D.bin      new
  *
- * That is all where every companion's name was free or had its bytes (NT_NAMING_NEW, NT_NAMING_USED). Where a companion
+ * That is all where every sidecar's name was free or had its bytes (NT_NAMING_NEW, NT_NAMING_USED). Where a sidecar
  * replaces one of ours (NT_NAMING_REPLACES), what step 2 places is the interim main file, and it goes on:
  *
  *   3  link a.new-D.bin to tmp, rename     M -> a.new-D.bin             new; a.bin has old
@@ -29,7 +29,7 @@
  * and a.new-D.bin by what the main file says of them or by their bytes. Buffers that step 1 named are taken back when
  * step 2 fails; images are not, since another run may have found and used them meanwhile.
  *
- * Who may be replaced: M, because the user named it; a.bin in step 3, by the rules of companion.c. Names that were
+ * Who may be replaced: M, because the user named it; a.bin in step 3, by the rules of sidecar.c. Names that were
  * looked at while they were chosen are looked at again here, and a name that was taken meanwhile is never replaced:
  * then nothing happens, and the caller is told to try again.
  */
@@ -106,12 +106,12 @@ static nt_status take_name(nt_output *output, nt_sink *sink, const char *name, n
 static bool is_of_set(const nt_output *output, const nt_sink *sink)
 {
 	for (const nt_sink *other = output->first; other != sink; other = other->next)
-		if (nt_sink_is_companion(other) && strcmp(nt_sink_name(other, false), nt_sink_name(sink, false)) == 0)
+		if (nt_sink_is_sidecar(other) && strcmp(nt_sink_name(other, false), nt_sink_name(sink, false)) == 0)
 			return true;
 	return false;
 }
 
-static nt_status place_companion(nt_output *output, nt_sink *sink, nt_error *error)
+static nt_status place_sidecar(nt_output *output, nt_sink *sink, nt_error *error)
 {
 	const bool sync = output->options.sync;
 	switch (sink->naming) {
@@ -150,8 +150,8 @@ static nt_status place_all(nt_output *output, nt_error *error)
 {
 	nt_status status = NT_OK;
 	for (nt_sink *sink = output->first; sink && !status; sink = sink->next) {
-		if (nt_sink_is_companion(sink))
-			status = place_companion(output, sink, error);
+		if (nt_sink_is_sidecar(sink))
+			status = place_sidecar(output, sink, error);
 		else if (sink != output->main && sink != output->interim)
 			status = place_main(output, sink, error);
 	}
@@ -171,7 +171,7 @@ static nt_status place_all(nt_output *output, nt_error *error)
 
 /* ---- steps 3 to 5 ---- */
 
-/* The data of a companion under its own name too. */
+/* The data of a sidecar under its own name too. */
 static bool link_stable(const nt_sink *sink)
 {
 	nt_temporary *second;

@@ -129,7 +129,7 @@ static nt_status check_existing(const nt_output *output, nt_sink *sink, const st
 static nt_status check_twins(const nt_output *output, const nt_sink *sink, nt_error *error)
 {
 	for (const nt_sink *other = output->first; other; other = other->next)
-		if (!nt_sink_is_companion(other) && other->target && strcmp(other->target, sink->target) == 0)
+		if (!nt_sink_is_sidecar(other) && other->target && strcmp(other->target, sink->target) == 0)
 			return refuse(error, sink->path,
 				"refusing to write: another file of this output has the same name");
 	return NT_OK;
@@ -224,7 +224,7 @@ static void free_sink(nt_sink *sink)
 
 static nt_status open_sink(const nt_output *output, nt_sink *sink, nt_error *error)
 {
-	if (nt_sink_is_companion(sink)) {
+	if (nt_sink_is_sidecar(sink)) {
 		sink->digest = nt_digest_create();
 		if (!sink->digest)
 			return nt_fail_memory(error);
@@ -278,12 +278,12 @@ nt_status nt_output_written(nt_output *output, const char *path, const char **te
 	nt_error *error)
 {
 	*temporary = NULL;
-	/* companions are in the folder of the main file, however their writers spell that */
+	/* sidecars are in the folder of the main file, however their writers spell that */
 	const size_t folder = (size_t)(nt_last_part(path) - path);
 	const char *main = output->main ? output->main->path : path;
 	const bool beside = (size_t)(nt_last_part(main) - main) == folder && strncmp(main, path, folder) == 0;
 	for (nt_sink *sink = output->first; sink; sink = sink->next) {
-		const bool found = nt_sink_is_companion(sink)
+		const bool found = nt_sink_is_sidecar(sink)
 			? beside && sink->settled && strcmp(nt_sink_name(sink, false), nt_last_part(path)) == 0
 			: sink->role == NT_ROLE_MAIN && strcmp(sink->path, path) == 0;
 		if (!found || !sink->temporary)
@@ -324,7 +324,7 @@ void nt_output_note(nt_output *output, const char *format, ...)
 	nt_buffer_text(&output->options.result->note, text);
 }
 
-/* Which companions are not called what they would be. What nt_output_place() may add has its memory before anything has
+/* Which sidecars are not called what they would be. What nt_output_place() may add has its memory before anything has
  * its place. */
 static nt_status note_names(const nt_output *output, nt_error *error)
 {
@@ -333,7 +333,7 @@ static nt_status note_names(const nt_output *output, nt_error *error)
 	size_t count = 0, later = 0;
 	for (const nt_sink *sink = output->first; sink && note; sink = sink->next) {
 		const char *wanted = nt_last_part(sink->path);
-		if (nt_sink_is_companion(sink) && strcmp(wanted, nt_sink_name(sink, false)) != 0 &&
+		if (nt_sink_is_sidecar(sink) && strcmp(wanted, nt_sink_name(sink, false)) != 0 &&
 			count++ < NAMES_SHOWN)
 			nt_buffer_format(note, "; %s is another file, so ours is %s", wanted,
 				nt_sink_name(sink, false));
@@ -382,7 +382,7 @@ static void note_written(const nt_output *output)
 	struct stat status;
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
 		if (sink->target && sink->role != NT_ROLE_INTERIM && stat(present_path(sink), &status) == 0)
-			nt_trace_written(nt_sink_is_companion(sink) ? sink->target : sink->path,
+			nt_trace_written(nt_sink_is_sidecar(sink) ? sink->target : sink->path,
 				present_path(sink), &status);
 }
 
@@ -390,7 +390,7 @@ nt_status nt_output_commit(nt_output *output, nt_error *error)
 {
 	nt_status status = NT_OK;
 	for (nt_sink *sink = output->first; sink && !status; sink = sink->next) {
-		if (nt_sink_is_companion(sink))
+		if (nt_sink_is_sidecar(sink))
 			status = nt_output_settle(output, sink, error);
 		if (!status && sink->in_place && sink->temporary)
 			status = nt_keep_attributes(sink->fd, sink->target, error);

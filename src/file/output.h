@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Output sets: one main file and its companions (the .bin of a .gltf, copied images), which appear together or not at
+ * Output sets: one main file and its sidecars (the .bin of a .gltf, copied images), which appear together or not at
  * all.
  *
- * All files are written to temporary files beside their targets. A companion gets its name when its bytes are known
+ * All files are written to temporary files beside their targets. A sidecar gets its name when its bytes are known
  * (nt_output_settle), then the main file is written, which holds those names, and nt_output_commit() puts everything in
- * place; abort, or a signal, removes it. What a companion may be called, and what it may replace, is in companion.c;
+ * place; abort, or a signal, removes it. What a sidecar may be called, and what it may replace, is in sidecar.c;
  * the order of the steps, and what a crash leaves after each, in commit.c. Outputs that are pipes or devices, and
  * "-", are written through.
  */
@@ -20,9 +20,9 @@ typedef struct nt_sink nt_sink;
 
 typedef enum nt_role {
 	NT_ROLE_MAIN,    /* named by the user. Further ones stand for themselves and are placed before the first */
-	NT_ROLE_INTERIM, /* the first main file once more, with the interim names of companions */
-	NT_ROLE_BUFFER,  /* a companion of this main file: it may replace one that an earlier run made for it */
-	NT_ROLE_IMAGE    /* a companion that other documents may share: never replaced, never removed */
+	NT_ROLE_INTERIM, /* the first main file once more, with the interim names of sidecars */
+	NT_ROLE_BUFFER,  /* a sidecar of this main file: it may replace one that an earlier run made for it */
+	NT_ROLE_IMAGE    /* a sidecar that other documents may share: never replaced, never removed */
 } nt_role;
 
 /* What became of a set, beyond its status. */
@@ -30,7 +30,7 @@ typedef struct nt_output_result {
 	bool again;     /* the commit failed because a name was taken meanwhile: with the names chosen anew it
 	                   would not */
 	bool left;      /* the main file had these bytes already and was left as it is */
-	nt_buffer note; /* which companions do not have their own names, and why: "; ..." */
+	nt_buffer note; /* which sidecars do not have their own names, and why: "; ..." */
 } nt_output_result;
 
 /* What becomes of a main file that has the bytes of its replacement already. In place it always stays. */
@@ -50,7 +50,7 @@ typedef struct nt_output_options {
 	                         attributes; NULL: none */
 	nt_output_result *result; /* NULL: not wanted */
 	/* Calls nt_output_claim() for what the main file at `path`, which is about to be replaced, says of its
-	 * companions; NULL: nothing is known. NT_OK, also when it says nothing or cannot be read, or
+	 * sidecars; NULL: nothing is known. NT_OK, also when it says nothing or cannot be read, or
 	 * NT_ERROR_MEMORY. */
 	nt_status (*find_claims)(nt_output *output, const char *path, nt_error *error);
 	/* Called by nt_output_commit() when every file is complete, noted (trace.h) and about to take its name. Then
@@ -78,7 +78,7 @@ nt_status nt_output_check_in_place(const nt_output_options *options, const char 
  *
  * A main file is refused where its path is a directory, a symbolic link that leads nowhere, a protected file, a
  * main file of this set or, with no_clobber, an existing file; in place also one that is read-only or has further
- * hard links. A missing folder is refused for any role. Companions come after their main file.
+ * hard links. A missing folder is refused for any role. Sidecars come after their main file.
  */
 nt_status nt_output_add(nt_output *output, const char *path, nt_role role, nt_sink **sink, nt_error *error);
 
@@ -87,23 +87,23 @@ nt_status nt_output_add(nt_output *output, const char *path, nt_role role, nt_si
 bool nt_output_is_in_place(const nt_output *output, const char *path);
 void nt_output_leave(nt_output *output);
 
-/* Says of a companion of the main file that is about to be replaced (its name in the same folder) by which digest of
+/* Says of a sidecar of the main file that is about to be replaced (its name in the same folder) by which digest of
  * its bytes we made it. `before`: of what the name `name` was to replace when the run that made it was cut short; NULL:
  * of nothing. */
 nt_status nt_output_claim(nt_output *output, const char *name, const char *digest, const char *before,
 	nt_error *error);
 
-/* Ends the writing of a companion and chooses its name. */
+/* Ends the writing of a sidecar and chooses its name. */
 nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error);
 
-/* Whether a settled companion takes the place of another file. Then the main file is to be written twice: as
+/* Whether a settled sidecar takes the place of another file. Then the main file is to be written twice: as
  * NT_ROLE_INTERIM with interim names, and as NT_ROLE_MAIN. */
 bool nt_output_has_interim(const nt_output *output);
 
-/* By which name in its folder the main file refers to a settled companion. */
+/* By which name in its folder the main file refers to a settled sidecar. */
 const char *nt_sink_name(const nt_sink *sink, bool interim);
 
-/* The digest (ext/digest.h) that the main file is to record for a settled companion, so that a later run knows it for
+/* The digest (ext/digest.h) that the main file is to record for a settled sidecar, so that a later run knows it for
  * ours; NULL: it is not ours. And the digest of what it replaces; NULL: of nothing. */
 const char *nt_sink_digest(const nt_sink *sink);
 const char *nt_sink_digest_before(const nt_sink *sink);

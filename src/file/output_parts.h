@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the files of an output set's implementation share: sink.c writes bytes, companion.c chooses names, same_file.c
+ * What the files of an output set's implementation share: sink.c writes bytes, sidecar.c chooses names, same_file.c
  * keeps what a file in place has, commit.c puts things in place, output.c is above them.
  */
 #ifndef NT_FILE_OUTPUT_PARTS_H
@@ -11,7 +11,7 @@
 #include "file/relative_path.h"
 #include "file/temporary.h"
 
-/* What becomes of a settled companion. */
+/* What becomes of a settled sidecar. */
 typedef enum nt_naming {
 	NT_NAMING_NEW,     /* it takes a name that is free */
 	NT_NAMING_USED,    /* a file of these bytes has the name already, and stays */
@@ -45,11 +45,11 @@ struct nt_sink {
 	uint64_t copied; /* of them from an input file as they are */
 	size_t used;              /* bytes in buffer */
 	unsigned char *buffer;
-	nt_digest *digest;        /* of all bytes; companions only */
+	nt_digest *digest;        /* of all bytes; sidecars only */
 	char *path;               /* as the caller named it */
-	char *target;             /* where it goes: where symbolic links lead, or a settled companion's name; NULL when
+	char *target;             /* where it goes: where symbolic links lead, or a settled sidecar's name; NULL when
 	                             written through */
-	/* of a settled companion */
+	/* of a settled sidecar */
 	bool settled, ours;
 	nt_naming naming;
 	nt_file_state there;      /* what has the name: USED, REPLACES */
@@ -89,9 +89,9 @@ nt_status nt_sink_flush(nt_sink *sink, nt_error *error);
 /* Flushes, synchronises where that is asked for, and closes. */
 nt_status nt_sink_finish(nt_sink *sink, bool sync, nt_error *error);
 
-/* ---- companion.c ---- */
+/* ---- sidecar.c ---- */
 
-static inline bool nt_sink_is_companion(const nt_sink *sink)
+static inline bool nt_sink_is_sidecar(const nt_sink *sink)
 {
 	return sink->role == NT_ROLE_BUFFER || sink->role == NT_ROLE_IMAGE;
 }

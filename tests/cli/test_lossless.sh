@@ -334,7 +334,7 @@ exits 1
 says "--images=none"
 only
 
-scene "a companion never replaces a file of the input"
+scene "a sidecar never replaces a file of the input"
 cp "$WORK/layouts/plain.gltf" a.gltf
 cp "$WORK/layouts/plain 0.bin" b.bin
 sed -i 's/plain%200.bin/b.bin/' a.gltf

@@ -42,7 +42,7 @@ says "4 GiB"
 only plates.gltf plates.bin out
 rmdir out || wrong "something was left behind"
 
-scene "a companion never takes the name of a file of the input"
+scene "a sidecar never takes the name of a file of the input"
 cp "$data/plates.gltf" "$data/plates.bin" "$data/bumps.png" .
 mv plates.gltf other.gltf
 # plates.gltf would bring a plates.bin, which is what other.gltf reads.
@@ -195,7 +195,7 @@ is $? 2
 says "out.glb"
 only head.obj
 
-scene "an output that fails late leaves its companions behind no more than itself"
+scene "an output that fails late leaves its sidecars behind no more than itself"
 cp "$data/head.obj" .
 mkdir head.gltf
 run head.obj head.gltf

@@ -171,7 +171,7 @@ run --verify --bitangents "$data/plates.gltf" o.gltf
 exits 0
 says "o.bin is another file"
 
-scene "no-clobber keeps what has a companion's name"
+scene "no-clobber keeps what has a sidecar's name"
 echo somebody >o.bin
 run -n "$data/plates.gltf" o.gltf
 exits 0
@@ -204,7 +204,7 @@ exits 0
 is "$(state kept.gltf)" "$before"
 says "o.bin is another file"
 
-scene "a main file that cannot be replaced keeps its companion"
+scene "a main file that cannot be replaced keeps its sidecar"
 run --bitangents "$data/plates.gltf" o.gltf
 before=$(state o.gltf)
 list=$(ls)
@@ -213,7 +213,7 @@ exits 2
 says "o.gltf: cannot write"
 is "$(state o.gltf)" "$before"
 is "$(ls -A)" "$list"
-# and a companion that cannot: the new set is whole under other names
+# and a sidecar that cannot: the new set is whole under other names
 run_keeping o.bin "$data/plates.gltf" o.gltf
 exits 0
 says "the data of o.bin stays in o.new-"

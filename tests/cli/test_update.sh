@@ -108,7 +108,7 @@ sed -i 's/"nmtan":"/&0/' out/.nmtan-record
 run --update -d out --method=area --only=all quad.obj
 is "$(made)" "quad.obj "
 
-scene "a companion that was missing, and comes, makes its input again"
+scene "a sidecar that was missing, and comes, makes its input again"
 take
 rm mirrored_cube.mtl
 run --update -d out $inputs

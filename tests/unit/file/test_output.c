@@ -57,9 +57,9 @@ static void output_appears_at_commit_only(void **state)
 	nt_error error;
 	nt_output *output = start(NULL);
 	nt_sink *main = add(output, in_folder("out.gltf"), NT_ROLE_MAIN);
-	nt_sink *companion = add(output, in_folder("out.bin"), NT_ROLE_BUFFER);
+	nt_sink *sidecar = add(output, in_folder("out.bin"), NT_ROLE_BUFFER);
 	assert_int_equal(nt_sink_write(main, "new document", 12, &error), NT_OK);
-	assert_int_equal(nt_sink_write(companion, "bytes", 5, &error), NT_OK);
+	assert_int_equal(nt_sink_write(sidecar, "bytes", 5, &error), NT_OK);
 	assert_int_equal(nt_output_size(output), 17);
 	assert_content("out.gltf", "old");
 	assert_int_equal(access(in_folder("out.bin"), F_OK), -1);
@@ -329,9 +329,9 @@ static void output_no_clobber_keeps_what_exists(void **state)
 	nt_error error;
 	nt_output *output = start(&(nt_output_options){.no_clobber = true});
 	assert_refused(output, in_folder("out"), "refusing to write: the file exists already");
-	/* and what came to exist meanwhile; the companion that was placed before is taken back */
+	/* and what came to exist meanwhile; the sidecar that was placed before is taken back */
 	add(output, in_folder("late"), NT_ROLE_MAIN);
-	add(output, in_folder("companion"), NT_ROLE_BUFFER);
+	add(output, in_folder("sidecar"), NT_ROLE_BUFFER);
 	put_text_file("late", "somebody else's");
 	assert_int_equal(nt_output_commit(output, &error), NT_ERROR_IO);
 	assert_string_equal(error.message, "refusing to write: the file exists already");

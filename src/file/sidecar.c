@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What a companion is called, and whose file a file is.
+ * What a sidecar is called, and whose file a file is.
  *
- * A companion wants the name that the writer gave it ("a.bin" of a.gltf, an image's own). Where the name is free it
+ * A sidecar wants the name that the writer gave it ("a.bin" of a.gltf, an image's own). Where the name is free it
  * gets it. Where a file of the same bytes has it, that file is used as it is, so that a map that many documents share
  * is there once. Where another file has it:
  *
@@ -177,11 +177,11 @@ static bool is_intact(const nt_output *output, const char *path, const char *dig
 	       strcmp(text, digest) == 0;
 }
 
-/* Whether a companion of this set is called so, for good or for a time. */
+/* Whether a sidecar of this set is called so, for good or for a time. */
 static bool is_used(const nt_output *output, const char *name)
 {
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
-		if (nt_sink_is_companion(sink) && (strcmp(nt_sink_name(sink, false), name) == 0 ||
+		if (nt_sink_is_sidecar(sink) && (strcmp(nt_sink_name(sink, false), name) == 0 ||
 							  strcmp(nt_sink_name(sink, true), name) == 0))
 			return true;
 	return false;
@@ -242,14 +242,14 @@ static void note_superseded(const nt_output *output, nt_sink *sink)
 
 typedef enum verdict { FREE, EQUAL, OTHER } verdict;
 
-/* Another file of the set with that name: the main file, or a companion that has chosen it. */
+/* Another file of the set with that name: the main file, or a sidecar that has chosen it. */
 static const nt_sink *find_in_set(const nt_output *output, const nt_sink *sink, const char *name)
 {
 	for (const nt_sink *other = output->first; other; other = other->next) {
-		const bool named = nt_sink_is_companion(other)
+		const bool named = nt_sink_is_sidecar(other)
 			? other->settled && other != sink : other->target != NULL;
 		if (named &&
-			(strcmp(nt_last_part(nt_sink_is_companion(other) ? other->target : other->path), name) == 0 ||
+			(strcmp(nt_last_part(nt_sink_is_sidecar(other) ? other->target : other->path), name) == 0 ||
 				     (other->interim && strcmp(nt_last_part(other->interim), name) == 0)))
 			return other;
 	}
@@ -264,7 +264,7 @@ static nt_status look(const nt_output *output, const nt_sink *sink, const char *
 	const nt_sink *other = find_in_set(output, sink, nt_last_part(path));
 	struct stat status;
 	*found = OTHER;
-	if (other && !nt_sink_is_companion(other))
+	if (other && !nt_sink_is_sidecar(other))
 		return NT_OK;
 	if (other && other->temporary)
 		theirs = nt_temporary_path(other->temporary);

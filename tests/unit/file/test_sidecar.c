@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Names of companions, and which files are ours, in a folder of our own. "somebody\n" has the digest that
+ * Names of sidecars, and which files are ours, in a folder of our own. "somebody\n" has the digest that
  * `xxhsum -H2` gives for it.
  */
 #include "fail_alloc.h"
@@ -37,7 +37,7 @@ static nt_output *start(const nt_output_options *options, nt_sink **main)
 	return output;
 }
 
-static nt_sink *companion(nt_output *output, const char *name, nt_role role, const char *text)
+static nt_sink *sidecar(nt_output *output, const char *name, nt_role role, const char *text)
 {
 	nt_sink *sink;
 	nt_error error;
@@ -47,13 +47,13 @@ static nt_sink *companion(nt_output *output, const char *name, nt_role role, con
 	return sink;
 }
 
-/* The name, of a companion of a set that is dropped, that a text gets. */
+/* The name, of a sidecar of a set that is dropped, that a text gets. */
 static void assert_named(const nt_output_options *options, const char *wanted, nt_role role, const char *text,
 	const char *expected)
 {
 	nt_sink *main;
 	nt_output *output = start(options, &main);
-	assert_string_equal(nt_sink_name(companion(output, wanted, role, text), false), expected);
+	assert_string_equal(nt_sink_name(sidecar(output, wanted, role, text), false), expected);
 	nt_output_abort(output);
 }
 
@@ -73,7 +73,7 @@ static void equal_bytes_are_used(void **state)
 	struct stat before, after;
 	stat(in_folder("n.png"), &before);
 	nt_output *output = start(NULL, &main);
-	assert_string_equal(nt_sink_name(companion(output, "n.png", NT_ROLE_IMAGE, "somebody\n"), false), "n.png");
+	assert_string_equal(nt_sink_name(sidecar(output, "n.png", NT_ROLE_IMAGE, "somebody\n"), false), "n.png");
 	assert_int_equal(nt_output_commit(output, &error), NT_OK);
 	stat(in_folder("n.png"), &after);
 	assert_int_equal(before.st_ino, after.st_ino);
@@ -110,7 +110,7 @@ static void a_long_name_is_cut_between_characters(void **state)
 	put_text_file(name, "theirs");
 	nt_sink *main;
 	nt_output *output = start(NULL, &main);
-	snprintf(path, sizeof path, "%s", nt_sink_name(companion(output, name, NT_ROLE_BUFFER, "somebody\n"), false));
+	snprintf(path, sizeof path, "%s", nt_sink_name(sidecar(output, name, NT_ROLE_BUFFER, "somebody\n"), false));
 	nt_output_abort(output);
 	/* 255 - 4 - 17 = 234 bytes are 117 letters */
 	assert_int_equal(strlen(path), 234 + 17 + 4);
@@ -128,7 +128,7 @@ static void a_file_of_ours_is_replaced_by_way_of_an_interim_name(void **state)
 		put_text_file("a.gltf", "old");
 		put_text_file("a.bin", "somebody\n");
 		nt_output *output = start(&options, &main);
-		nt_sink *sink = companion(output, "a.bin", NT_ROLE_BUFFER, "new");
+		nt_sink *sink = sidecar(output, "a.bin", NT_ROLE_BUFFER, "new");
 		assert_true(nt_output_has_interim(output));
 		assert_string_equal(nt_sink_name(sink, false), "a.bin");
 		assert_memory_equal(nt_sink_name(sink, true), "a.new-", 6);
@@ -145,7 +145,7 @@ static void a_file_that_is_not_provably_ours_is_not_replaced(void **state)
 	/* no main file that could say so */
 	put_text_file("a.bin", "somebody\n");
 	nt_output *output = start(&claimed, &main);
-	companion(output, "a.bin", NT_ROLE_BUFFER, "new");
+	sidecar(output, "a.bin", NT_ROLE_BUFFER, "new");
 	assert_false(nt_output_has_interim(output));
 	nt_output_abort(output);
 	/* one that says nothing; an image; a file that was changed; one that the input refers to; in place */
@@ -160,7 +160,7 @@ static void a_file_that_is_not_provably_ours_is_not_replaced(void **state)
 		output = start(all[i], &main);
 		if (i == 3)
 			assert_int_equal(nt_output_protect(output, in_folder("a.bin"), NULL, &error), NT_OK);
-		nt_sink *sink = companion(output, "a.bin", i == 1 ? NT_ROLE_IMAGE : NT_ROLE_BUFFER, "new");
+		nt_sink *sink = sidecar(output, "a.bin", i == 1 ? NT_ROLE_IMAGE : NT_ROLE_BUFFER, "new");
 		assert_false(nt_output_has_interim(output));
 		assert_string_not_equal(nt_sink_name(sink, false), "a.bin");
 		nt_output_abort(output);
@@ -175,7 +175,7 @@ static void a_name_that_is_taken_meanwhile_is_not_replaced(void **state)
 	nt_output_result result = {0};
 	const nt_output_options options = {.result = &result};
 	nt_output *output = start(&options, &main);
-	companion(output, "a.bin", NT_ROLE_BUFFER, "new");
+	sidecar(output, "a.bin", NT_ROLE_BUFFER, "new");
 	put_text_file("a.bin", "theirs");
 	assert_int_equal(nt_output_commit(output, &error), NT_ERROR_IO);
 	assert_true(result.again);
@@ -186,7 +186,7 @@ static void a_name_that_is_taken_meanwhile_is_not_replaced(void **state)
 	result = (nt_output_result){0};
 	put_text_file("n.png", "new");
 	output = start(&options, &main);
-	companion(output, "n.png", NT_ROLE_IMAGE, "new");
+	sidecar(output, "n.png", NT_ROLE_IMAGE, "new");
 	put_text_file("n.png", "changed");
 	assert_int_equal(nt_output_commit(output, &error), NT_ERROR_IO);
 	assert_true(result.again);
@@ -232,5 +232,5 @@ int main(void)
 		CASE(a_name_that_is_taken_meanwhile_is_not_replaced),
 		CASE(every_failed_allocation_is_said),
 	};
-	return cmocka_run_group_tests_name("file/companion", tests, NULL, NULL);
+	return cmocka_run_group_tests_name("file/sidecar", tests, NULL, NULL);
 }
