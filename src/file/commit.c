@@ -13,7 +13,7 @@
  *   2  rename tmp onto M: the switch       M -> a.bin, a.new-D.bin      new
  *
  * That is all where every sidecar's name was free or had its bytes (NT_NAMING_NEW, NT_NAMING_USED). Where a sidecar
- * replaces one of ours (NT_NAMING_REPLACES), what step 2 places is the interim main file, and it goes on:
+ * replaces one of ours (NT_NAMING_REPLACES), what step 2 places is the staging main file, and it goes on:
  *
  *   3  link a.new-D.bin to tmp, rename     M -> a.new-D.bin             new; a.bin has old
  *      tmp onto a.bin, for each                                         or new bytes
@@ -21,10 +21,10 @@
  *   5  unlink a.new-D.bin                  M -> a.bin                   new
  *
  * The same way is gone, without step 3 and with the unlink before step 4, where a file that is named by its bytes
- * (a-D.bin) supersedes another one of ours: the interim main file says which, for the next run if this one is killed.
+ * (a-D.bin) supersedes another one of ours: the staging main file says which, for the next run if this one is killed.
  *
  * Until step 2 everything can be taken back, and is. From step 3 on a failure leaves a whole new set, under names
- * that say what they are: where link(2) or a rename is refused, the interim main file stays and the result says so.
+ * that say what they are: where link(2) or a rename is refused, the staging main file stays and the result says so.
  * A run that is killed in between leaves at most files that the next one knows: temporary ones by their locks, a.bin
  * and a.new-D.bin by what the main file says of them or by their bytes. Buffers that step 1 named are taken back when
  * step 2 fails; images are not, since another run may have found and used them meanwhile.
@@ -76,7 +76,7 @@ static nt_status sync_step(const nt_output *output, nt_error *error)
 {
 	nt_status status = NT_OK;
 	for (const nt_sink *sink = output->first; output->options.sync && sink && !status; sink = sink->next)
-		if (sink->target && sink != output->interim)
+		if (sink->target && sink != output->staging)
 			status = nt_output_sync_name(sink->target, error);
 	return status;
 }
@@ -126,9 +126,9 @@ static nt_status place_sidecar(nt_output *output, nt_sink *sink, nt_error *error
 	default:
 		if (!nt_state_is(sink->target, &sink->there))
 			return taken_meanwhile(output, sink->target, error);
-		if (!sink->interim_is_there)
-			return take_name(output, sink, sink->interim, error);
-		return sync ? sync_used(sink->interim, error) : NT_OK;
+		if (!sink->staging_is_there)
+			return take_name(output, sink, sink->staging, error);
+		return sync ? sync_used(sink->staging, error) : NT_OK;
 	}
 }
 
@@ -152,12 +152,12 @@ static nt_status place_all(nt_output *output, nt_error *error)
 	for (nt_sink *sink = output->first; sink && !status; sink = sink->next) {
 		if (nt_sink_is_sidecar(sink))
 			status = place_sidecar(output, sink, error);
-		else if (sink != output->main && sink != output->interim)
+		else if (sink != output->main && sink != output->staging)
 			status = place_main(output, sink, error);
 	}
 	if (!status)
 		status = sync_step(output, error);
-	nt_sink *first = output->interim ? output->interim : output->main;
+	nt_sink *first = output->staging ? output->staging : output->main;
 	if (!status && first)
 		status = place_main(output, first, error);
 	if (!status)
@@ -165,7 +165,7 @@ static nt_status place_all(nt_output *output, nt_error *error)
 	/* buffers that have a name go again; the main file that would refer to them is not there */
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
 		if (sink->role == NT_ROLE_BUFFER && sink->placed)
-			unlink(sink->interim ? sink->interim : sink->target);
+			unlink(sink->staging ? sink->staging : sink->target);
 	return status;
 }
 
@@ -176,10 +176,10 @@ static bool link_stable(const nt_sink *sink)
 {
 	nt_temporary *second;
 	struct stat here, there;
-	if (stat(sink->interim, &here) == 0 && lstat(sink->target, &there) == 0 && here.st_dev == there.st_dev &&
+	if (stat(sink->staging, &here) == 0 && lstat(sink->target, &there) == 0 && here.st_dev == there.st_dev &&
 		here.st_ino == there.st_ino)
 		return true; /* of a run that was killed after this step; rename would do nothing */
-	if (!nt_temporary_link(sink->interim, sink->target, &second))
+	if (!nt_temporary_link(sink->staging, sink->target, &second))
 		return false;
 	const bool renamed = nt_temporary_rename(second, sink->target, true);
 	const int number = errno;
@@ -188,22 +188,22 @@ static bool link_stable(const nt_sink *sink)
 	return renamed;
 }
 
-static void note_interim(const nt_output *output, int number)
+static void note_staging(const nt_output *output, int number)
 {
 	nt_buffer *note = output->options.result ? &output->options.result->note : NULL;
 	for (const nt_sink *sink = output->first; sink && note; sink = sink->next)
-		if (sink->interim)
+		if (sink->staging)
 			nt_buffer_format(note, "; the data of %s stays in %s (%s)", nt_sink_name(sink, false),
 				nt_sink_name(sink, true), strerror(number));
 }
 
-/* The interim name by which a run that was killed before step 5 left the file that has the name now, or had it. */
+/* The staging name by which a run that was killed before step 5 left the file that has the name now, or had it. */
 static void unlink_second_name(const nt_sink *sink)
 {
 	nt_buffer path = {0};
 	struct stat status;
 	nt_buffer_append(&path, sink->path, (size_t)(nt_last_part(sink->path) - sink->path));
-	nt_output_interim_name(&path, nt_last_part(sink->path), sink->interim ? sink->before : sink->text);
+	nt_output_staging_name(&path, nt_last_part(sink->path), sink->staging ? sink->before : sink->text);
 	if (!path.failed && lstat(path.data, &status) == 0 && status.st_dev == sink->there.device &&
 		status.st_ino == sink->there.inode)
 		unlink(path.data);
@@ -222,13 +222,13 @@ static void remove_superseded(const nt_output *output)
 			unlink_second_name(sink);
 }
 
-/* Steps 3 to 5; the interim main file is in place. */
+/* Steps 3 to 5; the staging main file is in place. */
 static nt_status settle_names(nt_output *output, nt_error *error)
 {
 	nt_error ignored;
 	bool linked = true;
 	for (const nt_sink *sink = output->first; sink && linked; sink = sink->next)
-		linked = !sink->interim || link_stable(sink);
+		linked = !sink->staging || link_stable(sink);
 	const int number = errno;
 	nt_status status = sync_step(output, error);
 	if (!status)
@@ -238,13 +238,13 @@ static nt_status settle_names(nt_output *output, nt_error *error)
 	if (status)
 		return status;
 	if (!linked || place_main(output, output->main, &ignored)) {
-		note_interim(output, linked ? errno : number);
+		note_staging(output, linked ? errno : number);
 		return NT_OK;
 	}
 	status = sync_step(output, error);
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
-		if (sink->interim)
-			unlink(sink->interim);
+		if (sink->staging)
+			unlink(sink->staging);
 	return status;
 }
 
@@ -253,7 +253,7 @@ nt_status nt_output_place(nt_output *output, nt_error *error)
 	sigset_t before;
 	nt_temporaries_hold(&before);
 	nt_status status = place_all(output, error);
-	if (!status && output->interim)
+	if (!status && output->staging)
 		status = settle_names(output, error);
 	else if (!status && output->main)
 		remove_superseded(output);

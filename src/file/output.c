@@ -218,7 +218,7 @@ static void free_sink(nt_sink *sink)
 	free(sink->buffer);
 	free(sink->path);
 	free(sink->target);
-	free(sink->interim);
+	free(sink->staging);
 	free(sink);
 }
 
@@ -247,7 +247,7 @@ static void append_sink(nt_output *output, nt_sink *sink)
 	if (sink->role == NT_ROLE_MAIN && !output->main)
 		output->main = sink;
 	if (sink->role == NT_ROLE_INTERIM)
-		output->interim = sink;
+		output->staging = sink;
 }
 
 nt_status nt_output_add(nt_output *output, const char *path, nt_role role, nt_sink **sink, nt_error *error)
@@ -337,7 +337,7 @@ static nt_status note_names(const nt_output *output, nt_error *error)
 			count++ < NAMES_SHOWN)
 			nt_buffer_format(note, "; %s is another file, so ours is %s", wanted,
 				nt_sink_name(sink, false));
-		if (sink->interim)
+		if (sink->staging)
 			later += strlen(nt_sink_name(sink, false)) + strlen(nt_sink_name(sink, true)) + OTHER_WORDS;
 	}
 	if (count > NAMES_SHOWN)
@@ -371,8 +371,8 @@ static nt_status leave_equal(nt_output *output, nt_error *error)
 /* Where the bytes of a complete file of the set are now. */
 static const char *present_path(const nt_sink *sink)
 {
-	if (sink->naming == NT_NAMING_REPLACES && sink->interim_is_there)
-		return sink->interim;
+	if (sink->naming == NT_NAMING_REPLACES && sink->staging_is_there)
+		return sink->staging;
 	return sink->temporary ? nt_temporary_path(sink->temporary) : sink->target;
 }
 

@@ -20,7 +20,7 @@ typedef struct nt_sink nt_sink;
 
 typedef enum nt_role {
 	NT_ROLE_MAIN,    /* named by the user. Further ones stand for themselves and are placed before the first */
-	NT_ROLE_INTERIM, /* the first main file once more, with the interim names of sidecars */
+	NT_ROLE_INTERIM, /* the first main file once more, with the staging names of sidecars */
 	NT_ROLE_BUFFER,  /* a sidecar of this main file: it may replace one that an earlier run made for it */
 	NT_ROLE_IMAGE    /* a sidecar that other documents may share: never replaced, never removed */
 } nt_role;
@@ -97,11 +97,11 @@ nt_status nt_output_claim(nt_output *output, const char *name, const char *diges
 nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error);
 
 /* Whether a settled sidecar takes the place of another file. Then the main file is to be written twice: as
- * NT_ROLE_INTERIM with interim names, and as NT_ROLE_MAIN. */
+ * NT_ROLE_INTERIM with staging names, and as NT_ROLE_MAIN. */
 bool nt_output_has_interim(const nt_output *output);
 
 /* By which name in its folder the main file refers to a settled sidecar. */
-const char *nt_sink_name(const nt_sink *sink, bool interim);
+const char *nt_sink_name(const nt_sink *sink, bool staging);
 
 /* The digest (ext/digest.h) that the main file is to record for a settled sidecar, so that a later run knows it for
  * ours; NULL: it is not ours. And the digest of what it replaces; NULL: of nothing. */
@@ -110,7 +110,7 @@ const char *nt_sink_digest_before(const nt_sink *sink);
 
 /* The name that data for `name` has while `name` is not to be had: "a.new-0123456789abcdef.bin" for "a.bin".
  * Appended. */
-void nt_output_interim_name(nt_buffer *text, const char *name, const char *digest);
+void nt_output_staging_name(nt_buffer *text, const char *name, const char *digest);
 
 /* Says before the first byte how many there will be: a large file gets its room on the disk at once where that can be
  * had. Neither less nor more is an error. */
@@ -140,7 +140,7 @@ nt_status nt_output_written(nt_output *output, const char *path, const char **te
 /* Adds to nt_output_result.note, if that is wanted; begins with "; " or goes on. */
 void nt_output_note(nt_output *output, const char *format, ...) NT_PRINTF(2, 3);
 
-/* Bytes written to all files of the set so far, the interim one aside. */
+/* Bytes written to all files of the set so far, the staging one aside. */
 uint64_t nt_output_size(const nt_output *output);
 
 /* Bytes of them that came from an input file as they are (nt_sink_copy). */

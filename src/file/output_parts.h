@@ -15,7 +15,7 @@
 typedef enum nt_naming {
 	NT_NAMING_NEW,     /* it takes a name that is free */
 	NT_NAMING_USED,    /* a file of these bytes has the name already, and stays */
-	NT_NAMING_REPLACES /* it takes the place of a file of ours, after a time under its interim name */
+	NT_NAMING_REPLACES /* it takes the place of a file of ours, after a time under its staging name */
 } nt_naming;
 
 /* One state of one file; it has changed when any of it differs. */
@@ -53,8 +53,8 @@ struct nt_sink {
 	bool settled, ours;
 	nt_naming naming;
 	nt_file_state there;      /* what has the name: USED, REPLACES */
-	char *interim;            /* REPLACES: path of the interim name */
-	bool interim_is_there;    /* with these bytes */
+	char *staging;            /* REPLACES: path of the staging name */
+	bool staging_is_there;    /* with these bytes */
 	bool supersedes;          /* a file named by its bytes, of the same wanted name and ours, goes */
 	char text[NT_DIGEST_TEXT], before[NT_DIGEST_TEXT]; /* before: of what is replaced, or superseded */
 };
@@ -72,7 +72,7 @@ typedef struct nt_output_claim_row {
 
 struct nt_output {
 	nt_output_options options;
-	nt_sink *first, *last, *main, *interim;
+	nt_sink *first, *last, *main, *staging;
 	nt_protected_file *guarded;
 	size_t guarded_count, guarded_capacity;
 	nt_output_claim_row *claims;

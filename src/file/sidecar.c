@@ -7,8 +7,8 @@
  * is there once. Where another file has it:
  *
  * - A buffer replaces it if the previous main file at that very path refers to it and it is provably ours: the main
- *   file records the digest of the bytes that we wrote (nt_sink_digest), and the file still has that digest. An interim
- *   main file (commit.c) refers to interim names; it counts as referring to the final names too, and records the digest
+ *   file records the digest of the bytes that we wrote (nt_sink_digest), and the file still has that digest. A staging
+ *   main file (commit.c) refers to staging names; it counts as referring to the final names too, and records the digest
  *   of what was there.
  * - Everything else is somebody else's and stays. The new file's name is made from its own bytes
  *   ("a-0123456789abcdef.bin"), so that the same result has the same name in every run and nothing piles up.
@@ -87,7 +87,7 @@ static void append_name(nt_buffer *text, const char *name, const char *infix, co
 	nt_buffer_text(text, made);
 }
 
-void nt_output_interim_name(nt_buffer *text, const char *name, const char *digest)
+void nt_output_staging_name(nt_buffer *text, const char *name, const char *digest)
 {
 	append_name(text, name, for_the_time_being, digest, 0);
 }
@@ -99,9 +99,9 @@ static bool is_name(const char *candidate, const char *name, const char *infix, 
 	return strcmp(made, candidate) == 0;
 }
 
-const char *nt_sink_name(const nt_sink *sink, bool interim)
+const char *nt_sink_name(const nt_sink *sink, bool staging)
 {
-	return nt_last_part(interim && sink->interim ? sink->interim : sink->target);
+	return nt_last_part(staging && sink->staging ? sink->staging : sink->target);
 }
 
 /* ---- whose file ---- */
@@ -224,7 +224,7 @@ bool nt_output_superseded(const nt_output *output, size_t *at, nt_buffer *path)
 	return false;
 }
 
-/* So that a later run can go on with the removal if this one is cut short, the interim main file says what goes. */
+/* So that a later run can go on with the removal if this one is cut short, the staging main file says what goes. */
 static void note_superseded(const nt_output *output, nt_sink *sink)
 {
 	const char *chosen = nt_last_part(sink->target);
@@ -250,7 +250,7 @@ static const nt_sink *find_in_set(const nt_output *output, const nt_sink *sink, 
 			? other->settled && other != sink : other->target != NULL;
 		if (named &&
 			(strcmp(nt_last_part(nt_sink_is_sidecar(other) ? other->target : other->path), name) == 0 ||
-				     (other->interim && strcmp(nt_last_part(other->interim), name) == 0)))
+				     (other->staging && strcmp(nt_last_part(other->staging), name) == 0)))
 			return other;
 	}
 	return NULL;
@@ -316,8 +316,8 @@ static nt_status choose_other(nt_output *output, nt_sink *sink, nt_error *error)
 		return status;
 	if (may) {
 		sink->naming = NT_NAMING_REPLACES;
-		status = find_name(output, sink, for_the_time_being, &sink->interim, &found, &state, error);
-		sink->interim_is_there = found == EQUAL;
+		status = find_name(output, sink, for_the_time_being, &sink->staging, &found, &state, error);
+		sink->staging_is_there = found == EQUAL;
 		sink->target = strdup(sink->path);
 		return status || sink->target ? status : nt_fail_memory(error);
 	}
@@ -387,7 +387,7 @@ nt_status nt_output_settle(nt_output *output, nt_sink *sink, nt_error *error)
 bool nt_output_has_interim(const nt_output *output)
 {
 	for (const nt_sink *sink = output->first; sink; sink = sink->next)
-		if (sink->interim || sink->supersedes)
+		if (sink->staging || sink->supersedes)
 			return true;
 	return false;
 }
@@ -399,5 +399,5 @@ const char *nt_sink_digest(const nt_sink *sink)
 
 const char *nt_sink_digest_before(const nt_sink *sink)
 {
-	return sink->interim || sink->supersedes ? sink->before : NULL;
+	return sink->staging || sink->supersedes ? sink->before : NULL;
 }
