@@ -423,12 +423,12 @@ void nt_output_abort(nt_output *output)
 	}
 	for (size_t i = 0; i < output->guarded_count; i++)
 		free(output->guarded[i].path);
-	for (size_t i = 0; i < output->claim_count; i++) {
-		free(output->claims[i].name);
-		free(output->claims[i].digest);
-		free(output->claims[i].before);
+	for (size_t i = 0; i < output->ownership_count; i++) {
+		free(output->ownership[i].name);
+		free(output->ownership[i].digest);
+		free(output->ownership[i].before);
 	}
-	free(output->claims);
+	free(output->ownership);
 	free(output->guarded);
 	free(output);
 }

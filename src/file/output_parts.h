@@ -66,18 +66,18 @@ typedef struct nt_protected_file {
 	const char *way_out; /* a constant; NULL: none */
 } nt_protected_file;
 
-typedef struct nt_output_claim_row {
+typedef struct nt_ownership {
 	char *name, *digest, *before; /* before: may be NULL */
-} nt_output_claim_row;
+} nt_ownership;
 
 struct nt_output {
 	nt_output_options options;
 	nt_sink *first, *last, *main, *staging;
 	nt_protected_file *guarded;
 	size_t guarded_count, guarded_capacity;
-	nt_output_claim_row *claims;
-	size_t claim_count, claim_capacity;
-	bool claims_known;
+	nt_ownership *ownership; /* what the previous main file records */
+	size_t ownership_count, ownership_capacity;
+	bool ownership_known;
 };
 
 /* ---- sink.c ---- */

@@ -108,20 +108,20 @@ const char *nt_sink_name(const nt_sink *sink, bool staging)
 
 nt_status nt_output_claim(nt_output *output, const char *name, const char *digest, const char *before, nt_error *error)
 {
-	if (!nt_grow((void **)&output->claims, &output->claim_capacity, output->claim_count + 1,
-		sizeof *output->claims))
+	if (!nt_grow((void **)&output->ownership, &output->ownership_capacity, output->ownership_count + 1,
+		sizeof *output->ownership))
 		return nt_fail_memory(error);
-	nt_output_claim_row *row = &output->claims[output->claim_count++];
-	*row = (nt_output_claim_row){strdup(name), strdup(digest), before ? strdup(before) : NULL};
-	return row->name && row->digest && (row->before || !before) ? NT_OK : nt_fail_memory(error);
+	nt_ownership *record = &output->ownership[output->ownership_count++];
+	*record = (nt_ownership){strdup(name), strdup(digest), before ? strdup(before) : NULL};
+	return record->name && record->digest && (record->before || !before) ? NT_OK : nt_fail_memory(error);
 }
 
 /* Asks the previous main file, once. */
-static nt_status know_claims(nt_output *output, nt_error *error)
+static nt_status know_ownership(nt_output *output, nt_error *error)
 {
-	if (output->claims_known || !output->options.find_claims || !output->main || !output->main->target)
+	if (output->ownership_known || !output->options.find_claims || !output->main || !output->main->target)
 		return NT_OK;
-	output->claims_known = true;
+	output->ownership_known = true;
 	struct stat status;
 	if (stat(output->main->path, &status) != 0 || !S_ISREG(status.st_mode))
 		return NT_OK;
@@ -130,16 +130,16 @@ static nt_status know_claims(nt_output *output, nt_error *error)
 
 /* Whether the previous main file says that the file `name` is ours if it has this digest; for any digest where that is
  * NULL. */
-static bool is_claimed(const nt_output *output, const char *name, const char *digest)
+static bool is_owned(const nt_output *output, const char *name, const char *digest)
 {
-	for (size_t i = 0; i < output->claim_count; i++) {
-		const nt_output_claim_row *claim = &output->claims[i];
-		const bool itself = strcmp(claim->name, name) == 0;
-		const bool on_the_way = !itself && claim->before &&
-			is_name(claim->name, name, for_the_time_being, claim->digest);
-		if ((itself || on_the_way) && (!digest || strcmp(claim->digest, digest) == 0))
+	for (size_t i = 0; i < output->ownership_count; i++) {
+		const nt_ownership *record = &output->ownership[i];
+		const bool itself = strcmp(record->name, name) == 0;
+		const bool on_the_way = !itself && record->before &&
+			is_name(record->name, name, for_the_time_being, record->digest);
+		if ((itself || on_the_way) && (!digest || strcmp(record->digest, digest) == 0))
 			return true;
-		if (on_the_way && strcmp(claim->before, digest) == 0)
+		if (on_the_way && strcmp(record->before, digest) == 0)
 			return true;
 	}
 	return false;
@@ -156,12 +156,12 @@ static nt_status may_replace(nt_output *output, nt_sink *sink, bool *may, nt_err
 		nt_output_is_protected(output, &status, &ignored))
 		return NT_OK;
 	const char *name = nt_last_part(sink->path);
-	nt_status result = know_claims(output, error);
-	if (result || !is_claimed(output, name, NULL))
+	nt_status result = know_ownership(output, error);
+	if (result || !is_owned(output, name, NULL))
 		return result;
 	sink->there = nt_state_of(&status);
 	result = nt_digest_of_file(sink->path, sink->before, error);
-	*may = !result && sink->before[0] && is_claimed(output, name, sink->before);
+	*may = !result && sink->before[0] && is_owned(output, name, sink->before);
 	return result;
 }
 
@@ -187,26 +187,26 @@ static bool is_used(const nt_output *output, const char *name)
 	return false;
 }
 
-/* Whether a claim is of a file that an earlier run made in place of the name that a buffer wants. */
-static bool is_made_for(const nt_output_claim_row *claim, const nt_sink *sink)
+/* Whether an ownership record is of a file that an earlier run made in place of the name that a buffer wants. */
+static bool is_made_for(const nt_ownership *record, const nt_sink *sink)
 {
 	const char *name = nt_last_part(sink->path);
-	return sink->role == NT_ROLE_BUFFER && (is_name(claim->name, name, of_content, claim->digest) ||
-		is_name(claim->name, name, for_the_time_being, claim->digest));
+	return sink->role == NT_ROLE_BUFFER && (is_name(record->name, name, of_content, record->digest) ||
+		is_name(record->name, name, for_the_time_being, record->digest));
 }
 
-/* What a claim and a buffer say is superseded: the file itself, and what that superseded when its run was cut short. */
-static bool find_superseded(const nt_output *output, const nt_output_claim_row *claim, const nt_sink *sink, bool itself,
+/* Files made obsolete by this output: the recorded file and, if interrupted, its predecessor. */
+static bool find_superseded(const nt_output *output, const nt_ownership *record, const nt_sink *sink, bool itself,
 	nt_buffer *path)
 {
-	const char *wanted = nt_last_part(sink->path), *digest = itself ? claim->digest : claim->before;
-	if (!digest || !is_made_for(claim, sink))
+	const char *wanted = nt_last_part(sink->path), *digest = itself ? record->digest : record->before;
+	if (!digest || !is_made_for(record, sink))
 		return false;
 	path->size = 0;
 	nt_buffer_append(path, sink->path, (size_t)(wanted - sink->path));
 	if (itself)
-		nt_buffer_text(path, claim->name);
-	else if (is_name(claim->name, wanted, of_content, claim->digest))
+		nt_buffer_text(path, record->name);
+	else if (is_name(record->name, wanted, of_content, record->digest))
 		append_name(path, wanted, of_content, digest, 0);
 	else
 		return false; /* it was to replace the wanted name */
@@ -217,9 +217,9 @@ bool nt_output_superseded(const nt_output *output, size_t *at, nt_buffer *path)
 {
 	if (!output->main || output->main->in_place)
 		return false;
-	for (size_t i; (i = (*at)++) < 2 * output->claim_count;)
+	for (size_t i; (i = (*at)++) < 2 * output->ownership_count;)
 		for (const nt_sink *sink = output->first; sink; sink = sink->next)
-			if (find_superseded(output, &output->claims[i / 2], sink, i % 2 == 0, path))
+			if (find_superseded(output, &output->ownership[i / 2], sink, i % 2 == 0, path))
 				return true;
 	return false;
 }
@@ -228,13 +228,13 @@ bool nt_output_superseded(const nt_output *output, size_t *at, nt_buffer *path)
 static void note_superseded(const nt_output *output, nt_sink *sink)
 {
 	const char *chosen = nt_last_part(sink->target);
-	for (size_t i = 0; i < output->claim_count && !output->main->in_place; i++) {
-		const nt_output_claim_row *claim = &output->claims[i];
-		if (!is_made_for(claim, sink) || strcmp(claim->name, chosen) == 0 ||
-			strlen(claim->digest) >= NT_DIGEST_TEXT)
+	for (size_t i = 0; i < output->ownership_count && !output->main->in_place; i++) {
+		const nt_ownership *record = &output->ownership[i];
+		if (!is_made_for(record, sink) || strcmp(record->name, chosen) == 0 ||
+			strlen(record->digest) >= NT_DIGEST_TEXT)
 			continue;
 		sink->supersedes = true;
-		strcpy(sink->before, claim->digest);
+		strcpy(sink->before, record->digest);
 	}
 }
 
@@ -353,8 +353,8 @@ static nt_status check_used(nt_output *output, nt_sink *sink, nt_error *error)
 	}
 	if (sink->role != NT_ROLE_BUFFER)
 		return NT_OK;
-	const nt_status status = know_claims(output, error);
-	sink->ours = is_claimed(output, name, sink->text);
+	const nt_status status = know_ownership(output, error);
+	sink->ours = is_owned(output, name, sink->text);
 	return status;
 }
 
