@@ -1,7 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A lock for the threads of base/pool. A build without threads (NT_NO_THREADS) has nobody to wait for, and its
- * system need not have any.
+ * A lock for the threads of base/pool. Without threads (NT_NO_THREADS) it does nothing and needs no pthread.h.
  */
 #ifndef NT_BASE_LOCK_H
 #define NT_BASE_LOCK_H

@@ -28,8 +28,7 @@ uint32_t nt_name_add(nt_name_table *table, const char *text, size_t length);
 
 void nt_name_table_free(nt_name_table *table);
 
-/* The text as UTF-8 with a final NUL: as it is where it is UTF-8, else its bytes taken as Latin-1, the
- * usual other one. NULL: out of memory. */
+/* The text as UTF-8 with a final NUL. If it is not UTF-8 already, it is taken as Latin-1. NULL: out of memory. */
 char *nt_utf8_text(nt_arena *arena, const char *text, size_t length);
 
 #endif

@@ -12,8 +12,8 @@
  * triangles). They may be a twelfth larger for that. free() as usual. */
 void *nt_alloc_large(size_t bytes);
 
-/* What is in a part of a block is not needed any more, but the block cannot be freed: the system takes the pages of a
- * large one back. */
+/* Returns the pages of a part of a block to the system: its content is lost, the block stays allocated. Small parts are
+ * left as they are. */
 void nt_drop_pages(void *memory, size_t bytes);
 
 #endif

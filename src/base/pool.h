@@ -18,7 +18,7 @@ enum { NT_POOL_MOST = 255 };
 /* Processors that this process may use, at least 1; 1 without threads. A system call. */
 unsigned nt_pool_processors(void);
 
-/* Makes the pool's threads so many at least, where a region has to find some beside those that are known to wait. */
+/* Makes at least so many threads: for a region that starts while others of the pool are known to wait. */
 void nt_pool_reserve(unsigned threads);
 
 /* Calls body once for each slot below `slots` and returns when all have returned. Several at a time where

@@ -32,8 +32,8 @@ void nt_scratch_lend(nt_scratch *scratch, void *memory, size_t size_bytes);
 /* count * size bytes aligned to 64, not cleared. NULL on overflow or exhaustion. */
 void *nt_scratch_alloc(nt_scratch *scratch, size_t count, size_t size);
 
-/* The first block that a scratch gets from its allocator will be at least so large. malloc keeps twice the largest
- * block that it was given back: where blocks are many and small, each call has fresh pages again. */
+/* Sets the least size of the first block that a scratch gets from its allocator. With many small blocks, malloc returns
+ * pages to the system after each call, and the next call has to clear new ones. */
 void nt_scratch_expect(nt_scratch *scratch, size_t bytes);
 
 /* Everything allocated after nt_scratch_here() is released by nt_scratch_back(); blocks are kept. */

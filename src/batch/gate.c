@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * A bound of memory: see gate.h. In the order of arrival, so that small ones do not keep a large one waiting for ever.
+ * A bound of memory: see gate.h. First come, first served, so that small jobs do not keep a large one waiting for ever.
  */
 #include "batch/gate.h"
 

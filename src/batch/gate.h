@@ -17,12 +17,12 @@ typedef struct nt_gate {
 	uint64_t arrived, entered; /* so many: who comes first enters first */
 } nt_gate;
 
-/* With nothing to share, a limit of 0, everybody is alone. */
+/* With a limit of 0, jobs run one at a time. */
 void nt_gate_init(nt_gate *gate, uint64_t limit);
 void nt_gate_end(nt_gate *gate);
 
-/* Waits until `need` bytes of the limit are free, and takes them; who needs more than the limit, until all is free, and
- * takes all, so that nobody else enters: true. */
+/* Waits until `need` bytes of the limit are free, and takes them. If `need` is above the limit, waits until all is
+ * free, takes all and returns true: the job runs alone. */
 bool nt_gate_enter(nt_gate *gate, uint64_t need);
 
 /* Gives back what the same need took. */

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Guesses of memory: see need.h. Each is above what ordinary files take, of which the worst was measured with --verify
- * and a report; triangles of which no two share a corner take up to seven times as much. By format, beside a megabyte:
+ * Guesses of memory: see need.h. Upper estimates for ordinary files; soups of unshared triangles need up to 7x.
+ * Measured with --verify and a report. By format, beside a megabyte:
  *
  *   OBJ        10 for each byte (ordinary files 1 to 7, corners that all differ 25)
  *   PLY        2 for each byte and 96 for each element that the header declares (50; 500)
@@ -24,7 +24,7 @@
 /* Of any run, and of any byte of a format that has all its bytes in one file. */
 enum { LEAST = 1 << 20, MOST_BYTE_COST = 256 };
 
-/* sum + cost * count. A file may claim what it likes: beyond 64 bits it is more than there is. */
+/* sum + cost * count; UINT64_MAX where that overflows: counts come from the file. */
 static uint64_t plus(uint64_t sum, uint64_t cost, uint64_t count)
 {
 	uint64_t product;

@@ -9,8 +9,8 @@
 
 #include "pipeline/settings.h"
 
-/* In bytes. Of what is no regular file, UINT64_MAX; 0 for what cannot be looked at, as its run will say. Where the size
- * alone shows that it is `enough` at most, nothing is opened. */
+/* In bytes; UINT64_MAX if the input is no regular file; 0 if it cannot be examined, which its run will report. If the
+ * size alone shows that the need is at most `enough`, the file is not opened. */
 uint64_t nt_need_of(const char *input, const nt_settings *settings, uint64_t enough);
 
 #endif

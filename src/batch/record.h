@@ -14,8 +14,8 @@
  * contents are to be compared, and where a file that was read had changed so shortly before that it may have changed
  * again within one tick of its clock.
  *
- * The line is written before the output gets its name: a run that is killed in between leaves a line that does not
- * agree with what is there, and the output is made again.
+ * The line is written before the output is renamed. If a run is killed in between, the line does not match the output,
+ * which is made again.
  */
 #ifndef NT_BATCH_RECORD_H
 #define NT_BATCH_RECORD_H

@@ -155,8 +155,8 @@ static nt_status look_at_files(const nt_making *making, struct stat *input, stru
 	return status;
 }
 
-/* Without a record: whether the output is younger than the input, or as old. A file in place has one time for both,
- * which says nothing. */
+/* Without a record: whether the output is at least as new as the input. In place there is one file and one time, which
+ * says nothing. */
 static bool is_younger(const nt_making *making, const struct stat *output, nt_trace *trace)
 {
 	if (nt_same_file(&making->input_info, output) ||

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What failed in a run of many, by what was wrong: ten thousand files that fail for one reason are one line.
+ * Failures of a run of many, grouped by reason: ten thousand files that fail for one reason are one line.
  */
 #ifndef NT_CLI_FAILURES_H
 #define NT_CLI_FAILURES_H

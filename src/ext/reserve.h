@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Memory for C++ libraries when there is none left. What they do then cannot be relied on: destructors allocate
- * (nlohmann's) and end the process when that fails, streams swallow the failure and lose text, assertions meet
- * half-made values. So between nt_reserve_begin() and nt_reserve_end() an allocation that malloc refuses comes from a
- * block that the process has from its start, and it is remembered that it was needed: whoever began lets the
- * library come to its end and reports NT_ERROR_MEMORY then. Only when the block is used up is bad_alloc thrown; a part
- * of it is kept for what runs meanwhile.
+ * Memory for C++ libraries when malloc has none left. They do not fail safely then: destructors (nlohmann's)
+ * allocate and end the process, streams lose text, assertions see half-made values. So between nt_reserve_begin()
+ * and nt_reserve_end() an allocation that malloc refuses comes from a block that the process has from its start,
+ * and it is remembered that it was needed: whoever began lets the library come to its end and reports
+ * NT_ERROR_MEMORY then. Only when the block is used up is bad_alloc thrown; a part of it is kept for what runs
+ * meanwhile.
  */
 #ifndef NT_EXT_RESERVE_H
 #define NT_EXT_RESERVE_H

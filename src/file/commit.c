@@ -20,18 +20,17 @@
  *   4  rename the final tmp onto M         M -> a.bin                   new
  *   5  unlink a.new-D.bin                  M -> a.bin                   new
  *
- * The same way is gone, without step 3 and with the unlink before step 4, where a file that is named by its bytes
- * (a-D.bin) supersedes another one of ours: the staging main file says which, for the next run if this one is killed.
+ * Superseded content-named files (a-D.bin) follow the same steps, without 3, unlinked before 4. The staging main file
+ * names them, so that the next run removes them if this one is killed.
  *
  * Until step 2 everything can be taken back, and is. From step 3 on a failure leaves a whole new set, under names
  * that say what they are: where link(2) or a rename is refused, the staging main file stays and the result says so.
- * A run that is killed in between leaves at most files that the next one knows: temporary ones by their locks, a.bin
- * and a.new-D.bin by what the main file says of them or by their bytes. Buffers that step 1 named are taken back when
- * step 2 fails; images are not, since another run may have found and used them meanwhile.
+ * The next run recognises what a killed run left: temporary files by their locks, a.bin and a.new-D.bin by the main
+ * file's records or by their bytes. If step 2 fails, buffers that step 1 named are removed again; images are not, since
+ * another run may use them already.
  *
- * Who may be replaced: M, because the user named it; a.bin in step 3, by the rules of sidecar.c. Names that were
- * looked at while they were chosen are looked at again here, and a name that was taken meanwhile is never replaced:
- * then nothing happens, and the caller is told to try again.
+ * Who may be replaced: M, because the user named it; a.bin in step 3, by the rules of sidecar.c. If a name was taken
+ * since it was chosen, nothing is replaced, and the caller is told to try again.
  */
 #include "file/output_parts.h"
 

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Looking for files. That a file is missing is an answer, with which a reader may go on; that the system cannot
- * tell is a fault, which must not pass for it.
+ * Looking for files. If a file is missing, a reader may go on; if the system cannot tell, that is an error and never
+ * counts as missing.
  */
 #ifndef NT_FILE_LOOKUP_H
 #define NT_FILE_LOOKUP_H

@@ -49,9 +49,8 @@ typedef struct nt_output_options {
 	const char *in_place; /* this file may be replaced by a main file, and keeps its mode, owner and
 	                         attributes; NULL: none */
 	nt_output_result *result; /* NULL: not wanted */
-	/* Calls nt_output_claim() for what the main file at `path`, which is about to be replaced, says of its
-	 * sidecars; NULL: nothing is known. NT_OK, also when it says nothing or cannot be read, or
-	 * NT_ERROR_MEMORY. */
+	/* Calls nt_output_claim() for each ownership record in the main file at `path`, which is about to be replaced;
+	 * NULL: there are none. Returns NT_OK, also when the file cannot be read, or NT_ERROR_MEMORY. */
 	nt_status (*find_claims)(nt_output *output, const char *path, nt_error *error);
 	/* Called by nt_output_commit() when every file is complete, noted (trace.h) and about to take its name. Then
 	 * nothing takes a name if this fails. NULL: nobody wants to know. */
@@ -87,9 +86,8 @@ nt_status nt_output_add(nt_output *output, const char *path, nt_role role, nt_si
 bool nt_output_is_in_place(const nt_output *output, const char *path);
 void nt_output_leave(nt_output *output);
 
-/* Says of a sidecar of the main file that is about to be replaced (its name in the same folder) by which digest of
- * its bytes we made it. `before`: of what the name `name` was to replace when the run that made it was cut short; NULL:
- * of nothing. */
+/* Adds an ownership record: the main file that is about to be replaced refers to a sidecar `name` in its folder, which
+ * we made with this digest. `before`: digest of the file that an interrupted run was replacing; NULL: none. */
 nt_status nt_output_claim(nt_output *output, const char *name, const char *digest, const char *before,
 	nt_error *error);
 
@@ -103,12 +101,12 @@ bool nt_output_has_interim(const nt_output *output);
 /* By which name in its folder the main file refers to a settled sidecar. */
 const char *nt_sink_name(const nt_sink *sink, bool staging);
 
-/* The digest (ext/digest.h) that the main file is to record for a settled sidecar, so that a later run knows it for
- * ours; NULL: it is not ours. And the digest of what it replaces; NULL: of nothing. */
+/* The ownership record of a settled sidecar: the digest (ext/digest.h) of its bytes, NULL if it is not ours, and the
+ * digest of the file that it replaces, NULL if there is none. */
 const char *nt_sink_digest(const nt_sink *sink);
 const char *nt_sink_digest_before(const nt_sink *sink);
 
-/* The name that data for `name` has while `name` is not to be had: "a.new-0123456789abcdef.bin" for "a.bin".
+/* The staging name of data for `name`: "a.new-0123456789abcdef.bin" for "a.bin".
  * Appended. */
 void nt_output_staging_name(nt_buffer *text, const char *name, const char *digest);
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * In place means the same file: what is replaced by a rename is a new file, which has to get what the old one had.
+ * A rename creates a new inode; copy mode, owner and xattrs of the old one to it.
  *
  * Mode, owner, group, extended attributes and access lists go over. Nobody may come to read what he could not read
  * before: the new file is made for its owner alone, and where the group cannot be kept, the new group gets what

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * What a run reads and writes, noted where it happens: nt_file_open() and the looking for files (lookup.h) note
- * what is read and what is missing, nt_output_commit() what is written. Who runs something lends its thread a trace;
- * nobody in between has to know.
+ * what is read and what is missing, nt_output_commit() what is written. The caller of a run sets the
+ * trace of its thread; functions in between need no argument for it.
  */
 #ifndef NT_FILE_TRACE_H
 #define NT_FILE_TRACE_H
@@ -31,7 +31,7 @@ typedef struct nt_trace {
 	nt_trace_file *files;
 	size_t count, capacity;
 	nt_hash_index index;
-	bool unsure; /* something was looked for by other means than a name: that it is missing still cannot be told */
+	bool unsure; /* something was looked for by other means than a name: later runs cannot check that it is missing */
 	bool failed; /* memory ran out: something is not in it */
 } nt_trace;
 

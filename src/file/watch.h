@@ -1,15 +1,13 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Mapped files that another process changes while they are read: what was read may be half of one state and half of
- * another. Who asks before the result is used hears that it is worthless. A file whose bytes were written has another
- * time of modification.
+ * Detects that another process changed a mapped file while it was read (by its time of modification), so that the
+ * result is not used.
  *
- * Of a file that becomes shorter, reading what is gone raises SIGBUS, which would end the
- * process; here the missing pages become zeros, and the reader comes to its end with whatever it makes of them. That
- * may be a fault: what was checked is something else when it is used. nt_output_catch_faults() sees to that.
+ * If a file becomes shorter, reading the missing pages raises SIGBUS, which would end the process; here they become
+ * zeros, and the reader goes on. If checked values are zeros later and that is a fault, nt_output_catch_faults()
+ * reports it.
  *
- * A file belongs to the thread that opened it: what one run of many reads is its own affair. Threads that
- * help it may read the file too.
+ * A file belongs to the thread that opened it. Threads that help this one may read it too.
  */
 #ifndef NT_FILE_WATCH_H
 #define NT_FILE_WATCH_H

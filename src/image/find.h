@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * From a name in a material to a file. Names are somebody else's text: paths of another machine, of a system that
- * does not care for case, of a folder that was moved. And they are confined: what lies outside of the folders below
- * is not looked at, also not through a symbolic link, unless the user allows it.
+ * Finds the file of a name in a material. Names may be paths of another machine, of a system without case, or of a
+ * folder that was moved. Unless the user allows it, files outside of the folders below are not found, also not through
+ * a symbolic link.
  */
 #ifndef NT_IMAGE_FIND_H
 #define NT_IMAGE_FIND_H

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The images of one output: see textures.h. A source is a file; a wish is for a source and what it is to become; a
- * result is what wishes for the same bytes share. Whether a source is a height map is known when its first rows are, so
- * that wishes become results in nt_textures_make().
+ * The images of one output: see textures.h. A source is a file; a wish names sources and what they become; wishes
+ * with the same bytes share a result. nt_textures_make() turns wishes into results: whether a source is a height
+ * map is known when its first rows are decoded.
  *
  * Files are opened to see their type and closed again, so that a thousand images do not need a thousand
  * descriptors; whoever reads them later checks that they are still the same.

@@ -6,8 +6,8 @@
  * other NUL before the end, so that who copies text puts quotes in their place. A value that changes still knows where
  * the old one stands; children that are new come behind those that are in the text.
  *
- * A document of 100 000 primitives has millions of values, so these are small. Most are nothing but a place in the
- * text; the keys of an object are a shape, which all objects with the same keys have together.
+ * A document of 100 000 primitives has millions of values, so these are small. Most are only a place in the text.
+ * Objects with the same keys share a shape, which holds these.
  */
 #ifndef NT_JSON_TREE_H
 #define NT_JSON_TREE_H
