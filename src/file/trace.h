@@ -31,7 +31,7 @@ typedef struct nt_trace {
 	nt_trace_file *files;
 	size_t count, capacity;
 	nt_hash_index index;
-	bool unsure; /* something was looked for by other means than a name: later runs cannot check that it is missing */
+	bool unsure; /* something was looked for by other means than a name: later runs cannot check for it */
 	bool failed; /* memory ran out: something is not in it */
 } nt_trace;
 
