@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The images of one output: see textures.h. A source is a file; a wish names sources and what they become; wishes
- * with the same bytes share a result. nt_textures_make() turns wishes into results: whether a source is a height
+ * The images of one output: see textures.h. A source is a file; a request names sources and what they become; requests
+ * with the same bytes share a result. nt_textures_make() turns requests into results: whether a source is a height
  * map is known when its first rows are decoded.
  *
  * Files are opened to see their type and closed again, so that a thousand images do not need a thousand
@@ -31,11 +31,11 @@ typedef struct source {
 } source;
 
 /* In the conversion stand the sources; whether it is one for heights is said by the kind. */
-typedef struct wish {
+typedef struct request {
 	nt_texture_kind kind;
 	nt_conversion how;
 	uint32_t result;
-} wish;
+} request;
 
 typedef struct result {
 	nt_conversion how;
@@ -52,11 +52,11 @@ struct nt_textures {
 	size_t name_capacity;
 	source **sources;
 	size_t source_count, source_capacity;
-	wish *wishes;
-	size_t wish_count, wish_capacity;
+	request *requests;
+	size_t request_count, request_capacity;
 	result *results;
 	size_t result_count, result_capacity;
-	nt_hash_index by_path, by_wish, by_conversion; /* sources, wishes and results */
+	nt_hash_index by_path, by_request, by_conversion; /* sources, requests and results */
 	nt_texture_rules rules;
 	const char *beside; /* path next to which large results are in files; NULL: all are in memory */
 };
@@ -86,18 +86,18 @@ void nt_textures_free(nt_textures *t)
 		free(t->results[i].name);
 	}
 	free(t->sources);
-	free(t->wishes);
+	free(t->requests);
 	free(t->results);
 	free(t->name_sources);
 	nt_hash_index_free(&t->by_path);
-	nt_hash_index_free(&t->by_wish);
+	nt_hash_index_free(&t->by_request);
 	nt_hash_index_free(&t->by_conversion);
 	nt_name_table_free(&t->names);
 	nt_arena_free(&t->arena);
 	free(t);
 }
 
-/* ---- wishes ---- */
+/* ---- requests ---- */
 
 /* Looks into the file for its type and identity, if there is one. */
 static nt_status inspect(nt_texture_source *s, nt_error *error)
@@ -171,8 +171,8 @@ static nt_status find_source(nt_textures *t, const nt_image_places *places, cons
 	return status;
 }
 
-/* What of a wish makes a difference. */
-static nt_conversion wanted(const nt_texture_wish *what, const uint32_t sources[4])
+/* What of a request makes a difference. */
+static nt_conversion wanted(const nt_texture_request *what, const uint32_t sources[4])
 {
 	const bool packed = what->kind == NT_TEXTURE_PACKED;
 	const bool heights = what->kind == NT_TEXTURE_HEIGHTS || what->kind == NT_TEXTURE_NORMALS_OR_HEIGHTS;
@@ -187,8 +187,8 @@ static nt_conversion wanted(const nt_texture_wish *what, const uint32_t sources[
 	return how;
 }
 
-nt_status nt_textures_wish(nt_textures *t, const nt_image_places *places, const nt_texture_wish *what, uint32_t *number,
-	nt_error *error)
+nt_status nt_textures_request(nt_textures *t, const nt_image_places *places, const nt_texture_request *what,
+	uint32_t *number, nt_error *error)
 {
 	uint32_t sources[4] = {UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX};
 	nt_status status = NT_OK;
@@ -201,14 +201,14 @@ nt_status nt_textures_wish(nt_textures *t, const nt_image_places *places, const 
 	if (what->kind == NT_TEXTURE_NORMALS_OR_HEIGHTS)
 		t->sources[sources[0]]->in_question = true;
 	const uint64_t hash = nt_conversion_hash(&how) + (uint64_t)what->kind;
-	for (size_t at = NT_HASH_BEGIN; (*number = nt_hash_index_next(&t->by_wish, hash, &at)) != UINT32_MAX;)
-		if (t->wishes[*number].kind == what->kind && nt_conversion_equal(&t->wishes[*number].how, &how))
+	for (size_t at = NT_HASH_BEGIN; (*number = nt_hash_index_next(&t->by_request, hash, &at)) != UINT32_MAX;)
+		if (t->requests[*number].kind == what->kind && nt_conversion_equal(&t->requests[*number].how, &how))
 			return NT_OK;
-	*number = (uint32_t)t->wish_count;
-	if (!nt_grow((void **)&t->wishes, &t->wish_capacity, t->wish_count + 1, sizeof *t->wishes) ||
-		!nt_hash_index_add(&t->by_wish, hash, *number))
+	*number = (uint32_t)t->request_count;
+	if (!nt_grow((void **)&t->requests, &t->request_capacity, t->request_count + 1, sizeof *t->requests) ||
+		!nt_hash_index_add(&t->by_request, hash, *number))
 		return nt_fail_memory(error);
-	t->wishes[t->wish_count++] = (wish){.kind = what->kind, .how = how};
+	t->requests[t->request_count++] = (request){.kind = what->kind, .how = how};
 	return NT_OK;
 }
 
@@ -258,7 +258,7 @@ static void look_for_grey(void *context, size_t item, unsigned slot)
 
 /* ---- results ---- */
 
-/* A conversion of one image, which is what it is wished for or heights. */
+/* The conversion of one image, as it is requested or of heights. */
 static nt_conversion conversion_of_one(const nt_textures *t, nt_texture_kind kind, const nt_conversion *wanted)
 {
 	const uint32_t from = wanted->channels[0].source;
@@ -280,8 +280,8 @@ static nt_conversion conversion_of_one(const nt_textures *t, nt_texture_kind kin
 		.flip = may_flip ? t->rules.flip : NT_FLIP_OFF};
 }
 
-/* What a wish comes to; *lost receives the channels whose image there is not. */
-static nt_conversion conversion_of(const nt_textures *t, const wish *w, unsigned *lost)
+/* What a request comes to; *lost receives the channels whose image there is not. */
+static nt_conversion conversion_of(const nt_textures *t, const request *w, unsigned *lost)
 {
 	*lost = 0;
 	if (w->kind != NT_TEXTURE_PACKED)
@@ -355,10 +355,10 @@ static nt_status add_result(nt_textures *t, const nt_conversion *how, unsigned l
 static nt_status plan_results(nt_textures *t, nt_error *error)
 {
 	nt_status status = NT_OK;
-	for (size_t i = 0; i < t->wish_count && !status; i++) {
+	for (size_t i = 0; i < t->request_count && !status; i++) {
 		unsigned lost;
-		const nt_conversion how = conversion_of(t, &t->wishes[i], &lost);
-		uint32_t *number = &t->wishes[i].result;
+		const nt_conversion how = conversion_of(t, &t->requests[i], &lost);
+		uint32_t *number = &t->requests[i].result;
 		const uint64_t hash = nt_conversion_hash(&how);
 		size_t at = NT_HASH_BEGIN;
 		while ((*number = nt_hash_index_next(&t->by_conversion, hash, &at)) != UINT32_MAX)
@@ -525,9 +525,9 @@ nt_status nt_textures_make(nt_textures *t, const nt_texture_rules *rules, nt_err
 	return status ? status : join_results(t, error);
 }
 
-size_t nt_textures_wishes(const nt_textures *t)
+size_t nt_textures_requests(const nt_textures *t)
 {
-	return t->wish_count;
+	return t->request_count;
 }
 
 size_t nt_textures_count(const nt_textures *t)
@@ -542,18 +542,18 @@ const nt_texture *nt_textures_at(const nt_textures *t, size_t number)
 
 size_t nt_textures_result(const nt_textures *t, uint32_t number)
 {
-	const uint32_t own = t->wishes[number].result, same = t->results[own].same;
+	const uint32_t own = t->requests[number].result, same = t->results[own].same;
 	return same != UINT32_MAX ? same : own;
 }
 
 const nt_texture *nt_textures_of(const nt_textures *t, uint32_t number)
 {
-	return &t->results[t->wishes[number].result].texture;
+	return &t->results[t->requests[number].result].texture;
 }
 
 const nt_texture_source *nt_textures_source(const nt_textures *t, uint32_t number, int channel)
 {
-	return &t->sources[t->wishes[number].how.channels[channel].source]->file;
+	return &t->sources[t->requests[number].how.channels[channel].source]->file;
 }
 
 void nt_textures_forget(const nt_textures *t, const nt_texture *texture)

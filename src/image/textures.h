@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The images of one output: each file is looked at once, each result made once, however many materials wish for it.
+ * The images of one output: each file is looked at once, each result made once, however many materials request it.
  * Knows files and pixels, no materials.
  *
- * First all wishes are made, then everything is made at once (nt_textures_make), which may run beside other work,
+ * First all requests are made, then everything is made at once (nt_textures_make), which may run beside other work,
  * then the results are there. An image that the output can have as it is stays a file and is not decoded.
  */
 #ifndef NT_IMAGE_TEXTURES_H
@@ -37,14 +37,14 @@ typedef struct nt_texture_channel {
 } nt_texture_channel;
 
 /* What an image is, and how it is used. */
-typedef struct nt_texture_wish {
+typedef struct nt_texture_request {
 	nt_texture_kind kind;
 	nt_texture_channel channels[4]; /* red, green, blue, alpha; if not packed the first alone, of which the map
 	                                   counts for heights */
 	double height;      /* of heights: see image/heights.h */
 	bool clamp;         /* of heights and what is packed */
 	const char *suffix; /* of the name of what is packed; stays */
-} nt_texture_wish;
+} nt_texture_request;
 
 typedef struct nt_texture_rules {
 	nt_texture_choice choice;
@@ -52,7 +52,7 @@ typedef struct nt_texture_rules {
 	unsigned threads;
 } nt_texture_rules;
 
-/* A file that somebody wished for. */
+/* A file that was requested. */
 typedef struct nt_texture_source {
 	const char *path;     /* absolute: the file, or where it would be */
 	nt_image_found found;
@@ -84,31 +84,31 @@ typedef struct nt_texture {
 nt_textures *nt_textures_create(const char *beside);
 void nt_textures_free(nt_textures *textures); /* NULL is allowed */
 
-/* Wishes for an image of names in a material. The same wish has the same number. Returns NT_OK, also for what is not
+/* Requests an image of names in a material. The same request has the same number. Returns NT_OK, also for what is not
  * found, NT_ERROR_IO or NT_ERROR_MEMORY. */
-nt_status nt_textures_wish(nt_textures *textures, const nt_image_places *places, const nt_texture_wish *wish,
+nt_status nt_textures_request(nt_textures *textures, const nt_image_places *places, const nt_texture_request *request,
 	uint32_t *number, nt_error *error);
 
-/* How many wishes there are. */
-size_t nt_textures_wishes(const nt_textures *textures);
+/* How many requests there are. */
+size_t nt_textures_requests(const nt_textures *textures);
 
 /* Makes the results. An image that cannot be decoded is no failure, but one without result, or as it is where glTF
  * carries it. Returns NT_OK, NT_ERROR_IO, also when a file is not what it was, or NT_ERROR_MEMORY. */
 nt_status nt_textures_make(nt_textures *textures, const nt_texture_rules *rules, nt_error *error);
 
-/* The results, none before they are made; several wishes may have one, and of results that are the same file one stands
- * for all. */
+/* The results, none before they are made; several requests may have one, and of results that are the same file one
+ * stands for all. */
 size_t nt_textures_count(const nt_textures *textures);
 const nt_texture *nt_textures_at(const nt_textures *textures, size_t result);
-size_t nt_textures_result(const nt_textures *textures, uint32_t wish);
+size_t nt_textures_result(const nt_textures *textures, uint32_t request);
 
 /* Says that the bytes of a result will hardly be read again. */
 void nt_textures_forget(const nt_textures *textures, const nt_texture *texture);
 
-/* What a wish itself came to: what was lost, what its alpha does. */
-const nt_texture *nt_textures_of(const nt_textures *textures, uint32_t wish);
+/* What a request itself came to: what was lost, what its alpha does. */
+const nt_texture *nt_textures_of(const nt_textures *textures, uint32_t request);
 
-/* The file that a channel of a wish led to, which has a name. */
-const nt_texture_source *nt_textures_source(const nt_textures *textures, uint32_t wish, int channel);
+/* The file that a channel of a request led to, which has a name. */
+const nt_texture_source *nt_textures_source(const nt_textures *textures, uint32_t request, int channel);
 
 #endif

@@ -20,9 +20,9 @@ typedef struct finder {
 /* What a conversion makes of a map of an OBJ; NULL: nothing, it is used as it is or not at all. */
 static const nt_texture *find_converted(const nt_textures *textures, const nt_map *map)
 {
-	if (!textures || !map || map->wish == NT_NONE)
+	if (!textures || !map || map->request == NT_NONE)
 		return NULL;
-	const nt_texture *made = nt_textures_at(textures, nt_textures_result(textures, map->wish));
+	const nt_texture *made = nt_textures_at(textures, nt_textures_result(textures, map->request));
 	return made->bytes ? made : NULL;
 }
 

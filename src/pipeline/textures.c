@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The images of materials (OBJ), for a glTF that is made anew: first the wishes, which finds the files, then, beside
+ * The images of materials (OBJ), for a glTF that is made anew: first the requests, which finds the files, then, beside
  * the solve, the conversions, then what is to be said about them. Other inputs and outputs have no such images: a
  * glTF that is changed keeps its own.
  */
-#include "pipeline/map_wishes.h"
+#include "pipeline/map_requests.h"
 #include "pipeline/stages.h"
 
 #include <stdio.h>
@@ -45,28 +45,28 @@ static nt_place place_of(const nt_scene *scene, const nt_material *m, size_t lin
 	return place;
 }
 
-/* ---- wishes ---- */
+/* ---- requests ---- */
 
-typedef struct wishing {
+typedef struct requesting {
 	nt_textures *textures;
 	const nt_settings *settings;
-} wishing;
+} requesting;
 
-static nt_status wish_for_material(nt_scene *scene, nt_material *m, void *context, nt_error *error)
+static nt_status request_material(nt_scene *scene, nt_material *m, void *context, nt_error *error)
 {
-	const wishing *w = context;
+	const requesting *w = context;
 	const nt_image_places places = {.document = m->library ? m->library : scene->path, .input = scene->path,
 		.folders = w->settings->texture_paths, .folder_count = w->settings->texture_path_count,
 		.allow_outside = w->settings->allow_outside};
-	nt_map_wish wishes[NT_MATERIAL_MAPS];
-	const size_t count = nt_map_wishes(m, w->settings, wishes);
+	nt_map_request requests[NT_MATERIAL_MAPS];
+	const size_t count = nt_map_requests(m, w->settings, requests);
 	nt_status status = NT_OK;
 	for (size_t i = 0; i < count && !status; i++) {
 		uint32_t number;
-		status = nt_textures_wish(w->textures, &places, &wishes[i].what, &number, error);
+		status = nt_textures_request(w->textures, &places, &requests[i].what, &number, error);
 		for (int k = 0; k < 4 && !status; k++)
-			if (wishes[i].maps[k])
-				wishes[i].maps[k]->wish = number;
+			if (requests[i].maps[k])
+				requests[i].maps[k]->request = number;
 	}
 	return status;
 }
@@ -94,11 +94,11 @@ nt_status nt_stage_textures(nt_scene *scene, const nt_settings *settings, const 
 		return nt_fail_memory(error);
 	for (size_t i = 0; i < scene->material_count; i++)
 		for (size_t k = 0; k < NT_MATERIAL_MAPS; k++)
-			scene->materials[i].maps[k].wish = NT_NONE;
-	wishing w = {*textures, settings};
+			scene->materials[i].maps[k].request = NT_NONE;
+	requesting w = {*textures, settings};
 	const nt_status status = check_folders(settings, error);
 	return status || settings->images == NT_IMAGES_NONE
-		? status : each_material(scene, &w, error, wish_for_material);
+		? status : each_material(scene, &w, error, request_material);
 }
 
 /* ---- making ---- */
@@ -130,7 +130,7 @@ nt_status nt_stage_tangents_and_textures(nt_scene *scene, const nt_settings *set
 	making m = {.scene = scene, .settings = settings, .output = output, .textures = textures, .summary = summary,
 		.error = error};
 	/* a thread costs more than making nothing */
-	if (!textures || !nt_textures_wishes(textures) || nt_thread_count(settings->threads) == 1) {
+	if (!textures || !nt_textures_requests(textures) || nt_thread_count(settings->threads) == 1) {
 		make_part(&m, 0);
 		if (textures && !m.status[0])
 			make_part(&m, 1);
@@ -168,7 +168,7 @@ static void tell_elsewhere(const telling *t, const nt_place *place, const char *
 static void tell_source(const telling *t, const nt_map *map, int channel, const nt_texture *image)
 {
 	const nt_place place = place_of(t->scene, t->material, map->line ? map->line : t->material->line);
-	const nt_texture_source *source = nt_textures_source(t->textures, map->wish, channel);
+	const nt_texture_source *source = nt_textures_source(t->textures, map->request, channel);
 	const bool lost = image->packed ? image->lost >> channel & 1 : image->type == NT_IMAGE_OTHER;
 	const bool failed = image->failure && (!image->packed || image->damaged >> channel & 1);
 	nt_finding_list *findings = &t->scene->findings;
@@ -199,25 +199,25 @@ static void tell_made(const telling *t, const nt_map *map, const nt_texture *ima
 			image->from_heights ? "normal map" : "PNG", image->flipped ? ", green turned up" : "");
 }
 
-/* The images of one wish. */
-static void tell_wish(const telling *t, const nt_map_wish *w)
+/* The images of one request. */
+static void tell_request(const telling *t, const nt_map_request *w)
 {
 	const nt_map *first = NULL;
 	const nt_texture *image = NULL;
 	for (int k = 0; k < 4; k++) {
 		nt_map *map = w->maps[k];
-		if (!map || map->wish == NT_NONE)
+		if (!map || map->request == NT_NONE)
 			continue;
-		image = nt_textures_of(t->textures, map->wish);
+		image = nt_textures_of(t->textures, map->request);
 		bool told = false;
 		for (int j = 0; j < k; j++)
 			told |= w->maps[j] && strcmp(w->maps[j]->name, map->name) == 0;
 		if (!told)
 			tell_source(t, map, k, image);
 	}
-	nt_map_wish_settle(t->material, w, image ? image->lost : 0);
+	nt_map_request_settle(t->material, w, image ? image->lost : 0);
 	for (int k = 4; k-- > 0;)
-		first = w->maps[k] && w->maps[k]->wish != NT_NONE ? w->maps[k] : first;
+		first = w->maps[k] && w->maps[k]->request != NT_NONE ? w->maps[k] : first;
 	if (first && image->bytes)
 		tell_made(t, first, image);
 }
@@ -236,13 +236,13 @@ static void tell_normals(const telling *t, const nt_texture *image)
 		m->normal_scale = 1; /* it went into the heights */
 }
 
-/* Maps for which nothing was wished, although they are there. */
+/* Maps for which nothing was requested, although they are there. */
 static void tell_misplaced(const telling *t)
 {
 	for (size_t i = 0; i < NT_MATERIAL_MAPS && t->textures; i++) {
 		const nt_map *map = &t->material->maps[i];
 		const nt_place place = place_of(t->scene, t->material, map->line);
-		if (map->name && map->wish == NT_NONE && map != &t->material->normal_map)
+		if (map->name && map->request == NT_NONE && map != &t->material->normal_map)
 			nt_finding_add(&t->scene->findings, NT_CODE_MATERIAL_LOST, &place, 1,
 				"%.120s lies elsewhere than the map beside which it would be in one image", map->name);
 	}
@@ -254,14 +254,14 @@ static nt_status tell_material(nt_scene *scene, nt_material *m, void *context, n
 	telling *t = context;
 	t->scene = scene;
 	t->material = m;
-	nt_map_wish wishes[NT_MATERIAL_MAPS];
-	const size_t count = t->textures ? nt_map_wishes(m, t->settings, wishes) : 0;
-	const bool wished = t->textures && m->normal_map.wish != NT_NONE;
-	if (wished || (m->normal_map.name && !t->textures))
-		tell_normals(t, wished ? nt_textures_of(t->textures, m->normal_map.wish) : NULL);
+	nt_map_request requests[NT_MATERIAL_MAPS];
+	const size_t count = t->textures ? nt_map_requests(m, t->settings, requests) : 0;
+	const bool requested = t->textures && m->normal_map.request != NT_NONE;
+	if (requested || (m->normal_map.name && !t->textures))
+		tell_normals(t, requested ? nt_textures_of(t->textures, m->normal_map.request) : NULL);
 	tell_misplaced(t);
 	for (size_t i = 0; i < count; i++)
-		tell_wish(t, &wishes[i]);
+		tell_request(t, &requests[i]);
 	return NT_OK;
 }
 

@@ -59,7 +59,7 @@ typedef struct nt_map {
 	const char *name;            /* of the file, as the source spells it; NULL: there is no map */
 	size_t line;                 /* where that stands in `library` */
 	nt_placement placement;
-	uint32_t wish;               /* in nt_write_options.textures, filled by the pipeline; NT_NONE: none */
+	uint32_t request;            /* in nt_write_options.textures, filled by the pipeline; NT_NONE: none */
 	char channel;                /* 'r', 'g', 'b', 'm' (alpha), 'l' (luminance); 0: nobody says */
 	float base, gain;            /* colours: for each channel */
 	float exponent;              /* 0: it is no map of exponents */

@@ -77,11 +77,11 @@ void nt_image_set_free(nt_image_set *set)
 
 /* ---- which ---- */
 
-static image_entry *entry_of(const nt_image_set *set, uint32_t wish)
+static image_entry *entry_of(const nt_image_set *set, uint32_t request)
 {
-	if (wish == NT_MODEL_NONE || !set->options.textures)
+	if (request == NT_MODEL_NONE || !set->options.textures)
 		return NULL;
-	return &set->entries[nt_textures_result(set->options.textures, wish)];
+	return &set->entries[nt_textures_result(set->options.textures, request)];
 }
 
 /* Only who asks for links gets one that leads to nothing. */
@@ -93,7 +93,7 @@ static bool is_usable(const nt_image_set *set, const nt_texture *image)
 
 nt_status nt_image_set_use(nt_image_set *set, const nt_map *map, nt_output *output, nt_error *error)
 {
-	image_entry *entry = entry_of(set, map->wish);
+	image_entry *entry = entry_of(set, map->request);
 	if (!entry || !is_usable(set, entry->image))
 		return NT_OK;
 	entry->wants[map->placement.clamp] = true;
@@ -236,14 +236,14 @@ nt_status nt_image_set_add(nt_image_set *set, nt_model *model, uint64_t *buffer_
 	return status;
 }
 
-nt_alpha_mode nt_image_set_alpha(const nt_image_set *set, uint32_t wish)
+nt_alpha_mode nt_image_set_alpha(const nt_image_set *set, uint32_t request)
 {
-	return entry_of(set, wish) ? nt_textures_of(set->options.textures, wish)->alpha : NT_ALPHA_OPAQUE;
+	return entry_of(set, request) ? nt_textures_of(set->options.textures, request)->alpha : NT_ALPHA_OPAQUE;
 }
 
 nt_model_use nt_image_set_texture(const nt_image_set *set, const nt_map *map)
 {
-	const image_entry *entry = entry_of(set, map->wish);
+	const image_entry *entry = entry_of(set, map->request);
 	const nt_placement *p = &map->placement;
 	nt_model_use use = {.texture = entry ? entry->textures[p->clamp] : NT_MODEL_NONE, .moved = p->moved};
 	if (!use.moved)

@@ -20,7 +20,7 @@ nt_status nt_image_set_create(nt_image_set **set, const nt_write_options *option
 /* NULL is allowed. */
 void nt_image_set_free(nt_image_set *set);
 
-/* Says that the document uses the image that a map's wish led to, and protects its file from the output. NT_NONE and
+/* Says that the document uses the image that a map's request led to, and protects its file from the output. NT_NONE and
  * images without result are passed over. Returns NT_OK or NT_ERROR_MEMORY. */
 nt_status nt_image_set_use(nt_image_set *set, const nt_map *map, nt_output *output, nt_error *error);
 
@@ -29,8 +29,8 @@ nt_status nt_image_set_use(nt_image_set *set, const nt_map *map, nt_output *outp
 nt_status nt_image_set_add(nt_image_set *set, nt_model *model, uint64_t *buffer_size,
 	nt_output *output, nt_error *error);
 
-/* What the alpha of a wish's image does, where the wish is for alpha. */
-nt_alpha_mode nt_image_set_alpha(const nt_image_set *set, uint32_t wish);
+/* What the alpha of a request's image does, where the request is for alpha. */
+nt_alpha_mode nt_image_set_alpha(const nt_image_set *set, uint32_t request);
 
 /* The document's texture for a map, and where it lies. */
 nt_model_use nt_image_set_texture(const nt_image_set *set, const nt_map *map);

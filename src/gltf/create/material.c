@@ -54,7 +54,7 @@ static void take_base_color(const nt_material *from, const nt_image_set *images,
 	if (m->base_color[3] < 1)
 		m->alpha_mode = NT_ALPHA_BLEND;
 	else if (alpha.texture != NT_MODEL_NONE)
-		m->alpha_mode = nt_image_set_alpha(images, from->alpha_map.wish);
+		m->alpha_mode = nt_image_set_alpha(images, from->alpha_map.request);
 	if (m->base_color_texture.texture == NT_MODEL_NONE)
 		m->base_color_texture = alpha;
 }

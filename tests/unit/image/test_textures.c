@@ -22,16 +22,16 @@ static void put_tga(const char *name, unsigned blue, unsigned green, unsigned re
 	put_file(name, tga, sizeof tga);
 }
 
-static uint32_t wish(nt_textures *textures, const char *name, nt_texture_kind kind, double height)
+static uint32_t request(nt_textures *textures, const char *name, nt_texture_kind kind, double height)
 {
 	static char document[300];
 	snprintf(document, sizeof document, "%s", in_folder("m.mtl"));
 	const nt_image_places places = {.document = document};
-	const nt_texture_wish what = {.kind = kind, .height = height,
+	const nt_texture_request what = {.kind = kind, .height = height,
 		.channels = {{.name = name, .map = {.channel = NT_CHANNEL_LUMINANCE, .gain = 1}}}};
 	uint32_t number;
 	nt_error error;
-	assert_int_equal(nt_textures_wish(textures, &places, &what, &number, &error), NT_OK);
+	assert_int_equal(nt_textures_request(textures, &places, &what, &number, &error), NT_OK);
 	return number;
 }
 
@@ -54,13 +54,13 @@ static void equal_results_are_made_once(void **state)
 	nt_textures *t = nt_textures_create(NULL);
 	nt_error error;
 	/* a normal map is the same at any height, a height map is not */
-	const uint32_t n1 = wish(t, "n.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1),
-		       n2 = wish(t, "./n.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.2),
-		       n3 = wish(t, "n.tga", NT_TEXTURE_COLOR, 0),
-		       h1 = wish(t, "grey.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1),
-		       h2 = wish(t, "grey.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.2),
-		       h3 = wish(t, "grey.tga", NT_TEXTURE_HEIGHTS, 0.2),
-		       color = wish(t, "grey.tga", NT_TEXTURE_COLOR, 0);
+	const uint32_t n1 = request(t, "n.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1),
+		       n2 = request(t, "./n.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.2),
+		       n3 = request(t, "n.tga", NT_TEXTURE_COLOR, 0),
+		       h1 = request(t, "grey.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.1),
+		       h2 = request(t, "grey.tga", NT_TEXTURE_NORMALS_OR_HEIGHTS, 0.2),
+		       h3 = request(t, "grey.tga", NT_TEXTURE_HEIGHTS, 0.2),
+		       color = request(t, "grey.tga", NT_TEXTURE_COLOR, 0);
 	assert_int_equal(make(t, &error), NT_OK);
 	assert_ptr_equal(result(t, n1), result(t, n2));
 	assert_ptr_equal(result(t, n1), result(t, n3));
@@ -95,7 +95,7 @@ static void large_results_are_in_a_file(void **state)
 	for (size_t i = 0; i < 3; i++) {
 		nt_textures *t = nt_textures_create(beside[i]);
 		nt_error error;
-		const uint32_t number = wish(t, "noise.tga", NT_TEXTURE_COLOR, 0);
+		const uint32_t number = request(t, "noise.tga", NT_TEXTURE_COLOR, 0);
 		assert_int_equal(make(t, &error), NT_OK);
 		const nt_texture *texture = result(t, number);
 		assert_true(texture->size > 256 * 1024);
@@ -115,14 +115,14 @@ static void file_that_is_not_what_it_was_is_an_error(void **state)
 	put_tga("n.tga", 255, 128, 128);
 	nt_textures *t = nt_textures_create(NULL);
 	nt_error error;
-	wish(t, "n.tga", NT_TEXTURE_COLOR, 0);
+	request(t, "n.tga", NT_TEXTURE_COLOR, 0);
 	assert_int_equal(truncate(in_folder("n.tga"), 40), 0);
 	assert_int_equal(make(t, &error), NT_ERROR_IO);
 	assert_non_null(strstr(error.message, "changed"));
 	nt_textures_free(t);
 
 	t = nt_textures_create(NULL);
-	wish(t, "n.tga", NT_TEXTURE_COLOR, 0);
+	request(t, "n.tga", NT_TEXTURE_COLOR, 0);
 	assert_int_equal(unlink(in_folder("n.tga")), 0);
 	assert_int_equal(make(t, &error), NT_ERROR_MISSING);
 	nt_textures_free(t);
@@ -135,13 +135,13 @@ static void textures_without_memory_are_an_error(void **state)
 	for (size_t n = 0;; n++) {
 		nt_textures *t = nt_textures_create(NULL);
 		const nt_image_places places = {.document = in_folder("m.mtl")};
-		const nt_texture_wish what = {.kind = NT_TEXTURE_NORMALS_OR_HEIGHTS, .height = 0.1,
+		const nt_texture_request what = {.kind = NT_TEXTURE_NORMALS_OR_HEIGHTS, .height = 0.1,
 			.channels = {{.name = "grey.tga", .map = {.channel = NT_CHANNEL_LUMINANCE, .gain = 1}}}};
 		const nt_texture_rules rules = {NT_TEXTURES_AUTO, NT_FLIP_OFF, 1};
 		uint32_t number;
 		nt_error error;
 		fail_allocations_from(n);
-		nt_status status = nt_textures_wish(t, &places, &what, &number, &error);
+		nt_status status = nt_textures_request(t, &places, &what, &number, &error);
 		if (!status)
 			status = nt_textures_make(t, &rules, &error);
 		const bool failed = stop_failing_allocations();

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * From maps to images: see map_wishes.h. glTF has alpha beside the base colour, roughness and metallic (green and blue)
- * in one image, in which occlusion (red) may be, too, and so may clearcoat (red) and its roughness (green).
+ * From maps to images: see map_requests.h. glTF has alpha beside the base colour, roughness and metallic (green and
+ * blue) in one image, in which occlusion (red) may be, too, and so may clearcoat (red) and its roughness (green).
  */
-#include "pipeline/map_wishes.h"
+#include "pipeline/map_requests.h"
 
 #include <string.h>
 
@@ -23,20 +23,20 @@ static nt_channel_map channel_map(const nt_map *map, nt_channel otherwise)
 }
 
 /* A channel of numbers. */
-static void put_number(nt_map_wish *w, int channel, nt_map *map, nt_channel otherwise)
+static void put_number(nt_map_request *w, int channel, nt_map *map, nt_channel otherwise)
 {
 	w->maps[channel] = map;
 	w->what.channels[channel] = (nt_texture_channel){true, map->name, channel_map(map, otherwise)};
 }
 
 /* A channel without a map is white where somebody samples it. */
-static void put_white(nt_map_wish *w, int channel, bool used)
+static void put_white(nt_map_request *w, int channel, bool used)
 {
 	w->what.channels[channel].used |= used;
 }
 
 /* Red, green and blue of a map of colours. */
-static void put_colors(nt_map_wish *w, nt_map *map)
+static void put_colors(nt_map_request *w, nt_map *map)
 {
 	for (int k = 0; k < 3; k++) {
 		w->what.channels[k] = (nt_texture_channel){true, map->name, channel_map(map, (nt_channel)k)};
@@ -45,12 +45,12 @@ static void put_colors(nt_map_wish *w, nt_map *map)
 	w->maps[0] = map;
 }
 
-/* ---- wishes ---- */
+/* ---- requests ---- */
 
-static nt_map_wish *begin(nt_map_wish *wishes, size_t *count, nt_texture_kind kind, const char *suffix)
+static nt_map_request *begin(nt_map_request *requests, size_t *count, nt_texture_kind kind, const char *suffix)
 {
-	nt_map_wish *w = &wishes[(*count)++];
-	*w = (nt_map_wish){.what = {.kind = kind, .suffix = suffix}};
+	nt_map_request *w = &requests[(*count)++];
+	*w = (nt_map_request){.what = {.kind = kind, .suffix = suffix}};
 	return w;
 }
 
@@ -63,13 +63,13 @@ static bool fits(const nt_map *map, const nt_map *first)
 			memcmp(a->offset, b->offset, sizeof a->offset) == 0))));
 }
 
-static void wish_for_colors(nt_map *colors, nt_map *alpha, nt_map_wish *wishes, size_t *count)
+static void request_colors(nt_map *colors, nt_map *alpha, nt_map_request *requests, size_t *count)
 {
 	const bool with_alpha = alpha && fits(alpha, colors),
 		packed = with_alpha || (has(colors) && !nt_map_is_plain(colors));
 	if (!packed && !has(colors))
 		return;
-	nt_map_wish *w = begin(wishes, count, packed ? NT_TEXTURE_PACKED : NT_TEXTURE_COLOR,
+	nt_map_request *w = begin(requests, count, packed ? NT_TEXTURE_PACKED : NT_TEXTURE_COLOR,
 		with_alpha ? "-alpha" : "-adjusted");
 	if (has(colors))
 		put_colors(w, colors);
@@ -81,10 +81,10 @@ static void wish_for_colors(nt_map *colors, nt_map *alpha, nt_map_wish *wishes, 
 }
 
 /* Maps of numbers, in channels from `first` on. */
-static nt_map_wish *wish_for_numbers(nt_map *const maps[], int first, int map_count, const char *suffix,
-	nt_map_wish *wishes, size_t *count)
+static nt_map_request *request_numbers(nt_map *const maps[], int first, int map_count, const char *suffix,
+	nt_map_request *requests, size_t *count)
 {
-	nt_map_wish *w = begin(wishes, count, NT_TEXTURE_PACKED, suffix);
+	nt_map_request *w = begin(requests, count, NT_TEXTURE_PACKED, suffix);
 	for (int k = 0; k < map_count; k++)
 		if (has(maps[k]))
 			put_number(w, first + k, maps[k], NT_CHANNEL_LUMINANCE);
@@ -93,36 +93,36 @@ static nt_map_wish *wish_for_numbers(nt_map *const maps[], int first, int map_co
 	return w;
 }
 
-static void wish_for_reflection(nt_material *m, nt_map_wish *wishes, size_t *count)
+static void request_reflection(nt_material *m, nt_map_request *requests, size_t *count)
 {
 	nt_map none = {0}, *roughness = &m->roughness_map, *occlusion = &m->occlusion_map;
 	nt_map *metallic = fits(&m->metallic_map, roughness) ? &m->metallic_map : &none;
 	const nt_map *leader = has(roughness) ? roughness : metallic;
 	const bool together = has(leader) && fits(occlusion, leader);
 	if (has(occlusion) && !together)
-		wish_for_numbers(&occlusion, 0, 1, "-occlusion", wishes, count);
+		request_numbers(&occlusion, 0, 1, "-occlusion", requests, count);
 	if (!has(leader))
 		return;
 	nt_map *const maps[] = {together ? occlusion : &none, roughness, metallic};
-	nt_map_wish *w = wish_for_numbers(maps, 0, 3, "-orm", wishes, count);
+	nt_map_request *w = request_numbers(maps, 0, 3, "-orm", requests, count);
 	/* a factor of 0 leaves nothing of a channel */
 	put_white(w, 1, m->roughness > 0);
 	put_white(w, 2, m->metallic > 0);
 }
 
-static void wish_for_layers(nt_material *m, nt_map_wish *wishes, size_t *count)
+static void request_layers(nt_material *m, nt_map_request *requests, size_t *count)
 {
 	nt_map *const coat[] = {&m->clearcoat_map, &m->clearcoat_roughness_map};
 	if (has(coat[0]) && fits(coat[1], coat[0])) {
-		wish_for_numbers(coat, 0, 2, "-clearcoat", wishes, count);
+		request_numbers(coat, 0, 2, "-clearcoat", requests, count);
 	} else {
 		for (int k = 0; k < 2; k++)
 			if (has(coat[k]))
-				wish_for_numbers(&coat[k], k, 1, "-clearcoat", wishes, count);
+				request_numbers(&coat[k], k, 1, "-clearcoat", requests, count);
 	}
 	if (has(&m->sheen_map)) {
 		nt_map *const sheen[] = {&m->sheen_map, &m->sheen_map, &m->sheen_map};
-		nt_map_wish *w = wish_for_numbers(sheen, 0, 3, "-sheen", wishes, count);
+		nt_map_request *w = request_numbers(sheen, 0, 3, "-sheen", requests, count);
 		for (int k = 0; k < 3; k++)
 			w->what.channels[k].map.srgb = true;
 	}
@@ -137,32 +137,32 @@ static nt_texture_kind kind_of_normals(const nt_material *m, nt_bump bump)
 	return m->bump && bump == NT_BUMP_HEIGHT ? NT_TEXTURE_HEIGHTS : NT_TEXTURE_NORMALS;
 }
 
-static void wish_for_normals(nt_material *m, const nt_settings *settings, nt_map_wish *wishes, size_t *count)
+static void request_normals(nt_material *m, const nt_settings *settings, nt_map_request *requests, size_t *count)
 {
 	if (!has(&m->normal_map) || (m->bump && settings->bump == NT_BUMP_IGNORE))
 		return;
-	nt_map_wish *w = begin(wishes, count, kind_of_normals(m, settings->bump), NULL);
+	nt_map_request *w = begin(requests, count, kind_of_normals(m, settings->bump), NULL);
 	put_number(w, 0, &m->normal_map, NT_CHANNEL_LUMINANCE);
 	w->what.clamp = m->normal_map.placement.clamp;
 	w->what.height = (settings->bump_height > 0 ? settings->bump_height : default_bump_height) * m->normal_scale;
 }
 
-size_t nt_map_wishes(nt_material *m, const nt_settings *settings, nt_map_wish wishes[NT_MATERIAL_MAPS])
+size_t nt_map_requests(nt_material *m, const nt_settings *settings, nt_map_request requests[NT_MATERIAL_MAPS])
 {
 	size_t count = 0;
-	wish_for_colors(&m->base_color_map, &m->alpha_map, wishes, &count);
-	wish_for_colors(&m->emissive_map, NULL, wishes, &count);
-	wish_for_reflection(m, wishes, &count);
-	wish_for_layers(m, wishes, &count);
-	wish_for_normals(m, settings, wishes, &count);
+	request_colors(&m->base_color_map, &m->alpha_map, requests, &count);
+	request_colors(&m->emissive_map, NULL, requests, &count);
+	request_reflection(m, requests, &count);
+	request_layers(m, requests, &count);
+	request_normals(m, settings, requests, &count);
 	return count;
 }
 
-void nt_map_wish_settle(nt_material *m, const nt_map_wish *w, unsigned lost)
+void nt_map_request_settle(nt_material *m, const nt_map_request *w, unsigned lost)
 {
 	for (int k = 0; k < 4; k++)
 		if (w->maps[k] && lost >> k & 1)
-			w->maps[k]->wish = NT_NONE;
-	if (m->clearcoat == 0 && m->clearcoat_map.wish == NT_NONE)
-		m->clearcoat_roughness_map.wish = NT_NONE;
+			w->maps[k]->request = NT_NONE;
+	if (m->clearcoat == 0 && m->clearcoat_map.request == NT_NONE)
+		m->clearcoat_roughness_map.request = NT_NONE;
 }
