@@ -6,6 +6,7 @@
  */
 #include "topology/weld.h"
 
+#include "base/parallel.h"
 #include "topology/weld_parts.h"
 
 /* Soups of fewer corners are not looked at. */
@@ -33,11 +34,62 @@ static bool is_flat(const nmtan_mesh *mesh, size_t corner_count)
 	return equal <= PLACES / 2;
 }
 
+/* In place of the number of a vertex with a NaN: its row was given to a corner. */
+#define ROW_GIVEN UINT32_MAX
+
+typedef struct copying {
+	const uint32_t *numbers, *indices;
+	uint32_t *ids;
+} copying;
+
+static void copy_numbers(void *context, size_t begin, size_t end, unsigned slot)
+{
+	const copying job = *(const copying *)context;
+	(void)slot;
+	for (size_t c = begin; c < end; c++) {
+		const size_t vertex = job.indices ? job.indices[c] : c;
+		job.ids[c] = job.numbers ? job.numbers[vertex] : (uint32_t)vertex;
+	}
+}
+
+/* Gives each corner of a vertex with a NaN a row of its own: the first takes that of the vertex. */
+static bool number_unordered(nt_welder *w, size_t corner_count, uint32_t *ids)
+{
+	size_t unordered = 0;
+	for (size_t c = 0; c < corner_count; c++)
+		unordered += !nt_weld_row_ordered(&w->rows[ids[c]]);
+	if (w->row_count + unordered > w->row_capacity && !nt_weld_grow_rows(w, w->row_count + unordered))
+		return false;
+	for (size_t c = 0; c < corner_count; c++) {
+		if (nt_weld_row_ordered(&w->rows[ids[c]]))
+			continue;
+		const uint32_t vertex = w->mesh->indices[c];
+		if (w->numbers[vertex] == ROW_GIVEN)
+			ids[c] = (uint32_t)w->row_count++;
+		w->numbers[vertex] = ROW_GIVEN;
+		nt_weld_load(w->mesh, vertex, &w->rows[ids[c]]);
+	}
+	return true;
+}
+
+/* Numbers of corners from numbers of vertices, NULL: each its own; without indices likewise. May be the mesh's
+ * indices; NULL when out of memory. */
+static const uint32_t *number_corners(nt_welder *w, size_t corner_count, unsigned ranges)
+{
+	if (!w->numbers && w->mesh->indices)
+		return w->mesh->indices;
+	uint32_t *ids = nt_scratch_alloc(w->memory->scratch, corner_count, sizeof *ids);
+	if (!ids)
+		return NULL;
+	nt_parallel_ranges(ranges, corner_count, 1, copy_numbers,
+		&(copying){w->numbers, w->mesh->indices, ids});
+	return !w->unordered || !w->mesh->indices || number_unordered(w, corner_count, ids) ? ids : NULL;
+}
+
 /* All vertices by the table. */
 static nt_weld_outcome weld_all(nt_welder *w, unsigned ranges)
 {
 	w->row_guess = w->item_count / 2;
-	w->renamed_end = w->item_count;
 	w->numbers = nt_borrowed_alloc(w->memory, w->item_count, sizeof *w->numbers);
 	return w->numbers && nt_weld_items(w, ranges) ? NT_WELD_DONE : NT_WELD_NO_MEMORY;
 }
@@ -56,7 +108,7 @@ static const uint32_t *weld_vertices(nt_welder *w, size_t corner_count, unsigned
 		w->rows = NULL;
 		outcome = weld_all(w, ranges);
 	}
-	return outcome == NT_WELD_DONE ? nt_weld_number_corners(w, corner_count, ranges) : NULL;
+	return outcome == NT_WELD_DONE ? number_corners(w, corner_count, ranges) : NULL;
 }
 
 nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_borrowed *row_memory,

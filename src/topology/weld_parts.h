@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * What the table of rows (weld_table.c), its use on several threads (weld_threads.c) and the welds of vertices
- * (weld_sieve.c, weld_number.c) share: the entries of that table. For these files and weld.c only.
+ * What the table of rows (weld_table.c), its use on several threads (weld_threads.c) and the weld of vertices
+ * (weld_sieve.c) share: the entries of that table. For these files and weld.c only.
  *
  * An entry of 4 bytes holds a number and, in the bits that the number leaves free, a tag of the hash, so that
  * the row of another key is read about once in 2^tag probes. Tables are open-addressing and at most half full.
@@ -28,7 +28,6 @@ typedef struct nt_welder {
 	size_t row_capacity, row_count;
 	uint32_t *table;
 	uint32_t *numbers;   /* [item_count] row of each item */
-	size_t renamed_begin, renamed_end; /* items of welded vertices: those before and behind have their own number */
 	unsigned table_bits; /* log2 of the entries; a number has one bit less */
 	bool rows_borrowed;
 	bool unordered; /* an item holds a NaN */
@@ -95,13 +94,5 @@ typedef enum nt_weld_outcome {
 /* Welds vertices, which are the items of `w`: those of corners where the mesh has no indices. Makes rows, row_count
  * and, where a number is another than the vertex's own, numbers. */
 nt_weld_outcome nt_weld_sieve(nt_welder *w, unsigned ranges);
-
-/* Numbers vertices whose rows are there: a vertex on the list, which has all that are equal to another or hold a NaN,
- * gets the number of the first equal one on it; the others keep their own. False when out of memory. */
-bool nt_weld_list(nt_welder *w, const uint32_t *list, size_t count, unsigned ranges);
-
-/* Numbers of corners from numbers of vertices, NULL: each its own; without indices likewise. May be the mesh's
- * indices; NULL when out of memory. */
-const uint32_t *nt_weld_number_corners(nt_welder *w, size_t corner_count, unsigned ranges);
 
 #endif

@@ -7,7 +7,7 @@
  *           vertex that finds both marked already may equal an earlier one: the bits are marked in a second bitmap
  *   list    the vertices whose bits the second bitmap has: all that are equal to another, those with a NaN,
  *           and some by chance
- *   weld    the listed ones, by the table (weld_table.c, weld_number.c)
+ *   weld    the listed ones, by the table (weld_table.c)
  *
  * A bitmap is a quarter of the table at most and stays in the second-level cache where the table does not.
  * A mesh that turns out to have many equal vertices is left
@@ -180,6 +180,45 @@ static size_t list_vertices(sieve *s)
 	return count;
 }
 
+/* Number */
+
+/* Listed vertices get the number of the first that is equal. Rows stay where they are, and those of the others are
+ * nobody's. */
+static void number_listed(nt_welder *w, const nt_welder *listed)
+{
+	uint32_t *const firsts = listed->numbers; /* takes the place of what has been read */
+	size_t classes = 0;
+	for (size_t l = 0; l < listed->item_count; l++) {
+		const uint32_t class = listed->numbers[l], v = listed->items[l];
+		if (class == classes)
+			firsts[classes++] = v;
+		w->numbers[v] = firsts[class];
+	}
+}
+
+/* Numbers vertices whose rows are there: a vertex on the list, which has all that are equal to another or hold a NaN,
+ * gets the number of the first equal one on it; the others keep their own. False when out of memory. */
+static bool number_vertices(nt_welder *w, const uint32_t *list, size_t count, unsigned ranges)
+{
+	if (count == 0)
+		return true;
+	nt_welder listed = {.mesh = w->mesh, .row_memory = w->memory, .memory = w->memory, .items = list,
+		.item_count = count, .row_guess = count};
+	listed.numbers = nt_borrowed_alloc(w->memory, count, sizeof *listed.numbers);
+	if (!listed.numbers || !nt_weld_items(&listed, ranges))
+		return false;
+	w->unordered = listed.unordered;
+	if (listed.row_count == count && !w->unordered)
+		return true;
+	w->numbers = nt_borrowed_alloc(w->memory, w->item_count, sizeof *w->numbers);
+	if (!w->numbers)
+		return false;
+	for (size_t v = 0; v < w->item_count; v++)
+		w->numbers[v] = (uint32_t)v;
+	number_listed(w, &listed);
+	return true;
+}
+
 /* The whole */
 
 /* Memory for rows, places and bitmaps of at least 16 bits a vertex; few vertices get more, so that they are hardly
@@ -217,5 +256,5 @@ nt_weld_outcome nt_weld_sieve(nt_welder *w, unsigned ranges)
 	/* a table in fresh pages would be 2 MB more of an output that is hardly begun */
 	if (s.in_room)
 		nt_borrowed_trim(w->memory, s.bitmaps, ((size_t)(s.places - s.bitmaps) + count) * sizeof *s.places);
-	return nt_weld_list(w, s.places, count, count < FEW ? 1 : ranges) ? NT_WELD_DONE : NT_WELD_NO_MEMORY;
+	return number_vertices(w, s.places, count, count < FEW ? 1 : ranges) ? NT_WELD_DONE : NT_WELD_NO_MEMORY;
 }

@@ -32,7 +32,7 @@ __attribute__((export_name("job"))) nt_wasm_job *nt_wasm_get_job(void)
 	return &job;
 }
 
-/* The key of tables, made of random numbers by core.js before the first job: the module imports nothing that is random. */
+/* The key of tables: core.js gives random numbers before the first job, since the module imports nothing. */
 __attribute__((export_name("set_key"))) void nt_wasm_set_key(uint32_t a, uint32_t b, uint32_t c, uint32_t d)
 {
 	nt_hash_key_words[0] = (uint64_t)a << 32 | b;

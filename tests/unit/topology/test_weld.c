@@ -296,9 +296,9 @@ static void vertices_of_one_hash_weld_alike(void **state)
 	check_one_hash(3000);
 }
 
-/* A row that has that hash with another key than this process, and that number. nt_weld_hash() adds the products of its
- * first and of its last two words, each with a word of the key added by XOR: where the first is 1 then, and the third 0,
- * the sum is the second, which is folded to itself and multiplied by an odd number; the fourth is free. */
+/* A row that has that hash with another key than this process, and that number. nt_weld_hash() adds the products of the
+ * first and of the last two words, each with a word of the key added by XOR. Where the first is 1 then, and the third
+ * 0, the sum is the second, which is folded to itself and multiplied by an odd number; the fourth is free. */
 static const nt_weld_key other_key = {{0x243f6a8885a308d3u, 0x13198a2e03707344u, 0xa4093822299f31d0u,
 	0x082efa98ec4e6c89u}};
 
@@ -315,8 +315,8 @@ static void make_row_of_hash(uint64_t hash, uint32_t number, nt_weld_row *row)
 	memcpy(row, (uint64_t[4]){key[0] ^ 1, hash * inverse ^ key[1], key[2], bits}, sizeof *row);
 }
 
-/* Rows that were made for one hash spread over the table. Without the key of the process all would stand in one run, and
- * each be compared with those before it. */
+/* Rows that were made for one hash spread over the table. Without the key of the process all would stand in one run,
+ * and each be compared with those before it. */
 static void rows_of_one_hash_spread(void **state)
 {
 	(void)state;
