@@ -198,74 +198,10 @@ static bool check_triangle(const nt_solve *solve, size_t t, nmtan_counts *counts
 		has_unusable(solve, 3 * t, 3, orientation, NT_SHORT_WAYS && known && known->judged, counts);
 }
 
-/* What triangles that were judged add to the counts. */
-typedef struct judged_counts {
-	size_t flat, mirrored, degenerate, unassigned, bad;
-} judged_counts;
-
-/* Whether all is known of a suspect but which of its corners have a w, and whether that is one: no row is marked. */
-static inline bool is_judged(const nt_solve *solve, size_t t)
-{
-	uint32_t w[3];
-#pragma GCC unroll 3
-	for (size_t k = 0; k < 3; k++)
-		memcpy(&w[k], &solve->tangents[12 * t + 4 * k + 3], sizeof w[k]);
-	return !((solve->known->flags[t] & solve->known->doubtful) | ((w[0] | w[1] | w[2]) & NT_W_OPEN));
-}
-
-/* Checks such a suspect, whose w are 1, -1 and 0, as has_unusable() does; true: it is faulty. Most have three equal w,
- * and neighbours are of a kind. In the others which corners are unusable is as good as random: there is no branch. */
-static inline bool check_judged(const nt_solve *solve, size_t t, judged_counts *counts)
-{
-	const nt_known *known = solve->known;
-	const uint32_t flat = (known->flags[t] & known->flat) != 0,
-		mirrored = !flat & !(known->flags[t] & known->positive);
-	float *const tangents = solve->tangents + 12 * t;
-	uint32_t w[3], given[3];
-	int sum = 0; /* of w */
-#pragma GCC unroll 3
-	for (size_t k = 0; k < 3; k++) {
-		memcpy(&w[k], &tangents[4 * k + 3], sizeof w[k]);
-		given[k] = w[k] >> 29 & 1;
-		sum += (int)given[k] - 2 * (int)(w[k] >> 31);
-	}
-	counts->flat += flat;
-	counts->mirrored += mirrored;
-	counts->degenerate += (known->flags[t] & known->degenerate) != 0;
-	/* all are usable */
-	if (((w[0] ^ w[1]) | (w[0] ^ w[2]) | (given[0] ^ 1) | ((flat ^ 1) & (w[0] >> 31 ^ mirrored))) == 0)
-		return false;
-	/* the sign of most, of the first where there are two of each; the others are zero */
-	const uint32_t first = w[0] | (w[1] & (given[0] - 1)) | (w[2] & ((given[0] | given[1]) - 1));
-	const uint32_t minus = (flat & (2 * sum - (int)(first >> 31) < 0)) | mirrored;
-	const uint32_t wanted = 0x3f800000u | minus << 31;
-	uint32_t bad = 0;
-#pragma GCC unroll 3
-	for (size_t k = 0; k < 3; k++) {
-		const uint32_t differs = w[k] != wanted, kept = (w[k] & (differs - 1)) | (flat << 31 & -differs);
-		memcpy(&tangents[4 * k + 3], &kept, sizeof kept);
-		bad += differs;
-	}
-	counts->unassigned += 3 - (given[0] + given[1] + given[2]);
-	counts->bad += bad;
-	return bad != 0;
-}
-
-static void add_judged(const judged_counts *judged, nmtan_counts *counts)
-{
-	counts->degenerate_texcoords += judged->flat;
-	counts->mirrored += judged->mirrored;
-	counts->degenerate_positions += judged->degenerate;
-	counts->repaired_unassigned += judged->unassigned;
-	counts->repaired_sign += judged->bad - judged->unassigned;
-}
-
 static void check_triangles(const search *job, size_t begin, size_t end, nmtan_counts *counts)
 {
 	const nt_solve *solve = job->solve;
 	const bool known = solve->known && solve->known->flags;
-	const bool judged = NT_SHORT_WAYS && known && solve->known->judged && solve->repair && !solve->faults;
-	judged_counts sums = {0};
 	for (size_t word = begin; word < end; word++) {
 		const size_t first = WORD * word, left = solve->mesh->face_count - first;
 		const size_t count = left < WORD ? left : WORD;
@@ -277,14 +213,10 @@ static void check_triangles(const search *job, size_t begin, size_t end, nmtan_c
 			ask_for_triangle(solve, first + (size_t)__builtin_ctzll(bits));
 		for (uint64_t bits = suspects; bits; bits &= bits - 1) {
 			const int i = __builtin_ctzll(bits);
-			const size_t t = first + (size_t)i;
-			const bool unusable = judged && is_judged(solve, t)
-				? check_judged(solve, t, &sums) : check_triangle(solve, t, counts);
-			faulty |= (uint64_t)unusable << i;
+			faulty |= (uint64_t)check_triangle(solve, first + (size_t)i, counts) << i;
 		}
 		job->faulty[word] = faulty;
 	}
-	add_judged(&sums, counts);
 }
 
 /* Meshes with quads; flags are those of their triangles. */

@@ -36,30 +36,15 @@
 /* Vertices for a thread at least. */
 enum { GRAIN = 512 };
 
-/* Triangles that are listed before they are gone through, so that what is loaded for them is on its way at the same
- * time; their flags are looked at STEP at a time. */
-enum { LISTED = 48, STEP = 8 };
+/* Triangles that are listed before they are gone through. */
+enum { LISTED = 48 };
 
 /* Lists triangles from *t on that have a complex vertex. */
-static size_t list_triangles(const nt_complex *c, size_t *t, uint32_t list[LISTED + STEP])
+static size_t list_triangles(const nt_fast *fast, size_t *t, uint32_t list[LISTED])
 {
-	const nt_fast *fast = c->fast;
 	size_t count = 0;
-	while (count < LISTED && (*t = nt_fast_next_flagged(fast, *t, NT_TRIANGLE_COMPLEX)) < fast->triangle_count) {
-		const size_t end = fast->triangle_count - *t < STEP ? fast->triangle_count : *t + STEP;
-		for (; *t < end; ++*t) {
-			list[count] = (uint32_t)*t;
-			count += (fast->flags[*t] & NT_TRIANGLE_COMPLEX) != 0;
-		}
-	}
-	for (size_t i = 0; i < count; i++)
-		__builtin_prefetch(fast->triangles.ids + nt_triangle_corner(&fast->triangles, list[i], 0));
-	for (size_t i = 0; i < count; i++) {
-		uint32_t copy[3];
-		const uint32_t *v = nt_triangle_vertices(&fast->triangles, list[i], 1, copy);
-		for (size_t k = 0; k < 3; k++)
-			__builtin_prefetch(nt_fast_record(fast, c->orient, v[k]), 1);
-	}
+	for (; count < LISTED && (*t = nt_fast_next_flagged(fast, *t, NT_TRIANGLE_COMPLEX)) < fast->triangle_count; ++*t)
+		list[count++] = (uint32_t)*t;
 	return count;
 }
 
@@ -70,7 +55,7 @@ typedef struct listed_corner {
 
 /* Lists the corners of triangles that are at complex vertices: about half, at random, so that there is no branch. */
 static size_t list_corners(const nt_complex *c, const uint32_t *triangles, size_t count,
-	listed_corner corners[3 * (LISTED + STEP) + 1])
+	listed_corner corners[3 * LISTED + 1])
 {
 	size_t n = 0;
 	for (size_t i = 0; i < count; i++) {
@@ -137,9 +122,8 @@ static nmtan_status collect(nt_complex *c, const nt_settled *settled)
 	c->room = (uint32_t)room_of(settled, ordered);
 	c->vertices = nt_borrowed_alloc(c->memory, c->vertex_count + 1, sizeof *c->vertices);
 	c->welded = nt_borrowed_alloc(c->memory, c->vertex_count, sizeof *c->welded);
-	/* nt_take_four() reads four of each */
-	c->corners = nt_borrowed_alloc(c->memory, places + 3, sizeof *c->corners);
-	c->across = nt_borrowed_alloc(c->memory, c->room + 3, 2 * sizeof *c->across);
+	c->corners = nt_borrowed_alloc(c->memory, places, sizeof *c->corners);
+	c->across = nt_borrowed_alloc(c->memory, c->room, 2 * sizeof *c->across);
 	c->group = nt_borrowed_alloc(c->memory, c->room, sizeof *c->group);
 	if (ordered)
 		c->order = nt_borrowed_alloc(c->memory, places, sizeof *c->order);
@@ -148,9 +132,9 @@ static nmtan_status collect(nt_complex *c, const nt_settled *settled)
 	const uint32_t plain = (uint32_t)(places - settled->tangled_corners);
 	cursors at = {{0, c->plain_count}, {0, plain}, c->order};
 	for (size_t t = 0; t < fast->triangle_count;) {
-		uint32_t triangles[LISTED + STEP];
-		listed_corner corners[3 * (LISTED + STEP) + 1];
-		const size_t count = list_corners(c, triangles, list_triangles(c, &t, triangles), corners);
+		uint32_t triangles[LISTED];
+		listed_corner corners[3 * LISTED + 1];
+		const size_t count = list_corners(c, triangles, list_triangles(fast, &t, triangles), corners);
 		for (size_t i = 0; i < count; i++)
 			place_corner(c, &corners[i], &at);
 	}
@@ -173,8 +157,6 @@ static void solve_range(void *context, size_t begin, size_t end, unsigned slot)
 	nt_batch *batch = &w->batches[slot];
 	nmtan_status status = NMTAN_OK;
 	for (size_t v = begin; v < end && !status; v++) {
-		if (nt_is_four(w->c, v) && nt_take_four(w->c, &batch->summed, v))
-			continue;
 		nt_find_groups(w->c, v);
 		status = nt_take_vertex(w->c, batch, v);
 	}

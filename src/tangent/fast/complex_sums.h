@@ -20,17 +20,6 @@ typedef struct nt_summed {
 /* The three rows of each corner's triangle, from the mesh. */
 void nt_load_rows(const nt_complex *c, const uint32_t *corners, size_t count, nt_weld_row *rows);
 
-/* Whether complex vertex v, which is not tangled, has up to four corners and groups that are their sums. */
-static inline bool nt_is_four(const nt_complex *c, size_t v)
-{
-	return NT_SHORT_WAYS && !c->more && c->vertices[v] & NT_RESULT_SUM &&
-	       nt_first_place(c, v + 1) - nt_first_place(c, v) <= 4;
-}
-
-/* The same as nt_find_groups() and nt_take_vertex() for such a vertex. False: nothing is done, because it has a
- * triangle without a frame. */
-bool nt_take_four(const nt_complex *c, nt_summed *s, size_t v);
-
 /* Adds the corners of complex vertex v to `s`, but for those of groups of an orientation that is done, and for those
  * without a group. Before, it writes what is there already, if both would be too many. The vertex has NT_RESULT_SUM and
  * NT_FAN_DEPTH corners at most. */
