@@ -41,8 +41,8 @@ nmtan_status nt_weld_corners(const nmtan_mesh *mesh, size_t corner_count, nt_scr
 {
 	const nt_scratch_mark mark = nt_scratch_here(scratch);
 	nt_borrowed memory = nt_borrow(NULL, 0, scratch);
-	nt_welder w = {.mesh = mesh, .row_memory = &memory, .memory = &memory, .items = mesh->indices,
-		.item_count = corner_count, .row_guess = corner_count / 4, .numbers = ids};
+	nt_welder w = {.mesh = mesh, .key = nt_weld_make_key(), .row_memory = &memory, .memory = &memory,
+		.items = mesh->indices, .item_count = corner_count, .row_guess = corner_count / 4, .numbers = ids};
 	const bool done = nt_weld_items(&w, 1);
 	*count = w.row_count;
 	nt_scratch_back(scratch, mark);

@@ -114,7 +114,7 @@ static const uint32_t *weld_vertices(nt_welder *w, size_t corner_count, unsigned
 nmtan_status nt_weld_mesh(const nmtan_mesh *mesh, size_t corner_count, unsigned ranges, nt_borrowed *row_memory,
 	nt_borrowed *memory, nt_weld *weld)
 {
-	nt_welder w = {.mesh = mesh, .row_memory = row_memory, .memory = memory};
+	nt_welder w = {.mesh = mesh, .key = nt_weld_make_key(), .row_memory = row_memory, .memory = memory};
 	char *const begin = memory->begin;
 	/* few of many vertices used: corner by corner, so that time follows the corners */
 	if (mesh->indices ? mesh->vertex_count / 2 > corner_count : !is_flat(mesh, corner_count)) {

@@ -19,7 +19,7 @@ enum { NT_WELD_BATCH = 32 };
 
 typedef struct nt_welder {
 	const nmtan_mesh *mesh;
-	nt_weld_key key;       /* nt_weld_items() makes it */
+	nt_weld_key key;
 	nt_borrowed *row_memory, *memory; /* for the rows, for everything else */
 	const uint32_t *items; /* vertex of item i; NULL: first_vertex + i */
 	size_t first_vertex, item_count;

@@ -15,7 +15,6 @@
  * counts as marked again. What is equal does not depend on threads, nor on whether a vertex is listed by chance.
  */
 #include "base/parallel.h"
-#include "topology/weld_four.h"
 #include "topology/weld_parts.h"
 
 /* Threads that sieve: each takes up to 8 bytes a vertex for its bitmaps. */
@@ -65,6 +64,20 @@ static inline uint32_t bits_of(uint32_t place)
 }
 
 /* Load */
+
+/* Rows of vertices [begin, end), and the upper bits of their hashes. Returns the flags of nt_weld_load(). */
+static nt_weld_flags load_rows(const nt_welder *w, size_t begin, size_t end, uint32_t *hashes)
+{
+	/* copies, which no store changes */
+	const nmtan_mesh mesh = *w->mesh;
+	const nt_weld_key key = w->key;
+	nt_weld_flags unordered = {0};
+	for (size_t v = begin; v < end; v++) {
+		unordered |= nt_weld_load(&mesh, v, &w->rows[v]);
+		hashes[v] = (uint32_t)(nt_weld_hash(&key, &w->rows[v]) >> 32);
+	}
+	return unordered;
+}
 
 /* Vertices by which attributes are prefetched. What processors prefetch by themselves ends with a page of 4 KB: at
  * every 128th vertex or so one of the three arrays has come to another. */
@@ -116,7 +129,7 @@ static void load_range(void *context, size_t begin, size_t end, unsigned slot)
 		last = end - first < NT_WELD_BATCH ? end : first + NT_WELD_BATCH;
 		if (end - first >= LOAD_AHEAD + NT_WELD_BATCH)
 			prefetch_attributes(s->w->mesh, first + LOAD_AHEAD, first + LOAD_AHEAD + NT_WELD_BATCH);
-		if (!nt_weld_ordered(nt_weld_load_some(s->w->mesh, first, last, s->w->rows, s->places)))
+		if (!nt_weld_ordered(load_rows(s->w, first, last, s->places)))
 			find_unordered(s, first, last, marked);
 		for (size_t v = first; v < last; v++)
 			__builtin_prefetch(&marked[word_of(s->places[v], s->word_bits)], 1);
@@ -202,7 +215,7 @@ static bool number_vertices(nt_welder *w, const uint32_t *list, size_t count, un
 {
 	if (count == 0)
 		return true;
-	nt_welder listed = {.mesh = w->mesh, .row_memory = w->memory, .memory = w->memory, .items = list,
+	nt_welder listed = {.mesh = w->mesh, .key = w->key, .row_memory = w->memory, .memory = w->memory, .items = list,
 		.item_count = count, .row_guess = count};
 	listed.numbers = nt_borrowed_alloc(w->memory, count, sizeof *listed.numbers);
 	if (!listed.numbers || !nt_weld_items(&listed, ranges))

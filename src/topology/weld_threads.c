@@ -247,6 +247,5 @@ static bool weld_items_alone(nt_welder *w)
 
 bool nt_weld_items(nt_welder *w, unsigned ranges)
 {
-	w->key = nt_weld_make_key();
 	return HAS_THREADS && ranges > 1 && w->item_count > 1 ? weld_items_threads(w, ranges) : weld_items_alone(w);
 }

@@ -269,33 +269,6 @@ static void many_equal_vertices_weld_alike(void **state)
 	check_doubles(60000, 90000, 90, NAN);
 }
 
-/* Rows that differ in u alone where v is such that a factor of nt_weld_four.h is 0: they have one hash. `same` of them,
- * every third of which is equal to the one before, among others. */
-static void check_one_hash(size_t same)
-{
-	enum { VERTICES = 3000, CORNERS = 9000 };
-	const uint32_t bits = 0u - 0xec4e6c89u;
-	vertex_row *rows = calloc(VERTICES, sizeof *rows);
-	for (size_t v = 0; v < VERTICES; v++)
-		rows[v][0] = (float)v;
-	for (size_t i = 0; i < same; i++) {
-		const size_t v = VERTICES / same * i;
-		rows[v][0] = 0;
-		rows[v][6] = (float)(i - (i % 3 == 2));
-		memcpy(&rows[v][7], &bits, sizeof bits);
-	}
-	check_corners(rows, VERTICES, CORNERS, 9);
-	free(rows);
-}
-
-static void vertices_of_one_hash_weld_alike(void **state)
-{
-	(void)state;
-	check_one_hash(3);
-	check_one_hash(100);
-	check_one_hash(3000);
-}
-
 /* A row that has that hash with another key than this process, and that number. nt_weld_hash() adds the products of the
  * first and of the last two words, each with a word of the key added by XOR. Where the first is 1 then, and the third
  * 0, the sum is the second, which is folded to itself and multiplied by an odd number; the fourth is free. */
@@ -331,8 +304,9 @@ static void rows_of_one_hash_spread(void **state)
 	nt_scratch_init(&scratch, NULL);
 	nt_borrowed memory = nt_borrow(NULL, 0, &scratch);
 	const nmtan_mesh mesh = mesh_of((const vertex_row *)rows, COUNT, NULL, COUNT);
-	nt_welder w = {.mesh = &mesh, .row_memory = &memory, .memory = &memory, .item_count = COUNT, .row_guess = COUNT,
-		.numbers = nt_scratch_alloc(&scratch, COUNT, sizeof *w.numbers)};
+	nt_welder w = {.mesh = &mesh, .key = nt_weld_make_key(), .row_memory = &memory, .memory = &memory,
+		.item_count = COUNT, .row_guess = COUNT, .numbers =
+			nt_scratch_alloc(&scratch, COUNT, sizeof *w.numbers)};
 	assert_true(nt_weld_items(&w, 1));
 	assert_int_equal(w.row_count, COUNT);
 	size_t run = 0;
@@ -458,7 +432,6 @@ int main(void)
 		cmocka_unit_test(some_equal_vertices_of_many_weld_alike),
 		cmocka_unit_test(equal_vertices_in_one_place_weld_alike),
 		cmocka_unit_test(many_equal_vertices_weld_alike),
-		cmocka_unit_test(vertices_of_one_hash_weld_alike),
 		cmocka_unit_test(rows_of_one_hash_spread),
 		cmocka_unit_test(every_number_of_vertices_welds_alike),
 		cmocka_unit_test(flat_soups_weld_alike),

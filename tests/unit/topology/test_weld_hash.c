@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * The hashes of the weld's rows (topology/weld_row.h, weld_four.h): vertices of structured meshes spread over a table
- * as random ones would.
+ * The hash of the weld's rows (topology/weld_row.h): vertices of structured meshes spread over a table as random ones
+ * would.
  */
 #include "test.h"
 #include <stdlib.h>
 #include <string.h>
-#include "topology/weld_four.h"
 #include "topology/weld_parts.h"
 
 enum { SIDE = 256, COUNT = SIDE * SIDE, TABLE_BITS = 17, TAG_BITS = 14 };
@@ -128,26 +127,6 @@ static void hash_of_a_row(make_row *make, uint64_t *hashes)
 	}
 }
 
-/* The lower bits, which mark, stand where the other one's tags come from. */
-static void hashes_of_four_rows(make_row *make, uint64_t *hashes)
-{
-	float (*values)[8] = malloc(COUNT * sizeof *values);
-	nt_weld_row *rows = malloc(COUNT * sizeof *rows);
-	uint32_t *four = malloc(COUNT * sizeof *four);
-	for (unsigned i = 0; i < COUNT; i++)
-		make(i, (float)(i % SIDE), (float)(i / SIDE), values[i]);
-	const nmtan_mesh mesh = {.positions = values[0], .position_stride_bytes = 32, .normals = values[0] + 3,
-		.normal_stride_bytes = 32, .texcoords = values[0] + 6, .texcoord_stride_bytes = 32};
-	nt_weld_load_some(&mesh, 0, COUNT, rows, four);
-	assert_memory_equal(rows, values, COUNT * sizeof *rows);
-	for (unsigned i = 0; i < COUNT; i++)
-		hashes[i] = (uint64_t)(four[i] >> TAG_BITS) << (32 + TAG_BITS) |
-			(uint64_t)(four[i] & ((1 << TAG_BITS) - 1)) << 20;
-	free(values);
-	free(rows);
-	free(four);
-}
-
 /* Mean entries looked at to find a row again in a table that has become half full. */
 static double mean_probes(const uint64_t *hashes)
 {
@@ -198,16 +177,14 @@ static void structured_rows_spread_like_random_ones(void **state)
 		{"a cube of few values", cube_of_few_values},
 	};
 	uint64_t *hashes = malloc(COUNT * sizeof *hashes);
-	for (size_t f = 0; f < 2 * (sizeof families / sizeof *families); f++) {
+	for (size_t f = 0; f < sizeof families / sizeof *families; f++) {
 		/* linear probing, random hashes: (1 + 1 / (1 - 1/2)) / 2 = 1.5 (Knuth 6.4); a table of 2^17 entries
-		 * strays from it by 0.01. Four rows at a time have tables that are emptier, and may spread better */
-		const bool four = f % 2;
-		(four ? hashes_of_four_rows : hash_of_a_row)(families[f / 2].make, hashes);
+		 * strays from it by 0.01 */
+		hash_of_a_row(families[f].make, hashes);
 		const double probes = mean_probes(hashes), tags = tag_matches(hashes);
-		if ((probes < 1.45 && !four) || probes > (four ? 1.6 : 1.55) || (tags < 0.9 && !four) ||
-			tags > (four ? 1.4 : 1.1))
-			fail_msg("%s%s: %.3f probes instead of 1.5, tags agree %.3f times as often as random ones",
-				families[f / 2].name, four ? ", four rows at a time" : "", probes, tags);
+		if (probes < 1.45 || probes > 1.55 || tags < 0.9 || tags > 1.1)
+			fail_msg("%s: %.3f probes instead of 1.5, tags agree %.3f times as often as random ones",
+				families[f].name, probes, tags);
 	}
 	free(hashes);
 }
