@@ -29,16 +29,6 @@
 /* Below the sign of a float: it is 2 or more, infinite, or NaN. */
 #define TWO 0x40000000u
 
-/* A state with that bit where `there`: one masked operation, or two without masks. */
-static inline __attribute__((always_inline)) uint32_t set_where(uint32_t state, bool there, uint32_t bit)
-{
-#if WIDTH == 16
-	return there ? state | bit : state;
-#else
-	return state | (there ? bit : 0);
-#endif
-}
-
 static inline __attribute__((always_inline)) uint32_t bits_of(float x)
 {
 	uint32_t bits;
@@ -64,11 +54,6 @@ static inline __attribute__((always_inline)) uint32_t state_of(const float u[3],
 	const uint32_t beyond = all & 0x54005400u, sides = beyond + (all >> 1 & beyond);
 	return NT_STATE_BASE | NT_STATE_NO_ANY | NT_STATE_LOCAL | (sides & 0xfc00u) | (sides >> 22 & 0x03ffu) |
 	       ((sound & (b | c | c << 16)) >> 30 & NT_STATE_SOUND);
-}
-
-static inline __attribute__((always_inline)) int is_zero(float x, float y, float z)
-{
-	return (x == 0.0f) & (y == 0.0f) & (z == 0.0f);
 }
 
 /* Corners in lanes, by component. */
@@ -99,10 +84,8 @@ typedef struct corner_angles {
 #endif
 } corner_angles;
 
-/* Each corner's edges without their part along n, and what makes them unit vectors; `along`: directions and edges
- * along the normal, of which nothing is left but zero, are sound as well. */
-static inline __attribute__((always_inline)) void project_edges(corner_lanes a, corner_parts *restrict p,
-	bool along, int i)
+/* Each corner's edges without their part along n, and what makes them unit vectors. */
+static inline __attribute__((always_inline)) void project_edges(corner_lanes a, corner_parts *restrict p, int i)
 {
 	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
 	const float e[3] = {a.e[0][i], a.e[1][i], a.e[2][i]};
@@ -111,20 +94,20 @@ static inline __attribute__((always_inline)) void project_edges(corner_lanes a, 
 	const float nf = n[0] * f[0] + n[1] * f[1] + n[2] * f[2];
 	const float ex = e[0] - ne * n[0], ey = e[1] - ne * n[1], ez = e[2] - ne * n[2];
 	const float fx = f[0] - nf * n[0], fy = f[1] - nf * n[1], fz = f[2] - nf * n[2];
-	p->of_e[KEPT_AT(i)] = along && is_zero(ex, ey, ez) ? 1.0f : a.turned / sqrtf(ex * ex + ey * ey + ez * ez);
-	p->of_f[KEPT_AT(i)] = along && is_zero(fx, fy, fz) ? 1.0f : 1.0f / sqrtf(fx * fx + fy * fy + fz * fz);
+	p->of_e[KEPT_AT(i)] = a.turned / sqrtf(ex * ex + ey * ey + ez * ez);
+	p->of_f[KEPT_AT(i)] = 1.0f / sqrtf(fx * fx + fy * fy + fz * fz);
 	p->e[0][KEPT_AT(i)] = ex, p->e[1][KEPT_AT(i)] = ey, p->e[2][KEPT_AT(i)] = ez;
 	p->f[0][KEPT_AT(i)] = fx, p->f[1][KEPT_AT(i)] = fy, p->f[2][KEPT_AT(i)] = fz;
 }
 
 /* The same of the u directions. */
-static inline __attribute__((always_inline)) void project_u(corner_lanes a, corner_parts *restrict p, bool along, int i)
+static inline __attribute__((always_inline)) void project_u(corner_lanes a, corner_parts *restrict p, int i)
 {
 	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
 	const float os[3] = {a.u[0][i], a.u[1][i], a.u[2][i]};
 	const float nu = n[0] * os[0] + n[1] * os[1] + n[2] * os[2];
 	const float ux = os[0] - nu * n[0], uy = os[1] - nu * n[1], uz = os[2] - nu * n[2];
-	const float uu = along && is_zero(ux, uy, uz) ? 1.0f : ux * ux + uy * uy + uz * uz;
+	const float uu = ux * ux + uy * uy + uz * uz;
 	p->of_u[KEPT_AT(i)] = 1.0f / sqrtf(uu);
 	p->sound[KEPT_AT(i)] = bits_of(uu) + WELL_INSIDE;
 	p->u[0][KEPT_AT(i)] = ux, p->u[1][KEPT_AT(i)] = uy, p->u[2][KEPT_AT(i)] = uz;
@@ -169,7 +152,7 @@ static inline __attribute__((always_inline)) float end_angle(const corner_angles
 
 /* Each corner's unit directions and the bits of what holds for it. */
 static inline __attribute__((always_inline)) void finish_directions(corner_lanes a, const corner_parts *restrict p,
-	const corner_angles *restrict angles, bool along, bool more, int i)
+	const corner_angles *restrict angles, bool more, int i)
 {
 	const float n[3] = {a.n[0][i], a.n[1][i], a.n[2][i]};
 	const float ot[3] = {a.v[0][i], a.v[1][i], a.v[2][i]};
@@ -182,18 +165,13 @@ static inline __attribute__((always_inline)) void finish_directions(corner_lanes
 	 * as long as it is: see BEYOND */
 	const uint32_t sound =
 		p->sound[KEPT_AT(i)] & ~(bits_of(v[0]) | bits_of(v[1]) | bits_of(v[2]) | bits_of(angles->cosine[i]));
-	uint32_t state = state_of(u, v, sound);
-	const int no_v = along && is_zero(v[0], v[1], v[2]);
-	if (along) {
-		state = set_where(state, is_zero(whole[0], whole[1], whole[2]), NT_STATE_U);
-		state = set_where(state, no_v, NT_STATE_V | (sound >> 30 & NT_STATE_SOUND));
-	}
+	const uint32_t state = state_of(u, v, sound);
 	a.sum[0][i] = u[0];
 	a.sum[1][i] = u[1];
 	a.sum[2][i] = u[2];
 	memcpy(&a.sum[3][i], &state, sizeof state);
 	if (more) {
-		const float vr = no_v ? 1.0f : 1.0f / sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+		const float vr = 1.0f / sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 		a.extra[0][i] = vr * v[0];
 		a.extra[1][i] = vr * v[1];
 		a.extra[2][i] = vr * v[2];

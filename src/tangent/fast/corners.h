@@ -172,7 +172,7 @@ static void corner_sums(const nt_weld_row *rows, const uint32_t *list, size_t co
 				e[c][i] = choose(s.k[i], edges.of[0][c][i], -edges.of[0][c][i], edges.of[1][c][i]);
 				f[c][i] = choose(s.k[i], edges.of[1][c][i], edges.of[2][c][i], edges.of[2][c][i]);
 			}
-		solve_corner(corners, true);
+		solve_corner(corners);
 		interleave(out.sum[0], NT_LANES, out.add[0]);
 		for (size_t i = 0; i < NT_LANES; i++)
 			memcpy(&add[first + i], out.add[0] + 4 * turned_place(i), sizeof *add);

@@ -22,12 +22,12 @@ static inline __attribute__((always_inline)) corner_lanes corner_of(const lanes_
 		.extra = out->extra[k]};
 }
 
-/* Lanes [0, count); the frames too, if `frames`. In wide vectors there is one loop for each idea, and each of them
+/* Lanes [0, count). In wide vectors there is one loop for each idea, and each of them
  * begun early whose square roots others wait for: in a single one there are more values under way than registers, and
  * in the order of corners the processor's queue is full of what waits. This order takes 490 cycles for 16 triangles on
  * an EPYC 9004 with AVX-512, others 500 to 550. */
 static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *restrict in, lanes_out *restrict out,
-	bool frames, bool along, bool more, int count)
+	bool more, int count)
 {
 	if (count < WIDTH)
 		__builtin_unreachable(); /* keeps gcc 12 from warning of loops that are not entered */
@@ -38,41 +38,39 @@ static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *re
 #if WIDTH > 4
 	corner_parts p[3];
 	EACH_LANE(count) make_edges(in, &edges, i);
-	EACH_LANE(count) project_edges(a, &p[0], along, i);
-	EACH_LANE(count) project_edges(b, &p[1], along, i);
-	if (frames)
-		EACH_LANE(count) solve_frames(in, &edges, out, more, i);
-	EACH_LANE(count) project_edges(c, &p[2], along, i);
+	EACH_LANE(count) project_edges(a, &p[0], i);
+	EACH_LANE(count) project_edges(b, &p[1], i);
+	EACH_LANE(count) solve_frames(in, &edges, out, more, i);
+	EACH_LANE(count) project_edges(c, &p[2], i);
 	EACH_LANE(count) find_cosine(&p[1], &angles[1], i);
 	EACH_LANE(count) find_cosine(&p[0], &angles[0], i);
 	EACH_LANE(count) begin_angle(&angles[0], i);
 	EACH_LANE(count) find_cosine(&p[2], &angles[2], i);
-	EACH_LANE(count) project_u(a, &p[0], along, i);
-	EACH_LANE(count) project_u(b, &p[1], along, i);
-	EACH_LANE(count) finish_directions(a, &p[0], &angles[0], along, more, i);
+	EACH_LANE(count) project_u(a, &p[0], i);
+	EACH_LANE(count) project_u(b, &p[1], i);
+	EACH_LANE(count) finish_directions(a, &p[0], &angles[0], more, i);
 	EACH_LANE(count) begin_angle(&angles[1], i);
 	EACH_LANE(count) weigh_corner(a, &angles[0], out, more, i);
 	EACH_LANE(count) begin_angle(&angles[2], i);
-	EACH_LANE(count) project_u(c, &p[2], along, i);
-	EACH_LANE(count) finish_directions(b, &p[1], &angles[1], along, more, i);
+	EACH_LANE(count) project_u(c, &p[2], i);
+	EACH_LANE(count) finish_directions(b, &p[1], &angles[1], more, i);
 	EACH_LANE(count) weigh_corner(b, &angles[1], out, more, i);
-	EACH_LANE(count) finish_directions(c, &p[2], &angles[2], along, more, i);
+	EACH_LANE(count) finish_directions(c, &p[2], &angles[2], more, i);
 	EACH_LANE(count) weigh_corner(c, &angles[2], out, more, i);
 #else
 	EACH_LANE(count) {
 		make_edges(in, &edges, i);
-		if (frames)
-			solve_frames(in, &edges, out, more, i);
+		solve_frames(in, &edges, out, more, i);
 	}
 	const corner_lanes corners[3] = {a, b, c};
 #pragma GCC unroll 3
 	for (int k = 0; k < 3; k++)
 		EACH_LANE(count) {
 			corner_parts p;
-			project_edges(corners[k], &p, along, i);
-			project_u(corners[k], &p, along, i);
+			project_edges(corners[k], &p, i);
+			project_u(corners[k], &p, i);
 			find_cosine(&p, &angles[k], i);
-			finish_directions(corners[k], &p, &angles[k], along, more, i);
+			finish_directions(corners[k], &p, &angles[k], more, i);
 			begin_angle(&angles[k], i);
 		}
 #pragma GCC unroll 3
@@ -84,23 +82,23 @@ static inline __attribute__((always_inline)) void solve_lanes(const lanes_in *re
 }
 
 /* A single corner in each lane. */
-static inline __attribute__((always_inline)) void solve_corner(corner_lanes a, bool along)
+static inline __attribute__((always_inline)) void solve_corner(corner_lanes a)
 {
 	corner_angles angles;
 #if WIDTH > 4
 	corner_parts p;
-	EACH_LANE(NT_LANES) project_edges(a, &p, along, i);
-	EACH_LANE(NT_LANES) project_u(a, &p, along, i);
+	EACH_LANE(NT_LANES) project_edges(a, &p, i);
+	EACH_LANE(NT_LANES) project_u(a, &p, i);
 	EACH_LANE(NT_LANES) find_cosine(&p, &angles, i);
 	EACH_LANE(NT_LANES) begin_angle(&angles, i);
-	EACH_LANE(NT_LANES) finish_directions(a, &p, &angles, along, false, i);
+	EACH_LANE(NT_LANES) finish_directions(a, &p, &angles, false, i);
 #else
 	EACH_LANE(NT_LANES) {
 		corner_parts p;
-		project_edges(a, &p, along, i);
-		project_u(a, &p, along, i);
+		project_edges(a, &p, i);
+		project_u(a, &p, i);
 		find_cosine(&p, &angles, i);
-		finish_directions(a, &p, &angles, along, false, i);
+		finish_directions(a, &p, &angles, false, i);
 		begin_angle(&angles, i);
 	}
 #endif
@@ -121,24 +119,6 @@ static inline bool are_plain(const lanes_out *out, size_t corners, size_t count)
 	return !any_lane(~all & TWO);
 }
 
-/* Whether a corner of a sound triangle is not: directions or edges may lie along normals. */
-static inline __attribute__((always_inline)) bool has_extremes(const lanes_out *out, size_t count)
-{
-	lanes extreme = {0};
-	for (size_t i = 0; i < count; i += WIDTH) {
-		const lanes states = load_lanes(out->sum[0][3] + i) & load_lanes(out->sum[1][3] + i) &
-			load_lanes(out->sum[2][3] + i);
-		extreme |= load_lanes(out->sound + i) & ~load_lanes(out->degenerate + i) & ~(states / NT_STATE_SOUND);
-	}
-	return any_lane(extreme);
-}
-
-/* Corners once more, which is rare. */
-static void __attribute__((noinline)) solve_along(const lanes_in *in, lanes_out *out, size_t lane_count)
-{
-	solve_lanes(in, out, false, true, false, (int)lane_count);
-}
-
 /* What is to be known of lanes that are solved: so many corners' sums say whether they are plain. */
 static inline void judge(const lanes_in *restrict in, lanes_out *restrict out, float offset, size_t corners,
 	size_t lane_count)
@@ -154,15 +134,13 @@ static void __attribute__((noinline)) solve_lanes_plain(const lanes_in *restrict
 	float offset, size_t count)
 {
 	const size_t lane_count = whole_lanes(count);
-	solve_lanes(in, out, true, false, false, (int)lane_count);
+	solve_lanes(in, out, false, (int)lane_count);
 	judge(in, out, offset, 3, lane_count);
-	if (NT_SHORT_WAYS && !out->plain && has_extremes(out, lane_count))
-		solve_along(in, out, lane_count);
 }
 
 static void __attribute__((noinline)) solve_lanes_more(const lanes_in *in, lanes_out *out, float offset)
 {
-	solve_lanes(in, out, true, false, true, NT_LANES);
+	solve_lanes(in, out, true, NT_LANES);
 	for (int k = 0; k < 3; k++) {
 		interleave(out->extra[k], NT_LANES, out->more[k][0]);
 		interleave(out->extra[k] + 4, NT_LANES, out->more[k][1]);
