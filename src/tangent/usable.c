@@ -2,8 +2,7 @@
 /*
  * The search for unusable tangents: see usable.h. Most faces need no look: a method that has bounded the error of
  * its determinants and checked the vectors it shared out knows that they are usable (nt_solve.known). The others
- * are suspects. Of triangles, those among 64 are found and asked for first and then checked: where suspects are many
- * they lie anywhere, and cache misses took most of the time.
+ * are suspects. Of triangles, those among 64 are found first and then checked.
  */
 #include "tangent/usable.h"
 
@@ -161,24 +160,6 @@ static uint64_t find_suspects(const nt_known *known, const uint8_t *flags, size_
 	return suspects;
 }
 
-static void ask_for_triangle(const nt_solve *solve, size_t t)
-{
-	int orientation;
-	if (solve->tangents) {
-		__builtin_prefetch(solve->tangents + 12 * t);
-		__builtin_prefetch(solve->tangents + 12 * t + 11);
-	}
-	if (NT_SHORT_WAYS && solve->known && solve->known->judged &&
-		nt_knows_orientation(solve->known, t, &orientation))
-		return;
-	for (size_t c = 3 * t; c < 3 * t + 3; c++) {
-		const size_t v = nt_vertex_of(solve->mesh, c);
-		__builtin_prefetch(nt_normal(solve->mesh, v));
-		__builtin_prefetch(nt_position(solve->mesh, v));
-		__builtin_prefetch(nt_texcoord(solve->mesh, v));
-	}
-}
-
 /* Checks a suspect; true: it is faulty. */
 static bool check_triangle(const nt_solve *solve, size_t t, nmtan_counts *counts)
 {
@@ -209,8 +190,6 @@ static void check_triangles(const search *job, size_t begin, size_t end, nmtan_c
 			? find_suspects(solve->known, solve->known->flags + first, count, &counts->mirrored)
 			: UINT64_MAX >> (WORD - count);
 		uint64_t faulty = 0;
-		for (uint64_t bits = suspects; bits; bits &= bits - 1)
-			ask_for_triangle(solve, first + (size_t)__builtin_ctzll(bits));
 		for (uint64_t bits = suspects; bits; bits &= bits - 1) {
 			const int i = __builtin_ctzll(bits);
 			faulty |= (uint64_t)check_triangle(solve, first + (size_t)i, counts) << i;

@@ -43,8 +43,8 @@ enum { LISTED = 48 };
 static size_t list_triangles(const nt_fast *fast, size_t *t, uint32_t list[LISTED])
 {
 	size_t count = 0;
-	for (; count < LISTED && (*t = nt_fast_next_flagged(fast, *t, NT_TRIANGLE_COMPLEX)) < fast->triangle_count; ++*t)
-		list[count++] = (uint32_t)*t;
+	while (count < LISTED && (*t = nt_fast_next_flagged(fast, *t, NT_TRIANGLE_COMPLEX)) < fast->triangle_count)
+		list[count++] = (uint32_t)(*t)++;
 	return count;
 }
 

@@ -346,12 +346,8 @@ static bool average_whole(const nt_complex *c, const nt_batch *b, const part *p,
 	*whole = (nt_corner){.kind = NT_CORNER_EXTREME};
 	add_members(p, whole);
 	finish(c, whole);
-	if (!is_one(p, first_with_frame(p))) {
-		nt_corner mean = *whole;
-		normalise_safe(mean.v);
-		if (!NT_SHORT_WAYS || !is_one(p, &mean))
-			return false;
-	}
+	if (!is_one(p, first_with_frame(p)))
+		return false;
 	const uint32_t mark = mark_of(c, p->members[0], whole);
 	for (size_t i = 0; i < p->count; i++)
 		put_result(c, b, p->members[i], whole, mark);
