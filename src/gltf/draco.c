@@ -113,7 +113,7 @@ static size_t find_wanted(const decoding *d, const nt_scene *scene, const bool *
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
 		uint64_t view;
-		if (!needed[i] || mesh->same_as || !nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(
+		if (!needed[i] || mesh->plan.same_as || !nt_json_get_uint64(nt_json_find(nt_gltf_draco_of(
 				nt_gltf_primitive_of(document, mesh)), "bufferView"), &view) ||
 			view >= document->view_count || nt_gltf_draco_block(document, view) || d->blocks[view].bytes)
 			continue;

@@ -130,9 +130,9 @@ nt_status nt_gltf_quantize_vertices(nt_scene *scene, nt_mesh *mesh, const nt_glt
 	if (!nt_gltf_draco_of(nt_gltf_primitive_of(scene->source, mesh)))
 		return quantize_plain(scene, mesh, sources, options->draco_bits, error);
 	bool all = true;
-	const nt_status status = mesh->quantized == NT_QUANTIZED_WHOLE ? uses_all(mesh, &all, error) : NT_OK;
+	const nt_status status = mesh->plan.quantized == NT_QUANTIZED_WHOLE ? uses_all(mesh, &all, error) : NT_OK;
 	if (!all)
-		mesh->quantized = NT_QUANTIZED_NOT;
+		mesh->plan.quantized = NT_QUANTIZED_NOT;
 	return status;
 }
 
@@ -160,10 +160,10 @@ nt_status nt_gltf_quantize_made_normals(nt_scene *scene, const nt_read_options *
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
-		if (!mesh->quantized || !mesh->normals_made)
+		if (!mesh->plan.quantized || !mesh->normals_made)
 			continue;
-		if (mesh->same_as)
-			mesh->solve_normals = mesh->same_as->solve_normals;
+		if (mesh->plan.same_as)
+			mesh->solve_normals = mesh->plan.same_as->solve_normals;
 		else
 			status = quantize_made(scene, mesh, bits, error);
 	}

@@ -194,9 +194,10 @@ static nt_mesh *part_of(const group *g, uint32_t mesh, uint32_t number)
 	const bool turns = k->rotation != 0 || k->scale[0] != 1 || k->scale[1] != 1;
 	*copy = *own;
 	/* where the primitive itself is loaded, for a report, and in the same way, that will do */
-	copy->same_as = own->texcoord_set == k->set && (!turns || g->kind_of[mesh - g->begin] == number) ? own : NULL;
+	const bool alike = own->texcoord_set == k->set && (!turns || g->kind_of[mesh - g->begin] == number);
+	copy->plan.same_as = alike ? own : NULL;
 	copy->texcoord_set = (uint32_t)k->set;
-	copy->transform_of = &g->scene->meshes[g->wanted[number]];
+	copy->plan.transform_of = &g->scene->meshes[g->wanted[number]];
 	return copy;
 }
 
@@ -229,8 +230,8 @@ static bool find_targets(const group *g, nt_join *join)
 static uint32_t geometry_of(const group *g, uint32_t mesh, uint32_t number)
 {
 	const nt_mesh *own = &g->scene->meshes[mesh];
-	return own->same_as && own->texcoord_set == g->kinds[number].set ? (uint32_t)(own->same_as - g->scene->meshes) :
-									    mesh;
+	const nt_mesh *same_as = own->texcoord_set == g->kinds[number].set ? own->plan.same_as : NULL;
+	return same_as ? (uint32_t)(same_as - g->scene->meshes) : mesh;
 }
 
 /* The parts of a kind, and the unit's key. u->parts: room for all candidates. */
@@ -276,7 +277,7 @@ static void share_results(const search *s, const group *g, uint32_t number, cons
 		if (!belongs(g, i, number) || !is_wanted(mesh, g->kept))
 			continue;
 		const nt_mesh *giver = first->parts[s->part_of[geometry_of(g, i, number)]];
-		mesh->same_as = giver == mesh ? NULL : giver;
+		mesh->plan.same_as = giver == mesh ? NULL : giver;
 	}
 }
 
@@ -365,7 +366,7 @@ nt_status nt_gltf_find_joins(nt_scene *scene, bool solved, bool kept, nt_error *
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
 		wanted += is_wanted(mesh, kept);
-		s.solved_faces += nt_mesh_is_wanted(mesh) && !mesh->same_as ? mesh->face_count : 0;
+		s.solved_faces += nt_mesh_is_wanted(mesh) && !mesh->plan.same_as ? mesh->face_count : 0;
 	}
 	/* a join has one wanted primitive at least */
 	scene->join_count = 0;

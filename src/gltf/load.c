@@ -189,7 +189,7 @@ static nt_status flip_texcoords(nt_scene *scene, nt_mesh *mesh, unsigned threads
 		return nt_fail_memory(error);
 	flipping f = {stored, mesh->texcoords};
 	nt_parallel_ranges(count < 2 * GRAIN ? 1 : nt_thread_count(threads), count, GRAIN, flip_range, &f);
-	if (!mesh->pooled)
+	if (!mesh->plan.pooled)
 		nt_gltf_forget(scene, stored, count * 2 * sizeof(float));
 	return NT_OK;
 }
@@ -198,7 +198,7 @@ static nt_status flip_texcoords(nt_scene *scene, nt_mesh *mesh, unsigned threads
 static nt_status load_floats(nt_scene *scene, const nt_mesh *mesh, const nt_gltf_accessor *accessor, uint32_t width,
 	float fill, float **floats, nt_error *error)
 {
-	return mesh->pooled ? nt_gltf_shared_floats(scene->source, accessor, width, fill, floats, error)
+	return mesh->plan.pooled ? nt_gltf_shared_floats(scene->source, accessor, width, fill, floats, error)
 			    : nt_gltf_floats(scene->source, accessor, width, fill, nt_mesh_arena(scene, mesh),
 				      floats, error);
 }
@@ -235,10 +235,11 @@ static nt_status make_compact(nt_scene *scene, nt_mesh *mesh, const inputs *in, 
 	nt_arena *arena = nt_mesh_arena(scene, mesh);
 	const size_t pool_count = mesh->vertex_count;
 	*view = (nt_compact){.count = pool_count};
-	if (mesh->pooled && mesh->indices && nt_compact_vertices(mesh->indices, index_count, pool_count, arena, view))
+	if (mesh->plan.pooled && mesh->indices &&
+		nt_compact_vertices(mesh->indices, index_count, pool_count, arena, view))
 		return nt_fail_memory(error);
 	if (!view->vertices)
-		return mesh->pooled && in->normals.exists && in->normals.accessor.component_type != NT_GLTF_FLOAT
+		return mesh->plan.pooled && in->normals.exists && in->normals.accessor.component_type != NT_GLTF_FLOAT
 			? copy_normals(scene, mesh, error) : NT_OK;
 	float **const rows[] = {&mesh->positions, &mesh->normals, &mesh->tangents, &mesh->colors, &mesh->texcoords};
 	static const size_t floats[] = {3, 3, 4, 4, 2};
@@ -256,7 +257,7 @@ static nt_status make_compact(nt_scene *scene, nt_mesh *mesh, const inputs *in, 
  * its geometry has the same one applied already, a copy in a join has that of another. */
 static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, nt_error *error)
 {
-	const nt_mesh *giver = mesh->transform_of ? mesh->transform_of : mesh;
+	const nt_mesh *giver = mesh->plan.transform_of ? mesh->plan.transform_of : mesh;
 	if (!giver->texcoords_transformed)
 		return NT_OK;
 	const nt_json_value *primitive = nt_gltf_primitive_of(document, giver);
@@ -265,7 +266,7 @@ static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *me
 		&shading, error);
 	if (status || !shading.has_set || shading.set != mesh->texcoord_set || !mesh->texcoords)
 		return status;
-	const bool own = !mesh->transform_of;
+	const bool own = !mesh->plan.transform_of;
 	/* findings come in the order of the meshes */
 	if (document->is_shared && (shading.transforms_differ || shading.transform.animated))
 		return nt_gltf_refuse(error);
@@ -275,7 +276,7 @@ static nt_status apply_transform(nt_scene *scene, nt_gltf *document, nt_mesh *me
 	if (own && shading.transform.animated)
 		nt_finding_add(&scene->findings, NT_CODE_TAN_UV_TRANSFORM_ANIMATED,
 			nt_mesh_place(mesh, &(nt_place){0}), 1, NULL);
-	return shading.transform.turns && !mesh->same_as
+	return shading.transform.turns && !mesh->plan.same_as
 		? nt_mesh_transform(mesh, &shading.transform.uv, nt_mesh_arena(scene, mesh), error) : NT_OK;
 }
 
@@ -381,7 +382,7 @@ static nt_status load_morphs(nt_scene *scene, nt_gltf *document, nt_mesh *mesh, 
 		if (morph.normals)
 			normalise_vectors(morph.normals, mesh->vertex_count);
 		/* one that moves a neighbour turns tangents at the border */
-		const nt_join *join = mesh->join;
+		const nt_join *join = mesh->plan.join;
 		if (morph.positions || morph.normals || (join && i < join->target_count && join->moves[i]))
 			mesh->morphs[mesh->morph_count++] = morph;
 	}
@@ -466,7 +467,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 {
 	nt_gltf *document = scene->source;
 	const nt_json_value *primitive;
-	if (mesh->same_as) {
+	if (mesh->plan.same_as) {
 		nt_mesh_share(mesh);
 		return apply_transform(scene, document, mesh, error);
 	}
@@ -485,7 +486,7 @@ nt_status nt_gltf_load(nt_scene *scene, nt_mesh *mesh, const nt_read_options *op
 		status = load_faces(scene, document, mesh, primitive, &in, options->threads, &view, error);
 	if (!status && mesh->texcoords)
 		status = flip_texcoords(scene, mesh, options->threads, error);
-	if (!status && mesh->quantized)
+	if (!status && mesh->plan.quantized)
 		status = quantize(scene, mesh, &in, options, error);
 	if (!status)
 		status = apply_transform(scene, document, mesh, error);

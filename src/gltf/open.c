@@ -115,7 +115,7 @@ static nt_status describe_primitive(nt_scene *scene, nt_gltf *document,
 	mesh->has_texcoords = has_texcoords(attributes, mesh->texcoord_set);
 	mesh->targets_without_tangents = targets_without_tangents(primitive);
 	mesh->face_count = claimed_faces(corners, mode);
-	mesh->plain = indices && is_plain(primitive, mesh, mode, corners);
+	mesh->plan.plain = indices && is_plain(primitive, mesh, mode, corners);
 	mesh->primitive_count = 1;
 	mesh->primitives = nt_arena_alloc(&scene->arena, 1, sizeof *mesh->primitives);
 	if (!mesh->primitives)

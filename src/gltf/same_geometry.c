@@ -173,7 +173,7 @@ static nt_status find_all(same_job *job, nt_scene *scene, const uint32_t *positi
 		if (!status && number == known)
 			first[number] = i;
 		else if (!status)
-			mesh->same_as = &scene->meshes[first[number]];
+			mesh->plan.same_as = &scene->meshes[first[number]];
 	}
 	nt_name_table_free(&keys);
 	nt_arena_free(&arena);

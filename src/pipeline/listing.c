@@ -24,10 +24,10 @@ nt_status nt_stage_listing(const nt_scene *scene, nt_summary *summary, nt_error 
 	summary->line_count = scene->mesh_count;
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
-		const nt_mesh *solved = mesh->same_as ? mesh->same_as : mesh;
+		const nt_mesh *solved = mesh->plan.same_as ? mesh->plan.same_as : mesh;
 		nt_mesh_line *line = &summary->lines[i];
 		*line = (nt_mesh_line){.decision = mesh->decision,
-			.same = mesh->same_as && nt_mesh_is_wanted(mesh), .triangle_count = triangles_of(solved),
+			.same = mesh->plan.same_as && nt_mesh_is_wanted(mesh), .triangle_count = triangles_of(solved),
 			.vertex_count = solved->unused_vertices + solved->source_vertex_count};
 		nt_mesh_place(mesh, &line->place);
 		if (solved->vertex_count > solved->source_vertex_count)

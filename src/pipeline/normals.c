@@ -271,9 +271,9 @@ nt_status nt_stage_normals(nt_scene *scene, nt_normals mode, unsigned threads, n
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
-		if (!nt_mesh_is_wanted(mesh) || (!mesh->same_as && nt_mesh_is_solved_ahead(mesh)))
+		if (!nt_mesh_is_wanted(mesh) || (!mesh->plan.same_as && nt_mesh_is_solved_ahead(mesh)))
 			continue;
-		if (!mesh->same_as) {
+		if (!mesh->plan.same_as) {
 			status = make_normals(scene, mesh, mode, threads, error);
 			continue;
 		}

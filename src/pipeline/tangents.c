@@ -69,13 +69,13 @@ static wishes wishes_of(nt_scene *scene, const nt_settings *settings, nt_format 
 
 static bool is_solved(const nt_mesh *mesh)
 {
-	return nt_mesh_is_wanted(mesh) && !mesh->same_as;
+	return nt_mesh_is_wanted(mesh) && !mesh->plan.same_as;
 }
 
 /* Whether a mesh is solved by itself, or stands for its join. */
 static bool is_item(const nt_mesh *mesh)
 {
-	return mesh->join ? mesh->join->first == mesh : is_solved(mesh) && !nt_mesh_is_solved_ahead(mesh);
+	return mesh->plan.join ? mesh->plan.join->first == mesh : is_solved(mesh) && !nt_mesh_is_solved_ahead(mesh);
 }
 
 typedef struct mesh_bytes {
@@ -279,7 +279,7 @@ static nt_status solve_join(const wishes *job, const nt_join *join, const nmtan_
 	nt_status status = nt_join_solve(join, stored_v_offset(job), job->splits, options);
 	for (size_t i = 0; i < join->part_count; i++) {
 		nt_mesh *mesh = join->parts[i];
-		if (mesh->transform_of)
+		if (mesh->plan.transform_of)
 			continue;
 		if (!status && mesh->decision == NT_DECISION_REPAIR && mesh->tangents)
 			nt_restore_authored(mesh, mesh->corner_tangents);
@@ -302,16 +302,17 @@ static nt_status solve_item(const wishes *job, nt_mesh *mesh, unsigned threads, 
 	const nmtan_options options = {.struct_bytes = sizeof options, .method = job->settings->method,
 		.repair = job->settings->repair, .threads = threads, .workspace = workspace,
 		.timing = timing};
-	return mesh->join ? solve_join(job, mesh->join, &options, arena) : solve_mesh(job, mesh, &options, arena);
+	return mesh->plan.join ? solve_join(job, mesh->plan.join, &options, arena)
+			       : solve_mesh(job, mesh, &options, arena);
 }
 
 static size_t corners_of(const nt_mesh *mesh)
 {
-	if (!mesh->join)
+	if (!mesh->plan.join)
 		return mesh->corner_count;
 	size_t corners = 0;
-	for (size_t i = 0; i < mesh->join->part_count; i++)
-		corners += mesh->join->parts[i]->corner_count;
+	for (size_t i = 0; i < mesh->plan.join->part_count; i++)
+		corners += mesh->plan.join->parts[i]->corner_count;
 	return corners;
 }
 
@@ -362,7 +363,7 @@ nt_status nt_small_solve(nt_small_solves *small, nt_mesh *mesh, unsigned slot)
 	if (!own->workspace)
 		own->workspace = nmtan_workspace_create(NULL);
 	own->corners += corners_of(mesh);
-	return solve_item(&small->wishes, mesh, 1, own->workspace, mesh->temporary ? &own->temporary : &own->arena,
+	return solve_item(&small->wishes, mesh, 1, own->workspace, mesh->plan.temporary ? &own->temporary : &own->arena,
 		NULL);
 }
 
@@ -464,7 +465,7 @@ static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *e
 	nt_scene *scene = job->wishes.scene;
 	bool kept = true;
 	for (size_t i = 0; i < scene->mesh_count; i++)
-		if (is_solved(&scene->meshes[i]) || scene->meshes[i].join)
+		if (is_solved(&scene->meshes[i]) || scene->meshes[i].plan.join)
 			kept = keep_results(scene, &scene->meshes[i]) && kept;
 	if (!kept)
 		return nt_fail_memory(error);
@@ -481,7 +482,7 @@ static nt_status finish(const tangent_job *job, nt_summary *summary, nt_error *e
 		nt_mesh *mesh = &scene->meshes[i];
 		if (!nt_mesh_is_wanted(mesh))
 			continue;
-		if (mesh->same_as) {
+		if (mesh->plan.same_as) {
 			nt_mesh_share(mesh);
 			summary->same_count++;
 		}

@@ -55,7 +55,7 @@ static bool needs_all(const nt_tasks *t)
 /* For the report alone: a mesh that cannot be read fails a check, but no conversion that does not need it. */
 static nt_status load_for_report(window *w, nt_mesh *mesh)
 {
-	if (mesh->same_as && !mesh->same_as->positions) /* that one could not be read */
+	if (mesh->plan.same_as && !mesh->plan.same_as->positions) /* that one could not be read */
 		return NT_OK;
 	const nt_status status = w->tasks->reader->load(&w->scene, mesh, w->tasks->options, w->error);
 	if (!status || w->tasks->settings->check || status == NT_ERROR_MEMORY)
@@ -72,12 +72,12 @@ static nt_status load_copies(window *w)
 	for (size_t i = 0; !status && i < w->scene.join_count; i++)
 		for (size_t k = 0; !status && k < w->scene.joins[i].part_count; k++) {
 			nt_mesh *mesh = w->scene.joins[i].parts[k];
-			if (!mesh->transform_of)
+			if (!mesh->plan.transform_of)
 				continue;
-			if (mesh->same_as && !mesh->same_as->positions) /* that one was not loaded */
-				mesh->same_as = NULL;
+			if (mesh->plan.same_as && !mesh->plan.same_as->positions) /* that one was not loaded */
+				mesh->plan.same_as = NULL;
 			status = w->tasks->reader->load(&w->scene, mesh, w->tasks->options, w->error);
-			if (!status || mesh->join || status == NT_ERROR_MEMORY)
+			if (!status || mesh->plan.join || status == NT_ERROR_MEMORY)
 				continue;
 			mesh->positions = NULL;
 			nt_error_clear(w->error);
@@ -90,14 +90,14 @@ static nt_status load_copies(window *w)
 
 static bool is_small(const nt_mesh *mesh)
 {
-	return !mesh->same_as && mesh->face_count < LARGE_FACES;
+	return !mesh->plan.same_as && mesh->face_count < LARGE_FACES;
 }
 
 /* The geometry of a mesh that nobody asks for goes; its results stay, of a pooled one until they are merged. */
 static void drop_geometry(nt_mesh *mesh)
 {
 	const nt_split split = mesh->split;
-	if (mesh->temporary)
+	if (mesh->plan.temporary)
 		return;
 	nt_mesh_forget(mesh);
 	mesh->split = split;
@@ -110,7 +110,7 @@ static void load_small(void *context, size_t item, unsigned number)
 	if (!w->needed[item] || !is_small(mesh))
 		return;
 	slot *own = &w->slots[number];
-	const bool solved = w->solves && mesh->plain && 3 * mesh->face_count < NT_LEAST_ALONE_CORNERS;
+	const bool solved = w->solves && mesh->plan.plain && 3 * mesh->face_count < NT_LEAST_ALONE_CORNERS;
 	const nt_mesh before = *mesh;
 	nt_arena *arena = solved ? &own->passing : &own->kept;
 	nt_scene part = w->scene;
@@ -196,10 +196,10 @@ static nt_status merge_meshes(window *w)
 	const nt_tasks *t = w->tasks;
 	nt_status status = NT_OK;
 	for (size_t i = 0; !status && t->options->edits && i < w->scene.mesh_count; i++)
-		if (w->scene.meshes[i].pooled && nt_mesh_is_wanted(&w->scene.meshes[i]))
+		if (w->scene.meshes[i].plan.pooled && nt_mesh_is_wanted(&w->scene.meshes[i]))
 			status = t->writer->merge(t->scene, &w->scene.meshes[i], w->error);
 	for (size_t i = 0; i < w->scene.mesh_count; i++)
-		if (w->scene.meshes[i].temporary)
+		if (w->scene.meshes[i].plan.temporary)
 			nt_mesh_forget(&w->scene.meshes[i]);
 	nt_arena_free(&w->scene.temporary);
 	return status;
@@ -232,7 +232,7 @@ static size_t find_end(const nt_scene *scene, size_t first)
 	size_t corners = 0, end = first;
 	while (end < scene->mesh_count && corners <= WINDOW_CORNERS) {
 		const nt_mesh *mesh = &scene->meshes[end++];
-		corners += mesh->temporary && !mesh->same_as ? 3 * mesh->face_count : 0;
+		corners += mesh->plan.temporary && !mesh->plan.same_as ? 3 * mesh->face_count : 0;
 	}
 	return end;
 }

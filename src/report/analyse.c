@@ -262,7 +262,7 @@ typedef struct checked_meshes {
 
 static uint32_t find_first(const nt_scene *scene, checked_meshes *checked, uint32_t mesh)
 {
-	const nt_mesh *same_as = scene->meshes[mesh].same_as;
+	const nt_mesh *same_as = scene->meshes[mesh].plan.same_as;
 	if (!same_as)
 		return mesh;
 	uint32_t at = (uint32_t)(same_as - scene->meshes);

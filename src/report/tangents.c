@@ -427,7 +427,7 @@ static nt_status compare_with_fresh(nt_check *check)
 {
 	const nt_mesh *mesh = check->mesh;
 	/* --across=mesh: as the mesh is solved with the others of its join */
-	if (mesh->join && mesh->corner_tangents && mesh->decision != NT_DECISION_REPAIR)
+	if (mesh->plan.join && mesh->corner_tangents && mesh->decision != NT_DECISION_REPAIR)
 		return check_directions(check, mesh->corner_tangents);
 	float *fresh = nt_scratch_alloc(check->scratch, 4 * mesh->corner_count, sizeof *fresh);
 	if (!fresh)

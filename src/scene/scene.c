@@ -57,7 +57,7 @@ const nt_place *nt_mesh_place(const nt_mesh *mesh, nt_place *place)
 void nt_mesh_share(nt_mesh *mesh)
 {
 	const nt_mesh own = *mesh;
-	*mesh = *own.same_as;
+	*mesh = *own.plan.same_as;
 	/* all but geometry and results: what it is called, what decides, and its material */
 	mesh->name = own.name;
 	mesh->gltf_mesh = own.gltf_mesh;
@@ -76,9 +76,9 @@ void nt_mesh_share(nt_mesh *mesh)
 	mesh->texcoord_other_set = own.texcoord_other_set;
 	mesh->targets_without_tangents = own.targets_without_tangents;
 	mesh->decision = own.decision;
-	mesh->same_as = own.same_as;
-	mesh->join = own.join;
-	mesh->transform_of = own.transform_of;
+	mesh->plan.same_as = own.plan.same_as;
+	mesh->plan.join = own.plan.join;
+	mesh->plan.transform_of = own.plan.transform_of;
 	mesh->primitives = own.primitives;
 	mesh->primitive_count = own.primitive_count;
 	if (mesh->primitive_count == 1)

@@ -158,6 +158,21 @@ typedef enum nt_quantized {
 	NT_QUANTIZED_WHOLE /* if faces use all vertices of its block: otherwise it cannot be compressed again */
 } nt_quantized;
 
+/* What is done with a mesh, found before anything is loaded: reader, stages and writer keep to it. */
+typedef struct nt_mesh_plan {
+	const struct nt_mesh *same_as; /* an earlier mesh with the same geometry, which is loaded and solved once;
+	                                  NULL: none. That one has none */
+	const nt_join *join;     /* it is solved with the others of it; NULL: by itself */
+	const struct nt_mesh *transform_of; /* of a copy in a join: the mesh whose texture transform applies; NULL:
+	                                       its own */
+	nt_quantized quantized;
+	bool plain;              /* of its geometry, an edit of the source's document needs what a solve makes
+	                            of it alone */
+	bool pooled;             /* others have its vertices and other triangles: it is loaded with the vertices that
+	                            it uses */
+	bool temporary;          /* what it holds lies in scene->temporary, and is gone once the writer has merged it */
+} nt_mesh_plan;
+
 typedef struct nt_mesh {
 	/* what it is called and where it stands */
 	const char *name;     /* object or mesh name; "" where there is none */
@@ -183,18 +198,7 @@ typedef struct nt_mesh {
 	uint32_t texcoord_other_set;
 	uint32_t targets_without_tangents; /* morph targets that move it and have no TANGENT */
 	nt_decision decision;
-	const struct nt_mesh *same_as; /* an earlier mesh with the same geometry, which is loaded and solved once;
-	                                  NULL: none. That one has none */
-
-	bool plain;              /* of its geometry, an edit of the source's document needs what a solve makes
-	                            of it alone */
-	nt_quantized quantized;
-	bool pooled;             /* others have its vertices and other triangles: it is loaded with the vertices that
-	                            it uses */
-	bool temporary;          /* what it holds lies in scene->temporary, and is gone once the writer has merged it */
-	const nt_join *join;     /* it is solved with the others of it; NULL: by itself */
-	const struct nt_mesh *transform_of; /* of a copy in a join: the mesh whose texture transform applies; NULL:
-	                                       its own */
+	nt_mesh_plan plan;
 
 	/* geometry: filled by load(). Arrays belong to the scene's arena or point into the input. */
 	size_t vertex_count;
@@ -333,13 +337,13 @@ static inline bool nt_mesh_is_solved_ahead(const nt_mesh *mesh)
 /* Whether nobody keeps the triangles of a solved mesh: it was solved ahead, and none of its vertices was split. */
 static inline bool nt_mesh_left_triangles(const nt_mesh *mesh)
 {
-	return mesh->plain && !mesh->indices && !mesh->split.indices;
+	return mesh->plan.plain && !mesh->indices && !mesh->split.indices;
 }
 
 /* The arena of what a mesh holds. */
 static inline nt_arena *nt_mesh_arena(nt_scene *scene, const nt_mesh *mesh)
 {
-	return mesh->temporary ? &scene->temporary : &scene->arena;
+	return mesh->plan.temporary ? &scene->temporary : &scene->arena;
 }
 
 /* Makes NULL of what a mesh holds in an arena that is gone: geometry and results, but not what is counted of them. */

@@ -151,7 +151,7 @@ static bool is_one_primitive(const nt_vertex_pool *pool)
 	const nt_json_value *first = nt_pool_primitive(pool, 0);
 	for (size_t i = 1; i < pool->user_count; i++) {
 		const nt_json_value *other = nt_pool_primitive(pool, i);
-		if (nt_pool_mesh(pool, i)->same_as != nt_pool_mesh(pool, 0) ||
+		if (nt_pool_mesh(pool, i)->plan.same_as != nt_pool_mesh(pool, 0) ||
 			!nt_json_equal(nt_gltf_draco_of(first), nt_gltf_draco_of(other)))
 			return false;
 		static const char *const members[] = {"attributes", "targets", "indices"};

@@ -110,7 +110,7 @@ static nt_status look_at_pool(planning *f, size_t number, nt_error *error)
 	if (takes && !compressed && look_at_values(f, &recoding, &takes, &ignored))
 		return nt_fail_memory(error);
 	for (size_t i = 0; takes && i < pool.user_count; i++)
-		f->scene->meshes[pool.users[i]].quantized =
+		f->scene->meshes[pool.users[i]].plan.quantized =
 			compressed && recoding.outside ? NT_QUANTIZED_WHOLE : NT_QUANTIZED;
 	return NT_OK;
 }
@@ -121,9 +121,9 @@ static void clear_shared(nt_scene *scene)
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
 		/* a copy in a join is none of the scene's, and is not marked */
-		if (mesh->same_as >= scene->meshes && mesh->same_as < scene->meshes + scene->mesh_count &&
-			!mesh->quantized)
-			scene->meshes[mesh->same_as - scene->meshes].quantized = NT_QUANTIZED_NOT;
+		if (mesh->plan.same_as >= scene->meshes && mesh->plan.same_as < scene->meshes + scene->mesh_count &&
+			!mesh->plan.quantized)
+			scene->meshes[mesh->plan.same_as - scene->meshes].plan.quantized = NT_QUANTIZED_NOT;
 	}
 }
 
@@ -170,7 +170,7 @@ static const char *name_of(const nt_mesh *mesh, bool texcoords, char (*name)[32]
 /* Whether a part is plain and will be compressed. */
 static bool is_new(const planning *f, const nt_mesh *part)
 {
-	return part->quantized && !nt_gltf_draco_of(nt_gltf_primitive_of(f->scene->source, part));
+	return part->plan.quantized && !nt_gltf_draco_of(nt_gltf_primitive_of(f->scene->source, part));
 }
 
 /* One grid for the positions, or the texture coordinates, of the parts that will be compressed; integers need none, as
@@ -226,7 +226,7 @@ static void look_at_join(const planning *f, const nt_join *join)
 	all &= lay_grid(f, join, true);
 	for (size_t i = 0; !all && i < join->part_count; i++)
 		if (is_new(f, join->parts[i]))
-			join->parts[i]->quantized = NT_QUANTIZED_NOT;
+			join->parts[i]->plan.quantized = NT_QUANTIZED_NOT;
 }
 
 static nt_status look_at_joins(const planning *f, nt_error *error)
@@ -234,7 +234,7 @@ static nt_status look_at_joins(const planning *f, nt_error *error)
 	nt_gltf *document = f->scene->source;
 	for (size_t i = 0; i < f->scene->join_count; i++) {
 		const nt_join *join = &f->scene->joins[i];
-		if (join->parts[0]->join != join) /* only compared */
+		if (join->parts[0]->plan.join != join) /* only compared */
 			continue;
 		if (!document->grids)
 			document->grids = nt_calloc(f->pools->accessor_count, sizeof *document->grids);

@@ -350,7 +350,8 @@ static nt_status merge_user(nt_pool_merge *m, uint32_t user, nt_error *error)
 	nt_pool_vertices *vertices = &m->vertices;
 	const nt_vertex_pool *pool = &m->pool;
 	const nt_mesh *mesh = nt_pool_mesh(pool, user);
-	const uint32_t set = pool->sets.of[user], same = mesh->same_as ? find_user(pool, mesh->same_as) : NT_NONE;
+	const nt_mesh *same_as = mesh->plan.same_as;
+	const uint32_t set = pool->sets.of[user], same = same_as ? find_user(pool, same_as) : NT_NONE;
 	if (same != NT_NONE && pool->sets.of[same] == set) {
 		vertices->indices[user] = vertices->indices[same];
 		vertices->changed[user] = vertices->changed[same];
@@ -441,7 +442,7 @@ static const nt_mesh *lone_mesh(const nt_vertex_pool *pool)
 	const nt_mesh *lone = NULL;
 	for (size_t i = 0; i < pool->user_count && pool->sets.count == 1; i++) {
 		const nt_mesh *mesh = nt_pool_mesh(pool, i);
-		if (!nt_pool_is_solved(pool, i) || (lone && mesh->same_as == lone))
+		if (!nt_pool_is_solved(pool, i) || (lone && mesh->plan.same_as == lone))
 			continue;
 		if (lone || mesh->merged || mesh->normals_made || mesh->morph_count ||
 			mesh->vertex_count != mesh->source_vertex_count)

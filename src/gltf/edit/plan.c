@@ -47,7 +47,7 @@ static void join_parts(const nt_scene *scene)
 {
 	for (size_t i = 0; i < scene->join_count; i++)
 		for (size_t k = 0; k < scene->joins[i].part_count; k++)
-			scene->joins[i].parts[k]->join = &scene->joins[i];
+			scene->joins[i].parts[k]->plan.join = &scene->joins[i];
 }
 
 /* Meshes of one pool with different triangles are loaded with the vertices that each uses. */
@@ -59,9 +59,9 @@ static void find_pooled(const nt_scene *scene, const nt_read_options *options)
 		size_t count = 0;
 		for (uint32_t i = pools->first[p]; i < pools->first[p + 1]; i++)
 			count += is_loaded(&scene->meshes[pools->order[i]], options) &&
-				!scene->meshes[pools->order[i]].same_as;
+				!scene->meshes[pools->order[i]].plan.same_as;
 		for (uint32_t i = pools->first[p]; count > 1 && i < pools->first[p + 1]; i++)
-			scene->meshes[pools->order[i]].pooled = true;
+			scene->meshes[pools->order[i]].plan.pooled = true;
 	}
 }
 
@@ -71,12 +71,13 @@ static void find_temporary(const nt_scene *scene, const nt_read_options *options
 {
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		const nt_mesh *mesh = &scene->meshes[i];
-		if (mesh->same_as && mesh->texcoords_transformed)
-			scene->meshes[mesh->same_as - scene->meshes].plain = false;
+		if (mesh->plan.same_as && mesh->texcoords_transformed)
+			scene->meshes[mesh->plan.same_as - scene->meshes].plan.plain = false;
 	}
 	for (size_t i = 0; i < scene->mesh_count; i++) {
 		nt_mesh *mesh = &scene->meshes[i];
-		mesh->temporary = options->only_results && mesh->pooled && mesh->plain && nt_mesh_is_wanted(mesh);
+		nt_mesh_plan *plan = &mesh->plan;
+		plan->temporary = options->only_results && plan->pooled && plan->plain && nt_mesh_is_wanted(mesh);
 	}
 }
 

@@ -125,9 +125,9 @@ static void results_are(const char *letters, const char *joins, const char *expe
 		const nt_mesh *mesh = &scene.meshes[i];
 		if (mesh->decision != NT_DECISION_SOLVE)
 			continue;
-		assert_true(!mesh->same_as || !mesh->same_as->same_as);
-		if (mesh->same_as)
-			nt_buffer_format(&found, "%zu", (size_t)(mesh->same_as - scene.meshes));
+		assert_true(!mesh->plan.same_as || !mesh->plan.same_as->plan.same_as);
+		if (mesh->plan.same_as)
+			nt_buffer_format(&found, "%zu", (size_t)(mesh->plan.same_as - scene.meshes));
 		else
 			nt_buffer_text(&found, "-");
 	}

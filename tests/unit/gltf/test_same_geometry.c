@@ -72,7 +72,7 @@ static void expect(const char *primitives, const int *same, size_t count, const 
 	open_with(primitives, options);
 	assert_int_equal(scene.mesh_count, count);
 	for (size_t i = 0; i < count; i++) {
-		const nt_mesh *other = scene.meshes[i].same_as;
+		const nt_mesh *other = scene.meshes[i].plan.same_as;
 		assert_int_equal(other ? (int)(other - scene.meshes) : -1, same[i]);
 	}
 	close_scene();
@@ -154,7 +154,7 @@ static void a_hundred_thousand_primitives_are_no_burden(void **state)
 	open_with(primitives.data, &defaults);
 	size_t same = 0;
 	for (size_t i = 0; i < COUNT; i++)
-		same += scene.meshes[i].same_as == &scene.meshes[1];
+		same += scene.meshes[i].plan.same_as == &scene.meshes[1];
 	assert_int_equal(same, COUNT / 2 - 1);
 	close_scene();
 	nt_buffer_free(&primitives);
