@@ -21,23 +21,23 @@
 
 /* ---- finding the files ---- */
 
-enum { COMPANION_LIMIT = 64 };
+enum { SIDECAR_LIMIT = 64 };
 
-typedef struct companion {
+typedef struct sidecar {
 	char *uri;
 	nt_file file;
-} companion;
+} sidecar;
 
 typedef struct file_set {
 	nt_output *output; /* NULL: the files of an input */
 	const char *path; /* of the document */
-	companion items[COMPANION_LIMIT];
+	sidecar items[SIDECAR_LIMIT];
 	size_t count;
 	nt_error *error;
 } file_set;
 
 /* The file that a URI names: one of the output set, or one that was there before. */
-static bool open_companion(file_set *set, const char *uri, nt_file *file)
+static bool open_sidecar(file_set *set, const char *uri, nt_file *file)
 {
 	const char *slash = strrchr(set->path, '/');
 	nt_buffer path = {0};
@@ -54,7 +54,7 @@ static bool open_companion(file_set *set, const char *uri, nt_file *file)
 }
 
 /* tinygltf asks for a file several times. Images are not its business. */
-static bool find_companion(void *user, const char *uri, const unsigned char **bytes, size_t *size)
+static bool find_sidecar(void *user, const char *uri, const unsigned char **bytes, size_t *size)
 {
 	file_set *set = user;
 	for (size_t i = 0; i < set->count; i++)
@@ -63,11 +63,11 @@ static bool find_companion(void *user, const char *uri, const unsigned char **by
 			*size = set->items[i].file.size;
 			return true;
 		}
-	if (set->count == COMPANION_LIMIT)
+	if (set->count == SIDECAR_LIMIT)
 		return false;
-	companion *item = &set->items[set->count];
+	sidecar *item = &set->items[set->count];
 	item->uri = strdup(uri);
-	if (!item->uri || !open_companion(set, uri, &item->file)) {
+	if (!item->uri || !open_sidecar(set, uri, &item->file)) {
 		free(item->uri);
 		return false;
 	}
@@ -77,7 +77,7 @@ static bool find_companion(void *user, const char *uri, const unsigned char **by
 	return true;
 }
 
-static void close_companions(file_set *set)
+static void close_sidecars(file_set *set)
 {
 	for (size_t i = 0; i < set->count; i++) {
 		nt_file_close(&set->items[i].file);
@@ -546,9 +546,9 @@ static nt_status check_input(nt_scene *scene, nt_error *error)
 	nt_reread *model = NULL;
 	file_set set = {.path = scene->path, .error = &ignored};
 	const nt_status status =
-		nt_reread_open(&model, scene->bytes, scene->byte_count, find_companion, &set, &refusal);
+		nt_reread_open(&model, scene->bytes, scene->byte_count, find_sidecar, &set, &refusal);
 	nt_reread_free(model);
-	close_companions(&set);
+	close_sidecars(&set);
 	if (status == NT_ERROR_MEMORY)
 		return nt_fail_memory(error);
 	if (status != NT_ERROR_INPUT)
@@ -571,7 +571,7 @@ nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, u
 		return status;
 	nt_error ignored;
 	file_set set = {.output = output, .path = path, .error = &ignored};
-	status = nt_reread_open(&model, file.data, file.size, find_companion, &set, error);
+	status = nt_reread_open(&model, file.data, file.size, find_sidecar, &set, error);
 	const bool refused = status == NT_ERROR_INPUT;
 	if (refused)
 		status = check_input(scene, error);
@@ -580,7 +580,7 @@ nt_status nt_verify_gltf(nt_scene *scene, nt_output *output, const char *path, u
 	if (status == NT_OK && !refused)
 		status = compare_scene(scene, model, threads, error);
 	nt_reread_free(model);
-	close_companions(&set);
+	close_sidecars(&set);
 	nt_file_close(&file);
 	return status == NT_OK ? status : nt_error_in_file(error, path);
 }

@@ -9,7 +9,7 @@
 #include "base/clock.h"
 #include "file/watch.h"
 #include "format/foreign.h"
-#include "gltf/companion.h"
+#include "gltf/sidecar.h"
 #include "gltf/verify.h"
 #include "pipeline/stages.h"
 

@@ -281,7 +281,7 @@ typedef struct nt_scene {
 	nt_arena arena;
 	nt_arena temporary; /* of meshes that are */
 	nt_format format;
-	const char *path; /* for messages and to find companions; "-" is standard input */
+	const char *path; /* for messages and to find sidecars; "-" is standard input */
 	nt_mesh *meshes;
 	size_t mesh_count;
 	nt_material *materials;

@@ -112,29 +112,29 @@ static inline void compose_well(nt_scene *scene, nt_write_options options, const
 }
 
 typedef struct opened {
-	nt_file main, companion;
+	nt_file main, sidecar;
 	nt_reread *reread;
 } opened;
 
-static inline bool find_companion(void *user, const char *uri, const unsigned char **bytes, size_t *size)
+static inline bool find_sidecar(void *user, const char *uri, const unsigned char **bytes, size_t *size)
 {
 	opened *file = user;
 	nt_error error;
 	if (strstr(uri, ".bin") == NULL ||
-		nt_file_open(&file->companion, in_folder(uri), &error) != NT_OK)
+		nt_file_open(&file->sidecar, in_folder(uri), &error) != NT_OK)
 		return false;
-	*bytes = file->companion.data;
-	*size = file->companion.size;
+	*bytes = file->sidecar.data;
+	*size = file->sidecar.size;
 	return true;
 }
 
 static inline opened open_back(const char *name)
 {
-	opened file = {.companion = {.fd = -1}};
+	opened file = {.sidecar = {.fd = -1}};
 	nt_error error;
 	assert_int_equal(nt_file_open(&file.main, in_folder(name), &error), NT_OK);
 	const nt_status status = nt_reread_open(&file.reread, file.main.data, file.main.size,
-		find_companion, &file, &error);
+		find_sidecar, &file, &error);
 	if (status != NT_OK)
 		fail_msg("%s", error.message);
 	return file;
@@ -144,8 +144,8 @@ static inline void close_back(opened *file)
 {
 	nt_reread_free(file->reread);
 	nt_file_close(&file->main);
-	if (file->companion.data)
-		nt_file_close(&file->companion);
+	if (file->sidecar.data)
+		nt_file_close(&file->sidecar);
 }
 
 static inline nt_reread_array array_of(const opened *file, size_t mesh, size_t primitive, const char *name)

@@ -15,7 +15,7 @@
 #include <string.h>
 #include "file/base64.h"
 #include "gltf/accessor.h"
-#include "gltf/companion.h"
+#include "gltf/sidecar.h"
 #include "gltf/create/images.h"
 #include "gltf/create/material.h"
 #include "gltf/create/model.h"
@@ -192,7 +192,7 @@ static nt_status plan_materials(composition *c, nt_error *error)
 	nt_status status = nt_image_set_create(&c->images, &c->options, error);
 	if (status == NT_OK)
 		status = each_material(c, error, use_images);
-	/* The main file comes before its companions, and is none of the images that it refers to. */
+	/* The main file comes before its sidecars, and is none of the images that it refers to. */
 	if (status == NT_OK)
 		status = nt_output_add(c->output, c->options.path, NT_ROLE_MAIN, &c->main, error);
 	if (status == NT_OK)

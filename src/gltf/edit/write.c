@@ -3,7 +3,7 @@
  * The edited document as files: .gltf with its buffers, .gltf with everything in it, or .glb.
  *
  * A buffer stays what it was where it can: a data URI remains one, an external file that nothing
- * changed is linked to, several buffers remain several. A changed external buffer becomes a companion of
+ * changed is linked to, several buffers remain several. A changed external buffer becomes a sidecar of
  * the output, so that no file of the input is ever written. A .glb from a .gltf is one file unless files
  * are asked for: buffer 0 is the BIN chunk and the others are data URIs. Their bytes could be one chunk, as
  * other tools have it, but only with other buffer numbers and offsets, to which extensions that we do not
@@ -16,7 +16,7 @@
 #include <string.h>
 #include "base/parallel.h"
 #include "file/uri.h"
-#include "gltf/companion.h"
+#include "gltf/sidecar.h"
 #include "gltf/dangling.h"
 #include "gltf/edit/data_uris.h"
 #include "gltf/edit/images.h"
@@ -33,7 +33,7 @@ typedef struct writing {
 	nt_relocated buffers;
 	nt_data_uris uris;
 	nt_sink *main;
-	nt_sink **companions;            /* [buffer count] the files that buffers are written to; NULL: none */
+	nt_sink **sidecars;            /* [buffer count] the files that buffers are written to; NULL: none */
 	nt_arena *arena;
 	nt_error *error;
 	bool to_glb, same_container, embed, in_place;
@@ -45,7 +45,7 @@ typedef enum destination {
 	LINKED, /* the same file, seen from the output's folder */
 	TO_DATA_URI,
 	TO_BIN_CHUNK,
-	TO_COMPANION /* a file beside the output */
+	TO_SIDECAR /* a file beside the output */
 } destination;
 
 /* From which length on the JSON of a .glb is made while another thread writes what comes behind it. */
@@ -122,8 +122,8 @@ static destination choose_destination(const writing *c, uint32_t index)
 	const bool chunk_is_other = document->is_glb && document->glb.has_bin &&
 		document->buffer_count && document->buffers[0].storage != NT_GLTF_STORED_BIN;
 	const bool files = keeps_files(c);
-	const destination in_glb = index == 0 && !chunk_is_other ? TO_BIN_CHUNK : files ? TO_COMPANION : TO_DATA_URI;
-	const destination moved = c->to_glb ? in_glb : c->embed ? TO_DATA_URI : TO_COMPANION;
+	const destination in_glb = index == 0 && !chunk_is_other ? TO_BIN_CHUNK : files ? TO_SIDECAR : TO_DATA_URI;
+	const destination moved = c->to_glb ? in_glb : c->embed ? TO_DATA_URI : TO_SIDECAR;
 	if (index >= document->buffer_count)
 		return moved;
 	const nt_gltf_buffer *buffer = &document->buffers[index];
@@ -141,7 +141,7 @@ static destination choose_destination(const writing *c, uint32_t index)
 		if (edited || c->embed || (into_glb && !files))
 			return moved;
 		/* where the folder stays the same it is there already, as with images */
-		return c->options->buffers == NT_BUFFERS_COPY && *c->output.link_prefix && files ? TO_COMPANION
+		return c->options->buffers == NT_BUFFERS_COPY && *c->output.link_prefix && files ? TO_SIDECAR
 											  : LINKED;
 	default:
 		/* Buffer 0 of a .glb without a uri is the BIN chunk, so there has to be one. */
@@ -181,7 +181,7 @@ static nt_status protect_inputs(writing *c)
 }
 
 /* "out.bin", "out-1.bin" for the others, where those names are to be had. */
-static nt_status name_companion(writing *c, uint32_t index, bool first, const char **path)
+static nt_status name_sidecar(writing *c, uint32_t index, bool first, const char **path)
 {
 	const char *out = c->options->path;
 	const char *slash = strrchr(out, '/'), *dot = strrchr(out, '.');
@@ -199,11 +199,11 @@ static nt_status name_companion(writing *c, uint32_t index, bool first, const ch
 	return NT_OK;
 }
 
-static nt_status write_companion(writing *c, uint32_t index, bool first)
+static nt_status write_sidecar(writing *c, uint32_t index, bool first)
 {
 	const char *path = NULL;
 	nt_sink *sink = NULL;
-	nt_status status = name_companion(c, index, first, &path);
+	nt_status status = name_sidecar(c, index, first, &path);
 	if (!status)
 		status = nt_output_add(c->output.set, path, NT_ROLE_BUFFER, &sink, c->error);
 	if (!status) {
@@ -212,7 +212,7 @@ static nt_status write_companion(writing *c, uint32_t index, bool first)
 	}
 	if (!status)
 		status = nt_output_settle(c->output.set, sink, c->error);
-	c->companions[index] = sink;
+	c->sidecars[index] = sink;
 	return status;
 }
 
@@ -270,7 +270,7 @@ static nt_status settle_buffers(writing *c, bool *bin)
 		if (status)
 			break;
 		/* in place, what is linked to is what it was */
-		if (what != TO_COMPANION && !(what == LINKED && c->in_place))
+		if (what != TO_SIDECAR && !(what == LINKED && c->in_place))
 			nt_gltf_forget_record(c->json, json);
 		switch (what) {
 		case KEPT:
@@ -285,8 +285,8 @@ static nt_status settle_buffers(writing *c, bool *bin)
 			nt_json_remove(c->json, json, "uri");
 			*bin = true;
 			break;
-		case TO_COMPANION:
-			status = write_companion(c, i, first);
+		case TO_SIDECAR:
+			status = write_sidecar(c, i, first);
 			first = false;
 			break;
 		}
@@ -370,7 +370,7 @@ static nt_status write_glb(const writing *c, const nt_buffer *text, uint64_t len
 	return status ? status : write_rest(&p, c->error);
 }
 
-/* The document with the names that its companions have in it. */
+/* The document with the names that its sidecars have in it. */
 static nt_status write_document(writing *c, bool bin, bool interim, nt_sink *sink)
 {
 	nt_buffer text = {0};
@@ -378,8 +378,8 @@ static nt_status write_document(writing *c, bool bin, bool interim, nt_sink *sin
 	nt_status status = NT_OK;
 	for (uint32_t i = 0; !status && i < c->buffers.buffer_count; i++) {
 		nt_json_value *json = nt_json_at(nt_gltf_root_member(c->document, "buffers"), i);
-		if (c->companions[i])
-			status = nt_gltf_record(c->json, json, c->companions[i], interim, c->error);
+		if (c->sidecars[i])
+			status = nt_gltf_record(c->json, json, c->sidecars[i], interim, c->error);
 	}
 	if (!status)
 		status = nt_data_uris_text(&c->uris, &text, &length, c->error);
@@ -407,10 +407,10 @@ static nt_status write_files(writing *c)
 {
 	bool bin;
 	const size_t count = c->buffers.buffer_count;
-	c->companions = nt_arena_alloc(c->arena, count, sizeof *c->companions);
-	if (!c->companions)
+	c->sidecars = nt_arena_alloc(c->arena, count, sizeof *c->sidecars);
+	if (!c->sidecars)
 		return nt_fail_memory(c->error);
-	memset(c->companions, 0, count * sizeof *c->companions);
+	memset(c->sidecars, 0, count * sizeof *c->sidecars);
 	nt_status status = check_room(c);
 	if (!status)
 		status = settle_buffers(c, &bin);
@@ -429,7 +429,7 @@ nt_status nt_gltf_write_document(nt_scene *scene, nt_buffer_edits *edits, const 
 		.arena = &edits->arena, .error = error, .to_glb = options->format == NT_FORMAT_GLB,
 		.in_place = nt_output_is_in_place(output, options->path)};
 	c.same_container = c.to_glb == document->is_glb;
-	/* Standard output has no companions. */
+	/* Standard output has no sidecars. */
 	c.embed = options->embed || (!c.to_glb && strcmp(options->path, "-") == 0);
 	nt_status status = NT_OK;
 	if (has_external(document, "buffers") || has_external(document, "images"))

@@ -39,7 +39,7 @@ static named_bytes triangle_bytes(void)
 	return file;
 }
 
-static void reread_finds_attributes_in_companions(void **state)
+static void reread_finds_attributes_in_sidecars(void **state)
 {
 	(void)state;
 	const char *const text = triangle;
@@ -204,7 +204,7 @@ static void deep_json_is_refused_before_it_is_parsed(void **state)
 int main(void)
 {
 	const struct CMUnitTest tests[] = {
-		cmocka_unit_test(reread_finds_attributes_in_companions),
+		cmocka_unit_test(reread_finds_attributes_in_sidecars),
 		cmocka_unit_test(reread_checks_accessors_against_views_and_buffers),
 		cmocka_unit_test(packed_views_are_unpacked),
 		cmocka_unit_test(numbers_beyond_double_are_taken),

@@ -55,7 +55,7 @@ static void run_one(const char *path, uint32_t *chance, counts *tally)
 	nt_summary_free(&summary);
 }
 
-static void link_companions(const char *seed, const char *folder)
+static void link_sidecars(const char *seed, const char *folder)
 {
 	char command[1024];
 	const char *slash = strrchr(seed, '/');
@@ -78,7 +78,7 @@ static void damaged_files_end_with_a_status(void **state)
 		nt_error error;
 		if (nt_file_open(&file, seeds[s], &error) != NT_OK)
 			continue; /* ../shared is not there */
-		link_companions(seeds[s], folder);
+		link_sidecars(seeds[s], folder);
 		snprintf(path, sizeof path, "%s/x%s", folder, strrchr(seeds[s], '.'));
 		char *bytes = malloc(file.size + 2 * MUTATE_ROOM);
 		assert_non_null(bytes);

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Data URIs that are made while the text is written. What is written is read again, and says what companions say.
+ * Data URIs that are made while the text is written. What is written is read again, and says what sidecars say.
  */
 #include "folder.h"
 #include "test.h"
@@ -87,7 +87,7 @@ static void names_that_look_like_data_stay(void **state)
 	assert_embedded("data:application/gltf-buffer;base64,A");
 }
 
-/* The text is made twice where a companion gets its name in two steps: the second run replaces the first one's
+/* The text is made twice where a sidecar gets its name in two steps: the second run replaces the first one's
  * out/in.bin, while the other buffer is a data URI in both texts. */
 static void data_is_in_every_text(void **state)
 {
@@ -100,15 +100,15 @@ static void data_is_in_every_text(void **state)
 	static const float turned[] = {0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 1, 0}; /* u and v exchanged */
 	put_file("in.bin", turned, sizeof turned);
 	run("in.gltf", "out/in.gltf", settings);
-	nt_file after = open_file("out/in.gltf"), companion = open_file("out/in.bin");
+	nt_file after = open_file("out/in.gltf"), sidecar = open_file("out/in.bin");
 	assert_true(has_text(&after, "\"uri\":\"data:application/gltf-buffer;base64,AAAA"));
 	assert_true(has_text(&after, "\"uri\":\"in.bin\""));
 	assert_int_equal(after.size, before.size);
-	assert_int_equal(companion.size, sizeof turned);
-	assert_memory_equal(companion.data, turned, sizeof turned);
+	assert_int_equal(sidecar.size, sizeof turned);
+	assert_memory_equal(sidecar.data, turned, sizeof turned);
 	nt_file_close(&before);
 	nt_file_close(&after);
-	nt_file_close(&companion);
+	nt_file_close(&sidecar);
 }
 
 int main(void)

@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT */
 /*
  * Every allocation of a run from glTF to glTF fails: sparse accessors, morph targets, shared vertices, texture
- * transforms, data URIs, companions, Draco. The run says that memory is exhausted, or does without; leaks are for the
+ * transforms, data URIs, sidecars, Draco. The run says that memory is exhausted, or does without; leaks are for the
  * sanitizers to see.
  */
 #include "fail_alloc.h"
@@ -52,7 +52,7 @@ static void allocations_of_morph_targets_and_data_uris_may_fail(void **state)
 	fail_each(NT_DATA_DIR "/morph.gltf", (nt_settings){.output_format = NT_FORMAT_GLTF, .embed = true});
 }
 
-static void allocations_of_companions_may_fail(void **state)
+static void allocations_of_sidecars_may_fail(void **state)
 {
 	(void)state;
 	fail_each(NT_DATA_DIR "/plates.gltf", (nt_settings){.output_format = NT_FORMAT_GLTF,
@@ -77,7 +77,7 @@ int main(void)
 	const struct CMUnitTest tests[] = {
 		cmocka_unit_test(allocations_of_sparse_accessors_may_fail),
 		cmocka_unit_test(allocations_of_morph_targets_and_data_uris_may_fail),
-		cmocka_unit_test(allocations_of_companions_may_fail),
+		cmocka_unit_test(allocations_of_sidecars_may_fail),
 		cmocka_unit_test(allocations_of_draco_may_fail),
 		cmocka_unit_test(allocations_of_texture_transforms_may_fail),
 	};

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT */
 /*
- * Records of companions: see companion.h. What a previous document says is somebody's text: a record counts only for a
+ * Records of sidecars: see sidecar.h. What a previous document says is somebody's text: a record counts only for a
  * plain name in the document's folder, and output sets compare the digest with the file's bytes.
  */
-#include "gltf/companion.h"
+#include "gltf/sidecar.h"
 
 #include <string.h>
 #include "base/memory.h"
@@ -75,14 +75,14 @@ nt_status nt_gltf_find_claims(nt_output *output, const char *path, nt_error *err
 
 /* ---- writing ---- */
 
-void nt_gltf_record_uri(nt_buffer *text, const nt_sink *companion, bool interim)
+void nt_gltf_record_uri(nt_buffer *text, const nt_sink *sidecar, bool interim)
 {
-	nt_uri_append_path(text, nt_sink_name(companion, interim));
+	nt_uri_append_path(text, nt_sink_name(sidecar, interim));
 }
 
-void nt_gltf_record_extras(nt_buffer *text, const nt_sink *companion, bool interim)
+void nt_gltf_record_extras(nt_buffer *text, const nt_sink *sidecar, bool interim)
 {
-	const char *digest = nt_sink_digest(companion), *before = nt_sink_digest_before(companion);
+	const char *digest = nt_sink_digest(sidecar), *before = nt_sink_digest_before(sidecar);
 	if (!digest)
 		return;
 	nt_buffer_format(text, "{\"%s\":\"%s\"", key_digest, digest);
@@ -99,18 +99,18 @@ static void set_digest(nt_json *json, nt_json_value *extras, const char *key, co
 		nt_json_remove(json, extras, key);
 }
 
-nt_status nt_gltf_record(nt_json *json, nt_json_value *buffer, const nt_sink *companion, bool interim,
+nt_status nt_gltf_record(nt_json *json, nt_json_value *buffer, const nt_sink *sidecar, bool interim,
 	nt_error *error)
 {
 	nt_buffer uri = {0};
-	nt_gltf_record_uri(&uri, companion, interim);
+	nt_gltf_record_uri(&uri, sidecar, interim);
 	if (!uri.failed)
 		nt_json_set_string(json, nt_json_put(json, buffer, "uri"), uri.data, uri.size);
 	const bool failed = uri.failed;
 	nt_buffer_free(&uri);
 	if (failed)
 		return nt_fail_memory(error);
-	const char *digest = nt_sink_digest(companion);
+	const char *digest = nt_sink_digest(sidecar);
 	if (!digest) {
 		nt_gltf_forget_record(json, buffer);
 		return NT_OK;
@@ -122,7 +122,7 @@ nt_status nt_gltf_record(nt_json *json, nt_json_value *buffer, const nt_sink *co
 	if (type == NT_JSON_NONE)
 		nt_json_set_object(json, extras);
 	set_digest(json, extras, key_digest, digest);
-	set_digest(json, extras, key_before, interim ? nt_sink_digest_before(companion) : NULL);
+	set_digest(json, extras, key_before, interim ? nt_sink_digest_before(sidecar) : NULL);
 	return NT_OK;
 }
 
